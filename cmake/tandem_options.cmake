@@ -1,0 +1,35 @@
+# Flags that every target has. -ffp-contract=off and no -march: the same bits on every machine.
+set(CMAKE_CXX_STANDARD 20)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+set(CMAKE_CXX_FLAGS_RELEASE "-O3 -g1")        # assertions are TANDEM_CHECK, which stays in
+set(CMAKE_CXX_FLAGS_RELWITHDEBINFO "-O1 -g1") # the sanitizer presets: quick to build, readable traces
+
+option(TANDEM_WERROR "Warnings are errors (for continuous integration)" OFF)
+option(TANDEM_FUZZ "Build the libFuzzer targets (needs clang)" OFF)
+set(TANDEM_SANITIZE "" CACHE STRING "Sanitizers: address,undefined or thread")
+
+add_library(tandem_flags INTERFACE)
+target_compile_options(tandem_flags INTERFACE
+  -Wall -Wextra -Wpedantic -Wconversion -Wshadow -ffp-contract=off -fno-math-errno -fvisibility-inlines-hidden)
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  target_compile_options(tandem_flags INTERFACE -Wno-restrict) # false alarm of GCC 12
+endif()
+if(TANDEM_WERROR)
+  target_compile_options(tandem_flags INTERFACE -Werror)
+endif()
+if(TANDEM_SANITIZE)
+  target_compile_options(tandem_flags INTERFACE -fsanitize=${TANDEM_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
+  target_link_options(tandem_flags INTERFACE -fsanitize=${TANDEM_SANITIZE})
+endif()
+if(TANDEM_FUZZ)
+  target_compile_options(tandem_flags INTERFACE -fsanitize=fuzzer-no-link,address,undefined)
+  target_link_options(tandem_flags INTERFACE -fsanitize=address,undefined)
+endif()
+
+find_program(TANDEM_CCACHE ccache)
+if(TANDEM_CCACHE)
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${TANDEM_CCACHE})
+endif()

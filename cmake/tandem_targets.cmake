@@ -1,0 +1,89 @@
+# The three kinds of target. What a folder may include is written once, in DEPS; tests/architecture reads the same lists.
+include(GNUInstallDirs)
+set_property(GLOBAL PROPERTY TANDEM_ARCHITECTURE "")
+
+# tandem_folder_of(<out>): the folder of the calling CMakeLists, relative to the top, e.g. "core/space".
+function(tandem_folder_of out)
+  file(RELATIVE_PATH folder ${PROJECT_SOURCE_DIR} ${CMAKE_CURRENT_SOURCE_DIR})
+  set(${out} ${folder} PARENT_SCOPE)
+endfunction()
+
+# tandem_target_of(<out> <folder>): "core/space" -> "tandem_core_space".
+function(tandem_target_of out folder)
+  string(REPLACE "/" "_" name ${folder})
+  set(${out} tandem_${name} PARENT_SCOPE)
+endfunction()
+
+function(tandem_note folder deps external)
+  string(REPLACE ";" " " deps "${deps}")
+  string(REPLACE ";" " " external "${external}")
+  set_property(GLOBAL APPEND PROPERTY TANDEM_ARCHITECTURE "${folder} : ${deps} : ${external}")
+endfunction()
+
+# tandem_library(SOURCES a.cpp … DEPS hal core/space … EXTERNAL fmt::fmt … INCLUDES fmt …)
+# One folder = one static library. DEPS are folders, and the only ones whose headers may be included.
+# EXTERNAL are third-party CMake targets or link names.
+function(tandem_library)
+  cmake_parse_arguments(arg "" "" "SOURCES;DEPS;EXTERNAL" ${ARGN})
+  tandem_folder_of(folder)
+  tandem_target_of(target ${folder})
+  if(arg_SOURCES)
+    add_library(${target} STATIC ${arg_SOURCES})
+    set(scope PUBLIC)
+    target_link_libraries(${target} PRIVATE tandem_flags)
+  else()
+    add_library(${target} INTERFACE)
+    set(scope INTERFACE)
+  endif()
+  target_include_directories(${target} ${scope} ${PROJECT_SOURCE_DIR})
+  foreach(dep ${arg_DEPS})
+    tandem_target_of(dep_target ${dep})
+    target_link_libraries(${target} ${scope} ${dep_target})
+  endforeach()
+  target_link_libraries(${target} ${scope} ${arg_EXTERNAL})
+  tandem_note("${folder}" "${arg_DEPS}" "${arg_EXTERNAL}")
+endfunction()
+
+# tandem_plugin(NAME epuck_diffusion SOURCES … DEPS hal): one shared object, lib/<name>.so in the build folder.
+function(tandem_plugin)
+  cmake_parse_arguments(arg "" "NAME" "SOURCES;DEPS;EXTERNAL" ${ARGN})
+  tandem_folder_of(folder)
+  add_library(${arg_NAME} MODULE ${arg_SOURCES})
+  target_include_directories(${arg_NAME} PRIVATE ${PROJECT_SOURCE_DIR})
+  set_target_properties(${arg_NAME} PROPERTIES PREFIX "lib" CXX_VISIBILITY_PRESET hidden
+    LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/lib)
+  target_link_libraries(${arg_NAME} PRIVATE tandem_flags)
+  foreach(dep ${arg_DEPS})
+    tandem_target_of(dep_target ${dep})
+    target_link_libraries(${arg_NAME} PRIVATE ${dep_target})
+  endforeach()
+  target_link_libraries(${arg_NAME} PRIVATE ${arg_EXTERNAL})
+  tandem_note("${folder}" "${arg_DEPS}" "${arg_EXTERNAL}")
+  set_property(GLOBAL APPEND PROPERTY TANDEM_PLUGINS ${arg_NAME})
+endfunction()
+
+# tandem_test(NAME hal_params SOURCES … DEPS hal LABELS fast): one GoogleTest program, one ctest entry.
+function(tandem_test)
+  cmake_parse_arguments(arg "" "NAME;TIMEOUT" "SOURCES;DEPS;EXTERNAL;LABELS" ${ARGN})
+  if(NOT arg_TIMEOUT)
+    set(arg_TIMEOUT 120)
+  endif()
+  add_executable(test_${arg_NAME} ${arg_SOURCES})
+  target_link_libraries(test_${arg_NAME} PRIVATE tandem_flags GTest::gtest GTest::gtest_main GTest::gmock ${arg_EXTERNAL})
+  target_compile_definitions(test_${arg_NAME} PRIVATE
+    TANDEM_SOURCE_DIR="${PROJECT_SOURCE_DIR}" TANDEM_BINARY_DIR="${CMAKE_BINARY_DIR}")
+  foreach(dep ${arg_DEPS})
+    tandem_target_of(dep_target ${dep})
+    target_link_libraries(test_${arg_NAME} PRIVATE ${dep_target})
+  endforeach()
+  set_target_properties(test_${arg_NAME} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/tests)
+  add_test(NAME ${arg_NAME} COMMAND test_${arg_NAME})
+  set_tests_properties(${arg_NAME} PROPERTIES LABELS "${arg_LABELS}" TIMEOUT ${arg_TIMEOUT})
+endfunction()
+
+# One line a folder, "folder : its DEPS : its third-party libraries", for the architecture test.
+function(tandem_write_architecture file)
+  get_property(lines GLOBAL PROPERTY TANDEM_ARCHITECTURE)
+  string(REPLACE ";" "\n" text "${lines}")
+  file(WRITE ${file} "${text}\n")
+endfunction()

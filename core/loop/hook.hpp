@@ -1,0 +1,69 @@
+// Hooks: what the experiment itself does around the robots (ARGoS calls them loop functions).
+#pragma once
+#include <memory>
+#include <string>
+
+#include "core/scenario/element.hpp"
+#include "hal/plugin.hpp"
+#include "hal/time.hpp"
+
+namespace tandem::core {
+
+class Space;
+
+/// What a hook is handed: the whole simulated state, to read and to change, and where the run is.
+struct HookContext {
+  Space& space;
+  hal::Tick tick = 0;                 ///< the step about to run, or just run
+  std::int64_t ticks_per_second = 10;
+  std::uint64_t seed = 0;
+};
+
+/// Called from the thread that steps the world, never during a parallel phase. An exception ends the run, by name.
+class Hook {
+ public:
+  virtual ~Hook() = default;
+
+  virtual void before_run(HookContext&) {}
+  virtual void before_step(HookContext&) {}
+  virtual void after_step(HookContext&) {}
+  /// Asked after every step; true ends the run.
+  virtual bool is_done(HookContext&) { return false; }
+  virtual void after_run(HookContext&) {}
+
+  /// Reflectance of the floor at (x, y) in W, 0 black to 1 white; asked once a floor pixel when the file says
+  /// `<floor source="loop_functions"/>`, and again after `Space::repaint_floor`.
+  virtual double floor(double /*x_m*/, double /*y_m*/) { return 0.5; }
+};
+
+/// What a plug-in registers under category "hook".
+struct HookType {
+  std::string_view name;
+  std::string_view summary;
+  /// Reads its options from the file; problems are reported with their lines.
+  std::unique_ptr<Hook> (*make)(const Element& options, Problems& problems) = nullptr;
+  /// Shows its parameters to `visitor`, for the manual.
+  void (*describe)(hal::ParamVisitor& visitor) = nullptr;
+};
+
+/// The table of hook class `T`, constructed from `(const T::Params&)`.
+template <class T>
+const HookType& hook_type(std::string_view name, std::string_view summary) {
+  static HookType type;
+  type.name = name;
+  type.summary = summary;
+  type.make = [](const Element& options, Problems& problems) -> std::unique_ptr<Hook> {
+    typename T::Params params;
+    ElementReader reader(options, problems, {"library", "label"});
+    params.describe(reader);
+    reader.finish();
+    return std::make_unique<T>(params);
+  };
+  type.describe = [](hal::ParamVisitor& visitor) {
+    typename T::Params params;
+    params.describe(visitor);
+  };
+  return type;
+}
+
+}  // namespace tandem::core

@@ -1,0 +1,69 @@
+// A piece of an experiment file as plain data: names, attributes, children, and the line of each.
+#pragma once
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "hal/params.hpp"
+
+namespace tandem::core {
+
+/// Something wrong in an experiment file. Printed as `file:line: error: message`.
+struct Problem {
+  std::string file;
+  int line = 0;
+  std::string message;
+  bool warning = false;
+};
+using Problems = std::vector<Problem>;
+
+/// `file:line: error: message`, or `warning:`.
+std::string to_text(const Problem& problem);
+bool has_errors(const Problems& problems) noexcept;
+
+/// An XML element without the XML library.
+struct Element {
+  struct Attribute {
+    std::string name;
+    std::string value;
+    int line = 0;
+  };
+  std::string name;
+  std::string file;
+  int line = 0;
+  std::vector<Attribute> attributes;
+  std::vector<Element> children;
+
+  const std::string* attribute(std::string_view attribute_name) const noexcept;
+  const Element* child(std::string_view child_name) const noexcept;
+};
+
+/// The closest of `candidates` to `word` by edit distance, or empty when none is near: for "did you mean".
+std::string closest(std::string_view word, const std::vector<std::string>& candidates);
+
+/// Fills described parameters from an element's attributes. Every attribute must be asked for, else it is unknown: call
+/// `finish()` after `describe` to have unknown ones reported with "did you mean".
+class ElementReader final : public hal::ParamVisitor {
+ public:
+  /// `ignore` are attributes that belong to somebody else (e.g. "id", "library", "implementation").
+  ElementReader(const Element& element, Problems& problems, std::vector<std::string> ignore = {});
+
+  void number(std::string_view name, double& value_si, const hal::Unit& bare, hal::Range range_si, std::string_view doc) override;
+  void integer(std::string_view name, std::int64_t& value, hal::Range range, std::string_view doc) override;
+  void flag(std::string_view name, bool& value, std::string_view doc) override;
+  void text(std::string_view name, std::string& value, std::string_view doc) override;
+  void choice(std::string_view name, std::string& value, std::span<const std::string_view> options, std::string_view doc) override;
+  void vector(std::string_view name, std::array<double, 3>& value_si, const hal::Unit& bare, std::string_view doc) override;
+  void finish();
+
+ private:
+  const std::string* find(std::string_view name);
+  void problem(std::string_view attribute, std::string message);
+
+  const Element& element_;
+  Problems& problems_;
+  std::vector<std::string> known_;
+};
+
+}  // namespace tandem::core

@@ -1,0 +1,212 @@
+// What was asked: one experiment, read and checked. Immutable once read; any number of runs may share it.
+//
+// Lengths in metres, angles in radians, times in seconds, masses in kilograms. W is the world frame (x east, z up).
+#pragma once
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/scenario/element.hpp"
+
+namespace tandem::core {
+
+using Vec3 = std::array<double, 3>;
+
+/// A pose in W: position, and orientation as yaw-pitch-roll (rotations about z, then y, then x).
+struct Placement {
+  Vec3 p_W{};
+  double yaw_rad = 0.0;
+  double pitch_rad = 0.0;
+  double roll_rad = 0.0;
+};
+
+enum class TimeMode { Fast, Realtime, Lockstep };
+enum class Assignment { Static, Dynamic };  ///< of work to threads
+enum class EscapePolicy { Error, Stop, Remove };  ///< what happens to a body that leaves the arena
+
+/// One listed device of a controller configuration: `<proximity implementation="noisy" noise_level="0.1"/>`.
+struct DeviceChoice {
+  std::string device;          ///< the port's name; ARGoS' names ("epuck_proximity") are already mapped to ours
+  std::string implementation;  ///< as written, "default" when absent
+  Element options;
+};
+
+struct ControllerConfig {
+  std::string id;
+  std::string label;    ///< the element's name: the registered name of the controller
+  std::string library;
+  std::vector<DeviceChoice> sensors;
+  std::vector<DeviceChoice> actuators;
+  Element params;       ///< `<params …>`, empty element where absent
+  int line = 0;
+};
+
+/// How one coordinate triple is drawn.
+struct Distribution {
+  enum class Method { Uniform, Gaussian, Constant, Grid };
+  Method method = Method::Constant;
+  Vec3 min{}, max{};                 ///< Uniform
+  Vec3 mean{}, std_dev{};            ///< Gaussian
+  Vec3 values{};                     ///< Constant
+  Vec3 center{}, distances{};        ///< Grid
+  std::array<int, 3> layout{1, 1, 1};
+  int line = 0;
+};
+
+/// `<distribute>` around an entity. Orientation triples are (yaw, pitch, roll) in radians.
+struct Distribute {
+  Distribution position;
+  Distribution orientation;
+  std::int64_t quantity = 1;
+  std::int64_t max_trials = 1;
+  std::int64_t base_num = 0;
+  int line = 0;
+};
+
+struct BatteryConfig {
+  std::string model = "time";        ///< time, motion or time_motion
+  double full_charge = 1.0;
+  double start_charge = 1.0;
+  double delta = 0.0;                ///< charge lost a tick (time)
+  double pos_delta = 0.0;            ///< charge lost a metre (motion)
+  double orient_delta = 0.0;         ///< charge lost a radian (motion)
+};
+
+/// A robot that stands for a real one: where its bridge connects.
+struct BridgeConfig {
+  std::string link;                  ///< "serial:/dev/ttyUSB0@115200"
+  std::string firmware = "auto";
+  double timeout_s = 0.5;            ///< age from which the link counts as lost
+  Element options;
+  int line = 0;
+};
+
+struct TrackerConfig {
+  std::string source = "odometry";
+  Element options;
+  int line = 0;
+};
+
+/// A robot, or with `distribute` as many as it says: ids are then `id` + number.
+struct RobotItem {
+  std::string kind;                  ///< "e-puck"
+  std::string id;
+  std::size_t controller = 0;        ///< index into Scenario::controllers
+  std::optional<Element> params;     ///< overrides of the controller's parameters, for these robots alone
+  Placement placement;
+  std::optional<Distribute> distribute;
+  double rab_range_m = -1.0;         ///< negative: the data sheet's
+  std::int64_t rab_payload = -1;     ///< bytes; negative: the data sheet's
+  BatteryConfig battery;
+  std::optional<BridgeConfig> bridge;
+  std::optional<TrackerConfig> tracker;
+  int line = 0;
+};
+
+enum class ShapeKind { Box, Cylinder };
+
+/// A box or a cylinder. `placement.p_W` is the centre of its base. `size` is (x, y, z) of a box, or (radius, radius, height).
+struct ObjectItem {
+  ShapeKind shape = ShapeKind::Box;
+  std::string id;
+  Vec3 size{};
+  bool movable = false;
+  double mass_kg = 1.0;
+  Placement placement;
+  std::optional<Distribute> distribute;
+  int line = 0;
+};
+
+struct LightItem {
+  std::string id;
+  Vec3 p_W{};
+  std::array<std::uint8_t, 3> rgb{255, 255, 0};
+  double intensity = 1.0;            ///< distance in metres at which a facing sensor reads 0.5 … see docs of the light sensor
+  std::optional<Distribute> distribute;
+  int line = 0;
+};
+
+/// A steady sound, for microphones.
+struct SoundItem {
+  std::string id;
+  Vec3 p_W{};
+  double level = 1.0;                ///< 0 to 1, at the source
+  int line = 0;
+};
+
+struct FloorConfig {
+  std::string source = "none";       ///< none (grey), image, loop_functions
+  std::string path;                  ///< of the image, resolved
+  double pixels_per_meter = 100.0;
+  int line = 0;
+};
+
+/// A vertex of a region's outline; the side that starts here is a wall, or a gate to `gate`.
+struct BoundarySide {
+  double x_m = 0.0;
+  double y_m = 0.0;
+  std::string gate;                  ///< id of the engine behind this side; empty: a wall
+  int line = 0;
+};
+
+struct EngineConfig {
+  std::string kind;                  ///< kinematics2d, dynamics2d, dynamics3d, particle3d (ARGoS' pointmass3d is mapped)
+  std::string id;
+  std::optional<double> top_m, bottom_m;
+  std::vector<BoundarySide> sides;   ///< empty: the whole arena
+  std::string regions;               ///< "", "4x4" or "auto"
+  Element options;
+  int line = 0;
+};
+
+struct MediumConfig {
+  std::string kind;                  ///< range_and_bearing, led
+  std::string id;
+  Element options;
+  int line = 0;
+};
+
+struct HookConfig {
+  std::string library;
+  std::string label;
+  Element options;                   ///< the whole element with its children
+  int line = 0;
+};
+
+struct TrajectoryConfig {
+  std::string path;                  ///< CSV
+  std::vector<std::string> entities; ///< ids, or patterns with '*'
+  std::int64_t every = 1;            ///< ticks between rows
+};
+
+struct Scenario {
+  std::string file;
+  std::string name;                  ///< file name without folder and extension
+
+  double length_s = 0.0;             ///< 0: endless
+  std::int64_t ticks_per_second = 10;
+  std::optional<std::uint64_t> seed; ///< absent: from the clock (then named in the report)
+  std::int64_t threads = 0;
+  Assignment assignment = Assignment::Static;
+  TimeMode time_mode = TimeMode::Fast;
+
+  Vec3 arena_size{};
+  Vec3 arena_center{};
+  EscapePolicy escape = EscapePolicy::Error;
+  FloorConfig floor;
+
+  std::vector<EngineConfig> engines;
+  std::vector<MediumConfig> media;
+  std::vector<ControllerConfig> controllers;
+  std::vector<RobotItem> robots;
+  std::vector<ObjectItem> objects;
+  std::vector<LightItem> lights;
+  std::vector<SoundItem> sounds;
+  std::vector<HookConfig> hooks;
+  std::optional<TrajectoryConfig> trajectory;
+  Element camera;                    ///< placements of ARGoS' view, kept for ours
+};
+
+}  // namespace tandem::core

@@ -1,0 +1,77 @@
+// What is: one running simulation. Made from a Scenario and a seed, then stepped.
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/loop/hook.hpp"
+#include "core/scenario/scenario.hpp"
+#include "core/space/space.hpp"
+#include "hal/log.hpp"
+#include "hal/plugin_loader.hpp"
+#include "hal/time.hpp"
+
+namespace tandem::core {
+
+struct WorldOptions {
+  std::optional<std::uint64_t> seed;     ///< overrides the scenario's
+  std::optional<std::int64_t> threads;   ///< overrides the scenario's; 0 and 1: the caller alone
+  std::optional<Assignment> assignment;
+  hal::Log log;
+};
+
+/// How a run ended, or that it goes on.
+enum class RunState { Running, Done, Failed };
+
+/// Counted misbehaviour of controllers and bodies, for the report.
+struct Incidents {
+  std::uint64_t commands_clamped = 0;
+  std::uint64_t commands_not_finite = 0;
+  std::uint64_t controllers_thrown = 0;
+  std::uint64_t bodies_escaped = 0;
+  std::vector<std::string> first;        ///< the first few, each naming robot, tick and what happened
+};
+
+/// A simulated world. Not copyable; may be moved between threads between steps.
+class World {
+ public:
+  /// Places every entity, loads every plug-in, constructs every controller. All problems are appended to `problems`, each
+  /// with its line; null is returned when there is an error among them. `loader` must outlive the world.
+  static std::unique_ptr<World> make(const Scenario& scenario, hal::PluginLoader& loader, const WorldOptions& options,
+                                     Problems& problems);
+  ~World();
+  World(const World&) = delete;
+  World& operator=(const World&) = delete;
+
+  /// Calls the hooks' `before_run`. Once, before the first step.
+  void start();
+  /// One tick: hooks, physics, sense + control, filter. Does nothing once `state()` is not Running.
+  void step();
+  /// Calls the hooks' `after_run`. Once, after the last step.
+  void finish();
+
+  RunState state() const noexcept;
+  /// Why the run failed: what, who, which tick. Empty while it did not.
+  const std::string& failure() const noexcept;
+
+  hal::Tick tick() const noexcept;
+  std::int64_t ticks_per_second() const noexcept;
+  std::uint64_t seed() const noexcept;
+  std::int64_t threads() const noexcept;
+  const Scenario& scenario() const noexcept;
+  Space& space() noexcept;
+  const Space& space() const noexcept;
+  const Incidents& incidents() const noexcept;
+
+  /// Fingerprint of everything that later steps depend on, in the order of entities: equal for any number of threads.
+  std::uint64_t state_hash() const noexcept;
+
+ private:
+  struct Impl;
+  explicit World(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace tandem::core

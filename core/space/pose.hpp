@@ -1,0 +1,17 @@
+// Where a body is in the plane, and how high its base stands.
+#pragma once
+
+namespace tandem::core {
+
+/// Pose of a body B in W. The heading is kept as its cosine and sine.
+struct Pose {
+  double x_m = 0.0;
+  double y_m = 0.0;
+  double z_m = 0.0;      ///< of the base above the ground
+  double cos_h = 1.0;    ///< heading: counter-clockwise from x
+  double sin_h = 0.0;
+
+  double heading_rad() const noexcept;  ///< in (-pi, pi]
+};
+
+}  // namespace tandem::core

@@ -1,0 +1,107 @@
+// Robot controllers: what a behaviour is written against.
+#pragma once
+#include <cstddef>
+#include <exception>
+#include <memory>
+#include <new>
+#include <string>
+#include <type_traits>
+
+#include "hal/params.hpp"
+#include "hal/robot.hpp"
+
+namespace tandem::hal {
+
+/// A robot's control program. Takes its devices in its constructor and keeps references to them.
+class Controller {
+ public:
+  virtual ~Controller() = default;
+
+  /// One control step: reads its sensors, writes its actuators. May run on any thread; must not block.
+  /// An exception that leaves it stops the robot, by name.
+  virtual void step() = 0;
+};
+
+/// What happened while a row of controllers stepped: who threw, if anybody.
+struct StepFault {
+  std::size_t index = 0;      ///< which of the row
+  std::string message;
+};
+
+/// A class of controllers as the worlds see it: a table of functions, one call a row and not a robot.
+struct ControllerType {
+  std::string_view name;      ///< as written in experiment files
+  std::string_view summary;
+  std::size_t size = 0;
+  std::size_t align = 0;
+  /// Reads the parameters once for all robots of one configuration.
+  std::shared_ptr<const void> (*read_params)(ParamVisitor&) = nullptr;
+  /// Constructs one controller in `where`. @throws whatever its constructor throws
+  Controller* (*construct)(void* where, Robot& robot, const void* params) = nullptr;
+  /// Steps `count` controllers that lie `stride` bytes apart, but those whose `halted` is not 0. Stops at the first that
+  /// throws: returns its index and fills `fault`; returns `count` when none did.
+  std::size_t (*step_row)(std::byte* first, std::size_t stride, std::size_t begin, std::size_t count,
+                          const std::uint8_t* halted, StepFault& fault) = nullptr;
+  void (*destroy)(void* controller) = nullptr;
+};
+
+namespace detail {
+
+struct NoParams {
+  void describe(ParamVisitor&) {}
+};
+
+template <class T>
+auto params_of() {
+  if constexpr (requires { typename T::Params; }) return typename T::Params{};
+  else return NoParams{};
+}
+
+template <class T>
+std::size_t step_row(std::byte* first, std::size_t stride, std::size_t begin, std::size_t count,
+                     const std::uint8_t* halted, StepFault& fault) {
+  std::size_t i = begin;
+  try {
+    for (; i < count; ++i) {
+      if (halted[i] != 0) continue;
+      std::launder(reinterpret_cast<T*>(first + i * stride))->T::step();
+    }
+    return count;
+  } catch (const std::exception& e) {
+    fault.message = e.what();
+  } catch (...) {
+    fault.message = "an exception of unknown type";
+  }
+  fault.index = i;
+  return i;
+}
+
+}  // namespace detail
+
+/// The table of controller class `T`: constructed from `(Robot&, const T::Params&)`, or `(Robot&)` where it has no Params.
+template <class T>
+const ControllerType& controller_type(std::string_view name, std::string_view summary) {
+  using Params = decltype(detail::params_of<T>());
+  static ControllerType type;
+  type.name = name;
+  type.summary = summary;
+  type.size = sizeof(T);
+  type.align = alignof(T);
+  type.read_params = [](ParamVisitor& visitor) -> std::shared_ptr<const void> {
+    auto params = std::make_shared<Params>();
+    params->describe(visitor);
+    return params;
+  };
+  type.construct = [](void* where, Robot& robot, const void* params) -> Controller* {
+    if constexpr (std::is_constructible_v<T, Robot&, const Params&>) {
+      return ::new (where) T(robot, *static_cast<const Params*>(params));
+    } else {
+      return ::new (where) T(robot);
+    }
+  };
+  type.step_row = &detail::step_row<T>;
+  type.destroy = [](void* controller) { static_cast<T*>(controller)->~T(); };
+  return type;
+}
+
+}  // namespace tandem::hal

@@ -1,0 +1,67 @@
+// What a robot senses of itself and of the air around it: acceleration, sound level, battery, clock.
+#pragma once
+#include <array>
+#include <cstdint>
+
+#include "hal/port.hpp"
+
+namespace tandem::hal {
+
+/// Specific force in the body frame: a robot at rest on level ground reads (0, 0, +9.81).
+struct Accelerometer : Reading {
+  static constexpr std::string_view kName = "accelerometer";
+  static constexpr std::string_view kDoc = "Specific force in the body frame; (0, 0, 9.81) at rest.";
+
+  std::array<float, 3> force_m_s2{};
+
+  void describe(FieldList& f) const {
+    f.add("force", force_m_s2, unit::m_s2, Frame::Body, Fusion::Real, "specific force, x forward, y left, z up");
+  }
+};
+
+/// Sound level at each microphone: 0 silence, 1 full scale.
+struct Microphones : Reading {
+  static constexpr std::string_view kName = "microphones";
+  static constexpr std::string_view kDoc = "Sound level at each microphone, 0 silence to 1 full scale.";
+  static constexpr std::size_t kCapacity = 4;
+
+  std::uint32_t count = 0;
+  std::array<float, kCapacity> level{};
+
+  void describe(FieldList& f) const {
+    f.add("count", count, unit::none, Frame::None, Fusion::Real, "number of microphones");
+    f.add("level", level, unit::none, Frame::Body, Fusion::Larger, "0 silence to 1 full scale").used_by = "count";
+  }
+};
+
+/// State of the battery.
+struct Battery : Reading {
+  static constexpr std::string_view kName = "battery";
+  static constexpr std::string_view kDoc = "Charge that is left and voltage of the battery.";
+
+  float charge = 0.0F;    ///< 0 empty to 1 full
+  float supply_V = 0.0F;
+
+  void describe(FieldList& f) const {
+    f.add("charge", charge, unit::none, Frame::None, Fusion::Real, "0 empty to 1 full");
+    f.add("supply", supply_V, unit::V, Frame::None, Fusion::Real, "terminal voltage");
+  }
+};
+
+/// The run's own time; the same in every world.
+struct Clock : Reading {
+  static constexpr std::string_view kName = "clock";
+  static constexpr std::string_view kDoc = "Time of the run and length of a tick.";
+
+  Tick tick = 0;
+  TimeNs now_ns = 0;
+  double tick_s = 0.0;
+
+  void describe(FieldList& f) const {
+    f.add("tick", tick, unit::none, Frame::None, Fusion::Real, "number of this control step");
+    f.add("now_ns", now_ns, unit::none, Frame::None, Fusion::Real, "nanoseconds since the start of the run");
+    f.add("tick_s", tick_s, unit::s, Frame::None, Fusion::Real, "length of a control step");
+  }
+};
+
+}  // namespace tandem::hal

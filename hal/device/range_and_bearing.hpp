@@ -1,0 +1,88 @@
+// Range-and-bearing: short situated messages. The receiver learns the payload and where, relative to itself, the sender is.
+#pragma once
+#include <algorithm>
+#include <array>
+#include <cstdint>
+
+#include "hal/port.hpp"
+
+namespace tandem::hal {
+
+inline constexpr std::size_t kRabPayloadMax = 10;  ///< bytes; the foot-bot's. An e-puck sends 2 unless its file says otherwise
+
+/// What the robot broadcasts in this tick. Safe value: nothing.
+struct RangeAndBearingSend : Command {
+  static constexpr std::string_view kName = "range_and_bearing";
+  static constexpr std::string_view kDoc = "The message broadcast to robots in range.";
+
+  bool sending = false;
+  std::uint8_t size = 0;
+  std::array<std::uint8_t, kRabPayloadMax> payload{};
+
+  void describe(FieldList& f) const {
+    f.add("sending", sending, unit::none, Frame::None, Fusion::Real, "broadcast in this tick");
+    f.add("size", size, unit::none, Frame::None, Fusion::Real, "bytes of payload in use");
+    f.add("payload", payload, unit::none, Frame::None, Fusion::Real, "the bytes").used_by = "size";
+  }
+};
+
+/// Messages received in this tick, nearest first; the farthest are dropped when there are more than `kCapacity`.
+struct RangeAndBearing : Reading {
+  static constexpr std::string_view kName = "range_and_bearing";
+  static constexpr std::string_view kDoc = "Messages received, with range and bearing of each sender.";
+  static constexpr std::size_t kCapacity = 16;
+
+  std::uint32_t count = 0;
+  std::uint32_t dropped = 0;                         ///< received beyond the capacity in this tick
+  std::array<float, kCapacity> range_m{};
+  std::array<float, kCapacity> bearing_rad{};        ///< counter-clockwise from forward
+  std::array<float, kCapacity> elevation_rad{};      ///< upwards from the horizontal
+  std::array<std::uint8_t, kCapacity> size{};
+  std::array<std::uint8_t, kCapacity * kRabPayloadMax> payload{};
+
+  const std::uint8_t* message(std::size_t i) const noexcept { return payload.data() + i * kRabPayloadMax; }
+
+  /// Inserts in order of range; drops the farthest when full.
+  void insert(float range, float bearing, float elevation, const std::uint8_t* bytes, std::uint8_t n) noexcept {
+    if (count == kCapacity) {
+      ++dropped;
+      if (range >= range_m[kCapacity - 1]) return;
+    } else {
+      ++count;
+    }
+    std::size_t at = count - 1;
+    for (; at > 0 && range_m[at - 1] > range; --at) copy_entry(at, at - 1);
+    range_m[at] = range;
+    bearing_rad[at] = bearing;
+    elevation_rad[at] = elevation;
+    size[at] = n;
+    std::copy_n(bytes, std::min<std::size_t>(n, kRabPayloadMax), payload.data() + at * kRabPayloadMax);
+  }
+  /// Adds the messages of `other`.
+  void merge(const RangeAndBearing& other) noexcept {
+    for (std::size_t i = 0; i < other.count; ++i) {
+      insert(other.range_m[i], other.bearing_rad[i], other.elevation_rad[i], other.message(i), other.size[i]);
+    }
+    dropped += other.dropped;
+  }
+  void describe(FieldList& f) const {
+    f.add("count", count, unit::none, Frame::None, Fusion::Union, "messages received");
+    f.add("dropped", dropped, unit::none, Frame::None, Fusion::Union, "messages beyond the capacity");
+    f.add("range", range_m, unit::m, Frame::Body, Fusion::Union, "distance to the sender").used_by = "count";
+    f.add("bearing", bearing_rad, unit::rad, Frame::Body, Fusion::Union, "counter-clockwise from forward").used_by = "count";
+    f.add("elevation", elevation_rad, unit::rad, Frame::Body, Fusion::Union, "upwards").used_by = "count";
+    f.add("size", size, unit::none, Frame::None, Fusion::Union, "bytes of payload").used_by = "count";
+    f.add("payload", payload, unit::none, Frame::None, Fusion::Union, "10 bytes a message").used_by = "count";
+  }
+
+ private:
+  void copy_entry(std::size_t to, std::size_t from) noexcept {
+    range_m[to] = range_m[from];
+    bearing_rad[to] = bearing_rad[from];
+    elevation_rad[to] = elevation_rad[from];
+    size[to] = size[from];
+    std::copy_n(payload.data() + from * kRabPayloadMax, kRabPayloadMax, payload.data() + to * kRabPayloadMax);
+  }
+};
+
+}  // namespace tandem::hal

@@ -1,0 +1,61 @@
+// Sensors that sit in a ring around the body: infrared proximity, ambient light, ground reflectance.
+// Which sensor looks where is in the robot's data sheet (`Robot::data_sheet()`), in the same order.
+#pragma once
+#include <array>
+#include <cstdint>
+
+#include "hal/port.hpp"
+
+namespace tandem::hal {
+
+/// Infrared range to the nearest obstacle along each sensor's axis, measured from the sensor.
+struct Proximity : Reading {
+  static constexpr std::string_view kName = "proximity";
+  static constexpr std::string_view kDoc = "Infrared distance to the nearest obstacle, one value a sensor.";
+  static constexpr std::size_t kCapacity = 24;  // the foot-bot's and eye-bot's number
+
+  std::uint32_t count = 0;
+  float range_m = 0.0F;  ///< how far the sensors see; a sensor that sees nothing reads this
+  std::array<float, kCapacity> distance_m{};
+
+  /// 0 with nothing in range, 1 at contact, linear between.
+  float closeness(std::size_t i) const noexcept { return range_m > 0.0F ? 1.0F - distance_m[i] / range_m : 0.0F; }
+
+  void describe(FieldList& f) const {
+    f.add("count", count, unit::none, Frame::None, Fusion::Real, "number of sensors");
+    f.add("range", range_m, unit::m, Frame::None, Fusion::Real, "distance that means nothing seen");
+    f.add("distance", distance_m, unit::m, Frame::Sensor, Fusion::Nearer, "distance to the nearest obstacle").used_by = "count";
+  }
+};
+
+/// Ambient light at each sensor: 0 dark, 1 saturated.
+struct Light : Reading {
+  static constexpr std::string_view kName = "light";
+  static constexpr std::string_view kDoc = "Ambient light, one value a sensor, 0 dark to 1 saturated.";
+  static constexpr std::size_t kCapacity = 24;
+
+  std::uint32_t count = 0;
+  std::array<float, kCapacity> level{};
+
+  void describe(FieldList& f) const {
+    f.add("count", count, unit::none, Frame::None, Fusion::Real, "number of sensors");
+    f.add("level", level, unit::none, Frame::Sensor, Fusion::Larger, "0 dark to 1 saturated").used_by = "count";
+  }
+};
+
+/// Reflectance of the floor beneath each sensor: 0 black, 1 white.
+struct Ground : Reading {
+  static constexpr std::string_view kName = "ground";
+  static constexpr std::string_view kDoc = "Reflectance of the floor, one value a sensor, 0 black to 1 white.";
+  static constexpr std::size_t kCapacity = 8;
+
+  std::uint32_t count = 0;
+  std::array<float, kCapacity> reflectance{};
+
+  void describe(FieldList& f) const {
+    f.add("count", count, unit::none, Frame::None, Fusion::Real, "number of sensors");
+    f.add("reflectance", reflectance, unit::none, Frame::None, Fusion::Virtual, "0 black to 1 white").used_by = "count";
+  }
+};
+
+}  // namespace tandem::hal

@@ -1,0 +1,44 @@
+// Differential drive: the command for two wheels, and what their encoders counted.
+#pragma once
+#include "hal/port.hpp"
+
+namespace tandem::hal {
+
+/// Speeds of the two wheels at the rim. Safe value: both 0.
+struct WheelSpeeds : Command {
+  static constexpr std::string_view kName = "differential_steering";
+  static constexpr std::string_view kDoc = "Speeds of the left and right wheel.";
+
+  double left_m_s = 0.0;
+  double right_m_s = 0.0;
+
+  void set(double left, double right) noexcept {
+    left_m_s = left;
+    right_m_s = right;
+  }
+  void describe(FieldList& f) const {
+    f.add("left", left_m_s, unit::m_s, Frame::Body, Fusion::Real, "rim speed of the left wheel, forward positive");
+    f.add("right", right_m_s, unit::m_s, Frame::Body, Fusion::Real, "rim speed of the right wheel, forward positive");
+  }
+};
+
+/// Distance that each wheel has rolled since the start of the run (forward positive), and its speed over the last tick.
+/// On an e-puck the encoders count commanded steps of a stepper motor: they say nothing about slip.
+struct WheelEncoders : Reading {
+  static constexpr std::string_view kName = "wheel_encoders";
+  static constexpr std::string_view kDoc = "Distance rolled by each wheel since the start, and speed over the last tick.";
+
+  double left_m = 0.0;
+  double right_m = 0.0;
+  float left_m_s = 0.0F;
+  float right_m_s = 0.0F;
+
+  void describe(FieldList& f) const {
+    f.add("left", left_m, unit::m, Frame::None, Fusion::Real, "distance rolled by the left wheel");
+    f.add("right", right_m, unit::m, Frame::None, Fusion::Real, "distance rolled by the right wheel");
+    f.add("left_speed", left_m_s, unit::m_s, Frame::None, Fusion::Real, "mean speed over the last tick");
+    f.add("right_speed", right_m_s, unit::m_s, Frame::None, Fusion::Real, "mean speed over the last tick");
+  }
+};
+
+}  // namespace tandem::hal

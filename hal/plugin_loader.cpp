@@ -1,0 +1,119 @@
+#include "hal/plugin_loader.hpp"
+
+#include <dlfcn.h>
+
+#include <algorithm>
+
+namespace tandem::hal {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The names under which `library` may lie in a folder.
+std::vector<fs::path> spellings(const fs::path& library) {
+  std::vector<fs::path> names{library};
+  const std::string file = library.filename().string();
+  const bool has_extension = library.extension() == ".so";
+  const auto with = [&](const std::string& name) { names.push_back(library.parent_path() / name); };
+  if (!has_extension) with(file + ".so");
+  if (!file.starts_with("lib")) with("lib" + file + (has_extension ? "" : ".so"));
+  return names;
+}
+
+struct EntryCollector final : Registrar {
+  std::string library;
+  std::vector<PluginLoader::Entry>* entries = nullptr;
+  void add(std::string_view category, std::string_view name, const void* type) override {
+    entries->push_back({library, std::string(category), std::string(name), type});
+  }
+};
+
+}  // namespace
+
+PluginLoader::PluginLoader(std::vector<fs::path> search) : search_(std::move(search)) {}
+
+PluginLoader::~PluginLoader() {
+  for (auto& [path, handle] : handles_) dlclose(handle);
+}
+
+Result<fs::path> PluginLoader::find(const std::string& library) const {
+  std::string looked;
+  std::vector<fs::path> places{fs::path{}};
+  if (!fs::path(library).is_absolute()) places.insert(places.end(), search_.begin(), search_.end());
+  for (const fs::path& folder : places) {
+    for (const fs::path& name : spellings(library)) {
+      std::error_code ignored;
+      if (fs::is_regular_file(folder / name, ignored)) return fs::weakly_canonical(folder / name);
+      looked += "\n    " + (folder / name).string();
+    }
+  }
+  // A file written for another build tree: the library's own name, in our folders.
+  for (const fs::path& folder : search_) {
+    for (const fs::path& name : spellings(fs::path(library).filename())) {
+      std::error_code ignored;
+      if (fs::is_regular_file(folder / name, ignored)) return fs::weakly_canonical(folder / name);
+    }
+  }
+  return Error{"library '" + library + "' is not there; looked for" + looked +
+               "\n  Build it, correct library=\"…\", or add its folder to TANDEM_PLUGIN_PATH."};
+}
+
+Status PluginLoader::open(const std::string& library) {
+  const auto found = find(library);
+  if (!found.ok()) return found.error();
+  const std::string path = found.value().string();
+  if (handles_.contains(path)) return {};
+
+  void* handle = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
+  if (handle == nullptr) {
+    const char* why = dlerror();
+    return Error{"library '" + path + "' does not load: " + (why != nullptr ? why : "unknown reason")};
+  }
+  const auto* info = static_cast<const PluginInfo*>(dlsym(handle, "tandem_plugin"));
+  std::string problem;
+  if (info == nullptr || info->magic != kPluginMagic) {
+    problem = "is not a Tandem plug-in: it has no TANDEM_PLUGIN(…)";
+  } else if (info->abi != kAbiNumber) {
+    problem = "was built for plug-in ABI " + std::to_string(info->abi) + "; this program has ABI " +
+              std::to_string(kAbiNumber) + ". Rebuild it against the headers of this program";
+  } else if (info->layout != border_layout()) {
+    problem = std::string("was built with another compiler or standard library (") + info->compiler + "; this program: " +
+              __VERSION__ + "). Rebuild it with the same settings";
+  }
+  if (!problem.empty()) {
+    dlclose(handle);
+    return Error{"library '" + path + "' " + problem};
+  }
+  handles_.emplace(path, handle);
+  EntryCollector collector;
+  collector.library = path;
+  collector.entries = &entries_;
+  info->register_all(collector);
+  return {};
+}
+
+Result<const void*> PluginLoader::get(const std::string& library, std::string_view category, std::string_view name) {
+  if (const Status opened = open(library); !opened.ok()) return opened.error();
+  const std::string path = find(library).value().string();
+  std::string names;
+  const Entry* only = nullptr;
+  std::size_t count = 0;
+  for (const Entry& e : entries_) {
+    if (e.library != path || e.category != category) continue;
+    if (e.name == name) return e.type;
+    names += (names.empty() ? "" : ", ") + e.name;
+    only = &e;
+    ++count;
+  }
+  if (name.empty() && count == 1) return only->type;
+  return Error{"library '" + path + "' has no " + std::string(category) + " '" + std::string(name) + "'; it has: " +
+               (names.empty() ? "none" : names)};
+}
+
+Result<const ControllerType*> PluginLoader::controller(const std::string& library, std::string_view name) {
+  const auto found = get(library, "controller", name);
+  if (!found.ok()) return found.error();
+  return static_cast<const ControllerType*>(found.value());
+}
+
+}  // namespace tandem::hal

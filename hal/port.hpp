@@ -1,0 +1,178 @@
+// Ports: one device of one robot as plain data that describes its own fields.
+//
+// A reading (sensor) carries when it was taken and whether it can be trusted; a command (actuator), default-constructed, is
+// the safe one. `port_type<T>()` gives the description at run time, so that recording, printing, comparing and fusing need
+// no code per device.
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <span>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <vector>
+
+#include "hal/time.hpp"
+#include "hal/unit.hpp"
+
+namespace tandem::hal {
+
+/// Absent: never measured, or the device is not there. Stale: measured, but too long ago to act on. Fresh: of this tick.
+enum class Validity : std::uint8_t { Absent, Stale, Fresh };
+
+/// First base of every sensor port.
+struct Reading {
+  TimeNs taken_ns = 0;  ///< when the values were measured, on the run's clock
+  Validity validity = Validity::Absent;
+};
+
+/// First base of every actuator port. A default-constructed command is the safe one (wheels 0, LEDs off).
+struct Command {};
+
+enum class Role : std::uint8_t { Sensor, Actuator };
+enum class Scalar : std::uint8_t { F32, F64, U8, U16, U32, I32, I64, Bool };
+
+/// In which frame a field is expressed. Body: x forward, y left, z up.
+enum class Frame : std::uint8_t { None, Body, World, Sensor };
+
+/// How a real reading and a virtual one of the same device become one.
+enum class Fusion : std::uint8_t {
+  Real,     ///< the real device's value
+  Virtual,  ///< the simulated device's value
+  Nearer,   ///< the smaller (distances)
+  Larger,   ///< the larger (activations)
+  Union     ///< entries of both (message lists); done by the port's own `merge`
+};
+
+/// One field of a port: `count` scalars at `offset`.
+struct Field {
+  std::string_view name;
+  std::size_t offset = 0;
+  Scalar scalar = Scalar::F32;
+  std::size_t count = 1;      ///< capacity; how many are in use is the field `used_by` where that is set
+  Unit unit = unit::none;
+  Frame frame = Frame::None;
+  Fusion fusion = Fusion::Real;
+  std::string_view doc;
+  std::string_view used_by = {};  ///< name of the field that holds how many of `count` are in use; empty: all
+};
+
+/// The run-time description of a port class. One per class and program; compare by name and `layout`.
+struct PortType {
+  std::string_view name;   ///< as written in experiment files, e.g. "proximity"
+  Role role = Role::Sensor;
+  std::string_view doc;
+  std::size_t size = 0;
+  std::size_t align = 0;
+  std::uint64_t layout = 0;  ///< fingerprint of names, offsets and types: equal on both sides of a plug-in border
+  std::vector<Field> fields;
+  void (*reset)(void*) = nullptr;  ///< writes the default: an absent reading, or the safe command
+  void (*merge)(void* real, const void* virtual_) = nullptr;  ///< adds virtual entries (Fusion::Union); null where none
+
+  const Field* field(std::string_view field_name) const noexcept;
+};
+
+namespace detail {
+template <class T>
+constexpr Scalar scalar_of() {
+  if constexpr (std::is_same_v<T, float>) return Scalar::F32;
+  else if constexpr (std::is_same_v<T, double>) return Scalar::F64;
+  else if constexpr (std::is_same_v<T, bool>) return Scalar::Bool;
+  else if constexpr (std::is_same_v<T, std::uint8_t> || std::is_same_v<T, Validity>) return Scalar::U8;
+  else if constexpr (std::is_same_v<T, std::uint16_t>) return Scalar::U16;
+  else if constexpr (std::is_same_v<T, std::uint32_t>) return Scalar::U32;
+  else if constexpr (std::is_same_v<T, std::int32_t>) return Scalar::I32;
+  else {
+    static_assert(std::is_same_v<T, std::int64_t> || std::is_same_v<T, long long>, "not a scalar that a port may hold");
+    return Scalar::I64;
+  }
+}
+std::uint64_t layout_fingerprint(const PortType& type) noexcept;
+}  // namespace detail
+
+/// Collects the fields of one port class; handed to `T::describe`.
+class FieldList {
+ public:
+  FieldList(const void* base, std::vector<Field>& fields) : base_(static_cast<const std::byte*>(base)), fields_(fields) {}
+
+  /// `member` is a scalar or a (nested) array of scalars of the port at hand. Shape: all scalars in it.
+  template <class M>
+  Field& add(std::string_view name, const M& member, const Unit& unit, Frame frame, Fusion fusion, std::string_view doc) {
+    Field f;
+    f.name = name;
+    f.offset = static_cast<std::size_t>(reinterpret_cast<const std::byte*>(&member) - base_);
+    if constexpr (requires { typename M::value_type; std::tuple_size<M>::value; }) {
+      f.scalar = detail::scalar_of<typename M::value_type>();
+      f.count = std::tuple_size<M>::value;
+    } else {
+      f.scalar = detail::scalar_of<M>();
+    }
+    f.unit = unit;
+    f.frame = frame;
+    f.fusion = fusion;
+    f.doc = doc;
+    fields_.push_back(f);
+    return fields_.back();
+  }
+
+ private:
+  const std::byte* base_;
+  std::vector<Field>& fields_;
+};
+
+template <class T>
+concept SensorPort = std::is_base_of_v<Reading, T>;
+template <class T>
+concept ActuatorPort = std::is_base_of_v<Command, T>;
+
+/// The description of port class `T`, which has `kName`, `kDoc` and `void describe(FieldList&) const`.
+template <class T>
+const PortType& port_type() {
+  static_assert(SensorPort<T> || ActuatorPort<T>);
+  static_assert(std::is_trivially_copyable_v<T>, "a port is plain data");
+  static const PortType type = [] {
+    PortType t;
+    t.name = T::kName;
+    t.doc = T::kDoc;
+    t.role = SensorPort<T> ? Role::Sensor : Role::Actuator;
+    t.size = sizeof(T);
+    t.align = alignof(T);
+    static const T prototype{};
+    FieldList list(&prototype, t.fields);
+    if constexpr (SensorPort<T>) {
+      list.add("taken_ns", prototype.taken_ns, unit::none, Frame::None, Fusion::Real, "when the values were measured");
+      list.add("validity", prototype.validity, unit::none, Frame::None, Fusion::Real, "0 absent, 1 stale, 2 fresh");
+    }
+    prototype.describe(list);
+    t.reset = [](void* port) { *static_cast<T*>(port) = T{}; };
+    if constexpr (requires(T& a, const T& b) { a.merge(b); }) {
+      t.merge = [](void* real, const void* virt) { static_cast<T*>(real)->merge(*static_cast<const T*>(virt)); };
+    }
+    t.layout = detail::layout_fingerprint(t);
+    return t;
+  }();
+  return type;
+}
+
+/// Element `index` of `field` in the port at `port`, as a double (exact for all but large 64-bit integers).
+double get_value(const void* port, const Field& field, std::size_t index) noexcept;
+void set_value(void* port, const Field& field, std::size_t index, double value) noexcept;
+
+/// How many elements of `field` are in use in this port.
+std::size_t used_count(const PortType& type, const void* port, const Field& field) noexcept;
+
+/// "proximity: distance=[0.1 0.1 …] m validity=2 …": every field in use, for people.
+std::string to_text(const PortType& type, const void* port);
+
+/// Largest absolute difference over all fields in use but the stamps; infinity when the numbers of elements differ.
+double max_difference(const PortType& type, const void* a, const void* b) noexcept;
+
+/// True when every floating-point value in the port is finite.
+bool all_finite(const PortType& type, const void* port) noexcept;
+
+/// Makes `real` the fused reading of both, field by field as each says. An absent side is left out. A stale real reading
+/// stays stale.
+void fuse(const PortType& type, void* real, const void* virtual_) noexcept;
+
+}  // namespace tandem::hal

@@ -1,0 +1,38 @@
+// What is known of a kind of robot: written once, read by the simulator, the bridge and the emulator.
+#pragma once
+#include <span>
+#include <string_view>
+
+namespace tandem::hal {
+
+/// A sensor or lamp on the body. Body frame: x forward, y left, z up; bearing counter-clockwise from forward.
+struct Mount {
+  double bearing_rad = 0.0;  ///< where it looks
+  double x_m = 0.0;
+  double y_m = 0.0;
+  double z_m = 0.0;
+};
+
+/// One kind of robot. All spans point at constants.
+struct DataSheet {
+  std::string_view kind;             ///< as the element in experiment files, e.g. "e-puck"
+  double body_radius_m = 0.0;
+  double body_height_m = 0.0;
+  double mass_kg = 0.0;
+  double wheel_radius_m = 0.0;
+  double wheel_base_m = 0.0;         ///< distance between the two wheels' contact points
+  double max_wheel_speed_m_s = 0.0;  ///< at the rim
+  double proximity_range_m = 0.0;    ///< from the sensor
+  double rab_range_m = 0.0;          ///< range-and-bearing, between centres
+  double rab_height_m = 0.0;
+  unsigned rab_payload = 0;          ///< bytes
+  double battery_full_V = 0.0;
+  double battery_empty_V = 0.0;
+  std::span<const Mount> proximity;
+  std::span<const Mount> light;
+  std::span<const Mount> ground;
+  std::span<const Mount> microphones;
+  std::span<const Mount> leds;
+};
+
+}  // namespace tandem::hal
