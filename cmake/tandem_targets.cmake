@@ -87,3 +87,12 @@ function(tandem_write_architecture file)
   string(REPLACE ";" "\n" text "${lines}")
   file(WRITE ${file} "${text}\n")
 endfunction()
+
+# tandem_add_folders(a b …): the sub-folders that there are, in the order of their dependencies.
+function(tandem_add_folders)
+  foreach(folder ${ARGN})
+    if(EXISTS ${CMAKE_CURRENT_SOURCE_DIR}/${folder}/CMakeLists.txt)
+      add_subdirectory(${folder})
+    endif()
+  endforeach()
+endfunction()
