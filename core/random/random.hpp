@@ -1,0 +1,60 @@
+// Random numbers without a generator: a function of (seed, entity, stream, tick), the same on every thread and machine.
+//
+// Philox4x32-10 [Salmon et al. 2011, "Parallel random numbers: as easy as 1, 2, 3"], from the Random123 library.
+#pragma once
+#include <Random123/philox.h>
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+
+namespace tandem::core {
+
+/// Who draws. Two streams never share a number.
+enum class Stream : std::uint32_t {
+  Placement = 1,
+  Orientation,
+  ControllerSeed,
+  WheelNoise,
+  EncoderNoise,
+  ProximityNoise,
+  LightNoise,
+  GroundNoise,
+  AccelerometerNoise,
+  MicrophoneNoise,
+  BatteryNoise,
+  RabNoise,
+  RabLoss,
+};
+
+/// Four independent 32-bit numbers. `index` tells draws of one tick apart (0 to 2^24 - 1).
+inline std::array<std::uint32_t, 4> draw(std::uint64_t seed, std::uint32_t entity, Stream stream, std::int64_t tick,
+                                         std::uint32_t index = 0) noexcept {
+  const auto t = static_cast<std::uint64_t>(tick);
+  const r123::Philox4x32::ctr_type counter = {{entity, static_cast<std::uint32_t>(stream) | (index << 8),
+                                               static_cast<std::uint32_t>(t), static_cast<std::uint32_t>(t >> 32)}};
+  const r123::Philox4x32::key_type key = {{static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32)}};
+  const auto out = r123::Philox4x32{}(counter, key);
+  return {out[0], out[1], out[2], out[3]};
+}
+
+/// In [0, 1), 24 bits.
+inline float to_unit_float(std::uint32_t bits) noexcept { return static_cast<float>(bits >> 8) * 0x1p-24F; }
+
+/// In [0, 1), 32 bits.
+inline double to_unit(std::uint32_t bits) noexcept { return static_cast<double>(bits) * 0x1p-32; }
+
+/// In [0, 1), 53 bits.
+inline double to_unit(std::uint32_t high, std::uint32_t low) noexcept {
+  return static_cast<double>(((static_cast<std::uint64_t>(high) << 32) | low) >> 11) * 0x1p-53;
+}
+
+/// Two independent draws from the standard normal distribution [Box and Muller 1958].
+inline std::array<double, 2> to_normal(std::uint32_t a, std::uint32_t b) noexcept {
+  const double radius = std::sqrt(-2.0 * std::log(1.0 - to_unit(a)));
+  const double angle = 2.0 * std::numbers::pi * to_unit(b);
+  return {radius * std::cos(angle), radius * std::sin(angle)};
+}
+
+}  // namespace tandem::core
