@@ -63,6 +63,9 @@ class Space {
   void set_pose(RobotId robot, const Pose& pose) noexcept;
   bool halted(RobotId robot) const noexcept;               ///< its controller threw or was stopped: wheels stay 0
   void set_halted(RobotId robot, bool halted) noexcept;
+  /// Whether the robot's pose is set from outside (a real robot's twin): engines do not move it, others bump into it.
+  bool external(RobotId robot) const noexcept;
+  void set_external(RobotId robot, bool external) noexcept;
   /// A port of the robot as its controller sees it, or null when the controller took none of that name. Sensor and
   /// actuator ports may share a name, so the role is part of it.
   const void* port(RobotId robot, const hal::PortType& type) const noexcept;

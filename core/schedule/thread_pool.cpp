@@ -1,0 +1,79 @@
+#include "core/schedule/thread_pool.hpp"
+
+#include <algorithm>
+
+namespace tandem::core {
+namespace {
+
+/// How often a worker looks for the next phase before it sleeps: phases of one step follow one another within
+/// microseconds, steps of a paced run do not.
+constexpr int kSpins = 4000;
+
+void pause_cpu() noexcept {
+#if defined(__x86_64__) || defined(__i386__)
+  __builtin_ia32_pause();
+#endif
+}
+
+/// Waits until `value` is no longer `old`.
+void await_change(std::atomic<std::uint32_t>& value, std::uint32_t old) noexcept {
+  for (int i = 0; i < kSpins; ++i) {
+    if (value.load(std::memory_order_acquire) != old) return;
+    pause_cpu();
+  }
+  value.wait(old, std::memory_order_acquire);
+}
+
+}  // namespace
+
+ThreadPool::ThreadPool(std::size_t threads, Assignment assignment) : assignment_(assignment) {
+  for (std::size_t i = 1; i < threads; ++i) workers_.emplace_back([this, i] { work_loop(i); });
+}
+
+ThreadPool::~ThreadPool() {
+  ending_.store(true, std::memory_order_relaxed);
+  round_.fetch_add(1, std::memory_order_release);
+  round_.notify_all();
+  for (std::thread& worker : workers_) worker.join();
+}
+
+void ThreadPool::dispatch(const Phase& phase) {
+  phase_ = phase;
+  next_.store(0, std::memory_order_relaxed);
+  unfinished_.store(static_cast<std::uint32_t>(workers_.size()), std::memory_order_relaxed);
+  round_.fetch_add(1, std::memory_order_release);
+  round_.notify_all();
+  take_part(0);
+  for (std::uint32_t left = unfinished_.load(std::memory_order_acquire); left != 0;
+       left = unfinished_.load(std::memory_order_acquire)) {
+    await_change(unfinished_, left);
+  }
+}
+
+void ThreadPool::take_part(std::size_t worker) {
+  const Phase& p = phase_;
+  if (assignment_ == Assignment::Static) {
+    const std::size_t begin = p.count * worker / size();
+    const std::size_t end = p.count * (worker + 1) / size();
+    if (begin < end) p.call(p.work, begin, end);
+    return;
+  }
+  for (;;) {
+    const std::size_t begin = next_.fetch_add(p.grain, std::memory_order_relaxed);
+    if (begin >= p.count) return;
+    p.call(p.work, begin, std::min(begin + p.grain, p.count));
+  }
+}
+
+void ThreadPool::work_loop(std::size_t worker) {
+  std::uint32_t seen = 0;
+  for (;;) {
+    await_change(round_, seen);
+    seen = round_.load(std::memory_order_acquire);
+    if (ending_.load(std::memory_order_relaxed)) return;
+    take_part(worker);
+    if (unfinished_.fetch_sub(1, std::memory_order_acq_rel) == 1) unfinished_.notify_one();
+  }
+}
+
+}  // namespace tandem::core

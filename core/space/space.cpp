@@ -1,0 +1,151 @@
+#include "core/space/space.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstring>
+
+#include "core/space/stores.hpp"
+#include "hal/check.hpp"
+
+namespace tandem::core {
+
+double Pose::heading_rad() const noexcept { return std::atan2(sin_h, cos_h); }
+
+void Bodies::resize(std::size_t rows) {
+  for (auto* array : {&x_m, &y_m, &sin_h, &left_m_s, &right_m_s, &left_m, &right_m}) array->resize(rows, 0.0);
+  cos_h.resize(rows, 1.0);
+  radius_m.resize(rows, 0.0F);
+  flags.resize(rows, 0);
+  entity.resize(rows, 0xFFFFFFFFU);
+}
+
+AlignedBytes::AlignedBytes(std::size_t size, std::size_t align)
+    : bytes_(static_cast<std::byte*>(::operator new(std::max<std::size_t>(size, 1), std::align_val_t{align})), Free{align}) {
+  std::memset(bytes_.get(), 0, size);
+}
+
+Space::Space() : stores_(std::make_unique<SpaceStores>()) {}
+Space::~Space() = default;
+
+std::size_t Space::robot_count() const noexcept { return stores_->living.size(); }
+
+RobotId Space::robot(std::size_t i) const noexcept {
+  const std::uint32_t entity = stores_->living[i];
+  return {entity, stores_->robots[entity].generation};
+}
+
+RobotId Space::find_robot(std::string_view id) const noexcept {
+  for (const NameRange& range : stores_->names) {
+    if (!id.starts_with(range.prefix)) continue;
+    std::uint32_t entity = range.first_entity;
+    const std::string_view digits = id.substr(range.prefix.size());
+    if (range.base < 0) {
+      if (!digits.empty()) continue;
+    } else {
+      std::int64_t number = 0;
+      const auto [end, status] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
+      const bool plain = status == std::errc{} && end == digits.data() + digits.size() && (digits.size() == 1 || digits[0] != '0');
+      if (!plain || number < range.base || number >= range.base + range.count) continue;
+      entity += static_cast<std::uint32_t>(number - range.base);
+    }
+    if (stores_->robots[entity].alive) return {entity, stores_->robots[entity].generation};
+  }
+  return {};
+}
+
+std::string Space::robot_name(RobotId robot) const {
+  const RobotEntity& e = stores_->robots[robot.index];
+  const std::string& prefix = stores_->names[e.item].prefix;
+  return e.number < 0 ? prefix : prefix + std::to_string(e.number);
+}
+
+const hal::DataSheet& Space::data_sheet(RobotId robot) const noexcept {
+  return *stores_->groups[stores_->blocks[stores_->robots[robot.index].block].group].sheet;
+}
+
+Pose Space::pose(RobotId robot) const noexcept {
+  const std::size_t row = stores_->row_of(robot);
+  const Bodies& b = stores_->bodies;
+  return {b.x_m[row], b.y_m[row], 0.0, b.cos_h[row], b.sin_h[row]};
+}
+
+void Space::set_pose(RobotId robot, const Pose& pose) noexcept {
+  const std::size_t row = stores_->row_of(robot);
+  Bodies& b = stores_->bodies;
+  b.x_m[row] = pose.x_m;
+  b.y_m[row] = pose.y_m;
+  b.cos_h[row] = pose.cos_h;
+  b.sin_h[row] = pose.sin_h;
+}
+
+bool Space::halted(RobotId robot) const noexcept {
+  const RobotEntity& e = stores_->robots[robot.index];
+  return stores_->blocks[e.block].halted[e.slot] != 0;
+}
+
+void Space::set_halted(RobotId robot, bool halted) noexcept {
+  const RobotEntity& e = stores_->robots[robot.index];
+  stores_->blocks[e.block].halted[e.slot] = halted ? 1 : 0;
+  if (halted) {
+    // Every actuator to its safe value.
+    const RobotBlock& block = stores_->blocks[e.block];
+    const RobotGroup& group = stores_->groups[block.group];
+    for (std::size_t i = 0; i < group.ports.size(); ++i) {
+      const hal::PortType& type = *group.ports[i];
+      if (type.role == hal::Role::Actuator) type.reset(block.ports[i].data() + e.slot * type.size);
+    }
+  }
+}
+
+bool Space::external(RobotId robot) const noexcept {
+  return (stores_->bodies.flags[stores_->row_of(robot)] & kExternal) != 0;
+}
+
+void Space::set_external(RobotId robot, bool external) noexcept {
+  std::uint8_t& flags = stores_->bodies.flags[stores_->row_of(robot)];
+  flags = static_cast<std::uint8_t>(external ? flags | kExternal : flags & ~kExternal);
+}
+
+const void* Space::port(RobotId robot, const hal::PortType& type) const noexcept {
+  const RobotEntity& e = stores_->robots[robot.index];
+  const RobotBlock& block = stores_->blocks[e.block];
+  const RobotGroup& group = stores_->groups[block.group];
+  for (std::size_t i = 0; i < group.ports.size(); ++i) {
+    if (group.ports[i]->layout == type.layout && group.ports[i]->role == type.role) {
+      return block.ports[i].data() + e.slot * type.size;
+    }
+  }
+  return nullptr;
+}
+
+void* Space::port(RobotId robot, const hal::PortType& type) noexcept {
+  return const_cast<void*>(static_cast<const Space*>(this)->port(robot, type));
+}
+
+std::vector<const hal::PortType*> Space::ports(RobotId robot) const {
+  return stores_->groups[stores_->blocks[stores_->robots[robot.index].block].group].ports;
+}
+
+const std::vector<StaticShape>& Space::statics() const noexcept { return stores_->statics; }
+const std::vector<LightSource>& Space::lights() const noexcept { return stores_->lights; }
+const std::vector<SoundSource>& Space::sounds() const noexcept { return stores_->sounds; }
+
+void Space::set_light(std::size_t i, const LightSource& light) {
+  TANDEM_CHECK(i < stores_->lights.size(), "set_light: there is no light of that number");
+  stores_->lights[i] = light;
+}
+
+void Space::set_sound(std::size_t i, const SoundSource& sound) {
+  TANDEM_CHECK(i < stores_->sounds.size(), "set_sound: there is no sound of that number");
+  stores_->sounds[i] = sound;
+}
+
+double Space::arena_size_x_m() const noexcept { return stores_->max_x_m - stores_->min_x_m; }
+double Space::arena_size_y_m() const noexcept { return stores_->max_y_m - stores_->min_y_m; }
+double Space::arena_center_x_m() const noexcept { return 0.5 * (stores_->max_x_m + stores_->min_x_m); }
+double Space::arena_center_y_m() const noexcept { return 0.5 * (stores_->max_y_m + stores_->min_y_m); }
+double Space::floor(double x_m, double y_m) const noexcept { return static_cast<double>(stores_->floor.at(x_m, y_m)); }
+void Space::repaint_floor() noexcept { stores_->repaint_floor = true; }
+
+}  // namespace tandem::core

@@ -1,0 +1,48 @@
+// Where the immovable things are: a grid whose cells list what lies within reach of any point in them.
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/space/space.hpp"
+
+namespace tandem::core {
+
+/// Built once, then only read.
+class StaticIndex {
+ public:
+  /// `reach_m`: how far from a point a thing may lie to be listed for it.
+  void build(const std::vector<StaticShape>& shapes, double min_x_m, double min_y_m, double max_x_m, double max_y_m,
+             double reach_m);
+
+  /// Indices into the shapes; superset of those within `reach()` of (x, y), in rising order.
+  std::span<const std::uint32_t> near(double x_m, double y_m) const noexcept {
+    const std::size_t cell = static_cast<std::size_t>(at(y_m - min_y_m_, lines_)) * columns_ + at(x_m - min_x_m_, columns_);
+    return {list_.data() + start_[cell], start_[cell + 1] - start_[cell]};
+  }
+  double reach() const noexcept { return reach_m_; }
+  double cell_size() const noexcept { return cell_m_; }
+
+ private:
+  std::uint32_t at(double offset_m, std::uint32_t count) const noexcept {
+    const double c = offset_m * per_cell_;
+    const double last = static_cast<double>(count - 1);
+    return static_cast<std::uint32_t>(static_cast<std::int32_t>(c > 0.0 ? (c < last ? c : last) : 0.0));
+  }
+
+  double min_x_m_ = 0.0, min_y_m_ = 0.0;
+  double reach_m_ = 0.0, cell_m_ = 1.0, per_cell_ = 1.0;
+  std::uint32_t columns_ = 1, lines_ = 1;
+  std::vector<std::uint32_t> start_{0, 0};
+  std::vector<std::uint32_t> list_;
+};
+
+/// Distance from (x, y) to the outline of `shape` seen from above; negative inside. `nx, ny` is the unit vector from the
+/// shape towards the point (outwards), in W.
+double signed_distance(const StaticShape& shape, double x_m, double y_m, double& nx, double& ny) noexcept;
+
+/// True when the straight line from a to b (x, y, z in W) passes through `shape`.
+bool blocks(const StaticShape& shape, double ax, double ay, double az, double bx, double by, double bz) noexcept;
+
+}  // namespace tandem::core
