@@ -55,7 +55,7 @@ class BodyIndex {
 
   /// Calls `visit(const IndexEntry&)` for every body whose centre may be within `radius_m` of (x, y); some are farther.
   template <class Visit>
-  void for_each_near(double x_m, double y_m, double radius_m, Visit&& visit) const noexcept {
+  [[gnu::always_inline]] inline void for_each_near(double x_m, double y_m, double radius_m, Visit&& visit) const noexcept {
     const double r = radius_m + displacement_m_;
     const std::uint32_t x0 = column(x_m - r);
     const std::uint32_t x1 = column(x_m + r);

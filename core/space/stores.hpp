@@ -50,13 +50,13 @@ enum BodyFlag : std::uint8_t {
 /// Zeroed memory with an alignment of its own.
 class AlignedBytes {
  public:
-  AlignedBytes() = default;
+  AlignedBytes() : bytes_(nullptr, Free{1}) {}
   AlignedBytes(std::size_t size, std::size_t align);
   std::byte* data() const noexcept { return bytes_.get(); }
 
  private:
   struct Free {
-    std::size_t align = 1;
+    std::size_t align;
     void operator()(std::byte* p) const noexcept { ::operator delete(p, std::align_val_t{align}); }
   };
   std::unique_ptr<std::byte, Free> bytes_;
@@ -113,6 +113,7 @@ struct Broadcast {
   std::uint8_t sending = 0;
   std::uint8_t size = 0;
   std::array<std::uint8_t, hal::kRabPayloadMax> payload{};
+  float range_m = 0.0F;                            ///< how far the sender reaches
 };
 
 struct SpaceStores {

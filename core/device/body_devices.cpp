@@ -1,0 +1,276 @@
+// What a robot senses of itself and of the air: acceleration, sound, battery, clock. And its lamps, which only shine.
+#include "core/device/sight.hpp"
+#include "core/device/types.hpp"
+#include "core/random/random.hpp"
+#include "hal/device/body_sensors.hpp"
+#include "hal/device/leds.hpp"
+
+namespace tandem::core {
+namespace {
+
+struct NoOptions {
+  void describe(hal::ParamVisitor&) {}
+};
+
+// --- accelerometer ---
+
+constexpr double kGravity_m_s2 = 9.81;
+
+template <int kPerMille>
+struct ForceNoise {
+  double noise_level_m_s2 = kPerMille * 1e-3;
+  void describe(hal::ParamVisitor& v) {
+    v.number("noise_level", noise_level_m_s2, hal::unit::m_s2, hal::kNotNegative, "Standard deviation on each axis.");
+  }
+};
+
+/// From the wheels' speeds: forward their mean's change, sideways speed times turn rate, upwards gravity.
+class AccelerometerSensor final : public Sensor {
+ public:
+  AccelerometerSensor(double wheel_base_m, double noise, std::size_t capacity)
+      : wheel_base_m_(wheel_base_m), noise_m_s2_(noise), last_m_s_(capacity, 0.0) {}
+
+  void sense(const DeviceContext& context, void* ports) noexcept override {
+    auto* meters = static_cast<hal::Accelerometer*>(ports);
+    const Bodies& b = context.stores.bodies;
+    for (std::size_t i = 0; i < context.block.used; ++i) {
+      const std::size_t row = context.block.first_row + i;
+      const double speed = 0.5 * (b.left_m_s[row] + b.right_m_s[row]);
+      const double turn = (b.right_m_s[row] - b.left_m_s[row]) / wheel_base_m_;
+      std::array<double, 3> force{(speed - last_m_s_[i]) / context.tick_s, speed * turn, kGravity_m_s2};
+      last_m_s_[i] = speed;
+      if (noise_m_s2_ > 0.0) {
+        const auto bits = draw(context.seed, b.entity[row], Stream::AccelerometerNoise, context.tick);
+        const auto xy = to_normal(bits[0], bits[1]);
+        force[0] += noise_m_s2_ * xy[0];
+        force[1] += noise_m_s2_ * xy[1];
+        force[2] += noise_m_s2_ * to_normal(bits[2], bits[3])[0];
+      }
+      hal::Accelerometer& port = meters[i];
+      port.taken_ns = context.now_ns;
+      port.validity = hal::Validity::Fresh;
+      for (std::size_t k = 0; k < 3; ++k) port.force_m_s2[k] = static_cast<float>(force[k]);
+    }
+  }
+
+ private:
+  double wheel_base_m_;
+  double noise_m_s2_;
+  std::vector<double> last_m_s_;
+};
+
+bool has_accelerometer(const hal::DataSheet& sheet) { return sheet.wheel_base_m > 0.0; }
+
+template <class Options>
+Recipe<Sensor> make_accelerometer(const Element& element, Problems& problems, const DeviceSetup& setup) {
+  const auto options = read_options<Options>(element, problems);
+  double noise = 0.0;
+  if constexpr (requires { options.noise_level_m_s2; }) noise = options.noise_level_m_s2;
+  return [base = setup.sheet.wheel_base_m, noise](std::size_t capacity) {
+    return std::make_unique<AccelerometerSensor>(base, noise, capacity);
+  };
+}
+
+// --- microphones ---
+
+template <int kPerMille>
+struct SoundNoise {
+  double noise_level = kPerMille * 1e-3;
+  void describe(hal::ParamVisitor& v) {
+    v.number("noise_level", noise_level, hal::unit::none, {0.0, 1.0}, "Background noise, 0 to this, on each microphone.");
+  }
+};
+
+/// A source of level L is heard at L / (1 + (d / 10 cm)^2): full level at the source, falling with the square of the distance
+/// in the far field. Sources add up, at most to 1.
+class MicrophoneSensor final : public Sensor {
+ public:
+  MicrophoneSensor(const hal::DataSheet& sheet, double noise) : mounts_(sheet.microphones), noise_(noise) {}
+
+  void sense(const DeviceContext& context, void* ports) noexcept override {
+    auto* microphones = static_cast<hal::Microphones*>(ports);
+    const Bodies& b = context.stores.bodies;
+    for (std::size_t i = 0; i < context.block.used; ++i) {
+      const std::size_t row = context.block.first_row + i;
+      const auto bits = noise_ > 0.0 ? draw(context.seed, b.entity[row], Stream::MicrophoneNoise, context.tick)
+                                     : std::array<std::uint32_t, 4>{};
+      hal::Microphones& port = microphones[i];
+      port.taken_ns = context.now_ns;
+      port.validity = hal::Validity::Fresh;
+      port.count = static_cast<std::uint32_t>(mounts_.size());
+      for (std::size_t k = 0; k < mounts_.size(); ++k) {
+        const double x = b.x_m[row] + b.cos_h[row] * mounts_[k].x_m - b.sin_h[row] * mounts_[k].y_m;
+        const double y = b.y_m[row] + b.sin_h[row] * mounts_[k].x_m + b.cos_h[row] * mounts_[k].y_m;
+        const double level = heard(context.stores, x, y, mounts_[k].z_m) + noise_ * to_unit(bits[k % 4]);
+        port.level[k] = static_cast<float>(std::min(level, 1.0));
+      }
+    }
+  }
+
+ private:
+  static constexpr double kNear_m = 0.1;
+
+  static double heard(const SpaceStores& stores, double x, double y, double z) noexcept {
+    double level = 0.0;
+    for (const SoundSource& s : stores.sounds) {
+      const double d2 = (s.x_m - x) * (s.x_m - x) + (s.y_m - y) * (s.y_m - y) + (s.z_m - z) * (s.z_m - z);
+      level += s.level / (1.0 + d2 / (kNear_m * kNear_m));
+    }
+    return level;
+  }
+
+  std::span<const hal::Mount> mounts_;
+  double noise_;
+};
+
+bool has_microphones(const hal::DataSheet& sheet) { return !sheet.microphones.empty(); }
+
+template <class Options>
+Recipe<Sensor> make_microphones(const Element& element, Problems& problems, const DeviceSetup& setup) {
+  const auto options = read_options<Options>(element, problems);
+  double noise = 0.0;
+  if constexpr (requires { options.noise_level; }) noise = options.noise_level;
+  return [&sheet = setup.sheet, noise](std::size_t) { return std::make_unique<MicrophoneSensor>(sheet, noise); };
+}
+
+// --- battery ---
+
+template <int kPerMille>
+struct ChargeNoise {
+  double noise_range = kPerMille * 1e-3;
+  void describe(hal::ParamVisitor& v) {
+    v.number("noise_range", noise_range, hal::unit::none, {0.0, 1.0}, "Uniform noise of +-this on the charge reading.");
+  }
+};
+
+/// ARGoS' three discharge models: a part a tick, a part a metre and a radian moved, or both.
+class BatterySensor final : public Sensor {
+ public:
+  BatterySensor(const DeviceSetup& setup, double noise, std::size_t capacity)
+      : config_(setup.item.battery), noise_(noise), full_V_(setup.sheet.battery_full_V), empty_V_(setup.sheet.battery_empty_V),
+        wheel_base_m_(setup.sheet.wheel_base_m), charge_(capacity, setup.item.battery.start_charge) {
+    by_time_ = config_.model != "motion";
+    by_motion_ = config_.model != "time";
+  }
+
+  void sense(const DeviceContext& context, void* ports) noexcept override {
+    auto* batteries = static_cast<hal::Battery*>(ports);
+    const Bodies& b = context.stores.bodies;
+    for (std::size_t i = 0; i < context.block.used; ++i) {
+      const std::size_t row = context.block.first_row + i;
+      double used = by_time_ ? config_.delta : 0.0;
+      if (by_motion_) {
+        const double left = b.left_m_s[row] * context.tick_s;
+        const double right = b.right_m_s[row] * context.tick_s;
+        used += config_.pos_delta * std::fabs(0.5 * (left + right)) +
+                config_.orient_delta * std::fabs(right - left) / wheel_base_m_;
+      }
+      charge_[i] = std::max(0.0, charge_[i] - used);
+      double read = config_.full_charge > 0.0 ? charge_[i] / config_.full_charge : 0.0;
+      if (noise_ > 0.0) {
+        const auto bits = draw(context.seed, b.entity[row], Stream::BatteryNoise, context.tick);
+        read += noise_ * (2.0 * to_unit(bits[0]) - 1.0);
+      }
+      read = std::min(std::max(read, 0.0), 1.0);
+      hal::Battery& port = batteries[i];
+      port.taken_ns = context.now_ns;
+      port.validity = hal::Validity::Fresh;
+      port.charge = static_cast<float>(read);
+      port.supply_V = static_cast<float>(empty_V_ + read * (full_V_ - empty_V_));
+    }
+  }
+
+ private:
+  BatteryConfig config_;
+  double noise_;
+  double full_V_, empty_V_, wheel_base_m_;
+  std::vector<double> charge_;
+  bool by_time_ = true;
+  bool by_motion_ = false;
+};
+
+bool has_battery(const hal::DataSheet& sheet) { return sheet.battery_full_V > 0.0; }
+
+template <class Options>
+Recipe<Sensor> make_battery(const Element& element, Problems& problems, const DeviceSetup& setup) {
+  const auto options = read_options<Options>(element, problems);
+  double noise = 0.0;
+  if constexpr (requires { options.noise_range; }) noise = options.noise_range;
+  return [setup, noise](std::size_t capacity) { return std::make_unique<BatterySensor>(setup, noise, capacity); };
+}
+
+// --- clock ---
+
+class ClockSensor final : public Sensor {
+ public:
+  void sense(const DeviceContext& context, void* ports) noexcept override {
+    auto* clocks = static_cast<hal::Clock*>(ports);
+    for (std::size_t i = 0; i < context.block.used; ++i) {
+      clocks[i].taken_ns = context.now_ns;
+      clocks[i].validity = hal::Validity::Fresh;
+      clocks[i].tick = context.tick;
+      clocks[i].now_ns = context.now_ns;
+      clocks[i].tick_s = context.tick_s;
+    }
+  }
+};
+
+bool always(const hal::DataSheet&) { return true; }
+
+Recipe<Sensor> make_clock(const Element& element, Problems& problems, const DeviceSetup&) {
+  read_options<NoOptions>(element, problems);
+  return [](std::size_t) { return std::make_unique<ClockSensor>(); };
+}
+
+// --- lamps ---
+
+struct LampOptions {
+  std::string medium;
+  void describe(hal::ParamVisitor& v) { v.text("medium", medium, "Id of the LED medium; accepted as in ARGoS files."); }
+};
+
+/// Lamps change nothing in the space by themselves: views and pictures read the port.
+class Lamps final : public Actuator {
+ public:
+  void act(const DeviceContext&, SpaceStores&, const void*) noexcept override {}
+};
+
+bool has_leds(const hal::DataSheet& sheet) { return !sheet.leds.empty(); }
+
+Recipe<Actuator> make_lamps(const Element& element, Problems& problems, const DeviceSetup&) {
+  read_options<LampOptions>(element, problems);
+  return [](std::size_t) { return std::make_unique<Lamps>(); };
+}
+
+}  // namespace
+
+std::vector<DeviceType> body_device_types() {
+  std::vector<DeviceType> types = {
+      sensor_type("accelerometer", "default", "From the wheels' speeds; noise where asked for.", &has_accelerometer,
+                  &make_accelerometer<ForceNoise<0>>, &describe_options<ForceNoise<0>>),
+      sensor_type("accelerometer", "ideal", "From the wheels' speeds.", &has_accelerometer, &make_accelerometer<NoOptions>,
+                  &describe_options<NoOptions>),
+      sensor_type("accelerometer", "noisy", "From the wheels' speeds, with normal noise.", &has_accelerometer,
+                  &make_accelerometer<ForceNoise<200>>, &describe_options<ForceNoise<200>>),
+      sensor_type("microphones", "default", "Sources around; noise where asked for.", &has_microphones,
+                  &make_microphones<SoundNoise<0>>, &describe_options<SoundNoise<0>>),
+      sensor_type("microphones", "ideal", "Sources around.", &has_microphones, &make_microphones<NoOptions>,
+                  &describe_options<NoOptions>),
+      sensor_type("microphones", "noisy", "Sources around and background noise.", &has_microphones,
+                  &make_microphones<SoundNoise<20>>, &describe_options<SoundNoise<20>>),
+      sensor_type("battery", "default", "The robot's discharge model; noise where asked for.", &has_battery,
+                  &make_battery<ChargeNoise<0>>, &describe_options<ChargeNoise<0>>),
+      sensor_type("battery", "ideal", "The robot's discharge model.", &has_battery, &make_battery<NoOptions>,
+                  &describe_options<NoOptions>),
+      sensor_type("battery", "noisy", "The robot's discharge model, with noise.", &has_battery, &make_battery<ChargeNoise<10>>,
+                  &describe_options<ChargeNoise<10>>),
+      sensor_type("clock", "default", "The run's time.", &always, &make_clock, &describe_options<NoOptions>),
+      sensor_type("clock", "ideal", "The run's time.", &always, &make_clock, &describe_options<NoOptions>)};
+  for (const std::string_view lamp : {"leds", "body_led", "front_led"}) {
+    types.push_back(actuator_type(lamp, "default", "Shines.", &has_leds, &make_lamps, &describe_options<LampOptions>));
+    types.push_back(actuator_type(lamp, "ideal", "Shines.", &has_leds, &make_lamps, &describe_options<LampOptions>));
+  }
+  return types;
+}
+
+}  // namespace tandem::core

@@ -1,0 +1,25 @@
+#include "core/device/device.hpp"
+
+#include "core/device/types.hpp"
+
+namespace tandem::core {
+
+const std::vector<DeviceType>& device_types() {
+  static const std::vector<DeviceType> all = [] {
+    std::vector<DeviceType> types;
+    for (auto& part : {wheel_types(), proximity_types(), ring_level_types(), body_device_types(), range_and_bearing_types()}) {
+      types.insert(types.end(), part.begin(), part.end());
+    }
+    return types;
+  }();
+  return all;
+}
+
+const DeviceType* find_device(std::string_view device, hal::Role role, std::string_view implementation) {
+  for (const DeviceType& type : device_types()) {
+    if (type.device == device && type.role == role && type.implementation == implementation) return &type;
+  }
+  return nullptr;
+}
+
+}  // namespace tandem::core

@@ -1,0 +1,73 @@
+// Simulated devices: what fills a sensor port and what drains an actuator port, one call a block of robots.
+#pragma once
+#include <functional>
+#include <memory>
+#include <string_view>
+#include <vector>
+
+#include "core/scenario/scenario.hpp"
+#include "core/space/stores.hpp"
+#include "hal/port.hpp"
+
+namespace tandem::core {
+
+/// What a device needs to know of the tick. The stores are those of the tick's end: bodies have moved.
+struct DeviceContext {
+  const SpaceStores& stores;
+  const RobotGroup& group;
+  const RobotBlock& block;
+  hal::Tick tick;
+  hal::TimeNs now_ns;
+  double tick_s;
+  std::uint64_t seed;
+};
+
+/// Fills the ports of one block. One object a block, so that state (a battery's charge) needs no locks. Reads the space,
+/// never other robots' ports.
+class Sensor {
+ public:
+  virtual ~Sensor() = default;
+  /// `ports` is the block's array of this port class; rows [0, block.used) are filled.
+  virtual void sense(const DeviceContext& context, void* ports) noexcept = 0;
+};
+
+/// Carries the commands of one block into the space, at the start of a tick.
+class Actuator {
+ public:
+  virtual ~Actuator() = default;
+  /// Writes only rows of its own block in `stores`.
+  virtual void act(const DeviceContext& context, SpaceStores& stores, const void* ports) noexcept = 0;
+};
+
+/// What a device is made for.
+struct DeviceSetup {
+  const hal::DataSheet& sheet;
+  const RobotItem& item;
+  double tick_s = 0.1;
+};
+
+template <class Device>
+using Recipe = std::function<std::unique_ptr<Device>(std::size_t capacity)>;
+
+/// One implementation of one device class.
+struct DeviceType {
+  std::string_view device;          ///< the port's name
+  std::string_view implementation;
+  std::string_view summary;
+  hal::Role role = hal::Role::Sensor;
+  /// Whether robots with this data sheet have the device at all.
+  bool (*fits)(const hal::DataSheet& sheet) = nullptr;
+  /// Reads the options (problems with lines); the recipe then makes one object a block. One of the two is set.
+  Recipe<Sensor> (*make_sensor)(const Element& options, Problems& problems, const DeviceSetup& setup) = nullptr;
+  Recipe<Actuator> (*make_actuator)(const Element& options, Problems& problems, const DeviceSetup& setup) = nullptr;
+  /// Shows its options, for the manual.
+  void (*describe)(hal::ParamVisitor& visitor) = nullptr;
+};
+
+/// All implementations of all devices; the first of a device is its default.
+const std::vector<DeviceType>& device_types();
+
+/// The implementation that an experiment file names, or null. "default" is always the first.
+const DeviceType* find_device(std::string_view device, hal::Role role, std::string_view implementation);
+
+}  // namespace tandem::core
