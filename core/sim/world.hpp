@@ -8,6 +8,7 @@
 
 #include "core/loop/hook.hpp"
 #include "core/scenario/scenario.hpp"
+#include "core/sim/external.hpp"
 #include "core/space/space.hpp"
 #include "hal/log.hpp"
 #include "hal/plugin_loader.hpp"
@@ -51,6 +52,9 @@ class World {
   void step();
   /// Calls the hooks' `after_run`. Once, after the last step.
   void finish();
+
+  /// Lets real robots take part; `external` must outlive the last step. Null: none.
+  void set_external(ExternalRobots* external) noexcept;
 
   RunState state() const noexcept;
   /// Why the run failed: what, who, which tick. Empty while it did not.

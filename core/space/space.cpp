@@ -79,6 +79,20 @@ void Space::set_pose(RobotId robot, const Pose& pose) noexcept {
   b.sin_h[row] = pose.sin_h;
 }
 
+void Space::remove_robot(RobotId robot) noexcept {
+  RobotEntity& e = stores_->robots[robot.index];
+  if (!e.alive || e.generation != robot.generation) return;
+  set_halted(robot, true);
+  const std::size_t row = stores_->row_of(robot);
+  stores_->bodies.flags[row] = 0;
+  stores_->bodies.left_m_s[row] = 0.0;
+  stores_->bodies.right_m_s[row] = 0.0;
+  if (!stores_->broadcasts.empty()) stores_->broadcasts[row].sending = 0;
+  e.alive = false;
+  ++e.generation;
+  std::erase(stores_->living, robot.index);
+}
+
 bool Space::halted(RobotId robot) const noexcept {
   const RobotEntity& e = stores_->robots[robot.index];
   return stores_->blocks[e.block].halted[e.slot] != 0;

@@ -61,6 +61,8 @@ class Space {
   Pose pose(RobotId robot) const noexcept;
   /// Moves a robot at once. Takes effect for physics and sensing from the next phase on.
   void set_pose(RobotId robot, const Pose& pose) noexcept;
+  /// Takes a robot out of the space: its controller stops, nobody sees it any more. Its id is not used again.
+  void remove_robot(RobotId robot) noexcept;
   bool halted(RobotId robot) const noexcept;               ///< its controller threw or was stopped: wheels stay 0
   void set_halted(RobotId robot, bool halted) noexcept;
   /// Whether the robot's pose is set from outside (a real robot's twin): engines do not move it, others bump into it.

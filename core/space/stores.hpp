@@ -44,7 +44,7 @@ enum BodyFlag : std::uint8_t {
   kAlive = 1,
   kExternal = 2,  ///< pose set from outside: engines leave it, others bump into it
   kEscaped = 4,   ///< left the arena in this tick
-  kTouching = 8   ///< in contact in this tick
+  kNotFinite = 8  ///< its controller commanded something that is no finite number, in this tick
 };
 
 /// Zeroed memory with an alignment of its own.

@@ -1,0 +1,484 @@
+#include "core/sim/world.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <random>
+
+#include "core/device/device.hpp"
+#include "core/physics/kinematics2d/kinematics2d.hpp"
+#include "core/placement/placement.hpp"
+#include "core/sim/robot_factory.hpp"
+#include "core/space/stores.hpp"
+#include "hal/check.hpp"
+#include "hal/filter.hpp"
+
+namespace tandem::core {
+namespace {
+
+constexpr std::size_t kIncidentsNamed = 20;
+constexpr double kContactReach_m = 0.03;  // beyond the bodies' rims: what contact resolution looks at
+
+/// Mixes a value into a hash; every bit of the value reaches every bit of the result [finaliser of Murmur3].
+std::uint64_t mix(std::uint64_t hash, std::uint64_t value) noexcept {
+  std::uint64_t x = hash ^ (value + 0x9E3779B97F4A7C15ULL + (hash << 6) + (hash >> 2));
+  x = (x ^ (x >> 33)) * 0xFF51AFD7ED558CCDULL;
+  x = (x ^ (x >> 33)) * 0xC4CEB9FE1A85EC53ULL;
+  return x ^ (x >> 33);
+}
+
+std::uint64_t bits_of(double value) noexcept {
+  std::uint64_t bits = 0;
+  std::memcpy(&bits, &value, sizeof bits);
+  return bits;
+}
+
+std::uint64_t seed_from_clock() {
+  std::random_device device;
+  return (static_cast<std::uint64_t>(device()) << 32 | device()) >> 11;  // exact as a double, easy to write in a file
+}
+
+}  // namespace
+
+struct World::Impl {
+  Scenario scenario;
+  WorldOptions options;
+  std::uint64_t seed = 0;
+  Space space;
+  std::unique_ptr<ThreadPool> pool;
+  std::unique_ptr<Engine> engine;
+  RobotDevices devices;
+  std::vector<std::unique_ptr<Hook>> hooks;
+  std::vector<std::string> hook_names;
+  ExternalRobots* external = nullptr;
+
+  hal::Tick tick = 0;
+  RunState state = RunState::Running;
+  std::string failure;
+  Incidents incidents;
+  std::atomic<std::uint32_t> trouble{0};       // robots that need the serial look after a parallel phase
+  std::vector<std::uint8_t> block_trouble;     // by block: 1 when one of its robots does
+  std::vector<hal::StepFault> faults;          // by block, for controllers that threw
+  std::vector<std::uint64_t> clamped;          // by block, running counts
+  std::vector<std::uint64_t> not_finite;
+
+  SpaceStores& stores() noexcept { return space.stores(); }
+
+  // --- one tick ---
+  void act();
+  void physics();
+  void treat_escapes();
+  void rebuild_index();
+  void sense_and_control();
+  void sense(std::size_t block);
+  void control(std::size_t block);
+  void filter(std::size_t block);
+  void report_trouble();
+  void paint_floor_if_asked();
+
+  template <class Call>
+  void call_hooks(const char* moment, Call&& call);
+  HookContext hook_context() { return {space, tick, scenario.ticks_per_second, seed}; }
+  DeviceContext device_context(std::size_t block) {
+    SpaceStores& s = stores();
+    return {s, s.groups[s.blocks[block].group], s.blocks[block], tick, hal::time_of_tick(tick, scenario.ticks_per_second), tick_s(), seed};
+  }
+  double tick_s() const noexcept { return 1.0 / static_cast<double>(scenario.ticks_per_second); }
+  void fail(std::string why) {
+    if (state == RunState::Failed) return;
+    state = RunState::Failed;
+    failure = std::move(why);
+  }
+  void incident(std::string what) {
+    options.log.warning(what);
+    if (incidents.first.size() < kIncidentsNamed) incidents.first.push_back(std::move(what));
+  }
+  std::string at_tick() const { return " at tick " + std::to_string(tick); }
+  std::string name_of_row(std::size_t row) {
+    const std::uint32_t entity = stores().bodies.entity[row];
+    return space.robot_name({entity, stores().robots[entity].generation});
+  }
+};
+
+// --- the step ---
+
+void World::step() {
+  Impl& w = *impl_;
+  if (w.state != RunState::Running) return;
+  w.call_hooks("before_step", [](Hook& hook, HookContext& c) { hook.before_step(c); });
+  w.paint_floor_if_asked();
+  if (w.external != nullptr) w.external->latch(*this);
+  w.act();
+  w.physics();
+  if (w.external == nullptr) {
+    w.sense_and_control();
+  } else {
+    for (std::size_t block = 0; block < w.stores().blocks.size(); ++block) w.sense(block);
+    w.external->after_sense(*this);
+    for (std::size_t block = 0; block < w.stores().blocks.size(); ++block) {
+      w.control(block);
+      w.filter(block);
+    }
+    w.external->after_filter(*this);
+  }
+  w.report_trouble();
+  w.call_hooks("after_step", [](Hook& hook, HookContext& c) { hook.after_step(c); });
+  ++w.tick;
+  bool done = false;
+  w.call_hooks("is_done", [&done](Hook& hook, HookContext& c) { done = hook.is_done(c) || done; });
+  if (done && w.state == RunState::Running) w.state = RunState::Done;
+}
+
+void World::Impl::act() {
+  SpaceStores& s = stores();
+  pool->run(s.blocks.size(), 4, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t block = begin; block < end; ++block) {
+      const DeviceContext context = device_context(block);
+      const auto& actuators = devices.blocks[block].actuators;
+      for (std::size_t i = 0; i < actuators.size(); ++i) {
+        if (actuators[i] != nullptr) actuators[i]->act(context, s, s.blocks[block].ports[i].data());
+      }
+    }
+  });
+}
+
+void World::Impl::physics() {
+  const PhysicsContext context{stores(), *pool, tick_s()};
+  engine->move(context);
+  rebuild_index();
+  if (trouble.load(std::memory_order_relaxed) != 0) {
+    treat_escapes();
+    rebuild_index();
+    trouble.store(0, std::memory_order_relaxed);
+  }
+  engine->settle(context);
+}
+
+void World::Impl::rebuild_index() {
+  SpaceStores& s = stores();
+  Bodies& b = s.bodies;
+  s.body_index.rebuild(b.size(), s.living.size(), *pool, [&](std::size_t row) noexcept {
+    IndexEntry entry{b.x_m[row], b.y_m[row], b.radius_m[row], static_cast<std::uint32_t>(row)};
+    const std::uint8_t flags = b.flags[row];
+    if ((flags & kAlive) == 0) {
+      entry.row_and_flag = BodyIndex::kSkip;
+      return entry;
+    }
+    if ((flags & kExternal) != 0) entry.row_and_flag |= IndexEntry::kFixedFlag;
+    const bool inside = entry.x_m >= s.min_x_m && entry.x_m <= s.max_x_m && entry.y_m >= s.min_y_m && entry.y_m <= s.max_y_m;
+    if (!inside) {  // also when not a number
+      b.flags[row] = static_cast<std::uint8_t>(flags | kEscaped);
+      trouble.fetch_add(1, std::memory_order_relaxed);
+    }
+    return entry;
+  });
+}
+
+void World::Impl::treat_escapes() {
+  SpaceStores& s = stores();
+  Bodies& b = s.bodies;
+  for (std::size_t row = 0; row < b.size(); ++row) {
+    if ((b.flags[row] & kEscaped) == 0) continue;
+    b.flags[row] = static_cast<std::uint8_t>(b.flags[row] & ~kEscaped);
+    if (std::isnan(b.x_m[row]) || std::isnan(b.y_m[row])) {
+      fail("robot '" + name_of_row(row) + "' has a position that is not a number" + at_tick());
+      b.x_m[row] = s.min_x_m;
+      b.y_m[row] = s.min_y_m;
+      continue;
+    }
+    ++incidents.bodies_escaped;
+    const std::string where = "robot '" + name_of_row(row) + "' left the arena at (" + hal::format_number(b.x_m[row]) + ", " +
+                              hal::format_number(b.y_m[row]) + ")" + at_tick();
+    if (scenario.escape == EscapePolicy::Error) {
+      fail(where + ". Give the arena walls, or choose escape=\"stop\" or escape=\"remove\" on <arena>.");
+    }
+    if (scenario.escape == EscapePolicy::Remove) {
+      incident(where + ": removed");
+      space.remove_robot({b.entity[row], s.robots[b.entity[row]].generation});
+      continue;
+    }
+    if (scenario.escape == EscapePolicy::Stop) incident(where + ": stopped at the edge");
+    b.x_m[row] = std::clamp(b.x_m[row], s.min_x_m, s.max_x_m);
+    b.y_m[row] = std::clamp(b.y_m[row], s.min_y_m, s.max_y_m);
+  }
+}
+
+void World::Impl::sense_and_control() {
+  // A block's ports stay in the cache from its sensing to its control.
+  pool->run(stores().blocks.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t block = begin; block < end; ++block) {
+      sense(block);
+      control(block);
+      filter(block);
+    }
+  });
+}
+
+void World::Impl::sense(std::size_t block) {
+  const DeviceContext context = device_context(block);
+  const auto& sensors = devices.blocks[block].sensors;
+  for (std::size_t i = 0; i < sensors.size(); ++i) {
+    if (sensors[i] != nullptr) sensors[i]->sense(context, context.block.ports[i].data());
+  }
+}
+
+void World::Impl::control(std::size_t index) {
+  RobotBlock& block = stores().blocks[index];
+  const hal::ControllerType& type = *stores().groups[block.group].controller;
+  std::size_t next = 0;
+  while (next < block.used) {
+    next = type.step_row(block.controllers.data(), block.controller_stride, next, block.used, block.halted.data(), faults[index]);
+    if (next == block.used) break;
+    block.halted[next] = 2;  // thrown in this tick; reported, and its actuators made safe, after the phase
+    block_trouble[index] = 1;
+    ++next;
+  }
+}
+
+void World::Impl::filter(std::size_t index) {
+  RobotBlock& block = stores().blocks[index];
+  const RobotGroup& group = stores().groups[block.group];
+  if (group.wheels < 0) return;
+  auto* wheels = block.port_array<hal::WheelSpeeds>(static_cast<std::size_t>(group.wheels));
+  const double limit = group.sheet->max_wheel_speed_m_s;
+  for (std::size_t i = 0; i < block.used; ++i) {
+    const hal::FilterResult result = hal::filter(wheels[i], limit);
+    if (result == hal::FilterResult::Passed) continue;
+    if (result == hal::FilterResult::Clamped) {
+      ++clamped[index];
+    } else {
+      ++not_finite[index];
+      block_trouble[index] = 1;
+      stores().bodies.flags[block.first_row + i] |= kNotFinite;
+    }
+  }
+}
+
+void World::Impl::report_trouble() {
+  for (std::size_t index = 0; index < block_trouble.size(); ++index) {
+    if (block_trouble[index] == 0) continue;
+    block_trouble[index] = 0;
+    RobotBlock& block = stores().blocks[index];
+    for (std::size_t i = 0; i < block.used; ++i) {
+      const std::size_t row = block.first_row + i;
+      std::uint8_t& flags = stores().bodies.flags[row];
+      if ((flags & kNotFinite) != 0) {
+        flags = static_cast<std::uint8_t>(flags & ~kNotFinite);
+        if (incidents.first.size() < kIncidentsNamed) {
+          incident("controller of robot '" + name_of_row(row) + "' commanded a wheel speed that is not a finite number" + at_tick() +
+                   ": wheels stopped for this tick");
+        }
+      }
+      if (block.halted[i] == 2) {
+        const std::uint32_t entity = stores().bodies.entity[row];
+        const RobotId id{entity, stores().robots[entity].generation};
+        space.set_halted(id, true);
+        ++incidents.controllers_thrown;
+        incident("controller of robot '" + space.robot_name(id) + "' threw" + at_tick() + ": " + faults[index].message +
+                 "; the robot is stopped");
+      }
+    }
+  }
+}
+
+void World::Impl::paint_floor_if_asked() {
+  SpaceStores& s = stores();
+  if (!s.repaint_floor || scenario.floor.source != "loop_functions" || hooks.empty()) return;
+  s.repaint_floor = false;
+  s.floor.paint(s.min_x_m, s.min_y_m, s.max_x_m - s.min_x_m, s.max_y_m - s.min_y_m, scenario.floor.pixels_per_meter,
+                [&](double x, double y) { return hooks.front()->floor(x, y); });
+}
+
+template <class Call>
+void World::Impl::call_hooks(const char* moment, Call&& call) {
+  for (std::size_t i = 0; i < hooks.size(); ++i) {
+    HookContext context = hook_context();
+    try {
+      call(*hooks[i], context);
+    } catch (const std::exception& e) {
+      fail("hook '" + hook_names[i] + "' threw in " + moment + at_tick() + ": " + e.what());
+    } catch (...) {
+      fail("hook '" + hook_names[i] + "' threw in " + moment + at_tick());
+    }
+  }
+}
+
+// --- making one ---
+
+namespace {
+
+StaticShape static_shape(const ObjectItem& item, const PlacedObject& placed) {
+  StaticShape shape;
+  shape.kind = item.shape == ShapeKind::Box ? StaticShape::Kind::Box : StaticShape::Kind::Cylinder;
+  shape.id = placed.number < 0 ? item.id : item.id + std::to_string(placed.number);
+  shape.x_m = placed.p_W[0];
+  shape.y_m = placed.p_W[1];
+  shape.cos_h = std::cos(placed.yaw_rad);
+  shape.sin_h = std::sin(placed.yaw_rad);
+  shape.half_x_m = 0.5 * item.size[0];
+  shape.half_y_m = 0.5 * item.size[1];
+  shape.radius_m = item.size[0];
+  shape.z_low_m = placed.p_W[2];
+  shape.z_high_m = placed.p_W[2] + item.size[2];
+  return shape;
+}
+
+std::unique_ptr<Engine> make_engine(const Scenario& scenario, Problems& problems) {
+  Kinematics2d::Params params;
+  if (!scenario.engines.empty()) {
+    const EngineConfig& config = scenario.engines.front();
+    if (config.kind != "kinematics2d") {
+      problems.push_back({scenario.file, config.line, "unknown physics engine '" + config.kind + "'; known: kinematics2d", false});
+      return nullptr;
+    }
+    ElementReader reader(config.options, problems, {"id", "regions"});
+    params.describe(reader);
+  }
+  return std::make_unique<Kinematics2d>(params);
+}
+
+}  // namespace
+
+std::unique_ptr<World> World::make(const Scenario& scenario, hal::PluginLoader& loader, const WorldOptions& options, Problems& problems) {
+  auto impl = std::make_unique<Impl>();
+  Impl& w = *impl;
+  const std::size_t before = problems.size();
+  const auto bad = [&] { return has_errors(Problems(problems.begin() + static_cast<std::ptrdiff_t>(before), problems.end())); };
+  w.scenario = scenario;
+  w.options = options;
+  w.seed = options.seed ? *options.seed : scenario.seed ? *scenario.seed : seed_from_clock();
+  w.pool = std::make_unique<ThreadPool>(static_cast<std::size_t>(std::max<std::int64_t>(0, options.threads.value_or(scenario.threads))),
+                                        options.assignment.value_or(scenario.assignment));
+  SpaceStores& s = w.stores();
+  s.min_x_m = scenario.arena_center[0] - 0.5 * scenario.arena_size[0];
+  s.max_x_m = scenario.arena_center[0] + 0.5 * scenario.arena_size[0];
+  s.min_y_m = scenario.arena_center[1] - 0.5 * scenario.arena_size[1];
+  s.max_y_m = scenario.arena_center[1] + 0.5 * scenario.arena_size[1];
+
+  w.engine = make_engine(scenario, problems);
+  const Placements placements = place(scenario, w.seed, problems);
+  if (bad()) return nullptr;
+
+  for (const PlacedObject& placed : placements.objects) s.statics.push_back(static_shape(scenario.objects[placed.item], placed));
+  for (const PlacedLight& placed : placements.lights) {
+    const LightItem& item = scenario.lights[placed.item];
+    s.lights.push_back({placed.number < 0 ? item.id : item.id + std::to_string(placed.number), placed.p_W[0], placed.p_W[1], placed.p_W[2],
+                        item.intensity, {item.rgb[0], item.rgb[1], item.rgb[2]}});
+  }
+  for (const SoundItem& item : scenario.sounds) s.sounds.push_back({item.id, item.p_W[0], item.p_W[1], item.p_W[2], item.level});
+
+  // Ids: entities in the order of the file.
+  std::vector<RobotRequest> requests;
+  requests.reserve(placements.robots.size());
+  s.robots.resize(placements.robots.size());
+  for (std::size_t i = 0; i < scenario.robots.size(); ++i) {
+    const RobotItem& item = scenario.robots[i];
+    s.names.push_back({item.id, item.distribute ? item.distribute->base_num : -1, 0, 0});
+  }
+  for (std::size_t i = 0; i < placements.robots.size(); ++i) {
+    const PlacedRobot& placed = placements.robots[i];
+    NameRange& name = s.names[placed.item];
+    if (name.count == 0) name.first_entity = static_cast<std::uint32_t>(i);
+    ++name.count;
+    s.robots[i].item = placed.item;
+    s.robots[i].number = placed.number;
+    s.living.push_back(static_cast<std::uint32_t>(i));
+    requests.push_back({placed.item, static_cast<std::uint32_t>(i), placed.x_m, placed.y_m, placed.yaw_rad});
+  }
+  w.devices = make_robots(scenario, requests, w.seed, loader, s, problems);
+
+  double reach_m = 2.0 * kContactReach_m;
+  for (const RobotGroup& group : s.groups) {
+    if (group.sheet == nullptr) continue;
+    reach_m = std::max(reach_m, 2.0 * group.sheet->body_radius_m + std::max(group.sheet->proximity_range_m, kContactReach_m) + 0.01);
+  }
+  s.body_index.set_area(s.min_x_m, s.min_y_m, s.max_x_m, s.max_y_m, reach_m);
+  s.static_index.build(s.statics, s.min_x_m, s.min_y_m, s.max_x_m, s.max_y_m, reach_m);
+
+  if (scenario.floor.source == "image") {
+    const hal::Status loaded = s.floor.load_png(scenario.floor.path, s.min_x_m, s.min_y_m, scenario.arena_size[0], scenario.arena_size[1]);
+    if (!loaded.ok()) problems.push_back({scenario.file, scenario.floor.line, loaded.error().message, false});
+  }
+  s.repaint_floor = true;
+
+  for (const HookConfig& config : scenario.hooks) {
+    const auto type = loader.get(config.library, "hook", config.label);
+    if (!type.ok()) {
+      problems.push_back({scenario.file, config.line, "loop_functions: " + type.error().message, false});
+      continue;
+    }
+    const auto* hook = static_cast<const HookType*>(type.value());
+    w.hooks.push_back(hook->make(config.options, problems));
+    w.hook_names.emplace_back(hook->name);
+  }
+  if (scenario.floor.source == "loop_functions" && scenario.hooks.empty()) {
+    problems.push_back({scenario.file, scenario.floor.line, "the floor is to be painted by loop functions, but there are none", false});
+  }
+
+  const std::size_t blocks = s.blocks.size();
+  w.block_trouble.assign(blocks, 0);
+  w.faults.resize(blocks);
+  w.clamped.assign(blocks, 0);
+  w.not_finite.assign(blocks, 0);
+  auto world = std::unique_ptr<World>(new World(std::move(impl)));
+  if (bad()) return nullptr;
+  return world;
+}
+
+World::World(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+
+World::~World() { destroy_controllers(impl_->stores()); }
+
+void World::start() {
+  impl_->call_hooks("before_run", [](Hook& hook, HookContext& c) { hook.before_run(c); });
+}
+
+void World::finish() {
+  impl_->call_hooks("after_run", [](Hook& hook, HookContext& c) { hook.after_run(c); });
+}
+
+void World::set_external(ExternalRobots* external) noexcept { impl_->external = external; }
+RunState World::state() const noexcept { return impl_->state; }
+const std::string& World::failure() const noexcept { return impl_->failure; }
+hal::Tick World::tick() const noexcept { return impl_->tick; }
+std::int64_t World::ticks_per_second() const noexcept { return impl_->scenario.ticks_per_second; }
+std::uint64_t World::seed() const noexcept { return impl_->seed; }
+std::int64_t World::threads() const noexcept { return static_cast<std::int64_t>(impl_->pool->size()); }
+const Scenario& World::scenario() const noexcept { return impl_->scenario; }
+Space& World::space() noexcept { return impl_->space; }
+const Space& World::space() const noexcept { return impl_->space; }
+
+const Incidents& World::incidents() const noexcept {
+  Incidents& i = impl_->incidents;
+  i.commands_clamped = 0;
+  i.commands_not_finite = 0;
+  for (const std::uint64_t n : impl_->clamped) i.commands_clamped += n;
+  for (const std::uint64_t n : impl_->not_finite) i.commands_not_finite += n;
+  return i;
+}
+
+std::uint64_t World::state_hash() const noexcept {
+  const SpaceStores& s = impl_->stores();
+  const Bodies& b = s.bodies;
+  std::uint64_t hash = mix(impl_->seed, static_cast<std::uint64_t>(impl_->tick));
+  for (const std::uint32_t entity : s.living) {
+    const RobotEntity& e = s.robots[entity];
+    const RobotBlock& block = s.blocks[e.block];
+    const RobotGroup& group = s.groups[block.group];
+    const std::size_t row = block.first_row + e.slot;
+    hash = mix(hash, entity);
+    for (const auto* quantity : {&b.x_m, &b.y_m, &b.cos_h, &b.sin_h, &b.left_m, &b.right_m}) hash = mix(hash, bits_of((*quantity)[row]));
+    hash = mix(hash, block.halted[e.slot]);
+    // Every port as the controller saw and left it, but the padding between fields.
+    for (std::size_t i = 0; i < group.ports.size(); ++i) {
+      const hal::PortType& type = *group.ports[i];
+      const void* port = block.ports[i].data() + e.slot * type.size;
+      for (const hal::Field& field : type.fields) {
+        for (std::size_t k = 0; k < hal::used_count(type, port, field); ++k) hash = mix(hash, bits_of(hal::get_value(port, field, k)));
+      }
+    }
+  }
+  return hash;
+}
+
+}  // namespace tandem::core
