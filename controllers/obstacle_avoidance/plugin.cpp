@@ -1,0 +1,10 @@
+#include "controllers/obstacle_avoidance/obstacle_avoidance.hpp"
+#include "hal/plugin.hpp"
+
+namespace {
+void register_all(tandem::hal::Registrar& registrar) {
+  registrar.add_controller<tandem::controllers::ObstacleAvoidance>("obstacle_avoidance", "Cruises and turns smoothly away from obstacles.");
+}
+}  // namespace
+
+TANDEM_PLUGIN(register_all)

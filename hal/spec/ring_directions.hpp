@@ -1,0 +1,41 @@
+// Unit vectors of a ring's bearings, worked out once a kind of robot and shared by all its controllers.
+#pragma once
+#include <array>
+#include <cmath>
+#include <list>
+#include <mutex>
+#include <span>
+
+#include "hal/spec/data_sheet.hpp"
+
+namespace tandem::hal {
+
+/// Where each sensor of a ring looks, in the body frame (x forward, y left). Entries beyond the ring are 0.
+struct RingDirections {
+  static constexpr std::size_t kCapacity = 24;
+  std::array<float, kCapacity> x{};
+  std::array<float, kCapacity> y{};
+};
+
+/// The directions of `mounts`; the reference stays valid until the program or plug-in ends. Thread-safe; for constructors,
+/// not for steps.
+inline const RingDirections& ring_directions(std::span<const Mount> mounts) {
+  struct Known {
+    const Mount* mounts;
+    RingDirections directions;
+  };
+  static std::mutex guard;
+  static std::list<Known> known;
+  const std::lock_guard lock(guard);
+  for (const Known& k : known) {
+    if (k.mounts == mounts.data()) return k.directions;
+  }
+  Known& made = known.emplace_back(Known{mounts.data(), {}});
+  for (std::size_t i = 0; i < mounts.size() && i < RingDirections::kCapacity; ++i) {
+    made.directions.x[i] = static_cast<float>(std::cos(mounts[i].bearing_rad));
+    made.directions.y[i] = static_cast<float>(std::sin(mounts[i].bearing_rad));
+  }
+  return made.directions;
+}
+
+}  // namespace tandem::hal
