@@ -323,6 +323,11 @@ StaticShape static_shape(const ObjectItem& item, const PlacedObject& placed) {
   return shape;
 }
 
+double radius_of_kind(const std::string& kind) {
+  const hal::DataSheet* sheet = data_sheet_of(kind);
+  return sheet != nullptr ? sheet->body_radius_m : -1.0;
+}
+
 std::unique_ptr<Engine> make_engine(const Scenario& scenario, Problems& problems) {
   Kinematics2d::Params params;
   if (!scenario.engines.empty()) {
@@ -356,7 +361,7 @@ std::unique_ptr<World> World::make(const Scenario& scenario, hal::PluginLoader& 
   s.max_y_m = scenario.arena_center[1] + 0.5 * scenario.arena_size[1];
 
   w.engine = make_engine(scenario, problems);
-  const Placements placements = place(scenario, w.seed, problems);
+  const Placements placements = place(scenario, w.seed, &radius_of_kind, problems);
   if (bad()) return nullptr;
 
   for (const PlacedObject& placed : placements.objects) s.statics.push_back(static_shape(scenario.objects[placed.item], placed));

@@ -1,0 +1,46 @@
+// Where everything starts: expands `<distribute>` into places without overlap.
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "core/scenario/scenario.hpp"
+
+namespace tandem::core {
+
+/// One robot's start. `number` is appended to the item's id; -1: nothing.
+struct PlacedRobot {
+  double x_m = 0.0, y_m = 0.0, z_m = 0.0;
+  double yaw_rad = 0.0;
+  std::uint32_t item = 0;  ///< of Scenario::robots
+  std::int64_t number = -1;
+};
+
+struct PlacedObject {
+  Vec3 p_W{};
+  double yaw_rad = 0.0;
+  std::uint32_t item = 0;  ///< of Scenario::objects
+  std::int64_t number = -1;
+};
+
+struct PlacedLight {
+  Vec3 p_W{};
+  std::uint32_t item = 0;  ///< of Scenario::lights
+  std::int64_t number = -1;
+};
+
+/// In the order of the file; a distributed item's entities in the order of their numbers.
+struct Placements {
+  std::vector<PlacedRobot> robots;
+  std::vector<PlacedObject> objects;
+  std::vector<PlacedLight> lights;
+};
+
+/// Radius of a kind of robot, for overlap; negative when the kind is unknown (reported elsewhere).
+using RadiusOf = double (*)(const std::string& kind);
+
+/// Places what has a place of its own first, then draws places for what is distributed: a pure function of the scenario and
+/// the seed. Bodies never overlap one another nor boxes and cylinders. Problems, each with its line: two placed things that
+/// overlap, a robot outside the arena, and `max_trials` draws without a free place (says how many were placed).
+Placements place(const Scenario& scenario, std::uint64_t seed, RadiusOf radius_of, Problems& problems);
+
+}  // namespace tandem::core

@@ -1,0 +1,169 @@
+#include "core/scenario/element.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <numeric>
+
+namespace tandem::core {
+namespace {
+
+/// Levenshtein's distance.
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t changed = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
+      diagonal = row[j];
+      row[j] = std::min({row[j] + 1, row[j - 1] + 1, changed});
+    }
+  }
+  return row[b.size()];
+}
+
+std::string range_text(hal::Range range, const hal::Unit& unit) {
+  const bool low = range.min > -std::numeric_limits<double>::infinity();
+  const bool high = range.max < std::numeric_limits<double>::infinity();
+  if (low && high) return "from " + hal::format_quantity(range.min, unit) + " to " + hal::format_quantity(range.max, unit);
+  if (low) return "at least " + hal::format_quantity(range.min, unit);
+  return "at most " + hal::format_quantity(range.max, unit);
+}
+
+}  // namespace
+
+std::string to_text(const Problem& problem) {
+  std::string text = problem.file;
+  if (problem.line > 0) text += ":" + std::to_string(problem.line);
+  return text + (problem.warning ? ": warning: " : ": error: ") + problem.message;
+}
+
+bool has_errors(const Problems& problems) noexcept {
+  return std::any_of(problems.begin(), problems.end(), [](const Problem& p) { return !p.warning; });
+}
+
+const std::string* Element::attribute(std::string_view attribute_name) const noexcept {
+  for (const Attribute& a : attributes) {
+    if (a.name == attribute_name) return &a.value;
+  }
+  return nullptr;
+}
+
+const Element* Element::child(std::string_view child_name) const noexcept {
+  for (const Element& c : children) {
+    if (c.name == child_name) return &c;
+  }
+  return nullptr;
+}
+
+std::string closest(std::string_view word, const std::vector<std::string>& candidates) {
+  if (word.size() > 64) return {};
+  std::string best;
+  std::size_t best_distance = std::max<std::size_t>(2, word.size() / 3) + 1;
+  for (const std::string& candidate : candidates) {
+    if (candidate.size() > word.size() + 8) continue;
+    const std::size_t distance = edit_distance(word, candidate);
+    if (distance < best_distance) {
+      best_distance = distance;
+      best = candidate;
+    }
+  }
+  return best;
+}
+
+ElementReader::ElementReader(const Element& element, Problems& problems, std::vector<std::string> ignore)
+    : element_(element), problems_(problems), known_(std::move(ignore)) {}
+
+const std::string* ElementReader::find(std::string_view name) {
+  known_.emplace_back(name);
+  return element_.attribute(name);
+}
+
+void ElementReader::problem(std::string_view attribute, std::string message) {
+  int line = element_.line;
+  for (const Element::Attribute& a : element_.attributes) {
+    if (a.name == attribute && a.line > 0) line = a.line;
+  }
+  problems_.push_back({element_.file, line, "<" + element_.name + " " + std::string(attribute) + ">: " + std::move(message), false});
+}
+
+void ElementReader::number(std::string_view name, double& value_si, const hal::Unit& bare, hal::Range range_si, std::string_view) {
+  const std::string* text = find(name);
+  if (text == nullptr) return;
+  const auto parsed = hal::parse_quantity(*text, bare);
+  if (!parsed.ok()) return problem(name, parsed.error().message);
+  constexpr double kSlack = 1e-12;  // 12.9 cm passes where 0.129 m is the limit
+  if (parsed.value() < range_si.min - kSlack || parsed.value() > range_si.max + kSlack) {
+    return problem(name, "'" + *text + "' is out of range; it may be " + range_text(range_si, bare));
+  }
+  value_si = parsed.value();
+}
+
+void ElementReader::integer(std::string_view name, std::int64_t& value, hal::Range range, std::string_view) {
+  const std::string* text = find(name);
+  if (text == nullptr) return;
+  std::int64_t parsed = 0;
+  const auto [end, status] = std::from_chars(text->data(), text->data() + text->size(), parsed);
+  if (status != std::errc{} || end != text->data() + text->size()) return problem(name, "'" + *text + "' is not a whole number");
+  const auto as_double = static_cast<double>(parsed);
+  if (as_double < range.min || as_double > range.max) {
+    return problem(name, "'" + *text + "' is out of range; it may be " + range_text(range, hal::unit::none));
+  }
+  value = parsed;
+}
+
+void ElementReader::flag(std::string_view name, bool& value, std::string_view) {
+  const std::string* text = find(name);
+  if (text == nullptr) return;
+  if (*text == "true" || *text == "1") value = true;
+  else if (*text == "false" || *text == "0") value = false;
+  else problem(name, "'" + *text + "' is neither \"true\" nor \"false\"");
+}
+
+void ElementReader::text(std::string_view name, std::string& value, std::string_view) {
+  if (const std::string* text = find(name); text != nullptr) value = *text;
+}
+
+void ElementReader::choice(std::string_view name, std::string& value, std::span<const std::string_view> options, std::string_view) {
+  const std::string* text = find(name);
+  if (text == nullptr) return;
+  std::vector<std::string> names(options.begin(), options.end());
+  if (std::find(names.begin(), names.end(), *text) != names.end()) {
+    value = *text;
+    return;
+  }
+  std::string list;
+  for (const std::string& n : names) list += (list.empty() ? "" : ", ") + n;
+  const std::string near = closest(*text, names);
+  problem(name, "'" + *text + "' is not one of: " + list + (near.empty() ? "" : ". Did you mean '" + near + "'?"));
+}
+
+void ElementReader::vector(std::string_view name, std::array<double, 3>& value_si, const hal::Unit& bare, std::string_view) {
+  const std::string* text = find(name);
+  if (text == nullptr) return;
+  std::array<double, 3> parsed{};
+  std::string_view rest = *text;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::size_t comma = rest.find(',');
+    if ((comma == std::string_view::npos) != (i == 2)) return problem(name, "'" + *text + "' must be three numbers, \"x,y,z\"");
+    const auto part = hal::parse_quantity(rest.substr(0, comma), bare);
+    if (!part.ok()) return problem(name, part.error().message);
+    parsed[i] = part.value();
+    if (i < 2) rest.remove_prefix(comma + 1);
+  }
+  value_si = parsed;
+}
+
+void ElementReader::finish() {
+  for (const Element::Attribute& a : element_.attributes) {
+    if (std::find(known_.begin(), known_.end(), a.name) != known_.end()) continue;
+    const std::string near = closest(a.name, known_);
+    problems_.push_back({element_.file, a.line > 0 ? a.line : element_.line,
+                         "<" + element_.name + "> has no attribute '" + a.name + "'" +
+                             (near.empty() ? "" : ". Did you mean '" + near + "'?"),
+                         false});
+  }
+}
+
+}  // namespace tandem::core

@@ -1,0 +1,80 @@
+// What a picture shows, as plain data: filled from a space, drawn as SVG.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "hal/device/leds.hpp"
+
+namespace tandem::core {
+
+/// A space seen from above. Lengths in metres, in W (x east, y north, so up on the picture); headings in radians.
+struct Drawing {
+  /// One kind of robot, in the legend.
+  struct Kind {
+    std::string name;
+    double radius_m = 0.0;
+    struct Led {
+      double x_m = 0.0, y_m = 0.0;  ///< body frame
+    };
+    std::vector<Led> leds;
+  };
+  struct Robot {
+    double x_m = 0.0, y_m = 0.0;
+    double heading_rad = 0.0;
+    std::uint32_t kind = 0;         ///< index into `kinds`
+    std::uint32_t first_light = 0;  ///< its lit LEDs: `lit[first_light, first_light + lights)`
+    std::uint32_t lights = 0;
+    bool halted = false;
+  };
+  struct LitLed {
+    std::uint32_t led = 0;  ///< of its kind
+    hal::Rgb color;
+  };
+  /// Said of a robot that stands for a real one.
+  struct RealRobot {
+    std::size_t robot = 0;  ///< index into `robots`
+    std::string id;
+    std::string state;  ///< what is wrong with it, e.g. "link lost"; empty: all is well
+  };
+  struct Box {
+    double x_m = 0.0, y_m = 0.0;
+    double heading_rad = 0.0;
+    double half_x_m = 0.0, half_y_m = 0.0;
+  };
+  struct Cylinder {
+    double x_m = 0.0, y_m = 0.0;
+    double radius_m = 0.0;
+  };
+  struct Light {
+    double x_m = 0.0, y_m = 0.0;
+    hal::Rgb color;
+  };
+
+  std::string title;
+  double min_x_m = -1.0, min_y_m = -1.0, max_x_m = 1.0, max_y_m = 1.0;  ///< the arena
+  std::vector<Box> boxes;
+  std::vector<Cylinder> cylinders;
+  std::vector<Light> lights;
+  std::vector<Kind> kinds;
+  std::vector<Robot> robots;
+  std::vector<LitLed> lit;
+  std::vector<RealRobot> real;
+  /// Reflectance at (x, y), 0 black to 1 white; empty: a uniform floor, which is not drawn.
+  std::function<double(double, double)> floor;
+};
+
+/// `drawing` as an SVG document whose longer side is about `size_px`. Up to 20,000 robots are drawn with heading and
+/// lit LEDs; more of them as dots, in the colour of the LED that is lit. Real robots are always drawn in full.
+std::string to_svg(const Drawing& drawing, int size_px = 1000);
+
+/// The longest of 1, 2, 5, 10, 20, … (or a decimal fraction of them) that is not above `limit_m`. `limit_m` is
+/// positive.
+double round_length(double limit_m);
+
+/// "2 m", "50 cm" or "5 mm", as a person would say it.
+std::string length_text(double length_m);
+
+}  // namespace tandem::core

@@ -1,0 +1,90 @@
+#include "core/view/picture.hpp"
+
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+
+#include "core/space/stores.hpp"
+#include "hal/unit.hpp"
+
+namespace tandem::core {
+namespace {
+
+std::uint32_t kind_of(const hal::DataSheet& sheet, Drawing& drawing) {
+  for (std::uint32_t k = 0; k < drawing.kinds.size(); ++k) {
+    if (drawing.kinds[k].name == sheet.kind) return k;
+  }
+  Drawing::Kind kind{std::string(sheet.kind), sheet.body_radius_m, {}};
+  for (const hal::Mount& led : sheet.leds) kind.leds.push_back({led.x_m, led.y_m});
+  drawing.kinds.push_back(std::move(kind));
+  return static_cast<std::uint32_t>(drawing.kinds.size() - 1);
+}
+
+void add_lit_leds(const Space& space, RobotId id, Drawing::Robot& robot, Drawing& drawing) {
+  robot.first_light = static_cast<std::uint32_t>(drawing.lit.size());
+  const auto* leds = space.port<hal::RingLeds>(id);
+  if (leds == nullptr) return;
+  const std::size_t mounted = std::min(drawing.kinds[robot.kind].leds.size(), hal::RingLeds::kCapacity);
+  for (std::uint32_t i = 0; i < mounted; ++i) {
+    if (leds->color(i) == hal::kBlack) continue;
+    drawing.lit.push_back({i, leds->color(i)});
+    ++robot.lights;
+  }
+}
+
+void add_robots(const Space& space, const PictureOptions& options, Drawing& drawing) {
+  drawing.robots.reserve(space.robot_count());
+  for (std::size_t i = 0; i < space.robot_count(); ++i) {
+    const RobotId id = space.robot(i);
+    const Pose pose = space.pose(id);
+    Drawing::Robot robot;
+    robot.x_m = pose.x_m;
+    robot.y_m = pose.y_m;
+    robot.heading_rad = pose.heading_rad();
+    robot.kind = kind_of(space.data_sheet(id), drawing);
+    robot.halted = space.halted(id);
+    add_lit_leds(space, id, robot, drawing);
+    drawing.robots.push_back(robot);
+    if (!space.external(id)) continue;
+    drawing.real.push_back({i, space.robot_name(id), ""});
+    for (const PictureOptions::Trouble& trouble : options.trouble) {
+      if (trouble.robot == id) drawing.real.back().state = trouble.state;
+    }
+  }
+}
+
+}  // namespace
+
+Drawing drawing_of(const Space& space, const PictureOptions& options) {
+  Drawing drawing;
+  drawing.title = options.experiment + ", seed " + std::to_string(options.seed) +
+                  ", t = " + hal::format_number(hal::to_seconds(options.time_ns)) + " s";
+  drawing.min_x_m = space.arena_center_x_m() - 0.5 * space.arena_size_x_m();
+  drawing.max_x_m = space.arena_center_x_m() + 0.5 * space.arena_size_x_m();
+  drawing.min_y_m = space.arena_center_y_m() - 0.5 * space.arena_size_y_m();
+  drawing.max_y_m = space.arena_center_y_m() + 0.5 * space.arena_size_y_m();
+  for (const StaticShape& s : space.statics()) {
+    if (s.kind == StaticShape::Kind::Cylinder) {
+      drawing.cylinders.push_back({s.x_m, s.y_m, s.radius_m});
+    } else {
+      const Pose pose{s.x_m, s.y_m, 0.0, s.cos_h, s.sin_h};
+      drawing.boxes.push_back({s.x_m, s.y_m, pose.heading_rad(), s.half_x_m, s.half_y_m});
+    }
+  }
+  for (const LightSource& light : space.lights()) drawing.lights.push_back({light.x_m, light.y_m, light.color});
+  if (!space.stores().floor.uniform()) {
+    drawing.floor = [&space](double x_m, double y_m) { return space.floor(x_m, y_m); };
+  }
+  add_robots(space, options, drawing);
+  return drawing;
+}
+
+hal::Status write_picture(const Space& space, const std::string& path, const PictureOptions& options) {
+  std::ofstream file(path, std::ios::binary);
+  if (file) file << to_svg(drawing_of(space, options), options.size_px);
+  file.close();
+  if (!file) return hal::Error{"cannot write the picture '" + path + "': " + std::strerror(errno)};
+  return {};
+}
+
+}  // namespace tandem::core

@@ -1,0 +1,33 @@
+// A picture of a space from above, as an SVG file: for servers without a display, reports and papers.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "core/space/space.hpp"
+#include "core/view/drawing.hpp"
+#include "hal/result.hpp"
+#include "hal/time.hpp"
+
+namespace tandem::core {
+
+struct PictureOptions {
+  /// What is wrong with a robot that stands for a real one, e.g. "link lost".
+  struct Trouble {
+    RobotId robot;
+    std::string state;
+  };
+
+  std::string experiment;  ///< its name, for the title
+  std::uint64_t seed = 0;
+  hal::TimeNs time_ns = 0;       ///< of the run
+  int size_px = 1000;            ///< of the arena's longer side
+  std::vector<Trouble> trouble;  ///< real robots that are not named are well
+};
+
+/// What there is to see in `space`. Refers to `space` for the floor: draw it before that changes.
+Drawing drawing_of(const Space& space, const PictureOptions& options);
+
+/// Writes `space` to `path` (.svg). Error: the file cannot be written.
+hal::Status write_picture(const Space& space, const std::string& path, const PictureOptions& options);
+
+}  // namespace tandem::core

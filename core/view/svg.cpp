@@ -1,0 +1,459 @@
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <map>
+#include <numbers>
+
+#include "core/view/drawing.hpp"
+#include "hal/unit.hpp"
+
+namespace tandem::core {
+namespace {
+
+constexpr std::size_t kFullDetailRobots = 20'000;
+constexpr double kTinyRobot_px = 2.0;
+constexpr std::size_t kDotsPerPath = 2'000;  // viewers slow down on longer ones
+constexpr int kFloorCells = 240;             // along the longer side
+constexpr int kFloorShades = 24;
+constexpr double kMargin_px = 28.0;
+constexpr double kHeader_px = 52.0;
+constexpr double kLine_px = 30.0;   // of the legend
+constexpr double kLetter_px = 7.4;  // mean width in the font used
+
+struct BodyColors {
+  std::string_view fill, edge;
+};
+constexpr std::array<BodyColors, 5> kBodyColors = {{{"#b9dcae", "#3c6e33"},
+                                                    {"#aecbe8", "#2c5a8c"},
+                                                    {"#d9c3e6", "#6b4587"},
+                                                    {"#f0d9a8", "#8a6414"},
+                                                    {"#b8dfdd", "#2b6d6a"}}};
+constexpr std::string_view kInk = "#22272e";
+constexpr std::string_view kFaintInk = "#68707b";
+constexpr std::string_view kRealColor = "#e8590c";
+constexpr std::string_view kTroubleColor = "#c92a2a";
+constexpr std::string_view kWallColor = "#59626e";
+constexpr std::string_view kWallEdge = "#3f4751";
+
+/// Text of an SVG document, appended to piece by piece. Numbers get at most four decimals.
+class Svg {
+ public:
+  Svg& operator<<(std::string_view text) {
+    out_ += text;
+    return *this;
+  }
+  Svg& operator<<(double value) {
+    const double rounded = std::round(value * 1e4) / 1e4;
+    char digits[40];
+    const auto end = std::to_chars(digits, digits + sizeof digits, rounded == 0.0 ? 0.0 : rounded).ptr;
+    out_.append(digits, end);
+    return *this;
+  }
+  Svg& operator<<(std::size_t value) {
+    out_ += std::to_string(value);
+    return *this;
+  }
+  std::string take() { return std::move(out_); }
+
+ private:
+  std::string out_;
+};
+
+std::string escaped(std::string_view text) {
+  std::string out;
+  for (const char c : text) {
+    if (c == '&')
+      out += "&amp;";
+    else if (c == '<')
+      out += "&lt;";
+    else if (c == '>')
+      out += "&gt;";
+    else if (c == '"')
+      out += "&quot;";
+    else if (static_cast<unsigned char>(c) >= 0x20)
+      out += c;
+  }
+  return out;
+}
+
+std::string hex(hal::Rgb c) {
+  constexpr std::string_view kDigits = "0123456789abcdef";
+  std::string out = "#";
+  for (const std::uint8_t v : {c.r, c.g, c.b}) {
+    out += kDigits[v >> 4];
+    out += kDigits[v & 15U];
+  }
+  return out;
+}
+
+/// "10,000"
+std::string grouped(std::size_t n) {
+  std::string digits = std::to_string(n);
+  for (std::ptrdiff_t i = static_cast<std::ptrdiff_t>(digits.size()) - 3; i > 0; i -= 3)
+    digits.insert(static_cast<std::size_t>(i), ",");
+  return digits;
+}
+
+double degrees(double rad) {
+  return rad * 180.0 / std::numbers::pi;
+}
+const BodyColors& body_colors(std::size_t kind) {
+  return kBodyColors[kind % kBodyColors.size()];
+}
+
+/// One entry of the legend: a symbol of at most 18 px around its place, and a text.
+struct LegendEntry {
+  std::string symbol;
+  std::string text;
+  double width_px() const { return 26.0 + kLetter_px * static_cast<double>(text.size()) + 22.0; }
+};
+
+class Page {
+ public:
+  Page(const Drawing& drawing, int size_px) : d_(drawing) {
+    const double width_m = d_.max_x_m - d_.min_x_m;
+    const double depth_m = d_.max_y_m - d_.min_y_m;
+    px_per_m_ = size_px / std::max(width_m, depth_m);
+    arena_w_px_ = width_m * px_per_m_;
+    arena_h_px_ = depth_m * px_per_m_;
+    width_px_ = std::max(arena_w_px_, 420.0) + 2.0 * kMargin_px;
+    left_px_ = 0.5 * (width_px_ - arena_w_px_);
+  }
+
+  std::string draw() {
+    lay_out_legend();
+    header();
+    definitions();
+    svg_ << "<g transform=\"translate(" << left_px_ - d_.min_x_m * px_per_m_ << " "
+         << kHeader_px + d_.max_y_m * px_per_m_ << ") scale(" << px_per_m_ << " " << -px_per_m_ << ")\">\n";
+    svg_ << "<g clip-path=\"url(#arena)\">\n";
+    arena();
+    floor();
+    lights();
+    statics();
+    robots();
+    svg_ << "</g>\n";
+    real_robots();
+    svg_ << "</g>\n";
+    frame();
+    labels();
+    scale_bar();
+    legend();
+    svg_ << "</svg>\n";
+    return svg_.take();
+  }
+
+ private:
+  bool full_detail() const { return d_.robots.size() <= kFullDetailRobots; }
+  double px(double pixels) const { return pixels / px_per_m_; }  // as metres
+  double x_px(double x_m) const { return left_px_ + (x_m - d_.min_x_m) * px_per_m_; }
+  double y_px(double y_m) const { return kHeader_px + (d_.max_y_m - y_m) * px_per_m_; }
+
+  void text(double x, double y, double size, std::string_view color, std::string_view more, std::string_view content) {
+    svg_ << "<text x=\"" << x << "\" y=\"" << y << "\" font-size=\"" << size << "\" fill=\"" << color << "\"" << more
+         << ">" << escaped(content) << "</text>\n";
+  }
+
+  void header() {
+    const double height_px = kHeader_px + arena_h_px_ + 52.0 + kLine_px * static_cast<double>(legend_lines_) + 8.0;
+    svg_ << "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<svg xmlns=\"http://www.w3.org/2000/svg\" width=\""
+         << std::ceil(width_px_) << "\" height=\"" << std::ceil(height_px) << "\" viewBox=\"0 0 "
+         << std::ceil(width_px_) << " " << std::ceil(height_px)
+         << "\" font-family=\"DejaVu Sans, Helvetica, Arial, sans-serif\">\n";
+    svg_ << "<title>" << escaped(d_.title) << "</title>\n";
+    svg_ << "<rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n";
+    const double fitting =
+        (width_px_ - 2.0 * kMargin_px) / (0.58 * std::max<double>(1.0, static_cast<double>(d_.title.size())));
+    text(left_text_px(), 33.0, std::clamp(fitting, 9.0, 18.0), kInk, " font-weight=\"600\"", d_.title);
+  }
+  double left_text_px() const { return std::min(left_px_, kMargin_px); }
+
+  void definitions() {
+    svg_ << "<defs>\n<clipPath id=\"arena\"><rect x=\"" << d_.min_x_m << "\" y=\"" << d_.min_y_m << "\" width=\""
+         << d_.max_x_m - d_.min_x_m << "\" height=\"" << d_.max_y_m - d_.min_y_m << "\"/></clipPath>\n";
+    for (std::size_t k = 0; k < d_.kinds.size(); ++k) {
+      svg_ << "<g id=\"kind" << k << "\">" << robot_symbol(k, d_.kinds[k].radius_m, d_.kinds[k].radius_m * px_per_m_)
+           << "</g>\n";
+    }
+    svg_ << "</defs>\n";
+  }
+
+  /// A disc whose wedge points forward, at the origin; a plain dark one where the wedge would be too small to see.
+  static std::string robot_symbol(std::size_t kind, double radius, double radius_px) {
+    const BodyColors& c = body_colors(kind);
+    Svg s;
+    if (radius_px < kTinyRobot_px) {
+      s << "<circle r=\"" << radius << "\" fill=\"" << c.edge << "\"/>";
+      return s.take();
+    }
+    s << "<circle r=\"" << 0.94 * radius << "\" fill=\"" << c.fill << "\" stroke=\"" << c.edge << "\" stroke-width=\""
+      << 0.12 * radius << "\"/><path d=\"M" << 0.88 * radius << " 0L" << -0.38 * radius << " " << 0.5 * radius << "L"
+      << -0.12 * radius << " 0L" << -0.38 * radius << " " << -0.5 * radius << "Z\" fill=\"" << c.edge << "\"/>";
+    return s.take();
+  }
+
+  void arena() {
+    svg_ << "<rect x=\"" << d_.min_x_m << "\" y=\"" << d_.min_y_m << "\" width=\"" << d_.max_x_m - d_.min_x_m
+         << "\" height=\"" << d_.max_y_m - d_.min_y_m << "\" fill=\"#f5f4f0\"/>\n";
+  }
+
+  // The floor as runs of equal shade, one path a shade.
+  void floor() {
+    if (!d_.floor) return;
+    const double width_m = d_.max_x_m - d_.min_x_m;
+    const double depth_m = d_.max_y_m - d_.min_y_m;
+    const double cell_m = std::max(width_m, depth_m) / kFloorCells;
+    const int columns = std::max(1, static_cast<int>(std::ceil(width_m / cell_m - 1e-9)));
+    const int lines = std::max(1, static_cast<int>(std::ceil(depth_m / cell_m - 1e-9)));
+    std::map<int, Svg> paths;
+    for (int line = 0; line < lines; ++line) {
+      const double y_m = d_.min_y_m + line * cell_m;
+      const auto shade = [&](int column) {
+        const double x_m = d_.min_x_m + (column + 0.5) * cell_m;
+        return static_cast<int>(std::lround(std::clamp(d_.floor(x_m, y_m + 0.5 * cell_m), 0.0, 1.0) * kFloorShades));
+      };
+      for (int begin = 0; begin < columns;) {
+        const int level = shade(begin);
+        int end = begin + 1;
+        while (end < columns && shade(end) == level) ++end;
+        paths[level] << "M" << d_.min_x_m + begin * cell_m << " " << y_m << "h" << (end - begin) * cell_m << "v"
+                     << cell_m << "h" << -(end - begin) * cell_m << "z";
+        begin = end;
+      }
+    }
+    svg_ << "<g class=\"floor\" shape-rendering=\"crispEdges\">\n";
+    for (auto& [level, path] : paths) {
+      const auto grey = static_cast<std::uint8_t>(std::lround(255.0 * level / kFloorShades));
+      svg_ << "<path fill=\"" << hex({grey, grey, grey}) << "\" d=\"" << path.take() << "\"/>\n";
+    }
+    svg_ << "</g>\n";
+  }
+
+  void statics() {
+    if (d_.boxes.empty() && d_.cylinders.empty()) return;
+    svg_ << "<g class=\"statics\" fill=\"" << kWallColor << "\" stroke=\"" << kWallEdge << "\" stroke-width=\""
+         << px(1.0) << "\">\n";
+    for (const Drawing::Box& b : d_.boxes) {
+      svg_ << "<rect x=\"" << -b.half_x_m << "\" y=\"" << -b.half_y_m << "\" width=\"" << 2.0 * b.half_x_m
+           << "\" height=\"" << 2.0 * b.half_y_m << "\" transform=\"translate(" << b.x_m << " " << b.y_m << ") rotate("
+           << degrees(b.heading_rad) << ")\"/>\n";
+    }
+    for (const Drawing::Cylinder& c : d_.cylinders) {
+      svg_ << "<circle cx=\"" << c.x_m << "\" cy=\"" << c.y_m << "\" r=\"" << c.radius_m << "\"/>\n";
+    }
+    svg_ << "</g>\n";
+  }
+
+  void lights() {
+    for (const Drawing::Light& light : d_.lights) {
+      const std::string color = hex(light.color);
+      for (const auto& [radius_px, opacity] : {std::pair{30.0, 0.12}, {19.0, 0.2}, {10.0, 0.45}}) {
+        svg_ << "<circle cx=\"" << light.x_m << "\" cy=\"" << light.y_m << "\" r=\"" << px(radius_px) << "\" fill=\""
+             << color << "\" fill-opacity=\"" << opacity << "\"/>\n";
+      }
+      svg_ << "<circle class=\"light\" cx=\"" << light.x_m << "\" cy=\"" << light.y_m << "\" r=\"" << px(4.5)
+           << "\" fill=\"" << color << "\" stroke=\"#7a5c00\" stroke-width=\"" << px(1.2) << "\"/>\n";
+    }
+  }
+
+  void robots() {
+    if (d_.robots.empty()) return;
+    if (!full_detail()) return dots();
+    svg_ << "<g class=\"robots\">\n";
+    for (const Drawing::Robot& robot : d_.robots) body(robot);
+    svg_ << "</g>\n";
+  }
+
+  void body(const Drawing::Robot& r) {
+    const Drawing::Kind& kind = d_.kinds[r.kind];
+    Svg place;
+    place << "translate(" << r.x_m << " " << r.y_m << ") rotate(" << degrees(r.heading_rad) << ")";
+    const std::string transform = place.take();
+    if (r.lights == 0 && !r.halted) {
+      svg_ << "<use href=\"#kind" << std::size_t{r.kind} << "\" transform=\"" << transform << "\"/>\n";
+      return;
+    }
+    svg_ << "<g transform=\"" << transform << "\"><use href=\"#kind" << std::size_t{r.kind} << "\"/>";
+    for (std::uint32_t i = 0; i < r.lights; ++i) {
+      const Drawing::LitLed& lit = d_.lit[r.first_light + i];
+      const Drawing::Kind::Led& led = kind.leds[lit.led];
+      svg_ << "<circle class=\"led\" cx=\"" << led.x_m << "\" cy=\"" << led.y_m << "\" r=\"" << 0.24 * kind.radius_m
+           << "\" fill=\"" << hex(lit.color) << "\" stroke=\"" << hex(lit.color)
+           << "\" stroke-opacity=\"0.3\" stroke-width=\"" << 0.26 * kind.radius_m << "\"/>";
+    }
+    if (r.halted) svg_ << halted_mark(kind.radius_m);
+    svg_ << "</g>\n";
+  }
+
+  static std::string halted_mark(double radius) {
+    const double h = 0.62 * radius;
+    Svg s;
+    s << "<path class=\"halted\" d=\"M" << -h << " " << -h << "L" << h << " " << h << "M" << -h << " " << h << "L" << h
+      << " " << -h << "\" stroke=\"" << kTroubleColor << "\" stroke-width=\"" << 0.24 * radius
+      << "\" stroke-linecap=\"round\"/>";
+    return s.take();
+  }
+
+  // Thousands of discs in one path: a line of no length with round ends each.
+  void dots() {
+    std::map<std::pair<std::uint32_t, std::string>, std::vector<std::size_t>> colors;
+    for (std::size_t i = 0; i < d_.robots.size(); ++i) {
+      const Drawing::Robot& r = d_.robots[i];
+      colors[{r.kind, r.lights > 0 ? hex(d_.lit[r.first_light].color) : std::string(body_colors(r.kind).edge)}]
+          .push_back(i);
+    }
+    svg_ << "<g class=\"dots\" fill=\"none\" stroke-linecap=\"round\">\n";
+    for (const auto& [key, members] : colors) {
+      for (std::size_t begin = 0; begin < members.size(); begin += kDotsPerPath) {
+        svg_ << "<path stroke=\"" << key.second << "\" stroke-width=\"" << 2.0 * d_.kinds[key.first].radius_m
+             << "\" d=\"";
+        const std::size_t end = std::min(members.size(), begin + kDotsPerPath);
+        for (std::size_t i = begin; i < end; ++i)
+          svg_ << "M" << d_.robots[members[i]].x_m << " " << d_.robots[members[i]].y_m << "h.0001";
+        svg_ << "\"/>\n";
+      }
+    }
+    svg_ << "</g>\n";
+  }
+
+  void real_robots() {
+    for (const Drawing::RealRobot& real : d_.real) {
+      const Drawing::Robot& r = d_.robots[real.robot];
+      if (!full_detail()) body(r);
+      const double ring_m = d_.kinds[r.kind].radius_m + px(4.0);
+      svg_ << "<circle class=\"real\" cx=\"" << r.x_m << "\" cy=\"" << r.y_m << "\" r=\"" << ring_m
+           << "\" fill=\"none\" stroke=\"" << (real.state.empty() ? kRealColor : kTroubleColor) << "\" stroke-width=\""
+           << px(2.5) << "\"";
+      if (!real.state.empty()) svg_ << " stroke-dasharray=\"" << px(5.0) << " " << px(4.0) << "\"";
+      svg_ << "/>\n";
+    }
+  }
+
+  void frame() {
+    svg_ << "<rect x=\"" << left_px_ << "\" y=\"" << kHeader_px << "\" width=\"" << arena_w_px_ << "\" height=\""
+         << arena_h_px_ << "\" fill=\"none\" stroke=\"" << kInk << "\" stroke-width=\"1\"/>\n";
+  }
+
+  void labels() {
+    for (const Drawing::RealRobot& real : d_.real) {
+      const Drawing::Robot& r = d_.robots[real.robot];
+      const std::string label = real.state.empty() ? real.id : real.id + ": " + real.state;
+      const double aside_px = d_.kinds[r.kind].radius_m * px_per_m_ + 9.0;
+      const bool at_right = x_px(r.x_m) + aside_px + kLetter_px * static_cast<double>(label.size()) < width_px_;
+      text(x_px(r.x_m) + (at_right ? aside_px : -aside_px), y_px(r.y_m) + 4.5, 13.0,
+           real.state.empty() ? kRealColor : kTroubleColor,
+           std::string(at_right ? "" : " text-anchor=\"end\"") +
+               " font-weight=\"700\" stroke=\"#ffffff\" stroke-width=\"3\" paint-order=\"stroke\"",
+           label);
+    }
+  }
+
+  void scale_bar() {
+    const double length_m = round_length(0.25 * (d_.max_x_m - d_.min_x_m));
+    const double y = kHeader_px + arena_h_px_ + 26.0;
+    const double x0 = left_text_px() + 0.5, x1 = x0 + length_m * px_per_m_;
+    svg_ << "<path class=\"scale\" d=\"M" << x0 << " " << y - 5.0 << "v10M" << x0 << " " << y << "H" << x1 << "M" << x1
+         << " " << y - 5.0 << "v10\" stroke=\"" << kInk << "\" stroke-width=\"1.6\" fill=\"none\"/>\n";
+    text(x1 + 9.0, y + 4.5, 13.0, kInk, "", length_text(length_m));
+    const std::string arena = length_text(d_.max_x_m - d_.min_x_m) + " × " + length_text(d_.max_y_m - d_.min_y_m);
+    text(width_px_ - left_text_px(), y + 4.5, 13.0, kFaintInk, " text-anchor=\"end\"", arena);
+  }
+
+  void lay_out_legend() {
+    std::vector<std::size_t> count(d_.kinds.size(), 0);
+    std::size_t halted = 0;
+    for (const Drawing::Robot& r : d_.robots) {
+      ++count[r.kind];
+      halted += r.halted ? 1 : 0;
+    }
+    for (std::size_t k = 0; k < d_.kinds.size(); ++k) {
+      if (count[k] > 0)
+        add_entry(full_detail() ? robot_symbol(k, 8.0, std::max(8.0, kTinyRobot_px)) : dot_symbol(k),
+                  grouped(count[k]) + " × " + d_.kinds[k].name);
+    }
+    if (!d_.real.empty()) {
+      std::size_t troubled = 0;
+      for (const Drawing::RealRobot& real : d_.real) troubled += real.state.empty() ? 0 : 1;
+      add_entry(ring_symbol(kRealColor, ""), grouped(d_.real.size()) + " real");
+      if (troubled > 0)
+        add_entry(ring_symbol(kTroubleColor, " stroke-dasharray=\"4 3\""), grouped(troubled) + " real in trouble");
+    }
+    if (halted > 0) add_entry(halted_mark(9.0), grouped(halted) + " stopped");
+    if (!d_.lights.empty()) {
+      add_entry("<circle r=\"5\" fill=\"" + hex(d_.lights.front().color) + "\" stroke=\"#7a5c00\"/>",
+                grouped(d_.lights.size()) + " × light");
+    }
+    if (!d_.boxes.empty() || !d_.cylinders.empty()) {
+      add_entry("<rect x=\"-8\" y=\"-6\" width=\"16\" height=\"12\" fill=\"" + std::string(kWallColor) + "\"/>",
+                "obstacle");
+    }
+  }
+  static std::string dot_symbol(std::size_t kind) {
+    return "<circle r=\"4\" fill=\"" + std::string(body_colors(kind).edge) + "\"/>";
+  }
+  static std::string ring_symbol(std::string_view color, std::string_view more) {
+    return "<circle r=\"7.5\" fill=\"none\" stroke=\"" + std::string(color) + "\" stroke-width=\"2.5\"" +
+           std::string(more) + "/>";
+  }
+  void add_entry(std::string symbol, std::string words) {
+    entries_.push_back({std::move(symbol), std::move(words)});
+    const double width = entries_.back().width_px();
+    if (legend_lines_ == 0 || legend_x_px_ + width > width_px_ - left_text_px()) {
+      ++legend_lines_;
+      legend_x_px_ = left_text_px();
+    }
+    places_.push_back({legend_x_px_, legend_lines_ - 1});
+    legend_x_px_ += width;
+  }
+
+  void legend() {
+    svg_ << "<g class=\"legend\">\n";
+    for (std::size_t i = 0; i < entries_.size(); ++i) {
+      const double y = kHeader_px + arena_h_px_ + 62.0 + kLine_px * static_cast<double>(places_[i].line);
+      svg_ << "<g transform=\"translate(" << places_[i].x_px + 9.0 << " " << y << ")\">" << entries_[i].symbol
+           << "</g>\n";
+      text(places_[i].x_px + 25.0, y + 4.5, 13.0, kInk, "", entries_[i].text);
+    }
+    svg_ << "</g>\n";
+  }
+
+  struct LegendPlace {
+    double x_px = 0.0;
+    std::size_t line = 0;
+  };
+
+  const Drawing& d_;
+  Svg svg_;
+  double px_per_m_ = 1.0;
+  double arena_w_px_ = 0.0, arena_h_px_ = 0.0;
+  double width_px_ = 0.0, left_px_ = 0.0;
+  std::vector<LegendEntry> entries_;
+  std::vector<LegendPlace> places_;
+  std::size_t legend_lines_ = 0;
+  double legend_x_px_ = 0.0;
+};
+
+}  // namespace
+
+double round_length(double limit_m) {
+  const double power = std::pow(10.0, std::floor(std::log10(limit_m)));
+  // The logarithm of a power of ten may come out a little too large or small.
+  for (const double digit : {10.0, 5.0, 2.0, 1.0}) {
+    if (digit * power <= limit_m * (1.0 + 1e-9)) return digit * power;
+  }
+  return 0.5 * power;
+}
+
+std::string length_text(double length_m) {
+  const auto in = [length_m](double per_m, std::string_view unit) {
+    return hal::format_number(std::round(length_m * per_m * 100.0) / 100.0) + " " + std::string(unit);
+  };
+  if (length_m >= 0.9999) return in(1.0, "m");
+  return length_m >= 0.009999 ? in(100.0, "cm") : in(1000.0, "mm");
+}
+
+std::string to_svg(const Drawing& drawing, int size_px) {
+  return Page(drawing, size_px).draw();
+}
+
+}  // namespace tandem::core
