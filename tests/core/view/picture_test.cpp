@@ -1,0 +1,106 @@
+#include "core/view/picture.hpp"
+
+#include <cstdio>
+#include <fstream>
+#include <gtest/gtest.h>
+#include <sstream>
+
+#include "hal/device/leds.hpp"
+#include "hal/spec/epuck.hpp"
+#include "tests/core/space_by_hand.hpp"
+#include "tests/core/view/well_formed.hpp"
+
+namespace tandem::core {
+namespace {
+
+void set_up(Space& space) {
+  SpaceStores& s = space.stores();
+  s.min_x_m = -2.0;
+  s.max_x_m = 2.0;
+  s.min_y_m = -1.0;
+  s.max_y_m = 3.0;
+  add_robot(space, hal::epuck::kDataSheet, "ep0", 0.5, 0.25, 1.0, {&hal::port_type<hal::RingLeds>()});
+  const RobotId real = add_robot(space, hal::epuck::kDataSheet, "gina", -1.0, 0.0, -3.0);
+  space.set_external(real, true);
+}
+
+TEST(Picture, TakesArenaRobotsAndTitleFromTheSpace) {
+  Space space;
+  set_up(space);
+  space.port<hal::RingLeds>(space.robot(0))->set(5, hal::kGreen);
+  const Drawing d = drawing_of(space, {.experiment = "mixed", .seed = 42, .time_ns = 1'500'000'000, .trouble = {}});
+  EXPECT_EQ(d.title, "mixed, seed 42, t = 1.5 s");
+  EXPECT_DOUBLE_EQ(d.min_x_m, -2.0);
+  EXPECT_DOUBLE_EQ(d.max_y_m, 3.0);
+  ASSERT_EQ(d.kinds.size(), 1U);
+  EXPECT_EQ(d.kinds[0].name, "e-puck");
+  ASSERT_EQ(d.robots.size(), 2U);
+  EXPECT_NEAR(d.robots[0].heading_rad, 1.0, 1e-12);
+  ASSERT_EQ(d.robots[0].lights, 1U);
+  EXPECT_EQ(d.lit[0].led, 5U);
+  EXPECT_EQ(d.lit[0].color, hal::kGreen);
+  EXPECT_EQ(d.robots[1].lights, 0U);
+  EXPECT_FALSE(d.floor);
+}
+
+TEST(Picture, NamesRealRobotsAndWhatIsWrongWithThem) {
+  Space space;
+  set_up(space);
+  PictureOptions options;
+  Drawing d = drawing_of(space, options);
+  ASSERT_EQ(d.real.size(), 1U);
+  EXPECT_EQ(d.real[0].id, "gina");
+  EXPECT_EQ(d.real[0].state, "");
+  options.trouble.push_back({space.find_robot("gina"), "link lost"});
+  d = drawing_of(space, options);
+  EXPECT_EQ(d.real[0].state, "link lost");
+}
+
+TEST(Picture, ShowsStaticThingsLampsAndAPaintedFloor) {
+  Space space;
+  set_up(space);
+  SpaceStores& s = space.stores();
+  StaticShape wall;
+  wall.half_x_m = 1.0;
+  wall.half_y_m = 0.1;
+  wall.cos_h = 0.0;
+  wall.sin_h = 1.0;
+  StaticShape column;
+  column.kind = StaticShape::Kind::Cylinder;
+  column.radius_m = 0.2;
+  s.statics = {wall, column};
+  s.lights.push_back({"lamp", 1.0, 1.0, 0.5, 1.0, {255, 0, 0}});
+  s.floor.paint(-2.0, -1.0, 4.0, 4.0, 10.0, [](double x, double) { return x < 0.0 ? 0.0 : 1.0; });
+  const Drawing d = drawing_of(space, {});
+  ASSERT_EQ(d.boxes.size(), 1U);
+  EXPECT_NEAR(d.boxes[0].heading_rad, 1.5707963, 1e-6);
+  ASSERT_EQ(d.cylinders.size(), 1U);
+  EXPECT_DOUBLE_EQ(d.cylinders[0].radius_m, 0.2);
+  ASSERT_EQ(d.lights.size(), 1U);
+  ASSERT_TRUE(d.floor);
+  EXPECT_NEAR(d.floor(-1.0, 0.0), 0.0, 1e-6);
+  EXPECT_NEAR(d.floor(1.0, 0.0), 1.0, 1e-6);
+}
+
+TEST(Picture, IsWrittenAsAWellFormedFile) {
+  Space space;
+  set_up(space);
+  const std::string path = testing::TempDir() + "picture_test.svg";
+  const hal::Status status = write_picture(space, path, {});
+  ASSERT_TRUE(status.ok()) << status.error().message;
+  std::stringstream text;
+  text << std::ifstream(path).rdbuf();
+  EXPECT_EQ(why_not_well_formed(text.str()), "");
+  std::remove(path.c_str());
+}
+
+TEST(Picture, SaysWhereItCouldNotBeWritten) {
+  Space space;
+  const hal::Status status = write_picture(space, "/no/such/folder/p.svg", {});
+  ASSERT_FALSE(status.ok());
+  EXPECT_NE(status.error().message.find("/no/such/folder/p.svg"), std::string::npos);
+  EXPECT_NE(status.error().message.find("No such file"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace tandem::core

@@ -1,0 +1,131 @@
+#include <cmath>
+#include <gtest/gtest.h>
+#include <numbers>
+
+#include "core/view/drawing.hpp"
+#include "tests/core/view/well_formed.hpp"
+
+namespace tandem::core {
+namespace {
+
+Drawing small_arena() {
+  Drawing d;
+  d.title = "diffusion, seed 7, t = 60 s";
+  d.min_x_m = -1.0;
+  d.min_y_m = -0.5;
+  d.max_x_m = 1.0;
+  d.max_y_m = 0.5;
+  d.kinds.push_back({"e-puck", 0.035, {{0.035, 0.0}, {0.0, -0.035}}});
+  return d;
+}
+
+std::size_t count(const std::string& text, const std::string& what) {
+  std::size_t n = 0;
+  for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + what.size())) ++n;
+  return n;
+}
+
+TEST(Svg, IsWellFormedWithEverythingInIt) {
+  Drawing d = small_arena();
+  d.title = "a <b> & \"c\"";
+  d.robots = {{0.1, 0.2, 0.5, 0, 0, 2, true}, {-0.4, 0.3, -2.0, 0, 0, 0, false}};
+  d.lit = {{0, hal::kRed}, {1, hal::kBlue}};
+  d.real = {{1, "ep<0>", "link lost"}};
+  d.boxes = {{0.0, 0.45, 0.3, 1.0, 0.05}};
+  d.cylinders = {{0.5, 0.0, 0.1}};
+  d.lights = {{0.8, -0.4, {255, 255, 0}}};
+  d.floor = [](double x, double) { return x < 0.0 ? 0.0 : 1.0; };
+  const std::string svg = to_svg(d);
+  EXPECT_EQ(why_not_well_formed(svg), "");
+  EXPECT_NE(svg.find("a &lt;b&gt; &amp; &quot;c&quot;"), std::string::npos);
+  EXPECT_NE(svg.find("ep&lt;0&gt;: link lost"), std::string::npos);
+  EXPECT_EQ(svg.find("nan"), std::string::npos);
+}
+
+TEST(Svg, AnEmptyArenaIsWellFormedToo) {
+  Drawing d = small_arena();
+  EXPECT_EQ(why_not_well_formed(to_svg(d)), "");
+}
+
+TEST(Svg, PutsARobotInItsPlaceWithNorthUpAndItsHeadingCounterClockwise) {
+  Drawing d = small_arena();
+  d.robots = {{0.25, -0.125, std::numbers::pi / 2.0, 0, 0, 0, false}};
+  const std::string svg = to_svg(d, 1000);
+  // 1000 px for 2 m; the group's y axis points up, its origin is half an arena below the top edge.
+  EXPECT_NE(svg.find("translate(528 302) scale(500 -500)"), std::string::npos) << svg;
+  EXPECT_NE(svg.find("<use href=\"#kind0\" transform=\"translate(0.25 -0.125) rotate(90)\"/>"), std::string::npos)
+      << svg;
+}
+
+TEST(Svg, ShowsLitLedsWhereTheyAreMountedInTheirColour) {
+  Drawing d = small_arena();
+  d.robots = {{0.0, 0.0, 0.0, 0, 0, 2, false}};
+  d.lit = {{0, hal::kRed}, {1, {0, 128, 255}}};
+  const std::string svg = to_svg(d);
+  EXPECT_EQ(count(svg, "class=\"led\""), 2U);
+  EXPECT_NE(svg.find("cx=\"0.035\" cy=\"0\" r=\"0.0084\" fill=\"#ff0000\""), std::string::npos) << svg;
+  EXPECT_NE(svg.find("cx=\"0\" cy=\"-0.035\" r=\"0.0084\" fill=\"#0080ff\""), std::string::npos) << svg;
+}
+
+TEST(Svg, TheLegendCountsKindsRealRobotsStoppedOnesAndLights) {
+  Drawing d = small_arena();
+  d.kinds.push_back({"foot-bot", 0.085, {}});
+  for (int i = 0; i < 1'234; ++i) d.robots.push_back({0.0, 0.0, 0.0, 0, 0, 0, i < 3});
+  d.robots.push_back({0.0, 0.0, 0.0, 1, 0, 0, false});
+  d.real = {{0, "a", ""}, {5, "b", "pose stale"}};
+  d.lights = {{0.0, 0.0, {255, 255, 0}}};
+  const std::string svg = to_svg(d);
+  for (const char* entry :
+       {">1,234 × e-puck<", ">1 × foot-bot<", ">2 real<", ">1 real in trouble<", ">3 stopped<", ">1 × light<"}) {
+    EXPECT_EQ(count(svg, entry), 1U) << entry;
+  }
+  EXPECT_EQ(count(svg, ">obstacle<"), 0U);
+}
+
+TEST(Svg, MergesEqualFloorCellsIntoRunsOneShadeAPath) {
+  Drawing d = small_arena();
+  d.floor = [](double x, double) { return x < 0.0 ? 0.0 : 1.0; };
+  const std::string svg = to_svg(d);
+  EXPECT_EQ(count(svg, "<path fill=\"#000000\""), 1U);
+  EXPECT_EQ(count(svg, "<path fill=\"#ffffff\""), 1U);
+  EXPECT_EQ(count(svg, "M-1 "), 120U);  // 120 lines of cells, each one run from the west edge
+  EXPECT_EQ(count(svg, "M0 "), 120U);   // and one from the middle
+}
+
+TEST(Svg, DrawsCrowdsAsDotsInTheColourOfTheirLeds) {
+  Drawing d = small_arena();
+  d.lit = {{0, hal::kRed}};
+  for (int i = 0; i < 100'000; ++i)
+    d.robots.push_back({0.001 * (i % 1000), 0.0, 0.0, 0, 0, i % 2 == 0 ? 1U : 0U, false});
+  d.real = {{7, "ep7", ""}};
+  const std::string svg = to_svg(d);
+  EXPECT_EQ(why_not_well_formed(svg), "");
+  EXPECT_EQ(count(svg, "h.0001"), 100'000U);
+  EXPECT_EQ(count(svg, "<path stroke=\"#ff0000\""), 25U);
+  EXPECT_EQ(count(svg, "<use "), 1U);  // the real one, in full
+  EXPECT_LT(svg.size(), 3'000'000U);
+}
+
+TEST(Svg, AScaleBarHasARoundLengthAndIsDrawnToScale) {
+  EXPECT_DOUBLE_EQ(round_length(0.5), 0.5);
+  EXPECT_DOUBLE_EQ(round_length(0.49), 0.2);
+  EXPECT_DOUBLE_EQ(round_length(10.0), 10.0);
+  EXPECT_DOUBLE_EQ(round_length(9.99), 5.0);
+  EXPECT_DOUBLE_EQ(round_length(0.001), 0.001);
+  for (double limit = 1e-3; limit < 1e4; limit *= 1.07) {
+    const double length = round_length(limit);
+    EXPECT_LE(length, limit * (1.0 + 1e-9));
+    EXPECT_GT(length, 0.399 * limit);
+  }
+  EXPECT_EQ(length_text(20.0), "20 m");
+  EXPECT_EQ(length_text(1.0), "1 m");
+  EXPECT_EQ(length_text(0.5), "50 cm");
+  EXPECT_EQ(length_text(0.005), "5 mm");
+  const std::string svg = to_svg(small_arena(), 1000);  // 2 m: a quarter is 50 cm, 250 px
+  EXPECT_NE(svg.find("M28.5 578H278.5"), std::string::npos) << svg;
+  EXPECT_NE(svg.find(">50 cm<"), std::string::npos);
+  EXPECT_NE(svg.find(">2 m × 1 m<"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace tandem::core
