@@ -1,0 +1,284 @@
+#include "core/record/trajectory.hpp"
+
+#include <algorithm>
+#include <cerrno>
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+
+#include "core/scenario/element.hpp"
+#include "core/space/stores.hpp"
+
+namespace tandem::core {
+namespace {
+
+constexpr std::size_t kBufferBytes = std::size_t{1} << 18;
+constexpr std::size_t kNamesShown = 8;
+
+struct CloseFile {
+  void operator()(std::FILE* file) const noexcept { std::fclose(file); }
+};
+
+/// A field of a port, and how many columns it has.
+struct Column {
+  const hal::PortType* port;
+  const hal::Field* field;
+  std::size_t values;
+};
+
+std::string listed(const std::vector<std::string>& names) {
+  std::string text;
+  for (std::size_t i = 0; i < std::min(names.size(), kNamesShown); ++i) text += (i == 0 ? "" : ", ") + names[i];
+  if (names.size() > kNamesShown) text += ", … (" + std::to_string(names.size()) + " in all)";
+  return text;
+}
+
+std::string did_you_mean(const std::string& word, const std::vector<std::string>& known) {
+  const std::string near = closest(word, known);
+  return near.empty() ? "" : "; did you mean '" + near + "'?";
+}
+
+bool is_stamp(const hal::Field& field) {
+  return field.name == "taken_ns" || field.name == "validity";
+}
+
+/// As RFC 4180 wants it in a cell.
+std::string cell(const std::string& text) {
+  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return quoted + "\"";
+}
+
+/// Whether two port classes, perhaps from two plug-ins, are the same.
+bool same_port(const hal::PortType& a, const hal::PortType& b) {
+  return a.layout == b.layout && a.role == b.role;
+}
+
+}  // namespace
+
+bool fits_pattern(std::string_view text, std::string_view pattern) noexcept {
+  std::size_t t = 0, p = 0;
+  std::size_t star = std::string_view::npos, from = 0;
+  while (t < text.size()) {
+    if (p < pattern.size() && pattern[p] == '*') {
+      star = p++;
+      from = t;
+    } else if (p < pattern.size() && pattern[p] == text[t]) {
+      ++t;
+      ++p;
+    } else if (star != std::string_view::npos) {
+      p = star + 1;  // let the last star take one more
+      t = ++from;
+    } else {
+      return false;
+    }
+  }
+  while (p < pattern.size() && pattern[p] == '*') ++p;
+  return p == pattern.size();
+}
+
+struct TrajectoryRecorder::Impl {
+  std::string path;
+  std::int64_t every = 1;
+  std::int64_t ticks_per_second = 10;
+  std::unique_ptr<std::FILE, CloseFile> file;
+  std::vector<RobotId> robots;
+  std::vector<std::string> names;
+  std::vector<const hal::PortType*> ports;
+  std::vector<Column> columns;
+  bool header_written = false;
+  std::string buffer;
+  std::string failure;
+
+  hal::Status choose_robots(const std::vector<std::string>& patterns, const Space& space);
+  hal::Status choose_ports(const std::vector<std::string>& names, const Space& space);
+  void write_header(const Space& space);
+  void write_line(const Space& space, std::size_t i, hal::Tick tick);
+  void write_fields(const Space& space, RobotId robot);
+  hal::Status flush();
+  hal::Status fail(int error) {
+    failure = "cannot write the trajectory '" + path + "': " + std::strerror(error);
+    buffer.clear();
+    return hal::Error{failure};
+  }
+
+  template <class Real, class... Format>
+  void number(Real value, Format... format) {
+    char digits[400];  // the longest double with 6 decimals has 316 characters
+    const auto end = std::to_chars(digits, digits + sizeof digits, value, format...).ptr;
+    buffer.append(digits, end);
+  }
+  void integer(std::int64_t value) {
+    char digits[24];
+    buffer.append(digits, std::to_chars(digits, digits + sizeof digits, value).ptr);
+  }
+};
+
+hal::Status TrajectoryRecorder::Impl::choose_robots(const std::vector<std::string>& patterns, const Space& space) {
+  std::vector<std::string> all(space.robot_count());
+  for (std::size_t i = 0; i < all.size(); ++i) all[i] = space.robot_name(space.robot(i));
+  std::vector<std::uint8_t> chosen(all.size(), patterns.empty() ? 1 : 0);
+  for (const std::string& pattern : patterns) {
+    bool any = false;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      if (!fits_pattern(all[i], pattern)) continue;
+      chosen[i] = 1;
+      any = true;
+    }
+    if (any) continue;
+    std::string message = "trajectory '" + path + "': no robot fits '" + pattern + "'" + did_you_mean(pattern, all);
+    message += all.empty() ? "; there are no robots" : "; there are: " + listed(all);
+    return hal::Error{message};
+  }
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (chosen[i] == 0) continue;
+    robots.push_back(space.robot(i));
+    names.push_back(cell(all[i]));
+  }
+  return {};
+}
+
+hal::Status TrajectoryRecorder::Impl::choose_ports(const std::vector<std::string>& wanted, const Space& space) {
+  std::vector<const hal::PortType*> there;
+  for (const RobotId robot : robots) {
+    for (const hal::PortType* type : space.ports(robot)) {
+      const auto same = [type](const hal::PortType* other) { return same_port(*type, *other); };
+      if (std::none_of(there.begin(), there.end(), same)) there.push_back(type);
+    }
+  }
+  for (const std::string& name : wanted) {
+    const std::size_t before = ports.size();
+    for (const hal::PortType* type : there) {
+      if (type->name == name) ports.push_back(type);
+    }
+    if (ports.size() > before) continue;
+    std::vector<std::string> known;
+    for (const hal::PortType* type : there) known.emplace_back(type->name);
+    return hal::Error{"trajectory '" + path + "': the controllers of the chosen robots use no port '" + name + "'" +
+                      did_you_mean(name, known) + (known.empty() ? "; they use none" : "; they use: " + listed(known))};
+  }
+  return {};
+}
+
+void TrajectoryRecorder::Impl::write_header(const Space& space) {
+  header_written = true;
+  buffer += "tick,time_s,id,x_m,y_m,heading_rad";
+  for (const hal::PortType* port : ports) {
+    for (const hal::Field& field : port->fields) {
+      if (is_stamp(field)) continue;
+      std::size_t values = field.fusion == hal::Fusion::Union ? field.count : 0;
+      for (const RobotId robot : robots) {
+        const void* data = space.port(robot, *port);
+        if (data != nullptr) values = std::max(values, hal::used_count(*port, data, field));
+      }
+      columns.push_back({port, &field, values});
+      // A sensor and an actuator may share a name.
+      const bool shared = std::count_if(ports.begin(), ports.end(),
+                                        [port](const hal::PortType* p) { return p->name == port->name; }) > 1;
+      const std::string name = std::string(port->name) + (shared && port->role == hal::Role::Actuator ? "_out." : ".") +
+                               std::string(field.name);
+      for (std::size_t i = 0; i < values; ++i) {
+        buffer += "," + name;
+        if (field.count > 1) buffer += "[" + std::to_string(i) + "]";
+      }
+    }
+  }
+  buffer += '\n';
+}
+
+void TrajectoryRecorder::Impl::write_line(const Space& space, std::size_t i, hal::Tick tick) {
+  const Pose pose = space.pose(robots[i]);
+  integer(tick);
+  buffer += ',';
+  number(hal::to_seconds(hal::time_of_tick(tick, ticks_per_second)));
+  buffer += ',';
+  buffer += names[i];
+  for (const double value : {pose.x_m, pose.y_m, pose.heading_rad()}) {
+    buffer += ',';
+    number(value, std::chars_format::fixed, 6);
+  }
+  write_fields(space, robots[i]);
+  buffer += '\n';
+}
+
+void TrajectoryRecorder::Impl::write_fields(const Space& space, RobotId robot) {
+  const hal::PortType* port = nullptr;
+  const void* data = nullptr;
+  for (const Column& column : columns) {
+    if (column.port != port) data = space.port(robot, *(port = column.port));
+    const std::size_t used = data == nullptr ? 0 : hal::used_count(*port, data, *column.field);
+    for (std::size_t i = 0; i < column.values; ++i) {
+      buffer += ',';
+      if (i >= used) continue;
+      const double value = hal::get_value(data, *column.field, i);
+      if (column.field->scalar == hal::Scalar::F32) {
+        number(static_cast<float>(value));
+      } else {
+        number(value);
+      }
+    }
+  }
+}
+
+hal::Status TrajectoryRecorder::Impl::flush() {
+  if (!failure.empty()) return hal::Error{failure};
+  const std::size_t written = std::fwrite(buffer.data(), 1, buffer.size(), file.get());
+  if (written != buffer.size() || std::fflush(file.get()) != 0) return fail(errno);
+  buffer.clear();
+  return {};
+}
+
+hal::Result<std::unique_ptr<TrajectoryRecorder>> TrajectoryRecorder::open(const TrajectoryConfig& config,
+                                                                          const Space& space,
+                                                                          std::int64_t ticks_per_second,
+                                                                          const std::vector<std::string>& ports) {
+  auto impl = std::make_unique<Impl>();
+  impl->path = config.path;
+  impl->every = std::max<std::int64_t>(1, config.every);
+  impl->ticks_per_second = ticks_per_second;
+  if (const hal::Status chosen = impl->choose_robots(config.entities, space); !chosen.ok()) return chosen.error();
+  if (const hal::Status chosen = impl->choose_ports(ports, space); !chosen.ok()) return chosen.error();
+  impl->file.reset(std::fopen(config.path.c_str(), "wb"));
+  if (!impl->file) return impl->fail(errno).error();
+  std::setvbuf(impl->file.get(), nullptr, _IONBF, 0);  // `buffer` is the only one
+  impl->buffer.reserve(2 * kBufferBytes);
+  return std::unique_ptr<TrajectoryRecorder>(new TrajectoryRecorder(std::move(impl)));
+}
+
+TrajectoryRecorder::TrajectoryRecorder(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+
+TrajectoryRecorder::~TrajectoryRecorder() {
+  if (impl_->file) (void)close();
+}
+
+hal::Status TrajectoryRecorder::record(const Space& space, hal::Tick tick) {
+  Impl& r = *impl_;
+  if (!r.failure.empty()) return hal::Error{r.failure};
+  if (tick % r.every != 0) return {};
+  if (!r.header_written) r.write_header(space);
+  for (std::size_t i = 0; i < r.robots.size(); ++i) {
+    if (space.stores().robots[r.robots[i].index].generation != r.robots[i].generation) continue;  // removed
+    r.write_line(space, i, tick);
+    if (r.buffer.size() < kBufferBytes) continue;
+    if (const hal::Status flushed = r.flush(); !flushed.ok()) return flushed;
+  }
+  return {};
+}
+
+hal::Status TrajectoryRecorder::flush() {
+  return impl_->flush();
+}
+
+hal::Status TrajectoryRecorder::close() {
+  Impl& r = *impl_;
+  if (!r.file) return r.failure.empty() ? hal::Status{} : hal::Status(hal::Error{r.failure});
+  if (!r.header_written && r.failure.empty()) r.buffer += "tick,time_s,id,x_m,y_m,heading_rad\n";
+  const hal::Status flushed = r.flush();
+  const int closed = std::fclose(r.file.release());
+  if (!flushed.ok()) return flushed;
+  return closed == 0 ? hal::Status{} : r.fail(errno);
+}
+
+}  // namespace tandem::core

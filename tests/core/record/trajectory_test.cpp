@@ -1,0 +1,209 @@
+#include "core/record/trajectory.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <fstream>
+#include <gtest/gtest.h>
+#include <numbers>
+#include <sstream>
+
+#include "hal/device/range_and_bearing.hpp"
+#include "hal/device/ring_sensors.hpp"
+#include "hal/device/wheels.hpp"
+#include "hal/spec/epuck.hpp"
+#include "tests/core/space_by_hand.hpp"
+
+namespace tandem::core {
+namespace {
+
+class Trajectory : public testing::Test {
+ protected:
+  void SetUp() override {
+    using hal::port_type;
+    ep0_ =
+        add_robot(space_, hal::epuck::kDataSheet, "ep0", 1.0, -2.5, std::numbers::pi,
+                  {&port_type<hal::Proximity>(), &port_type<hal::WheelSpeeds>(), &port_type<hal::RangeAndBearing>()});
+    ep1_ = add_robot(space_, hal::epuck::kDataSheet, "ep1", 0.1234567, 1e-9, -0.5);
+    add_robot(space_, hal::epuck::kDataSheet, "scout", 0.0, 0.0, 0.0);
+    path_ = testing::TempDir() + "trajectory_test_" + testing::UnitTest::GetInstance()->current_test_info()->name() +
+            ".csv";
+  }
+  void TearDown() override { std::remove(path_.c_str()); }
+
+  std::unique_ptr<TrajectoryRecorder> open(const std::vector<std::string>& entities, std::int64_t every = 1,
+                                           const std::vector<std::string>& ports = {}) {
+    auto opened = TrajectoryRecorder::open({path_, entities, every}, space_, 10, ports);
+    EXPECT_TRUE(opened.ok()) << (opened.ok() ? "" : opened.error().message);
+    return opened.ok() ? std::move(opened).value() : nullptr;
+  }
+  std::string open_error(const std::vector<std::string>& entities, const std::vector<std::string>& ports = {}) {
+    const auto opened = TrajectoryRecorder::open({path_, entities, 1}, space_, 10, ports);
+    return opened.ok() ? "" : opened.error().message;
+  }
+  std::string written() const {
+    std::stringstream text;
+    text << std::ifstream(path_).rdbuf();
+    return text.str();
+  }
+  std::vector<std::string> lines() const {
+    std::vector<std::string> all;
+    std::istringstream text(written());
+    for (std::string line; std::getline(text, line);) all.push_back(line);
+    return all;
+  }
+
+  Space space_;
+  RobotId ep0_, ep1_;
+  std::string path_;
+};
+
+TEST_F(Trajectory, WritesAHeaderAndALineForEachRobotAndTick) {
+  auto recorder = open({"ep*"});
+  ASSERT_TRUE(recorder->record(space_, 0).ok());
+  space_.set_pose(ep1_, {0.5, 0.25, 0.0, 1.0, 0.0});
+  ASSERT_TRUE(recorder->record(space_, 3).ok());
+  ASSERT_TRUE(recorder->close().ok());
+  EXPECT_EQ(written(),
+            "tick,time_s,id,x_m,y_m,heading_rad\n"
+            "0,0,ep0,1.000000,-2.500000,3.141593\n"
+            "0,0,ep1,0.123457,0.000000,-0.500000\n"
+            "3,0.3,ep0,1.000000,-2.500000,3.141593\n"
+            "3,0.3,ep1,0.500000,0.250000,0.000000\n");
+}
+
+TEST_F(Trajectory, RecordsEveryNthTickAlone) {
+  auto recorder = open({"scout"}, 5);
+  for (hal::Tick tick = 0; tick < 11; ++tick) ASSERT_TRUE(recorder->record(space_, tick).ok());
+  ASSERT_TRUE(recorder->close().ok());
+  ASSERT_EQ(lines().size(), 4U);
+  EXPECT_EQ(lines()[3].substr(0, 5), "10,1,");
+}
+
+TEST_F(Trajectory, RecordsEveryRobotOnceWhenNoneOrOverlappingPatternsAreGiven) {
+  auto all = open({});
+  ASSERT_TRUE(all->record(space_, 0).ok());
+  ASSERT_TRUE(all->close().ok());
+  EXPECT_EQ(lines().size(), 4U);
+  auto twice = open({"ep0", "*p0", "ep*"});
+  ASSERT_TRUE(twice->record(space_, 0).ok());
+  ASSERT_TRUE(twice->close().ok());
+  EXPECT_EQ(lines().size(), 3U);
+}
+
+TEST_F(Trajectory, AddsAColumnForEachValueOfAPortThatIsInUse) {
+  auto* proximity = space_.port<hal::Proximity>(ep0_);
+  proximity->count = 2;
+  proximity->range_m = 0.1F;
+  proximity->distance_m[1] = 0.05F;
+  space_.port<hal::WheelSpeeds>(ep0_)->set(0.1, -0.05);
+  auto recorder = open({"ep*"}, 1, {"proximity", "differential_steering"});
+  ASSERT_TRUE(recorder->record(space_, 0).ok());
+  ASSERT_TRUE(recorder->close().ok());
+  EXPECT_EQ(
+      lines()[0],
+      "tick,time_s,id,x_m,y_m,heading_rad,proximity.count,proximity.range,proximity.distance[0],proximity.distance[1],"
+      "differential_steering.left,differential_steering.right");
+  EXPECT_EQ(lines()[1], "0,0,ep0,1.000000,-2.500000,3.141593,2,0.1,0,0.05,0.1,-0.05");
+  EXPECT_EQ(lines()[2], "0,0,ep1,0.123457,0.000000,-0.500000,,,,,,");
+}
+
+TEST_F(Trajectory, MessageListsKeepTheirColumnsHoweverManyArrive) {
+  auto recorder = open({"ep0"}, 1, {"range_and_bearing"});
+  ASSERT_TRUE(recorder->record(space_, 0).ok());
+  const std::uint8_t payload[2] = {7, 9};
+  space_.port<hal::RangeAndBearing>(ep0_)->insert(0.5F, 0.25F, 0.0F, payload, 2);
+  ASSERT_TRUE(recorder->record(space_, 1).ok());
+  ASSERT_TRUE(recorder->close().ok());
+  const auto commas = [](const std::string& line) { return std::count(line.begin(), line.end(), ','); };
+  EXPECT_EQ(commas(lines()[0]), commas(lines()[1]));
+  EXPECT_EQ(commas(lines()[0]), commas(lines()[2]));
+  EXPECT_NE(lines()[2].find(",0.5,,"), std::string::npos) << lines()[2];
+}
+
+TEST_F(Trajectory, ARemovedRobotHasNoLineAnyMore) {
+  auto recorder = open({"ep*"});
+  ASSERT_TRUE(recorder->record(space_, 0).ok());
+  space_.remove_robot(ep0_);
+  ASSERT_TRUE(recorder->record(space_, 1).ok());
+  ASSERT_TRUE(recorder->close().ok());
+  ASSERT_EQ(lines().size(), 4U);
+  EXPECT_EQ(lines()[3].substr(0, 9), "1,0.1,ep1");
+}
+
+TEST_F(Trajectory, IsThereInFullWhenTheRecorderIsDestroyedUnclosed) {
+  {
+    auto recorder = open({"scout"});
+    ASSERT_TRUE(recorder->record(space_, 0).ok());
+  }
+  EXPECT_EQ(lines().size(), 2U);
+}
+
+TEST_F(Trajectory, FlushHandsOverWhatThereIs) {
+  auto recorder = open({"scout"});
+  ASSERT_TRUE(recorder->record(space_, 0).ok());
+  EXPECT_EQ(lines().size(), 0U);
+  ASSERT_TRUE(recorder->flush().ok());
+  EXPECT_EQ(lines().size(), 2U);
+}
+
+TEST_F(Trajectory, ARunWithoutATickHasTheHeaderAlone) {
+  auto recorder = open({"scout"});
+  ASSERT_TRUE(recorder->close().ok());
+  EXPECT_EQ(written(), "tick,time_s,id,x_m,y_m,heading_rad\n");
+}
+
+TEST_F(Trajectory, QuotesIdsThatWouldBreakTheTable) {
+  add_robot(space_, hal::epuck::kDataSheet, "a,\"b\"", 0.0, 0.0, 0.0);
+  auto recorder = open({"a*"});
+  ASSERT_TRUE(recorder->record(space_, 0).ok());
+  ASSERT_TRUE(recorder->close().ok());
+  EXPECT_NE(written().find("0,0,\"a,\"\"b\"\"\",0.000000"), std::string::npos) << written();
+}
+
+TEST_F(Trajectory, NamesWhatIsSpelledAlikeWhenNoRobotFits) {
+  const std::string message = open_error({"skout"});
+  EXPECT_NE(message.find("no robot fits 'skout'"), std::string::npos) << message;
+  EXPECT_NE(message.find("did you mean 'scout'?"), std::string::npos) << message;
+  EXPECT_NE(message.find("ep0, ep1, scout"), std::string::npos) << message;
+}
+
+TEST_F(Trajectory, NamesThePortsThatThereAre) {
+  const std::string message = open_error({"ep*"}, {"proximitty"});
+  EXPECT_NE(message.find("no port 'proximitty'; did you mean 'proximity'?"), std::string::npos) << message;
+  EXPECT_NE(open_error({"scout"}, {"proximity"}).find("they use none"), std::string::npos);
+}
+
+TEST_F(Trajectory, SaysWhenTheFileCannotBeMade) {
+  path_ = "/no/such/folder/t.csv";
+  const std::string message = open_error({});
+  EXPECT_NE(message.find("/no/such/folder/t.csv"), std::string::npos) << message;
+  EXPECT_NE(message.find("No such file"), std::string::npos) << message;
+}
+
+TEST_F(Trajectory, AFullDiskIsToldAndEndsTheRecording) {
+  path_ = "/dev/full";
+  auto recorder = open({});
+  ASSERT_TRUE(recorder->record(space_, 0).ok());
+  const hal::Status flushed = recorder->flush();
+  ASSERT_FALSE(flushed.ok());
+  EXPECT_NE(flushed.error().message.find("No space left"), std::string::npos) << flushed.error().message;
+  EXPECT_FALSE(recorder->record(space_, 1).ok());
+  EXPECT_FALSE(recorder->close().ok());
+  path_.clear();
+}
+
+TEST(FitsPattern, AStarStandsForAnyNumberOfCharacters) {
+  EXPECT_TRUE(fits_pattern("ep12", "ep12"));
+  EXPECT_TRUE(fits_pattern("ep12", "*"));
+  EXPECT_TRUE(fits_pattern("ep12", "ep12*"));
+  EXPECT_TRUE(fits_pattern("ep12", "e*1*"));
+  EXPECT_TRUE(fits_pattern("abcabd", "*ab*d"));
+  EXPECT_TRUE(fits_pattern("", "**"));
+  EXPECT_FALSE(fits_pattern("ep12", "ep1"));
+  EXPECT_FALSE(fits_pattern("ep12", "p*"));
+  EXPECT_FALSE(fits_pattern("ep12", ""));
+  EXPECT_FALSE(fits_pattern("abcabc", "*ab*d"));
+}
+
+}  // namespace
+}  // namespace tandem::core
