@@ -20,6 +20,7 @@ constexpr TimeNs time_of_tick(Tick tick, std::int64_t ticks_per_second) noexcept
   return seconds * kNsPerSecond + rest * kNsPerSecond / ticks_per_second;
 }
 
-constexpr double to_seconds(TimeNs t) noexcept { return static_cast<double>(t) * 1e-9; }
+/// The double nearest to it: 300 ms is 0.3, which a multiplication by 1e-9 would miss.
+constexpr double to_seconds(TimeNs t) noexcept { return static_cast<double>(t) / 1e9; }
 
 }  // namespace tandem::hal
