@@ -166,4 +166,47 @@ void ElementReader::finish() {
   }
 }
 
+void ElementWriter::add(std::string_view name, std::string value) {
+  if (element_.attribute(name) == nullptr) element_.attributes.push_back({std::string(name), std::move(value), 0});
+}
+
+void ElementWriter::number(std::string_view name, double& value_si, const hal::Unit& bare, hal::Range, std::string_view) {
+  add(name, hal::format_quantity(value_si, bare));
+}
+void ElementWriter::integer(std::string_view name, std::int64_t& value, hal::Range, std::string_view) { add(name, std::to_string(value)); }
+void ElementWriter::flag(std::string_view name, bool& value, std::string_view) { add(name, value ? "true" : "false"); }
+void ElementWriter::text(std::string_view name, std::string& value, std::string_view) { add(name, value); }
+void ElementWriter::choice(std::string_view name, std::string& value, std::span<const std::string_view>, std::string_view) { add(name, value); }
+void ElementWriter::vector(std::string_view name, std::array<double, 3>& v, const hal::Unit& bare, std::string_view) {
+  add(name, hal::format_quantity(v[0], bare) + "," + hal::format_quantity(v[1], bare) + "," + hal::format_quantity(v[2], bare));
+}
+
+void ManualWriter::line(std::string_view name, const std::string& value, const std::string& range, std::string_view doc) {
+  text_ += "  " + std::string(name) + "=\"" + value + "\"";
+  if (!range.empty()) text_ += "  (" + range + ")";
+  text_ += "\n      " + std::string(doc) + "\n";
+}
+
+void ManualWriter::number(std::string_view name, double& value_si, const hal::Unit& bare, hal::Range range, std::string_view doc) {
+  const bool bounded = range.min > -std::numeric_limits<double>::infinity() || range.max < std::numeric_limits<double>::infinity();
+  const std::string unit = bare.symbol.empty() ? "" : "a bare number is in " + std::string(bare.symbol);
+  const std::string limits = bounded ? range_text(range, bare) : "";
+  line(name, hal::format_quantity(value_si, bare), limits + (limits.empty() || unit.empty() ? "" : "; ") + unit, doc);
+}
+void ManualWriter::integer(std::string_view name, std::int64_t& value, hal::Range range, std::string_view doc) {
+  const bool bounded = range.min > -std::numeric_limits<double>::infinity() || range.max < std::numeric_limits<double>::infinity();
+  line(name, std::to_string(value), bounded ? range_text(range, hal::unit::none) : "", doc);
+}
+void ManualWriter::flag(std::string_view name, bool& value, std::string_view doc) { line(name, value ? "true" : "false", "true or false", doc); }
+void ManualWriter::text(std::string_view name, std::string& value, std::string_view doc) { line(name, value, "", doc); }
+void ManualWriter::choice(std::string_view name, std::string& value, std::span<const std::string_view> options, std::string_view doc) {
+  std::string list;
+  for (const std::string_view option : options) list += (list.empty() ? "" : ", ") + std::string(option);
+  line(name, value, list, doc);
+}
+void ManualWriter::vector(std::string_view name, std::array<double, 3>& v, const hal::Unit& bare, std::string_view doc) {
+  line(name, hal::format_number(v[0] / bare.to_si) + "," + hal::format_number(v[1] / bare.to_si) + "," + hal::format_number(v[2] / bare.to_si),
+       "three numbers" + (bare.symbol.empty() ? std::string() : " in " + std::string(bare.symbol)), doc);
+}
+
 }  // namespace tandem::core

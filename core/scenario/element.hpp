@@ -66,4 +66,38 @@ class ElementReader final : public hal::ParamVisitor {
   std::vector<std::string> known_;
 };
 
+/// Completes an element with the attributes that a described struct has and the file left out: the effective settings.
+class ElementWriter final : public hal::ParamVisitor {
+ public:
+  explicit ElementWriter(Element& element) : element_(element) {}
+
+  void number(std::string_view name, double& value_si, const hal::Unit& bare, hal::Range range_si, std::string_view doc) override;
+  void integer(std::string_view name, std::int64_t& value, hal::Range range, std::string_view doc) override;
+  void flag(std::string_view name, bool& value, std::string_view doc) override;
+  void text(std::string_view name, std::string& value, std::string_view doc) override;
+  void choice(std::string_view name, std::string& value, std::span<const std::string_view> options, std::string_view doc) override;
+  void vector(std::string_view name, std::array<double, 3>& value_si, const hal::Unit& bare, std::string_view doc) override;
+
+ private:
+  void add(std::string_view name, std::string value);
+  Element& element_;
+};
+
+/// Lists described parameters for people, one a line: name, default, range, what it means.
+class ManualWriter final : public hal::ParamVisitor {
+ public:
+  void number(std::string_view name, double& value_si, const hal::Unit& bare, hal::Range range_si, std::string_view doc) override;
+  void integer(std::string_view name, std::int64_t& value, hal::Range range, std::string_view doc) override;
+  void flag(std::string_view name, bool& value, std::string_view doc) override;
+  void text(std::string_view name, std::string& value, std::string_view doc) override;
+  void choice(std::string_view name, std::string& value, std::span<const std::string_view> options, std::string_view doc) override;
+  void vector(std::string_view name, std::array<double, 3>& value_si, const hal::Unit& bare, std::string_view doc) override;
+
+  const std::string& text() const noexcept { return text_; }
+
+ private:
+  void line(std::string_view name, const std::string& value, const std::string& range, std::string_view doc);
+  std::string text_;
+};
+
 }  // namespace tandem::core

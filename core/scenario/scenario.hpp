@@ -123,7 +123,7 @@ struct LightItem {
   std::string id;
   Vec3 p_W{};
   std::array<std::uint8_t, 3> rgb{255, 255, 0};
-  double intensity = 1.0;            ///< distance in metres at which a facing sensor reads 0.5 … see docs of the light sensor
+  double intensity = 1.0;            ///< distance in metres up to which a facing sensor reads 1
   std::optional<Distribute> distribute;
   int line = 0;
 };
@@ -207,6 +207,7 @@ struct Scenario {
   std::vector<HookConfig> hooks;
   std::optional<TrajectoryConfig> trajectory;
   Element camera;                    ///< placements of ARGoS' view, kept for ours
+  Element effective;                 ///< the whole file with every default filled in
 };
 
 }  // namespace tandem::core
