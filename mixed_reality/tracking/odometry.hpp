@@ -1,0 +1,45 @@
+// Where a robot is by what its wheels have rolled.
+#pragma once
+#include <cstdint>
+
+#include "hal/device/wheels.hpp"
+#include "hal/spec/data_sheet.hpp"
+#include "mixed_reality/tracking/pose_source.hpp"
+
+namespace tandem::mixed_reality {
+
+/// `pose` after the left and right wheel have rolled `left_m` and `right_m` along one arc, exactly.
+/// `wheel_base_m`: distance between the wheels' contact points. [Siegwart 2011, eq. 5.2 to 5.7, with the chord of the
+/// arc instead of its first-order approximation]
+core::Pose rolled(const core::Pose& pose, double left_m, double right_m, double wheel_base_m) noexcept;
+
+/// Integrates wheel encoders from a known start. It knows nothing of slip, and its error grows with the way: good for
+/// minutes, until a tracker corrects it.
+///
+/// The first fresh reading is the reference. What the wheels rolled while the link was down counts when it is back, as
+/// far as the robot can have rolled it in that time; encoders that have moved farther were reset or misread: such a
+/// step is counted, and the robot stays where it was.
+class Odometry final : public PoseSource {
+ public:
+  /// `encoders` must outlive this; its stamps are on the run's clock. `sheet`: wheel base and largest speed.
+  Odometry(const core::Pose& start, const hal::DataSheet& sheet, const hal::WheelEncoders& encoders);
+
+  /// As old as the reading that it was last moved by; stale while the encoders are.
+  TrackedPose latch(hal::TimeNs now_ns) noexcept override;
+
+  /// Readings that no rolling explains.
+  std::uint64_t jumps() const noexcept { return jumps_; }
+
+ private:
+  bool believable(double left_m, double right_m, hal::TimeNs since_ns) const noexcept;
+
+  const hal::WheelEncoders& encoders_;
+  double wheel_base_m_;
+  double max_speed_m_s_;
+  TrackedPose tracked_;
+  bool referenced_ = false;
+  double left_m_ = 0.0, right_m_ = 0.0;  // of the reading that `tracked_` belongs to
+  std::uint64_t jumps_ = 0;
+};
+
+}  // namespace tandem::mixed_reality
