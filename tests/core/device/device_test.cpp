@@ -1,0 +1,234 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/device/device.hpp"
+#include "hal/device/body_sensors.hpp"
+#include "hal/device/leds.hpp"
+#include "hal/device/range_and_bearing.hpp"
+#include "hal/device/ring_sensors.hpp"
+#include "hal/device/wheels.hpp"
+#include "hal/spec/epuck.hpp"
+#include "tests/core/scenes.hpp"
+
+namespace tandem::core {
+namespace {
+
+constexpr double kR = hal::epuck::kBodyRadius_m;
+
+template <class Port>
+Port read(const MadeWorld& world, std::size_t robot = 0) {
+  const auto* port = world->space().port<Port>(world->space().robot(robot));
+  EXPECT_NE(port, nullptr);
+  return *port;
+}
+
+MadeWorld stepped(const Scene& scene, int steps = 2) {
+  auto world = make(scene);
+  EXPECT_TRUE(world.world) << world.all_problems();
+  run(*world.world, steps);
+  return world;
+}
+
+/// Distance along one ray by bisection of the closed forms of disc and rectangle: slow, plain, and sharing no code with the kernel.
+double marched(const Scene& scene, std::size_t self, const Space& space, double bearing) {
+  const Pose me = space.pose(space.robot(self));
+  const double angle = std::atan2(me.sin_h, me.cos_h) + bearing;
+  for (double t = 0.0; t < 0.1; t += 1e-5) {
+    const double x = me.x_m + (kR + t) * std::cos(angle);
+    const double y = me.y_m + (kR + t) * std::sin(angle);
+    for (std::size_t j = 0; j < space.robot_count(); ++j) {
+      const Pose other = space.pose(space.robot(j));
+      if (j != self && std::hypot(x - other.x_m, y - other.y_m) <= kR) return t;
+    }
+    for (const ObjectItem& o : scene.scenario.objects) {
+      const double rx = x - o.placement.p_W[0];
+      const double ry = y - o.placement.p_W[1];
+      if (o.shape == ShapeKind::Cylinder) {
+        if (std::hypot(rx, ry) <= o.size[0]) return t;
+        continue;
+      }
+      const double yaw = o.placement.yaw_rad;
+      const double lx = rx * std::cos(yaw) + ry * std::sin(yaw);
+      const double ly = -rx * std::sin(yaw) + ry * std::cos(yaw);
+      if (std::fabs(lx) <= o.size[0] / 2 && std::fabs(ly) <= o.size[1] / 2) return t;
+    }
+  }
+  return 0.1;
+}
+
+TEST(ProximitySensor, ReadsTheDistanceToTheNearestThingOnEveryRay) {
+  Scene scene(1.2, "everything");
+  scene.walls().box(0.1, 0.1, 0.1, 0.05, 0.7).cylinder(-0.2, -0.1, 0.05).robots(40, 0.48);
+  auto world = stepped(scene);
+  int seen = 0;
+  for (std::size_t i = 0; i < world->space().robot_count(); ++i) {
+    const auto port = read<hal::Proximity>(world, i);
+    ASSERT_EQ(port.count, 8U);
+    EXPECT_EQ(port.validity, hal::Validity::Fresh);
+    for (std::size_t k = 0; k < 8; ++k) {
+      const double expected = marched(scene, i, world->space(), hal::epuck::kInfrared[k].bearing_rad);
+      EXPECT_NEAR(static_cast<double>(port.distance_m[k]), expected, 2.5e-5) << "robot " << i << " sensor " << k;
+      if (expected < 0.1) ++seen;
+    }
+  }
+  EXPECT_GT(seen, 60);
+}
+
+TEST(ProximitySensor, DoesNotSeeWhatIsLowerThanItself) {
+  auto world = stepped(Scene(4, "everything").box(0.1, 0, 0.05, 1.0, 0.0, 0.01).robot("a", 0, 0));
+  EXPECT_EQ(read<hal::Proximity>(world).distance_m[0], 0.1F);
+}
+
+TEST(ProximitySensor, NoiseIsBoundedAndCentred) {
+  Scene scene(4, "everything");
+  scene.box(0.09 + kR, 0, 0.1, 3.0).robot("a", 0, 0);
+  scene.scenario.controllers[0].sensors[0].implementation = "noisy";
+  scene.scenario.controllers[0].sensors[0].options.attributes = {{"noise_level", "0.1", 0}};
+  auto world = make(scene);
+  ASSERT_TRUE(world.world) << world.all_problems();
+  world->start();
+  const double exact = (0.04 + kR) / std::cos(17.0 * M_PI / 180) - kR;
+  double sum = 0.0;
+  double most = 0.0;
+  for (int i = 0; i < 2000; ++i) {
+    world->step();
+    const double error = static_cast<double>(read<hal::Proximity>(world).distance_m[0]) - exact;
+    sum += error;
+    most = std::max(most, std::fabs(error));
+  }
+  EXPECT_LE(most, 0.0101);
+  EXPECT_GT(most, 0.0095);
+  EXPECT_NEAR(sum / 2000, 0.0, 0.0004);
+}
+
+TEST(WheelDevices, EncodersCountWhatTheWheelsRolled) {
+  auto world = stepped(Scene(4, "everything").param("left", "0.02").param("right", "-0.03").robot("a", 0, 0), 11);
+  const auto encoders = read<hal::WheelEncoders>(world);
+  EXPECT_NEAR(encoders.left_m, 0.02, 1e-12);
+  EXPECT_NEAR(encoders.right_m, -0.03, 1e-12);
+  EXPECT_FLOAT_EQ(encoders.left_m_s, 0.02F);
+}
+
+TEST(WheelDevices, BiasAndFactorChangeTheDrivenSpeed) {
+  Scene scene(4, "drive");
+  scene.param("left", "0.05").param("right", "0.05").robot("a", 0, 0);
+  scene.scenario.controllers[0].actuators[0].options.attributes = {{"factor_left", "1.2", 0}, {"factor_right", "1.2", 0}, {"bias_left", "1", 0}, {"bias_right", "1", 0}};
+  auto world = stepped(scene, 11);
+  EXPECT_NEAR(world->space().pose(world->space().robot(0)).x_m, 1.2 * 0.06, 1e-12);
+}
+
+TEST(WheelDevices, NoisyWheelsScatterAroundTheCommand) {
+  Scene scene(40, "drive");
+  scene.param("left", "0.05").param("right", "0.05").robots(1000, 15.0);
+  scene.scenario.controllers[0].actuators[0].implementation = "noisy";
+  auto world = make(scene);
+  ASSERT_TRUE(world.world) << world.all_problems();
+  run(*world.world, 2);
+  double sum = 0.0;
+  double squares = 0.0;
+  for (std::size_t i = 0; i < 1000; ++i) {
+    // One tick of motion, from the rolled distances.
+    const SpaceStores& s = world->space().stores();
+    const double relative = s.bodies.left_m[i] / 0.005 - 1.0;
+    sum += relative;
+    squares += relative * relative;
+  }
+  EXPECT_NEAR(sum / 1000, 0.0, 0.006);
+  EXPECT_NEAR(std::sqrt(squares / 1000), 0.05, 0.005);
+}
+
+TEST(LightSensor, FollowsTheSquareOfTheDistanceTheAngleAndTheShadow) {
+  Scene scene(8, "everything");
+  scene.robot("near", 0, 0).robot("shaded", 0, -2.0, M_PI / 2);
+  scene.scenario.lights.push_back({"lamp", {2.0, 0.0, hal::epuck::kSensorHeight_m}, {255, 255, 255}, 1.0, {}, 0});
+  scene.box(1.0, -1.0, 0.3, 0.3);
+  auto world = stepped(scene);
+  const auto light = read<hal::Light>(world);
+  EXPECT_NEAR(static_cast<double>(light.level[0]), 0.25 * std::cos(17 * M_PI / 180), 1e-6);  // faces it but for 17 degrees
+  EXPECT_EQ(light.level[3], 0.0F);                                                             // looks away
+  for (const float level : read<hal::Light>(world, 1).level) EXPECT_EQ(level, 0.0F);           // behind the box
+}
+
+TEST(GroundSensor, ReadsTheFloorThatAHookPaints) {
+  Scene scene(4, "everything");
+  scene.robot("east", 1, 0).robot("west", -1, 0).robot("edge", -0.03, 0);
+  scene.scenario.floor.source = "loop_functions";
+  HookConfig hook;
+  hook.library = "test_hooks";
+  hook.label = "diary";
+  hook.options.attributes = {{"path", "/dev/null", 0}};
+  scene.scenario.hooks.push_back(hook);
+  auto world = stepped(scene);
+  EXPECT_EQ(read<hal::Ground>(world, 0).reflectance[1], 1.0F);
+  EXPECT_EQ(read<hal::Ground>(world, 1).reflectance[1], 0.0F);
+  EXPECT_EQ(read<hal::Ground>(world, 0).count, 3U);
+}
+
+TEST(BodySensors, ReadAccelerationSoundBatteryAndTime) {
+  Scene scene(4, "everything");
+  scene.param("left", "0.05").param("right", "0.05").robot("a", 0, 0);
+  scene.scenario.sounds.push_back({"horn", {0.0, 0.1, 0.04}, 0.8, 0});
+  scene.scenario.robots[0].battery.delta = 0.01;
+  auto world = make(scene);
+  ASSERT_TRUE(world.world) << world.all_problems();
+  world->start();
+  world->step();
+  EXPECT_EQ(read<hal::Accelerometer>(world).force_m_s2[0], 0.0F);
+  world->step();
+  EXPECT_NEAR(static_cast<double>(read<hal::Accelerometer>(world).force_m_s2[0]), 0.5, 1e-6);  // 5 cm/s within a tenth of a second
+  EXPECT_NEAR(static_cast<double>(read<hal::Accelerometer>(world).force_m_s2[2]), 9.81, 1e-6);
+  world->step();
+  EXPECT_EQ(read<hal::Accelerometer>(world).force_m_s2[0], 0.0F);
+  const auto microphones = read<hal::Microphones>(world);
+  EXPECT_GT(microphones.level[1], microphones.level[0]);  // the left one is nearer
+  EXPECT_NEAR(static_cast<double>(read<hal::Battery>(world).charge), 0.97, 1e-6);
+  EXPECT_EQ(read<hal::Clock>(world).tick, 2);
+  EXPECT_EQ(read<hal::Clock>(world).now_ns, 200'000'000);
+}
+
+TEST(RangeAndBearing, TellsFromWhereAMessageCame) {
+  Scene scene(8, "everything");
+  scene.robot("a", 0, 0, M_PI / 2).robot("b", 0.5, 0).robot("far", 0.9, 1.0).robot("hidden", -0.5, 0);
+  scene.box(-0.25, 0, 0.05, 0.3);
+  auto world = stepped(scene);
+  const auto heard = read<hal::RangeAndBearing>(world);
+  ASSERT_EQ(heard.count, 1U);
+  EXPECT_NEAR(static_cast<double>(heard.range_m[0]), 0.5, 1e-6);
+  EXPECT_NEAR(static_cast<double>(heard.bearing_rad[0]), -M_PI / 2, 1e-6);  // on its right
+  EXPECT_EQ(heard.size[0], 2U);  // the e-puck's board
+  EXPECT_EQ(heard.message(0)[1], 2U);
+}
+
+TEST(RangeAndBearing, LosesTheAskedPartOfTheMessages) {
+  Scene scene(8, "everything");
+  scene.robot("a", 0, 0).robot("b", 0.5, 0);
+  for (DeviceChoice& c : scene.scenario.controllers[0].sensors) {
+    if (c.device == "range_and_bearing") c.options.attributes = {{"packet_drop_prob", "0.3", 0}};
+  }
+  auto world = make(scene);
+  ASSERT_TRUE(world.world) << world.all_problems();
+  world->start();
+  int heard = 0;
+  for (int i = 0; i < 2001; ++i) {
+    world->step();
+    heard += static_cast<int>(read<hal::RangeAndBearing>(world).count);
+  }
+  EXPECT_NEAR(heard / 2000.0, 0.7, 0.04);
+}
+
+TEST(Devices, EveryImplementationIsDocumentedAndStartsWithDefault) {
+  std::string last;
+  for (const DeviceType& type : device_types()) {
+    EXPECT_FALSE(type.summary.empty()) << type.device;
+    EXPECT_NE(type.describe, nullptr);
+    EXPECT_TRUE((type.make_sensor != nullptr) != (type.make_actuator != nullptr));
+    EXPECT_NE(find_device(type.device, type.role, "default"), nullptr) << type.device;
+    EXPECT_NE(find_device(type.device, type.role, "ideal"), nullptr) << type.device;
+    ManualWriter manual;
+    type.describe(manual);
+  }
+}
+
+}  // namespace
+}  // namespace tandem::core

@@ -1,0 +1,121 @@
+// Scenarios built inline, for tests of the world.
+#pragma once
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/sim/world.hpp"
+
+namespace tandem::core {
+
+/// An arena of `size_m` squared with one controller configuration.
+struct Scene {
+  Scenario scenario;
+
+  explicit Scene(double size_m = 4.0, const std::string& controller = "drive", const std::string& library = "test_controllers") {
+    scenario.file = "scene";
+    scenario.name = "scene";
+    scenario.seed = 7;
+    scenario.ticks_per_second = 10;
+    scenario.arena_size = {size_m, size_m, 1.0};
+    ControllerConfig config;
+    config.id = "c";
+    config.label = controller;
+    config.library = library;
+    for (const char* name : {"proximity", "light", "ground", "wheel_encoders", "accelerometer", "microphones", "battery", "clock",
+                             "range_and_bearing"}) {
+      config.sensors.push_back({name, "default", {}});
+    }
+    for (const char* name : {"differential_steering", "leds", "body_led", "front_led", "range_and_bearing"}) {
+      config.actuators.push_back({name, "default", {}});
+    }
+    scenario.controllers.push_back(config);
+  }
+
+  Scene& param(const std::string& name, const std::string& value) {
+    scenario.controllers.back().params.attributes.push_back({name, value, 0});
+    return *this;
+  }
+  Scene& implementations(const std::string& name) {
+    for (auto* list : {&scenario.controllers.back().sensors, &scenario.controllers.back().actuators}) {
+      for (DeviceChoice& choice : *list) choice.implementation = name;
+    }
+    return *this;
+  }
+  Scene& robot(const std::string& id, double x_m, double y_m, double heading_rad = 0.0) {
+    RobotItem item;
+    item.kind = "e-puck";
+    item.id = id;
+    item.placement = {{x_m, y_m, 0.0}, heading_rad, 0.0, 0.0};
+    scenario.robots.push_back(item);
+    return *this;
+  }
+  Scene& robots(std::int64_t quantity, double half_m) {
+    RobotItem item;
+    item.kind = "e-puck";
+    item.id = "ep";
+    Distribute d;
+    d.quantity = quantity;
+    d.max_trials = 1000;
+    d.position.method = Distribution::Method::Uniform;
+    d.position.min = {-half_m, -half_m, 0.0};
+    d.position.max = {half_m, half_m, 0.0};
+    d.orientation.method = Distribution::Method::Uniform;
+    d.orientation.min = {-3.14159, 0.0, 0.0};
+    d.orientation.max = {3.14159, 0.0, 0.0};
+    item.distribute = d;
+    scenario.robots.push_back(item);
+    return *this;
+  }
+  Scene& box(double x_m, double y_m, double size_x_m, double size_y_m, double heading_rad = 0.0, double height_m = 0.5) {
+    ObjectItem item;
+    item.id = "box" + std::to_string(scenario.objects.size());
+    item.size = {size_x_m, size_y_m, height_m};
+    item.placement = {{x_m, y_m, 0.0}, heading_rad, 0.0, 0.0};
+    scenario.objects.push_back(item);
+    return *this;
+  }
+  Scene& cylinder(double x_m, double y_m, double radius_m) {
+    ObjectItem item;
+    item.shape = ShapeKind::Cylinder;
+    item.id = "cylinder" + std::to_string(scenario.objects.size());
+    item.size = {radius_m, radius_m, 0.5};
+    item.placement.p_W = {x_m, y_m, 0.0};
+    scenario.objects.push_back(item);
+    return *this;
+  }
+  /// Walls 10 cm thick around the arena, inside it.
+  Scene& walls() {
+    const double s = scenario.arena_size[0];
+    return box(0, 0.5 * s - 0.05, s, 0.1).box(0, -0.5 * s + 0.05, s, 0.1).box(0.5 * s - 0.05, 0, 0.1, s).box(-0.5 * s + 0.05, 0, 0.1, s);
+  }
+};
+
+/// A world and the loader that must outlive it.
+struct MadeWorld {
+  std::unique_ptr<hal::PluginLoader> loader;
+  std::unique_ptr<World> world;
+  Problems problems;
+
+  World* operator->() const { return world.get(); }
+  std::string all_problems() const {
+    std::string text;
+    for (const Problem& p : problems) text += to_text(p) + "\n";
+    return text;
+  }
+};
+
+inline MadeWorld make(const Scene& scene, const WorldOptions& options = {}) {
+  MadeWorld made;
+  made.loader = std::make_unique<hal::PluginLoader>(std::vector<std::filesystem::path>{std::string(TANDEM_BINARY_DIR) + "/lib"});
+  made.world = World::make(scene.scenario, *made.loader, options, made.problems);
+  return made;
+}
+
+inline void run(World& world, int steps) {
+  world.start();
+  for (int i = 0; i < steps; ++i) world.step();
+  world.finish();
+}
+
+}  // namespace tandem::core

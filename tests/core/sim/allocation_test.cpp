@@ -1,0 +1,49 @@
+// Counts allocations of the whole program: after the first steps a world makes none.
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cstdlib>
+#include <new>
+
+#include "tests/core/scenes.hpp"
+
+namespace {
+std::atomic<std::uint64_t> allocations{0};
+void* counted(std::size_t size, std::size_t align) {
+  allocations.fetch_add(1, std::memory_order_relaxed);
+  void* p = align > alignof(std::max_align_t) ? std::aligned_alloc(align, (size + align - 1) / align * align) : std::malloc(size);
+  if (p == nullptr) throw std::bad_alloc();
+  return p;
+}
+}  // namespace
+
+void* operator new(std::size_t size) { return counted(size, 1); }
+void* operator new(std::size_t size, std::align_val_t align) { return counted(size, static_cast<std::size_t>(align)); }
+void operator delete(void* p) noexcept { std::free(p); }
+void operator delete(void* p, std::size_t) noexcept { std::free(p); }
+void operator delete(void* p, std::align_val_t) noexcept { std::free(p); }
+void operator delete(void* p, std::size_t, std::align_val_t) noexcept { std::free(p); }
+
+namespace tandem::core {
+namespace {
+
+TEST(World, AllocatesNothingAfterTheFirstSteps) {
+  for (const std::int64_t threads : {1, 3}) {
+    Scene scene(8.0, "everything");
+    scene.param("left", "0.05").param("right", "0.04").walls().robots(3000, 3.8);
+    WorldOptions options;
+    options.threads = threads;
+    auto world = make(scene, options);
+    ASSERT_TRUE(world.world) << world.all_problems();
+    world->start();
+    for (int i = 0; i < 3; ++i) world->step();
+    const std::uint64_t before = allocations.load();
+    EXPECT_GT(before, 0U);
+    for (int i = 0; i < 50; ++i) world->step();
+    EXPECT_EQ(allocations.load() - before, 0U) << threads << " threads";
+    EXPECT_EQ(world->state(), RunState::Running) << world->failure();
+  }
+}
+
+}  // namespace
+}  // namespace tandem::core
