@@ -1,0 +1,55 @@
+#include "mixed_reality/safety/fence.hpp"
+
+#include <cmath>
+#include <gtest/gtest.h>
+#include <numbers>
+
+namespace tandem::mixed_reality {
+namespace {
+
+using std::numbers::pi;
+constexpr Fence kFence{-1.0, -0.5, 1.0, 0.5};
+
+core::Pose at(double x_m, double y_m, double heading_rad) {
+  return {x_m, y_m, 0.0, std::cos(heading_rad), std::sin(heading_rad)};
+}
+
+hal::WheelSpeeds kept(const core::Pose& pose, double left, double right) {
+  hal::WheelSpeeds wheels;
+  wheels.set(left, right);
+  keep_inside(kFence, pose, 0.5, wheels);
+  return wheels;
+}
+
+TEST(ArenaFence, LeavesARobotAloneThatIsFarFromTheEdge) {
+  EXPECT_EQ(kept(at(0.0, 0.0, 0.0), 0.1, 0.05).left_m_s, 0.1);
+  EXPECT_EQ(kept(at(0.94, 0.0, 0.0), 0.1, 0.1).left_m_s, 0.1);
+}
+
+TEST(ArenaFence, ARobotThatWouldLeaveMayStillTurn) {
+  for (const double heading : {0.0, pi / 2.0, pi, -pi / 2.0}) {
+    const core::Pose edge = at(0.99 * std::cos(heading), 0.49 * std::sin(heading), heading);
+    const hal::WheelSpeeds wheels = kept(edge, 0.1, 0.06);
+    EXPECT_NEAR(wheels.left_m_s, 0.02, 1e-12) << heading;
+    EXPECT_NEAR(wheels.right_m_s, -0.02, 1e-12) << heading;
+  }
+}
+
+TEST(ArenaFence, BackwardsIsLookedAtToo) {
+  EXPECT_EQ(kept(at(0.99, 0.0, pi), -0.1, -0.1).left_m_s, 0.0);
+}
+
+TEST(ArenaFence, ARobotOutsideMayComeBackButGoNoFurther) {
+  EXPECT_EQ(kept(at(1.3, 0.0, pi), 0.1, 0.1).left_m_s, 0.1);
+  EXPECT_EQ(kept(at(1.3, 0.0, 0.0), 0.1, 0.1).left_m_s, 0.0);
+}
+
+TEST(ArenaFence, ClampsPosesAndKnowsWhatIsInside) {
+  EXPECT_TRUE(kFence.contains(at(1.0, -0.5, 0.0)));
+  EXPECT_FALSE(kFence.contains(at(1.01, 0.0, 0.0)));
+  EXPECT_EQ(kFence.clamped(at(1.3, -7.0, 0.0)).x_m, 1.0);
+  EXPECT_EQ(kFence.clamped(at(1.3, -7.0, 0.0)).y_m, -0.5);
+}
+
+}  // namespace
+}  // namespace tandem::mixed_reality
