@@ -58,9 +58,9 @@ struct Clock : Reading {
   double tick_s = 0.0;
 
   void describe(FieldList& f) const {
-    f.add("tick", tick, unit::none, Frame::None, Fusion::Real, "number of this control step");
-    f.add("now_ns", now_ns, unit::none, Frame::None, Fusion::Real, "nanoseconds since the start of the run");
-    f.add("tick_s", tick_s, unit::s, Frame::None, Fusion::Real, "length of a control step");
+    f.add("tick", tick, unit::none, Frame::None, Fusion::Virtual, "number of this control step");
+    f.add("now_ns", now_ns, unit::none, Frame::None, Fusion::Virtual, "nanoseconds since the start of the run");
+    f.add("tick_s", tick_s, unit::s, Frame::None, Fusion::Virtual, "length of a control step");
   }
 };
 
