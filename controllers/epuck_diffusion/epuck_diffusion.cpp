@@ -27,7 +27,7 @@ void EpuckDiffusion::step() noexcept {
     y += nearness_m * directions_.y[i];
   }
   const float short_m = delta_ * range_m;
-  const bool free = x * x + y * y < short_m * short_m;
+  const bool free = x * x + y * y <= short_m * short_m;  // nothing in sight is free, also with delta 0
   const bool behind = x < 0.0F && std::fabs(y) <= -x * tan_alpha_;
   if (free || behind) {
     wheels_.set(velocity_m_s_, velocity_m_s_);

@@ -7,9 +7,10 @@
 
 namespace tandem::controllers {
 
-/// The potential-field spreading of Howard et al. (2002), reduced to what an e-puck can do, as in the benchmark of Pinciroli
-/// et al. (2012), section 4.1: the infrared readings are summed as vectors that point at the obstacles. A short sum, or one
-/// that leaves the way ahead free, means straight on; otherwise the robot pivots on the wheel away from the obstacle.
+/// The potential-field spreading of Howard et al. (2002), reduced to what an e-puck can do, as in the benchmark of
+/// Pinciroli et al. (2012), section 4.1: the infrared readings are summed as vectors that point at the obstacles. A
+/// short sum, or one that leaves the way ahead free, means straight on; otherwise the robot pivots on the wheel away
+/// from the obstacle.
 class EpuckDiffusion final : public hal::Controller {
  public:
   struct Params {
@@ -17,8 +18,10 @@ class EpuckDiffusion final : public hal::Controller {
     double delta = 0.1;
     double velocity_m_s = 0.05;
     void describe(hal::ParamVisitor& v) {
-      v.number("alpha", alpha_rad, hal::unit::deg, {0.0, 1.5}, "The way ahead is free when the free direction is within this of it.");
-      v.number("delta", delta, hal::unit::none, {0.0, 24.0}, "Sums of closeness (0 far, 1 contact, each sensor) below this count as free.");
+      v.number("alpha", alpha_rad, hal::unit::deg, {0.0, 1.5},
+               "The way ahead is free when the free direction is within this of it.");
+      v.number("delta", delta, hal::unit::none, {0.0, 24.0},
+               "Sums of closeness (0 far, 1 contact, each sensor) below this count as free.");
       v.number("velocity", velocity_m_s, hal::unit::cm_s, {0.0, 10.0}, "Wheel speed.");
     }
   };

@@ -7,8 +7,8 @@
 
 namespace tandem::controllers {
 
-/// A Braitenberg vehicle [Braitenberg 1984, vehicle 3]: drives at its cruising speed, slows down before what is ahead and
-/// turns away from the side where more is near. Without a fresh reading it stands still.
+/// A Braitenberg vehicle [Braitenberg 1984, vehicle 3]: drives at its cruising speed, slows down before what is ahead
+/// and turns away from the side where more is near. Without a fresh reading it stands still.
 class ObstacleAvoidance final : public hal::Controller {
  public:
   struct Params {
@@ -17,8 +17,10 @@ class ObstacleAvoidance final : public hal::Controller {
     double turn_at = 0.6;
     void describe(hal::ParamVisitor& v) {
       v.number("cruise", cruise_m_s, hal::unit::cm_s, {0.0, 100.0}, "Speed on free ground.");
-      v.number("gain", gain, hal::unit::none, {0.0, 20.0}, "How strongly an obstacle on one side turns the robot to the other.");
-      v.number("turn_at", turn_at, hal::unit::none, {0.0, 2.0}, "Closeness ahead (0 far, 1 contact) from which it turns on the spot.");
+      v.number("gain", gain, hal::unit::none, {0.0, 20.0},
+               "How strongly an obstacle on one side turns the robot to the other.");
+      v.number("turn_at", turn_at, hal::unit::none, {0.0, 2.0},
+               "Closeness ahead (0 far, 1 contact) from which it turns on the spot.");
     }
   };
 

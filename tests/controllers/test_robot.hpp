@@ -1,0 +1,150 @@
+// A robot with real ports for the tests of controllers, and a room to drive it in.
+#pragma once
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <gtest/gtest.h>
+#include <limits>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "hal/device/ring_sensors.hpp"
+#include "hal/device/wheels.hpp"
+#include "hal/robot.hpp"
+#include "hal/spec/epuck.hpp"
+
+namespace tandem::test {
+
+/// A two-wheeled robot with a proximity ring; nothing in sight, readings fresh.
+class TestRobot final : public hal::Robot {
+ public:
+  explicit TestRobot(const hal::DataSheet& sheet = hal::epuck::kDataSheet, bool has_wheels = true)
+      : sheet_(sheet), has_wheels_(has_wheels) {
+    proximity.validity = hal::Validity::Fresh;
+    proximity.count = static_cast<std::uint32_t>(sheet.proximity.size());
+    proximity.range_m = static_cast<float>(sheet.proximity_range_m);
+    clear();
+  }
+
+  std::string_view id() const noexcept override { return "robot"; }
+  const hal::DataSheet& data_sheet() const noexcept override { return sheet_; }
+  std::uint64_t seed() const noexcept override { return 1; }
+
+  void clear() { proximity.distance_m.fill(proximity.range_m); }
+  void see(std::size_t sensor, double closeness) {
+    proximity.distance_m[sensor] = static_cast<float>((1.0 - closeness) * sheet_.proximity_range_m);
+  }
+
+  hal::Proximity proximity;
+  hal::WheelSpeeds wheels;
+
+ protected:
+  void* take(const hal::PortType& type) override {
+    if (type.name == hal::Proximity::kName && type.role == hal::Role::Sensor) return &proximity;
+    if (has_wheels_ && type.name == hal::WheelSpeeds::kName) return &wheels;
+    throw hal::DeviceError("robot has no " + std::string(type.name));
+  }
+
+ private:
+  const hal::DataSheet& sheet_;
+  bool has_wheels_;
+};
+
+/// A convex room of straight walls, each the half plane {p : p.x * nx + p.y * ny <= c}, and a robot's pose in it.
+struct Room {
+  struct Wall {
+    double nx, ny, c;
+  };
+  std::vector<Wall> walls;
+  double x_m = 0.0;
+  double y_m = 0.0;
+  double heading_rad = 0.0;
+
+  /// Distance from the centre to the nearest wall.
+  double clearance_m() const {
+    double nearest = std::numeric_limits<double>::infinity();
+    for (const Wall& w : walls) nearest = std::min(nearest, w.c - x_m * w.nx - y_m * w.ny);
+    return nearest;
+  }
+
+  void look(TestRobot& robot) const {
+    const auto mounts = robot.data_sheet().proximity;
+    const double c = std::cos(heading_rad);
+    const double s = std::sin(heading_rad);
+    for (std::size_t i = 0; i < mounts.size(); ++i) {
+      const double px = x_m + c * mounts[i].x_m - s * mounts[i].y_m;
+      const double py = y_m + s * mounts[i].x_m + c * mounts[i].y_m;
+      const double dx = std::cos(heading_rad + mounts[i].bearing_rad);
+      const double dy = std::sin(heading_rad + mounts[i].bearing_rad);
+      double nearest = robot.data_sheet().proximity_range_m;
+      for (const Wall& w : walls) {
+        const double approach = dx * w.nx + dy * w.ny;
+        if (approach > 0.0) nearest = std::min(nearest, std::max(0.0, (w.c - px * w.nx - py * w.ny) / approach));
+      }
+      robot.proximity.distance_m[i] = static_cast<float>(nearest);
+    }
+  }
+
+  void roll(const TestRobot& robot, double dt_s) {
+    const double v = 0.5 * (robot.wheels.left_m_s + robot.wheels.right_m_s);
+    const double turn = (robot.wheels.right_m_s - robot.wheels.left_m_s) / robot.data_sheet().wheel_base_m * dt_s;
+    x_m += v * dt_s * std::cos(heading_rad + 0.5 * turn);
+    y_m += v * dt_s * std::sin(heading_rad + 0.5 * turn);
+    heading_rad += turn;
+  }
+};
+
+/// Drives through `room` for `ticks` of 100 ms. @returns the smallest clearance of the centre from a wall on the way
+template <class Controller>
+double smallest_clearance(Controller& controller, TestRobot& robot, Room& room, int ticks) {
+  double smallest = room.clearance_m();
+  for (int k = 0; k < ticks; ++k) {
+    room.look(robot);
+    controller.step();
+    room.roll(robot, 0.1);
+    smallest = std::min(smallest, room.clearance_m());
+  }
+  return smallest;
+}
+
+/// Reads nothing, so that defaults stay, but notes what each number was called and means without a suffix.
+struct NumberNotes final : hal::ParamVisitor {
+  struct Note {
+    std::string name, bare;
+    double value_si;
+    hal::Range range;
+  };
+  std::vector<Note> notes;
+  void number(std::string_view name, double& v, const hal::Unit& bare, hal::Range r, std::string_view doc) override {
+    EXPECT_FALSE(doc.empty());
+    notes.push_back({std::string(name), std::string(bare.symbol), v, r});
+  }
+  void integer(std::string_view, std::int64_t&, hal::Range, std::string_view) override {}
+  void flag(std::string_view, bool&, std::string_view) override {}
+  void text(std::string_view, std::string&, std::string_view) override {}
+  void choice(std::string_view, std::string&, std::span<const std::string_view>, std::string_view) override {}
+  void vector(std::string_view, std::array<double, 3>&, const hal::Unit&, std::string_view) override {}
+};
+
+/// What `nm -D` says of a shared object; empty when there is no nm.
+inline std::string dynamic_symbols(const std::string& library) {
+  std::string text;
+  FILE* pipe = popen(("nm -D '" + library + "' 2>/dev/null").c_str(), "r");
+  if (pipe == nullptr) return text;
+  std::array<char, 4096> buffer{};
+  for (std::size_t n = 0; (n = fread(buffer.data(), 1, buffer.size(), pipe)) > 0;) text.append(buffer.data(), n);
+  pclose(pipe);
+  return text;
+}
+
+/// Fails when `library` refers to anything of a world: a controller must run in all of them.
+inline void expect_no_world_in(const std::string& library) {
+  const std::string symbols = dynamic_symbols(library);
+  ASSERT_NE(symbols.find("tandem_plugin"), std::string::npos) << "nm -D shows no plug-in in " << library;
+  for (const char* world : {"6tandem4core", "6tandem7bridges", "6tandem13mixed_reality", "6tandem3app"}) {
+    EXPECT_EQ(symbols.find(world), std::string::npos) << world << " in " << library;
+  }
+}
+
+}  // namespace tandem::test
