@@ -1,0 +1,209 @@
+#include "bridges/epuck/bridge.hpp"
+
+#include <algorithm>
+#include <chrono>
+
+#include "bridges/link/pending_link.hpp"
+#include "hal/check.hpp"
+
+namespace tandem::bridges::epuck {
+namespace {
+
+using hal::TimeNs;
+
+constexpr TimeNs kLongestWait = 20 * hal::kNsPerMs;  // then deadlines and the end are looked at
+constexpr TimeNs kLongestReopen = 4 * hal::kNsPerSecond;
+
+LinkStatistics sum(const LinkStatistics& a, const LinkStatistics& b) noexcept {
+  return {a.bytes_in + b.bytes_in, a.bytes_out + b.bytes_out, a.bytes_refused + b.bytes_refused, a.errors + b.errors};
+}
+
+}  // namespace
+
+SessionTiming timing_for(std::string_view link_name) noexcept {
+  SessionTiming timing;
+  if (link_name.find("rfcomm") != std::string_view::npos) {
+    timing.answer_ns = 500 * hal::kNsPerMs;
+    timing.gap_ns = 200 * hal::kNsPerMs;
+    timing.drain_ns = 500 * hal::kNsPerMs;
+  }
+  return timing;
+}
+
+EpuckBridge::EpuckBridge(BridgeSettings settings, LinkOpener opener, hal::Log log)
+    : settings_(std::move(settings)),
+      opener_(std::move(opener)),
+      log_(log),
+      driver_(settings_.driver, std::move(log)) {}
+
+EpuckBridge::~EpuckBridge() {
+  shut_down();
+}
+
+void EpuckBridge::start() {
+  TANDEM_CHECK(!thread_.joinable() && !ending_, "a bridge is started once");
+  thread_ = std::thread([this] { run(); });
+}
+
+void EpuckBridge::shut_down() {
+  ending_ = true;
+  {
+    const std::lock_guard lock(mutex_);
+    changed_.notify_all();
+  }
+  if (thread_.joinable()) thread_.join();
+}
+
+// --- the thread ---
+
+void EpuckBridge::run() {
+  while (!ending_) {
+    const std::unique_ptr<ByteLink> link = open_link();
+    if (!link) continue;
+    {
+      const std::lock_guard lock(mutex_);
+      link_ = link.get();
+      ++links_opened_;
+    }
+    serve(*link);
+    if (ending_) say_farewell(*link);
+    const std::lock_guard lock(mutex_);
+    link_ = nullptr;
+    bytes_before_ = sum(bytes_before_, link->statistics());
+    driver_.link_gone(monotonic_ns());
+    changed_.notify_all();
+  }
+}
+
+/// Tries until the link opens; null at the end.
+std::unique_ptr<ByteLink> EpuckBridge::open_link() {
+  TimeNs pause = settings_.reopen_ns;
+  std::string logged;
+  while (!ending_) {
+    PendingLink pending(opener_);
+    auto opened = pending.take();
+    std::unique_lock lock(mutex_);
+    const auto ended = [this] { return ending_.load(); };
+    while (!opened && !changed_.wait_for(lock, std::chrono::milliseconds(5), ended)) opened = pending.take();
+    if (!opened) break;
+    if (opened->ok()) {
+      link_error_.clear();
+      return std::move(*opened).value();
+    }
+    link_error_ = opened->error().message;
+    if (link_error_ != logged)
+      log_.warning("e-puck '" + std::string(driver_.robot().id()) + "': " + link_error_ + "; trying on");
+    logged = link_error_;
+    changed_.wait_for(lock, std::chrono::nanoseconds(pause), ended);
+    pause = std::min(2 * pause, kLongestReopen);
+  }
+  return nullptr;
+}
+
+void EpuckBridge::serve(ByteLink& link) {
+  while (!ending_ && link.state() == LinkState::Open) {
+    const TimeNs now = monotonic_ns();
+    TimeNs wait = kLongestWait;
+    {
+      const std::lock_guard lock(mutex_);
+      pump_now(now);
+      wait = std::clamp<TimeNs>(driver_.next_deadline() - now, 0, kLongestWait);
+    }
+    link.wait(wait);
+  }
+}
+
+void EpuckBridge::say_farewell(ByteLink& link) {
+  const TimeNs end = monotonic_ns() + settings_.farewell_ns;
+  {
+    const std::lock_guard lock(mutex_);
+    driver_.farewell(monotonic_ns());
+    pump_now(monotonic_ns());
+  }
+  for (TimeNs now = monotonic_ns(); now < end && link.state() == LinkState::Open; now = monotonic_ns()) {
+    link.wait(std::min(kLongestWait, end - now));
+    const std::lock_guard lock(mutex_);
+    pump_now(monotonic_ns());
+    if (driver_.idle()) break;
+  }
+}
+
+void EpuckBridge::pump_now(TimeNs now) noexcept {
+  if (link_ == nullptr) return;
+  const SessionState before = driver_.state();
+  driver_.pump(*link_, now);
+  if (driver_.state() != before) changed_.notify_all();
+}
+
+// --- the loop ---
+
+hal::Status EpuckBridge::wait_active(TimeNs timeout_ns) {
+  std::unique_lock lock(mutex_);
+  const auto active = [this] { return ending_ || driver_.state() == SessionState::Active; };
+  if (changed_.wait_for(lock, std::chrono::nanoseconds(timeout_ns), active) && !ending_) return {};
+  const std::string who = "e-puck '" + std::string(driver_.robot().id()) + "' is not there: ";
+  if (!link_error_.empty()) return hal::Error{who + link_error_};
+  const char* trouble = driver_.session().trouble();
+  return hal::Error{
+      who + (*trouble != '\0' ? trouble : state_name(driver_.state())) +
+      "; is it switched on, its selector at 3 (Bluetooth) or 8 (USB, e-puck2), and the baud rate 115200?"};
+}
+
+void EpuckBridge::latch(hal::Tick tick, TimeNs now) noexcept {
+  const std::lock_guard lock(mutex_);
+  driver_.latch(tick, now);
+}
+
+void EpuckBridge::commit(TimeNs now) noexcept {
+  const std::lock_guard lock(mutex_);
+  driver_.commit(now);
+  pump_now(now);
+}
+
+void EpuckBridge::fault(TimeNs now, std::string_view why) {
+  const std::lock_guard lock(mutex_);
+  driver_.fault(now, why);
+  pump_now(now);
+}
+
+void EpuckBridge::stop(TimeNs now) noexcept {
+  const std::lock_guard lock(mutex_);
+  driver_.stop(now);
+  pump_now(now);
+}
+
+void EpuckBridge::resume() noexcept {
+  const std::lock_guard lock(mutex_);
+  driver_.resume();
+}
+
+SessionState EpuckBridge::state() const noexcept {
+  const std::lock_guard lock(mutex_);
+  return driver_.state();
+}
+
+Odometry EpuckBridge::odometry() const noexcept {
+  const std::lock_guard lock(mutex_);
+  return driver_.odometry();
+}
+
+BridgeStatus EpuckBridge::status() const {
+  const std::lock_guard lock(mutex_);
+  const Session& session = driver_.session();
+  BridgeStatus status;
+  status.state = session.state();
+  status.trouble = link_error_.empty() ? session.trouble() : link_error_;
+  status.link = link_ != nullptr ? link_->name() : "";
+  status.stopped = driver_.stopped();
+  status.identity = session.identity();
+  status.layout = session.layout();
+  status.samples = session.samples();
+  status.odometry = driver_.odometry();
+  status.session = session.statistics();
+  status.driver = driver_.statistics();
+  status.bytes = link_ != nullptr ? sum(bytes_before_, link_->statistics()) : bytes_before_;
+  status.links_opened = links_opened_;
+  return status;
+}
+
+}  // namespace tandem::bridges::epuck

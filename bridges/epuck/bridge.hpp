@@ -1,0 +1,100 @@
+// A real e-puck behind the control interface, with its own I/O thread.
+//
+//   EpuckBridge bridge(settings, opener, log);
+//   controller = type.construct(memory, bridge.robot(), params);   // takes its ports: they decide what is asked for
+//   bridge.start();                                                 // opens the link, shakes hands, makes the first
+//   reading if (auto ready = bridge.wait_active(5 s); !ready) … each tick:  bridge.latch(tick, now);  controller step;
+//   bridge.commit(now);      (bridge.fault(now, what) if it threw) ~EpuckBridge: the robot is stopped.
+//
+// The thread stamps bytes when they arrive, answers time-outs, opens the link anew when it was lost, and stops the
+// robot when the loop stops committing. The stock firmware has no watchdog of its own: when the link is cut while the
+// robot moves, it drives on until the link is back; when this process is killed, for ever. Keep speeds small where that
+// matters.
+#pragma once
+#include <atomic>
+#include <condition_variable>
+#include <mutex>
+#include <thread>
+
+#include "bridges/epuck/driver.hpp"
+
+namespace tandem::bridges::epuck {
+
+struct BridgeSettings {
+  DriverSettings driver;
+  hal::TimeNs reopen_ns = 500 * hal::kNsPerMs;    ///< between tries to open the link, doubled up to 4 s
+  hal::TimeNs farewell_ns = 300 * hal::kNsPerMs;  ///< how long the end waits for the robot to confirm its stop
+};
+
+/// Timing for a link of this name: Bluetooth (rfcomm) devices answer late.
+SessionTiming timing_for(std::string_view link_name) noexcept;
+
+/// A copy of everything that can be told about the bridge.
+struct BridgeStatus {
+  SessionState state = SessionState::Absent;
+  std::string trouble;   ///< why it is not active; the opener's message when the link does not open
+  std::string link;      ///< "" while there is none
+  bool stopped = false;  ///< by `stop` or `fault`
+  Identity identity;
+  AnswerLayout layout;
+  Samples samples;
+  Odometry odometry;
+  SessionStatistics session;
+  DriverStatistics driver;
+  LinkStatistics bytes;  ///< over all links that were opened
+  std::uint64_t links_opened = 0;
+};
+
+/// Owns link and thread. `robot()`, `latch`, `commit`, `fault` belong to the loop's thread; all else may be called from
+/// any.
+class EpuckBridge {
+ public:
+  /// `opener` is called from threads of the bridge, again after each hang-up. Times given to the bridge are
+  /// CLOCK_MONOTONIC.
+  EpuckBridge(BridgeSettings settings, LinkOpener opener, hal::Log log = {});
+  /// Stops the robot, waits at most `farewell_ns` for it to confirm, closes the link.
+  ~EpuckBridge();
+  EpuckBridge(const EpuckBridge&) = delete;
+  EpuckBridge& operator=(const EpuckBridge&) = delete;
+
+  EpuckRobot& robot() noexcept { return driver_.robot(); }
+
+  /// Starts the thread. Once, after the ports were taken.
+  void start();
+  /// Errors: not active within `timeout_ns`; says what is known (link does not open, nobody answers …) and what to do.
+  hal::Status wait_active(hal::TimeNs timeout_ns);
+  /// Stops the robot and ends the thread; the destructor does the same.
+  void shut_down();
+
+  void latch(hal::Tick tick, hal::TimeNs now) noexcept;
+  void commit(hal::TimeNs now) noexcept;
+  void fault(hal::TimeNs now, std::string_view why);
+  void stop(hal::TimeNs now) noexcept;
+  void resume() noexcept;
+
+  SessionState state() const noexcept;
+  Odometry odometry() const noexcept;
+  BridgeStatus status() const;
+
+ private:
+  void run();
+  std::unique_ptr<ByteLink> open_link();
+  void serve(ByteLink& link);
+  void say_farewell(ByteLink& link);
+  void pump_now(hal::TimeNs now) noexcept;
+
+  BridgeSettings settings_;
+  LinkOpener opener_;
+  hal::Log log_;
+  mutable std::mutex mutex_;         // guards everything below but the ports
+  std::condition_variable changed_;  // state, or end
+  EpuckDriver driver_;
+  ByteLink* link_ = nullptr;  // while served
+  std::string link_error_;
+  LinkStatistics bytes_before_;  // of links that are gone
+  std::uint64_t links_opened_ = 0;
+  std::atomic<bool> ending_{false};
+  std::thread thread_;
+};
+
+}  // namespace tandem::bridges::epuck

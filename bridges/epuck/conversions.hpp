@@ -1,0 +1,55 @@
+// Between the e-puck's raw values and SI units. Each wire value has its conversion here and nowhere else.
+#pragma once
+#include <array>
+#include <cstdint>
+
+#include "bridges/epuck/codec.hpp"
+#include "bridges/epuck/line.hpp"
+#include "hal/device/leds.hpp"
+
+namespace tandem::bridges::epuck {
+
+/// Nearest whole number of steps a second, within +-`kMaxSteps_s`. Not finite: 0.
+StepsPerS to_steps_per_s(double speed_m_s) noexcept;
+double to_m_s(StepsPerS speed) noexcept;
+
+/// Steps from one reading of a 16-bit wheel counter to the next, the short way round.
+/// Unambiguous while less than 32768 steps lie between: 32 s at full speed.
+constexpr std::int32_t encoder_difference(std::int16_t newer, std::int16_t older) noexcept {
+  return static_cast<std::int16_t>(
+      static_cast<std::uint16_t>(static_cast<std::uint16_t>(newer) - static_cast<std::uint16_t>(older)));
+}
+double steps_to_m(std::int64_t steps) noexcept;
+
+/// Distance at which white paper gives `counts`: the data sheet's curve read backwards, straight between its knots.
+/// 0 counts and fewer: the range of the sensor. The curve's largest and more: contact, 0.
+double proximity_distance_m(double counts) noexcept;
+/// The curve read forwards: counts at `distance_m`; beyond the range 0.
+double proximity_counts(double distance_m) noexcept;
+
+/// Ambient light, 0 dark to 1 saturated, from counts that fall with brightness.
+double light_level(std::uint16_t ambient) noexcept;
+/// Reflectance, 0 black to 1 white.
+double ground_reflectance(std::uint16_t counts) noexcept;
+/// Specific force along one axis. Webots' firmware sends raw counts with 2000 at rest; all others are zeroed at start.
+std::array<double, 3> force_m_s2(const std::array<std::int16_t, 3>& counts, Firmware firmware) noexcept;
+/// 0 silence to 1 full scale.
+double sound_level(std::uint16_t volume) noexcept;
+
+struct BatteryState {
+  double supply_V = 0.0;
+  double charge = 0.0;  ///< 0 empty to 1 full, linear in the voltage
+};
+/// Raw value of `b`. Boards before HW1.3 only tell 1 (above 3.4 V) or 0: then the middle of what that leaves, or empty.
+BatteryState battery_state(std::uint16_t raw, Firmware firmware) noexcept;
+
+/// A lamp of one colour is on when any channel is above half.
+constexpr bool lamp_on(hal::Rgb color) noexcept {
+  return color.r > 127 || color.g > 127 || color.b > 127;
+}
+/// 0 to 255 -> 0 to 100, rounded.
+constexpr std::uint8_t to_percent(std::uint8_t channel) noexcept {
+  return static_cast<std::uint8_t>((channel * 100U + 127U) / 255U);
+}
+
+}  // namespace tandem::bridges::epuck

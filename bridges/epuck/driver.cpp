@@ -1,0 +1,157 @@
+#include "bridges/epuck/driver.hpp"
+
+#include <algorithm>
+
+#include "bridges/epuck/conversions.hpp"
+#include "hal/filter.hpp"
+#include "hal/spec/epuck.hpp"
+
+namespace tandem::bridges::epuck {
+namespace {
+
+constexpr double kMaxSpeed_m_s = hal::epuck::kDataSheet.max_wheel_speed_m_s;
+
+// A packet has at most 64 bytes; a link that does not take them at once is about to hang.
+constexpr hal::TimeNs kWriteBudget = 2 * hal::kNsPerMs;
+
+}  // namespace
+
+EpuckDriver::EpuckDriver(DriverSettings settings, hal::Log log)
+    : settings_(std::move(settings)), log_(std::move(log)), robot_(settings_.robot), session_(settings_.timing) {}
+
+void EpuckDriver::latch(hal::Tick tick, hal::TimeNs now) noexcept {
+  robot_.fill(session_.samples(), session_.identity(), tick, now);
+}
+
+hal::WheelSpeeds EpuckDriver::filtered(hal::TimeNs now) noexcept {
+  hal::WheelSpeeds wheels = robot_.wheels();
+  switch (hal::filter(wheels, kMaxSpeed_m_s)) {
+    case hal::FilterResult::Clamped:
+      ++statistics_.clamped;
+      break;
+    case hal::FilterResult::NotFinite:
+      ++statistics_.not_finite;
+      break;
+    case hal::FilterResult::Passed:
+      break;
+  }
+  const bool wanted = wheels.left_m_s != 0.0 || wheels.right_m_s != 0.0;
+  if (session_.state() != SessionState::Active) {
+    interrupted_ = interrupted_ || wanted || armed_epoch_ != 0;
+    return {};
+  }
+  if (session_.epoch() != armed_epoch_) {
+    interrupted_ = interrupted_ || armed_epoch_ != 0;
+    armed_epoch_ = session_.epoch();
+  }
+  if (interrupted_) {
+    interrupted_ = false;
+    ramping_ = settings_.ramp_ns > 0;
+    ramp_start_ns_ = now;
+    ++statistics_.rearmed;
+  }
+  if (ramping_) {
+    const double share = static_cast<double>(now - ramp_start_ns_) / static_cast<double>(settings_.ramp_ns);
+    ramping_ = share < 1.0;
+    if (ramping_) hal::filter(wheels, share * kMaxSpeed_m_s);
+  }
+  return wheels;
+}
+
+void EpuckDriver::commit(hal::TimeNs now) noexcept {
+  ++statistics_.commits;
+  last_commit_ns_ = now;
+  Actuation actuation;
+  if (!halted_) {
+    const hal::WheelSpeeds wheels = filtered(now);
+    actuation = robot_.lamps();
+    actuation.left = to_steps_per_s(wheels.left_m_s);
+    actuation.right = to_steps_per_s(wheels.right_m_s);
+  }
+  moving_ = actuation.left.value != 0 || actuation.right.value != 0;
+  session_.request(actuation, robot_.demand(), now);
+}
+
+void EpuckDriver::send(ByteLink& link) noexcept {
+  const auto bytes = session_.output().bytes();
+  if (bytes.empty()) return;
+  statistics_.refused_bytes += bytes.size() - link.write(bytes, kWriteBudget);
+  session_.clear_output();
+}
+
+void EpuckDriver::pump(ByteLink& link, hal::TimeNs now) noexcept {
+  std::array<std::uint8_t, 256> buffer;
+  if (link.state() == LinkState::Open) session_.link_up(now);
+  send(link);  // what commit or stop queued goes first
+  for (Received r = link.read(buffer); r.size > 0; r = link.read(buffer)) {
+    session_.on_bytes(std::span(buffer.data(), r.size), r.at_ns);
+    send(link);
+  }
+  if (link.state() != LinkState::Open) session_.link_down(now);
+  session_.poll(now);
+  if (moving_ && now - last_commit_ns_ > settings_.command_timeout_ns) {
+    ++statistics_.watchdog_stops;
+    moving_ = false;
+    interrupted_ = true;
+    session_.stop(now);
+    log_.warning("e-puck '" + settings_.robot.id + "': stopped, no commands came for " +
+                 std::to_string((now - last_commit_ns_) / hal::kNsPerMs) + " ms");
+  }
+  send(link);
+  log_change();
+}
+
+void EpuckDriver::link_gone(hal::TimeNs now) noexcept {
+  session_.link_down(now);
+  log_change();
+}
+
+hal::TimeNs EpuckDriver::next_deadline() const noexcept {
+  const hal::TimeNs deadline = session_.next_deadline();
+  return moving_ ? std::min(deadline, last_commit_ns_ + settings_.command_timeout_ns + 1) : deadline;
+}
+
+void EpuckDriver::stop(hal::TimeNs now) noexcept {
+  halted_ = true;
+  moving_ = false;
+  interrupted_ = true;
+  session_.stop(now);
+}
+
+void EpuckDriver::resume() noexcept {
+  halted_ = false;
+}
+
+void EpuckDriver::fault(hal::TimeNs now, std::string_view why) {
+  ++statistics_.faults;
+  robot_.make_safe();
+  stop(now);
+  log_.error("e-puck '" + settings_.robot.id + "': stopped, its controller failed: " + std::string(why));
+}
+
+void EpuckDriver::farewell(hal::TimeNs now) noexcept {
+  halted_ = true;
+  moving_ = false;
+  session_.farewell(now);
+}
+
+Odometry EpuckDriver::odometry() const noexcept {
+  const Samples& s = session_.samples();
+  return {steps_to_m(s.left_steps), steps_to_m(s.right_steps), s.taken_ns[static_cast<std::size_t>(Quantity::Encoders)],
+          session_.statistics().encoder_rebased};
+}
+
+void EpuckDriver::log_change() {
+  const SessionState state = session_.state();
+  if (state == logged_) return;
+  const std::string who = "e-puck '" + settings_.robot.id + "': ";
+  if (state == SessionState::Active) {
+    log_.info(who + "active, " + std::string(firmware_name(session_.identity().firmware)) + ", " +
+              std::string(session_.identity().version_text()));
+  } else if (state == SessionState::Suspect || state == SessionState::Lost) {
+    log_.warning(who + state_name(state) + ": " + session_.trouble());
+  }
+  logged_ = state;
+}
+
+}  // namespace tandem::bridges::epuck

@@ -1,0 +1,101 @@
+// One e-puck without threads: robot, session and safety, driven by whoever owns the time.
+//
+// A tick of the caller:   latch(tick, now) -> controller step -> commit(now) -> pump(link, now)
+// Between ticks, whenever bytes may have come or `next_deadline()` is due: pump(link, now).
+// What is asked for by the commit of tick k fills the ports of tick k + 1.
+#pragma once
+#include <string>
+
+#include "bridges/epuck/robot.hpp"
+#include "bridges/link/link.hpp"
+#include "hal/log.hpp"
+
+namespace tandem::bridges::epuck {
+
+struct DriverSettings {
+  RobotSettings robot;
+  SessionTiming timing;
+  /// The robot is stopped when no commit came for so long: the loop hangs, or the controller does.
+  hal::TimeNs command_timeout_ns = 500 * hal::kNsPerMs;
+  /// After an interruption the speed limit rises from 0 to the robot's in this time: no jump. 0: at once.
+  hal::TimeNs ramp_ns = 500 * hal::kNsPerMs;
+};
+
+struct DriverStatistics {
+  std::uint64_t commits = 0;
+  std::uint64_t clamped = 0;         ///< commands beyond the robot's speed
+  std::uint64_t not_finite = 0;      ///< commands with NaN or infinity: made 0
+  std::uint64_t rearmed = 0;         ///< times that driving began anew with a ramp
+  std::uint64_t watchdog_stops = 0;  ///< for want of commits
+  std::uint64_t faults = 0;          ///< reported with `fault`
+  std::uint64_t refused_bytes = 0;   ///< that the link did not take
+};
+
+/// What the wheels rolled, as their counters tell.
+struct Odometry {
+  double left_m = 0.0;
+  double right_m = 0.0;
+  hal::TimeNs taken_ns = 0;   ///< arrival on the link's clock; 0: nothing yet
+  std::uint64_t rebased = 0;  ///< grows when motion in between is unknown (restart, long loss)
+};
+
+/// Safety as a table:
+///   first connection, standing      -> commands pass
+///   link lost, step lost, restart   -> robot stopped by the session; commands are ignored until a fresh answer, then
+///   ramp no commit for command_timeout   -> stop; next commit ramps `stop()`, `fault()`             -> stop, commands
+///   safe until `resume()`, then ramp NaN, infinite, too fast         -> 0, 0, clamped; counted
+/// Not thread-safe.
+class EpuckDriver {
+ public:
+  explicit EpuckDriver(DriverSettings settings, hal::Log log = {});
+
+  /// To construct a controller with, and to take further ports from.
+  EpuckRobot& robot() noexcept { return robot_; }
+
+  /// Fills the ports that were taken with the newest values.
+  void latch(hal::Tick tick, hal::TimeNs now) noexcept;
+  /// Filters the commands, queues them and the next question. Send them at once with `pump`.
+  void commit(hal::TimeNs now) noexcept;
+  /// Sends what is due, takes in what has arrived, applies time-outs. Never waits.
+  void pump(ByteLink& link, hal::TimeNs now) noexcept;
+  /// There is no link at present.
+  void link_gone(hal::TimeNs now) noexcept;
+  hal::TimeNs next_deadline() const noexcept;
+
+  /// Stops the robot and keeps it stopped, LEDs off, until `resume`. Sent with the next `pump`.
+  void stop(hal::TimeNs now) noexcept;
+  void resume() noexcept;
+  /// `stop` because the controller failed; `why` is logged with the robot's id. Every command becomes safe.
+  void fault(hal::TimeNs now, std::string_view why);
+  /// The end: stops the robot whatever it is doing. Then pump until `idle`, for a little while.
+  void farewell(hal::TimeNs now) noexcept;
+
+  SessionState state() const noexcept { return session_.state(); }
+  const Session& session() const noexcept { return session_; }
+  const DriverStatistics& statistics() const noexcept { return statistics_; }
+  Odometry odometry() const noexcept;
+  bool stopped() const noexcept { return halted_; }
+  /// Nothing is awaited from the robot.
+  bool idle() const noexcept { return session_.idle(); }
+
+ private:
+  void send(ByteLink& link) noexcept;
+  void log_change();
+  hal::WheelSpeeds filtered(hal::TimeNs now) noexcept;
+
+  DriverSettings settings_;
+  hal::Log log_;
+  EpuckRobot robot_;
+  Session session_;
+  DriverStatistics statistics_;
+  SessionState logged_ = SessionState::Absent;
+  bool halted_ = false;
+  bool moving_ = false;            // speeds other than 0 were handed to the session
+  bool interrupted_ = false;       // the next driving begins with a ramp
+  std::uint64_t armed_epoch_ = 0;  // 0: not yet
+  hal::TimeNs last_commit_ns_ = 0;
+  hal::TimeNs ramp_start_ns_ = 0;
+  bool ramping_ = false;
+};
+
+}  // namespace tandem::bridges::epuck

@@ -1,0 +1,133 @@
+#include "bridges/epuck/line.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cstring>
+
+namespace tandem::bridges::epuck {
+namespace {
+
+constexpr std::string_view kGreeting = "\x0C\x07WELCOME";
+constexpr std::string_view kVersionMark = "v,Version ";
+constexpr std::string_view kHardwareMark = "HW version: ";
+
+/// [GCtronic, EPFL, Webots] version strings of the firmwares in use.
+Firmware firmware_of(std::string_view version) noexcept {
+  if (version.find("Webots") != std::string_view::npos) return Firmware::Webots;
+  if (version.starts_with("Version 2.0.0")) return Firmware::BTcom;
+  if (version.starts_with("Version 2.")) return Firmware::Epuck2;
+  if (version.find("GCtronic") != std::string_view::npos) return Firmware::GCtronic;
+  return Firmware::Unknown;
+}
+
+}  // namespace
+
+bool append_line(Packet& packet, char letter, std::initializer_list<int> numbers) noexcept {
+  if (letter == 't') return false;
+  std::array<std::uint8_t, Packet::kCapacity> line;
+  std::size_t size = 0;
+  line[size++] = static_cast<std::uint8_t>(letter);
+  for (const int number : numbers) {
+    std::array<char, 12> digits;
+    const auto [end, error] = std::to_chars(digits.data(), digits.data() + digits.size(), number);
+    const auto n = static_cast<std::size_t>(end - digits.data());
+    if (error != std::errc{} || size + 1 + n + 1 > line.size()) return false;
+    line[size++] = ',';
+    std::copy_n(digits.begin(), n, line.begin() + static_cast<std::ptrdiff_t>(size));
+    size += n;
+  }
+  line[size++] = '\r';
+  return packet.append(std::span(line.data(), size));
+}
+
+bool LineReader::push(std::uint8_t byte) noexcept {
+  if (ended_) clear();
+  if (byte == '\n') {
+    while (size_ > 0 && text_[size_ - 1] == '\r') --size_;
+    ended_ = true;
+    return size_ > 0;
+  }
+  if (size_ == kCapacity) {
+    // Keep the newest half: what is looked for stands at the end of a line, after rests of other answers.
+    std::copy(text_.begin() + kCapacity / 2, text_.end(), text_.begin());
+    size_ = kCapacity - kCapacity / 2;
+    if (!cut_) ++cut_lines_;
+    cut_ = true;
+  }
+  text_[size_++] = static_cast<char>(byte);
+  return false;
+}
+
+void LineReader::clear() noexcept {
+  size_ = 0;
+  ended_ = false;
+  cut_ = false;
+}
+
+bool parse_answer(std::string_view line, LineAnswer& answer) noexcept {
+  if (line.empty() || line[0] < 'a' || line[0] > 'z') return false;
+  LineAnswer read;
+  read.letter = line[0];
+  line.remove_prefix(1);
+  while (!line.empty()) {
+    if (line[0] != ',' || read.count == read.values.size()) return false;
+    line.remove_prefix(1);
+    const auto [end, error] = std::from_chars(line.data(), line.data() + line.size(), read.values[read.count]);
+    if (error != std::errc{}) return false;
+    line.remove_prefix(static_cast<std::size_t>(end - line.data()));
+    ++read.count;
+  }
+  answer = read;
+  return true;
+}
+
+std::string_view firmware_name(Firmware firmware) noexcept {
+  switch (firmware) {
+    case Firmware::BTcom:
+      return "BTcom (EPFL)";
+    case Firmware::GCtronic:
+      return "asercom (GCtronic)";
+    case Firmware::Webots:
+      return "asercom (Webots)";
+    case Firmware::Epuck2:
+      return "asercom2 (e-puck2)";
+    case Firmware::Unknown:
+      break;
+  }
+  return "unknown";
+}
+
+std::string_view Identity::version_text() const noexcept {
+  return {version.data(), static_cast<std::size_t>(std::find(version.begin(), version.end(), '\0') - version.begin())};
+}
+
+bool parse_version(std::string_view line, Identity& identity) noexcept {
+  const std::size_t at = line.rfind(kVersionMark);
+  if (at == std::string_view::npos) return false;
+  const std::string_view version = line.substr(at + 2);
+  identity = Identity{};
+  identity.firmware = firmware_of(version);
+  for (std::size_t i = 0; i < std::min(version.size(), identity.version.size() - 1); ++i) {
+    identity.version[i] = version[i] >= ' ' && version[i] <= '~' ? version[i] : '?';
+  }
+  return true;
+}
+
+bool parse_hardware(std::string_view line, std::uint32_t& hardware) noexcept {
+  if (!line.starts_with(kHardwareMark)) return false;
+  line.remove_prefix(kHardwareMark.size());
+  const auto [end, error] = std::from_chars(line.data(), line.data() + line.size(), hardware, 16);
+  return error == std::errc{} && end == line.data() + line.size();
+}
+
+bool GreetingSpotter::push(std::uint8_t byte) noexcept {
+  if (byte != static_cast<std::uint8_t>(kGreeting[matched_])) {
+    matched_ = byte == static_cast<std::uint8_t>(kGreeting[0]) ? 1 : 0;
+    return false;
+  }
+  if (++matched_ < kGreeting.size()) return false;
+  matched_ = 0;
+  return true;
+}
+
+}  // namespace tandem::bridges::epuck

@@ -1,0 +1,249 @@
+#include "bridges/link/serial_link.hpp"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <exception>
+#include <fcntl.h>
+#include <libserial/SerialPort.h>
+#include <poll.h>
+#include <sys/file.h>
+#include <sys/ioctl.h>
+#include <termios.h>
+#include <unistd.h>
+
+namespace tandem::bridges {
+namespace {
+
+LibSerial::BaudRate baud_rate(std::uint32_t rate) noexcept {
+  using enum LibSerial::BaudRate;
+  switch (rate) {
+    case 1200:
+      return BAUD_1200;
+    case 2400:
+      return BAUD_2400;
+    case 4800:
+      return BAUD_4800;
+    case 9600:
+      return BAUD_9600;
+    case 19200:
+      return BAUD_19200;
+    case 38400:
+      return BAUD_38400;
+    case 57600:
+      return BAUD_57600;
+    case 115200:
+      return BAUD_115200;
+    case 230400:
+      return BAUD_230400;
+    case 460800:
+      return BAUD_460800;
+    case 500000:
+      return BAUD_500000;
+    case 576000:
+      return BAUD_576000;
+    case 921600:
+      return BAUD_921600;
+    case 1000000:
+      return BAUD_1000000;
+    case 1152000:
+      return BAUD_1152000;
+    case 1500000:
+      return BAUD_1500000;
+    case 2000000:
+      return BAUD_2000000;
+    case 2500000:
+      return BAUD_2500000;
+    case 3000000:
+      return BAUD_3000000;
+    case 4000000:
+      return BAUD_4000000;
+    default:
+      return BAUD_INVALID;
+  }
+}
+
+std::string advice(int error) {
+  switch (error) {
+    case ENOENT:
+    case ENXIO:
+    case ENODEV:
+      return "there is no such device; is the robot or adapter plugged in, or the rfcomm device bound?";
+    case EACCES:
+    case EPERM:
+      return "no permission; add yourself to the group that owns it (usually: sudo usermod -aG dialout $USER, then log "
+             "in again)";
+    case EBUSY:
+      return "it is in use by another program; close that one first";
+    case EISDIR:
+    case ENOTTY:
+      return "it is not a terminal device; name a serial port such as /dev/ttyUSB0 or /dev/rfcomm0";
+    case EHOSTDOWN:
+    case EHOSTUNREACH:
+    case ECONNREFUSED:
+    case ETIMEDOUT:
+      return std::string(std::strerror(error)) + "; is the robot switched on, in range and paired?";
+    default:
+      return std::strerror(error);
+  }
+}
+
+hal::Error open_error(const LinkAddress& address, int error) {
+  return hal::Error{"cannot open " + to_text(address) + ": " + advice(error)};
+}
+
+/// Closes a descriptor at the end of a scope.
+struct Descriptor {
+  explicit Descriptor(int descriptor) : fd(descriptor) {}
+  ~Descriptor() {
+    if (fd >= 0) ::close(fd);
+  }
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  int fd;
+};
+
+/// 0, or why the device cannot be used. LibSerial must never see such a device: it would abort on giving it up. `probe`
+/// stays open meanwhile, so that a Bluetooth connection is made once.
+int check_device(int probe) noexcept {
+  if (probe < 0) return errno;
+  if (::isatty(probe) == 0) return ENOTTY;
+  if (::flock(probe, LOCK_EX | LOCK_NB) != 0) return EBUSY;
+  return 0;
+}
+
+}  // namespace
+
+/// LibSerial's port. Closing one that was hung up throws out of LibSerial's destructor and ends the process; therefore
+/// its descriptor is first pointed at a scratch terminal, which always closes well.
+class SerialLink::Port {
+ public:
+  explicit Port(const LinkAddress& address) : serial_(std::make_unique<LibSerial::SerialPort>()) {
+    serial_->Open(address.target);
+    serial_->SetBaudRate(baud_rate(address.rate));
+    serial_->SetCharacterSize(LibSerial::CharacterSize::CHAR_SIZE_8);
+    serial_->SetParity(LibSerial::Parity::PARITY_NONE);
+    serial_->SetStopBits(LibSerial::StopBits::STOP_BITS_1);
+    serial_->SetFlowControl(LibSerial::FlowControl::FLOW_CONTROL_NONE);
+    serial_->SetVMin(0);
+    serial_->SetVTime(0);
+  }
+  ~Port() {
+    const int descriptor = serial_->IsOpen() ? serial_->GetFileDescriptor() : -1;
+    if (descriptor < 0) return;
+    ::ioctl(descriptor, TIOCNXCL);
+    const Descriptor master(::posix_openpt(O_RDWR | O_NOCTTY));
+    char path[64] = {};
+    const bool made = master.fd >= 0 && ::grantpt(master.fd) == 0 && ::unlockpt(master.fd) == 0 &&
+                      ::ptsname_r(master.fd, path, sizeof path) == 0;
+    const Descriptor slave(made ? ::open(path, O_RDWR | O_NOCTTY | O_NONBLOCK) : -1);
+    if (slave.fd >= 0 && ::dup2(slave.fd, descriptor) >= 0) {
+      try {
+        serial_->Close();
+        return;
+      } catch (const std::exception&) {
+      }
+    }
+    // No scratch terminal to be had: give up the few bytes of LibSerial's object rather than the process.
+    ::close(descriptor);
+    static_cast<void>(serial_.release());
+  }
+  Port(const Port&) = delete;
+  Port& operator=(const Port&) = delete;
+
+  int descriptor() const { return serial_->GetFileDescriptor(); }
+
+ private:
+  std::unique_ptr<LibSerial::SerialPort> serial_;
+};
+
+hal::Result<std::unique_ptr<ByteLink>> SerialLink::open(const LinkAddress& address) {
+  const Descriptor probe(::open(address.target.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC));
+  if (const int error = check_device(probe.fd); error != 0) return open_error(address, error);
+  try {
+    auto port = std::make_unique<Port>(address);
+    const int fd = port->descriptor();
+    ::flock(probe.fd, LOCK_UN);
+    // The lock holds off our own kind also where root overrides TIOCEXCL.
+    if (::flock(fd, LOCK_EX | LOCK_NB) != 0) return open_error(address, EBUSY);
+    ::ioctl(fd, TIOCEXCL);
+    ::fcntl(fd, F_SETFD, FD_CLOEXEC);
+    ::fcntl(fd, F_SETFL, ::fcntl(fd, F_GETFL) | O_NONBLOCK);
+    ::tcflush(fd, TCIFLUSH);
+    return std::unique_ptr<ByteLink>(new SerialLink(address, std::move(port)));
+  } catch (const std::exception& e) {
+    return hal::Error{"cannot set up " + to_text(address) + ": " + e.what()};
+  }
+}
+
+SerialLink::SerialLink(LinkAddress address, std::unique_ptr<Port> port)
+    : address_(std::move(address)), port_(std::move(port)), descriptor_(port_->descriptor()) {}
+
+SerialLink::~SerialLink() = default;
+
+void SerialLink::hang_up() noexcept {
+  if (open_.exchange(false)) ++errors_;
+}
+
+std::size_t SerialLink::write(std::span<const std::uint8_t> bytes, hal::TimeNs budget_ns) noexcept {
+  const hal::TimeNs deadline = monotonic_ns() + budget_ns;
+  std::size_t done = 0;
+  while (done < bytes.size() && open_) {
+    const ssize_t n = ::write(descriptor_, bytes.data() + done, bytes.size() - done);
+    if (n > 0) {
+      done += static_cast<std::size_t>(n);
+    } else if (n < 0 && errno != EAGAIN && errno != EINTR) {
+      hang_up();
+    } else {
+      const hal::TimeNs left = deadline - monotonic_ns();
+      if (left <= 0) break;
+      pollfd p{descriptor_, POLLOUT, 0};
+      ::poll(&p, 1, static_cast<int>((left + hal::kNsPerMs - 1) / hal::kNsPerMs));
+      if ((p.revents & (POLLHUP | POLLERR | POLLNVAL)) != 0) hang_up();
+    }
+  }
+  bytes_out_ += done;
+  bytes_refused_ += bytes.size() - done;
+  return done;
+}
+
+Received SerialLink::read(std::span<std::uint8_t> buffer) noexcept {
+  if (!open_ || buffer.empty()) return {};
+  pollfd p{descriptor_, POLLIN, 0};
+  if (::poll(&p, 1, 0) <= 0) return {};
+  const ssize_t n = (p.revents & POLLIN) != 0 ? ::read(descriptor_, buffer.data(), buffer.size()) : 0;
+  const bool nothing_yet = n < 0 && (errno == EAGAIN || errno == EINTR);
+  if (n > 0) {
+    bytes_in_ += static_cast<std::uint64_t>(n);
+    return {static_cast<std::size_t>(n), monotonic_ns()};
+  }
+  // Readable but empty, or an error: that is how a hang-up shows.
+  if (!nothing_yet) hang_up();
+  return {};
+}
+
+bool SerialLink::wait(hal::TimeNs timeout_ns) noexcept {
+  pollfd p{descriptor_, POLLIN, 0};
+  const timespec t{static_cast<time_t>(timeout_ns / hal::kNsPerSecond),
+                   static_cast<long>(timeout_ns % hal::kNsPerSecond)};
+  if (!open_) {
+    ::nanosleep(&t, nullptr);  // nothing to wait for; a loop of waits must not spin
+    return false;
+  }
+  return ::ppoll(&p, 1, &t, nullptr) > 0;
+}
+
+LinkState SerialLink::state() const noexcept {
+  return open_ ? LinkState::Open : LinkState::HungUp;
+}
+
+LinkStatistics SerialLink::statistics() const noexcept {
+  return {bytes_in_, bytes_out_, bytes_refused_, errors_};
+}
+
+std::string SerialLink::name() const {
+  return to_text(address_);
+}
+
+}  // namespace tandem::bridges

@@ -1,0 +1,40 @@
+// Serial ports: USB adapters, Bluetooth's /dev/rfcommN, pseudo-terminals.
+#pragma once
+#include <atomic>
+#include <memory>
+
+#include "bridges/link/link_text.hpp"
+
+namespace tandem::bridges {
+
+/// A serial port, 8 data bits, no parity, 1 stop bit, no flow control, raw. LibSerial opens and configures it; reading
+/// and writing are done here on its descriptor, because its own calls sleep and spin. The port is ours alone: others
+/// who open it, and a second SerialLink, are told that it is busy.
+class SerialLink final : public ByteLink {
+ public:
+  /// Blocks while the kernel does, for seconds on Bluetooth.
+  /// Errors, each with what to do: no such device, no permission, busy, not a terminal, Bluetooth peer down, not
+  /// configurable.
+  static hal::Result<std::unique_ptr<ByteLink>> open(const LinkAddress& address);
+  ~SerialLink() override;
+
+  std::size_t write(std::span<const std::uint8_t> bytes, hal::TimeNs budget_ns) noexcept override;
+  Received read(std::span<std::uint8_t> buffer) noexcept override;
+  bool wait(hal::TimeNs timeout_ns) noexcept override;
+  LinkState state() const noexcept override;
+  LinkStatistics statistics() const noexcept override;
+  std::string name() const override;
+
+ private:
+  class Port;
+  SerialLink(LinkAddress address, std::unique_ptr<Port> port);
+  void hang_up() noexcept;
+
+  LinkAddress address_;
+  std::unique_ptr<Port> port_;
+  int descriptor_;
+  std::atomic<bool> open_{true};
+  std::atomic<std::uint64_t> bytes_in_{0}, bytes_out_{0}, bytes_refused_{0}, errors_{0};
+};
+
+}  // namespace tandem::bridges
