@@ -16,8 +16,8 @@ void pause_cpu() noexcept {
 }
 
 /// Waits until `value` is no longer `old`.
-void await_change(std::atomic<std::uint32_t>& value, std::uint32_t old) noexcept {
-  for (int i = 0; i < kSpins; ++i) {
+void await_change(std::atomic<std::uint32_t>& value, std::uint32_t old, int spins) noexcept {
+  for (int i = 0; i < spins; ++i) {
     if (value.load(std::memory_order_acquire) != old) return;
     pause_cpu();
   }
@@ -27,6 +27,8 @@ void await_change(std::atomic<std::uint32_t>& value, std::uint32_t old) noexcept
 }  // namespace
 
 ThreadPool::ThreadPool(std::size_t threads, Assignment assignment) : assignment_(assignment) {
+  // Spinning only helps where every worker has a processor of its own.
+  spins_ = threads <= std::thread::hardware_concurrency() ? kSpins : 0;
   for (std::size_t i = 1; i < threads; ++i) workers_.emplace_back([this, i] { work_loop(i); });
 }
 
@@ -46,7 +48,7 @@ void ThreadPool::dispatch(const Phase& phase) {
   take_part(0);
   for (std::uint32_t left = unfinished_.load(std::memory_order_acquire); left != 0;
        left = unfinished_.load(std::memory_order_acquire)) {
-    await_change(unfinished_, left);
+    await_change(unfinished_, left, spins_);
   }
 }
 
@@ -68,7 +70,7 @@ void ThreadPool::take_part(std::size_t worker) {
 void ThreadPool::work_loop(std::size_t worker) {
   std::uint32_t seen = 0;
   for (;;) {
-    await_change(round_, seen);
+    await_change(round_, seen, spins_);
     seen = round_.load(std::memory_order_acquire);
     if (ending_.load(std::memory_order_relaxed)) return;
     take_part(worker);

@@ -58,6 +58,7 @@ class ThreadPool {
   void work_loop(std::size_t worker);
 
   Assignment assignment_;
+  int spins_ = 0;                                       // looks at the next phase before sleeping
   Phase phase_;
   alignas(64) std::atomic<std::uint32_t> round_{0};     // raised once a phase; workers wait for it
   alignas(64) std::atomic<std::uint32_t> unfinished_{0};
