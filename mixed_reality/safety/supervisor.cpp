@@ -25,7 +25,7 @@ constexpr std::array<SafetyRule, 9> kTable = {{
     {[](const C&) noexcept { return true; }, Verdict{true, true, "driving"}},
 }};
 
-constexpr Verdict kSettling = held("re-arming");
+constexpr Verdict kSettling = held("settling");
 
 }  // namespace
 

@@ -25,7 +25,7 @@ class Odometry final : public PoseSource {
   Odometry(const core::Pose& start, const hal::DataSheet& sheet, const hal::WheelEncoders& encoders);
 
   /// As old as the reading that it was last moved by; stale while the encoders are.
-  TrackedPose latch(hal::TimeNs now_ns) noexcept override;
+  TrackedPose latch(const Moment& now) noexcept override;
 
   /// Readings that no rolling explains.
   std::uint64_t jumps() const noexcept { return jumps_; }

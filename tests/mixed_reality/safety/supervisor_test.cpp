@@ -90,7 +90,7 @@ TEST_F(ArmedSupervisor, LetsGoOnlyAfterAllHasBeenWellForAWhile) {
   tick({RunPhase::Running, false, LinkHealth::Lost, Validity::Stale});
   EXPECT_EQ(supervisor_.verdict().reason, "link lost");
   tick(kWell);
-  EXPECT_EQ(supervisor_.verdict().reason, "re-arming");
+  EXPECT_EQ(supervisor_.verdict().reason, "settling");
   tick(kWell);
   tick({RunPhase::Running, false, LinkHealth::Suspect, Validity::Fresh});  // not yet: the wait begins again
   for (int i = 0; i < 3; ++i) {

@@ -13,6 +13,7 @@ namespace {
 using std::numbers::pi;
 
 constexpr double kBase_m = hal::epuck::kWheelBase_m;
+constexpr hal::TimeNs kHour = 3'600 * hal::kNsPerSecond;
 constexpr hal::TimeNs kTick = 100 * hal::kNsPerMs;
 
 core::Pose at(double x_m, double y_m, double heading_rad) {
@@ -26,10 +27,13 @@ class WheelOdometry : public testing::Test {
     encoders_.right_m = right_m;
     encoders_.taken_ns = now_;
     encoders_.validity = hal::Validity::Fresh;
-    const TrackedPose tracked = odometry_.latch(now_);
+    const TrackedPose tracked = odometry_.latch(moment(now_));
     now_ += kTick;
     return tracked;
   }
+  /// Both clocks run alike, an hour apart.
+  static Moment moment(hal::TimeNs now_ns) { return {now_ns, now_ns + kHour}; }
+
   hal::WheelEncoders encoders_;
   Odometry odometry_{at(0.3, -0.2, 0.7), hal::epuck::kDataSheet, encoders_};
   hal::TimeNs now_ = 0;
@@ -72,7 +76,7 @@ TEST(Rolled, AWholeCircleComesBackHowFineItIsCutAlike) {
 }
 
 TEST_F(WheelOdometry, StartsWhereItWasPutWhateverTheEncodersSayFirst) {
-  EXPECT_EQ(odometry_.latch(0).validity, hal::Validity::Absent);
+  EXPECT_EQ(odometry_.latch(moment(0)).validity, hal::Validity::Absent);
   const TrackedPose first = roll_to(123.0, -45.0);
   EXPECT_EQ(first.validity, hal::Validity::Fresh);
   EXPECT_DOUBLE_EQ(first.pose.x_m, 0.3);
@@ -80,7 +84,7 @@ TEST_F(WheelOdometry, StartsWhereItWasPutWhateverTheEncodersSayFirst) {
   const TrackedPose second = roll_to(123.01, -44.99);
   EXPECT_NEAR(second.pose.x_m, 0.3 + 0.01 * std::cos(0.7), 1e-12);
   EXPECT_NEAR(second.pose.y_m, -0.2 + 0.01 * std::sin(0.7), 1e-12);
-  EXPECT_EQ(second.taken_ns, kTick);
+  EXPECT_EQ(second.taken_ns, kHour + kTick);
 }
 
 TEST_F(WheelOdometry, GoesStaleWithTheEncodersAndCountsWhatWasRolledMeanwhile) {
@@ -88,13 +92,22 @@ TEST_F(WheelOdometry, GoesStaleWithTheEncodersAndCountsWhatWasRolledMeanwhile) {
   roll_to(0.01, 0.01);
   encoders_.validity = hal::Validity::Stale;
   now_ += 30 * kTick;
-  const TrackedPose lost = odometry_.latch(now_);
+  const TrackedPose lost = odometry_.latch(moment(now_));
   EXPECT_EQ(lost.validity, hal::Validity::Stale);
-  EXPECT_EQ(lost.taken_ns, kTick);
+  EXPECT_EQ(lost.taken_ns, kHour + kTick);
   EXPECT_NEAR(lost.pose.x_m, 0.3 + 0.01 * std::cos(0.7), 1e-12);
   const TrackedPose back = roll_to(0.2, 0.2);
   EXPECT_EQ(back.validity, hal::Validity::Fresh);
   EXPECT_NEAR(back.pose.x_m, 0.3 + 0.2 * std::cos(0.7), 1e-12);
+  EXPECT_EQ(odometry_.jumps(), 0U);
+}
+
+TEST_F(WheelOdometry, BelievesWhatWasRolledWhileTheRunsClockStoodStill) {
+  roll_to(0.0, 0.0);
+  encoders_.left_m = encoders_.right_m = 0.2;  // one tick on the run's clock, but two seconds of a stalled hub
+  encoders_.taken_ns = kTick;
+  const TrackedPose after = odometry_.latch({kTick, kHour + 20 * kTick});
+  EXPECT_NEAR(after.pose.x_m, 0.3 + 0.2 * std::cos(0.7), 1e-12);
   EXPECT_EQ(odometry_.jumps(), 0U);
 }
 
@@ -113,12 +126,12 @@ TEST_F(WheelOdometry, DoesNotFollowEncodersThatJump) {
 TEST_F(WheelOdometry, UsesEachReadingOnceAndNoneFromTheFuture) {
   roll_to(0.0, 0.0);
   const TrackedPose once = roll_to(0.01, 0.01);
-  const TrackedPose again = odometry_.latch(now_);
+  const TrackedPose again = odometry_.latch(moment(now_));
   EXPECT_DOUBLE_EQ(again.pose.x_m, once.pose.x_m);
   encoders_.left_m = encoders_.right_m = 0.02;
   encoders_.taken_ns = now_ + kTick;
-  EXPECT_DOUBLE_EQ(odometry_.latch(now_).pose.x_m, once.pose.x_m);
-  EXPECT_GT(odometry_.latch(now_ + kTick).pose.x_m, once.pose.x_m);
+  EXPECT_DOUBLE_EQ(odometry_.latch(moment(now_)).pose.x_m, once.pose.x_m);
+  EXPECT_GT(odometry_.latch(moment(now_ + kTick)).pose.x_m, once.pose.x_m);
 }
 
 }  // namespace

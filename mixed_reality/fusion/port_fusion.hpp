@@ -1,0 +1,39 @@
+// One reading of two: what the real robot measured, and what its twin would have among the simulated robots.
+#pragma once
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "core/space/space.hpp"
+#include "hal/port.hpp"
+
+namespace tandem::mixed_reality {
+
+/// The real robot's newest reading of a port class, or null when it has no such device. Compared by name, role and
+/// layout.
+using RealReadings = std::function<const void*(const hal::PortType&)>;
+
+/// Fuses the sensor ports of one robot, each field as its description says: proximity takes the nearer, messages are
+/// joined, the floor is the virtual one. What the real robot cannot measure and the virtual one may not replace becomes
+/// absent.
+class PortFusion {
+ public:
+  /// Finds the ports that the controller of `robot` took, and the real devices behind them. The space's ports and what
+  /// `real` returns must outlive this.
+  PortFusion(core::Space& space, core::RobotId robot, const RealReadings& real);
+
+  /// To be called when the space's ports hold the virtual readings: they then hold the fused ones. Allocates nothing.
+  void fuse() noexcept;
+
+ private:
+  struct Pair {
+    const hal::PortType* type;
+    void* port;        // in the space
+    const void* real;  // null: no such device
+  };
+  std::vector<Pair> pairs_;
+  std::unique_ptr<std::max_align_t[]> scratch_;  // one port, the largest
+};
+
+}  // namespace tandem::mixed_reality
