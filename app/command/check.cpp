@@ -1,0 +1,36 @@
+#include <fmt/format.h>
+
+#include "app/catalog.hpp"
+#include "app/command/command.hpp"
+#include "core/sim/world.hpp"
+
+namespace tandem::app {
+
+void print_problems(const core::Problems& problems) {
+  for (const core::Problem& problem : problems) fmt::print(stderr, "{}\n", core::to_text(problem));
+}
+
+std::optional<core::Scenario> read_or_complain(const std::string& path, const std::vector<std::string>& overrides) {
+  core::Problems problems;
+  auto scenario = core::read_experiment(path, overrides, known_names(), problems);
+  print_problems(problems);
+  return scenario;
+}
+
+int check(const CheckOptions& options) {
+  const auto scenario = read_or_complain(options.experiment, options.overrides);
+  if (!scenario) return kBadInput;
+  // What only making the world can tell: libraries, devices, parameters, places.
+  hal::PluginLoader loader(plugin_folders());
+  core::Problems problems;
+  core::WorldOptions world_options;
+  if (!scenario->seed) world_options.seed = 1;
+  const auto world = core::World::make(*scenario, loader, world_options, problems);
+  print_problems(problems);
+  if (world == nullptr) return kBadInput;
+  fmt::print("{}: good: {} robots, {} objects, {} controller configurations, {} ticks a second\n", options.experiment,
+             world->space().robot_count(), world->space().statics().size(), scenario->controllers.size(), scenario->ticks_per_second);
+  return kDone;
+}
+
+}  // namespace tandem::app

@@ -1,0 +1,81 @@
+// The commands of `tandem`, one file each. Every function returns the exit code of the program.
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/scenario/scenario.hpp"
+
+namespace tandem::app {
+
+enum ExitCode : int { kDone = 0, kBadInput = 1, kWrongUsage = 2, kFailedRunning = 3 };
+
+struct RunOptions {
+  std::string experiment;
+  std::optional<double> seconds;
+  std::optional<std::int64_t> steps;
+  std::optional<std::uint64_t> seed;
+  std::optional<std::int64_t> threads;
+  std::vector<std::string> overrides;
+  std::string report;      ///< file, or "-"
+  std::string picture;     ///< SVG file
+  std::string trajectory;  ///< CSV file, of every robot unless the experiment says which
+  bool quiet = false;      ///< no table
+};
+int run(const RunOptions& options);
+
+struct CheckOptions {
+  std::string experiment;
+  std::vector<std::string> overrides;
+};
+int check(const CheckOptions& options);
+
+/// Kinds: controllers, hooks, devices, engines, robots, elements; empty: all.
+int list(const std::string& kind);
+int describe(const std::string& name);
+
+struct BenchOptions {
+  std::string name = "diffusion";
+  std::vector<std::int64_t> robots;
+  std::string robot = "e-puck";
+  std::string engine = "kinematics2d";
+  std::string regions;
+  std::vector<std::int64_t> threads;
+  std::int64_t ticks = 600;
+  std::string density;     ///< "equal": the arena grows with the robots
+  bool rab = false;
+  std::int64_t repeat = 1;
+};
+int bench(const BenchOptions& options);
+
+struct RobotOptions {
+  std::string file;
+  std::string link;
+  std::optional<double> seconds;
+  std::string report;
+};
+int robot(const RobotOptions& options);
+
+struct EmulateOptions {
+  std::string robot;
+  std::string link;
+  std::string log;
+  std::string firmware = "gctronic";
+  std::vector<std::string> faults;
+};
+int emulate(const EmulateOptions& options);
+
+struct InspectOptions {
+  std::string link;
+  double seconds = 2.0;
+};
+int inspect(const InspectOptions& options);
+
+// --- shared by the commands ---
+
+/// Reads an experiment and prints every problem; nothing when there is an error.
+std::optional<core::Scenario> read_or_complain(const std::string& path, const std::vector<std::string>& overrides);
+void print_problems(const core::Problems& problems);
+
+}  // namespace tandem::app

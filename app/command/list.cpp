@@ -1,0 +1,182 @@
+// `tandem list` and `tandem describe`: what there is, and its manual, from the schemas.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <functional>
+#include <map>
+
+#include "app/catalog.hpp"
+#include "app/command/command.hpp"
+#include "core/device/device.hpp"
+#include "core/loop/hook.hpp"
+#include "hal/device/body_sensors.hpp"
+#include "hal/device/leds.hpp"
+#include "hal/device/range_and_bearing.hpp"
+#include "hal/device/ring_sensors.hpp"
+#include "hal/device/wheels.hpp"
+
+namespace tandem::app {
+namespace {
+
+/// All plug-ins of the plug-in folders, opened; those that do not load are named on standard error.
+std::unique_ptr<hal::PluginLoader> open_all() {
+  auto loader = std::make_unique<hal::PluginLoader>(plugin_folders());
+  for (const auto& file : plugin_files()) {
+    const hal::Status opened = loader->open(file.string());
+    if (!opened.ok()) fmt::print(stderr, "warning: {}\n", opened.error().message);
+  }
+  return loader;
+}
+
+std::string_view summary_of(const hal::PluginLoader::Entry& entry) {
+  if (entry.category == "controller") return static_cast<const hal::ControllerType*>(entry.type)->summary;
+  return static_cast<const core::HookType*>(entry.type)->summary;
+}
+
+void list_plugins(std::string_view category, std::string_view title) {
+  const auto loader = open_all();
+  fmt::print("{}:\n", title);
+  for (const auto& entry : loader->entries()) {
+    if (entry.category == category) fmt::print("  {:<22} {}\n", entry.name, summary_of(entry));
+  }
+}
+
+void list_devices() {
+  fmt::print("devices (implementations):\n");
+  for (const hal::Role role : {hal::Role::Sensor, hal::Role::Actuator}) {
+    std::string last;
+    for (const core::DeviceType& type : core::device_types()) {
+      if (type.role != role || type.device == last) continue;
+      last = type.device;
+      std::string names;
+      for (const core::DeviceType& t : core::device_types()) {
+        if (t.device == type.device && t.role == role) names += (names.empty() ? "" : ", ") + std::string(t.implementation);
+      }
+      fmt::print("  {:<22} {:<9} {}\n", type.device, role == hal::Role::Sensor ? "sensor" : "actuator", names);
+    }
+  }
+}
+
+void list_names(std::string_view title, const std::vector<std::string>& names) {
+  fmt::print("{}:\n", title);
+  for (const std::string& name : names) fmt::print("  {}\n", name);
+}
+
+void list_elements() {
+  fmt::print("elements of experiment files:\n");
+  for (const core::ElementManual& m : core::element_manuals()) fmt::print("  {:<22} {}\n", m.name, m.doc);
+}
+
+const std::map<std::string, std::function<void()>>& kinds() {
+  static const std::map<std::string, std::function<void()>> all = {
+      {"controllers", [] { list_plugins("controller", "controllers"); }},
+      {"hooks", [] { list_plugins("hook", "hooks"); }},
+      {"devices", &list_devices},
+      {"engines", [] { list_names("physics engines", known_names().engines); }},
+      {"robots", [] { list_names("robots", known_names().robots); }},
+      {"elements", &list_elements}};
+  return all;
+}
+
+/// The port class behind a device name, for its fields.
+void describe_fields(std::string_view name, hal::Role role) {
+  const hal::PortType* const ports[] = {
+      &hal::port_type<hal::WheelSpeeds>(),    &hal::port_type<hal::WheelEncoders>(), &hal::port_type<hal::Proximity>(),
+      &hal::port_type<hal::Light>(),          &hal::port_type<hal::Ground>(),        &hal::port_type<hal::Accelerometer>(),
+      &hal::port_type<hal::Microphones>(),    &hal::port_type<hal::Battery>(),       &hal::port_type<hal::Clock>(),
+      &hal::port_type<hal::RingLeds>(),       &hal::port_type<hal::BodyLed>(),       &hal::port_type<hal::FrontLed>(),
+      &hal::port_type<hal::RangeAndBearing>(), &hal::port_type<hal::RangeAndBearingSend>()};
+  for (const hal::PortType* port : ports) {
+    if (port->name != name || port->role != role) continue;
+    fmt::print("  what a controller {}: {}\n", role == hal::Role::Sensor ? "reads" : "writes", port->doc);
+    for (const hal::Field& f : port->fields) {
+      fmt::print("    {:<14} {}{}{}\n", f.name, f.doc, f.count > 1 ? fmt::format(", up to {}", f.count) : "",
+                 f.unit.symbol.empty() ? "" : fmt::format(" [{}]", f.unit.symbol));
+    }
+  }
+}
+
+bool describe_device(const std::string& name) {
+  bool found = false;
+  for (const hal::Role role : {hal::Role::Sensor, hal::Role::Actuator}) {
+    bool first = true;
+    for (const core::DeviceType& type : core::device_types()) {
+      if (type.device != name || type.role != role) continue;
+      if (first) {
+        fmt::print("{} <{}>\n", role == hal::Role::Sensor ? "sensor" : "actuator", name);
+        describe_fields(name, role);
+      }
+      first = false;
+      found = true;
+      fmt::print("  implementation=\"{}\": {}\n", type.implementation, type.summary);
+      core::ManualWriter manual;
+      type.describe(manual);
+      fmt::print("{}", manual.text());
+    }
+  }
+  return found;
+}
+
+bool describe_plugin(const std::string& name) {
+  const auto loader = open_all();
+  bool found = false;
+  for (const auto& entry : loader->entries()) {
+    if (entry.name != name) continue;
+    found = true;
+    fmt::print("{} {}: {}\n  library: {}\n", entry.category, name, summary_of(entry), entry.library);
+    core::ManualWriter manual;
+    if (entry.category == "controller") (void)static_cast<const hal::ControllerType*>(entry.type)->read_params(manual);
+    else static_cast<const core::HookType*>(entry.type)->describe(manual);
+    fmt::print("parameters:\n{}", manual.text().empty() ? "  none\n" : manual.text());
+  }
+  return found;
+}
+
+bool describe_element(const std::string& name) {
+  bool found = false;
+  for (const core::ElementManual& m : core::element_manuals()) {
+    if (m.name != name) continue;
+    found = true;
+    fmt::print("<{}>{}: {}\n{}", m.name, m.parent.empty() ? "" : fmt::format(" in <{}>", m.parent), m.doc, m.attributes);
+    std::string children;
+    for (const std::string& c : m.children) children += (children.empty() ? "" : ", ") + (c == "*" ? std::string("anything") : c);
+    if (!children.empty()) fmt::print("  may hold: {}\n", children);
+  }
+  return found;
+}
+
+}  // namespace
+
+int list(const std::string& kind) {
+  if (kind.empty()) {
+    for (const auto& [name, print] : kinds()) print();
+    return kDone;
+  }
+  const auto found = kinds().find(kind);
+  if (found == kinds().end()) {
+    std::string all;
+    for (const auto& [name, print] : kinds()) all += (all.empty() ? "" : ", ") + name;
+    fmt::print(stderr, "tandem list: there is no kind '{}'; there are: {}\n", kind, all);
+    return kWrongUsage;
+  }
+  found->second();
+  return kDone;
+}
+
+int describe(const std::string& name) {
+  const bool element = describe_element(name);
+  const bool device = describe_device(name);
+  const bool plugin = describe_plugin(name);
+  if (element || device || plugin) return kDone;
+  std::vector<std::string> all;
+  for (const core::ElementManual& m : core::element_manuals()) all.emplace_back(m.name);
+  for (const core::DeviceType& t : core::device_types()) all.emplace_back(t.device);
+  const auto loader = open_all();
+  for (const auto& e : loader->entries()) all.push_back(e.name);
+  const std::string near = core::closest(name, all);
+  fmt::print(stderr, "tandem describe: there is nothing called '{}'{}. `tandem list` shows what there is.\n", name,
+             near.empty() ? "" : "; did you mean '" + near + "'?");
+  return kBadInput;
+}
+
+}  // namespace tandem::app

@@ -1,0 +1,166 @@
+#include <fmt/format.h>
+
+#include <cstdio>
+
+#include "app/catalog.hpp"
+#include "app/command/command.hpp"
+#include "app/measure.hpp"
+#include "app/progress.hpp"
+#include "app/report.hpp"
+#include "app/sha256.hpp"
+#include "app/signals.hpp"
+#include "core/config/xml.hpp"
+#include "core/record/trajectory.hpp"
+#include "core/sim/world.hpp"
+#include "core/view/picture.hpp"
+#include "mixed_reality/time/pacer.hpp"
+
+namespace tandem::app {
+namespace {
+
+/// Steps to do; 0: until interrupted or a hook ends the run.
+std::int64_t steps_of(const RunOptions& options, const core::Scenario& scenario) {
+  if (options.steps) return *options.steps;
+  const double seconds = options.seconds.value_or(scenario.length_s);
+  return static_cast<std::int64_t>(seconds * static_cast<double>(scenario.ticks_per_second) + 0.5);
+}
+
+std::unique_ptr<core::TrajectoryRecorder> open_trajectory(const RunOptions& options, const core::Scenario& scenario, const core::World& world,
+                                                          bool& good) {
+  auto config = scenario.trajectory;
+  if (!options.trajectory.empty()) {
+    if (!config) config = core::TrajectoryConfig{{}, {"*"}, 1};
+    config->path = options.trajectory;
+  }
+  if (!config) return nullptr;
+  auto opened = core::TrajectoryRecorder::open(*config, world.space(), world.ticks_per_second());
+  if (opened.ok()) return std::move(opened).value();
+  fmt::print(stderr, "error: {}\n", opened.error().message);
+  good = false;
+  return nullptr;
+}
+
+std::string report_of(const core::World& world, const hal::PluginLoader& loader, const RunFigures& figures, std::size_t robots) {
+  Json json;
+  json.begin_object();
+  add_run_fields(json, world, figures, robots);
+  json.field("finished", world.state() != core::RunState::Failed);
+  if (!world.failure().empty()) json.field("failure", world.failure());
+  json.key("controllers").begin_array();
+  for (const core::ControllerConfig& config : world.scenario().controllers) {
+    const auto file = loader.find(config.library);
+    if (!file.ok()) continue;
+    const auto digest = sha256_of_file(file.value().string());
+    json.begin_object().field("id", config.id).field("label", config.label).field("file", file.value().string());
+    if (digest.ok()) json.field("sha256", digest.value());
+    json.end_object();
+  }
+  json.end_array();
+  const core::Incidents& incidents = world.incidents();
+  json.key("incidents").begin_object();
+  json.field("commands_clamped", incidents.commands_clamped)
+      .field("commands_not_finite", incidents.commands_not_finite)
+      .field("controllers_thrown", incidents.controllers_thrown)
+      .field("bodies_escaped", incidents.bodies_escaped);
+  json.key("first").begin_array();
+  for (const std::string& what : incidents.first) json.value(what);
+  json.end_array().end_object();
+  json.field("settings", core::to_xml(world.scenario().effective));
+  json.end_object();
+  return json.text();
+}
+
+void print_result(const core::World& world, const RunFigures& figures, std::size_t robots) {
+  const core::Incidents& incidents = world.incidents();
+  const double virtual_s = figures.virtual_s(world.ticks_per_second());
+  std::vector<std::pair<std::string, std::string>> rows = {
+      {"experiment", fmt::format("{}, seed {}", world.scenario().name, world.seed())},
+      {"robots", fmt::format("{}", robots)},
+      {"time", fmt::format("{:.1f} s in {} steps, taking {:.2f} s ({:.1f} times real time) after {:.2f} s of preparation", virtual_s, figures.steps,
+                           figures.wall_s, figures.wall_s > 0 ? virtual_s / figures.wall_s : 0.0, figures.init_s)},
+      {"cost", fmt::format("{:.0f} ns of processor time a robot and step, {:.0f} MB", figures.ns_per_robot_step(robots), peak_rss_mb())},
+      {"state", hash_text(world.state_hash())}};
+  if (world.scenario().time_mode == core::TimeMode::Realtime) rows.emplace_back("missed deadlines", fmt::format("{}", figures.deadline_misses));
+  const std::uint64_t odd = incidents.commands_clamped + incidents.commands_not_finite + incidents.controllers_thrown + incidents.bodies_escaped;
+  if (odd > 0) {
+    rows.emplace_back("incidents", fmt::format("{} commands clamped, {} not finite, {} controllers threw, {} bodies escaped", incidents.commands_clamped,
+                                               incidents.commands_not_finite, incidents.controllers_thrown, incidents.bodies_escaped));
+  }
+  print_table(rows);
+}
+
+}  // namespace
+
+int run(const RunOptions& options) {
+  const double began = wall_seconds();
+  const auto scenario = read_or_complain(options.experiment, options.overrides);
+  if (!scenario) return kBadInput;
+
+  hal::PluginLoader loader(plugin_folders());
+  core::WorldOptions world_options;
+  world_options.seed = options.seed;
+  world_options.threads = options.threads;
+  int warned = 0;
+  world_options.log = hal::Log([&warned](hal::Severity, std::string_view text) {
+    if (++warned <= 20) fmt::print(stderr, "\r\033[K{}\n", text);
+  });
+  core::Problems problems;
+  const auto world = core::World::make(*scenario, loader, world_options, problems);
+  print_problems(problems);
+  if (world == nullptr) return kBadInput;
+  bool good = true;
+  const auto trajectory = open_trajectory(options, *scenario, *world, good);
+  if (!good) return kBadInput;
+
+  const std::atomic<bool>& stop = catch_signals();
+  const std::int64_t steps = steps_of(options, *scenario);
+  const std::size_t robots = world->space().robot_count();
+  const bool paced = scenario->time_mode == core::TimeMode::Realtime;
+  mixed_reality::MonotonicTime clock;
+  mixed_reality::Pacer pacer(clock, scenario->ticks_per_second);
+  RunFigures figures;
+  figures.threads = world->threads();
+  hal::Status recorded;
+
+  world->start();
+  figures.init_s = wall_seconds() - began;
+  const double wall = wall_seconds();
+  const double cpu = cpu_seconds();
+  {
+    Progress progress(steps, scenario->ticks_per_second);
+    if (paced) pacer.start();
+    while (world->state() == core::RunState::Running && (steps == 0 || world->tick() < steps) && !stop.load(std::memory_order_relaxed)) {
+      world->step();
+      if (trajectory != nullptr && recorded.ok()) recorded = trajectory->record(world->space(), world->tick());
+      progress.step(world->tick());
+      if (paced && !pacer.wait_for_next(stop)) break;
+    }
+  }
+  figures.wall_s = wall_seconds() - wall;
+  figures.cpu_s = cpu_seconds() - cpu;
+  figures.steps = world->tick();
+  figures.deadline_misses = pacer.ledger().deadline_misses;
+  world->finish();
+
+  bool failed = world->state() == core::RunState::Failed;
+  const auto complain = [&failed](const hal::Status& status) {
+    if (status.ok()) return;
+    failed = true;
+    fmt::print(stderr, "error: {}\n", status.error().message);
+  };
+  if (world->state() == core::RunState::Failed) fmt::print(stderr, "error: {}\n", world->failure());
+  if (stop.load(std::memory_order_relaxed)) fmt::print(stderr, "interrupted at tick {}\n", world->tick());
+  if (trajectory != nullptr) complain(trajectory->close());
+  if (!options.picture.empty()) {
+    core::PictureOptions picture;
+    picture.experiment = scenario->name;
+    picture.seed = world->seed();
+    picture.time_ns = hal::time_of_tick(world->tick(), scenario->ticks_per_second);
+    complain(core::write_picture(world->space(), options.picture, picture));
+  }
+  if (!options.report.empty()) complain(write_report(options.report, report_of(*world, loader, figures, robots)));
+  if (!options.quiet && options.report != "-") print_result(*world, figures, robots);
+  return failed ? kFailedRunning : kDone;
+}
+
+}  // namespace tandem::app

@@ -1,0 +1,78 @@
+// The `tandem` command: its words and its exit codes.
+#include <CLI/CLI.hpp>
+
+#include "app/command/command.hpp"
+
+namespace {
+
+using namespace tandem::app;
+
+void add_run(CLI::App& app, RunOptions& o, int& code) {
+  CLI::App* c = app.add_subcommand("run", "Run an experiment.");
+  c->add_option("experiment", o.experiment, "The experiment file (.xml)")->required();
+  auto* seconds = c->add_option("--seconds", o.seconds, "Virtual duration, instead of the file's")->check(CLI::PositiveNumber);
+  c->add_option("--steps", o.steps, "Number of control steps, instead of the file's length")->check(CLI::PositiveNumber)->excludes(seconds);
+  c->add_option("--seed", o.seed, "Seed of all chance, instead of the file's");
+  c->add_option("--threads", o.threads, "Threads that step the world; results do not depend on it")->check(CLI::Range(0, 1024));
+  c->add_option("--set", o.overrides, "Change the experiment: path=value, e.g. framework.experiment.length=5; repeatable")->allow_extra_args(false);
+  c->add_option("--report", o.report, "Write a JSON report to this file ('-': standard output)");
+  c->add_option("--picture", o.picture, "Draw the space from above at the end, as SVG");
+  c->add_option("--trajectory", o.trajectory, "Write poses as CSV");
+  c->add_flag("--quiet", o.quiet, "No table at the end");
+  c->callback([&] { code = run(o); });
+}
+
+void add_bench(CLI::App& app, BenchOptions& o, int& code) {
+  CLI::App* c = app.add_subcommand("bench", "Run a benchmark: one JSON object a line.");
+  c->add_option("name", o.name, "diffusion: the standard scene")->capture_default_str();
+  c->add_option("--robots", o.robots, "Numbers of robots, e.g. 1000,10000")->delimiter(',')->check(CLI::Range(std::int64_t{1}, std::int64_t{100'000'000}));
+  c->add_option("--robot", o.robot, "Kind of robot")->capture_default_str();
+  c->add_option("--engine", o.engine, "Physics engine")->capture_default_str();
+  c->add_option("--threads", o.threads, "Numbers of threads, e.g. 0,2")->delimiter(',')->check(CLI::Range(0, 1024));
+  c->add_option("--ticks", o.ticks, "Steps that are timed")->capture_default_str()->check(CLI::PositiveNumber);
+  c->add_option("--density", o.density, "equal: the arena grows with the number of robots; else it is 40 m");
+  c->add_option("--repeat", o.repeat, "How often each is run")->capture_default_str()->check(CLI::PositiveNumber);
+  c->callback([&] { code = bench(o); });
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app{"Tandem: one controller drives simulated robots, real ones, and both together."};
+  app.require_subcommand(1);
+  app.set_version_flag("--version", TANDEM_VERSION);
+  app.failure_message(CLI::FailureMessage::help);
+  int code = kDone;
+
+  RunOptions run_options;
+  add_run(app, run_options, code);
+
+  CheckOptions check_options;
+  CLI::App* check_command = app.add_subcommand("check", "Validate an experiment and print every problem.");
+  check_command->add_option("experiment", check_options.experiment, "The experiment file (.xml)")->required();
+  check_command->add_option("--set", check_options.overrides, "Change the experiment first: path=value")->allow_extra_args(false);
+  check_command->callback([&] { code = check(check_options); });
+
+  std::string kind;
+  CLI::App* list_command = app.add_subcommand("list", "List what there is: controllers, hooks, devices, engines, robots, elements.");
+  list_command->add_option("kind", kind, "Only this kind");
+  list_command->callback([&] { code = list(kind); });
+
+  std::string name;
+  CLI::App* describe_command = app.add_subcommand("describe", "Print the manual of a controller, device, hook or element.");
+  describe_command->add_option("name", name, "Its name")->required();
+  describe_command->callback([&] { code = describe(name); });
+
+  BenchOptions bench_options;
+  add_bench(app, bench_options, code);
+
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& e) {
+    return app.exit(e);
+  } catch (const CLI::ParseError& e) {
+    app.exit(e);
+    return kWrongUsage;
+  }
+  return code;
+}

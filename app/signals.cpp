@@ -1,0 +1,23 @@
+#include "app/signals.hpp"
+
+#include <csignal>
+
+namespace tandem::app {
+namespace {
+
+std::atomic<bool> stop_asked{false};
+static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may only touch lock-free atomics");
+
+void note(int) { stop_asked.store(true, std::memory_order_relaxed); }
+
+}  // namespace
+
+const std::atomic<bool>& catch_signals() {
+  struct sigaction action {};
+  action.sa_handler = &note;  // no SA_RESTART: sleeps wake up
+  sigaction(SIGINT, &action, nullptr);
+  sigaction(SIGTERM, &action, nullptr);
+  return stop_asked;
+}
+
+}  // namespace tandem::app
