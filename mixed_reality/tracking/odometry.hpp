@@ -16,7 +16,7 @@ core::Pose rolled(const core::Pose& pose, double left_m, double right_m, double 
 /// Integrates wheel encoders from a known start. It knows nothing of slip, and its error grows with the way: good for
 /// minutes, until a tracker corrects it.
 ///
-/// The first fresh reading is the reference. What the wheels rolled while the link was down counts when it is back, as
+/// The first reading is the reference. What the wheels rolled while the link was down counts when it is back, as
 /// far as the robot can have rolled it in that time; encoders that have moved farther were reset or misread: such a
 /// step is counted, and the robot stays where it was.
 class Odometry final : public PoseSource {
@@ -24,11 +24,10 @@ class Odometry final : public PoseSource {
   /// `encoders` must outlive this; its stamps are on the run's clock. `sheet`: wheel base and largest speed.
   Odometry(const core::Pose& start, const hal::DataSheet& sheet, const hal::WheelEncoders& encoders);
 
-  /// As old as the reading that it was last moved by; stale while the encoders are.
+  /// As old as the encoders' reading.
   TrackedPose latch(const Moment& now) noexcept override;
 
-  /// Readings that no rolling explains.
-  std::uint64_t jumps() const noexcept { return jumps_; }
+  std::uint64_t rejected() const noexcept override { return jumps_; }
 
  private:
   bool believable(double left_m, double right_m, hal::TimeNs since_ns) const noexcept;
@@ -37,7 +36,6 @@ class Odometry final : public PoseSource {
   double wheel_base_m_;
   double max_speed_m_s_;
   TrackedPose tracked_;
-  bool referenced_ = false;
   double left_m_ = 0.0, right_m_ = 0.0;  // of the reading that `tracked_` belongs to
   std::uint64_t jumps_ = 0;
 };

@@ -1,17 +1,18 @@
 // Where a real robot is: what every tracker answers.
 #pragma once
+#include <cstdint>
+
 #include "core/space/pose.hpp"
-#include "hal/port.hpp"
 #include "hal/time.hpp"
 #include "mixed_reality/time/moment.hpp"
 
 namespace tandem::mixed_reality {
 
-/// A pose of a real robot in W, and when it had it.
+/// A pose of a real robot in W, and when it had it. How old a pose may be to act on is for its user to say.
 struct TrackedPose {
   core::Pose pose;
-  hal::TimeNs taken_ns = 0;                        ///< CLOCK_MONOTONIC
-  hal::Validity validity = hal::Validity::Absent;  ///< Absent: never known. Stale: the source says it is out of date
+  hal::TimeNs taken_ns = 0;  ///< CLOCK_MONOTONIC
+  bool known = false;        ///< false: there never was one; `pose` is where the robot was said to start
 };
 
 /// A source of poses of one robot: odometry, a camera, a motion-capture system.
@@ -22,6 +23,8 @@ class PoseSource {
   /// The newest pose with a stamp of at most `now`. Called once a tick, after the robot's readings
   /// were latched; neither blocks nor allocates.
   virtual TrackedPose latch(const Moment& now) noexcept = 0;
+  /// How many measurements it did not believe.
+  virtual std::uint64_t rejected() const noexcept = 0;
 };
 
 }  // namespace tandem::mixed_reality

@@ -1,0 +1,211 @@
+#include "mixed_reality/session/mixed_session.hpp"
+
+#include <algorithm>
+
+#include "hal/unit.hpp"
+#include "mixed_reality/tracking/odometry.hpp"
+
+namespace tandem::mixed_reality {
+namespace {
+
+constexpr hal::TimeNs kPollEvery_ns = 20 * hal::kNsPerMs;  // while waiting for robots
+
+const std::atomic<bool> kNever{false};
+
+hal::Error about(const core::RobotItem& item, const std::string& file, const std::string& what) {
+  return hal::Error{file + ":" + std::to_string(item.bridge->line) + ": error: robot '" + item.id + "': " + what};
+}
+
+}  // namespace
+
+hal::TimeNs lost_after_ns(const core::RobotItem& item, std::int64_t ticks_per_second) noexcept {
+  return std::max(static_cast<hal::TimeNs>(item.bridge->timeout_s * 1e9), hal::time_of_tick(2, ticks_per_second));
+}
+
+// --- making one ---
+
+hal::Result<std::unique_ptr<MixedSession>> MixedSession::make(std::unique_ptr<core::World> world,
+                                                              const RealRobotMaker& make_robot, TimeSource& time,
+                                                              const MixedOptions& options) {
+  std::unique_ptr<MixedSession> session(new MixedSession(std::move(world), time, options));
+  for (const core::RobotItem& item : session->world_->scenario().robots) {
+    if (!item.bridge) continue;
+    if (const hal::Status added = session->add_twin(item, make_robot); !added.ok()) return added.error();
+  }
+  const std::size_t count = session->twins_.size();
+  session->last_.resize(count);
+  session->confirmed_.assign(count, 0);
+  session->world_->set_external(session.get());
+  return session;
+}
+
+MixedSession::MixedSession(std::unique_ptr<core::World> world, TimeSource& time, const MixedOptions& options)
+    : world_(std::move(world)), time_(time), options_(options), pacer_(time, world_->ticks_per_second()) {}
+
+hal::Status MixedSession::add_twin(const core::RobotItem& item, const RealRobotMaker& make_robot) {
+  const core::Scenario& scenario = world_->scenario();
+  core::Space& space = world_->space();
+  const core::RobotId robot = space.find_robot(item.id);
+  if (item.distribute || !robot.valid())
+    return about(item, scenario.file, "a <bridge> stands for one real robot; it cannot be distributed");
+  auto made = make_robot({item, scenario.controllers[item.controller], scenario.ticks_per_second});
+  if (!made.ok()) return about(item, scenario.file, made.error().message);
+  std::unique_ptr<RealRobot> real = std::move(made).value();
+
+  const std::string source = item.tracker ? item.tracker->source : "odometry";
+  if (source != "odometry")
+    return about(item, scenario.file, "there is no tracker '" + source + "'; there is: odometry");
+  const auto* encoders = static_cast<const hal::WheelEncoders*>(real->reading(hal::port_type<hal::WheelEncoders>()));
+  if (encoders == nullptr)
+    return about(item, scenario.file, "it has no wheel encoders, so odometry cannot tell where it is");
+  auto poses = std::make_unique<Odometry>(space.pose(robot), space.data_sheet(robot), *encoders);
+
+  TwinParams params;
+  params.rearm = options_.rearm;
+  params.pose_timeout_ns = lost_after_ns(item, scenario.ticks_per_second);
+  twins_.push_back(std::make_unique<Twin>(space, robot, std::move(real), std::move(poses), params, options_.log));
+  links_.push_back(item.bridge->link);
+  return {};
+}
+
+MixedSession::~MixedSession() {
+  world_->set_external(nullptr);
+  if (!stopped_) stop_robots();
+}
+
+// --- before the run ---
+
+hal::Status MixedSession::connect(const std::atomic<bool>& stop) {
+  const hal::TimeNs give_up_ns = time_.now_ns() + options_.connect_timeout_ns;
+  stopped_ = false;  // from here on robots may hear from us
+  phase_ = RunPhase::Waiting;
+  for (;;) {
+    now_ = moment();
+    for (const auto& twin : twins_) {
+      twin->latch(now_, phase_);
+      twin->after_filter(now_);  // stands still, and is asked for readings
+    }
+    if (all_answer()) return {};
+    if (stop.load(std::memory_order_relaxed))
+      return hal::Error{"interrupted while waiting for real robots: " + missing_robots()};
+    if (now_.monotonic_ns >= give_up_ns) {
+      return hal::Error{"real robots did not answer within " +
+                        hal::format_number(hal::to_seconds(options_.connect_timeout_ns)) + " s: " + missing_robots()};
+    }
+    time_.sleep_until(now_.monotonic_ns + kPollEvery_ns, stop);
+  }
+}
+
+bool MixedSession::all_answer() const noexcept {
+  return std::all_of(twins_.begin(), twins_.end(),
+                     [](const auto& twin) { return twin->real().health() == LinkHealth::Active; });
+}
+
+std::string MixedSession::missing_robots() const {
+  std::string text;
+  for (std::size_t i = 0; i < twins_.size(); ++i) {
+    if (twins_[i]->real().health() == LinkHealth::Active) continue;
+    const std::string trouble = twins_[i]->real().trouble();
+    text += (text.empty() ? "" : "; ") + ("'" + twins_[i]->id()) + "' on " + links_[i] +
+            (trouble.empty() ? "" : " (" + trouble + ")");
+  }
+  return text;
+}
+
+// --- the run ---
+
+hal::Status MixedSession::run(hal::Tick ticks, const std::atomic<bool>& stop,
+                              const std::function<void(core::World&)>& after_tick) {
+  if (options_.realtime_priority > 0) {
+    const hal::Status granted = ask_for_realtime_priority(options_.realtime_priority);
+    if (!granted.ok()) options_.log.warning(granted.error().message + "; going on without");
+  }
+  stopped_ = false;
+  phase_ = RunPhase::Running;
+  world_->start();
+  pacer_.start();
+  while (world_->state() == core::RunState::Running && !stop.load(std::memory_order_relaxed)) {
+    world_->step();
+    if (after_tick) after_tick(*world_);
+    if (ticks > 0 && world_->tick() >= ticks) break;
+    if (!pacer_.wait_for_next(stop)) break;
+  }
+  stop_robots();
+  world_->finish();
+  if (world_->state() == core::RunState::Failed) return hal::Error{world_->failure()};
+  return {};
+}
+
+Moment MixedSession::moment() const noexcept {
+  const bool running = phase_ == RunPhase::Running;
+  return {running ? hal::time_of_tick(world_->tick(), world_->ticks_per_second()) : 0, time_.now_ns()};
+}
+
+void MixedSession::latch(core::World&) {
+  now_ = moment();
+  for (const auto& twin : twins_) twin->latch(now_, phase_);
+}
+
+void MixedSession::after_sense(core::World&) {
+  for (const auto& twin : twins_) twin->after_sense();
+}
+
+void MixedSession::after_filter(core::World&) {
+  for (std::size_t i = 0; i < twins_.size(); ++i) {
+    Twin& twin = *twins_[i];
+    twin.after_filter({now_.run_ns, time_.now_ns()});
+    last_[i].driving = twin.verdict().may_drive;
+    last_[i].health = twin.real().health();
+    last_[i].state = twin.verdict().reason;
+  }
+}
+
+// --- the end ---
+
+bool MixedSession::stop_robots() {
+  if (phase_ == RunPhase::Running) now_ = moment();
+  phase_ = RunPhase::Stopping;
+  const auto at = [this] { return Moment{now_.run_ns, time_.now_ns()}; };
+  for (const auto& twin : twins_) twin->real().stop(at());
+  const hal::TimeNs give_up_ns = time_.now_ns() + options_.stop_timeout_ns;
+  bool all = false;
+  for (;;) {
+    for (std::size_t i = 0; i < twins_.size(); ++i) confirmed_[i] = twins_[i]->real().stopped() ? 1 : 0;
+    all = std::all_of(confirmed_.begin(), confirmed_.end(), [](std::uint8_t c) { return c != 0; });
+    if (all || time_.now_ns() >= give_up_ns) break;
+    time_.sleep_until(time_.now_ns() + kPollEvery_ns, kNever);
+    for (const auto& twin : twins_) twin->real().latch(at());
+  }
+  for (std::size_t i = 0; i < twins_.size(); ++i) {
+    if (confirmed_[i] != 0) continue;
+    options_.log.error("robot '" + twins_[i]->id() + "' on " + links_[i] +
+                       " did not confirm its stop: switch it off by hand if it moves");
+  }
+  stopped_ = true;
+  return all;
+}
+
+MixedReport MixedSession::report() const {
+  MixedReport report;
+  report.pace = pacer_.ledger();
+  for (std::size_t i = 0; i < twins_.size(); ++i) {
+    const Twin& twin = *twins_[i];
+    RealRobotReport robot;
+    robot.id = twin.id();
+    robot.link = links_[i];
+    robot.robot = twin.robot();
+    robot.pose = twin.pose();
+    robot.health = last_[i].health;
+    robot.driving = last_[i].driving;
+    robot.state = last_[i].state;
+    robot.stop_confirmed = confirmed_[i] != 0;
+    robot.counts = twin.counts();
+    robot.conversation = twin.real().report();
+    robot.poses_rejected = twin.poses().rejected();
+    robot.incidents = twin.incidents();
+    report.robots.push_back(std::move(robot));
+  }
+  return report;
+}
+
+}  // namespace tandem::mixed_reality

@@ -1,0 +1,107 @@
+// A run in which real robots take part: world, twins and pacer, tick by tick.
+//
+//   latch -> physics -> sense, fuse -> control -> filter -> commit   (World::step, which calls the twins)
+//   record (the caller's `after_tick`) -> wait until the next tick's absolute time
+#pragma once
+#include <atomic>
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "core/sim/external.hpp"
+#include "core/sim/world.hpp"
+#include "hal/log.hpp"
+#include "hal/result.hpp"
+#include "mixed_reality/session/report.hpp"
+#include "mixed_reality/time/monotonic.hpp"
+#include "mixed_reality/time/pacer.hpp"
+#include "mixed_reality/twin/twin.hpp"
+
+namespace tandem::mixed_reality {
+
+/// Whom to reach, for whoever makes real robots.
+struct RealRobotRequest {
+  const core::RobotItem& item;  ///< `item.bridge` is set
+  const core::ControllerConfig& controller;
+  std::int64_t ticks_per_second = 10;
+};
+
+/// How long a robot with this bridge may be silent, or without commands, before it is stopped: the bridge's `timeout`,
+/// but two ticks at least, because it is asked once a tick.
+hal::TimeNs lost_after_ns(const core::RobotItem& item, std::int64_t ticks_per_second) noexcept;
+
+/// Makes the real robot behind one `<bridge>`. Does not wait for it to answer. Error: no such link, or no bridge for
+/// that kind of robot.
+using RealRobotMaker = std::function<hal::Result<std::unique_ptr<RealRobot>>(const RealRobotRequest&)>;
+
+struct MixedOptions {
+  RearmParams rearm;
+  hal::TimeNs connect_timeout_ns = 15 * hal::kNsPerSecond;  ///< for all robots to answer before the start
+  hal::TimeNs stop_timeout_ns = 2 * hal::kNsPerSecond;      ///< for all robots to confirm their stop at the end
+  int realtime_priority = 0;  ///< SCHED_FIFO for the stepping thread; 0: none is asked for
+  hal::Log log;
+};
+
+/// Owns the world and the real robots. All calls come from one thread. However a run ends (its length, a hook, a
+/// failure, an exception, `stop`, or this object's end), every real robot is stopped.
+class MixedSession final : private core::ExternalRobots {
+ public:
+  /// Makes a twin of every robot of the world whose item has a `<bridge>`, and its real robot. `time` must outlive the
+  /// session. Error: a robot that cannot be made, or whose pose nobody can tell.
+  static hal::Result<std::unique_ptr<MixedSession>> make(std::unique_ptr<core::World> world,
+                                                         const RealRobotMaker& make_robot, TimeSource& time,
+                                                         const MixedOptions& options);
+  ~MixedSession() override;
+  MixedSession(const MixedSession&) = delete;
+  MixedSession& operator=(const MixedSession&) = delete;
+
+  /// Waits until every real robot answers and stands still. Error: one does not in time, named with what is wrong; or
+  /// `stop`.
+  hal::Status connect(const std::atomic<bool>& stop);
+
+  /// Steps the world in real time until `ticks` are done (0: no end of its own), the world is done, or `stop` becomes
+  /// true; then stops the robots. `after_tick` is called after every step, within the tick's time. Error: the world
+  /// failed. Once.
+  hal::Status run(hal::Tick ticks, const std::atomic<bool>& stop,
+                  const std::function<void(core::World&)>& after_tick = {});
+
+  /// Stops every real robot and waits a while for each to confirm. @returns whether all did; those that did not are
+  /// logged.
+  bool stop_robots();
+
+  core::World& world() noexcept { return *world_; }
+  const core::World& world() const noexcept { return *world_; }
+  MixedReport report() const;
+
+ private:
+  MixedSession(std::unique_ptr<core::World> world, TimeSource& time, const MixedOptions& options);
+  hal::Status add_twin(const core::RobotItem& item, const RealRobotMaker& make_robot);
+
+  void latch(core::World& world) override;
+  void after_sense(core::World& world) override;
+  void after_filter(core::World& world) override;
+
+  Moment moment() const noexcept;
+  bool all_answer() const noexcept;
+  std::string missing_robots() const;
+
+  struct LastState {  // of the last tick, kept because the end stops all
+    bool driving = false;
+    LinkHealth health = LinkHealth::Connecting;
+    std::string state;
+  };
+
+  std::unique_ptr<core::World> world_;
+  TimeSource& time_;
+  MixedOptions options_;
+  Pacer pacer_;
+  std::vector<std::unique_ptr<Twin>> twins_;
+  std::vector<std::string> links_;  // parallel to `twins_`, as the next two
+  std::vector<LastState> last_;
+  std::vector<std::uint8_t> confirmed_;
+  RunPhase phase_ = RunPhase::Waiting;
+  Moment now_;           // of the running tick
+  bool stopped_ = true;  // nothing was commanded since the robots were stopped
+};
+
+}  // namespace tandem::mixed_reality
