@@ -1,0 +1,367 @@
+#include "mixed_reality/session/mixed_session.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <gtest/gtest.h>
+#include <numbers>
+#include <stdexcept>
+
+#include "tests/core/scenes.hpp"
+#include "tests/mixed_reality/fake_robot.hpp"
+#include "tests/mixed_reality/time/fake_time.hpp"
+
+namespace tandem::mixed_reality {
+namespace {
+
+constexpr hal::TimeNs kMs = hal::kNsPerMs;
+constexpr double kDiameter_m = 2.0 * hal::epuck::kBodyRadius_m;
+const std::atomic<bool> kGoOn{false};
+
+/// Makes the robot with this id a real one.
+core::Scene& real(core::Scene& scene, const std::string& id) {
+  for (core::RobotItem& item : scene.scenario.robots) {
+    if (item.id == id) item.bridge = core::BridgeConfig{"fake:" + id, "auto", 0.5, {}, 7};
+  }
+  return scene;
+}
+
+class MixedRun : public testing::Test {
+ protected:
+  void open(const core::Scene& scene) {
+    made_ = core::make(scene);
+    ASSERT_TRUE(made_.world) << made_.all_problems();
+    for (const core::RobotItem& item : scene.scenario.robots) {
+      if (!item.bridge) continue;
+      const double heading_rad = item.placement.yaw_rad;
+      bodies_[item.id].pose = {item.placement.p_W[0], item.placement.p_W[1], 0.0, std::cos(heading_rad),
+                               std::sin(heading_rad)};
+    }
+    options_.log = hal::Log([this](hal::Severity, std::string_view text) { log_ += std::string(text) + "\n"; });
+    auto session = MixedSession::make(
+        std::move(made_.world),
+        [this](const RealRobotRequest& request) -> hal::Result<std::unique_ptr<RealRobot>> {
+          return std::unique_ptr<RealRobot>(std::make_unique<FakeRobot>(bodies_[request.item.id]));
+        },
+        time_, options_);
+    ASSERT_TRUE(session.ok()) << session.error().message;
+    session_ = std::move(session).value();
+  }
+  void connect() {
+    const hal::Status status = session_->connect(kGoOn);
+    ASSERT_TRUE(status.ok()) << status.error().message;
+  }
+  void run(hal::Tick ticks, const std::function<void(core::World&)>& after_tick = {}) {
+    connect();
+    const hal::Status status = session_->run(ticks, kGoOn, after_tick);
+    ASSERT_TRUE(status.ok()) << status.error().message;
+  }
+  core::Pose pose(const std::string& id) const {
+    return session_->world().space().pose(session_->world().space().find_robot(id));
+  }
+  static double distance(const core::Pose& a, const core::Pose& b) { return std::hypot(a.x_m - b.x_m, a.y_m - b.y_m); }
+  void expect_all_stand() {
+    for (auto& [id, body] : bodies_) {
+      EXPECT_TRUE(body.stands()) << id;
+      ASSERT_FALSE(body.received.empty());
+      EXPECT_EQ(body.received.back().wheels.left_m_s, 0.0) << id;
+    }
+  }
+  bool has_driven(const std::string& id) {
+    const auto& received = bodies_[id].received;
+    return std::any_of(received.begin(), received.end(), [](const auto& r) { return r.wheels.left_m_s != 0.0; });
+  }
+
+  FakeTime time_{7'000'000'000};
+  std::map<std::string, FakeBody> bodies_;
+  MixedOptions options_;
+  std::string log_;
+  core::MadeWorld made_;
+  std::unique_ptr<MixedSession> session_;
+};
+
+core::Scene drive(double left_m_s, double right_m_s) {
+  core::Scene scene(4.0, "drive");
+  scene.param("left", std::to_string(left_m_s)).param("right", std::to_string(right_m_s));
+  return scene;
+}
+
+TEST_F(MixedRun, StepsInRealTimeOnAnAbsoluteScheduleAndStopsTheRobotAtTheEnd) {
+  core::Scene scene = drive(0.05, 0.05);
+  scene.robot("ep0", -1.0, 0.0);
+  open(real(scene, "ep0"));
+  time_.oversleep_ns = 70'000;
+  connect();
+  const hal::TimeNs began = time_.now_ns();
+  hal::TimeNs last_tick = 0;
+  ASSERT_TRUE(session_->run(100, kGoOn, [&](core::World&) { last_tick = time_.now_ns(); }).ok());
+  EXPECT_EQ(last_tick, began + 99 * 100 * kMs + 70'000);
+  const MixedReport report = session_->report();
+  EXPECT_EQ(report.pace.deadline_misses, 0U);
+  ASSERT_EQ(report.robots.size(), 1U);
+  EXPECT_EQ(report.robots[0].state, "driving");
+  EXPECT_EQ(report.robots[0].link, "fake:ep0");
+  EXPECT_TRUE(report.robots[0].stop_confirmed);
+  EXPECT_EQ(report.robots[0].counts.ticks_driving + report.robots[0].counts.ticks_held, 100U);
+  EXPECT_GT(bodies_["ep0"].pose.x_m, -0.6);
+  expect_all_stand();
+}
+
+TEST_F(MixedRun, TheTwinIsWhereTheRealRobotIsInEveryTick) {
+  core::Scene scene = drive(0.06, 0.03);
+  scene.robot("ep0", -0.5, 0.3, 1.0);
+  open(real(scene, "ep0"));
+  run(200, [&](core::World&) {
+    bodies_["ep0"].move_to(time_.now_ns());
+    ASSERT_LT(distance(pose("ep0"), bodies_["ep0"].pose), 1e-9);
+    ASSERT_NEAR(pose("ep0").heading_rad(), bodies_["ep0"].pose.heading_rad(), 1e-9);
+  });
+}
+
+TEST_F(MixedRun, CommandsAreSentInTheTickInWhichTheyWereGivenNotAfterTheWait) {
+  core::Scene scene = drive(0.05, 0.05);
+  scene.robot("ep0", 0.0, 0.0);
+  open(real(scene, "ep0"));
+  std::size_t heard = 0;
+  run(20, [&](core::World&) {
+    EXPECT_GT(bodies_["ep0"].received.size(), heard);
+    heard = bodies_["ep0"].received.size();
+    EXPECT_EQ(bodies_["ep0"].received.back().at_ns, time_.now_ns());
+  });
+}
+
+TEST_F(MixedRun, TheRealRobotSeesAVirtualRobotInItsWayAndTurns) {
+  core::Scene alone(4.0, "obstacle_avoidance", "obstacle_avoidance");
+  alone.robot("ep0", 0.0, 0.0);
+  open(real(alone, "ep0"));
+  run(60);
+  EXPECT_NEAR(bodies_["ep0"].pose.y_m, 0.0, 1e-9);  // nothing there: straight on
+  EXPECT_GT(bodies_["ep0"].pose.x_m, 0.3);
+
+  session_.reset();
+  bodies_.clear();
+  core::Scene met(4.0, "obstacle_avoidance", "obstacle_avoidance");
+  met.robot("ep0", 0.0, 0.0);
+  met.scenario.controllers.push_back(drive(0.0, 0.0).scenario.controllers[0]);
+  met.robot("dummy", 0.3, 0.005);
+  met.scenario.robots.back().controller = 1;
+  open(real(met, "ep0"));
+  double nearest = 1.0;
+  run(60, [&](core::World&) { nearest = std::min(nearest, distance(bodies_["ep0"].pose, pose("dummy"))); });
+  EXPECT_GT(nearest, kDiameter_m);
+  EXPECT_LT(nearest, kDiameter_m + 0.1);  // it did come to see it
+  EXPECT_GT(std::fabs(bodies_["ep0"].pose.y_m), 0.02);
+  EXPECT_NEAR(distance(pose("dummy"), {0.3, 0.005, 0.0, 1.0, 0.0}), 0.0, 1e-9);
+}
+
+TEST_F(MixedRun, TheRealRobotSeesARealThingThatTheSimulationKnowsNothingOf) {
+  core::Scene scene(4.0, "obstacle_avoidance", "obstacle_avoidance");
+  scene.robot("ep0", 0.0, 0.0);
+  open(real(scene, "ep0"));
+  bodies_["ep0"].real_proximity_m = 0.01;  // boxed in
+  run(60);
+  EXPECT_NE(bodies_["ep0"].pose.heading_rad(), 0.0);  // it turns on the spot
+  EXPECT_NEAR(bodies_["ep0"].pose.x_m, 0.0, 1e-9);
+}
+
+TEST_F(MixedRun, SimulatedRobotsSeeTheTwinAndAvoidIt) {
+  core::Scene scene(4.0, "obstacle_avoidance", "obstacle_avoidance");
+  scene.robot("sim", -0.4, 0.003);
+  scene.scenario.controllers.push_back(drive(0.0, 0.0).scenario.controllers[0]);
+  scene.robot("ep0", 0.0, 0.0);
+  scene.scenario.robots.back().controller = 1;
+  open(real(scene, "ep0"));
+  double nearest = 1.0;
+  run(100, [&](core::World&) { nearest = std::min(nearest, distance(pose("sim"), bodies_["ep0"].pose)); });
+  EXPECT_GT(nearest, kDiameter_m);
+  EXPECT_LT(nearest, kDiameter_m + 0.1);
+  EXPECT_GT(std::fabs(pose("sim").y_m), 0.02);
+}
+
+TEST_F(MixedRun, ASimulatedRobotThatSeesNothingBumpsIntoTheTwinAndDoesNotMoveIt) {
+  core::Scene scene = drive(0.1, 0.1);
+  scene.robot("sim", -0.3, 0.0);
+  scene.scenario.controllers.push_back(drive(0.0, 0.0).scenario.controllers[0]);
+  scene.robot("ep0", 0.0, 0.0);
+  scene.scenario.robots.back().controller = 1;
+  open(real(scene, "ep0"));
+  run(60, [&](core::World&) {
+    ASSERT_GT(distance(pose("sim"), pose("ep0")), kDiameter_m - 0.002);
+    ASSERT_EQ(pose("ep0").x_m, 0.0);
+  });
+  EXPECT_LT(distance(pose("sim"), pose("ep0")), kDiameter_m + 0.002);
+}
+
+TEST_F(MixedRun, ALinkThatIsCutHoldsTheRobotAndTheRestGoesOn) {
+  core::Scene scene = drive(0.1, 0.1);
+  scene.robot("ep0", -1.5, 0.0).robot("ep1", -1.5, 0.5).robot("sim", -1.5, 1.0);
+  real(scene, "ep0");
+  open(real(scene, "ep1"));
+  hal::Tick tick = 0;
+  std::size_t heard_before_cut = 0;
+  run(100, [&](core::World& world) {
+    ++tick;
+    if (tick == 30) {
+      bodies_["ep0"].link_up = false;
+      heard_before_cut = bodies_["ep0"].received.size();
+    }
+    if (tick == 60) bodies_["ep0"].link_up = true;
+    if (tick == 45) {
+      EXPECT_TRUE(world.space().halted(world.space().find_robot("ep0")));
+      EXPECT_FALSE(world.space().halted(world.space().find_robot("ep1")));
+    }
+  });
+  const auto& received = bodies_["ep0"].received;
+  double last = 0.0;
+  for (std::size_t i = heard_before_cut; i < received.size(); ++i) {
+    EXPECT_LE(received[i].wheels.left_m_s - last, 0.25 * 0.1 + 1e-12) << "it jumps when the link is back";
+    last = received[i].wheels.left_m_s;
+  }
+  const MixedReport report = session_->report();
+  EXPECT_EQ(report.robots[0].counts.stops, 1U);
+  EXPECT_EQ(report.robots[0].state, "driving");
+  EXPECT_EQ(report.robots[1].counts.stops, 0U);
+  EXPECT_EQ(report.robots[1].counts.ticks_driving, 97U);  // all but the time to settle
+  EXPECT_NEAR(pose("sim").x_m, -1.5 + 0.1 * 9.9, 1e-9);
+  EXPECT_NE(log_.find("robot 'ep0' at 3 s: link lost (cable out)"), std::string::npos) << log_;
+  expect_all_stand();
+}
+
+TEST_F(MixedRun, AControllerThatThrowsStopsItsRobotForGood) {
+  core::Scene scene(4.0, "thrower");
+  scene.robot("ep0", 0.0, 0.0);
+  open(real(scene, "ep0"));
+  run(30);
+  const MixedReport report = session_->report();
+  EXPECT_EQ(report.robots[0].state, "controller stopped");
+  EXPECT_FALSE(report.robots[0].driving);
+  EXPECT_EQ(session_->world().incidents().controllers_thrown, 1U);
+  expect_all_stand();
+}
+
+TEST_F(MixedRun, CommandsThatAreNoNumbersNeverReachTheRobot) {
+  core::Scene scene(4.0, "careless");
+  scene.robot("ep0", 0.0, 0.0);
+  open(real(scene, "ep0"));
+  run(40);
+  EXPECT_TRUE(has_driven("ep0"));
+  for (const auto& r : bodies_["ep0"].received) {
+    EXPECT_TRUE(std::isfinite(r.wheels.left_m_s) && std::isfinite(r.wheels.right_m_s));
+    EXPECT_LE(std::fabs(r.wheels.left_m_s), hal::epuck::kDataSheet.max_wheel_speed_m_s + 1e-12);
+  }
+}
+
+TEST_F(MixedRun, AnInterruptionStopsEveryRobot) {
+  core::Scene scene = drive(0.05, 0.05);
+  scene.robot("ep0", 0.0, 0.0).robot("ep1", 0.5, 0.0);
+  real(scene, "ep0");
+  open(real(scene, "ep1"));
+  connect();
+  std::atomic<bool> stop{false};
+  ASSERT_TRUE(session_->run(0, stop, [&](core::World& w) { stop = w.tick() == 25; }).ok());
+  EXPECT_EQ(session_->world().tick(), 25);
+  EXPECT_TRUE(has_driven("ep0") && has_driven("ep1"));
+  expect_all_stand();
+}
+
+TEST_F(MixedRun, AnExceptionOnTheWayStopsEveryRobot) {
+  core::Scene scene = drive(0.05, 0.05);
+  scene.robot("ep0", 0.0, 0.0);
+  open(real(scene, "ep0"));
+  connect();
+  EXPECT_THROW((void)session_->run(0, kGoOn,
+                                   [](core::World& w) {
+                                     if (w.tick() == 25) throw std::runtime_error("disk full");
+                                   }),
+               std::runtime_error);
+  EXPECT_FALSE(bodies_["ep0"].stands());
+  session_.reset();
+  EXPECT_TRUE(has_driven("ep0"));
+  expect_all_stand();
+}
+
+TEST_F(MixedRun, AWorldThatFailsStopsEveryRobotAndSaysWhy) {
+  core::Scene scene = drive(0.05, 0.05);
+  scene.robot("ep0", 0.0, 0.0).robot("runaway", 1.6, 0.0);
+  open(real(scene, "ep0"));
+  connect();
+  const hal::Status status = session_->run(0, kGoOn);
+  ASSERT_FALSE(status.ok());
+  EXPECT_NE(status.error().message.find("runaway"), std::string::npos) << status.error().message;
+  EXPECT_TRUE(has_driven("ep0"));
+  expect_all_stand();
+}
+
+TEST_F(MixedRun, ARobotThatDoesNotConfirmItsStopIsNamed) {
+  core::Scene scene = drive(0.05, 0.05);
+  scene.robot("ep0", 0.0, 0.0);
+  open(real(scene, "ep0"));
+  bodies_["ep0"].confirms_stops = false;
+  run(10);
+  EXPECT_FALSE(session_->report().robots[0].stop_confirmed);
+  EXPECT_NE(log_.find("'ep0' on fake:ep0 did not confirm its stop: switch it off by hand"), std::string::npos) << log_;
+}
+
+TEST_F(MixedRun, DoesNotBeginBeforeEveryRobotAnswersAndNamesThoseThatDoNot) {
+  core::Scene scene = drive(0.05, 0.05);
+  scene.robot("ep0", 0.0, 0.0).robot("ep1", 0.5, 0.0);
+  real(scene, "ep0");
+  open(real(scene, "ep1"));
+  bodies_["ep1"].link_up = false;
+  const hal::TimeNs began = time_.now_ns();
+  const hal::Status status = session_->connect(kGoOn);
+  ASSERT_FALSE(status.ok());
+  EXPECT_EQ(status.error().message, "real robots did not answer within 15 s: 'ep1' on fake:ep1 (cable out)");
+  EXPECT_GE(time_.now_ns() - began, 15'000 * kMs);
+  EXPECT_EQ(session_->world().tick(), 0);
+  bodies_["ep1"].link_up = true;
+  EXPECT_TRUE(session_->connect(kGoOn).ok());
+  EXPECT_FALSE(has_driven("ep0"));
+}
+
+TEST_F(MixedRun, AStallOfTheHubIsCountedAndDoesNotMoveTheTwinFromTheRobot) {
+  core::Scene scene = drive(0.05, 0.05);
+  scene.robot("ep0", -1.0, 0.0);
+  open(real(scene, "ep0"));
+  run(60, [&](core::World& world) {
+    if (world.tick() == 30) time_.pass(2'000 * kMs);
+  });
+  const MixedReport report = session_->report();
+  EXPECT_EQ(report.pace.skipped_slots, 19U);
+  EXPECT_EQ(report.pace.deadline_misses, 1U);
+  EXPECT_EQ(report.robots[0].poses_rejected, 0U);
+  bodies_["ep0"].move_to(time_.now_ns());
+  EXPECT_NEAR(report.robots[0].pose.x_m, bodies_["ep0"].pose.x_m, 0.0051);  // the last tick's, at the end of that tick
+}
+
+TEST_F(MixedRun, RefusesARobotThatCannotBeMadeOrFollowed) {
+  core::Scene scene = drive(0.0, 0.0);
+  scene.robot("ep0", 0.0, 0.0);
+  real(scene, "ep0");
+  core::MadeWorld made = core::make(scene);
+  const auto failing = [](const RealRobotRequest&) -> hal::Result<std::unique_ptr<RealRobot>> {
+    return hal::Error{"no such link"};
+  };
+  auto session = MixedSession::make(std::move(made.world), failing, time_, options_);
+  ASSERT_FALSE(session.ok());
+  EXPECT_EQ(session.error().message, "scene:7: error: robot 'ep0': no such link");
+
+  scene.scenario.robots[0].tracker = core::TrackerConfig{"crystal_ball", {}, 8};
+  made = core::make(scene);
+  const auto making = [this](const RealRobotRequest&) -> hal::Result<std::unique_ptr<RealRobot>> {
+    return std::unique_ptr<RealRobot>(std::make_unique<FakeRobot>(bodies_["ep0"]));
+  };
+  session = MixedSession::make(std::move(made.world), making, time_, options_);
+  ASSERT_FALSE(session.ok());
+  EXPECT_NE(session.error().message.find("no tracker 'crystal_ball'"), std::string::npos) << session.error().message;
+}
+
+TEST(LostAfter, IsTheBridgesTimeoutButTwoTicksAtLeast) {
+  core::RobotItem item;
+  item.bridge = core::BridgeConfig{};
+  item.bridge->timeout_s = 0.5;
+  EXPECT_EQ(lost_after_ns(item, 10), 500 * kMs);
+  EXPECT_EQ(lost_after_ns(item, 1), 2'000 * kMs);
+}
+
+}  // namespace
+}  // namespace tandem::mixed_reality
