@@ -27,14 +27,14 @@ struct Column {
   std::size_t values;
 };
 
-std::string listed(const std::vector<std::string>& names) {
+std::string first_of(const std::vector<std::string>& names) {
   std::string text;
   for (std::size_t i = 0; i < std::min(names.size(), kNamesShown); ++i) text += (i == 0 ? "" : ", ") + names[i];
   if (names.size() > kNamesShown) text += ", … (" + std::to_string(names.size()) + " in all)";
   return text;
 }
 
-std::string did_you_mean(const std::string& word, const std::vector<std::string>& known) {
+std::string hint(const std::string& word, const std::vector<std::string>& known) {
   const std::string near = closest(word, known);
   return near.empty() ? "" : "; did you mean '" + near + "'?";
 }
@@ -128,8 +128,8 @@ hal::Status TrajectoryRecorder::Impl::choose_robots(const std::vector<std::strin
       any = true;
     }
     if (any) continue;
-    std::string message = "trajectory '" + path + "': no robot fits '" + pattern + "'" + did_you_mean(pattern, all);
-    message += all.empty() ? "; there are no robots" : "; there are: " + listed(all);
+    std::string message = "trajectory '" + path + "': no robot fits '" + pattern + "'" + hint(pattern, all);
+    message += all.empty() ? "; there are no robots" : "; there are: " + first_of(all);
     return hal::Error{message};
   }
   for (std::size_t i = 0; i < all.size(); ++i) {
@@ -157,7 +157,7 @@ hal::Status TrajectoryRecorder::Impl::choose_ports(const std::vector<std::string
     std::vector<std::string> known;
     for (const hal::PortType* type : there) known.emplace_back(type->name);
     return hal::Error{"trajectory '" + path + "': the controllers of the chosen robots use no port '" + name + "'" +
-                      did_you_mean(name, known) + (known.empty() ? "; they use none" : "; they use: " + listed(known))};
+                      hint(name, known) + (known.empty() ? "; they use none" : "; they use: " + first_of(known))};
   }
   return {};
 }
