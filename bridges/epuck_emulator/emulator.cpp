@@ -1,0 +1,277 @@
+#include "bridges/epuck_emulator/emulator.hpp"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <poll.h>
+#include <sys/timerfd.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "bridges/epuck_emulator/faults.hpp"
+#include "bridges/epuck_emulator/port.hpp"
+
+namespace tandem::bridges::epuck_emulator {
+namespace {
+
+using hal::TimeNs;
+
+constexpr TimeNs kStopNs = 20 * hal::kNsPerMs;  // the stop flag is looked at this often
+constexpr TimeNs kBatchNs = hal::kNsPerMs;  // bytes of one burst are handed over this often, as a serial adapter does
+constexpr TimeNs kNoiseNs = 5 * hal::kNsPerMs;  // a garbled line is not quiet either
+constexpr std::size_t kQueueBytes = 4096;       // the host's driver holds as much
+constexpr unsigned long kRobotBaud = 115200;
+
+TimeNs monotonic_ns() {
+  timespec t{};
+  clock_gettime(CLOCK_MONOTONIC, &t);
+  return static_cast<TimeNs>(t.tv_sec) * hal::kNsPerSecond + t.tv_nsec;
+}
+
+/// Wakes poll() at an absolute time.
+class AlarmClock {
+ public:
+  AlarmClock() : descriptor_(timerfd_create(CLOCK_MONOTONIC, TFD_NONBLOCK | TFD_CLOEXEC)) {}
+  ~AlarmClock() {
+    if (descriptor_ >= 0) ::close(descriptor_);
+  }
+  AlarmClock(const AlarmClock&) = delete;
+  AlarmClock& operator=(const AlarmClock&) = delete;
+
+  bool works() const noexcept { return descriptor_ >= 0; }
+  int descriptor() const noexcept { return descriptor_; }
+  void set(TimeNs at) const {
+    at = std::max<TimeNs>(at, 1);  // 0 would switch it off
+    itimerspec setting{};
+    setting.it_value.tv_sec = at / hal::kNsPerSecond;
+    setting.it_value.tv_nsec = at % hal::kNsPerSecond;
+    timerfd_settime(descriptor_, TFD_TIMER_ABSTIME, &setting, nullptr);
+  }
+
+ private:
+  int descriptor_;
+};
+
+/// A wire: bytes in the order of the times at which they are through.
+using Wire = std::deque<SentByte>;
+
+/// When it is worth waking up for `wire`: with its last byte, or a batch after its first.
+std::optional<TimeNs> batch_at(const Wire& wire) {
+  if (wire.empty()) return std::nullopt;
+  return std::max(wire.front().at, std::min(wire.back().at, wire.front().at + kBatchNs));
+}
+
+class Server {
+ public:
+  Server(const Options& options, std::unique_ptr<Port> port, std::unique_ptr<EventLog> log_file, FaultPlan faults,
+         EmulatedBody& body, Firmware::Options robot)
+      : options_(options),
+        port_(std::move(port)),
+        log_file_(std::move(log_file)),
+        faults_(std::move(faults)),
+        firmware_(robot, body, [this](TimeNs at, std::string_view name, const EventFields& f) { tell(at, name, f); }) {}
+
+  hal::Status serve(const std::atomic<bool>& stop);
+
+ private:
+  void tell(TimeNs at, std::string_view name, const EventFields& fields);
+  hal::Status turn(TimeNs now);
+  hal::Status apply_faults(TimeNs now);
+  hal::Status take_in(TimeNs now);
+  void run_robot(TimeNs now);
+  void give_out(TimeNs now);
+  void make_noise(TimeNs now);
+  bool same_baud(TimeNs now);
+  TimeNs next_wake(TimeNs now) const;
+  hal::Status wait_until(TimeNs at) const;
+
+  const Options& options_;
+  std::unique_ptr<Port> port_;  // none while hung up
+  std::unique_ptr<EventLog> log_file_;
+  FaultPlan faults_;
+  Firmware firmware_;
+  AlarmClock alarm_;
+  Wire to_robot_;
+  Wire to_host_;
+  TimeNs line_free_at_ = 0;  // when the last byte from the host is through
+  TimeNs last_told_ = 0;
+  TimeNs next_noise_ = 0;
+  unsigned long host_baud_ = kRobotBaud;
+  std::vector<SentByte> sent_;
+};
+
+// Stamps in the log never go back, although the robot's are of the past by up to one turn.
+void Server::tell(TimeNs at, std::string_view name, const EventFields& fields) {
+  last_told_ = std::max(last_told_, at);
+  if (log_file_) log_file_->write(last_told_, name, fields);
+  if (options_.events) options_.events(last_told_, name, fields);
+}
+
+hal::Status Server::serve(const std::atomic<bool>& stop) {
+  if (!alarm_.works()) return hal::Error{std::string("cannot make a timer: ") + std::strerror(errno)};
+  const TimeNs start = monotonic_ns();
+  faults_.begin(start);
+  tell(start, "start",
+       {{"firmware", facts_of(firmware_.options().variant).name},
+        {"link", options_.link},
+        {"path", port_->path()},
+        {"device", port_->device()},
+        {"seed", options_.seed}});
+  firmware_.power_on(start);
+  options_.log.info("e-puck (" + options_.firmware + ") on " + port_->path());
+  if (options_.ready) options_.ready(port_->path());
+  while (!stop.load(std::memory_order_relaxed)) {
+    const TimeNs now = monotonic_ns();
+    hal::Status status = turn(now);
+    if (status.ok()) status = wait_until(next_wake(now));
+    if (!status.ok()) {
+      tell(monotonic_ns(), "end", {{"why", status.error().message}});
+      return status;
+    }
+  }
+  const TimeNs end = monotonic_ns();
+  firmware_.run_until(end);
+  tell(end, "end", {{"why", "stopped"}});
+  return {};
+}
+
+hal::Status Server::turn(TimeNs now) {
+  if (const hal::Status status = apply_faults(now); !status.ok()) return status;
+  if (const hal::Status status = take_in(now); !status.ok()) return status;
+  run_robot(now);
+  make_noise(now);
+  give_out(now);
+  return {};
+}
+
+hal::Status Server::apply_faults(TimeNs now) {
+  while (const auto change = faults_.next_change(now)) {
+    const Fault& fault = *change->fault;
+    tell(change->at, "fault", {{"fault", fault.text}, {"phase", change->begins ? "begin" : "end"}});
+    if (fault.kind == FaultKind::Reset) firmware_.reset(change->at, "fault");
+    if (fault.kind == FaultKind::Truncate) firmware_.cut_next_answer();
+    if (fault.kind == FaultKind::Garbage) next_noise_ = now;
+    if (fault.kind != FaultKind::Hangup) continue;
+    to_robot_.clear();
+    to_host_.clear();
+    port_.reset();
+    if (change->begins) continue;
+    auto again = Port::open(options_.link);
+    if (!again.ok()) return again.error();
+    port_ = std::move(again).value();
+  }
+  return {};
+}
+
+// Reads no more than the host's driver would let go: a byte each 87 microseconds gets through.
+hal::Status Server::take_in(TimeNs now) {
+  if (!port_ || to_robot_.size() >= kQueueBytes) return {};
+  std::array<std::uint8_t, kQueueBytes> buffer{};
+  const auto count = port_->read(std::span(buffer).first(kQueueBytes - to_robot_.size()));
+  if (!count.ok()) return count.error();
+  if (count.value() == 0) return {};
+  const bool clear = same_baud(now);
+  for (std::size_t i = 0; i < count.value(); ++i) {
+    line_free_at_ = std::max(line_free_at_, now) + kByteNs;
+    to_robot_.push_back({clear ? buffer[i] : faults_.garble(buffer[i]), line_free_at_});
+  }
+  return {};
+}
+
+void Server::run_robot(TimeNs now) {
+  while (!to_robot_.empty() && to_robot_.front().at <= now) {
+    const SentByte next = to_robot_.front();
+    to_robot_.pop_front();
+    if (const auto byte = faults_.to_robot(next.byte, next.at)) firmware_.receive(*byte, next.at);
+  }
+  firmware_.run_until(now);
+  sent_.clear();
+  firmware_.take_sent(now, sent_);
+  for (const SentByte& s : sent_) {
+    const auto byte = faults_.to_host(s.byte, s.at);
+    if (!byte || !port_) continue;
+    const TimeNs at = s.at + faults_.delay_ns(s.at);
+    to_host_.push_back({*byte, to_host_.empty() ? at : std::max(at, to_host_.back().at)});
+  }
+}
+
+void Server::make_noise(TimeNs now) {
+  if (!port_ || next_noise_ > now || !faults_.active(FaultKind::Garbage, now)) return;
+  next_noise_ = now + kNoiseNs;
+  if (const auto byte = faults_.to_host(0, now)) to_host_.push_back({*byte, now});
+}
+
+void Server::give_out(TimeNs now) {
+  std::vector<std::uint8_t> due;
+  while (!to_host_.empty() && to_host_.front().at <= now) {
+    due.push_back(to_host_.front().byte);
+    to_host_.pop_front();
+  }
+  if (due.empty() || !port_) return;
+  if (!same_baud(now)) {
+    for (std::uint8_t& byte : due) byte = faults_.garble(byte);
+  }
+  const std::size_t gone = port_->write(due);
+  if (gone < due.size()) tell(now, "overflow", {{"buffer", "host"}, {"bytes", due.size() - gone}});
+}
+
+bool Server::same_baud(TimeNs now) {
+  const unsigned long baud = port_->host_baud();
+  if (baud != host_baud_) tell(now, "baud", {{"host", baud}, {"robot", kRobotBaud}});
+  host_baud_ = baud;
+  return baud == kRobotBaud;
+}
+
+TimeNs Server::next_wake(TimeNs now) const {
+  TimeNs wake = now + kStopNs;
+  const auto consider = [&wake](const std::optional<TimeNs>& at) {
+    if (at) wake = std::min(wake, *at);
+  };
+  consider(batch_at(to_robot_));
+  consider(batch_at(to_host_));
+  consider(faults_.next_change_at());
+  consider(firmware_.next_event(kBatchNs));
+  if (faults_.active(FaultKind::Garbage, now)) consider(next_noise_);
+  return wake;
+}
+
+hal::Status Server::wait_until(TimeNs at) const {
+  alarm_.set(at);
+  std::array<pollfd, 2> waits{{{alarm_.descriptor(), POLLIN, 0}, {port_ ? port_->descriptor() : -1, POLLIN, 0}}};
+  if (to_robot_.size() >= kQueueBytes) waits[1].fd = -1;
+  const int woken = ::poll(waits.data(), waits.size(), -1);  // a signal wakes it too
+  const bool gone = woken > 0 && (waits[1].revents & (POLLHUP | POLLERR | POLLNVAL)) != 0;
+  if (gone) return hal::Error{"the serial line '" + port_->path() + "' has gone; was its cable pulled?"};
+  return {};
+}
+
+}  // namespace
+
+hal::Status run(const Options& options, const std::atomic<bool>& stop) {
+  const auto variant = variant_from(options.firmware);
+  if (!variant.ok()) return variant.error();
+  std::vector<Fault> faults;
+  for (const std::string& spec : options.faults) {
+    auto fault = parse_fault(spec);
+    if (!fault.ok()) return fault.error();
+    faults.push_back(std::move(fault).value());
+  }
+  std::unique_ptr<EventLog> log_file;
+  if (!options.log_file.empty()) {
+    auto opened = EventLog::open(options.log_file);
+    if (!opened.ok()) return opened.error();
+    log_file = std::move(opened).value();
+  }
+  auto port = Port::open(options.link);
+  if (!port.ok()) return port.error();
+
+  KinematicBody own_body({}, options.arena);
+  EmulatedBody& body = options.body != nullptr ? *options.body : own_body;
+  Firmware::Options robot = options.robot;
+  robot.variant = variant.value();
+  Server server(options, std::move(port).value(), std::move(log_file), FaultPlan(std::move(faults), options.seed), body,
+                robot);
+  return server.serve(stop);
+}
+
+}  // namespace tandem::bridges::epuck_emulator

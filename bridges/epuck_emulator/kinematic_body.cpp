@@ -1,0 +1,79 @@
+#include "bridges/epuck_emulator/kinematic_body.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace tandem::bridges::epuck_emulator {
+namespace {
+
+constexpr hal::TimeNs kStepNs = 10 * hal::kNsPerMs;  // between two looks at the walls
+
+/// Along one axis: how far until the wall at +-half_m, moving by `per_m` a metre of ray.
+double to_wall_m(double at_m, double per_m, double half_m) {
+  if (per_m > 0.0) return std::max(0.0, (half_m - at_m) / per_m);
+  if (per_m < 0.0) return std::max(0.0, (-half_m - at_m) / per_m);
+  return std::numeric_limits<double>::infinity();
+}
+
+}  // namespace
+
+KinematicBody::KinematicBody(const Pose& start, const std::optional<Arena>& arena) : pose_(start), arena_(arena) {}
+
+void KinematicBody::advance(hal::TimeNs now) {
+  if (!at_) at_ = now;
+  const bool still = command_.left_m_s == 0.0 && command_.right_m_s == 0.0;
+  if (still) at_ = std::max(*at_, now);
+  while (*at_ < now) {
+    const hal::TimeNs until = arena_ ? std::min(now, *at_ + kStepNs) : now;
+    roll(hal::to_seconds(until - *at_));
+    at_ = until;
+  }
+}
+
+void KinematicBody::roll(double dt_s) {
+  const double v_m_s = 0.5 * (command_.left_m_s + command_.right_m_s);
+  const double turn_rad = (command_.right_m_s - command_.left_m_s) / hal::epuck::kWheelBase_m * dt_s;
+  // The chord of the arc that the centre drives.
+  const double half = 0.5 * turn_rad;
+  const double chord_m = v_m_s * dt_s * (std::fabs(half) < 1e-9 ? 1.0 : std::sin(half) / half);
+  pose_.x_m += chord_m * std::cos(pose_.heading_rad + half);
+  pose_.y_m += chord_m * std::sin(pose_.heading_rad + half);
+  pose_.heading_rad = std::remainder(pose_.heading_rad + turn_rad, 2.0 * std::numbers::pi);
+  if (!arena_) return;
+  const double free_x_m = std::max(0.0, 0.5 * arena_->length_x_m - hal::epuck::kBodyRadius_m);
+  const double free_y_m = std::max(0.0, 0.5 * arena_->length_y_m - hal::epuck::kBodyRadius_m);
+  pose_.x_m = std::clamp(pose_.x_m, -free_x_m, free_x_m);
+  pose_.y_m = std::clamp(pose_.y_m, -free_y_m, free_y_m);
+}
+
+double KinematicBody::distance_to_wall_m(double x_m, double y_m, double direction_rad) const {
+  return std::min(to_wall_m(x_m, std::cos(direction_rad), 0.5 * arena_->length_x_m),
+                  to_wall_m(y_m, std::sin(direction_rad), 0.5 * arena_->length_y_m));
+}
+
+BodySenses KinematicBody::sense(hal::TimeNs now) {
+  advance(now);
+  BodySenses senses = surroundings;
+  senses.turn_rad_s[2] = (command_.right_m_s - command_.left_m_s) / hal::epuck::kWheelBase_m;
+  if (!arena_) return senses;
+  const double c = std::cos(pose_.heading_rad);
+  const double s = std::sin(pose_.heading_rad);
+  for (std::size_t i = 0; i < senses.distance_m.size(); ++i) {
+    const hal::Mount& m = hal::epuck::kInfrared[i];
+    const double free_m = distance_to_wall_m(pose_.x_m + c * m.x_m - s * m.y_m, pose_.y_m + s * m.x_m + c * m.y_m,
+                                             pose_.heading_rad + m.bearing_rad);
+    senses.distance_m[i] = std::min({senses.distance_m[i], free_m, hal::epuck::kProximityRange_m});
+  }
+  senses.ahead_m =
+      std::min(senses.ahead_m, distance_to_wall_m(pose_.x_m + c * hal::epuck::kBodyRadius_m,
+                                                  pose_.y_m + s * hal::epuck::kBodyRadius_m, pose_.heading_rad));
+  return senses;
+}
+
+void KinematicBody::actuate(hal::TimeNs now, const BodyCommand& command) {
+  advance(now);
+  command_ = command;
+}
+
+}  // namespace tandem::bridges::epuck_emulator

@@ -1,0 +1,55 @@
+// Where the emulated robot's serial line comes out: a pseudo-terminal under a name of our own, or a real serial device.
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+
+#include "hal/result.hpp"
+
+namespace tandem::bridges::epuck_emulator {
+
+/// The robot's end of a serial line at 115200 baud, raw, 8N1, no flow control. Nothing here blocks.
+class Port {
+ public:
+  /// "pty:NAME" makes a pseudo-terminal and a symbolic link NAME to it, in the current folder unless NAME is a path; a
+  /// link of that name is replaced. "serial:DEVICE" or "serial:DEVICE@115200" opens a device, for a robot at the end of
+  /// a cable. Errors: other links; NAME is something else than a symbolic link; the folder or the device cannot be
+  /// opened.
+  static hal::Result<std::unique_ptr<Port>> open(const std::string& link);
+
+  /// Takes the symbolic link away, if it is still ours.
+  ~Port();
+  Port(const Port&) = delete;
+  Port& operator=(const Port&) = delete;
+
+  /// For poll().
+  int descriptor() const noexcept { return descriptor_; }
+
+  /// What has come in, up to the size of `buffer`; 0 when nothing has. Errors: the device has gone.
+  hal::Result<std::size_t> read(std::span<std::uint8_t> buffer);
+
+  /// @returns how many bytes went out; the rest is lost, as on a wire that nobody listens at
+  std::size_t write(std::span<const std::uint8_t> bytes);
+
+  /// The baud rate that the host has set on its side of a pseudo-terminal; 115200 on a device.
+  unsigned long host_baud() const;
+
+  /// The name that a host opens.
+  const std::string& path() const noexcept { return path_; }
+  /// What `path` points at.
+  const std::string& device() const noexcept { return device_; }
+
+ private:
+  Port() = default;
+  hal::Status make_terminal(const std::string& path);
+  hal::Status open_device(const std::string& device);
+
+  int descriptor_ = -1;
+  int slave_ = -1;  // kept open: without any, the robot's end of a pseudo-terminal reports a hang-up
+  std::string path_;
+  std::string device_;
+  bool owns_link_ = false;
+};
+
+}  // namespace tandem::bridges::epuck_emulator

@@ -1,0 +1,79 @@
+#include "bridges/epuck_emulator/raw_units.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tandem::bridges::epuck_emulator {
+namespace {
+
+namespace spec = hal::epuck;
+
+constexpr double kDegrees = 180.0 / std::numbers::pi;
+
+/// Rounds and keeps within what the converter can say; what is no number reads as `low`.
+int counts(double value, int low, int high) {
+  if (std::isnan(value)) return low;
+  return static_cast<int>(std::lround(std::clamp(value, static_cast<double>(low), static_cast<double>(high))));
+}
+
+}  // namespace
+
+int proximity_counts(double distance_m) {
+  const auto& curve = spec::kInfraredCurve;
+  if (!(distance_m > curve.front().distance_m)) return counts(curve.front().counts, 0, spec::kAdcMax);
+  for (std::size_t i = 1; i < curve.size(); ++i) {
+    if (distance_m > curve[i].distance_m) continue;
+    const double share = (distance_m - curve[i - 1].distance_m) / (curve[i].distance_m - curve[i - 1].distance_m);
+    return counts(curve[i - 1].counts + share * (curve[i].counts - curve[i - 1].counts), 0, spec::kAdcMax);
+  }
+  return 0;
+}
+
+int ambient_counts(double level) {
+  return counts(spec::kAmbientDarkRaw * (1.0 - level), 0, spec::kAdcMax);
+}
+
+int ground_counts(double reflectance) {
+  return counts(reflectance * spec::kGroundWhiteRaw, 0, spec::kGroundWhiteRaw);
+}
+
+int microphone_counts(double level) {
+  return counts(level * spec::kMicrophoneMaxRaw, 0, spec::kMicrophoneMaxRaw);
+}
+
+int acceleration_counts(double force_m_s2) {
+  return counts(force_m_s2 / spec::kGravity_m_s2 * spec::kCountsPerG, -spec::kAdcMax, spec::kAdcMax);
+}
+
+int gyro_counts(double turn_rad_s) {
+  return counts(turn_rad_s * kDegrees * 32768.0 / 250.0, -32768, 32767);
+}
+
+int battery_counts(double battery_V) {
+  const double share = (battery_V - spec::kBatteryEmpty_V) / (spec::kBatteryFull_V - spec::kBatteryEmpty_V);
+  return counts(spec::kBatteryEmptyRaw + share * (spec::kBatteryFullRaw - spec::kBatteryEmptyRaw), 0, spec::kAdcMax);
+}
+
+int battery_counts_epuck2(double battery_V) {
+  return counts(battery_V * 330.0 / (220.0 + 330.0) * 4096.0 / 3.0, 0, spec::kAdcMax);
+}
+
+int battery_percent(double battery_V) {
+  const double share = (battery_V - spec::kBatteryEmpty_V) / (spec::kBatteryFull_V - spec::kBatteryEmpty_V);
+  return counts(100.0 * share, 0, 100);
+}
+
+Tilt tilt_of(const std::array<int, 3>& raw) {
+  const double x = raw[0];
+  const double y = raw[1];
+  const double z = raw[2];
+  const double flat = std::hypot(x, y);
+  Tilt tilt;
+  tilt.acceleration_raw = static_cast<float>(std::hypot(flat, z));
+  const double orientation_deg = std::atan2(y, x) * kDegrees;
+  tilt.orientation_deg = static_cast<float>(orientation_deg < 0.0 ? orientation_deg + 360.0 : orientation_deg);
+  tilt.inclination_deg = static_cast<float>(std::atan2(flat, z) * kDegrees);
+  return tilt;
+}
+
+}  // namespace tandem::bridges::epuck_emulator
