@@ -66,6 +66,31 @@ int main(int argc, char** argv) {
   BenchOptions bench_options;
   add_bench(app, bench_options, code);
 
+  RobotOptions robot_options;
+  CLI::App* robot_command = app.add_subcommand("robot", "Run one real robot's controller here.");
+  robot_command->add_option("file", robot_options.file, "Experiment file with one robot that has a <bridge>")->required();
+  robot_command->add_option("--link", robot_options.link, "Where the robot is, instead of the file's, e.g. serial:/dev/rfcomm0@115200");
+  robot_command->add_option("--seconds", robot_options.seconds, "How long, instead of the file's length")->check(CLI::PositiveNumber);
+  robot_command->add_option("--report", robot_options.report, "Write a JSON report to this file ('-': standard output)");
+  robot_command->callback([&] { code = robot(robot_options); });
+
+  EmulateOptions emulate_options;
+  CLI::App* emulate_command = app.add_subcommand("emulate", "Behave as a robot's firmware on a link.");
+  emulate_command->add_option("robot", emulate_options.robot, "epuck")->required();
+  emulate_command->add_option("--link", emulate_options.link, "pty:NAME makes a pseudo-terminal of that name")->required();
+  emulate_command->add_option("--log", emulate_options.log, "File for one JSON object an event; default: standard output");
+  emulate_command->add_option("--firmware", emulate_options.firmware, "btcom, gctronic, webots or epuck2")->capture_default_str();
+  emulate_command->add_option("--fault", emulate_options.faults, "A fault to show, e.g. silent@5s+2s; repeatable")->allow_extra_args(false);
+  auto* arena = emulate_command->add_option("--arena", emulate_options.arena, "Experiment file: one of its robots, driven by `puppet`, is the body");
+  emulate_command->add_option("--body", emulate_options.body, "Which of its robots; default: the first puppet")->needs(arena);
+  emulate_command->callback([&] { code = emulate(emulate_options); });
+
+  InspectOptions inspect_options;
+  CLI::App* inspect_command = app.add_subcommand("inspect", "Say which robot is on a link and what it reads. Moves nothing.");
+  inspect_command->add_option("link", inspect_options.link, "e.g. serial:/dev/rfcomm0@115200")->required();
+  inspect_command->add_option("--seconds", inspect_options.seconds, "How long to listen")->capture_default_str()->check(CLI::Range(0.1, 3600.0));
+  inspect_command->callback([&] { code = inspect(inspect_options); });
+
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& e) {

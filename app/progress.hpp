@@ -1,6 +1,7 @@
 // A progress bar, on a terminal only.
 #pragma once
 #include <cstdint>
+#include <string_view>
 
 namespace tandem::app {
 
@@ -25,5 +26,8 @@ class Progress {
   double began_s_ = 0.0;
   double next_s_ = 0.0;
 };
+
+/// Prints a line on standard error, over a progress bar that may stand there.
+void say(std::string_view text);
 
 }  // namespace tandem::app

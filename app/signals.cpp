@@ -20,4 +20,6 @@ const std::atomic<bool>& catch_signals() {
   return stop_asked;
 }
 
+void request_stop() noexcept { stop_asked.store(true, std::memory_order_relaxed); }
+
 }  // namespace tandem::app

@@ -7,4 +7,7 @@ namespace tandem::app {
 /// From here on SIGINT and SIGTERM set the flag instead of ending the process. A second one still only sets it.
 const std::atomic<bool>& catch_signals();
 
+/// Sets the flag as a signal would.
+void request_stop() noexcept;
+
 }  // namespace tandem::app

@@ -63,6 +63,8 @@ struct EmulateOptions {
   std::string log;
   std::string firmware = "gctronic";
   std::vector<std::string> faults;
+  std::string arena;       ///< experiment whose puppet is the robot's body
+  std::string body;        ///< which puppet; empty: the first
 };
 int emulate(const EmulateOptions& options);
 

@@ -13,6 +13,8 @@
 #include "core/record/trajectory.hpp"
 #include "core/sim/world.hpp"
 #include "core/view/picture.hpp"
+#include "mixed_reality/epuck/real_epuck.hpp"
+#include "mixed_reality/session/mixed_session.hpp"
 #include "mixed_reality/time/pacer.hpp"
 
 namespace tandem::app {
@@ -40,7 +42,32 @@ std::unique_ptr<core::TrajectoryRecorder> open_trajectory(const RunOptions& opti
   return nullptr;
 }
 
-std::string report_of(const core::World& world, const hal::PluginLoader& loader, const RunFigures& figures, std::size_t robots) {
+void add_real_robots(Json& json, const mixed_reality::MixedReport& report) {
+  json.key("real_robots").begin_array();
+  for (const mixed_reality::RealRobotReport& r : report.robots) {
+    json.begin_object();
+    json.field("id", r.id).field("link", r.link).field("x_m", r.pose.x_m).field("y_m", r.pose.y_m).field("heading_rad", r.pose.heading_rad());
+    json.field("state", r.state).field("driving", r.driving).field("stop_confirmed", r.stop_confirmed);
+    json.field("ticks_driving", r.counts.ticks_driving).field("ticks_held", r.counts.ticks_held).field("stops", r.counts.stops);
+    json.field("rearms", r.counts.rearms).field("fenced_ticks", r.counts.fenced_ticks);
+    json.field("packets", r.conversation.packets).field("answers", r.conversation.answers).field("time_outs", r.conversation.time_outs);
+    json.field("bad_answers", r.conversation.bad_answers).field("resynchronised", r.conversation.resynchronised);
+    json.field("links_lost", r.conversation.links_lost);
+    json.key("incidents").begin_array();
+    for (const std::string& what : r.incidents) json.value(what);
+    json.end_array().end_object();
+  }
+  json.end_array();
+  json.key("pace").begin_object();
+  json.field("ticks", report.pace.ticks).field("deadline_misses", report.pace.deadline_misses).field("skipped_slots", report.pace.skipped_slots);
+  json.field("largest_lateness_ms", static_cast<double>(report.pace.largest_lateness_ns) * 1e-6);
+  json.field("wake_up_p99_ms", static_cast<double>(report.pace.wake_up.quantile_ns(0.99)) * 1e-6);
+  json.field("step_p99_ms", static_cast<double>(report.pace.step.quantile_ns(0.99)) * 1e-6);
+  json.end_object();
+}
+
+std::string report_of(const core::World& world, const hal::PluginLoader& loader, const RunFigures& figures, std::size_t robots,
+                      const mixed_reality::MixedReport* real) {
   Json json;
   json.begin_object();
   add_run_fields(json, world, figures, robots);
@@ -65,12 +92,13 @@ std::string report_of(const core::World& world, const hal::PluginLoader& loader,
   json.key("first").begin_array();
   for (const std::string& what : incidents.first) json.value(what);
   json.end_array().end_object();
+  if (real != nullptr) add_real_robots(json, *real);
   json.field("settings", core::to_xml(world.scenario().effective));
   json.end_object();
   return json.text();
 }
 
-void print_result(const core::World& world, const RunFigures& figures, std::size_t robots) {
+void print_result(const core::World& world, const RunFigures& figures, std::size_t robots, const mixed_reality::MixedReport* real) {
   const core::Incidents& incidents = world.incidents();
   const double virtual_s = figures.virtual_s(world.ticks_per_second());
   std::vector<std::pair<std::string, std::string>> rows = {
@@ -86,7 +114,38 @@ void print_result(const core::World& world, const RunFigures& figures, std::size
     rows.emplace_back("incidents", fmt::format("{} commands clamped, {} not finite, {} controllers threw, {} bodies escaped", incidents.commands_clamped,
                                                incidents.commands_not_finite, incidents.controllers_thrown, incidents.bodies_escaped));
   }
+  if (real != nullptr) {
+    for (const mixed_reality::RealRobotReport& r : real->robots) {
+      rows.emplace_back("real robot", fmt::format("{} on {}: {}; {} ticks driving, {} held, {} of {} packets answered, {}", r.id, r.link, r.state,
+                                                  r.counts.ticks_driving, r.counts.ticks_held, r.conversation.answers, r.conversation.packets,
+                                                  r.stop_confirmed ? "stop confirmed" : "STOP NOT CONFIRMED"));
+    }
+  }
   print_table(rows);
+}
+
+/// Steps a purely simulated world, paced when its file says so. @returns deadlines that were missed.
+template <class AfterTick>
+std::uint64_t run_alone(core::World& world, std::int64_t steps, const std::atomic<bool>& stop, mixed_reality::TimeSource& clock,
+                        const AfterTick& after_tick) {
+  mixed_reality::Pacer pacer(clock, world.ticks_per_second());
+  const bool paced = world.scenario().time_mode == core::TimeMode::Realtime;
+  world.start();
+  if (paced) pacer.start();
+  while (world.state() == core::RunState::Running && (steps == 0 || world.tick() < steps) && !stop.load(std::memory_order_relaxed)) {
+    world.step();
+    after_tick(world);
+    if (paced && !pacer.wait_for_next(stop)) break;
+  }
+  world.finish();
+  return pacer.ledger().deadline_misses;
+}
+
+bool has_real_robots(const core::Scenario& scenario) {
+  for (const core::RobotItem& item : scenario.robots) {
+    if (item.bridge) return true;
+  }
+  return false;
 }
 
 }  // namespace
@@ -102,12 +161,13 @@ int run(const RunOptions& options) {
   world_options.threads = options.threads;
   int warned = 0;
   world_options.log = hal::Log([&warned](hal::Severity, std::string_view text) {
-    if (++warned <= 20) fmt::print(stderr, "\r\033[K{}\n", text);
+    if (++warned <= 20) say(text);
   });
   core::Problems problems;
-  const auto world = core::World::make(*scenario, loader, world_options, problems);
+  auto made = core::World::make(*scenario, loader, world_options, problems);
   print_problems(problems);
-  if (world == nullptr) return kBadInput;
+  if (made == nullptr) return kBadInput;
+  core::World* const world = made.get();  // a mixed session takes it over
   bool good = true;
   const auto trajectory = open_trajectory(options, *scenario, *world, good);
   if (!good) return kBadInput;
@@ -115,32 +175,51 @@ int run(const RunOptions& options) {
   const std::atomic<bool>& stop = catch_signals();
   const std::int64_t steps = steps_of(options, *scenario);
   const std::size_t robots = world->space().robot_count();
-  const bool paced = scenario->time_mode == core::TimeMode::Realtime;
   mixed_reality::MonotonicTime clock;
-  mixed_reality::Pacer pacer(clock, scenario->ticks_per_second);
+  std::unique_ptr<mixed_reality::MixedSession> mixed;
+  if (has_real_robots(*scenario)) {
+    mixed_reality::MixedOptions mixed_options;
+    mixed_options.log = world_options.log;
+    auto session = mixed_reality::MixedSession::make(
+        std::move(made), [&](const mixed_reality::RealRobotRequest& request) { return mixed_reality::make_real_robot(request, world_options.log); },
+        clock, mixed_options);
+    if (!session.ok()) {
+      fmt::print(stderr, "error: {}\n", session.error().message);
+      return kBadInput;
+    }
+    mixed = std::move(session).value();
+    const hal::Status connected = mixed->connect(stop);
+    if (!connected.ok()) {
+      fmt::print(stderr, "error: {}\n", connected.error().message);
+      return kFailedRunning;
+    }
+  }
+
   RunFigures figures;
   figures.threads = world->threads();
   hal::Status recorded;
-
-  world->start();
   figures.init_s = wall_seconds() - began;
   const double wall = wall_seconds();
   const double cpu = cpu_seconds();
   {
     Progress progress(steps, scenario->ticks_per_second);
-    if (paced) pacer.start();
-    while (world->state() == core::RunState::Running && (steps == 0 || world->tick() < steps) && !stop.load(std::memory_order_relaxed)) {
-      world->step();
-      if (trajectory != nullptr && recorded.ok()) recorded = trajectory->record(world->space(), world->tick());
-      progress.step(world->tick());
-      if (paced && !pacer.wait_for_next(stop)) break;
+    const auto after_tick = [&](core::World& w) {
+      if (trajectory != nullptr && recorded.ok()) recorded = trajectory->record(w.space(), w.tick());
+      progress.step(w.tick());
+    };
+    if (mixed != nullptr) {
+      (void)mixed->run(steps, stop, after_tick);  // a failure is the world's, and told below
+      figures.deadline_misses = mixed->report().pace.deadline_misses;
+    } else {
+      figures.deadline_misses = run_alone(*world, steps, stop, clock, after_tick);
     }
   }
   figures.wall_s = wall_seconds() - wall;
   figures.cpu_s = cpu_seconds() - cpu;
   figures.steps = world->tick();
-  figures.deadline_misses = pacer.ledger().deadline_misses;
-  world->finish();
+  std::optional<mixed_reality::MixedReport> real;
+  if (mixed != nullptr) real = mixed->report();
+  const mixed_reality::MixedReport* real_report = real ? &*real : nullptr;
 
   bool failed = world->state() == core::RunState::Failed;
   const auto complain = [&failed](const hal::Status& status) {
@@ -156,10 +235,15 @@ int run(const RunOptions& options) {
     picture.experiment = scenario->name;
     picture.seed = world->seed();
     picture.time_ns = hal::time_of_tick(world->tick(), scenario->ticks_per_second);
+    if (real_report != nullptr) {
+      for (const mixed_reality::RealRobotReport& r : real_report->robots) {
+        if (!r.driving) picture.trouble.push_back({r.robot, r.state});
+      }
+    }
     complain(core::write_picture(world->space(), options.picture, picture));
   }
-  if (!options.report.empty()) complain(write_report(options.report, report_of(*world, loader, figures, robots)));
-  if (!options.quiet && options.report != "-") print_result(*world, figures, robots);
+  if (!options.report.empty()) complain(write_report(options.report, report_of(*world, loader, figures, robots, real_report)));
+  if (!options.quiet && options.report != "-") print_result(*world, figures, robots, real_report);
   return failed ? kFailedRunning : kDone;
 }
 

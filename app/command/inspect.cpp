@@ -1,0 +1,81 @@
+// `tandem inspect`: who is there, and what it reads. Moves nothing.
+#include <fmt/format.h>
+
+#include <cstdio>
+
+#include "app/command/command.hpp"
+#include "app/report.hpp"
+#include "app/signals.hpp"
+#include "bridges/epuck/bridge.hpp"
+#include "bridges/link/link_text.hpp"
+#include "mixed_reality/time/pacer.hpp"
+
+namespace tandem::app {
+namespace {
+
+namespace epuck = bridges::epuck;
+
+/// Everything that an e-puck senses.
+std::vector<epuck::EpuckRobot::PortView> take_all(epuck::EpuckRobot& robot) {
+  const hal::PortType* const sensors[] = {&hal::port_type<hal::Proximity>(),     &hal::port_type<hal::Light>(),       &hal::port_type<hal::Ground>(),
+                                          &hal::port_type<hal::Accelerometer>(), &hal::port_type<hal::Microphones>(), &hal::port_type<hal::Battery>(),
+                                          &hal::port_type<hal::WheelEncoders>()};
+  for (const hal::PortType* type : sensors) (void)robot.require(*type);
+  return robot.taken();
+}
+
+}  // namespace
+
+int inspect(const InspectOptions& options) {
+  const auto complain = [](int code, const std::string& message) {
+    fmt::print(stderr, "error: {}\n", message);
+    return code;
+  };
+  const auto address = bridges::parse_link(options.link);
+  if (!address.ok()) return complain(kBadInput, address.error().message);
+  auto opener = bridges::byte_link_opener(address.value());
+  if (!opener.ok()) return complain(kBadInput, opener.error().message);
+
+  epuck::BridgeSettings settings;
+  settings.driver.timing = epuck::timing_for(options.link);
+  const hal::Log log([](hal::Severity severity, std::string_view text) {
+    if (severity != hal::Severity::Info) fmt::print(stderr, "{}\n", text);
+  });
+  epuck::EpuckBridge bridge(settings, std::move(opener).value(), log);
+  const auto ports = take_all(bridge.robot());
+  const std::atomic<bool>& stop = catch_signals();
+  bridge.start();
+  const hal::Status ready = bridge.wait_active(10 * hal::kNsPerSecond);
+  if (!ready.ok()) return complain(kFailedRunning, ready.error().message);
+
+  constexpr std::int64_t kTicksPerSecond = 10;
+  mixed_reality::MonotonicTime clock;
+  mixed_reality::Pacer pacer(clock, kTicksPerSecond);
+  bridge.robot().set_origin(clock.now_ns());
+  pacer.start();
+  const auto ticks = static_cast<hal::Tick>(options.seconds * kTicksPerSecond);
+  for (hal::Tick tick = 0; tick < ticks; ++tick) {
+    bridge.latch(tick, clock.now_ns());
+    bridge.commit(clock.now_ns());  // the commands are untouched: wheels 0, lamps off
+    if (!pacer.wait_for_next(stop)) break;
+  }
+  bridge.latch(ticks, clock.now_ns());
+  const epuck::BridgeStatus status = bridge.status();
+  fmt::print("e-puck on {}\n", status.link);
+  print_table({{"firmware", std::string(status.identity.version_text())},
+               {"hardware", status.identity.hardware != 0 ? fmt::format("{:X}", status.identity.hardware) : "not told"},
+               {"state", epuck::state_name(status.state)},
+               {"round trip", fmt::format("{:.1f} ms on average, {:.1f} ms at most",
+                                          status.session.answers > 0 ? static_cast<double>(status.session.sum_round_trip_ns) * 1e-6 /
+                                                                           static_cast<double>(status.session.answers) : 0.0,
+                                          static_cast<double>(status.session.max_round_trip_ns) * 1e-6)},
+               {"link", fmt::format("{} bytes in, {} out; {} answers to {} packets, {} silences, {} cut short", status.bytes.bytes_in,
+                                    status.bytes.bytes_out, status.session.answers, status.session.packets, status.session.silent,
+                                    status.session.cut_short)}});
+  fmt::print("readings\n");
+  for (const auto& port : ports) fmt::print("  {}\n", hal::to_text(*port.type, port.data));
+  bridge.shut_down();
+  return status.state == epuck::SessionState::Active ? kDone : complain(kFailedRunning, "the robot does not answer any more: " + status.trouble);
+}
+
+}  // namespace tandem::app

@@ -1,0 +1,10 @@
+#include "controllers/puppet/puppet.hpp"
+#include "hal/plugin.hpp"
+
+namespace {
+void register_all(tandem::hal::Registrar& registrar) {
+  registrar.add_controller<tandem::controllers::Puppet>("puppet", "Takes every device and does nothing: its ports are driven from outside.");
+}
+}  // namespace
+
+TANDEM_PLUGIN(register_all)

@@ -1,0 +1,30 @@
+// A robot whose strings somebody else holds: an emulated firmware, a viewer, a test.
+#pragma once
+#include "hal/controller.hpp"
+#include "hal/device/body_sensors.hpp"
+#include "hal/device/leds.hpp"
+#include "hal/device/ring_sensors.hpp"
+#include "hal/device/wheels.hpp"
+
+namespace tandem::controllers {
+
+/// Takes every device of an e-puck and leaves its commands as whoever reaches its ports from outside writes them.
+class Puppet final : public hal::Controller {
+ public:
+  explicit Puppet(hal::Robot& robot) {
+    robot.sensor<hal::Proximity>();
+    robot.sensor<hal::Light>();
+    robot.sensor<hal::Ground>();
+    robot.sensor<hal::Accelerometer>();
+    robot.sensor<hal::Microphones>();
+    robot.sensor<hal::Battery>();
+    robot.actuator<hal::WheelSpeeds>();
+    robot.actuator<hal::RingLeds>();
+    robot.actuator<hal::BodyLed>();
+    robot.actuator<hal::FrontLed>();
+  }
+
+  void step() noexcept override {}
+};
+
+}  // namespace tandem::controllers
