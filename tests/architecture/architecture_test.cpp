@@ -1,0 +1,73 @@
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "tests/architecture/rules.hpp"
+
+namespace tandem::architecture {
+namespace {
+
+namespace fs = std::filesystem;
+
+const LibraryOwners kOwners = {{"tinyxml2", "core/config"}, {"png.h", "core/space"},        {"Random123/", "core/random"},
+                               {"libserial/", "bridges/link"}, {"CLI/", "app"},             {"fmt/", "app"}};
+
+TEST(Architecture, HoldsInThisTree) {
+  const Dependencies dependencies = read_dependencies(fs::path(TANDEM_BINARY_DIR) / "architecture.txt");
+  ASSERT_GT(dependencies.size(), 15U);
+  for (const std::string& rule : broken_rules(TANDEM_SOURCE_DIR, dependencies, kOwners)) ADD_FAILURE() << rule;
+}
+
+/// A small tree that breaks one rule at a time.
+class CheatingTree : public testing::Test {
+ protected:
+  CheatingTree() : top_(fs::path(testing::TempDir()) / "tandem_cheating_tree") {
+    fs::remove_all(top_);
+    write("hal/port.hpp", "");
+    write("core/space/space.hpp", "#include \"hal/port.hpp\"\n");
+  }
+  ~CheatingTree() override { fs::remove_all(top_); }
+
+  void write(const std::string& path, const std::string& text) {
+    fs::create_directories((top_ / path).parent_path());
+    std::ofstream(top_ / path) << text;
+  }
+  std::string broken() {
+    std::string all;
+    for (const std::string& rule : broken_rules(top_, dependencies_, kOwners)) all += rule + "\n";
+    return all;
+  }
+
+  fs::path top_;
+  Dependencies dependencies_ = {{"hal", {}}, {"core/space", {"hal"}}, {"core/device", {"hal"}}, {"bridges/link", {"hal"}}};
+};
+
+TEST_F(CheatingTree, IsFineAsLongAsItDoesNot) { EXPECT_EQ(broken(), ""); }
+
+TEST_F(CheatingTree, IncludesWhatItDoesNotDeclare) {
+  write("core/device/device.hpp", "\n#include \"core/space/space.hpp\"\n");
+  EXPECT_EQ(broken(), "core/device/device.hpp:2: core/device does not declare core/space\n");
+}
+
+TEST_F(CheatingTree, DependsAgainstTheLayers) {
+  dependencies_["bridges/link"].insert("core/space");
+  EXPECT_EQ(broken(), "bridges/link/CMakeLists.txt: bridges/link may not depend on core/space\n");
+}
+
+TEST_F(CheatingTree, IncludesALibraryOutsideItsFolder) {
+  write("core/space/xml.cpp", "#include <tinyxml2.h>\n");
+  EXPECT_EQ(broken(), "core/space/xml.cpp:1: <tinyxml2.h> belongs to core/config alone\n");
+}
+
+TEST_F(CheatingTree, HasARoomForEverything) {
+  fs::create_directories(top_ / "core/utils");
+  EXPECT_EQ(broken(), "core/utils: a folder's name says what is in it\n");
+}
+
+TEST_F(CheatingTree, IncludesByAShortName) {
+  write("hal/other.hpp", "#include \"port.hpp\"\n");
+  EXPECT_NE(broken().find("is not named from the top"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace tandem::architecture

@@ -1,0 +1,100 @@
+#include "tests/architecture/rules.hpp"
+
+#include <fstream>
+#include <regex>
+#include <sstream>
+
+namespace tandem::architecture {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Lower layers come first; a folder may depend on its own layer and on those that this table allows.
+const std::map<std::string, std::set<std::string>> kLayers = {{"hal", {"hal"}},
+                                                              {"controllers", {"controllers", "hal"}},
+                                                              {"bridges", {"bridges", "hal"}},
+                                                              {"core", {"core", "hal"}},
+                                                              {"mixed_reality", {"mixed_reality", "core", "bridges", "controllers", "hal"}},
+                                                              {"app", {"app", "mixed_reality", "core", "bridges", "controllers", "hal"}}};
+
+std::string layer_of(const std::string& folder) { return folder.substr(0, folder.find('/')); }
+
+std::set<std::string> words(const std::string& text) {
+  std::istringstream in(text);
+  std::set<std::string> out;
+  for (std::string word; in >> word;) out.insert(word);
+  return out;
+}
+
+/// The declared folder that `path` belongs to: the longest that it lies in.
+std::string folder_of(const std::string& path, const Dependencies& dependencies) {
+  std::string best;
+  for (const auto& [folder, deps] : dependencies) {
+    if (path.starts_with(folder + "/") && folder.size() > best.size()) best = folder;
+  }
+  return best;
+}
+
+}  // namespace
+
+Dependencies read_dependencies(const fs::path& file) {
+  Dependencies dependencies;
+  std::ifstream in(file);
+  for (std::string line; std::getline(in, line);) {
+    const std::size_t first = line.find(" : ");
+    if (first == std::string::npos) continue;
+    const std::size_t second = line.find(" :", first + 2);
+    auto& deps = dependencies[line.substr(0, first)];
+    deps.merge(words(line.substr(first + 3, second - first - 3)));
+  }
+  return dependencies;
+}
+
+std::vector<std::string> broken_rules(const fs::path& top, const Dependencies& dependencies, const LibraryOwners& owners) {
+  std::vector<std::string> broken;
+  for (const auto& [folder, deps] : dependencies) {
+    const auto layer = kLayers.find(layer_of(folder));
+    if (layer == kLayers.end()) continue;
+    for (const std::string& dep : deps) {
+      if (!layer->second.contains(layer_of(dep))) broken.push_back(folder + "/CMakeLists.txt: " + folder + " may not depend on " + dep);
+    }
+  }
+  static const std::regex kInclude(R"(^\s*#\s*include\s*([<"])([^>"]+)[>"])");
+  for (const auto& [layer, allowed] : kLayers) {
+    if (!fs::exists(top / layer)) continue;
+    for (const auto& entry : fs::recursive_directory_iterator(top / layer)) {
+      const std::string path = fs::relative(entry.path(), top).generic_string();
+      if (entry.is_directory()) {
+        const std::string name = entry.path().filename().string();
+        if (name == "common" || name == "utils" || name == "util" || name == "misc") broken.push_back(path + ": a folder's name says what is in it");
+        continue;
+      }
+      if (entry.path().extension() != ".hpp" && entry.path().extension() != ".cpp") continue;
+      const std::string folder = folder_of(path, dependencies);
+      if (folder.empty()) {
+        broken.push_back(path + ": lies in no declared folder");
+        continue;
+      }
+      std::ifstream in(entry.path());
+      int number = 0;
+      for (std::string line; std::getline(in, line);) {
+        ++number;
+        std::smatch match;
+        if (!std::regex_search(line, match, kInclude)) continue;
+        const std::string header = match[2];
+        const std::string where = path + ":" + std::to_string(number) + ": ";
+        if (match[1] == "\"") {
+          const std::string included = folder_of(header, dependencies);
+          if (included.empty()) broken.push_back(where + "\"" + header + "\" is not named from the top of the tree");
+          else if (included != folder && !dependencies.at(folder).contains(included)) broken.push_back(where + folder + " does not declare " + included);
+        }
+        for (const auto& [prefix, owner] : owners) {
+          if (header.starts_with(prefix) && folder != owner) broken.push_back(where + "<" + header + "> belongs to " + owner + " alone");
+        }
+      }
+    }
+  }
+  return broken;
+}
+
+}  // namespace tandem::architecture
