@@ -150,7 +150,7 @@ hal::Status Server::apply_faults(TimeNs now) {
     tell(change->at, "fault", {{"fault", fault.text}, {"phase", change->begins ? "begin" : "end"}});
     if (fault.kind == FaultKind::Reset) firmware_.reset(change->at, "fault");
     if (fault.kind == FaultKind::Truncate) firmware_.cut_next_answer();
-    if (fault.kind == FaultKind::Garbage) next_noise_ = now;
+    if (fault.kind == FaultKind::Garbage && change->begins) next_noise_ = change->at;
     if (fault.kind != FaultKind::Hangup) continue;
     to_robot_.clear();
     to_host_.clear();
@@ -196,9 +196,10 @@ void Server::run_robot(TimeNs now) {
 }
 
 void Server::make_noise(TimeNs now) {
-  if (!port_ || next_noise_ > now || !faults_.active(FaultKind::Garbage, now)) return;
-  next_noise_ = now + kNoiseNs;
-  if (const auto byte = faults_.to_host(0, now)) to_host_.push_back({*byte, now});
+  for (; next_noise_ <= now && faults_.active(FaultKind::Garbage, next_noise_); next_noise_ += kNoiseNs) {
+    const auto byte = faults_.to_host(0, next_noise_);
+    if (byte && port_) to_host_.push_back({*byte, now});
+  }
 }
 
 void Server::give_out(TimeNs now) {

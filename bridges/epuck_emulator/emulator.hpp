@@ -16,15 +16,15 @@ namespace tandem::bridges::epuck_emulator {
 struct Options {
   std::string link = "pty:ep0";       ///< pty:NAME or serial:DEVICE@115200
   std::string firmware = "gctronic";  ///< btcom, gctronic, webots or epuck2
-  std::string log_file;               ///< one JSON object a line; empty: none
-  std::vector<std::string> faults;    ///< as `parse_fault` reads them
+  std::string log_file{};             ///< one JSON object a line; empty: none
+  std::vector<std::string> faults{};  ///< as `parse_fault` reads them
   std::uint64_t seed = 1;             ///< of the chance in the faults
-  Firmware::Options robot;            ///< what is built in; its variant is taken from `firmware`
+  Firmware::Options robot{};          ///< what is built in; its variant is taken from `firmware`
   EmulatedBody* body = nullptr;       ///< must outlive the run; none: a robot on open ground, or in `arena`
-  std::optional<Arena> arena;
-  EventSink events;                                    ///< gets what the log gets, on the thread of `run`
-  hal::Log log;                                        ///< for people
-  std::function<void(const std::string& path)> ready;  ///< called once, when the line can be opened
+  std::optional<Arena> arena{};
+  EventSink events{};                                    ///< gets what the log gets, on the thread of `run`
+  hal::Log log{};                                        ///< for people
+  std::function<void(const std::string& path)> ready{};  ///< called once, when the line can be opened
 };
 
 /// Emulates until `stop` becomes true, which is noticed within 20 ms. Bytes travel at 115200 baud in both directions; a

@@ -1,0 +1,42 @@
+#include "bridges/epuck_emulator/event_log.hpp"
+
+#include <filesystem>
+#include <fstream>
+#include <gtest/gtest.h>
+#include <limits>
+
+namespace tandem::bridges::epuck_emulator {
+namespace {
+
+TEST(EventLog, WritesOneObjectALine) {
+  EXPECT_EQ(to_json(12, "wheels", {{"left", 500}, {"right", -500}}),
+            R"({"t_ns":12,"event":"wheels","left":500,"right":-500})");
+  EXPECT_EQ(to_json(0, "x", {{"a", true}, {"b", 0.25}, {"c", "text"}}),
+            R"({"t_ns":0,"event":"x","a":true,"b":0.25,"c":"text"})");
+}
+
+TEST(EventLog, EscapesWhateverBytesCameIn) {
+  EXPECT_EQ(to_json(0, "x", {{"text", std::string("a\"\\\n\0\xFF", 6)}}),
+            "{\"t_ns\":0,\"event\":\"x\",\"text\":\"a\\\"\\\\\\u000a\\u0000\\u00ff\"}");
+  EXPECT_EQ(to_json(0, "x", {{"v", std::numeric_limits<double>::quiet_NaN()}}), R"({"t_ns":0,"event":"x","v":null})");
+}
+
+TEST(EventLog, IsReadableWhileItIsWritten) {
+  const auto path = std::filesystem::temp_directory_path() / ("epuck_event_log_" + std::to_string(getpid()));
+  const auto log = EventLog::open(path.string());
+  ASSERT_TRUE(log.ok());
+  log.value()->write(1, "stop", {});
+  std::string line;
+  std::getline(std::ifstream(path), line);
+  EXPECT_EQ(line, R"({"t_ns":1,"event":"stop"})");
+  std::filesystem::remove(path);
+}
+
+TEST(EventLog, SaysWhereItCannotBeWritten) {
+  const auto log = EventLog::open("/nowhere/at/all");
+  ASSERT_FALSE(log.ok());
+  EXPECT_NE(log.error().message.find("/nowhere/at/all"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace tandem::bridges::epuck_emulator
