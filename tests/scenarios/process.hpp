@@ -1,0 +1,162 @@
+// Programs as a user starts them: arguments, a folder, what they print, how they end.
+#pragma once
+#include <fcntl.h>
+#include <signal.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <sstream>
+#include <string>
+#include <thread>
+#include <vector>
+
+namespace tandem::scenarios {
+
+namespace fs = std::filesystem;
+
+inline std::string text_of(const fs::path& file) {
+  std::ifstream in(file);
+  std::ostringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+/// Looks at `condition` every few milliseconds until it holds or `seconds` are over.
+inline bool eventually(const std::function<bool()>& condition, double seconds) {
+  const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
+  for (;;) {
+    if (condition()) return true;
+    if (std::chrono::steady_clock::now() > end) return false;
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+}
+
+/// A folder of its own, removed at the end.
+class Folder {
+ public:
+  Folder() {
+    std::string pattern = (fs::temp_directory_path() / "tandem_XXXXXX").string();
+    path_ = mkdtemp(pattern.data());
+  }
+  ~Folder() { fs::remove_all(path_); }
+  Folder(const Folder&) = delete;
+  Folder& operator=(const Folder&) = delete;
+  const fs::path& path() const { return path_; }
+  fs::path write(const std::string& name, const std::string& text) const {
+    std::ofstream(path_ / name) << text;
+    return path_ / name;
+  }
+
+ private:
+  fs::path path_;
+};
+
+/// A running `tandem`. Killed, if need be, when this ends.
+class Tandem {
+ public:
+  Tandem(std::vector<std::string> arguments, const fs::path& folder) : folder_(folder) {
+    static int count = 0;
+    output_ = folder / ("out" + std::to_string(++count));
+    errors_ = folder / ("err" + std::to_string(count));
+    arguments.insert(arguments.begin(), std::string(TANDEM_BINARY_DIR) + "/bin/tandem");
+    std::vector<char*> argv;
+    for (std::string& a : arguments) argv.push_back(a.data());
+    argv.push_back(nullptr);
+    posix_spawn_file_actions_t actions;
+    posix_spawn_file_actions_init(&actions);
+    posix_spawn_file_actions_addopen(&actions, 0, "/dev/null", O_RDONLY, 0);
+    posix_spawn_file_actions_addopen(&actions, 1, output_.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
+    posix_spawn_file_actions_addopen(&actions, 2, errors_.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
+    posix_spawn_file_actions_addchdir_np(&actions, folder.c_str());
+    if (posix_spawn(&pid_, argv[0], &actions, nullptr, argv.data(), environ) != 0) pid_ = -1;
+    posix_spawn_file_actions_destroy(&actions);
+  }
+  ~Tandem() {
+    if (pid_ > 0 && !ended_) {
+      kill(pid_, SIGKILL);
+      waitpid(pid_, nullptr, 0);
+    }
+  }
+  Tandem(const Tandem&) = delete;
+  Tandem& operator=(const Tandem&) = delete;
+
+  void signal(int number) const { kill(pid_, number); }
+
+  /// Exit code, or -signal; -1000 when it did not end within `seconds`.
+  int wait(double seconds = 30.0) {
+    int status = 0;
+    const bool done = eventually([&] { return ended_ || (ended_ = waitpid(pid_, &status, WNOHANG) == pid_); }, seconds);
+    if (!done) return -1000;
+    if (WIFEXITED(status)) code_ = WEXITSTATUS(status);
+    else if (WIFSIGNALED(status)) code_ = -WTERMSIG(status);
+    return code_;
+  }
+  std::string output() const { return text_of(output_); }
+  std::string errors() const { return text_of(errors_); }
+
+ private:
+  fs::path folder_, output_, errors_;
+  pid_t pid_ = -1;
+  bool ended_ = false;
+  int code_ = 0;
+};
+
+/// The value behind "key": in flat JSON; empty when it is not there.
+inline std::string json_value(const std::string& json, const std::string& key, std::size_t from = 0) {
+  const std::string mark = "\"" + key + "\":";
+  std::size_t at = json.find(mark, from);
+  if (at == std::string::npos) return {};
+  at = json.find_first_not_of(' ', at + mark.size());
+  if (json[at] == '"') return json.substr(at + 1, json.find('"', at + 1) - at - 1);
+  return json.substr(at, json.find_first_of(",}]\n", at) - at);
+}
+
+/// An emulated e-puck on a pseudo-terminal "ep0" in `folder`, with its own log: the witness.
+class EmulatedEpuck {
+ public:
+  explicit EmulatedEpuck(const Folder& folder, std::vector<std::string> more = {}) : folder_(folder) {
+    std::vector<std::string> arguments = {"emulate", "epuck", "--link", "pty:ep0", "--log", "witness.jsonl"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    process_ = std::make_unique<Tandem>(arguments, folder.path());
+    ready_ = eventually([&] { return fs::exists(folder.path() / "ep0"); }, 10.0);
+  }
+  bool ready() const { return ready_; }
+  std::string log() const { return text_of(folder_.path() / "witness.jsonl"); }
+
+  struct Wheels {
+    long long t_ns;
+    int left, right;
+  };
+  /// Every wheel command that the firmware obeyed, as it received it.
+  std::vector<Wheels> wheels() const {
+    std::vector<Wheels> all;
+    std::istringstream in(log());
+    for (std::string line; std::getline(in, line);) {
+      if (json_value(line, "event") != "wheels") continue;
+      all.push_back({std::stoll(json_value(line, "t_ns")), std::stoi(json_value(line, "left")), std::stoi(json_value(line, "right"))});
+    }
+    return all;
+  }
+  bool moves() const {
+    const auto all = wheels();
+    return !all.empty() && (all.back().left != 0 || all.back().right != 0);
+  }
+  bool has_moved() const {
+    for (const Wheels& w : wheels()) {
+      if (w.left != 0 || w.right != 0) return true;
+    }
+    return false;
+  }
+
+ private:
+  const Folder& folder_;
+  std::unique_ptr<Tandem> process_;
+  bool ready_ = false;
+};
+
+}  // namespace tandem::scenarios
