@@ -13,8 +13,8 @@
 namespace tandem::bridges::epuck {
 
 struct DriverSettings {
-  RobotSettings robot;
-  SessionTiming timing;
+  RobotSettings robot = {};
+  SessionTiming timing = {};
   /// The robot is stopped when no commit came for so long: the loop hangs, or the controller does.
   hal::TimeNs command_timeout_ns = 500 * hal::kNsPerMs;
   /// After an interruption the speed limit rises from 0 to the robot's in this time: no jump. 0: at once.

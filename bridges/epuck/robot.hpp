@@ -21,8 +21,8 @@ struct RobotSettings {
   hal::TimeNs origin_ns = 0;  ///< start of the run on the link's clock; readings are stamped from there
   hal::TimeNs fresh_ns = 0;   ///< older readings are stale; 0: two ticks, at least 150 ms
   /// Names of the devices that the configuration lists; empty optional: all that the robot has.
-  std::optional<std::vector<std::string>> sensors;
-  std::optional<std::vector<std::string>> actuators;
+  std::optional<std::vector<std::string>> sensors = {};
+  std::optional<std::vector<std::string>> actuators = {};
 };
 
 /// Ports of one e-puck. A port that was taken, by a controller or with `require`, makes its sensor be asked for.

@@ -115,9 +115,16 @@ void Session::attempt_failed(TimeNs now) noexcept {
     return;
   }
   if (*trouble_ == '\0') trouble_ = "no e-puck answers";
+  rest(now);
+}
+
+void Session::rest(TimeNs now) noexcept {
   state_ = SessionState::Lost;
   phase_ = Phase::Rest;
   handshaking_ = false;
+  pending_ = false;
+  wanted_.left = wanted_.right = {};
+  say_stop_blindly();
   deadline_ns_ = now + timing_.retry_ns;
 }
 
@@ -176,6 +183,11 @@ void Session::lose_step(const char* why, TimeNs now) noexcept {
   state_ = SessionState::Suspect;
   trouble_ = why;
   if (++odd_answers_ >= 2) layout_known_ = false;
+  if (odd_answers_ > timing_.tries) {
+    // It shakes hands well and then answers oddly, again and again: no hammering.
+    rest(now);
+    return;
+  }
   attempts_ = 1;
   begin_handshake(now, true);
 }
@@ -272,7 +284,6 @@ void Session::on_answer(TimeNs at) noexcept {
   }
   state_ = SessionState::Active;
   trouble_ = "";
-  odd_answers_ = 0;
   ++statistics_.answers;
   statistics_.last_round_trip_ns = at - asked_ns_;
   statistics_.max_round_trip_ns = std::max(statistics_.max_round_trip_ns, statistics_.last_round_trip_ns);
@@ -366,6 +377,7 @@ void Session::request(const Actuation& actuation, QuantitySet quantities, TimeNs
 void Session::send_pending(TimeNs now) noexcept {
   if (!pending_) return;
   pending_ = false;
+  if (state_ == SessionState::Active) odd_answers_ = 0;  // nothing followed the last answer that should not have
   output_.clear();
   append_actuation(now);
   append_queries(output_, wanted_quantities_, layout_);

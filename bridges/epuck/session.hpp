@@ -147,6 +147,7 @@ class Session {
   void ask_version() noexcept;
   void say_stop_blindly() noexcept;
   void attempt_failed(hal::TimeNs now) noexcept;
+  void rest(hal::TimeNs now) noexcept;
   void send_probe(Phase phase, Quantity quantity, hal::TimeNs now) noexcept;
   void finish_probe(hal::TimeNs now) noexcept;
   void finish_handshake() noexcept;
@@ -171,7 +172,7 @@ class Session {
   bool restarted_ = false;  // since the wheel counters were last read
   bool counters_known_ = false;
   bool counters_doubtful_ = false;  // first reading after a handshake
-  int odd_answers_ = 0;             // in a row; two make the layout doubtful
+  int odd_answers_ = 0;             // in a row; two make the layout doubtful, more than `tries` the robot
   std::uint64_t epoch_ = 0;
 
   Packet output_;
