@@ -45,8 +45,12 @@ int inspect(const InspectOptions& options) {
   const auto ports = take_all(bridge.robot());
   const std::atomic<bool>& stop = catch_signals();
   bridge.start();
-  const hal::Status ready = bridge.wait_active(10 * hal::kNsPerSecond);
-  if (!ready.ok()) return complain(kFailedRunning, ready.error().message);
+  hal::Status ready;
+  for (hal::TimeNs waited = 0; waited < 10 * hal::kNsPerSecond && !stop.load(); waited += 200 * hal::kNsPerMs) {
+    ready = bridge.wait_active(200 * hal::kNsPerMs);
+    if (ready.ok() || (waited >= hal::kNsPerSecond && bridge.status().links_opened == 0 && !bridge.status().trouble.empty())) break;
+  }
+  if (!ready.ok()) return complain(kFailedRunning, ready.error().message + baud_hint(address.value()));
 
   constexpr std::int64_t kTicksPerSecond = 10;
   mixed_reality::MonotonicTime clock;

@@ -22,6 +22,7 @@ namespace {
 namespace epuck = bridges::epuck;
 
 constexpr hal::TimeNs kConnectWithin_ns = 15 * hal::kNsPerSecond;
+constexpr hal::TimeNs kOpenWithin_ns = hal::kNsPerSecond;
 
 /// The one robot of the file that is to be driven; prints what is wrong otherwise.
 const core::RobotItem* only_robot(const core::Scenario& scenario, const std::string& link) {
@@ -79,6 +80,13 @@ void print_result(const core::RobotItem& item, const epuck::BridgeStatus& status
 
 }  // namespace
 
+std::string baud_hint(const bridges::LinkAddress& address) {
+  constexpr std::uint32_t kFirmwareBaud = 115200;
+  if (address.scheme != bridges::LinkScheme::Serial || address.rate == kFirmwareBaud) return {};
+  return " The link is opened with " + std::to_string(address.rate) + " baud, but the firmware talks with 115200: write " + "serial:" + address.target +
+         "@115200.";
+}
+
 int robot(const RobotOptions& options) {
   const auto scenario = read_or_complain(options.file, {});
   if (!scenario) return kBadInput;
@@ -131,9 +139,11 @@ int robot(const RobotOptions& options) {
   for (hal::TimeNs waited = 0; waited < kConnectWithin_ns && !stop.load(); waited += 200 * hal::kNsPerMs) {
     ready = bridge.wait_active(200 * hal::kNsPerMs);
     if (ready.ok()) break;
+    const epuck::BridgeStatus status = bridge.status();
+    if (waited >= kOpenWithin_ns && status.links_opened == 0 && !status.trouble.empty()) break;  // the port itself is the trouble
   }
   if (stop.load()) return kDone;
-  if (!ready.ok()) return complain(kFailedRunning, "robot '" + item.id + "': " + ready.error().message);
+  if (!ready.ok()) return complain(kFailedRunning, "robot '" + item.id + "': " + ready.error().message + baud_hint(address.value()));
 
   mixed_reality::MonotonicTime clock;
   mixed_reality::Pacer pacer(clock, scenario->ticks_per_second);

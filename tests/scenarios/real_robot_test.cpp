@@ -146,7 +146,9 @@ TEST(Robot, IsStoppedAfterALinkLossAndDrivesAgainWhenItIsBack) {
   bool drove_again = false;
   for (const auto& w : wheels) {
     if (w.t_ns < back_ns) continue;
-    if (first) EXPECT_TRUE(w.left == 0 && w.right == 0) << w.left << " " << w.right;
+    if (first) {
+      EXPECT_TRUE(w.left == 0 && w.right == 0) << w.left << " " << w.right;
+    }
     first = false;
     drove_again = drove_again || w.left != 0 || w.right != 0;
   }

@@ -1,0 +1,189 @@
+// The command line as a user meets it: exit codes, messages, files.
+#include <gtest/gtest.h>
+
+#include "app/json.hpp"
+#include "app/sha256.hpp"
+#include "tests/scenarios/process.hpp"
+
+namespace tandem {
+namespace {
+
+using scenarios::Folder;
+using scenarios::json_value;
+using scenarios::Tandem;
+using scenarios::text_of;
+
+const std::string kConfigs = std::string(TANDEM_SOURCE_DIR) + "/configs/";
+
+TEST(Run, WritesReportPictureAndTrajectory) {
+  Folder folder;
+  Tandem run({"run", kConfigs + "epuck_diffusion.xml", "--seconds", "3", "--report", "r.json", "--picture", "p.svg", "--trajectory", "t.csv"}, folder.path());
+  ASSERT_EQ(run.wait(), 0) << run.errors();
+  const std::string report = text_of(folder.path() / "r.json");
+  for (const char* key : {"experiment", "seed", "threads", "robots", "steps", "virtual_s", "wall_s", "cpu_s", "init_s", "ns_per_robot_step",
+                          "realtime_factor", "peak_rss_mb", "state_hash", "deadline_misses", "sha256"}) {
+    EXPECT_FALSE(json_value(report, key).empty()) << key;
+  }
+  EXPECT_EQ(json_value(report, "steps"), "30");
+  EXPECT_EQ(json_value(report, "robots"), "50");
+  EXPECT_EQ(text_of(folder.path() / "p.svg").substr(0, 5), "<?xml");
+  EXPECT_EQ(text_of(folder.path() / "t.csv").substr(0, 7), "tick,ti");
+  EXPECT_NE(run.output().find("robots"), std::string::npos);
+  EXPECT_EQ(run.errors(), "");  // no progress bar where there is no terminal
+}
+
+TEST(Run, GivesTheSameStateForAnyNumberOfThreadsAndTheSeedThatWasSaid) {
+  Folder folder;
+  std::string first;
+  for (const char* threads : {"0", "2", "3"}) {
+    Tandem run({"run", kConfigs + "epuck_benchmark.xml", "--steps", "20", "--threads", threads, "--seed", "5", "--report", "-"}, folder.path());
+    ASSERT_EQ(run.wait(), 0) << run.errors();
+    const std::string hash = json_value(run.output(), "state_hash");
+    if (first.empty()) first = hash;
+    EXPECT_EQ(hash, first);
+    EXPECT_EQ(json_value(run.output(), "seed"), "5");
+  }
+}
+
+TEST(Run, EndsCleanlyWhenInterrupted) {
+  Folder folder;
+  Tandem run({"run", kConfigs + "epuck_diffusion.xml", "--set", "framework.experiment.length=0", "--set", "framework.time.mode=realtime", "--report", "r.json",
+              "--trajectory", "t.csv"},
+             folder.path());
+  ASSERT_TRUE(scenarios::eventually([&] { return scenarios::fs::exists(folder.path() / "t.csv"); }, 10));
+  std::this_thread::sleep_for(std::chrono::milliseconds(500));
+  run.signal(SIGINT);
+  EXPECT_EQ(run.wait(), 0);
+  EXPECT_NE(run.errors().find("interrupted"), std::string::npos);
+  EXPECT_GT(std::stoi("0" + json_value(text_of(folder.path() / "r.json"), "steps")), 0);
+}
+
+class BadInput : public testing::Test {
+ protected:
+  void fails(const std::vector<std::string>& arguments, int code, const std::vector<std::string>& parts) {
+    Tandem tandem(arguments, folder_.path());
+    EXPECT_EQ(tandem.wait(), code) << tandem.errors();
+    for (const std::string& part : parts) EXPECT_NE(tandem.errors().find(part), std::string::npos) << "no \"" << part << "\" in:\n" << tandem.errors();
+  }
+  /// The diffusion experiment with one text replaced.
+  std::string changed(const std::string& from, const std::string& to) {
+    std::string text = text_of(kConfigs + "epuck_diffusion.xml");
+    const std::size_t at = text.find(from);
+    EXPECT_NE(at, std::string::npos) << from;
+    if (at != std::string::npos) text.replace(at, from.size(), to);
+    folder_.write("e.xml", text);
+    return "e.xml";
+  }
+  Folder folder_;
+};
+
+TEST_F(BadInput, IsNamedWithItsLineAndWhatToDo) {
+  fails({"run", "nosuch.xml"}, 1, {"nosuch.xml: error: there is no such file"});
+  fails({"run", "."}, 1, {"folder"});
+  folder_.write("broken.xml", "<tandem>\n<framework>\n</tandem>\n");
+  fails({"check", "broken.xml"}, 1, {"broken.xml:", "XML"});
+  fails({"check", changed("<e-puck id", "<e-pukc id")}, 1, {"e.xml:", "e-pukc", "Did you mean"});
+  fails({"check", changed("implementation=\"noisy\" noise_level", "implementation=\"nosiy\" noise_level")}, 1, {"nosiy", "noisy"});
+  fails({"check", changed("<proximity", "<proximitty")}, 1, {"proximitty", "Did you mean"});
+  fails({"check", changed("noise_level=\"0.02\"", "noise_levle=\"0.02\"")}, 1, {"noise_levle", "noise_level"});
+  fails({"check", changed("<proximity implementation=\"noisy\" noise_level=\"0.02\"/>", "<light/>")}, 1, {"proximity", "does not list"});
+  fails({"check", changed("library=\"epuck_diffusion\"", "library=\"no_such\"")}, 1, {"e.xml:", "no_such", "looked for"});
+  fails({"check", changed("config=\"diffusion\"", "config=\"difusion\"")}, 1, {"difusion"});
+  fails({"check", changed("quantity=\"50\" max_trials=\"1000\"", "quantity=\"50000\" max_trials=\"20\"")}, 1, {"e.xml:", "of 50000", "max_trials"});
+  fails({"check", changed("ticks_per_second=\"10\"", "ticks_per_second=\"0\"")}, 1, {"e.xml:", "ticks_per_second"});
+  fails({"check", changed("size=\"4,4,1\"", "size=\"-4,4,1\"")}, 1, {"e.xml:", "size"});
+  fails({"check", changed("velocity=\"5 cm/s\"", "velocity=\"5 kg\"")}, 1, {"kg", "cm/s"});
+  fails({"check", changed("<kinematics2d id", "<kinematics3d id")}, 1, {"kinematics3d", "kinematics2d"});
+  fails({"check", kConfigs + "epuck_diffusion.xml", "--set", "framework.experiment.lenght=3"}, 1, {"lenght", "length"});
+}
+
+TEST_F(BadInput, IsAllToldAtOnce) {
+  std::string text = text_of(kConfigs + "epuck_diffusion.xml");
+  const auto replace = [&](const std::string& from, const std::string& to) { text.replace(text.find(from), from.size(), to); };
+  replace("ticks_per_second=\"10\"", "ticks_per_second=\"ten\"");
+  replace("<kinematics2d id", "<kinematics3d id");
+  replace("delta=\"0.1\"", "delta=\"0.1\" dleta=\"3\"");
+  replace("size=\"0.3,0.3,0.3\"", "size=\"0.3,0.3\"");
+  folder_.write("e.xml", text);
+  fails({"check", "e.xml"}, 1, {"ten", "kinematics3d", "0.3,0.3"});
+}
+
+TEST_F(BadInput, WrongUsageHasItsOwnCode) {
+  fails({}, 2, {"subcommand"});
+  fails({"rnu"}, 2, {});
+  fails({"run"}, 2, {"experiment"});
+  fails({"run", kConfigs + "epuck_diffusion.xml", "--seconds", "-3"}, 2, {"seconds"});
+  fails({"bench", "walking"}, 2, {"diffusion"});
+  fails({"emulate", "r2d2", "--link", "pty:x"}, 2, {"epuck"});
+  fails({"emulate", "epuck", "--link", "pty:x", "--fault", "explode@3s"}, 1, {"explode"});
+  fails({"list", "dragons"}, 2, {"controllers"});
+  fails({"describe", "proximitty"}, 1, {"proximity"});
+}
+
+TEST_F(BadInput, AFailureWhileRunningHasItsOwnCode) {
+  fails({"run", changed("<box id=\"wall_north\"", "<box id=\"wall_n\""), "--report", "/no/such/folder/r.json", "--seconds", "1"}, 3, {"/no/such/folder/r.json"});
+  // Without walls robots leave the arena.
+  std::string text = text_of(kConfigs + "epuck_diffusion.xml");
+  for (const char* wall : {"wall_north", "wall_south", "wall_east", "wall_west"}) {
+    const std::size_t begin = text.find(std::string("<box id=\"") + wall);
+    text.erase(begin, text.find("</box>", begin) + 6 - begin);
+  }
+  folder_.write("open.xml", text);
+  fails({"run", "open.xml", "--report", "r.json", "--trajectory", "t.csv"}, 3, {"left the arena", "escape="});
+  EXPECT_EQ(json_value(text_of(folder_.path() / "r.json"), "finished"), "false");
+  EXPECT_GT(text_of(folder_.path() / "t.csv").size(), 1000U);  // records are flushed
+}
+
+TEST(ListAndDescribe, CoverWhatThereIs) {
+  Folder folder;
+  Tandem list({"list"}, folder.path());
+  ASSERT_EQ(list.wait(), 0);
+  for (const char* name : {"epuck_diffusion", "obstacle_avoidance", "kinematics2d", "e-puck", "proximity", "range_and_bearing"}) {
+    EXPECT_NE(list.output().find(name), std::string::npos) << name;
+  }
+  for (const char* name : {"epuck_diffusion", "obstacle_avoidance", "proximity", "range_and_bearing", "arena", "distribute", "e-puck", "differential_steering"}) {
+    Tandem describe({"describe", name}, folder.path());
+    EXPECT_EQ(describe.wait(), 0) << name << describe.errors();
+    EXPECT_GT(describe.output().size(), 60U) << name;
+  }
+}
+
+TEST(Configs, AllAreGood) {
+  Folder folder;
+  int checked = 0;
+  for (const auto& file : scenarios::fs::directory_iterator(kConfigs)) {
+    if (file.path().extension() != ".xml") continue;
+    Tandem check({"check", file.path().string()}, folder.path());
+    EXPECT_EQ(check.wait(), 0) << file.path() << check.errors();
+    ++checked;
+  }
+  EXPECT_GE(checked, 5);
+}
+
+TEST(Golden, TheBenchmarkKeepsItsBits) {
+  // A change of these hashes changes everybody's results: it needs a reason in its commit.
+  Folder folder;
+  Tandem bench({"bench", "diffusion", "--robots", "1000", "--ticks", "100"}, folder.path());
+  ASSERT_EQ(bench.wait(), 0) << bench.errors();
+  EXPECT_EQ(json_value(bench.output(), "state_hash"), "GOLDEN_BENCH");
+  Tandem run({"run", kConfigs + "epuck_diffusion.xml", "--report", "-"}, folder.path());
+  ASSERT_EQ(run.wait(), 0) << run.errors();
+  EXPECT_EQ(json_value(run.output(), "state_hash"), "GOLDEN_RUN");
+}
+
+TEST(Sha256, GivesThePublishedDigests) {
+  // FIPS 180-4 examples.
+  EXPECT_EQ(app::sha256("abc"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+  EXPECT_EQ(app::sha256(""), "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
+  EXPECT_EQ(app::sha256(std::string(1'000'000, 'a')), "cdc76e5c9914fb9281a1c7e284d73e67f1809a48a497200e046d39ccc7112cd0");
+}
+
+TEST(Json, QuotesAndNests) {
+  app::Json json;
+  json.begin_object().field("a", std::string("x\"y\\z\n")).field("n", 1.5).field("nan", std::nan(""));
+  json.key("list").begin_array().value(true).begin_object().end_object().end_array().end_object();
+  EXPECT_EQ(json.text(), "{\"a\": \"x\\\"y\\\\z\\u000a\", \"n\": 1.5, \"nan\": null, \"list\": [true, {}]}");
+}
+
+}  // namespace
+}  // namespace tandem
