@@ -127,7 +127,10 @@ hal::Status MixedSession::run(hal::Tick ticks, const std::atomic<bool>& stop,
   while (world_->state() == core::RunState::Running && !stop.load(std::memory_order_relaxed)) {
     world_->step();
     if (after_tick) after_tick(*world_);
-    if (ticks > 0 && world_->tick() >= ticks) break;
+    if ((ticks > 0 && world_->tick() >= ticks) || world_->state() != core::RunState::Running) {
+      pacer_.finish();
+      break;
+    }
     if (!pacer_.wait_for_next(stop)) break;
   }
   stop_robots();

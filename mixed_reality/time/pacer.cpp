@@ -16,7 +16,7 @@ void Pacer::start() noexcept {
   slot_ = 0;
 }
 
-bool Pacer::wait_for_next(const std::atomic<bool>& stop) noexcept {
+hal::TimeNs Pacer::end_tick() noexcept {
   const hal::TimeNs ended_ns = time_.now_ns();
   ++ledger_.ticks;
   ledger_.step.add(ended_ns - began_ns_);
@@ -25,6 +25,11 @@ bool Pacer::wait_for_next(const std::atomic<bool>& stop) noexcept {
     ++ledger_.deadline_misses;
     ledger_.largest_lateness_ns = std::max(ledger_.largest_lateness_ns, lateness_ns);
   }
+  return ended_ns;
+}
+
+bool Pacer::wait_for_next(const std::atomic<bool>& stop) noexcept {
+  const hal::TimeNs ended_ns = end_tick();
 
   // The next slot, or the one that is running already: those between are left out.
   const std::int64_t next = std::max(slot_ + 1, slot_at(ended_ns));

@@ -39,6 +39,8 @@ class Pacer {
   /// Ends the running tick, enters it in the ledger and sleeps until the next one is to begin.
   /// @returns false when `stop` became true, before or during the sleep: no further tick is to begin.
   bool wait_for_next(const std::atomic<bool>& stop) noexcept;
+  /// Ends the running tick, enters it in the ledger, and begins no other.
+  void finish() noexcept { (void)end_tick(); }
 
   /// When the running tick should have begun, and when it should end, on the time source's clock.
   hal::TimeNs scheduled_ns() const noexcept { return start_of(slot_); }
@@ -47,6 +49,7 @@ class Pacer {
   const PaceLedger& ledger() const noexcept { return ledger_; }
 
  private:
+  hal::TimeNs end_tick() noexcept;
   hal::TimeNs start_of(std::int64_t slot) const noexcept {
     return start_ns_ + hal::time_of_tick(slot, ticks_per_second_);
   }

@@ -96,6 +96,7 @@ TEST_F(MixedRun, StepsInRealTimeOnAnAbsoluteScheduleAndStopsTheRobotAtTheEnd) {
   ASSERT_TRUE(session_->run(100, kGoOn, [&](core::World&) { last_tick = time_.now_ns(); }).ok());
   EXPECT_EQ(last_tick, began + 99 * 100 * kMs + 70'000);
   const MixedReport report = session_->report();
+  EXPECT_EQ(report.pace.ticks, 100U);
   EXPECT_EQ(report.pace.deadline_misses, 0U);
   ASSERT_EQ(report.robots.size(), 1U);
   EXPECT_EQ(report.robots[0].state, "driving");

@@ -97,6 +97,18 @@ TEST(Pacer, BeginsNoTickOnceAskedToStop) {
   EXPECT_EQ(pacer.ledger().ticks, 1U);
 }
 
+TEST(Pacer, TheLastTickIsInTheLedgerToo) {
+  FakeTime time(0);
+  Pacer pacer(time, 10);
+  pacer.start();
+  ASSERT_TRUE(pacer.wait_for_next(kGoOn));
+  time.pass(130 * kMs);
+  pacer.finish();
+  EXPECT_EQ(pacer.ledger().ticks, 2U);
+  EXPECT_EQ(pacer.ledger().deadline_misses, 1U);
+  EXPECT_EQ(time.sleeps, 1);
+}
+
 TEST(Pacer, AllocatesNothing) {
   FakeTime time(0);
   Pacer pacer(time, 10);
