@@ -125,7 +125,8 @@ class Firmware {
   // firmware_ascii.cpp
   void obey_line(hal::TimeNs at);
   void obey_letter(char letter, std::string_view arguments, hal::TimeNs at);
-  bool obey_common(char letter, std::string_view arguments, hal::TimeNs at);
+  bool obey_question(char letter, hal::TimeNs at);
+  bool obey_order(char letter, std::string_view arguments, hal::TimeNs at);
   bool obey_optional(char letter, std::string_view arguments, hal::TimeNs at);
   void scan(std::string_view arguments, std::initializer_list<std::int32_t*> variables) const;
   void set_camera(std::string_view arguments);

@@ -65,39 +65,24 @@ void Firmware::obey_line(hal::TimeNs at) {
 
 void Firmware::obey_letter(char letter, std::string_view arguments, hal::TimeNs at) {
   count_steps(at);
-  if (obey_common(letter, arguments, at) || obey_optional(letter, arguments, at)) return;
+  if (obey_question(letter, at) || obey_order(letter, arguments, at) || obey_optional(letter, arguments, at)) return;
   event(at, "unknown", {{"mode", "ascii"}, {"text", memory_.line}});
   send_text("z,Command not found\r\n", at);
 }
 
-// What every firmware has. False: not one of them.
-bool Firmware::obey_common(char letter, std::string_view arguments, hal::TimeNs at) {
-  Memory& m = memory_;
+// What every firmware answers with values. False: not one of them.
+bool Firmware::obey_question(char letter, hal::TimeNs at) {
+  const Memory& m = memory_;
   const BodySenses senses = body_.sense(at);
   switch (letter) {
     case 'A':
       send_text(answer_of('a', acceleration(senses)), at);
       return true;
-    case 'B':
-      scan(arguments, {&m.led_action});
-      set_led(true, 8, m.led_action, at);
-      send_text("b\r\n", at);
-      return true;
     case 'C':
       send_text(answer_of('c', std::array{int{options_.selector}}), at);
       return true;
-    case 'D':
-      scan(arguments, {&m.speed_left, &m.speed_right});
-      set_speeds(m.speed_left, m.speed_right, "D", at);
-      send_text("d\r\n", at);
-      return true;
     case 'E':
       send_text(answer_of('e', std::array{m.speed_left, m.speed_right}), at);
-      return true;
-    case 'F':
-      scan(arguments, {&m.led_action});
-      set_led(true, 9, m.led_action, at);
-      send_text("f\r\n", at);
       return true;
     case 'H':
       send_text(kHelp, at);
@@ -107,19 +92,6 @@ bool Firmware::obey_common(char letter, std::string_view arguments, hal::TimeNs 
       send_text(answer_of('i', std::array{m.camera_mode, m.camera_width, m.camera_height, m.camera_zoom, size}), at);
       return true;
     }
-    case 'J':
-      set_camera(arguments);
-      send_text("j\r\n", at);
-      return true;
-    case 'K':
-      send_text("k, Starting calibration - Remove any object in sensors range\r\n", at);
-      start_errand(Errand::Calibration, free_at_ + options_.calibration_ns);
-      return true;
-    case 'L':
-      scan(arguments, {&m.led_index, &m.led_action});
-      set_led(false, m.led_index, m.led_action, at);
-      send_text("l\r\n", at);
-      return true;
     case 'M': {
       std::vector<int> ground;
       for (const double g : senses.ground) ground.push_back(options_.ground_board ? ground_counts(g) : 0);
@@ -138,17 +110,66 @@ bool Firmware::obey_common(char letter, std::string_view arguments, hal::TimeNs 
       send_text(answer_of('o', light), at);
       return true;
     }
+    case 'Q': {
+      const auto shown = [this](std::int32_t n) { return facts_.wide_int ? n : static_cast<std::int16_t>(n); };
+      send_text(answer_of('q', std::array{shown(left_.count()), shown(right_.count())}), at);
+      return true;
+    }
+    case 'U': {
+      std::array<int, 3> levels{};
+      for (std::size_t i = 0; i < levels.size(); ++i) levels[i] = microphone_counts(senses.sound[i]);
+      send_text(answer_of('u', levels), at);
+      return true;
+    }
+    case 'V': {
+      std::string text = "v," + std::string(facts_.version) + "\r\n";
+      if (!facts_.hardware.empty()) text += std::string(facts_.hardware) + "\r\n";
+      send_text(text, at);
+      return true;
+    }
+    default:
+      return false;
+  }
+}
+
+// What every firmware does and acknowledges. False: not one of them.
+bool Firmware::obey_order(char letter, std::string_view arguments, hal::TimeNs at) {
+  Memory& m = memory_;
+  switch (letter) {
+    case 'B':
+      scan(arguments, {&m.led_action});
+      set_led(true, 8, m.led_action, at);
+      send_text("b\r\n", at);
+      return true;
+    case 'D':
+      scan(arguments, {&m.speed_left, &m.speed_right});
+      set_speeds(m.speed_left, m.speed_right, "D", at);
+      send_text("d\r\n", at);
+      return true;
+    case 'F':
+      scan(arguments, {&m.led_action});
+      set_led(true, 9, m.led_action, at);
+      send_text("f\r\n", at);
+      return true;
+    case 'J':
+      set_camera(arguments);
+      send_text("j\r\n", at);
+      return true;
+    case 'K':
+      send_text("k, Starting calibration - Remove any object in sensors range\r\n", at);
+      start_errand(Errand::Calibration, free_at_ + options_.calibration_ns);
+      return true;
+    case 'L':
+      scan(arguments, {&m.led_index, &m.led_action});
+      set_led(false, m.led_index, m.led_action, at);
+      send_text("l\r\n", at);
+      return true;
     case 'P':
       scan(arguments, {&m.count_left, &m.count_right});
       left_.set_count(m.count_left);
       right_.set_count(m.count_right);
       send_text("p\r\n", at);
       return true;
-    case 'Q': {
-      const auto shown = [this](std::int32_t n) { return facts_.wide_int ? n : static_cast<std::int16_t>(n); };
-      send_text(answer_of('q', std::array{shown(left_.count()), shown(right_.count())}), at);
-      return true;
-    }
     case 'R': {
       if (options_.variant == Variant::Epuck2) return true;  // neither answer nor effect
       std::deque<SentByte> farewell;
@@ -175,18 +196,6 @@ bool Firmware::obey_common(char letter, std::string_view arguments, hal::TimeNs 
       play(m.sound, at);
       send_text("t\r\n", at);
       return true;
-    case 'U': {
-      std::array<int, 3> levels{};
-      for (std::size_t i = 0; i < levels.size(); ++i) levels[i] = microphone_counts(senses.sound[i]);
-      send_text(answer_of('u', levels), at);
-      return true;
-    }
-    case 'V': {
-      std::string text = "v," + std::string(facts_.version) + "\r\n";
-      if (!facts_.hardware.empty()) text += std::string(facts_.hardware) + "\r\n";
-      send_text(text, at);
-      return true;
-    }
     default:
       return false;
   }
