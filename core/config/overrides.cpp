@@ -1,84 +1,113 @@
 #include "core/config/overrides.hpp"
 
 #include <algorithm>
+#include <array>
 
 namespace tandem::core {
 namespace {
+
+/// Elements that stand once in their parent and may be left out: an override may add them.
+constexpr std::array<std::string_view, 12> kMayBeAdded = {"system", "time",    "floor",  "params",     "battery",         "bridge",
+                                                          "tracker", "record", "trajectory", "media", "physics_engines", "visualization"};
 
 struct Part {
   std::string name;
   std::string selector;  // inside [ ]; empty: none
 };
 
-/// Splits at the dots outside of brackets.
-std::vector<Part> split(const std::string& path) {
+/// Splits at the dots outside of brackets. Empty when the brackets do not fit.
+std::vector<Part> split(std::string_view path) {
   std::vector<Part> parts(1);
   bool inside = false;
+  bool closed = false;
   for (const char c : path) {
-    if (c == '[') inside = true;
-    else if (c == ']') inside = false;
-    else if (c == '.' && !inside) parts.emplace_back();
-    else (inside ? parts.back().selector : parts.back().name) += c;
+    if (c == '[' && !inside && !closed) {
+      inside = true;
+    } else if (c == ']' && inside && !parts.back().selector.empty()) {
+      inside = false;
+      closed = true;
+    } else if (c == '.' && !inside) {
+      parts.emplace_back();
+      closed = false;
+    } else if ((closed && !inside) || (c == ']' && inside)) {
+      return {};
+    } else {
+      (inside ? parts.back().selector : parts.back().name) += c;
+    }
   }
-  return parts;
+  return inside ? std::vector<Part>{} : parts;
 }
 
-Element* select(Element& parent, const Part& part, std::string& why) {
-  std::vector<Element*> same;
-  std::string ids;
-  for (Element& child : parent.children) {
-    if (child.name != part.name) continue;
-    same.push_back(&child);
+/// What stands in `parent`, for messages: "box [wall]", "distribute [0]", "floor".
+std::vector<std::string> contents(const Element& parent) {
+  std::vector<std::string> names;
+  for (const Element& child : parent.children) {
+    const auto same = [&](const Element& e) { return e.name == child.name; };
+    const auto total = std::count_if(parent.children.begin(), parent.children.end(), same);
+    const auto index = std::count_if(parent.children.data(), &child, same);
     const std::string* id = child.attribute("id");
-    ids += (ids.empty() ? "" : ", ") + (id != nullptr ? *id : "[" + std::to_string(same.size() - 1) + "]");
+    names.push_back(child.name + (id != nullptr ? "[" + *id + "]" : total > 1 ? "[" + std::to_string(index) + "]" : ""));
+    if (names.size() > 20) break;
   }
-  if (part.selector.empty()) {
-    if (same.size() == 1) return same.front();
-    if (same.size() > 1) {
-      why = "there are " + std::to_string(same.size()) + " <" + part.name + "> in <" + parent.name + ">; choose one with " + part.name +
-            "[n] or " + part.name + "[id]: " + ids;
-      return nullptr;
-    }
-    Element& added = parent.children.emplace_back();
-    added.name = part.name;
-    added.file = parent.file;
-    return &added;
+  return names;
+}
+
+Element* select(Element& parent, const Part& part, const std::string& origin, std::string& why) {
+  std::vector<Element*> same;
+  for (Element& child : parent.children) {
+    if (child.name == part.name) same.push_back(&child);
+  }
+  if (part.selector.empty() && same.size() == 1) return same.front();
+  if (part.selector.empty() && same.size() > 1) {
+    why = "<" + parent.name + "> has " + std::to_string(same.size()) + " <" + part.name + ">; choose one with " + part.name + "[n], from 0, or " +
+          part.name + "[id]: " + listed(contents(parent));
+    return nullptr;
   }
   for (std::size_t i = 0; i < same.size(); ++i) {
     const std::string* id = same[i]->attribute("id");
     if ((id != nullptr && *id == part.selector) || std::to_string(i) == part.selector) return same[i];
   }
-  why = "<" + parent.name + "> has no <" + part.name + "> '" + part.selector + "'; it has: " + (ids.empty() ? "none" : ids);
+  if (part.selector.empty() && std::find(kMayBeAdded.begin(), kMayBeAdded.end(), part.name) != kMayBeAdded.end()) {
+    Element& added = parent.children.emplace_back();
+    added.name = part.name;
+    added.file = origin;
+    return &added;
+  }
+  std::vector<std::string> names;
+  for (const Element& child : parent.children) names.push_back(child.name);
+  why = "<" + parent.name + "> has no " + part.name + (part.selector.empty() ? "" : "[" + part.selector + "]") + "; it has: " +
+        listed(contents(parent)) + (same.empty() ? did_you_mean(part.name, names) : "");
   return nullptr;
 }
 
 }  // namespace
 
 void apply_override(Element& root, const std::string& assignment, Problems& problems) {
+  const std::string origin = "--set " + assignment;
+  const auto refuse = [&](const std::string& why) { problems.push_back({origin, 0, why, false}); };
   const std::size_t equals = assignment.find('=');
-  const auto refuse = [&](const std::string& why) { problems.push_back({"--set " + assignment, 0, why, false}); };
   if (equals == std::string::npos || equals == 0) return refuse("write path=value, e.g. framework.experiment.length=5");
-  std::vector<Part> parts = split(assignment.substr(0, equals));
+  std::vector<Part> parts = split(std::string_view(assignment).substr(0, equals));
   if (!parts.empty() && parts.front().name == root.name) parts.erase(parts.begin());
   const bool broken = std::any_of(parts.begin(), parts.end(), [](const Part& p) { return p.name.empty(); });
   if (parts.size() < 2 || broken || !parts.back().selector.empty()) {
-    return refuse("the path must name elements and at last an attribute, e.g. framework.experiment.length");
+    return refuse("the path must name elements and at last an attribute, e.g. arena.distribute[0].entity.quantity");
   }
   Element* at = &root;
   for (std::size_t i = 0; i + 1 < parts.size(); ++i) {
     std::string why;
-    Element* next = select(*at, parts[i], why);
+    Element* next = select(*at, parts[i], origin, why);
     if (next == nullptr) return refuse(why);
     at = next;
   }
-  const std::string value = assignment.substr(equals + 1);
+  const Element::Attribute set{parts.back().name, assignment.substr(equals + 1), 0, origin};
   for (Element::Attribute& a : at->attributes) {
-    if (a.name == parts.back().name) {
-      a.value = value;
+    if (a.name == set.name) {
+      a = set;
       return;
     }
   }
-  at->attributes.push_back({parts.back().name, value, 0});
+  at->attributes.push_back(set);
 }
 
 }  // namespace tandem::core

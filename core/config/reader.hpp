@@ -17,8 +17,9 @@ struct KnownNames {
   std::vector<std::string> actuators;
 };
 
-/// Reads and checks `path` with `overrides` ("path=value") applied. All problems are collected, each with its line; nothing
-/// is returned when there is an error among them. Relative paths in the file are resolved against its folder.
+/// Reads and checks `path` with `overrides` ("path=value") applied. All problems are collected, each with its line and in the
+/// order of the file; nothing is returned when there is an error among them. Paths of files in it are relative to the
+/// working directory, or else to its own folder.
 std::optional<Scenario> read_experiment(const std::string& path, const std::vector<std::string>& overrides, const KnownNames& known,
                                         Problems& problems);
 
@@ -26,17 +27,22 @@ std::optional<Scenario> read_experiment(const std::string& path, const std::vect
 std::optional<Scenario> read_experiment_text(const std::string& text, const std::string& name,
                                              const std::vector<std::string>& overrides, const KnownNames& known, Problems& problems);
 
+/// The scenario as an experiment file with every default written out. Reads back as the same scenario.
+std::string effective_settings(const Scenario& scenario);
+
 /// Our name of an ARGoS device ("epuck_proximity" -> "proximity"); unknown names come back as they are.
 std::string device_name(std::string_view argos_name, bool sensor);
 
 /// One element of the schema, for the manual.
 struct ElementManual {
-  std::string_view name;
-  std::string_view parent;            ///< empty: the root
-  std::string_view doc;
-  std::string attributes;             ///< one line each
-  std::vector<std::string> children;
+  std::string name;                   ///< as written; "configuration" stands for the names of controllers
+  std::string parent;                 ///< in which it may stand, "box or cylinder"; empty: the root
+  std::string doc;
+  std::string attributes;             ///< which must be given, then all as ManualWriter lists them
+  std::vector<std::string> children;  ///< "*": anything
 };
-std::vector<ElementManual> element_manuals();
+
+/// The manual of every element, with one entry for every kind of robot and of engine in `known`.
+std::vector<ElementManual> element_manuals(const KnownNames& known = {{"e-puck"}, {"kinematics2d"}, {}, {}});
 
 }  // namespace tandem::core

@@ -1,5 +1,5 @@
-// The attributes of every element of an experiment file, each described once. Reading, checking, defaults and the manual
-// all come from these descriptions.
+// Every element of an experiment file, described once: what it is, what it must have, what may stand in it, and each of its
+// attributes. Reading, checking, defaults and the manual all come from these descriptions.
 #pragma once
 #include <array>
 #include <string>
@@ -20,11 +20,30 @@ inline constexpr double kLargestArena_m = 1e6;
 inline constexpr double kLargestQuantity = 1e8;
 inline constexpr double kSmallest_m = 1e-6;
 
-struct None {
+inline constexpr std::string_view kAnything = "*";   ///< as children: any element
+inline constexpr std::string_view kRobotKind = "ROBOT";  ///< in children: every kind of robot that the program knows
+
+/// What an element is and holds. Lists are names separated by spaces.
+struct ElementInfo {
+  std::string_view name;  ///< as written; "configuration" and "robot" stand for names of controllers and of kinds
+  std::string_view doc;
+  std::string_view required = {};
+  std::string_view children = {};
+};
+
+struct Root {
+  static constexpr ElementInfo kElement{"tandem", "An experiment. The name <argos-configuration> means the same.", "",
+                                        "framework controllers arena physics_engines media visualization loop_functions record"};
+  void describe(ParamVisitor&) {}
+};
+
+struct Framework {
+  static constexpr ElementInfo kElement{"framework", "How the run goes.", "", "system experiment profiling time"};
   void describe(ParamVisitor&) {}
 };
 
 struct System {
+  static constexpr ElementInfo kElement{"system", "Threads."};
   std::int64_t threads = 0;
   std::string method = "balance_quantity";
   bool pin_threads_to_cores = false;
@@ -36,7 +55,8 @@ struct System {
   }
 };
 
-struct ExperimentAttributes {
+struct Experiment {
+  static constexpr ElementInfo kElement{"experiment", "Length, tick and seed."};
   double length_s = 0.0;
   std::int64_t ticks_per_second = 10;
   std::int64_t random_seed = 0;
@@ -52,6 +72,7 @@ struct ExperimentAttributes {
 };
 
 struct Profiling {
+  static constexpr ElementInfo kElement{"profiling", "Accepted for ARGoS files; left out."};
   std::string file, format = "human_readable";
   bool truncate_file = true;
   void describe(ParamVisitor& v) {
@@ -63,6 +84,7 @@ struct Profiling {
 };
 
 struct Time {
+  static constexpr ElementInfo kElement{"time", "How the run is paced."};
   std::string mode = "fast";
   void describe(ParamVisitor& v) {
     static constexpr std::array<std::string_view, 3> kModes = {"fast", "realtime", "lockstep"};
@@ -70,29 +92,47 @@ struct Time {
   }
 };
 
-struct Controller {
+struct Controllers {
+  static constexpr ElementInfo kElement{"controllers", "Configurations of controllers.", "", kAnything};
+  void describe(ParamVisitor&) {}
+};
+
+struct Configuration {
+  static constexpr ElementInfo kElement{"configuration", "One configuration, written with the registered name of its controller.",
+                                        "id library", "actuators sensors params"};
   std::string id, library;
   void describe(ParamVisitor& v) {
     v.text("id", id, "How robots refer to this configuration.");
-    v.text("library", library, "Shared object with the controller; folder and extension may be left out.");
+    v.text("library", library, "Shared object with the controller; folder, prefix and extension may be left out.");
   }
 };
 
-struct Device {
-  std::string implementation = "default";
-  void describe(ParamVisitor& v) { v.text("implementation", implementation, "Which model of the device; see `tandem list devices`."); }
+struct Sensors {
+  static constexpr ElementInfo kElement{"sensors", "The sensors that the controller may take, each with its implementation= and options.",
+                                        "", kAnything};
+  void describe(ParamVisitor&) {}
+};
+
+struct Actuators {
+  static constexpr ElementInfo kElement{"actuators", "The actuators that the controller may take, each with its implementation= and options.",
+                                        "", kAnything};
+  void describe(ParamVisitor&) {}
 };
 
 struct Hook {
+  static constexpr ElementInfo kElement{"loop_functions",
+                                        "A hook: what the experiment does around the robots. Further attributes and children are its own.",
+                                        "library", kAnything};
   std::string library, label;
   void describe(ParamVisitor& v) {
     v.text("library", library, "Shared object with the hook.");
-    v.text("label", label, "Its registered name.");
+    v.text("label", label, "Its registered name; may be left out when the library has only one.");
   }
 };
 
 struct Arena {
-  Vec3 size{}, center{};
+  static constexpr ElementInfo kElement{"arena", "The space and what is in it.", "size", "floor box cylinder light sound distribute ROBOT"};
+  Vec3 size{1.0, 1.0, 1.0}, center{};
   Vec3 positional_grid_size{};
   std::string escape = "error";
   void describe(ParamVisitor& v) {
@@ -105,6 +145,7 @@ struct Arena {
 };
 
 struct Floor {
+  static constexpr ElementInfo kElement{"floor", "The floor's shade."};
   std::string id, source = "none", path;
   double pixels_per_meter = 100.0;
   void describe(ParamVisitor& v) {
@@ -117,8 +158,9 @@ struct Floor {
 };
 
 struct Box {
+  static constexpr ElementInfo kElement{"box", "A box.", "id size", "body leds"};
   std::string id;
-  Vec3 size{};
+  Vec3 size{1.0, 1.0, 1.0};
   bool movable = false;
   double mass_kg = 1.0;
   void describe(ParamVisitor& v) {
@@ -130,8 +172,9 @@ struct Box {
 };
 
 struct Cylinder {
+  static constexpr ElementInfo kElement{"cylinder", "A cylinder.", "id radius height", "body leds"};
   std::string id;
-  double radius_m = 0.0, height_m = 0.0;
+  double radius_m = 1.0, height_m = 1.0;
   bool movable = false;
   double mass_kg = 1.0;
   void describe(ParamVisitor& v) {
@@ -144,6 +187,7 @@ struct Cylinder {
 };
 
 struct Light {
+  static constexpr ElementInfo kElement{"light", "A lamp.", "id"};
   std::string id, color = "yellow", medium;
   Vec3 position{}, orientation{};
   double intensity = 1.0;
@@ -158,6 +202,7 @@ struct Light {
 };
 
 struct Sound {
+  static constexpr ElementInfo kElement{"sound", "A steady sound, for microphones.", "id position"};
   std::string id;
   Vec3 position{};
   double level = 1.0;
@@ -169,6 +214,7 @@ struct Sound {
 };
 
 struct Body {
+  static constexpr ElementInfo kElement{"body", "Where a thing starts. Inside <distribute> that decides instead."};
   Vec3 position{}, orientation{};
   void describe(ParamVisitor& v) {
     v.vector("position", position, unit::m, "Where its base stands: x, y, z.");
@@ -177,6 +223,7 @@ struct Body {
 };
 
 struct Robot {
+  static constexpr ElementInfo kElement{"robot", "A robot, written with the name of its kind, e.g. <e-puck>.", "id", "body controller battery bridge tracker"};
   std::string id;
   double rab_range_m = -1.0;
   std::int64_t rab_data_size = -1;
@@ -188,11 +235,13 @@ struct Robot {
 };
 
 struct RobotController {
+  static constexpr ElementInfo kElement{"controller", "Which configuration drives the robot; a <params> inside overrides its parameters one by one.", "config", "params"};
   std::string config;
   void describe(ParamVisitor& v) { v.text("config", config, "Id of a configuration under <controllers>."); }
 };
 
 struct Battery {
+  static constexpr ElementInfo kElement{"battery", "How the battery discharges."};
   BatteryConfig c;
   double time_factor = 0.0, pos_factor = 0.0, orient_factor = 0.0;
   void describe(ParamVisitor& v) {
@@ -210,6 +259,7 @@ struct Battery {
 };
 
 struct Bridge {
+  static constexpr ElementInfo kElement{"bridge", "Makes the robot stand for a real one on this link.", "link"};
   std::string link, firmware = "auto";
   double timeout_s = 0.5;
   void describe(ParamVisitor& v) {
@@ -221,6 +271,7 @@ struct Bridge {
 };
 
 struct Tracker {
+  static constexpr ElementInfo kElement{"tracker", "Where a real robot's pose comes from."};
   std::string source = "odometry";
   void describe(ParamVisitor& v) {
     static constexpr std::array<std::string_view, 1> kSources = {"odometry"};
@@ -228,6 +279,25 @@ struct Tracker {
   }
 };
 
+struct DistributeElement {
+  static constexpr ElementInfo kElement{"distribute", "Places many of one thing, without overlap.", "", "position orientation entity"};
+  void describe(ParamVisitor&) {}
+};
+
+/// Which attribute belongs to which method of drawing.
+struct DrawAttribute {
+  std::string_view name, method;
+};
+inline constexpr std::array<DrawAttribute, 8> kDrawAttributes = {{{"min", "uniform"},
+                                                                  {"max", "uniform"},
+                                                                  {"mean", "gaussian"},
+                                                                  {"std_dev", "gaussian"},
+                                                                  {"values", "constant"},
+                                                                  {"center", "grid"},
+                                                                  {"distances", "grid"},
+                                                                  {"layout", "grid"}}};
+
+/// Draws triples; a bare number is in `bare`.
 struct Draw {
   std::string method;
   Vec3 min{}, max{}, mean{}, std_dev{}, values{}, center{}, distances{}, layout{1, 1, 1};
@@ -242,11 +312,22 @@ struct Draw {
     v.vector("values", values, bare, "The values (constant).");
     v.vector("center", center, bare, "Middle of the grid.");
     v.vector("distances", distances, bare, "Spacing of the grid.");
-    v.vector("layout", layout, unit::none, "Places of the grid in x, y, z.");
+    v.vector("layout", layout, unit::none, "Places of the grid in x, y, z; filled west to east, then south to north, then upwards.");
   }
 };
 
-struct EntityAttributes {
+struct PositionDraw : Draw {
+  static constexpr ElementInfo kElement{"position", "How positions are drawn. Each method needs its own attributes, and takes no others.",
+                                        "method"};
+};
+
+struct OrientationDraw : Draw {
+  static constexpr ElementInfo kElement{"orientation", "How orientations are drawn: rotations about z, then y, then x.", "method"};
+  OrientationDraw() { bare = unit::deg; }
+};
+
+struct Entity {
+  static constexpr ElementInfo kElement{"entity", "How many of the one thing inside.", "quantity", "box cylinder light ROBOT"};
   std::int64_t quantity = 1, max_trials = 100, base_num = 0;
   void describe(ParamVisitor& v) {
     v.integer("quantity", quantity, {0, kLargestQuantity}, "How many.");
@@ -255,15 +336,59 @@ struct EntityAttributes {
   }
 };
 
+struct Engines {
+  static constexpr ElementInfo kElement{"physics_engines", "What moves the bodies. None: one kinematics2d for the whole arena.", "", kAnything};
+  void describe(ParamVisitor&) {}
+};
+
+/// What engines of every kind have; the rest of the attributes are the engine's own.
 struct Engine {
+  static constexpr ElementInfo kElement{"engine", "A physics engine, written with the name of its kind, e.g. <kinematics2d>.", "id", kAnything};
   std::string id, regions;
   void describe(ParamVisitor& v) {
-    v.text("id", id, "Name.");
-    v.text("regions", regions, "How the arena is split; kinematics2d needs no split, any is the same to it.");
+    v.text("id", id, "Name, for gates.");
+    v.text("regions", regions, "How the arena is split, \"4x4\" or \"auto\"; kinematics2d needs no split, any is the same to it.");
   }
 };
 
+struct Boundaries {
+  static constexpr ElementInfo kElement{"boundaries", "The region of an engine: a right prism. Left out: the whole arena.", "", "top bottom sides"};
+  void describe(ParamVisitor&) {}
+};
+
+struct Top {
+  static constexpr ElementInfo kElement{"top", "Upper end of a region.", "height"};
+  double height_m = 0.0;
+  void describe(ParamVisitor& v) { v.number("height", height_m, unit::m, kAny, "Height above the floor."); }
+};
+
+struct Bottom {
+  static constexpr ElementInfo kElement{"bottom", "Lower end of a region.", "height"};
+  double height_m = 0.0;
+  void describe(ParamVisitor& v) { v.number("height", height_m, unit::m, kAny, "Height above the floor."); }
+};
+
+struct Sides {
+  static constexpr ElementInfo kElement{"sides", "Outline of a region: its corners in order, at least three.", "", "vertex"};
+  void describe(ParamVisitor&) {}
+};
+
+struct Vertex {
+  static constexpr ElementInfo kElement{"vertex", "A corner of a region, and the side from here to the next: a wall, or a gate.", "point"};
+  std::string point, gate;
+  void describe(ParamVisitor& v) {
+    v.text("point", point, "\"x,y\"; bare numbers are in m.");
+    v.text("gate", gate, "Id of the engine behind this side; left out: a wall.");
+  }
+};
+
+struct Media {
+  static constexpr ElementInfo kElement{"media", "What carries signals.", "", "range_and_bearing led directional_led tag simple_radio"};
+  void describe(ParamVisitor&) {}
+};
+
 struct Medium {
+  static constexpr ElementInfo kElement{"medium", "A medium, written with the name of its kind, e.g. <range_and_bearing>.", "id"};
   std::string id;
   std::int64_t index = 0;
   std::string grid_size;
@@ -272,11 +397,28 @@ struct Medium {
     v.text("id", id, "Name that devices refer to.");
     v.integer("index", index, kNotNegative, "Accepted for ARGoS files.");
     v.text("grid_size", grid_size, "Accepted for ARGoS files; the grid chooses its size itself.");
-    v.flag("check_occlusions", check_occlusions, "Whether boxes and cylinders block.");
+    v.flag("check_occlusions", check_occlusions, "Whether boxes and cylinders block messages (range_and_bearing).");
   }
 };
 
+struct Leds {
+  static constexpr ElementInfo kElement{"leds", "LEDs on a box or cylinder; accepted for ARGoS files.", "", "led"};
+  std::string medium;
+  void describe(ParamVisitor& v) { v.text("medium", medium, "Id of the LED medium."); }
+};
+
+struct Record {
+  static constexpr ElementInfo kElement{"record", "What is written down.", "", "trajectory"};
+  void describe(ParamVisitor&) {}
+};
+
+struct Visualization {
+  static constexpr ElementInfo kElement{"visualization", "Views of ARGoS; left out with a warning, but for their camera placements.", "", kAnything};
+  void describe(ParamVisitor&) {}
+};
+
 struct Trajectory {
+  static constexpr ElementInfo kElement{"trajectory", "Poses of chosen robots, as CSV.", "path"};
   std::string path, entities = "*";
   std::int64_t every = 1;
   void describe(ParamVisitor& v) {

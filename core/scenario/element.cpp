@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <numeric>
 
 namespace tandem::core {
@@ -31,6 +32,25 @@ std::string range_text(hal::Range range, const hal::Unit& unit) {
   return "at most " + hal::format_quantity(range.max, unit);
 }
 
+std::string_view trimmed(std::string_view text) {
+  const auto first = text.find_first_not_of(" \t\r\n");
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(" \t\r\n") - first + 1);
+}
+
+const Element::Attribute* find_attribute(const Element& element, std::string_view name) {
+  for (const Element::Attribute& a : element.attributes) {
+    if (a.name == name) return &a;
+  }
+  return nullptr;
+}
+
+Problem problem_of(const Element& element, const Element::Attribute* attribute, std::string message) {
+  if (attribute != nullptr && !attribute->origin.empty()) return {attribute->origin, 0, std::move(message), false};
+  const int line = attribute != nullptr && attribute->line > 0 ? attribute->line : element.line;
+  return {element.file, line, std::move(message), false};
+}
+
 }  // namespace
 
 std::string to_text(const Problem& problem) {
@@ -57,6 +77,26 @@ const Element* Element::child(std::string_view child_name) const noexcept {
   return nullptr;
 }
 
+Problem problem_at(const Element& element, std::string message) { return {element.file, element.line, std::move(message), false}; }
+
+Problem problem_at(const Element& element, std::string_view attribute, std::string message) {
+  return problem_of(element, find_attribute(element, attribute),
+                    "<" + element.name + " " + std::string(attribute) + ">: " + std::move(message));
+}
+
+std::string listed(const std::vector<std::string>& names) {
+  constexpr std::size_t kShown = 20;
+  if (names.empty()) return "none";
+  std::string text;
+  for (std::size_t i = 0; i < std::min(names.size(), kShown); ++i) text += (i == 0 ? "" : ", ") + names[i];
+  return names.size() > kShown ? text + ", …" : text;
+}
+
+std::string did_you_mean(std::string_view word, const std::vector<std::string>& candidates) {
+  const std::string near = closest(word, candidates);
+  return near.empty() ? "" : ". Did you mean '" + near + "'?";
+}
+
 std::string closest(std::string_view word, const std::vector<std::string>& candidates) {
   if (word.size() > 64) return {};
   std::string best;
@@ -81,11 +121,14 @@ const std::string* ElementReader::find(std::string_view name) {
 }
 
 void ElementReader::problem(std::string_view attribute, std::string message) {
-  int line = element_.line;
-  for (const Element::Attribute& a : element_.attributes) {
-    if (a.name == attribute && a.line > 0) line = a.line;
-  }
-  problems_.push_back({element_.file, line, "<" + element_.name + " " + std::string(attribute) + ">: " + std::move(message), false});
+  problems_.push_back(problem_at(element_, attribute, std::move(message)));
+}
+
+bool ElementReader::in_range(std::string_view name, const std::string& text, double value, hal::Range range, const hal::Unit& unit) {
+  constexpr double kSlack = 1e-12;  // 12.9 cm passes where 0.129 m is the limit
+  if (value >= range.min - kSlack * std::fabs(range.min) && value <= range.max + kSlack * std::fabs(range.max)) return true;
+  problem(name, "'" + text + "' is out of range; it may be " + range_text(range, unit));
+  return false;
 }
 
 void ElementReader::number(std::string_view name, double& value_si, const hal::Unit& bare, hal::Range range_si, std::string_view) {
@@ -93,31 +136,27 @@ void ElementReader::number(std::string_view name, double& value_si, const hal::U
   if (text == nullptr) return;
   const auto parsed = hal::parse_quantity(*text, bare);
   if (!parsed.ok()) return problem(name, parsed.error().message);
-  constexpr double kSlack = 1e-12;  // 12.9 cm passes where 0.129 m is the limit
-  if (parsed.value() < range_si.min - kSlack || parsed.value() > range_si.max + kSlack) {
-    return problem(name, "'" + *text + "' is out of range; it may be " + range_text(range_si, bare));
-  }
-  value_si = parsed.value();
+  if (in_range(name, *text, parsed.value(), range_si, bare)) value_si = std::clamp(parsed.value(), range_si.min, range_si.max);
 }
 
 void ElementReader::integer(std::string_view name, std::int64_t& value, hal::Range range, std::string_view) {
   const std::string* text = find(name);
   if (text == nullptr) return;
+  std::string_view digits = trimmed(*text);
+  if (digits.starts_with('+')) digits.remove_prefix(1);
   std::int64_t parsed = 0;
-  const auto [end, status] = std::from_chars(text->data(), text->data() + text->size(), parsed);
-  if (status != std::errc{} || end != text->data() + text->size()) return problem(name, "'" + *text + "' is not a whole number");
-  const auto as_double = static_cast<double>(parsed);
-  if (as_double < range.min || as_double > range.max) {
-    return problem(name, "'" + *text + "' is out of range; it may be " + range_text(range, hal::unit::none));
-  }
-  value = parsed;
+  const auto [end, status] = std::from_chars(digits.data(), digits.data() + digits.size(), parsed);
+  if (status == std::errc::result_out_of_range) return problem(name, "'" + *text + "' is too large a number");
+  if (status != std::errc{} || end != digits.data() + digits.size()) return problem(name, "'" + *text + "' is not a whole number");
+  if (in_range(name, *text, static_cast<double>(parsed), range, hal::unit::none)) value = parsed;
 }
 
 void ElementReader::flag(std::string_view name, bool& value, std::string_view) {
   const std::string* text = find(name);
   if (text == nullptr) return;
-  if (*text == "true" || *text == "1") value = true;
-  else if (*text == "false" || *text == "0") value = false;
+  const std::string_view word = trimmed(*text);
+  if (word == "true" || word == "1") value = true;
+  else if (word == "false" || word == "0") value = false;
   else problem(name, "'" + *text + "' is neither \"true\" nor \"false\"");
 }
 
@@ -128,15 +167,12 @@ void ElementReader::text(std::string_view name, std::string& value, std::string_
 void ElementReader::choice(std::string_view name, std::string& value, std::span<const std::string_view> options, std::string_view) {
   const std::string* text = find(name);
   if (text == nullptr) return;
-  std::vector<std::string> names(options.begin(), options.end());
-  if (std::find(names.begin(), names.end(), *text) != names.end()) {
-    value = *text;
-    return;
+  const std::vector<std::string> names(options.begin(), options.end());
+  const std::string word(trimmed(*text));
+  if (std::find(names.begin(), names.end(), word) == names.end()) {
+    return problem(name, "'" + *text + "' is not one of: " + listed(names) + did_you_mean(word, names));
   }
-  std::string list;
-  for (const std::string& n : names) list += (list.empty() ? "" : ", ") + n;
-  const std::string near = closest(*text, names);
-  problem(name, "'" + *text + "' is not one of: " + list + (near.empty() ? "" : ". Did you mean '" + near + "'?"));
+  value = word;
 }
 
 void ElementReader::vector(std::string_view name, std::array<double, 3>& value_si, const hal::Unit& bare, std::string_view) {
@@ -158,11 +194,7 @@ void ElementReader::vector(std::string_view name, std::array<double, 3>& value_s
 void ElementReader::finish() {
   for (const Element::Attribute& a : element_.attributes) {
     if (std::find(known_.begin(), known_.end(), a.name) != known_.end()) continue;
-    const std::string near = closest(a.name, known_);
-    problems_.push_back({element_.file, a.line > 0 ? a.line : element_.line,
-                         "<" + element_.name + "> has no attribute '" + a.name + "'" +
-                             (near.empty() ? "" : ". Did you mean '" + near + "'?"),
-                         false});
+    problems_.push_back(problem_of(element_, &a, "<" + element_.name + "> has no attribute '" + a.name + "'" + did_you_mean(a.name, known_)));
   }
 }
 

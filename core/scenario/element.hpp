@@ -28,6 +28,7 @@ struct Element {
     std::string name;
     std::string value;
     int line = 0;
+    std::string origin = {};  ///< where it was set when not in the file, e.g. "--set framework.experiment.length=5"
   };
   std::string name;
   std::string file;
@@ -38,6 +39,16 @@ struct Element {
   const std::string* attribute(std::string_view attribute_name) const noexcept;
   const Element* child(std::string_view child_name) const noexcept;
 };
+
+/// A problem with an element, or with one of its attributes (named in the message, even when it is not there).
+Problem problem_at(const Element& element, std::string message);
+Problem problem_at(const Element& element, std::string_view attribute, std::string message);
+
+/// "a, b, c": at most the first 20, for messages.
+std::string listed(const std::vector<std::string>& names);
+
+/// ". Did you mean 'x'?" with the closest candidate, or empty when none is near.
+std::string did_you_mean(std::string_view word, const std::vector<std::string>& candidates);
 
 /// The closest of `candidates` to `word` by edit distance, or empty when none is near: for "did you mean".
 std::string closest(std::string_view word, const std::vector<std::string>& candidates);
@@ -60,6 +71,8 @@ class ElementReader final : public hal::ParamVisitor {
  private:
   const std::string* find(std::string_view name);
   void problem(std::string_view attribute, std::string message);
+  /// Whether `value` lies in `range`; says so when not.
+  bool in_range(std::string_view name, const std::string& text, double value, hal::Range range, const hal::Unit& unit);
 
   const Element& element_;
   Problems& problems_;

@@ -62,6 +62,7 @@ struct Distribute {
   std::int64_t quantity = 1;
   std::int64_t max_trials = 1;
   std::int64_t base_num = 0;
+  int order = 0;                     ///< which of the file's <distribute> elements this is: they are placed in this order
   int line = 0;
 };
 

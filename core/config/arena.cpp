@@ -1,0 +1,314 @@
+// Reads <arena>: the space and what is in it.
+#include <charconv>
+#include <cmath>
+#include <filesystem>
+#include <map>
+
+#include "core/config/reading.hpp"
+
+namespace tandem::core {
+namespace schema {
+
+bool parse_color(const std::string& text, std::array<std::uint8_t, 3>& rgb) {
+  static const std::map<std::string, std::array<std::uint8_t, 3>> kNames = {
+      {"black", {0, 0, 0}},      {"white", {255, 255, 255}}, {"red", {255, 0, 0}},       {"green", {0, 255, 0}},
+      {"blue", {0, 0, 255}},     {"yellow", {255, 255, 0}},  {"magenta", {255, 0, 255}}, {"cyan", {0, 255, 255}},
+      {"orange", {255, 140, 0}}, {"brown", {165, 42, 42}},   {"purple", {160, 32, 240}}, {"gray10", {26, 26, 26}},
+      {"gray50", {128, 128, 128}}, {"gray90", {230, 230, 230}}};
+  if (const auto named = kNames.find(text); named != kNames.end()) {
+    rgb = named->second;
+    return true;
+  }
+  const char* at = text.data();
+  const char* end = text.data() + text.size();
+  for (std::size_t i = 0; i < 3; ++i) {
+    unsigned value = 0;
+    const auto [next, status] = std::from_chars(at, end, value);
+    if (status != std::errc{} || value > 255 || (i < 2 ? next == end || *next != ',' : next != end)) return false;
+    rgb[i] = static_cast<std::uint8_t>(value);
+    at = next + 1;
+  }
+  return true;
+}
+
+}  // namespace schema
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Paths of files are relative to the working directory, or else to the experiment's folder.
+std::string resolve(const std::string& path, const std::string& experiment) {
+  std::error_code ignored;
+  if (path.empty() || fs::path(path).is_absolute() || fs::exists(path, ignored)) return path;
+  return (fs::path(experiment).parent_path() / path).string();
+}
+
+/// Reads the things in the arena; `distribute` is what they stand in, if anything.
+class ArenaReader {
+ public:
+  explicit ArenaReader(Reading& reading) : reading_(reading), out_(reading.out()) {
+    for (std::size_t i = 0; i < out_.controllers.size(); ++i) controllers_.emplace(out_.controllers[i].id, i);
+  }
+
+  void arena(Element& e) {
+    const auto a = reading_.read<schema::Arena>(e);
+    out_.arena_size = a.size;
+    out_.arena_center = a.center;
+    out_.escape = a.escape == "stop" ? EscapePolicy::Stop : a.escape == "remove" ? EscapePolicy::Remove : EscapePolicy::Error;
+    check_lengths(e, a.size);
+    reading_.once_or_default(e, "floor", [&](Element& c) { floor(c); });
+    for (Element& c : e.children) {
+      if (c.name == "distribute") distribute(c);
+      else thing(c, nullptr);
+    }
+    check_total(e);
+  }
+
+ private:
+  void check_lengths(const Element& e, const Vec3& size) {
+    for (const double length : size) {
+      if (length > 0.0 && length <= schema::kLargestArena_m) continue;
+      return reading_.error(e, "size", "'" + *e.attribute("size") + "': every length must be above 0 and at most 1000 km");
+    }
+  }
+
+  void check_total(const Element& e) {
+    std::int64_t robots = 0;
+    for (const RobotItem& r : out_.robots) robots += r.distribute ? r.distribute->quantity : 1;
+    if (robots > static_cast<std::int64_t>(schema::kLargestQuantity)) {
+      reading_.error(e, std::to_string(robots) + " robots in all; at most 100000000 can be numbered");
+    }
+  }
+
+  void floor(Element& e) {
+    const auto f = reading_.read<schema::Floor>(e);
+    out_.floor.source = f.source;
+    out_.floor.pixels_per_meter = f.pixels_per_meter;
+    out_.floor.path = resolve(f.path, out_.file);
+    out_.floor.line = e.line;
+    if (f.source == "image" && f.path.empty()) reading_.error(e, "<floor source=\"image\"> needs the attribute 'path'");
+  }
+
+  void thing(Element& e, const Distribute* distribute) {
+    if (e.name == "box") object(box(e, distribute), e, distribute);
+    else if (e.name == "cylinder") object(cylinder(e, distribute), e, distribute);
+    else if (e.name == "light") light(e, distribute);
+    else if (e.name == "sound") sound(e);
+    else if (reading_.is_robot(e.name)) robot(e, distribute);
+  }
+
+  // --- where things start ---
+
+  Placement body(Element& e, const Distribute* distribute) {
+    Element* given = reading_.only(e, "body");
+    if (given == nullptr) {
+      if (distribute == nullptr) reading_.error(e, "<" + e.name + "> needs a <body position=\"x,y,z\" orientation=\"z,y,x\"/>");
+      return {};
+    }
+    if (distribute != nullptr) reading_.warn(*given, "<body> has no effect: the <distribute> around it places the <" + e.name + ">");
+    else if (given->attribute("position") == nullptr) reading_.error(*given, "<body> needs the attribute 'position'");
+    const auto b = reading_.read<schema::Body>(*given);
+    return {b.position, b.orientation[0], b.orientation[1], b.orientation[2]};
+  }
+
+  void distribute(Element& e) {
+    reading_.read<schema::DistributeElement>(e);
+    for (const std::string_view needed : {"position", "orientation", "entity"}) {
+      if (e.child(needed) == nullptr) reading_.error(e, "<distribute> needs <" + std::string(needed) + ">");
+    }
+    Distribute d;
+    d.order = distributes_++;
+    d.line = e.line;
+    reading_.once(e, "position", [&](Element& c) { d.position = distribution<schema::PositionDraw>(c); });
+    reading_.once(e, "orientation", [&](Element& c) { d.orientation = distribution<schema::OrientationDraw>(c); });
+    reading_.once(e, "entity", [&](Element& c) {
+      const auto attributes = reading_.read<schema::Entity>(c);
+      d.quantity = attributes.quantity;
+      d.max_trials = attributes.max_trials;
+      d.base_num = attributes.base_num;
+      check_places(c, d);
+      if (c.children.size() == 1) thing(c.children.front(), &d);
+      else reading_.error(c, "<entity> needs exactly one robot, box, cylinder or light inside; it has " + std::to_string(c.children.size()));
+    });
+  }
+
+  void check_places(const Element& entity, const Distribute& d) {
+    if (d.position.method != Distribution::Method::Grid) return;
+    const std::int64_t places = std::int64_t{1} * d.position.layout[0] * d.position.layout[1] * d.position.layout[2];
+    if (d.quantity > places) reading_.error(entity, "quantity", "the grid has only " + std::to_string(places) + " places");
+  }
+
+  template <class Schema>
+  Distribution distribution(Element& e) {
+    const auto draw = reading_.read_open<Schema>(e);
+    Distribution d;
+    d.line = e.line;
+    d.min = draw.min;
+    d.max = draw.max;
+    d.mean = draw.mean;
+    d.std_dev = draw.std_dev;
+    d.values = draw.values;
+    d.center = draw.center;
+    d.distances = draw.distances;
+    if (draw.method == "uniform") d.method = Distribution::Method::Uniform;
+    if (draw.method == "gaussian") d.method = Distribution::Method::Gaussian;
+    if (draw.method == "grid") d.method = Distribution::Method::Grid;
+    check_draw_attributes(e, draw.method);
+    check_draw_values(e, draw, d);
+    return d;
+  }
+
+  /// Each method needs its own attributes, and takes no others.
+  void check_draw_attributes(const Element& e, const std::string& method) {
+    std::vector<std::string> own{"method"};
+    for (const schema::DrawAttribute& a : schema::kDrawAttributes) {
+      if (a.method == method) own.emplace_back(a.name);
+    }
+    if (own.size() == 1) return;  // an unknown method was reported
+    for (std::size_t i = 1; i < own.size(); ++i) {
+      if (e.attribute(own[i]) == nullptr) reading_.error(e, "<" + e.name + " method=\"" + method + "\"> needs the attribute '" + own[i] + "'");
+    }
+    for (const Element::Attribute& a : e.attributes) {
+      if (std::find(own.begin(), own.end(), a.name) != own.end()) continue;
+      reading_.error(e, a.name, "method=\"" + method + "\" has no such attribute; it takes: " + listed({own.begin() + 1, own.end()}) +
+                                    did_you_mean(a.name, own));
+    }
+  }
+
+  void check_draw_values(const Element& e, const schema::Draw& draw, Distribution& d) {
+    static constexpr std::array<std::string_view, 3> kOrdinal = {"first", "second", "third"};
+    for (std::size_t i = 0; i < 3; ++i) {
+      if (draw.min[i] > draw.max[i]) reading_.error(e, "min", "above max in its " + std::string(kOrdinal[i]) + " number");
+      if (draw.std_dev[i] < 0.0) reading_.error(e, "std_dev", "negative in its " + std::string(kOrdinal[i]) + " number");
+      const double n = draw.layout[i];
+      if (n >= 1.0 && n <= 1e6 && n == std::floor(n)) d.layout[i] = static_cast<int>(n);
+      else reading_.error(e, "layout", "its " + std::string(kOrdinal[i]) + " number must be whole and from 1 to 1000000");
+    }
+  }
+
+  // --- things ---
+
+  ObjectItem box(Element& e, const Distribute* distribute) {
+    const auto b = reading_.read<schema::Box>(e);
+    check_lengths(e, b.size);
+    return {ShapeKind::Box, b.id, b.size, b.movable, b.mass_kg, body(e, distribute), {}, e.line};
+  }
+
+  ObjectItem cylinder(Element& e, const Distribute* distribute) {
+    const auto c = reading_.read<schema::Cylinder>(e);
+    return {ShapeKind::Cylinder, c.id, {c.radius_m, c.radius_m, c.height_m}, c.movable, c.mass_kg, body(e, distribute), {}, e.line};
+  }
+
+  void object(ObjectItem item, const Element& e, const Distribute* distribute) {
+    if (e.child("leds") != nullptr) reading_.warn(*e.child("leds"), "the LEDs of <" + e.name + "> are left out: no device here senses them");
+    if (item.movable) check_movable(e);
+    if (distribute != nullptr) item.distribute = *distribute;
+    out_.objects.push_back(std::move(item));
+  }
+
+  /// Kinematics move robots alone; an engine with forces is needed for the rest.
+  void check_movable(const Element& e) {
+    for (const EngineConfig& engine : out_.engines) {
+      if (engine.kind.starts_with("dynamics")) return;
+    }
+    std::vector<std::string> movers;
+    for (const std::string& kind : reading_.known().engines) {
+      if (kind.starts_with("dynamics")) movers.push_back(kind);
+    }
+    reading_.error(e, "movable", "kinematics2d moves no objects, only the engines dynamics2d and dynamics3d do; " +
+                                     (movers.empty() ? "this program has neither: say movable=\"false\"" : "use " + listed(movers)));
+  }
+
+  void light(Element& e, const Distribute* distribute) {
+    const bool positioned = e.attribute("position") != nullptr;
+    const auto l = reading_.read<schema::Light>(e);
+    LightItem item;
+    item.id = l.id;
+    item.p_W = l.position;
+    item.intensity = l.intensity;
+    item.line = e.line;
+    if (!schema::parse_color(l.color, item.rgb)) reading_.error(e, "color", "'" + l.color + "' is neither a colour's name nor \"r,g,b\"");
+    if (distribute != nullptr) item.distribute = *distribute;
+    else if (!positioned) reading_.error(e, "<light> needs the attribute 'position'");
+    out_.lights.push_back(std::move(item));
+  }
+
+  void sound(Element& e) {
+    const auto s = reading_.read<schema::Sound>(e);
+    out_.sounds.push_back({s.id, s.position, s.level, e.line});
+  }
+
+  // --- robots ---
+
+  void robot(Element& e, const Distribute* distribute) {
+    const auto r = reading_.read<schema::Robot>(e);
+    RobotItem item;
+    item.kind = e.name;
+    item.id = r.id;
+    item.rab_range_m = r.rab_range_m;
+    item.rab_payload = r.rab_data_size;
+    item.line = e.line;
+    item.placement = body(e, distribute);
+    if (distribute != nullptr) item.distribute = *distribute;
+    if (e.child("controller") == nullptr) reading_.error(e, "<" + e.name + "> needs a <controller config=\"…\"/>");
+    reading_.once(e, "controller", [&](Element& c) { controller(c, item); });
+    reading_.once(e, "battery", [&](Element& c) { item.battery = battery(c); });
+    reading_.once(e, "bridge", [&](Element& c) {
+      const auto b = reading_.read<schema::Bridge>(c);
+      item.bridge = BridgeConfig{b.link, b.firmware, b.timeout_s, c, c.line};
+      if (distribute != nullptr) reading_.error(c, "a <bridge> stands for one real robot; it cannot be distributed");
+    });
+    reading_.once(e, "tracker", [&](Element& c) { item.tracker = TrackerConfig{reading_.read<schema::Tracker>(c).source, c, c.line}; });
+    out_.robots.push_back(std::move(item));
+  }
+
+  void controller(Element& e, RobotItem& item) {
+    const auto attributes = reading_.read<schema::RobotController>(e);
+    const auto found = controllers_.find(attributes.config);
+    if (found == controllers_.end()) {
+      std::vector<std::string> ids;
+      for (const auto& [id, index] : controllers_) ids.push_back(id);
+      if (!attributes.config.empty()) {
+        reading_.error(e, "config", "there is no controller with id '" + attributes.config + "'; there are: " + listed(ids) +
+                                        did_you_mean(attributes.config, ids));
+      }
+      return;
+    }
+    item.controller = found->second;
+    reading_.once(e, "params", [&](const Element& params) { item.params = overridden(out_.controllers[item.controller].params, params); });
+  }
+
+  /// The configuration's parameters with the robot's own in their place.
+  static Element overridden(const Element& base, const Element& own) {
+    Element merged = own;
+    for (const Element::Attribute& a : base.attributes) {
+      if (own.attribute(a.name) == nullptr) merged.attributes.push_back(a);
+    }
+    for (const Element& c : base.children) {
+      if (own.child(c.name) == nullptr) merged.children.push_back(c);
+    }
+    return merged;
+  }
+
+  BatteryConfig battery(Element& e) {
+    const auto b = reading_.read<schema::Battery>(e);
+    BatteryConfig config = b.c;
+    if (b.time_factor > 0.0) config.delta = b.time_factor;
+    if (b.pos_factor > 0.0) config.pos_delta = b.pos_factor;
+    if (b.orient_factor > 0.0) config.orient_delta = b.orient_factor;
+    if (config.start_charge > config.full_charge) reading_.error(e, "start_charge", "above full_charge");
+    return config;
+  }
+
+  Reading& reading_;
+  Scenario& out_;
+  std::map<std::string, std::size_t> controllers_;  // by id
+  int distributes_ = 0;
+};
+
+}  // namespace
+
+void read_arena(Reading& reading, Element& arena) { ArenaReader(reading).arena(arena); }
+
+}  // namespace tandem::core

@@ -1,0 +1,190 @@
+// Reads <physics_engines> with their regions, and <media>.
+#include <cmath>
+#include <map>
+
+#include "core/config/reading.hpp"
+
+namespace tandem::core {
+namespace {
+
+constexpr std::size_t kMostVertices = 1000;
+
+bool known_engine(const Reading& reading, const std::string& kind) {
+  const auto& engines = reading.known().engines;
+  return std::find(engines.begin(), engines.end(), kind) != engines.end();
+}
+
+/// "4x4" or "auto".
+bool good_regions(const std::string& text) {
+  if (text.empty() || text == "auto") return true;
+  const std::size_t x = text.find('x');
+  if (x == std::string::npos) return false;
+  for (const std::string& part : {text.substr(0, x), text.substr(x + 1)}) {
+    if (part.empty() || part.size() > 3 || part[0] == '0' || part.find_first_not_of("0123456789") != std::string::npos) return false;
+  }
+  return true;
+}
+
+std::optional<std::array<double, 2>> point_of(const std::string& text) {
+  const std::size_t comma = text.find(',');
+  if (comma == std::string::npos) return std::nullopt;
+  const auto x = hal::parse_quantity(std::string_view(text).substr(0, comma), hal::unit::m);
+  const auto y = hal::parse_quantity(std::string_view(text).substr(comma + 1), hal::unit::m);
+  if (!x.ok() || !y.ok()) return std::nullopt;
+  return std::array<double, 2>{x.value(), y.value()};
+}
+
+/// Positive when c lies to the left of the line from a to b.
+double side_of(const BoundarySide& a, const BoundarySide& b, const BoundarySide& c) {
+  return (b.x_m - a.x_m) * (c.y_m - a.y_m) - (b.y_m - a.y_m) * (c.x_m - a.x_m);
+}
+
+bool cross(const BoundarySide& a, const BoundarySide& b, const BoundarySide& c, const BoundarySide& d) {
+  return side_of(a, b, c) * side_of(a, b, d) < 0.0 && side_of(c, d, a) * side_of(c, d, b) < 0.0;
+}
+
+/// What is wrong with an outline, or empty.
+std::string flaw_of(const std::vector<BoundarySide>& sides) {
+  if (sides.size() < 3) return "an outline needs at least three vertices";
+  if (sides.size() > kMostVertices) return "more than 1000 vertices";
+  double twice_area = 0.0;
+  for (std::size_t i = 0; i < sides.size(); ++i) {
+    const BoundarySide& a = sides[i];
+    const BoundarySide& b = sides[(i + 1) % sides.size()];
+    if (a.x_m == b.x_m && a.y_m == b.y_m) return "the vertices on lines " + std::to_string(a.line) + " and " + std::to_string(b.line) + " are the same";
+    twice_area += a.x_m * b.y_m - b.x_m * a.y_m;
+    for (std::size_t k = i + 2; k < sides.size(); ++k) {
+      const BoundarySide& c = sides[k];
+      if (cross(a, b, c, sides[(k + 1) % sides.size()])) {
+        return "the sides from lines " + std::to_string(a.line) + " and " + std::to_string(c.line) + " cross";
+      }
+    }
+  }
+  return std::fabs(twice_area) > 0.0 ? "" : "the outline has no area";
+}
+
+void read_boundaries(Reading& reading, Element& e, EngineConfig& config) {
+  reading.read<schema::Boundaries>(e);
+  reading.once(e, "top", [&](Element& c) { config.top_m = reading.read<schema::Top>(c).height_m; });
+  reading.once(e, "bottom", [&](Element& c) { config.bottom_m = reading.read<schema::Bottom>(c).height_m; });
+  if (config.top_m && config.bottom_m && *config.top_m <= *config.bottom_m) reading.error(e, "<boundaries>: <top> is not above <bottom>");
+  reading.once(e, "sides", [&](Element& sides) {
+    reading.read<schema::Sides>(sides);
+    bool good = true;
+    for (Element& c : sides.children) {
+      if (c.name != "vertex") continue;
+      const auto vertex = reading.read<schema::Vertex>(c);
+      const auto point = point_of(vertex.point);
+      if (point) config.sides.push_back({(*point)[0], (*point)[1], vertex.gate, c.line});
+      else if (!vertex.point.empty()) reading.error(c, "point", "'" + vertex.point + "' must be two lengths, \"x,y\"");
+      good = good && point;
+    }
+    const std::string flaw = good ? flaw_of(config.sides) : "";
+    if (!flaw.empty()) reading.error(sides, "<sides>: " + flaw);
+  });
+}
+
+void check_gates(Reading& reading) {
+  std::vector<std::string> ids;
+  for (const EngineConfig& engine : reading.out().engines) ids.push_back(engine.id);
+  for (const EngineConfig& engine : reading.out().engines) {
+    for (const BoundarySide& side : engine.sides) {
+      if (side.gate.empty()) continue;
+      Element at;
+      at.name = "vertex";
+      at.file = reading.out().file;
+      at.line = side.line;
+      if (std::find(ids.begin(), ids.end(), side.gate) == ids.end()) {
+        reading.error(at, "gate", "there is no engine with id '" + side.gate + "'; there are: " + listed(ids) + did_you_mean(side.gate, ids));
+      } else if (side.gate == engine.id) {
+        reading.error(at, "gate", "leads back into its own engine '" + side.gate + "'");
+      }
+    }
+  }
+}
+
+void read_engine(Reading& reading, Element& e) {
+  EngineConfig config;
+  config.kind = e.name == "pointmass3d" ? "particle3d" : e.name;
+  config.line = e.line;
+  if (!known_engine(reading, config.kind)) {
+    reading.error(e, "unknown physics engine <" + e.name + ">; known: " + listed(reading.known().engines) +
+                         did_you_mean(config.kind, reading.known().engines));
+  }
+  const auto attributes = reading.read_open<schema::Engine>(e);
+  config.id = attributes.id;
+  config.regions = attributes.regions;
+  if (!good_regions(config.regions)) reading.error(e, "regions", "'" + config.regions + "' must be like \"4x4\", or \"auto\"");
+  reading.once(e, "boundaries", [&](Element& c) { read_boundaries(reading, c, config); });
+  config.options = e;
+  reading.out().engines.push_back(std::move(config));
+}
+
+/// ARGoS' name of the medium that a device listens to.
+std::string_view medium_kind(const std::string& device) {
+  if (device == "range_and_bearing") return "range_and_bearing";
+  return device == "leds" ? "led" : "";
+}
+
+}  // namespace
+
+void read_engines(Reading& reading, Element& engines) {
+  reading.read<schema::Engines>(engines);
+  if (engines.children.empty()) {
+    Element& added = Reading::add_child(engines, "kinematics2d");
+    added.attributes.push_back({"id", "kinematics2d", 0});
+  }
+  std::map<std::string, int> lines;
+  for (Element& e : engines.children) {
+    read_engine(reading, e);
+    const std::string* id = e.attribute("id");
+    if (id == nullptr || id->empty()) continue;
+    const auto [first, fresh] = lines.emplace(*id, e.line);
+    if (!fresh) reading.error(e, "id", "a second engine '" + *id + "'; the first is on line " + std::to_string(first->second));
+  }
+  check_gates(reading);
+}
+
+void read_media(Reading& reading, Element& media) {
+  reading.read<schema::Media>(media);
+  std::map<std::string, int> lines;
+  for (Element& e : media.children) {
+    const auto medium = reading.read<schema::Medium>(e);
+    const auto [first, fresh] = lines.emplace(medium.id, e.line);
+    if (!fresh && !medium.id.empty()) {
+      reading.error(e, "id", "a second medium '" + medium.id + "'; the first is on line " + std::to_string(first->second));
+    }
+    reading.out().media.push_back({e.name, medium.id, e, e.line});
+  }
+}
+
+void connect_media(Reading& reading) {
+  for (ControllerConfig& controller : reading.out().controllers) {
+    for (auto* list : {&controller.sensors, &controller.actuators}) {
+      for (DeviceChoice& choice : *list) {
+        const std::string* wanted = choice.options.attribute("medium");
+        const std::string_view kind = medium_kind(choice.device);
+        if (wanted == nullptr || kind.empty()) continue;
+        std::vector<std::string> ids;
+        const MediumConfig* found = nullptr;
+        for (const MediumConfig& medium : reading.out().media) {
+          if (medium.kind != kind) continue;
+          ids.push_back(medium.id);
+          if (medium.id == *wanted) found = &medium;
+        }
+        if (found == nullptr) {
+          reading.error(choice.options, "medium", "<media> has no <" + std::string(kind) + "> with id '" + *wanted + "'; it has: " +
+                                                      listed(ids) + did_you_mean(*wanted, ids));
+          continue;
+        }
+        // What a medium says holds for the sensors that listen to it, unless they say otherwise.
+        const bool hears = list == &controller.sensors && choice.device == "range_and_bearing";
+        if (hears && choice.options.attribute("check_occlusions") == nullptr) {
+          choice.options.attributes.push_back({"check_occlusions", *found->options.attribute("check_occlusions"), found->line});
+        }
+      }
+    }
+  }
+}
+
+}  // namespace tandem::core

@@ -1,0 +1,81 @@
+// The manual of experiment files, from their schema.
+#include "core/config/reading.hpp"
+
+namespace tandem::core {
+namespace {
+
+std::string joined(const std::vector<std::string>& names, std::string_view between) {
+  std::string text;
+  for (const std::string& n : names) text += (text.empty() ? "" : std::string(between)) + n;
+  return text;
+}
+
+template <class T>
+ElementManual manual_of() {
+  T value{};
+  ManualWriter writer;
+  value.describe(writer);
+  const schema::ElementInfo& info = T::kElement;
+  const std::string required = info.required.empty() ? "" : "  must have: " + joined(words(info.required), ", ") + "\n";
+  return {std::string(info.name), {}, std::string(info.doc), required + writer.text(), words(info.children)};
+}
+
+template <class... T>
+std::vector<ElementManual> manuals_of() {
+  return {manual_of<T>()...};
+}
+
+std::vector<ElementManual> all_manuals() {
+  using namespace schema;
+  return manuals_of<Root, Framework, System, Experiment, Profiling, Time, Controllers, Configuration, Sensors, Actuators, Arena, Floor,
+                    Box, Cylinder, Leds, Light, Sound, Robot, Body, RobotController, Battery, Bridge, Tracker, DistributeElement,
+                    PositionDraw, OrientationDraw, Entity, Engines, Engine, Boundaries, Top, Bottom, Sides, Vertex, Media, Medium, Hook,
+                    Record, Trajectory, Visualization>();
+}
+
+void replace(std::vector<std::string>& names, std::string_view stand_in, const std::vector<std::string>& kinds) {
+  const auto at = std::find(names.begin(), names.end(), stand_in);
+  if (at == names.end()) return;
+  names.insert(names.erase(at), kinds.begin(), kinds.end());
+}
+
+/// An element whose name stands for several kinds becomes one a kind.
+std::vector<ElementManual> expanded(const ElementManual& m, const KnownNames& known) {
+  std::vector<std::string> names{m.name};
+  if (m.name == schema::Robot::kElement.name) names = known.robots;
+  if (m.name == schema::Engine::kElement.name) names = known.engines;
+  if (m.name == schema::Medium::kElement.name) names = words(schema::Media::kElement.children);
+  std::vector<ElementManual> out;
+  for (const std::string& name : names) {
+    out.push_back(m);
+    out.back().name = name;
+    replace(out.back().children, schema::kRobotKind, known.robots);
+  }
+  return out;
+}
+
+/// In which elements one may stand.
+std::string parents_of(const ElementManual& m, const std::vector<ElementManual>& all, const KnownNames& known) {
+  std::vector<std::string> parents;
+  for (const ElementManual& other : all) {
+    if (std::find(other.children.begin(), other.children.end(), m.name) != other.children.end()) parents.push_back(other.name);
+  }
+  // Those of which the parent says "anything".
+  if (m.name == schema::Configuration::kElement.name) parents = {"controllers"};
+  if (m.name == schema::Boundaries::kElement.name) parents = known.engines;
+  if (std::find(known.engines.begin(), known.engines.end(), m.name) != known.engines.end()) parents = {"physics_engines"};
+  return joined(parents, " or ");
+}
+
+}  // namespace
+
+std::vector<ElementManual> element_manuals(const KnownNames& known) {
+  std::vector<ElementManual> manuals;
+  for (const ElementManual& m : all_manuals()) {
+    for (ElementManual& one : expanded(m, known)) manuals.push_back(std::move(one));
+  }
+  for (ElementManual& m : manuals) m.parent = parents_of(m, manuals, known);
+  return manuals;
+}
+
+}  // namespace tandem::core

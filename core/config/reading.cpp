@@ -1,0 +1,58 @@
+#include "core/config/reading.hpp"
+
+namespace tandem::core {
+
+std::vector<std::string> words(std::string_view list) {
+  std::vector<std::string> out;
+  for (std::size_t at = 0; at < list.size();) {
+    const std::size_t space = std::min(list.find(' ', at), list.size());
+    out.emplace_back(list.substr(at, space - at));
+    at = space + 1;
+  }
+  return out;
+}
+
+std::vector<std::string> Reading::check(const Element& element, const schema::ElementInfo& info) {
+  std::vector<std::string> missing;
+  for (const std::string& name : words(info.required)) {
+    const std::string* value = element.attribute(name);
+    if (value == nullptr) {
+      error(element, "<" + element.name + "> needs the attribute '" + name + "'");
+      missing.push_back(name);
+    } else if (value->empty()) {
+      error(element, name, "must not be empty");
+    }
+  }
+  if (info.children == schema::kAnything) return missing;
+  std::vector<std::string> allowed = words(info.children);
+  if (const auto robots = std::find(allowed.begin(), allowed.end(), schema::kRobotKind); robots != allowed.end()) {
+    allowed.erase(robots);
+    allowed.insert(allowed.end(), known_.robots.begin(), known_.robots.end());
+  }
+  for (const Element& child : element.children) {
+    if (std::find(allowed.begin(), allowed.end(), child.name) != allowed.end()) continue;
+    error(child, "<" + element.name + "> cannot hold <" + child.name + ">; it may hold: " + listed(allowed) +
+                     did_you_mean(child.name, allowed));
+  }
+  return missing;
+}
+
+Element* Reading::only(Element& parent, std::string_view name) {
+  Element* first = nullptr;
+  for (Element& child : parent.children) {
+    if (child.name != name) continue;
+    if (first != nullptr) error(child, "a second <" + child.name + ">; the first is on line " + std::to_string(first->line));
+    else first = &child;
+  }
+  return first;
+}
+
+Element& Reading::add_child(Element& parent, std::string_view name) {
+  Element& child = parent.children.emplace_back();
+  child.name = name;
+  child.file = parent.file;
+  child.line = parent.line;
+  return child;
+}
+
+}  // namespace tandem::core

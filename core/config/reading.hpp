@@ -1,0 +1,102 @@
+// What every part of the reader of experiment files needs: elements read by their schema, and problems noted.
+#pragma once
+#include <algorithm>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/config/reader.hpp"
+#include "core/config/schema.hpp"
+
+namespace tandem::core {
+
+/// The words of a list separated by spaces.
+std::vector<std::string> words(std::string_view list);
+
+/// One reading of one file: what is known, what was found, and the Scenario in the making.
+class Reading {
+ public:
+  Reading(const KnownNames& known, Problems& problems) : known_(known), problems_(problems) {}
+
+  const KnownNames& known() const noexcept { return known_; }
+  Scenario& out() noexcept { return out_; }
+
+  void error(const Element& e, std::string message) { problems_.push_back(problem_at(e, std::move(message))); }
+  void error(const Element& e, std::string_view attribute, std::string message) {
+    problems_.push_back(problem_at(e, attribute, std::move(message)));
+  }
+  void warn(const Element& e, std::string message) {
+    problems_.push_back(problem_at(e, std::move(message)));
+    problems_.back().warning = true;
+  }
+
+  /// Reads an element by the schema of `T`: required and unknown attributes, values, children. Attributes that were left out
+  /// are then written into it, so that it shows the effective settings.
+  template <class T>
+  T read(Element& element, T value = {}) {
+    const std::vector<std::string> missing = check(element, T::kElement);
+    ElementReader reader(element, problems_);
+    value.describe(reader);
+    reader.finish();
+    ElementWriter writer(element);
+    value.describe(writer);
+    std::erase_if(element.attributes, [&](const auto& a) { return std::find(missing.begin(), missing.end(), a.name) != missing.end(); });
+    return value;
+  }
+
+  /// The same for an element whose further attributes are somebody else's.
+  template <class T>
+  T read_open(Element& element, T value = {}) {
+    check(element, T::kElement);
+    ElementReader reader(element, problems_);
+    value.describe(reader);
+    return value;
+  }
+
+  /// Checks required attributes and children.
+  /// @returns the required attributes that are not there
+  std::vector<std::string> check(const Element& element, const schema::ElementInfo& info);
+
+  /// The only child of that name, or null; a second one is an error.
+  Element* only(Element& parent, std::string_view name);
+
+  /// Calls `use` for the only child of that name, if it is there.
+  template <class Use>
+  void once(Element& parent, std::string_view name, Use&& use) {
+    if (Element* child = only(parent, name); child != nullptr) use(*child);
+  }
+
+  /// The same; a child that was left out is added, so that its defaults show.
+  template <class Use>
+  void once_or_default(Element& parent, std::string_view name, Use&& use) {
+    if (parent.child(name) == nullptr) add_child(parent, name);
+    once(parent, name, use);
+  }
+
+  static Element& add_child(Element& parent, std::string_view name);
+
+  bool is_robot(const std::string& kind) const {
+    return std::find(known_.robots.begin(), known_.robots.end(), kind) != known_.robots.end();
+  }
+
+ private:
+  const KnownNames& known_;
+  Problems& problems_;
+  Scenario out_;
+};
+
+// The parts of a file. Each reads one element into `reading.out()`.
+void read_framework(Reading& reading, Element& framework);
+void read_controllers(Reading& reading, Element& controllers);
+void read_engines(Reading& reading, Element& engines);
+void read_media(Reading& reading, Element& media);
+void read_arena(Reading& reading, Element& arena);
+void read_hook(Reading& reading, Element& loop_functions);
+void read_record(Reading& reading, Element& record);
+void read_visualization(Reading& reading, Element& visualization);
+
+/// Judges what needs the whole file: that ids are unique, and that references to media lead somewhere.
+void check_ids(Reading& reading);
+void connect_media(Reading& reading);
+
+}  // namespace tandem::core
