@@ -12,6 +12,7 @@
 #include "app/sha256.hpp"
 #include "app/signals.hpp"
 #include "bridges/epuck/bridge.hpp"
+#include "bridges/epuck/guardian.hpp"
 #include "bridges/link/link_text.hpp"
 #include "hal/plugin_loader.hpp"
 #include "mixed_reality/time/pacer.hpp"
@@ -101,6 +102,8 @@ int robot(const RobotOptions& options) {
     return code;
   };
 
+  auto guardian = epuck::Guardian::start();  // before any thread
+  if (!guardian.ok()) return complain(kFailedRunning, guardian.error().message);
   const auto address = bridges::parse_link(item.bridge->link);
   if (!address.ok()) return complain(kBadInput, address.error().message);
   auto opener = bridges::byte_link_opener(address.value());
@@ -134,6 +137,7 @@ int robot(const RobotOptions& options) {
   }
 
   const std::atomic<bool>& stop = catch_signals();
+  guardian->watch(address.value().target, address.value().rate);
   bridge.start();
   hal::Status ready;
   for (hal::TimeNs waited = 0; waited < kConnectWithin_ns && !stop.load(); waited += 200 * hal::kNsPerMs) {
@@ -142,6 +146,7 @@ int robot(const RobotOptions& options) {
     const epuck::BridgeStatus status = bridge.status();
     if (waited >= kOpenWithin_ns && status.links_opened == 0 && !status.trouble.empty()) break;  // the port itself is the trouble
   }
+  if (stop.load() || !ready.ok()) guardian->release(address.value().target);  // it was never driven
   if (stop.load()) return kDone;
   if (!ready.ok()) return complain(kFailedRunning, "robot '" + item.id + "': " + ready.error().message + baud_hint(address.value()));
 
@@ -171,6 +176,7 @@ int robot(const RobotOptions& options) {
     failure = "robot '" + item.id + "' was lost at the end: " + status.trouble;
   }
   bridge.shut_down();
+  if (status.state != epuck::SessionState::Lost) guardian->release(address.value().target);  // else it may yet be stopped
   controller.reset();
   print_result(item, status, pacer.ledger());
   if (!options.report.empty()) {

@@ -9,6 +9,8 @@
 #include "app/report.hpp"
 #include "app/sha256.hpp"
 #include "app/signals.hpp"
+#include "bridges/epuck/guardian.hpp"
+#include "bridges/link/link_text.hpp"
 #include "core/config/xml.hpp"
 #include "core/record/trajectory.hpp"
 #include "core/sim/world.hpp"
@@ -141,6 +143,39 @@ std::uint64_t run_alone(core::World& world, std::int64_t steps, const std::atomi
   return pacer.ledger().deadline_misses;
 }
 
+/// Tells the guardian which robots to stop should this program be killed, or that all of them are stopped.
+class Watch {
+ public:
+  explicit Watch(const core::Scenario& scenario) {
+    for (const core::RobotItem& item : scenario.robots) {
+      if (!item.bridge) continue;
+      if (auto address = bridges::parse_link(item.bridge->link); address.ok()) addresses_.push_back(address.value());
+    }
+    if (addresses_.empty()) return;
+    auto started = bridges::epuck::Guardian::start();
+    if (!started.ok()) {
+      say("warning: " + started.error().message);
+      return;
+    }
+    guardian_.emplace(std::move(started).value());
+  }
+  void begin() {
+    for (const auto& a : addresses_) {
+      if (guardian_) guardian_->watch(a.target, a.rate);
+    }
+  }
+  /// Robots that confirmed their stop need no guardian any more; `confirmed` is in the order of the file.
+  void end(const mixed_reality::MixedReport& report) {
+    for (std::size_t i = 0; i < addresses_.size() && i < report.robots.size(); ++i) {
+      if (guardian_ && report.robots[i].stop_confirmed) guardian_->release(addresses_[i].target);
+    }
+  }
+
+ private:
+  std::vector<bridges::LinkAddress> addresses_;
+  std::optional<bridges::epuck::Guardian> guardian_;
+};
+
 bool has_real_robots(const core::Scenario& scenario) {
   for (const core::RobotItem& item : scenario.robots) {
     if (item.bridge) return true;
@@ -155,6 +190,7 @@ int run(const RunOptions& options) {
   const auto scenario = read_or_complain(options.experiment, options.overrides);
   if (!scenario) return kBadInput;
 
+  Watch watch(*scenario);  // before any thread
   hal::PluginLoader loader(plugin_folders());
   core::WorldOptions world_options;
   world_options.seed = options.seed;
@@ -188,6 +224,7 @@ int run(const RunOptions& options) {
       return kBadInput;
     }
     mixed = std::move(session).value();
+    watch.begin();
     const hal::Status connected = mixed->connect(stop);
     if (!connected.ok()) {
       fmt::print(stderr, "error: {}\n", connected.error().message);
@@ -204,7 +241,7 @@ int run(const RunOptions& options) {
   {
     Progress progress(steps, scenario->ticks_per_second);
     const auto after_tick = [&](core::World& w) {
-      if (trajectory != nullptr && recorded.ok()) recorded = trajectory->record(w.space(), w.tick());
+      if (trajectory != nullptr && recorded.ok()) recorded = trajectory->record(w.space(), w.tick() - 1);  // the tick that was just done
       progress.step(w.tick());
     };
     if (mixed != nullptr) {
@@ -218,7 +255,10 @@ int run(const RunOptions& options) {
   figures.cpu_s = cpu_seconds() - cpu;
   figures.steps = world->tick();
   std::optional<mixed_reality::MixedReport> real;
-  if (mixed != nullptr) real = mixed->report();
+  if (mixed != nullptr) {
+    real = mixed->report();
+    watch.end(*real);
+  }
   const mixed_reality::MixedReport* real_report = real ? &*real : nullptr;
 
   bool failed = world->state() == core::RunState::Failed;

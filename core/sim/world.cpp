@@ -69,6 +69,8 @@ struct World::Impl {
   void physics();
   void treat_escapes();
   void rebuild_index();
+  template <class Work>
+  void each_block(Work&& work);
   void sense_and_control();
   void sense(std::size_t block);
   void control(std::size_t block);
@@ -113,12 +115,12 @@ void World::step() {
   if (w.external == nullptr) {
     w.sense_and_control();
   } else {
-    for (std::size_t block = 0; block < w.stores().blocks.size(); ++block) w.sense(block);
+    w.each_block([&w](std::size_t block) { w.sense(block); });
     w.external->after_sense(*this);
-    for (std::size_t block = 0; block < w.stores().blocks.size(); ++block) {
+    w.each_block([&w](std::size_t block) {
       w.control(block);
       w.filter(block);
-    }
+    });
     w.external->after_filter(*this);
   }
   w.report_trouble();
@@ -203,14 +205,19 @@ void World::Impl::treat_escapes() {
   }
 }
 
+template <class Work>
+void World::Impl::each_block(Work&& work) {
+  pool->run(stores().blocks.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t block = begin; block < end; ++block) work(block);
+  });
+}
+
 void World::Impl::sense_and_control() {
   // A block's ports stay in the cache from its sensing to its control.
-  pool->run(stores().blocks.size(), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t block = begin; block < end; ++block) {
-      sense(block);
-      control(block);
-      filter(block);
-    }
+  each_block([this](std::size_t block) {
+    sense(block);
+    control(block);
+    filter(block);
   });
 }
 

@@ -82,7 +82,8 @@ TEST_F(BadInput, IsNamedWithItsLineAndWhatToDo) {
   fails({"run", "."}, 1, {"folder"});
   folder_.write("broken.xml", "<tandem>\n<framework>\n</tandem>\n");
   fails({"check", "broken.xml"}, 1, {"broken.xml:", "XML"});
-  fails({"check", changed("<e-puck id", "<e-pukc id")}, 1, {"e.xml:", "e-pukc", "Did you mean"});
+  fails({"check", changed("<e-puck id=\"ep\"><controller config=\"diffusion\"/></e-puck>", "<e-pukc id=\"ep\"><controller config=\"diffusion\"/></e-pukc>")}, 1,
+        {"e.xml:", "e-pukc", "Did you mean"});
   fails({"check", changed("implementation=\"noisy\" noise_level", "implementation=\"nosiy\" noise_level")}, 1, {"nosiy", "noisy"});
   fails({"check", changed("<proximity", "<proximitty")}, 1, {"proximitty", "Did you mean"});
   fails({"check", changed("noise_level=\"0.02\"", "noise_levle=\"0.02\"")}, 1, {"noise_levle", "noise_level"});

@@ -98,6 +98,21 @@ TEST_P(EndsStopped, OnSignalsInAMixedRun) {
 
 INSTANTIATE_TEST_SUITE_P(Signals, EndsStopped, testing::Values(SIGINT, SIGTERM));
 
+TEST(Robot, IsStoppedWhenTheHubIsKilled) {
+  for (const std::vector<std::string>& arguments : {std::vector<std::string>{"robot", kConfigs + "epuck_robot.xml"}, {"run", kConfigs + "epuck_mixed.xml"}}) {
+    Folder folder;
+    EmulatedEpuck epuck(folder);
+    ASSERT_TRUE(epuck.ready());
+    Tandem hub(arguments, folder.path());
+    ASSERT_TRUE(eventually([&] { return epuck.moves(); }, 10.0)) << hub.errors();
+    hub.signal(SIGKILL);
+    EXPECT_EQ(hub.wait(), -SIGKILL);
+    EXPECT_TRUE(eventually([&] { return !epuck.moves(); }, 5.0)) << epuck.log();
+    std::this_thread::sleep_for(std::chrono::seconds(1));  // and it stays so
+    EXPECT_FALSE(epuck.moves());
+  }
+}
+
 TEST(Robot, AControllerThatThrowsLeavesItStopped) {
   Folder folder;
   EmulatedEpuck epuck(folder);
