@@ -314,6 +314,44 @@ TEST(EpuckDriver, StaysStoppedAfterAFaultUntilResumed) {
   EXPECT_EQ(rig.robot.left, to_steps_per_s(0.05).value);
 }
 
+/// Drives, and throws in its third step.
+class Faulty final : public hal::Controller {
+ public:
+  explicit Faulty(hal::Robot& robot) : wheels_(robot.actuator<hal::WheelSpeeds>()) {}
+  void step() override {
+    wheels_.set(0.05, 0.05);
+    if (++steps_ == 3) throw std::runtime_error("out of ideas");
+  }
+
+ private:
+  hal::WheelSpeeds& wheels_;
+  int steps_ = 0;
+};
+
+TEST(EpuckDriver, StopsTheRobotWhoseControllerThrows) {
+  Rig rig;
+  const hal::ControllerType& type = hal::controller_type<Faulty>("faulty", "");
+  Faulty controller(rig.driver.robot());
+  std::uint8_t halted = 0;
+  rig.connect();
+  std::vector<int> lefts;
+  for (int i = 0; i < 6; ++i) {
+    rig.driver.latch(i, rig.now);
+    hal::StepFault fault;
+    if (type.step_row(reinterpret_cast<std::byte*>(&controller), type.size, 0, 1, &halted, fault) == 0 && halted == 0) {
+      rig.driver.fault(rig.now, fault.message);
+      halted = 1;
+    }
+    rig.driver.commit(rig.now);
+    rig.run(100 * kMs);
+    lefts.push_back(rig.robot.left);
+  }
+  const int full = to_steps_per_s(0.05).value;
+  EXPECT_THAT(lefts, testing::ElementsAre(full, full, 0, 0, 0, 0));
+  EXPECT_EQ(rig.driver.statistics().faults, 1U);
+  EXPECT_THAT(rig.log, testing::Contains(HasSubstr("out of ideas")));
+}
+
 TEST(EpuckDriver, LeavesTheRobotStoppedAtTheEnd) {
   Rig rig;
   auto& wheels = rig.driver.robot().actuator<hal::WheelSpeeds>();
