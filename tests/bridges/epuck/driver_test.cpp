@@ -8,6 +8,7 @@
 #include "bridges/epuck/conversions.hpp"
 #include "bridges/link/faulty_link.hpp"
 #include "bridges/link/memory_link.hpp"
+#include "hal/controller.hpp"
 #include "hal/spec/epuck.hpp"
 #include "tests/bridges/epuck/scripted_robot.hpp"
 
