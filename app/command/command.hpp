@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "bridges/link/link_text.hpp"
 #include "core/scenario/scenario.hpp"
 
 namespace tandem::app {
@@ -80,7 +79,5 @@ int inspect(const InspectOptions& options);
 /// Reads an experiment and prints every problem; nothing when there is an error.
 std::optional<core::Scenario> read_or_complain(const std::string& path, const std::vector<std::string>& overrides);
 void print_problems(const core::Problems& problems);
-/// What to add to "no answer" on a serial link whose baud rate is not the e-puck's; empty when it is.
-std::string baud_hint(const bridges::LinkAddress& address);
 
 }  // namespace tandem::app

@@ -33,7 +33,7 @@ int inspect(const InspectOptions& options) {
   };
   const auto address = bridges::parse_link(options.link);
   if (!address.ok()) return complain(kBadInput, address.error().message);
-  auto opener = bridges::byte_link_opener(address.value());
+  auto opener = bridges::epuck::epuck_link_opener(address.value());
   if (!opener.ok()) return complain(kBadInput, opener.error().message);
 
   epuck::BridgeSettings settings;
@@ -50,7 +50,7 @@ int inspect(const InspectOptions& options) {
     ready = bridge.wait_active(200 * hal::kNsPerMs);
     if (ready.ok() || (waited >= hal::kNsPerSecond && bridge.status().links_opened == 0 && !bridge.status().trouble.empty())) break;
   }
-  if (!ready.ok()) return complain(kFailedRunning, ready.error().message + baud_hint(address.value()));
+  if (!ready.ok()) return complain(kFailedRunning, ready.error().message);
 
   constexpr std::int64_t kTicksPerSecond = 10;
   mixed_reality::MonotonicTime clock;

@@ -81,13 +81,6 @@ void print_result(const core::RobotItem& item, const epuck::BridgeStatus& status
 
 }  // namespace
 
-std::string baud_hint(const bridges::LinkAddress& address) {
-  constexpr std::uint32_t kFirmwareBaud = 115200;
-  if (address.scheme != bridges::LinkScheme::Serial || address.rate == kFirmwareBaud) return {};
-  return " The link is opened with " + std::to_string(address.rate) + " baud, but the firmware talks with 115200: write " + "serial:" + address.target +
-         "@115200.";
-}
-
 int robot(const RobotOptions& options) {
   const auto scenario = read_or_complain(options.file, {});
   if (!scenario) return kBadInput;
@@ -106,7 +99,7 @@ int robot(const RobotOptions& options) {
   if (!guardian.ok()) return complain(kFailedRunning, guardian.error().message);
   const auto address = bridges::parse_link(item.bridge->link);
   if (!address.ok()) return complain(kBadInput, address.error().message);
-  auto opener = bridges::byte_link_opener(address.value());
+  auto opener = bridges::epuck::epuck_link_opener(address.value());
   if (!opener.ok()) return complain(kBadInput, opener.error().message);
   hal::PluginLoader loader(plugin_folders());
   const auto type = loader.controller(config.library, config.label);
@@ -148,7 +141,7 @@ int robot(const RobotOptions& options) {
   }
   if (stop.load() || !ready.ok()) guardian->release(address.value().target);  // it was never driven
   if (stop.load()) return kDone;
-  if (!ready.ok()) return complain(kFailedRunning, "robot '" + item.id + "': " + ready.error().message + baud_hint(address.value()));
+  if (!ready.ok()) return complain(kFailedRunning, "robot '" + item.id + "': " + ready.error().message);
 
   mixed_reality::MonotonicTime clock;
   mixed_reality::Pacer pacer(clock, scenario->ticks_per_second);

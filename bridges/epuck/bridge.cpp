@@ -20,6 +20,15 @@ LinkStatistics sum(const LinkStatistics& a, const LinkStatistics& b) noexcept {
 
 }  // namespace
 
+hal::Result<LinkOpener> epuck_link_opener(const LinkAddress& address) {
+  constexpr std::uint32_t kBaud = 115200;  // of every stock firmware
+  if (address.scheme == LinkScheme::Serial && address.rate != kBaud) {
+    return hal::Error{"an e-puck's firmware talks with 115200 baud, not with " + std::to_string(address.rate) +
+                      ": write serial:" + address.target + "@115200"};
+  }
+  return byte_link_opener(address);
+}
+
 SessionTiming timing_for(std::string_view link_name) noexcept {
   SessionTiming timing;
   if (link_name.find("rfcomm") != std::string_view::npos) {
@@ -70,7 +79,7 @@ void EpuckBridge::run() {
     const std::lock_guard lock(mutex_);
     link_ = nullptr;
     bytes_before_ = sum(bytes_before_, link->statistics());
-    driver_.link_gone(monotonic_ns());
+    if (!ending_) driver_.link_gone(monotonic_ns());
     changed_.notify_all();
   }
 }

@@ -36,7 +36,8 @@ constexpr std::array<unsigned char, 62> stop_bytes() {
   constexpr char kLine[] = "\rD,0,0\r";
   std::size_t at = 40;
   for (std::size_t i = 0; i + 1 < sizeof kLine; ++i) bytes[at++] = static_cast<unsigned char>(kLine[i]);
-  for (const unsigned char b : {0xBC, 0, 0, 0, 0, 0}) bytes[at++] = b;  // binary D 0 0, end of packet
+  bytes[at] = 0xBC;  // binary D, both speeds 0, end of packet
+  at += 6;
   bytes[at++] = 'S';
   bytes[at++] = '\r';
   return bytes;

@@ -117,7 +117,7 @@ hal::Result<std::unique_ptr<RealRobot>> make_real_robot(const RealRobotRequest& 
     return hal::Error{"there is no bridge to robots of the kind '" + item.kind + "'; there is: e-puck"};
   const auto address = bridges::parse_link(item.bridge->link);
   if (!address.ok()) return address.error();
-  auto opener = bridges::byte_link_opener(address.value());
+  auto opener = bridges::epuck::epuck_link_opener(address.value());
   if (!opener.ok()) return opener.error();
   bridges::epuck::BridgeSettings settings;
   settings.driver.robot.id = item.id;

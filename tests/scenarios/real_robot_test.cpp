@@ -204,8 +204,8 @@ TEST(Robot, AWrongBaudRateIsNamedAndMovesNothing) {
   EmulatedEpuck epuck(folder);
   ASSERT_TRUE(epuck.ready());
   Tandem robot({"robot", kConfigs + "epuck_robot.xml", "--link", "serial:ep0@57600"}, folder.path());
-  EXPECT_EQ(robot.wait(60), 3);
-  EXPECT_NE(robot.errors().find("57600"), std::string::npos) << robot.errors();
+  EXPECT_EQ(robot.wait(60), 1);
+  EXPECT_NE(robot.errors().find("115200 baud, not with 57600"), std::string::npos) << robot.errors();
   EXPECT_FALSE(epuck.has_moved());
 }
 
