@@ -25,10 +25,12 @@ class Claims {
   }
 
   void check() {
-    for (const auto& [id, line] : single_) {
-      for_each_split(id, [&](const std::string& prefix, std::int64_t number) { meet(prefix, {number, number, line}, id); });
+    for (const auto& one : single_) {
+      for_each_split(one.first, [&](const std::string& prefix, std::int64_t number) { meet(prefix, {number, number, one.second}, one.first); });
     }
-    for (auto& [prefix, ranges] : distributed_) {
+    for (auto& many : distributed_) {
+      const std::string& prefix = many.first;
+      std::vector<Numbers>& ranges = many.second;
       std::sort(ranges.begin(), ranges.end(), [](const Numbers& a, const Numbers& b) { return a.first < b.first; });
       for (std::size_t i = 1; i < ranges.size(); ++i) {
         if (ranges[i].first <= ranges[i - 1].last) clash(prefix + std::to_string(ranges[i].first), ranges[i].line, ranges[i - 1].line);
