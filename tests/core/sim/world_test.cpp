@@ -93,7 +93,7 @@ TEST(World, ACrowdIsPushedApartAndStaysInsideItsWalls) {
   EXPECT_LT(deepest, 0.005);
 }
 
-std::uint64_t hash_of(const Scene& scene, std::int64_t threads, Assignment assignment, int steps = 40) {
+std::uint64_t hash_of(const Scene& scene, std::int64_t threads, Assignment assignment, int steps = 15) {
   WorldOptions options;
   options.threads = threads;
   options.assignment = assignment;
