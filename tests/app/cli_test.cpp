@@ -166,10 +166,10 @@ TEST(Golden, TheBenchmarkKeepsItsBits) {
   Folder folder;
   Tandem bench({"bench", "diffusion", "--robots", "1000", "--ticks", "100"}, folder.path());
   ASSERT_EQ(bench.wait(), 0) << bench.errors();
-  EXPECT_EQ(json_value(bench.output(), "state_hash"), "GOLDEN_BENCH");
+  EXPECT_EQ(json_value(bench.output(), "state_hash"), "0x2891440467e4230b");
   Tandem run({"run", kConfigs + "epuck_diffusion.xml", "--report", "-"}, folder.path());
   ASSERT_EQ(run.wait(), 0) << run.errors();
-  EXPECT_EQ(json_value(run.output(), "state_hash"), "GOLDEN_RUN");
+  EXPECT_EQ(json_value(run.output(), "state_hash"), "0xabba2706408fb50f");
 }
 
 TEST(Sha256, GivesThePublishedDigests) {
