@@ -12,17 +12,17 @@ namespace tandem::app {
 class BridgedController {
  public:
   BridgedController(const hal::ControllerType& type, hal::Robot& robot, const void* params)
-      : type_(type), memory_(::operator new(type.size, std::align_val_t{type.align})) {
+      : type_(type), memory_(::operator new (type.size, std::align_val_t{type.align})) {
     try {
       type.construct(memory_, robot, params);
     } catch (...) {
-      ::operator delete(memory_, std::align_val_t{type.align});
+      ::operator delete (memory_, std::align_val_t{type.align});
       throw;
     }
   }
   ~BridgedController() {
     type_.destroy(memory_);
-    ::operator delete(memory_, std::align_val_t{type_.align});
+    ::operator delete (memory_, std::align_val_t{type_.align});
   }
   BridgedController(const BridgedController&) = delete;
   BridgedController& operator=(const BridgedController&) = delete;

@@ -12,7 +12,8 @@ namespace tandem::app {
 /// Names that experiment files may use.
 const core::KnownNames& known_names();
 
-/// Where plug-ins are looked for: TANDEM_PLUGIN_PATH (folders separated by ':'), then the lib folder beside this program.
+/// Where plug-ins are looked for: TANDEM_PLUGIN_PATH (folders separated by ':'), then the lib folder beside this
+/// program.
 std::vector<std::filesystem::path> plugin_folders();
 
 /// Every plug-in file in those folders.

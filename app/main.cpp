@@ -10,11 +10,17 @@ using namespace tandem::app;
 void add_run(CLI::App& app, RunOptions& o, int& code) {
   CLI::App* c = app.add_subcommand("run", "Run an experiment.");
   c->add_option("experiment", o.experiment, "The experiment file (.xml)")->required();
-  auto* seconds = c->add_option("--seconds", o.seconds, "Virtual duration, instead of the file's")->check(CLI::PositiveNumber);
-  c->add_option("--steps", o.steps, "Number of control steps, instead of the file's length")->check(CLI::PositiveNumber)->excludes(seconds);
+  auto* seconds =
+      c->add_option("--seconds", o.seconds, "Virtual duration, instead of the file's")->check(CLI::PositiveNumber);
+  c->add_option("--steps", o.steps, "Number of control steps, instead of the file's length")
+      ->check(CLI::PositiveNumber)
+      ->excludes(seconds);
   c->add_option("--seed", o.seed, "Seed of all chance, instead of the file's");
-  c->add_option("--threads", o.threads, "Threads that step the world; results do not depend on it")->check(CLI::Range(0, 1024));
-  c->add_option("--set", o.overrides, "Change the experiment: path=value, e.g. framework.experiment.length=5; repeatable")->allow_extra_args(false);
+  c->add_option("--threads", o.threads, "Threads that step the world; results do not depend on it")
+      ->check(CLI::Range(0, 1024));
+  c->add_option("--set", o.overrides,
+                "Change the experiment: path=value, e.g. framework.experiment.length=5; repeatable")
+      ->allow_extra_args(false);
   c->add_option("--report", o.report, "Write a JSON report to this file ('-': standard output)");
   c->add_option("--picture", o.picture, "Draw the space from above at the end, as SVG");
   c->add_option("--trajectory", o.trajectory, "Write poses as CSV");
@@ -25,7 +31,9 @@ void add_run(CLI::App& app, RunOptions& o, int& code) {
 void add_bench(CLI::App& app, BenchOptions& o, int& code) {
   CLI::App* c = app.add_subcommand("bench", "Run a benchmark: one JSON object a line.");
   c->add_option("name", o.name, "diffusion: the standard scene")->capture_default_str();
-  c->add_option("--robots", o.robots, "Numbers of robots, e.g. 1000,10000")->delimiter(',')->check(CLI::Range(std::int64_t{1}, std::int64_t{100'000'000}));
+  c->add_option("--robots", o.robots, "Numbers of robots, e.g. 1000,10000")
+      ->delimiter(',')
+      ->check(CLI::Range(std::int64_t{1}, std::int64_t{100'000'000}));
   c->add_option("--robot", o.robot, "Kind of robot")->capture_default_str();
   c->add_option("--engine", o.engine, "Physics engine")->capture_default_str();
   c->add_option("--threads", o.threads, "Numbers of threads, e.g. 0,2")->delimiter(',')->check(CLI::Range(0, 1024));
@@ -50,16 +58,19 @@ int main(int argc, char** argv) {
   CheckOptions check_options;
   CLI::App* check_command = app.add_subcommand("check", "Validate an experiment and print every problem.");
   check_command->add_option("experiment", check_options.experiment, "The experiment file (.xml)")->required();
-  check_command->add_option("--set", check_options.overrides, "Change the experiment first: path=value")->allow_extra_args(false);
+  check_command->add_option("--set", check_options.overrides, "Change the experiment first: path=value")
+      ->allow_extra_args(false);
   check_command->callback([&] { code = check(check_options); });
 
   std::string kind;
-  CLI::App* list_command = app.add_subcommand("list", "List what there is: controllers, hooks, devices, engines, robots, elements.");
+  CLI::App* list_command =
+      app.add_subcommand("list", "List what there is: controllers, hooks, devices, engines, robots, elements.");
   list_command->add_option("kind", kind, "Only this kind");
   list_command->callback([&] { code = list(kind); });
 
   std::string name;
-  CLI::App* describe_command = app.add_subcommand("describe", "Print the manual of a controller, device, hook or element.");
+  CLI::App* describe_command =
+      app.add_subcommand("describe", "Print the manual of a controller, device, hook or element.");
   describe_command->add_option("name", name, "Its name")->required();
   describe_command->callback([&] { code = describe(name); });
 
@@ -68,27 +79,40 @@ int main(int argc, char** argv) {
 
   RobotOptions robot_options;
   CLI::App* robot_command = app.add_subcommand("robot", "Run one real robot's controller here.");
-  robot_command->add_option("file", robot_options.file, "Experiment file with one robot that has a <bridge>")->required();
-  robot_command->add_option("--link", robot_options.link, "Where the robot is, instead of the file's, e.g. serial:/dev/rfcomm0@115200");
-  robot_command->add_option("--seconds", robot_options.seconds, "How long, instead of the file's length")->check(CLI::PositiveNumber);
-  robot_command->add_option("--report", robot_options.report, "Write a JSON report to this file ('-': standard output)");
+  robot_command->add_option("file", robot_options.file, "Experiment file with one robot that has a <bridge>")
+      ->required();
+  robot_command->add_option("--link", robot_options.link,
+                            "Where the robot is, instead of the file's, e.g. serial:/dev/rfcomm0@115200");
+  robot_command->add_option("--seconds", robot_options.seconds, "How long, instead of the file's length")
+      ->check(CLI::PositiveNumber);
+  robot_command->add_option("--report", robot_options.report,
+                            "Write a JSON report to this file ('-': standard output)");
   robot_command->callback([&] { code = robot(robot_options); });
 
   EmulateOptions emulate_options;
   CLI::App* emulate_command = app.add_subcommand("emulate", "Behave as a robot's firmware on a link.");
   emulate_command->add_option("robot", emulate_options.robot, "epuck")->required();
-  emulate_command->add_option("--link", emulate_options.link, "pty:NAME makes a pseudo-terminal of that name")->required();
-  emulate_command->add_option("--log", emulate_options.log, "File for one JSON object an event; default: standard output");
-  emulate_command->add_option("--firmware", emulate_options.firmware, "btcom, gctronic, webots or epuck2")->capture_default_str();
-  emulate_command->add_option("--fault", emulate_options.faults, "A fault to show, e.g. silent@5s+2s; repeatable")->allow_extra_args(false);
-  auto* arena = emulate_command->add_option("--arena", emulate_options.arena, "Experiment file: one of its robots, driven by `puppet`, is the body");
-  emulate_command->add_option("--body", emulate_options.body, "Which of its robots; default: the first puppet")->needs(arena);
+  emulate_command->add_option("--link", emulate_options.link, "pty:NAME makes a pseudo-terminal of that name")
+      ->required();
+  emulate_command->add_option("--log", emulate_options.log,
+                              "File for one JSON object an event; default: standard output");
+  emulate_command->add_option("--firmware", emulate_options.firmware, "btcom, gctronic, webots or epuck2")
+      ->capture_default_str();
+  emulate_command->add_option("--fault", emulate_options.faults, "A fault to show, e.g. silent@5s+2s; repeatable")
+      ->allow_extra_args(false);
+  auto* arena = emulate_command->add_option("--arena", emulate_options.arena,
+                                            "Experiment file: one of its robots, driven by `puppet`, is the body");
+  emulate_command->add_option("--body", emulate_options.body, "Which of its robots; default: the first puppet")
+      ->needs(arena);
   emulate_command->callback([&] { code = emulate(emulate_options); });
 
   InspectOptions inspect_options;
-  CLI::App* inspect_command = app.add_subcommand("inspect", "Say which robot is on a link and what it reads. Moves nothing.");
+  CLI::App* inspect_command =
+      app.add_subcommand("inspect", "Say which robot is on a link and what it reads. Moves nothing.");
   inspect_command->add_option("link", inspect_options.link, "e.g. serial:/dev/rfcomm0@115200")->required();
-  inspect_command->add_option("--seconds", inspect_options.seconds, "How long to listen")->capture_default_str()->check(CLI::Range(0.1, 3600.0));
+  inspect_command->add_option("--seconds", inspect_options.seconds, "How long to listen")
+      ->capture_default_str()
+      ->check(CLI::Range(0.1, 3600.0));
   inspect_command->callback([&] { code = inspect(inspect_options); });
 
   try {

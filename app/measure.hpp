@@ -1,8 +1,7 @@
 // What a run costs: wall time, processor time, memory.
 #pragma once
-#include <sys/resource.h>
-
 #include <ctime>
+#include <sys/resource.h>
 
 namespace tandem::app {
 
@@ -11,9 +10,13 @@ inline double seconds_of(clockid_t clock) noexcept {
   clock_gettime(clock, &t);
   return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
 }
-inline double wall_seconds() noexcept { return seconds_of(CLOCK_MONOTONIC); }
+inline double wall_seconds() noexcept {
+  return seconds_of(CLOCK_MONOTONIC);
+}
 /// User and system time of all threads of this process.
-inline double cpu_seconds() noexcept { return seconds_of(CLOCK_PROCESS_CPUTIME_ID); }
+inline double cpu_seconds() noexcept {
+  return seconds_of(CLOCK_PROCESS_CPUTIME_ID);
+}
 
 /// Largest resident set of this process so far, in MB (10^6 bytes).
 inline double peak_rss_mb() noexcept {

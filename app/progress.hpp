@@ -5,7 +5,8 @@
 
 namespace tandem::app {
 
-/// Draws "[####----] 42 %  12.6 s of 30 s, 5 s left" on standard error, a few times a second; nothing where that is no terminal.
+/// Draws "[####----] 42 %  12.6 s of 30 s, 5 s left" on standard error, a few times a second; nothing where that is no
+/// terminal.
 class Progress {
  public:
   /// `total_steps` 0: endless, the bar then only counts.

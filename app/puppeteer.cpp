@@ -15,7 +15,8 @@ hal::Result<core::RobotId> Puppeteer::find(const core::World& world, const std::
     const core::RobotId robot = space.find_robot(id);
     if (!robot.valid()) return hal::Error{"the arena has no robot '" + id + "'"};
     if (space.port<hal::FrontLed>(robot) == nullptr) {
-      return hal::Error{"the controller of robot '" + id + "' is no puppet; give it a configuration <puppet library=\"puppet\" …>"};
+      return hal::Error{"the controller of robot '" + id +
+                        "' is no puppet; give it a configuration <puppet library=\"puppet\" …>"};
     }
     return robot;
   }
@@ -29,7 +30,9 @@ hal::Result<core::RobotId> Puppeteer::find(const core::World& world, const std::
 void Puppeteer::after_sense(core::World& world) {
   const core::Space& space = world.space();
   bridges::epuck_emulator::BodySenses senses;
-  const auto copy = [](const auto& from, auto& to) { std::copy_n(from.begin(), std::min(from.size(), to.size()), to.begin()); };
+  const auto copy = [](const auto& from, auto& to) {
+    std::copy_n(from.begin(), std::min(from.size(), to.size()), to.begin());
+  };
   copy(space.port<hal::Proximity>(robot_)->distance_m, senses.distance_m);
   copy(space.port<hal::Light>(robot_)->level, senses.light);
   copy(space.port<hal::Ground>(robot_)->reflectance, senses.ground);

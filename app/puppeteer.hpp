@@ -13,7 +13,8 @@ namespace tandem::app {
 /// commands into the robot's ports. The robot's controller must be `puppet`. Set it with `World::set_external`.
 class Puppeteer final : public core::ExternalRobots {
  public:
-  /// The robot called `id`, or the first puppet when `id` is empty. Error: there is none, or its controller is no puppet.
+  /// The robot called `id`, or the first puppet when `id` is empty. Error: there is none, or its controller is no
+  /// puppet.
   static hal::Result<core::RobotId> find(const core::World& world, const std::string& id);
 
   Puppeteer(core::RobotId robot, bridges::epuck_emulator::SharedBody& body) : robot_(robot), body_(body) {}

@@ -1,16 +1,17 @@
 #include "app/report.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cstdio>
+#include <fmt/format.h>
 #include <fstream>
 
 #include "app/measure.hpp"
 
 namespace tandem::app {
 
-std::string hash_text(std::uint64_t hash) { return fmt::format("0x{:016x}", hash); }
+std::string hash_text(std::uint64_t hash) {
+  return fmt::format("0x{:016x}", hash);
+}
 
 void add_run_fields(Json& json, const core::World& world, const RunFigures& figures, std::size_t robots) {
   const double virtual_s = figures.virtual_s(world.ticks_per_second());

@@ -19,7 +19,9 @@ struct RunFigures {
   std::uint64_t deadline_misses = 0;
   std::int64_t threads = 1;
 
-  double virtual_s(std::int64_t ticks_per_second) const { return static_cast<double>(steps) / static_cast<double>(ticks_per_second); }
+  double virtual_s(std::int64_t ticks_per_second) const {
+    return static_cast<double>(steps) / static_cast<double>(ticks_per_second);
+  }
   double ns_per_robot_step(std::size_t robots) const {
     return steps > 0 && robots > 0 ? cpu_s * 1e9 / static_cast<double>(steps) / static_cast<double>(robots) : 0.0;
   }

@@ -8,7 +8,9 @@ namespace {
 std::atomic<bool> stop_asked{false};
 static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may only touch lock-free atomics");
 
-void note(int) { stop_asked.store(true, std::memory_order_relaxed); }
+void note(int) {
+  stop_asked.store(true, std::memory_order_relaxed);
+}
 
 }  // namespace
 
@@ -20,6 +22,8 @@ const std::atomic<bool>& catch_signals() {
   return stop_asked;
 }
 
-void request_stop() noexcept { stop_asked.store(true, std::memory_order_relaxed); }
+void request_stop() noexcept {
+  stop_asked.store(true, std::memory_order_relaxed);
+}
 
 }  // namespace tandem::app

@@ -4,10 +4,10 @@
 #include <cstdlib>
 
 /// Aborts with a message when `condition` does not hold; also in release builds.
-#define TANDEM_CHECK(condition, why)                                                                          \
-  do {                                                                                                        \
-    if (!(condition)) {                                                                                       \
+#define TANDEM_CHECK(condition, why)                                                                           \
+  do {                                                                                                         \
+    if (!(condition)) {                                                                                        \
       std::fprintf(stderr, "tandem: broken promise at %s:%d: %s (%s)\n", __FILE__, __LINE__, why, #condition); \
-      std::abort();                                                                                           \
-    }                                                                                                         \
+      std::abort();                                                                                            \
+    }                                                                                                          \
   } while (false)

@@ -24,13 +24,13 @@ class Controller {
 
 /// What happened while a row of controllers stepped: who threw, if anybody.
 struct StepFault {
-  std::size_t index = 0;      ///< which of the row
+  std::size_t index = 0;  ///< which of the row
   std::string message;
 };
 
 /// A class of controllers as the worlds see it: a table of functions, one call a row and not a robot.
 struct ControllerType {
-  std::string_view name;      ///< as written in experiment files
+  std::string_view name;  ///< as written in experiment files
   std::string_view summary;
   std::size_t size = 0;
   std::size_t align = 0;
@@ -38,8 +38,8 @@ struct ControllerType {
   std::shared_ptr<const void> (*read_params)(ParamVisitor&) = nullptr;
   /// Constructs one controller in `where`. @throws whatever its constructor throws
   Controller* (*construct)(void* where, Robot& robot, const void* params) = nullptr;
-  /// Steps `count` controllers that lie `stride` bytes apart, but those whose `halted` is not 0. Stops at the first that
-  /// throws: returns its index and fills `fault`; returns `count` when none did.
+  /// Steps `count` controllers that lie `stride` bytes apart, but those whose `halted` is not 0. Stops at the first
+  /// that throws: returns its index and fills `fault`; returns `count` when none did.
   std::size_t (*step_row)(std::byte* first, std::size_t stride, std::size_t begin, std::size_t count,
                           const std::uint8_t* halted, StepFault& fault) = nullptr;
   void (*destroy)(void* controller) = nullptr;
@@ -53,8 +53,10 @@ struct NoParams {
 
 template <class T>
 auto params_of() {
-  if constexpr (requires { typename T::Params; }) return typename T::Params{};
-  else return NoParams{};
+  if constexpr (requires { typename T::Params; })
+    return typename T::Params{};
+  else
+    return NoParams{};
 }
 
 template <class T>
@@ -78,7 +80,8 @@ std::size_t step_row(std::byte* first, std::size_t stride, std::size_t begin, st
 
 }  // namespace detail
 
-/// The table of controller class `T`: constructed from `(Robot&, const T::Params&)`, or `(Robot&)` where it has no Params.
+/// The table of controller class `T`: constructed from `(Robot&, const T::Params&)`, or `(Robot&)` where it has no
+/// Params.
 template <class T>
 const ControllerType& controller_type(std::string_view name, std::string_view summary) {
   using Params = decltype(detail::params_of<T>());

@@ -9,8 +9,8 @@ namespace tandem::hal {
 
 enum class FilterResult { Passed, Clamped, NotFinite };
 
-/// Speeds beyond `limit_m_s` are clamped, both by the same factor so that the curve driven stays the same; a command that is
-/// not finite becomes the safe one.
+/// Speeds beyond `limit_m_s` are clamped, both by the same factor so that the curve driven stays the same; a command
+/// that is not finite becomes the safe one.
 inline FilterResult filter(WheelSpeeds& command, double limit_m_s) noexcept {
   const double left = std::fabs(command.left_m_s);
   const double right = std::fabs(command.right_m_s);

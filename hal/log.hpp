@@ -8,7 +8,8 @@ namespace tandem::hal {
 
 enum class Severity { Info, Warning, Error };
 
-/// A sink for messages. Copyable; the default one drops everything. May be called from any thread when its sink allows that.
+/// A sink for messages. Copyable; the default one drops everything. May be called from any thread when its sink allows
+/// that.
 class Log {
  public:
   using Sink = std::function<void(Severity, std::string_view)>;

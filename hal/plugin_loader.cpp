@@ -1,8 +1,7 @@
 #include "hal/plugin_loader.hpp"
 
-#include <dlfcn.h>
-
 #include <algorithm>
+#include <dlfcn.h>
 
 namespace tandem::hal {
 namespace {
@@ -77,8 +76,8 @@ Status PluginLoader::open(const std::string& library) {
     problem = "was built for plug-in ABI " + std::to_string(info->abi) + "; this program has ABI " +
               std::to_string(kAbiNumber) + ". Rebuild it against the headers of this program";
   } else if (info->layout != border_layout()) {
-    problem = std::string("was built with another compiler or standard library (") + info->compiler + "; this program: " +
-              __VERSION__ + "). Rebuild it with the same settings";
+    problem = std::string("was built with another compiler or standard library (") + info->compiler +
+              "; this program: " + __VERSION__ + "). Rebuild it with the same settings";
   }
   if (!problem.empty()) {
     dlclose(handle);
@@ -106,8 +105,8 @@ Result<const void*> PluginLoader::get(const std::string& library, std::string_vi
     ++count;
   }
   if (name.empty() && count == 1) return only->type;
-  return Error{"library '" + path + "' has no " + std::string(category) + " '" + std::string(name) + "'; it has: " +
-               (names.empty() ? "none" : names)};
+  return Error{"library '" + path + "' has no " + std::string(category) + " '" + std::string(name) +
+               "'; it has: " + (names.empty() ? "none" : names)};
 }
 
 Result<const ControllerType*> PluginLoader::controller(const std::string& library, std::string_view name) {

@@ -27,8 +27,8 @@ class PluginLoader {
   /// The file that `library` resolves to.
   Result<std::filesystem::path> find(const std::string& library) const;
 
-  /// What the plug-in `library` registered under `name`, or under its only name when `name` is empty. Opens it if needed.
-  /// Errors: as `open`; no such name (lists those there are).
+  /// What the plug-in `library` registered under `name`, or under its only name when `name` is empty. Opens it if
+  /// needed. Errors: as `open`; no such name (lists those there are).
   Result<const void*> get(const std::string& library, std::string_view category, std::string_view name);
   Result<const ControllerType*> controller(const std::string& library, std::string_view name);
 

@@ -9,13 +9,17 @@ namespace {
 std::size_t size_of(Scalar scalar) noexcept {
   switch (scalar) {
     case Scalar::U8:
-    case Scalar::Bool: return 1;
-    case Scalar::U16: return 2;
+    case Scalar::Bool:
+      return 1;
+    case Scalar::U16:
+      return 2;
     case Scalar::F32:
     case Scalar::U32:
-    case Scalar::I32: return 4;
+    case Scalar::I32:
+      return 4;
     case Scalar::F64:
-    case Scalar::I64: return 8;
+    case Scalar::I64:
+      return 8;
   }
   return 1;
 }
@@ -33,8 +37,12 @@ void store(std::byte* at, double value) noexcept {
   std::memcpy(at, &typed, sizeof typed);
 }
 
-bool is_float(Scalar scalar) noexcept { return scalar == Scalar::F32 || scalar == Scalar::F64; }
-bool is_stamp(const Field& field) noexcept { return field.name == "taken_ns" || field.name == "validity"; }
+bool is_float(Scalar scalar) noexcept {
+  return scalar == Scalar::F32 || scalar == Scalar::F64;
+}
+bool is_stamp(const Field& field) noexcept {
+  return field.name == "taken_ns" || field.name == "validity";
+}
 
 }  // namespace
 
@@ -73,14 +81,21 @@ const Field* PortType::field(std::string_view field_name) const noexcept {
 double get_value(const void* port, const Field& field, std::size_t index) noexcept {
   const std::byte* at = static_cast<const std::byte*>(port) + field.offset + index * size_of(field.scalar);
   switch (field.scalar) {
-    case Scalar::F32: return static_cast<double>(load<float>(at));
-    case Scalar::F64: return load<double>(at);
+    case Scalar::F32:
+      return static_cast<double>(load<float>(at));
+    case Scalar::F64:
+      return load<double>(at);
     case Scalar::U8:
-    case Scalar::Bool: return load<std::uint8_t>(at);
-    case Scalar::U16: return load<std::uint16_t>(at);
-    case Scalar::U32: return load<std::uint32_t>(at);
-    case Scalar::I32: return load<std::int32_t>(at);
-    case Scalar::I64: return static_cast<double>(load<std::int64_t>(at));
+    case Scalar::Bool:
+      return load<std::uint8_t>(at);
+    case Scalar::U16:
+      return load<std::uint16_t>(at);
+    case Scalar::U32:
+      return load<std::uint32_t>(at);
+    case Scalar::I32:
+      return load<std::int32_t>(at);
+    case Scalar::I64:
+      return static_cast<double>(load<std::int64_t>(at));
   }
   return 0.0;
 }
@@ -88,14 +103,30 @@ double get_value(const void* port, const Field& field, std::size_t index) noexce
 void set_value(void* port, const Field& field, std::size_t index, double value) noexcept {
   std::byte* at = static_cast<std::byte*>(port) + field.offset + index * size_of(field.scalar);
   switch (field.scalar) {
-    case Scalar::F32: store<float>(at, value); break;
-    case Scalar::F64: store<double>(at, value); break;
-    case Scalar::U8: store<std::uint8_t>(at, value); break;
-    case Scalar::Bool: store<std::uint8_t>(at, value != 0.0 ? 1.0 : 0.0); break;
-    case Scalar::U16: store<std::uint16_t>(at, value); break;
-    case Scalar::U32: store<std::uint32_t>(at, value); break;
-    case Scalar::I32: store<std::int32_t>(at, value); break;
-    case Scalar::I64: store<std::int64_t>(at, value); break;
+    case Scalar::F32:
+      store<float>(at, value);
+      break;
+    case Scalar::F64:
+      store<double>(at, value);
+      break;
+    case Scalar::U8:
+      store<std::uint8_t>(at, value);
+      break;
+    case Scalar::Bool:
+      store<std::uint8_t>(at, value != 0.0 ? 1.0 : 0.0);
+      break;
+    case Scalar::U16:
+      store<std::uint16_t>(at, value);
+      break;
+    case Scalar::U32:
+      store<std::uint32_t>(at, value);
+      break;
+    case Scalar::I32:
+      store<std::int32_t>(at, value);
+      break;
+    case Scalar::I64:
+      store<std::int64_t>(at, value);
+      break;
   }
 }
 
@@ -172,7 +203,9 @@ void fuse(const PortType& type, void* real, const void* virtual_) noexcept {
     for (std::size_t i = 0; i < f.count; ++i) {
       const double a = get_value(real, f, i);
       const double b = get_value(virtual_, f, i);
-      const double fused = f.fusion == Fusion::Virtual ? b : f.fusion == Fusion::Nearer ? std::min(a, b) : std::max(a, b);
+      const double fused = f.fusion == Fusion::Virtual  ? b
+                           : f.fusion == Fusion::Nearer ? std::min(a, b)
+                                                        : std::max(a, b);
       set_value(real, f, i, fused);
     }
   }

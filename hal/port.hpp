@@ -1,8 +1,8 @@
 // Ports: one device of one robot as plain data that describes its own fields.
 //
-// A reading (sensor) carries when it was taken and whether it can be trusted; a command (actuator), default-constructed, is
-// the safe one. `port_type<T>()` gives the description at run time, so that recording, printing, comparing and fusing need
-// no code per device.
+// A reading (sensor) carries when it was taken and whether it can be trusted; a command (actuator),
+// default-constructed, is the safe one. `port_type<T>()` gives the description at run time, so that recording,
+// printing, comparing and fusing need no code per device.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -18,7 +18,8 @@
 
 namespace tandem::hal {
 
-/// Absent: never measured, or the device is not there. Stale: measured, but too long ago to act on. Fresh: of this tick.
+/// Absent: never measured, or the device is not there. Stale: measured, but too long ago to act on. Fresh: of this
+/// tick.
 enum class Validity : std::uint8_t { Absent, Stale, Fresh };
 
 /// First base of every sensor port.
@@ -50,7 +51,7 @@ struct Field {
   std::string_view name;
   std::size_t offset = 0;
   Scalar scalar = Scalar::F32;
-  std::size_t count = 1;      ///< capacity; how many are in use is the field `used_by` where that is set
+  std::size_t count = 1;  ///< capacity; how many are in use is the field `used_by` where that is set
   Unit unit = unit::none;
   Frame frame = Frame::None;
   Fusion fusion = Fusion::Real;
@@ -60,7 +61,7 @@ struct Field {
 
 /// The run-time description of a port class. One per class and program; compare by name and `layout`.
 struct PortType {
-  std::string_view name;   ///< as written in experiment files, e.g. "proximity"
+  std::string_view name;  ///< as written in experiment files, e.g. "proximity"
   Role role = Role::Sensor;
   std::string_view doc;
   std::size_t size = 0;
@@ -76,13 +77,20 @@ struct PortType {
 namespace detail {
 template <class T>
 constexpr Scalar scalar_of() {
-  if constexpr (std::is_same_v<T, float>) return Scalar::F32;
-  else if constexpr (std::is_same_v<T, double>) return Scalar::F64;
-  else if constexpr (std::is_same_v<T, bool>) return Scalar::Bool;
-  else if constexpr (std::is_same_v<T, std::uint8_t> || std::is_same_v<T, Validity>) return Scalar::U8;
-  else if constexpr (std::is_same_v<T, std::uint16_t>) return Scalar::U16;
-  else if constexpr (std::is_same_v<T, std::uint32_t>) return Scalar::U32;
-  else if constexpr (std::is_same_v<T, std::int32_t>) return Scalar::I32;
+  if constexpr (std::is_same_v<T, float>)
+    return Scalar::F32;
+  else if constexpr (std::is_same_v<T, double>)
+    return Scalar::F64;
+  else if constexpr (std::is_same_v<T, bool>)
+    return Scalar::Bool;
+  else if constexpr (std::is_same_v<T, std::uint8_t> || std::is_same_v<T, Validity>)
+    return Scalar::U8;
+  else if constexpr (std::is_same_v<T, std::uint16_t>)
+    return Scalar::U16;
+  else if constexpr (std::is_same_v<T, std::uint32_t>)
+    return Scalar::U32;
+  else if constexpr (std::is_same_v<T, std::int32_t>)
+    return Scalar::I32;
   else {
     static_assert(std::is_same_v<T, std::int64_t> || std::is_same_v<T, long long>, "not a scalar that a port may hold");
     return Scalar::I64;
@@ -94,15 +102,20 @@ std::uint64_t layout_fingerprint(const PortType& type) noexcept;
 /// Collects the fields of one port class; handed to `T::describe`.
 class FieldList {
  public:
-  FieldList(const void* base, std::vector<Field>& fields) : base_(static_cast<const std::byte*>(base)), fields_(fields) {}
+  FieldList(const void* base, std::vector<Field>& fields)
+      : base_(static_cast<const std::byte*>(base)), fields_(fields) {}
 
   /// `member` is a scalar or a (nested) array of scalars of the port at hand. Shape: all scalars in it.
   template <class M>
-  Field& add(std::string_view name, const M& member, const Unit& unit, Frame frame, Fusion fusion, std::string_view doc) {
+  Field& add(std::string_view name, const M& member, const Unit& unit, Frame frame, Fusion fusion,
+             std::string_view doc) {
     Field f;
     f.name = name;
     f.offset = static_cast<std::size_t>(reinterpret_cast<const std::byte*>(&member) - base_);
-    if constexpr (requires { typename M::value_type; std::tuple_size<M>::value; }) {
+    if constexpr (requires {
+                    typename M::value_type;
+                    std::tuple_size<M>::value;
+                  }) {
       f.scalar = detail::scalar_of<typename M::value_type>();
       f.count = std::tuple_size<M>::value;
     } else {
@@ -146,7 +159,7 @@ const PortType& port_type() {
     }
     prototype.describe(list);
     t.reset = [](void* port) { *static_cast<T*>(port) = T{}; };
-    if constexpr (requires(T& a, const T& b) { a.merge(b); }) {
+    if constexpr (requires(T & a, const T& b) { a.merge(b); }) {
       t.merge = [](void* real, const void* virt) { static_cast<T*>(real)->merge(*static_cast<const T*>(virt)); };
     }
     t.layout = detail::layout_fingerprint(t);
@@ -171,8 +184,8 @@ double max_difference(const PortType& type, const void* a, const void* b) noexce
 /// True when every floating-point value in the port is finite.
 bool all_finite(const PortType& type, const void* port) noexcept;
 
-/// Makes `real` the fused reading of both, field by field as each says. An absent side is left out. A stale real reading
-/// stays stale.
+/// Makes `real` the fused reading of both, field by field as each says. An absent side is left out. A stale real
+/// reading stays stale.
 void fuse(const PortType& type, void* real, const void* virtual_) noexcept;
 
 }  // namespace tandem::hal

@@ -10,7 +10,8 @@
 
 namespace tandem::hal {
 
-/// A device that the robot does not have, or that its configuration does not list. Thrown from a controller's constructor.
+/// A device that the robot does not have, or that its configuration does not list. Thrown from a controller's
+/// constructor.
 class DeviceError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

@@ -4,7 +4,8 @@
 
 namespace tandem::hal {
 
-/// Nanoseconds. Since the start of the run for readings and ticks; since an arbitrary origin for CLOCK_MONOTONIC stamps.
+/// Nanoseconds. Since the start of the run for readings and ticks; since an arbitrary origin for CLOCK_MONOTONIC
+/// stamps.
 using TimeNs = std::int64_t;
 
 /// Number of a control step, 0 for the first.
@@ -21,6 +22,8 @@ constexpr TimeNs time_of_tick(Tick tick, std::int64_t ticks_per_second) noexcept
 }
 
 /// The double nearest to it: 300 ms is 0.3, which a multiplication by 1e-9 would miss.
-constexpr double to_seconds(TimeNs t) noexcept { return static_cast<double>(t) / 1e9; }
+constexpr double to_seconds(TimeNs t) noexcept {
+  return static_cast<double>(t) / 1e9;
+}
 
 }  // namespace tandem::hal

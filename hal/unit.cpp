@@ -7,9 +7,9 @@
 namespace tandem::hal {
 namespace {
 
-constexpr std::array kUnits = {unit::percent, unit::m,   unit::cm,  unit::mm,    unit::m_s,   unit::cm_s, unit::mm_s,
+constexpr std::array kUnits = {unit::percent, unit::m,   unit::cm,    unit::mm,    unit::m_s, unit::cm_s, unit::mm_s,
                                unit::rad,     unit::deg, unit::rad_s, unit::deg_s, unit::s,   unit::ms,   unit::us,
-                               unit::min,     unit::hz,  unit::kg,  unit::g,     unit::V,     unit::m_s2};
+                               unit::min,     unit::hz,  unit::kg,    unit::g,     unit::V,   unit::m_s2};
 
 std::string_view trimmed(std::string_view text) {
   const auto first = text.find_first_not_of(" \t\r\n");
@@ -29,12 +29,14 @@ std::string suffixes_of(Dim dim) {
 
 }  // namespace
 
-std::span<const Unit> all_units() noexcept { return kUnits; }
+std::span<const Unit> all_units() noexcept {
+  return kUnits;
+}
 
 Result<double> parse_quantity(std::string_view text, const Unit& bare) {
   const std::string_view body = trimmed(text);
   std::string_view digits = body;
-  if (digits.starts_with('+')) digits.remove_prefix(1);
+  if (digits.starts_with('+') && !digits.starts_with("+-")) digits.remove_prefix(1);
   double number = 0.0;
   const auto [end, status] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
   if (status != std::errc{} || !std::isfinite(number)) {
@@ -45,8 +47,8 @@ Result<double> parse_quantity(std::string_view text, const Unit& bare) {
   for (const Unit& u : kUnits) {
     if (u.symbol == suffix && u.dim == bare.dim) return number * u.to_si;
   }
-  return Error{"'" + std::string(text) + "': unit '" + std::string(suffix) + "' does not fit; use one of: " +
-               suffixes_of(bare.dim)};
+  return Error{"'" + std::string(text) + "': unit '" + std::string(suffix) +
+               "' does not fit; use one of: " + suffixes_of(bare.dim)};
 }
 
 std::string format_number(double value) {

@@ -1,8 +1,7 @@
 // `tandem bench diffusion`: the standard scene of Pinciroli et al. (2012), section 4.1, one JSON object a line.
-#include <fmt/format.h>
-
 #include <cmath>
 #include <cstdio>
+#include <fmt/format.h>
 
 #include "app/catalog.hpp"
 #include "app/command/command.hpp"
@@ -26,7 +25,8 @@ core::ObjectItem wall(double x_m, double y_m, double size_x_m, double size_y_m, 
   return item;
 }
 
-/// Outer walls, and inner ones at +-7 m that make 3 x 3 rooms with doors between; all but the walls' thickness times `scale`.
+/// Outer walls, and inner ones at +-7 m that make 3 x 3 rooms with doors between; all but the walls' thickness times
+/// `scale`.
 void add_walls(core::Scenario& scenario, double scale) {
   auto& objects = scenario.objects;
   const double half = 0.5 * kArena_m * scale;
@@ -106,9 +106,13 @@ int bench_once(const BenchOptions& options, std::int64_t robots, std::int64_t th
 
   Json json;
   json.begin_object();
-  json.field("bench", "diffusion").field("robot", options.robot).field("engine", options.engine).field("density", options.density.empty() ? "40 m" : options.density);
+  json.field("bench", "diffusion")
+      .field("robot", options.robot)
+      .field("engine", options.engine)
+      .field("density", options.density.empty() ? "40 m" : options.density);
   add_run_fields(json, *world, figures, static_cast<std::size_t>(robots));
-  json.field("wall_ns_per_robot_step", figures.wall_s * 1e9 / static_cast<double>(robots) / static_cast<double>(figures.steps));
+  json.field("wall_ns_per_robot_step",
+             figures.wall_s * 1e9 / static_cast<double>(robots) / static_cast<double>(figures.steps));
   json.field("speedup", figures.wall_s > 0.0 ? figures.cpu_s / figures.wall_s : 0.0);
   json.field("bytes_per_robot", (peak_rss_mb() - rss_before) * 1e6 / static_cast<double>(robots));
   const double closing = wall_seconds();
@@ -129,11 +133,13 @@ int bench(const BenchOptions& options) {
     return kWrongUsage;
   };
   if (options.name != "diffusion") return refuse("there is no benchmark '" + options.name + "'; there is: diffusion");
-  if (options.engine != "kinematics2d") return refuse("there is no engine '" + options.engine + "'; there is: kinematics2d");
+  if (options.engine != "kinematics2d")
+    return refuse("there is no engine '" + options.engine + "'; there is: kinematics2d");
   if (options.robot != "e-puck") return refuse("there is no robot '" + options.robot + "'; there is: e-puck");
   if (!options.density.empty() && options.density != "equal") return refuse("--density takes 'equal'");
   const std::atomic<bool>& stop = catch_signals();
-  for (const std::int64_t robots : options.robots.empty() ? std::vector<std::int64_t>{1, 10, 100, 1000, 10'000, 100'000} : options.robots) {
+  for (const std::int64_t robots :
+       options.robots.empty() ? std::vector<std::int64_t>{1, 10, 100, 1000, 10'000, 100'000} : options.robots) {
     for (const std::int64_t threads : options.threads.empty() ? std::vector<std::int64_t>{0} : options.threads) {
       for (std::int64_t i = 0; i < options.repeat; ++i) {
         if (stop.load(std::memory_order_relaxed)) return kDone;

@@ -1,7 +1,6 @@
 // `tandem emulate`: behaves as a robot's firmware on a link.
-#include <fmt/format.h>
-
 #include <cstdio>
+#include <fmt/format.h>
 #include <thread>
 
 #include "app/catalog.hpp"
@@ -32,7 +31,8 @@ class LivingArena {
         if (!pacer.wait_for_next(stop)) break;
       }
       world_->finish();
-      if (world_->state() == core::RunState::Failed) fmt::print(stderr, "error: the arena stands still: {}\n", world_->failure());
+      if (world_->state() == core::RunState::Failed)
+        fmt::print(stderr, "error: the arena stands still: {}\n", world_->failure());
     });
   }
   ~LivingArena() { thread_.join(); }

@@ -1,7 +1,6 @@
 // `tandem inspect`: who is there, and what it reads. Moves nothing.
-#include <fmt/format.h>
-
 #include <cstdio>
+#include <fmt/format.h>
 
 #include "app/command/command.hpp"
 #include "app/report.hpp"
@@ -17,8 +16,9 @@ namespace epuck = bridges::epuck;
 
 /// Everything that an e-puck senses.
 std::vector<epuck::EpuckRobot::PortView> take_all(epuck::EpuckRobot& robot) {
-  const hal::PortType* const sensors[] = {&hal::port_type<hal::Proximity>(),     &hal::port_type<hal::Light>(),       &hal::port_type<hal::Ground>(),
-                                          &hal::port_type<hal::Accelerometer>(), &hal::port_type<hal::Microphones>(), &hal::port_type<hal::Battery>(),
+  const hal::PortType* const sensors[] = {&hal::port_type<hal::Proximity>(),    &hal::port_type<hal::Light>(),
+                                          &hal::port_type<hal::Ground>(),       &hal::port_type<hal::Accelerometer>(),
+                                          &hal::port_type<hal::Microphones>(),  &hal::port_type<hal::Battery>(),
                                           &hal::port_type<hal::WheelEncoders>()};
   for (const hal::PortType* type : sensors) (void)robot.require(*type);
   return robot.taken();
@@ -48,7 +48,9 @@ int inspect(const InspectOptions& options) {
   hal::Status ready;
   for (hal::TimeNs waited = 0; waited < 10 * hal::kNsPerSecond && !stop.load(); waited += 200 * hal::kNsPerMs) {
     ready = bridge.wait_active(200 * hal::kNsPerMs);
-    if (ready.ok() || (waited >= hal::kNsPerSecond && bridge.status().links_opened == 0 && !bridge.status().trouble.empty())) break;
+    if (ready.ok() ||
+        (waited >= hal::kNsPerSecond && bridge.status().links_opened == 0 && !bridge.status().trouble.empty()))
+      break;
   }
   if (!ready.ok()) return complain(kFailedRunning, ready.error().message);
 
@@ -66,20 +68,24 @@ int inspect(const InspectOptions& options) {
   bridge.latch(ticks, clock.now_ns());
   const epuck::BridgeStatus status = bridge.status();
   fmt::print("e-puck on {}\n", status.link);
-  print_table({{"firmware", std::string(status.identity.version_text())},
-               {"hardware", status.identity.hardware != 0 ? fmt::format("{:X}", status.identity.hardware) : "not told"},
-               {"state", epuck::state_name(status.state)},
-               {"round trip", fmt::format("{:.1f} ms on average, {:.1f} ms at most",
-                                          status.session.answers > 0 ? static_cast<double>(status.session.sum_round_trip_ns) * 1e-6 /
-                                                                           static_cast<double>(status.session.answers) : 0.0,
-                                          static_cast<double>(status.session.max_round_trip_ns) * 1e-6)},
-               {"link", fmt::format("{} bytes in, {} out; {} answers to {} packets, {} silences, {} cut short", status.bytes.bytes_in,
-                                    status.bytes.bytes_out, status.session.answers, status.session.packets, status.session.silent,
-                                    status.session.cut_short)}});
+  print_table(
+      {{"firmware", std::string(status.identity.version_text())},
+       {"hardware", status.identity.hardware != 0 ? fmt::format("{:X}", status.identity.hardware) : "not told"},
+       {"state", epuck::state_name(status.state)},
+       {"round trip", fmt::format("{:.1f} ms on average, {:.1f} ms at most",
+                                  status.session.answers > 0 ? static_cast<double>(status.session.sum_round_trip_ns) *
+                                                                   1e-6 / static_cast<double>(status.session.answers)
+                                                             : 0.0,
+                                  static_cast<double>(status.session.max_round_trip_ns) * 1e-6)},
+       {"link", fmt::format("{} bytes in, {} out; {} answers to {} packets, {} silences, {} cut short",
+                            status.bytes.bytes_in, status.bytes.bytes_out, status.session.answers,
+                            status.session.packets, status.session.silent, status.session.cut_short)}});
   fmt::print("readings\n");
   for (const auto& port : ports) fmt::print("  {}\n", hal::to_text(*port.type, port.data));
   bridge.shut_down();
-  return status.state == epuck::SessionState::Active ? kDone : complain(kFailedRunning, "the robot does not answer any more: " + status.trouble);
+  return status.state == epuck::SessionState::Active
+             ? kDone
+             : complain(kFailedRunning, "the robot does not answer any more: " + status.trouble);
 }
 
 }  // namespace tandem::app

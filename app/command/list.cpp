@@ -1,7 +1,6 @@
 // `tandem list` and `tandem describe`: what there is, and its manual, from the schemas.
-#include <fmt/format.h>
-
 #include <algorithm>
+#include <fmt/format.h>
 #include <functional>
 #include <map>
 
@@ -50,7 +49,8 @@ void list_devices() {
       last = type.device;
       std::string names;
       for (const core::DeviceType& t : core::device_types()) {
-        if (t.device == type.device && t.role == role) names += (names.empty() ? "" : ", ") + std::string(t.implementation);
+        if (t.device == type.device && t.role == role)
+          names += (names.empty() ? "" : ", ") + std::string(t.implementation);
       }
       fmt::print("  {:<22} {:<9} {}\n", type.device, role == hal::Role::Sensor ? "sensor" : "actuator", names);
     }
@@ -81,10 +81,12 @@ const std::map<std::string, std::function<void()>>& kinds() {
 /// The port class behind a device name, for its fields.
 void describe_fields(std::string_view name, hal::Role role) {
   const hal::PortType* const ports[] = {
-      &hal::port_type<hal::WheelSpeeds>(),    &hal::port_type<hal::WheelEncoders>(), &hal::port_type<hal::Proximity>(),
-      &hal::port_type<hal::Light>(),          &hal::port_type<hal::Ground>(),        &hal::port_type<hal::Accelerometer>(),
-      &hal::port_type<hal::Microphones>(),    &hal::port_type<hal::Battery>(),       &hal::port_type<hal::Clock>(),
-      &hal::port_type<hal::RingLeds>(),       &hal::port_type<hal::BodyLed>(),       &hal::port_type<hal::FrontLed>(),
+      &hal::port_type<hal::WheelSpeeds>(),     &hal::port_type<hal::WheelEncoders>(),
+      &hal::port_type<hal::Proximity>(),       &hal::port_type<hal::Light>(),
+      &hal::port_type<hal::Ground>(),          &hal::port_type<hal::Accelerometer>(),
+      &hal::port_type<hal::Microphones>(),     &hal::port_type<hal::Battery>(),
+      &hal::port_type<hal::Clock>(),           &hal::port_type<hal::RingLeds>(),
+      &hal::port_type<hal::BodyLed>(),         &hal::port_type<hal::FrontLed>(),
       &hal::port_type<hal::RangeAndBearing>(), &hal::port_type<hal::RangeAndBearingSend>()};
   for (const hal::PortType* port : ports) {
     if (port->name != name || port->role != role) continue;
@@ -125,8 +127,10 @@ bool describe_plugin(const std::string& name) {
     found = true;
     fmt::print("{} {}: {}\n  library: {}\n", entry.category, name, summary_of(entry), entry.library);
     core::ManualWriter manual;
-    if (entry.category == "controller") (void)static_cast<const hal::ControllerType*>(entry.type)->read_params(manual);
-    else static_cast<const core::HookType*>(entry.type)->describe(manual);
+    if (entry.category == "controller")
+      (void)static_cast<const hal::ControllerType*>(entry.type)->read_params(manual);
+    else
+      static_cast<const core::HookType*>(entry.type)->describe(manual);
     fmt::print("parameters:\n{}", manual.text().empty() ? "  none\n" : manual.text());
   }
   return found;
@@ -137,9 +141,11 @@ bool describe_element(const std::string& name) {
   for (const core::ElementManual& m : core::element_manuals()) {
     if (m.name != name) continue;
     found = true;
-    fmt::print("<{}>{}: {}\n{}", m.name, m.parent.empty() ? "" : fmt::format(" in <{}>", m.parent), m.doc, m.attributes);
+    fmt::print("<{}>{}: {}\n{}", m.name, m.parent.empty() ? "" : fmt::format(" in <{}>", m.parent), m.doc,
+               m.attributes);
     std::string children;
-    for (const std::string& c : m.children) children += (children.empty() ? "" : ", ") + (c == "*" ? std::string("anything") : c);
+    for (const std::string& c : m.children)
+      children += (children.empty() ? "" : ", ") + (c == "*" ? std::string("anything") : c);
     if (!children.empty()) fmt::print("  may hold: {}\n", children);
   }
   return found;

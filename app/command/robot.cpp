@@ -1,7 +1,6 @@
 // `tandem robot`: one real robot's controller, run here.
-#include <fmt/format.h>
-
 #include <cstdio>
+#include <fmt/format.h>
 
 #include "app/bridged_controller.hpp"
 #include "app/catalog.hpp"
@@ -31,13 +30,17 @@ const core::RobotItem* only_robot(const core::Scenario& scenario, const std::str
   for (const core::RobotItem& item : scenario.robots) {
     if (!item.bridge && (link.empty() || scenario.robots.size() > 1)) continue;
     if (found != nullptr) {
-      fmt::print(stderr, "{}:{}: error: a second robot with a <bridge>; `tandem robot` drives one, `tandem run` many\n", scenario.file, item.line);
+      fmt::print(stderr, "{}:{}: error: a second robot with a <bridge>; `tandem robot` drives one, `tandem run` many\n",
+                 scenario.file, item.line);
       return nullptr;
     }
     found = &item;
   }
   if (found == nullptr) {
-    fmt::print(stderr, "{}: error: no robot has a <bridge link=\"serial:…\"/>; add one, or say --link when there is one robot\n", scenario.file);
+    fmt::print(
+        stderr,
+        "{}: error: no robot has a <bridge link=\"serial:…\"/>; add one, or say --link when there is one robot\n",
+        scenario.file);
   }
   return found;
 }
@@ -52,31 +55,47 @@ std::string report_of(const core::Scenario& scenario, const core::RobotItem& ite
                       const mixed_reality::PaceLedger& pace, const std::string& library, const std::string& failure) {
   Json json;
   json.begin_object();
-  json.field("experiment", scenario.name).field("robot", item.id).field("link", status.link).field("firmware", status.identity.version_text());
-  json.field("steps", pace.ticks).field("deadline_misses", pace.deadline_misses).field("state", epuck::state_name(status.state));
+  json.field("experiment", scenario.name)
+      .field("robot", item.id)
+      .field("link", status.link)
+      .field("firmware", status.identity.version_text());
+  json.field("steps", pace.ticks)
+      .field("deadline_misses", pace.deadline_misses)
+      .field("state", epuck::state_name(status.state));
   json.field("wake_up_p99_ms", static_cast<double>(pace.wake_up.quantile_ns(0.99)) * 1e-6);
-  json.field("packets", status.session.packets).field("answers", status.session.answers).field("silent", status.session.silent);
-  json.field("cut_short", status.session.cut_short).field("implausible", status.session.implausible).field("resynchronised", status.session.resynchronised);
+  json.field("packets", status.session.packets)
+      .field("answers", status.session.answers)
+      .field("silent", status.session.silent);
+  json.field("cut_short", status.session.cut_short)
+      .field("implausible", status.session.implausible)
+      .field("resynchronised", status.session.resynchronised);
   json.field("restarts", status.session.restarts).field("links_lost", status.session.links_lost);
   json.field("commands_clamped", status.driver.clamped).field("commands_not_finite", status.driver.not_finite);
   json.field("bytes_in", status.bytes.bytes_in).field("bytes_out", status.bytes.bytes_out);
-  if (const auto digest = sha256_of_file(library); digest.ok()) json.field("controller", library).field("sha256", digest.value());
+  if (const auto digest = sha256_of_file(library); digest.ok())
+    json.field("controller", library).field("sha256", digest.value());
   if (!failure.empty()) json.field("failure", failure);
   json.end_object();
   return json.text();
 }
 
-void print_result(const core::RobotItem& item, const epuck::BridgeStatus& status, const mixed_reality::PaceLedger& pace) {
+void print_result(const core::RobotItem& item, const epuck::BridgeStatus& status,
+                  const mixed_reality::PaceLedger& pace) {
   const epuck::SessionStatistics& s = status.session;
-  print_table({{"robot", fmt::format("{} on {}, {}", item.id, status.link.empty() ? item.bridge ? item.bridge->link : "" : status.link, status.identity.version_text())},
-               {"ticks", fmt::format("{}, {} missed their deadline, {:.2f} ms late at most", pace.ticks, pace.deadline_misses,
-                                     static_cast<double>(pace.largest_lateness_ns) * 1e-6)},
-               {"answers", fmt::format("{} of {} packets, {:.1f} ms round trip on average", s.answers, s.packets,
-                                       s.answers > 0 ? static_cast<double>(s.sum_round_trip_ns) * 1e-6 / static_cast<double>(s.answers) : 0.0)},
-               {"trouble", fmt::format("{} silences, {} answers cut short, {} implausible, {} restarts, {} links lost", s.silent, s.cut_short, s.implausible,
-                                       s.restarts, s.links_lost)},
-               {"rolled", fmt::format("{:.3f} m left, {:.3f} m right", status.odometry.left_m, status.odometry.right_m)},
-               {"at the end", epuck::state_name(status.state)}});
+  print_table(
+      {{"robot",
+        fmt::format("{} on {}, {}", item.id, status.link.empty() ? item.bridge ? item.bridge->link : "" : status.link,
+                    status.identity.version_text())},
+       {"ticks", fmt::format("{}, {} missed their deadline, {:.2f} ms late at most", pace.ticks, pace.deadline_misses,
+                             static_cast<double>(pace.largest_lateness_ns) * 1e-6)},
+       {"answers",
+        fmt::format(
+            "{} of {} packets, {:.1f} ms round trip on average", s.answers, s.packets,
+            s.answers > 0 ? static_cast<double>(s.sum_round_trip_ns) * 1e-6 / static_cast<double>(s.answers) : 0.0)},
+       {"trouble", fmt::format("{} silences, {} answers cut short, {} implausible, {} restarts, {} links lost",
+                               s.silent, s.cut_short, s.implausible, s.restarts, s.links_lost)},
+       {"rolled", fmt::format("{:.3f} m left, {:.3f} m right", status.odometry.left_m, status.odometry.right_m)},
+       {"at the end", epuck::state_name(status.state)}});
 }
 
 }  // namespace
@@ -118,7 +137,8 @@ int robot(const RobotOptions& options) {
   settings.driver.robot.sensors = names_of(config.sensors);
   settings.driver.robot.actuators = names_of(config.actuators);
   settings.driver.timing = epuck::timing_for(item.bridge->link);
-  settings.driver.command_timeout_ns = std::max<hal::TimeNs>(static_cast<hal::TimeNs>(item.bridge->timeout_s * 1e9), 2 * settings.driver.robot.tick_ns);
+  settings.driver.command_timeout_ns =
+      std::max<hal::TimeNs>(static_cast<hal::TimeNs>(item.bridge->timeout_s * 1e9), 2 * settings.driver.robot.tick_ns);
   const hal::Log log([](hal::Severity, std::string_view text) { say(text); });
   epuck::EpuckBridge bridge(settings, std::move(opener).value(), log);
 
@@ -137,11 +157,20 @@ int robot(const RobotOptions& options) {
     ready = bridge.wait_active(200 * hal::kNsPerMs);
     if (ready.ok()) break;
     const epuck::BridgeStatus status = bridge.status();
-    if (waited >= kOpenWithin_ns && status.links_opened == 0 && !status.trouble.empty()) break;  // the port itself is the trouble
+    if (waited >= kOpenWithin_ns && status.links_opened == 0 && !status.trouble.empty())
+      break;  // the port itself is the trouble
   }
   if (stop.load() || !ready.ok()) guardian->release(address.value().target);  // it was never driven
   if (stop.load()) return kDone;
   if (!ready.ok()) return complain(kFailedRunning, "robot '" + item.id + "': " + ready.error().message);
+
+  if (const epuck::Identity who = bridge.status().identity;
+      !epuck::firmware_fits(item.bridge->firmware, who.firmware)) {
+    guardian->release(address.value().target);
+    return complain(kFailedRunning, "robot '" + item.id + "' runs the firmware '" + std::string(who.version_text()) +
+                                        "', not '" + item.bridge->firmware +
+                                        "' as the file says; correct firmware=\"…\" or say auto");
+  }
 
   mixed_reality::MonotonicTime clock;
   mixed_reality::Pacer pacer(clock, scenario->ticks_per_second);
@@ -155,7 +184,8 @@ int robot(const RobotOptions& options) {
     for (hal::Tick tick = 0; (steps == 0 || tick < steps) && !stop.load(std::memory_order_relaxed); ++tick) {
       bridge.latch(tick, clock.now_ns());
       if (!controller->step(failure)) {
-        failure = "controller '" + config.id + "' of robot '" + item.id + "' threw at tick " + std::to_string(tick) + ": " + failure + "; the robot is stopped";
+        failure = "controller '" + config.id + "' of robot '" + item.id + "' threw at tick " + std::to_string(tick) +
+                  ": " + failure + "; the robot is stopped";
         bridge.fault(clock.now_ns(), failure);
         break;
       }
@@ -169,12 +199,14 @@ int robot(const RobotOptions& options) {
     failure = "robot '" + item.id + "' was lost at the end: " + status.trouble;
   }
   bridge.shut_down();
-  if (status.state != epuck::SessionState::Lost) guardian->release(address.value().target);  // else it may yet be stopped
+  if (status.state != epuck::SessionState::Lost)
+    guardian->release(address.value().target);  // else it may yet be stopped
   controller.reset();
   print_result(item, status, pacer.ledger());
   if (!options.report.empty()) {
     const std::string library = loader.find(config.library).value().string();
-    const hal::Status written = write_report(options.report, report_of(*scenario, item, status, pacer.ledger(), library, failure));
+    const hal::Status written =
+        write_report(options.report, report_of(*scenario, item, status, pacer.ledger(), library, failure));
     if (!written.ok()) return complain(kFailedRunning, written.error().message);
   }
   return failure.empty() ? kDone : complain(kFailedRunning, failure);

@@ -1,6 +1,5 @@
-#include <fmt/format.h>
-
 #include <cstdio>
+#include <fmt/format.h>
 
 #include "app/catalog.hpp"
 #include "app/command/command.hpp"
@@ -29,8 +28,8 @@ std::int64_t steps_of(const RunOptions& options, const core::Scenario& scenario)
   return static_cast<std::int64_t>(seconds * static_cast<double>(scenario.ticks_per_second) + 0.5);
 }
 
-std::unique_ptr<core::TrajectoryRecorder> open_trajectory(const RunOptions& options, const core::Scenario& scenario, const core::World& world,
-                                                          bool& good) {
+std::unique_ptr<core::TrajectoryRecorder> open_trajectory(const RunOptions& options, const core::Scenario& scenario,
+                                                          const core::World& world, bool& good) {
   auto config = scenario.trajectory;
   if (!options.trajectory.empty()) {
     if (!config) config = core::TrajectoryConfig{{}, {"*"}, 1};
@@ -48,11 +47,19 @@ void add_real_robots(Json& json, const mixed_reality::MixedReport& report) {
   json.key("real_robots").begin_array();
   for (const mixed_reality::RealRobotReport& r : report.robots) {
     json.begin_object();
-    json.field("id", r.id).field("link", r.link).field("x_m", r.pose.x_m).field("y_m", r.pose.y_m).field("heading_rad", r.pose.heading_rad());
+    json.field("id", r.id)
+        .field("link", r.link)
+        .field("x_m", r.pose.x_m)
+        .field("y_m", r.pose.y_m)
+        .field("heading_rad", r.pose.heading_rad());
     json.field("state", r.state).field("driving", r.driving).field("stop_confirmed", r.stop_confirmed);
-    json.field("ticks_driving", r.counts.ticks_driving).field("ticks_held", r.counts.ticks_held).field("stops", r.counts.stops);
+    json.field("ticks_driving", r.counts.ticks_driving)
+        .field("ticks_held", r.counts.ticks_held)
+        .field("stops", r.counts.stops);
     json.field("rearms", r.counts.rearms).field("fenced_ticks", r.counts.fenced_ticks);
-    json.field("packets", r.conversation.packets).field("answers", r.conversation.answers).field("time_outs", r.conversation.time_outs);
+    json.field("packets", r.conversation.packets)
+        .field("answers", r.conversation.answers)
+        .field("time_outs", r.conversation.time_outs);
     json.field("bad_answers", r.conversation.bad_answers).field("resynchronised", r.conversation.resynchronised);
     json.field("links_lost", r.conversation.links_lost);
     json.key("incidents").begin_array();
@@ -61,15 +68,17 @@ void add_real_robots(Json& json, const mixed_reality::MixedReport& report) {
   }
   json.end_array();
   json.key("pace").begin_object();
-  json.field("ticks", report.pace.ticks).field("deadline_misses", report.pace.deadline_misses).field("skipped_slots", report.pace.skipped_slots);
+  json.field("ticks", report.pace.ticks)
+      .field("deadline_misses", report.pace.deadline_misses)
+      .field("skipped_slots", report.pace.skipped_slots);
   json.field("largest_lateness_ms", static_cast<double>(report.pace.largest_lateness_ns) * 1e-6);
   json.field("wake_up_p99_ms", static_cast<double>(report.pace.wake_up.quantile_ns(0.99)) * 1e-6);
   json.field("step_p99_ms", static_cast<double>(report.pace.step.quantile_ns(0.99)) * 1e-6);
   json.end_object();
 }
 
-std::string report_of(const core::World& world, const hal::PluginLoader& loader, const RunFigures& figures, std::size_t robots,
-                      const mixed_reality::MixedReport* real) {
+std::string report_of(const core::World& world, const hal::PluginLoader& loader, const RunFigures& figures,
+                      std::size_t robots, const mixed_reality::MixedReport* real) {
   Json json;
   json.begin_object();
   add_run_fields(json, world, figures, robots);
@@ -100,27 +109,37 @@ std::string report_of(const core::World& world, const hal::PluginLoader& loader,
   return json.text();
 }
 
-void print_result(const core::World& world, const RunFigures& figures, std::size_t robots, const mixed_reality::MixedReport* real) {
+void print_result(const core::World& world, const RunFigures& figures, std::size_t robots,
+                  const mixed_reality::MixedReport* real) {
   const core::Incidents& incidents = world.incidents();
   const double virtual_s = figures.virtual_s(world.ticks_per_second());
   std::vector<std::pair<std::string, std::string>> rows = {
       {"experiment", fmt::format("{}, seed {}", world.scenario().name, world.seed())},
       {"robots", fmt::format("{}", robots)},
-      {"time", fmt::format("{:.1f} s in {} steps, taking {:.2f} s ({:.1f} times real time) after {:.2f} s of preparation", virtual_s, figures.steps,
-                           figures.wall_s, figures.wall_s > 0 ? virtual_s / figures.wall_s : 0.0, figures.init_s)},
-      {"cost", fmt::format("{:.0f} ns of processor time a robot and step, {:.0f} MB", figures.ns_per_robot_step(robots), peak_rss_mb())},
+      {"time",
+       fmt::format("{:.1f} s in {} steps, taking {:.2f} s ({:.1f} times real time) after {:.2f} s of preparation",
+                   virtual_s, figures.steps, figures.wall_s, figures.wall_s > 0 ? virtual_s / figures.wall_s : 0.0,
+                   figures.init_s)},
+      {"cost", fmt::format("{:.0f} ns of processor time a robot and step, {:.0f} MB", figures.ns_per_robot_step(robots),
+                           peak_rss_mb())},
       {"state", hash_text(world.state_hash())}};
-  if (world.scenario().time_mode == core::TimeMode::Realtime) rows.emplace_back("missed deadlines", fmt::format("{}", figures.deadline_misses));
-  const std::uint64_t odd = incidents.commands_clamped + incidents.commands_not_finite + incidents.controllers_thrown + incidents.bodies_escaped;
+  if (world.scenario().time_mode == core::TimeMode::Realtime)
+    rows.emplace_back("missed deadlines", fmt::format("{}", figures.deadline_misses));
+  const std::uint64_t odd = incidents.commands_clamped + incidents.commands_not_finite + incidents.controllers_thrown +
+                            incidents.bodies_escaped;
   if (odd > 0) {
-    rows.emplace_back("incidents", fmt::format("{} commands clamped, {} not finite, {} controllers threw, {} bodies escaped", incidents.commands_clamped,
-                                               incidents.commands_not_finite, incidents.controllers_thrown, incidents.bodies_escaped));
+    rows.emplace_back("incidents",
+                      fmt::format("{} commands clamped, {} not finite, {} controllers threw, {} bodies escaped",
+                                  incidents.commands_clamped, incidents.commands_not_finite,
+                                  incidents.controllers_thrown, incidents.bodies_escaped));
   }
   if (real != nullptr) {
     for (const mixed_reality::RealRobotReport& r : real->robots) {
-      rows.emplace_back("real robot", fmt::format("{} on {}: {}; {} ticks driving, {} held, {} of {} packets answered, {}", r.id, r.link, r.state,
-                                                  r.counts.ticks_driving, r.counts.ticks_held, r.conversation.answers, r.conversation.packets,
-                                                  r.stop_confirmed ? "stop confirmed" : "STOP NOT CONFIRMED"));
+      rows.emplace_back(
+          "real robot",
+          fmt::format("{} on {}: {}; {} ticks driving, {} held, {} of {} packets answered, {}", r.id, r.link, r.state,
+                      r.counts.ticks_driving, r.counts.ticks_held, r.conversation.answers, r.conversation.packets,
+                      r.stop_confirmed ? "stop confirmed" : "STOP NOT CONFIRMED"));
     }
   }
   print_table(rows);
@@ -128,13 +147,14 @@ void print_result(const core::World& world, const RunFigures& figures, std::size
 
 /// Steps a purely simulated world, paced when its file says so. @returns deadlines that were missed.
 template <class AfterTick>
-std::uint64_t run_alone(core::World& world, std::int64_t steps, const std::atomic<bool>& stop, mixed_reality::TimeSource& clock,
-                        const AfterTick& after_tick) {
+std::uint64_t run_alone(core::World& world, std::int64_t steps, const std::atomic<bool>& stop,
+                        mixed_reality::TimeSource& clock, const AfterTick& after_tick) {
   mixed_reality::Pacer pacer(clock, world.ticks_per_second());
   const bool paced = world.scenario().time_mode == core::TimeMode::Realtime;
   world.start();
   if (paced) pacer.start();
-  while (world.state() == core::RunState::Running && (steps == 0 || world.tick() < steps) && !stop.load(std::memory_order_relaxed)) {
+  while (world.state() == core::RunState::Running && (steps == 0 || world.tick() < steps) &&
+         !stop.load(std::memory_order_relaxed)) {
     world.step();
     after_tick(world);
     if (paced && !pacer.wait_for_next(stop)) break;
@@ -217,7 +237,10 @@ int run(const RunOptions& options) {
     mixed_reality::MixedOptions mixed_options;
     mixed_options.log = world_options.log;
     auto session = mixed_reality::MixedSession::make(
-        std::move(made), [&](const mixed_reality::RealRobotRequest& request) { return mixed_reality::make_real_robot(request, world_options.log); },
+        std::move(made),
+        [&](const mixed_reality::RealRobotRequest& request) {
+          return mixed_reality::make_real_robot(request, world_options.log);
+        },
         clock, mixed_options);
     if (!session.ok()) {
       fmt::print(stderr, "error: {}\n", session.error().message);
@@ -241,7 +264,8 @@ int run(const RunOptions& options) {
   {
     Progress progress(steps, scenario->ticks_per_second);
     const auto after_tick = [&](core::World& w) {
-      if (trajectory != nullptr && recorded.ok()) recorded = trajectory->record(w.space(), w.tick() - 1);  // the tick that was just done
+      if (trajectory != nullptr && recorded.ok())
+        recorded = trajectory->record(w.space(), w.tick() - 1);  // the tick that was just done
       progress.step(w.tick());
     };
     if (mixed != nullptr) {
@@ -282,7 +306,8 @@ int run(const RunOptions& options) {
     }
     complain(core::write_picture(world->space(), options.picture, picture));
   }
-  if (!options.report.empty()) complain(write_report(options.report, report_of(*world, loader, figures, robots, real_report)));
+  if (!options.report.empty())
+    complain(write_report(options.report, report_of(*world, loader, figures, robots, real_report)));
   if (!options.quiet && options.report != "-") print_result(*world, figures, robots, real_report);
   return failed ? kFailedRunning : kDone;
 }

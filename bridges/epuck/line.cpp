@@ -81,6 +81,12 @@ bool parse_answer(std::string_view line, LineAnswer& answer) noexcept {
   return true;
 }
 
+bool firmware_fits(std::string_view wanted, Firmware firmware) noexcept {
+  return wanted == "auto" || wanted.empty() || (wanted == "btcom" && firmware == Firmware::BTcom) ||
+         (wanted == "gctronic" && firmware == Firmware::GCtronic) ||
+         (wanted == "webots" && firmware == Firmware::Webots) || (wanted == "epuck2" && firmware == Firmware::Epuck2);
+}
+
 std::string_view firmware_name(Firmware firmware) noexcept {
   switch (firmware) {
     case Firmware::BTcom:

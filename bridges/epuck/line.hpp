@@ -46,6 +46,8 @@ bool parse_answer(std::string_view line, LineAnswer& answer) noexcept;
 
 enum class Firmware : std::uint8_t { Unknown, BTcom, GCtronic, Webots, Epuck2 };
 std::string_view firmware_name(Firmware firmware) noexcept;
+/// Whether `wanted`, as an experiment file says it (auto, btcom, gctronic, webots, epuck2), may be `firmware`.
+bool firmware_fits(std::string_view wanted, Firmware firmware) noexcept;
 
 /// Who answered to `V`. Fixed storage: made in the middle of a session.
 struct Identity {

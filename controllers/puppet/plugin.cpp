@@ -1,9 +1,11 @@
-#include "controllers/puppet/puppet.hpp"
 #include "hal/plugin.hpp"
+
+#include "controllers/puppet/puppet.hpp"
 
 namespace {
 void register_all(tandem::hal::Registrar& registrar) {
-  registrar.add_controller<tandem::controllers::Puppet>("puppet", "Takes every device and does nothing: its ports are driven from outside.");
+  registrar.add_controller<tandem::controllers::Puppet>(
+      "puppet", "Takes every device and does nothing: its ports are driven from outside.");
 }
 }  // namespace
 

@@ -11,9 +11,9 @@ namespace schema {
 
 bool parse_color(const std::string& text, std::array<std::uint8_t, 3>& rgb) {
   static const std::map<std::string, std::array<std::uint8_t, 3>> kNames = {
-      {"black", {0, 0, 0}},      {"white", {255, 255, 255}}, {"red", {255, 0, 0}},       {"green", {0, 255, 0}},
-      {"blue", {0, 0, 255}},     {"yellow", {255, 255, 0}},  {"magenta", {255, 0, 255}}, {"cyan", {0, 255, 255}},
-      {"orange", {255, 140, 0}}, {"brown", {165, 42, 42}},   {"purple", {160, 32, 240}}, {"gray10", {26, 26, 26}},
+      {"black", {0, 0, 0}},        {"white", {255, 255, 255}}, {"red", {255, 0, 0}},       {"green", {0, 255, 0}},
+      {"blue", {0, 0, 255}},       {"yellow", {255, 255, 0}},  {"magenta", {255, 0, 255}}, {"cyan", {0, 255, 255}},
+      {"orange", {255, 140, 0}},   {"brown", {165, 42, 42}},   {"purple", {160, 32, 240}}, {"gray10", {26, 26, 26}},
       {"gray50", {128, 128, 128}}, {"gray90", {230, 230, 230}}};
   if (const auto named = kNames.find(text); named != kNames.end()) {
     rgb = named->second;
@@ -55,12 +55,16 @@ class ArenaReader {
     const auto a = reading_.read<schema::Arena>(e);
     out_.arena_size = a.size;
     out_.arena_center = a.center;
-    out_.escape = a.escape == "stop" ? EscapePolicy::Stop : a.escape == "remove" ? EscapePolicy::Remove : EscapePolicy::Error;
+    out_.escape = a.escape == "stop"     ? EscapePolicy::Stop
+                  : a.escape == "remove" ? EscapePolicy::Remove
+                                         : EscapePolicy::Error;
     check_lengths(e, a.size);
     reading_.once_or_default(e, "floor", [&](Element& c) { floor(c); });
     for (Element& c : e.children) {
-      if (c.name == "distribute") distribute(c);
-      else thing(c, nullptr);
+      if (c.name == "distribute")
+        distribute(c);
+      else
+        thing(c, nullptr);
     }
     check_total(e);
   }
@@ -69,7 +73,8 @@ class ArenaReader {
   void check_lengths(const Element& e, const Vec3& size) {
     for (const double length : size) {
       if (length > 0.0 && length <= schema::kLargestArena_m) continue;
-      return reading_.error(e, "size", "'" + *e.attribute("size") + "': every length must be above 0 and at most 1000 km");
+      return reading_.error(e, "size",
+                            "'" + *e.attribute("size") + "': every length must be above 0 and at most 1000 km");
     }
   }
 
@@ -91,11 +96,16 @@ class ArenaReader {
   }
 
   void thing(Element& e, const Distribute* distribute) {
-    if (e.name == "box") object(box(e, distribute), e, distribute);
-    else if (e.name == "cylinder") object(cylinder(e, distribute), e, distribute);
-    else if (e.name == "light") light(e, distribute);
-    else if (e.name == "sound") sound(e);
-    else if (reading_.is_robot(e.name)) robot(e, distribute);
+    if (e.name == "box")
+      object(box(e, distribute), e, distribute);
+    else if (e.name == "cylinder")
+      object(cylinder(e, distribute), e, distribute);
+    else if (e.name == "light")
+      light(e, distribute);
+    else if (e.name == "sound")
+      sound(e);
+    else if (reading_.is_robot(e.name))
+      robot(e, distribute);
   }
 
   // --- where things start ---
@@ -103,11 +113,14 @@ class ArenaReader {
   Placement body(Element& e, const Distribute* distribute) {
     Element* given = reading_.only(e, "body");
     if (given == nullptr) {
-      if (distribute == nullptr) reading_.error(e, "<" + e.name + "> needs a <body position=\"x,y,z\" orientation=\"z,y,x\"/>");
+      if (distribute == nullptr)
+        reading_.error(e, "<" + e.name + "> needs a <body position=\"x,y,z\" orientation=\"z,y,x\"/>");
       return {};
     }
-    if (distribute != nullptr) reading_.warn(*given, "<body> has no effect: the <distribute> around it places the <" + e.name + ">");
-    else if (given->attribute("position") == nullptr) reading_.error(*given, "<body> needs the attribute 'position'");
+    if (distribute != nullptr)
+      reading_.warn(*given, "<body> has no effect: the <distribute> around it places the <" + e.name + ">");
+    else if (given->attribute("position") == nullptr)
+      reading_.error(*given, "<body> needs the attribute 'position'");
     const auto b = reading_.read<schema::Body>(*given);
     return {b.position, b.orientation[0], b.orientation[1], b.orientation[2]};
   }
@@ -128,15 +141,19 @@ class ArenaReader {
       d.max_trials = attributes.max_trials;
       d.base_num = attributes.base_num;
       check_places(c, d);
-      if (c.children.size() == 1) thing(c.children.front(), &d);
-      else reading_.error(c, "<entity> needs exactly one robot, box, cylinder or light inside; it has " + std::to_string(c.children.size()));
+      if (c.children.size() == 1)
+        thing(c.children.front(), &d);
+      else
+        reading_.error(c, "<entity> needs exactly one robot, box, cylinder or light inside; it has " +
+                              std::to_string(c.children.size()));
     });
   }
 
   void check_places(const Element& entity, const Distribute& d) {
     if (d.position.method != Distribution::Method::Grid) return;
     const std::int64_t places = std::int64_t{1} * d.position.layout[0] * d.position.layout[1] * d.position.layout[2];
-    if (d.quantity > places) reading_.error(entity, "quantity", "the grid has only " + std::to_string(places) + " places");
+    if (d.quantity > places)
+      reading_.error(entity, "quantity", "the grid has only " + std::to_string(places) + " places");
   }
 
   template <class Schema>
@@ -167,23 +184,29 @@ class ArenaReader {
     }
     if (own.size() == 1) return;  // an unknown method was reported
     for (std::size_t i = 1; i < own.size(); ++i) {
-      if (e.attribute(own[i]) == nullptr) reading_.error(e, "<" + e.name + " method=\"" + method + "\"> needs the attribute '" + own[i] + "'");
+      if (e.attribute(own[i]) == nullptr)
+        reading_.error(e, "<" + e.name + " method=\"" + method + "\"> needs the attribute '" + own[i] + "'");
     }
     for (const Element::Attribute& a : e.attributes) {
       if (std::find(own.begin(), own.end(), a.name) != own.end()) continue;
-      reading_.error(e, a.name, "method=\"" + method + "\" has no such attribute; it takes: " + listed({own.begin() + 1, own.end()}) +
-                                    did_you_mean(a.name, own));
+      reading_.error(e, a.name,
+                     "method=\"" + method + "\" has no such attribute; it takes: " +
+                         listed({own.begin() + 1, own.end()}) + did_you_mean(a.name, own));
     }
   }
 
   void check_draw_values(const Element& e, const schema::Draw& draw, Distribution& d) {
     static constexpr std::array<std::string_view, 3> kOrdinal = {"first", "second", "third"};
     for (std::size_t i = 0; i < 3; ++i) {
-      if (draw.min[i] > draw.max[i]) reading_.error(e, "min", "above max in its " + std::string(kOrdinal[i]) + " number");
-      if (draw.std_dev[i] < 0.0) reading_.error(e, "std_dev", "negative in its " + std::string(kOrdinal[i]) + " number");
+      if (draw.min[i] > draw.max[i])
+        reading_.error(e, "min", "above max in its " + std::string(kOrdinal[i]) + " number");
+      if (draw.std_dev[i] < 0.0)
+        reading_.error(e, "std_dev", "negative in its " + std::string(kOrdinal[i]) + " number");
       const double n = draw.layout[i];
-      if (n >= 1.0 && n <= 1e6 && n == std::floor(n)) d.layout[i] = static_cast<int>(n);
-      else reading_.error(e, "layout", "its " + std::string(kOrdinal[i]) + " number must be whole and from 1 to 1000000");
+      if (n >= 1.0 && n <= 1e6 && n == std::floor(n))
+        d.layout[i] = static_cast<int>(n);
+      else
+        reading_.error(e, "layout", "its " + std::string(kOrdinal[i]) + " number must be whole and from 1 to 1000000");
     }
   }
 
@@ -197,11 +220,19 @@ class ArenaReader {
 
   ObjectItem cylinder(Element& e, const Distribute* distribute) {
     const auto c = reading_.read<schema::Cylinder>(e);
-    return {ShapeKind::Cylinder, c.id, {c.radius_m, c.radius_m, c.height_m}, c.movable, c.mass_kg, body(e, distribute), {}, e.line};
+    return {ShapeKind::Cylinder,
+            c.id,
+            {c.radius_m, c.radius_m, c.height_m},
+            c.movable,
+            c.mass_kg,
+            body(e, distribute),
+            {},
+            e.line};
   }
 
   void object(ObjectItem item, const Element& e, const Distribute* distribute) {
-    if (e.child("leds") != nullptr) reading_.warn(*e.child("leds"), "the LEDs of <" + e.name + "> are left out: no device here senses them");
+    if (e.child("leds") != nullptr)
+      reading_.warn(*e.child("leds"), "the LEDs of <" + e.name + "> are left out: no device here senses them");
     if (item.movable) check_movable(e);
     if (distribute != nullptr) item.distribute = *distribute;
     out_.objects.push_back(std::move(item));
@@ -216,8 +247,9 @@ class ArenaReader {
     for (const std::string& kind : reading_.known().engines) {
       if (kind.starts_with("dynamics")) movers.push_back(kind);
     }
-    reading_.error(e, "movable", "kinematics2d moves no objects, only the engines dynamics2d and dynamics3d do; " +
-                                     (movers.empty() ? "this program has neither: say movable=\"false\"" : "use " + listed(movers)));
+    reading_.error(e, "movable",
+                   "kinematics2d moves no objects, only the engines dynamics2d and dynamics3d do; " +
+                       (movers.empty() ? "this program has neither: say movable=\"false\"" : "use " + listed(movers)));
   }
 
   void light(Element& e, const Distribute* distribute) {
@@ -228,9 +260,12 @@ class ArenaReader {
     item.p_W = l.position;
     item.intensity = l.intensity;
     item.line = e.line;
-    if (!schema::parse_color(l.color, item.rgb)) reading_.error(e, "color", "'" + l.color + "' is neither a colour's name nor \"r,g,b\"");
-    if (distribute != nullptr) item.distribute = *distribute;
-    else if (!positioned) reading_.error(e, "<light> needs the attribute 'position'");
+    if (!schema::parse_color(l.color, item.rgb))
+      reading_.error(e, "color", "'" + l.color + "' is neither a colour's name nor \"r,g,b\"");
+    if (distribute != nullptr)
+      item.distribute = *distribute;
+    else if (!positioned)
+      reading_.error(e, "<light> needs the attribute 'position'");
     out_.lights.push_back(std::move(item));
   }
 
@@ -259,7 +294,9 @@ class ArenaReader {
       item.bridge = BridgeConfig{b.link, b.firmware, b.timeout_s, c, c.line};
       if (distribute != nullptr) reading_.error(c, "a <bridge> stands for one real robot; it cannot be distributed");
     });
-    reading_.once(e, "tracker", [&](Element& c) { item.tracker = TrackerConfig{reading_.read<schema::Tracker>(c).source, c, c.line}; });
+    reading_.once(e, "tracker", [&](Element& c) {
+      item.tracker = TrackerConfig{reading_.read<schema::Tracker>(c).source, c, c.line};
+    });
     out_.robots.push_back(std::move(item));
   }
 
@@ -270,13 +307,16 @@ class ArenaReader {
       std::vector<std::string> ids;
       for (const auto& [id, index] : controllers_) ids.push_back(id);
       if (!attributes.config.empty()) {
-        reading_.error(e, "config", "there is no controller with id '" + attributes.config + "'; there are: " + listed(ids) +
-                                        did_you_mean(attributes.config, ids));
+        reading_.error(e, "config",
+                       "there is no controller with id '" + attributes.config + "'; there are: " + listed(ids) +
+                           did_you_mean(attributes.config, ids));
       }
       return;
     }
     item.controller = found->second;
-    reading_.once(e, "params", [&](const Element& params) { item.params = overridden(out_.controllers[item.controller].params, params); });
+    reading_.once(e, "params", [&](const Element& params) {
+      item.params = overridden(out_.controllers[item.controller].params, params);
+    });
   }
 
   /// The configuration's parameters with the robot's own in their place.
@@ -309,6 +349,8 @@ class ArenaReader {
 
 }  // namespace
 
-void read_arena(Reading& reading, Element& arena) { ArenaReader(reading).arena(arena); }
+void read_arena(Reading& reading, Element& arena) {
+  ArenaReader(reading).arena(arena);
+}
 
 }  // namespace tandem::core

@@ -20,7 +20,8 @@ bool good_regions(const std::string& text) {
   const std::size_t x = text.find('x');
   if (x == std::string::npos) return false;
   for (const std::string& part : {text.substr(0, x), text.substr(x + 1)}) {
-    if (part.empty() || part.size() > 3 || part[0] == '0' || part.find_first_not_of("0123456789") != std::string::npos) return false;
+    if (part.empty() || part.size() > 3 || part[0] == '0' || part.find_first_not_of("0123456789") != std::string::npos)
+      return false;
   }
   return true;
 }
@@ -51,7 +52,8 @@ std::string flaw_of(const std::vector<BoundarySide>& sides) {
   for (std::size_t i = 0; i < sides.size(); ++i) {
     const BoundarySide& a = sides[i];
     const BoundarySide& b = sides[(i + 1) % sides.size()];
-    if (a.x_m == b.x_m && a.y_m == b.y_m) return "the vertices on lines " + std::to_string(a.line) + " and " + std::to_string(b.line) + " are the same";
+    if (a.x_m == b.x_m && a.y_m == b.y_m)
+      return "the vertices on lines " + std::to_string(a.line) + " and " + std::to_string(b.line) + " are the same";
     twice_area += a.x_m * b.y_m - b.x_m * a.y_m;
     for (std::size_t k = i + 2; k < sides.size(); ++k) {
       const BoundarySide& c = sides[k];
@@ -67,7 +69,8 @@ void read_boundaries(Reading& reading, Element& e, EngineConfig& config) {
   reading.read<schema::Boundaries>(e);
   reading.once(e, "top", [&](Element& c) { config.top_m = reading.read<schema::Top>(c).height_m; });
   reading.once(e, "bottom", [&](Element& c) { config.bottom_m = reading.read<schema::Bottom>(c).height_m; });
-  if (config.top_m && config.bottom_m && *config.top_m <= *config.bottom_m) reading.error(e, "<boundaries>: <top> is not above <bottom>");
+  if (config.top_m && config.bottom_m && *config.top_m <= *config.bottom_m)
+    reading.error(e, "<boundaries>: <top> is not above <bottom>");
   reading.once(e, "sides", [&](Element& sides) {
     reading.read<schema::Sides>(sides);
     bool good = true;
@@ -75,8 +78,10 @@ void read_boundaries(Reading& reading, Element& e, EngineConfig& config) {
       if (c.name != "vertex") continue;
       const auto vertex = reading.read<schema::Vertex>(c);
       const auto point = point_of(vertex.point);
-      if (point) config.sides.push_back({(*point)[0], (*point)[1], vertex.gate, c.line});
-      else if (!vertex.point.empty()) reading.error(c, "point", "'" + vertex.point + "' must be two lengths, \"x,y\"");
+      if (point)
+        config.sides.push_back({(*point)[0], (*point)[1], vertex.gate, c.line});
+      else if (!vertex.point.empty())
+        reading.error(c, "point", "'" + vertex.point + "' must be two lengths, \"x,y\"");
       good = good && point;
     }
     const std::string flaw = good ? flaw_of(config.sides) : "";
@@ -95,7 +100,9 @@ void check_gates(Reading& reading) {
       at.file = reading.out().file;
       at.line = side.line;
       if (std::find(ids.begin(), ids.end(), side.gate) == ids.end()) {
-        reading.error(at, "gate", "there is no engine with id '" + side.gate + "'; there are: " + listed(ids) + did_you_mean(side.gate, ids));
+        reading.error(
+            at, "gate",
+            "there is no engine with id '" + side.gate + "'; there are: " + listed(ids) + did_you_mean(side.gate, ids));
       } else if (side.gate == engine.id) {
         reading.error(at, "gate", "leads back into its own engine '" + side.gate + "'");
       }
@@ -114,7 +121,8 @@ void read_engine(Reading& reading, Element& e) {
   const auto attributes = reading.read_open<schema::Engine>(e);
   config.id = attributes.id;
   config.regions = attributes.regions;
-  if (!good_regions(config.regions)) reading.error(e, "regions", "'" + config.regions + "' must be like \"4x4\", or \"auto\"");
+  if (!good_regions(config.regions))
+    reading.error(e, "regions", "'" + config.regions + "' must be like \"4x4\", or \"auto\"");
   reading.once(e, "boundaries", [&](Element& c) { read_boundaries(reading, c, config); });
   config.options = e;
   reading.out().engines.push_back(std::move(config));
@@ -140,7 +148,8 @@ void read_engines(Reading& reading, Element& engines) {
     const std::string* id = e.attribute("id");
     if (id == nullptr || id->empty()) continue;
     const auto [first, fresh] = lines.emplace(*id, e.line);
-    if (!fresh) reading.error(e, "id", "a second engine '" + *id + "'; the first is on line " + std::to_string(first->second));
+    if (!fresh)
+      reading.error(e, "id", "a second engine '" + *id + "'; the first is on line " + std::to_string(first->second));
   }
   check_gates(reading);
 }
@@ -152,7 +161,8 @@ void read_media(Reading& reading, Element& media) {
     const auto medium = reading.read<schema::Medium>(e);
     const auto [first, fresh] = lines.emplace(medium.id, e.line);
     if (!fresh && !medium.id.empty()) {
-      reading.error(e, "id", "a second medium '" + medium.id + "'; the first is on line " + std::to_string(first->second));
+      reading.error(e, "id",
+                    "a second medium '" + medium.id + "'; the first is on line " + std::to_string(first->second));
     }
     reading.out().media.push_back({e.name, medium.id, e, e.line});
   }
@@ -173,14 +183,16 @@ void connect_media(Reading& reading) {
           if (medium.id == *wanted) found = &medium;
         }
         if (found == nullptr) {
-          reading.error(choice.options, "medium", "<media> has no <" + std::string(kind) + "> with id '" + *wanted + "'; it has: " +
-                                                      listed(ids) + did_you_mean(*wanted, ids));
+          reading.error(choice.options, "medium",
+                        "<media> has no <" + std::string(kind) + "> with id '" + *wanted + "'; it has: " + listed(ids) +
+                            did_you_mean(*wanted, ids));
           continue;
         }
         // What a medium says holds for the sensors that listen to it, unless they say otherwise.
         const bool hears = list == &controller.sensors && choice.device == "range_and_bearing";
         if (hears && choice.options.attribute("check_occlusions") == nullptr) {
-          choice.options.attributes.push_back({"check_occlusions", *found->options.attribute("check_occlusions"), found->line});
+          choice.options.attributes.push_back(
+              {"check_occlusions", *found->options.attribute("check_occlusions"), found->line});
         }
       }
     }

@@ -20,20 +20,25 @@ class Claims {
 
   void add(const std::string& id, const std::optional<Distribute>& distribute, int line) {
     if (id.empty() || (distribute && distribute->quantity == 0)) return;
-    if (distribute) distributed_[id].push_back({distribute->base_num, distribute->base_num + distribute->quantity - 1, line});
-    else if (const auto [first, fresh] = single_.emplace(id, line); !fresh) clash(id, line, first->second);
+    if (distribute)
+      distributed_[id].push_back({distribute->base_num, distribute->base_num + distribute->quantity - 1, line});
+    else if (const auto [first, fresh] = single_.emplace(id, line); !fresh)
+      clash(id, line, first->second);
   }
 
   void check() {
     for (const auto& one : single_) {
-      for_each_split(one.first, [&](const std::string& prefix, std::int64_t number) { meet(prefix, {number, number, one.second}, one.first); });
+      for_each_split(one.first, [&](const std::string& prefix, std::int64_t number) {
+        meet(prefix, {number, number, one.second}, one.first);
+      });
     }
     for (auto& many : distributed_) {
       const std::string& prefix = many.first;
       std::vector<Numbers>& ranges = many.second;
       std::sort(ranges.begin(), ranges.end(), [](const Numbers& a, const Numbers& b) { return a.first < b.first; });
       for (std::size_t i = 1; i < ranges.size(); ++i) {
-        if (ranges[i].first <= ranges[i - 1].last) clash(prefix + std::to_string(ranges[i].first), ranges[i].line, ranges[i - 1].line);
+        if (ranges[i].first <= ranges[i - 1].last)
+          clash(prefix + std::to_string(ranges[i].first), ranges[i].line, ranges[i - 1].line);
       }
       // "ep1" with the numbers 0 to 9 makes "ep10" to "ep19", as "ep" may.
       for_each_split(prefix, [&](const std::string& shorter, std::int64_t head) {
@@ -66,10 +71,13 @@ class Claims {
   void meet_longer(const std::string& shorter, std::int64_t head, const Numbers& numbers) {
     if (head == 0) return;
     std::int64_t low = 0;  // of the numbers with this many digits
-    for (std::int64_t power = 10; power <= 1'000'000'000'000'000'000 / 10 && head <= 900'000'000'000'000'000 / power; power *= 10) {
+    for (std::int64_t power = 10; power <= 1'000'000'000'000'000'000 / 10 && head <= 900'000'000'000'000'000 / power;
+         power *= 10) {
       const std::int64_t first = std::max(numbers.first, low);
       const std::int64_t last = std::min(numbers.last, power - 1);
-      if (first <= last) meet(shorter, {head * power + first, head * power + last, numbers.line}, shorter + std::to_string(head) + std::to_string(first));
+      if (first <= last)
+        meet(shorter, {head * power + first, head * power + last, numbers.line},
+             shorter + std::to_string(head) + std::to_string(first));
       low = power;
     }
   }
@@ -78,7 +86,8 @@ class Claims {
     Element at;
     at.file = reading_.out().file;
     at.line = std::max(line, other_line);
-    reading_.error(at, "the id '" + id + "' is taken twice: also on line " + std::to_string(std::min(line, other_line)));
+    reading_.error(at,
+                   "the id '" + id + "' is taken twice: also on line " + std::to_string(std::min(line, other_line)));
   }
 
   Reading& reading_;

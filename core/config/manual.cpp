@@ -27,10 +27,10 @@ std::vector<ElementManual> manuals_of() {
 
 std::vector<ElementManual> all_manuals() {
   using namespace schema;
-  return manuals_of<Root, Framework, System, Experiment, Profiling, Time, Controllers, Configuration, Sensors, Actuators, Arena, Floor,
-                    Box, Cylinder, Leds, Light, Sound, Robot, Body, RobotController, Battery, Bridge, Tracker, DistributeElement,
-                    PositionDraw, OrientationDraw, Entity, Engines, Engine, Boundaries, Top, Bottom, Sides, Vertex, Media, Medium, Hook,
-                    Record, Trajectory, Visualization>();
+  return manuals_of<Root, Framework, System, Experiment, Profiling, Time, Controllers, Configuration, Sensors,
+                    Actuators, Arena, Floor, Box, Cylinder, Leds, Light, Sound, Robot, Body, RobotController, Battery,
+                    Bridge, Tracker, DistributeElement, PositionDraw, OrientationDraw, Entity, Engines, Engine,
+                    Boundaries, Top, Bottom, Sides, Vertex, Media, Medium, Hook, Record, Trajectory, Visualization>();
 }
 
 void replace(std::vector<std::string>& names, std::string_view stand_in, const std::vector<std::string>& kinds) {
@@ -58,12 +58,14 @@ std::vector<ElementManual> expanded(const ElementManual& m, const KnownNames& kn
 std::string parents_of(const ElementManual& m, const std::vector<ElementManual>& all, const KnownNames& known) {
   std::vector<std::string> parents;
   for (const ElementManual& other : all) {
-    if (std::find(other.children.begin(), other.children.end(), m.name) != other.children.end()) parents.push_back(other.name);
+    if (std::find(other.children.begin(), other.children.end(), m.name) != other.children.end())
+      parents.push_back(other.name);
   }
   // Those of which the parent says "anything".
   if (m.name == schema::Configuration::kElement.name) parents = {"controllers"};
   if (m.name == schema::Boundaries::kElement.name) parents = known.engines;
-  if (std::find(known.engines.begin(), known.engines.end(), m.name) != known.engines.end()) parents = {"physics_engines"};
+  if (std::find(known.engines.begin(), known.engines.end(), m.name) != known.engines.end())
+    parents = {"physics_engines"};
   return joined(parents, " or ");
 }
 

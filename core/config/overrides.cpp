@@ -7,8 +7,9 @@ namespace tandem::core {
 namespace {
 
 /// Elements that stand once in their parent and may be left out: an override may add them.
-constexpr std::array<std::string_view, 12> kMayBeAdded = {"system", "time",    "floor",  "params",     "battery",         "bridge",
-                                                          "tracker", "record", "trajectory", "media", "physics_engines", "visualization"};
+constexpr std::array<std::string_view, 12> kMayBeAdded = {"system",     "time",   "floor",           "params",
+                                                          "battery",    "bridge", "tracker",         "record",
+                                                          "trajectory", "media",  "physics_engines", "visualization"};
 
 struct Part {
   std::string name;
@@ -46,7 +47,9 @@ std::vector<std::string> contents(const Element& parent) {
     const auto total = std::count_if(parent.children.begin(), parent.children.end(), same);
     const auto index = std::count_if(parent.children.data(), &child, same);
     const std::string* id = child.attribute("id");
-    names.push_back(child.name + (id != nullptr ? "[" + *id + "]" : total > 1 ? "[" + std::to_string(index) + "]" : ""));
+    names.push_back(child.name + (id != nullptr ? "[" + *id + "]"
+                                  : total > 1   ? "[" + std::to_string(index) + "]"
+                                                : ""));
     if (names.size() > 20) break;
   }
   return names;
@@ -59,8 +62,8 @@ Element* select(Element& parent, const Part& part, const std::string& origin, st
   }
   if (part.selector.empty() && same.size() == 1) return same.front();
   if (part.selector.empty() && same.size() > 1) {
-    why = "<" + parent.name + "> has " + std::to_string(same.size()) + " <" + part.name + ">; choose one with " + part.name + "[n], from 0, or " +
-          part.name + "[id]: " + listed(contents(parent));
+    why = "<" + parent.name + "> has " + std::to_string(same.size()) + " <" + part.name + ">; choose one with " +
+          part.name + "[n], from 0, or " + part.name + "[id]: " + listed(contents(parent));
     return nullptr;
   }
   for (std::size_t i = 0; i < same.size(); ++i) {
@@ -75,8 +78,8 @@ Element* select(Element& parent, const Part& part, const std::string& origin, st
   }
   std::vector<std::string> names;
   for (const Element& child : parent.children) names.push_back(child.name);
-  why = "<" + parent.name + "> has no " + part.name + (part.selector.empty() ? "" : "[" + part.selector + "]") + "; it has: " +
-        listed(contents(parent)) + (same.empty() ? did_you_mean(part.name, names) : "");
+  why = "<" + parent.name + "> has no " + part.name + (part.selector.empty() ? "" : "[" + part.selector + "]") +
+        "; it has: " + listed(contents(parent)) + (same.empty() ? did_you_mean(part.name, names) : "");
   return nullptr;
 }
 

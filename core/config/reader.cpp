@@ -22,14 +22,20 @@ void read_devices(Reading& reading, Element& list, bool sensors, std::vector<Dev
     if (std::find(known.begin(), known.end(), choice.device) == known.end()) {
       const std::string what = sensors ? "sensor" : "actuator";
       // A robot's prefix would hide what was meant: "epuck_proximty".
-      const std::size_t prefix = choice.device.find("puck_") != std::string::npos || choice.device.find("bot_") != std::string::npos
-                                     ? choice.device.find('_') + 1 : 0;
-      reading.error(e, "unknown " + what + " <" + e.name + ">; known: " + listed(known) + did_you_mean(choice.device.substr(prefix), known));
+      const std::size_t prefix =
+          choice.device.find("puck_") != std::string::npos || choice.device.find("bot_") != std::string::npos
+              ? choice.device.find('_') + 1
+              : 0;
+      reading.error(e, "unknown " + what + " <" + e.name + ">; known: " + listed(known) +
+                           did_you_mean(choice.device.substr(prefix), known));
       continue;
     }
     const auto [first, fresh] = lines.emplace(choice.device, e.line);
-    if (!fresh) reading.error(e, "<" + e.name + ">: the device '" + choice.device + "' is already on line " + std::to_string(first->second));
-    else choices.push_back(std::move(choice));
+    if (!fresh)
+      reading.error(e, "<" + e.name + ">: the device '" + choice.device + "' is already on line " +
+                           std::to_string(first->second));
+    else
+      choices.push_back(std::move(choice));
   }
 }
 
@@ -59,12 +65,15 @@ Scenario read_parts(Reading& reading, Element& root) {
   reading.out().file = root.file;
   reading.out().name = std::filesystem::path(root.file).stem().string();
   if (root.name != "tandem" && root.name != "argos-configuration") {
-    reading.error(root, "the root element is <" + root.name + ">; an experiment starts with <tandem> or <argos-configuration>");
+    reading.error(
+        root, "the root element is <" + root.name + ">; an experiment starts with <tandem> or <argos-configuration>");
     return std::move(reading.out());
   }
   reading.read<schema::Root>(root);
   if (root.child("framework") == nullptr) {
-    reading.error(root, "there is no <framework>; add <framework><experiment length=\"60\" ticks_per_second=\"10\"/></framework>");
+    reading.error(
+        root,
+        "there is no <framework>; add <framework><experiment length=\"60\" ticks_per_second=\"10\"/></framework>");
   }
   if (root.child("arena") == nullptr) reading.error(root, "there is no <arena>; add <arena size=\"4,4,1\">…</arena>");
   reading.once(root, "framework", [&](Element& e) { read_framework(reading, e); });
@@ -83,8 +92,8 @@ Scenario read_parts(Reading& reading, Element& root) {
 }
 
 /// `found` are the problems of the XML so far.
-std::optional<Scenario> read_root(std::optional<Element> root, const std::vector<std::string>& overrides, const KnownNames& known,
-                                  Problems found, Problems& problems) {
+std::optional<Scenario> read_root(std::optional<Element> root, const std::vector<std::string>& overrides,
+                                  const KnownNames& known, Problems found, Problems& problems) {
   std::optional<Scenario> scenario;
   if (root) {
     for (const std::string& assignment : overrides) apply_override(*root, assignment, found);
@@ -125,7 +134,8 @@ void read_framework(Reading& reading, Element& e) {
     if (real_time) start.mode = "realtime";
     const std::string mode = reading.read(c, start).mode;
     out.time_mode = mode == "realtime" ? TimeMode::Realtime : mode == "lockstep" ? TimeMode::Lockstep : TimeMode::Fast;
-    if (said && real_time && mode != "realtime") reading.error(c, "mode", "'" + mode + "' contradicts <experiment real_time=\"true\">; drop one of them");
+    if (said && real_time && mode != "realtime")
+      reading.error(c, "mode", "'" + mode + "' contradicts <experiment real_time=\"true\">; drop one of them");
   });
   reading.once(e, "profiling", [&](Element& c) {
     reading.read<schema::Profiling>(c);
@@ -141,7 +151,9 @@ void read_controllers(Reading& reading, Element& controllers) {
     const std::string* id = e.attribute("id");
     if (id == nullptr) continue;
     const auto [first, fresh] = lines.emplace(*id, e.line);
-    if (!fresh) reading.error(e, "id", "a second controller '" + *id + "'; the first is on line " + std::to_string(first->second));
+    if (!fresh)
+      reading.error(e, "id",
+                    "a second controller '" + *id + "'; the first is on line " + std::to_string(first->second));
   }
 }
 
@@ -178,21 +190,24 @@ void read_visualization(Reading& reading, Element& visualization) {
   }
 }
 
-std::optional<Scenario> read_experiment(const std::string& path, const std::vector<std::string>& overrides, const KnownNames& known,
-                                        Problems& problems) {
+std::optional<Scenario> read_experiment(const std::string& path, const std::vector<std::string>& overrides,
+                                        const KnownNames& known, Problems& problems) {
   Problems found;
   auto root = read_xml_file(path, found);
   return read_root(std::move(root), overrides, known, std::move(found), problems);
 }
 
-std::optional<Scenario> read_experiment_text(const std::string& text, const std::string& name, const std::vector<std::string>& overrides,
-                                             const KnownNames& known, Problems& problems) {
+std::optional<Scenario> read_experiment_text(const std::string& text, const std::string& name,
+                                             const std::vector<std::string>& overrides, const KnownNames& known,
+                                             Problems& problems) {
   Problems found;
   auto root = read_xml_text(text, name, found);
   return read_root(std::move(root), overrides, known, std::move(found), problems);
 }
 
-std::string effective_settings(const Scenario& scenario) { return to_xml(scenario.effective); }
+std::string effective_settings(const Scenario& scenario) {
+  return to_xml(scenario.effective);
+}
 
 std::string device_name(std::string_view argos_name, bool sensor) {
   if (argos_name == "differential_steering") return sensor ? "wheel_encoders" : "differential_steering";

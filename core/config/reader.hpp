@@ -11,21 +11,22 @@ namespace tandem::core {
 
 /// What this program has, so that the reader can judge names.
 struct KnownNames {
-  std::vector<std::string> robots;    ///< kinds, e.g. "e-puck"
-  std::vector<std::string> engines;   ///< kinds
-  std::vector<std::string> sensors;   ///< port names
+  std::vector<std::string> robots;   ///< kinds, e.g. "e-puck"
+  std::vector<std::string> engines;  ///< kinds
+  std::vector<std::string> sensors;  ///< port names
   std::vector<std::string> actuators;
 };
 
-/// Reads and checks `path` with `overrides` ("path=value") applied. All problems are collected, each with its line and in the
-/// order of the file; nothing is returned when there is an error among them. Paths of files in it are relative to the
-/// working directory, or else to its own folder.
-std::optional<Scenario> read_experiment(const std::string& path, const std::vector<std::string>& overrides, const KnownNames& known,
-                                        Problems& problems);
+/// Reads and checks `path` with `overrides` ("path=value") applied. All problems are collected, each with its line and
+/// in the order of the file; nothing is returned when there is an error among them. Paths of files in it are relative
+/// to the working directory, or else to its own folder.
+std::optional<Scenario> read_experiment(const std::string& path, const std::vector<std::string>& overrides,
+                                        const KnownNames& known, Problems& problems);
 
 /// The same from text; `name` stands for the file in messages.
 std::optional<Scenario> read_experiment_text(const std::string& text, const std::string& name,
-                                             const std::vector<std::string>& overrides, const KnownNames& known, Problems& problems);
+                                             const std::vector<std::string>& overrides, const KnownNames& known,
+                                             Problems& problems);
 
 /// The scenario as an experiment file with every default written out. Reads back as the same scenario.
 std::string effective_settings(const Scenario& scenario);
@@ -35,8 +36,8 @@ std::string device_name(std::string_view argos_name, bool sensor);
 
 /// One element of the schema, for the manual.
 struct ElementManual {
-  std::string name;                   ///< as written; "configuration" stands for the names of controllers
-  std::string parent;                 ///< in which it may stand, "box or cylinder"; empty: the root
+  std::string name;    ///< as written; "configuration" stands for the names of controllers
+  std::string parent;  ///< in which it may stand, "box or cylinder"; empty: the root
   std::string doc;
   std::string attributes;             ///< which must be given, then all as ManualWriter lists them
   std::vector<std::string> children;  ///< "*": anything

@@ -41,8 +41,10 @@ Element* Reading::only(Element& parent, std::string_view name) {
   Element* first = nullptr;
   for (Element& child : parent.children) {
     if (child.name != name) continue;
-    if (first != nullptr) error(child, "a second <" + child.name + ">; the first is on line " + std::to_string(first->line));
-    else first = &child;
+    if (first != nullptr)
+      error(child, "a second <" + child.name + ">; the first is on line " + std::to_string(first->line));
+    else
+      first = &child;
   }
   return first;
 }

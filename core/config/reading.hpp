@@ -30,8 +30,8 @@ class Reading {
     problems_.back().warning = true;
   }
 
-  /// Reads an element by the schema of `T`: required and unknown attributes, values, children. Attributes that were left out
-  /// are then written into it, so that it shows the effective settings.
+  /// Reads an element by the schema of `T`: required and unknown attributes, values, children. Attributes that were
+  /// left out are then written into it, so that it shows the effective settings.
   template <class T>
   T read(Element& element, T value = {}) {
     const std::vector<std::string> missing = check(element, T::kElement);
@@ -40,7 +40,8 @@ class Reading {
     reader.finish();
     ElementWriter writer(element);
     value.describe(writer);
-    std::erase_if(element.attributes, [&](const auto& a) { return std::find(missing.begin(), missing.end(), a.name) != missing.end(); });
+    std::erase_if(element.attributes,
+                  [&](const auto& a) { return std::find(missing.begin(), missing.end(), a.name) != missing.end(); });
     return value;
   }
 

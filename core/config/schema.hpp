@@ -1,5 +1,5 @@
-// Every element of an experiment file, described once: what it is, what it must have, what may stand in it, and each of its
-// attributes. Reading, checking, defaults and the manual all come from these descriptions.
+// Every element of an experiment file, described once: what it is, what it must have, what may stand in it, and each of
+// its attributes. Reading, checking, defaults and the manual all come from these descriptions.
 #pragma once
 #include <array>
 #include <string>
@@ -20,7 +20,7 @@ inline constexpr double kLargestArena_m = 1e6;
 inline constexpr double kLargestQuantity = 1e8;
 inline constexpr double kSmallest_m = 1e-6;
 
-inline constexpr std::string_view kAnything = "*";   ///< as children: any element
+inline constexpr std::string_view kAnything = "*";       ///< as children: any element
 inline constexpr std::string_view kRobotKind = "ROBOT";  ///< in children: every kind of robot that the program knows
 
 /// What an element is and holds. Lists are names separated by spaces.
@@ -32,8 +32,9 @@ struct ElementInfo {
 };
 
 struct Root {
-  static constexpr ElementInfo kElement{"tandem", "An experiment. The name <argos-configuration> means the same.", "",
-                                        "framework controllers arena physics_engines media visualization loop_functions record"};
+  static constexpr ElementInfo kElement{
+      "tandem", "An experiment. The name <argos-configuration> means the same.", "",
+      "framework controllers arena physics_engines media visualization loop_functions record"};
   void describe(ParamVisitor&) {}
 };
 
@@ -48,9 +49,12 @@ struct System {
   std::string method = "balance_quantity";
   bool pin_threads_to_cores = false;
   void describe(ParamVisitor& v) {
-    static constexpr std::array<std::string_view, 4> kMethods = {"balance_quantity", "balance_length", "static", "dynamic"};
-    v.integer("threads", threads, {0, 1024}, "Threads that step the world; 0 and 1: the caller alone. Results do not depend on it.");
-    v.choice("method", method, kMethods, "balance_quantity or static: work is split in advance. balance_length or dynamic: handed out.");
+    static constexpr std::array<std::string_view, 4> kMethods = {"balance_quantity", "balance_length", "static",
+                                                                 "dynamic"};
+    v.integer("threads", threads, {0, 1024},
+              "Threads that step the world; 0 and 1: the caller alone. Results do not depend on it.");
+    v.choice("method", method, kMethods,
+             "balance_quantity or static: work is split in advance. balance_length or dynamic: handed out.");
     v.flag("pin_threads_to_cores", pin_threads_to_cores, "Accepted for ARGoS files; the system places threads.");
   }
 };
@@ -65,7 +69,8 @@ struct Experiment {
   void describe(ParamVisitor& v) {
     v.number("length", length_s, unit::s, {0.0, 1e9}, "Virtual duration; 0: until interrupted or a hook ends it.");
     v.integer("ticks_per_second", ticks_per_second, {1, 100000}, "Control steps a virtual second.");
-    v.integer("random_seed", random_seed, {0, 9.2e18}, "Seed of all chance; 0: from the clock, and named in the report.");
+    v.integer("random_seed", random_seed, {0, 9.2e18},
+              "Seed of all chance; 0: from the clock, and named in the report.");
     v.flag("real_time", real_time, "The same as <time mode=\"realtime\"/>.");
     v.text("visualization", visualization, "Accepted for ARGoS files.");
   }
@@ -88,7 +93,8 @@ struct Time {
   std::string mode = "fast";
   void describe(ParamVisitor& v) {
     static constexpr std::array<std::string_view, 3> kModes = {"fast", "realtime", "lockstep"};
-    v.choice("mode", mode, kModes, "fast: as fast as possible; realtime: paced by absolute time; lockstep: waits for every peer.");
+    v.choice("mode", mode, kModes,
+             "fast: as fast as possible; realtime: paced by absolute time; lockstep: waits for every peer.");
   }
 };
 
@@ -98,7 +104,8 @@ struct Controllers {
 };
 
 struct Configuration {
-  static constexpr ElementInfo kElement{"configuration", "One configuration, written with the registered name of its controller.",
+  static constexpr ElementInfo kElement{"configuration",
+                                        "One configuration, written with the registered name of its controller.",
                                         "id library", "actuators sensors params"};
   std::string id, library;
   void describe(ParamVisitor& v) {
@@ -108,21 +115,23 @@ struct Configuration {
 };
 
 struct Sensors {
-  static constexpr ElementInfo kElement{"sensors", "The sensors that the controller may take, each with its implementation= and options.",
-                                        "", kAnything};
+  static constexpr ElementInfo kElement{
+      "sensors", "The sensors that the controller may take, each with its implementation= and options.", "", kAnything};
   void describe(ParamVisitor&) {}
 };
 
 struct Actuators {
-  static constexpr ElementInfo kElement{"actuators", "The actuators that the controller may take, each with its implementation= and options.",
-                                        "", kAnything};
+  static constexpr ElementInfo kElement{
+      "actuators", "The actuators that the controller may take, each with its implementation= and options.", "",
+      kAnything};
   void describe(ParamVisitor&) {}
 };
 
 struct Hook {
-  static constexpr ElementInfo kElement{"loop_functions",
-                                        "A hook: what the experiment does around the robots. Further attributes and children are its own.",
-                                        "library", kAnything};
+  static constexpr ElementInfo kElement{
+      "loop_functions",
+      "A hook: what the experiment does around the robots. Further attributes and children are its own.", "library",
+      kAnything};
   std::string library, label;
   void describe(ParamVisitor& v) {
     v.text("library", library, "Shared object with the hook.");
@@ -131,7 +140,8 @@ struct Hook {
 };
 
 struct Arena {
-  static constexpr ElementInfo kElement{"arena", "The space and what is in it.", "size", "floor box cylinder light sound distribute ROBOT"};
+  static constexpr ElementInfo kElement{"arena", "The space and what is in it.", "size",
+                                        "floor box cylinder light sound distribute ROBOT"};
   Vec3 size{1.0, 1.0, 1.0}, center{};
   Vec3 positional_grid_size{};
   std::string escape = "error";
@@ -139,8 +149,10 @@ struct Arena {
     static constexpr std::array<std::string_view, 3> kPolicies = {"error", "stop", "remove"};
     v.vector("size", size, unit::m, "Extent in x, y, z.");
     v.vector("center", center, unit::m, "Its middle.");
-    v.vector("positional_grid_size", positional_grid_size, unit::none, "Accepted for ARGoS files; the grid chooses its size itself.");
-    v.choice("escape", escape, kPolicies, "What happens to a body that leaves: error ends the run, stop keeps it at the edge, remove.");
+    v.vector("positional_grid_size", positional_grid_size, unit::none,
+             "Accepted for ARGoS files; the grid chooses its size itself.");
+    v.choice("escape", escape, kPolicies,
+             "What happens to a body that leaves: error ends the run, stop keeps it at the edge, remove.");
   }
 };
 
@@ -151,9 +163,11 @@ struct Floor {
   void describe(ParamVisitor& v) {
     static constexpr std::array<std::string_view, 3> kSources = {"none", "image", "loop_functions"};
     v.text("id", id, "Name.");
-    v.choice("source", source, kSources, "Where the floor's shade comes from: even grey, a PNG image, or a hook's floor().");
+    v.choice("source", source, kSources,
+             "Where the floor's shade comes from: even grey, a PNG image, or a hook's floor().");
     v.text("path", path, "The PNG image, laid over the whole arena, its top to the north (+y).");
-    v.number("pixels_per_meter", pixels_per_meter, unit::none, {0.01, 10000.0}, "Resolution of a floor painted by a hook.");
+    v.number("pixels_per_meter", pixels_per_meter, unit::none, {0.01, 10000.0},
+             "Resolution of a floor painted by a hook.");
   }
 };
 
@@ -223,19 +237,23 @@ struct Body {
 };
 
 struct Robot {
-  static constexpr ElementInfo kElement{"robot", "A robot, written with the name of its kind, e.g. <e-puck>.", "id", "body controller battery bridge tracker"};
+  static constexpr ElementInfo kElement{"robot", "A robot, written with the name of its kind, e.g. <e-puck>.", "id",
+                                        "body controller battery bridge tracker"};
   std::string id;
   double rab_range_m = -1.0;
   std::int64_t rab_data_size = -1;
   void describe(ParamVisitor& v) {
     v.text("id", id, "Name; inside <distribute> the beginning of the names.");
     v.number("rab_range", rab_range_m, unit::m, {-1.0, 1e4}, "Reach of range-and-bearing; negative: the data sheet's.");
-    v.integer("rab_data_size", rab_data_size, {-1, 10}, "Bytes of a range-and-bearing message; negative: the data sheet's.");
+    v.integer("rab_data_size", rab_data_size, {-1, 10},
+              "Bytes of a range-and-bearing message; negative: the data sheet's.");
   }
 };
 
 struct RobotController {
-  static constexpr ElementInfo kElement{"controller", "Which configuration drives the robot; a <params> inside overrides its parameters one by one.", "config", "params"};
+  static constexpr ElementInfo kElement{
+      "controller", "Which configuration drives the robot; a <params> inside overrides its parameters one by one.",
+      "config", "params"};
   std::string config;
   void describe(ParamVisitor& v) { v.text("config", config, "Id of a configuration under <controllers>."); }
 };
@@ -266,7 +284,8 @@ struct Bridge {
     static constexpr std::array<std::string_view, 5> kFirmware = {"auto", "btcom", "gctronic", "webots", "epuck2"};
     v.text("link", link, "Where the real robot is, e.g. serial:/dev/ttyUSB0@115200.");
     v.choice("firmware", firmware, kFirmware, "Which firmware it runs; auto asks it.");
-    v.number("timeout", timeout_s, unit::s, {0.05, 60.0}, "Age of the last answer from which the robot counts as lost and is stopped.");
+    v.number("timeout", timeout_s, unit::s, {0.05, 60.0},
+             "Age of the last answer from which the robot counts as lost and is stopped.");
   }
 };
 
@@ -280,7 +299,8 @@ struct Tracker {
 };
 
 struct DistributeElement {
-  static constexpr ElementInfo kElement{"distribute", "Places many of one thing, without overlap.", "", "position orientation entity"};
+  static constexpr ElementInfo kElement{"distribute", "Places many of one thing, without overlap.", "",
+                                        "position orientation entity"};
   void describe(ParamVisitor&) {}
 };
 
@@ -312,22 +332,25 @@ struct Draw {
     v.vector("values", values, bare, "The values (constant).");
     v.vector("center", center, bare, "Middle of the grid.");
     v.vector("distances", distances, bare, "Spacing of the grid.");
-    v.vector("layout", layout, unit::none, "Places of the grid in x, y, z; filled west to east, then south to north, then upwards.");
+    v.vector("layout", layout, unit::none,
+             "Places of the grid in x, y, z; filled west to east, then south to north, then upwards.");
   }
 };
 
 struct PositionDraw : Draw {
-  static constexpr ElementInfo kElement{"position", "How positions are drawn. Each method needs its own attributes, and takes no others.",
-                                        "method"};
+  static constexpr ElementInfo kElement{
+      "position", "How positions are drawn. Each method needs its own attributes, and takes no others.", "method"};
 };
 
 struct OrientationDraw : Draw {
-  static constexpr ElementInfo kElement{"orientation", "How orientations are drawn: rotations about z, then y, then x.", "method"};
+  static constexpr ElementInfo kElement{"orientation", "How orientations are drawn: rotations about z, then y, then x.",
+                                        "method"};
   OrientationDraw() { bare = unit::deg; }
 };
 
 struct Entity {
-  static constexpr ElementInfo kElement{"entity", "How many of the one thing inside.", "quantity", "box cylinder light ROBOT"};
+  static constexpr ElementInfo kElement{"entity", "How many of the one thing inside.", "quantity",
+                                        "box cylinder light ROBOT"};
   std::int64_t quantity = 1, max_trials = 100, base_num = 0;
   void describe(ParamVisitor& v) {
     v.integer("quantity", quantity, {0, kLargestQuantity}, "How many.");
@@ -337,22 +360,26 @@ struct Entity {
 };
 
 struct Engines {
-  static constexpr ElementInfo kElement{"physics_engines", "What moves the bodies. None: one kinematics2d for the whole arena.", "", kAnything};
+  static constexpr ElementInfo kElement{
+      "physics_engines", "What moves the bodies. None: one kinematics2d for the whole arena.", "", kAnything};
   void describe(ParamVisitor&) {}
 };
 
 /// What engines of every kind have; the rest of the attributes are the engine's own.
 struct Engine {
-  static constexpr ElementInfo kElement{"engine", "A physics engine, written with the name of its kind, e.g. <kinematics2d>.", "id", kAnything};
+  static constexpr ElementInfo kElement{
+      "engine", "A physics engine, written with the name of its kind, e.g. <kinematics2d>.", "id", kAnything};
   std::string id, regions;
   void describe(ParamVisitor& v) {
     v.text("id", id, "Name, for gates.");
-    v.text("regions", regions, "How the arena is split, \"4x4\" or \"auto\"; kinematics2d needs no split, any is the same to it.");
+    v.text("regions", regions,
+           "How the arena is split, \"4x4\" or \"auto\"; kinematics2d needs no split, any is the same to it.");
   }
 };
 
 struct Boundaries {
-  static constexpr ElementInfo kElement{"boundaries", "The region of an engine: a right prism. Left out: the whole arena.", "", "top bottom sides"};
+  static constexpr ElementInfo kElement{
+      "boundaries", "The region of an engine: a right prism. Left out: the whole arena.", "", "top bottom sides"};
   void describe(ParamVisitor&) {}
 };
 
@@ -369,12 +396,14 @@ struct Bottom {
 };
 
 struct Sides {
-  static constexpr ElementInfo kElement{"sides", "Outline of a region: its corners in order, at least three.", "", "vertex"};
+  static constexpr ElementInfo kElement{"sides", "Outline of a region: its corners in order, at least three.", "",
+                                        "vertex"};
   void describe(ParamVisitor&) {}
 };
 
 struct Vertex {
-  static constexpr ElementInfo kElement{"vertex", "A corner of a region, and the side from here to the next: a wall, or a gate.", "point"};
+  static constexpr ElementInfo kElement{
+      "vertex", "A corner of a region, and the side from here to the next: a wall, or a gate.", "point"};
   std::string point, gate;
   void describe(ParamVisitor& v) {
     v.text("point", point, "\"x,y\"; bare numbers are in m.");
@@ -383,19 +412,21 @@ struct Vertex {
 };
 
 struct Media {
-  static constexpr ElementInfo kElement{"media", "What carries signals.", "", "range_and_bearing led directional_led tag simple_radio"};
+  static constexpr ElementInfo kElement{"media", "What carries signals.", "",
+                                        "range_and_bearing led directional_led tag simple_radio"};
   void describe(ParamVisitor&) {}
 };
 
 struct Medium {
-  static constexpr ElementInfo kElement{"medium", "A medium, written with the name of its kind, e.g. <range_and_bearing>.", "id"};
+  static constexpr ElementInfo kElement{"medium",
+                                        "A medium, written with the name of its kind, e.g. <range_and_bearing>.", "id"};
   std::string id;
-  std::int64_t index = 0;
+  std::string index;
   std::string grid_size;
   bool check_occlusions = true;
   void describe(ParamVisitor& v) {
     v.text("id", id, "Name that devices refer to.");
-    v.integer("index", index, kNotNegative, "Accepted for ARGoS files.");
+    v.text("index", index, "Accepted for ARGoS files.");
     v.text("grid_size", grid_size, "Accepted for ARGoS files; the grid chooses its size itself.");
     v.flag("check_occlusions", check_occlusions, "Whether boxes and cylinders block messages (range_and_bearing).");
   }
@@ -413,7 +444,8 @@ struct Record {
 };
 
 struct Visualization {
-  static constexpr ElementInfo kElement{"visualization", "Views of ARGoS; left out with a warning, but for their camera placements.", "", kAnything};
+  static constexpr ElementInfo kElement{
+      "visualization", "Views of ARGoS; left out with a warning, but for their camera placements.", "", kAnything};
   void describe(ParamVisitor&) {}
 };
 

@@ -1,13 +1,12 @@
 #include "core/config/xml.hpp"
 
-#include <tinyxml2.h>
-
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <tinyxml2.h>
 
 namespace tandem::core {
 namespace {
@@ -56,22 +55,33 @@ void print(const Element& element, tinyxml2::XMLPrinter& printer) {
 
 std::string why_not_xml(const tinyxml2::XMLDocument& document) {
   switch (document.ErrorID()) {
-    case tinyxml2::XML_ERROR_EMPTY_DOCUMENT: return "the file is empty";
-    case tinyxml2::XML_ERROR_MISMATCHED_ELEMENT: return "not well-formed XML: a tag is closed that is not the last one opened, or one is never closed";
-    case tinyxml2::XML_ERROR_PARSING_ATTRIBUTE: return "not well-formed XML: an attribute must be written name=\"value\", and only once";
-    case tinyxml2::XML_ERROR_PARSING_COMMENT: return "not well-formed XML: a comment <!-- is never closed with -->";
-    case tinyxml2::XML_ERROR_PARSING_TEXT: return "not well-formed XML: there is text outside of the elements; is this an XML file?";
-    case tinyxml2::XML_ELEMENT_DEPTH_EXCEEDED: return "the elements are nested too deeply";
-    case tinyxml2::XML_ERROR_PARSING_ELEMENT: return "not well-formed XML: a tag is broken or never closed with >";
-    case tinyxml2::XML_ERROR_PARSING: return "not well-formed XML: an element is never closed";
-    default: return std::string("not well-formed XML: ") + document.ErrorName();
+    case tinyxml2::XML_ERROR_EMPTY_DOCUMENT:
+      return "the file is empty";
+    case tinyxml2::XML_ERROR_MISMATCHED_ELEMENT:
+      return "not well-formed XML: a tag is closed that is not the last one opened, or one is never closed";
+    case tinyxml2::XML_ERROR_PARSING_ATTRIBUTE:
+      return "not well-formed XML: an attribute must be written name=\"value\", and only once";
+    case tinyxml2::XML_ERROR_PARSING_COMMENT:
+      return "not well-formed XML: a comment <!-- is never closed with -->";
+    case tinyxml2::XML_ERROR_PARSING_TEXT:
+      return "not well-formed XML: there is text outside of the elements; is this an XML file?";
+    case tinyxml2::XML_ELEMENT_DEPTH_EXCEEDED:
+      return "the elements are nested too deeply";
+    case tinyxml2::XML_ERROR_PARSING_ELEMENT:
+      return "not well-formed XML: a tag is broken or never closed with >";
+    case tinyxml2::XML_ERROR_PARSING:
+      return "not well-formed XML: an element is never closed";
+    default:
+      return std::string("not well-formed XML: ") + document.ErrorName();
   }
 }
 
 /// Binary content, which XML must not have.
 int line_of_zero_byte(const std::string& text) {
   const std::size_t zero = text.find('\0');
-  return zero == std::string::npos ? 0 : 1 + static_cast<int>(std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(zero), '\n'));
+  return zero == std::string::npos
+             ? 0
+             : 1 + static_cast<int>(std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(zero), '\n'));
 }
 
 }  // namespace
@@ -85,7 +95,8 @@ std::optional<Element> read_xml_file(const std::string& path, Problems& problems
   };
   const fs::file_status status = fs::status(path, error);
   if (status.type() == fs::file_type::not_found) return refuse("there is no such file");
-  if (status.type() == fs::file_type::directory) return refuse("this is a folder; give the path of an experiment file (.xml)");
+  if (status.type() == fs::file_type::directory)
+    return refuse("this is a folder; give the path of an experiment file (.xml)");
   if (status.type() != fs::file_type::regular) return refuse("this is not a regular file that can be read");
   if (fs::file_size(path, error) > kLargestFile) return refuse("the file is larger than 64 MiB; that is no experiment");
   std::ifstream in(path, std::ios::binary);
@@ -112,7 +123,8 @@ std::optional<Element> read_xml_text(const std::string& text, const std::string&
     return std::nullopt;
   }
   for (const auto* next = root->NextSiblingElement(); next != nullptr; next = next->NextSiblingElement()) {
-    converter.problem(next->GetLineNum(), std::string("a second root element <") + next->Name() + ">; everything belongs in one");
+    converter.problem(next->GetLineNum(),
+                      std::string("a second root element <") + next->Name() + ">; everything belongs in one");
   }
   return converter.convert(*root, false);
 }

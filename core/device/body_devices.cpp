@@ -59,7 +59,9 @@ class AccelerometerSensor final : public Sensor {
   std::vector<double> last_m_s_;
 };
 
-bool has_accelerometer(const hal::DataSheet& sheet) { return sheet.wheel_base_m > 0.0; }
+bool has_accelerometer(const hal::DataSheet& sheet) {
+  return sheet.wheel_base_m > 0.0;
+}
 
 template <class Options>
 Recipe<Sensor> make_accelerometer(const Element& element, Problems& problems, const DeviceSetup& setup) {
@@ -77,12 +79,13 @@ template <int kPerMille>
 struct SoundNoise {
   double noise_level = kPerMille * 1e-3;
   void describe(hal::ParamVisitor& v) {
-    v.number("noise_level", noise_level, hal::unit::none, {0.0, 1.0}, "Background noise, 0 to this, on each microphone.");
+    v.number("noise_level", noise_level, hal::unit::none, {0.0, 1.0},
+             "Background noise, 0 to this, on each microphone.");
   }
 };
 
-/// A source of level L is heard at L / (1 + (d / 10 cm)^2): full level at the source, falling with the square of the distance
-/// in the far field. Sources add up, at most to 1.
+/// A source of level L is heard at L / (1 + (d / 10 cm)^2): full level at the source, falling with the square of the
+/// distance in the far field. Sources add up, at most to 1.
 class MicrophoneSensor final : public Sensor {
  public:
   MicrophoneSensor(const hal::DataSheet& sheet, double noise) : mounts_(sheet.microphones), noise_(noise) {}
@@ -123,7 +126,9 @@ class MicrophoneSensor final : public Sensor {
   double noise_;
 };
 
-bool has_microphones(const hal::DataSheet& sheet) { return !sheet.microphones.empty(); }
+bool has_microphones(const hal::DataSheet& sheet) {
+  return !sheet.microphones.empty();
+}
 
 template <class Options>
 Recipe<Sensor> make_microphones(const Element& element, Problems& problems, const DeviceSetup& setup) {
@@ -147,8 +152,12 @@ struct ChargeNoise {
 class BatterySensor final : public Sensor {
  public:
   BatterySensor(const DeviceSetup& setup, double noise, std::size_t capacity)
-      : config_(setup.item.battery), noise_(noise), full_V_(setup.sheet.battery_full_V), empty_V_(setup.sheet.battery_empty_V),
-        wheel_base_m_(setup.sheet.wheel_base_m), charge_(capacity, setup.item.battery.start_charge) {
+      : config_(setup.item.battery),
+        noise_(noise),
+        full_V_(setup.sheet.battery_full_V),
+        empty_V_(setup.sheet.battery_empty_V),
+        wheel_base_m_(setup.sheet.wheel_base_m),
+        charge_(capacity, setup.item.battery.start_charge) {
     by_time_ = config_.model != "motion";
     by_motion_ = config_.model != "time";
   }
@@ -189,7 +198,9 @@ class BatterySensor final : public Sensor {
   bool by_motion_ = false;
 };
 
-bool has_battery(const hal::DataSheet& sheet) { return sheet.battery_full_V > 0.0; }
+bool has_battery(const hal::DataSheet& sheet) {
+  return sheet.battery_full_V > 0.0;
+}
 
 template <class Options>
 Recipe<Sensor> make_battery(const Element& element, Problems& problems, const DeviceSetup& setup) {
@@ -201,25 +212,50 @@ Recipe<Sensor> make_battery(const Element& element, Problems& problems, const De
 
 // --- clock ---
 
-class ClockSensor final : public Sensor {
- public:
-  void sense(const DeviceContext& context, void* ports) noexcept override {
-    auto* clocks = static_cast<hal::Clock*>(ports);
-    for (std::size_t i = 0; i < context.block.used; ++i) {
-      clocks[i].taken_ns = context.now_ns;
-      clocks[i].validity = hal::Validity::Fresh;
-      clocks[i].tick = context.tick;
-      clocks[i].now_ns = context.now_ns;
-      clocks[i].tick_s = context.tick_s;
-    }
+template <int kMicroseconds>
+struct ClockNoise {
+  double jitter_s = kMicroseconds * 1e-6;
+  void describe(hal::ParamVisitor& v) {
+    v.number("jitter", jitter_s, hal::unit::ms, {0.0, 1.0},
+             "Standard deviation of the time that is read; ticks stay exact.");
   }
 };
 
-bool always(const hal::DataSheet&) { return true; }
+class ClockSensor final : public Sensor {
+ public:
+  explicit ClockSensor(double jitter_s) : jitter_s_(jitter_s) {}
 
+  void sense(const DeviceContext& context, void* ports) noexcept override {
+    auto* clocks = static_cast<hal::Clock*>(ports);
+    for (std::size_t i = 0; i < context.block.used; ++i) {
+      hal::Clock& port = clocks[i];
+      port.taken_ns = context.now_ns;
+      port.validity = hal::Validity::Fresh;
+      port.tick = context.tick;
+      port.now_ns = context.now_ns;
+      port.tick_s = context.tick_s;
+      if (jitter_s_ > 0.0) {
+        const std::uint32_t entity = context.stores.bodies.entity[context.block.first_row + i];
+        const auto bits = draw(context.seed, entity, Stream::ClockNoise, context.tick);
+        port.now_ns += static_cast<hal::TimeNs>(std::llround(1e9 * jitter_s_ * to_normal(bits[0], bits[1])[0]));
+      }
+    }
+  }
+
+ private:
+  double jitter_s_;
+};
+
+bool always(const hal::DataSheet&) {
+  return true;
+}
+
+template <class Options>
 Recipe<Sensor> make_clock(const Element& element, Problems& problems, const DeviceSetup&) {
-  read_options<NoOptions>(element, problems);
-  return [](std::size_t) { return std::make_unique<ClockSensor>(); };
+  const auto options = read_options<Options>(element, problems);
+  double jitter_s = 0.0;
+  if constexpr (requires { options.jitter_s; }) jitter_s = options.jitter_s;
+  return [jitter_s](std::size_t) { return std::make_unique<ClockSensor>(jitter_s); };
 }
 
 // --- lamps ---
@@ -235,7 +271,9 @@ class Lamps final : public Actuator {
   void act(const DeviceContext&, SpaceStores&, const void*) noexcept override {}
 };
 
-bool has_leds(const hal::DataSheet& sheet) { return !sheet.leds.empty(); }
+bool has_leds(const hal::DataSheet& sheet) {
+  return !sheet.leds.empty();
+}
 
 Recipe<Actuator> make_lamps(const Element& element, Problems& problems, const DeviceSetup&) {
   read_options<LampOptions>(element, problems);
@@ -248,8 +286,8 @@ std::vector<DeviceType> body_device_types() {
   std::vector<DeviceType> types = {
       sensor_type("accelerometer", "default", "From the wheels' speeds; noise where asked for.", &has_accelerometer,
                   &make_accelerometer<ForceNoise<0>>, &describe_options<ForceNoise<0>>),
-      sensor_type("accelerometer", "ideal", "From the wheels' speeds.", &has_accelerometer, &make_accelerometer<NoOptions>,
-                  &describe_options<NoOptions>),
+      sensor_type("accelerometer", "ideal", "From the wheels' speeds.", &has_accelerometer,
+                  &make_accelerometer<NoOptions>, &describe_options<NoOptions>),
       sensor_type("accelerometer", "noisy", "From the wheels' speeds, with normal noise.", &has_accelerometer,
                   &make_accelerometer<ForceNoise<200>>, &describe_options<ForceNoise<200>>),
       sensor_type("microphones", "default", "Sources around; noise where asked for.", &has_microphones,
@@ -262,10 +300,13 @@ std::vector<DeviceType> body_device_types() {
                   &make_battery<ChargeNoise<0>>, &describe_options<ChargeNoise<0>>),
       sensor_type("battery", "ideal", "The robot's discharge model.", &has_battery, &make_battery<NoOptions>,
                   &describe_options<NoOptions>),
-      sensor_type("battery", "noisy", "The robot's discharge model, with noise.", &has_battery, &make_battery<ChargeNoise<10>>,
-                  &describe_options<ChargeNoise<10>>),
-      sensor_type("clock", "default", "The run's time.", &always, &make_clock, &describe_options<NoOptions>),
-      sensor_type("clock", "ideal", "The run's time.", &always, &make_clock, &describe_options<NoOptions>)};
+      sensor_type("battery", "noisy", "The robot's discharge model, with noise.", &has_battery,
+                  &make_battery<ChargeNoise<10>>, &describe_options<ChargeNoise<10>>),
+      sensor_type("clock", "default", "The run's time; jitter where asked for.", &always, &make_clock<ClockNoise<0>>,
+                  &describe_options<ClockNoise<0>>),
+      sensor_type("clock", "ideal", "The run's time.", &always, &make_clock<NoOptions>, &describe_options<NoOptions>),
+      sensor_type("clock", "noisy", "The run's time, with jitter.", &always, &make_clock<ClockNoise<1000>>,
+                  &describe_options<ClockNoise<1000>>)};
   for (const std::string_view lamp : {"leds", "body_led", "front_led"}) {
     types.push_back(actuator_type(lamp, "default", "Shines.", &has_leds, &make_lamps, &describe_options<LampOptions>));
     types.push_back(actuator_type(lamp, "ideal", "Shines.", &has_leds, &make_lamps, &describe_options<LampOptions>));

@@ -22,8 +22,8 @@ struct DeviceContext {
   std::uint64_t seed;
 };
 
-/// Fills the ports of one block. One object a block, so that state (a battery's charge) needs no locks. Reads the space,
-/// never other robots' ports.
+/// Fills the ports of one block. One object a block, so that state (a battery's charge) needs no locks. Reads the
+/// space, never other robots' ports.
 class Sensor {
  public:
   virtual ~Sensor() = default;
@@ -51,7 +51,7 @@ using Recipe = std::function<std::unique_ptr<Device>(std::size_t capacity)>;
 
 /// One implementation of one device class.
 struct DeviceType {
-  std::string_view device;          ///< the port's name
+  std::string_view device;  ///< the port's name
   std::string_view implementation;
   std::string_view summary;
   hal::Role role = hal::Role::Sensor;

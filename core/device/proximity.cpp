@@ -32,15 +32,17 @@ std::atomic<VectorCode> chosen_code{detect_avx2() ? VectorCode::Avx2 : VectorCod
   for (std::size_t k = 0; k < ring.registers * RayRing::kLanes; ++k) distances[k] = ring.range_m;
 
   const double reach = static_cast<double>(ring.reach_m);
-  stores.body_index.for_each_near(x, y, reach + static_cast<double>(b.radius_m[row]), [&] (const IndexEntry& o) __attribute__((always_inline)) {
-    const float wx = static_cast<float>(o.x_m - x);
-    const float wy = static_cast<float>(o.y_m - y);
-    const float within = ring.reach_m + o.radius_m;
-    if (wx * wx + wy * wy >= within * within || o.row() == row32) return;
-    const float qx = c * wx + s * wy;
-    const float qy = c * wy - s * wx;
-    for (std::size_t g = 0; g < ring.registers; ++g) meet_disc(ring, g, qx, qy, o.radius_m, distances + g * RayRing::kLanes);
-  });
+  stores.body_index.for_each_near(
+      x, y, reach + static_cast<double>(b.radius_m[row]), [&](const IndexEntry& o) __attribute__((always_inline)) {
+        const float wx = static_cast<float>(o.x_m - x);
+        const float wy = static_cast<float>(o.y_m - y);
+        const float within = ring.reach_m + o.radius_m;
+        if (wx * wx + wy * wy >= within * within || o.row() == row32) return;
+        const float qx = c * wx + s * wy;
+        const float qy = c * wy - s * wx;
+        for (std::size_t g = 0; g < ring.registers; ++g)
+          meet_disc(ring, g, qx, qy, o.radius_m, distances + g * RayRing::kLanes);
+      });
   for (const std::uint32_t i : stores.static_index.near(x, y)) {
     const StaticShape& shape = stores.statics[i];
     const auto height = static_cast<double>(ring.height_m);
@@ -51,7 +53,8 @@ std::atomic<VectorCode> chosen_code{detect_avx2() ? VectorCode::Avx2 : VectorCod
     const float qy = c * wy - s * wx;
     if (shape.kind == StaticShape::Kind::Cylinder) {
       const auto radius = static_cast<float>(shape.radius_m);
-      for (std::size_t g = 0; g < ring.registers; ++g) meet_disc(ring, g, qx, qy, radius, distances + g * RayRing::kLanes);
+      for (std::size_t g = 0; g < ring.registers; ++g)
+        meet_disc(ring, g, qx, qy, radius, distances + g * RayRing::kLanes);
     } else {
       const auto bc = static_cast<float>(shape.cos_h);
       const auto bs = static_cast<float>(shape.sin_h);
@@ -65,7 +68,8 @@ std::atomic<VectorCode> chosen_code{detect_avx2() ? VectorCode::Avx2 : VectorCod
   }
 }
 
-[[gnu::always_inline]] inline void sense_block(const DeviceContext& context, const RayRing& ring, hal::Proximity* ports) noexcept {
+[[gnu::always_inline]] inline void sense_block(const DeviceContext& context, const RayRing& ring,
+                                               hal::Proximity* ports) noexcept {
   for (std::size_t i = 0; i < context.block.used; ++i) {
     hal::Proximity& port = ports[i];
     port.taken_ns = context.now_ns;
@@ -99,8 +103,10 @@ class ProximitySensor final : public Sensor {
 
   void sense(const DeviceContext& context, void* ports) noexcept override {
     auto* proximity = static_cast<hal::Proximity*>(ports);
-    if (vector_code() == VectorCode::Avx2) sense_block_avx2(context, ring_, proximity);
-    else sense_block_baseline(context, ring_, proximity);
+    if (vector_code() == VectorCode::Avx2)
+      sense_block_avx2(context, ring_, proximity);
+    else
+      sense_block_baseline(context, ring_, proximity);
     if (noise_ > 0.0F) add_noise(context, proximity);
   }
 
@@ -111,7 +117,8 @@ class ProximitySensor final : public Sensor {
       hal::Proximity& port = ports[i];
       const std::uint32_t entity = context.stores.bodies.entity[context.block.first_row + i];
       for (std::size_t k = 0; k < ring_.count; k += 8) {  // eight 16-bit numbers a draw
-        const auto bits = draw(context.seed, entity, Stream::ProximityNoise, context.tick, static_cast<std::uint32_t>(k));
+        const auto bits =
+            draw(context.seed, entity, Stream::ProximityNoise, context.tick, static_cast<std::uint32_t>(k));
         for (std::size_t j = k; j < std::min(ring_.count, k + 8); ++j) {
           const std::uint32_t half = (bits[(j - k) / 2] >> (16 * (j & 1))) & 0xFFFFU;
           const float unit = (static_cast<float>(half) + 0.5F) * 0x1p-15F - 1.0F;  // in (-1, 1)
@@ -128,7 +135,9 @@ class ProximitySensor final : public Sensor {
 
 struct NoOptions {
   bool show_rays = false;
-  void describe(hal::ParamVisitor& v) { v.flag("show_rays", show_rays, "Draw the rays in a view; no effect on readings."); }
+  void describe(hal::ParamVisitor& v) {
+    v.flag("show_rays", show_rays, "Draw the rays in a view; no effect on readings.");
+  }
 };
 
 template <int kPerMille>
@@ -141,7 +150,9 @@ struct NoiseOptions : NoOptions {
   }
 };
 
-bool has_proximity(const hal::DataSheet& sheet) { return !sheet.proximity.empty(); }
+bool has_proximity(const hal::DataSheet& sheet) {
+  return !sheet.proximity.empty();
+}
 
 template <class Options>
 Recipe<Sensor> make_proximity(const Element& element, Problems& problems, const DeviceSetup& setup) {
@@ -153,14 +164,21 @@ Recipe<Sensor> make_proximity(const Element& element, Problems& problems, const 
 
 template <class Options>
 DeviceType proximity_type(std::string_view implementation, std::string_view summary) {
-  return sensor_type("proximity", implementation, summary, &has_proximity, &make_proximity<Options>, &describe_options<Options>);
+  return sensor_type("proximity", implementation, summary, &has_proximity, &make_proximity<Options>,
+                     &describe_options<Options>);
 }
 
 }  // namespace
 
-VectorCode vector_code() noexcept { return chosen_code.load(std::memory_order_relaxed); }
-void use_vector_code(VectorCode code) noexcept { chosen_code.store(code, std::memory_order_relaxed); }
-bool has_avx2() noexcept { return detect_avx2(); }
+VectorCode vector_code() noexcept {
+  return chosen_code.load(std::memory_order_relaxed);
+}
+void use_vector_code(VectorCode code) noexcept {
+  chosen_code.store(code, std::memory_order_relaxed);
+}
+bool has_avx2() noexcept {
+  return detect_avx2();
+}
 
 std::vector<DeviceType> proximity_types() {
   return {proximity_type<NoiseOptions<0>>("default", "Exact rays; noise only where noise_level asks for it."),

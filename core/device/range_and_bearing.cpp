@@ -1,13 +1,16 @@
 // Range-and-bearing: messages heard from the robots in range, with where they came from.
+#include "hal/device/range_and_bearing.hpp"
+
 #include "core/device/sight.hpp"
 #include "core/device/types.hpp"
 #include "core/random/random.hpp"
-#include "hal/device/range_and_bearing.hpp"
 
 namespace tandem::core {
 namespace {
 
-bool has_rab(const hal::DataSheet& sheet) { return sheet.rab_range_m > 0.0; }
+bool has_rab(const hal::DataSheet& sheet) {
+  return sheet.rab_range_m > 0.0;
+}
 
 struct IdealHearing {
   std::string medium;
@@ -51,7 +54,8 @@ class RabSensor final : public Sensor {
   }
 
  private:
-  void hear(const DeviceContext& context, std::size_t row, double farthest_m, hal::RangeAndBearing& port) const noexcept {
+  void hear(const DeviceContext& context, std::size_t row, double farthest_m,
+            hal::RangeAndBearing& port) const noexcept {
     const SpaceStores& stores = context.stores;
     const Bodies& b = stores.bodies;
     if (stores.broadcasts.empty()) return;
@@ -69,7 +73,8 @@ class RabSensor final : public Sensor {
       if (options_.check_occlusions && !in_sight(stores, x, y, height, o.x_m, o.y_m, height)) return;
       if (options_.packet_drop_prob > 0.0 && lost(context, b.entity[row], b.entity[other])) return;
       if (options_.noise_std_dev_m > 0.0) {
-        const auto bits = draw(context.seed, b.entity[row], Stream::RabNoise, context.tick, b.entity[other] & 0xFFFFFFU);
+        const auto bits =
+            draw(context.seed, b.entity[row], Stream::RabNoise, context.tick, b.entity[other] & 0xFFFFFFU);
         const auto noise = to_normal(bits[0], bits[1]);
         wx += options_.noise_std_dev_m * noise[0];
         wy += options_.noise_std_dev_m * noise[1];
@@ -103,49 +108,80 @@ Recipe<Sensor> make_hearing(const Element& element, Problems& problems, const De
 
 template <class Options>
 DeviceType hearing_type(std::string_view implementation, std::string_view summary) {
-  return sensor_type("range_and_bearing", implementation, summary, &has_rab, &make_hearing<Options>, &describe_options<Options>);
+  return sensor_type("range_and_bearing", implementation, summary, &has_rab, &make_hearing<Options>,
+                     &describe_options<Options>);
 }
 
 // --- sending ---
 
-struct Sending {
+struct IdealSending {
   std::string medium;
   void describe(hal::ParamVisitor& v) { v.text("medium", medium, "Id of the range-and-bearing medium."); }
 };
 
+template <int kPerMille>
+struct Sending : IdealSending {
+  double failure_prob = kPerMille * 1e-3;
+  void describe(hal::ParamVisitor& v) {
+    IdealSending::describe(v);
+    v.number("failure_prob", failure_prob, hal::unit::none, {0.0, 1.0},
+             "Probability that a broadcast is not sent at all.");
+  }
+};
+
 class RabActuator final : public Actuator {
  public:
+  explicit RabActuator(double failure_prob) : failure_prob_(failure_prob) {}
+
   void act(const DeviceContext& context, SpaceStores& stores, const void* ports) noexcept override {
     const auto* senders = static_cast<const hal::RangeAndBearingSend*>(ports);
     const auto most = static_cast<std::uint8_t>(std::min<std::size_t>(context.group.rab_payload, hal::kRabPayloadMax));
     for (std::size_t i = 0; i < context.block.used; ++i) {
       const std::size_t row = context.block.first_row + i;
       Broadcast& out = stores.broadcasts[row];
-      const bool alive = (stores.bodies.flags[row] & kAlive) != 0 && context.block.halted[i] == 0;
-      out.sending = alive && senders[i].sending ? 1 : 0;
+      const bool able = (stores.bodies.flags[row] & kAlive) != 0 && context.block.halted[i] == 0;
+      out.sending = able && senders[i].sending && !fails(context, stores.bodies.entity[row]) ? 1 : 0;
       out.size = std::min(senders[i].size, most);
       out.payload = senders[i].payload;
       out.range_m = static_cast<float>(context.group.rab_range_m);
     }
   }
+
+ private:
+  bool fails(const DeviceContext& context, std::uint32_t entity) const noexcept {
+    return failure_prob_ > 0.0 &&
+           to_unit(draw(context.seed, entity, Stream::SendLoss, context.tick)[0]) < failure_prob_;
+  }
+
+  double failure_prob_;
 };
 
+template <class Options>
 Recipe<Actuator> make_sending(const Element& element, Problems& problems, const DeviceSetup&) {
-  read_options<Sending>(element, problems);
-  return [](std::size_t) { return std::make_unique<RabActuator>(); };
+  const auto options = read_options<Options>(element, problems);
+  double failure_prob = 0.0;
+  if constexpr (requires { options.failure_prob; }) failure_prob = options.failure_prob;
+  return [failure_prob](std::size_t) { return std::make_unique<RabActuator>(failure_prob); };
+}
+
+template <class Options>
+DeviceType sending_type(std::string_view implementation, std::string_view summary) {
+  return actuator_type("range_and_bearing", implementation, summary, &has_rab, &make_sending<Options>,
+                       &describe_options<Options>);
 }
 
 }  // namespace
 
 std::vector<DeviceType> range_and_bearing_types() {
-  return {hearing_type<Hearing<0>>("default", "Messages in range and in sight; noise and loss where asked for."),
-          hearing_type<IdealHearing>("ideal", "Messages in range and in sight."),
-          hearing_type<Hearing<10>>("noisy", "Messages in range and in sight, some lost, places uncertain."),
-          hearing_type<Hearing<0>>("medium", "ARGoS' name for the default."),
-          actuator_type("range_and_bearing", "default", "Broadcasts to the robots in range in the next tick.", &has_rab,
-                        &make_sending, &describe_options<Sending>),
-          actuator_type("range_and_bearing", "ideal", "Broadcasts to the robots in range in the next tick.", &has_rab,
-                        &make_sending, &describe_options<Sending>)};
+  return {
+      hearing_type<Hearing<0>>("default", "Messages in range and in sight; noise and loss where asked for."),
+      hearing_type<IdealHearing>("ideal", "Messages in range and in sight."),
+      hearing_type<Hearing<10>>("noisy", "Messages in range and in sight, some lost, places uncertain."),
+      hearing_type<Hearing<0>>("medium", "ARGoS' name for the default."),
+      sending_type<Sending<0>>("default",
+                               "Broadcasts to the robots in range in the next tick; failures where asked for."),
+      sending_type<IdealSending>("ideal", "Broadcasts to the robots in range in the next tick."),
+      sending_type<Sending<10>>("noisy", "Broadcasts to the robots in range in the next tick, but for some failures.")};
 }
 
 }  // namespace tandem::core

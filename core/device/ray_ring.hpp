@@ -11,20 +11,21 @@
 
 namespace tandem::core {
 
-/// The rays of a ring of range sensors, in the body frame (metres, unit directions), padded to whole registers with rays
-/// that never hit.
+/// The rays of a ring of range sensors, in the body frame (metres, unit directions), padded to whole registers with
+/// rays that never hit.
 struct RayRing {
   static constexpr std::size_t kLanes = 8;
   static constexpr std::size_t kCapacity = 24;
 
   std::size_t count = 0;
-  std::size_t registers = 0;        ///< count / kLanes, rounded up
+  std::size_t registers = 0;  ///< count / kLanes, rounded up
   float range_m = 0.0F;
-  float reach_m = 0.0F;             ///< farthest point of any ray from the robot's centre
-  float height_m = 0.0F;            ///< of the rays above the ground
+  float reach_m = 0.0F;   ///< farthest point of any ray from the robot's centre
+  float height_m = 0.0F;  ///< of the rays above the ground
   alignas(32) std::array<float, kCapacity> ox{}, oy{}, dx{}, dy{};
 
-  RayRing(std::span<const hal::Mount> mounts, double range) : count(mounts.size()), registers((count + kLanes - 1) / kLanes), range_m(static_cast<float>(range)) {
+  RayRing(std::span<const hal::Mount> mounts, double range)
+      : count(mounts.size()), registers((count + kLanes - 1) / kLanes), range_m(static_cast<float>(range)) {
     dx.fill(1.0F);
     ox.fill(1e6F);  // padding starts far away and looks further away
     for (std::size_t i = 0; i < count; ++i) {
@@ -42,7 +43,9 @@ struct RayRing {
 /// Eight floats that are worked on together. Compiled to one AVX register or two SSE ones; the bits are the same.
 using Lanes = float __attribute__((vector_size(32)));
 
-[[gnu::always_inline]] inline void load_lanes(const float* from, Lanes& lanes) noexcept { std::memcpy(&lanes, from, sizeof lanes); }
+[[gnu::always_inline]] inline void load_lanes(const float* from, Lanes& lanes) noexcept {
+  std::memcpy(&lanes, from, sizeof lanes);
+}
 [[gnu::always_inline]] inline void store_nearer(const Lanes& distance, float* best) noexcept {
   Lanes b;
   std::memcpy(&b, best, sizeof b);
@@ -50,8 +53,8 @@ using Lanes = float __attribute__((vector_size(32)));
   std::memcpy(best, &b, sizeof b);
 }
 
-/// Shortens `best` (kLanes distances from the sensors) where ray register `g` of the ring meets a disc with centre (qx, qy)
-/// in the body frame. A sensor inside the disc reads 0.
+/// Shortens `best` (kLanes distances from the sensors) where ray register `g` of the ring meets a disc with centre (qx,
+/// qy) in the body frame. A sensor inside the disc reads 0.
 [[gnu::always_inline]] inline void meet_disc(const RayRing& ring, std::size_t g, float qx, float qy, float radius,
                                              float* best) noexcept {
   Lanes ox, oy, dx, dy;

@@ -14,13 +14,15 @@ struct LevelNoise {
   bool show_rays = false;
   void describe(hal::ParamVisitor& v) {
     if constexpr (kShowRays) v.flag("show_rays", show_rays, "Draw the rays in a view; no effect on readings.");
-    if constexpr (kPerMille >= 0) v.number("noise_level", noise_level, hal::unit::none, {0.0, 1.0}, "Uniform noise of +-level.");
+    if constexpr (kPerMille >= 0)
+      v.number("noise_level", noise_level, hal::unit::none, {0.0, 1.0}, "Uniform noise of +-level.");
   }
   double level() const { return kPerMille >= 0 ? noise_level : 0.0; }
 };
 
 /// Adds noise to `count` levels and keeps them within [0, 1].
-void add_noise(const DeviceContext& context, std::size_t i, Stream stream, float noise, float* levels, std::size_t count) noexcept {
+void add_noise(const DeviceContext& context, std::size_t i, Stream stream, float noise, float* levels,
+               std::size_t count) noexcept {
   const std::uint32_t entity = context.stores.bodies.entity[context.block.first_row + i];
   for (std::size_t k = 0; k < count; ++k) {
     const auto bits = draw(context.seed, entity, stream, context.tick, static_cast<std::uint32_t>(k / 4));
@@ -31,8 +33,8 @@ void add_noise(const DeviceContext& context, std::size_t i, Stream stream, float
 
 // --- light ---
 
-/// A sensor that faces a lamp of intensity I at distance d reads (I / d)^2, at most 1; less by the cosine of the angle to it.
-/// Levels of several lamps add up. Boxes and cylinders cast shadows.
+/// A sensor that faces a lamp of intensity I at distance d reads (I / d)^2, at most 1; less by the cosine of the angle
+/// to it. Levels of several lamps add up. Boxes and cylinders cast shadows.
 class LightSensor final : public Sensor {
  public:
   LightSensor(const hal::DataSheet& sheet, double noise) : mounts_(sheet.light), noise_(static_cast<float>(noise)) {
@@ -111,8 +113,12 @@ class GroundSensor final : public Sensor {
   float noise_;
 };
 
-bool has_light(const hal::DataSheet& sheet) { return !sheet.light.empty(); }
-bool has_ground(const hal::DataSheet& sheet) { return !sheet.ground.empty(); }
+bool has_light(const hal::DataSheet& sheet) {
+  return !sheet.light.empty();
+}
+bool has_ground(const hal::DataSheet& sheet) {
+  return !sheet.ground.empty();
+}
 
 template <class Device, class Options>
 Recipe<Sensor> make_levels(const Element& element, Problems& problems, const DeviceSetup& setup) {
@@ -129,14 +135,19 @@ DeviceType levels_type(std::string_view device, std::string_view implementation,
 }  // namespace
 
 std::vector<DeviceType> ring_level_types() {
-  return {levels_type<LightSensor, LevelNoise<0, true>>("light", "default", "Lamps in sight; noise where asked for.", &has_light),
-          levels_type<LightSensor, LevelNoise<-1, true>>("light", "ideal", "Lamps in sight.", &has_light),
-          levels_type<LightSensor, LevelNoise<20, true>>("light", "noisy", "Lamps in sight, with noise.", &has_light),
-          levels_type<LightSensor, LevelNoise<0, true>>("light", "rot_z_only", "ARGoS' name for the default.", &has_light),
-          levels_type<GroundSensor, LevelNoise<0, false>>("ground", "default", "The floor's shade; noise where asked for.", &has_ground),
-          levels_type<GroundSensor, LevelNoise<-1, false>>("ground", "ideal", "The floor's shade.", &has_ground),
-          levels_type<GroundSensor, LevelNoise<20, false>>("ground", "noisy", "The floor's shade, with noise.", &has_ground),
-          levels_type<GroundSensor, LevelNoise<0, false>>("ground", "rot_z_only", "ARGoS' name for the default.", &has_ground)};
+  return {
+      levels_type<LightSensor, LevelNoise<0, true>>("light", "default", "Lamps in sight; noise where asked for.",
+                                                    &has_light),
+      levels_type<LightSensor, LevelNoise<-1, true>>("light", "ideal", "Lamps in sight.", &has_light),
+      levels_type<LightSensor, LevelNoise<20, true>>("light", "noisy", "Lamps in sight, with noise.", &has_light),
+      levels_type<LightSensor, LevelNoise<0, true>>("light", "rot_z_only", "ARGoS' name for the default.", &has_light),
+      levels_type<GroundSensor, LevelNoise<0, false>>("ground", "default", "The floor's shade; noise where asked for.",
+                                                      &has_ground),
+      levels_type<GroundSensor, LevelNoise<-1, false>>("ground", "ideal", "The floor's shade.", &has_ground),
+      levels_type<GroundSensor, LevelNoise<20, false>>("ground", "noisy", "The floor's shade, with noise.",
+                                                       &has_ground),
+      levels_type<GroundSensor, LevelNoise<0, false>>("ground", "rot_z_only", "ARGoS' name for the default.",
+                                                      &has_ground)};
 }
 
 }  // namespace tandem::core

@@ -4,8 +4,10 @@
 
 namespace tandem::core {
 
-/// True when no box or cylinder stands between a and b (W). Cost grows with the distance, not with the number of things.
-inline bool in_sight(const SpaceStores& stores, double ax, double ay, double az, double bx, double by, double bz) noexcept {
+/// True when no box or cylinder stands between a and b (W). Cost grows with the distance, not with the number of
+/// things.
+inline bool in_sight(const SpaceStores& stores, double ax, double ay, double az, double bx, double by,
+                     double bz) noexcept {
   if (stores.statics.empty()) return true;
   // A thing on the line lies within the index's reach of one of these points.
   const double length = std::sqrt((bx - ax) * (bx - ax) + (by - ay) * (by - ay));

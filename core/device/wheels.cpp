@@ -1,12 +1,15 @@
 // Wheels: the actuator that drives the engine, and the encoders that count what was rolled.
+#include "hal/device/wheels.hpp"
+
 #include "core/device/types.hpp"
 #include "core/random/random.hpp"
-#include "hal/device/wheels.hpp"
 
 namespace tandem::core {
 namespace {
 
-bool has_wheels(const hal::DataSheet& sheet) { return sheet.wheel_base_m > 0.0; }
+bool has_wheels(const hal::DataSheet& sheet) {
+  return sheet.wheel_base_m > 0.0;
+}
 
 // --- actuator ---
 
@@ -22,7 +25,8 @@ struct WheelErrors {
   double noise_std_dev = kPerMille * 1e-3;
   void describe(hal::ParamVisitor& v) {
     v.number("bias_left", bias_left_m_s, hal::unit::cm_s, hal::kAny, "Added to the left wheel's speed while it turns.");
-    v.number("bias_right", bias_right_m_s, hal::unit::cm_s, hal::kAny, "Added to the right wheel's speed while it turns.");
+    v.number("bias_right", bias_right_m_s, hal::unit::cm_s, hal::kAny,
+             "Added to the right wheel's speed while it turns.");
     v.number("factor_left", factor_left, hal::unit::none, hal::kNotNegative, "Multiplies the left wheel's speed.");
     v.number("factor_right", factor_right, hal::unit::none, hal::kNotNegative, "Multiplies the right wheel's speed.");
     v.number("noise_std_dev", noise_std_dev, hal::unit::none, {0.0, 1.0},
@@ -55,8 +59,10 @@ class WheelActuator final : public Actuator {
   void distort(const DeviceContext& context, std::uint32_t entity, double& left, double& right) const noexcept {
     const auto bits = draw(context.seed, entity, Stream::WheelNoise, context.tick);
     const auto noise = to_normal(bits[0], bits[1]);
-    if (left != 0.0) left = errors_.factor_left * (left + errors_.bias_left_m_s) * (1.0 + errors_.noise_std_dev * noise[0]);
-    if (right != 0.0) right = errors_.factor_right * (right + errors_.bias_right_m_s) * (1.0 + errors_.noise_std_dev * noise[1]);
+    if (left != 0.0)
+      left = errors_.factor_left * (left + errors_.bias_left_m_s) * (1.0 + errors_.noise_std_dev * noise[0]);
+    if (right != 0.0)
+      right = errors_.factor_right * (right + errors_.bias_right_m_s) * (1.0 + errors_.noise_std_dev * noise[1]);
   }
 
   WheelErrors<0> errors_;
@@ -68,7 +74,8 @@ Recipe<Actuator> make_wheels(const Element& element, Problems& problems, const D
   const auto options = read_options<Options>(element, problems);
   WheelErrors<0> errors;
   if constexpr (requires { options.noise_std_dev; }) {
-    errors = {options.bias_left_m_s, options.bias_right_m_s, options.factor_left, options.factor_right, options.noise_std_dev};
+    errors = {options.bias_left_m_s, options.bias_right_m_s, options.factor_left, options.factor_right,
+              options.noise_std_dev};
   }
   return [errors](std::size_t) { return std::make_unique<WheelActuator>(errors); };
 }
@@ -90,7 +97,8 @@ struct EncoderErrors {
   double vel_noise_m_s = kPerMille * 1e-5;
   double dist_noise_m = kPerMille * 1e-6;
   void describe(hal::ParamVisitor& v) {
-    v.number("vel_noise_range", vel_noise_m_s, hal::unit::cm_s, hal::kNotNegative, "Uniform noise of +-this on each speed.");
+    v.number("vel_noise_range", vel_noise_m_s, hal::unit::cm_s, hal::kNotNegative,
+             "Uniform noise of +-this on each speed.");
     v.number("dist_noise_range", dist_noise_m, hal::unit::cm, hal::kNotNegative,
              "Uniform noise of +-this on the distance rolled in each tick; it adds up.");
   }
@@ -146,7 +154,8 @@ Recipe<Sensor> make_encoders(const Element& element, Problems& problems, const D
 
 template <class Options>
 DeviceType encoder_type(std::string_view implementation, std::string_view summary) {
-  return sensor_type("wheel_encoders", implementation, summary, &has_wheels, &make_encoders<Options>, &describe_options<Options>);
+  return sensor_type("wheel_encoders", implementation, summary, &has_wheels, &make_encoders<Options>,
+                     &describe_options<Options>);
 }
 
 }  // namespace

@@ -14,7 +14,7 @@ class Space;
 /// What a hook is handed: the whole simulated state, to read and to change, and where the run is.
 struct HookContext {
   Space& space;
-  hal::Tick tick = 0;                 ///< the step about to run, or just run
+  hal::Tick tick = 0;  ///< the step about to run, or just run
   std::int64_t ticks_per_second = 10;
   std::uint64_t seed = 0;
 };

@@ -15,16 +15,16 @@ struct PhysicsContext {
   double tick_s;
 };
 
-/// A physics engine. Reads the wheel speeds in the stores, writes poses and rolled distances. Bodies flagged kExternal keep
-/// the pose that they were given; others bump into them.
+/// A physics engine. Reads the wheel speeds in the stores, writes poses and rolled distances. Bodies flagged kExternal
+/// keep the pose that they were given; others bump into them.
 class Engine {
  public:
   virtual ~Engine() = default;
 
   virtual std::string_view kind() const noexcept = 0;
 
-  /// Moves every body by one tick as if it were alone. Between this and `settle` the step treats bodies that left the arena
-  /// and rebuilds the index of bodies.
+  /// Moves every body by one tick as if it were alone. Between this and `settle` the step treats bodies that left the
+  /// arena and rebuilds the index of bodies.
   virtual void move(const PhysicsContext& context) noexcept = 0;
 
   /// Resolves contacts, on an up-to-date index; entries of the index are moved along with their bodies.

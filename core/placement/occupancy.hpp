@@ -10,12 +10,12 @@ namespace tandem::core {
 /// A disc, or a rectangle with a heading.
 struct Obstacle {
   double x_m = 0.0, y_m = 0.0;
-  double radius_m = 0.0;      ///< of the disc, or of the circle around the rectangle
+  double radius_m = 0.0;  ///< of the disc, or of the circle around the rectangle
   bool is_box = false;
   double half_x_m = 0.0, half_y_m = 0.0;
   double cos_h = 1.0, sin_h = 0.0;
   bool is_robot = false;
-  std::uint32_t item = 0;     ///< of Scenario::robots or objects
+  std::uint32_t item = 0;  ///< of Scenario::robots or objects
 };
 
 Obstacle disc_at(double x_m, double y_m, double radius_m) noexcept;
@@ -24,8 +24,8 @@ Obstacle box_at(double x_m, double y_m, double size_x_m, double size_y_m, double
 /// Whether the two share area; touching is not overlapping.
 bool overlap(const Obstacle& a, const Obstacle& b) noexcept;
 
-/// Obstacles by cell of grids of doubling cell size: each is listed in the finest grid that needs few cells for it, so that
-/// neither a crowd of small things nor one huge thing is slow.
+/// Obstacles by cell of grids of doubling cell size: each is listed in the finest grid that needs few cells for it, so
+/// that neither a crowd of small things nor one huge thing is slow.
 class Occupancy {
  public:
   /// `cell_m`: about the diameter of the most frequent obstacle.
@@ -54,7 +54,7 @@ class Occupancy {
   struct Level {
     double per_cell = 1.0;
     std::vector<std::uint32_t> members;
-    std::vector<Slot> table;     // open addressing; a power of two
+    std::vector<Slot> table;  // open addressing; a power of two
     std::size_t used = 0;
     std::vector<Link> links;
   };

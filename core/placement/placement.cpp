@@ -24,10 +24,12 @@ Obstacle obstacle_of(const ObjectItem& item, std::uint32_t index, const Vec3& p,
 }
 
 /// Draws the `trial`-th triple for entity `index` of the item that starts on `line`.
-Vec3 drawn(const Distribution& d, std::uint64_t seed, std::uint32_t key, Stream stream, std::int64_t index, std::uint32_t trial) {
+Vec3 drawn(const Distribution& d, std::uint64_t seed, std::uint32_t key, Stream stream, std::int64_t index,
+           std::uint32_t trial) {
   const auto bits = draw(seed, key, stream, index, trial & 0xFFFFFFU);
   switch (d.method) {
-    case Distribution::Method::Constant: return d.values;
+    case Distribution::Method::Constant:
+      return d.values;
     case Distribution::Method::Uniform: {
       Vec3 v{};
       for (std::size_t i = 0; i < 3; ++i) v[i] = d.min[i] + to_unit(bits[i]) * (d.max[i] - d.min[i]);
@@ -56,7 +58,11 @@ Vec3 drawn(const Distribution& d, std::uint64_t seed, std::uint32_t key, Stream 
 class Placer {
  public:
   Placer(const Scenario& scenario, std::uint64_t seed, RadiusOf radius_of, Problems& problems)
-      : scenario_(scenario), seed_(seed), problems_(problems), radius_m_(radii(scenario, radius_of)), occupancy_(cell_size()) {}
+      : scenario_(scenario),
+        seed_(seed),
+        problems_(problems),
+        radius_m_(radii(scenario, radius_of)),
+        occupancy_(cell_size()) {}
 
   Placements run() {
     robots_by_item_.resize(scenario_.robots.size());
@@ -100,21 +106,27 @@ class Placer {
     return static_cast<std::size_t>(std::clamp(std::min(n, fit), 0.0, 1e7));
   }
 
-  void problem(int line, std::string message) { problems_.push_back({scenario_.file, line, std::move(message), false}); }
+  void problem(int line, std::string message) {
+    problems_.push_back({scenario_.file, line, std::move(message), false});
+  }
 
   bool inside(const Vec3& p) const {
     return std::fabs(p[0] - scenario_.arena_center[0]) <= 0.5 * scenario_.arena_size[0] &&
            std::fabs(p[1] - scenario_.arena_center[1]) <= 0.5 * scenario_.arena_size[1];
   }
 
-  static std::string text_of(const Vec3& p) { return "(" + hal::format_number(p[0]) + ", " + hal::format_number(p[1]) + ")"; }
+  static std::string text_of(const Vec3& p) {
+    return "(" + hal::format_number(p[0]) + ", " + hal::format_number(p[1]) + ")";
+  }
 
   std::string name_of(const Obstacle& o) const {
     const std::string& id = o.is_robot ? scenario_.robots[o.item].id : scenario_.objects[o.item].id;
     const int line = o.is_robot ? scenario_.robots[o.item].line : scenario_.objects[o.item].line;
-    const bool many = (o.is_robot ? scenario_.robots[o.item].distribute : scenario_.objects[o.item].distribute).has_value();
+    const bool many =
+        (o.is_robot ? scenario_.robots[o.item].distribute : scenario_.objects[o.item].distribute).has_value();
     const char* kind = o.is_robot ? "robot" : scenario_.objects[o.item].shape == ShapeKind::Box ? "box" : "cylinder";
-    return std::string(many ? "a " : "") + kind + " '" + id + (many ? "…" : "") + "'" + (line > 0 ? " of line " + std::to_string(line) : "");
+    return std::string(many ? "a " : "") + kind + " '" + id + (many ? "…" : "") + "'" +
+           (line > 0 ? " of line " + std::to_string(line) : "");
   }
 
   // --- what has a place of its own ---
@@ -171,7 +183,8 @@ class Placer {
     add(scenario_.objects, Task::Kind::Object);
     add(scenario_.lights, Task::Kind::Light);
     add(scenario_.robots, Task::Kind::Robot);
-    std::stable_sort(out.begin(), out.end(), [](const Task& a, const Task& b) { return a.distribute->order < b.distribute->order; });
+    std::stable_sort(out.begin(), out.end(),
+                     [](const Task& a, const Task& b) { return a.distribute->order < b.distribute->order; });
     return out;
   }
 
@@ -186,11 +199,12 @@ class Placer {
         });
       } else if (task.kind == Task::Kind::Object) {
         const ObjectItem& item = scenario_.objects[i];
-        distribute(task, key, item.shape == ShapeKind::Box ? "box" : "cylinder", item.id, [&](std::int64_t number, const Vec3& p, double yaw) {
-          const Attempt attempt = occupy(p, obstacle_of(item, i, p, yaw));
-          if (attempt.placed) objects_.push_back({p, yaw, i, number});
-          return attempt;
-        });
+        distribute(task, key, item.shape == ShapeKind::Box ? "box" : "cylinder", item.id,
+                   [&](std::int64_t number, const Vec3& p, double yaw) {
+                     const Attempt attempt = occupy(p, obstacle_of(item, i, p, yaw));
+                     if (attempt.placed) objects_.push_back({p, yaw, i, number});
+                     return attempt;
+                   });
       } else if (radius_m_[i] >= 0.0) {
         robots_by_item_[i].reserve(std::min(static_cast<std::size_t>(task.distribute->quantity), expected()));
         distribute(task, key, "robot", scenario_.robots[i].id, [&](std::int64_t number, const Vec3& p, double yaw) {
@@ -214,9 +228,11 @@ class Placer {
   }
 
   template <class Try>
-  void distribute(const Task& task, std::uint32_t key, const std::string& what, const std::string& id, Try&& try_place) {
+  void distribute(const Task& task, std::uint32_t key, const std::string& what, const std::string& id,
+                  Try&& try_place) {
     const Distribute& d = *task.distribute;
-    const bool chance = d.position.method == Distribution::Method::Uniform || d.position.method == Distribution::Method::Gaussian;
+    const bool chance =
+        d.position.method == Distribution::Method::Uniform || d.position.method == Distribution::Method::Gaussian;
     for (std::int64_t n = 0; n < d.quantity; ++n) {
       Attempt attempt;
       Vec3 p{};
@@ -227,8 +243,10 @@ class Placer {
         attempt = try_place(d.base_num + n, p, wrapped(drawn(d.orientation, seed_, key, Stream::Orientation, n, t)[0]));
       }
       if (attempt.placed) continue;
-      const std::string last = text_of(p) + (attempt.other != nullptr ? " is taken by " + name_of(*attempt.other) : " is outside the arena");
-      return problem(d.line, "placed " + std::to_string(n) + " of " + std::to_string(d.quantity) + " of " + what + " '" + id + "': " +
+      const std::string last =
+          text_of(p) + (attempt.other != nullptr ? " is taken by " + name_of(*attempt.other) : " is outside the arena");
+      return problem(d.line, "placed " + std::to_string(n) + " of " + std::to_string(d.quantity) + " of " + what +
+                                 " '" + id + "': " +
                                  (chance ? "no free place in " + std::to_string(d.max_trials) + " trials (" + last +
                                                "); give more room, fewer of them, or more max_trials"
                                          : last));

@@ -3,7 +3,6 @@
 // Philox4x32-10 [Salmon et al. 2011, "Parallel random numbers: as easy as 1, 2, 3"], from the Random123 library.
 #pragma once
 #include <Random123/philox.h>
-
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -26,6 +25,8 @@ enum class Stream : std::uint32_t {
   BatteryNoise,
   RabNoise,
   RabLoss,
+  ClockNoise,
+  SendLoss,
 };
 
 /// Four independent 32-bit numbers. `index` tells draws of one tick apart (0 to 2^24 - 1).
@@ -40,10 +41,14 @@ inline std::array<std::uint32_t, 4> draw(std::uint64_t seed, std::uint32_t entit
 }
 
 /// In [0, 1), 24 bits.
-inline float to_unit_float(std::uint32_t bits) noexcept { return static_cast<float>(bits >> 8) * 0x1p-24F; }
+inline float to_unit_float(std::uint32_t bits) noexcept {
+  return static_cast<float>(bits >> 8) * 0x1p-24F;
+}
 
 /// In [0, 1), 32 bits.
-inline double to_unit(std::uint32_t bits) noexcept { return static_cast<double>(bits) * 0x1p-32; }
+inline double to_unit(std::uint32_t bits) noexcept {
+  return static_cast<double>(bits) * 0x1p-32;
+}
 
 /// In [0, 1), 53 bits.
 inline double to_unit(std::uint32_t high, std::uint32_t low) noexcept {

@@ -27,7 +27,8 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 std::string range_text(hal::Range range, const hal::Unit& unit) {
   const bool low = range.min > -std::numeric_limits<double>::infinity();
   const bool high = range.max < std::numeric_limits<double>::infinity();
-  if (low && high) return "from " + hal::format_quantity(range.min, unit) + " to " + hal::format_quantity(range.max, unit);
+  if (low && high)
+    return "from " + hal::format_quantity(range.min, unit) + " to " + hal::format_quantity(range.max, unit);
   if (low) return "at least " + hal::format_quantity(range.min, unit);
   return "at most " + hal::format_quantity(range.max, unit);
 }
@@ -77,7 +78,9 @@ const Element* Element::child(std::string_view child_name) const noexcept {
   return nullptr;
 }
 
-Problem problem_at(const Element& element, std::string message) { return {element.file, element.line, std::move(message), false}; }
+Problem problem_at(const Element& element, std::string message) {
+  return {element.file, element.line, std::move(message), false};
+}
 
 Problem problem_at(const Element& element, std::string_view attribute, std::string message) {
   return problem_of(element, find_attribute(element, attribute),
@@ -124,30 +127,35 @@ void ElementReader::problem(std::string_view attribute, std::string message) {
   problems_.push_back(problem_at(element_, attribute, std::move(message)));
 }
 
-bool ElementReader::in_range(std::string_view name, const std::string& text, double value, hal::Range range, const hal::Unit& unit) {
+bool ElementReader::in_range(std::string_view name, const std::string& text, double value, hal::Range range,
+                             const hal::Unit& unit) {
   constexpr double kSlack = 1e-12;  // 12.9 cm passes where 0.129 m is the limit
-  if (value >= range.min - kSlack * std::fabs(range.min) && value <= range.max + kSlack * std::fabs(range.max)) return true;
+  if (value >= range.min - kSlack * std::fabs(range.min) && value <= range.max + kSlack * std::fabs(range.max))
+    return true;
   problem(name, "'" + text + "' is out of range; it may be " + range_text(range, unit));
   return false;
 }
 
-void ElementReader::number(std::string_view name, double& value_si, const hal::Unit& bare, hal::Range range_si, std::string_view) {
+void ElementReader::number(std::string_view name, double& value_si, const hal::Unit& bare, hal::Range range_si,
+                           std::string_view) {
   const std::string* text = find(name);
   if (text == nullptr) return;
   const auto parsed = hal::parse_quantity(*text, bare);
   if (!parsed.ok()) return problem(name, parsed.error().message);
-  if (in_range(name, *text, parsed.value(), range_si, bare)) value_si = std::clamp(parsed.value(), range_si.min, range_si.max);
+  if (in_range(name, *text, parsed.value(), range_si, bare))
+    value_si = std::clamp(parsed.value(), range_si.min, range_si.max);
 }
 
 void ElementReader::integer(std::string_view name, std::int64_t& value, hal::Range range, std::string_view) {
   const std::string* text = find(name);
   if (text == nullptr) return;
   std::string_view digits = trimmed(*text);
-  if (digits.starts_with('+')) digits.remove_prefix(1);
+  if (digits.starts_with('+') && !digits.starts_with("+-")) digits.remove_prefix(1);
   std::int64_t parsed = 0;
   const auto [end, status] = std::from_chars(digits.data(), digits.data() + digits.size(), parsed);
   if (status == std::errc::result_out_of_range) return problem(name, "'" + *text + "' is too large a number");
-  if (status != std::errc{} || end != digits.data() + digits.size()) return problem(name, "'" + *text + "' is not a whole number");
+  if (status != std::errc{} || end != digits.data() + digits.size())
+    return problem(name, "'" + *text + "' is not a whole number");
   if (in_range(name, *text, static_cast<double>(parsed), range, hal::unit::none)) value = parsed;
 }
 
@@ -155,16 +163,20 @@ void ElementReader::flag(std::string_view name, bool& value, std::string_view) {
   const std::string* text = find(name);
   if (text == nullptr) return;
   const std::string_view word = trimmed(*text);
-  if (word == "true" || word == "1") value = true;
-  else if (word == "false" || word == "0") value = false;
-  else problem(name, "'" + *text + "' is neither \"true\" nor \"false\"");
+  if (word == "true" || word == "1")
+    value = true;
+  else if (word == "false" || word == "0")
+    value = false;
+  else
+    problem(name, "'" + *text + "' is neither \"true\" nor \"false\"");
 }
 
 void ElementReader::text(std::string_view name, std::string& value, std::string_view) {
   if (const std::string* text = find(name); text != nullptr) value = *text;
 }
 
-void ElementReader::choice(std::string_view name, std::string& value, std::span<const std::string_view> options, std::string_view) {
+void ElementReader::choice(std::string_view name, std::string& value, std::span<const std::string_view> options,
+                           std::string_view) {
   const std::string* text = find(name);
   if (text == nullptr) return;
   const std::vector<std::string> names(options.begin(), options.end());
@@ -175,14 +187,16 @@ void ElementReader::choice(std::string_view name, std::string& value, std::span<
   value = word;
 }
 
-void ElementReader::vector(std::string_view name, std::array<double, 3>& value_si, const hal::Unit& bare, std::string_view) {
+void ElementReader::vector(std::string_view name, std::array<double, 3>& value_si, const hal::Unit& bare,
+                           std::string_view) {
   const std::string* text = find(name);
   if (text == nullptr) return;
   std::array<double, 3> parsed{};
   std::string_view rest = *text;
   for (std::size_t i = 0; i < 3; ++i) {
     const std::size_t comma = rest.find(',');
-    if ((comma == std::string_view::npos) != (i == 2)) return problem(name, "'" + *text + "' must be three numbers, \"x,y,z\"");
+    if ((comma == std::string_view::npos) != (i == 2))
+      return problem(name, "'" + *text + "' must be three numbers, \"x,y,z\"");
     const auto part = hal::parse_quantity(rest.substr(0, comma), bare);
     if (!part.ok()) return problem(name, part.error().message);
     parsed[i] = part.value();
@@ -194,7 +208,8 @@ void ElementReader::vector(std::string_view name, std::array<double, 3>& value_s
 void ElementReader::finish() {
   for (const Element::Attribute& a : element_.attributes) {
     if (std::find(known_.begin(), known_.end(), a.name) != known_.end()) continue;
-    problems_.push_back(problem_of(element_, &a, "<" + element_.name + "> has no attribute '" + a.name + "'" + did_you_mean(a.name, known_)));
+    problems_.push_back(problem_of(
+        element_, &a, "<" + element_.name + "> has no attribute '" + a.name + "'" + did_you_mean(a.name, known_)));
   }
 }
 
@@ -202,42 +217,65 @@ void ElementWriter::add(std::string_view name, std::string value) {
   if (element_.attribute(name) == nullptr) element_.attributes.push_back({std::string(name), std::move(value), 0});
 }
 
-void ElementWriter::number(std::string_view name, double& value_si, const hal::Unit& bare, hal::Range, std::string_view) {
+void ElementWriter::number(std::string_view name, double& value_si, const hal::Unit& bare, hal::Range,
+                           std::string_view) {
   add(name, hal::format_quantity(value_si, bare));
 }
-void ElementWriter::integer(std::string_view name, std::int64_t& value, hal::Range, std::string_view) { add(name, std::to_string(value)); }
-void ElementWriter::flag(std::string_view name, bool& value, std::string_view) { add(name, value ? "true" : "false"); }
-void ElementWriter::text(std::string_view name, std::string& value, std::string_view) { add(name, value); }
-void ElementWriter::choice(std::string_view name, std::string& value, std::span<const std::string_view>, std::string_view) { add(name, value); }
+void ElementWriter::integer(std::string_view name, std::int64_t& value, hal::Range, std::string_view) {
+  add(name, std::to_string(value));
+}
+void ElementWriter::flag(std::string_view name, bool& value, std::string_view) {
+  add(name, value ? "true" : "false");
+}
+void ElementWriter::text(std::string_view name, std::string& value, std::string_view) {
+  add(name, value);
+}
+void ElementWriter::choice(std::string_view name, std::string& value, std::span<const std::string_view>,
+                           std::string_view) {
+  add(name, value);
+}
 void ElementWriter::vector(std::string_view name, std::array<double, 3>& v, const hal::Unit& bare, std::string_view) {
-  add(name, hal::format_quantity(v[0], bare) + "," + hal::format_quantity(v[1], bare) + "," + hal::format_quantity(v[2], bare));
+  add(name, hal::format_quantity(v[0], bare) + "," + hal::format_quantity(v[1], bare) + "," +
+                hal::format_quantity(v[2], bare));
 }
 
-void ManualWriter::line(std::string_view name, const std::string& value, const std::string& range, std::string_view doc) {
+void ManualWriter::line(std::string_view name, const std::string& value, const std::string& range,
+                        std::string_view doc) {
   text_ += "  " + std::string(name) + "=\"" + value + "\"";
   if (!range.empty()) text_ += "  (" + range + ")";
   text_ += "\n      " + std::string(doc) + "\n";
 }
 
-void ManualWriter::number(std::string_view name, double& value_si, const hal::Unit& bare, hal::Range range, std::string_view doc) {
-  const bool bounded = range.min > -std::numeric_limits<double>::infinity() || range.max < std::numeric_limits<double>::infinity();
+void ManualWriter::number(std::string_view name, double& value_si, const hal::Unit& bare, hal::Range range,
+                          std::string_view doc) {
+  const bool bounded =
+      range.min > -std::numeric_limits<double>::infinity() || range.max < std::numeric_limits<double>::infinity();
   const std::string unit = bare.symbol.empty() ? "" : "a bare number is in " + std::string(bare.symbol);
   const std::string limits = bounded ? range_text(range, bare) : "";
   line(name, hal::format_quantity(value_si, bare), limits + (limits.empty() || unit.empty() ? "" : "; ") + unit, doc);
 }
 void ManualWriter::integer(std::string_view name, std::int64_t& value, hal::Range range, std::string_view doc) {
-  const bool bounded = range.min > -std::numeric_limits<double>::infinity() || range.max < std::numeric_limits<double>::infinity();
+  const bool bounded =
+      range.min > -std::numeric_limits<double>::infinity() || range.max < std::numeric_limits<double>::infinity();
   line(name, std::to_string(value), bounded ? range_text(range, hal::unit::none) : "", doc);
 }
-void ManualWriter::flag(std::string_view name, bool& value, std::string_view doc) { line(name, value ? "true" : "false", "true or false", doc); }
-void ManualWriter::text(std::string_view name, std::string& value, std::string_view doc) { line(name, value, "", doc); }
-void ManualWriter::choice(std::string_view name, std::string& value, std::span<const std::string_view> options, std::string_view doc) {
+void ManualWriter::flag(std::string_view name, bool& value, std::string_view doc) {
+  line(name, value ? "true" : "false", "true or false", doc);
+}
+void ManualWriter::text(std::string_view name, std::string& value, std::string_view doc) {
+  line(name, value, "", doc);
+}
+void ManualWriter::choice(std::string_view name, std::string& value, std::span<const std::string_view> options,
+                          std::string_view doc) {
   std::string list;
   for (const std::string_view option : options) list += (list.empty() ? "" : ", ") + std::string(option);
   line(name, value, list, doc);
 }
-void ManualWriter::vector(std::string_view name, std::array<double, 3>& v, const hal::Unit& bare, std::string_view doc) {
-  line(name, hal::format_number(v[0] / bare.to_si) + "," + hal::format_number(v[1] / bare.to_si) + "," + hal::format_number(v[2] / bare.to_si),
+void ManualWriter::vector(std::string_view name, std::array<double, 3>& v, const hal::Unit& bare,
+                          std::string_view doc) {
+  line(name,
+       hal::format_number(v[0] / bare.to_si) + "," + hal::format_number(v[1] / bare.to_si) + "," +
+           hal::format_number(v[2] / bare.to_si),
        "three numbers" + (bare.symbol.empty() ? std::string() : " in " + std::string(bare.symbol)), doc);
 }
 

@@ -60,12 +60,15 @@ class ElementReader final : public hal::ParamVisitor {
   /// `ignore` are attributes that belong to somebody else (e.g. "id", "library", "implementation").
   ElementReader(const Element& element, Problems& problems, std::vector<std::string> ignore = {});
 
-  void number(std::string_view name, double& value_si, const hal::Unit& bare, hal::Range range_si, std::string_view doc) override;
+  void number(std::string_view name, double& value_si, const hal::Unit& bare, hal::Range range_si,
+              std::string_view doc) override;
   void integer(std::string_view name, std::int64_t& value, hal::Range range, std::string_view doc) override;
   void flag(std::string_view name, bool& value, std::string_view doc) override;
   void text(std::string_view name, std::string& value, std::string_view doc) override;
-  void choice(std::string_view name, std::string& value, std::span<const std::string_view> options, std::string_view doc) override;
-  void vector(std::string_view name, std::array<double, 3>& value_si, const hal::Unit& bare, std::string_view doc) override;
+  void choice(std::string_view name, std::string& value, std::span<const std::string_view> options,
+              std::string_view doc) override;
+  void vector(std::string_view name, std::array<double, 3>& value_si, const hal::Unit& bare,
+              std::string_view doc) override;
   void finish();
 
  private:
@@ -84,12 +87,15 @@ class ElementWriter final : public hal::ParamVisitor {
  public:
   explicit ElementWriter(Element& element) : element_(element) {}
 
-  void number(std::string_view name, double& value_si, const hal::Unit& bare, hal::Range range_si, std::string_view doc) override;
+  void number(std::string_view name, double& value_si, const hal::Unit& bare, hal::Range range_si,
+              std::string_view doc) override;
   void integer(std::string_view name, std::int64_t& value, hal::Range range, std::string_view doc) override;
   void flag(std::string_view name, bool& value, std::string_view doc) override;
   void text(std::string_view name, std::string& value, std::string_view doc) override;
-  void choice(std::string_view name, std::string& value, std::span<const std::string_view> options, std::string_view doc) override;
-  void vector(std::string_view name, std::array<double, 3>& value_si, const hal::Unit& bare, std::string_view doc) override;
+  void choice(std::string_view name, std::string& value, std::span<const std::string_view> options,
+              std::string_view doc) override;
+  void vector(std::string_view name, std::array<double, 3>& value_si, const hal::Unit& bare,
+              std::string_view doc) override;
 
  private:
   void add(std::string_view name, std::string value);
@@ -99,12 +105,15 @@ class ElementWriter final : public hal::ParamVisitor {
 /// Lists described parameters for people, one a line: name, default, range, what it means.
 class ManualWriter final : public hal::ParamVisitor {
  public:
-  void number(std::string_view name, double& value_si, const hal::Unit& bare, hal::Range range_si, std::string_view doc) override;
+  void number(std::string_view name, double& value_si, const hal::Unit& bare, hal::Range range_si,
+              std::string_view doc) override;
   void integer(std::string_view name, std::int64_t& value, hal::Range range, std::string_view doc) override;
   void flag(std::string_view name, bool& value, std::string_view doc) override;
   void text(std::string_view name, std::string& value, std::string_view doc) override;
-  void choice(std::string_view name, std::string& value, std::span<const std::string_view> options, std::string_view doc) override;
-  void vector(std::string_view name, std::array<double, 3>& value_si, const hal::Unit& bare, std::string_view doc) override;
+  void choice(std::string_view name, std::string& value, std::span<const std::string_view> options,
+              std::string_view doc) override;
+  void vector(std::string_view name, std::array<double, 3>& value_si, const hal::Unit& bare,
+              std::string_view doc) override;
 
   const std::string& text() const noexcept { return text_; }
 

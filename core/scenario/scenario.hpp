@@ -23,7 +23,7 @@ struct Placement {
 };
 
 enum class TimeMode { Fast, Realtime, Lockstep };
-enum class Assignment { Static, Dynamic };  ///< of work to threads
+enum class Assignment { Static, Dynamic };        ///< of work to threads
 enum class EscapePolicy { Error, Stop, Remove };  ///< what happens to a body that leaves the arena
 
 /// One listed device of a controller configuration: `<proximity implementation="noisy" noise_level="0.1"/>`.
@@ -35,11 +35,11 @@ struct DeviceChoice {
 
 struct ControllerConfig {
   std::string id;
-  std::string label;    ///< the element's name: the registered name of the controller
+  std::string label;  ///< the element's name: the registered name of the controller
   std::string library;
   std::vector<DeviceChoice> sensors;
   std::vector<DeviceChoice> actuators;
-  Element params;       ///< `<params …>`, empty element where absent
+  Element params;  ///< `<params …>`, empty element where absent
   int line = 0;
 };
 
@@ -47,10 +47,10 @@ struct ControllerConfig {
 struct Distribution {
   enum class Method { Uniform, Gaussian, Constant, Grid };
   Method method = Method::Constant;
-  Vec3 min{}, max{};                 ///< Uniform
-  Vec3 mean{}, std_dev{};            ///< Gaussian
-  Vec3 values{};                     ///< Constant
-  Vec3 center{}, distances{};        ///< Grid
+  Vec3 min{}, max{};           ///< Uniform
+  Vec3 mean{}, std_dev{};      ///< Gaussian
+  Vec3 values{};               ///< Constant
+  Vec3 center{}, distances{};  ///< Grid
   std::array<int, 3> layout{1, 1, 1};
   int line = 0;
 };
@@ -62,24 +62,24 @@ struct Distribute {
   std::int64_t quantity = 1;
   std::int64_t max_trials = 1;
   std::int64_t base_num = 0;
-  int order = 0;                     ///< which of the file's <distribute> elements this is: they are placed in this order
+  int order = 0;  ///< which of the file's <distribute> elements this is: they are placed in this order
   int line = 0;
 };
 
 struct BatteryConfig {
-  std::string model = "time";        ///< time, motion or time_motion
+  std::string model = "time";  ///< time, motion or time_motion
   double full_charge = 1.0;
   double start_charge = 1.0;
-  double delta = 0.0;                ///< charge lost a tick (time)
-  double pos_delta = 0.0;            ///< charge lost a metre (motion)
-  double orient_delta = 0.0;         ///< charge lost a radian (motion)
+  double delta = 0.0;         ///< charge lost a tick (time)
+  double pos_delta = 0.0;     ///< charge lost a metre (motion)
+  double orient_delta = 0.0;  ///< charge lost a radian (motion)
 };
 
 /// A robot that stands for a real one: where its bridge connects.
 struct BridgeConfig {
-  std::string link;                  ///< "serial:/dev/ttyUSB0@115200"
-  std::string firmware = "auto";
-  double timeout_s = 0.5;            ///< age from which the link counts as lost
+  std::string link;               ///< "serial:/dev/ttyUSB0@115200"
+  std::string firmware = "auto";  ///< the robot must run this one; auto: any
+  double timeout_s = 0.5;         ///< age from which the link counts as lost
   Element options;
   int line = 0;
 };
@@ -92,14 +92,14 @@ struct TrackerConfig {
 
 /// A robot, or with `distribute` as many as it says: ids are then `id` + number.
 struct RobotItem {
-  std::string kind;                  ///< "e-puck"
+  std::string kind;  ///< "e-puck"
   std::string id;
-  std::size_t controller = 0;        ///< index into Scenario::controllers
-  std::optional<Element> params;     ///< overrides of the controller's parameters, for these robots alone
+  std::size_t controller = 0;     ///< index into Scenario::controllers
+  std::optional<Element> params;  ///< overrides of the controller's parameters, for these robots alone
   Placement placement;
   std::optional<Distribute> distribute;
-  double rab_range_m = -1.0;         ///< negative: the data sheet's
-  std::int64_t rab_payload = -1;     ///< bytes; negative: the data sheet's
+  double rab_range_m = -1.0;      ///< negative: the data sheet's
+  std::int64_t rab_payload = -1;  ///< bytes; negative: the data sheet's
   BatteryConfig battery;
   std::optional<BridgeConfig> bridge;
   std::optional<TrackerConfig> tracker;
@@ -108,7 +108,8 @@ struct RobotItem {
 
 enum class ShapeKind { Box, Cylinder };
 
-/// A box or a cylinder. `placement.p_W` is the centre of its base. `size` is (x, y, z) of a box, or (radius, radius, height).
+/// A box or a cylinder. `placement.p_W` is the centre of its base. `size` is (x, y, z) of a box, or (radius, radius,
+/// height).
 struct ObjectItem {
   ShapeKind shape = ShapeKind::Box;
   std::string id;
@@ -124,7 +125,7 @@ struct LightItem {
   std::string id;
   Vec3 p_W{};
   std::array<std::uint8_t, 3> rgb{255, 255, 0};
-  double intensity = 1.0;            ///< distance in metres up to which a facing sensor reads 1
+  double intensity = 1.0;  ///< distance in metres up to which a facing sensor reads 1
   std::optional<Distribute> distribute;
   int line = 0;
 };
@@ -133,13 +134,13 @@ struct LightItem {
 struct SoundItem {
   std::string id;
   Vec3 p_W{};
-  double level = 1.0;                ///< 0 to 1, at the source
+  double level = 1.0;  ///< 0 to 1, at the source
   int line = 0;
 };
 
 struct FloorConfig {
-  std::string source = "none";       ///< none (grey), image, loop_functions
-  std::string path;                  ///< of the image, resolved
+  std::string source = "none";  ///< none (grey), image, loop_functions
+  std::string path;             ///< of the image, resolved
   double pixels_per_meter = 100.0;
   int line = 0;
 };
@@ -148,22 +149,22 @@ struct FloorConfig {
 struct BoundarySide {
   double x_m = 0.0;
   double y_m = 0.0;
-  std::string gate;                  ///< id of the engine behind this side; empty: a wall
+  std::string gate;  ///< id of the engine behind this side; empty: a wall
   int line = 0;
 };
 
 struct EngineConfig {
-  std::string kind;                  ///< kinematics2d, dynamics2d, dynamics3d, particle3d (ARGoS' pointmass3d is mapped)
+  std::string kind;  ///< kinematics2d, dynamics2d, dynamics3d, particle3d (ARGoS' pointmass3d is mapped)
   std::string id;
   std::optional<double> top_m, bottom_m;
-  std::vector<BoundarySide> sides;   ///< empty: the whole arena
-  std::string regions;               ///< "", "4x4" or "auto"
+  std::vector<BoundarySide> sides;  ///< empty: the whole arena
+  std::string regions;              ///< "", "4x4" or "auto"
   Element options;
   int line = 0;
 };
 
 struct MediumConfig {
-  std::string kind;                  ///< range_and_bearing, led
+  std::string kind;  ///< range_and_bearing, led
   std::string id;
   Element options;
   int line = 0;
@@ -172,23 +173,23 @@ struct MediumConfig {
 struct HookConfig {
   std::string library;
   std::string label;
-  Element options;                   ///< the whole element with its children
+  Element options;  ///< the whole element with its children
   int line = 0;
 };
 
 struct TrajectoryConfig {
-  std::string path;                  ///< CSV
-  std::vector<std::string> entities; ///< ids, or patterns with '*'
-  std::int64_t every = 1;            ///< ticks between rows
+  std::string path;                   ///< CSV
+  std::vector<std::string> entities;  ///< ids, or patterns with '*'
+  std::int64_t every = 1;             ///< ticks between rows
 };
 
 struct Scenario {
   std::string file;
-  std::string name;                  ///< file name without folder and extension
+  std::string name;  ///< file name without folder and extension
 
-  double length_s = 0.0;             ///< 0: endless
+  double length_s = 0.0;  ///< 0: endless
   std::int64_t ticks_per_second = 10;
-  std::optional<std::uint64_t> seed; ///< absent: from the clock (then named in the report)
+  std::optional<std::uint64_t> seed;  ///< absent: from the clock (then named in the report)
   std::int64_t threads = 0;
   Assignment assignment = Assignment::Static;
   TimeMode time_mode = TimeMode::Fast;
@@ -207,8 +208,8 @@ struct Scenario {
   std::vector<SoundItem> sounds;
   std::vector<HookConfig> hooks;
   std::optional<TrajectoryConfig> trajectory;
-  Element camera;                    ///< placements of ARGoS' view, kept for ours
-  Element effective;                 ///< the whole file with every default filled in
+  Element camera;     ///< placements of ARGoS' view, kept for ours
+  Element effective;  ///< the whole file with every default filled in
 };
 
 }  // namespace tandem::core

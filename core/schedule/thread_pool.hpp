@@ -1,4 +1,5 @@
-// Threads for the parallel phases of a step: work is split in advance or handed out, without locks and without allocation.
+// Threads for the parallel phases of a step: work is split in advance or handed out, without locks and without
+// allocation.
 #pragma once
 #include <atomic>
 #include <cstddef>
@@ -21,20 +22,23 @@ class ThreadPool {
 
   std::size_t size() const noexcept { return workers_.size() + 1; }
 
-  /// Calls `work(begin, end)` for parts that together are [0, count), each once, and returns when all are done. Fewer than
-  /// `2 * grain` items run on the caller alone; `grain` is also the size of a part under dynamic assignment.
+  /// Calls `work(begin, end)` for parts that together are [0, count), each once, and returns when all are done. Fewer
+  /// than `2 * grain` items run on the caller alone; `grain` is also the size of a part under dynamic assignment.
   template <class Work>
   void run(std::size_t count, std::size_t grain, Work&& work) {
     if (workers_.empty() || count < 2 * grain) {
       if (count > 0) work(std::size_t{0}, count);
       return;
     }
-    const Phase phase{[](void* w, std::size_t begin, std::size_t end) { (*static_cast<std::remove_reference_t<Work>*>(w))(begin, end); },
+    const Phase phase{[](void* w, std::size_t begin, std::size_t end) {
+                        (*static_cast<std::remove_reference_t<Work>*>(w))(begin, end);
+                      },
                       const_cast<void*>(static_cast<const void*>(&work)), count, grain};
     dispatch(phase);
   }
 
-  /// Calls `work(part)` for part 0 … size() - 1, each on a thread of its own. For phases that cut their data themselves.
+  /// Calls `work(part)` for part 0 … size() - 1, each on a thread of its own. For phases that cut their data
+  /// themselves.
   template <class Work>
   void run_parts(Work&& work) {
     run_parts(size(), work);
@@ -58,11 +62,11 @@ class ThreadPool {
   void work_loop(std::size_t worker);
 
   Assignment assignment_;
-  int spins_ = 0;                                       // looks at the next phase before sleeping
+  int spins_ = 0;  // looks at the next phase before sleeping
   Phase phase_;
-  alignas(64) std::atomic<std::uint32_t> round_{0};     // raised once a phase; workers wait for it
+  alignas(64) std::atomic<std::uint32_t> round_{0};  // raised once a phase; workers wait for it
   alignas(64) std::atomic<std::uint32_t> unfinished_{0};
-  alignas(64) std::atomic<std::size_t> next_{0};        // dynamic assignment: first item not handed out
+  alignas(64) std::atomic<std::size_t> next_{0};  // dynamic assignment: first item not handed out
   std::atomic<bool> ending_{false};
   std::vector<std::thread> workers_;
 };

@@ -29,7 +29,8 @@ std::uint32_t curve_position(double x01, double y01) noexcept {
 /// A controller constructor's view of the robot that it is to drive.
 class ConstructedRobot final : public hal::Robot {
  public:
-  ConstructedRobot(const Scenario& scenario, const SpaceStores& stores, RobotGroup& group, RobotBlock& block, std::uint64_t run_seed)
+  ConstructedRobot(const Scenario& scenario, const SpaceStores& stores, RobotGroup& group, RobotBlock& block,
+                   std::uint64_t run_seed)
       : scenario_(scenario), stores_(stores), group_(group), block_(block), run_seed_(run_seed) {}
 
   void select(std::size_t slot, std::uint32_t entity) {
@@ -57,7 +58,8 @@ class ConstructedRobot final : public hal::Robot {
       if (type.name == hal::WheelSpeeds::kName && type.role == hal::Role::Actuator) group_.wheels = static_cast<int>(i);
     }
     if (group_.ports[i]->layout != type.layout) {
-      throw hal::DeviceError("device '" + std::string(type.name) + "' has another layout in the controller's library than in "
+      throw hal::DeviceError("device '" + std::string(type.name) +
+                             "' has another layout in the controller's library than in "
                              "this program; rebuild the library");
     }
     for (std::size_t b = block_.ports.size(); b < group_.ports.size(); ++b) add_array(*group_.ports[b]);
@@ -73,8 +75,8 @@ class ConstructedRobot final : public hal::Robot {
       throw hal::DeviceError("asks for the " + role + " '" + name + "', which no simulated robot has");
     }
     if (!find_device(type.name, type.role, "default")->fits(*group_.sheet)) {
-      throw hal::DeviceError("asks for the " + role + " '" + name + "', which the robot '" + std::string(group_.sheet->kind) +
-                             "' does not have");
+      throw hal::DeviceError("asks for the " + role + " '" + name + "', which the robot '" +
+                             std::string(group_.sheet->kind) + "' does not have");
     }
     const ControllerConfig& config = scenario_.controllers[group_.config];
     for (const DeviceChoice& choice : sensor ? config.sensors : config.actuators) {
@@ -103,14 +105,16 @@ class ConstructedRobot final : public hal::Robot {
 /// Robots that share a block must share everything that is not per robot.
 bool same_group(const RobotItem& a, const RobotItem& b) {
   return a.kind == b.kind && a.controller == b.controller && !a.params && !b.params && a.rab_range_m == b.rab_range_m &&
-         a.rab_payload == b.rab_payload && a.battery.model == b.battery.model && a.battery.start_charge == b.battery.start_charge &&
-         a.battery.full_charge == b.battery.full_charge && a.battery.delta == b.battery.delta &&
-         a.battery.pos_delta == b.battery.pos_delta && a.battery.orient_delta == b.battery.orient_delta;
+         a.rab_payload == b.rab_payload && a.battery.model == b.battery.model &&
+         a.battery.start_charge == b.battery.start_charge && a.battery.full_charge == b.battery.full_charge &&
+         a.battery.delta == b.battery.delta && a.battery.pos_delta == b.battery.pos_delta &&
+         a.battery.orient_delta == b.battery.orient_delta;
 }
 
 class Factory {
  public:
-  Factory(const Scenario& scenario, std::uint64_t seed, hal::PluginLoader& loader, SpaceStores& stores, Problems& problems)
+  Factory(const Scenario& scenario, std::uint64_t seed, hal::PluginLoader& loader, SpaceStores& stores,
+          Problems& problems)
       : scenario_(scenario), seed_(seed), loader_(loader), stores_(stores), problems_(problems) {}
 
   RobotDevices make(const std::vector<RobotRequest>& requests) {
@@ -125,7 +129,9 @@ class Factory {
   }
 
  private:
-  void problem(int line, std::string message) { problems_.push_back({scenario_.file, line, std::move(message), false}); }
+  void problem(int line, std::string message) {
+    problems_.push_back({scenario_.file, line, std::move(message), false});
+  }
 
   std::vector<std::vector<std::uint32_t>> group(const std::vector<RobotRequest>& requests) {
     std::vector<std::vector<std::uint32_t>> members;
@@ -140,7 +146,8 @@ class Factory {
       }
       group_of_item[i] = g;
     }
-    for (std::size_t r = 0; r < requests.size(); ++r) members[group_of_item[requests[r].item]].push_back(static_cast<std::uint32_t>(r));
+    for (std::size_t r = 0; r < requests.size(); ++r)
+      members[group_of_item[requests[r].item]].push_back(static_cast<std::uint32_t>(r));
     return members;
   }
 
@@ -150,7 +157,8 @@ class Factory {
     std::vector<std::uint64_t> keys;
     keys.reserve(members.size());
     for (const std::uint32_t r : members) {
-      const std::uint32_t place = curve_position((requests[r].x_m - stores_.min_x_m) / width, (requests[r].y_m - stores_.min_y_m) / depth);
+      const std::uint32_t place =
+          curve_position((requests[r].x_m - stores_.min_x_m) / width, (requests[r].y_m - stores_.min_y_m) / depth);
       keys.push_back((static_cast<std::uint64_t>(place) << 32) | r);
     }
     std::sort(keys.begin(), keys.end());
@@ -181,13 +189,15 @@ class Factory {
     group.params = group.controller->read_params(reader);
     reader.finish();
     // Listed devices must exist even when the controller does not take them.
-    bool good = problems_.size() == before || !has_errors(Problems(problems_.begin() + static_cast<std::ptrdiff_t>(before), problems_.end()));
+    bool good = problems_.size() == before ||
+                !has_errors(Problems(problems_.begin() + static_cast<std::ptrdiff_t>(before), problems_.end()));
     good = check_devices(config, config.sensors, hal::Role::Sensor, *group.sheet) && good;
     good = check_devices(config, config.actuators, hal::Role::Actuator, *group.sheet) && good;
     return good;
   }
 
-  bool check_devices(const ControllerConfig& config, const std::vector<DeviceChoice>& choices, hal::Role role, const hal::DataSheet& sheet) {
+  bool check_devices(const ControllerConfig& config, const std::vector<DeviceChoice>& choices, hal::Role role,
+                     const hal::DataSheet& sheet) {
     bool good = true;
     for (const DeviceChoice& choice : choices) {
       const DeviceType* type = find_device(choice.device, role, choice.implementation);
@@ -195,7 +205,8 @@ class Factory {
       if (type == nullptr) {
         std::string known;
         for (const DeviceType& t : device_types()) {
-          if (t.device == choice.device && t.role == role) known += (known.empty() ? "" : ", ") + std::string(t.implementation);
+          if (t.device == choice.device && t.role == role)
+            known += (known.empty() ? "" : ", ") + std::string(t.implementation);
         }
         problem(line, known.empty() ? "no simulated device '" + choice.device + "'"
                                     : "device '" + choice.device + "' has no implementation '" + choice.implementation +
@@ -217,7 +228,8 @@ class Factory {
     return good;
   }
 
-  void make_blocks(std::size_t g, const std::vector<RobotRequest>& requests, const std::vector<std::uint32_t>& members, RobotDevices& devices) {
+  void make_blocks(std::size_t g, const std::vector<RobotRequest>& requests, const std::vector<std::uint32_t>& members,
+                   RobotDevices& devices) {
     const std::size_t first_block = stores_.blocks.size();
     for (std::size_t begin = 0; begin < members.size(); begin += kBlockRows) {
       const std::size_t count = std::min(kBlockRows, members.size() - begin);
@@ -230,7 +242,8 @@ class Factory {
       stores_.blocks.push_back(std::move(block));
       stores_.groups[g].blocks.push_back(stores_.blocks.size() - 1);
       for (std::size_t i = 0; i < count; ++i) {
-        place(requests[members[begin + i]], static_cast<std::uint32_t>(stores_.blocks.size() - 1), static_cast<std::uint32_t>(i));
+        place(requests[members[begin + i]], static_cast<std::uint32_t>(stores_.blocks.size() - 1),
+              static_cast<std::uint32_t>(i));
       }
       if (!construct(stores_.blocks.back())) {
         devices.blocks.resize(stores_.blocks.size());
@@ -277,7 +290,8 @@ class Factory {
         why = "threw an exception of unknown type";
       }
       const ControllerConfig& config = scenario_.controllers[group.config];
-      problem(config.line, "controller '" + config.id + "' (" + std::string(type.name) + ") of robot '" + std::string(robot.id()) + "' " + why);
+      problem(config.line, "controller '" + config.id + "' (" + std::string(type.name) + ") of robot '" +
+                               std::string(robot.id()) + "' " + why);
       return false;
     }
     return true;
@@ -286,7 +300,8 @@ class Factory {
   void add_devices(std::size_t g, std::size_t first_block, RobotDevices& devices) {
     RobotGroup& group = stores_.groups[g];
     const ControllerConfig& config = scenario_.controllers[group.config];
-    const DeviceSetup setup{*group.sheet, scenario_.robots[first_item_[g]], 1.0 / static_cast<double>(scenario_.ticks_per_second)};
+    const DeviceSetup setup{*group.sheet, scenario_.robots[first_item_[g]],
+                            1.0 / static_cast<double>(scenario_.ticks_per_second)};
     devices.blocks.resize(stores_.blocks.size());
     for (const hal::PortType* port : group.ports) {
       const bool is_sensor = port->role == hal::Role::Sensor;
@@ -297,7 +312,8 @@ class Factory {
       const DeviceType* type = find_device(port->name, port->role, choice->implementation);
       Problems already_reported;
       const Recipe<Sensor> sensor = is_sensor ? type->make_sensor(choice->options, already_reported, setup) : nullptr;
-      const Recipe<Actuator> actuator = is_sensor ? nullptr : type->make_actuator(choice->options, already_reported, setup);
+      const Recipe<Actuator> actuator =
+          is_sensor ? nullptr : type->make_actuator(choice->options, already_reported, setup);
       for (std::size_t b = first_block; b < stores_.blocks.size(); ++b) {
         const std::size_t capacity = stores_.blocks[b].capacity;
         devices.blocks[b].sensors.push_back(is_sensor ? sensor(capacity) : nullptr);
@@ -323,7 +339,9 @@ const hal::DataSheet* data_sheet_of(std::string_view kind) {
   return kind == hal::epuck::kDataSheet.kind ? &hal::epuck::kDataSheet : nullptr;
 }
 
-std::vector<std::string> robot_kinds() { return {std::string(hal::epuck::kDataSheet.kind)}; }
+std::vector<std::string> robot_kinds() {
+  return {std::string(hal::epuck::kDataSheet.kind)};
+}
 
 RobotDevices make_robots(const Scenario& scenario, const std::vector<RobotRequest>& requests, std::uint64_t seed,
                          hal::PluginLoader& loader, SpaceStores& stores, Problems& problems) {
@@ -334,7 +352,8 @@ void destroy_controllers(SpaceStores& stores) noexcept {
   for (RobotBlock& block : stores.blocks) {
     const RobotGroup& group = stores.groups[block.group];
     if (group.controller == nullptr) continue;
-    for (std::size_t i = 0; i < block.used; ++i) group.controller->destroy(block.controllers.data() + i * block.controller_stride);
+    for (std::size_t i = 0; i < block.used; ++i)
+      group.controller->destroy(block.controllers.data() + i * block.controller_stride);
     block.used = 0;
   }
 }

@@ -13,8 +13,8 @@ namespace tandem::core {
 
 /// One robot to be made.
 struct RobotRequest {
-  std::uint32_t item = 0;            ///< of Scenario::robots
-  std::uint32_t entity = 0;          ///< index of its id
+  std::uint32_t item = 0;    ///< of Scenario::robots
+  std::uint32_t entity = 0;  ///< index of its id
   double x_m = 0.0, y_m = 0.0;
   double yaw_rad = 0.0;
 };
@@ -27,15 +27,15 @@ struct BlockDevices {
 
 /// What the factory made beyond the stores.
 struct RobotDevices {
-  std::vector<BlockDevices> blocks;                  ///< parallel to SpaceStores::blocks
+  std::vector<BlockDevices> blocks;  ///< parallel to SpaceStores::blocks
 };
 
 /// The data sheet of a kind of robot, or null. The kinds that this build knows: `robot_kinds()`.
 const hal::DataSheet* data_sheet_of(std::string_view kind);
 std::vector<std::string> robot_kinds();
 
-/// Fills `stores` (bodies, groups, blocks, robots) and returns the devices. Every problem goes to `problems` with the line
-/// of the robot or controller that it is about. Robots of a group get rows in the order of a space-filling curve.
+/// Fills `stores` (bodies, groups, blocks, robots) and returns the devices. Every problem goes to `problems` with the
+/// line of the robot or controller that it is about. Robots of a group get rows in the order of a space-filling curve.
 RobotDevices make_robots(const Scenario& scenario, const std::vector<RobotRequest>& requests, std::uint64_t seed,
                          hal::PluginLoader& loader, SpaceStores& stores, Problems& problems);
 

@@ -56,10 +56,10 @@ struct World::Impl {
   RunState state = RunState::Running;
   std::string failure;
   Incidents incidents;
-  std::atomic<std::uint32_t> trouble{0};       // robots that need the serial look after a parallel phase
-  std::vector<std::uint8_t> block_trouble;     // by block: 1 when one of its robots does
-  std::vector<hal::StepFault> faults;          // by block, for controllers that threw
-  std::vector<std::uint64_t> clamped;          // by block, running counts
+  std::atomic<std::uint32_t> trouble{0};    // robots that need the serial look after a parallel phase
+  std::vector<std::uint8_t> block_trouble;  // by block: 1 when one of its robots does
+  std::vector<hal::StepFault> faults;       // by block, for controllers that threw
+  std::vector<std::uint64_t> clamped;       // by block, running counts
   std::vector<std::uint64_t> not_finite;
 
   SpaceStores& stores() noexcept { return space.stores(); }
@@ -83,7 +83,13 @@ struct World::Impl {
   HookContext hook_context() { return {space, tick, scenario.ticks_per_second, seed}; }
   DeviceContext device_context(std::size_t block) {
     SpaceStores& s = stores();
-    return {s, s.groups[s.blocks[block].group], s.blocks[block], tick, hal::time_of_tick(tick, scenario.ticks_per_second), tick_s(), seed};
+    return {s,
+            s.groups[s.blocks[block].group],
+            s.blocks[block],
+            tick,
+            hal::time_of_tick(tick, scenario.ticks_per_second),
+            tick_s(),
+            seed};
   }
   double tick_s() const noexcept { return 1.0 / static_cast<double>(scenario.ticks_per_second); }
   void fail(std::string why) {
@@ -167,7 +173,8 @@ void World::Impl::rebuild_index() {
       return entry;
     }
     if ((flags & kExternal) != 0) entry.row_and_flag |= IndexEntry::kFixedFlag;
-    const bool inside = entry.x_m >= s.min_x_m && entry.x_m <= s.max_x_m && entry.y_m >= s.min_y_m && entry.y_m <= s.max_y_m;
+    const bool inside =
+        entry.x_m >= s.min_x_m && entry.x_m <= s.max_x_m && entry.y_m >= s.min_y_m && entry.y_m <= s.max_y_m;
     if (!inside) {  // also when not a number
       b.flags[row] = static_cast<std::uint8_t>(flags | kEscaped);
       trouble.fetch_add(1, std::memory_order_relaxed);
@@ -189,8 +196,8 @@ void World::Impl::treat_escapes() {
       continue;
     }
     ++incidents.bodies_escaped;
-    const std::string where = "robot '" + name_of_row(row) + "' left the arena at (" + hal::format_number(b.x_m[row]) + ", " +
-                              hal::format_number(b.y_m[row]) + ")" + at_tick();
+    const std::string where = "robot '" + name_of_row(row) + "' left the arena at (" + hal::format_number(b.x_m[row]) +
+                              ", " + hal::format_number(b.y_m[row]) + ")" + at_tick();
     if (scenario.escape == EscapePolicy::Error) {
       fail(where + ". Give the arena walls, or choose escape=\"stop\" or escape=\"remove\" on <arena>.");
     }
@@ -234,7 +241,8 @@ void World::Impl::control(std::size_t index) {
   const hal::ControllerType& type = *stores().groups[block.group].controller;
   std::size_t next = 0;
   while (next < block.used) {
-    next = type.step_row(block.controllers.data(), block.controller_stride, next, block.used, block.halted.data(), faults[index]);
+    next = type.step_row(block.controllers.data(), block.controller_stride, next, block.used, block.halted.data(),
+                         faults[index]);
     if (next == block.used) break;
     block.halted[next] = 2;  // thrown in this tick; reported, and its actuators made safe, after the phase
     block_trouble[index] = 1;
@@ -272,7 +280,8 @@ void World::Impl::report_trouble() {
       if ((flags & kNotFinite) != 0) {
         flags = static_cast<std::uint8_t>(flags & ~kNotFinite);
         if (incidents.first.size() < kIncidentsNamed) {
-          incident("controller of robot '" + name_of_row(row) + "' commanded a wheel speed that is not a finite number" + at_tick() +
+          incident("controller of robot '" + name_of_row(row) +
+                   "' commanded a wheel speed that is not a finite number" + at_tick() +
                    ": wheels stopped for this tick");
         }
       }
@@ -340,7 +349,8 @@ std::unique_ptr<Engine> make_engine(const Scenario& scenario, Problems& problems
   if (!scenario.engines.empty()) {
     const EngineConfig& config = scenario.engines.front();
     if (config.kind != "kinematics2d") {
-      problems.push_back({scenario.file, config.line, "unknown physics engine '" + config.kind + "'; known: kinematics2d", false});
+      problems.push_back(
+          {scenario.file, config.line, "unknown physics engine '" + config.kind + "'; known: kinematics2d", false});
       return nullptr;
     }
     ElementReader reader(config.options, problems, {"id", "regions"});
@@ -351,16 +361,20 @@ std::unique_ptr<Engine> make_engine(const Scenario& scenario, Problems& problems
 
 }  // namespace
 
-std::unique_ptr<World> World::make(const Scenario& scenario, hal::PluginLoader& loader, const WorldOptions& options, Problems& problems) {
+std::unique_ptr<World> World::make(const Scenario& scenario, hal::PluginLoader& loader, const WorldOptions& options,
+                                   Problems& problems) {
   auto impl = std::make_unique<Impl>();
   Impl& w = *impl;
   const std::size_t before = problems.size();
-  const auto bad = [&] { return has_errors(Problems(problems.begin() + static_cast<std::ptrdiff_t>(before), problems.end())); };
+  const auto bad = [&] {
+    return has_errors(Problems(problems.begin() + static_cast<std::ptrdiff_t>(before), problems.end()));
+  };
   w.scenario = scenario;
   w.options = options;
   w.seed = options.seed ? *options.seed : scenario.seed ? *scenario.seed : seed_from_clock();
-  w.pool = std::make_unique<ThreadPool>(static_cast<std::size_t>(std::max<std::int64_t>(0, options.threads.value_or(scenario.threads))),
-                                        options.assignment.value_or(scenario.assignment));
+  w.pool = std::make_unique<ThreadPool>(
+      static_cast<std::size_t>(std::max<std::int64_t>(0, options.threads.value_or(scenario.threads))),
+      options.assignment.value_or(scenario.assignment));
   SpaceStores& s = w.stores();
   s.min_x_m = scenario.arena_center[0] - 0.5 * scenario.arena_size[0];
   s.max_x_m = scenario.arena_center[0] + 0.5 * scenario.arena_size[0];
@@ -371,13 +385,19 @@ std::unique_ptr<World> World::make(const Scenario& scenario, hal::PluginLoader& 
   const Placements placements = place(scenario, w.seed, &radius_of_kind, problems);
   if (bad()) return nullptr;
 
-  for (const PlacedObject& placed : placements.objects) s.statics.push_back(static_shape(scenario.objects[placed.item], placed));
+  for (const PlacedObject& placed : placements.objects)
+    s.statics.push_back(static_shape(scenario.objects[placed.item], placed));
   for (const PlacedLight& placed : placements.lights) {
     const LightItem& item = scenario.lights[placed.item];
-    s.lights.push_back({placed.number < 0 ? item.id : item.id + std::to_string(placed.number), placed.p_W[0], placed.p_W[1], placed.p_W[2],
-                        item.intensity, {item.rgb[0], item.rgb[1], item.rgb[2]}});
+    s.lights.push_back({placed.number < 0 ? item.id : item.id + std::to_string(placed.number),
+                        placed.p_W[0],
+                        placed.p_W[1],
+                        placed.p_W[2],
+                        item.intensity,
+                        {item.rgb[0], item.rgb[1], item.rgb[2]}});
   }
-  for (const SoundItem& item : scenario.sounds) s.sounds.push_back({item.id, item.p_W[0], item.p_W[1], item.p_W[2], item.level});
+  for (const SoundItem& item : scenario.sounds)
+    s.sounds.push_back({item.id, item.p_W[0], item.p_W[1], item.p_W[2], item.level});
 
   // Ids: entities in the order of the file.
   std::vector<RobotRequest> requests;
@@ -402,13 +422,15 @@ std::unique_ptr<World> World::make(const Scenario& scenario, hal::PluginLoader& 
   double reach_m = 2.0 * kContactReach_m;
   for (const RobotGroup& group : s.groups) {
     if (group.sheet == nullptr) continue;
-    reach_m = std::max(reach_m, 2.0 * group.sheet->body_radius_m + std::max(group.sheet->proximity_range_m, kContactReach_m) + 0.01);
+    reach_m = std::max(
+        reach_m, 2.0 * group.sheet->body_radius_m + std::max(group.sheet->proximity_range_m, kContactReach_m) + 0.01);
   }
   s.body_index.set_area(s.min_x_m, s.min_y_m, s.max_x_m, s.max_y_m, reach_m);
   s.static_index.build(s.statics, s.min_x_m, s.min_y_m, s.max_x_m, s.max_y_m, reach_m);
 
   if (scenario.floor.source == "image") {
-    const hal::Status loaded = s.floor.load_png(scenario.floor.path, s.min_x_m, s.min_y_m, scenario.arena_size[0], scenario.arena_size[1]);
+    const hal::Status loaded =
+        s.floor.load_png(scenario.floor.path, s.min_x_m, s.min_y_m, scenario.arena_size[0], scenario.arena_size[1]);
     if (!loaded.ok()) problems.push_back({scenario.file, scenario.floor.line, loaded.error().message, false});
   }
   s.repaint_floor = true;
@@ -424,7 +446,8 @@ std::unique_ptr<World> World::make(const Scenario& scenario, hal::PluginLoader& 
     w.hook_names.emplace_back(hook->name);
   }
   if (scenario.floor.source == "loop_functions" && scenario.hooks.empty()) {
-    problems.push_back({scenario.file, scenario.floor.line, "the floor is to be painted by loop functions, but there are none", false});
+    problems.push_back({scenario.file, scenario.floor.line,
+                        "the floor is to be painted by loop functions, but there are none", false});
   }
 
   const std::size_t blocks = s.blocks.size();
@@ -439,7 +462,9 @@ std::unique_ptr<World> World::make(const Scenario& scenario, hal::PluginLoader& 
 
 World::World(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 
-World::~World() { destroy_controllers(impl_->stores()); }
+World::~World() {
+  destroy_controllers(impl_->stores());
+}
 
 void World::start() {
   impl_->call_hooks("before_run", [](Hook& hook, HookContext& c) { hook.before_run(c); });
@@ -449,16 +474,36 @@ void World::finish() {
   impl_->call_hooks("after_run", [](Hook& hook, HookContext& c) { hook.after_run(c); });
 }
 
-void World::set_external(ExternalRobots* external) noexcept { impl_->external = external; }
-RunState World::state() const noexcept { return impl_->state; }
-const std::string& World::failure() const noexcept { return impl_->failure; }
-hal::Tick World::tick() const noexcept { return impl_->tick; }
-std::int64_t World::ticks_per_second() const noexcept { return impl_->scenario.ticks_per_second; }
-std::uint64_t World::seed() const noexcept { return impl_->seed; }
-std::int64_t World::threads() const noexcept { return static_cast<std::int64_t>(impl_->pool->size()); }
-const Scenario& World::scenario() const noexcept { return impl_->scenario; }
-Space& World::space() noexcept { return impl_->space; }
-const Space& World::space() const noexcept { return impl_->space; }
+void World::set_external(ExternalRobots* external) noexcept {
+  impl_->external = external;
+}
+RunState World::state() const noexcept {
+  return impl_->state;
+}
+const std::string& World::failure() const noexcept {
+  return impl_->failure;
+}
+hal::Tick World::tick() const noexcept {
+  return impl_->tick;
+}
+std::int64_t World::ticks_per_second() const noexcept {
+  return impl_->scenario.ticks_per_second;
+}
+std::uint64_t World::seed() const noexcept {
+  return impl_->seed;
+}
+std::int64_t World::threads() const noexcept {
+  return static_cast<std::int64_t>(impl_->pool->size());
+}
+const Scenario& World::scenario() const noexcept {
+  return impl_->scenario;
+}
+Space& World::space() noexcept {
+  return impl_->space;
+}
+const Space& World::space() const noexcept {
+  return impl_->space;
+}
 
 const Incidents& World::incidents() const noexcept {
   Incidents& i = impl_->incidents;
@@ -479,14 +524,16 @@ std::uint64_t World::state_hash() const noexcept {
     const RobotGroup& group = s.groups[block.group];
     const std::size_t row = block.first_row + e.slot;
     hash = mix(hash, entity);
-    for (const auto* quantity : {&b.x_m, &b.y_m, &b.cos_h, &b.sin_h, &b.left_m, &b.right_m}) hash = mix(hash, bits_of((*quantity)[row]));
+    for (const auto* quantity : {&b.x_m, &b.y_m, &b.cos_h, &b.sin_h, &b.left_m, &b.right_m})
+      hash = mix(hash, bits_of((*quantity)[row]));
     hash = mix(hash, block.halted[e.slot]);
     // Every port as the controller saw and left it, but the padding between fields.
     for (std::size_t i = 0; i < group.ports.size(); ++i) {
       const hal::PortType& type = *group.ports[i];
       const void* port = block.ports[i].data() + e.slot * type.size;
       for (const hal::Field& field : type.fields) {
-        for (std::size_t k = 0; k < hal::used_count(type, port, field); ++k) hash = mix(hash, bits_of(hal::get_value(port, field, k)));
+        for (std::size_t k = 0; k < hal::used_count(type, port, field); ++k)
+          hash = mix(hash, bits_of(hal::get_value(port, field, k)));
       }
     }
   }

@@ -17,8 +17,8 @@
 namespace tandem::core {
 
 struct WorldOptions {
-  std::optional<std::uint64_t> seed;     ///< overrides the scenario's
-  std::optional<std::int64_t> threads;   ///< overrides the scenario's; 0 and 1: the caller alone
+  std::optional<std::uint64_t> seed;    ///< overrides the scenario's
+  std::optional<std::int64_t> threads;  ///< overrides the scenario's; 0 and 1: the caller alone
   std::optional<Assignment> assignment;
   hal::Log log;
 };
@@ -32,14 +32,14 @@ struct Incidents {
   std::uint64_t commands_not_finite = 0;
   std::uint64_t controllers_thrown = 0;
   std::uint64_t bodies_escaped = 0;
-  std::vector<std::string> first;        ///< the first few, each naming robot, tick and what happened
+  std::vector<std::string> first;  ///< the first few, each naming robot, tick and what happened
 };
 
 /// A simulated world. Not copyable; may be moved between threads between steps.
 class World {
  public:
-  /// Places every entity, loads every plug-in, constructs every controller. All problems are appended to `problems`, each
-  /// with its line; null is returned when there is an error among them. `loader` must outlive the world.
+  /// Places every entity, loads every plug-in, constructs every controller. All problems are appended to `problems`,
+  /// each with its line; null is returned when there is an error among them. `loader` must outlive the world.
   static std::unique_ptr<World> make(const Scenario& scenario, hal::PluginLoader& loader, const WorldOptions& options,
                                      Problems& problems);
   ~World();

@@ -5,7 +5,7 @@
 namespace tandem::core {
 namespace {
 
-constexpr double kCellsPerBody = 5.0;   // more cells cost their clearing, fewer cost candidates
+constexpr double kCellsPerBody = 5.0;  // more cells cost their clearing, fewer cost candidates
 constexpr std::size_t kFewestCells = 64;
 
 }  // namespace
@@ -39,8 +39,8 @@ void BodyIndex::prepare(std::size_t rows, std::size_t living) {
 }
 
 void BodyIndex::sort(std::size_t rows, ThreadPool& pool) {
-  // Each part owns a band of cells. It reads every row's cell and counts, then places, those of its own band, in the order
-  // of rows: a stable counting sort without shared counters, whose result does not depend on the number of parts.
+  // Each part owns a band of cells. It reads every row's cell and counts, then places, those of its own band, in the
+  // order of rows: a stable counting sort without shared counters, whose result does not depend on the number of parts.
   const std::size_t cells = start_.size() - 1;
   const std::size_t parts = rows < 2 * kGrain ? 1 : pool.size();
   const auto band = [&](std::size_t part) { return static_cast<std::uint32_t>(cells * part / parts); };

@@ -21,12 +21,12 @@ struct IndexEntry {
   bool fixed() const noexcept { return (row_and_flag & kFixedFlag) != 0; }
 };
 
-/// Bodies sorted by cell, cells in rows from west to east: the cells of one row that a query touches are one run of entries.
-/// Within a cell, entries stand in the order of their rows: nothing depends on the number of threads.
+/// Bodies sorted by cell, cells in rows from west to east: the cells of one row that a query touches are one run of
+/// entries. Within a cell, entries stand in the order of their rows: nothing depends on the number of threads.
 class BodyIndex {
  public:
-  /// The grid covers the rectangle; bodies beyond it count to the nearest cell. `reach_m` is the longest distance at which
-  /// bodies are looked for every tick.
+  /// The grid covers the rectangle; bodies beyond it count to the nearest cell. `reach_m` is the longest distance at
+  /// which bodies are looked for every tick.
   void set_area(double min_x_m, double min_y_m, double max_x_m, double max_y_m, double reach_m);
 
   /// Sorts anew the bodies whose `row_and_flag` is not `kSkip`. `fill(row)` gives row's entry.
@@ -55,7 +55,8 @@ class BodyIndex {
 
   /// Calls `visit(const IndexEntry&)` for every body whose centre may be within `radius_m` of (x, y); some are farther.
   template <class Visit>
-  [[gnu::always_inline]] inline void for_each_near(double x_m, double y_m, double radius_m, Visit&& visit) const noexcept {
+  [[gnu::always_inline]] inline void for_each_near(double x_m, double y_m, double radius_m,
+                                                   Visit&& visit) const noexcept {
     const double r = radius_m + displacement_m_;
     const std::uint32_t x0 = column(x_m - r);
     const std::uint32_t x1 = column(x_m + r);
@@ -91,11 +92,11 @@ class BodyIndex {
   double displacement_m_ = 0.0;
   std::uint32_t columns_ = 1;
   std::uint32_t lines_ = 1;
-  std::size_t planned_for_ = 0;                 // number of bodies that the cell size was chosen for
-  std::vector<std::uint32_t> start_;            // first entry of each cell, and one past the last
+  std::size_t planned_for_ = 0;       // number of bodies that the cell size was chosen for
+  std::vector<std::uint32_t> start_;  // first entry of each cell, and one past the last
   std::vector<std::uint32_t> cell_of_row_;
-  std::vector<IndexEntry> staged_;              // by row
-  std::vector<IndexEntry> entries_;             // sorted
+  std::vector<IndexEntry> staged_;   // by row
+  std::vector<IndexEntry> entries_;  // sorted
 };
 
 }  // namespace tandem::core

@@ -1,9 +1,8 @@
 #include "core/space/floor.hpp"
 
-#include <png.h>
-
 #include <algorithm>
 #include <cmath>
+#include <png.h>
 
 namespace tandem::core {
 
@@ -47,7 +46,8 @@ void Floor::paint(double min_x_m, double min_y_m, double size_x_m, double size_y
     const double y = min_y_m + (static_cast<double>(line) + 0.5) / lines_per_m_;
     for (std::size_t column = 0; column < columns_; ++column) {
       const double x = min_x_m + (static_cast<double>(column) + 0.5) / columns_per_m_;
-      shade_[line * columns_ + column] = static_cast<std::uint8_t>(std::lround(255.0 * std::clamp(shade(x, y), 0.0, 1.0)));
+      shade_[line * columns_ + column] =
+          static_cast<std::uint8_t>(std::lround(255.0 * std::clamp(shade(x, y), 0.0, 1.0)));
     }
   }
 }

@@ -7,8 +7,8 @@ namespace tandem::core {
 struct Pose {
   double x_m = 0.0;
   double y_m = 0.0;
-  double z_m = 0.0;      ///< of the base above the ground
-  double cos_h = 1.0;    ///< heading: counter-clockwise from x
+  double z_m = 0.0;    ///< of the base above the ground
+  double cos_h = 1.0;  ///< heading: counter-clockwise from x
   double sin_h = 0.0;
 
   double heading_rad() const noexcept;  ///< in (-pi, pi]

@@ -10,7 +10,9 @@
 
 namespace tandem::core {
 
-double Pose::heading_rad() const noexcept { return std::atan2(sin_h, cos_h); }
+double Pose::heading_rad() const noexcept {
+  return std::atan2(sin_h, cos_h);
+}
 
 void Bodies::resize(std::size_t rows) {
   for (auto* array : {&x_m, &y_m, &sin_h, &left_m_s, &right_m_s, &left_m, &right_m}) array->resize(rows, 0.0);
@@ -21,14 +23,17 @@ void Bodies::resize(std::size_t rows) {
 }
 
 AlignedBytes::AlignedBytes(std::size_t size, std::size_t align)
-    : bytes_(static_cast<std::byte*>(::operator new(std::max<std::size_t>(size, 1), std::align_val_t{align})), Free{align}) {
+    : bytes_(static_cast<std::byte*>(::operator new (std::max<std::size_t>(size, 1), std::align_val_t{align})),
+             Free{align}) {
   std::memset(bytes_.get(), 0, size);
 }
 
 Space::Space() : stores_(std::make_unique<SpaceStores>()) {}
 Space::~Space() = default;
 
-std::size_t Space::robot_count() const noexcept { return stores_->living.size(); }
+std::size_t Space::robot_count() const noexcept {
+  return stores_->living.size();
+}
 
 RobotId Space::robot(std::size_t i) const noexcept {
   const std::uint32_t entity = stores_->living[i];
@@ -45,7 +50,8 @@ RobotId Space::find_robot(std::string_view id) const noexcept {
     } else {
       std::int64_t number = 0;
       const auto [end, status] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
-      const bool plain = status == std::errc{} && end == digits.data() + digits.size() && (digits.size() == 1 || digits[0] != '0');
+      const bool plain =
+          status == std::errc{} && end == digits.data() + digits.size() && (digits.size() == 1 || digits[0] != '0');
       if (!plain || number < range.base || number >= range.base + range.count) continue;
       entity += static_cast<std::uint32_t>(number - range.base);
     }
@@ -141,9 +147,15 @@ std::vector<const hal::PortType*> Space::ports(RobotId robot) const {
   return stores_->groups[stores_->blocks[stores_->robots[robot.index].block].group].ports;
 }
 
-const std::vector<StaticShape>& Space::statics() const noexcept { return stores_->statics; }
-const std::vector<LightSource>& Space::lights() const noexcept { return stores_->lights; }
-const std::vector<SoundSource>& Space::sounds() const noexcept { return stores_->sounds; }
+const std::vector<StaticShape>& Space::statics() const noexcept {
+  return stores_->statics;
+}
+const std::vector<LightSource>& Space::lights() const noexcept {
+  return stores_->lights;
+}
+const std::vector<SoundSource>& Space::sounds() const noexcept {
+  return stores_->sounds;
+}
 
 void Space::set_light(std::size_t i, const LightSource& light) {
   TANDEM_CHECK(i < stores_->lights.size(), "set_light: there is no light of that number");
@@ -155,11 +167,23 @@ void Space::set_sound(std::size_t i, const SoundSource& sound) {
   stores_->sounds[i] = sound;
 }
 
-double Space::arena_size_x_m() const noexcept { return stores_->max_x_m - stores_->min_x_m; }
-double Space::arena_size_y_m() const noexcept { return stores_->max_y_m - stores_->min_y_m; }
-double Space::arena_center_x_m() const noexcept { return 0.5 * (stores_->max_x_m + stores_->min_x_m); }
-double Space::arena_center_y_m() const noexcept { return 0.5 * (stores_->max_y_m + stores_->min_y_m); }
-double Space::floor(double x_m, double y_m) const noexcept { return static_cast<double>(stores_->floor.at(x_m, y_m)); }
-void Space::repaint_floor() noexcept { stores_->repaint_floor = true; }
+double Space::arena_size_x_m() const noexcept {
+  return stores_->max_x_m - stores_->min_x_m;
+}
+double Space::arena_size_y_m() const noexcept {
+  return stores_->max_y_m - stores_->min_y_m;
+}
+double Space::arena_center_x_m() const noexcept {
+  return 0.5 * (stores_->max_x_m + stores_->min_x_m);
+}
+double Space::arena_center_y_m() const noexcept {
+  return 0.5 * (stores_->max_y_m + stores_->min_y_m);
+}
+double Space::floor(double x_m, double y_m) const noexcept {
+  return static_cast<double>(stores_->floor.at(x_m, y_m));
+}
+void Space::repaint_floor() noexcept {
+  stores_->repaint_floor = true;
+}
 
 }  // namespace tandem::core

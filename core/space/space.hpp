@@ -21,9 +21,9 @@ struct StaticShape {
   Kind kind = Kind::Box;
   std::string id;
   double x_m = 0.0, y_m = 0.0;
-  double cos_h = 1.0, sin_h = 0.0;     ///< heading of a box
+  double cos_h = 1.0, sin_h = 0.0;  ///< heading of a box
   double half_x_m = 0.0, half_y_m = 0.0;
-  double radius_m = 0.0;               ///< of a cylinder
+  double radius_m = 0.0;  ///< of a cylinder
   double z_low_m = 0.0, z_high_m = 0.0;
 };
 
@@ -63,7 +63,7 @@ class Space {
   void set_pose(RobotId robot, const Pose& pose) noexcept;
   /// Takes a robot out of the space: its controller stops, nobody sees it any more. Its id is not used again.
   void remove_robot(RobotId robot) noexcept;
-  bool halted(RobotId robot) const noexcept;               ///< its controller threw or was stopped: wheels stay 0
+  bool halted(RobotId robot) const noexcept;  ///< its controller threw or was stopped: wheels stay 0
   void set_halted(RobotId robot, bool halted) noexcept;
   /// Whether the robot's pose is set from outside (a real robot's twin): engines do not move it, others bump into it.
   bool external(RobotId robot) const noexcept;
@@ -73,9 +73,13 @@ class Space {
   const void* port(RobotId robot, const hal::PortType& type) const noexcept;
   void* port(RobotId robot, const hal::PortType& type) noexcept;
   template <class T>
-  T* port(RobotId robot) noexcept { return static_cast<T*>(port(robot, hal::port_type<T>())); }
+  T* port(RobotId robot) noexcept {
+    return static_cast<T*>(port(robot, hal::port_type<T>()));
+  }
   template <class T>
-  const T* port(RobotId robot) const noexcept { return static_cast<const T*>(port(robot, hal::port_type<T>())); }
+  const T* port(RobotId robot) const noexcept {
+    return static_cast<const T*>(port(robot, hal::port_type<T>()));
+  }
   /// Descriptions of all ports that the robot's controller took.
   std::vector<const hal::PortType*> ports(RobotId robot) const;
 

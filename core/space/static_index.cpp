@@ -83,7 +83,7 @@ double signed_distance(const StaticShape& s, double x_m, double y_m, double& nx,
   }
   const double lx = s.cos_h * rx + s.sin_h * ry;  // in the box's frame
   const double ly = -s.sin_h * rx + s.cos_h * ry;
-  const double ox = std::fabs(lx) - s.half_x_m;   // beyond the faces
+  const double ox = std::fabs(lx) - s.half_x_m;  // beyond the faces
   const double oy = std::fabs(ly) - s.half_y_m;
   double bx = 0.0;
   double by = 0.0;

@@ -18,7 +18,8 @@ class StaticIndex {
 
   /// Indices into the shapes; superset of those within `reach()` of (x, y), in rising order.
   std::span<const std::uint32_t> near(double x_m, double y_m) const noexcept {
-    const std::size_t cell = static_cast<std::size_t>(at(y_m - min_y_m_, lines_)) * columns_ + at(x_m - min_x_m_, columns_);
+    const std::size_t cell =
+        static_cast<std::size_t>(at(y_m - min_y_m_, lines_)) * columns_ + at(x_m - min_x_m_, columns_);
     return {list_.data() + start_[cell], start_[cell + 1] - start_[cell]};
   }
   double reach() const noexcept { return reach_m_; }
@@ -38,8 +39,8 @@ class StaticIndex {
   std::vector<std::uint32_t> list_;
 };
 
-/// Distance from (x, y) to the outline of `shape` seen from above; negative inside. `nx, ny` is the unit vector from the
-/// shape towards the point (outwards), in W.
+/// Distance from (x, y) to the outline of `shape` seen from above; negative inside. `nx, ny` is the unit vector from
+/// the shape towards the point (outwards), in W.
 double signed_distance(const StaticShape& shape, double x_m, double y_m, double& nx, double& ny) noexcept;
 
 /// True when the straight line from a to b (x, y, z in W) passes through `shape`.

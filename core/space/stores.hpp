@@ -1,8 +1,9 @@
 // The arrays that hold the simulated state. For the kernels that run over them; others go through Space.
 //
 // Robots of one kind and one controller configuration form a group; a group's robots lie in blocks of up to kBlockRows.
-// Within a block, row i of every array, port array and controller array is the same robot. Blocks never move once made, so
-// ports and controllers keep their addresses. At the start rows are in spatial order, so that neighbours share cache lines.
+// Within a block, row i of every array, port array and controller array is the same robot. Blocks never move once made,
+// so ports and controllers keep their addresses. At the start rows are in spatial order, so that neighbours share cache
+// lines.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -30,11 +31,11 @@ inline constexpr std::size_t kBlockRows = 256;
 struct Bodies {
   std::vector<double> x_m, y_m;
   std::vector<double> cos_h, sin_h;
-  std::vector<double> left_m_s, right_m_s;    ///< rim speeds that the engine drives with in this tick
-  std::vector<double> left_m, right_m;        ///< rolled since the start
+  std::vector<double> left_m_s, right_m_s;  ///< rim speeds that the engine drives with in this tick
+  std::vector<double> left_m, right_m;      ///< rolled since the start
   std::vector<float> radius_m;
-  std::vector<std::uint8_t> flags;            ///< BodyFlag
-  std::vector<std::uint32_t> entity;          ///< index of the robot's id
+  std::vector<std::uint8_t> flags;    ///< BodyFlag
+  std::vector<std::uint32_t> entity;  ///< index of the robot's id
 
   std::size_t size() const noexcept { return x_m.size(); }
   void resize(std::size_t rows);
@@ -57,7 +58,7 @@ class AlignedBytes {
  private:
   struct Free {
     std::size_t align;
-    void operator()(std::byte* p) const noexcept { ::operator delete(p, std::align_val_t{align}); }
+    void operator()(std::byte* p) const noexcept { ::operator delete (p, std::align_val_t{align}); }
   };
   std::unique_ptr<std::byte, Free> bytes_;
 };
@@ -66,10 +67,10 @@ class AlignedBytes {
 struct RobotGroup {
   const hal::DataSheet* sheet = nullptr;
   const hal::ControllerType* controller = nullptr;
-  std::size_t config = 0;                          ///< index into Scenario::controllers
+  std::size_t config = 0;  ///< index into Scenario::controllers
   std::shared_ptr<const void> params;
-  std::vector<const hal::PortType*> ports;         ///< those that its controllers took, in the order of taking
-  int wheels = -1;                                 ///< index in `ports` of the wheel command; -1: none
+  std::vector<const hal::PortType*> ports;  ///< those that its controllers took, in the order of taking
+  int wheels = -1;                          ///< index in `ports` of the wheel command; -1: none
   double rab_range_m = 0.0;
   unsigned rab_payload = 0;
   std::vector<std::size_t> blocks;
@@ -81,13 +82,15 @@ struct RobotBlock {
   std::size_t first_row = 0;
   std::size_t capacity = 0;
   std::size_t used = 0;
-  std::vector<AlignedBytes> ports;                 ///< parallel to RobotGroup::ports
+  std::vector<AlignedBytes> ports;  ///< parallel to RobotGroup::ports
   AlignedBytes controllers;
   std::size_t controller_stride = 0;
-  std::array<std::uint8_t, kBlockRows> halted{};   ///< 1: controller does not step, wheels stay 0
+  std::array<std::uint8_t, kBlockRows> halted{};  ///< 1: controller does not step, wheels stay 0
 
   template <class T>
-  T* port_array(std::size_t i) const noexcept { return std::launder(reinterpret_cast<T*>(ports[i].data())); }
+  T* port_array(std::size_t i) const noexcept {
+    return std::launder(reinterpret_cast<T*>(ports[i].data()));
+  }
 };
 
 /// One robot by id.
@@ -95,15 +98,15 @@ struct RobotEntity {
   std::uint32_t generation = 0;
   std::uint32_t block = 0;
   std::uint32_t slot = 0;
-  std::uint32_t item = 0;                          ///< of SpaceStores::names
-  std::int64_t number = -1;                        ///< appended to the item's id; -1: nothing
+  std::uint32_t item = 0;    ///< of SpaceStores::names
+  std::int64_t number = -1;  ///< appended to the item's id; -1: nothing
   bool alive = false;
 };
 
 /// Ids of robots are not stored one by one: "ep" + number, numbers rising from `base` for entities from `first_entity`.
 struct NameRange {
   std::string prefix;
-  std::int64_t base = -1;                          ///< -1: a single robot, the prefix is its id
+  std::int64_t base = -1;  ///< -1: a single robot, the prefix is its id
   std::uint32_t first_entity = 0;
   std::uint32_t count = 1;
 };
@@ -113,7 +116,7 @@ struct Broadcast {
   std::uint8_t sending = 0;
   std::uint8_t size = 0;
   std::array<std::uint8_t, hal::kRabPayloadMax> payload{};
-  float range_m = 0.0F;                            ///< how far the sender reaches
+  float range_m = 0.0F;  ///< how far the sender reaches
 };
 
 struct SpaceStores {
@@ -122,8 +125,8 @@ struct SpaceStores {
   Bodies bodies;
   std::vector<RobotGroup> groups;
   std::vector<RobotBlock> blocks;
-  std::vector<RobotEntity> robots;                 ///< by entity index
-  std::vector<std::uint32_t> living;               ///< entity indices, in order
+  std::vector<RobotEntity> robots;    ///< by entity index
+  std::vector<std::uint32_t> living;  ///< entity indices, in order
   std::vector<NameRange> names;
 
   std::vector<StaticShape> statics;
@@ -134,7 +137,7 @@ struct SpaceStores {
   std::vector<SoundSource> sounds;
   Floor floor;
   bool repaint_floor = false;
-  std::vector<Broadcast> broadcasts;               ///< by row; empty when no robot can send
+  std::vector<Broadcast> broadcasts;  ///< by row; empty when no robot can send
 
   std::size_t row_of(RobotId id) const noexcept {
     const RobotEntity& e = robots[id.index];

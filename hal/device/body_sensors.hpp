@@ -39,7 +39,7 @@ struct Battery : Reading {
   static constexpr std::string_view kName = "battery";
   static constexpr std::string_view kDoc = "Charge that is left and voltage of the battery.";
 
-  float charge = 0.0F;    ///< 0 empty to 1 full
+  float charge = 0.0F;  ///< 0 empty to 1 full
   float supply_V = 0.0F;
 
   void describe(FieldList& f) const {

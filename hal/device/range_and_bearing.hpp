@@ -1,4 +1,5 @@
-// Range-and-bearing: short situated messages. The receiver learns the payload and where, relative to itself, the sender is.
+// Range-and-bearing: short situated messages. The receiver learns the payload and where, relative to itself, the sender
+// is.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -8,7 +9,8 @@
 
 namespace tandem::hal {
 
-inline constexpr std::size_t kRabPayloadMax = 10;  ///< bytes; the foot-bot's. An e-puck sends 2 unless its file says otherwise
+inline constexpr std::size_t kRabPayloadMax =
+    10;  ///< bytes; the foot-bot's. An e-puck sends 2 unless its file says otherwise
 
 /// What the robot broadcasts in this tick. Safe value: nothing.
 struct RangeAndBearingSend : Command {
@@ -33,10 +35,10 @@ struct RangeAndBearing : Reading {
   static constexpr std::size_t kCapacity = 16;
 
   std::uint32_t count = 0;
-  std::uint32_t dropped = 0;                         ///< received beyond the capacity in this tick
+  std::uint32_t dropped = 0;  ///< received beyond the capacity in this tick
   std::array<float, kCapacity> range_m{};
-  std::array<float, kCapacity> bearing_rad{};        ///< counter-clockwise from forward
-  std::array<float, kCapacity> elevation_rad{};      ///< upwards from the horizontal
+  std::array<float, kCapacity> bearing_rad{};    ///< counter-clockwise from forward
+  std::array<float, kCapacity> elevation_rad{};  ///< upwards from the horizontal
   std::array<std::uint8_t, kCapacity> size{};
   std::array<std::uint8_t, kCapacity * kRabPayloadMax> payload{};
 
@@ -69,7 +71,8 @@ struct RangeAndBearing : Reading {
     f.add("count", count, unit::none, Frame::None, Fusion::Union, "messages received");
     f.add("dropped", dropped, unit::none, Frame::None, Fusion::Union, "messages beyond the capacity");
     f.add("range", range_m, unit::m, Frame::Body, Fusion::Union, "distance to the sender").used_by = "count";
-    f.add("bearing", bearing_rad, unit::rad, Frame::Body, Fusion::Union, "counter-clockwise from forward").used_by = "count";
+    f.add("bearing", bearing_rad, unit::rad, Frame::Body, Fusion::Union, "counter-clockwise from forward").used_by =
+        "count";
     f.add("elevation", elevation_rad, unit::rad, Frame::Body, Fusion::Union, "upwards").used_by = "count";
     f.add("size", size, unit::none, Frame::None, Fusion::Union, "bytes of payload").used_by = "count";
     f.add("payload", payload, unit::none, Frame::None, Fusion::Union, "10 bytes a message").used_by = "count";

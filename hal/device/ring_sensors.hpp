@@ -24,7 +24,8 @@ struct Proximity : Reading {
   void describe(FieldList& f) const {
     f.add("count", count, unit::none, Frame::None, Fusion::Real, "number of sensors");
     f.add("range", range_m, unit::m, Frame::None, Fusion::Real, "distance that means nothing seen");
-    f.add("distance", distance_m, unit::m, Frame::Sensor, Fusion::Nearer, "distance to the nearest obstacle").used_by = "count";
+    f.add("distance", distance_m, unit::m, Frame::Sensor, Fusion::Nearer, "distance to the nearest obstacle").used_by =
+        "count";
   }
 };
 

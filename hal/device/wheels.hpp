@@ -26,7 +26,8 @@ struct WheelSpeeds : Command {
 /// On an e-puck the encoders count commanded steps of a stepper motor: they say nothing about slip.
 struct WheelEncoders : Reading {
   static constexpr std::string_view kName = "wheel_encoders";
-  static constexpr std::string_view kDoc = "Distance rolled by each wheel since the start, and speed over the last tick.";
+  static constexpr std::string_view kDoc =
+      "Distance rolled by each wheel since the start, and speed over the last tick.";
 
   double left_m = 0.0;
   double right_m = 0.0;

@@ -15,7 +15,7 @@ struct Mount {
 
 /// One kind of robot. All spans point at constants.
 struct DataSheet {
-  std::string_view kind;             ///< as the element in experiment files, e.g. "e-puck"
+  std::string_view kind;  ///< as the element in experiment files, e.g. "e-puck"
   double body_radius_m = 0.0;
   double body_height_m = 0.0;
   double mass_kg = 0.0;
@@ -25,7 +25,7 @@ struct DataSheet {
   double proximity_range_m = 0.0;    ///< from the sensor
   double rab_range_m = 0.0;          ///< range-and-bearing, between centres
   double rab_height_m = 0.0;
-  unsigned rab_payload = 0;          ///< bytes
+  unsigned rab_payload = 0;  ///< bytes
   double battery_full_V = 0.0;
   double battery_empty_V = 0.0;
   std::span<const Mount> proximity;

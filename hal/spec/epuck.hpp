@@ -19,22 +19,25 @@ inline constexpr double kWheelBase_m = 0.053;     // [ARGoS, ROS driver]
 inline constexpr int kStepsPerTurn = 1000;        // [GCtronic] 20 steps, gear 50:1
 inline constexpr int kMaxSteps_s = 1000;          // [GCtronic] firmware clamp of version 1; version 2 clamps at 1100
 inline constexpr double kMetresPerStep = 2.0 * std::numbers::pi * kWheelRadius_m / kStepsPerTurn;  // 0.1288 mm
-inline constexpr double kProximityRange_m = 0.1;  // [ARGoS]
-inline constexpr double kRabRange_m = 0.8;        // [ARGoS]
-inline constexpr unsigned kRabPayload = 2;        // [ARGoS]
+inline constexpr double kProximityRange_m = 0.1;                                                   // [ARGoS]
+inline constexpr double kRabRange_m = 0.8;                                                         // [ARGoS]
+inline constexpr unsigned kRabPayload = 2;                                                         // [ARGoS]
 inline constexpr double kGravity_m_s2 = 9.81;
-inline constexpr double kCountsPerG = 800.0;      // [Webots] accelerometer
-inline constexpr int kAdcMax = 4095;              // 12 bits
-inline constexpr int kAmbientDarkRaw = 4095;      // ambient light falls with brightness: 4095 dark, 0 saturated, linear between
-inline constexpr int kGroundWhiteRaw = 1023;      // [GCtronic] the ground board's converter has 10 bits; 0 is black
-inline constexpr int kMicrophoneMaxRaw = 4095;    // [GCtronic] a volume is the spread of 12-bit samples
-inline constexpr double kBatteryFull_V = 4.2;     // [GCtronic] raw 2560
-inline constexpr double kBatteryEmpty_V = 3.4;    // [GCtronic] raw 2070; stop driving below
+inline constexpr double kCountsPerG = 800.0;  // [Webots] accelerometer
+inline constexpr int kAdcMax = 4095;          // 12 bits
+inline constexpr int kAmbientDarkRaw =
+    4095;  // ambient light falls with brightness: 4095 dark, 0 saturated, linear between
+inline constexpr int kGroundWhiteRaw = 1023;    // [GCtronic] the ground board's converter has 10 bits; 0 is black
+inline constexpr int kMicrophoneMaxRaw = 4095;  // [GCtronic] a volume is the spread of 12-bit samples
+inline constexpr double kBatteryFull_V = 4.2;   // [GCtronic] raw 2560
+inline constexpr double kBatteryEmpty_V = 3.4;  // [GCtronic] raw 2070; stop driving below
 inline constexpr int kBatteryFullRaw = 2560;
 inline constexpr int kBatteryEmptyRaw = 2070;
 
 namespace detail {
-constexpr double radians(double deg) { return deg * std::numbers::pi / 180.0; }
+constexpr double radians(double deg) {
+  return deg * std::numbers::pi / 180.0;
+}
 constexpr Mount on_rim(double bearing_deg, double cos_b, double sin_b, double radius_m, double z_m) {
   return {radians(bearing_deg), radius_m * cos_b, radius_m * sin_b, z_m};
 }
@@ -53,19 +56,21 @@ inline constexpr std::array<Mount, 8> kInfrared = {
     detail::on_rim(17, 0.956304755963035, 0.292371704722737, kBodyRadius_m, kSensorHeight_m)};
 
 // Ground sensors [ARGoS]: 30 mm ahead, index 0 right.
-inline constexpr std::array<Mount, 3> kGround = {Mount{0, 0.03, -0.009, 0}, Mount{0, 0.03, 0, 0}, Mount{0, 0.03, 0.009, 0}};
+inline constexpr std::array<Mount, 3> kGround = {Mount{0, 0.03, -0.009, 0}, Mount{0, 0.03, 0, 0},
+                                                 Mount{0, 0.03, 0.009, 0}};
 
 // Microphones: right, left, rear [Webots E-puck.proto].
-inline constexpr std::array<Mount, 3> kMicrophones = {detail::on_rim(-90, 0, -1, 0.032, 0.04), detail::on_rim(90, 0, 1, 0.032, 0.04),
+inline constexpr std::array<Mount, 3> kMicrophones = {detail::on_rim(-90, 0, -1, 0.032, 0.04),
+                                                      detail::on_rim(90, 0, 1, 0.032, 0.04),
                                                       detail::on_rim(180, -1, 0, 0.032, 0.04)};
 
 // Ring LEDs 0 … 7: front first, clockwise, every 45 degrees [GCtronic].
 inline constexpr double kDiag = 0.707106781186548;
 inline constexpr std::array<Mount, 8> kLeds = {
-    detail::on_rim(0, 1, 0, kBodyRadius_m, 0.04),           detail::on_rim(-45, kDiag, -kDiag, kBodyRadius_m, 0.04),
-    detail::on_rim(-90, 0, -1, kBodyRadius_m, 0.04),        detail::on_rim(-135, -kDiag, -kDiag, kBodyRadius_m, 0.04),
-    detail::on_rim(180, -1, 0, kBodyRadius_m, 0.04),        detail::on_rim(135, -kDiag, kDiag, kBodyRadius_m, 0.04),
-    detail::on_rim(90, 0, 1, kBodyRadius_m, 0.04),          detail::on_rim(45, kDiag, kDiag, kBodyRadius_m, 0.04)};
+    detail::on_rim(0, 1, 0, kBodyRadius_m, 0.04),    detail::on_rim(-45, kDiag, -kDiag, kBodyRadius_m, 0.04),
+    detail::on_rim(-90, 0, -1, kBodyRadius_m, 0.04), detail::on_rim(-135, -kDiag, -kDiag, kBodyRadius_m, 0.04),
+    detail::on_rim(180, -1, 0, kBodyRadius_m, 0.04), detail::on_rim(135, -kDiag, kDiag, kBodyRadius_m, 0.04),
+    detail::on_rim(90, 0, 1, kBodyRadius_m, 0.04),   detail::on_rim(45, kDiag, kDiag, kBodyRadius_m, 0.04)};
 
 inline constexpr DataSheet kDataSheet = {
     .kind = "e-puck",

@@ -17,8 +17,8 @@ struct RingDirections {
   std::array<float, kCapacity> y{};
 };
 
-/// The directions of `mounts`; the reference stays valid until the program or plug-in ends. Thread-safe; for constructors,
-/// not for steps.
+/// The directions of `mounts`; the reference stays valid until the program or plug-in ends. Thread-safe; for
+/// constructors, not for steps.
 inline const RingDirections& ring_directions(std::span<const Mount> mounts) {
   struct Known {
     const Mount* mounts;

@@ -18,8 +18,10 @@ bool left_to_the_twin(const hal::PortType& type) noexcept {
 
 }  // namespace
 
-RealEpuck::RealEpuck(bridges::epuck::BridgeSettings settings, bridges::LinkOpener opener, const hal::Log& log)
-    : bridge_(std::make_unique<bridges::epuck::EpuckBridge>(std::move(settings), std::move(opener), log)) {}
+RealEpuck::RealEpuck(bridges::epuck::BridgeSettings settings, bridges::LinkOpener opener, const hal::Log& log,
+                     std::string firmware)
+    : bridge_(std::make_unique<bridges::epuck::EpuckBridge>(std::move(settings), std::move(opener), log)),
+      firmware_(std::move(firmware)) {}
 
 void RealEpuck::latch(const Moment& now) noexcept {
   if (!started_) {
@@ -34,6 +36,11 @@ void RealEpuck::latch(const Moment& now) noexcept {
   handshakes_ = status.session.handshakes;
   switch (status.state) {
     case SessionState::Active:
+      wrong_firmware_ = !bridges::epuck::firmware_fits(firmware_, status.identity.firmware);
+      if (wrong_firmware_) {
+        health_ = LinkHealth::Connecting;
+        break;
+      }
       health_ = begun_anew ? LinkHealth::Suspect : LinkHealth::Active;
       was_active_ = true;
       break;
@@ -50,6 +57,7 @@ void RealEpuck::latch(const Moment& now) noexcept {
 }
 
 std::string RealEpuck::trouble() const {
+  if (wrong_firmware_) return "it does not run the firmware '" + firmware_ + "' that the file names";
   return bridge_->status().trouble;
 }
 
@@ -124,7 +132,8 @@ hal::Result<std::unique_ptr<RealRobot>> make_real_robot(const RealRobotRequest& 
   settings.driver.robot.tick_ns = hal::time_of_tick(1, request.ticks_per_second);
   settings.driver.timing = bridges::epuck::timing_for(item.bridge->link);
   settings.driver.command_timeout_ns = lost_after_ns(item, request.ticks_per_second);
-  return std::unique_ptr<RealRobot>(std::make_unique<RealEpuck>(std::move(settings), std::move(opener).value(), log));
+  return std::unique_ptr<RealRobot>(
+      std::make_unique<RealEpuck>(std::move(settings), std::move(opener).value(), log, item.bridge->firmware));
 }
 
 }  // namespace tandem::mixed_reality

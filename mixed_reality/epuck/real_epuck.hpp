@@ -14,7 +14,9 @@ namespace tandem::mixed_reality {
 /// given.
 class RealEpuck final : public RealRobot {
  public:
-  RealEpuck(bridges::epuck::BridgeSettings settings, bridges::LinkOpener opener, const hal::Log& log);
+  /// `firmware`: which one it must run (auto: any); a robot with another one never becomes Active.
+  RealEpuck(bridges::epuck::BridgeSettings settings, bridges::LinkOpener opener, const hal::Log& log,
+            std::string firmware = "auto");
 
   void latch(const Moment& now) noexcept override;
   LinkHealth health() const noexcept override { return health_; }
@@ -30,6 +32,8 @@ class RealEpuck final : public RealRobot {
   void* port(const hal::PortType& type) const noexcept;
 
   std::unique_ptr<bridges::epuck::EpuckBridge> bridge_;
+  std::string firmware_;
+  bool wrong_firmware_ = false;
   bool started_ = false;
   bool was_active_ = false;
   std::uint64_t handshakes_ = 0;

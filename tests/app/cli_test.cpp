@@ -17,11 +17,14 @@ const std::string kConfigs = std::string(TANDEM_SOURCE_DIR) + "/configs/";
 
 TEST(Run, WritesReportPictureAndTrajectory) {
   Folder folder;
-  Tandem run({"run", kConfigs + "epuck_diffusion.xml", "--seconds", "3", "--report", "r.json", "--picture", "p.svg", "--trajectory", "t.csv"}, folder.path());
+  Tandem run({"run", kConfigs + "epuck_diffusion.xml", "--seconds", "3", "--report", "r.json", "--picture", "p.svg",
+              "--trajectory", "t.csv"},
+             folder.path());
   ASSERT_EQ(run.wait(), 0) << run.errors();
   const std::string report = text_of(folder.path() / "r.json");
-  for (const char* key : {"experiment", "seed", "threads", "robots", "steps", "virtual_s", "wall_s", "cpu_s", "init_s", "ns_per_robot_step",
-                          "realtime_factor", "peak_rss_mb", "state_hash", "deadline_misses", "sha256"}) {
+  for (const char* key :
+       {"experiment", "seed", "threads", "robots", "steps", "virtual_s", "wall_s", "cpu_s", "init_s",
+        "ns_per_robot_step", "realtime_factor", "peak_rss_mb", "state_hash", "deadline_misses", "sha256"}) {
     EXPECT_FALSE(json_value(report, key).empty()) << key;
   }
   EXPECT_EQ(json_value(report, "steps"), "30");
@@ -36,7 +39,9 @@ TEST(Run, GivesTheSameStateForAnyNumberOfThreadsAndTheSeedThatWasSaid) {
   Folder folder;
   std::string first;
   for (const char* threads : {"0", "2", "3"}) {
-    Tandem run({"run", kConfigs + "epuck_benchmark.xml", "--steps", "20", "--threads", threads, "--seed", "5", "--report", "-"}, folder.path());
+    Tandem run({"run", kConfigs + "epuck_benchmark.xml", "--steps", "20", "--threads", threads, "--seed", "5",
+                "--report", "-"},
+               folder.path());
     ASSERT_EQ(run.wait(), 0) << run.errors();
     const std::string hash = json_value(run.output(), "state_hash");
     if (first.empty()) first = hash;
@@ -47,8 +52,8 @@ TEST(Run, GivesTheSameStateForAnyNumberOfThreadsAndTheSeedThatWasSaid) {
 
 TEST(Run, EndsCleanlyWhenInterrupted) {
   Folder folder;
-  Tandem run({"run", kConfigs + "epuck_diffusion.xml", "--set", "framework.experiment.length=0", "--set", "framework.time.mode=realtime", "--report", "r.json",
-              "--trajectory", "t.csv"},
+  Tandem run({"run", kConfigs + "epuck_diffusion.xml", "--set", "framework.experiment.length=0", "--set",
+              "framework.time.mode=realtime", "--report", "r.json", "--trajectory", "t.csv"},
              folder.path());
   ASSERT_TRUE(scenarios::eventually([&] { return scenarios::fs::exists(folder.path() / "t.csv"); }, 10));
   std::this_thread::sleep_for(std::chrono::milliseconds(500));
@@ -63,7 +68,8 @@ class BadInput : public testing::Test {
   void fails(const std::vector<std::string>& arguments, int code, const std::vector<std::string>& parts) {
     Tandem tandem(arguments, folder_.path());
     EXPECT_EQ(tandem.wait(), code) << tandem.errors();
-    for (const std::string& part : parts) EXPECT_NE(tandem.errors().find(part), std::string::npos) << "no \"" << part << "\" in:\n" << tandem.errors();
+    for (const std::string& part : parts)
+      EXPECT_NE(tandem.errors().find(part), std::string::npos) << "no \"" << part << "\" in:\n" << tandem.errors();
   }
   /// The diffusion experiment with one text replaced.
   std::string changed(const std::string& from, const std::string& to) {
@@ -82,15 +88,20 @@ TEST_F(BadInput, IsNamedWithItsLineAndWhatToDo) {
   fails({"run", "."}, 1, {"folder"});
   folder_.write("broken.xml", "<tandem>\n<framework>\n</tandem>\n");
   fails({"check", "broken.xml"}, 1, {"broken.xml:", "XML"});
-  fails({"check", changed("<e-puck id=\"ep\"><controller config=\"diffusion\"/></e-puck>", "<e-pukc id=\"ep\"><controller config=\"diffusion\"/></e-pukc>")}, 1,
-        {"e.xml:", "e-pukc", "Did you mean"});
-  fails({"check", changed("implementation=\"noisy\" noise_level", "implementation=\"nosiy\" noise_level")}, 1, {"nosiy", "noisy"});
+  fails({"check", changed("<e-puck id=\"ep\"><controller config=\"diffusion\"/></e-puck>",
+                          "<e-pukc id=\"ep\"><controller config=\"diffusion\"/></e-pukc>")},
+        1, {"e.xml:", "e-pukc", "Did you mean"});
+  fails({"check", changed("implementation=\"noisy\" noise_level", "implementation=\"nosiy\" noise_level")}, 1,
+        {"nosiy", "noisy"});
   fails({"check", changed("<proximity", "<proximitty")}, 1, {"proximitty", "Did you mean"});
   fails({"check", changed("noise_level=\"0.02\"", "noise_levle=\"0.02\"")}, 1, {"noise_levle", "noise_level"});
-  fails({"check", changed("<proximity implementation=\"noisy\" noise_level=\"0.02\"/>", "<light/>")}, 1, {"proximity", "does not list"});
-  fails({"check", changed("library=\"epuck_diffusion\"", "library=\"no_such\"")}, 1, {"e.xml:", "no_such", "looked for"});
+  fails({"check", changed("<proximity implementation=\"noisy\" noise_level=\"0.02\"/>", "<light/>")}, 1,
+        {"proximity", "does not list"});
+  fails({"check", changed("library=\"epuck_diffusion\"", "library=\"no_such\"")}, 1,
+        {"e.xml:", "no_such", "looked for"});
   fails({"check", changed("config=\"diffusion\"", "config=\"difusion\"")}, 1, {"difusion"});
-  fails({"check", changed("quantity=\"50\" max_trials=\"1000\"", "quantity=\"50000\" max_trials=\"20\"")}, 1, {"e.xml:", "of 50000", "max_trials"});
+  fails({"check", changed("quantity=\"50\" max_trials=\"1000\"", "quantity=\"50000\" max_trials=\"20\"")}, 1,
+        {"e.xml:", "of 50000", "max_trials"});
   fails({"check", changed("ticks_per_second=\"10\"", "ticks_per_second=\"0\"")}, 1, {"e.xml:", "ticks_per_second"});
   fails({"check", changed("size=\"4,4,1\"", "size=\"-4,4,1\"")}, 1, {"e.xml:", "size"});
   fails({"check", changed("velocity=\"5 cm/s\"", "velocity=\"5 kg\"")}, 1, {"kg", "cm/s"});
@@ -100,7 +111,9 @@ TEST_F(BadInput, IsNamedWithItsLineAndWhatToDo) {
 
 TEST_F(BadInput, IsAllToldAtOnce) {
   std::string text = text_of(kConfigs + "epuck_diffusion.xml");
-  const auto replace = [&](const std::string& from, const std::string& to) { text.replace(text.find(from), from.size(), to); };
+  const auto replace = [&](const std::string& from, const std::string& to) {
+    text.replace(text.find(from), from.size(), to);
+  };
   replace("ticks_per_second=\"10\"", "ticks_per_second=\"ten\"");
   replace("<kinematics2d id", "<kinematics3d id");
   replace("delta=\"0.1\"", "delta=\"0.1\" dleta=\"3\"");
@@ -122,7 +135,9 @@ TEST_F(BadInput, WrongUsageHasItsOwnCode) {
 }
 
 TEST_F(BadInput, AFailureWhileRunningHasItsOwnCode) {
-  fails({"run", changed("<box id=\"wall_north\"", "<box id=\"wall_n\""), "--report", "/no/such/folder/r.json", "--seconds", "1"}, 3, {"/no/such/folder/r.json"});
+  fails({"run", changed("<box id=\"wall_north\"", "<box id=\"wall_n\""), "--report", "/no/such/folder/r.json",
+         "--seconds", "1"},
+        3, {"/no/such/folder/r.json"});
   // Without walls robots leave the arena.
   std::string text = text_of(kConfigs + "epuck_diffusion.xml");
   for (const char* wall : {"wall_north", "wall_south", "wall_east", "wall_west"}) {
@@ -139,10 +154,12 @@ TEST(ListAndDescribe, CoverWhatThereIs) {
   Folder folder;
   Tandem list({"list"}, folder.path());
   ASSERT_EQ(list.wait(), 0);
-  for (const char* name : {"epuck_diffusion", "obstacle_avoidance", "kinematics2d", "e-puck", "proximity", "range_and_bearing"}) {
+  for (const char* name :
+       {"epuck_diffusion", "obstacle_avoidance", "kinematics2d", "e-puck", "proximity", "range_and_bearing"}) {
     EXPECT_NE(list.output().find(name), std::string::npos) << name;
   }
-  for (const char* name : {"epuck_diffusion", "obstacle_avoidance", "proximity", "range_and_bearing", "arena", "distribute", "e-puck", "differential_steering"}) {
+  for (const char* name : {"epuck_diffusion", "obstacle_avoidance", "proximity", "range_and_bearing", "arena",
+                           "distribute", "e-puck", "differential_steering"}) {
     Tandem describe({"describe", name}, folder.path());
     EXPECT_EQ(describe.wait(), 0) << name << describe.errors();
     EXPECT_GT(describe.output().size(), 60U) << name;
@@ -176,7 +193,8 @@ TEST(Sha256, GivesThePublishedDigests) {
   // FIPS 180-4 examples.
   EXPECT_EQ(app::sha256("abc"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
   EXPECT_EQ(app::sha256(""), "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
-  EXPECT_EQ(app::sha256(std::string(1'000'000, 'a')), "cdc76e5c9914fb9281a1c7e284d73e67f1809a48a497200e046d39ccc7112cd0");
+  EXPECT_EQ(app::sha256(std::string(1'000'000, 'a')),
+            "cdc76e5c9914fb9281a1c7e284d73e67f1809a48a497200e046d39ccc7112cd0");
 }
 
 TEST(Json, QuotesAndNests) {

@@ -1,6 +1,5 @@
-#include <gtest/gtest.h>
-
 #include <fstream>
+#include <gtest/gtest.h>
 
 #include "tests/architecture/rules.hpp"
 
@@ -9,8 +8,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const LibraryOwners kOwners = {{"tinyxml2", "core/config"}, {"png.h", "core/space"},        {"Random123/", "core/random"},
-                               {"libserial/", "bridges/link"}, {"CLI/", "app"},             {"fmt/", "app"}};
+const LibraryOwners kOwners = {{"tinyxml2", "core/config"},    {"png.h", "core/space"}, {"Random123/", "core/random"},
+                               {"libserial/", "bridges/link"}, {"CLI/", "app"},         {"fmt/", "app"}};
 
 TEST(Architecture, HoldsInThisTree) {
   const Dependencies dependencies = read_dependencies(fs::path(TANDEM_BINARY_DIR) / "architecture.txt");
@@ -39,10 +38,13 @@ class CheatingTree : public testing::Test {
   }
 
   fs::path top_;
-  Dependencies dependencies_ = {{"hal", {}}, {"core/space", {"hal"}}, {"core/device", {"hal"}}, {"bridges/link", {"hal"}}};
+  Dependencies dependencies_ = {
+      {"hal", {}}, {"core/space", {"hal"}}, {"core/device", {"hal"}}, {"bridges/link", {"hal"}}};
 };
 
-TEST_F(CheatingTree, IsFineAsLongAsItDoesNot) { EXPECT_EQ(broken(), ""); }
+TEST_F(CheatingTree, IsFineAsLongAsItDoesNot) {
+  EXPECT_EQ(broken(), "");
+}
 
 TEST_F(CheatingTree, IncludesWhatItDoesNotDeclare) {
   write("core/device/device.hpp", "\n#include \"core/space/space.hpp\"\n");

@@ -10,14 +10,17 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Lower layers come first; a folder may depend on its own layer and on those that this table allows.
-const std::map<std::string, std::set<std::string>> kLayers = {{"hal", {"hal"}},
-                                                              {"controllers", {"controllers", "hal"}},
-                                                              {"bridges", {"bridges", "hal"}},
-                                                              {"core", {"core", "hal"}},
-                                                              {"mixed_reality", {"mixed_reality", "core", "bridges", "controllers", "hal"}},
-                                                              {"app", {"app", "mixed_reality", "core", "bridges", "controllers", "hal"}}};
+const std::map<std::string, std::set<std::string>> kLayers = {
+    {"hal", {"hal"}},
+    {"controllers", {"controllers", "hal"}},
+    {"bridges", {"bridges", "hal"}},
+    {"core", {"core", "hal"}},
+    {"mixed_reality", {"mixed_reality", "core", "bridges", "controllers", "hal"}},
+    {"app", {"app", "mixed_reality", "core", "bridges", "controllers", "hal"}}};
 
-std::string layer_of(const std::string& folder) { return folder.substr(0, folder.find('/')); }
+std::string layer_of(const std::string& folder) {
+  return folder.substr(0, folder.find('/'));
+}
 
 std::set<std::string> words(const std::string& text) {
   std::istringstream in(text);
@@ -50,13 +53,15 @@ Dependencies read_dependencies(const fs::path& file) {
   return dependencies;
 }
 
-std::vector<std::string> broken_rules(const fs::path& top, const Dependencies& dependencies, const LibraryOwners& owners) {
+std::vector<std::string> broken_rules(const fs::path& top, const Dependencies& dependencies,
+                                      const LibraryOwners& owners) {
   std::vector<std::string> broken;
   for (const auto& [folder, deps] : dependencies) {
     const auto layer = kLayers.find(layer_of(folder));
     if (layer == kLayers.end()) continue;
     for (const std::string& dep : deps) {
-      if (!layer->second.contains(layer_of(dep))) broken.push_back(folder + "/CMakeLists.txt: " + folder + " may not depend on " + dep);
+      if (!layer->second.contains(layer_of(dep)))
+        broken.push_back(folder + "/CMakeLists.txt: " + folder + " may not depend on " + dep);
     }
   }
   static const std::regex kInclude(R"(^\s*#\s*include\s*([<"])([^>"]+)[>"])");
@@ -66,7 +71,8 @@ std::vector<std::string> broken_rules(const fs::path& top, const Dependencies& d
       const std::string path = fs::relative(entry.path(), top).generic_string();
       if (entry.is_directory()) {
         const std::string name = entry.path().filename().string();
-        if (name == "common" || name == "utils" || name == "util" || name == "misc") broken.push_back(path + ": a folder's name says what is in it");
+        if (name == "common" || name == "utils" || name == "util" || name == "misc")
+          broken.push_back(path + ": a folder's name says what is in it");
         continue;
       }
       if (entry.path().extension() != ".hpp" && entry.path().extension() != ".cpp") continue;
@@ -85,11 +91,14 @@ std::vector<std::string> broken_rules(const fs::path& top, const Dependencies& d
         const std::string where = path + ":" + std::to_string(number) + ": ";
         if (match[1] == "\"") {
           const std::string included = folder_of(header, dependencies);
-          if (included.empty()) broken.push_back(where + "\"" + header + "\" is not named from the top of the tree");
-          else if (included != folder && !dependencies.at(folder).contains(included)) broken.push_back(where + folder + " does not declare " + included);
+          if (included.empty())
+            broken.push_back(where + "\"" + header + "\" is not named from the top of the tree");
+          else if (included != folder && !dependencies.at(folder).contains(included))
+            broken.push_back(where + folder + " does not declare " + included);
         }
         for (const auto& [prefix, owner] : owners) {
-          if (header.starts_with(prefix) && folder != owner) broken.push_back(where + "<" + header + "> belongs to " + owner + " alone");
+          if (header.starts_with(prefix) && folder != owner)
+            broken.push_back(where + "<" + header + "> belongs to " + owner + " alone");
         }
       }
     }

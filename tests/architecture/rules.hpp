@@ -17,8 +17,9 @@ Dependencies read_dependencies(const std::filesystem::path& file);
 /// Third-party headers by their beginning, and the only folder that may include each.
 using LibraryOwners = std::map<std::string, std::string>;
 
-/// Every broken rule as "file:line: why": an include of a folder that is not declared, a library's header outside of its
-/// folder, a dependency against the layers, a folder with a name that says nothing.
-std::vector<std::string> broken_rules(const std::filesystem::path& top, const Dependencies& dependencies, const LibraryOwners& owners);
+/// Every broken rule as "file:line: why": an include of a folder that is not declared, a library's header outside of
+/// its folder, a dependency against the layers, a folder with a name that says nothing.
+std::vector<std::string> broken_rules(const std::filesystem::path& top, const Dependencies& dependencies,
+                                      const LibraryOwners& owners);
 
 }  // namespace tandem::architecture

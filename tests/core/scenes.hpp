@@ -12,7 +12,8 @@ namespace tandem::core {
 struct Scene {
   Scenario scenario;
 
-  explicit Scene(double size_m = 4.0, const std::string& controller = "drive", const std::string& library = "test_controllers") {
+  explicit Scene(double size_m = 4.0, const std::string& controller = "drive",
+                 const std::string& library = "test_controllers") {
     scenario.file = "scene";
     scenario.name = "scene";
     scenario.seed = 7;
@@ -22,8 +23,8 @@ struct Scene {
     config.id = "c";
     config.label = controller;
     config.library = library;
-    for (const char* name : {"proximity", "light", "ground", "wheel_encoders", "accelerometer", "microphones", "battery", "clock",
-                             "range_and_bearing"}) {
+    for (const char* name : {"proximity", "light", "ground", "wheel_encoders", "accelerometer", "microphones",
+                             "battery", "clock", "range_and_bearing"}) {
       config.sensors.push_back({name, "default", {}});
     }
     for (const char* name : {"differential_steering", "leds", "body_led", "front_led", "range_and_bearing"}) {
@@ -67,7 +68,8 @@ struct Scene {
     scenario.robots.push_back(item);
     return *this;
   }
-  Scene& box(double x_m, double y_m, double size_x_m, double size_y_m, double heading_rad = 0.0, double height_m = 0.5) {
+  Scene& box(double x_m, double y_m, double size_x_m, double size_y_m, double heading_rad = 0.0,
+             double height_m = 0.5) {
     ObjectItem item;
     item.id = "box" + std::to_string(scenario.objects.size());
     item.size = {size_x_m, size_y_m, height_m};
@@ -87,7 +89,10 @@ struct Scene {
   /// Walls 10 cm thick around the arena, inside it.
   Scene& walls() {
     const double s = scenario.arena_size[0];
-    return box(0, 0.5 * s - 0.05, s, 0.1).box(0, -0.5 * s + 0.05, s, 0.1).box(0.5 * s - 0.05, 0, 0.1, s).box(-0.5 * s + 0.05, 0, 0.1, s);
+    return box(0, 0.5 * s - 0.05, s, 0.1)
+        .box(0, -0.5 * s + 0.05, s, 0.1)
+        .box(0.5 * s - 0.05, 0, 0.1, s)
+        .box(-0.5 * s + 0.05, 0, 0.1, s);
   }
 };
 
@@ -107,7 +112,8 @@ struct MadeWorld {
 
 inline MadeWorld make(const Scene& scene, const WorldOptions& options = {}) {
   MadeWorld made;
-  made.loader = std::make_unique<hal::PluginLoader>(std::vector<std::filesystem::path>{std::string(TANDEM_BINARY_DIR) + "/lib"});
+  made.loader =
+      std::make_unique<hal::PluginLoader>(std::vector<std::filesystem::path>{std::string(TANDEM_BINARY_DIR) + "/lib"});
   made.world = World::make(scene.scenario, *made.loader, options, made.problems);
   return made;
 }

@@ -38,8 +38,12 @@ class Everything final : public Controller {
  public:
   using Params = DriveParams;
   Everything(Robot& robot, const Params& params)
-      : wheels_(robot.actuator<WheelSpeeds>()), leds_(robot.actuator<RingLeds>()), talk_(robot.actuator<RangeAndBearingSend>()),
-        heard_(robot.sensor<RangeAndBearing>()), clock_(robot.sensor<Clock>()), params_(params) {
+      : wheels_(robot.actuator<WheelSpeeds>()),
+        leds_(robot.actuator<RingLeds>()),
+        talk_(robot.actuator<RangeAndBearingSend>()),
+        heard_(robot.sensor<RangeAndBearing>()),
+        clock_(robot.sensor<Clock>()),
+        params_(params) {
     robot.sensor<Proximity>();
     robot.sensor<Light>();
     robot.sensor<Ground>();
@@ -86,8 +90,10 @@ class Careless final : public Controller {
  public:
   explicit Careless(Robot& robot) : wheels_(robot.actuator<WheelSpeeds>()) {}
   void step() override {
-    if (steps_++ % 5 == 4) wheels_.set(3.0, 1.5);
-    else wheels_.set(std::numeric_limits<double>::quiet_NaN(), 0.1);
+    if (steps_++ % 5 == 4)
+      wheels_.set(3.0, 1.5);
+    else
+      wheels_.set(std::numeric_limits<double>::quiet_NaN(), 0.1);
   }
 
  private:

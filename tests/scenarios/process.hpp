@@ -1,18 +1,17 @@
 // Programs as a user starts them: arguments, a folder, what they print, how they end.
 #pragma once
-#include <fcntl.h>
-#include <signal.h>
-#include <spawn.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
 #include <chrono>
+#include <fcntl.h>
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <signal.h>
+#include <spawn.h>
 #include <sstream>
 #include <string>
+#include <sys/wait.h>
 #include <thread>
+#include <unistd.h>
 #include <vector>
 
 namespace tandem::scenarios {
@@ -92,8 +91,10 @@ class Tandem {
     int status = 0;
     const bool done = eventually([&] { return ended_ || (ended_ = waitpid(pid_, &status, WNOHANG) == pid_); }, seconds);
     if (!done) return -1000;
-    if (WIFEXITED(status)) code_ = WEXITSTATUS(status);
-    else if (WIFSIGNALED(status)) code_ = -WTERMSIG(status);
+    if (WIFEXITED(status))
+      code_ = WEXITSTATUS(status);
+    else if (WIFSIGNALED(status))
+      code_ = -WTERMSIG(status);
     return code_;
   }
   std::string output() const { return text_of(output_); }
@@ -138,7 +139,8 @@ class EmulatedEpuck {
     std::istringstream in(log());
     for (std::string line; std::getline(in, line);) {
       if (json_value(line, "event") != "wheels") continue;
-      all.push_back({std::stoll(json_value(line, "t_ns")), std::stoi(json_value(line, "left")), std::stoi(json_value(line, "right"))});
+      all.push_back({std::stoll(json_value(line, "t_ns")), std::stoi(json_value(line, "left")),
+                     std::stoi(json_value(line, "right"))});
     }
     return all;
   }

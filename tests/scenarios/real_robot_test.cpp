@@ -1,7 +1,6 @@
 // The command as a user types it, against an emulated robot; verdicts come from the robot's own log.
-#include <gtest/gtest.h>
-
 #include <cstdio>
+#include <gtest/gtest.h>
 #include <memory>
 
 #include "tests/scenarios/process.hpp"
@@ -23,11 +22,17 @@ std::string printed_by(const std::string& command) {
 }
 
 /// A file for `tandem robot` with a controller of the tests.
-std::string robot_file(const std::string& controller, const std::string& params = "", const std::string& timeout = "0.5") {
-  return "<tandem><framework><experiment length=\"0\" ticks_per_second=\"20\"/></framework><controllers><" + controller +
-         " id=\"c\" library=\"test_controllers\"><actuators><differential_steering/></actuators><sensors><proximity/></sensors><params " + params +
-         "/></" + controller + "></controllers><arena size=\"2,2,1\"><e-puck id=\"ep0\"><body position=\"0,0,0\"/><controller config=\"c\"/>"
-         "<bridge link=\"serial:ep0\" timeout=\"" + timeout + "\"/></e-puck></arena></tandem>";
+std::string robot_file(const std::string& controller, const std::string& params = "",
+                       const std::string& timeout = "0.5") {
+  return "<tandem><framework><experiment length=\"0\" ticks_per_second=\"20\"/></framework><controllers><" +
+         controller +
+         " id=\"c\" "
+         "library=\"test_controllers\"><actuators><differential_steering/></actuators><sensors><proximity/></"
+         "sensors><params " +
+         params + "/></" + controller +
+         "></controllers><arena size=\"2,2,1\"><e-puck id=\"ep0\"><body position=\"0,0,0\"/><controller config=\"c\"/>"
+         "<bridge link=\"serial:ep0\" timeout=\"" +
+         timeout + "\"/></e-puck></arena></tandem>";
 }
 
 TEST(OneController, RunsInThreeWorldsFromOneFile) {
@@ -35,15 +40,18 @@ TEST(OneController, RunsInThreeWorldsFromOneFile) {
   EmulatedEpuck epuck(folder);
   ASSERT_TRUE(epuck.ready());
 
-  Tandem simulated({"run", kConfigs + "epuck_diffusion.xml", "--seconds", "5", "--report", "simulated.json"}, folder.path());
+  Tandem simulated({"run", kConfigs + "epuck_diffusion.xml", "--seconds", "5", "--report", "simulated.json"},
+                   folder.path());
   ASSERT_EQ(simulated.wait(), 0) << simulated.errors();
   Tandem real({"robot", kConfigs + "epuck_robot.xml", "--seconds", "2", "--report", "real.json"}, folder.path());
   ASSERT_EQ(real.wait(), 0) << real.errors();
-  Tandem mixed({"run", kConfigs + "epuck_mixed.xml", "--seconds", "2", "--report", "mixed.json", "--set", "controllers.obstacle_avoidance.library=obstacle_avoidance"},
+  Tandem mixed({"run", kConfigs + "epuck_mixed.xml", "--seconds", "2", "--report", "mixed.json", "--set",
+                "controllers.obstacle_avoidance.library=obstacle_avoidance"},
                folder.path());
   ASSERT_EQ(mixed.wait(), 0) << mixed.errors();
   std::string mixed_diffusion = text_of(kConfigs + "epuck_mixed.xml");
-  for (std::size_t at; (at = mixed_diffusion.find("obstacle_avoidance")) != std::string::npos;) mixed_diffusion.replace(at, 18, "epuck_diffusion");
+  for (std::size_t at; (at = mixed_diffusion.find("obstacle_avoidance")) != std::string::npos;)
+    mixed_diffusion.replace(at, 18, "epuck_diffusion");
   const std::size_t params = mixed_diffusion.find("<params");
   mixed_diffusion.erase(params, mixed_diffusion.find("/>", params) + 2 - params);
   folder.write("mixed.xml", mixed_diffusion);
@@ -99,7 +107,8 @@ TEST_P(EndsStopped, OnSignalsInAMixedRun) {
 INSTANTIATE_TEST_SUITE_P(Signals, EndsStopped, testing::Values(SIGINT, SIGTERM));
 
 TEST(Robot, IsStoppedWhenTheHubIsKilled) {
-  for (const std::vector<std::string>& arguments : {std::vector<std::string>{"robot", kConfigs + "epuck_robot.xml"}, {"run", kConfigs + "epuck_mixed.xml"}}) {
+  for (const std::vector<std::string>& arguments :
+       {std::vector<std::string>{"robot", kConfigs + "epuck_robot.xml"}, {"run", kConfigs + "epuck_mixed.xml"}}) {
     Folder folder;
     EmulatedEpuck epuck(folder);
     ASSERT_TRUE(epuck.ready());
@@ -173,7 +182,8 @@ TEST(Robot, IsStoppedAfterALinkLossAndDrivesAgainWhenItIsBack) {
 
 TEST(Robot, SurvivesSilenceGarbageAndRestarts) {
   Folder folder;
-  EmulatedEpuck epuck(folder, {"--fault", "silent@2s+1s", "--fault", "garbage@4s+500ms", "--fault", "reset@6s", "--fault", "drop=0.002"});
+  EmulatedEpuck epuck(folder, {"--fault", "silent@2s+1s", "--fault", "garbage@4s+500ms", "--fault", "reset@6s",
+                               "--fault", "drop=0.002"});
   ASSERT_TRUE(epuck.ready());
   Tandem robot({"robot", kConfigs + "epuck_robot.xml", "--seconds", "9", "--report", "r.json"}, folder.path());
   EXPECT_EQ(robot.wait(), 0) << robot.errors();
@@ -209,6 +219,19 @@ TEST(Robot, AWrongBaudRateIsNamedAndMovesNothing) {
   EXPECT_FALSE(epuck.has_moved());
 }
 
+TEST(Robot, WithAnotherFirmwareThanTheFileSaysIsRefused) {
+  Folder folder;
+  EmulatedEpuck epuck(folder);
+  ASSERT_TRUE(epuck.ready());
+  std::string file = text_of(kConfigs + "epuck_robot.xml");
+  file.replace(file.find("firmware=\"auto\""), 15, "firmware=\"webots\"");
+  folder.write("webots.xml", file);
+  Tandem robot({"robot", "webots.xml"}, folder.path());
+  EXPECT_EQ(robot.wait(), 3);
+  EXPECT_NE(robot.errors().find("GCtronic', not 'webots'"), std::string::npos) << robot.errors();
+  EXPECT_FALSE(epuck.has_moved());
+}
+
 TEST(Inspect, ReadsEverythingAndMovesNothing) {
   Folder folder;
   EmulatedEpuck epuck(folder, {"--firmware", "epuck2"});
@@ -222,11 +245,16 @@ TEST(Inspect, ReadsEverythingAndMovesNothing) {
 
 TEST(Emulator, MayLiveInASimulatedArena) {
   Folder folder;
-  folder.write("arena.xml",
-               "<tandem><framework><experiment length=\"0\" ticks_per_second=\"20\" random_seed=\"1\"/></framework><controllers>"
-               "<puppet id=\"p\" library=\"puppet\"><actuators><differential_steering/><leds/><body_led/><front_led/></actuators><sensors><proximity/><light/>"
-               "<ground/><accelerometer/><microphones/><battery/></sensors></puppet></controllers><arena size=\"2,2,1\"><box id=\"wall\" size=\"0.1,2,0.5\">"
-               "<body position=\"0.15,0,0\"/></box><e-puck id=\"body\"><body position=\"0,0,0\"/><controller config=\"p\"/></e-puck></arena></tandem>");
+  folder.write(
+      "arena.xml",
+      "<tandem><framework><experiment length=\"0\" ticks_per_second=\"20\" random_seed=\"1\"/></framework><controllers>"
+      "<puppet id=\"p\" "
+      "library=\"puppet\"><actuators><differential_steering/><leds/><body_led/><front_led/></"
+      "actuators><sensors><proximity/><light/>"
+      "<ground/><accelerometer/><microphones/><battery/></sensors></puppet></controllers><arena size=\"2,2,1\"><box "
+      "id=\"wall\" size=\"0.1,2,0.5\">"
+      "<body position=\"0.15,0,0\"/></box><e-puck id=\"body\"><body position=\"0,0,0\"/><controller "
+      "config=\"p\"/></e-puck></arena></tandem>");
   EmulatedEpuck epuck(folder, {"--arena", "arena.xml"});
   ASSERT_TRUE(epuck.ready());
   // The wall is 6.5 cm ahead of the rim.

@@ -1,8 +1,7 @@
 // The proof: the very same controller object decides alike in a simulation and through bridge, wire and firmware.
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <deque>
+#include <gtest/gtest.h>
 #include <optional>
 
 #include "app/bridged_controller.hpp"
@@ -148,7 +147,8 @@ bool on_the_edge(const hal::Proximity& exact) {
     x += static_cast<double>(exact.closeness(i)) * std::cos(hal::epuck::kInfrared[i].bearing_rad);
     y += static_cast<double>(exact.closeness(i)) * std::sin(hal::epuck::kInfrared[i].bearing_rad);
   }
-  return std::fabs(std::hypot(x, y) - 0.1) < slack || std::fabs(y) < slack || std::fabs(std::fabs(y) + x * std::tan(7.5 * M_PI / 180)) < slack;
+  return std::fabs(std::hypot(x, y) - 0.1) < slack || std::fabs(y) < slack ||
+         std::fabs(std::fabs(y) + x * std::tan(7.5 * M_PI / 180)) < slack;
 }
 
 class SameDecisions : public testing::TestWithParam<std::string> {};
@@ -184,15 +184,18 @@ TEST_P(SameDecisions, InSimulationAndThroughTheWire) {
 
     const auto* read = static_cast<const hal::Proximity*>(bridged.robot().require(hal::port_type<hal::Proximity>()));
     for (std::size_t i = 0; i < 8; ++i) {
-      ASSERT_NEAR(direct.proximity.distance_m[i], read->distance_m[i], kReadingQuantum_m) << "tick " << tick << " sensor " << i;
+      ASSERT_NEAR(direct.proximity.distance_m[i], read->distance_m[i], kReadingQuantum_m)
+          << "tick " << tick << " sensor " << i;
     }
     const hal::WheelSpeeds& through = bridged.robot().wheels();
     if (through.left_m_s != direct.wheels.left_m_s || through.right_m_s != direct.wheels.right_m_s) {
       ++edges;
-      ASSERT_TRUE(on_the_edge(direct.proximity)) << "tick " << tick << ": " << hal::to_text(hal::port_type<hal::Proximity>(), &direct.proximity);
+      ASSERT_TRUE(on_the_edge(direct.proximity))
+          << "tick " << tick << ": " << hal::to_text(hal::port_type<hal::Proximity>(), &direct.proximity);
     }
     if (through.left_m_s != through.right_m_s) ++turns;
-    // What the motors do: 10,000 / a whole number of 0.1 ms a step on version 1, so up to 4 % beside the command at this speed.
+    // What the motors do: 10,000 / a whole number of 0.1 ms a step on version 1, so up to 4 % beside the command at
+    // this speed.
     const auto* driven = world->space().port<hal::WheelSpeeds>(me);
     ASSERT_NEAR(driven->left_m_s, through.left_m_s, 0.04 * 0.05) << "tick " << tick;
     ASSERT_NEAR(driven->right_m_s, through.right_m_s, 0.04 * 0.05) << "tick " << tick;

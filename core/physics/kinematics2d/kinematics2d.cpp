@@ -8,9 +8,9 @@ namespace tandem::core {
 namespace {
 
 constexpr std::size_t kGrain = 1024;
-constexpr double kLargestTurn_rad = 0.5;    // of one sub-step: where the series below are exact to 1e-13
-constexpr double kLargestHop = 0.5;         // of one sub-step, in body radii: nothing is jumped over
-constexpr double kSlack_m = 0.02;           // bodies nearer than this may come to touch within the passes of one tick
+constexpr double kLargestTurn_rad = 0.5;  // of one sub-step: where the series below are exact to 1e-13
+constexpr double kLargestHop = 0.5;       // of one sub-step, in body radii: nothing is jumped over
+constexpr double kSlack_m = 0.02;         // bodies nearer than this may come to touch within the passes of one tick
 
 /// Rolls rows [begin, end) of one block along their arcs.
 void roll(Bodies& b, std::size_t begin, std::size_t end, double wheel_base_m, double dt_s) noexcept {
@@ -32,9 +32,10 @@ void roll(Bodies& b, std::size_t begin, std::size_t end, double wheel_base_m, do
     const double d = (r - l) * per_base;  // turned in this step
     const double d2 = d * d;
     // sin(d) / d and (1 - cos(d)) / d
-    const double sinc = 1.0 - d2 * (1.0 / 6 - d2 * (1.0 / 120 - d2 * (1.0 / 5040 - d2 * (1.0 / 362880 - d2 / 39916800.0))));
+    const double sinc =
+        1.0 - d2 * (1.0 / 6 - d2 * (1.0 / 120 - d2 * (1.0 / 5040 - d2 * (1.0 / 362880 - d2 / 39916800.0))));
     const double cosc = d * (0.5 - d2 * (1.0 / 24 - d2 * (1.0 / 720 - d2 * (1.0 / 40320 - d2 / 3628800.0))));
-    const double forward = way * sinc;    // chord of the arc, in the frame of the heading before
+    const double forward = way * sinc;  // chord of the arc, in the frame of the heading before
     const double aside = way * cosc;
     const double c0 = c[i];
     const double s0 = s[i];

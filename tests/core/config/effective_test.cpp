@@ -1,7 +1,6 @@
 // The effective settings: a file with every default written out, which reads back as the same experiment.
-#include <gmock/gmock.h>
-
 #include <filesystem>
+#include <gmock/gmock.h>
 
 #include "core/config/xml.hpp"
 #include "tests/core/config/reading.hpp"

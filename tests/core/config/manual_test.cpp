@@ -1,6 +1,5 @@
-#include <gmock/gmock.h>
-
 #include <algorithm>
+#include <gmock/gmock.h>
 #include <set>
 
 #include "tests/core/config/reading.hpp"
@@ -52,7 +51,8 @@ TEST(Manual, NamesKindsOfRobotsAndEngines) {
   known.robots = {"e-puck", "foot-bot"};
   known.engines = {"kinematics2d", "dynamics2d"};
   const auto manuals = element_manuals(known);
-  for (const char* name : {"e-puck", "foot-bot", "kinematics2d", "dynamics2d", "range_and_bearing"}) EXPECT_NE(find(manuals, name), nullptr) << name;
+  for (const char* name : {"e-puck", "foot-bot", "kinematics2d", "dynamics2d", "range_and_bearing"})
+    EXPECT_NE(find(manuals, name), nullptr) << name;
   EXPECT_THAT(find(manuals, "arena")->children, testing::Contains("foot-bot"));
   EXPECT_EQ(find(manuals, "battery")->parent, "e-puck or foot-bot");
   EXPECT_EQ(find(manuals, "dynamics2d")->parent, "physics_engines");

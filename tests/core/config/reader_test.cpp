@@ -1,6 +1,6 @@
-#include "tests/core/config/reading.hpp"
-
 #include <numbers>
+
+#include "tests/core/config/reading.hpp"
 
 namespace tandem::core {
 namespace {
@@ -160,7 +160,8 @@ TEST(Reader, TakesUnitsEverywhere) {
   Parts parts;
   parts.framework = R"(<framework><experiment length="2 min" ticks_per_second="+10" random_seed=" 5 "/></framework>)";
   parts.arena = R"(<arena size="400 cm,4000mm, 1" center="10 cm,0,0">)";
-  parts.things = R"(<box id="b" size="10 cm,2 m,0.3" mass="500 g"><body position="1,0,0" orientation="1.5 rad,0,0"/></box>
+  parts.things =
+      R"(<box id="b" size="10 cm,2 m,0.3" mass="500 g"><body position="1,0,0" orientation="1.5 rad,0,0"/></box>
 <distribute><position method="grid" center="0,0,0" distances="50 cm,1,1" layout="2,1,1"/><orientation method="constant" values="1 rad,0,0"/>
 <entity quantity="2"><e-puck id="ep" rab_range="80 cm"><controller config="w"/></e-puck></entity></distribute>)";
   const Scenario s = read(parts.text()).good();
@@ -213,8 +214,10 @@ TEST(Reader, PacesByRealTimeWhenArgosFilesAskForIt) {
 
 TEST(Reader, PutsARobotsOwnParametersInPlaceOfItsConfigurations) {
   Parts parts;
-  parts.controllers = R"(<controllers><wander id="w" library="wander"><params speed="1" gain="2"><path a="1"/><rule b="2"/></params></wander></controllers>)";
-  parts.things = R"(<e-puck id="ep"><body position="0,0,0"/><controller config="w"><params gain="5"><rule b="9"/></params></controller></e-puck>)";
+  parts.controllers =
+      R"(<controllers><wander id="w" library="wander"><params speed="1" gain="2"><path a="1"/><rule b="2"/></params></wander></controllers>)";
+  parts.things =
+      R"(<e-puck id="ep"><body position="0,0,0"/><controller config="w"><params gain="5"><rule b="9"/></params></controller></e-puck>)";
   const Scenario s = read(parts.text()).good();
   ASSERT_TRUE(s.robots[0].params.has_value());
   const Element& params = *s.robots[0].params;
@@ -227,7 +230,8 @@ TEST(Reader, PutsARobotsOwnParametersInPlaceOfItsConfigurations) {
 
 TEST(Reader, TakesRegionsWithWallsAndGates) {
   Parts parts;
-  parts.engines = R"(<physics_engines><kinematics2d id="left" regions="2x3"><boundaries><top height="1"/><bottom height="-1"/><sides>
+  parts.engines =
+      R"(<physics_engines><kinematics2d id="left" regions="2x3"><boundaries><top height="1"/><bottom height="-1"/><sides>
 <vertex point="-2,-2"/><vertex point="0,-2" gate="right"/><vertex point="0 cm,200 cm"/><vertex point="-2,2"/></sides></boundaries></kinematics2d>
 <kinematics2d id="right"/></physics_engines>)";
   const Scenario s = read(parts.text()).good();
@@ -248,8 +252,9 @@ TEST(Reader, NumbersDistributesInTheOrderOfTheFile) {
     return R"(<distribute><position method="constant" values="1,0,0"/><orientation method="constant" values="0,0,0"/><entity quantity="1">)" +
            thing + "</entity></distribute>";
   };
-  parts.things = distribute(R"(<e-puck id="a"><controller config="w"/></e-puck>)") + distribute(R"(<box id="b" size="1,1,1"/>)") +
-                 distribute(R"(<light id="c"/>)") + distribute(R"(<e-puck id="d"><controller config="w"/></e-puck>)");
+  parts.things = distribute(R"(<e-puck id="a"><controller config="w"/></e-puck>)") +
+                 distribute(R"(<box id="b" size="1,1,1"/>)") + distribute(R"(<light id="c"/>)") +
+                 distribute(R"(<e-puck id="d"><controller config="w"/></e-puck>)");
   const Scenario s = read(parts.text()).good();
   EXPECT_EQ(s.robots[0].distribute->order, 0);
   EXPECT_EQ(s.objects[0].distribute->order, 1);

@@ -1,10 +1,9 @@
 #include "core/config/xml.hpp"
 
-#include <gmock/gmock.h>
-#include <sys/stat.h>
-
 #include <filesystem>
 #include <fstream>
+#include <gmock/gmock.h>
+#include <sys/stat.h>
 
 #include "tests/core/config/reading.hpp"
 
@@ -19,7 +18,9 @@ struct Bad {
   std::string message;
 };
 
-void PrintTo(const Bad& bad, std::ostream* out) { *out << bad.name; }
+void PrintTo(const Bad& bad, std::ostream* out) {
+  *out << bad.name;
+}
 
 class NotXml : public testing::TestWithParam<Bad> {};
 
@@ -38,18 +39,20 @@ std::string nested(int depth) {
   return text;
 }
 
-INSTANTIATE_TEST_SUITE_P(All, NotXml,
-                         testing::Values(Bad{"empty", "", 1, "the file is empty"}, Bad{"blank", " \n\n ", 1, "the file is empty"},
-                                         Bad{"words", "seven robots", 1, "is this an XML file?"},
-                                         Bad{"comment_only", "<!-- nothing -->", 1, "there is no element in the file"},
-                                         Bad{"mismatched", "<tandem>\n<arena>\n</tandem>", 2, "a tag is closed that is not the last one opened"},
-                                         Bad{"never_closed", "<tandem>\n<arena/>\n", 1, "never closed"},
-                                         Bad{"attribute_without_quotes", "<tandem>\n<arena size=4/></tandem>", 2, "name=\"value\""},
-                                         Bad{"open_comment", "<tandem>\n<!-- </tandem>", 2, "never closed with -->"},
-                                         Bad{"deep", nested(5000), 1, "nested too deeply"},
-                                         Bad{"zero_byte", std::string("<tandem>\n\0</tandem>", 19), 2, "zero byte"},
-                                         Bad{"other_root", "<html/>", 1, "the root element is <html>"}),
-                         [](const auto& bad) { return bad.param.name; });
+INSTANTIATE_TEST_SUITE_P(
+    All, NotXml,
+    testing::Values(Bad{"empty", "", 1, "the file is empty"}, Bad{"blank", " \n\n ", 1, "the file is empty"},
+                    Bad{"words", "seven robots", 1, "is this an XML file?"},
+                    Bad{"comment_only", "<!-- nothing -->", 1, "there is no element in the file"},
+                    Bad{"mismatched", "<tandem>\n<arena>\n</tandem>", 2,
+                        "a tag is closed that is not the last one opened"},
+                    Bad{"never_closed", "<tandem>\n<arena/>\n", 1, "never closed"},
+                    Bad{"attribute_without_quotes", "<tandem>\n<arena size=4/></tandem>", 2, "name=\"value\""},
+                    Bad{"open_comment", "<tandem>\n<!-- </tandem>", 2, "never closed with -->"},
+                    Bad{"deep", nested(5000), 1, "nested too deeply"},
+                    Bad{"zero_byte", std::string("<tandem>\n\0</tandem>", 19), 2, "zero byte"},
+                    Bad{"other_root", "<html/>", 1, "the root element is <html>"}),
+    [](const auto& bad) { return bad.param.name; });
 
 TEST(Xml, ASecondRootIsAnError) {
   Parts parts;
@@ -82,7 +85,8 @@ TEST(Xml, WritesWhatItRead) {
 class XmlFile : public testing::Test {
  protected:
   void SetUp() override {
-    folder_ = std::filesystem::path(testing::TempDir()) / ("xml_test_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
+    folder_ = std::filesystem::path(testing::TempDir()) /
+              ("xml_test_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
     std::filesystem::create_directories(folder_);
   }
   void TearDown() override { std::filesystem::remove_all(folder_); }
@@ -107,8 +111,12 @@ TEST_F(XmlFile, IsReadWhole) {
   std::ofstream(folder_ / "good.xml") << Parts{}.text();
   EXPECT_EQ(read_file("good.xml").good().name, "good");
 }
-TEST_F(XmlFile, ThatIsMissingIsAnError) { expect_refused("none.xml", "there is no such file"); }
-TEST_F(XmlFile, ThatIsAFolderIsAnError) { expect_refused(".", "this is a folder"); }
+TEST_F(XmlFile, ThatIsMissingIsAnError) {
+  expect_refused("none.xml", "there is no such file");
+}
+TEST_F(XmlFile, ThatIsAFolderIsAnError) {
+  expect_refused(".", "this is a folder");
+}
 TEST_F(XmlFile, ThatIsEmptyIsAnError) {
   std::ofstream(folder_ / "empty.xml").flush();
   expect_refused("empty.xml", "the file is empty");

@@ -1,8 +1,8 @@
-#include <gtest/gtest.h>
+#include "core/device/device.hpp"
 
 #include <cmath>
+#include <gtest/gtest.h>
 
-#include "core/device/device.hpp"
 #include "hal/device/body_sensors.hpp"
 #include "hal/device/leds.hpp"
 #include "hal/device/range_and_bearing.hpp"
@@ -30,7 +30,8 @@ MadeWorld stepped(const Scene& scene, int steps = 2) {
   return world;
 }
 
-/// Distance along one ray by bisection of the closed forms of disc and rectangle: slow, plain, and sharing no code with the kernel.
+/// Distance along one ray by bisection of the closed forms of disc and rectangle: slow, plain, and sharing no code with
+/// the kernel.
 double marched(const Scene& scene, std::size_t self, const Space& space, double bearing) {
   const Pose me = space.pose(space.robot(self));
   const double angle = std::atan2(me.sin_h, me.cos_h) + bearing;
@@ -113,7 +114,8 @@ TEST(WheelDevices, EncodersCountWhatTheWheelsRolled) {
 TEST(WheelDevices, BiasAndFactorChangeTheDrivenSpeed) {
   Scene scene(4, "drive");
   scene.param("left", "0.05").param("right", "0.05").robot("a", 0, 0);
-  scene.scenario.controllers[0].actuators[0].options.attributes = {{"factor_left", "1.2", 0}, {"factor_right", "1.2", 0}, {"bias_left", "1", 0}, {"bias_right", "1", 0}};
+  scene.scenario.controllers[0].actuators[0].options.attributes = {
+      {"factor_left", "1.2", 0}, {"factor_right", "1.2", 0}, {"bias_left", "1", 0}, {"bias_right", "1", 0}};
   auto world = stepped(scene, 11);
   EXPECT_NEAR(world->space().pose(world->space().robot(0)).x_m, 1.2 * 0.06, 1e-12);
 }
@@ -145,9 +147,10 @@ TEST(LightSensor, FollowsTheSquareOfTheDistanceTheAngleAndTheShadow) {
   scene.box(1.0, -1.0, 0.3, 0.3);
   auto world = stepped(scene);
   const auto light = read<hal::Light>(world);
-  EXPECT_NEAR(static_cast<double>(light.level[0]), 0.25 * std::cos(17 * M_PI / 180), 1e-6);  // faces it but for 17 degrees
-  EXPECT_EQ(light.level[3], 0.0F);                                                             // looks away
-  for (const float level : read<hal::Light>(world, 1).level) EXPECT_EQ(level, 0.0F);           // behind the box
+  EXPECT_NEAR(static_cast<double>(light.level[0]), 0.25 * std::cos(17 * M_PI / 180),
+              1e-6);                                                                  // faces it but for 17 degrees
+  EXPECT_EQ(light.level[3], 0.0F);                                                    // looks away
+  for (const float level : read<hal::Light>(world, 1).level) EXPECT_EQ(level, 0.0F);  // behind the box
 }
 
 TEST(GroundSensor, ReadsTheFloorThatAHookPaints) {
@@ -176,7 +179,8 @@ TEST(BodySensors, ReadAccelerationSoundBatteryAndTime) {
   world->step();
   EXPECT_EQ(read<hal::Accelerometer>(world).force_m_s2[0], 0.0F);
   world->step();
-  EXPECT_NEAR(static_cast<double>(read<hal::Accelerometer>(world).force_m_s2[0]), 0.5, 1e-6);  // 5 cm/s within a tenth of a second
+  EXPECT_NEAR(static_cast<double>(read<hal::Accelerometer>(world).force_m_s2[0]), 0.5,
+              1e-6);  // 5 cm/s within a tenth of a second
   EXPECT_NEAR(static_cast<double>(read<hal::Accelerometer>(world).force_m_s2[2]), 9.81, 1e-6);
   world->step();
   EXPECT_EQ(read<hal::Accelerometer>(world).force_m_s2[0], 0.0F);
@@ -196,7 +200,7 @@ TEST(RangeAndBearing, TellsFromWhereAMessageCame) {
   ASSERT_EQ(heard.count, 1U);
   EXPECT_NEAR(static_cast<double>(heard.range_m[0]), 0.5, 1e-6);
   EXPECT_NEAR(static_cast<double>(heard.bearing_rad[0]), -M_PI / 2, 1e-6);  // on its right
-  EXPECT_EQ(heard.size[0], 2U);  // the e-puck's board
+  EXPECT_EQ(heard.size[0], 2U);                                             // the e-puck's board
   EXPECT_EQ(heard.message(0)[1], 2U);
 }
 
@@ -215,6 +219,30 @@ TEST(RangeAndBearing, LosesTheAskedPartOfTheMessages) {
     heard += static_cast<int>(read<hal::RangeAndBearing>(world).count);
   }
   EXPECT_NEAR(heard / 2000.0, 0.7, 0.04);
+}
+
+TEST(NoisyDevices, SendersFailAndClocksJitterAsAsked) {
+  Scene scene(8, "everything");
+  scene.robot("a", 0, 0).robot("b", 0.5, 0);
+  scene.scenario.controllers[0].actuators.back().options.attributes = {{"failure_prob", "0.25", 0}};
+  for (DeviceChoice& c : scene.scenario.controllers[0].sensors) {
+    if (c.device == "clock") c.implementation = "noisy";
+  }
+  auto world = make(scene);
+  ASSERT_TRUE(world.world) << world.all_problems();
+  world->start();
+  int heard = 0;
+  double squares = 0.0;
+  for (int i = 0; i < 2001; ++i) {
+    world->step();
+    heard += static_cast<int>(read<hal::RangeAndBearing>(world).count);
+    const auto clock = read<hal::Clock>(world);
+    EXPECT_EQ(clock.tick, i);
+    const double error_s = static_cast<double>(clock.now_ns - clock.taken_ns) * 1e-9;
+    squares += error_s * error_s;
+  }
+  EXPECT_NEAR(heard / 2000.0, 0.75, 0.04);
+  EXPECT_NEAR(std::sqrt(squares / 2001), 0.001, 0.0001);
 }
 
 TEST(Devices, EveryImplementationIsDocumentedAndStartsWithDefault) {

@@ -29,8 +29,10 @@ int main(int argc, char** argv) {
   }
   Problems problems;
   const auto start = std::chrono::steady_clock::now();
-  const Placements placements = place(scenario, 1, [](const std::string&) { return 0.035; }, problems);
+  const Placements placements = place(
+      scenario, 1, [](const std::string&) { return 0.035; }, problems);
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
-  std::printf("{\"robots\": %zu, \"seconds\": %.3f, \"problems\": %zu}\n", placements.robots.size(), took.count(), problems.size());
+  std::printf("{\"robots\": %zu, \"seconds\": %.3f, \"problems\": %zu}\n", placements.robots.size(), took.count(),
+              problems.size());
   return problems.empty() ? 0 : 1;
 }

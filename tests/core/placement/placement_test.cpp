@@ -1,8 +1,7 @@
 #include "core/placement/placement.hpp"
 
-#include <gmock/gmock.h>
-
 #include <cmath>
+#include <gmock/gmock.h>
 #include <numbers>
 #include <set>
 
@@ -15,7 +14,9 @@ using testing::HasSubstr;
 constexpr double kRadius_m = 0.035;
 constexpr double kPi = std::numbers::pi;
 
-double radius_of(const std::string& kind) { return kind == "e-puck" ? kRadius_m : kind == "big" ? 0.5 : -1.0; }
+double radius_of(const std::string& kind) {
+  return kind == "e-puck" ? kRadius_m : kind == "big" ? 0.5 : -1.0;
+}
 
 Scenario arena(double size_m) {
   Scenario s;
@@ -332,7 +333,8 @@ TEST(Placement, SaysWhatIsInTheWayOfAConstantPlace) {
   d.position.values = {0.1, 0, 0};
   s.robots = {robots("ep", d)};
   s.objects = {box(0, 0, 1, 1)};
-  EXPECT_EQ(problem_of(s), "file.xml:50: error: placed 0 of 1 of robot 'ep': (0.1, 0) is taken by box 'crate' of line 20");
+  EXPECT_EQ(problem_of(s),
+            "file.xml:50: error: placed 0 of 1 of robot 'ep': (0.1, 0) is taken by box 'crate' of line 20");
   s.robots[0].distribute->position.values = {1.5, 0, 0};
   EXPECT_EQ(problem_of(s), "file.xml:50: error: placed 0 of 1 of robot 'ep': (1.5, 0) is outside the arena");
 }

@@ -1,8 +1,7 @@
 #include "core/random/random.hpp"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
+#include <gtest/gtest.h>
 
 namespace tandem::core {
 namespace {

@@ -1,7 +1,6 @@
 #include "core/schedule/thread_pool.hpp"
 
 #include <gtest/gtest.h>
-
 #include <vector>
 
 namespace tandem::core {

@@ -1,7 +1,6 @@
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <fstream>
+#include <gtest/gtest.h>
 #include <sstream>
 
 #include "core/device/proximity.hpp"
@@ -109,10 +108,9 @@ TEST(World, GivesTheSameBitsForAnyNumberOfThreadsAndEitherAssignment) {
   scene.implementations("noisy").param("left", "0.04").param("right", "0.05").walls().robots(5000, 5.8);
   for (auto* list : {&scene.scenario.controllers[0].sensors, &scene.scenario.controllers[0].actuators}) {
     for (DeviceChoice& c : *list) {
-      if (c.device == "clock" || c.device.ends_with("led") || c.device == "leds") c.implementation = "default";
+      if (c.device.ends_with("led") || c.device == "leds") c.implementation = "default";
     }
   }
-  scene.scenario.controllers[0].actuators.back().implementation = "default";
   const std::uint64_t alone = hash_of(scene, 1, Assignment::Static);
   for (const std::int64_t threads : {0, 2, 3, 8}) {
     EXPECT_EQ(hash_of(scene, threads, Assignment::Static), alone) << threads << " threads, static";
@@ -156,7 +154,8 @@ TEST(World, AThrowingControllerStopsItsRobotByNameAndNoOther) {
   EXPECT_NEAR(space.pose(space.find_robot("bad")).x_m, 0.015, 1e-12);  // three ticks of 5 mm, then stopped
   EXPECT_GT(space.pose(space.find_robot("good")).x_m, 0.2);
   ASSERT_EQ(world->incidents().first.size(), 1U);
-  EXPECT_NE(world->incidents().first[0].find("'bad' threw at tick 3: lost my way"), std::string::npos) << world->incidents().first[0];
+  EXPECT_NE(world->incidents().first[0].find("'bad' threw at tick 3: lost my way"), std::string::npos)
+      << world->incidents().first[0];
 }
 
 TEST(World, CommandsThatAreNoNumbersStopTheWheelsAndAreCounted) {
@@ -254,7 +253,8 @@ TEST(Hooks, OneThatThrowsEndsTheRunByName) {
   auto world = make(scene);
   run(*world.world, 10);
   EXPECT_EQ(world->state(), RunState::Failed);
-  EXPECT_NE(world->failure().find("hook 'diary' threw in before_step at tick 4: no more"), std::string::npos) << world->failure();
+  EXPECT_NE(world->failure().find("hook 'diary' threw in before_step at tick 4: no more"), std::string::npos)
+      << world->failure();
 }
 
 TEST(Hooks, MayMoveRobots) {
@@ -276,7 +276,8 @@ TEST(World, SaysWhichControllerOrDeviceIsWrong) {
     Scene scene(4.0, "everything");
     scene.robot("a", 0, 0);
     scene.scenario.controllers[0].sensors.clear();
-    EXPECT_NE(problems_of(scene).find("does not list; add <range_and_bearing"), std::string::npos) << problems_of(scene);
+    EXPECT_NE(problems_of(scene).find("does not list; add <range_and_bearing"), std::string::npos)
+        << problems_of(scene);
   }
   {
     Scene scene(4.0, "drvie");
@@ -284,7 +285,8 @@ TEST(World, SaysWhichControllerOrDeviceIsWrong) {
   }
   {
     Scene scene(4.0, "drive", "no_such_library");
-    EXPECT_NE(problems_of(scene.robot("a", 0, 0)).find("'no_such_library' is not there; looked for"), std::string::npos);
+    EXPECT_NE(problems_of(scene.robot("a", 0, 0)).find("'no_such_library' is not there; looked for"),
+              std::string::npos);
   }
   {
     Scene scene(4.0, "stillborn");
@@ -293,11 +295,14 @@ TEST(World, SaysWhichControllerOrDeviceIsWrong) {
   {
     Scene scene;
     scene.scenario.controllers[0].sensors[0].implementation = "nosiy";
-    EXPECT_NE(problems_of(scene.robot("a", 0, 0)).find("'proximity' has no implementation 'nosiy'; it has: default, ideal, noisy"), std::string::npos);
+    EXPECT_NE(problems_of(scene.robot("a", 0, 0))
+                  .find("'proximity' has no implementation 'nosiy'; it has: default, ideal, noisy"),
+              std::string::npos);
   }
   {
     Scene scene;
-    EXPECT_NE(problems_of(scene.param("lfet", "1").robot("a", 0, 0)).find("no attribute 'lfet'. Did you mean 'left'?"), std::string::npos);
+    EXPECT_NE(problems_of(scene.param("lfet", "1").robot("a", 0, 0)).find("no attribute 'lfet'. Did you mean 'left'?"),
+              std::string::npos);
   }
 }
 

@@ -1,8 +1,7 @@
-#include <gtest/gtest.h>
-#include <rapidcheck/gtest.h>
-
 #include <cmath>
+#include <gtest/gtest.h>
 #include <random>
+#include <rapidcheck/gtest.h>
 #include <set>
 
 #include "core/space/body_index.hpp"
@@ -40,9 +39,11 @@ TEST(BodyIndex, FindsEveryBodyInReachAndNoneTwice) {
     for (std::size_t i = 0; i < n; i += 7) {
       for (const double reach : {0.05, 0.2, 1.3}) {
         std::set<std::uint32_t> found;
-        index.for_each_near(points[i].x, points[i].y, reach, [&](const IndexEntry& e) { RC_ASSERT(found.insert(e.row()).second); });
+        index.for_each_near(points[i].x, points[i].y, reach,
+                            [&](const IndexEntry& e) { RC_ASSERT(found.insert(e.row()).second); });
         for (std::size_t j = 0; j < n; ++j) {
-          if (std::hypot(points[i].x - points[j].x, points[i].y - points[j].y) <= reach) RC_ASSERT(found.contains(static_cast<std::uint32_t>(j)));
+          if (std::hypot(points[i].x - points[j].x, points[i].y - points[j].y) <= reach)
+            RC_ASSERT(found.contains(static_cast<std::uint32_t>(j)));
         }
       }
     }
