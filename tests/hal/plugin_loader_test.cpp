@@ -1,0 +1,116 @@
+#include "hal/plugin_loader.hpp"
+
+#include <gmock/gmock.h>
+
+#include <filesystem>
+#include <fstream>
+
+namespace tandem::hal {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::AllOf;
+using testing::HasSubstr;
+
+const fs::path kFolder = fs::path(TANDEM_BINARY_DIR) / "tests" / "hal_plugins";
+
+class Loader : public testing::Test {
+ protected:
+  std::string error_of(const std::string& library) {
+    const Status opened = loader_.open(library);
+    EXPECT_FALSE(opened.ok());
+    EXPECT_TRUE(loader_.entries().empty()) << "a library that is refused registers nothing";
+    return opened.ok() ? "" : opened.error().message;
+  }
+  PluginLoader loader_{{kFolder}};
+};
+
+TEST_F(Loader, FindsALibraryByAnyOfItsSpellings) {
+  const fs::path file = fs::weakly_canonical(kFolder / "libtest_hal_pair.so");
+  for (const std::string& name : {std::string("test_hal_pair"), std::string("libtest_hal_pair"), std::string("libtest_hal_pair.so"),
+                                  std::string("test_hal_pair.so"), file.string(), (kFolder / "libtest_hal_pair").string(),
+                                  std::string("some/other/build/libtest_hal_pair"), std::string("/another/tree/libtest_hal_pair.so")}) {
+    const auto found = loader_.find(name);
+    ASSERT_TRUE(found.ok()) << name << ": " << found.error().message;
+    EXPECT_EQ(found.value(), file) << name;
+  }
+}
+
+TEST_F(Loader, NamesEveryPlaceThatItLookedAt) {
+  const std::string text = error_of("test_hal_pear");
+  EXPECT_THAT(text, AllOf(HasSubstr("library 'test_hal_pear' is not there"), HasSubstr((kFolder / "libtest_hal_pear.so").string()),
+                          HasSubstr((kFolder / "test_hal_pear").string()), HasSubstr("TANDEM_PLUGIN_PATH")));
+}
+
+TEST_F(Loader, AFolderIsNoLibrary) { EXPECT_THAT(error_of(kFolder.string()), HasSubstr("is not there")); }
+
+TEST_F(Loader, GivesTheControllerAskedFor) {
+  const auto spin = loader_.controller("test_hal_pair", "spin");
+  ASSERT_TRUE(spin.ok()) << spin.error().message;
+  EXPECT_EQ(spin.value()->name, "spin");
+  EXPECT_EQ(spin.value()->summary, "Turns on the spot.");
+  EXPECT_EQ(loader_.entries().size(), 2U);
+}
+
+TEST_F(Loader, OpensALibraryOnce) {
+  ASSERT_TRUE(loader_.open("test_hal_pair").ok());
+  ASSERT_TRUE(loader_.open("libtest_hal_pair.so").ok());
+  EXPECT_EQ(loader_.controller("test_hal_pair", "spin").value(), loader_.controller("libtest_hal_pair", "spin").value());
+  EXPECT_EQ(loader_.entries().size(), 2U);
+}
+
+TEST_F(Loader, KeepsLibrariesApart) {
+  ASSERT_TRUE(loader_.open("test_hal_pair").ok());
+  ASSERT_TRUE(loader_.open("test_hal_single").ok());
+  EXPECT_EQ(loader_.entries().size(), 3U);
+  EXPECT_FALSE(loader_.controller("test_hal_single", "spin").ok());
+}
+
+TEST_F(Loader, NamesTheControllersThatThereAre) {
+  const auto none = loader_.controller("test_hal_pair", "spinn");
+  ASSERT_FALSE(none.ok());
+  EXPECT_THAT(none.error().message, HasSubstr("has no controller 'spinn'; it has: forward, spin"));
+}
+
+TEST_F(Loader, TakesTheOnlyOneWhenNoNameIsGiven) {
+  EXPECT_EQ(loader_.controller("test_hal_single", "").value()->name, "idle");
+  EXPECT_FALSE(loader_.controller("test_hal_pair", "").ok()) << "there are two";
+}
+
+TEST_F(Loader, TellsControllersFromHooks) {
+  const auto hook = loader_.get("test_hal_single", "hook", "idle");
+  ASSERT_FALSE(hook.ok());
+  EXPECT_THAT(hook.error().message, HasSubstr("has no hook 'idle'; it has: none"));
+}
+
+TEST_F(Loader, RefusesASharedObjectThatIsNoPlugin) {
+  EXPECT_THAT(error_of("test_hal_no_plugin"), HasSubstr("is not a Tandem plug-in"));
+  EXPECT_THAT(error_of("test_hal_stranger"), HasSubstr("is not a Tandem plug-in"));
+}
+
+TEST_F(Loader, RefusesAPluginOfAnotherAbi) {
+  EXPECT_THAT(error_of("test_hal_other_abi"), AllOf(HasSubstr("was built for plug-in ABI " + std::to_string(kAbiNumber + 1)), HasSubstr("Rebuild it")));
+}
+
+TEST_F(Loader, RefusesAPluginOfAnotherStandardLibrary) {
+  EXPECT_THAT(error_of("test_hal_other_layout"), AllOf(HasSubstr("another compiler or standard library (some compiler"), HasSubstr("Rebuild it")));
+}
+
+TEST_F(Loader, SaysWhichSymbolIsMissing) {
+  EXPECT_THAT(error_of("test_hal_unresolved"), AllOf(HasSubstr("does not load"), HasSubstr("nobody_has_this")));
+}
+
+TEST_F(Loader, RefusesAFileThatIsNoSharedObject) {
+  const fs::path file = fs::path(testing::TempDir()) / "libtest_hal_text.so";
+  std::ofstream(file) << "not a shared object\n";
+  EXPECT_THAT(error_of(file.string()), HasSubstr("does not load"));
+  fs::remove(file);
+}
+
+TEST_F(Loader, GoesOnAfterARefusal) {
+  (void)error_of("test_hal_other_abi");
+  EXPECT_TRUE(loader_.open("test_hal_pair").ok());
+}
+
+}  // namespace
+}  // namespace tandem::hal
