@@ -1,9 +1,9 @@
 // The reader of experiment files, fed with anything.
 //
-// An input is a recipe: its first byte chooses a small experiment, or says that the rest is the text itself; then follow
-// operations that spoil the text (cut, repeat, nest, replace values and names by nasty ones). Most stay well-formed XML, so
-// that they reach the schema. The promises: no crash, no hang, an error is said exactly when there is no scenario, and
-// effective settings read back without an error.
+// An input is a recipe: its first byte chooses a small experiment, or says that the rest is the text itself; then
+// follow operations that spoil the text (cut, repeat, nest, replace values and names by nasty ones). Most stay
+// well-formed XML, so that they reach the schema. The promises: no crash, no hang, an error is said exactly when there
+// is no scenario, and effective settings read back without an error.
 #include <algorithm>
 #include <array>
 #include <cstdint>
@@ -40,16 +40,30 @@ values="0,0,0"/><entity quantity="4"><box id="b" size="1,1,1"/></entity></distri
 <visualization><qt-opengl><camera/></qt-opengl></visualization></tandem>)"};
 
 constexpr std::array<std::string_view, 24> kNasty = {
-    "", "-1", "0", "nan", "inf", "1e308", "-1e-320", "99999999999999999999", "1,2", "1,2,3,4", ",,", "1e9,1e9,1e9", "5 cm", "5 parsec", "true",
-    "uniform", "c", "e1", "&lt;&amp;", "[0]", "100000000", "4x4", "\xC3\xA4\xFF", "0x10"};
+    "",    "-1",      "0",         "nan",         "inf",       "1e308",    "-1e-320",      "99999999999999999999",
+    "1,2", "1,2,3,4", ",,",        "1e9,1e9,1e9", "5 cm",      "5 parsec", "true",         "uniform",
+    "c",   "e1",      "&lt;&amp;", "[0]",         "100000000", "4x4",      "\xC3\xA4\xFF", "0x10"};
 
-constexpr std::array<std::string_view, 12> kPieces = {"<box/>", "<e-puck id=\"e1\"/>", "<distribute>", "</distribute>", "<!--", "-->", "<![CDATA[x]]>", "text",
-                                                      "<entity quantity=\"1\"/>", " id=\"b\"", "/>", "<body position=\"0,0,0\"/>"};
+constexpr std::array<std::string_view, 12> kPieces = {"<box/>",
+                                                      "<e-puck id=\"e1\"/>",
+                                                      "<distribute>",
+                                                      "</distribute>",
+                                                      "<!--",
+                                                      "-->",
+                                                      "<![CDATA[x]]>",
+                                                      "text",
+                                                      "<entity quantity=\"1\"/>",
+                                                      " id=\"b\"",
+                                                      "/>",
+                                                      "<body position=\"0,0,0\"/>"};
 
-constexpr std::array<std::string_view, 6> kPaths = {"framework.experiment.length=", "arena.distribute[0].entity.quantity=", "arena.box[b].size=",
-                                                    "controllers.c[c].params.a=", "framework.system.threads=", "arena."};
+constexpr std::array<std::string_view, 6> kPaths = {
+    "framework.experiment.length=", "arena.distribute[0].entity.quantity=",
+    "arena.box[b].size=",           "controllers.c[c].params.a=",
+    "framework.system.threads=",    "arena."};
 
-const KnownNames kKnown = {{"e-puck"}, {"kinematics2d"}, {"proximity", "range_and_bearing"}, {"leds", "differential_steering"}};
+const KnownNames kKnown = {
+    {"e-puck"}, {"kinematics2d"}, {"proximity", "range_and_bearing"}, {"leds", "differential_steering"}};
 
 void expect(bool condition) {
   if (!condition) std::abort();
@@ -94,12 +108,24 @@ void spoil(std::string& text, Recipe& recipe) {
   const auto [leaf, leaf_end] = some_leaf(text, at);
   switch (op) {
     case 0:
-    case 1: text.replace(value, value_end - value, kNasty[recipe.next() % kNasty.size()]); break;
-    case 2: text.erase(leaf, leaf_end - leaf); break;
-    case 3: text.insert(leaf, text.substr(leaf, leaf_end - leaf)); break;
-    case 4: text.insert(leaf, kPieces[recipe.next() % kPieces.size()]); break;
-    case 5: text[at] = static_cast<char>(recipe.next()); break;
-    case 6: text.erase(at, recipe.next() % 16); break;
+    case 1:
+      text.replace(value, value_end - value, kNasty[recipe.next() % kNasty.size()]);
+      break;
+    case 2:
+      text.erase(leaf, leaf_end - leaf);
+      break;
+    case 3:
+      text.insert(leaf, text.substr(leaf, leaf_end - leaf));
+      break;
+    case 4:
+      text.insert(leaf, kPieces[recipe.next() % kPieces.size()]);
+      break;
+    case 5:
+      text[at] = static_cast<char>(recipe.next());
+      break;
+    case 6:
+      text.erase(at, recipe.next() % 16);
+      break;
     default: {  // an attribute renamed by one letter
       const std::size_t name = value >= 3 ? value - 3 : 0;
       text[name] = static_cast<char>('a' + recipe.next() % 26);

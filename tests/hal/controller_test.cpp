@@ -1,7 +1,6 @@
 #include "hal/controller.hpp"
 
 #include <gtest/gtest.h>
-
 #include <stdexcept>
 #include <vector>
 
@@ -81,14 +80,17 @@ class Row : public testing::Test {
   void SetUp() override {
     Numbers three(3.0);
     const auto params = type_.read_params(three);
-    for (std::size_t i = 0; i < kCount; ++i) type_.construct(memory_.data() + i * sizeof(Counter), robot_, params.get());
+    for (std::size_t i = 0; i < kCount; ++i)
+      type_.construct(memory_.data() + i * sizeof(Counter), robot_, params.get());
   }
   void TearDown() override {
     for (std::size_t i = 0; i < kCount; ++i) type_.destroy(memory_.data() + i * sizeof(Counter));
     EXPECT_EQ(alive, 0);
   }
   Counter& at(std::size_t i) { return *std::launder(reinterpret_cast<Counter*>(memory_.data() + i * sizeof(Counter))); }
-  std::size_t step(std::size_t begin = 0) { return type_.step_row(memory_.data(), sizeof(Counter), begin, kCount, halted_.data(), fault_); }
+  std::size_t step(std::size_t begin = 0) {
+    return type_.step_row(memory_.data(), sizeof(Counter), begin, kCount, halted_.data(), fault_);
+  }
 };
 
 TEST_F(Row, StepsEveryControllerOnce) {

@@ -1,10 +1,9 @@
 #include "hal/filter.hpp"
 
-#include <gtest/gtest.h>
-#include <rapidcheck.h>
-
 #include <cmath>
+#include <gtest/gtest.h>
 #include <limits>
+#include <rapidcheck.h>
 
 namespace tandem::hal {
 namespace {
@@ -32,7 +31,8 @@ TEST(Filter, ClampsBothWheelsByTheSameFactor) {
 TEST(Filter, StopsWhatIsNotFinite) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   constexpr double kInf = std::numeric_limits<double>::infinity();
-  for (WheelSpeeds w : {speeds(kNan, 0.0), speeds(0.0, kNan), speeds(kInf, 0.0), speeds(0.01, -kInf), speeds(kNan, kInf)}) {
+  for (WheelSpeeds w :
+       {speeds(kNan, 0.0), speeds(0.0, kNan), speeds(kInf, 0.0), speeds(0.01, -kInf), speeds(kNan, kInf)}) {
     EXPECT_EQ(filter(w, 0.1), FilterResult::NotFinite);
     EXPECT_EQ(w.left_m_s, 0.0);
     EXPECT_EQ(w.right_m_s, 0.0);
@@ -48,7 +48,8 @@ TEST(Filter, NeverLeavesMoreThanTheLimitAndKeepsTheCurve) {
     if (result == FilterResult::Passed) RC_ASSERT(w.left_m_s == left && w.right_m_s == right);
     if (result == FilterResult::Clamped && std::fabs(left) > 1e-200 && std::fabs(right) > 1e-200) {
       const double before = left / right;
-      if (std::isnormal(before) && std::fabs(w.right_m_s) > 1e-200) RC_ASSERT(std::fabs(w.left_m_s / w.right_m_s - before) <= 1e-12 * std::fabs(before));
+      if (std::isnormal(before) && std::fabs(w.right_m_s) > 1e-200)
+        RC_ASSERT(std::fabs(w.left_m_s / w.right_m_s - before) <= 1e-12 * std::fabs(before));
     }
   }));
 }

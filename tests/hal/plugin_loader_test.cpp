@@ -1,9 +1,8 @@
 #include "hal/plugin_loader.hpp"
 
-#include <gmock/gmock.h>
-
 #include <filesystem>
 #include <fstream>
+#include <gmock/gmock.h>
 
 namespace tandem::hal {
 namespace {
@@ -27,9 +26,10 @@ class Loader : public testing::Test {
 
 TEST_F(Loader, FindsALibraryByAnyOfItsSpellings) {
   const fs::path file = fs::weakly_canonical(kFolder / "libtest_hal_pair.so");
-  for (const std::string& name : {std::string("test_hal_pair"), std::string("libtest_hal_pair"), std::string("libtest_hal_pair.so"),
-                                  std::string("test_hal_pair.so"), file.string(), (kFolder / "libtest_hal_pair").string(),
-                                  std::string("some/other/build/libtest_hal_pair"), std::string("/another/tree/libtest_hal_pair.so")}) {
+  for (const std::string& name :
+       {std::string("test_hal_pair"), std::string("libtest_hal_pair"), std::string("libtest_hal_pair.so"),
+        std::string("test_hal_pair.so"), file.string(), (kFolder / "libtest_hal_pair").string(),
+        std::string("some/other/build/libtest_hal_pair"), std::string("/another/tree/libtest_hal_pair.so")}) {
     const auto found = loader_.find(name);
     ASSERT_TRUE(found.ok()) << name << ": " << found.error().message;
     EXPECT_EQ(found.value(), file) << name;
@@ -38,11 +38,14 @@ TEST_F(Loader, FindsALibraryByAnyOfItsSpellings) {
 
 TEST_F(Loader, NamesEveryPlaceThatItLookedAt) {
   const std::string text = error_of("test_hal_pear");
-  EXPECT_THAT(text, AllOf(HasSubstr("library 'test_hal_pear' is not there"), HasSubstr((kFolder / "libtest_hal_pear.so").string()),
+  EXPECT_THAT(text, AllOf(HasSubstr("library 'test_hal_pear' is not there"),
+                          HasSubstr((kFolder / "libtest_hal_pear.so").string()),
                           HasSubstr((kFolder / "test_hal_pear").string()), HasSubstr("TANDEM_PLUGIN_PATH")));
 }
 
-TEST_F(Loader, AFolderIsNoLibrary) { EXPECT_THAT(error_of(kFolder.string()), HasSubstr("is not there")); }
+TEST_F(Loader, AFolderIsNoLibrary) {
+  EXPECT_THAT(error_of(kFolder.string()), HasSubstr("is not there"));
+}
 
 TEST_F(Loader, GivesTheControllerAskedFor) {
   const auto spin = loader_.controller("test_hal_pair", "spin");
@@ -55,7 +58,8 @@ TEST_F(Loader, GivesTheControllerAskedFor) {
 TEST_F(Loader, OpensALibraryOnce) {
   ASSERT_TRUE(loader_.open("test_hal_pair").ok());
   ASSERT_TRUE(loader_.open("libtest_hal_pair.so").ok());
-  EXPECT_EQ(loader_.controller("test_hal_pair", "spin").value(), loader_.controller("libtest_hal_pair", "spin").value());
+  EXPECT_EQ(loader_.controller("test_hal_pair", "spin").value(),
+            loader_.controller("libtest_hal_pair", "spin").value());
   EXPECT_EQ(loader_.entries().size(), 2U);
 }
 
@@ -89,11 +93,13 @@ TEST_F(Loader, RefusesASharedObjectThatIsNoPlugin) {
 }
 
 TEST_F(Loader, RefusesAPluginOfAnotherAbi) {
-  EXPECT_THAT(error_of("test_hal_other_abi"), AllOf(HasSubstr("was built for plug-in ABI " + std::to_string(kAbiNumber + 1)), HasSubstr("Rebuild it")));
+  EXPECT_THAT(error_of("test_hal_other_abi"),
+              AllOf(HasSubstr("was built for plug-in ABI " + std::to_string(kAbiNumber + 1)), HasSubstr("Rebuild it")));
 }
 
 TEST_F(Loader, RefusesAPluginOfAnotherStandardLibrary) {
-  EXPECT_THAT(error_of("test_hal_other_layout"), AllOf(HasSubstr("another compiler or standard library (some compiler"), HasSubstr("Rebuild it")));
+  EXPECT_THAT(error_of("test_hal_other_layout"),
+              AllOf(HasSubstr("another compiler or standard library (some compiler"), HasSubstr("Rebuild it")));
 }
 
 TEST_F(Loader, SaysWhichSymbolIsMissing) {

@@ -1,10 +1,9 @@
 #include "hal/port.hpp"
 
-#include <gmock/gmock.h>
-#include <rapidcheck.h>
-
 #include <cmath>
+#include <gmock/gmock.h>
 #include <limits>
+#include <rapidcheck.h>
 
 #include "hal/device/body_sensors.hpp"
 #include "hal/device/leds.hpp"
@@ -55,7 +54,9 @@ struct MixedLater : Reading {
   void describe(FieldList& f) const { f.add("f32", f32, unit::m, Frame::Body, Fusion::Nearer, ""); }
 };
 
-double value(const Mixed& port, std::string_view name, std::size_t i = 0) { return get_value(&port, *port_type<Mixed>().field(name), i); }
+double value(const Mixed& port, std::string_view name, std::size_t i = 0) {
+  return get_value(&port, *port_type<Mixed>().field(name), i);
+}
 
 TEST(PortType, DescribesItsFields) {
   const PortType& type = port_type<Mixed>();
@@ -312,8 +313,8 @@ TEST(RangeAndBearing, AnAbsentRealBoardHearsTheVirtualOne) {
 
 template <class T>
 class EveryPort : public testing::Test {};
-using Ports = testing::Types<Proximity, Light, Ground, WheelEncoders, Accelerometer, Microphones, Battery, Clock, RangeAndBearing, WheelSpeeds,
-                             RingLeds, BodyLed, FrontLed, RangeAndBearingSend>;
+using Ports = testing::Types<Proximity, Light, Ground, WheelEncoders, Accelerometer, Microphones, Battery, Clock,
+                             RangeAndBearing, WheelSpeeds, RingLeds, BodyLed, FrontLed, RangeAndBearingSend>;
 TYPED_TEST_SUITE(EveryPort, Ports);
 
 TYPED_TEST(EveryPort, IsDocumentedAndLiesWithinItsMemory) {
@@ -326,9 +327,10 @@ TYPED_TEST(EveryPort, IsDocumentedAndLiesWithinItsMemory) {
     EXPECT_FALSE(f.doc.empty()) << f.name;
     EXPECT_EQ(type.field(f.name), &f) << "names are unique";
     EXPECT_TRUE(f.used_by.empty() || type.field(f.used_by) != nullptr) << f.name;
-    const std::size_t width = f.scalar == Scalar::U8 || f.scalar == Scalar::Bool ? 1
-                              : f.scalar == Scalar::U16 ? 2
-                              : f.scalar == Scalar::F64 || f.scalar == Scalar::I64 ? 8 : 4;
+    const std::size_t width = f.scalar == Scalar::U8 || f.scalar == Scalar::Bool   ? 1
+                              : f.scalar == Scalar::U16                            ? 2
+                              : f.scalar == Scalar::F64 || f.scalar == Scalar::I64 ? 8
+                                                                                   : 4;
     ASSERT_LE(f.offset + f.count * width, type.size) << f.name;
     for (std::size_t i = 0; i < f.count * width; ++i) {
       EXPECT_FALSE(taken[f.offset + i]) << f.name << " overlaps another field";

@@ -1,7 +1,6 @@
 #include "hal/result.hpp"
 
 #include <gtest/gtest.h>
-
 #include <memory>
 #include <vector>
 
@@ -45,7 +44,8 @@ TEST(Log, HandsMessagesToItsSinkAndElseDropsThem) {
   log.info("a");
   log.warning("b");
   log.error("c");
-  const std::vector<std::pair<Severity, std::string>> expected = {{Severity::Info, "a"}, {Severity::Warning, "b"}, {Severity::Error, "c"}};
+  const std::vector<std::pair<Severity, std::string>> expected = {
+      {Severity::Info, "a"}, {Severity::Warning, "b"}, {Severity::Error, "c"}};
   EXPECT_EQ(heard, expected);
 }
 

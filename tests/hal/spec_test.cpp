@@ -1,6 +1,5 @@
-#include <gtest/gtest.h>
-
 #include <cmath>
+#include <gtest/gtest.h>
 
 #include "hal/spec/epuck.hpp"
 #include "hal/spec/ring_directions.hpp"

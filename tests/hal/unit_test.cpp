@@ -1,9 +1,8 @@
 #include "hal/unit.hpp"
 
+#include <cmath>
 #include <gmock/gmock.h>
 #include <rapidcheck.h>
-
-#include <cmath>
 #include <set>
 
 namespace tandem::hal {
@@ -42,7 +41,8 @@ TEST(ParseQuantity, TakesABareNumberInTheGivenUnit) {
 }
 
 TEST(ParseQuantity, RefusesWhatIsNoNumber) {
-  for (const char* text : {"", " ", "cm", "four", "+", "-", "+-5", "++5", "--5", "nan", "inf", "-inf", "1e999", "1e-999", "0,5"}) {
+  for (const char* text :
+       {"", " ", "cm", "four", "+", "-", "+-5", "++5", "--5", "nan", "inf", "-inf", "1e999", "1e-999", "0,5"}) {
     EXPECT_FALSE(parse_quantity(text, unit::m).ok()) << text;
   }
   EXPECT_EQ(refused("four", unit::m), "'four' is not a number");
@@ -80,7 +80,9 @@ TEST(FormatQuantity, ReadsAsPeopleWroteIt) {
   EXPECT_EQ(format_quantity(0.25, unit::none), "0.25");
 }
 
-Unit any_unit() { return *rc::gen::elementOf(std::vector<Unit>(all_units().begin(), all_units().end())); }
+Unit any_unit() {
+  return *rc::gen::elementOf(std::vector<Unit>(all_units().begin(), all_units().end()));
+}
 
 TEST(Units, EveryNumberIsReadBackExactly) {
   EXPECT_TRUE(rc::check([](double number) {

@@ -1,7 +1,6 @@
 // Shared by the tests of the reader: texts in, scenario and problems out.
 #pragma once
 #include <gtest/gtest.h>
-
 #include <optional>
 #include <string>
 #include <vector>
@@ -11,11 +10,11 @@
 namespace tandem::core {
 
 inline const KnownNames& known_names() {
-  static const KnownNames names = {
-      {"e-puck"},
-      {"kinematics2d"},
-      {"accelerometer", "battery", "clock", "ground", "light", "microphones", "proximity", "range_and_bearing", "wheel_encoders"},
-      {"body_led", "differential_steering", "front_led", "leds", "range_and_bearing"}};
+  static const KnownNames names = {{"e-puck"},
+                                   {"kinematics2d"},
+                                   {"accelerometer", "battery", "clock", "ground", "light", "microphones", "proximity",
+                                    "range_and_bearing", "wheel_encoders"},
+                                   {"body_led", "differential_steering", "front_led", "leds", "range_and_bearing"}};
   return names;
 }
 
@@ -35,7 +34,8 @@ struct Outcome {
   }
 };
 
-inline Outcome read(const std::string& text, const std::vector<std::string>& overrides = {}, const KnownNames& known = known_names()) {
+inline Outcome read(const std::string& text, const std::vector<std::string>& overrides = {},
+                    const KnownNames& known = known_names()) {
   Outcome out;
   out.scenario = read_experiment_text(text, "file.xml", overrides, known, out.problems);
   return out;
@@ -43,15 +43,18 @@ inline Outcome read(const std::string& text, const std::vector<std::string>& ove
 
 /// A correct experiment in which parts can be replaced. Every part stands on the line of its name.
 struct Parts {
-  std::string framework = R"(<framework><experiment length="10" ticks_per_second="10" random_seed="1"/></framework>)";             // line 2
-  std::string controllers = R"(<controllers><wander id="w" library="wander"><sensors><proximity/></sensors></wander></controllers>)";  // 3
-  std::string engines = R"(<physics_engines><kinematics2d id="k"/></physics_engines>)";                                              // 4
-  std::string arena = R"(<arena size="4,4,1">)";                                                                                     // 5
-  std::string things = R"(<e-puck id="ep"><body position="0,0,0"/><controller config="w"/></e-puck>)";                               // 6
-  std::string rest;                                                                                                                  // 8
+  std::string framework =
+      R"(<framework><experiment length="10" ticks_per_second="10" random_seed="1"/></framework>)";  // line 2
+  std::string controllers =
+      R"(<controllers><wander id="w" library="wander"><sensors><proximity/></sensors></wander></controllers>)";  // 3
+  std::string engines = R"(<physics_engines><kinematics2d id="k"/></physics_engines>)";                          // 4
+  std::string arena = R"(<arena size="4,4,1">)";                                                                 // 5
+  std::string things = R"(<e-puck id="ep"><body position="0,0,0"/><controller config="w"/></e-puck>)";           // 6
+  std::string rest;                                                                                              // 8
 
   std::string text() const {
-    return "<tandem>\n" + framework + "\n" + controllers + "\n" + engines + "\n" + arena + "\n" + things + "\n</arena>\n" + rest + "\n</tandem>\n";
+    return "<tandem>\n" + framework + "\n" + controllers + "\n" + engines + "\n" + arena + "\n" + things +
+           "\n</arena>\n" + rest + "\n</tandem>\n";
   }
 };
 

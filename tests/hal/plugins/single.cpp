@@ -8,7 +8,9 @@ struct Idle final : tandem::hal::Controller {
   void step() override {}
 };
 
-void register_all(tandem::hal::Registrar& registrar) { registrar.add_controller<Idle>("idle", "Does nothing."); }
+void register_all(tandem::hal::Registrar& registrar) {
+  registrar.add_controller<Idle>("idle", "Does nothing.");
+}
 
 }  // namespace
 
