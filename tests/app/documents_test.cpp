@@ -150,6 +150,15 @@ TEST(Documents, LinkOnlyToWhatExists) {
   EXPECT_GT(links, 10);
 }
 
+TEST(Documents, ListEveryDecision) {
+  const std::string list = text_of(kTop / "docs/decisions/README.md");
+  for (const auto& page : fs::directory_iterator(kTop / "docs/decisions")) {
+    const std::string name = page.path().filename().string();
+    if (name == "README.md") continue;
+    EXPECT_NE(list.find("(" + name + ")"), std::string::npos) << name;
+  }
+}
+
 TEST(Documents, NameOnlyExperimentsThatExist) {
   static const std::regex kConfig(R"((configs/[a-z_0-9]+\.xml))");
   for (const fs::path& file : documents()) {
