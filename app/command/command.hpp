@@ -43,7 +43,7 @@ struct BenchOptions {
   std::string regions;
   std::vector<std::int64_t> threads;
   std::int64_t ticks = 600;
-  std::string density;     ///< "equal": the arena grows with the robots
+  std::string density;  ///< "equal": the arena grows with the robots
   bool rab = false;
   std::int64_t repeat = 1;
 };
@@ -63,8 +63,8 @@ struct EmulateOptions {
   std::string log;
   std::string firmware = "gctronic";
   std::vector<std::string> faults;
-  std::string arena;       ///< experiment whose puppet is the robot's body
-  std::string body;        ///< which puppet; empty: the first
+  std::string arena;  ///< experiment whose puppet is the robot's body
+  std::string body;   ///< which puppet; empty: the first
 };
 int emulate(const EmulateOptions& options);
 
