@@ -15,7 +15,7 @@ add_library(tandem_flags INTERFACE)
 target_compile_options(tandem_flags INTERFACE
   -Wall -Wextra -Wpedantic -Wconversion -Wshadow -ffp-contract=off -fno-math-errno -fvisibility-inlines-hidden)
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-  target_compile_options(tandem_flags INTERFACE -Wno-restrict) # false alarm of GCC 12
+  target_compile_options(tandem_flags INTERFACE -Wno-restrict -Wno-maybe-uninitialized) # false alarms of GCC 12 on std::string
 endif()
 if(TANDEM_WERROR)
   target_compile_options(tandem_flags INTERFACE -Werror)

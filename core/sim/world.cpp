@@ -346,6 +346,13 @@ double radius_of_kind(const std::string& kind) {
 
 std::unique_ptr<Engine> make_engine(const Scenario& scenario, Problems& problems) {
   Kinematics2d::Params params;
+  if (scenario.engines.size() > 1) {
+    problems.push_back(
+        {scenario.file, scenario.engines[1].line,
+         "a second physics engine: one <kinematics2d> moves the bodies of the whole arena, on any number of threads; "
+         "remove the others",
+         false});
+  }
   if (!scenario.engines.empty()) {
     const EngineConfig& config = scenario.engines.front();
     if (config.kind != "kinematics2d") {
@@ -355,6 +362,12 @@ std::unique_ptr<Engine> make_engine(const Scenario& scenario, Problems& problems
     }
     ElementReader reader(config.options, problems, {"id", "regions"});
     params.describe(reader);
+    reader.finish();
+    if (!config.sides.empty()) {
+      problems.push_back({scenario.file, config.line,
+                          "<kinematics2d> covers the whole arena: it takes no <boundaries>; close the arena with boxes",
+                          false});
+    }
   }
   return std::make_unique<Kinematics2d>(params);
 }
