@@ -46,7 +46,8 @@ void add_bench(CLI::App& app, BenchOptions& o, int& code) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"Tandem: one controller drives simulated robots, real ones, and both together."};
+  CLI::App app{"Tandem: one controller drives simulated robots, real ones, and both together.", "tandem"};
+  app.footer("The launcher at the top of the checkout has further commands: test, build and format.");
   app.require_subcommand(1);
   app.set_version_flag("--version", TANDEM_VERSION);
   app.failure_message(CLI::FailureMessage::help);

@@ -40,11 +40,9 @@ struct BenchOptions {
   std::vector<std::int64_t> robots;
   std::string robot = "e-puck";
   std::string engine = "kinematics2d";
-  std::string regions;
   std::vector<std::int64_t> threads;
   std::int64_t ticks = 600;
   std::string density;  ///< "equal": the arena grows with the robots
-  bool rab = false;
   std::int64_t repeat = 1;
 };
 int bench(const BenchOptions& options);

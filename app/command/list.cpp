@@ -35,9 +35,13 @@ std::string_view summary_of(const hal::PluginLoader::Entry& entry) {
 void list_plugins(std::string_view category, std::string_view title) {
   const auto loader = open_all();
   fmt::print("{}:\n", title);
+  bool none = true;
   for (const auto& entry : loader->entries()) {
-    if (entry.category == category) fmt::print("  {:<22} {}\n", entry.name, summary_of(entry));
+    if (entry.category != category) continue;
+    fmt::print("  {:<22} {}\n", entry.name, summary_of(entry));
+    none = false;
   }
+  if (none) fmt::print("  none in the plug-in folders; TANDEM_PLUGIN_PATH names further ones\n");
 }
 
 void list_devices() {

@@ -30,8 +30,8 @@ struct BridgeSettings {
 /// Timing for a link of this name: Bluetooth (rfcomm) devices answer late.
 SessionTiming timing_for(std::string_view link_name) noexcept;
 
-/// How to open the link to an e-puck. Errors: those of `byte_link_opener`; a baud rate that no e-puck's firmware has: what
-/// is sent at a wrong rate arrives as other bytes, and these could move the robot.
+/// How to open the link to an e-puck. Errors: those of `byte_link_opener`; a baud rate that no e-puck's firmware has:
+/// what is sent at a wrong rate arrives as other bytes, and these could move the robot.
 hal::Result<LinkOpener> epuck_link_opener(const LinkAddress& address);
 
 /// A copy of everything that can be told about the bridge.

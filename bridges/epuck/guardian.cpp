@@ -1,6 +1,12 @@
 #include "bridges/epuck/guardian.hpp"
 
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <ctime>
 #include <fcntl.h>
+#include <filesystem>
+#include <map>
 #include <poll.h>
 #include <signal.h>
 #include <sys/prctl.h>
@@ -8,29 +14,29 @@
 #include <termios.h>
 #include <unistd.h>
 
-#include <array>
-#include <cerrno>
-#include <cstring>
-#include <ctime>
-#include <filesystem>
-#include <map>
-
 namespace tandem::bridges::epuck {
 namespace {
 
 speed_t speed_of(unsigned baud) {
   switch (baud) {
-    case 9600: return B9600;
-    case 19200: return B19200;
-    case 38400: return B38400;
-    case 57600: return B57600;
-    case 230400: return B230400;
-    default: return B115200;
+    case 9600:
+      return B9600;
+    case 19200:
+      return B19200;
+    case 38400:
+      return B38400;
+    case 57600:
+      return B57600;
+    case 230400:
+      return B230400;
+    default:
+      return B115200;
   }
 }
 
-/// Whatever the firmware was reading, this ends it and stops the wheels: zeros end a binary packet, CR ends a line, then the
-/// line `D,0,0` and the binary form of the same, and `S`. A half-received line may be obeyed first; the stops follow it.
+/// Whatever the firmware was reading, this ends it and stops the wheels: zeros end a binary packet, CR ends a line,
+/// then the line `D,0,0` and the binary form of the same, and `S`. A half-received line may be obeyed first; the stops
+/// follow it.
 constexpr std::array<unsigned char, 62> stop_bytes() {
   std::array<unsigned char, 62> bytes{};  // 40 zeros first
   constexpr char kLine[] = "\rD,0,0\r";
@@ -97,8 +103,10 @@ void stop_robot(const std::string& device, unsigned baud) {
       const std::size_t space = line.find(' ');
       if (space == std::string::npos) continue;
       const std::string device = line.substr(space + 1);
-      if (line[0] == '+') watched[device] = static_cast<unsigned>(std::strtoul(line.c_str() + 1, nullptr, 10));
-      else watched.erase(device);
+      if (line[0] == '+')
+        watched[device] = static_cast<unsigned>(std::strtoul(line.c_str() + 1, nullptr, 10));
+      else
+        watched.erase(device);
     }
   }
   for (const auto& [device, baud] : watched) stop_robot(device, baud);
@@ -139,8 +147,12 @@ Guardian::~Guardian() {
   waitpid(child_, nullptr, 0);
 }
 
-void Guardian::watch(const std::string& device, unsigned baud) { say('+', baud, device); }
-void Guardian::release(const std::string& device) { say('-', 0, device); }
+void Guardian::watch(const std::string& device, unsigned baud) {
+  say('+', baud, device);
+}
+void Guardian::release(const std::string& device) {
+  say('-', 0, device);
+}
 
 void Guardian::say(char what, unsigned baud, const std::string& device) {
   std::error_code error;
