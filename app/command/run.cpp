@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cstdio>
 #include <fmt/format.h>
 
@@ -25,7 +26,8 @@ namespace {
 std::int64_t steps_of(const RunOptions& options, const core::Scenario& scenario) {
   if (options.steps) return *options.steps;
   const double seconds = options.seconds.value_or(scenario.length_s);
-  return static_cast<std::int64_t>(seconds * static_cast<double>(scenario.ticks_per_second) + 0.5);
+  const auto steps = static_cast<std::int64_t>(seconds * static_cast<double>(scenario.ticks_per_second) + 0.5);
+  return seconds > 0.0 ? std::max<std::int64_t>(1, steps) : 0;  // a duration below a tick is one tick, not endless
 }
 
 std::unique_ptr<core::TrajectoryRecorder> open_trajectory(const RunOptions& options, const core::Scenario& scenario,
