@@ -22,6 +22,8 @@
 namespace tandem::app {
 namespace {
 
+constexpr int kWarningsShown = 20;
+
 /// Steps to do; 0: until interrupted or a hook ends the run.
 std::int64_t steps_of(const RunOptions& options, const core::Scenario& scenario) {
   if (options.steps) return *options.steps;
@@ -31,7 +33,7 @@ std::int64_t steps_of(const RunOptions& options, const core::Scenario& scenario)
 }
 
 std::unique_ptr<core::TrajectoryRecorder> open_trajectory(const RunOptions& options, const core::Scenario& scenario,
-                                                          const core::World& world, bool& good) {
+                                                          const core::World& world, int& code) {
   auto config = scenario.trajectory;
   if (!options.trajectory.empty()) {
     if (!config) config = core::TrajectoryConfig{{}, {"*"}, 1};
@@ -41,7 +43,7 @@ std::unique_ptr<core::TrajectoryRecorder> open_trajectory(const RunOptions& opti
   auto opened = core::TrajectoryRecorder::open(*config, world.space(), world.ticks_per_second());
   if (opened.ok()) return std::move(opened).value();
   fmt::print(stderr, "error: {}\n", opened.error().message);
-  good = false;
+  code = kBadInput;
   return nullptr;
 }
 
@@ -205,6 +207,57 @@ bool has_real_robots(const core::Scenario& scenario) {
   return false;
 }
 
+/// Where a world's real robots take part; null when it has none. `code` is not kDone when they cannot.
+std::unique_ptr<mixed_reality::MixedSession> join_real_robots(std::unique_ptr<core::World>& world, Watch& watch,
+                                                              mixed_reality::TimeSource& clock,
+                                                              const std::atomic<bool>& stop, const hal::Log& log,
+                                                              int& code) {
+  if (!has_real_robots(world->scenario())) return nullptr;
+  mixed_reality::MixedOptions options;
+  options.log = log;
+  const auto maker = [&log](const mixed_reality::RealRobotRequest& r) {
+    return mixed_reality::make_real_robot(r, log);
+  };
+  auto made = mixed_reality::MixedSession::make(std::move(world), maker, clock, options);
+  if (!made.ok()) {
+    fmt::print(stderr, "error: {}\n", made.error().message);
+    code = kBadInput;
+    return nullptr;
+  }
+  auto session = std::move(made).value();
+  const hal::Status connected = session->connect(stop);
+  if (!connected.ok()) {
+    fmt::print(stderr, "error: {}\n", connected.error().message);
+    code = kFailedRunning;
+  }
+  watch.begin();
+  return session;
+}
+
+/// Writes what was asked for at the end of a run. @returns whether all of it could be written.
+bool write_results(const RunOptions& options, const core::World& world, const hal::PluginLoader& loader,
+                   const RunFigures& figures, std::size_t robots, const mixed_reality::MixedReport* real) {
+  bool good = true;
+  const auto complain = [&good](const hal::Status& status) {
+    if (status.ok()) return;
+    good = false;
+    fmt::print(stderr, "error: {}\n", status.error().message);
+  };
+  if (!options.picture.empty()) {
+    core::PictureOptions picture;
+    picture.experiment = world.scenario().name;
+    picture.seed = world.seed();
+    picture.time_ns = hal::time_of_tick(world.tick(), world.ticks_per_second());
+    for (const auto& r : real != nullptr ? real->robots : std::vector<mixed_reality::RealRobotReport>{}) {
+      if (!r.driving) picture.trouble.push_back({r.robot, r.state});
+    }
+    complain(core::write_picture(world.space(), options.picture, picture));
+  }
+  if (!options.report.empty()) complain(write_report(options.report, report_of(world, loader, figures, robots, real)));
+  if (!options.quiet && options.report != "-") print_result(world, figures, robots, real);
+  return good;
+}
+
 }  // namespace
 
 int run(const RunOptions& options) {
@@ -214,55 +267,35 @@ int run(const RunOptions& options) {
 
   Watch watch(*scenario);  // before any thread
   hal::PluginLoader loader(plugin_folders());
+  int warned = 0;
   core::WorldOptions world_options;
   world_options.seed = options.seed;
   world_options.threads = options.threads;
-  int warned = 0;
   world_options.log = hal::Log([&warned](hal::Severity, std::string_view text) {
-    if (++warned <= 20) say(text);
+    if (++warned <= kWarningsShown) say(text);
   });
   core::Problems problems;
   auto made = core::World::make(*scenario, loader, world_options, problems);
   print_problems(problems);
   if (made == nullptr) return kBadInput;
   core::World* const world = made.get();  // a mixed session takes it over
-  bool good = true;
-  const auto trajectory = open_trajectory(options, *scenario, *world, good);
-  if (!good) return kBadInput;
+  int code = kDone;
+  const auto trajectory = open_trajectory(options, *scenario, *world, code);
+  if (code != kDone) return code;
 
   const std::atomic<bool>& stop = catch_signals();
+  mixed_reality::MonotonicTime clock;
+  const auto mixed = join_real_robots(made, watch, clock, stop, world_options.log, code);
+  if (code != kDone) return stop.load() ? kDone : code;
+
   const std::int64_t steps = steps_of(options, *scenario);
   const std::size_t robots = world->space().robot_count();
-  mixed_reality::MonotonicTime clock;
-  std::unique_ptr<mixed_reality::MixedSession> mixed;
-  if (has_real_robots(*scenario)) {
-    mixed_reality::MixedOptions mixed_options;
-    mixed_options.log = world_options.log;
-    auto session = mixed_reality::MixedSession::make(
-        std::move(made),
-        [&](const mixed_reality::RealRobotRequest& request) {
-          return mixed_reality::make_real_robot(request, world_options.log);
-        },
-        clock, mixed_options);
-    if (!session.ok()) {
-      fmt::print(stderr, "error: {}\n", session.error().message);
-      return kBadInput;
-    }
-    mixed = std::move(session).value();
-    watch.begin();
-    const hal::Status connected = mixed->connect(stop);
-    if (!connected.ok()) {
-      fmt::print(stderr, "error: {}\n", connected.error().message);
-      return kFailedRunning;
-    }
-  }
-
   RunFigures figures;
   figures.threads = world->threads();
-  hal::Status recorded;
   figures.init_s = wall_seconds() - began;
   const double wall = wall_seconds();
   const double cpu = cpu_seconds();
+  hal::Status recorded;
   {
     Progress progress(steps, scenario->ticks_per_second);
     const auto after_tick = [&](core::World& w) {
@@ -285,32 +318,16 @@ int run(const RunOptions& options) {
     real = mixed->report();
     watch.end(*real);
   }
-  const mixed_reality::MixedReport* real_report = real ? &*real : nullptr;
 
   bool failed = world->state() == core::RunState::Failed;
-  const auto complain = [&failed](const hal::Status& status) {
-    if (status.ok()) return;
-    failed = true;
-    fmt::print(stderr, "error: {}\n", status.error().message);
-  };
-  if (world->state() == core::RunState::Failed) fmt::print(stderr, "error: {}\n", world->failure());
+  if (failed) fmt::print(stderr, "error: {}\n", world->failure());
   if (stop.load(std::memory_order_relaxed)) fmt::print(stderr, "interrupted at tick {}\n", world->tick());
-  if (trajectory != nullptr) complain(trajectory->close());
-  if (!options.picture.empty()) {
-    core::PictureOptions picture;
-    picture.experiment = scenario->name;
-    picture.seed = world->seed();
-    picture.time_ns = hal::time_of_tick(world->tick(), scenario->ticks_per_second);
-    if (real_report != nullptr) {
-      for (const mixed_reality::RealRobotReport& r : real_report->robots) {
-        if (!r.driving) picture.trouble.push_back({r.robot, r.state});
-      }
-    }
-    complain(core::write_picture(world->space(), options.picture, picture));
+  if (trajectory != nullptr) {
+    const hal::Status closed = trajectory->close();
+    if (!closed.ok()) fmt::print(stderr, "error: {}\n", closed.error().message);
+    failed = failed || !closed.ok();
   }
-  if (!options.report.empty())
-    complain(write_report(options.report, report_of(*world, loader, figures, robots, real_report)));
-  if (!options.quiet && options.report != "-") print_result(*world, figures, robots, real_report);
+  failed = !write_results(options, *world, loader, figures, robots, real ? &*real : nullptr) || failed;
   return failed ? kFailedRunning : kDone;
 }
 
