@@ -17,6 +17,9 @@ void* counted(std::size_t size, std::size_t align) {
 }
 }  // namespace
 
+// GCC cannot see that both sides are malloc and free.
+#pragma GCC diagnostic ignored "-Wmismatched-new-delete"
+
 void* operator new(std::size_t size) {
   return counted(size, 1);
 }
