@@ -1,7 +1,12 @@
 // `tandem bench diffusion`: the standard scene of Pinciroli et al. (2012), section 4.1, one JSON object a line.
+#include <cerrno>
 #include <cmath>
+#include <csignal>
 #include <cstdio>
 #include <fmt/format.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include "app/catalog.hpp"
 #include "app/command/command.hpp"
@@ -82,7 +87,7 @@ core::Scenario diffusion(const BenchOptions& options, std::int64_t robots, std::
   return scenario;
 }
 
-int bench_once(const BenchOptions& options, std::int64_t robots, std::int64_t threads) {
+int bench_once(const BenchOptions& options, std::int64_t robots, std::int64_t threads, const std::atomic<bool>& stop) {
   const double began = wall_seconds();
   const double rss_before = peak_rss_mb();
   const core::Scenario scenario = diffusion(options, robots, threads);
@@ -99,7 +104,10 @@ int bench_once(const BenchOptions& options, std::int64_t robots, std::int64_t th
   figures.init_s = wall_seconds() - began;
   const double wall = wall_seconds();
   const double cpu = cpu_seconds();
-  for (std::int64_t i = 0; i < options.ticks && world->state() == core::RunState::Running; ++i) world->step();
+  for (std::int64_t i = 0; i < options.ticks && world->state() == core::RunState::Running; ++i) {
+    if (stop.load(std::memory_order_relaxed)) return kDone;  // a part of a benchmark is none
+    world->step();
+  }
   figures.wall_s = wall_seconds() - wall;
   figures.cpu_s = cpu_seconds() - cpu;
   figures.steps = world->tick() - 1;
@@ -125,6 +133,23 @@ int bench_once(const BenchOptions& options, std::int64_t robots, std::int64_t th
   return failed ? kFailedRunning : kDone;
 }
 
+/// Runs in a process of its own, so that no run inherits memory from the one before.
+int bench_apart(const BenchOptions& options, std::int64_t robots, std::int64_t threads, const std::atomic<bool>& stop) {
+  const pid_t child = fork();
+  if (child == 0) {
+    prctl(PR_SET_PDEATHSIG, SIGKILL);
+    _exit(bench_once(options, robots, threads, stop));
+  }
+  int status = 0;
+  while (child > 0 && waitpid(child, &status, 0) < 0 && errno == EINTR) {
+    if (stop.load(std::memory_order_relaxed)) kill(child, SIGTERM);  // it may have been told already: no harm
+  }
+  if (child > 0 && WIFEXITED(status)) return WEXITSTATUS(status);
+  fmt::print(stderr, "tandem bench: the run of {} robots {}\n", robots,
+             child < 0 ? "cannot be started: no process can be made" : "was killed; is there memory enough?");
+  return kFailedRunning;
+}
+
 }  // namespace
 
 int bench(const BenchOptions& options) {
@@ -143,7 +168,7 @@ int bench(const BenchOptions& options) {
     for (const std::int64_t threads : options.threads.empty() ? std::vector<std::int64_t>{0} : options.threads) {
       for (std::int64_t i = 0; i < options.repeat; ++i) {
         if (stop.load(std::memory_order_relaxed)) return kDone;
-        const int code = bench_once(options, robots, threads);
+        const int code = bench_apart(options, robots, threads, stop);
         if (code != kDone) return code;
       }
     }

@@ -1,4 +1,5 @@
 // The command line as a user meets it: exit codes, messages, files.
+#include <algorithm>
 #include <gtest/gtest.h>
 
 #include "app/json.hpp"
@@ -187,6 +188,29 @@ TEST(Golden, TheBenchmarkKeepsItsBits) {
   Tandem run({"run", kConfigs + "epuck_diffusion.xml", "--report", "-"}, folder.path());
   ASSERT_EQ(run.wait(), 0) << run.errors();
   EXPECT_EQ(json_value(run.output(), "state_hash"), "0xabba2706408fb50f");
+}
+
+TEST(Bench, MeasuresEveryRunAfresh) {
+  Folder folder;
+  Tandem bench({"bench", "diffusion", "--robots", "4000,100,4000", "--ticks", "5"}, folder.path());
+  ASSERT_EQ(bench.wait(), 0) << bench.errors();
+  const std::string lines = bench.output();
+  ASSERT_EQ(std::count(lines.begin(), lines.end(), '\n'), 3) << lines;
+  const std::size_t second = lines.find('\n') + 1;
+  const std::size_t third = lines.find('\n', second) + 1;
+  EXPECT_LT(std::stod(json_value(lines, "peak_rss_mb", second)), std::stod(json_value(lines, "peak_rss_mb")));
+  EXPECT_GT(std::stod(json_value(lines, "bytes_per_robot", third)), 100.0);
+  EXPECT_EQ(json_value(lines, "state_hash", third), json_value(lines, "state_hash"));
+}
+
+TEST(Bench, EndsWhenInterrupted) {
+  Folder folder;
+  Tandem bench({"bench", "diffusion", "--robots", "1,100000", "--ticks", "20000"}, folder.path());
+  ASSERT_TRUE(scenarios::eventually([&] { return !bench.output().empty(); }, 10)) << bench.errors();
+  bench.signal(SIGTERM);  // to the program alone, which tells the process that runs the second size
+  EXPECT_EQ(bench.wait(20), 0) << bench.errors();
+  const std::string lines = bench.output();
+  EXPECT_EQ(std::count(lines.begin(), lines.end(), '\n'), 1) << lines;  // a part of a benchmark is none
 }
 
 TEST(Sha256, GivesThePublishedDigests) {
