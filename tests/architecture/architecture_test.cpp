@@ -1,5 +1,6 @@
 #include <fstream>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include "tests/architecture/rules.hpp"
 
@@ -20,7 +21,7 @@ TEST(Architecture, HoldsInThisTree) {
 /// A small tree that breaks one rule at a time.
 class CheatingTree : public testing::Test {
  protected:
-  CheatingTree() : top_(fs::path(testing::TempDir()) / "tandem_cheating_tree") {
+  CheatingTree() : top_(fs::path(testing::TempDir()) / ("tandem_cheating_tree_" + std::to_string(getpid()))) {
     fs::remove_all(top_);
     write("hal/port.hpp", "");
     write("core/space/space.hpp", "#include \"hal/port.hpp\"\n");
