@@ -183,7 +183,7 @@ TEST(Robot, IsStoppedAfterALinkLossAndDrivesAgainWhenItIsBack) {
 TEST(Robot, SurvivesSilenceGarbageAndRestarts) {
   Folder folder;
   EmulatedEpuck epuck(folder, {"--fault", "silent@2s+1s", "--fault", "garbage@4s+500ms", "--fault", "reset@6s",
-                               "--fault", "drop=0.002"});
+                               "--fault", "drop=0.002@1s+6s"});
   ASSERT_TRUE(epuck.ready());
   Tandem robot({"robot", kConfigs + "epuck_robot.xml", "--seconds", "9", "--report", "r.json"}, folder.path());
   EXPECT_EQ(robot.wait(), 0) << robot.errors();
