@@ -60,8 +60,9 @@ std::string to_text(const Problem& problem) {
   return text + (problem.warning ? ": warning: " : ": error: ") + problem.message;
 }
 
-bool has_errors(const Problems& problems) noexcept {
-  return std::any_of(problems.begin(), problems.end(), [](const Problem& p) { return !p.warning; });
+bool has_errors(const Problems& problems, std::size_t first) noexcept {
+  return std::any_of(problems.begin() + static_cast<std::ptrdiff_t>(std::min(first, problems.size())), problems.end(),
+                     [](const Problem& p) { return !p.warning; });
 }
 
 const std::string* Element::attribute(std::string_view attribute_name) const noexcept {

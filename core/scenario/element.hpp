@@ -1,5 +1,6 @@
 // A piece of an experiment file as plain data: names, attributes, children, and the line of each.
 #pragma once
+#include <cstddef>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -20,7 +21,8 @@ using Problems = std::vector<Problem>;
 
 /// `file:line: error: message`, or `warning:`.
 std::string to_text(const Problem& problem);
-bool has_errors(const Problems& problems) noexcept;
+/// Whether an error is among the problems from number `first` on.
+bool has_errors(const Problems& problems, std::size_t first = 0) noexcept;
 
 /// An XML element without the XML library.
 struct Element {

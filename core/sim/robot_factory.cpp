@@ -189,8 +189,7 @@ class Factory {
     group.params = group.controller->read_params(reader);
     reader.finish();
     // Listed devices must exist even when the controller does not take them.
-    bool good = problems_.size() == before ||
-                !has_errors(Problems(problems_.begin() + static_cast<std::ptrdiff_t>(before), problems_.end()));
+    bool good = !has_errors(problems_, before);
     good = check_devices(config, config.sensors, hal::Role::Sensor, *group.sheet) && good;
     good = check_devices(config, config.actuators, hal::Role::Actuator, *group.sheet) && good;
     return good;

@@ -379,9 +379,7 @@ std::unique_ptr<World> World::make(const Scenario& scenario, hal::PluginLoader& 
   auto impl = std::make_unique<Impl>();
   Impl& w = *impl;
   const std::size_t before = problems.size();
-  const auto bad = [&] {
-    return has_errors(Problems(problems.begin() + static_cast<std::ptrdiff_t>(before), problems.end()));
-  };
+  const auto bad = [&] { return has_errors(problems, before); };
   w.scenario = scenario;
   w.options = options;
   w.seed = options.seed ? *options.seed : scenario.seed ? *scenario.seed : seed_from_clock();
