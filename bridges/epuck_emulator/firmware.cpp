@@ -121,7 +121,7 @@ void Firmware::finish_errand() {
       greet(errand_until_);
       break;
     case Errand::Calibration:
-      calibrate(errand_until_);
+      calibrate(body_.sense(errand_until_));
       send_text("k, Calibration finished\r\n", errand_until_);
       break;
     case Errand::BusScan:
@@ -133,7 +133,10 @@ void Firmware::finish_errand() {
 }
 
 void Firmware::greet(hal::TimeNs at) {
-  calibrate(at);
+  // Switched on in the open and then set in its place: whether a shared body has sensed yet must not matter. A reset
+  // calibrates where the robot stands, like the real one's.
+  calibrate(greeted_ ? body_.sense(at) : BodySenses{});
+  greeted_ = true;
   actuate(at);
   event(at, "greeting", {});
   send_text(kGreeting, at);
@@ -198,8 +201,7 @@ void Firmware::send_text(std::string_view text, hal::TimeNs at) {
   send(bytes_of(text), at);
 }
 
-void Firmware::calibrate(hal::TimeNs at) {
-  const BodySenses senses = body_.sense(at);
+void Firmware::calibrate(const BodySenses& senses) {
   memory_.infrared_offset = proximity(senses, false);
 }
 

@@ -108,7 +108,7 @@ class Firmware {
   void send(std::span<const std::uint8_t> bytes, hal::TimeNs at);
   void send_text(std::string_view text, hal::TimeNs at);
   void greet(hal::TimeNs at);
-  void calibrate(hal::TimeNs at);
+  void calibrate(const BodySenses& senses);
   void set_speeds(std::int32_t left, std::int32_t right, std::string_view by, hal::TimeNs at);
   void turn_wheels(std::int32_t left, std::int32_t right, hal::TimeNs at);
   void set_led(bool any_device, std::int32_t index, std::int32_t action, hal::TimeNs at);
@@ -161,6 +161,7 @@ class Firmware {
   hal::TimeNs now_ = 0;
   hal::TimeNs free_at_ = 0;  // when the interpreter is done with what it is at
   Errand errand_ = Errand::None;
+  bool greeted_ = false;
   hal::TimeNs errand_until_ = 0;
   bool cut_next_answer_ = false;
 

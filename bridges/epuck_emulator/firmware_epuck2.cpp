@@ -85,7 +85,7 @@ void Firmware::set_all_actuators(hal::TimeNs at) {
     return;
   }
   const unsigned flags = m.payload[0];
-  if ((flags & 1U) != 0) calibrate(at);
+  if ((flags & 1U) != 0) calibrate(body_.sense(at));
   const bool avoid = (flags & 2U) != 0;
   if (avoid != m.obstacle_avoidance) event(at, "obstacle_avoidance", {{"on", avoid}});
   m.obstacle_avoidance = avoid;
