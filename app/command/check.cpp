@@ -29,7 +29,7 @@ int check(const CheckOptions& options) {
   print_problems(problems);
   if (world == nullptr) return kBadInput;
   fmt::print("{}: good: {} robots, {} objects, {} controller configurations, {} ticks a second\n", options.experiment,
-             world->space().robot_count(), world->space().statics().size(), scenario->controllers.size(),
+             world->space().robot_count(), world->space().objects().size(), scenario->controllers.size(),
              scenario->ticks_per_second);
   return kDone;
 }

@@ -43,29 +43,29 @@ std::atomic<VectorCode> chosen_code{detect_avx2() ? VectorCode::Avx2 : VectorCod
         for (std::size_t g = 0; g < ring.registers; ++g)
           meet_disc(ring, g, qx, qy, o.radius_m, distances + g * RayRing::kLanes);
       });
-  for (const std::uint32_t i : stores.static_index.near(x, y)) {
-    const StaticShape& shape = stores.statics[i];
-    const auto height = static_cast<double>(ring.height_m);
-    if (height < shape.z_low_m || height > shape.z_high_m) continue;
-    const float wx = static_cast<float>(shape.x_m - x);
-    const float wy = static_cast<float>(shape.y_m - y);
-    const float qx = c * wx + s * wy;
-    const float qy = c * wy - s * wx;
-    if (shape.kind == StaticShape::Kind::Cylinder) {
-      const auto radius = static_cast<float>(shape.radius_m);
-      for (std::size_t g = 0; g < ring.registers; ++g)
-        meet_disc(ring, g, qx, qy, radius, distances + g * RayRing::kLanes);
-    } else {
-      const auto bc = static_cast<float>(shape.cos_h);
-      const auto bs = static_cast<float>(shape.sin_h);
-      const float ax = c * bc + s * bs;
-      const float ay = c * bs - s * bc;
-      for (std::size_t g = 0; g < ring.registers; ++g) {
-        meet_box(ring, g, qx, qy, ax, ay, static_cast<float>(shape.half_x_m), static_cast<float>(shape.half_y_m),
-                 distances + g * RayRing::kLanes);
-      }
-    }
-  }
+  stores.for_each_object_near(
+      x, y, [&](const Object& shape) __attribute__((always_inline)) {
+        const auto height = static_cast<double>(ring.height_m);
+        if (height < shape.z_low_m || height > shape.z_high_m) return;
+        const float wx = static_cast<float>(shape.x_m - x);
+        const float wy = static_cast<float>(shape.y_m - y);
+        const float qx = c * wx + s * wy;
+        const float qy = c * wy - s * wx;
+        if (shape.kind == Object::Kind::Cylinder) {
+          const auto radius = static_cast<float>(shape.radius_m);
+          for (std::size_t g = 0; g < ring.registers; ++g)
+            meet_disc(ring, g, qx, qy, radius, distances + g * RayRing::kLanes);
+        } else {
+          const auto bc = static_cast<float>(shape.cos_h);
+          const auto bs = static_cast<float>(shape.sin_h);
+          const float ax = c * bc + s * bs;
+          const float ay = c * bs - s * bc;
+          for (std::size_t g = 0; g < ring.registers; ++g) {
+            meet_box(ring, g, qx, qy, ax, ay, static_cast<float>(shape.half_x_m), static_cast<float>(shape.half_y_m),
+                     distances + g * RayRing::kLanes);
+          }
+        }
+      });
 }
 
 [[gnu::always_inline]] inline void sense_block(const DeviceContext& context, const RayRing& ring,

@@ -151,8 +151,9 @@ void World::Impl::act() {
 }
 
 void World::Impl::physics() {
-  const PhysicsContext context{stores(), *pool, tick_s()};
-  engine->move(context);
+  const PhysicsContext context{stores(), *pool, tick_s(), tick};
+  engine->load(context);
+  engine->advance(context);
   rebuild_index();
   if (trouble.load(std::memory_order_relaxed) != 0) {
     treat_escapes();
@@ -323,9 +324,9 @@ void World::Impl::call_hooks(const char* moment, Call&& call) {
 
 namespace {
 
-StaticShape static_shape(const ObjectItem& item, const PlacedObject& placed) {
-  StaticShape shape;
-  shape.kind = item.shape == ShapeKind::Box ? StaticShape::Kind::Box : StaticShape::Kind::Cylinder;
+Object static_shape(const ObjectItem& item, const PlacedObject& placed) {
+  Object shape;
+  shape.kind = item.shape == ShapeKind::Box ? Object::Kind::Box : Object::Kind::Cylinder;
   shape.id = placed.number < 0 ? item.id : item.id + std::to_string(placed.number);
   shape.x_m = placed.p_W[0];
   shape.y_m = placed.p_W[1];
@@ -397,7 +398,7 @@ std::unique_ptr<World> World::make(const Scenario& scenario, hal::PluginLoader& 
   if (bad()) return nullptr;
 
   for (const PlacedObject& placed : placements.objects)
-    s.statics.push_back(static_shape(scenario.objects[placed.item], placed));
+    s.objects.push_back(static_shape(scenario.objects[placed.item], placed));
   for (const PlacedLight& placed : placements.lights) {
     const LightItem& item = scenario.lights[placed.item];
     s.lights.push_back({placed.number < 0 ? item.id : item.id + std::to_string(placed.number),
@@ -437,7 +438,7 @@ std::unique_ptr<World> World::make(const Scenario& scenario, hal::PluginLoader& 
         reach_m, 2.0 * group.sheet->body_radius_m + std::max(group.sheet->proximity_range_m, kContactReach_m) + 0.01);
   }
   s.body_index.set_area(s.min_x_m, s.min_y_m, s.max_x_m, s.max_y_m, reach_m);
-  s.static_index.build(s.statics, s.min_x_m, s.min_y_m, s.max_x_m, s.max_y_m, reach_m);
+  s.static_index.build(s.objects, false, s.min_x_m, s.min_y_m, s.max_x_m, s.max_y_m, reach_m);
 
   if (scenario.floor.source == "image") {
     const hal::Status loaded =

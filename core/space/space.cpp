@@ -14,12 +14,17 @@ double Pose::heading_rad() const noexcept {
   return std::atan2(sin_h, cos_h);
 }
 
+double Object::reach_m() const noexcept {
+  return kind == Kind::Cylinder ? radius_m : std::hypot(half_x_m, half_y_m);
+}
+
 void Bodies::resize(std::size_t rows) {
   for (auto* array : {&x_m, &y_m, &sin_h, &left_m_s, &right_m_s, &left_m, &right_m}) array->resize(rows, 0.0);
   cos_h.resize(rows, 1.0);
   radius_m.resize(rows, 0.0F);
   flags.resize(rows, 0);
   entity.resize(rows, 0xFFFFFFFFU);
+  region.resize(rows, 0);
 }
 
 AlignedBytes::AlignedBytes(std::size_t size, std::size_t align)
@@ -147,8 +152,8 @@ std::vector<const hal::PortType*> Space::ports(RobotId robot) const {
   return stores_->groups[stores_->blocks[stores_->robots[robot.index].block].group].ports;
 }
 
-const std::vector<StaticShape>& Space::statics() const noexcept {
-  return stores_->statics;
+const std::vector<Object>& Space::objects() const noexcept {
+  return stores_->objects;
 }
 const std::vector<LightSource>& Space::lights() const noexcept {
   return stores_->lights;

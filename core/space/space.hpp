@@ -15,16 +15,22 @@
 
 namespace tandem::core {
 
-/// A thing that never moves: a wall, a box, a cylinder. `x, y` is its centre.
-struct StaticShape {
+/// A wall, a box, a cylinder. `x, y` is its centre; z_low its base.
+struct Object {
   enum class Kind : std::uint8_t { Box, Cylinder };
   Kind kind = Kind::Box;
+  bool movable = false;  ///< engines with forces move it; others and sensors take it as it stands
+  bool alive = true;     ///< false once removed: its number is not used again
   std::string id;
   double x_m = 0.0, y_m = 0.0;
   double cos_h = 1.0, sin_h = 0.0;  ///< heading of a box
   double half_x_m = 0.0, half_y_m = 0.0;
   double radius_m = 0.0;  ///< of a cylinder
   double z_low_m = 0.0, z_high_m = 0.0;
+  double mass_kg = 1.0;  ///< of a movable one
+
+  /// Radius of the smallest disc around it, seen from above.
+  double reach_m() const noexcept;
 };
 
 /// A lamp.
@@ -84,7 +90,8 @@ class Space {
   std::vector<const hal::PortType*> ports(RobotId robot) const;
 
   // --- things that do not move by themselves ---
-  const std::vector<StaticShape>& statics() const noexcept;
+  /// Boxes and cylinders by number, in the order of the experiment file; those removed are not `alive`.
+  const std::vector<Object>& objects() const noexcept;
   const std::vector<LightSource>& lights() const noexcept;
   const std::vector<SoundSource>& sounds() const noexcept;
   void set_light(std::size_t i, const LightSource& light);

@@ -13,10 +13,12 @@
 #include <vector>
 
 #include "core/space/body_index.hpp"
+#include "core/space/body_key.hpp"
 #include "core/space/floor.hpp"
 #include "core/space/ids.hpp"
+#include "core/space/object_index.hpp"
+#include "core/space/region.hpp"
 #include "core/space/space.hpp"
-#include "core/space/static_index.hpp"
 #include "hal/controller.hpp"
 #include "hal/device/range_and_bearing.hpp"
 #include "hal/device/wheels.hpp"
@@ -27,6 +29,34 @@ namespace tandem::core {
 
 inline constexpr std::size_t kBlockRows = 256;
 
+/// What engines with forces or a third dimension know of a body beyond its place in the plane. In W.
+struct Motion {
+  double z_m = 0.0;  ///< of the base above the ground
+  std::array<double, 4> q_WB = {1.0, 0.0, 0.0,
+                                0.0};  ///< w, x, y, z; its yaw is the heading. Engines of the plane: unused
+  std::array<double, 3> v_m_s{};
+  std::array<double, 3> w_rad_s{};
+};
+
+/// What a flying robot is told to do, by whatever flies it.
+struct FlightCommand {
+  enum class Mode : std::uint8_t { None, Velocity, Position };  ///< None: not flying, it falls or stands
+  Mode mode = Mode::None;
+  std::array<double, 3> target{};  ///< velocity in m/s, or position in m; in W
+  double yaw = 0.0;                ///< Velocity: turn rate in rad/s; Position: heading in rad
+};
+
+/// Two bodies held together. Both are moved by the engine of the one that sorts first, wherever they are.
+struct Joint {
+  bool alive = false;
+  std::uint32_t generation = 0;
+  BodyKey a, b;
+  double ax_m = 0.0, ay_m = 0.0, az_m = 0.0;  ///< where, in a's frame: from its centre, z from its base
+  double bx_m = 0.0, by_m = 0.0, bz_m = 0.0;  ///< the same point in b's frame
+  bool turns = false;                         ///< b may turn about the point, about the vertical
+  double heading_rad = 0.0;                   ///< of b relative to a while it may not
+};
+
 /// Bodies, one array a quantity. Positions and headings in W.
 struct Bodies {
   std::vector<double> x_m, y_m;
@@ -36,6 +66,9 @@ struct Bodies {
   std::vector<float> radius_m;
   std::vector<std::uint8_t> flags;    ///< BodyFlag
   std::vector<std::uint32_t> entity;  ///< index of the robot's id
+  std::vector<std::uint16_t> region;  ///< index into SpaceStores::regions
+  std::vector<Motion> motion;         ///< empty while kinematics2d alone moves bodies
+  std::vector<FlightCommand> flight;  ///< empty while no robot flies
 
   std::size_t size() const noexcept { return x_m.size(); }
   void resize(std::size_t rows);
@@ -43,9 +76,10 @@ struct Bodies {
 
 enum BodyFlag : std::uint8_t {
   kAlive = 1,
-  kExternal = 2,  ///< pose set from outside: engines leave it, others bump into it
-  kEscaped = 4,   ///< left the arena in this tick
-  kNotFinite = 8  ///< its controller commanded something that is no finite number, in this tick
+  kExternal = 2,   ///< pose set from outside: engines leave it, others bump into it
+  kEscaped = 4,    ///< left the arena in this tick
+  kNotFinite = 8,  ///< its controller commanded something that is no finite number, in this tick
+  kMoved = 16      ///< put somewhere else between steps: its region is to be found anew
 };
 
 /// Zeroed memory with an alignment of its own.
@@ -129,8 +163,16 @@ struct SpaceStores {
   std::vector<std::uint32_t> living;  ///< entity indices, in order
   std::vector<NameRange> names;
 
-  std::vector<StaticShape> statics;
-  StaticIndex static_index;
+  std::vector<Object> objects;  ///< by number; parallel to the next two
+  std::vector<Motion> object_motion;
+  std::vector<std::uint16_t> object_region;  ///< of movable ones
+  std::uint64_t immovables_version = 1;      ///< rises whenever an immovable object appears, changes or goes
+  bool bodies_changed = true;                ///< robots or movable objects appeared, went or were put elsewhere
+  ObjectIndex static_index;                  ///< of the immovable ones
+  ObjectIndex movable_index;
+  std::vector<Joint> joints;  ///< by number
+
+  std::vector<Region> regions;  ///< at least one
   BodyIndex body_index;
 
   std::vector<LightSource> lights;
@@ -138,6 +180,14 @@ struct SpaceStores {
   Floor floor;
   bool repaint_floor = false;
   std::vector<Broadcast> broadcasts;  ///< by row; empty when no robot can send
+
+  /// Calls `visit(const Object&)` for every living object that may be within the indices' reach of (x, y).
+  template <class Visit>
+  [[gnu::always_inline]] inline void for_each_object_near(double x_m, double y_m, Visit&& visit) const noexcept {
+    for (const std::uint32_t k : static_index.near(x_m, y_m)) visit(objects[k]);
+    if (movable_index.empty()) return;
+    for (const std::uint32_t k : movable_index.near(x_m, y_m)) visit(objects[k]);
+  }
 
   std::size_t row_of(RobotId id) const noexcept {
     const RobotEntity& e = robots[id.index];

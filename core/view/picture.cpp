@@ -63,8 +63,8 @@ Drawing drawing_of(const Space& space, const PictureOptions& options) {
   drawing.max_x_m = space.arena_center_x_m() + 0.5 * space.arena_size_x_m();
   drawing.min_y_m = space.arena_center_y_m() - 0.5 * space.arena_size_y_m();
   drawing.max_y_m = space.arena_center_y_m() + 0.5 * space.arena_size_y_m();
-  for (const StaticShape& s : space.statics()) {
-    if (s.kind == StaticShape::Kind::Cylinder) {
+  for (const Object& s : space.objects()) {
+    if (s.kind == Object::Kind::Cylinder) {
       drawing.cylinders.push_back({s.x_m, s.y_m, s.radius_m});
     } else {
       const Pose pose{s.x_m, s.y_m, 0.0, s.cos_h, s.sin_h};

@@ -130,7 +130,7 @@ class Page {
     arena();
     floor();
     lights();
-    statics();
+    objects();
     robots();
     svg_ << "</g>\n";
     real_robots();
@@ -229,9 +229,9 @@ class Page {
     svg_ << "</g>\n";
   }
 
-  void statics() {
+  void objects() {
     if (d_.boxes.empty() && d_.cylinders.empty()) return;
-    svg_ << "<g class=\"statics\" fill=\"" << kWallColor << "\" stroke=\"" << kWallEdge << "\" stroke-width=\""
+    svg_ << "<g class=\"objects\" fill=\"" << kWallColor << "\" stroke=\"" << kWallEdge << "\" stroke-width=\""
          << px(1.0) << "\">\n";
     for (const Drawing::Box& b : d_.boxes) {
       svg_ << "<rect x=\"" << -b.half_x_m << "\" y=\"" << -b.half_y_m << "\" width=\"" << 2.0 * b.half_x_m

@@ -22,6 +22,9 @@ struct DataSheet {
   double wheel_radius_m = 0.0;
   double wheel_base_m = 0.0;         ///< distance between the two wheels' contact points
   double max_wheel_speed_m_s = 0.0;  ///< at the rim
+  double drive_force_N = 0.0;        ///< that the wheels together can push with
+  double drive_torque_Nm = 0.0;      ///< that they can turn the body with
+  bool flies = false;
   double proximity_range_m = 0.0;    ///< from the sensor
   double rab_range_m = 0.0;          ///< range-and-bearing, between centres
   double rab_height_m = 0.0;

@@ -66,7 +66,7 @@ void raise_to(std::atomic<double>& largest, double value) noexcept {
 
 }  // namespace
 
-void Kinematics2d::move(const PhysicsContext& context) noexcept {
+void Kinematics2d::advance(const PhysicsContext& context) {
   SpaceStores& stores = context.stores;
   context.pool.run(stores.blocks.size(), 4, [&](std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) {
@@ -80,7 +80,7 @@ void Kinematics2d::move(const PhysicsContext& context) noexcept {
   });
 }
 
-void Kinematics2d::settle(const PhysicsContext& context) noexcept {
+void Kinematics2d::settle(const PhysicsContext& context) {
   SpaceStores& stores = context.stores;
   BodyIndex& index = stores.body_index;
   const std::size_t n = index.size();
@@ -115,15 +115,15 @@ void Kinematics2d::settle(const PhysicsContext& context) noexcept {
       }
     });
     // Out of walls last: they do not give way.
-    for (const std::uint32_t k : stores.static_index.near(e.x_m, e.y_m)) {
+    stores.for_each_object_near(e.x_m, e.y_m, [&](const Object& object) {
       double nx = 0.0;
       double ny = 0.0;
-      const double gap = signed_distance(stores.statics[k], e.x_m + px, e.y_m + py, nx, ny) - r_i;
+      const double gap = signed_distance(object, e.x_m + px, e.y_m + py, nx, ny) - r_i;
       near = near || gap < kSlack_m;
-      if (gap >= 0.0) continue;
+      if (gap >= 0.0) return;
       px -= nx * gap;
       py -= ny * gap;
-    }
+    });
     if (first_pass) active_[i] = near ? 1 : 0;
     push_[i] = {px, py};
   };

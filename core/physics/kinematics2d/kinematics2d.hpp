@@ -21,8 +21,8 @@ class Kinematics2d final : public Engine {
   explicit Kinematics2d(const Params& params) : params_(params) {}
 
   std::string_view kind() const noexcept override { return "kinematics2d"; }
-  void move(const PhysicsContext& context) noexcept override;
-  void settle(const PhysicsContext& context) noexcept override;
+  void advance(const PhysicsContext& context) override;
+  void settle(const PhysicsContext& context) override;
 
  private:
   struct Push {

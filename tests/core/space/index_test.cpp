@@ -5,7 +5,7 @@
 #include <set>
 
 #include "core/space/body_index.hpp"
-#include "core/space/static_index.hpp"
+#include "core/space/object_index.hpp"
 
 namespace tandem::core {
 namespace {
@@ -68,8 +68,8 @@ TEST(BodyIndex, IsTheSameForAnyNumberOfThreads) {
   }
 }
 
-StaticShape box(double x, double y, double hx, double hy, double heading) {
-  StaticShape s;
+Object box(double x, double y, double hx, double hy, double heading) {
+  Object s;
   s.x_m = x;
   s.y_m = y;
   s.half_x_m = hx;
@@ -80,11 +80,11 @@ StaticShape box(double x, double y, double hx, double hy, double heading) {
   return s;
 }
 
-TEST(StaticIndex, ListsEveryShapeWithinReach) {
-  std::vector<StaticShape> shapes;
+TEST(ObjectIndex, ListsEveryShapeWithinReach) {
+  std::vector<Object> shapes;
   for (const Point& p : random_points(5, 60, 4.0)) shapes.push_back(box(p.x, p.y, 0.3, 0.05, p.x * 3));
-  StaticIndex index;
-  index.build(shapes, -4, -4, 4, 4, 0.2);
+  ObjectIndex index;
+  index.build(shapes, false, -4, -4, 4, 4, 0.2);
   for (const Point& p : random_points(6, 3000, 4.5)) {
     const auto near = index.near(p.x, p.y);
     const std::set<std::uint32_t> listed(near.begin(), near.end());
@@ -100,7 +100,7 @@ TEST(StaticIndex, ListsEveryShapeWithinReach) {
 TEST(SignedDistance, IsNegativeInsideAndItsNormalPointsOut) {
   double nx = 0;
   double ny = 0;
-  const StaticShape s = box(1, 2, 0.5, 0.25, M_PI / 2);
+  const Object s = box(1, 2, 0.5, 0.25, M_PI / 2);
   EXPECT_NEAR(signed_distance(s, 1.0, 2.6, nx, ny), 0.1, 1e-12);
   EXPECT_NEAR(ny, 1.0, 1e-12);
   EXPECT_NEAR(signed_distance(s, 1.2, 2.0, nx, ny), -0.05, 1e-12);
@@ -110,13 +110,13 @@ TEST(SignedDistance, IsNegativeInsideAndItsNormalPointsOut) {
 }
 
 TEST(Blocks, ALineThroughABoxOrACylinderButNotOverIt) {
-  const StaticShape b = box(0, 0, 0.1, 1.0, 0.0);
+  const Object b = box(0, 0, 0.1, 1.0, 0.0);
   EXPECT_TRUE(blocks(b, -1, 0, 0.1, 1, 0, 0.1));
   EXPECT_FALSE(blocks(b, -1, 0, 0.6, 1, 0, 0.6));
   EXPECT_FALSE(blocks(b, -1, 2, 0.1, 1, 2, 0.1));
   EXPECT_FALSE(blocks(b, -1, 0, 0.1, -0.2, 0, 0.1));
-  StaticShape c;
-  c.kind = StaticShape::Kind::Cylinder;
+  Object c;
+  c.kind = Object::Kind::Cylinder;
   c.radius_m = 0.2;
   c.z_high_m = 0.5;
   EXPECT_TRUE(blocks(c, -1, 0.19, 0.1, 1, 0.19, 0.1));

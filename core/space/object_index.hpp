@@ -1,4 +1,4 @@
-// Where the immovable things are: a grid whose cells list what lies within reach of any point in them.
+// Where boxes and cylinders are: a grid whose cells list what lies within reach of any point in them.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -9,12 +9,13 @@
 
 namespace tandem::core {
 
-/// Built once, then only read.
-class StaticIndex {
+/// Built for the immovable things once, for the movable ones every tick; then only read.
+class ObjectIndex {
  public:
-  /// `reach_m`: how far from a point a thing may lie to be listed for it.
-  void build(const std::vector<StaticShape>& shapes, double min_x_m, double min_y_m, double max_x_m, double max_y_m,
-             double reach_m);
+  /// Lists the living things whose `movable` is as asked. `reach_m`: how far from a point a thing may lie to be listed
+  /// for it. A second build over as many things allocates nothing.
+  void build(const std::vector<Object>& objects, bool movable, double min_x_m, double min_y_m, double max_x_m,
+             double max_y_m, double reach_m);
 
   /// Indices into the shapes; superset of those within `reach()` of (x, y), in rising order.
   std::span<const std::uint32_t> near(double x_m, double y_m) const noexcept {
@@ -24,6 +25,7 @@ class StaticIndex {
   }
   double reach() const noexcept { return reach_m_; }
   double cell_size() const noexcept { return cell_m_; }
+  bool empty() const noexcept { return list_.empty(); }
 
  private:
   std::uint32_t at(double offset_m, std::uint32_t count) const noexcept {
@@ -37,13 +39,14 @@ class StaticIndex {
   std::uint32_t columns_ = 1, lines_ = 1;
   std::vector<std::uint32_t> start_{0, 0};
   std::vector<std::uint32_t> list_;
+  std::vector<std::uint32_t> next_;  // while building
 };
 
 /// Distance from (x, y) to the outline of `shape` seen from above; negative inside. `nx, ny` is the unit vector from
 /// the shape towards the point (outwards), in W.
-double signed_distance(const StaticShape& shape, double x_m, double y_m, double& nx, double& ny) noexcept;
+double signed_distance(const Object& shape, double x_m, double y_m, double& nx, double& ny) noexcept;
 
 /// True when the straight line from a to b (x, y, z in W) passes through `shape`.
-bool blocks(const StaticShape& shape, double ax, double ay, double az, double bx, double by, double bz) noexcept;
+bool blocks(const Object& shape, double ax, double ay, double az, double bx, double by, double bz) noexcept;
 
 }  // namespace tandem::core

@@ -1,4 +1,4 @@
-#include "core/space/static_index.hpp"
+#include "core/space/object_index.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,10 +8,12 @@ namespace {
 
 constexpr double kCell_m = 0.25;
 constexpr double kMostCells = 4e6;
+constexpr double kCellsPerMovable = 16.0;  // what is cleared every tick grows with what is in it
+constexpr double kFewestMostCells = 1024.0;
 
 /// Half extents of the upright rectangle around a shape.
-std::pair<double, double> extents(const StaticShape& s) {
-  if (s.kind == StaticShape::Kind::Cylinder) return {s.radius_m, s.radius_m};
+std::pair<double, double> extents(const Object& s) {
+  if (s.kind == Object::Kind::Cylinder) return {s.radius_m, s.radius_m};
   return {std::fabs(s.cos_h) * s.half_x_m + std::fabs(s.sin_h) * s.half_y_m,
           std::fabs(s.sin_h) * s.half_x_m + std::fabs(s.cos_h) * s.half_y_m};
 }
@@ -29,20 +31,23 @@ bool clip(double o, double d, double half, double& t0, double& t1) noexcept {
 
 }  // namespace
 
-void StaticIndex::build(const std::vector<StaticShape>& shapes, double min_x_m, double min_y_m, double max_x_m,
-                        double max_y_m, double reach_m) {
+void ObjectIndex::build(const std::vector<Object>& objects, bool movable, double min_x_m, double min_y_m,
+                        double max_x_m, double max_y_m, double reach_m) {
+  const auto listed = [movable](const Object& o) { return o.alive && o.movable == movable; };
+  const auto count = static_cast<double>(std::count_if(objects.begin(), objects.end(), listed));
+  const double most_cells = movable ? std::max(kFewestMostCells, kCellsPerMovable * count) : kMostCells;
   min_x_m_ = min_x_m;
   min_y_m_ = min_y_m;
   reach_m_ = reach_m;
   const double width = std::max(max_x_m - min_x_m, 1e-3);
   const double depth = std::max(max_y_m - min_y_m, 1e-3);
-  cell_m_ = shapes.empty() ? std::max(width, depth) : std::max(kCell_m, std::sqrt(width * depth / kMostCells));
+  cell_m_ = count == 0.0 ? std::max(width, depth) : std::max(kCell_m, std::sqrt(width * depth / most_cells));
   per_cell_ = 1.0 / cell_m_;
   columns_ = std::max(1U, static_cast<std::uint32_t>(std::ceil(width * per_cell_)));
   lines_ = std::max(1U, static_cast<std::uint32_t>(std::ceil(depth * per_cell_)));
 
   const std::size_t cells = static_cast<std::size_t>(columns_) * lines_;
-  const auto for_each_cell_of = [&](const StaticShape& s, auto&& visit) {
+  const auto for_each_cell_of = [&](const Object& s, auto&& visit) {
     const auto [ex, ey] = extents(s);
     // A cell at the edge also stands for what lies beyond it, so the rectangle is clamped, not cut.
     const std::uint32_t x0 = at(s.x_m - ex - reach_m - min_x_m, columns_);
@@ -63,19 +68,22 @@ void StaticIndex::build(const std::vector<StaticShape>& shapes, double min_x_m, 
   };
 
   start_.assign(cells + 1, 0);
-  for (const StaticShape& s : shapes) for_each_cell_of(s, [&](std::size_t cell) { ++start_[cell + 1]; });
+  for (const Object& o : objects) {
+    if (listed(o)) for_each_cell_of(o, [&](std::size_t cell) { ++start_[cell + 1]; });
+  }
   for (std::size_t c = 0; c < cells; ++c) start_[c + 1] += start_[c];
   list_.resize(start_[cells]);
-  std::vector<std::uint32_t> next(start_.begin(), start_.end() - 1);
-  for (std::size_t i = 0; i < shapes.size(); ++i) {
-    for_each_cell_of(shapes[i], [&](std::size_t cell) { list_[next[cell]++] = static_cast<std::uint32_t>(i); });
+  next_.assign(start_.begin(), start_.end() - 1);
+  for (std::size_t i = 0; i < objects.size(); ++i) {
+    if (!listed(objects[i])) continue;
+    for_each_cell_of(objects[i], [&](std::size_t cell) { list_[next_[cell]++] = static_cast<std::uint32_t>(i); });
   }
 }
 
-double signed_distance(const StaticShape& s, double x_m, double y_m, double& nx, double& ny) noexcept {
+double signed_distance(const Object& s, double x_m, double y_m, double& nx, double& ny) noexcept {
   const double rx = x_m - s.x_m;
   const double ry = y_m - s.y_m;
-  if (s.kind == StaticShape::Kind::Cylinder) {
+  if (s.kind == Object::Kind::Cylinder) {
     const double d = std::sqrt(rx * rx + ry * ry);
     nx = d > 0.0 ? rx / d : 1.0;
     ny = d > 0.0 ? ry / d : 0.0;
@@ -104,7 +112,7 @@ double signed_distance(const StaticShape& s, double x_m, double y_m, double& nx,
   return distance;
 }
 
-bool blocks(const StaticShape& s, double ax, double ay, double az, double bx, double by, double bz) noexcept {
+bool blocks(const Object& s, double ax, double ay, double az, double bx, double by, double bz) noexcept {
   double t0 = 0.0;
   double t1 = 1.0;
   const double half_z = 0.5 * (s.z_high_m - s.z_low_m);
@@ -113,7 +121,7 @@ bool blocks(const StaticShape& s, double ax, double ay, double az, double bx, do
   const double oy = ay - s.y_m;
   const double dx = bx - ax;
   const double dy = by - ay;
-  if (s.kind == StaticShape::Kind::Box) {
+  if (s.kind == Object::Kind::Box) {
     return clip(s.cos_h * ox + s.sin_h * oy, s.cos_h * dx + s.sin_h * dy, s.half_x_m, t0, t1) &&
            clip(-s.sin_h * ox + s.cos_h * oy, -s.sin_h * dx + s.cos_h * dy, s.half_y_m, t0, t1);
   }

@@ -1,0 +1,58 @@
+// Which bodies a solver holds, kept in step with what its region lists.
+#pragma once
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "core/space/stores.hpp"
+
+namespace tandem::core {
+
+/// A solver's bodies in the order of their keys. `Double` is whatever the solver keeps for one: cheap to move.
+template <class Double>
+class Roster {
+ public:
+  struct Entry {
+    BodyKey key;
+    std::uint32_t identity = 0;  ///< tells a renewed row from the robot that was there before
+    bool owned = false;
+    Double body;
+  };
+
+  /// Makes the entries those of `region.owned` and `region.mirrored`. A body that passes from one list to the other
+  /// keeps its double. `create(key)` makes a double of a body that came, `destroy(Double&)` ends one that went; both
+  /// are called in rising order of keys.
+  template <class Create, class Destroy>
+  void update(const Region& region, const SpaceStores& stores, Create&& create, Destroy&& destroy) {
+    next_.clear();
+    auto old = entries_.begin();
+    auto own = region.owned.begin();
+    auto mirror = region.mirrored.begin();
+    while (own != region.owned.end() || mirror != region.mirrored.end()) {
+      const bool owned = mirror == region.mirrored.end() || (own != region.owned.end() && own->value < mirror->value);
+      const BodyKey key = owned ? *own++ : *mirror++;
+      while (old != entries_.end() && old->key < key) destroy((old++)->body);
+      const std::uint32_t identity = key.is_object() ? 0 : stores.bodies.entity[key.index()];
+      if (old != entries_.end() && old->key == key) {
+        if (old->identity == identity) {
+          next_.push_back(std::move(*old++));
+          next_.back().owned = owned;
+          continue;
+        }
+        destroy((old++)->body);
+      }
+      next_.push_back({key, identity, owned, create(key)});
+    }
+    while (old != entries_.end()) destroy((old++)->body);
+    entries_.swap(next_);
+  }
+
+  std::vector<Entry>& entries() noexcept { return entries_; }
+  const std::vector<Entry>& entries() const noexcept { return entries_; }
+  void clear() noexcept { entries_.clear(); }
+
+ private:
+  std::vector<Entry> entries_, next_;
+};
+
+}  // namespace tandem::core

@@ -1,0 +1,84 @@
+// Engines that give every region a world of its own, and run these in parallel.
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "core/physics/engine.hpp"
+
+namespace tandem::core {
+
+/// What a solver is handed in each phase. `load` may run at the same time as other regions' `load`, `advance` as other
+/// regions' `advance`; never one as the other. So `load` reads any part of the stores and writes none, and `advance`
+/// writes the rows of `region.owned` and nothing else, and reads no row of other regions.
+struct SolverContext {
+  SpaceStores& stores;
+  const Region& region;
+  double tick_s;
+  hal::Tick tick;
+};
+
+/// The physics of one region: a world with the region's bodies, doubles of those near its border, and the immovable
+/// objects that touch it.
+///
+/// Mirrored bodies are simulated like own ones, with the same commands, so that a contact across the border unfolds
+/// alike on both sides; their results are thrown away, and at the next `load` they are where their owners put them.
+class Solver {
+ public:
+  virtual ~Solver() = default;
+
+  /// Makes its world equal to the stores: creates doubles of bodies that came into `region.owned` or
+  /// `region.mirrored`, drops those that went, moves what is elsewhere than it was left (`core/physics/roster.hpp`
+  /// does the bookkeeping), rebuilds immovable ones when `stores.immovables_version` rose, and joints.
+  virtual void load(const SolverContext& context) = 0;
+
+  /// One tick, in as many sub-steps as it needs; then writes back poses, motions, rolled distances of `region.owned`.
+  /// Anything that is not finite, or faster than physics allows, is reported and not written back.
+  virtual void advance(const SolverContext& context) = 0;
+
+  /// Drops its world; the next `load` makes it anew from the stores alone.
+  virtual void forget() = 0;
+
+  std::vector<Trouble> trouble;  ///< of the last tick; emptied by whoever collects it
+};
+
+/// What makes solvers of one kind.
+struct SolverType {
+  std::string_view kind;     ///< the element's name in experiment files
+  std::string_view summary;  ///< for the manual
+  bool plane = true;         ///< bodies stay on the ground: it cannot carry robots that fly
+  bool air = false;          ///< made for flying robots: its region may lie over one for robots on the ground
+  bool forces = true;        ///< knows masses: can hold movable objects and joints
+  /// Reads an engine element's own attributes and children (`id`, `regions` and <boundaries> are read by others), and
+  /// checks them; problems are reported with their lines.
+  std::shared_ptr<const void> (*read)(const Element& options, Problems& problems) = nullptr;
+  void (*describe)(hal::ParamVisitor& visitor) = nullptr;
+  std::unique_ptr<Solver> (*make)(const std::shared_ptr<const void>& params, const SpaceStores& stores,
+                                  const Region& region, double tick_s) = nullptr;
+};
+
+/// All engines of one such kind in a run: a solver a region, stepped in parallel.
+class SolverEngine final : public Engine {
+ public:
+  explicit SolverEngine(std::string_view kind) : kind_(kind) {}
+  /// `region` is an index into SpaceStores::regions.
+  void add(std::size_t region, std::unique_ptr<Solver> solver) { parts_.push_back({region, std::move(solver)}); }
+
+  std::string_view kind() const noexcept override { return kind_; }
+  void load(const PhysicsContext& context) override;
+  void advance(const PhysicsContext& context) override;
+  void collect(std::vector<Trouble>& all) override;
+  void forget() override;
+
+ private:
+  struct Part {
+    std::size_t region;
+    std::unique_ptr<Solver> solver;
+  };
+  std::string_view kind_;
+  std::vector<Part> parts_;
+};
+
+}  // namespace tandem::core
