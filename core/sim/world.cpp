@@ -6,8 +6,9 @@
 #include <random>
 
 #include "core/device/device.hpp"
-#include "core/physics/kinematics2d/kinematics2d.hpp"
 #include "core/placement/placement.hpp"
+#include "core/sim/engine_factory.hpp"
+#include "core/sim/region_keeper.hpp"
 #include "core/sim/robot_factory.hpp"
 #include "core/space/stores.hpp"
 #include "hal/check.hpp"
@@ -33,6 +34,14 @@ std::uint64_t bits_of(double value) noexcept {
   return bits;
 }
 
+std::uint64_t mix_motion(std::uint64_t hash, const Motion& m) noexcept {
+  hash = mix(hash, bits_of(m.z_m));
+  for (const double value : m.q_WB) hash = mix(hash, bits_of(value));
+  for (const double value : m.v_m_s) hash = mix(hash, bits_of(value));
+  for (const double value : m.w_rad_s) hash = mix(hash, bits_of(value));
+  return hash;
+}
+
 std::uint64_t seed_from_clock() {
   std::random_device device;
   return (static_cast<std::uint64_t>(device()) << 32 | device()) >> 11;  // exact as a double, easy to write in a file
@@ -46,7 +55,14 @@ struct World::Impl {
   std::uint64_t seed = 0;
   Space space;
   std::unique_ptr<ThreadPool> pool;
-  std::unique_ptr<Engine> engine;
+  std::vector<std::unique_ptr<Engine>> engines;
+  RegionKeeper keeper;
+  std::vector<std::uint8_t> kinematic;  // by region: kinematics2d moves its bodies
+  bool one_kind = true;                 // kinematics2d moves all bodies
+  double reach_m = 0.0;                 // of the indices
+  std::uint64_t indexed_version = 0;    // of the immovable objects
+  std::vector<BodyKey> strays;          // left their region in this tick, or were put where there is none
+  std::vector<Trouble> troubles;
   RobotDevices devices;
   std::vector<std::unique_ptr<Hook>> hooks;
   std::vector<std::string> hook_names;
@@ -67,8 +83,13 @@ struct World::Impl {
   // --- one tick ---
   void act();
   void physics();
+  void settle_changes();
+  void stop_on_trouble();
+  void find_stray_objects();
   void treat_escapes();
+  void treat_escape(BodyKey body);
   void rebuild_index();
+  void index_movables();
   template <class Work>
   void each_block(Work&& work);
   void sense_and_control();
@@ -102,6 +123,15 @@ struct World::Impl {
     if (incidents.first.size() < kIncidentsNamed) incidents.first.push_back(std::move(what));
   }
   std::string at_tick() const { return " at tick " + std::to_string(tick); }
+  bool moved_by_kinematics(std::size_t row) noexcept {
+    const std::uint16_t region = stores().bodies.region[row];
+    return region != kNoRegion && kinematic[region] != 0;
+  }
+  std::string name_of(BodyKey body) {
+    if (!body.is_object()) return "robot '" + name_of_row(body.index()) + "'";
+    const Object& object = stores().objects[body.index()];
+    return (object.kind == Object::Kind::Box ? "box '" : "cylinder '") + object.id + "'";
+  }
   std::string name_of_row(std::size_t row) {
     const std::uint32_t entity = stores().bodies.entity[row];
     return space.robot_name({entity, stores().robots[entity].generation});
@@ -152,15 +182,47 @@ void World::Impl::act() {
 
 void World::Impl::physics() {
   const PhysicsContext context{stores(), *pool, tick_s(), tick};
-  engine->load(context);
-  engine->advance(context);
+  settle_changes();
+  keeper.list(stores(), *pool);
+  stores().bodies_changed = false;
+  for (const auto& engine : engines) engine->load(context);
+  for (const auto& engine : engines) engine->advance(context);
+  stop_on_trouble();
   rebuild_index();
-  if (trouble.load(std::memory_order_relaxed) != 0) {
+  find_stray_objects();
+  keeper.migrate(stores(), *pool, strays);
+  if (trouble.load(std::memory_order_relaxed) != 0 || !strays.empty()) {
     treat_escapes();
     rebuild_index();
     trouble.store(0, std::memory_order_relaxed);
+    strays.clear();
   }
-  engine->settle(context);
+  index_movables();
+  for (const auto& engine : engines) engine->settle(context);
+}
+
+/// What hooks, operators and real robots changed since the last step.
+void World::Impl::settle_changes() {
+  SpaceStores& s = stores();
+  if (indexed_version != s.immovables_version) {
+    s.static_index.build(s.objects, false, s.min_x_m, s.min_y_m, s.max_x_m, s.max_y_m, reach_m);
+    indexed_version = s.immovables_version;
+  }
+  if (s.bodies_changed) keeper.place(s, strays);
+}
+
+void World::Impl::stop_on_trouble() {
+  for (const auto& engine : engines) engine->collect(troubles);
+  for (const Trouble& t : troubles) fail(name_of(t.body) + " " + t.what + at_tick());
+  troubles.clear();
+}
+
+void World::Impl::index_movables() {
+  SpaceStores& s = stores();
+  const bool any =
+      std::any_of(s.objects.begin(), s.objects.end(), [](const Object& o) { return o.alive && o.movable; });
+  if (any || !s.movable_index.empty())
+    s.movable_index.build(s.objects, true, s.min_x_m, s.min_y_m, s.max_x_m, s.max_y_m, reach_m);
 }
 
 void World::Impl::rebuild_index() {
@@ -173,7 +235,8 @@ void World::Impl::rebuild_index() {
       entry.row_and_flag = BodyIndex::kSkip;
       return entry;
     }
-    if ((flags & kExternal) != 0) entry.row_and_flag |= IndexEntry::kFixedFlag;
+    if ((flags & kExternal) != 0 || (!one_kind && !moved_by_kinematics(row)))
+      entry.row_and_flag |= IndexEntry::kFixedFlag;
     const bool inside =
         entry.x_m >= s.min_x_m && entry.x_m <= s.max_x_m && entry.y_m >= s.min_y_m && entry.y_m <= s.max_y_m;
     if (!inside) {  // also when not a number
@@ -184,32 +247,79 @@ void World::Impl::rebuild_index() {
   });
 }
 
+void World::Impl::find_stray_objects() {
+  const SpaceStores& s = stores();
+  for (std::size_t i = 0; i < s.objects.size(); ++i) {
+    const Object& o = s.objects[i];
+    if (!o.alive || !o.movable) continue;
+    if (!(o.x_m >= s.min_x_m && o.x_m <= s.max_x_m && o.y_m >= s.min_y_m && o.y_m <= s.max_y_m))
+      strays.push_back(BodyKey::object(i));
+  }
+}
+
 void World::Impl::treat_escapes() {
-  SpaceStores& s = stores();
-  Bodies& b = s.bodies;
+  Bodies& b = stores().bodies;
   for (std::size_t row = 0; row < b.size(); ++row) {
     if ((b.flags[row] & kEscaped) == 0) continue;
     b.flags[row] = static_cast<std::uint8_t>(b.flags[row] & ~kEscaped);
-    if (std::isnan(b.x_m[row]) || std::isnan(b.y_m[row])) {
-      fail("robot '" + name_of_row(row) + "' has a position that is not a number" + at_tick());
-      b.x_m[row] = s.min_x_m;
-      b.y_m[row] = s.min_y_m;
-      continue;
-    }
-    ++incidents.bodies_escaped;
-    const std::string where = "robot '" + name_of_row(row) + "' left the arena at (" + hal::format_number(b.x_m[row]) +
-                              ", " + hal::format_number(b.y_m[row]) + ")" + at_tick();
-    if (scenario.escape == EscapePolicy::Error) {
-      fail(where + ". Give the arena walls, or choose escape=\"stop\" or escape=\"remove\" on <arena>.");
-    }
-    if (scenario.escape == EscapePolicy::Remove) {
+    strays.push_back(BodyKey::robot(row));
+  }
+  std::sort(strays.begin(), strays.end());
+  strays.erase(std::unique(strays.begin(), strays.end()), strays.end());
+  for (const BodyKey body : strays) treat_escape(body);
+}
+
+void World::Impl::treat_escape(BodyKey body) {
+  SpaceStores& s = stores();
+  double& x_m = body.is_object() ? s.objects[body.index()].x_m : s.bodies.x_m[body.index()];
+  double& y_m = body.is_object() ? s.objects[body.index()].y_m : s.bodies.y_m[body.index()];
+  if (std::isnan(x_m) || std::isnan(y_m)) {
+    fail(name_of(body) + " has a position that is not a number" + at_tick());
+    x_m = s.min_x_m;
+    y_m = s.min_y_m;
+    return;
+  }
+  ++incidents.bodies_escaped;
+  const bool in_arena = x_m >= s.min_x_m && x_m <= s.max_x_m && y_m >= s.min_y_m && y_m <= s.max_y_m;
+  const std::uint16_t region = body.is_object() ? s.object_region[body.index()] : s.bodies.region[body.index()];
+  const std::string what = !in_arena             ? "left the arena"
+                           : region == kNoRegion ? "was put where no engine has its region,"
+                                                 : "left the region of engine '" + s.regions[region].name + "'";
+  const std::string where =
+      name_of(body) + " " + what + " at (" + hal::format_number(x_m) + ", " + hal::format_number(y_m) + ")" + at_tick();
+  switch (scenario.escape) {
+    case EscapePolicy::Error:
+      fail(where + (in_arena
+                        ? ". Give the region's side a wall or a gate, or choose escape=\"stop\" or escape=\"remove\" "
+                          "on <arena>."
+                        : ". Give the arena walls, or choose escape=\"stop\" or escape=\"remove\" on <arena>."));
+      break;
+    case EscapePolicy::Remove:
       incident(where + ": removed");
-      space.remove_robot({b.entity[row], s.robots[b.entity[row]].generation});
-      continue;
-    }
-    if (scenario.escape == EscapePolicy::Stop) incident(where + ": stopped at the edge");
-    b.x_m[row] = std::clamp(b.x_m[row], s.min_x_m, s.max_x_m);
-    b.y_m[row] = std::clamp(b.y_m[row], s.min_y_m, s.max_y_m);
+      if (body.is_object()) {
+        s.objects[body.index()].alive = false;
+      } else {
+        const std::uint32_t entity = s.bodies.entity[body.index()];
+        space.remove_robot({entity, s.robots[entity].generation});
+      }
+      s.bodies_changed = true;
+      return;
+    case EscapePolicy::Stop:
+      incident(where + ": stopped at the edge");
+      break;
+  }
+  x_m = std::clamp(x_m, s.min_x_m, s.max_x_m);
+  y_m = std::clamp(y_m, s.min_y_m, s.max_y_m);
+  RegionKeeper::put_back(s, body);
+  Motion none;
+  if (body.is_object()) {
+    none.z_m = s.object_motion[body.index()].z_m;
+    none.q_WB = s.object_motion[body.index()].q_WB;
+    s.object_motion[body.index()] = none;
+  } else if (!s.bodies.motion.empty()) {
+    none.z_m = s.bodies.motion[body.index()].z_m;
+    none.q_WB = s.bodies.motion[body.index()].q_WB;
+    s.bodies.motion[body.index()] = none;
   }
 }
 
@@ -324,7 +434,7 @@ void World::Impl::call_hooks(const char* moment, Call&& call) {
 
 namespace {
 
-Object static_shape(const ObjectItem& item, const PlacedObject& placed) {
+Object object_of(const ObjectItem& item, const PlacedObject& placed) {
   Object shape;
   shape.kind = item.shape == ShapeKind::Box ? Object::Kind::Box : Object::Kind::Cylinder;
   shape.id = placed.number < 0 ? item.id : item.id + std::to_string(placed.number);
@@ -337,6 +447,8 @@ Object static_shape(const ObjectItem& item, const PlacedObject& placed) {
   shape.radius_m = item.size[0];
   shape.z_low_m = placed.p_W[2];
   shape.z_high_m = placed.p_W[2] + item.size[2];
+  shape.movable = item.movable;
+  shape.mass_kg = item.mass_kg;
   return shape;
 }
 
@@ -345,32 +457,40 @@ double radius_of_kind(const std::string& kind) {
   return sheet != nullptr ? sheet->body_radius_m : -1.0;
 }
 
-std::unique_ptr<Engine> make_engine(const Scenario& scenario, Problems& problems) {
-  Kinematics2d::Params params;
-  if (scenario.engines.size() > 1) {
+/// Every body's region; robots and movable objects that lie in none are problems.
+void assign_regions(const Scenario& scenario, const Placements& placements, const RegionKeeper& keeper, SpaceStores& s,
+                    Problems& problems) {
+  constexpr std::size_t kNamed = 20;
+  std::size_t bad = 0;
+  const auto complain = [&](int line, const std::string& who, double x_m, double y_m, const std::string& why) {
+    if (++bad > kNamed) return;
+    problems.push_back({scenario.file, line,
+                        who + " at (" + hal::format_number(x_m) + ", " + hal::format_number(y_m) + ") " + why, false});
+  };
+  const bool any_solid = std::any_of(s.regions.begin(), s.regions.end(), [](const Region& r) { return !r.plane; });
+  for (std::size_t row = 0; row < s.bodies.size(); ++row) {
+    s.bodies.region[row] = keeper.find(s, BodyKey::robot(row));
+    if (s.bodies.region[row] != kNoRegion) continue;
+    const RobotEntity& e = s.robots[s.bodies.entity[row]];
+    const std::string name = s.names[e.item].prefix + (e.number < 0 ? "" : std::to_string(e.number));
+    const bool flies = s.groups[s.blocks[e.block].group].sheet->flies;
+    complain(scenario.robots[e.item].line, "robot '" + name + "'", s.bodies.x_m[row], s.bodies.y_m[row],
+             flies && !any_solid ? "flies: it needs an engine of three dimensions, particle3d or dynamics3d"
+                                 : "lies in no engine's region");
+  }
+  for (std::size_t i = 0; i < s.objects.size(); ++i) {
+    if (!s.objects[i].movable) continue;
+    s.object_region[i] = keeper.find(s, BodyKey::object(i));
+    if (s.object_region[i] != kNoRegion) continue;
+    complain(scenario.objects[placements.objects[i].item].line,
+             std::string(s.objects[i].kind == Object::Kind::Box ? "movable box '" : "movable cylinder '") +
+                 s.objects[i].id + "'",
+             s.objects[i].x_m, s.objects[i].y_m,
+             "lies in no region of an engine that moves objects (dynamics2d, dynamics3d)");
+  }
+  if (bad > kNamed)
     problems.push_back(
-        {scenario.file, scenario.engines[1].line,
-         "a second physics engine: one <kinematics2d> moves the bodies of the whole arena, on any number of threads; "
-         "remove the others",
-         false});
-  }
-  if (!scenario.engines.empty()) {
-    const EngineConfig& config = scenario.engines.front();
-    if (config.kind != "kinematics2d") {
-      problems.push_back(
-          {scenario.file, config.line, "unknown physics engine '" + config.kind + "'; known: kinematics2d", false});
-      return nullptr;
-    }
-    ElementReader reader(config.options, problems, {"id", "regions"});
-    params.describe(reader);
-    reader.finish();
-    if (!config.sides.empty()) {
-      problems.push_back({scenario.file, config.line,
-                          "<kinematics2d> covers the whole arena: it takes no <boundaries>; close the arena with boxes",
-                          false});
-    }
-  }
-  return std::make_unique<Kinematics2d>(params);
+        {scenario.file, 0, "... and " + std::to_string(bad - kNamed) + " more bodies in no region", false});
 }
 
 }  // namespace
@@ -393,12 +513,17 @@ std::unique_ptr<World> World::make(const Scenario& scenario, hal::PluginLoader& 
   s.min_y_m = scenario.arena_center[1] - 0.5 * scenario.arena_size[1];
   s.max_y_m = scenario.arena_center[1] + 0.5 * scenario.arena_size[1];
 
-  w.engine = make_engine(scenario, problems);
   const Placements placements = place(scenario, w.seed, &radius_of_kind, problems);
+  w.engines = make_engines(scenario, placements.robots.size(), s, problems);
   if (bad()) return nullptr;
+  for (const Region& region : s.regions) {
+    w.kinematic.push_back(region.listed ? 0 : 1);
+    if (region.listed) w.one_kind = false;
+  }
+  s.bodies.has_motion = !w.one_kind;
 
   for (const PlacedObject& placed : placements.objects)
-    s.objects.push_back(static_shape(scenario.objects[placed.item], placed));
+    s.objects.push_back(object_of(scenario.objects[placed.item], placed));
   for (const PlacedLight& placed : placements.lights) {
     const LightItem& item = scenario.lights[placed.item];
     s.lights.push_back({placed.number < 0 ? item.id : item.id + std::to_string(placed.number),
@@ -438,7 +563,17 @@ std::unique_ptr<World> World::make(const Scenario& scenario, hal::PluginLoader& 
         reach_m, 2.0 * group.sheet->body_radius_m + std::max(group.sheet->proximity_range_m, kContactReach_m) + 0.01);
   }
   s.body_index.set_area(s.min_x_m, s.min_y_m, s.max_x_m, s.max_y_m, reach_m);
+  w.reach_m = reach_m;
   s.static_index.build(s.objects, false, s.min_x_m, s.min_y_m, s.max_x_m, s.max_y_m, reach_m);
+  w.indexed_version = s.immovables_version;
+  s.object_motion.resize(s.objects.size());
+  s.object_region.resize(s.objects.size(), kNoRegion);
+  for (std::size_t i = 0; i < s.objects.size(); ++i) s.object_motion[i].z_m = s.objects[i].z_low_m;
+  w.index_movables();
+  if (!bad()) {
+    w.keeper.build(s, w.tick_s());
+    assign_regions(scenario, placements, w.keeper, s, problems);
+  }
 
   if (scenario.floor.source == "image") {
     const hal::Status loaded =
@@ -539,6 +674,15 @@ std::uint64_t World::state_hash() const noexcept {
     for (const auto* quantity : {&b.x_m, &b.y_m, &b.cos_h, &b.sin_h, &b.left_m, &b.right_m})
       hash = mix(hash, bits_of((*quantity)[row]));
     hash = mix(hash, block.halted[e.slot]);
+    if (!b.motion.empty()) {
+      hash = mix(hash, b.region[row]);
+      hash = mix_motion(hash, b.motion[row]);
+    }
+    if (!b.flight.empty()) {
+      const FlightCommand& f = b.flight[row];
+      hash = mix(hash, static_cast<std::uint64_t>(f.mode));
+      for (const double value : {f.target[0], f.target[1], f.target[2], f.yaw}) hash = mix(hash, bits_of(value));
+    }
     // Every port as the controller saw and left it, but the padding between fields.
     for (std::size_t i = 0; i < group.ports.size(); ++i) {
       const hal::PortType& type = *group.ports[i];
@@ -548,6 +692,20 @@ std::uint64_t World::state_hash() const noexcept {
           hash = mix(hash, bits_of(hal::get_value(port, field, k)));
       }
     }
+  }
+  for (std::size_t i = 0; i < s.objects.size(); ++i) {
+    const Object& o = s.objects[i];
+    if (!o.movable || !o.alive) continue;
+    hash = mix(mix(hash, i), s.object_region[i]);
+    for (const double value : {o.x_m, o.y_m, o.cos_h, o.sin_h, o.z_low_m}) hash = mix(hash, bits_of(value));
+    hash = mix_motion(hash, s.object_motion[i]);
+  }
+  for (const Joint& joint : s.joints) {
+    if (!joint.alive) continue;
+    hash = mix(mix(hash, joint.a.value), joint.b.value);
+    for (const double value :
+         {joint.ax_m, joint.ay_m, joint.az_m, joint.bx_m, joint.by_m, joint.bz_m, joint.heading_rad})
+      hash = mix(hash, bits_of(value));
   }
   return hash;
 }

@@ -25,6 +25,7 @@ void Bodies::resize(std::size_t rows) {
   flags.resize(rows, 0);
   entity.resize(rows, 0xFFFFFFFFU);
   region.resize(rows, 0);
+  if (has_motion) motion.resize(rows);
 }
 
 AlignedBytes::AlignedBytes(std::size_t size, std::size_t align)
@@ -88,6 +89,8 @@ void Space::set_pose(RobotId robot, const Pose& pose) noexcept {
   b.y_m[row] = pose.y_m;
   b.cos_h[row] = pose.cos_h;
   b.sin_h[row] = pose.sin_h;
+  b.flags[row] |= kMoved;
+  stores_->bodies_changed = true;
 }
 
 void Space::remove_robot(RobotId robot) noexcept {

@@ -67,7 +67,8 @@ struct Bodies {
   std::vector<std::uint8_t> flags;    ///< BodyFlag
   std::vector<std::uint32_t> entity;  ///< index of the robot's id
   std::vector<std::uint16_t> region;  ///< index into SpaceStores::regions
-  std::vector<Motion> motion;         ///< empty while kinematics2d alone moves bodies
+  bool has_motion = false;            ///< an engine other than kinematics2d takes part
+  std::vector<Motion> motion;         ///< empty without
   std::vector<FlightCommand> flight;  ///< empty while no robot flies
 
   std::size_t size() const noexcept { return x_m.size(); }

@@ -58,6 +58,41 @@ int sub_steps(const hal::DataSheet& sheet, double tick_s) noexcept {
   return std::max(1, static_cast<int>(std::ceil(std::max(turn, hop))));
 }
 
+/// Whether this engine moves the bodies of a region.
+bool mine(const SpaceStores& stores, std::uint16_t region) noexcept {
+  return region != kNoRegion && !stores.regions[region].listed;
+}
+
+/// How far a disc at (x, y) must go to be clear of its region's walls.
+std::pair<double, double> out_of_walls(const Region& region, double x, double y, double radius_m) noexcept {
+  double px = 0.0;
+  double py = 0.0;
+  for (std::size_t i = 0; i < region.sides.size(); ++i) {
+    const RegionSide& a = region.sides[i];
+    if (!a.wall) continue;
+    const RegionSide& b = region.sides[(i + 1) % region.sides.size()];
+    const double length = std::hypot(b.x_m - a.x_m, b.y_m - a.y_m);
+    const double inward_x = -(b.y_m - a.y_m) / length;
+    const double inward_y = (b.x_m - a.x_m) / length;
+    double nx = 0.0;
+    double ny = 0.0;
+    const double d = distance_to_segment(x + px, y + py, a.x_m, a.y_m, b.x_m, b.y_m, nx, ny);
+    if (d >= radius_m) continue;
+    const double along_x = x + px - nx;
+    const double along_y = y + py - ny;
+    const double inside = along_x * inward_x + along_y * inward_y;
+    const bool at_end = std::fabs(std::fabs(inside) - d) > 1e-9 * radius_m;
+    if (at_end && d > 0.0) {  // round the wall's end
+      px += along_x / d * (radius_m - d);
+      py += along_y / d * (radius_m - d);
+    } else {
+      px += inward_x * (radius_m - inside);
+      py += inward_y * (radius_m - inside);
+    }
+  }
+  return {px, py};
+}
+
 void raise_to(std::atomic<double>& largest, double value) noexcept {
   double seen = largest.load(std::memory_order_relaxed);
   while (value > seen && !largest.compare_exchange_weak(seen, value, std::memory_order_relaxed)) {
@@ -68,13 +103,22 @@ void raise_to(std::atomic<double>& largest, double value) noexcept {
 
 void Kinematics2d::advance(const PhysicsContext& context) {
   SpaceStores& stores = context.stores;
+  const bool all_mine =
+      std::none_of(stores.regions.begin(), stores.regions.end(), [](const Region& r) { return r.listed; });
   context.pool.run(stores.blocks.size(), 4, [&](std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) {
       const RobotBlock& block = stores.blocks[i];
       const hal::DataSheet& sheet = *stores.groups[block.group].sheet;
       const int steps = sub_steps(sheet, context.tick_s);
-      for (int step = 0; step < steps; ++step) {
-        roll(stores.bodies, block.first_row, block.first_row + block.used, sheet.wheel_base_m, context.tick_s / steps);
+      const std::size_t end = block.first_row + block.used;
+      std::size_t row = block.first_row;
+      while (row < end) {  // runs of rows that are this engine's: with one engine, all of them
+        std::size_t next = all_mine ? end : row;
+        while (!all_mine && next < end && mine(stores, stores.bodies.region[next])) ++next;
+        for (int step = 0; step < steps && next > row; ++step)
+          roll(stores.bodies, row, next, sheet.wheel_base_m, context.tick_s / steps);
+        row = next;
+        while (row < end && !mine(stores, stores.bodies.region[row])) ++row;
       }
     }
   });
@@ -89,6 +133,11 @@ void Kinematics2d::settle(const PhysicsContext& context) {
     active_.resize(n);
   }
   IndexEntry* entries = index.entries();
+
+  bool walls = false;
+  for (const Region& region : stores.regions) {
+    for (const RegionSide& side : region.sides) walls = walls || (side.wall && !region.listed);
+  }
 
   // Where entry i would be pushed to by what it overlaps; also finds out who is near anything at all.
   const auto resolve = [&](std::size_t i, bool first_pass, double largest_radius) noexcept {
@@ -124,6 +173,13 @@ void Kinematics2d::settle(const PhysicsContext& context) {
       px -= nx * gap;
       py -= ny * gap;
     });
+    if (walls && stores.bodies.region[e.row()] != kNoRegion) {
+      const std::uint16_t region = stores.bodies.region[e.row()];
+      const auto [wx, wy] = out_of_walls(stores.regions[region], e.x_m + px, e.y_m + py, r_i);
+      px += wx;
+      py += wy;
+      near = true;
+    }
     if (first_pass) active_[i] = near ? 1 : 0;
     push_[i] = {px, py};
   };

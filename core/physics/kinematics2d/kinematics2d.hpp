@@ -8,8 +8,9 @@
 namespace tandem::core {
 
 /// Differential-drive kinematics [Siegwart et al. 2011, ch. 3], exact for constant wheel speeds over a tick. Contacts
-/// are resolved by moving overlapping discs apart by half the overlap each, and out of walls wholly: a few passes a
-/// tick, each computed from the positions of the one before, so that neither order nor threads matter.
+/// are resolved by moving overlapping discs apart by half the overlap each, and out of walls, objects and the bodies of
+/// other engines wholly: a few passes a tick, each computed from the positions of the one before, so that neither
+/// order nor threads matter. All its regions are worked on as one: a split changes nothing.
 class Kinematics2d final : public Engine {
  public:
   struct Params {

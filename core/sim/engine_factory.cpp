@@ -1,0 +1,367 @@
+#include "core/sim/engine_factory.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+
+#include "core/physics/kinematics2d/kinematics2d.hpp"
+#include "core/physics/solver.hpp"
+
+namespace tandem::core {
+namespace {
+
+constexpr double kRobotsPerPart = 600.0;  // where a solver's data still fit the second-level cache
+constexpr double kNarrowestPart_m = 4.0;  // narrower ones spend their time on bodies mirrored across borders
+constexpr std::size_t kMostPartsASide = 8;
+
+const std::vector<const SolverType*>& solver_types() {
+  static const std::vector<const SolverType*> types = {};
+  return types;
+}
+
+const SolverType* solver_type(std::string_view kind) {
+  for (const SolverType* type : solver_types()) {
+    if (type->kind == kind) return type;
+  }
+  return nullptr;
+}
+
+constexpr std::string_view kKinematics2d = "kinematics2d";
+
+/// Columns and lines that an arena is split into.
+struct Split {
+  std::size_t columns = 1, lines = 1;
+};
+
+/// From the load alone, so that results are the same on any machine.
+Split split_for(std::size_t robots, double width_m, double depth_m) {
+  const auto along = [&](double length_m) {
+    const double wanted = std::ceil(std::sqrt(static_cast<double>(robots) / kRobotsPerPart));
+    const double room = std::max(1.0, std::floor(length_m / kNarrowestPart_m));
+    return static_cast<std::size_t>(std::clamp(std::min(wanted, room), 1.0, static_cast<double>(kMostPartsASide)));
+  };
+  return {along(width_m), along(depth_m)};
+}
+
+Split split_of(const EngineConfig& config, std::size_t robots, const SpaceStores& stores) {
+  if (config.regions.empty() || config.regions == "auto")
+    return split_for(robots, stores.max_x_m - stores.min_x_m, stores.max_y_m - stores.min_y_m);
+  const std::size_t x = config.regions.find('x');
+  return {std::stoul(config.regions.substr(0, x)), std::stoul(config.regions.substr(x + 1))};
+}
+
+double cross(const RegionSide& a, const RegionSide& b, const RegionSide& c) {
+  return (b.x_m - a.x_m) * (c.y_m - a.y_m) - (b.y_m - a.y_m) * (c.x_m - a.x_m);
+}
+
+/// A point inside an outline: near the middle of its first corner that is no dent.
+std::pair<double, double> point_within(const Region& region) {
+  const std::size_t n = region.sides.size();
+  for (std::size_t i = 0; i < n; ++i) {
+    const RegionSide& a = region.sides[i];
+    const RegionSide& b = region.sides[(i + 1) % n];
+    const RegionSide& c = region.sides[(i + 2) % n];
+    if (cross(a, b, c) <= 0.0) continue;
+    // Towards the corner b until nothing of the outline lies between.
+    for (double t = 1.0; t > 1e-6; t *= 0.5) {
+      const double x = b.x_m + t * ((a.x_m + b.x_m + c.x_m) / 3 - b.x_m);
+      const double y = b.y_m + t * ((a.y_m + b.y_m + c.y_m) / 3 - b.y_m);
+      if (region.contains(x, y)) return {x, y};
+    }
+  }
+  return {region.sides[0].x_m, region.sides[0].y_m};
+}
+
+double to_outline(const Region& region, double x, double y) {
+  double nearest = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < region.sides.size(); ++i) {
+    const RegionSide& a = region.sides[i];
+    const RegionSide& b = region.sides[(i + 1) % region.sides.size()];
+    double nx = 0.0;
+    double ny = 0.0;
+    nearest = std::min(nearest, distance_to_segment(x, y, a.x_m, a.y_m, b.x_m, b.y_m, nx, ny));
+  }
+  return nearest;
+}
+
+/// Where two outlines share more than their border, if they do.
+std::optional<std::pair<double, double>> overlap(const Region& one, const Region& other) {
+  constexpr double kOnBorder_m = 1e-9;
+  if (one.top_m <= other.bottom_m || other.top_m <= one.bottom_m) return std::nullopt;
+  if (one.everywhere()) return other.everywhere() ? std::pair{0.0, 0.0} : point_within(other);
+  if (other.everywhere()) return point_within(one);
+  for (const auto& [a, b] : {std::pair{&one, &other}, std::pair{&other, &one}}) {
+    const auto [x, y] = point_within(*a);
+    if (b->contains(x, y)) return std::pair{x, y};
+    for (const RegionSide& corner : a->sides) {
+      if (b->contains(corner.x_m, corner.y_m) && to_outline(*b, corner.x_m, corner.y_m) > kOnBorder_m)
+        return std::pair{corner.x_m, corner.y_m};
+    }
+  }
+  for (std::size_t i = 0; i < one.sides.size(); ++i) {
+    const RegionSide& a = one.sides[i];
+    const RegionSide& b = one.sides[(i + 1) % one.sides.size()];
+    for (std::size_t k = 0; k < other.sides.size(); ++k) {
+      const RegionSide& c = other.sides[k];
+      const RegionSide& d = other.sides[(k + 1) % other.sides.size()];
+      const double c_side = cross(a, b, c);
+      const double d_side = cross(a, b, d);
+      if (c_side * d_side < 0.0 && cross(c, d, a) * cross(c, d, b) < 0.0) {
+        const double t = c_side / (c_side - d_side);
+        return std::pair{c.x_m + t * (d.x_m - c.x_m), c.y_m + t * (d.y_m - c.y_m)};
+      }
+    }
+  }
+  return std::nullopt;
+}
+
+class Maker {
+ public:
+  Maker(const Scenario& scenario, std::size_t robots, SpaceStores& stores, Problems& problems)
+      : scenario_(scenario), robots_(robots), stores_(stores), problems_(problems) {}
+
+  std::vector<std::unique_ptr<Engine>> make() {
+    const std::size_t before = problems_.size();
+    stores_.regions.clear();
+    EngineConfig usual;
+    usual.kind = std::string(kKinematics2d);
+    usual.id = usual.kind;
+    if (scenario_.engines.empty()) {
+      add(usual, 0);
+    } else {
+      for (std::size_t i = 0; i < scenario_.engines.size(); ++i) add(scenario_.engines[i], i);
+    }
+    if (stores_.regions.size() >= kNoRegion) problem(scenario_.engines.front().line, "more than 65534 regions");
+    if (!has_errors(problems_, before)) check_overlaps();
+    if (!has_errors(problems_, before)) open_gates();
+    if (!has_errors(problems_, before)) make_solvers();
+    return std::move(engines_);
+  }
+
+ private:
+  void problem(int line, std::string message) {
+    problems_.push_back({scenario_.file, line, std::move(message), false});
+  }
+
+  void add(const EngineConfig& config, std::size_t number) {
+    if (config.kind == kKinematics2d) {
+      add_kinematics(config, number);
+      return;
+    }
+    const SolverType* type = solver_type(config.kind);
+    if (type == nullptr) {
+      std::string known;
+      for (const std::string& kind : engine_kinds()) known += (known.empty() ? "" : ", ") + kind;
+      problem(config.line, "unknown physics engine '" + config.kind + "'; known: " + known);
+      return;
+    }
+    Region region;
+    region.air = type->air;
+    region.plane = type->plane;
+    region.forces = type->forces;
+    region.listed = true;
+    params_[number] = type->read(config.options, problems_);
+    add_regions(config, number, region);
+  }
+
+  void add_kinematics(const EngineConfig& config, std::size_t number) {
+    Kinematics2d::Params params;
+    ElementReader reader(config.options, problems_, {"id", "regions"});
+    params.describe(reader);
+    reader.finish();
+    if (!kinematics_) {
+      kinematics_ = params;
+      engines_.push_back(std::make_unique<Kinematics2d>(params));
+    } else if (kinematics_->iterations != params.iterations) {
+      problem(config.line, "all <kinematics2d> work as one and need the same iterations: " +
+                               std::to_string(kinematics_->iterations) + " before, " +
+                               std::to_string(params.iterations) + " here");
+    }
+    add_regions(config, number, Region{}, false);
+  }
+
+  /// `splits`: whether a split of the arena makes any difference to the engine.
+  void add_regions(const EngineConfig& config, std::size_t number, Region region, bool splits = true) {
+    region.engine = number;
+    region.name = config.id;
+    region.line = config.line;
+    if (config.bottom_m) region.bottom_m = *config.bottom_m;
+    if (config.top_m) region.top_m = *config.top_m;
+    if (!config.sides.empty()) {
+      if (!config.regions.empty()) {
+        problem(config.line, "<" + config.kind + " id=\"" + config.id + "\">: regions=\"" + config.regions +
+                                 "\" splits the whole arena, so it cannot stand beside <sides>; give several engines");
+        return;
+      }
+      for (const BoundarySide& side : config.sides) region.sides.push_back({side.x_m, side.y_m, false, kNoRegion});
+      stores_.regions.push_back(std::move(region));
+      return;
+    }
+    const Split split = splits ? split_of(config, robots_, stores_) : Split{};
+    if (split.columns * split.lines == 1) {
+      stores_.regions.push_back(std::move(region));
+      return;
+    }
+    const double width = stores_.max_x_m - stores_.min_x_m;
+    const double depth = stores_.max_y_m - stores_.min_y_m;
+    const auto x_at = [&](std::size_t column) {
+      return column == split.columns
+                 ? stores_.max_x_m
+                 : stores_.min_x_m + width * static_cast<double>(column) / static_cast<double>(split.columns);
+    };
+    const auto y_at = [&](std::size_t line) {
+      return line == split.lines
+                 ? stores_.max_y_m
+                 : stores_.min_y_m + depth * static_cast<double>(line) / static_cast<double>(split.lines);
+    };
+    for (std::size_t line = 0; line < split.lines; ++line) {
+      for (std::size_t column = 0; column < split.columns; ++column) {
+        Region part = region;
+        part.name += "[" + std::to_string(column) + "," + std::to_string(line) + "]";
+        // Parts at the arena's edge reach beyond it: what lies there has left the arena, not its region.
+        const double west = column == 0 ? x_at(0) - width : x_at(column);
+        const double east = column + 1 == split.columns ? x_at(split.columns) + width : x_at(column + 1);
+        const double south = line == 0 ? y_at(0) - depth : y_at(line);
+        const double north = line + 1 == split.lines ? y_at(split.lines) + depth : y_at(line + 1);
+        part.sides = {{west, south}, {east, south}, {east, north}, {west, north}};
+        stores_.regions.push_back(std::move(part));
+      }
+    }
+  }
+
+  void check_overlaps() {
+    for (Region& region : stores_.regions) region.close();
+    for (std::size_t i = 0; i < stores_.regions.size(); ++i) {
+      const Region& one = stores_.regions[i];
+      for (std::size_t k = 0; k < i; ++k) {
+        const Region& other = stores_.regions[k];
+        if (one.engine == other.engine || one.air != other.air) continue;
+        const auto where = overlap(one, other);
+        if (!where) continue;
+        problem(one.line, "the region of engine '" + one.name + "' overlaps that of engine '" + other.name +
+                              "' (line " + std::to_string(other.line) + "), as at (" +
+                              hal::format_number(where->first) + ", " + hal::format_number(where->second) +
+                              "); every place belongs to one engine: give each its <boundaries>");
+        return;
+      }
+    }
+  }
+
+  std::uint16_t region_of_engine(const std::string& id) const {
+    std::uint16_t found = kNoRegion;
+    for (std::size_t i = 0; i < stores_.regions.size(); ++i) {
+      const Region& region = stores_.regions[i];
+      if (scenario_.engines[region.engine].id != id) continue;
+      if (found != kNoRegion) return kNoRegion;  // several parts: whichever lies behind
+      found = static_cast<std::uint16_t>(i);
+    }
+    return found;
+  }
+
+  /// Sides of a file that names gates are walls but for these. In a file that names none, as ARGoS 3's do not, sides
+  /// are open where another engine's region lies behind.
+  void open_gates() {
+    bool named = false;
+    for (const EngineConfig& config : scenario_.engines) {
+      for (const BoundarySide& side : config.sides) named = named || !side.gate.empty();
+    }
+    for (Region& region : stores_.regions) {
+      if (region.everywhere() || scenario_.engines.empty()) continue;
+      const EngineConfig& config = scenario_.engines[region.engine];
+      if (config.sides.empty()) continue;  // a part of a split: open all around
+      for (std::size_t i = 0; i < region.sides.size(); ++i) {
+        RegionSide& side = region.sides[i];
+        if (!named) {
+          side.wall = !something_behind(region, i);
+          continue;
+        }
+        const std::string& gate = gate_of(config, side, region.sides[(i + 1) % region.sides.size()]);
+        side.wall = gate.empty();
+        if (!gate.empty()) side.gate = region_of_engine(gate);
+      }
+    }
+  }
+
+  /// The gate of the file's side between these two corners, whichever way round the file goes.
+  static const std::string& gate_of(const EngineConfig& config, const RegionSide& a, const RegionSide& b) {
+    static const std::string kNone;
+    const auto at = [](const BoundarySide& s, const RegionSide& r) { return s.x_m == r.x_m && s.y_m == r.y_m; };
+    for (std::size_t i = 0; i < config.sides.size(); ++i) {
+      const BoundarySide& from = config.sides[i];
+      const BoundarySide& to = config.sides[(i + 1) % config.sides.size()];
+      if ((at(from, a) && at(to, b)) || (at(from, b) && at(to, a))) return from.gate;
+    }
+    return kNone;
+  }
+
+  bool something_behind(const Region& region, std::size_t i) const {
+    constexpr int kSamples = 64;
+    constexpr double kBehind_m = 1e-3;
+    const RegionSide& a = region.sides[i];
+    const RegionSide& b = region.sides[(i + 1) % region.sides.size()];
+    const double dx = b.x_m - a.x_m;
+    const double dy = b.y_m - a.y_m;
+    const double length = std::hypot(dx, dy);
+    for (int k = 0; k < kSamples; ++k) {
+      const double t = (k + 0.5) / kSamples;
+      const double x = a.x_m + t * dx + dy / length * kBehind_m;  // to the right of the side: outside
+      const double y = a.y_m + t * dy - dx / length * kBehind_m;
+      for (const Region& other : stores_.regions) {
+        if (&other != &region && other.air == region.air && other.contains(x, y)) return true;
+      }
+    }
+    return false;
+  }
+
+  void make_solvers() {
+    const double tick_s = 1.0 / static_cast<double>(scenario_.ticks_per_second);
+    for (const SolverType* type : solver_types()) {
+      std::unique_ptr<SolverEngine> engine;
+      for (std::size_t i = 0; i < stores_.regions.size(); ++i) {
+        const Region& region = stores_.regions[i];
+        if (scenario_.engines.empty() || scenario_.engines[region.engine].kind != type->kind) continue;
+        if (engine == nullptr) engine = std::make_unique<SolverEngine>(type->kind);
+        engine->add(i, type->make(params_[region.engine], stores_, region, tick_s));
+      }
+      if (engine != nullptr) engines_.push_back(std::move(engine));
+    }
+  }
+
+  const Scenario& scenario_;
+  std::size_t robots_;
+  SpaceStores& stores_;
+  Problems& problems_;
+  std::optional<Kinematics2d::Params> kinematics_;
+  std::map<std::size_t, std::shared_ptr<const void>> params_;  // of solvers, by number of the engine
+  std::vector<std::unique_ptr<Engine>> engines_;
+};
+
+}  // namespace
+
+std::vector<std::string> engine_kinds() {
+  std::vector<std::string> kinds{std::string(kKinematics2d)};
+  for (const SolverType* type : solver_types()) kinds.emplace_back(type->kind);
+  return kinds;
+}
+
+EngineTraits engine_traits(std::string_view kind) {
+  const SolverType* type = solver_type(kind);
+  return type == nullptr ? EngineTraits{} : EngineTraits{type->plane, type->forces};
+}
+
+void describe_engine(std::string_view kind, hal::ParamVisitor& visitor) {
+  if (const SolverType* type = solver_type(kind)) {
+    type->describe(visitor);
+  } else {
+    Kinematics2d::Params params;
+    params.describe(visitor);
+  }
+}
+
+std::vector<std::unique_ptr<Engine>> make_engines(const Scenario& scenario, std::size_t robots, SpaceStores& stores,
+                                                  Problems& problems) {
+  return Maker(scenario, robots, stores, problems).make();
+}
+
+}  // namespace tandem::core
