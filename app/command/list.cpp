@@ -8,6 +8,7 @@
 #include "app/command/command.hpp"
 #include "core/device/device.hpp"
 #include "core/loop/hook.hpp"
+#include "core/sim/engine_factory.hpp"
 #include "hal/device/body_sensors.hpp"
 #include "hal/device/leds.hpp"
 #include "hal/device/range_and_bearing.hpp"
@@ -140,6 +141,19 @@ bool describe_plugin(const std::string& name) {
   return found;
 }
 
+bool describe_physics_engine(const std::string& name) {
+  const auto kinds = core::engine_kinds();
+  if (std::find(kinds.begin(), kinds.end(), name) == kinds.end()) return false;
+  const core::EngineTraits traits = core::engine_traits(name);
+  fmt::print("<{}> in <physics_engines>: {}{}{}\n", name, traits.summary,
+             traits.forces ? " Objects may be movable." : " Objects do not move.",
+             traits.plane ? "" : " Robots may fly.");
+  core::ManualWriter manual;
+  core::describe_engine(name, manual);
+  fmt::print("{}", manual.text());
+  return true;
+}
+
 bool describe_element(const std::string& name) {
   bool found = false;
   for (const core::ElementManual& m : core::element_manuals()) {
@@ -174,13 +188,15 @@ int list(const std::string& kind) {
 }
 
 int describe(const std::string& name) {
+  const bool engine = describe_physics_engine(name);
   const bool element = describe_element(name);
   const bool device = describe_device(name);
   const bool plugin = describe_plugin(name);
-  if (element || device || plugin) return kDone;
+  if (engine || element || device || plugin) return kDone;
   std::vector<std::string> all;
   for (const core::ElementManual& m : core::element_manuals()) all.emplace_back(m.name);
   for (const core::DeviceType& t : core::device_types()) all.emplace_back(t.device);
+  for (const std::string& kind : core::engine_kinds()) all.push_back(kind);
   const auto loader = open_all();
   for (const auto& e : loader->entries()) all.push_back(e.name);
   const std::string near = core::closest(name, all);

@@ -373,7 +373,8 @@ struct Engine {
   void describe(ParamVisitor& v) {
     v.text("id", id, "Name, for gates.");
     v.text("regions", regions,
-           "How the arena is split, \"4x4\" or \"auto\"; kinematics2d needs no split, any is the same to it.");
+           "How the arena is split, \"4x4\" (columns x lines) or \"auto\": from the number of robots. Left out: auto. "
+           "kinematics2d needs no split, any is the same to it.");
   }
 };
 
@@ -407,7 +408,9 @@ struct Vertex {
   std::string point, gate;
   void describe(ParamVisitor& v) {
     v.text("point", point, "\"x,y\"; bare numbers are in m.");
-    v.text("gate", gate, "Id of the engine behind this side; left out: a wall.");
+    v.text("gate", gate,
+           "Id of the engine behind this side; left out: a wall. In a file that names no gate at all, "
+           "sides are open where another engine's region lies behind.");
   }
 };
 

@@ -170,6 +170,10 @@ class Maker {
     ElementReader reader(config.options, problems_, {"id", "regions"});
     params.describe(reader);
     reader.finish();
+    for (const Element& child : config.options.children) {
+      if (child.name == "boundaries") continue;
+      problem(child.line, "<kinematics2d> may not hold <" + child.name + ">; it may hold: boundaries");
+    }
     if (!kinematics_) {
       kinematics_ = params;
       engines_.push_back(std::make_unique<Kinematics2d>(params));
@@ -347,7 +351,8 @@ std::vector<std::string> engine_kinds() {
 
 EngineTraits engine_traits(std::string_view kind) {
   const SolverType* type = solver_type(kind);
-  return type == nullptr ? EngineTraits{} : EngineTraits{type->plane, type->forces};
+  return type == nullptr ? EngineTraits{"Wheels roll without slip, discs that overlap are pushed apart.", true, false}
+                         : EngineTraits{type->summary, type->plane, type->forces};
 }
 
 void describe_engine(std::string_view kind, hal::ParamVisitor& visitor) {

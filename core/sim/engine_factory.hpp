@@ -15,6 +15,7 @@ std::vector<std::string> engine_kinds();
 
 /// What a kind can do, for tests and messages.
 struct EngineTraits {
+  std::string_view summary;
   bool plane = true;    ///< bodies stay on the ground
   bool forces = false;  ///< knows masses: movable objects, pushing, joints
 };

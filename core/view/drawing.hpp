@@ -43,10 +43,17 @@ struct Drawing {
     double x_m = 0.0, y_m = 0.0;
     double heading_rad = 0.0;
     double half_x_m = 0.0, half_y_m = 0.0;
+    bool movable = false;
   };
   struct Cylinder {
     double x_m = 0.0, y_m = 0.0;
     double radius_m = 0.0;
+    bool movable = false;
+  };
+  /// One side of an engine's region.
+  struct Border {
+    double ax_m = 0.0, ay_m = 0.0, bx_m = 0.0, by_m = 0.0;
+    bool wall = false;  ///< else a gate
   };
   struct Light {
     double x_m = 0.0, y_m = 0.0;
@@ -57,6 +64,7 @@ struct Drawing {
   double min_x_m = -1.0, min_y_m = -1.0, max_x_m = 1.0, max_y_m = 1.0;  ///< the arena
   std::vector<Box> boxes;
   std::vector<Cylinder> cylinders;
+  std::vector<Border> borders;
   std::vector<Light> lights;
   std::vector<Kind> kinds;
   std::vector<Robot> robots;

@@ -64,11 +64,19 @@ Drawing drawing_of(const Space& space, const PictureOptions& options) {
   drawing.min_y_m = space.arena_center_y_m() - 0.5 * space.arena_size_y_m();
   drawing.max_y_m = space.arena_center_y_m() + 0.5 * space.arena_size_y_m();
   for (const Object& s : space.objects()) {
+    if (!s.alive) continue;
     if (s.kind == Object::Kind::Cylinder) {
-      drawing.cylinders.push_back({s.x_m, s.y_m, s.radius_m});
+      drawing.cylinders.push_back({s.x_m, s.y_m, s.radius_m, s.movable});
     } else {
       const Pose pose{s.x_m, s.y_m, 0.0, s.cos_h, s.sin_h};
-      drawing.boxes.push_back({s.x_m, s.y_m, pose.heading_rad(), s.half_x_m, s.half_y_m});
+      drawing.boxes.push_back({s.x_m, s.y_m, pose.heading_rad(), s.half_x_m, s.half_y_m, s.movable});
+    }
+  }
+  for (const Region& region : space.stores().regions) {
+    for (std::size_t i = 0; i < region.sides.size(); ++i) {
+      const RegionSide& a = region.sides[i];
+      const RegionSide& b = region.sides[(i + 1) % region.sides.size()];
+      drawing.borders.push_back({a.x_m, a.y_m, b.x_m, b.y_m, a.wall});
     }
   }
   for (const LightSource& light : space.lights()) drawing.lights.push_back({light.x_m, light.y_m, light.color});

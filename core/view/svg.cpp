@@ -34,6 +34,9 @@ constexpr std::string_view kRealColor = "#e8590c";
 constexpr std::string_view kTroubleColor = "#c92a2a";
 constexpr std::string_view kWallColor = "#59626e";
 constexpr std::string_view kWallEdge = "#3f4751";
+constexpr std::string_view kMovableColor = "#d8b384";
+constexpr std::string_view kMovableEdge = "#7d5a2b";
+constexpr std::string_view kBorderColor = "#3b5bdb";
 
 /// Text of an SVG document, appended to piece by piece. Numbers get at most four decimals.
 class Svg {
@@ -129,6 +132,7 @@ class Page {
     svg_ << "<g clip-path=\"url(#arena)\">\n";
     arena();
     floor();
+    borders();
     lights();
     objects();
     robots();
@@ -229,16 +233,41 @@ class Page {
     svg_ << "</g>\n";
   }
 
+  /// Walls of regions as lines, gates dashed.
+  void borders() {
+    if (d_.borders.empty()) return;
+    svg_ << "<g class=\"borders\" stroke=\"" << kBorderColor << "\" stroke-width=\"" << px(1.5) << "\">\n";
+    for (const Drawing::Border& b : d_.borders) {
+      svg_ << "<line x1=\"" << b.ax_m << "\" y1=\"" << b.ay_m << "\" x2=\"" << b.bx_m << "\" y2=\"" << b.by_m << "\"";
+      if (!b.wall) svg_ << " stroke-dasharray=\"" << px(6.0) << " " << px(5.0) << "\" stroke-opacity=\"0.6\"";
+      svg_ << "/>\n";
+    }
+    svg_ << "</g>\n";
+  }
+
   void objects() {
-    if (d_.boxes.empty() && d_.cylinders.empty()) return;
-    svg_ << "<g class=\"objects\" fill=\"" << kWallColor << "\" stroke=\"" << kWallEdge << "\" stroke-width=\""
-         << px(1.0) << "\">\n";
+    objects(false, "objects", kWallColor, kWallEdge);
+    objects(true, "movables", kMovableColor, kMovableEdge);
+  }
+
+  bool any_objects(bool movable) const {
+    const auto is = [movable](const auto& object) { return object.movable == movable; };
+    return std::any_of(d_.boxes.begin(), d_.boxes.end(), is) ||
+           std::any_of(d_.cylinders.begin(), d_.cylinders.end(), is);
+  }
+
+  void objects(bool movable, std::string_view name, std::string_view fill, std::string_view edge) {
+    if (!any_objects(movable)) return;
+    svg_ << "<g class=\"" << name << "\" fill=\"" << fill << "\" stroke=\"" << edge << "\" stroke-width=\"" << px(1.0)
+         << "\">\n";
     for (const Drawing::Box& b : d_.boxes) {
+      if (b.movable != movable) continue;
       svg_ << "<rect x=\"" << -b.half_x_m << "\" y=\"" << -b.half_y_m << "\" width=\"" << 2.0 * b.half_x_m
            << "\" height=\"" << 2.0 * b.half_y_m << "\" transform=\"translate(" << b.x_m << " " << b.y_m << ") rotate("
            << degrees(b.heading_rad) << ")\"/>\n";
     }
     for (const Drawing::Cylinder& c : d_.cylinders) {
+      if (c.movable != movable) continue;
       svg_ << "<circle cx=\"" << c.x_m << "\" cy=\"" << c.y_m << "\" r=\"" << c.radius_m << "\"/>\n";
     }
     svg_ << "</g>\n";
@@ -383,10 +412,14 @@ class Page {
       add_entry("<circle r=\"5\" fill=\"" + hex(d_.lights.front().color) + "\" stroke=\"#7a5c00\"/>",
                 grouped(d_.lights.size()) + " × light");
     }
-    if (!d_.boxes.empty() || !d_.cylinders.empty()) {
-      add_entry("<rect x=\"-8\" y=\"-6\" width=\"16\" height=\"12\" fill=\"" + std::string(kWallColor) + "\"/>",
-                "obstacle");
-    }
+    const std::string block = "<rect x=\"-8\" y=\"-6\" width=\"16\" height=\"12\" fill=\"";
+    if (any_objects(false)) add_entry(block + std::string(kWallColor) + "\"/>", "obstacle");
+    if (any_objects(true)) add_entry(block + std::string(kMovableColor) + "\"/>", "movable");
+    const auto is_wall = [](const Drawing::Border& b) { return b.wall; };
+    const std::string line = "<line x1=\"-9\" x2=\"9\" stroke=\"" + std::string(kBorderColor) + "\" stroke-width=\"2\"";
+    if (std::any_of(d_.borders.begin(), d_.borders.end(), is_wall)) add_entry(line + "/>", "wall of a region");
+    if (!std::all_of(d_.borders.begin(), d_.borders.end(), is_wall))
+      add_entry(line + " stroke-dasharray=\"5 4\"/>", "gate of a region");
   }
   static std::string dot_symbol(std::size_t kind) {
     return "<circle r=\"4\" fill=\"" + std::string(body_colors(kind).edge) + "\"/>";
