@@ -1,24 +1,40 @@
 #include "core/physics/solver.hpp"
 
+#include <algorithm>
 #include <iterator>
 
 namespace tandem::core {
+namespace {
+
+constexpr std::size_t kFewBodies = 100;  // whose solving takes less than waking threads is worth
+
+}  // namespace
+
+template <class Work>
+void SolverEngine::each_busy_part(ThreadPool& pool, Work&& work) {
+  const std::size_t grain = bodies_ < kFewBodies ? std::max<std::size_t>(1, busy_.size()) : 1;
+  pool.run(busy_.size(), grain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) work(parts_[busy_[i]]);
+  });
+}
 
 void SolverEngine::load(const PhysicsContext& context) {
-  context.pool.run(parts_.size(), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const Part& part = parts_[i];
-      part.solver->load({context.stores, context.stores.regions[part.region], context.tick_s, context.tick});
-    }
+  busy_.clear();
+  bodies_ = 0;
+  for (std::size_t i = 0; i < parts_.size(); ++i) {
+    const Region& region = context.stores.regions[parts_[i].region];
+    if (region.owned.empty()) continue;
+    busy_.push_back(i);
+    bodies_ += region.owned.size();
+  }
+  each_busy_part(context.pool, [&](Part& part) {
+    part.solver->load({context.stores, context.stores.regions[part.region], context.tick_s, context.tick});
   });
 }
 
 void SolverEngine::advance(const PhysicsContext& context) {
-  context.pool.run(parts_.size(), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const Part& part = parts_[i];
-      part.solver->advance({context.stores, context.stores.regions[part.region], context.tick_s, context.tick});
-    }
+  each_busy_part(context.pool, [&](Part& part) {
+    part.solver->advance({context.stores, context.stores.regions[part.region], context.tick_s, context.tick});
   });
 }
 
