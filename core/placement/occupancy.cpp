@@ -42,6 +42,10 @@ bool boxes_overlap(const Obstacle& a, const Obstacle& b) {
 }  // namespace
 
 bool overlap(const Obstacle& a, const Obstacle& b) noexcept {
+  const bool on_ground = (a.is_robot && !a.flies && !b.is_robot) || (b.is_robot && !b.flies && !a.is_robot);
+  if (!on_ground && (a.z_high_m <= b.z_low_m || b.z_high_m <= a.z_low_m) && a.z_high_m > a.z_low_m &&
+      b.z_high_m > b.z_low_m)
+    return false;
   const double far = a.radius_m + b.radius_m;
   const double dx = a.x_m - b.x_m;
   const double dy = a.y_m - b.y_m;

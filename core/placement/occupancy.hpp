@@ -1,4 +1,4 @@
-// What already stands in the arena, seen from above: answers whether something new would overlap it.
+// What already stands in the arena: answers whether something new would overlap it.
 #pragma once
 #include <array>
 #include <cstddef>
@@ -14,14 +14,17 @@ struct Obstacle {
   bool is_box = false;
   double half_x_m = 0.0, half_y_m = 0.0;
   double cos_h = 1.0, sin_h = 0.0;
+  double z_low_m = 0.0, z_high_m = 0.0;
   bool is_robot = false;
+  bool flies = false;
   std::uint32_t item = 0;  ///< of Scenario::robots or objects
 };
 
 Obstacle disc_at(double x_m, double y_m, double radius_m) noexcept;
 Obstacle box_at(double x_m, double y_m, double size_x_m, double size_y_m, double yaw_rad) noexcept;
 
-/// Whether the two share area; touching is not overlapping.
+/// Whether the two share space; touching is not overlapping. Robots that do not fly are kept out of everything above
+/// and below objects: engines of the plane know no heights.
 bool overlap(const Obstacle& a, const Obstacle& b) noexcept;
 
 /// Obstacles by cell of grids of doubling cell size: each is listed in the finest grid that needs few cells for it, so

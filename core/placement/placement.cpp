@@ -19,6 +19,8 @@ double wrapped(double angle_rad) noexcept {
 Obstacle obstacle_of(const ObjectItem& item, std::uint32_t index, const Vec3& p, double yaw_rad) noexcept {
   Obstacle o = item.shape == ShapeKind::Cylinder ? disc_at(p[0], p[1], item.size[0])
                                                  : box_at(p[0], p[1], item.size[0], item.size[1], yaw_rad);
+  o.z_low_m = p[2];
+  o.z_high_m = p[2] + item.size[2];
   o.item = index;
   return o;
 }
@@ -57,11 +59,11 @@ Vec3 drawn(const Distribution& d, std::uint64_t seed, std::uint32_t key, Stream 
 
 class Placer {
  public:
-  Placer(const Scenario& scenario, std::uint64_t seed, RadiusOf radius_of, Problems& problems)
+  Placer(const Scenario& scenario, std::uint64_t seed, SizeOf size_of, Problems& problems)
       : scenario_(scenario),
         seed_(seed),
         problems_(problems),
-        radius_m_(radii(scenario, radius_of)),
+        size_(sizes(scenario, size_of)),
         occupancy_(cell_size()) {}
 
   Placements run() {
@@ -86,15 +88,15 @@ class Placer {
     const Obstacle* other = nullptr;  // null and not placed: outside the arena
   };
 
-  static std::vector<double> radii(const Scenario& scenario, RadiusOf radius_of) {
-    std::vector<double> out;
-    for (const RobotItem& r : scenario.robots) out.push_back(radius_of(r.kind));
+  static std::vector<BodySize> sizes(const Scenario& scenario, SizeOf size_of) {
+    std::vector<BodySize> out;
+    for (const RobotItem& r : scenario.robots) out.push_back(size_of(r.kind));
     return out;
   }
 
   double cell_size() const {
     double cell_m = 0.02;
-    for (const double radius : radius_m_) cell_m = std::max(cell_m, 2.0 * radius);
+    for (const BodySize& size : size_) cell_m = std::max(cell_m, 2.0 * size.radius_m);
     return cell_m;
   }
 
@@ -143,7 +145,7 @@ class Placer {
       if (!scenario_.lights[i].distribute) lights_.push_back({scenario_.lights[i].p_W, i, -1});
     }
     for (std::uint32_t i = 0; i < scenario_.robots.size(); ++i) {
-      if (!scenario_.robots[i].distribute && radius_m_[i] >= 0.0) place_fixed_robot(i, scenario_.robots[i]);
+      if (!scenario_.robots[i].distribute && size_[i].radius_m >= 0.0) place_fixed_robot(i, scenario_.robots[i]);
     }
   }
 
@@ -156,11 +158,19 @@ class Placer {
     objects_.push_back({item.placement.p_W, yaw, i, -1});
   }
 
+  Obstacle robot_at(const Vec3& p, std::uint32_t i) const {
+    Obstacle o = disc_at(p[0], p[1], size_[i].radius_m);
+    o.is_robot = true;
+    o.flies = size_[i].flies;
+    o.z_low_m = p[2];
+    o.z_high_m = p[2] + size_[i].height_m;
+    o.item = i;
+    return o;
+  }
+
   void place_fixed_robot(std::uint32_t i, const RobotItem& item) {
     const Vec3& p = item.placement.p_W;
-    Obstacle o = disc_at(p[0], p[1], radius_m_[i]);
-    o.is_robot = true;
-    o.item = i;
+    const Obstacle o = robot_at(p, i);
     if (!inside(p)) {
       problem(item.line, "robot '" + item.id + "' is at " + text_of(p) + ", outside the arena");
     } else if (const Obstacle* other = occupancy_.hit(o); other != nullptr) {
@@ -205,13 +215,10 @@ class Placer {
                      if (attempt.placed) objects_.push_back({p, yaw, i, number});
                      return attempt;
                    });
-      } else if (radius_m_[i] >= 0.0) {
+      } else if (size_[i].radius_m >= 0.0) {
         robots_by_item_[i].reserve(std::min(static_cast<std::size_t>(task.distribute->quantity), expected()));
         distribute(task, key, "robot", scenario_.robots[i].id, [&](std::int64_t number, const Vec3& p, double yaw) {
-          Obstacle o = disc_at(p[0], p[1], radius_m_[i]);
-          o.is_robot = true;
-          o.item = i;
-          const Attempt attempt = occupy(p, o);
+          const Attempt attempt = occupy(p, robot_at(p, i));
           if (attempt.placed) robots_by_item_[i].push_back({p[0], p[1], p[2], yaw, i, number});
           return attempt;
         });
@@ -270,7 +277,7 @@ class Placer {
   const Scenario& scenario_;
   std::uint64_t seed_;
   Problems& problems_;
-  std::vector<double> radius_m_;  // by item of Scenario::robots
+  std::vector<BodySize> size_;  // by item of Scenario::robots
   Occupancy occupancy_;
   std::vector<std::vector<PlacedRobot>> robots_by_item_;
   std::vector<PlacedObject> objects_;
@@ -279,8 +286,8 @@ class Placer {
 
 }  // namespace
 
-Placements place(const Scenario& scenario, std::uint64_t seed, RadiusOf radius_of, Problems& problems) {
-  return Placer(scenario, seed, radius_of, problems).run();
+Placements place(const Scenario& scenario, std::uint64_t seed, SizeOf size_of, Problems& problems) {
+  return Placer(scenario, seed, size_of, problems).run();
 }
 
 }  // namespace tandem::core

@@ -35,14 +35,19 @@ struct Placements {
   std::vector<PlacedLight> lights;
 };
 
-/// Radius of a kind of robot, for overlap; negative when the kind is unknown (reported elsewhere).
-using RadiusOf = double (*)(const std::string& kind);
+/// Size of a kind of robot, for overlap.
+struct BodySize {
+  double radius_m = -1.0;  ///< negative: the kind is unknown (reported elsewhere)
+  double height_m = 0.0;
+  bool flies = false;
+};
+using SizeOf = BodySize (*)(const std::string& kind);
 
 /// Places what has a place of its own first, then draws places for what is distributed, in the order of the file: a
-/// pure function of the scenario and the seed. Seen from above, bodies never overlap one another nor boxes and
+/// pure function of the scenario and the seed. Bodies never overlap one another nor boxes and
 /// cylinders; only things that cannot move may overlap among themselves where the file says so. Yaws come out in (-pi,
 /// pi]. Problems, each with its line: two placed things that overlap, a robot outside the arena, and `max_trials` draws
 /// without a free place (says how many were placed, and what is in the way).
-Placements place(const Scenario& scenario, std::uint64_t seed, RadiusOf radius_of, Problems& problems);
+Placements place(const Scenario& scenario, std::uint64_t seed, SizeOf size_of, Problems& problems);
 
 }  // namespace tandem::core

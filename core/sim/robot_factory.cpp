@@ -264,6 +264,10 @@ class Factory {
     b.cos_h[row] = std::cos(request.yaw_rad);
     b.sin_h[row] = std::sin(request.yaw_rad);
     b.radius_m[row] = static_cast<float>(stores_.groups[stores_.blocks[block].group].sheet->body_radius_m);
+    if (b.has_motion) {
+      b.motion[row].z_m = request.z_m;
+      b.motion[row].q_WB = {std::cos(0.5 * request.yaw_rad), 0.0, 0.0, std::sin(0.5 * request.yaw_rad)};
+    }
     b.flags[row] = kAlive;
     b.entity[row] = request.entity;
   }

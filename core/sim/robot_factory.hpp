@@ -15,7 +15,7 @@ namespace tandem::core {
 struct RobotRequest {
   std::uint32_t item = 0;    ///< of Scenario::robots
   std::uint32_t entity = 0;  ///< index of its id
-  double x_m = 0.0, y_m = 0.0;
+  double x_m = 0.0, y_m = 0.0, z_m = 0.0;
   double yaw_rad = 0.0;
 };
 

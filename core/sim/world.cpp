@@ -452,9 +452,9 @@ Object object_of(const ObjectItem& item, const PlacedObject& placed) {
   return shape;
 }
 
-double radius_of_kind(const std::string& kind) {
+BodySize size_of_kind(const std::string& kind) {
   const hal::DataSheet* sheet = data_sheet_of(kind);
-  return sheet != nullptr ? sheet->body_radius_m : -1.0;
+  return sheet != nullptr ? BodySize{sheet->body_radius_m, sheet->body_height_m, sheet->flies} : BodySize{};
 }
 
 /// Every body's region; robots and movable objects that lie in none are problems.
@@ -513,7 +513,7 @@ std::unique_ptr<World> World::make(const Scenario& scenario, hal::PluginLoader& 
   s.min_y_m = scenario.arena_center[1] - 0.5 * scenario.arena_size[1];
   s.max_y_m = scenario.arena_center[1] + 0.5 * scenario.arena_size[1];
 
-  const Placements placements = place(scenario, w.seed, &radius_of_kind, problems);
+  const Placements placements = place(scenario, w.seed, &size_of_kind, problems);
   w.engines = make_engines(scenario, placements.robots.size(), s, problems);
   if (bad()) return nullptr;
   for (const Region& region : s.regions) {
@@ -552,7 +552,8 @@ std::unique_ptr<World> World::make(const Scenario& scenario, hal::PluginLoader& 
     s.robots[i].item = placed.item;
     s.robots[i].number = placed.number;
     s.living.push_back(static_cast<std::uint32_t>(i));
-    requests.push_back({placed.item, static_cast<std::uint32_t>(i), placed.x_m, placed.y_m, placed.yaw_rad});
+    requests.push_back(
+        {placed.item, static_cast<std::uint32_t>(i), placed.x_m, placed.y_m, placed.z_m, placed.yaw_rad});
   }
   w.devices = make_robots(scenario, requests, w.seed, loader, s, problems);
 
@@ -568,7 +569,11 @@ std::unique_ptr<World> World::make(const Scenario& scenario, hal::PluginLoader& 
   w.indexed_version = s.immovables_version;
   s.object_motion.resize(s.objects.size());
   s.object_region.resize(s.objects.size(), kNoRegion);
-  for (std::size_t i = 0; i < s.objects.size(); ++i) s.object_motion[i].z_m = s.objects[i].z_low_m;
+  for (std::size_t i = 0; i < s.objects.size(); ++i) {
+    const double half_rad = 0.5 * placements.objects[i].yaw_rad;
+    s.object_motion[i].z_m = s.objects[i].z_low_m;
+    s.object_motion[i].q_WB = {std::cos(half_rad), 0.0, 0.0, std::sin(half_rad)};
+  }
   w.index_movables();
   if (!bad()) {
     w.keeper.build(s, w.tick_s());

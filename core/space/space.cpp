@@ -79,7 +79,7 @@ const hal::DataSheet& Space::data_sheet(RobotId robot) const noexcept {
 Pose Space::pose(RobotId robot) const noexcept {
   const std::size_t row = stores_->row_of(robot);
   const Bodies& b = stores_->bodies;
-  return {b.x_m[row], b.y_m[row], 0.0, b.cos_h[row], b.sin_h[row]};
+  return {b.x_m[row], b.y_m[row], b.motion.empty() ? 0.0 : b.motion[row].z_m, b.cos_h[row], b.sin_h[row]};
 }
 
 void Space::set_pose(RobotId robot, const Pose& pose) noexcept {
@@ -89,6 +89,11 @@ void Space::set_pose(RobotId robot, const Pose& pose) noexcept {
   b.y_m[row] = pose.y_m;
   b.cos_h[row] = pose.cos_h;
   b.sin_h[row] = pose.sin_h;
+  if (!b.motion.empty()) {
+    const double yaw_rad = pose.heading_rad();
+    b.motion[row].z_m = pose.z_m;
+    b.motion[row].q_WB = {std::cos(0.5 * yaw_rad), 0.0, 0.0, std::sin(0.5 * yaw_rad)};
+  }
   b.flags[row] |= kMoved;
   stores_->bodies_changed = true;
 }

@@ -14,8 +14,8 @@ using testing::HasSubstr;
 constexpr double kRadius_m = 0.035;
 constexpr double kPi = std::numbers::pi;
 
-double radius_of(const std::string& kind) {
-  return kind == "e-puck" ? kRadius_m : kind == "big" ? 0.5 : -1.0;
+BodySize size_of(const std::string& kind) {
+  return {kind == "e-puck" ? kRadius_m : kind == "big" ? 0.5 : kind == "flyer" ? 0.2 : -1.0, 0.1, kind == "flyer"};
 }
 
 Scenario arena(double size_m) {
@@ -81,14 +81,14 @@ std::string texts(const Problems& problems) {
 
 Placements placed(const Scenario& s, std::uint64_t seed = 1) {
   Problems problems;
-  Placements out = place(s, seed, &radius_of, problems);
+  Placements out = place(s, seed, &size_of, problems);
   EXPECT_TRUE(problems.empty()) << texts(problems);
   return out;
 }
 
 std::string problem_of(const Scenario& s) {
   Problems problems;
-  (void)place(s, 1, &radius_of, problems);
+  (void)place(s, 1, &size_of, problems);
   EXPECT_EQ(problems.size(), 1U) << texts(problems);
   return problems.empty() ? "" : to_text(problems.front());
 }
@@ -375,6 +375,28 @@ TEST(Placement, LeavesOutRobotsOfUnknownKinds) {
   s.robots = {robot("a", 0, 0), robots("b", uniform(5, 1))};
   for (RobotItem& r : s.robots) r.kind = "mystery";
   EXPECT_TRUE(placed(s).robots.empty());
+}
+
+TEST(Placement, RobotsThatFlyPassOverWhatIsLow) {
+  Scenario s = arena(4.0);
+  ObjectItem box;
+  box.id = "box";
+  box.size = {1.0, 1.0, 0.5};
+  s.objects = {box};
+  RobotItem flyer;
+  flyer.kind = "flyer";
+  flyer.id = "f";
+  flyer.placement.p_W = {0.0, 0.0, 0.5};
+  s.robots = {flyer};
+  EXPECT_EQ(placed(s).robots.size(), 1U);
+  s.robots[0].placement.p_W[2] = 0.45;
+  EXPECT_THAT(problem_of(s), HasSubstr("robot 'f' overlaps box 'box'"));
+  RobotItem walker;  // engines of the plane know no heights
+  walker.kind = "e-puck";
+  walker.id = "w";
+  walker.placement.p_W = {0.0, 0.0, 0.8};
+  s.robots = {walker};
+  EXPECT_THAT(problem_of(s), HasSubstr("robot 'w' overlaps box 'box'"));
 }
 
 TEST(Placement, MixesSizes) {
