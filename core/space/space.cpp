@@ -109,6 +109,7 @@ void Space::remove_robot(RobotId robot) noexcept {
   if (!stores_->broadcasts.empty()) stores_->broadcasts[row].sending = 0;
   e.alive = false;
   ++e.generation;
+  stores_->bodies_changed = true;
   std::erase(stores_->living, robot.index);
 }
 
