@@ -73,43 +73,44 @@ std::pair<double, double> point_within(const Region& region) {
   return {region.sides[0].x_m, region.sides[0].y_m};
 }
 
-double to_outline(const Region& region, double x, double y) {
-  double nearest = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < region.sides.size(); ++i) {
-    const RegionSide& a = region.sides[i];
-    const RegionSide& b = region.sides[(i + 1) % region.sides.size()];
-    double nx = 0.0;
-    double ny = 0.0;
-    nearest = std::min(nearest, distance_to_segment(x, y, a.x_m, a.y_m, b.x_m, b.y_m, nx, ny));
+/// Where along the side from a to b, as shares of it, the outline of `other` touches or crosses it; with 0 and 1.
+std::vector<double> cuts_of(const RegionSide& a, const RegionSide& b, const Region& other) {
+  std::vector<double> cuts{0.0, 1.0};
+  const double dx = b.x_m - a.x_m;
+  const double dy = b.y_m - a.y_m;
+  for (std::size_t k = 0; k < other.sides.size(); ++k) {
+    const RegionSide& c = other.sides[k];
+    const RegionSide& d = other.sides[(k + 1) % other.sides.size()];
+    const double a_side = cross(c, d, a);
+    const double b_side = cross(c, d, b);
+    if (a_side != b_side) cuts.push_back(a_side / (a_side - b_side));                     // where it meets c-d
+    cuts.push_back(((c.x_m - a.x_m) * dx + (c.y_m - a.y_m) * dy) / (dx * dx + dy * dy));  // where c lies beside it
   }
-  return nearest;
+  std::erase_if(cuts, [](double t) { return !(t >= 0.0 && t <= 1.0); });
+  std::sort(cuts.begin(), cuts.end());
+  return cuts;
 }
 
-/// Where two outlines share more than their border, if they do.
+/// Where two outlines share more than their border, if they do. What two regions share is bounded by pieces of their
+/// sides, and next to such a piece, inwards, lies a point of both.
 std::optional<std::pair<double, double>> overlap(const Region& one, const Region& other) {
-  constexpr double kOnBorder_m = 1e-9;
+  constexpr double kInwards_m = 1e-6;
+  constexpr double kShortest_m = 1e-5;  // pieces shorter than this are where corners meet, rounded
   if (one.top_m <= other.bottom_m || other.top_m <= one.bottom_m) return std::nullopt;
   if (one.everywhere()) return other.everywhere() ? std::pair{0.0, 0.0} : point_within(other);
   if (other.everywhere()) return point_within(one);
-  for (const auto& [a, b] : {std::pair{&one, &other}, std::pair{&other, &one}}) {
-    const auto [x, y] = point_within(*a);
-    if (b->contains(x, y)) return std::pair{x, y};
-    for (const RegionSide& corner : a->sides) {
-      if (b->contains(corner.x_m, corner.y_m) && to_outline(*b, corner.x_m, corner.y_m) > kOnBorder_m)
-        return std::pair{corner.x_m, corner.y_m};
-    }
-  }
-  for (std::size_t i = 0; i < one.sides.size(); ++i) {
-    const RegionSide& a = one.sides[i];
-    const RegionSide& b = one.sides[(i + 1) % one.sides.size()];
-    for (std::size_t k = 0; k < other.sides.size(); ++k) {
-      const RegionSide& c = other.sides[k];
-      const RegionSide& d = other.sides[(k + 1) % other.sides.size()];
-      const double c_side = cross(a, b, c);
-      const double d_side = cross(a, b, d);
-      if (c_side * d_side < 0.0 && cross(c, d, a) * cross(c, d, b) < 0.0) {
-        const double t = c_side / (c_side - d_side);
-        return std::pair{c.x_m + t * (d.x_m - c.x_m), c.y_m + t * (d.y_m - c.y_m)};
+  for (const auto& [of, in] : {std::pair{&one, &other}, std::pair{&other, &one}}) {
+    for (std::size_t i = 0; i < of->sides.size(); ++i) {
+      const RegionSide& a = of->sides[i];
+      const RegionSide& b = of->sides[(i + 1) % of->sides.size()];
+      const double length = std::hypot(b.x_m - a.x_m, b.y_m - a.y_m);
+      const std::vector<double> cuts = cuts_of(a, b, *in);
+      for (std::size_t k = 0; k + 1 < cuts.size(); ++k) {
+        if ((cuts[k + 1] - cuts[k]) * length < kShortest_m) continue;
+        const double t = 0.5 * (cuts[k] + cuts[k + 1]);
+        const double x = a.x_m + t * (b.x_m - a.x_m) - (b.y_m - a.y_m) / length * kInwards_m;
+        const double y = a.y_m + t * (b.y_m - a.y_m) + (b.x_m - a.x_m) / length * kInwards_m;
+        if (of->contains(x, y) && in->contains(x, y)) return std::pair{x, y};
       }
     }
   }
