@@ -51,6 +51,14 @@ struct Scene {
     scenario.robots.push_back(item);
     return *this;
   }
+  /// Wheel speeds of the robot added last, instead of its controller configuration's.
+  Scene& wheels(double left_m_s, double right_m_s) {
+    Element params;
+    params.name = "params";
+    params.attributes = {{"left", hal::format_number(left_m_s), 0}, {"right", hal::format_number(right_m_s), 0}};
+    scenario.robots.back().params = params;
+    return *this;
+  }
   Scene& robots(std::int64_t quantity, double half_m) {
     RobotItem item;
     item.kind = "e-puck";
@@ -84,6 +92,38 @@ struct Scene {
     item.size = {radius_m, radius_m, 0.5};
     item.placement.p_W = {x_m, y_m, 0.0};
     scenario.objects.push_back(item);
+    return *this;
+  }
+  /// Makes the object added last a movable one.
+  Scene& movable(double mass_kg) {
+    scenario.objects.back().movable = true;
+    scenario.objects.back().mass_kg = mass_kg;
+    return *this;
+  }
+  /// One more engine; `id` is its kind where it is empty.
+  Scene& engine(const std::string& kind, const std::string& id = "", const std::vector<Element::Attribute>& more = {}) {
+    EngineConfig config;
+    config.kind = kind;
+    config.id = id.empty() ? kind : id;
+    config.line = 100 + static_cast<int>(scenario.engines.size());
+    config.options.name = kind;
+    config.options.file = scenario.file;
+    config.options.line = config.line;
+    config.options.attributes = {{"id", config.id, config.line}};
+    config.options.attributes.insert(config.options.attributes.end(), more.begin(), more.end());
+    scenario.engines.push_back(config);
+    return *this;
+  }
+  /// Splits the region of the engine added last: "4x4" or "auto".
+  Scene& split(const std::string& regions) {
+    scenario.engines.back().regions = regions;
+    scenario.engines.back().options.attributes.push_back({"regions", regions, scenario.engines.back().line});
+    return *this;
+  }
+  /// One more vertex of the region of the engine added last; the side that starts there leads to engine `gate`, or is a
+  /// wall.
+  Scene& side(double x_m, double y_m, const std::string& gate = "") {
+    scenario.engines.back().sides.push_back({x_m, y_m, gate, scenario.engines.back().line});
     return *this;
   }
   /// Walls 10 cm thick around the arena, inside it.

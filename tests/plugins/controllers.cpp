@@ -33,6 +33,24 @@ class Drive : public Controller {
   Params params_;
 };
 
+/// Drives with constant wheel speeds, and says how often it has stepped: at most 255.
+class CountingDrive final : public Drive {
+ public:
+  CountingDrive(Robot& robot, const Params& params)
+      : Drive(robot, params), says_(robot.actuator<RangeAndBearingSend>()) {
+    says_.size = 1;
+  }
+  void step() override {
+    Drive::step();
+    if (steps_ < 255) ++steps_;
+    says_.payload[0] = steps_;
+  }
+
+ private:
+  RangeAndBearingSend& says_;
+  std::uint8_t steps_ = 0;
+};
+
 /// Takes every device of an e-puck, drives, shines and talks.
 class Everything final : public Controller {
  public:
@@ -110,6 +128,7 @@ class Stillborn final : public Controller {
 
 void register_all(Registrar& registrar) {
   registrar.add_controller<Drive>("drive", "Constant wheel speeds.");
+  registrar.add_controller<CountingDrive>("counting_drive", "Constant wheel speeds; says how often it has stepped.");
   registrar.add_controller<Everything>("everything", "Takes every device.");
   registrar.add_controller<Thrower>("thrower", "Throws at tick 3.");
   registrar.add_controller<Careless>("careless", "Commands what is no number.");

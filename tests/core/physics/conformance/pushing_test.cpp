@@ -1,0 +1,263 @@
+// What engines with forces promise of movable objects: how they glide, how robots push them, what stays put.
+#include "tests/core/physics/conformance/engines.hpp"
+
+namespace tandem::core {
+namespace {
+
+/// How the ground holds a movable object in a kind of engine: with at most this force per kilogram, in N/kg.
+double grip_m_s2(const std::string& kind) {
+  if (kind == "dynamics2d") return 1.49;  // ARGoS' default, box_linear_friction and cylinder_linear_friction
+  if (kind == "dynamics3d") return 0.2 * 9.81;
+  ADD_FAILURE() << "say here how the ground brakes objects in " << kind;
+  return 0.0;
+}
+
+class Pushing : public EveryEngine {
+ protected:
+  /// An arena with a ground that grips as `grip_m_s2` says.
+  Scene ground(double size_m = 4.0) const {
+    Scene s(size_m);
+    if (GetParam() == "dynamics3d")
+      s.engine("dynamics3d", "", {{"default_friction", "0.2", 0}});
+    else
+      s.engine(GetParam());
+    return s;
+  }
+  double grip() const { return grip_m_s2(GetParam()); }
+};
+
+const Object& object(const MadeWorld& world, std::size_t i = 0) {
+  return world.world->space().objects()[i];
+}
+
+/// Sets a movable object in motion, as a hook may.
+void shove(const MadeWorld& world, std::size_t i, double vx_m_s, double vy_m_s) {
+  world.world->space().stores().object_motion[i].v_m_s = {vx_m_s, vy_m_s, 0.0};
+}
+
+double speed_of(const MadeWorld& world, std::size_t i) {
+  const Motion& m = world.world->space().stores().object_motion[i];
+  return std::hypot(m.v_m_s[0], m.v_m_s[1]);
+}
+
+TEST_P(Pushing, AnObjectThatGlidesIsBrakedByTheGroundAlone) {
+  // v^2 / (2 g) [Coulomb], less at most half a tick's way where an engine brakes before it moves.
+  for (const double speed_m_s : {0.1, 0.5}) {
+    for (const bool round : {false, true}) {
+      Scene s = ground().robot("far", -1.5, 1.5).wheels(0, 0);
+      if (round)
+        s.cylinder(0, 0, 0.08).movable(0.4);
+      else
+        s.box(0, 0, 0.16, 0.16, 0.0, 0.1).movable(0.4);
+      if (round) s.scenario.objects.back().size[2] = 0.05;
+      auto world = make(s);
+      ASSERT_TRUE(world.world) << world.all_problems();
+      steps(world, 5);
+      EXPECT_NEAR(object(world).x_m, 0.0, 1e-4);
+      const double from_m = object(world).x_m;
+      shove(world, 0, speed_m_s, 0.0);
+      double last_m_s = speed_m_s;
+      for (int i = 0; i < 60; ++i) {
+        world->step();
+        ASSERT_LE(speed_of(world, 0), last_m_s + 1e-6) << "faster in tick " << i;
+        last_m_s = speed_of(world, 0);
+      }
+      const double way_m = speed_m_s * speed_m_s / (2 * grip());
+      EXPECT_LE(object(world).x_m - from_m, 1.05 * way_m + 1e-4) << speed_m_s << (round ? " round" : " box");
+      EXPECT_GE(object(world).x_m - from_m, 0.95 * way_m - 0.5 * 0.1 * speed_m_s - 1e-4)
+          << speed_m_s << (round ? " round" : " box");
+      EXPECT_NEAR(object(world).y_m, 0.0, 1e-3);
+      EXPECT_NEAR(last_m_s, 0.0, 1e-4);
+    }
+  }
+}
+
+TEST_P(Pushing, ARobotPushesALightBoxAtItsOwnSpeed) {
+  for (const double mass_kg :
+       {0.05, 0.2, 0.4}) {  // the ground holds the heaviest with 0.8 N at most, the drive has 1.5
+    auto world = make(ground().box(0, 0, 0.1, 0.3, 0.0, 0.06).movable(mass_kg).robot("a", -0.15, 0).wheels(0.1, 0.1));
+    ASSERT_TRUE(world.world) << world.all_problems();
+    steps(world, 40);
+    const double box_m = object(world).x_m;
+    const double robot_m = pose_of(world, "a").x_m;
+    steps(world, 50);
+    EXPECT_NEAR(object(world).x_m - box_m, 0.5, 0.02 * 0.5) << mass_kg;
+    EXPECT_NEAR(pose_of(world, "a").x_m - robot_m, 0.5, 0.02 * 0.5) << mass_kg;
+    EXPECT_NEAR(object(world).x_m - 0.05 - kRobotRadius_m, pose_of(world, "a").x_m, depth_m()) << mass_kg;
+    EXPECT_NEAR(object(world).y_m, 0.0, 5e-3);
+    // Released, it glides no farther than its friction lets it.
+    set_halted(world, "a");
+    steps(world, 1);
+    const double released_m = object(world).x_m;
+    steps(world, 20);
+    EXPECT_LE(object(world).x_m - released_m, 0.1 * 0.1 / (2 * grip()) + 1e-3) << mass_kg;
+    EXPECT_GE(object(world).x_m, released_m - 1e-4) << mass_kg;
+  }
+}
+
+TEST_P(Pushing, ABoxTooHeavyForTheDriveStays) {
+  // Held with twice what the drive has.
+  const double mass_kg = 2 * hal::epuck::kDriveForce_N / grip();
+  auto world =
+      make(ground().box(0, 0, 0.1, 0.3, 0.0, 0.06).movable(mass_kg).robot("a", -0.2, 0).wheels(0.1288, 0.1288));
+  ASSERT_TRUE(world.world) << world.all_problems();
+  steps(world, 200);
+  EXPECT_NEAR(object(world).x_m, 0.0, 1e-3);
+  EXPECT_NEAR(object(world).y_m, 0.0, 1e-3);
+  EXPECT_LE(pose_of(world, "a").x_m, -0.05 - kRobotRadius_m + depth_m());
+  EXPECT_GT(pose_of(world, "a").x_m, -0.05 - kRobotRadius_m - 2 * depth_m());
+}
+
+TEST_P(Pushing, TwoRobotsMoveWhatOneCannot) {
+  const double mass_kg = 1.4 * hal::epuck::kDriveForce_N / grip();
+  for (const bool both : {false, true}) {
+    Scene s = ground().box(0, 0, 0.1, 0.3, 0.0, 0.06).movable(mass_kg);
+    s.robot("a", -0.12, both ? 0.06 : 0.0).wheels(0.1, 0.1);
+    if (both) s.robot("b", -0.12, -0.06).wheels(0.1, 0.1);
+    auto world = make(s);
+    ASSERT_TRUE(world.world) << world.all_problems();
+    steps(world, 80);
+    if (both)
+      EXPECT_GT(object(world).x_m, 0.3);
+    else
+      EXPECT_LT(object(world).x_m, 2e-3);
+  }
+}
+
+TEST_P(Pushing, ABoxAgainstAWallStopsTheRobotThatPushesIt) {
+  auto world = make(
+      ground().box(0.5, 0, 0.2, 1.0).box(0.25, 0, 0.1, 0.2, 0.0, 0.06).movable(0.2).robot("a", 0, 0).wheels(0.1, 0.1));
+  ASSERT_TRUE(world.world) << world.all_problems();
+  steps(world, 150);
+  EXPECT_LE(object(world, 1).x_m, 0.35 + depth_m());
+  EXPECT_GE(object(world, 1).x_m, 0.35 - 2 * depth_m());
+  EXPECT_LE(pose_of(world, "a").x_m, 0.3 - kRobotRadius_m + 2 * depth_m());
+  EXPECT_EQ(world->state(), RunState::Running) << world->failure();
+}
+
+TEST_P(Pushing, PushedAsideABoxTurns) {
+  // Pushed at its left end while it drives to the east, a box turns clockwise.
+  auto world = make(ground().box(0, 0, 0.06, 0.3, 0.0, 0.06).movable(0.2).robot("a", -0.1, 0.1).wheels(0.1, 0.1));
+  ASSERT_TRUE(world.world) << world.all_problems();
+  steps(world, 40);
+  const double heading_rad = std::atan2(object(world).sin_h, object(world).cos_h);
+  EXPECT_LT(heading_rad, -0.1);
+  EXPECT_NEAR(std::hypot(object(world).cos_h, object(world).sin_h), 1.0, 1e-6);
+}
+
+TEST_P(Pushing, CollidingObjectsGainNoEnergyAndKeepTheirMomentumButForFriction) {
+  Scene s = ground();
+  s.cylinder(0, 0, 0.06)
+      .movable(0.3)
+      .cylinder(0.4, 0.01, 0.06)
+      .movable(0.5)
+      .box(0.2, 0.5, 0.1, 0.1, 0.3, 0.06)
+      .movable(0.2);
+  for (ObjectItem& item : s.scenario.objects) item.size[2] = 0.05;
+  auto world = make(s);
+  ASSERT_TRUE(world.world) << world.all_problems();
+  steps(world, 5);
+  const double masses_kg[3] = {0.3, 0.5, 0.2};
+  shove(world, 0, 1.2, 0.0);
+  shove(world, 2, 0.1, -0.6);
+  const auto energy_J = [&] {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < 3; ++i) sum += 0.5 * masses_kg[i] * speed_of(world, i) * speed_of(world, i);
+    return sum;
+  };
+  double last_J = energy_J();
+  double momentum = 0.3 * 1.2 + 0.2 * 0.1;
+  for (int i = 0; i < 40; ++i) {
+    world->step();
+    ASSERT_LE(energy_J(), last_J + 1e-6) << "in tick " << i;
+    last_J = energy_J();
+    double now = 0.0;
+    for (std::size_t k = 0; k < 3; ++k) now += masses_kg[k] * world->space().stores().object_motion[k].v_m_s[0];
+    ASSERT_LE(now, momentum + 1e-6) << "in tick " << i;
+    // The ground takes at most its grip on all three.
+    ASSERT_GE(now, momentum - 1.05 * 0.1 * grip() * 1.0 - 1e-6) << "in tick " << i;
+    momentum = now;
+  }
+  EXPECT_NEAR(last_J, 0.0, 1e-6);
+  EXPECT_GT(object(world, 1).x_m, 0.42);  // it was hit
+}
+
+TEST_P(Pushing, ARobotMovedByOthersPushesABox) {
+  auto world = make(ground().box(0, 0, 0.1, 0.2, 0.0, 0.06).movable(0.3).robot("real", -0.2, 0));
+  ASSERT_TRUE(world.world) << world.all_problems();
+  Space& space = world->space();
+  const RobotId real = space.find_robot("real");
+  space.set_external(real, true);
+  double x_m = -0.2;
+  for (int i = 0; i < 60; ++i) {
+    x_m += 0.01;
+    space.set_pose(real, {x_m, 0.0, 0.0, 1.0, 0.0});
+    world->step();
+    ASSERT_EQ(space.pose(real).x_m, x_m);
+    ASSERT_GE(object(world).x_m - 0.05 - kRobotRadius_m, x_m - 0.01 - depth_m()) << i;  // a tick's way at most
+  }
+  EXPECT_GT(object(world).x_m, 0.4);
+  EXPECT_LT(object(world).x_m, x_m + 0.05 + kRobotRadius_m + 0.1 * 0.1 / (2 * grip()) + 2e-3);
+}
+
+TEST_P(Pushing, TheGroundIsLevel) {
+  Scene s = ground().box(0.5, 0, 0.2, 0.2, 0.4, 0.1).movable(0.3).cylinder(-0.5, 0, 0.1).movable(0.3);
+  s.robot("a", 0, 1).wheels(0, 0);
+  auto world = make(s);
+  ASSERT_TRUE(world.world) << world.all_problems();
+  steps(world, 200);
+  EXPECT_NEAR(object(world, 0).x_m, 0.5, 1e-3);
+  EXPECT_NEAR(object(world, 0).y_m, 0.0, 1e-3);
+  EXPECT_NEAR(std::atan2(object(world, 0).sin_h, object(world, 0).cos_h), 0.4, 1e-2);
+  EXPECT_NEAR(object(world, 1).x_m, -0.5, 1e-3);
+  EXPECT_NEAR(object(world, 1).y_m, 0.0, 1e-3);
+  EXPECT_NEAR(object(world, 1).z_low_m, 0.0, depth_m());
+}
+
+TEST_P(Pushing, AnObjectThatLeavesTheArenaIsNamed) {
+  for (const EscapePolicy policy : {EscapePolicy::Error, EscapePolicy::Stop, EscapePolicy::Remove}) {
+    Scene s = ground(1.0).box(0.3, 0, 0.1, 0.1, 0.0, 0.06).movable(0.3).robot("a", -0.3, 0).wheels(0, 0);
+    s.scenario.escape = policy;
+    auto world = make(s);
+    ASSERT_TRUE(world.world) << world.all_problems();
+    steps(world, 2);
+    shove(world, 0, 1.5, 0.0);
+    steps(world, 20);
+    EXPECT_GE(world->incidents().bodies_escaped, 1U);
+    if (policy == EscapePolicy::Error) {
+      EXPECT_EQ(world->state(), RunState::Failed);
+      EXPECT_NE(world->failure().find("box 'box0' left the arena"), std::string::npos) << world->failure();
+      continue;
+    }
+    EXPECT_EQ(world->state(), RunState::Running) << world->failure();
+    ASSERT_FALSE(world->incidents().first.empty());
+    EXPECT_NE(world->incidents().first[0].find("box 'box0' left the arena"), std::string::npos);
+    EXPECT_EQ(object(world).alive, policy == EscapePolicy::Stop);
+    if (policy == EscapePolicy::Stop) {
+      EXPECT_NEAR(object(world).x_m, 0.5, 1e-6);
+      EXPECT_NEAR(speed_of(world, 0), 0.0, 1e-9);
+    }
+  }
+}
+
+TEST_P(Pushing, AnObjectWhosePlaceOrSpeedIsNoNumberEndsTheRunByName) {
+  for (const bool place : {true, false}) {
+    auto world = make(ground().box(0, 0, 0.1, 0.1, 0.0, 0.06).movable(0.3).robot("a", 1, 1).wheels(0, 0));
+    ASSERT_TRUE(world.world) << world.all_problems();
+    steps(world, 2);
+    if (place)
+      world->space().stores().objects[0].x_m = std::nan("");
+    else
+      world->space().stores().object_motion[0].v_m_s[1] = std::nan("");
+    world->step();
+    EXPECT_EQ(world->state(), RunState::Failed) << (place ? "place" : "speed");
+    EXPECT_NE(world->failure().find("box 'box0'"), std::string::npos) << world->failure();
+    EXPECT_NE(world->failure().find("tick 2"), std::string::npos) << world->failure();
+  }
+}
+
+GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(Pushing);
+INSTANTIATE_TEST_SUITE_P(Physics, Pushing, testing::ValuesIn(kinds_with_forces()), name_of_kind);
+
+}  // namespace
+}  // namespace tandem::core
