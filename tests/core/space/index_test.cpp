@@ -29,7 +29,7 @@ void rebuild(BodyIndex& index, const std::vector<Point>& points, ThreadPool& poo
 }
 
 TEST(BodyIndex, FindsEveryBodyInReachAndNoneTwice) {
-  rc::check("against brute force, also beyond the area", [](std::uint64_t seed, std::uint16_t count) {
+  EXPECT_TRUE(rc::check("against brute force, also beyond the area", [](std::uint64_t seed, std::uint16_t count) {
     const std::size_t n = count % 500;
     const auto points = random_points(seed, n, 3.0);  // the area is smaller
     ThreadPool pool(1, Assignment::Static);
@@ -47,7 +47,7 @@ TEST(BodyIndex, FindsEveryBodyInReachAndNoneTwice) {
         }
       }
     }
-  });
+  }));
 }
 
 TEST(BodyIndex, IsTheSameForAnyNumberOfThreads) {
