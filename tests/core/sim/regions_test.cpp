@@ -18,14 +18,19 @@ std::string region_of(const MadeWorld& world, const std::string& id) {
   return region == kNoRegion ? "none" : s.regions[region].name;
 }
 
-/// Every living robot belongs to exactly one region, which has it in its list and contains it.
+/// Every living robot belongs to exactly one region, which contains it; no two regions have a body in their lists. The
+/// lists are as of the start of the tick, so a body that came from an engine without lists may not be in one yet.
 void expect_one_region_each(const MadeWorld& world, double slack_m = 1e-9) {
   const SpaceStores& s = world.world->space().stores();
+  const bool all_listed = std::all_of(s.regions.begin(), s.regions.end(), [](const Region& r) { return r.listed; });
   std::map<std::uint32_t, int> lists;
   for (const Region& region : s.regions) {
     ASSERT_TRUE(std::is_sorted(region.owned.begin(), region.owned.end()));
     ASSERT_TRUE(std::is_sorted(region.mirrored.begin(), region.mirrored.end()));
-    for (const BodyKey body : region.owned) ++lists[body.value];
+    for (const BodyKey body : region.owned) {
+      ++lists[body.value];
+      ASSERT_FALSE(std::binary_search(region.mirrored.begin(), region.mirrored.end(), body)) << region.name;
+    }
   }
   for (const std::uint32_t entity : s.living) {
     const RobotEntity& e = s.robots[entity];
@@ -33,8 +38,10 @@ void expect_one_region_each(const MadeWorld& world, double slack_m = 1e-9) {
     ASSERT_NE(s.bodies.region[row], kNoRegion);
     const Region& region = s.regions[s.bodies.region[row]];
     ASSERT_LE(region.distance(s.bodies.x_m[row], s.bodies.y_m[row]), slack_m) << region.name;
-    if (region.listed) {
-      ASSERT_EQ(lists[static_cast<std::uint32_t>(row)], 1) << "row " << row;
+    const int listed = lists[static_cast<std::uint32_t>(row)];
+    ASSERT_LE(listed, 1) << "row " << row;
+    if (all_listed) {
+      ASSERT_EQ(listed, 1) << "row " << row;
     }
   }
 }
@@ -285,12 +292,12 @@ TEST_P(Regions, AnOutlineMayBeConcaveAndGivenEitherWayRound) {
 TEST_P(Regions, ALoneRobotDrivesAcrossAllBordersAsIfThereWereNone) {
   const double pi = std::numbers::pi;
   for (const double heading_rad : {0.0, 0.3, 0.25 * pi, 0.5 * pi, -2.0}) {
-    for (const double bend_m_s : {0.0, 0.004}) {
+    for (const double bend_m_s : {0.0, 0.002}) {
       const auto start = [&](const std::string& split) {
         Scene s = scene(2.0);
         if (!split.empty()) s.split(split);
-        const double x_m = -0.7 * std::cos(heading_rad);
-        const double y_m = -0.7 * std::sin(heading_rad);
+        const double x_m = -0.85 * std::cos(heading_rad);
+        const double y_m = -0.85 * std::sin(heading_rad);
         return make(s.robot("a", x_m, y_m, heading_rad).wheels(kSpeed_m_s, kSpeed_m_s + bend_m_s));
       };
       auto whole = start("1x1");
@@ -298,7 +305,7 @@ TEST_P(Regions, ALoneRobotDrivesAcrossAllBordersAsIfThereWereNone) {
       ASSERT_TRUE(whole.world && parts.world) << parts.all_problems();
       double largest_m = 0.0;
       std::map<std::string, int> visited;
-      for (int i = 0; i < 140; ++i) {
+      for (int i = 0; i < 170; ++i) {
         whole->step();
         parts->step();
         const Pose a = pose_of(whole, "a");
@@ -306,6 +313,7 @@ TEST_P(Regions, ALoneRobotDrivesAcrossAllBordersAsIfThereWereNone) {
         largest_m = std::max(largest_m, std::hypot(a.x_m - b.x_m, a.y_m - b.y_m));
         largest_m = std::max(largest_m, std::fabs(turned_rad(a.heading_rad(), b.heading_rad())));
         expect_one_region_each(parts);
+        ASSERT_EQ(parts->state(), RunState::Running) << parts->failure();
         ++visited[region_of(parts, "a")];
       }
       EXPECT_LE(largest_m, GetParam() == "kinematics2d" ? 0.0 : 1e-9) << heading_rad << " " << bend_m_s;
@@ -627,7 +635,7 @@ TEST_P(TwoKinds, RobotsOfBothEnginesCollideAtTheBorder) {
 
 TEST_P(TwoKinds, RobotsSeeAndHearThoseOfTheOtherEngine) {
   Scene s = halves("everything");
-  s.robot("a", -0.06, 0).wheels(0, 0).robot("b", 0.06, 0, std::numbers::pi).wheels(0, 0);
+  s.robot("a", -0.05, 0).wheels(0, 0).robot("b", 0.05, 0, std::numbers::pi).wheels(0, 0);
   auto world = make(s);
   ASSERT_TRUE(world.world) << world.all_problems();
   steps(world, 5);
@@ -637,16 +645,16 @@ TEST_P(TwoKinds, RobotsSeeAndHearThoseOfTheOtherEngine) {
   for (const char* id : {"a", "b"}) {
     const auto* proximity = space.port<hal::Proximity>(space.find_robot(id));
     ASSERT_NE(proximity, nullptr);
-    // The two front sensors look 17 degrees aside; the gap between the rims is 5 cm.
-    for (const std::size_t front : {0, 7}) {
-      EXPECT_GT(proximity->distance_m[front], 0.045F) << id;
-      EXPECT_LT(proximity->distance_m[front], 0.075F) << id;
-    }
+    // The two front sensors look 17 degrees aside, from the rim to the other's rim.
+    const double aside_rad = 17.0 * std::numbers::pi / 180.0;
+    const double half_chord_m = std::sqrt(kRobotRadius_m * kRobotRadius_m - std::pow(0.1 * std::sin(aside_rad), 2));
+    const double seen_m = 0.1 * std::cos(aside_rad) - half_chord_m - kRobotRadius_m;
+    for (const std::size_t front : {0, 7}) EXPECT_NEAR(proximity->distance_m[front], seen_m, 2e-3) << id;
     EXPECT_EQ(proximity->distance_m[3], proximity->range_m) << id;
     const auto* heard = space.port<hal::RangeAndBearing>(space.find_robot(id));
     ASSERT_NE(heard, nullptr);
     ASSERT_EQ(heard->count, 1U) << id;
-    EXPECT_NEAR(heard->range_m[0], 0.12, 2e-3) << id;
+    EXPECT_NEAR(heard->range_m[0], 0.1, 2e-3) << id;
     EXPECT_NEAR(heard->bearing_rad[0], 0.0, 0.02) << id;
   }
 }
