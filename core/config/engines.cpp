@@ -44,6 +44,21 @@ bool cross(const BoundarySide& a, const BoundarySide& b, const BoundarySide& c, 
   return side_of(a, b, c) * side_of(a, b, d) < 0.0 && side_of(c, d, a) * side_of(c, d, b) < 0.0;
 }
 
+/// Whether c lies on the side from a to b.
+bool lies_on(const BoundarySide& a, const BoundarySide& b, const BoundarySide& c) {
+  return side_of(a, b, c) == 0.0 && (c.x_m - a.x_m) * (c.x_m - b.x_m) <= 0.0 &&
+         (c.y_m - a.y_m) * (c.y_m - b.y_m) <= 0.0;
+}
+
+bool meet(const BoundarySide& a, const BoundarySide& b, const BoundarySide& c, const BoundarySide& d) {
+  return cross(a, b, c, d) || lies_on(a, b, c) || lies_on(a, b, d) || lies_on(c, d, a) || lies_on(c, d, b);
+}
+
+/// Whether the side from b to c goes back along the one from a to b.
+bool folds_back(const BoundarySide& a, const BoundarySide& b, const BoundarySide& c) {
+  return side_of(a, b, c) == 0.0 && (b.x_m - a.x_m) * (c.x_m - b.x_m) + (b.y_m - a.y_m) * (c.y_m - b.y_m) < 0.0;
+}
+
 /// What is wrong with an outline, or empty.
 std::string flaw_of(const std::vector<BoundarySide>& sides) {
   if (sides.size() < 3) return "an outline needs at least three vertices";
@@ -55,14 +70,21 @@ std::string flaw_of(const std::vector<BoundarySide>& sides) {
     if (a.x_m == b.x_m && a.y_m == b.y_m)
       return "the vertices on lines " + std::to_string(a.line) + " and " + std::to_string(b.line) + " are the same";
     twice_area += a.x_m * b.y_m - b.x_m * a.y_m;
+  }
+  if (twice_area == 0.0) return "the outline has no area";
+  for (std::size_t i = 0; i < sides.size(); ++i) {
+    const BoundarySide& a = sides[i];
+    const BoundarySide& b = sides[(i + 1) % sides.size()];
+    if (folds_back(a, b, sides[(i + 2) % sides.size()]))
+      return "the side from line " + std::to_string(b.line) + " goes back along the one before it";
     for (std::size_t k = i + 2; k < sides.size(); ++k) {
       const BoundarySide& c = sides[k];
-      if (cross(a, b, c, sides[(k + 1) % sides.size()])) {
-        return "the sides from lines " + std::to_string(a.line) + " and " + std::to_string(c.line) + " cross";
-      }
+      const std::size_t next = (k + 1) % sides.size();
+      if (next != i && meet(a, b, c, sides[next]))
+        return "the sides from lines " + std::to_string(a.line) + " and " + std::to_string(c.line) + " cross or touch";
     }
   }
-  return std::fabs(twice_area) > 0.0 ? "" : "the outline has no area";
+  return "";
 }
 
 void read_boundaries(Reading& reading, Element& e, EngineConfig& config) {

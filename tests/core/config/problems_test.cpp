@@ -200,6 +200,27 @@ INSTANTIATE_TEST_SUITE_P(
             },
             4, "cross"},
         Case{
+            "touching",
+            [](Parts& p) {
+              p.engines =
+                  R"(<physics_engines><kinematics2d id="k"><boundaries><sides><vertex point="0,0"/><vertex point="3,0"/><vertex point="3,2"/><vertex point="1,0"/><vertex point="0,2"/></sides></boundaries></kinematics2d></physics_engines>)";
+            },
+            4, "cross or touch"},
+        Case{
+            "pinched",
+            [](Parts& p) {
+              p.engines =
+                  R"(<physics_engines><kinematics2d id="k"><boundaries><sides><vertex point="0,0"/><vertex point="1,1"/><vertex point="2,0"/><vertex point="2,3"/><vertex point="1,1"/><vertex point="0,2"/></sides></boundaries></kinematics2d></physics_engines>)";
+            },
+            4, "cross or touch"},
+        Case{
+            "spike",
+            [](Parts& p) {
+              p.engines =
+                  R"(<physics_engines><kinematics2d id="k"><boundaries><sides><vertex point="0,0"/><vertex point="2,0"/><vertex point="1,0"/><vertex point="1,1"/><vertex point="0,1"/></sides></boundaries></kinematics2d></physics_engines>)";
+            },
+            4, "goes back along the one before it"},
+        Case{
             "gate_to_nowhere",
             [](Parts& p) {
               p.engines =

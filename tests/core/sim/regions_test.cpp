@@ -287,6 +287,112 @@ TEST_P(Regions, AnOutlineMayBeConcaveAndGivenEitherWayRound) {
   }
 }
 
+TEST_P(Regions, InAFileWithoutGatesSidesAreOpenWhereAnotherRegionLiesBehind) {
+  // ARGoS 3 files name no gates for borders that engines share.
+  Scene s(4.0);
+  s.engine(GetParam(), "west").side(-2, -1).side(0, -1).side(0, 1).side(-2, 1);
+  s.engine(GetParam(), "east").side(0, -1).side(2, -1).side(2, 1).side(0, 1);
+  s.robot("through", -0.3, 0).wheels(0.1, 0.1).robot("up", -1, 0.5, 0.5 * std::numbers::pi).wheels(0.1, 0.1);
+  auto world = make(s);
+  ASSERT_TRUE(world.world) << world.all_problems();
+  steps(world, 81);
+  EXPECT_EQ(world->state(), RunState::Running) << world->failure();
+  EXPECT_NEAR(pose_of(world, "through").x_m, 0.5, 0.02);
+  EXPECT_EQ(region_of(world, "through"), "east");
+  EXPECT_NEAR(pose_of(world, "up").y_m, 1.0 - kRobotRadius_m, depth_m());
+}
+
+/// A region whose gate leads to an engine that is not behind it.
+Scene trap_door(const std::string& kind) {
+  Scene s(6.0);
+  s.engine(kind, "here").side(-1, -1).side(1, -1, "there").side(1, 1).side(-1, 1);
+  s.engine(kind, "there").side(2, -1).side(3, -1).side(3, 1).side(2, 1);
+  return s.robot("lost", 0.8, 0).wheels(0.1, 0.1).robot("other", -0.5, 0).wheels(0, 0);
+}
+
+TEST_P(Regions, ABodyThatLeavesAllRegionsIsTreatedAsOneThatLeavesTheArena) {
+  {
+    auto world = make(trap_door(GetParam()));
+    ASSERT_TRUE(world.world) << world.all_problems();
+    steps(world, 40);
+    EXPECT_EQ(world->state(), RunState::Failed);
+    EXPECT_NE(world->failure().find("'lost' left the region of engine 'here'"), std::string::npos) << world->failure();
+  }
+  {
+    Scene s = trap_door(GetParam());
+    s.scenario.escape = EscapePolicy::Stop;
+    auto world = make(s);
+    steps(world, 40);
+    EXPECT_EQ(world->state(), RunState::Running) << world->failure();
+    EXPECT_NEAR(pose_of(world, "lost").x_m, 1.0, 1e-3);
+    EXPECT_EQ(region_of(world, "lost"), "here");
+    EXPECT_GT(world->incidents().bodies_escaped, 0U);
+    expect_one_region_each(world);
+  }
+  {
+    Scene s = trap_door(GetParam());
+    s.scenario.escape = EscapePolicy::Remove;
+    auto world = make(s);
+    steps(world, 40);
+    EXPECT_EQ(world->state(), RunState::Running) << world->failure();
+    EXPECT_EQ(world->incidents().bodies_escaped, 1U);
+    EXPECT_FALSE(world->space().find_robot("lost").valid());
+    EXPECT_EQ(world->space().robot_count(), 1U);
+    expect_one_region_each(world);
+  }
+}
+
+TEST_P(Regions, AHookMayPutARobotIntoAnotherRegionButNotNowhere) {
+  const std::string kind = GetParam();
+  auto world = make(rooms(kind, kind, kind).robot("a", -1, 0).wheels(0.1, 0.1));
+  ASSERT_TRUE(world.world) << world.all_problems();
+  steps(world, 10);
+  Space& space = world->space();
+  space.set_pose(space.find_robot("a"), {1.0, 0.5, 0.0, 0.0, 1.0});
+  world->step();
+  EXPECT_EQ(region_of(world, "a"), "east");
+  expect_one_region_each(world);
+  steps(world, 19);
+  EXPECT_NEAR(pose_of(world, "a").x_m, 1.0, 0.01);
+  EXPECT_NEAR(pose_of(world, "a").y_m, 0.7, 0.01);
+  space.set_pose(space.find_robot("a"), {0.0, 0.7, 0.0, 0.0, 1.0});  // beside the corridor
+  world->step();
+  EXPECT_EQ(world->state(), RunState::Failed);
+  EXPECT_NE(world->failure().find("'a' was put where no engine has its region"), std::string::npos) << world->failure();
+}
+
+TEST_P(Regions, ARobotThatIsRemovedAtABorderIsGoneOnBothSides) {
+  Scene s = scene(4.0);
+  s.split("2x1").robot("a", -0.3, 0).wheels(0.1, 0.1).robot("b", 0.01, 0).wheels(0, 0);
+  auto world = make(s);
+  ASSERT_TRUE(world.world) << world.all_problems();
+  steps(world, 15);
+  world->space().remove_robot(world->space().find_robot("b"));
+  steps(world, 46);
+  EXPECT_EQ(world->state(), RunState::Running) << world->failure();
+  EXPECT_NEAR(pose_of(world, "a").x_m, 0.3, 0.02);
+  expect_one_region_each(world);
+}
+
+TEST_P(Regions, RealRobotsAreInTheWayOnBothSidesOfABorder) {
+  Scene s = scene(4.0);
+  s.split("2x1").robot("w", -0.3, 0).wheels(0.1, 0.1).robot("e", 0.3, 0.0, std::numbers::pi).wheels(0.1, 0.1);
+  auto world = make(s.robot("real", 0.0, 0.0));
+  ASSERT_TRUE(world.world) << world.all_problems();
+  Space& space = world->space();
+  const RobotId real = space.find_robot("real");
+  space.set_external(real, true);
+  for (int i = 0; i < 60; ++i) {
+    const double x_m = 0.02 * std::sin(0.2 * i);  // to and fro over the border
+    space.set_pose(real, {x_m, 0.0, 0.0, 1.0, 0.0});
+    world->step();
+    ASSERT_EQ(space.pose(real).x_m, x_m);
+    for (const char* id : {"w", "e"})
+      ASSERT_LE(overlap_m(pose_of(world, id), space.pose(real)), 0.004 + 2 * depth_m()) << i;
+    expect_one_region_each(world);
+  }
+}
+
 // --- splits of one arena ---
 
 TEST_P(Regions, ALoneRobotDrivesAcrossAllBordersAsIfThereWereNone) {
