@@ -1,5 +1,5 @@
 // Reads <physics_engines> with their regions, and <media>.
-#include <cmath>
+#include <algorithm>
 #include <map>
 
 #include "core/config/reading.hpp"
@@ -63,15 +63,15 @@ bool folds_back(const BoundarySide& a, const BoundarySide& b, const BoundarySide
 std::string flaw_of(const std::vector<BoundarySide>& sides) {
   if (sides.size() < 3) return "an outline needs at least three vertices";
   if (sides.size() > kMostVertices) return "more than 1000 vertices";
-  double twice_area = 0.0;
   for (std::size_t i = 0; i < sides.size(); ++i) {
     const BoundarySide& a = sides[i];
     const BoundarySide& b = sides[(i + 1) % sides.size()];
     if (a.x_m == b.x_m && a.y_m == b.y_m)
       return "the vertices on lines " + std::to_string(a.line) + " and " + std::to_string(b.line) + " are the same";
-    twice_area += a.x_m * b.y_m - b.x_m * a.y_m;
   }
-  if (twice_area == 0.0) return "the outline has no area";
+  if (std::all_of(sides.begin() + 2, sides.end(),
+                  [&](const BoundarySide& c) { return side_of(sides[0], sides[1], c) == 0.0; }))
+    return "the outline has no area";
   for (std::size_t i = 0; i < sides.size(); ++i) {
     const BoundarySide& a = sides[i];
     const BoundarySide& b = sides[(i + 1) % sides.size()];
