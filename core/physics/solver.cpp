@@ -23,9 +23,10 @@ void SolverEngine::load(const PhysicsContext& context) {
   bodies_ = 0;
   for (std::size_t i = 0; i < parts_.size(); ++i) {
     const Region& region = context.stores.regions[parts_[i].region];
-    if (region.owned.empty()) continue;
+    const std::size_t bodies = region.owned.size() + region.mirrored.size();
+    if (bodies == 0) continue;
     busy_.push_back(i);
-    bodies_ += region.owned.size();
+    bodies_ += bodies;
   }
   each_busy_part(context.pool, [&](Part& part) {
     part.solver->load({context.stores, context.stores.regions[part.region], context.tick_s, context.tick});

@@ -59,8 +59,8 @@ struct SolverType {
                                   const Region& region, double tick_s) = nullptr;
 };
 
-/// All engines of one such kind in a run: a solver a region, stepped in parallel. Regions that own no body rest; few
-/// bodies are left to the calling thread.
+/// All engines of one such kind in a run: a solver a region, stepped in parallel. Regions that neither hold
+/// nor mirror a body rest; few bodies are left to the calling thread.
 class SolverEngine final : public Engine {
  public:
   explicit SolverEngine(std::string_view kind) : kind_(kind) {}
@@ -83,7 +83,7 @@ class SolverEngine final : public Engine {
   void each_busy_part(ThreadPool& pool, Work&& work);
 
   std::vector<Part> parts_;
-  std::vector<std::size_t> busy_;  // parts that own bodies in this tick
+  std::vector<std::size_t> busy_;  // parts that hold bodies in this tick
   std::size_t bodies_ = 0;         // of these
 };
 

@@ -5,6 +5,7 @@
 #include <map>
 #include <optional>
 
+#include "core/physics/dynamics2d/dynamics2d.hpp"
 #include "core/physics/kinematics2d/kinematics2d.hpp"
 #include "core/physics/solver.hpp"
 
@@ -16,7 +17,7 @@ constexpr double kNarrowestPart_m = 4.0;  // narrower ones spend their time on b
 constexpr std::size_t kMostPartsASide = 8;
 
 const std::vector<const SolverType*>& solver_types() {
-  static const std::vector<const SolverType*> types = {};
+  static const std::vector<const SolverType*> types = {&dynamics2d_type()};
   return types;
 }
 

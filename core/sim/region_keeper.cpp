@@ -53,7 +53,7 @@ std::size_t nearest_side(const Region& region, double x, double y, double& neare
 
 }  // namespace
 
-void RegionKeeper::build(const SpaceStores& stores, double tick_s) {
+void RegionKeeper::build(SpaceStores& stores, double tick_s) {
   borders_ = false;
   lists_ = false;
   for (const Region& region : stores.regions) {
@@ -75,6 +75,7 @@ void RegionKeeper::build(const SpaceStores& stores, double tick_s) {
   // A body counts for a region when it can touch one of the region's bodies within the tick, or touch a robot that
   // does: so that the doubles at the border meet what their originals meet.
   extra_reach_m_ = largest_m + 2.0 * robot_m + 2.0 * hop_m;
+  stores.border_reach_m = largest_m + extra_reach_m_;
   map_.build(stores.regions, stores.min_x_m, stores.min_y_m, stores.max_x_m, stores.max_y_m,
              largest_m + extra_reach_m_);
 }

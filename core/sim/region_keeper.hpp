@@ -14,7 +14,7 @@ namespace tandem::core {
 class RegionKeeper {
  public:
   /// Call when the regions, robots and objects of `stores` are made. `tick_s` bounds how far a body moves in a tick.
-  void build(const SpaceStores& stores, double tick_s);
+  void build(SpaceStores& stores, double tick_s);
 
   /// Finds the regions of all bodies that were put somewhere (rows flagged kMoved, objects whose region is kNoRegion).
   /// Those that no region can hold are added to `nowhere`; they stay where they are, and in no region's lists.

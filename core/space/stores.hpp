@@ -174,6 +174,7 @@ struct SpaceStores {
   std::vector<Joint> joints;  ///< by number
 
   std::vector<Region> regions;  ///< at least one
+  double border_reach_m = 0.0;  ///< how far outside its outline a region's mirrored bodies may lie
   BodyIndex body_index;
 
   std::vector<LightSource> lights;

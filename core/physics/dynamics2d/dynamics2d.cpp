@@ -1,0 +1,535 @@
+#include "core/physics/dynamics2d/dynamics2d.hpp"
+
+#include <algorithm>
+#include <box2d/box2d.h>
+#include <cmath>
+
+#include "core/physics/roster.hpp"
+#include "core/space/object_index.hpp"
+
+namespace tandem::core {
+namespace {
+
+// Box2D's tolerances are lengths of its own unit: what is 1 m to it allows 5 mm of overlap and looks 10 cm around every
+// body. Ten units a metre suit robots of some centimetres.
+constexpr double kUnits_m = 10.0;
+constexpr float kUnits = static_cast<float>(kUnits_m);
+
+constexpr double kTouchMargin_m = 0.05;       // around a region: immovable objects so near stand in it
+constexpr double kLargestHop = 0.5;           // of one sub-step, in body radii: nothing is jumped over
+constexpr double kMostOfBox2dsHop = 0.99;     // Box2D silently cuts faster bodies to one hop a sub-step
+constexpr std::int64_t kMostSubSteps = 1000;  // a tick
+constexpr float kLinearSlowing = 1.0F;        // correction factor of a drive: all of the error within one sub-step
+
+struct Params {
+  std::int64_t iterations = 0;
+  std::int64_t velocity_iterations = 8;
+  std::int64_t position_iterations = 3;
+  double box_linear_friction = 1.49;
+  double box_angular_friction = 1.49;
+  double cylinder_linear_friction = 1.49;
+  double cylinder_angular_friction = 1.49;
+  double friction = 0.1;
+  double elevation_m = 0.0;
+
+  void describe(hal::ParamVisitor& v) {
+    v.integer("iterations", iterations, {0, static_cast<double>(kMostSubSteps)},
+              "Sub-steps a tick. 0: as few as keep every hop below half a body's radius.");
+    v.integer("velocity_iterations", velocity_iterations, {1, 1000}, "Box2D's passes over velocities, a sub-step.");
+    v.integer("position_iterations", position_iterations, {1, 1000}, "Box2D's passes over overlaps, a sub-step.");
+    v.number("box_linear_friction", box_linear_friction, hal::unit::none, {0.0, 1e6},
+             "Force in N that a kg of a movable box resists sliding on the ground with.");
+    v.number("box_angular_friction", box_angular_friction, hal::unit::none, {0.0, 1e6},
+             "Torque in N m that a kg of a movable box resists turning on the ground with.");
+    v.number("cylinder_linear_friction", cylinder_linear_friction, hal::unit::none, {0.0, 1e6},
+             "As box_linear_friction, of a cylinder.");
+    v.number("cylinder_angular_friction", cylinder_angular_friction, hal::unit::none, {0.0, 1e6},
+             "As box_angular_friction, of a cylinder.");
+    v.number("friction", friction, hal::unit::none, {0.0, 10.0}, "Coulomb's coefficient between bodies that touch.");
+    v.number("elevation", elevation_m, hal::unit::m, {-1e6, 1e6},
+             "Height of the plane; read for ARGoS 3's files, without effect on results.");
+  }
+};
+
+/// A body's double in Box2D.
+struct Twin {
+  b2Body* body = nullptr;
+  b2Joint* hold = nullptr;  ///< to the ground: a movable object's friction, or a robot's drive while it pushes
+  // The state in the stores that the double agrees with.
+  double x_m = NAN, y_m = NAN, cos_h = 0.0, sin_h = 0.0, vx_m_s = 0.0, vy_m_s = 0.0, w_rad_s = 0.0;
+  double turn_rad = 0.0;  ///< of a robot that pushes nothing: in this sub-step, by its wheels
+};
+
+/// Cosine and sine of a heading.
+struct Heading {
+  double cos_h, sin_h;
+};
+
+/// A heading turned by d rad: by series that are exact to 1e-13 where a robot's turns within a sub-step are.
+Heading turned(Heading h, double d) noexcept {
+  double c = 0.0;
+  double s = 0.0;
+  if (std::fabs(d) < 0.5) {
+    const double d2 = d * d;
+    s = d * (1.0 - d2 * (1.0 / 6 - d2 * (1.0 / 120 - d2 * (1.0 / 5040 - d2 * (1.0 / 362880 - d2 / 39916800.0)))));
+    c = 1.0 - d2 * (0.5 - d2 * (1.0 / 24 - d2 * (1.0 / 720 - d2 * (1.0 / 40320 - d2 / 3628800.0))));
+  } else {
+    c = std::cos(d);
+    s = std::sin(d);
+  }
+  return {h.cos_h * c - h.sin_h * s, h.sin_h * c + h.cos_h * s};
+}
+
+class Dynamics2d final : public Solver {
+ public:
+  Dynamics2d(const Params& params, const SpaceStores& stores)
+      : params_(params),
+        origin_x_m_(0.5 * (stores.min_x_m + stores.max_x_m)),
+        origin_y_m_(0.5 * (stores.min_y_m + stores.max_y_m)) {}
+
+  void load(const SolverContext& context) override {
+    const SpaceStores& s = context.stores;
+    if (world_ == nullptr) make_world();
+    if (version_ != s.immovables_version) place_immovables(context);
+    roster_.update(
+        context.region, s, [&](BodyKey key) { return make(s, key); }, [this](Twin& twin) { drop(twin); });
+    for (auto& entry : roster_.entries()) take_over(s, entry.key, entry.body);
+    if (!s.joints.empty() || !joints_.empty()) join(s);
+  }
+
+  void advance(const SolverContext& context) override {
+    SpaceStores& s = context.stores;
+    const int steps = sub_steps(s, context.tick_s);
+    const double dt = context.tick_s / steps;
+    headings_.resize(roster_.entries().size());
+    for (std::size_t i = 0; i < headings_.size(); ++i) {
+      const Twin& twin = roster_.entries()[i].body;
+      headings_[i] = {twin.cos_h, twin.sin_h};
+    }
+    for (int step = 0; step < steps; ++step) {
+      for (std::size_t i = 0; i < headings_.size(); ++i) steer(s, i, dt);
+      world_->Step(static_cast<float>(dt), static_cast<int>(params_.velocity_iterations),
+                   static_cast<int>(params_.position_iterations));
+      for (std::size_t i = 0; i < headings_.size(); ++i) {
+        const auto& entry = roster_.entries()[i];
+        if (!entry.key.is_object())
+          headings_[i] = turned(headings_[i], entry.body.hold == nullptr
+                                                  ? entry.body.turn_rad
+                                                  : static_cast<double>(entry.body.body->GetAngularVelocity()) * dt);
+      }
+    }
+    for (std::size_t i = 0; i < headings_.size(); ++i) write_back(s, i, context.tick_s, dt);
+  }
+
+  void forget() override {
+    roster_.clear();
+    joints_.clear();
+    world_.reset();
+    anchor_ = nullptr;
+    immovable_ = nullptr;
+    version_ = 0;
+  }
+
+ private:
+  struct Held {
+    std::size_t number;
+    std::uint32_t generation;
+    b2Joint* joint;
+  };
+
+  b2Vec2 at(double x_m, double y_m) const noexcept {
+    return {static_cast<float>((x_m - origin_x_m_) * kUnits_m), static_cast<float>((y_m - origin_y_m_) * kUnits_m)};
+  }
+  static b2Vec2 speed(double vx_m_s, double vy_m_s) noexcept {
+    return {static_cast<float>(vx_m_s * kUnits_m), static_cast<float>(vy_m_s * kUnits_m)};
+  }
+
+  // --- the world ---
+
+  void make_world() {
+    world_ = std::make_unique<b2World>(b2Vec2(0.0F, 0.0F));
+    world_->SetAllowSleeping(false);
+    world_->SetContinuousPhysics(false);  // nothing moves far enough in a sub-step
+    b2BodyDef def;
+    anchor_ = world_->CreateBody(&def);
+    version_ = 0;
+  }
+
+  void place_immovables(const SolverContext& context) {
+    if (immovable_ != nullptr) world_->DestroyBody(immovable_);
+    b2BodyDef def;
+    immovable_ = world_->CreateBody(&def);
+    for (const Object& o : context.stores.objects) {
+      if (!o.alive || o.movable || !context.region.touches(o, kTouchMargin_m + context.stores.border_reach_m)) continue;
+      add_fixture(immovable_, o, true, 0.0F);
+    }
+    const auto& sides = context.region.sides;
+    for (std::size_t i = 0; i < sides.size(); ++i) {
+      if (!sides[i].wall) continue;
+      const RegionSide& b = sides[(i + 1) % sides.size()];
+      b2EdgeShape edge;
+      edge.SetTwoSided(at(sides[i].x_m, sides[i].y_m), at(b.x_m, b.y_m));
+      b2FixtureDef fixture;
+      fixture.shape = &edge;
+      fixture.friction = static_cast<float>(params_.friction);
+      immovable_->CreateFixture(&fixture);
+    }
+    version_ = context.stores.immovables_version;
+  }
+
+  /// `placed`: the shape lies at the object's pose; else at the body's origin.
+  void add_fixture(b2Body* body, const Object& o, bool placed, float density) const {
+    b2FixtureDef fixture;
+    fixture.density = density;
+    fixture.friction = static_cast<float>(params_.friction);
+    b2CircleShape circle;
+    b2PolygonShape box;
+    if (o.kind == Object::Kind::Cylinder) {
+      circle.m_radius = static_cast<float>(o.radius_m * kUnits_m);
+      if (placed) circle.m_p = at(o.x_m, o.y_m);
+      fixture.shape = &circle;
+    } else {
+      const auto hx = static_cast<float>(o.half_x_m * kUnits_m);
+      const auto hy = static_cast<float>(o.half_y_m * kUnits_m);
+      if (placed)
+        box.SetAsBox(hx, hy, at(o.x_m, o.y_m), static_cast<float>(std::atan2(o.sin_h, o.cos_h)));
+      else
+        box.SetAsBox(hx, hy);
+      fixture.shape = &box;
+    }
+    body->CreateFixture(&fixture);
+  }
+
+  // --- doubles ---
+
+  static const hal::DataSheet& sheet_of(const SpaceStores& s, std::size_t row) noexcept {
+    return *s.groups[s.blocks[s.robots[s.bodies.entity[row]].block].group].sheet;
+  }
+
+  Twin make(const SpaceStores& s, BodyKey key) {
+    Twin twin;
+    b2BodyDef def;
+    def.allowSleep = false;
+    def.type = b2_dynamicBody;
+    def.userData.pointer = key.value;
+    const std::size_t i = key.index();
+    if (key.is_object()) {
+      const Object& o = s.objects[i];
+      def.position = at(o.x_m, o.y_m);
+      def.angle = static_cast<float>(std::atan2(o.sin_h, o.cos_h));
+      twin.body = world_->CreateBody(&def);
+      const double area =
+          o.kind == Object::Kind::Cylinder ? M_PI * o.radius_m * o.radius_m : 4 * o.half_x_m * o.half_y_m;
+      add_fixture(twin.body, o, false, static_cast<float>(o.mass_kg / (area * kUnits_m * kUnits_m)));
+      const bool round = o.kind == Object::Kind::Cylinder;
+      b2FrictionJointDef rub;
+      rub.bodyA = anchor_;
+      rub.bodyB = twin.body;
+      rub.collideConnected = true;
+      rub.maxForce = static_cast<float>(
+          o.mass_kg * (round ? params_.cylinder_linear_friction : params_.box_linear_friction) * kUnits_m);
+      rub.maxTorque = static_cast<float>(
+          o.mass_kg * (round ? params_.cylinder_angular_friction : params_.box_angular_friction) * kUnits_m * kUnits_m);
+      twin.hold = world_->CreateJoint(&rub);
+    } else {
+      const hal::DataSheet& sheet = sheet_of(s, i);
+      def.position = at(s.bodies.x_m[i], s.bodies.y_m[i]);
+      def.angle = static_cast<float>(std::atan2(s.bodies.sin_h[i], s.bodies.cos_h[i]));
+      twin.body = world_->CreateBody(&def);
+      b2CircleShape disc;
+      disc.m_radius = s.bodies.radius_m[i] * kUnits;
+      b2FixtureDef fixture;
+      fixture.shape = &disc;
+      fixture.friction = static_cast<float>(params_.friction);
+      fixture.density = static_cast<float>(sheet.mass_kg) / (b2_pi * disc.m_radius * disc.m_radius);
+      twin.body->CreateFixture(&fixture);
+      twin.body->SetFixedRotation(true);
+    }
+    return twin;
+  }
+
+  void drop(Twin& twin) {
+    if (twin.body == nullptr) return;
+    // Joints between bodies go with either of them.
+    std::erase_if(joints_, [&](const Held& held) {
+      return held.joint->GetBodyA() == twin.body || held.joint->GetBodyB() == twin.body;
+    });
+    world_->DestroyBody(twin.body);
+    twin.body = nullptr;
+  }
+
+  void take_over(const SpaceStores& s, BodyKey key, Twin& twin) {
+    const std::size_t i = key.index();
+    const bool object = key.is_object();
+    const double x = object ? s.objects[i].x_m : s.bodies.x_m[i];
+    const double y = object ? s.objects[i].y_m : s.bodies.y_m[i];
+    const double c = object ? s.objects[i].cos_h : s.bodies.cos_h[i];
+    const double h = object ? s.objects[i].sin_h : s.bodies.sin_h[i];
+    const Motion& m = object ? s.object_motion[i] : s.bodies.motion[i];
+    const bool external = !object && (s.bodies.flags[i] & kExternal) != 0;
+    const b2BodyType type = external ? b2_kinematicBody : b2_dynamicBody;
+    if (twin.body->GetType() != type) twin.body->SetType(type);
+    if (x != twin.x_m || y != twin.y_m || c != twin.cos_h || h != twin.sin_h) {
+      twin.body->SetTransform(at(x, y), static_cast<float>(std::atan2(h, c)));
+      twin.x_m = x;
+      twin.y_m = y;
+      twin.cos_h = c;
+      twin.sin_h = h;
+    }
+    if (m.v_m_s[0] != twin.vx_m_s || m.v_m_s[1] != twin.vy_m_s || m.w_rad_s[2] != twin.w_rad_s) {
+      twin.vx_m_s = m.v_m_s[0];
+      twin.vy_m_s = m.v_m_s[1];
+      twin.w_rad_s = m.w_rad_s[2];
+      if (!external) {
+        twin.body->SetLinearVelocity(speed(twin.vx_m_s, twin.vy_m_s));
+        twin.body->SetAngularVelocity(static_cast<float>(twin.w_rad_s));
+      }
+    }
+    if (external) {
+      twin.body->SetLinearVelocity({0.0F, 0.0F});
+      twin.body->SetAngularVelocity(0.0F);
+    }
+  }
+
+  Twin* find(BodyKey key) noexcept {
+    auto& entries = roster_.entries();
+    const auto found = std::lower_bound(entries.begin(), entries.end(), key,
+                                        [](const auto& entry, BodyKey wanted) { return entry.key < wanted; });
+    return found != entries.end() && found->key == key ? &found->body : nullptr;
+  }
+
+  void join(const SpaceStores& s) {
+    std::erase_if(joints_, [&](const Held& held) {
+      const Joint& joint = s.joints[held.number];
+      if (joint.alive && joint.generation == held.generation) return false;
+      world_->DestroyJoint(held.joint);
+      return true;
+    });
+    for (std::size_t i = 0; i < s.joints.size(); ++i) {
+      const Joint& joint = s.joints[i];
+      const bool held = std::any_of(joints_.begin(), joints_.end(), [&](const Held& h) { return h.number == i; });
+      if (!joint.alive || held) continue;
+      const Twin* a = find(joint.a);
+      const Twin* b = find(joint.b);
+      if (a == nullptr || b == nullptr) continue;
+      const b2Vec2 on_a(static_cast<float>(joint.ax_m * kUnits_m), static_cast<float>(joint.ay_m * kUnits_m));
+      const b2Vec2 on_b(static_cast<float>(joint.bx_m * kUnits_m), static_cast<float>(joint.by_m * kUnits_m));
+      b2Joint* made = nullptr;
+      if (joint.turns) {
+        b2RevoluteJointDef def;
+        def.bodyA = a->body;
+        def.bodyB = b->body;
+        def.localAnchorA = on_a;
+        def.localAnchorB = on_b;
+        made = world_->CreateJoint(&def);
+      } else {
+        b2WeldJointDef def;
+        def.bodyA = a->body;
+        def.bodyB = b->body;
+        def.localAnchorA = on_a;
+        def.localAnchorB = on_b;
+        def.referenceAngle = static_cast<float>(joint.heading_rad);
+        made = world_->CreateJoint(&def);
+      }
+      joints_.push_back({i, joint.generation, made});
+    }
+  }
+
+  // --- one tick ---
+
+  int sub_steps(const SpaceStores& s, double tick_s) const noexcept {
+    if (params_.iterations > 0) return static_cast<int>(params_.iterations);
+    double hop = 0.0;
+    for (const RobotGroup& group : s.groups) {
+      if (group.sheet != nullptr)
+        hop = std::max(hop, group.sheet->max_wheel_speed_m_s * tick_s / (kLargestHop * group.sheet->body_radius_m));
+    }
+    return static_cast<int>(std::clamp(std::ceil(hop), 1.0, static_cast<double>(kMostSubSteps)));
+  }
+
+  /// Whether a robot pushes something that a drive must hold its own against: an object, or a robot that pushes.
+  static bool pushes(const Twin& twin) noexcept {
+    for (const b2ContactEdge* edge = twin.body->GetContactList(); edge != nullptr; edge = edge->next) {
+      if (!edge->contact->IsTouching() || edge->other->GetType() != b2_dynamicBody) continue;
+      if (edge->other->GetJointList() != nullptr) return true;
+    }
+    return false;
+  }
+
+  /// Gives a robot the velocity that its wheels command, as far as their force goes.
+  void steer(const SpaceStores& s, std::size_t index, double dt) {
+    auto& entry = roster_.entries()[index];
+    if (entry.key.is_object()) return;
+    const std::size_t row = entry.key.index();
+    if ((s.bodies.flags[row] & kExternal) != 0) return;
+    Twin& twin = entry.body;
+    const hal::DataSheet& sheet = sheet_of(s, row);
+    const double turn = (s.bodies.right_m_s[row] - s.bodies.left_m_s[row]) / sheet.wheel_base_m * dt;
+    const double way = 0.5 * (s.bodies.left_m_s[row] + s.bodies.right_m_s[row]) * dt;
+    // The chord of the arc: its direction is the heading in the middle, its length a little less than the arc's.
+    const double half = 0.5 * turn;
+    const double half2 = half * half;
+    const double chord = way * (1.0 - half2 / 6.0 * (1.0 - half2 / 20.0 * (1.0 - half2 / 42.0)));
+    const Heading middle = turned(headings_[index], half);
+    const double dx = chord * middle.cos_h;
+    const double dy = chord * middle.sin_h;
+    if (pushes(twin) || holds(twin)) {
+      drive(twin, sheet, dx, dy, turn, std::atan2(headings_[index].sin_h, headings_[index].cos_h));
+      return;
+    }
+    if (twin.hold != nullptr) {
+      world_->DestroyJoint(twin.hold);
+      twin.hold = nullptr;
+      twin.body->SetFixedRotation(true);
+    }
+    // The wheels hold the heading against whatever the disc rubs on.
+    twin.turn_rad = turn;
+    const auto most = static_cast<float>(sheet.drive_force_N / sheet.mass_kg * dt * kUnits_m);
+    b2Vec2 change = speed(dx / dt, dy / dt) - twin.body->GetLinearVelocity();
+    const float length = change.Length();
+    if (length > most) change *= most / length;
+    twin.body->SetLinearVelocity(twin.body->GetLinearVelocity() + change);
+  }
+
+  /// Whether a robot is joined to something.
+  static bool holds(const Twin& twin) noexcept {
+    for (const b2JointEdge* edge = twin.body->GetJointList(); edge != nullptr; edge = edge->next) {
+      if (edge->joint != twin.hold) return true;
+    }
+    return false;
+  }
+
+  /// The drive as a joint to the ground: its force is part of what Box2D solves, so pushing against a load is exact.
+  void drive(Twin& twin, const hal::DataSheet& sheet, double dx_m, double dy_m, double turn_rad, double heading_rad) {
+    const b2Vec2 target = twin.body->GetPosition() + speed(dx_m, dy_m);
+    const float angle = twin.body->GetAngle() + static_cast<float>(turn_rad);
+    if (twin.hold == nullptr) {
+      b2MotorJointDef def;
+      def.bodyA = anchor_;
+      def.bodyB = twin.body;
+      def.collideConnected = true;
+      def.maxForce = static_cast<float>(sheet.drive_force_N * kUnits_m);
+      def.maxTorque = static_cast<float>(sheet.drive_torque_Nm * kUnits_m * kUnits_m);
+      def.correctionFactor = kLinearSlowing;
+      twin.hold = world_->CreateJoint(&def);
+      twin.body->SetFixedRotation(false);
+      twin.body->SetTransform(twin.body->GetPosition(), static_cast<float>(heading_rad));
+    }
+    auto* motor = static_cast<b2MotorJoint*>(twin.hold);
+    motor->SetLinearOffset(target);
+    motor->SetAngularOffset(angle);
+  }
+
+  void write_back(SpaceStores& s, std::size_t index, double tick_s, double dt) {
+    auto& entry = roster_.entries()[index];
+    Twin& twin = entry.body;
+    const b2Vec2 p = twin.body->GetPosition();
+    const b2Vec2 v = twin.body->GetLinearVelocity();
+    const bool driven = !entry.key.is_object() && twin.hold == nullptr;
+    const auto w = driven ? static_cast<float>(twin.turn_rad / dt) : twin.body->GetAngularVelocity();
+    const double vx = static_cast<double>(v.x) / kUnits_m;
+    const double vy = static_cast<double>(v.y) / kUnits_m;
+    const bool finite =
+        std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(vx) && std::isfinite(vy) && std::isfinite(w);
+    const double hop = kMostOfBox2dsHop * static_cast<double>(b2_maxTranslation) / (kUnits_m * dt);  // in m/s
+    if (!finite || vx * vx + vy * vy > hop * hop) {
+      if (entry.owned)
+        trouble.push_back({entry.key, finite ? "moves faster than its engine can follow (" +
+                                                   hal::format_number(std::hypot(vx, vy)) + " m/s)"
+                                             : "has a position or speed that is not a finite number"});
+      return;
+    }
+    const std::size_t i = entry.key.index();
+    const bool object = entry.key.is_object();
+    if (!object && (s.bodies.flags[i] & kExternal) != 0) return;
+    twin.x_m = origin_x_m_ + static_cast<double>(p.x) / kUnits_m;
+    twin.y_m = origin_y_m_ + static_cast<double>(p.y) / kUnits_m;
+    twin.vx_m_s = vx;
+    twin.vy_m_s = vy;
+    twin.w_rad_s = static_cast<double>(w);
+    if (object) {
+      const auto angle = static_cast<double>(twin.body->GetAngle());
+      twin.cos_h = std::cos(angle);
+      twin.sin_h = std::sin(angle);
+    } else {
+      const double k = 1.5 - 0.5 * (headings_[index].cos_h * headings_[index].cos_h +
+                                    headings_[index].sin_h * headings_[index].sin_h);
+      twin.cos_h = headings_[index].cos_h * k;  // one Newton step keeps the heading a unit vector
+      twin.sin_h = headings_[index].sin_h * k;
+    }
+    if (!entry.owned) return;
+    Motion& m = object ? s.object_motion[i] : s.bodies.motion[i];
+    m.v_m_s = {twin.vx_m_s, twin.vy_m_s, 0.0};
+    m.w_rad_s = {0.0, 0.0, twin.w_rad_s};
+    if (object) {
+      Object& o = s.objects[i];
+      o.x_m = twin.x_m;
+      o.y_m = twin.y_m;
+      o.cos_h = twin.cos_h;
+      o.sin_h = twin.sin_h;
+    } else {
+      s.bodies.x_m[i] = twin.x_m;
+      s.bodies.y_m[i] = twin.y_m;
+      s.bodies.cos_h[i] = twin.cos_h;
+      s.bodies.sin_h[i] = twin.sin_h;
+      s.bodies.left_m[i] += s.bodies.left_m_s[i] * tick_s;
+      s.bodies.right_m[i] += s.bodies.right_m_s[i] * tick_s;
+    }
+  }
+
+  Params params_;
+  // Of Box2D's frame: the arena's middle for every region, so that a robot rounds alike in all of them.
+  double origin_x_m_, origin_y_m_;
+  std::unique_ptr<b2World> world_;
+  b2Body* anchor_ = nullptr;     // the ground that drives and friction push against
+  b2Body* immovable_ = nullptr;  // walls, boxes, cylinders
+  std::uint64_t version_ = 0;    // of the immovable objects
+  Roster<Twin> roster_;
+  std::vector<Heading> headings_;  // parallel to the roster, within a tick
+  std::vector<Held> joints_;
+};
+
+std::shared_ptr<const void> read(const Element& options, Problems& problems) {
+  auto params = std::make_shared<Params>();
+  ElementReader reader(options, problems, {"id", "regions"});
+  params->describe(reader);
+  reader.finish();
+  for (const Element& child : options.children) {
+    if (child.name == "boundaries" || child.name == "spatial_hash") continue;
+    problems.push_back({options.file, child.line,
+                        "<dynamics2d> may not hold <" + child.name + ">; it may hold: boundaries, spatial_hash",
+                        false});
+  }
+  return params;
+}
+
+}  // namespace
+
+const SolverType& dynamics2d_type() {
+  static const SolverType type = [] {
+    SolverType t;
+    t.kind = "dynamics2d";
+    t.summary = "Masses, forces and friction in the plane, on Box2D.";
+    t.read = &read;
+    t.describe = [](hal::ParamVisitor& visitor) { Params{}.describe(visitor); };
+    t.make = [](const std::shared_ptr<const void>& params, const SpaceStores& stores, const Region&,
+                double) -> std::unique_ptr<Solver> {
+      return std::make_unique<Dynamics2d>(*static_cast<const Params*>(params.get()), stores);
+    };
+    return t;
+  }();
+  return type;
+}
+
+}  // namespace tandem::core
+
+// Box2D times every island of bodies with gettimeofday, for a profile that nobody here reads; a robot that touches
+// nothing is an island, and a quarter of the whole time went there. The library calls its timer through the dynamic
+// linker, which takes a program's own definitions first: these.
+b2Timer::b2Timer() : m_start_sec(0), m_start_usec(0) {}
+
+void b2Timer::Reset() {}
+
+float b2Timer::GetMilliseconds() const {
+  return 0.0F;
+}

@@ -1,0 +1,11 @@
+// Masses, forces and friction in the plane, on Box2D.
+#pragma once
+#include "core/physics/solver.hpp"
+
+namespace tandem::core {
+
+/// `<dynamics2d>`: robots are discs that their wheels pull to the commanded speed with a limited force; boxes and
+/// cylinders that are movable have mass, and rub on the ground.
+const SolverType& dynamics2d_type();
+
+}  // namespace tandem::core
