@@ -1,6 +1,7 @@
 #include "core/physics/dynamics2d/dynamics2d.hpp"
 
 #include <algorithm>
+#include <box2d/b2_distance.h>
 #include <box2d/box2d.h>
 #include <cmath>
 
@@ -15,9 +16,12 @@ namespace {
 constexpr double kUnits_m = 10.0;
 constexpr float kUnits = static_cast<float>(kUnits_m);
 
-constexpr double kTouchMargin_m = 0.05;       // around a region: immovable objects so near stand in it
-constexpr double kLargestHop = 0.5;           // of one sub-step, in body radii: nothing is jumped over
-constexpr double kMostOfBox2dsHop = 0.99;     // Box2D silently cuts faster bodies to one hop a sub-step
+constexpr double kTouchMargin_m = 0.05;        // around a region: immovable objects so near stand in it
+constexpr double kLargestHop = 0.5;            // of one sub-step, in body radii: nothing is jumped over
+constexpr double kMostOfBox2dsHop = 0.99;      // Box2D silently cuts faster bodies to one hop a sub-step
+constexpr double kLongestLead_m = 0.2;         // in a tick, of a body that is led; farther away it is put
+constexpr float kRest = 0.5F * b2_linearSlop;  // how deep bodies rest in one another: Box2D then sees that they touch
+constexpr double kSamePlace_m = 1e-5;
 constexpr std::int64_t kMostSubSteps = 1000;  // a tick
 constexpr float kLinearSlowing = 1.0F;        // correction factor of a drive: all of the error within one sub-step
 
@@ -26,9 +30,9 @@ struct Params {
   std::int64_t velocity_iterations = 8;
   std::int64_t position_iterations = 3;
   double box_linear_friction = 1.49;
-  double box_angular_friction = 1.49;
+  double box_angular_friction = -1.0;
   double cylinder_linear_friction = 1.49;
-  double cylinder_angular_friction = 1.49;
+  double cylinder_angular_friction = -1.0;
   double friction = 0.1;
   double elevation_m = 0.0;
 
@@ -39,11 +43,12 @@ struct Params {
     v.integer("position_iterations", position_iterations, {1, 1000}, "Box2D's passes over overlaps, a sub-step.");
     v.number("box_linear_friction", box_linear_friction, hal::unit::none, {0.0, 1e6},
              "Force in N that a kg of a movable box resists sliding on the ground with.");
-    v.number("box_angular_friction", box_angular_friction, hal::unit::none, {0.0, 1e6},
-             "Torque in N m that a kg of a movable box resists turning on the ground with.");
+    v.number("box_angular_friction", box_angular_friction, hal::unit::none, {-1.0, 1e6},
+             "Torque in N m that a kg of a movable box resists turning on the ground with. Negative: what follows from "
+             "box_linear_friction when its weight is spread evenly.");
     v.number("cylinder_linear_friction", cylinder_linear_friction, hal::unit::none, {0.0, 1e6},
              "As box_linear_friction, of a cylinder.");
-    v.number("cylinder_angular_friction", cylinder_angular_friction, hal::unit::none, {0.0, 1e6},
+    v.number("cylinder_angular_friction", cylinder_angular_friction, hal::unit::none, {-1.0, 1e6},
              "As box_angular_friction, of a cylinder.");
     v.number("friction", friction, hal::unit::none, {0.0, 10.0}, "Coulomb's coefficient between bodies that touch.");
     v.number("elevation", elevation_m, hal::unit::m, {-1e6, 1e6},
@@ -80,6 +85,15 @@ Heading turned(Heading h, double d) noexcept {
   return {h.cos_h * c - h.sin_h * s, h.sin_h * c + h.cos_h * s};
 }
 
+/// Mean distance of an object's footprint from its centre: the lever of friction against turning.
+double mean_radius_m(const Object& o) noexcept {
+  if (o.kind == Object::Kind::Cylinder) return 2.0 / 3.0 * o.radius_m;
+  const double p = o.half_x_m;
+  const double q = o.half_y_m;
+  const double d = std::hypot(p, q);
+  return d / 3.0 + (p * p / q * std::log((q + d) / p) + q * q / p * std::log((p + d) / q)) / 6.0;
+}
+
 class Dynamics2d final : public Solver {
  public:
   Dynamics2d(const Params& params, const SpaceStores& stores)
@@ -93,7 +107,9 @@ class Dynamics2d final : public Solver {
     if (version_ != s.immovables_version) place_immovables(context);
     roster_.update(
         context.region, s, [&](BodyKey key) { return make(s, key); }, [this](Twin& twin) { drop(twin); });
-    for (auto& entry : roster_.entries()) take_over(s, entry.key, entry.body);
+    auto& entries = roster_.entries();
+    for (std::size_t i = 0; i < entries.size(); ++i) entries[i].body.body->GetUserData().pointer = i;
+    for (auto& entry : entries) take_over(s, entry.key, entry.owned, entry.body, context.tick_s);
     if (!s.joints.empty() || !joints_.empty()) join(s);
   }
 
@@ -102,12 +118,18 @@ class Dynamics2d final : public Solver {
     const int steps = sub_steps(s, context.tick_s);
     const double dt = context.tick_s / steps;
     headings_.resize(roster_.entries().size());
+    braking_.resize(headings_.size());
     for (std::size_t i = 0; i < headings_.size(); ++i) {
       const Twin& twin = roster_.entries()[i].body;
       headings_[i] = {twin.cos_h, twin.sin_h};
     }
     for (int step = 0; step < steps; ++step) {
       for (std::size_t i = 0; i < headings_.size(); ++i) steer(s, i, dt);
+      for (std::size_t i = 0; i < headings_.size(); ++i) brake(i, static_cast<float>(dt));
+      for (std::size_t i = 0; i < headings_.size(); ++i) {
+        b2Body* body = roster_.entries()[i].body.body;
+        if (braking_[i].LengthSquared() > 0.0F) body->SetLinearVelocity(body->GetLinearVelocity() - braking_[i]);
+      }
       world_->Step(static_cast<float>(dt), static_cast<int>(params_.velocity_iterations),
                    static_cast<int>(params_.position_iterations));
       for (std::size_t i = 0; i < headings_.size(); ++i) {
@@ -211,7 +233,6 @@ class Dynamics2d final : public Solver {
     b2BodyDef def;
     def.allowSleep = false;
     def.type = b2_dynamicBody;
-    def.userData.pointer = key.value;
     const std::size_t i = key.index();
     if (key.is_object()) {
       const Object& o = s.objects[i];
@@ -222,14 +243,15 @@ class Dynamics2d final : public Solver {
           o.kind == Object::Kind::Cylinder ? M_PI * o.radius_m * o.radius_m : 4 * o.half_x_m * o.half_y_m;
       add_fixture(twin.body, o, false, static_cast<float>(o.mass_kg / (area * kUnits_m * kUnits_m)));
       const bool round = o.kind == Object::Kind::Cylinder;
+      const double force = round ? params_.cylinder_linear_friction : params_.box_linear_friction;  // per kg
+      const double torque = round ? params_.cylinder_angular_friction : params_.box_angular_friction;
       b2FrictionJointDef rub;
       rub.bodyA = anchor_;
       rub.bodyB = twin.body;
       rub.collideConnected = true;
-      rub.maxForce = static_cast<float>(
-          o.mass_kg * (round ? params_.cylinder_linear_friction : params_.box_linear_friction) * kUnits_m);
-      rub.maxTorque = static_cast<float>(
-          o.mass_kg * (round ? params_.cylinder_angular_friction : params_.box_angular_friction) * kUnits_m * kUnits_m);
+      rub.maxForce = static_cast<float>(o.mass_kg * force * kUnits_m);
+      rub.maxTorque =
+          static_cast<float>(o.mass_kg * (torque < 0.0 ? force * mean_radius_m(o) : torque) * kUnits_m * kUnits_m);
       twin.hold = world_->CreateJoint(&rub);
     } else {
       const hal::DataSheet& sheet = sheet_of(s, i);
@@ -258,7 +280,7 @@ class Dynamics2d final : public Solver {
     twin.body = nullptr;
   }
 
-  void take_over(const SpaceStores& s, BodyKey key, Twin& twin) {
+  void take_over(const SpaceStores& s, BodyKey key, bool owned, Twin& twin, double tick_s) {
     const std::size_t i = key.index();
     const bool object = key.is_object();
     const double x = object ? s.objects[i].x_m : s.bodies.x_m[i];
@@ -266,11 +288,15 @@ class Dynamics2d final : public Solver {
     const double c = object ? s.objects[i].cos_h : s.bodies.cos_h[i];
     const double h = object ? s.objects[i].sin_h : s.bodies.sin_h[i];
     const Motion& m = object ? s.object_motion[i] : s.bodies.motion[i];
-    const bool external = !object && (s.bodies.flags[i] & kExternal) != 0;
-    const b2BodyType type = external ? b2_kinematicBody : b2_dynamicBody;
-    if (twin.body->GetType() != type) twin.body->SetType(type);
+    if (!object && (s.bodies.flags[i] & kExternal) != 0) {
+      lead(twin, x, y, c, h, tick_s);
+      return;
+    }
+    if (twin.body->GetType() != b2_dynamicBody) twin.body->SetType(b2_dynamicBody);
     if (x != twin.x_m || y != twin.y_m || c != twin.cos_h || h != twin.sin_h) {
+      const bool put_there = owned && std::isfinite(twin.x_m);  // by a hook: else it is new, or mirrored
       twin.body->SetTransform(at(x, y), static_cast<float>(std::atan2(h, c)));
+      if (put_there) part_from_twins(twin, key);
       twin.x_m = x;
       twin.y_m = y;
       twin.cos_h = c;
@@ -280,15 +306,46 @@ class Dynamics2d final : public Solver {
       twin.vx_m_s = m.v_m_s[0];
       twin.vy_m_s = m.v_m_s[1];
       twin.w_rad_s = m.w_rad_s[2];
-      if (!external) {
-        twin.body->SetLinearVelocity(speed(twin.vx_m_s, twin.vy_m_s));
-        twin.body->SetAngularVelocity(static_cast<float>(twin.w_rad_s));
+      twin.body->SetLinearVelocity(speed(twin.vx_m_s, twin.vy_m_s));
+      twin.body->SetAngularVelocity(static_cast<float>(twin.w_rad_s));
+    }
+  }
+
+  /// A body whose pose comes from outside moves there within the tick, so that others are pushed and not jumped upon.
+  void lead(Twin& twin, double x_m, double y_m, double cos_h, double sin_h, double tick_s) {
+    if (twin.body->GetType() != b2_kinematicBody) twin.body->SetType(b2_kinematicBody);
+    const b2Vec2 there = at(x_m, y_m);
+    const b2Vec2 way = there - twin.body->GetPosition();
+    const bool jumps = !std::isfinite(twin.x_m) || way.Length() > kUnits * static_cast<float>(kLongestLead_m);
+    if (jumps) twin.body->SetTransform(there, static_cast<float>(std::atan2(sin_h, cos_h)));
+    twin.body->SetLinearVelocity(jumps ? b2Vec2(0.0F, 0.0F) : (1.0F / static_cast<float>(tick_s)) * way);
+    twin.body->SetAngularVelocity(0.0F);
+    twin.x_m = x_m;
+    twin.y_m = y_m;
+    twin.cos_h = cos_h;
+    twin.sin_h = sin_h;
+  }
+
+  /// Box2D cannot tell in which direction two discs with one centre are to part: the one just put there gives way a
+  /// little, in a direction of its own.
+  void part_from_twins(Twin& twin, BodyKey key) {
+    struct Finder final : b2QueryCallback {
+      b2Body* self = nullptr;
+      bool found = false;
+      bool ReportFixture(b2Fixture* fixture) override {
+        const b2Body* other = fixture->GetBody();
+        found = other != self && other->GetType() == b2_dynamicBody &&
+                (other->GetPosition() - self->GetPosition()).Length() < static_cast<float>(kSamePlace_m * kUnits_m);
+        return !found;
       }
-    }
-    if (external) {
-      twin.body->SetLinearVelocity({0.0F, 0.0F});
-      twin.body->SetAngularVelocity(0.0F);
-    }
+    } finder;
+    finder.self = twin.body;
+    const b2Vec2 p = twin.body->GetPosition();
+    world_->QueryAABB(&finder, {p, p});
+    if (!finder.found) return;
+    const auto direction = static_cast<float>(key.value);
+    const auto step = static_cast<float>(kSamePlace_m * kUnits_m);
+    twin.body->SetTransform(p + b2Vec2(step * std::cos(direction), step * std::sin(direction)), twin.body->GetAngle());
   }
 
   Twin* find(BodyKey key) noexcept {
@@ -391,6 +448,62 @@ class Dynamics2d final : public Solver {
     twin.body->SetLinearVelocity(twin.body->GetLinearVelocity() + change);
   }
 
+  /// How much velocity a robot must lose so as not to run into what it nears within the sub-step. Box2D sees a contact
+  /// only when bodies overlap already, which at some steps a second is deep; so robots stop at one another's rims, each
+  /// losing what it contributes to the approach. Movable objects are not braked for: they are to be pushed.
+  void brake(std::size_t index, float dt_s) {
+    braking_[index].SetZero();
+    const auto& entry = roster_.entries()[index];
+    b2Body* body = entry.body.body;
+    if (entry.key.is_object() || entry.body.hold != nullptr || body->GetType() != b2_dynamicBody) return;
+    const b2Vec2 v = body->GetLinearVelocity();
+    for (const b2ContactEdge* edge = body->GetContactList(); edge != nullptr; edge = edge->next) {
+      const b2Contact* contact = edge->contact;
+      const bool is_a = contact->GetFixtureA()->GetBody() == body;
+      const b2Fixture* other = is_a ? contact->GetFixtureB() : contact->GetFixtureA();
+      b2Body* with = edge->other;
+      if (contact->IsTouching() || is_movable_object(with)) continue;
+      const b2Fixture* own = is_a ? contact->GetFixtureA() : contact->GetFixtureB();
+      b2Vec2 normal;
+      const float gap =
+          gap_between(*own->GetShape(), body->GetTransform(), *other->GetShape(), with->GetTransform(), normal);
+      if (gap <= 0.0F) continue;
+      const float towards = std::max(0.0F, b2Dot(v, normal));
+      const float other_towards = std::max(0.0F, -b2Dot(with->GetLinearVelocity(), normal));
+      const float excess = b2Dot(v - with->GetLinearVelocity(), normal) - (gap + kRest) / dt_s;
+      if (excess <= 0.0F || towards <= 0.0F) continue;
+      braking_[index] += excess * towards / (towards + other_towards) * normal;
+    }
+  }
+
+  bool is_movable_object(b2Body* body) const {
+    return body->GetType() == b2_dynamicBody && roster_.entries()[body->GetUserData().pointer].key.is_object();
+  }
+
+  /// Between a disc and another shape; `normal` is the unit vector from the disc to it.
+  static float gap_between(const b2Shape& disc, const b2Transform& at_disc, const b2Shape& other,
+                           const b2Transform& at_other, b2Vec2& normal) {
+    if (other.GetType() == b2Shape::e_circle) {
+      const auto& round = static_cast<const b2CircleShape&>(other);
+      normal = b2Mul(at_other, round.m_p) - at_disc.p;
+      const float distance = normal.Normalize();
+      return distance - disc.m_radius - round.m_radius;
+    }
+    b2DistanceInput input;
+    input.proxyA.Set(&disc, 0);
+    input.proxyB.Set(&other, 0);
+    input.transformA = at_disc;
+    input.transformB = at_other;
+    input.useRadii = false;
+    b2SimplexCache cache;
+    cache.count = 0;
+    b2DistanceOutput output;
+    b2Distance(&output, &cache, &input);
+    normal = output.pointB - output.pointA;
+    normal.Normalize();
+    return output.distance - disc.m_radius - other.m_radius;
+  }
+
   /// Whether a robot is joined to something.
   static bool holds(const Twin& twin) noexcept {
     for (const b2JointEdge* edge = twin.body->GetJointList(); edge != nullptr; edge = edge->next) {
@@ -486,6 +599,7 @@ class Dynamics2d final : public Solver {
   std::uint64_t version_ = 0;    // of the immovable objects
   Roster<Twin> roster_;
   std::vector<Heading> headings_;  // parallel to the roster, within a tick
+  std::vector<b2Vec2> braking_;
   std::vector<Held> joints_;
 };
 
