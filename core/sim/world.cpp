@@ -468,10 +468,10 @@ void assign_regions(const Scenario& scenario, const Placements& placements, cons
                         who + " at (" + hal::format_number(x_m) + ", " + hal::format_number(y_m) + ") " + why, false});
   };
   const bool any_solid = std::any_of(s.regions.begin(), s.regions.end(), [](const Region& r) { return !r.plane; });
-  for (std::size_t row = 0; row < s.bodies.size(); ++row) {
+  for (const RobotEntity& e : s.robots) {
+    const std::size_t row = s.blocks[e.block].first_row + e.slot;
     s.bodies.region[row] = keeper.find(s, BodyKey::robot(row));
     if (s.bodies.region[row] != kNoRegion) continue;
-    const RobotEntity& e = s.robots[s.bodies.entity[row]];
     const std::string name = s.names[e.item].prefix + (e.number < 0 ? "" : std::to_string(e.number));
     const bool flies = s.groups[s.blocks[e.block].group].sheet->flies;
     complain(scenario.robots[e.item].line, "robot '" + name + "'", s.bodies.x_m[row], s.bodies.y_m[row],
