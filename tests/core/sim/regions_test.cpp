@@ -630,7 +630,40 @@ TEST_P(MovableAcrossBorders, RobotsOfBothSidesPushOneBox) {
   for (const char* id : {"n", "s"}) EXPECT_LE(pose_of(world, id).x_m, box.x_m - 0.05 - kRobotRadius_m + 5e-3) << id;
 }
 
-GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(MovableAcrossBorders);
+/// An engine with forces in the west, kinematics2d in the east, and a gate each way.
+Scene west_of_kinematics(const std::string& kind) {
+  Scene s(4.0);
+  s.engine(kind, "west").side(-2, -2).side(0, -2, "east").side(0, 2).side(-2, 2);
+  s.engine("kinematics2d", "east").side(0, -2).side(2, -2).side(2, 2).side(0, 2, "west");
+  return s;
+}
+
+TEST_P(MovableAcrossBorders, AnObjectStopsAtAGateBehindWhichNobodyCouldMoveIt) {
+  Scene s = west_of_kinematics(GetParam());
+  s.box(-0.3, 0, 0.1, 0.2, 0.0, 0.06).movable(0.1).robot("a", -0.45, 0).wheels(kSpeed_m_s, kSpeed_m_s);
+  auto world = make(s);
+  ASSERT_TRUE(world.world) << world.all_problems();
+  for (int i = 0; i < 120; ++i) {
+    world->step();
+    ASSERT_EQ(world->state(), RunState::Running) << world->failure();
+    ASSERT_LE(world->space().objects()[0].x_m, 1e-9) << i;
+  }
+  EXPECT_GT(world->space().objects()[0].x_m, -0.05);
+  EXPECT_EQ(world->incidents().bodies_escaped, 0U);
+}
+
+TEST_P(MovableAcrossBorders, AnEngineWithoutForcesTakesAnObjectOnTheBorderAsItStands) {
+  Scene s = west_of_kinematics(GetParam());
+  s.box(-0.03, 0, 0.1, 0.2, 0.0, 0.5).movable(0.5).robot("a", 0.3, 0, std::numbers::pi).wheels(0.1, 0.1);
+  auto world = make(s);
+  ASSERT_TRUE(world.world) << world.all_problems();
+  steps(world, 80);
+  EXPECT_EQ(world->state(), RunState::Running) << world->failure();
+  const double rim_m = pose_of(world, "a").x_m - kRobotRadius_m;
+  EXPECT_GE(rim_m, world->space().objects()[0].x_m + 0.05 - depth_m() - 0.01);
+  EXPECT_LT(rim_m, 0.05);
+}
+
 INSTANTIATE_TEST_SUITE_P(Physics, MovableAcrossBorders, testing::ValuesIn(kinds_with_forces()), name_of_kind);
 
 // --- one engine over several regions is the same engine ---
@@ -789,7 +822,23 @@ TEST_P(TwoKinds, TheSameBitsForAnyNumberOfThreads) {
 std::string name_of_pair(const testing::TestParamInfo<KindPair>& info) {
   return info.param.first + "_" + info.param.second;
 }
-GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(TwoKinds);
+TEST_P(TwoKinds, AThingThatIsPushedPassesFromOneEngineToTheOther) {
+  if (!engine_traits(GetParam().first).forces || !engine_traits(GetParam().second).forces)
+    GTEST_SKIP() << "only engines with forces move objects";
+  Scene s = halves();
+  s.box(-0.3, 0.2, 0.1, 0.2, 0.0, 0.06).movable(0.1).robot("a", -0.45, 0.2).wheels(0.1, 0.1);
+  auto world = make(s);
+  ASSERT_TRUE(world.world) << world.all_problems();
+  steps(world, 20);
+  for (int i = 0; i < 60; ++i) {
+    const double last_m = world->space().objects()[0].x_m;
+    world->step();
+    ASSERT_EQ(world->state(), RunState::Running) << world->failure();
+    EXPECT_NEAR(world->space().objects()[0].x_m - last_m, 0.01, 2e-3) << "box at " << last_m;
+  }
+  EXPECT_GT(world->space().objects()[0].x_m, 0.2);
+}
+
 INSTANTIATE_TEST_SUITE_P(Physics, TwoKinds, testing::ValuesIn(kind_pairs()), name_of_pair);
 
 }  // namespace

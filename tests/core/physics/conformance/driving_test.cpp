@@ -73,6 +73,23 @@ TEST_P(Driving, NeitherGainsNorLosesSpeedOnFreeGround) {
   EXPECT_LT(track.fastest_m_s - track.slowest_m_s, 1e-4 * 0.1);
 }
 
+TEST_P(Driving, KeepsItsSpeedAndDirectionFarOutInALargeArena) {
+  // Engines that reckon in single precision round most here: 63 m from the middle.
+  for (const int per_second : {10, 50}) {
+    for (const double speed_m_s : {0.005, 0.02, 0.1288}) {
+      Scene s = scene(100.0);
+      s.scenario.ticks_per_second = per_second;
+      auto world = make(s.robot("a", 45, 44, 0.7).wheels(speed_m_s, speed_m_s));
+      ASSERT_TRUE(world.world) << world.all_problems();
+      const Track track = follow(world, 5.0);
+      const double along_m = track.x_m * std::cos(0.7) + track.y_m * std::sin(0.7);
+      const double aside_m = track.y_m * std::cos(0.7) - track.x_m * std::sin(0.7);
+      EXPECT_NEAR(along_m, speed_m_s * 5.0, kReached * speed_m_s * 5.0) << per_second << " ticks a second";
+      EXPECT_NEAR(aside_m, 0.0, kReached * along_m) << speed_m_s;
+    }
+  }
+}
+
 TEST_P(Driving, TurnsOnTheSpotAtTheCommandedRate) {
   for (const int per_second : {10, 20, 50}) {
     for (const double rim_m_s : {0.005, 0.04, 0.1288, -0.02, -0.1288}) {

@@ -1,4 +1,5 @@
 // What engines with forces promise of movable objects: how they glide, how robots push them, what stays put.
+#include "core/space/object_index.hpp"
 #include "tests/core/physics/conformance/engines.hpp"
 
 namespace tandem::core {
@@ -257,7 +258,55 @@ TEST_P(Pushing, AnObjectWhosePlaceOrSpeedIsNoNumberEndsTheRunByName) {
   }
 }
 
-GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(Pushing);
+/// How deep a robot's rim is in an object, in m; negative: the gap between them.
+double depth_in(const Object& o, const Pose& robot) {
+  double nx = 0.0;
+  double ny = 0.0;
+  return kRobotRadius_m - signed_distance(o, robot.x_m, robot.y_m, nx, ny);
+}
+
+TEST_P(Pushing, ACrowdAmongThingsToPushStaysWithinItsWallsAndComesToNoHarm) {
+  constexpr int kThings = 12;
+  for (const char* split : {"1x1", "2x2"}) {
+    Scene s(2.0);  // blind robots in circles of 33 cm radius
+    s.engine(GetParam()).split(split).param("left", "0.1").param("right", "0.085").walls().robots(60, 0.85);
+    for (int i = 0; i < kThings; ++i) {
+      const double x_m = 0.5 * (i % 4 - 1.5);
+      const double y_m = 0.6 * (i / 4 - 1.0);
+      if (i % 2 == 0)
+        s.box(x_m, y_m, 0.08, 0.12, 0.5 * i, 0.05).movable(0.05 + 0.02 * i);
+      else
+        s.cylinder(x_m, y_m, 0.05).movable(0.05 + 0.02 * i);
+    }
+    auto world = make(s);
+    ASSERT_TRUE(world.world) << world.all_problems();
+    const Space& space = world->space();
+    double moved_m = 0.0;
+    double deepest_m = 0.0;
+    const std::vector<Object> before = space.objects();
+    for (int tick = 0; tick < 300; ++tick) {
+      world->step();
+      ASSERT_EQ(world->state(), RunState::Running) << world->failure();
+      for (std::size_t i = 0; i < space.objects().size(); ++i) {
+        const Object& o = space.objects()[i];
+        if (!o.movable) continue;
+        ASSERT_LT(std::max(std::fabs(o.x_m), std::fabs(o.y_m)), 0.9 - 0.03) << o.id << " in tick " << tick;
+        ASSERT_LT(speed_of(world, i), 0.3) << o.id << " in tick " << tick;  // nothing drives faster than 0.13 m/s
+        moved_m = std::max(moved_m, std::hypot(o.x_m - before[i].x_m, o.y_m - before[i].y_m));
+        for (std::size_t r = 0; r < space.robot_count(); ++r)
+          deepest_m = std::max(deepest_m, depth_in(o, space.pose(space.robot(r))));
+      }
+      for (std::size_t r = 0; r < space.robot_count(); ++r) {
+        const Pose pose = space.pose(space.robot(r));
+        ASSERT_LT(std::max(std::fabs(pose.x_m), std::fabs(pose.y_m)), 0.9 - kRobotRadius_m + 0.005) << tick;
+      }
+    }
+    EXPECT_EQ(space.robot_count(), 60U);
+    EXPECT_GT(moved_m, 0.1) << split;     // somebody pushed something
+    EXPECT_LT(deepest_m, 0.02) << split;  // a tick's way, and a little
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Physics, Pushing, testing::ValuesIn(kinds_with_forces()), name_of_kind);
 
 }  // namespace
