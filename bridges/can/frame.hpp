@@ -1,0 +1,45 @@
+// A CAN 2.0 frame.
+#pragma once
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "hal/time.hpp"
+
+namespace tandem::bridges {
+
+inline constexpr std::uint32_t kLargestStandardId = 0x7FF;
+inline constexpr std::uint32_t kLargestExtendedId = 0x1FFFFFFF;
+
+/// One frame as users see it; valid when the identifier fits its kind and `size` is at most 8.
+struct CanFrame {
+  std::uint32_t id = 0;
+  bool extended = false;  ///< 29-bit identifier
+  bool remote = false;    ///< asks for data, carries none; `size` is how many are asked for
+  std::uint8_t size = 0;
+  std::array<std::uint8_t, 8> data{};
+  hal::TimeNs at_ns = 0;  ///< arrival, CLOCK_MONOTONIC or the link's clock; not sent
+
+  std::span<const std::uint8_t> bytes() const noexcept {
+    return {data.data(), remote ? std::size_t{0} : std::min<std::size_t>(size, data.size())};
+  }
+  bool valid() const noexcept { return size <= 8 && id <= (extended ? kLargestExtendedId : kLargestStandardId); }
+};
+
+/// Whether both say the same on the wire, whenever they arrived.
+inline bool same_on_wire(const CanFrame& a, const CanFrame& b) noexcept {
+  return a.id == b.id && a.extended == b.extended && a.remote == b.remote && a.size == b.size &&
+         std::ranges::equal(a.bytes(), b.bytes());
+}
+
+/// A frame with these bytes, at most 8 of them.
+inline CanFrame make_frame(std::uint32_t id, std::span<const std::uint8_t> bytes) noexcept {
+  CanFrame frame;
+  frame.id = id;
+  frame.size = static_cast<std::uint8_t>(std::min<std::size_t>(bytes.size(), 8));
+  std::copy_n(bytes.begin(), frame.size, frame.data.begin());
+  return frame;
+}
+
+}  // namespace tandem::bridges
