@@ -29,17 +29,40 @@ void add_run(CLI::App& app, RunOptions& o, int& code) {
 }
 
 void add_bench(CLI::App& app, BenchOptions& o, int& code) {
-  CLI::App* c = app.add_subcommand("bench", "Run a benchmark: one JSON object a line.");
+  CLI::App* c = app.add_subcommand("bench", "Run a benchmark: one JSON object a line, and figures.");
+  c->footer(
+      "With --from the options --robots, --engine, --threads, --partition, --regions, --density and --assignment "
+      "choose among the saved lines.");
   c->add_option("name", o.name, "diffusion: the standard scene")->capture_default_str();
-  c->add_option("--robots", o.robots, "Numbers of robots, e.g. 1000,10000")
+  c->add_option("--robots", o.robots, "Numbers of robots, e.g. 1000,10000; default: 1 to 100000")
       ->delimiter(',')
       ->check(CLI::Range(std::int64_t{1}, std::int64_t{100'000'000}));
-  c->add_option("--robot", o.robot, "Kind of robot")->capture_default_str();
-  c->add_option("--engine", o.engine, "Physics engine")->capture_default_str();
-  c->add_option("--threads", o.threads, "Numbers of threads, e.g. 0,2")->delimiter(',')->check(CLI::Range(0, 1024));
-  c->add_option("--ticks", o.ticks, "Steps that are timed")->capture_default_str()->check(CLI::PositiveNumber);
+  auto* robot = c->add_option("--robot", o.robot, "Kind of robot")->capture_default_str();
+  c->add_option("--engine", o.engines, "Physics engines; `tandem list engines` names them; default: its first")
+      ->delimiter(',');
+  c->add_option("--threads", o.threads, "Numbers of threads, e.g. 0,2; default: 0")
+      ->delimiter(',')
+      ->check(CLI::Range(0, 1024));
+  auto* partitions = c->add_option("--partition", o.partitions,
+                                   "Divide the arena in equal parts: A1, A2 (2x1), A4 (2x2), A8 (4x2), A16 (4x4)")
+                         ->delimiter(',');
+  c->add_option("--regions", o.regions, "Divide it otherwise, e.g. 5x3; default: auto")
+      ->delimiter(',')
+      ->excludes(partitions);
+  auto* ticks =
+      c->add_option("--ticks", o.ticks, "Steps that are timed")->capture_default_str()->check(CLI::PositiveNumber);
   c->add_option("--density", o.density, "equal: the arena grows with the number of robots; else it is 40 m");
-  c->add_option("--repeat", o.repeat, "How often each is run")->capture_default_str()->check(CLI::PositiveNumber);
+  c->add_option("--assignment", o.assignment, "Of work to threads: static (default) or dynamic");
+  auto* repeat = c->add_option("--repeat", o.repeat, "How often each is run, in turns; figures show medians")
+                     ->capture_default_str()
+                     ->check(CLI::PositiveNumber);
+  c->add_option("--plot", o.plot, "Draw wall time and speed-up against robots: FILE.svg or FILE.png (gnuplot-nox)");
+  c->add_option("--from", o.from, "Take saved lines from this file instead of measuring")
+      ->excludes(robot)
+      ->excludes(ticks)
+      ->excludes(repeat);
+  c->add_flag("--compare-threads", o.compare_threads,
+              "Print how many times faster each number of threads is than the first");
   c->callback([&] { code = bench(o); });
 }
 

@@ -1,179 +1,180 @@
-// `tandem bench diffusion`: the standard scene of Pinciroli et al. (2012), section 4.1, one JSON object a line.
-#include <cerrno>
-#include <cmath>
-#include <csignal>
+// `tandem bench diffusion`: measures the standard scene, prints one JSON object a line, draws figures from them.
+#include <algorithm>
 #include <cstdio>
 #include <fmt/format.h>
-#include <sys/prctl.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
+#include "app/bench/comparison.hpp"
+#include "app/bench/gnuplot.hpp"
+#include "app/bench/measurement.hpp"
+#include "app/bench/partition.hpp"
 #include "app/catalog.hpp"
 #include "app/command/command.hpp"
-#include "app/measure.hpp"
-#include "app/report.hpp"
 #include "app/signals.hpp"
-#include "core/sim/world.hpp"
 
 namespace tandem::app {
 namespace {
 
-constexpr double kArena_m = 40.0;
-constexpr double kUsualRobots = 10'000.0;  // what "equal density" refers to
-constexpr double kWall_m = 0.1;
-
-core::ObjectItem wall(double x_m, double y_m, double size_x_m, double size_y_m, std::size_t number) {
-  core::ObjectItem item;
-  item.id = "wall" + std::to_string(number);
-  item.size = {size_x_m, size_y_m, 0.5};
-  item.placement.p_W = {x_m, y_m, 0.0};
-  return item;
+int complain(int code, const std::string& message) {
+  fmt::print(stderr, "tandem bench: {}\n", message);
+  return code;
 }
 
-/// Outer walls, and inner ones at +-7 m that make 3 x 3 rooms with doors between; all but the walls' thickness times
-/// `scale`.
-void add_walls(core::Scenario& scenario, double scale) {
-  auto& objects = scenario.objects;
-  const double half = 0.5 * kArena_m * scale;
-  for (const double side : {-1.0, 1.0}) {
-    objects.push_back(wall(side * half, 0.0, kWall_m, 2.0 * half + kWall_m, objects.size()));
-    objects.push_back(wall(0.0, side * half, 2.0 * half + kWall_m, kWall_m, objects.size()));
+/// What the options ask for, checked.
+struct Plan {
+  std::vector<std::string> engines;  ///< empty in a plan for saved lines: all that there are; so with the next three
+  std::vector<Partition> partitions;
+  std::vector<std::int64_t> robots;
+  std::vector<std::int64_t> threads;
+};
+
+/// "there is no engine 'x'; there are: …" when `name` is none of `known`.
+hal::Status check_name(std::string_view what, const std::string& name, const std::vector<std::string>& known) {
+  if (std::find(known.begin(), known.end(), name) != known.end()) return {};
+  std::string all;
+  for (const std::string& k : known) all += (all.empty() ? "" : ", ") + k;
+  return hal::Error{
+      fmt::format("there is no {} '{}'; there {}: {}", what, name, known.size() == 1 ? "is" : "are", all)};
+}
+
+hal::Status check_words(const BenchOptions& o) {
+  if (auto s = check_name("benchmark", o.name, {"diffusion"}); !s.ok()) return s;
+  if (auto s = check_name("robot", o.robot, {"e-puck"}); !s.ok()) return s;
+  for (const std::string& engine : o.engines) {
+    // Saved lines may come from another build.
+    if (auto s = check_name("engine", engine, known_names().engines); !s.ok() && o.from.empty()) return s;
   }
-  constexpr double kParts[4][2] = {{-20.0, -15.0}, {-12.0, -1.5}, {1.5, 12.0}, {15.0, 20.0}};
-  for (const double line : {-7.0, 7.0}) {
-    for (const auto& part : kParts) {
-      const double middle = 0.5 * (part[0] + part[1]) * scale;
-      const double length = (part[1] - part[0]) * scale;
-      objects.push_back(wall(line * scale, middle, kWall_m, length, objects.size()));
-      objects.push_back(wall(middle, line * scale, length, kWall_m, objects.size()));
+  if (!o.density.empty() && o.density != "equal") return hal::Error{"--density takes 'equal'"};
+  if (!o.assignment.empty() && o.assignment != "static" && o.assignment != "dynamic")
+    return hal::Error{"--assignment takes static or dynamic, not '" + o.assignment + "'"};
+  if (!o.plot.empty()) {
+    if (const auto kind = picture_kind(o.plot); !kind.ok()) return hal::Error{"--plot: " + kind.error().message};
+  }
+  if (!o.from.empty() && o.plot.empty() && !o.compare_threads)
+    return hal::Error{"--from needs --plot FILE or --compare-threads: what to do with the saved lines"};
+  if (o.compare_threads && o.from.empty() && o.threads.size() < 2)
+    return hal::Error{"--compare-threads needs several numbers of threads, e.g. --threads 0,2"};
+  return {};
+}
+
+hal::Result<Plan> plan_of(const BenchOptions& o) {
+  if (auto s = check_words(o); !s.ok()) return s.error();
+  Plan plan{o.engines, {}, o.robots, o.threads};
+  for (const std::string& name : o.partitions) {
+    auto partition = partition_named(name);
+    if (!partition.ok()) return partition.error();
+    plan.partitions.push_back(std::move(partition).value());
+  }
+  for (const std::string& regions : o.regions) {
+    auto partition = partition_split(regions);
+    if (!partition.ok()) return partition.error();
+    plan.partitions.push_back(std::move(partition).value());
+  }
+  if (!o.from.empty()) return plan;
+  if (plan.engines.empty()) plan.engines = {known_names().engines.front()};
+  if (plan.partitions.empty()) plan.partitions = {{"auto", "auto"}};
+  if (plan.robots.empty()) plan.robots = {1, 10, 100, 1000, 10'000, 100'000};
+  if (plan.threads.empty()) plan.threads = {0};
+  return plan;
+}
+
+/// Every case once a round, so that what the machine does besides meets all of them; those that differ in threads alone
+/// follow one another.
+std::vector<BenchCase> cases_of(const Plan& plan, const BenchOptions& o) {
+  std::vector<BenchCase> cases;
+  for (std::int64_t repeat = 0; repeat < o.repeat; ++repeat) {
+    for (const std::string& engine : plan.engines) {
+      for (const Partition& partition : plan.partitions) {
+        for (const std::int64_t robots : plan.robots) {
+          for (const std::int64_t threads : plan.threads) {
+            cases.push_back({o.robot, engine, partition.name, partition.regions, o.density.empty() ? "40 m" : o.density,
+                             robots, threads,
+                             o.assignment == "dynamic" ? core::Assignment::Dynamic : core::Assignment::Static, o.ticks,
+                             repeat});
+          }
+        }
+      }
     }
   }
+  return cases;
 }
 
-core::Scenario diffusion(const BenchOptions& options, std::int64_t robots, std::int64_t threads) {
-  core::Scenario scenario;
-  scenario.file = "bench diffusion";
-  scenario.name = "diffusion";
-  scenario.seed = 1;
-  scenario.ticks_per_second = 10;
-  scenario.threads = threads;
-  const double scale = options.density == "equal" ? std::sqrt(static_cast<double>(robots) / kUsualRobots) : 1.0;
-  scenario.arena_size = {kArena_m * scale + kWall_m, kArena_m * scale + kWall_m, 1.0};
-  add_walls(scenario, scale);
-
-  core::ControllerConfig config;
-  config.id = "diffusion";
-  config.label = "epuck_diffusion";
-  config.library = "epuck_diffusion";
-  config.sensors.push_back({"proximity", "default", {}});
-  config.actuators.push_back({"differential_steering", "default", {}});
-  scenario.controllers.push_back(config);
-
-  core::RobotItem item;
-  item.kind = options.robot;
-  item.id = "ep";
-  core::Distribute d;
-  d.quantity = robots;
-  d.max_trials = 10'000;
-  d.position.method = core::Distribution::Method::Uniform;
-  const double half = 0.5 * kArena_m * scale - std::min(0.2, 0.05 * kArena_m * scale);
-  d.position.min = {-half, -half, 0.0};
-  d.position.max = {half, half, 0.0};
-  d.orientation.method = core::Distribution::Method::Uniform;
-  d.orientation.min = {-M_PI, 0.0, 0.0};
-  d.orientation.max = {M_PI, 0.0, 0.0};
-  item.distribute = d;
-  scenario.robots.push_back(item);
-  return scenario;
+/// Prints each line as soon as it is there. @returns them; nothing when interrupted, or when `code` tells of a failure.
+std::vector<ResultLine> measure_all(const std::vector<BenchCase>& cases, int& code) {
+  const std::atomic<bool>& stop = catch_signals();
+  std::vector<ResultLine> lines;
+  for (const BenchCase& c : cases) {
+    if (stop.load(std::memory_order_relaxed)) return {};
+    const Measurement measured = measure_apart(c, stop);
+    if (!measured.line.empty()) {
+      fmt::print("{}\n", measured.line);
+      std::fflush(stdout);
+    }
+    code = measured.code;
+    if (code != kDone || measured.line.empty()) return {};
+    auto line = parse_result_line(measured.line);
+    if (!line.ok()) {
+      code = complain(kFailedRunning, line.error().message);
+      return {};
+    }
+    line->number = static_cast<std::int64_t>(lines.size()) + 1;
+    lines.push_back(std::move(line).value());
+  }
+  return lines;
 }
 
-int bench_once(const BenchOptions& options, std::int64_t robots, std::int64_t threads, const std::atomic<bool>& stop) {
-  const double began = wall_seconds();
-  const double rss_before = peak_rss_mb();
-  const core::Scenario scenario = diffusion(options, robots, threads);
-  hal::PluginLoader loader(plugin_folders());
-  core::Problems problems;
-  auto world = core::World::make(scenario, loader, {}, problems);
-  print_problems(problems);
-  if (world == nullptr) return kBadInput;
-  world->start();
-  world->step();  // first touch of every page belongs to the preparation
-
-  RunFigures figures;
-  figures.threads = threads;
-  figures.init_s = wall_seconds() - began;
-  const double wall = wall_seconds();
-  const double cpu = cpu_seconds();
-  for (std::int64_t i = 0; i < options.ticks && world->state() == core::RunState::Running; ++i) {
-    if (stop.load(std::memory_order_relaxed)) return kDone;  // a part of a benchmark is none
-    world->step();
-  }
-  figures.wall_s = wall_seconds() - wall;
-  figures.cpu_s = cpu_seconds() - cpu;
-  figures.steps = world->tick() - 1;
-
-  Json json;
-  json.begin_object();
-  json.field("bench", "diffusion")
-      .field("robot", options.robot)
-      .field("engine", options.engine)
-      .field("density", options.density.empty() ? "40 m" : options.density);
-  add_run_fields(json, *world, figures, static_cast<std::size_t>(robots));
-  json.field("wall_ns_per_robot_step",
-             figures.wall_s * 1e9 / static_cast<double>(robots) / static_cast<double>(figures.steps));
-  json.field("speedup", figures.wall_s > 0.0 ? figures.cpu_s / figures.wall_s : 0.0);
-  json.field("bytes_per_robot", (peak_rss_mb() - rss_before) * 1e6 / static_cast<double>(robots));
-  const double closing = wall_seconds();
-  const bool failed = world->state() == core::RunState::Failed;
-  if (failed) json.field("failure", world->failure());
-  world.reset();
-  json.field("close_s", wall_seconds() - closing).end_object();
-  fmt::print("{}\n", json.text());
-  std::fflush(stdout);
-  return failed ? kFailedRunning : kDone;
+template <class T>
+bool chosen(const std::vector<T>& wanted, const T& value) {
+  return wanted.empty() || std::find(wanted.begin(), wanted.end(), value) != wanted.end();
 }
 
-/// Runs in a process of its own, so that no run inherits memory from the one before.
-int bench_apart(const BenchOptions& options, std::int64_t robots, std::int64_t threads, const std::atomic<bool>& stop) {
-  const pid_t child = fork();
-  if (child == 0) {
-    prctl(PR_SET_PDEATHSIG, SIGKILL);
-    _exit(bench_once(options, robots, threads, stop));
+/// The saved lines that the options choose; nothing, and a message, when there are none or they do not go together.
+std::vector<ResultLine> choose_saved(const Plan& plan, const BenchOptions& o, int& code) {
+  auto saved = read_result_lines(o.from);
+  if (!saved.ok()) {
+    code = complain(kBadInput, saved.error().message);
+    return {};
   }
-  int status = 0;
-  while (child > 0 && waitpid(child, &status, 0) < 0 && errno == EINTR) {
-    if (stop.load(std::memory_order_relaxed)) kill(child, SIGTERM);  // it may have been told already: no harm
+  std::vector<std::string> splits;
+  for (const Partition& p : plan.partitions) splits.push_back(p.regions);
+  std::vector<ResultLine> lines;
+  for (ResultLine& line : saved.value()) {
+    if (chosen(plan.engines, line.engine) && chosen(splits, line.regions) && chosen(plan.robots, line.robots) &&
+        chosen(plan.threads, line.threads) && (o.density.empty() || o.density == line.density) &&
+        (o.assignment.empty() || o.assignment == line.assignment))
+      lines.push_back(std::move(line));
   }
-  if (child > 0 && WIFEXITED(status)) return WEXITSTATUS(status);
-  fmt::print(stderr, "tandem bench: the run of {} robots {}\n", robots,
-             child < 0 ? "cannot be started: no process can be made" : "was killed; is there memory enough?");
-  return kFailedRunning;
+  if (lines.empty()) {
+    code = complain(kBadInput, o.from + ": error: none of its lines is what the other options choose");
+    return {};
+  }
+  const hal::Status alike = check_alike(lines, o.from);
+  if (alike.ok()) return lines;
+  code = complain(kBadInput, alike.error().message);
+  return {};
+}
+
+/// To standard error: standard output is for the lines.
+void print_comparison(const std::vector<ResultLine>& lines) {
+  for (const auto& [group, ratios] : compare_threads(lines)) fmt::print(stderr, "{}: {}\n", group, ratios);
 }
 
 }  // namespace
 
 int bench(const BenchOptions& options) {
-  const auto refuse = [](const std::string& why) {
-    fmt::print(stderr, "tandem bench: {}\n", why);
-    return kWrongUsage;
-  };
-  if (options.name != "diffusion") return refuse("there is no benchmark '" + options.name + "'; there is: diffusion");
-  if (options.engine != "kinematics2d")
-    return refuse("there is no engine '" + options.engine + "'; there is: kinematics2d");
-  if (options.robot != "e-puck") return refuse("there is no robot '" + options.robot + "'; there is: e-puck");
-  if (!options.density.empty() && options.density != "equal") return refuse("--density takes 'equal'");
-  const std::atomic<bool>& stop = catch_signals();
-  for (const std::int64_t robots :
-       options.robots.empty() ? std::vector<std::int64_t>{1, 10, 100, 1000, 10'000, 100'000} : options.robots) {
-    for (const std::int64_t threads : options.threads.empty() ? std::vector<std::int64_t>{0} : options.threads) {
-      for (std::int64_t i = 0; i < options.repeat; ++i) {
-        if (stop.load(std::memory_order_relaxed)) return kDone;
-        const int code = bench_apart(options, robots, threads, stop);
-        if (code != kDone) return code;
-      }
-    }
+  const auto plan = plan_of(options);
+  if (!plan.ok()) return complain(kWrongUsage, plan.error().message);
+  if (!options.plot.empty()) {
+    const hal::Status drawable = can_draw(options.plot);
+    if (!drawable.ok()) return complain(kFailedRunning, drawable.error().message);
   }
-  return kDone;
+  int code = kDone;
+  const std::vector<ResultLine> lines = options.from.empty() ? measure_all(cases_of(plan.value(), options), code)
+                                                             : choose_saved(plan.value(), options, code);
+  if (lines.empty()) return code;
+  if (options.compare_threads) print_comparison(lines);
+  if (options.plot.empty()) return kDone;
+  const hal::Status drawn = draw(figure_of(lines), options.plot);
+  return drawn.ok() ? kDone : complain(kFailedRunning, drawn.error().message);
 }
 
 }  // namespace tandem::app

@@ -35,15 +35,22 @@ int check(const CheckOptions& options);
 int list(const std::string& kind);
 int describe(const std::string& name);
 
+/// Lists that are left empty: the usual values when measuring, every saved line with `from`.
 struct BenchOptions {
   std::string name = "diffusion";
   std::vector<std::int64_t> robots;
   std::string robot = "e-puck";
-  std::string engine = "kinematics2d";
+  std::vector<std::string> engines;
   std::vector<std::int64_t> threads;
+  std::vector<std::string> partitions;  ///< by name: A1 to A16
+  std::vector<std::string> regions;     ///< other splits: "5x3" or "auto"
   std::int64_t ticks = 600;
-  std::string density;  ///< "equal": the arena grows with the robots
+  std::string density;     ///< "equal": the arena grows with the robots
+  std::string assignment;  ///< of work to threads: "static" or "dynamic"
   std::int64_t repeat = 1;
+  std::string plot;  ///< SVG or PNG file
+  std::string from;  ///< saved lines, instead of measuring
+  bool compare_threads = false;
 };
 int bench(const BenchOptions& options);
 

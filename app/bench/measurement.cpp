@@ -1,0 +1,156 @@
+#include "app/bench/measurement.hpp"
+
+#include <cerrno>
+#include <csignal>
+#include <fmt/format.h>
+#include <fstream>
+#include <poll.h>
+#include <sys/prctl.h>
+#include <sys/utsname.h>
+#include <sys/wait.h>
+#include <thread>
+#include <unistd.h>
+
+#include "app/bench/scene.hpp"
+#include "app/catalog.hpp"
+#include "app/command/command.hpp"
+#include "app/measure.hpp"
+#include "app/report.hpp"
+#include "core/sim/world.hpp"
+
+namespace tandem::app {
+namespace {
+
+/// What the system calls the processor; where it does not, the architecture.
+std::string cpu_model() {
+  std::ifstream in("/proc/cpuinfo");
+  for (std::string line; std::getline(in, line);) {
+    const std::size_t colon = line.find(": ");
+    if (line.starts_with("model name") && colon != std::string::npos) return line.substr(colon + 2);
+  }
+  utsname names{};
+  return uname(&names) == 0 ? names.machine : "unknown";
+}
+
+RunFigures time_loop(core::World& world, const BenchCase& c, const std::atomic<bool>& stop) {
+  RunFigures figures;
+  figures.threads = c.threads;
+  const double wall = wall_seconds();
+  const double cpu = cpu_seconds();
+  for (std::int64_t i = 0; i < c.ticks && world.state() == core::RunState::Running; ++i) {
+    if (stop.load(std::memory_order_relaxed)) break;
+    world.step();
+  }
+  figures.wall_s = wall_seconds() - wall;
+  figures.cpu_s = cpu_seconds() - cpu;
+  figures.steps = world.tick() - 1;
+  return figures;
+}
+
+void add_case_fields(Json& json, const BenchCase& c) {
+  json.field("bench", "diffusion")
+      .field("robot", c.robot)
+      .field("engine", c.engine)
+      .field("partition", c.partition)
+      .field("regions", c.regions)
+      .field("density", c.density)
+      .field("assignment", assignment_word(c.assignment))
+      .field("ticks", c.ticks)
+      .field("repeat", c.repeat);
+}
+
+void add_machine_fields(Json& json) {
+  json.field("cpu_model", cpu_model()).field("cores", static_cast<std::int64_t>(std::thread::hardware_concurrency()));
+}
+
+Measurement measure(const BenchCase& c, const std::atomic<bool>& stop) {
+  const double began = wall_seconds();
+  const double rss_before = peak_rss_mb();
+  const core::Scenario scenario = diffusion_scene(c);
+  hal::PluginLoader loader(plugin_folders());
+  core::Problems problems;
+  auto world = core::World::make(scenario, loader, {}, problems);
+  print_problems(problems);
+  if (world == nullptr) return {kBadInput, {}};
+  world->start();
+  world->step();  // first touch of every page belongs to the preparation
+  const double init_s = wall_seconds() - began;
+
+  RunFigures figures = time_loop(*world, c, stop);
+  figures.init_s = init_s;
+  const bool failed = world->state() == core::RunState::Failed;
+  if (!failed && figures.steps < c.ticks) return {kDone, {}};  // a part of a benchmark is none
+
+  Json json;
+  json.begin_object();
+  add_case_fields(json, c);
+  const auto robots = static_cast<std::size_t>(c.robots);
+  add_run_fields(json, *world, figures, robots);
+  const double robot_steps = static_cast<double>(c.robots) * static_cast<double>(figures.steps);
+  json.field("cpu_ns_per_robot_step", figures.ns_per_robot_step(robots));
+  json.field("wall_ns_per_robot_step", figures.wall_s * 1e9 / robot_steps);
+  json.field("speedup", figures.wall_s > 0.0 ? figures.cpu_s / figures.wall_s : 0.0);
+  json.field("bytes_per_robot", (peak_rss_mb() - rss_before) * 1e6 / static_cast<double>(c.robots));
+  add_machine_fields(json);
+  if (failed) json.field("failure", world->failure());
+  const double closing = wall_seconds();
+  world.reset();
+  json.field("close_s", wall_seconds() - closing).end_object();
+  return {failed ? kFailedRunning : kDone, json.text()};
+}
+
+void write_all(int fd, const std::string& text) {
+  for (std::size_t done = 0; done < text.size();) {
+    const ssize_t n = write(fd, text.data() + done, text.size() - done);
+    if (n < 0 && errno != EINTR) return;  // nobody listens any more
+    if (n > 0) done += static_cast<std::size_t>(n);
+  }
+}
+
+/// Everything that the child writes until it ends; it is told when `stop` is set. Telling it twice does no harm.
+std::string read_all(int fd, pid_t child, const std::atomic<bool>& stop) {
+  constexpr int kLook_ms = 200;  // a signal may come between looking at `stop` and waiting
+  std::string text;
+  char buffer[4096];
+  for (;;) {
+    pollfd wanted{fd, POLLIN, 0};
+    const int ready = poll(&wanted, 1, kLook_ms);
+    if (stop.load(std::memory_order_relaxed)) kill(child, SIGTERM);
+    if (ready <= 0) continue;
+    const ssize_t n = read(fd, buffer, sizeof buffer);
+    if (n == 0 || (n < 0 && errno != EINTR)) return text;
+    if (n > 0) text.append(buffer, static_cast<std::size_t>(n));
+  }
+}
+
+}  // namespace
+
+Measurement measure_apart(const BenchCase& c, const std::atomic<bool>& stop) {
+  const auto fail = [&](const char* why) {
+    fmt::print(stderr, "tandem bench: the run of {} robots {}\n", c.robots, why);
+    return Measurement{kFailedRunning, {}};
+  };
+  int ends[2];
+  if (pipe(ends) != 0) return fail("cannot be started: no pipe can be made");
+  const pid_t child = fork();
+  if (child == 0) {
+    prctl(PR_SET_PDEATHSIG, SIGKILL);
+    close(ends[0]);
+    const Measurement measured = measure(c, stop);
+    write_all(ends[1], measured.line);
+    _exit(measured.code);
+  }
+  close(ends[1]);
+  Measurement measured;
+  if (child > 0) measured.line = read_all(ends[0], child, stop);
+  close(ends[0]);
+  if (child < 0) return fail("cannot be started: no process can be made");
+  int status = 0;
+  while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
+  }
+  if (!WIFEXITED(status)) return fail("was killed; is there memory enough?");
+  measured.code = WEXITSTATUS(status);
+  return measured;
+}
+
+}  // namespace tandem::app

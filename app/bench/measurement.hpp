@@ -1,0 +1,19 @@
+// Runs one case of a benchmark and tells what it cost.
+#pragma once
+#include <atomic>
+#include <string>
+
+#include "app/bench/bench_case.hpp"
+
+namespace tandem::app {
+
+struct Measurement {
+  int code = 0;      ///< exit code: kDone also when the run was interrupted
+  std::string line;  ///< one JSON object without a line break; empty when interrupted or when the world cannot be made
+};
+
+/// Runs in a process of its own, so that no run inherits memory from the one before; its problems go to standard error.
+/// Ends early, without a line, once `stop` is set.
+Measurement measure_apart(const BenchCase& c, const std::atomic<bool>& stop);
+
+}  // namespace tandem::app

@@ -1,0 +1,37 @@
+#include "app/bench/partition.hpp"
+
+#include <regex>
+
+namespace tandem::app {
+
+const std::vector<Partition>& partitions() {
+  static const std::vector<Partition> all = {
+      {"A1", "1x1"}, {"A2", "2x1"}, {"A4", "2x2"}, {"A8", "4x2"}, {"A16", "4x4"}};
+  return all;
+}
+
+hal::Result<Partition> partition_named(const std::string& name) {
+  std::string names;
+  for (const Partition& p : partitions()) {
+    if (p.name == name) return p;
+    names += (names.empty() ? "" : ", ") + p.name;
+  }
+  return hal::Error{"there is no partition '" + name + "'; there are: " + names + "; any other split is --regions 5x3"};
+}
+
+hal::Result<Partition> partition_split(const std::string& regions) {
+  for (const Partition& p : partitions()) {
+    if (p.regions == regions) return p;
+  }
+  static const std::regex kSplit("[1-9][0-9]{0,2}x[1-9][0-9]{0,2}");
+  if (regions == "auto" || std::regex_match(regions, kSplit)) return Partition{regions, regions};
+  return hal::Error{"--regions takes columns x lines, e.g. 4x4, or auto; not '" + regions + "'"};
+}
+
+std::int64_t parts_of(const std::string& regions) {
+  const std::size_t x = regions.find('x');
+  if (x == std::string::npos || !partition_split(regions).ok()) return 0;
+  return std::stoll(regions.substr(0, x)) * std::stoll(regions.substr(x + 1));
+}
+
+}  // namespace tandem::app

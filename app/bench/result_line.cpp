@@ -1,0 +1,128 @@
+#include "app/bench/result_line.hpp"
+
+#include <cmath>
+#include <fstream>
+
+#include "app/bench/flat_json.hpp"
+
+namespace tandem::app {
+namespace {
+
+/// Takes fields out of an object; what is missing first is kept.
+class Fields {
+ public:
+  explicit Fields(const FlatObject& object) : object_(object) {}
+
+  void text(const char* name, std::string& out) {
+    if (const auto* v = find<std::string>(name, "a text")) out = *v;
+  }
+  void seconds(const char* name, double& out) {
+    const auto* v = find<double>(name, "a number");
+    if (v == nullptr) return;
+    out = *v;
+    if (!(out > 0.0)) complain("\"" + std::string(name) + "\" must be greater than 0");
+  }
+  void count(const char* name, std::int64_t lowest, std::int64_t& out) {
+    constexpr double kMost = 1e15;
+    const auto* v = find<double>(name, "a number");
+    if (v == nullptr) return;
+    if (*v != std::floor(*v) || *v < static_cast<double>(lowest) || *v > kMost)
+      complain("\"" + std::string(name) + "\" must be a whole number from " + std::to_string(lowest));
+    else
+      out = static_cast<std::int64_t>(*v);
+  }
+  const std::string& trouble() const { return trouble_; }
+
+ private:
+  template <class T>
+  const T* find(const char* name, const char* sort) {
+    const auto found = object_.find(name);
+    if (found == object_.end()) {
+      complain("there is no \"" + std::string(name) + "\" in it; is it a line of `tandem bench`?");
+      return nullptr;
+    }
+    const T* v = std::get_if<T>(&found->second);
+    if (v == nullptr) complain("\"" + std::string(name) + "\" must be " + sort);
+    return v;
+  }
+  void complain(const std::string& what) {
+    if (trouble_.empty()) trouble_ = what;
+  }
+
+  const FlatObject& object_;
+  std::string trouble_;
+};
+
+hal::Error at_line(const std::string& path, std::int64_t number, const std::string& what) {
+  return {path + ":" + std::to_string(number) + ": error: " + what};
+}
+
+}  // namespace
+
+hal::Result<ResultLine> parse_result_line(std::string_view text) {
+  const auto object = parse_flat_json(text);
+  if (!object.ok()) return object.error();
+  if (object.value().contains("failure")) return hal::Error{"this run failed, so its times mean nothing; remove it"};
+  Fields fields(object.value());
+  ResultLine line;
+  fields.text("bench", line.bench);
+  fields.text("robot", line.robot);
+  fields.text("engine", line.engine);
+  fields.text("partition", line.partition);
+  fields.text("regions", line.regions);
+  fields.text("density", line.density);
+  fields.text("assignment", line.assignment);
+  fields.count("robots", 1, line.robots);
+  fields.count("threads", 0, line.threads);
+  fields.seconds("virtual_s", line.virtual_s);
+  fields.seconds("wall_s", line.wall_s);
+  fields.seconds("cpu_s", line.cpu_s);
+  fields.text("cpu_model", line.cpu_model);
+  fields.count("cores", 0, line.cores);
+  if (!fields.trouble().empty()) return hal::Error{fields.trouble()};
+  return line;
+}
+
+hal::Result<std::vector<ResultLine>> read_result_lines(const std::string& path) {
+  std::ifstream in(path);
+  std::vector<ResultLine> lines;
+  std::int64_t number = 0;
+  for (std::string text; std::getline(in, text);) {
+    ++number;
+    if (text.find_first_not_of(" \t\r") == std::string::npos) continue;
+    auto line = parse_result_line(text);
+    if (!line.ok()) return at_line(path, number, line.error().message);
+    line->number = number;
+    lines.push_back(std::move(line).value());
+  }
+  if (number == 0 || in.bad())
+    return hal::Error{path + ": error: no line can be read; save them with `tandem bench diffusion > " + path + "`"};
+  return lines;
+}
+
+hal::Status check_alike(const std::vector<ResultLine>& lines, const std::string& path) {
+  struct Trait {
+    const char* what;
+    std::string ResultLine::*value;
+  };
+  static constexpr Trait kTraits[] = {{"benchmark", &ResultLine::bench},
+                                      {"robot", &ResultLine::robot},
+                                      {"density", &ResultLine::density},
+                                      {"assignment", &ResultLine::assignment},
+                                      {"processor", &ResultLine::cpu_model}};
+  for (const ResultLine& line : lines) {
+    const ResultLine& first = lines.front();
+    const auto differs = [&](const char* what, const std::string& here, const std::string& there) {
+      return at_line(path, line.number,
+                     std::string(what) + " '" + here + "' here, '" + there + "' in line " +
+                         std::to_string(first.number) + "; keep what cannot be compared in files of its own");
+    };
+    for (const Trait& trait : kTraits) {
+      if (line.*trait.value != first.*trait.value) return differs(trait.what, line.*trait.value, first.*trait.value);
+    }
+    if (line.cores != first.cores) return differs("cores", std::to_string(line.cores), std::to_string(first.cores));
+  }
+  return {};
+}
+
+}  // namespace tandem::app

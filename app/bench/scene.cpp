@@ -1,0 +1,93 @@
+#include "app/bench/scene.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tandem::app {
+namespace {
+
+constexpr double kArena_m = 40.0;
+constexpr double kUsualRobots = 10'000.0;  // what "equal density" refers to
+constexpr double kWall_m = 0.1;
+
+core::ObjectItem wall(double x_m, double y_m, double size_x_m, double size_y_m, std::size_t number) {
+  core::ObjectItem item;
+  item.id = "wall" + std::to_string(number);
+  item.size = {size_x_m, size_y_m, 0.5};
+  item.placement.p_W = {x_m, y_m, 0.0};
+  return item;
+}
+
+/// Outer walls, and inner ones at +-7 m that make 3 x 3 rooms with doors between; all but the walls' thickness times
+/// `scale`.
+void add_walls(core::Scenario& scenario, double scale) {
+  auto& objects = scenario.objects;
+  const double half = 0.5 * kArena_m * scale;
+  for (const double side : {-1.0, 1.0}) {
+    objects.push_back(wall(side * half, 0.0, kWall_m, 2.0 * half + kWall_m, objects.size()));
+    objects.push_back(wall(0.0, side * half, 2.0 * half + kWall_m, kWall_m, objects.size()));
+  }
+  constexpr double kParts[4][2] = {{-20.0, -15.0}, {-12.0, -1.5}, {1.5, 12.0}, {15.0, 20.0}};
+  for (const double line : {-7.0, 7.0}) {
+    for (const auto& part : kParts) {
+      const double middle = 0.5 * (part[0] + part[1]) * scale;
+      const double length = (part[1] - part[0]) * scale;
+      objects.push_back(wall(line * scale, middle, kWall_m, length, objects.size()));
+      objects.push_back(wall(middle, line * scale, length, kWall_m, objects.size()));
+    }
+  }
+}
+
+core::ControllerConfig diffusion_controller() {
+  core::ControllerConfig config;
+  config.id = "diffusion";
+  config.label = "epuck_diffusion";
+  config.library = "epuck_diffusion";
+  config.sensors.push_back({"proximity", "default", {}});
+  config.actuators.push_back({"differential_steering", "default", {}});
+  return config;
+}
+
+core::RobotItem scattered_robots(const BenchCase& c, double scale) {
+  core::RobotItem item;
+  item.kind = c.robot;
+  item.id = "ep";
+  core::Distribute d;
+  d.quantity = c.robots;
+  d.max_trials = 10'000;
+  d.position.method = core::Distribution::Method::Uniform;
+  const double half = 0.5 * kArena_m * scale - std::min(0.2, 0.05 * kArena_m * scale);
+  d.position.min = {-half, -half, 0.0};
+  d.position.max = {half, half, 0.0};
+  d.orientation.method = core::Distribution::Method::Uniform;
+  d.orientation.min = {-M_PI, 0.0, 0.0};
+  d.orientation.max = {M_PI, 0.0, 0.0};
+  item.distribute = d;
+  return item;
+}
+
+}  // namespace
+
+core::Scenario diffusion_scene(const BenchCase& c) {
+  core::Scenario scenario;
+  scenario.file = "bench diffusion";
+  scenario.name = "diffusion";
+  scenario.seed = 1;
+  scenario.ticks_per_second = 10;
+  scenario.threads = c.threads;
+  scenario.assignment = c.assignment;
+  const double scale = c.density == "equal" ? std::sqrt(static_cast<double>(c.robots) / kUsualRobots) : 1.0;
+  scenario.arena_size = {kArena_m * scale + kWall_m, kArena_m * scale + kWall_m, 1.0};
+  add_walls(scenario, scale);
+
+  core::EngineConfig engine;
+  engine.kind = c.engine;
+  engine.id = c.engine;
+  engine.regions = c.regions;
+  scenario.engines.push_back(engine);
+  scenario.controllers.push_back(diffusion_controller());
+  scenario.robots.push_back(scattered_robots(c, scale));
+  return scenario;
+}
+
+}  // namespace tandem::app

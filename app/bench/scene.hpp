@@ -1,0 +1,10 @@
+// The standard scene of Pinciroli et al. (2012), section 4.1: robots that diffuse through 3 x 3 rooms.
+#pragma once
+#include "app/bench/bench_case.hpp"
+
+namespace tandem::app {
+
+/// Equal cases give equal scenarios; seed 1, ticks of 0.1 s.
+core::Scenario diffusion_scene(const BenchCase& c);
+
+}  // namespace tandem::app
