@@ -22,6 +22,7 @@ constexpr double kMostOfBox2dsHop = 0.99;      // Box2D silently cuts faster bod
 constexpr double kLongestLead_m = 0.2;         // in a tick, of a body that is led; farther away it is put
 constexpr float kRest = 0.5F * b2_linearSlop;  // how deep bodies rest in one another: Box2D then sees that they touch
 constexpr double kSamePlace_m = 1e-5;
+constexpr double kHoldingStep_s = 0.025;  // with longer ones, Box2D's passes leave joints under load centimetres apart
 constexpr std::int64_t kMostSubSteps = 1000;  // a tick
 constexpr float kLinearSlowing = 1.0F;        // correction factor of a drive: all of the error within one sub-step
 
@@ -37,8 +38,10 @@ struct Params {
   double elevation_m = 0.0;
 
   void describe(hal::ParamVisitor& v) {
-    v.integer("iterations", iterations, {0, static_cast<double>(kMostSubSteps)},
-              "Sub-steps a tick. 0: as few as keep every hop below half a body's radius.");
+    v.integer(
+        "iterations", iterations, {0, static_cast<double>(kMostSubSteps)},
+        "Sub-steps a tick. 0: as few as keep every hop below half a body's radius, and 25 ms at most while bodies are "
+        "held together.");
     v.integer("velocity_iterations", velocity_iterations, {1, 1000}, "Box2D's passes over velocities, a sub-step.");
     v.integer("position_iterations", position_iterations, {1, 1000}, "Box2D's passes over overlaps, a sub-step.");
     v.number("box_linear_friction", box_linear_friction, hal::unit::none, {0.0, 1e6},
@@ -396,7 +399,7 @@ class Dynamics2d final : public Solver {
 
   int sub_steps(const SpaceStores& s, double tick_s) const noexcept {
     if (params_.iterations > 0) return static_cast<int>(params_.iterations);
-    double hop = 0.0;
+    double hop = joints_.empty() ? 0.0 : tick_s / kHoldingStep_s;
     for (const RobotGroup& group : s.groups) {
       if (group.sheet != nullptr)
         hop = std::max(hop, group.sheet->max_wheel_speed_m_s * tick_s / (kLargestHop * group.sheet->body_radius_m));
