@@ -156,8 +156,8 @@ TEST_P(Driving, DrivesTheArcThatTheWheelsAsk) {
       EXPECT_NEAR(circle.radius_m, radius_m, kReached * radius_m) << what;
       // The centre lies on the axle, to the left where the right wheel rolls farther ahead than the left one.
       const double to_left_m = 0.5 * kWheelBase_m * (c.right_m_s + c.left_m_s) / (c.right_m_s - c.left_m_s);
-      EXPECT_NEAR(circle.x_m, first.x_m - to_left_m * first.sin_h, 3 * kReached * radius_m + 1e-3) << what;
-      EXPECT_NEAR(circle.y_m, first.y_m + to_left_m * first.cos_h, 3 * kReached * radius_m + 1e-3) << what;
+      EXPECT_NEAR(circle.x_m, first.x_m - to_left_m * first.sin_h, kReached * radius_m + 2e-4) << what;
+      EXPECT_NEAR(circle.y_m, first.y_m + to_left_m * first.cos_h, kReached * radius_m + 2e-4) << what;
     }
   }
 }

@@ -111,6 +111,16 @@ TEST_P(Gripping, AHeldBoxTurnsWithTheRobotUnlessItMayTurn) {
   EXPECT_GT(turn_rad, 1.0);
 }
 
+TEST_P(Gripping, TheDrivesTorqueIsLimited) {
+  // To swing the box round itself, the robot would need about 0.8 kg x 1.5 N/kg x 8.5 cm = 0.1 N m; it has 0.04.
+  auto world = make(puller(scene(), 0.0, -0.03, 0.03, 0.8));
+  ASSERT_TRUE(world.world) << world.all_problems();
+  hold(world, robot_key(world, "a"), BodyKey::object(0), kRobotRadius_m, 0.0);
+  steps(world, 60);
+  EXPECT_NEAR(pose_of(world, "a").heading_rad(), 0.0, 0.1);
+  EXPECT_NEAR(world->space().objects()[0].y_m, 0.0, 5e-3);
+}
+
 TEST_P(Gripping, WhatARobotHoldsCrossesBordersWithIt) {
   Scene empty = scene();
   empty.split("4x1");  // borders at x = -1, 0, 1
