@@ -124,7 +124,7 @@ class Script {
         quoted(figure_.real_time_mark), figure_.real_time);
     if (number == 0)
       add("set key at screen {},{} left top Left reverse samplen 2 spacing 1.2 title {} noenhanced\n",
-          (width_ - kLegendWidth + 5.0) / width_, top / height_, quoted(figure_.legend));
+          (width_ - kLegendWidth + 5.0) / width_, (height_ - kTop) / height_, quoted(figure_.legend));
     plot(number, 2, number == 0);
 
     add("unset key\nunset arrow 1\nunset label\nunset title\n");

@@ -16,11 +16,12 @@ class Fields {
   void text(const char* name, std::string& out) {
     if (const auto* v = find<std::string>(name, "a text")) out = *v;
   }
-  void seconds(const char* name, double& out) {
+  void seconds(const char* name, bool may_be_zero, double& out) {
     const auto* v = find<double>(name, "a number");
     if (v == nullptr) return;
     out = *v;
-    if (!(out > 0.0)) complain("\"" + std::string(name) + "\" must be greater than 0");
+    if (out < 0.0 || (out == 0.0 && !may_be_zero))
+      complain("\"" + std::string(name) + "\" must be " + (may_be_zero ? "0 or greater" : "greater than 0"));
   }
   void count(const char* name, std::int64_t lowest, std::int64_t& out) {
     constexpr double kMost = 1e15;
@@ -74,9 +75,9 @@ hal::Result<ResultLine> parse_result_line(std::string_view text) {
   fields.text("assignment", line.assignment);
   fields.count("robots", 1, line.robots);
   fields.count("threads", 0, line.threads);
-  fields.seconds("virtual_s", line.virtual_s);
-  fields.seconds("wall_s", line.wall_s);
-  fields.seconds("cpu_s", line.cpu_s);
+  fields.seconds("virtual_s", false, line.virtual_s);
+  fields.seconds("wall_s", false, line.wall_s);
+  fields.seconds("cpu_s", true, line.cpu_s);  // clocks of processor time may be coarse
   fields.text("cpu_model", line.cpu_model);
   fields.count("cores", 0, line.cores);
   if (!fields.trouble().empty()) return hal::Error{fields.trouble()};
