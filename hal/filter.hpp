@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "hal/device/flight.hpp"
 #include "hal/device/wheels.hpp"
 
 namespace tandem::hal {
@@ -23,6 +24,37 @@ inline FilterResult filter(WheelSpeeds& command, double limit_m_s) noexcept {
   command.left_m_s *= scale;
   command.right_m_s *= scale;
   return FilterResult::Clamped;
+}
+
+/// Velocities longer than `limit_m_s` are shortened along their direction, turn rates clamped; a command that is not
+/// finite becomes the safe one, which is to hover.
+inline FilterResult filter(QuadrotorSpeed& command, double limit_m_s, double limit_rad_s) noexcept {
+  const auto& v = command.velocity;
+  const double speed = std::hypot(v[0], v[1], v[2]);
+  const double turn = std::fabs(command.yaw_rad_s);
+  if (speed <= limit_m_s && turn <= limit_rad_s) return FilterResult::Passed;  // false when any is NaN
+  if (!std::isfinite(v[0]) || !std::isfinite(v[1]) || !std::isfinite(v[2]) || !std::isfinite(turn)) {
+    command = QuadrotorSpeed{};
+    return FilterResult::NotFinite;
+  }
+  if (!(speed <= limit_m_s)) {
+    // In two steps: the length of what is finite need not be.
+    const double largest = std::max({std::fabs(v[0]), std::fabs(v[1]), std::fabs(v[2])});
+    for (double& c : command.velocity) c /= largest;
+    const double scale = limit_m_s / std::hypot(v[0], v[1], v[2]);
+    for (double& c : command.velocity) c *= scale;
+  }
+  command.yaw_rad_s = std::clamp(command.yaw_rad_s, -limit_rad_s, limit_rad_s);
+  return FilterResult::Clamped;
+}
+
+/// A target that is not finite becomes the safe command, which is to hover; also one that is on hold.
+inline FilterResult filter(QuadrotorPosition& command) noexcept {
+  bool finite = std::isfinite(command.yaw_rad);
+  for (const double c : command.target) finite = finite && std::isfinite(c);
+  if (finite) return FilterResult::Passed;
+  command = QuadrotorPosition{};
+  return FilterResult::NotFinite;
 }
 
 }  // namespace tandem::hal

@@ -104,7 +104,8 @@ class MicrophoneSensor final : public Sensor {
       for (std::size_t k = 0; k < mounts_.size(); ++k) {
         const double x = b.x_m[row] + b.cos_h[row] * mounts_[k].x_m - b.sin_h[row] * mounts_[k].y_m;
         const double y = b.y_m[row] + b.sin_h[row] * mounts_[k].x_m + b.cos_h[row] * mounts_[k].y_m;
-        const double level = heard(context.stores, x, y, mounts_[k].z_m) + noise_ * to_unit(bits[k % 4]);
+        const double level =
+            heard(context.stores, x, y, mounts_[k].z_m + context.stores.base_m(row)) + noise_ * to_unit(bits[k % 4]);
         port.level[k] = static_cast<float>(std::min(level, 1.0));
       }
     }
@@ -169,10 +170,8 @@ class BatterySensor final : public Sensor {
       const std::size_t row = context.block.first_row + i;
       double used = by_time_ ? config_.delta : 0.0;
       if (by_motion_) {
-        const double left = b.left_m_s[row] * context.tick_s;
-        const double right = b.right_m_s[row] * context.tick_s;
-        used += config_.pos_delta * std::fabs(0.5 * (left + right)) +
-                config_.orient_delta * std::fabs(right - left) / wheel_base_m_;
+        const Way way = wheel_base_m_ > 0.0 ? rolled(b, row) : flown(b, row);
+        used += context.tick_s * (config_.pos_delta * way.speed_m_s + config_.orient_delta * way.turn_rad_s);
       }
       charge_[i] = std::max(0.0, charge_[i] - used);
       double read = config_.full_charge > 0.0 ? charge_[i] / config_.full_charge : 0.0;
@@ -190,6 +189,20 @@ class BatterySensor final : public Sensor {
   }
 
  private:
+  struct Way {
+    double speed_m_s = 0.0;
+    double turn_rad_s = 0.0;
+  };
+  Way rolled(const Bodies& b, std::size_t row) const noexcept {
+    return {std::fabs(0.5 * (b.left_m_s[row] + b.right_m_s[row])),
+            std::fabs(b.right_m_s[row] - b.left_m_s[row]) / wheel_base_m_};
+  }
+  static Way flown(const Bodies& b, std::size_t row) noexcept {
+    if (b.motion.empty()) return {};
+    const Motion& m = b.motion[row];
+    return {std::hypot(m.v_m_s[0], m.v_m_s[1], m.v_m_s[2]), std::fabs(m.w_rad_s[2])};
+  }
+
   BatteryConfig config_;
   double noise_;
   double full_V_, empty_V_, wheel_base_m_;

@@ -20,6 +20,12 @@ bool detect_avx2() noexcept {
 
 std::atomic<VectorCode> chosen_code{detect_avx2() ? VectorCode::Avx2 : VectorCode::Baseline};
 
+/// Whether a body is where rays at this height pass.
+bool stands_at(const SpaceStores& stores, std::size_t row, double height_m) noexcept {
+  const double low_m = stores.bodies.motion[row].z_m;
+  return height_m >= low_m && height_m <= low_m + stores.sheet_of_row(row).body_height_m;
+}
+
 /// Distances of one register of rays for the robot in `row`, nothing in range reading `range`.
 [[gnu::always_inline]] inline void sense_row(const SpaceStores& stores, const RayRing& ring, std::size_t row,
                                              float* __restrict distances) noexcept {
@@ -31,6 +37,8 @@ std::atomic<VectorCode> chosen_code{detect_avx2() ? VectorCode::Avx2 : VectorCod
   const auto row32 = static_cast<std::uint32_t>(row);
   for (std::size_t k = 0; k < ring.registers * RayRing::kLanes; ++k) distances[k] = ring.range_m;
 
+  const bool heights = !b.motion.empty();  // else all robots stand on the ground, at the height of the rays
+  const double height = static_cast<double>(ring.height_m) + stores.base_m(row);
   const double reach = static_cast<double>(ring.reach_m);
   stores.body_index.for_each_near(
       x, y, reach + static_cast<double>(b.radius_m[row]), [&](const IndexEntry& o) __attribute__((always_inline)) {
@@ -38,6 +46,7 @@ std::atomic<VectorCode> chosen_code{detect_avx2() ? VectorCode::Avx2 : VectorCod
         const float wy = static_cast<float>(o.y_m - y);
         const float within = ring.reach_m + o.radius_m;
         if (wx * wx + wy * wy >= within * within || o.row() == row32) return;
+        if (heights && !stands_at(stores, o.row(), height)) return;
         const float qx = c * wx + s * wy;
         const float qy = c * wy - s * wx;
         for (std::size_t g = 0; g < ring.registers; ++g)
@@ -45,7 +54,6 @@ std::atomic<VectorCode> chosen_code{detect_avx2() ? VectorCode::Avx2 : VectorCod
       });
   stores.for_each_object_near(
       x, y, [&](const Object& shape) __attribute__((always_inline)) {
-        const auto height = static_cast<double>(ring.height_m);
         if (height < shape.z_low_m || height > shape.z_high_m) return;
         const float wx = static_cast<float>(shape.x_m - x);
         const float wy = static_cast<float>(shape.y_m - y);

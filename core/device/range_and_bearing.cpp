@@ -61,7 +61,7 @@ class RabSensor final : public Sensor {
     if (stores.broadcasts.empty()) return;
     const double x = b.x_m[row];
     const double y = b.y_m[row];
-    const double height = context.group.sheet->rab_height_m;
+    const double height = context.group.sheet->rab_height_m + stores.base_m(row);
     stores.body_index.for_each_near(x, y, farthest_m, [&](const IndexEntry& o) {
       const std::uint32_t other = o.row();
       const Broadcast& message = stores.broadcasts[other];
@@ -70,7 +70,12 @@ class RabSensor final : public Sensor {
       double wy = o.y_m - y;
       const double reach = static_cast<double>(message.range_m);
       if (wx * wx + wy * wy > reach * reach) return;
-      if (options_.check_occlusions && !in_sight(stores, x, y, height, o.x_m, o.y_m, height)) return;
+      // Boards of robots of one kind on level ground are equally high.
+      const double other_height =
+          b.motion.empty() ? height : stores.sheet_of_row(other).rab_height_m + stores.base_m(other);
+      const double wz = other_height - height;
+      if (wx * wx + wy * wy + wz * wz > reach * reach) return;
+      if (options_.check_occlusions && !in_sight(stores, x, y, height, o.x_m, o.y_m, other_height)) return;
       if (options_.packet_drop_prob > 0.0 && lost(context, b.entity[row], b.entity[other])) return;
       if (options_.noise_std_dev_m > 0.0) {
         const auto bits =
@@ -81,8 +86,10 @@ class RabSensor final : public Sensor {
       }
       const double bx = b.cos_h[row] * wx + b.sin_h[row] * wy;
       const double by = b.cos_h[row] * wy - b.sin_h[row] * wx;
-      port.insert(static_cast<float>(std::sqrt(wx * wx + wy * wy)), static_cast<float>(std::atan2(by, bx)), 0.0F,
-                  message.payload.data(), message.size);
+      const double flat2 = wx * wx + wy * wy;
+      port.insert(static_cast<float>(std::sqrt(flat2 + wz * wz)), static_cast<float>(std::atan2(by, bx)),
+                  wz == 0.0 ? 0.0F : static_cast<float>(std::atan2(wz, std::sqrt(flat2))), message.payload.data(),
+                  message.size);
     });
   }
 

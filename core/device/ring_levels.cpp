@@ -64,7 +64,7 @@ class LightSensor final : public Sensor {
     const std::size_t row = context.block.first_row + i;
     const double wx = lamp.x_m - b.x_m[row];
     const double wy = lamp.y_m - b.y_m[row];
-    const double height = mounts_.front().z_m;
+    const double height = mounts_.front().z_m + context.stores.base_m(row);
     const double wz = lamp.z_m - height;
     const double d2 = std::max(wx * wx + wy * wy + wz * wz, 1e-6);
     const double strength = std::min(lamp.intensity * lamp.intensity / d2, 1.0);

@@ -27,6 +27,8 @@ enum class Stream : std::uint32_t {
   RabLoss,
   ClockNoise,
   SendLoss,
+  FlightNoise,
+  PositioningNoise,
 };
 
 /// Four independent 32-bit numbers. `index` tells draws of one tick apart (0 to 2^24 - 1).

@@ -6,8 +6,10 @@
 #include <set>
 
 #include "core/random/random.hpp"
+#include "hal/device/flight.hpp"
 #include "hal/device/range_and_bearing.hpp"
 #include "hal/spec/epuck.hpp"
+#include "hal/spec/eyebot.hpp"
 
 namespace tandem::core {
 namespace {
@@ -55,7 +57,11 @@ class ConstructedRobot final : public hal::Robot {
     if (i == group_.ports.size()) {
       check_listed(type);
       group_.ports.push_back(&type);
-      if (type.name == hal::WheelSpeeds::kName && type.role == hal::Role::Actuator) group_.wheels = static_cast<int>(i);
+      if (type.role == hal::Role::Actuator) {
+        if (type.name == hal::WheelSpeeds::kName) group_.wheels = static_cast<int>(i);
+        if (type.name == hal::QuadrotorPosition::kName) group_.flight_position = static_cast<int>(i);
+        if (type.name == hal::QuadrotorSpeed::kName) group_.flight_speed = static_cast<int>(i);
+      }
     }
     if (group_.ports[i]->layout != type.layout) {
       throw hal::DeviceError("device '" + std::string(type.name) +
@@ -123,6 +129,9 @@ class Factory {
     for (std::size_t g = 0; g < members.size(); ++g) {
       sort_by_place(requests, members[g]);
       if (prepare_group(g)) make_blocks(g, requests, members[g], devices);
+    }
+    for (const RobotGroup& made : stores_.groups) {
+      if (made.sheet != nullptr && made.sheet->flies) stores_.bodies.flight.resize(stores_.bodies.size());
     }
     if (sends_) stores_.broadcasts.resize(stores_.bodies.size());
     return devices;
@@ -339,11 +348,14 @@ class Factory {
 }  // namespace
 
 const hal::DataSheet* data_sheet_of(std::string_view kind) {
-  return kind == hal::epuck::kDataSheet.kind ? &hal::epuck::kDataSheet : nullptr;
+  for (const hal::DataSheet* sheet : {&hal::epuck::kDataSheet, &hal::eyebot::kDataSheet}) {
+    if (sheet->kind == kind) return sheet;
+  }
+  return nullptr;
 }
 
 std::vector<std::string> robot_kinds() {
-  return {std::string(hal::epuck::kDataSheet.kind)};
+  return {std::string(hal::epuck::kDataSheet.kind), std::string(hal::eyebot::kDataSheet.kind)};
 }
 
 RobotDevices make_robots(const Scenario& scenario, const std::vector<RobotRequest>& requests, std::uint64_t seed,

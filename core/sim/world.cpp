@@ -96,6 +96,8 @@ struct World::Impl {
   void sense(std::size_t block);
   void control(std::size_t block);
   void filter(std::size_t block);
+  template <class Port, class Filter>
+  void filter_port(std::size_t block, int port, Filter&& filter_one);
   void report_trouble();
   void paint_floor_if_asked();
 
@@ -362,13 +364,23 @@ void World::Impl::control(std::size_t index) {
 }
 
 void World::Impl::filter(std::size_t index) {
+  const RobotGroup& group = stores().groups[stores().blocks[index].group];
+  const hal::DataSheet& sheet = *group.sheet;
+  filter_port<hal::WheelSpeeds>(index, group.wheels,
+                                [&](auto& command) { return hal::filter(command, sheet.max_wheel_speed_m_s); });
+  filter_port<hal::QuadrotorPosition>(index, group.flight_position, [](auto& command) { return hal::filter(command); });
+  filter_port<hal::QuadrotorSpeed>(index, group.flight_speed, [&](auto& command) {
+    return hal::filter(command, sheet.max_flight_speed_m_s, sheet.max_flight_turn_rad_s);
+  });
+}
+
+template <class Port, class Filter>
+void World::Impl::filter_port(std::size_t index, int port, Filter&& filter_one) {
+  if (port < 0) return;
   RobotBlock& block = stores().blocks[index];
-  const RobotGroup& group = stores().groups[block.group];
-  if (group.wheels < 0) return;
-  auto* wheels = block.port_array<hal::WheelSpeeds>(static_cast<std::size_t>(group.wheels));
-  const double limit = group.sheet->max_wheel_speed_m_s;
+  auto* commands = block.port_array<Port>(static_cast<std::size_t>(port));
   for (std::size_t i = 0; i < block.used; ++i) {
-    const hal::FilterResult result = hal::filter(wheels[i], limit);
+    const hal::FilterResult result = filter_one(commands[i]);
     if (result == hal::FilterResult::Passed) continue;
     if (result == hal::FilterResult::Clamped) {
       ++clamped[index];
@@ -391,9 +403,10 @@ void World::Impl::report_trouble() {
       if ((flags & kNotFinite) != 0) {
         flags = static_cast<std::uint8_t>(flags & ~kNotFinite);
         if (incidents.first.size() < kIncidentsNamed) {
-          incident("controller of robot '" + name_of_row(row) +
-                   "' commanded a wheel speed that is not a finite number" + at_tick() +
-                   ": wheels stopped for this tick");
+          const bool flies = stores().groups[block.group].sheet->flies;
+          incident("controller of robot '" + name_of_row(row) + "' commanded a " + (flies ? "flight" : "wheel speed") +
+                   " that is not a finite number" + at_tick() +
+                   (flies ? ": it hovers for this tick" : ": wheels stopped for this tick"));
         }
       }
       if (block.halted[i] == 2) {
@@ -513,6 +526,8 @@ std::unique_ptr<World> World::make(const Scenario& scenario, hal::PluginLoader& 
   s.min_y_m = scenario.arena_center[1] - 0.5 * scenario.arena_size[1];
   s.max_y_m = scenario.arena_center[1] + 0.5 * scenario.arena_size[1];
 
+  if (scenario.arena_size[2] > 0.0) s.max_z_m = scenario.arena_center[2] + 0.5 * scenario.arena_size[2];
+
   const Placements placements = place(scenario, w.seed, &size_of_kind, problems);
   w.engines = make_engines(scenario, placements.robots.size(), s, problems);
   if (bad()) return nullptr;
@@ -562,6 +577,11 @@ std::unique_ptr<World> World::make(const Scenario& scenario, hal::PluginLoader& 
     if (group.sheet == nullptr) continue;
     reach_m = std::max(
         reach_m, 2.0 * group.sheet->body_radius_m + std::max(group.sheet->proximity_range_m, kContactReach_m) + 0.01);
+  }
+  // Where a flying robot may be at the end of the tick.
+  for (const RobotGroup& group : s.groups) {
+    if (group.sheet != nullptr && group.sheet->flies)
+      reach_m = std::max(reach_m, 2.0 * group.sheet->body_radius_m + w.tick_s() * group.sheet->max_flight_speed_m_s);
   }
   s.body_index.set_area(s.min_x_m, s.min_y_m, s.max_x_m, s.max_y_m, reach_m);
   w.reach_m = reach_m;

@@ -26,6 +26,7 @@ void Bodies::resize(std::size_t rows) {
   entity.resize(rows, 0xFFFFFFFFU);
   region.resize(rows, 0);
   if (has_motion) motion.resize(rows);
+  if (!flight.empty()) flight.resize(rows);
 }
 
 AlignedBytes::AlignedBytes(std::size_t size, std::size_t align)

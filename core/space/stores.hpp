@@ -7,6 +7,7 @@
 #pragma once
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <new>
 #include <string>
@@ -106,6 +107,8 @@ struct RobotGroup {
   std::shared_ptr<const void> params;
   std::vector<const hal::PortType*> ports;  ///< those that its controllers took, in the order of taking
   int wheels = -1;                          ///< index in `ports` of the wheel command; -1: none
+  int flight_position = -1;                 ///< … of the place to fly to
+  int flight_speed = -1;                    ///< … of the velocity to fly with
   double rab_range_m = 0.0;
   unsigned rab_payload = 0;
   std::vector<std::size_t> blocks;
@@ -156,6 +159,7 @@ struct Broadcast {
 
 struct SpaceStores {
   double min_x_m = -1.0, min_y_m = -1.0, max_x_m = 1.0, max_y_m = 1.0;  ///< the arena
+  double max_z_m = std::numeric_limits<double>::infinity();             ///< its ceiling: what flies stays below
 
   Bodies bodies;
   std::vector<RobotGroup> groups;
@@ -189,6 +193,19 @@ struct SpaceStores {
     for (const std::uint32_t k : static_index.near(x_m, y_m)) visit(objects[k]);
     if (movable_index.empty()) return;
     for (const std::uint32_t k : movable_index.near(x_m, y_m)) visit(objects[k]);
+  }
+
+  const hal::DataSheet& sheet_of_row(std::size_t row) const noexcept {
+    return *groups[blocks[robots[bodies.entity[row]].block].group].sheet;
+  }
+  /// How high the base of a body stands above the ground, in m.
+  double base_m(std::size_t row) const noexcept { return bodies.motion.empty() ? 0.0 : bodies.motion[row].z_m; }
+  /// Whether some height belongs to both bodies. Call only while `bodies.motion` is there: else all stand on the
+  /// ground.
+  bool side_by_side(std::size_t row, std::size_t other) const noexcept {
+    const double low = bodies.motion[row].z_m;
+    const double other_low = bodies.motion[other].z_m;
+    return low < other_low + sheet_of_row(other).body_height_m && other_low < low + sheet_of_row(row).body_height_m;
   }
 
   std::size_t row_of(RobotId id) const noexcept {

@@ -25,6 +25,9 @@ struct DataSheet {
   double drive_force_N = 0.0;        ///< that the wheels together can push with
   double drive_torque_Nm = 0.0;      ///< that they can turn the body with
   bool flies = false;
+  double max_flight_speed_m_s = 0.0;          ///< of one that flies, in any direction
+  double max_flight_acceleration_m_s2 = 0.0;  ///< beyond what holds it up, in any direction
+  double max_flight_turn_rad_s = 0.0;
   double proximity_range_m = 0.0;    ///< from the sensor
   double rab_range_m = 0.0;          ///< range-and-bearing, between centres
   double rab_height_m = 0.0;

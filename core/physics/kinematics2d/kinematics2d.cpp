@@ -109,6 +109,7 @@ void Kinematics2d::advance(const PhysicsContext& context) {
     for (std::size_t i = first; i < last; ++i) {
       const RobotBlock& block = stores.blocks[i];
       const hal::DataSheet& sheet = *stores.groups[block.group].sheet;
+      if (sheet.flies) continue;  // never this engine's
       const int steps = sub_steps(sheet, context.tick_s);
       const std::size_t end = block.first_row + block.used;
       std::size_t row = block.first_row;
@@ -139,6 +140,7 @@ void Kinematics2d::settle(const PhysicsContext& context) {
     for (const RegionSide& side : region.sides) walls = walls || (side.wall && !region.listed);
   }
 
+  const bool heights = !stores.bodies.motion.empty();
   // Where entry i would be pushed to by what it overlaps; also finds out who is near anything at all.
   const auto resolve = [&](std::size_t i, bool first_pass, double largest_radius) noexcept {
     const IndexEntry& e = entries[i];
@@ -152,6 +154,7 @@ void Kinematics2d::settle(const PhysicsContext& context) {
       const double touch = r_i + static_cast<double>(o.radius_m);
       const double d2 = dx * dx + dy * dy;
       if (d2 >= (touch + kSlack_m) * (touch + kSlack_m) || &o == &e) return;
+      if (heights && o.fixed() && !stores.side_by_side(e.row(), o.row())) return;  // flies above
       near = true;
       if (d2 >= touch * touch) return;
       const double d = std::sqrt(d2);

@@ -1,0 +1,217 @@
+// Flight: the actuators that tell the engine where or how fast to fly, and the sensor that tells where the robot is.
+#include "hal/device/flight.hpp"
+
+#include "core/device/types.hpp"
+#include "core/random/random.hpp"
+
+namespace tandem::core {
+namespace {
+
+bool flies(const hal::DataSheet& sheet) {
+  return sheet.flies;
+}
+
+// --- actuators ---
+
+struct IdealFlight {
+  void describe(hal::ParamVisitor&) {}
+};
+
+template <int kPerMille>
+struct FlightErrors {
+  double noise_std_dev = kPerMille * 1e-3;
+  void describe(hal::ParamVisitor& v) {
+    v.number("noise_std_dev", noise_std_dev, hal::unit::none, hal::kNotNegative,
+             "Standard deviation on each axis, in m of a target or m/s of a velocity, drawn every tick.");
+  }
+};
+
+/// The ports of one class that the block's robots have, or null.
+template <class Port>
+const Port* ports_of(const DeviceContext& context) noexcept {
+  for (std::size_t i = 0; i < context.group.ports.size(); ++i) {
+    if (context.group.ports[i]->layout == hal::port_type<Port>().layout &&
+        context.group.ports[i]->role == hal::Role::Actuator)
+      return context.block.port_array<Port>(i);
+  }
+  return nullptr;
+}
+
+bool obeys(const DeviceContext& context, std::size_t i) noexcept {
+  const std::uint8_t flags = context.stores.bodies.flags[context.block.first_row + i];
+  return (flags & (kAlive | kExternal)) == kAlive && context.block.halted[i] == 0;
+}
+
+void add_noise(const DeviceContext& context, std::size_t row, double std_dev, FlightCommand& command) noexcept {
+  const auto bits = draw(context.seed, context.stores.bodies.entity[row], Stream::FlightNoise, context.tick);
+  const auto xy = to_normal(bits[0], bits[1]);
+  command.target[0] += std_dev * xy[0];
+  command.target[1] += std_dev * xy[1];
+  command.target[2] += std_dev * to_normal(bits[2], bits[3])[0];
+}
+
+/// Both actuators write the same rows of the stores: a position that is not on hold goes before a speed, in whichever
+/// order they act.
+class PositionActuator final : public Actuator {
+ public:
+  explicit PositionActuator(double noise_m) : noise_m_(noise_m) {}
+
+  void act(const DeviceContext& context, SpaceStores& stores, const void* ports) noexcept override {
+    const auto* targets = static_cast<const hal::QuadrotorPosition*>(ports);
+    const bool has_speed = ports_of<hal::QuadrotorSpeed>(context) != nullptr;
+    for (std::size_t i = 0; i < context.block.used; ++i) {
+      const std::size_t row = context.block.first_row + i;
+      FlightCommand& command = stores.bodies.flight[row];
+      if (!targets[i].hold && obeys(context, i)) {
+        command = {FlightCommand::Mode::Position, targets[i].target, targets[i].yaw_rad};
+        if (noise_m_ > 0.0) add_noise(context, row, noise_m_, command);
+      } else if (!has_speed) {
+        command = {FlightCommand::Mode::Velocity, {}, 0.0};
+      }
+    }
+  }
+
+ private:
+  double noise_m_;
+};
+
+class SpeedActuator final : public Actuator {
+ public:
+  explicit SpeedActuator(double noise_m_s) : noise_m_s_(noise_m_s) {}
+
+  void act(const DeviceContext& context, SpaceStores& stores, const void* ports) noexcept override {
+    const auto* speeds = static_cast<const hal::QuadrotorSpeed*>(ports);
+    const auto* targets = ports_of<hal::QuadrotorPosition>(context);
+    for (std::size_t i = 0; i < context.block.used; ++i) {
+      const std::size_t row = context.block.first_row + i;
+      FlightCommand& command = stores.bodies.flight[row];
+      if (!obeys(context, i)) {
+        command = {FlightCommand::Mode::Velocity, {}, 0.0};
+      } else if (targets == nullptr || targets[i].hold) {
+        command = {FlightCommand::Mode::Velocity, speeds[i].velocity, speeds[i].yaw_rad_s};
+        if (noise_m_s_ > 0.0) add_noise(context, row, noise_m_s_, command);
+      }
+    }
+  }
+
+ private:
+  double noise_m_s_;
+};
+
+template <class Device, class Options>
+Recipe<Actuator> make_flight(const Element& element, Problems& problems, const DeviceSetup&) {
+  const auto options = read_options<Options>(element, problems);
+  double noise = 0.0;
+  if constexpr (requires { options.noise_std_dev; }) noise = options.noise_std_dev;
+  return [noise](std::size_t) { return std::make_unique<Device>(noise); };
+}
+
+template <class Device, class Options>
+DeviceType flight_type(std::string_view device, std::string_view implementation, std::string_view summary) {
+  return actuator_type(device, implementation, summary, &flies, &make_flight<Device, Options>,
+                       &describe_options<Options>);
+}
+
+// --- positioning ---
+
+struct IdealPlace {
+  void describe(hal::ParamVisitor&) {}
+};
+
+/// ARGoS' three ranges. Orientation: the angle and each part of the axis that the body is turned about.
+template <int kPerMille>
+struct PlaceErrors {
+  double pos_noise_m = kPerMille * 1e-3;
+  double angle_noise_rad = kPerMille * 1e-3;
+  double axis_noise = 0.0;
+  void describe(hal::ParamVisitor& v) {
+    v.number("pos_noise_range", pos_noise_m, hal::unit::m, hal::kNotNegative,
+             "Uniform noise of +-this on each coordinate.");
+    v.number("angle_noise_range", angle_noise_rad, hal::unit::rad, hal::kNotNegative,
+             "Uniform noise of +-this on the angle that the body is turned by.");
+    v.number("axis_noise_range", axis_noise, hal::unit::none, {0.0, 0.5},
+             "Uniform noise of +-this on each part of the axis that the body is turned about.");
+  }
+};
+
+class PositioningSensor final : public Sensor {
+ public:
+  explicit PositioningSensor(const PlaceErrors<0>& errors) : errors_(errors) {}
+
+  void sense(const DeviceContext& context, void* ports) noexcept override {
+    auto* places = static_cast<hal::Positioning*>(ports);
+    const Bodies& b = context.stores.bodies;
+    for (std::size_t i = 0; i < context.block.used; ++i) {
+      const std::size_t row = context.block.first_row + i;
+      hal::Positioning& port = places[i];
+      port.taken_ns = context.now_ns;
+      port.validity = hal::Validity::Fresh;
+      port.p_WB = {b.x_m[row], b.y_m[row], context.stores.base_m(row)};
+      port.q_WB = b.motion.empty() ? upright(b.cos_h[row], b.sin_h[row]) : b.motion[row].q_WB;
+      if (errors_.pos_noise_m > 0.0 || errors_.angle_noise_rad > 0.0 || errors_.axis_noise > 0.0)
+        add_noise(context, b.entity[row], port);
+    }
+  }
+
+ private:
+  /// Turned about the vertical only. Bodies in the plane have no quaternion of their own.
+  static std::array<double, 4> upright(double cos_h, double sin_h) noexcept {
+    const double half_rad = 0.5 * std::atan2(sin_h, cos_h);
+    return {std::cos(half_rad), 0.0, 0.0, std::sin(half_rad)};
+  }
+
+  void add_noise(const DeviceContext& context, std::uint32_t entity, hal::Positioning& port) const noexcept {
+    const auto place = draw(context.seed, entity, Stream::PositioningNoise, context.tick, 0);
+    const auto turn = draw(context.seed, entity, Stream::PositioningNoise, context.tick, 1);
+    const auto symmetric = [](std::uint32_t bits) { return 2.0 * to_unit(bits) - 1.0; };
+    for (std::size_t k = 0; k < 3; ++k) port.p_WB[k] += errors_.pos_noise_m * symmetric(place[k]);
+    if (errors_.angle_noise_rad == 0.0 && errors_.axis_noise == 0.0) return;
+    auto& q = port.q_WB;
+    const double s = std::sqrt(q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
+    const double angle = 2.0 * std::atan2(s, q[0]) + errors_.angle_noise_rad * symmetric(place[3]);
+    std::array<double, 3> axis{0.0, 0.0, 1.0};  // of a body that is not turned: the vertical
+    if (s > 1e-12) axis = {q[1] / s, q[2] / s, q[3] / s};
+    for (std::size_t k = 0; k < 3; ++k) axis[k] += errors_.axis_noise * symmetric(turn[k]);
+    const double length = std::sqrt(axis[0] * axis[0] + axis[1] * axis[1] + axis[2] * axis[2]);  // at least 0.13
+    const double part = std::sin(0.5 * angle) / length;
+    q = {std::cos(0.5 * angle), part * axis[0], part * axis[1], part * axis[2]};
+  }
+
+  PlaceErrors<0> errors_;
+};
+
+template <class Options>
+Recipe<Sensor> make_positioning(const Element& element, Problems& problems, const DeviceSetup&) {
+  const auto options = read_options<Options>(element, problems);
+  PlaceErrors<0> errors;
+  if constexpr (requires { options.pos_noise_m; })
+    errors = {options.pos_noise_m, options.angle_noise_rad, options.axis_noise};
+  return [errors](std::size_t) { return std::make_unique<PositioningSensor>(errors); };
+}
+
+template <class Options>
+DeviceType positioning_type(std::string_view implementation, std::string_view summary) {
+  return sensor_type(
+      hal::Positioning::kName, implementation, summary, [](const hal::DataSheet&) { return true; },
+      &make_positioning<Options>, &describe_options<Options>);
+}
+
+}  // namespace
+
+std::vector<DeviceType> flight_types() {
+  constexpr std::string_view kPosition = hal::QuadrotorPosition::kName;
+  constexpr std::string_view kSpeed = hal::QuadrotorSpeed::kName;
+  using Position = PositionActuator;
+  using Speed = SpeedActuator;
+  return {flight_type<Position, FlightErrors<0>>(kPosition, "default", "Flies to a place; noise where asked for."),
+          flight_type<Position, IdealFlight>(kPosition, "ideal", "Flies to a place."),
+          flight_type<Position, FlightErrors<10>>(kPosition, "noisy", "Flies to a place that wanders."),
+          flight_type<Speed, FlightErrors<0>>(kSpeed, "default", "Flies at a velocity; noise where asked for."),
+          flight_type<Speed, IdealFlight>(kSpeed, "ideal", "Flies at a velocity."),
+          flight_type<Speed, FlightErrors<20>>(kSpeed, "noisy", "Flies at a velocity, with an error every tick."),
+          positioning_type<PlaceErrors<0>>("default", "Place and orientation; noise where asked for."),
+          positioning_type<IdealPlace>("ideal", "Place and orientation."),
+          positioning_type<PlaceErrors<10>>("noisy", "Place and orientation, with uniform noise.")};
+}
+
+}  // namespace tandem::core

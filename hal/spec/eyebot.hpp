@@ -1,0 +1,72 @@
+// Data sheet of the eye-bot, the flying robot of the Swarmanoid project [Dorigo et al. 2013, "Swarmanoid", IEEE
+// Robotics & Automation Magazine 20(4)].
+//
+// Sources: [ARGoS] ARGoS 3, eye-bot plug-in; [chosen] no figure is published, the reason stands beside.
+#pragma once
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "hal/spec/data_sheet.hpp"
+
+namespace tandem::hal::eyebot {
+
+inline constexpr double kBodyRadius_m = 0.25;       // [ARGoS]
+inline constexpr double kHeight_m = 0.566;          // [ARGoS]
+inline constexpr double kMass_kg = 1.0;             // [ARGoS]
+inline constexpr double kRingRadius_m = 0.255;      // [ARGoS] of the sensors and LEDs
+inline constexpr double kSensorHeight_m = 0.1635;   // [ARGoS] of proximity and light sensors, above the base
+inline constexpr double kLedHeight_m = 0.1535;      // [ARGoS] of the lower ring of LEDs
+inline constexpr double kProximityRange_m = 3.0;    // [ARGoS]
+inline constexpr double kRabRange_m = 3.0;          // [ARGoS]
+inline constexpr unsigned kRabPayload = 10;         // [ARGoS]
+inline constexpr double kMaxAcceleration_m_s2 = 3;  // [chosen] what a lean of 17 degrees gives: atan(3 / 9.81)
+inline constexpr double kMaxSpeed_m_s = 2.0;        // [chosen] stops within 0.7 m, a quarter of what proximity sees
+inline constexpr double kMaxTurn_rad_s = 0.5 * std::numbers::pi;  // [chosen] a quarter turn a second
+inline constexpr double kBatteryFull_V = 12.6;                    // [chosen] three lithium-polymer cells
+inline constexpr double kBatteryEmpty_V = 9.9;
+
+namespace detail {
+/// `count` mounts around the rim, counter-clockwise, the first `first_deg` from forward. Directions are worked out when
+/// the program starts: sine and cosine are no constant expressions.
+template <std::size_t count>
+std::array<Mount, count> ring(double first_deg, double height_m) {
+  std::array<Mount, count> mounts;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double turn = (first_deg + 360.0 / count * static_cast<double>(i)) / 180.0;
+    const double bearing = turn > 1.0 ? turn - 2.0 : turn;  // half turns, in (-1, 1]
+    const double rad = bearing * std::numbers::pi;
+    mounts[i] = {rad, kRingRadius_m * std::cos(rad), kRingRadius_m * std::sin(rad), height_m};
+  }
+  return mounts;
+}
+}  // namespace detail
+
+/// 24 proximity and light sensors [ARGoS]: the first at 7.5 degrees, one every 15 degrees, counter-clockwise.
+inline const std::array<Mount, 24> kRing = detail::ring<24>(7.5, kSensorHeight_m);
+/// The lower ring of 16 LEDs [ARGoS]: the first at 11.25 degrees. The upper ring, 1 cm higher, shines alike.
+inline const std::array<Mount, 16> kLeds = detail::ring<16>(11.25, kLedHeight_m);
+
+inline const DataSheet kDataSheet = {
+    .kind = "eye-bot",
+    .body_radius_m = kBodyRadius_m,
+    .body_height_m = kHeight_m,
+    .mass_kg = kMass_kg,
+    .flies = true,
+    .max_flight_speed_m_s = kMaxSpeed_m_s,
+    .max_flight_acceleration_m_s2 = kMaxAcceleration_m_s2,
+    .max_flight_turn_rad_s = kMaxTurn_rad_s,
+    .proximity_range_m = kProximityRange_m,
+    .rab_range_m = kRabRange_m,
+    .rab_height_m = kSensorHeight_m,
+    .rab_payload = kRabPayload,
+    .battery_full_V = kBatteryFull_V,
+    .battery_empty_V = kBatteryEmpty_V,
+    .proximity = kRing,
+    .light = kRing,
+    .ground = {},
+    .microphones = {},
+    .leds = kLeds,
+};
+
+}  // namespace tandem::hal::eyebot
