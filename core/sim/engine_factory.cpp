@@ -7,6 +7,7 @@
 
 #include "core/physics/dynamics2d/dynamics2d.hpp"
 #include "core/physics/kinematics2d/kinematics2d.hpp"
+#include "core/physics/particle3d/particle3d.hpp"
 #include "core/physics/solver.hpp"
 
 namespace tandem::core {
@@ -17,7 +18,7 @@ constexpr double kNarrowestPart_m = 4.0;  // narrower ones spend their time on b
 constexpr std::size_t kMostPartsASide = 8;
 
 const std::vector<const SolverType*>& solver_types() {
-  static const std::vector<const SolverType*> types = {&dynamics2d_type()};
+  static const std::vector<const SolverType*> types = {&dynamics2d_type(), &particle3d_type()};
   return types;
 }
 
@@ -136,7 +137,10 @@ class Maker {
     }
     if (stores_.regions.size() >= kNoRegion) problem(scenario_.engines.front().line, "more than 65534 regions");
     if (!has_errors(problems_, before)) check_overlaps();
-    if (!has_errors(problems_, before)) open_gates();
+    if (!has_errors(problems_, before)) {
+      part_air_from_ground();
+      open_gates();
+    }
     if (!has_errors(problems_, before)) make_solvers();
     return std::move(engines_);
   }
@@ -252,6 +256,17 @@ class Maker {
         return;
       }
     }
+  }
+
+  /// Regions for robots that fly are a world of their own where they lie over others. Where they lie beside them, they
+  /// are regions like all, and robots on the ground meet across the border.
+  void part_air_from_ground() {
+    for (const Region& one : stores_.regions) {
+      for (const Region& other : stores_.regions) {
+        if (one.air && !other.air && overlap(one, other)) return;
+      }
+    }
+    for (Region& region : stores_.regions) region.air = false;
   }
 
   std::uint16_t region_of_engine(const std::string& id) const {

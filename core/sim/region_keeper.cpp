@@ -66,7 +66,7 @@ void RegionKeeper::build(SpaceStores& stores, double tick_s) {
   for (const RobotGroup& group : stores.groups) {
     if (group.sheet == nullptr) continue;
     robot_m = std::max(robot_m, group.sheet->body_radius_m);
-    hop_m = std::max(hop_m, group.sheet->max_wheel_speed_m_s * tick_s);
+    hop_m = std::max(hop_m, std::max(group.sheet->max_wheel_speed_m_s, group.sheet->max_flight_speed_m_s) * tick_s);
   }
   largest_m = robot_m;
   for (const Object& o : stores.objects) {
@@ -239,7 +239,7 @@ void RegionKeeper::list_body(SpaceStores& stores, BodyKey body) {
   const double reach_m = radius_of(stores, body) + extra_reach_m_;
   for (const std::uint16_t r : map_.near(at.x_m, at.y_m)) {
     Region& region = stores.regions[r];
-    if (r == own || !region.listed || region.air || stores.regions[own].air) continue;
+    if (r == own || !region.listed || region.air != stores.regions[own].air) continue;
     if (region.distance(at.x_m, at.y_m) <= reach_m) region.mirrored.push_back(body);
   }
 }

@@ -25,7 +25,7 @@ struct RegionSide {
 struct Region {
   std::string name;               ///< the engine's id in the file; of a part, with its column and line: "dyn2d[2,3]"
   std::size_t engine = 0;         ///< index into Scenario::engines
-  bool air = false;               ///< of an engine made for flying bodies; may lie over one for bodies on the ground
+  bool air = false;               ///< of an engine made for flying bodies, in a run where these lie over others
   bool plane = true;              ///< bodies in it stay on the ground
   bool forces = false;            ///< its engine knows masses: it can hold movable objects and joints
   bool listed = false;            ///< its engine wants `owned` and `mirrored`
