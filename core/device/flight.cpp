@@ -18,11 +18,20 @@ struct IdealFlight {
 };
 
 template <int kPerMille>
-struct FlightErrors {
+struct TargetErrors {
   double noise_std_dev = kPerMille * 1e-3;
   void describe(hal::ParamVisitor& v) {
-    v.number("noise_std_dev", noise_std_dev, hal::unit::none, hal::kNotNegative,
-             "Standard deviation on each axis, in m of a target or m/s of a velocity, drawn every tick.");
+    v.number("noise_std_dev", noise_std_dev, hal::unit::m, hal::kNotNegative,
+             "Standard deviation of the target on each axis, drawn every tick.");
+  }
+};
+
+template <int kPerMille>
+struct VelocityErrors {
+  double noise_std_dev = kPerMille * 1e-3;
+  void describe(hal::ParamVisitor& v) {
+    v.number("noise_std_dev", noise_std_dev, hal::unit::m_s, hal::kNotNegative,
+             "Standard deviation of the velocity on each axis, drawn every tick.");
   }
 };
 
@@ -203,12 +212,12 @@ std::vector<DeviceType> flight_types() {
   constexpr std::string_view kSpeed = hal::QuadrotorSpeed::kName;
   using Position = PositionActuator;
   using Speed = SpeedActuator;
-  return {flight_type<Position, FlightErrors<0>>(kPosition, "default", "Flies to a place; noise where asked for."),
+  return {flight_type<Position, TargetErrors<0>>(kPosition, "default", "Flies to a place; noise where asked for."),
           flight_type<Position, IdealFlight>(kPosition, "ideal", "Flies to a place."),
-          flight_type<Position, FlightErrors<10>>(kPosition, "noisy", "Flies to a place that wanders."),
-          flight_type<Speed, FlightErrors<0>>(kSpeed, "default", "Flies at a velocity; noise where asked for."),
+          flight_type<Position, TargetErrors<10>>(kPosition, "noisy", "Flies to a place that wanders."),
+          flight_type<Speed, VelocityErrors<0>>(kSpeed, "default", "Flies at a velocity; noise where asked for."),
           flight_type<Speed, IdealFlight>(kSpeed, "ideal", "Flies at a velocity."),
-          flight_type<Speed, FlightErrors<20>>(kSpeed, "noisy", "Flies at a velocity, with an error every tick."),
+          flight_type<Speed, VelocityErrors<20>>(kSpeed, "noisy", "Flies at a velocity, with an error every tick."),
           positioning_type<PlaceErrors<0>>("default", "Place and orientation; noise where asked for."),
           positioning_type<IdealPlace>("ideal", "Place and orientation."),
           positioning_type<PlaceErrors<10>>("noisy", "Place and orientation, with uniform noise.")};
