@@ -822,6 +822,9 @@ TEST_P(TwoKinds, TheSameBitsForAnyNumberOfThreads) {
 std::string name_of_pair(const testing::TestParamInfo<KindPair>& info) {
   return info.param.first + "_" + info.param.second;
 }
+std::string name_of_pair(const testing::TestParamInfo<KindPair>& info) {
+  return info.param.first + "_" + info.param.second;
+}
 TEST_P(TwoKinds, AThingThatIsPushedPassesFromOneEngineToTheOther) {
   if (!engine_traits(GetParam().first).forces || !engine_traits(GetParam().second).forces)
     GTEST_SKIP() << "only engines with forces move objects";
@@ -840,6 +843,18 @@ TEST_P(TwoKinds, AThingThatIsPushedPassesFromOneEngineToTheOther) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Physics, TwoKinds, testing::ValuesIn(kind_pairs()), name_of_pair);
+
+using TwoKindsWithForces = TwoKinds;
+
+/// All pairs of kinds with forces, those of one kind among them.
+std::vector<KindPair> pairs_with_forces() {
+  std::vector<KindPair> pairs;
+  for (const std::string& one : kinds_with_forces()) {
+    for (const std::string& other : kinds_with_forces()) pairs.emplace_back(one, other);
+  }
+  return pairs;
+}
+INSTANTIATE_TEST_SUITE_P(Physics, TwoKindsWithForces, testing::ValuesIn(pairs_with_forces()), name_of_pair);
 
 }  // namespace
 }  // namespace tandem::core
