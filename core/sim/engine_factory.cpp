@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "core/physics/dynamics2d/dynamics2d.hpp"
+#include "core/physics/dynamics3d/dynamics3d.hpp"
 #include "core/physics/kinematics2d/kinematics2d.hpp"
 #include "core/physics/particle3d/particle3d.hpp"
 #include "core/physics/solver.hpp"
@@ -18,7 +19,7 @@ constexpr double kNarrowestPart_m = 4.0;  // narrower ones spend their time on b
 constexpr std::size_t kMostPartsASide = 8;
 
 const std::vector<const SolverType*>& solver_types() {
-  static const std::vector<const SolverType*> types = {&dynamics2d_type(), &particle3d_type()};
+  static const std::vector<const SolverType*> types = {&dynamics2d_type(), &dynamics3d_type(), &particle3d_type()};
   return types;
 }
 

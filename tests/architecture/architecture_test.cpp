@@ -9,10 +9,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const LibraryOwners kOwners = {
-    {"tinyxml2", "core/config"},          {"png.h", "core/space"}, {"Random123/", "core/random"},
-    {"libserial/", "bridges/link"},       {"CLI/", "app"},         {"fmt/", "app"},
-    {"box2d/", "core/physics/dynamics2d"}};
+const LibraryOwners kOwners = {{"tinyxml2", "core/config"},
+                               {"png.h", "core/space"},
+                               {"Random123/", "core/random"},
+                               {"libserial/", "bridges/link"},
+                               {"CLI/", "app"},
+                               {"fmt/", "app"},
+                               {"box2d/", "core/physics/dynamics2d"},
+                               {"ode/", "core/physics/dynamics3d"}};
 
 TEST(Architecture, HoldsInThisTree) {
   const Dependencies dependencies = read_dependencies(fs::path(TANDEM_BINARY_DIR) / "architecture.txt");

@@ -63,7 +63,7 @@ constexpr std::array<std::string_view, 6> kPaths = {
     "framework.system.threads=",    "arena."};
 
 const KnownNames kKnown = {
-    {"e-puck"}, {"kinematics2d"}, {"proximity", "range_and_bearing"}, {"leds", "differential_steering"}};
+    {"e-puck", "eye-bot"}, {"kinematics2d", "dynamics2d", "dynamics3d", "particle3d"}, {"proximity", "range_and_bearing"}, {"leds", "differential_steering"}};
 
 void expect(bool condition) {
   if (!condition) std::abort();

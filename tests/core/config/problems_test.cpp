@@ -159,8 +159,8 @@ INSTANTIATE_TEST_SUITE_P(
 INSTANTIATE_TEST_SUITE_P(
     Engines, OneProblem,
     testing::Values(
-        Case{"unknown", [](Parts& p) { p.engines = R"(<physics_engines><dynamics2d id="d"/></physics_engines>)"; }, 4,
-             "unknown physics engine <dynamics2d>; known: kinematics2d"},
+        Case{"unknown", [](Parts& p) { p.engines = R"(<physics_engines><dynamics4d id="d"/></physics_engines>)"; }, 4,
+             "unknown physics engine <dynamics4d>; known: kinematics2d, dynamics2d, dynamics3d, particle3d"},
         Case{"no_id", [](Parts& p) { p.engines = "<physics_engines><kinematics2d/></physics_engines>"; }, 4,
              "needs the attribute 'id'"},
         Case{"second_id",

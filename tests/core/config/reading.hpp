@@ -10,8 +10,8 @@
 namespace tandem::core {
 
 inline const KnownNames& known_names() {
-  static const KnownNames names = {{"e-puck"},
-                                   {"kinematics2d"},
+  static const KnownNames names = {{"e-puck", "eye-bot"},
+                                   {"kinematics2d", "dynamics2d", "dynamics3d", "particle3d"},
                                    {"accelerometer", "battery", "clock", "ground", "light", "microphones", "proximity",
                                     "range_and_bearing", "wheel_encoders"},
                                    {"body_led", "differential_steering", "front_led", "leds", "range_and_bearing"}};

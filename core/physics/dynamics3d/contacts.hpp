@@ -1,0 +1,65 @@
+// Contacts of one sub-step: where bodies are near one another, constraints that keep them from passing into each other.
+#pragma once
+#include <array>
+#include <vector>
+
+#include "core/physics/dynamics3d/twin.hpp"
+
+namespace tandem::core {
+
+/// Something that does not move.
+struct Still {
+  Prism prism;
+  double height_m = 0.0;
+  bool wall = false;  ///< of the region: holds the region's own bodies only
+  OdeGeom geom;       ///< made when something that leans comes near
+};
+
+/// What surfaces do to one another.
+struct Surfaces {
+  double floor_m = 0.0;
+  double ceiling_m = 0.0;        ///< infinite where there is none
+  double floor_friction = 1.0;   ///< Coulomb's coefficients: objects on the floor, wheels on the floor
+  double object_friction = 1.0;  ///< objects on one another and on what does not move
+  double robot_friction = 0.1;   ///< the rims of robots on whatever they touch
+};
+
+/// Makes ODE's contact joints. ODE itself sees a contact when bodies overlap already; those made here start while there
+/// is a gap, and allow just the approach that closes it within the sub-step. So bodies meet instead of overlapping and
+/// being pushed apart.
+class Contacts {
+ public:
+  Contacts() : group_(dJointGroupCreate(0)) {}
+
+  void begin(dWorldID world, double dt_s) noexcept {
+    world_ = world;
+    dt_s_ = dt_s;
+  }
+  void between(Twin& a, Twin& b, const Surfaces& surfaces);
+  void with_still(Twin& a, Still& still, const Surfaces& surfaces);
+  /// With floor and ceiling; of what lives in ODE.
+  void with_ground(Twin& a, const Surfaces& surfaces);
+  /// Ends the sub-step.
+  void clear() { dJointGroupEmpty(group_.get()); }
+
+ private:
+  struct Grip {
+    double along = 0.0;  ///< friction along the first direction, and across it
+    double across = 0.0;
+    bool level = false;  ///< the first direction is level, whichever way the bodies slide
+  };
+  void touch(Twin& a, Twin* b);
+  void add(Twin& a, Twin* b, const Touch& touch, const Grip& grip);
+  void join(dBodyID a, dBodyID b, const Touch& touch, const Grip& grip, const Vector3& first);
+  void lean(Twin& a, Twin* b, dGeomID geom_b, const Prism& prism_b, const Grip& grip);
+  void support(Twin& a, double level_m, double up, const Grip& grip);
+  void ends_of_cylinder(Twin& a, double level_m, double up, const Grip& grip);
+  void point_on_level(Twin& a, const Vector3& p_m, double level_m, double up, const Grip& grip);
+  void wheels_on_floor(Twin& a, const Surfaces& surfaces);
+
+  dWorldID world_ = nullptr;
+  double dt_s_ = 0.0;
+  OdeJointGroup group_;
+};
+
+}  // namespace tandem::core

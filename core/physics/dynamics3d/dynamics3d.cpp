@@ -1,0 +1,121 @@
+#include "core/physics/dynamics3d/dynamics3d.hpp"
+
+#include <array>
+#include <cmath>
+#include <string>
+#include <string_view>
+
+#include "core/physics/dynamics3d/world3d.hpp"
+
+namespace tandem::core {
+namespace {
+
+constexpr double kSubStep_s = 0.02;  // at most, unless the file says otherwise
+constexpr std::array<std::string_view, 2> kDrives = {"base", "wheels"};
+
+struct Params {
+  std::int64_t iterations = 0;
+  double default_friction = 1.0;
+  double robot_friction = 0.1;
+  std::string drive = "base";
+  std::int64_t solver_iterations = 30;
+  double erp = 0.2;
+  double cfm = 1e-10;
+  FlightLimits flight;
+  double gravity_m_s2 = 9.81;
+  double floor_friction = -1.0;
+  double floor_m = 0.0;
+
+  void describe(hal::ParamVisitor& v) {
+    v.integer("iterations", iterations, {0, 1000}, "Sub-steps a tick. 0: as few as last 20 ms at most.");
+    v.number("default_friction", default_friction, hal::unit::none, {0.0, 100.0},
+             "Coulomb's coefficient between objects that touch, and of the floor unless <floor> says otherwise.");
+    v.number("robot_friction", robot_friction, hal::unit::none, {0.0, 100.0},
+             "Coulomb's coefficient between a robot's side and whatever it touches.");
+    v.choice("drive", drive, kDrives,
+             "base: a robot on the ground is an upright cylinder, driven over the floor with the force of its wheels. "
+             "wheels: it stands on two wheels that turn, and slips and tips as these let it; some 20 times slower.");
+    v.integer("solver_iterations", solver_iterations, {1, 10000}, "ODE's passes over all constraints, a sub-step.");
+    v.number("erp", erp, hal::unit::none, {0.0, 1.0}, "Share of an overlap that ODE takes back in a sub-step.");
+    v.number("cfm", cfm, hal::unit::none, {0.0, 1.0}, "How far ODE lets constraints give way, per newton, in m/s.");
+    v.number("flight_speed", flight.speed_m_s, hal::unit::m_s, {0.0, 50.0}, "Top speed of robots that fly.");
+    v.number("flight_acceleration", flight.acceleration_m_s2, hal::unit::m_s2, {0.0, 1000.0},
+             "What their thrust has to spare, beyond carrying them.");
+    v.number("flight_turn", flight.turn_rad_s, hal::unit::deg_s, {0.0, 100.0}, "Their top turn rate.");
+  }
+  void describe_gravity(hal::ParamVisitor& v, std::string_view name) {
+    v.number(name, gravity_m_s2, hal::unit::m_s2, {0.0, 1000.0}, "<gravity g=…>: acceleration of free fall.");
+  }
+  void describe_floor(hal::ParamVisitor& v, std::string_view friction, std::string_view height) {
+    v.number(friction, floor_friction, hal::unit::none, {-1.0, 100.0},
+             "<floor friction=…>: Coulomb's coefficient of the floor. Negative: default_friction.");
+    v.number(height, floor_m, hal::unit::m, {-1e6, 1e6}, "<floor height=…>: where the floor is.");
+  }
+};
+
+std::shared_ptr<const void> read(const Element& options, Problems& problems) {
+  auto params = std::make_shared<Params>();
+  ElementReader reader(options, problems, {"id", "regions"});
+  params->describe(reader);
+  reader.finish();
+  for (const Element& child : options.children) {
+    if (child.name == "boundaries") continue;
+    ElementReader inner(child, problems);
+    if (child.name == "gravity") {
+      params->describe_gravity(inner, "g");
+    } else if (child.name == "floor") {
+      params->describe_floor(inner, "friction", "height");
+    } else {
+      problems.push_back({options.file, child.line,
+                          "<dynamics3d> may not hold <" + child.name + ">; it may hold: gravity, floor, boundaries",
+                          false});
+      continue;
+    }
+    inner.finish();
+  }
+  return params;
+}
+
+World3dSettings settings_for(const Params& params, double tick_s) {
+  World3dSettings settings;
+  settings.sub_steps = params.iterations > 0 ? params.iterations
+                                             : std::max<std::int64_t>(
+                                                   1, static_cast<std::int64_t>(std::ceil(tick_s / kSubStep_s - 1e-6)));
+  settings.wheels = params.drive == "wheels";
+  settings.gravity_m_s2 = params.gravity_m_s2;
+  settings.surfaces.floor_m = params.floor_m;
+  settings.surfaces.floor_friction = params.floor_friction < 0.0 ? params.default_friction : params.floor_friction;
+  settings.surfaces.object_friction = params.default_friction;
+  settings.surfaces.robot_friction = params.robot_friction;
+  settings.flight = params.flight;
+  settings.solver_iterations = params.solver_iterations;
+  settings.erp = params.erp;
+  settings.cfm = params.cfm;
+  return settings;
+}
+
+}  // namespace
+
+const SolverType& dynamics3d_type() {
+  static const SolverType type = [] {
+    SolverType t;
+    t.kind = "dynamics3d";
+    t.summary = "Masses, forces, friction and gravity in space, on ODE.";
+    t.plane = false;
+    t.read = &read;
+    t.describe = [](hal::ParamVisitor& visitor) {
+      Params params;
+      params.describe(visitor);
+      params.describe_gravity(visitor, "gravity.g");
+      params.describe_floor(visitor, "floor.friction", "floor.height");
+    };
+    t.make = [](const std::shared_ptr<const void>& params, const SpaceStores&, const Region&,
+                double tick_s) -> std::unique_ptr<Solver> {
+      return std::make_unique<World3d>(settings_for(*static_cast<const Params*>(params.get()), tick_s));
+    };
+    return t;
+  }();
+  return type;
+}
+
+}  // namespace tandem::core

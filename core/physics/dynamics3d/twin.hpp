@@ -1,0 +1,100 @@
+// A body's double: what this engine keeps for a robot or a movable object between and within ticks.
+#pragma once
+#include <array>
+#include <cstdint>
+
+#include "core/physics/dynamics3d/ode.hpp"
+#include "core/physics/dynamics3d/prism.hpp"
+#include "core/space/stores.hpp"
+
+namespace tandem::core {
+
+using Vector3 = std::array<double, 3>;
+
+/// Where a body is and how it moves, as the stores have it. In W; z is the base's.
+struct BodyState {
+  double x_m = 0.0, y_m = 0.0, z_m = 0.0;
+  double cos_h = 1.0, sin_h = 0.0;
+  std::array<double, 4> q_WB{1.0, 0.0, 0.0, 0.0};
+  Vector3 v_m_s{}, w_rad_s{};
+
+  bool finite() const noexcept;
+  friend bool operator==(const BodyState&, const BodyState&) = default;
+};
+
+/// How a double moves.
+enum class Sort : std::uint8_t {
+  Base,    ///< upright on the floor, driven over it
+  Wheels,  ///< a chassis on two wheels that turn
+  Flyer,   ///< upright in the air, driven by thrust
+  Object   ///< moved by others
+};
+
+/// Base and Flyer are *light*: their state is kept here, and they are in ODE only for sub-steps in which they touch
+/// something. The others live in ODE.
+struct Twin {
+  Sort sort = Sort::Object;
+  bool owned = false;
+  bool external = false;  ///< led to where the stores say; nothing stops it
+  bool unfit = false;     ///< ODE would not have it: its size or mass is none
+  bool lost = false;      ///< not to be simulated in this tick: its state is no number
+  bool aloft = false;     ///< light: falls, or stands on something other than the floor
+  bool standing = false;  ///< light and aloft: something carried it in the last sub-step
+  bool touched = false;   ///< light: in ODE for this sub-step
+  bool engaged = false;   ///< of a base: pushes something that can move, so its drive is part of what ODE solves
+  const hal::DataSheet* sheet = nullptr;  ///< of a robot
+  BodyKey key;
+
+  double mass_kg = 1.0;
+  double height_m = 0.0;
+  double origin_m = 0.0;  ///< of ODE's body above its base
+
+  // Of light ones: the base's middle, and what it does in this sub-step if nothing stops it.
+  Vector3 p_m{}, v_m_s{}, next_v_m_s{};
+  double cos_h = 1.0, sin_h = 0.0, w_rad_s = 0.0, next_w_rad_s = 0.0;
+  double forward_m_s = 0.0, leftward_m_s = 0.0, turn_rad_s = 0.0;  ///< of a base: commanded, from its present heading
+  Vector3 led_to_m{};
+
+  double hop_m = 0.0;     ///< how far any point of it moves in a sub-step
+  double margin_m = 0.0;  ///< within which it may move before candidates are found anew
+  double from_x_m = 0.0, from_y_m = 0.0;
+  Prism prism;
+
+  OdeBody body;
+  OdeJoint push, turn;            ///< of an engaged base: its drive
+  OdeGeom geom;                   ///< made when something that leans comes near
+  std::array<OdeBody, 2> wheels;  ///< left, right
+  std::array<OdeJoint, 2> axles;
+  std::array<double, 2> rolled_m{};  ///< in this tick
+
+  bool light() const noexcept { return sort == Sort::Base || sort == Sort::Flyer; }
+  bool robot() const noexcept { return sort != Sort::Object; }
+};
+
+/// As `state`, of the stores.
+BodyState stored_state(const SpaceStores& stores, BodyKey key) noexcept;
+/// Of a double, exactly as it is written to the stores.
+BodyState state_of(const Twin& twin) noexcept;
+
+/// Makes a double without a place. `drive_on_wheels`: robots on the ground get turning wheels.
+Twin make_twin(const SpaceStores& stores, BodyKey key, Sort sort, dWorldID world);
+/// Puts a double where `at` says, with its velocities.
+void put(Twin& twin, const BodyState& at);
+/// Gives a light double its body in ODE.
+void give_body(Twin& twin, dWorldID world);
+/// Sets what contacts see of a double from its state.
+void update_prism(Twin& twin);
+/// The velocity of its point at `p_m` of W, before forces act.
+Vector3 velocity_at(const Twin& twin, const Vector3& p_m) noexcept;
+
+/// A box or cylinder for ODE's own contact finders, `skin_m` larger on every side.
+OdeGeom make_geom(const Prism& prism, double height_m, double skin_m);
+/// Its geom, made when there is none, where the double is now.
+dGeomID geom_of(Twin& twin, double skin_m);
+
+/// A heading turned by `angle_rad`.
+std::array<double, 2> turned(double cos_h, double sin_h, double angle_rad) noexcept;
+/// The turn about the vertical that makes this heading; w, x, y, z.
+std::array<double, 4> upright_turn(double cos_h, double sin_h) noexcept;
+
+}  // namespace tandem::core

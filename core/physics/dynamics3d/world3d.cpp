@@ -1,0 +1,531 @@
+#include "core/physics/dynamics3d/world3d.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "hal/unit.hpp"
+
+namespace tandem::core {
+namespace {
+
+constexpr double kTouchMargin_m = 0.05;     // around a region: immovable objects so near stand in it
+constexpr double kLongestLead_m = 0.2;      // in a tick, of a body that is led; farther away it is put
+constexpr double kFastest_m_s = 100.0;      // what is faster has exploded
+constexpr double kFastestTurn_rad_s = 1e4;  // …
+constexpr double kPartingSpeed_m_s = 0.3;   // with which bodies that were put into one another part
+constexpr double kSlack_m = 0.01;   // a body may stray so far from its planned way before candidates are renewed
+constexpr double kMoreWay = 1.5;    // … of what its speed gives
+constexpr double kFloats_m = 1e-6;  // above the floor
+constexpr double kWallThickness_m = 0.2;
+constexpr double kWallHeight_m = 2000.0;
+
+bool external_in(const SpaceStores& stores, BodyKey key) noexcept {
+  return !key.is_object() && (stores.bodies.flags[key.index()] & kExternal) != 0;
+}
+
+double length(const Vector3& v) noexcept {
+  return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+}
+
+Sort sort_of(const SpaceStores& stores, BodyKey key, bool wheels) noexcept {
+  if (key.is_object()) return Sort::Object;
+  const hal::DataSheet& sheet = stores.sheet_of_row(key.index());
+  if (sheet.flies) return Sort::Flyer;
+  return wheels && sheet.wheel_radius_m > 0.0 && !external_in(stores, key) ? Sort::Wheels : Sort::Base;
+}
+
+/// The same as the store holds, for all that its double keeps.
+bool agrees(const Twin& twin, const BodyState& store) noexcept {
+  BodyState own = state_of(twin);
+  if (twin.light()) {  // turns about the vertical only: what else the store says of turning is not its concern
+    own.q_WB = store.q_WB;
+    own.w_rad_s[0] = store.w_rad_s[0];
+    own.w_rad_s[1] = store.w_rad_s[1];
+  }
+  return own == store;
+}
+
+}  // namespace
+
+// --- the world ---
+
+template <class Work>
+void World3d::guarded(const SolverContext& context, Work&& work) {
+  if (broken_) return;
+  try {
+    use_ode();
+    work();
+  } catch (const OdeError& error) {
+    broken_ = true;
+    const Region& region = context.region;
+    const BodyKey first = region.owned.empty() ? region.mirrored.front() : region.owned.front();
+    trouble.push_back({first, "is in a region that cannot be solved: " + std::string(error.what())});
+  }
+}
+
+void World3d::report(const Twin& twin, std::string what) {
+  if (twin.owned) trouble.push_back({twin.key, std::move(what)});
+}
+
+void World3d::make_world() {
+  threading_ = OdeThreading(dThreadingAllocateSelfThreadedImplementation());
+  if (!threading_) throw OdeError("ODE has no memory for a world");
+  world_ = OdeWorld(dWorldCreate());
+  const dWorldID world = world_.get();
+  dWorldSetStepThreadingImplementation(world, dThreadingImplementationGetFunctions(threading_.get()), threading_.get());
+  dWorldSetGravity(world, 0.0, 0.0, -settings_.gravity_m_s2);
+  dWorldSetAutoDisableFlag(world, 0);
+  dWorldSetERP(world, settings_.erp);
+  dWorldSetCFM(world, settings_.cfm);
+  dWorldSetQuickStepNumIterations(world, static_cast<int>(settings_.solver_iterations));
+  dWorldSetContactMaxCorrectingVel(world, kPartingSpeed_m_s);
+  contacts_ = std::make_unique<Contacts>();
+  version_ = 0;
+}
+
+void World3d::place_stills(const SolverContext& context) {
+  stills_.clear();
+  const SpaceStores& s = context.stores;
+  for (const Object& o : s.objects) {
+    if (!o.alive || o.movable || !context.region.touches(o, kTouchMargin_m + s.border_reach_m)) continue;
+    Still still;
+    still.height_m = o.z_high_m - o.z_low_m;
+    Prism& prism = still.prism;
+    prism = {o.kind == Object::Kind::Cylinder,
+             true,
+             o.x_m,
+             o.y_m,
+             o.cos_h,
+             o.sin_h,
+             o.half_x_m,
+             o.half_y_m,
+             o.radius_m,
+             o.z_low_m,
+             o.z_high_m,
+             0.0,
+             0.0};
+    stills_.push_back(std::move(still));
+  }
+  const auto& sides = context.region.sides;
+  for (std::size_t i = 0; i < sides.size(); ++i) {
+    if (!sides[i].wall) continue;
+    const RegionSide& a = sides[i];
+    const RegionSide& b = sides[(i + 1) % sides.size()];
+    const double long_m = std::hypot(b.x_m - a.x_m, b.y_m - a.y_m);
+    if (long_m <= 0.0) continue;
+    Still still;
+    still.wall = true;
+    still.height_m = kWallHeight_m;
+    Prism& prism = still.prism;
+    prism.round = false;
+    prism.cos_h = (b.x_m - a.x_m) / long_m;
+    prism.sin_h = (b.y_m - a.y_m) / long_m;
+    prism.half_x_m = 0.5 * long_m;
+    prism.half_y_m = 0.5 * kWallThickness_m;
+    // Outlines are counter-clockwise: outside is to the right.
+    prism.x_m = 0.5 * (a.x_m + b.x_m) + prism.half_y_m * prism.sin_h;
+    prism.y_m = 0.5 * (a.y_m + b.y_m) - prism.half_y_m * prism.cos_h;
+    prism.low_m = -0.5 * kWallHeight_m;
+    prism.high_m = 0.5 * kWallHeight_m;
+    stills_.push_back(std::move(still));
+  }
+  for (Still& still : stills_) {
+    Prism& prism = still.prism;
+    const double c = std::fabs(prism.cos_h);
+    const double n = std::fabs(prism.sin_h);
+    prism.reach_x_m = prism.round ? prism.radius_m : c * prism.half_x_m + n * prism.half_y_m;
+    prism.reach_y_m = prism.round ? prism.radius_m : n * prism.half_x_m + c * prism.half_y_m;
+  }
+  version_ = s.immovables_version;
+}
+
+void World3d::forget() {
+  held_.clear();
+  roster_.clear();
+  contacts_.reset();
+  stills_.clear();
+  world_.reset();
+  threading_.reset();
+  version_ = 0;
+  broken_ = false;
+}
+
+// --- doubles ---
+
+void World3d::load(const SolverContext& context) {
+  guarded(context, [&] {
+    const SpaceStores& s = context.stores;
+    if (!world_) make_world();
+    if (version_ != s.immovables_version) place_stills(context);
+    surfaces_ = settings_.surfaces;
+    surfaces_.ceiling_m = context.region.top_m;
+    roster_.update(
+        context.region, s, [&](BodyKey key) { return make(s, key); }, [this](Double& twin) { drop_double(twin); });
+    for (auto& entry : roster_.entries()) {
+      entry.body->owned = entry.owned;
+      take_over(s, entry.body, context.tick_s);
+    }
+    if (!s.joints.empty() || !held_.empty()) join(s);
+  });
+}
+
+World3d::Double World3d::make(const SpaceStores& stores, BodyKey key) {
+  try {
+    auto twin = std::make_unique<Twin>(make_twin(stores, key, sort_of(stores, key, settings_.wheels), world_.get()));
+    twin->p_m[0] = NAN;  // nowhere yet
+    return twin;
+  } catch (const OdeError& error) {
+    trouble.push_back({key, "cannot be simulated: " + std::string(error.what())});
+    auto twin = std::make_unique<Twin>();
+    twin->key = key;
+    twin->sort = Sort::Base;
+    twin->unfit = true;
+    return twin;
+  }
+}
+
+void World3d::drop_double(Double& twin) {
+  std::erase_if(held_, [&](const Held& held) { return held.a == twin->key || held.b == twin->key; });
+  twin.reset();
+}
+
+void World3d::take_over(const SpaceStores& stores, Double& twin, double tick_s) {
+  const BodyKey key = twin->key;
+  twin->lost = twin->unfit;
+  if (twin->unfit) return;
+  const Sort sort = sort_of(stores, key, settings_.wheels);
+  if (sort != twin->sort) {
+    const bool owned = twin->owned;
+    drop_double(twin);
+    twin = make(stores, key);
+    twin->owned = owned;
+  }
+  const BodyState store = stored_state(stores, key);
+  if (!store.finite()) {
+    twin->lost = true;
+    report(*twin, "has a position or speed that is not a finite number");
+    return;
+  }
+  twin->external = external_in(stores, key);
+  if (twin->external)
+    lead(*twin, store, tick_s);
+  else if (!agrees(*twin, store))
+    put(*twin, store);
+  if (!twin->light()) dBodyEnable(twin->body.get());
+}
+
+/// A body whose pose comes from outside moves there within the tick, so that others are pushed and not jumped upon.
+void World3d::lead(Twin& twin, const BodyState& at, double tick_s) const {
+  const Vector3 there{at.x_m, at.y_m, at.z_m};
+  const Vector3 way{there[0] - twin.p_m[0], there[1] - twin.p_m[1], there[2] - twin.p_m[2]};
+  const double far_m = length(way);
+  if (!(far_m <= kLongestLead_m)) twin.p_m = there;
+  for (std::size_t i = 0; i < 3; ++i) twin.v_m_s[i] = far_m <= kLongestLead_m ? way[i] / tick_s : 0.0;
+  twin.led_to_m = there;
+  twin.cos_h = at.cos_h;
+  twin.sin_h = at.sin_h;
+  twin.w_rad_s = 0.0;
+}
+
+Twin* World3d::find(BodyKey key) noexcept {
+  auto& entries = roster_.entries();
+  const auto found = std::lower_bound(entries.begin(), entries.end(), key,
+                                      [](const auto& entry, BodyKey wanted) { return entry.key < wanted; });
+  return found != entries.end() && found->key == key ? found->body.get() : nullptr;
+}
+
+void World3d::join(const SpaceStores& stores) {
+  std::erase_if(held_, [&](const Held& held) {
+    const Joint& joint = stores.joints[held.number];
+    return !joint.alive || joint.generation != held.generation;
+  });
+  for (std::size_t i = 0; i < stores.joints.size(); ++i) {
+    const Joint& joint = stores.joints[i];
+    const bool held = std::any_of(held_.begin(), held_.end(), [&](const Held& h) { return h.number == i; });
+    if (!joint.alive || held) continue;
+    Twin* a = find(joint.a);
+    Twin* b = find(joint.b);
+    if (a == nullptr || b == nullptr || a->lost || b->lost) continue;
+    held_.push_back({i, joint.generation, joint.a, joint.b, a, b, make_joint(joint, *a, *b)});
+  }
+}
+
+/// ODE takes a joint's geometry from where its bodies are; so for a moment they are where the joint wants them.
+OdeJoint World3d::make_joint(const Joint& joint, Twin& a, Twin& b) {
+  for (Twin* twin : {&a, &b}) {
+    if (!twin->light()) continue;
+    give_body(*twin, world_.get());
+    enter(*twin);
+  }
+  const dBodyID body_a = a.body.get();
+  const dBodyID body_b = b.body.get();
+  dVector3 point{};
+  dBodyGetRelPointPos(body_a, joint.ax_m, joint.ay_m, joint.az_m - a.origin_m, point);
+  OdeJoint made(joint.turns ? dJointCreateHinge(world_.get(), nullptr) : dJointCreateFixed(world_.get(), nullptr));
+  dJointAttach(made.get(), body_a, body_b);
+  const std::array<dReal, 4> q_b{dBodyGetQuaternion(body_b)[0], dBodyGetQuaternion(body_b)[1],
+                                 dBodyGetQuaternion(body_b)[2], dBodyGetQuaternion(body_b)[3]};
+  const Vector3 p_b{dBodyGetPosition(body_b)[0], dBodyGetPosition(body_b)[1], dBodyGetPosition(body_b)[2]};
+  if (!joint.turns) {
+    const std::array<double, 4> turn = upright_turn(std::cos(joint.heading_rad), std::sin(joint.heading_rad));
+    dQuaternion q{};
+    dQMultiply0(q, dBodyGetQuaternion(body_a), turn.data());
+    dBodySetQuaternion(body_b, q);
+  }
+  dVector3 arm{};
+  dBodyVectorToWorld(body_b, joint.bx_m, joint.by_m, joint.bz_m - b.origin_m, arm);
+  dBodySetPosition(body_b, point[0] - arm[0], point[1] - arm[1], point[2] - arm[2]);
+  if (joint.turns) {
+    dJointSetHingeAnchor(made.get(), point[0], point[1], point[2]);
+    dJointSetHingeAxis(made.get(), 0.0, 0.0, 1.0);
+  } else {
+    dJointSetFixed(made.get());
+  }
+  dBodySetPosition(body_b, p_b[0], p_b[1], p_b[2]);
+  dBodySetQuaternion(body_b, q_b.data());
+  return made;
+}
+
+// --- one tick ---
+
+void World3d::advance(const SolverContext& context) {
+  guarded(context, [&] {
+    SpaceStores& s = context.stores;
+    const double dt_s = context.tick_s / static_cast<double>(settings_.sub_steps);
+    auto& entries = roster_.entries();
+    for (auto& entry : entries) {
+      if (entry.body->lost) continue;
+      entry.body->rolled_m = {};
+      plan(s, *entry.body, dt_s);
+      update_prism(*entry.body);
+    }
+    find_candidates();
+    for (std::int64_t step = 0; step < settings_.sub_steps; ++step) {
+      seed_ode(static_cast<std::uint64_t>(context.tick) * static_cast<std::uint64_t>(settings_.sub_steps) +
+               static_cast<std::uint64_t>(step));
+      bool strayed = false;
+      for (auto& entry : entries) {
+        Twin& twin = *entry.body;
+        if (twin.lost) continue;
+        if (step > 0) plan(s, twin, dt_s);
+        if (step > 0) update_prism(twin);
+        const double moved_m =
+            std::max(std::fabs(twin.prism.x_m - twin.from_x_m), std::fabs(twin.prism.y_m - twin.from_y_m));
+        strayed = strayed || moved_m + twin.hop_m > twin.margin_m;
+      }
+      if (strayed) find_candidates();
+      contacts_->begin(world_.get(), dt_s);
+      find_contacts();
+      for (auto& entry : entries) {
+        if (entry.body->touched) enter(*entry.body);
+      }
+      dWorldQuickStep(world_.get(), dt_s);
+      contacts_->clear();
+      for (auto& entry : entries) {
+        if (entry.body->lost) continue;
+        leave(*entry.body, dt_s);
+        check(*entry.body);
+      }
+    }
+    for (const auto& entry : entries) write_back(s, *entry.body, context.tick_s);
+  });
+  broken_ = false;
+}
+
+/// What a body does in this sub-step if nothing comes in its way.
+void World3d::plan(const SpaceStores& stores, Twin& twin, double dt_s) {
+  const std::size_t i = twin.key.index();
+  const double fall_m_s = settings_.gravity_m_s2 * dt_s;
+  twin.touched = false;
+  twin.engaged = false;
+  if (!twin.light()) {
+    if (twin.sort == Sort::Wheels) drive_wheels(twin, stores.bodies.left_m_s[i], stores.bodies.right_m_s[i]);
+    const dReal* v = dBodyGetLinearVel(twin.body.get());
+    const dReal* w = dBodyGetAngularVel(twin.body.get());
+    const double reach_m =
+        length({twin.prism.round ? twin.prism.radius_m : twin.prism.half_x_m,
+                twin.prism.round ? 0.0 : twin.prism.half_y_m, std::max(twin.origin_m, twin.height_m - twin.origin_m)});
+    twin.hop_m = (length({v[0], v[1], v[2]}) + fall_m_s + length({w[0], w[1], w[2]}) * reach_m) * dt_s;
+    return;
+  }
+  if (twin.external) {
+    twin.next_v_m_s = twin.v_m_s;
+    twin.next_w_rad_s = 0.0;
+    twin.hop_m = length(twin.v_m_s) * dt_s;
+    return;
+  }
+  twin.aloft = twin.sort == Sort::Flyer || twin.p_m[2] > surfaces_.floor_m + kFloats_m;
+  if (twin.sort == Sort::Flyer) {
+    const FlightCommand command = i < stores.bodies.flight.size() ? stores.bodies.flight[i] : FlightCommand{};
+    drive_flyer(twin, command, settings_.flight, settings_.gravity_m_s2, dt_s);
+  } else {
+    if (!twin.aloft || twin.standing) drive_base(twin, stores.bodies.left_m_s[i], stores.bodies.right_m_s[i], dt_s);
+    if (twin.aloft) {
+      if (!twin.standing)
+        drop(twin, settings_.gravity_m_s2, dt_s);
+      else
+        twin.next_v_m_s[2] -= fall_m_s;
+    }
+  }
+  twin.standing = false;
+  twin.hop_m = std::max(length(twin.v_m_s), length(twin.next_v_m_s)) * dt_s;
+}
+
+void World3d::find_candidates() {
+  auto& entries = roster_.entries();
+  const auto bodies = static_cast<std::uint32_t>(entries.size());
+  const double hops = kMoreWay * static_cast<double>(settings_.sub_steps);
+  finder_.clear(bodies);
+  for (std::uint32_t i = 0; i < bodies; ++i) {
+    Twin& twin = *entries[i].body;
+    if (twin.lost) continue;
+    const Prism& prism = twin.prism;
+    twin.margin_m = kSlack_m + hops * twin.hop_m;
+    twin.from_x_m = prism.x_m;
+    twin.from_y_m = prism.y_m;
+    const double x = prism.reach_x_m + twin.margin_m;
+    const double y = prism.reach_y_m + twin.margin_m;
+    finder_.add(i, prism.x_m - x, prism.x_m + x, prism.y_m - y, prism.y_m + y);
+  }
+  for (std::uint32_t i = 0; i < stills_.size(); ++i) {
+    const Prism& prism = stills_[i].prism;
+    finder_.add(bodies + i, prism.x_m - prism.reach_x_m, prism.x_m + prism.reach_x_m, prism.y_m - prism.reach_y_m,
+                prism.y_m + prism.reach_y_m);
+  }
+  candidates_.clear();
+  for (const PairFinder::Pair& pair : finder_.find()) {
+    const Twin& a = *entries[pair.first].body;
+    const bool possible =
+        pair.second < bodies ? may_touch(a, *entries[pair.second].body) : may_touch(a, stills_[pair.second - bodies]);
+    if (possible) candidates_.push_back(pair);
+  }
+}
+
+bool World3d::may_touch(const Twin& a, const Twin& b) const noexcept {
+  if (a.external && b.external) return false;
+  return std::none_of(held_.begin(), held_.end(), [&](const Held& held) {
+    return (held.a == a.key && held.b == b.key) || (held.a == b.key && held.b == a.key);
+  });
+}
+
+bool World3d::may_touch(const Twin& a, const Still& still) const noexcept {
+  return !a.external && (a.owned || !still.wall);
+}
+
+void World3d::find_contacts() {
+  auto& entries = roster_.entries();
+  for (Held& held : held_) {
+    for (Twin* twin : {held.twin_a, held.twin_b}) {
+      twin->touched = twin->light();
+      twin->engaged = twin->sort == Sort::Base && !twin->external;
+    }
+  }
+  for (const PairFinder::Pair& pair : candidates_) {
+    Twin& a = *entries[pair.first].body;
+    if (a.lost) continue;
+    if (pair.second >= entries.size()) {
+      contacts_->with_still(a, stills_[pair.second - entries.size()], surfaces_);
+    } else if (!entries[pair.second].body->lost) {
+      contacts_->between(a, *entries[pair.second].body, surfaces_);
+    }
+  }
+  for (auto& entry : entries) {
+    if (!entry.body->lost && !entry.body->light()) contacts_->with_ground(*entry.body, surfaces_);
+  }
+}
+
+/// Puts a light body into ODE for this sub-step.
+void World3d::enter(Twin& twin) {
+  const dBodyID body = twin.body.get();
+  if (twin.external && dBodyIsKinematic(body) == 0) dBodySetKinematic(body);
+  if (!twin.external && dBodyIsKinematic(body) != 0) dBodySetDynamic(body);
+  dBodyEnable(body);
+  dBodySetPosition(body, twin.p_m[0], twin.p_m[1], twin.p_m[2] + twin.origin_m);
+  dBodySetQuaternion(body, upright_turn(twin.cos_h, twin.sin_h).data());
+  const Vector3& v = twin.engaged && !twin.aloft ? twin.v_m_s : twin.next_v_m_s;
+  dBodySetLinearVel(body, v[0], v[1], v[2]);
+  dBodySetAngularVel(body, 0.0, 0.0, twin.engaged ? twin.w_rad_s : twin.next_w_rad_s);
+  if (twin.engaged)
+    engage(twin, world_.get());
+  else
+    release(twin);
+}
+
+/// Takes it out again, and moves those that were not in.
+void World3d::leave(Twin& twin, double dt_s) {
+  if (!twin.light()) {
+    if (twin.sort == Sort::Wheels) count_wheels(twin, dt_s);
+    return;
+  }
+  if (twin.touched) {
+    const dBodyID body = twin.body.get();
+    dBodyDisable(body);
+    const dReal* p = dBodyGetPosition(body);
+    const dReal* v = dBodyGetLinearVel(body);
+    if (!twin.external) {
+      twin.p_m = {p[0], p[1], p[2] - twin.origin_m};
+      twin.v_m_s = {v[0], v[1], v[2]};
+      // Wheels that push nothing hold the heading against whatever the rim rubs on.
+      twin.w_rad_s = twin.engaged ? dBodyGetAngularVel(body)[2] : twin.next_w_rad_s;
+    }
+  }
+  if (!twin.touched || twin.external) {
+    twin.v_m_s = twin.next_v_m_s;
+    twin.w_rad_s = twin.next_w_rad_s;
+    for (std::size_t i = 0; i < 3; ++i) twin.p_m[i] += twin.v_m_s[i] * dt_s;
+  }
+  if (twin.external) return;
+  const auto [c, s] = turned(twin.cos_h, twin.sin_h, twin.w_rad_s * dt_s);
+  twin.cos_h = c;
+  twin.sin_h = s;
+  if (!twin.aloft || twin.p_m[2] <= surfaces_.floor_m) {
+    twin.p_m[2] = surfaces_.floor_m;
+    twin.v_m_s[2] = twin.aloft ? std::max(0.0, twin.v_m_s[2]) : 0.0;
+  }
+  if (twin.p_m[2] + twin.height_m > surfaces_.ceiling_m && twin.aloft) {
+    twin.p_m[2] = surfaces_.ceiling_m - twin.height_m;
+    twin.v_m_s[2] = std::min(0.0, twin.v_m_s[2]);
+  }
+}
+
+/// What has exploded is named, and left out from then on.
+void World3d::check(Twin& twin) {
+  const BodyState now = state_of(twin);
+  const bool finite = now.finite();
+  const double v = length(now.v_m_s);
+  if (finite && v <= kFastest_m_s && length(now.w_rad_s) <= kFastestTurn_rad_s) return;
+  twin.lost = true;
+  if (!twin.light()) dBodyDisable(twin.body.get());
+  report(twin, !finite ? std::string("has a position or speed that is not a finite number")
+               : v > kFastest_m_s
+                   ? "moves faster than its engine can follow (" + hal::format_number(v) + " m/s)"
+                   : "turns faster than its engine can follow (" + hal::format_number(length(now.w_rad_s)) + " rad/s)");
+}
+
+void World3d::write_back(SpaceStores& stores, const Twin& twin, double tick_s) const {
+  if (twin.lost || twin.external || !twin.owned) return;
+  const BodyState at = state_of(twin);
+  const std::size_t i = twin.key.index();
+  const Motion motion{at.z_m, at.q_WB, at.v_m_s, at.w_rad_s};
+  if (twin.sort == Sort::Object) {
+    Object& o = stores.objects[i];
+    o.x_m = at.x_m;
+    o.y_m = at.y_m;
+    o.cos_h = at.cos_h;
+    o.sin_h = at.sin_h;
+    o.z_low_m = at.z_m;
+    o.z_high_m = at.z_m + twin.height_m;
+    stores.object_motion[i] = motion;
+    return;
+  }
+  Bodies& b = stores.bodies;
+  b.x_m[i] = at.x_m;
+  b.y_m[i] = at.y_m;
+  b.cos_h[i] = at.cos_h;
+  b.sin_h[i] = at.sin_h;
+  b.motion[i] = motion;
+  b.left_m[i] += twin.sort == Sort::Wheels ? twin.rolled_m[0] : b.left_m_s[i] * tick_s;
+  b.right_m[i] += twin.sort == Sort::Wheels ? twin.rolled_m[1] : b.right_m_s[i] * tick_s;
+}
+
+}  // namespace tandem::core

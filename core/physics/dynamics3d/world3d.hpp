@@ -1,0 +1,88 @@
+// One region's world in space: its bodies' doubles, what stands in it, and how a tick goes.
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/physics/dynamics3d/contacts.hpp"
+#include "core/physics/dynamics3d/drive.hpp"
+#include "core/physics/dynamics3d/pair_finder.hpp"
+#include "core/physics/dynamics3d/twin.hpp"
+#include "core/physics/roster.hpp"
+#include "core/physics/solver.hpp"
+
+namespace tandem::core {
+
+/// What the world of a region is made with.
+struct World3dSettings {
+  std::int64_t sub_steps = 5;
+  bool wheels = false;  ///< robots on the ground get turning wheels
+  double gravity_m_s2 = 9.81;
+  Surfaces surfaces;
+  FlightLimits flight;
+  std::int64_t solver_iterations = 30;
+  double erp = 0.2;
+  double cfm = 1e-10;
+};
+
+/// A solver with a world of ODE's. Light bodies (core/physics/dynamics3d/twin.hpp) take part in it only while they
+/// touch something: a robot that drives freely costs ODE nothing.
+class World3d final : public Solver {
+ public:
+  explicit World3d(const World3dSettings& settings) : settings_(settings) {}
+
+  void load(const SolverContext& context) override;
+  void advance(const SolverContext& context) override;
+  void forget() override;
+
+ private:
+  using Double = std::unique_ptr<Twin>;
+  struct Held {
+    std::size_t number;
+    std::uint32_t generation;
+    BodyKey a, b;
+    Twin* twin_a;
+    Twin* twin_b;
+    OdeJoint joint;
+  };
+
+  template <class Work>
+  void guarded(const SolverContext& context, Work&& work);
+  void report(const Twin& twin, std::string what);
+
+  void make_world();
+  void place_stills(const SolverContext& context);
+  Double make(const SpaceStores& stores, BodyKey key);
+  void drop_double(Double& twin);
+  void take_over(const SpaceStores& stores, Double& twin, double tick_s);
+  void lead(Twin& twin, const BodyState& at, double tick_s) const;
+  void join(const SpaceStores& stores);
+  OdeJoint make_joint(const Joint& joint, Twin& a, Twin& b);
+  Twin* find(BodyKey key) noexcept;
+
+  void plan(const SpaceStores& stores, Twin& twin, double dt_s);
+  void find_candidates();
+  bool may_touch(const Twin& a, const Twin& b) const noexcept;
+  bool may_touch(const Twin& a, const Still& still) const noexcept;
+  void find_contacts();
+  void enter(Twin& twin);
+  void leave(Twin& twin, double dt_s);
+  void check(Twin& twin);
+  void write_back(SpaceStores& stores, const Twin& twin, double tick_s) const;
+
+  World3dSettings settings_;
+  bool broken_ = false;     // ODE gave up in this tick
+  OdeThreading threading_;  // of its own: the one that ODE's worlds share is for one thread
+  OdeWorld world_;
+  std::unique_ptr<Contacts> contacts_;
+  std::vector<Still> stills_;
+  std::uint64_t version_ = 0;  // of the immovable objects
+  Surfaces surfaces_;
+  Roster<Double> roster_;
+  std::vector<Held> held_;
+  PairFinder finder_;
+  std::vector<PairFinder::Pair> candidates_;
+};
+
+}  // namespace tandem::core
