@@ -28,8 +28,8 @@ struct DataSheet {
   double max_flight_speed_m_s = 0.0;          ///< of one that flies, in any direction
   double max_flight_acceleration_m_s2 = 0.0;  ///< beyond what holds it up, in any direction
   double max_flight_turn_rad_s = 0.0;
-  double proximity_range_m = 0.0;    ///< from the sensor
-  double rab_range_m = 0.0;          ///< range-and-bearing, between centres
+  double proximity_range_m = 0.0;  ///< from the sensor
+  double rab_range_m = 0.0;        ///< range-and-bearing, between centres
   double rab_height_m = 0.0;
   unsigned rab_payload = 0;  ///< bytes
   double battery_full_V = 0.0;
