@@ -230,23 +230,24 @@ void World::Impl::index_movables() {
 void World::Impl::rebuild_index() {
   SpaceStores& s = stores();
   Bodies& b = s.bodies;
-  s.body_index.rebuild(b.size(), s.living.size(), *pool, [&](std::size_t row) noexcept {
-    IndexEntry entry{b.x_m[row], b.y_m[row], b.radius_m[row], static_cast<std::uint32_t>(row)};
+  const auto spot = [&](std::size_t row) noexcept -> BodyIndex::Spot {
+    const double x_m = b.x_m[row];
+    const double y_m = b.y_m[row];
     const std::uint8_t flags = b.flags[row];
-    if ((flags & kAlive) == 0) {
-      entry.row_and_flag = BodyIndex::kSkip;
-      return entry;
-    }
-    if ((flags & kExternal) != 0 || (!one_kind && !moved_by_kinematics(row)))
-      entry.row_and_flag |= IndexEntry::kFixedFlag;
-    const bool inside =
-        entry.x_m >= s.min_x_m && entry.x_m <= s.max_x_m && entry.y_m >= s.min_y_m && entry.y_m <= s.max_y_m;
+    if ((flags & kAlive) == 0) return {};
+    const bool inside = x_m >= s.min_x_m && x_m <= s.max_x_m && y_m >= s.min_y_m && y_m <= s.max_y_m;
     if (!inside) {  // also when not a number
       b.flags[row] = static_cast<std::uint8_t>(flags | kEscaped);
       trouble.fetch_add(1, std::memory_order_relaxed);
     }
-    return entry;
-  });
+    return {x_m, y_m, true};
+  };
+  const auto fill = [&](std::size_t row) noexcept {
+    const bool fixed = (b.flags[row] & kExternal) != 0 || (!one_kind && !moved_by_kinematics(row));
+    return IndexEntry{b.x_m[row], b.y_m[row], b.radius_m[row],
+                      static_cast<std::uint32_t>(row) | (fixed ? IndexEntry::kFixedFlag : 0U)};
+  };
+  s.body_index.rebuild(b.size(), s.living.size(), *pool, spot, fill);
 }
 
 void World::Impl::find_stray_objects() {

@@ -1,8 +1,10 @@
 // Who is near whom: a uniform grid over the arena, rebuilt by counting sort every tick.
 #pragma once
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <numeric>
 #include <vector>
 
 #include "core/schedule/thread_pool.hpp"
@@ -21,30 +23,29 @@ struct IndexEntry {
   bool fixed() const noexcept { return (row_and_flag & kFixedFlag) != 0; }
 };
 
-/// Bodies sorted by cell, cells in rows from west to east: the cells of one row that a query touches are one run of
-/// entries. Within a cell, entries stand in the order of their rows: nothing depends on the number of threads.
+/// Bodies sorted by cell. The grid is cut into strips of columns, one after the other; within a strip, cells lie in
+/// lines from west to east: so what is near in space is near in memory, and the cells of one line that a query touches
+/// are one run of entries, or two where it crosses the edge of a strip. Within a cell, entries stand in the order of
+/// their rows: nothing depends on the number of threads.
 class BodyIndex {
  public:
   /// The grid covers the rectangle; bodies beyond it count to the nearest cell. `reach_m` is the longest distance at
   /// which bodies are looked for every tick.
   void set_area(double min_x_m, double min_y_m, double max_x_m, double max_y_m, double reach_m);
 
-  /// Sorts anew the bodies whose `row_and_flag` is not `kSkip`. `fill(row)` gives row's entry.
-  template <class Fill>
-  void rebuild(std::size_t rows, std::size_t living, ThreadPool& pool, Fill&& fill) {
-    prepare(rows, living);
-    pool.run(rows, kGrain, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t row = begin; row < end; ++row) {
-        staged_[row] = fill(row);
-        cell_of_row_[row] = staged_[row].row_and_flag == kSkip ? kNoCell : cell_of(staged_[row].x_m, staged_[row].y_m);
-      }
-    });
-    sort(rows, pool);
-  }
+  /// Where the body of a row is, if it is to be found at all.
+  struct Spot {
+    double x_m = 0.0;
+    double y_m = 0.0;
+    bool there = false;
+  };
 
-  static constexpr std::uint32_t kSkip = 0x7FFF'FFFFU;
+  /// Sorts anew. `spot(row)` says where each row's body is, and is called once for each; `living` of them are there.
+  /// `fill(row)` gives the entry of one that is.
+  template <class SpotOf, class Fill>
+  void rebuild(std::size_t rows, std::size_t living, ThreadPool& pool, SpotOf&& spot, Fill&& fill);
 
-  std::size_t size() const noexcept { return entries_.size(); }
+  std::size_t size() const noexcept { return living_; }
   const IndexEntry* entries() const noexcept { return entries_.data(); }
   IndexEntry* entries() noexcept { return entries_.data(); }
 
@@ -53,21 +54,42 @@ class BodyIndex {
   double displacement() const noexcept { return displacement_m_; }
   double cell_size() const noexcept { return cell_m_; }
 
-  /// Calls `visit(const IndexEntry&)` for every body whose centre may be within `radius_m` of (x, y); some are farther.
+  /// Calls `visit(first, last)` for runs of entries that together hold every body whose centre may be within `radius_m`
+  /// of (x, y); some are farther. In no order to rely on: for what does not depend on it. `first[0 .. kReadAhead - 1]`
+  /// may be read whatever the length of the run.
   template <class Visit>
-  [[gnu::always_inline]] inline void for_each_near(double x_m, double y_m, double radius_m,
-                                                   Visit&& visit) const noexcept {
-    const double r = radius_m + displacement_m_;
-    const std::uint32_t x0 = column(x_m - r);
-    const std::uint32_t x1 = column(x_m + r);
-    const std::uint32_t y0 = line(y_m - r);
-    const std::uint32_t y1 = line(y_m + r);
-    for (std::uint32_t y = y0; y <= y1; ++y) {
-      const std::size_t base = static_cast<std::size_t>(y) * columns_;
-      const std::uint32_t last = start_[base + x1 + 1];
-      for (std::uint32_t i = start_[base + x0]; i < last; ++i) visit(entries_[i]);
+  [[gnu::always_inline]] inline void for_each_run_near(double x_m, double y_m, double radius_m,
+                                                       Visit&& visit) const noexcept {
+    const Window w = window(x_m, y_m, radius_m);
+    std::uint32_t x = w.x0;
+    for (;;) {  // strips: nearly always one
+      const std::uint32_t past = past_strip(x);
+      const std::uint32_t width = (past <= w.x1 ? past : w.x1 + 1) - x;
+      const std::uint32_t* start = start_.data() + cell_at(x, w.y0);
+      for (std::uint32_t y = w.y0; y <= w.y1; ++y, start += strip_columns_)
+        visit(entries_.data() + start[0], entries_.data() + start[width]);
+      if (past > w.x1) [[likely]]
+        return;
+      x = past;
     }
   }
+
+  /// Calls `visit(const IndexEntry&)` for the same bodies one by one, by lines from south to north, cells from west to
+  /// east, and rows of the arrays: an order that depends on the bodies alone.
+  template <class Visit>
+  void for_each_near(double x_m, double y_m, double radius_m, Visit&& visit) const noexcept {
+    const Window w = window(x_m, y_m, radius_m);
+    for (std::uint32_t y = w.y0; y <= w.y1; ++y) {
+      std::uint32_t past = 0;
+      for (std::uint32_t x = w.x0; x <= w.x1; x = past) {
+        past = std::min(past_strip(x), w.x1 + 1);
+        const std::uint32_t* start = start_.data() + cell_at(x, y);
+        for (std::uint32_t i = start[0]; i < start[past - x]; ++i) visit(entries_[i]);
+      }
+    }
+  }
+
+  static constexpr std::size_t kReadAhead = 2;
 
  private:
   static constexpr std::size_t kGrain = 2048;
@@ -80,10 +102,24 @@ class BodyIndex {
     const double clamped = c > 0.0 ? (c < last ? c : last) : 0.0;  // NaN counts to cell 0
     return static_cast<std::uint32_t>(static_cast<std::int32_t>(clamped));
   }
-  std::uint32_t cell_of(double x_m, double y_m) const noexcept { return line(y_m) * columns_ + column(x_m); }
+  std::uint32_t cell_at(std::uint32_t x, std::uint32_t y) const noexcept {
+    const std::uint32_t strip = x >> strip_shift_;
+    return strip * strip_cells_ + y * strip_columns_ + (x - (strip << strip_shift_));
+  }
 
-  void prepare(std::size_t rows, std::size_t living);
-  void sort(std::size_t rows, ThreadPool& pool);
+  /// The cells that a query touches, all inclusive.
+  struct Window {
+    std::uint32_t x0, x1, y0, y1;
+  };
+  Window window(double x_m, double y_m, double radius_m) const noexcept {
+    const double r = radius_m + displacement_m_;
+    return {column(x_m - r), column(x_m + r), line(y_m - r), line(y_m + r)};
+  }
+  /// The first column of the strip after that of column x.
+  std::uint32_t past_strip(std::uint32_t x) const noexcept { return ((x >> strip_shift_) + 1) << strip_shift_; }
+
+  void prepare(std::size_t rows, std::size_t living, std::size_t threads);
+  void plan();
 
   double min_x_m_ = 0.0, min_y_m_ = 0.0, max_x_m_ = 1.0, max_y_m_ = 1.0;
   double reach_m_ = 0.1;
@@ -92,11 +128,61 @@ class BodyIndex {
   double displacement_m_ = 0.0;
   std::uint32_t columns_ = 1;
   std::uint32_t lines_ = 1;
+  std::uint32_t strip_shift_ = 31;  // a strip is 2^shift columns wide; 31: one strip of any width
+  std::uint32_t strip_columns_ = 1;
+  std::uint32_t strip_cells_ = 1;
   std::size_t planned_for_ = 0;       // number of bodies that the cell size was chosen for
   std::vector<std::uint32_t> start_;  // first entry of each cell, and one past the last
   std::vector<std::uint32_t> cell_of_row_;
-  std::vector<IndexEntry> staged_;   // by row
-  std::vector<IndexEntry> entries_;  // sorted
+  std::vector<std::uint32_t> counted_;  // bodies in each part's cells; then: in those before
+  std::size_t living_ = 0;
+  std::vector<IndexEntry> entries_;  // sorted; the last kReadAhead are nobody's
 };
+
+template <class SpotOf, class Fill>
+void BodyIndex::rebuild(std::size_t rows, std::size_t living, ThreadPool& pool, SpotOf&& spot, Fill&& fill) {
+  prepare(rows, living, pool.size());
+  pool.run(rows, kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t row = begin; row < end; ++row) {
+      const Spot at = spot(row);
+      cell_of_row_[row] = at.there ? cell_at(column(at.x_m), line(at.y_m)) : kNoCell;
+    }
+  });
+
+  // Each part owns a band of cells. It reads every row's cell and counts, then places, those of its own band, in the
+  // order of rows: a stable counting sort without shared counters, whose result does not depend on the number of parts.
+  const std::size_t cells = start_.size() - 1;
+  const std::size_t parts = rows < 2 * kGrain ? 1 : pool.size();
+  const auto band = [&](std::size_t part) { return static_cast<std::uint32_t>(cells * part / parts); };
+  const auto for_each_row_of = [&](std::size_t part, auto&& visit) {
+    const std::uint32_t first = band(part);
+    const std::uint32_t width = band(part + 1) - first;
+    for (std::size_t row = 0; row < rows; ++row) {
+      const std::uint32_t cell = cell_of_row_[row];
+      if (cell - first < width) visit(row, cell);
+    }
+  };
+
+  // start_[c + 1] counts cell c; the running sum then makes it the beginning of c, and placing moves it to c's end.
+  pool.run_parts(parts, [&](std::size_t part) {
+    std::fill(start_.begin() + band(part) + 1, start_.begin() + band(part + 1) + 1, 0U);
+    std::uint32_t count = 0;
+    for_each_row_of(part, [&](std::size_t, std::uint32_t cell) {
+      ++start_[cell + 1];
+      ++count;
+    });
+    counted_[part] = count;
+  });
+  std::exclusive_scan(counted_.begin(), counted_.begin() + static_cast<std::ptrdiff_t>(parts), counted_.begin(), 0U);
+  pool.run_parts(parts, [&](std::size_t part) {
+    std::uint32_t sum = counted_[part];
+    for (std::size_t c = band(part) + 1; c <= band(part + 1); ++c) {
+      const std::uint32_t count = start_[c];
+      start_[c] = sum;
+      sum += count;
+    }
+    for_each_row_of(part, [&](std::size_t row, std::uint32_t cell) { entries_[start_[cell + 1]++] = fill(row); });
+  });
+}
 
 }  // namespace tandem::core

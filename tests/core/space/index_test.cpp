@@ -23,9 +23,14 @@ std::vector<Point> random_points(std::uint64_t seed, std::size_t n, double half)
 }
 
 void rebuild(BodyIndex& index, const std::vector<Point>& points, ThreadPool& pool) {
-  index.rebuild(points.size(), points.size(), pool, [&](std::size_t row) {
-    return IndexEntry{points[row].x, points[row].y, 0.035F, static_cast<std::uint32_t>(row)};
-  });
+  index.rebuild(
+      points.size(), points.size(), pool,
+      [&](std::size_t row) {
+        return BodyIndex::Spot{points[row].x, points[row].y, true};
+      },
+      [&](std::size_t row) {
+        return IndexEntry{points[row].x, points[row].y, 0.035F, static_cast<std::uint32_t>(row)};
+      });
 }
 
 TEST(BodyIndex, FindsEveryBodyInReachAndNoneTwice) {
