@@ -71,6 +71,10 @@ void ObjectIndex::build(const std::vector<Object>& objects, bool movable, double
   for (const Object& o : objects) {
     if (listed(o)) for_each_cell_of(o, [&](std::size_t cell) { ++start_[cell + 1]; });
   }
+  listed_.assign(cells / 64 + 1, 0);
+  for (std::size_t c = 0; c < cells; ++c) {
+    if (start_[c + 1] != 0) listed_[c / 64] |= std::uint64_t{1} << (c % 64);
+  }
   for (std::size_t c = 0; c < cells; ++c) start_[c + 1] += start_[c];
   list_.resize(start_[cells]);
   next_.assign(start_.begin(), start_.end() - 1);

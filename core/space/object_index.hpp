@@ -21,6 +21,7 @@ class ObjectIndex {
   std::span<const std::uint32_t> near(double x_m, double y_m) const noexcept {
     const std::size_t cell =
         static_cast<std::size_t>(at(y_m - min_y_m_, lines_)) * columns_ + at(x_m - min_x_m_, columns_);
+    if ((listed_[cell / 64] >> (cell % 64) & 1) == 0) return {};
     return {list_.data() + start_[cell], start_[cell + 1] - start_[cell]};
   }
   double reach() const noexcept { return reach_m_; }
@@ -39,7 +40,8 @@ class ObjectIndex {
   std::uint32_t columns_ = 1, lines_ = 1;
   std::vector<std::uint32_t> start_{0, 0};
   std::vector<std::uint32_t> list_;
-  std::vector<std::uint32_t> next_;  // while building
+  std::vector<std::uint64_t> listed_{0};  // a bit a cell: it lists something. Stays in the cache where start_ does not
+  std::vector<std::uint32_t> next_;       // while building
 };
 
 /// Distance from (x, y) to the outline of `shape` seen from above; negative inside. `nx, ny` is the unit vector from
