@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <tuple>
 
 namespace tandem::core {
 namespace {
 
-constexpr std::size_t kGrain = 1024;
+constexpr std::size_t kChunk = 512;  // entries whose active ones form one list
+constexpr std::size_t kChunksWorthThreads = 2;
 constexpr double kLargestTurn_rad = 0.5;  // of one sub-step: where the series below are exact to 1e-13
 constexpr double kLargestHop = 0.5;       // of one sub-step, in body radii: nothing is jumped over
 constexpr double kSlack_m = 0.02;         // bodies nearer than this may come to touch within the passes of one tick
@@ -99,6 +101,94 @@ void raise_to(std::atomic<double>& largest, double value) noexcept {
   }
 }
 
+/// What contacts are resolved in: everybody's places before the pass.
+struct Contacts {
+  const SpaceStores& stores;
+  const BodyIndex& index;
+  double largest_radius_m = 0.0;
+  bool walls = false;    // of regions
+  bool heights = false;  // some fly
+
+  explicit Contacts(const SpaceStores& s) : stores(s), index(s.body_index), heights(!s.bodies.motion.empty()) {
+    for (const RobotGroup& group : s.groups) largest_radius_m = std::max(largest_radius_m, group.sheet->body_radius_m);
+    for (const Region& region : s.regions) {
+      for (const RegionSide& side : region.sides) walls = walls || (side.wall && !region.listed);
+    }
+  }
+
+  double reach(const IndexEntry& e) const noexcept {
+    return static_cast<double>(e.radius_m) + largest_radius_m + kSlack_m;
+  }
+  bool in_walls(const IndexEntry& e) const noexcept { return walls && stores.bodies.region[e.row()] != kNoRegion; }
+};
+
+/// Whether anything is so near to a body that they may touch within the tick.
+bool anything_near(const Contacts& contacts, const IndexEntry& e) noexcept {
+  // Bodies are counted without a branch, itself included: most have nobody, and some have, at random.
+  unsigned near = 0;
+  const double own = static_cast<double>(e.radius_m);
+  const auto look_at = [&](const IndexEntry& o, bool is_one) {
+    const double dx = e.x_m - o.x_m;
+    const double dy = e.y_m - o.y_m;
+    const double reach = own + static_cast<double>(o.radius_m) + kSlack_m;
+    is_one &= dx * dx + dy * dy < reach * reach;
+    near += is_one ? 1U : 0U;
+  };
+  contacts.index.for_each_run_near(e.x_m, e.y_m, contacts.reach(e),
+                                   [&](const IndexEntry* first, const IndexEntry* last) {
+                                     static_assert(BodyIndex::kReadAhead == 2);
+                                     look_at(first[0], first < last);
+                                     look_at(first[1], first + 1 < last);
+                                     for (first += 2; first < last; ++first) look_at(*first, true);
+                                   });
+  bool object_near = false;
+  contacts.stores.for_each_object_near(e.x_m, e.y_m, [&](const Object& object) {
+    double nx = 0.0;
+    double ny = 0.0;
+    object_near = object_near || signed_distance(object, e.x_m, e.y_m, nx, ny) - own < kSlack_m;
+  });
+  return near > 1 || object_near || contacts.in_walls(e);
+}
+
+/// Where a body is pushed to by what it overlaps.
+std::pair<double, double> push_of(const Contacts& contacts, const IndexEntry& e) noexcept {
+  double px = 0.0;
+  double py = 0.0;
+  const double own = static_cast<double>(e.radius_m);
+  contacts.index.for_each_near(e.x_m, e.y_m, contacts.reach(e), [&](const IndexEntry& o) {
+    const double dx = e.x_m - o.x_m;
+    const double dy = e.y_m - o.y_m;
+    const double touch = own + static_cast<double>(o.radius_m);
+    const double d2 = dx * dx + dy * dy;
+    if (d2 >= touch * touch || &o == &e) return;
+    if (contacts.heights && o.fixed() && !contacts.stores.side_by_side(e.row(), o.row())) return;  // flies above
+    const double d = std::sqrt(d2);
+    const double share = (touch - d) * (o.fixed() ? 1.0 : 0.5);
+    if (d > 0.0) {
+      px += dx / d * share;
+      py += dy / d * share;
+    } else {
+      px += e.row() < o.row() ? -share : share;  // two on one spot part along x
+    }
+  });
+  // Out of walls last: they do not give way.
+  contacts.stores.for_each_object_near(e.x_m, e.y_m, [&](const Object& object) {
+    double nx = 0.0;
+    double ny = 0.0;
+    const double gap = signed_distance(object, e.x_m + px, e.y_m + py, nx, ny) - own;
+    if (gap >= 0.0) return;
+    px -= nx * gap;
+    py -= ny * gap;
+  });
+  if (contacts.in_walls(e)) {
+    const Region& region = contacts.stores.regions[contacts.stores.bodies.region[e.row()]];
+    const auto [wx, wy] = out_of_walls(region, e.x_m + px, e.y_m + py, own);
+    px += wx;
+    py += wy;
+  }
+  return {px, py};
+}
+
 }  // namespace
 
 void Kinematics2d::advance(const PhysicsContext& context) {
@@ -129,91 +219,44 @@ void Kinematics2d::settle(const PhysicsContext& context) {
   SpaceStores& stores = context.stores;
   BodyIndex& index = stores.body_index;
   const std::size_t n = index.size();
-  if (push_.size() < n) {
-    push_.resize(n);
-    active_.resize(n);
+  const std::size_t chunks = (n + kChunk - 1) / kChunk;
+  if (counts_.size() < chunks) {
+    counts_.resize(chunks);
+    active_.resize(chunks * kChunk);
   }
   IndexEntry* entries = index.entries();
-
-  bool walls = false;
-  for (const Region& region : stores.regions) {
-    for (const RegionSide& side : region.sides) walls = walls || (side.wall && !region.listed);
-  }
-
-  const bool heights = !stores.bodies.motion.empty();
-  // Where entry i would be pushed to by what it overlaps; also finds out who is near anything at all.
-  const auto resolve = [&](std::size_t i, bool first_pass, double largest_radius) noexcept {
-    const IndexEntry& e = entries[i];
-    double px = 0.0;
-    double py = 0.0;
-    bool near = false;
-    const double r_i = static_cast<double>(e.radius_m);
-    index.for_each_near(e.x_m, e.y_m, r_i + largest_radius + kSlack_m, [&](const IndexEntry& o) {
-      const double dx = e.x_m - o.x_m;
-      const double dy = e.y_m - o.y_m;
-      const double touch = r_i + static_cast<double>(o.radius_m);
-      const double d2 = dx * dx + dy * dy;
-      if (d2 >= (touch + kSlack_m) * (touch + kSlack_m) || &o == &e) return;
-      if (heights && o.fixed() && !stores.side_by_side(e.row(), o.row())) return;  // flies above
-      near = true;
-      if (d2 >= touch * touch) return;
-      const double d = std::sqrt(d2);
-      const double share = (touch - d) * (o.fixed() ? 1.0 : 0.5);
-      if (d > 0.0) {
-        px += dx / d * share;
-        py += dy / d * share;
-      } else {
-        px += e.row() < o.row() ? -share : share;  // two on one spot part along x
-      }
+  const Contacts contacts(stores);
+  const auto each_chunk = [&](auto&& work) {
+    context.pool.run(chunks, kChunksWorthThreads, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t chunk = begin; chunk < end; ++chunk) work(chunk, active_.data() + chunk * kChunk);
     });
-    // Out of walls last: they do not give way.
-    stores.for_each_object_near(e.x_m, e.y_m, [&](const Object& object) {
-      double nx = 0.0;
-      double ny = 0.0;
-      const double gap = signed_distance(object, e.x_m + px, e.y_m + py, nx, ny) - r_i;
-      near = near || gap < kSlack_m;
-      if (gap >= 0.0) return;
-      px -= nx * gap;
-      py -= ny * gap;
-    });
-    if (walls && stores.bodies.region[e.row()] != kNoRegion) {
-      const std::uint16_t region = stores.bodies.region[e.row()];
-      const auto [wx, wy] = out_of_walls(stores.regions[region], e.x_m + px, e.y_m + py, r_i);
-      px += wx;
-      py += wy;
-      near = true;
-    }
-    if (first_pass) active_[i] = near ? 1 : 0;
-    push_[i] = {px, py};
   };
-
-  double largest_radius = 0.0;
-  for (const RobotGroup& group : stores.groups) largest_radius = std::max(largest_radius, group.sheet->body_radius_m);
 
   double displacement = 0.0;
   for (std::int64_t pass = 0; pass < params_.iterations; ++pass) {
-    const bool first_pass = pass == 0;
-    context.pool.run(n, kGrain, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) {
-        if (entries[i].fixed()) {
-          active_[i] = 0;
-        } else if (first_pass || active_[i] != 0) {
-          resolve(i, first_pass, largest_radius);
+    each_chunk([&](std::size_t chunk, Active* active) {
+      if (pass == 0) {
+        std::uint32_t count = 0;
+        for (std::size_t i = chunk * kChunk; i < std::min(n, (chunk + 1) * kChunk); ++i) {
+          active[count].entry = static_cast<std::uint32_t>(i);
+          if (!entries[i].fixed() && anything_near(contacts, entries[i])) ++count;
         }
+        counts_[chunk] = count;
       }
+      for (Active* a = active; a != active + counts_[chunk]; ++a)
+        std::tie(a->push_x_m, a->push_y_m) = push_of(contacts, entries[a->entry]);
     });
     std::atomic<double> longest{0.0};
-    context.pool.run(n, 8 * kGrain, [&](std::size_t begin, std::size_t end) {
+    each_chunk([&](std::size_t chunk, Active* active) {
       double longest_here = 0.0;
-      for (std::size_t i = begin; i < end; ++i) {
-        if (active_[i] == 0) continue;
-        const Push p = push_[i];
-        const double length = std::fabs(p.x_m) + std::fabs(p.y_m);
+      for (Active* a = active; a != active + counts_[chunk]; ++a) {
+        const double length = std::fabs(a->push_x_m) + std::fabs(a->push_y_m);
         if (length == 0.0) continue;
-        entries[i].x_m += p.x_m;
-        entries[i].y_m += p.y_m;
-        stores.bodies.x_m[entries[i].row()] = entries[i].x_m;
-        stores.bodies.y_m[entries[i].row()] = entries[i].y_m;
+        IndexEntry& e = entries[a->entry];
+        e.x_m += a->push_x_m;
+        e.y_m += a->push_y_m;
+        stores.bodies.x_m[e.row()] = e.x_m;
+        stores.bodies.y_m[e.row()] = e.y_m;
         longest_here = std::max(longest_here, length);
       }
       raise_to(longest, longest_here);  // a maximum: the same in any order

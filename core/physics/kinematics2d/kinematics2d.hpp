@@ -26,14 +26,16 @@ class Kinematics2d final : public Engine {
   void settle(const PhysicsContext& context) override;
 
  private:
-  struct Push {
-    double x_m = 0.0;
-    double y_m = 0.0;
+  /// An entry of the index that is near enough to something to touch it, and where it is pushed to in this pass.
+  struct Active {
+    std::uint32_t entry = 0;
+    double push_x_m = 0.0;
+    double push_y_m = 0.0;
   };
 
   Params params_;
-  std::vector<Push> push_;            // by entry of the index
-  std::vector<std::uint8_t> active_;  // by entry: near enough to touch something
+  std::vector<Active> active_;         // a list for every chunk of entries, with room for all of them
+  std::vector<std::uint32_t> counts_;  // how long each is
 };
 
 }  // namespace tandem::core
