@@ -20,71 +20,144 @@ bool detect_avx2() noexcept {
 
 std::atomic<VectorCode> chosen_code{detect_avx2() ? VectorCode::Avx2 : VectorCode::Baseline};
 
+// Robots are sensed in teams, in three short loops: who may be near, who of them is in reach, what the rays say to
+// those. Neighbours come at random, so each loop writes its result always and counts it when it is one: a wrong guess
+// of a branch costs more than the writing, and one loop does not wait for what another has not loaded yet.
+constexpr std::size_t kTeam = 64;       // its ports stay in the first cache
+constexpr std::size_t kWaiting = 1024;  // neighbours found and not met yet; more are met in several goes
+
 /// Whether a body is where rays at this height pass.
 bool stands_at(const SpaceStores& stores, std::size_t row, double height_m) noexcept {
   const double low_m = stores.bodies.motion[row].z_m;
   return height_m >= low_m && height_m <= low_m + stores.sheet_of_row(row).body_height_m;
 }
 
-/// Distances of one register of rays for the robot in `row`, nothing in range reading `range`.
-[[gnu::always_inline]] inline void sense_row(const SpaceStores& stores, const RayRing& ring, std::size_t row,
-                                             float* __restrict distances) noexcept {
+/// Of the rays above the ground under the arena.
+double ray_height_m(const SpaceStores& stores, const RayRing& ring, std::size_t row) noexcept {
+  return static_cast<double>(ring.height_m) + stores.base_m(row);
+}
+
+/// A body that may be near a robot of the team.
+struct Candidate {
+  std::uint32_t slot;  ///< the robot's place in the block
+  std::uint32_t entry;
+};
+
+/// A body in reach, as a disc in the robot's frame.
+struct Sight {
+  float qx, qy, radius;
+  std::uint32_t slot;
+};
+
+struct Waiting {
+  std::size_t count = 0;
+  std::array<Candidate, kWaiting> candidates;
+  std::array<Sight, kWaiting> sights;
+};
+
+/// Tests the waiting candidates, and shortens the distances of those robots that have one in reach.
+[[gnu::always_inline]] inline void meet(const SpaceStores& stores, const RayRing& ring, std::size_t first_row,
+                                        hal::Proximity* ports, Waiting& waiting) noexcept {
+  const Bodies& b = stores.bodies;
+  const IndexEntry* entries = stores.body_index.entries();
+  const bool heights = !b.motion.empty();  // else all robots stand on the ground, at the height of the rays
+  std::size_t count = 0;
+  for (std::size_t k = 0; k < waiting.count; ++k) {
+    const Candidate candidate = waiting.candidates[k];
+    const IndexEntry& o = entries[candidate.entry];
+    const std::size_t row = first_row + candidate.slot;
+    const float c = static_cast<float>(b.cos_h[row]);
+    const float s = static_cast<float>(b.sin_h[row]);
+    const float wx = static_cast<float>(o.x_m - b.x_m[row]);
+    const float wy = static_cast<float>(o.y_m - b.y_m[row]);
+    const float within = ring.reach_m + o.radius_m;
+    waiting.sights[count] = {c * wx + s * wy, c * wy - s * wx, o.radius_m, candidate.slot};
+    bool in_reach = (wx * wx + wy * wy < within * within) & (o.row() != row);
+    if (heights && in_reach) in_reach = stands_at(stores, o.row(), ray_height_m(stores, ring, row));
+    count += in_reach ? 1U : 0U;
+  }
+  for (std::size_t k = 0; k < count; ++k) {
+    const Sight& seen = waiting.sights[k];
+    float* distances = ports[seen.slot].distance_m.data();
+    for (std::size_t g = 0; g < ring.registers; ++g)
+      meet_disc(ring, g, seen.qx, seen.qy, seen.radius, distances + g * RayRing::kLanes);
+  }
+  waiting.count = 0;
+}
+
+[[gnu::always_inline]] inline void meet_object(const RayRing& ring, const Object& shape, double height, double x,
+                                               double y, float c, float s, float* distances) noexcept {
+  if (height < shape.z_low_m || height > shape.z_high_m) return;
+  const float wx = static_cast<float>(shape.x_m - x);
+  const float wy = static_cast<float>(shape.y_m - y);
+  const float qx = c * wx + s * wy;
+  const float qy = c * wy - s * wx;
+  if (shape.kind == Object::Kind::Cylinder) {
+    const auto radius = static_cast<float>(shape.radius_m);
+    for (std::size_t g = 0; g < ring.registers; ++g)
+      meet_disc(ring, g, qx, qy, radius, distances + g * RayRing::kLanes);
+  } else {
+    const auto bc = static_cast<float>(shape.cos_h);
+    const auto bs = static_cast<float>(shape.sin_h);
+    const float ax = c * bc + s * bs;
+    const float ay = c * bs - s * bc;
+    for (std::size_t g = 0; g < ring.registers; ++g) {
+      meet_box(ring, g, qx, qy, ax, ay, static_cast<float>(shape.half_x_m), static_cast<float>(shape.half_y_m),
+               distances + g * RayRing::kLanes);
+    }
+  }
+}
+
+/// Notes who may be near the robot in `slot`, and shortens its distances where its rays meet objects.
+[[gnu::always_inline]] inline void look_around(const SpaceStores& stores, const RayRing& ring, std::size_t first_row,
+                                               std::uint32_t slot, hal::Proximity* ports, Waiting& waiting) noexcept {
+  const std::size_t row = first_row + slot;
   const Bodies& b = stores.bodies;
   const double x = b.x_m[row];
   const double y = b.y_m[row];
-  const float c = static_cast<float>(b.cos_h[row]);
-  const float s = static_cast<float>(b.sin_h[row]);
-  const auto row32 = static_cast<std::uint32_t>(row);
-  for (std::size_t k = 0; k < ring.registers * RayRing::kLanes; ++k) distances[k] = ring.range_m;
-
-  const bool heights = !b.motion.empty();  // else all robots stand on the ground, at the height of the rays
-  const double height = static_cast<double>(ring.height_m) + stores.base_m(row);
-  const double reach = static_cast<double>(ring.reach_m);
-  stores.body_index.for_each_near(
-      x, y, reach + static_cast<double>(b.radius_m[row]), [&](const IndexEntry& o) __attribute__((always_inline)) {
-        const float wx = static_cast<float>(o.x_m - x);
-        const float wy = static_cast<float>(o.y_m - y);
-        const float within = ring.reach_m + o.radius_m;
-        if (wx * wx + wy * wy >= within * within || o.row() == row32) return;
-        if (heights && !stands_at(stores, o.row(), height)) return;
-        const float qx = c * wx + s * wy;
-        const float qy = c * wy - s * wx;
-        for (std::size_t g = 0; g < ring.registers; ++g)
-          meet_disc(ring, g, qx, qy, o.radius_m, distances + g * RayRing::kLanes);
+  const double reach = static_cast<double>(ring.reach_m) + static_cast<double>(b.radius_m[row]);
+  stores.body_index.for_each_run_near(
+      x, y, reach, [&](std::uint32_t first, std::uint32_t past) __attribute__((always_inline)) {
+        // Most runs are of two at most.
+        if (waiting.count + 2 > kWaiting) [[unlikely]]
+          meet(stores, ring, first_row, ports, waiting);
+        waiting.candidates[waiting.count] = {slot, first};
+        waiting.candidates[waiting.count + 1] = {slot, first + 1};
+        waiting.count += std::min(past - first, 2U);
+        for (first += 2; first < past; ++first) {
+          if (waiting.count == kWaiting) [[unlikely]]
+            meet(stores, ring, first_row, ports, waiting);
+          waiting.candidates[waiting.count++] = {slot, first};
+        }
       });
   stores.for_each_object_near(
       x, y, [&](const Object& shape) __attribute__((always_inline)) {
-        if (height < shape.z_low_m || height > shape.z_high_m) return;
-        const float wx = static_cast<float>(shape.x_m - x);
-        const float wy = static_cast<float>(shape.y_m - y);
-        const float qx = c * wx + s * wy;
-        const float qy = c * wy - s * wx;
-        if (shape.kind == Object::Kind::Cylinder) {
-          const auto radius = static_cast<float>(shape.radius_m);
-          for (std::size_t g = 0; g < ring.registers; ++g)
-            meet_disc(ring, g, qx, qy, radius, distances + g * RayRing::kLanes);
-        } else {
-          const auto bc = static_cast<float>(shape.cos_h);
-          const auto bs = static_cast<float>(shape.sin_h);
-          const float ax = c * bc + s * bs;
-          const float ay = c * bs - s * bc;
-          for (std::size_t g = 0; g < ring.registers; ++g) {
-            meet_box(ring, g, qx, qy, ax, ay, static_cast<float>(shape.half_x_m), static_cast<float>(shape.half_y_m),
-                     distances + g * RayRing::kLanes);
-          }
-        }
+        meet_object(ring, shape, ray_height_m(stores, ring, row), x, y, static_cast<float>(b.cos_h[row]),
+                    static_cast<float>(b.sin_h[row]), ports[slot].distance_m.data());
       });
 }
 
 [[gnu::always_inline]] inline void sense_block(const DeviceContext& context, const RayRing& ring,
                                                hal::Proximity* ports) noexcept {
-  for (std::size_t i = 0; i < context.block.used; ++i) {
-    hal::Proximity& port = ports[i];
-    port.taken_ns = context.now_ns;
-    port.validity = hal::Validity::Fresh;
-    port.count = static_cast<std::uint32_t>(ring.count);
-    port.range_m = ring.range_m;
-    sense_row(context.stores, ring, context.block.first_row + i, port.distance_m.data());
+  const auto used = static_cast<std::uint32_t>(context.block.used);
+  const std::size_t first_row = context.block.first_row;
+  Waiting waiting;
+  for (std::uint32_t begin = 0; begin < used; begin += kTeam) {
+    const std::uint32_t end = std::min(used, begin + static_cast<std::uint32_t>(kTeam));
+    for (std::uint32_t slot = begin; slot < end; ++slot) {
+      hal::Proximity& port = ports[slot];
+      port.taken_ns = context.now_ns;
+      port.validity = hal::Validity::Fresh;
+      port.count = static_cast<std::uint32_t>(ring.count);
+      port.range_m = ring.range_m;
+      for (std::size_t g = 0; g < ring.registers; ++g) {
+        const Lanes nothing = Lanes{} + ring.range_m;
+        std::memcpy(port.distance_m.data() + g * RayRing::kLanes, &nothing, sizeof nothing);
+      }
+    }
+    for (std::uint32_t slot = begin; slot < end; ++slot)
+      look_around(context.stores, ring, first_row, slot, ports, waiting);
+    meet(context.stores, ring, first_row, ports, waiting);
   }
 }
 

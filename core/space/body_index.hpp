@@ -54,9 +54,8 @@ class BodyIndex {
   double displacement() const noexcept { return displacement_m_; }
   double cell_size() const noexcept { return cell_m_; }
 
-  /// Calls `visit(first, last)` for runs of entries that together hold every body whose centre may be within `radius_m`
-  /// of (x, y); some are farther. In no order to rely on: for what does not depend on it. `first[0 .. kReadAhead - 1]`
-  /// may be read whatever the length of the run.
+  /// Calls `visit(first, past)`, indices into entries(), for runs that together hold every body whose centre may be
+  /// within `radius_m` of (x, y); some are farther. In no order to rely on: for what does not depend on it.
   template <class Visit>
   [[gnu::always_inline]] inline void for_each_run_near(double x_m, double y_m, double radius_m,
                                                        Visit&& visit) const noexcept {
@@ -66,8 +65,7 @@ class BodyIndex {
       const std::uint32_t past = past_strip(x);
       const std::uint32_t width = (past <= w.x1 ? past : w.x1 + 1) - x;
       const std::uint32_t* start = start_.data() + cell_at(x, w.y0);
-      for (std::uint32_t y = w.y0; y <= w.y1; ++y, start += strip_columns_)
-        visit(entries_.data() + start[0], entries_.data() + start[width]);
+      for (std::uint32_t y = w.y0; y <= w.y1; ++y, start += strip_columns_) visit(start[0], start[width]);
       if (past > w.x1) [[likely]]
         return;
       x = past;
@@ -89,6 +87,7 @@ class BodyIndex {
     }
   }
 
+  /// So many entries may be read from any one on, be they a body's or not.
   static constexpr std::size_t kReadAhead = 2;
 
  private:

@@ -125,6 +125,7 @@ struct Contacts {
 /// Whether anything is so near to a body that they may touch within the tick.
 bool anything_near(const Contacts& contacts, const IndexEntry& e) noexcept {
   // Bodies are counted without a branch, itself included: most have nobody, and some have, at random.
+  const IndexEntry* entries = contacts.index.entries();
   unsigned near = 0;
   const double own = static_cast<double>(e.radius_m);
   const auto look_at = [&](const IndexEntry& o, bool is_one) {
@@ -134,13 +135,12 @@ bool anything_near(const Contacts& contacts, const IndexEntry& e) noexcept {
     is_one &= dx * dx + dy * dy < reach * reach;
     near += is_one ? 1U : 0U;
   };
-  contacts.index.for_each_run_near(e.x_m, e.y_m, contacts.reach(e),
-                                   [&](const IndexEntry* first, const IndexEntry* last) {
-                                     static_assert(BodyIndex::kReadAhead == 2);
-                                     look_at(first[0], first < last);
-                                     look_at(first[1], first + 1 < last);
-                                     for (first += 2; first < last; ++first) look_at(*first, true);
-                                   });
+  contacts.index.for_each_run_near(e.x_m, e.y_m, contacts.reach(e), [&](std::uint32_t first, std::uint32_t past) {
+    static_assert(BodyIndex::kReadAhead == 2);
+    look_at(entries[first], first < past);
+    look_at(entries[first + 1], first + 1 < past);
+    for (first += 2; first < past; ++first) look_at(entries[first], true);
+  });
   bool object_near = false;
   contacts.stores.for_each_object_near(e.x_m, e.y_m, [&](const Object& object) {
     double nx = 0.0;
