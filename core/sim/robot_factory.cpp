@@ -31,7 +31,7 @@ std::uint32_t curve_position(double x01, double y01) noexcept {
 /// A controller constructor's view of the robot that it is to drive.
 class ConstructedRobot final : public hal::Robot {
  public:
-  ConstructedRobot(const Scenario& scenario, const SpaceStores& stores, RobotGroup& group, RobotBlock& block,
+  ConstructedRobot(const Scenario& scenario, SpaceStores& stores, RobotGroup& group, RobotBlock& block,
                    std::uint64_t run_seed)
       : scenario_(scenario), stores_(stores), group_(group), block_(block), run_seed_(run_seed) {}
 
@@ -69,7 +69,7 @@ class ConstructedRobot final : public hal::Robot {
                              "this program; rebuild the library");
     }
     for (std::size_t b = block_.ports.size(); b < group_.ports.size(); ++b) add_array(*group_.ports[b]);
-    return block_.ports[i].data() + slot_ * type.size;
+    return block_.ports[i] + slot_ * type.size;
   }
 
  private:
@@ -93,13 +93,13 @@ class ConstructedRobot final : public hal::Robot {
   }
 
   void add_array(const hal::PortType& type) {
-    AlignedBytes bytes(type.size * block_.capacity, std::max(type.align, kCacheLine));
-    for (std::size_t i = 0; i < block_.capacity; ++i) type.reset(bytes.data() + i * type.size);
-    block_.ports.push_back(std::move(bytes));
+    std::byte* const array = stores_.slab.take(type.size * block_.capacity, std::max(type.align, kCacheLine));
+    for (std::size_t i = 0; i < block_.capacity; ++i) type.reset(array + i * type.size);
+    block_.ports.push_back(array);
   }
 
   const Scenario& scenario_;
-  const SpaceStores& stores_;
+  SpaceStores& stores_;
   RobotGroup& group_;
   RobotBlock& block_;
   std::uint64_t run_seed_;
@@ -126,6 +126,7 @@ class Factory {
   RobotDevices make(const std::vector<RobotRequest>& requests) {
     std::vector<std::vector<std::uint32_t>> members = group(requests);
     RobotDevices devices;
+    stores_.bodies.reserve(requests.size());
     for (std::size_t g = 0; g < members.size(); ++g) {
       sort_by_place(requests, members[g]);
       if (prepare_group(g)) make_blocks(g, requests, members[g], devices);
@@ -285,7 +286,7 @@ class Factory {
     RobotGroup& group = stores_.groups[block.group];
     const hal::ControllerType& type = *group.controller;
     block.controller_stride = (type.size + type.align - 1) / type.align * type.align;
-    block.controllers = AlignedBytes(block.controller_stride * block.capacity, std::max(type.align, kCacheLine));
+    block.controllers = stores_.slab.take(block.controller_stride * block.capacity, std::max(type.align, kCacheLine));
     ConstructedRobot robot(scenario_, stores_, group, block, seed_);
     block.used = 0;
     for (std::size_t slot = 0; slot < block.capacity; ++slot) {
@@ -293,7 +294,7 @@ class Factory {
       robot.select(slot, entity);
       std::string why;
       try {
-        type.construct(block.controllers.data() + slot * block.controller_stride, robot, group.params.get());
+        type.construct(block.controllers + slot * block.controller_stride, robot, group.params.get());
         ++block.used;
         continue;
       } catch (const std::exception& e) {
@@ -368,7 +369,7 @@ void destroy_controllers(SpaceStores& stores) noexcept {
     const RobotGroup& group = stores.groups[block.group];
     if (group.controller == nullptr) continue;
     for (std::size_t i = 0; i < block.used; ++i)
-      group.controller->destroy(block.controllers.data() + i * block.controller_stride);
+      group.controller->destroy(block.controllers + i * block.controller_stride);
     block.used = 0;
   }
 }

@@ -176,7 +176,7 @@ void World::Impl::act() {
       const DeviceContext context = device_context(block);
       const auto& actuators = devices.blocks[block].actuators;
       for (std::size_t i = 0; i < actuators.size(); ++i) {
-        if (actuators[i] != nullptr) actuators[i]->act(context, s, s.blocks[block].ports[i].data());
+        if (actuators[i] != nullptr) actuators[i]->act(context, s, s.blocks[block].ports[i]);
       }
     }
   });
@@ -346,7 +346,7 @@ void World::Impl::sense(std::size_t block) {
   const DeviceContext context = device_context(block);
   const auto& sensors = devices.blocks[block].sensors;
   for (std::size_t i = 0; i < sensors.size(); ++i) {
-    if (sensors[i] != nullptr) sensors[i]->sense(context, context.block.ports[i].data());
+    if (sensors[i] != nullptr) sensors[i]->sense(context, context.block.ports[i]);
   }
 }
 
@@ -355,8 +355,8 @@ void World::Impl::control(std::size_t index) {
   const hal::ControllerType& type = *stores().groups[block.group].controller;
   std::size_t next = 0;
   while (next < block.used) {
-    next = type.step_row(block.controllers.data(), block.controller_stride, next, block.used, block.halted.data(),
-                         faults[index]);
+    next =
+        type.step_row(block.controllers, block.controller_stride, next, block.used, block.halted.data(), faults[index]);
     if (next == block.used) break;
     block.halted[next] = 2;  // thrown in this tick; reported, and its actuators made safe, after the phase
     block_trouble[index] = 1;
@@ -712,7 +712,7 @@ std::uint64_t World::state_hash() const noexcept {
     // Every port as the controller saw and left it, but the padding between fields.
     for (std::size_t i = 0; i < group.ports.size(); ++i) {
       const hal::PortType& type = *group.ports[i];
-      const void* port = block.ports[i].data() + e.slot * type.size;
+      const void* port = block.ports[i] + e.slot * type.size;
       for (const hal::Field& field : type.fields) {
         for (std::size_t k = 0; k < hal::used_count(type, port, field); ++k)
           hash = mix(hash, bits_of(hal::get_value(port, field, k)));

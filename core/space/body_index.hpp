@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/schedule/thread_pool.hpp"
+#include "core/space/large_memory.hpp"
 
 namespace tandem::core {
 
@@ -131,11 +132,11 @@ class BodyIndex {
   std::uint32_t strip_columns_ = 1;
   std::uint32_t strip_cells_ = 1;
   std::size_t planned_for_ = 0;       // number of bodies that the cell size was chosen for
-  std::vector<std::uint32_t> start_;  // first entry of each cell, and one past the last
-  std::vector<std::uint32_t> cell_of_row_;
+  LargeVector<std::uint32_t> start_;  // first entry of each cell, and one past the last
+  LargeVector<std::uint32_t> cell_of_row_;
   std::vector<std::uint32_t> counted_;  // bodies in each part's cells; then: in those before
   std::size_t living_ = 0;
-  std::vector<IndexEntry> entries_;  // sorted; the last kReadAhead are nobody's
+  LargeVector<IndexEntry> entries_;  // sorted; the last kReadAhead are nobody's
 };
 
 template <class SpotOf, class Fill>

@@ -29,10 +29,13 @@ void Bodies::resize(std::size_t rows) {
   if (!flight.empty()) flight.resize(rows);
 }
 
-AlignedBytes::AlignedBytes(std::size_t size, std::size_t align)
-    : bytes_(static_cast<std::byte*>(::operator new (std::max<std::size_t>(size, 1), std::align_val_t{align})),
-             Free{align}) {
-  std::memset(bytes_.get(), 0, size);
+void Bodies::reserve(std::size_t rows) {
+  for (auto* array : {&x_m, &y_m, &cos_h, &sin_h, &left_m_s, &right_m_s, &left_m, &right_m}) array->reserve(rows);
+  radius_m.reserve(rows);
+  flags.reserve(rows);
+  entity.reserve(rows);
+  region.reserve(rows);
+  if (has_motion) motion.reserve(rows);
 }
 
 Space::Space() : stores_(std::make_unique<SpaceStores>()) {}
@@ -128,7 +131,7 @@ void Space::set_halted(RobotId robot, bool halted) noexcept {
     const RobotGroup& group = stores_->groups[block.group];
     for (std::size_t i = 0; i < group.ports.size(); ++i) {
       const hal::PortType& type = *group.ports[i];
-      if (type.role == hal::Role::Actuator) type.reset(block.ports[i].data() + e.slot * type.size);
+      if (type.role == hal::Role::Actuator) type.reset(block.ports[i] + e.slot * type.size);
     }
   }
 }
@@ -148,7 +151,7 @@ const void* Space::port(RobotId robot, const hal::PortType& type) const noexcept
   const RobotGroup& group = stores_->groups[block.group];
   for (std::size_t i = 0; i < group.ports.size(); ++i) {
     if (group.ports[i]->layout == type.layout && group.ports[i]->role == type.role) {
-      return block.ports[i].data() + e.slot * type.size;
+      return block.ports[i] + e.slot * type.size;
     }
   }
   return nullptr;

@@ -17,6 +17,7 @@
 #include "core/space/body_key.hpp"
 #include "core/space/floor.hpp"
 #include "core/space/ids.hpp"
+#include "core/space/large_memory.hpp"
 #include "core/space/object_index.hpp"
 #include "core/space/region.hpp"
 #include "core/space/space.hpp"
@@ -60,20 +61,21 @@ struct Joint {
 
 /// Bodies, one array a quantity. Positions and headings in W.
 struct Bodies {
-  std::vector<double> x_m, y_m;
-  std::vector<double> cos_h, sin_h;
-  std::vector<double> left_m_s, right_m_s;  ///< rim speeds that the engine drives with in this tick
-  std::vector<double> left_m, right_m;      ///< rolled since the start
-  std::vector<float> radius_m;
-  std::vector<std::uint8_t> flags;    ///< BodyFlag
-  std::vector<std::uint32_t> entity;  ///< index of the robot's id
-  std::vector<std::uint16_t> region;  ///< index into SpaceStores::regions
+  LargeVector<double> x_m, y_m;
+  LargeVector<double> cos_h, sin_h;
+  LargeVector<double> left_m_s, right_m_s;  ///< rim speeds that the engine drives with in this tick
+  LargeVector<double> left_m, right_m;      ///< rolled since the start
+  LargeVector<float> radius_m;
+  LargeVector<std::uint8_t> flags;    ///< BodyFlag
+  LargeVector<std::uint32_t> entity;  ///< index of the robot's id
+  LargeVector<std::uint16_t> region;  ///< index into SpaceStores::regions
   bool has_motion = false;            ///< an engine other than kinematics2d takes part
   std::vector<Motion> motion;         ///< empty without
   std::vector<FlightCommand> flight;  ///< empty while no robot flies
 
   std::size_t size() const noexcept { return x_m.size(); }
   void resize(std::size_t rows);
+  void reserve(std::size_t rows);
 };
 
 enum BodyFlag : std::uint8_t {
@@ -82,21 +84,6 @@ enum BodyFlag : std::uint8_t {
   kEscaped = 4,    ///< left the arena in this tick
   kNotFinite = 8,  ///< its controller commanded something that is no finite number, in this tick
   kMoved = 16      ///< put somewhere else between steps: its region is to be found anew
-};
-
-/// Zeroed memory with an alignment of its own.
-class AlignedBytes {
- public:
-  AlignedBytes() : bytes_(nullptr, Free{1}) {}
-  AlignedBytes(std::size_t size, std::size_t align);
-  std::byte* data() const noexcept { return bytes_.get(); }
-
- private:
-  struct Free {
-    std::size_t align;
-    void operator()(std::byte* p) const noexcept { ::operator delete (p, std::align_val_t{align}); }
-  };
-  std::unique_ptr<std::byte, Free> bytes_;
 };
 
 /// What the robots of a group have in common.
@@ -120,14 +107,14 @@ struct RobotBlock {
   std::size_t first_row = 0;
   std::size_t capacity = 0;
   std::size_t used = 0;
-  std::vector<AlignedBytes> ports;  ///< parallel to RobotGroup::ports
-  AlignedBytes controllers;
+  std::vector<std::byte*> ports;  ///< of SpaceStores::slab, parallel to RobotGroup::ports
+  std::byte* controllers = nullptr;
   std::size_t controller_stride = 0;
   std::array<std::uint8_t, kBlockRows> halted{};  ///< 1: controller does not step, wheels stay 0
 
   template <class T>
   T* port_array(std::size_t i) const noexcept {
-    return std::launder(reinterpret_cast<T*>(ports[i].data()));
+    return std::launder(reinterpret_cast<T*>(ports[i]));
   }
 };
 
@@ -162,6 +149,7 @@ struct SpaceStores {
   double max_z_m = std::numeric_limits<double>::infinity();             ///< its ceiling: what flies stays below
 
   Bodies bodies;
+  Slab slab;  ///< holds ports and controllers of all blocks
   std::vector<RobotGroup> groups;
   std::vector<RobotBlock> blocks;
   std::vector<RobotEntity> robots;    ///< by entity index

@@ -28,8 +28,8 @@ inline RobotId add_robot(Space& space, const hal::DataSheet& sheet, const std::s
   block.capacity = 1;
   block.used = 1;
   for (const hal::PortType* port : ports) {
-    block.ports.emplace_back(port->size, port->align);
-    port->reset(block.ports.back().data());
+    block.ports.push_back(s.slab.take(port->size, port->align));
+    port->reset(block.ports.back());
   }
   group.blocks.push_back(s.blocks.size());
   s.groups.push_back(group);

@@ -222,13 +222,13 @@ void Kinematics2d::settle(const PhysicsContext& context) {
   const std::size_t chunks = (n + kChunk - 1) / kChunk;
   if (counts_.size() < chunks) {
     counts_.resize(chunks);
-    active_.resize(chunks * kChunk);
+    active_ = std::make_unique_for_overwrite<Active[]>(chunks * kChunk);
   }
   IndexEntry* entries = index.entries();
   const Contacts contacts(stores);
   const auto each_chunk = [&](auto&& work) {
     context.pool.run(chunks, kChunksWorthThreads, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t chunk = begin; chunk < end; ++chunk) work(chunk, active_.data() + chunk * kChunk);
+      for (std::size_t chunk = begin; chunk < end; ++chunk) work(chunk, active_.get() + chunk * kChunk);
     });
   };
 

@@ -1,6 +1,7 @@
 // Kinematics in the plane: wheels roll without slip, discs that overlap are pushed apart. No forces, no masses.
 #pragma once
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "core/physics/engine.hpp"
@@ -28,13 +29,13 @@ class Kinematics2d final : public Engine {
  private:
   /// An entry of the index that is near enough to something to touch it, and where it is pushed to in this pass.
   struct Active {
-    std::uint32_t entry = 0;
-    double push_x_m = 0.0;
-    double push_y_m = 0.0;
+    std::uint32_t entry;
+    double push_x_m, push_y_m;
   };
 
   Params params_;
-  std::vector<Active> active_;         // a list for every chunk of entries, with room for all of them
+  std::unique_ptr<Active[]>
+      active_;  // a list for every chunk of entries, with room for all; unused ends stay untouched
   std::vector<std::uint32_t> counts_;  // how long each is
 };
 
