@@ -30,7 +30,8 @@ inline FilterResult filter(WheelSpeeds& command, double limit_m_s) noexcept {
 /// finite becomes the safe one, which is to hover.
 inline FilterResult filter(QuadrotorSpeed& command, double limit_m_s, double limit_rad_s) noexcept {
   const auto& v = command.velocity;
-  const double speed = std::hypot(v[0], v[1], v[2]);
+  // Not by hypot: GCC 12's form of three arguments overlooks what is no number.
+  const double speed = std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
   const double turn = std::fabs(command.yaw_rad_s);
   if (speed <= limit_m_s && turn <= limit_rad_s) return FilterResult::Passed;  // false when any is NaN
   if (!std::isfinite(v[0]) || !std::isfinite(v[1]) || !std::isfinite(v[2]) || !std::isfinite(turn)) {

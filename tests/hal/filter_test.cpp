@@ -60,5 +60,66 @@ TEST(Filter, ALimitOfZeroStops) {
   EXPECT_EQ(w.left_m_s, 0.0);
 }
 
+QuadrotorSpeed flight(double x, double y, double z, double turn) {
+  QuadrotorSpeed f;
+  f.set(x, y, z, turn);
+  return f;
+}
+
+TEST(FlightFilter, PassesWhatIsWithinTheLimits) {
+  QuadrotorSpeed f = flight(1.0, -1.0, 0.5, 0.7);
+  EXPECT_EQ(filter(f, 1.5, 0.7), FilterResult::Passed);
+  EXPECT_EQ(f.velocity, (std::array<double, 3>{1.0, -1.0, 0.5}));
+  EXPECT_EQ(f.yaw_rad_s, 0.7);
+}
+
+TEST(FlightFilter, KeepsTheDirectionOfWhatIsTooFast) {
+  QuadrotorSpeed f = flight(3.0, 0.0, -4.0, -9.0);
+  EXPECT_EQ(filter(f, 2.0, 1.5), FilterResult::Clamped);
+  EXPECT_DOUBLE_EQ(f.velocity[0], 1.2);
+  EXPECT_EQ(f.velocity[1], 0.0);
+  EXPECT_DOUBLE_EQ(f.velocity[2], -1.6);
+  EXPECT_EQ(f.yaw_rad_s, -1.5);
+  QuadrotorSpeed turns = flight(0.1, 0.2, 0.3, 9.0);
+  EXPECT_EQ(filter(turns, 2.0, 1.5), FilterResult::Clamped);
+  EXPECT_EQ(turns.velocity, (std::array<double, 3>{0.1, 0.2, 0.3}));
+  EXPECT_EQ(turns.yaw_rad_s, 1.5);
+}
+
+TEST(FlightFilter, NeverLeavesMoreThanTheLimits) {
+  EXPECT_TRUE(rc::check([](double x, double y, double z, double turn) {
+    QuadrotorSpeed f = flight(x, y, z, turn);
+    filter(f, 2.0, 1.5);
+    RC_ASSERT(std::hypot(f.velocity[0], f.velocity[1], f.velocity[2]) <= 2.0 * (1.0 + 1e-15));
+    RC_ASSERT(std::fabs(f.yaw_rad_s) <= 1.5);
+  }));
+  QuadrotorSpeed f = flight(1e308, 1e308, -1e308, 1e308);  // its length is no number
+  EXPECT_EQ(filter(f, 3.0, 1.5), FilterResult::Clamped);
+  EXPECT_NEAR(f.velocity[2], -std::sqrt(3.0), 1e-12);
+}
+
+TEST(FlightFilter, HoversWhereACommandIsNotFinite) {
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  constexpr double kInf = std::numeric_limits<double>::infinity();
+  for (QuadrotorSpeed f :
+       {flight(kNan, 0, 0, 0), flight(0, kInf, 0, 0), flight(1, 0, -kInf, 0), flight(1, 1, 1, kNan)}) {
+    EXPECT_EQ(filter(f, 2.0, 1.5), FilterResult::NotFinite);
+    EXPECT_EQ(f.velocity, (std::array<double, 3>{}));
+    EXPECT_EQ(f.yaw_rad_s, 0.0);
+  }
+  QuadrotorPosition p;
+  p.set(1, 2, 3, 0.4);
+  EXPECT_EQ(filter(p), FilterResult::Passed);
+  EXPECT_FALSE(p.hold);
+  EXPECT_EQ(p.target[2], 3.0);
+  for (const std::size_t bad : {0U, 1U, 2U, 3U}) {
+    p.set(1, 2, 3, 0.4);
+    (bad < 3 ? p.target[bad] : p.yaw_rad) = bad % 2 == 0 ? kNan : kInf;
+    EXPECT_EQ(filter(p), FilterResult::NotFinite) << bad;
+    EXPECT_TRUE(p.hold);
+    EXPECT_EQ(p.target[0], 0.0);
+  }
+}
+
 }  // namespace
 }  // namespace tandem::hal
