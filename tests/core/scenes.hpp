@@ -51,6 +51,31 @@ struct Scene {
     scenario.robots.push_back(item);
     return *this;
   }
+  /// One more controller configuration, of robots that fly; it is theirs from now on.
+  Scene& pilot(const std::string& controller, const std::vector<Element::Attribute>& params = {},
+               const std::string& implementation = "default") {
+    ControllerConfig config;
+    config.id = "pilot" + std::to_string(scenario.controllers.size());
+    config.label = controller;
+    config.library = "test_controllers";
+    config.params.attributes = params;
+    for (const char* name : {"proximity", "light", "battery", "range_and_bearing", "positioning"})
+      config.sensors.push_back({name, implementation, {}});
+    for (const char* name : {"quadrotor_position", "quadrotor_speed", "range_and_bearing"})
+      config.actuators.push_back({name, implementation, {}});
+    scenario.controllers.push_back(config);
+    return *this;
+  }
+  /// An eye-bot with the configuration added last.
+  Scene& flyer(const std::string& id, double x_m, double y_m, double z_m, double heading_rad = 0.0) {
+    RobotItem item;
+    item.kind = "eye-bot";
+    item.id = id;
+    item.controller = scenario.controllers.size() - 1;
+    item.placement = {{x_m, y_m, z_m}, heading_rad, 0.0, 0.0};
+    scenario.robots.push_back(item);
+    return *this;
+  }
   /// Wheel speeds of the robot added last, instead of its controller configuration's.
   Scene& wheels(double left_m_s, double right_m_s) {
     Element params;

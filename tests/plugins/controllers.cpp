@@ -3,6 +3,7 @@
 #include <stdexcept>
 
 #include "hal/device/body_sensors.hpp"
+#include "hal/device/flight.hpp"
 #include "hal/device/leds.hpp"
 #include "hal/device/range_and_bearing.hpp"
 #include "hal/device/ring_sensors.hpp"
@@ -119,6 +120,109 @@ class Careless final : public Controller {
   int steps_ = 0;
 };
 
+struct FlyParams {
+  std::array<double, 3> velocity_m_s{};
+  double turn_rad_s = 0.0;
+  void describe(ParamVisitor& v) {
+    v.vector("velocity", velocity_m_s, unit::m_s, "Velocity to fly with.");
+    v.number("turn", turn_rad_s, unit::rad_s, kAny, "Turn rate.");
+  }
+};
+
+/// Flies with a constant velocity, looks around and talks. Throws at the step that it is told to.
+class Fly : public Controller {
+ public:
+  struct Params : FlyParams {
+    std::int64_t throw_at = -1;
+    void describe(ParamVisitor& v) {
+      FlyParams::describe(v);
+      v.integer("throw_at", throw_at, kAny, "Step to throw at; negative: never.");
+    }
+  };
+  Fly(Robot& robot, const Params& params)
+      : speed_(robot.actuator<QuadrotorSpeed>()), talk_(robot.actuator<RangeAndBearingSend>()), params_(params) {
+    robot.sensor<Proximity>();
+    robot.sensor<RangeAndBearing>();
+    robot.sensor<Positioning>();
+    robot.sensor<Battery>();
+    robot.sensor<Light>();
+  }
+  void step() override {
+    if (steps_++ == params_.throw_at) throw std::runtime_error("lost my way");
+    const auto& v = params_.velocity_m_s;
+    speed_.set(v[0], v[1], v[2], params_.turn_rad_s);
+    talk_.sending = true;
+    talk_.size = 1;
+    talk_.payload[0] = 42;
+  }
+
+ private:
+  QuadrotorSpeed& speed_;
+  RangeAndBearingSend& talk_;
+  Params params_;
+  std::int64_t steps_ = 0;
+};
+
+/// Flies around a square with its first corner where it takes off, then hovers over that corner.
+class FlySquare final : public Controller {
+ public:
+  struct Params {
+    double side_m = 2.0;
+    double height_m = 1.5;
+    void describe(ParamVisitor& v) {
+      v.number("side", side_m, unit::m, kNotNegative, "Side of the square.");
+      v.number("height", height_m, unit::m, kNotNegative, "Height to fly at.");
+    }
+  };
+  FlySquare(Robot& robot, const Params& params)
+      : target_(robot.actuator<QuadrotorPosition>()), place_(robot.sensor<Positioning>()), params_(params) {}
+  void step() override {
+    if (corner_ < 0) start_ = place_.p_WB;
+    if (corner_ < 0 || (corner_ < 4 && near())) ++corner_;
+    target_.set(goal(0), goal(1), params_.height_m, 0.0);
+  }
+
+ private:
+  double goal(std::size_t axis) const {
+    static constexpr int kCorners[5][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}, {0, 0}};
+    return start_[axis] + params_.side_m * kCorners[corner_][axis];
+  }
+  bool near() const {
+    const double dx = goal(0) - place_.p_WB[0];
+    const double dy = goal(1) - place_.p_WB[1];
+    const double dz = params_.height_m - place_.p_WB[2];
+    return dx * dx + dy * dy + dz * dz < 0.05 * 0.05;
+  }
+
+  QuadrotorPosition& target_;
+  const Positioning& place_;
+  Params params_;
+  std::array<double, 3> start_{};
+  int corner_ = -1;
+};
+
+/// Takes both flight commands and one after the other: a place for ten steps, a velocity for ten, what is no number for
+/// one of each, then much too fast.
+class FlyBoth final : public Controller {
+ public:
+  explicit FlyBoth(Robot& robot)
+      : speed_(robot.actuator<QuadrotorSpeed>()), target_(robot.actuator<QuadrotorPosition>()) {}
+  void step() override {
+    const int step = steps_++;
+    if (step == 0) target_.set(1.0, 0.0, 1.0, 0.5);
+    if (step == 10) target_.hover();
+    if (step >= 10) speed_.set(0.0, 0.5, 0.0, 0.0);
+    if (step == 20) speed_.velocity[1] = std::numeric_limits<double>::quiet_NaN();
+    if (step == 21) target_.set(std::numeric_limits<double>::infinity(), 0.0, 0.0, 0.0);
+    if (step == 22) speed_.set(0.0, 30.0, 40.0, 7.0);
+  }
+
+ private:
+  QuadrotorSpeed& speed_;
+  QuadrotorPosition& target_;
+  int steps_ = 0;
+};
+
 /// Cannot be made.
 class Stillborn final : public Controller {
  public:
@@ -132,6 +236,9 @@ void register_all(Registrar& registrar) {
   registrar.add_controller<Everything>("everything", "Takes every device.");
   registrar.add_controller<Thrower>("thrower", "Throws at tick 3.");
   registrar.add_controller<Careless>("careless", "Commands what is no number.");
+  registrar.add_controller<Fly>("fly", "Constant velocity in the air.");
+  registrar.add_controller<FlySquare>("fly_square", "Once around a square.");
+  registrar.add_controller<FlyBoth>("fly_both", "A place, a velocity, and what is no number.");
   registrar.add_controller<Stillborn>("stillborn", "Throws when made.");
 }
 

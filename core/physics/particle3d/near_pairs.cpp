@@ -6,7 +6,13 @@
 namespace tandem::core::particle3d {
 namespace {
 
-constexpr double kCellsPerBody = 4.0;  // at most: sweeping empty cells costs, too
+constexpr std::size_t kNeighbours = 12;  // of a body in a packed crowd
+constexpr double kCellsPerBody = 4.0;    // at most: sweeping empty cells costs, too
+
+/// At least doubles what must grow: numbers of bodies that creep up cost few allocations.
+void make_room(std::vector<std::uint32_t>& list, std::size_t count) {
+  if (list.capacity() < count) list.reserve(std::max(count, 2 * list.capacity()));
+}
 
 }  // namespace
 
@@ -30,6 +36,7 @@ void NearPairs::sort_into_cells(const Cylinders& bodies) {
 
   cell_of_.resize(n);
   sorted_.resize(n);
+  make_room(cell_start_, static_cast<std::size_t>(most) + 2);
   cell_start_.assign(static_cast<std::size_t>(columns_) * lines_ + 1, 0);
   for (std::size_t i = 0; i < n; ++i) {
     const auto column = std::min(columns_ - 1, static_cast<std::uint32_t>((bodies.x_m[i] - min_x_m_) * per_cell_));
@@ -48,6 +55,7 @@ void NearPairs::find(const Cylinders& bodies) {
   start_.resize(n + 1);
   start_[0] = 0;
   list_.clear();
+  make_room(list_, kNeighbours * n);  // crowds gather and part without allocations
   if (n == 0) return;
   sort_into_cells(bodies);
   for (std::size_t i = 0; i < n; ++i) {

@@ -141,8 +141,9 @@ const char* flaw_of(const SpaceStores& s, std::uint32_t row) noexcept {
   if (!std::isfinite(b.x_m[row]) || !std::isfinite(b.y_m[row]) || !std::isfinite(m.z_m))
     return "has a position that is not a number";
   if (!std::isfinite(b.cos_h[row]) || !std::isfinite(b.sin_h[row])) return "has a heading that is not a number";
+  if (!std::isfinite(m.v_m_s[0]) || !std::isfinite(m.v_m_s[1]) || !std::isfinite(m.v_m_s[2]))
+    return "has a speed that is not a number";
   const double speed = std::hypot(m.v_m_s[0], m.v_m_s[1], m.v_m_s[2]);
-  if (!std::isfinite(speed)) return "has a speed that is not a number";
   if (!std::isfinite(b.left_m_s[row]) || !std::isfinite(b.right_m_s[row]))
     return "is commanded a wheel speed that is not a number";
   if (!b.flight.empty()) {
@@ -258,6 +259,7 @@ void Particle3d::load_flight(const SpaceStores& stores, std::size_t i, double ti
   double wanted = f.yaw * tick_s;
   if (f.mode == FlightCommand::Mode::Position) {
     p_.to_place[i] = 1.0;
+    p_.goal_z[i] = std::clamp(f.target[2], p_.low[i], p_.high[i]);  // no thrust is lost on ground and ceiling
     wanted = std::remainder(f.yaw - std::atan2(p_.s[i], p_.c[i]), 2.0 * std::numbers::pi);
   }
   p_.turn[i] = std::clamp(wanted, -most, most);
@@ -304,6 +306,8 @@ void Particle3d::advance(const SolverContext& context) {
 void Particle3d::find_meetings(const Solid& solid) {
   pairs_.find({p_.x, p_.y, p_.z, p_.radius, p_.height, p_.hop});
   active_.clear();
+  active_.reserve(p_.row.capacity());  // doubles with the arrays of bodies
+  solid_near_.reserve(p_.row.capacity());
   solid_near_.assign(p_.size(), 0);
   for (std::size_t i = 0; i < p_.size(); ++i) {
     if (p_.fixed[i] != 0) continue;
@@ -474,6 +478,16 @@ void Particle3d::meet(const Solid& solid) noexcept {
 
 // --- after the tick ---
 
+/// The quaternion of a heading. Its w is not negative.
+std::array<double, 4> upright(double cos_h, double sin_h) noexcept {
+  if (cos_h >= 0.0) {
+    const double w = std::sqrt(0.5 * (1.0 + cos_h));
+    return {w, 0.0, 0.0, 0.5 * sin_h / w};
+  }
+  const double z = std::copysign(std::sqrt(0.5 * (1.0 - cos_h)), sin_h);
+  return {0.5 * sin_h / z, 0.0, 0.0, z};
+}
+
 void Particle3d::write_back(SpaceStores& stores, double tick_s) {
   for (std::size_t i = 0; i < p_.size(); ++i) {
     if (p_.owned[i] == 0 || p_.fixed[i] != 0) continue;
@@ -501,12 +515,10 @@ void Particle3d::write(SpaceStores& stores, std::size_t i, double tick_s) noexce
   Motion& m = b.motion[row];
   b.x_m[row] = p_.x[i];
   b.y_m[row] = p_.y[i];
+  if (p_.c[i] != b.cos_h[row] || p_.s[i] != b.sin_h[row]) m.q_WB = upright(p_.c[i], p_.s[i]);
   b.cos_h[row] = p_.c[i];
   b.sin_h[row] = p_.s[i];
   m.z_m = p_.z[i];
-  // Half the yaw, which lies in (-pi, pi]: w is not negative.
-  const double w = std::sqrt(std::max(0.0, 0.5 * (1.0 + p_.c[i])));
-  m.q_WB = {w, 0.0, 0.0, std::copysign(std::sqrt(std::max(0.0, 0.5 * (1.0 - p_.c[i]))), p_.s[i])};
   m.w_rad_s = {0.0, 0.0, p_.turn[i] / tick_s};
   if (p_.flies[i] != 0 || p_.falls[i] != 0) {
     m.v_m_s = {p_.vx[i], p_.vy[i], p_.vz[i]};

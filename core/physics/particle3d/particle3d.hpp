@@ -15,9 +15,10 @@ namespace tandem::core {
 /// nothing is beneath it. Wheels know no masses: they push as kinematics2d's do.
 ///
 /// No cylinder ever enters an immovable object, the ground, the ceiling (the arena's, or the region's top) or a wall of
-/// its region; bodies slide along them. Bodies that overlap are pushed apart by half the overlap each, upwards and
-/// downwards where that is the shorter way; those moved from outside push but are not pushed. Passes are computed from
-/// the positions of the one before, so the order of bodies does not matter.
+/// its region; bodies slide along them, but thrust against them is lost for other directions. Bodies that overlap are
+/// pushed apart by half the overlap each, upwards and downwards where that is the shorter way; those moved from outside
+/// push but are not pushed. Passes are computed from the positions of the one before, so the order of bodies does not
+/// matter.
 const SolverType& particle3d_type();
 
 }  // namespace tandem::core

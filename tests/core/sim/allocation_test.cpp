@@ -60,5 +60,23 @@ TEST(World, AllocatesNothingAfterTheFirstSteps) {
   }
 }
 
+TEST(World, AllocatesNothingForRobotsThatFlyInACrowd) {
+  Scene scene(8.0, "everything");
+  scene.scenario.arena_size[2] = 8.0;
+  scene.engine("particle3d").split("2x2");
+  scene.param("left", "0.1").param("right", "0.08").walls().robots(600, 3.8);
+  scene.pilot("fly", {{"velocity", "0.3,0.2,0.01", 0}, {"turn", "0.4", 0}});
+  for (int i = 0; i < 100; ++i)
+    scene.flyer("e" + std::to_string(i), -3 + 0.55 * (i % 10), -3 + 0.55 * (i / 10), 0.5 + 0.02 * i);
+  auto world = make(scene);
+  ASSERT_TRUE(world.world) << world.all_problems();
+  world->start();
+  for (int i = 0; i < 10; ++i) world->step();  // as regions fill, lists grow by doubling
+  const std::uint64_t before = allocations.load();
+  for (int i = 0; i < 30; ++i) world->step();
+  EXPECT_EQ(allocations.load() - before, 0U);
+  EXPECT_EQ(world->state(), RunState::Running) << world->failure();
+}
+
 }  // namespace
 }  // namespace tandem::core
