@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "hal/device/distance_scanner.hpp"
 #include "hal/device/flight.hpp"
+#include "hal/device/gripper.hpp"
+#include "hal/device/turret.hpp"
 #include "hal/device/wheels.hpp"
 
 namespace tandem::hal {
@@ -56,6 +59,36 @@ inline FilterResult filter(QuadrotorPosition& command) noexcept {
   if (finite) return FilterResult::Passed;
   command = QuadrotorPosition{};
   return FilterResult::NotFinite;
+}
+
+/// Speeds are clamped; a command that is not finite, or of no known mode, becomes the safe one. For what turns about
+/// the robot's axis: turret and distance scanner.
+template <class Drive, class Mode>
+FilterResult filter_turn(Drive& command, Mode last_mode, double limit_rad_s) noexcept {
+  if (!std::isfinite(command.speed_rad_s) || !std::isfinite(command.angle_rad) || command.mode > last_mode) {
+    command = Drive{};
+    return FilterResult::NotFinite;
+  }
+  if (std::fabs(command.speed_rad_s) <= limit_rad_s) return FilterResult::Passed;
+  command.speed_rad_s = std::clamp(command.speed_rad_s, -limit_rad_s, limit_rad_s);
+  return FilterResult::Clamped;
+}
+inline FilterResult filter(TurretDrive& command, double limit_rad_s) noexcept {
+  return filter_turn(command, TurretMode::Position, limit_rad_s);
+}
+inline FilterResult filter(ScannerDrive& command, double limit_rad_s) noexcept {
+  return filter_turn(command, ScannerMode::Position, limit_rad_s);
+}
+
+/// Apertures beyond what the claws reach are clamped; one that is not finite becomes the safe one, which lets go.
+inline FilterResult filter(GripperDrive& command) noexcept {
+  if (std::fabs(command.aperture_rad) <= GripperDrive::kMost_rad) return FilterResult::Passed;
+  if (!std::isfinite(command.aperture_rad)) {
+    command = GripperDrive{};
+    return FilterResult::NotFinite;
+  }
+  command.aperture_rad = std::clamp(command.aperture_rad, -GripperDrive::kMost_rad, GripperDrive::kMost_rad);
+  return FilterResult::Clamped;
 }
 
 }  // namespace tandem::hal

@@ -83,7 +83,9 @@ constexpr Scalar scalar_of() {
     return Scalar::F64;
   else if constexpr (std::is_same_v<T, bool>)
     return Scalar::Bool;
-  else if constexpr (std::is_same_v<T, std::uint8_t> || std::is_same_v<T, Validity>)
+  else if constexpr (std::is_enum_v<T>)
+    return scalar_of<std::underlying_type_t<T>>();
+  else if constexpr (std::is_same_v<T, std::uint8_t>)
     return Scalar::U8;
   else if constexpr (std::is_same_v<T, std::uint16_t>)
     return Scalar::U16;

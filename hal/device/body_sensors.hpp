@@ -1,4 +1,5 @@
-// What a robot senses of itself and of the air around it: acceleration, sound level, battery, clock.
+// What a robot senses of itself and of the air around it: acceleration, turn rates, sound level,
+// battery, clock.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -16,6 +17,18 @@ struct Accelerometer : Reading {
 
   void describe(FieldList& f) const {
     f.add("force", force_m_s2, unit::m_s2, Frame::Body, Fusion::Real, "specific force, x forward, y left, z up");
+  }
+};
+
+/// Turn rates in the body frame.
+struct Gyroscope : Reading {
+  static constexpr std::string_view kName = "gyroscope";
+  static constexpr std::string_view kDoc = "Turn rates about the axes of the body.";
+
+  std::array<float, 3> rate_rad_s{};
+
+  void describe(FieldList& f) const {
+    f.add("rate", rate_rad_s, unit::rad_s, Frame::Body, Fusion::Real, "about x forward, y left, z up");
   }
 };
 

@@ -19,7 +19,8 @@ inline constexpr Rgb kGreen{0, 255, 0};
 inline constexpr Rgb kBlue{0, 0, 255};
 inline constexpr Rgb kWhite{255, 255, 255};
 
-/// The ring of LEDs on the rim, in the order of the data sheet. Safe value: all off.
+/// The ring of LEDs on the rim, in the order of the data sheet; a beacon on top, where a robot has one, is the last.
+/// Safe value: all off.
 struct RingLeds : Command {
   static constexpr std::string_view kName = "leds";
   static constexpr std::string_view kDoc = "Colours of the LED ring.";

@@ -59,4 +59,16 @@ struct Ground : Reading {
   }
 };
 
+/// The foot-bot's sensors around its base, which see the floor beside the tracks.
+struct BaseGround : Ground {
+  static constexpr std::string_view kName = "base_ground";
+  static constexpr std::string_view kDoc = "Reflectance of the floor beneath the rim of the base, 0 black to 1 white.";
+};
+
+/// The foot-bot's sensors between its tracks.
+struct MotorGround : Ground {
+  static constexpr std::string_view kName = "motor_ground";
+  static constexpr std::string_view kDoc = "Reflectance of the floor between the tracks, 0 black to 1 white.";
+};
+
 }  // namespace tandem::hal

@@ -1,4 +1,4 @@
-// Differential drive: the command for two wheels, and what their encoders counted.
+// Differential drive: the command for two wheels, and what their encoders counted and make of it.
 #pragma once
 #include "hal/port.hpp"
 
@@ -39,6 +39,24 @@ struct WheelEncoders : Reading {
     f.add("right", right_m, unit::m, Frame::None, Fusion::Real, "distance rolled by the right wheel");
     f.add("left_speed", left_m_s, unit::m_s, Frame::None, Fusion::Real, "mean speed over the last tick");
     f.add("right_speed", right_m_s, unit::m_s, Frame::None, Fusion::Real, "mean speed over the last tick");
+  }
+};
+
+/// Where the wheels' encoders say that the robot is, relative to where it was at the start: x forward, y left of how it
+/// stood then. Errors add up: it knows of no slip.
+struct Odometry : Reading {
+  static constexpr std::string_view kName = "odometry";
+  static constexpr std::string_view kDoc =
+      "Place and heading relative to the start, reckoned from the wheels' encoders.";
+
+  double x_m = 0.0;
+  double y_m = 0.0;
+  double heading_rad = 0.0;  ///< in (-pi, pi], counter-clockwise
+
+  void describe(FieldList& f) const {
+    f.add("x", x_m, unit::m, Frame::None, Fusion::Real, "forward of the start");
+    f.add("y", y_m, unit::m, Frame::None, Fusion::Real, "left of the start");
+    f.add("heading", heading_rad, unit::rad, Frame::None, Fusion::Real, "counter-clockwise from that at the start");
   }
 };
 

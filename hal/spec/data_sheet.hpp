@@ -13,6 +13,13 @@ struct Mount {
   double z_m = 0.0;
 };
 
+/// A ring with a motor of its own, and the range sensors on it.
+struct ScannerHead {
+  double bearing_rad = 0.0;  ///< where it looks while the scanner is at angle 0
+  double min_m = 0.0;        ///< nearest and farthest distance that it measures, from the robot's axis
+  double max_m = 0.0;
+};
+
 /// One kind of robot. All spans point at constants.
 struct DataSheet {
   std::string_view kind;  ///< as the element in experiment files, e.g. "e-puck"
@@ -37,8 +44,19 @@ struct DataSheet {
   std::span<const Mount> proximity;
   std::span<const Mount> light;
   std::span<const Mount> ground;
+  std::span<const Mount> base_ground;   ///< of robots with two groups of ground sensors
+  std::span<const Mount> motor_ground;  ///< the other group
   std::span<const Mount> microphones;
   std::span<const Mount> leds;
+  bool leds_on_turret = false;  ///< the places of the LEDs turn with the turret
+  bool gyroscope = false;
+  double turret_turn_rad_s = 0.0;  ///< fastest turn of the turret; 0: none
+  double gripper_reach_m = 0.0;    ///< beyond the body's rim; 0: no gripper. It looks where the turret does
+  double gripper_height_m = 0.0;   ///< of the claws above the ground
+  std::span<const ScannerHead> scanner;
+  double scanner_height_m = 0.0;
+  double scanner_turn_rad_s = 0.0;  ///< fastest turn of the scanner
+  double scanner_rate_hz = 0.0;     ///< measurements a second of each head
 };
 
 }  // namespace tandem::hal

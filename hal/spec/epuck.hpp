@@ -92,8 +92,11 @@ inline constexpr DataSheet kDataSheet = {
     .proximity = kInfrared,
     .light = kInfrared,  // the same devices
     .ground = kGround,
+    .base_ground = {},
+    .motor_ground = {},
     .microphones = kMicrophones,
     .leds = kLeds,
+    .scanner = {},
 };
 
 /// One knot of the infrared response: calibrated counts at a distance from the sensor, white paper.

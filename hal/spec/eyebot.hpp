@@ -4,10 +4,10 @@
 // Sources: [ARGoS] ARGoS 3, eye-bot plug-in; [chosen] no figure is published, the reason stands beside.
 #pragma once
 #include <array>
-#include <cmath>
 #include <numbers>
 
 #include "hal/spec/data_sheet.hpp"
+#include "hal/spec/ring.hpp"
 
 namespace tandem::hal::eyebot {
 
@@ -26,26 +26,10 @@ inline constexpr double kMaxTurn_rad_s = 0.5 * std::numbers::pi;  // [chosen] a 
 inline constexpr double kBatteryFull_V = 12.6;                    // [chosen] three lithium-polymer cells
 inline constexpr double kBatteryEmpty_V = 9.9;
 
-namespace detail {
-/// `count` mounts around the rim, counter-clockwise, the first `first_deg` from forward. Directions are worked out when
-/// the program starts: sine and cosine are no constant expressions.
-template <std::size_t count>
-std::array<Mount, count> ring(double first_deg, double height_m) {
-  std::array<Mount, count> mounts;
-  for (std::size_t i = 0; i < count; ++i) {
-    const double turn = (first_deg + 360.0 / count * static_cast<double>(i)) / 180.0;
-    const double bearing = turn > 1.0 ? turn - 2.0 : turn;  // half turns, in (-1, 1]
-    const double rad = bearing * std::numbers::pi;
-    mounts[i] = {rad, kRingRadius_m * std::cos(rad), kRingRadius_m * std::sin(rad), height_m};
-  }
-  return mounts;
-}
-}  // namespace detail
-
 /// 24 proximity and light sensors [ARGoS]: the first at 7.5 degrees, one every 15 degrees, counter-clockwise.
-inline const std::array<Mount, 24> kRing = detail::ring<24>(7.5, kSensorHeight_m);
+inline const std::array<Mount, 24> kRing = ring_of<24>(7.5, kRingRadius_m, kSensorHeight_m);
 /// The lower ring of 16 LEDs [ARGoS]: the first at 11.25 degrees. The upper ring, 1 cm higher, shines alike.
-inline const std::array<Mount, 16> kLeds = detail::ring<16>(11.25, kLedHeight_m);
+inline const std::array<Mount, 16> kLeds = ring_of<16>(11.25, kRingRadius_m, kLedHeight_m);
 
 inline const DataSheet kDataSheet = {
     .kind = "eye-bot",
@@ -65,8 +49,11 @@ inline const DataSheet kDataSheet = {
     .proximity = kRing,
     .light = kRing,
     .ground = {},
+    .base_ground = {},
+    .motor_ground = {},
     .microphones = {},
     .leds = kLeds,
+    .scanner = {},
 };
 
 }  // namespace tandem::hal::eyebot

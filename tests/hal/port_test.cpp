@@ -6,9 +6,12 @@
 #include <rapidcheck.h>
 
 #include "hal/device/body_sensors.hpp"
+#include "hal/device/distance_scanner.hpp"
+#include "hal/device/gripper.hpp"
 #include "hal/device/leds.hpp"
 #include "hal/device/range_and_bearing.hpp"
 #include "hal/device/ring_sensors.hpp"
+#include "hal/device/turret.hpp"
 #include "hal/device/wheels.hpp"
 
 namespace tandem::hal {
@@ -313,8 +316,10 @@ TEST(RangeAndBearing, AnAbsentRealBoardHearsTheVirtualOne) {
 
 template <class T>
 class EveryPort : public testing::Test {};
-using Ports = testing::Types<Proximity, Light, Ground, WheelEncoders, Accelerometer, Microphones, Battery, Clock,
-                             RangeAndBearing, WheelSpeeds, RingLeds, BodyLed, FrontLed, RangeAndBearingSend>;
+using Ports =
+    testing::Types<Proximity, Light, Ground, WheelEncoders, Accelerometer, Microphones, Battery, Clock, RangeAndBearing,
+                   BaseGround, MotorGround, Odometry, Gyroscope, TurretEncoder, Gripper, DistanceScanner, WheelSpeeds,
+                   RingLeds, BodyLed, FrontLed, RangeAndBearingSend, TurretDrive, GripperDrive, ScannerDrive>;
 TYPED_TEST_SUITE(EveryPort, Ports);
 
 TYPED_TEST(EveryPort, IsDocumentedAndLiesWithinItsMemory) {

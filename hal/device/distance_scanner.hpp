@@ -1,0 +1,82 @@
+// A distance scanner: range sensors on a ring that turns about the robot's vertical axis.
+#pragma once
+#include <array>
+#include <cstdint>
+
+#include "hal/port.hpp"
+
+namespace tandem::hal {
+
+/// What moves a scanner. The numbers are part of the port.
+enum class ScannerMode : std::uint8_t {
+  Off = 0,      ///< it stays where it is and measures nothing
+  Speed = 1,    ///< it turns with `speed_rad_s`
+  Position = 2  ///< it goes to `angle_rad` by the shorter way
+};
+
+/// What the scanner is to do. Angles are relative to the body, counter-clockwise from forward. Safe value: off.
+struct ScannerDrive : Command {
+  static constexpr std::string_view kName = "distance_scanner";
+  static constexpr std::string_view kDoc = "How the distance scanner is to turn.";
+
+  ScannerMode mode = ScannerMode::Off;
+  double speed_rad_s = 0.0;  ///< in mode Speed
+  double angle_rad = 0.0;    ///< in mode Position
+
+  void turn_off() noexcept { *this = {}; }
+  void turn(double rad_s) noexcept {
+    mode = ScannerMode::Speed;
+    speed_rad_s = rad_s;
+  }
+  void go_to(double rad) noexcept {
+    mode = ScannerMode::Position;
+    angle_rad = rad;
+  }
+  void describe(FieldList& f) const {
+    f.add("mode", mode, unit::none, Frame::None, Fusion::Real, "0 off, 1 speed, 2 position");
+    f.add("speed", speed_rad_s, unit::rad_s, Frame::Body, Fusion::Real, "turn rate, counter-clockwise from above");
+    f.add("angle", angle_rad, unit::rad, Frame::Body, Fusion::Real, "where to turn to, counter-clockwise from forward");
+  }
+};
+
+/// What each head measured during the last tick, oldest first. Heads 0 and 2 see short distances, 1 and 3 long ones;
+/// at angle 0 they look forward, left, back, right. Distances are from the robot's axis. Where a head sees nothing it
+/// reads the most that it can measure, where something is too near the least.
+struct DistanceScanner : Reading {
+  static constexpr std::string_view kName = "distance_scanner";
+  static constexpr std::string_view kDoc = "Distances that the scanner's four heads measured during the last tick.";
+  static constexpr std::size_t kHeads = 4;
+  static constexpr std::size_t kSamples = 6;  ///< of one head in one tick, at most
+
+  std::uint32_t count = 0;    ///< entries in use, of all heads together: the first are head 0's
+  std::uint32_t samples = 0;  ///< of each head; count is kHeads times this
+  float short_min_m = 0.0F, short_max_m = 0.0F;
+  float long_min_m = 0.0F, long_max_m = 0.0F;
+  float turn_rad = 0.0F;                              ///< of the scanner on the body, at the end of the tick
+  std::array<float, kHeads * kSamples> angle_rad{};   ///< where the head looked: in the body frame
+  std::array<float, kHeads * kSamples> distance_m{};  ///< from the robot's axis
+
+  static constexpr bool is_short(std::size_t head) noexcept { return head % 2 == 0; }
+  std::size_t at(std::size_t head, std::size_t sample) const noexcept { return head * samples + sample; }
+  float angle(std::size_t head, std::size_t sample) const noexcept { return angle_rad[at(head, sample)]; }
+  float distance(std::size_t head, std::size_t sample) const noexcept { return distance_m[at(head, sample)]; }
+  bool too_near(std::size_t head, std::size_t sample) const noexcept {
+    return distance(head, sample) <= (is_short(head) ? short_min_m : long_min_m);
+  }
+  bool sees_nothing(std::size_t head, std::size_t sample) const noexcept {
+    return distance(head, sample) >= (is_short(head) ? short_max_m : long_max_m);
+  }
+  void describe(FieldList& f) const {
+    f.add("count", count, unit::none, Frame::None, Fusion::Real, "measurements of all heads");
+    f.add("samples", samples, unit::none, Frame::None, Fusion::Real, "measurements of each head");
+    f.add("short_min", short_min_m, unit::m, Frame::None, Fusion::Real, "heads 0 and 2 read this where too near");
+    f.add("short_max", short_max_m, unit::m, Frame::None, Fusion::Real, "heads 0 and 2 read this where nothing is");
+    f.add("long_min", long_min_m, unit::m, Frame::None, Fusion::Real, "heads 1 and 3 read this where too near");
+    f.add("long_max", long_max_m, unit::m, Frame::None, Fusion::Real, "heads 1 and 3 read this where nothing is");
+    f.add("turn", turn_rad, unit::rad, Frame::Body, Fusion::Real, "of the scanner, counter-clockwise from forward");
+    f.add("angle", angle_rad, unit::rad, Frame::Body, Fusion::Real, "where the head looked").used_by = "count";
+    f.add("distance", distance_m, unit::m, Frame::Body, Fusion::Nearer, "from the robot's axis").used_by = "count";
+  }
+};
+
+}  // namespace tandem::hal

@@ -1,0 +1,43 @@
+// A gripper: two claws that open inside another robot's ring, or an object's, and so hold it.
+#pragma once
+#include <cmath>
+#include <numbers>
+
+#include "hal/port.hpp"
+
+namespace tandem::hal {
+
+/// How far the claws are to open. 0: they are together and hold nothing. Safe value: 0.
+struct GripperDrive : Command {
+  static constexpr std::string_view kName = "gripper";
+  static constexpr std::string_view kDoc = "How far the gripper's claws are to open; open ones hold.";
+  static constexpr double kMost_rad = 0.5 * std::numbers::pi;    ///< to either side
+  static constexpr double kHolds_rad = 0.25 * std::numbers::pi;  ///< claws at least this far apart hold
+
+  double aperture_rad = 0.0;  ///< -pi/2 to pi/2: the sign tells which claw opens upwards
+
+  void lock() noexcept { aperture_rad = kMost_rad; }
+  void unlock() noexcept { aperture_rad = 0.0; }
+  bool locks() const noexcept { return std::fabs(aperture_rad) >= kHolds_rad; }
+  void describe(FieldList& f) const {
+    f.add("aperture", aperture_rad, unit::rad, Frame::None, Fusion::Real, "0 lets go, from 45 degrees on holds");
+  }
+};
+
+/// State of the gripper.
+struct Gripper : Reading {
+  static constexpr std::string_view kName = "gripper";
+  static constexpr std::string_view kDoc = "How far the gripper's claws are open, and whether they hold something.";
+
+  float aperture_rad = 0.0F;
+  bool holding = false;
+  bool busy = false;  ///< it tries what it holds, and obeys nothing meanwhile
+
+  void describe(FieldList& f) const {
+    f.add("aperture", aperture_rad, unit::rad, Frame::None, Fusion::Real, "0 together, 90 degrees wide open");
+    f.add("holding", holding, unit::none, Frame::None, Fusion::Real, "something is held");
+    f.add("busy", busy, unit::none, Frame::None, Fusion::Real, "tries its grip");
+  }
+};
+
+}  // namespace tandem::hal
