@@ -119,44 +119,45 @@ TEST(FlightFilter, HoversWhereACommandIsNotFinite) {
     EXPECT_TRUE(p.hold);
     EXPECT_EQ(p.target[0], 0.0);
   }
+}
 
-  template <class Drive>
-  class TurnFilter : public testing::Test {};
-  using TurnDrives = testing::Types<TurretDrive, ScannerDrive>;
-  TYPED_TEST_SUITE(TurnFilter, TurnDrives);
+template <class Drive>
+class TurnFilter : public testing::Test {};
+using TurnDrives = testing::Types<TurretDrive, ScannerDrive>;
+TYPED_TEST_SUITE(TurnFilter, TurnDrives);
 
-  TYPED_TEST(TurnFilter, ClampsSpeedsAndStopsWhatIsNotFinite) {
-    constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-    TypeParam drive;
-    drive.turn(1.0);
-    EXPECT_EQ(filter(drive, 1.0), FilterResult::Passed);
-    drive.turn(-3.0);
-    EXPECT_EQ(filter(drive, 1.0), FilterResult::Clamped);
-    EXPECT_EQ(drive.speed_rad_s, -1.0);
-    drive.turn(kNan);
-    EXPECT_EQ(filter(drive, 1.0), FilterResult::NotFinite);
-    EXPECT_EQ(drive.mode, decltype(drive.mode){}) << "off";
-    drive.go_to(kNan);
-    EXPECT_EQ(filter(drive, 1.0), FilterResult::NotFinite);
-    EXPECT_EQ(drive.angle_rad, 0.0);
-    drive.mode = static_cast<decltype(drive.mode)>(17);
-    EXPECT_EQ(filter(drive, 1.0), FilterResult::NotFinite) << "a mode that there is not";
-    EXPECT_EQ(drive.mode, decltype(drive.mode){});
-  }
+TYPED_TEST(TurnFilter, ClampsSpeedsAndStopsWhatIsNotFinite) {
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  TypeParam drive;
+  drive.turn(1.0);
+  EXPECT_EQ(filter(drive, 1.0), FilterResult::Passed);
+  drive.turn(-3.0);
+  EXPECT_EQ(filter(drive, 1.0), FilterResult::Clamped);
+  EXPECT_EQ(drive.speed_rad_s, -1.0);
+  drive.turn(kNan);
+  EXPECT_EQ(filter(drive, 1.0), FilterResult::NotFinite);
+  EXPECT_EQ(drive.mode, decltype(drive.mode){}) << "off";
+  drive.go_to(kNan);
+  EXPECT_EQ(filter(drive, 1.0), FilterResult::NotFinite);
+  EXPECT_EQ(drive.angle_rad, 0.0);
+  drive.mode = static_cast<decltype(drive.mode)>(17);
+  EXPECT_EQ(filter(drive, 1.0), FilterResult::NotFinite) << "a mode that there is not";
+  EXPECT_EQ(drive.mode, decltype(drive.mode){});
+}
 
-  TEST(GripperFilter, ClampsTheApertureAndLetsGoWhenItIsNotFinite) {
-    GripperDrive drive;
-    drive.lock();
-    EXPECT_TRUE(drive.locks());
-    EXPECT_EQ(filter(drive), FilterResult::Passed);
-    drive.aperture_rad = -2.0;
-    EXPECT_EQ(filter(drive), FilterResult::Clamped);
-    EXPECT_EQ(drive.aperture_rad, -GripperDrive::kMost_rad);
-    EXPECT_TRUE(drive.locks());
-    drive.aperture_rad = std::numeric_limits<double>::infinity();
-    EXPECT_EQ(filter(drive), FilterResult::NotFinite);
-    EXPECT_FALSE(drive.locks());
-  }
+TEST(GripperFilter, ClampsTheApertureAndLetsGoWhenItIsNotFinite) {
+  GripperDrive drive;
+  drive.lock();
+  EXPECT_TRUE(drive.locks());
+  EXPECT_EQ(filter(drive), FilterResult::Passed);
+  drive.aperture_rad = -2.0;
+  EXPECT_EQ(filter(drive), FilterResult::Clamped);
+  EXPECT_EQ(drive.aperture_rad, -GripperDrive::kMost_rad);
+  EXPECT_TRUE(drive.locks());
+  drive.aperture_rad = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(filter(drive), FilterResult::NotFinite);
+  EXPECT_FALSE(drive.locks());
+}
 
 }  // namespace
 }  // namespace tandem::hal

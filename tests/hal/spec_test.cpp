@@ -72,91 +72,92 @@ TEST(EyebotDataSheet, FliesAndHasNoWheels) {
   // Stops before what its proximity sensors see from full speed.
   EXPECT_LT(sheet.max_flight_speed_m_s * sheet.max_flight_speed_m_s / (2.0 * sheet.max_flight_acceleration_m_s2),
             0.25 * sheet.proximity_range_m);
+}
 
-  TEST(FootbotDataSheet, PutsItsSensorsOnTheRimEvery15DegreesFromFrontLeft) {
-    ASSERT_EQ(footbot::kDataSheet.proximity.size(), 24U);
-    for (std::size_t i = 0; i < 24; ++i) {
-      const Mount& m = footbot::kDataSheet.proximity[i];
-      const double expected_deg = 7.5 + 15.0 * static_cast<double>(i);
-      EXPECT_NEAR(std::remainder(m.bearing_rad - expected_deg * std::acos(-1.0) / 180.0, 2.0 * std::acos(-1.0)), 0.0,
-                  1e-12);
-      EXPECT_NEAR(m.x_m, footbot::kBodyRadius_m * std::cos(m.bearing_rad), 1e-12);
-      EXPECT_NEAR(m.y_m, footbot::kBodyRadius_m * std::sin(m.bearing_rad), 1e-12);
+TEST(FootbotDataSheet, PutsItsSensorsOnTheRimEvery15DegreesFromFrontLeft) {
+  ASSERT_EQ(footbot::kDataSheet.proximity.size(), 24U);
+  for (std::size_t i = 0; i < 24; ++i) {
+    const Mount& m = footbot::kDataSheet.proximity[i];
+    const double expected_deg = 7.5 + 15.0 * static_cast<double>(i);
+    EXPECT_NEAR(std::remainder(m.bearing_rad - expected_deg * std::acos(-1.0) / 180.0, 2.0 * std::acos(-1.0)), 0.0,
+                1e-12);
+    EXPECT_NEAR(m.x_m, footbot::kBodyRadius_m * std::cos(m.bearing_rad), 1e-12);
+    EXPECT_NEAR(m.y_m, footbot::kBodyRadius_m * std::sin(m.bearing_rad), 1e-12);
+  }
+  EXPECT_GT(footbot::kRing[0].y_m, 0.0) << "the first looks to the left of forward, the last to the right";
+  EXPECT_LT(footbot::kRing[23].y_m, 0.0);
+}
+
+TEST(FootbotDataSheet, HasTwelveLedsOutsideTheBodyAndABeaconAboveIt) {
+  const auto leds = footbot::kDataSheet.leds;
+  ASSERT_EQ(leds.size(), 13U);
+  for (std::size_t i = 0; i < footbot::kRingLeds; ++i) {
+    EXPECT_NEAR(std::hypot(leds[i].x_m, leds[i].y_m), footbot::kLedRadius_m, 1e-12);
+    EXPECT_LT(leds[i].z_m, footbot::kHeight_m);
+  }
+  EXPECT_NEAR(leds[0].bearing_rad, std::acos(-1.0) / 12.0, 1e-12);
+  EXPECT_EQ(leds[footbot::kBeacon].x_m, 0.0);
+  EXPECT_EQ(leds[footbot::kBeacon].y_m, 0.0);
+  EXPECT_GT(leds[footbot::kBeacon].z_m, footbot::kHeight_m);
+}
+
+TEST(FootbotDataSheet, SeesTheFloorUnderItsBodyOnAllSides) {
+  for (const auto& sensors : {footbot::kDataSheet.base_ground, footbot::kDataSheet.motor_ground}) {
+    double x = 0.0, y = 0.0;
+    for (const Mount& m : sensors) {
+      EXPECT_LT(std::hypot(m.x_m, m.y_m), footbot::kBodyRadius_m);
+      x += m.x_m;
+      y += m.y_m;
     }
-    EXPECT_GT(footbot::kRing[0].y_m, 0.0) << "the first looks to the left of forward, the last to the right";
-    EXPECT_LT(footbot::kRing[23].y_m, 0.0);
+    EXPECT_NEAR(x, 0.0, 1e-12);
+    EXPECT_NEAR(y, 0.0, 1e-12);
   }
+  EXPECT_EQ(footbot::kBaseGround.size(), 8U);
+  EXPECT_EQ(footbot::kMotorGround.size(), 4U);
+}
 
-  TEST(FootbotDataSheet, HasTwelveLedsOutsideTheBodyAndABeaconAboveIt) {
-    const auto leds = footbot::kDataSheet.leds;
-    ASSERT_EQ(leds.size(), 13U);
-    for (std::size_t i = 0; i < footbot::kRingLeds; ++i) {
-      EXPECT_NEAR(std::hypot(leds[i].x_m, leds[i].y_m), footbot::kLedRadius_m, 1e-12);
-      EXPECT_LT(leds[i].z_m, footbot::kHeight_m);
-    }
-    EXPECT_NEAR(leds[0].bearing_rad, std::acos(-1.0) / 12.0, 1e-12);
-    EXPECT_EQ(leds[footbot::kBeacon].x_m, 0.0);
-    EXPECT_EQ(leds[footbot::kBeacon].y_m, 0.0);
-    EXPECT_GT(leds[footbot::kBeacon].z_m, footbot::kHeight_m);
+TEST(FootbotDataSheet, ScansShortAndLongDistancesByTurns) {
+  const auto heads = footbot::kDataSheet.scanner;
+  ASSERT_EQ(heads.size(), DistanceScanner::kHeads);
+  for (std::size_t i = 0; i < heads.size(); ++i) {
+    EXPECT_NEAR(std::sin(heads[i].bearing_rad - 0.5 * std::acos(-1.0) * static_cast<double>(i)), 0.0, 1e-12);
+    EXPECT_EQ(heads[i].max_m, DistanceScanner::is_short(i) ? 0.3 : 1.5);
+    EXPECT_LT(heads[i].min_m, heads[i].max_m);
   }
+}
 
-  TEST(FootbotDataSheet, SeesTheFloorUnderItsBodyOnAllSides) {
-    for (const auto& sensors : {footbot::kDataSheet.base_ground, footbot::kDataSheet.motor_ground}) {
-      double x = 0.0, y = 0.0;
-      for (const Mount& m : sensors) {
-        EXPECT_LT(std::hypot(m.x_m, m.y_m), footbot::kBodyRadius_m);
-        x += m.x_m;
-        y += m.y_m;
-      }
-      EXPECT_NEAR(x, 0.0, 1e-12);
-      EXPECT_NEAR(y, 0.0, 1e-12);
-    }
-    EXPECT_EQ(footbot::kBaseGround.size(), 8U);
-    EXPECT_EQ(footbot::kMotorGround.size(), 4U);
-  }
+TEST(FootbotDataSheet, DrivesAtMostSeventyTwoPulsesAPeriod) {
+  const double pulses = footbot::kMaxWheelSpeed_m_s * footbot::kPulsesPerMetre * footbot::kPulsePeriod_s;
+  EXPECT_EQ(std::floor(pulses), 72.0);
+}
 
-  TEST(FootbotDataSheet, ScansShortAndLongDistancesByTurns) {
-    const auto heads = footbot::kDataSheet.scanner;
-    ASSERT_EQ(heads.size(), DistanceScanner::kHeads);
-    for (std::size_t i = 0; i < heads.size(); ++i) {
-      EXPECT_NEAR(std::sin(heads[i].bearing_rad - 0.5 * std::acos(-1.0) * static_cast<double>(i)), 0.0, 1e-12);
-      EXPECT_EQ(heads[i].max_m, DistanceScanner::is_short(i) ? 0.3 : 1.5);
-      EXPECT_LT(heads[i].min_m, heads[i].max_m);
-    }
-  }
+TEST(DistanceScanner, TellsNothingAndTooNearFromWhatItMeasures) {
+  DistanceScanner port;
+  port.samples = 2;
+  port.count = 8;
+  port.short_min_m = 0.04F;
+  port.short_max_m = 0.3F;
+  port.long_min_m = 0.2F;
+  port.long_max_m = 1.5F;
+  port.distance_m[port.at(0, 1)] = 0.3F;
+  port.distance_m[port.at(1, 0)] = 0.3F;
+  port.distance_m[port.at(3, 1)] = 0.2F;
+  EXPECT_TRUE(port.sees_nothing(0, 1));
+  EXPECT_FALSE(port.sees_nothing(1, 0)) << "that head sees farther";
+  EXPECT_TRUE(port.too_near(3, 1));
+  EXPECT_FALSE(port.too_near(1, 0));
+}
 
-  TEST(FootbotDataSheet, DrivesAtMostSeventyTwoPulsesAPeriod) {
-    const double pulses = footbot::kMaxWheelSpeed_m_s * footbot::kPulsesPerMetre * footbot::kPulsePeriod_s;
-    EXPECT_EQ(std::floor(pulses), 72.0);
+TEST(RingDirections, AreUnitVectorsSharedByAllOfAKind) {
+  const RingDirections& d = ring_directions(epuck::kDataSheet.proximity);
+  for (std::size_t i = 0; i < 8; ++i) {
+    EXPECT_NEAR(d.x[i], std::cos(epuck::kInfrared[i].bearing_rad), 1e-7);
+    EXPECT_NEAR(d.y[i], std::sin(epuck::kInfrared[i].bearing_rad), 1e-7);
   }
-
-  TEST(DistanceScanner, TellsNothingAndTooNearFromWhatItMeasures) {
-    DistanceScanner port;
-    port.samples = 2;
-    port.count = 8;
-    port.short_min_m = 0.04F;
-    port.short_max_m = 0.3F;
-    port.long_min_m = 0.2F;
-    port.long_max_m = 1.5F;
-    port.distance_m[port.at(0, 1)] = 0.3F;
-    port.distance_m[port.at(1, 0)] = 0.3F;
-    port.distance_m[port.at(3, 1)] = 0.2F;
-    EXPECT_TRUE(port.sees_nothing(0, 1));
-    EXPECT_FALSE(port.sees_nothing(1, 0)) << "that head sees farther";
-    EXPECT_TRUE(port.too_near(3, 1));
-    EXPECT_FALSE(port.too_near(1, 0));
-  }
-
-  TEST(RingDirections, AreUnitVectorsSharedByAllOfAKind) {
-    const RingDirections& d = ring_directions(epuck::kDataSheet.proximity);
-    for (std::size_t i = 0; i < 8; ++i) {
-      EXPECT_NEAR(d.x[i], std::cos(epuck::kInfrared[i].bearing_rad), 1e-7);
-      EXPECT_NEAR(d.y[i], std::sin(epuck::kInfrared[i].bearing_rad), 1e-7);
-    }
-    EXPECT_EQ(d.x[8], 0.0F);
-    EXPECT_EQ(&ring_directions(epuck::kDataSheet.proximity), &d);
-    EXPECT_NE(&ring_directions(epuck::kDataSheet.leds), &d);
-  }
+  EXPECT_EQ(d.x[8], 0.0F);
+  EXPECT_EQ(&ring_directions(epuck::kDataSheet.proximity), &d);
+  EXPECT_NE(&ring_directions(epuck::kDataSheet.leds), &d);
+}
 
 }  // namespace
 }  // namespace tandem::hal
