@@ -8,6 +8,7 @@ namespace {
 /// How often a worker looks for the next phase before it sleeps: phases of one step follow one another within
 /// microseconds, steps of a paced run do not.
 constexpr int kSpins = 4000;
+constexpr int kSpinsToYield = 64;
 
 void pause_cpu() noexcept {
 #if defined(__x86_64__) || defined(__i386__)
@@ -15,11 +16,13 @@ void pause_cpu() noexcept {
 #endif
 }
 
-/// Waits until `value` is no longer `old`.
+/// Waits until `value` is no longer `old`. Every few microseconds it gives way to whoever else wants this processor: on
+/// a machine with other work that may be the very thread that is waited for.
 void await_change(std::atomic<std::uint32_t>& value, std::uint32_t old, int spins) noexcept {
-  for (int i = 0; i < spins; ++i) {
+  for (int i = 1; i <= spins; ++i) {
     if (value.load(std::memory_order_acquire) != old) return;
     pause_cpu();
+    if (i % kSpinsToYield == 0) std::this_thread::yield();
   }
   value.wait(old, std::memory_order_acquire);
 }

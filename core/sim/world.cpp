@@ -55,6 +55,7 @@ struct World::Impl {
   std::uint64_t seed = 0;
   Space space;
   std::unique_ptr<ThreadPool> pool;
+  MeasuredPhase sensing, controlling;
   std::vector<std::unique_ptr<Engine>> engines;
   RegionKeeper keeper;
   std::vector<std::uint8_t> kinematic;  // by region: kinematics2d moves its bodies
@@ -91,7 +92,7 @@ struct World::Impl {
   void rebuild_index();
   void index_movables();
   template <class Work>
-  void each_block(Work&& work);
+  void each_block(MeasuredPhase& phase, Work&& work);
   void sense_and_control();
   void sense(std::size_t block);
   void control(std::size_t block);
@@ -153,9 +154,9 @@ void World::step() {
   if (w.external == nullptr) {
     w.sense_and_control();
   } else {
-    w.each_block([&w](std::size_t block) { w.sense(block); });
+    w.each_block(w.sensing, [&w](std::size_t block) { w.sense(block); });
     w.external->after_sense(*this);
-    w.each_block([&w](std::size_t block) {
+    w.each_block(w.controlling, [&w](std::size_t block) {
       w.control(block);
       w.filter(block);
     });
@@ -171,7 +172,7 @@ void World::step() {
 
 void World::Impl::act() {
   SpaceStores& s = stores();
-  pool->run(s.blocks.size(), 4, [&](std::size_t begin, std::size_t end) {
+  pool->run(s.blocks.size(), 8, [&](std::size_t begin, std::size_t end) {
     for (std::size_t block = begin; block < end; ++block) {
       const DeviceContext context = device_context(block);
       const auto& actuators = devices.blocks[block].actuators;
@@ -327,15 +328,15 @@ void World::Impl::treat_escape(BodyKey body) {
 }
 
 template <class Work>
-void World::Impl::each_block(Work&& work) {
-  pool->run(stores().blocks.size(), 1, [&](std::size_t begin, std::size_t end) {
+void World::Impl::each_block(MeasuredPhase& phase, Work&& work) {
+  phase.run(*pool, stores().blocks.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t block = begin; block < end; ++block) work(block);
   });
 }
 
 void World::Impl::sense_and_control() {
   // A block's ports stay in the cache from its sensing to its control.
-  each_block([this](std::size_t block) {
+  each_block(controlling, [this](std::size_t block) {
     sense(block);
     control(block);
     filter(block);

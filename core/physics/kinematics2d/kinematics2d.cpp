@@ -195,7 +195,7 @@ void Kinematics2d::advance(const PhysicsContext& context) {
   SpaceStores& stores = context.stores;
   const bool all_mine =
       std::none_of(stores.regions.begin(), stores.regions.end(), [](const Region& r) { return r.listed; });
-  context.pool.run(stores.blocks.size(), 4, [&](std::size_t first, std::size_t last) {
+  context.pool.run(stores.blocks.size(), 8, [&](std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) {
       const RobotBlock& block = stores.blocks[i];
       const hal::DataSheet& sheet = *stores.groups[block.group].sheet;
