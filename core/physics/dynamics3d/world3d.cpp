@@ -158,7 +158,9 @@ void World3d::load(const SolverContext& context) {
     if (!world_) make_world();
     if (version_ != s.immovables_version) place_stills(context);
     surfaces_ = settings_.surfaces;
+    surfaces_.floor_m = std::max(settings_.surfaces.floor_m, context.region.bottom_m);
     surfaces_.ceiling_m = context.region.top_m;
+    flight_ceiling_m_ = std::min(context.region.top_m, s.max_z_m);
     roster_.update(
         context.region, s, [&](BodyKey key) { return make(s, key); }, [this](Double& twin) { drop_double(twin); });
     for (auto& entry : roster_.entries()) {
@@ -482,8 +484,9 @@ void World3d::leave(Twin& twin, double dt_s) {
     twin.p_m[2] = surfaces_.floor_m;
     twin.v_m_s[2] = twin.aloft ? std::max(0.0, twin.v_m_s[2]) : 0.0;
   }
-  if (twin.p_m[2] + twin.height_m > surfaces_.ceiling_m && twin.aloft) {
-    twin.p_m[2] = surfaces_.ceiling_m - twin.height_m;
+  const double ceiling_m = twin.sort == Sort::Flyer ? flight_ceiling_m_ : surfaces_.ceiling_m;
+  if (twin.p_m[2] + twin.height_m > ceiling_m && twin.aloft) {
+    twin.p_m[2] = std::max(surfaces_.floor_m, ceiling_m - twin.height_m);
     twin.v_m_s[2] = std::min(0.0, twin.v_m_s[2]);
   }
 }

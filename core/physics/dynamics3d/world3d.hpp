@@ -79,6 +79,7 @@ class World3d final : public Solver {
   std::vector<Still> stills_;
   std::uint64_t version_ = 0;  // of the immovable objects
   Surfaces surfaces_;
+  double flight_ceiling_m_ = 0.0;  // the arena's, too: what flies stays below; what stands may be as high as the arena
   Roster<Double> roster_;
   std::vector<Held> held_;
   PairFinder finder_;
