@@ -1,5 +1,6 @@
 // Scenarios built inline, for tests of the world.
 #pragma once
+#include <array>
 #include <memory>
 #include <string>
 #include <vector>
@@ -74,6 +75,17 @@ struct Scene {
     item.controller = scenario.controllers.size() - 1;
     item.placement = {{x_m, y_m, z_m}, heading_rad, 0.0, 0.0};
     scenario.robots.push_back(item);
+    return *this;
+  }
+  /// What the flying robot added last flies with, in W, instead of its pilot's own; of the controller "fly".
+  Scene& velocity(const std::array<double, 3>& v_m_s, double turn_rad_s = 0.0) {
+    Element params;
+    params.name = "params";
+    params.attributes = {
+        {"velocity",
+         hal::format_number(v_m_s[0]) + "," + hal::format_number(v_m_s[1]) + "," + hal::format_number(v_m_s[2]), 0},
+        {"turn", hal::format_number(turn_rad_s), 0}};
+    scenario.robots.back().params = params;
     return *this;
   }
   /// Wheel speeds of the robot added last, instead of its controller configuration's.

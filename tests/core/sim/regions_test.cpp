@@ -822,23 +822,6 @@ TEST_P(TwoKinds, TheSameBitsForAnyNumberOfThreads) {
 std::string name_of_pair(const testing::TestParamInfo<KindPair>& info) {
   return info.param.first + "_" + info.param.second;
 }
-TEST_P(TwoKinds, AThingThatIsPushedPassesFromOneEngineToTheOther) {
-  if (!engine_traits(GetParam().first).forces || !engine_traits(GetParam().second).forces)
-    GTEST_SKIP() << "only engines with forces move objects";
-  Scene s = halves();
-  s.box(-0.3, 0.2, 0.1, 0.2, 0.0, 0.06).movable(0.1).robot("a", -0.45, 0.2).wheels(0.1, 0.1);
-  auto world = make(s);
-  ASSERT_TRUE(world.world) << world.all_problems();
-  steps(world, 20);
-  for (int i = 0; i < 60; ++i) {
-    const double last_m = world->space().objects()[0].x_m;
-    world->step();
-    ASSERT_EQ(world->state(), RunState::Running) << world->failure();
-    EXPECT_NEAR(world->space().objects()[0].x_m - last_m, 0.01, 2e-3) << "box at " << last_m;
-  }
-  EXPECT_GT(world->space().objects()[0].x_m, 0.2);
-}
-
 INSTANTIATE_TEST_SUITE_P(Physics, TwoKinds, testing::ValuesIn(kind_pairs()), name_of_pair);
 
 using TwoKindsWithForces = TwoKinds;
