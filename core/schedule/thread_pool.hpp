@@ -72,8 +72,8 @@ class ThreadPool {
   std::vector<std::thread> workers_;
 };
 
-/// A phase that is run again and again, and measured: while it takes less than what waking other processors and bringing
-/// them its data is worth, it runs on the caller.
+/// A phase that is run again and again, and measured: while it takes less than what waking other processors and
+/// bringing them its data is worth, it runs on the caller.
 class MeasuredPhase {
  public:
   /// As ThreadPool::run with a grain of 1.
