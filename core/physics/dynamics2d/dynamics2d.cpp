@@ -5,11 +5,14 @@
 #include <box2d/box2d.h>
 #include <cmath>
 
+#include "core/physics/dynamics2d/params.hpp"
 #include "core/physics/roster.hpp"
 #include "core/space/object_index.hpp"
 
 namespace tandem::core {
 namespace {
+
+using box2d::Params;
 
 // Box2D's tolerances are lengths of its own unit: what is 1 m to it allows 5 mm of overlap and looks 10 cm around every
 // body. Ten units a metre suit robots of some centimetres.
@@ -22,42 +25,12 @@ constexpr double kMostOfBox2dsHop = 0.99;      // Box2D silently cuts faster bod
 constexpr double kLongestLead_m = 0.2;         // in a tick, of a body that is led; farther away it is put
 constexpr float kRest = 0.5F * b2_linearSlop;  // how deep bodies rest in one another: Box2D then sees that they touch
 constexpr double kSamePlace_m = 1e-5;
+constexpr double kFarthest_m = 1e6;       // from where Box2D's floats still tell places apart, somehow
+constexpr double kSmallest_m = 0.005;     // radius below which hops are not made smaller
+constexpr double kLargestTurn_rad = 1.0;  // of an object in one sub-step
+constexpr double kMostHops = 200.0;       // sub-steps a tick for the sake of fast objects
 constexpr double kHoldingStep_s = 0.025;  // with longer ones, Box2D's passes leave joints under load centimetres apart
-constexpr std::int64_t kMostSubSteps = 1000;  // a tick
-constexpr float kLinearSlowing = 1.0F;        // correction factor of a drive: all of the error within one sub-step
-
-struct Params {
-  std::int64_t iterations = 0;
-  std::int64_t velocity_iterations = 8;
-  std::int64_t position_iterations = 3;
-  double box_linear_friction = 1.49;
-  double box_angular_friction = -1.0;
-  double cylinder_linear_friction = 1.49;
-  double cylinder_angular_friction = -1.0;
-  double friction = 0.1;
-  double elevation_m = 0.0;
-
-  void describe(hal::ParamVisitor& v) {
-    v.integer(
-        "iterations", iterations, {0, static_cast<double>(kMostSubSteps)},
-        "Sub-steps a tick. 0: as few as keep every hop below half a body's radius, and 25 ms at most while bodies are "
-        "held together.");
-    v.integer("velocity_iterations", velocity_iterations, {1, 1000}, "Box2D's passes over velocities, a sub-step.");
-    v.integer("position_iterations", position_iterations, {1, 1000}, "Box2D's passes over overlaps, a sub-step.");
-    v.number("box_linear_friction", box_linear_friction, hal::unit::none, {0.0, 1e6},
-             "Force in N that a kg of a movable box resists sliding on the ground with.");
-    v.number("box_angular_friction", box_angular_friction, hal::unit::none, {-1.0, 1e6},
-             "Torque in N m that a kg of a movable box resists turning on the ground with. Negative: what follows from "
-             "box_linear_friction when its weight is spread evenly.");
-    v.number("cylinder_linear_friction", cylinder_linear_friction, hal::unit::none, {0.0, 1e6},
-             "As box_linear_friction, of a cylinder.");
-    v.number("cylinder_angular_friction", cylinder_angular_friction, hal::unit::none, {-1.0, 1e6},
-             "As box_angular_friction, of a cylinder.");
-    v.number("friction", friction, hal::unit::none, {0.0, 10.0}, "Coulomb's coefficient between bodies that touch.");
-    v.number("elevation", elevation_m, hal::unit::m, {-1e6, 1e6},
-             "Height of the plane; read for ARGoS 3's files, without effect on results.");
-  }
-};
+constexpr float kLinearSlowing = 1.0F;    // correction factor of a drive: all of the error within one sub-step
 
 /// A body's double in Box2D.
 struct Twin {
@@ -66,6 +39,7 @@ struct Twin {
   // The state in the stores that the double agrees with.
   double x_m = NAN, y_m = NAN, cos_h = 0.0, sin_h = 0.0, vx_m_s = 0.0, vy_m_s = 0.0, w_rad_s = 0.0;
   double turn_rad = 0.0;  ///< of a robot that pushes nothing: in this sub-step, by its wheels
+  bool flawed = false;    ///< takes no part in this tick: its state is no number that Box2D can have
 };
 
 /// Cosine and sine of a heading.
@@ -97,6 +71,33 @@ double mean_radius_m(const Object& o) noexcept {
   return d / 3.0 + (p * p / q * std::log((q + d) / p) + q * q / p * std::log((p + d) / q)) / 6.0;
 }
 
+/// Of the largest disc in an object's footprint.
+double inner_radius_m(const Object& o) noexcept {
+  return o.kind == Object::Kind::Cylinder ? o.radius_m : std::min(o.half_x_m, o.half_y_m);
+}
+
+/// `rad` plus the whole turns that bring it nearest to `near_rad`: Box2D's joints compare angles that count turns.
+float nearest_turn(double rad, float near_rad) noexcept {
+  const auto near = static_cast<double>(near_rad);
+  return static_cast<float>(near + std::remainder(rad - near, 2.0 * M_PI));
+}
+
+/// Why a body cannot take part in a tick; null when it can.
+const char* flaw_of(const SpaceStores& s, BodyKey key) noexcept {
+  const std::size_t i = key.index();
+  const bool object = key.is_object();
+  const Motion& m = object ? s.object_motion[i] : s.bodies.motion[i];
+  double largest = 0.0;
+  for (const double value : {object ? s.objects[i].x_m : s.bodies.x_m[i], object ? s.objects[i].y_m : s.bodies.y_m[i],
+                             object ? s.objects[i].cos_h : s.bodies.cos_h[i],
+                             object ? s.objects[i].sin_h : s.bodies.sin_h[i], object ? 0.0 : s.bodies.left_m_s[i],
+                             object ? 0.0 : s.bodies.right_m_s[i], m.v_m_s[0], m.v_m_s[1], m.w_rad_s[2]}) {
+    if (!std::isfinite(value)) return "has a position or speed that is not a finite number";
+    largest = std::max(largest, std::fabs(value));
+  }
+  return largest > kFarthest_m ? "is farther away, or faster, than its engine can follow" : nullptr;
+}
+
 class Dynamics2d final : public Solver {
  public:
   Dynamics2d(const Params& params, const SpaceStores& stores)
@@ -112,7 +113,17 @@ class Dynamics2d final : public Solver {
         context.region, s, [&](BodyKey key) { return make(s, key); }, [this](Twin& twin) { drop(twin); });
     auto& entries = roster_.entries();
     for (std::size_t i = 0; i < entries.size(); ++i) entries[i].body.body->GetUserData().pointer = i;
-    for (auto& entry : entries) take_over(s, entry.key, entry.owned, entry.body, context.tick_s);
+    hops_ = 0.0;
+    for (auto& entry : entries) {
+      Twin& twin = entry.body;
+      const char* flaw = flaw_of(s, entry.key);
+      twin.flawed = flaw != nullptr;
+      if (twin.body->IsEnabled() == twin.flawed) twin.body->SetEnabled(!twin.flawed);
+      if (twin.flawed)
+        leave_out(twin, entry.key, entry.owned, flaw);
+      else
+        take_over(s, entry.key, entry.owned, twin, context.tick_s);
+    }
     if (!s.joints.empty() || !joints_.empty()) join(s);
   }
 
@@ -137,10 +148,13 @@ class Dynamics2d final : public Solver {
                    static_cast<int>(params_.position_iterations));
       for (std::size_t i = 0; i < headings_.size(); ++i) {
         const auto& entry = roster_.entries()[i];
-        if (!entry.key.is_object())
-          headings_[i] = turned(headings_[i], entry.body.hold == nullptr
-                                                  ? entry.body.turn_rad
-                                                  : static_cast<double>(entry.body.body->GetAngularVelocity()) * dt);
+        if (entry.key.is_object()) continue;
+        if (entry.body.hold == nullptr) {
+          headings_[i] = turned(headings_[i], entry.body.turn_rad);
+        } else {  // Box2D's own, which it also corrects
+          const auto angle = static_cast<double>(entry.body.body->GetAngle());
+          headings_[i] = {std::cos(angle), std::sin(angle)};
+        }
       }
     }
     for (std::size_t i = 0; i < headings_.size(); ++i) write_back(s, i, context.tick_s, dt);
@@ -237,10 +251,11 @@ class Dynamics2d final : public Solver {
     def.allowSleep = false;
     def.type = b2_dynamicBody;
     const std::size_t i = key.index();
+    const bool placed = flaw_of(s, key) == nullptr;
     if (key.is_object()) {
       const Object& o = s.objects[i];
-      def.position = at(o.x_m, o.y_m);
-      def.angle = static_cast<float>(std::atan2(o.sin_h, o.cos_h));
+      if (placed) def.position = at(o.x_m, o.y_m);
+      if (placed) def.angle = static_cast<float>(std::atan2(o.sin_h, o.cos_h));
       twin.body = world_->CreateBody(&def);
       const double area =
           o.kind == Object::Kind::Cylinder ? M_PI * o.radius_m * o.radius_m : 4 * o.half_x_m * o.half_y_m;
@@ -258,8 +273,8 @@ class Dynamics2d final : public Solver {
       twin.hold = world_->CreateJoint(&rub);
     } else {
       const hal::DataSheet& sheet = sheet_of(s, i);
-      def.position = at(s.bodies.x_m[i], s.bodies.y_m[i]);
-      def.angle = static_cast<float>(std::atan2(s.bodies.sin_h[i], s.bodies.cos_h[i]));
+      if (placed) def.position = at(s.bodies.x_m[i], s.bodies.y_m[i]);
+      if (placed) def.angle = static_cast<float>(std::atan2(s.bodies.sin_h[i], s.bodies.cos_h[i]));
       twin.body = world_->CreateBody(&def);
       b2CircleShape disc;
       disc.m_radius = s.bodies.radius_m[i] * kUnits;
@@ -283,6 +298,13 @@ class Dynamics2d final : public Solver {
     twin.body = nullptr;
   }
 
+  /// Box2D ends the process over what is no number.
+  void leave_out(Twin& twin, BodyKey key, bool owned, const char* flaw) {
+    twin.x_m = NAN;  // placed anew when it is sound again
+    twin.vx_m_s = NAN;
+    if (owned) trouble.push_back({key, flaw});
+  }
+
   void take_over(const SpaceStores& s, BodyKey key, bool owned, Twin& twin, double tick_s) {
     const std::size_t i = key.index();
     const bool object = key.is_object();
@@ -298,7 +320,7 @@ class Dynamics2d final : public Solver {
     if (twin.body->GetType() != b2_dynamicBody) twin.body->SetType(b2_dynamicBody);
     if (x != twin.x_m || y != twin.y_m || c != twin.cos_h || h != twin.sin_h) {
       const bool put_there = owned && std::isfinite(twin.x_m);  // by a hook: else it is new, or mirrored
-      twin.body->SetTransform(at(x, y), static_cast<float>(std::atan2(h, c)));
+      twin.body->SetTransform(at(x, y), nearest_turn(std::atan2(h, c), twin.body->GetAngle()));
       if (put_there) part_from_twins(twin, key);
       twin.x_m = x;
       twin.y_m = y;
@@ -312,6 +334,10 @@ class Dynamics2d final : public Solver {
       twin.body->SetLinearVelocity(speed(twin.vx_m_s, twin.vy_m_s));
       twin.body->SetAngularVelocity(static_cast<float>(twin.w_rad_s));
     }
+    if (!object) return;
+    const double reach_m = kLargestHop * std::max(inner_radius_m(s.objects[i]), kSmallest_m);
+    hops_ = std::max({hops_, std::hypot(twin.vx_m_s, twin.vy_m_s) * tick_s / reach_m,
+                      std::fabs(twin.w_rad_s) * tick_s / kLargestTurn_rad});
   }
 
   /// A body whose pose comes from outside moves there within the tick, so that others are pushed and not jumped upon.
@@ -320,9 +346,11 @@ class Dynamics2d final : public Solver {
     const b2Vec2 there = at(x_m, y_m);
     const b2Vec2 way = there - twin.body->GetPosition();
     const bool jumps = !std::isfinite(twin.x_m) || way.Length() > kUnits * static_cast<float>(kLongestLead_m);
-    if (jumps) twin.body->SetTransform(there, static_cast<float>(std::atan2(sin_h, cos_h)));
-    twin.body->SetLinearVelocity(jumps ? b2Vec2(0.0F, 0.0F) : (1.0F / static_cast<float>(tick_s)) * way);
-    twin.body->SetAngularVelocity(0.0F);
+    const float angle = nearest_turn(std::atan2(sin_h, cos_h), twin.body->GetAngle());
+    if (jumps) twin.body->SetTransform(there, angle);
+    const float per_s = 1.0F / static_cast<float>(tick_s);
+    twin.body->SetLinearVelocity(jumps ? b2Vec2(0.0F, 0.0F) : per_s * way);
+    twin.body->SetAngularVelocity(per_s * (angle - twin.body->GetAngle()));
     twin.x_m = x_m;
     twin.y_m = y_m;
     twin.cos_h = cos_h;
@@ -371,7 +399,10 @@ class Dynamics2d final : public Solver {
       if (!joint.alive || held) continue;
       const Twin* a = find(joint.a);
       const Twin* b = find(joint.b);
-      if (a == nullptr || b == nullptr) continue;
+      if (a == nullptr || b == nullptr || a->flawed || b->flawed) continue;
+      for (const Twin* twin : {a, b})  // robots that push nothing turn in doubles alone
+        twin->body->SetTransform(twin->body->GetPosition(),
+                                 nearest_turn(std::atan2(twin->sin_h, twin->cos_h), twin->body->GetAngle()));
       const b2Vec2 on_a(static_cast<float>(joint.ax_m * kUnits_m), static_cast<float>(joint.ay_m * kUnits_m));
       const b2Vec2 on_b(static_cast<float>(joint.bx_m * kUnits_m), static_cast<float>(joint.by_m * kUnits_m));
       b2Joint* made = nullptr;
@@ -388,7 +419,7 @@ class Dynamics2d final : public Solver {
         def.bodyB = b->body;
         def.localAnchorA = on_a;
         def.localAnchorB = on_b;
-        def.referenceAngle = static_cast<float>(joint.heading_rad);
+        def.referenceAngle = nearest_turn(joint.heading_rad, b->body->GetAngle() - a->body->GetAngle());
         made = world_->CreateJoint(&def);
       }
       joints_.push_back({i, joint.generation, made});
@@ -399,12 +430,13 @@ class Dynamics2d final : public Solver {
 
   int sub_steps(const SpaceStores& s, double tick_s) const noexcept {
     if (params_.iterations > 0) return static_cast<int>(params_.iterations);
-    double hop = joints_.empty() ? 0.0 : tick_s / kHoldingStep_s;
+    double hop = std::min(hops_, kMostHops);
+    if (!joints_.empty()) hop = std::max(hop, tick_s / kHoldingStep_s);
     for (const RobotGroup& group : s.groups) {
       if (group.sheet != nullptr)
         hop = std::max(hop, group.sheet->max_wheel_speed_m_s * tick_s / (kLargestHop * group.sheet->body_radius_m));
     }
-    return static_cast<int>(std::clamp(std::ceil(hop), 1.0, static_cast<double>(kMostSubSteps)));
+    return static_cast<int>(std::clamp(std::ceil(hop), 1.0, static_cast<double>(box2d::kMostSubSteps)));
   }
 
   /// Whether a robot pushes something that a drive must hold its own against: an object, or a robot that pushes.
@@ -419,7 +451,7 @@ class Dynamics2d final : public Solver {
   /// Gives a robot the velocity that its wheels command, as far as their force goes.
   void steer(const SpaceStores& s, std::size_t index, double dt) {
     auto& entry = roster_.entries()[index];
-    if (entry.key.is_object()) return;
+    if (entry.key.is_object() || entry.body.flawed) return;
     const std::size_t row = entry.key.index();
     if ((s.bodies.flags[row] & kExternal) != 0) return;
     Twin& twin = entry.body;
@@ -529,7 +561,7 @@ class Dynamics2d final : public Solver {
       def.correctionFactor = kLinearSlowing;
       twin.hold = world_->CreateJoint(&def);
       twin.body->SetFixedRotation(false);
-      twin.body->SetTransform(twin.body->GetPosition(), static_cast<float>(heading_rad));
+      twin.body->SetTransform(twin.body->GetPosition(), nearest_turn(heading_rad, twin.body->GetAngle()));
     }
     auto* motor = static_cast<b2MotorJoint*>(twin.hold);
     motor->SetLinearOffset(target);
@@ -539,6 +571,7 @@ class Dynamics2d final : public Solver {
   void write_back(SpaceStores& s, std::size_t index, double tick_s, double dt) {
     auto& entry = roster_.entries()[index];
     Twin& twin = entry.body;
+    if (twin.flawed) return;
     const b2Vec2 p = twin.body->GetPosition();
     const b2Vec2 v = twin.body->GetLinearVelocity();
     const bool driven = !entry.key.is_object() && twin.hold == nullptr;
@@ -603,22 +636,9 @@ class Dynamics2d final : public Solver {
   Roster<Twin> roster_;
   std::vector<Heading> headings_;  // parallel to the roster, within a tick
   std::vector<b2Vec2> braking_;
+  double hops_ = 0.0;  // sub-steps of the tick that its objects' speeds ask for
   std::vector<Held> joints_;
 };
-
-std::shared_ptr<const void> read(const Element& options, Problems& problems) {
-  auto params = std::make_shared<Params>();
-  ElementReader reader(options, problems, {"id", "regions"});
-  params->describe(reader);
-  reader.finish();
-  for (const Element& child : options.children) {
-    if (child.name == "boundaries" || child.name == "spatial_hash") continue;
-    problems.push_back({options.file, child.line,
-                        "<dynamics2d> may not hold <" + child.name + ">; it may hold: boundaries, spatial_hash",
-                        false});
-  }
-  return params;
-}
 
 }  // namespace
 
@@ -627,7 +647,9 @@ const SolverType& dynamics2d_type() {
     SolverType t;
     t.kind = "dynamics2d";
     t.summary = "Masses, forces and friction in the plane, on Box2D.";
-    t.read = &read;
+    t.read = [](const Element& options, Problems& problems) -> std::shared_ptr<const void> {
+      return box2d::read_params(options, problems);
+    };
     t.describe = [](hal::ParamVisitor& visitor) { Params{}.describe(visitor); };
     t.make = [](const std::shared_ptr<const void>& params, const SpaceStores& stores, const Region&,
                 double) -> std::unique_ptr<Solver> {
