@@ -1,6 +1,6 @@
 #include "app/bench/partition.hpp"
 
-#include <regex>
+#include "core/scenario/split.hpp"
 
 namespace tandem::app {
 
@@ -23,15 +23,13 @@ hal::Result<Partition> partition_split(const std::string& regions) {
   for (const Partition& p : partitions()) {
     if (p.regions == regions) return p;
   }
-  static const std::regex kSplit("[1-9][0-9]{0,2}x[1-9][0-9]{0,2}");
-  if (regions == "auto" || std::regex_match(regions, kSplit)) return Partition{regions, regions};
+  if (regions == "auto" || core::parse_split(regions)) return Partition{regions, regions};
   return hal::Error{"--regions takes columns x lines, e.g. 4x4, or auto; not '" + regions + "'"};
 }
 
 std::int64_t parts_of(const std::string& regions) {
-  const std::size_t x = regions.find('x');
-  if (x == std::string::npos || !partition_split(regions).ok()) return 0;
-  return std::stoll(regions.substr(0, x)) * std::stoll(regions.substr(x + 1));
+  const auto split = core::parse_split(regions);
+  return split ? static_cast<std::int64_t>(split->columns * split->lines) : 0;
 }
 
 }  // namespace tandem::app

@@ -3,6 +3,7 @@
 #include <map>
 
 #include "core/config/reading.hpp"
+#include "core/scenario/split.hpp"
 
 namespace tandem::core {
 namespace {
@@ -14,16 +15,8 @@ bool known_engine(const Reading& reading, const std::string& kind) {
   return std::find(engines.begin(), engines.end(), kind) != engines.end();
 }
 
-/// "4x4" or "auto".
 bool good_regions(const std::string& text) {
-  if (text.empty() || text == "auto") return true;
-  const std::size_t x = text.find('x');
-  if (x == std::string::npos) return false;
-  for (const std::string& part : {text.substr(0, x), text.substr(x + 1)}) {
-    if (part.empty() || part.size() > 3 || part[0] == '0' || part.find_first_not_of("0123456789") != std::string::npos)
-      return false;
-  }
-  return true;
+  return text.empty() || text == "auto" || parse_split(text).has_value();
 }
 
 std::optional<std::array<double, 2>> point_of(const std::string& text) {

@@ -10,6 +10,7 @@
 #include "core/physics/kinematics2d/kinematics2d.hpp"
 #include "core/physics/particle3d/particle3d.hpp"
 #include "core/physics/solver.hpp"
+#include "core/scenario/split.hpp"
 
 namespace tandem::core {
 namespace {
@@ -32,11 +33,6 @@ const SolverType* solver_type(std::string_view kind) {
 
 constexpr std::string_view kKinematics2d = "kinematics2d";
 
-/// Columns and lines that an arena is split into.
-struct Split {
-  std::size_t columns = 1, lines = 1;
-};
-
 /// From the load alone, so that results are the same on any machine.
 Split split_for(std::size_t robots, double width_m, double depth_m) {
   const auto along = [&](double length_m) {
@@ -48,10 +44,8 @@ Split split_for(std::size_t robots, double width_m, double depth_m) {
 }
 
 Split split_of(const EngineConfig& config, std::size_t robots, const SpaceStores& stores) {
-  if (config.regions.empty() || config.regions == "auto")
-    return split_for(robots, stores.max_x_m - stores.min_x_m, stores.max_y_m - stores.min_y_m);
-  const std::size_t x = config.regions.find('x');
-  return {std::stoul(config.regions.substr(0, x)), std::stoul(config.regions.substr(x + 1))};
+  if (const auto split = parse_split(config.regions)) return *split;
+  return split_for(robots, stores.max_x_m - stores.min_x_m, stores.max_y_m - stores.min_y_m);
 }
 
 double cross(const RegionSide& a, const RegionSide& b, const RegionSide& c) {
