@@ -216,7 +216,9 @@ std::string device_name(std::string_view argos_name, bool sensor) {
     if (!argos_name.starts_with(prefix)) continue;
     const std::string_view rest = argos_name.substr(prefix.size());
     if (rest == "proximity" || rest == "light" || rest == "ground") return std::string(rest);
-    if (rest == "base_ground" || rest == "motor_ground") return "ground";
+    if (rest == "base_ground" || rest == "motor_ground" || rest == "turret" || rest == "turret_encoder" ||
+        rest == "gripper" || rest == "distance_scanner")
+      return std::string(rest);
     if (rest == "encoder") return "wheel_encoders";
   }
   return std::string(argos_name);

@@ -1,4 +1,5 @@
-// What a robot senses of itself and of the air: acceleration, sound, battery, clock. And its lamps, which only shine.
+// What a robot senses of itself and of the air: acceleration, turn rates, sound, battery, clock. And its lamps, which
+// only shine.
 #include "core/device/sight.hpp"
 #include "core/device/types.hpp"
 #include "core/random/random.hpp"
@@ -71,6 +72,79 @@ Recipe<Sensor> make_accelerometer(const Element& element, Problems& problems, co
   return [base = setup.sheet.wheel_base_m, noise](std::size_t capacity) {
     return std::make_unique<AccelerometerSensor>(base, noise, capacity);
   };
+}
+
+// --- gyroscope ---
+
+template <int kPerMille>
+struct RateNoise {
+  double noise_level_rad_s = kPerMille * 1e-3;
+  void describe(hal::ParamVisitor& v) {
+    v.number("noise_level", noise_level_rad_s, hal::unit::rad_s, hal::kNotNegative,
+             "Standard deviation about each axis.");
+  }
+};
+
+/// Turn rates as the body's engine knows them; one that has no forces turns bodies as their wheels say.
+class GyroscopeSensor final : public Sensor {
+ public:
+  GyroscopeSensor(double wheel_base_m, double noise) : wheel_base_m_(wheel_base_m), noise_rad_s_(noise) {}
+
+  void sense(const DeviceContext& context, void* ports) noexcept override {
+    auto* gyroscopes = static_cast<hal::Gyroscope*>(ports);
+    const Bodies& b = context.stores.bodies;
+    for (std::size_t i = 0; i < context.block.used; ++i) {
+      const std::size_t row = context.block.first_row + i;
+      std::array<double, 3> rate = rates(context.stores, row);
+      if (noise_rad_s_ > 0.0) {
+        const auto bits = draw(context.seed, b.entity[row], Stream::GyroscopeNoise, context.tick);
+        const auto xy = to_normal(bits[0], bits[1]);
+        rate[0] += noise_rad_s_ * xy[0];
+        rate[1] += noise_rad_s_ * xy[1];
+        rate[2] += noise_rad_s_ * to_normal(bits[2], bits[3])[0];
+      }
+      stamp(context, gyroscopes[i]);
+      for (std::size_t k = 0; k < 3; ++k) gyroscopes[i].rate_rad_s[k] = static_cast<float>(rate[k]);
+    }
+  }
+
+ private:
+  std::array<double, 3> rates(const SpaceStores& stores, std::size_t row) const noexcept {
+    const Bodies& b = stores.bodies;
+    const std::uint16_t number = b.region[row];
+    if (b.motion.empty() || number == kNoRegion || !stores.regions[number].listed) {
+      const double turn = wheel_base_m_ > 0.0 ? (b.right_m_s[row] - b.left_m_s[row]) / wheel_base_m_ : 0.0;
+      return {0.0, 0.0, turn};
+    }
+    const std::array<double, 3>& w = b.motion[row].w_rad_s;
+    if (stores.regions[number].plane) return {0.0, 0.0, w[2]};
+    // From W to the body: by the inverse of its quaternion, v + 2 u x (u x v + q0 v) with u = -(q1, q2, q3).
+    const std::array<double, 4>& q = b.motion[row].q_WB;
+    const std::array<double, 3> u = {-q[1], -q[2], -q[3]};
+    const auto cross = [](const std::array<double, 3>& m, const std::array<double, 3>& n) {
+      return std::array<double, 3>{m[1] * n[2] - m[2] * n[1], m[2] * n[0] - m[0] * n[2], m[0] * n[1] - m[1] * n[0]};
+    };
+    std::array<double, 3> inner = cross(u, w);
+    for (std::size_t k = 0; k < 3; ++k) inner[k] += q[0] * w[k];
+    const std::array<double, 3> outer = cross(u, inner);
+    return {w[0] + 2.0 * outer[0], w[1] + 2.0 * outer[1], w[2] + 2.0 * outer[2]};
+  }
+
+  double wheel_base_m_;
+  double noise_rad_s_;
+};
+
+bool has_gyroscope(const hal::DataSheet& sheet) {
+  return sheet.gyroscope;
+}
+
+template <class Options>
+Recipe<Sensor> make_gyroscope(const Element& element, Problems& problems, const DeviceSetup& setup) {
+  const auto options = read_options<Options>(element, problems);
+  double noise = 0.0;
+  if constexpr (requires { options.noise_level_rad_s; }) noise = options.noise_level_rad_s;
+  return
+      [base = setup.sheet.wheel_base_m, noise](std::size_t) { return std::make_unique<GyroscopeSensor>(base, noise); };
 }
 
 // --- microphones ---
@@ -288,6 +362,10 @@ bool has_leds(const hal::DataSheet& sheet) {
   return !sheet.leds.empty();
 }
 
+bool has_body_lamps(const hal::DataSheet& sheet) {
+  return sheet.body_lamps;
+}
+
 Recipe<Actuator> make_lamps(const Element& element, Problems& problems, const DeviceSetup&) {
   read_options<LampOptions>(element, problems);
   return [](std::size_t) { return std::make_unique<Lamps>(); };
@@ -303,6 +381,12 @@ std::vector<DeviceType> body_device_types() {
                   &make_accelerometer<NoOptions>, &describe_options<NoOptions>),
       sensor_type("accelerometer", "noisy", "From the wheels' speeds, with normal noise.", &has_accelerometer,
                   &make_accelerometer<ForceNoise<200>>, &describe_options<ForceNoise<200>>),
+      sensor_type("gyroscope", "default", "Turn rates of the body; noise where asked for.", &has_gyroscope,
+                  &make_gyroscope<RateNoise<0>>, &describe_options<RateNoise<0>>),
+      sensor_type("gyroscope", "ideal", "Turn rates of the body.", &has_gyroscope, &make_gyroscope<NoOptions>,
+                  &describe_options<NoOptions>),
+      sensor_type("gyroscope", "noisy", "Turn rates of the body, with normal noise.", &has_gyroscope,
+                  &make_gyroscope<RateNoise<20>>, &describe_options<RateNoise<20>>),
       sensor_type("microphones", "default", "Sources around; noise where asked for.", &has_microphones,
                   &make_microphones<SoundNoise<0>>, &describe_options<SoundNoise<0>>),
       sensor_type("microphones", "ideal", "Sources around.", &has_microphones, &make_microphones<NoOptions>,
@@ -321,8 +405,9 @@ std::vector<DeviceType> body_device_types() {
       sensor_type("clock", "noisy", "The run's time, with jitter.", &always, &make_clock<ClockNoise<1000>>,
                   &describe_options<ClockNoise<1000>>)};
   for (const std::string_view lamp : {"leds", "body_led", "front_led"}) {
-    types.push_back(actuator_type(lamp, "default", "Shines.", &has_leds, &make_lamps, &describe_options<LampOptions>));
-    types.push_back(actuator_type(lamp, "ideal", "Shines.", &has_leds, &make_lamps, &describe_options<LampOptions>));
+    const auto fits = lamp == "leds" ? &has_leds : &has_body_lamps;
+    types.push_back(actuator_type(lamp, "default", "Shines.", fits, &make_lamps, &describe_options<LampOptions>));
+    types.push_back(actuator_type(lamp, "ideal", "Shines.", fits, &make_lamps, &describe_options<LampOptions>));
   }
   return types;
 }

@@ -1,6 +1,7 @@
-// Shared by the device files: reading described options, and filling in a DeviceType.
+// Shared by the device files: reading described options, filling in a DeviceType, stamps, and who obeys.
 #pragma once
 #include "core/device/device.hpp"
+#include "core/random/random.hpp"
 
 namespace tandem::core {
 
@@ -31,6 +32,22 @@ inline DeviceType actuator_type(std::string_view device, std::string_view implem
                                 Recipe<Actuator> (*make)(const Element&, Problems&, const DeviceSetup&),
                                 void (*describe)(hal::ParamVisitor&)) {
   return {device, implementation, summary, hal::Role::Actuator, fits, nullptr, make, describe};
+}
+
+/// Whether robot `i` of the block does what its controller says.
+inline bool obeys(const DeviceContext& context, std::size_t i) noexcept {
+  const std::uint8_t flags = context.stores.bodies.flags[context.block.first_row + i];
+  return (flags & (kAlive | kExternal)) == kAlive && context.block.halted[i] == 0;
+}
+
+inline void stamp(const DeviceContext& context, hal::Reading& port) noexcept {
+  port.taken_ns = context.now_ns;
+  port.validity = hal::Validity::Fresh;
+}
+
+/// In [-1, 1).
+inline double to_symmetric(std::uint32_t bits) noexcept {
+  return 2.0 * to_unit(bits) - 1.0;
 }
 
 }  // namespace tandem::core

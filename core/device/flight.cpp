@@ -46,11 +46,6 @@ const Port* ports_of(const DeviceContext& context) noexcept {
   return nullptr;
 }
 
-bool obeys(const DeviceContext& context, std::size_t i) noexcept {
-  const std::uint8_t flags = context.stores.bodies.flags[context.block.first_row + i];
-  return (flags & (kAlive | kExternal)) == kAlive && context.block.halted[i] == 0;
-}
-
 void add_noise(const DeviceContext& context, std::size_t row, double std_dev, FlightCommand& command) noexcept {
   const auto bits = draw(context.seed, context.stores.bodies.entity[row], Stream::FlightNoise, context.tick);
   const auto xy = to_normal(bits[0], bits[1]);

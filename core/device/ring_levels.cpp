@@ -86,9 +86,11 @@ class LightSensor final : public Sensor {
 
 // --- ground ---
 
-class GroundSensor final : public Sensor {
+/// For each of the ports that a robot may have for its floor: they differ in name and mounts only.
+class GroundSensor : public Sensor {
  public:
-  GroundSensor(const hal::DataSheet& sheet, double noise) : mounts_(sheet.ground), noise_(static_cast<float>(noise)) {}
+  GroundSensor(std::span<const hal::Mount> mounts, Stream noise_stream, double noise)
+      : mounts_(mounts), stream_(noise_stream), noise_(static_cast<float>(noise)) {}
 
   void sense(const DeviceContext& context, void* ports) noexcept override {
     auto* grounds = static_cast<hal::Ground*>(ports);
@@ -104,20 +106,42 @@ class GroundSensor final : public Sensor {
         port.reflectance[k] = context.stores.floor.at(b.x_m[row] + b.cos_h[row] * m.x_m - b.sin_h[row] * m.y_m,
                                                       b.y_m[row] + b.sin_h[row] * m.x_m + b.cos_h[row] * m.y_m);
       }
-      if (noise_ > 0.0F) add_noise(context, i, Stream::GroundNoise, noise_, port.reflectance.data(), mounts_.size());
+      if (noise_ > 0.0F) add_noise(context, i, stream_, noise_, port.reflectance.data(), mounts_.size());
     }
   }
 
  private:
   std::span<const hal::Mount> mounts_;
+  Stream stream_;
   float noise_;
 };
+
+class PlainGround final : public GroundSensor {
+ public:
+  PlainGround(const hal::DataSheet& sheet, double noise) : GroundSensor(sheet.ground, Stream::GroundNoise, noise) {}
+};
+class BaseGround final : public GroundSensor {
+ public:
+  BaseGround(const hal::DataSheet& sheet, double noise) : GroundSensor(sheet.base_ground, Stream::GroundNoise, noise) {}
+};
+class MotorGround final : public GroundSensor {
+ public:
+  MotorGround(const hal::DataSheet& sheet, double noise)
+      : GroundSensor(sheet.motor_ground, Stream::MotorGroundNoise, noise) {}
+};
+static_assert(sizeof(hal::BaseGround) == sizeof(hal::Ground) && sizeof(hal::MotorGround) == sizeof(hal::Ground));
 
 bool has_light(const hal::DataSheet& sheet) {
   return !sheet.light.empty();
 }
 bool has_ground(const hal::DataSheet& sheet) {
   return !sheet.ground.empty();
+}
+bool has_base_ground(const hal::DataSheet& sheet) {
+  return !sheet.base_ground.empty();
+}
+bool has_motor_ground(const hal::DataSheet& sheet) {
+  return !sheet.motor_ground.empty();
 }
 
 template <class Device, class Options>
@@ -132,22 +156,29 @@ DeviceType levels_type(std::string_view device, std::string_view implementation,
   return sensor_type(device, implementation, summary, fits, &make_levels<Device, Options>, &describe_options<Options>);
 }
 
+template <class Device>
+void add_grounds(std::string_view device, bool (*fits)(const hal::DataSheet&), std::vector<DeviceType>& types) {
+  types.push_back(
+      levels_type<Device, LevelNoise<0, false>>(device, "default", "The floor's shade; noise where asked for.", fits));
+  types.push_back(levels_type<Device, LevelNoise<-1, false>>(device, "ideal", "The floor's shade.", fits));
+  types.push_back(levels_type<Device, LevelNoise<20, false>>(device, "noisy", "The floor's shade, with noise.", fits));
+  types.push_back(
+      levels_type<Device, LevelNoise<0, false>>(device, "rot_z_only", "ARGoS' name for the default.", fits));
+}
+
 }  // namespace
 
 std::vector<DeviceType> ring_level_types() {
-  return {
+  std::vector<DeviceType> types = {
       levels_type<LightSensor, LevelNoise<0, true>>("light", "default", "Lamps in sight; noise where asked for.",
                                                     &has_light),
       levels_type<LightSensor, LevelNoise<-1, true>>("light", "ideal", "Lamps in sight.", &has_light),
       levels_type<LightSensor, LevelNoise<20, true>>("light", "noisy", "Lamps in sight, with noise.", &has_light),
-      levels_type<LightSensor, LevelNoise<0, true>>("light", "rot_z_only", "ARGoS' name for the default.", &has_light),
-      levels_type<GroundSensor, LevelNoise<0, false>>("ground", "default", "The floor's shade; noise where asked for.",
-                                                      &has_ground),
-      levels_type<GroundSensor, LevelNoise<-1, false>>("ground", "ideal", "The floor's shade.", &has_ground),
-      levels_type<GroundSensor, LevelNoise<20, false>>("ground", "noisy", "The floor's shade, with noise.",
-                                                       &has_ground),
-      levels_type<GroundSensor, LevelNoise<0, false>>("ground", "rot_z_only", "ARGoS' name for the default.",
-                                                      &has_ground)};
+      levels_type<LightSensor, LevelNoise<0, true>>("light", "rot_z_only", "ARGoS' name for the default.", &has_light)};
+  add_grounds<PlainGround>(hal::Ground::kName, &has_ground, types);
+  add_grounds<BaseGround>(hal::BaseGround::kName, &has_base_ground, types);
+  add_grounds<MotorGround>(hal::MotorGround::kName, &has_motor_ground, types);
+  return types;
 }
 
 }  // namespace tandem::core

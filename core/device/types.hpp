@@ -10,5 +10,11 @@ std::vector<DeviceType> ring_level_types();
 std::vector<DeviceType> body_device_types();
 std::vector<DeviceType> range_and_bearing_types();
 std::vector<DeviceType> flight_types();
+std::vector<DeviceType> turret_types();
+std::vector<DeviceType> gripper_types();
+std::vector<DeviceType> scanner_types();
+
+/// The implementation of the wheels that needs Bodies::hidden_rolls.
+inline constexpr std::string_view kSlanted = "slanted";
 
 }  // namespace tandem::core

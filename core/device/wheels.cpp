@@ -1,4 +1,4 @@
-// Wheels: the actuator that drives the engine, and the encoders that count what was rolled.
+// Wheels: the actuator that drives the engine, the encoders that count what was rolled, and where that should have led.
 #include "hal/device/wheels.hpp"
 
 #include "core/device/types.hpp"
@@ -69,6 +69,61 @@ class WheelActuator final : public Actuator {
   bool exact_ = true;
 };
 
+/// Treels that draw to one side because their motors are not alike [Pinciroli et al. 2012, "ARGoS: a modular, parallel,
+/// multi-engine simulator for multi-robot systems", Swarm Intelligence 6(4), section 4.2.2]: going forward the right
+/// one is faster than commanded, going backward the left one is slower, by a part of its speed that is drawn from a
+/// Rayleigh distribution at the start and anew whenever the robot has gripped something. The encoders do not see it.
+struct Slant {
+  double sigma = 0.0134;
+  void describe(hal::ParamVisitor& v) {
+    v.number("sigma", sigma, hal::unit::none, {0.0, 1.0},
+             "Scale of the Rayleigh distribution that the relative error of the speed is drawn from.");
+  }
+};
+
+class SlantedActuator final : public Actuator {
+ public:
+  explicit SlantedActuator(double sigma) : sigma_(sigma) {}
+
+  void act(const DeviceContext& context, SpaceStores& stores, const void* ports) noexcept override {
+    const auto* wheels = static_cast<const hal::WheelSpeeds*>(ports);
+    Bodies& b = stores.bodies;
+    for (std::size_t i = 0; i < context.block.used; ++i) {
+      const std::size_t row = context.block.first_row + i;
+      const hal::WheelSpeeds told = obeys(context, i) ? wheels[i] : hal::WheelSpeeds{};
+      const double sum = told.left_m_s + told.right_m_s;
+      HiddenRoll& hidden = b.hidden_rolls[row];
+      hidden.left_m_s = 0.0;
+      hidden.right_m_s = 0.0;
+      if (sum != 0.0) {
+        const double part = drawn(context.seed, b, row);
+        if (sum > 0.0)
+          hidden.right_m_s = part * told.right_m_s;
+        else
+          hidden.left_m_s = -part * told.left_m_s;
+      }
+      hidden.left_m += hidden.left_m_s * context.tick_s;
+      hidden.right_m += hidden.right_m_s * context.tick_s;
+      b.left_m_s[row] = told.left_m_s + hidden.left_m_s;
+      b.right_m_s[row] = told.right_m_s + hidden.right_m_s;
+    }
+  }
+
+ private:
+  double drawn(std::uint64_t seed, const Bodies& b, std::size_t row) const noexcept {
+    const std::uint32_t grips = b.grips.empty() ? 0 : b.grips[row].grips;
+    const auto bits = draw(seed, b.entity[row], Stream::TreelSlant, grips);
+    return sigma_ * std::sqrt(-2.0 * std::log(1.0 - to_unit(bits[0], bits[1])));
+  }
+
+  double sigma_;
+};
+
+Recipe<Actuator> make_slanted(const Element& element, Problems& problems, const DeviceSetup&) {
+  const auto options = read_options<Slant>(element, problems);
+  return [sigma = options.sigma](std::size_t) { return std::make_unique<SlantedActuator>(sigma); };
+}
+
 template <class Options>
 Recipe<Actuator> make_wheels(const Element& element, Problems& problems, const DeviceSetup&) {
   const auto options = read_options<Options>(element, problems);
@@ -123,11 +178,19 @@ class EncoderSensor final : public Sensor {
       port.right_m = b.right_m[row];
       port.left_m_s = static_cast<float>(b.left_m_s[row]);
       port.right_m_s = static_cast<float>(b.right_m_s[row]);
+      if (!b.hidden_rolls.empty()) hide(b.hidden_rolls[row], port);
       if (noisy) add_noise(context, b.entity[row], i, port);
     }
   }
 
  private:
+  static void hide(const HiddenRoll& hidden, hal::WheelEncoders& port) noexcept {
+    port.left_m -= hidden.left_m;
+    port.right_m -= hidden.right_m;
+    port.left_m_s -= static_cast<float>(hidden.left_m_s);
+    port.right_m_s -= static_cast<float>(hidden.right_m_s);
+  }
+
   void add_noise(const DeviceContext& context, std::uint32_t entity, std::size_t i, hal::WheelEncoders& port) noexcept {
     const auto bits = draw(context.seed, entity, Stream::EncoderNoise, context.tick);
     const auto symmetric = [&bits](std::size_t k) { return 2.0 * to_unit(bits[k]) - 1.0; };
@@ -158,15 +221,104 @@ DeviceType encoder_type(std::string_view implementation, std::string_view summar
                      &describe_options<Options>);
 }
 
+// --- odometry ---
+
+template <int kPerMille>
+struct OdometryErrors {
+  double dist_noise_m = kPerMille * 1e-6;
+  void describe(hal::ParamVisitor& v) {
+    v.number("dist_noise_range", dist_noise_m, hal::unit::cm, hal::kNotNegative,
+             "Uniform noise of +-this on the distance that each wheel rolled in a tick; it adds up.");
+  }
+};
+
+/// Adds up what the encoders saw in each tick as an arc [Siegwart et al. 2011, Introduction to Autonomous Mobile
+/// Robots, section 5.2.4].
+class OdometrySensor final : public Sensor {
+ public:
+  OdometrySensor(double wheel_base_m, double noise_m, std::size_t capacity)
+      : wheel_base_m_(wheel_base_m), noise_m_(noise_m), reckoned_(capacity) {}
+
+  void sense(const DeviceContext& context, void* ports) noexcept override {
+    auto* places = static_cast<hal::Odometry*>(ports);
+    const Bodies& b = context.stores.bodies;
+    for (std::size_t i = 0; i < context.block.used; ++i) {
+      const std::size_t row = context.block.first_row + i;
+      Reckoned& r = reckoned_[i];
+      double left_m = b.left_m[row];
+      double right_m = b.right_m[row];
+      if (!b.hidden_rolls.empty()) {
+        left_m -= b.hidden_rolls[row].left_m;
+        right_m -= b.hidden_rolls[row].right_m;
+      }
+      double rolled_left_m = left_m - r.left_m;
+      double rolled_right_m = right_m - r.right_m;
+      r.left_m = left_m;
+      r.right_m = right_m;
+      if (noise_m_ > 0.0) {
+        const auto bits = draw(context.seed, b.entity[row], Stream::OdometryNoise, context.tick);
+        rolled_left_m += noise_m_ * to_symmetric(bits[0]);
+        rolled_right_m += noise_m_ * to_symmetric(bits[1]);
+      }
+      go(r, 0.5 * (rolled_left_m + rolled_right_m), (rolled_right_m - rolled_left_m) / wheel_base_m_);
+      hal::Odometry& port = places[i];
+      stamp(context, port);
+      port.x_m = r.x_m;
+      port.y_m = r.y_m;
+      port.heading_rad = r.heading_rad;
+    }
+  }
+
+ private:
+  struct Reckoned {
+    double x_m = 0.0, y_m = 0.0, heading_rad = 0.0;
+    double left_m = 0.0, right_m = 0.0;  // that were taken into account
+  };
+  /// Along an arc: its chord points half of the turn to the side.
+  static void go(Reckoned& r, double way_m, double turn_rad) noexcept {
+    const double half = 0.5 * turn_rad;
+    const double chord_m = std::fabs(half) < 1e-6 ? way_m : way_m * std::sin(half) / half;
+    r.x_m += chord_m * std::cos(r.heading_rad + half);
+    r.y_m += chord_m * std::sin(r.heading_rad + half);
+    r.heading_rad = wrapped(r.heading_rad + turn_rad);
+  }
+
+  double wheel_base_m_;
+  double noise_m_;
+  std::vector<Reckoned> reckoned_;
+};
+
+template <class Options>
+Recipe<Sensor> make_odometry(const Element& element, Problems& problems, const DeviceSetup& setup) {
+  const auto options = read_options<Options>(element, problems);
+  double noise_m = 0.0;
+  if constexpr (requires { options.dist_noise_m; }) noise_m = options.dist_noise_m;
+  return [base = setup.sheet.wheel_base_m, noise_m](std::size_t capacity) {
+    return std::make_unique<OdometrySensor>(base, noise_m, capacity);
+  };
+}
+
+template <class Options>
+DeviceType odometry_type(std::string_view implementation, std::string_view summary) {
+  return sensor_type(hal::Odometry::kName, implementation, summary, &has_wheels, &make_odometry<Options>,
+                     &describe_options<Options>);
+}
+
 }  // namespace
 
 std::vector<DeviceType> wheel_types() {
   return {wheels_type<WheelErrors<0>>("default", "The commanded speeds, with bias, factor and noise where asked for."),
           wheels_type<IdealWheels>("ideal", "The commanded speeds, exactly."),
           wheels_type<WheelErrors<50>>("noisy", "Each wheel with a relative error of its own every tick."),
+          actuator_type(hal::WheelSpeeds::kName, kSlanted,
+                        "Draws to one side by an error that the encoders do not see and every grip changes.",
+                        &has_wheels, &make_slanted, &describe_options<Slant>),
           encoder_type<EncoderErrors<0>>("default", "What the wheels rolled, with noise where asked for."),
           encoder_type<IdealEncoders>("ideal", "What the wheels rolled."),
-          encoder_type<EncoderErrors<100>>("noisy", "What the wheels rolled, with noise that adds up.")};
+          encoder_type<EncoderErrors<100>>("noisy", "What the wheels rolled, with noise that adds up."),
+          odometry_type<OdometryErrors<0>>("default", "Reckoned from the encoders; noise where asked for."),
+          odometry_type<IdealEncoders>("ideal", "Reckoned from the encoders."),
+          odometry_type<OdometryErrors<100>>("noisy", "Reckoned from encoders with noise that adds up.")};
 }
 
 }  // namespace tandem::core

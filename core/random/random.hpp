@@ -29,6 +29,16 @@ enum class Stream : std::uint32_t {
   SendLoss,
   FlightNoise,
   PositioningNoise,
+  TurretNoise,
+  TurretEncoderNoise,
+  GripperNoise,
+  GripperSlip,
+  ScannerNoise,
+  ScannerDriveNoise,
+  GyroscopeNoise,
+  OdometryNoise,
+  TreelSlant,
+  MotorGroundNoise,
 };
 
 /// Four independent 32-bit numbers. `index` tells draws of one tick apart (0 to 2^24 - 1).

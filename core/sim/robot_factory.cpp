@@ -5,11 +5,14 @@
 #include <map>
 #include <set>
 
+#include "core/device/types.hpp"
 #include "core/random/random.hpp"
 #include "hal/device/flight.hpp"
+#include "hal/device/gripper.hpp"
 #include "hal/device/range_and_bearing.hpp"
 #include "hal/spec/epuck.hpp"
 #include "hal/spec/eyebot.hpp"
+#include "hal/spec/footbot.hpp"
 
 namespace tandem::core {
 namespace {
@@ -61,6 +64,9 @@ class ConstructedRobot final : public hal::Robot {
         if (type.name == hal::WheelSpeeds::kName) group_.wheels = static_cast<int>(i);
         if (type.name == hal::QuadrotorPosition::kName) group_.flight_position = static_cast<int>(i);
         if (type.name == hal::QuadrotorSpeed::kName) group_.flight_speed = static_cast<int>(i);
+        if (type.name == hal::TurretDrive::kName) group_.turret = static_cast<int>(i);
+        if (type.name == hal::GripperDrive::kName) group_.gripper = static_cast<int>(i);
+        if (type.name == hal::ScannerDrive::kName) group_.scanner = static_cast<int>(i);
       }
     }
     if (group_.ports[i]->layout != type.layout) {
@@ -134,11 +140,29 @@ class Factory {
     for (const RobotGroup& made : stores_.groups) {
       if (made.sheet != nullptr && made.sheet->flies) stores_.bodies.flight.resize(stores_.bodies.size());
     }
+    add_mechanisms();
     if (sends_) stores_.broadcasts.resize(stores_.bodies.size());
     return devices;
   }
 
  private:
+  /// Rows for what turns and holds, where a controller takes any port of it.
+  void add_mechanisms() {
+    Bodies& b = stores_.bodies;
+    const auto taken = [this](std::initializer_list<std::string_view> names) {
+      for (const RobotGroup& made : stores_.groups) {
+        for (const hal::PortType* port : made.ports) {
+          if (std::find(names.begin(), names.end(), port->name) != names.end()) return true;
+        }
+      }
+      return false;
+    };
+    if (taken({hal::TurretDrive::kName, hal::TurretEncoder::kName})) b.turrets.resize(b.size());
+    if (taken({hal::GripperDrive::kName})) b.grips.resize(b.size());
+    if (taken({hal::ScannerDrive::kName})) b.scanners.resize(b.size());
+    if (slants_) b.hidden_rolls.resize(b.size());
+  }
+
   void problem(int line, std::string message) {
     problems_.push_back({scenario_.file, line, std::move(message), false});
   }
@@ -333,6 +357,7 @@ class Factory {
         devices.blocks[b].actuators.push_back(is_sensor ? nullptr : actuator(capacity));
       }
       if (port->name == hal::RangeAndBearingSend::kName && !is_sensor) sends_ = true;
+      if (!is_sensor && type->implementation == kSlanted) slants_ = true;
     }
   }
 
@@ -344,19 +369,21 @@ class Factory {
   std::vector<std::size_t> first_item_;  // of each group
   std::set<const DeviceChoice*> checked_;
   bool sends_ = false;
+  bool slants_ = false;
 };
 
 }  // namespace
 
 const hal::DataSheet* data_sheet_of(std::string_view kind) {
-  for (const hal::DataSheet* sheet : {&hal::epuck::kDataSheet, &hal::eyebot::kDataSheet}) {
+  for (const hal::DataSheet* sheet : {&hal::epuck::kDataSheet, &hal::eyebot::kDataSheet, &hal::footbot::kDataSheet}) {
     if (sheet->kind == kind) return sheet;
   }
   return nullptr;
 }
 
 std::vector<std::string> robot_kinds() {
-  return {std::string(hal::epuck::kDataSheet.kind), std::string(hal::eyebot::kDataSheet.kind)};
+  return {std::string(hal::epuck::kDataSheet.kind), std::string(hal::eyebot::kDataSheet.kind),
+          std::string(hal::footbot::kDataSheet.kind)};
 }
 
 RobotDevices make_robots(const Scenario& scenario, const std::vector<RobotRequest>& requests, std::uint64_t seed,

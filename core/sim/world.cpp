@@ -8,6 +8,7 @@
 #include "core/device/device.hpp"
 #include "core/placement/placement.hpp"
 #include "core/sim/engine_factory.hpp"
+#include "core/sim/gripping.hpp"
 #include "core/sim/region_keeper.hpp"
 #include "core/sim/robot_factory.hpp"
 #include "core/space/stores.hpp"
@@ -39,6 +40,28 @@ std::uint64_t mix_motion(std::uint64_t hash, const Motion& m) noexcept {
   for (const double value : m.q_WB) hash = mix(hash, bits_of(value));
   for (const double value : m.v_m_s) hash = mix(hash, bits_of(value));
   for (const double value : m.w_rad_s) hash = mix(hash, bits_of(value));
+  return hash;
+}
+
+std::uint64_t mix_mechanisms(std::uint64_t hash, const Bodies& b, std::size_t row) noexcept {
+  if (!b.turrets.empty()) {
+    const TurretState& t = b.turrets[row];
+    hash = mix(hash, static_cast<std::uint64_t>(t.mode));
+    for (const double value : {t.target, t.angle_rad, t.speed_rad_s}) hash = mix(hash, bits_of(value));
+  }
+  if (!b.grips.empty()) {
+    const GripState& g = b.grips[row];
+    hash = mix(mix(hash, g.holding() ? 1 : 0), g.grips);
+    for (const double value : {g.aperture_rad, g.turn_rad}) hash = mix(hash, bits_of(value));
+  }
+  if (!b.scanners.empty()) {
+    const ScannerState& s = b.scanners[row];
+    hash = mix(mix(hash, static_cast<std::uint64_t>(s.mode)), bits_of(s.angle_rad));
+  }
+  if (!b.hidden_rolls.empty()) {
+    const HiddenRoll& h = b.hidden_rolls[row];
+    for (const double value : {h.left_m, h.right_m, h.left_m_s, h.right_m_s}) hash = mix(hash, bits_of(value));
+  }
   return hash;
 }
 
@@ -185,6 +208,7 @@ void World::Impl::act() {
 
 void World::Impl::physics() {
   const PhysicsContext context{stores(), *pool, tick_s(), tick};
+  grip_and_release(stores(), tick_s());
   settle_changes();
   keeper.list(stores(), *pool);
   stores().bodies_changed = false;
@@ -202,6 +226,7 @@ void World::Impl::physics() {
   }
   index_movables();
   for (const auto& engine : engines) engine->settle(context);
+  follow_loads(stores(), tick_s());
 }
 
 /// What hooks, operators and real robots changed since the last step.
@@ -374,6 +399,11 @@ void World::Impl::filter(std::size_t index) {
   filter_port<hal::QuadrotorSpeed>(index, group.flight_speed, [&](auto& command) {
     return hal::filter(command, sheet.max_flight_speed_m_s, sheet.max_flight_turn_rad_s);
   });
+  filter_port<hal::TurretDrive>(index, group.turret,
+                                [&](auto& command) { return hal::filter(command, sheet.turret_turn_rad_s); });
+  filter_port<hal::GripperDrive>(index, group.gripper, [](auto& command) { return hal::filter(command); });
+  filter_port<hal::ScannerDrive>(index, group.scanner,
+                                 [&](auto& command) { return hal::filter(command, sheet.scanner_turn_rad_s); });
 }
 
 template <class Port, class Filter>
@@ -405,10 +435,16 @@ void World::Impl::report_trouble() {
       if ((flags & kNotFinite) != 0) {
         flags = static_cast<std::uint8_t>(flags & ~kNotFinite);
         if (incidents.first.size() < kIncidentsNamed) {
-          const bool flies = stores().groups[block.group].sheet->flies;
-          incident("controller of robot '" + name_of_row(row) + "' commanded a " + (flies ? "flight" : "wheel speed") +
+          const hal::DataSheet& sheet = *stores().groups[block.group].sheet;
+          const bool more = sheet.turret_turn_rad_s > 0.0;  // than wheels to command
+          incident("controller of robot '" + name_of_row(row) + "' commanded " +
+                   (sheet.flies ? "a flight"
+                    : more      ? "something"
+                                : "a wheel speed") +
                    " that is not a finite number" + at_tick() +
-                   (flies ? ": it hovers for this tick" : ": wheels stopped for this tick"));
+                   (sheet.flies ? ": it hovers for this tick"
+                    : more      ? ": that device is off for this tick"
+                                : ": wheels stopped for this tick"));
         }
       }
       if (block.halted[i] == 2) {
@@ -472,6 +508,23 @@ BodySize size_of_kind(const std::string& kind) {
   return sheet != nullptr ? BodySize{sheet->body_radius_m, sheet->body_height_m, sheet->flies} : BodySize{};
 }
 
+/// Grippers hold by joints: robots whose controller takes one need an engine that has them. One problem an item.
+void check_grippers(const Scenario& scenario, const SpaceStores& s, Problems& problems) {
+  std::uint32_t complained = 0xFFFFFFFFU;
+  for (const RobotEntity& e : s.robots) {
+    const RobotBlock& block = s.blocks[e.block];
+    const std::uint16_t region = s.bodies.region[block.first_row + e.slot];
+    if (s.groups[block.group].gripper < 0 || region == kNoRegion || s.regions[region].forces || e.item == complained)
+      continue;
+    complained = e.item;
+    const std::string name = s.names[e.item].prefix + (e.number < 0 ? "" : std::to_string(e.number));
+    problems.push_back({scenario.file, scenario.robots[e.item].line,
+                        "robot '" + name + "' has a gripper, but its engine '" + s.regions[region].name +
+                            "' knows no forces, so that nothing can be held there; use dynamics2d or dynamics3d",
+                        false});
+  }
+}
+
 /// Every body's region; robots and movable objects that lie in none are problems.
 void assign_regions(const Scenario& scenario, const Placements& placements, const RegionKeeper& keeper, SpaceStores& s,
                     Problems& problems) {
@@ -493,6 +546,7 @@ void assign_regions(const Scenario& scenario, const Placements& placements, cons
              flies && !any_solid ? "flies: it needs an engine of three dimensions, particle3d or dynamics3d"
                                  : "lies in no engine's region");
   }
+  check_grippers(scenario, s, problems);
   for (std::size_t i = 0; i < s.objects.size(); ++i) {
     if (!s.objects[i].movable) continue;
     s.object_region[i] = keeper.find(s, BodyKey::object(i));
@@ -710,6 +764,7 @@ std::uint64_t World::state_hash() const noexcept {
       hash = mix(hash, static_cast<std::uint64_t>(f.mode));
       for (const double value : {f.target[0], f.target[1], f.target[2], f.yaw}) hash = mix(hash, bits_of(value));
     }
+    hash = mix_mechanisms(hash, b, row);
     // Every port as the controller saw and left it, but the padding between fields.
     for (std::size_t i = 0; i < group.ports.size(); ++i) {
       const hal::PortType& type = *group.ports[i];
@@ -733,6 +788,7 @@ std::uint64_t World::state_hash() const noexcept {
     for (const double value :
          {joint.ax_m, joint.ay_m, joint.az_m, joint.bx_m, joint.by_m, joint.bz_m, joint.heading_rad})
       hash = mix(hash, bits_of(value));
+    if (joint.motor_torque_Nm > 0.0) hash = mix(mix(hash, bits_of(joint.motor_torque_Nm)), bits_of(joint.motor_rad_s));
   }
   return hash;
 }

@@ -27,6 +27,10 @@ void Bodies::resize(std::size_t rows) {
   region.resize(rows, 0);
   if (has_motion) motion.resize(rows);
   if (!flight.empty()) flight.resize(rows);
+  if (!turrets.empty()) turrets.resize(rows);
+  if (!grips.empty()) grips.resize(rows);
+  if (!scanners.empty()) scanners.resize(rows);
+  if (!hidden_rolls.empty()) hidden_rolls.resize(rows);
 }
 
 void Bodies::reserve(std::size_t rows) {
@@ -115,6 +119,16 @@ void Space::remove_robot(RobotId robot) noexcept {
   ++e.generation;
   stores_->bodies_changed = true;
   std::erase(stores_->living, robot.index);
+}
+
+double Space::turret_rad(RobotId robot) const noexcept {
+  const Bodies& b = stores_->bodies;
+  return b.turrets.empty() ? 0.0 : b.turrets[stores_->row_of(robot)].angle_rad;
+}
+
+bool Space::holding(RobotId robot) const noexcept {
+  const Bodies& b = stores_->bodies;
+  return !b.grips.empty() && b.grips[stores_->row_of(robot)].holding();
 }
 
 bool Space::halted(RobotId robot) const noexcept {

@@ -69,7 +69,10 @@ class Space {
   void set_pose(RobotId robot, const Pose& pose) noexcept;
   /// Takes a robot out of the space: its controller stops, nobody sees it any more. Its id is not used again.
   void remove_robot(RobotId robot) noexcept;
-  bool halted(RobotId robot) const noexcept;  ///< its controller threw or was stopped: wheels stay 0
+  /// Angle of the robot's turret on its body, counter-clockwise from forward; 0 where it has none.
+  double turret_rad(RobotId robot) const noexcept;
+  bool holding(RobotId robot) const noexcept;  ///< whether its gripper holds something
+  bool halted(RobotId robot) const noexcept;   ///< its controller threw or was stopped: wheels stay 0
   void set_halted(RobotId robot, bool halted) noexcept;
   /// Whether the robot's pose is set from outside (a real robot's twin): engines do not move it, others bump into it.
   bool external(RobotId robot) const noexcept;

@@ -18,6 +18,7 @@
 #include "core/space/floor.hpp"
 #include "core/space/ids.hpp"
 #include "core/space/large_memory.hpp"
+#include "core/space/mechanisms.hpp"
 #include "core/space/object_index.hpp"
 #include "core/space/region.hpp"
 #include "core/space/space.hpp"
@@ -57,6 +58,8 @@ struct Joint {
   double bx_m = 0.0, by_m = 0.0, bz_m = 0.0;  ///< the same point in b's frame
   bool turns = false;                         ///< b may turn about the point, about the vertical
   double heading_rad = 0.0;                   ///< of b relative to a while it may not
+  double motor_torque_Nm = 0.0;               ///< while it may: > 0: a motor turns b relative to a, at most so strongly
+  double motor_rad_s = 0.0;                   ///< … so fast; may change without a new generation
 };
 
 /// Bodies, one array a quantity. Positions and headings in W.
@@ -72,6 +75,11 @@ struct Bodies {
   bool has_motion = false;            ///< an engine other than kinematics2d takes part
   std::vector<Motion> motion;         ///< empty without
   std::vector<FlightCommand> flight;  ///< empty while no robot flies
+  // Empty while no controller takes such a device.
+  std::vector<TurretState> turrets;
+  std::vector<GripState> grips;
+  std::vector<ScannerState> scanners;
+  std::vector<HiddenRoll> hidden_rolls;
 
   std::size_t size() const noexcept { return x_m.size(); }
   void resize(std::size_t rows);
@@ -96,6 +104,8 @@ struct RobotGroup {
   int wheels = -1;                          ///< index in `ports` of the wheel command; -1: none
   int flight_position = -1;                 ///< … of the place to fly to
   int flight_speed = -1;                    ///< … of the velocity to fly with
+  int turret = -1, gripper = -1;            ///< … of what the turret and the gripper are to do
+  int scanner = -1;                         ///< … of how the distance scanner is to turn
   double rab_range_m = 0.0;
   unsigned rab_payload = 0;
   std::vector<std::size_t> blocks;

@@ -49,8 +49,10 @@ struct DataSheet {
   std::span<const Mount> microphones;
   std::span<const Mount> leds;
   bool leds_on_turret = false;  ///< the places of the LEDs turn with the turret
+  bool body_lamps = false;      ///< an e-puck's light in the body and at the front
   bool gyroscope = false;
   double turret_turn_rad_s = 0.0;  ///< fastest turn of the turret; 0: none
+  double turret_torque_Nm = 0.0;   ///< that its motor turns a load with
   double gripper_reach_m = 0.0;    ///< beyond the body's rim; 0: no gripper. It looks where the turret does
   double gripper_height_m = 0.0;   ///< of the claws above the ground
   std::span<const ScannerHead> scanner;

@@ -96,6 +96,7 @@ inline constexpr DataSheet kDataSheet = {
     .motor_ground = {},
     .microphones = kMicrophones,
     .leds = kLeds,
+    .body_lamps = true,
     .scanner = {},
 };
 

@@ -37,8 +37,9 @@ inline constexpr std::size_t kRingLeds = 12;
 inline constexpr std::size_t kBeacon = 12;
 
 inline constexpr double kTurretTurn_rad_s = 0.5 * std::numbers::pi;  // [chosen] a quarter turn a second
-inline constexpr double kGripperHeight_m = 0.085;                    // [ARGoS]
-inline constexpr double kGripperReach_m = 0.03;                      // [chosen] the claws' length beyond the rim
+inline constexpr double kTurretTorque_Nm = 0.5;    // [chosen] turns another foot-bot that does not drive
+inline constexpr double kGripperHeight_m = 0.085;  // [ARGoS]
+inline constexpr double kGripperReach_m = 0.03;    // [chosen] the claws' length beyond the rim
 
 // Scanner [robot]: two heads for short distances, two for long ones, alternately, each measuring about 60 times a
 // second; 30 turns a minute are recommended.
@@ -101,6 +102,7 @@ inline const DataSheet kDataSheet = {
     .leds_on_turret = true,
     .gyroscope = true,
     .turret_turn_rad_s = kTurretTurn_rad_s,
+    .turret_torque_Nm = kTurretTorque_Nm,
     .gripper_reach_m = kGripperReach_m,
     .gripper_height_m = kGripperHeight_m,
     .scanner = kScanner,

@@ -3,10 +3,13 @@
 #include <stdexcept>
 
 #include "hal/device/body_sensors.hpp"
+#include "hal/device/distance_scanner.hpp"
 #include "hal/device/flight.hpp"
+#include "hal/device/gripper.hpp"
 #include "hal/device/leds.hpp"
 #include "hal/device/range_and_bearing.hpp"
 #include "hal/device/ring_sensors.hpp"
+#include "hal/device/turret.hpp"
 #include "hal/device/wheels.hpp"
 #include "hal/plugin.hpp"
 
@@ -223,6 +226,46 @@ class FlyBoth final : public Controller {
   int steps_ = 0;
 };
 
+/// Takes every device of a foot-bot and leaves the commands to the test.
+class Puppet final : public Controller {
+ public:
+  explicit Puppet(Robot& robot) {
+    robot.actuator<WheelSpeeds>();
+    robot.actuator<RingLeds>();
+    robot.actuator<RangeAndBearingSend>();
+    robot.actuator<TurretDrive>();
+    robot.actuator<GripperDrive>();
+    robot.actuator<ScannerDrive>();
+    robot.sensor<Proximity>();
+    robot.sensor<Light>();
+    robot.sensor<BaseGround>();
+    robot.sensor<MotorGround>();
+    robot.sensor<WheelEncoders>();
+    robot.sensor<Odometry>();
+    robot.sensor<Accelerometer>();
+    robot.sensor<Gyroscope>();
+    robot.sensor<Battery>();
+    robot.sensor<Clock>();
+    robot.sensor<RangeAndBearing>();
+    robot.sensor<Positioning>();
+    robot.sensor<TurretEncoder>();
+    robot.sensor<Gripper>();
+    robot.sensor<DistanceScanner>();
+  }
+  void step() override {}
+};
+
+/// Takes a foot-bot's wheels and ring of sensors alone, and leaves the commands to the test.
+class DrivenPuppet final : public Controller {
+ public:
+  explicit DrivenPuppet(Robot& robot) {
+    robot.actuator<WheelSpeeds>();
+    robot.sensor<Proximity>();
+    robot.sensor<WheelEncoders>();
+  }
+  void step() override {}
+};
+
 /// Cannot be made.
 class Stillborn final : public Controller {
  public:
@@ -239,6 +282,8 @@ void register_all(Registrar& registrar) {
   registrar.add_controller<Fly>("fly", "Constant velocity in the air.");
   registrar.add_controller<FlySquare>("fly_square", "Once around a square.");
   registrar.add_controller<FlyBoth>("fly_both", "A place, a velocity, and what is no number.");
+  registrar.add_controller<Puppet>("puppet", "Takes every device of a foot-bot.");
+  registrar.add_controller<DrivenPuppet>("driven_puppet", "Takes a foot-bot's wheels and proximity sensors.");
   registrar.add_controller<Stillborn>("stillborn", "Throws when made.");
 }
 

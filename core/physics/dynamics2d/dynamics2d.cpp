@@ -412,6 +412,8 @@ class Dynamics2d final : public Solver {
         def.bodyB = b->body;
         def.localAnchorA = on_a;
         def.localAnchorB = on_b;
+        def.enableMotor = joint.motor_torque_Nm > 0.0;
+        def.maxMotorTorque = static_cast<float>(joint.motor_torque_Nm * kUnits_m * kUnits_m);
         made = world_->CreateJoint(&def);
       } else {
         b2WeldJointDef def;
@@ -423,6 +425,11 @@ class Dynamics2d final : public Solver {
         made = world_->CreateJoint(&def);
       }
       joints_.push_back({i, joint.generation, made});
+    }
+    for (const Held& held : joints_) {
+      const Joint& joint = s.joints[held.number];
+      if (joint.motor_torque_Nm > 0.0)
+        static_cast<b2RevoluteJoint*>(held.joint)->SetMotorSpeed(static_cast<float>(joint.motor_rad_s));
     }
   }
 

@@ -250,6 +250,11 @@ void World3d::join(const SpaceStores& stores) {
     if (a == nullptr || b == nullptr || a->lost || b->lost) continue;
     held_.push_back({i, joint.generation, joint.a, joint.b, a, b, make_joint(joint, *a, *b)});
   }
+  for (const Held& held : held_) {
+    const Joint& joint = stores.joints[held.number];
+    // ODE turns a hinge's first body relative to its second.
+    if (joint.motor_torque_Nm > 0.0) dJointSetHingeParam(held.joint.get(), dParamVel, -joint.motor_rad_s);
+  }
 }
 
 /// ODE takes a joint's geometry from where its bodies are; so for a moment they are where the joint wants them.
@@ -280,6 +285,7 @@ OdeJoint World3d::make_joint(const Joint& joint, Twin& a, Twin& b) {
   if (joint.turns) {
     dJointSetHingeAnchor(made.get(), point[0], point[1], point[2]);
     dJointSetHingeAxis(made.get(), 0.0, 0.0, 1.0);
+    if (joint.motor_torque_Nm > 0.0) dJointSetHingeParam(made.get(), dParamFMax, joint.motor_torque_Nm);
   } else {
     dJointSetFixed(made.get());
   }

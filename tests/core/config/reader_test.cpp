@@ -276,13 +276,17 @@ TEST(DeviceName, MapsArgosNamesToPorts) {
   EXPECT_EQ(device_name("epuck_proximity", true), "proximity");
   EXPECT_EQ(device_name("footbot_proximity", true), "proximity");
   EXPECT_EQ(device_name("eyebot_light", true), "light");
-  EXPECT_EQ(device_name("footbot_base_ground", true), "ground");
-  EXPECT_EQ(device_name("footbot_motor_ground", true), "ground");
+  EXPECT_EQ(device_name("footbot_base_ground", true), "base_ground");
+  EXPECT_EQ(device_name("footbot_motor_ground", true), "motor_ground");
   EXPECT_EQ(device_name("epuck_ground", true), "ground");
   EXPECT_EQ(device_name("differential_steering", true), "wheel_encoders");
   EXPECT_EQ(device_name("differential_steering", false), "differential_steering");
   EXPECT_EQ(device_name("epuck_leds", false), "leds");
-  EXPECT_EQ(device_name("footbot_gripper", false), "footbot_gripper");
+  EXPECT_EQ(device_name("footbot_gripper", false), "gripper");
+  EXPECT_EQ(device_name("footbot_turret", false), "turret");
+  EXPECT_EQ(device_name("footbot_turret_encoder", true), "turret_encoder");
+  EXPECT_EQ(device_name("footbot_distance_scanner", true), "distance_scanner");
+  EXPECT_EQ(device_name("footbot_tail", false), "footbot_tail");
 }
 
 }  // namespace

@@ -1,0 +1,283 @@
+// Distance scanners: the actuator that turns them, and what their heads measured during the tick.
+#include "hal/device/distance_scanner.hpp"
+
+#include "core/device/ray_ring.hpp"
+#include "core/device/types.hpp"
+#include "core/space/mechanisms.hpp"
+
+namespace tandem::core {
+namespace {
+
+using hal::DistanceScanner;
+using hal::ScannerMode;
+
+bool has_scanner(const hal::DataSheet& sheet) {
+  return sheet.scanner.size() == DistanceScanner::kHeads;
+}
+
+// --- actuator ---
+
+struct IdealTurning {
+  void describe(hal::ParamVisitor&) {}
+};
+
+template <int kPerMille>
+struct TurnErrors {
+  double noise_std_dev = kPerMille * 1e-3;
+  void describe(hal::ParamVisitor& v) {
+    v.number("noise_std_dev", noise_std_dev, hal::unit::none, {0.0, 1.0},
+             "Standard deviation of the turn rate's relative error, drawn every tick.");
+  }
+};
+
+class ScannerActuator final : public Actuator {
+ public:
+  ScannerActuator(double fastest_rad_s, double noise) : fastest_rad_s_(fastest_rad_s), noise_(noise) {}
+
+  void act(const DeviceContext& context, SpaceStores& stores, const void* ports) noexcept override {
+    const auto* drives = static_cast<const hal::ScannerDrive*>(ports);
+    for (std::size_t i = 0; i < context.block.used; ++i) {
+      const std::size_t row = context.block.first_row + i;
+      ScannerState& scanner = stores.bodies.scanners[row];
+      scanner.mode = obeys(context, i) ? drives[i].mode : ScannerMode::Off;
+      scanner.swept_rad = step_rad(context, stores.bodies.entity[row], scanner, drives[i]);
+      scanner.angle_rad = wrapped(scanner.angle_rad + scanner.swept_rad);
+    }
+  }
+
+ private:
+  double step_rad(const DeviceContext& context, std::uint32_t entity, const ScannerState& scanner,
+                  const hal::ScannerDrive& drive) const noexcept {
+    if (scanner.mode == ScannerMode::Position) {
+      const double most_rad = fastest_rad_s_ * context.tick_s;
+      return std::clamp(wrapped(drive.angle_rad - scanner.angle_rad), -most_rad, most_rad);
+    }
+    if (scanner.mode != ScannerMode::Speed) return 0.0;
+    double error = 0.0;
+    if (noise_ > 0.0) {
+      const auto bits = draw(context.seed, entity, Stream::ScannerDriveNoise, context.tick);
+      error = noise_ * to_normal(bits[0], bits[1])[0];
+    }
+    return drive.speed_rad_s * (1.0 + error) * context.tick_s;
+  }
+
+  double fastest_rad_s_;
+  double noise_;
+};
+
+template <class Options>
+Recipe<Actuator> make_turning(const Element& element, Problems& problems, const DeviceSetup& setup) {
+  const auto options = read_options<Options>(element, problems);
+  double noise = 0.0;
+  if constexpr (requires { options.noise_std_dev; }) noise = options.noise_std_dev;
+  return [fastest = setup.sheet.scanner_turn_rad_s, noise](std::size_t) {
+    return std::make_unique<ScannerActuator>(fastest, noise);
+  };
+}
+
+template <class Options>
+DeviceType turning_type(std::string_view implementation, std::string_view summary) {
+  return actuator_type(hal::ScannerDrive::kName, implementation, summary, &has_scanner, &make_turning<Options>,
+                       &describe_options<Options>);
+}
+
+// --- sensor ---
+
+struct IdealScan {
+  bool show_rays = false;
+  void describe(hal::ParamVisitor& v) {
+    v.flag("show_rays", show_rays, "Draw the rays in a view; no effect on readings.");
+  }
+};
+
+template <int kTenthsOfMm>
+struct ScanNoise : IdealScan {
+  double noise_range_m = kTenthsOfMm * 1e-4;
+  void describe(hal::ParamVisitor& v) {
+    IdealScan::describe(v);
+    v.number("noise_range", noise_range_m, hal::unit::cm, hal::kNotNegative,
+             "Uniform noise of +-this on each distance.");
+  }
+};
+
+/// Rays of all heads from the robot's axis. The heads measure evenly through the tick, while the scanner turns; the
+/// robot itself is where it is at the tick's end.
+class ScannerSensor final : public Sensor {
+ public:
+  ScannerSensor(const DeviceSetup& setup, double noise_m)
+      : sheet_(setup.sheet),
+        noise_m_(static_cast<float>(noise_m)),
+        samples_(static_cast<std::uint32_t>(std::clamp<double>(std::round(setup.sheet.scanner_rate_hz * setup.tick_s),
+                                                               1.0, DistanceScanner::kSamples))),
+        ring_(std::array<hal::Mount, RayRing::kCapacity>{}, 0.0) {
+    for (const hal::ScannerHead& head : sheet_.scanner) farthest_m_ = std::max(farthest_m_, head.max_m);
+    near_.reserve(64);
+  }
+
+  void sense(const DeviceContext& context, void* ports) noexcept override {
+    auto* scanners = static_cast<DistanceScanner*>(ports);
+    double widest_m = 0.0;
+    for (const RobotGroup& group : context.stores.groups) widest_m = std::max(widest_m, group.sheet->body_radius_m);
+    for (std::size_t i = 0; i < context.block.used; ++i) {
+      const std::size_t row = context.block.first_row + i;
+      DistanceScanner& port = scanners[i];
+      stamp(context, port);
+      port.short_min_m = static_cast<float>(sheet_.scanner[0].min_m);
+      port.short_max_m = static_cast<float>(sheet_.scanner[0].max_m);
+      port.long_min_m = static_cast<float>(sheet_.scanner[1].min_m);
+      port.long_max_m = static_cast<float>(sheet_.scanner[1].max_m);
+      aim(context.stores.bodies.scanners[row], port);
+      if (port.count == 0) continue;
+      meet_bodies(context.stores, row, widest_m, port);
+      meet_objects(context.stores, row, port);
+      if (noise_m_ > 0.0F) add_noise(context, context.stores.bodies.entity[row], port);
+      keep_in_range(port);
+    }
+  }
+
+ private:
+  void aim(const ScannerState& scanner, DistanceScanner& port) noexcept {
+    port.turn_rad = static_cast<float>(scanner.angle_rad);
+    port.samples = scanner.mode == ScannerMode::Off ? 0 : scanner.swept_rad == 0.0 ? 1 : samples_;
+    port.count = port.samples * static_cast<std::uint32_t>(DistanceScanner::kHeads);
+    ring_.count = port.count;
+    ring_.registers = (ring_.count + RayRing::kLanes - 1) / RayRing::kLanes;
+    for (std::size_t head = 0; head < DistanceScanner::kHeads; ++head) {
+      for (std::size_t k = 0; k < port.samples; ++k) {
+        const double back = scanner.swept_rad * (1.0 - static_cast<double>(k + 1) / port.samples);
+        const double angle = wrapped(scanner.angle_rad - back + sheet_.scanner[head].bearing_rad);
+        const std::size_t ray = port.at(head, k);
+        port.angle_rad[ray] = static_cast<float>(angle);
+        ring_.dx[ray] = static_cast<float>(std::cos(angle));
+        ring_.dy[ray] = static_cast<float>(std::sin(angle));
+      }
+    }
+    best_.fill(1e9F);
+  }
+
+  double height_m(const SpaceStores& stores, std::size_t row) const noexcept {
+    return sheet_.scanner_height_m + stores.base_m(row);
+  }
+
+  void meet_bodies(const SpaceStores& stores, std::size_t row, double widest_m, DistanceScanner&) noexcept {
+    const Bodies& b = stores.bodies;
+    const double height = height_m(stores, row);
+    const auto c = static_cast<float>(b.cos_h[row]);
+    const auto s = static_cast<float>(b.sin_h[row]);
+    stores.body_index.for_each_near(b.x_m[row], b.y_m[row], farthest_m_ + widest_m, [&](const IndexEntry& o) {
+      if (o.row() == row) return;
+      const double low = stores.base_m(o.row());
+      if (height < low || height > low + stores.sheet_of_row(o.row()).body_height_m) return;
+      const float wx = static_cast<float>(o.x_m - b.x_m[row]);
+      const float wy = static_cast<float>(o.y_m - b.y_m[row]);
+      for (std::size_t g = 0; g < ring_.registers; ++g)
+        meet_disc(ring_, g, c * wx + s * wy, c * wy - s * wx, o.radius_m, best_.data() + g * RayRing::kLanes);
+    });
+  }
+
+  void meet_objects(const SpaceStores& stores, std::size_t row, const DistanceScanner& port) noexcept {
+    if (stores.objects.empty()) return;
+    list_objects(stores, row, port);
+    const Bodies& b = stores.bodies;
+    const double height = height_m(stores, row);
+    const auto c = static_cast<float>(b.cos_h[row]);
+    const auto s = static_cast<float>(b.sin_h[row]);
+    for (const std::size_t number : near_) {
+      const Object& o = stores.objects[number];
+      if (height < o.z_low_m || height > o.z_high_m) continue;
+      const float wx = static_cast<float>(o.x_m - b.x_m[row]);
+      const float wy = static_cast<float>(o.y_m - b.y_m[row]);
+      const float qx = c * wx + s * wy;
+      const float qy = c * wy - s * wx;
+      const float ax = static_cast<float>(o.cos_h) * c + static_cast<float>(o.sin_h) * s;
+      const float ay = static_cast<float>(o.sin_h) * c - static_cast<float>(o.cos_h) * s;
+      for (std::size_t g = 0; g < ring_.registers; ++g) {
+        float* best = best_.data() + g * RayRing::kLanes;
+        if (o.kind == Object::Kind::Cylinder)
+          meet_disc(ring_, g, qx, qy, static_cast<float>(o.radius_m), best);
+        else
+          meet_box(ring_, g, qx, qy, ax, ay, static_cast<float>(o.half_x_m), static_cast<float>(o.half_y_m), best);
+      }
+    }
+  }
+
+  /// Numbers of the objects that lie near any ray, each once, in rising order.
+  void list_objects(const SpaceStores& stores, std::size_t row, const DistanceScanner& port) noexcept {
+    const Bodies& b = stores.bodies;
+    near_.clear();
+    for (std::size_t head = 0; head < DistanceScanner::kHeads; ++head) {
+      const double length_m = sheet_.scanner[head].max_m;
+      const int hops = 1 + static_cast<int>(length_m / (1.9 * stores.static_index.reach()));
+      for (std::size_t k = 0; k < port.samples; ++k) {
+        const auto dx = static_cast<double>(ring_.dx[port.at(head, k)]);
+        const auto dy = static_cast<double>(ring_.dy[port.at(head, k)]);
+        const double wx = b.cos_h[row] * dx - b.sin_h[row] * dy;
+        const double wy = b.sin_h[row] * dx + b.cos_h[row] * dy;
+        for (int hop = 0; hop < hops; ++hop) {
+          const double along = length_m * (hop + 0.5) / hops;
+          stores.for_each_object_near(b.x_m[row] + along * wx, b.y_m[row] + along * wy, [&](const Object& object) {
+            near_.push_back(static_cast<std::size_t>(&object - stores.objects.data()));
+          });
+        }
+      }
+    }
+    std::sort(near_.begin(), near_.end());
+    near_.erase(std::unique(near_.begin(), near_.end()), near_.end());
+  }
+
+  void add_noise(const DeviceContext& context, std::uint32_t entity, const DistanceScanner& port) noexcept {
+    for (std::uint32_t k = 0; k < port.count; k += 4) {
+      const auto bits = draw(context.seed, entity, Stream::ScannerNoise, context.tick, k);
+      for (std::uint32_t j = 0; j < 4; ++j) best_[k + j] += noise_m_ * (2.0F * to_unit_float(bits[j]) - 1.0F);
+    }
+  }
+
+  void keep_in_range(DistanceScanner& port) const noexcept {
+    for (std::size_t head = 0; head < DistanceScanner::kHeads; ++head) {
+      const auto least = static_cast<float>(sheet_.scanner[head].min_m);
+      const auto most = static_cast<float>(sheet_.scanner[head].max_m);
+      for (std::size_t k = 0; k < port.samples; ++k) {
+        const std::size_t ray = port.at(head, k);
+        port.distance_m[ray] = std::min(std::max(best_[ray], least), most);
+      }
+    }
+  }
+
+  const hal::DataSheet& sheet_;
+  float noise_m_;
+  std::uint32_t samples_;  // of each head, in a tick in which the scanner turns
+  double farthest_m_ = 0.0;
+  RayRing ring_;  // of the robot at hand
+  alignas(32) std::array<float, RayRing::kCapacity> best_{};
+  std::vector<std::size_t> near_;
+};
+
+static_assert(RayRing::kCapacity >= DistanceScanner::kHeads * DistanceScanner::kSamples);
+
+template <class Options>
+Recipe<Sensor> make_scanner(const Element& element, Problems& problems, const DeviceSetup& setup) {
+  const auto options = read_options<Options>(element, problems);
+  double noise_m = 0.0;
+  if constexpr (requires { options.noise_range_m; }) noise_m = options.noise_range_m;
+  return [setup, noise_m](std::size_t) { return std::make_unique<ScannerSensor>(setup, noise_m); };
+}
+
+template <class Options>
+DeviceType scanner_type(std::string_view implementation, std::string_view summary) {
+  return sensor_type(DistanceScanner::kName, implementation, summary, &has_scanner, &make_scanner<Options>,
+                     &describe_options<Options>);
+}
+
+}  // namespace
+
+std::vector<DeviceType> scanner_types() {
+  return {turning_type<TurnErrors<0>>("default", "Turns as told; errors where asked for."),
+          turning_type<IdealTurning>("ideal", "Turns as told."),
+          turning_type<TurnErrors<50>>("noisy", "Turns with an error of its speed every tick."),
+          scanner_type<ScanNoise<0>>("default", "Exact distances; noise where asked for."),
+          scanner_type<IdealScan>("ideal", "Exact distances to bodies, boxes and cylinders."),
+          scanner_type<ScanNoise<100>>("noisy", "Distances with uniform noise."),
+          scanner_type<ScanNoise<0>>("rot_z_only", "ARGoS' name for the default.")};
+}
+
+}  // namespace tandem::core
