@@ -525,7 +525,29 @@ void check_grippers(const Scenario& scenario, const SpaceStores& s, Problems& pr
   }
 }
 
-/// Every body's region; robots and movable objects that lie in none are problems.
+/// How wide the narrowest strip is that lets an object through, in m.
+double narrowest_width_m(const Object& object) {
+  return 2.0 * (object.kind == Object::Kind::Box ? std::min(object.half_x_m, object.half_y_m) : object.radius_m);
+}
+
+/// What keeps a body of this width from fitting into the region: the arena, or walls on all sides. Empty: nothing.
+std::string too_wide_for(const SpaceStores& s, const Region& region, double width_m) {
+  const auto between = [](double x_m, double y_m) {
+    return " (" + hal::format_number(x_m) + " m x " + hal::format_number(y_m) + " m)";
+  };
+  const double arena_x_m = s.max_x_m - s.min_x_m;
+  const double arena_y_m = s.max_y_m - s.min_y_m;
+  if (width_m > std::min(arena_x_m, arena_y_m)) return "is larger than the arena" + between(arena_x_m, arena_y_m);
+  const bool walled = !region.everywhere() && std::all_of(region.sides.begin(), region.sides.end(),
+                                                          [](const RegionSide& side) { return side.wall; });
+  const double x_m = region.max_x_m - region.min_x_m;
+  const double y_m = region.max_y_m - region.min_y_m;
+  if (walled && width_m > std::min(x_m, y_m))
+    return "does not fit into the region '" + region.name + "'" + between(x_m, y_m);
+  return "";
+}
+
+/// Every body's region; robots and movable objects that lie in none, or are too large for theirs, are problems.
 void assign_regions(const Scenario& scenario, const Placements& placements, const RegionKeeper& keeper, SpaceStores& s,
                     Problems& problems) {
   constexpr std::size_t kNamed = 20;
@@ -539,27 +561,37 @@ void assign_regions(const Scenario& scenario, const Placements& placements, cons
   for (const RobotEntity& e : s.robots) {
     const std::size_t row = s.blocks[e.block].first_row + e.slot;
     s.bodies.region[row] = keeper.find(s, BodyKey::robot(row));
-    if (s.bodies.region[row] != kNoRegion) continue;
+    std::string why;
+    if (s.bodies.region[row] != kNoRegion) {
+      why = too_wide_for(s, s.regions[s.bodies.region[row]], 2.0 * static_cast<double>(s.bodies.radius_m[row]));
+      if (why.empty()) continue;
+    }
     const std::string name = s.names[e.item].prefix + (e.number < 0 ? "" : std::to_string(e.number));
     const bool flies = s.groups[s.blocks[e.block].group].sheet->flies;
-    complain(scenario.robots[e.item].line, "robot '" + name + "'", s.bodies.x_m[row], s.bodies.y_m[row],
-             flies && !any_solid ? "flies: it needs an engine of three dimensions, particle3d or dynamics3d"
-                                 : "lies in no engine's region");
+    if (why.empty()) {
+      why = flies && !any_solid ? "flies: it needs an engine of three dimensions, particle3d or dynamics3d"
+                                : "lies in no engine's region";
+    }
+    complain(scenario.robots[e.item].line, "robot '" + name + "'", s.bodies.x_m[row], s.bodies.y_m[row], why);
   }
   check_grippers(scenario, s, problems);
   for (std::size_t i = 0; i < s.objects.size(); ++i) {
     if (!s.objects[i].movable) continue;
     s.object_region[i] = keeper.find(s, BodyKey::object(i));
-    if (s.object_region[i] != kNoRegion) continue;
+    std::string why = "lies in no region of an engine that moves objects (dynamics2d, dynamics3d)";
+    if (s.object_region[i] != kNoRegion) {
+      why = too_wide_for(s, s.regions[s.object_region[i]], narrowest_width_m(s.objects[i]));
+      if (why.empty()) continue;
+    }
     complain(scenario.objects[placements.objects[i].item].line,
              std::string(s.objects[i].kind == Object::Kind::Box ? "movable box '" : "movable cylinder '") +
                  s.objects[i].id + "'",
-             s.objects[i].x_m, s.objects[i].y_m,
-             "lies in no region of an engine that moves objects (dynamics2d, dynamics3d)");
+             s.objects[i].x_m, s.objects[i].y_m, why);
   }
   if (bad > kNamed)
-    problems.push_back(
-        {scenario.file, 0, "... and " + std::to_string(bad - kNamed) + " more bodies in no region", false});
+    problems.push_back({scenario.file, 0,
+                        "... and " + std::to_string(bad - kNamed) + " more bodies in no region or too large for theirs",
+                        false});
 }
 
 }  // namespace

@@ -160,6 +160,19 @@ TEST_P(Regions, ARobotInNoRegionIsALoadErrorWithItsLine) {
       << world.all_problems();
 }
 
+TEST_P(Regions, ARobotThatFitsNowhereIsALoadErrorWithItsLine) {
+  Scene s(4.0);
+  s.engine(GetParam(), "cell");
+  for (const auto& [x, y] : {std::pair{-0.03, -0.03}, {0.03, -0.03}, {0.03, 0.03}, {-0.03, 0.03}}) s.side(x, y);
+  s.robot("stuck", 0, 0);
+  s.scenario.robots.back().line = 42;
+  auto world = make(s);
+  EXPECT_EQ(world.world, nullptr);
+  EXPECT_NE(world.all_problems().find("scene:42: error: robot 'stuck' at (0, 0) does not fit into the region 'cell'"),
+            std::string::npos)
+      << world.all_problems();
+}
+
 TEST_P(Regions, RegionsThatOverlapAreALoadErrorThatNamesBothAndThePlace) {
   const auto problems_of = [&](const std::vector<std::pair<double, double>>& outline) {
     Scene s;
@@ -662,6 +675,25 @@ TEST_P(MovableAcrossBorders, AnEngineWithoutForcesTakesAnObjectOnTheBorderAsItSt
   const double rim_m = pose_of(world, "a").x_m - kRobotRadius_m;
   EXPECT_GE(rim_m, world->space().objects()[0].x_m + 0.05 - depth_m() - 0.01);
   EXPECT_LT(rim_m, 0.05);
+}
+
+TEST_P(MovableAcrossBorders, AThingThatFitsNowhereIsALoadErrorWithItsLine) {
+  const auto problems_of = [&](double half_region_m, double size_x_m, double size_y_m) {
+    Scene s(4.0);
+    s.engine(GetParam(), "hall");
+    for (const auto& [x, y] : {std::pair{-1.0, -1.0}, {1.0, -1.0}, {1.0, 1.0}, {-1.0, 1.0}})
+      s.side(half_region_m * x, half_region_m * y);
+    s.box(0, 0, size_x_m, size_y_m).movable(1.0);
+    s.scenario.objects[0].line = 42;
+    return make(s).all_problems();
+  };
+  EXPECT_EQ(problems_of(2.0, 4.5, 0.5), "");  // a long one may lie askew
+  EXPECT_EQ(problems_of(2.0, 3.9, 3.9), "");
+  EXPECT_NE(problems_of(2.0, 4.5, 4.1).find("scene:42: error: movable box 'box0' at (0, 0) is larger than the arena"),
+            std::string::npos);
+  EXPECT_NE(problems_of(0.5, 1.5, 1.1)
+                .find("scene:42: error: movable box 'box0' at (0, 0) does not fit into the region 'hall' (1 m x 1 m)"),
+            std::string::npos);
 }
 
 INSTANTIATE_TEST_SUITE_P(Physics, MovableAcrossBorders, testing::ValuesIn(kinds_with_forces()), name_of_kind);
