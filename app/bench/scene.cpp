@@ -38,11 +38,11 @@ void add_walls(core::Scenario& scenario, double scale) {
   }
 }
 
-core::ControllerConfig diffusion_controller() {
+core::ControllerConfig diffusion_controller(const std::string& robot) {
   core::ControllerConfig config;
   config.id = "diffusion";
-  config.label = "epuck_diffusion";
-  config.library = "epuck_diffusion";
+  config.label = robot == "foot-bot" ? "footbot_diffusion" : "epuck_diffusion";
+  config.library = config.label;
   config.sensors.push_back({"proximity", "default", {}});
   config.actuators.push_back({"differential_steering", "default", {}});
   return config;
@@ -51,7 +51,7 @@ core::ControllerConfig diffusion_controller() {
 core::RobotItem scattered_robots(const BenchCase& c, double scale) {
   core::RobotItem item;
   item.kind = c.robot;
-  item.id = "ep";
+  item.id = c.robot == "foot-bot" ? "fb" : "ep";
   core::Distribute d;
   d.quantity = c.robots;
   d.max_trials = 10'000;
@@ -85,7 +85,7 @@ core::Scenario diffusion_scene(const BenchCase& c) {
   engine.id = c.engine;
   engine.regions = c.regions;
   scenario.engines.push_back(engine);
-  scenario.controllers.push_back(diffusion_controller());
+  scenario.controllers.push_back(diffusion_controller(c.robot));
   scenario.robots.push_back(scattered_robots(c, scale));
   return scenario;
 }

@@ -38,7 +38,7 @@ hal::Status check_name(std::string_view what, const std::string& name, const std
 
 hal::Status check_words(const BenchOptions& o) {
   if (auto s = check_name("benchmark", o.name, {"diffusion"}); !s.ok()) return s;
-  if (auto s = check_name("robot", o.robot, {"e-puck"}); !s.ok()) return s;
+  if (auto s = check_name("robot", o.robot, {"e-puck", "foot-bot"}); !s.ok()) return s;
   for (const std::string& engine : o.engines) {
     // Saved lines may come from another build.
     if (auto s = check_name("engine", engine, known_names().engines); !s.ok() && o.from.empty()) return s;

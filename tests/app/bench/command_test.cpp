@@ -81,6 +81,18 @@ TEST(BenchLines, AreComplete) {
   }
 }
 
+TEST(BenchLines, TellWhichRobotWasMeasured) {
+  Folder folder;
+  Tandem bench(
+      {"bench", "diffusion", "--robot", "foot-bot", "--engine", "dynamics2d", "--robots", "30", "--ticks", "3"},
+      folder.path());
+  ASSERT_EQ(bench.wait(), 0) << bench.errors();
+  const auto lines = objects_in(bench.output());
+  ASSERT_EQ(lines.size(), 1U);
+  EXPECT_EQ(text(lines[0], "robot"), "foot-bot");
+  EXPECT_EQ(number(lines[0], "steps"), 3.0);
+}
+
 TEST(BenchLines, GoRoundAllCasesAndKeepTheirStateForAnyNumberOfThreads) {
   Folder folder;
   Tandem bench({"bench", "--robots", "100,300", "--threads", "0,2", "--regions", "3x2,auto", "--ticks", "5", "--repeat",
@@ -123,7 +135,7 @@ TEST_F(BenchRefuses, WordsThatItDoesNotKnowAndNamesTheChoices) {
   refuses({"--threads", "0,x"}, 2, {"--threads", "0 to 1024"});
   refuses({"--threads", "0,5000"}, 2, {"--threads", "0 to 1024"});
   refuses({"--robots", "10,0"}, 2, {"--robots", "1 to 100000000"});
-  refuses({"--robot", "r2d2"}, 2, {"there is no robot 'r2d2'; there is: e-puck"});
+  refuses({"--robot", "r2d2"}, 2, {"there is no robot 'r2d2'; there are: e-puck, foot-bot"});
   refuses({"--assignment", "random"}, 2, {"static or dynamic"});
   refuses({"--density", "high"}, 2, {"equal"});
   refuses({"--plot", "figure.gif"}, 2, {"figure.gif", ".svg or .png"});

@@ -1,0 +1,45 @@
+// Diffusion on a foot-bot's 24 proximity sensors: straight on where the way ahead is free, else away from what is near.
+#pragma once
+#include <array>
+
+#include "hal/controller.hpp"
+#include "hal/device/ring_sensors.hpp"
+#include "hal/device/wheels.hpp"
+#include "hal/spec/ring_directions.hpp"
+
+namespace tandem::controllers {
+
+/// The first experiment of most who work with foot-bots: the readings are averaged as vectors that point at the
+/// obstacles. A short average, or one that points backwards, means straight on; otherwise the robot turns on the spot,
+/// away from the obstacle, and to the same side until the way is free: so it leaves corners. The potential fields are
+/// those of Howard et al. (2002).
+class FootbotDiffusion final : public hal::Controller {
+ public:
+  struct Params {
+    double alpha_rad = 7.5 * hal::unit::deg.to_si;
+    double delta = 0.01;
+    double velocity_m_s = 0.05;
+    void describe(hal::ParamVisitor& v) {
+      v.number("alpha", alpha_rad, hal::unit::deg, {0.0, 1.5},
+               "Obstacles within this of straight behind leave the way ahead free.");
+      v.number("delta", delta, hal::unit::none, {0.0, 1.0},
+               "An average of closeness (0 far, 1 contact, each sensor) up to this counts as free.");
+      v.number("velocity", velocity_m_s, hal::unit::cm_s, {0.0, 0.3}, "Wheel speed.");
+    }
+  };
+
+  FootbotDiffusion(hal::Robot& robot, const Params& params);
+
+  void step() noexcept override;
+
+ private:
+  const hal::Proximity& proximity_;
+  hal::WheelSpeeds& wheels_;
+  const hal::RingDirections& directions_;  // shared by all robots of the kind
+  float delta_;
+  float tan_alpha_;
+  double velocity_m_s_;
+  int turning_ = 0;  // 1 left, -1 right
+};
+
+}  // namespace tandem::controllers
