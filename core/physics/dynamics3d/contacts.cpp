@@ -9,6 +9,7 @@ namespace {
 constexpr double kNear_m = 5e-4;  // gaps that count as contacts even of bodies at rest
 constexpr double kSkin_m = 2e-3;  // around bodies that lean, for ODE's finders see overlaps only
 constexpr double kSlides_m_s = 1e-6;
+constexpr double kCarries = 0.7;        // vertical share of a normal from which on a body stands on what it touches
 constexpr double kCasterLift_m = 1e-4;  // wheels, not casters, carry the weight
 constexpr double kCasterPlace = 0.8;    // of the radius, ahead of and behind the axle
 constexpr double kLeans = 0.99;         // cosine from which on a chassis may touch the floor by its rims
@@ -65,8 +66,8 @@ void Contacts::touch(Twin& a, Twin* b) {
 
 void Contacts::add(Twin& a, Twin* b, const Touch& at, const Grip& grip) {
   touch(a, b);
-  if (at.normal[2] > 0.7) a.standing = true;
-  if (b != nullptr && at.normal[2] < -0.7) b->standing = true;
+  if (at.normal[2] > kCarries) a.standing = true;
+  if (b != nullptr && at.normal[2] < -kCarries) b->standing = true;
   Vector3 slip = velocity_at(a, at.p_m);
   if (b != nullptr) {
     const Vector3 v = velocity_at(*b, at.p_m);
@@ -133,8 +134,11 @@ void Contacts::with_still(Twin& a, Still& still, const Surfaces& surfaces) {
   Touches touches;
   const TouchQuery query{kNear_m + a.hop_m, still.wall, !a.robot(), 0.0};
   const std::size_t count = find_touches(a.prism, still.prism, query, touches);
-  for (std::size_t i = 0; i < count; ++i)
-    add(a, nullptr, touches[i], a.robot() && touches[i].normal[2] == 0.0 ? side : any);
+  for (std::size_t i = 0; i < count; ++i) {
+    const bool rolls = a.sort == Sort::Base && touches[i].normal[2] > kCarries;  // its drive is its friction
+    const bool beside = a.robot() && touches[i].normal[2] == 0.0;
+    add(a, nullptr, touches[i], rolls ? Grip{} : beside ? side : any);
+  }
 }
 
 void Contacts::with_ground(Twin& a, const Surfaces& surfaces) {
