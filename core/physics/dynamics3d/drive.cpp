@@ -22,13 +22,13 @@ void approach(Vector3& v, const Vector3& goal, double most) noexcept {
 }
 
 /// The velocity with which a flyer nears `target_m` such that it can stop there.
-Vector3 towards(const Vector3& p_m, const Vector3& target_m, const FlightLimits& limits) noexcept {
+Vector3 towards(const Vector3& p_m, const Vector3& target_m, const hal::DataSheet& sheet) noexcept {
   Vector3 way{target_m[0] - p_m[0], target_m[1] - p_m[1], target_m[2] - p_m[2]};
   const double distance = std::sqrt(way[0] * way[0] + way[1] * way[1] + way[2] * way[2]);
   if (distance == 0.0) return {};
   // Half the braking power is kept in hand.
-  const double speed =
-      std::min({limits.speed_m_s, kApproach_1_s * distance, std::sqrt(limits.acceleration_m_s2 * distance)});
+  const double speed = std::min(
+      {sheet.max_flight_speed_m_s, kApproach_1_s * distance, std::sqrt(sheet.max_flight_acceleration_m_s2 * distance)});
   for (double& w : way) w *= speed / distance;
   return way;
 }
@@ -54,27 +54,27 @@ void drive_base(Twin& twin, double left_m_s, double right_m_s, double dt_s) noex
   approach(twin.next_v_m_s, goal, sheet.drive_force_N / twin.mass_kg * dt_s);
 }
 
-void drive_flyer(Twin& twin, const FlightCommand& command, const FlightLimits& limits, double gravity_m_s2,
-                 double dt_s) noexcept {
+void drive_flyer(Twin& twin, const FlightCommand& command, double gravity_m_s2, double dt_s) noexcept {
   if (command.mode == FlightCommand::Mode::None) {
     drop(twin, gravity_m_s2, dt_s);
     return;
   }
+  const hal::DataSheet& sheet = *twin.sheet;
   const bool hold = command.mode == FlightCommand::Mode::Position;
-  Vector3 goal = hold ? towards(twin.p_m, command.target, limits) : command.target;
+  Vector3 goal = hold ? towards(twin.p_m, command.target, sheet) : command.target;
   const double size = std::sqrt(goal[0] * goal[0] + goal[1] * goal[1] + goal[2] * goal[2]);
-  if (size > limits.speed_m_s) {
-    for (double& g : goal) g *= limits.speed_m_s / size;
+  if (size > sheet.max_flight_speed_m_s) {
+    for (double& g : goal) g *= sheet.max_flight_speed_m_s / size;
   }
   twin.next_v_m_s = twin.v_m_s;
-  approach(twin.next_v_m_s, goal, limits.acceleration_m_s2 * dt_s);
+  approach(twin.next_v_m_s, goal, sheet.max_flight_acceleration_m_s2 * dt_s);
   double turn = command.yaw;
   if (hold) {
     const double c = std::cos(command.yaw);
     const double s = std::sin(command.yaw);
     turn = kApproach_1_s * std::atan2(s * twin.cos_h - c * twin.sin_h, c * twin.cos_h + s * twin.sin_h);
   }
-  twin.next_w_rad_s = std::clamp(turn, -limits.turn_rad_s, limits.turn_rad_s);
+  twin.next_w_rad_s = std::clamp(turn, -sheet.max_flight_turn_rad_s, sheet.max_flight_turn_rad_s);
 }
 
 void drop(Twin& twin, double gravity_m_s2, double dt_s) noexcept {

@@ -4,18 +4,11 @@
 
 namespace tandem::core {
 
-/// What robots that fly can do.
-struct FlightLimits {
-  double speed_m_s = 2.0;
-  double acceleration_m_s2 = 5.0;
-  double turn_rad_s = 3.0;
-};
-
 /// Lets a base start this sub-step towards what its wheels command.
 void drive_base(Twin& twin, double left_m_s, double right_m_s, double dt_s) noexcept;
-/// Lets the thrust of a flyer, if its command has any, and gravity act for this sub-step.
-void drive_flyer(Twin& twin, const FlightCommand& command, const FlightLimits& limits, double gravity_m_s2,
-                 double dt_s) noexcept;
+/// Lets the thrust of a flyer, if its command has any, and gravity act for this sub-step. Its limits are those of its
+/// data sheet.
+void drive_flyer(Twin& twin, const FlightCommand& command, double gravity_m_s2, double dt_s) noexcept;
 /// Lets a light body fall.
 void drop(Twin& twin, double gravity_m_s2, double dt_s) noexcept;
 /// Hands the drive of an engaged base to ODE, as motors of limited force against the floor.

@@ -21,7 +21,6 @@ struct Params {
   std::int64_t solver_iterations = 30;
   double erp = 0.2;
   double cfm = 1e-10;
-  FlightLimits flight;
   double gravity_m_s2 = 9.81;
   double floor_friction = -1.0;
   double floor_m = 0.0;
@@ -38,10 +37,6 @@ struct Params {
     v.integer("solver_iterations", solver_iterations, {1, 10000}, "ODE's passes over all constraints, a sub-step.");
     v.number("erp", erp, hal::unit::none, {0.0, 1.0}, "Share of an overlap that ODE takes back in a sub-step.");
     v.number("cfm", cfm, hal::unit::none, {0.0, 1.0}, "How far ODE lets constraints give way, per newton, in m/s.");
-    v.number("flight_speed", flight.speed_m_s, hal::unit::m_s, {0.0, 50.0}, "Top speed of robots that fly.");
-    v.number("flight_acceleration", flight.acceleration_m_s2, hal::unit::m_s2, {0.0, 1000.0},
-             "What their thrust has to spare, beyond carrying them.");
-    v.number("flight_turn", flight.turn_rad_s, hal::unit::deg_s, {0.0, 100.0}, "Their top turn rate.");
   }
   void describe_gravity(hal::ParamVisitor& v, std::string_view name) {
     v.number(name, gravity_m_s2, hal::unit::m_s2, {0.0, 1000.0}, "<gravity g=…>: acceleration of free fall.");
@@ -87,7 +82,6 @@ World3dSettings settings_for(const Params& params, double tick_s) {
   settings.surfaces.floor_friction = params.floor_friction < 0.0 ? params.default_friction : params.floor_friction;
   settings.surfaces.object_friction = params.default_friction;
   settings.surfaces.robot_friction = params.robot_friction;
-  settings.flight = params.flight;
   settings.solver_iterations = params.solver_iterations;
   settings.erp = params.erp;
   settings.cfm = params.cfm;

@@ -365,7 +365,7 @@ void World3d::plan(const SpaceStores& stores, Twin& twin, double dt_s) {
   twin.aloft = twin.sort == Sort::Flyer || twin.p_m[2] > surfaces_.floor_m + kFloats_m;
   if (twin.sort == Sort::Flyer) {
     const FlightCommand command = i < stores.bodies.flight.size() ? stores.bodies.flight[i] : FlightCommand{};
-    drive_flyer(twin, command, settings_.flight, settings_.gravity_m_s2, dt_s);
+    drive_flyer(twin, command, settings_.gravity_m_s2, dt_s);
   } else {
     if (!twin.aloft || twin.standing) drive_base(twin, stores.bodies.left_m_s[i], stores.bodies.right_m_s[i], dt_s);
     if (twin.aloft) {

@@ -20,7 +20,6 @@ struct World3dSettings {
   bool wheels = false;  ///< robots on the ground get turning wheels
   double gravity_m_s2 = 9.81;
   Surfaces surfaces;
-  FlightLimits flight;
   std::int64_t solver_iterations = 30;
   double erp = 0.2;
   double cfm = 1e-10;
