@@ -1,5 +1,5 @@
 // Bodies that pass from one solver to another, and contacts across the border between the two.
-#include "tests/core/physics/dynamics2d/solvers_by_hand.hpp"
+#include "tests/core/physics/dynamics2d/by_hand.hpp"
 
 namespace tandem::core {
 namespace {

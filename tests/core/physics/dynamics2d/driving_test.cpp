@@ -1,5 +1,5 @@
 // How wheels drive a body, alone and against others.
-#include "tests/core/physics/dynamics2d/solvers_by_hand.hpp"
+#include "tests/core/physics/dynamics2d/by_hand.hpp"
 
 namespace tandem::core {
 namespace {

@@ -1,5 +1,5 @@
 // How the ground holds movable objects, and what walls and immovable objects do.
-#include "tests/core/physics/dynamics2d/solvers_by_hand.hpp"
+#include "tests/core/physics/dynamics2d/by_hand.hpp"
 
 namespace tandem::core {
 namespace {

@@ -1,5 +1,5 @@
 // Bodies held together, whichever way they point and on whichever side of a border.
-#include "tests/core/physics/dynamics2d/solvers_by_hand.hpp"
+#include "tests/core/physics/dynamics2d/by_hand.hpp"
 
 namespace tandem::core {
 namespace {

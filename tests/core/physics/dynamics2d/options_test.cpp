@@ -1,5 +1,5 @@
 // What may be written in <dynamics2d>, and what is refused with its line.
-#include "tests/core/physics/dynamics2d/solvers_by_hand.hpp"
+#include "tests/core/physics/dynamics2d/by_hand.hpp"
 
 namespace tandem::core {
 namespace {

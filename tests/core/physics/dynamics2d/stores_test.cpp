@@ -1,7 +1,7 @@
 // The stores are the truth: what changes there counts, what is no number is named, and caches may be forgotten.
 #include <limits>
 
-#include "tests/core/physics/dynamics2d/solvers_by_hand.hpp"
+#include "tests/core/physics/dynamics2d/by_hand.hpp"
 
 namespace tandem::core {
 namespace {

@@ -1,4 +1,4 @@
-// Solvers of dynamics2d on stores put together by hand, with nothing of the world's around them.
+// Solvers of one type on stores put together by hand, with nothing of the world's around them.
 #pragma once
 #include <cmath>
 #include <cstdint>
@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "core/physics/dynamics2d/dynamics2d.hpp"
+#include "core/physics/solver.hpp"
 #include "hal/spec/epuck.hpp"
 #include "tests/core/space_by_hand.hpp"
 
@@ -21,14 +21,17 @@ inline constexpr double kReach_m = 4.0 * kRadius_m + 0.03;
 
 /// Some regions side by side, a solver each. Robots and objects are added by name; `tick()` does what a step's physics
 /// phase does.
-class ByHand {
+class SolversByHand {
  public:
-  explicit ByHand(const std::vector<Element::Attribute>& options = {}, double half_m = 20.0) {
+  SolversByHand(const SolverType& type, const std::vector<Element::Attribute>& options, double half_m,
+                const std::vector<Element>& children = {})
+      : type_(type) {
     Element element;
-    element.name = "dynamics2d";
+    element.name = type.kind;
     element.attributes = options;
+    element.children = children;
     Problems problems;
-    params_ = dynamics2d_type().read(element, problems);
+    params_ = type_.read(element, problems);
     for (const Problem& problem : problems) ADD_FAILURE() << to_text(problem);
     stores().min_x_m = stores().min_y_m = -half_m;
     stores().max_x_m = stores().max_y_m = half_m;
@@ -93,7 +96,7 @@ class ByHand {
   void tick() {
     if (stores().regions.empty()) region();
     while (solvers_.size() < stores().regions.size())
-      solvers_.push_back(dynamics2d_type().make(params_, stores(), stores().regions[solvers_.size()], kTick_s));
+      solvers_.push_back(type_.make(params_, stores(), stores().regions[solvers_.size()], kTick_s));
     place();
     list();
     for (std::size_t i = 0; i < solvers_.size(); ++i) solvers_[i]->load(context(i));
@@ -107,6 +110,8 @@ class ByHand {
   void ticks(int count) {
     for (int i = 0; i < count; ++i) tick();
   }
+  /// The next tick has this number.
+  void start_at(hal::Tick tick) noexcept { tick_ = tick; }
   void forget() {
     for (const auto& solver : solvers_) solver->forget();
   }
@@ -126,6 +131,8 @@ class ByHand {
     const SpaceStores& s = space.stores();
     std::vector<double> all;
     const auto add_motion = [&](const Motion& m) {
+      all.push_back(m.z_m);
+      all.insert(all.end(), m.q_WB.begin(), m.q_WB.end());
       all.insert(all.end(), m.v_m_s.begin(), m.v_m_s.end());
       all.insert(all.end(), m.w_rad_s.begin(), m.w_rad_s.end());
     };
@@ -206,6 +213,7 @@ class ByHand {
     }
   }
 
+  const SolverType& type_;
   std::shared_ptr<const void> params_;
   std::vector<std::unique_ptr<Solver>> solvers_;
   hal::Tick tick_ = 0;
