@@ -10,7 +10,7 @@
 namespace tandem::core {
 
 inline const KnownNames& known_names() {
-  static const KnownNames names = {{"e-puck", "eye-bot"},
+  static const KnownNames names = {{"e-puck", "foot-bot", "eye-bot"},
                                    {"kinematics2d", "dynamics2d", "dynamics3d", "particle3d"},
                                    {"accelerometer", "battery", "clock", "ground", "light", "microphones", "proximity",
                                     "range_and_bearing", "wheel_encoders"},
