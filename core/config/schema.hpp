@@ -431,7 +431,8 @@ struct Medium {
     v.text("id", id, "Name that devices refer to.");
     v.text("index", index, "Accepted for ARGoS files.");
     v.text("grid_size", grid_size, "Accepted for ARGoS files; the grid chooses its size itself.");
-    v.flag("check_occlusions", check_occlusions, "Whether boxes and cylinders block messages (range_and_bearing).");
+    v.flag("check_occlusions", check_occlusions,
+           "Whether bodies, boxes and cylinders block messages (range_and_bearing).");
   }
 };
 

@@ -1,6 +1,7 @@
 // Distance scanners: the actuator that turns them, and what their heads measured during the tick.
 #include "hal/device/distance_scanner.hpp"
 
+#include "core/device/proximity.hpp"
 #include "core/device/ray_ring.hpp"
 #include "core/device/types.hpp"
 #include "core/space/mechanisms.hpp"
@@ -111,6 +112,7 @@ class ScannerSensor final : public Sensor {
                                                                1.0, DistanceScanner::kSamples))),
         ring_(std::array<hal::Mount, RayRing::kCapacity>{}, 0.0) {
     for (const hal::ScannerHead& head : sheet_.scanner) farthest_m_ = std::max(farthest_m_, head.max_m);
+    bodies_.reserve(64);
     near_.reserve(64);
   }
 
@@ -128,8 +130,7 @@ class ScannerSensor final : public Sensor {
       port.long_max_m = static_cast<float>(sheet_.scanner[1].max_m);
       aim(context.stores.bodies.scanners[row], port);
       if (port.count == 0) continue;
-      meet_bodies(context.stores, row, widest_m, port);
-      meet_objects(context.stores, row, port);
+      look(context.stores, row, widest_m, port);
       if (noise_m_ > 0.0F) add_noise(context, context.stores.bodies.entity[row], port);
       keep_in_range(port);
     }
@@ -159,25 +160,34 @@ class ScannerSensor final : public Sensor {
     return sheet_.scanner_height_m + stores.base_m(row);
   }
 
-  void meet_bodies(const SpaceStores& stores, std::size_t row, double widest_m, DistanceScanner&) noexcept {
+  /// Lists the discs and objects that the rays may meet, then tests all rays against each.
+  void look(const SpaceStores& stores, std::size_t row, double widest_m, const DistanceScanner& port) noexcept {
     const Bodies& b = stores.bodies;
     const double height = height_m(stores, row);
-    const auto c = static_cast<float>(b.cos_h[row]);
-    const auto s = static_cast<float>(b.sin_h[row]);
+    bodies_.clear();
     stores.body_index.for_each_near(b.x_m[row], b.y_m[row], farthest_m_ + widest_m, [&](const IndexEntry& o) {
-      if (o.row() == row) return;
+      const double wx = o.x_m - b.x_m[row];
+      const double wy = o.y_m - b.y_m[row];
+      const double within = farthest_m_ + static_cast<double>(o.radius_m);
+      if (o.row() == row || wx * wx + wy * wy > within * within) return;
       const double low = stores.base_m(o.row());
       if (height < low || height > low + stores.sheet_of_row(o.row()).body_height_m) return;
-      const float wx = static_cast<float>(o.x_m - b.x_m[row]);
-      const float wy = static_cast<float>(o.y_m - b.y_m[row]);
-      for (std::size_t g = 0; g < ring_.registers; ++g)
-        meet_disc(ring_, g, c * wx + s * wy, c * wy - s * wx, o.radius_m, best_.data() + g * RayRing::kLanes);
+      bodies_.push_back({static_cast<float>(b.cos_h[row] * wx + b.sin_h[row] * wy),
+                         static_cast<float>(b.cos_h[row] * wy - b.sin_h[row] * wx), o.radius_m});
     });
+    near_.clear();
+    if (!stores.objects.empty()) list_objects(stores, row, port);
+    if (vector_code() == VectorCode::Avx2)
+      meet_avx2(stores, row);
+    else
+      meet(stores, row);
   }
 
-  void meet_objects(const SpaceStores& stores, std::size_t row, const DistanceScanner& port) noexcept {
-    if (stores.objects.empty()) return;
-    list_objects(stores, row, port);
+  [[gnu::always_inline]] inline void meet(const SpaceStores& stores, std::size_t row) noexcept {
+    for (const Disc& disc : bodies_) {
+      for (std::size_t g = 0; g < ring_.registers; ++g)
+        meet_disc(ring_, g, disc.x, disc.y, disc.radius, best_.data() + g * RayRing::kLanes);
+    }
     const Bodies& b = stores.bodies;
     const double height = height_m(stores, row);
     const auto c = static_cast<float>(b.cos_h[row]);
@@ -200,6 +210,16 @@ class ScannerSensor final : public Sensor {
       }
     }
   }
+#if defined(__x86_64__) || defined(__i386__)
+  // The same source for wider registers; the bits stay those of the baseline.
+  __attribute__((target("avx2"))) void meet_avx2(const SpaceStores& stores, std::size_t row) noexcept {
+    meet(stores, row);
+  }
+#else
+  void meet_avx2(const SpaceStores& stores, std::size_t row) noexcept {
+    meet(stores, row);
+  }
+#endif
 
   /// Numbers of the objects that lie near any ray, each once, in rising order.
   void list_objects(const SpaceStores& stores, std::size_t row, const DistanceScanner& port) noexcept {
@@ -249,6 +269,10 @@ class ScannerSensor final : public Sensor {
   double farthest_m_ = 0.0;
   RayRing ring_;  // of the robot at hand
   alignas(32) std::array<float, RayRing::kCapacity> best_{};
+  struct Disc {
+    float x, y, radius;  // in the body frame
+  };
+  std::vector<Disc> bodies_;
   std::vector<std::size_t> near_;
 };
 

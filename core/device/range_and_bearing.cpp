@@ -1,6 +1,10 @@
 // Range-and-bearing: messages heard from the robots in range, with where they came from.
 #include "hal/device/range_and_bearing.hpp"
 
+#include <array>
+#include <limits>
+
+#include "core/device/shadows.hpp"
 #include "core/device/sight.hpp"
 #include "core/device/types.hpp"
 #include "core/random/random.hpp"
@@ -18,7 +22,7 @@ struct IdealHearing {
   bool show_rays = false;
   void describe(hal::ParamVisitor& v) {
     v.text("medium", medium, "Id of the range-and-bearing medium.");
-    v.flag("check_occlusions", check_occlusions, "Boxes and cylinders block messages.");
+    v.flag("check_occlusions", check_occlusions, "Bodies, boxes and cylinders block messages.");
     v.flag("show_rays", show_rays, "Draw the lines in a view; no effect on readings.");
   }
 };
@@ -35,6 +39,33 @@ struct Hearing : IdealHearing {
   }
 };
 
+/// Whether the line from a to b passes through an upright disc whose centre lies nearer to a than b does.
+bool disc_blocks(double cx, double cy, double radius_m, double low_m, double high_m, const std::array<double, 3>& a,
+                 const std::array<double, 3>& b) noexcept {
+  const double dx = b[0] - a[0];
+  const double dy = b[1] - a[1];
+  const double length2 = dx * dx + dy * dy;
+  const double wx = cx - a[0];
+  const double wy = cy - a[1];
+  if (length2 == 0.0 || wx * wx + wy * wy >= length2) return false;
+  const double middle = (wx * dx + wy * dy) / length2;  // where the line is nearest to the centre: 0 at a, 1 at b
+  const double aside2 = wx * wx + wy * wy - middle * middle * length2;
+  if (aside2 >= radius_m * radius_m) return false;
+  const double half = std::sqrt((radius_m * radius_m - aside2) / length2);
+  const double enter = std::max(0.0, middle - half);
+  const double leave = std::min(1.0, middle + half);
+  if (enter >= leave) return false;
+  const double z1 = a[2] + enter * (b[2] - a[2]);
+  const double z2 = a[2] + leave * (b[2] - a[2]);
+  return std::min(z1, z2) < high_m && std::max(z1, z2) > low_m;
+}
+
+/// Messages in range and in sight. Bodies block a line that passes through them; boards that sit on top of their robots
+/// see over those of the same height.
+///
+/// Of most lines all ends are about equally high. Those are judged for all senders at once: from the nearest body on
+/// outwards, each adds its shadow, and a sender in the shadow of nearer ones is not heard. Other lines are followed
+/// from end to end.
 class RabSensor final : public Sensor {
  public:
   explicit RabSensor(const Hearing<0>& options) : options_(options) {}
@@ -43,54 +74,212 @@ class RabSensor final : public Sensor {
     auto* receivers = static_cast<hal::RangeAndBearing*>(ports);
     double farthest_m = 0.0;
     for (const RobotGroup& group : context.stores.groups) farthest_m = std::max(farthest_m, group.rab_range_m);
+    only_sheet_ = context.stores.groups.front().sheet;
+    for (const RobotGroup& group : context.stores.groups) {
+      if (group.sheet != only_sheet_) only_sheet_ = nullptr;
+    }
+    flat_ = only_sheet_ != nullptr && std::all_of(context.stores.regions.begin(), context.stores.regions.end(),
+                                                  [](const Region& region) { return region.plane; });
+    const bool shadows = options_.check_occlusions && bodies_block(context.stores);
     for (std::size_t i = 0; i < context.block.used; ++i) {
       hal::RangeAndBearing& port = receivers[i];
-      port.taken_ns = context.now_ns;
-      port.validity = hal::Validity::Fresh;
+      stamp(context, port);
       port.count = 0;
       port.dropped = 0;
-      hear(context, context.block.first_row + i, farthest_m, port);
+      if (context.stores.broadcasts.empty()) continue;
+      if (shadows)
+        hear_in_shadows(context, context.block.first_row + i, farthest_m, port);
+      else
+        hear_all(context, context.block.first_row + i, farthest_m, port);
     }
   }
 
  private:
-  void hear(const DeviceContext& context, std::size_t row, double farthest_m,
-            hal::RangeAndBearing& port) const noexcept {
+  static constexpr double kLevel_m = 0.02;   // lines that rise by no more count as level
+  static constexpr double kOnTop_m = 0.005;  // a board this little beneath a body's top sees over it
+
+  /// A sender, seen from the receiver in W.
+  struct Sender {
+    std::uint32_t row;
+    double wx, wy, wz;  ///< of its board relative to the receiver's
+  };
+  struct Neighbour {
+    double distance2;
+    std::uint32_t row;
+    double wx, wy;
+    float radius_m;
+    bool operator<(const Neighbour& other) const noexcept {
+      return distance2 != other.distance2 ? distance2 < other.distance2 : row < other.row;
+    }
+  };
+
+  const hal::DataSheet& sheet_of(const SpaceStores& stores, std::size_t row) const noexcept {
+    return only_sheet_ != nullptr ? *only_sheet_ : stores.sheet_of_row(row);
+  }
+  double board_m(const SpaceStores& stores, std::size_t row) const noexcept {
+    return sheet_of(stores, row).rab_height_m + stores.base_m(row);
+  }
+
+  /// False where all boards look over all bodies: robots of such kinds on level ground.
+  static bool bodies_block(const SpaceStores& stores) noexcept {
+    double lowest_m = std::numeric_limits<double>::infinity();
+    double highest_m = 0.0;
+    for (const RobotGroup& group : stores.groups) {
+      if (group.sheet->flies) return true;
+      if (group.rab_range_m > 0.0) lowest_m = std::min(lowest_m, group.sheet->rab_height_m);
+      highest_m = std::max(highest_m, group.sheet->body_height_m);
+    }
+    return lowest_m < highest_m - kOnTop_m;
+  }
+
+  /// The sender in `other` if its message reaches so far.
+  bool in_range(const DeviceContext& context, std::uint32_t other, double wx, double wy, double height_m,
+                Sender& sender) const noexcept {
+    const Broadcast& message = context.stores.broadcasts[other];
+    if (message.sending == 0) return false;
+    const double reach = static_cast<double>(message.range_m);
+    if (wx * wx + wy * wy > reach * reach) return false;
+    sender = {other, wx, wy, board_m(context.stores, other) - height_m};
+    return wx * wx + wy * wy + sender.wz * sender.wz <= reach * reach;
+  }
+
+  void hear_all(const DeviceContext& context, std::size_t row, double farthest_m,
+                hal::RangeAndBearing& port) const noexcept {
+    const Bodies& b = context.stores.bodies;
+    const double height_m = board_m(context.stores, row);
+    context.stores.body_index.for_each_near(b.x_m[row], b.y_m[row], farthest_m, [&](const IndexEntry& o) {
+      Sender sender{};
+      if (o.row() != row && in_range(context, o.row(), o.x_m - b.x_m[row], o.y_m - b.y_m[row], height_m, sender))
+        receive(context, row, height_m, sender, port);
+    });
+  }
+
+  void hear_in_shadows(const DeviceContext& context, std::size_t row, double farthest_m,
+                       hal::RangeAndBearing& port) noexcept {
     const SpaceStores& stores = context.stores;
     const Bodies& b = stores.bodies;
-    if (stores.broadcasts.empty()) return;
+    const double height_m = board_m(stores, row);
+    near_.clear();
+    stores.body_index.for_each_near(b.x_m[row], b.y_m[row], farthest_m, [&](const IndexEntry& o) {
+      const double wx = o.x_m - b.x_m[row];
+      const double wy = o.y_m - b.y_m[row];
+      const double distance2 = wx * wx + wy * wy;
+      if (o.row() != row && distance2 <= farthest_m * farthest_m)
+        near_.push_back({distance2, o.row(), wx, wy, o.radius_m});
+    });
+    sort_near(farthest_m);
+    shadows_.clear();
+    partial_.clear();
+    for (const Neighbour& n : sorted_) {
+      if (flat_ && shadows_.full()) break;
+      Sender sender{};
+      const bool sends = in_range(context, n.row, n.wx, n.wy, height_m, sender);
+      const bool level = std::fabs(sender.wz) <= kLevel_m;
+      if (shadows_.full() && (!sends || level)) continue;
+      const double direction = Shadows::direction(n.wx, n.wy);
+      if (sends && (level ? !shadows_.covers(direction) && !behind_partial(stores, row, height_m, sender)
+                          : !behind_any(stores, row, height_m, sender)))
+        receive(context, row, height_m, sender, port);
+      cast_shadow(stores, height_m, n);
+    }
+  }
+
+  /// Puts `near_` in order into `sorted_`: first by rings of equal area, which in a crowd hold equally many, then by
+  /// insertion, for which hardly anything is left to do.
+  void sort_near(double farthest_m) noexcept {
+    constexpr std::size_t kRings = 64;
+    const double rings_per_m2 = kRings / (farthest_m * farthest_m);
+    const auto ring_of = [&](const Neighbour& n) {
+      return std::min(kRings - 1, static_cast<std::size_t>(n.distance2 * rings_per_m2));
+    };
+    std::array<std::uint32_t, kRings + 1> start{};
+    for (const Neighbour& n : near_) ++start[ring_of(n) + 1];
+    for (std::size_t ring = 0; ring < kRings; ++ring) start[ring + 1] += start[ring];
+    sorted_.resize(near_.size());
+    for (const Neighbour& n : near_) sorted_[start[ring_of(n)]++] = n;
+    for (std::size_t i = 1; i < sorted_.size(); ++i) {
+      const Neighbour n = sorted_[i];
+      std::size_t at = i;
+      for (; at > 0 && n < sorted_[at - 1]; --at) sorted_[at] = sorted_[at - 1];
+      sorted_[at] = n;
+    }
+  }
+
+  /// Bodies that span all heights of level lines cast a shadow; those that span some are kept to be looked at one by
+  /// one.
+  void cast_shadow(const SpaceStores& stores, double height_m, const Neighbour& n) noexcept {
+    const double low_m = stores.base_m(n.row);
+    const double high_m = low_m + sheet_of(stores, n.row).body_height_m - kOnTop_m;
+    if (low_m <= height_m - kLevel_m && high_m >= height_m + kLevel_m)
+      shadows_.add(n.wx, n.wy, static_cast<double>(n.radius_m));
+    else if (low_m <= height_m + kLevel_m && high_m >= height_m - kLevel_m)
+      partial_.push_back(n.row);
+  }
+
+  bool blocked_by(const SpaceStores& stores, std::size_t other, const std::array<double, 3>& from,
+                  const std::array<double, 3>& to) const noexcept {
+    const Bodies& b = stores.bodies;
+    const double low_m = stores.base_m(other);
+    return disc_blocks(b.x_m[other], b.y_m[other], static_cast<double>(b.radius_m[other]), low_m,
+                       low_m + sheet_of(stores, other).body_height_m - kOnTop_m, from, to);
+  }
+
+  bool behind_partial(const SpaceStores& stores, std::size_t row, double height_m,
+                      const Sender& sender) const noexcept {
+    const Bodies& b = stores.bodies;
+    const std::array<double, 3> from{b.x_m[row], b.y_m[row], height_m};
+    const std::array<double, 3> to{from[0] + sender.wx, from[1] + sender.wy, height_m + sender.wz};
+    return std::any_of(partial_.begin(), partial_.end(),
+                       [&](std::uint32_t other) { return blocked_by(stores, other, from, to); });
+  }
+
+  /// Follows the line through the index.
+  bool behind_any(const SpaceStores& stores, std::size_t row, double height_m, const Sender& sender) const noexcept {
+    const Bodies& b = stores.bodies;
+    const std::array<double, 3> from{b.x_m[row], b.y_m[row], height_m};
+    const std::array<double, 3> to{from[0] + sender.wx, from[1] + sender.wy, height_m + sender.wz};
+    double widest_m = 0.0;
+    for (const RobotGroup& group : stores.groups) widest_m = std::max(widest_m, group.sheet->body_radius_m);
+    const double length_m = std::sqrt(sender.wx * sender.wx + sender.wy * sender.wy);
+    const int hops = 1 + static_cast<int>(length_m / (4.0 * widest_m));
+    bool blocked = false;
+    for (int i = 0; i < hops && !blocked; ++i) {
+      const double t = (i + 0.5) / hops;
+      stores.body_index.for_each_near(from[0] + t * sender.wx, from[1] + t * sender.wy,
+                                      0.5 * length_m / hops + widest_m, [&](const IndexEntry& o) {
+                                        if (o.row() == row || o.row() == sender.row) return;
+                                        blocked = blocked || blocked_by(stores, o.row(), from, to);
+                                      });
+    }
+    return blocked;
+  }
+
+  /// Takes the message in, unless an object is in between or it gets lost.
+  void receive(const DeviceContext& context, std::size_t row, double height_m, const Sender& sender,
+               hal::RangeAndBearing& port) const noexcept {
+    const SpaceStores& stores = context.stores;
+    const Bodies& b = stores.bodies;
+    const Broadcast& message = stores.broadcasts[sender.row];
     const double x = b.x_m[row];
     const double y = b.y_m[row];
-    const double height = context.group.sheet->rab_height_m + stores.base_m(row);
-    stores.body_index.for_each_near(x, y, farthest_m, [&](const IndexEntry& o) {
-      const std::uint32_t other = o.row();
-      const Broadcast& message = stores.broadcasts[other];
-      if (message.sending == 0 || other == row) return;
-      double wx = o.x_m - x;
-      double wy = o.y_m - y;
-      const double reach = static_cast<double>(message.range_m);
-      if (wx * wx + wy * wy > reach * reach) return;
-      // Boards of robots of one kind on level ground are equally high.
-      const double other_height =
-          b.motion.empty() ? height : stores.sheet_of_row(other).rab_height_m + stores.base_m(other);
-      const double wz = other_height - height;
-      if (wx * wx + wy * wy + wz * wz > reach * reach) return;
-      if (options_.check_occlusions && !in_sight(stores, x, y, height, o.x_m, o.y_m, other_height)) return;
-      if (options_.packet_drop_prob > 0.0 && lost(context, b.entity[row], b.entity[other])) return;
-      if (options_.noise_std_dev_m > 0.0) {
-        const auto bits =
-            draw(context.seed, b.entity[row], Stream::RabNoise, context.tick, b.entity[other] & 0xFFFFFFU);
-        const auto noise = to_normal(bits[0], bits[1]);
-        wx += options_.noise_std_dev_m * noise[0];
-        wy += options_.noise_std_dev_m * noise[1];
-      }
-      const double bx = b.cos_h[row] * wx + b.sin_h[row] * wy;
-      const double by = b.cos_h[row] * wy - b.sin_h[row] * wx;
-      const double flat2 = wx * wx + wy * wy;
-      port.insert(static_cast<float>(std::sqrt(flat2 + wz * wz)), static_cast<float>(std::atan2(by, bx)),
-                  wz == 0.0 ? 0.0F : static_cast<float>(std::atan2(wz, std::sqrt(flat2))), message.payload.data(),
-                  message.size);
-    });
+    double wx = sender.wx;
+    double wy = sender.wy;
+    if (options_.check_occlusions && !in_sight(stores, x, y, height_m, x + wx, y + wy, height_m + sender.wz)) return;
+    if (options_.packet_drop_prob > 0.0 && lost(context, b.entity[row], b.entity[sender.row])) return;
+    if (options_.noise_std_dev_m > 0.0) {
+      const auto bits =
+          draw(context.seed, b.entity[row], Stream::RabNoise, context.tick, b.entity[sender.row] & 0xFFFFFFU);
+      const auto noise = to_normal(bits[0], bits[1]);
+      wx += options_.noise_std_dev_m * noise[0];
+      wy += options_.noise_std_dev_m * noise[1];
+    }
+    const double bx = b.cos_h[row] * wx + b.sin_h[row] * wy;
+    const double by = b.cos_h[row] * wy - b.sin_h[row] * wx;
+    const double flat2 = wx * wx + wy * wy;
+    const double wz = sender.wz;
+    port.insert(static_cast<float>(std::sqrt(flat2 + wz * wz)), static_cast<float>(std::atan2(by, bx)),
+                wz == 0.0 ? 0.0F : static_cast<float>(std::atan2(wz, std::sqrt(flat2))), message.payload.data(),
+                message.size);
   }
 
   bool lost(const DeviceContext& context, std::uint32_t receiver, std::uint32_t sender) const noexcept {
@@ -99,6 +288,12 @@ class RabSensor final : public Sensor {
   }
 
   Hearing<0> options_;
+  const hal::DataSheet* only_sheet_ = nullptr;  // of all robots, or null where there are several kinds
+  bool flat_ = false;                           // all boards are equally high
+  // While one robot listens: who is near, what lies in their shadow, and who blocks some heights only.
+  std::vector<Neighbour> near_, sorted_;
+  Shadows shadows_;
+  std::vector<std::uint32_t> partial_;
 };
 
 template <class Options>
