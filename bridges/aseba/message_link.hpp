@@ -42,6 +42,8 @@ class MessageLink {
   virtual bool receive(MessageView& message) noexcept = 0;
   /// Waits until a `receive` is worth while or the state changes, at most `timeout_ns`.
   virtual bool wait(hal::TimeNs timeout_ns) noexcept = 0;
+  /// What `poll` can wait on for input, for those who must not hold the link while they wait; -1: there is none.
+  virtual int descriptor() const noexcept { return -1; }
   /// Forgets what is queued; a message that is half on its way is finished first, since receivers would glue its
   /// beginning to the next one.
   virtual void clear() noexcept = 0;

@@ -456,6 +456,7 @@ void Network::on_variables(Row& row, const Variables& variables, hal::TimeNs at)
     node.image.unmark(start, count, Image::kWanted);
     ++node.statistics.answers;
     node.statistics.last_round_trip_ns = at - row.read.asked_ns;
+    node.statistics.sum_round_trip_ns += at - row.read.asked_ns;
     node.statistics.max_round_trip_ns = std::max(node.statistics.max_round_trip_ns, at - row.read.asked_ns);
   } else {
     ++node.statistics.unasked;  // late, or another host's: nothing vouches for its length

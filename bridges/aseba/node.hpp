@@ -96,6 +96,7 @@ struct NodeStatistics {
   std::uint64_t doubled = 0;  ///< presented itself more than once in a round: two nodes with one id?
   hal::TimeNs last_round_trip_ns = 0;
   hal::TimeNs max_round_trip_ns = 0;
+  hal::TimeNs sum_round_trip_ns = 0;  ///< over `answers`
 };
 
 /// Words of a node's memory, and what is to become of each.

@@ -21,6 +21,7 @@ class ReopeningMessages final : public MessageLink {
   bool send(std::uint16_t type, std::span<const std::uint8_t> payload) noexcept override;
   bool receive(MessageView& message) noexcept override;
   bool wait(hal::TimeNs timeout_ns) noexcept override;
+  int descriptor() const noexcept override { return link_ == nullptr ? -1 : link_->descriptor(); }
   void clear() noexcept override;
   Carrier state() const noexcept override;
   /// Over all links that were opened.

@@ -53,6 +53,7 @@ class StreamMessages final : public MessageLink {
   bool send(std::uint16_t type, std::span<const std::uint8_t> payload) noexcept override;
   bool receive(MessageView& message) noexcept override;
   bool wait(hal::TimeNs timeout_ns) noexcept override;
+  int descriptor() const noexcept override { return link_->descriptor(); }
   void clear() noexcept override;
   Carrier state() const noexcept override { return state_; }
   MessageLinkStatistics statistics() const noexcept override { return statistics_; }

@@ -22,6 +22,7 @@ class TcpLink final : public ByteLink {
   std::size_t write(std::span<const std::uint8_t> bytes, hal::TimeNs budget_ns) noexcept override;
   Received read(std::span<std::uint8_t> buffer) noexcept override;
   bool wait(hal::TimeNs timeout_ns) noexcept override;
+  int descriptor() const noexcept override { return socket_; }
   LinkState state() const noexcept override { return open_ ? LinkState::Open : LinkState::HungUp; }
   LinkStatistics statistics() const noexcept override { return statistics_; }
   std::string name() const override { return name_; }

@@ -64,6 +64,8 @@ class CanLink {
   /// Waits until something can be received or the state changes, at most `timeout_ns`. True when a `receive` is worth
   /// while.
   virtual bool wait(hal::TimeNs timeout_ns) noexcept = 0;
+  /// What `poll` can wait on for input, for those who must not hold the link while they wait; -1: there is none.
+  virtual int descriptor() const noexcept { return -1; }
   /// As of the last call to another function.
   virtual BusState state() const noexcept = 0;
   virtual CanStatistics statistics() const noexcept = 0;

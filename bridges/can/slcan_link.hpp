@@ -29,6 +29,7 @@ class SlcanLink final : public CanLink {
   Sent send(const CanFrame& frame) noexcept override;
   bool receive(CanFrame& frame) noexcept override;
   bool wait(hal::TimeNs timeout_ns) noexcept override;
+  int descriptor() const noexcept override { return line_->descriptor(); }
   BusState state() const noexcept override { return record_.state(); }
   CanStatistics statistics() const noexcept override { return record_.counts; }
   std::string name() const override { return "slcan over " + line_->name(); }

@@ -29,6 +29,7 @@ class SocketCanLink final : public CanLink {
   Sent send(const CanFrame& frame) noexcept override;
   bool receive(CanFrame& frame) noexcept override;
   bool wait(hal::TimeNs timeout_ns) noexcept override;
+  int descriptor() const noexcept override { return socket_; }
   BusState state() const noexcept override { return record_.state(); }
   CanStatistics statistics() const noexcept override { return record_.counts; }
   std::string name() const override { return "can:" + interface_; }

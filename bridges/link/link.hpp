@@ -48,6 +48,8 @@ class ByteLink {
   /// Waits until something can be read or the link hangs up, at most `timeout_ns`. True when a `read` is worth while.
   virtual bool wait(hal::TimeNs timeout_ns) noexcept = 0;
 
+  /// What `poll` can wait on for input, for those who must not hold the link while they wait; -1: there is none.
+  virtual int descriptor() const noexcept { return -1; }
   virtual LinkState state() const noexcept = 0;
   virtual LinkStatistics statistics() const noexcept = 0;
   /// For messages: "serial:/dev/ttyUSB0@115200".

@@ -21,6 +21,7 @@ class SerialLink final : public ByteLink {
   std::size_t write(std::span<const std::uint8_t> bytes, hal::TimeNs budget_ns) noexcept override;
   Received read(std::span<std::uint8_t> buffer) noexcept override;
   bool wait(hal::TimeNs timeout_ns) noexcept override;
+  int descriptor() const noexcept override { return descriptor_; }
   LinkState state() const noexcept override;
   LinkStatistics statistics() const noexcept override;
   std::string name() const override;
