@@ -291,7 +291,7 @@ class ArenaReader {
     reading_.once(e, "battery", [&](Element& c) { item.battery = battery(c); });
     reading_.once(e, "bridge", [&](Element& c) {
       const auto b = reading_.read<schema::Bridge>(c);
-      item.bridge = BridgeConfig{b.link, b.firmware, b.timeout_s, c, c.line};
+      item.bridge = BridgeConfig{b.link, b.firmware, b.timeout_s, c, c.line, resolve(b.map, c.file)};
       if (distribute != nullptr) reading_.error(c, "a <bridge> stands for one real robot; it cannot be distributed");
     });
     reading_.once(e, "tracker", [&](Element& c) {

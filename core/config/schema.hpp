@@ -278,12 +278,13 @@ struct Battery {
 
 struct Bridge {
   static constexpr ElementInfo kElement{"bridge", "Makes the robot stand for a real one on this link.", "link"};
-  std::string link, firmware = "auto";
+  std::string link, firmware = "auto", map;
   double timeout_s = 0.5;
   void describe(ParamVisitor& v) {
     static constexpr std::array<std::string_view, 5> kFirmware = {"auto", "btcom", "gctronic", "webots", "epuck2"};
     v.text("link", link, "Where the real robot is, e.g. serial:/dev/ttyUSB0@115200.");
     v.choice("firmware", firmware, kFirmware, "Which firmware it runs; auto asks it.");
+    v.text("map", map, "File that says which variable of a foot-bot's modules is which reading or command.");
     v.number("timeout", timeout_s, unit::s, {0.05, 60.0},
              "Age of the last answer from which the robot counts as lost and is stopped.");
   }

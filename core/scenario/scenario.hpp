@@ -82,6 +82,7 @@ struct BridgeConfig {
   double timeout_s = 0.5;         ///< age from which the link counts as lost
   Element options;
   int line = 0;
+  std::string map = {};  ///< file that says what the variables of the robot's modules mean; empty: none
 };
 
 struct TrackerConfig {

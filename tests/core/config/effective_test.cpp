@@ -78,7 +78,7 @@ TEST(EffectiveSettings, AreWrittenTheSameWhenReadAgain) {
 TEST(EffectiveSettings, OfEveryExperimentHereReadBackAsTheSame) {
   int files = 0;
   for (const auto& entry : std::filesystem::directory_iterator(TANDEM_SOURCE_DIR "/configs")) {
-    if (entry.path().extension() != ".xml") continue;
+    if (entry.path().extension() != ".xml" || entry.path().filename() == "footbot_map.xml") continue;
     SCOPED_TRACE(entry.path());
     ++files;
     Outcome first;

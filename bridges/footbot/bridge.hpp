@@ -1,0 +1,93 @@
+// A real foot-bot behind the control interface, with its own I/O thread.
+//
+//   FootbotBridge bridge(settings, opener, log);
+//   controller = type.construct(memory, bridge.robot(), params);   // takes its ports: they decide what is asked for
+//   bridge.start();
+//   if (auto ready = bridge.wait_active(5 s); !ready) …
+//   each tick:  bridge.latch(tick, now);  controller step;  bridge.commit(now);   (bridge.fault(now, what) if it threw)
+//   ~FootbotBridge: the robot is stopped.
+//
+// The thread takes in what arrives, answers time-outs, opens the link anew when it was lost, and stops the robot when
+// the loop stops committing. Modules have no watchdog: when the link is cut while the robot moves, it drives on until
+// the link is back; when this process is killed, until a guardian (guardian.hpp), where one was started, stops it. A
+// program on the motors' modules that sets the speed to 0 when nothing was written for a while is the only remedy.
+#pragma once
+#include <atomic>
+#include <condition_variable>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+#include "bridges/aseba/reopening_messages.hpp"
+#include "bridges/footbot/driver.hpp"
+
+namespace tandem::bridges::footbot {
+
+struct BridgeSettings {
+  DriverSettings driver;
+  hal::TimeNs farewell_ns = 300 * hal::kNsPerMs;  ///< how long the end waits for the robot to confirm its stop
+};
+
+/// A copy of everything that can be told about the bridge.
+struct BridgeStatus {
+  RobotState state = RobotState::Absent;
+  std::string trouble;  ///< why it is not active, or what is missing; the opener's message when the link does not open
+  std::string link;
+  bool stopped = false;  ///< by `stop` or `fault`
+  bool at_rest = false;  ///< and the robot has confirmed it
+  std::vector<NodeStatus> nodes;
+  DriverStatistics driver;
+  WiringStatistics wiring;
+  aseba::NetworkStatistics network;
+  aseba::MessageLinkStatistics messages;  ///< over all links that were opened
+  std::uint64_t links_opened = 0;
+};
+
+/// Owns link and thread. `robot()`, `latch`, `commit`, `fault`, `stop`, `resume` belong to the loop's thread; all else
+/// may be called from any.
+class FootbotBridge {
+ public:
+  /// `opener` is called from threads of the bridge, from now on, and again whenever the link is gone. Times given to
+  /// the bridge are CLOCK_MONOTONIC.
+  FootbotBridge(BridgeSettings settings, aseba::MessageLinkOpener opener, hal::Log log = {});
+  /// Stops the robot, waits at most `farewell_ns` for it to confirm, closes the link.
+  ~FootbotBridge();
+  FootbotBridge(const FootbotBridge&) = delete;
+  FootbotBridge& operator=(const FootbotBridge&) = delete;
+
+  FootbotRobot& robot() noexcept { return driver_.robot(); }
+
+  /// Starts the thread. Once, after the ports were taken.
+  void start();
+  /// Errors: not active within `timeout_ns`; says what is known (link does not open, which node is missing …).
+  hal::Status wait_active(hal::TimeNs timeout_ns);
+  /// Stops the robot and ends the thread; the destructor does the same.
+  void shut_down();
+
+  void latch(hal::Tick tick, hal::TimeNs now) noexcept;
+  void commit(hal::TimeNs now) noexcept;
+  void fault(hal::TimeNs now, std::string_view why);
+  void stop(hal::TimeNs now) noexcept;
+  void resume() noexcept;
+
+  RobotState state() const noexcept;
+  BridgeStatus status() const;
+  /// Changes whenever nodes come; empty while there are none.
+  std::vector<LastWords> last_words() const;
+
+ private:
+  void run();
+  void say_farewell();
+  /// Waits for input without holding the link, at most `timeout_ns`.
+  void wait_outside(hal::TimeNs timeout_ns, int descriptor);
+
+  BridgeSettings settings_;
+  mutable std::mutex mutex_;  // guards everything below but the ports
+  std::condition_variable changed_;
+  aseba::ReopeningMessages link_;
+  FootbotDriver driver_;
+  std::atomic<bool> ending_{false};
+  std::thread thread_;
+};
+
+}  // namespace tandem::bridges::footbot

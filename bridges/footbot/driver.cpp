@@ -1,0 +1,233 @@
+#include "bridges/footbot/driver.hpp"
+
+#include <algorithm>
+
+#include "hal/device/distance_scanner.hpp"
+#include "hal/device/gripper.hpp"
+#include "hal/device/turret.hpp"
+#include "hal/device/wheels.hpp"
+#include "hal/filter.hpp"
+
+namespace tandem::bridges::footbot {
+namespace {
+
+namespace spec = hal::footbot;
+
+constexpr hal::TimeNs kSayAgain = 50 * hal::kNsPerMs;  // a stop that is not confirmed
+constexpr hal::TimeNs kLeastSuspect = 250 * hal::kNsPerMs;
+
+}  // namespace
+
+const char* state_name(RobotState state) noexcept {
+  switch (state) {
+    case RobotState::Absent:
+      return "absent";
+    case RobotState::Searching:
+      return "searching";
+    case RobotState::Ready:
+      return "ready";
+    case RobotState::Active:
+      return "active";
+    case RobotState::Suspect:
+      return "suspect";
+    case RobotState::Lost:
+      return "lost";
+  }
+  return "";
+}
+
+FootbotDriver::FootbotDriver(DriverSettings settings, aseba::MessageLink& link, hal::Log log)
+    : settings_(std::move(settings)),
+      log_(log),
+      robot_(settings_.robot, settings_.map),
+      network_(link, settings_.timing, std::move(log)),
+      wiring_(settings_.map, network_, robot_, settings_.observe) {
+  settings_.robot.tick_ns = std::max<hal::TimeNs>(settings_.robot.tick_ns, 1);
+  if (settings_.suspect_ns <= 0) {
+    settings_.suspect_ns = std::max(kLeastSuspect, settings_.robot.tick_ns * 5 / 2);
+  }
+}
+
+void FootbotDriver::latch(hal::Tick tick, hal::TimeNs now) noexcept {
+  wiring_.fill(now);
+  robot_.complete(tick);
+}
+
+// --- what the robot's state is ---
+
+RobotState FootbotDriver::judge(hal::TimeNs now) const noexcept {
+  if (network_.carrier() != aseba::Carrier::Up) {
+    if (was_active_) return RobotState::Lost;
+    return state_ == RobotState::Absent ? RobotState::Absent : RobotState::Searching;
+  }
+  if (!wiring_.complete()) {
+    if (!was_active_) return RobotState::Searching;
+    return wiring_.lost_needed() ? RobotState::Lost : RobotState::Suspect;
+  }
+  const hal::TimeNs oldest = wiring_.oldest_ns();
+  if (oldest == 0) return RobotState::Ready;
+  if (now - std::min(oldest, now) <= settings_.suspect_ns) return RobotState::Active;
+  return was_active_ ? RobotState::Suspect : RobotState::Ready;
+}
+
+void FootbotDriver::update_state(hal::TimeNs now) {
+  const RobotState next = judge(now);
+  if (next == state_) return;
+  const RobotState before = state_;
+  state_ = next;
+  const std::string who = "foot-bot '" + settings_.robot.id + "': ";
+  if (next == RobotState::Active) {
+    statistics_.recovered += was_active_ ? 1 : 0;
+    interrupted_ = interrupted_ || was_active_;
+    was_active_ = true;
+    const std::string missing = wiring_.trouble();
+    log_.info(who + "active" + (missing.empty() ? "" : ", but " + missing));
+    return;
+  }
+  if (next == RobotState::Lost) ++statistics_.lost;
+  if (before == RobotState::Active || next == RobotState::Lost) {
+    log_.warning(who + state_name(next) + ": " + trouble());
+  }
+}
+
+std::string FootbotDriver::trouble() const {
+  if (network_.carrier() != aseba::Carrier::Up) return "nothing passes on the link";
+  const std::string missing = wiring_.needed_trouble();
+  if (!missing.empty()) return missing;
+  if (state_ == RobotState::Suspect) return "a node that is needed does not answer";
+  return wiring_.trouble();
+}
+
+// --- commands ---
+
+void FootbotDriver::count(hal::FilterResult result) noexcept {
+  statistics_.clamped += result == hal::FilterResult::Clamped ? 1 : 0;
+  statistics_.not_finite += result == hal::FilterResult::NotFinite ? 1 : 0;
+}
+
+/// Limits the commands in their ports.
+void FootbotDriver::filter_commands(hal::TimeNs now) noexcept {
+  auto& wheels = robot_.port<hal::WheelSpeeds>();
+  count(hal::filter(wheels, spec::kMaxWheelSpeed_m_s));
+  count(hal::filter(robot_.port<hal::TurretDrive>(), spec::kTurretTurn_rad_s));
+  count(hal::filter(robot_.port<hal::ScannerDrive>(), spec::kScannerTurn_rad_s));
+  count(hal::filter(robot_.port<hal::GripperDrive>()));
+  if (interrupted_) {
+    interrupted_ = false;
+    ramping_ = settings_.ramp_ns > 0;
+    ramp_start_ns_ = now;
+    ++statistics_.rearmed;
+  }
+  if (!ramping_) return;
+  const double share = static_cast<double>(now - ramp_start_ns_) / static_cast<double>(settings_.ramp_ns);
+  ramping_ = share < 1.0;
+  if (ramping_) hal::filter(wheels, share * spec::kMaxWheelSpeed_m_s);
+}
+
+void FootbotDriver::commit(hal::TimeNs now) noexcept {
+  ++statistics_.commits;
+  last_commit_ns_ = now;
+  wiring_.note_demand();
+  update_state(now);
+  const bool drive = !halted_ && !settings_.observe && state_ == RobotState::Active;
+  if (drive) {
+    at_rest_ = resting_ = false;
+    driving_ = true;
+    send_commands(now);
+  } else {
+    interrupted_ = interrupted_ || was_active_;
+    if (driving_) rest(now);
+    wiring_.command(false, now);
+  }
+  ask(now);
+  pump(now);
+}
+
+/// What the controller wrote stays as it is: it may write once and never again.
+void FootbotDriver::send_commands(hal::TimeNs now) noexcept {
+  const auto wheels = robot_.port<hal::WheelSpeeds>();
+  const auto turret = robot_.port<hal::TurretDrive>();
+  const auto scanner = robot_.port<hal::ScannerDrive>();
+  const auto gripper = robot_.port<hal::GripperDrive>();
+  filter_commands(now);
+  wiring_.command(true, now);
+  robot_.port<hal::WheelSpeeds>() = wheels;
+  robot_.port<hal::TurretDrive>() = turret;
+  robot_.port<hal::ScannerDrive>() = scanner;
+  robot_.port<hal::GripperDrive>() = gripper;
+}
+
+void FootbotDriver::ask(hal::TimeNs now) noexcept {
+  asked_ns_ = now;
+  wiring_.ask(now);
+}
+
+void FootbotDriver::rest(hal::TimeNs now) noexcept {
+  if (settings_.observe) return;
+  driving_ = false;
+  resting_ = true;
+  at_rest_ = false;
+  rest_said_ns_ = now;
+  interrupted_ = true;
+  wiring_.rest(now);
+}
+
+void FootbotDriver::pump(hal::TimeNs now) noexcept {
+  network_.poll(now);
+  wiring_.take_packets();
+  bool more = false;
+  if (wiring_.look()) {
+    if (!driving_) wiring_.command(false, now);  // a module that is new here rests until told otherwise
+    ask(now);
+    more = true;
+  } else if (now - asked_ns_ >= settings_.robot.tick_ns * 3 / 2) {
+    ask(now);  // the loop does not run, or not yet
+    more = true;
+  }
+  update_state(now);
+  if (driving_ && state_ != RobotState::Active) {
+    ++statistics_.link_stops;
+    rest(now);
+    more = true;
+  }
+  if (driving_ && now - last_commit_ns_ > settings_.command_timeout_ns) {
+    ++statistics_.watchdog_stops;
+    log_.warning("foot-bot '" + settings_.robot.id + "': stopped, no commands came for " +
+                 std::to_string((now - last_commit_ns_) / hal::kNsPerMs) + " ms");
+    rest(now);
+    more = true;
+  }
+  if (resting_ && wiring_.rests()) {
+    resting_ = false;
+    at_rest_ = true;
+    ++statistics_.stops_confirmed;
+  }
+  if (resting_ && now - rest_said_ns_ >= kSayAgain) {
+    rest_said_ns_ = now;
+    wiring_.rest_again(now);
+    more = true;
+  }
+  if (more) network_.poll(now);
+}
+
+hal::TimeNs FootbotDriver::next_deadline() const noexcept {
+  hal::TimeNs deadline = std::min(network_.next_deadline(), asked_ns_ + settings_.robot.tick_ns * 3 / 2);
+  if (driving_) deadline = std::min(deadline, last_commit_ns_ + settings_.command_timeout_ns + 1);
+  if (resting_) deadline = std::min(deadline, rest_said_ns_ + kSayAgain);
+  return deadline;
+}
+
+void FootbotDriver::stop(hal::TimeNs now) noexcept {
+  halted_ = true;
+  rest(now);
+  pump(now);
+}
+
+void FootbotDriver::fault(hal::TimeNs now, std::string_view why) {
+  ++statistics_.faults;
+  robot_.make_safe();
+  stop(now);
+  log_.error("foot-bot '" + settings_.robot.id + "': stopped, its controller failed: " + std::string(why));
+}
+
+}  // namespace tandem::bridges::footbot

@@ -1,0 +1,143 @@
+// Ports on one side, nodes on the other: finds the map's variables on the bus, and carries values both ways.
+#pragma once
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "bridges/aseba/network.hpp"
+#include "bridges/footbot/map.hpp"
+#include "bridges/footbot/robot.hpp"
+#include "bridges/footbot/words.hpp"
+#include "hal/device/range_and_bearing.hpp"
+
+namespace tandem::bridges::footbot {
+
+/// A node of the map as it is on the bus.
+struct NodeStatus {
+  std::string name;  ///< its own, or the map's first while it is not there
+  int id = -1;       ///< -1: not there
+  aseba::NodeState state = aseba::NodeState::Absent;
+  bool needed = false;            ///< without it the robot does not drive
+  std::string trouble;            ///< why it cannot be used; "" when it can
+  std::uint64_t times_wired = 0;  ///< more than once: it was lost, restarted, or another one took its place
+  aseba::NodeStatistics statistics;
+};
+
+/// A message that has variables of one node rest.
+struct LastWords {
+  std::uint16_t type = 0;
+  std::vector<std::uint8_t> payload;
+  friend bool operator==(const LastWords&, const LastWords&) = default;
+};
+
+struct WiringStatistics {
+  std::uint64_t counter_jumps = 0;  ///< counters that changed faster than can be, or began anew
+  std::uint64_t not_obeyed = 0;     ///< written values that were not there when read back
+  std::uint64_t packets_unfit = 0;  ///< range-and-bearing events of another length than the map says
+  std::uint64_t packets = 0;        ///< range-and-bearing messages received
+};
+
+/// Not thread-safe. Allocates when nodes come and go, else never.
+class Wiring {
+ public:
+  /// All three must outlive this. `observe`: nothing is ever written.
+  Wiring(const FootbotMap& map, aseba::Network& network, FootbotRobot& robot, bool observe = false);
+
+  /// Notes which ports were taken since the last call: they decide what is read and written.
+  void note_demand() noexcept;
+  /// Looks who is there. True when something changed.
+  bool look() noexcept;
+  /// Takes over the range-and-bearing messages that came.
+  void take_packets() noexcept;
+
+  /// Fills the readings of the ports that were taken.
+  void fill(hal::TimeNs now) noexcept;
+  /// Has the network read what is due.
+  void ask(hal::TimeNs now) noexcept;
+  /// Has the network write what the commands say, where it has changed or is due again. Not `drive`: everything rests.
+  void command(bool drive, hal::TimeNs now) noexcept;
+  /// Forgets what was to be written, and has everything rest at once.
+  void rest(hal::TimeNs now) noexcept;
+  /// Says it again, and asks again whether it was heard.
+  void rest_again(hal::TimeNs now) noexcept;
+  /// The resting values were read back from every node that the robot never drives without.
+  bool rests() const noexcept;
+
+  /// Every node that is needed is there, with all its variables.
+  bool complete() const noexcept;
+  /// Some node that is needed, and was there, is gone.
+  bool lost_needed() const noexcept;
+  /// When the oldest of the words was read that needed nodes are asked for in every tick; 0: some never was since its
+  /// node came.
+  hal::TimeNs oldest_ns() const noexcept;
+  /// What is missing, for people; "" when nothing that is used is.
+  std::string trouble() const;
+  /// As `trouble`, of needed nodes alone.
+  std::string needed_trouble() const;
+
+  std::vector<NodeStatus> nodes() const;
+  /// Messages that have everything rest, for whoever must stop the robot when this process cannot. They are right as
+  /// long as the nodes that are there now keep their descriptions.
+  std::vector<LastWords> last_words() const;
+  const WiringStatistics& statistics() const noexcept { return statistics_; }
+
+ private:
+  struct Counter {
+    bool known = false;
+    std::int32_t raw = 0;
+    std::int64_t total = 0;
+  };
+  struct FieldRow {
+    const FieldMap* map;
+    hal::TimeNs taken_ns = 0;  // of the values that are in the port
+    std::vector<Counter> counters;
+  };
+  struct VariableRow {
+    const VariableMap* map;
+    bool bound = false;
+    std::uint16_t address = 0;
+    std::size_t read_first = 0, read_behind = 0;  // words that are read; none: empty
+    bool controlled = false;                      // it is written
+    hal::TimeNs asked_ns = 0;
+    std::vector<std::int16_t> target, sent;
+    bool sent_known = false;
+    hal::TimeNs sent_ns = 0;
+    std::vector<FieldRow> reads;
+  };
+  struct NodeRow {
+    const NodeMap* map;
+    const aseba::Node* node = nullptr;  // null: not there
+    std::uint64_t generation = 0;
+    bool used = false;
+    std::string trouble;
+    std::uint64_t times_wired = 0;
+    std::vector<VariableRow> variables;
+  };
+
+  static bool needed(const NodeRow& row) noexcept;
+  static bool ready(const NodeRow& row) noexcept;
+  static bool complete(const NodeRow& row) noexcept;
+  std::string trouble_of(const NodeRow& row) const;
+  void bind(NodeRow& row, const aseba::Node* node);
+  void bind(NodeRow& row, VariableRow& variable);
+  void fill_port(const hal::PortType& type, hal::TimeNs now) noexcept;
+  void fill_field(const aseba::Node& node, const VariableRow& variable, FieldRow& field, hal::TimeNs taken) noexcept;
+  double counted(FieldRow& field, std::size_t i, std::int32_t raw, double since_s) noexcept;
+  void fill_packets(hal::TimeNs now) noexcept;
+  void make_target(const VariableMap& map, bool drive, std::span<std::int16_t> target) const noexcept;
+  void write(NodeRow& row, VariableRow& variable, bool drive, hal::TimeNs now) noexcept;
+  bool rests(const NodeRow& row, const VariableRow& variable) const noexcept;
+
+  const FootbotMap& map_;
+  aseba::Network& network_;
+  FootbotRobot& robot_;
+  bool observe_;
+  std::vector<NodeRow> rows_;
+  std::uint64_t seen_ = ~std::uint64_t{0};  // fingerprint of who is there
+  hal::TimeNs rested_ns_ = 0;
+  hal::RangeAndBearing heard_;  // since the last `fill`
+  aseba::Event event_;
+  WiringStatistics statistics_;
+};
+
+}  // namespace tandem::bridges::footbot

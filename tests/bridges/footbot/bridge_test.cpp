@@ -1,0 +1,265 @@
+// The threaded bridge and the guardian. Waits end with events; limits are longer than any machine needs.
+#include "bridges/footbot/bridge.hpp"
+
+#include <atomic>
+#include <fcntl.h>
+#include <gmock/gmock.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <thread>
+#include <unistd.h>
+
+#include "bridges/footbot/guardian.hpp"
+#include "hal/device/ring_sensors.hpp"
+#include "hal/device/wheels.hpp"
+#include "tests/bridges/footbot/fake_footbot.hpp"
+
+namespace tandem::bridges::footbot {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr hal::TimeNs kLong = 20 * hal::kNsPerSecond;
+
+/// A way to the bus that can be cut for good.
+class Cable final : public CanLink {
+ public:
+  Cable(std::unique_ptr<CanLink> bus, const std::atomic<int>& cuts) : bus_(std::move(bus)), cuts_(cuts), made_(cuts) {}
+  Sent send(const CanFrame& frame) noexcept override { return whole() ? bus_->send(frame) : Sent::Refused; }
+  bool receive(CanFrame& frame) noexcept override { return whole() && bus_->receive(frame); }
+  bool wait(hal::TimeNs timeout_ns) noexcept override { return bus_->wait(timeout_ns); }
+  BusState state() const noexcept override { return whole() ? bus_->state() : BusState::Gone; }
+  CanStatistics statistics() const noexcept override { return bus_->statistics(); }
+  std::string name() const override { return "cable"; }
+
+ private:
+  bool whole() const noexcept { return cuts_ == made_; }
+  std::unique_ptr<CanLink> bus_;
+  const std::atomic<int>& cuts_;
+  int made_;
+};
+
+/// Modules with a thread of their own, on a bus of the real time.
+class LiveModules {
+ public:
+  template <class F>
+  auto with(F&& f) {
+    const std::lock_guard lock(mutex_);
+    return f(modules_);
+  }
+
+  LiveModules() : modules_(bus) {
+    modules_.add_all();
+    thread_ = std::thread([this] {
+      while (!ending_) {
+        with([](FakeModules& m) { m.work(); });
+        ::usleep(200);
+      }
+    });
+  }
+  ~LiveModules() {
+    ending_ = true;
+    thread_.join();
+  }
+  aseba::MessageLinkOpener opener() {
+    return [this]() -> hal::Result<std::unique_ptr<aseba::MessageLink>> {
+      if (!present) return hal::Error{"cannot open memory: there is no such bus"};
+      return std::unique_ptr<aseba::MessageLink>(
+          std::make_unique<aseba::CanMessages>(std::make_unique<Cable>(bus.attach(), cuts)));
+    };
+  }
+  int speed(const char* side) {
+    return with([&](FakeModules& m) { return static_cast<int>(m.word(side, "speed")); });
+  }
+
+  MemoryBus bus{monotonic_ns, 8192};
+  std::atomic<bool> present{true};
+  std::atomic<int> cuts{0};
+
+ private:
+  std::mutex mutex_;
+  FakeModules modules_;
+  std::atomic<bool> ending_{false};
+  std::thread thread_;
+};
+
+BridgeSettings settings() {
+  BridgeSettings s;
+  s.driver = Bench::default_settings();
+  s.driver.ramp_ns = 0;
+  return s;
+}
+
+/// Ticks until `done`, at most `kLong`.
+template <class F>
+bool tick_until(FootbotBridge& bridge, F&& done) {
+  const hal::TimeNs end = monotonic_ns() + kLong;
+  for (hal::Tick tick = 0; monotonic_ns() < end; ++tick) {
+    bridge.latch(tick, monotonic_ns());
+    if (done()) return true;
+    bridge.commit(monotonic_ns());
+    ::usleep(10'000);
+  }
+  return false;
+}
+
+template <class F>
+bool wait_until(F&& done) {
+  for (const hal::TimeNs end = monotonic_ns() + kLong; monotonic_ns() < end; ::usleep(1000)) {
+    if (done()) return true;
+  }
+  return false;
+}
+
+TEST(FootbotBridge, DrivesAndStopsAtItsEnd) {
+  LiveModules live;
+  {
+    FootbotBridge bridge(settings(), live.opener());
+    auto* wheels = static_cast<hal::WheelSpeeds*>(bridge.robot().require(hal::port_type<hal::WheelSpeeds>()));
+    bridge.start();
+    const hal::Status ready = bridge.wait_active(kLong);
+    ASSERT_TRUE(ready.ok()) << ready.error().message;
+    wheels->set(0.1, 0.2);
+    EXPECT_TRUE(tick_until(bridge, [&] { return live.speed("left motor") == 24 && live.speed("right motor") == 48; }));
+  }
+  EXPECT_EQ(live.speed("left motor"), 0);
+  EXPECT_EQ(live.speed("right motor"), 0);
+}
+
+TEST(FootbotBridge, StopsTheRobotWhenTheLoopHangs) {
+  LiveModules live;
+  FootbotBridge bridge(settings(), live.opener());
+  auto* wheels = static_cast<hal::WheelSpeeds*>(bridge.robot().require(hal::port_type<hal::WheelSpeeds>()));
+  bridge.start();
+  ASSERT_TRUE(bridge.wait_active(kLong).ok());
+  wheels->set(0.1, 0.1);
+  ASSERT_TRUE(tick_until(bridge, [&] { return live.speed("left motor") == 24; }));
+  EXPECT_TRUE(wait_until([&] { return live.speed("left motor") == 0 && live.speed("right motor") == 0; }));
+  EXPECT_TRUE(wait_until([&] { return bridge.status().at_rest; }));
+}
+
+TEST(FootbotBridge, StopsAtOnceWhenTheControllerFails) {
+  LiveModules live;
+  FootbotBridge bridge(settings(), live.opener());
+  auto* wheels = static_cast<hal::WheelSpeeds*>(bridge.robot().require(hal::port_type<hal::WheelSpeeds>()));
+  bridge.start();
+  ASSERT_TRUE(bridge.wait_active(kLong).ok());
+  wheels->set(0.1, 0.1);
+  ASSERT_TRUE(tick_until(bridge, [&] { return live.speed("left motor") == 24; }));
+  bridge.fault(monotonic_ns(), "test");
+  EXPECT_TRUE(wait_until([&] { return live.speed("left motor") == 0; }));
+  EXPECT_TRUE(bridge.status().stopped);
+}
+
+TEST(FootbotBridge, ComesBackWhenTheCableIsInAgain) {
+  LiveModules live;
+  FootbotBridge bridge(settings(), live.opener());
+  auto* wheels = static_cast<hal::WheelSpeeds*>(bridge.robot().require(hal::port_type<hal::WheelSpeeds>()));
+  bridge.start();
+  ASSERT_TRUE(bridge.wait_active(kLong).ok());
+  wheels->set(0.1, 0.1);
+  ASSERT_TRUE(tick_until(bridge, [&] { return live.speed("left motor") == 24; }));
+  live.present = false;
+  ++live.cuts;
+  EXPECT_TRUE(tick_until(bridge, [&] { return bridge.state() == RobotState::Lost; }));
+  EXPECT_TRUE(tick_until(bridge, [&] { return bridge.status().trouble.find("no such bus") != std::string::npos; }));
+  live.present = true;
+  EXPECT_TRUE(tick_until(bridge, [&] { return bridge.state() == RobotState::Active; }));
+  EXPECT_TRUE(tick_until(bridge, [&] { return live.speed("left motor") == 24; }));
+  EXPECT_GE(bridge.status().links_opened, 2U);
+}
+
+TEST(FootbotBridge, SaysWhyItDoesNotStart) {
+  LiveModules live;
+  live.present = false;
+  FootbotBridge bridge(settings(), live.opener());
+  bridge.start();
+  ASSERT_TRUE(wait_until([&] { return !bridge.status().trouble.empty(); }));
+  const hal::Status ready = bridge.wait_active(hal::kNsPerMs);
+  ASSERT_FALSE(ready.ok());
+  EXPECT_EQ(ready.error().message, "foot-bot 'fb' is not there: cannot open memory: there is no such bus");
+}
+
+// --- the guardian ---
+
+/// A port on this machine that somebody may connect to, and all that he then says.
+class Listener {
+ public:
+  Listener() : fd_(::socket(AF_INET, SOCK_STREAM, 0)) {
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    socklen_t size = sizeof address;
+    EXPECT_EQ(::bind(fd_, reinterpret_cast<const sockaddr*>(&address), size), 0);
+    EXPECT_EQ(::listen(fd_, 4), 0);
+    EXPECT_EQ(::fcntl(fd_, F_SETFL, O_NONBLOCK), 0);
+    ::getsockname(fd_, reinterpret_cast<sockaddr*>(&address), &size);
+    link = "tcp:127.0.0.1:" + std::to_string(ntohs(address.sin_port));
+  }
+  ~Listener() { ::close(fd_); }
+  Listener(const Listener&) = delete;
+  Listener& operator=(const Listener&) = delete;
+  /// What the first that connected has said; he has left. Empty: nobody did.
+  std::vector<std::uint8_t> said() const {
+    const int peer = ::accept(fd_, nullptr, nullptr);
+    if (peer < 0) return {};
+    std::vector<std::uint8_t> all(4096);
+    std::size_t size = 0;
+    for (ssize_t n = 1; n > 0 && size < all.size(); size += static_cast<std::size_t>(n)) {
+      n = std::max<ssize_t>(::read(peer, all.data() + size, all.size() - size), 0);
+    }
+    ::close(peer);
+    all.resize(size);
+    return all;
+  }
+  std::string link;
+
+ private:
+  int fd_;
+};
+
+const std::vector<LastWords> kWords = {{0xA00C, {1, 0, 34, 0, 0, 0}}, {0xA00C, {2, 0, 34, 0, 0, 0}}};
+
+TEST(FootbotGuardian, SaysTheLastWordsOfAHubThatWasKilled) {
+  const Listener robot, released, replaced;
+  std::array<int, 2> alive{};  // ends when the guardian does, which inherits it
+  ASSERT_EQ(::pipe(alive.data()), 0);
+  const pid_t hub = ::fork();
+  if (hub == 0) {
+    auto guardian = Guardian::start();
+    guardian->watch(robot.link, kWords);
+    guardian->watch(released.link, kWords);
+    guardian->release(released.link);
+    guardian->watch(replaced.link, kWords);
+    guardian->watch(replaced.link, {});
+    ::kill(::getpid(), SIGKILL);
+  }
+  int status = 0;
+  ::waitpid(hub, &status, 0);
+  ASSERT_TRUE(WIFSIGNALED(status));
+  ::close(alive[1]);
+  char nothing = 0;
+  EXPECT_EQ(::read(alive[0], &nothing, 1), 0);
+  ::close(alive[0]);
+  const std::vector<std::uint8_t> said = robot.said();
+  const std::vector<std::uint8_t> once = {6, 0, 0, 0, 0x0C, 0xA0, 1, 0, 34, 0, 0, 0,
+                                          6, 0, 0, 0, 0x0C, 0xA0, 2, 0, 34, 0, 0, 0};
+  ASSERT_EQ(said.size(), 4 * once.size());
+  for (std::size_t i = 0; i < said.size(); ++i) EXPECT_EQ(said[i], once[i % once.size()]);
+  EXPECT_TRUE(released.said().empty());
+  EXPECT_TRUE(replaced.said().empty());
+}
+
+TEST(FootbotGuardian, EndsWithItsHubAndStopsWhatWasNotReleased) {
+  const Listener robot;
+  {
+    auto guardian = Guardian::start();
+    ASSERT_TRUE(guardian.ok());
+    guardian->watch(robot.link, kWords);
+  }
+  EXPECT_FALSE(robot.said().empty());
+}
+
+}  // namespace
+}  // namespace tandem::bridges::footbot
