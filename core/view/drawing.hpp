@@ -20,6 +20,8 @@ struct Drawing {
       double x_m = 0.0, y_m = 0.0;  ///< body frame
     };
     std::vector<Led> leds;
+    bool leds_on_turret = false;   ///< they turn with it
+    double gripper_reach_m = 0.0;  ///< beyond the body; 0: none. It looks where the turret does
   };
   struct Robot {
     double x_m = 0.0, y_m = 0.0;
@@ -28,6 +30,8 @@ struct Drawing {
     std::uint32_t first_light = 0;  ///< its lit LEDs: `lit[first_light, first_light + lights)`
     std::uint32_t lights = 0;
     bool halted = false;
+    double turret_rad = 0.0;  ///< relative to the body, counter-clockwise
+    bool holding = false;     ///< its gripper holds something
   };
   struct LitLed {
     std::uint32_t led = 0;  ///< of its kind

@@ -14,7 +14,7 @@ std::uint32_t kind_of(const hal::DataSheet& sheet, Drawing& drawing) {
   for (std::uint32_t k = 0; k < drawing.kinds.size(); ++k) {
     if (drawing.kinds[k].name == sheet.kind) return k;
   }
-  Drawing::Kind kind{std::string(sheet.kind), sheet.body_radius_m, {}};
+  Drawing::Kind kind{std::string(sheet.kind), sheet.body_radius_m, {}, sheet.leds_on_turret, sheet.gripper_reach_m};
   for (const hal::Mount& led : sheet.leds) kind.leds.push_back({led.x_m, led.y_m});
   drawing.kinds.push_back(std::move(kind));
   return static_cast<std::uint32_t>(drawing.kinds.size() - 1);
@@ -43,6 +43,8 @@ void add_robots(const Space& space, const PictureOptions& options, Drawing& draw
     robot.heading_rad = pose.heading_rad();
     robot.kind = kind_of(space.data_sheet(id), drawing);
     robot.halted = space.halted(id);
+    robot.turret_rad = space.turret_rad(id);
+    robot.holding = space.holding(id);
     add_lit_leds(space, id, robot, drawing);
     drawing.robots.push_back(robot);
     if (!space.external(id)) continue;

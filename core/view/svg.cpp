@@ -298,11 +298,14 @@ class Page {
     Svg place;
     place << "translate(" << r.x_m << " " << r.y_m << ") rotate(" << degrees(r.heading_rad) << ")";
     const std::string transform = place.take();
-    if (r.lights == 0 && !r.halted) {
+    if (r.lights == 0 && !r.halted && kind.gripper_reach_m == 0.0) {
       svg_ << "<use href=\"#kind" << std::size_t{r.kind} << "\" transform=\"" << transform << "\"/>\n";
       return;
     }
     svg_ << "<g transform=\"" << transform << "\"><use href=\"#kind" << std::size_t{r.kind} << "\"/>";
+    const bool turret = kind.gripper_reach_m > 0.0 || (kind.leds_on_turret && r.turret_rad != 0.0);
+    if (turret) svg_ << "<g class=\"turret\" transform=\"rotate(" << degrees(r.turret_rad) << ")\">";
+    if (kind.gripper_reach_m > 0.0) svg_ << gripper(kind, r.kind, r.holding);
     for (std::uint32_t i = 0; i < r.lights; ++i) {
       const Drawing::LitLed& lit = d_.lit[r.first_light + i];
       const Drawing::Kind::Led& led = kind.leds[lit.led];
@@ -310,8 +313,22 @@ class Page {
            << "\" fill=\"" << hex(lit.color) << "\" stroke=\"" << hex(lit.color)
            << "\" stroke-opacity=\"0.3\" stroke-width=\"" << 0.26 * kind.radius_m << "\"/>";
     }
+    if (turret) svg_ << "</g>";
     if (r.halted) svg_ << halted_mark(kind.radius_m);
     svg_ << "</g>\n";
+  }
+
+  /// An arm beyond the rim along x; filled while it holds something.
+  static std::string gripper(const Drawing::Kind& kind, std::size_t number, bool holding) {
+    const double from = 0.72 * kind.radius_m;
+    const double half = 0.16 * kind.radius_m;
+    const std::string_view edge = body_colors(number).edge;
+    Svg s;
+    s << "<rect class=\"gripper\" x=\"" << from << "\" y=\"" << -half << "\" width=\""
+      << kind.radius_m + kind.gripper_reach_m - from << "\" height=\"" << 2.0 * half << "\" fill=\""
+      << (holding ? edge : std::string_view("#ffffff")) << "\" stroke=\"" << edge << "\" stroke-width=\""
+      << 0.08 * kind.radius_m << "\"/>";
+    return s.take();
   }
 
   static std::string halted_mark(double radius) {

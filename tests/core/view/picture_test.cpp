@@ -5,8 +5,10 @@
 #include <gtest/gtest.h>
 #include <sstream>
 
+#include "core/space/stores.hpp"
 #include "hal/device/leds.hpp"
 #include "hal/spec/epuck.hpp"
+#include "hal/spec/footbot.hpp"
 #include "tests/core/space_by_hand.hpp"
 #include "tests/core/view/well_formed.hpp"
 
@@ -41,6 +43,30 @@ TEST(Picture, TakesArenaRobotsAndTitleFromTheSpace) {
   EXPECT_EQ(d.lit[0].color, hal::kGreen);
   EXPECT_EQ(d.robots[1].lights, 0U);
   EXPECT_FALSE(d.floor);
+}
+
+TEST(Picture, TakesTurretsAndGrippersFromTheSpace) {
+  Space space;
+  set_up(space);
+  add_robot(space, hal::footbot::kDataSheet, "fb", 1.0, 1.0, 0.0, {&hal::port_type<hal::RingLeds>()});
+  Bodies& b = space.stores().bodies;
+  b.turrets.resize(b.size());
+  b.grips.resize(b.size());
+  const std::size_t row = space.stores().row_of(space.robot(2));
+  b.turrets[row].angle_rad = -0.75;
+  b.grips[row].joint = 0;
+  space.port<hal::RingLeds>(space.robot(2))->set(hal::footbot::kBeacon, hal::kBlue);
+  const Drawing d = drawing_of(space, {});
+  ASSERT_EQ(d.kinds.size(), 2U);
+  EXPECT_EQ(d.kinds[0].gripper_reach_m, 0.0);
+  EXPECT_TRUE(d.kinds[1].leds_on_turret);
+  EXPECT_GT(d.kinds[1].gripper_reach_m, 0.0);
+  ASSERT_EQ(d.robots.size(), 3U);
+  EXPECT_EQ(d.robots[0].turret_rad, 0.0);
+  EXPECT_EQ(d.robots[2].turret_rad, -0.75);
+  EXPECT_TRUE(d.robots[2].holding);
+  ASSERT_EQ(d.robots[2].lights, 1U) << "the beacon is the last of the LEDs";
+  EXPECT_EQ(d.kinds[1].leds[d.lit[d.robots[2].first_light].led].x_m, 0.0);
 }
 
 TEST(Picture, NamesRealRobotsAndWhatIsWrongWithThem) {

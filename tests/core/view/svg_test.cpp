@@ -67,6 +67,25 @@ TEST(Svg, ShowsLitLedsWhereTheyAreMountedInTheirColour) {
   EXPECT_NE(svg.find("cx=\"0\" cy=\"-0.035\" r=\"0.0084\" fill=\"#0080ff\""), std::string::npos) << svg;
 }
 
+TEST(Svg, TurnsGripperAndLedsWithTheTurretAndFillsAGripperThatHolds) {
+  Drawing d = small_arena();
+  d.kinds = {{"foot-bot", 0.085, {{0.09, 0.0}}, true, 0.03}};
+  d.robots = {{0.0, 0.0, 0.0, 0, 0, 1, false, std::numbers::pi / 2.0, false},
+              {0.5, 0.0, 0.0, 0, 1, 0, false, -std::numbers::pi / 4.0, true}};
+  d.lit = {{0, hal::kRed}};
+  const std::string svg = to_svg(d);
+  EXPECT_EQ(why_not_well_formed(svg), "");
+  EXPECT_EQ(count(svg, "class=\"gripper\""), 2U);
+  const std::size_t first = svg.find("class=\"turret\" transform=\"rotate(90)\"");
+  const std::size_t second = svg.find("class=\"turret\" transform=\"rotate(-45)\"");
+  ASSERT_NE(first, std::string::npos) << svg;
+  ASSERT_NE(second, std::string::npos) << svg;
+  const std::size_t led = svg.find("class=\"led\"");
+  EXPECT_TRUE(first < led && led < second && svg.find("</g>", first) > led) << "the LED turns, too";
+  EXPECT_NE(svg.find("fill=\"#ffffff\"", first), std::string::npos);
+  EXPECT_EQ(svg.find("fill=\"#ffffff\"", second), std::string::npos) << "the second one holds something";
+}
+
 TEST(Svg, TheLegendCountsKindsRealRobotsStoppedOnesAndLights) {
   Drawing d = small_arena();
   d.kinds.push_back({"foot-bot", 0.085, {}});
