@@ -29,6 +29,7 @@ hal::Result<core::RobotId> Puppeteer::find(const core::World& world, const std::
 
 void Puppeteer::after_sense(core::World& world) {
   const core::Space& space = world.space();
+  if (!space.contains(robot_)) return;  // a hook took it away: its firmware goes on without a body
   bridges::epuck_emulator::BodySenses senses;
   const auto copy = [](const auto& from, auto& to) {
     std::copy_n(from.begin(), std::min(from.size(), to.size()), to.begin());
@@ -44,6 +45,7 @@ void Puppeteer::after_sense(core::World& world) {
 
 void Puppeteer::after_filter(core::World& world) {
   core::Space& space = world.space();
+  if (!space.contains(robot_)) return;
   const bridges::epuck_emulator::BodyCommand command = body_.command();
   space.port<hal::WheelSpeeds>(robot_)->set(command.left_m_s, command.right_m_s);
   auto* ring = space.port<hal::RingLeds>(robot_);

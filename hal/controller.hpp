@@ -13,6 +13,9 @@
 namespace tandem::hal {
 
 /// A robot's control program. Takes its devices in its constructor and keeps references to them.
+///
+/// A simulation can be put back to an earlier moment where its controllers can be copied: members then are values, or
+/// share what no step changes. A copy drives the same robot through the same ports, never at the same time.
 class Controller {
  public:
   virtual ~Controller() = default;
@@ -43,6 +46,9 @@ struct ControllerType {
   std::size_t (*step_row)(std::byte* first, std::size_t stride, std::size_t begin, std::size_t count,
                           const std::uint8_t* halted, StepFault& fault) = nullptr;
   void (*destroy)(void* controller) = nullptr;
+  /// Constructs in `where` a copy of the controller at `from`, for snapshots. Null where the class has no copy
+  /// constructor. @throws whatever its copy constructor throws
+  void (*copy)(void* where, const void* from) = nullptr;
 };
 
 namespace detail {
@@ -104,6 +110,8 @@ const ControllerType& controller_type(std::string_view name, std::string_view su
   };
   type.step_row = &detail::step_row<T>;
   type.destroy = [](void* controller) { static_cast<T*>(controller)->~T(); };
+  if constexpr (std::is_copy_constructible_v<T>)
+    type.copy = [](void* where, const void* from) { ::new (where) T(*static_cast<const T*>(from)); };
   return type;
 }
 

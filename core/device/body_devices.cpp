@@ -29,7 +29,7 @@ struct ForceNoise {
 class AccelerometerSensor final : public Sensor {
  public:
   AccelerometerSensor(double wheel_base_m, double noise, std::size_t capacity)
-      : wheel_base_m_(wheel_base_m), noise_m_s2_(noise), last_m_s_(capacity, 0.0) {}
+      : wheel_base_m_(wheel_base_m), noise_m_s2_(noise), last_m_s_(capacity, 1, 0.0) {}
 
   void sense(const DeviceContext& context, void* ports) noexcept override {
     auto* meters = static_cast<hal::Accelerometer*>(ports);
@@ -38,8 +38,8 @@ class AccelerometerSensor final : public Sensor {
       const std::size_t row = context.block.first_row + i;
       const double speed = 0.5 * (b.left_m_s[row] + b.right_m_s[row]);
       const double turn = (b.right_m_s[row] - b.left_m_s[row]) / wheel_base_m_;
-      std::array<double, 3> force{(speed - last_m_s_[i]) / context.tick_s, speed * turn, kGravity_m_s2};
-      last_m_s_[i] = speed;
+      std::array<double, 3> force{(speed - last_m_s_.values[i]) / context.tick_s, speed * turn, kGravity_m_s2};
+      last_m_s_.values[i] = speed;
       if (noise_m_s2_ > 0.0) {
         const auto bits = draw(context.seed, b.entity[row], Stream::AccelerometerNoise, context.tick);
         const auto xy = to_normal(bits[0], bits[1]);
@@ -53,11 +53,12 @@ class AccelerometerSensor final : public Sensor {
       for (std::size_t k = 0; k < 3; ++k) port.force_m_s2[k] = static_cast<float>(force[k]);
     }
   }
+  DeviceMemory* memory() noexcept override { return &last_m_s_; }
 
  private:
   double wheel_base_m_;
   double noise_m_s2_;
-  std::vector<double> last_m_s_;
+  DeviceMemory last_m_s_;
 };
 
 bool has_accelerometer(const hal::DataSheet& sheet) {
@@ -191,6 +192,7 @@ class MicrophoneSensor final : public Sensor {
   static double heard(const SpaceStores& stores, double x, double y, double z) noexcept {
     double level = 0.0;
     for (const SoundSource& s : stores.sounds) {
+      if (!s.alive) continue;
       const double d2 = (s.x_m - x) * (s.x_m - x) + (s.y_m - y) * (s.y_m - y) + (s.z_m - z) * (s.z_m - z);
       level += s.level / (1.0 + d2 / (kNear_m * kNear_m));
     }
@@ -232,7 +234,7 @@ class BatterySensor final : public Sensor {
         full_V_(setup.sheet.battery_full_V),
         empty_V_(setup.sheet.battery_empty_V),
         wheel_base_m_(setup.sheet.wheel_base_m),
-        charge_(capacity, setup.item.battery.start_charge) {
+        charge_(capacity, 1, setup.item.battery.start_charge) {
     by_time_ = config_.model != "motion";
     by_motion_ = config_.model != "time";
   }
@@ -247,8 +249,9 @@ class BatterySensor final : public Sensor {
         const Way way = wheel_base_m_ > 0.0 ? rolled(b, row) : flown(b, row);
         used += context.tick_s * (config_.pos_delta * way.speed_m_s + config_.orient_delta * way.turn_rad_s);
       }
-      charge_[i] = std::max(0.0, charge_[i] - used);
-      double read = config_.full_charge > 0.0 ? charge_[i] / config_.full_charge : 0.0;
+      double& charge = charge_.values[i];
+      charge = std::max(0.0, charge - used);
+      double read = config_.full_charge > 0.0 ? charge / config_.full_charge : 0.0;
       if (noise_ > 0.0) {
         const auto bits = draw(context.seed, b.entity[row], Stream::BatteryNoise, context.tick);
         read += noise_ * (2.0 * to_unit(bits[0]) - 1.0);
@@ -261,6 +264,7 @@ class BatterySensor final : public Sensor {
       port.supply_V = static_cast<float>(empty_V_ + read * (full_V_ - empty_V_));
     }
   }
+  DeviceMemory* memory() noexcept override { return &charge_; }
 
  private:
   struct Way {
@@ -280,7 +284,7 @@ class BatterySensor final : public Sensor {
   BatteryConfig config_;
   double noise_;
   double full_V_, empty_V_, wheel_base_m_;
-  std::vector<double> charge_;
+  DeviceMemory charge_;
   bool by_time_ = true;
   bool by_motion_ = false;
 };

@@ -22,6 +22,19 @@ struct DeviceContext {
   std::uint64_t seed;
 };
 
+/// What a device keeps from tick to tick: `per_slot` numbers for every slot of its block.
+struct DeviceMemory {
+  std::size_t per_slot = 1;
+  double at_first = 0.0;  ///< what a new robot starts with
+  std::vector<double> values;
+
+  DeviceMemory(std::size_t capacity, std::size_t numbers_per_slot, double first)
+      : per_slot(numbers_per_slot), at_first(first), values(capacity * numbers_per_slot, first) {}
+  void renew(std::size_t slot) noexcept {
+    for (std::size_t i = slot * per_slot; i < (slot + 1) * per_slot; ++i) values[i] = at_first;
+  }
+};
+
 /// Fills the ports of one block. One object a block, so that state (a battery's charge) needs no locks. Reads the
 /// space, never other robots' ports.
 class Sensor {
@@ -29,9 +42,11 @@ class Sensor {
   virtual ~Sensor() = default;
   /// `ports` is the block's array of this port class; rows [0, block.used) are filled.
   virtual void sense(const DeviceContext& context, void* ports) noexcept = 0;
+  /// All that it keeps from tick to tick, or null. Snapshots copy it, and a slot's part is renewed for a new robot.
+  virtual DeviceMemory* memory() noexcept { return nullptr; }
 };
 
-/// Carries the commands of one block into the space, at the start of a tick.
+/// Carries the commands of one block into the space, at the start of a tick. Keeps nothing from tick to tick.
 class Actuator {
  public:
   virtual ~Actuator() = default;

@@ -49,7 +49,9 @@ class LightSensor final : public Sensor {
       port.validity = hal::Validity::Fresh;
       port.count = static_cast<std::uint32_t>(mounts_.size());
       port.level.fill(0.0F);
-      for (const LightSource& lamp : context.stores.lights) add_lamp(context, i, lamp, port);
+      for (const LightSource& lamp : context.stores.lights) {
+        if (lamp.alive) add_lamp(context, i, lamp, port);
+      }
       if (noise_ > 0.0F) add_noise(context, i, Stream::LightNoise, noise_, port.level.data(), mounts_.size());
     }
   }

@@ -161,9 +161,8 @@ struct EncoderErrors {
 
 class EncoderSensor final : public Sensor {
  public:
-  EncoderSensor(const EncoderErrors<0>& errors, std::size_t capacity) : errors_(errors) {
-    if (errors.dist_noise_m > 0.0) drift_m_.resize(2 * capacity, 0.0);
-  }
+  EncoderSensor(const EncoderErrors<0>& errors, std::size_t capacity)
+      : errors_(errors), drift_m_(errors.dist_noise_m > 0.0 ? capacity : 0, 2, 0.0) {}
 
   void sense(const DeviceContext& context, void* ports) noexcept override {
     auto* encoders = static_cast<hal::WheelEncoders*>(ports);
@@ -182,6 +181,7 @@ class EncoderSensor final : public Sensor {
       if (noisy) add_noise(context, b.entity[row], i, port);
     }
   }
+  DeviceMemory* memory() noexcept override { return drift_m_.values.empty() ? nullptr : &drift_m_; }
 
  private:
   static void hide(const HiddenRoll& hidden, hal::WheelEncoders& port) noexcept {
@@ -196,15 +196,17 @@ class EncoderSensor final : public Sensor {
     const auto symmetric = [&bits](std::size_t k) { return 2.0 * to_unit(bits[k]) - 1.0; };
     port.left_m_s += static_cast<float>(errors_.vel_noise_m_s * symmetric(0));
     port.right_m_s += static_cast<float>(errors_.vel_noise_m_s * symmetric(1));
-    if (drift_m_.empty()) return;
-    drift_m_[2 * i] += errors_.dist_noise_m * symmetric(2);
-    drift_m_[2 * i + 1] += errors_.dist_noise_m * symmetric(3);
-    port.left_m += drift_m_[2 * i];
-    port.right_m += drift_m_[2 * i + 1];
+    if (drift_m_.values.empty()) return;
+    double& left_m = drift_m_.values[2 * i];
+    double& right_m = drift_m_.values[2 * i + 1];
+    left_m += errors_.dist_noise_m * symmetric(2);
+    right_m += errors_.dist_noise_m * symmetric(3);
+    port.left_m += left_m;
+    port.right_m += right_m;
   }
 
   EncoderErrors<0> errors_;
-  std::vector<double> drift_m_;  // left, right of each row
+  DeviceMemory drift_m_;  // left, right of each slot
 };
 
 template <class Options>
@@ -237,14 +239,14 @@ struct OdometryErrors {
 class OdometrySensor final : public Sensor {
  public:
   OdometrySensor(double wheel_base_m, double noise_m, std::size_t capacity)
-      : wheel_base_m_(wheel_base_m), noise_m_(noise_m), reckoned_(capacity) {}
+      : wheel_base_m_(wheel_base_m), noise_m_(noise_m), reckoned_(capacity, 5, 0.0) {}
 
   void sense(const DeviceContext& context, void* ports) noexcept override {
     auto* places = static_cast<hal::Odometry*>(ports);
     const Bodies& b = context.stores.bodies;
     for (std::size_t i = 0; i < context.block.used; ++i) {
       const std::size_t row = context.block.first_row + i;
-      Reckoned& r = reckoned_[i];
+      Reckoned r = reckoned(i);
       double left_m = b.left_m[row];
       double right_m = b.right_m[row];
       if (!b.hidden_rolls.empty()) {
@@ -266,14 +268,24 @@ class OdometrySensor final : public Sensor {
       port.x_m = r.x_m;
       port.y_m = r.y_m;
       port.heading_rad = r.heading_rad;
+      keep(i, r);
     }
   }
+  DeviceMemory* memory() noexcept override { return &reckoned_; }
 
  private:
   struct Reckoned {
     double x_m = 0.0, y_m = 0.0, heading_rad = 0.0;
     double left_m = 0.0, right_m = 0.0;  // that were taken into account
   };
+  Reckoned reckoned(std::size_t slot) const noexcept {
+    const double* v = reckoned_.values.data() + slot * reckoned_.per_slot;
+    return {v[0], v[1], v[2], v[3], v[4]};
+  }
+  void keep(std::size_t slot, const Reckoned& r) noexcept {
+    const std::array<double, 5> v = {r.x_m, r.y_m, r.heading_rad, r.left_m, r.right_m};
+    std::copy(v.begin(), v.end(), reckoned_.values.data() + slot * reckoned_.per_slot);
+  }
   /// Along an arc: its chord points half of the turn to the side.
   static void go(Reckoned& r, double way_m, double turn_rad) noexcept {
     const double half = 0.5 * turn_rad;
@@ -285,7 +297,7 @@ class OdometrySensor final : public Sensor {
 
   double wheel_base_m_;
   double noise_m_;
-  std::vector<Reckoned> reckoned_;
+  DeviceMemory reckoned_;
 };
 
 template <class Options>

@@ -1,15 +1,31 @@
 // Hooks: what the experiment itself does around the robots (ARGoS calls them loop functions).
 #pragma once
+#include <any>
 #include <memory>
 #include <string>
 
 #include "core/scenario/element.hpp"
 #include "hal/plugin.hpp"
+#include "hal/result.hpp"
 #include "hal/time.hpp"
 
 namespace tandem::core {
 
 class Space;
+
+/// Lets a hook keep moments of the run and go back to them. Requests take effect when the current step is over (those
+/// of `before_run`: before the first step), in the order in which they were made; those of `after_run` have none.
+class Checkpoints {
+ public:
+  virtual ~Checkpoints() = default;
+
+  /// Keeps the moment under this name, replacing an earlier one. A moment that cannot be kept (World::snapshot says
+  /// when) ends the run, and says why.
+  virtual void save(const std::string& name) = 0;
+  /// Goes back: the next step is the one that followed the moment. Robots, objects, controllers, time and what hooks
+  /// hand out in `Hook::save` are then as they were. Errors: there is no moment of that name.
+  virtual hal::Status restore(const std::string& name) = 0;
+};
 
 /// What a hook is handed: the whole simulated state, to read and to change, and where the run is.
 struct HookContext {
@@ -17,6 +33,7 @@ struct HookContext {
   hal::Tick tick = 0;  ///< the step about to run, or just run
   std::int64_t ticks_per_second = 10;
   std::uint64_t seed = 0;
+  Checkpoints& checkpoints;
 };
 
 /// Called from the thread that steps the world, never during a parallel phase. An exception ends the run, by name.
@@ -34,6 +51,11 @@ class Hook {
   /// Reflectance of the floor at (x, y) in W, 0 black to 1 white; asked once a floor pixel when the file says
   /// `<floor source="loop_functions"/>`, and again after `Space::repaint_floor`.
   virtual double floor(double /*x_m*/, double /*y_m*/) { return 0.5; }
+
+  /// What the hook remembers that its later calls depend on, for snapshots; and taking it back. A hook without such
+  /// needs neither. What `save` leaves out survives going back: a count of attempts, say.
+  virtual std::any save() const { return {}; }
+  virtual void restore(const std::any& /*saved*/) {}
 };
 
 /// What a plug-in registers under category "hook".

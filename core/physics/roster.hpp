@@ -14,7 +14,7 @@ class Roster {
  public:
   struct Entry {
     BodyKey key;
-    std::uint32_t identity = 0;  ///< tells a renewed row from the robot that was there before
+    std::uint32_t identity = 0;  ///< tells a renewed row, or an object that changed, from what was there before
     bool owned = false;
     Double body;
   };
@@ -32,7 +32,8 @@ class Roster {
       const bool owned = mirror == region.mirrored.end() || (own != region.owned.end() && own->value < mirror->value);
       const BodyKey key = owned ? *own++ : *mirror++;
       while (old != entries_.end() && old->key < key) destroy((old++)->body);
-      const std::uint32_t identity = key.is_object() ? 0 : stores.bodies.entity[key.index()];
+      const std::uint32_t identity =
+          key.is_object() ? stores.objects[key.index()].version : stores.bodies.entity[key.index()];
       if (old != entries_.end() && old->key == key) {
         if (old->identity == identity) {
           next_.push_back(std::move(*old++));

@@ -145,18 +145,22 @@ void Occupancy::add(const Obstacle& o) {
 }
 
 const Obstacle* Occupancy::hit(const Obstacle& o) const {
+  return hit(o, nullptr);
+}
+
+const Obstacle* Occupancy::hit(const Obstacle& o, const Filter& counts) const {
   for (std::size_t l = 0; l < levels_used_; ++l) {
     if (levels_[l].members.empty()) continue;
-    if (const Obstacle* found = hit(levels_[l], o); found != nullptr) return found;
+    if (const Obstacle* found = hit(levels_[l], o, counts); found != nullptr) return found;
   }
   return nullptr;
 }
 
-const Obstacle* Occupancy::hit(const Level& level, const Obstacle& o) const {
+const Obstacle* Occupancy::hit(const Level& level, const Obstacle& o, const Filter& counts) const {
   const Cells cells = cells_of(o, level.per_cell);
   if (cells.count() > static_cast<double>(level.members.size())) {  // something huge among few
     for (const std::uint32_t i : level.members) {
-      if (overlap(o, obstacles_[i])) return &obstacles_[i];
+      if (overlap(o, obstacles_[i]) && (!counts || counts(obstacles_[i]))) return &obstacles_[i];
     }
     return nullptr;
   }
@@ -164,7 +168,7 @@ const Obstacle* Occupancy::hit(const Level& level, const Obstacle& o) const {
     for (std::int64_t x = cells.x0; x <= cells.x1; ++x) {
       for (std::uint32_t i = slot_of(level.table, key_of(x, y)).head; i != kNone; i = level.links[i].next) {
         const Obstacle& other = obstacles_[level.links[i].obstacle];
-        if (overlap(o, other)) return &other;
+        if (overlap(o, other) && (!counts || counts(other))) return &other;
       }
     }
   }

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 namespace tandem::core {
@@ -31,6 +32,8 @@ bool overlap(const Obstacle& a, const Obstacle& b) noexcept;
 /// that neither a crowd of small things nor one huge thing is slow.
 class Occupancy {
  public:
+  using Filter = std::function<bool(const Obstacle&)>;
+
   /// `cell_m`: about the diameter of the most frequent obstacle.
   explicit Occupancy(double cell_m);
 
@@ -38,6 +41,8 @@ class Occupancy {
   void add(const Obstacle& o);
   /// Some obstacle that `o` overlaps, or null. Valid until the next `add`.
   const Obstacle* hit(const Obstacle& o) const;
+  /// The same among those for which `counts(obstacle)` is true.
+  const Obstacle* hit(const Obstacle& o, const Filter& counts) const;
 
  private:
   static constexpr std::size_t kLevels = 48;
@@ -66,7 +71,7 @@ class Occupancy {
   static Slot& slot_of(std::vector<Slot>& table, std::uint64_t key) noexcept;
   static const Slot& slot_of(const std::vector<Slot>& table, std::uint64_t key) noexcept;
   static void grow(Level& level, std::size_t slots);
-  const Obstacle* hit(const Level& level, const Obstacle& o) const;
+  const Obstacle* hit(const Level& level, const Obstacle& o, const Filter& counts) const;
 
   std::vector<Obstacle> obstacles_;
   std::array<Level, kLevels> levels_;

@@ -157,7 +157,7 @@ void take_hold(SpaceStores& s, std::size_t row, BodyKey held, double height_m, d
   const Place b = place_of(s, held);
   const std::uint32_t number = free_joint(s);
   Joint& joint = s.joints[number];
-  const std::uint32_t generation = joint.generation + 1;
+  const std::uint32_t generation = ++s.joint_generations;
   const double wx = a.x_m - b.x_m;
   const double wy = a.y_m - b.y_m;
   joint = {};
@@ -226,7 +226,7 @@ void drive_load(SpaceStores& s, std::size_t row, Joint& joint, double tick_s) no
   joint.turns = wish.turns;
   joint.motor_torque_Nm = wish.motor_torque_Nm;
   joint.heading_rad = turn_between(place_of(s, joint.a), place_of(s, joint.b));
-  s.bodies.grips[row].generation = ++joint.generation;
+  s.bodies.grips[row].generation = joint.generation = ++s.joint_generations;
 }
 
 void treat(SpaceStores& s, std::size_t row, double tick_s) {

@@ -60,6 +60,11 @@ void RegionKeeper::build(SpaceStores& stores, double tick_s) {
     borders_ = borders_ || !region.everywhere();
     lists_ = lists_ || region.listed;
   }
+  stores.border_reach_m = -1.0;
+  fit(stores, tick_s);
+}
+
+void RegionKeeper::fit(SpaceStores& stores, double tick_s) {
   double largest_m = 0.0;
   double robot_m = 0.0;
   double hop_m = 0.0;
@@ -75,7 +80,9 @@ void RegionKeeper::build(SpaceStores& stores, double tick_s) {
   // A body counts for a region when it can touch one of the region's bodies within the tick, or touch a robot that
   // does: so that the doubles at the border meet what their originals meet.
   extra_reach_m_ = largest_m + 2.0 * robot_m + 2.0 * hop_m;
+  if (stores.border_reach_m == largest_m + extra_reach_m_) return;
   stores.border_reach_m = largest_m + extra_reach_m_;
+  ++stores.immovables_version;  // engines hold those near their borders
   map_.build(stores.regions, stores.min_x_m, stores.min_y_m, stores.max_x_m, stores.max_y_m,
              largest_m + extra_reach_m_);
 }

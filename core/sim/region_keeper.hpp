@@ -15,6 +15,9 @@ class RegionKeeper {
  public:
   /// Call when the regions, robots and objects of `stores` are made. `tick_s` bounds how far a body moves in a tick.
   void build(SpaceStores& stores, double tick_s);
+  /// Call when bodies came or went: larger ones are noticed from farther away. What it keeps depends on the stores as
+  /// they are now, not on what was there before.
+  void fit(SpaceStores& stores, double tick_s);
 
   /// Finds the regions of all bodies that were put somewhere (rows flagged kMoved, objects whose region is kNoRegion).
   /// Those that no region can hold are added to `nowhere`; they stay where they are, and in no region's lists.

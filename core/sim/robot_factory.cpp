@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <map>
 #include <set>
 
@@ -18,6 +19,7 @@ namespace tandem::core {
 namespace {
 
 constexpr std::size_t kCacheLine = 64;
+constexpr std::uint32_t kNobody = 0xFFFFFFFFU;
 
 /// Position along Morton's space-filling curve over a grid of 2^16 x 2^16 cells.
 std::uint32_t curve_position(double x01, double y01) noexcept {
@@ -31,12 +33,33 @@ std::uint32_t curve_position(double x01, double y01) noexcept {
   return spread(x01) | (spread(y01) << 1);
 }
 
+/// Zeroed memory for a block: of the slab at the start, of its own (`slab` null) while the run goes on, because a
+/// snapshot may be the last that needs it.
+std::byte* make_array(RobotBlock& block, Slab* slab, std::size_t size, std::size_t type_align) {
+  const std::size_t align = std::max(type_align, kCacheLine);
+  if (slab != nullptr) return slab->take(size, align);
+  auto* const array = static_cast<std::byte*>(allocate_large(size, align));
+  block.own_arrays.emplace_back(array, [size, align](std::byte* p) { free_large(p, size, align); });
+  std::memset(array, 0, size);
+  return array;
+}
+
+/// Gives the block an array for each port of its group that it has none for yet.
+void add_port_arrays(const RobotGroup& group, RobotBlock& block, Slab* slab) {
+  for (std::size_t p = block.ports.size(); p < group.ports.size(); ++p) {
+    const hal::PortType& type = *group.ports[p];
+    std::byte* const array = make_array(block, slab, type.size * block.capacity, type.align);
+    for (std::size_t i = 0; i < block.capacity; ++i) type.reset(array + i * type.size);
+    block.ports.push_back(array);
+  }
+}
+
 /// A controller constructor's view of the robot that it is to drive.
 class ConstructedRobot final : public hal::Robot {
  public:
-  ConstructedRobot(const Scenario& scenario, SpaceStores& stores, RobotGroup& group, RobotBlock& block,
-                   std::uint64_t run_seed)
-      : scenario_(scenario), stores_(stores), group_(group), block_(block), run_seed_(run_seed) {}
+  ConstructedRobot(const Scenario& scenario, const SpaceStores& stores, RobotGroup& group, RobotBlock& block,
+                   Slab* slab, std::uint64_t run_seed)
+      : scenario_(scenario), stores_(stores), group_(group), block_(block), slab_(slab), run_seed_(run_seed) {}
 
   void select(std::size_t slot, std::uint32_t entity) {
     slot_ = slot;
@@ -74,7 +97,7 @@ class ConstructedRobot final : public hal::Robot {
                              "' has another layout in the controller's library than in "
                              "this program; rebuild the library");
     }
-    for (std::size_t b = block_.ports.size(); b < group_.ports.size(); ++b) add_array(*group_.ports[b]);
+    add_port_arrays(group_, block_, slab_);
     return block_.ports[i] + slot_ * type.size;
   }
 
@@ -98,281 +121,434 @@ class ConstructedRobot final : public hal::Robot {
                            "' does not list; add <" + name + " implementation=\"default\"/> to its <" + role + "s>");
   }
 
-  void add_array(const hal::PortType& type) {
-    std::byte* const array = stores_.slab.take(type.size * block_.capacity, std::max(type.align, kCacheLine));
-    for (std::size_t i = 0; i < block_.capacity; ++i) type.reset(array + i * type.size);
-    block_.ports.push_back(array);
-  }
-
   const Scenario& scenario_;
-  SpaceStores& stores_;
+  const SpaceStores& stores_;
   RobotGroup& group_;
   RobotBlock& block_;
+  Slab* slab_;
   std::uint64_t run_seed_;
   std::size_t slot_ = 0;
   std::uint32_t entity_ = 0;
   std::string id_;
 };
 
-/// Robots that share a block must share everything that is not per robot.
-bool same_group(const RobotItem& a, const RobotItem& b) {
-  return a.kind == b.kind && a.controller == b.controller && !a.params && !b.params && a.rab_range_m == b.rab_range_m &&
-         a.rab_payload == b.rab_payload && a.battery.model == b.battery.model &&
-         a.battery.start_charge == b.battery.start_charge && a.battery.full_charge == b.battery.full_charge &&
-         a.battery.delta == b.battery.delta && a.battery.pos_delta == b.battery.pos_delta &&
-         a.battery.orient_delta == b.battery.orient_delta;
+bool same_battery(const BatteryConfig& a, const BatteryConfig& b) {
+  return a.model == b.model && a.start_charge == b.start_charge && a.full_charge == b.full_charge &&
+         a.delta == b.delta && a.pos_delta == b.pos_delta && a.orient_delta == b.orient_delta;
 }
 
-class Factory {
- public:
-  Factory(const Scenario& scenario, std::uint64_t seed, hal::PluginLoader& loader, SpaceStores& stores,
-          Problems& problems)
-      : scenario_(scenario), seed_(seed), loader_(loader), stores_(stores), problems_(problems) {}
+bool same_kit(const RobotItem& a, const RobotItem& b) {
+  return a.kind == b.kind && a.controller == b.controller && a.rab_range_m == b.rab_range_m &&
+         a.rab_payload == b.rab_payload && same_battery(a.battery, b.battery);
+}
 
-  RobotDevices make(const std::vector<RobotRequest>& requests) {
-    std::vector<std::vector<std::uint32_t>> members = group(requests);
-    RobotDevices devices;
-    stores_.bodies.reserve(requests.size());
-    for (std::size_t g = 0; g < members.size(); ++g) {
-      sort_by_place(requests, members[g]);
-      if (prepare_group(g)) make_blocks(g, requests, members[g], devices);
-    }
-    for (const RobotGroup& made : stores_.groups) {
-      if (made.sheet != nullptr && made.sheet->flies) stores_.bodies.flight.resize(stores_.bodies.size());
-    }
-    add_mechanisms();
-    if (sends_) stores_.broadcasts.resize(stores_.bodies.size());
-    return devices;
-  }
+/// Robots that share a block must share everything that is not per robot.
+bool same_group(const RobotItem& a, const RobotItem& b) {
+  return same_kit(a, b) && !a.params && !b.params;
+}
 
- private:
-  /// Rows for what turns and holds, where a controller takes any port of it.
-  void add_mechanisms() {
-    Bodies& b = stores_.bodies;
-    const auto taken = [this](std::initializer_list<std::string_view> names) {
-      for (const RobotGroup& made : stores_.groups) {
-        for (const hal::PortType* port : made.ports) {
-          if (std::find(names.begin(), names.end(), port->name) != names.end()) return true;
-        }
-      }
-      return false;
-    };
-    if (taken({hal::TurretDrive::kName, hal::TurretEncoder::kName})) b.turrets.resize(b.size());
-    if (taken({hal::GripperDrive::kName})) b.grips.resize(b.size());
-    if (taken({hal::ScannerDrive::kName})) b.scanners.resize(b.size());
-    if (slants_) b.hidden_rolls.resize(b.size());
-  }
+bool same_element(const Element& a, const Element& b) {
+  const auto same = [](const Element::Attribute& x, const Element::Attribute& y) {
+    return x.name == y.name && x.value == y.value;
+  };
+  return a.name == b.name &&
+         std::equal(a.attributes.begin(), a.attributes.end(), b.attributes.begin(), b.attributes.end(), same) &&
+         std::equal(a.children.begin(), a.children.end(), b.children.begin(), b.children.end(), &same_element);
+}
 
-  void problem(int line, std::string message) {
-    problems_.push_back({scenario_.file, line, std::move(message), false});
-  }
-
-  std::vector<std::vector<std::uint32_t>> group(const std::vector<RobotRequest>& requests) {
-    std::vector<std::vector<std::uint32_t>> members;
-    std::vector<std::size_t> group_of_item(scenario_.robots.size(), 0);
-    for (std::size_t i = 0; i < scenario_.robots.size(); ++i) {
-      std::size_t g = 0;
-      while (g < first_item_.size() && !same_group(scenario_.robots[first_item_[g]], scenario_.robots[i])) ++g;
-      if (g == first_item_.size()) {
-        first_item_.push_back(i);
-        members.emplace_back();
-        stores_.groups.emplace_back();
-      }
-      group_of_item[i] = g;
-    }
-    for (std::size_t r = 0; r < requests.size(); ++r)
-      members[group_of_item[requests[r].item]].push_back(static_cast<std::uint32_t>(r));
-    return members;
-  }
-
-  void sort_by_place(const std::vector<RobotRequest>& requests, std::vector<std::uint32_t>& members) const {
-    const double width = stores_.max_x_m - stores_.min_x_m;
-    const double depth = stores_.max_y_m - stores_.min_y_m;
-    std::vector<std::uint64_t> keys;
-    keys.reserve(members.size());
-    for (const std::uint32_t r : members) {
-      const std::uint32_t place =
-          curve_position((requests[r].x_m - stores_.min_x_m) / width, (requests[r].y_m - stores_.min_y_m) / depth);
-      keys.push_back((static_cast<std::uint64_t>(place) << 32) | r);
-    }
-    std::sort(keys.begin(), keys.end());
-    for (std::size_t i = 0; i < keys.size(); ++i) members[i] = static_cast<std::uint32_t>(keys[i]);
-  }
-
-  bool prepare_group(std::size_t g) {
-    const RobotItem& item = scenario_.robots[first_item_[g]];
-    const ControllerConfig& config = scenario_.controllers[item.controller];
-    RobotGroup& group = stores_.groups[g];
-    group.config = item.controller;
-    group.sheet = data_sheet_of(item.kind);
-    if (group.sheet == nullptr) {
-      problem(item.line, "unknown kind of robot '" + item.kind + "'");
-      return false;
-    }
-    group.rab_range_m = item.rab_range_m >= 0.0 ? item.rab_range_m : group.sheet->rab_range_m;
-    group.rab_payload = item.rab_payload >= 0 ? static_cast<unsigned>(item.rab_payload) : group.sheet->rab_payload;
-    const auto type = loader_.controller(config.library, config.label);
-    if (!type.ok()) {
-      problem(config.line, "controller '" + config.id + "': " + type.error().message);
-      return false;
-    }
-    group.controller = type.value();
-    const Element& params = item.params ? *item.params : config.params;
-    const std::size_t before = problems_.size();
-    ElementReader reader(params, problems_);
-    group.params = group.controller->read_params(reader);
-    reader.finish();
-    // Listed devices must exist even when the controller does not take them.
-    bool good = !has_errors(problems_, before);
-    good = check_devices(config, config.sensors, hal::Role::Sensor, *group.sheet) && good;
-    good = check_devices(config, config.actuators, hal::Role::Actuator, *group.sheet) && good;
-    return good;
-  }
-
-  bool check_devices(const ControllerConfig& config, const std::vector<DeviceChoice>& choices, hal::Role role,
-                     const hal::DataSheet& sheet) {
-    bool good = true;
-    for (const DeviceChoice& choice : choices) {
-      const DeviceType* type = find_device(choice.device, role, choice.implementation);
-      const int line = choice.options.line != 0 ? choice.options.line : config.line;
-      if (type == nullptr) {
-        std::string known;
-        for (const DeviceType& t : device_types()) {
-          if (t.device == choice.device && t.role == role)
-            known += (known.empty() ? "" : ", ") + std::string(t.implementation);
-        }
-        problem(line, known.empty() ? "no simulated device '" + choice.device + "'"
-                                    : "device '" + choice.device + "' has no implementation '" + choice.implementation +
-                                          "'; it has: " + known);
-        good = false;
-      } else if (!type->fits(sheet)) {
-        problem(line, "the robot '" + std::string(sheet.kind) + "' has no device '" + choice.device + "'");
-        good = false;
-      } else {
-        Problems found;
-        const RobotItem none;
-        const DeviceSetup setup{sheet, none};
-        if (type->make_sensor != nullptr) (void)type->make_sensor(choice.options, found, setup);
-        if (type->make_actuator != nullptr) (void)type->make_actuator(choice.options, found, setup);
-        if (checked_.insert(&choice).second) problems_.insert(problems_.end(), found.begin(), found.end());
-        good = good && !has_errors(found);
-      }
-    }
-    return good;
-  }
-
-  void make_blocks(std::size_t g, const std::vector<RobotRequest>& requests, const std::vector<std::uint32_t>& members,
-                   RobotDevices& devices) {
-    const std::size_t first_block = stores_.blocks.size();
-    for (std::size_t begin = 0; begin < members.size(); begin += kBlockRows) {
-      const std::size_t count = std::min(kBlockRows, members.size() - begin);
-      RobotBlock block;
-      block.group = g;
-      block.first_row = stores_.bodies.size();
-      block.capacity = count;
-      block.used = count;
-      stores_.bodies.resize(block.first_row + count);
-      stores_.blocks.push_back(std::move(block));
-      stores_.groups[g].blocks.push_back(stores_.blocks.size() - 1);
-      for (std::size_t i = 0; i < count; ++i) {
-        place(requests[members[begin + i]], static_cast<std::uint32_t>(stores_.blocks.size() - 1),
-              static_cast<std::uint32_t>(i));
-      }
-      if (!construct(stores_.blocks.back())) {
-        devices.blocks.resize(stores_.blocks.size());
-        return;
-      }
-    }
-    add_devices(g, first_block, devices);
-  }
-
-  void place(const RobotRequest& request, std::uint32_t block, std::uint32_t slot) {
-    RobotEntity& e = stores_.robots[request.entity];
-    e.block = block;
-    e.slot = slot;
-    e.alive = true;
-    Bodies& b = stores_.bodies;
-    const std::size_t row = stores_.blocks[block].first_row + slot;
-    b.x_m[row] = request.x_m;
-    b.y_m[row] = request.y_m;
-    b.cos_h[row] = std::cos(request.yaw_rad);
-    b.sin_h[row] = std::sin(request.yaw_rad);
-    b.radius_m[row] = static_cast<float>(stores_.groups[stores_.blocks[block].group].sheet->body_radius_m);
-    if (b.has_motion) {
-      b.motion[row].z_m = request.z_m;
-      b.motion[row].q_WB = {std::cos(0.5 * request.yaw_rad), 0.0, 0.0, std::sin(0.5 * request.yaw_rad)};
-    }
-    b.flags[row] = kAlive;
-    b.entity[row] = request.entity;
-  }
-
-  bool construct(RobotBlock& block) {
-    RobotGroup& group = stores_.groups[block.group];
-    const hal::ControllerType& type = *group.controller;
-    block.controller_stride = (type.size + type.align - 1) / type.align * type.align;
-    block.controllers = stores_.slab.take(block.controller_stride * block.capacity, std::max(type.align, kCacheLine));
-    ConstructedRobot robot(scenario_, stores_, group, block, seed_);
-    block.used = 0;
-    for (std::size_t slot = 0; slot < block.capacity; ++slot) {
-      const std::uint32_t entity = stores_.bodies.entity[block.first_row + slot];
-      robot.select(slot, entity);
-      std::string why;
-      try {
-        type.construct(block.controllers + slot * block.controller_stride, robot, group.params.get());
-        ++block.used;
-        continue;
-      } catch (const std::exception& e) {
-        why = e.what();
-      } catch (...) {
-        why = "threw an exception of unknown type";
-      }
-      const ControllerConfig& config = scenario_.controllers[group.config];
-      problem(config.line, "controller '" + config.id + "' (" + std::string(type.name) + ") of robot '" +
-                               std::string(robot.id()) + "' " + why);
-      return false;
-    }
-    return true;
-  }
-
-  void add_devices(std::size_t g, std::size_t first_block, RobotDevices& devices) {
-    RobotGroup& group = stores_.groups[g];
-    const ControllerConfig& config = scenario_.controllers[group.config];
-    const DeviceSetup setup{*group.sheet, scenario_.robots[first_item_[g]],
-                            1.0 / static_cast<double>(scenario_.ticks_per_second)};
-    devices.blocks.resize(stores_.blocks.size());
-    for (const hal::PortType* port : group.ports) {
-      const bool is_sensor = port->role == hal::Role::Sensor;
-      const DeviceChoice* choice = nullptr;
-      for (const DeviceChoice& c : is_sensor ? config.sensors : config.actuators) {
-        if (c.device == port->name) choice = &c;
-      }
-      const DeviceType* type = find_device(port->name, port->role, choice->implementation);
-      Problems already_reported;
-      const Recipe<Sensor> sensor = is_sensor ? type->make_sensor(choice->options, already_reported, setup) : nullptr;
-      const Recipe<Actuator> actuator =
-          is_sensor ? nullptr : type->make_actuator(choice->options, already_reported, setup);
-      for (std::size_t b = first_block; b < stores_.blocks.size(); ++b) {
-        const std::size_t capacity = stores_.blocks[b].capacity;
-        devices.blocks[b].sensors.push_back(is_sensor ? sensor(capacity) : nullptr);
-        devices.blocks[b].actuators.push_back(is_sensor ? nullptr : actuator(capacity));
-      }
-      if (port->name == hal::RangeAndBearingSend::kName && !is_sensor) sends_ = true;
-      if (!is_sensor && type->implementation == kSlanted) slants_ = true;
-    }
-  }
-
-  const Scenario& scenario_;
-  std::uint64_t seed_;
-  hal::PluginLoader& loader_;
-  SpaceStores& stores_;
-  Problems& problems_;
-  std::vector<std::size_t> first_item_;  // of each group
-  std::set<const DeviceChoice*> checked_;
-  bool sends_ = false;
-  bool slants_ = false;
-};
+bool same_params(const std::optional<Element>& a, const std::optional<Element>& b) {
+  return a && b ? same_element(*a, *b) : !a && !b;
+}
 
 }  // namespace
+
+void RobotFactory::make(const std::vector<RobotRequest>& requests, Problems& problems) {
+  stores_.bodies.reserve(requests.size());
+  slab_ = &stores_.slab;
+  const std::vector<std::vector<std::uint32_t>> unsorted = group(requests);
+  for (std::size_t g = 0; g < unsorted.size(); ++g) {
+    std::vector<std::uint32_t> members = unsorted[g];
+    sort_by_place(requests, members);
+    if (prepare_group(g, problems) && make_blocks(g, requests, members, problems)) complete(g);
+  }
+  keep_sizes();
+  slab_ = nullptr;
+}
+
+std::vector<std::vector<std::uint32_t>> RobotFactory::group(const std::vector<RobotRequest>& requests) {
+  std::vector<std::vector<std::uint32_t>> members;
+  std::vector<std::size_t> group_of_item(scenario_.robots.size(), 0);
+  for (std::size_t i = 0; i < scenario_.robots.size(); ++i) {
+    std::size_t g = 0;
+    while (g < members.size() && !same_group(*stores_.groups[g].item, scenario_.robots[i])) ++g;
+    if (g == members.size()) {
+      members.emplace_back();
+      stores_.groups.emplace_back().item = std::make_shared<RobotItem>(scenario_.robots[i]);
+    }
+    group_of_item[i] = g;
+  }
+  for (std::size_t r = 0; r < requests.size(); ++r)
+    members[group_of_item[requests[r].item]].push_back(static_cast<std::uint32_t>(r));
+  return members;
+}
+
+void RobotFactory::sort_by_place(const std::vector<RobotRequest>& requests, std::vector<std::uint32_t>& members) const {
+  const double width = stores_.max_x_m - stores_.min_x_m;
+  const double depth = stores_.max_y_m - stores_.min_y_m;
+  std::vector<std::uint64_t> keys;
+  keys.reserve(members.size());
+  for (const std::uint32_t r : members) {
+    const std::uint32_t place =
+        curve_position((requests[r].x_m - stores_.min_x_m) / width, (requests[r].y_m - stores_.min_y_m) / depth);
+    keys.push_back((static_cast<std::uint64_t>(place) << 32) | r);
+  }
+  std::sort(keys.begin(), keys.end());
+  for (std::size_t i = 0; i < keys.size(); ++i) members[i] = static_cast<std::uint32_t>(keys[i]);
+}
+
+bool RobotFactory::prepare_group(std::size_t g, Problems& problems) {
+  const RobotItem& item = *stores_.groups[g].item;
+  const ControllerConfig& config = scenario_.controllers[item.controller];
+  const auto problem = [&](int line, std::string message) {
+    problems.push_back({scenario_.file, line, std::move(message), false});
+  };
+  RobotGroup& group = stores_.groups[g];
+  group.config = item.controller;
+  group.sheet = data_sheet_of(item.kind);
+  if (group.sheet == nullptr) {
+    problem(item.line, "unknown kind of robot '" + item.kind + "'");
+    return false;
+  }
+  group.rab_range_m = item.rab_range_m >= 0.0 ? item.rab_range_m : group.sheet->rab_range_m;
+  group.rab_payload = item.rab_payload >= 0 ? static_cast<unsigned>(item.rab_payload) : group.sheet->rab_payload;
+  const auto type = loader_.controller(config.library, config.label);
+  if (!type.ok()) {
+    problem(config.line, "controller '" + config.id + "': " + type.error().message);
+    return false;
+  }
+  group.controller = type.value();
+  const Element& params = item.params ? *item.params : config.params;
+  const std::size_t before = problems.size();
+  ElementReader reader(params, problems);
+  group.params = group.controller->read_params(reader);
+  reader.finish();
+  // Listed devices must exist even when the controller does not take them.
+  bool good = !has_errors(problems, before);
+  good = check_devices(config, config.sensors, hal::Role::Sensor, *group.sheet, problems) && good;
+  good = check_devices(config, config.actuators, hal::Role::Actuator, *group.sheet, problems) && good;
+  return good;
+}
+
+bool RobotFactory::check_devices(const ControllerConfig& config, const std::vector<DeviceChoice>& choices,
+                                 hal::Role role, const hal::DataSheet& sheet, Problems& problems) {
+  bool good = true;
+  for (const DeviceChoice& choice : choices) {
+    const DeviceType* type = find_device(choice.device, role, choice.implementation);
+    const int line = choice.options.line != 0 ? choice.options.line : config.line;
+    const auto problem = [&](std::string message) {
+      problems.push_back({scenario_.file, line, std::move(message), false});
+      good = false;
+    };
+    if (type == nullptr) {
+      std::string known;
+      for (const DeviceType& t : device_types()) {
+        if (t.device == choice.device && t.role == role)
+          known += (known.empty() ? "" : ", ") + std::string(t.implementation);
+      }
+      problem(known.empty() ? "no simulated device '" + choice.device + "'"
+                            : "device '" + choice.device + "' has no implementation '" + choice.implementation +
+                                  "'; it has: " + known);
+    } else if (!type->fits(sheet)) {
+      problem("the robot '" + std::string(sheet.kind) + "' has no device '" + choice.device + "'");
+    } else {
+      Problems found;
+      const RobotItem none;
+      const DeviceSetup setup{sheet, none};
+      if (type->make_sensor != nullptr) (void)type->make_sensor(choice.options, found, setup);
+      if (type->make_actuator != nullptr) (void)type->make_actuator(choice.options, found, setup);
+      if (checked_.insert(&choice).second) problems.insert(problems.end(), found.begin(), found.end());
+      good = good && !has_errors(found);
+    }
+  }
+  return good;
+}
+
+std::uint32_t RobotFactory::add_block(std::size_t g, std::size_t capacity) {
+  RobotBlock block;
+  block.group = g;
+  block.first_row = stores_.bodies.size();
+  block.capacity = capacity;
+  const hal::ControllerType& type = *stores_.groups[g].controller;
+  block.controller_stride = (type.size + type.align - 1) / type.align * type.align;
+  block.controllers = make_array(block, slab_, block.controller_stride * capacity, type.align);
+  stores_.bodies.resize(block.first_row + capacity);
+  stores_.blocks.push_back(std::move(block));
+  stores_.groups[g].blocks.push_back(stores_.blocks.size() - 1);
+  return static_cast<std::uint32_t>(stores_.blocks.size() - 1);
+}
+
+bool RobotFactory::make_blocks(std::size_t g, const std::vector<RobotRequest>& requests,
+                               const std::vector<std::uint32_t>& members, Problems& problems) {
+  for (std::size_t begin = 0; begin < members.size(); begin += kBlockRows) {
+    const std::size_t count = std::min(kBlockRows, members.size() - begin);
+    const std::uint32_t block = add_block(g, count);
+    stores_.blocks[block].used = count;
+    for (std::uint32_t slot = 0; slot < count; ++slot) place(requests[members[begin + slot]], {block, slot});
+    for (std::uint32_t slot = 0; slot < count; ++slot) {
+      const std::string why = construct({block, slot});
+      if (why.empty()) continue;
+      problems.push_back({scenario_.file, scenario_.controllers[stores_.groups[g].config].line, why, false});
+      return false;
+    }
+  }
+  return true;
+}
+
+void RobotFactory::place(const RobotRequest& request, Slot at) {
+  RobotEntity& e = stores_.robots[request.entity];
+  e.block = at.block;
+  e.slot = at.slot;
+  e.alive = true;
+  Bodies& b = stores_.bodies;
+  const std::size_t row = stores_.blocks[at.block].first_row + at.slot;
+  b.x_m[row] = request.x_m;
+  b.y_m[row] = request.y_m;
+  b.cos_h[row] = std::cos(request.yaw_rad);
+  b.sin_h[row] = std::sin(request.yaw_rad);
+  b.radius_m[row] = static_cast<float>(stores_.groups[stores_.blocks[at.block].group].sheet->body_radius_m);
+  if (b.has_motion) {
+    b.motion[row].z_m = request.z_m;
+    b.motion[row].q_WB = {std::cos(0.5 * request.yaw_rad), 0.0, 0.0, std::sin(0.5 * request.yaw_rad)};
+  }
+  b.flags[row] = kAlive;
+  b.entity[row] = request.entity;
+}
+
+/// Makes the controller of the robot that is placed there. Says what went wrong, or nothing.
+std::string RobotFactory::construct(Slot at) {
+  RobotBlock& block = stores_.blocks[at.block];
+  RobotGroup& group = stores_.groups[block.group];
+  const hal::ControllerType& type = *group.controller;
+  ConstructedRobot robot(scenario_, stores_, group, block, slab_, seed_);
+  robot.select(at.slot, stores_.bodies.entity[block.first_row + at.slot]);
+  std::string why;
+  try {
+    type.construct(block.controller(at.slot), robot, group.params.get());
+    block.constructed[at.slot] = 1;
+    return {};
+  } catch (const std::exception& e) {
+    why = e.what();
+  } catch (...) {
+    why = "threw an exception of unknown type";
+  }
+  return "controller '" + scenario_.controllers[group.config].id + "' (" + std::string(type.name) + ") of robot '" +
+         std::string(robot.id()) + "' " + why;
+}
+
+/// Gives every block of the group arrays and devices for all ports that its controllers have taken by now.
+void RobotFactory::complete(std::size_t g) {
+  const RobotGroup& group = stores_.groups[g];
+  const ControllerConfig& config = scenario_.controllers[group.config];
+  const DeviceSetup setup{*group.sheet, *group.item, 1.0 / static_cast<double>(scenario_.ticks_per_second)};
+  devices_.blocks.resize(stores_.blocks.size());
+  for (const std::size_t b : group.blocks) add_port_arrays(group, stores_.blocks[b], slab_);
+  for (std::size_t p = 0; p < group.ports.size(); ++p) {
+    const auto lacks = [&](std::size_t b) { return devices_.blocks[b].sensors.size() <= p; };
+    if (std::none_of(group.blocks.begin(), group.blocks.end(), lacks)) continue;
+    const hal::PortType& port = *group.ports[p];
+    const bool is_sensor = port.role == hal::Role::Sensor;
+    const DeviceChoice* choice = nullptr;
+    for (const DeviceChoice& c : is_sensor ? config.sensors : config.actuators) {
+      if (c.device == port.name) choice = &c;
+    }
+    const DeviceType* type = find_device(port.name, port.role, choice->implementation);
+    Problems already_reported;
+    const Recipe<Sensor> sensor = is_sensor ? type->make_sensor(choice->options, already_reported, setup) : nullptr;
+    const Recipe<Actuator> actuator =
+        is_sensor ? nullptr : type->make_actuator(choice->options, already_reported, setup);
+    for (const std::size_t b : group.blocks) {
+      if (!lacks(b)) continue;
+      const std::size_t capacity = stores_.blocks[b].capacity;
+      devices_.blocks[b].sensors.push_back(is_sensor ? sensor(capacity) : nullptr);
+      devices_.blocks[b].actuators.push_back(is_sensor ? nullptr : actuator(capacity));
+    }
+  }
+}
+
+/// Arrays by row that only some runs have are as long as the others.
+void RobotFactory::keep_sizes() {
+  const auto sends = [](const RobotGroup& group) {
+    return std::any_of(group.ports.begin(), group.ports.end(), [](const hal::PortType* port) {
+      return port->name == hal::RangeAndBearingSend::kName && port->role == hal::Role::Actuator;
+    });
+  };
+  if (!stores_.broadcasts.empty() || std::any_of(stores_.groups.begin(), stores_.groups.end(), sends))
+    stores_.broadcasts.resize(stores_.bodies.size());
+  const auto flies = [](const RobotGroup& group) { return group.sheet != nullptr && group.sheet->flies; };
+  if (std::any_of(stores_.groups.begin(), stores_.groups.end(), flies))
+    stores_.bodies.flight.resize(stores_.bodies.size());
+  keep_mechanisms();
+}
+
+/// Rows for what turns and holds, where a controller takes any port of it.
+void RobotFactory::keep_mechanisms() {
+  Bodies& b = stores_.bodies;
+  const auto taken = [this](std::initializer_list<std::string_view> names) {
+    for (const RobotGroup& made : stores_.groups) {
+      for (const hal::PortType* port : made.ports) {
+        if (std::find(names.begin(), names.end(), port->name) != names.end()) return true;
+      }
+    }
+    return false;
+  };
+  const auto slants = [this](const RobotGroup& made) {
+    const auto& choices = scenario_.controllers[made.config].actuators;
+    return made.wheels >= 0 && std::any_of(choices.begin(), choices.end(), [](const DeviceChoice& choice) {
+             return choice.device == hal::WheelSpeeds::kName && choice.implementation == kSlanted;
+           });
+  };
+  if (!b.turrets.empty() || taken({hal::TurretDrive::kName, hal::TurretEncoder::kName})) b.turrets.resize(b.size());
+  if (!b.grips.empty() || taken({hal::GripperDrive::kName})) b.grips.resize(b.size());
+  if (!b.scanners.empty() || taken({hal::ScannerDrive::kName})) b.scanners.resize(b.size());
+  if (!b.hidden_rolls.empty() || std::any_of(stores_.groups.begin(), stores_.groups.end(), slants))
+    b.hidden_rolls.resize(b.size());
+}
+
+// --- while the run goes on ---
+
+hal::Result<std::size_t> RobotFactory::group_for(const RobotItem& item) {
+  std::vector<RobotGroup>& groups = stores_.groups;
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    if (same_kit(*groups[g].item, item) && same_params(groups[g].item->params, item.params)) return g;
+  }
+  groups.emplace_back().item = std::make_shared<RobotItem>(item);
+  Problems problems;
+  if (prepare_group(groups.size() - 1, problems)) return groups.size() - 1;
+  groups.pop_back();
+  std::string message = "robot '" + item.id + "' cannot be made:";
+  for (const Problem& problem : problems) message += " " + problem.message + ";";
+  message.pop_back();
+  return hal::Error{message};
+}
+
+Slot RobotFactory::free_slot(std::size_t g) {
+  constexpr std::size_t kFirstBlock = 32;
+  RobotGroup& group = stores_.groups[g];
+  if (!group.free_slots.empty()) {
+    const Slot slot = group.free_slots.back();
+    group.free_slots.pop_back();
+    return slot;
+  }
+  std::size_t capacity = kFirstBlock;
+  if (!group.blocks.empty()) {
+    RobotBlock& last = stores_.blocks[group.blocks.back()];
+    if (last.used < last.capacity)
+      return {static_cast<std::uint32_t>(group.blocks.back()), static_cast<std::uint32_t>(last.used++)};
+    capacity = std::clamp(2 * last.capacity, kFirstBlock, kBlockRows);
+  }
+  const std::uint32_t block = add_block(g, capacity);
+  stores_.blocks[block].used = 1;
+  return {block, 0};
+}
+
+/// Whether the robot's region has the forces that a gripper needs, if its controller took one.
+hal::Status RobotFactory::can_hold(Slot at) const {
+  const RobotBlock& block = stores_.blocks[at.block];
+  const std::size_t row = block.first_row + at.slot;
+  const Region& region = stores_.regions[stores_.bodies.region[row]];
+  if (stores_.groups[block.group].gripper < 0 || region.forces) return {};
+  return hal::Error{"robot '" + stores_.names[stores_.robots[stores_.bodies.entity[row]].item].prefix +
+                    "' has a gripper, but its engine '" + region.name +
+                    "' knows no forces, so that nothing can be held there; use dynamics2d or dynamics3d"};
+}
+
+/// Undoes a robot that did not come to be: the entity that was appended last.
+void RobotFactory::give_back(std::size_t g, Slot slot, std::size_t ports_before, std::uint32_t entity_before) {
+  RobotBlock& block = stores_.blocks[slot.block];
+  RobotGroup& group = stores_.groups[g];
+  group.ports.resize(ports_before);
+  if (block.ports.size() > ports_before) {  // their arrays are the last of its own
+    block.own_arrays.resize(block.own_arrays.size() - (block.ports.size() - ports_before));
+    block.ports.resize(ports_before);
+  }
+  for (int* command :
+       {&group.wheels, &group.flight_position, &group.flight_speed, &group.turret, &group.gripper, &group.scanner}) {
+    if (*command >= static_cast<int>(ports_before)) *command = -1;
+  }
+  stores_.bodies.flags[block.first_row + slot.slot] = 0;
+  stores_.bodies.entity[block.first_row + slot.slot] = entity_before;
+  block.halted[slot.slot] = 1;
+  if (slot.slot + 1U == block.used && entity_before == kNobody) {
+    --block.used;  // nobody was ever there
+  } else {
+    group.free_slots.push_back(slot);
+  }
+  stores_.robots.pop_back();
+  stores_.names.pop_back();
+}
+
+hal::Result<RobotId> RobotFactory::add(const RobotItem& item, const Pose& pose,
+                                       const std::function<hal::Status(std::size_t row)>& accepts) {
+  const hal::Result<std::size_t> found = group_for(item);
+  if (!found.ok()) return found.error();
+  const std::size_t g = found.value();
+  const Slot slot = free_slot(g);
+  if (devices_.blocks.size() < stores_.blocks.size()) complete(g);
+  const std::size_t ports_before = stores_.groups[g].ports.size();
+  const auto entity = static_cast<std::uint32_t>(stores_.robots.size());
+  stores_.names.push_back({item.id, -1, entity, 1});
+  RobotEntity made;
+  made.item = static_cast<std::uint32_t>(stores_.names.size() - 1);
+  stores_.robots.push_back(made);
+
+  // The row as a new one would be.
+  RobotBlock& block = stores_.blocks[slot.block];
+  Bodies& b = stores_.bodies;
+  const std::size_t row = block.first_row + slot.slot;
+  const std::uint32_t entity_before = b.entity[row];
+  for (auto* array : {&b.left_m_s, &b.right_m_s, &b.left_m, &b.right_m}) (*array)[row] = 0.0;
+  if (!b.motion.empty()) b.motion[row] = {};
+  if (!b.flight.empty()) b.flight[row] = {};
+  if (!b.turrets.empty()) b.turrets[row] = {};
+  if (!b.grips.empty()) b.grips[row] = {};
+  if (!b.scanners.empty()) b.scanners[row] = {};
+  if (!b.hidden_rolls.empty()) b.hidden_rolls[row] = {};
+  for (std::size_t p = 0; p < block.ports.size(); ++p) {
+    const hal::PortType& type = *stores_.groups[g].ports[p];
+    type.reset(block.ports[p] + slot.slot * type.size);
+  }
+  for (const auto& sensor : devices_.blocks[slot.block].sensors) {
+    DeviceMemory* memory = sensor == nullptr ? nullptr : sensor->memory();
+    if (memory != nullptr) memory->renew(slot.slot);
+  }
+  block.halted[slot.slot] = 0;
+  place({made.item, entity, pose.x_m, pose.y_m, pose.z_m, pose.heading_rad()}, slot);
+  b.cos_h[row] = pose.cos_h;
+  b.sin_h[row] = pose.sin_h;
+
+  hal::Status fits = accepts(row);
+  if (fits.ok()) {
+    const std::string why = construct(slot);
+    if (!why.empty()) fits = hal::Error{why};
+  }
+  if (fits.ok() && !(fits = can_hold(slot)).ok()) {
+    stores_.groups[g].controller->destroy(block.controller(slot.slot));
+    block.constructed[slot.slot] = 0;
+  }
+  if (!fits.ok()) {
+    give_back(g, slot, ports_before, entity_before);
+    return fits.error();
+  }
+  if (stores_.groups[g].ports.size() > ports_before) complete(g);  // its controller took ports that no other has
+  keep_sizes();
+  if (!stores_.broadcasts.empty()) stores_.broadcasts[row] = {};
+  stores_.robots[entity].generation = ++stores_.generations;
+  stores_.living.push_back(entity);
+  stores_.added_robots.emplace(item.id, entity);
+  stores_.altered = true;
+  stores_.touch(BodyKey::robot(row));
+  return RobotId{entity, stores_.robots[entity].generation};
+}
 
 const hal::DataSheet* data_sheet_of(std::string_view kind) {
   for (const hal::DataSheet* sheet : {&hal::epuck::kDataSheet, &hal::eyebot::kDataSheet, &hal::footbot::kDataSheet}) {
@@ -386,18 +562,14 @@ std::vector<std::string> robot_kinds() {
           std::string(hal::footbot::kDataSheet.kind)};
 }
 
-RobotDevices make_robots(const Scenario& scenario, const std::vector<RobotRequest>& requests, std::uint64_t seed,
-                         hal::PluginLoader& loader, SpaceStores& stores, Problems& problems) {
-  return Factory(scenario, seed, loader, stores, problems).make(requests);
+void destroy_controllers(SpaceStores& stores) noexcept {
+  for (RobotBlock& block : stores.blocks) destroy_controllers(stores, block);
 }
 
-void destroy_controllers(SpaceStores& stores) noexcept {
-  for (RobotBlock& block : stores.blocks) {
-    const RobotGroup& group = stores.groups[block.group];
-    if (group.controller == nullptr) continue;
-    for (std::size_t i = 0; i < block.used; ++i)
-      group.controller->destroy(block.controllers + i * block.controller_stride);
-    block.used = 0;
+void destroy_controllers(SpaceStores& stores, RobotBlock& block) noexcept {
+  for (std::size_t slot = 0; slot < block.capacity; ++slot) {
+    if (block.constructed[slot] != 0) stores.groups[block.group].controller->destroy(block.controller(slot));
+    block.constructed[slot] = 0;
   }
 }
 

@@ -1,13 +1,17 @@
 // Makes robots: gives each its row, its ports and its controller.
 #pragma once
 #include <cstdint>
+#include <functional>
 #include <memory>
+#include <set>
+#include <string>
 #include <vector>
 
 #include "core/device/device.hpp"
 #include "core/scenario/scenario.hpp"
 #include "core/space/stores.hpp"
 #include "hal/plugin_loader.hpp"
+#include "hal/result.hpp"
 
 namespace tandem::core {
 
@@ -19,10 +23,11 @@ struct RobotRequest {
   double yaw_rad = 0.0;
 };
 
-/// Devices of one block, in the order of the group's ports.
+/// Devices of one block, in the order of the group's ports. Shared with snapshots: they bring back blocks that the run
+/// left behind when it went to an earlier moment.
 struct BlockDevices {
-  std::vector<std::unique_ptr<Sensor>> sensors;      ///< null where the port is an actuator
-  std::vector<std::unique_ptr<Actuator>> actuators;  ///< null where the port is a sensor
+  std::vector<std::shared_ptr<Sensor>> sensors;      ///< null where the port is an actuator
+  std::vector<std::shared_ptr<Actuator>> actuators;  ///< null where the port is a sensor
 };
 
 /// What the factory made beyond the stores.
@@ -34,12 +39,54 @@ struct RobotDevices {
 const hal::DataSheet* data_sheet_of(std::string_view kind);
 std::vector<std::string> robot_kinds();
 
-/// Fills `stores` (bodies, groups, blocks, robots) and returns the devices. Every problem goes to `problems` with the
-/// line of the robot or controller that it is about. Robots of a group get rows in the order of a space-filling curve.
-RobotDevices make_robots(const Scenario& scenario, const std::vector<RobotRequest>& requests, std::uint64_t seed,
-                         hal::PluginLoader& loader, SpaceStores& stores, Problems& problems);
+/// Makes the robots of a file at the start, and others while the run goes on. Everything that it is handed must outlive
+/// it.
+class RobotFactory {
+ public:
+  RobotFactory(const Scenario& scenario, std::uint64_t seed, hal::PluginLoader& loader, SpaceStores& stores,
+               RobotDevices& devices)
+      : scenario_(scenario), seed_(seed), loader_(loader), stores_(stores), devices_(devices) {}
+
+  /// Fills the stores (bodies, groups, blocks, robots) and the devices. Every problem goes to `problems` with the line
+  /// of the robot or controller that it is about. Robots of a group get rows in the order of a space-filling curve.
+  void make(const std::vector<RobotRequest>& requests, Problems& problems);
+
+  /// Adds one robot, in the first free row of its group or a new one. `accepts(row)` is asked once the body stands in
+  /// its row, before its controller is made. Errors: what is wrong with the parameters; what `accepts` says; a
+  /// controller that throws. Nobody can tell then that it was tried.
+  hal::Result<RobotId> add(const RobotItem& item, const Pose& pose,
+                           const std::function<hal::Status(std::size_t row)>& accepts);
+
+ private:
+  std::vector<std::vector<std::uint32_t>> group(const std::vector<RobotRequest>& requests);
+  void sort_by_place(const std::vector<RobotRequest>& requests, std::vector<std::uint32_t>& members) const;
+  bool prepare_group(std::size_t g, Problems& problems);
+  bool check_devices(const ControllerConfig& config, const std::vector<DeviceChoice>& choices, hal::Role role,
+                     const hal::DataSheet& sheet, Problems& problems);
+  bool make_blocks(std::size_t g, const std::vector<RobotRequest>& requests, const std::vector<std::uint32_t>& members,
+                   Problems& problems);
+  std::uint32_t add_block(std::size_t g, std::size_t capacity);
+  void place(const RobotRequest& request, Slot at);
+  std::string construct(Slot at);
+  void complete(std::size_t g);
+  hal::Result<std::size_t> group_for(const RobotItem& item);
+  Slot free_slot(std::size_t g);
+  void give_back(std::size_t g, Slot slot, std::size_t ports_before, std::uint32_t entity_before);
+  hal::Status can_hold(Slot at) const;
+  void keep_sizes();
+  void keep_mechanisms();
+
+  const Scenario& scenario_;
+  std::uint64_t seed_;
+  hal::PluginLoader& loader_;
+  SpaceStores& stores_;
+  RobotDevices& devices_;
+  Slab* slab_ = nullptr;  // where blocks get their memory; null: each on its own
+  std::set<const DeviceChoice*> checked_;
+};
 
 /// Ends the life of every controller. Before the loader closes its plug-ins.
 void destroy_controllers(SpaceStores& stores) noexcept;
+void destroy_controllers(SpaceStores& stores, RobotBlock& block) noexcept;
 
 }  // namespace tandem::core

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <map>
 #include <random>
+#include <set>
 
 #include "core/device/device.hpp"
 #include "core/placement/placement.hpp"
@@ -11,6 +13,7 @@
 #include "core/sim/gripping.hpp"
 #include "core/sim/region_keeper.hpp"
 #include "core/sim/robot_factory.hpp"
+#include "core/sim/world_editor.hpp"
 #include "core/space/stores.hpp"
 #include "hal/check.hpp"
 #include "hal/filter.hpp"
@@ -65,12 +68,93 @@ std::uint64_t mix_mechanisms(std::uint64_t hash, const Bodies& b, std::size_t ro
   return hash;
 }
 
+/// What stays as the file has it unless a hook changes it.
+std::uint64_t mix_scenery(std::uint64_t hash, const SpaceStores& s) noexcept {
+  hash = mix(hash, s.robots.size());  // decides what numbers the next robot draws
+  for (std::size_t i = 0; i < s.objects.size(); ++i) {
+    const Object& o = s.objects[i];
+    if (!o.alive || o.movable) continue;
+    hash = mix(hash, i);
+    for (const double value :
+         {o.x_m, o.y_m, o.cos_h, o.sin_h, o.half_x_m, o.half_y_m, o.radius_m, o.z_low_m, o.z_high_m})
+      hash = mix(hash, bits_of(value));
+  }
+  for (const LightSource& light : s.lights) {
+    if (!light.alive) continue;
+    for (const double value : {light.x_m, light.y_m, light.z_m, light.intensity}) hash = mix(hash, bits_of(value));
+  }
+  for (const SoundSource& sound : s.sounds) {
+    if (!sound.alive) continue;
+    for (const double value : {sound.x_m, sound.y_m, sound.z_m, sound.level}) hash = mix(hash, bits_of(value));
+  }
+  return hash;
+}
+
 std::uint64_t seed_from_clock() {
   std::random_device device;
   return (static_cast<std::uint64_t>(device()) << 32 | device()) >> 11;  // exact as a double, easy to write in a file
 }
 
+/// How far from a point the indices must look for what a robot there could touch or see.
+double index_reach(const SpaceStores& stores, double tick_s) noexcept {
+  double reach_m = 2.0 * kContactReach_m;
+  for (const RobotGroup& group : stores.groups) {
+    if (group.sheet == nullptr) continue;
+    reach_m = std::max(
+        reach_m, 2.0 * group.sheet->body_radius_m + std::max(group.sheet->proximity_range_m, kContactReach_m) + 0.01);
+    if (group.sheet->flies)  // where it may be at the end of the tick
+      reach_m = std::max(reach_m, 2.0 * group.sheet->body_radius_m + tick_s * group.sheet->max_flight_speed_m_s);
+  }
+  return reach_m;
+}
+
+/// What hooks asked for in this step, and the moments that they keep.
+class KeptMoments final : public Checkpoints {
+ public:
+  struct Request {
+    bool save;
+    std::string name;
+  };
+
+  void save(const std::string& name) override {
+    names_.insert(name);
+    requests.push_back({true, name});
+  }
+  hal::Status restore(const std::string& name) override {
+    if (!names_.contains(name)) {
+      return hal::Error{"there is no checkpoint '" + name +
+                        "'; there are: " + listed(std::vector<std::string>(names_.begin(), names_.end()))};
+    }
+    requests.push_back({false, name});
+    return {};
+  }
+
+  void forget(const std::string& name) {
+    names_.erase(name);
+    kept.erase(name);
+  }
+
+  std::vector<Request> requests;
+  std::map<std::string, Snapshot> kept;
+
+ private:
+  std::set<std::string> names_;  // kept, or to be kept after this step
+};
+
 }  // namespace
+
+/// What a snapshot holds.
+struct Moment {
+  std::shared_ptr<const int> of;  ///< the world that it is of
+  std::unique_ptr<SpaceCopy> space;
+  hal::Tick tick = 0;
+  RunState state = RunState::Running;
+  std::string failure;
+  Incidents incidents;
+  std::vector<std::uint64_t> clamped, not_finite;
+  double reach_m = 0.0;  ///< of the indices, which the space's copy holds
+  std::vector<std::any> hooks;
+};
 
 struct World::Impl {
   Scenario scenario;
@@ -88,6 +172,10 @@ struct World::Impl {
   std::vector<BodyKey> strays;          // left their region in this tick, or were put where there is none
   std::vector<Trouble> troubles;
   RobotDevices devices;
+  std::unique_ptr<RobotFactory> factory;
+  std::unique_ptr<WorldEditor> editor;
+  std::shared_ptr<const int> identity = std::make_shared<int>(0);  // tells this world's snapshots from others'
+  KeptMoments moments;
   std::vector<std::unique_ptr<Hook>> hooks;
   std::vector<std::string> hook_names;
   ExternalRobots* external = nullptr;
@@ -124,10 +212,12 @@ struct World::Impl {
   void filter_port(std::size_t block, int port, Filter&& filter_one);
   void report_trouble();
   void paint_floor_if_asked();
+  void fit_to_bodies();
+  void forget_caches();
 
   template <class Call>
   void call_hooks(const char* moment, Call&& call);
-  HookContext hook_context() { return {space, tick, scenario.ticks_per_second, seed}; }
+  HookContext hook_context() { return {space, tick, scenario.ticks_per_second, seed, moments}; }
   DeviceContext device_context(std::size_t block) {
     SpaceStores& s = stores();
     return {s,
@@ -191,6 +281,7 @@ void World::step() {
   bool done = false;
   w.call_hooks("is_done", [&done](Hook& hook, HookContext& c) { done = hook.is_done(c) || done; });
   if (done && w.state == RunState::Running) w.state = RunState::Done;
+  do_requests();
 }
 
 void World::Impl::act() {
@@ -214,6 +305,8 @@ void World::Impl::physics() {
   stores().bodies_changed = false;
   for (const auto& engine : engines) engine->load(context);
   for (const auto& engine : engines) engine->advance(context);
+  ++stores().poses_version;
+  stores().touched.clear();
   stop_on_trouble();
   rebuild_index();
   find_stray_objects();
@@ -232,11 +325,31 @@ void World::Impl::physics() {
 /// What hooks, operators and real robots changed since the last step.
 void World::Impl::settle_changes() {
   SpaceStores& s = stores();
+  if (s.bodies_changed) fit_to_bodies();
   if (indexed_version != s.immovables_version) {
     s.static_index.build(s.objects, false, s.min_x_m, s.min_y_m, s.max_x_m, s.max_y_m, reach_m);
     indexed_version = s.immovables_version;
   }
   if (s.bodies_changed) keeper.place(s, strays);
+}
+
+/// Robots came or went, or other objects: arrays by block, and how far indices and regions look.
+void World::Impl::fit_to_bodies() {
+  SpaceStores& s = stores();
+  const std::size_t blocks = s.blocks.size();
+  if (faults.size() < blocks) {
+    block_trouble.resize(blocks, 0);
+    faults.resize(blocks);
+    clamped.resize(blocks, 0);
+    not_finite.resize(blocks, 0);
+  }
+  const double needed_m = index_reach(s, tick_s());
+  if (needed_m != reach_m) {
+    reach_m = needed_m;
+    s.body_index.set_area(s.min_x_m, s.min_y_m, s.max_x_m, s.max_y_m, reach_m);
+    ++s.immovables_version;
+  }
+  keeper.fit(s, tick_s());
 }
 
 void World::Impl::stop_on_trouble() {
@@ -326,7 +439,7 @@ void World::Impl::treat_escape(BodyKey body) {
     case EscapePolicy::Remove:
       incident(where + ": removed");
       if (body.is_object()) {
-        s.objects[body.index()].alive = false;
+        space.remove_object(space.object(body.index()));
       } else {
         const std::uint32_t entity = s.bodies.entity[body.index()];
         space.remove_robot({entity, s.robots[entity].generation});
@@ -658,26 +771,19 @@ std::unique_ptr<World> World::make(const Scenario& scenario, hal::PluginLoader& 
     requests.push_back(
         {placed.item, static_cast<std::uint32_t>(i), placed.x_m, placed.y_m, placed.z_m, placed.yaw_rad});
   }
-  w.devices = make_robots(scenario, requests, w.seed, loader, s, problems);
+  w.factory = std::make_unique<RobotFactory>(w.scenario, w.seed, loader, s, w.devices);
+  w.factory->make(requests, problems);
+  w.editor = std::make_unique<WorldEditor>(w.scenario, s, *w.factory, w.devices, w.keeper);
+  w.space.set_editor(w.editor.get());
 
-  double reach_m = 2.0 * kContactReach_m;
-  for (const RobotGroup& group : s.groups) {
-    if (group.sheet == nullptr) continue;
-    reach_m = std::max(
-        reach_m, 2.0 * group.sheet->body_radius_m + std::max(group.sheet->proximity_range_m, kContactReach_m) + 0.01);
-  }
-  // Where a flying robot may be at the end of the tick.
-  for (const RobotGroup& group : s.groups) {
-    if (group.sheet != nullptr && group.sheet->flies)
-      reach_m = std::max(reach_m, 2.0 * group.sheet->body_radius_m + w.tick_s() * group.sheet->max_flight_speed_m_s);
-  }
-  s.body_index.set_area(s.min_x_m, s.min_y_m, s.max_x_m, s.max_y_m, reach_m);
-  w.reach_m = reach_m;
-  s.static_index.build(s.objects, false, s.min_x_m, s.min_y_m, s.max_x_m, s.max_y_m, reach_m);
+  w.reach_m = index_reach(s, w.tick_s());
+  s.body_index.set_area(s.min_x_m, s.min_y_m, s.max_x_m, s.max_y_m, w.reach_m);
+  s.static_index.build(s.objects, false, s.min_x_m, s.min_y_m, s.max_x_m, s.max_y_m, w.reach_m);
   w.indexed_version = s.immovables_version;
   s.object_motion.resize(s.objects.size());
   s.object_region.resize(s.objects.size(), kNoRegion);
   for (std::size_t i = 0; i < s.objects.size(); ++i) {
+    s.object_numbers.emplace(s.objects[i].id, static_cast<std::uint32_t>(i));
     const double half_rad = 0.5 * placements.objects[i].yaw_rad;
     s.object_motion[i].z_m = s.objects[i].z_low_m;
     s.object_motion[i].q_WB = {std::cos(half_rad), 0.0, 0.0, std::sin(half_rad)};
@@ -728,10 +834,97 @@ World::~World() {
 
 void World::start() {
   impl_->call_hooks("before_run", [](Hook& hook, HookContext& c) { hook.before_run(c); });
+  do_requests();
 }
 
 void World::finish() {
   impl_->call_hooks("after_run", [](Hook& hook, HookContext& c) { hook.after_run(c); });
+}
+
+// --- snapshots ---
+
+/// Nothing but the stores may tell what happens next.
+void World::Impl::forget_caches() {
+  for (const auto& engine : engines) engine->forget();
+  stores().bodies_changed = true;
+}
+
+hal::Result<Snapshot> World::snapshot() {
+  Impl& w = *impl_;
+  if (w.external != nullptr) return hal::Error{"no snapshot: real robots take part, which cannot be put back"};
+  auto moment = std::make_shared<Moment>();
+  for (std::size_t i = 0; i < w.hooks.size(); ++i) {
+    try {
+      moment->hooks.push_back(w.hooks[i]->save());
+    } catch (const std::exception& e) {
+      return hal::Error{"no snapshot: hook '" + w.hook_names[i] + "' threw in save" + w.at_tick() + ": " + e.what()};
+    } catch (...) {
+      return hal::Error{"no snapshot: hook '" + w.hook_names[i] + "' threw in save" + w.at_tick()};
+    }
+  }
+  hal::Result<std::unique_ptr<SpaceCopy>> copy = SpaceCopy::take(w.space, w.devices);
+  if (!copy.ok()) return copy.error();
+  w.forget_caches();
+  moment->of = w.identity;
+  moment->space = std::move(copy.value());
+  moment->tick = w.tick;
+  moment->state = w.state;
+  moment->failure = w.failure;
+  moment->incidents = w.incidents;
+  moment->clamped = w.clamped;
+  moment->not_finite = w.not_finite;
+  moment->reach_m = w.reach_m;
+  return Snapshot(w.tick, std::move(moment));
+}
+
+hal::Status World::restore(const Snapshot& snapshot) {
+  Impl& w = *impl_;
+  const Moment& moment = *snapshot.moment_;
+  if (moment.of != w.identity) return hal::Error{"the snapshot is of another world"};
+  if (w.external != nullptr) return hal::Error{"no way back: real robots take part, which cannot be put back"};
+  hal::Status all = moment.space->put_back(w.space, w.devices);
+  w.forget_caches();
+  w.reach_m = moment.reach_m;
+  w.tick = moment.tick;
+  w.state = moment.state;
+  w.failure = moment.failure;
+  w.incidents = moment.incidents;
+  w.clamped = moment.clamped;
+  w.not_finite = moment.not_finite;
+  w.block_trouble.assign(w.clamped.size(), 0);
+  w.faults.assign(w.clamped.size(), {});
+  w.strays.clear();
+  for (std::size_t i = 0; i < w.hooks.size(); ++i) {
+    try {
+      w.hooks[i]->restore(moment.hooks[i]);
+    } catch (const std::exception& e) {
+      all = hal::Error{"hook '" + w.hook_names[i] + "' threw in restore" + w.at_tick() + ": " + e.what()};
+    } catch (...) {
+      all = hal::Error{"hook '" + w.hook_names[i] + "' threw in restore" + w.at_tick()};
+    }
+  }
+  if (!all.ok()) w.fail(all.error().message);
+  return all;
+}
+
+/// What hooks asked for while they were called.
+void World::do_requests() {
+  KeptMoments& moments = impl_->moments;
+  const std::vector<KeptMoments::Request> requests = std::exchange(moments.requests, {});
+  for (const KeptMoments::Request& request : requests) {
+    if (impl_->state == RunState::Failed) return;
+    if (request.save) {
+      hal::Result<Snapshot> kept = snapshot();
+      if (!kept.ok()) {
+        moments.forget(request.name);
+        return impl_->fail("checkpoint '" + request.name + "': " + kept.error().message);
+      }
+      moments.kept.insert_or_assign(request.name, std::move(kept.value()));
+    } else {
+      const hal::Status gone_back = restore(Snapshot(moments.kept.at(request.name)));
+      if (!gone_back.ok()) return impl_->fail("checkpoint '" + request.name + "': " + gone_back.error().message);
+    }
+  }
 }
 
 void World::set_external(ExternalRobots* external) noexcept {
@@ -822,7 +1015,7 @@ std::uint64_t World::state_hash() const noexcept {
       hash = mix(hash, bits_of(value));
     if (joint.motor_torque_Nm > 0.0) hash = mix(mix(hash, bits_of(joint.motor_torque_Nm)), bits_of(joint.motor_rad_s));
   }
-  return hash;
+  return s.altered ? mix_scenery(hash, s) : hash;
 }
 
 }  // namespace tandem::core

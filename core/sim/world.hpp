@@ -9,6 +9,7 @@
 #include "core/loop/hook.hpp"
 #include "core/scenario/scenario.hpp"
 #include "core/sim/external.hpp"
+#include "core/sim/snapshot.hpp"
 #include "core/space/space.hpp"
 #include "hal/log.hpp"
 #include "hal/plugin_loader.hpp"
@@ -53,6 +54,22 @@ class World {
   /// Calls the hooks' `after_run`. Once, after the last step.
   void finish();
 
+  /// Keeps this moment: the whole space, ports, devices, controllers, time, incidents, the state of the run, and what
+  /// the hooks' `save` gives. Call between steps, or ask for it through HookContext::checkpoints.
+  ///
+  /// Engines drop what the stores do not hold (impulses of contacts that they start the next tick from, search trees),
+  /// so that the run goes on from here as it will from the snapshot, to the last bit. A run with dynamics2d or
+  /// dynamics3d therefore differs, from the first snapshot on and as a chaotic system does, from one without snapshots;
+  /// kinematics2d and particle3d keep nothing that could be dropped.
+  ///
+  /// Errors: a controller whose class has no copy constructor, a copy constructor or `save` that throws; real robots
+  /// take part: they cannot be put back.
+  hal::Result<Snapshot> snapshot();
+  /// Goes back to a snapshot of this world. Robots and objects that were added since vanish, those that were removed
+  /// are back; controllers and ports keep their addresses. Errors: another world's snapshot; real robots take part;
+  /// a copy constructor or a hook's `restore` that throws: the run has failed then.
+  hal::Status restore(const Snapshot& snapshot);
+
   /// Lets real robots take part; `external` must outlive the last step. Null: none.
   void set_external(ExternalRobots* external) noexcept;
 
@@ -73,6 +90,8 @@ class World {
   std::uint64_t state_hash() const noexcept;
 
  private:
+  void do_requests();
+
   struct Impl;
   explicit World(std::unique_ptr<Impl> impl);
   std::unique_ptr<Impl> impl_;

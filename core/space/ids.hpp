@@ -16,7 +16,6 @@ struct Id {
 
 using RobotId = Id<struct RobotTag>;
 using ObjectId = Id<struct ObjectTag>;
-using LightId = Id<struct LightTag>;
-using SoundId = Id<struct SoundTag>;
+using JointId = Id<struct JointTag>;
 
 }  // namespace tandem::core

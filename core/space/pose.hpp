@@ -12,6 +12,7 @@ struct Pose {
   double sin_h = 0.0;
 
   double heading_rad() const noexcept;  ///< in (-pi, pi]
+  static Pose at(double x_m, double y_m, double heading_rad, double z_m = 0.0) noexcept;
 };
 
 }  // namespace tandem::core

@@ -14,6 +14,10 @@ double Pose::heading_rad() const noexcept {
   return std::atan2(sin_h, cos_h);
 }
 
+Pose Pose::at(double x_m, double y_m, double heading_rad, double z_m) noexcept {
+  return {x_m, y_m, z_m, std::cos(heading_rad), std::sin(heading_rad)};
+}
+
 double Object::reach_m() const noexcept {
   return kind == Kind::Cylinder ? radius_m : std::hypot(half_x_m, half_y_m);
 }
@@ -54,43 +58,97 @@ RobotId Space::robot(std::size_t i) const noexcept {
   return {entity, stores_->robots[entity].generation};
 }
 
-RobotId Space::find_robot(std::string_view id) const noexcept {
-  for (const NameRange& range : stores_->names) {
-    if (!id.starts_with(range.prefix)) continue;
-    std::uint32_t entity = range.first_entity;
+std::optional<std::uint32_t> SpaceStores::find_entity(std::string_view id) const noexcept {
+  const std::size_t of_file = names.size() - added_robots.size();
+  for (std::size_t i = 0; i < of_file; ++i) {
+    const NameRange& range = names[i];
+    if (range.count == 0 || !id.starts_with(range.prefix)) continue;
     const std::string_view digits = id.substr(range.prefix.size());
     if (range.base < 0) {
-      if (!digits.empty()) continue;
-    } else {
-      std::int64_t number = 0;
-      const auto [end, status] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
-      const bool plain =
-          status == std::errc{} && end == digits.data() + digits.size() && (digits.size() == 1 || digits[0] != '0');
-      if (!plain || number < range.base || number >= range.base + range.count) continue;
-      entity += static_cast<std::uint32_t>(number - range.base);
+      if (digits.empty()) return range.first_entity;
+      continue;
     }
-    if (stores_->robots[entity].alive) return {entity, stores_->robots[entity].generation};
+    std::int64_t number = 0;
+    const auto [end, status] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
+    const bool plain =
+        status == std::errc{} && end == digits.data() + digits.size() && (digits.size() == 1 || digits[0] != '0');
+    if (!plain || number < range.base || number >= range.base + range.count) continue;
+    return range.first_entity + static_cast<std::uint32_t>(number - range.base);
   }
-  return {};
+  if (added_robots.empty()) return std::nullopt;
+  const auto added = added_robots.find(std::string(id));
+  if (added == added_robots.end()) return std::nullopt;
+  return added->second;
+}
+
+RobotId Space::find_robot(std::string_view id) const noexcept {
+  const std::optional<std::uint32_t> entity = stores_->find_entity(id);
+  if (!entity || !stores_->robots[*entity].alive) return {};
+  return {*entity, stores_->robots[*entity].generation};
+}
+
+bool Space::contains(RobotId robot) const noexcept {
+  return stores_->contains(robot);
+}
+
+bool Space::id_taken(std::string_view id) const noexcept {
+  const auto same = [&](const auto& thing) { return thing.id == id; };
+  const SpaceStores& s = *stores_;
+  return s.find_entity(id).has_value() || s.object_numbers.contains(std::string(id)) ||
+         std::any_of(s.lights.begin(), s.lights.end(), same) || std::any_of(s.sounds.begin(), s.sounds.end(), same);
+}
+
+namespace {
+
+hal::Error gone(const char* what) {
+  return {std::string("there is no such ") + what +
+          ", or no more: it was removed, or added after the moment that the "
+          "run went back to"};
+}
+
+hal::Error taken(const std::string& id) {
+  return id.empty()
+             ? hal::Error{"an id must not be empty"}
+             : hal::Error{"the id '" + id + "' is taken, or was by something that has been removed; give another"};
+}
+
+hal::Error no_world() {
+  return {"this space belongs to no world: nothing can be added to it"};
+}
+
+bool finite(const std::array<double, 3>& v) noexcept {
+  return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]);
+}
+
+}  // namespace
+
+hal::Result<RobotId> Space::add_robot(const NewRobot& wanted) {
+  if (wanted.id.empty() || id_taken(wanted.id)) return taken(wanted.id);
+  return editor_ == nullptr ? no_world() : editor_->add_robot(wanted);
 }
 
 std::string Space::robot_name(RobotId robot) const {
+  if (robot.index >= stores_->robots.size()) return {};
   const RobotEntity& e = stores_->robots[robot.index];
   const std::string& prefix = stores_->names[e.item].prefix;
   return e.number < 0 ? prefix : prefix + std::to_string(e.number);
 }
 
 const hal::DataSheet& Space::data_sheet(RobotId robot) const noexcept {
+  static constexpr hal::DataSheet kNone;
+  if (robot.index >= stores_->robots.size()) return kNone;
   return *stores_->groups[stores_->blocks[stores_->robots[robot.index].block].group].sheet;
 }
 
 Pose Space::pose(RobotId robot) const noexcept {
+  if (!contains(robot)) return {};
   const std::size_t row = stores_->row_of(robot);
   const Bodies& b = stores_->bodies;
   return {b.x_m[row], b.y_m[row], b.motion.empty() ? 0.0 : b.motion[row].z_m, b.cos_h[row], b.sin_h[row]};
 }
 
 void Space::set_pose(RobotId robot, const Pose& pose) noexcept {
+  if (!contains(robot)) return;
   const std::size_t row = stores_->row_of(robot);
   Bodies& b = stores_->bodies;
   b.x_m[row] = pose.x_m;
@@ -103,40 +161,90 @@ void Space::set_pose(RobotId robot, const Pose& pose) noexcept {
     b.motion[row].q_WB = {std::cos(0.5 * yaw_rad), 0.0, 0.0, std::sin(0.5 * yaw_rad)};
   }
   b.flags[row] |= kMoved;
-  stores_->bodies_changed = true;
+  stores_->touch(BodyKey::robot(row));
+}
+
+Velocity Space::velocity(RobotId robot) const noexcept {
+  if (!contains(robot)) return {};
+  const std::size_t row = stores_->row_of(robot);
+  const Bodies& b = stores_->bodies;
+  const std::uint16_t region = b.region[row];
+  if (!b.motion.empty() && region != kNoRegion && stores_->regions[region].listed)
+    return {b.motion[row].v_m_s, b.motion[row].w_rad_s};
+  const double base_m = data_sheet(robot).wheel_base_m;
+  const double speed = 0.5 * (b.left_m_s[row] + b.right_m_s[row]);
+  const double turn = base_m > 0.0 ? (b.right_m_s[row] - b.left_m_s[row]) / base_m : 0.0;
+  return {{b.cos_h[row] * speed, b.sin_h[row] * speed, 0.0}, {0.0, 0.0, turn}};
+}
+
+hal::Status Space::set_velocity(RobotId robot, const Velocity& velocity) {
+  if (!contains(robot)) return gone("robot");
+  if (!finite(velocity.v_m_s) || !finite(velocity.w_rad_s))
+    return hal::Error{"the velocity for robot '" + robot_name(robot) + "' is not finite"};
+  const std::size_t row = stores_->row_of(robot);
+  Bodies& b = stores_->bodies;
+  const std::uint16_t region = b.region[row];
+  if (b.motion.empty() || region == kNoRegion || !stores_->regions[region].listed) {
+    return hal::Error{"the engine of robot '" + robot_name(robot) +
+                      "' keeps no velocities; command its wheels instead, or give it an engine with forces"};
+  }
+  b.motion[row].v_m_s = velocity.v_m_s;
+  b.motion[row].w_rad_s = velocity.w_rad_s;
+  return {};
+}
+
+hal::Result<double> Space::battery(RobotId robot) const {
+  if (!contains(robot)) return gone("robot");
+  return editor_ == nullptr ? no_world() : editor_->battery(robot);
+}
+
+hal::Status Space::set_battery(RobotId robot, double charge) {
+  if (!contains(robot)) return gone("robot");
+  if (!(charge >= 0.0 && charge <= 1.0)) return hal::Error{"a battery's charge is a part of the full one, 0 to 1"};
+  return editor_ == nullptr ? no_world() : editor_->set_battery(robot, charge);
 }
 
 void Space::remove_robot(RobotId robot) noexcept {
-  RobotEntity& e = stores_->robots[robot.index];
-  if (!e.alive || e.generation != robot.generation) return;
+  if (!contains(robot)) return;
+  SpaceStores& s = *stores_;
+  RobotEntity& e = s.robots[robot.index];
+  RobotBlock& block = s.blocks[e.block];
+  RobotGroup& group = s.groups[block.group];
+  const std::size_t row = s.row_of(robot);
   set_halted(robot, true);
-  const std::size_t row = stores_->row_of(robot);
-  stores_->bodies.flags[row] = 0;
-  stores_->bodies.left_m_s[row] = 0.0;
-  stores_->bodies.right_m_s[row] = 0.0;
-  if (!stores_->broadcasts.empty()) stores_->broadcasts[row].sending = 0;
+  if (block.constructed[e.slot] != 0) group.controller->destroy(block.controller(e.slot));
+  block.constructed[e.slot] = 0;
+  // A twin keeps pointers to its robot's ports: nobody else ever gets these.
+  if ((s.bodies.flags[row] & kExternal) == 0) group.free_slots.push_back({e.block, e.slot});
+  s.bodies.flags[row] = 0;
+  s.bodies.left_m_s[row] = 0.0;
+  s.bodies.right_m_s[row] = 0.0;
+  if (!s.broadcasts.empty()) s.broadcasts[row].sending = 0;
   e.alive = false;
   ++e.generation;
-  stores_->bodies_changed = true;
-  std::erase(stores_->living, robot.index);
+  release_joints_of(BodyKey::robot(row));
+  s.bodies_changed = true;
+  s.living.erase(std::lower_bound(s.living.begin(), s.living.end(), robot.index));
 }
 
 double Space::turret_rad(RobotId robot) const noexcept {
   const Bodies& b = stores_->bodies;
-  return b.turrets.empty() ? 0.0 : b.turrets[stores_->row_of(robot)].angle_rad;
+  return b.turrets.empty() || !contains(robot) ? 0.0 : b.turrets[stores_->row_of(robot)].angle_rad;
 }
 
 bool Space::holding(RobotId robot) const noexcept {
   const Bodies& b = stores_->bodies;
-  return !b.grips.empty() && b.grips[stores_->row_of(robot)].holding();
+  return !b.grips.empty() && contains(robot) && b.grips[stores_->row_of(robot)].holding();
 }
 
 bool Space::halted(RobotId robot) const noexcept {
+  if (!contains(robot)) return true;
   const RobotEntity& e = stores_->robots[robot.index];
   return stores_->blocks[e.block].halted[e.slot] != 0;
 }
 
 void Space::set_halted(RobotId robot, bool halted) noexcept {
+  if (!contains(robot)) return;
   const RobotEntity& e = stores_->robots[robot.index];
   stores_->blocks[e.block].halted[e.slot] = halted ? 1 : 0;
   if (halted) {
@@ -151,15 +259,17 @@ void Space::set_halted(RobotId robot, bool halted) noexcept {
 }
 
 bool Space::external(RobotId robot) const noexcept {
-  return (stores_->bodies.flags[stores_->row_of(robot)] & kExternal) != 0;
+  return contains(robot) && (stores_->bodies.flags[stores_->row_of(robot)] & kExternal) != 0;
 }
 
 void Space::set_external(RobotId robot, bool external) noexcept {
+  if (!contains(robot)) return;
   std::uint8_t& flags = stores_->bodies.flags[stores_->row_of(robot)];
   flags = static_cast<std::uint8_t>(external ? flags | kExternal : flags & ~kExternal);
 }
 
 const void* Space::port(RobotId robot, const hal::PortType& type) const noexcept {
+  if (!contains(robot)) return nullptr;
   const RobotEntity& e = stores_->robots[robot.index];
   const RobotBlock& block = stores_->blocks[e.block];
   const RobotGroup& group = stores_->groups[block.group];
@@ -176,12 +286,108 @@ void* Space::port(RobotId robot, const hal::PortType& type) noexcept {
 }
 
 std::vector<const hal::PortType*> Space::ports(RobotId robot) const {
+  if (robot.index >= stores_->robots.size()) return {};
   return stores_->groups[stores_->blocks[stores_->robots[robot.index].block].group].ports;
 }
 
 const std::vector<Object>& Space::objects() const noexcept {
   return stores_->objects;
 }
+
+ObjectId Space::object(std::size_t number) const noexcept {
+  if (number >= stores_->objects.size()) return {};
+  return {static_cast<std::uint32_t>(number), stores_->objects[number].generation};
+}
+
+ObjectId Space::find_object(std::string_view id) const noexcept {
+  const auto found = stores_->object_numbers.find(std::string(id));
+  return found == stores_->object_numbers.end() || !stores_->objects[found->second].alive ? ObjectId{}
+                                                                                          : object(found->second);
+}
+
+bool Space::contains(ObjectId object) const noexcept {
+  return stores_->contains(object);
+}
+
+hal::Result<ObjectId> Space::add_object(const Object& wanted) {
+  if (wanted.id.empty() || id_taken(wanted.id)) return taken(wanted.id);
+  return editor_ == nullptr ? no_world() : editor_->add_object(wanted);
+}
+
+hal::Status Space::set_object(ObjectId object, const Object& changed) {
+  if (!contains(object)) return gone("object");
+  return editor_ == nullptr ? no_world() : editor_->set_object(object, changed);
+}
+
+void Space::remove_object(ObjectId object) noexcept {
+  if (!contains(object)) return;
+  SpaceStores& s = *stores_;
+  Object& gone_one = s.objects[object.index];
+  gone_one.alive = false;
+  release_joints_of(BodyKey::object(object.index));
+  s.bodies_changed = true;
+  if (gone_one.movable) return;
+  ++s.immovables_version;
+  s.altered = true;
+}
+
+Velocity Space::object_velocity(ObjectId object) const noexcept {
+  if (!contains(object)) return {};
+  const Motion& motion = stores_->object_motion[object.index];
+  return {motion.v_m_s, motion.w_rad_s};
+}
+
+hal::Status Space::set_object_velocity(ObjectId object, const Velocity& velocity) {
+  if (!contains(object)) return gone("object");
+  const std::string& id = stores_->objects[object.index].id;
+  if (!stores_->objects[object.index].movable) return hal::Error{"object '" + id + "' is not movable"};
+  if (!finite(velocity.v_m_s) || !finite(velocity.w_rad_s))
+    return hal::Error{"the velocity for object '" + id + "' is not finite"};
+  stores_->object_motion[object.index].v_m_s = velocity.v_m_s;
+  stores_->object_motion[object.index].w_rad_s = velocity.w_rad_s;
+  return {};
+}
+
+hal::Result<BodyKey> Space::key_of(const BodyId& body) const {
+  if (body.robot.valid()) {
+    if (!contains(body.robot)) return gone("robot");
+    return BodyKey::robot(stores_->row_of(body.robot));
+  }
+  if (!contains(body.object)) return gone("object");
+  if (!stores_->objects[body.object.index].movable) {
+    return hal::Error{"object '" + stores_->objects[body.object.index].id +
+                      "' is not movable: only what engines move can be joined"};
+  }
+  return BodyKey::object(body.object.index);
+}
+
+hal::Result<JointId> Space::join(BodyId a, BodyId b, const std::array<double, 3>& p_W, bool turns) {
+  const hal::Result<BodyKey> key_a = key_of(a);
+  if (!key_a.ok()) return key_a.error();
+  const hal::Result<BodyKey> key_b = key_of(b);
+  if (!key_b.ok()) return key_b.error();
+  if (key_a.value() == key_b.value()) return hal::Error{"a body cannot be joined to itself"};
+  if (!finite(p_W)) return hal::Error{"the point of a joint is not finite"};
+  return editor_ == nullptr ? no_world() : editor_->join(key_a.value(), key_b.value(), p_W, turns);
+}
+
+void Space::release(JointId joint) noexcept {
+  if (!contains(joint)) return;
+  stores_->joints[joint.index].alive = false;
+  stores_->bodies_changed = true;
+}
+
+bool Space::contains(JointId joint) const noexcept {
+  const auto& joints = stores_->joints;
+  return joint.index < joints.size() && joints[joint.index].alive && joints[joint.index].generation == joint.generation;
+}
+
+void Space::release_joints_of(BodyKey body) noexcept {
+  for (Joint& joint : stores_->joints) {
+    if (joint.a == body || joint.b == body) joint.alive = false;
+  }
+}
+
 const std::vector<LightSource>& Space::lights() const noexcept {
   return stores_->lights;
 }
@@ -189,14 +395,44 @@ const std::vector<SoundSource>& Space::sounds() const noexcept {
   return stores_->sounds;
 }
 
+hal::Result<std::size_t> Space::add_light(const LightSource& light) {
+  if (light.id.empty() || id_taken(light.id)) return taken(light.id);
+  stores_->lights.push_back(light);
+  stores_->lights.back().alive = true;
+  stores_->altered = true;
+  return stores_->lights.size() - 1;
+}
+
+hal::Result<std::size_t> Space::add_sound(const SoundSource& sound) {
+  if (sound.id.empty() || id_taken(sound.id)) return taken(sound.id);
+  stores_->sounds.push_back(sound);
+  stores_->sounds.back().alive = true;
+  stores_->altered = true;
+  return stores_->sounds.size() - 1;
+}
+
 void Space::set_light(std::size_t i, const LightSource& light) {
   TANDEM_CHECK(i < stores_->lights.size(), "set_light: there is no light of that number");
   stores_->lights[i] = light;
+  stores_->altered = true;
 }
 
 void Space::set_sound(std::size_t i, const SoundSource& sound) {
   TANDEM_CHECK(i < stores_->sounds.size(), "set_sound: there is no sound of that number");
   stores_->sounds[i] = sound;
+  stores_->altered = true;
+}
+
+void Space::remove_light(std::size_t i) {
+  TANDEM_CHECK(i < stores_->lights.size(), "remove_light: there is no light of that number");
+  stores_->lights[i].alive = false;
+  stores_->altered = true;
+}
+
+void Space::remove_sound(std::size_t i) {
+  TANDEM_CHECK(i < stores_->sounds.size(), "remove_sound: there is no sound of that number");
+  stores_->sounds[i].alive = false;
+  stores_->altered = true;
 }
 
 double Space::arena_size_x_m() const noexcept {

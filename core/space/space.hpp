@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/space/editor.hpp"
 #include "core/space/ids.hpp"
 #include "core/space/pose.hpp"
 #include "hal/device/leds.hpp"
@@ -27,7 +28,9 @@ struct Object {
   double half_x_m = 0.0, half_y_m = 0.0;
   double radius_m = 0.0;  ///< of a cylinder
   double z_low_m = 0.0, z_high_m = 0.0;
-  double mass_kg = 1.0;  ///< of a movable one
+  double mass_kg = 1.0;          ///< of a movable one
+  std::uint32_t generation = 0;  ///< of its id
+  std::uint32_t version = 0;     ///< rises whenever its size, mass or kind changes
 
   /// Radius of the smallest disc around it, seen from above.
   double reach_m() const noexcept;
@@ -39,6 +42,7 @@ struct LightSource {
   double x_m = 0.0, y_m = 0.0, z_m = 0.0;
   double intensity = 1.0;
   hal::Rgb color{255, 255, 0};
+  bool alive = true;  ///< false once removed: its number is not used again
 };
 
 /// A steady sound.
@@ -46,11 +50,15 @@ struct SoundSource {
   std::string id;
   double x_m = 0.0, y_m = 0.0, z_m = 0.0;
   double level = 1.0;
+  bool alive = true;  ///< false once removed: its number is not used again
 };
 
 struct SpaceStores;  // core/space/stores.hpp: the arrays themselves, for kernels
 
 /// Everything that exists in a simulation. Rows of the arrays move; ids stay.
+///
+/// Hooks may change anything between steps; engines, sensors and pictures see it from then on. What an id names may be
+/// gone: changes of it then do nothing or are errors, and questions about it have the answers named here.
 class Space {
  public:
   Space();
@@ -58,27 +66,41 @@ class Space {
   Space(const Space&) = delete;
   Space& operator=(const Space&) = delete;
 
-  // --- robots, in the order of the experiment file ---
+  // --- robots, in the order of the experiment file, then in that of being added ---
   std::size_t robot_count() const noexcept;
   RobotId robot(std::size_t i) const noexcept;             ///< the i-th living robot
   RobotId find_robot(std::string_view id) const noexcept;  ///< invalid when there is none
-  std::string robot_name(RobotId robot) const;
+  bool contains(RobotId robot) const noexcept;             ///< false once removed
+  std::string robot_name(RobotId robot) const;             ///< also of one that is gone
   const hal::DataSheet& data_sheet(RobotId robot) const noexcept;
-  Pose pose(RobotId robot) const noexcept;
-  /// Moves a robot at once. Takes effect for physics and sensing from the next phase on.
-  void set_pose(RobotId robot, const Pose& pose) noexcept;
-  /// Takes a robot out of the space: its controller stops, nobody sees it any more. Its id is not used again.
+  /// Makes a robot; it senses and steps from the next step on. Errors: an id that is taken or was; an unknown kind or
+  /// configuration; bad parameters; a place that is occupied, outside the arena, or in no engine's region; a
+  /// controller that throws. Nothing has changed then.
+  hal::Result<RobotId> add_robot(const NewRobot& wanted);
+  /// Takes a robot out of the space: its controller is destroyed, its joints are released, nobody sees it any more.
+  /// Its id is not used again.
   void remove_robot(RobotId robot) noexcept;
+  Pose pose(RobotId robot) const noexcept;  ///< gone: the origin
+  /// Moves a robot at once. Takes effect for physics and sensing from the next phase on. It may be put onto others:
+  /// engines then part them.
+  void set_pose(RobotId robot, const Pose& pose) noexcept;
+  /// Of its centre, as its engine left it. Where the engine keeps none (kinematics2d): what its wheels do.
+  Velocity velocity(RobotId robot) const noexcept;
+  /// Errors: the robot is gone; its engine keeps no velocities, the wheels' commands are all there is.
+  hal::Status set_velocity(RobotId robot, const Velocity& velocity);
+  /// Charge as a part of the full one, 0 to 1. Errors: the robot is gone; its controller takes no battery.
+  hal::Result<double> battery(RobotId robot) const;
+  hal::Status set_battery(RobotId robot, double charge);
   /// Angle of the robot's turret on its body, counter-clockwise from forward; 0 where it has none.
   double turret_rad(RobotId robot) const noexcept;
   bool holding(RobotId robot) const noexcept;  ///< whether its gripper holds something
-  bool halted(RobotId robot) const noexcept;   ///< its controller threw or was stopped: wheels stay 0
+  bool halted(RobotId robot) const noexcept;  ///< its controller threw or was stopped: wheels stay 0; gone: true
   void set_halted(RobotId robot, bool halted) noexcept;
   /// Whether the robot's pose is set from outside (a real robot's twin): engines do not move it, others bump into it.
   bool external(RobotId robot) const noexcept;
   void set_external(RobotId robot, bool external) noexcept;
-  /// A port of the robot as its controller sees it, or null when the controller took none of that name. Sensor and
-  /// actuator ports may share a name, so the role is part of it.
+  /// A port of the robot as its controller sees it, or null when the controller took none of that name or the
+  /// robot is gone. Sensor and actuator ports may share a name, so the role is part of it.
   const void* port(RobotId robot, const hal::PortType& type) const noexcept;
   void* port(RobotId robot, const hal::PortType& type) noexcept;
   template <class T>
@@ -92,13 +114,42 @@ class Space {
   /// Descriptions of all ports that the robot's controller took.
   std::vector<const hal::PortType*> ports(RobotId robot) const;
 
-  // --- things that do not move by themselves ---
-  /// Boxes and cylinders by number, in the order of the experiment file; those removed are not `alive`.
+  // --- boxes and cylinders ---
+  /// By number, in the order of the experiment file, then in that of being added; those removed are not `alive`.
   const std::vector<Object>& objects() const noexcept;
+  ObjectId object(std::size_t number) const noexcept;        ///< invalid when there is none
+  ObjectId find_object(std::string_view id) const noexcept;  ///< invalid when there is none
+  bool contains(ObjectId object) const noexcept;
+  /// Errors: an id that is taken or was; sizes or a mass that are not above 0; a place on a robot or on something
+  /// movable, or for a movable one on anything; a movable one where no engine moves objects.
+  hal::Result<ObjectId> add_object(const Object& wanted);
+  /// Gives an object another place, size, mass, and whether it is movable: all of `changed` but its id. It may be put
+  /// onto others: engines then part them. A movable one keeps its velocity. Errors: gone; otherwise as `add_object`.
+  hal::Status set_object(ObjectId object, const Object& changed);
+  /// Its id is not used again; its joints are released.
+  void remove_object(ObjectId object) noexcept;
+  Velocity object_velocity(ObjectId object) const noexcept;  ///< of an immovable one, or gone: 0
+  /// Errors: gone or immovable.
+  hal::Status set_object_velocity(ObjectId object, const Velocity& velocity);
+
+  // --- joints ---
+  /// Holds two bodies together at a point of W, as they stand; `turns`: about the vertical through it, they may turn.
+  /// Errors: one is gone or immovable; both are the same; an engine that knows no forces has one of them.
+  hal::Result<JointId> join(BodyId a, BodyId b, const std::array<double, 3>& p_W, bool turns = false);
+  void release(JointId joint) noexcept;
+  bool contains(JointId joint) const noexcept;  ///< false once released, or when one of its bodies is gone
+
+  // --- lamps and steady sounds ---
+  /// By number; those removed are not `alive`.
   const std::vector<LightSource>& lights() const noexcept;
   const std::vector<SoundSource>& sounds() const noexcept;
+  /// Give the number. Errors: an id that is taken or was.
+  hal::Result<std::size_t> add_light(const LightSource& light);
+  hal::Result<std::size_t> add_sound(const SoundSource& sound);
   void set_light(std::size_t i, const LightSource& light);
   void set_sound(std::size_t i, const SoundSource& sound);
+  void remove_light(std::size_t i);
+  void remove_sound(std::size_t i);
 
   // --- the arena ---
   double arena_size_x_m() const noexcept;
@@ -112,8 +163,16 @@ class Space {
 
   SpaceStores& stores() noexcept { return *stores_; }
   const SpaceStores& stores() const noexcept { return *stores_; }
+  /// Lets `editor` add and change what the space cannot by itself; it must outlive the last call. Null: such are
+  /// errors.
+  void set_editor(Editor* editor) noexcept { editor_ = editor; }
 
  private:
+  bool id_taken(std::string_view id) const noexcept;
+  hal::Result<BodyKey> key_of(const BodyId& body) const;
+  void release_joints_of(BodyKey body) noexcept;
+
+  Editor* editor_ = nullptr;
   std::unique_ptr<SpaceStores> stores_;
 };
 

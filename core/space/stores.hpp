@@ -5,12 +5,16 @@
 // so ports and controllers keep their addresses. At the start rows are in spatial order, so that neighbours share cache
 // lines.
 #pragma once
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <memory>
 #include <new>
+#include <optional>
 #include <string>
+#include <string_view>
+#include <unordered_map>
 #include <vector>
 
 #include "core/space/body_index.hpp"
@@ -29,6 +33,8 @@
 #include "hal/spec/data_sheet.hpp"
 
 namespace tandem::core {
+
+struct RobotItem;  // core/scenario/scenario.hpp
 
 inline constexpr std::size_t kBlockRows = 256;
 
@@ -94,8 +100,16 @@ enum BodyFlag : std::uint8_t {
   kMoved = 16      ///< put somewhere else between steps: its region is to be found anew
 };
 
+/// A robot's place in a block.
+struct Slot {
+  std::uint32_t block = 0;
+  std::uint32_t slot = 0;
+};
+
 /// What the robots of a group have in common.
 struct RobotGroup {
+  std::shared_ptr<const RobotItem>
+      item;  ///< one of theirs: what it says of battery, radio and parameters holds for all
   const hal::DataSheet* sheet = nullptr;
   const hal::ControllerType* controller = nullptr;
   std::size_t config = 0;  ///< index into Scenario::controllers
@@ -109,19 +123,25 @@ struct RobotGroup {
   double rab_range_m = 0.0;
   unsigned rab_payload = 0;
   std::vector<std::size_t> blocks;
+  std::vector<Slot> free_slots;  ///< of robots that were removed; the last is used next
 };
 
-/// Up to kBlockRows robots of one group.
+/// Up to kBlockRows robots of one group. Slots below `used` hold or held robots; those of robots that were removed are
+/// halted, and their rows not alive.
 struct RobotBlock {
   std::size_t group = 0;
   std::size_t first_row = 0;
   std::size_t capacity = 0;
   std::size_t used = 0;
-  std::vector<std::byte*> ports;  ///< of SpaceStores::slab, parallel to RobotGroup::ports
+  std::vector<std::byte*> ports;  ///< parallel to RobotGroup::ports
   std::byte* controllers = nullptr;
   std::size_t controller_stride = 0;
-  std::array<std::uint8_t, kBlockRows> halted{};  ///< 1: controller does not step, wheels stay 0
+  /// Arrays that are not the slab's: those made while the run goes on. Shared with the snapshots that put them back.
+  std::vector<std::shared_ptr<std::byte>> own_arrays;
+  std::array<std::uint8_t, kBlockRows> halted{};       ///< 1: controller does not step, wheels stay 0
+  std::array<std::uint8_t, kBlockRows> constructed{};  ///< 1: a controller lives in the slot
 
+  std::byte* controller(std::size_t slot) const noexcept { return controllers + slot * controller_stride; }
   template <class T>
   T* port_array(std::size_t i) const noexcept {
     return std::launder(reinterpret_cast<T*>(ports[i]));
@@ -159,19 +179,21 @@ struct SpaceStores {
   double max_z_m = std::numeric_limits<double>::infinity();             ///< its ceiling: what flies stays below
 
   Bodies bodies;
-  Slab slab;  ///< holds ports and controllers of all blocks
+  Slab slab;  ///< holds ports and controllers of the blocks that were made at the start
   std::vector<RobotGroup> groups;
   std::vector<RobotBlock> blocks;
   std::vector<RobotEntity> robots;    ///< by entity index
-  std::vector<std::uint32_t> living;  ///< entity indices, in order
-  std::vector<NameRange> names;
+  std::vector<std::uint32_t> living;  ///< entity indices, rising
+  std::vector<NameRange> names;       ///< those of the file, then those of the added robots, one each
+  std::unordered_map<std::string, std::uint32_t> added_robots;  ///< entity index by id, also of robots that are gone
 
   std::vector<Object> objects;  ///< by number; parallel to the next two
   std::vector<Motion> object_motion;
   std::vector<std::uint16_t> object_region;  ///< of movable ones
   std::uint64_t immovables_version = 1;      ///< rises whenever an immovable object appears, changes or goes
   bool bodies_changed = true;                ///< robots or movable objects appeared, went or were put elsewhere
-  ObjectIndex static_index;                  ///< of the immovable ones
+  std::unordered_map<std::string, std::uint32_t> object_numbers;  ///< by id, also of objects that are gone
+  ObjectIndex static_index;                                       ///< of the immovable ones
   ObjectIndex movable_index;
   std::vector<Joint> joints;  ///< by number
 
@@ -184,6 +206,12 @@ struct SpaceStores {
   Floor floor;
   bool repaint_floor = false;
   std::vector<Broadcast> broadcasts;  ///< by row; empty when no robot can send
+
+  std::uint32_t generations = 0;  ///< rises with every id that is given out after the start, and with every restore
+  std::uint32_t joint_generations = 0;  ///< the same for joints
+  bool altered = false;                 ///< something came, or anything immovable changed or went, since the start
+  std::uint64_t poses_version = 1;      ///< rises whenever engines moved bodies
+  std::vector<BodyKey> touched;         ///< bodies that came or were put elsewhere since then
 
   /// Calls `visit(const Object&)` for every living object that may be within the indices' reach of (x, y).
   template <class Visit>
@@ -209,6 +237,19 @@ struct SpaceStores {
   std::size_t row_of(RobotId id) const noexcept {
     const RobotEntity& e = robots[id.index];
     return blocks[e.block].first_row + e.slot;
+  }
+  bool contains(RobotId id) const noexcept {
+    return id.index < robots.size() && robots[id.index].alive && robots[id.index].generation == id.generation;
+  }
+  bool contains(ObjectId id) const noexcept {
+    return id.index < objects.size() && objects[id.index].alive && objects[id.index].generation == id.generation;
+  }
+  /// The entity that has or had this id.
+  std::optional<std::uint32_t> find_entity(std::string_view id) const noexcept;
+  /// A body was put where it is now, or came: engines, regions and indices are to take notice.
+  void touch(BodyKey body) {
+    touched.push_back(body);
+    bodies_changed = true;
   }
 };
 

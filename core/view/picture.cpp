@@ -81,7 +81,9 @@ Drawing drawing_of(const Space& space, const PictureOptions& options) {
       drawing.borders.push_back({a.x_m, a.y_m, b.x_m, b.y_m, a.wall});
     }
   }
-  for (const LightSource& light : space.lights()) drawing.lights.push_back({light.x_m, light.y_m, light.color});
+  for (const LightSource& light : space.lights()) {
+    if (light.alive) drawing.lights.push_back({light.x_m, light.y_m, light.color});
+  }
   if (!space.stores().floor.uniform()) {
     drawing.floor = [&space](double x_m, double y_m) { return space.floor(x_m, y_m); };
   }

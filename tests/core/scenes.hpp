@@ -38,9 +38,12 @@ struct Scene {
     scenario.controllers.back().params.attributes.push_back({name, value, 0});
     return *this;
   }
+  /// Of all devices but the lamps, which have nothing to err in.
   Scene& implementations(const std::string& name) {
     for (auto* list : {&scenario.controllers.back().sensors, &scenario.controllers.back().actuators}) {
-      for (DeviceChoice& choice : *list) choice.implementation = name;
+      for (DeviceChoice& choice : *list) {
+        if (choice.device != "leds" && !choice.device.ends_with("_led")) choice.implementation = name;
+      }
     }
     return *this;
   }

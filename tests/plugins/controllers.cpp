@@ -1,5 +1,6 @@
 // Controllers that tests need: each does one plain thing.
 #include <limits>
+#include <memory>
 #include <stdexcept>
 
 #include "hal/device/body_sensors.hpp"
@@ -273,6 +274,44 @@ class Stillborn final : public Controller {
   void step() override {}
 };
 
+/// Keeps something that has no copy.
+class Owner final : public Controller {
+ public:
+  explicit Owner(Robot& robot) : wheels_(robot.actuator<WheelSpeeds>()), steps_(std::make_unique<int>(0)) {}
+  void step() override { wheels_.set(0.01 * (++*steps_ % 5), 0.02); }
+
+ private:
+  WheelSpeeds& wheels_;
+  std::unique_ptr<int> steps_;
+};
+
+/// Throws when it is copied after its third step.
+class Reluctant final : public Controller {
+ public:
+  explicit Reluctant(Robot&) {}
+  Reluctant(const Reluctant& other) : steps_(other.steps_) {
+    if (steps_ >= 3) throw std::runtime_error("I am unique");
+  }
+  void step() override { ++steps_; }
+
+ private:
+  int steps_ = 0;
+};
+
+/// Takes devices by its robot's id: "light…" also the light sensor, "refuse…" throws after having taken it.
+class Picky final : public Controller {
+ public:
+  explicit Picky(Robot& robot) : wheels_(robot.actuator<WheelSpeeds>()) {
+    if (robot.id().starts_with("light") || robot.id().starts_with("refuse")) light_ = &robot.sensor<Light>();
+    if (robot.id().starts_with("refuse")) throw std::runtime_error("refuses to be made");
+  }
+  void step() override { wheels_.set(light_ != nullptr ? 0.05 * static_cast<double>(light_->level[0]) : 0.0, 0.01); }
+
+ private:
+  WheelSpeeds& wheels_;
+  const Light* light_ = nullptr;
+};
+
 void register_all(Registrar& registrar) {
   registrar.add_controller<Drive>("drive", "Constant wheel speeds.");
   registrar.add_controller<CountingDrive>("counting_drive", "Constant wheel speeds; says how often it has stepped.");
@@ -284,6 +323,9 @@ void register_all(Registrar& registrar) {
   registrar.add_controller<FlyBoth>("fly_both", "A place, a velocity, and what is no number.");
   registrar.add_controller<Puppet>("puppet", "Takes every device of a foot-bot.");
   registrar.add_controller<DrivenPuppet>("driven_puppet", "Takes a foot-bot's wheels and proximity sensors.");
+  registrar.add_controller<Owner>("owner", "Cannot be copied.");
+  registrar.add_controller<Reluctant>("reluctant", "Throws when it is copied after its third step.");
+  registrar.add_controller<Picky>("picky", "Takes devices by its robot's id.");
   registrar.add_controller<Stillborn>("stillborn", "Throws when made.");
 }
 

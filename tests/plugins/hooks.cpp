@@ -1,4 +1,4 @@
-// A hook that notes its calls on the floor of the test: in the name of a file that the test gives.
+// Hooks that tests need.
 #include <cmath>
 #include <fstream>
 #include <stdexcept>
@@ -10,6 +10,7 @@ namespace {
 
 using namespace tandem;
 
+/// Notes its calls in a file that the test names.
 class Diary final : public core::Hook {
  public:
   struct Params {
@@ -45,7 +46,88 @@ class Diary final : public core::Hook {
   std::ofstream out_;
 };
 
+/// Brings robots and boxes in and takes them out again; keeps a moment and goes back to it.
+class Shepherd final : public core::Hook {
+ public:
+  struct Params {
+    std::string controller = "c";
+    std::int64_t save_at = -1;
+    std::int64_t back_at = -1;
+    std::int64_t times = 1;
+    bool movable = false;
+    void describe(hal::ParamVisitor& v) {
+      v.text("controller", controller, "Configuration of the robots.");
+      v.integer("save_at", save_at, hal::kAny, "Keeps the moment after this tick.");
+      v.integer("back_at", back_at, hal::kAny, "Goes back to it after this tick.");
+      v.integer("times", times, hal::kAny, "How often.");
+      v.flag("movable", movable, "Its boxes can be pushed.");
+    }
+  };
+  explicit Shepherd(const Params& params) : params_(params) {}
+
+  void before_step(core::HookContext& c) override {
+    if (c.tick % 3 == 0) come(c);
+    if (c.tick % 4 == 3 && !flock_.empty()) {
+      c.space.remove_robot(flock_.front());
+      flock_.erase(flock_.begin());
+    }
+    if (c.tick % 10 == 5) c.space.remove_object(box_);
+  }
+
+  void after_step(core::HookContext& c) override {
+    if (c.tick == params_.save_at && went_back_ == 0) c.checkpoints.save("fold");
+    if (c.tick == params_.back_at && went_back_ < params_.times) {
+      ++went_back_;
+      const hal::Status asked = c.checkpoints.restore("fold");
+      if (!asked.ok()) throw std::runtime_error(asked.error().message);
+    }
+  }
+
+  std::any save() const override { return Memory{flock_, box_, came_}; }
+  void restore(const std::any& saved) override {
+    const auto& memory = std::any_cast<const Memory&>(saved);
+    flock_ = memory.flock;
+    box_ = memory.box;
+    came_ = memory.came;
+  }
+
+ private:
+  struct Memory {
+    std::vector<core::RobotId> flock;
+    core::ObjectId box;
+    int came;
+  };
+
+  void come(core::HookContext& c) {
+    const double x_m = -1.5 + 0.3 * (came_ % 11);
+    const auto robot = c.space.add_robot({.kind = "e-puck",
+                                          .id = "sheep" + std::to_string(came_),
+                                          .controller = params_.controller,
+                                          .pose = core::Pose::at(x_m, 1.6, 0.1 * came_),
+                                          .params = {{"left", "0.03"}}});
+    if (robot.ok()) flock_.push_back(robot.value());
+    core::Object box;
+    box.id = "hurdle" + std::to_string(came_);
+    box.x_m = x_m;
+    box.y_m = -1.6;
+    box.half_x_m = box.half_y_m = 0.05;
+    box.z_high_m = 0.2;
+    box.movable = params_.movable;
+    ++came_;
+    if (c.space.contains(box_)) return;
+    const auto added = c.space.add_object(box);
+    if (added.ok()) box_ = added.value();
+  }
+
+  Params params_;
+  std::vector<core::RobotId> flock_;
+  core::ObjectId box_;
+  int came_ = 0;
+  std::int64_t went_back_ = 0;  // survives going back
+};
+
 void register_all(hal::Registrar& registrar) {
+  registrar.add("hook", "shepherd", &core::hook_type<Shepherd>("shepherd", "Robots and boxes come and go."));
   registrar.add("hook", "diary", &core::hook_type<Diary>("diary", "Writes its calls down."));
 }
 

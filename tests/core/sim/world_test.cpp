@@ -106,11 +106,6 @@ std::uint64_t hash_of(const Scene& scene, std::int64_t threads, Assignment assig
 TEST(World, GivesTheSameBitsForAnyNumberOfThreadsAndEitherAssignment) {
   Scene scene(12.0, "everything");
   scene.implementations("noisy").param("left", "0.04").param("right", "0.05").walls().robots(5000, 5.8);
-  for (auto* list : {&scene.scenario.controllers[0].sensors, &scene.scenario.controllers[0].actuators}) {
-    for (DeviceChoice& c : *list) {
-      if (c.device.ends_with("led") || c.device == "leds") c.implementation = "default";
-    }
-  }
   const std::uint64_t alone = hash_of(scene, 1, Assignment::Static);
   for (const std::int64_t threads : {0, 2, 3, 8}) {
     EXPECT_EQ(hash_of(scene, threads, Assignment::Static), alone) << threads << " threads, static";

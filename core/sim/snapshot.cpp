@@ -1,0 +1,154 @@
+#include "core/sim/snapshot.hpp"
+
+#include <algorithm>
+#include <exception>
+
+#include "core/space/space.hpp"
+
+namespace tandem::core {
+namespace {
+
+/// Copies a controller. Says what it threw, or nothing.
+std::string copied(const hal::ControllerType& type, void* where, const void* from) {
+  try {
+    type.copy(where, from);
+    return {};
+  } catch (const std::exception& e) {
+    return e.what();
+  } catch (...) {
+    return "an exception of unknown type";
+  }
+}
+
+std::string name_of(const Space& space, std::size_t row) {
+  const SpaceStores& s = space.stores();
+  const std::uint32_t entity = s.bodies.entity[row];
+  return "robot '" + space.robot_name({entity, s.robots[entity].generation}) + "'";
+}
+
+}  // namespace
+
+hal::Result<std::unique_ptr<SpaceCopy>> SpaceCopy::take(const Space& space, const RobotDevices& devices) {
+  const SpaceStores& s = space.stores();
+  std::unique_ptr<SpaceCopy> copy(new SpaceCopy);
+  copy->groups_ = s.groups;
+  copy->blocks_.reserve(s.blocks.size());
+  for (std::size_t b = 0; b < s.blocks.size(); ++b) {
+    if (const hal::Status done = copy->copy_block(space, devices, b); !done.ok()) return done.error();
+  }
+  copy->bodies_ = s.bodies;
+  copy->robots_ = s.robots;
+  copy->living_ = s.living;
+  copy->names_ = s.names;
+  copy->added_robots_ = s.added_robots;
+  copy->devices_ = devices;
+  copy->objects_ = s.objects;
+  copy->object_numbers_ = s.object_numbers;
+  copy->object_motion_ = s.object_motion;
+  copy->object_region_ = s.object_region;
+  copy->joints_ = s.joints;
+  copy->lights_ = s.lights;
+  copy->sounds_ = s.sounds;
+  copy->body_index_ = s.body_index;
+  copy->floor_ = s.floor;
+  copy->repaint_floor_ = s.repaint_floor;
+  copy->altered_ = s.altered;
+  copy->broadcasts_ = s.broadcasts;
+  return copy;
+}
+
+hal::Status SpaceCopy::copy_block(const Space& space, const RobotDevices& devices, std::size_t b) {
+  const RobotBlock& from = space.stores().blocks[b];
+  Block& to = blocks_.emplace_back();
+  to.was = from;
+  const hal::ControllerType& type = type_of(to);
+  for (std::size_t p = 0; p < from.ports.size(); ++p) {
+    const std::byte* bytes = from.ports[p];
+    to.ports.emplace_back(bytes, bytes + groups_[from.group].ports[p]->size * from.capacity);
+  }
+  for (const auto& sensor : devices.blocks[b].sensors) {
+    const DeviceMemory* memory = sensor == nullptr ? nullptr : sensor->memory();
+    to.memories.push_back(memory == nullptr ? std::vector<double>{} : memory->values);
+  }
+  to.controllers = memory_.take(from.controller_stride * from.capacity, type.align);
+  for (; to.copied < from.used; ++to.copied) {
+    if (from.constructed[to.copied] == 0) continue;
+    const std::string who = name_of(space, from.first_row + to.copied);
+    if (type.copy == nullptr) {
+      return hal::Error{"no snapshot: the controller '" + std::string(type.name) + "' of " + who +
+                        " cannot be copied. Give its class a copy constructor: members that are values, no unique_ptr"};
+    }
+    const std::string why = copied(type, to.controller(to.copied), from.controller(to.copied));
+    if (!why.empty()) return hal::Error{"no snapshot: copying the controller of " + who + " threw: " + why};
+  }
+  return {};
+}
+
+SpaceCopy::~SpaceCopy() {
+  for (const Block& block : blocks_) {
+    for (std::size_t slot = 0; slot < block.copied; ++slot) {
+      if (block.was.constructed[slot] != 0) type_of(block).destroy(block.controller(slot));
+    }
+  }
+}
+
+hal::Status SpaceCopy::put_back_block(std::size_t b, Space& space) const {
+  const Block& from = blocks_[b];
+  RobotBlock& to = space.stores().blocks.emplace_back(from.was);
+  to.constructed.fill(0);
+  for (std::size_t p = 0; p < from.ports.size(); ++p)
+    std::copy(from.ports[p].begin(), from.ports[p].end(), to.ports[p]);
+  for (std::size_t p = 0; p < from.memories.size(); ++p) {
+    DeviceMemory* memory = devices_.blocks[b].sensors[p] == nullptr ? nullptr : devices_.blocks[b].sensors[p]->memory();
+    if (memory != nullptr) memory->values = from.memories[p];
+  }
+  hal::Status all;
+  for (std::size_t slot = 0; slot < from.copied; ++slot) {
+    if (from.was.constructed[slot] == 0) continue;
+    const std::string why = copied(type_of(from), to.controller(slot), from.controller(slot));
+    if (why.empty()) {
+      to.constructed[slot] = 1;
+      continue;
+    }
+    to.halted[slot] = 1;
+    all = hal::Error{"copying the controller of " + name_of(space, to.first_row + slot) + " back threw: " + why};
+  }
+  return all;
+}
+
+hal::Status SpaceCopy::put_back(Space& space, RobotDevices& devices) const {
+  SpaceStores& s = space.stores();
+  destroy_controllers(s);
+  s.blocks.clear();
+  s.groups = groups_;
+  s.names = names_;
+  s.added_robots = added_robots_;
+  devices = devices_;
+  s.bodies = bodies_;
+  s.robots = robots_;
+  s.living = living_;
+  s.objects = objects_;
+  s.object_numbers = object_numbers_;
+  s.object_motion = object_motion_;
+  s.object_region = object_region_;
+  s.joints = joints_;
+  s.lights = lights_;
+  s.sounds = sounds_;
+  s.body_index = body_index_;
+  s.floor = floor_;
+  s.repaint_floor = repaint_floor_;
+  s.altered = altered_;
+  s.broadcasts = broadcasts_;
+  ++s.generations;  // who looks for newcomers finds those who are back
+  ++s.immovables_version;
+  ++s.poses_version;
+  s.touched.clear();
+  s.bodies_changed = true;
+  hal::Status all;
+  for (std::size_t b = 0; b < blocks_.size(); ++b) {
+    if (const hal::Status one = put_back_block(b, space); !one.ok()) all = one;
+  }
+  return all;
+}
+
+}  // namespace tandem::core

@@ -1,0 +1,85 @@
+// A moment of a running world, kept to go back to.
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "core/sim/robot_factory.hpp"
+#include "core/space/stores.hpp"
+#include "hal/result.hpp"
+#include "hal/time.hpp"
+
+namespace tandem::core {
+
+struct Moment;  // core/sim/world.cpp: everything beside the space
+
+/// What World::snapshot gives and World::restore takes. Its copies share what was kept, which never changes. Must not
+/// outlive the plug-ins whose controllers it holds.
+class Snapshot {
+ public:
+  hal::Tick tick() const noexcept { return tick_; }
+
+ private:
+  friend class World;
+  Snapshot(hal::Tick tick, std::shared_ptr<const Moment> moment) : tick_(tick), moment_(std::move(moment)) {}
+  hal::Tick tick_;
+  std::shared_ptr<const Moment> moment_;
+};
+
+/// A copy of the stores, of what devices remember and of all controllers.
+class SpaceCopy {
+ public:
+  /// Errors: a controller whose class cannot be copied, or whose copy constructor throws; names it.
+  static hal::Result<std::unique_ptr<SpaceCopy>> take(const Space& space, const RobotDevices& devices);
+  ~SpaceCopy();
+  SpaceCopy(const SpaceCopy&) = delete;
+  SpaceCopy& operator=(const SpaceCopy&) = delete;
+
+  /// Makes the space equal to the copy, whether that is of an earlier moment of what went on or of another way on from
+  /// an earlier one. `space` and `devices` are those that it was taken from: controllers and ports stand at the same
+  /// addresses as then. Errors: a copy constructor that throws; the robot is then halted.
+  hal::Status put_back(Space& space, RobotDevices& devices) const;
+
+ private:
+  SpaceCopy() = default;
+
+  struct Block {
+    RobotBlock was;                    // keeps the arrays of blocks that the run leaves behind
+    std::byte* controllers = nullptr;  // of memory_; as in `was.constructed` as far as they are `copied`
+    std::size_t copied = 0;            // slots
+    std::vector<std::vector<std::byte>> ports;
+    std::vector<std::vector<double>> memories;  // of its sensors
+
+    std::byte* controller(std::size_t slot) const noexcept { return controllers + slot * was.controller_stride; }
+  };
+  hal::Status copy_block(const Space& space, const RobotDevices& devices, std::size_t b);
+  const hal::ControllerType& type_of(const Block& block) const noexcept { return *groups_[block.was.group].controller; }
+  hal::Status put_back_block(std::size_t b, Space& space) const;
+
+  Slab memory_;
+  std::vector<RobotGroup> groups_;
+  std::vector<Block> blocks_;
+  Bodies bodies_;
+  std::vector<RobotEntity> robots_;
+  std::vector<std::uint32_t> living_;
+  std::vector<NameRange> names_;
+  std::unordered_map<std::string, std::uint32_t> added_robots_;
+  RobotDevices devices_;
+  std::vector<Object> objects_;
+  std::unordered_map<std::string, std::uint32_t> object_numbers_;
+  std::vector<Motion> object_motion_;
+  std::vector<std::uint16_t> object_region_;
+  std::vector<Joint> joints_;
+  std::vector<LightSource> lights_;
+  std::vector<SoundSource> sounds_;
+  BodyIndex body_index_;  // its cells are chosen by what was there before
+  Floor floor_;
+  bool repaint_floor_ = false;
+  bool altered_ = false;
+  std::vector<Broadcast> broadcasts_;
+};
+
+}  // namespace tandem::core

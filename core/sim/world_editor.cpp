@@ -1,0 +1,355 @@
+#include "core/sim/world_editor.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "hal/device/body_sensors.hpp"
+
+namespace tandem::core {
+namespace {
+
+bool finite(const Pose& p) noexcept {
+  return std::isfinite(p.x_m) && std::isfinite(p.y_m) && std::isfinite(p.z_m) &&
+         std::fabs(p.cos_h * p.cos_h + p.sin_h * p.sin_h - 1.0) < 1e-6;
+}
+
+std::string text_of(double x_m, double y_m) {
+  return "(" + hal::format_number(x_m) + ", " + hal::format_number(y_m) + ")";
+}
+
+/// The configuration's parameters with others in their place.
+Element overridden(Element params, const std::vector<std::pair<std::string, std::string>>& others) {
+  for (const auto& [name, value] : others) {
+    std::erase_if(params.attributes, [&key = name](const Element::Attribute& a) { return a.name == key; });
+    params.attributes.push_back({name, value, params.line, "add_robot"});
+  }
+  return params;
+}
+
+/// A point of W in the frame of a body with this pose: from its centre, z from its base.
+std::array<double, 3> in_frame(const Pose& body, const std::array<double, 3>& p_W) noexcept {
+  const double dx = p_W[0] - body.x_m;
+  const double dy = p_W[1] - body.y_m;
+  return {body.cos_h * dx + body.sin_h * dy, body.cos_h * dy - body.sin_h * dx, p_W[2] - body.z_m};
+}
+
+Pose pose_of(const SpaceStores& s, BodyKey body) noexcept {
+  const std::size_t i = body.index();
+  if (body.is_object()) {
+    const Object& o = s.objects[i];
+    return {o.x_m, o.y_m, o.z_low_m, o.cos_h, o.sin_h};
+  }
+  const Bodies& b = s.bodies;
+  return {b.x_m[i], b.y_m[i], b.motion.empty() ? 0.0 : b.motion[i].z_m, b.cos_h[i], b.sin_h[i]};
+}
+
+/// A motion at rest where the object stands.
+Motion at_rest(const Object& object) noexcept {
+  const double half_rad = 0.5 * std::atan2(object.sin_h, object.cos_h);
+  Motion motion;
+  motion.z_m = object.z_low_m;
+  motion.q_WB = {std::cos(half_rad), 0.0, 0.0, std::sin(half_rad)};
+  return motion;
+}
+
+bool same_body(const Object& a, const Object& b) noexcept {
+  return a.kind == b.kind && a.half_x_m == b.half_x_m && a.half_y_m == b.half_y_m && a.radius_m == b.radius_m &&
+         a.z_high_m - a.z_low_m == b.z_high_m - b.z_low_m && a.mass_kg == b.mass_kg && a.movable == b.movable;
+}
+
+}  // namespace
+
+// --- who is where ---
+
+bool WorldEditor::alive(BodyKey body) const noexcept {
+  const std::size_t i = body.index();
+  if (body.is_object()) return i < stores_.objects.size() && stores_.objects[i].alive;
+  return i < stores_.bodies.size() && (stores_.bodies.flags[i] & kAlive) != 0;
+}
+
+std::string WorldEditor::name_of(BodyKey body) const {
+  const std::size_t i = body.index();
+  if (body.is_object()) {
+    const Object& o = stores_.objects[i];
+    return (o.kind == Object::Kind::Box ? "box '" : "cylinder '") + o.id + "'";
+  }
+  const RobotEntity& e = stores_.robots[stores_.bodies.entity[i]];
+  return "robot '" + stores_.names[e.item].prefix + (e.number < 0 ? "" : std::to_string(e.number)) + "'";
+}
+
+Obstacle WorldEditor::obstacle_of(BodyKey body) const {
+  const std::size_t i = body.index();
+  Obstacle o;
+  if (body.is_object()) {
+    const Object& object = stores_.objects[i];
+    o = disc_at(object.x_m, object.y_m, object.reach_m());
+    o.is_box = object.kind == Object::Kind::Box;
+    o.half_x_m = object.half_x_m;
+    o.half_y_m = object.half_y_m;
+    o.cos_h = object.cos_h;
+    o.sin_h = object.sin_h;
+    o.z_low_m = object.z_low_m;
+    o.z_high_m = object.z_high_m;
+  } else {
+    const Bodies& b = stores_.bodies;
+    const hal::DataSheet& sheet = *stores_.groups[stores_.blocks[stores_.robots[b.entity[i]].block].group].sheet;
+    o = disc_at(b.x_m[i], b.y_m[i], sheet.body_radius_m);
+    o.is_robot = true;
+    o.flies = sheet.flies;
+    o.z_low_m = b.motion.empty() ? 0.0 : b.motion[i].z_m;
+    o.z_high_m = o.z_low_m + sheet.body_height_m;
+  }
+  o.item = body.value;
+  return o;
+}
+
+std::optional<BodyKey> WorldEditor::in_the_way(const Obstacle& o, BodyKey self, bool of_immovable) {
+  const auto enter = [&](BodyKey body) {
+    if (alive(body)) occupancy_->add(obstacle_of(body));
+  };
+  if (!occupancy_ || entered_version_ != stores_.poses_version) {
+    double cell_m = 0.02;
+    for (const RobotGroup& group : stores_.groups) cell_m = std::max(cell_m, 2.0 * group.sheet->body_radius_m);
+    occupancy_.emplace(cell_m);
+    occupancy_->reserve(stores_.living.size() + stores_.objects.size());
+    for (std::size_t row = 0; row < stores_.bodies.size(); ++row) enter(BodyKey::robot(row));
+    for (std::size_t i = 0; i < stores_.objects.size(); ++i) enter(BodyKey::object(i));
+    entered_version_ = stores_.poses_version;
+    entered_ = stores_.touched.size();
+  }
+  for (; entered_ < stores_.touched.size(); ++entered_) enter(stores_.touched[entered_]);
+  const Obstacle* found = occupancy_->hit(o, [&](const Obstacle& other) {
+    const BodyKey body{other.item};
+    if (body == self || !alive(body)) return false;
+    if (of_immovable && body.is_object() && !stores_.objects[body.index()].movable) return false;
+    return overlap(o, obstacle_of(body));
+  });
+  if (found == nullptr) return std::nullopt;
+  return BodyKey{found->item};
+}
+
+std::uint16_t WorldEditor::region_now(BodyKey body) const noexcept {
+  const std::size_t i = body.index();
+  const bool known = body.is_object() ? stores_.object_region[i] != kNoRegion : (stores_.bodies.flags[i] & kMoved) == 0;
+  if (!known) return keeper_.find(stores_, body);
+  return body.is_object() ? stores_.object_region[i] : stores_.bodies.region[i];
+}
+
+hal::Status WorldEditor::check_place(const std::string& who, const Pose& pose) const {
+  if (!finite(pose)) return hal::Error{who + " needs a finite position and a heading as cosine and sine"};
+  if (pose.x_m < stores_.min_x_m || pose.x_m > stores_.max_x_m || pose.y_m < stores_.min_y_m ||
+      pose.y_m > stores_.max_y_m)
+    return hal::Error{who + " would be at " + text_of(pose.x_m, pose.y_m) + ", outside the arena"};
+  return {};
+}
+
+// --- robots ---
+
+hal::Result<RobotItem> WorldEditor::item_for(const NewRobot& wanted) const {
+  if (data_sheet_of(wanted.kind) == nullptr) {
+    return hal::Error{"robot '" + wanted.id + "': there is no kind '" + wanted.kind +
+                      "'; there are: " + listed(robot_kinds()) + did_you_mean(wanted.kind, robot_kinds())};
+  }
+  std::vector<std::string> ids;
+  for (const ControllerConfig& config : scenario_.controllers) ids.push_back(config.id);
+  const auto config = std::find(ids.begin(), ids.end(), wanted.controller);
+  if (config == ids.end()) {
+    return hal::Error{"robot '" + wanted.id + "': there is no controller with id '" + wanted.controller +
+                      "'; there are: " + listed(ids) + did_you_mean(wanted.controller, ids)};
+  }
+  RobotItem item;
+  item.kind = wanted.kind;
+  item.controller = static_cast<std::size_t>(config - ids.begin());
+  for (const RobotItem& like : scenario_.robots) {
+    if (like.kind != item.kind || like.controller != item.controller) continue;
+    item.battery = like.battery;
+    item.rab_range_m = like.rab_range_m;
+    item.rab_payload = like.rab_payload;
+    break;
+  }
+  item.id = wanted.id;
+  if (!wanted.params.empty()) item.params = overridden(scenario_.controllers[item.controller].params, wanted.params);
+  return item;
+}
+
+hal::Status WorldEditor::accept(const std::string& who, std::size_t row) {
+  const BodyKey self = BodyKey::robot(row);
+  const Obstacle o = obstacle_of(self);
+  if (const auto other = in_the_way(o, self, false))
+    return hal::Error{who + " would be at " + text_of(o.x_m, o.y_m) + ", where " + name_of(*other) + " is"};
+  const std::uint16_t region = keeper_.find(stores_, self);
+  if (region == kNoRegion) {
+    return hal::Error{who + " would be at " + text_of(o.x_m, o.y_m) + ", which lies in no region of an engine " +
+                      (o.flies ? "that can fly it (particle3d, dynamics3d)" : "for it")};
+  }
+  stores_.bodies.region[row] = region;
+  return {};
+}
+
+hal::Result<RobotId> WorldEditor::add_robot(const NewRobot& wanted) {
+  const std::string who = "robot '" + wanted.id + "'";
+  if (const hal::Status placed = check_place(who, wanted.pose); !placed.ok()) return placed.error();
+  const hal::Result<RobotItem> item = item_for(wanted);
+  if (!item.ok()) return item.error();
+  return factory_.add(item.value(), wanted.pose, [&](std::size_t row) { return accept(who, row); });
+}
+
+double* WorldEditor::charge_of(RobotId robot, double& full) const {
+  const RobotEntity& e = stores_.robots[robot.index];
+  const RobotGroup& group = stores_.groups[stores_.blocks[e.block].group];
+  full = group.item->battery.full_charge;
+  for (std::size_t p = 0; p < group.ports.size(); ++p) {
+    if (group.ports[p]->name != hal::Battery::kName || group.ports[p]->role != hal::Role::Sensor) continue;
+    DeviceMemory* memory = devices_.blocks[e.block].sensors[p]->memory();
+    return memory == nullptr ? nullptr : &memory->values[e.slot];
+  }
+  return nullptr;
+}
+
+hal::Result<double> WorldEditor::battery(RobotId robot) const {
+  double full = 1.0;
+  const double* charge = charge_of(robot, full);
+  if (charge == nullptr) {
+    return hal::Error{name_of(BodyKey::robot(stores_.row_of(robot))) +
+                      " has no battery: its controller takes no sensor of that name"};
+  }
+  return full > 0.0 ? *charge / full : 0.0;
+}
+
+hal::Status WorldEditor::set_battery(RobotId robot, double charge) {
+  double full = 1.0;
+  double* kept = charge_of(robot, full);
+  if (kept == nullptr) return battery(robot).error();
+  *kept = charge * full;
+  return {};
+}
+
+// --- objects ---
+
+hal::Status WorldEditor::check_shape(const Object& object) const {
+  const std::string who = (object.kind == Object::Kind::Box ? "box '" : "cylinder '") + object.id + "'";
+  const bool box = object.kind == Object::Kind::Box;
+  const double a = box ? object.half_x_m : object.radius_m;
+  const double b = box ? object.half_y_m : object.radius_m;
+  const double height = object.z_high_m - object.z_low_m;
+  if (!(a > 0.0 && b > 0.0 && height > 0.0 && std::isfinite(a) && std::isfinite(b) && std::isfinite(height)))
+    return hal::Error{who + (box ? " needs half_x_m, half_y_m" : " needs radius_m") + " and a height above 0"};
+  if (object.movable && !(object.mass_kg > 0.0 && std::isfinite(object.mass_kg)))
+    return hal::Error{who + " is movable: it needs a mass above 0"};
+  const Pose pose{object.x_m, object.y_m, object.z_low_m, object.cos_h, object.sin_h};
+  if (object.movable) return check_place(who, pose);
+  return finite(pose) ? hal::Status{}
+                      : hal::Status(hal::Error{who + " needs a finite position and a heading as cosine and sine"});
+}
+
+hal::Result<ObjectId> WorldEditor::add_object(const Object& wanted) {
+  if (const hal::Status shape = check_shape(wanted); !shape.ok()) return shape.error();
+  const std::size_t number = stores_.objects.size();
+  const BodyKey self = BodyKey::object(number);
+  stores_.objects.push_back(wanted);
+  stores_.object_motion.push_back(at_rest(wanted));
+  stores_.object_region.push_back(kNoRegion);
+  Object& object = stores_.objects.back();
+  object.alive = true;
+  object.version = 0;
+  hal::Status fits;
+  const std::string would_be = name_of(self) + " would be at " + text_of(object.x_m, object.y_m);
+  if (const auto other = in_the_way(obstacle_of(self), self, !object.movable)) {
+    fits = hal::Error{would_be + ", where " + name_of(*other) + " is"};
+  } else if (object.movable) {
+    stores_.object_region.back() = keeper_.find(stores_, self);
+    if (stores_.object_region.back() == kNoRegion)
+      fits = hal::Error{would_be + ", in no region of an engine that moves objects (dynamics2d, dynamics3d)"};
+  }
+  if (!fits.ok()) {
+    stores_.objects.pop_back();
+    stores_.object_motion.pop_back();
+    stores_.object_region.pop_back();
+    return fits.error();
+  }
+  object.generation = ++stores_.generations;
+  stores_.object_numbers.emplace(object.id, self.index());
+  stores_.altered = true;
+  if (!object.movable) ++stores_.immovables_version;
+  stores_.touch(self);
+  return ObjectId{static_cast<std::uint32_t>(number), object.generation};
+}
+
+hal::Status WorldEditor::set_object(ObjectId id, const Object& changed) {
+  Object next = changed;
+  Object& object = stores_.objects[id.index];
+  next.id = object.id;
+  next.alive = true;
+  next.generation = object.generation;
+  if (const hal::Status shape = check_shape(next); !shape.ok()) return shape;
+  const BodyKey self = BodyKey::object(id.index);
+  const Object before = object;
+  next.version = before.version + (same_body(before, next) ? 0 : 1);
+  object = next;
+  if (next.movable) {
+    const std::uint16_t region = keeper_.find(stores_, self);
+    if (region == kNoRegion) {
+      object = before;
+      return hal::Error{name_of(self) + " would be at " + text_of(next.x_m, next.y_m) +
+                        ", in no region of an engine that moves objects (dynamics2d, dynamics3d)"};
+    }
+    stores_.object_region[id.index] = region;
+  }
+  Motion motion = at_rest(object);
+  if (next.movable && before.movable) {
+    motion.v_m_s = stores_.object_motion[id.index].v_m_s;
+    motion.w_rad_s = stores_.object_motion[id.index].w_rad_s;
+  }
+  stores_.object_motion[id.index] = motion;
+  if (!next.movable) {
+    for (Joint& joint : stores_.joints) joint.alive = joint.alive && joint.a != self && joint.b != self;
+  }
+  if (!before.movable || !next.movable) {
+    ++stores_.immovables_version;
+    stores_.altered = true;
+  }
+  stores_.touch(self);
+  return {};
+}
+
+// --- joints ---
+
+hal::Result<JointId> WorldEditor::join(BodyKey a, BodyKey b, const std::array<double, 3>& p_W, bool turns) {
+  for (const BodyKey body : {a, b}) {
+    const std::uint16_t region = region_now(body);
+    if (region == kNoRegion || !stores_.regions[region].forces) {
+      return hal::Error{name_of(body) + " cannot be joined: its engine knows no forces; " +
+                        "dynamics2d and dynamics3d hold joints"};
+    }
+  }
+  const Pose pose_a = pose_of(stores_, a);
+  const Pose pose_b = pose_of(stores_, b);
+  const std::array<double, 3> in_a = in_frame(pose_a, p_W);
+  const std::array<double, 3> in_b = in_frame(pose_b, p_W);
+  Joint joint;
+  joint.alive = true;
+  joint.generation = ++stores_.joint_generations;
+  joint.a = a;
+  joint.b = b;
+  joint.ax_m = in_a[0];
+  joint.ay_m = in_a[1];
+  joint.az_m = in_a[2];
+  joint.bx_m = in_b[0];
+  joint.by_m = in_b[1];
+  joint.bz_m = in_b[2];
+  joint.turns = turns;
+  joint.heading_rad = std::remainder(pose_b.heading_rad() - pose_a.heading_rad(), 2.0 * std::numbers::pi);
+  const auto unused =
+      std::find_if(stores_.joints.begin(), stores_.joints.end(), [](const Joint& j) { return !j.alive; });
+  const auto number = static_cast<std::uint32_t>(unused - stores_.joints.begin());
+  if (unused == stores_.joints.end()) {
+    stores_.joints.push_back(joint);
+  } else {
+    *unused = joint;
+  }
+  stores_.bodies_changed = true;
+  return JointId{number, joint.generation};
+}
+
+}  // namespace tandem::core

@@ -1,0 +1,57 @@
+// What hooks bring into a running space and change there beyond its numbers, and who does it for the space.
+#pragma once
+#include <array>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/space/body_key.hpp"
+#include "core/space/ids.hpp"
+#include "core/space/pose.hpp"
+#include "hal/result.hpp"
+
+namespace tandem::core {
+
+struct Object;
+
+/// A robot to be added. Battery and radio are those of the file's first robots of that kind and configuration; the
+/// file's defaults where it has none.
+struct NewRobot {
+  std::string kind = "e-puck";
+  std::string id;          ///< no robot, object, light or sound has or had it
+  std::string controller;  ///< id of a configuration of the file
+  Pose pose = {};
+  /// Parameters that replace those of the configuration, as they would stand in the file: {"speed", "5 cm/s"}.
+  std::vector<std::pair<std::string, std::string>> params = {};
+};
+
+/// In W.
+struct Velocity {
+  std::array<double, 3> v_m_s{};
+  std::array<double, 3> w_rad_s{};
+};
+
+/// A robot or an object, where a function takes either.
+struct BodyId {
+  BodyId(RobotId id) : robot(id) {}    // NOLINT(google-explicit-constructor)
+  BodyId(ObjectId id) : object(id) {}  // NOLINT(google-explicit-constructor)
+  RobotId robot;
+  ObjectId object;
+};
+
+/// Makes robots and objects and finds their regions: what a space cannot do by itself. Each function is explained at
+/// the one of the same name in Space.
+class Editor {
+ public:
+  virtual ~Editor() = default;
+
+  virtual hal::Result<RobotId> add_robot(const NewRobot& wanted) = 0;
+  virtual hal::Result<double> battery(RobotId robot) const = 0;
+  virtual hal::Status set_battery(RobotId robot, double charge) = 0;
+  virtual hal::Result<ObjectId> add_object(const Object& wanted) = 0;
+  virtual hal::Status set_object(ObjectId object, const Object& changed) = 0;
+  /// Bodies that are there, under their keys; the point in W.
+  virtual hal::Result<JointId> join(BodyKey a, BodyKey b, const std::array<double, 3>& p_W, bool turns) = 0;
+};
+
+}  // namespace tandem::core
