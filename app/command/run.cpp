@@ -299,8 +299,8 @@ int run(const RunOptions& options) {
   {
     Progress progress(steps, scenario->ticks_per_second);
     const auto after_tick = [&](core::World& w) {
-      if (trajectory != nullptr && recorded.ok())
-        recorded = trajectory->record(w.space(), w.tick() - 1);  // the tick that was just done
+      if (trajectory != nullptr && recorded.ok() && w.tick() > 0)  // 0: a hook went back to the start
+        recorded = trajectory->record(w.space(), w.tick() - 1);    // the tick that was just done
       progress.step(w.tick());
     };
     if (mixed != nullptr) {

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <cstdio>
 #include <cstring>
+#include <set>
+#include <utility>
 
 #include "core/scenario/element.hpp"
 #include "core/space/stores.hpp"
@@ -86,13 +88,17 @@ struct TrajectoryRecorder::Impl {
   std::unique_ptr<std::FILE, CloseFile> file;
   std::vector<RobotId> robots;
   std::vector<std::string> names;
+  std::vector<std::string> patterns;
+  std::set<std::pair<std::uint32_t, std::uint32_t>> newcomers;  // of `robots`: index and generation
+  std::uint32_t generations = 0;                                // of the space when they were looked for last
   std::vector<const hal::PortType*> ports;
   std::vector<Column> columns;
   bool header_written = false;
   std::string buffer;
   std::string failure;
 
-  hal::Status choose_robots(const std::vector<std::string>& patterns, const Space& space);
+  hal::Status choose_robots(const Space& space);
+  void choose_newcomers(const Space& space);
   hal::Status choose_ports(const std::vector<std::string>& names, const Space& space);
   void write_header(const Space& space);
   void write_line(const Space& space, std::size_t i, hal::Tick tick);
@@ -116,7 +122,8 @@ struct TrajectoryRecorder::Impl {
   }
 };
 
-hal::Status TrajectoryRecorder::Impl::choose_robots(const std::vector<std::string>& patterns, const Space& space) {
+hal::Status TrajectoryRecorder::Impl::choose_robots(const Space& space) {
+  generations = space.stores().generations;
   std::vector<std::string> all(space.robot_count());
   for (std::size_t i = 0; i < all.size(); ++i) all[i] = space.robot_name(space.robot(i));
   std::vector<std::uint8_t> chosen(all.size(), patterns.empty() ? 1 : 0);
@@ -127,10 +134,9 @@ hal::Status TrajectoryRecorder::Impl::choose_robots(const std::vector<std::strin
       chosen[i] = 1;
       any = true;
     }
-    if (any) continue;
+    if (any || all.empty()) continue;  // a hook may bring the first robot
     std::string message = "trajectory '" + path + "': no robot fits '" + pattern + "'" + hint(pattern, all);
-    message += all.empty() ? "; there are no robots" : "; there are: " + first_of(all);
-    return hal::Error{message};
+    return hal::Error{message + "; there are: " + first_of(all)};
   }
   for (std::size_t i = 0; i < all.size(); ++i) {
     if (chosen[i] == 0) continue;
@@ -138,6 +144,20 @@ hal::Status TrajectoryRecorder::Impl::choose_robots(const std::vector<std::strin
     names.push_back(cell(all[i]));
   }
   return {};
+}
+
+void TrajectoryRecorder::Impl::choose_newcomers(const Space& space) {
+  generations = space.stores().generations;
+  for (std::size_t i = 0; i < space.robot_count(); ++i) {
+    const RobotId robot = space.robot(i);
+    if (robot.generation == 0) continue;  // of the file
+    const std::string name = space.robot_name(robot);
+    const auto fits = [&name](const std::string& pattern) { return fits_pattern(name, pattern); };
+    if (!patterns.empty() && std::none_of(patterns.begin(), patterns.end(), fits)) continue;
+    if (!newcomers.emplace(robot.index, robot.generation).second) continue;
+    robots.push_back(robot);
+    names.push_back(cell(name));
+  }
 }
 
 hal::Status TrajectoryRecorder::Impl::choose_ports(const std::vector<std::string>& wanted, const Space& space) {
@@ -238,7 +258,8 @@ hal::Result<std::unique_ptr<TrajectoryRecorder>> TrajectoryRecorder::open(const 
   impl->path = config.path;
   impl->every = std::max<std::int64_t>(1, config.every);
   impl->ticks_per_second = ticks_per_second;
-  if (const hal::Status chosen = impl->choose_robots(config.entities, space); !chosen.ok()) return chosen.error();
+  impl->patterns = config.entities;
+  if (const hal::Status chosen = impl->choose_robots(space); !chosen.ok()) return chosen.error();
   if (const hal::Status chosen = impl->choose_ports(ports, space); !chosen.ok()) return chosen.error();
   impl->file.reset(std::fopen(config.path.c_str(), "wb"));
   if (!impl->file) return impl->fail(errno).error();
@@ -257,9 +278,10 @@ hal::Status TrajectoryRecorder::record(const Space& space, hal::Tick tick) {
   Impl& r = *impl_;
   if (!r.failure.empty()) return hal::Error{r.failure};
   if (tick % r.every != 0) return {};
+  if (r.generations != space.stores().generations) r.choose_newcomers(space);
   if (!r.header_written) r.write_header(space);
   for (std::size_t i = 0; i < r.robots.size(); ++i) {
-    if (space.stores().robots[r.robots[i].index].generation != r.robots[i].generation) continue;  // removed
+    if (!space.contains(r.robots[i])) continue;  // removed
     r.write_line(space, i, tick);
     if (r.buffer.size() < kBufferBytes) continue;
     if (const hal::Status flushed = r.flush(); !flushed.ok()) return flushed;

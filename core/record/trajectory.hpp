@@ -22,8 +22,8 @@ namespace tandem::core {
 class TrajectoryRecorder {
  public:
   /// Opens the file and finds the robots. `ports` are names of ports that at least one chosen robot's controller took.
-  /// Errors: the file cannot be written; a pattern that fits no robot, or a port that no chosen robot has (with what
-  /// there is that is spelled alike).
+  /// Errors: the file cannot be written; a pattern that fits none of the robots there, or a port that no chosen robot
+  /// has (with what there is that is spelled alike).
   static hal::Result<std::unique_ptr<TrajectoryRecorder>> open(const TrajectoryConfig& config, const Space& space,
                                                                std::int64_t ticks_per_second,
                                                                const std::vector<std::string>& ports = {});
@@ -32,7 +32,8 @@ class TrajectoryRecorder {
   TrajectoryRecorder(const TrajectoryRecorder&) = delete;
   TrajectoryRecorder& operator=(const TrajectoryRecorder&) = delete;
 
-  /// To be called after every tick; records each `every`th. Robots that were removed have no line any more.
+  /// To be called after every tick; records each `every`th. Robots that were removed have no line any more; those that
+  /// came since `open` and fit have lines after the others, with values for the columns that there are.
   /// Error: the disk is full or gone. What was written until then stays, and no later call writes anything.
   hal::Status record(const Space& space, hal::Tick tick);
 

@@ -130,6 +130,35 @@ TEST_F(Trajectory, ARemovedRobotHasNoLineAnyMore) {
   EXPECT_EQ(lines()[3].substr(0, 9), "1,0.1,ep1");
 }
 
+TEST_F(Trajectory, ARobotThatComesHasLinesFromThenOn) {
+  EXPECT_NE(open_error({"ep0", "new*"}), "");  // fits nobody, and may be misspelt
+  auto recorder = open({"ep*"});
+  ASSERT_TRUE(recorder->record(space_, 0).ok());
+  for (const char* id : {"epa", "scouter"}) {
+    add_robot(space_, hal::epuck::kDataSheet, id, 2.0, 0.5, 0.0);
+    space_.stores().robots.back().generation = ++space_.stores().generations;
+  }
+  ASSERT_TRUE(recorder->record(space_, 1).ok());
+  space_.remove_robot(space_.find_robot("ep0"));
+  ASSERT_TRUE(recorder->record(space_, 2).ok());
+  ASSERT_TRUE(recorder->close().ok());
+  std::string ids;
+  for (std::size_t i = 1; i < lines().size(); ++i) ids += lines()[i].substr(0, lines()[i].find(",", 6)) + " ";
+  EXPECT_EQ(ids, "0,0,ep0 0,0,ep1 1,0.1,ep0 1,0.1,ep1 1,0.1,epa 2,0.2,ep1 2,0.2,epa ");
+}
+
+TEST_F(Trajectory, OfASpaceThatIsEmptyAtFirstHasThoseWhoCome) {
+  for (const char* id : {"ep0", "ep1", "scout"}) space_.remove_robot(space_.find_robot(id));
+  auto recorder = open({"late*"});
+  ASSERT_NE(recorder, nullptr);
+  ASSERT_TRUE(recorder->record(space_, 0).ok());
+  add_robot(space_, hal::epuck::kDataSheet, "late1", 2.0, 0.5, 0.0);
+  space_.stores().robots.back().generation = ++space_.stores().generations;
+  ASSERT_TRUE(recorder->record(space_, 1).ok());
+  ASSERT_TRUE(recorder->close().ok());
+  EXPECT_EQ(written(), "tick,time_s,id,x_m,y_m,heading_rad\n1,0.1,late1,2.000000,0.500000,0.000000\n");
+}
+
 TEST_F(Trajectory, IsThereInFullWhenTheRecorderIsDestroyedUnclosed) {
   {
     auto recorder = open({"scout"});
