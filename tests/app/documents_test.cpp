@@ -95,6 +95,31 @@ TEST(Readme, ItsFirstControllerBuildsRunsAndDoesWhatItSays) {
   EXPECT_LT(distances.at(399), 0.3);
 }
 
+TEST(Hooks, TheirExampleBuildsRunsAndDoesWhatItSays) {
+  const std::string page = text_of(kTop / "docs/hooks.md");
+  Folder folder;
+  const auto blocks = named_blocks(page);
+  for (const char* name : {"crossing.cpp", "CMakeLists.txt", "crossing.xml"}) {
+    ASSERT_TRUE(blocks.contains(name)) << name;
+    folder.write(name, blocks.at(name));
+  }
+  std::string commands = shell_block(page, "-DTandem_DIR");
+  replace(commands, "TANDEM=~/tandem", "TANDEM=" + kTop.string());
+  replace(commands, "$TANDEM/tandem run", std::string(TANDEM_BINARY_DIR) + "/bin/tandem run");
+  folder.write("commands.sh", commands);
+  const std::string run = "cd '" + folder.path().string() + "' && sh -e commands.sh >log 2>&1 </dev/null";
+  ASSERT_EQ(std::system(run.c_str()), 0) << text_of(folder.path() / "log");
+
+  // The wall costs time, and the second trial starts again at tick 0.
+  static const std::regex kTicks("without: ([0-9]+) ticks\nwith a wall: ([0-9]+) ticks\n");
+  const std::string log = text_of(folder.path() / "log");
+  std::smatch ticks;
+  ASSERT_TRUE(std::regex_search(log, ticks, kTicks)) << log;
+  EXPECT_GT(std::stol(ticks[1]), 300);  // 3.2 m at 10 cm/s and less
+  EXPECT_GT(std::stol(ticks[2]), std::stol(ticks[1]));
+  EXPECT_TRUE(fs::exists(folder.path() / "end.svg"));
+}
+
 /// The words that follow "Subcommands:" or the options of a command, from the program's own help.
 std::set<std::string> words_of_help(const std::vector<std::string>& arguments, const std::regex& pattern) {
   Folder folder;
