@@ -170,6 +170,7 @@ class RabSensor final : public Sensor {
     sort_near(farthest_m);
     shadows_.clear();
     partial_.clear();
+    partial_.reserve(near_.capacity());  // grows when the other lists do, not later
     for (const Neighbour& n : sorted_) {
       if (flat_ && shadows_.full()) break;
       Sender sender{};

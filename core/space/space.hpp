@@ -94,7 +94,7 @@ class Space {
   /// Angle of the robot's turret on its body, counter-clockwise from forward; 0 where it has none.
   double turret_rad(RobotId robot) const noexcept;
   bool holding(RobotId robot) const noexcept;  ///< whether its gripper holds something
-  bool halted(RobotId robot) const noexcept;  ///< its controller threw or was stopped: wheels stay 0; gone: true
+  bool halted(RobotId robot) const noexcept;   ///< its controller threw or was stopped: wheels stay 0; gone: true
   void set_halted(RobotId robot, bool halted) noexcept;
   /// Whether the robot's pose is set from outside (a real robot's twin): engines do not move it, others bump into it.
   bool external(RobotId robot) const noexcept;
