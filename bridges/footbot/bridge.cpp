@@ -26,6 +26,7 @@ FootbotBridge::~FootbotBridge() {
 
 void FootbotBridge::start() {
   TANDEM_CHECK(!thread_.joinable() && !ending_, "a bridge is started once");
+  driver_.note_ports();
   thread_ = std::thread([this] { run(); });
 }
 

@@ -64,6 +64,8 @@ class FootbotDriver {
   /// To construct a controller with, and to take further ports from.
   FootbotRobot& robot() noexcept { return robot_; }
 
+  /// Ports were taken: from now on they count. Every `commit` does the same.
+  void note_ports() noexcept { wiring_.note_demand(); }
   /// Fills the ports that were taken with the newest values.
   void latch(hal::Tick tick, hal::TimeNs now) noexcept;
   /// Filters the commands and sends what changed, asks for new readings.

@@ -127,6 +127,23 @@ TEST(FootbotBridge, DrivesAndStopsAtItsEnd) {
   EXPECT_EQ(live.speed("right motor"), 0);
 }
 
+TEST(FootbotBridge, IsNotActiveBeforeAllIsThereThatWasTaken) {
+  LiveModules live;
+  live.with([](FakeModules& m) { m["proximity sensors"].on = false; });
+  FootbotBridge bridge(settings(), live.opener());
+  (void)bridge.robot().require(hal::port_type<hal::Proximity>());
+  bridge.start();
+  EXPECT_TRUE(wait_until([&] {
+    const auto nodes = bridge.status().nodes;
+    return nodes[0].state == aseba::NodeState::Ready && nodes[1].state == aseba::NodeState::Ready;
+  }));
+  const hal::Status ready = bridge.wait_active(500 * hal::kNsPerMs);
+  ASSERT_FALSE(ready.ok());
+  EXPECT_THAT(ready.error().message, HasSubstr("node 'proximity sensors' (or 'prox') is not there"));
+  live.with([](FakeModules& m) { m["proximity sensors"].on = true; });
+  EXPECT_TRUE(bridge.wait_active(kLong).ok());
+}
+
 TEST(FootbotBridge, StopsTheRobotWhenTheLoopHangs) {
   LiveModules live;
   FootbotBridge bridge(settings(), live.opener());
