@@ -106,7 +106,8 @@ int main(int argc, char** argv) {
   robot_command->add_option("file", robot_options.file, "Experiment file with one robot that has a <bridge>")
       ->required();
   robot_command->add_option("--link", robot_options.link,
-                            "Where the robot is, instead of the file's, e.g. serial:/dev/rfcomm0@115200");
+                            "Where the robot is, instead of the file's, e.g. serial:/dev/rfcomm0@115200, can:can0, "
+                            "tcp:ROBOT:33333");
   robot_command->add_option("--seconds", robot_options.seconds, "How long, instead of the file's length")
       ->check(CLI::PositiveNumber);
   robot_command->add_option("--report", robot_options.report,
@@ -133,7 +134,7 @@ int main(int argc, char** argv) {
   InspectOptions inspect_options;
   CLI::App* inspect_command =
       app.add_subcommand("inspect", "Say which robot is on a link and what it reads. Moves nothing.");
-  inspect_command->add_option("link", inspect_options.link, "e.g. serial:/dev/rfcomm0@115200")->required();
+  inspect_command->add_option("link", inspect_options.link, "e.g. serial:/dev/rfcomm0@115200, can:can0, tcp:ROBOT:33333")->required();
   inspect_command->add_option("--seconds", inspect_options.seconds, "How long to listen")
       ->capture_default_str()
       ->check(CLI::Range(0.1, 3600.0));

@@ -78,6 +78,8 @@ struct InspectOptions {
   double seconds = 2.0;
 };
 int inspect(const InspectOptions& options);
+/// The same for links that carry ASEBA messages.
+int inspect_aseba(const InspectOptions& options);
 
 // --- shared by the commands ---
 

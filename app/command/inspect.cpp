@@ -5,6 +5,7 @@
 #include "app/command/command.hpp"
 #include "app/report.hpp"
 #include "app/signals.hpp"
+#include "bridges/aseba/message_link_text.hpp"
 #include "bridges/epuck/bridge.hpp"
 #include "bridges/link/link_text.hpp"
 #include "mixed_reality/time/pacer.hpp"
@@ -31,7 +32,12 @@ int inspect(const InspectOptions& options) {
     fmt::print(stderr, "error: {}\n", message);
     return code;
   };
+  // On a serial line an e-puck talks with 115200 baud, a foot-bot's CAN translator with 921600.
   const auto address = bridges::parse_link(options.link);
+  const bool serial = address.ok() && address.value().scheme == bridges::LinkScheme::Serial;
+  if (bridges::aseba::message_link_opener(options.link).ok() && (!serial || address.value().rate == 921600)) {
+    return inspect_aseba(options);
+  }
   if (!address.ok()) return complain(kBadInput, address.error().message);
   auto opener = bridges::epuck::epuck_link_opener(address.value());
   if (!opener.ok()) return complain(kBadInput, opener.error().message);

@@ -10,12 +10,14 @@
 #include "app/sha256.hpp"
 #include "app/signals.hpp"
 #include "bridges/epuck/guardian.hpp"
+#include "bridges/footbot/guardian.hpp"
 #include "bridges/link/link_text.hpp"
 #include "core/config/xml.hpp"
 #include "core/record/trajectory.hpp"
 #include "core/sim/world.hpp"
 #include "core/view/picture.hpp"
 #include "mixed_reality/epuck/real_epuck.hpp"
+#include "mixed_reality/footbot/real_footbot.hpp"
 #include "mixed_reality/session/mixed_session.hpp"
 #include "mixed_reality/time/pacer.hpp"
 
@@ -167,37 +169,67 @@ std::uint64_t run_alone(core::World& world, std::int64_t steps, const std::atomi
   return pacer.ledger().deadline_misses;
 }
 
-/// Tells the guardian which robots to stop should this program be killed, or that all of them are stopped.
+/// Tells the guardians which robots to stop should this program be killed, or that all of them are stopped.
 class Watch {
  public:
+  /// Before any thread exists.
   explicit Watch(const core::Scenario& scenario) {
+    bool any_epuck = false, any_footbot = false;
     for (const core::RobotItem& item : scenario.robots) {
       if (!item.bridge) continue;
-      if (auto address = bridges::parse_link(item.bridge->link); address.ok()) addresses_.push_back(address.value());
+      robots_.push_back({item.bridge->link, item.kind == hal::footbot::kDataSheet.kind, nullptr});
+      (robots_.back().footbot ? any_footbot : any_epuck) = true;
     }
-    if (addresses_.empty()) return;
-    auto started = bridges::epuck::Guardian::start();
-    if (!started.ok()) {
-      say("warning: " + started.error().message);
-      return;
-    }
-    guardian_.emplace(std::move(started).value());
+    if (any_epuck) start(epucks_);
+    if (any_footbot) start(footbots_);
   }
+  /// Remembers a real foot-bot that was made for a robot of the file; it must live until `begin` has returned.
+  void note(const core::RobotItem& item, const mixed_reality::RealFootbot& footbot) {
+    for (Watched& w : robots_) {
+      if (w.footbot && w.link == item.bridge->link) w.real = &footbot;
+    }
+  }
+  /// When all answer.
   void begin() {
-    for (const auto& a : addresses_) {
-      if (guardian_) guardian_->watch(a.target, a.rate);
+    for (const Watched& w : robots_) {
+      if (w.footbot) {
+        if (footbots_ && w.real != nullptr) footbots_->watch(w.link, w.real->last_words());
+      } else if (const auto address = bridges::parse_link(w.link); epucks_ && address.ok()) {
+        epucks_->watch(address.value().target, address.value().rate);
+      }
     }
   }
-  /// Robots that confirmed their stop need no guardian any more; `confirmed` is in the order of the file.
+  /// Robots that confirmed their stop need no guardian any more; those of the report are in the order of the file.
   void end(const mixed_reality::MixedReport& report) {
-    for (std::size_t i = 0; i < addresses_.size() && i < report.robots.size(); ++i) {
-      if (guardian_ && report.robots[i].stop_confirmed) guardian_->release(addresses_[i].target);
+    for (std::size_t i = 0; i < robots_.size() && i < report.robots.size(); ++i) {
+      if (!report.robots[i].stop_confirmed) continue;
+      if (robots_[i].footbot) {
+        if (footbots_) footbots_->release(robots_[i].link);
+      } else if (const auto address = bridges::parse_link(robots_[i].link); epucks_ && address.ok()) {
+        epucks_->release(address.value().target);
+      }
     }
   }
 
  private:
-  std::vector<bridges::LinkAddress> addresses_;
-  std::optional<bridges::epuck::Guardian> guardian_;
+  struct Watched {
+    std::string link;
+    bool footbot = false;
+    const mixed_reality::RealFootbot* real = nullptr;
+  };
+  template <class Guardian>
+  static void start(std::optional<Guardian>& guardian) {
+    auto started = Guardian::start();
+    if (started.ok()) {
+      guardian.emplace(std::move(started).value());
+    } else {
+      say("warning: " + started.error().message);
+    }
+  }
+
+  std::vector<Watched> robots_;
+  std::optional<bridges::epuck::Guardian> epucks_;
+  std::optional<bridges::footbot::Guardian> footbots_;
 };
 
 bool has_real_robots(const core::Scenario& scenario) {
@@ -215,8 +247,13 @@ std::unique_ptr<mixed_reality::MixedSession> join_real_robots(std::unique_ptr<co
   if (!has_real_robots(world->scenario())) return nullptr;
   mixed_reality::MixedOptions options;
   options.log = log;
-  const auto maker = [&log](const mixed_reality::RealRobotRequest& r) {
-    return mixed_reality::make_real_robot(r, log);
+  using RealRobotMade = hal::Result<std::unique_ptr<mixed_reality::RealRobot>>;
+  const auto maker = [&](const mixed_reality::RealRobotRequest& r) -> RealRobotMade {
+    if (r.item.kind != hal::footbot::kDataSheet.kind) return mixed_reality::make_real_robot(r, log);
+    auto footbot = mixed_reality::make_real_footbot(r, log);
+    if (!footbot.ok()) return footbot.error();
+    watch.note(r.item, **footbot);
+    return std::unique_ptr<mixed_reality::RealRobot>(std::move(footbot).value());
   };
   auto made = mixed_reality::MixedSession::make(std::move(world), maker, clock, options);
   if (!made.ok()) {

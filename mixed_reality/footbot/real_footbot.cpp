@@ -128,11 +128,10 @@ hal::Result<FootbotParts> footbot_parts(const core::RobotItem& item, std::int64_
   return parts;
 }
 
-hal::Result<std::unique_ptr<RealRobot>> make_real_footbot(const RealRobotRequest& request, const hal::Log& log) {
+hal::Result<std::unique_ptr<RealFootbot>> make_real_footbot(const RealRobotRequest& request, const hal::Log& log) {
   auto parts = footbot_parts(request.item, request.ticks_per_second);
   if (!parts.ok()) return parts.error();
-  return std::unique_ptr<RealRobot>(
-      std::make_unique<RealFootbot>(std::move(parts->settings), std::move(parts->opener), log));
+  return std::make_unique<RealFootbot>(std::move(parts->settings), std::move(parts->opener), log);
 }
 
 }  // namespace tandem::mixed_reality

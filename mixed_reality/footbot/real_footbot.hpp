@@ -49,6 +49,6 @@ struct FootbotParts {
 hal::Result<FootbotParts> footbot_parts(const core::RobotItem& item, std::int64_t ticks_per_second);
 
 /// The maker of real foot-bots for experiment files. Errors: as `footbot_parts`.
-hal::Result<std::unique_ptr<RealRobot>> make_real_footbot(const RealRobotRequest& request, const hal::Log& log);
+hal::Result<std::unique_ptr<RealFootbot>> make_real_footbot(const RealRobotRequest& request, const hal::Log& log);
 
 }  // namespace tandem::mixed_reality
