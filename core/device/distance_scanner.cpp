@@ -112,8 +112,8 @@ class ScannerSensor final : public Sensor {
                                                                1.0, DistanceScanner::kSamples))),
         ring_(std::array<hal::Mount, RayRing::kCapacity>{}, 0.0) {
     for (const hal::ScannerHead& head : sheet_.scanner) farthest_m_ = std::max(farthest_m_, head.max_m);
-    bodies_.reserve(64);
-    near_.reserve(64);
+    bodies_.reserve(256);
+    near_.reserve(256);
   }
 
   void sense(const DeviceContext& context, void* ports) noexcept override {

@@ -98,6 +98,8 @@ class RabSensor final : public Sensor {
   static constexpr double kLevel_m = 0.02;   // lines that rise by no more count as level
   static constexpr double kOnTop_m = 0.005;  // a board this little beneath a body's top sees over it
 
+  static constexpr std::size_t kUsuallyNear = 256;
+
   /// A sender, seen from the receiver in W.
   struct Sender {
     std::uint32_t row;
@@ -159,6 +161,12 @@ class RabSensor final : public Sensor {
     const SpaceStores& stores = context.stores;
     const Bodies& b = stores.bodies;
     const double height_m = board_m(stores, row);
+    if (near_.capacity() == 0) {  // enough for most crowds; later steps are not to allocate
+      near_.reserve(kUsuallyNear);
+      sorted_.reserve(kUsuallyNear);
+      partial_.reserve(kUsuallyNear);
+      shadows_.reserve(kUsuallyNear / 8);
+    }
     near_.clear();
     stores.body_index.for_each_near(b.x_m[row], b.y_m[row], farthest_m, [&](const IndexEntry& o) {
       const double wx = o.x_m - b.x_m[row];

@@ -13,6 +13,7 @@ namespace tandem::core {
 class Shadows {
  public:
   void clear() noexcept { arcs_.clear(); }
+  void reserve(std::size_t arcs) { arcs_.reserve(arcs); }
 
   /// Rises with the angle of (x, y) from -2 at -pi to 2 at pi; 0 for (0, 0).
   static double direction(double x, double y) noexcept {

@@ -4,7 +4,8 @@
 #include <gtest/gtest.h>
 #include <new>
 
-#include "tests/core/scenes.hpp"
+#include "hal/device/range_and_bearing.hpp"
+#include "tests/core/footbots.hpp"
 
 namespace {
 std::atomic<std::uint64_t> allocations{0};
@@ -58,6 +59,29 @@ TEST(World, AllocatesNothingAfterTheFirstSteps) {
     EXPECT_EQ(allocations.load() - before, 0U) << threads << " threads";
     EXPECT_EQ(world->state(), RunState::Running) << world->failure();
   }
+}
+
+TEST(World, AllocatesNothingForFootbotsThatScanTalkAndGrip) {
+  Scene scene = footbot_scene("dynamics2d", 10.0);
+  for (int i = 0; i < 200; ++i)
+    add_footbot(scene, "fb" + std::to_string(i), 0.3 * (i % 15) - 2.2, 0.3 * (i / 15) - 2.0, 0.4 * i);
+  scene.cylinder(3.5, 0, 0.3).walls();
+  auto world = make(scene);
+  ASSERT_TRUE(world.world) << world.all_problems();
+  world->start();
+  for (int i = 0; i < 200; ++i) {
+    const std::string id = "fb" + std::to_string(i);
+    command<hal::WheelSpeeds>(world, id).set(0.02, 0.03);
+    command<hal::TurretDrive>(world, id).turn(0.5);
+    command<hal::ScannerDrive>(world, id).turn(3.0);
+    command<hal::RangeAndBearingSend>(world, id).sending = true;
+    if (i % 2 == 0) command<hal::GripperDrive>(world, id).lock();
+  }
+  steps(world, 40);  // until whoever can hold something does
+  const std::uint64_t before = allocations.load();
+  steps(world, 20);
+  EXPECT_EQ(allocations.load() - before, 0U);
+  EXPECT_EQ(world->state(), RunState::Running) << world->failure();
 }
 
 TEST(World, AllocatesNothingForRobotsThatFlyInACrowd) {
