@@ -3,6 +3,7 @@
 
 #include <array>
 #include <limits>
+#include <numbers>
 
 #include "core/device/shadows.hpp"
 #include "core/device/sight.hpp"
@@ -98,8 +99,6 @@ class RabSensor final : public Sensor {
   static constexpr double kLevel_m = 0.02;   // lines that rise by no more count as level
   static constexpr double kOnTop_m = 0.005;  // a board this little beneath a body's top sees over it
 
-  static constexpr std::size_t kUsuallyNear = 256;
-
   /// A sender, seen from the receiver in W.
   struct Sender {
     std::uint32_t row;
@@ -161,12 +160,7 @@ class RabSensor final : public Sensor {
     const SpaceStores& stores = context.stores;
     const Bodies& b = stores.bodies;
     const double height_m = board_m(stores, row);
-    if (near_.capacity() == 0) {  // enough for most crowds; later steps are not to allocate
-      near_.reserve(kUsuallyNear);
-      sorted_.reserve(kUsuallyNear);
-      partial_.reserve(kUsuallyNear);
-      shadows_.reserve(kUsuallyNear / 8);
-    }
+    if (near_.capacity() == 0) make_room(stores, farthest_m);
     near_.clear();
     stores.body_index.for_each_near(b.x_m[row], b.y_m[row], farthest_m, [&](const IndexEntry& o) {
       const double wx = o.x_m - b.x_m[row];
@@ -191,6 +185,18 @@ class RabSensor final : public Sensor {
         receive(context, row, height_m, sender, port);
       cast_shadow(stores, height_m, n);
     }
+  }
+
+  /// Twice as many neighbours as robots that were spread evenly would have: later steps are not to allocate.
+  void make_room(const SpaceStores& stores, double farthest_m) noexcept {
+    const double area_m2 = (stores.max_x_m - stores.min_x_m) * (stores.max_y_m - stores.min_y_m);
+    const double living = static_cast<double>(stores.living.size());
+    const double even = living * std::numbers::pi * farthest_m * farthest_m / area_m2;
+    const auto room = static_cast<std::size_t>(std::min(living, 2.0 * even + 64.0));
+    near_.reserve(room);
+    sorted_.reserve(room);
+    partial_.reserve(room);
+    shadows_.reserve(room);
   }
 
   /// Puts `near_` in order into `sorted_`: first by rings of equal area, which in a crowd hold equally many, then by
