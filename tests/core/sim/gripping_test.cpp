@@ -275,6 +275,30 @@ TEST_P(Gripping, HoldsAcrossTheBorderOfTwoRegions) {
   EXPECT_NEAR(distance_of_thing(world), apart, 0.01);
 }
 
+TEST_P(Gripping, GoesOnAlikeFromASnapshotTakenWhileTheTurretSwingsItsLoad) {
+  Scene s = with_cylinder(scene());
+  choose(s, "differential_steering", hal::Role::Actuator, "slanted");
+  auto world = made(s);
+  command<GripperDrive>(world, "fb").lock();
+  command<TurretDrive>(world, "fb").turn(0.4);
+  command<WheelSpeeds>(world, "fb").set(-0.05, -0.05);
+  steps(world, 5);
+  ASSERT_TRUE(reading<Gripper>(world, "fb").holding);
+  const auto kept = world->snapshot();
+  ASSERT_TRUE(kept.ok()) << kept.error().message;
+  steps(world, 10);
+  command<GripperDrive>(world, "fb").unlock();
+  steps(world, 10);
+  const std::uint64_t first = world->state_hash();
+  ASSERT_TRUE(world->restore(kept.value()).ok());
+  EXPECT_TRUE(reading<Gripper>(world, "fb").holding);
+  steps(world, 10);
+  EXPECT_TRUE(reading<Gripper>(world, "fb").holding);
+  command<GripperDrive>(world, "fb").unlock();
+  steps(world, 10);
+  EXPECT_EQ(world->state_hash(), first);
+}
+
 TEST_P(Gripping, IsAlikeForAnyNumberOfThreadsAndRegions) {
   std::uint64_t first = 0;
   for (const std::int64_t threads : {1, 2, 4}) {
