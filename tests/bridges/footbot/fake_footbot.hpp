@@ -1,5 +1,6 @@
 // A foot-bot's modules on a bus in memory, and a driver at the other end; time is turned by hand.
 #pragma once
+#include <functional>
 #include <gtest/gtest.h>
 
 #include "bridges/aseba/can_messages.hpp"
@@ -58,11 +59,14 @@ inline const FootbotMap& default_map() {
 /// The modules alone, on a bus of theirs.
 class FakeModules {
  public:
-  explicit FakeModules(MemoryBus& bus) : bus_(bus) {}
+  using Attach = std::function<std::unique_ptr<CanLink>()>;
+  /// `attach` gives each module its own end of the bus.
+  explicit FakeModules(Attach attach) : attach_(std::move(attach)) {}
+  explicit FakeModules(MemoryBus& bus) : FakeModules([&bus] { return bus.attach(); }) {}
 
   FakeNode& add(const std::string& name, const Named& own, int id = 0) {
     const auto number = static_cast<std::uint8_t>(id != 0 ? id : static_cast<int>(nodes.size()) + 1);
-    nodes.push_back(std::make_unique<FakeNode>(bus_.attach(), number, name, with_habits(own)));
+    nodes.push_back(std::make_unique<FakeNode>(attach_(), number, name, with_habits(own)));
     return *nodes.back();
   }
   void add_all() {
@@ -92,7 +96,7 @@ class FakeModules {
   std::vector<std::unique_ptr<FakeNode>> nodes;
 
  private:
-  MemoryBus& bus_;
+  Attach attach_;
 };
 
 /// A robot, a driver, and a loop that ticks.
