@@ -23,7 +23,7 @@ class DrivenFootbot final : public DrivenRobot {
   hal::Status wait_active(hal::TimeNs timeout_ns) override { return bridge_.wait_active(timeout_ns); }
   bool unreachable() const override {
     const footbot::BridgeStatus s = bridge_.status();
-    return s.links_opened == 0 && !s.trouble.empty();
+    return s.links_opened == 0 && !s.link_trouble.empty();
   }
   hal::Status check_identity() const override { return {}; }  // it would not be active with other variables
 

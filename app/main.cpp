@@ -134,7 +134,9 @@ int main(int argc, char** argv) {
   InspectOptions inspect_options;
   CLI::App* inspect_command =
       app.add_subcommand("inspect", "Say which robot is on a link and what it reads. Moves nothing.");
-  inspect_command->add_option("link", inspect_options.link, "e.g. serial:/dev/rfcomm0@115200, can:can0, tcp:ROBOT:33333")->required();
+  inspect_command
+      ->add_option("link", inspect_options.link, "e.g. serial:/dev/rfcomm0@115200, can:can0, tcp:ROBOT:33333")
+      ->required();
   inspect_command->add_option("--seconds", inspect_options.seconds, "How long to listen")
       ->capture_default_str()
       ->check(CLI::Range(0.1, 3600.0));

@@ -129,11 +129,22 @@ RobotState FootbotBridge::state() const noexcept {
   return driver_.state();
 }
 
+bool FootbotBridge::at_rest() const noexcept {
+  const std::lock_guard lock(mutex_);
+  return driver_.at_rest();
+}
+
+DriverStatistics FootbotBridge::statistics() const noexcept {
+  const std::lock_guard lock(mutex_);
+  return driver_.statistics();
+}
+
 BridgeStatus FootbotBridge::status() const {
   const std::lock_guard lock(mutex_);
   BridgeStatus status;
   status.state = driver_.state();
   status.trouble = link_.trouble().empty() ? driver_.trouble() : link_.trouble();
+  status.link_trouble = link_.trouble();
   status.link = link_.name();
   status.stopped = driver_.stopped();
   status.at_rest = driver_.at_rest();

@@ -31,7 +31,8 @@ struct BridgeSettings {
 /// A copy of everything that can be told about the bridge.
 struct BridgeStatus {
   RobotState state = RobotState::Absent;
-  std::string trouble;  ///< why it is not active, or what is missing; the opener's message when the link does not open
+  std::string trouble;       ///< why it is not active, or what is missing; `link_trouble` when there is some
+  std::string link_trouble;  ///< the opener's message, when it has failed since the link was last open
   std::string link;
   bool stopped = false;  ///< by `stop` or `fault`
   bool at_rest = false;  ///< and the robot has confirmed it
@@ -70,7 +71,10 @@ class FootbotBridge {
   void stop(hal::TimeNs now) noexcept;
   void resume() noexcept;
 
+  // What a loop asks in every tick; `status` copies much more.
   RobotState state() const noexcept;
+  bool at_rest() const noexcept;
+  DriverStatistics statistics() const noexcept;
   BridgeStatus status() const;
   /// Changes whenever nodes come; empty while there are none.
   std::vector<LastWords> last_words() const;

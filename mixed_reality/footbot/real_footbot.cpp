@@ -23,12 +23,12 @@ void RealFootbot::latch(const Moment& now) noexcept {
   }
   bridge_->robot().set_origin(now.monotonic_ns - now.run_ns);
   bridge_->latch(0, now.monotonic_ns);
-  const BridgeStatus status = bridge_->status();
+  const auto statistics = bridge_->statistics();
   // Every interruption stops the robot, also one that is over already.
-  const std::uint64_t interruptions = status.driver.link_stops + status.driver.watchdog_stops;
+  const std::uint64_t interruptions = statistics.link_stops + statistics.watchdog_stops;
   const bool begun_anew = was_active_ && interruptions != interruptions_;
   interruptions_ = interruptions;
-  switch (status.state) {
+  switch (bridge_->state()) {
     case RobotState::Active:
       health_ = begun_anew ? LinkHealth::Suspect : LinkHealth::Active;
       was_active_ = true;
@@ -79,7 +79,7 @@ void RealFootbot::stop(const Moment& now) noexcept {
 }
 
 bool RealFootbot::stopped() const noexcept {
-  return stop_asked_ && bridge_->status().at_rest;
+  return stop_asked_ && bridge_->at_rest();
 }
 
 LinkReport RealFootbot::report() const {

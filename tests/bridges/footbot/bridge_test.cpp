@@ -192,7 +192,7 @@ TEST(FootbotBridge, SaysWhyItDoesNotStart) {
   live.present = false;
   FootbotBridge bridge(settings(), live.opener());
   bridge.start();
-  ASSERT_TRUE(wait_until([&] { return !bridge.status().trouble.empty(); }));
+  ASSERT_TRUE(wait_until([&] { return !bridge.status().link_trouble.empty(); }));
   const hal::Status ready = bridge.wait_active(hal::kNsPerMs);
   ASSERT_FALSE(ready.ok());
   EXPECT_EQ(ready.error().message, "foot-bot 'fb' is not there: cannot open memory: there is no such bus");

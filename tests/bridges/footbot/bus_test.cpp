@@ -273,6 +273,7 @@ TEST_P(FootbotFaults, NeverShowWrongReadingsNorLeaveItDriving) {
 
 INSTANTIATE_TEST_SUITE_P(Kinds, FootbotFaults,
                          testing::Values(CanFaults{.loss = 0.02}, CanFaults{.doubling = 0.05},
+                                         CanFaults{.reordering = 0.02},
                                          CanFaults{.lateness = 0.02, .late_ns = 30 * kMs},
                                          CanFaults{.bus_off = 0.05, .bus_off_slot_ns = 100 * kMs}));
 
