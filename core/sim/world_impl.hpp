@@ -1,0 +1,170 @@
+// What a World is made of, for the files that make it and step it.
+#pragma once
+#include <any>
+#include <atomic>
+#include <map>
+#include <memory>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "core/device/device.hpp"
+#include "core/sim/engine_factory.hpp"
+#include "core/sim/region_keeper.hpp"
+#include "core/sim/robot_factory.hpp"
+#include "core/sim/world.hpp"
+#include "core/sim/world_editor.hpp"
+#include "core/space/stores.hpp"
+
+namespace tandem::core {
+
+/// What hooks asked for in this step, and the moments that they keep.
+class KeptMoments final : public Checkpoints {
+ public:
+  struct Request {
+    bool save;
+    std::string name;
+  };
+
+  void save(const std::string& name) override {
+    names_.insert(name);
+    requests.push_back({true, name});
+  }
+  hal::Status restore(const std::string& name) override {
+    if (!names_.contains(name)) {
+      return hal::Error{"there is no checkpoint '" + name +
+                        "'; there are: " + listed(std::vector<std::string>(names_.begin(), names_.end()))};
+    }
+    requests.push_back({false, name});
+    return {};
+  }
+
+  void forget(const std::string& name) {
+    names_.erase(name);
+    kept.erase(name);
+  }
+
+  std::vector<Request> requests;
+  std::map<std::string, Snapshot> kept;
+
+ private:
+  std::set<std::string> names_;  // kept, or to be kept after this step
+};
+
+/// What a snapshot holds.
+struct Moment {
+  std::shared_ptr<const int> of;  ///< the world that it is of
+  std::unique_ptr<SpaceCopy> space;
+  hal::Tick tick = 0;
+  RunState state = RunState::Running;
+  std::string failure;
+  Incidents incidents;
+  std::vector<std::uint64_t> clamped, not_finite;
+  double reach_m = 0.0;  ///< of the indices, which the space's copy holds
+  std::vector<std::any> hooks;
+};
+
+struct World::Impl {
+  static constexpr std::size_t kIncidentsNamed = 20;
+
+  Scenario scenario;
+  WorldOptions options;
+  std::uint64_t seed = 0;
+  Space space;
+  std::unique_ptr<ThreadPool> pool;
+  MeasuredPhase sensing, controlling;
+  std::vector<std::unique_ptr<Engine>> engines;
+  RegionKeeper keeper;
+  std::vector<std::uint8_t> kinematic;  // by region: kinematics2d moves its bodies
+  bool one_kind = true;                 // kinematics2d moves all bodies
+  double reach_m = 0.0;                 // of the indices
+  std::uint64_t indexed_version = 0;    // of the immovable objects
+  std::vector<BodyKey> strays;          // left their region in this tick, or were put where there is none
+  std::vector<Trouble> troubles;
+  RobotDevices devices;
+  std::unique_ptr<RobotFactory> factory;
+  std::unique_ptr<WorldEditor> editor;
+  std::shared_ptr<const int> identity = std::make_shared<int>(0);  // tells this world's snapshots from others'
+  KeptMoments moments;
+  std::vector<std::unique_ptr<Hook>> hooks;
+  std::vector<std::string> hook_names;
+  ExternalRobots* external = nullptr;
+
+  hal::Tick tick = 0;
+  RunState state = RunState::Running;
+  std::string failure;
+  Incidents incidents;
+  std::atomic<std::uint32_t> trouble{0};    // robots that need the serial look after a parallel phase
+  std::vector<std::uint8_t> block_trouble;  // by block: 1 when one of its robots does
+  std::vector<hal::StepFault> faults;       // by block, for controllers that threw
+  std::vector<std::uint64_t> clamped;       // by block, running counts
+  std::vector<std::uint64_t> not_finite;
+
+  SpaceStores& stores() noexcept { return space.stores(); }
+
+  // --- one tick ---
+  void act();
+  void physics();
+  void settle_changes();
+  void stop_on_trouble();
+  void find_stray_objects();
+  void treat_escapes();
+  void treat_escape(BodyKey body);
+  void rebuild_index();
+  void index_movables();
+  template <class Work>
+  void each_block(MeasuredPhase& phase, Work&& work);
+  void sense_and_control();
+  void sense(std::size_t block);
+  void control(std::size_t block);
+  void filter(std::size_t block);
+  template <class Port, class Filter>
+  void filter_port(std::size_t block, int port, Filter&& filter_one);
+  void report_trouble();
+  void paint_floor_if_asked();
+  void fit_to_bodies();
+  void forget_caches();
+
+  template <class Call>
+  void call_hooks(const char* moment, Call&& call);
+  HookContext hook_context() { return {space, tick, scenario.ticks_per_second, seed, moments}; }
+  DeviceContext device_context(std::size_t block) {
+    SpaceStores& s = stores();
+    return {s,
+            s.groups[s.blocks[block].group],
+            s.blocks[block],
+            tick,
+            hal::time_of_tick(tick, scenario.ticks_per_second),
+            tick_s(),
+            seed};
+  }
+  double tick_s() const noexcept { return 1.0 / static_cast<double>(scenario.ticks_per_second); }
+  void fail(std::string why) {
+    if (state == RunState::Failed) return;
+    state = RunState::Failed;
+    failure = std::move(why);
+  }
+  void incident(std::string what) {
+    options.log.warning(what);
+    if (incidents.first.size() < kIncidentsNamed) incidents.first.push_back(std::move(what));
+  }
+  std::string at_tick() const { return " at tick " + std::to_string(tick); }
+  bool moved_by_kinematics(std::size_t row) noexcept {
+    const std::uint16_t region = stores().bodies.region[row];
+    return region != kNoRegion && kinematic[region] != 0;
+  }
+  std::string name_of(BodyKey body) {
+    if (!body.is_object()) return "robot '" + name_of_row(body.index()) + "'";
+    const Object& object = stores().objects[body.index()];
+    return (object.kind == Object::Kind::Box ? "box '" : "cylinder '") + object.id + "'";
+  }
+  std::string name_of_row(std::size_t row) {
+    const std::uint32_t entity = stores().bodies.entity[row];
+    return space.robot_name({entity, stores().robots[entity].generation});
+  }
+};
+
+/// How far from a point the indices must look for what a robot there could touch or see, in m.
+double index_reach(const SpaceStores& stores, double tick_s) noexcept;
+
+}  // namespace tandem::core

@@ -1,0 +1,245 @@
+// From a scenario to a world that can be stepped.
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "core/placement/placement.hpp"
+#include "core/sim/world_impl.hpp"
+
+namespace tandem::core {
+namespace {
+
+std::uint64_t seed_from_clock() {
+  std::random_device device;
+  return (static_cast<std::uint64_t>(device()) << 32 | device()) >> 11;  // exact as a double, easy to write in a file
+}
+
+Object object_of(const ObjectItem& item, const PlacedObject& placed) {
+  Object shape;
+  shape.kind = item.shape == ShapeKind::Box ? Object::Kind::Box : Object::Kind::Cylinder;
+  shape.id = placed.number < 0 ? item.id : item.id + std::to_string(placed.number);
+  shape.x_m = placed.p_W[0];
+  shape.y_m = placed.p_W[1];
+  shape.cos_h = std::cos(placed.yaw_rad);
+  shape.sin_h = std::sin(placed.yaw_rad);
+  shape.half_x_m = 0.5 * item.size[0];
+  shape.half_y_m = 0.5 * item.size[1];
+  shape.radius_m = item.size[0];
+  shape.z_low_m = placed.p_W[2];
+  shape.z_high_m = placed.p_W[2] + item.size[2];
+  shape.movable = item.movable;
+  shape.mass_kg = item.mass_kg;
+  return shape;
+}
+
+BodySize size_of_kind(const std::string& kind) {
+  const hal::DataSheet* sheet = data_sheet_of(kind);
+  return sheet != nullptr ? BodySize{sheet->body_radius_m, sheet->body_height_m, sheet->flies} : BodySize{};
+}
+
+/// Grippers hold by joints: robots whose controller takes one need an engine that has them. One problem an item.
+void check_grippers(const Scenario& scenario, const SpaceStores& s, Problems& problems) {
+  std::uint32_t complained = 0xFFFFFFFFU;
+  for (const RobotEntity& e : s.robots) {
+    const RobotBlock& block = s.blocks[e.block];
+    const std::uint16_t region = s.bodies.region[block.first_row + e.slot];
+    if (s.groups[block.group].gripper < 0 || region == kNoRegion || s.regions[region].forces || e.item == complained)
+      continue;
+    complained = e.item;
+    const std::string name = s.names[e.item].prefix + (e.number < 0 ? "" : std::to_string(e.number));
+    problems.push_back({scenario.file, scenario.robots[e.item].line,
+                        "robot '" + name + "' has a gripper, but its engine '" + s.regions[region].name +
+                            "' knows no forces, so that nothing can be held there; use dynamics2d or dynamics3d",
+                        false});
+  }
+}
+
+/// How wide the narrowest strip is that lets an object through, in m.
+double narrowest_width_m(const Object& object) {
+  return 2.0 * (object.kind == Object::Kind::Box ? std::min(object.half_x_m, object.half_y_m) : object.radius_m);
+}
+
+/// What keeps a body of this width from fitting into the region: the arena, or walls on all sides. Empty: nothing.
+std::string too_wide_for(const SpaceStores& s, const Region& region, double width_m) {
+  const auto between = [](double x_m, double y_m) {
+    return " (" + hal::format_number(x_m) + " m x " + hal::format_number(y_m) + " m)";
+  };
+  const double arena_x_m = s.max_x_m - s.min_x_m;
+  const double arena_y_m = s.max_y_m - s.min_y_m;
+  if (width_m > std::min(arena_x_m, arena_y_m)) return "is larger than the arena" + between(arena_x_m, arena_y_m);
+  const bool walled = !region.everywhere() && std::all_of(region.sides.begin(), region.sides.end(),
+                                                          [](const RegionSide& side) { return side.wall; });
+  const double x_m = region.max_x_m - region.min_x_m;
+  const double y_m = region.max_y_m - region.min_y_m;
+  if (walled && width_m > std::min(x_m, y_m))
+    return "does not fit into the region '" + region.name + "'" + between(x_m, y_m);
+  return "";
+}
+
+/// Every body's region; robots and movable objects that lie in none, or are too large for theirs, are problems.
+void assign_regions(const Scenario& scenario, const Placements& placements, const RegionKeeper& keeper, SpaceStores& s,
+                    Problems& problems) {
+  constexpr std::size_t kNamed = 20;
+  std::size_t bad = 0;
+  const auto complain = [&](int line, const std::string& who, double x_m, double y_m, const std::string& why) {
+    if (++bad > kNamed) return;
+    problems.push_back({scenario.file, line,
+                        who + " at (" + hal::format_number(x_m) + ", " + hal::format_number(y_m) + ") " + why, false});
+  };
+  const bool any_solid = std::any_of(s.regions.begin(), s.regions.end(), [](const Region& r) { return !r.plane; });
+  for (const RobotEntity& e : s.robots) {
+    const std::size_t row = s.blocks[e.block].first_row + e.slot;
+    s.bodies.region[row] = keeper.find(s, BodyKey::robot(row));
+    std::string why;
+    if (s.bodies.region[row] != kNoRegion) {
+      why = too_wide_for(s, s.regions[s.bodies.region[row]], 2.0 * static_cast<double>(s.bodies.radius_m[row]));
+      if (why.empty()) continue;
+    }
+    const std::string name = s.names[e.item].prefix + (e.number < 0 ? "" : std::to_string(e.number));
+    const bool flies = s.groups[s.blocks[e.block].group].sheet->flies;
+    if (why.empty()) {
+      why = flies && !any_solid ? "flies: it needs an engine of three dimensions, particle3d or dynamics3d"
+                                : "lies in no engine's region";
+    }
+    complain(scenario.robots[e.item].line, "robot '" + name + "'", s.bodies.x_m[row], s.bodies.y_m[row], why);
+  }
+  check_grippers(scenario, s, problems);
+  for (std::size_t i = 0; i < s.objects.size(); ++i) {
+    if (!s.objects[i].movable) continue;
+    s.object_region[i] = keeper.find(s, BodyKey::object(i));
+    std::string why = "lies in no region of an engine that moves objects (dynamics2d, dynamics3d)";
+    if (s.object_region[i] != kNoRegion) {
+      why = too_wide_for(s, s.regions[s.object_region[i]], narrowest_width_m(s.objects[i]));
+      if (why.empty()) continue;
+    }
+    complain(scenario.objects[placements.objects[i].item].line,
+             std::string(s.objects[i].kind == Object::Kind::Box ? "movable box '" : "movable cylinder '") +
+                 s.objects[i].id + "'",
+             s.objects[i].x_m, s.objects[i].y_m, why);
+  }
+  if (bad > kNamed)
+    problems.push_back({scenario.file, 0,
+                        "... and " + std::to_string(bad - kNamed) + " more bodies in no region or too large for theirs",
+                        false});
+}
+
+}  // namespace
+
+std::unique_ptr<World> World::make(const Scenario& scenario, hal::PluginLoader& loader, const WorldOptions& options,
+                                   Problems& problems) {
+  auto impl = std::make_unique<Impl>();
+  Impl& w = *impl;
+  const std::size_t before = problems.size();
+  const auto bad = [&] { return has_errors(problems, before); };
+  w.scenario = scenario;
+  w.options = options;
+  w.seed = options.seed ? *options.seed : scenario.seed ? *scenario.seed : seed_from_clock();
+  w.pool = std::make_unique<ThreadPool>(
+      static_cast<std::size_t>(std::max<std::int64_t>(0, options.threads.value_or(scenario.threads))),
+      options.assignment.value_or(scenario.assignment));
+  SpaceStores& s = w.stores();
+  s.min_x_m = scenario.arena_center[0] - 0.5 * scenario.arena_size[0];
+  s.max_x_m = scenario.arena_center[0] + 0.5 * scenario.arena_size[0];
+  s.min_y_m = scenario.arena_center[1] - 0.5 * scenario.arena_size[1];
+  s.max_y_m = scenario.arena_center[1] + 0.5 * scenario.arena_size[1];
+
+  if (scenario.arena_size[2] > 0.0) s.max_z_m = scenario.arena_center[2] + 0.5 * scenario.arena_size[2];
+
+  const Placements placements = place(scenario, w.seed, &size_of_kind, problems);
+  w.engines = make_engines(scenario, placements.robots.size(), s, problems);
+  if (bad()) return nullptr;
+  for (const Region& region : s.regions) {
+    w.kinematic.push_back(region.listed ? 0 : 1);
+    if (region.listed) w.one_kind = false;
+  }
+  s.bodies.has_motion = !w.one_kind;
+
+  for (const PlacedObject& placed : placements.objects)
+    s.objects.push_back(object_of(scenario.objects[placed.item], placed));
+  for (const PlacedLight& placed : placements.lights) {
+    const LightItem& item = scenario.lights[placed.item];
+    s.lights.push_back({placed.number < 0 ? item.id : item.id + std::to_string(placed.number),
+                        placed.p_W[0],
+                        placed.p_W[1],
+                        placed.p_W[2],
+                        item.intensity,
+                        {item.rgb[0], item.rgb[1], item.rgb[2]}});
+  }
+  for (const SoundItem& item : scenario.sounds)
+    s.sounds.push_back({item.id, item.p_W[0], item.p_W[1], item.p_W[2], item.level});
+
+  // Ids: entities in the order of the file.
+  std::vector<RobotRequest> requests;
+  requests.reserve(placements.robots.size());
+  s.robots.resize(placements.robots.size());
+  for (std::size_t i = 0; i < scenario.robots.size(); ++i) {
+    const RobotItem& item = scenario.robots[i];
+    s.names.push_back({item.id, item.distribute ? item.distribute->base_num : -1, 0, 0});
+  }
+  for (std::size_t i = 0; i < placements.robots.size(); ++i) {
+    const PlacedRobot& placed = placements.robots[i];
+    NameRange& name = s.names[placed.item];
+    if (name.count == 0) name.first_entity = static_cast<std::uint32_t>(i);
+    ++name.count;
+    s.robots[i].item = placed.item;
+    s.robots[i].number = placed.number;
+    s.living.push_back(static_cast<std::uint32_t>(i));
+    requests.push_back(
+        {placed.item, static_cast<std::uint32_t>(i), placed.x_m, placed.y_m, placed.z_m, placed.yaw_rad});
+  }
+  w.factory = std::make_unique<RobotFactory>(w.scenario, w.seed, loader, s, w.devices);
+  w.factory->make(requests, problems);
+  w.editor = std::make_unique<WorldEditor>(w.scenario, s, *w.factory, w.devices, w.keeper);
+  w.space.set_editor(w.editor.get());
+
+  w.reach_m = index_reach(s, w.tick_s());
+  s.body_index.set_area(s.min_x_m, s.min_y_m, s.max_x_m, s.max_y_m, w.reach_m);
+  s.static_index.build(s.objects, false, s.min_x_m, s.min_y_m, s.max_x_m, s.max_y_m, w.reach_m);
+  w.indexed_version = s.immovables_version;
+  s.object_motion.resize(s.objects.size());
+  s.object_region.resize(s.objects.size(), kNoRegion);
+  for (std::size_t i = 0; i < s.objects.size(); ++i) {
+    s.object_numbers.emplace(s.objects[i].id, static_cast<std::uint32_t>(i));
+    const double half_rad = 0.5 * placements.objects[i].yaw_rad;
+    s.object_motion[i].z_m = s.objects[i].z_low_m;
+    s.object_motion[i].q_WB = {std::cos(half_rad), 0.0, 0.0, std::sin(half_rad)};
+  }
+  w.index_movables();
+  if (!bad()) {
+    w.keeper.build(s, w.tick_s());
+    assign_regions(scenario, placements, w.keeper, s, problems);
+  }
+
+  if (scenario.floor.source == "image") {
+    const hal::Status loaded =
+        s.floor.load_png(scenario.floor.path, s.min_x_m, s.min_y_m, scenario.arena_size[0], scenario.arena_size[1]);
+    if (!loaded.ok()) problems.push_back({scenario.file, scenario.floor.line, loaded.error().message, false});
+  }
+  s.repaint_floor = true;
+
+  for (const HookConfig& config : scenario.hooks) {
+    const auto type = loader.get(config.library, "hook", config.label);
+    if (!type.ok()) {
+      problems.push_back({scenario.file, config.line, "loop_functions: " + type.error().message, false});
+      continue;
+    }
+    const auto* hook = static_cast<const HookType*>(type.value());
+    w.hooks.push_back(hook->make(config.options, problems));
+    w.hook_names.emplace_back(hook->name);
+  }
+  if (scenario.floor.source == "loop_functions" && scenario.hooks.empty()) {
+    problems.push_back({scenario.file, scenario.floor.line,
+                        "the floor is to be painted by loop functions, but there are none", false});
+  }
+
+  const std::size_t blocks = s.blocks.size();
+  w.block_trouble.assign(blocks, 0);
+  w.faults.resize(blocks);
+  w.clamped.assign(blocks, 0);
+  w.not_finite.assign(blocks, 0);
+  auto world = std::unique_ptr<World>(new World(std::move(impl)));
+  if (bad()) return nullptr;
+  return world;
+}
+
+}  // namespace tandem::core

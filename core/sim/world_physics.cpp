@@ -1,0 +1,195 @@
+// The physics phase of a step: engines, borders, bodies that leave.
+#include <algorithm>
+#include <cmath>
+
+#include "core/sim/gripping.hpp"
+#include "core/sim/world_impl.hpp"
+
+namespace tandem::core {
+namespace {
+
+constexpr double kContactReach_m = 0.03;  // beyond the bodies' rims: what contact resolution looks at
+
+}  // namespace
+
+double index_reach(const SpaceStores& stores, double tick_s) noexcept {
+  double reach_m = 2.0 * kContactReach_m;
+  for (const RobotGroup& group : stores.groups) {
+    if (group.sheet == nullptr) continue;
+    reach_m = std::max(
+        reach_m, 2.0 * group.sheet->body_radius_m + std::max(group.sheet->proximity_range_m, kContactReach_m) + 0.01);
+    if (group.sheet->flies)  // where it may be at the end of the tick
+      reach_m = std::max(reach_m, 2.0 * group.sheet->body_radius_m + tick_s * group.sheet->max_flight_speed_m_s);
+  }
+  return reach_m;
+}
+
+void World::Impl::physics() {
+  const PhysicsContext context{stores(), *pool, tick_s(), tick};
+  grip_and_release(stores(), tick_s());
+  settle_changes();
+  keeper.list(stores(), *pool);
+  stores().bodies_changed = false;
+  for (const auto& engine : engines) engine->load(context);
+  for (const auto& engine : engines) engine->advance(context);
+  ++stores().poses_version;
+  stores().touched.clear();
+  stop_on_trouble();
+  rebuild_index();
+  find_stray_objects();
+  keeper.migrate(stores(), *pool, strays);
+  if (trouble.load(std::memory_order_relaxed) != 0 || !strays.empty()) {
+    treat_escapes();
+    rebuild_index();
+    trouble.store(0, std::memory_order_relaxed);
+    strays.clear();
+  }
+  index_movables();
+  for (const auto& engine : engines) engine->settle(context);
+  follow_loads(stores(), tick_s());
+}
+
+/// What hooks, operators and real robots changed since the last step.
+void World::Impl::settle_changes() {
+  SpaceStores& s = stores();
+  if (s.bodies_changed) fit_to_bodies();
+  if (indexed_version != s.immovables_version) {
+    s.static_index.build(s.objects, false, s.min_x_m, s.min_y_m, s.max_x_m, s.max_y_m, reach_m);
+    indexed_version = s.immovables_version;
+  }
+  if (s.bodies_changed) keeper.place(s, strays);
+}
+
+/// Robots came or went, or other objects: arrays by block, and how far indices and regions look.
+void World::Impl::fit_to_bodies() {
+  SpaceStores& s = stores();
+  const std::size_t blocks = s.blocks.size();
+  if (faults.size() < blocks) {
+    block_trouble.resize(blocks, 0);
+    faults.resize(blocks);
+    clamped.resize(blocks, 0);
+    not_finite.resize(blocks, 0);
+  }
+  const double needed_m = index_reach(s, tick_s());
+  if (needed_m != reach_m) {
+    reach_m = needed_m;
+    s.body_index.set_area(s.min_x_m, s.min_y_m, s.max_x_m, s.max_y_m, reach_m);
+    ++s.immovables_version;
+  }
+  keeper.fit(s, tick_s());
+}
+
+void World::Impl::stop_on_trouble() {
+  for (const auto& engine : engines) engine->collect(troubles);
+  for (const Trouble& t : troubles) fail(name_of(t.body) + " " + t.what + at_tick());
+  troubles.clear();
+}
+
+void World::Impl::index_movables() {
+  SpaceStores& s = stores();
+  const bool any =
+      std::any_of(s.objects.begin(), s.objects.end(), [](const Object& o) { return o.alive && o.movable; });
+  if (any || !s.movable_index.empty())
+    s.movable_index.build(s.objects, true, s.min_x_m, s.min_y_m, s.max_x_m, s.max_y_m, reach_m);
+}
+
+void World::Impl::rebuild_index() {
+  SpaceStores& s = stores();
+  Bodies& b = s.bodies;
+  const auto spot = [&](std::size_t row) noexcept -> BodyIndex::Spot {
+    const double x_m = b.x_m[row];
+    const double y_m = b.y_m[row];
+    const std::uint8_t flags = b.flags[row];
+    if ((flags & kAlive) == 0) return {};
+    const bool inside = x_m >= s.min_x_m && x_m <= s.max_x_m && y_m >= s.min_y_m && y_m <= s.max_y_m;
+    if (!inside) {  // also when not a number
+      b.flags[row] = static_cast<std::uint8_t>(flags | kEscaped);
+      trouble.fetch_add(1, std::memory_order_relaxed);
+    }
+    return {x_m, y_m, true};
+  };
+  const auto fill = [&](std::size_t row) noexcept {
+    const bool fixed = (b.flags[row] & kExternal) != 0 || (!one_kind && !moved_by_kinematics(row));
+    return IndexEntry{b.x_m[row], b.y_m[row], b.radius_m[row],
+                      static_cast<std::uint32_t>(row) | (fixed ? IndexEntry::kFixedFlag : 0U)};
+  };
+  s.body_index.rebuild(b.size(), s.living.size(), *pool, spot, fill);
+}
+
+void World::Impl::find_stray_objects() {
+  const SpaceStores& s = stores();
+  for (std::size_t i = 0; i < s.objects.size(); ++i) {
+    const Object& o = s.objects[i];
+    if (!o.alive || !o.movable) continue;
+    if (!(o.x_m >= s.min_x_m && o.x_m <= s.max_x_m && o.y_m >= s.min_y_m && o.y_m <= s.max_y_m))
+      strays.push_back(BodyKey::object(i));
+  }
+}
+
+void World::Impl::treat_escapes() {
+  Bodies& b = stores().bodies;
+  for (std::size_t row = 0; row < b.size(); ++row) {
+    if ((b.flags[row] & kEscaped) == 0) continue;
+    b.flags[row] = static_cast<std::uint8_t>(b.flags[row] & ~kEscaped);
+    strays.push_back(BodyKey::robot(row));
+  }
+  std::sort(strays.begin(), strays.end());
+  strays.erase(std::unique(strays.begin(), strays.end()), strays.end());
+  for (const BodyKey body : strays) treat_escape(body);
+}
+
+void World::Impl::treat_escape(BodyKey body) {
+  SpaceStores& s = stores();
+  double& x_m = body.is_object() ? s.objects[body.index()].x_m : s.bodies.x_m[body.index()];
+  double& y_m = body.is_object() ? s.objects[body.index()].y_m : s.bodies.y_m[body.index()];
+  if (std::isnan(x_m) || std::isnan(y_m)) {
+    fail(name_of(body) + " has a position that is not a number" + at_tick());
+    x_m = s.min_x_m;
+    y_m = s.min_y_m;
+    return;
+  }
+  ++incidents.bodies_escaped;
+  const bool in_arena = x_m >= s.min_x_m && x_m <= s.max_x_m && y_m >= s.min_y_m && y_m <= s.max_y_m;
+  const std::uint16_t region = body.is_object() ? s.object_region[body.index()] : s.bodies.region[body.index()];
+  const std::string what = !in_arena             ? "left the arena"
+                           : region == kNoRegion ? "was put where no engine has its region,"
+                                                 : "left the region of engine '" + s.regions[region].name + "'";
+  const std::string where =
+      name_of(body) + " " + what + " at (" + hal::format_number(x_m) + ", " + hal::format_number(y_m) + ")" + at_tick();
+  switch (scenario.escape) {
+    case EscapePolicy::Error:
+      fail(where + (in_arena
+                        ? ". Give the region's side a wall or a gate, or choose escape=\"stop\" or escape=\"remove\" "
+                          "on <arena>."
+                        : ". Give the arena walls, or choose escape=\"stop\" or escape=\"remove\" on <arena>."));
+      break;
+    case EscapePolicy::Remove:
+      incident(where + ": removed");
+      if (body.is_object()) {
+        space.remove_object(space.object(body.index()));
+      } else {
+        const std::uint32_t entity = s.bodies.entity[body.index()];
+        space.remove_robot({entity, s.robots[entity].generation});
+      }
+      s.bodies_changed = true;
+      return;
+    case EscapePolicy::Stop:
+      incident(where + ": stopped at the edge");
+      break;
+  }
+  x_m = std::clamp(x_m, s.min_x_m, s.max_x_m);
+  y_m = std::clamp(y_m, s.min_y_m, s.max_y_m);
+  RegionKeeper::put_back(s, body);
+  Motion none;
+  if (body.is_object()) {
+    none.z_m = s.object_motion[body.index()].z_m;
+    none.q_WB = s.object_motion[body.index()].q_WB;
+    s.object_motion[body.index()] = none;
+  } else if (!s.bodies.motion.empty()) {
+    none.z_m = s.bodies.motion[body.index()].z_m;
+    none.q_WB = s.bodies.motion[body.index()].q_WB;
+    s.bodies.motion[body.index()] = none;
+  }
+}
+
+}  // namespace tandem::core
