@@ -35,7 +35,8 @@ thread_local std::uint64_t shuffle = 0;
 void use_ode() {
   if (ready) return;
   static const Library library;
-  if (dAllocateODEDataForThread(static_cast<unsigned>(dAllocateMaskAll)) == 0) throw OdeError("ODE has no memory for this thread");
+  if (dAllocateODEDataForThread(static_cast<unsigned>(dAllocateMaskAll)) == 0)
+    throw OdeError("ODE has no memory for this thread");
   ready = true;
 }
 
