@@ -167,7 +167,7 @@ void FootbotRobot::complete(hal::Tick tick) noexcept {
   clock.validity = hal::Validity::Fresh;
   reckon();
   auto& scanner = port<hal::DistanceScanner>();
-  scanner.samples = scanner.count / hal::DistanceScanner::kHeads;
+  scanner.samples = static_cast<std::uint32_t>(scanner.count / hal::DistanceScanner::kHeads);
   for (std::size_t head = 0; head < spec::kScanner.size() && scanner.samples == 1; ++head) {
     const double angle = static_cast<double>(scanner.turn_rad) + spec::kScanner[head].bearing_rad;
     scanner.angle_rad[head] = static_cast<float>(wrapped(angle));

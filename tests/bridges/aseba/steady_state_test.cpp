@@ -13,6 +13,9 @@ std::atomic<std::uint64_t> allocations{0};
 
 }  // namespace
 
+// GCC cannot see that both sides are malloc and free.
+#pragma GCC diagnostic ignored "-Wmismatched-new-delete"
+
 void* operator new(std::size_t size) {
   if (counting) ++allocations;
   if (void* memory = std::malloc(size)) return memory;
