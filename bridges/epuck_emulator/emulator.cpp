@@ -8,8 +8,8 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "bridges/emulation/serial_port.hpp"
 #include "bridges/epuck_emulator/faults.hpp"
-#include "bridges/epuck_emulator/port.hpp"
 
 namespace tandem::bridges::epuck_emulator {
 namespace {
@@ -21,6 +21,7 @@ constexpr TimeNs kBatchNs = hal::kNsPerMs;  // bytes of one burst are handed ove
 constexpr TimeNs kNoiseNs = 5 * hal::kNsPerMs;  // a garbled line is not quiet either
 constexpr std::size_t kQueueBytes = 4096;       // the host's driver holds as much
 constexpr unsigned long kRobotBaud = 115200;
+constexpr const char* kName = "an emulated e-puck";
 
 TimeNs monotonic_ns() {
   timespec t{};
@@ -63,7 +64,7 @@ std::optional<TimeNs> batch_at(const Wire& wire) {
 
 class Server {
  public:
-  Server(const Options& options, std::unique_ptr<Port> port, std::unique_ptr<EventLog> log_file, FaultPlan faults,
+  Server(const Options& options, std::unique_ptr<SerialPort> port, std::unique_ptr<EventLog> log_file, FaultPlan faults,
          EmulatedBody& body, Firmware::Options robot)
       : options_(options),
         port_(std::move(port)),
@@ -86,7 +87,7 @@ class Server {
   hal::Status wait_until(TimeNs at) const;
 
   const Options& options_;
-  std::unique_ptr<Port> port_;  // none while hung up
+  std::unique_ptr<SerialPort> port_;  // none while hung up
   std::unique_ptr<EventLog> log_file_;
   FaultPlan faults_;
   Firmware firmware_;
@@ -156,7 +157,7 @@ hal::Status Server::apply_faults(TimeNs now) {
     to_host_.clear();
     port_.reset();
     if (change->begins) continue;
-    auto again = Port::open(options_.link);
+    auto again = SerialPort::open(options_.link, kName, kRobotBaud);
     if (!again.ok()) return again.error();
     port_ = std::move(again).value();
   }
@@ -263,7 +264,7 @@ hal::Status run(const Options& options, const std::atomic<bool>& stop) {
     if (!opened.ok()) return opened.error();
     log_file = std::move(opened).value();
   }
-  auto port = Port::open(options.link);
+  auto port = SerialPort::open(options.link, kName, kRobotBaud);
   if (!port.ok()) return port.error();
 
   KinematicBody own_body({}, options.arena);

@@ -1,9 +1,6 @@
 #include "bridges/epuck_emulator/faults.hpp"
 
 #include <algorithm>
-#include <cmath>
-
-#include "hal/unit.hpp"
 
 namespace tandem::bridges::epuck_emulator {
 namespace {
@@ -36,19 +33,8 @@ constexpr std::array<Entry, 9> kEntries = {{
     {FaultKind::Hangup, "hangup", Value::None, true, 1.0, "hangup@6s+1s", "the device disappears and comes back"},
 }};
 
-constexpr hal::TimeNs kFurthest = std::numeric_limits<hal::TimeNs>::max() / 4;
-
 hal::Error wrong(std::string_view spec, const std::string& why) {
   return hal::Error{"fault '" + std::string(spec) + "': " + why + ". The faults are\n" + fault_manual()};
-}
-
-/// A time that is not negative.
-hal::Result<hal::TimeNs> parse_time(std::string_view text) {
-  const auto seconds = hal::parse_quantity(text, hal::unit::s);
-  if (!seconds.ok()) return seconds.error();
-  if (seconds.value() < 0.0) return hal::Error{"'" + std::string(text) + "' is before the start"};
-  const double ns = seconds.value() * 1e9;
-  return ns < static_cast<double>(kFurthest) ? static_cast<hal::TimeNs>(std::llround(ns)) : kFurthest;
 }
 
 }  // namespace
@@ -63,47 +49,33 @@ std::string fault_manual() {
   return text + "A fault may be given @START+DURATION; without, it lasts from the start to the end.";
 }
 
-hal::Result<Fault> parse_fault(std::string_view spec) {
-  const std::string_view head = spec.substr(0, spec.find('@'));
-  const std::string_view name = head.substr(0, head.find('='));
+hal::Result<Fault> parse_fault(std::string_view text) {
+  const auto split = split_fault(text);
+  if (!split.ok()) return wrong(text, split.error().message);
+  const FaultSpec& spec = split.value();
+  const std::string name(spec.name);
   const auto entry = std::find_if(kEntries.begin(), kEntries.end(), [&](const Entry& e) { return e.name == name; });
-  if (entry == kEntries.end()) return wrong(spec, "there is no fault '" + std::string(name) + "'");
+  if (entry == kEntries.end()) return wrong(text, "there is no fault '" + name + "'");
+  if (spec.value.has_value() != (entry->value != Value::None)) {
+    return wrong(text, "'" + name + (spec.value ? "' takes no value" : "' needs a value"));
+  }
+  if (!spec.start && entry->needs_start) return wrong(text, "say when, as in " + std::string(entry->example));
+
   Fault fault;
   fault.kind = entry->kind;
-  fault.text = spec;
-
-  const bool has_value = head.size() > name.size();
-  const std::string_view value = has_value ? head.substr(name.size() + 1) : std::string_view{};
-  if (has_value != (entry->value != Value::None)) {
-    return wrong(spec, "'" + std::string(name) + (has_value ? "' takes no value" : "' needs a value"));
-  }
+  fault.text = text;
   if (entry->value == Value::Probability) {
-    const auto probability = hal::parse_quantity(value, hal::unit::none);
-    if (!probability.ok()) return wrong(spec, probability.error().message);
-    if (probability.value() < 0.0 || probability.value() > 1.0) return wrong(spec, "a probability is from 0 to 1");
+    const auto probability = parse_probability(*spec.value);
+    if (!probability.ok()) return wrong(text, probability.error().message);
     fault.probability = probability.value();
   } else if (entry->value == Value::Time) {
-    const auto delay = parse_time(value);
-    if (!delay.ok()) return wrong(spec, delay.error().message);
+    const auto delay = parse_time(*spec.value);
+    if (!delay.ok()) return wrong(text, delay.error().message);
     fault.delay_ns = delay.value();
   }
-
-  const bool has_start = head.size() < spec.size();
-  if (!has_start && entry->needs_start) return wrong(spec, "say when, as in " + std::string(entry->example));
-  const std::string_view when = has_start ? spec.substr(head.size() + 1) : std::string_view{};
-  const std::size_t plus = when.find('+');
-  if (has_start) {
-    const auto start = parse_time(when.substr(0, plus));
-    if (!start.ok()) return wrong(spec, start.error().message);
-    fault.from = start.value();
-  }
-  if (plus != std::string_view::npos) {
-    const auto duration = parse_time(when.substr(plus + 1));
-    if (!duration.ok()) return wrong(spec, duration.error().message);
-    fault.until = fault.from + duration.value();
-  } else if (entry->default_duration_s > 0.0) {
-    fault.until = fault.from + static_cast<hal::TimeNs>(entry->default_duration_s * 1e9);
-  }
+  fault.from = spec.from();
+  const double lasts_s = entry->default_duration_s;
+  fault.until = spec.until(lasts_s > 0.0 ? static_cast<hal::TimeNs>(lasts_s * 1e9) : kEndless);
   return fault;
 }
 
@@ -112,8 +84,8 @@ void FaultPlan::begin(hal::TimeNs start) {
   told_ = 0;
   for (Fault& f : faults_) {
     f.from += start;
-    const bool ends = f.until < kFurthest * 3;
-    if (ends) f.until += start;
+    const bool ends = f.until < kEndless;
+    f.until += start;
     changes_.push_back({f.from, true, &f});
     const bool lasts = f.kind != FaultKind::Reset && f.kind != FaultKind::Truncate;
     if (ends && lasts) changes_.push_back({f.until, false, &f});
@@ -133,16 +105,16 @@ std::optional<std::uint8_t> FaultPlan::to_robot(std::uint8_t byte, hal::TimeNs a
 
 std::optional<std::uint8_t> FaultPlan::to_host(std::uint8_t byte, hal::TimeNs at) {
   if (active(FaultKind::Silent, at)) return std::nullopt;
-  if (active(FaultKind::Garbage, at)) return static_cast<std::uint8_t>(draw() >> 56U);
+  if (active(FaultKind::Garbage, at)) return static_cast<std::uint8_t>(chance_.draw() >> 56U);
   return through_the_air(byte, at);
 }
 
 std::optional<std::uint8_t> FaultPlan::through_the_air(std::uint8_t byte, hal::TimeNs at) {
   for (const Fault& f : faults_) {
     if (at < f.from || at >= f.until) continue;
-    if (f.kind == FaultKind::Drop && hits(f.probability)) return std::nullopt;
-    if (f.kind == FaultKind::Corrupt && hits(f.probability)) {
-      byte = static_cast<std::uint8_t>(byte ^ (1U << (draw() >> 61U)));
+    if (f.kind == FaultKind::Drop && chance_.hits(f.probability)) return std::nullopt;
+    if (f.kind == FaultKind::Corrupt && chance_.hits(f.probability)) {
+      byte = static_cast<std::uint8_t>(byte ^ (1U << (chance_.draw() >> 61U)));
     }
   }
   return byte;
@@ -157,7 +129,7 @@ hal::TimeNs FaultPlan::delay_ns(hal::TimeNs at) const {
 }
 
 std::uint8_t FaultPlan::garble(std::uint8_t byte) {
-  return static_cast<std::uint8_t>(byte + 1 + (draw() >> 56U) % 255);
+  return static_cast<std::uint8_t>(byte + 1 + (chance_.draw() >> 56U) % 255);
 }
 
 std::optional<FaultPlan::Change> FaultPlan::next_change(hal::TimeNs now) {
@@ -168,19 +140,6 @@ std::optional<FaultPlan::Change> FaultPlan::next_change(hal::TimeNs now) {
 std::optional<hal::TimeNs> FaultPlan::next_change_at() const {
   if (told_ == changes_.size()) return std::nullopt;
   return changes_[told_].at;
-}
-
-bool FaultPlan::hits(double probability) {
-  return static_cast<double>(draw() >> 11U) * 0x1p-53 < probability;
-}
-
-// SplitMix64 [Steele, Lea, Flood 2014].
-std::uint64_t FaultPlan::draw() {
-  random_ += 0x9E3779B97F4A7C15ULL;
-  std::uint64_t z = random_;
-  z = (z ^ (z >> 30U)) * 0xBF58476D1CE4E5B9ULL;
-  z = (z ^ (z >> 27U)) * 0x94D049BB133111EBULL;
-  return z ^ (z >> 31U);
 }
 
 }  // namespace tandem::bridges::epuck_emulator

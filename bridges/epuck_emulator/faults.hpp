@@ -2,14 +2,12 @@
 #pragma once
 #include <array>
 #include <cstdint>
-#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "hal/result.hpp"
-#include "hal/time.hpp"
+#include "bridges/emulation/fault_spec.hpp"
 
 namespace tandem::bridges::epuck_emulator {
 
@@ -19,7 +17,7 @@ enum class FaultKind : std::uint8_t { Silent, Deaf, Garbage, Drop, Corrupt, Dela
 struct Fault {
   FaultKind kind = FaultKind::Silent;
   hal::TimeNs from = 0;
-  hal::TimeNs until = std::numeric_limits<hal::TimeNs>::max();
+  hal::TimeNs until = kEndless;
   double probability = 0.0;  ///< Drop, Corrupt: of each byte, in both directions
   hal::TimeNs delay_ns = 0;  ///< Delay: added to every byte towards the host
   std::string text;          ///< as written
@@ -27,7 +25,7 @@ struct Fault {
 
 /// Reads NAME[=VALUE][@START[+DURATION]]: "silent@5s+2s", "reset@3s", "drop=0.01", "delay=20ms". A bare number is in
 /// seconds. Errors name what is wrong and list the faults that there are.
-hal::Result<Fault> parse_fault(std::string_view spec);
+hal::Result<Fault> parse_fault(std::string_view text);
 
 /// One line a fault: how it is written and what it does.
 std::string fault_manual();
@@ -35,7 +33,7 @@ std::string fault_manual();
 /// All faults of a run, and the chance in them.
 class FaultPlan {
  public:
-  FaultPlan(std::vector<Fault> faults, std::uint64_t seed) : faults_(std::move(faults)), random_(seed) {}
+  FaultPlan(std::vector<Fault> faults, std::uint64_t seed) : faults_(std::move(faults)), chance_(seed) {}
 
   /// Times from here on are on the clock of `start`.
   void begin(hal::TimeNs start);
@@ -61,13 +59,11 @@ class FaultPlan {
 
  private:
   std::optional<std::uint8_t> through_the_air(std::uint8_t byte, hal::TimeNs at);
-  bool hits(double probability);
-  std::uint64_t draw();
 
   std::vector<Fault> faults_;
   std::vector<Change> changes_;  // in order of time
   std::size_t told_ = 0;
-  std::uint64_t random_;
+  Chance chance_;
 };
 
 }  // namespace tandem::bridges::epuck_emulator

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "bridges/emulation/event_log.hpp"
 #include "bridges/epuck_emulator/body.hpp"
-#include "bridges/epuck_emulator/event_log.hpp"
 #include "bridges/epuck_emulator/stepper.hpp"
 #include "bridges/epuck_emulator/variant.hpp"
 

@@ -1,4 +1,4 @@
-// Where the emulated robot's serial line comes out: a pseudo-terminal under a name of our own, or a real serial device.
+// Where an emulated robot's serial line comes out: a pseudo-terminal under a name of our own, or a real serial device.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -7,21 +7,22 @@
 
 #include "hal/result.hpp"
 
-namespace tandem::bridges::epuck_emulator {
+namespace tandem::bridges {
 
-/// The robot's end of a serial line at 115200 baud, raw, 8N1, no flow control. Nothing here blocks.
-class Port {
+/// The robot's end of a serial line, raw, 8N1, no flow control. Nothing here blocks.
+class SerialPort {
  public:
   /// "pty:NAME" makes a pseudo-terminal and a symbolic link NAME to it, in the current folder unless NAME is a path; a
-  /// link of that name is replaced. "serial:DEVICE" or "serial:DEVICE@115200" opens a device, for a robot at the end of
-  /// a cable. Errors: other links; NAME is something else than a symbolic link; the folder or the device cannot be
-  /// opened.
-  static hal::Result<std::unique_ptr<Port>> open(const std::string& link);
+  /// link of that name is replaced. "serial:DEVICE" or "serial:DEVICE@BAUD" opens a device, for a robot at the end of
+  /// a cable. `robot` is its name in messages, `baud` its speed: one of those of `host_baud`. Errors: other links, or
+  /// another speed; NAME is something else than a symbolic link; the folder or the device cannot be opened.
+  static hal::Result<std::unique_ptr<SerialPort>> open(const std::string& link, const std::string& robot,
+                                                       unsigned long baud);
 
   /// Takes the symbolic link away, if it is still ours.
-  ~Port();
-  Port(const Port&) = delete;
-  Port& operator=(const Port&) = delete;
+  ~SerialPort();
+  SerialPort(const SerialPort&) = delete;
+  SerialPort& operator=(const SerialPort&) = delete;
 
   /// For poll().
   int descriptor() const noexcept { return descriptor_; }
@@ -32,7 +33,8 @@ class Port {
   /// @returns how many bytes went out; the rest is lost, as on a wire that nobody listens at
   std::size_t write(std::span<const std::uint8_t> bytes);
 
-  /// The baud rate that the host has set on its side of a pseudo-terminal; 115200 on a device.
+  /// The baud rate that the host has set on its side of a pseudo-terminal, 0 for one that is not usual; the robot's own
+  /// on a device.
   unsigned long host_baud() const;
 
   /// The name that a host opens.
@@ -41,10 +43,11 @@ class Port {
   const std::string& device() const noexcept { return device_; }
 
  private:
-  Port() = default;
+  explicit SerialPort(unsigned long baud) : baud_(baud) {}
   hal::Status make_terminal(const std::string& path);
   hal::Status open_device(const std::string& device);
 
+  unsigned long baud_;
   int descriptor_ = -1;
   int slave_ = -1;  // kept open: without any, the robot's end of a pseudo-terminal reports a hang-up
   std::string path_;
@@ -52,4 +55,4 @@ class Port {
   bool owns_link_ = false;
 };
 
-}  // namespace tandem::bridges::epuck_emulator
+}  // namespace tandem::bridges

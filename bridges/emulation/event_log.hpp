@@ -1,4 +1,4 @@
-// What the emulated robot did, one JSON object a line.
+// What an emulated robot did, one JSON object a line.
 #pragma once
 #include <concepts>
 #include <cstdint>
@@ -13,9 +13,9 @@
 #include "hal/result.hpp"
 #include "hal/time.hpp"
 
-namespace tandem::bridges::epuck_emulator {
+namespace tandem::bridges {
 
-/// A name and a number, text or truth.
+/// A name and a number, numbers, text or truth.
 struct EventField {
   EventField(std::string_view n, bool v) : name(n), value(v) {}
   EventField(std::string_view n, std::integral auto v) : name(n), value(static_cast<std::int64_t>(v)) {}
@@ -23,9 +23,10 @@ struct EventField {
   EventField(std::string_view n, std::string_view v) : name(n), value(std::string(v)) {}
   EventField(std::string_view n, const std::string& v) : name(n), value(v) {}
   EventField(std::string_view n, const char* v) : name(n), value(std::string(v)) {}
+  EventField(std::string_view n, std::vector<std::int64_t> v) : name(n), value(std::move(v)) {}
 
   std::string_view name;
-  std::variant<bool, std::int64_t, double, std::string> value;
+  std::variant<bool, std::int64_t, double, std::string, std::vector<std::int64_t>> value;
 };
 
 using EventFields = std::vector<EventField>;
@@ -53,4 +54,4 @@ class EventLog {
   std::unique_ptr<std::FILE, Close> file_;
 };
 
-}  // namespace tandem::bridges::epuck_emulator
+}  // namespace tandem::bridges

@@ -1,18 +1,18 @@
-#include "bridges/epuck_emulator/event_log.hpp"
+#include "bridges/emulation/event_log.hpp"
 
 #include <filesystem>
 #include <fstream>
 #include <gtest/gtest.h>
 #include <limits>
 
-namespace tandem::bridges::epuck_emulator {
+namespace tandem::bridges {
 namespace {
 
 TEST(EventLog, WritesOneObjectALine) {
   EXPECT_EQ(to_json(12, "wheels", {{"left", 500}, {"right", -500}}),
             R"({"t_ns":12,"event":"wheels","left":500,"right":-500})");
-  EXPECT_EQ(to_json(0, "x", {{"a", true}, {"b", 0.25}, {"c", "text"}}),
-            R"({"t_ns":0,"event":"x","a":true,"b":0.25,"c":"text"})");
+  EXPECT_EQ(to_json(0, "x", {{"a", true}, {"b", 0.25}, {"c", "text"}, {"d", std::vector<std::int64_t>{-1, 2}}}),
+            R"({"t_ns":0,"event":"x","a":true,"b":0.25,"c":"text","d":[-1,2]})");
 }
 
 TEST(EventLog, EscapesWhateverBytesCameIn) {
@@ -22,7 +22,7 @@ TEST(EventLog, EscapesWhateverBytesCameIn) {
 }
 
 TEST(EventLog, IsReadableWhileItIsWritten) {
-  const auto path = std::filesystem::temp_directory_path() / ("epuck_event_log_" + std::to_string(getpid()));
+  const auto path = std::filesystem::temp_directory_path() / ("emulation_event_log_" + std::to_string(getpid()));
   const auto log = EventLog::open(path.string());
   ASSERT_TRUE(log.ok());
   log.value()->write(1, "stop", {});
@@ -39,4 +39,4 @@ TEST(EventLog, SaysWhereItCannotBeWritten) {
 }
 
 }  // namespace
-}  // namespace tandem::bridges::epuck_emulator
+}  // namespace tandem::bridges

@@ -1,5 +1,6 @@
-#include "bridges/epuck_emulator/port.hpp"
+#include "bridges/emulation/serial_port.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstdlib>
@@ -9,23 +10,52 @@
 #include <sys/ioctl.h>
 #include <termios.h>
 #include <unistd.h>
-#include <utility>
 
-namespace tandem::bridges::epuck_emulator {
+#include "hal/check.hpp"
+
+namespace tandem::bridges {
 namespace {
 
 namespace fs = std::filesystem;
 
 constexpr std::string_view kPty = "pty:";
 constexpr std::string_view kSerial = "serial:";
-constexpr std::string_view kBaud = "115200";
 
 hal::Error failed(const std::string& what) {
   return hal::Error{what + ": " + std::strerror(errno)};
 }
 
-/// Raw, 115200 8N1. A host that opens a fresh pseudo-terminal without a word about speed finds the robot's.
-bool make_raw(int descriptor) {
+struct Speed {
+  speed_t code;
+  unsigned long baud;
+};
+
+constexpr std::array<Speed, 12> kSpeeds = {{{B1200, 1200},
+                                            {B2400, 2400},
+                                            {B4800, 4800},
+                                            {B9600, 9600},
+                                            {B19200, 19200},
+                                            {B38400, 38400},
+                                            {B57600, 57600},
+                                            {B115200, 115200},
+                                            {B230400, 230400},
+                                            {B460800, 460800},
+                                            {B921600, 921600},
+                                            {B1000000, 1000000}}};
+
+unsigned long baud_of(speed_t code) {
+  const auto found = std::ranges::find(kSpeeds, code, &Speed::code);
+  return found == kSpeeds.end() ? 0 : found->baud;
+}
+
+speed_t code_of(unsigned long baud) {
+  const auto found = std::ranges::find(kSpeeds, baud, &Speed::baud);
+  TANDEM_CHECK(found != kSpeeds.end(), "a robot's speed is a usual one");
+  return found->code;
+}
+
+/// Raw, 8N1. A host that opens a fresh pseudo-terminal without a word about speed finds the robot's.
+bool make_raw(int descriptor, unsigned long baud) {
   termios settings{};
   if (tcgetattr(descriptor, &settings) != 0) return false;
   cfmakeraw(&settings);
@@ -33,34 +63,17 @@ bool make_raw(int descriptor) {
   settings.c_cflag &= ~static_cast<tcflag_t>(CRTSCTS | CSTOPB);
   settings.c_cc[VMIN] = 0;
   settings.c_cc[VTIME] = 0;
-  cfsetispeed(&settings, B115200);
-  cfsetospeed(&settings, B115200);
+  cfsetispeed(&settings, code_of(baud));
+  cfsetospeed(&settings, code_of(baud));
   return tcsetattr(descriptor, TCSANOW, &settings) == 0;
-}
-
-unsigned long baud_of(speed_t speed) {
-  constexpr std::array<std::pair<speed_t, unsigned long>, 12> kSpeeds = {{{B1200, 1200},
-                                                                          {B2400, 2400},
-                                                                          {B4800, 4800},
-                                                                          {B9600, 9600},
-                                                                          {B19200, 19200},
-                                                                          {B38400, 38400},
-                                                                          {B57600, 57600},
-                                                                          {B115200, 115200},
-                                                                          {B230400, 230400},
-                                                                          {B460800, 460800},
-                                                                          {B921600, 921600},
-                                                                          {B1000000, 1000000}}};
-  for (const auto& [code, baud] : kSpeeds) {
-    if (code == speed) return baud;
-  }
-  return 0;
 }
 
 }  // namespace
 
-hal::Result<std::unique_ptr<Port>> Port::open(const std::string& link) {
-  std::unique_ptr<Port> port(new Port());
+hal::Result<std::unique_ptr<SerialPort>> SerialPort::open(const std::string& link, const std::string& robot,
+                                                          unsigned long baud) {
+  const std::string rate = std::to_string(baud);
+  std::unique_ptr<SerialPort> port(new SerialPort(baud));
   hal::Status status;
   if (link.starts_with(kPty) && link.size() > kPty.size()) {
     status = port->make_terminal(link.substr(kPty.size()));
@@ -68,19 +81,20 @@ hal::Result<std::unique_ptr<Port>> Port::open(const std::string& link) {
     std::string device = link.substr(kSerial.size());
     const std::size_t at = device.rfind('@');
     if (at != std::string::npos) {
-      if (device.substr(at + 1) != kBaud)
-        return hal::Error{"link '" + link + "': an e-puck speaks at 115200 baud only"};
+      if (device.substr(at + 1) != rate) {
+        return hal::Error{"link '" + link + "': " + robot + " speaks at " + rate + " baud only"};
+      }
       device.resize(at);
     }
     status = port->open_device(device);
   } else {
-    return hal::Error{"link '" + link + "': an emulated e-puck takes pty:NAME or serial:DEVICE@115200"};
+    return hal::Error{"link '" + link + "': " + robot + " takes pty:NAME or serial:DEVICE@" + rate};
   }
   if (!status.ok()) return status.error();
   return port;
 }
 
-hal::Status Port::make_terminal(const std::string& path) {
+hal::Status SerialPort::make_terminal(const std::string& path) {
   std::error_code ignored;
   const fs::file_status there = fs::symlink_status(path, ignored);
   if (fs::exists(there) && !fs::is_symlink(there)) {
@@ -94,7 +108,7 @@ hal::Status Port::make_terminal(const std::string& path) {
   if (ptsname_r(descriptor_, name.data(), name.size()) != 0) return failed("cannot name the pseudo-terminal");
   device_ = name.data();
   slave_ = ::open(name.data(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
-  if (slave_ < 0 || !make_raw(slave_)) return failed("cannot set up '" + device_ + "'");
+  if (slave_ < 0 || !make_raw(slave_, baud_)) return failed("cannot set up '" + device_ + "'");
 
   // Made beside and moved into place: a host never finds half of it.
   const std::string fresh = path + "." + std::to_string(getpid()) + ".new";
@@ -110,15 +124,15 @@ hal::Status Port::make_terminal(const std::string& path) {
   return {};
 }
 
-hal::Status Port::open_device(const std::string& device) {
+hal::Status SerialPort::open_device(const std::string& device) {
   path_ = device_ = device;
   descriptor_ = ::open(device.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
   if (descriptor_ < 0) return failed("cannot open the serial device '" + device + "'");
-  if (!make_raw(descriptor_)) return failed("'" + device + "' is no serial device");
+  if (!make_raw(descriptor_, baud_)) return failed("'" + device + "' is no serial device");
   return {};
 }
 
-Port::~Port() {
+SerialPort::~SerialPort() {
   if (owns_link_) {
     std::array<char, 128> target{};
     const ssize_t n = ::readlink(path_.c_str(), target.data(), target.size());
@@ -128,7 +142,7 @@ Port::~Port() {
   if (descriptor_ >= 0) ::close(descriptor_);
 }
 
-hal::Result<std::size_t> Port::read(std::span<std::uint8_t> buffer) {
+hal::Result<std::size_t> SerialPort::read(std::span<std::uint8_t> buffer) {
   const ssize_t n = ::read(descriptor_, buffer.data(), buffer.size());
   if (n > 0) return static_cast<std::size_t>(n);
   if (n < 0 && errno != EAGAIN && errno != EWOULDBLOCK && errno != EINTR) {
@@ -137,15 +151,15 @@ hal::Result<std::size_t> Port::read(std::span<std::uint8_t> buffer) {
   return std::size_t{0};
 }
 
-std::size_t Port::write(std::span<const std::uint8_t> bytes) {
+std::size_t SerialPort::write(std::span<const std::uint8_t> bytes) {
   const ssize_t n = ::write(descriptor_, bytes.data(), bytes.size());
   return n > 0 ? static_cast<std::size_t>(n) : 0;
 }
 
-unsigned long Port::host_baud() const {
+unsigned long SerialPort::host_baud() const {
   termios settings{};
-  if (slave_ < 0 || tcgetattr(slave_, &settings) != 0) return 115200;
+  if (slave_ < 0 || tcgetattr(slave_, &settings) != 0) return baud_;
   return baud_of(cfgetospeed(&settings));
 }
 
-}  // namespace tandem::bridges::epuck_emulator
+}  // namespace tandem::bridges

@@ -1,4 +1,4 @@
-#include "bridges/epuck_emulator/event_log.hpp"
+#include "bridges/emulation/event_log.hpp"
 
 #include <cerrno>
 #include <cmath>
@@ -6,7 +6,7 @@
 
 #include "hal/unit.hpp"
 
-namespace tandem::bridges::epuck_emulator {
+namespace tandem::bridges {
 namespace {
 
 void append_text(std::string& out, std::string_view text) {
@@ -34,6 +34,11 @@ struct ValueWriter {
   void operator()(std::int64_t v) const { out += std::to_string(v); }
   void operator()(double v) const { out += std::isfinite(v) ? hal::format_number(v) : "null"; }
   void operator()(const std::string& v) const { append_text(out, v); }
+  void operator()(const std::vector<std::int64_t>& v) const {
+    out += '[';
+    for (std::size_t i = 0; i < v.size(); ++i) out += (i == 0 ? "" : ",") + std::to_string(v[i]);
+    out += ']';
+  }
 };
 
 }  // namespace
@@ -62,4 +67,4 @@ void EventLog::write(hal::TimeNs at, std::string_view event, const EventFields& 
   std::fflush(file_.get());
 }
 
-}  // namespace tandem::bridges::epuck_emulator
+}  // namespace tandem::bridges
