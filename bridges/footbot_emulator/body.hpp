@@ -1,0 +1,80 @@
+// What an emulated foot-bot senses and does, in SI: the world behind the modules.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "hal/spec/footbot.hpp"
+#include "hal/time.hpp"
+
+namespace tandem::bridges::footbot_emulator {
+
+inline constexpr std::size_t kRadioBytes = hal::footbot::kRabPayload;
+
+/// A message that the range-and-bearing board has heard.
+struct Heard {
+  double range_m = 0.0;
+  double bearing_rad = 0.0;    ///< counter-clockwise from forward
+  double elevation_rad = 0.0;  ///< upwards
+  std::array<std::uint8_t, kRadioBytes> payload{};
+  friend bool operator==(const Heard&, const Heard&) = default;
+};
+
+/// Everything that the robot's devices measure at one instant. Rings are in the order of the data sheet. The defaults
+/// are a robot at rest on white ground in the middle of nowhere.
+struct BodySenses {
+  std::array<double, 24> distance_m = filled<24>(hal::footbot::kProximityRange_m);  ///< from each infrared sensor
+  std::array<double, 24> light = filled<24>(0.5);                                   ///< 0 dark, 1 saturated
+  std::array<double, 8> base_ground = filled<8>(1.0);                               ///< 0 black, 1 white
+  std::array<double, 4> motor_ground = filled<4>(1.0);
+  /// By each head of the scanner, from the robot's axis; infinite where nothing is.
+  std::array<double, 4> scan_m = filled<4>(std::numeric_limits<double>::infinity());
+  double scanner_rad = 0.0;  ///< angles are counter-clockwise from forward
+  double turret_rad = 0.0;
+  double gripper_rad = 0.0;  ///< how far the claws are apart
+  bool gripper_busy = false;
+  double battery_V = 4.0;
+  std::array<double, 3> force_m_s2 = {0.0, 0.0, 9.81};  ///< specific force, body frame
+  double turn_rad_s = 0.0;                              ///< about the vertical axis
+
+  template <std::size_t n>
+  static constexpr std::array<double, n> filled(double value) {
+    std::array<double, n> a{};
+    a.fill(value);
+    return a;
+  }
+};
+
+enum class TurretMode : std::uint8_t { Off = 0, Passive = 1, Speed = 2, Position = 3 };
+enum class ScannerMode : std::uint8_t { Off = 0, Speed = 1, Position = 2 };
+
+/// What the modules make the robot do.
+struct BodyCommand {
+  double left_m_s = 0.0;  ///< rim speeds
+  double right_m_s = 0.0;
+  TurretMode turret = TurretMode::Off;
+  double turret_rad_s = 0.0;
+  double turret_rad = 0.0;
+  double gripper_rad = 0.0;
+  ScannerMode scanner = ScannerMode::Off;
+  double scanner_rad_s = 0.0;
+  double scanner_rad = 0.0;
+  std::array<std::uint8_t, 39> rgb{};  ///< red, green, blue of LED 0, of LED 1, …; the beacon last
+  bool radio_sends = false;
+  std::array<std::uint8_t, kRadioBytes> radio{};
+  friend bool operator==(const BodyCommand&, const BodyCommand&) = default;
+};
+
+/// A body for the modules to live in. Times never decrease. All calls come from the thread that runs the modules.
+class EmulatedBody {
+ public:
+  virtual ~EmulatedBody() = default;
+  virtual BodySenses sense(hal::TimeNs now) = 0;
+  /// `command` holds from `now` until the next call.
+  virtual void actuate(hal::TimeNs now, const BodyCommand& command) = 0;
+  /// Messages that were heard since the last call.
+  virtual std::vector<Heard> take_heard() = 0;
+};
+
+}  // namespace tandem::bridges::footbot_emulator

@@ -1,0 +1,71 @@
+// Faults on demand: what may go wrong in a foot-bot and on its bus, at given times and from a seed.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "bridges/emulation/fault_spec.hpp"
+#include "bridges/footbot_emulator/footbot.hpp"
+
+namespace tandem::bridges::footbot_emulator {
+
+enum class FaultKind : std::uint8_t { Missing, Restart, Silent, Deaf, Lie, Drop, Lose, Double, Swap, Delay, Hangup };
+
+/// Active in [from, until), counted from the start of the emulator. Restart happens at `from`.
+struct Fault {
+  FaultKind kind = FaultKind::Silent;
+  hal::TimeNs from = 0;
+  hal::TimeNs until = kEndless;
+  std::optional<Place> module{};  ///< Missing, Restart, Silent, Deaf, Lie; none: all
+  Lie lie = Lie::None;            ///< Lie
+  double probability = 0.0;       ///< Drop, Lose, Double, Swap: of each frame
+  hal::TimeNs delay_ns = 0;       ///< Delay
+  std::string text{};             ///< as written
+};
+
+/// Reads NAME[=VALUE][@START[+DURATION]]: "missing=gripper@0s+3s", "drop=0.01". A bare number is in seconds. Errors
+/// name what is wrong and list the faults that there are.
+hal::Result<Fault> parse_fault(std::string_view text);
+
+/// One line a fault: how it is written and what it does.
+std::string fault_manual();
+
+/// All faults of a run, and the chance in them.
+class FaultPlan {
+ public:
+  FaultPlan(std::vector<Fault> faults, std::uint64_t seed) : faults_(std::move(faults)), chance_(seed) {}
+
+  /// Times from here on are on the clock of `start`.
+  void begin(hal::TimeNs start);
+
+  struct Change {
+    hal::TimeNs at = 0;
+    bool begins = true;
+    const Fault* fault = nullptr;
+  };
+  /// The next fault to begin or end by `now`, in order of time; each is told once.
+  std::optional<Change> next_change(hal::TimeNs now);
+  /// When `next_change` will have something.
+  std::optional<hal::TimeNs> next_change_at() const;
+
+  /// Whether a frame of the host gets onto the bus.
+  bool reaches_robot(hal::TimeNs at);
+  /// What a frame of a module becomes on its way to the host: nothing, itself, twice itself, or it waits for the
+  /// sender's next. Frames leave in the order of their times.
+  void to_host(const TimedFrame& frame, std::vector<TimedFrame>& out);
+
+ private:
+  bool happens(FaultKind kind, hal::TimeNs at);
+  hal::TimeNs delay_ns(hal::TimeNs at) const;
+
+  std::vector<Fault> faults_;
+  std::vector<Change> changes_;  // in order of time
+  std::size_t told_ = 0;
+  Chance chance_;
+  std::array<std::optional<TimedFrame>, 256> held_back_;  // by sender
+  hal::TimeNs last_out_ = 0;
+};
+
+/// Does to the robot what concerns its modules.
+void apply(const FaultPlan::Change& change, Footbot& robot);
+
+}  // namespace tandem::bridges::footbot_emulator

@@ -1,0 +1,34 @@
+// Which modules hang on a foot-bot's bus, and what their variables are called.
+//
+// What is public of the marXbot's own firmware are the nodes "left motor", "right motor", "proximity sensors" and
+// "distance sensors" of its simulation in ASEBA's Enki target; the others are this project's convention. Units are
+// those of the robot's control interface as published with ARGoS 2.
+#pragma once
+#include <optional>
+
+#include "bridges/footbot_emulator/module.hpp"
+
+namespace tandem::bridges::footbot_emulator {
+
+/// Places in the list of modules; a module's number on the bus is its place + 1.
+enum class Place : std::size_t {
+  LeftMotor,
+  RightMotor,
+  Proximity,
+  Scanner,
+  Turret,
+  Gripper,
+  Leds,
+  RangeAndBearing,
+  Base
+};
+inline constexpr std::size_t kModules = 9;
+
+std::vector<Module> make_modules(Protocol protocol);
+
+/// The module that `text` names: by its number on the bus or its name, with - or _ for blanks.
+std::optional<Place> place_of(std::string_view text);
+/// "left-motor, right-motor, …"
+std::string module_names();
+
+}  // namespace tandem::bridges::footbot_emulator
