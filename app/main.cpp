@@ -116,18 +116,24 @@ int main(int argc, char** argv) {
 
   EmulateOptions emulate_options;
   CLI::App* emulate_command = app.add_subcommand("emulate", "Behave as a robot's firmware on a link.");
-  emulate_command->add_option("robot", emulate_options.robot, "epuck")->required();
-  emulate_command->add_option("--link", emulate_options.link, "pty:NAME makes a pseudo-terminal of that name")
+  emulate_command->add_option("robot", emulate_options.robot, "epuck or footbot")->required();
+  emulate_command
+      ->add_option("--link", emulate_options.link,
+                   "pty:NAME makes a pseudo-terminal of that name (a foot-bot: with a CAN adapter's slcan on it); "
+                   "serial:DEVICE@BAUD; a foot-bot also can:INTERFACE and tcp-listen:PORT")
       ->required();
   emulate_command->add_option("--log", emulate_options.log,
-                              "File for one JSON object an event; default: standard output");
-  emulate_command->add_option("--firmware", emulate_options.firmware, "btcom, gctronic, webots or epuck2")
-      ->capture_default_str();
+                              "File for one JSON object an event; default: none");
+  emulate_command->add_option(
+      "--firmware", emulate_options.firmware,
+      "An e-puck's: btcom, gctronic (default), webots or epuck2; a foot-bot's: v4 (default) or v5");
   emulate_command->add_option("--fault", emulate_options.faults, "A fault to show, e.g. silent@5s+2s; repeatable")
       ->allow_extra_args(false);
-  auto* arena = emulate_command->add_option("--arena", emulate_options.arena,
-                                            "Experiment file: one of its robots, driven by `puppet`, is the body");
-  emulate_command->add_option("--body", emulate_options.body, "Which of its robots; default: the first puppet")
+  auto* arena =
+      emulate_command->add_option("--arena", emulate_options.arena,
+                                  "Experiment file: one of its robots, an e-puck driven by `puppet` or a foot-bot by "
+                                  "`footbot_puppet`, is the body");
+  emulate_command->add_option("--body", emulate_options.body, "Which of its robots; default: the first that can be")
       ->needs(arena);
   emulate_command->callback([&] { code = emulate(emulate_options); });
 

@@ -66,10 +66,10 @@ struct EmulateOptions {
   std::string robot;
   std::string link;
   std::string log;
-  std::string firmware = "gctronic";
+  std::string firmware;  ///< empty: what that robot usually has
   std::vector<std::string> faults;
-  std::string arena;  ///< experiment whose puppet is the robot's body
-  std::string body;   ///< which puppet; empty: the first
+  std::string arena;  ///< experiment one of whose robots is the body
+  std::string body;   ///< which robot; empty: the first that can be
 };
 int emulate(const EmulateOptions& options);
 

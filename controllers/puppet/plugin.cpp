@@ -1,11 +1,14 @@
 #include "hal/plugin.hpp"
 
+#include "controllers/puppet/footbot_puppet.hpp"
 #include "controllers/puppet/puppet.hpp"
 
 namespace {
 void register_all(tandem::hal::Registrar& registrar) {
   registrar.add_controller<tandem::controllers::Puppet>(
       "puppet", "Takes every device and does nothing: its ports are driven from outside.");
+  registrar.add_controller<tandem::controllers::FootbotPuppet>(
+      "footbot_puppet", "Takes a foot-bot's devices and does nothing: its ports are driven from outside.");
 }
 }  // namespace
 

@@ -131,6 +131,8 @@ TEST_F(BadInput, WrongUsageHasItsOwnCode) {
   fails({"bench", "walking"}, 2, {"diffusion"});
   fails({"emulate", "r2d2", "--link", "pty:x"}, 2, {"epuck"});
   fails({"emulate", "epuck", "--link", "pty:x", "--fault", "explode@3s"}, 1, {"explode"});
+  fails({"emulate", "footbot", "--link", "pty:x", "--fault", "missing=wings"}, 1, {"wings", "left-motor"});
+  fails({"emulate", "footbot", "--link", "pty:x", "--firmware", "v6"}, 1, {"v6", "v5"});
   fails({"list", "dragons"}, 2, {"controllers"});
   fails({"describe", "proximitty"}, 1, {"proximity"});
 }

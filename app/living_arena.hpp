@@ -1,0 +1,51 @@
+// A simulated world that runs in real time beside an emulated firmware, to be its body.
+#pragma once
+#include <atomic>
+#include <cstdio>
+#include <fmt/format.h>
+#include <memory>
+#include <thread>
+
+#include "core/sim/world.hpp"
+#include "mixed_reality/time/pacer.hpp"
+
+namespace tandem::app {
+
+/// Steps the world on its own thread until `stop`, or until its end. `Puppeteer` couples a robot of it to the body.
+template <class Puppeteer, class Body>
+class LivingArena {
+ public:
+  LivingArena(std::unique_ptr<core::World> world, core::RobotId robot, const std::atomic<bool>& stop)
+      : world_(std::move(world)), puppeteer_(robot, body_) {
+    world_->set_external(&puppeteer_);
+    thread_ = std::thread([this, &stop] { live(stop); });
+  }
+  ~LivingArena() { thread_.join(); }
+  LivingArena(const LivingArena&) = delete;
+  LivingArena& operator=(const LivingArena&) = delete;
+
+  Body& body() { return body_; }
+
+ private:
+  void live(const std::atomic<bool>& stop) {
+    mixed_reality::MonotonicTime clock;
+    mixed_reality::Pacer pacer(clock, world_->ticks_per_second());
+    world_->start();
+    pacer.start();
+    while (world_->state() == core::RunState::Running) {
+      world_->step();
+      if (!pacer.wait_for_next(stop)) break;
+    }
+    world_->finish();
+    if (world_->state() == core::RunState::Failed) {
+      fmt::print(stderr, "error: the arena stands still: {}\n", world_->failure());
+    }
+  }
+
+  std::unique_ptr<core::World> world_;
+  Body body_;
+  Puppeteer puppeteer_;
+  std::thread thread_;
+};
+
+}  // namespace tandem::app

@@ -1,0 +1,46 @@
+// A foot-bot whose strings somebody else holds.
+#pragma once
+#include "hal/controller.hpp"
+#include "hal/device/body_sensors.hpp"
+#include "hal/device/distance_scanner.hpp"
+#include "hal/device/gripper.hpp"
+#include "hal/device/leds.hpp"
+#include "hal/device/range_and_bearing.hpp"
+#include "hal/device/ring_sensors.hpp"
+#include "hal/device/turret.hpp"
+#include "hal/device/wheels.hpp"
+
+namespace tandem::controllers {
+
+/// Takes the wheels, and whatever else of a foot-bot's devices its configuration lists, and leaves the commands as
+/// whoever reaches the ports from outside writes them.
+class FootbotPuppet final : public hal::Controller {
+ public:
+  explicit FootbotPuppet(hal::Robot& robot) {
+    robot.actuator<hal::WheelSpeeds>();
+    sensors<hal::Proximity, hal::Light, hal::BaseGround, hal::MotorGround, hal::DistanceScanner, hal::TurretEncoder,
+            hal::Gripper, hal::RangeAndBearing, hal::Battery, hal::Accelerometer, hal::Gyroscope>(robot);
+    actuators<hal::RingLeds, hal::TurretDrive, hal::GripperDrive, hal::ScannerDrive, hal::RangeAndBearingSend>(robot);
+  }
+
+  void step() noexcept override {}
+
+ private:
+  template <class Take>
+  static void where_listed(Take take) {
+    try {
+      take();
+    } catch (const hal::DeviceError&) {  // it does without
+    }
+  }
+  template <class... Port>
+  static void sensors(hal::Robot& robot) {
+    (where_listed([&] { robot.sensor<Port>(); }), ...);
+  }
+  template <class... Port>
+  static void actuators(hal::Robot& robot) {
+    (where_listed([&] { robot.actuator<Port>(); }), ...);
+  }
+};
+
+}  // namespace tandem::controllers
