@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <memory>
 #include <signal.h>
 #include <spawn.h>
 #include <sstream>
@@ -117,17 +118,16 @@ inline std::string json_value(const std::string& json, const std::string& key, s
   return json.substr(at, json.find_first_of(",}]\n", at) - at);
 }
 
-/// An emulated e-puck on a pseudo-terminal "ep0" in `folder`, with its own log: the witness.
-class EmulatedEpuck {
+/// An emulated robot with its own log: the witness.
+class EmulatedRobot {
  public:
-  explicit EmulatedEpuck(const Folder& folder, std::vector<std::string> more = {}) : folder_(folder) {
-    std::vector<std::string> arguments = {"emulate", "epuck", "--link", "pty:ep0", "--log", "witness.jsonl"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    process_ = std::make_unique<Tandem>(arguments, folder.path());
-    ready_ = eventually([&] { return fs::exists(folder.path() / "ep0"); }, 10.0);
-  }
   bool ready() const { return ready_; }
   std::string log() const { return text_of(folder_.path() / "witness.jsonl"); }
+  /// Ends it as a user does, so that its log is whole.
+  int end() {
+    process_->signal(SIGINT);
+    return process_->wait();
+  }
 
   struct Wheels {
     long long t_ns;
@@ -138,7 +138,7 @@ class EmulatedEpuck {
     std::vector<Wheels> all;
     std::istringstream in(log());
     for (std::string line; std::getline(in, line);) {
-      if (json_value(line, "event") != "wheels") continue;
+      if (line.find("\"event\":\"wheels\"") == std::string::npos) continue;
       all.push_back({std::stoll(json_value(line, "t_ns")), std::stoi(json_value(line, "left")),
                      std::stoi(json_value(line, "right"))});
     }
@@ -155,10 +155,42 @@ class EmulatedEpuck {
     return false;
   }
 
+ protected:
+  EmulatedRobot(const Folder& folder, const std::string& robot, const std::string& link,
+                const std::vector<std::string>& more)
+      : folder_(folder) {
+    std::vector<std::string> arguments = {"emulate", robot, "--link", link, "--log", "witness.jsonl"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    process_ = std::make_unique<Tandem>(arguments, folder.path());
+    ready_ = eventually([&] { return process_->errors().find("Ctrl-C ends it") != std::string::npos; }, 10.0);
+  }
+  std::string errors() const { return process_->errors(); }
+
  private:
   const Folder& folder_;
   std::unique_ptr<Tandem> process_;
   bool ready_ = false;
+};
+
+/// On a pseudo-terminal "ep0" in `folder`.
+class EmulatedEpuck : public EmulatedRobot {
+ public:
+  explicit EmulatedEpuck(const Folder& folder, const std::vector<std::string>& more = {})
+      : EmulatedRobot(folder, "epuck", "pty:ep0", more) {}
+};
+
+/// Behind an adapter on a pseudo-terminal "fb0" in `folder`, or behind a port of its own.
+class EmulatedFootbot : public EmulatedRobot {
+ public:
+  explicit EmulatedFootbot(const Folder& folder, const std::vector<std::string>& more = {},
+                           const std::string& link = "pty:fb0")
+      : EmulatedRobot(folder, "footbot", link, more) {}
+  /// What a host gives as its link.
+  std::string link() const {
+    const std::string text = errors();
+    const std::size_t at = text.find("--link ") + 7;
+    return text.substr(at, text.find(';', at) - at);
+  }
 };
 
 }  // namespace tandem::scenarios
