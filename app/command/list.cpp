@@ -10,6 +10,7 @@
 #include "core/loop/hook.hpp"
 #include "core/sim/engine_factory.hpp"
 #include "hal/device/body_sensors.hpp"
+#include "hal/device/cameras.hpp"
 #include "hal/device/distance_scanner.hpp"
 #include "hal/device/flight.hpp"
 #include "hal/device/gripper.hpp"
@@ -115,7 +116,9 @@ void describe_fields(std::string_view name, hal::Role role) {
                                         &hal::port_type<hal::GripperDrive>(),
                                         &hal::port_type<hal::Gripper>(),
                                         &hal::port_type<hal::ScannerDrive>(),
-                                        &hal::port_type<hal::DistanceScanner>()};
+                                        &hal::port_type<hal::DistanceScanner>(),
+                                        &hal::port_type<hal::OmnidirectionalCamera>(),
+                                        &hal::port_type<hal::PerspectiveCamera>()};
   for (const hal::PortType* port : ports) {
     if (port->name != name || port->role != role) continue;
     fmt::print("  what a controller {}: {}\n", role == hal::Role::Sensor ? "reads" : "writes", port->doc);

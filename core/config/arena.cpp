@@ -230,12 +230,36 @@ class ArenaReader {
             e.line};
   }
 
-  void object(ObjectItem item, const Element& e, const Distribute* distribute) {
-    if (e.child("leds") != nullptr)
-      reading_.warn(*e.child("leds"), "the LEDs of <" + e.name + "> are left out: no device here senses them");
+  void object(ObjectItem item, Element& e, const Distribute* distribute) {
     if (item.movable) check_movable(e);
     if (distribute != nullptr) item.distribute = *distribute;
+    reading_.once(e, "leds", [&](Element& c) { leds(c, item); });
     out_.objects.push_back(std::move(item));
+  }
+
+  void leds(Element& e, ObjectItem& item) {
+    item.led_medium = reading_.read<schema::Leds>(e).medium;
+    item.led_line = e.line;
+    for (Element& c : e.children) {
+      if (c.name != schema::Led::kElement.name) continue;
+      const auto l = reading_.read<schema::Led>(c);
+      LedItem led;
+      led.p_O = l.offset;
+      if (!schema::parse_color(l.color, led.rgb))
+        reading_.error(c, "color", "'" + l.color + "' is neither a colour's name nor \"r,g,b\"");
+      if (inside(item, l.offset))
+        reading_.warn(c, "the LED lies inside its <" + std::string(item.shape == ShapeKind::Box ? "box" : "cylinder") +
+                             ">, where no camera sees it; offset is from the middle of the base");
+      item.leds.push_back(led);
+    }
+  }
+
+  /// Whether a point is deep in the object, from the middle of its base.
+  static bool inside(const ObjectItem& item, const Vec3& p) {
+    constexpr double kDeep_m = 0.002;
+    if (p[2] < kDeep_m || p[2] > item.size[2] - kDeep_m) return false;
+    if (item.shape == ShapeKind::Cylinder) return std::hypot(p[0], p[1]) < item.size[0] - kDeep_m;
+    return std::fabs(p[0]) < 0.5 * item.size[0] - kDeep_m && std::fabs(p[1]) < 0.5 * item.size[1] - kDeep_m;
   }
 
   /// Kinematics move robots alone; an engine with forces is needed for the rest.
@@ -259,6 +283,7 @@ class ArenaReader {
     item.id = l.id;
     item.p_W = l.position;
     item.intensity = l.intensity;
+    item.medium = l.medium;
     item.line = e.line;
     if (!schema::parse_color(l.color, item.rgb))
       reading_.error(e, "color", "'" + l.color + "' is neither a colour's name nor \"r,g,b\"");
@@ -276,9 +301,24 @@ class ArenaReader {
 
   // --- robots ---
 
+  /// What all robots have, and the cameras of the kinds that have some.
+  schema::Robot attributes_of_robot(Element& e, CameraConfig& camera) {
+    if (e.name == schema::FootBot::kElement.name) {
+      const auto r = reading_.read<schema::FootBot>(e);
+      camera = {r.omni_aperture_rad, r.aperture_rad, r.focal_length_m, r.range_m, r.front};
+      return r;
+    }
+    if (e.name == schema::EyeBot::kElement.name) {
+      const auto r = reading_.read<schema::EyeBot>(e);
+      camera = {-1.0, r.aperture_rad, r.focal_length_m, r.range_m, r.front};
+      return r;
+    }
+    return reading_.read<schema::Robot>(e);
+  }
+
   void robot(Element& e, const Distribute* distribute) {
-    const auto r = reading_.read<schema::Robot>(e);
     RobotItem item;
+    const schema::Robot r = attributes_of_robot(e, item.camera);
     item.kind = e.name;
     item.id = r.id;
     item.rab_range_m = r.rab_range_m;

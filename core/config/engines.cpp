@@ -146,7 +146,23 @@ void read_engine(Reading& reading, Element& e) {
 /// ARGoS' name of the medium that a device listens to.
 std::string_view medium_kind(const std::string& device) {
   if (device == "range_and_bearing") return "range_and_bearing";
-  return device == "leds" ? "led" : "";
+  static constexpr std::array<std::string_view, 5> kSeenOrSeeing = {"leds", "body_led", "front_led",
+                                                                    "omnidirectional_camera", "perspective_camera"};
+  return std::find(kSeenOrSeeing.begin(), kSeenOrSeeing.end(), device) != kSeenOrSeeing.end() ? "led" : "";
+}
+
+/// The medium of that kind and id; an error at `e` where there is none.
+const MediumConfig* medium_of(Reading& reading, const Element& e, std::string_view kind, const std::string& wanted) {
+  std::vector<std::string> ids;
+  for (const MediumConfig& medium : reading.out().media) {
+    if (medium.kind != kind) continue;
+    if (medium.id == wanted) return &medium;
+    ids.push_back(medium.id);
+  }
+  reading.error(e, "medium",
+                "<media> has no <" + std::string(kind) + "> with id '" + wanted + "'; it has: " + listed(ids) +
+                    did_you_mean(wanted, ids));
+  return nullptr;
 }
 
 }  // namespace
@@ -184,25 +200,24 @@ void read_media(Reading& reading, Element& media) {
 }
 
 void connect_media(Reading& reading) {
+  const auto check_leds = [&reading](std::string_view name, int line, const std::string& medium) {
+    if (medium.empty()) return;
+    Element at;
+    at.name = name;
+    at.file = reading.out().file;
+    at.line = line;
+    (void)medium_of(reading, at, "led", medium);
+  };
+  for (const ObjectItem& object : reading.out().objects) check_leds("leds", object.led_line, object.led_medium);
+  for (const LightItem& light : reading.out().lights) check_leds("light", light.line, light.medium);
   for (ControllerConfig& controller : reading.out().controllers) {
     for (auto* list : {&controller.sensors, &controller.actuators}) {
       for (DeviceChoice& choice : *list) {
         const std::string* wanted = choice.options.attribute("medium");
         const std::string_view kind = medium_kind(choice.device);
         if (wanted == nullptr || kind.empty()) continue;
-        std::vector<std::string> ids;
-        const MediumConfig* found = nullptr;
-        for (const MediumConfig& medium : reading.out().media) {
-          if (medium.kind != kind) continue;
-          ids.push_back(medium.id);
-          if (medium.id == *wanted) found = &medium;
-        }
-        if (found == nullptr) {
-          reading.error(choice.options, "medium",
-                        "<media> has no <" + std::string(kind) + "> with id '" + *wanted + "'; it has: " + listed(ids) +
-                            did_you_mean(*wanted, ids));
-          continue;
-        }
+        const MediumConfig* found = medium_of(reading, choice.options, kind, *wanted);
+        if (found == nullptr) continue;
         // What a medium says holds for the sensors that listen to it, unless they say otherwise.
         const bool hears = list == &controller.sensors && choice.device == "range_and_bearing";
         if (hears && choice.options.attribute("check_occlusions") == nullptr) {

@@ -28,9 +28,10 @@ std::vector<ElementManual> manuals_of() {
 std::vector<ElementManual> all_manuals() {
   using namespace schema;
   return manuals_of<Root, Framework, System, Experiment, Profiling, Time, Controllers, Configuration, Sensors,
-                    Actuators, Arena, Floor, Box, Cylinder, Leds, Light, Sound, Robot, Body, RobotController, Battery,
-                    Bridge, Tracker, DistributeElement, PositionDraw, OrientationDraw, Entity, Engines, Engine,
-                    Boundaries, Top, Bottom, Sides, Vertex, Media, Medium, Hook, Record, Trajectory, Visualization>();
+                    Actuators, Arena, Floor, Box, Cylinder, Leds, Led, Light, Sound, Robot, FootBot, EyeBot, Body,
+                    RobotController, Battery, Bridge, Tracker, DistributeElement, PositionDraw, OrientationDraw, Entity,
+                    Engines, Engine, Boundaries, Top, Bottom, Sides, Vertex, Media, Medium, Hook, Record, Trajectory,
+                    Visualization>();
 }
 
 void replace(std::vector<std::string>& names, std::string_view stand_in, const std::vector<std::string>& kinds) {
@@ -41,8 +42,15 @@ void replace(std::vector<std::string>& names, std::string_view stand_in, const s
 
 /// An element whose name stands for several kinds becomes one a kind.
 std::vector<ElementManual> expanded(const ElementManual& m, const KnownNames& known) {
+  static constexpr std::array<std::string_view, 2> kOwnElement = {schema::FootBot::kElement.name,
+                                                                  schema::EyeBot::kElement.name};
   std::vector<std::string> names{m.name};
-  if (m.name == schema::Robot::kElement.name) names = known.robots;
+  const bool own = std::find(kOwnElement.begin(), kOwnElement.end(), m.name) != kOwnElement.end();
+  if (own && std::find(known.robots.begin(), known.robots.end(), m.name) == known.robots.end()) return {};
+  if (m.name == schema::Robot::kElement.name) {
+    names = known.robots;
+    for (const std::string_view kind : kOwnElement) std::erase(names, kind);
+  }
   if (m.name == schema::Engine::kElement.name) names = known.engines;
   if (m.name == schema::Medium::kElement.name) names = words(schema::Media::kElement.children);
   std::vector<ElementManual> out;

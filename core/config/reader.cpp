@@ -212,6 +212,8 @@ std::string effective_settings(const Scenario& scenario) {
 std::string device_name(std::string_view argos_name, bool sensor) {
   if (argos_name == "differential_steering") return sensor ? "wheel_encoders" : "differential_steering";
   if (argos_name == "epuck_leds") return "leds";
+  if (argos_name == "colored_blob_omnidirectional_camera") return "omnidirectional_camera";
+  if (argos_name == "colored_blob_perspective_camera") return "perspective_camera";
   for (const std::string_view prefix : {"epuck_", "footbot_", "eyebot_"}) {
     if (!argos_name.starts_with(prefix)) continue;
     const std::string_view rest = argos_name.substr(prefix.size());

@@ -8,6 +8,8 @@
 
 #include "core/scenario/scenario.hpp"
 #include "hal/params.hpp"
+#include "hal/spec/eyebot.hpp"
+#include "hal/spec/footbot.hpp"
 
 namespace tandem::core::schema {
 
@@ -19,6 +21,7 @@ namespace unit = hal::unit;
 inline constexpr double kLargestArena_m = 1e6;
 inline constexpr double kLargestQuantity = 1e8;
 inline constexpr double kSmallest_m = 1e-6;
+inline constexpr hal::Range kLensAngles_rad{0.1 * unit::deg.to_si, 89.0 * unit::deg.to_si};
 
 inline constexpr std::string_view kAnything = "*";       ///< as children: any element
 inline constexpr std::string_view kRobotKind = "ROBOT";  ///< in children: every kind of robot that the program knows
@@ -211,7 +214,7 @@ struct Light {
     v.vector("orientation", orientation, unit::deg, "Accepted for ARGoS files; lamps shine everywhere.");
     v.text("color", color, "A name (red, white, …) or \"r,g,b\", 0 to 255.");
     v.number("intensity", intensity, unit::none, {0.0, 1e6}, "Distance in metres up to which a facing sensor reads 1.");
-    v.text("medium", medium, "Accepted for ARGoS files.");
+    v.text("medium", medium, "Id of the LED medium in which cameras see it; empty: all cameras do.");
   }
 };
 
@@ -247,6 +250,44 @@ struct Robot {
     v.number("rab_range", rab_range_m, unit::m, {-1.0, 1e4}, "Reach of range-and-bearing; negative: the data sheet's.");
     v.integer("rab_data_size", rab_data_size, {-1, 10},
               "Bytes of a range-and-bearing message; negative: the data sheet's.");
+  }
+};
+
+struct FootBot : Robot {
+  static constexpr ElementInfo kElement{"foot-bot", "A foot-bot.", "id", "body controller battery bridge tracker"};
+  double omni_aperture_rad = hal::footbot::kOmniCameraAperture_rad;
+  double aperture_rad = hal::footbot::kCameraAperture_rad;
+  double focal_length_m = hal::footbot::kCameraFocalLength_m;
+  double range_m = hal::footbot::kCameraRange_m;
+  bool front = false;
+  void describe(ParamVisitor& v) {
+    Robot::describe(v);
+    v.number("omnidirectional_camera_aperture", omni_aperture_rad, unit::deg, kLensAngles_rad,
+             "From straight down to the farthest that the omnidirectional camera sees on the ground.");
+    v.flag("perspective_camera_front", front, "The camera with a lens looks ahead; otherwise it looks up.");
+    v.number("perspective_camera_aperture", aperture_rad, unit::deg, kLensAngles_rad,
+             "From that camera's axis to a corner of its image.");
+    v.number("perspective_camera_focal_length", focal_length_m, unit::m, {kSmallest_m, 10.0},
+             "Of its lens; its image is as large as the aperture then needs, so that pixels do not depend on it.");
+    v.number("perspective_camera_range", range_m, unit::m, {kSmallest_m, kLargestArena_m},
+             "Up to which it makes out LEDs.");
+  }
+};
+
+struct EyeBot : Robot {
+  static constexpr ElementInfo kElement{"eye-bot", "An eye-bot.", "id", "body controller battery bridge tracker"};
+  double aperture_rad = hal::eyebot::kCameraAperture_rad;
+  double focal_length_m = hal::eyebot::kCameraFocalLength_m;
+  double range_m = hal::eyebot::kCameraRange_m;
+  bool front = false;
+  void describe(ParamVisitor& v) {
+    Robot::describe(v);
+    v.flag("camera_front", front, "The camera looks ahead; otherwise it looks down.");
+    v.number("camera_aperture", aperture_rad, unit::deg, kLensAngles_rad,
+             "From the camera's axis to a corner of its image.");
+    v.number("camera_focal_length", focal_length_m, unit::m, {kSmallest_m, 10.0},
+             "Of its lens; its image is as large as the aperture then needs, so that pixels do not depend on it.");
+    v.number("camera_range", range_m, unit::m, {kSmallest_m, kLargestArena_m}, "Up to which it makes out LEDs.");
   }
 };
 
@@ -438,9 +479,25 @@ struct Medium {
 };
 
 struct Leds {
-  static constexpr ElementInfo kElement{"leds", "LEDs on a box or cylinder; accepted for ARGoS files.", "", "led"};
+  static constexpr ElementInfo kElement{"leds", "LEDs on a box or cylinder, for cameras.", "", "led"};
   std::string medium;
-  void describe(ParamVisitor& v) { v.text("medium", medium, "Id of the LED medium."); }
+  void describe(ParamVisitor& v) {
+    v.text("medium", medium, "Id of the LED medium: cameras of others do not see them. Empty: all cameras do.");
+  }
+};
+
+struct Led {
+  // In <leds>. A <led> in <media> is a Medium.
+  static constexpr ElementInfo kElement{"led", "An LED.", "offset color"};
+  Vec3 offset{};
+  std::string anchor = "origin";
+  std::string color = "black";
+  void describe(ParamVisitor& v) {
+    static constexpr std::array<std::string_view, 1> kAnchors = {"origin"};
+    v.vector("offset", offset, unit::m, "From the anchor, turning with the object: x, y, z.");
+    v.choice("anchor", anchor, kAnchors, "origin: the middle of the object's base.");
+    v.text("color", color, "A name (red, white, …) or \"r,g,b\", 0 to 255; black is off.");
+  }
 };
 
 struct Record {

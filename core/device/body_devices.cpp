@@ -353,13 +353,52 @@ Recipe<Sensor> make_clock(const Element& element, Problems& problems, const Devi
 
 struct LampOptions {
   std::string medium;
-  void describe(hal::ParamVisitor& v) { v.text("medium", medium, "Id of the LED medium; accepted as in ARGoS files."); }
+  void describe(hal::ParamVisitor& v) {
+    v.text("medium", medium, "Id of the LED medium: cameras of others do not see them.");
+  }
 };
 
-/// Lamps change nothing in the space by themselves: views and pictures read the port.
-class Lamps final : public Actuator {
+/// Shows cameras, where there are any, what the ports say; views and pictures read the ports.
+class RingLamps final : public Actuator {
  public:
-  void act(const DeviceContext&, SpaceStores&, const void*) noexcept override {}
+  RingLamps(const hal::DataSheet& sheet, std::uint16_t medium)
+      : count_(std::min(sheet.leds.size(), hal::RingLeds::kCapacity)), medium_(medium) {}
+
+  void act(const DeviceContext& context, SpaceStores& stores, const void* ports) noexcept override {
+    if (stores.shown_leds.empty()) return;
+    const auto* leds = static_cast<const hal::RingLeds*>(ports);
+    for (std::size_t i = 0; i < context.block.used; ++i) {
+      ShownLeds& shown = stores.shown_leds[context.block.first_row + i];
+      for (std::size_t k = 0; k < count_; ++k) shown.show(k, leds[i].color(k));
+      shown.ring_medium = medium_;
+    }
+  }
+
+ private:
+  std::size_t count_;
+  std::uint16_t medium_;
+};
+
+/// The same for one of an e-puck's other lamps.
+template <class Port>
+class BodyLamp final : public Actuator {
+ public:
+  explicit BodyLamp(std::uint16_t medium) : medium_(medium) {}
+
+  void act(const DeviceContext& context, SpaceStores& stores, const void* ports) noexcept override {
+    if (stores.shown_leds.empty()) return;
+    constexpr bool kIsFront = std::is_same_v<Port, hal::FrontLed>;
+    const auto* lamps = static_cast<const Port*>(ports);
+    for (std::size_t i = 0; i < context.block.used; ++i) {
+      ShownLeds& shown = stores.shown_leds[context.block.first_row + i];
+      const hal::Rgb color = kIsFront ? hal::kRed : hal::kGreen;
+      shown.show(kIsFront ? ShownLeds::kFront : ShownLeds::kBody, lamps[i].on ? color : hal::kBlack);
+      (kIsFront ? shown.front_medium : shown.body_medium) = medium_;
+    }
+  }
+
+ private:
+  std::uint16_t medium_;
 };
 
 bool has_leds(const hal::DataSheet& sheet) {
@@ -370,9 +409,15 @@ bool has_body_lamps(const hal::DataSheet& sheet) {
   return sheet.body_lamps;
 }
 
-Recipe<Actuator> make_lamps(const Element& element, Problems& problems, const DeviceSetup&) {
-  read_options<LampOptions>(element, problems);
-  return [](std::size_t) { return std::make_unique<Lamps>(); };
+Recipe<Actuator> make_ring_lamps(const Element& element, Problems& problems, const DeviceSetup& setup) {
+  const std::uint16_t medium = setup.led_medium(read_options<LampOptions>(element, problems).medium);
+  return [&sheet = setup.sheet, medium](std::size_t) { return std::make_unique<RingLamps>(sheet, medium); };
+}
+
+template <class Port>
+Recipe<Actuator> make_body_lamp(const Element& element, Problems& problems, const DeviceSetup& setup) {
+  const std::uint16_t medium = setup.led_medium(read_options<LampOptions>(element, problems).medium);
+  return [medium](std::size_t) { return std::make_unique<BodyLamp<Port>>(medium); };
 }
 
 }  // namespace
@@ -408,11 +453,13 @@ std::vector<DeviceType> body_device_types() {
       sensor_type("clock", "ideal", "The run's time.", &always, &make_clock<NoOptions>, &describe_options<NoOptions>),
       sensor_type("clock", "noisy", "The run's time, with jitter.", &always, &make_clock<ClockNoise<1000>>,
                   &describe_options<ClockNoise<1000>>)};
-  for (const std::string_view lamp : {"leds", "body_led", "front_led"}) {
-    const auto fits = lamp == "leds" ? &has_leds : &has_body_lamps;
-    types.push_back(actuator_type(lamp, "default", "Shines.", fits, &make_lamps, &describe_options<LampOptions>));
-    types.push_back(actuator_type(lamp, "ideal", "Shines.", fits, &make_lamps, &describe_options<LampOptions>));
-  }
+  const auto add_lamp = [&types](std::string_view lamp, auto fits, auto make) {
+    types.push_back(actuator_type(lamp, "default", "Shines.", fits, make, &describe_options<LampOptions>));
+    types.push_back(actuator_type(lamp, "ideal", "Shines.", fits, make, &describe_options<LampOptions>));
+  };
+  add_lamp(hal::RingLeds::kName, &has_leds, &make_ring_lamps);
+  add_lamp(hal::BodyLed::kName, &has_body_lamps, &make_body_lamp<hal::BodyLed>);
+  add_lamp(hal::FrontLed::kName, &has_body_lamps, &make_body_lamp<hal::FrontLed>);
   return types;
 }
 

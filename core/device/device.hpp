@@ -59,6 +59,12 @@ struct DeviceSetup {
   const hal::DataSheet& sheet;
   const RobotItem& item;
   double tick_s = 0.1;
+  const std::vector<MediumConfig>* media = nullptr;  ///< of the file; null: none
+
+  /// The number of an LED medium, as in ObjectLed::medium.
+  std::uint16_t led_medium(const std::string& id) const noexcept {
+    return media == nullptr ? std::uint16_t{0} : led_medium_number(*media, id);
+  }
 };
 
 template <class Device>

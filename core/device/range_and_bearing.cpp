@@ -45,20 +45,10 @@ bool disc_blocks(double cx, double cy, double radius_m, double low_m, double hig
                  const std::array<double, 3>& b) noexcept {
   const double dx = b[0] - a[0];
   const double dy = b[1] - a[1];
-  const double length2 = dx * dx + dy * dy;
   const double wx = cx - a[0];
   const double wy = cy - a[1];
-  if (length2 == 0.0 || wx * wx + wy * wy >= length2) return false;
-  const double middle = (wx * dx + wy * dy) / length2;  // where the line is nearest to the centre: 0 at a, 1 at b
-  const double aside2 = wx * wx + wy * wy - middle * middle * length2;
-  if (aside2 >= radius_m * radius_m) return false;
-  const double half = std::sqrt((radius_m * radius_m - aside2) / length2);
-  const double enter = std::max(0.0, middle - half);
-  const double leave = std::min(1.0, middle + half);
-  if (enter >= leave) return false;
-  const double z1 = a[2] + enter * (b[2] - a[2]);
-  const double z2 = a[2] + leave * (b[2] - a[2]);
-  return std::min(z1, z2) < high_m && std::max(z1, z2) > low_m;
+  if (wx * wx + wy * wy >= dx * dx + dy * dy) return false;
+  return disc_on_line(cx, cy, radius_m, low_m, high_m, a, b);
 }
 
 /// Messages in range and in sight. Bodies block a line that passes through them; boards that sit on top of their robots
@@ -253,20 +243,9 @@ class RabSensor final : public Sensor {
     const Bodies& b = stores.bodies;
     const std::array<double, 3> from{b.x_m[row], b.y_m[row], height_m};
     const std::array<double, 3> to{from[0] + sender.wx, from[1] + sender.wy, height_m + sender.wz};
-    double widest_m = 0.0;
-    for (const RobotGroup& group : stores.groups) widest_m = std::max(widest_m, group.sheet->body_radius_m);
-    const double length_m = std::sqrt(sender.wx * sender.wx + sender.wy * sender.wy);
-    const int hops = 1 + static_cast<int>(length_m / (4.0 * widest_m));
-    bool blocked = false;
-    for (int i = 0; i < hops && !blocked; ++i) {
-      const double t = (i + 0.5) / hops;
-      stores.body_index.for_each_near(from[0] + t * sender.wx, from[1] + t * sender.wy,
-                                      0.5 * length_m / hops + widest_m, [&](const IndexEntry& o) {
-                                        if (o.row() == row || o.row() == sender.row) return;
-                                        blocked = blocked || blocked_by(stores, o.row(), from, to);
-                                      });
-    }
-    return blocked;
+    return any_body_near_line(stores, widest_body_m(stores), from, to, [&](std::uint32_t other) {
+      return other != row && other != sender.row && blocked_by(stores, other, from, to);
+    });
   }
 
   /// Takes the message in, unless an object is in between or it gets lost.

@@ -1,5 +1,9 @@
-// Lines of sight among boxes and cylinders.
+// Lines of sight among boxes, cylinders and bodies.
 #pragma once
+#include <algorithm>
+#include <array>
+#include <cmath>
+
 #include "core/space/stores.hpp"
 
 namespace tandem::core {
@@ -21,6 +25,53 @@ inline bool in_sight(const SpaceStores& stores, double ax, double ay, double az,
     if (blocked) return false;
   }
   return true;
+}
+
+/// Whether the line from a to b (W) passes through an upright disc around (cx, cy) between two heights.
+inline bool disc_on_line(double cx, double cy, double radius_m, double low_m, double high_m,
+                         const std::array<double, 3>& a, const std::array<double, 3>& b) noexcept {
+  const double dx = b[0] - a[0];
+  const double dy = b[1] - a[1];
+  const double length2 = dx * dx + dy * dy;
+  const double wx = cx - a[0];
+  const double wy = cy - a[1];
+  if (length2 == 0.0) {
+    return wx * wx + wy * wy < radius_m * radius_m && std::min(a[2], b[2]) < high_m && std::max(a[2], b[2]) > low_m;
+  }
+  const double middle = (wx * dx + wy * dy) / length2;  // where the line is nearest to the centre: 0 at a, 1 at b
+  const double aside2 = wx * wx + wy * wy - middle * middle * length2;
+  if (aside2 >= radius_m * radius_m) return false;
+  const double half = std::sqrt((radius_m * radius_m - aside2) / length2);
+  const double enter = std::max(0.0, middle - half);
+  const double leave = std::min(1.0, middle + half);
+  if (enter >= leave) return false;
+  const double z1 = a[2] + enter * (b[2] - a[2]);
+  const double z2 = a[2] + leave * (b[2] - a[2]);
+  return std::min(z1, z2) < high_m && std::max(z1, z2) > low_m;
+}
+
+inline double widest_body_m(const SpaceStores& stores) noexcept {
+  double widest_m = 0.0;
+  for (const RobotGroup& group : stores.groups) widest_m = std::max(widest_m, group.sheet->body_radius_m);
+  return widest_m;
+}
+
+/// Whether `blocks(row)` holds for any body, of a radius of at most `widest_m`, that the line from a to b (W) may
+/// touch. Follows the line through the index: the cost grows with its length, not with the number of bodies.
+template <class Blocks>
+bool any_body_near_line(const SpaceStores& stores, double widest_m, const std::array<double, 3>& a,
+                        const std::array<double, 3>& b, Blocks&& blocks) noexcept {
+  const double dx = b[0] - a[0];
+  const double dy = b[1] - a[1];
+  const double length_m = std::sqrt(dx * dx + dy * dy);
+  const int hops = 1 + static_cast<int>(length_m / (4.0 * widest_m));
+  bool blocked = false;
+  for (int i = 0; i < hops && !blocked; ++i) {
+    const double t = (i + 0.5) / hops;
+    stores.body_index.for_each_near(a[0] + t * dx, a[1] + t * dy, 0.5 * length_m / hops + widest_m,
+                                    [&](const IndexEntry& o) { blocked = blocked || blocks(o.row()); });
+  }
+  return blocked;
 }
 
 }  // namespace tandem::core

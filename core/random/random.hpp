@@ -39,6 +39,10 @@ enum class Stream : std::uint32_t {
   OdometryNoise,
   TreelSlant,
   MotorGroundNoise,
+  OmniCameraNoise,
+  OmniCameraMiss,
+  CameraNoise,
+  CameraMiss,
 };
 
 /// Four independent 32-bit numbers. `index` tells draws of one tick apart (0 to 2^24 - 1).

@@ -75,6 +75,16 @@ struct BatteryConfig {
   double orient_delta = 0.0;  ///< charge lost a radian (motion)
 };
 
+/// What the file says of a robot's cameras; negative: what its data sheet says.
+struct CameraConfig {
+  double omni_aperture_rad = -1.0;
+  double aperture_rad = -1.0;
+  double focal_length_m = -1.0;
+  double range_m = -1.0;
+  bool front = false;  ///< the camera with a lens looks ahead
+  friend bool operator==(const CameraConfig&, const CameraConfig&) = default;
+};
+
 /// A robot that stands for a real one: where its bridge connects.
 struct BridgeConfig {
   std::string link;               ///< "serial:/dev/ttyUSB0@115200"
@@ -105,9 +115,16 @@ struct RobotItem {
   std::optional<BridgeConfig> bridge;
   std::optional<TrackerConfig> tracker;
   int line = 0;
+  CameraConfig camera = {};
 };
 
 enum class ShapeKind { Box, Cylinder };
+
+/// An LED on a box or cylinder.
+struct LedItem {
+  Vec3 p_O{};  ///< from the centre of the object's base, in its frame
+  std::array<std::uint8_t, 3> rgb{};
+};
 
 /// A box or a cylinder. `placement.p_W` is the centre of its base. `size` is (x, y, z) of a box, or (radius, radius,
 /// height).
@@ -120,6 +137,9 @@ struct ObjectItem {
   Placement placement;
   std::optional<Distribute> distribute;
   int line = 0;
+  std::vector<LedItem> leds = {};
+  std::string led_medium = {};  ///< id of their medium; empty: seen by all cameras
+  int led_line = 0;
 };
 
 struct LightItem {
@@ -129,6 +149,7 @@ struct LightItem {
   double intensity = 1.0;  ///< distance in metres up to which a facing sensor reads 1
   std::optional<Distribute> distribute;
   int line = 0;
+  std::string medium = {};  ///< id of the LED medium in which cameras see it; empty: all do
 };
 
 /// A steady sound, for microphones.
@@ -170,6 +191,9 @@ struct MediumConfig {
   Element options;
   int line = 0;
 };
+
+/// Place of the LED medium with this id among `media`, counted from 1; 0: none is named, or there is none.
+std::uint16_t led_medium_number(const std::vector<MediumConfig>& media, const std::string& id) noexcept;
 
 struct HookConfig {
   std::string library;

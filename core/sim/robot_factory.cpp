@@ -6,8 +6,10 @@
 #include <map>
 #include <set>
 
+#include "core/device/cameras.hpp"
 #include "core/device/types.hpp"
 #include "core/random/random.hpp"
+#include "hal/device/cameras.hpp"
 #include "hal/device/flight.hpp"
 #include "hal/device/gripper.hpp"
 #include "hal/device/range_and_bearing.hpp"
@@ -83,6 +85,7 @@ class ConstructedRobot final : public hal::Robot {
     if (i == group_.ports.size()) {
       check_listed(type);
       group_.ports.push_back(&type);
+      note_camera(type);
       if (type.role == hal::Role::Actuator) {
         if (type.name == hal::WheelSpeeds::kName) group_.wheels = static_cast<int>(i);
         if (type.name == hal::QuadrotorPosition::kName) group_.flight_position = static_cast<int>(i);
@@ -102,6 +105,15 @@ class ConstructedRobot final : public hal::Robot {
   }
 
  private:
+  void note_camera(const hal::PortType& type) {
+    if (type.role != hal::Role::Sensor) return;
+    const CameraConfig& config = group_.item->camera;
+    if (type.name == hal::OmnidirectionalCamera::kName)
+      group_.sees_m = std::max(group_.sees_m, omni_reach_m(*group_.sheet, config));
+    if (type.name == hal::PerspectiveCamera::kName)
+      group_.sees_m = std::max(group_.sees_m, camera_of(*group_.sheet, config).range_m);
+  }
+
   void check_listed(const hal::PortType& type) const {
     const bool sensor = type.role == hal::Role::Sensor;
     const std::string role = sensor ? "sensor" : "actuator";
@@ -139,7 +151,7 @@ bool same_battery(const BatteryConfig& a, const BatteryConfig& b) {
 
 bool same_kit(const RobotItem& a, const RobotItem& b) {
   return a.kind == b.kind && a.controller == b.controller && a.rab_range_m == b.rab_range_m &&
-         a.rab_payload == b.rab_payload && same_battery(a.battery, b.battery);
+         a.rab_payload == b.rab_payload && a.camera == b.camera && same_battery(a.battery, b.battery);
 }
 
 /// Robots that share a block must share everything that is not per robot.
@@ -263,7 +275,7 @@ bool RobotFactory::check_devices(const ControllerConfig& config, const std::vect
     } else {
       Problems found;
       const RobotItem none;
-      const DeviceSetup setup{sheet, none};
+      const DeviceSetup setup{sheet, none, 0.1, &scenario_.media};
       if (type->make_sensor != nullptr) (void)type->make_sensor(choice.options, found, setup);
       if (type->make_actuator != nullptr) (void)type->make_actuator(choice.options, found, setup);
       if (checked_.insert(&choice).second) problems.insert(problems.end(), found.begin(), found.end());
@@ -349,7 +361,8 @@ std::string RobotFactory::construct(Slot at) {
 void RobotFactory::complete(std::size_t g) {
   const RobotGroup& group = stores_.groups[g];
   const ControllerConfig& config = scenario_.controllers[group.config];
-  const DeviceSetup setup{*group.sheet, *group.item, 1.0 / static_cast<double>(scenario_.ticks_per_second)};
+  const DeviceSetup setup{*group.sheet, *group.item, 1.0 / static_cast<double>(scenario_.ticks_per_second),
+                          &scenario_.media};
   devices_.blocks.resize(stores_.blocks.size());
   for (const std::size_t b : group.blocks) add_port_arrays(group, stores_.blocks[b], slab_);
   for (std::size_t p = 0; p < group.ports.size(); ++p) {
@@ -387,6 +400,9 @@ void RobotFactory::keep_sizes() {
   const auto flies = [](const RobotGroup& group) { return group.sheet != nullptr && group.sheet->flies; };
   if (std::any_of(stores_.groups.begin(), stores_.groups.end(), flies))
     stores_.bodies.flight.resize(stores_.bodies.size());
+  const auto sees = [](const RobotGroup& group) { return group.sees_m > 0.0; };
+  if (!stores_.shown_leds.empty() || std::any_of(stores_.groups.begin(), stores_.groups.end(), sees))
+    stores_.shown_leds.resize(stores_.bodies.size());
   keep_mechanisms();
 }
 
@@ -542,6 +558,7 @@ hal::Result<RobotId> RobotFactory::add(const RobotItem& item, const Pose& pose,
   if (stores_.groups[g].ports.size() > ports_before) complete(g);  // its controller took ports that no other has
   keep_sizes();
   if (!stores_.broadcasts.empty()) stores_.broadcasts[row] = {};
+  if (!stores_.shown_leds.empty()) stores_.shown_leds[row] = {};
   stores_.robots[entity].generation = ++stores_.generations;
   stores_.living.push_back(entity);
   stores_.added_robots.emplace(item.id, entity);

@@ -54,6 +54,7 @@ hal::Result<std::unique_ptr<SpaceCopy>> SpaceCopy::take(const Space& space, cons
   copy->repaint_floor_ = s.repaint_floor;
   copy->altered_ = s.altered;
   copy->broadcasts_ = s.broadcasts;
+  copy->shown_leds_ = s.shown_leds;
   return copy;
 }
 
@@ -139,8 +140,10 @@ hal::Status SpaceCopy::put_back(Space& space, RobotDevices& devices) const {
   s.repaint_floor = repaint_floor_;
   s.altered = altered_;
   s.broadcasts = broadcasts_;
+  s.shown_leds = shown_leds_;
   ++s.generations;  // who looks for newcomers finds those who are back
   ++s.immovables_version;
+  ++s.object_leds_version;
   ++s.poses_version;
   s.touched.clear();
   s.bodies_changed = true;

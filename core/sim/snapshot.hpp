@@ -80,6 +80,7 @@ class SpaceCopy {
   bool repaint_floor_ = false;
   bool altered_ = false;
   std::vector<Broadcast> broadcasts_;
+  std::vector<ShownLeds> shown_leds_;
 };
 
 }  // namespace tandem::core

@@ -60,6 +60,15 @@ std::uint64_t mix_scenery(std::uint64_t hash, const SpaceStores& s) noexcept {
          {o.x_m, o.y_m, o.cos_h, o.sin_h, o.half_x_m, o.half_y_m, o.radius_m, o.z_low_m, o.z_high_m})
       hash = mix(hash, bits_of(value));
   }
+  for (std::size_t i = 0; i < s.objects.size(); ++i) {
+    const Object& o = s.objects[i];
+    if (!o.lit()) continue;
+    hash = mix(hash, i);
+    for (const ObjectLed& led : o.leds) {
+      for (const double value : {led.x_m, led.y_m, led.z_m}) hash = mix(hash, bits_of(value));
+      hash = mix(hash, led.color.r | led.color.g << 8U | led.color.b << 16U);
+    }
+  }
   for (const LightSource& light : s.lights) {
     if (!light.alive) continue;
     for (const double value : {light.x_m, light.y_m, light.z_m, light.intensity}) hash = mix(hash, bits_of(value));

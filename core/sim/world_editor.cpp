@@ -166,6 +166,7 @@ hal::Result<RobotItem> WorldEditor::item_for(const NewRobot& wanted) const {
     item.battery = like.battery;
     item.rab_range_m = like.rab_range_m;
     item.rab_payload = like.rab_payload;
+    item.camera = like.camera;
     break;
   }
   item.id = wanted.id;
@@ -307,6 +308,10 @@ hal::Status WorldEditor::set_object(ObjectId id, const Object& changed) {
   }
   if (!before.movable || !next.movable) {
     ++stores_.immovables_version;
+    stores_.altered = true;
+  }
+  if (!before.leds.empty() || !next.leds.empty()) {
+    ++stores_.object_leds_version;
     stores_.altered = true;
   }
   stores_.touch(self);

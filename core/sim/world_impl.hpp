@@ -79,7 +79,11 @@ struct World::Impl {
   bool one_kind = true;                 // kinematics2d moves all bodies
   double reach_m = 0.0;                 // of the indices
   std::uint64_t indexed_version = 0;    // of the immovable objects
-  std::vector<BodyKey> strays;          // left their region in this tick, or were put where there is none
+  struct {
+    double reach_m = 0.0;
+    std::uint64_t immovables = 0, leds = 0;
+  } lit;                        // what the index of lit objects was built for
+  std::vector<BodyKey> strays;  // left their region in this tick, or were put where there is none
   std::vector<Trouble> troubles;
   RobotDevices devices;
   std::unique_ptr<RobotFactory> factory;
@@ -112,6 +116,7 @@ struct World::Impl {
   void treat_escape(BodyKey body);
   void rebuild_index();
   void index_movables();
+  void index_lit_objects();
   template <class Work>
   void each_block(MeasuredPhase& phase, Work&& work);
   void sense_and_control();

@@ -14,7 +14,7 @@ std::uint64_t seed_from_clock() {
   return (static_cast<std::uint64_t>(device()) << 32 | device()) >> 11;  // exact as a double, easy to write in a file
 }
 
-Object object_of(const ObjectItem& item, const PlacedObject& placed) {
+Object object_of(const Scenario& scenario, const ObjectItem& item, const PlacedObject& placed) {
   Object shape;
   shape.kind = item.shape == ShapeKind::Box ? Object::Kind::Box : Object::Kind::Cylinder;
   shape.id = placed.number < 0 ? item.id : item.id + std::to_string(placed.number);
@@ -29,6 +29,9 @@ Object object_of(const ObjectItem& item, const PlacedObject& placed) {
   shape.z_high_m = placed.p_W[2] + item.size[2];
   shape.movable = item.movable;
   shape.mass_kg = item.mass_kg;
+  const std::uint16_t medium = led_medium_number(scenario.media, item.led_medium);
+  for (const LedItem& led : item.leds)
+    shape.leds.push_back({led.p_O[0], led.p_O[1], led.p_O[2], {led.rgb[0], led.rgb[1], led.rgb[2]}, medium});
   return shape;
 }
 
@@ -155,7 +158,7 @@ std::unique_ptr<World> World::make(const Scenario& scenario, hal::PluginLoader& 
   s.bodies.has_motion = !w.one_kind;
 
   for (const PlacedObject& placed : placements.objects)
-    s.objects.push_back(object_of(scenario.objects[placed.item], placed));
+    s.objects.push_back(object_of(scenario, scenario.objects[placed.item], placed));
   for (const PlacedLight& placed : placements.lights) {
     const LightItem& item = scenario.lights[placed.item];
     s.lights.push_back({placed.number < 0 ? item.id : item.id + std::to_string(placed.number),
@@ -163,7 +166,9 @@ std::unique_ptr<World> World::make(const Scenario& scenario, hal::PluginLoader& 
                         placed.p_W[1],
                         placed.p_W[2],
                         item.intensity,
-                        {item.rgb[0], item.rgb[1], item.rgb[2]}});
+                        {item.rgb[0], item.rgb[1], item.rgb[2]},
+                        true,
+                        led_medium_number(scenario.media, item.medium)});
   }
   for (const SoundItem& item : scenario.sounds)
     s.sounds.push_back({item.id, item.p_W[0], item.p_W[1], item.p_W[2], item.level});

@@ -33,9 +33,23 @@ bool clip(double o, double d, double half, double& t0, double& t1) noexcept {
 
 void ObjectIndex::build(const std::vector<Object>& objects, bool movable, double min_x_m, double min_y_m,
                         double max_x_m, double max_y_m, double reach_m) {
-  const auto listed = [movable](const Object& o) { return o.alive && o.movable == movable; };
+  build_of(
+      objects, [movable](const Object& o) { return o.alive && o.movable == movable; }, movable,
+      {min_x_m, min_y_m, max_x_m, max_y_m}, reach_m);
+}
+
+void ObjectIndex::build_lit(const std::vector<Object>& objects, bool fresh_each_tick, double min_x_m, double min_y_m,
+                            double max_x_m, double max_y_m, double reach_m) {
+  build_of(
+      objects, [](const Object& o) { return o.lit(); }, fresh_each_tick, {min_x_m, min_y_m, max_x_m, max_y_m}, reach_m);
+}
+
+template <class Listed>
+void ObjectIndex::build_of(const std::vector<Object>& objects, Listed&& listed, bool each_tick, const Area& area,
+                           double reach_m) {
+  const auto [min_x_m, min_y_m, max_x_m, max_y_m] = area;
   const auto count = static_cast<double>(std::count_if(objects.begin(), objects.end(), listed));
-  const double most_cells = movable ? std::max(kFewestMostCells, kCellsPerMovable * count) : kMostCells;
+  const double most_cells = each_tick ? std::max(kFewestMostCells, kCellsPerMovable * count) : kMostCells;
   min_x_m_ = min_x_m;
   min_y_m_ = min_y_m;
   reach_m_ = reach_m;

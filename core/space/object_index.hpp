@@ -17,6 +17,10 @@ class ObjectIndex {
   void build(const std::vector<Object>& objects, bool movable, double min_x_m, double min_y_m, double max_x_m,
              double max_y_m, double reach_m);
 
+  /// Lists the living things that have a lit LED. `fresh_each_tick`: there are movable ones among them.
+  void build_lit(const std::vector<Object>& objects, bool fresh_each_tick, double min_x_m, double min_y_m,
+                 double max_x_m, double max_y_m, double reach_m);
+
   /// Indices into the shapes; superset of those within `reach()` of (x, y), in rising order.
   std::span<const std::uint32_t> near(double x_m, double y_m) const noexcept {
     const std::size_t cell =
@@ -29,6 +33,12 @@ class ObjectIndex {
   bool empty() const noexcept { return list_.empty(); }
 
  private:
+  struct Area {
+    double min_x_m, min_y_m, max_x_m, max_y_m;
+  };
+  template <class Listed>
+  void build_of(const std::vector<Object>& objects, Listed&& listed, bool each_tick, const Area& area, double reach_m);
+
   std::uint32_t at(double offset_m, std::uint32_t count) const noexcept {
     const double c = offset_m * per_cell_;
     const double last = static_cast<double>(count - 1);

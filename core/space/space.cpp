@@ -22,6 +22,10 @@ double Object::reach_m() const noexcept {
   return kind == Kind::Cylinder ? radius_m : std::hypot(half_x_m, half_y_m);
 }
 
+bool Object::lit() const noexcept {
+  return alive && std::any_of(leds.begin(), leds.end(), [](const ObjectLed& led) { return led.color != hal::kBlack; });
+}
+
 void Bodies::resize(std::size_t rows) {
   for (auto* array : {&x_m, &y_m, &sin_h, &left_m_s, &right_m_s, &left_m, &right_m}) array->resize(rows, 0.0);
   cos_h.resize(rows, 1.0);
@@ -220,6 +224,7 @@ void Space::remove_robot(RobotId robot) noexcept {
   s.bodies.left_m_s[row] = 0.0;
   s.bodies.right_m_s[row] = 0.0;
   if (!s.broadcasts.empty()) s.broadcasts[row].sending = 0;
+  if (!s.shown_leds.empty()) s.shown_leds[row] = {};
   e.alive = false;
   ++e.generation;
   release_joints_of(BodyKey::robot(row));
@@ -317,6 +322,20 @@ hal::Result<ObjectId> Space::add_object(const Object& wanted) {
 hal::Status Space::set_object(ObjectId object, const Object& changed) {
   if (!contains(object)) return gone("object");
   return editor_ == nullptr ? no_world() : editor_->set_object(object, changed);
+}
+
+hal::Status Space::set_object_led(ObjectId object, std::size_t led, hal::Rgb color) {
+  if (!contains(object)) return gone("object");
+  SpaceStores& s = *stores_;
+  Object& bearer = s.objects[object.index];
+  if (led >= bearer.leds.size()) {
+    return hal::Error{"object '" + bearer.id + "' has " + std::to_string(bearer.leds.size()) +
+                      " LEDs; there is no number " + std::to_string(led)};
+  }
+  bearer.leds[led].color = color;
+  s.altered = true;
+  ++s.object_leds_version;
+  return {};
 }
 
 void Space::remove_object(ObjectId object) noexcept {

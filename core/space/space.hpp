@@ -16,6 +16,13 @@
 
 namespace tandem::core {
 
+/// An LED on a box or a cylinder. Black is off.
+struct ObjectLed {
+  double x_m = 0.0, y_m = 0.0, z_m = 0.0;  ///< from the centre of the object's base, in its frame
+  hal::Rgb color = {};
+  std::uint16_t medium = 0;  ///< the number of its LED medium; 0: cameras of all media see it
+};
+
 /// A wall, a box, a cylinder. `x, y` is its centre; z_low its base.
 struct Object {
   enum class Kind : std::uint8_t { Box, Cylinder };
@@ -31,9 +38,12 @@ struct Object {
   double mass_kg = 1.0;          ///< of a movable one
   std::uint32_t generation = 0;  ///< of its id
   std::uint32_t version = 0;     ///< rises whenever its size, mass or kind changes
+  std::vector<ObjectLed> leds = {};
 
   /// Radius of the smallest disc around it, seen from above.
   double reach_m() const noexcept;
+  /// Whether it is there and any of its LEDs is on.
+  bool lit() const noexcept;
 };
 
 /// A lamp.
@@ -42,7 +52,8 @@ struct LightSource {
   double x_m = 0.0, y_m = 0.0, z_m = 0.0;
   double intensity = 1.0;
   hal::Rgb color{255, 255, 0};
-  bool alive = true;  ///< false once removed: its number is not used again
+  bool alive = true;         ///< false once removed: its number is not used again
+  std::uint16_t medium = 0;  ///< the number of the LED medium in which cameras see it; 0: all do
 };
 
 /// A steady sound.
@@ -126,6 +137,8 @@ class Space {
   /// Gives an object another place, size, mass, and whether it is movable: all of `changed` but its id. It may be put
   /// onto others: engines then part them. A movable one keeps its velocity. Errors: gone; otherwise as `add_object`.
   hal::Status set_object(ObjectId object, const Object& changed);
+  /// Lights an LED of an object in another colour; black is off. Errors: gone; no LED of that number.
+  hal::Status set_object_led(ObjectId object, std::size_t led, hal::Rgb color);
   /// Its id is not used again; its joints are released.
   void remove_object(ObjectId object) noexcept;
   Velocity object_velocity(ObjectId object) const noexcept;  ///< of an immovable one, or gone: 0

@@ -122,6 +122,7 @@ struct RobotGroup {
   int scanner = -1;                         ///< … of how the distance scanner is to turn
   double rab_range_m = 0.0;
   unsigned rab_payload = 0;
+  double sees_m = 0.0;  ///< how far along the ground its cameras see; 0: its controllers took none
   std::vector<std::size_t> blocks;
   std::vector<Slot> free_slots;  ///< of robots that were removed; the last is used next
 };
@@ -174,6 +175,26 @@ struct Broadcast {
   float range_m = 0.0F;  ///< how far the sender reaches
 };
 
+/// What a robot's LEDs and lamps show, as latched at the start of the tick.
+struct ShownLeds {
+  static constexpr std::size_t kBody = hal::RingLeds::kCapacity;  ///< after the ring: the body's lamp
+  static constexpr std::size_t kFront = kBody + 1;                ///< … and the one at the front
+  static constexpr std::size_t kCount = kFront + 1;
+
+  std::uint32_t lit = 0;  ///< bit i: number i is not black
+  std::array<hal::Rgb, kCount> color{};
+  std::uint16_t ring_medium = 0, body_medium = 0, front_medium = 0;  ///< as ObjectLed::medium
+
+  void show(std::size_t i, hal::Rgb c) noexcept {
+    color[i] = c;
+    const std::uint32_t bit = 1U << i;
+    lit = c == hal::kBlack ? lit & ~bit : lit | bit;
+  }
+  std::uint16_t medium(std::size_t i) const noexcept {
+    return i < kBody ? ring_medium : i == kBody ? body_medium : front_medium;
+  }
+};
+
 struct SpaceStores {
   double min_x_m = -1.0, min_y_m = -1.0, max_x_m = 1.0, max_y_m = 1.0;  ///< the arena
   double max_z_m = std::numeric_limits<double>::infinity();             ///< its ceiling: what flies stays below
@@ -195,7 +216,9 @@ struct SpaceStores {
   std::unordered_map<std::string, std::uint32_t> object_numbers;  ///< by id, also of objects that are gone
   ObjectIndex static_index;                                       ///< of the immovable ones
   ObjectIndex movable_index;
-  std::vector<Joint> joints;  ///< by number
+  ObjectIndex lit_index;                  ///< of those with a lit LED, as far as cameras see; empty without cameras
+  std::uint64_t object_leds_version = 1;  ///< rises whenever an LED of an object changes
+  std::vector<Joint> joints;              ///< by number
 
   std::vector<Region> regions;  ///< at least one
   double border_reach_m = 0.0;  ///< how far outside its outline a region's mirrored bodies may lie
@@ -206,6 +229,7 @@ struct SpaceStores {
   Floor floor;
   bool repaint_floor = false;
   std::vector<Broadcast> broadcasts;  ///< by row; empty when no robot can send
+  std::vector<ShownLeds> shown_leds;  ///< by row; empty when no robot has a camera
 
   std::uint32_t generations = 0;  ///< rises with every id that is given out after the start, and with every restore
   std::uint32_t joint_generations = 0;  ///< the same for joints

@@ -20,6 +20,29 @@ struct ScannerHead {
   double max_m = 0.0;
 };
 
+/// A camera on the axis that looks all around and down.
+struct OmniCameraSheet {
+  double height_m = 0.0;      ///< 0: none
+  double aperture_rad = 0.0;  ///< from straight down to the farthest that it sees on the ground
+};
+
+/// Where a camera with a lens sits and looks.
+struct CameraMount {
+  double x_m = 0.0;
+  double z_m = 0.0;
+  double tilt_rad = 0.0;  ///< of its axis above straight ahead: pi/2 looks up, -pi/2 down
+};
+
+/// A camera with a lens.
+struct CameraSheet {
+  CameraMount usual, front;   ///< where it sits unless told otherwise, and where as a front camera
+  double aperture_rad = 0.0;  ///< from its axis to a corner of the image; 0: none
+  double focal_length_m = 0.0;
+  double range_m = 0.0;  ///< up to which it makes out LEDs
+  unsigned width_px = 0;
+  unsigned height_px = 0;
+};
+
 /// One kind of robot. All spans point at constants.
 struct DataSheet {
   std::string_view kind;  ///< as the element in experiment files, e.g. "e-puck"
@@ -57,8 +80,11 @@ struct DataSheet {
   double gripper_height_m = 0.0;   ///< of the claws above the ground
   std::span<const ScannerHead> scanner;
   double scanner_height_m = 0.0;
-  double scanner_turn_rad_s = 0.0;  ///< fastest turn of the scanner
-  double scanner_rate_hz = 0.0;     ///< measurements a second of each head
+  double scanner_turn_rad_s = 0.0;        ///< fastest turn of the scanner
+  double scanner_rate_hz = 0.0;           ///< measurements a second of each head
+  Mount body_lamp = {}, front_lamp = {};  ///< of robots with `body_lamps`
+  OmniCameraSheet omni_camera = {};
+  CameraSheet camera = {};
 };
 
 }  // namespace tandem::hal

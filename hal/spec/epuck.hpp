@@ -73,6 +73,10 @@ inline constexpr std::array<Mount, 8> kLeds = {
     detail::on_rim(180, -1, 0, kBodyRadius_m, 0.04), detail::on_rim(135, -kDiag, kDiag, kBodyRadius_m, 0.04),
     detail::on_rim(90, 0, 1, kBodyRadius_m, 0.04),   detail::on_rim(45, kDiag, kDiag, kBodyRadius_m, 0.04)};
 
+// The light in the middle of the translucent body, and the one at its front [GCtronic; heights rounded].
+inline constexpr Mount kBodyLamp{0, 0, 0, 0.03};
+inline constexpr Mount kFrontLamp = detail::on_rim(0, 1, 0, kBodyRadius_m, 0.03);
+
 inline constexpr DataSheet kDataSheet = {
     .kind = "e-puck",
     .body_radius_m = kBodyRadius_m,
@@ -98,6 +102,8 @@ inline constexpr DataSheet kDataSheet = {
     .leds = kLeds,
     .body_lamps = true,
     .scanner = {},
+    .body_lamp = kBodyLamp,
+    .front_lamp = kFrontLamp,
 };
 
 /// One knot of the infrared response: calibrated counts at a distance from the sensor, white paper.

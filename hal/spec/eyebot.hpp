@@ -26,6 +26,14 @@ inline constexpr double kMaxTurn_rad_s = 0.5 * std::numbers::pi;  // [chosen] a 
 inline constexpr double kBatteryFull_V = 12.6;                    // [chosen] three lithium-polymer cells
 inline constexpr double kBatteryEmpty_V = 9.9;
 
+// The camera looks down from the base, or ahead from the rim. [chosen] its figures are those of the foot-bot's, but
+// that it sees the ground from as high as range-and-bearing reaches.
+inline constexpr double kCameraAperture_rad = 30.0 * (std::numbers::pi / 180.0);
+inline constexpr double kCameraFocalLength_m = 0.035;
+inline constexpr double kCameraRange_m = 3.5;
+inline constexpr unsigned kCameraWidth_px = 640;
+inline constexpr unsigned kCameraHeight_px = 480;
+
 /// 24 proximity and light sensors [ARGoS]: the first at 7.5 degrees, one every 15 degrees, counter-clockwise.
 inline const std::array<Mount, 24> kRing = ring_of<24>(7.5, kRingRadius_m, kSensorHeight_m);
 /// The lower ring of 16 LEDs [ARGoS]: the first at 11.25 degrees. The upper ring, 1 cm higher, shines alike.
@@ -54,6 +62,13 @@ inline const DataSheet kDataSheet = {
     .microphones = {},
     .leds = kLeds,
     .scanner = {},
+    .camera = {.usual = {0.0, 0.0, -0.5 * std::numbers::pi},
+               .front = {kBodyRadius_m, kLedHeight_m, 0.0},
+               .aperture_rad = kCameraAperture_rad,
+               .focal_length_m = kCameraFocalLength_m,
+               .range_m = kCameraRange_m,
+               .width_px = kCameraWidth_px,
+               .height_px = kCameraHeight_px},
 };
 
 }  // namespace tandem::hal::eyebot

@@ -49,6 +49,16 @@ inline constexpr double kLongMin_m = 0.20, kLongMax_m = 1.50;
 inline constexpr double kScannerRate_hz = 60.0;
 inline constexpr double kScannerTurn_rad_s = 2.0 * std::numbers::pi;  // [chosen] twice what is recommended
 
+// The omnidirectional camera looks up into a mirror and sees a disc of the ground [ARGoS]. The camera with a lens looks
+// up from the same place, or ahead from the rim.
+inline constexpr double kOmniCameraHeight_m = 0.2887;                                 // [ARGoS]
+inline constexpr double kOmniCameraAperture_rad = 70.0 * (std::numbers::pi / 180.0);  // [ARGoS]
+inline constexpr double kCameraAperture_rad = 30.0 * (std::numbers::pi / 180.0);      // [ARGoS]
+inline constexpr double kCameraFocalLength_m = 0.035;  // [chosen] of a common lens; pixels do not depend on it
+inline constexpr double kCameraRange_m = 2.0;          // [chosen] an LED is then seen at about one pixel
+inline constexpr unsigned kCameraWidth_px = 640;       // [chosen] VGA, as small cameras of its time have
+inline constexpr unsigned kCameraHeight_px = 480;
+
 inline constexpr double kBatteryFull_V = 4.2;   // [marXbot] one lithium-polymer cell of 10 Ah
 inline constexpr double kBatteryEmpty_V = 3.4;  // [chosen] as for the e-puck's cell: stop driving below
 
@@ -109,6 +119,14 @@ inline const DataSheet kDataSheet = {
     .scanner_height_m = kScannerHeight_m,
     .scanner_turn_rad_s = kScannerTurn_rad_s,
     .scanner_rate_hz = kScannerRate_hz,
+    .omni_camera = {kOmniCameraHeight_m, kOmniCameraAperture_rad},
+    .camera = {.usual = {0.0, kOmniCameraHeight_m, 0.5 * std::numbers::pi},
+               .front = {kBodyRadius_m, kBeaconHeight_m, 0.0},
+               .aperture_rad = kCameraAperture_rad,
+               .focal_length_m = kCameraFocalLength_m,
+               .range_m = kCameraRange_m,
+               .width_px = kCameraWidth_px,
+               .height_px = kCameraHeight_px},
 };
 
 }  // namespace tandem::hal::footbot

@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "hal/device/body_sensors.hpp"
+#include "hal/device/cameras.hpp"
 #include "hal/device/distance_scanner.hpp"
 #include "hal/device/flight.hpp"
 #include "hal/device/gripper.hpp"
@@ -267,6 +268,24 @@ class DrivenPuppet final : public Controller {
   void step() override {}
 };
 
+/// Takes every camera and light that its robot has, and leaves the commands to the test.
+class Watcher final : public Controller {
+ public:
+  explicit Watcher(Robot& robot) {
+    const DataSheet& sheet = robot.data_sheet();
+    if (sheet.omni_camera.height_m > 0.0) robot.sensor<OmnidirectionalCamera>();
+    if (sheet.camera.aperture_rad > 0.0) robot.sensor<PerspectiveCamera>();
+    if (sheet.wheel_base_m > 0.0) robot.actuator<WheelSpeeds>();
+    if (sheet.turret_turn_rad_s > 0.0) robot.actuator<TurretDrive>();
+    if (sheet.flies) robot.actuator<QuadrotorSpeed>();
+    robot.actuator<RingLeds>();
+    if (!sheet.body_lamps) return;
+    robot.actuator<BodyLed>();
+    robot.actuator<FrontLed>();
+  }
+  void step() override {}
+};
+
 /// Cannot be made.
 class Stillborn final : public Controller {
  public:
@@ -323,6 +342,7 @@ void register_all(Registrar& registrar) {
   registrar.add_controller<FlyBoth>("fly_both", "A place, a velocity, and what is no number.");
   registrar.add_controller<Puppet>("puppet", "Takes every device of a foot-bot.");
   registrar.add_controller<DrivenPuppet>("driven_puppet", "Takes a foot-bot's wheels and proximity sensors.");
+  registrar.add_controller<Watcher>("watcher", "Takes cameras and lights.");
   registrar.add_controller<Owner>("owner", "Cannot be copied.");
   registrar.add_controller<Reluctant>("reluctant", "Throws when it is copied after its third step.");
   registrar.add_controller<Picky>("picky", "Takes devices by its robot's id.");

@@ -5,7 +5,7 @@
 #include <new>
 
 #include "hal/device/range_and_bearing.hpp"
-#include "tests/core/footbots.hpp"
+#include "tests/core/watchers.hpp"
 
 namespace {
 std::atomic<std::uint64_t> allocations{0};
@@ -78,6 +78,26 @@ TEST(World, AllocatesNothingForFootbotsThatScanTalkAndGrip) {
     if (i % 2 == 0) command<hal::GripperDrive>(world, id).lock();
   }
   steps(world, 40);  // until whoever can hold something does
+  const std::uint64_t before = allocations.load();
+  steps(world, 20);
+  EXPECT_EQ(allocations.load() - before, 0U);
+  EXPECT_EQ(world->state(), RunState::Running) << world->failure();
+}
+
+TEST(World, AllocatesNothingForFootbotsThatShineAndLook) {
+  Scene scene = camera_scene(10.0);
+  for (int i = 0; i < 200; ++i)
+    add_footbot(scene, "fb" + std::to_string(i), 0.3 * (i % 15) - 2.2, 0.3 * (i / 15) - 2.0, 0.4 * i);
+  scene.cylinder(3.5, 0, 0.3).walls();
+  add_led(scene, {0.0, 0.0, 0.5}, {255, 0, 0});
+  auto world = make(scene);
+  ASSERT_TRUE(world.world) << world.all_problems();
+  world->start();
+  for (int i = 0; i < 200; ++i) {
+    command<hal::WheelSpeeds>(world, "fb" + std::to_string(i)).set(0.02, 0.03);
+    shine(world, "fb" + std::to_string(i), hal::kRed);
+  }
+  steps(world, 3);
   const std::uint64_t before = allocations.load();
   steps(world, 20);
   EXPECT_EQ(allocations.load() - before, 0U);

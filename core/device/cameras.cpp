@@ -1,0 +1,457 @@
+// Cameras that see coloured blobs: the lit LEDs of robots and objects, and lamps.
+#include "hal/device/cameras.hpp"
+
+#include "core/device/cameras.hpp"
+#include "core/device/sight.hpp"
+#include "core/device/types.hpp"
+#include "core/random/random.hpp"
+
+namespace tandem::core {
+
+double omni_reach_m(const hal::DataSheet& sheet, const CameraConfig& config) noexcept {
+  const double aperture = config.omni_aperture_rad < 0.0 ? sheet.omni_camera.aperture_rad : config.omni_aperture_rad;
+  return sheet.omni_camera.height_m * std::tan(aperture);
+}
+
+hal::CameraSheet camera_of(const hal::DataSheet& sheet, const CameraConfig& config) noexcept {
+  hal::CameraSheet camera = sheet.camera;
+  if (config.aperture_rad >= 0.0) camera.aperture_rad = config.aperture_rad;
+  if (config.focal_length_m >= 0.0) camera.focal_length_m = config.focal_length_m;
+  if (config.range_m >= 0.0) camera.range_m = config.range_m;
+  if (config.front) camera.usual = camera.front;
+  return camera;
+}
+
+namespace {
+
+constexpr double kSurface_m = 0.002;  // an LED this deep in a surface is seen all the same: it sits on it
+
+using Point = std::array<double, 3>;
+
+bool same_medium(std::uint16_t led, std::uint16_t camera) noexcept {
+  return led == 0 || camera == 0 || led == camera;
+}
+
+/// Finds the lights that a camera has in sight. One a block of robots.
+///
+/// Bodies that may stand between the camera and a robot are looked up once for all of that robot's LEDs.
+class Lookout {
+ public:
+  Lookout() { between_.reserve(kRoom); }
+
+  /// To be called in every tick before it looks.
+  void measure(const SpaceStores& stores) noexcept {
+    widest_body_m_ = widest_body_m(stores);
+    widest_ring_m_ = 0.0;
+    for (const RobotGroup& group : stores.groups) widest_ring_m_ = std::max(widest_ring_m_, ring_m(*group.sheet));
+  }
+
+  /// Calls `see(p, color)`, p from the camera to the light in W, for every light of the camera's medium that robot
+  /// `row` has in sight from `from` (W) and for which `covers(p)` holds. The order depends on the space alone.
+  /// `reach_m`: `covers` holds for nothing that is farther along the ground.
+  template <class Covers, class See>
+  void look(const SpaceStores& stores, std::size_t row, const Point& from, double reach_m, std::uint16_t medium,
+            Covers&& covers, See&& see) noexcept {
+    const auto consider = [&](const Point& at, hal::Rgb color) {
+      const Point p{at[0] - from[0], at[1] - from[1], at[2] - from[2]};
+      if (covers(p) && open(stores, from, at)) see(p, color);
+    };
+    look_at_robots(stores, row, from, reach_m, medium, consider);
+    look_at_objects(stores, row, from, reach_m, medium, consider);
+    for (const LightSource& light : stores.lights) {
+      if (!light.alive || light.intensity <= 0.0 || !same_medium(light.medium, medium)) continue;
+      if (!near(light.x_m, light.y_m, from, reach_m)) continue;
+      gather(stores, row, row, from, light.x_m, light.y_m, 0.0);
+      consider({light.x_m, light.y_m, light.z_m}, light.color);
+    }
+  }
+
+ private:
+  static constexpr std::size_t kRoom = 256;
+
+  /// A body that may stand between.
+  struct Blocker {
+    double x_m, y_m, radius_m, low_m, high_m;
+  };
+
+  static bool near(double x_m, double y_m, const Point& from, double reach_m) noexcept {
+    const double dx = x_m - from[0];
+    const double dy = y_m - from[1];
+    return dx * dx + dy * dy <= reach_m * reach_m;
+  }
+
+  /// How far LEDs sit from the axis of a kind of robot.
+  static double ring_m(const hal::DataSheet& sheet) noexcept {
+    double widest2 = 0.0;
+    for (const hal::Mount& led : sheet.leds) widest2 = std::max(widest2, led.x_m * led.x_m + led.y_m * led.y_m);
+    return std::max(std::sqrt(widest2), sheet.body_lamps ? sheet.body_radius_m : 0.0);
+  }
+
+  template <class Consider>
+  void look_at_robots(const SpaceStores& stores, std::size_t row, const Point& from, double reach_m,
+                      std::uint16_t medium, Consider&& consider) noexcept {
+    if (stores.shown_leds.empty()) return;
+    const Bodies& b = stores.bodies;
+    stores.body_index.for_each_near(from[0], from[1], reach_m + widest_ring_m_, [&](const IndexEntry& o) {
+      const std::size_t other = o.row();
+      const ShownLeds& shown = stores.shown_leds[other];
+      if (other == row || shown.lit == 0) return;
+      const hal::DataSheet& sheet = stores.sheet_of_row(other);
+      const double spread_m = ring_m(sheet);
+      if (!near(b.x_m[other], b.y_m[other], from, reach_m + spread_m)) return;
+      gather(stores, row, other, from, b.x_m[other], b.y_m[other], spread_m);
+      for (std::size_t i = 0; i < ShownLeds::kCount; ++i) {
+        if ((shown.lit >> i & 1U) == 0 || !same_medium(shown.medium(i), medium)) continue;
+        const Point at = place_of(stores, other, sheet, i);
+        // A robot's body hides the LEDs on its far side, but not the light in it.
+        if (i == ShownLeds::kBody || !behind_own_body(stores, other, sheet, from, at)) consider(at, shown.color[i]);
+      }
+    });
+  }
+
+  template <class Consider>
+  void look_at_objects(const SpaceStores& stores, std::size_t row, const Point& from, double reach_m,
+                       std::uint16_t medium, Consider&& consider) noexcept {
+    if (stores.lit_index.empty()) return;
+    for (const std::uint32_t k : stores.lit_index.near(from[0], from[1])) {
+      const Object& object = stores.objects[k];
+      double spread2 = 0.0;
+      for (const ObjectLed& led : object.leds) spread2 = std::max(spread2, led.x_m * led.x_m + led.y_m * led.y_m);
+      const double spread_m = std::sqrt(spread2);
+      if (!object.alive || !near(object.x_m, object.y_m, from, reach_m + spread_m)) continue;
+      gather(stores, row, row, from, object.x_m, object.y_m, spread_m);
+      for (const ObjectLed& led : object.leds) {
+        if (led.color == hal::kBlack || !same_medium(led.medium, medium)) continue;
+        consider({object.x_m + object.cos_h * led.x_m - object.sin_h * led.y_m,
+                  object.y_m + object.sin_h * led.x_m + object.cos_h * led.y_m, object.z_low_m + led.z_m},
+                 led.color);
+      }
+    }
+  }
+
+  static Point place_of(const SpaceStores& stores, std::size_t row, const hal::DataSheet& sheet,
+                        std::size_t i) noexcept {
+    const Bodies& b = stores.bodies;
+    const hal::Mount& mount = i == ShownLeds::kBody    ? sheet.body_lamp
+                              : i == ShownLeds::kFront ? sheet.front_lamp
+                                                       : sheet.leds[i];
+    double c = b.cos_h[row];
+    double s = b.sin_h[row];
+    if (sheet.leds_on_turret && !b.turrets.empty() && b.turrets[row].angle_rad != 0.0) {
+      const double ct = std::cos(b.turrets[row].angle_rad);
+      const double st = std::sin(b.turrets[row].angle_rad);
+      const double turned = c * ct - s * st;
+      s = s * ct + c * st;
+      c = turned;
+    }
+    return {b.x_m[row] + c * mount.x_m - s * mount.y_m, b.y_m[row] + s * mount.x_m + c * mount.y_m,
+            stores.base_m(row) + mount.z_m};
+  }
+
+  static bool behind_own_body(const SpaceStores& stores, std::size_t row, const hal::DataSheet& sheet,
+                              const Point& from, const Point& at) noexcept {
+    const Bodies& b = stores.bodies;
+    const double low_m = stores.base_m(row);
+    return disc_on_line(b.x_m[row], b.y_m[row], static_cast<double>(b.radius_m[row]) - kSurface_m, low_m,
+                        low_m + sheet.body_height_m - kSurface_m, from, at);
+  }
+
+  /// Notes the bodies, but the camera's own and `bearer`, that a line from the camera to anywhere within `spread_m` of
+  /// (x, y) may touch.
+  void gather(const SpaceStores& stores, std::size_t row, std::size_t bearer, const Point& from, double x_m, double y_m,
+              double spread_m) noexcept {
+    const Bodies& b = stores.bodies;
+    between_.clear();
+    const double dx = x_m - from[0];
+    const double dy = y_m - from[1];
+    const double length2 = dx * dx + dy * dy;
+    any_body_near_line(stores, widest_body_m_ + spread_m, from, {x_m, y_m, from[2]}, [&](std::uint32_t other) {
+      if (other == row || other == bearer) return false;
+      const double wx = b.x_m[other] - from[0];
+      const double wy = b.y_m[other] - from[1];
+      const double t = length2 > 0.0 ? std::clamp((wx * dx + wy * dy) / length2, 0.0, 1.0) : 0.0;
+      const double radius_m = static_cast<double>(b.radius_m[other]);
+      if (!Lookout::near(wx - t * dx, wy - t * dy, {}, radius_m + spread_m)) return false;
+      const double low_m = stores.base_m(other);
+      between_.push_back(
+          {b.x_m[other], b.y_m[other], radius_m, low_m, low_m + stores.sheet_of_row(other).body_height_m});
+      return false;
+    });
+  }
+
+  /// Whether none of the gathered bodies and no object is on the line.
+  bool open(const SpaceStores& stores, const Point& from, const Point& at) const noexcept {
+    for (const Blocker& body : between_) {
+      if (disc_on_line(body.x_m, body.y_m, body.radius_m, body.low_m, body.high_m, from, at)) return false;
+    }
+    const double dx = at[0] - from[0];
+    const double dy = at[1] - from[1];
+    const double dz = at[2] - from[2];
+    const double length_m = std::sqrt(dx * dx + dy * dy + dz * dz);
+    const double t = length_m > kSurface_m ? 1.0 - kSurface_m / length_m : 0.0;
+    return in_sight(stores, from[0], from[1], from[2], from[0] + t * dx, from[1] + t * dy, from[2] + t * dz);
+  }
+
+  double widest_body_m_ = 0.0, widest_ring_m_ = 0.0;  // of all kinds of robots
+  std::vector<Blocker> between_;
+};
+
+struct CameraOptions {
+  std::string medium;
+  bool show_rays = false;
+  void describe(hal::ParamVisitor& v) {
+    v.text("medium", medium, "Id of the LED medium: only its LEDs are seen. Empty: all are.");
+    v.flag("show_rays", show_rays, "Draw the lines in a view; no effect on readings.");
+  }
+};
+
+/// What a reading lacks in quality.
+struct Flaws {
+  double noise = 0.0;  ///< in m, or pixels
+  double miss_prob = 0.0;
+};
+
+/// Whether the `number`th light that a robot sees in this tick is missed.
+bool missed(const Flaws& flaws, const DeviceContext& context, std::size_t row, Stream stream,
+            std::uint32_t number) noexcept {
+  if (flaws.miss_prob <= 0.0) return false;
+  const std::uint32_t entity = context.stores.bodies.entity[row];
+  return to_unit(draw(context.seed, entity, stream, context.tick, number)[0]) < flaws.miss_prob;
+}
+
+/// Two errors of the `number`th light.
+std::array<double, 2> errors(const Flaws& flaws, const DeviceContext& context, std::size_t row, Stream stream,
+                             std::uint32_t number) noexcept {
+  if (flaws.noise <= 0.0) return {0.0, 0.0};
+  const auto bits = draw(context.seed, context.stores.bodies.entity[row], stream, context.tick, number);
+  const auto normal = to_normal(bits[0], bits[1]);
+  return {flaws.noise * normal[0], flaws.noise * normal[1]};
+}
+
+// --- all around ---
+
+template <int kPerMille>
+struct OmniOptions : CameraOptions {
+  double noise_std_dev_m = kPerMille * 1e-3;
+  double miss_prob = kPerMille * 1e-3;
+  void describe(hal::ParamVisitor& v) {
+    CameraOptions::describe(v);
+    v.number("noise_std_dev", noise_std_dev_m, hal::unit::m, hal::kNotNegative,
+             "Standard deviation of a blob's apparent place, along x and along y.");
+    v.number("miss_prob", miss_prob, hal::unit::none, {0.0, 1.0}, "Probability that a blob is missed.");
+  }
+};
+
+/// Lights below it whose distance along the ground is within reach.
+class OmniSensor final : public Sensor {
+ public:
+  OmniSensor(const DeviceSetup& setup, std::uint16_t medium, const Flaws& flaws)
+      : height_m_(setup.sheet.omni_camera.height_m),
+        reach_m_(omni_reach_m(setup.sheet, setup.item.camera)),
+        medium_(medium),
+        flaws_(flaws) {}
+
+  void sense(const DeviceContext& context, void* ports) noexcept override {
+    auto* cameras = static_cast<hal::OmnidirectionalCamera*>(ports);
+    lookout_.measure(context.stores);
+    for (std::size_t i = 0; i < context.block.used; ++i) {
+      const std::size_t row = context.block.first_row + i;
+      if ((context.stores.bodies.flags[row] & kAlive) == 0) continue;
+      stamp(context, cameras[i]);
+      cameras[i].count = 0;
+      cameras[i].dropped = 0;
+      see_around(context, row, cameras[i]);
+    }
+  }
+
+ private:
+  void see_around(const DeviceContext& context, std::size_t row, hal::OmnidirectionalCamera& port) noexcept {
+    const Bodies& b = context.stores.bodies;
+    const Point from{b.x_m[row], b.y_m[row], context.stores.base_m(row) + height_m_};
+    const auto covers = [this](const Point& p) {
+      return p[2] <= 0.0 && p[0] * p[0] + p[1] * p[1] <= reach_m_ * reach_m_;
+    };
+    std::uint32_t number = 0;
+    lookout_.look(context.stores, row, from, reach_m_, medium_, covers, [&](const Point& p, hal::Rgb color) {
+      const std::uint32_t n = number++;
+      if (missed(flaws_, context, row, Stream::OmniCameraMiss, n)) return;
+      const auto error = errors(flaws_, context, row, Stream::OmniCameraNoise, n);
+      const double wx = p[0] + error[0];
+      const double wy = p[1] + error[1];
+      const double bx = b.cos_h[row] * wx + b.sin_h[row] * wy;
+      const double by = b.cos_h[row] * wy - b.sin_h[row] * wx;
+      port.insert(static_cast<float>(std::sqrt(wx * wx + wy * wy)), static_cast<float>(std::atan2(by, bx)), color);
+    });
+  }
+
+  double height_m_, reach_m_;
+  std::uint16_t medium_;
+  Flaws flaws_;
+  Lookout lookout_;
+};
+
+bool has_omni_camera(const hal::DataSheet& sheet) {
+  return sheet.omni_camera.height_m > 0.0;
+}
+
+template <class Options>
+Recipe<Sensor> make_omni(const Element& element, Problems& problems, const DeviceSetup& setup) {
+  const auto options = read_options<Options>(element, problems);
+  Flaws flaws;
+  if constexpr (requires { options.miss_prob; }) flaws = {options.noise_std_dev_m, options.miss_prob};
+  return [setup, medium = setup.led_medium(options.medium), flaws](std::size_t) {
+    return std::make_unique<OmniSensor>(setup, medium, flaws);
+  };
+}
+
+// --- through a lens ---
+
+template <int kTenths>
+struct LensOptions : CameraOptions {
+  double noise_std_dev_px = kTenths * 0.1;
+  double miss_prob = kTenths * 1e-3;
+  void describe(hal::ParamVisitor& v) {
+    CameraOptions::describe(v);
+    v.number("noise_std_dev", noise_std_dev_px, hal::unit::none, hal::kNotNegative,
+             "Standard deviation of a blob's place in the image, in pixels to the right and downwards.");
+    v.number("miss_prob", miss_prob, hal::unit::none, {0.0, 1.0}, "Probability that a blob is missed.");
+  }
+};
+
+/// A pinhole camera. What it sees is nearer than its range and falls into its image.
+class LensSensor final : public Sensor {
+ public:
+  LensSensor(const DeviceSetup& setup, std::uint16_t medium, const Flaws& flaws)
+      : camera_(camera_of(setup.sheet, setup.item.camera)), medium_(medium), flaws_(flaws) {
+    const double width = camera_.width_px;
+    const double height = camera_.height_px;
+    px_per_tangent_ = 0.5 * std::sqrt(width * width + height * height) / std::tan(camera_.aperture_rad);
+    cos_tilt_ = std::cos(camera_.usual.tilt_rad);
+    sin_tilt_ = std::sin(camera_.usual.tilt_rad);
+  }
+
+  void sense(const DeviceContext& context, void* ports) noexcept override {
+    auto* cameras = static_cast<hal::PerspectiveCamera*>(ports);
+    lookout_.measure(context.stores);
+    for (std::size_t i = 0; i < context.block.used; ++i) {
+      const std::size_t row = context.block.first_row + i;
+      if ((context.stores.bodies.flags[row] & kAlive) == 0) continue;
+      hal::PerspectiveCamera& port = cameras[i];
+      stamp(context, port);
+      port.width_px = camera_.width_px;
+      port.height_px = camera_.height_px;
+      found_ = 0;
+      port.dropped = 0;
+      see_ahead(context, row, port);
+      port.count = 0;
+      for (std::size_t k = 0; k < found_; ++k) port.append(blobs_[k].x_px, blobs_[k].y_px, blobs_[k].color);
+    }
+  }
+
+ private:
+  struct Blob {
+    double distance2;
+    float x_px, y_px;
+    hal::Rgb color;
+  };
+  struct Pixel {
+    double x, y;
+    bool inside;
+  };
+
+  /// Where a point, from the lens in W, falls in the image of robot `row`.
+  Pixel pixel(const Bodies& b, std::size_t row, const Point& p) const noexcept {
+    const double ahead = b.cos_h[row] * p[0] + b.sin_h[row] * p[1];
+    const double left = b.cos_h[row] * p[1] - b.sin_h[row] * p[0];
+    const double depth = cos_tilt_ * ahead + sin_tilt_ * p[2];
+    if (depth <= 0.0) return {0.0, 0.0, false};
+    const double width = camera_.width_px;
+    const double height = camera_.height_px;
+    const double x = 0.5 * width - px_per_tangent_ * left / depth;
+    const double y = 0.5 * height + px_per_tangent_ * (sin_tilt_ * ahead - cos_tilt_ * p[2]) / depth;
+    return {x, y, x >= 0.0 && x <= width && y >= 0.0 && y <= height};
+  }
+
+  void see_ahead(const DeviceContext& context, std::size_t row, hal::PerspectiveCamera& port) noexcept {
+    const Bodies& b = context.stores.bodies;
+    const hal::CameraMount& mount = camera_.usual;
+    const Point from{b.x_m[row] + b.cos_h[row] * mount.x_m, b.y_m[row] + b.sin_h[row] * mount.x_m,
+                     context.stores.base_m(row) + mount.z_m};
+    const double range2 = camera_.range_m * camera_.range_m;
+    const auto covers = [&](const Point& p) {
+      return p[0] * p[0] + p[1] * p[1] + p[2] * p[2] <= range2 && pixel(b, row, p).inside;
+    };
+    std::uint32_t number = 0;
+    lookout_.look(context.stores, row, from, camera_.range_m, medium_, covers, [&](const Point& p, hal::Rgb color) {
+      const std::uint32_t n = number++;
+      if (missed(flaws_, context, row, Stream::CameraMiss, n)) return;
+      const Pixel at = pixel(b, row, p);
+      const auto error = errors(flaws_, context, row, Stream::CameraNoise, n);
+      insert({p[0] * p[0] + p[1] * p[1] + p[2] * p[2],
+              static_cast<float>(std::clamp(at.x + error[0], 0.0, static_cast<double>(camera_.width_px))),
+              static_cast<float>(std::clamp(at.y + error[1], 0.0, static_cast<double>(camera_.height_px))), color},
+             port);
+    });
+  }
+
+  void insert(const Blob& blob, hal::PerspectiveCamera& port) noexcept {
+    if (found_ == blobs_.size()) {
+      ++port.dropped;
+      if (blob.distance2 >= blobs_[found_ - 1].distance2) return;
+    } else {
+      ++found_;
+    }
+    std::size_t at = found_ - 1;
+    for (; at > 0 && blobs_[at - 1].distance2 > blob.distance2; --at) blobs_[at] = blobs_[at - 1];
+    blobs_[at] = blob;
+  }
+
+  hal::CameraSheet camera_;
+  std::uint16_t medium_;
+  Flaws flaws_;
+  double px_per_tangent_ = 1.0;
+  double cos_tilt_ = 1.0, sin_tilt_ = 0.0;
+  Lookout lookout_;
+  std::array<Blob, hal::PerspectiveCamera::kCapacity> blobs_{};  // nearest first, of one image
+  std::size_t found_ = 0;
+};
+
+bool has_camera(const hal::DataSheet& sheet) {
+  return sheet.camera.aperture_rad > 0.0;
+}
+
+template <class Options>
+Recipe<Sensor> make_lens(const Element& element, Problems& problems, const DeviceSetup& setup) {
+  const auto options = read_options<Options>(element, problems);
+  Flaws flaws;
+  if constexpr (requires { options.miss_prob; }) flaws = {options.noise_std_dev_px, options.miss_prob};
+  return [setup, medium = setup.led_medium(options.medium), flaws](std::size_t) {
+    return std::make_unique<LensSensor>(setup, medium, flaws);
+  };
+}
+
+template <class Options>
+DeviceType omni_type(std::string_view implementation, std::string_view summary) {
+  return sensor_type(hal::OmnidirectionalCamera::kName, implementation, summary, &has_omni_camera, &make_omni<Options>,
+                     &describe_options<Options>);
+}
+
+template <class Options>
+DeviceType lens_type(std::string_view implementation, std::string_view summary) {
+  return sensor_type(hal::PerspectiveCamera::kName, implementation, summary, &has_camera, &make_lens<Options>,
+                     &describe_options<Options>);
+}
+
+}  // namespace
+
+std::vector<DeviceType> camera_types() {
+  return {omni_type<OmniOptions<0>>("default", "Lights in reach and in sight; noise where asked for."),
+          omni_type<CameraOptions>("ideal", "Lights in reach and in sight."),
+          omni_type<OmniOptions<10>>("noisy", "Lights in reach and in sight, some missed, places uncertain."),
+          omni_type<OmniOptions<0>>("rot_z_only", "ARGoS' name for the default."),
+          lens_type<LensOptions<0>>("default", "Lights in the image and in sight; noise where asked for."),
+          lens_type<CameraOptions>("ideal", "Lights in the image and in sight."),
+          lens_type<LensOptions<10>>("noisy", "Lights in the image and in sight, some missed, places uncertain.")};
+}
+
+}  // namespace tandem::core

@@ -1,0 +1,113 @@
+// Cameras whose images are reduced to blobs: the lit LEDs and lamps that are in sight.
+#pragma once
+#include <algorithm>
+#include <array>
+#include <cstdint>
+
+#include "hal/device/leds.hpp"
+#include "hal/port.hpp"
+
+namespace tandem::hal {
+
+/// What a camera that looks all around sees, nearest first; the farthest are dropped when there are more than
+/// `kCapacity`. A robot's own LEDs are not among them.
+struct OmnidirectionalCamera : Reading {
+  static constexpr std::string_view kName = "omnidirectional_camera";
+  static constexpr std::string_view kDoc = "Coloured blobs all around, with distance and bearing.";
+  static constexpr std::size_t kCapacity = 64;
+
+  std::uint32_t count = 0;
+  std::uint32_t dropped = 0;                   ///< seen beyond the capacity
+  std::array<float, kCapacity> distance_m{};   ///< along the ground, from the camera's axis
+  std::array<float, kCapacity> bearing_rad{};  ///< counter-clockwise from forward
+  std::array<std::uint8_t, 3 * kCapacity> rgb{};
+
+  Rgb color(std::size_t i) const noexcept { return {rgb[3 * i], rgb[3 * i + 1], rgb[3 * i + 2]}; }
+
+  /// Inserts in order of distance, after those that are equally far; drops the farthest when full.
+  void insert(float distance, float bearing, Rgb c) noexcept {
+    if (count == kCapacity) {
+      ++dropped;
+      if (distance >= distance_m[kCapacity - 1]) return;
+    } else {
+      ++count;
+    }
+    std::size_t at = count - 1;
+    for (; at > 0 && distance_m[at - 1] > distance; --at) {
+      distance_m[at] = distance_m[at - 1];
+      bearing_rad[at] = bearing_rad[at - 1];
+      set_color(at, color(at - 1));
+    }
+    distance_m[at] = distance;
+    bearing_rad[at] = bearing;
+    set_color(at, c);
+  }
+  /// Adds the blobs of `other`.
+  void merge(const OmnidirectionalCamera& other) noexcept {
+    for (std::size_t i = 0; i < other.count; ++i) insert(other.distance_m[i], other.bearing_rad[i], other.color(i));
+    dropped += other.dropped;
+  }
+  void describe(FieldList& f) const {
+    f.add("count", count, unit::none, Frame::None, Fusion::Union, "blobs seen");
+    f.add("dropped", dropped, unit::none, Frame::None, Fusion::Union, "blobs beyond the capacity");
+    f.add("distance", distance_m, unit::m, Frame::Body, Fusion::Union, "along the ground").used_by = "count";
+    f.add("bearing", bearing_rad, unit::rad, Frame::Body, Fusion::Union, "counter-clockwise from forward").used_by =
+        "count";
+    f.add("rgb", rgb, unit::none, Frame::None, Fusion::Union, "r, g, b of each blob, 0 to 255").used_by = "count";
+  }
+
+ private:
+  void set_color(std::size_t i, Rgb c) noexcept {
+    rgb[3 * i] = c.r;
+    rgb[3 * i + 1] = c.g;
+    rgb[3 * i + 2] = c.b;
+  }
+};
+
+/// What a camera with a lens sees, in pixels from the upper left corner of its image: x to the right, y downwards. The
+/// nearest first; the farthest are dropped when there are more than `kCapacity`. A robot's own LEDs are not among them.
+struct PerspectiveCamera : Reading {
+  static constexpr std::string_view kName = "perspective_camera";
+  static constexpr std::string_view kDoc = "Coloured blobs in an image, in pixels.";
+  static constexpr std::size_t kCapacity = 64;
+
+  std::uint32_t count = 0;
+  std::uint32_t dropped = 0;    ///< seen beyond the capacity
+  std::uint32_t width_px = 0;   ///< of the image
+  std::uint32_t height_px = 0;  ///< of the image
+  std::array<float, kCapacity> x_px{};
+  std::array<float, kCapacity> y_px{};
+  std::array<std::uint8_t, 3 * kCapacity> rgb{};
+
+  Rgb color(std::size_t i) const noexcept { return {rgb[3 * i], rgb[3 * i + 1], rgb[3 * i + 2]}; }
+
+  /// Adds one behind those that are there; counts it as dropped when full.
+  void append(float x, float y, Rgb c) noexcept {
+    if (count == kCapacity) {
+      ++dropped;
+      return;
+    }
+    x_px[count] = x;
+    y_px[count] = y;
+    rgb[3 * count] = c.r;
+    rgb[3 * count + 1] = c.g;
+    rgb[3 * count + 2] = c.b;
+    ++count;
+  }
+  /// Adds the blobs of `other`, whose image has as many pixels.
+  void merge(const PerspectiveCamera& other) noexcept {
+    for (std::size_t i = 0; i < other.count; ++i) append(other.x_px[i], other.y_px[i], other.color(i));
+    dropped += other.dropped;
+  }
+  void describe(FieldList& f) const {
+    f.add("count", count, unit::none, Frame::None, Fusion::Union, "blobs seen");
+    f.add("dropped", dropped, unit::none, Frame::None, Fusion::Union, "blobs beyond the capacity");
+    f.add("width", width_px, unit::none, Frame::None, Fusion::Real, "pixels of the image from left to right");
+    f.add("height", height_px, unit::none, Frame::None, Fusion::Real, "pixels of the image from top to bottom");
+    f.add("x", x_px, unit::none, Frame::Sensor, Fusion::Union, "pixels from the left").used_by = "count";
+    f.add("y", y_px, unit::none, Frame::Sensor, Fusion::Union, "pixels from the top").used_by = "count";
+    f.add("rgb", rgb, unit::none, Frame::None, Fusion::Union, "r, g, b of each blob, 0 to 255").used_by = "count";
+  }
+};
+
+}  // namespace tandem::hal

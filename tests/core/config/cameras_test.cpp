@@ -1,0 +1,130 @@
+// What files say of cameras, of the LEDs that they see, and of their media.
+#include <gmock/gmock.h>
+#include <numbers>
+
+#include "core/config/xml.hpp"
+#include "tests/core/config/reading.hpp"
+
+namespace tandem::core {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr double kDeg = std::numbers::pi / 180.0;
+
+/// As in the documentation of ARGoS, but for the places.
+Parts argos() {
+  Parts parts;
+  parts.controllers =
+      R"(<controllers><wander id="w" library="wander"><actuators><leds implementation="default" medium="leds"/></actuators><sensors><colored_blob_omnidirectional_camera implementation="rot_z_only" medium="leds" show_rays="true"/><colored_blob_perspective_camera implementation="default" medium="leds" show_rays="true"/></sensors></wander></controllers>)";
+  parts.things =
+      R"(<foot-bot id="fb" omnidirectional_camera_aperture="50" perspective_camera_front="true" perspective_camera_aperture="40" perspective_camera_focal_length="0.05" perspective_camera_range="7"><body position="0,0,0"/><controller config="w"/></foot-bot>)"
+      R"(<eye-bot id="eb" camera_front="true" camera_aperture="20" camera_range="10"><body position="1,1,1"/><controller config="w"/></eye-bot>)"
+      R"(<box id="b" size="0.4,0.2,0.3" movable="false"><body position="-1,0,0"/><leds medium="leds"><led offset="0.2,0,0.3" anchor="origin" color="red"/><led offset="0,0,0.3" color="1,2,3"/></leds></box>)"
+      R"(<light id="l" position="0,1,1" color="green" medium="leds"/>)";
+  parts.rest = R"(<media><led id="leds" index="grid" grid_size="1,1,1"/></media>)";
+  return parts;
+}
+
+TEST(Cameras, AreReadFromFilesOfArgos) {
+  const Outcome out = read(argos().text(), {},
+                           {{"e-puck", "foot-bot", "eye-bot"},
+                            {"kinematics2d"},
+                            {"omnidirectional_camera", "perspective_camera"},
+                            {"leds"}});
+  const Scenario& s = out.good();
+  EXPECT_EQ(out.text(), "");
+  ASSERT_EQ(s.controllers[0].sensors.size(), 2U);
+  EXPECT_EQ(s.controllers[0].sensors[0].device, "omnidirectional_camera");
+  EXPECT_EQ(s.controllers[0].sensors[0].implementation, "rot_z_only");
+  EXPECT_EQ(s.controllers[0].sensors[1].device, "perspective_camera");
+  ASSERT_EQ(s.robots.size(), 2U);
+  const CameraConfig& foot = s.robots[0].camera;
+  EXPECT_NEAR(foot.omni_aperture_rad, 50 * kDeg, 1e-12);
+  EXPECT_NEAR(foot.aperture_rad, 40 * kDeg, 1e-12);
+  EXPECT_EQ(foot.focal_length_m, 0.05);
+  EXPECT_EQ(foot.range_m, 7.0);
+  EXPECT_TRUE(foot.front);
+  EXPECT_NEAR(s.robots[1].camera.aperture_rad, 20 * kDeg, 1e-12);
+  EXPECT_EQ(s.robots[1].camera.range_m, 10.0);
+  EXPECT_TRUE(s.robots[1].camera.front);
+  ASSERT_EQ(s.objects.size(), 1U);
+  ASSERT_EQ(s.objects[0].leds.size(), 2U);
+  EXPECT_EQ(s.objects[0].leds[0].p_O, (Vec3{0.2, 0.0, 0.3}));
+  EXPECT_EQ(s.objects[0].leds[0].rgb, (std::array<std::uint8_t, 3>{255, 0, 0}));
+  EXPECT_EQ(s.objects[0].leds[1].rgb, (std::array<std::uint8_t, 3>{1, 2, 3}));
+  EXPECT_EQ(led_medium_number(s.media, s.objects[0].led_medium), 1);
+  EXPECT_EQ(led_medium_number(s.media, s.lights[0].medium), 1);
+  EXPECT_EQ(led_medium_number(s.media, ""), 0);
+  EXPECT_EQ(led_medium_number(s.media, "none"), 0);
+}
+
+TEST(Cameras, EffectiveSettingsReadBackAsTheSame) {
+  const KnownNames known = {
+      {"e-puck", "foot-bot", "eye-bot"}, {"kinematics2d"}, {"omnidirectional_camera", "perspective_camera"}, {"leds"}};
+  Parts parts = argos();
+  parts.things += R"(<foot-bot id="plain"><body position="2,0,0"/><controller config="w"/></foot-bot>)";
+  const Scenario a = read(parts.text(), {}, known).good();
+  const std::string effective = effective_settings(a);
+  EXPECT_THAT(effective, HasSubstr("omnidirectional_camera_aperture=\"70 deg\""));
+  const Scenario b = read(effective, {}, known).good();
+  ASSERT_EQ(a.robots.size(), b.robots.size());
+  for (std::size_t i = 0; i < a.robots.size(); ++i) EXPECT_EQ(a.robots[i].camera, b.robots[i].camera);
+  ASSERT_EQ(b.objects[0].leds.size(), 2U);
+  EXPECT_EQ(a.objects[0].leds[1].p_O, b.objects[0].leds[1].p_O);
+  EXPECT_EQ(effective_settings(b), effective);
+}
+
+TEST(Cameras, ErrorsNameTheirLine) {
+  const auto problem_with = [](const std::string& things) {
+    Parts parts;
+    parts.things = things;
+    return read(parts.text()).text();
+  };
+  const std::string rest = R"(><body position="0,0,0"/><controller config="w"/></)";
+  EXPECT_THAT(problem_with(R"(<e-puck id="ep" omnidirectional_camera_aperture="70")" + rest + "e-puck>"),
+              HasSubstr("file.xml:6: error"));
+  EXPECT_THAT(problem_with(R"(<foot-bot id="fb" omnidirectional_camera_aperture="90")" + rest + "foot-bot>"),
+              HasSubstr("file.xml:6: error"));
+  EXPECT_THAT(problem_with(R"(<foot-bot id="fb" camera_front="true")" + rest + "foot-bot>"),
+              HasSubstr("has no attribute 'camera_front'"));
+  EXPECT_THAT(problem_with(R"(<eye-bot id="eb" camera_range="-1")" + rest + "eye-bot>"),
+              HasSubstr("file.xml:6: error"));
+}
+
+TEST(Leds, ErrorsNameTheirLine) {
+  const auto problem_with = [](const std::string& leds, const std::string& media = "") {
+    Parts parts;
+    parts.things = "<box id=\"b\" size=\"0.4,0.2,0.3\"><body position=\"-1,0,0\"/>\n" + leds + "</box>";
+    parts.rest = media;
+    return read(parts.text()).text();
+  };
+  EXPECT_EQ(problem_with(R"(<leds><led offset="0,0,0.3" color="red"/></leds>)"), "");
+  EXPECT_THAT(problem_with(R"(<leds><led offset="0,0,0.3" color="rad"/></leds>)"),
+              HasSubstr("file.xml:7: error: <led color>: 'rad'"));
+  EXPECT_THAT(problem_with(R"(<leds><led offset="0,0,0.3"/></leds>)"), HasSubstr("color"));
+  EXPECT_THAT(problem_with(R"(<leds><led offset="0,0,0.3" color="red" anchor="top"/></leds>)"),
+              HasSubstr("file.xml:7: error"));
+  EXPECT_THAT(
+      problem_with(R"(<leds medium="b"><led offset="0,0,0.3" color="red"/></leds>)", R"(<media><led id="a"/></media>)"),
+      HasSubstr("file.xml:7: error: <leds medium>: <media> has no <led> with id 'b'; it has: a"));
+  const std::string inside = problem_with(R"(<leds><led offset="0.1,0,0.15" color="red"/></leds>)");
+  EXPECT_THAT(inside, HasSubstr("file.xml:7: warning"));
+  EXPECT_THAT(inside, HasSubstr("no camera sees it"));
+}
+
+TEST(Leds, CamerasOfAnUnknownMediumAreErrors) {
+  Parts parts = argos();
+  parts.rest = R"(<media><led id="others"/></media>)";
+  const std::string text = read(parts.text(), {},
+                                {{"e-puck", "foot-bot", "eye-bot"},
+                                 {"kinematics2d"},
+                                 {"omnidirectional_camera", "perspective_camera"},
+                                 {"leds"}})
+                               .text();
+  EXPECT_THAT(text, HasSubstr("file.xml:3: error"));
+  EXPECT_THAT(text, HasSubstr("'leds'; it has: others"));
+}
+
+}  // namespace
+}  // namespace tandem::core
