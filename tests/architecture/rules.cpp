@@ -15,6 +15,7 @@ const std::map<std::string, std::set<std::string>> kLayers = {
     {"controllers", {"controllers", "hal"}},
     {"bridges", {"bridges", "hal"}},
     {"core", {"core", "hal"}},
+    {"hooks", {"hooks", "core", "hal"}},
     {"mixed_reality", {"mixed_reality", "core", "bridges", "controllers", "hal"}},
     {"app", {"app", "mixed_reality", "core", "bridges", "controllers", "hal"}}};
 

@@ -11,6 +11,7 @@
 
 #include "hal/device/ring_sensors.hpp"
 #include "hal/device/wheels.hpp"
+#include "hal/params.hpp"
 #include "hal/robot.hpp"
 #include "hal/spec/epuck.hpp"
 

@@ -1,0 +1,132 @@
+#include "controllers/steering/nearby.hpp"
+
+#include <gtest/gtest.h>
+#include <numbers>
+
+#include "controllers/steering/chance.hpp"
+#include "controllers/steering/drive.hpp"
+#include "hal/spec/footbot.hpp"
+#include "tests/controllers/test_robot.hpp"
+
+namespace tandem::controllers {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+
+struct Nearby : ::testing::Test {
+  test::TestRobot robot{hal::footbot::kDataSheet};
+  hal::RangeAndBearing heard;
+
+  Thing thing() const { return nearest_thing(robot.proximity, hal::footbot::kRing, heard); }
+  /// What the ring sees of a disc.
+  void see_disc(double x_m, double y_m, double radius_m) {
+    robot.clear();
+    for (std::size_t i = 0; i < 24; ++i) {
+      const hal::Mount& m = hal::footbot::kRing[i];
+      const double dx = std::cos(m.bearing_rad), dy = std::sin(m.bearing_rad);
+      const double along = (x_m - m.x_m) * dx + (y_m - m.y_m) * dy;
+      const double aside = (x_m - m.x_m) * dy - (y_m - m.y_m) * dx;
+      if (along <= 0.0 || std::fabs(aside) >= radius_m) continue;
+      const double gap_m = along - std::sqrt(radius_m * radius_m - aside * aside);
+      if (gap_m < 0.1) robot.proximity.distance_m[i] = static_cast<float>(gap_m);
+    }
+  }
+  void hear(double range_m, double bearing_rad) {
+    const std::uint8_t byte = 0;
+    heard.insert(static_cast<float>(range_m), static_cast<float>(bearing_rad), 0.0F, &byte, 1);
+  }
+};
+
+TEST_F(Nearby, NothingIsSeenWhereNothingIs) {
+  EXPECT_FALSE(thing().seen);
+  EXPECT_EQ(push_away(robot.proximity, hal::footbot::kRing).length(), 0.0);
+}
+
+TEST_F(Nearby, ADiscIsSeenWhereItIsAndAsBroadAsItIs) {
+  for (const double bearing_rad : {0.0, 1.0, 3.1, -2.0}) {
+    see_disc(0.17 * std::cos(bearing_rad), 0.17 * std::sin(bearing_rad), 0.06);
+    EXPECT_TRUE(thing().seen);
+    EXPECT_NEAR(wrapped(thing().bearing_rad - bearing_rad), 0.0, 0.1);
+    EXPECT_NEAR(thing().gap_m, 0.17 - 0.06 - hal::footbot::kBodyRadius_m, 0.005);
+    EXPECT_LT(thing().breadth_m, 0.12);
+    EXPECT_GT(thing().breadth_m, 0.025);  // two neighbouring sensors
+  }
+}
+
+TEST_F(Nearby, AWallIsBroaderThanAnyObject) {
+  test::Room room{.walls = {{1, 0, 0.12}}};
+  room.look(robot);
+  EXPECT_NEAR(thing().bearing_rad, 0.0, 0.01);
+  EXPECT_GT(thing().breadth_m, 0.15);
+}
+
+TEST_F(Nearby, RobotsThatSendAreNoThings) {
+  see_disc(0.2, 0.0, hal::footbot::kBodyRadius_m);
+  EXPECT_TRUE(thing().seen);
+  hear(0.2, 0.0);
+  EXPECT_FALSE(thing().seen);
+  see_disc(0.0, 0.16, 0.06);  // something else, to the left
+  EXPECT_TRUE(thing().seen);
+  EXPECT_NEAR(thing().bearing_rad, 0.5 * kPi, 0.1);
+}
+
+TEST_F(Nearby, PushesAwayFromWhatIsNearButNotFromTheLoad) {
+  see_disc(0.0, 0.16, 0.06);
+  const Vector push = push_away(robot.proximity, hal::footbot::kRing);
+  EXPECT_LT(push.y, -0.03);
+  EXPECT_NEAR(push.x, 0.0, 1e-6);
+  see_disc(0.16, 0.0, 0.06);
+  EXPECT_GT(push_away(robot.proximity, hal::footbot::kRing).length(), 0.03);
+  EXPECT_EQ(push_away(robot.proximity, hal::footbot::kRing, 1.0).length(), 0.0);
+}
+
+TEST_F(Nearby, TheLightIsWhereTheSensorsSeeMoreOfIt) {
+  hal::Light light;
+  light.count = 24;
+  for (std::size_t i = 0; i < 24; ++i)
+    light.level[i] = static_cast<float>(std::max(0.0, std::cos(hal::footbot::kRing[i].bearing_rad - 2.0)));
+  EXPECT_NEAR(to_light(light, hal::footbot::kRing).bearing_rad(), 2.0, 1e-6);
+}
+
+TEST(Wrapped, LiesBetweenMinusPiAndPi) {
+  EXPECT_DOUBLE_EQ(wrapped(kPi), kPi);
+  EXPECT_DOUBLE_EQ(wrapped(-kPi), kPi);
+  EXPECT_NEAR(wrapped(7.0), 7.0 - 2.0 * kPi, 1e-12);
+  EXPECT_NEAR(wrapped(-20.0), -20.0 + 6.0 * kPi, 1e-12);
+  EXPECT_EQ(wrapped(0.5), 0.5);
+}
+
+TEST(Drive, LeadsToTheBearing) {
+  hal::WheelSpeeds wheels;
+  drive_towards(wheels, 0.0, 0.1);
+  EXPECT_EQ(wheels.left_m_s, 0.1);
+  EXPECT_EQ(wheels.right_m_s, 0.1);
+  drive_towards(wheels, 0.3, 0.1);  // left: the right wheel is faster
+  EXPECT_LT(wheels.left_m_s, 0.1);
+  EXPECT_EQ(wheels.right_m_s, 0.1);
+  drive_towards(wheels, -1.0, 0.1);  // on the spot
+  EXPECT_EQ(wheels.left_m_s, 0.05);
+  EXPECT_EQ(wheels.right_m_s, -0.05);
+  EXPECT_FALSE(turn_by(wheels, 0.5, 0.04));
+  EXPECT_EQ(wheels.right_m_s, 0.04);
+  EXPECT_TRUE(turn_by(wheels, 0.05, 0.04));
+  EXPECT_EQ(wheels.right_m_s, 0.0);
+}
+
+TEST(Chance, IsUniformAndFollowsItsSeed) {
+  Chance a(5), b(5), c(6);
+  double sum = 0.0;
+  int differ = 0;
+  for (int i = 0; i < 10000; ++i) {
+    const double x = a.between(2.0, 4.0);
+    EXPECT_EQ(x, b.between(2.0, 4.0));
+    differ += x != c.between(2.0, 4.0) ? 1 : 0;
+    ASSERT_TRUE(x >= 2.0 && x < 4.0);
+    sum += x;
+  }
+  EXPECT_NEAR(sum / 10000, 3.0, 0.03);  // five standard errors
+  EXPECT_GT(differ, 9990);
+}
+
+}  // namespace
+}  // namespace tandem::controllers
