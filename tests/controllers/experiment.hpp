@@ -37,18 +37,23 @@ inline core::WorldOptions seeded(std::uint64_t seed, std::int64_t threads = 0) {
   return options;
 }
 
-/// An experiment of configs/ with some values set, and the loader that must outlive its world.
+/// An experiment of configs/ with some values set, in another engine where one is named, and the loader that must
+/// outlive its world.
 struct Experiment {
   std::unique_ptr<hal::PluginLoader> loader;
   std::unique_ptr<core::World> world;
 
   explicit Experiment(const std::string& config, const std::vector<std::string>& overrides = {},
-                      const core::WorldOptions& options = {})
+                      const core::WorldOptions& options = {}, const std::string& engine = "")
       : loader(std::make_unique<hal::PluginLoader>(
             std::vector<std::filesystem::path>{std::string(TANDEM_BINARY_DIR) + "/lib"})) {
     core::Problems problems;
-    const auto scenario = core::read_experiment(std::string(TANDEM_SOURCE_DIR) + "/configs/" + config, overrides,
-                                                known_names(), problems);
+    auto scenario = core::read_experiment(std::string(TANDEM_SOURCE_DIR) + "/configs/" + config, overrides,
+                                          known_names(), problems);
+    if (scenario && !engine.empty()) {
+      scenario->engines.at(0).kind = engine;
+      scenario->engines.at(0).options.name = engine;
+    }
     if (scenario) world = core::World::make(*scenario, *loader, options, problems);
     for (const core::Problem& p : problems) ADD_FAILURE() << core::to_text(p);
     if (world == nullptr) throw std::runtime_error(config + " does not load");

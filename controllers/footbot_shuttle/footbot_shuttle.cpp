@@ -1,0 +1,44 @@
+#include "controllers/footbot_shuttle/footbot_shuttle.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "controllers/steering/nearby.hpp"
+
+namespace tandem::controllers {
+namespace {
+
+constexpr double kTurnGain_hz = 5.0;  // of what is left of a turn, a second
+constexpr double kTurned_rad = 0.001;
+
+}  // namespace
+
+FootbotShuttle::FootbotShuttle(hal::Robot& robot, const Params& params)
+    : odometry_(robot.sensor<hal::Odometry>()),
+      wheels_(robot.actuator<hal::WheelSpeeds>()),
+      wheel_base_m_(robot.data_sheet().wheel_base_m),
+      params_(params) {}
+
+void FootbotShuttle::step() noexcept {
+  wheels_.set(0.0, 0.0);
+  if (odometry_.validity != hal::Validity::Fresh || done_ == params_.trips) return;
+  if (turning_) {
+    const double left_rad = wrapped((home_ ? std::numbers::pi : 0.0) - odometry_.heading_rad);
+    if (std::fabs(left_rad) > kTurned_rad) {
+      const double most_m_s = 0.5 * params_.velocity_m_s;
+      const double rim_m_s = std::clamp(0.5 * kTurnGain_hz * wheel_base_m_ * left_rad, -most_m_s, most_m_s);
+      wheels_.set(-rim_m_s, rim_m_s);
+      return;
+    }
+    turning_ = false;
+    if (!home_ && ++done_ == params_.trips) return;
+  }
+  turning_ = home_ ? odometry_.x_m <= 0.0 : odometry_.x_m >= params_.distance_m;
+  if (turning_)
+    home_ = !home_;
+  else
+    wheels_.set(params_.velocity_m_s, params_.velocity_m_s);
+}
+
+}  // namespace tandem::controllers
