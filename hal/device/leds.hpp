@@ -42,6 +42,24 @@ struct RingLeds : Command {
   }
 };
 
+/// The upper of an eye-bot's two rings, which is seen from the side; `leds` is the lower one, seen from beneath. Safe
+/// value: all off.
+struct UpperRingLeds : RingLeds {
+  static constexpr std::string_view kName = "upper_leds";
+  static constexpr std::string_view kDoc = "Colours of the upper LED ring.";
+};
+
+/// The light beside an eye-bot's camera. Safe value: off.
+struct CameraLed : Command {
+  static constexpr std::string_view kName = "camera_led";
+  static constexpr std::string_view kDoc = "Colour of the light beside the camera.";
+
+  std::array<std::uint8_t, 3> rgb{};
+
+  void set(Rgb c) noexcept { rgb = {c.r, c.g, c.b}; }
+  void describe(FieldList& f) const { f.add("rgb", rgb, unit::none, Frame::None, Fusion::Real, "r, g, b, 0 to 255"); }
+};
+
 /// The green light inside an e-puck's translucent body. Safe value: off.
 struct BodyLed : Command {
   static constexpr std::string_view kName = "body_led";

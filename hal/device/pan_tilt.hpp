@@ -1,0 +1,37 @@
+// The head that an eye-bot's camera hangs in.
+#pragma once
+#include "hal/port.hpp"
+
+namespace tandem::hal {
+
+/// Where the camera is to look, and whether its laser points there. Safe value: straight down, laser off.
+struct PanTiltDrive : Command {
+  static constexpr std::string_view kName = "pan_tilt";
+  static constexpr std::string_view kDoc = "Where the camera's head is to look.";
+
+  double pan_rad = 0.0;   ///< counter-clockwise from forward
+  double tilt_rad = 0.0;  ///< 0 straight down, pi/2 level, along the pan angle
+  bool laser = false;
+
+  void describe(FieldList& f) const {
+    f.add("pan", pan_rad, unit::rad, Frame::Body, Fusion::Real, "counter-clockwise from forward");
+    f.add("tilt", tilt_rad, unit::rad, Frame::Body, Fusion::Real, "0 straight down, pi/2 level");
+    f.add("laser", laser, unit::none, Frame::None, Fusion::Real, "lit");
+  }
+};
+
+/// Where the camera looks.
+struct PanTiltEncoder : Reading {
+  static constexpr std::string_view kName = "pan_tilt_encoder";
+  static constexpr std::string_view kDoc = "Where the camera's head looks.";
+
+  double pan_rad = 0.0;   ///< counter-clockwise from forward
+  double tilt_rad = 0.0;  ///< 0 straight down, pi/2 level
+
+  void describe(FieldList& f) const {
+    f.add("pan", pan_rad, unit::rad, Frame::Body, Fusion::Real, "counter-clockwise from forward");
+    f.add("tilt", tilt_rad, unit::rad, Frame::Body, Fusion::Real, "0 straight down, pi/2 level");
+  }
+};
+
+}  // namespace tandem::hal
