@@ -10,6 +10,7 @@
 #include <thread>
 #include <unistd.h>
 
+#include "bridges/emulation/event_log.hpp"
 #include "bridges/epuck_emulator/emulator.hpp"
 #include "bridges/link/link_text.hpp"
 #include "hal/spec/epuck.hpp"
@@ -34,10 +35,10 @@ class EmulatedEpuck {
     options_.link = "pty:" + testing::TempDir() + "tandem_" + std::to_string(getpid()) + "_" + name;
     options_.firmware = "gctronic";
     options_.body = &body_;
-    options_.events = [this](hal::TimeNs at, std::string_view event, const emulator::EventFields& fields) {
+    options_.events = [this](hal::TimeNs at, std::string_view event, const bridges::EventFields& fields) {
       if (event != "wheels") return;
       Wheels wheels{at, 0, 0};
-      for (const emulator::EventField& f : fields) {
+      for (const bridges::EventField& f : fields) {
         if (f.name == "left") wheels.left = std::get<std::int64_t>(f.value);
         if (f.name == "right") wheels.right = std::get<std::int64_t>(f.value);
       }
