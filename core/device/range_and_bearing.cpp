@@ -86,6 +86,7 @@ class RabSensor final : public Sensor {
   }
 
  private:
+  static constexpr std::size_t kFew = 24;    // up to which sorting by insertion is all that is needed
   static constexpr double kLevel_m = 0.02;   // lines that rise by no more count as level
   static constexpr double kOnTop_m = 0.005;  // a board this little beneath a body's top sees over it
 
@@ -134,15 +135,23 @@ class RabSensor final : public Sensor {
     return wx * wx + wy * wy + sender.wz * sender.wz <= reach * reach;
   }
 
-  void hear_all(const DeviceContext& context, std::size_t row, double farthest_m,
-                hal::RangeAndBearing& port) const noexcept {
+  /// The nearest first: so each message is put behind those that are there.
+  void hear_all(const DeviceContext& context, std::size_t row, double farthest_m, hal::RangeAndBearing& port) noexcept {
     const Bodies& b = context.stores.bodies;
     const double height_m = board_m(context.stores, row);
+    if (near_.capacity() == 0) make_room(context.stores, farthest_m);
+    near_.clear();
     context.stores.body_index.for_each_near(b.x_m[row], b.y_m[row], farthest_m, [&](const IndexEntry& o) {
       Sender sender{};
-      if (o.row() != row && in_range(context, o.row(), o.x_m - b.x_m[row], o.y_m - b.y_m[row], height_m, sender))
-        receive(context, row, height_m, sender, port);
+      if (o.row() != row && in_range(context, o.row(), o.x_m - b.x_m[row], o.y_m - b.y_m[row], height_m, sender)) {
+        const double distance2 = sender.wx * sender.wx + sender.wy * sender.wy + sender.wz * sender.wz;
+        near_.push_back({distance2, o.row(), sender.wx, sender.wy, o.radius_m});
+      }
     });
+    sort_near(farthest_m);
+    for (const Neighbour& n : sorted_) {
+      receive(context, row, height_m, {n.row, n.wx, n.wy, board_m(context.stores, n.row) - height_m}, port);
+    }
   }
 
   void hear_in_shadows(const DeviceContext& context, std::size_t row, double farthest_m,
@@ -193,6 +202,11 @@ class RabSensor final : public Sensor {
   /// insertion, for which hardly anything is left to do.
   void sort_near(double farthest_m) noexcept {
     constexpr std::size_t kRings = 64;
+    if (near_.size() <= kFew) {
+      sorted_.clear();
+      for (const Neighbour& n : near_) insert_sorted(n);
+      return;
+    }
     const double rings_per_m2 = kRings / (farthest_m * farthest_m);
     const auto ring_of = [&](const Neighbour& n) {
       return std::min(kRings - 1, static_cast<std::size_t>(n.distance2 * rings_per_m2));
@@ -202,12 +216,16 @@ class RabSensor final : public Sensor {
     for (std::size_t ring = 0; ring < kRings; ++ring) start[ring + 1] += start[ring];
     sorted_.resize(near_.size());
     for (const Neighbour& n : near_) sorted_[start[ring_of(n)]++] = n;
-    for (std::size_t i = 1; i < sorted_.size(); ++i) {
-      const Neighbour n = sorted_[i];
-      std::size_t at = i;
-      for (; at > 0 && n < sorted_[at - 1]; --at) sorted_[at] = sorted_[at - 1];
-      sorted_[at] = n;
-    }
+    for (std::size_t i = 1; i < sorted_.size(); ++i) sink(i, sorted_[i]);
+  }
+  void insert_sorted(const Neighbour& n) noexcept {
+    sorted_.push_back(n);
+    sink(sorted_.size() - 1, n);
+  }
+  /// Puts `n` where it belongs among the `at` entries that are in order.
+  void sink(std::size_t at, const Neighbour n) noexcept {
+    for (; at > 0 && n < sorted_[at - 1]; --at) sorted_[at] = sorted_[at - 1];
+    sorted_[at] = n;
   }
 
   /// Bodies that span all heights of level lines cast a shadow; those that span some are kept to be looked at one by
@@ -267,11 +285,16 @@ class RabSensor final : public Sensor {
       wx += options_.noise_std_dev_m * noise[0];
       wy += options_.noise_std_dev_m * noise[1];
     }
-    const double bx = b.cos_h[row] * wx + b.sin_h[row] * wy;
-    const double by = b.cos_h[row] * wy - b.sin_h[row] * wx;
     const double flat2 = wx * wx + wy * wy;
     const double wz = sender.wz;
-    port.insert(static_cast<float>(std::sqrt(flat2 + wz * wz)), static_cast<float>(std::atan2(by, bx)),
+    const auto range = static_cast<float>(std::sqrt(flat2 + wz * wz));
+    if (port.count == hal::RangeAndBearing::kCapacity && range >= port.range_m[hal::RangeAndBearing::kCapacity - 1]) {
+      ++port.dropped;
+      return;
+    }
+    const double bx = b.cos_h[row] * wx + b.sin_h[row] * wy;
+    const double by = b.cos_h[row] * wy - b.sin_h[row] * wx;
+    port.insert(range, static_cast<float>(std::atan2(by, bx)),
                 wz == 0.0 ? 0.0F : static_cast<float>(std::atan2(wz, std::sqrt(flat2))), message.payload.data(),
                 message.size);
   }

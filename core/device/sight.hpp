@@ -15,6 +15,7 @@ inline bool in_sight(const SpaceStores& stores, double ax, double ay, double az,
   if (stores.objects.empty()) return true;
   // A thing on the line lies within the index's reach of one of these points.
   const double length = std::sqrt((bx - ax) * (bx - ax) + (by - ay) * (by - ay));
+  if (length < stores.static_index.clearance_m(ax, ay) && stores.movable_index.empty()) return true;
   const int hops = 1 + static_cast<int>(length / (1.9 * stores.static_index.reach()));
   for (int i = 0; i < hops; ++i) {
     const double t = (i + 0.5) / hops;

@@ -96,6 +96,32 @@ void ObjectIndex::build_of(const std::vector<Object>& objects, Listed&& listed, 
     if (!listed(objects[i])) continue;
     for_each_cell_of(objects[i], [&](std::size_t cell) { list_[next_[cell]++] = static_cast<std::uint32_t>(i); });
   }
+  clearances_.clear();
+  if (!each_tick) find_clearances();
+}
+
+/// Counts the cells to the nearest one that lists something, diagonal steps as one: once from the lower left corner,
+/// once from the upper right. A cell that lists nothing has nothing within reach of its points.
+void ObjectIndex::find_clearances() {
+  const std::size_t cells = static_cast<std::size_t>(columns_) * lines_;
+  std::vector<std::uint32_t> steps(cells);
+  for (std::size_t c = 0; c < cells; ++c)
+    steps[c] = (listed_[c / 64] >> (c % 64) & 1) != 0 ? 0U : std::max(columns_, lines_);
+  const auto pass = [&](std::size_t c, std::size_t x, std::size_t y, bool back) {
+    const bool first = back ? x + 1 == columns_ : x == 0;
+    const bool last = back ? x == 0 : x + 1 == columns_;
+    const auto before = [&](std::size_t k) { return back ? c + k : c - k; };
+    if (!first) steps[c] = std::min(steps[c], steps[before(1)] + 1);
+    if (back ? y + 1 == lines_ : y == 0) return;
+    steps[c] = std::min(steps[c], steps[before(columns_)] + 1);
+    if (!first) steps[c] = std::min(steps[c], steps[before(columns_ + std::size_t{1})] + 1);
+    if (!last) steps[c] = std::min(steps[c], steps[before(columns_ - std::size_t{1})] + 1);
+  };
+  for (std::size_t c = 0; c < cells; ++c) pass(c, c % columns_, c / columns_, false);
+  for (std::size_t c = cells; c-- > 0;) pass(c, c % columns_, c / columns_, true);
+  clearances_.resize(cells);
+  for (std::size_t c = 0; c < cells; ++c)
+    clearances_[c] = steps[c] == 0 ? 0.0F : static_cast<float>((steps[c] - 1) * cell_m_ + 0.999 * reach_m_);
 }
 
 double signed_distance(const Object& s, double x_m, double y_m, double& nx, double& ny) noexcept {

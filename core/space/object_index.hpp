@@ -2,6 +2,7 @@
 #pragma once
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -23,10 +24,14 @@ class ObjectIndex {
 
   /// Indices into the shapes; superset of those within `reach()` of (x, y), in rising order.
   std::span<const std::uint32_t> near(double x_m, double y_m) const noexcept {
-    const std::size_t cell =
-        static_cast<std::size_t>(at(y_m - min_y_m_, lines_)) * columns_ + at(x_m - min_x_m_, columns_);
+    const std::size_t cell = cell_at(x_m, y_m);
     if ((listed_[cell / 64] >> (cell % 64) & 1) == 0) return {};
     return {list_.data() + start_[cell], start_[cell + 1] - start_[cell]};
+  }
+  /// No listed thing lies nearer to (x, y) than this; 0 where that is not known, as among movable things.
+  double clearance_m(double x_m, double y_m) const noexcept {
+    if (list_.empty()) return std::numeric_limits<double>::infinity();
+    return clearances_.empty() ? 0.0 : clearances_[cell_at(x_m, y_m)];
   }
   double reach() const noexcept { return reach_m_; }
   double cell_size() const noexcept { return cell_m_; }
@@ -38,6 +43,11 @@ class ObjectIndex {
   };
   template <class Listed>
   void build_of(const std::vector<Object>& objects, Listed&& listed, bool each_tick, const Area& area, double reach_m);
+
+  std::size_t cell_at(double x_m, double y_m) const noexcept {
+    return static_cast<std::size_t>(at(y_m - min_y_m_, lines_)) * columns_ + at(x_m - min_x_m_, columns_);
+  }
+  void find_clearances();
 
   std::uint32_t at(double offset_m, std::uint32_t count) const noexcept {
     const double c = offset_m * per_cell_;
@@ -51,6 +61,7 @@ class ObjectIndex {
   std::vector<std::uint32_t> start_{0, 0};
   std::vector<std::uint32_t> list_;
   std::vector<std::uint64_t> listed_{0};  // a bit a cell: it lists something. Stays in the cache where start_ does not
+  std::vector<float> clearances_;         // by cell, in m; empty where things move
   std::vector<std::uint32_t> next_;       // while building
 };
 

@@ -85,6 +85,26 @@ Object box(double x, double y, double hx, double hy, double heading) {
   return s;
 }
 
+TEST(ObjectIndex, KnowsNoThingNearerThanItsClearance) {
+  EXPECT_TRUE(rc::check("against every thing, also beyond the area", [](std::uint64_t seed, std::uint8_t count) {
+    std::vector<Object> shapes;
+    for (const Point& p : random_points(seed, count % 9, 12.0))
+      shapes.push_back(box(p.x, p.y, 0.05 + std::fabs(p.x) / 20.0, 0.05, p.y));
+    ObjectIndex index;
+    index.build(shapes, false, -10.0, -10.0, 10.0, 10.0, 0.2);
+    double widest = 0.0;
+    for (const Point& p : random_points(seed + 1, 200, 13.0)) {
+      const double clear = index.clearance_m(p.x, p.y);
+      double nearest = std::numeric_limits<double>::infinity();
+      double nx = 0.0, ny = 0.0;
+      for (const Object& s : shapes) nearest = std::min(nearest, signed_distance(s, p.x, p.y, nx, ny));
+      RC_ASSERT(clear == 0.0 || nearest >= clear);
+      widest = std::max(widest, clear);
+    }
+    RC_ASSERT(widest > 1.0);  // few things in much space: somewhere there is room
+  }));
+}
+
 TEST(ObjectIndex, ListsEveryShapeWithinReach) {
   std::vector<Object> shapes;
   for (const Point& p : random_points(5, 60, 4.0)) shapes.push_back(box(p.x, p.y, 0.3, 0.05, p.x * 3));
