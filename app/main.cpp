@@ -38,6 +38,10 @@ void add_bench(CLI::App& app, BenchOptions& o, int& code) {
       ->delimiter(',')
       ->check(CLI::Range(std::int64_t{1}, std::int64_t{100'000'000}));
   auto* robot = c->add_option("--robot", o.robot, "Kind of robot")->capture_default_str();
+  auto* with = c->add_option("--with", o.devices,
+                             "Devices besides proximity sensors and wheels: range_and_bearing, omnidirectional_camera "
+                             "(foot-bot)")
+                   ->delimiter(',');
   c->add_option("--engine", o.engines, "Physics engines; `tandem list engines` names them; default: its first")
       ->delimiter(',');
   c->add_option("--threads", o.threads, "Numbers of threads, e.g. 0,2; default: 0")
@@ -59,6 +63,7 @@ void add_bench(CLI::App& app, BenchOptions& o, int& code) {
   c->add_option("--plot", o.plot, "Draw wall time and speed-up against robots: FILE.svg or FILE.png (gnuplot-nox)");
   c->add_option("--from", o.from, "Take saved lines from this file instead of measuring")
       ->excludes(robot)
+      ->excludes(with)
       ->excludes(ticks)
       ->excludes(repeat);
   c->add_flag("--compare-threads", o.compare_threads,
@@ -122,8 +127,7 @@ int main(int argc, char** argv) {
                    "pty:NAME makes a pseudo-terminal of that name (a foot-bot: with a CAN adapter's slcan on it); "
                    "serial:DEVICE@BAUD; a foot-bot also can:INTERFACE and tcp-listen:PORT")
       ->required();
-  emulate_command->add_option("--log", emulate_options.log,
-                              "File for one JSON object an event; default: none");
+  emulate_command->add_option("--log", emulate_options.log, "File for one JSON object an event; default: none");
   emulate_command->add_option(
       "--firmware", emulate_options.firmware,
       "An e-puck's: btcom, gctronic (default), webots or epuck2; a foot-bot's: v4 (default) or v5");

@@ -12,6 +12,7 @@ struct BenchCase {
   std::string engine;
   std::string partition;  ///< A1 to A16; another split of the arena as it was asked for
   std::string regions;    ///< "4x4" or "auto"
+  std::string devices;    ///< that the robots have besides proximity sensors and wheels: names with commas between
   std::string density;    ///< "40 m": always that arena; "equal": it grows with the robots
   std::int64_t robots = 1;
   std::int64_t threads = 0;

@@ -53,6 +53,7 @@ void add_case_fields(Json& json, const BenchCase& c) {
       .field("engine", c.engine)
       .field("partition", c.partition)
       .field("regions", c.regions)
+      .field("devices", c.devices)
       .field("density", c.density)
       .field("assignment", assignment_word(c.assignment))
       .field("ticks", c.ticks)

@@ -71,6 +71,7 @@ hal::Result<ResultLine> parse_result_line(std::string_view text) {
   fields.text("engine", line.engine);
   fields.text("partition", line.partition);
   fields.text("regions", line.regions);
+  if (object.value().contains("devices")) fields.text("devices", line.devices);  // older lines have none
   fields.text("density", line.density);
   fields.text("assignment", line.assignment);
   fields.count("robots", 1, line.robots);
@@ -106,11 +107,9 @@ hal::Status check_alike(const std::vector<ResultLine>& lines, const std::string&
     const char* what;
     std::string ResultLine::*value;
   };
-  static constexpr Trait kTraits[] = {{"benchmark", &ResultLine::bench},
-                                      {"robot", &ResultLine::robot},
-                                      {"density", &ResultLine::density},
-                                      {"assignment", &ResultLine::assignment},
-                                      {"processor", &ResultLine::cpu_model}};
+  static constexpr Trait kTraits[] = {{"benchmark", &ResultLine::bench},       {"robot", &ResultLine::robot},
+                                      {"devices", &ResultLine::devices},       {"density", &ResultLine::density},
+                                      {"assignment", &ResultLine::assignment}, {"processor", &ResultLine::cpu_model}};
   for (const ResultLine& line : lines) {
     const ResultLine& first = lines.front();
     const auto differs = [&](const char* what, const std::string& here, const std::string& there) {

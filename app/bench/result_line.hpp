@@ -11,7 +11,7 @@ namespace tandem::app {
 
 /// What figures and comparisons need of one run.
 struct ResultLine {
-  std::string bench, robot, engine, partition, regions, density, assignment;
+  std::string bench, robot, engine, partition, regions, devices, density, assignment;
   std::int64_t robots = 0;
   std::int64_t threads = 0;
   double virtual_s = 0.0;

@@ -38,13 +38,24 @@ void add_walls(core::Scenario& scenario, double scale) {
   }
 }
 
-core::ControllerConfig diffusion_controller(const std::string& robot) {
+/// Range-and-bearing and cameras are taken by controllers that are told to, and change nothing of what they do.
+core::ControllerConfig diffusion_controller(const std::string& robot, const std::string& devices) {
   core::ControllerConfig config;
   config.id = "diffusion";
   config.label = robot == "foot-bot" ? "footbot_diffusion" : "epuck_diffusion";
   config.library = config.label;
   config.sensors.push_back({"proximity", "default", {}});
   config.actuators.push_back({"differential_steering", "default", {}});
+  if (devices.find("range_and_bearing") != std::string::npos) {
+    config.sensors.push_back({"range_and_bearing", "default", {}});
+    config.actuators.push_back({"range_and_bearing", "default", {}});
+    config.params.attributes.push_back({"talk", "true", 0});
+  }
+  if (devices.find("omnidirectional_camera") != std::string::npos) {
+    config.sensors.push_back({"omnidirectional_camera", "default", {}});
+    config.actuators.push_back({"leds", "default", {}});
+    config.params.attributes.push_back({"look", "true", 0});
+  }
   return config;
 }
 
@@ -85,7 +96,7 @@ core::Scenario diffusion_scene(const BenchCase& c) {
   engine.id = c.engine;
   engine.regions = c.regions;
   scenario.engines.push_back(engine);
-  scenario.controllers.push_back(diffusion_controller(c.robot));
+  scenario.controllers.push_back(diffusion_controller(c.robot, c.devices));
   scenario.robots.push_back(scattered_robots(c, scale));
   return scenario;
 }

@@ -39,6 +39,11 @@ hal::Status check_name(std::string_view what, const std::string& name, const std
 hal::Status check_words(const BenchOptions& o) {
   if (auto s = check_name("benchmark", o.name, {"diffusion"}); !s.ok()) return s;
   if (auto s = check_name("robot", o.robot, {"e-puck", "foot-bot"}); !s.ok()) return s;
+  std::vector<std::string> devices{"range_and_bearing"};
+  if (o.robot == "foot-bot") devices.emplace_back("omnidirectional_camera");
+  for (const std::string& device : o.devices) {
+    if (auto s = check_name("device of the " + o.robot + " to measure with", device, devices); !s.ok()) return s;
+  }
   for (const std::string& engine : o.engines) {
     // Saved lines may come from another build.
     if (auto s = check_name("engine", engine, known_names().engines); !s.ok() && o.from.empty()) return s;
@@ -81,13 +86,15 @@ hal::Result<Plan> plan_of(const BenchOptions& o) {
 /// follow one another.
 std::vector<BenchCase> cases_of(const Plan& plan, const BenchOptions& o) {
   std::vector<BenchCase> cases;
+  std::string devices;
+  for (const std::string& device : o.devices) devices += (devices.empty() ? "" : ",") + device;
   for (std::int64_t repeat = 0; repeat < o.repeat; ++repeat) {
     for (const std::string& engine : plan.engines) {
       for (const Partition& partition : plan.partitions) {
         for (const std::int64_t robots : plan.robots) {
           for (const std::int64_t threads : plan.threads) {
-            cases.push_back({o.robot, engine, partition.name, partition.regions, o.density.empty() ? "40 m" : o.density,
-                             robots, threads,
+            cases.push_back({o.robot, engine, partition.name, partition.regions, devices,
+                             o.density.empty() ? "40 m" : o.density, robots, threads,
                              o.assignment == "dynamic" ? core::Assignment::Dynamic : core::Assignment::Static, o.ticks,
                              repeat});
           }

@@ -40,6 +40,7 @@ struct BenchOptions {
   std::string name = "diffusion";
   std::vector<std::int64_t> robots;
   std::string robot = "e-puck";
+  std::vector<std::string> devices;  ///< besides proximity sensors and wheels
   std::vector<std::string> engines;
   std::vector<std::int64_t> threads;
   std::vector<std::string> partitions;  ///< by name: A1 to A16

@@ -10,9 +10,14 @@ EpuckDiffusion::EpuckDiffusion(hal::Robot& robot, const Params& params)
       directions_(hal::ring_directions(robot.data_sheet().proximity)),
       delta_(static_cast<float>(params.delta)),
       tan_alpha_(static_cast<float>(std::tan(params.alpha_rad))),
-      velocity_m_s_(params.velocity_m_s) {}
+      velocity_m_s_(params.velocity_m_s) {
+  if (!params.talk) return;
+  heard_ = &robot.sensor<hal::RangeAndBearing>();
+  said_ = &robot.actuator<hal::RangeAndBearingSend>();
+}
 
 void EpuckDiffusion::step() noexcept {
+  if (said_ != nullptr) said_->say(static_cast<std::uint8_t>(heard_->count));
   if (proximity_.validity != hal::Validity::Fresh) {  // blind: stand still
     wheels_.set(0.0, 0.0);
     return;

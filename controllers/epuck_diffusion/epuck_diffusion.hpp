@@ -1,6 +1,7 @@
 // Diffusion: robots spread out by driving straight and turning away from whatever is near.
 #pragma once
 #include "hal/controller.hpp"
+#include "hal/device/range_and_bearing.hpp"
 #include "hal/device/ring_sensors.hpp"
 #include "hal/device/wheels.hpp"
 #include "hal/spec/ring_directions.hpp"
@@ -17,12 +18,16 @@ class EpuckDiffusion final : public hal::Controller {
     double alpha_rad = 7.5 * hal::unit::deg.to_si;
     double delta = 0.1;
     double velocity_m_s = 0.05;
+    bool talk = false;
     void describe(hal::ParamVisitor& v) {
       v.number("alpha", alpha_rad, hal::unit::deg, {0.0, 1.5},
                "The way ahead is free when the free direction is within this of it.");
       v.number("delta", delta, hal::unit::none, {0.0, 24.0},
                "Sums of closeness (0 far, 1 contact, each sensor) below this count as free.");
       v.number("velocity", velocity_m_s, hal::unit::cm_s, {0.0, 10.0}, "Wheel speed.");
+      v.flag("talk", talk,
+             "Tells the others by range-and-bearing how many it hears; drives no other for it. Shows what the device "
+             "costs.");
     }
   };
 
@@ -33,6 +38,8 @@ class EpuckDiffusion final : public hal::Controller {
  private:
   const hal::Proximity& proximity_;
   hal::WheelSpeeds& wheels_;
+  const hal::RangeAndBearing* heard_ = nullptr;  // with both or none of them
+  hal::RangeAndBearingSend* said_ = nullptr;
   const hal::RingDirections& directions_;  // shared by all robots of the kind
   float delta_;
   float tan_alpha_;

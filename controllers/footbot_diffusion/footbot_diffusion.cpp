@@ -39,9 +39,25 @@ FootbotDiffusion::FootbotDiffusion(hal::Robot& robot, const Params& params)
       directions_(hal::ring_directions(robot.data_sheet().proximity)),
       delta_(static_cast<float>(params.delta)),
       tan_alpha_(static_cast<float>(std::tan(params.alpha_rad))),
-      velocity_m_s_(params.velocity_m_s) {}
+      velocity_m_s_(params.velocity_m_s) {
+  if (params.talk || params.look) company_ = std::make_unique<Company>();
+  if (params.talk) {
+    company_->heard = &robot.sensor<hal::RangeAndBearing>();
+    company_->said = &robot.actuator<hal::RangeAndBearingSend>();
+  }
+  if (params.look) {
+    company_->seen = &robot.sensor<hal::OmnidirectionalCamera>();
+    company_->leds = &robot.actuator<hal::RingLeds>();
+  }
+}
+
+void FootbotDiffusion::Company::step() noexcept {
+  if (said != nullptr) said->say(static_cast<std::uint8_t>(heard->count));
+  if (leds != nullptr) leds->set_all(seen->count == 0 ? hal::kRed : hal::kGreen);
+}
 
 void FootbotDiffusion::step() noexcept {
+  if (company_ != nullptr) company_->step();
   if (proximity_.validity != hal::Validity::Fresh) {  // blind: stand still
     wheels_.set(0.0, 0.0);
     return;

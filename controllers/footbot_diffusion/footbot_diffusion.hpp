@@ -1,8 +1,12 @@
 // Diffusion on a foot-bot's 24 proximity sensors: straight on where the way ahead is free, else away from what is near.
 #pragma once
 #include <array>
+#include <memory>
 
 #include "hal/controller.hpp"
+#include "hal/device/cameras.hpp"
+#include "hal/device/leds.hpp"
+#include "hal/device/range_and_bearing.hpp"
 #include "hal/device/ring_sensors.hpp"
 #include "hal/device/wheels.hpp"
 #include "hal/spec/ring_directions.hpp"
@@ -19,12 +23,20 @@ class FootbotDiffusion final : public hal::Controller {
     double alpha_rad = 7.5 * hal::unit::deg.to_si;
     double delta = 0.01;
     double velocity_m_s = 0.05;
+    bool talk = false;
+    bool look = false;
     void describe(hal::ParamVisitor& v) {
       v.number("alpha", alpha_rad, hal::unit::deg, {0.0, 1.5},
                "Obstacles within this of straight behind leave the way ahead free.");
       v.number("delta", delta, hal::unit::none, {0.0, 1.0},
                "An average of closeness (0 far, 1 contact, each sensor) up to this counts as free.");
       v.number("velocity", velocity_m_s, hal::unit::cm_s, {0.0, 0.3}, "Wheel speed.");
+      v.flag("talk", talk,
+             "Tells the others by range-and-bearing how many it hears; drives no other for it. Shows what the device "
+             "costs.");
+      v.flag("look", look,
+             "Lights all LEDs, red where the omnidirectional camera sees none of another, else green; drives no other "
+             "for it. Shows what the camera costs.");
     }
   };
 
@@ -33,6 +45,16 @@ class FootbotDiffusion final : public hal::Controller {
   void step() noexcept override;
 
  private:
+  /// What `talk` and `look` ask for; null otherwise.
+  struct Company {
+    const hal::RangeAndBearing* heard = nullptr;
+    hal::RangeAndBearingSend* said = nullptr;
+    const hal::OmnidirectionalCamera* seen = nullptr;
+    hal::RingLeds* leds = nullptr;
+
+    void step() noexcept;
+  };
+
   const hal::Proximity& proximity_;
   hal::WheelSpeeds& wheels_;
   const hal::RingDirections& directions_;  // shared by all robots of the kind
@@ -40,6 +62,7 @@ class FootbotDiffusion final : public hal::Controller {
   float tan_alpha_;
   double velocity_m_s_;
   int turning_ = 0;  // 1 left, -1 right
+  std::unique_ptr<Company> company_;
 };
 
 }  // namespace tandem::controllers

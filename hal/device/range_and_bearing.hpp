@@ -21,6 +21,12 @@ struct RangeAndBearingSend : Command {
   std::uint8_t size = 0;
   std::array<std::uint8_t, kRabPayloadMax> payload{};
 
+  /// Broadcasts one byte.
+  void say(std::uint8_t byte) noexcept {
+    sending = true;
+    size = 1;
+    payload[0] = byte;
+  }
   void describe(FieldList& f) const {
     f.add("sending", sending, unit::none, Frame::None, Fusion::Real, "broadcast in this tick");
     f.add("size", size, unit::none, Frame::None, Fusion::Real, "bytes of payload in use");

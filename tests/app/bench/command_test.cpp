@@ -49,6 +49,20 @@ std::size_t count(const std::string& text, const std::string& part) {
   return n;
 }
 
+TEST(BenchLines, TellWhichDevicesTheRobotsHave) {
+  Folder folder;
+  Tandem bench({"bench", "diffusion", "--robots", "200", "--robot", "foot-bot", "--engine", "dynamics2d", "--ticks",
+                "3", "--with", "range_and_bearing,omnidirectional_camera"},
+               folder.path());
+  ASSERT_EQ(bench.wait(), 0) << bench.errors();
+  const auto lines = objects_in(bench.output());
+  ASSERT_EQ(lines.size(), 1U);
+  EXPECT_EQ(text(lines[0], "devices"), "range_and_bearing,omnidirectional_camera");
+  Tandem without({"bench", "diffusion", "--robots", "1", "--with", "omnidirectional_camera"}, folder.path());
+  EXPECT_EQ(without.wait(), 2);
+  EXPECT_NE(without.errors().find("device of the e-puck"), std::string::npos) << without.errors();
+}
+
 TEST(BenchLines, AreComplete) {
   Folder folder;
   Tandem bench({"bench", "diffusion", "--robots", "1,30", "--threads", "0,2", "--partition", "A1,A4", "--assignment",
