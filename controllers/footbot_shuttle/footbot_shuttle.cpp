@@ -34,11 +34,13 @@ void FootbotShuttle::step() noexcept {
     turning_ = false;
     if (!home_ && ++done_ == params_.trips) return;
   }
-  turning_ = home_ ? odometry_.x_m <= 0.0 : odometry_.x_m >= params_.distance_m;
-  if (turning_)
-    home_ = !home_;
-  else
-    wheels_.set(params_.velocity_m_s, params_.velocity_m_s);
+  const bool arrived = home_ ? odometry_.x_m <= 0.0 : odometry_.x_m >= params_.distance_m;
+  if (arrived) home_ = !home_;
+  turning_ = arrived && !params_.reverse;
+  if (arrived && params_.reverse && !home_) ++done_;
+  if (arrived) return;
+  const double speed_m_s = home_ && params_.reverse ? -params_.velocity_m_s : params_.velocity_m_s;
+  wheels_.set(speed_m_s, speed_m_s);
 }
 
 }  // namespace tandem::controllers

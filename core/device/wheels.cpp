@@ -71,8 +71,13 @@ class WheelActuator final : public Actuator {
 
 /// Treels that draw to one side because their motors are not alike [Pinciroli et al. 2012, "ARGoS: a modular, parallel,
 /// multi-engine simulator for multi-robot systems", Swarm Intelligence 6(4), section 4.2.2]: going forward the right
-/// one is faster than commanded, going backward the left one is slower, by a part of its speed that is drawn from a
-/// Rayleigh distribution at the start and anew whenever the robot has gripped something. The encoders do not see it.
+/// one is faster than commanded, going backward the left one, by a part of its speed that is drawn from a Rayleigh
+/// distribution at the start and anew whenever the robot has gripped something. The encoders do not see it.
+///
+/// Both ways the robot turns to its left: forward its path bends to its left, backward to its right, and there and back
+/// is an S, as it is with the real robots [figure 10 there]. A left treel that was slower going backward, the other way
+/// to read "subtracted from the desired left treel speed", would lead back along the very arc that led there. Faster is
+/// also what motors are that sit mirrored and run better in one sense of rotation.
 struct Slant {
   double sigma = 0.0134;
   void describe(hal::ParamVisitor& v) {
@@ -100,7 +105,7 @@ class SlantedActuator final : public Actuator {
         if (sum > 0.0)
           hidden.right_m_s = part * told.right_m_s;
         else
-          hidden.left_m_s = -part * told.left_m_s;
+          hidden.left_m_s = part * told.left_m_s;
       }
       hidden.left_m += hidden.left_m_s * context.tick_s;
       hidden.right_m += hidden.right_m_s * context.tick_s;

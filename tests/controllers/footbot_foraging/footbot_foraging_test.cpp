@@ -1,5 +1,6 @@
 // The behaviour and its hook: neither says anything without the other.
 #include <cmath>
+#include <numbers>
 
 #include "hal/device/leds.hpp"
 #include "hal/spec/footbot.hpp"
@@ -101,12 +102,19 @@ TEST(Foraging, RobotsThatGoTakeNoFoodWithThem) {
     }
   }
   ASSERT_TRUE(taken);
-  int black = 0;
   for (int k = 0; k < 5; ++k) e->step();
-  for (double x = -1.45; x < 2.5; x += 0.04) {
-    for (double y = -2.1; y < 2.1; y += 0.04) black += space.floor(x, y) < 0.2 ? 1 : 0;
+  // The floor has a pixel every 2 cm. Those whose middle is within r of the item's are black: as squares they lie
+  // within r + half a diagonal and cover all within r - half a diagonal.
+  constexpr double kPixel_m = 0.02, kRadius_m = 0.3;
+  int black = 0;
+  for (int i = 0; i < 250; ++i) {
+    for (int k = 0; k < 210; ++k)
+      black += space.floor(-2.5 + kPixel_m * (i + 0.5), -2.1 + kPixel_m * (k + 0.5)) < 0.2 ? 1 : 0;
   }
-  EXPECT_NEAR(black, 3.1416 * 0.3 * 0.3 / (0.04 * 0.04), 30);  // the whole item is back
+  const auto pixels_within = [&](double radius_m) { return std::numbers::pi * std::pow(radius_m / kPixel_m, 2); };
+  const double half_diagonal_m = kPixel_m / std::numbers::sqrt2;
+  EXPECT_GE(black, pixels_within(kRadius_m - half_diagonal_m));  // the whole item is back
+  EXPECT_LE(black, pixels_within(kRadius_m + half_diagonal_m));
 }
 
 TEST(Foraging, GivesTheSameBitsForTheSameSeedAndAnyNumberOfThreads) {

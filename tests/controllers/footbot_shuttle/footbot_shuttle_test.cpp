@@ -75,6 +75,25 @@ TEST(Shuttle, EndsElsewhereWithTreelsThatDrawToOneSideAndDoesNotNotice) {
   }
 }
 
+TEST(Shuttle, InReverseComesHomeOnTheSameLineOrWithSlantedTreelsOnAnS) {
+  const std::string kReverse = "controllers.footbot_shuttle[shuttle].params.reverse=true";
+  const auto straight = shuttle({kReverse, kTreels + ".implementation=ideal"}, 1);
+  for (const Line& l : straight) EXPECT_NEAR(l.y_m, 0.0, 1e-6);
+  EXPECT_NEAR(straight.back().x_m, -2.0, 0.02);
+  EXPECT_NEAR(straight[straight.size() / 2].x_m, 1.0, 0.2);
+
+  const auto lines = shuttle({kReverse}, 1);
+  const auto turned = std::find_if(lines.begin(), lines.end(), [](const Line& l) { return l.odometry_x_m >= 2.0; });
+  ASSERT_NE(turned, lines.end());
+  const double curvature = turned->heading_rad / 4.0;
+  EXPECT_GT(curvature, 0.005);
+  // It bends to its left all the time: y = k x^2 / 2 there, and back as far to the other side of where it looks.
+  EXPECT_NEAR(turned->y_m, 0.5 * curvature * 16.0, 0.02 + std::pow(4.0 * curvature, 3));
+  EXPECT_NEAR(lines.back().heading_rad, 2.0 * turned->heading_rad, 0.01);
+  EXPECT_NEAR(lines.back().y_m, -curvature * 16.0, 0.02 + 4.0 * std::pow(4.0 * curvature, 3));
+  EXPECT_NEAR(lines.back().odometry_y_m, 0.0, 1e-6);
+}
+
 TEST(ShuttlePlugin, SeesNoWorld) {
   test::expect_no_world_in(std::string(TANDEM_BINARY_DIR) + "/lib/libfootbot_shuttle.so");
 }

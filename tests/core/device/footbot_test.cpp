@@ -1,5 +1,6 @@
 // The foot-bot's devices, in a whole world: closed forms, noise, and what is refused.
 #include <cmath>
+#include <complex>
 #include <gmock/gmock.h>
 #include <numbers>
 
@@ -352,10 +353,10 @@ std::vector<double> slants(int robots, double speed_m_s, bool expect_left) {
   for (int i = 0; i < robots; ++i) {
     const std::string id = "fb" + std::to_string(i);
     const std::size_t row = world->space().stores().row_of(world->space().find_robot(id));
-    const double slow = expect_left ? b.right_m_s[row] : b.left_m_s[row];
+    const double as_told = expect_left ? b.right_m_s[row] : b.left_m_s[row];
     const double drawn_to = expect_left ? b.left_m_s[row] : b.right_m_s[row];
-    EXPECT_EQ(slow, speed_m_s);
-    drawn.push_back((drawn_to - speed_m_s) / std::fabs(speed_m_s));
+    EXPECT_EQ(as_told, speed_m_s);
+    drawn.push_back(drawn_to / speed_m_s - 1.0);
     const auto& encoders = reading<hal::WheelEncoders>(world, id);
     EXPECT_NEAR(encoders.left_m, encoders.right_m, 1e-12) << "the encoders see nothing of it";
     EXPECT_NEAR(encoders.right_m, 0.5 * speed_m_s, 1e-12);
@@ -372,7 +373,7 @@ TEST(SlantedTreels, AreDrawnFromARayleighDistributionGoingForwardAndBackward) {
     std::vector<double> drawn = slants(1000, backward ? -0.1 : 0.1, backward);
     double sum = 0.0, squares = 0.0;
     for (const double d : drawn) {
-      EXPECT_GE(d, 0.0) << "the right treel runs faster forward, the left one slower backward";
+      EXPECT_GE(d, 0.0) << "the right treel runs faster forward, the left one backward";
       sum += d;
       squares += d * d;
     }
@@ -383,16 +384,62 @@ TEST(SlantedTreels, AreDrawnFromARayleighDistributionGoingForwardAndBackward) {
   }
 }
 
-TEST(SlantedTreels, DrawTheSamePathToTheLeftForwardAndToTheRightBackward) {
-  for (const double speed : {0.1, -0.1}) {
-    Scene scene = footbot_scene("dynamics2d", 8.0);
+/// A foot-bot with strongly slanted treels, and the factor that was drawn for it.
+struct Slanted {
+  MadeWorld world;
+  double mu = 0.0;
+
+  explicit Slanted(const std::string& engine = "dynamics2d") {
+    Scene scene = footbot_scene(engine, 8.0);
     add_footbot(scene, "fb", 0, 0);
     choose(scene, "differential_steering", Role::Actuator, "slanted", {{"sigma", "0.05", 11}});
-    auto world = made(scene);
-    command<hal::WheelSpeeds>(world, "fb").set(speed, speed);
-    steps(world, 100);
-    // Seen along the way that it goes: left is +y forward, right is +y backward.
-    EXPECT_GT(pose_of(world, "fb").y_m, 0.005);
+    world = made(scene);
+    drive(0.1, 1);
+    mu = world->space().stores().bodies.hidden_rolls[row()].right_m_s / 0.1;
+    drive(-0.1, 1);
+    world->space().set_pose(world->space().find_robot("fb"), Pose::at(0.0, 0.0, 0.0));
+  }
+  void drive(double speed_m_s, int ticks) {
+    command<hal::WheelSpeeds>(world, "fb").set(speed_m_s, speed_m_s);
+    steps(world, ticks);
+  }
+  double turn_rad(double way_m) const { return mu * way_m / hal::footbot::kWheelBase_m; }
+  double curvature() const { return mu / (hal::footbot::kWheelBase_m * (1.0 + 0.5 * mu)); }
+  std::size_t row() const { return world.world->space().stores().row_of(world.world->space().find_robot("fb")); }
+};
+
+// A way of L by the encoders is an arc of L (1 + mu / 2) that turns the robot by a = mu L / b to its left, b its wheel
+// base. So its curvature is k = mu / (b (1 + mu / 2)), and with places as complex numbers it ends at (e^ia - 1) / (i
+// k).
+
+TEST(SlantedTreels, DrawToTheLeftOfTheRobotForwardAndToItsRightBackward) {
+  for (const double speed : {0.1, -0.1}) {
+    Slanted robot;
+    ASSERT_GT(robot.mu, 0.005);
+    robot.drive(speed, 100);
+    const Pose end = pose_of(robot.world, "fb");  // both together: an S through the start
+    const double turn_rad = robot.turn_rad(1.0);
+    EXPECT_NEAR(end.x_m, std::copysign(std::sin(turn_rad) / robot.curvature(), speed), 0.01);
+    EXPECT_NEAR(end.y_m, std::copysign((1.0 - std::cos(turn_rad)) / robot.curvature(), speed), 0.01);
+    EXPECT_NEAR(end.heading_rad(), turn_rad, 0.02 * turn_rad);
+  }
+}
+
+TEST(SlantedTreels, LeadBackAlongAnotherArcThanThere) {
+  for (const std::string engine : {"dynamics2d", "dynamics3d"}) {
+    Slanted robot(engine);
+    robot.drive(0.1, 100);
+    robot.drive(-0.1, 100);
+    // The second arc starts in the opposite direction, turned by a.
+    const std::complex<double> i(0.0, 1.0);
+    const std::complex<double> turn = std::exp(i * robot.turn_rad(1.0));
+    const std::complex<double> arc = (turn - 1.0) / (i * robot.curvature());
+    const std::complex<double> end = arc - turn * arc;
+    const Pose pose = pose_of(robot.world, "fb");
+    ASSERT_GT(std::abs(end), 0.04);
+    EXPECT_NEAR(pose.x_m, end.real(), 0.02 * std::abs(end)) << engine;
+    EXPECT_NEAR(pose.y_m, end.imag(), 0.02 * std::abs(end)) << engine;
+    EXPECT_NEAR(pose.heading_rad(), 2.0 * robot.turn_rad(1.0), 0.04 * robot.turn_rad(1.0)) << engine;
   }
 }
 
