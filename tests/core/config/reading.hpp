@@ -14,7 +14,7 @@ inline const KnownNames& known_names() {
       {"e-puck", "foot-bot", "eye-bot"},
       {"kinematics2d", "dynamics2d", "dynamics3d", "particle3d"},
       {"accelerometer", "battery", "clock", "gripper", "ground", "light", "microphones", "motor_ground", "odometry",
-       "proximity", "range_and_bearing", "wheel_encoders"},
+       "omnidirectional_camera", "proximity", "range_and_bearing", "wheel_encoders"},
       {"body_led", "differential_steering", "front_led", "gripper", "leds", "range_and_bearing", "turret"}};
   return names;
 }
