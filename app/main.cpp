@@ -33,7 +33,8 @@ void add_bench(CLI::App& app, BenchOptions& o, int& code) {
   c->footer(
       "With --from the options --robots, --engine, --threads, --partition, --regions, --density and --assignment "
       "choose among the saved lines.");
-  c->add_option("name", o.name, "diffusion: the standard scene")->capture_default_str();
+  c->add_option("name", o.name, "diffusion: the standard scene; codec: messages of the foot-bot, only with --repeat")
+      ->capture_default_str();
   c->add_option("--robots", o.robots, "Numbers of robots, e.g. 1000,10000; default: 1 to 100000")
       ->delimiter(',')
       ->check(CLI::Range(std::int64_t{1}, std::int64_t{100'000'000}));

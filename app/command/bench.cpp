@@ -1,8 +1,10 @@
-// `tandem bench diffusion`: measures the standard scene, prints one JSON object a line, draws figures from them.
+// `tandem bench`: measures the standard scene or the foot-bot's codec, prints one JSON object a line, draws figures
+// from them.
 #include <algorithm>
 #include <cstdio>
 #include <fmt/format.h>
 
+#include "app/bench/codec.hpp"
 #include "app/bench/comparison.hpp"
 #include "app/bench/gnuplot.hpp"
 #include "app/bench/measurement.hpp"
@@ -37,7 +39,7 @@ hal::Status check_name(std::string_view what, const std::string& name, const std
 }
 
 hal::Status check_words(const BenchOptions& o) {
-  if (auto s = check_name("benchmark", o.name, {"diffusion"}); !s.ok()) return s;
+  if (auto s = check_name("benchmark", o.name, {"diffusion", "codec"}); !s.ok()) return s;
   if (auto s = check_name("robot", o.robot, {"e-puck", "foot-bot"}); !s.ok()) return s;
   std::vector<std::string> devices{"range_and_bearing"};
   if (o.robot == "foot-bot") devices.emplace_back("omnidirectional_camera");
@@ -170,6 +172,10 @@ void print_comparison(const std::vector<ResultLine>& lines) {
 int bench(const BenchOptions& options) {
   const auto plan = plan_of(options);
   if (!plan.ok()) return complain(kWrongUsage, plan.error().message);
+  if (options.name == "codec") {
+    bench_codec(options.repeat);
+    return kDone;
+  }
   if (!options.plot.empty()) {
     const hal::Status drawable = can_draw(options.plot);
     if (!drawable.ok()) return complain(kFailedRunning, drawable.error().message);

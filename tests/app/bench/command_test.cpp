@@ -49,6 +49,15 @@ std::size_t count(const std::string& text, const std::string& part) {
   return n;
 }
 
+TEST(BenchLines, TellHowManyMessagesTheCodecTakes) {
+  Folder folder;
+  Tandem bench({"bench", "codec"}, folder.path());
+  ASSERT_EQ(bench.wait(), 0) << bench.errors();
+  const auto lines = objects_in(bench.output());
+  ASSERT_EQ(lines.size(), 4U);
+  for (const auto& line : lines) EXPECT_GT(number(line, "messages_per_s"), 0.0) << text(line, "what");
+}
+
 TEST(BenchLines, TellWhichDevicesTheRobotsHave) {
   Folder folder;
   Tandem bench({"bench", "diffusion", "--robots", "200", "--robot", "foot-bot", "--engine", "dynamics2d", "--ticks",

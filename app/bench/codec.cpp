@@ -1,0 +1,94 @@
+#include "app/bench/codec.hpp"
+
+#include <algorithm>
+#include <array>
+#include <fmt/format.h>
+
+#include "app/json.hpp"
+#include "app/measure.hpp"
+#include "bridges/aseba/fragments.hpp"
+#include "bridges/aseba/message.hpp"
+#include "bridges/aseba/stream_messages.hpp"
+
+namespace tandem::app {
+namespace {
+
+using namespace bridges::aseba;
+
+constexpr long long kMessages = 2'000'000;
+
+/// Runs `once(i)` for each message; `once` returns something that depends on all it did, so that nothing is left out.
+template <class F>
+void measure(const char* what, F&& once) {
+  std::uint64_t sum = 0;
+  const double start = cpu_seconds();
+  for (long long i = 0; i < kMessages; ++i) sum = sum * 31 + once(static_cast<std::uint16_t>(i));
+  const double took_s = cpu_seconds() - start;
+  Json json;
+  json.begin_object()
+      .field("bench", "codec")
+      .field("what", what)
+      .field("messages", static_cast<std::int64_t>(kMessages));
+  json.field("cpu_s", took_s).field("messages_per_s", static_cast<double>(kMessages) / took_s);
+  json.field("check", fmt::format("{:#018x}", sum)).end_object();
+  fmt::print("{}\n", json.text());
+}
+
+/// Reads every word.
+template <class M>
+std::uint64_t all_of(const M& message) {
+  std::uint64_t sum = message.start;
+  for (std::size_t i = 0; i < message.words.size(); ++i) sum = sum * 3 + static_cast<std::uint16_t>(message.words[i]);
+  return sum;
+}
+
+void measure_all() {
+  Payload words;
+  for (std::uint16_t i = 0; i < 24; ++i) words.append(i);
+  Payload payload;
+  Message message;
+
+  measure("encode and decode VARIABLES of 24 words", [&](std::uint16_t i) {
+    encode(Variables{i, words.words()}, payload);
+    decode(0x9005, payload.bytes(), message);
+    return all_of(std::get<Variables>(message));
+  });
+  measure("encode and decode SET_VARIABLES of 1 word", [&](std::uint16_t i) {
+    encode(SetVariables{1, i, Words(words.bytes().first(2))}, payload);
+    decode(0xA00C, payload.bytes(), message);
+    return all_of(std::get<SetVariables>(message));
+  });
+  Assembler assembler;
+  measure("VARIABLES of 24 words through CAN fragments and back", [&](std::uint16_t i) {
+    encode(Variables{i, words.words()}, payload);
+    std::uint64_t got = 0;
+    for (std::size_t k = 0; k < frames_for(payload.size()); ++k) {
+      if (const auto view = assembler.push(fragment(7, 0x9005, payload.bytes(), k))) {
+        decode(view->type, view->payload, message);
+        got = all_of(std::get<Variables>(message));
+      }
+    }
+    return got;
+  });
+  StreamReader reader;
+  std::array<std::uint8_t, kStreamHeader + kMostPayload> stream{};
+  measure("VARIABLES of 24 words out of a byte stream", [&](std::uint16_t i) {
+    encode(Variables{i, words.words()}, payload);
+    write_u16(stream.data(), static_cast<std::uint16_t>(payload.size()));
+    write_u16(stream.data() + 2, 7);
+    write_u16(stream.data() + 4, 0x9005);
+    std::copy(payload.bytes().begin(), payload.bytes().end(), stream.begin() + kStreamHeader);
+    auto bytes = std::span<const std::uint8_t>(stream).first(kStreamHeader + payload.size());
+    reader.take(bytes, 0);
+    decode(reader.message().type, reader.message().payload, message);
+    return all_of(std::get<Variables>(message));
+  });
+}
+
+}  // namespace
+
+void bench_codec(long long repeat) {
+  for (long long i = 0; i < repeat; ++i) measure_all();
+}
+
+}  // namespace tandem::app
