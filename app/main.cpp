@@ -122,11 +122,12 @@ int main(int argc, char** argv) {
 
   EmulateOptions emulate_options;
   CLI::App* emulate_command = app.add_subcommand("emulate", "Behave as a robot's firmware on a link.");
-  emulate_command->add_option("robot", emulate_options.robot, "epuck or footbot")->required();
+  emulate_command->add_option("robot", emulate_options.robot, "epuck, footbot or eyebot")->required();
   emulate_command
       ->add_option("--link", emulate_options.link,
                    "pty:NAME makes a pseudo-terminal of that name (a foot-bot: with a CAN adapter's slcan on it); "
-                   "serial:DEVICE@BAUD; a foot-bot also can:INTERFACE and tcp-listen:PORT")
+                   "serial:DEVICE@BAUD; a foot-bot also can:INTERFACE and tcp-listen:PORT; an eye-bot "
+                   "lcm:udpm://GROUP:PORT?ttl=0")
       ->required();
   emulate_command->add_option("--log", emulate_options.log, "File for one JSON object an event; default: none");
   emulate_command->add_option(
@@ -140,6 +141,15 @@ int main(int argc, char** argv) {
                                   "`footbot_puppet`, is the body");
   emulate_command->add_option("--body", emulate_options.body, "Which of its robots; default: the first that can be")
       ->needs(arena);
+  emulate_command->add_option("--name", emulate_options.name, "An eye-bot's name, or that of the first; default: eb0");
+  emulate_command->add_option("--count", emulate_options.count, "How many eye-bots: eb0, eb1, …; default: 1");
+  emulate_command
+      ->add_option("--clock", emulate_options.clock,
+                   "synced (default): an eye-bot refuses commands whose stamps are 250 ms off its clock; unsynced")
+      ->check(CLI::IsMember({"synced", "unsynced"}));
+  emulate_command
+      ->add_option("--images", emulate_options.images_Hz, "Images that an eye-bot sends a second; default: 0")
+      ->check(CLI::Range(0.0, 2.0));
   emulate_command->callback([&] { code = emulate(emulate_options); });
 
   InspectOptions inspect_options;

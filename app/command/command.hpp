@@ -69,8 +69,12 @@ struct EmulateOptions {
   std::string log;
   std::string firmware;  ///< empty: what that robot usually has
   std::vector<std::string> faults;
-  std::string arena;  ///< experiment one of whose robots is the body
-  std::string body;   ///< which robot; empty: the first that can be
+  std::string arena;             ///< experiment one of whose robots is the body
+  std::string body;              ///< which robot; empty: the first that can be
+  std::string name = "eb0";      ///< of an eye-bot, or of the first
+  int count = 1;                 ///< how many eye-bots
+  std::string clock = "synced";  ///< an eye-bot's: synced or unsynced with its hub's
+  double images_Hz = 0.0;        ///< how many images an eye-bot sends a second
 };
 int emulate(const EmulateOptions& options);
 

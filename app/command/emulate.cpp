@@ -9,6 +9,7 @@
 #include "app/puppeteer.hpp"
 #include "app/signals.hpp"
 #include "bridges/epuck_emulator/emulator.hpp"
+#include "bridges/eyebot_emulator/emulator.hpp"
 #include "bridges/footbot_emulator/emulator.hpp"
 
 namespace tandem::app {
@@ -16,6 +17,7 @@ namespace {
 
 namespace epuck = bridges::epuck_emulator;
 namespace footbot = bridges::footbot_emulator;
+namespace eyebot = bridges::eyebot_emulator;
 
 /// The world of `options.arena` with its robot in it; null, when it was told what is wrong.
 template <class Arena, class Puppeteer>
@@ -35,16 +37,24 @@ std::unique_ptr<Arena> make_arena(const EmulateOptions& options, hal::PluginLoad
   return std::make_unique<Arena>(std::move(world), robot.value(), stop);
 }
 
+/// What all emulators are told alike.
+template <class Emulated>
+void set_common(const EmulateOptions& options, Emulated& emulated) {
+  emulated.link = options.link;
+  emulated.log_file = options.log;
+  emulated.faults = options.faults;
+  emulated.log = hal::Log([](hal::Severity, std::string_view text) { fmt::print(stderr, "{}\n", text); });
+}
+
 /// Runs an emulator, whose options begin as `emulated`, in the arena that was asked for.
 template <class Puppeteer, class Body, class Emulated>
 int emulate_robot(const EmulateOptions& options, Emulated emulated) {
   using Arena = LivingArena<Puppeteer, Body>;
   const std::atomic<bool>& stop = catch_signals();
-  emulated.link = options.link;
-  if (!options.firmware.empty()) emulated.firmware = options.firmware;
-  emulated.log_file = options.log;
-  emulated.faults = options.faults;
-  emulated.log = hal::Log([](hal::Severity, std::string_view text) { fmt::print(stderr, "{}\n", text); });
+  set_common(options, emulated);
+  if constexpr (requires { emulated.firmware; }) {
+    if (!options.firmware.empty()) emulated.firmware = options.firmware;
+  }
   hal::PluginLoader loader(plugin_folders());
   std::unique_ptr<Arena> arena;
   if (!options.arena.empty()) {
@@ -65,9 +75,31 @@ std::string host_link(const std::string& path) {
   return "slcan:" + path + "@1000000";
 }
 
+int emulate_eyebots(const EmulateOptions& options) {
+  eyebot::Options emulated;
+  set_common(options, emulated);
+  emulated.robot.name = options.name;
+  emulated.robot.clock_synced = options.clock == "synced";
+  emulated.robot.image_hz = options.images_Hz;
+  emulated.count = options.count;
+  emulated.ready = [&](const std::string& url) {
+    const std::string who = options.count > 1 ? fmt::format("{} eye-bots", options.count) : "eye-bot " + options.name;
+    fmt::print(stderr, "{} on {}: connect with --link lcm:{}; Ctrl-C ends it\n", who, url, url);
+  };
+  if (!options.arena.empty()) {
+    fmt::print(stderr, "tandem emulate: an eye-bot flies by its own dynamics: leave out --arena\n");
+    return kWrongUsage;
+  }
+  const hal::Status ended = run(emulated, catch_signals());
+  if (ended.ok()) return kDone;
+  fmt::print(stderr, "error: {}\n", ended.error().message);
+  return kBadInput;
+}
+
 }  // namespace
 
 int emulate(const EmulateOptions& options) {
+  if (options.robot == "eyebot") return emulate_eyebots(options);
   if (options.robot == "epuck") {
     epuck::Options emulated;
     emulated.ready = [](const std::string& path) {
@@ -82,7 +114,8 @@ int emulate(const EmulateOptions& options) {
     };
     return emulate_robot<FootbotPuppeteer, footbot::SharedBody>(options, std::move(emulated));
   }
-  fmt::print(stderr, "tandem emulate: there is no emulator of '{}'; there are: epuck, footbot\n", options.robot);
+  fmt::print(stderr, "tandem emulate: there is no emulator of '{}'; there are: epuck, footbot, eyebot\n",
+             options.robot);
   return kWrongUsage;
 }
 

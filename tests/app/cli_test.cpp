@@ -133,6 +133,11 @@ TEST_F(BadInput, WrongUsageHasItsOwnCode) {
   fails({"emulate", "epuck", "--link", "pty:x", "--fault", "explode@3s"}, 1, {"explode"});
   fails({"emulate", "footbot", "--link", "pty:x", "--fault", "missing=wings"}, 1, {"wings", "left-motor"});
   fails({"emulate", "footbot", "--link", "pty:x", "--firmware", "v6"}, 1, {"v6", "v5"});
+  fails({"emulate", "eyebot", "--link", "pty:x"}, 1, {"pty:x", "lcm:udpm://"});
+  fails({"emulate", "eyebot", "--link", "lcm:memq://", "--fault", "explode@3s"}, 1, {"explode", "no-position@5s+3s"});
+  fails({"emulate", "eyebot", "--link", "lcm:memq://", "--name", "eb/0"}, 1, {"eb/0"});
+  fails({"emulate", "eyebot", "--link", "lcm:memq://", "--count", "0"}, 1, {"--count 0"});
+  fails({"emulate", "eyebot", "--link", "lcm:memq://", "--clock", "slow"}, 2, {"synced"});
   fails({"list", "dragons"}, 2, {"controllers"});
   fails({"describe", "proximitty"}, 1, {"proximity"});
 }

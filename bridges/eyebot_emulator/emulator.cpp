@@ -1,0 +1,330 @@
+#include "bridges/eyebot_emulator/emulator.hpp"
+
+#include <algorithm>
+#include <deque>
+#include <mutex>
+#include <poll.h>
+#include <random>
+#include <sys/eventfd.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "bridges/eyebot_emulator/faults.hpp"
+
+namespace tandem::bridges::eyebot_emulator {
+namespace {
+
+using hal::TimeNs;
+using lcm_bus::LcmLink;
+using lcm_bus::LcmMessage;
+using lcm_bus::monotonic_ns;
+
+constexpr TimeNs kStopNs = 20 * hal::kNsPerMs;  // the stop flag is looked at this often
+constexpr std::string_view kLcm = "lcm:";
+
+std::int64_t unix_us() {
+  timespec t{};
+  clock_gettime(CLOCK_REALTIME, &t);
+  return static_cast<std::int64_t>(t.tv_sec) * 1'000'000 + t.tv_nsec / 1000;
+}
+
+/// Not 0, which stands for nobody.
+std::int32_t draw_session() {
+  std::random_device chance;
+  for (;;) {
+    if (const auto session = static_cast<std::int32_t>(chance()); session != 0) return session;
+  }
+}
+
+/// What the link's thread has heard, for the thread of the robots. The oldest are lost when there is too much.
+class Inbox {
+ public:
+  Inbox() : wake_(::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)) {}
+  ~Inbox() { ::close(wake_); }
+  Inbox(const Inbox&) = delete;
+  Inbox& operator=(const Inbox&) = delete;
+
+  void put(const LcmMessage& message) {
+    const std::lock_guard lock(guard_);
+    if (messages_.size() == kMost) messages_.pop_front();
+    messages_.push_back(
+        {std::string(message.channel), {message.data.begin(), message.data.end()}, message.received_ns});
+    ::eventfd_write(wake_, 1);
+  }
+  std::deque<Datagram> take() {
+    eventfd_t count = 0;
+    ::eventfd_read(wake_, &count);
+    const std::lock_guard lock(guard_);
+    return std::exchange(messages_, {});
+  }
+  int descriptor() const noexcept { return wake_; }
+
+ private:
+  static constexpr std::size_t kMost = 10000;
+  int wake_;
+  std::mutex guard_;
+  std::deque<Datagram> messages_;
+};
+
+/// A robot with its body and what may go wrong with it.
+struct Flyer {
+  Flyer(const Eyebot::Options& options, const Start& start, const std::optional<Room>& room, EmulatedBody* body,
+        FaultPlan plan, EventSink sink)
+      : own_body(start, room),
+        robot(options, body != nullptr ? *body : own_body, std::move(sink)),
+        faults(std::move(plan)) {}
+
+  PointBody own_body;
+  Eyebot robot;
+  FaultPlan faults;
+  std::deque<Datagram> to_robot;
+  std::deque<Datagram> to_hub;
+};
+
+class Server {
+ public:
+  Server(const Options& options, std::unique_ptr<EventLog> log_file, const std::vector<Fault>& faults);
+  hal::Status serve(const std::atomic<bool>& stop);
+
+ private:
+  void tell(TimeNs at, std::string_view name, const EventFields& fields);
+  hal::Status connect();
+  void turn(TimeNs now);
+  void distribute();
+  void apply_faults(std::size_t i, TimeNs now);
+  void fly(Flyer& flyer, TimeNs now);
+  void publish(Flyer& flyer, TimeNs now);
+  TimeNs next_wake(TimeNs now) const;
+  void wait_until(TimeNs at, TimeNs now) const;
+  void tell_end(TimeNs at);
+  std::unique_ptr<Flyer> make_flyer(const std::string& name, std::size_t i, std::vector<Fault> faults, EventSink sink);
+
+  const Options& options_;
+  std::unique_ptr<EventLog> log_file_;
+  std::shared_ptr<LcmLink> link_;
+  std::shared_ptr<Inbox> inbox_ = std::make_shared<Inbox>();
+  std::vector<std::unique_ptr<Flyer>> flyers_;
+  std::vector<std::unique_ptr<Flyer>> twins_;  // of the flyer at the same place; none: null
+};
+
+Server::Server(const Options& options, std::unique_ptr<EventLog> log_file, const std::vector<Fault>& faults)
+    : options_(options), log_file_(std::move(log_file)) {
+  const EventSink sink = [this](TimeNs at, std::string_view name, const EventFields& fields) {
+    tell(at, name, fields);
+  };
+  const auto names = names_of(options.robot.name, options.count);
+  for (std::size_t i = 0; i < names.size(); ++i) flyers_.push_back(make_flyer(names[i], i, faults, sink));
+  twins_.resize(flyers_.size());
+}
+
+// Robots stand in rows of five, two metres apart.
+std::unique_ptr<Flyer> Server::make_flyer(const std::string& name, std::size_t i, std::vector<Fault> faults,
+                                          EventSink sink) {
+  Eyebot::Options robot = options_.robot;
+  robot.name = name;
+  robot.session = draw_session();
+  const Start start{{2.0 * static_cast<double>(i % 5), 2.0 * static_cast<double>(i / 5), 0.0}, 0.0};
+  return std::make_unique<Flyer>(robot, start, options_.room, options_.body,
+                                 FaultPlan(std::move(faults), options_.seed + i), std::move(sink));
+}
+
+void Server::tell(TimeNs at, std::string_view name, const EventFields& fields) {
+  if (log_file_) log_file_->write(at, name, fields);
+  if (options_.events) options_.events(at, name, fields);
+}
+
+hal::Status Server::connect() {
+  link_ = options_.shared;
+  if (!link_) {
+    if (!options_.link.starts_with(kLcm)) {
+      return hal::Error{"an eye-bot is reached over LCM: write --link lcm:udpm://239.255.76.67:7667?ttl=0, not '" +
+                        options_.link + "'"};
+    }
+    auto opened = LcmLink::open(options_.link.substr(kLcm.size()));
+    if (!opened.ok()) return opened.error();
+    link_ = std::move(opened).value();
+  }
+  for (const char* channels : {"eyebot/[^/]+/cmd/[^/]+", "hub/[^/]+/heartbeat"}) {
+    const auto subscribed =
+        link_->subscribe(channels, [inbox = inbox_](const LcmMessage& message) { inbox->put(message); });
+    if (!subscribed.ok()) return subscribed;
+  }
+  return link_->start();
+}
+
+hal::Status Server::serve(const std::atomic<bool>& stop) {
+  if (const hal::Status connected = connect(); !connected.ok()) return connected;
+  const TimeNs start = monotonic_ns();
+  tell(start, "start",
+       {{"link", link_->url()},
+        {"robots", flyers_.size()},
+        {"clock", options_.robot.clock_synced ? "synced" : "unsynced"},
+        {"utime", unix_us()},
+        {"seed", options_.seed}});
+  // They do not all speak at the same moment.
+  constexpr TimeNs kApartNs = hal::kNsPerMs;
+  for (std::size_t i = 0; i < flyers_.size(); ++i) {
+    flyers_[i]->faults.begin(start);
+    flyers_[i]->robot.power_on(start + static_cast<TimeNs>(i) * kApartNs,
+                               unix_us() + static_cast<std::int64_t>(i) * kApartNs / 1000);
+  }
+  if (options_.ready) options_.ready(link_->url());
+  while (!stop.load(std::memory_order_relaxed)) {
+    const TimeNs now = monotonic_ns();
+    turn(now);
+    wait_until(next_wake(now), now);
+  }
+  tell_end(monotonic_ns());
+  return {};
+}
+
+void Server::tell_end(TimeNs at) {
+  for (const auto& flyer : flyers_) {
+    flyer->robot.run_until(at);
+    flyer->robot.tell_sent(at);
+    const Supervisor& s = flyer->robot.supervisor();
+    tell(at, "end",
+         {{"robot", flyer->robot.options().name},
+          {"why", "stopped"},
+          {"mode", name_of(s.mode())},
+          {"failsafe", name_of(s.failsafe())},
+          {"rejected", flyer->robot.rejected()}});
+  }
+}
+
+void Server::turn(TimeNs now) {
+  for (std::size_t i = 0; i < flyers_.size(); ++i) apply_faults(i, now);
+  distribute();
+  for (const auto& flyer : flyers_) fly(*flyer, now);
+  for (const auto& twin : twins_) {
+    if (twin) fly(*twin, now);
+  }
+}
+
+void Server::apply_faults(std::size_t i, TimeNs now) {
+  Flyer& flyer = *flyers_[i];
+  while (const auto change = flyer.faults.next_change(now)) {
+    const Fault& fault = *change->fault;
+    apply(*change, flyer.robot, draw_session());
+    if (fault.kind == FaultKind::Twin) {
+      twins_[i] = change->begins ? make_flyer(flyer.robot.options().name, i + 1, {}, {}) : nullptr;
+      if (twins_[i]) twins_[i]->robot.power_on(change->at, unix_us() - (monotonic_ns() - change->at) / 1000);
+    }
+    tell(change->at, "fault",
+         {{"robot", flyer.robot.options().name}, {"fault", fault.text}, {"phase", change->begins ? "begin" : "end"}});
+  }
+}
+
+// A hub's sign of life is for everybody, a command for the robot that the channel names.
+void Server::distribute() {
+  for (const Datagram& message : inbox_->take()) {
+    const auto give = [&](Flyer& flyer) {
+      const bool concerns = message.channel.starts_with("hub/") ||
+                            message.channel.starts_with("eyebot/" + flyer.robot.options().name + "/");
+      if (!concerns) return;
+      std::vector<Datagram> arriving;
+      flyer.faults.to_robot(message, arriving);
+      for (Datagram& d : arriving) flyer.to_robot.push_back(std::move(d));
+    };
+    for (const auto& flyer : flyers_) give(*flyer);
+    for (const auto& twin : twins_) {
+      if (twin) give(*twin);
+    }
+  }
+}
+
+void Server::fly(Flyer& flyer, TimeNs now) {
+  while (!flyer.to_robot.empty() && flyer.to_robot.front().at <= now) {
+    const Datagram& message = flyer.to_robot.front();
+    flyer.robot.receive(message.channel, message.data, message.at);
+    flyer.to_robot.pop_front();
+  }
+  flyer.robot.run_until(now);
+  publish(flyer, now);
+}
+
+void Server::publish(Flyer& flyer, TimeNs now) {
+  std::vector<Datagram> sent;
+  flyer.robot.take_sent(sent);
+  std::vector<Datagram> leaving;
+  for (const Datagram& message : sent) flyer.faults.to_hub(message, leaving);
+  for (Datagram& d : leaving) flyer.to_hub.push_back(std::move(d));
+  while (!flyer.to_hub.empty() && flyer.to_hub.front().at <= now) {
+    const Datagram& message = flyer.to_hub.front();
+    if (message.channel.ends_with("/state")) flyer.robot.state_left(monotonic_ns());
+    link_->publish(message.channel, message.data);
+    flyer.to_hub.pop_front();
+  }
+}
+
+TimeNs Server::next_wake(TimeNs now) const {
+  TimeNs wake = now + kStopNs;
+  for (const auto* crew : {&flyers_, &twins_}) {
+    for (const auto& flyer : *crew) {
+      if (!flyer) continue;
+      wake = std::min(wake, flyer->robot.next_event());
+      if (!flyer->to_robot.empty()) wake = std::min(wake, flyer->to_robot.front().at);
+      if (!flyer->to_hub.empty()) wake = std::min(wake, flyer->to_hub.front().at);
+      if (const auto change = flyer->faults.next_change_at()) wake = std::min(wake, *change);
+    }
+  }
+  return wake;
+}
+
+void Server::wait_until(TimeNs at, TimeNs now) const {
+  const TimeNs left = std::max<TimeNs>(0, at - now);
+  const timespec t{static_cast<time_t>(left / hal::kNsPerSecond), static_cast<long>(left % hal::kNsPerSecond)};
+  pollfd inbox{inbox_->descriptor(), POLLIN, 0};
+  ::ppoll(&inbox, 1, &t, nullptr);  // a signal wakes it too
+}
+
+bool is_robot_name(const std::string& name) {
+  constexpr std::size_t kLongest = 24;
+  const auto fits = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
+  };
+  return !name.empty() && name.size() <= kLongest && std::ranges::all_of(name, fits);
+}
+
+}  // namespace
+
+std::vector<std::string> names_of(const std::string& first, int count) {
+  if (count == 1) return {first};
+  std::size_t digits = 0;
+  while (digits < std::min<std::size_t>(first.size(), 6) && std::isdigit(first[first.size() - 1 - digits]) != 0)
+    ++digits;
+  const std::string stem = first.substr(0, first.size() - digits);
+  const int from = digits > 0 ? std::stoi(first.substr(stem.size())) : 0;
+  std::vector<std::string> names;
+  for (int i = 0; i < count; ++i) names.push_back(stem + std::to_string(from + i));
+  return names;
+}
+
+hal::Status run(const Options& options, const std::atomic<bool>& stop) {
+  constexpr int kMostRobots = 250;
+  if (options.count < 1 || options.count > kMostRobots) {
+    return hal::Error{"--count " + std::to_string(options.count) + ": from 1 to " + std::to_string(kMostRobots)};
+  }
+  if (options.body != nullptr && options.count > 1) return hal::Error{"one body is for one robot: leave out --count"};
+  for (const std::string& name : names_of(options.robot.name, options.count)) {
+    if (!is_robot_name(name)) {
+      return hal::Error{"'" + name + "' cannot be an eye-bot's name: 1 to 24 letters, digits, _ and -"};
+    }
+  }
+  std::vector<Fault> faults;
+  for (const std::string& text : options.faults) {
+    auto fault = parse_fault(text);
+    if (!fault.ok()) return fault.error();
+    faults.push_back(std::move(fault).value());
+  }
+  std::unique_ptr<EventLog> log_file;
+  if (!options.log_file.empty()) {
+    auto opened = EventLog::open(options.log_file);
+    if (!opened.ok()) return opened.error();
+    log_file = std::move(opened).value();
+  }
+  Server server(options, std::move(log_file), faults);
+  return server.serve(stop);
+}
+
+}  // namespace tandem::bridges::eyebot_emulator

@@ -1,0 +1,101 @@
+// Faults on demand: what may go wrong in an eye-bot and between it and its hub, at given times and from a seed.
+#pragma once
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bridges/emulation/fault_spec.hpp"
+#include "bridges/eyebot_emulator/eyebot.hpp"
+
+namespace tandem::bridges::eyebot_emulator {
+
+enum class FaultKind : std::uint8_t {
+  Silent,
+  Deaf,
+  Drop,
+  Double,
+  Swap,
+  Delay,
+  Lose,
+  Repeat,
+  Overtake,
+  Lag,
+  Fingerprint,
+  Truncate,
+  Restart,
+  Clock,
+  Battery,
+  NoPosition,
+  Hardware,
+  Twin,
+  Flood
+};
+
+/// Active in [from, until), counted from the start of the emulator. Restart, Clock and Battery happen at `from`.
+struct Fault {
+  FaultKind kind = FaultKind::Silent;
+  hal::TimeNs from = 0;
+  hal::TimeNs until = kEndless;
+  std::string channel{};     ///< Silent, Deaf: the end of the channel's name; empty: all
+  double probability = 0.0;  ///< Drop, Double, Swap, Lose, Repeat, Overtake, Fingerprint, Truncate: of each message
+  hal::TimeNs time_ns = 0;   ///< Delay, Lag, Clock
+  double charge = 0.0;       ///< Battery: 0 to 1
+  int rate_Hz = 0;           ///< Flood
+  std::string text{};        ///< as written
+};
+
+/// Reads NAME[=VALUE][@START[+DURATION]]: "silent=state@5s+2s", "drop=0.01", "clock=1h@3s" … A bare number is in
+/// seconds. Errors name what is wrong and list the faults that there are.
+hal::Result<Fault> parse_fault(std::string_view text);
+
+/// One line a fault: how it is written and what it does.
+std::string fault_manual();
+
+/// All faults of one robot's run, and the chance in them.
+class FaultPlan {
+ public:
+  FaultPlan(std::vector<Fault> faults, std::uint64_t seed) : faults_(std::move(faults)), chance_(seed) {}
+
+  /// Times from here on are on the clock of `start`.
+  void begin(hal::TimeNs start);
+
+  struct Change {
+    hal::TimeNs at = 0;
+    bool begins = true;
+    const Fault* fault = nullptr;
+  };
+  /// The next fault to begin or end by `now`, in order of time; each is told once.
+  std::optional<Change> next_change(hal::TimeNs now);
+  /// When `next_change` will have something.
+  std::optional<hal::TimeNs> next_change_at() const;
+
+  /// What a message becomes on its way: nothing, itself, something else, twice itself, or it waits for the next of its
+  /// channel. Messages of one way leave in the order of their times.
+  void to_hub(const Datagram& message, std::vector<Datagram>& out);
+  void to_robot(const Datagram& message, std::vector<Datagram>& out);
+
+ private:
+  struct Way {
+    FaultKind mute, lose, twice, swap, late;
+    std::map<std::string, Datagram> held{};
+    hal::TimeNs last_at = 0;
+  };
+  void pass(Way& way, Datagram message, std::vector<Datagram>& out);
+  bool is_mute(FaultKind kind, const std::string& channel, hal::TimeNs at) const;
+  bool happens(FaultKind kind, hal::TimeNs at);
+  hal::TimeNs longest_ns(FaultKind kind, hal::TimeNs at) const;
+  void damage(Bytes& data, hal::TimeNs at);
+
+  std::vector<Fault> faults_;
+  std::vector<Change> changes_;  // in order of time
+  std::size_t told_ = 0;
+  Chance chance_;
+  Way out_{FaultKind::Silent, FaultKind::Drop, FaultKind::Double, FaultKind::Swap, FaultKind::Delay};
+  Way in_{FaultKind::Deaf, FaultKind::Lose, FaultKind::Repeat, FaultKind::Overtake, FaultKind::Lag};
+};
+
+/// Does to the robot what concerns it alone. `new_session` is that of a restart.
+void apply(const FaultPlan::Change& change, Eyebot& robot, std::int32_t new_session);
+
+}  // namespace tandem::bridges::eyebot_emulator

@@ -1,0 +1,177 @@
+#include "bridges/eyebot_emulator/point_body.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tandem::bridges::eyebot_emulator {
+namespace {
+
+namespace spec = hal::eyebot;
+using std::numbers::pi;
+
+constexpr hal::TimeNs kStepNs = 10 * hal::kNsPerMs;
+constexpr double kGravity_m_s2 = 9.81;
+constexpr double kContact_m = 1e-3;        // nearer is touching
+constexpr double kHead_rad_s = pi;         // of pan and tilt: a half turn a second
+constexpr double kScannerGoTo_rad_s = pi;  // of a scanner on its way to an angle
+constexpr double kCeilingEcho_m = 10.0;    // farther up or down there is no echo
+constexpr double kScannerMostTurn_rad_s = 4.0 * pi;
+
+double wrapped(double angle_rad) {
+  return std::remainder(angle_rad, 2.0 * pi);
+}
+
+double turn_to(double angle_rad, double target_rad, double most_rad) {
+  return wrapped(angle_rad + std::clamp(wrapped(target_rad - angle_rad), -most_rad, most_rad));
+}
+
+double norm(const Vec3& v) {
+  return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+}
+
+/// Along one axis: how far until the wall at +-half_m, moving by `per_m` a metre of ray.
+double to_wall_m(double at_m, double per_m, double half_m) {
+  if (per_m > 0.0) return std::max(0.0, (half_m - at_m) / per_m);
+  if (per_m < 0.0) return std::max(0.0, (-half_m - at_m) / per_m);
+  return std::numeric_limits<double>::infinity();
+}
+
+/// Turned by `yaw_rad` about z, then leaned so that the body's z axis points along gravity + acceleration.
+std::array<double, 4> leaning(double yaw_rad, const Vec3& a_m_s2) {
+  const double c = std::cos(yaw_rad);
+  const double s = std::sin(yaw_rad);
+  const double lift = kGravity_m_s2 + a_m_s2[2];
+  if (lift < 1.0) return {std::cos(0.5 * yaw_rad), 0.0, 0.0, std::sin(0.5 * yaw_rad)};
+  const double pitch = std::atan2(c * a_m_s2[0] + s * a_m_s2[1], lift);
+  const double roll = std::atan2(s * a_m_s2[0] - c * a_m_s2[1], std::hypot(lift, c * a_m_s2[0] + s * a_m_s2[1]));
+  const double cy = std::cos(0.5 * yaw_rad), sy = std::sin(0.5 * yaw_rad);
+  const double cp = std::cos(0.5 * pitch), sp = std::sin(0.5 * pitch);
+  const double cr = std::cos(0.5 * roll), sr = std::sin(0.5 * roll);
+  return {cy * cp * cr + sy * sp * sr, cy * cp * sr - sy * sp * cr, cy * sp * cr + sy * cp * sr,
+          sy * cp * cr - cy * sp * sr};
+}
+
+/// A wall at `limit` takes away what is left of the motion along one axis.
+bool stopped_by(double& p, double& v, double least, double most) {
+  const double free = std::clamp(p, least, most);
+  const bool stopped = free != p || (p == least && v < 0.0) || (p == most && v > 0.0);
+  if (stopped) v = 0.0;
+  p = free;
+  return stopped;
+}
+
+}  // namespace
+
+double BodySenses::yaw_rad() const noexcept {
+  const auto [w, x, y, z] = q_WB;
+  return std::atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z));
+}
+
+PointBody::PointBody(const Start& start, const std::optional<Room>& room)
+    : room_(room), p_(start.p_WB), yaw_rad_(start.yaw_rad) {}
+
+void PointBody::advance(hal::TimeNs now) {
+  if (!at_) at_ = now;
+  while (*at_ < now) {
+    const hal::TimeNs until = std::min(now, *at_ + kStepNs);
+    const double dt_s = hal::to_seconds(until - *at_);
+    move(dt_s);
+    turn_devices(dt_s);
+    at_ = until;
+  }
+}
+
+bool PointBody::held() const {
+  return command_.magnet && room_ && top_m() >= room_->height_m - kContact_m;
+}
+
+void PointBody::move(double dt_s) {
+  if (dt_s <= 0.0) return;
+  const Vec3 before = v_;
+  const bool was_up = p_[2] > 0.0;
+  if (held()) {
+    v_ = {};
+  } else if (command_.motors) {
+    Vec3 dv{};
+    for (std::size_t i = 0; i < 3; ++i) dv[i] = command_.velocity_m_s[i] - v_[i];
+    const double most = spec::kMaxAcceleration_m_s2 * dt_s;
+    const double scale = norm(dv) > most ? most / norm(dv) : 1.0;
+    for (std::size_t i = 0; i < 3; ++i) v_[i] += scale * dv[i];
+    yaw_rad_ = wrapped(yaw_rad_ + command_.yaw_rad_s * dt_s);
+  } else {
+    v_[2] -= kGravity_m_s2 * dt_s;
+  }
+  for (std::size_t i = 0; i < 3; ++i) {
+    p_[i] += 0.5 * (before[i] + v_[i]) * dt_s;
+    a_[i] = (v_[i] - before[i]) / dt_s;
+  }
+  if (p_[2] <= 0.0) {
+    if (was_up && v_[2] < 0.0) touched_m_s_ = -v_[2];
+    p_[2] = 0.0;
+    v_ = {v_[0], v_[1], std::max(0.0, v_[2])};
+    if (!command_.motors || command_.velocity_m_s[2] < 0.0) v_ = {};  // it stands
+    a_ = {};
+  }
+  if (!room_) return;
+  const double free_x_m = std::max(0.0, 0.5 * room_->length_x_m - spec::kBodyRadius_m);
+  const double free_y_m = std::max(0.0, 0.5 * room_->length_y_m - spec::kBodyRadius_m);
+  stopped_by(p_[0], v_[0], -free_x_m, free_x_m);
+  stopped_by(p_[1], v_[1], -free_y_m, free_y_m);
+  if (stopped_by(p_[2], v_[2], 0.0, std::max(0.0, room_->height_m - spec::kHeight_m))) a_ = {};
+}
+
+void PointBody::turn_devices(double dt_s) {
+  if (command_.scanner == ScannerMode::Speed) {
+    const double rate = std::clamp(command_.scanner_rad_s, -kScannerMostTurn_rad_s, kScannerMostTurn_rad_s);
+    scanner_rad_ = wrapped(scanner_rad_ + rate * dt_s);
+  }
+  if (command_.scanner == ScannerMode::Position) {
+    scanner_rad_ = turn_to(scanner_rad_, command_.scanner_rad, kScannerGoTo_rad_s * dt_s);
+  }
+  pan_rad_ = turn_to(pan_rad_, command_.pan_rad, kHead_rad_s * dt_s);
+  const double most = kHead_rad_s * dt_s;
+  tilt_rad_ += std::clamp(std::clamp(command_.tilt_rad, -0.5 * pi, 0.5 * pi) - tilt_rad_, -most, most);
+}
+
+double PointBody::distance_to_wall_m(double direction_rad, double offset_m) const {
+  const double c = std::cos(direction_rad);
+  const double s = std::sin(direction_rad);
+  return std::min(to_wall_m(p_[0] + offset_m * c, c, 0.5 * room_->length_x_m),
+                  to_wall_m(p_[1] + offset_m * s, s, 0.5 * room_->length_y_m));
+}
+
+BodySenses PointBody::sense(hal::TimeNs now) {
+  advance(now);
+  BodySenses senses = surroundings;
+  senses.p_WB = p_;
+  senses.v_WB = v_;
+  senses.q_WB = leaning(yaw_rad_, a_);
+  senses.turn_rad_s = {0.0, 0.0, command_.motors ? command_.yaw_rad_s : 0.0};
+  senses.on_ground = p_[2] <= kContact_m;
+  senses.ground_m = p_[2] <= kCeilingEcho_m ? p_[2] : -1.0;
+  senses.at_ceiling = held();
+  senses.ceiling_m = -1.0;
+  if (room_ && room_->height_m - top_m() <= kCeilingEcho_m) senses.ceiling_m = std::max(0.0, room_->height_m - top_m());
+  senses.scanner_rad = scanner_rad_;
+  senses.pan_rad = pan_rad_;
+  senses.tilt_rad = tilt_rad_;
+  const bool scans = command_.scanner != ScannerMode::Off;
+  if (!scans) senses.scan_m.fill(std::numeric_limits<double>::infinity());
+  if (!room_) return senses;
+  for (std::size_t i = 0; i < senses.distance_m.size(); ++i) {
+    const double wall_m = distance_to_wall_m(yaw_rad_ + spec::kRing[i].bearing_rad, spec::kRingRadius_m);
+    senses.distance_m[i] = std::min({senses.distance_m[i], wall_m, spec::kProximityRange_m});
+  }
+  for (std::size_t head = 0; head < senses.scan_m.size() && scans; ++head) {
+    const double direction_rad = yaw_rad_ + scanner_rad_ + 0.5 * pi * static_cast<double>(head);
+    senses.scan_m[head] = std::min(senses.scan_m[head], distance_to_wall_m(direction_rad, 0.0));
+  }
+  return senses;
+}
+
+void PointBody::actuate(hal::TimeNs now, const BodyCommand& command) {
+  advance(now);
+  command_ = command;
+}
+
+}  // namespace tandem::bridges::eyebot_emulator
