@@ -179,8 +179,8 @@ hal::Status Server::serve(const std::atomic<bool>& stop) {
 }
 
 void Server::tell_end(TimeNs at) {
+  turn(at);
   for (const auto& flyer : flyers_) {
-    flyer->robot.run_until(at);
     flyer->robot.tell_sent(at);
     const Supervisor& s = flyer->robot.supervisor();
     tell(at, "end",
