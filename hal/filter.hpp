@@ -6,6 +6,7 @@
 #include "hal/device/distance_scanner.hpp"
 #include "hal/device/flight.hpp"
 #include "hal/device/gripper.hpp"
+#include "hal/device/pan_tilt.hpp"
 #include "hal/device/turret.hpp"
 #include "hal/device/wheels.hpp"
 
@@ -59,6 +60,46 @@ inline FilterResult filter(QuadrotorPosition& command) noexcept {
   if (finite) return FilterResult::Passed;
   command = QuadrotorPosition{};
   return FilterResult::NotFinite;
+}
+
+/// Leans, turn rates and thrusts are clamped; a command that is not finite becomes the safe one.
+inline FilterResult filter(QuadrotorAttitude& command, double most_lean_rad, double most_turn_rad_s,
+                           double most_thrust) noexcept {
+  if (!std::isfinite(command.roll_rad) || !std::isfinite(command.pitch_rad) || !std::isfinite(command.yaw_rad_s) ||
+      !std::isfinite(command.thrust)) {
+    command = QuadrotorAttitude{};
+    return FilterResult::NotFinite;
+  }
+  const QuadrotorAttitude before = command;
+  command.roll_rad = std::clamp(command.roll_rad, -most_lean_rad, most_lean_rad);
+  command.pitch_rad = std::clamp(command.pitch_rad, -most_lean_rad, most_lean_rad);
+  command.yaw_rad_s = std::clamp(command.yaw_rad_s, -most_turn_rad_s, most_turn_rad_s);
+  command.thrust = std::clamp(command.thrust, 0.0, most_thrust);
+  const bool same = command.roll_rad == before.roll_rad && command.pitch_rad == before.pitch_rad &&
+                    command.yaw_rad_s == before.yaw_rad_s && command.thrust == before.thrust;
+  return same ? FilterResult::Passed : FilterResult::Clamped;
+}
+
+/// Speeds are clamped to [0, limit]; an order with a speed that is not finite, or that is none, becomes the safe one.
+inline FilterResult filter(FlightTask& command, double limit_m_s) noexcept {
+  if (!std::isfinite(command.speed_m_s) || command.order > FlightOrder::Detach) {
+    command = FlightTask{};
+    return FilterResult::NotFinite;
+  }
+  if (command.speed_m_s >= 0.0 && command.speed_m_s <= limit_m_s) return FilterResult::Passed;
+  command.speed_m_s = std::clamp(command.speed_m_s, 0.0, limit_m_s);
+  return FilterResult::Clamped;
+}
+
+/// Tilts are clamped to what the head reaches; angles that are not finite make it look straight down.
+inline FilterResult filter(PanTiltDrive& command, double most_tilt_rad) noexcept {
+  if (!std::isfinite(command.pan_rad) || !std::isfinite(command.tilt_rad)) {
+    command = PanTiltDrive{};
+    return FilterResult::NotFinite;
+  }
+  if (std::fabs(command.tilt_rad) <= most_tilt_rad) return FilterResult::Passed;
+  command.tilt_rad = std::clamp(command.tilt_rad, -most_tilt_rad, most_tilt_rad);
+  return FilterResult::Clamped;
 }
 
 /// Speeds are clamped; a command that is not finite, or of no known mode, becomes the safe one. For what turns about

@@ -43,6 +43,34 @@ struct CameraSheet {
   unsigned height_px = 0;
 };
 
+/// From which elevations, seen from the LED, a group of LEDs is seen.
+struct LightSpread {
+  double sin_lowest = -1.0;  ///< sine of the lowest: -1 is straight beneath
+  double sin_highest = 1.0;  ///< … of the highest
+  bool past_body = false;    ///< its own robot's body hides none of them
+};
+
+/// How a robot flies, beyond how fast. [Mellinger and Kumar 2011, "Minimum snap trajectory generation and control for
+/// quadrotors", ICRA] has the model: four rotors whose thrusts follow what is commanded with a lag.
+struct FlightSheet {
+  double most_lean_rad = 0.0;   ///< that it obeys
+  double most_thrust = 0.0;     ///< of all rotors together, in parts of its weight
+  double climb_m_s = 0.0;       ///< when taking off or rising to the ceiling, unless told otherwise
+  double sink_m_s = 0.0;        ///< when landing, unless told otherwise
+  double take_off_m = 0.0;      ///< height to which it takes off
+  double altimeter_m = 0.0;     ///< farthest echo
+  double inertia_kg_m2 = 0.0;   ///< moment of inertia about each axis
+  double rotor_arm_m = 0.0;     ///< from the axis to each of four rotors, at 45, 135, -135 and -45 degrees
+  double rotor_lag_s = 0.0;     ///< in which a rotor's thrust covers 63 % of a change
+  double rotor_torque_m = 0.0;  ///< drag torque about the rotor's axis for each newton of its thrust
+};
+
+/// A head that a camera hangs in.
+struct HeadSheet {
+  double turn_rad_s = 0.0;     ///< fastest turn about either axis; 0: none
+  double most_tilt_rad = 0.0;  ///< from straight down, to either side
+};
+
 /// One kind of robot. All spans point at constants.
 struct DataSheet {
   std::string_view kind;  ///< as the element in experiment files, e.g. "e-puck"
@@ -58,6 +86,7 @@ struct DataSheet {
   double max_flight_speed_m_s = 0.0;          ///< of one that flies, in any direction
   double max_flight_acceleration_m_s2 = 0.0;  ///< beyond what holds it up, in any direction
   double max_flight_turn_rad_s = 0.0;
+  FlightSheet flight = {};
   double proximity_range_m = 0.0;  ///< from the sensor
   double rab_range_m = 0.0;        ///< range-and-bearing, between centres
   double rab_height_m = 0.0;
@@ -71,8 +100,12 @@ struct DataSheet {
   std::span<const Mount> motor_ground;  ///< the other group
   std::span<const Mount> microphones;
   std::span<const Mount> leds;
-  bool leds_on_turret = false;  ///< the places of the LEDs turn with the turret
-  bool body_lamps = false;      ///< an e-puck's light in the body and at the front
+  bool leds_on_turret = false;             ///< the places of the LEDs turn with the turret
+  LightSpread leds_spread = {};            ///< from where `leds` are seen
+  std::span<const Mount> upper_leds = {};  ///< of robots with a second ring
+  LightSpread upper_leds_spread = {};      ///< from where those are seen
+  bool camera_led = false;                 ///< a light beside the camera, seen as `leds` are
+  bool body_lamps = false;                 ///< an e-puck's light in the body and at the front
   bool gyroscope = false;
   double turret_turn_rad_s = 0.0;  ///< fastest turn of the turret; 0: none
   double turret_torque_Nm = 0.0;   ///< that its motor turns a load with
@@ -85,6 +118,7 @@ struct DataSheet {
   Mount body_lamp = {}, front_lamp = {};  ///< of robots with `body_lamps`
   OmniCameraSheet omni_camera = {};
   CameraSheet camera = {};
+  HeadSheet camera_head = {};  ///< that the camera hangs in where it sits usually
 };
 
 }  // namespace tandem::hal

@@ -159,5 +159,58 @@ TEST(GripperFilter, ClampsTheApertureAndLetsGoWhenItIsNotFinite) {
   EXPECT_FALSE(drive.locks());
 }
 
+TEST(AttitudeFilter, ClampsLeanTurnAndThrustAndReleasesWhenNotFinite) {
+  QuadrotorAttitude command;
+  command.set(0.1, -0.1, 0.2, 1.0);
+  EXPECT_EQ(filter(command, 0.5, 1.0, 2.0), FilterResult::Passed);
+  command.set(0.9, -0.9, 3.0, 2.5);
+  EXPECT_EQ(filter(command, 0.5, 1.0, 2.0), FilterResult::Clamped);
+  EXPECT_EQ(command.roll_rad, 0.5);
+  EXPECT_EQ(command.pitch_rad, -0.5);
+  EXPECT_EQ(command.yaw_rad_s, 1.0);
+  EXPECT_EQ(command.thrust, 2.0);
+  command.thrust = -1.0;
+  EXPECT_EQ(filter(command, 0.5, 1.0, 2.0), FilterResult::Clamped);
+  EXPECT_EQ(command.thrust, 0.0);
+  for (double QuadrotorAttitude::*field : {&QuadrotorAttitude::roll_rad, &QuadrotorAttitude::pitch_rad,
+                                           &QuadrotorAttitude::yaw_rad_s, &QuadrotorAttitude::thrust}) {
+    command.set(0.1, 0.1, 0.1, 1.0);
+    command.*field = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_EQ(filter(command, 0.5, 1.0, 2.0), FilterResult::NotFinite);
+    EXPECT_FALSE(command.active);
+  }
+}
+
+TEST(TaskFilter, ClampsTheSpeedAndKnowsItsOrders) {
+  FlightTask command{{}, FlightOrder::TakeOff, 0.5};
+  EXPECT_EQ(filter(command, 2.0), FilterResult::Passed);
+  command.speed_m_s = 3.0;
+  EXPECT_EQ(filter(command, 2.0), FilterResult::Clamped);
+  EXPECT_EQ(command.speed_m_s, 2.0);
+  command.speed_m_s = -1.0;
+  EXPECT_EQ(filter(command, 2.0), FilterResult::Clamped);
+  EXPECT_EQ(command.speed_m_s, 0.0);
+  EXPECT_EQ(command.order, FlightOrder::TakeOff);
+  command.speed_m_s = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(filter(command, 2.0), FilterResult::NotFinite);
+  EXPECT_EQ(command.order, FlightOrder::Fly);
+  command = {{}, static_cast<FlightOrder>(9), 0.0};
+  EXPECT_EQ(filter(command, 2.0), FilterResult::NotFinite) << "an order that there is not";
+  EXPECT_EQ(command.order, FlightOrder::Fly);
+}
+
+TEST(HeadFilter, ClampsTheTiltAndLooksDownWhenNotFinite) {
+  PanTiltDrive command{{}, 9.0, 1.0, true};
+  EXPECT_EQ(filter(command, 1.5), FilterResult::Passed);
+  command.tilt_rad = -2.0;
+  EXPECT_EQ(filter(command, 1.5), FilterResult::Clamped);
+  EXPECT_EQ(command.tilt_rad, -1.5);
+  EXPECT_TRUE(command.laser);
+  command.pan_rad = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(filter(command, 1.5), FilterResult::NotFinite);
+  EXPECT_EQ(command.tilt_rad, 0.0);
+  EXPECT_FALSE(command.laser);
+}
+
 }  // namespace
 }  // namespace tandem::hal
