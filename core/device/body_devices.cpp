@@ -25,21 +25,35 @@ struct ForceNoise {
   }
 };
 
-/// From the wheels' speeds: forward their mean's change, sideways speed times turn rate, upwards gravity.
+std::array<double, 3> cross(const std::array<double, 3>& m, const std::array<double, 3>& n) noexcept {
+  return {m[1] * n[2] - m[2] * n[1], m[2] * n[0] - m[0] * n[2], m[0] * n[1] - m[1] * n[0]};
+}
+
+/// From W to the body: by the inverse of its quaternion, v + 2 u x (u x v + q0 v) with u = -(q1, q2, q3).
+std::array<double, 3> to_body(const std::array<double, 4>& q, const std::array<double, 3>& v) noexcept {
+  const std::array<double, 3> u = {-q[1], -q[2], -q[3]};
+  std::array<double, 3> inner = cross(u, v);
+  for (std::size_t k = 0; k < 3; ++k) inner[k] += q[0] * v[k];
+  const std::array<double, 3> outer = cross(u, inner);
+  return {v[0] + 2.0 * outer[0], v[1] + 2.0 * outer[1], v[2] + 2.0 * outer[2]};
+}
+
+/// From the wheels' speeds: forward their mean's change, sideways speed times turn rate, upwards gravity. Of robots
+/// that fly: the change of their velocity and gravity, in the body's frame.
 class AccelerometerSensor final : public Sensor {
  public:
-  AccelerometerSensor(double wheel_base_m, double noise, std::size_t capacity)
-      : wheel_base_m_(wheel_base_m), noise_m_s2_(noise), last_m_s_(capacity, 1, 0.0) {}
+  AccelerometerSensor(const hal::DataSheet& sheet, double noise, std::size_t capacity)
+      : wheel_base_m_(sheet.wheel_base_m),
+        flies_(sheet.flies),
+        noise_m_s2_(noise),
+        last_m_s_(capacity, sheet.flies ? 3 : 1, 0.0) {}
 
   void sense(const DeviceContext& context, void* ports) noexcept override {
     auto* meters = static_cast<hal::Accelerometer*>(ports);
     const Bodies& b = context.stores.bodies;
     for (std::size_t i = 0; i < context.block.used; ++i) {
       const std::size_t row = context.block.first_row + i;
-      const double speed = 0.5 * (b.left_m_s[row] + b.right_m_s[row]);
-      const double turn = (b.right_m_s[row] - b.left_m_s[row]) / wheel_base_m_;
-      std::array<double, 3> force{(speed - last_m_s_.values[i]) / context.tick_s, speed * turn, kGravity_m_s2};
-      last_m_s_.values[i] = speed;
+      std::array<double, 3> force = flies_ ? flown(context, row, i) : driven(context, row, i);
       if (noise_m_s2_ > 0.0) {
         const auto bits = draw(context.seed, b.entity[row], Stream::AccelerometerNoise, context.tick);
         const auto xy = to_normal(bits[0], bits[1]);
@@ -56,13 +70,33 @@ class AccelerometerSensor final : public Sensor {
   DeviceMemory* memory() noexcept override { return &last_m_s_; }
 
  private:
+  std::array<double, 3> driven(const DeviceContext& context, std::size_t row, std::size_t i) noexcept {
+    const Bodies& b = context.stores.bodies;
+    const double speed = 0.5 * (b.left_m_s[row] + b.right_m_s[row]);
+    const double turn = (b.right_m_s[row] - b.left_m_s[row]) / wheel_base_m_;
+    const std::array<double, 3> force{(speed - last_m_s_.values[i]) / context.tick_s, speed * turn, kGravity_m_s2};
+    last_m_s_.values[i] = speed;
+    return force;
+  }
+  std::array<double, 3> flown(const DeviceContext& context, std::size_t row, std::size_t i) noexcept {
+    const Motion& m = context.stores.bodies.motion[row];
+    std::array<double, 3> force{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      double& last = last_m_s_.values[3 * i + k];
+      force[k] = (m.v_m_s[k] - last) / context.tick_s + (k == 2 ? kGravity_m_s2 : 0.0);
+      last = m.v_m_s[k];
+    }
+    return to_body(m.q_WB, force);
+  }
+
   double wheel_base_m_;
+  bool flies_;
   double noise_m_s2_;
   DeviceMemory last_m_s_;
 };
 
 bool has_accelerometer(const hal::DataSheet& sheet) {
-  return sheet.wheel_base_m > 0.0;
+  return sheet.wheel_base_m > 0.0 || sheet.flies;
 }
 
 template <class Options>
@@ -70,8 +104,8 @@ Recipe<Sensor> make_accelerometer(const Element& element, Problems& problems, co
   const auto options = read_options<Options>(element, problems);
   double noise = 0.0;
   if constexpr (requires { options.noise_level_m_s2; }) noise = options.noise_level_m_s2;
-  return [base = setup.sheet.wheel_base_m, noise](std::size_t capacity) {
-    return std::make_unique<AccelerometerSensor>(base, noise, capacity);
+  return [&sheet = setup.sheet, noise](std::size_t capacity) {
+    return std::make_unique<AccelerometerSensor>(sheet, noise, capacity);
   };
 }
 
@@ -119,16 +153,7 @@ class GyroscopeSensor final : public Sensor {
     }
     const std::array<double, 3>& w = b.motion[row].w_rad_s;
     if (stores.regions[number].plane) return {0.0, 0.0, w[2]};
-    // From W to the body: by the inverse of its quaternion, v + 2 u x (u x v + q0 v) with u = -(q1, q2, q3).
-    const std::array<double, 4>& q = b.motion[row].q_WB;
-    const std::array<double, 3> u = {-q[1], -q[2], -q[3]};
-    const auto cross = [](const std::array<double, 3>& m, const std::array<double, 3>& n) {
-      return std::array<double, 3>{m[1] * n[2] - m[2] * n[1], m[2] * n[0] - m[0] * n[2], m[0] * n[1] - m[1] * n[0]};
-    };
-    std::array<double, 3> inner = cross(u, w);
-    for (std::size_t k = 0; k < 3; ++k) inner[k] += q[0] * w[k];
-    const std::array<double, 3> outer = cross(u, inner);
-    return {w[0] + 2.0 * outer[0], w[1] + 2.0 * outer[1], w[2] + 2.0 * outer[2]};
+    return to_body(b.motion[row].q_WB, w);
   }
 
   double wheel_base_m_;
@@ -358,24 +383,47 @@ struct LampOptions {
   }
 };
 
-/// Shows cameras, where there are any, what the ports say; views and pictures read the ports.
+/// Shows cameras, where there are any, what the ports say; views and pictures read the ports. For the ring, or the
+/// upper of two.
+template <class Port>
 class RingLamps final : public Actuator {
+  static constexpr bool kUpper = std::is_same_v<Port, hal::UpperRingLeds>;
+
  public:
   RingLamps(const hal::DataSheet& sheet, std::uint16_t medium)
-      : count_(std::min(sheet.leds.size(), hal::RingLeds::kCapacity)), medium_(medium) {}
+      : count_(std::min((kUpper ? sheet.upper_leds : sheet.leds).size(), hal::RingLeds::kCapacity)), medium_(medium) {}
 
   void act(const DeviceContext& context, SpaceStores& stores, const void* ports) noexcept override {
     if (stores.shown_leds.empty()) return;
-    const auto* leds = static_cast<const hal::RingLeds*>(ports);
+    const auto* leds = static_cast<const Port*>(ports);
     for (std::size_t i = 0; i < context.block.used; ++i) {
       ShownLeds& shown = stores.shown_leds[context.block.first_row + i];
-      for (std::size_t k = 0; k < count_; ++k) shown.show(k, leds[i].color(k));
-      shown.ring_medium = medium_;
+      for (std::size_t k = 0; k < count_; ++k) shown.show(kUpper ? ShownLeds::kUpper + k : k, leds[i].color(k));
+      (kUpper ? shown.upper_medium : shown.ring_medium) = medium_;
     }
   }
 
  private:
   std::size_t count_;
+  std::uint16_t medium_;
+};
+
+/// The same for the light beside a camera.
+class CameraLamp final : public Actuator {
+ public:
+  explicit CameraLamp(std::uint16_t medium) : medium_(medium) {}
+
+  void act(const DeviceContext& context, SpaceStores& stores, const void* ports) noexcept override {
+    if (stores.shown_leds.empty()) return;
+    const auto* lamps = static_cast<const hal::CameraLed*>(ports);
+    for (std::size_t i = 0; i < context.block.used; ++i) {
+      ShownLeds& shown = stores.shown_leds[context.block.first_row + i];
+      shown.show(ShownLeds::kCamera, {lamps[i].rgb[0], lamps[i].rgb[1], lamps[i].rgb[2]});
+      shown.camera_medium = medium_;
+    }
+  }
+
+ private:
   std::uint16_t medium_;
 };
 
@@ -405,13 +453,27 @@ bool has_leds(const hal::DataSheet& sheet) {
   return !sheet.leds.empty();
 }
 
+bool has_upper_leds(const hal::DataSheet& sheet) {
+  return !sheet.upper_leds.empty();
+}
+
+bool has_camera_led(const hal::DataSheet& sheet) {
+  return sheet.camera_led;
+}
+
 bool has_body_lamps(const hal::DataSheet& sheet) {
   return sheet.body_lamps;
 }
 
+template <class Port>
 Recipe<Actuator> make_ring_lamps(const Element& element, Problems& problems, const DeviceSetup& setup) {
   const std::uint16_t medium = setup.led_medium(read_options<LampOptions>(element, problems).medium);
-  return [&sheet = setup.sheet, medium](std::size_t) { return std::make_unique<RingLamps>(sheet, medium); };
+  return [&sheet = setup.sheet, medium](std::size_t) { return std::make_unique<RingLamps<Port>>(sheet, medium); };
+}
+
+Recipe<Actuator> make_camera_lamp(const Element& element, Problems& problems, const DeviceSetup& setup) {
+  const std::uint16_t medium = setup.led_medium(read_options<LampOptions>(element, problems).medium);
+  return [medium](std::size_t) { return std::make_unique<CameraLamp>(medium); };
 }
 
 template <class Port>
@@ -424,11 +486,11 @@ Recipe<Actuator> make_body_lamp(const Element& element, Problems& problems, cons
 
 std::vector<DeviceType> body_device_types() {
   std::vector<DeviceType> types = {
-      sensor_type("accelerometer", "default", "From the wheels' speeds; noise where asked for.", &has_accelerometer,
+      sensor_type("accelerometer", "default", "From the change of speed; noise where asked for.", &has_accelerometer,
                   &make_accelerometer<ForceNoise<0>>, &describe_options<ForceNoise<0>>),
-      sensor_type("accelerometer", "ideal", "From the wheels' speeds.", &has_accelerometer,
+      sensor_type("accelerometer", "ideal", "From the change of speed.", &has_accelerometer,
                   &make_accelerometer<NoOptions>, &describe_options<NoOptions>),
-      sensor_type("accelerometer", "noisy", "From the wheels' speeds, with normal noise.", &has_accelerometer,
+      sensor_type("accelerometer", "noisy", "From the change of speed, with normal noise.", &has_accelerometer,
                   &make_accelerometer<ForceNoise<200>>, &describe_options<ForceNoise<200>>),
       sensor_type("gyroscope", "default", "Turn rates of the body; noise where asked for.", &has_gyroscope,
                   &make_gyroscope<RateNoise<0>>, &describe_options<RateNoise<0>>),
@@ -457,7 +519,9 @@ std::vector<DeviceType> body_device_types() {
     types.push_back(actuator_type(lamp, "default", "Shines.", fits, make, &describe_options<LampOptions>));
     types.push_back(actuator_type(lamp, "ideal", "Shines.", fits, make, &describe_options<LampOptions>));
   };
-  add_lamp(hal::RingLeds::kName, &has_leds, &make_ring_lamps);
+  add_lamp(hal::RingLeds::kName, &has_leds, &make_ring_lamps<hal::RingLeds>);
+  add_lamp(hal::UpperRingLeds::kName, &has_upper_leds, &make_ring_lamps<hal::UpperRingLeds>);
+  add_lamp(hal::CameraLed::kName, &has_camera_led, &make_camera_lamp);
   add_lamp(hal::BodyLed::kName, &has_body_lamps, &make_body_lamp<hal::BodyLed>);
   add_lamp(hal::FrontLed::kName, &has_body_lamps, &make_body_lamp<hal::FrontLed>);
   return types;

@@ -1,6 +1,8 @@
 // Cameras that see coloured blobs: the lit LEDs of robots and objects, and lamps.
 #include "hal/device/cameras.hpp"
 
+#include <bit>
+
 #include "core/device/cameras.hpp"
 #include "core/device/sight.hpp"
 #include "core/device/types.hpp"
@@ -83,7 +85,9 @@ class Lookout {
   /// How far LEDs sit from the axis of a kind of robot.
   static double ring_m(const hal::DataSheet& sheet) noexcept {
     double widest2 = 0.0;
-    for (const hal::Mount& led : sheet.leds) widest2 = std::max(widest2, led.x_m * led.x_m + led.y_m * led.y_m);
+    for (const auto& ring : {sheet.leds, sheet.upper_leds}) {
+      for (const hal::Mount& led : ring) widest2 = std::max(widest2, led.x_m * led.x_m + led.y_m * led.y_m);
+    }
     return std::max(std::sqrt(widest2), sheet.body_lamps ? sheet.body_radius_m : 0.0);
   }
 
@@ -100,11 +104,16 @@ class Lookout {
       const double spread_m = ring_m(sheet);
       if (!near(b.x_m[other], b.y_m[other], from, reach_m + spread_m)) return;
       gather(stores, row, other, from, b.x_m[other], b.y_m[other], spread_m);
-      for (std::size_t i = 0; i < ShownLeds::kCount; ++i) {
-        if ((shown.lit >> i & 1U) == 0 || !same_medium(shown.medium(i), medium)) continue;
+      for (std::uint64_t left = shown.lit; left != 0; left &= left - 1) {
+        const auto i = static_cast<std::size_t>(std::countr_zero(left));
+        if (!same_medium(shown.medium(i), medium)) continue;
         const Point at = place_of(stores, other, sheet, i);
+        const hal::LightSpread& spread = spread_of(sheet, i);
+        if (!shines_at(spread, at, from)) continue;
         // A robot's body hides the LEDs on its far side, but not the light in it.
-        if (i == ShownLeds::kBody || !behind_own_body(stores, other, sheet, from, at)) consider(at, shown.color[i]);
+        const bool hidden =
+            i != ShownLeds::kBody && !spread.past_body && behind_own_body(stores, other, sheet, from, at);
+        if (!hidden) consider(at, shown.color[i]);
       }
     });
   }
@@ -132,9 +141,12 @@ class Lookout {
   static Point place_of(const SpaceStores& stores, std::size_t row, const hal::DataSheet& sheet,
                         std::size_t i) noexcept {
     const Bodies& b = stores.bodies;
-    const hal::Mount& mount = i == ShownLeds::kBody    ? sheet.body_lamp
-                              : i == ShownLeds::kFront ? sheet.front_lamp
-                                                       : sheet.leds[i];
+    const hal::Mount beside_camera{0.0, sheet.camera.usual.x_m, 0.0, sheet.camera.usual.z_m};
+    const hal::Mount& mount = i == ShownLeds::kBody     ? sheet.body_lamp
+                              : i == ShownLeds::kFront  ? sheet.front_lamp
+                              : i == ShownLeds::kCamera ? beside_camera
+                              : i >= ShownLeds::kUpper  ? sheet.upper_leds[i - ShownLeds::kUpper]
+                                                        : sheet.leds[i];
     double c = b.cos_h[row];
     double s = b.sin_h[row];
     if (sheet.leds_on_turret && !b.turrets.empty() && b.turrets[row].angle_rad != 0.0) {
@@ -146,6 +158,22 @@ class Lookout {
     }
     return {b.x_m[row] + c * mount.x_m - s * mount.y_m, b.y_m[row] + s * mount.x_m + c * mount.y_m,
             stores.base_m(row) + mount.z_m};
+  }
+
+  static const hal::LightSpread& spread_of(const hal::DataSheet& sheet, std::size_t i) noexcept {
+    static constexpr hal::LightSpread kEverywhere;
+    if (i == ShownLeds::kBody || i == ShownLeds::kFront) return kEverywhere;
+    return i >= ShownLeds::kUpper && i < ShownLeds::kCamera ? sheet.upper_leds_spread : sheet.leds_spread;
+  }
+
+  /// Whether an LED there sends light to a camera.
+  static bool shines_at(const hal::LightSpread& spread, const Point& at, const Point& from) noexcept {
+    if (spread.sin_lowest <= -1.0 && spread.sin_highest >= 1.0) return true;
+    const double dx = from[0] - at[0];
+    const double dy = from[1] - at[1];
+    const double dz = from[2] - at[2];
+    const double distance_m = std::sqrt(dx * dx + dy * dy + dz * dz);
+    return dz >= spread.sin_lowest * distance_m && dz <= spread.sin_highest * distance_m;
   }
 
   static bool behind_own_body(const SpaceStores& stores, std::size_t row, const hal::DataSheet& sheet,
@@ -322,12 +350,15 @@ struct LensOptions : CameraOptions {
 class LensSensor final : public Sensor {
  public:
   LensSensor(const DeviceSetup& setup, std::uint16_t medium, const Flaws& flaws)
-      : camera_(camera_of(setup.sheet, setup.item.camera)), medium_(medium), flaws_(flaws) {
+      : camera_(camera_of(setup.sheet, setup.item.camera)),
+        in_head_(setup.sheet.camera_head.turn_rad_s > 0.0 && !setup.item.camera.front),
+        medium_(medium),
+        flaws_(flaws) {
     const double width = camera_.width_px;
     const double height = camera_.height_px;
     px_per_tangent_ = 0.5 * std::sqrt(width * width + height * height) / std::tan(camera_.aperture_rad);
-    cos_tilt_ = std::cos(camera_.usual.tilt_rad);
-    sin_tilt_ = std::sin(camera_.usual.tilt_rad);
+    aim_.cos_tilt = std::cos(camera_.usual.tilt_rad);
+    aim_.sin_tilt = std::sin(camera_.usual.tilt_rad);
   }
 
   void sense(const DeviceContext& context, void* ports) noexcept override {
@@ -358,17 +389,37 @@ class LensSensor final : public Sensor {
     double x, y;
     bool inside;
   };
+  /// Where the axis points: a heading in W, and a tilt above it.
+  struct Aim {
+    double cos_h = 1.0, sin_h = 0.0;
+    double cos_tilt = 1.0, sin_tilt = 0.0;
+  };
 
-  /// Where a point, from the lens in W, falls in the image of robot `row`.
-  Pixel pixel(const Bodies& b, std::size_t row, const Point& p) const noexcept {
-    const double ahead = b.cos_h[row] * p[0] + b.sin_h[row] * p[1];
-    const double left = b.cos_h[row] * p[1] - b.sin_h[row] * p[0];
-    const double depth = cos_tilt_ * ahead + sin_tilt_ * p[2];
+  Aim aim_of(const Bodies& b, std::size_t row) const noexcept {
+    Aim aim = aim_;
+    aim.cos_h = b.cos_h[row];
+    aim.sin_h = b.sin_h[row];
+    if (!in_head_ || b.heads.empty()) return aim;
+    const HeadState& head = b.heads[row];
+    const double c = std::cos(head.pan_rad);
+    const double s = std::sin(head.pan_rad);
+    aim.cos_h = b.cos_h[row] * c - b.sin_h[row] * s;
+    aim.sin_h = b.sin_h[row] * c + b.cos_h[row] * s;
+    aim.cos_tilt = std::sin(head.tilt_rad);  // of a head that looks straight down at 0
+    aim.sin_tilt = -std::cos(head.tilt_rad);
+    return aim;
+  }
+
+  /// Where a point, from the lens in W, falls in the image.
+  Pixel pixel(const Aim& aim, const Point& p) const noexcept {
+    const double ahead = aim.cos_h * p[0] + aim.sin_h * p[1];
+    const double left = aim.cos_h * p[1] - aim.sin_h * p[0];
+    const double depth = aim.cos_tilt * ahead + aim.sin_tilt * p[2];
     if (depth <= 0.0) return {0.0, 0.0, false};
     const double width = camera_.width_px;
     const double height = camera_.height_px;
     const double x = 0.5 * width - px_per_tangent_ * left / depth;
-    const double y = 0.5 * height + px_per_tangent_ * (sin_tilt_ * ahead - cos_tilt_ * p[2]) / depth;
+    const double y = 0.5 * height + px_per_tangent_ * (aim.sin_tilt * ahead - aim.cos_tilt * p[2]) / depth;
     return {x, y, x >= 0.0 && x <= width && y >= 0.0 && y <= height};
   }
 
@@ -378,14 +429,15 @@ class LensSensor final : public Sensor {
     const Point from{b.x_m[row] + b.cos_h[row] * mount.x_m, b.y_m[row] + b.sin_h[row] * mount.x_m,
                      context.stores.base_m(row) + mount.z_m};
     const double range2 = camera_.range_m * camera_.range_m;
+    const Aim aim = aim_of(b, row);
     const auto covers = [&](const Point& p) {
-      return p[0] * p[0] + p[1] * p[1] + p[2] * p[2] <= range2 && pixel(b, row, p).inside;
+      return p[0] * p[0] + p[1] * p[1] + p[2] * p[2] <= range2 && pixel(aim, p).inside;
     };
     std::uint32_t number = 0;
     lookout_.look(context.stores, row, from, camera_.range_m, medium_, covers, [&](const Point& p, hal::Rgb color) {
       const std::uint32_t n = number++;
       if (missed(flaws_, context, row, Stream::CameraMiss, n)) return;
-      const Pixel at = pixel(b, row, p);
+      const Pixel at = pixel(aim, p);
       const auto error = errors(flaws_, context, row, Stream::CameraNoise, n);
       insert({p[0] * p[0] + p[1] * p[1] + p[2] * p[2],
               static_cast<float>(std::clamp(at.x + error[0], 0.0, static_cast<double>(camera_.width_px))),
@@ -407,10 +459,11 @@ class LensSensor final : public Sensor {
   }
 
   hal::CameraSheet camera_;
+  bool in_head_;
   std::uint16_t medium_;
   Flaws flaws_;
   double px_per_tangent_ = 1.0;
-  double cos_tilt_ = 1.0, sin_tilt_ = 0.0;
+  Aim aim_;  // of a robot that looks along x, whose camera hangs in no head
   Lookout lookout_;
   std::array<Blob, hal::PerspectiveCamera::kCapacity> blobs_{};  // nearest first, of one image
   std::size_t found_ = 0;

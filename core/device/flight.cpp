@@ -1,4 +1,5 @@
-// Flight: the actuators that tell the engine where or how fast to fly, and the sensor that tells where the robot is.
+// Flight: the actuators that take where, how fast, how and whether to fly, and the sensor that tells where the robot
+// is.
 #include "hal/device/flight.hpp"
 
 #include "core/device/types.hpp"
@@ -35,43 +36,47 @@ struct VelocityErrors {
   }
 };
 
-/// The ports of one class that the block's robots have, or null.
-template <class Port>
-const Port* ports_of(const DeviceContext& context) noexcept {
-  for (std::size_t i = 0; i < context.group.ports.size(); ++i) {
-    if (context.group.ports[i]->layout == hal::port_type<Port>().layout &&
-        context.group.ports[i]->role == hal::Role::Actuator)
-      return context.block.port_array<Port>(i);
+template <int kPerMille>
+struct AttitudeErrors {
+  double noise_std_dev = kPerMille * 1e-3;
+  void describe(hal::ParamVisitor& v) {
+    v.number("noise_std_dev", noise_std_dev, hal::unit::rad, hal::kNotNegative,
+             "Standard deviation of roll and pitch, and of the thrust in parts of the weight, drawn every tick.");
   }
-  return nullptr;
-}
+};
 
-void add_noise(const DeviceContext& context, std::size_t row, double std_dev, FlightCommand& command) noexcept {
-  const auto bits = draw(context.seed, context.stores.bodies.entity[row], Stream::FlightNoise, context.tick);
+template <int kPerMille>
+struct TaskErrors {
+  double noise_std_dev = kPerMille * 1e-3;
+  void describe(hal::ParamVisitor& v) {
+    v.number("noise_std_dev", noise_std_dev, hal::unit::none, {0.0, 0.3},
+             "Standard deviation of the relative error of the speed to climb or sink with, drawn every tick.");
+  }
+};
+
+/// Three errors with this standard deviation.
+std::array<double, 3> errors(const DeviceContext& context, std::size_t row, Stream stream, double std_dev) noexcept {
+  const auto bits = draw(context.seed, context.stores.bodies.entity[row], stream, context.tick);
   const auto xy = to_normal(bits[0], bits[1]);
-  command.target[0] += std_dev * xy[0];
-  command.target[1] += std_dev * xy[1];
-  command.target[2] += std_dev * to_normal(bits[2], bits[3])[0];
+  return {std_dev * xy[0], std_dev * xy[1], std_dev * to_normal(bits[2], bits[3])[0]};
 }
 
-/// Both actuators write the same rows of the stores: a position that is not on hold goes before a speed, in whichever
-/// order they act.
+/// Each flight actuator notes what its port asks for; which of them counts is seen once all have (core/sim/piloting).
 class PositionActuator final : public Actuator {
  public:
   explicit PositionActuator(double noise_m) : noise_m_(noise_m) {}
 
   void act(const DeviceContext& context, SpaceStores& stores, const void* ports) noexcept override {
     const auto* targets = static_cast<const hal::QuadrotorPosition*>(ports);
-    const bool has_speed = ports_of<hal::QuadrotorSpeed>(context) != nullptr;
     for (std::size_t i = 0; i < context.block.used; ++i) {
       const std::size_t row = context.block.first_row + i;
-      FlightCommand& command = stores.bodies.flight[row];
-      if (!targets[i].hold && obeys(context, i)) {
-        command = {FlightCommand::Mode::Position, targets[i].target, targets[i].yaw_rad};
-        if (noise_m_ > 0.0) add_noise(context, row, noise_m_, command);
-      } else if (!has_speed) {
-        command = {FlightCommand::Mode::Velocity, {}, 0.0};
-      }
+      FlightWish& wish = stores.bodies.wishes[row];
+      wish.to_place = !targets[i].hold;
+      wish.target_m = targets[i].target;
+      wish.heading_rad = targets[i].yaw_rad;
+      if (noise_m_ == 0.0 || !wish.to_place) continue;
+      const auto error = errors(context, row, Stream::FlightNoise, noise_m_);
+      for (std::size_t k = 0; k < 3; ++k) wish.target_m[k] += error[k];
     }
   }
 
@@ -85,21 +90,63 @@ class SpeedActuator final : public Actuator {
 
   void act(const DeviceContext& context, SpaceStores& stores, const void* ports) noexcept override {
     const auto* speeds = static_cast<const hal::QuadrotorSpeed*>(ports);
-    const auto* targets = ports_of<hal::QuadrotorPosition>(context);
     for (std::size_t i = 0; i < context.block.used; ++i) {
       const std::size_t row = context.block.first_row + i;
-      FlightCommand& command = stores.bodies.flight[row];
-      if (!obeys(context, i)) {
-        command = {FlightCommand::Mode::Velocity, {}, 0.0};
-      } else if (targets == nullptr || targets[i].hold) {
-        command = {FlightCommand::Mode::Velocity, speeds[i].velocity, speeds[i].yaw_rad_s};
-        if (noise_m_s_ > 0.0) add_noise(context, row, noise_m_s_, command);
-      }
+      FlightWish& wish = stores.bodies.wishes[row];
+      wish.velocity_m_s = speeds[i].velocity;
+      wish.turn_rad_s = speeds[i].yaw_rad_s;
+      if (noise_m_s_ == 0.0) continue;
+      const auto error = errors(context, row, Stream::FlightNoise, noise_m_s_);
+      for (std::size_t k = 0; k < 3; ++k) wish.velocity_m_s[k] += error[k];
     }
   }
 
  private:
   double noise_m_s_;
+};
+
+class AttitudeActuator final : public Actuator {
+ public:
+  explicit AttitudeActuator(double noise) : noise_(noise) {}
+
+  void act(const DeviceContext& context, SpaceStores& stores, const void* ports) noexcept override {
+    const auto* attitudes = static_cast<const hal::QuadrotorAttitude*>(ports);
+    for (std::size_t i = 0; i < context.block.used; ++i) {
+      const std::size_t row = context.block.first_row + i;
+      hal::QuadrotorAttitude& wish = stores.bodies.wishes[row].attitude;
+      wish = attitudes[i];
+      if (noise_ == 0.0 || !wish.active) continue;
+      const auto error = errors(context, row, Stream::AttitudeNoise, noise_);
+      wish.roll_rad += error[0];
+      wish.pitch_rad += error[1];
+      wish.thrust = std::max(0.0, wish.thrust + error[2]);
+    }
+  }
+
+ private:
+  double noise_;
+};
+
+class TaskActuator final : public Actuator {
+ public:
+  explicit TaskActuator(double noise) : noise_(noise) {}
+
+  void act(const DeviceContext& context, SpaceStores& stores, const void* ports) noexcept override {
+    const auto* tasks = static_cast<const hal::FlightTask*>(ports);
+    const hal::FlightSheet& sheet = context.group.sheet->flight;
+    for (std::size_t i = 0; i < context.block.used; ++i) {
+      const std::size_t row = context.block.first_row + i;
+      hal::FlightTask& wish = stores.bodies.wishes[row].task;
+      wish = tasks[i];
+      if (noise_ == 0.0) continue;
+      if (wish.speed_m_s == 0.0)
+        wish.speed_m_s = wish.order == hal::FlightOrder::Land ? sheet.sink_m_s : sheet.climb_m_s;
+      wish.speed_m_s *= std::max(0.1, 1.0 + errors(context, row, Stream::TaskNoise, noise_)[0]);
+    }
+  }
+
+ private:
+  double noise_;
 };
 
 template <class Device, class Options>
@@ -205,14 +252,26 @@ DeviceType positioning_type(std::string_view implementation, std::string_view su
 std::vector<DeviceType> flight_types() {
   constexpr std::string_view kPosition = hal::QuadrotorPosition::kName;
   constexpr std::string_view kSpeed = hal::QuadrotorSpeed::kName;
+  constexpr std::string_view kAttitude = hal::QuadrotorAttitude::kName;
+  constexpr std::string_view kTask = hal::FlightTask::kName;
   using Position = PositionActuator;
   using Speed = SpeedActuator;
+  using Attitude = AttitudeActuator;
+  using Task = TaskActuator;
   return {flight_type<Position, TargetErrors<0>>(kPosition, "default", "Flies to a place; noise where asked for."),
           flight_type<Position, IdealFlight>(kPosition, "ideal", "Flies to a place."),
           flight_type<Position, TargetErrors<10>>(kPosition, "noisy", "Flies to a place that wanders."),
           flight_type<Speed, VelocityErrors<0>>(kSpeed, "default", "Flies at a velocity; noise where asked for."),
           flight_type<Speed, IdealFlight>(kSpeed, "ideal", "Flies at a velocity."),
           flight_type<Speed, VelocityErrors<20>>(kSpeed, "noisy", "Flies at a velocity, with an error every tick."),
+          flight_type<Attitude, AttitudeErrors<0>>(kAttitude, "default", "Leans as told; noise where asked for."),
+          flight_type<Attitude, IdealFlight>(kAttitude, "ideal", "Leans as told."),
+          flight_type<Attitude, AttitudeErrors<10>>(kAttitude, "noisy", "Leans with an error every tick."),
+          flight_type<Task, TaskErrors<0>>(kTask, "default",
+                                           "Takes off, lands, holds on to the ceiling; noise where "
+                                           "asked for."),
+          flight_type<Task, IdealFlight>(kTask, "ideal", "Takes off, lands, holds on to the ceiling."),
+          flight_type<Task, TaskErrors<50>>(kTask, "noisy", "The same, with an error of its speed every tick."),
           positioning_type<PlaceErrors<0>>("default", "Place and orientation; noise where asked for."),
           positioning_type<IdealPlace>("ideal", "Place and orientation."),
           positioning_type<PlaceErrors<10>>("noisy", "Place and orientation, with uniform noise.")};

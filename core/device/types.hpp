@@ -10,6 +10,8 @@ std::vector<DeviceType> ring_level_types();
 std::vector<DeviceType> body_device_types();
 std::vector<DeviceType> range_and_bearing_types();
 std::vector<DeviceType> flight_types();
+std::vector<DeviceType> flight_sensor_types();
+std::vector<DeviceType> pan_tilt_types();
 std::vector<DeviceType> turret_types();
 std::vector<DeviceType> gripper_types();
 std::vector<DeviceType> scanner_types();

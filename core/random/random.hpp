@@ -43,6 +43,12 @@ enum class Stream : std::uint32_t {
   OmniCameraMiss,
   CameraNoise,
   CameraMiss,
+  AttitudeNoise,
+  TaskNoise,
+  FlightStateNoise,
+  AltimeterNoise,
+  HeadNoise,
+  HeadEncoderNoise,
 };
 
 /// Four independent 32-bit numbers. `index` tells draws of one tick apart (0 to 2^24 - 1).

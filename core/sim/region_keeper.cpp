@@ -247,6 +247,7 @@ void RegionKeeper::list_body(SpaceStores& stores, BodyKey body) {
   for (const std::uint16_t r : map_.near(at.x_m, at.y_m)) {
     Region& region = stores.regions[r];
     if (r == own || !region.listed || region.air != stores.regions[own].air) continue;
+    if (at.flies && region.plane) continue;  // it is above those who drive there
     if (region.distance(at.x_m, at.y_m) <= reach_m) region.mirrored.push_back(body);
   }
 }

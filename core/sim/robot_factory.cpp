@@ -12,6 +12,7 @@
 #include "hal/device/cameras.hpp"
 #include "hal/device/flight.hpp"
 #include "hal/device/gripper.hpp"
+#include "hal/device/pan_tilt.hpp"
 #include "hal/device/range_and_bearing.hpp"
 #include "hal/spec/epuck.hpp"
 #include "hal/spec/eyebot.hpp"
@@ -90,6 +91,9 @@ class ConstructedRobot final : public hal::Robot {
         if (type.name == hal::WheelSpeeds::kName) group_.wheels = static_cast<int>(i);
         if (type.name == hal::QuadrotorPosition::kName) group_.flight_position = static_cast<int>(i);
         if (type.name == hal::QuadrotorSpeed::kName) group_.flight_speed = static_cast<int>(i);
+        if (type.name == hal::QuadrotorAttitude::kName) group_.flight_attitude = static_cast<int>(i);
+        if (type.name == hal::FlightTask::kName) group_.flight_task = static_cast<int>(i);
+        if (type.name == hal::PanTiltDrive::kName) group_.camera_head = static_cast<int>(i);
         if (type.name == hal::TurretDrive::kName) group_.turret = static_cast<int>(i);
         if (type.name == hal::GripperDrive::kName) group_.gripper = static_cast<int>(i);
         if (type.name == hal::ScannerDrive::kName) group_.scanner = static_cast<int>(i);
@@ -398,8 +402,12 @@ void RobotFactory::keep_sizes() {
   if (!stores_.broadcasts.empty() || std::any_of(stores_.groups.begin(), stores_.groups.end(), sends))
     stores_.broadcasts.resize(stores_.bodies.size());
   const auto flies = [](const RobotGroup& group) { return group.sheet != nullptr && group.sheet->flies; };
-  if (std::any_of(stores_.groups.begin(), stores_.groups.end(), flies))
+  if (std::any_of(stores_.groups.begin(), stores_.groups.end(), flies)) {
     stores_.bodies.flight.resize(stores_.bodies.size());
+    stores_.bodies.wishes.resize(stores_.bodies.size());
+    stores_.bodies.pilots.resize(stores_.bodies.size());
+    stores_.bodies.rotors.resize(stores_.bodies.size());
+  }
   const auto sees = [](const RobotGroup& group) { return group.sees_m > 0.0; };
   if (!stores_.shown_leds.empty() || std::any_of(stores_.groups.begin(), stores_.groups.end(), sees))
     stores_.shown_leds.resize(stores_.bodies.size());
@@ -426,6 +434,7 @@ void RobotFactory::keep_mechanisms() {
   if (!b.turrets.empty() || taken({hal::TurretDrive::kName, hal::TurretEncoder::kName})) b.turrets.resize(b.size());
   if (!b.grips.empty() || taken({hal::GripperDrive::kName})) b.grips.resize(b.size());
   if (!b.scanners.empty() || taken({hal::ScannerDrive::kName})) b.scanners.resize(b.size());
+  if (!b.heads.empty() || taken({hal::PanTiltDrive::kName, hal::PanTiltEncoder::kName})) b.heads.resize(b.size());
   if (!b.hidden_rolls.empty() || std::any_of(stores_.groups.begin(), stores_.groups.end(), slants))
     b.hidden_rolls.resize(b.size());
 }
@@ -487,8 +496,8 @@ void RobotFactory::give_back(std::size_t g, Slot slot, std::size_t ports_before,
     block.own_arrays.resize(block.own_arrays.size() - (block.ports.size() - ports_before));
     block.ports.resize(ports_before);
   }
-  for (int* command :
-       {&group.wheels, &group.flight_position, &group.flight_speed, &group.turret, &group.gripper, &group.scanner}) {
+  for (int* command : {&group.wheels, &group.flight_position, &group.flight_speed, &group.flight_attitude,
+                       &group.flight_task, &group.camera_head, &group.turret, &group.gripper, &group.scanner}) {
     if (*command >= static_cast<int>(ports_before)) *command = -1;
   }
   stores_.bodies.flags[block.first_row + slot.slot] = 0;
@@ -525,6 +534,10 @@ hal::Result<RobotId> RobotFactory::add(const RobotItem& item, const Pose& pose,
   for (auto* array : {&b.left_m_s, &b.right_m_s, &b.left_m, &b.right_m}) (*array)[row] = 0.0;
   if (!b.motion.empty()) b.motion[row] = {};
   if (!b.flight.empty()) b.flight[row] = {};
+  if (!b.wishes.empty()) b.wishes[row] = {};
+  if (!b.pilots.empty()) b.pilots[row] = {};
+  if (!b.rotors.empty()) b.rotors[row] = {};
+  if (!b.heads.empty()) b.heads[row] = {};
   if (!b.turrets.empty()) b.turrets[row] = {};
   if (!b.grips.empty()) b.grips[row] = {};
   if (!b.scanners.empty()) b.scanners[row] = {};

@@ -46,6 +46,20 @@ std::uint64_t mix_mechanisms(std::uint64_t hash, const Bodies& b, std::size_t ro
     const HiddenRoll& h = b.hidden_rolls[row];
     for (const double value : {h.left_m, h.right_m, h.left_m_s, h.right_m_s}) hash = mix(hash, bits_of(value));
   }
+  if (!b.heads.empty()) {
+    const HeadState& h = b.heads[row];
+    hash = mix(mix(mix(hash, bits_of(h.pan_rad)), bits_of(h.tilt_rad)), h.laser ? 1 : 0);
+  }
+  if (!b.rotors.empty() && b.rotors[row].spun) {
+    for (const double value : b.rotors[row].thrust_N) hash = mix(hash, bits_of(value));
+  }
+  return hash;
+}
+
+std::uint64_t mix_pilot(std::uint64_t hash, const PilotState& p) noexcept {
+  hash = mix(mix(hash, static_cast<std::uint64_t>(p.phase)), static_cast<std::uint64_t>(p.order));
+  hash = mix(mix(hash, p.started ? 1 : 0), p.stuck_ticks);
+  for (const double value : {p.place_m[0], p.place_m[1], p.place_m[2], p.heading_rad}) hash = mix(hash, bits_of(value));
   return hash;
 }
 
@@ -103,6 +117,7 @@ std::uint64_t hash_of_state(const SpaceStores& s, std::uint64_t seed, hal::Tick 
       hash = mix(hash, static_cast<std::uint64_t>(f.mode));
       for (const double value : {f.target[0], f.target[1], f.target[2], f.yaw}) hash = mix(hash, bits_of(value));
     }
+    if (group.flight_task >= 0) hash = mix_pilot(hash, b.pilots[row]);
     hash = mix_mechanisms(hash, b, row);
     // Every port as the controller saw and left it, but the padding between fields.
     for (std::size_t i = 0; i < group.ports.size(); ++i) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/sim/piloting.hpp"
 #include "core/sim/state_hash.hpp"
 #include "core/sim/world_impl.hpp"
 #include "hal/check.hpp"
@@ -48,6 +49,7 @@ void World::Impl::act() {
       for (std::size_t i = 0; i < actuators.size(); ++i) {
         if (actuators[i] != nullptr) actuators[i]->act(context, s, s.blocks[block].ports[i]);
       }
+      if (context.group.sheet->flies) pilot(context, s);
     }
   });
 }
@@ -99,6 +101,13 @@ void World::Impl::filter(std::size_t index) {
   filter_port<hal::QuadrotorSpeed>(index, group.flight_speed, [&](auto& command) {
     return hal::filter(command, sheet.max_flight_speed_m_s, sheet.max_flight_turn_rad_s);
   });
+  filter_port<hal::QuadrotorAttitude>(index, group.flight_attitude, [&](auto& command) {
+    return hal::filter(command, sheet.flight.most_lean_rad, sheet.max_flight_turn_rad_s, sheet.flight.most_thrust);
+  });
+  filter_port<hal::FlightTask>(index, group.flight_task,
+                               [&](auto& command) { return hal::filter(command, sheet.max_flight_speed_m_s); });
+  filter_port<hal::PanTiltDrive>(index, group.camera_head,
+                                 [&](auto& command) { return hal::filter(command, sheet.camera_head.most_tilt_rad); });
   filter_port<hal::TurretDrive>(index, group.turret,
                                 [&](auto& command) { return hal::filter(command, sheet.turret_turn_rad_s); });
   filter_port<hal::GripperDrive>(index, group.gripper, [](auto& command) { return hal::filter(command); });

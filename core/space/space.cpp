@@ -35,10 +35,14 @@ void Bodies::resize(std::size_t rows) {
   region.resize(rows, 0);
   if (has_motion) motion.resize(rows);
   if (!flight.empty()) flight.resize(rows);
+  if (!wishes.empty()) wishes.resize(rows);
+  if (!pilots.empty()) pilots.resize(rows);
+  if (!rotors.empty()) rotors.resize(rows);
   if (!turrets.empty()) turrets.resize(rows);
   if (!grips.empty()) grips.resize(rows);
   if (!scanners.empty()) scanners.resize(rows);
   if (!hidden_rolls.empty()) hidden_rolls.resize(rows);
+  if (!heads.empty()) heads.resize(rows);
 }
 
 void Bodies::reserve(std::size_t rows) {

@@ -49,10 +49,17 @@ struct Motion {
 
 /// What a flying robot is told to do, by whatever flies it.
 struct FlightCommand {
-  enum class Mode : std::uint8_t { None, Velocity, Position };  ///< None: not flying, it falls or stands
+  enum class Mode : std::uint8_t {
+    None,  ///< motors off: it falls or stands
+    Velocity,
+    Position,
+    Attitude,
+    Held  ///< motors off, held where it is by something that does not give way
+  };
   Mode mode = Mode::None;
-  std::array<double, 3> target{};  ///< velocity in m/s, or position in m; in W
-  double yaw = 0.0;                ///< Velocity: turn rate in rad/s; Position: heading in rad
+  /// Velocity in m/s, or position in m, in W; Attitude: roll and pitch in rad, thrust in parts of the weight.
+  std::array<double, 3> target{};
+  double yaw = 0.0;  ///< Velocity, Attitude: turn rate in rad/s; Position: heading in rad
 };
 
 /// Two bodies held together. Both are moved by the engine of the one that sorts first, wherever they are.
@@ -80,12 +87,16 @@ struct Bodies {
   LargeVector<std::uint16_t> region;  ///< index into SpaceStores::regions
   bool has_motion = false;            ///< an engine other than kinematics2d takes part
   std::vector<Motion> motion;         ///< empty without
-  std::vector<FlightCommand> flight;  ///< empty while no robot flies
+  std::vector<FlightCommand> flight;  ///< empty while no robot flies; so with the next three
+  std::vector<FlightWish> wishes;
+  std::vector<PilotState> pilots;
+  std::vector<RotorState> rotors;
   // Empty while no controller takes such a device.
   std::vector<TurretState> turrets;
   std::vector<GripState> grips;
   std::vector<ScannerState> scanners;
   std::vector<HiddenRoll> hidden_rolls;
+  std::vector<HeadState> heads;
 
   std::size_t size() const noexcept { return x_m.size(); }
   void resize(std::size_t rows);
@@ -118,6 +129,9 @@ struct RobotGroup {
   int wheels = -1;                          ///< index in `ports` of the wheel command; -1: none
   int flight_position = -1;                 ///< … of the place to fly to
   int flight_speed = -1;                    ///< … of the velocity to fly with
+  int flight_attitude = -1;                 ///< … of how to lean
+  int flight_task = -1;                     ///< … of what to do as a whole
+  int camera_head = -1;                     ///< … of where the camera is to look
   int turret = -1, gripper = -1;            ///< … of what the turret and the gripper are to do
   int scanner = -1;                         ///< … of how the distance scanner is to turn
   double rab_range_m = 0.0;
@@ -177,21 +191,28 @@ struct Broadcast {
 
 /// What a robot's LEDs and lamps show, as latched at the start of the tick.
 struct ShownLeds {
-  static constexpr std::size_t kBody = hal::RingLeds::kCapacity;  ///< after the ring: the body's lamp
-  static constexpr std::size_t kFront = kBody + 1;                ///< … and the one at the front
-  static constexpr std::size_t kCount = kFront + 1;
+  static constexpr std::size_t kBody = hal::RingLeds::kCapacity;             ///< after the ring: the body's lamp
+  static constexpr std::size_t kFront = kBody + 1;                           ///< … and the one at the front
+  static constexpr std::size_t kUpper = kFront + 1;                          ///< the upper ring
+  static constexpr std::size_t kCamera = kUpper + hal::RingLeds::kCapacity;  ///< the light beside the camera
+  static constexpr std::size_t kCount = kCamera + 1;
 
-  std::uint32_t lit = 0;  ///< bit i: number i is not black
+  std::uint64_t lit = 0;  ///< bit i: number i is not black
   std::array<hal::Rgb, kCount> color{};
-  std::uint16_t ring_medium = 0, body_medium = 0, front_medium = 0;  ///< as ObjectLed::medium
+  std::uint16_t ring_medium = 0, body_medium = 0, front_medium = 0, upper_medium = 0,
+                camera_medium = 0;  ///< as ObjectLed::medium
 
   void show(std::size_t i, hal::Rgb c) noexcept {
     color[i] = c;
-    const std::uint32_t bit = 1U << i;
+    const std::uint64_t bit = std::uint64_t{1} << i;
     lit = c == hal::kBlack ? lit & ~bit : lit | bit;
   }
   std::uint16_t medium(std::size_t i) const noexcept {
-    return i < kBody ? ring_medium : i == kBody ? body_medium : front_medium;
+    return i < kBody     ? ring_medium
+           : i == kBody  ? body_medium
+           : i == kFront ? front_medium
+           : i < kCamera ? upper_medium
+                         : camera_medium;
   }
 };
 
@@ -250,6 +271,11 @@ struct SpaceStores {
   }
   /// How high the base of a body stands above the ground, in m.
   double base_m(std::size_t row) const noexcept { return bodies.motion.empty() ? 0.0 : bodies.motion[row].z_m; }
+  /// Whether engines leave the body where it is: its pose is set from outside, or it hangs at the ceiling.
+  bool led_or_held(std::size_t row) const noexcept {
+    return (bodies.flags[row] & kExternal) != 0 ||
+           (!bodies.flight.empty() && bodies.flight[row].mode == FlightCommand::Mode::Held);
+  }
   /// Whether some height belongs to both bodies. Call only while `bodies.motion` is there: else all stand on the
   /// ground.
   bool side_by_side(std::size_t row, std::size_t other) const noexcept {

@@ -176,6 +176,18 @@ struct Scene {
   }
 };
 
+/// Every way in which an engine flies robots: its kind, and where it has several its `flight`.
+inline std::vector<std::string> ways_to_fly() {
+  return {"particle3d", "particle3d_exact", "dynamics3d", "dynamics3d_rotors"};
+}
+
+/// Adds the engine of a way to fly.
+inline Scene& add_engine(Scene& scene, const std::string& way, const std::string& id = "") {
+  const std::size_t at = way.find('_');
+  if (at == std::string::npos) return scene.engine(way, id);
+  return scene.engine(way.substr(0, at), id, {{"flight", way.substr(at + 1), 100}});
+}
+
 /// A world and the loader that must outlive it.
 struct MadeWorld {
   std::unique_ptr<hal::PluginLoader> loader;

@@ -62,10 +62,11 @@ constexpr std::array<std::string_view, 6> kPaths = {
     "arena.box[b].size=",           "controllers.c[c].params.a=",
     "framework.system.threads=",    "arena."};
 
-const KnownNames kKnown = {{"e-puck", "eye-bot"},
-                           {"kinematics2d", "dynamics2d", "dynamics3d", "particle3d"},
-                           {"proximity", "range_and_bearing"},
-                           {"leds", "differential_steering"}};
+const KnownNames kKnown = {
+    {"e-puck", "eye-bot"},
+    {"kinematics2d", "dynamics2d", "dynamics3d", "particle3d"},
+    {"proximity", "range_and_bearing", "altimeter", "flight_state", "pan_tilt_encoder"},
+    {"leds", "differential_steering", "flight_task", "pan_tilt", "quadrotor_attitude", "upper_leds", "camera_led"}};
 
 void expect(bool condition) {
   if (!condition) std::abort();

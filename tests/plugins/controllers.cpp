@@ -9,6 +9,7 @@
 #include "hal/device/flight.hpp"
 #include "hal/device/gripper.hpp"
 #include "hal/device/leds.hpp"
+#include "hal/device/pan_tilt.hpp"
 #include "hal/device/range_and_bearing.hpp"
 #include "hal/device/ring_sensors.hpp"
 #include "hal/device/turret.hpp"
@@ -228,6 +229,37 @@ class FlyBoth final : public Controller {
   int steps_ = 0;
 };
 
+/// Takes every device of an eye-bot and leaves the commands to the test.
+class EyePuppet final : public Controller {
+ public:
+  explicit EyePuppet(Robot& robot) {
+    robot.actuator<QuadrotorSpeed>();
+    robot.actuator<FlightTask>();
+    robot.actuator<QuadrotorPosition>();
+    robot.actuator<QuadrotorAttitude>();
+    robot.actuator<RingLeds>();
+    robot.actuator<UpperRingLeds>();
+    robot.actuator<CameraLed>();
+    robot.actuator<PanTiltDrive>();
+    robot.actuator<ScannerDrive>();
+    robot.actuator<RangeAndBearingSend>();
+    robot.sensor<FlightState>();
+    robot.sensor<Altimeter>();
+    robot.sensor<Positioning>();
+    robot.sensor<PanTiltEncoder>();
+    robot.sensor<PerspectiveCamera>();
+    robot.sensor<DistanceScanner>();
+    robot.sensor<RangeAndBearing>();
+    robot.sensor<Proximity>();
+    robot.sensor<Light>();
+    robot.sensor<Battery>();
+    robot.sensor<Accelerometer>();
+    robot.sensor<Gyroscope>();
+    robot.sensor<Clock>();
+  }
+  void step() override {}
+};
+
 /// Takes every device of a foot-bot and leaves the commands to the test.
 class Puppet final : public Controller {
  public:
@@ -340,6 +372,7 @@ void register_all(Registrar& registrar) {
   registrar.add_controller<Fly>("fly", "Constant velocity in the air.");
   registrar.add_controller<FlySquare>("fly_square", "Once around a square.");
   registrar.add_controller<FlyBoth>("fly_both", "A place, a velocity, and what is no number.");
+  registrar.add_controller<EyePuppet>("eye_puppet", "Takes every device of an eye-bot.");
   registrar.add_controller<Puppet>("puppet", "Takes every device of a foot-bot.");
   registrar.add_controller<DrivenPuppet>("driven_puppet", "Takes a foot-bot's wheels and proximity sensors.");
   registrar.add_controller<Watcher>("watcher", "Takes cameras and lights.");

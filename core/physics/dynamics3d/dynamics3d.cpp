@@ -10,14 +10,17 @@
 namespace tandem::core {
 namespace {
 
-constexpr double kSubStep_s = 0.02;  // at most, unless the file says otherwise
+constexpr double kSubStep_s = 0.02;        // at most, unless the file says otherwise
+constexpr double kRotorSubStep_s = 0.005;  // … of robots with rotors: a sixth of their lag
 constexpr std::array<std::string_view, 2> kDrives = {"base", "wheels"};
+constexpr std::array<std::string_view, 2> kFlights = {"thrust", "rotors"};
 
 struct Params {
   std::int64_t iterations = 0;
   double default_friction = 1.0;
   double robot_friction = 0.1;
   std::string drive = "base";
+  std::string flight = "thrust";
   std::int64_t solver_iterations = 30;
   double erp = 0.2;
   double cfm = 1e-10;
@@ -26,7 +29,8 @@ struct Params {
   double floor_m = 0.0;
 
   void describe(hal::ParamVisitor& v) {
-    v.integer("iterations", iterations, {0, 1000}, "Sub-steps a tick. 0: as few as last 20 ms at most.");
+    v.integer("iterations", iterations, {0, 1000},
+              "Sub-steps a tick. 0: as few as last 20 ms at most; 5 ms with flight=\"rotors\".");
     v.number("default_friction", default_friction, hal::unit::none, {0.0, 100.0},
              "Coulomb's coefficient between objects that touch, and of the floor unless <floor> says otherwise.");
     v.number("robot_friction", robot_friction, hal::unit::none, {0.0, 100.0},
@@ -34,6 +38,9 @@ struct Params {
     v.choice("drive", drive, kDrives,
              "base: a robot on the ground is an upright cylinder, driven over the floor with the force of its wheels. "
              "wheels: it stands on two wheels that turn, and slips and tips as these let it; some 20 times slower.");
+    v.choice("flight", flight, kFlights,
+             "thrust: a robot that flies is an upright cylinder with a thrust of limited strength in any direction. "
+             "rotors: it is a body that leans, with four rotors that lag behind; some 10 times slower.");
     v.integer("solver_iterations", solver_iterations, {1, 10000}, "ODE's passes over all constraints, a sub-step.");
     v.number("erp", erp, hal::unit::none, {0.0, 1.0}, "Share of an overlap that ODE takes back in a sub-step.");
     v.number("cfm", cfm, hal::unit::none, {0.0, 1.0}, "How far ODE lets constraints give way, per newton, in m/s.");
@@ -73,10 +80,12 @@ std::shared_ptr<const void> read(const Element& options, Problems& problems) {
 
 World3dSettings settings_for(const Params& params, double tick_s) {
   World3dSettings settings;
-  settings.sub_steps = params.iterations > 0 ? params.iterations
-                                             : std::max<std::int64_t>(
-                                                   1, static_cast<std::int64_t>(std::ceil(tick_s / kSubStep_s - 1e-6)));
   settings.wheels = params.drive == "wheels";
+  settings.rotors = params.flight == "rotors";
+  const double longest_s = settings.rotors ? kRotorSubStep_s : kSubStep_s;
+  settings.sub_steps = params.iterations > 0
+                           ? params.iterations
+                           : std::max<std::int64_t>(1, static_cast<std::int64_t>(std::ceil(tick_s / longest_s - 1e-6)));
   settings.gravity_m_s2 = params.gravity_m_s2;
   settings.surfaces.floor_m = params.floor_m;
   settings.surfaces.floor_friction = params.floor_friction < 0.0 ? params.default_friction : params.floor_friction;

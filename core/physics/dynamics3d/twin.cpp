@@ -187,6 +187,12 @@ Twin make_twin(const SpaceStores& stores, BodyKey key, Sort sort, dWorldID world
   twin.origin_m = sort == Sort::Wheels ? twin.sheet->wheel_radius_m : 0.5 * twin.height_m;
   prism.radius_m = static_cast<double>(stores.bodies.radius_m[key.index()]);
   if (sort == Sort::Wheels) give_wheels(twin, world);
+  if (sort == Sort::Rotors) {
+    const double inertia = twin.sheet->flight.inertia_kg_m2;
+    dMass mass;
+    dMassSetParameters(&mass, twin.mass_kg, 0.0, 0.0, 0.0, inertia, inertia, inertia, 0.0, 0.0, 0.0);
+    twin.body = make_body(world, mass);
+  }
   return twin;
 }
 

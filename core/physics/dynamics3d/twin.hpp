@@ -27,6 +27,7 @@ enum class Sort : std::uint8_t {
   Base,    ///< upright on the floor, driven over it
   Wheels,  ///< a chassis on two wheels that turn
   Flyer,   ///< upright in the air, driven by thrust
+  Rotors,  ///< a body that leans, with four rotors
   Object   ///< moved by others
 };
 
@@ -66,6 +67,8 @@ struct Twin {
   std::array<OdeBody, 2> wheels;  ///< left, right
   std::array<OdeJoint, 2> axles;
   std::array<double, 2> rolled_m{};  ///< in this tick
+
+  RotorState rotors;
 
   bool light() const noexcept { return sort == Sort::Base || sort == Sort::Flyer; }
   bool robot() const noexcept { return sort != Sort::Object; }

@@ -20,18 +20,22 @@ constexpr double kWallThickness_m = 0.2;
 constexpr double kWallHeight_m = 2000.0;
 
 bool external_in(const SpaceStores& stores, BodyKey key) noexcept {
-  return !key.is_object() && (stores.bodies.flags[key.index()] & kExternal) != 0;
+  return !key.is_object() && stores.led_or_held(key.index());
 }
 
 double length(const Vector3& v) noexcept {
   return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
 }
 
-Sort sort_of(const SpaceStores& stores, BodyKey key, bool wheels) noexcept {
+FlightCommand flight_of(const Bodies& bodies, std::size_t row) noexcept {
+  return row < bodies.flight.size() ? bodies.flight[row] : FlightCommand{};
+}
+
+Sort sort_of(const SpaceStores& stores, BodyKey key, const World3dSettings& settings) noexcept {
   if (key.is_object()) return Sort::Object;
   const hal::DataSheet& sheet = stores.sheet_of_row(key.index());
-  if (sheet.flies) return Sort::Flyer;
-  return wheels && sheet.wheel_radius_m > 0.0 && !external_in(stores, key) ? Sort::Wheels : Sort::Base;
+  if (sheet.flies) return settings.rotors && !external_in(stores, key) ? Sort::Rotors : Sort::Flyer;
+  return settings.wheels && sheet.wheel_radius_m > 0.0 && !external_in(stores, key) ? Sort::Wheels : Sort::Base;
 }
 
 /// The same as the store holds, for all that its double keeps.
@@ -161,6 +165,8 @@ void World3d::load(const SolverContext& context) {
     surfaces_.floor_m = std::max(settings_.surfaces.floor_m, context.region.bottom_m);
     surfaces_.ceiling_m = context.region.top_m;
     flight_ceiling_m_ = std::min(context.region.top_m, s.max_z_m);
+    surfaces_in_air_ = surfaces_;
+    surfaces_in_air_.ceiling_m = flight_ceiling_m_;
     roster_.update(
         context.region, s, [&](BodyKey key) { return make(s, key); }, [this](Double& twin) { drop_double(twin); });
     for (auto& entry : roster_.entries()) {
@@ -173,7 +179,7 @@ void World3d::load(const SolverContext& context) {
 
 World3d::Double World3d::make(const SpaceStores& stores, BodyKey key) {
   try {
-    auto twin = std::make_unique<Twin>(make_twin(stores, key, sort_of(stores, key, settings_.wheels), world_.get()));
+    auto twin = std::make_unique<Twin>(make_twin(stores, key, sort_of(stores, key, settings_), world_.get()));
     twin->p_m[0] = NAN;  // nowhere yet
     return twin;
   } catch (const OdeError& error) {
@@ -195,7 +201,7 @@ void World3d::take_over(const SpaceStores& stores, Double& twin, double tick_s) 
   const BodyKey key = twin->key;
   twin->lost = twin->unfit;
   if (twin->unfit) return;
-  const Sort sort = sort_of(stores, key, settings_.wheels);
+  const Sort sort = sort_of(stores, key, settings_);
   if (sort != twin->sort) {
     const bool owned = twin->owned;
     drop_double(twin);
@@ -208,6 +214,7 @@ void World3d::take_over(const SpaceStores& stores, Double& twin, double tick_s) 
     report(*twin, "has a position or speed that is not a finite number");
     return;
   }
+  if (sort == Sort::Rotors) twin->rotors = stores.bodies.rotors[key.index()];
   twin->external = external_in(stores, key);
   if (twin->external)
     lead(*twin, store, tick_s);
@@ -348,6 +355,7 @@ void World3d::plan(const SpaceStores& stores, Twin& twin, double dt_s) {
   twin.engaged = false;
   if (!twin.light()) {
     if (twin.sort == Sort::Wheels) drive_wheels(twin, stores.bodies.left_m_s[i], stores.bodies.right_m_s[i]);
+    if (twin.sort == Sort::Rotors) drive_rotors(twin, flight_of(stores.bodies, i), settings_.gravity_m_s2, dt_s);
     const dReal* v = dBodyGetLinearVel(twin.body.get());
     const dReal* w = dBodyGetAngularVel(twin.body.get());
     const double reach_m =
@@ -364,8 +372,7 @@ void World3d::plan(const SpaceStores& stores, Twin& twin, double dt_s) {
   }
   twin.aloft = twin.sort == Sort::Flyer || twin.p_m[2] > surfaces_.floor_m + kFloats_m;
   if (twin.sort == Sort::Flyer) {
-    const FlightCommand command = i < stores.bodies.flight.size() ? stores.bodies.flight[i] : FlightCommand{};
-    drive_flyer(twin, command, settings_.gravity_m_s2, dt_s);
+    drive_flyer(twin, flight_of(stores.bodies, i), settings_.gravity_m_s2, dt_s);
   } else {
     if (!twin.aloft || twin.standing) drive_base(twin, stores.bodies.left_m_s[i], stores.bodies.right_m_s[i], dt_s);
     if (twin.aloft) {
@@ -438,7 +445,8 @@ void World3d::find_contacts() {
     }
   }
   for (auto& entry : entries) {
-    if (!entry.body->lost && !entry.body->light()) contacts_->with_ground(*entry.body, surfaces_);
+    if (entry.body->lost || entry.body->light()) continue;
+    contacts_->with_ground(*entry.body, entry.body->sort == Sort::Rotors ? surfaces_in_air_ : surfaces_);
   }
 }
 
@@ -533,6 +541,7 @@ void World3d::write_back(SpaceStores& stores, const Twin& twin, double tick_s) c
   b.cos_h[i] = at.cos_h;
   b.sin_h[i] = at.sin_h;
   b.motion[i] = motion;
+  if (twin.sort == Sort::Rotors) b.rotors[i] = twin.rotors;
   b.left_m[i] += twin.sort == Sort::Wheels ? twin.rolled_m[0] : b.left_m_s[i] * tick_s;
   b.right_m[i] += twin.sort == Sort::Wheels ? twin.rolled_m[1] : b.right_m_s[i] * tick_s;
 }

@@ -18,6 +18,7 @@ namespace tandem::core {
 struct World3dSettings {
   std::int64_t sub_steps = 5;
   bool wheels = false;  ///< robots on the ground get turning wheels
+  bool rotors = false;  ///< robots that fly get four rotors, and lean
   double gravity_m_s2 = 9.81;
   Surfaces surfaces;
   std::int64_t solver_iterations = 30;
@@ -77,7 +78,7 @@ class World3d final : public Solver {
   std::unique_ptr<Contacts> contacts_;
   std::vector<Still> stills_;
   std::uint64_t version_ = 0;  // of the immovable objects
-  Surfaces surfaces_;
+  Surfaces surfaces_, surfaces_in_air_;
   double flight_ceiling_m_ = 0.0;  // the arena's, too: what flies stays below; what stands may be as high as the arena
   Roster<Double> roster_;
   std::vector<Held> held_;

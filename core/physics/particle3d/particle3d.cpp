@@ -1,6 +1,7 @@
 #include "core/physics/particle3d/particle3d.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <string>
@@ -22,11 +23,13 @@ constexpr double kBrakeShare = 0.7;  // of the acceleration that braking counts 
 constexpr double kOnGround_m = 1e-9;
 constexpr double kFastest_m_s = 1000.0;  // faster ones are an error of whoever set their speed
 constexpr double kFarthest_m = 1e7;
+constexpr std::array<std::string_view, 2> kFlights = {"point_mass", "exact"};
 
 struct Params {
   std::int64_t iterations = 5;
   double gravity_m_s2 = 9.81;
   double drag_per_s = 0.4;
+  std::string flight = "point_mass";
   void describe(hal::ParamVisitor& v) {
     v.integer(
         "iterations", iterations, {1, 1000},
@@ -37,6 +40,10 @@ struct Params {
     // "Differential flatness of quadrotor dynamics subject to rotor drag", IEEE RA-L 3(2)].
     v.number("drag", drag_per_s, hal::unit::none, {0.0, 1000.0},
              "Deceleration by the air for each m/s of a body's speed, in 1/s; robots that drive have none.");
+    v.choice(
+        "flight", flight, kFlights,
+        "point_mass: what flies has limits of speed and acceleration, and the air slows it down. exact: it has any "
+        "velocity up to its limit at once, and flies straight to its place; the cheapest.");
   }
 };
 
@@ -65,6 +72,7 @@ struct Particles {
   std::vector<double> goal_x, goal_y, goal_z;      // place or velocity
   std::vector<double> to_place, thrust;            // 1 or 0
   std::vector<double> low, high;                   // of the base
+  std::vector<double> free_x, free_y, free_z;      // deceleration of those without a goal: gravity less thrust
   std::vector<double> turn;                        // in this tick
   std::vector<double> ahead, aside, cos_d, sin_d;  // of wheels, in each sub-step
   std::vector<double> radius, height, hop;
@@ -73,9 +81,10 @@ struct Particles {
   std::size_t size() const noexcept { return row.size(); }
   void resize(std::size_t n) {
     row.resize(n);
-    for (auto* a : {&x,      &y,      &z,      &vx,     &vy,     &vz,     &c,      &s,      &from_x,   &from_y, &step_x,
-                    &step_y, &step_z, &push_x, &push_y, &push_z, &goal_x, &goal_y, &goal_z, &to_place, &thrust, &low,
-                    &high,   &turn,   &ahead,  &aside,  &cos_d,  &sin_d,  &radius, &height, &hop})
+    for (auto* a :
+         {&x,      &y,      &z,      &vx,     &vy,     &vz,     &c,      &s,        &from_x, &from_y, &step_x, &step_y,
+          &step_z, &push_x, &push_y, &push_z, &goal_x, &goal_y, &goal_z, &to_place, &thrust, &low,    &high,   &free_x,
+          &free_y, &free_z, &turn,   &ahead,  &aside,  &cos_d,  &sin_d,  &radius,   &height, &hop})
       a->resize(n);
     for (auto* a : {&owned, &fixed, &flies, &falls}) a->resize(n);
   }
@@ -89,7 +98,7 @@ struct Run {
 
 class Particle3d final : public Solver {
  public:
-  explicit Particle3d(const Params& params) : params_(params) {}
+  explicit Particle3d(const Params& params) : params_(params), exact_(params.flight == "exact") {}
 
   void load(const SolverContext& context) override;
   void advance(const SolverContext& context) override;
@@ -98,10 +107,12 @@ class Particle3d final : public Solver {
  private:
   void load_body(const SolverContext& context, std::size_t i, std::uint32_t row, bool owned);
   void load_flight(const SpaceStores& stores, std::size_t i, double tick_s);
+  void load_attitude(const FlightCommand& f, std::size_t i, double tick_s);
   void plan_wheels(std::size_t i, double left_m_s, double right_m_s, double base_m, double h_s) noexcept;
   void find_meetings(const Solid& solid);
 
   void fly(const Run& run, const SubStep& step) noexcept;
+  void fly_exactly(const Run& run, double h_s) noexcept;
   void roll(const Run& run) noexcept;
   void fall(const SubStep& step) noexcept;
   void part(std::size_t i) noexcept;
@@ -111,6 +122,7 @@ class Particle3d final : public Solver {
   void write(SpaceStores& stores, std::size_t i, double tick_s) noexcept;
 
   Params params_;
+  bool exact_;
   int steps_ = 1;
   Particles p_;
   std::vector<Run> runs_;
@@ -190,7 +202,7 @@ void Particle3d::load_body(const SolverContext& context, std::size_t i, std::uin
   if (runs_.empty() || runs_.back().sheet != &sheet) runs_.push_back({i, i, &sheet});
   runs_.back().end = i + 1;
 
-  const bool fixed = (b.flags[row] & kExternal) != 0;
+  const bool fixed = stores.led_or_held(row);
   p_.row[i] = row;
   p_.owned[i] = owned ? 1 : 0;
   p_.fixed[i] = fixed ? 1 : 0;
@@ -209,6 +221,8 @@ void Particle3d::load_body(const SolverContext& context, std::size_t i, std::uin
   p_.goal_x[i] = p_.goal_y[i] = p_.goal_z[i] = 0.0;
   p_.to_place[i] = 0.0;
   p_.thrust[i] = 1.0;  // without a goal: stays where it is
+  p_.free_x[i] = p_.free_y[i] = 0.0;
+  p_.free_z[i] = params_.gravity_m_s2;
   p_.turn[i] = 0.0;
   p_.ahead[i] = p_.aside[i] = p_.sin_d[i] = 0.0;
   p_.cos_d[i] = 1.0;
@@ -222,8 +236,11 @@ void Particle3d::load_body(const SolverContext& context, std::size_t i, std::uin
   double fastest = 0.0;
   if (sheet.flies) {
     load_flight(stores, i, context.tick_s);
-    fastest = speed + context.tick_s * std::max(params_.gravity_m_s2 * (1.0 - p_.thrust[i]),
-                                                sheet.max_flight_acceleration_m_s2 * p_.thrust[i]);
+    const double freely = std::hypot(p_.free_x[i], p_.free_y[i], p_.free_z[i]);
+    fastest = exact_ && p_.thrust[i] > 0.0
+                  ? sheet.max_flight_speed_m_s
+                  : speed + context.tick_s * std::max(freely * (1.0 - p_.thrust[i]),
+                                                      sheet.max_flight_acceleration_m_s2 * p_.thrust[i]);
   } else {
     Mover body;
     body.x_m = p_.x[i];
@@ -252,17 +269,48 @@ void Particle3d::load_flight(const SpaceStores& stores, std::size_t i, double ti
     p_.thrust[i] = 0.0;
     return;
   }
-  p_.goal_x[i] = f.target[0];
-  p_.goal_y[i] = f.target[1];
-  p_.goal_z[i] = f.target[2];
   const double most = sheet.max_flight_turn_rad_s * tick_s;
   double wanted = f.yaw * tick_s;
+  if (f.mode == FlightCommand::Mode::Attitude) {
+    load_attitude(f, i, tick_s);
+  } else {
+    p_.goal_x[i] = f.target[0];
+    p_.goal_y[i] = f.target[1];
+    p_.goal_z[i] = f.target[2];
+  }
   if (f.mode == FlightCommand::Mode::Position) {
     p_.to_place[i] = 1.0;
     p_.goal_z[i] = std::clamp(f.target[2], p_.low[i], p_.high[i]);  // no thrust is lost on ground and ceiling
     wanted = std::remainder(f.yaw - std::atan2(p_.s[i], p_.c[i]), 2.0 * std::numbers::pi);
   }
   p_.turn[i] = std::clamp(wanted, -most, most);
+}
+
+/// Thrust along the axis of a body that leans as told at once: no goal, but an acceleration. When that would make it
+/// faster than its data sheet says, the velocity that is left of it is a goal instead.
+void Particle3d::load_attitude(const FlightCommand& f, std::size_t i, double tick_s) {
+  const hal::DataSheet& sheet = *runs_.back().sheet;
+  const double sin_roll = std::sin(f.target[0]);
+  const double cos_roll = std::cos(f.target[0]);
+  const double sin_pitch = std::sin(f.target[1]);
+  const double cos_pitch = std::cos(f.target[1]);
+  const double lift = std::clamp(f.target[2], 0.0, sheet.flight.most_thrust) * params_.gravity_m_s2;
+  const double ahead = lift * sin_pitch * cos_roll;
+  const double aside = lift * -sin_roll;
+  p_.free_x[i] = -(p_.c[i] * ahead - p_.s[i] * aside);
+  p_.free_y[i] = -(p_.s[i] * ahead + p_.c[i] * aside);
+  p_.free_z[i] = params_.gravity_m_s2 - lift * cos_pitch * cos_roll;
+  p_.thrust[i] = 0.0;
+  const double vx = p_.vx[i] - p_.free_x[i] * tick_s;
+  const double vy = p_.vy[i] - p_.free_y[i] * tick_s;
+  const double vz = p_.vz[i] - p_.free_z[i] * tick_s;
+  const double speed = std::sqrt(vx * vx + vy * vy + vz * vz);
+  if (speed <= sheet.max_flight_speed_m_s) return;
+  const double part = sheet.max_flight_speed_m_s / speed;
+  p_.goal_x[i] = part * vx;
+  p_.goal_y[i] = part * vy;
+  p_.goal_z[i] = part * vz;
+  p_.thrust[i] = 1.0;
 }
 
 /// The chord of the arc that a sub-step rolls along, in the frame of the heading before it.
@@ -292,7 +340,9 @@ void Particle3d::advance(const SolverContext& context) {
       p_.step_z[i] = p_.z[i];
     }
     for (const Run& run : runs_) {
-      if (run.sheet->flies)
+      if (run.sheet->flies && exact_)
+        fly_exactly(run, step.h_s);
+      else if (run.sheet->flies)
         fly(run, step);
       else
         roll(run);
@@ -330,7 +380,6 @@ void Particle3d::fly(const Run& run, const SubStep& step) noexcept {
   const double brake = kBrakeShare * run.sheet->max_flight_acceleration_m_s2;
   const double response = std::max(kResponse_s, 3.0 * step.h_s);
   const double response2 = response * response;
-  const double pull = params_.gravity_m_s2 * step.coasts;
   const double per_speed = step.gains / step.coasts;
   double* __restrict x = p_.x.data();
   double* __restrict y = p_.y.data();
@@ -343,6 +392,9 @@ void Particle3d::fly(const Run& run, const SubStep& step) noexcept {
   const double* __restrict gz = p_.goal_z.data();
   const double* __restrict to_place = p_.to_place.data();
   const double* __restrict thrust = p_.thrust.data();
+  const double* __restrict free_x = p_.free_x.data();
+  const double* __restrict free_y = p_.free_y.data();
+  const double* __restrict free_z = p_.free_z.data();
   const double* __restrict low = p_.low.data();
   const double* __restrict high = p_.high.data();
   for (std::size_t i = run.begin; i < run.end; ++i) {
@@ -363,21 +415,51 @@ void Particle3d::fly(const Run& run, const SubStep& step) noexcept {
     double az = wz * f - slow_z;
     const double a = std::sqrt(ax * ax + ay * ay + az * az);
     const double share = thrust[i] * (a > most ? most / a : 1.0);
-    ax *= share;
-    ay *= share;
-    az = az * share - (1.0 - thrust[i]) * pull;
+    const double freely = (1.0 - thrust[i]) * step.coasts;
+    ax = ax * share - freely * free_x[i];
+    ay = ay * share - freely * free_y[i];
+    az = az * share - freely * free_z[i];
     x[i] += step.coasts * vx[i] + per_speed * ax;
     y[i] += step.coasts * vy[i] + per_speed * ay;
-    const double free_z = z[i] + (step.coasts * vz[i] + per_speed * az);
-    const double down = free_z < high[i] ? free_z : high[i];
+    const double unbounded_z = z[i] + (step.coasts * vz[i] + per_speed * az);
+    const double down = unbounded_z < high[i] ? unbounded_z : high[i];
     const double new_z = down > low[i] ? down : low[i];
     const double new_vz = slow_z + az;
     const double keeps_going = thrust[i] > 0.0 || new_z > low[i] ? 1.0 : 0.0;  // who landed lies still
-    const bool against = (new_z < free_z && new_vz > 0.0) || (new_z > free_z && new_vz < 0.0);
+    const bool against = (new_z < unbounded_z && new_vz > 0.0) || (new_z > unbounded_z && new_vz < 0.0);
     z[i] = new_z;
     vx[i] = keeps_going * (slow_x + ax);
     vy[i] = keeps_going * (slow_y + ay);
     vz[i] = against ? 0.0 : new_vz;
+  }
+}
+
+/// Velocities are there at once; those without a goal fall, or follow their thrust.
+void Particle3d::fly_exactly(const Run& run, double h_s) noexcept {
+  const double fastest = run.sheet->max_flight_speed_m_s;
+  for (std::size_t i = run.begin; i < run.end; ++i) {
+    if (p_.fixed[i] != 0) continue;
+    if (p_.thrust[i] > 0.0) {
+      const double per_want = p_.to_place[i] > 0.0 ? 1.0 / h_s : 1.0;
+      const double wx = (p_.goal_x[i] - p_.to_place[i] * p_.x[i]) * per_want;
+      const double wy = (p_.goal_y[i] - p_.to_place[i] * p_.y[i]) * per_want;
+      const double wz = (p_.goal_z[i] - p_.to_place[i] * p_.z[i]) * per_want;
+      const double w = std::sqrt(wx * wx + wy * wy + wz * wz);
+      const double f = w > fastest ? fastest / w : 1.0;
+      p_.vx[i] = wx * f;
+      p_.vy[i] = wy * f;
+      p_.vz[i] = wz * f;
+    } else {
+      p_.vx[i] -= p_.free_x[i] * h_s;
+      p_.vy[i] -= p_.free_y[i] * h_s;
+      p_.vz[i] -= p_.free_z[i] * h_s;
+    }
+    p_.x[i] += p_.vx[i] * h_s;
+    p_.y[i] += p_.vy[i] * h_s;
+    const double free_z = p_.z[i] + p_.vz[i] * h_s;
+    p_.z[i] = std::max(p_.low[i], std::min(free_z, p_.high[i]));
+    if ((p_.z[i] < free_z && p_.vz[i] > 0.0) || (p_.z[i] > free_z && p_.vz[i] < 0.0)) p_.vz[i] = 0.0;
+    if (p_.thrust[i] == 0.0 && p_.z[i] <= p_.low[i]) p_.vx[i] = p_.vy[i] = p_.vz[i] = 0.0;  // who landed lies still
   }
 }
 

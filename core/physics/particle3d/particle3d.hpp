@@ -8,8 +8,10 @@ namespace tandem::core {
 ///
 /// One that flies is accelerated towards the velocity that FlightCommand asks for, by at most its data sheet's
 /// acceleration beyond what holds it up, and against a drag that grows with its speed; it never gets faster than its
-/// data sheet says. Towards a position it flies as fast as it can still brake. FlightCommand::None: it falls, and lies
-/// where it lands. It stays upright, and turns at the commanded rate at once, within its limit.
+/// data sheet says. Towards a position it flies as fast as it can still brake. With an attitude, its thrust accelerates
+/// it as if it leaned. FlightCommand::None: it falls, and lies where it lands; Held: it stays where it is. It stays
+/// upright, and turns at the commanded rate at once, within its limit. With `flight="exact"` it knows no masses: it has
+/// the wanted velocity at once, and arrives at positions exactly.
 ///
 /// One with wheels follows the arcs of its wheels exactly, on the ground or on whatever it stands on; it falls where
 /// nothing is beneath it. Wheels know no masses: they push as kinematics2d's do.

@@ -13,9 +13,11 @@ inline const KnownNames& known_names() {
   static const KnownNames names = {
       {"e-puck", "foot-bot", "eye-bot"},
       {"kinematics2d", "dynamics2d", "dynamics3d", "particle3d"},
-      {"accelerometer", "battery", "clock", "gripper", "ground", "light", "microphones", "motor_ground", "odometry",
-       "omnidirectional_camera", "proximity", "range_and_bearing", "wheel_encoders"},
-      {"body_led", "differential_steering", "front_led", "gripper", "leds", "range_and_bearing", "turret"}};
+      {"accelerometer", "altimeter", "battery", "clock", "flight_state", "gripper", "ground", "light", "microphones",
+       "motor_ground", "odometry", "omnidirectional_camera", "pan_tilt_encoder", "proximity", "range_and_bearing",
+       "wheel_encoders"},
+      {"body_led", "camera_led", "differential_steering", "flight_task", "front_led", "gripper", "leds", "pan_tilt",
+       "quadrotor_attitude", "range_and_bearing", "turret", "upper_leds"}};
   return names;
 }
 

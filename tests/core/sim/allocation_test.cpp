@@ -5,6 +5,7 @@
 #include <new>
 
 #include "hal/device/range_and_bearing.hpp"
+#include "tests/core/eyebots.hpp"
 #include "tests/core/watchers.hpp"
 
 namespace {
@@ -120,6 +121,34 @@ TEST(World, AllocatesNothingForRobotsThatFlyInACrowd) {
   for (int i = 0; i < 30; ++i) world->step();
   EXPECT_EQ(allocations.load() - before, 0U);
   EXPECT_EQ(world->state(), RunState::Running) << world->failure();
+}
+
+TEST(World, AllocatesNothingForEyeBotsThatUseAllTheirDevices) {
+  for (const std::string& way : ways_to_fly()) {
+    Scene scene = eyebot_scene(way, 10.0);
+    for (int i = 0; i < 60; ++i)
+      scene.flyer("e" + std::to_string(i), -3.5 + i % 8, -3.5 + i / 8, i % 2 == 0 ? 0.0 : 1.0 + 0.01 * i);
+    scene.box(4.6, 0, 0.2, 4.0);
+    add_led(scene, {0.0, 0.0, 0.5}, {255, 0, 0});
+    auto world = make(scene);
+    ASSERT_TRUE(world.world) << world.all_problems();
+    world->start();
+    for (int i = 0; i < 60; ++i) {
+      const std::string id = "e" + std::to_string(i);
+      command<hal::FlightTask>(world, id).order = i % 2 == 0 ? hal::FlightOrder::TakeOff : hal::FlightOrder::Fly;
+      command<hal::QuadrotorSpeed>(world, id).set(0.02 * (i % 5 - 2), 0.02 * (i % 3 - 1), 0.0, 0.3);
+      command<hal::RangeAndBearingSend>(world, id).sending = true;
+      command<hal::ScannerDrive>(world, id).turn(3.0);
+      command<hal::PanTiltDrive>(world, id) = {{}, 0.1 * i, 1.4, false};
+      shine(world, id, hal::kRed);
+      command<hal::UpperRingLeds>(world, id).set_all(hal::kGreen);
+    }
+    steps(world, 10);
+    const std::uint64_t before = allocations.load();
+    steps(world, 30);
+    EXPECT_EQ(allocations.load() - before, 0U) << way;
+    EXPECT_EQ(world->state(), RunState::Running) << world->failure();
+  }
 }
 
 }  // namespace

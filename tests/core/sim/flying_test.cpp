@@ -10,12 +10,6 @@ namespace {
 
 constexpr double kHeight_m = hal::eyebot::kHeight_m;
 
-std::vector<std::string> solid_kinds() {
-  std::vector<std::string> kinds = engine_kinds();
-  std::erase_if(kinds, [](const std::string& kind) { return engine_traits(kind).plane; });
-  return kinds;
-}
-
 Scene with_flyers(Scene s) {
   s.pilot("fly");
   return s;
@@ -31,7 +25,10 @@ Scene hall(double size_m, const std::string& controller = "everything") {
 
 class Flying : public EveryEngine {
  protected:
-  Scene air(double size_m = 8.0) const { return with_flyers(hall(size_m).engine(GetParam())); }
+  Scene air(double size_m = 8.0) const {
+    Scene s = hall(size_m);
+    return with_flyers(add_engine(s, GetParam()));
+  }
 };
 
 TEST_P(Flying, ReachesTheCommandedVelocity) {
@@ -89,7 +86,7 @@ TEST_P(Flying, StaysBetweenGroundAndCeilingAndOutOfThings) {
 TEST_P(Flying, CrossesBordersAsIfThereWereNone) {
   const auto start = [&](const char* split) {
     Scene s = hall(8.0);
-    s.engine(GetParam()).split(split);
+    add_engine(s, GetParam()).split(split);
     return make(with_flyers(s).flyer("a", -2.5, -2.0, 1.0, 0.2).velocity({0.5, 0.4, 0.05}, 0.2));
   };
   auto whole = start("1x1");
@@ -147,7 +144,7 @@ TEST_P(Flying, LeavingTheArenaIsNoticed) {
 TEST_P(Flying, TheSameBitsForAnyNumberOfThreads) {
   const auto hash_of = [&](std::int64_t threads, Assignment assignment) {
     Scene s = hall(8.0);
-    s.engine(GetParam()).split("2x2");
+    add_engine(s, GetParam()).split("2x2");
     s = with_flyers(s);
     for (int i = 0; i < 36; ++i) {
       s.flyer("f" + std::to_string(i), i % 6 - 2.5, i / 6 - 2.5, 0.5 + 0.05 * (i % 5), i);
@@ -170,7 +167,7 @@ TEST_P(Flying, TheSameBitsForAnyNumberOfThreads) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Physics, Flying, testing::ValuesIn(solid_kinds()), name_of_kind);
+INSTANTIATE_TEST_SUITE_P(Physics, Flying, testing::ValuesIn(ways_to_fly()), name_of_kind);
 
 /// particle3d over an engine for the ground.
 using Above = EveryEngine;

@@ -1,0 +1,76 @@
+#include "core/device/altitude.hpp"
+
+#include <algorithm>
+
+#include "core/device/sight.hpp"
+
+namespace tandem::core {
+namespace {
+
+constexpr double kWithin_m = 0.01;  // that bodies may be in one another
+constexpr double kNoBottom_m = -1e9;
+
+bool covers(const Object& o, double x_m, double y_m) noexcept {
+  const double dx = x_m - o.x_m;
+  const double dy = y_m - o.y_m;
+  if (o.kind == Object::Kind::Cylinder) return dx * dx + dy * dy <= o.radius_m * o.radius_m;
+  return std::fabs(o.cos_h * dx + o.sin_h * dy) <= o.half_x_m && std::fabs(o.cos_h * dy - o.sin_h * dx) <= o.half_y_m;
+}
+
+/// Calls `see(low_m, high_m)` for every other body over or under the middle of this one.
+template <class See>
+void each_body_in_line(const SpaceStores& stores, std::size_t row, See&& see) noexcept {
+  if (stores.body_index.size() == 0) return;  // before the first step
+  const Bodies& b = stores.bodies;
+  stores.body_index.for_each_near(b.x_m[row], b.y_m[row], widest_body_m(stores), [&](const IndexEntry& o) {
+    const double dx = o.x_m - b.x_m[row];
+    const double dy = o.y_m - b.y_m[row];
+    const auto radius_m = static_cast<double>(o.radius_m);
+    if (o.row() == row || dx * dx + dy * dy > radius_m * radius_m) return;
+    const double low_m = stores.base_m(o.row());
+    see(low_m, low_m + stores.sheet_of_row(o.row()).body_height_m);
+  });
+}
+
+}  // namespace
+
+double ceiling_m(const SpaceStores& stores, std::size_t row) noexcept {
+  const std::uint16_t region = stores.bodies.region[row];
+  return region == kNoRegion ? stores.max_z_m : std::min(stores.max_z_m, stores.regions[region].top_m);
+}
+
+double room_below_m(const SpaceStores& stores, std::size_t row, bool bodies) noexcept {
+  const Bodies& b = stores.bodies;
+  const double base_m = stores.base_m(row);
+  const std::uint16_t region = b.region[row];
+  double highest_m = 0.0;
+  if (region != kNoRegion && stores.regions[region].bottom_m > kNoBottom_m) highest_m = stores.regions[region].bottom_m;
+  const auto consider = [&](double top_m) {
+    if (top_m <= base_m + kWithin_m) highest_m = std::max(highest_m, top_m);
+  };
+  if (!stores.objects.empty()) {
+    stores.for_each_object_near(b.x_m[row], b.y_m[row], [&](const Object& o) {
+      if (o.alive && covers(o, b.x_m[row], b.y_m[row])) consider(o.z_high_m);
+    });
+  }
+  if (bodies) each_body_in_line(stores, row, [&](double, double high_m) { consider(high_m); });
+  return std::max(0.0, base_m - highest_m);
+}
+
+double room_above_m(const SpaceStores& stores, std::size_t row) noexcept {
+  const Bodies& b = stores.bodies;
+  const double top_m = stores.base_m(row) + stores.sheet_of_row(row).body_height_m;
+  double lowest_m = ceiling_m(stores, row);
+  const auto consider = [&](double low_m) {
+    if (low_m >= top_m - kWithin_m) lowest_m = std::min(lowest_m, low_m);
+  };
+  if (!stores.objects.empty()) {
+    stores.for_each_object_near(b.x_m[row], b.y_m[row], [&](const Object& o) {
+      if (o.alive && covers(o, b.x_m[row], b.y_m[row])) consider(o.z_low_m);
+    });
+  }
+  each_body_in_line(stores, row, [&](double low_m, double) { consider(low_m); });
+  return std::max(0.0, lowest_m - top_m);
+}
+
+}  // namespace tandem::core
