@@ -1,0 +1,10 @@
+// What robots call one another by range-and-bearing: the first byte of a message says what it is.
+#pragma once
+#include <cstdint>
+
+namespace tandem::controllers {
+
+inline constexpr std::uint8_t kFollowMe = 0x46;   ///< nothing else in the message
+inline constexpr std::uint8_t kFlockMate = 0x4D;  ///< then the sender's velocity in W: x, y, z in 2 cm/s, signed
+
+}  // namespace tandem::controllers
