@@ -137,8 +137,8 @@ int main(int argc, char** argv) {
       ->allow_extra_args(false);
   auto* arena =
       emulate_command->add_option("--arena", emulate_options.arena,
-                                  "Experiment file: one of its robots, an e-puck driven by `puppet` or a foot-bot by "
-                                  "`footbot_puppet`, is the body");
+                                  "Experiment file: one of its robots, an e-puck driven by `puppet`, a foot-bot by "
+                                  "`footbot_puppet` or an eye-bot by `eyebot_puppet`, is the body");
   emulate_command->add_option("--body", emulate_options.body, "Which of its robots; default: the first that can be")
       ->needs(arena);
   emulate_command->add_option("--name", emulate_options.name, "An eye-bot's name, or that of the first; default: eb0");

@@ -4,12 +4,14 @@
 
 #include "app/catalog.hpp"
 #include "app/command/command.hpp"
+#include "app/eyebot_puppeteer.hpp"
 #include "app/footbot_puppeteer.hpp"
 #include "app/living_arena.hpp"
 #include "app/puppeteer.hpp"
 #include "app/signals.hpp"
 #include "bridges/epuck_emulator/emulator.hpp"
 #include "bridges/eyebot_emulator/emulator.hpp"
+#include "bridges/eyebot_emulator/shared_body.hpp"
 #include "bridges/footbot_emulator/emulator.hpp"
 
 namespace tandem::app {
@@ -37,21 +39,15 @@ std::unique_ptr<Arena> make_arena(const EmulateOptions& options, hal::PluginLoad
   return std::make_unique<Arena>(std::move(world), robot.value(), stop);
 }
 
-/// What all emulators are told alike.
-template <class Emulated>
-void set_common(const EmulateOptions& options, Emulated& emulated) {
-  emulated.link = options.link;
-  emulated.log_file = options.log;
-  emulated.faults = options.faults;
-  emulated.log = hal::Log([](hal::Severity, std::string_view text) { fmt::print(stderr, "{}\n", text); });
-}
-
 /// Runs an emulator, whose options begin as `emulated`, in the arena that was asked for.
 template <class Puppeteer, class Body, class Emulated>
 int emulate_robot(const EmulateOptions& options, Emulated emulated) {
   using Arena = LivingArena<Puppeteer, Body>;
   const std::atomic<bool>& stop = catch_signals();
-  set_common(options, emulated);
+  emulated.link = options.link;
+  emulated.log_file = options.log;
+  emulated.faults = options.faults;
+  emulated.log = hal::Log([](hal::Severity, std::string_view text) { fmt::print(stderr, "{}\n", text); });
   if constexpr (requires { emulated.firmware; }) {
     if (!options.firmware.empty()) emulated.firmware = options.firmware;
   }
@@ -77,7 +73,6 @@ std::string host_link(const std::string& path) {
 
 int emulate_eyebots(const EmulateOptions& options) {
   eyebot::Options emulated;
-  set_common(options, emulated);
   emulated.robot.name = options.name;
   emulated.robot.clock_synced = options.clock == "synced";
   emulated.robot.image_hz = options.images_Hz;
@@ -86,14 +81,7 @@ int emulate_eyebots(const EmulateOptions& options) {
     const std::string who = options.count > 1 ? fmt::format("{} eye-bots", options.count) : "eye-bot " + options.name;
     fmt::print(stderr, "{} on {}: connect with --link lcm:{}; Ctrl-C ends it\n", who, url, url);
   };
-  if (!options.arena.empty()) {
-    fmt::print(stderr, "tandem emulate: an eye-bot flies by its own dynamics: leave out --arena\n");
-    return kWrongUsage;
-  }
-  const hal::Status ended = run(emulated, catch_signals());
-  if (ended.ok()) return kDone;
-  fmt::print(stderr, "error: {}\n", ended.error().message);
-  return kBadInput;
+  return emulate_robot<EyebotPuppeteer, eyebot::SharedBody>(options, std::move(emulated));
 }
 
 }  // namespace

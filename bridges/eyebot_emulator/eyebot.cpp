@@ -15,8 +15,6 @@ constexpr int kLoopRate_Hz = 100;
 constexpr std::int64_t kFreshUs = 250'000;                // a command whose stamp is farther off is stale
 constexpr TimeNs kVelocityValidNs = 500 * hal::kNsPerMs;  // where a velocity says nothing of it
 constexpr TimeNs kDamageTellNs = 10 * hal::kNsPerSecond;
-constexpr double kScanMin_m = 0.12;  // [chosen] the heads' reach
-constexpr double kScanMax_m = 3.0;
 constexpr double kAmpere = 12.0;  // [chosen] of a hovering robot; a twentieth of it at rest
 constexpr std::size_t kMostHeard = 64;
 
@@ -208,7 +206,7 @@ void Eyebot::sample_scan(TimeNs at) {
     sample.head = static_cast<std::uint8_t>(head);
     sample.utime = utime(at);
     sample.angle_rad = std::remainder(senses_.scanner_rad + 0.5 * pi * static_cast<double>(head), 2.0 * pi);
-    sample.range_m = range_m < kScanMin_m ? -1.0 : range_m > kScanMax_m ? -2.0 : range_m;
+    sample.range_m = range_m < spec::kScannerMin_m ? -1.0 : range_m > spec::kScannerMax_m ? -2.0 : range_m;
     scan_.push_back(sample);
   }
 }

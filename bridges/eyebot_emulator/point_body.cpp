@@ -11,11 +11,7 @@ using std::numbers::pi;
 
 constexpr hal::TimeNs kStepNs = 10 * hal::kNsPerMs;
 constexpr double kGravity_m_s2 = 9.81;
-constexpr double kContact_m = 1e-3;        // nearer is touching
-constexpr double kHead_rad_s = pi;         // of pan and tilt: a half turn a second
-constexpr double kScannerGoTo_rad_s = pi;  // of a scanner on its way to an angle
-constexpr double kCeilingEcho_m = 10.0;    // farther up or down there is no echo
-constexpr double kScannerMostTurn_rad_s = 4.0 * pi;
+constexpr double kContact_m = 1e-3;  // nearer is touching
 
 double wrapped(double angle_rad) {
   return std::remainder(angle_rad, 2.0 * pi);
@@ -122,15 +118,16 @@ void PointBody::move(double dt_s) {
 
 void PointBody::turn_devices(double dt_s) {
   if (command_.scanner == ScannerMode::Speed) {
-    const double rate = std::clamp(command_.scanner_rad_s, -kScannerMostTurn_rad_s, kScannerMostTurn_rad_s);
+    const double rate = std::clamp(command_.scanner_rad_s, -spec::kScannerTurn_rad_s, spec::kScannerTurn_rad_s);
     scanner_rad_ = wrapped(scanner_rad_ + rate * dt_s);
   }
   if (command_.scanner == ScannerMode::Position) {
-    scanner_rad_ = turn_to(scanner_rad_, command_.scanner_rad, kScannerGoTo_rad_s * dt_s);
+    scanner_rad_ = turn_to(scanner_rad_, command_.scanner_rad, spec::kScannerTurn_rad_s * dt_s);
   }
-  pan_rad_ = turn_to(pan_rad_, command_.pan_rad, kHead_rad_s * dt_s);
-  const double most = kHead_rad_s * dt_s;
-  tilt_rad_ += std::clamp(std::clamp(command_.tilt_rad, -0.5 * pi, 0.5 * pi) - tilt_rad_, -most, most);
+  pan_rad_ = turn_to(pan_rad_, command_.pan_rad, spec::kHeadTurn_rad_s * dt_s);
+  const double most = spec::kHeadTurn_rad_s * dt_s;
+  tilt_rad_ += std::clamp(std::clamp(command_.tilt_rad, -spec::kHeadMostTilt_rad, spec::kHeadMostTilt_rad) - tilt_rad_,
+                          -most, most);
 }
 
 double PointBody::distance_to_wall_m(double direction_rad, double offset_m) const {
@@ -148,10 +145,11 @@ BodySenses PointBody::sense(hal::TimeNs now) {
   senses.q_WB = leaning(yaw_rad_, a_);
   senses.turn_rad_s = {0.0, 0.0, command_.motors ? command_.yaw_rad_s : 0.0};
   senses.on_ground = p_[2] <= kContact_m;
-  senses.ground_m = p_[2] <= kCeilingEcho_m ? p_[2] : -1.0;
+  senses.ground_m = p_[2] <= spec::kAltimeter_m ? p_[2] : -1.0;
   senses.at_ceiling = held();
   senses.ceiling_m = -1.0;
-  if (room_ && room_->height_m - top_m() <= kCeilingEcho_m) senses.ceiling_m = std::max(0.0, room_->height_m - top_m());
+  if (room_ && room_->height_m - top_m() <= spec::kAltimeter_m)
+    senses.ceiling_m = std::max(0.0, room_->height_m - top_m());
   senses.scanner_rad = scanner_rad_;
   senses.pan_rad = pan_rad_;
   senses.tilt_rad = tilt_rad_;

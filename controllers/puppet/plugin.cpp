@@ -1,5 +1,6 @@
 #include "hal/plugin.hpp"
 
+#include "controllers/puppet/eyebot_puppet.hpp"
 #include "controllers/puppet/footbot_puppet.hpp"
 #include "controllers/puppet/puppet.hpp"
 
@@ -9,6 +10,8 @@ void register_all(tandem::hal::Registrar& registrar) {
       "puppet", "Takes every device and does nothing: its ports are driven from outside.");
   registrar.add_controller<tandem::controllers::FootbotPuppet>(
       "footbot_puppet", "Takes a foot-bot's devices and does nothing: its ports are driven from outside.");
+  registrar.add_controller<tandem::controllers::EyebotPuppet>(
+      "eyebot_puppet", "Takes an eye-bot's devices and does nothing: its ports are driven from outside.");
 }
 }  // namespace
 

@@ -135,7 +135,7 @@ TEST(ModeMachine, RunsItsMotorsWhereItMust) {
 
 TEST(ModeMachine, EndsWhatIsComplete) {
   Robot takes_off = in(Mode::TakeOff);
-  takes_off.see({.on_ground = false, .height_m = 0.99});
+  takes_off.see({.on_ground = false, .height_m = 0.94});
   EXPECT_EQ(takes_off.s.mode(), Mode::TakeOff);
   takes_off.see({.on_ground = false, .height_m = 1.0});
   EXPECT_EQ(takes_off.s.mode(), Mode::Hover);
