@@ -54,9 +54,10 @@ bool disc_blocks(double cx, double cy, double radius_m, double low_m, double hig
 /// Messages in range and in sight. Bodies block a line that passes through them; boards that sit on top of their robots
 /// see over those of the same height.
 ///
-/// Of most lines all ends are about equally high. Those are judged for all senders at once: from the nearest body on
-/// outwards, each adds its shadow, and a sender in the shadow of nearer ones is not heard. Other lines are followed
-/// from end to end.
+/// On the ground all ends of most lines are about equally high. Those are judged for all senders at once: from the
+/// nearest body on outwards, each adds its shadow, and a sender in the shadow of nearer ones is not heard. Other lines
+/// are followed from end to end. Where robots fly, few are near and no two at the same height: there each line is
+/// tested with every body that is near.
 class RabSensor final : public Sensor {
  public:
   explicit RabSensor(const Hearing<0>& options) : options_(options) {}
@@ -72,12 +73,16 @@ class RabSensor final : public Sensor {
     flat_ = only_sheet_ != nullptr && std::all_of(context.stores.regions.begin(), context.stores.regions.end(),
                                                   [](const Region& region) { return region.plane; });
     const bool shadows = options_.check_occlusions && bodies_block(context.stores);
+    widest_m_ = widest_body_m(context.stores);
+    const bool space = std::any_of(context.stores.groups.begin(), context.stores.groups.end(),
+                                   [](const RobotGroup& group) { return group.sheet->flies; });
     for (std::size_t i = 0; i < context.block.used; ++i) {
       hal::RangeAndBearing& port = receivers[i];
       stamp(context, port);
       port.count = 0;
       port.dropped = 0;
       if (context.stores.broadcasts.empty()) continue;
+      if (shadows && space && hear_in_space(context, context.block.first_row + i, farthest_m, port)) continue;
       if (shadows)
         hear_in_shadows(context, context.block.first_row + i, farthest_m, port);
       else
@@ -86,7 +91,9 @@ class RabSensor final : public Sensor {
   }
 
  private:
+  static constexpr std::size_t kCrowd = 96;  // from which on following lines costs less than testing with all
   static constexpr std::size_t kFew = 24;    // up to which sorting by insertion is all that is needed
+  static constexpr double kSurelyAside = 1.0 + 1e-9;
   static constexpr double kLevel_m = 0.02;   // lines that rise by no more count as level
   static constexpr double kOnTop_m = 0.005;  // a board this little beneath a body's top sees over it
 
@@ -103,6 +110,14 @@ class RabSensor final : public Sensor {
     bool operator<(const Neighbour& other) const noexcept {
       return distance2 != other.distance2 ? distance2 < other.distance2 : row < other.row;
     }
+  };
+
+  /// A body that is near in space, beside where it is seen from above; heights above the receiver's board.
+  struct Around {
+    double low_m, high_m;
+    double board_m;
+    double radius_m;
+    std::uint32_t row;
   };
 
   const hal::DataSheet& sheet_of(const SpaceStores& stores, std::size_t row) const noexcept {
@@ -186,6 +201,83 @@ class RabSensor final : public Sensor {
     }
   }
 
+  /// False: so many are near that nothing was done.
+  bool hear_in_space(const DeviceContext& context, std::size_t row, double farthest_m,
+                     hal::RangeAndBearing& port) noexcept {
+    const SpaceStores& stores = context.stores;
+    const Bodies& b = stores.bodies;
+    const double height_m = board_m(stores, row);
+    const double within_m = farthest_m + widest_m_;
+    std::size_t count = 0;
+    bool crowd = false;
+    stores.body_index.for_each_near(b.x_m[row], b.y_m[row], within_m, [&](const IndexEntry& o) {
+      const double wx = o.x_m - b.x_m[row];
+      const double wy = o.y_m - b.y_m[row];
+      const double flat2 = wx * wx + wy * wy;
+      if (flat2 > within_m * within_m || o.row() == row || crowd) return;
+      // Neither a sender nor in the way where no line leads.
+      const double low_m = stores.base_m(o.row()) - height_m;
+      if (low_m > farthest_m) return;
+      const hal::DataSheet& sheet = sheet_of(stores, o.row());
+      if (low_m + sheet.body_height_m < -farthest_m) return;
+      crowd = count == kCrowd;
+      if (crowd) return;
+      const auto radius_m = static_cast<double>(o.radius_m);
+      around_x_[count] = wx;
+      around_y_[count] = wy;
+      around_flat2_[count] = flat2;
+      around_aside2_[count] = kSurelyAside * radius_m * radius_m;
+      around_[count++] = {low_m, low_m + sheet.body_height_m - kOnTop_m, low_m + sheet.rab_height_m, radius_m, o.row()};
+    });
+    if (crowd) return false;
+    std::size_t heard = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+      const Around& n = around_[i];
+      const Broadcast& message = stores.broadcasts[n.row];
+      const auto reach_m = static_cast<double>(message.range_m);
+      const double range2 = around_flat2_[i] + n.board_m * n.board_m;
+      if (message.sending == 0 || range2 > reach_m * reach_m || something_between(i, count)) continue;
+      std::size_t at = heard++;
+      for (; at > 0 && range2 < heard_[at - 1].range2; --at) heard_[at] = heard_[at - 1];
+      heard_[at] = {range2, i};
+    }
+    for (std::size_t k = 0; k < heard; ++k) {
+      const std::size_t i = heard_[k].number;
+      receive(context, row, height_m, {around_[i].row, around_x_[i], around_y_[i], around_[i].board_m}, port);
+    }
+    return true;
+  }
+
+  /// Whether the line to number `i` of those around passes through another. In space that may be farther, seen from
+  /// above: over or under the sender.
+  bool something_between(std::size_t i, std::size_t count) noexcept {
+    const double tx = around_x_[i];
+    const double ty = around_y_[i];
+    const double t2 = around_flat2_[i];
+    // Most lie aside of it by more than their radius, or behind the receiver: not above 0 is what may be in between.
+    // One loop that the compiler makes vectors of, then one that picks.
+    for (std::size_t k = 0; k < count; ++k) {
+      const double cross = around_x_[k] * ty - around_y_[k] * tx;
+      const double along = around_x_[k] * tx + around_y_[k] * ty;
+      const double aside = cross * cross - around_aside2_[k] * t2;
+      const double outside = around_flat2_[k] - around_aside2_[k];
+      const double behind = outside < -along ? outside : -along;
+      clear_[k] = aside > behind ? aside : behind;
+    }
+    std::size_t left = 0;
+    for (std::size_t k = 0; k < count; ++k) {
+      may_block_[left] = static_cast<std::uint32_t>(k);
+      left += (clear_[k] <= 0.0) & (k != i) ? 1 : 0;
+    }
+    for (std::size_t m = 0; m < left; ++m) {
+      const std::size_t k = may_block_[m];
+      const Around& n = around_[k];
+      if (disc_on_line(around_x_[k], around_y_[k], n.radius_m, n.low_m, n.high_m, {}, {tx, ty, around_[i].board_m}))
+        return true;
+    }
+    return false;
+  }
+
   /// Twice as many neighbours as robots that were spread evenly would have: later steps are not to allocate.
   void make_room(const SpaceStores& stores, double farthest_m) noexcept {
     const double area_m2 = (stores.max_x_m - stores.min_x_m) * (stores.max_y_m - stores.min_y_m);
@@ -261,8 +353,11 @@ class RabSensor final : public Sensor {
     const Bodies& b = stores.bodies;
     const std::array<double, 3> from{b.x_m[row], b.y_m[row], height_m};
     const std::array<double, 3> to{from[0] + sender.wx, from[1] + sender.wy, height_m + sender.wz};
-    return any_body_near_line(stores, widest_body_m(stores), from, to, [&](std::uint32_t other) {
-      return other != row && other != sender.row && blocked_by(stores, other, from, to);
+    return any_body_near_line(stores, widest_m_, from, to, [&](std::uint32_t other) {
+      if (other == row || other == sender.row) return false;
+      const double low_m = stores.base_m(other);
+      return disc_on_line(b.x_m[other], b.y_m[other], static_cast<double>(b.radius_m[other]), low_m,
+                          low_m + sheet_of(stores, other).body_height_m - kOnTop_m, from, to);
     });
   }
 
@@ -309,6 +404,15 @@ class RabSensor final : public Sensor {
   bool flat_ = false;                           // all boards are equally high
   // While one robot listens: who is near, what lies in their shadow, and who blocks some heights only.
   std::vector<Neighbour> near_, sorted_;
+  double widest_m_ = 0.0;  // of all bodies
+  std::array<Around, kCrowd> around_{};
+  std::array<double, kCrowd> around_x_{}, around_y_{}, around_flat2_{}, around_aside2_{}, clear_{};
+  std::array<std::uint32_t, kCrowd> may_block_{};
+  struct Heard {
+    double range2;
+    std::size_t number;  ///< of `around_`
+  };
+  std::array<Heard, kCrowd> heard_{};
   Shadows shadows_;
   std::vector<std::uint32_t> partial_;
 };

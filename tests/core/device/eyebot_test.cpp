@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <numbers>
 
+#include "core/random/random.hpp"
 #include "hal/device/body_sensors.hpp"
 #include "hal/device/cameras.hpp"
 #include "hal/device/leds.hpp"
@@ -281,6 +282,74 @@ TEST(EyeBotRangeAndBearing, BodiesInSpaceAreInTheWay) {
     if (heard.count == 0) continue;
     EXPECT_NEAR(static_cast<double>(heard.range_m[0]), std::hypot(2.0, 0.8), 1e-5);
     EXPECT_NEAR(static_cast<double>(heard.elevation_rad[0]), std::atan2(0.8, 2.0), 1e-5);
+  }
+}
+
+/// 1: the line between two boards passes through a body; 0: it does not; -1: it is a matter of 2 mm.
+int blocked(const std::vector<Vec3>& bases, std::size_t from, std::size_t to) {
+  const auto board = [&](std::size_t i, std::size_t axis) {
+    return bases[i][axis] + (axis == 2 ? eb::kSensorHeight_m : 0);
+  };
+  constexpr int kSamples = 1500;
+  bool near = false;
+  for (int s = 1; s < kSamples; ++s) {
+    Vec3 p{};
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      p[axis] = board(from, axis) + (board(to, axis) - board(from, axis)) * s / kSamples;
+    for (std::size_t k = 0; k < bases.size(); ++k) {
+      if (k == from || k == to) continue;
+      const double aside_m = std::hypot(p[0] - bases[k][0], p[1] - bases[k][1]) - eb::kBodyRadius_m;
+      const double outside_m = std::max({aside_m, bases[k][2] - p[2], p[2] - (bases[k][2] + eb::kHeight_m - 0.005)});
+      if (outside_m < -0.002) return 1;
+      near = near || outside_m < 0.002;
+    }
+  }
+  return near ? -1 : 0;
+}
+
+TEST(EyeBotRangeAndBearing, HearsExactlyThoseInReachAndInSight) {
+  // A cloud, looser and then so dense that more are near than are tested one by one.
+  for (const auto& [size_m, count] : {std::pair{4.5, 60}, std::pair{5.0, 180}}) {
+    Scene scene = eyebot_scene("particle3d", 8.0);
+    scene.scenario.arena_size[2] = 12.0;
+    scene.scenario.arena_center[2] = 6.0;
+    std::vector<Vec3> bases;
+    for (std::uint32_t n = 0; bases.size() < static_cast<std::size_t>(count); ++n) {
+      const auto bits = draw(5, n, Stream::Placement, 0);
+      const Vec3 p{size_m * (to_unit(bits[0]) - 0.5), size_m * (to_unit(bits[1]) - 0.5), 0.5 + 8.0 * to_unit(bits[2])};
+      const bool free = std::none_of(bases.begin(), bases.end(), [&](const Vec3& o) {
+        return std::hypot(p[0] - o[0], p[1] - o[1]) < 0.55 && std::fabs(p[2] - o[2]) < 0.6;
+      });
+      if (!free) continue;
+      scene.flyer("e" + std::to_string(bases.size()), p[0], p[1], p[2]);
+      bases.push_back(p);
+    }
+    auto world = made(scene);
+    for (std::size_t i = 0; i < bases.size(); ++i) {
+      auto& send = command<hal::RangeAndBearingSend>(world, "e" + std::to_string(i));
+      send.sending = true;
+      send.size = 1;
+    }
+    steps(world, 2);
+    int sure = 0;
+    for (std::size_t i = 0; i < bases.size(); i += 7) {
+      std::size_t least = 0;
+      std::size_t most = 0;
+      for (std::size_t k = 0; k < bases.size(); ++k) {
+        const double range_m =
+            std::hypot(bases[i][0] - bases[k][0], bases[i][1] - bases[k][1], bases[i][2] - bases[k][2]);
+        if (k == i || range_m > eb::kRabRange_m + 1e-6) continue;
+        const int in_the_way = blocked(bases, i, k);
+        least += in_the_way == 0 ? 1 : 0;
+        most += in_the_way == 1 ? 0 : 1;
+      }
+      const auto& heard = reading<hal::RangeAndBearing>(world, "e" + std::to_string(i));
+      EXPECT_GE(heard.count + heard.dropped, least) << i;
+      EXPECT_LE(heard.count + heard.dropped, most) << i;
+      sure += least == most ? 1 : 0;
+      for (std::size_t k = 1; k < heard.count; ++k) EXPECT_GE(heard.range_m[k], heard.range_m[k - 1]);
+    }
+    EXPECT_GT(sure, count / 14) << "most are no matter of millimetres";
   }
 }
 
