@@ -33,17 +33,21 @@ void add_bench(CLI::App& app, BenchOptions& o, int& code) {
   c->footer(
       "With --from the options --robots, --engine, --threads, --partition, --regions, --density and --assignment "
       "choose among the saved lines.");
-  c->add_option("name", o.name, "diffusion: the standard scene; codec: messages of the foot-bot, only with --repeat")
+  c->add_option(
+       "name", o.name,
+       "diffusion: the standard scene; flocking: eye-bots in space; codec: messages of the foot-bot, only with "
+       "--repeat")
       ->capture_default_str();
   c->add_option("--robots", o.robots, "Numbers of robots, e.g. 1000,10000; default: 1 to 100000")
       ->delimiter(',')
       ->check(CLI::Range(std::int64_t{1}, std::int64_t{100'000'000}));
-  auto* robot = c->add_option("--robot", o.robot, "Kind of robot")->capture_default_str();
+  auto* robot = c->add_option("--robot", o.robot, "Kind of robot; default: e-puck for diffusion, eye-bot for flocking");
   auto* with = c->add_option("--with", o.devices,
                              "Devices besides proximity sensors and wheels: range_and_bearing, omnidirectional_camera "
                              "(foot-bot)")
                    ->delimiter(',');
-  c->add_option("--engine", o.engines, "Physics engines; `tandem list engines` names them; default: its first")
+  c->add_option("--engine", o.engines,
+                "Physics engines; `tandem list engines` names them; default: its first, for flocking particle3d")
       ->delimiter(',');
   c->add_option("--threads", o.threads, "Numbers of threads, e.g. 0,2; default: 0")
       ->delimiter(',')

@@ -8,6 +8,7 @@
 namespace tandem::app {
 
 struct BenchCase {
+  std::string bench;  ///< "diffusion" or "flocking"
   std::string robot;
   std::string engine;
   std::string partition;  ///< A1 to A16; another split of the arena as it was asked for

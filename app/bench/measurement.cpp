@@ -48,7 +48,7 @@ RunFigures time_loop(core::World& world, const BenchCase& c, const std::atomic<b
 }
 
 void add_case_fields(Json& json, const BenchCase& c) {
-  json.field("bench", "diffusion")
+  json.field("bench", c.bench)
       .field("robot", c.robot)
       .field("engine", c.engine)
       .field("partition", c.partition)
@@ -67,7 +67,7 @@ void add_machine_fields(Json& json) {
 Measurement measure(const BenchCase& c, const std::atomic<bool>& stop) {
   const double began = wall_seconds();
   const double rss_before = peak_rss_mb();
-  const core::Scenario scenario = diffusion_scene(c);
+  const core::Scenario scenario = scene_of(c);
   hal::PluginLoader loader(plugin_folders());
   core::Problems problems;
   auto world = core::World::make(scenario, loader, {}, problems);

@@ -77,27 +77,71 @@ core::RobotItem scattered_robots(const BenchCase& c, double scale) {
   return item;
 }
 
-}  // namespace
-
 core::Scenario diffusion_scene(const BenchCase& c) {
   core::Scenario scenario;
-  scenario.file = "bench diffusion";
-  scenario.name = "diffusion";
-  scenario.seed = 1;
-  scenario.ticks_per_second = 10;
-  scenario.threads = c.threads;
-  scenario.assignment = c.assignment;
   const double scale = c.density == "equal" ? std::sqrt(static_cast<double>(c.robots) / kUsualRobots) : 1.0;
   scenario.arena_size = {kArena_m * scale + kWall_m, kArena_m * scale + kWall_m, 1.0};
   add_walls(scenario, scale);
 
+  scenario.controllers.push_back(diffusion_controller(c.robot, c.devices));
+  scenario.robots.push_back(scattered_robots(c, scale));
+  return scenario;
+}
+
+// Eye-bots that keep 2 m from one another: on average 14 lie within the 3 m that their messages reach.
+constexpr double kSpacing_m = 2.0;
+constexpr double kPerRobot_m3 = 8.0;
+constexpr double kHall_m = 10.0;  // height of the part of the hall that they start in
+constexpr double kMargin_m = 10.0;
+
+core::Scenario flocking_scene(const BenchCase& c) {
+  core::Scenario scenario;
+  const double side_m = std::max(kSpacing_m, std::sqrt(static_cast<double>(c.robots) * kPerRobot_m3 / kHall_m));
+  scenario.arena_size = {side_m + 2.0 * kMargin_m, side_m + 2.0 * kMargin_m, kHall_m + 2.0 * kMargin_m};
+  scenario.arena_center = {0.0, 0.0, 0.5 * scenario.arena_size[2]};
+  core::ControllerConfig config;
+  config.id = "flock";
+  config.label = config.library = "eyebot_flocking";
+  for (const char* name : {"range_and_bearing", "positioning", "flight_state", "clock"})
+    config.sensors.push_back({name, "default", {}});
+  for (const char* name : {"quadrotor_speed", "flight_task", "range_and_bearing"})
+    config.actuators.push_back({name, "default", {}});
+  for (const auto& [name, value] : {std::pair{"distance", "2"}, {"lowest", "2"}, {"highest", "25"}})
+    config.params.attributes.push_back({name, value, 0});
+  scenario.controllers.push_back(config);
+
+  core::RobotItem item;
+  item.kind = c.robot;
+  item.id = "eb";
+  core::Distribute d;
+  d.quantity = c.robots;
+  d.max_trials = 10'000;
+  d.position.method = core::Distribution::Method::Uniform;
+  d.position.min = {-0.5 * side_m, -0.5 * side_m, kMargin_m};
+  d.position.max = {0.5 * side_m, 0.5 * side_m, kMargin_m + kHall_m};
+  d.orientation.method = core::Distribution::Method::Uniform;
+  d.orientation.min = {-M_PI, 0.0, 0.0};
+  d.orientation.max = {M_PI, 0.0, 0.0};
+  item.distribute = d;
+  scenario.robots.push_back(item);
+  return scenario;
+}
+
+}  // namespace
+
+core::Scenario scene_of(const BenchCase& c) {
+  core::Scenario scenario = c.bench == "flocking" ? flocking_scene(c) : diffusion_scene(c);
+  scenario.file = "bench " + c.bench;
+  scenario.name = c.bench;
+  scenario.seed = 1;
+  scenario.ticks_per_second = 10;
+  scenario.threads = c.threads;
+  scenario.assignment = c.assignment;
   core::EngineConfig engine;
   engine.kind = c.engine;
   engine.id = c.engine;
   engine.regions = c.regions;
   scenario.engines.push_back(engine);
-  scenario.controllers.push_back(diffusion_controller(c.robot, c.devices));
-  scenario.robots.push_back(scattered_robots(c, scale));
   return scenario;
 }
 

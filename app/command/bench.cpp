@@ -1,5 +1,4 @@
-// `tandem bench`: measures the standard scene or the foot-bot's codec, prints one JSON object a line, draws figures
-// from them.
+// `tandem bench`: measures a scene or the foot-bot's codec, prints one JSON object a line, draws figures from them.
 #include <algorithm>
 #include <cstdio>
 #include <fmt/format.h>
@@ -38,13 +37,23 @@ hal::Status check_name(std::string_view what, const std::string& name, const std
       fmt::format("there is no {} '{}'; there {}: {}", what, name, known.size() == 1 ? "is" : "are", all)};
 }
 
+std::vector<std::string> robots_of(const BenchOptions& o) {
+  if (o.name == "flocking") return {"eye-bot"};
+  return {"e-puck", "foot-bot"};
+}
+std::string robot_of(const BenchOptions& o) {
+  return o.robot.empty() ? robots_of(o).front() : o.robot;
+}
+
 hal::Status check_words(const BenchOptions& o) {
-  if (auto s = check_name("benchmark", o.name, {"diffusion", "codec"}); !s.ok()) return s;
-  if (auto s = check_name("robot", o.robot, {"e-puck", "foot-bot"}); !s.ok()) return s;
+  if (auto s = check_name("benchmark", o.name, {"diffusion", "flocking", "codec"}); !s.ok()) return s;
+  const std::vector<std::string> robots = robots_of(o);
+  if (auto s = check_name("robot", robot_of(o), robots); !s.ok()) return s;
   std::vector<std::string> devices{"range_and_bearing"};
-  if (o.robot == "foot-bot") devices.emplace_back("omnidirectional_camera");
+  if (robot_of(o) == "foot-bot") devices.emplace_back("omnidirectional_camera");
+  if (o.name == "flocking") devices.clear();
   for (const std::string& device : o.devices) {
-    if (auto s = check_name("device of the " + o.robot + " to measure with", device, devices); !s.ok()) return s;
+    if (auto s = check_name("device of the " + robot_of(o) + " to measure with", device, devices); !s.ok()) return s;
   }
   for (const std::string& engine : o.engines) {
     // Saved lines may come from another build.
@@ -77,7 +86,8 @@ hal::Result<Plan> plan_of(const BenchOptions& o) {
     plan.partitions.push_back(std::move(partition).value());
   }
   if (!o.from.empty()) return plan;
-  if (plan.engines.empty()) plan.engines = {known_names().engines.front()};
+  if (plan.engines.empty())
+    plan.engines = {o.name == "flocking" ? std::string("particle3d") : known_names().engines.front()};
   if (plan.partitions.empty()) plan.partitions = {{"auto", "auto"}};
   if (plan.robots.empty()) plan.robots = {1, 10, 100, 1000, 10'000, 100'000};
   if (plan.threads.empty()) plan.threads = {0};
@@ -95,8 +105,8 @@ std::vector<BenchCase> cases_of(const Plan& plan, const BenchOptions& o) {
       for (const Partition& partition : plan.partitions) {
         for (const std::int64_t robots : plan.robots) {
           for (const std::int64_t threads : plan.threads) {
-            cases.push_back({o.robot, engine, partition.name, partition.regions, devices,
-                             o.density.empty() ? "40 m" : o.density, robots, threads,
+            cases.push_back({o.name, robot_of(o), engine, partition.name, partition.regions, devices,
+                             o.density.empty() && o.name == "diffusion" ? "40 m" : "equal", robots, threads,
                              o.assignment == "dynamic" ? core::Assignment::Dynamic : core::Assignment::Static, o.ticks,
                              repeat});
           }

@@ -39,7 +39,7 @@ int describe(const std::string& name);
 struct BenchOptions {
   std::string name = "diffusion";
   std::vector<std::int64_t> robots;
-  std::string robot = "e-puck";
+  std::string robot;                 ///< empty: the benchmark's own
   std::vector<std::string> devices;  ///< besides proximity sensors and wheels
   std::vector<std::string> engines;
   std::vector<std::int64_t> threads;

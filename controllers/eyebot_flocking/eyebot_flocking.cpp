@@ -32,8 +32,10 @@ std::array<double, 3> EyebotFlocking::pull() const noexcept {
     ++mates;
     for (std::size_t k = 0; k < 3; ++k) velocity[k] += kToldSteps_m_s * static_cast<std::int8_t>(message[k + 1]);
     const double range_m = std::max(0.1, static_cast<double>(heard_.range_m[i]));
-    const double near = std::pow(params_.distance_m / range_m, params_.exponent);
-    const double towards = params_.gain_m_s * (near - near * near) * (params_.distance_m / range_m);
+    const double part = params_.distance_m / range_m;
+    double near = part;
+    for (std::int64_t power = 1; power < params_.exponent; ++power) near *= part;
+    const double towards = params_.gain_m_s * (near - near * near) * part;
     const double bearing = heading_rad + static_cast<double>(heard_.bearing_rad[i]);
     const double elevation = static_cast<double>(heard_.elevation_rad[i]);
     force[0] += towards * std::cos(elevation) * std::cos(bearing);

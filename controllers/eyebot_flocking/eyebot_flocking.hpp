@@ -17,7 +17,7 @@ class EyebotFlocking final : public hal::Controller {
   struct Params {
     double distance_m = 1.2;
     double gain_m_s = 0.3;
-    double exponent = 2.0;
+    std::int64_t exponent = 2;
     double alignment = 0.3;
     std::array<double, 3> drift_m_s{};
     double lowest_m = 0.5;
@@ -28,7 +28,7 @@ class EyebotFlocking final : public hal::Controller {
     void describe(hal::ParamVisitor& v) {
       v.number("distance", distance_m, hal::unit::m, {0.6, 10.0}, "That neighbours keep.");
       v.number("gain", gain_m_s, hal::unit::m_s, {0.0, 10.0}, "Strength of their pull and push.");
-      v.number("exponent", exponent, hal::unit::none, {1.0, 6.0}, "Of the potential: how steep it is.");
+      v.integer("exponent", exponent, {1, 6}, "Of the potential: how steep it is.");
       v.number("alignment", alignment, hal::unit::none, {0.0, 1.0},
                "Part of the neighbours' mean velocity taken over.");
       v.vector("drift", drift_m_s, hal::unit::m_s, "Velocity that the flock is to have; in W.");

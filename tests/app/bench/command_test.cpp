@@ -58,6 +58,24 @@ TEST(BenchLines, TellHowManyMessagesTheCodecTakes) {
   for (const auto& line : lines) EXPECT_GT(number(line, "messages_per_s"), 0.0) << text(line, "what");
 }
 
+TEST(BenchLines, TellOfAFlockInSpace) {
+  Folder folder;
+  Tandem bench({"bench", "flocking", "--robots", "300", "--threads", "0,2", "--ticks", "5"}, folder.path());
+  ASSERT_EQ(bench.wait(), 0) << bench.errors();
+  const auto lines = objects_in(bench.output());
+  ASSERT_EQ(lines.size(), 2U);
+  for (const auto& line : lines) {
+    EXPECT_EQ(text(line, "bench"), "flocking");
+    EXPECT_EQ(text(line, "robot"), "eye-bot");
+    EXPECT_EQ(text(line, "engine"), "particle3d");
+    EXPECT_EQ(text(line, "density"), "equal");
+    EXPECT_EQ(text(line, "state_hash"), text(lines[0], "state_hash"));
+  }
+  Tandem wrong({"bench", "flocking", "--robot", "e-puck"}, folder.path());
+  EXPECT_EQ(wrong.wait(), 2);
+  EXPECT_NE(wrong.errors().find("eye-bot"), std::string::npos) << wrong.errors();
+}
+
 TEST(BenchLines, TellWhichDevicesTheRobotsHave) {
   Folder folder;
   Tandem bench({"bench", "diffusion", "--robots", "200", "--robot", "foot-bot", "--engine", "dynamics2d", "--ticks",
