@@ -1,5 +1,7 @@
 #include "controllers/footbot_manual/order.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <optional>
 #include <string>
 #include <vector>
@@ -11,6 +13,7 @@ namespace {
 
 using Words = std::vector<std::string_view>;
 
+constexpr double kMost = 1e6;  // m/s, rad/s or rad: sums and products of such numbers are finite
 constexpr const char* kOrders =
     "drive SPEED TURN (such as 'drive 10 cm/s 0.5 rad/s'), stop, grip, release, turret ANGLE, turret TURN, turret off, "
     "turret passive";
@@ -47,6 +50,7 @@ hal::Result<double> quantity(const std::string& text, const hal::Unit& like) {
   const bool bare = text.find_first_not_of("+-.0123456789eE") == std::string::npos;
   if (value.ok() && bare && value.value() != 0.0)
     return hal::Error{"'" + text + "' has no unit; write '" + text + " " + std::string(like.symbol) + "'"};
+  if (value.ok() && std::fabs(value.value()) > kMost) return hal::Error{"'" + text + "' is beyond all reason"};
   return value;
 }
 

@@ -39,7 +39,8 @@ struct TurretFree {
 
 using Order = std::variant<Drive, Grip, TurretTo, TurretTurn, TurretFree>;
 
-/// Reads one line. Units must be written, but for 0. An error says what there is instead.
+/// Reads one line. Units must be written, but for 0; no number is beyond a million in SI. An error says what there is
+/// instead.
 hal::Result<Order> parse_order(std::string_view line);
 
 }  // namespace tandem::controllers

@@ -59,6 +59,7 @@ TEST(Order, ThatIsWrongIsAnsweredWithWhatWouldBeRight) {
       {"drive 10 cm 0", "unit 'cm' does not fit; use one of: m/s, cm/s, mm/s"},
       {"drive fast 0", "'fast' is not a number"},
       {"drive 1e999 m/s 0", "is not a number"},
+      {"drive 1e308 m/s 0", "is beyond all reason"},
       {"drive nan m/s 0", "is not a number"},
       {"stop now", "'stop' takes nothing after it"},
       {"turret", "takes an angle"},
