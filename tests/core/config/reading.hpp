@@ -14,10 +14,10 @@ inline const KnownNames& known_names() {
       {"e-puck", "foot-bot", "eye-bot"},
       {"kinematics2d", "dynamics2d", "dynamics3d", "particle3d"},
       {"accelerometer", "altimeter", "battery", "clock", "flight_state", "gripper", "ground", "light", "microphones",
-       "motor_ground", "odometry", "omnidirectional_camera", "pan_tilt_encoder", "proximity", "range_and_bearing",
-       "wheel_encoders"},
+       "motor_ground", "odometry", "omnidirectional_camera", "pan_tilt_encoder", "positioning", "proximity",
+       "range_and_bearing", "wheel_encoders"},
       {"body_led", "camera_led", "differential_steering", "flight_task", "front_led", "gripper", "leds", "pan_tilt",
-       "quadrotor_attitude", "range_and_bearing", "turret", "upper_leds"}};
+       "quadrotor_attitude", "quadrotor_position", "quadrotor_speed", "range_and_bearing", "turret", "upper_leds"}};
   return names;
 }
 
