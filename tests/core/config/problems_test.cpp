@@ -129,9 +129,9 @@ INSTANTIATE_TEST_SUITE_P(
             "unknown_actuator",
             [](Parts& p) {
               p.controllers =
-                  R"(<controllers><wander id="w" library="l"><actuators><quadrotor_speed/></actuators></wander></controllers>)";
+                  R"(<controllers><wander id="w" library="l"><actuators><magnets/></actuators></wander></controllers>)";
             },
-            3, "unknown actuator <quadrotor_speed>; known: body_led, differential_steering"},
+            3, "unknown actuator <magnets>; known: body_led, camera_led, differential_steering"},
         Case{
             "sensor_as_actuator",
             [](Parts& p) {
