@@ -1,10 +1,8 @@
-// What a robot senses of itself and of the air: acceleration, turn rates, sound, battery, clock. And its lamps, which
-// only shine.
+// What a robot senses of itself and of the air: acceleration, turn rates, sound, battery, clock.
 #include "core/device/sight.hpp"
 #include "core/device/types.hpp"
 #include "core/random/random.hpp"
 #include "hal/device/body_sensors.hpp"
-#include "hal/device/leds.hpp"
 
 namespace tandem::core {
 namespace {
@@ -374,118 +372,10 @@ Recipe<Sensor> make_clock(const Element& element, Problems& problems, const Devi
   return [jitter_s](std::size_t) { return std::make_unique<ClockSensor>(jitter_s); };
 }
 
-// --- lamps ---
-
-struct LampOptions {
-  std::string medium;
-  void describe(hal::ParamVisitor& v) {
-    v.text("medium", medium, "Id of the LED medium: cameras of others do not see them.");
-  }
-};
-
-/// Shows cameras, where there are any, what the ports say; views and pictures read the ports. For the ring, or the
-/// upper of two.
-template <class Port>
-class RingLamps final : public Actuator {
-  static constexpr bool kUpper = std::is_same_v<Port, hal::UpperRingLeds>;
-
- public:
-  RingLamps(const hal::DataSheet& sheet, std::uint16_t medium)
-      : count_(std::min((kUpper ? sheet.upper_leds : sheet.leds).size(), hal::RingLeds::kCapacity)), medium_(medium) {}
-
-  void act(const DeviceContext& context, SpaceStores& stores, const void* ports) noexcept override {
-    if (stores.shown_leds.empty()) return;
-    const auto* leds = static_cast<const Port*>(ports);
-    for (std::size_t i = 0; i < context.block.used; ++i) {
-      ShownLeds& shown = stores.shown_leds[context.block.first_row + i];
-      for (std::size_t k = 0; k < count_; ++k) shown.show(kUpper ? ShownLeds::kUpper + k : k, leds[i].color(k));
-      (kUpper ? shown.upper_medium : shown.ring_medium) = medium_;
-    }
-  }
-
- private:
-  std::size_t count_;
-  std::uint16_t medium_;
-};
-
-/// The same for the light beside a camera.
-class CameraLamp final : public Actuator {
- public:
-  explicit CameraLamp(std::uint16_t medium) : medium_(medium) {}
-
-  void act(const DeviceContext& context, SpaceStores& stores, const void* ports) noexcept override {
-    if (stores.shown_leds.empty()) return;
-    const auto* lamps = static_cast<const hal::CameraLed*>(ports);
-    for (std::size_t i = 0; i < context.block.used; ++i) {
-      ShownLeds& shown = stores.shown_leds[context.block.first_row + i];
-      shown.show(ShownLeds::kCamera, {lamps[i].rgb[0], lamps[i].rgb[1], lamps[i].rgb[2]});
-      shown.camera_medium = medium_;
-    }
-  }
-
- private:
-  std::uint16_t medium_;
-};
-
-/// The same for one of an e-puck's other lamps.
-template <class Port>
-class BodyLamp final : public Actuator {
- public:
-  explicit BodyLamp(std::uint16_t medium) : medium_(medium) {}
-
-  void act(const DeviceContext& context, SpaceStores& stores, const void* ports) noexcept override {
-    if (stores.shown_leds.empty()) return;
-    constexpr bool kIsFront = std::is_same_v<Port, hal::FrontLed>;
-    const auto* lamps = static_cast<const Port*>(ports);
-    for (std::size_t i = 0; i < context.block.used; ++i) {
-      ShownLeds& shown = stores.shown_leds[context.block.first_row + i];
-      const hal::Rgb color = kIsFront ? hal::kRed : hal::kGreen;
-      shown.show(kIsFront ? ShownLeds::kFront : ShownLeds::kBody, lamps[i].on ? color : hal::kBlack);
-      (kIsFront ? shown.front_medium : shown.body_medium) = medium_;
-    }
-  }
-
- private:
-  std::uint16_t medium_;
-};
-
-bool has_leds(const hal::DataSheet& sheet) {
-  return !sheet.leds.empty();
-}
-
-bool has_upper_leds(const hal::DataSheet& sheet) {
-  return !sheet.upper_leds.empty();
-}
-
-bool has_camera_led(const hal::DataSheet& sheet) {
-  return sheet.camera_led;
-}
-
-bool has_body_lamps(const hal::DataSheet& sheet) {
-  return sheet.body_lamps;
-}
-
-template <class Port>
-Recipe<Actuator> make_ring_lamps(const Element& element, Problems& problems, const DeviceSetup& setup) {
-  const std::uint16_t medium = setup.led_medium(read_options<LampOptions>(element, problems).medium);
-  return [&sheet = setup.sheet, medium](std::size_t) { return std::make_unique<RingLamps<Port>>(sheet, medium); };
-}
-
-Recipe<Actuator> make_camera_lamp(const Element& element, Problems& problems, const DeviceSetup& setup) {
-  const std::uint16_t medium = setup.led_medium(read_options<LampOptions>(element, problems).medium);
-  return [medium](std::size_t) { return std::make_unique<CameraLamp>(medium); };
-}
-
-template <class Port>
-Recipe<Actuator> make_body_lamp(const Element& element, Problems& problems, const DeviceSetup& setup) {
-  const std::uint16_t medium = setup.led_medium(read_options<LampOptions>(element, problems).medium);
-  return [medium](std::size_t) { return std::make_unique<BodyLamp<Port>>(medium); };
-}
-
 }  // namespace
 
 std::vector<DeviceType> body_device_types() {
-  std::vector<DeviceType> types = {
+  return {
       sensor_type("accelerometer", "default", "From the change of speed; noise where asked for.", &has_accelerometer,
                   &make_accelerometer<ForceNoise<0>>, &describe_options<ForceNoise<0>>),
       sensor_type("accelerometer", "ideal", "From the change of speed.", &has_accelerometer,
@@ -515,16 +405,6 @@ std::vector<DeviceType> body_device_types() {
       sensor_type("clock", "ideal", "The run's time.", &always, &make_clock<NoOptions>, &describe_options<NoOptions>),
       sensor_type("clock", "noisy", "The run's time, with jitter.", &always, &make_clock<ClockNoise<1000>>,
                   &describe_options<ClockNoise<1000>>)};
-  const auto add_lamp = [&types](std::string_view lamp, auto fits, auto make) {
-    types.push_back(actuator_type(lamp, "default", "Shines.", fits, make, &describe_options<LampOptions>));
-    types.push_back(actuator_type(lamp, "ideal", "Shines.", fits, make, &describe_options<LampOptions>));
-  };
-  add_lamp(hal::RingLeds::kName, &has_leds, &make_ring_lamps<hal::RingLeds>);
-  add_lamp(hal::UpperRingLeds::kName, &has_upper_leds, &make_ring_lamps<hal::UpperRingLeds>);
-  add_lamp(hal::CameraLed::kName, &has_camera_led, &make_camera_lamp);
-  add_lamp(hal::BodyLed::kName, &has_body_lamps, &make_body_lamp<hal::BodyLed>);
-  add_lamp(hal::FrontLed::kName, &has_body_lamps, &make_body_lamp<hal::FrontLed>);
-  return types;
 }
 
 }  // namespace tandem::core

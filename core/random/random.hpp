@@ -49,6 +49,7 @@ enum class Stream : std::uint32_t {
   AltimeterNoise,
   HeadNoise,
   HeadEncoderNoise,
+  LampNoise,
 };
 
 /// Four independent 32-bit numbers. `index` tells draws of one tick apart (0 to 2^24 - 1).

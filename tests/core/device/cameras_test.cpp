@@ -467,6 +467,50 @@ TEST(Cameras, NoiseHasTheDeviationThatWasAskedFor) {
   EXPECT_NEAR(std::sqrt(sum_pxpx / kSteps), 3.0, 0.15);
 }
 
+TEST(Lamps, DifferInBrightnessAndSomeAreDead) {
+  constexpr int kPairs = 24;  // along each side: one that looks at one that shines, 1.6 m from the next
+  Scene scene = camera_scene(40.0);
+  choose_everywhere(scene, "leds", "noisy", {{"brightness_std_dev", "0.1", 11}, {"dead_prob", "0.2", 11}});
+  for (int k = 0; k < kPairs * kPairs; ++k) {
+    const double x = 1.6 * (k % kPairs) - 18.4;
+    const double y = 1.6 * (k / kPairs) - 18.4;
+    add_footbot(scene, "eye" + std::to_string(k), x, y);
+    add_footbot(scene, "lamp" + std::to_string(k), x + 0.3, y);
+  }
+  auto world = made(scene);
+  int dead = 0, lit = 0;
+  double sum = 0.0, squares = 0.0;
+  for (int round = 0; round < 2; ++round) {
+    for (int k = 0; k < kPairs * kPairs; ++k) beacon(world, "lamp" + std::to_string(k), {75, 75, 150});
+    std::vector<int> before;
+    for (int k = 0; k < kPairs * kPairs; ++k) {
+      const auto& port = omni(world, "eye" + std::to_string(k));
+      before.push_back(port.count == 0 ? -1 : port.color(0).b);
+    }
+    world->step();
+    for (int k = 0; k < kPairs * kPairs; ++k) {
+      const auto& port = omni(world, "eye" + std::to_string(k));
+      const int seen = port.count == 0 ? -1 : port.color(0).b;
+      if (round == 1) {
+        EXPECT_EQ(seen, before[static_cast<std::size_t>(k)]) << "lamps keep their faults";
+        continue;
+      }
+      if (seen < 0) {
+        ++dead;
+        continue;
+      }
+      EXPECT_NEAR(port.color(0).r, seen / 2.0, 0.76);  // one factor for all colours
+      ++lit;
+      sum += seen / 150.0;
+      squares += (seen / 150.0 - 1.0) * (seen / 150.0 - 1.0);
+    }
+  }
+  const double n = kPairs * kPairs;
+  EXPECT_NEAR(dead / n, 0.2, 4.0 * std::sqrt(0.2 * 0.8 / n));
+  EXPECT_NEAR(sum / lit, 1.0, 4.0 * 0.1 / std::sqrt(lit));
+  EXPECT_NEAR(std::sqrt(squares / lit), 0.1, 4.0 * 0.1 / std::sqrt(2.0 * lit));
+}
+
 TEST(Cameras, SeeTheSameWithAnyNumberOfThreads) {
   const auto seen = [](std::int64_t threads) {
     Scene scene = camera_scene(10.0);
