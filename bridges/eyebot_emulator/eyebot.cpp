@@ -126,7 +126,7 @@ void Eyebot::restart(std::int32_t session, TimeNs at) {
   text_.clear();
   state_seq_ = answered_seq_ = -1;
   answering_session_ = 0;
-  told_hub_ = 0;
+  hubs_.clear();
   loops_ = flooded_ = 0;
   booted_at_ = next_loop_ = at + options_.boot_ns;
   command_ = {};
@@ -352,15 +352,17 @@ void Eyebot::hear(const Command& command, std::size_t channel, TimeNs at) {
   tell_changes(at);
 }
 
+// Every hub of the network is heard, the one in control matters.
 void Eyebot::hear_hub(const Command& command, TimeNs at) {
+  constexpr std::size_t kMostHubs = 64;
   const HubHeartbeat& hub = std::get<HubHeartbeat>(command.body);
   if (hub.major != kProtocolMajor) return damaged("heartbeat", "protocol " + std::to_string(hub.major), at);
-  if (!senders_.hear(command.header, kHubHeartbeat)) return;
-  if (told_hub_ != command.header.session) {
-    told_hub_ = command.header.session;
-    tell(at, "heartbeat", {{"name", hub.name}, {"session", command.header.session}});
+  const std::int32_t session = command.header.session;
+  if (hubs_.size() < kMostHubs && hubs_.insert(session).second) {
+    tell(at, "heartbeat", {{"name", hub.name}, {"session", session}});
   }
-  supervisor_.heartbeat(command.header.session, at);
+  if (session != supervisor_.controller() || !senders_.hear(command.header, kHubHeartbeat)) return;
+  supervisor_.heartbeat(session, at);
 }
 
 // Every order is carried out once and answered as often as it is heard.

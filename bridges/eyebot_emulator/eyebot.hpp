@@ -1,7 +1,7 @@
 // An eye-bot as its LCM channels show it: messages and times in, messages and times out.
 #pragma once
 #include <map>
-#include <random>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -147,6 +147,7 @@ class Eyebot {
   std::map<std::string, Traffic, std::less<>> traffic_;
   std::map<std::string, Damage, std::less<>> damage_;
   std::vector<Datagram> outbox_;
+  std::set<std::int32_t> hubs_;  // sessions that were told of
   Header last_obeyed_{};
   std::optional<hal::TimeNs> last_obeyed_at_{};
   std::int32_t rejected_ = 0;
@@ -160,7 +161,6 @@ class Eyebot {
   Mode told_mode_ = Mode::Off;
   Failsafe told_failsafe_ = Failsafe::None;
   std::int32_t told_controller_ = 0;
-  std::int32_t told_hub_ = 0;
   bool told_armed_ = false;
 };
 

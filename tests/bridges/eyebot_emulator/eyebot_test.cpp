@@ -225,6 +225,19 @@ TEST(Orders, ThatCameTooLateAreStale) {
   EXPECT_EQ(bench.mode(), Mode::Idle);
 }
 
+TEST(Orders, AreRememberedAmongManyHubs) {
+  Bench bench;
+  const Bytes arm = hand_written::mode(bench.head(kHub), 1);
+  EXPECT_EQ(bench.send_order(arm), 0);
+  EXPECT_EQ(bench.order(Action::Disarm), 0);
+  for (std::int32_t hub = 1; hub <= 30; ++hub) bench.beat(1000 + hub);
+  EXPECT_EQ(bench.send_order(arm), 0) << "as it was answered";
+  EXPECT_FALSE(bench.robot.supervisor().armed()) << "and not done again";
+  EXPECT_EQ(bench.logged(R"("event":"heartbeat")"), 30) << "each hub is told once";
+  for (std::int32_t hub = 1; hub <= 30; ++hub) bench.beat(1000 + hub);
+  EXPECT_EQ(bench.logged(R"("event":"heartbeat")"), 30);
+}
+
 TEST(Orders, OfUnknownKindsAreUnsupported) {
   Bench bench;
   EXPECT_EQ(bench.send_order(hand_written::mode(bench.head(kHub), 42)), 5);
