@@ -1,0 +1,215 @@
+#include "bridges/eyebot/bridge.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <random>
+
+#include "hal/check.hpp"
+
+namespace tandem::bridges::eyebot {
+namespace {
+
+using hal::TimeNs;
+
+constexpr TimeNs kLongestWait = 20 * hal::kNsPerMs;  // then deadlines and the end are looked at
+constexpr TimeNs kOpenAgain = hal::kNsPerSecond;
+constexpr TimeNs kMute = 3 * hal::kNsPerSecond;  // fifteen of our own heartbeats
+
+BridgeSettings with_session(BridgeSettings settings) {
+  while (settings.driver.session == 0) settings.driver.session = static_cast<std::int32_t>(std::random_device{}());
+  return settings;
+}
+
+}  // namespace
+
+EyebotBridge::EyebotBridge(BridgeSettings settings, LcmOpener opener, hal::Log log)
+    : settings_(with_session(std::move(settings))),
+      opener_(std::move(opener)),
+      mail_(std::make_shared<Mail>()),
+      driver_(settings_.driver, mail_->inbox, *this, std::move(log)) {}
+
+EyebotBridge::~EyebotBridge() {
+  shut_down();
+}
+
+void EyebotBridge::start() {
+  TANDEM_CHECK(!thread_.joinable() && !ending_, "a bridge is started once");
+  thread_ = std::thread([this] { run(); });
+}
+
+void EyebotBridge::shut_down() {
+  ending_ = true;
+  mail_->inbox.wake();
+  if (thread_.joinable()) thread_.join();
+  const std::lock_guard lock(mutex_);
+  changed_.notify_all();
+}
+
+bool EyebotBridge::publish(const std::string& channel, std::span<const std::byte> data) noexcept {
+  return link_ && link_->publish(channel, data);
+}
+
+// --- the thread ---
+
+void EyebotBridge::run() {
+  while (!ending_) {
+    keep_link();
+    TimeNs wait = 0;
+    {
+      const std::lock_guard lock(mutex_);
+      const TimeNs now = lcm_bus::monotonic_ns();
+      const RobotState before = driver_.state();
+      driver_.pump(now);
+      if (driver_.state() != before) changed_.notify_all();
+      wait = std::clamp<TimeNs>(driver_.next_deadline() - now, 0, kLongestWait);
+    }
+    mail_->inbox.wait(wait);
+  }
+  say_farewell();
+}
+
+/// Opening may take seconds: it is done without the lock, so that no loop waits for it.
+void EyebotBridge::keep_link() {
+  std::shared_ptr<lcm_bus::LcmLink> dead;  // ends after the lock
+  {
+    const std::lock_guard lock(mutex_);
+    const TimeNs now = lcm_bus::monotonic_ns();
+    const bool speaks = !settings_.driver.observe;
+    const TimeNs heard_ns = std::max(opened_ns_, mail_->echo_ns.load(std::memory_order_relaxed));
+    if (link_ && speaks && now - heard_ns > kMute) {
+      link_trouble_ = "what is said at '" + link_->url() + "' does not come back: the network is gone";
+      dead = std::move(link_);
+    }
+    if (link_ || (tried_ns_ != 0 && now - tried_ns_ < kOpenAgain)) return;
+    tried_ns_ = now;
+  }
+  auto opened = open();
+  const std::lock_guard lock(mutex_);
+  if (!opened.ok()) {
+    link_trouble_ = opened.error().message;
+    changed_.notify_all();
+    return;
+  }
+  link_ = std::move(opened).value();
+  link_trouble_.clear();
+  opened_ns_ = lcm_bus::monotonic_ns();
+  ++links_opened_;
+}
+
+hal::Result<std::shared_ptr<lcm_bus::LcmLink>> EyebotBridge::open() {
+  auto opened = opener_();
+  if (!opened.ok()) return opened;
+  lcm_bus::LcmLink& link = *opened.value();
+  const DriverSettings& driver = driver_.settings();
+  const auto deliver = [mail = mail_, name = driver.name](const lcm_bus::LcmMessage& m) {
+    if (const auto topic = topic_of(name, m.channel)) mail->inbox.deliver(*topic, m.data, m.received_ns);
+  };
+  const auto echo = [mail = mail_](const lcm_bus::LcmMessage& m) {
+    mail->echo_ns.store(m.received_ns, std::memory_order_relaxed);
+  };
+  hal::Status ready = link.subscribe("eyebot/" + driver.name + "/[a-z_]+", deliver);
+  if (ready.ok()) ready = link.subscribe(channel_of(driver.name, driver.hub, Told::Heartbeat), echo);
+  if (ready.ok()) ready = link.start();
+  if (!ready.ok()) return ready.error();
+  return opened;
+}
+
+void EyebotBridge::say_farewell() {
+  Farewell farewell(settings_.farewell);
+  for (bool done = false; !done;) {
+    {
+      const std::lock_guard lock(mutex_);
+      done = link_ == nullptr || farewell.step(driver_, lcm_bus::monotonic_ns());
+    }
+    if (!done) mail_->inbox.wait(kLongestWait);
+  }
+}
+
+// --- the loop ---
+
+hal::Status EyebotBridge::wait_active(TimeNs timeout_ns) {
+  std::unique_lock lock(mutex_);
+  const auto active = [this] { return ending_ || driver_.state() == RobotState::Active; };
+  if (changed_.wait_for(lock, std::chrono::nanoseconds(timeout_ns), active) && !ending_) return {};
+  const std::string who = "eye-bot '" + std::string(driver_.robot().id()) + "' is not there: ";
+  if (!link_trouble_.empty()) return hal::Error{who + link_trouble_};
+  return hal::Error{who + driver_.trouble() + "; is it switched on, in the same network, and called so?"};
+}
+
+void EyebotBridge::latch(hal::Tick tick, TimeNs now) noexcept {
+  const std::lock_guard lock(mutex_);
+  driver_.pump(now);
+  driver_.latch(tick, now);
+}
+
+void EyebotBridge::commit(TimeNs now) noexcept {
+  const std::lock_guard lock(mutex_);
+  driver_.commit(now);
+}
+
+void EyebotBridge::fault(TimeNs now, std::string_view why) {
+  const std::lock_guard lock(mutex_);
+  driver_.fault(now, why);
+}
+
+void EyebotBridge::stop(TimeNs now) noexcept {
+  const std::lock_guard lock(mutex_);
+  driver_.stop(now);
+}
+
+void EyebotBridge::land(TimeNs now) noexcept {
+  const std::lock_guard lock(mutex_);
+  driver_.land(now);
+}
+
+void EyebotBridge::resume() noexcept {
+  const std::lock_guard lock(mutex_);
+  driver_.resume();
+}
+
+RobotState EyebotBridge::state() const noexcept {
+  const std::lock_guard lock(mutex_);
+  return driver_.state();
+}
+
+bool EyebotBridge::at_rest() const noexcept {
+  const std::lock_guard lock(mutex_);
+  return driver_.at_rest();
+}
+
+DriverStatistics EyebotBridge::statistics() const noexcept {
+  const std::lock_guard lock(mutex_);
+  return driver_.statistics();
+}
+
+BridgeStatus EyebotBridge::status() const {
+  const std::lock_guard lock(mutex_);
+  BridgeStatus status;
+  status.state = driver_.state();
+  status.trouble = link_trouble_.empty() ? driver_.trouble() : link_trouble_;
+  status.link_trouble = link_trouble_;
+  status.link = link_ ? "lcm:" + link_->url() : "";
+  status.stopped = driver_.stopped();
+  status.at_rest = driver_.at_rest();
+  status.landed = driver_.landed();
+  status.flight = driver_.status();
+  status.name = driver_.settings().name;
+  status.session = driver_.liveness().session();
+  status.restarts = driver_.liveness().restarts();
+  status.other_senders = driver_.liveness().others();
+  status.controlled = driver_.controlled();
+  status.clock_jumps = driver_.clock().jumps();
+  status.driver = driver_.statistics();
+  status.orders = driver_.orders().statistics();
+  status.messages = mail_->inbox.statistics();
+  for (std::size_t i = 0; i < kTopics; ++i) status.topics[i] = mail_->inbox.statistics(static_cast<Topic>(i));
+  status.links_opened = links_opened_;
+  return status;
+}
+
+LastWords EyebotBridge::last_words(const std::string& url) const {
+  const DriverSettings& driver = driver_.settings();  // does not change
+  return {url, driver.name, driver.hub, driver.session, settings_.farewell.land};
+}
+
+}  // namespace tandem::bridges::eyebot

@@ -1,0 +1,129 @@
+// A real eye-bot behind the control interface, with its own I/O thread.
+//
+//   EyebotBridge bridge(settings, opener, log);
+//   controller = type.construct(memory, bridge.robot(), params);   // takes its ports: they decide what is told
+//   bridge.start();
+//   if (auto ready = bridge.wait_active(5 s); !ready) …
+//   each tick:  bridge.latch(tick, now);  controller step;  bridge.commit(now);   (bridge.fault(now, what) if it threw)
+//   ~EyebotBridge: the robot hovers, then lands.
+//
+// The thread takes in what arrives, beats the hub's heart, says again what is not answered, opens the link anew when
+// our own heartbeat does not come back to us, and has the robot hover when the loop stops committing. When this process
+// is killed its guardian (guardian.hpp) has the robot hover and land; where nobody is left, the robot does so itself.
+#pragma once
+#include <atomic>
+#include <condition_variable>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <thread>
+
+#include "bridges/eyebot/driver.hpp"
+#include "bridges/eyebot/farewell.hpp"
+#include "bridges/lcm/lcm_link.hpp"
+
+namespace tandem::bridges::eyebot {
+
+/// Opens the LCM link, or shares one that is open already.
+using LcmOpener = std::function<hal::Result<std::shared_ptr<lcm_bus::LcmLink>>()>;
+
+struct BridgeSettings {
+  DriverSettings driver;  ///< session 0: one is drawn
+  FarewellSettings farewell = {};
+};
+
+/// A copy of everything that can be told about the bridge.
+struct BridgeStatus {
+  RobotState state = RobotState::Absent;
+  std::string trouble;       ///< why it is not active, or what is amiss; `link_trouble` when there is some
+  std::string link_trouble;  ///< why there is no link
+  std::string link;
+  bool stopped = false;  ///< by `stop` or `fault`
+  bool at_rest = false;  ///< and the robot has confirmed it
+  bool landed = false;
+  FlightStatus flight;
+  std::string name;
+  std::int32_t session = 0;  ///< the robot's
+  std::uint64_t restarts = 0, other_senders = 0;
+  bool controlled = false;
+  std::uint64_t clock_jumps = 0;
+  DriverStatistics driver;
+  OrderStatistics orders;
+  TopicStatistics messages;
+  std::array<TopicStatistics, kTopics> topics;
+  std::uint64_t links_opened = 0;
+};
+
+/// For a guardian: all that it takes to go on in the hub's name.
+struct LastWords {
+  std::string url;
+  std::string name;
+  std::string hub;
+  std::int32_t session = 0;
+  bool land = true;
+};
+
+/// Owns the thread. `robot()`, `latch`, `commit`, `fault`, `stop`, `land`, `resume` belong to the loop's thread; all
+/// else may be called from any.
+class EyebotBridge final : private Outbox {
+ public:
+  /// `opener` is called by the bridge's thread, and again whenever the link is dead. Times given to the bridge are
+  /// CLOCK_MONOTONIC.
+  EyebotBridge(BridgeSettings settings, LcmOpener opener, hal::Log log = {});
+  /// Has the robot hover and land, as the settings say, and waits as long as they say.
+  ~EyebotBridge() override;
+  EyebotBridge(const EyebotBridge&) = delete;
+  EyebotBridge& operator=(const EyebotBridge&) = delete;
+
+  EyebotRobot& robot() noexcept { return driver_.robot(); }
+
+  /// Starts the thread. Once, after the ports were taken.
+  void start();
+  /// Errors: not active within `timeout_ns`; says what is known (no link, nothing heard, another version …).
+  hal::Status wait_active(hal::TimeNs timeout_ns);
+  /// Ends as the destructor does.
+  void shut_down();
+
+  void latch(hal::Tick tick, hal::TimeNs now) noexcept;
+  void commit(hal::TimeNs now) noexcept;
+  void fault(hal::TimeNs now, std::string_view why);
+  void stop(hal::TimeNs now) noexcept;
+  void land(hal::TimeNs now) noexcept;
+  void resume() noexcept;
+
+  // What a loop asks in every tick; `status` copies much more.
+  RobotState state() const noexcept;
+  bool at_rest() const noexcept;
+  DriverStatistics statistics() const noexcept;
+  BridgeStatus status() const;
+  /// `url`: of the link, as whoever opens it after us must write it.
+  LastWords last_words(const std::string& url) const;
+
+ private:
+  /// What handlers of the link write to; theirs as long as the link lives.
+  struct Mail {
+    Inbox inbox;
+    std::atomic<hal::TimeNs> echo_ns{0};  // our own heartbeat came back
+  };
+
+  bool publish(const std::string& channel, std::span<const std::byte> data) noexcept override;
+  void run();
+  void keep_link();
+  hal::Result<std::shared_ptr<lcm_bus::LcmLink>> open();
+  void say_farewell();
+
+  BridgeSettings settings_;
+  LcmOpener opener_;
+  std::shared_ptr<Mail> mail_;
+  mutable std::mutex mutex_;  // guards everything below but the ports
+  std::condition_variable changed_;
+  std::shared_ptr<lcm_bus::LcmLink> link_;
+  std::string link_trouble_;
+  hal::TimeNs opened_ns_ = 0, tried_ns_ = 0;
+  std::uint64_t links_opened_ = 0;
+  EyebotDriver driver_;
+  std::atomic<bool> ending_{false};
+  std::thread thread_;
+};
+
+}  // namespace tandem::bridges::eyebot

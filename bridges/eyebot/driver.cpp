@@ -1,0 +1,568 @@
+#include "bridges/eyebot/driver.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <ctime>
+
+#include "bridges/eyebot/readings.hpp"
+#include "bridges/eyebot_messages/codec.hpp"
+#include "hal/check.hpp"
+
+namespace tandem::bridges::eyebot {
+namespace {
+
+namespace messages = eyebot_messages;
+namespace spec = hal::eyebot;
+using hal::TimeNs;
+
+constexpr TimeNs kBeat = 200 * hal::kNsPerMs;
+constexpr TimeNs kVelocityAgain = 100 * hal::kNsPerMs;
+constexpr std::int32_t kVelocityHolds_ms = 500;
+constexpr TimeNs kPositionAgain = 500 * hal::kNsPerMs;
+constexpr std::int32_t kPositionHolds_ms = 1600;  // three times as long
+constexpr TimeNs kDeviceAgain = hal::kNsPerSecond;
+constexpr TimeNs kStatusFresh = 600 * hal::kNsPerMs;  // ten a second are promised
+constexpr TimeNs kReleasedAfter = 10 * hal::kNsPerSecond;
+constexpr TimeNs kComplainAgain = 10 * hal::kNsPerSecond;
+constexpr std::size_t kPayloadAt = messages::kHeaderEnd;
+
+std::string id_of_session(std::int32_t session) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "tandem-%08x", static_cast<unsigned>(session));
+  return text.data();
+}
+
+void put_big_endian(std::span<std::byte> bytes, std::uint64_t n) noexcept {
+  for (std::size_t i = bytes.size(); i-- > 0; n >>= 8) bytes[i] = static_cast<std::byte>(n & 0xFF);
+}
+
+}  // namespace
+
+hal::TimeNs unix_ns() noexcept {
+  timespec t{};
+  ::clock_gettime(CLOCK_REALTIME, &t);
+  return static_cast<TimeNs>(t.tv_sec) * hal::kNsPerSecond + t.tv_nsec;
+}
+
+const char* state_name(RobotState state) noexcept {
+  static constexpr std::array<const char*, 5> kNames = {"absent", "ready", "active", "suspect", "lost"};
+  return kNames[static_cast<std::size_t>(state)];
+}
+
+EyebotDriver::EyebotDriver(DriverSettings settings, Inbox& inbox, Outbox& outbox, hal::Log log)
+    : settings_(std::move(settings)), inbox_(inbox), outbox_(outbox), log_(std::move(log)), robot_(settings_.robot) {
+  if (settings_.name.empty()) settings_.name = settings_.robot.id;
+  if (settings_.hub.empty()) settings_.hub = id_of_session(settings_.session);
+  for (std::size_t i = 0; i < kTold; ++i) {
+    voices_[i].channel = channel_of(settings_.name, settings_.hub, static_cast<Told>(i));
+    voices_[i].seq = settings_.first_seq;
+  }
+  orders_.begin_with(settings_.first_seq);
+  controlled_ = settings_.controlled;
+  own_heartbeat_.name = settings_.hub;
+  own_heartbeat_.role = messages::Heartbeat::ROLE_HUB;
+  own_heartbeat_.proto_major = 1;
+  own_heartbeat_.period_ms = static_cast<std::int32_t>(kBeat / hal::kNsPerMs);
+  radio_.data.reserve(hal::kRabPayloadMax);
+}
+
+// --- what it says ---
+
+template <class Message, class Use>
+void EyebotDriver::take_in(Topic topic, Newest<Message>& newest, TimeNs now, Use use) {
+  while (inbox_.take(topic, letter_)) {
+    const messages::Flaw flaw = messages::decode(letter_.data, newest.next);
+    if (flaw != messages::Flaw::None) {
+      complain(topic, messages::flaw_name(flaw), now);
+      continue;
+    }
+    if (!accept(newest.next.hdr, letter_.received_ns)) continue;
+    std::swap(newest.message, newest.next);
+    taken(topic) = clock_.local(newest.message.hdr.utime, letter_.received_ns);
+    use();
+  }
+}
+
+void EyebotDriver::take_all(TimeNs now) {
+  const auto nothing_more = [] {};
+  Newests& n = newests_;
+  take_in(Topic::Heartbeat, n.heartbeat, now,
+          [&] { liveness_.note_heartbeat(n.heartbeat.message.period_ms, letter_.received_ns); });
+  take_in(Topic::Ack, n.ack, now, [&] { use_ack(letter_.received_ns); });
+  take_in(Topic::Status, n.status, now, [&] { use_status(letter_.received_ns); });
+  take_in(Topic::State, n.state, now, [&] {
+    if (n.state.message.pos_valid != 0) place_taken_ns_ = taken(Topic::State);
+  });
+  take_in(Topic::Altitude, n.altitude, now, nothing_more);
+  take_in(Topic::Battery, n.battery, now, nothing_more);
+  take_in(Topic::Scan, n.scan, now, nothing_more);
+  take_in(Topic::Rab, n.rab, now, [&] { add(n.rab.message, heard_); });
+  take_in(Topic::Prox, n.prox, now, nothing_more);
+  take_in(Topic::Light, n.light, now, nothing_more);
+  take_in(Topic::PanTilt, n.pan_tilt, now, nothing_more);
+  take_in(Topic::Blobs, n.blobs, now, nothing_more);
+}
+
+bool EyebotDriver::accept(const messages::Header& header, TimeNs received_ns) {
+  const Sender sender = liveness_.note(header.session, received_ns);
+  if (sender == Sender::Other) return false;
+  if (sender == Sender::Restarted) begin_anew();
+  clock_.note(header.utime, received_ns);
+  return true;
+}
+
+void EyebotDriver::begin_anew() {
+  log_.warning("eye-bot '" + settings_.robot.id + "': it was started anew, or another one has its name");
+  controlled_ = refused_ = false;
+  status_.known = false;
+  // It stands on the ground, if all is well: it must be told again to take off.
+  pending_ = pending_ && order_ == hal::FlightOrder::Land;
+  orders_.withdraw();
+  orders_.forget();
+  end_flying();
+}
+
+void EyebotDriver::complain(Topic topic, const char* flaw, TimeNs now) {
+  ++statistics_.not_understood;
+  if (complained_ns_ != 0 && now - complained_ns_ < kComplainAgain) return;
+  complained_ns_ = now;
+  log_.warning("eye-bot '" + settings_.robot.id + "': a message on " + channel_of(settings_.name, topic) +
+               " is damaged: " + flaw);
+}
+
+void EyebotDriver::use_status(TimeNs received_ns) noexcept {
+  const messages::Status& m = newests_.status.message;
+  // It refuses to go where it is told: somebody may have taken it over while we could not hear it.
+  const bool refuses = status_.known && m.cmd_rejected > status_.rejected && mode_of(m.mode) == Mode::Hover;
+  if (refuses && setpoint_ != Told::Heartbeat) controlled_ = false;
+  status_.known = true;
+  status_.mode = mode_of(m.mode);
+  status_.armed = m.armed != 0;
+  status_.magnet_on = m.magnet_on != 0;
+  status_.failsafe = failsafe_of(m.failsafe);
+  status_.rejected = m.cmd_rejected;
+  status_.received_ns = received_ns;
+}
+
+void EyebotDriver::use_ack(TimeNs received_ns) {
+  const messages::Ack& m = newests_.ack.message;
+  if (m.channel != voice(Told::Mode).channel) return;
+  const auto answered = orders_.take(m, settings_.session, received_ns);
+  if (!answered) return;
+  clock_.note_answer(m.hdr.utime, orders_.answered_issue_ns(), received_ns);
+  const Outcome outcome = orders_.last(*answered).outcome;
+  if (outcome == Outcome::Done) {
+    if (*answered == Action::Arm) {
+      controlled_ = true;
+      refused_ = false;
+    }
+    if (*answered == Action::Disarm) controlled_ = false;
+    return;
+  }
+  if (outcome == Outcome::RejectedSource) {
+    controlled_ = false;
+    refused_ = true;
+    ++statistics_.refused_control;
+  }
+  // One that is armed, and listened to us last, need not be armed again.
+  const bool ours = newests_.status.message.cmd_session == settings_.session && status_.armed;
+  if (*answered == Action::Arm && outcome == Outcome::RejectedMode && ours) controlled_ = true;
+  log_.warning("eye-bot '" + settings_.robot.id + "' did not " + action_name(*answered) + ": " + outcome_name(outcome) +
+               (m.text.empty() ? "" : " (" + m.text + ")"));
+}
+
+// --- readings ---
+
+template <class Port, class Message>
+void EyebotDriver::fill(Topic topic, const Newest<Message>& newest, TimeNs now) noexcept {
+  if (!robot_.uses<Port>() || taken(topic) == 0) return;
+  auto& port = robot_.port<Port>();
+  read(newest.message, port);
+  robot_.stamp(port, taken(topic), topic_period_ns(topic), now);
+}
+
+void EyebotDriver::fill_flight(TimeNs now) noexcept {
+  const messages::State& state = newests_.state.message;
+  const bool placed = taken(Topic::State) != 0 && state.pos_valid != 0;
+  if (robot_.uses<hal::Positioning>() && place_taken_ns_ != 0) {
+    auto& port = robot_.port<hal::Positioning>();
+    if (placed) read(state, settings_.world, port);
+    robot_.stamp(port, place_taken_ns_, topic_period_ns(Topic::State), now);
+  }
+  if (robot_.uses<hal::FlightState>() && taken(Topic::Status) != 0) {
+    auto& port = robot_.port<hal::FlightState>();
+    read(newests_.status.message, port);
+    if (placed) read(state, settings_.world, port);
+    robot_.stamp(port, taken(Topic::Status), topic_period_ns(Topic::Status), now);
+  }
+}
+
+void EyebotDriver::latch(hal::Tick tick, TimeNs now) noexcept {
+  const Newests& n = newests_;
+  fill_flight(now);
+  fill<hal::Gyroscope>(Topic::State, n.state, now);
+  fill<hal::Altimeter>(Topic::Altitude, n.altitude, now);
+  fill<hal::Battery>(Topic::Battery, n.battery, now);
+  fill<hal::DistanceScanner>(Topic::Scan, n.scan, now);
+  fill<hal::Proximity>(Topic::Prox, n.prox, now);
+  fill<hal::Light>(Topic::Light, n.light, now);
+  fill<hal::PanTiltEncoder>(Topic::PanTilt, n.pan_tilt, now);
+  fill<hal::PerspectiveCamera>(Topic::Blobs, n.blobs, now);
+  if (robot_.uses<hal::RangeAndBearing>() && taken(Topic::Rab) != 0) {
+    auto& port = robot_.port<hal::RangeAndBearing>();
+    port = heard_;
+    robot_.stamp(port, taken(Topic::Rab), topic_period_ns(Topic::Rab), now);
+  }
+  heard_ = {};
+  robot_.tell_time(tick);
+}
+
+// --- what it does ---
+
+RobotState EyebotDriver::judge(TimeNs now) const noexcept {
+  const Pulse pulse = liveness_.pulse(now);
+  if (pulse == Pulse::Never) return RobotState::Absent;
+  if (pulse == Pulse::Lost) return was_active_ ? RobotState::Lost : RobotState::Absent;
+  const bool well = pulse == Pulse::Beating && !liveness_.twins(now) && status_.known &&
+                    now - status_.received_ns <= kStatusFresh && newests_.heartbeat.message.proto_major == 1;
+  if (well) return RobotState::Active;
+  return was_active_ ? RobotState::Suspect : RobotState::Ready;
+}
+
+void EyebotDriver::update_state(TimeNs now) {
+  // So long without its hub, a robot lets another one take it over.
+  if (state_ == RobotState::Lost && now - liveness_.heartbeat_ns() > kReleasedAfter) controlled_ = false;
+  const RobotState next = judge(now);
+  if (next == state_) return;
+  const RobotState before = state_;
+  state_ = next;
+  const std::string who = "eye-bot '" + settings_.robot.id + "': ";
+  if (next == RobotState::Active) {
+    statistics_.recovered += was_active_ ? 1 : 0;
+    interrupted_ = interrupted_ || was_active_;
+    was_active_ = true;
+    log_.info(who + "active");
+    return;
+  }
+  if (next == RobotState::Lost) ++statistics_.lost;
+  if (before == RobotState::Active || next == RobotState::Lost) {
+    log_.warning(who + state_name(next) + ": " + trouble());
+  }
+}
+
+bool EyebotDriver::overdue(TimeNs now) const noexcept {
+  return !committed_ || now - last_commit_ns_ > settings_.command_timeout_ns;
+}
+
+Goal EyebotDriver::goal(TimeNs now) const noexcept {
+  if (goal_ != Goal::Obey) return goal_;
+  return state_ != RobotState::Active || overdue(now) ? Goal::Hover : Goal::Obey;
+}
+
+/// What the controller wants is noted in `commit` alone: it may write its ports at any other time.
+void EyebotDriver::note_order() noexcept {
+  steers_ =
+      robot_.uses<hal::FlightTask>() || robot_.uses<hal::QuadrotorPosition>() || robot_.uses<hal::QuadrotorSpeed>();
+  if (!robot_.uses<hal::FlightTask>()) return;
+  hal::FlightTask task = robot_.port<hal::FlightTask>();
+  count(hal::filter(task, spec::kMaxSpeed_m_s));
+  const hal::FlightOrder order = task.order;
+  order_m_s_ = static_cast<float>(task.speed_m_s);
+  if (order == order_) return;
+  order_ = order;
+  pending_ = order != hal::FlightOrder::Fly;
+  orders_.forget();
+}
+
+void EyebotDriver::guide(TimeNs now) noexcept {
+  may_fly_ = false;
+  if (settings_.observe || !status_.known) return;
+  const Goal wanted = goal(now);
+  const Situation situation = {status_.mode, status_.armed, status_.failsafe, controlled_, wanted, order_, pending_};
+  Step step = next_step(situation);
+  if (wanted == Goal::Obey && step.done) pending_ = false;
+  if (goal_ != Goal::Obey) {
+    reached_ = !controlled_ || (step.done && status_.received_ns > goal_since_ns_);
+  } else if (wanted == Goal::Obey && !steers_) {
+    step = {};
+  }
+  // A robot may want its fail-safe cleared before it is armed, or armed before it lets that be cleared.
+  const bool refused_arming = orders_.last(Action::Arm).outcome == Outcome::RejectedMode &&
+                              orders_.last(Action::Arm).at_ns >= orders_.last(Action::ClearFailsafe).at_ns;
+  if (step.action == Action::Arm && status_.failsafe == hal::FlightFailsafe::LinkLost && refused_arming) {
+    step.action = Action::ClearFailsafe;
+  }
+  if (cut_) step = {status_.mode == Mode::Stopped ? Action::Nop : Action::Stop, false, false};
+  const bool takes_speed =
+      step.action == Action::TakeOff || step.action == Action::Land || step.action == Action::Attach;
+  if (step.action == Action::Nop) {
+    orders_.withdraw();
+  } else {
+    orders_.want(step.action, takes_speed && goal_ == Goal::Obey ? order_m_s_ : 0.0F, now);
+  }
+  may_fly_ = step.fly;
+}
+
+void EyebotDriver::end_flying() noexcept {
+  interrupted_ = interrupted_ || setpoint_ != Told::Heartbeat;
+  setpoint_ = Told::Heartbeat;
+}
+
+void EyebotDriver::set_goal(Goal goal, TimeNs now) noexcept {
+  if (goal_ == goal) return;
+  goal_ = goal;
+  goal_since_ns_ = now;
+  reached_ = false;
+  orders_.forget();
+}
+
+void EyebotDriver::stop(TimeNs now) noexcept {
+  if (goal_ == Goal::Obey) set_goal(Goal::Hover, now);
+  pump(now);
+}
+
+void EyebotDriver::land(TimeNs now) noexcept {
+  set_goal(Goal::Land, now);
+  pump(now);
+}
+
+void EyebotDriver::resume() noexcept {
+  set_goal(Goal::Obey, 0);
+}
+
+void EyebotDriver::cut_motors(TimeNs now) noexcept {
+  cut_ = true;
+  pump(now);
+}
+
+void EyebotDriver::fault(TimeNs now, std::string_view why) {
+  ++statistics_.faults;
+  robot_.make_safe();
+  stop(now);
+  log_.error("eye-bot '" + settings_.robot.id + "': hovers, its controller failed: " + std::string(why));
+}
+
+// --- what it is told ---
+
+void EyebotDriver::send(Voice& voice, TimeNs now) noexcept {
+  put_big_endian(std::span(voice.bytes).subspan(8, 8), static_cast<std::uint64_t>(settings_.unix_clock() / 1000));
+  put_big_endian(std::span(voice.bytes).subspan(16, 4), static_cast<std::uint32_t>(voice.seq));
+  put_big_endian(std::span(voice.bytes).subspan(20, 4), static_cast<std::uint32_t>(settings_.session));
+  voice.seq = static_cast<std::int32_t>(static_cast<std::uint32_t>(voice.seq) + 1U);
+  voice.said_ns = now;
+  const bool sent = outbox_.publish(voice.channel, std::span(voice.bytes).first(voice.size));
+  ++(sent ? statistics_.said : statistics_.unsent);
+}
+
+/// Says it when it differs from what was said last, or that was `again_ns` ago.
+template <class Message>
+void EyebotDriver::say(Told told, Message& message, TimeNs again_ns, TimeNs now) noexcept {
+  Voice& v = voice(told);
+  std::array<std::byte, sizeof v.bytes> bytes{};
+  const auto written = messages::encode(message, bytes);
+  TANDEM_CHECK(!written.empty(), "a command fits its buffer");
+  const bool same =
+      written.size() == v.size && std::equal(written.begin() + kPayloadAt, written.end(), v.bytes.begin() + kPayloadAt);
+  if (same && now - v.said_ns < again_ns) return;
+  std::copy(written.begin(), written.end(), v.bytes.begin());
+  v.size = written.size();
+  send(v, now);
+}
+
+void EyebotDriver::count(hal::FilterResult result) noexcept {
+  statistics_.clamped += result == hal::FilterResult::Clamped ? 1 : 0;
+  statistics_.not_finite += result == hal::FilterResult::NotFinite ? 1 : 0;
+}
+
+/// How much of its speed the robot may use: less than 1 for a while after an interruption.
+double EyebotDriver::share(TimeNs now) noexcept {
+  if (interrupted_) {
+    interrupted_ = false;
+    ramping_ = settings_.ramp_ns > 0;
+    ramp_start_ns_ = now;
+    ++statistics_.rearmed;
+  }
+  if (!ramping_) return 1.0;
+  const double done = static_cast<double>(now - ramp_start_ns_) / static_cast<double>(settings_.ramp_ns);
+  ramping_ = done < 1.0;
+  return ramping_ ? done : 1.0;
+}
+
+/// What the controller wrote stays as it is: it may write once and never again.
+void EyebotDriver::say_setpoint(TimeNs now) noexcept {
+  const double part = share(now);
+  hal::QuadrotorPosition position;
+  if (robot_.uses<hal::QuadrotorPosition>()) position = robot_.port<hal::QuadrotorPosition>();
+  count(hal::filter(position));
+  if (!position.hold) {
+    messages::CmdPosition m{};
+    write(position, settings_.world, m);
+    m.max_speed = static_cast<float>(std::max(part * spec::kMaxSpeed_m_s, 0.05));  // 0 would be the robot's own
+    m.timeout_ms = kPositionHolds_ms;
+    if (setpoint_ != Told::Position) voice(Told::Position).size = 0;
+    setpoint_ = Told::Position;
+    say(Told::Position, m, kPositionAgain, now);
+    return;
+  }
+  hal::QuadrotorSpeed speed;
+  if (robot_.uses<hal::QuadrotorSpeed>()) speed = robot_.port<hal::QuadrotorSpeed>();
+  count(hal::filter(speed, spec::kMaxSpeed_m_s, spec::kMaxTurn_rad_s));
+  if (part < 1.0) hal::filter(speed, part * spec::kMaxSpeed_m_s, part * spec::kMaxTurn_rad_s);
+  messages::CmdVelocity m{};
+  write(speed, settings_.world, m);
+  m.timeout_ms = kVelocityHolds_ms;
+  if (setpoint_ != Told::Velocity) voice(Told::Velocity).size = 0;
+  setpoint_ = Told::Velocity;
+  say(Told::Velocity, m, kVelocityAgain, now);
+}
+
+void EyebotDriver::say_devices(TimeNs now) noexcept {
+  const bool lower = robot_.uses<hal::RingLeds>(), upper = robot_.uses<hal::UpperRingLeds>();
+  const bool beacon = robot_.uses<hal::CameraLed>();
+  if (lower || upper || beacon) {
+    write(lower ? &robot_.port<hal::RingLeds>() : nullptr, upper ? &robot_.port<hal::UpperRingLeds>() : nullptr,
+          beacon ? &robot_.port<hal::CameraLed>() : nullptr, leds_);
+    say(Told::Leds, leds_, kDeviceAgain, now);
+  }
+  if (robot_.uses<hal::PanTiltDrive>()) {
+    hal::PanTiltDrive drive = robot_.port<hal::PanTiltDrive>();
+    count(hal::filter(drive, spec::kHeadMostTilt_rad));
+    messages::CmdPanTilt m{};
+    write(drive, m);
+    say(Told::PanTilt, m, kDeviceAgain, now);
+  }
+  if (robot_.uses<hal::ScannerDrive>()) {
+    hal::ScannerDrive drive = robot_.port<hal::ScannerDrive>();
+    count(hal::filter(drive, spec::kScannerTurn_rad_s));
+    messages::CmdScanner m{};
+    write(drive, m);
+    say(Told::Scanner, m, kDeviceAgain, now);
+  }
+  if (robot_.uses<hal::RangeAndBearingSend>()) {
+    write(robot_.port<hal::RangeAndBearingSend>(), radio_);
+    say(Told::Rab, radio_, kDeviceAgain, now);
+  }
+}
+
+void EyebotDriver::say_order(TimeNs now) noexcept {
+  const auto order = orders_.due(now);
+  if (!order) return;
+  messages::CmdMode m{};
+  m.action = static_cast<std::int8_t>(order->action);
+  m.param = order->param;
+  voice(Told::Mode).seq = order->seq;  // the same as often as it is said
+  say(Told::Mode, m, 0, now);
+}
+
+void EyebotDriver::say_heartbeat(TimeNs now) noexcept {
+  if (started_ns_ == 0) started_ns_ = now;
+  if (voice(Told::Heartbeat).size != 0 && now - voice(Told::Heartbeat).said_ns < kBeat) return;
+  own_heartbeat_.uptime_ms = (now - started_ns_) / hal::kNsPerMs;
+  say(Told::Heartbeat, own_heartbeat_, 0, now);
+}
+
+// --- when ---
+
+void EyebotDriver::commit(TimeNs now) noexcept {
+  ++statistics_.commits;
+  committed_ = true;
+  last_commit_ns_ = now;
+  note_order();
+  advance(now);
+  if (settings_.observe) return;
+  if (may_fly_) say_setpoint(now);
+  say_devices(now);
+}
+
+void EyebotDriver::pump(TimeNs now) noexcept {
+  advance(now);
+  if (setpoint_ == Told::Heartbeat) return;
+  Voice& v = voice(setpoint_);
+  if (now - v.said_ns >= (setpoint_ == Told::Velocity ? kVelocityAgain : kPositionAgain)) send(v, now);
+}
+
+void EyebotDriver::advance(TimeNs now) noexcept {
+  now_ns_ = now;
+  take_all(now);
+  update_state(now);
+  if (setpoint_ != Told::Heartbeat && goal_ == Goal::Obey) {
+    if (state_ != RobotState::Active) {
+      ++statistics_.link_stops;
+      end_flying();
+    } else if (overdue(now)) {
+      ++statistics_.watchdog_stops;
+      log_.warning("eye-bot '" + settings_.robot.id + "': hovers, no commands came for " +
+                   std::to_string((now - last_commit_ns_) / hal::kNsPerMs) + " ms");
+      end_flying();
+    }
+  }
+  guide(now);
+  if (settings_.observe) return;
+  if (!may_fly_) end_flying();
+  say_heartbeat(now);
+  say_order(now);
+}
+
+TimeNs EyebotDriver::next_deadline() const noexcept {
+  TimeNs deadline = voices_[static_cast<std::size_t>(Told::Heartbeat)].said_ns + kBeat;
+  deadline = std::min({deadline, orders_.next_deadline(), liveness_.next_change(now_ns_)});
+  if (setpoint_ != Told::Heartbeat) {
+    deadline = std::min(deadline, voices_[static_cast<std::size_t>(setpoint_)].said_ns + kVelocityAgain);
+    deadline = std::min(deadline, last_commit_ns_ + settings_.command_timeout_ns + 1);
+  }
+  return deadline;
+}
+
+std::int32_t EyebotDriver::last_words_seq() const noexcept {
+  return static_cast<std::int32_t>(static_cast<std::uint32_t>(orders_.next_seq()) + 1'000'000'000U);
+}
+
+// --- for people ---
+
+std::string EyebotDriver::missing_readings() const {
+  const auto row = [this]<class Port>(Topic topic) {
+    return robot_.uses<Port>() && taken(topic) == 0 ? " " + channel_of(settings_.name, topic) : std::string();
+  };
+  return row.operator()<hal::Positioning>(Topic::State) + row.operator()<hal::Altimeter>(Topic::Altitude) +
+         row.operator()<hal::Battery>(Topic::Battery) + row.operator()<hal::DistanceScanner>(Topic::Scan) +
+         row.operator()<hal::RangeAndBearing>(Topic::Rab) + row.operator()<hal::Proximity>(Topic::Prox) +
+         row.operator()<hal::Light>(Topic::Light) + row.operator()<hal::PanTiltEncoder>(Topic::PanTilt) +
+         row.operator()<hal::PerspectiveCamera>(Topic::Blobs);
+}
+
+/// The order that is wanted and was refused or not answered.
+std::string EyebotDriver::refused_order() const {
+  for (std::size_t i = 0; i < kActions; ++i) {
+    const auto action = static_cast<Action>(i);
+    const Outcome outcome = orders_.last(action).outcome;
+    if (outcome == Outcome::Never || outcome == Outcome::Done || orders_.saying() != action) continue;
+    return std::string("it did not ") + action_name(action) + ": " + outcome_name(outcome);
+  }
+  return {};
+}
+
+std::string EyebotDriver::trouble() const {
+  const std::string beat = channel_of(settings_.name, Topic::Heartbeat);
+  if (state_ == RobotState::Absent) return "no heartbeat is heard on " + beat;
+  if (state_ == RobotState::Lost) return "its heartbeat on " + beat + " is gone";
+  const auto& heartbeat = newests_.heartbeat.message;
+  if (heartbeat.proto_major != 1) {
+    return "it speaks version " + std::to_string(heartbeat.proto_major) + " of the messages, and we version 1";
+  }
+  if (state_ != RobotState::Active) {
+    if (liveness_.twins(now_ns_))
+      return "two robots are called '" + settings_.name + "'; give one of them another name";
+    if (!status_.known) return "it does not say its status on " + channel_of(settings_.name, Topic::Status);
+    return "its heartbeat or its status does not come in time";
+  }
+  if (refused_) return "another hub controls it";
+  if (status_.failsafe != hal::FlightFailsafe::None) return failsafe_name(status_.failsafe);
+  if (status_.mode == Mode::Stopped) return "its motors were cut in an emergency";
+  if (const std::string refused = refused_order(); !refused.empty()) return refused;
+  const std::string missing = missing_readings();
+  return missing.empty() ? "" : "it does not say anything on" + missing;
+}
+
+}  // namespace tandem::bridges::eyebot

@@ -1,0 +1,52 @@
+// The channels of one eye-bot. "eyebot/NAME/state" and so on, commands on "eyebot/NAME/cmd/…", a hub's heartbeat on
+// "hub/HUB/heartbeat".
+#pragma once
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "hal/time.hpp"
+
+namespace tandem::bridges::eyebot {
+
+/// What a robot says and is listened to.
+enum class Topic : std::uint8_t {
+  Heartbeat,
+  Status,
+  State,
+  Altitude,
+  Battery,
+  Scan,
+  Rab,
+  Prox,
+  Light,
+  PanTilt,
+  Blobs,
+  Ack
+};
+inline constexpr std::size_t kTopics = 12;
+
+/// What a robot is told.
+enum class Told : std::uint8_t { Heartbeat, Mode, Position, Velocity, Leds, PanTilt, Scanner, Rab };
+inline constexpr std::size_t kTold = 8;
+
+/// The last part of the topic's channel, such as "state".
+std::string_view topic_name(Topic topic) noexcept;
+/// What a robot promises: the longest time from one message to the next.
+hal::TimeNs topic_period_ns(Topic topic) noexcept;
+/// The number that stands before every message of this topic.
+std::uint64_t topic_fingerprint(Topic topic) noexcept;
+
+/// Whether a robot may be called so: 1 to 24 letters, digits, '_' and '-'.
+bool is_robot_name(std::string_view name) noexcept;
+
+std::string channel_of(std::string_view robot, Topic topic);
+/// `hub`: name of the hub, which only the heartbeat's channel needs.
+std::string channel_of(std::string_view robot, std::string_view hub, Told told);
+/// The topic of a channel of that robot; nothing for others.
+std::optional<Topic> topic_of(std::string_view robot, std::string_view channel) noexcept;
+
+}  // namespace tandem::bridges::eyebot
