@@ -62,6 +62,7 @@ hal::Result<std::unique_ptr<DrivenRobot>> make_driven_robot(const DrivenRobotReq
 /// The makers for each kind.
 hal::Result<std::unique_ptr<DrivenRobot>> make_driven_epuck(const DrivenRobotRequest& request, const hal::Log& log);
 hal::Result<std::unique_ptr<DrivenRobot>> make_driven_footbot(const DrivenRobotRequest& request, const hal::Log& log);
+hal::Result<std::unique_ptr<DrivenRobot>> make_driven_eyebot(const DrivenRobotRequest& request, const hal::Log& log);
 
 /// Names of the devices in a configuration.
 std::vector<std::string> device_names(const std::vector<core::DeviceChoice>& choices);

@@ -160,7 +160,8 @@ int main(int argc, char** argv) {
   CLI::App* inspect_command =
       app.add_subcommand("inspect", "Say which robot is on a link and what it reads. Moves nothing.");
   inspect_command
-      ->add_option("link", inspect_options.link, "e.g. serial:/dev/rfcomm0@115200, can:can0, tcp:ROBOT:33333")
+      ->add_option("link", inspect_options.link,
+                   "e.g. serial:/dev/rfcomm0@115200, can:can0, tcp:ROBOT:33333, lcm:udpm://239.255.76.67:7667?ttl=1")
       ->required();
   inspect_command->add_option("--seconds", inspect_options.seconds, "How long to listen")
       ->capture_default_str()

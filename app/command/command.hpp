@@ -85,6 +85,8 @@ struct InspectOptions {
 int inspect(const InspectOptions& options);
 /// The same for links that carry ASEBA messages.
 int inspect_aseba(const InspectOptions& options);
+/// The same for LCM.
+int inspect_lcm(const InspectOptions& options);
 
 // --- shared by the commands ---
 

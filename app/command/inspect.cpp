@@ -39,6 +39,7 @@ int inspect(const InspectOptions& options) {
     return inspect_aseba(options);
   }
   if (!address.ok()) return complain(kBadInput, address.error().message);
+  if (address.value().scheme == bridges::LinkScheme::Lcm) return inspect_lcm(options);
   auto opener = bridges::epuck::epuck_link_opener(address.value());
   if (!opener.ok()) return complain(kBadInput, opener.error().message);
 

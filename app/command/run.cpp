@@ -10,13 +10,18 @@
 #include "app/sha256.hpp"
 #include "app/signals.hpp"
 #include "bridges/epuck/guardian.hpp"
+#include "bridges/eyebot/guardian.hpp"
 #include "bridges/footbot/guardian.hpp"
 #include "bridges/link/link_text.hpp"
 #include "core/config/xml.hpp"
 #include "core/record/trajectory.hpp"
 #include "core/sim/world.hpp"
 #include "core/view/picture.hpp"
+#include "hal/spec/epuck.hpp"
+#include "hal/spec/eyebot.hpp"
+#include "hal/spec/footbot.hpp"
 #include "mixed_reality/epuck/real_epuck.hpp"
+#include "mixed_reality/eyebot/real_eyebot.hpp"
 #include "mixed_reality/footbot/real_footbot.hpp"
 #include "mixed_reality/session/mixed_session.hpp"
 #include "mixed_reality/time/pacer.hpp"
@@ -174,26 +179,27 @@ class Watch {
  public:
   /// Before any thread exists.
   explicit Watch(const core::Scenario& scenario) {
-    bool any_epuck = false, any_footbot = false;
     for (const core::RobotItem& item : scenario.robots) {
-      if (!item.bridge) continue;
-      robots_.push_back({item.bridge->link, item.kind == hal::footbot::kDataSheet.kind, nullptr});
-      (robots_.back().footbot ? any_footbot : any_epuck) = true;
+      if (item.bridge) robots_.push_back({item.bridge->link, item.kind, nullptr, nullptr});
     }
-    if (any_epuck) start(epucks_);
-    if (any_footbot) start(footbots_);
+    const auto any = [this](std::string_view kind) {
+      return std::any_of(robots_.begin(), robots_.end(), [&](const Watched& w) { return w.kind == kind; });
+    };
+    if (any(hal::epuck::kDataSheet.kind)) start(epucks_);
+    if (any(hal::footbot::kDataSheet.kind)) start(footbots_);
+    if (any(hal::eyebot::kDataSheet.kind)) start(eyebots_);
   }
-  /// Remembers a real foot-bot that was made for a robot of the file; it must live until `begin` has returned.
-  void note(const core::RobotItem& item, const mixed_reality::RealFootbot& footbot) {
-    for (Watched& w : robots_) {
-      if (w.footbot && w.link == item.bridge->link) w.real = &footbot;
-    }
-  }
+  /// Remembers the real robot that was made for the next one of its kind in the file; it must live until `end`.
+  void note(const mixed_reality::RealFootbot& real) { next(hal::footbot::kDataSheet.kind).footbot = &real; }
+  void note(const mixed_reality::RealEyebot& real) { next(hal::eyebot::kDataSheet.kind).eyebot = &real; }
+
   /// When all answer.
   void begin() {
     for (const Watched& w : robots_) {
-      if (w.footbot) {
-        if (footbots_ && w.real != nullptr) footbots_->watch(w.link, w.real->last_words());
+      if (w.kind == hal::footbot::kDataSheet.kind) {
+        if (footbots_ && w.footbot != nullptr) footbots_->watch(w.link, w.footbot->last_words());
+      } else if (w.kind == hal::eyebot::kDataSheet.kind) {
+        if (eyebots_ && w.eyebot != nullptr) eyebots_->watch(w.eyebot->last_words());
       } else if (const auto address = bridges::parse_link(w.link); epucks_ && address.ok()) {
         epucks_->watch(address.value().target, address.value().rate);
       }
@@ -202,10 +208,13 @@ class Watch {
   /// Robots that confirmed their stop need no guardian any more; those of the report are in the order of the file.
   void end(const mixed_reality::MixedReport& report) {
     for (std::size_t i = 0; i < robots_.size() && i < report.robots.size(); ++i) {
+      const Watched& w = robots_[i];
       if (!report.robots[i].stop_confirmed) continue;
-      if (robots_[i].footbot) {
-        if (footbots_) footbots_->release(robots_[i].link);
-      } else if (const auto address = bridges::parse_link(robots_[i].link); epucks_ && address.ok()) {
+      if (w.kind == hal::footbot::kDataSheet.kind) {
+        if (footbots_) footbots_->release(w.link);
+      } else if (w.kind == hal::eyebot::kDataSheet.kind) {
+        // It hovers. It is landed as its bridge ends, and by its guardian where that fails.
+      } else if (const auto address = bridges::parse_link(w.link); epucks_ && address.ok()) {
         epucks_->release(address.value().target);
       }
     }
@@ -214,8 +223,9 @@ class Watch {
  private:
   struct Watched {
     std::string link;
-    bool footbot = false;
-    const mixed_reality::RealFootbot* real = nullptr;
+    std::string kind;
+    const mixed_reality::RealFootbot* footbot = nullptr;
+    const mixed_reality::RealEyebot* eyebot = nullptr;
   };
   template <class Guardian>
   static void start(std::optional<Guardian>& guardian) {
@@ -226,10 +236,16 @@ class Watch {
       say("warning: " + started.error().message);
     }
   }
+  Watched& next(std::string_view kind) {
+    return *std::find_if(robots_.begin(), robots_.end(), [&](const Watched& w) {
+      return w.kind == kind && w.footbot == nullptr && w.eyebot == nullptr;
+    });
+  }
 
   std::vector<Watched> robots_;
   std::optional<bridges::epuck::Guardian> epucks_;
   std::optional<bridges::footbot::Guardian> footbots_;
+  std::optional<bridges::eyebot::Guardian> eyebots_;
 };
 
 bool has_real_robots(const core::Scenario& scenario) {
@@ -249,11 +265,19 @@ std::unique_ptr<mixed_reality::MixedSession> join_real_robots(std::unique_ptr<co
   options.log = log;
   using RealRobotMade = hal::Result<std::unique_ptr<mixed_reality::RealRobot>>;
   const auto maker = [&](const mixed_reality::RealRobotRequest& r) -> RealRobotMade {
-    if (r.item.kind != hal::footbot::kDataSheet.kind) return mixed_reality::make_real_robot(r, log);
-    auto footbot = mixed_reality::make_real_footbot(r, log);
-    if (!footbot.ok()) return footbot.error();
-    watch.note(r.item, **footbot);
-    return std::unique_ptr<mixed_reality::RealRobot>(std::move(footbot).value());
+    if (r.item.kind == hal::footbot::kDataSheet.kind) {
+      auto footbot = mixed_reality::make_real_footbot(r, log);
+      if (!footbot.ok()) return footbot.error();
+      watch.note(**footbot);
+      return std::unique_ptr<mixed_reality::RealRobot>(std::move(footbot).value());
+    }
+    if (r.item.kind == hal::eyebot::kDataSheet.kind) {
+      auto eyebot = mixed_reality::make_real_eyebot(r, log);
+      if (!eyebot.ok()) return eyebot.error();
+      watch.note(**eyebot);
+      return std::unique_ptr<mixed_reality::RealRobot>(std::move(eyebot).value());
+    }
+    return mixed_reality::make_real_robot(r, log);
   };
   auto made = mixed_reality::MixedSession::make(std::move(world), maker, clock, options);
   if (!made.ok()) {

@@ -332,6 +332,10 @@ class ArenaReader {
     reading_.once(e, "bridge", [&](Element& c) {
       const auto b = reading_.read<schema::Bridge>(c);
       item.bridge = BridgeConfig{b.link, b.firmware, b.timeout_s, c, c.line, resolve(b.map, c.file)};
+      item.bridge->name = b.name;
+      item.bridge->land_at_end = b.at_end == "land";
+      item.bridge->origin_m = b.origin;
+      item.bridge->turn_rad = b.turn_rad;
       if (distribute != nullptr) reading_.error(c, "a <bridge> stands for one real robot; it cannot be distributed");
     });
     reading_.once(e, "tracker", [&](Element& c) {

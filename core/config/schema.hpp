@@ -319,8 +319,9 @@ struct Battery {
 
 struct Bridge {
   static constexpr ElementInfo kElement{"bridge", "Makes the robot stand for a real one on this link.", "link"};
-  std::string link, firmware = "auto", map;
-  double timeout_s = 0.5;
+  std::string link, firmware = "auto", map, name, at_end = "land";
+  double timeout_s = 0.5, turn_rad = 0.0;
+  Vec3 origin{};
   void describe(ParamVisitor& v) {
     static constexpr std::array<std::string_view, 5> kFirmware = {"auto", "btcom", "gctronic", "webots", "epuck2"};
     v.text("link", link, "Where the real robot is, e.g. serial:/dev/ttyUSB0@115200.");
@@ -328,6 +329,11 @@ struct Bridge {
     v.text("map", map, "File that says which variable of a foot-bot's modules is which reading or command.");
     v.number("timeout", timeout_s, unit::s, {0.05, 60.0},
              "Age of the last answer from which the robot counts as lost and is stopped.");
+    static constexpr std::array<std::string_view, 2> kEnds = {"land", "hover"};
+    v.text("name", name, "What an eye-bot is called in its LCM channels; empty: its id.");
+    v.choice("at_end", at_end, kEnds, "What an eye-bot does when its run ends.");
+    v.vector("origin", origin, unit::m, "Where the origin of an eye-bot's own world lies in the arena.");
+    v.number("turn", turn_rad, unit::deg, {}, "How far its world is turned against the arena's, counter-clockwise.");
   }
 };
 
@@ -335,8 +341,9 @@ struct Tracker {
   static constexpr ElementInfo kElement{"tracker", "Where a real robot's pose comes from."};
   std::string source = "odometry";
   void describe(ParamVisitor& v) {
-    static constexpr std::array<std::string_view, 1> kSources = {"odometry"};
-    v.choice("source", source, kSources, "Where the real robot's pose comes from.");
+    static constexpr std::array<std::string_view, 2> kSources = {"odometry", "positioning"};
+    v.choice("source", source, kSources,
+             "Where the real robot's pose comes from: its wheels, or what it says itself of where it is.");
   }
 };
 

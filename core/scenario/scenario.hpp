@@ -92,7 +92,11 @@ struct BridgeConfig {
   double timeout_s = 0.5;         ///< age from which the link counts as lost
   Element options;
   int line = 0;
-  std::string map = {};  ///< file that says what the variables of the robot's modules mean; empty: none
+  std::string map = {};              ///< file that says what the variables of the robot's modules mean; empty: none
+  std::string name = {};             ///< in an eye-bot's channels; empty: the robot's id
+  bool land_at_end = true;           ///< else a flying robot is left hovering
+  std::array<double, 3> origin_m{};  ///< of the world that the robot's own positions are in, in W
+  double turn_rad = 0.0;             ///< of that world's x axis from W's
 };
 
 struct TrackerConfig {

@@ -122,7 +122,8 @@ LinkReport RealEpuck::report() const {
 hal::Result<std::unique_ptr<RealRobot>> make_real_robot(const RealRobotRequest& request, const hal::Log& log) {
   const core::RobotItem& item = request.item;
   if (item.kind != hal::epuck::kDataSheet.kind)
-    return hal::Error{"there is no bridge to robots of the kind '" + item.kind + "'; there is: e-puck, foot-bot"};
+    return hal::Error{"there is no bridge to robots of the kind '" + item.kind +
+                      "'; there is: e-puck, foot-bot, eye-bot"};
   const auto address = bridges::parse_link(item.bridge->link);
   if (!address.ok()) return address.error();
   auto opener = bridges::epuck::epuck_link_opener(address.value());

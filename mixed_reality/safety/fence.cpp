@@ -22,4 +22,22 @@ bool keep_inside(const Fence& fence, const core::Pose& pose, double look_ahead_s
   return true;
 }
 
+bool keep_inside(const Fence& fence, const core::Pose& pose, double look_ahead_s, hal::QuadrotorSpeed& speed) noexcept {
+  auto& v = speed.velocity;
+  const bool x = leads_out(pose.x_m, v[0] * look_ahead_s, fence.min_x_m, fence.max_x_m);
+  const bool y = leads_out(pose.y_m, v[1] * look_ahead_s, fence.min_y_m, fence.max_y_m);
+  if (x) v[0] = 0.0;
+  if (y) v[1] = 0.0;
+  return x || y;
+}
+
+bool keep_inside(const Fence& fence, hal::QuadrotorPosition& target) noexcept {
+  const double x_m = std::clamp(target.target[0], fence.min_x_m, fence.max_x_m);
+  const double y_m = std::clamp(target.target[1], fence.min_y_m, fence.max_y_m);
+  const bool outside = !target.hold && (x_m != target.target[0] || y_m != target.target[1]);
+  target.target[0] = x_m;
+  target.target[1] = y_m;
+  return outside;
+}
+
 }  // namespace tandem::mixed_reality

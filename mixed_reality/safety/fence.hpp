@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/space/pose.hpp"
+#include "hal/device/flight.hpp"
 #include "hal/device/wheels.hpp"
 
 namespace tandem::mixed_reality {
@@ -24,5 +25,10 @@ struct Fence {
 /// Lets a robot at `pose` turn wherever it is, but drive only where it stays inside for `look_ahead_s`, or comes back
 /// in: else both wheels lose what they have in common. @returns whether anything was taken away.
 bool keep_inside(const Fence& fence, const core::Pose& pose, double look_ahead_s, hal::WheelSpeeds& wheels) noexcept;
+
+/// The same for a robot that flies: it loses the part of its velocity that leads out.
+bool keep_inside(const Fence& fence, const core::Pose& pose, double look_ahead_s, hal::QuadrotorSpeed& speed) noexcept;
+/// A target outside becomes the nearest inside.
+bool keep_inside(const Fence& fence, hal::QuadrotorPosition& target) noexcept;
 
 }  // namespace tandem::mixed_reality

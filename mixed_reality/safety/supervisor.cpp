@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
+
+#include "hal/filter.hpp"
 
 namespace tandem::mixed_reality {
 namespace {
@@ -62,6 +65,14 @@ hal::WheelSpeeds Supervisor::allowed(const hal::WheelSpeeds& wanted, hal::TimeNs
   const double fastest_m_s = std::max(std::fabs(wanted.left_m_s), std::fabs(wanted.right_m_s));
   const double scale = fastest_m_s > limit_m_s ? limit_m_s / fastest_m_s : 1.0;
   out.set(wanted.left_m_s * scale, wanted.right_m_s * scale);
+  return out;
+}
+
+hal::QuadrotorSpeed Supervisor::allowed(const hal::QuadrotorSpeed& wanted, hal::TimeNs now_ns) const noexcept {
+  if (!verdict_.may_drive) return {};
+  hal::QuadrotorSpeed out = wanted;
+  const double limit_m_s = params_.ramp_m_s2 * hal::to_seconds(now_ns - armed_at_ns_);
+  hal::filter(out, limit_m_s, std::numeric_limits<double>::max());
   return out;
 }
 

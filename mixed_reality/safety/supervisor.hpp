@@ -4,6 +4,7 @@
 #include <span>
 #include <string_view>
 
+#include "hal/device/flight.hpp"
 #include "hal/device/wheels.hpp"
 #include "hal/params.hpp"
 #include "hal/port.hpp"
@@ -63,6 +64,9 @@ class Supervisor {
 
   /// What of `wanted` goes to the robot in this tick. The curve driven stays the same while the speed is held back.
   hal::WheelSpeeds allowed(const hal::WheelSpeeds& wanted, hal::TimeNs now_ns) const noexcept;
+
+  /// The same for a robot that flies.
+  hal::QuadrotorSpeed allowed(const hal::QuadrotorSpeed& wanted, hal::TimeNs now_ns) const noexcept;
 
   const Verdict& verdict() const noexcept { return verdict_; }
   std::uint64_t stops() const noexcept { return stops_; }    ///< from driving to not

@@ -4,6 +4,7 @@
 
 #include "hal/unit.hpp"
 #include "mixed_reality/tracking/odometry.hpp"
+#include "mixed_reality/tracking/positioned.hpp"
 
 namespace tandem::mixed_reality {
 namespace {
@@ -14,6 +15,21 @@ const std::atomic<bool> kNever{false};
 
 hal::Error about(const core::RobotItem& item, const std::string& file, const std::string& what) {
   return hal::Error{file + ":" + std::to_string(item.bridge->line) + ": error: robot '" + item.id + "': " + what};
+}
+
+/// Whoever tells where the robot is: its wheels, or its own word.
+hal::Result<std::unique_ptr<PoseSource>> make_pose_source(const core::RobotItem& item, const RealRobot& real,
+                                                          const core::Pose& start, const hal::DataSheet& sheet) {
+  const std::string source = item.tracker ? item.tracker->source : sheet.flies ? "positioning" : "odometry";
+  if (source == "positioning") {
+    const auto* places = static_cast<const hal::Positioning*>(real.reading(hal::port_type<hal::Positioning>()));
+    if (places == nullptr) return hal::Error{"it does not say itself where it is; take the tracker odometry"};
+    return std::unique_ptr<PoseSource>(std::make_unique<Positioned>(start, *places));
+  }
+  if (source != "odometry") return hal::Error{"there is no tracker '" + source + "'; there are: odometry, positioning"};
+  const auto* encoders = static_cast<const hal::WheelEncoders*>(real.reading(hal::port_type<hal::WheelEncoders>()));
+  if (encoders == nullptr) return hal::Error{"it has no wheel encoders, so odometry cannot tell where it is"};
+  return std::unique_ptr<PoseSource>(std::make_unique<Odometry>(start, sheet, *encoders));
 }
 
 }  // namespace
@@ -52,18 +68,14 @@ hal::Status MixedSession::add_twin(const core::RobotItem& item, const RealRobotM
   if (!made.ok()) return about(item, scenario.file, made.error().message);
   std::unique_ptr<RealRobot> real = std::move(made).value();
 
-  const std::string source = item.tracker ? item.tracker->source : "odometry";
-  if (source != "odometry")
-    return about(item, scenario.file, "there is no tracker '" + source + "'; there is: odometry");
-  const auto* encoders = static_cast<const hal::WheelEncoders*>(real->reading(hal::port_type<hal::WheelEncoders>()));
-  if (encoders == nullptr)
-    return about(item, scenario.file, "it has no wheel encoders, so odometry cannot tell where it is");
-  auto poses = std::make_unique<Odometry>(space.pose(robot), space.data_sheet(robot), *encoders);
+  auto poses = make_pose_source(item, *real, space.pose(robot), space.data_sheet(robot));
+  if (!poses.ok()) return about(item, scenario.file, poses.error().message);
 
   TwinParams params;
   params.rearm = options_.rearm;
   params.pose_timeout_ns = lost_after_ns(item, scenario.ticks_per_second);
-  twins_.push_back(std::make_unique<Twin>(space, robot, std::move(real), std::move(poses), params, options_.log));
+  twins_.push_back(
+      std::make_unique<Twin>(space, robot, std::move(real), std::move(poses).value(), params, options_.log));
   links_.push_back(item.bridge->link);
   return {};
 }

@@ -17,8 +17,12 @@ Fence arena_of(const core::Space& space) {
           space.arena_center_y_m() + half_y_m};
 }
 
+template <class Port>
+bool is(const hal::PortType& type) {
+  return type.role == hal::Role::Actuator && type.layout == hal::port_type<Port>().layout;
+}
 bool is_wheels(const hal::PortType& type) {
-  return type.role == hal::Role::Actuator && type.layout == hal::port_type<hal::WheelSpeeds>().layout;
+  return is<hal::WheelSpeeds>(type);
 }
 
 }  // namespace
@@ -65,7 +69,7 @@ hal::Validity Twin::track(const Moment& now) noexcept {
   const bool fresh = tracked.known && age_ns <= params_.pose_timeout_ns;
   pose_ = tracked.pose;
   // A pose is about a tick old when it is used, and the robot has driven on: by the speeds that it was last given.
-  if (fresh) {
+  if (fresh && space_.data_sheet(robot_).wheel_base_m > 0.0) {
     const double age_s = hal::to_seconds(age_ns);
     pose_ = rolled(pose_, sent_.left_m_s * age_s, sent_.right_m_s * age_s, space_.data_sheet(robot_).wheel_base_m);
   }
@@ -97,6 +101,14 @@ void Twin::send_commands(bool alive, const Moment& now) {
       sent_ = supervisor_.allowed(*static_cast<const hal::WheelSpeeds*>(command), now.run_ns);
       if (keep_inside(fence_, pose_, params_.fence_ahead_s, sent_)) ++counts_.fenced_ticks;
       command = &sent_;
+    } else if (is<hal::QuadrotorSpeed>(*output.type)) {
+      speed_ = supervisor_.allowed(*static_cast<const hal::QuadrotorSpeed*>(command), now.run_ns);
+      if (keep_inside(fence_, pose_, params_.fence_ahead_s, speed_)) ++counts_.fenced_ticks;
+      command = &speed_;
+    } else if (is<hal::QuadrotorPosition>(*output.type)) {
+      target_ = *static_cast<const hal::QuadrotorPosition*>(command);
+      if (keep_inside(fence_, target_)) ++counts_.fenced_ticks;
+      command = &target_;
     }
     if (real_->command(*output.type, command) && is_wheels(*output.type)) wheels_sent = true;
   }

@@ -85,6 +85,8 @@ class Twin {
   Supervisor supervisor_;
   core::Pose pose_;
   hal::WheelSpeeds sent_;
+  hal::QuadrotorSpeed speed_;
+  hal::QuadrotorPosition target_;
   bool running_ = false;
   bool held_ = false;  // by us; a controller that threw is halted by the world
   std::string_view noted_;

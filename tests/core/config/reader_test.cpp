@@ -206,6 +206,20 @@ TEST(Reader, KnowsTandemsOwnElements) {
   EXPECT_EQ(s.trajectory->every, 3);
 }
 
+TEST(Reader, KnowsHowARealEyeBotIsReached) {
+  Parts parts;
+  parts.things = R"(<eye-bot id="eb"><body position="0,0,0"/><controller config="w"/>
+<bridge link="lcm:udpm://239.255.76.67:7667?ttl=1" name="eb_7" at_end="hover" origin="1,2,3" turn="90"/>
+<tracker source="positioning"/></eye-bot>)";
+  const Scenario s = read(parts.text()).good();
+  ASSERT_TRUE(s.robots[0].bridge.has_value());
+  EXPECT_EQ(s.robots[0].bridge->name, "eb_7");
+  EXPECT_FALSE(s.robots[0].bridge->land_at_end);
+  EXPECT_EQ(s.robots[0].bridge->origin_m, (std::array<double, 3>{1.0, 2.0, 3.0}));
+  EXPECT_NEAR(s.robots[0].bridge->turn_rad, 0.5 * std::numbers::pi, 1e-12);
+  EXPECT_EQ(s.robots[0].tracker->source, "positioning");
+}
+
 TEST(Reader, PacesByRealTimeWhenArgosFilesAskForIt) {
   Parts parts;
   parts.framework = R"(<framework><experiment length="1" real_time="true"/></framework>)";

@@ -51,5 +51,32 @@ TEST(ArenaFence, ClampsPosesAndKnowsWhatIsInside) {
   EXPECT_EQ(kFence.clamped(at(1.3, -7.0, 0.0)).y_m, -0.5);
 }
 
+TEST(ArenaFence, ARobotThatFliesKeepsThePartOfItsVelocityThatStaysInside) {
+  hal::QuadrotorSpeed speed;
+  speed.set(0.5, 0.3, -0.2, 0.1);
+  EXPECT_FALSE(keep_inside(kFence, at(0.0, 0.0, 0.0), 0.5, speed));
+  EXPECT_TRUE(keep_inside(kFence, at(0.9, 0.0, 0.0), 0.5, speed));
+  EXPECT_EQ(speed.velocity[0], 0.0);
+  EXPECT_EQ(speed.velocity[1], 0.3);
+  EXPECT_EQ(speed.velocity[2], -0.2);
+  EXPECT_EQ(speed.yaw_rad_s, 0.1);
+  speed.set(-0.5, 0.0, 0.0, 0.0);
+  EXPECT_FALSE(keep_inside(kFence, at(1.5, 0.0, 0.0), 0.5, speed));  // it comes back
+  EXPECT_EQ(speed.velocity[0], -0.5);
+}
+
+TEST(ArenaFence, APlaceOutsideBecomesTheNearestInside) {
+  hal::QuadrotorPosition position;
+  position.set(5.0, -5.0, 2.0, 1.0);
+  EXPECT_TRUE(keep_inside(kFence, position));
+  EXPECT_EQ(position.target[0], 1.0);
+  EXPECT_EQ(position.target[1], -0.5);
+  EXPECT_EQ(position.target[2], 2.0);
+  EXPECT_FALSE(keep_inside(kFence, position));
+  position.set(5.0, 0.0, 0.0, 0.0);
+  position.hover();
+  EXPECT_FALSE(keep_inside(kFence, position));  // it goes nowhere
+}
+
 }  // namespace
 }  // namespace tandem::mixed_reality

@@ -119,5 +119,23 @@ TEST_F(ArmedSupervisor, GetsUnderWayFromZeroWithoutAJumpAndOnTheCurveWanted) {
   EXPECT_NEAR(before, 0.1, 1e-12);
 }
 
+TEST_F(ArmedSupervisor, FliesOffWithoutAJumpInTheDirectionWanted) {
+  hal::QuadrotorSpeed wanted;
+  wanted.set(0.6, 0.0, 0.8, 0.3);
+  tick({RunPhase::Running, false, LinkHealth::Lost, Validity::Stale});
+  EXPECT_EQ(supervisor_.allowed(wanted, 0).yaw_rad_s, 0.0);
+  while (!supervisor_.verdict().may_drive) tick(kWell);
+  double before = -1.0;
+  for (int i = 0; i < 5; ++i) {
+    tick(kWell);
+    const hal::QuadrotorSpeed now = supervisor_.allowed(wanted, now_);
+    EXPECT_NEAR(now.velocity[2] * 0.6, now.velocity[0] * 0.8, 1e-12) << i;
+    EXPECT_GT(now.velocity[0], before) << i;
+    EXPECT_LT(now.velocity[0], 0.6) << i;
+    EXPECT_EQ(now.yaw_rad_s, 0.3) << i;
+    before = now.velocity[0];
+  }
+}
+
 }  // namespace
 }  // namespace tandem::mixed_reality
