@@ -35,7 +35,7 @@ struct Hearing : IdealHearing {
   void describe(hal::ParamVisitor& v) {
     IdealHearing::describe(v);
     v.number("noise_std_dev", noise_std_dev_m, hal::unit::m, hal::kNotNegative,
-             "Standard deviation of the sender's apparent place, along x and along y.");
+             "Standard deviation of the sender's apparent place, along x and y; where robots fly, along z too.");
     v.number("packet_drop_prob", packet_drop_prob, hal::unit::none, {0.0, 1.0}, "Probability that a message is lost.");
   }
 };
@@ -74,15 +74,15 @@ class RabSensor final : public Sensor {
                                                   [](const Region& region) { return region.plane; });
     const bool shadows = options_.check_occlusions && bodies_block(context.stores);
     widest_m_ = widest_body_m(context.stores);
-    const bool space = std::any_of(context.stores.groups.begin(), context.stores.groups.end(),
-                                   [](const RobotGroup& group) { return group.sheet->flies; });
+    space_ = std::any_of(context.stores.groups.begin(), context.stores.groups.end(),
+                         [](const RobotGroup& group) { return group.sheet->flies; });
     for (std::size_t i = 0; i < context.block.used; ++i) {
       hal::RangeAndBearing& port = receivers[i];
       stamp(context, port);
       port.count = 0;
       port.dropped = 0;
       if (context.stores.broadcasts.empty()) continue;
-      if (shadows && space && hear_in_space(context, context.block.first_row + i, farthest_m, port)) continue;
+      if (shadows && space_ && hear_in_space(context, context.block.first_row + i, farthest_m, port)) continue;
       if (shadows)
         hear_in_shadows(context, context.block.first_row + i, farthest_m, port);
       else
@@ -267,7 +267,7 @@ class RabSensor final : public Sensor {
     std::size_t left = 0;
     for (std::size_t k = 0; k < count; ++k) {
       may_block_[left] = static_cast<std::uint32_t>(k);
-      left += (clear_[k] <= 0.0) & (k != i) ? 1 : 0;
+      left += ((clear_[k] <= 0.0) & (k != i)) ? 1 : 0;
     }
     for (std::size_t m = 0; m < left; ++m) {
       const std::size_t k = may_block_[m];
@@ -371,6 +371,7 @@ class RabSensor final : public Sensor {
     const double y = b.y_m[row];
     double wx = sender.wx;
     double wy = sender.wy;
+    double wz = sender.wz;
     if (options_.check_occlusions && !in_sight(stores, x, y, height_m, x + wx, y + wy, height_m + sender.wz)) return;
     if (options_.packet_drop_prob > 0.0 && lost(context, b.entity[row], b.entity[sender.row])) return;
     if (options_.noise_std_dev_m > 0.0) {
@@ -379,9 +380,9 @@ class RabSensor final : public Sensor {
       const auto noise = to_normal(bits[0], bits[1]);
       wx += options_.noise_std_dev_m * noise[0];
       wy += options_.noise_std_dev_m * noise[1];
+      if (space_) wz += options_.noise_std_dev_m * to_normal(bits[2], bits[3])[0];
     }
     const double flat2 = wx * wx + wy * wy;
-    const double wz = sender.wz;
     const auto range = static_cast<float>(std::sqrt(flat2 + wz * wz));
     if (port.count == hal::RangeAndBearing::kCapacity && range >= port.range_m[hal::RangeAndBearing::kCapacity - 1]) {
       ++port.dropped;
@@ -402,6 +403,7 @@ class RabSensor final : public Sensor {
   Hearing<0> options_;
   const hal::DataSheet* only_sheet_ = nullptr;  // of all robots, or null where there are several kinds
   bool flat_ = false;                           // all boards are equally high
+  bool space_ = false;                          // there are robots that fly
   // While one robot listens: who is near, what lies in their shadow, and who blocks some heights only.
   std::vector<Neighbour> near_, sorted_;
   double widest_m_ = 0.0;  // of all bodies

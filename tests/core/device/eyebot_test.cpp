@@ -93,6 +93,26 @@ TEST(EyeBotNoise, ScattersAroundTheTruth) {
   }
 }
 
+TEST(EyeBotNoise, SendersSeemToBeAboveOrBelow) {
+  Scene scene = eyebot_scene();
+  choose(scene, "range_and_bearing", hal::Role::Sensor, "noisy");
+  auto world = made(scene.flyer("e", 0, 0, 1.0).flyer("sender", 2.0, 0, 1.0));
+  command<hal::RangeAndBearingSend>(world, "sender").sending = true;
+  double squares[3] = {};
+  int heard = 0;
+  for (int i = 0; i < 2000; ++i) {
+    world->step();
+    const auto& port = reading<hal::RangeAndBearing>(world, "e");
+    if (port.count == 0) continue;  // one in a hundred is lost
+    ++heard;
+    squares[0] += std::pow(static_cast<double>(port.range_m[0]) - 2.0, 2);
+    squares[1] += std::pow(2.0 * static_cast<double>(port.bearing_rad[0]), 2);
+    squares[2] += std::pow(2.0 * static_cast<double>(port.elevation_rad[0]), 2);
+  }
+  EXPECT_NEAR(heard, 1980, 30);
+  for (const double s : squares) EXPECT_NEAR(std::sqrt(s / heard), 0.01, 1e-3);
+}
+
 TEST(EyeBotNoise, LeansAndHeadsErrToo) {
   Scene scene = eyebot_scene();
   choose(scene, "quadrotor_attitude", hal::Role::Actuator, "noisy");
