@@ -9,6 +9,7 @@ constexpr std::int64_t kLatest = 3'786'912'000'000'000;  // microseconds: the ye
 constexpr hal::TimeNs kWindow = 5 * hal::kNsPerSecond;
 constexpr hal::TimeNs kJump = hal::kNsPerSecond;
 constexpr unsigned kBelieveAfter = 5;
+constexpr hal::TimeNs kBurst = 50 * hal::kNsPerMs;
 constexpr hal::TimeNs kBoundHolds = 10 * hal::kNsPerSecond;
 constexpr hal::TimeNs kLongRoundTrip = 100 * hal::kNsPerMs;  // tells nothing any more
 
@@ -39,8 +40,9 @@ void ClockOffset::note(std::int64_t utime, hal::TimeNs received_ns) noexcept {
     return begin(difference, received_ns);
   }
   if (difference > least + kJump) {  // set back, or very late
+    if (late_in_row_ == 0) late_since_ns_ = received_ns;
     late_least_ = late_in_row_ == 0 ? difference : std::min(late_least_, difference);
-    if (++late_in_row_ < kBelieveAfter) return;
+    if (++late_in_row_ < kBelieveAfter || received_ns - late_since_ns_ < kBurst) return;
     ++jumps_;
     return begin(late_least_, received_ns);
   }

@@ -8,8 +8,9 @@ namespace tandem::bridges::eyebot {
 
 /// Our clock minus the robot's. A message cannot come before it was sent, so the least of (received - stamp) bounds the
 /// offset from above; an answer cannot be sent before the question, which bounds it from below. Minima are kept for 5
-/// to 10 s, so that a drift is followed. A clock that was set by more than a second is noticed after five messages, and
-/// followed; until then what it stamps looks old. Not thread-safe.
+/// to 10 s, so that a drift is followed. A clock that was set by more than a second is noticed after five messages that
+/// came over 50 ms or more, and followed; until then what it stamps looks old. What comes at once after we were asleep
+/// is old, and no clock that was set. Not thread-safe.
 class ClockOffset {
  public:
   /// A message stamped `utime` (microseconds, the robot's clock) came at `received_ns` (ours). Stamps that no clock
@@ -36,7 +37,7 @@ class ClockOffset {
   bool bounded_ = false;
   hal::TimeNs below_ = 0, below_at_ns_ = 0;
   unsigned late_in_row_ = 0;
-  hal::TimeNs late_least_ = 0;
+  hal::TimeNs late_least_ = 0, late_since_ns_ = 0;
   std::uint64_t jumps_ = 0, implausible_ = 0;
 };
 

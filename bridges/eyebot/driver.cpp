@@ -89,9 +89,12 @@ void EyebotDriver::take_all(TimeNs now) {
   const auto nothing_more = [] {};
   Newests& n = newests_;
   take_in(Topic::Heartbeat, n.heartbeat, now,
-          [&] { liveness_.note_heartbeat(n.heartbeat.message.period_ms, letter_.received_ns); });
+          [&] {  // What lay on the way while we slept is no sign of life of now.
+            liveness_.note_heartbeat(n.heartbeat.message.period_ms,
+                                     std::max(liveness_.heartbeat_ns(), taken(Topic::Heartbeat)));
+          });
   take_in(Topic::Ack, n.ack, now, [&] { use_ack(letter_.received_ns); });
-  take_in(Topic::Status, n.status, now, [&] { use_status(letter_.received_ns); });
+  take_in(Topic::Status, n.status, now, [&] { use_status(); });
   take_in(Topic::State, n.state, now, [&] {
     if (n.state.message.pos_valid != 0) place_taken_ns_ = taken(Topic::State);
   });
@@ -132,7 +135,7 @@ void EyebotDriver::complain(Topic topic, const char* flaw, TimeNs now) {
                " is damaged: " + flaw);
 }
 
-void EyebotDriver::use_status(TimeNs received_ns) noexcept {
+void EyebotDriver::use_status() noexcept {
   const messages::Status& m = newests_.status.message;
   // It refuses to go where it is told: somebody may have taken it over while we could not hear it.
   const bool refuses = status_.known && m.cmd_rejected > status_.rejected && mode_of(m.mode) == Mode::Hover;
@@ -143,7 +146,7 @@ void EyebotDriver::use_status(TimeNs received_ns) noexcept {
   status_.magnet_on = m.magnet_on != 0;
   status_.failsafe = failsafe_of(m.failsafe);
   status_.rejected = m.cmd_rejected;
-  status_.received_ns = received_ns;
+  status_.taken_ns = std::max(status_.taken_ns, taken(Topic::Status));
 }
 
 void EyebotDriver::use_ack(TimeNs received_ns) {
@@ -226,7 +229,7 @@ RobotState EyebotDriver::judge(TimeNs now) const noexcept {
   if (pulse == Pulse::Never) return RobotState::Absent;
   if (pulse == Pulse::Lost) return was_active_ ? RobotState::Lost : RobotState::Absent;
   const bool well = pulse == Pulse::Beating && !liveness_.twins(now) && status_.known &&
-                    now - status_.received_ns <= kStatusFresh && newests_.heartbeat.message.proto_major == 1;
+                    now - status_.taken_ns <= kStatusFresh && newests_.heartbeat.message.proto_major == 1;
   if (well) return RobotState::Active;
   return was_active_ ? RobotState::Suspect : RobotState::Ready;
 }
@@ -284,7 +287,7 @@ void EyebotDriver::guide(TimeNs now) noexcept {
   Step step = next_step(situation);
   if (wanted == Goal::Obey && step.done) pending_ = false;
   if (goal_ != Goal::Obey) {
-    reached_ = !controlled_ || (step.done && status_.received_ns > goal_since_ns_);
+    reached_ = !controlled_ || (step.done && status_.taken_ns > goal_since_ns_);
   } else if (wanted == Goal::Obey && !steers_) {
     step = {};
   }

@@ -89,7 +89,7 @@ struct FlightStatus {
   bool armed = false, magnet_on = false;
   hal::FlightFailsafe failsafe = hal::FlightFailsafe::None;
   std::int32_t rejected = 0;  ///< commands, since its start
-  hal::TimeNs received_ns = 0;
+  hal::TimeNs taken_ns = 0;   ///< when it was so, by our clock
 };
 
 /// Not thread-safe, but that others may deliver into the inbox.
@@ -182,7 +182,7 @@ class EyebotDriver {
   bool accept(const eyebot_messages::Header& header, hal::TimeNs received_ns);
   void complain(Topic topic, const char* flaw, hal::TimeNs now);
   void use_ack(hal::TimeNs received_ns);
-  void use_status(hal::TimeNs received_ns) noexcept;
+  void use_status() noexcept;
   void begin_anew();
   template <class Port, class Message>
   void fill(Topic topic, const Newest<Message>& newest, hal::TimeNs now) noexcept;

@@ -197,6 +197,32 @@ TEST(EyebotDriver, SurvivesAClockThatIsSetByAnHour) {
   }
 }
 
+TEST(EyebotDriver, WhatLayOnTheWayWhileWeSleptIsOld) {
+  Scene s;
+  const auto& place = s.sensor<hal::Positioning>();
+  s.run(1000);
+  s.now += 4 * hal::kNsPerSecond;
+  s.robot.at(s.now);
+  s.driver.pump(s.now);
+  ASSERT_EQ(s.driver.state(), RobotState::Lost);
+  const hal::TimeNs right = s.robot.clock_minus_ours_ns;
+  for (int i = 0; i < 30; ++i) {  // all at once
+    s.robot.clock_minus_ours_ns = right - (4000 - 100 * i) * kMs;
+    s.robot.say(Topic::Heartbeat, s.robot.heartbeat);
+    s.robot.say(Topic::Status, s.robot.status);
+    s.robot.say(Topic::State, s.robot.state);
+    s.driver.pump(s.now);
+    s.driver.latch(0, s.now);
+    EXPECT_NE(s.driver.state(), RobotState::Active) << i;
+    EXPECT_EQ(place.validity, hal::Validity::Stale) << i;
+  }
+  s.robot.clock_minus_ours_ns = right;
+  s.run(300);
+  EXPECT_EQ(s.driver.state(), RobotState::Active);
+  EXPECT_EQ(place.validity, hal::Validity::Fresh);
+  EXPECT_EQ(s.driver.clock().jumps(), 0U);
+}
+
 TEST(EyebotDriver, HearsEveryPacketBetweenTwoTicksOnce) {
   Scene s;
   const auto& heard = s.sensor<hal::RangeAndBearing>();

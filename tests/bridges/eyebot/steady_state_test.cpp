@@ -51,9 +51,10 @@ std::vector<std::byte> bytes_of(Message message) {
   return {written.begin(), written.end()};
 }
 
-/// Delivers the message with another number.
+/// Delivers the message with another number and time.
 void deliver(Inbox& inbox, Topic topic, std::vector<std::byte>& bytes, std::uint8_t seq, hal::TimeNs now) {
   bytes[19] = std::byte{seq};
+  for (std::size_t i = 0; i < 8; ++i) bytes[15 - i] = static_cast<std::byte>(now / 1000 >> (8 * i) & 0xFF);
   inbox.deliver(topic, bytes, now);
 }
 
