@@ -36,6 +36,7 @@ void add_bench(CLI::App& app, BenchOptions& o, int& code) {
   c->add_option(
        "name", o.name,
        "diffusion: the standard scene; flocking: eye-bots in space; codec: messages of the foot-bot, only with "
+       "--repeat; sense_to_act: how soon eye-bots are answered over LCM, with --robots, --seconds, --real-time, "
        "--repeat")
       ->capture_default_str();
   c->add_option("--robots", o.robots, "Numbers of robots, e.g. 1000,10000; default: 1 to 100000")
@@ -71,6 +72,10 @@ void add_bench(CLI::App& app, BenchOptions& o, int& code) {
       ->excludes(with)
       ->excludes(ticks)
       ->excludes(repeat);
+  c->add_option("--seconds", o.seconds, "Of sense_to_act: how long it is timed")
+      ->capture_default_str()
+      ->check(CLI::Range(0.1, 3600.0));
+  c->add_flag("--real-time", o.real_time, "Of sense_to_act: with the scheduling class SCHED_FIFO");
   c->add_flag("--compare-threads", o.compare_threads,
               "Print how many times faster each number of threads is than the first");
   c->callback([&] { code = bench(o); });

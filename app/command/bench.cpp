@@ -1,4 +1,5 @@
-// `tandem bench`: measures a scene or the foot-bot's codec, prints one JSON object a line, draws figures from them.
+// `tandem bench`: measures a scene, the foot-bot's codec or how soon eye-bots are answered, prints one JSON object a
+// line, draws figures from them.
 #include <algorithm>
 #include <cstdio>
 #include <fmt/format.h>
@@ -8,6 +9,7 @@
 #include "app/bench/gnuplot.hpp"
 #include "app/bench/measurement.hpp"
 #include "app/bench/partition.hpp"
+#include "app/bench/sense_to_act.hpp"
 #include "app/catalog.hpp"
 #include "app/command/command.hpp"
 #include "app/signals.hpp"
@@ -46,7 +48,7 @@ std::string robot_of(const BenchOptions& o) {
 }
 
 hal::Status check_words(const BenchOptions& o) {
-  if (auto s = check_name("benchmark", o.name, {"diffusion", "flocking", "codec"}); !s.ok()) return s;
+  if (auto s = check_name("benchmark", o.name, {"diffusion", "flocking", "codec", "sense_to_act"}); !s.ok()) return s;
   const std::vector<std::string> robots = robots_of(o);
   if (auto s = check_name("robot", robot_of(o), robots); !s.ok()) return s;
   std::vector<std::string> devices{"range_and_bearing"};
@@ -177,6 +179,17 @@ void print_comparison(const std::vector<ResultLine>& lines) {
   for (const auto& [group, ratios] : compare_threads(lines)) fmt::print(stderr, "{}: {}\n", group, ratios);
 }
 
+int sense_to_act(const BenchOptions& o) {
+  constexpr std::int64_t kMostRobots = 100;
+  const std::vector<std::int64_t> robots = o.robots.empty() ? std::vector<std::int64_t>{20} : o.robots;
+  for (const std::int64_t n : robots) {
+    if (n > kMostRobots) return complain(kWrongUsage, fmt::format("at most {} eye-bots", kMostRobots));
+    const hal::Status measured = bench_sense_to_act({n, o.seconds, o.real_time}, o.repeat);
+    if (!measured.ok()) return complain(kFailedRunning, measured.error().message);
+  }
+  return kDone;
+}
+
 }  // namespace
 
 int bench(const BenchOptions& options) {
@@ -186,6 +199,7 @@ int bench(const BenchOptions& options) {
     bench_codec(options.repeat);
     return kDone;
   }
+  if (options.name == "sense_to_act") return sense_to_act(options);
   if (!options.plot.empty()) {
     const hal::Status drawable = can_draw(options.plot);
     if (!drawable.ok()) return complain(kFailedRunning, drawable.error().message);

@@ -52,6 +52,8 @@ struct BenchOptions {
   std::string plot;  ///< SVG or PNG file
   std::string from;  ///< saved lines, instead of measuring
   bool compare_threads = false;
+  double seconds = 5.0;    ///< sense_to_act: that are timed
+  bool real_time = false;  ///< sense_to_act: with SCHED_FIFO
 };
 int bench(const BenchOptions& options);
 
