@@ -193,4 +193,36 @@ class EmulatedFootbot : public EmulatedRobot {
   }
 };
 
+/// On a network; this program must be in one that is its own.
+class EmulatedEyebot : public EmulatedRobot {
+ public:
+  static constexpr const char* kLink = "lcm:udpm://239.255.76.67:7667?ttl=0";
+  explicit EmulatedEyebot(const Folder& folder, const std::vector<std::string>& more = {})
+      : EmulatedRobot(folder, "eyebot", kLink, more) {}
+
+  /// Lines of the log about this event that hold all of `parts`.
+  std::vector<std::string> lines(const std::string& event, const std::vector<std::string>& parts = {}) const {
+    std::vector<std::string> all;
+    std::istringstream in(log());
+    for (std::string line; std::getline(in, line);) {
+      bool fits = json_value(line, "event") == event;
+      for (const std::string& part : parts) fits = fits && line.find(part) != std::string::npos;
+      if (fits) all.push_back(line);
+    }
+    return all;
+  }
+  /// "off idle takeoff …", as they changed from `t_ns` on.
+  std::string modes(long long since_ns = 0) const {
+    std::string all;
+    for (const std::string& line : lines("mode")) {
+      if (std::stoll(json_value(line, "t_ns")) >= since_ns) all += json_value(line, "to") + " ";
+    }
+    return all;
+  }
+  std::string mode() const {
+    const auto all = lines("mode");
+    return all.empty() ? "off" : json_value(all.back(), "to");
+  }
+};
+
 }  // namespace tandem::scenarios

@@ -1,0 +1,191 @@
+// The command as a user types it, against an emulated eye-bot; verdicts come from the robot's own log.
+#include <cstdlib>
+#include <gmock/gmock.h>
+#include <sched.h>
+
+#include "tests/scenarios/process.hpp"
+
+namespace tandem::scenarios {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr long long kSecond_ns = 1'000'000'000;
+
+long long time_of(const std::string& line) {
+  return std::stoll(json_value(line, "t_ns"));
+}
+
+long long monotonic_ns() {
+  timespec t{};
+  clock_gettime(CLOCK_MONOTONIC, &t);
+  return static_cast<long long>(t.tv_sec) * kSecond_ns + t.tv_nsec;
+}
+
+/// In a network of its own, where LCM reaches this program's children and nobody else.
+class EmulatedEyebotFlies : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    apart_ = ::unshare(CLONE_NEWNET) == 0 && std::system("ip link set lo up && ip route add 224.0.0.0/4 dev lo") == 0;
+  }
+  void SetUp() override {
+    if (!apart_) GTEST_SKIP() << "this machine does not permit a network of its own (unshare, as root; iproute2)";
+  }
+
+  static std::vector<std::string> drive(std::vector<std::string> more = {}) {
+    std::vector<std::string> arguments = {"robot", std::string(TANDEM_SOURCE_DIR) + "/configs/eyebot_robot.xml",
+                                          "--link", EmulatedEyebot::kLink};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return arguments;
+  }
+  /// Whether setpoints were obeyed since.
+  static bool is_steered(const EmulatedEyebot& eyebot, long long since_ns) {
+    for (const char* channel : {R"("channel":"cmd/position")", R"("channel":"cmd/velocity")"}) {
+      for (const std::string& line : eyebot.lines("command", {channel, R"("verdict":"ok")"})) {
+        if (time_of(line) >= since_ns) return true;
+      }
+    }
+    return false;
+  }
+
+  static inline bool apart_ = false;
+  Folder folder;
+};
+
+TEST_F(EmulatedEyebotFlies, AndLandsWhenItsHubEnds) {
+  EmulatedEyebot eyebot(folder);
+  ASSERT_TRUE(eyebot.ready());
+  Tandem robot(drive({"--seconds", "8", "--report", "r.json"}), folder.path());
+  ASSERT_EQ(robot.wait(60), 0) << robot.errors();
+  EXPECT_THAT(eyebot.modes(), HasSubstr("idle takeoff hover position "));
+  EXPECT_TRUE(eventually([&] { return eyebot.mode() == "idle"; }, 20.0)) << eyebot.modes();
+  double highest_m = 0.0;
+  for (const std::string& line : eyebot.lines("motion"))
+    highest_m = std::max(highest_m, std::stod(json_value(line, "z")));
+  EXPECT_NEAR(highest_m, 1.5, 0.1);
+  EXPECT_TRUE(eyebot.lines("failsafe").empty()) << eyebot.log();
+  EXPECT_TRUE(eyebot.lines("malformed").empty()) << eyebot.log();
+  const std::string report = text_of(folder.path() / "r.json");
+  EXPECT_EQ(json_value(report, "state"), "active") << report;
+  EXPECT_EQ(json_value(report, "losses"), "0") << report;
+  EXPECT_EQ(json_value(report, "messages_refused"), "0") << report;
+  EXPECT_EQ(eyebot.end(), 0);
+}
+
+TEST_F(EmulatedEyebotFlies, OnWhenItsLinkIsBack) {
+  const std::string fault = "deaf@9s+4s";
+  EmulatedEyebot eyebot(folder, {"--fault", fault});
+  ASSERT_TRUE(eyebot.ready());
+  Tandem robot(drive(), folder.path());
+  ASSERT_TRUE(eventually([&] { return eyebot.mode() == "position"; }, 9.0)) << robot.errors();
+  const auto told = [&](const std::string& phase) {
+    return eyebot.lines("fault", {fault, "\"phase\":\"" + phase + "\""});
+  };
+  ASSERT_TRUE(eventually([&] { return !told("end").empty(); }, 30.0));
+  const long long cut_ns = time_of(told("begin").front());
+  const long long back_ns = time_of(told("end").front());
+  EXPECT_FALSE(eyebot.lines("failsafe", {R"("to":"link_lost")"}).empty()) << eyebot.log();
+  EXPECT_THAT(eyebot.modes(cut_ns), testing::StartsWith("hover ")) << eyebot.log();
+  ASSERT_TRUE(eventually([&] { return eyebot.mode() == "position"; }, 20.0)) << eyebot.log() << robot.errors();
+  const long long again_ns = time_of(eyebot.lines("mode", {R"("to":"position")"}).back());
+  EXPECT_LT(again_ns - back_ns, 2 * kSecond_ns) << "one second, and one for a busy machine";
+  robot.signal(SIGINT);
+  EXPECT_EQ(robot.wait(60), 0) << robot.errors();
+  EXPECT_TRUE(eventually([&] { return eyebot.mode() == "idle"; }, 20.0)) << eyebot.modes();
+}
+
+TEST_F(EmulatedEyebotFlies, NotOnWithoutALink) {
+  const std::string fault = "deaf@9s+30s";
+  EmulatedEyebot eyebot(folder, {"--fault", fault});
+  ASSERT_TRUE(eyebot.ready());
+  Tandem robot(drive(), folder.path());
+  ASSERT_TRUE(eventually([&] { return !eyebot.lines("fault", {fault}).empty(); }, 20.0));
+  const long long cut_ns = time_of(eyebot.lines("fault", {fault}).front());
+  ASSERT_TRUE(eventually([&] { return eyebot.mode() == "idle"; }, 25.0)) << eyebot.modes();
+  EXPECT_EQ(eyebot.modes(cut_ns), "hover land idle ");
+  EXPECT_FALSE(is_steered(eyebot, cut_ns));
+  const auto landed = eyebot.lines("landed");
+  ASSERT_FALSE(landed.empty());
+  EXPECT_LT(std::stod(json_value(landed.back(), "speed_m_s")), 0.35);
+}
+
+TEST_F(EmulatedEyebotFlies, NoFurtherWhenItsHubIsKilled) {
+  EmulatedEyebot eyebot(folder);
+  ASSERT_TRUE(eyebot.ready());
+  Tandem robot(drive(), folder.path());
+  ASSERT_TRUE(eventually([&] { return eyebot.mode() == "position"; }, 20.0)) << robot.errors();
+  robot.signal(SIGKILL);
+  EXPECT_EQ(robot.wait(), -SIGKILL);
+  const long long dead_ns = monotonic_ns();
+  ASSERT_TRUE(eventually([&] { return eyebot.mode() == "idle"; }, 40.0)) << eyebot.log();
+  EXPECT_THAT(eyebot.modes(), testing::EndsWith("position hover land idle "));
+  EXPECT_FALSE(is_steered(eyebot, dead_ns)) << eyebot.log();
+}
+
+TEST_F(EmulatedEyebotFlies, OnNoStaleCommand) {
+  EmulatedEyebot eyebot(folder, {"--fault", "lag=600ms@8s+3s"});
+  ASSERT_TRUE(eyebot.ready());
+  Tandem robot(drive(), folder.path());
+  ASSERT_TRUE(eventually([&] { return !eyebot.lines("fault", {"\"phase\":\"end\""}).empty(); }, 30.0));
+  const auto stale = eyebot.lines("command", {R"("verdict":"rejected_stale")"});
+  EXPECT_FALSE(stale.empty()) << eyebot.log();
+  for (const std::string& line : eyebot.lines("command", {R"("verdict":"ok")"})) {
+    EXPECT_LE(std::stoll(json_value(line, "age_us")), 250'000) << line;
+  }
+  ASSERT_TRUE(eventually([&] { return eyebot.mode() == "position"; }, 20.0)) << robot.errors();
+  robot.signal(SIGINT);
+  EXPECT_EQ(robot.wait(60), 0) << robot.errors();
+}
+
+TEST_F(EmulatedEyebotFlies, OnABadNetwork) {
+  EmulatedEyebot eyebot(folder, {"--fault", "drop=0.1", "--fault", "lose=0.1", "--fault", "double=0.1", "--fault",
+                                 "repeat=0.1", "--fault", "swap=0.1", "--fault", "overtake=0.1", "--fault",
+                                 "fingerprint=0.02", "--fault", "truncate=0.02"});
+  ASSERT_TRUE(eyebot.ready());
+  Tandem robot(drive({"--seconds", "12"}), folder.path());
+  EXPECT_EQ(robot.wait(80), 0) << robot.errors();
+  EXPECT_THAT(eyebot.modes(), HasSubstr("takeoff hover position"));
+  EXPECT_TRUE(eventually([&] { return eyebot.mode() == "idle"; }, 25.0)) << eyebot.modes();
+}
+
+TEST_F(EmulatedEyebotFlies, InASimulatedArena) {
+  folder.write(
+      "arena.xml",
+      R"(<tandem><framework><experiment length="0" ticks_per_second="50" random_seed="1"/></framework><controllers>
+<eyebot_puppet id="p" library="puppet"><actuators><flight_task/><quadrotor_speed/></actuators><sensors><flight_state/>
+<positioning/><altimeter/></sensors></eyebot_puppet></controllers><arena size="8,8,4" center="0,0,2">
+<eye-bot id="body"><body position="1,0,0"/><controller config="p"/></eye-bot></arena>
+<physics_engines><particle3d id="k"/></physics_engines></tandem>)");
+  EmulatedEyebot eyebot(folder, {"--arena", "arena.xml", "--body", "body"});
+  ASSERT_TRUE(eyebot.ready());
+  Tandem robot(drive({"--seconds", "10"}), folder.path());
+  EXPECT_EQ(robot.wait(60), 0) << robot.errors();
+  double farthest_m = 0.0;
+  for (const std::string& line : eyebot.lines("motion")) {
+    farthest_m = std::max(farthest_m, std::stod(json_value(line, "x")));
+  }
+  EXPECT_NEAR(farthest_m, 1.5, 0.1) << "half a metre ahead of where the simulated one stood";
+  EXPECT_TRUE(eventually([&] { return eyebot.mode() == "idle"; }, 25.0)) << eyebot.modes();
+
+  Tandem nobody({"emulate", "eyebot", "--link", EmulatedEyebot::kLink, "--arena", "arena.xml", "--body", "x"},
+                folder.path());
+  EXPECT_EQ(nobody.wait(), 1);
+  EXPECT_THAT(nobody.errors(), HasSubstr("no robot 'x'"));
+}
+
+TEST_F(EmulatedEyebotFlies, WithEveryReportAnswered) {
+  Tandem bench({"bench", "sense_to_act", "--robots", "3", "--seconds", "0.5"}, folder.path());
+  ASSERT_EQ(bench.wait(60), 0) << bench.errors();
+  const std::string line = bench.output();
+  EXPECT_EQ(json_value(line, "robots"), "3");
+  EXPECT_EQ(json_value(line, "commands_refused"), "0") << line;
+  EXPECT_GT(std::stoll(json_value(line, "reports_answered")), 30) << line;
+  EXPECT_GT(std::stod(json_value(line, "p50_us")), 0.0) << line;
+  EXPECT_LE(std::stod(json_value(line, "p50_us")), std::stod(json_value(line, "p99_us"))) << line;
+  Tandem many({"bench", "sense_to_act", "--robots", "1000"}, folder.path());
+  EXPECT_EQ(many.wait(), 2);
+  EXPECT_THAT(many.errors(), HasSubstr("at most 100"));
+}
+
+}  // namespace
+}  // namespace tandem::scenarios
