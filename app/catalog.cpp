@@ -1,15 +1,12 @@
 #include "app/catalog.hpp"
 
 #include <algorithm>
-#include <cstdlib>
 
 #include "core/device/device.hpp"
 #include "core/sim/engine_factory.hpp"
 #include "core/sim/robot_factory.hpp"
 
 namespace tandem::app {
-
-namespace fs = std::filesystem;
 
 const core::KnownNames& known_names() {
   static const core::KnownNames names = [] {
@@ -23,34 +20,6 @@ const core::KnownNames& known_names() {
     return n;
   }();
   return names;
-}
-
-std::vector<fs::path> plugin_folders() {
-  std::vector<fs::path> folders;
-  if (const char* path = std::getenv("TANDEM_PLUGIN_PATH"); path != nullptr) {
-    std::string text = path;
-    for (std::size_t at = 0; at <= text.size();) {
-      const std::size_t colon = std::min(text.find(':', at), text.size());
-      if (colon > at) folders.emplace_back(text.substr(at, colon - at));
-      at = colon + 1;
-    }
-  }
-  std::error_code error;
-  const fs::path program = fs::read_symlink("/proc/self/exe", error);
-  if (!error) folders.push_back(program.parent_path().parent_path() / "lib");
-  return folders;
-}
-
-std::vector<fs::path> plugin_files() {
-  std::vector<fs::path> files;
-  for (const fs::path& folder : plugin_folders()) {
-    std::error_code error;
-    for (const auto& entry : fs::directory_iterator(folder, error)) {
-      if (entry.path().extension() == ".so") files.push_back(entry.path());
-    }
-  }
-  std::sort(files.begin(), files.end());
-  return files;
 }
 
 }  // namespace tandem::app

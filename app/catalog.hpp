@@ -1,9 +1,7 @@
-// What this program contains: the one page that knows every folder.
+// What this program contains. There are two such pages, catalog.cpp for the whole program and board_catalog.cpp for the
+// one on a robot's board; a build has one of them.
 #pragma once
-#include <filesystem>
-#include <string>
-#include <vector>
-
+#include "app/plugin_folders.hpp"
 #include "core/config/reader.hpp"
 #include "hal/plugin_loader.hpp"
 
@@ -11,12 +9,5 @@ namespace tandem::app {
 
 /// Names that experiment files may use.
 const core::KnownNames& known_names();
-
-/// Where plug-ins are looked for: TANDEM_PLUGIN_PATH (folders separated by ':'), then the lib folder beside this
-/// program.
-std::vector<std::filesystem::path> plugin_folders();
-
-/// Every plug-in file in those folders.
-std::vector<std::filesystem::path> plugin_files();
 
 }  // namespace tandem::app

@@ -4,7 +4,7 @@
 #include "app/driven_robot.hpp"
 #include "bridges/eyebot/bridge.hpp"
 #include "bridges/eyebot/guardian.hpp"
-#include "mixed_reality/eyebot/real_eyebot.hpp"
+#include "mixed_reality/settings/eyebot_parts.hpp"
 
 namespace tandem::app {
 namespace {

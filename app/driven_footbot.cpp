@@ -4,7 +4,7 @@
 #include "app/driven_robot.hpp"
 #include "bridges/footbot/bridge.hpp"
 #include "bridges/footbot/guardian.hpp"
-#include "mixed_reality/footbot/real_footbot.hpp"
+#include "mixed_reality/settings/footbot_parts.hpp"
 
 namespace tandem::app {
 namespace {

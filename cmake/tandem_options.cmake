@@ -8,14 +8,27 @@ set(CMAKE_CXX_FLAGS_RELEASE "-O3 -g1")        # assertions are TANDEM_CHECK, whi
 set(CMAKE_CXX_FLAGS_RELWITHDEBINFO "-O1 -g1") # the sanitizer presets: quick to build, readable traces
 
 option(TANDEM_WERROR "Warnings are errors (for continuous integration)" OFF)
+option(TANDEM_BOARD "Only what a robot's board needs: controllers, bridges, `tandem robot`" OFF)
 option(TANDEM_FUZZ "Build the libFuzzer targets (needs clang)" OFF)
 set(TANDEM_SANITIZE "" CACHE STRING "Sanitizers: address,undefined or thread")
+
+# A program is for its whole architecture, and its arithmetic is IEEE's: flags of one's own that break this are refused.
+foreach(flags "${CMAKE_C_FLAGS}" "${CMAKE_CXX_FLAGS}")
+  if(flags MATCHES "(-m(arch|cpu|tune)=native|-ffast-math|-Ofast|-funsafe-math-optimizations|-ffp-contract=(fast|on))")
+    message(FATAL_ERROR "The compiler flag ${CMAKE_MATCH_1} would make results depend on the machine that builds or runs; leave it "
+      "out of CMAKE_C_FLAGS, CMAKE_CXX_FLAGS, CFLAGS and CXXFLAGS")
+  endif()
+endforeach()
 
 add_library(tandem_flags INTERFACE)
 target_compile_options(tandem_flags INTERFACE
   -Wall -Wextra -Wpedantic -Wconversion -Wshadow -ffp-contract=off -fno-math-errno -fvisibility-inlines-hidden)
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   target_compile_options(tandem_flags INTERFACE -Wno-restrict -Wno-maybe-uninitialized) # false alarms of GCC 12 on std::string
+endif()
+if(CMAKE_SYSTEM_PROCESSOR MATCHES "^arm")
+  target_compile_options(tandem_flags INTERFACE -Wno-psabi) # remarks on libraries built with GCC 6: there are none
+  target_link_libraries(tandem_flags INTERFACE atomic)      # ARMv5 has no instructions for atomic numbers of 64 bits
 endif()
 if(TANDEM_WERROR)
   target_compile_options(tandem_flags INTERFACE -Werror)

@@ -60,6 +60,8 @@ function(tandem_plugin)
   target_link_libraries(${arg_NAME} PRIVATE ${arg_EXTERNAL})
   tandem_note("${folder}" "${arg_DEPS}" "${arg_EXTERNAL}")
   set_property(GLOBAL APPEND PROPERTY TANDEM_PLUGINS ${arg_NAME})
+  string(REGEX MATCH "^[^/]+" layer ${folder})
+  set_property(GLOBAL APPEND PROPERTY TANDEM_PLUGINS_OF_${layer} ${arg_NAME})
 endfunction()
 
 # tandem_test(NAME hal_params SOURCES … DEPS hal LABELS fast): one GoogleTest program, one ctest entry.
@@ -67,6 +69,9 @@ function(tandem_test)
   cmake_parse_arguments(arg "" "NAME;TIMEOUT" "SOURCES;DEPS;EXTERNAL;LABELS" ${ARGN})
   if(NOT arg_TIMEOUT)
     set(arg_TIMEOUT 120)
+  endif()
+  if(CMAKE_CROSSCOMPILING)
+    math(EXPR arg_TIMEOUT "${arg_TIMEOUT} * 10") # an emulated processor is slow
   endif()
   add_executable(test_${arg_NAME} ${arg_SOURCES})
   target_link_libraries(test_${arg_NAME} PRIVATE tandem_flags GTest::gtest GTest::gtest_main GTest::gmock ${arg_EXTERNAL})

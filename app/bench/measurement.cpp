@@ -16,6 +16,7 @@
 #include "app/command/command.hpp"
 #include "app/measure.hpp"
 #include "app/report.hpp"
+#include "app/run_figures.hpp"
 #include "core/sim/world.hpp"
 
 namespace tandem::app {

@@ -95,5 +95,9 @@ int inspect_lcm(const InspectOptions& options);
 /// Reads an experiment and prints every problem; nothing when there is an error.
 std::optional<core::Scenario> read_or_complain(const std::string& path, const std::vector<std::string>& overrides);
 void print_problems(const core::Problems& problems);
+/// Whether the file is a foot-bot's map, and no experiment.
+bool is_map(const std::string& path);
+/// `check` for such a map.
+int check_map(const std::string& path);
 
 }  // namespace tandem::app

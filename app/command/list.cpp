@@ -6,19 +6,10 @@
 
 #include "app/catalog.hpp"
 #include "app/command/command.hpp"
+#include "app/port_types.hpp"
 #include "core/device/device.hpp"
 #include "core/loop/hook.hpp"
 #include "core/sim/engine_factory.hpp"
-#include "hal/device/body_sensors.hpp"
-#include "hal/device/cameras.hpp"
-#include "hal/device/distance_scanner.hpp"
-#include "hal/device/flight.hpp"
-#include "hal/device/gripper.hpp"
-#include "hal/device/leds.hpp"
-#include "hal/device/range_and_bearing.hpp"
-#include "hal/device/ring_sensors.hpp"
-#include "hal/device/turret.hpp"
-#include "hal/device/wheels.hpp"
 
 namespace tandem::app {
 namespace {
@@ -90,36 +81,7 @@ const std::map<std::string, std::function<void()>>& kinds() {
 
 /// The port class behind a device name, for its fields.
 void describe_fields(std::string_view name, hal::Role role) {
-  const hal::PortType* const ports[] = {&hal::port_type<hal::WheelSpeeds>(),
-                                        &hal::port_type<hal::WheelEncoders>(),
-                                        &hal::port_type<hal::Proximity>(),
-                                        &hal::port_type<hal::Light>(),
-                                        &hal::port_type<hal::Ground>(),
-                                        &hal::port_type<hal::Accelerometer>(),
-                                        &hal::port_type<hal::Microphones>(),
-                                        &hal::port_type<hal::Battery>(),
-                                        &hal::port_type<hal::Clock>(),
-                                        &hal::port_type<hal::RingLeds>(),
-                                        &hal::port_type<hal::BodyLed>(),
-                                        &hal::port_type<hal::FrontLed>(),
-                                        &hal::port_type<hal::RangeAndBearing>(),
-                                        &hal::port_type<hal::RangeAndBearingSend>(),
-                                        &hal::port_type<hal::QuadrotorPosition>(),
-                                        &hal::port_type<hal::QuadrotorSpeed>(),
-                                        &hal::port_type<hal::Positioning>(),
-                                        &hal::port_type<hal::Odometry>(),
-                                        &hal::port_type<hal::Gyroscope>(),
-                                        &hal::port_type<hal::BaseGround>(),
-                                        &hal::port_type<hal::MotorGround>(),
-                                        &hal::port_type<hal::TurretDrive>(),
-                                        &hal::port_type<hal::TurretEncoder>(),
-                                        &hal::port_type<hal::GripperDrive>(),
-                                        &hal::port_type<hal::Gripper>(),
-                                        &hal::port_type<hal::ScannerDrive>(),
-                                        &hal::port_type<hal::DistanceScanner>(),
-                                        &hal::port_type<hal::OmnidirectionalCamera>(),
-                                        &hal::port_type<hal::PerspectiveCamera>()};
-  for (const hal::PortType* port : ports) {
+  for (const hal::PortType* port : all_port_types()) {
     if (port->name != name || port->role != role) continue;
     fmt::print("  what a controller {}: {}\n", role == hal::Role::Sensor ? "reads" : "writes", port->doc);
     for (const hal::Field& f : port->fields) {

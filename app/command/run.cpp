@@ -7,6 +7,7 @@
 #include "app/measure.hpp"
 #include "app/progress.hpp"
 #include "app/report.hpp"
+#include "app/run_figures.hpp"
 #include "app/sha256.hpp"
 #include "app/signals.hpp"
 #include "bridges/epuck/guardian.hpp"

@@ -44,8 +44,8 @@ class AlarmClock {
   void set(TimeNs at) const {
     at = std::max<TimeNs>(at, 1);  // 0 would switch it off
     itimerspec setting{};
-    setting.it_value.tv_sec = at / hal::kNsPerSecond;
-    setting.it_value.tv_nsec = at % hal::kNsPerSecond;
+    setting.it_value.tv_sec = static_cast<time_t>(at / hal::kNsPerSecond);
+    setting.it_value.tv_nsec = static_cast<long>(at % hal::kNsPerSecond);
     timerfd_settime(descriptor_, TFD_TIMER_ABSTIME, &setting, nullptr);
   }
 

@@ -6,6 +6,7 @@
 #include "hal/device/body_sensors.hpp"
 #include "hal/device/range_and_bearing.hpp"
 #include "hal/spec/epuck.hpp"
+#include "mixed_reality/settings/patience.hpp"
 
 namespace tandem::mixed_reality {
 namespace {

@@ -3,9 +3,7 @@
 #include <algorithm>
 #include <cstring>
 
-#include "bridges/link/link_text.hpp"
 #include "hal/device/body_sensors.hpp"
-#include "hal/spec/eyebot.hpp"
 
 namespace tandem::mixed_reality {
 
@@ -100,34 +98,6 @@ LinkReport RealEyebot::report() const {
   if (answered > 0) report.mean_round_trip_ns = status.orders.sum_round_trip_ns / static_cast<hal::TimeNs>(answered);
   report.max_round_trip_ns = status.orders.max_round_trip_ns;
   return report;
-}
-
-hal::Result<EyebotParts> eyebot_parts(const core::RobotItem& item, std::int64_t ticks_per_second) {
-  const core::BridgeConfig& bridge = item.bridge.value();
-  if (item.kind != hal::eyebot::kDataSheet.kind)
-    return hal::Error{"robot '" + item.id + "' is of the kind '" + item.kind + "', not an eye-bot"};
-  if (bridge.firmware != "auto")
-    return hal::Error{"an eye-bot has no firmware '" + bridge.firmware + "'; leave firmware out"};
-  const auto address = bridges::parse_link(bridge.link);
-  if (!address.ok()) return address.error();
-  if (address.value().scheme != bridges::LinkScheme::Lcm)
-    return hal::Error{"link '" + bridge.link + "' does not carry an eye-bot's messages; write lcm:" +
-                      std::string(bridges::lcm_bus::kDefaultLcmUrl)};
-  EyebotParts parts;
-  parts.url = address.value().target;
-  parts.opener = [url = parts.url] { return bridges::lcm_bus::LcmLink::open(url); };
-  bridges::eyebot::DriverSettings& driver = parts.settings.driver;
-  driver.session = 0;  // to be drawn
-  driver.name = bridge.name.empty() ? item.id : bridge.name;
-  if (!bridges::eyebot::is_robot_name(driver.name))
-    return hal::Error{"'" + driver.name +
-                      "' cannot be part of a channel; an eye-bot's name has 1 to 24 letters, digits, '_' and '-'"};
-  driver.robot.id = item.id;
-  driver.robot.tick_ns = hal::time_of_tick(1, ticks_per_second);
-  driver.command_timeout_ns = lost_after_ns(item, ticks_per_second);
-  driver.world = {bridge.origin_m, bridge.turn_rad};
-  parts.settings.farewell.land = bridge.land_at_end;
-  return parts;
 }
 
 hal::Result<std::unique_ptr<RealEyebot>> make_real_eyebot(const RealRobotRequest& request, const hal::Log& log) {

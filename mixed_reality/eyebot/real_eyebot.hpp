@@ -5,6 +5,7 @@
 #include "bridges/eyebot/bridge.hpp"
 #include "hal/log.hpp"
 #include "mixed_reality/session/mixed_session.hpp"
+#include "mixed_reality/settings/eyebot_parts.hpp"
 #include "mixed_reality/twin/real_robot.hpp"
 
 namespace tandem::mixed_reality {
@@ -44,15 +45,6 @@ class RealEyebot final : public RealRobot {
   bool stop_asked_ = false;
   bool stop_confirmed_ = false;
 };
-
-/// What a bridge to the robot of this item needs; shared by all commands. Errors: the item's kind is no eye-bot, the
-/// link is no LCM, the name cannot be part of a channel.
-struct EyebotParts {
-  bridges::eyebot::BridgeSettings settings;
-  bridges::eyebot::LcmOpener opener;
-  std::string url;
-};
-hal::Result<EyebotParts> eyebot_parts(const core::RobotItem& item, std::int64_t ticks_per_second);
 
 /// The maker of real eye-bots for experiment files. Errors: as `eyebot_parts`.
 hal::Result<std::unique_ptr<RealEyebot>> make_real_eyebot(const RealRobotRequest& request, const hal::Log& log);

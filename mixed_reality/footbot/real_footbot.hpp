@@ -40,14 +40,6 @@ class RealFootbot final : public RealRobot {
   bool stop_asked_ = false;
 };
 
-/// What a bridge to the robot of this item needs; shared by all commands. Errors: the item's kind is no foot-bot, the
-/// link carries no ASEBA messages, there is no map, or the map has errors: they are all in the message, one a line.
-struct FootbotParts {
-  bridges::footbot::BridgeSettings settings;
-  bridges::aseba::MessageLinkOpener opener;
-};
-hal::Result<FootbotParts> footbot_parts(const core::RobotItem& item, std::int64_t ticks_per_second);
-
 /// The maker of real foot-bots for experiment files. Errors: as `footbot_parts`.
 hal::Result<std::unique_ptr<RealFootbot>> make_real_footbot(const RealRobotRequest& request, const hal::Log& log);
 

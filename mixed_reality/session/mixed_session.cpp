@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "hal/unit.hpp"
+#include "mixed_reality/settings/patience.hpp"
 #include "mixed_reality/tracking/odometry.hpp"
 #include "mixed_reality/tracking/positioned.hpp"
 
@@ -33,10 +34,6 @@ hal::Result<std::unique_ptr<PoseSource>> make_pose_source(const core::RobotItem&
 }
 
 }  // namespace
-
-hal::TimeNs lost_after_ns(const core::RobotItem& item, std::int64_t ticks_per_second) noexcept {
-  return std::max(static_cast<hal::TimeNs>(item.bridge->timeout_s * 1e9), hal::time_of_tick(2, ticks_per_second));
-}
 
 // --- making one ---
 

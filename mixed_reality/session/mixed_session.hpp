@@ -26,10 +26,6 @@ struct RealRobotRequest {
   std::int64_t ticks_per_second = 10;
 };
 
-/// How long a robot with this bridge may be silent, or without commands, before it is stopped: the bridge's `timeout`,
-/// but two ticks at least, because it is asked once a tick.
-hal::TimeNs lost_after_ns(const core::RobotItem& item, std::int64_t ticks_per_second) noexcept;
-
 /// Makes the real robot behind one `<bridge>`. Does not wait for it to answer. Error: no such link, or no bridge for
 /// that kind of robot.
 using RealRobotMaker = std::function<hal::Result<std::unique_ptr<RealRobot>>(const RealRobotRequest&)>;

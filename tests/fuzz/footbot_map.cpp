@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "bridges/footbot/words.hpp"
-#include "mixed_reality/footbot/map_file.hpp"
+#include "mixed_reality/settings/map_file.hpp"
 
 namespace {
 

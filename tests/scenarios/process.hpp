@@ -56,6 +56,17 @@ class Folder {
   fs::path path_;
 };
 
+/// The words that start `tandem`: built for another architecture, it needs an emulator, and so does this test itself.
+inline std::vector<std::string> tandem_words() {
+  std::vector<std::string> words;
+#ifdef TANDEM_EMULATOR
+  std::istringstream in(TANDEM_EMULATOR);
+  for (std::string word; in >> word;) words.push_back(word);
+#endif
+  words.push_back(std::string(TANDEM_BINARY_DIR) + "/bin/tandem");
+  return words;
+}
+
 /// A running `tandem`. Killed, if need be, when this ends.
 class Tandem {
  public:
@@ -63,7 +74,8 @@ class Tandem {
     static int count = 0;
     output_ = folder / ("out" + std::to_string(++count));
     errors_ = folder / ("err" + std::to_string(count));
-    arguments.insert(arguments.begin(), std::string(TANDEM_BINARY_DIR) + "/bin/tandem");
+    const std::vector<std::string> words = tandem_words();
+    arguments.insert(arguments.begin(), words.begin(), words.end());
     std::vector<char*> argv;
     for (std::string& a : arguments) argv.push_back(a.data());
     argv.push_back(nullptr);
@@ -73,7 +85,7 @@ class Tandem {
     posix_spawn_file_actions_addopen(&actions, 1, output_.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
     posix_spawn_file_actions_addopen(&actions, 2, errors_.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
     posix_spawn_file_actions_addchdir_np(&actions, folder.c_str());
-    if (posix_spawn(&pid_, argv[0], &actions, nullptr, argv.data(), environ) != 0) pid_ = -1;
+    if (posix_spawnp(&pid_, argv[0], &actions, nullptr, argv.data(), environ) != 0) pid_ = -1;
     posix_spawn_file_actions_destroy(&actions);
   }
   ~Tandem() {

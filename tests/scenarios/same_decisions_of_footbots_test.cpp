@@ -12,7 +12,7 @@
 #include "hal/device/ring_sensors.hpp"
 #include "hal/device/wheels.hpp"
 #include "hal/spec/footbot.hpp"
-#include "mixed_reality/footbot/map_file.hpp"
+#include "mixed_reality/settings/map_file.hpp"
 #include "tests/core/scenes.hpp"
 
 namespace tandem {

@@ -7,7 +7,7 @@
 #include "bridges/can/faulty_can_link.hpp"
 #include "bridges/can/memory_bus.hpp"
 #include "bridges/footbot/driver.hpp"
-#include "mixed_reality/footbot/map_file.hpp"
+#include "mixed_reality/settings/map_file.hpp"
 #include "tests/bridges/aseba/fake_node.hpp"
 
 namespace tandem::bridges::footbot {

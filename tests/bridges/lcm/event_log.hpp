@@ -28,7 +28,8 @@ inline std::vector<LoggedEvent> read_event_log(const std::string& path) {
   std::vector<LoggedEvent> events;
   for (std::size_t at = 0; at + 28 <= all.size();) {
     if (number(at, 4) != 0xEDA1DA01U) break;
-    const std::size_t channel = number(at + 20, 4), data = number(at + 24, 4);
+    const auto channel = static_cast<std::size_t>(number(at + 20, 4)),
+               data = static_cast<std::size_t>(number(at + 24, 4));
     if (at + 28 + channel + data > all.size()) break;
     events.push_back({static_cast<std::int64_t>(number(at + 4, 8)), static_cast<std::int64_t>(number(at + 12, 8)),
                       all.substr(at + 28, channel), all.substr(at + 28 + channel, data)});

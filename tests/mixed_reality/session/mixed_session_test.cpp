@@ -356,13 +356,5 @@ TEST_F(MixedRun, RefusesARobotThatCannotBeMadeOrFollowed) {
   EXPECT_NE(session.error().message.find("no tracker 'crystal_ball'"), std::string::npos) << session.error().message;
 }
 
-TEST(LostAfter, IsTheBridgesTimeoutButTwoTicksAtLeast) {
-  core::RobotItem item;
-  item.bridge = core::BridgeConfig{};
-  item.bridge->timeout_s = 0.5;
-  EXPECT_EQ(lost_after_ns(item, 10), 500 * kMs);
-  EXPECT_EQ(lost_after_ns(item, 1), 2'000 * kMs);
-}
-
 }  // namespace
 }  // namespace tandem::mixed_reality

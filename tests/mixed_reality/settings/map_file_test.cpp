@@ -1,5 +1,5 @@
 // The file of a foot-bot's names: what it says, and every way to get it wrong.
-#include "mixed_reality/footbot/map_file.hpp"
+#include "mixed_reality/settings/map_file.hpp"
 
 #include <gmock/gmock.h>
 

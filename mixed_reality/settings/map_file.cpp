@@ -1,4 +1,4 @@
-#include "mixed_reality/footbot/map_file.hpp"
+#include "mixed_reality/settings/map_file.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,0 +1,15 @@
+// The `tandem` command on a robot's board: what the board's own robot needs, and no simulation.
+#include "app/robot_commands.hpp"
+
+int main(int argc, char** argv) {
+  using namespace tandem::app;
+  CLI::App app{"Tandem on a robot's board: runs the robot's controller here.", "tandem"};
+  app.footer("Simulation, emulation and mixed runs are commands of the whole program.");
+  app.require_subcommand(1);
+  app.set_version_flag("--version", TANDEM_VERSION);
+  app.failure_message(CLI::FailureMessage::help);
+  int code = kDone;
+  RobotCommandOptions options;
+  add_robot_commands(app, options, code);
+  return parse_and_run(app, argc, argv, code);
+}

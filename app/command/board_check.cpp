@@ -1,0 +1,47 @@
+// `tandem check` on a robot's board: what can be told without a world.
+#include <fmt/format.h>
+
+#include "app/command/command.hpp"
+#include "app/plugin_folders.hpp"
+#include "hal/plugin_loader.hpp"
+
+namespace tandem::app {
+namespace {
+
+/// Adds what is wrong with a robot's controller: its library, its name there, its parameters.
+void check_controller(const core::Scenario& scenario, const core::RobotItem& item, hal::PluginLoader& loader,
+                      core::Problems& problems) {
+  const core::ControllerConfig& config = scenario.controllers[item.controller];
+  const auto type = loader.controller(config.library, config.label);
+  if (!type.ok()) {
+    problems.push_back({scenario.file, config.line, "controller '" + config.id + "': " + type.error().message});
+    return;
+  }
+  core::ElementReader reader(item.params ? *item.params : config.params, problems);
+  (void)type.value()->read_params(reader);
+  reader.finish();
+}
+
+}  // namespace
+
+int check(const CheckOptions& options) {
+  if (is_map(options.experiment)) return check_map(options.experiment);
+  const auto scenario = read_or_complain(options.experiment, options.overrides);
+  if (!scenario) return kBadInput;
+  hal::PluginLoader loader(plugin_folders());
+  core::Problems problems;
+  std::size_t driven = 0;
+  for (const core::RobotItem& item : scenario->robots) {
+    if (!item.bridge) continue;
+    ++driven;
+    check_controller(*scenario, item, loader, problems);
+  }
+  print_problems(problems);
+  if (core::has_errors(problems)) return kBadInput;
+  fmt::print(
+      "{}: good: {} robots with a <bridge>, {} ticks a second; places and simulated devices are not checked here\n",
+      options.experiment, driven, scenario->ticks_per_second);
+  return kDone;
+}
+
+}  // namespace tandem::app

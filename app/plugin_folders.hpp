@@ -1,0 +1,15 @@
+// Where plug-ins are.
+#pragma once
+#include <filesystem>
+#include <vector>
+
+namespace tandem::app {
+
+/// Where plug-ins are looked for: TANDEM_PLUGIN_PATH (folders separated by ':'), then the lib folder beside this
+/// program.
+std::vector<std::filesystem::path> plugin_folders();
+
+/// Every plug-in file in those folders.
+std::vector<std::filesystem::path> plugin_files();
+
+}  // namespace tandem::app

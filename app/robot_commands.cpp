@@ -1,0 +1,48 @@
+#include "app/robot_commands.hpp"
+
+namespace tandem::app {
+
+void add_robot_commands(CLI::App& app, RobotCommandOptions& options, int& code) {
+  CLI::App* check_command = app.add_subcommand("check", "Validate an experiment and print every problem.");
+  check_command->add_option("experiment", options.check.experiment, "The experiment file (.xml)")->required();
+  check_command->add_option("--set", options.check.overrides, "Change the experiment first: path=value")
+      ->allow_extra_args(false);
+  check_command->callback([&options, &code] { code = check(options.check); });
+
+  CLI::App* robot_command = app.add_subcommand("robot", "Run one real robot's controller here.");
+  robot_command->add_option("file", options.robot.file, "Experiment file with one robot that has a <bridge>")
+      ->required();
+  robot_command->add_option("--link", options.robot.link,
+                            "Where the robot is, instead of the file's, e.g. serial:/dev/rfcomm0@115200, can:can0, "
+                            "tcp:ROBOT:33333");
+  robot_command->add_option("--seconds", options.robot.seconds, "How long, instead of the file's length")
+      ->check(CLI::PositiveNumber);
+  robot_command->add_option("--report", options.robot.report,
+                            "Write a JSON report to this file ('-': standard output)");
+  robot_command->callback([&options, &code] { code = robot(options.robot); });
+
+  CLI::App* inspect_command =
+      app.add_subcommand("inspect", "Say which robot is on a link and what it reads. Moves nothing.");
+  inspect_command
+      ->add_option("link", options.inspect.link,
+                   "e.g. serial:/dev/rfcomm0@115200, can:can0, tcp:ROBOT:33333, lcm:udpm://239.255.76.67:7667?ttl=1")
+      ->required();
+  inspect_command->add_option("--seconds", options.inspect.seconds, "How long to listen")
+      ->capture_default_str()
+      ->check(CLI::Range(0.1, 3600.0));
+  inspect_command->callback([&options, &code] { code = inspect(options.inspect); });
+}
+
+int parse_and_run(CLI::App& app, int argc, char** argv, const int& code) {
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& e) {
+    return app.exit(e);
+  } catch (const CLI::ParseError& e) {
+    app.exit(e);
+    return kWrongUsage;
+  }
+  return code;
+}
+
+}  // namespace tandem::app

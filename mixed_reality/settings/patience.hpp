@@ -1,0 +1,12 @@
+// How long a real robot may be silent.
+#pragma once
+#include "core/scenario/scenario.hpp"
+#include "hal/time.hpp"
+
+namespace tandem::mixed_reality {
+
+/// How long a robot with this bridge may be silent, or without commands, before it is stopped: the bridge's `timeout`,
+/// but two ticks at least, because it is asked once a tick.
+hal::TimeNs lost_after_ns(const core::RobotItem& item, std::int64_t ticks_per_second) noexcept;
+
+}  // namespace tandem::mixed_reality
