@@ -13,6 +13,7 @@
 #include "hal/device/ring_sensors.hpp"
 #include "hal/device/turret.hpp"
 #include "hal/device/wheels.hpp"
+#include "hal/elementary.hpp"
 
 namespace tandem::bridges::footbot {
 namespace {
@@ -152,9 +153,9 @@ void FootbotRobot::reckon() noexcept {
   // Along the arc's chord, whose direction is the mean of the headings before and after.
   const double turn = (right - left) / spec::kWheelBase_m;
   const double half = 0.5 * turn;
-  const double chord = 0.5 * (left + right) * (std::fabs(half) < 1e-9 ? 1.0 : std::sin(half) / half);
-  place.x_m += chord * std::cos(place.heading_rad + half);
-  place.y_m += chord * std::sin(place.heading_rad + half);
+  const double chord = 0.5 * (left + right) * (std::fabs(half) < 1e-9 ? 1.0 : hal::sin(half) / half);
+  place.x_m += chord * hal::cos(place.heading_rad + half);
+  place.y_m += chord * hal::sin(place.heading_rad + half);
   place.heading_rad = wrapped(place.heading_rad + turn);
 }
 

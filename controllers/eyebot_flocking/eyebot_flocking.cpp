@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "controllers/flight/calls.hpp"
+#include "hal/elementary.hpp"
 
 namespace tandem::controllers {
 namespace {
@@ -38,9 +39,9 @@ std::array<double, 3> EyebotFlocking::pull() const noexcept {
     const double towards = params_.gain_m_s * (near - near * near) * part;
     const double bearing = heading_rad + static_cast<double>(heard_.bearing_rad[i]);
     const double elevation = static_cast<double>(heard_.elevation_rad[i]);
-    force[0] += towards * std::cos(elevation) * std::cos(bearing);
-    force[1] += towards * std::cos(elevation) * std::sin(bearing);
-    force[2] += towards * std::sin(elevation);
+    force[0] += towards * hal::cos(elevation) * hal::cos(bearing);
+    force[1] += towards * hal::cos(elevation) * hal::sin(bearing);
+    force[2] += towards * hal::sin(elevation);
   }
   for (std::size_t k = 0; k < 3 && mates > 0; ++k) force[k] += params_.alignment * velocity[k] / mates;
   return force;

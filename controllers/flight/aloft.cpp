@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "hal/elementary.hpp"
+
 namespace tandem::controllers {
 namespace {
 
@@ -64,7 +66,7 @@ bool Aloft::down() const noexcept {
 
 double Aloft::heading_rad() const noexcept {
   const auto& q = place_.q_WB;
-  return std::atan2(2.0 * (q[0] * q[3] + q[1] * q[2]), 1.0 - 2.0 * (q[2] * q[2] + q[3] * q[3]));
+  return hal::atan2(2.0 * (q[0] * q[3] + q[1] * q[2]), 1.0 - 2.0 * (q[2] * q[2] + q[3] * q[3]));
 }
 
 }  // namespace tandem::controllers

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "hal/elementary.hpp"
+
 namespace tandem::controllers {
 namespace {
 
@@ -38,7 +40,7 @@ FootbotDiffusion::FootbotDiffusion(hal::Robot& robot, const Params& params)
       wheels_(robot.actuator<hal::WheelSpeeds>()),
       directions_(hal::ring_directions(robot.data_sheet().proximity)),
       delta_(static_cast<float>(params.delta)),
-      tan_alpha_(static_cast<float>(std::tan(params.alpha_rad))),
+      tan_alpha_(static_cast<float>(hal::tan(params.alpha_rad))),
       velocity_m_s_(params.velocity_m_s) {
   if (params.talk || params.look) company_ = std::make_unique<Company>();
   if (params.talk) {

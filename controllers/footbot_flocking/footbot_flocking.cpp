@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "controllers/steering/colors.hpp"
+#include "hal/elementary.hpp"
 #include "hal/spec/footbot.hpp"
 
 namespace tandem::controllers {
@@ -48,8 +49,8 @@ Vector FootbotFlocking::flock() const noexcept {
     const double square = params_.distance_m * params_.distance_m / (distance_m * distance_m);
     const double fourth = square * square;
     const double pull = -params_.gain * (fourth * fourth - fourth);
-    sum.x += pull * std::cos(bearing_rad);
-    sum.y += pull * std::sin(bearing_rad);
+    sum.x += pull * hal::cos(bearing_rad);
+    sum.y += pull * hal::sin(bearing_rad);
     ++beacons;
   }
   return beacons == 0 ? Vector{} : Vector{sum.x / beacons, sum.y / beacons};

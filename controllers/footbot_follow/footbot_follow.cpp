@@ -6,6 +6,7 @@
 #include "controllers/flight/calls.hpp"
 #include "controllers/steering/drive.hpp"
 #include "controllers/steering/nearby.hpp"
+#include "hal/elementary.hpp"
 
 namespace tandem::controllers {
 namespace {
@@ -40,11 +41,11 @@ void FootbotFollow::step() noexcept {
   if (who == heard_.count) return;
   leds_.set(beacon_, hal::kGreen);
   const double range_m = static_cast<double>(heard_.range_m[who]);
-  const double along_m = range_m * std::cos(static_cast<double>(heard_.elevation_rad[who])) - params_.keep_m;
+  const double along_m = range_m * hal::cos(static_cast<double>(heard_.elevation_rad[who])) - params_.keep_m;
   if (along_m <= 0.0) return;
   const double bearing_rad = static_cast<double>(heard_.bearing_rad[who]);
   const Vector away = push_away(proximity_, mounts_);
-  const Vector way{std::cos(bearing_rad) + kAvoid * away.x, std::sin(bearing_rad) + kAvoid * away.y};
+  const Vector way{hal::cos(bearing_rad) + kAvoid * away.x, hal::sin(bearing_rad) + kAvoid * away.y};
   drive_towards(wheels_, way.bearing_rad(), std::min(params_.speed_m_s, kSlowDown_1_s * along_m + 0.01));
 }
 

@@ -5,6 +5,7 @@
 
 #include "controllers/steering/drive.hpp"
 #include "controllers/steering/nearby.hpp"
+#include "hal/elementary.hpp"
 #include "hal/spec/footbot.hpp"
 
 namespace tandem::controllers {
@@ -72,7 +73,7 @@ void FootbotForaging::search() noexcept {
   if (leaving)
     walk(-light.x / brightness, -light.y / brightness);
   else
-    walk(std::cos(drift_rad_), std::sin(drift_rad_));
+    walk(hal::cos(drift_rad_), hal::sin(drift_rad_));
 }
 
 void FootbotForaging::go_home() noexcept {

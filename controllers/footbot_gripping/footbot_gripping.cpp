@@ -4,6 +4,7 @@
 
 #include "controllers/steering/drive.hpp"
 #include "controllers/steering/nearby.hpp"
+#include "hal/elementary.hpp"
 
 namespace tandem::controllers {
 namespace {
@@ -48,11 +49,11 @@ void FootbotGripping::step() noexcept {
 }
 
 double FootbotGripping::from_home_m() const noexcept {
-  return std::hypot(odometry_.x_m, odometry_.y_m);
+  return hal::hypot(odometry_.x_m, odometry_.y_m);
 }
 
 double FootbotGripping::bearing_of_home_rad() const noexcept {
-  return wrapped(std::atan2(-odometry_.y_m, -odometry_.x_m) - odometry_.heading_rad);
+  return wrapped(hal::atan2(-odometry_.y_m, -odometry_.x_m) - odometry_.heading_rad);
 }
 
 void FootbotGripping::look() noexcept {

@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "controllers/steering/drive.hpp"
+#include "hal/elementary.hpp"
 
 namespace tandem::controllers {
 namespace {
@@ -75,11 +76,11 @@ bool FootbotTaskPartitioning::fresh() const noexcept {
 }
 
 double FootbotTaskPartitioning::distance_to(const Vector& place) const noexcept {
-  return std::hypot(place.x - odometry_.x_m, place.y - odometry_.y_m);
+  return hal::hypot(place.x - odometry_.x_m, place.y - odometry_.y_m);
 }
 
 double FootbotTaskPartitioning::bearing_to(const Vector& place) const noexcept {
-  return wrapped(std::atan2(place.y - odometry_.y_m, place.x - odometry_.x_m) - odometry_.heading_rad);
+  return wrapped(hal::atan2(place.y - odometry_.y_m, place.x - odometry_.x_m) - odometry_.heading_rad);
 }
 
 void FootbotTaskPartitioning::enter(State state) noexcept {
@@ -109,7 +110,7 @@ void FootbotTaskPartitioning::search() noexcept {
   if (distance_to(waypoint_) < kNear_m || clock_.now_ns >= leg_until_ns_) {
     const double direction_rad = chance_.between(-std::numbers::pi, std::numbers::pi);
     const double away_m = params_.search_m * std::sqrt(chance_.between(0.0, 1.0));
-    waypoint_ = {place_.x + away_m * std::cos(direction_rad), place_.y + away_m * std::sin(direction_rad)};
+    waypoint_ = {place_.x + away_m * hal::cos(direction_rad), place_.y + away_m * hal::sin(direction_rad)};
     leg_until_ns_ = clock_.now_ns + in_s(5.0 + 2.0 * distance_to(waypoint_) / params_.velocity_m_s);
   }
   drive_towards(wheels_, bearing_to(waypoint_), params_.velocity_m_s);
@@ -224,7 +225,7 @@ void FootbotTaskPartitioning::go_back() noexcept {
   const double to_place_rad = bearing_to(place_);
   if (std::fabs(to_place_rad) > 0.6) return drive_towards(wheels_, to_place_rad, params_.velocity_m_s);
   const Vector push = push_away(proximity_, proximity_mounts_);
-  const Vector way = {std::cos(to_place_rad) + 8.0 * push.x, std::sin(to_place_rad) + 8.0 * push.y};
+  const Vector way = {hal::cos(to_place_rad) + 8.0 * push.x, hal::sin(to_place_rad) + 8.0 * push.y};
   double bearing_rad = way.bearing_rad();
   if (robot_near(heard_, 0.2, 0.8, kRobotAhead_m)) bearing_rad -= 1.0;
   drive_towards(wheels_, bearing_rad, params_.velocity_m_s);

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "hal/elementary.hpp"
+
 namespace tandem::controllers {
 namespace {
 
@@ -22,11 +24,11 @@ double wrapped(double angle_rad) noexcept {
 }
 
 double Vector::length() const noexcept {
-  return std::hypot(x, y);
+  return hal::hypot(x, y);
 }
 
 double Vector::bearing_rad() const noexcept {
-  return std::atan2(y, x);
+  return hal::atan2(y, x);
 }
 
 bool robot_near(const hal::RangeAndBearing& heard, double bearing_rad, double within_rad, double range_m) noexcept {
@@ -61,8 +63,8 @@ Thing nearest_thing(const hal::Proximity& proximity, std::span<const hal::Mount>
   };
   const auto point = [&](std::size_t i) {
     const double d_m = static_cast<double>(proximity.distance_m[i]);
-    return Vector{mounts[i].x_m + d_m * std::cos(mounts[i].bearing_rad),
-                  mounts[i].y_m + d_m * std::sin(mounts[i].bearing_rad)};
+    return Vector{mounts[i].x_m + d_m * hal::cos(mounts[i].bearing_rad),
+                  mounts[i].y_m + d_m * hal::sin(mounts[i].bearing_rad)};
   };
   const std::size_t right = end_of(n - 1);
   const std::size_t left = end_of(1);
@@ -71,12 +73,12 @@ Thing nearest_thing(const hal::Proximity& proximity, std::span<const hal::Mount>
   Vector middle;
   for (std::size_t i = right;; i = (i + 1) % n) {
     const double closeness = static_cast<double>(proximity.closeness(i));
-    middle.x += closeness * std::cos(mounts[i].bearing_rad);
-    middle.y += closeness * std::sin(mounts[i].bearing_rad);
+    middle.x += closeness * hal::cos(mounts[i].bearing_rad);
+    middle.y += closeness * hal::sin(mounts[i].bearing_rad);
     if (i == left) break;
   }
   return {true, middle.bearing_rad(), static_cast<double>(proximity.distance_m[nearest]),
-          std::hypot(a.x - b.x, a.y - b.y)};
+          hal::hypot(a.x - b.x, a.y - b.y)};
 }
 
 Vector push_away(const hal::Proximity& proximity, std::span<const hal::Mount> mounts, double from_rad) noexcept {
@@ -85,8 +87,8 @@ Vector push_away(const hal::Proximity& proximity, std::span<const hal::Mount> mo
   for (std::size_t i = 0; i < n; ++i) {
     if (std::fabs(wrapped(mounts[i].bearing_rad)) < from_rad) continue;
     const double closeness = static_cast<double>(proximity.closeness(i));
-    push.x -= closeness * std::cos(mounts[i].bearing_rad) / static_cast<double>(n);
-    push.y -= closeness * std::sin(mounts[i].bearing_rad) / static_cast<double>(n);
+    push.x -= closeness * hal::cos(mounts[i].bearing_rad) / static_cast<double>(n);
+    push.y -= closeness * hal::sin(mounts[i].bearing_rad) / static_cast<double>(n);
   }
   return push;
 }
@@ -95,8 +97,8 @@ Vector to_light(const hal::Light& light, std::span<const hal::Mount> mounts) noe
   Vector sum;
   const std::size_t n = std::min<std::size_t>(light.count, mounts.size());
   for (std::size_t i = 0; i < n; ++i) {
-    sum.x += static_cast<double>(light.level[i]) * std::cos(mounts[i].bearing_rad);
-    sum.y += static_cast<double>(light.level[i]) * std::sin(mounts[i].bearing_rad);
+    sum.x += static_cast<double>(light.level[i]) * hal::cos(mounts[i].bearing_rad);
+    sum.y += static_cast<double>(light.level[i]) * hal::sin(mounts[i].bearing_rad);
   }
   return sum;
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "hal/elementary.hpp"
 #include "hal/spec/data_sheet.hpp"
 
 namespace tandem::hal {
@@ -17,7 +18,7 @@ std::array<Mount, count> ring_of(double first_deg, double radius_m, double heigh
     const double turn = (first_deg + 360.0 / count * static_cast<double>(i)) / 180.0;
     const double bearing = turn > 1.0 ? turn - 2.0 : turn;  // half turns, in (-1, 1]
     const double rad = bearing * std::numbers::pi;
-    mounts[i] = {rad, radius_m * std::cos(rad), radius_m * std::sin(rad), height_m};
+    mounts[i] = {rad, radius_m * cos(rad), radius_m * sin(rad), height_m};
   }
   return mounts;
 }

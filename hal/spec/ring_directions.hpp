@@ -6,6 +6,7 @@
 #include <mutex>
 #include <span>
 
+#include "hal/elementary.hpp"
 #include "hal/spec/data_sheet.hpp"
 
 namespace tandem::hal {
@@ -32,8 +33,8 @@ inline const RingDirections& ring_directions(std::span<const Mount> mounts) {
   }
   Known& made = known.emplace_back(Known{mounts.data(), {}});
   for (std::size_t i = 0; i < mounts.size() && i < RingDirections::kCapacity; ++i) {
-    made.directions.x[i] = static_cast<float>(std::cos(mounts[i].bearing_rad));
-    made.directions.y[i] = static_cast<float>(std::sin(mounts[i].bearing_rad));
+    made.directions.x[i] = static_cast<float>(cos(mounts[i].bearing_rad));
+    made.directions.y[i] = static_cast<float>(sin(mounts[i].bearing_rad));
   }
   return made.directions;
 }
