@@ -1,0 +1,142 @@
+// Every controller decides alike on every machine: fed the same readings, it writes the same commands, bit by bit.
+//
+// decisions.txt has one line a controller: its name, the fingerprint of its commands of 100,000 ticks, and in how many
+// ticks they changed. Every preset compares with it, those for robots' boards as well. When a controller is new or is
+// meant to behave otherwise: TANDEM_REWRITE_DECISIONS=1 ./tandem test -R decisions
+#include <algorithm>
+#include <cstdlib>
+#include <fstream>
+#include <gtest/gtest.h>
+#include <map>
+#include <new>
+#include <regex>
+#include <set>
+#include <sstream>
+
+#include "hal/plugin_loader.hpp"
+#include "hal/spec/epuck.hpp"
+#include "hal/spec/eyebot.hpp"
+#include "hal/spec/footbot.hpp"
+#include "tests/controllers/decisions/made_up_robot.hpp"
+
+namespace tandem::decisions {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::int64_t kTicks = 100'000;
+const fs::path kGolden = fs::path(TANDEM_SOURCE_DIR) / "tests/controllers/decisions/decisions.txt";
+// They take devices and leave them to others, or obey somebody who is not there.
+const std::set<std::string> kDecideNothing = {"puppet", "footbot_puppet", "eyebot_puppet", "footbot_manual"};
+
+struct Decisions {
+  std::uint64_t hash = 14695981039346656037U;
+  std::int64_t changes = 0;
+
+  std::string text() const {
+    std::ostringstream out;
+    out << std::hex << hash << std::dec << " " << changes;
+    return out.str();
+  }
+};
+
+/// Leaves every parameter as it is by default.
+class Defaults final : public hal::ParamVisitor {
+ public:
+  void number(std::string_view, double&, const hal::Unit&, hal::Range, std::string_view) override {}
+  void integer(std::string_view, std::int64_t&, hal::Range, std::string_view) override {}
+  void flag(std::string_view, bool&, std::string_view) override {}
+  void text(std::string_view, std::string&, std::string_view) override {}
+  void choice(std::string_view, std::string&, std::span<const std::string_view>, std::string_view) override {}
+  void vector(std::string_view, std::array<double, 3>&, const hal::Unit&, std::string_view) override {}
+};
+
+/// The robot that a controller is named after; an e-puck where it is named after none.
+const hal::DataSheet& sheet_for(std::string_view controller) {
+  if (controller.starts_with("footbot")) return hal::footbot::kDataSheet;
+  if (controller.starts_with("eyebot")) return hal::eyebot::kDataSheet;
+  return hal::epuck::kDataSheet;
+}
+
+Decisions decisions_of(const hal::ControllerType& type) {
+  MadeUpRobot robot(sheet_for(type.name));
+  Defaults defaults;
+  const auto params = type.read_params(defaults);
+  std::byte* memory = static_cast<std::byte*>(::operator new (type.size, std::align_val_t{type.align}));
+  type.construct(memory, robot, params.get());
+  Decisions decisions;
+  std::uint64_t last = robot.mix_commands(0);
+  for (std::int64_t tick = 0; tick < kTicks; ++tick) {
+    robot.sense(tick);
+    const std::uint8_t running = 0;
+    hal::StepFault fault;
+    EXPECT_EQ(type.step_row(memory, type.size, 0, 1, &running, fault), 1U) << fault.message;
+    const std::uint64_t commands = robot.mix_commands(0);
+    if (commands != last) ++decisions.changes;
+    last = commands;
+    decisions.hash = (decisions.hash ^ commands) * 1099511628211U;
+  }
+  type.destroy(memory);
+  ::operator delete (memory, std::align_val_t{type.align});
+  return decisions;
+}
+
+std::map<std::string, std::string> read_golden() {
+  std::map<std::string, std::string> lines;
+  std::ifstream in(kGolden);
+  for (std::string line; std::getline(in, line);)
+    lines[line.substr(0, line.find(' '))] = line.substr(line.find(' ') + 1);
+  return lines;
+}
+
+/// The shared objects of the folder controllers/.
+std::vector<std::string> libraries() {
+  std::istringstream in(TANDEM_CONTROLLER_LIBRARIES);
+  std::vector<std::string> names;
+  for (std::string name; std::getline(in, name, ',');)
+    names.push_back(std::string(TANDEM_BINARY_DIR) + "/lib/lib" + name + ".so");
+  return names;
+}
+
+TEST(Decisions, OfEveryControllerAreThoseOfEveryOtherMachine) {
+  hal::PluginLoader loader({});
+  for (const std::string& library : libraries()) {
+    const hal::Status opened = loader.open(library);
+    ASSERT_TRUE(opened.ok()) << opened.error().message;
+  }
+  std::map<std::string, std::string> found;
+  for (const auto& entry : loader.entries()) {
+    if (entry.category != "controller") continue;
+    const Decisions decisions = decisions_of(*static_cast<const hal::ControllerType*>(entry.type));
+    found[entry.name] = decisions.text();
+    EXPECT_EQ(decisions.changes > 0, !kDecideNothing.contains(entry.name)) << entry.name;
+  }
+  if (std::getenv("TANDEM_REWRITE_DECISIONS") != nullptr) {
+    std::ofstream out(kGolden);
+    for (const auto& [name, text] : found) out << name << " " << text << "\n";
+    GTEST_SKIP() << kGolden << " is written anew";
+  }
+  EXPECT_EQ(found, read_golden()) << "left: what it is here; right: " << kGolden;
+}
+
+/// Functions of the C library whose last bits differ between machines; hal/elementary.hpp has those that are needed.
+TEST(Decisions, AreMadeWithoutTheCLibrarysArithmetic) {
+  const std::regex forbidden(
+      R"(\bstd::(sinf?|cosf?|tanf?|asinf?|acosf?|atanf?|atan2f?|sinh|cosh|tanh|exp|exp2|expm1|log|log2|log10|log1p|pow|cbrt|hypot|tgamma|lgamma|erf|normal_distribution|polar)\b)");
+  for (const char* layer : {"controllers", "hal/spec", "hal/device"}) {
+    for (const auto& file : fs::recursive_directory_iterator(fs::path(TANDEM_SOURCE_DIR) / layer)) {
+      if (file.path().extension() != ".cpp" && file.path().extension() != ".hpp") continue;
+      std::ifstream in(file.path());
+      int number = 0;
+      for (std::string line; std::getline(in, line);) {
+        ++number;
+        EXPECT_FALSE(std::regex_search(line, forbidden))
+            << file.path().string() << ":" << number << ": the last bit of this differs between machines; take it from "
+            << "hal/elementary.hpp: " << line;
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace tandem::decisions

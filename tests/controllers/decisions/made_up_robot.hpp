@@ -1,0 +1,52 @@
+// A robot whose readings are made up: the same on every machine, and none of any world.
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "hal/robot.hpp"
+
+namespace tandem::decisions {
+
+/// Has every device that is asked for. What its sensors read is a function of (device, field, element, tick) alone,
+/// made from the device's own description: within what its unit, or the robot's data sheet, allows. Each value stays
+/// for a few ticks; a few readings in a hundred are stale or absent.
+class MadeUpRobot final : public hal::Robot {
+ public:
+  explicit MadeUpRobot(const hal::DataSheet& sheet) : sheet_(sheet) {}
+
+  std::string_view id() const noexcept override { return "robot"; }
+  const hal::DataSheet& data_sheet() const noexcept override { return sheet_; }
+  std::uint64_t seed() const noexcept override { return 1; }
+
+  /// Fills every sensor that was taken.
+  void sense(std::int64_t tick);
+
+  /// Mixes every value of every actuator that was taken into `hash`, in the order of their names.
+  std::uint64_t mix_commands(std::uint64_t hash) const noexcept;
+
+ private:
+  struct Device {
+    const hal::PortType* type = nullptr;
+    std::vector<std::max_align_t> memory;
+    std::uint64_t key = 0;  // of its stream of made-up values
+
+    void* port() { return memory.data(); }
+    const void* port() const { return memory.data(); }
+  };
+
+  void* take(const hal::PortType& type) override;
+  void fill(Device& device, std::int64_t tick);
+  void fill_clock(Device& device, std::int64_t tick);
+  double made_up(const hal::PortType& type, const hal::Field& field, std::size_t index, std::uint64_t bits) const;
+  double entries(const hal::PortType& type, const hal::Field& field, std::uint64_t bits) const;
+
+  const hal::DataSheet& sheet_;
+  std::map<std::string, Device> sensors_, actuators_;  // nodes stay where they are
+};
+
+}  // namespace tandem::decisions
