@@ -195,7 +195,7 @@ void FaultPlan::damage(Bytes& data, TimeNs at) {
   if (happens(FaultKind::Fingerprint, at) && data.size() >= 8) {
     for (std::size_t i = 0; i < 8; ++i) data[i] ^= std::byte{0xFF};
   }
-  if (happens(FaultKind::Truncate, at)) data.resize(chance_.draw() % data.size());
+  if (happens(FaultKind::Truncate, at)) data.resize(static_cast<std::size_t>(chance_.draw() % data.size()));
 }
 
 void FaultPlan::pass(Way& way, Datagram message, std::vector<Datagram>& out) {
