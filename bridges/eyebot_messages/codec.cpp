@@ -1,5 +1,6 @@
 #include "bridges/eyebot_messages/codec.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <exception>
 #include <initializer_list>
@@ -48,7 +49,9 @@ struct Walk {
     if (flaw != Flaw::None) return;
     if (length < 1 || length > static_cast<std::int64_t>(kMostElements)) return fail(Flaw::BadText);
     skip(static_cast<std::size_t>(length));
-    if (flaw == Flaw::None && data[at - 1] != std::byte{0}) fail(Flaw::BadText);
+    if (flaw != Flaw::None) return;
+    const auto bytes = data.subspan(at - static_cast<std::size_t>(length), static_cast<std::size_t>(length));
+    if (std::find(bytes.begin(), bytes.end(), std::byte{0}) != bytes.end() - 1) fail(Flaw::BadText);
   }
 };
 

@@ -230,6 +230,13 @@ TEST(HostileMessages, WithLengthsThatAreNoneAreRefused) {
   EXPECT_EQ(flaw_of<Heartbeat>(with(kHeartbeat, 24, 3)), Flaw::BadText);  // its end is no zero
 }
 
+TEST(HostileMessages, WithTextThatEndsTwiceAreRefused) {
+  Bytes bytes = hex(kHeartbeat);
+  ASSERT_EQ(flaw_of<Heartbeat>(bytes), Flaw::None);
+  bytes[28] = std::byte{0};  // the first letter of its name
+  EXPECT_EQ(flaw_of<Heartbeat>(bytes), Flaw::BadText);
+}
+
 TEST(HostileMessages, WithPacketsOfNegativeLengthAreRefused) {
   Rab rab{};
   rab.n = 1;
