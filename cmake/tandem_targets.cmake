@@ -84,6 +84,10 @@ function(tandem_test)
   set_target_properties(test_${arg_NAME} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/tests)
   add_test(NAME ${arg_NAME} COMMAND test_${arg_NAME})
   set_tests_properties(${arg_NAME} PROPERTIES LABELS "${arg_LABELS}" TIMEOUT ${arg_TIMEOUT})
+  if(TANDEM_SANITIZE MATCHES "thread") # libraries that are not built with it keep locks that it does not see
+    set_property(TEST ${arg_NAME} APPEND PROPERTY ENVIRONMENT
+      "TSAN_OPTIONS=suppressions=${PROJECT_SOURCE_DIR}/tests/bridges/lcm/tsan.supp")
+  endif()
 endfunction()
 
 # One line a folder, "folder : its DEPS : its third-party libraries", for the architecture test.
