@@ -42,7 +42,13 @@ if(TANDEM_FUZZ)
   target_link_options(tandem_flags INTERFACE -fsanitize=address,undefined)
 endif()
 
+# A compiler cache, where there is one, serves all clones: neither paths of the checkout nor of the build folder are part of
+# what is compiled. Results are the same without it.
+add_compile_options(-ffile-prefix-map=${PROJECT_SOURCE_DIR}/=)
 find_program(TANDEM_CCACHE ccache)
 if(TANDEM_CCACHE)
-  set(CMAKE_CXX_COMPILER_LAUNCHER ${TANDEM_CCACHE})
+  foreach(language C CXX)
+    set(CMAKE_${language}_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env CCACHE_BASEDIR=${PROJECT_SOURCE_DIR} CCACHE_NOHASHDIR=1
+      CCACHE_SLOPPINESS=pch_defines,time_macros ${TANDEM_CCACHE})
+  endforeach()
 endif()

@@ -74,9 +74,7 @@ function(tandem_test)
     math(EXPR arg_TIMEOUT "${arg_TIMEOUT} * 10") # an emulated processor is slow
   endif()
   add_executable(test_${arg_NAME} ${arg_SOURCES})
-  target_link_libraries(test_${arg_NAME} PRIVATE tandem_flags GTest::gtest GTest::gtest_main GTest::gmock ${arg_EXTERNAL})
-  target_compile_definitions(test_${arg_NAME} PRIVATE
-    TANDEM_SOURCE_DIR="${PROJECT_SOURCE_DIR}" TANDEM_BINARY_DIR="${CMAKE_BINARY_DIR}")
+  target_link_libraries(test_${arg_NAME} PRIVATE tandem_flags tandem_checkout GTest::gtest GTest::gtest_main GTest::gmock ${arg_EXTERNAL})
   foreach(dep ${arg_DEPS})
     tandem_target_of(dep_target ${dep})
     target_link_libraries(test_${arg_NAME} PRIVATE ${dep_target})

@@ -4,6 +4,7 @@
 
 #include "app/json.hpp"
 #include "app/sha256.hpp"
+#include "tests/checkout.hpp"
 #include "tests/scenarios/process.hpp"
 
 namespace tandem {
@@ -14,7 +15,7 @@ using scenarios::json_value;
 using scenarios::Tandem;
 using scenarios::text_of;
 
-const std::string kConfigs = std::string(TANDEM_SOURCE_DIR) + "/configs/";
+const std::string kConfigs = std::string(test::kSourceDir) + "/configs/";
 
 TEST(Run, WritesReportPictureAndTrajectory) {
   Folder folder;

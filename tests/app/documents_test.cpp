@@ -5,6 +5,7 @@
 #include <regex>
 #include <set>
 
+#include "tests/checkout.hpp"
 #include "tests/scenarios/process.hpp"
 
 namespace tandem {
@@ -15,7 +16,7 @@ using scenarios::Tandem;
 using scenarios::text_of;
 namespace fs = std::filesystem;
 
-const fs::path kTop = TANDEM_SOURCE_DIR;
+const fs::path kTop = test::kSourceDir;
 
 std::vector<fs::path> documents() {
   std::vector<fs::path> all = {kTop / "README.md"};
@@ -83,7 +84,7 @@ TEST(Readme, ItsFirstControllerBuildsRunsAndDoesWhatItSays) {
   // test.
   std::string commands = shell_block(readme, "-DTandem_DIR");
   replace(commands, "TANDEM=~/tandem", "TANDEM=" + kTop.string());
-  replace(commands, "$TANDEM/tandem run", std::string(TANDEM_BINARY_DIR) + "/bin/tandem run");
+  replace(commands, "$TANDEM/tandem run", std::string(test::kBuildDir) + "/bin/tandem run");
   folder.write("commands.sh", commands);
   const std::string run = "cd '" + folder.path().string() + "' && sh -e commands.sh >log 2>&1 </dev/null";
   ASSERT_EQ(std::system(run.c_str()), 0) << text_of(folder.path() / "log");
@@ -105,7 +106,7 @@ TEST(Hooks, TheirExampleBuildsRunsAndDoesWhatItSays) {
   }
   std::string commands = shell_block(page, "-DTandem_DIR");
   replace(commands, "TANDEM=~/tandem", "TANDEM=" + kTop.string());
-  replace(commands, "$TANDEM/tandem run", std::string(TANDEM_BINARY_DIR) + "/bin/tandem run");
+  replace(commands, "$TANDEM/tandem run", std::string(test::kBuildDir) + "/bin/tandem run");
   folder.write("commands.sh", commands);
   const std::string run = "cd '" + folder.path().string() + "' && sh -e commands.sh >log 2>&1 </dev/null";
   ASSERT_EQ(std::system(run.c_str()), 0) << text_of(folder.path() / "log");

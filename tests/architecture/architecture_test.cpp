@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include "tests/architecture/rules.hpp"
+#include "tests/checkout.hpp"
 
 namespace tandem::architecture {
 namespace {
@@ -22,9 +23,9 @@ const LibraryOwners kOwners = {{"tinyxml2", "core/config"},
                                {"ode/", "core/physics/dynamics3d"}};
 
 TEST(Architecture, HoldsInThisTree) {
-  const Dependencies dependencies = read_dependencies(fs::path(TANDEM_BINARY_DIR) / "architecture.txt");
+  const Dependencies dependencies = read_dependencies(fs::path(test::kBuildDir) / "architecture.txt");
   ASSERT_GT(dependencies.size(), 15U);
-  for (const std::string& rule : broken_rules(TANDEM_SOURCE_DIR, dependencies, kOwners)) ADD_FAILURE() << rule;
+  for (const std::string& rule : broken_rules(test::kSourceDir, dependencies, kOwners)) ADD_FAILURE() << rule;
 }
 
 /// A small tree that breaks one rule at a time.

@@ -15,6 +15,7 @@
 #include "core/sim/engine_factory.hpp"
 #include "core/sim/robot_factory.hpp"
 #include "core/sim/world.hpp"
+#include "tests/checkout.hpp"
 
 namespace tandem::test {
 
@@ -46,9 +47,9 @@ struct Experiment {
   explicit Experiment(const std::string& config, const std::vector<std::string>& overrides = {},
                       const core::WorldOptions& options = {}, const std::string& engine = "")
       : loader(std::make_unique<hal::PluginLoader>(
-            std::vector<std::filesystem::path>{std::string(TANDEM_BINARY_DIR) + "/lib"})) {
+            std::vector<std::filesystem::path>{std::string(test::kBuildDir) + "/lib"})) {
     core::Problems problems;
-    auto scenario = core::read_experiment(std::string(TANDEM_SOURCE_DIR) + "/configs/" + config, overrides,
+    auto scenario = core::read_experiment(std::string(test::kSourceDir) + "/configs/" + config, overrides,
                                           known_names(), problems);
     if (scenario && !engine.empty()) {
       scenario->engines.at(0).kind = engine;

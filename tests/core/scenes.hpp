@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/sim/world.hpp"
+#include "tests/checkout.hpp"
 
 namespace tandem::core {
 
@@ -205,7 +206,7 @@ struct MadeWorld {
 inline MadeWorld make(const Scene& scene, const WorldOptions& options = {}) {
   MadeWorld made;
   made.loader =
-      std::make_unique<hal::PluginLoader>(std::vector<std::filesystem::path>{std::string(TANDEM_BINARY_DIR) + "/lib"});
+      std::make_unique<hal::PluginLoader>(std::vector<std::filesystem::path>{std::string(test::kBuildDir) + "/lib"});
   made.world = World::make(scene.scenario, *made.loader, options, made.problems);
   return made;
 }

@@ -1,4 +1,5 @@
 #include "hal/plugin_loader.hpp"
+#include "tests/checkout.hpp"
 
 #include <filesystem>
 #include <fstream>
@@ -11,7 +12,7 @@ namespace fs = std::filesystem;
 using testing::AllOf;
 using testing::HasSubstr;
 
-const fs::path kFolder = fs::path(TANDEM_BINARY_DIR) / "tests" / "hal_plugins";
+const fs::path kFolder = fs::path(test::kBuildDir) / "tests" / "hal_plugins";
 
 class Loader : public testing::Test {
  protected:

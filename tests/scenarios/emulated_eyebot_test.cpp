@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <sched.h>
 
+#include "tests/checkout.hpp"
 #include "tests/scenarios/process.hpp"
 
 namespace tandem::scenarios {
@@ -33,7 +34,7 @@ class EmulatedEyebotFlies : public testing::Test {
   }
 
   static std::vector<std::string> drive(std::vector<std::string> more = {}) {
-    std::vector<std::string> arguments = {"robot", std::string(TANDEM_SOURCE_DIR) + "/configs/eyebot_robot.xml",
+    std::vector<std::string> arguments = {"robot", std::string(test::kSourceDir) + "/configs/eyebot_robot.xml",
                                           "--link", EmulatedEyebot::kLink};
     arguments.insert(arguments.end(), more.begin(), more.end());
     return arguments;

@@ -1,6 +1,7 @@
 // The command as a user types it, against an emulated foot-bot; verdicts come from the robot's own log.
 #include <gmock/gmock.h>
 
+#include "tests/checkout.hpp"
 #include "tests/scenarios/process.hpp"
 
 namespace tandem::scenarios {
@@ -8,7 +9,7 @@ namespace {
 
 using testing::HasSubstr;
 
-const std::string kConfigs = std::string(TANDEM_SOURCE_DIR) + "/configs/";
+const std::string kConfigs = std::string(test::kSourceDir) + "/configs/";
 constexpr int kCruise = 12;  // 5 cm/s in pulses per 5 ms
 
 std::vector<std::string> drive(const EmulatedFootbot& footbot, std::vector<std::string> more = {}) {

@@ -15,6 +15,8 @@
 #include <unistd.h>
 #include <vector>
 
+#include "tests/checkout.hpp"
+
 namespace tandem::scenarios {
 
 namespace fs = std::filesystem;
@@ -63,7 +65,7 @@ inline std::vector<std::string> tandem_words() {
   std::istringstream in(TANDEM_EMULATOR);
   for (std::string word; in >> word;) words.push_back(word);
 #endif
-  words.push_back(std::string(TANDEM_BINARY_DIR) + "/bin/tandem");
+  words.push_back(std::string(test::kBuildDir) + "/bin/tandem");
   return words;
 }
 

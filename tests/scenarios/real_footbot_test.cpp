@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 
 #include "tests/bridges/footbot/footbot_on_tcp.hpp"
+#include "tests/checkout.hpp"
 #include "tests/scenarios/process.hpp"
 
 namespace tandem::scenarios {
@@ -10,7 +11,7 @@ namespace {
 using bridges::footbot::FootbotOnTcp;
 using testing::HasSubstr;
 
-const std::string kConfigs = std::string(TANDEM_SOURCE_DIR) + "/configs/";
+const std::string kConfigs = std::string(test::kSourceDir) + "/configs/";
 
 TEST(RealFootbot, IsDrivenByTheControllerOfTheSimulatedOnes) {
   Folder folder;

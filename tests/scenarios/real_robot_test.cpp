@@ -3,13 +3,14 @@
 #include <gtest/gtest.h>
 #include <memory>
 
+#include "tests/checkout.hpp"
 #include "tests/scenarios/process.hpp"
 
 namespace tandem::scenarios {
 namespace {
 
-const std::string kConfigs = std::string(TANDEM_SOURCE_DIR) + "/configs/";
-const std::string kLibraries = std::string(TANDEM_BINARY_DIR) + "/lib/";
+const std::string kConfigs = std::string(test::kSourceDir) + "/configs/";
+const std::string kLibraries = std::string(test::kBuildDir) + "/lib/";
 
 std::string printed_by(const std::string& command) {
   std::string text;

@@ -13,6 +13,7 @@
 #include "hal/device/wheels.hpp"
 #include "hal/spec/footbot.hpp"
 #include "mixed_reality/settings/map_file.hpp"
+#include "tests/checkout.hpp"
 #include "tests/core/scenes.hpp"
 
 namespace tandem {
@@ -27,7 +28,7 @@ constexpr hal::TimeNs kHandshake_ns = 5 * hal::kNsPerSecond;
 
 bridge::FootbotMap default_map() {
   core::Problems problems;
-  const auto map = mixed_reality::read_footbot_map(TANDEM_SOURCE_DIR "/configs/footbot_map.xml", problems);
+  const auto map = mixed_reality::read_footbot_map((std::string(test::kSourceDir) + "/configs/footbot_map.xml"), problems);
   for (const core::Problem& p : problems) ADD_FAILURE() << core::to_text(p);
   return map.value_or(bridge::FootbotMap{});
 }

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <gmock/gmock.h>
 
+#include "tests/checkout.hpp"
 #include "tests/scenarios/process.hpp"
 
 namespace tandem {
@@ -12,7 +13,7 @@ using scenarios::text_of;
 using testing::HasSubstr;
 using testing::Not;
 
-const std::string kScript = std::string(TANDEM_SOURCE_DIR) + "/scripts/task_partitioning.py";
+const std::string kScript = std::string(test::kSourceDir) + "/scripts/task_partitioning.py";
 
 /// Runs python3 in `folder`; what it printed is in the files out and err there. @returns its exit code
 int python(const Folder& folder, const std::string& arguments) {
@@ -22,7 +23,7 @@ int python(const Folder& folder, const std::string& arguments) {
 }
 
 std::string program() {
-  return " --program " + std::string(TANDEM_BINARY_DIR) + "/bin/tandem ";
+  return " --program " + std::string(test::kBuildDir) + "/bin/tandem ";
 }
 
 std::vector<std::vector<double>> table(const std::filesystem::path& csv) {
@@ -86,7 +87,7 @@ TEST(TaskPartitioningScript, KnowsItsStatistics) {
   const Folder folder;
   // Quantiles of Student's t from tables. Wilcoxon's interval of ten pairs is from the 9th to the 47th of the 55 Walsh
   // averages: 8 is the critical value of the test at 5 % [Hollander and Wolfe 1999, table A.4].
-  folder.write("check.py", "import sys\nsys.path.insert(0, '" + std::string(TANDEM_SOURCE_DIR) + R"(/scripts')
+  folder.write("check.py", "import sys\nsys.path.insert(0, '" + std::string(test::kSourceDir) + R"(/scripts')
 import task_partitioning as t
 for v, q in ((1, 12.706), (2, 4.303), (3, 3.182), (5, 2.571), (9, 2.262), (29, 2.045)):
     assert abs(t.student(v) / q - 1) < 0.01, v

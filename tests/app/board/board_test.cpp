@@ -5,6 +5,7 @@
 
 #include "bridges/epuck_emulator/emulator.hpp"
 #include "bridges/footbot_emulator/emulator.hpp"
+#include "tests/checkout.hpp"
 #include "tests/scenarios/process.hpp"
 
 namespace tandem {
@@ -16,7 +17,7 @@ using scenarios::Tandem;
 using scenarios::text_of;
 using testing::HasSubstr;
 
-const std::string kConfigs = std::string(TANDEM_SOURCE_DIR) + "/configs/";
+const std::string kConfigs = std::string(test::kSourceDir) + "/configs/";
 constexpr double kPatience_s = 60.0;  // an emulated processor is slow
 
 /// A robot's firmware on a thread of its own.

@@ -17,6 +17,7 @@
 #include <unistd.h>
 
 #include "bridges/epuck_emulator/shared_body.hpp"
+#include "tests/checkout.hpp"
 
 namespace tandem::bridges::epuck_emulator {
 namespace {
@@ -387,7 +388,7 @@ TEST(Emulator, UnderstandsAnIndependentSerialLibrary) {
   if (python.empty()) GTEST_SKIP() << "pyserial is not installed (Debian packages: python3 python3-serial)";
   for (const char* firmware : {"gctronic", "epuck2"}) {
     Running robot({.firmware = firmware});
-    const std::string command = python + " " + TANDEM_SOURCE_DIR + "/tests/bridges/epuck_emulator/serial_peer.py " +
+    const std::string command = python + " " + test::kSourceDir + "/tests/bridges/epuck_emulator/serial_peer.py " +
                                 robot.path() + " " + firmware;
     const int status = std::system(command.c_str());
     EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << command;

@@ -15,6 +15,7 @@
 #include "hal/device/flight.hpp"
 #include "tests/bridges/eyebot/scripted_robot.hpp"
 #include "tests/bridges/lcm/witness.hpp"
+#include "tests/checkout.hpp"
 
 namespace tandem::bridges::eyebot {
 namespace {
@@ -301,8 +302,8 @@ class PythonRobot {
   explicit PythonRobot(const std::string& name) {
     child_ = ::fork();
     if (child_ != 0) return;
-    ::execlp("python3", "python3", TANDEM_SOURCE_DIR "/tests/bridges/eyebot/peer.py",
-             TANDEM_BINARY_DIR "/tests/eyebot_py", name.c_str(), nullptr);
+    ::execlp("python3", "python3", (std::string(test::kSourceDir) + "/tests/bridges/eyebot/peer.py").c_str(),
+             (std::string(test::kBuildDir) + "/tests/eyebot_py").c_str(), name.c_str(), nullptr);
     ::_exit(127);
   }
   ~PythonRobot() {

@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include "tests/bridges/eyebot_emulator/hand_written.hpp"
+#include "tests/checkout.hpp"
 
 namespace tandem::bridges::eyebot_emulator {
 namespace {
@@ -79,9 +80,9 @@ class OnUdp : public testing::Test {
     if (!permitted_) return;
     std::string pattern = (fs::temp_directory_path() / "eyebot_on_udp_XXXXXX").string();
     const fs::path folder = mkdtemp(pattern.data());
-    const std::string peer = std::string(TANDEM_SOURCE_DIR) + "/tests/bridges/eyebot_emulator/peer.py";
+    const std::string peer = std::string(test::kSourceDir) + "/tests/bridges/eyebot_emulator/peer.py";
     const std::string command = "unshare -n sh -c 'ip link set lo up; ip route add 224.0.0.0/4 dev lo; exec python3 " +
-                                peer + " " + TANDEM_BINARY_DIR + "/bin/tandem " + TANDEM_PEER_TYPES + " " +
+                                peer + " " + test::kBuildDir + "/bin/tandem " + TANDEM_PEER_TYPES + " " +
                                 folder.string() + "' > " + (folder / "peer.txt").string() + " 2>&1";
     code_ = std::system(command.c_str());
     complaint_ = text_of(folder / "peer.txt");

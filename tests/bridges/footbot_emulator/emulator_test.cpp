@@ -1,5 +1,6 @@
 // The whole emulator on real pseudo-terminals and sockets. The host's side is plain POSIX, and a foreign CAN library.
 #include "bridges/footbot_emulator/emulator.hpp"
+#include "tests/checkout.hpp"
 
 #include <arpa/inet.h>
 #include <chrono>
@@ -296,7 +297,7 @@ TEST(Emulator, IsUnderstoodByAForeignLibrary) {
   const std::string python = python_with_can();
   if (python.empty()) GTEST_SKIP() << "python-can is not installed (Debian packages: python3-can python3-serial)";
   Running emulator(with("pty:fb0"));
-  const std::string script = std::string(TANDEM_SOURCE_DIR) + "/tests/bridges/footbot_emulator/can_peer.py";
+  const std::string script = std::string(test::kSourceDir) + "/tests/bridges/footbot_emulator/can_peer.py";
   EXPECT_EQ(std::system((python + " " + script + " " + emulator.path()).c_str()), 0);
   EXPECT_TRUE(emulator.happened(R"("event":"wheels","left":30,"right":0)"));
 }

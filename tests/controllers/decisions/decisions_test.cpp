@@ -17,6 +17,7 @@
 #include "hal/spec/epuck.hpp"
 #include "hal/spec/eyebot.hpp"
 #include "hal/spec/footbot.hpp"
+#include "tests/checkout.hpp"
 #include "tests/controllers/decisions/made_up_robot.hpp"
 
 namespace tandem::decisions {
@@ -25,7 +26,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::int64_t kTicks = 100'000;
-const fs::path kGolden = fs::path(TANDEM_SOURCE_DIR) / "tests/controllers/decisions/decisions.txt";
+const fs::path kGolden = fs::path(test::kSourceDir) / "tests/controllers/decisions/decisions.txt";
 // They take devices and leave them to others, or obey somebody who is not there.
 const std::set<std::string> kDecideNothing = {"puppet", "footbot_puppet", "eyebot_puppet", "footbot_manual"};
 
@@ -94,7 +95,7 @@ std::vector<std::string> libraries() {
   std::istringstream in(TANDEM_CONTROLLER_LIBRARIES);
   std::vector<std::string> names;
   for (std::string name; std::getline(in, name, ',');)
-    names.push_back(std::string(TANDEM_BINARY_DIR) + "/lib/lib" + name + ".so");
+    names.push_back(std::string(test::kBuildDir) + "/lib/lib" + name + ".so");
   return names;
 }
 
@@ -124,7 +125,7 @@ TEST(Decisions, AreMadeWithoutTheCLibrarysArithmetic) {
   const std::regex forbidden(
       R"(\bstd::(sinf?|cosf?|tanf?|asinf?|acosf?|atanf?|atan2f?|sinh|cosh|tanh|exp|exp2|expm1|log|log2|log10|log1p|pow|cbrt|hypot|tgamma|lgamma|erf|normal_distribution|polar)\b)");
   for (const char* layer : {"controllers", "hal/spec", "hal/device"}) {
-    for (const auto& file : fs::recursive_directory_iterator(fs::path(TANDEM_SOURCE_DIR) / layer)) {
+    for (const auto& file : fs::recursive_directory_iterator(fs::path(test::kSourceDir) / layer)) {
       if (file.path().extension() != ".cpp" && file.path().extension() != ".hpp") continue;
       std::ifstream in(file.path());
       int number = 0;

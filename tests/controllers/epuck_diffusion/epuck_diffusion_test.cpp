@@ -3,6 +3,7 @@
 #include <new>
 
 #include "hal/plugin_loader.hpp"
+#include "tests/checkout.hpp"
 #include "tests/controllers/test_robot.hpp"
 
 namespace tandem {
@@ -143,7 +144,7 @@ TEST(DiffusionDrive, NeverTouchesTheWallsOfARoomAndKeepsMoving) {
 }
 
 TEST(DiffusionPlugin, LoadsAndSteersThroughItsTable) {
-  hal::PluginLoader loader({std::string(TANDEM_BINARY_DIR) + "/lib"});
+  hal::PluginLoader loader({std::string(test::kBuildDir) + "/lib"});
   const auto type = loader.controller("epuck_diffusion", "epuck_diffusion");
   ASSERT_TRUE(type.ok()) << type.error().message;
   test::NumberNotes visitor;
@@ -170,7 +171,7 @@ TEST(DiffusionPlugin, RefusesARobotWithoutWheels) {
 }
 
 TEST(DiffusionPlugin, SeesNoWorld) {
-  test::expect_no_world_in(std::string(TANDEM_BINARY_DIR) + "/lib/libepuck_diffusion.so");
+  test::expect_no_world_in(std::string(test::kBuildDir) + "/lib/libepuck_diffusion.so");
 }
 
 }  // namespace

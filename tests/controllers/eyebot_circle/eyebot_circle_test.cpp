@@ -1,6 +1,7 @@
 // An eye-bot that flies circles, and foot-bots that follow it, in two engines.
 #include <cmath>
 
+#include "tests/checkout.hpp"
 #include "tests/controllers/experiment.hpp"
 #include "tests/controllers/test_robot.hpp"
 
@@ -61,7 +62,7 @@ TEST(EyebotCircle, TheSameForAnyNumberOfThreads) {
 
 TEST(EyebotCirclePlugins, SeeNoWorld) {
   for (const char* name : {"eyebot_circle", "footbot_follow"})
-    test::expect_no_world_in(std::string(TANDEM_BINARY_DIR) + "/lib/lib" + name + ".so");
+    test::expect_no_world_in(std::string(test::kBuildDir) + "/lib/lib" + name + ".so");
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 // Eye-bots that flock: distances, common way, bounds.
 #include <cmath>
 
+#include "tests/checkout.hpp"
 #include "tests/controllers/experiment.hpp"
 #include "tests/controllers/test_robot.hpp"
 
@@ -67,7 +68,7 @@ TEST(EyebotFlocking, TheSameForAnyNumberOfThreads) {
 }
 
 TEST(EyebotFlockingPlugin, SeesNoWorld) {
-  test::expect_no_world_in(std::string(TANDEM_BINARY_DIR) + "/lib/libeyebot_flocking.so");
+  test::expect_no_world_in(std::string(test::kBuildDir) + "/lib/libeyebot_flocking.so");
 }
 
 }  // namespace

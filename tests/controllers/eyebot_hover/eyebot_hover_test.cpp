@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "core/space/stores.hpp"
+#include "tests/checkout.hpp"
 #include "tests/controllers/experiment.hpp"
 #include "tests/controllers/test_robot.hpp"
 
@@ -59,7 +60,7 @@ TEST(EyebotHover, FliesInEveryEngineThatCan) {
 }
 
 TEST(EyebotHoverPlugin, SeesNoWorld) {
-  test::expect_no_world_in(std::string(TANDEM_BINARY_DIR) + "/lib/libeyebot_hover.so");
+  test::expect_no_world_in(std::string(test::kBuildDir) + "/lib/libeyebot_hover.so");
 }
 
 }  // namespace

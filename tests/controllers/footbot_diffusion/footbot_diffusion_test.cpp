@@ -2,6 +2,7 @@
 
 #include "hal/plugin_loader.hpp"
 #include "hal/spec/footbot.hpp"
+#include "tests/checkout.hpp"
 #include "tests/controllers/test_robot.hpp"
 
 namespace tandem {
@@ -111,7 +112,7 @@ TEST(FootbotDiffusionDrive, NeverTouchesTheWallsOfARoomAndKeepsMoving) {
 }
 
 TEST(FootbotDiffusionPlugin, LoadsAndFitsACacheLine) {
-  hal::PluginLoader loader({std::string(TANDEM_BINARY_DIR) + "/lib"});
+  hal::PluginLoader loader({std::string(test::kBuildDir) + "/lib"});
   const auto type = loader.controller("footbot_diffusion", "footbot_diffusion");
   ASSERT_TRUE(type.ok()) << type.error().message;
   test::NumberNotes visitor;
@@ -121,7 +122,7 @@ TEST(FootbotDiffusionPlugin, LoadsAndFitsACacheLine) {
 }
 
 TEST(FootbotDiffusionPlugin, SeesNoWorld) {
-  test::expect_no_world_in(std::string(TANDEM_BINARY_DIR) + "/lib/libfootbot_diffusion.so");
+  test::expect_no_world_in(std::string(test::kBuildDir) + "/lib/libfootbot_diffusion.so");
 }
 
 }  // namespace

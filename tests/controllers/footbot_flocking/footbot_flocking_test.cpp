@@ -2,6 +2,7 @@
 #include <cmath>
 #include <complex>
 
+#include "tests/checkout.hpp"
 #include "tests/controllers/experiment.hpp"
 #include "tests/controllers/test_robot.hpp"
 
@@ -109,7 +110,7 @@ TEST(Flocking, GivesTheSameBitsForTheSameSeedAndAnyNumberOfThreads) {
 }
 
 TEST(FlockingPlugin, SeesNoWorld) {
-  test::expect_no_world_in(std::string(TANDEM_BINARY_DIR) + "/lib/libfootbot_flocking.so");
+  test::expect_no_world_in(std::string(test::kBuildDir) + "/lib/libfootbot_flocking.so");
 }
 
 }  // namespace

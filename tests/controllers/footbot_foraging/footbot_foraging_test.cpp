@@ -4,6 +4,7 @@
 
 #include "hal/device/leds.hpp"
 #include "hal/spec/footbot.hpp"
+#include "tests/checkout.hpp"
 #include "tests/controllers/experiment.hpp"
 #include "tests/controllers/test_robot.hpp"
 
@@ -125,7 +126,7 @@ TEST(Foraging, GivesTheSameBitsForTheSameSeedAndAnyNumberOfThreads) {
 }
 
 TEST(ForagingPlugin, SeesNoWorld) {
-  test::expect_no_world_in(std::string(TANDEM_BINARY_DIR) + "/lib/libfootbot_foraging.so");
+  test::expect_no_world_in(std::string(test::kBuildDir) + "/lib/libfootbot_foraging.so");
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include <cmath>
 
+#include "tests/checkout.hpp"
 #include "tests/controllers/experiment.hpp"
 #include "tests/controllers/test_robot.hpp"
 
@@ -77,7 +78,7 @@ TEST(Gripping, GivesTheSameBitsForTheSameSeedAndAnyNumberOfThreads) {
 }
 
 TEST(GrippingPlugin, SeesNoWorld) {
-  test::expect_no_world_in(std::string(TANDEM_BINARY_DIR) + "/lib/libfootbot_gripping.so");
+  test::expect_no_world_in(std::string(test::kBuildDir) + "/lib/libfootbot_gripping.so");
 }
 
 }  // namespace

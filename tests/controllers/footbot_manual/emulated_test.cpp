@@ -1,6 +1,7 @@
 // A foot-bot on a link that is driven by hand; verdicts come from the robot's own log.
 #include <gtest/gtest.h>
 
+#include "tests/checkout.hpp"
 #include "tests/controllers/footbot_manual/operator.hpp"
 #include "tests/scenarios/process.hpp"
 
@@ -19,7 +20,7 @@ TEST(ManualRobot, DrivesWhileItIsToldAndStopsWhenItsOperatorFallsSilent) {
                    std::to_string(port) +
                    R"("/></footbot_manual></controllers><arena size="2,2,1"><foot-bot id="fb0"><body position="0,0,0"/>
 <controller config="m"/><bridge link="slcan:fb0@1000000" map=")" +
-                   std::string(TANDEM_SOURCE_DIR) + R"(/configs/footbot_map.xml"/></foot-bot></arena></tandem>)");
+                   std::string(test::kSourceDir) + R"(/configs/footbot_map.xml"/></foot-bot></arena></tandem>)");
   Tandem robot({"robot", "manual.xml"}, folder.path());
   const test::Operator person;
   EXPECT_TRUE(eventually(

@@ -6,6 +6,7 @@
 #include "hal/device/turret.hpp"
 #include "hal/device/wheels.hpp"
 #include "hal/spec/footbot.hpp"
+#include "tests/checkout.hpp"
 #include "tests/controllers/experiment.hpp"
 #include "tests/controllers/footbot_manual/operator.hpp"
 #include "tests/controllers/test_robot.hpp"
@@ -206,9 +207,9 @@ TEST(Manual, AnswersWhatItCannotDoAndDrivesOnNotForThat) {
 TEST(Manual, SaysWhenAPortIsTaken) {
   const test::Operator other;
   core::Problems problems;
-  hal::PluginLoader loader({std::string(TANDEM_BINARY_DIR) + "/lib"});
+  hal::PluginLoader loader({std::string(test::kBuildDir) + "/lib"});
   const auto scenario = core::read_experiment(
-      std::string(TANDEM_SOURCE_DIR) + "/configs/" + kConfig,
+      std::string(test::kSourceDir) + "/configs/" + kConfig,
       {"controllers.footbot_manual[hand].params.port=" + std::to_string(other.port())}, test::known_names(), problems);
   ASSERT_TRUE(scenario);
   EXPECT_EQ(core::World::make(*scenario, loader, {}, problems), nullptr);
@@ -236,7 +237,7 @@ TEST(Manual, StillListensAfterGoingBackToACheckpoint) {
 }
 
 TEST(ManualPlugin, SeesNoWorld) {
-  test::expect_no_world_in(std::string(TANDEM_BINARY_DIR) + "/lib/libfootbot_manual.so");
+  test::expect_no_world_in(std::string(test::kBuildDir) + "/lib/libfootbot_manual.so");
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "hal/spec/footbot.hpp"
+#include "tests/checkout.hpp"
 #include "tests/controllers/experiment.hpp"
 #include "tests/controllers/test_robot.hpp"
 
@@ -95,7 +96,7 @@ TEST(Shuttle, InReverseComesHomeOnTheSameLineOrWithSlantedTreelsOnAnS) {
 }
 
 TEST(ShuttlePlugin, SeesNoWorld) {
-  test::expect_no_world_in(std::string(TANDEM_BINARY_DIR) + "/lib/libfootbot_shuttle.so");
+  test::expect_no_world_in(std::string(test::kBuildDir) + "/lib/libfootbot_shuttle.so");
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 
 #include "hal/device/leds.hpp"
 #include "hal/spec/footbot.hpp"
+#include "tests/checkout.hpp"
 #include "tests/controllers/experiment.hpp"
 #include "tests/controllers/test_robot.hpp"
 
@@ -120,7 +121,7 @@ TEST(Synchronization, GivesTheSameBitsForTheSameSeedAndAnyNumberOfThreads) {
 }
 
 TEST(SynchronizationPlugin, SeesNoWorld) {
-  test::expect_no_world_in(std::string(TANDEM_BINARY_DIR) + "/lib/libfootbot_synchronization.so");
+  test::expect_no_world_in(std::string(test::kBuildDir) + "/lib/libfootbot_synchronization.so");
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include "core/space/space.hpp"
 #include "hal/device/leds.hpp"
+#include "tests/checkout.hpp"
 #include "tests/controllers/experiment.hpp"
 #include "tests/controllers/test_robot.hpp"
 
@@ -103,7 +104,7 @@ TEST(TaskPartitioning, GoesOnAlikeFromACheckpoint) {
 }
 
 TEST(TaskPartitioningPlugin, SeesNoWorld) {
-  test::expect_no_world_in(std::string(TANDEM_BINARY_DIR) + "/lib/libfootbot_task_partitioning.so");
+  test::expect_no_world_in(std::string(test::kBuildDir) + "/lib/libfootbot_task_partitioning.so");
 }
 
 }  // namespace

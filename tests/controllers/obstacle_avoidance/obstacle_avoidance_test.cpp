@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "hal/plugin_loader.hpp"
+#include "tests/checkout.hpp"
 #include "tests/controllers/test_robot.hpp"
 
 namespace tandem {
@@ -119,14 +120,14 @@ TEST(AvoidanceParams, AreDescribedWithDefaultsInRange) {
 }
 
 TEST(AvoidancePlugin, Loads) {
-  hal::PluginLoader loader({std::string(TANDEM_BINARY_DIR) + "/lib"});
+  hal::PluginLoader loader({std::string(test::kBuildDir) + "/lib"});
   const auto type = loader.controller("obstacle_avoidance", "");
   ASSERT_TRUE(type.ok()) << type.error().message;
   EXPECT_EQ(type.value()->name, "obstacle_avoidance");
 }
 
 TEST(AvoidancePlugin, SeesNoWorld) {
-  test::expect_no_world_in(std::string(TANDEM_BINARY_DIR) + "/lib/libobstacle_avoidance.so");
+  test::expect_no_world_in(std::string(test::kBuildDir) + "/lib/libobstacle_avoidance.so");
 }
 
 }  // namespace

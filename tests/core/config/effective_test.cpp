@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include "core/config/xml.hpp"
+#include "tests/checkout.hpp"
 #include "tests/core/config/reading.hpp"
 
 namespace tandem::core {
@@ -77,7 +78,7 @@ TEST(EffectiveSettings, AreWrittenTheSameWhenReadAgain) {
 
 TEST(EffectiveSettings, OfEveryExperimentHereReadBackAsTheSame) {
   int files = 0;
-  for (const auto& entry : std::filesystem::directory_iterator(TANDEM_SOURCE_DIR "/configs")) {
+  for (const auto& entry : std::filesystem::directory_iterator((std::string(test::kSourceDir) + "/configs"))) {
     if (entry.path().extension() != ".xml" || entry.path().filename() == "footbot_map.xml") continue;
     SCOPED_TRACE(entry.path());
     ++files;

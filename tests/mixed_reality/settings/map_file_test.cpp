@@ -1,5 +1,6 @@
 // The file of a foot-bot's names: what it says, and every way to get it wrong.
 #include "mixed_reality/settings/map_file.hpp"
+#include "tests/checkout.hpp"
 
 #include <gmock/gmock.h>
 
@@ -87,7 +88,7 @@ TEST(FootbotMapFile, IsReadAsItStands) {
 
 TEST(FootbotMapFile, OfThisProjectHasNoProblem) {
   core::Problems problems;
-  const auto map = read_footbot_map(TANDEM_SOURCE_DIR "/configs/footbot_map.xml", problems);
+  const auto map = read_footbot_map((std::string(test::kSourceDir) + "/configs/footbot_map.xml"), problems);
   for (const core::Problem& p : problems) ADD_FAILURE() << core::to_text(p);
   ASSERT_TRUE(map);
   EXPECT_EQ(map->nodes.size(), 9U);

@@ -1,0 +1,35 @@
+// Interface of what stops one real robot of one kind once its hub is gone. Runs in the guardian process alone.
+#pragma once
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "bridges/stop_messages.hpp"
+#include "hal/time.hpp"
+
+namespace tandem::bridges::guardian {
+
+enum class StopState : std::uint8_t {
+  Unreachable,  ///< the link does not open, or nothing comes back
+  Stopping,     ///< it answers, and has not confirmed that it rests
+  Confirmed     ///< the robot itself says that it rests
+};
+
+/// Stops one robot. Has a thread of its own in the guardian: nothing that it does delays another robot's stop.
+class Stopper {
+ public:
+  virtual ~Stopper() = default;
+  /// Opens the link where it is not open, says stop, listens. Returns within 50 ms; called again at once until
+  /// Confirmed, however long that takes.
+  virtual StopState step(hal::TimeNs now) = 0;
+  /// What is known, for people: "/dev/rfcomm0 does not open: …".
+  virtual std::string trouble() const = 0;
+};
+
+/// One kind's stopper. `make` neither blocks nor throws.
+struct StopperType {
+  std::string_view kind;
+  std::unique_ptr<Stopper> (*make)(const StopMessages& messages);
+};
+
+}  // namespace tandem::bridges::guardian

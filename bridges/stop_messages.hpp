@@ -1,0 +1,20 @@
+// How to stop one robot without its hub: what the guardian process is told of it, as plain text.
+#pragma once
+#include <cstdint>
+#include <string>
+
+namespace tandem::bridges {
+
+/// Everything that it takes to stop one real robot. `version` grows whenever any other field changes (a module came, a
+/// session began), so that whoever keeps a copy knows when to renew it.
+struct StopMessages {
+  std::string robot;  ///< its id in the experiment, for people
+  std::string kind;   ///< names the `StopperType` that understands `body`, e.g. "e-puck"
+  std::string link;   ///< LINK text with absolute paths: the guardian has no other folder to start from
+  std::string body;   ///< the kind's own; any bytes
+  std::uint64_t version = 0;
+
+  friend bool operator==(const StopMessages&, const StopMessages&) = default;
+};
+
+}  // namespace tandem::bridges
