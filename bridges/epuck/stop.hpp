@@ -1,0 +1,87 @@
+// How an e-puck is stopped so that bytes lost, doubled or flipped on the way do not make it drive. Used by the session
+// and by the guardian, which has no session.
+//
+// The stock firmware reads a stream without frames: a byte that is lost shifts all that follow into other places, and
+// what stands behind a half-received "set speeds" becomes a speed. Hence three bursts with quiet times between them:
+//
+//   words    44 x 00, then 10 x "S\r"   zeros end any half-received binary command (the longest has 35 bytes and a 0)
+//   zeros    BC, then 12 x 00           speeds 0, also in the variables that E tells and a maimed "D\r" would repeat
+//   words    again                      last, because no single wrong byte turns them into a movement
+//
+// tests/bridges/epuck explores the firmware's parser as an automaton: from every state that it can be in, with at most
+// eight bytes lost and one more doubled or with a flipped bit, the wheels end at 0. For a byte of the stop to become a
+// speed, 53 must be lost, nearly all the zeros behind BC; or 40 of the lead-in when the hub's own "set speeds" was
+// half-received.
+//
+// Sending proves nothing. The stop is confirmed when the robot has answered twice that its commanded speeds are 0 and
+// its wheel counters were the same both times; until then all is repeated.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "bridges/epuck/codec.hpp"
+#include "hal/time.hpp"
+
+namespace tandem::bridges::epuck {
+
+/// Bursts of one round of the stop, to be sent in this order, `kStopBurstGap` after one another. None is longer than
+/// the robot's receive buffer.
+inline constexpr std::size_t kStopBursts = 3;
+inline constexpr hal::TimeNs kStopBurstGap = 10 * hal::kNsPerMs;
+std::span<const std::uint8_t> stop_burst(std::size_t i) noexcept;
+
+/// Asks for wheel counters and commanded speeds; answered with 8 bytes.
+std::span<const std::uint8_t> rest_question() noexcept;
+
+struct StopTiming {
+  hal::TimeNs quiet_ns = 20 * hal::kNsPerMs;    ///< silence after which older answers are over; Bluetooth: more
+  hal::TimeNs answer_ns = 100 * hal::kNsPerMs;  ///< to wait for an answer
+  hal::TimeNs apart_ns = 40 * hal::kNsPerMs;    ///< between the two readings
+};
+
+/// The stop as a conversation, without I/O and without a clock. Begun once, it says stop, asks, and begins a new round
+/// until the robot confirms, however long that takes: in a dead link about every 150 ms. Allocates nothing.
+class StopProcedure {
+ public:
+  explicit StopProcedure(const StopTiming& timing = {}) noexcept : timing_(timing) {}
+
+  /// Begins anew: the first burst is due at once.
+  void begin(hal::TimeNs now) noexcept;
+  void on_byte(std::uint8_t byte, hal::TimeNs at) noexcept;
+  /// Appends what is due to `out`, which the caller sends at once; applies time-outs.
+  void poll(hal::TimeNs now, Packet& out) noexcept;
+  /// When `poll` has something to do. Never, once confirmed.
+  hal::TimeNs next_deadline() const noexcept;
+  /// Gives an answer that is awaited so much more time.
+  void extend(hal::TimeNs by) noexcept;
+
+  bool confirmed() const noexcept { return step_ == Step::Confirmed; }
+  /// Rounds that ended without a confirmation since `begin`.
+  int failed_rounds() const noexcept { return failed_rounds_; }
+  /// Whether a whole answer came since `begin`: the robot hears and is heard.
+  bool answered() const noexcept { return answered_; }
+  /// The newest reading of the wheel counters; valid when `answered`.
+  const std::array<std::int16_t, 2>& counters() const noexcept { return counters_; }
+
+ private:
+  enum class Step : std::uint8_t { Burst, Settle, Answer, Apart, Confirmed };
+
+  void ask(hal::TimeNs now, Packet& out) noexcept;
+  void take_answer(hal::TimeNs at) noexcept;
+  void fail_round(hal::TimeNs now) noexcept;
+
+  StopTiming timing_;
+  Step step_ = Step::Confirmed;
+  std::size_t burst_ = 0;
+  hal::TimeNs due_ns_ = 0;
+  hal::TimeNs settled_by_ns_ = 0;  // however noisy the link is
+  bool first_known_ = false;       // of the two readings
+  bool answered_ = false;
+  int failed_rounds_ = 0;
+  std::array<std::uint8_t, 8> answer_{};
+  std::size_t answer_size_ = 0;
+  std::array<std::int16_t, 2> counters_{};
+};
+
+}  // namespace tandem::bridges::epuck
