@@ -502,7 +502,7 @@ void RobotFactory::give_back(std::size_t g, Slot slot, std::size_t ports_before,
   }
   stores_.bodies.flags[block.first_row + slot.slot] = 0;
   stores_.bodies.entity[block.first_row + slot.slot] = entity_before;
-  block.halted[slot.slot] = 1;
+  block.halted[slot.slot] = bit(HaltOwner::Removed);
   if (slot.slot + 1U == block.used && entity_before == kNobody) {
     --block.used;  // nobody was ever there
   } else {

@@ -111,7 +111,7 @@ hal::Status SpaceCopy::put_back_block(std::size_t b, Space& space) const {
       to.constructed[slot] = 1;
       continue;
     }
-    to.halted[slot] = 1;
+    to.halted[slot] = bit(HaltOwner::Controller);
     all = hal::Error{"copying the controller of " + name_of(space, to.first_row + slot) + " back threw: " + why};
   }
   return all;

@@ -86,7 +86,7 @@ void World::Impl::control(std::size_t index) {
     next =
         type.step_row(block.controllers, block.controller_stride, next, block.used, block.halted.data(), faults[index]);
     if (next == block.used) break;
-    block.halted[next] = 2;  // thrown in this tick; reported, and its actuators made safe, after the phase
+    block.halted[next] = kThrewInThisTick;  // reported, and its actuators made safe, after the phase
     block_trouble[index] = 1;
     ++next;
   }
@@ -156,10 +156,11 @@ void World::Impl::report_trouble() {
                                 : ": wheels stopped for this tick"));
         }
       }
-      if (block.halted[i] == 2) {
+      if ((block.halted[i] & kThrewInThisTick) != 0) {
+        block.halted[i] = static_cast<std::uint8_t>(block.halted[i] & ~kThrewInThisTick);
         const std::uint32_t entity = stores().bodies.entity[row];
         const RobotId id{entity, stores().robots[entity].generation};
-        space.set_halted(id, true);
+        space.set_halted(id, true, HaltOwner::Controller);
         ++incidents.controllers_thrown;
         incident("controller of robot '" + space.robot_name(id) + "' threw" + at_tick() + ": " + faults[index].message +
                  "; the robot is stopped");

@@ -219,7 +219,7 @@ void Space::remove_robot(RobotId robot) noexcept {
   RobotBlock& block = s.blocks[e.block];
   RobotGroup& group = s.groups[block.group];
   const std::size_t row = s.row_of(robot);
-  set_halted(robot, true);
+  set_halted(robot, true, HaltOwner::Removed);
   if (block.constructed[e.slot] != 0) group.controller->destroy(block.controller(e.slot));
   block.constructed[e.slot] = 0;
   // A twin keeps pointers to its robot's ports: nobody else ever gets these.
@@ -252,10 +252,18 @@ bool Space::halted(RobotId robot) const noexcept {
   return stores_->blocks[e.block].halted[e.slot] != 0;
 }
 
-void Space::set_halted(RobotId robot, bool halted) noexcept {
+bool Space::halted_by(RobotId robot, HaltOwner owner) const noexcept {
+  if (!contains(robot)) return owner == HaltOwner::Removed;
+  const RobotEntity& e = stores_->robots[robot.index];
+  const std::uint8_t held = stores_->blocks[e.block].halted[e.slot];
+  return (held & bit(owner)) != 0 || (owner == HaltOwner::Controller && (held & kThrewInThisTick) != 0);
+}
+
+void Space::set_halted(RobotId robot, bool halted, HaltOwner owner) noexcept {
   if (!contains(robot)) return;
   const RobotEntity& e = stores_->robots[robot.index];
-  stores_->blocks[e.block].halted[e.slot] = halted ? 1 : 0;
+  std::uint8_t& held = stores_->blocks[e.block].halted[e.slot];
+  held = static_cast<std::uint8_t>(halted ? held | bit(owner) : held & ~bit(owner));
   if (halted) {
     // Every actuator to its safe value.
     const RobotBlock& block = stores_->blocks[e.block];

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/space/editor.hpp"
+#include "core/space/halt.hpp"
 #include "core/space/ids.hpp"
 #include "core/space/pose.hpp"
 #include "hal/device/leds.hpp"
@@ -105,8 +106,12 @@ class Space {
   /// Angle of the robot's turret on its body, counter-clockwise from forward; 0 where it has none.
   double turret_rad(RobotId robot) const noexcept;
   bool holding(RobotId robot) const noexcept;  ///< whether its gripper holds something
-  bool halted(RobotId robot) const noexcept;   ///< its controller threw or was stopped: wheels stay 0; gone: true
-  void set_halted(RobotId robot, bool halted) noexcept;
+  /// Whether anyone holds the robot: its controller does not step, and its actuators stay safe. Gone: true.
+  bool halted(RobotId robot) const noexcept;
+  /// Whether `owner` does. Gone: only Removed does.
+  bool halted_by(RobotId robot, HaltOwner owner) const noexcept;
+  /// Holds the robot in the name of `owner`, or lets go of it: it goes on when nobody else holds it.
+  void set_halted(RobotId robot, bool halted, HaltOwner owner = HaltOwner::Hook) noexcept;
   /// Whether the robot's pose is set from outside (a real robot's twin): engines do not move it, others bump into it.
   bool external(RobotId robot) const noexcept;
   void set_external(RobotId robot, bool external) noexcept;

@@ -20,6 +20,7 @@
 #include "core/space/body_index.hpp"
 #include "core/space/body_key.hpp"
 #include "core/space/floor.hpp"
+#include "core/space/halt.hpp"
 #include "core/space/ids.hpp"
 #include "core/space/large_memory.hpp"
 #include "core/space/mechanisms.hpp"
@@ -153,7 +154,7 @@ struct RobotBlock {
   std::size_t controller_stride = 0;
   /// Arrays that are not the slab's: those made while the run goes on. Shared with the snapshots that put them back.
   std::vector<std::shared_ptr<std::byte>> own_arrays;
-  std::array<std::uint8_t, kBlockRows> halted{};       ///< 1: controller does not step, wheels stay 0
+  std::array<std::uint8_t, kBlockRows> halted{};       ///< bits of HaltOwner; 0: its controller steps
   std::array<std::uint8_t, kBlockRows> constructed{};  ///< 1: a controller lives in the slot
 
   std::byte* controller(std::size_t slot) const noexcept { return controllers + slot * controller_stride; }

@@ -195,6 +195,28 @@ TEST_P(Runtime, ARobotThatIsGoneIsGoneForGood) {
   EXPECT_EQ(world->state(), RunState::Running) << world->failure();
 }
 
+TEST_P(Runtime, ARobotStandsAsLongAsAnyoneHoldsIt) {
+  auto world = make(scene().robot("a", 0, 0));
+  world->start();
+  world->step();
+  Space& space = world->space();
+  const RobotId robot = space.find_robot("a");
+  space.set_halted(robot, true, HaltOwner::Safety);
+  space.set_halted(robot, true);
+  EXPECT_TRUE(space.halted_by(robot, HaltOwner::Hook));
+  EXPECT_FALSE(space.halted_by(robot, HaltOwner::Controller));
+  space.set_halted(robot, false, HaltOwner::Safety);
+  EXPECT_TRUE(space.halted(robot));
+  const double x_m = space.pose(robot).x_m;
+  for (int i = 0; i < 5; ++i) world->step();
+  EXPECT_EQ(space.pose(robot).x_m, x_m);
+  space.set_halted(robot, false);
+  EXPECT_FALSE(space.halted(robot));
+  space.set_halted(robot, true, HaltOwner::Controller);
+  space.set_halted(robot, false);
+  EXPECT_TRUE(space.halted(robot));
+}
+
 TEST_P(Runtime, AUsedRowIsLikeANewOne) {
   // Two worlds: in one the newcomer gets the row of a robot that has rolled, drained its battery and drifted. Draws of
   // chance go by the number of the robot, so both are the third.
