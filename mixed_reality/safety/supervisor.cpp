@@ -1,56 +1,97 @@
 #include "mixed_reality/safety/supervisor.hpp"
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <limits>
-
-#include "hal/filter.hpp"
-
 namespace tandem::mixed_reality {
 namespace {
 
-constexpr Verdict held(std::string_view reason) {
-  return {false, false, reason};
+constexpr Verdict held(StopOwner owner, std::string_view reason) {
+  return {false, false, false, owner, reason};
+}
+constexpr Verdict landing(StopOwner owner, std::string_view reason) {
+  return {false, false, true, owner, reason};
 }
 using C = Conditions;
+using O = StopOwner;
 
 // First row that applies decides. Everything that is not known to be well stops the robot.
-constexpr std::array<SafetyRule, 9> kTable = {{
-    {[](const C& c) noexcept { return c.run == RunPhase::Stopping; }, held("the run is stopping")},
-    {[](const C& c) noexcept { return c.run == RunPhase::Waiting; }, held("waiting for the start")},
-    {[](const C& c) noexcept { return c.controller_failed; }, held("controller stopped")},
-    {[](const C& c) noexcept { return c.link == LinkHealth::Connecting; }, held("connecting")},
-    {[](const C& c) noexcept { return c.link == LinkHealth::Lost; }, held("link lost")},
-    {[](const C& c) noexcept { return c.link == LinkHealth::Suspect; }, held("link suspect")},
-    {[](const C& c) noexcept { return c.pose == hal::Validity::Absent; }, held("pose unknown")},
-    {[](const C& c) noexcept { return c.pose == hal::Validity::Stale; }, held("pose stale")},
-    {[](const C&) noexcept { return true; }, Verdict{true, true, "driving"}},
+// clang-format off
+constexpr std::array<SafetyRule, 16> kTable = {{
+    {[](const C& c) noexcept { return c.run == RunPhase::Stopping; },     held(O::Run, "the run is stopping")},
+    {[](const C& c) noexcept { return c.run == RunPhase::Waiting; },      held(O::Run, "waiting for the start")},
+    {[](const C& c) noexcept { return c.controller_failed; },             held(O::Controller, "controller failed")},
+    {[](const C& c) noexcept { return c.operator_holds; },                held(O::Operator, "held by the operator")},
+    {[](const C& c) noexcept { return c.hook_holds; },                    held(O::Hook, "held by a hook")},
+    {[](const C& c) noexcept { return c.hub_was_frozen; },                held(O::Hub, "hub was frozen"),
+     Recovery::Rearm, "hub was frozen; waits to be re-armed"},
+    {[](const C& c) noexcept { return c.robot_stopped_itself; },          held(O::Robot, "robot stopped by itself"),
+     Recovery::Rearm, "robot stopped by itself; waits to be re-armed"},
+    {[](const C& c) noexcept { return c.battery_low; },                   landing(O::Battery, "battery low"),
+     Recovery::Operator, "battery was low; waits to be re-armed"},
+    {[](const C& c) noexcept { return c.link == LinkHealth::Connecting; },held(O::Link, "connecting")},
+    {[](const C& c) noexcept { return c.link == LinkHealth::Lost; },      held(O::Link, "link lost")},
+    {[](const C& c) noexcept { return c.link == LinkHealth::Suspect; },   held(O::Link, "link suspect")},
+    {[](const C& c) noexcept { return c.readings_missing; },              held(O::Readings, "a reading never came")},
+    {[](const C& c) noexcept { return c.pose == hal::Validity::Absent; }, held(O::Pose, "pose unknown")},
+    {[](const C& c) noexcept { return c.pose == hal::Validity::Stale; },  held(O::Pose, "pose stale")},
+    {[](const C& c) noexcept { return c.pose_jumped; },                   held(O::Pose, "pose jumped"),
+     Recovery::Rearm, "pose jumped; waits to be re-armed"},
+    {[](const C&) noexcept { return true; }, Verdict{true, true, false, O::Nobody, "driving"}},
 }};
+// clang-format on
 
-constexpr Verdict kSettling = held("settling");
+const SafetyRule& rule_for(const Conditions& conditions) noexcept {
+  for (const SafetyRule& rule : kTable) {
+    if (rule.applies(conditions)) return rule;
+  }
+  return kTable.back();
+}
+
+/// The row for which a re-arm is needed after `conditions`, also where another one decides; null: none.
+const SafetyRule* needs_rearm(const Conditions& conditions) noexcept {
+  for (const SafetyRule& rule : kTable) {
+    if (rule.recovery != Recovery::Settle && rule.applies(conditions)) return &rule;
+  }
+  return nullptr;
+}
 
 }  // namespace
+
+std::string_view name_of(StopOwner owner) noexcept {
+  constexpr std::array<std::string_view, kStopOwners> kNames = {
+      "nobody", "run", "operator", "hook", "controller", "hub", "robot", "battery", "link", "readings", "pose"};
+  return kNames[static_cast<std::size_t>(owner)];
+}
 
 std::span<const SafetyRule> safety_table() noexcept {
   return kTable;
 }
 
 Verdict judge(const Conditions& conditions) noexcept {
-  for (const SafetyRule& rule : kTable) {
-    if (rule.applies(conditions)) return rule.verdict;
-  }
-  return held("no rule applies");
+  return rule_for(conditions).verdict;
 }
 
 const Verdict& Supervisor::judge(const Conditions& conditions, hal::TimeNs now_ns) noexcept {
   const Verdict said = mixed_reality::judge(conditions);
+  const bool was_driving = verdict_.may_drive;
+  if (operator_held_ && !conditions.operator_holds) rearm();  // letting go of it is to say that all is well
+  operator_held_ = conditions.operator_holds;
+  if (conditions.run == RunPhase::Waiting) {
+    latched_ = nullptr;
+  } else if (const SafetyRule* rule = needs_rearm(conditions); rule != nullptr) {
+    if (latched_ == nullptr || latched_->recovery != Recovery::Operator) latched_ = rule;
+  }
   if (said.may_drive && !well_) well_since_ns_ = now_ns;
   well_ = said.may_drive;
-  const bool was_driving = verdict_.may_drive;
+  if (well_ && rearmed(now_ns)) latched_ = nullptr;
   const bool settled = was_driving || hal::to_seconds(now_ns - well_since_ns_) >= params_.settle_s;
-  verdict_ = well_ && !settled ? kSettling : said;
-  if (was_driving && !verdict_.may_drive) ++stops_;
+  verdict_ = !well_                ? said
+             : latched_ != nullptr ? held(latched_->verdict.owner, latched_->waiting)
+             : settled             ? said
+                                   : held(StopOwner::Run, "settling");
+  if (latched_ != nullptr) verdict_.land = latched_->verdict.land;
+  if (was_driving && !verdict_.may_drive) {
+    ++stops_;
+    ++stops_by_[static_cast<std::size_t>(verdict_.owner)];
+  }
   if (!was_driving && verdict_.may_drive) {
     ++rearms_;
     armed_at_ns_ = now_ns;
@@ -58,22 +99,32 @@ const Verdict& Supervisor::judge(const Conditions& conditions, hal::TimeNs now_n
   return verdict_;
 }
 
+/// Whether the stop that needs a re-arm has got it by the time that passed.
+bool Supervisor::rearmed(hal::TimeNs now_ns) const noexcept {
+  return latched_ != nullptr && latched_->recovery == Recovery::Rearm && params_.policy.by == RearmBy::Time &&
+         hal::to_seconds(now_ns - well_since_ns_) >= params_.policy.after_s;
+}
+
+void Supervisor::rearm() noexcept {
+  if (latched_ == nullptr || params_.policy.by == RearmBy::Never) return;
+  latched_ = nullptr;
+  well_ = false;  // it settles from now on
+}
+
 hal::WheelSpeeds Supervisor::allowed(const hal::WheelSpeeds& wanted, hal::TimeNs now_ns) const noexcept {
-  hal::WheelSpeeds out;
-  if (!verdict_.may_drive) return out;
-  const double limit_m_s = params_.ramp_m_s2 * hal::to_seconds(now_ns - armed_at_ns_);
-  const double fastest_m_s = std::max(std::fabs(wanted.left_m_s), std::fabs(wanted.right_m_s));
-  const double scale = fastest_m_s > limit_m_s ? limit_m_s / fastest_m_s : 1.0;
-  out.set(wanted.left_m_s * scale, wanted.right_m_s * scale);
-  return out;
+  if (!verdict_.may_drive) return {};
+  return Ramp::after(hal::to_seconds(now_ns - armed_at_ns_), params_.ramp_m_s2).held_back(wanted);
 }
 
 hal::QuadrotorSpeed Supervisor::allowed(const hal::QuadrotorSpeed& wanted, hal::TimeNs now_ns) const noexcept {
   if (!verdict_.may_drive) return {};
-  hal::QuadrotorSpeed out = wanted;
-  const double limit_m_s = params_.ramp_m_s2 * hal::to_seconds(now_ns - armed_at_ns_);
-  hal::filter(out, limit_m_s, std::numeric_limits<double>::max());
-  return out;
+  return Ramp::after(hal::to_seconds(now_ns - armed_at_ns_), params_.ramp_m_s2).held_back(wanted);
+}
+
+hal::QuadrotorPosition Supervisor::allowed(const hal::QuadrotorPosition& wanted, const std::array<double, 3>& p_WB,
+                                           hal::TimeNs now_ns) const noexcept {
+  if (!verdict_.may_drive) return {};
+  return Ramp::after(hal::to_seconds(now_ns - armed_at_ns_), params_.ramp_m_s2).held_back(wanted, p_WB);
 }
 
 }  // namespace tandem::mixed_reality

@@ -1,84 +1,127 @@
-// What the wheels of a real robot may do, and when: one table, and the way back from a stop.
+// What a real robot may do, and when: one table for all kinds of robots and all commands, and the way back from a stop.
+//
+//   every tick: conditions -> judge -> verdict;  command -> allowed -> what goes to the robot
 #pragma once
+#include <array>
 #include <cstdint>
 #include <span>
 #include <string_view>
 
-#include "hal/device/flight.hpp"
-#include "hal/device/wheels.hpp"
-#include "hal/params.hpp"
+#include "bridges/robot_bridge.hpp"
 #include "hal/port.hpp"
 #include "hal/time.hpp"
+#include "mixed_reality/safety/ramp.hpp"
+#include "mixed_reality/safety/rearm.hpp"
 
 namespace tandem::mixed_reality {
 
+using bridges::LinkHealth;
+
 enum class RunPhase : std::uint8_t { Waiting, Running, Stopping };
 
-/// Connecting: never answered yet. Suspect: some answers are missing. Lost: none came for longer than the time-out.
-enum class LinkHealth : std::uint8_t { Connecting, Active, Suspect, Lost };
-
-/// All that decides whether a real robot may move.
+/// All that decides whether a real robot may move. What happened "since the last judgement" is told once and
+/// remembered by the supervisor; the rest is told as it is in every tick.
 struct Conditions {
   RunPhase run = RunPhase::Running;
-  bool controller_failed = false;  ///< it threw, or a hook stopped it
+  bool operator_holds = false;        ///< a person holds it
+  bool hook_holds = false;            ///< a hook does
+  bool controller_failed = false;     ///< it threw
+  bool hub_was_frozen = false;        ///< since the last judgement: it did not run for so long that it counted as dead
+  bool robot_stopped_itself = false;  ///< since the last judgement: it restarted, or its own fail-safe took over
+  bool battery_low = false;
   LinkHealth link = LinkHealth::Connecting;
+  bool readings_missing = false;  ///< one that the controller asked for never came
   hal::Validity pose = hal::Validity::Absent;
+  bool pose_jumped = false;  ///< since the last judgement: farther than the robot can have moved; or two sources differ
 };
+
+/// Who holds a robot.
+enum class StopOwner : std::uint8_t {
+  Nobody,
+  Run,
+  Operator,
+  Hook,
+  Controller,
+  Hub,
+  Robot,
+  Battery,
+  Link,
+  Readings,
+  Pose
+};
+inline constexpr std::size_t kStopOwners = 11;
+/// As in reports: "link".
+std::string_view name_of(StopOwner owner) noexcept;
 
 /// What the table says to some conditions.
 struct Verdict {
-  bool may_drive = false;         ///< false: the wheels get 0, every tick
+  bool may_drive = false;         ///< false: it gets safe commands, every tick
   bool controller_steps = false;  ///< false: it is held, so that it does not run away from a robot that does not follow
-  std::string_view reason;        ///< why it may not drive, for people; "driving" when it may
+  bool land = false;              ///< a robot that flies is to come down where it is
+  StopOwner owner = StopOwner::Run;
+  std::string_view reason;  ///< why it may not drive, for people; "driving" when it may
+};
+
+/// What it takes to drive again when the condition is gone.
+enum class Recovery : std::uint8_t {
+  Settle,   ///< time to settle
+  Rearm,    ///< a re-arm, as the robot's policy says
+  Operator  ///< a person's re-arm; none with the policy Never
 };
 
 /// A row of the table: applies where `applies` is true; the first that does decides.
 struct SafetyRule {
   bool (*applies)(const Conditions&) noexcept;
   Verdict verdict;
+  Recovery recovery = Recovery::Settle;
+  std::string_view waiting = {};  ///< the reason while the condition is gone and the re-arm is waited for
 };
 std::span<const SafetyRule> safety_table() noexcept;
 
 /// The verdict of the first row that applies. The last row applies always.
 Verdict judge(const Conditions& conditions) noexcept;
 
-/// How a stopped robot gets under way again.
-struct RearmParams {
-  double settle_s = 0.3;    ///< all must have been well for this long
-  double ramp_m_s2 = 0.25;  ///< then the wheels' largest speed grows from 0 by this
-  void describe(hal::ParamVisitor& v) {
-    v.number("rearm_after", settle_s, hal::unit::s, {0.0, 60.0},
-             "All must have been well for this long before a stopped robot drives again.");
-    v.number("rearm_ramp", ramp_m_s2, hal::unit::m_s2, {0.001, 100.0},
-             "Its wheels' largest speed then grows from 0 by this.");
-  }
-};
-
 /// Applies the table tick by tick. Stops at once; lets go only after a while, and then by and by.
+///
+/// A stop that needs a re-arm is remembered, whatever else holds the robot meanwhile. Before the run nothing is: its
+/// start arms all robots.
 class Supervisor {
  public:
   explicit Supervisor(const RearmParams& params) : params_(params) {}
 
   /// Once a tick, before the controllers step. `now_ns` on the run's clock.
   const Verdict& judge(const Conditions& conditions, hal::TimeNs now_ns) noexcept;
+  /// A person re-arms the robot: what needed that is forgotten. It then settles, if all is well. Nothing with the
+  /// policy Never.
+  void rearm() noexcept;
+  /// Whether it stands only because nobody re-armed it.
+  bool awaits_rearm() const noexcept { return well_ && latched_ != nullptr; }
 
-  /// What of `wanted` goes to the robot in this tick. The curve driven stays the same while the speed is held back.
+  /// What of `wanted` goes to the robot in this tick.
   hal::WheelSpeeds allowed(const hal::WheelSpeeds& wanted, hal::TimeNs now_ns) const noexcept;
-
-  /// The same for a robot that flies.
+  /// The same for a robot that flies; `p_WB` is where it is.
   hal::QuadrotorSpeed allowed(const hal::QuadrotorSpeed& wanted, hal::TimeNs now_ns) const noexcept;
+  hal::QuadrotorPosition allowed(const hal::QuadrotorPosition& wanted, const std::array<double, 3>& p_WB,
+                                 hal::TimeNs now_ns) const noexcept;
 
   const Verdict& verdict() const noexcept { return verdict_; }
   std::uint64_t stops() const noexcept { return stops_; }    ///< from driving to not
   std::uint64_t rearms() const noexcept { return rearms_; }  ///< from not driving to driving, the first time included
+  /// Of those stops, the ones that this owner began.
+  std::uint64_t stops_by(StopOwner owner) const noexcept { return stops_by_[static_cast<std::size_t>(owner)]; }
 
  private:
+  bool rearmed(hal::TimeNs now_ns) const noexcept;
+
   RearmParams params_;
   Verdict verdict_;
-  bool well_ = false;  // as the table says, without the time to settle
+  bool well_ = false;                    // as the table says, without the time to settle
+  const SafetyRule* latched_ = nullptr;  // the stop that needs a re-arm
+  bool operator_held_ = false;
   hal::TimeNs well_since_ns_ = 0;
   hal::TimeNs armed_at_ns_ = 0;
   std::uint64_t stops_ = 0, rearms_ = 0;
+  std::array<std::uint64_t, kStopOwners> stops_by_{};
 };
 
 }  // namespace tandem::mixed_reality

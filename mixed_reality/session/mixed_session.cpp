@@ -10,6 +10,8 @@
 namespace tandem::mixed_reality {
 namespace {
 
+// Two ticks that lie farther apart than a tick and this: guardians have stopped the robots meanwhile.
+constexpr hal::TimeNs kFrozenAfter_ns = 500 * hal::kNsPerMs;
 constexpr hal::TimeNs kPollEvery_ns = 20 * hal::kNsPerMs;  // while waiting for robots
 
 const std::atomic<bool> kNever{false};
@@ -70,6 +72,7 @@ hal::Status MixedSession::add_twin(const core::RobotItem& item, const RealRobotM
 
   TwinParams params;
   params.rearm = options_.rearm;
+  params.frozen_after_ns = hal::time_of_tick(1, scenario.ticks_per_second) + kFrozenAfter_ns;
   params.pose_timeout_ns = lost_after_ns(item, scenario.ticks_per_second);
   twins_.push_back(
       std::make_unique<Twin>(space, robot, std::move(real), std::move(poses).value(), params, options_.log));

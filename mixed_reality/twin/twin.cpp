@@ -56,10 +56,16 @@ void Twin::latch(const Moment& now, RunPhase phase) {
   real_->latch(now);
   Conditions conditions;
   conditions.run = phase;
-  conditions.controller_failed = space_.halted(robot_) && !held_;
+  conditions.operator_holds = space_.halted_by(robot_, core::HaltOwner::Operator);
+  conditions.hook_holds =
+      space_.halted_by(robot_, core::HaltOwner::Hook) || space_.halted_by(robot_, core::HaltOwner::Removed);
+  conditions.controller_failed = space_.halted_by(robot_, core::HaltOwner::Controller);
+  conditions.hub_was_frozen =
+      running_ && last_latch_ns_ != 0 && now.monotonic_ns - last_latch_ns_ > params_.frozen_after_ns;
+  last_latch_ns_ = now.monotonic_ns;
   conditions.link = real_->health();
   conditions.pose = track(now);
-  hold(!supervisor_.judge(conditions, now.run_ns).controller_steps && !conditions.controller_failed);
+  hold(!supervisor_.judge(conditions, now.run_ns).controller_steps);
   note(now);
 }
 
@@ -106,7 +112,8 @@ void Twin::send_commands(bool alive, const Moment& now) {
       if (keep_inside(fence_, pose_, params_.fence_ahead_s, speed_)) ++counts_.fenced_ticks;
       command = &speed_;
     } else if (is<hal::QuadrotorPosition>(*output.type)) {
-      target_ = *static_cast<const hal::QuadrotorPosition*>(command);
+      target_ = supervisor_.allowed(*static_cast<const hal::QuadrotorPosition*>(command),
+                                    {pose_.x_m, pose_.y_m, pose_.z_m}, now.run_ns);
       if (keep_inside(fence_, target_)) ++counts_.fenced_ticks;
       command = &target_;
     }
@@ -119,7 +126,7 @@ void Twin::send_commands(bool alive, const Moment& now) {
 void Twin::hold(bool held) {
   if (held == held_) return;
   held_ = held;
-  space_.set_halted(robot_, held);
+  space_.set_halted(robot_, held, core::HaltOwner::Safety);
 }
 
 void Twin::note(const Moment& now) {

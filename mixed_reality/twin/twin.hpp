@@ -8,8 +8,8 @@
 
 #include "core/space/space.hpp"
 #include "hal/log.hpp"
+#include "mixed_reality/fence/fence.hpp"
 #include "mixed_reality/fusion/port_fusion.hpp"
-#include "mixed_reality/safety/fence.hpp"
 #include "mixed_reality/safety/supervisor.hpp"
 #include "mixed_reality/tracking/pose_source.hpp"
 #include "mixed_reality/twin/real_robot.hpp"
@@ -19,6 +19,7 @@ namespace tandem::mixed_reality {
 struct TwinParams {
   RearmParams rearm;
   hal::TimeNs pose_timeout_ns = 500 * hal::kNsPerMs;  ///< age from which a pose is stale
+  hal::TimeNs frozen_after_ns = hal::kNsPerSecond;    ///< two ticks that lie farther apart: the hub was frozen
   double fence_ahead_s = 0.5;                         ///< how far ahead the arena's edge is looked for
 };
 
@@ -88,7 +89,8 @@ class Twin {
   hal::QuadrotorSpeed speed_;
   hal::QuadrotorPosition target_;
   bool running_ = false;
-  bool held_ = false;  // by us; a controller that threw is halted by the world
+  bool held_ = false;  // by the safety table
+  hal::TimeNs last_latch_ns_ = 0;
   std::string_view noted_;
   TwinCounts counts_;
   std::vector<std::string> incidents_;

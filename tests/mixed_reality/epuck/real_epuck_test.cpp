@@ -254,7 +254,7 @@ TEST_F(FourRealEpucks, TheOneThatWasCutOffIsHeldAndGetsUnderWayAgainFromZero) {
 }
 
 TEST_F(FourRealEpucks, TheOneWhoseControllerThrowsNeverMovesAgain) {
-  EXPECT_EQ(report_of("throws").state, "controller stopped");
+  EXPECT_EQ(report_of("throws").state, "controller failed");
   EXPECT_FALSE(report_of("throws").driving);
   EXPECT_LT(robots_["throws"]->pose().x_m, -2.0 + 0.05);
 }

@@ -8,16 +8,29 @@ namespace {
 
 using hal::Validity;
 constexpr hal::TimeNs kTick = 100 * hal::kNsPerMs;
-constexpr Conditions kWell{RunPhase::Running, false, LinkHealth::Active, Validity::Fresh};
+constexpr Conditions kWell{.link = LinkHealth::Active, .pose = Validity::Fresh};
 
+constexpr Conditions with(void (*change)(Conditions&)) {
+  Conditions c = kWell;
+  change(c);
+  return c;
+}
+constexpr Conditions kLost = with([](Conditions& c) {
+  c.link = LinkHealth::Lost;
+  c.pose = Validity::Stale;
+});
+constexpr Conditions kRestarted = with([](Conditions& c) { c.robot_stopped_itself = true; });
+
+/// Every combination.
 template <class Visit>
 void for_all_conditions(Visit&& visit) {
   for (const RunPhase run : {RunPhase::Waiting, RunPhase::Running, RunPhase::Stopping}) {
-    for (const bool failed : {false, true}) {
-      for (const LinkHealth link :
-           {LinkHealth::Connecting, LinkHealth::Active, LinkHealth::Suspect, LinkHealth::Lost}) {
-        for (const Validity pose : {Validity::Absent, Validity::Stale, Validity::Fresh})
-          visit(Conditions{run, failed, link, pose});
+    for (const LinkHealth link : {LinkHealth::Connecting, LinkHealth::Active, LinkHealth::Suspect, LinkHealth::Lost}) {
+      for (const Validity pose : {Validity::Absent, Validity::Stale, Validity::Fresh}) {
+        for (unsigned bits = 0; bits < 256; ++bits) {
+          const auto is = [bits](unsigned i) { return (bits >> i & 1U) != 0; };
+          visit(Conditions{run, is(0), is(1), is(2), is(3), is(4), is(5), link, is(6), pose, is(7)});
+        }
       }
     }
   }
@@ -26,10 +39,12 @@ void for_all_conditions(Visit&& visit) {
 TEST(SafetyTable, OneConditionAloneLetsARobotDrive) {
   int driving = 0;
   for_all_conditions([&](const Conditions& c) {
-    const bool well =
-        c.run == RunPhase::Running && !c.controller_failed && c.link == LinkHealth::Active && c.pose == Validity::Fresh;
+    const bool well = c.run == RunPhase::Running && c.link == LinkHealth::Active && c.pose == Validity::Fresh &&
+                      !c.controller_failed && !c.operator_holds && !c.hook_holds && !c.hub_was_frozen &&
+                      !c.robot_stopped_itself && !c.battery_low && !c.readings_missing && !c.pose_jumped;
     EXPECT_EQ(judge(c).may_drive, well) << judge(c).reason;
     EXPECT_EQ(judge(c).controller_steps, well);
+    EXPECT_EQ(judge(c).owner == StopOwner::Nobody, well);
     driving += judge(c).may_drive ? 1 : 0;
   });
   EXPECT_EQ(driving, 1);
@@ -37,14 +52,28 @@ TEST(SafetyTable, OneConditionAloneLetsARobotDrive) {
 
 TEST(SafetyTable, EveryRowIsReachedAndSaysWhyInWordsOfItsOwn) {
   std::set<std::string_view> reasons;
-  for_all_conditions([&](const Conditions& c) { reasons.insert(judge(c).reason); });
+  std::set<StopOwner> owners;
+  for_all_conditions([&](const Conditions& c) {
+    reasons.insert(judge(c).reason);
+    owners.insert(judge(c).owner);
+  });
   EXPECT_EQ(reasons.size(), safety_table().size());
+  EXPECT_EQ(owners.size(), kStopOwners);
 }
 
 TEST(SafetyTable, TheMostSeriousReasonIsTold) {
-  EXPECT_EQ(judge({RunPhase::Running, false, LinkHealth::Lost, Validity::Stale}).reason, "link lost");
-  EXPECT_EQ(judge({RunPhase::Running, true, LinkHealth::Lost, Validity::Stale}).reason, "controller stopped");
-  EXPECT_EQ(judge({RunPhase::Stopping, true, LinkHealth::Lost, Validity::Stale}).reason, "the run is stopping");
+  Conditions c = kLost;
+  EXPECT_EQ(judge(c).reason, "link lost");
+  c.hook_holds = true;
+  EXPECT_EQ(judge(c).reason, "held by a hook");
+  c.controller_failed = true;
+  EXPECT_EQ(judge(c).reason, "controller failed");
+  c.run = RunPhase::Stopping;
+  EXPECT_EQ(judge(c).reason, "the run is stopping");
+}
+
+TEST(SafetyTable, WhatNeedsARearmSaysWhatItWaitsFor) {
+  for (const SafetyRule& rule : safety_table()) EXPECT_EQ(rule.waiting.empty(), rule.recovery == Recovery::Settle);
 }
 
 class ArmedSupervisor : public testing::Test {
@@ -61,6 +90,18 @@ class ArmedSupervisor : public testing::Test {
     hal::WheelSpeeds wanted;
     wanted.set(left, right);
     return supervisor_.allowed(wanted, now_);
+  }
+  /// How long it takes until the robot drives, in s; 100: it does not.
+  double well_until_driving() {
+    for (int i = 0; i < 1000; ++i) {
+      tick(kWell);
+      if (supervisor_.verdict().may_drive) return 0.1 * i;
+    }
+    return 100.0;
+  }
+  void use(const RearmPolicy& policy) {
+    supervisor_ = Supervisor({.policy = policy, .settle_s = 0.3, .ramp_m_s2 = 0.1});
+    SetUp();
   }
   Supervisor supervisor_{{.settle_s = 0.3, .ramp_m_s2 = 0.1}};
   hal::TimeNs now_ = 0;
@@ -87,12 +128,12 @@ TEST_F(ArmedSupervisor, StopsInTheVeryTickInWhichSomethingFails) {
 }
 
 TEST_F(ArmedSupervisor, LetsGoOnlyAfterAllHasBeenWellForAWhile) {
-  tick({RunPhase::Running, false, LinkHealth::Lost, Validity::Stale});
+  tick(kLost);
   EXPECT_EQ(supervisor_.verdict().reason, "link lost");
   tick(kWell);
   EXPECT_EQ(supervisor_.verdict().reason, "settling");
   tick(kWell);
-  tick({RunPhase::Running, false, LinkHealth::Suspect, Validity::Fresh});  // not yet: the wait begins again
+  tick(with([](Conditions& c) { c.link = LinkHealth::Suspect; }));  // not yet: the wait begins again
   for (int i = 0; i < 3; ++i) {
     tick(kWell);
     EXPECT_FALSE(supervisor_.verdict().may_drive) << i;
@@ -105,7 +146,7 @@ TEST_F(ArmedSupervisor, LetsGoOnlyAfterAllHasBeenWellForAWhile) {
 }
 
 TEST_F(ArmedSupervisor, GetsUnderWayFromZeroWithoutAJumpAndOnTheCurveWanted) {
-  tick({RunPhase::Running, false, LinkHealth::Lost, Validity::Stale});
+  tick(kLost);
   while (!supervisor_.verdict().may_drive) tick(kWell);
   double before = 0.0;
   EXPECT_EQ(allowed(0.1, 0.05).left_m_s, 0.0);
@@ -122,7 +163,7 @@ TEST_F(ArmedSupervisor, GetsUnderWayFromZeroWithoutAJumpAndOnTheCurveWanted) {
 TEST_F(ArmedSupervisor, FliesOffWithoutAJumpInTheDirectionWanted) {
   hal::QuadrotorSpeed wanted;
   wanted.set(0.6, 0.0, 0.8, 0.3);
-  tick({RunPhase::Running, false, LinkHealth::Lost, Validity::Stale});
+  tick(kLost);
   EXPECT_EQ(supervisor_.allowed(wanted, 0).yaw_rad_s, 0.0);
   while (!supervisor_.verdict().may_drive) tick(kWell);
   double before = -1.0;
@@ -135,6 +176,89 @@ TEST_F(ArmedSupervisor, FliesOffWithoutAJumpInTheDirectionWanted) {
     EXPECT_EQ(now.yaw_rad_s, 0.3) << i;
     before = now.velocity[0];
   }
+}
+
+TEST_F(ArmedSupervisor, DrivesWithinASecondOfTheLinkThatIsBack) {
+  Supervisor as_usual{RearmParams{}};
+  for (hal::TimeNs t = 0; t <= hal::kNsPerSecond; t += kTick) as_usual.judge(kWell, t);
+  ASSERT_TRUE(as_usual.verdict().may_drive);
+  as_usual.judge(kLost, 2 * hal::kNsPerSecond);
+  hal::TimeNs t = 3 * hal::kNsPerSecond;
+  for (; !as_usual.judge(kWell, t).may_drive; t += kTick) ASSERT_LT(t, 4 * hal::kNsPerSecond);
+  EXPECT_LE(t, 3 * hal::kNsPerSecond + hal::kNsPerSecond / 2);
+}
+
+TEST_F(ArmedSupervisor, ARobotThatStoppedByItselfWaitsForItsRearm) {
+  use({RearmBy::Time, 2.0});
+  tick(kRestarted);
+  EXPECT_EQ(supervisor_.verdict().reason, "robot stopped by itself");
+  EXPECT_EQ(supervisor_.stops_by(StopOwner::Robot), 1U);
+  tick(kWell);
+  EXPECT_EQ(supervisor_.verdict().reason, "robot stopped by itself; waits to be re-armed");
+  EXPECT_TRUE(supervisor_.awaits_rearm());
+  EXPECT_NEAR(well_until_driving(), 1.9, 1e-9);
+}
+
+TEST_F(ArmedSupervisor, AnOutageOnTheWayDoesNotReplaceTheRearm) {
+  use({RearmBy::Operator, 0.0});
+  tick(kRestarted);
+  tick(kLost);
+  EXPECT_EQ(supervisor_.verdict().reason, "link lost");
+  EXPECT_EQ(well_until_driving(), 100.0);
+  EXPECT_EQ(supervisor_.verdict().reason, "robot stopped by itself; waits to be re-armed");
+  supervisor_.rearm();
+  EXPECT_NEAR(well_until_driving(), 0.3, 1e-9);
+}
+
+TEST_F(ArmedSupervisor, WhereARearmIsLeftToAnOperatorHoldingAndLettingGoIsOne) {
+  use({RearmBy::Operator, 0.0});
+  tick(with([](Conditions& c) { c.hub_was_frozen = true; }));
+  EXPECT_EQ(well_until_driving(), 100.0);
+  tick(with([](Conditions& c) { c.operator_holds = true; }));
+  EXPECT_EQ(supervisor_.verdict().reason, "held by the operator");
+  EXPECT_NEAR(well_until_driving(), 0.3, 1e-9);
+}
+
+TEST_F(ArmedSupervisor, NeverIsNever) {
+  use({RearmBy::Never, 0.0});
+  tick(kLost);
+  EXPECT_NEAR(well_until_driving(), 0.3, 1e-9);  // an outage is no stop that needs a re-arm
+  tick(kRestarted);
+  supervisor_.rearm();
+  EXPECT_EQ(well_until_driving(), 100.0);
+}
+
+TEST_F(ArmedSupervisor, ALowBatteryLandsAndOnlyAPersonLetsItGo) {
+  use({RearmBy::Time, 2.0});
+  tick(with([](Conditions& c) { c.battery_low = true; }));
+  EXPECT_TRUE(supervisor_.verdict().land);
+  tick(kLost);
+  EXPECT_TRUE(supervisor_.verdict().land);
+  tick(kWell);  // its voltage recovers when it rests
+  EXPECT_TRUE(supervisor_.verdict().land);
+  EXPECT_EQ(well_until_driving(), 100.0);
+  supervisor_.rearm();
+  EXPECT_NEAR(well_until_driving(), 0.3, 1e-9);
+  EXPECT_FALSE(supervisor_.verdict().land);
+}
+
+TEST_F(ArmedSupervisor, TheStartOfARunArmsAll) {
+  use({RearmBy::Never, 0.0});
+  Conditions before = kRestarted;
+  before.run = RunPhase::Waiting;
+  tick(before);
+  EXPECT_NEAR(well_until_driving(), 0.3, 1e-9);
+}
+
+TEST_F(ArmedSupervisor, StopsAreCountedForWhoBeganThem) {
+  tick(with([](Conditions& c) { c.hook_holds = true; }));
+  tick(kLost);
+  (void)well_until_driving();
+  tick(kLost);
+  EXPECT_EQ(supervisor_.stops(), 2U);
+  EXPECT_EQ(supervisor_.stops_by(StopOwner::Hook), 1U);
+  EXPECT_EQ(supervisor_.stops_by(StopOwner::Link), 1U);
+  EXPECT_EQ(name_of(StopOwner::Link), "link");
 }
 
 }  // namespace

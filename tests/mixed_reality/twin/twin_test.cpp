@@ -134,9 +134,55 @@ TEST_F(TwinTest, NeverWakesAControllerThatTheWorldStopped) {
   get_under_way(0.05, 0.05);
   space_.set_halted(robot_, true);
   for (int i = 0; i < 20; ++i) tick(0.05, 0.05);
-  EXPECT_EQ(twin_->verdict().reason, "controller stopped");
+  EXPECT_EQ(twin_->verdict().reason, "held by a hook");
   EXPECT_TRUE(space_.halted(robot_));
   EXPECT_TRUE(body_.stands());
+}
+
+/// A hook halts it while the twin is held for a reason of its own; that must not be forgotten when this one is gone.
+class HaltedWhileHeld : public TwinTest, public testing::WithParamInterface<const char*> {};
+
+TEST_P(HaltedWhileHeld, StaysHaltedUntilTheHookLetsItGo) {
+  const std::string when = GetParam();
+  if (when == "link suspect") get_under_way(0.05, 0.05);
+  if (when == "link suspect") body_.health_when_up = LinkHealth::Suspect;
+  if (when != "settling") tick(0.05, 0.05, when == "before the run" ? RunPhase::Waiting : RunPhase::Running);
+  if (when == "settling") tick(0.05, 0.05);
+  space_.set_halted(robot_, true);
+  body_.health_when_up = LinkHealth::Active;
+  const std::size_t heard = body_.received.size();
+  for (int i = 0; i < 30; ++i) tick(0.05, 0.05);
+  EXPECT_TRUE(space_.halted(robot_));
+  EXPECT_EQ(twin_->verdict().reason, "held by a hook");
+  for (std::size_t i = heard; i < body_.received.size(); ++i) EXPECT_EQ(body_.received[i].wheels.left_m_s, 0.0) << i;
+  space_.set_halted(robot_, false);
+  get_under_way(0.05, 0.05);
+}
+INSTANTIATE_TEST_SUITE_P(Twin, HaltedWhileHeld, testing::Values("before the run", "settling", "link suspect"));
+
+TEST_F(TwinTest, AHookThatLetsGoDoesNotWakeAControllerThatThrew) {
+  get_under_way(0.05, 0.05);
+  space_.set_halted(robot_, true, core::HaltOwner::Controller);
+  space_.set_halted(robot_, true);
+  tick(0.05, 0.05);
+  space_.set_halted(robot_, false);
+  for (int i = 0; i < 20; ++i) tick(0.05, 0.05);
+  EXPECT_EQ(twin_->verdict().reason, "controller failed");
+  EXPECT_TRUE(body_.stands());
+}
+
+TEST_F(TwinTest, AFrozenHubIsAStopThatNeedsARearm) {
+  get_under_way(0.05, 0.05);
+  now_.run_ns += kTick;
+  now_.monotonic_ns += 3 * hal::kNsPerSecond;
+  twin_->latch(now_, RunPhase::Running);
+  EXPECT_EQ(twin_->verdict().reason, "hub was frozen");
+  twin_->after_filter(now_);
+  EXPECT_TRUE(body_.stands());
+  for (int i = 0; i < 18; ++i) tick(0.05, 0.05);
+  EXPECT_TRUE(body_.stands());
+  EXPECT_EQ(twin_->verdict().reason, "hub was frozen; waits to be re-armed");
+  get_under_way(0.05, 0.05);
 }
 
 TEST_F(TwinTest, AControllerThatFailsInThisTickMovesNothingAnyMore) {
@@ -145,7 +191,7 @@ TEST_F(TwinTest, AControllerThatFailsInThisTickMovesNothingAnyMore) {
   now_.monotonic_ns += kTick;
   twin_->latch(now_, RunPhase::Running);
   space_.port<hal::WheelSpeeds>(robot_)->set(0.12, 0.12);  // written before it threw
-  space_.stores().blocks[0].halted[0] = 2;
+  space_.stores().blocks[0].halted[0] = core::kThrewInThisTick;
   twin_->after_filter(now_);
   EXPECT_TRUE(body_.stands());
 }

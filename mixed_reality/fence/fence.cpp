@@ -1,4 +1,4 @@
-#include "mixed_reality/safety/fence.hpp"
+#include "mixed_reality/fence/fence.hpp"
 
 namespace tandem::mixed_reality {
 namespace {

@@ -1,4 +1,4 @@
-#include "mixed_reality/safety/fence.hpp"
+#include "mixed_reality/fence/fence.hpp"
 
 #include <cmath>
 #include <gtest/gtest.h>
