@@ -15,12 +15,15 @@ enum class StopState : std::uint8_t {
   Confirmed     ///< the robot itself says that it rests
 };
 
+/// Frozen: the hub may come back, the robot is to wait. Gone: nobody will command the robot any more.
+enum class StopCause : std::uint8_t { HubFrozen, HubGone };
+
 /// Stops one robot. Has a thread of its own in the guardian: nothing that it does delays another robot's stop.
 class Stopper {
  public:
   virtual ~Stopper() = default;
-  /// Opens the link where it is not open, says stop, listens. Returns within 50 ms; called again at once until
-  /// Confirmed, however long that takes.
+  /// Opens the link where it is not open, says stop, listens. Returns within 50 ms, but for the time that the kernel
+  /// takes to open a link; called again until Confirmed, however long that takes.
   virtual StopState step(hal::TimeNs now) = 0;
   /// What is known, for people: "/dev/rfcomm0 does not open: …".
   virtual std::string trouble() const = 0;
@@ -29,7 +32,7 @@ class Stopper {
 /// One kind's stopper. `make` neither blocks nor throws.
 struct StopperType {
   std::string_view kind;
-  std::unique_ptr<Stopper> (*make)(const StopMessages& messages);
+  std::unique_ptr<Stopper> (*make)(const StopMessages& messages, StopCause cause);
 };
 
 }  // namespace tandem::bridges::guardian

@@ -1,0 +1,404 @@
+#include "bridges/guardian/process.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <csignal>
+#include <cstring>
+#include <ctime>
+#include <fcntl.h>
+#include <malloc.h>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <poll.h>
+#include <sys/eventfd.h>
+#include <sys/mman.h>
+#include <sys/prctl.h>
+#include <sys/signalfd.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <sys/syscall.h>
+#include <sys/un.h>
+#include <unistd.h>
+#include <vector>
+
+#include "bridges/guardian/watched_robot.hpp"
+
+namespace tandem::bridges::guardian {
+namespace {
+
+using hal::TimeNs;
+
+constexpr TimeNs kSayAfter = hal::kNsPerSecond;  // that a robot has not stopped
+constexpr int kLookEvery_ms = 20;
+
+TimeNs monotonic_ns() noexcept {
+  timespec t{};
+  ::clock_gettime(CLOCK_MONOTONIC, &t);
+  return static_cast<TimeNs>(t.tv_sec) * hal::kNsPerSecond + t.tv_nsec;
+}
+
+/// -1 where the kernel has none (before Linux 5.3): then the parent's number alone tells of the death, a little later.
+int open_pidfd(pid_t process) noexcept {
+#ifdef SYS_pidfd_open
+  return static_cast<int>(::syscall(SYS_pidfd_open, process, 0));
+#else
+  return static_cast<int>(::syscall(434, process, 0));
+#endif
+}
+
+/// Closes everything but the standard descriptors and `kept`.
+void close_others(int kept) noexcept {
+  const auto close_from_to = [](unsigned first, unsigned last) {
+    if (first > last || ::close_range(first, last, 0) == 0) return;
+    const long limit = std::min<long>(::sysconf(_SC_OPEN_MAX), 65536);
+    for (long fd = first; fd <= std::min<long>(last, limit); ++fd) ::close(static_cast<int>(fd));
+  };
+  const auto k = static_cast<unsigned>(kept);
+  if (k > 3) close_from_to(3, k - 1);
+  close_from_to(std::max(k + 1, 3U), ~0U);
+}
+
+/// Whether the system has stopped the process: SIGSTOP, a debugger.
+bool is_stopped(pid_t process) noexcept {
+  std::array<char, 32> path{};
+  std::snprintf(path.data(), path.size(), "/proc/%d/stat", static_cast<int>(process));
+  const int fd = ::open(path.data(), O_RDONLY | O_CLOEXEC);
+  if (fd < 0) return false;
+  std::array<char, 512> text{};
+  const ssize_t n = ::read(fd, text.data(), text.size() - 1);
+  ::close(fd);
+  if (n <= 0) return false;
+  const char* end = std::strrchr(text.data(), ')');  // the name may hold anything
+  return end != nullptr && end[1] == ' ' && (end[2] == 'T' || end[2] == 't');
+}
+
+class Process {
+ public:
+  explicit Process(const Inheritance& inheritance) : in_(inheritance), pulse_(inheritance.limits) {}
+
+  [[noreturn]] void run();
+
+ private:
+  enum class Hub : std::uint8_t { Alive, Frozen, Back, Ended, Gone };
+
+  void settle_in();
+  void lock_memory();
+  void open_takeover_socket();
+  void look_at_hub();
+  void look_at_robots();
+  void take_from_hub();
+  void obey(const Packet& packet);
+  void claim(const StopMessages& robot);
+  void take_signals();
+  void take_takeovers();
+  void stop_all(StopCause cause);
+  void our_turn();
+  void hand_back();
+  void hub_is_gone();
+  void tell(const std::string& line) const;
+  void tell_of_unstopped();
+  [[noreturn]] void leave();
+
+  Inheritance in_;
+  Pulse pulse_;
+  GuardianContext context_;
+  std::map<std::string, std::unique_ptr<WatchedRobot>> robots_;
+  std::mutex say_mutex_;
+  int pidfd_ = -1, signals_ = -1, wake_ = -1, takeover_ = -1;
+  Hub hub_ = Hub::Alive;
+  bool memory_locked_ = false;
+  bool handing_back_ = false;
+  TimeNs stopped_ns_ = 0;  // when the stop was begun
+  bool told_ = false;
+  std::map<std::string, std::string> told_hub_;  // of each robot
+  std::vector<char> buffer_ = std::vector<char>(kLongestPacket);
+};
+
+void Process::settle_in() {
+  sigset_t all;
+  ::sigfillset(&all);
+  ::pthread_sigmask(SIG_SETMASK, &all, nullptr);  // Ctrl-C, hang-ups and Ctrl-Z are the hub's affair
+  ::setsid();
+  ::prctl(PR_SET_NAME, "tandem-guard");
+  const int nothing = ::open("/dev/null", O_RDWR | O_CLOEXEC);
+  ::dup2(nothing, 0);
+  ::dup2(nothing, 1);
+  close_others(in_.socket);
+  if (::chdir("/") != 0) {  // only so that no folder is held
+  }
+  signals_ = ::signalfd(-1, &all, SFD_CLOEXEC | SFD_NONBLOCK);
+  wake_ = ::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
+  pidfd_ = open_pidfd(in_.hub);
+  ::mallopt(M_ARENA_MAX, 1);  // an arena a thread would be locked memory for nothing
+  lock_memory();
+
+  context_.types = in_.types;
+  context_.hub = in_.hub;
+  context_.say_to_hub = [this](const Packet& packet) {
+    const std::string bytes = encode(packet);
+    const std::lock_guard lock(say_mutex_);
+    ::send(in_.socket, bytes.data(), bytes.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
+  };
+  context_.wake = [this] {
+    const std::uint64_t one = 1;
+    (void)!::write(wake_, &one, sizeof one);
+  };
+  if (!memory_locked_) {
+    context_.say_to_hub({Word::Warning,
+                         {},
+                         std::string("the guardian process cannot lock its memory (") + std::strerror(errno) +
+                             "): on a machine that swaps it may stop robots late; see `ulimit -l`"});
+  }
+}
+
+void Process::lock_memory() {
+  memory_locked_ = ::mlockall(MCL_CURRENT | MCL_FUTURE) == 0;
+}
+
+[[noreturn]] void Process::run() {
+  settle_in();
+  for (;;) {
+    std::array<pollfd, 5> fds = {{{in_.socket, POLLIN, 0},
+                                  {hub_ == Hub::Gone ? -1 : pidfd_, POLLIN, 0},
+                                  {signals_, POLLIN, 0},
+                                  {wake_, POLLIN, 0},
+                                  {takeover_, POLLIN, 0}}};
+    ::poll(fds.data(), fds.size(), kLookEvery_ms);
+    const bool dead = (fds[1].revents & POLLIN) != 0 || ::getppid() != in_.hub;
+    if (dead || fds[0].revents != 0) take_from_hub();  // what it said last counts
+    if (dead) hub_is_gone();
+    if (fds[2].revents != 0) take_signals();
+    if (fds[3].revents != 0) {
+      std::uint64_t count = 0;
+      (void)!::read(wake_, &count, sizeof count);
+    }
+    if (fds[4].revents != 0) take_takeovers();
+    look_at_hub();
+    look_at_robots();
+  }
+}
+
+// --- the hub ---
+
+void Process::our_turn() {
+  const std::uint32_t turn = in_.page->turn.load(std::memory_order_relaxed);
+  if (turn % 2 == 0) in_.page->turn.store(turn + 1, std::memory_order_release);
+}
+
+void Process::stop_all(StopCause cause) {
+  our_turn();
+  for (const auto& [id, robot] : robots_) robot->stop(cause);
+  told_hub_.clear();
+  stopped_ns_ = monotonic_ns();
+  handing_back_ = false;
+}
+
+void Process::look_at_hub() {
+  if (hub_ != Hub::Alive) return;
+  const std::uint32_t beats = in_.page->beats.load(std::memory_order_relaxed);
+  if (!pulse_.frozen(beats, monotonic_ns(), [this] { return is_stopped(in_.hub); })) return;
+  hub_ = Hub::Frozen;
+  stop_all(StopCause::HubFrozen);
+}
+
+void Process::hub_is_gone() {
+  if (hub_ == Hub::Gone) return;
+  const bool stopping = hub_ == Hub::Ended;  // already, as robots of nobody
+  hub_ = Hub::Gone;
+  if (!stopping) stop_all(StopCause::HubGone);
+}
+
+void Process::take_from_hub() {
+  for (;;) {
+    const ssize_t n = ::recv(in_.socket, buffer_.data(), buffer_.size(), MSG_DONTWAIT);
+    if (n > 0) {
+      if (const auto packet = decode({buffer_.data(), static_cast<std::size_t>(n)})) obey(*packet);
+      continue;
+    }
+    if (n < 0 && errno == EINTR) continue;
+    if (n < 0 && errno == EAGAIN) return;
+    // Nobody holds the other end any more; it may be a moment before the process is gone as well.
+    ::close(in_.socket);
+    in_.socket = -1;
+    if (hub_ != Hub::Ended) hub_is_gone();
+    return;
+  }
+}
+
+void Process::obey(const Packet& packet) {
+  const auto found = robots_.find(packet.robot.robot);
+  switch (packet.word) {
+    case Word::Claim:
+      claim(packet.robot);
+      break;
+    case Word::Watch:
+      if (found != robots_.end()) found->second->watch(packet.robot);
+      break;
+    case Word::Release:
+      if (found != robots_.end()) found->second->release();
+      break;
+    case Word::Suspend:
+      hub_ = Hub::Frozen;
+      stop_all(StopCause::HubFrozen);
+      break;
+    case Word::Back:
+      hub_ = Hub::Back;
+      stop_all(StopCause::HubFrozen);
+      break;
+    case Word::TakeBack:
+      handing_back_ = hub_ == Hub::Back;
+      for (const auto& [id, robot] : robots_) robot->hold();
+      break;
+    case Word::End:
+      hub_ = Hub::Ended;
+      stop_all(StopCause::HubGone);
+      break;
+    default:
+      break;
+  }
+}
+
+void Process::claim(const StopMessages& robot) {
+  if (robots_.empty()) open_takeover_socket();
+  const std::string key = lock_key(robot);
+  for (const auto& [id, other] : robots_) {
+    if (other->key() != key) continue;
+    context_.say_to_hub(
+        {Word::Claimed, robot, "robots '" + id + "' and '" + robot.robot + "' have the same link, " + robot.link});
+    return;
+  }
+  auto watched = std::make_unique<WatchedRobot>(context_, robot);
+  hal::Status started = watched->start();
+  if (!started.ok() && memory_locked_) {  // it is locked memory that there is too little of
+    ::munlockall();
+    memory_locked_ = false;
+    started = watched->start();
+  }
+  if (!started.ok()) {
+    context_.say_to_hub({Word::Claimed, robot, started.error().message});
+    return;
+  }
+  robots_[robot.robot] = std::move(watched);
+}
+
+void Process::hand_back() {
+  handing_back_ = false;
+  hub_ = Hub::Alive;
+  pulse_.forget();
+  const std::uint32_t turn = in_.page->turn.load(std::memory_order_relaxed);
+  in_.page->turn.store(turn + 1, std::memory_order_release);
+  context_.say_to_hub({Word::HandedBack, {}, ""});
+}
+
+// --- the robots ---
+
+void Process::look_at_robots() {
+  if (hub_ == Hub::Alive) return;
+  bool all = true, idle = true;
+  for (const auto& [id, robot] : robots_) {
+    const WatchedRobot::View view = robot->view();
+    idle = idle && view.idle;
+    if (!view.to_be_stopped) continue;
+    all = all && view.confirmed;
+    StopMessages about;
+    about.robot = id;
+    Packet news{view.confirmed ? Word::Rests : Word::Moves, about, view.confirmed ? "" : view.trouble};
+    std::string& told = told_hub_[id];
+    std::string bytes = encode(news);
+    if (bytes == told) continue;
+    context_.say_to_hub(news);
+    told = std::move(bytes);
+  }
+  if (hub_ == Hub::Back && (all || handing_back_) && idle) {
+    hand_back();
+    return;
+  }
+  if (hub_ != Hub::Gone && hub_ != Hub::Ended) return;
+  if (all && idle) leave();
+  if (!told_ && monotonic_ns() - stopped_ns_ >= kSayAfter) tell_of_unstopped();
+}
+
+void Process::tell(const std::string& line) const {
+  const std::string text = "tandem: " + line + "\n";
+  (void)!::write(STDERR_FILENO, text.data(), text.size());
+}
+
+void Process::tell_of_unstopped() {
+  told_ = true;
+  std::string names;
+  for (const auto& [id, robot] : robots_) {
+    const WatchedRobot::View view = robot->view();
+    if (!view.to_be_stopped || view.confirmed) continue;
+    names += (names.empty() ? "'" : "; '") + id + "' on " + view.link +
+             (view.trouble.empty() ? "" : " (" + view.trouble + ")");
+  }
+  const std::string self = std::to_string(::getpid());
+  tell("not stopped yet: " + names + "; process " + self + " goes on trying, until it is ended with: kill " + self);
+  // Whoever reads a pipe to its end must not wait for robots.
+  struct stat info {};
+  if (::fstat(STDERR_FILENO, &info) == 0 && (S_ISFIFO(info.st_mode) || S_ISSOCK(info.st_mode)))
+    ::dup2(0, STDERR_FILENO);
+}
+
+void Process::leave() {
+  if (told_) tell("all robots have confirmed their stop");
+  for (const auto& [id, robot] : robots_) robot->let_go();
+  if (takeover_ >= 0) ::unlink(takeover_socket(context_.folder, ::getpid()).c_str());
+  ::_exit(0);
+}
+
+// --- other processes ---
+
+void Process::take_signals() {
+  signalfd_siginfo info{};
+  while (::read(signals_, &info, sizeof info) == sizeof info) {
+    const bool ends = info.ssi_signo == SIGTERM || info.ssi_signo == SIGINT;
+    if (!ends || (hub_ != Hub::Gone && hub_ != Hub::Ended)) continue;
+    tell_of_unstopped();
+    tell("process " + std::to_string(::getpid()) + " was told to end: see to these robots by hand");
+    told_ = false;
+    leave();
+  }
+}
+
+void Process::open_takeover_socket() {
+  auto folder = lock_folder();
+  if (!folder.ok()) {
+    context_.say_to_hub({Word::Warning, {}, folder.error().message});
+    return;
+  }
+  context_.folder = std::move(folder).value();
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  const std::string path = takeover_socket(context_.folder, ::getpid());
+  if (path.size() >= sizeof address.sun_path) return;
+  std::strcpy(address.sun_path, path.c_str());
+  ::unlink(path.c_str());  // of a process that had the same number
+  takeover_ = ::socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
+  if (takeover_ >= 0) ::bind(takeover_, reinterpret_cast<const sockaddr*>(&address), sizeof address);
+}
+
+/// Another hub's guardian asks for one robot, by its key.
+void Process::take_takeovers() {
+  for (;;) {
+    const ssize_t n = ::recv(takeover_, buffer_.data(), buffer_.size(), MSG_DONTWAIT);
+    if (n < 0) return;
+    if (hub_ != Hub::Gone && hub_ != Hub::Ended) continue;
+    const std::string_view key(buffer_.data(), static_cast<std::size_t>(n));
+    for (const auto& [id, robot] : robots_) {
+      if (robot->key() == key) robot->let_go();
+    }
+  }
+}
+
+}  // namespace
+
+[[noreturn]] void guard(const Inheritance& inheritance) {
+  static Process* process = nullptr;  // never destroyed: threads use it until the end
+  process = new Process(inheritance);
+  process->run();
+}
+
+}  // namespace tandem::bridges::guardian

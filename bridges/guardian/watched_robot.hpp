@@ -1,0 +1,90 @@
+// One robot in the guardian process: its lock, its stop messages, and the thread that stops it.
+#pragma once
+#include <condition_variable>
+#include <functional>
+#include <mutex>
+#include <optional>
+#include <pthread.h>
+#include <span>
+#include <string>
+
+#include "bridges/guardian/packet.hpp"
+#include "bridges/guardian/robot_lock.hpp"
+#include "bridges/guardian/stopper.hpp"
+
+namespace tandem::bridges::guardian {
+
+/// What the threads share; all of it outlives them.
+struct GuardianContext {
+  std::span<const StopperType> types;
+  std::string folder;                             ///< of the locks
+  pid_t hub = 0;                                  ///< whose robots these are
+  std::function<void(const Packet&)> say_to_hub;  ///< from any thread
+  std::function<void()> wake;                     ///< has the main loop look at all robots
+};
+
+/// Calls come from the guardian's main loop and never wait for the robot. The thread sleeps until there is a claim or a
+/// stop, so that a death makes no thread: it might be refused then.
+class WatchedRobot {
+ public:
+  /// The first claim. `context` outlives this.
+  WatchedRobot(const GuardianContext& context, const StopMessages& robot);
+  /// The process must end without destroying this, or after `let_go`.
+  ~WatchedRobot();
+  WatchedRobot(const WatchedRobot&) = delete;
+  WatchedRobot& operator=(const WatchedRobot&) = delete;
+
+  /// Makes the thread; Claimed is said when the lock is taken or refused. Error: the system has no thread for it.
+  hal::Status start();
+
+  void watch(const StopMessages& robot);
+  void release();
+  /// Begins to stop it, or begins anew. Nothing happens where it was released or never watched.
+  void stop(StopCause cause);
+  /// Ends stopping: the link is closed soon.
+  void hold();
+  /// The robot belongs to somebody else now: stops nothing any more, frees the lock.
+  void let_go();
+
+  struct View {
+    bool to_be_stopped = false;  ///< watched, not released, not let go
+    bool idle = true;            ///< no stopper has a link open
+    bool confirmed = false;      ///< the stop that was begun last
+    StopState state = StopState::Unreachable;
+    std::string trouble;
+    std::string robot, link;
+  };
+  View view() const;
+  const std::string& key() const noexcept { return key_; }
+
+ private:
+  enum class Claim : std::uint8_t { Due, Held, Refused };
+
+  static void* run_thread(void* self);
+  void run();
+  void take_lock();
+  std::string try_to_lock();
+  void stop_robot(std::unique_lock<std::mutex>& lock);
+  std::unique_ptr<Stopper> make_stopper() const;
+  void write_lock_file() const;
+
+  const GuardianContext& context_;
+  std::string key_;
+  mutable std::mutex mutex_;  // guards everything below
+  std::condition_variable wake_;
+  StopMessages robot_;
+  std::optional<RobotLock> file_;
+  Claim claim_ = Claim::Due;
+  bool watched_ = false, released_ = false, quit_ = false, ended_ = false;
+  bool stopping_ = false;     // wanted
+  std::uint64_t order_ = 0;   // grows with each stop, hold, and new message
+  std::uint64_t obeyed_ = 0;  // the order that the thread has finished
+  StopCause cause_ = StopCause::HubGone;
+  bool busy_ = false;  // a stopper lives
+  bool confirmed_ = false;
+  StopState state_ = StopState::Unreachable;
+  std::string trouble_;
+  std::optional<pthread_t> thread_;
+};
+
+}  // namespace tandem::bridges::guardian

@@ -1,0 +1,476 @@
+// The guardian process with hubs that are killed, frozen and left, and robots that are files: what they were told, and
+// when. Waits end with events; limits are longer than any machine needs, but for those that are promised.
+#include <chrono>
+#include <csignal>
+#include <ctime>
+#include <fcntl.h>
+#include <fstream>
+#include <functional>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <map>
+#include <sstream>
+#include <sys/wait.h>
+#include <thread>
+#include <unistd.h>
+
+#include "bridges/guardian/client.hpp"
+#include "tests/bridges/guardian/runtime_folder.hpp"
+
+namespace tandem::bridges::guardian {
+namespace {
+
+using hal::kNsPerMs;
+using hal::TimeNs;
+using testing::HasSubstr;
+
+TimeNs now_ns() {
+  timespec t{};
+  ::clock_gettime(CLOCK_MONOTONIC, &t);
+  return static_cast<TimeNs>(t.tv_sec) * hal::kNsPerSecond + t.tv_nsec;
+}
+
+bool eventually(const std::function<bool()>& condition, double seconds = 30.0) {
+  const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
+  while (!condition()) {
+    if (std::chrono::steady_clock::now() > end) return false;
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
+  return true;
+}
+
+std::string text_of(const std::filesystem::path& path) {
+  std::ifstream in(path);
+  std::ostringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+/// A robot that is a file: a line for all that it was told. Its body says how it behaves: "obeys", "hangs" (in the
+/// system, for ever), "deaf" (until there is a file of its name with ".hears").
+class FileStopper final : public Stopper {
+ public:
+  FileStopper(const StopMessages& messages, StopCause cause) : messages_(messages), cause_(cause) {}
+  ~FileStopper() override { note("closed"); }
+
+  StopState step(TimeNs) override {
+    if (steps_++ == 0) note(cause_ == StopCause::HubGone ? "gone" : "frozen");
+    if (messages_.body == "hangs") std::this_thread::sleep_for(std::chrono::seconds(5));
+    if (messages_.body == "throws" && steps_ < 5) throw std::runtime_error("no memory");
+    const bool deaf = messages_.body == "deaf" && ::access((messages_.link + ".hears").c_str(), F_OK) != 0;
+    if (deaf || messages_.body == "hangs") return StopState::Unreachable;
+    if (steps_ < 3) return StopState::Stopping;
+    note("rests");
+    return StopState::Confirmed;
+  }
+  std::string trouble() const override { return "it does not listen"; }
+
+ private:
+  void note(const std::string& what) const {
+    const std::string line = what + " " + std::to_string(now_ns()) + "\n";
+    const int fd = ::open(messages_.link.c_str(), O_WRONLY | O_APPEND | O_CREAT | O_CLOEXEC, 0600);
+    (void)!::write(fd, line.data(), line.size());
+    ::close(fd);
+  }
+  StopMessages messages_;
+  StopCause cause_;
+  int steps_ = 0;
+};
+
+std::unique_ptr<Stopper> make_file_stopper(const StopMessages& messages, StopCause cause) {
+  return std::make_unique<FileStopper>(messages, cause);
+}
+
+const std::vector<StopperType> kTypes = {{"file", &make_file_stopper}};
+
+/// A hub in a process of its own, which writes lines for the test, and does what it is told in letters.
+class Hub {
+ public:
+  using Story = std::function<int(Hub&)>;
+  Hub(const std::filesystem::path& folder, const Story& story) : lines_(folder / "hub") {
+    std::filesystem::remove(lines_);
+    if (::pipe2(orders_, O_CLOEXEC) != 0) return;
+    pid_ = ::fork();
+    if (pid_ != 0) return;
+    errors_ = ::open((folder / "errors").c_str(), O_WRONLY | O_APPEND | O_CREAT, 0600);
+    ::dup2(errors_, STDERR_FILENO);
+    ::_exit(story(*this));
+  }
+  ~Hub() {
+    signal(SIGKILL);
+    wait();
+    ::close(orders_[0]);
+    ::close(orders_[1]);
+  }
+  Hub(const Hub&) = delete;
+  Hub& operator=(const Hub&) = delete;
+
+  // The hub's side.
+  void say(const std::string& line) const { std::ofstream(lines_, std::ios::app) << line << std::endl; }
+  char order() const {
+    char letter = 0;
+    while (::read(orders_[0], &letter, 1) < 0) {
+    }
+    return letter;
+  }
+
+  // The test's side.
+  void tell(char letter) const { (void)!::write(orders_[1], &letter, 1); }
+  /// Only as long as it was not waited for: no other process may get it.
+  void signal(int number) const {
+    if (pid_ > 0) ::kill(pid_, number);
+  }
+  bool said(const std::string& line) const {
+    return eventually([&] { return ("\n" + text_of(lines_)).find("\n" + line) != std::string::npos; });
+  }
+  /// The rest of the line that begins so.
+  std::string line(const std::string& begin) const {
+    const std::string text = "\n" + text_of(lines_);
+    const std::size_t at = text.find("\n" + begin);
+    return at == std::string::npos
+               ? ""
+               : text.substr(at + 1 + begin.size(), text.find('\n', at + 1) - at - 1 - begin.size());
+  }
+  pid_t guardian() const { return static_cast<pid_t>(std::atoi(line("guardian ").c_str())); }
+  void signal_guardian(int number) const {
+    if (guardian() > 1) ::kill(guardian(), number);
+  }
+  int wait() {
+    if (pid_ > 0) ::waitpid(pid_, &status_, 0);
+    pid_ = -1;
+    return WIFEXITED(status_) ? WEXITSTATUS(status_) : -WTERMSIG(status_);
+  }
+  pid_t pid() const { return pid_; }
+
+ private:
+  std::filesystem::path lines_;
+  int orders_[2] = {-1, -1};
+  int errors_ = -1;
+  pid_t pid_ = -1;
+  int status_ = 0;
+};
+
+class Guarded : public testing::Test {
+ protected:
+  StopMessages robot(const std::string& id, const std::string& body = "obeys") const {
+    return {id, "file", (runtime_.path() / id).string(), "", body, 1};
+  }
+  /// Times at which it was told or noted `what`.
+  std::vector<TimeNs> times(const std::string& id, const std::string& what) const {
+    std::istringstream in(text_of(runtime_.path() / id));
+    std::vector<TimeNs> all;
+    std::string word;
+    for (TimeNs at = 0; in >> word >> at;) {
+      if (word == what) all.push_back(at);
+    }
+    return all;
+  }
+  bool was(const std::string& id, const std::string& what, std::size_t count = 1) const {
+    return eventually([&] { return times(id, what).size() >= count; });
+  }
+  void let_hear(const std::string& id) const { std::ofstream(runtime_.path() / (id + ".hears")) << ""; }
+  std::string errors() const { return text_of(runtime_.path() / "errors"); }
+  bool gone(pid_t process) const {
+    return eventually([&] { return ::kill(process, 0) != 0; });
+  }
+
+  /// Drives these robots, and does as it is told: 'r' releases the first, 'e' ends, 'f' forks a child that keeps all
+  /// descriptors, 'n' tells the news.
+  Hub::Story drives(std::vector<StopMessages> robots, std::atomic<bool>* suspend = nullptr) const {
+    return [robots, suspend](Hub& hub) {
+      auto started = GuardianClient::start(kTypes, {suspend, {}});
+      if (!started.ok()) return 99;
+      GuardianClient& guardian = **started;
+      if (const auto claimed = guardian.claim(robots); !claimed.ok()) {
+        hub.say("refused " + claimed.error().message);
+        return 98;
+      }
+      for (const StopMessages& r : robots) guardian.watch(r);
+      hub.say("guardian " + std::to_string(guardian.process()));
+      hub.say("drives");
+      for (std::uint64_t freezes = 0;;) {
+        switch (hub.order()) {
+          case 'r':
+            guardian.release(robots.front().robot);
+            break;
+          case 'f':
+            if (::fork() == 0) {
+              std::this_thread::sleep_for(std::chrono::seconds(20));
+              ::_exit(0);
+            }
+            hub.say("forked");
+            break;
+          case 'w':  // waits for a freeze to be over
+            eventually([&] { return guardian.freezes().count > freezes && guardian.permit().granted(); });
+            freezes = guardian.freezes().count;
+            hub.say("back " + std::to_string(guardian.freezes().last_ns / kNsPerMs) + " " +
+                    std::to_string(guardian.permit().turn()));
+            break;
+          case 'n':
+            for (const std::string& line : guardian.take_news()) hub.say("news " + line);
+            hub.say("freezes " + std::to_string(guardian.freezes().count));
+            break;
+          case 'e': {
+            const auto unstopped = guardian.end(hal::kNsPerSecond);
+            for (const UnstoppedRobot& r : unstopped) hub.say("unstopped " + r.robot + ": " + r.trouble);
+            return static_cast<int>(unstopped.size());
+          }
+          default:
+            return 97;
+        }
+      }
+    };
+  }
+
+  RuntimeFolder runtime_;
+};
+
+TEST_F(Guarded, RobotsAreAllStoppedAtOnceWhenTheirHubIsKilled) {
+  std::vector<StopMessages> robots;
+  for (int i = 0; i < 50; ++i) {
+    robots.push_back(robot("r" + std::to_string(i), i % 5 != 0 ? "obeys" : i % 10 == 0 ? "hangs" : "deaf"));
+  }
+  Hub hub(runtime_.path(), drives(robots));
+  ASSERT_TRUE(hub.said("drives"));
+  const pid_t guardian = hub.guardian();
+  const TimeNs killed = now_ns();
+  hub.signal(SIGKILL);
+  hub.wait();
+  for (const StopMessages& r : robots) {
+    ASSERT_TRUE(was(r.robot, "gone")) << r.robot;
+    EXPECT_LE(times(r.robot, "gone").front() - killed, 250 * kNsPerMs) << r.robot;
+    EXPECT_TRUE(r.body != "obeys" || was(r.robot, "rests")) << r.robot;
+  }
+  EXPECT_TRUE(eventually([&] { return errors().find("kill " + std::to_string(guardian)) != std::string::npos; }));
+  EXPECT_THAT(errors(), HasSubstr("not stopped yet: 'r0' on "));
+  EXPECT_THAT(errors(), HasSubstr("'r5' on " + robots[5].link + " (it does not listen)"));
+  EXPECT_THAT(errors(), testing::Not(HasSubstr("'r1' on")));
+  // Nothing but a person ends it as long as robots have not confirmed.
+  hub.signal_guardian(SIGHUP);
+  hub.signal_guardian(SIGTSTP);
+  EXPECT_EQ(::kill(guardian, 0), 0);
+  hub.signal_guardian(SIGTERM);
+  EXPECT_TRUE(gone(guardian));
+  EXPECT_THAT(errors(), HasSubstr("see to these robots by hand"));
+}
+
+TEST_F(Guarded, RobotIsStoppedUntilItConfirmsHoweverLongThatTakes) {
+  Hub hub(runtime_.path(), drives({robot("r", "deaf"), robot("thrower", "throws")}));
+  ASSERT_TRUE(hub.said("drives"));
+  const pid_t guardian = hub.guardian();
+  hub.signal(SIGKILL);
+  hub.wait();
+  ASSERT_TRUE(was("thrower", "rests"));
+  ASSERT_TRUE(eventually([&] { return !errors().empty(); }));
+  EXPECT_TRUE(times("r", "rests").empty());
+  const TimeNs reachable = now_ns();
+  let_hear("r");
+  ASSERT_TRUE(was("r", "rests"));
+  EXPECT_LE(times("r", "rests").front() - reachable, hal::kNsPerSecond);
+  EXPECT_TRUE(gone(guardian));
+  EXPECT_THAT(errors(), HasSubstr("all robots have confirmed their stop"));
+  EXPECT_TRUE(std::filesystem::is_empty(runtime_.path() / "tandem"));
+}
+
+TEST_F(Guarded, RobotIsStoppedThoughAChildOfItsHubKeepsAllDescriptors) {
+  Hub hub(runtime_.path(), drives({robot("r")}));
+  ASSERT_TRUE(hub.said("drives"));
+  hub.tell('f');
+  ASSERT_TRUE(hub.said("forked"));
+  const TimeNs killed = now_ns();
+  hub.signal(SIGKILL);
+  hub.wait();
+  ASSERT_TRUE(was("r", "rests"));
+  EXPECT_LE(times("r", "gone").front() - killed, 250 * kNsPerMs);
+}
+
+TEST_F(Guarded, RobotIsStoppedWhenItsHubIsFrozenAndTheHubKnowsWhenItIsBack) {
+  Hub hub(runtime_.path(), drives({robot("r"), robot("deaf", "deaf")}));
+  ASSERT_TRUE(hub.said("drives"));
+  const pid_t guardian = hub.guardian();
+  const TimeNs frozen = now_ns();
+  hub.signal(SIGSTOP);
+  ASSERT_TRUE(was("r", "rests"));
+  EXPECT_LE(times("r", "frozen").front() - frozen, 500 * kNsPerMs);
+  const auto open = [&](const std::string& id) { return times(id, "frozen").size() - times(id, "closed").size(); };
+  EXPECT_TRUE(eventually([&] { return open("r") == 0; }));
+  EXPECT_EQ(open("deaf"), 1U);  // it is still tried to be stopped
+  hub.tell('w');
+  hub.signal(SIGCONT);
+  // What the hub may have written while it woke up is followed by one more stop; then all links are closed.
+  ASSERT_TRUE(hub.said("back "));
+  EXPECT_EQ(times("r", "rests").size(), 2U);
+  EXPECT_EQ(open("r"), 0U);
+  EXPECT_EQ(open("deaf"), 0U);
+  std::istringstream back(hub.line("back "));
+  TimeNs lasted_ms = 0, turn = 0;
+  back >> lasted_ms >> turn;
+  EXPECT_GE(lasted_ms, 80);
+  EXPECT_LE(lasted_ms, (now_ns() - frozen) / kNsPerMs);
+  EXPECT_EQ(turn, 2);
+  hub.tell('n');
+  ASSERT_TRUE(hub.said("freezes 1"));
+  EXPECT_THAT(hub.line("news this program was frozen for"),
+              HasSubstr("its guardian process has stopped all real robots"));
+  // It happens again; and this time the hub does not come back.
+  hub.signal(SIGSTOP);
+  ASSERT_TRUE(was("r", "rests", 3));
+  hub.signal(SIGKILL);
+  hub.wait();
+  ASSERT_TRUE(was("r", "rests", 4));
+  EXPECT_EQ(times("r", "gone").size(), 1U);
+  let_hear("deaf");
+  EXPECT_TRUE(was("deaf", "rests"));
+  EXPECT_TRUE(gone(guardian));
+}
+
+TEST_F(Guarded, RobotsAreStoppedBeforeTheHubSleepsWhenThatIsAsked) {
+  static std::atomic<bool> asked{false};
+  const auto story = drives({robot("r")}, &asked);
+  Hub hub(runtime_.path(), [&](Hub& h) {
+    ::signal(SIGTSTP, [](int) { asked = true; });
+    return story(h);
+  });
+  ASSERT_TRUE(hub.said("drives"));
+  hub.signal(SIGTSTP);
+  int status = 0;
+  ASSERT_EQ(::waitpid(hub.pid(), &status, WUNTRACED), hub.pid());
+  ASSERT_TRUE(WIFSTOPPED(status));
+  EXPECT_EQ(times("r", "rests").size(), 1U);
+  hub.tell('w');
+  hub.signal(SIGCONT);
+  ASSERT_TRUE(hub.said("back "));
+  EXPECT_EQ(times("r", "rests").size(), 2U);
+  hub.tell('r');
+  hub.tell('e');
+  EXPECT_EQ(hub.wait(), 0);
+}
+
+TEST_F(Guarded, NoRobotIsStoppedBecauseTheGuardianItselfWasNotAwake) {
+  Hub hub(runtime_.path(), drives({robot("r")}));
+  ASSERT_TRUE(hub.said("drives"));
+  for (int i = 0; i < 3; ++i) {
+    hub.signal_guardian(SIGSTOP);
+    std::this_thread::sleep_for(std::chrono::milliseconds(600));
+    hub.signal_guardian(SIGCONT);
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  }
+  hub.tell('n');
+  ASSERT_TRUE(hub.said("freezes "));
+  EXPECT_EQ(hub.line("freezes "), "0");
+  EXPECT_TRUE(times("r", "frozen").empty());
+}
+
+TEST_F(Guarded, RobotThatWasReleasedIsLeftAlone) {
+  Hub hub(runtime_.path(), drives({robot("r"), robot("s")}));
+  ASSERT_TRUE(hub.said("drives"));
+  const pid_t guardian = hub.guardian();
+  hub.tell('r');
+  hub.tell('n');
+  ASSERT_TRUE(hub.said("freezes"));
+  hub.signal(SIGKILL);
+  hub.wait();
+  ASSERT_TRUE(was("s", "rests"));
+  EXPECT_TRUE(gone(guardian));
+  EXPECT_EQ(text_of(runtime_.path() / "r"), "");
+}
+
+TEST_F(Guarded, RobotsThatHaveNotConfirmedAreNamedByAHubThatEndsAndStayGuarded) {
+  Hub hub(runtime_.path(), drives({robot("r"), robot("deaf", "deaf")}));
+  ASSERT_TRUE(hub.said("drives"));
+  const pid_t guardian = hub.guardian();
+  hub.tell('e');
+  EXPECT_EQ(hub.wait(), 1);
+  EXPECT_EQ(hub.line("unstopped "), "deaf: it does not listen");
+  EXPECT_EQ(::kill(guardian, 0), 0);
+  let_hear("deaf");
+  EXPECT_TRUE(was("deaf", "rests"));
+  EXPECT_TRUE(gone(guardian));
+}
+
+TEST_F(Guarded, GuardianEndsAtOnceWithAHubThatHasReleasedItsRobots) {
+  Hub hub(runtime_.path(), drives({robot("r")}));
+  ASSERT_TRUE(hub.said("drives"));
+  hub.tell('r');
+  hub.tell('e');
+  EXPECT_EQ(hub.wait(), 0);
+  EXPECT_NE(::kill(hub.guardian(), 0), 0);
+  EXPECT_EQ(text_of(runtime_.path() / "r"), "");
+  EXPECT_EQ(errors(), "");
+}
+
+TEST_F(Guarded, RobotHasOneHubAndTheOtherOneIsNamed) {
+  Hub hub(runtime_.path(), drives({robot("r")}));
+  ASSERT_TRUE(hub.said("drives"));
+  StopMessages same = robot("r");
+  same.robot = "other name";
+  const RuntimeFolder elsewhere;
+  ::setenv("XDG_RUNTIME_DIR", runtime_.path().c_str(), 1);
+  Hub second(elsewhere.path(), drives({same}));
+  EXPECT_EQ(second.wait(), 98);
+  EXPECT_EQ(second.line("refused "), "robot 'other name' on " + same.link + " is driven by process " +
+                                         std::to_string(hub.pid()) +
+                                         ", as 'r'; end that one first, a robot has one hub");
+  EXPECT_EQ(text_of(runtime_.path() / "r"), "");
+}
+
+TEST_F(Guarded, RobotsOfOneHubHaveLinksOfTheirOwn) {
+  StopMessages same = robot("r");
+  same.robot = "s";
+  Hub hub(runtime_.path(), drives({robot("r"), same}));
+  EXPECT_EQ(hub.wait(), 98);
+  EXPECT_THAT(hub.line("refused "), HasSubstr("robots 'r' and 's' have the same link"));
+}
+
+TEST_F(Guarded, RobotOfAKindThatNobodyCanStopIsRefused) {
+  StopMessages strange = robot("r");
+  strange.kind = "toaster";
+  Hub hub(runtime_.path(), drives({strange}));
+  EXPECT_EQ(hub.wait(), 98);
+  EXPECT_THAT(hub.line("refused "), HasSubstr("no guardian knows how to stop a robot of the kind 'toaster'"));
+}
+
+TEST_F(Guarded, RobotIsTakenOverFromTheGuardianOfAHubThatIsGone) {
+  Hub first(runtime_.path(), drives({robot("r", "deaf"), robot("s", "deaf")}));
+  ASSERT_TRUE(first.said("drives"));
+  const pid_t left = first.guardian();
+  first.signal(SIGKILL);
+  first.wait();
+  ASSERT_TRUE(was("s", "gone"));
+  ASSERT_TRUE(eventually([&] { return !errors().empty(); }));
+  const RuntimeFolder elsewhere;
+  ::setenv("XDG_RUNTIME_DIR", runtime_.path().c_str(), 1);
+  StopMessages unknown = robot("r", "");  // this hub has not found out how it is stopped
+  Hub second(elsewhere.path(), [&](Hub& h) {
+    auto guardian = GuardianClient::start(kTypes);
+    const auto claimed = (*guardian)->claim(std::vector{unknown});
+    h.say(claimed.ok() ? "claimed" : claimed.error().message);
+    return static_cast<int>(h.order());
+  });
+  ASSERT_TRUE(second.said("claimed"));
+  EXPECT_EQ(times("r", "closed").size(), 1U);  // the first guardian has let go of it, and of nothing else
+  EXPECT_TRUE(times("s", "closed").empty());
+  // The second one knows from the first how it is stopped.
+  second.signal(SIGKILL);
+  second.wait();
+  EXPECT_TRUE(was("r", "gone", 2));
+  let_hear("r");
+  EXPECT_TRUE(was("r", "rests"));
+  EXPECT_EQ(::kill(left, 0), 0);
+  let_hear("s");
+  EXPECT_TRUE(was("s", "rests"));
+  EXPECT_TRUE(gone(left));
+}
+
+TEST_F(Guarded, HubKnowsWhenItsGuardianIsGone) {
+  Hub hub(runtime_.path(), drives({robot("r")}));
+  ASSERT_TRUE(hub.said("drives"));
+  hub.signal_guardian(SIGKILL);
+  ASSERT_TRUE(eventually([&] {
+    hub.tell('n');
+    return !hub.line("news the guardian process is gone").empty();
+  }));
+}
+
+}  // namespace
+}  // namespace tandem::bridges::guardian
