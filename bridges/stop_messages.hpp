@@ -11,9 +11,9 @@ struct StopMessages {
   std::string robot;  ///< its id in the experiment, for people
   std::string kind;   ///< names the `StopperType` that understands `body`, e.g. "e-puck"
   std::string link;   ///< LINK text with absolute paths: the guardian has no other folder to start from
-  std::string name;   ///< which robot, where several share the link (an eye-bot's name); else ""
   std::string body;   ///< the kind's own; any bytes
   std::uint64_t version = 0;
+  std::string name = {};  ///< which robot, where several share the link (an eye-bot's name); else ""
 
   friend bool operator==(const StopMessages&, const StopMessages&) = default;
 };

@@ -153,7 +153,7 @@ class Hub {
 class Guarded : public testing::Test {
  protected:
   StopMessages robot(const std::string& id, const std::string& body = "obeys") const {
-    return {id, "file", (runtime_.path() / id).string(), "", body, 1};
+    return {id, "file", (runtime_.path() / id).string(), body, 1};
   }
   /// Times at which it was told or noted `what`.
   std::vector<TimeNs> times(const std::string& id, const std::string& what) const {

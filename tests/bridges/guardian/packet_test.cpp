@@ -6,7 +6,7 @@ namespace tandem::bridges::guardian {
 namespace {
 
 TEST(GuardianPacket, ComesBackAsItWas) {
-  const Packet packet{Word::Watch, {"fb0", "foot-bot", "can:can0", "", std::string("a\0:\n9:", 6), 17}, "why: 3:x"};
+  const Packet packet{Word::Watch, {"fb0", "foot-bot", "can:can0", std::string("a\0:\n9:", 6), 17, "name"}, "why: 3:x"};
   const auto back = decode(encode(packet));
   ASSERT_TRUE(back);
   EXPECT_EQ(back->word, packet.word);
@@ -15,7 +15,7 @@ TEST(GuardianPacket, ComesBackAsItWas) {
 }
 
 TEST(GuardianPacket, IsRefusedWhenAnyByteOfItIsMissing) {
-  const std::string bytes = encode({Word::Claim, {"e", "e-puck", "serial:/dev/rfcomm0@115200", "", "", 1}, ""});
+  const std::string bytes = encode({Word::Claim, {"e", "e-puck", "serial:/dev/rfcomm0@115200", "", 1}, ""});
   for (std::size_t size = 0; size < bytes.size(); ++size) EXPECT_FALSE(decode(bytes.substr(0, size))) << size;
   EXPECT_FALSE(decode(bytes + "0:"));
   EXPECT_FALSE(decode("W99999999999999999999:"));

@@ -21,7 +21,7 @@ class LockedRobot : public testing::Test {
   }
   RuntimeFolder runtime_;
   std::string folder_ = lock_folder().value();
-  StopMessages robot_ = {"ep0", "e-puck", "serial:/dev/rfcomm0@115200", "", std::string("a\n\0b", 4), 3};
+  StopMessages robot_ = {"ep0", "e-puck", "serial:/dev/rfcomm0@115200", std::string("a\n\0b", 4), 3};
   std::string key_ = lock_key(robot_);
   std::optional<LockHolder> seen_;
 };
