@@ -9,7 +9,7 @@ set(CMAKE_CXX_FLAGS_RELWITHDEBINFO "-O1 -g1") # the sanitizer presets: quick to 
 
 option(TANDEM_WERROR "Warnings are errors (for continuous integration)" OFF)
 option(TANDEM_BOARD "Only what a robot's board needs: controllers, bridges, `tandem robot`" OFF)
-option(TANDEM_FUZZ "Build the libFuzzer targets (needs clang)" OFF)
+option(TANDEM_FUZZ "Instrument for libFuzzer and build its programs (needs clang)" OFF)
 set(TANDEM_SANITIZE "" CACHE STRING "Sanitizers: address,undefined or thread")
 
 # A program is for its whole architecture, and its arithmetic is IEEE's: flags of one's own that break this are refused.
@@ -37,9 +37,20 @@ if(TANDEM_SANITIZE)
   target_compile_options(tandem_flags INTERFACE -fsanitize=${TANDEM_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
   target_link_options(tandem_flags INTERFACE -fsanitize=${TANDEM_SANITIZE})
 endif()
-if(TANDEM_FUZZ)
-  target_compile_options(tandem_flags INTERFACE -fsanitize=fuzzer-no-link,address,undefined)
-  target_link_options(tandem_flags INTERFACE -fsanitize=address,undefined)
+if(TANDEM_FUZZ) # the same objects serve the sanitized tests and the libFuzzer programs
+  target_compile_options(tandem_flags INTERFACE -fsanitize=fuzzer-no-link)
+endif()
+
+# The tests' own code, on top of tandem_flags: what it calls is what is tested, so it is built for little compile time.
+# Under the thread sanitizer it is instrumented as everything is: an atomic that it does not see would be a false alarm.
+add_library(tandem_test_flags INTERFACE)
+if(TANDEM_SANITIZE MATCHES "address")
+  target_compile_options(tandem_test_flags INTERFACE -O0 -fno-sanitize=undefined)
+  if(TANDEM_FUZZ)
+    target_compile_options(tandem_test_flags INTERFACE -fno-sanitize=fuzzer-no-link)
+  endif()
+else()
+  target_compile_options(tandem_test_flags INTERFACE -O1)
 endif()
 
 # A compiler cache, where there is one, serves all clones: neither paths of the checkout nor of the build folder are part of

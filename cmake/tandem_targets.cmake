@@ -64,7 +64,31 @@ function(tandem_plugin)
   set_property(GLOBAL APPEND PROPERTY TANDEM_PLUGINS_OF_${layer} ${arg_NAME})
 endfunction()
 
+# tandem_test_program(NAME x SOURCES … DEPS … EXTERNAL …): the GoogleTest program test_<x>, without a ctest entry.
+# All share one precompiled header, and none has more optimisation or instrumentation than a test needs (tandem_test_flags).
+function(tandem_test_program)
+  cmake_parse_arguments(arg "" "NAME" "SOURCES;DEPS;EXTERNAL" ${ARGN})
+  if(NOT TARGET tandem_test_headers)
+    file(CONFIGURE OUTPUT ${CMAKE_BINARY_DIR}/test_headers.cpp CONTENT "int main() {}\n") # carries it; an executable, as they are
+    add_executable(tandem_test_headers ${CMAKE_BINARY_DIR}/test_headers.cpp)
+    target_link_libraries(tandem_test_headers PRIVATE tandem_flags tandem_test_flags GTest::gtest GTest::gmock)
+    target_precompile_headers(tandem_test_headers PRIVATE
+      <algorithm> <array> <atomic> <chrono> <cmath> <filesystem> <fstream> <functional> <map> <memory> <optional> <span> <sstream> <string>
+      <thread> <vector> <gmock/gmock.h> <gtest/gtest.h>)
+  endif()
+  add_executable(test_${arg_NAME} ${arg_SOURCES})
+  target_link_libraries(test_${arg_NAME} PRIVATE
+    tandem_flags tandem_test_flags tandem_checkout GTest::gtest GTest::gtest_main GTest::gmock ${arg_EXTERNAL})
+  foreach(dep ${arg_DEPS})
+    tandem_target_of(dep_target ${dep})
+    target_link_libraries(test_${arg_NAME} PRIVATE ${dep_target})
+  endforeach()
+  target_precompile_headers(test_${arg_NAME} REUSE_FROM tandem_test_headers)
+  set_target_properties(test_${arg_NAME} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/tests)
+endfunction()
+
 # tandem_test(NAME hal_params SOURCES … DEPS hal LABELS fast): one GoogleTest program, one ctest entry.
+# LABELS: fast, or whole where real processes and real time are used; threads where the thread sanitizer has something to find.
 function(tandem_test)
   cmake_parse_arguments(arg "" "NAME;TIMEOUT" "SOURCES;DEPS;EXTERNAL;LABELS" ${ARGN})
   if(NOT arg_TIMEOUT)
@@ -73,13 +97,7 @@ function(tandem_test)
   if(CMAKE_CROSSCOMPILING)
     math(EXPR arg_TIMEOUT "${arg_TIMEOUT} * 10") # an emulated processor is slow
   endif()
-  add_executable(test_${arg_NAME} ${arg_SOURCES})
-  target_link_libraries(test_${arg_NAME} PRIVATE tandem_flags tandem_checkout GTest::gtest GTest::gtest_main GTest::gmock ${arg_EXTERNAL})
-  foreach(dep ${arg_DEPS})
-    tandem_target_of(dep_target ${dep})
-    target_link_libraries(test_${arg_NAME} PRIVATE ${dep_target})
-  endforeach()
-  set_target_properties(test_${arg_NAME} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/tests)
+  tandem_test_program(NAME ${arg_NAME} SOURCES ${arg_SOURCES} DEPS ${arg_DEPS} EXTERNAL ${arg_EXTERNAL})
   add_test(NAME ${arg_NAME} COMMAND test_${arg_NAME})
   set_tests_properties(${arg_NAME} PROPERTIES LABELS "${arg_LABELS}" TIMEOUT ${arg_TIMEOUT})
   if(TANDEM_SANITIZE MATCHES "thread") # libraries that are not built with it keep locks that it does not see
