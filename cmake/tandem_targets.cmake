@@ -87,8 +87,29 @@ function(tandem_test_program)
   set_target_properties(test_${arg_NAME} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/tests)
 endfunction()
 
+# tandem_label_test(<ctest entry> <program's target> LABELS …): what chooses tests. For each label the target tests_<label> builds them.
+#   fast       runs side by side with others        whole     uses real processes and real time, runs alone
+#   threads    has threads at stake: what the thread sanitizer is for
+#   behaviour  of controllers, by results: nothing for sanitizers        memory   fast, but behaviour: for the address sanitizer
+#   board      what a robot's board needs, on an emulated processor
+function(tandem_label_test entry target)
+  set(labels ${ARGN})
+  if("fast" IN_LIST labels AND NOT "behaviour" IN_LIST labels)
+    list(APPEND labels memory)
+  endif()
+  if(TANDEM_BOARD AND NOT entry MATCHES "emulator|^core_")
+    list(APPEND labels board)
+  endif()
+  set_property(TEST ${entry} PROPERTY LABELS "${labels}")
+  foreach(label ${labels})
+    if(NOT TARGET tests_${label})
+      add_custom_target(tests_${label})
+    endif()
+    add_dependencies(tests_${label} ${target})
+  endforeach()
+endfunction()
+
 # tandem_test(NAME hal_params SOURCES … DEPS hal LABELS fast): one GoogleTest program, one ctest entry.
-# LABELS: fast, or whole where real processes and real time are used; threads where the thread sanitizer has something to find.
 function(tandem_test)
   cmake_parse_arguments(arg "" "NAME;TIMEOUT" "SOURCES;DEPS;EXTERNAL;LABELS" ${ARGN})
   if(NOT arg_TIMEOUT)
@@ -99,7 +120,8 @@ function(tandem_test)
   endif()
   tandem_test_program(NAME ${arg_NAME} SOURCES ${arg_SOURCES} DEPS ${arg_DEPS} EXTERNAL ${arg_EXTERNAL})
   add_test(NAME ${arg_NAME} COMMAND test_${arg_NAME})
-  set_tests_properties(${arg_NAME} PROPERTIES LABELS "${arg_LABELS}" TIMEOUT ${arg_TIMEOUT})
+  set_tests_properties(${arg_NAME} PROPERTIES TIMEOUT ${arg_TIMEOUT})
+  tandem_label_test(${arg_NAME} test_${arg_NAME} ${arg_LABELS})
   if(TANDEM_SANITIZE MATCHES "thread") # libraries that are not built with it keep locks that it does not see
     set_property(TEST ${arg_NAME} APPEND PROPERTY ENVIRONMENT
       "TSAN_OPTIONS=suppressions=${PROJECT_SOURCE_DIR}/tests/bridges/lcm/tsan.supp")
