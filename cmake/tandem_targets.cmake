@@ -31,6 +31,7 @@ function(tandem_library)
     add_library(${target} STATIC ${arg_SOURCES})
     set(scope PUBLIC)
     target_link_libraries(${target} PRIVATE tandem_flags)
+    target_precompile_headers(${target} REUSE_FROM tandem_headers)
   else()
     add_library(${target} INTERFACE)
     set(scope INTERFACE)
@@ -72,9 +73,10 @@ function(tandem_test_program)
     file(CONFIGURE OUTPUT ${CMAKE_BINARY_DIR}/test_headers.cpp CONTENT "int main() {}\n") # carries it; an executable, as they are
     add_executable(tandem_test_headers ${CMAKE_BINARY_DIR}/test_headers.cpp)
     target_link_libraries(tandem_test_headers PRIVATE tandem_flags tandem_test_flags GTest::gtest GTest::gmock)
-    target_precompile_headers(tandem_test_headers PRIVATE
-      <algorithm> <array> <atomic> <chrono> <cmath> <filesystem> <fstream> <functional> <map> <memory> <optional> <span> <sstream> <string>
-      <thread> <vector> <gmock/gmock.h> <gtest/gtest.h>)
+    set(headers <algorithm> <array> <atomic> <chrono> <cmath> <filesystem> <fstream> <functional> <map> <memory> <optional> <span> <sstream>
+      <string> <thread> <vector> <gmock/gmock.h> <gtest/gtest.h>)
+    target_precompile_headers(tandem_test_headers PRIVATE ${headers})
+    tandem_describe_pch(tandem_test_headers ${headers})
   endif()
   add_executable(test_${arg_NAME} ${arg_SOURCES})
   target_link_libraries(test_${arg_NAME} PRIVATE
