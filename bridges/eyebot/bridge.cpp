@@ -4,6 +4,7 @@
 #include <chrono>
 #include <random>
 
+#include "bridges/eyebot_messages/codec.hpp"
 #include "hal/check.hpp"
 
 namespace tandem::bridges::eyebot {
@@ -104,13 +105,30 @@ hal::Result<std::shared_ptr<lcm_bus::LcmLink>> EyebotBridge::open() {
   const auto deliver = [mail = mail_, name = driver.name](const lcm_bus::LcmMessage& m) {
     if (const auto topic = topic_of(name, m.channel)) mail->inbox.deliver(*topic, m.data, m.received_ns);
   };
-  const auto echo = [mail = mail_](const lcm_bus::LcmMessage& m) {
-    mail->echo_ns.store(m.received_ns, std::memory_order_relaxed);
+  const auto hubs = [mail = mail_, own = driver.hub](const lcm_bus::LcmMessage& m) {
+    const std::string_view hub = hub_of(m.channel);
+    if (hub == own) {
+      mail->echo_ns.store(m.received_ns, std::memory_order_relaxed);
+    } else if (const auto header = eyebot_messages::peek_header(m.data)) {
+      mail->inbox.neighbours().hear_hub(hub, header->session);
+    }
   };
-  hal::Status ready = link.subscribe("eyebot/" + driver.name + "/[a-z_]+", deliver);
-  if (ready.ok()) ready = link.subscribe(channel_of(driver.name, driver.hub, Told::Heartbeat), echo);
-  if (ready.ok()) ready = link.start();
-  if (!ready.ok()) return ready.error();
+  const auto commands = [mail = mail_, own = driver.session](const lcm_bus::LcmMessage& m) {
+    const auto header = eyebot_messages::peek_header(m.data);
+    if (header && header->session != own) mail->inbox.neighbours().hear_command(header->session, m.received_ns);
+  };
+  const auto robots = [mail = mail_](const lcm_bus::LcmMessage& m) {
+    if (const std::string_view name = robot_of(m.channel); !name.empty()) mail->inbox.neighbours().hear_robot(name);
+  };
+  const std::array<std::pair<std::string, lcm_bus::LcmLink::Handler>, 4> all = {
+      {{"eyebot/" + driver.name + "/[a-z_]+", deliver},
+       {"hub/[^/]+/heartbeat", hubs},
+       {"eyebot/" + driver.name + "/cmd/[a-z_]+", commands},
+       {"eyebot/[^/]+/heartbeat", robots}}};
+  for (const auto& [channels, handler] : all) {
+    if (const hal::Status ready = link.subscribe(channels, handler); !ready.ok()) return ready.error();
+  }
+  if (const hal::Status ready = link.start(); !ready.ok()) return ready.error();
   return opened;
 }
 

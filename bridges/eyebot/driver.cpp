@@ -26,6 +26,12 @@ constexpr TimeNs kDeviceAgain = hal::kNsPerSecond;
 constexpr TimeNs kStatusFresh = 600 * hal::kNsPerMs;  // ten a second are promised
 constexpr TimeNs kReleasedAfter = 10 * hal::kNsPerSecond;
 constexpr TimeNs kComplainAgain = 10 * hal::kNsPerSecond;
+constexpr TimeNs kSilence = 2 * hal::kNsPerSecond;             // then it is told who is heard instead
+constexpr TimeNs kOthersRobot = 2 * hal::kNsPerSecond;         // after another hub's last command
+constexpr TimeNs kOthersSpread = 100 * hal::kNsPerMs;          // two hubs do not try again at the same moment
+constexpr TimeNs kClocksAgree = 100 * hal::kNsPerMs;           // a robot takes stamps that are 250 ms off
+constexpr float kLandCharge = 0.15F;                           // [chosen] where a robot says nothing of it itself
+constexpr double kPlaceSpeed_m_s = 1.5 * spec::kMaxSpeed_m_s;  // also one that is pushed
 constexpr std::size_t kPayloadAt = messages::kHeaderEnd;
 
 std::string id_of_session(std::int32_t session) {
@@ -52,7 +58,12 @@ const char* state_name(RobotState state) noexcept {
 }
 
 EyebotDriver::EyebotDriver(DriverSettings settings, Inbox& inbox, Outbox& outbox, hal::Log log)
-    : settings_(std::move(settings)), inbox_(inbox), outbox_(outbox), log_(std::move(log)), robot_(settings_.robot) {
+    : settings_(std::move(settings)),
+      inbox_(inbox),
+      outbox_(outbox),
+      log_(std::move(log)),
+      robot_(settings_.robot),
+      place_gate_(kPlaceSpeed_m_s) {
   if (settings_.name.empty()) settings_.name = settings_.robot.id;
   if (settings_.hub.empty()) settings_.hub = id_of_session(settings_.session);
   for (std::size_t i = 0; i < kTold; ++i) {
@@ -95,9 +106,7 @@ void EyebotDriver::take_all(TimeNs now) {
           });
   take_in(Topic::Ack, n.ack, now, [&] { use_ack(letter_.received_ns); });
   take_in(Topic::Status, n.status, now, [&] { use_status(); });
-  take_in(Topic::State, n.state, now, [&] {
-    if (n.state.message.pos_valid != 0) place_taken_ns_ = taken(Topic::State);
-  });
+  take_in(Topic::State, n.state, now, [&] { use_state(); });
   take_in(Topic::Altitude, n.altitude, now, nothing_more);
   take_in(Topic::Battery, n.battery, now, nothing_more);
   take_in(Topic::Scan, n.scan, now, nothing_more);
@@ -113,18 +122,37 @@ bool EyebotDriver::accept(const messages::Header& header, TimeNs received_ns) {
   if (sender == Sender::Other) return false;
   if (sender == Sender::Restarted) begin_anew();
   clock_.note(header.utime, received_ns);
+  watch_clock();
   return true;
 }
 
+/// Until it was learnt anew nothing that it said had a time, and nothing that it was told was young enough.
+void EyebotDriver::watch_clock() {
+  if (clock_.jumps() == clock_jumps_) return;
+  clock_jumps_ = clock_.jumps();
+  robots_clock_ = true;
+  log_.warning("eye-bot '" + settings_.robot.id + "': its clock was set; commands are now stamped by it");
+  interrupt();
+}
+
+/// Whatever becomes of it, whoever has it fly must be told that something was between. One that is not active has been
+/// counted already.
+void EyebotDriver::interrupt() noexcept {
+  statistics_.link_stops += state_ == RobotState::Active && goal_ == Goal::Obey ? 1 : 0;
+  interrupted_ = interrupted_ || was_active_;
+  end_flying();
+}
+
 void EyebotDriver::begin_anew() {
-  log_.warning("eye-bot '" + settings_.robot.id + "': it was started anew, or another one has its name");
+  log_.warning("eye-bot '" + settings_.robot.id + "': it was started anew");
+  interrupt();
+  place_gate_.forget();
   controlled_ = refused_ = false;
   status_.known = false;
   // It stands on the ground, if all is well: it must be told again to take off.
   pending_ = pending_ && order_ == hal::FlightOrder::Land;
   orders_.withdraw();
   orders_.forget();
-  end_flying();
 }
 
 void EyebotDriver::complain(Topic topic, const char* flaw, TimeNs now) {
@@ -135,11 +163,19 @@ void EyebotDriver::complain(Topic topic, const char* flaw, TimeNs now) {
                " is damaged: " + flaw);
 }
 
-void EyebotDriver::use_status() noexcept {
+void EyebotDriver::use_state() {
+  const messages::State& m = newests_.state.message;
+  if (m.pos_valid == 0 || !place_gate_.take({m.pos[0], m.pos[1], m.pos[2]}, taken(Topic::State))) return;
+  place_ = m;
+  place_taken_ns_ = taken(Topic::State);
+}
+
+void EyebotDriver::use_status() {
   const messages::Status& m = newests_.status.message;
   // It refuses to go where it is told: somebody may have taken it over while we could not hear it.
   const bool refuses = status_.known && m.cmd_rejected > status_.rejected && mode_of(m.mode) == Mode::Hover;
   if (refuses && setpoint_ != Told::Heartbeat) controlled_ = false;
+  const FlightStatus before = status_;
   status_.known = true;
   status_.mode = mode_of(m.mode);
   status_.armed = m.armed != 0;
@@ -147,6 +183,19 @@ void EyebotDriver::use_status() noexcept {
   status_.failsafe = failsafe_of(m.failsafe);
   status_.rejected = m.cmd_rejected;
   status_.taken_ns = std::max(status_.taken_ns, taken(Topic::Status));
+  const bool begins = status_.failsafe != before.failsafe && status_.failsafe != hal::FlightFailsafe::None;
+  // Commands that we ourselves left out are no surprise.
+  const bool late = status_.failsafe == hal::FlightFailsafe::CommandTimeout && setpoint_ == Told::Heartbeat;
+  const bool told = ordered_ == Action::Land || ordered_ == Action::Stop || ordered_ == Action::Disarm;
+  const bool sinks = in_the_air(before.mode) && controlled_ && !told &&
+                     (status_.mode == Mode::Land || status_.mode == Mode::Idle || status_.mode == Mode::Off ||
+                      status_.mode == Mode::Stopped);
+  if (!before.known || !was_active_ || settings_.observe || !((begins && !late) || sinks)) return;
+  ++statistics_.saved_itself;
+  log_.warning(
+      "eye-bot '" + settings_.robot.id + "': it goes to safety by itself, " + mode_name(status_.mode) +
+      (status_.failsafe == hal::FlightFailsafe::None ? "" : std::string(": ") + failsafe_name(status_.failsafe)));
+  interrupt();
 }
 
 void EyebotDriver::use_ack(TimeNs received_ns) {
@@ -156,6 +205,8 @@ void EyebotDriver::use_ack(TimeNs received_ns) {
   if (!answered) return;
   clock_.note_answer(m.hdr.utime, orders_.answered_issue_ns(), received_ns);
   const Outcome outcome = orders_.last(*answered).outcome;
+  if (outcome == Outcome::RejectedStale) robots_clock_ = !robots_clock_;  // then by the other clock
+  watch_clock();
   if (outcome == Outcome::Done) {
     if (*answered == Action::Arm) {
       controlled_ = true;
@@ -187,17 +238,16 @@ void EyebotDriver::fill(Topic topic, const Newest<Message>& newest, TimeNs now) 
 }
 
 void EyebotDriver::fill_flight(TimeNs now) noexcept {
-  const messages::State& state = newests_.state.message;
-  const bool placed = taken(Topic::State) != 0 && state.pos_valid != 0;
-  if (robot_.uses<hal::Positioning>() && place_taken_ns_ != 0) {
+  const bool placed = place_taken_ns_ != 0;
+  if (robot_.uses<hal::Positioning>() && placed) {
     auto& port = robot_.port<hal::Positioning>();
-    if (placed) read(state, settings_.world, port);
+    read(place_, settings_.world, port);
     robot_.stamp(port, place_taken_ns_, topic_period_ns(Topic::State), now);
   }
   if (robot_.uses<hal::FlightState>() && taken(Topic::Status) != 0) {
     auto& port = robot_.port<hal::FlightState>();
     read(newests_.status.message, port);
-    if (placed) read(state, settings_.world, port);
+    if (placed) read(place_, settings_.world, port);
     robot_.stamp(port, taken(Topic::Status), topic_period_ns(Topic::Status), now);
   }
 }
@@ -228,8 +278,11 @@ RobotState EyebotDriver::judge(TimeNs now) const noexcept {
   const Pulse pulse = liveness_.pulse(now);
   if (pulse == Pulse::Never) return RobotState::Absent;
   if (pulse == Pulse::Lost) return was_active_ ? RobotState::Lost : RobotState::Absent;
-  const bool well = pulse == Pulse::Beating && !liveness_.twins(now) && status_.known &&
-                    now - status_.taken_ns <= kStatusFresh && newests_.heartbeat.message.proto_major == 1;
+  const bool well = pulse == Pulse::Beating && liveness_.settled(now) && !liveness_.contested(now) &&
+                    !liveness_.twins(now) && !others_robot(now) && status_.known &&
+                    now - status_.taken_ns <= kStatusFresh && newests_.heartbeat.message.proto_major == 1 &&
+                    place_gate_.known() && !saves_itself(status_.mode, status_.failsafe) &&
+                    status_.mode != Mode::Stopped;
   if (well) return RobotState::Active;
   return was_active_ ? RobotState::Suspect : RobotState::Ready;
 }
@@ -253,6 +306,26 @@ void EyebotDriver::update_state(TimeNs now) {
   if (before == RobotState::Active || next == RobotState::Lost) {
     log_.warning(who + state_name(next) + ": " + trouble());
   }
+}
+
+/// Another hub has just commanded it, and it has not accepted us.
+bool EyebotDriver::others_robot(TimeNs now) const noexcept {
+  const TimeNs commanded_ns = inbox_.neighbours().commanded_ns();
+  const TimeNs wait_ns = kOthersRobot + kOthersSpread * (settings_.session & 15);
+  return !controlled_ && commanded_ns != 0 && now - commanded_ns < wait_ns;
+}
+
+bool EyebotDriver::battery_low() const noexcept {
+  if (taken(Topic::Battery) == 0) return false;
+  hal::Battery battery;
+  read(newests_.battery.message, battery);
+  return newests_.battery.message.low != 0 || battery.charge <= kLandCharge;
+}
+
+void EyebotDriver::report_silence(TimeNs now) {
+  if (silence_told_ || state_ != RobotState::Absent || now - started_ns_ < kSilence) return;
+  silence_told_ = true;
+  log_.warning("eye-bot '" + settings_.robot.id + "': " + trouble());
 }
 
 bool EyebotDriver::overdue(TimeNs now) const noexcept {
@@ -283,7 +356,8 @@ void EyebotDriver::guide(TimeNs now) noexcept {
   may_fly_ = false;
   if (settings_.observe || !status_.known) return;
   const Goal wanted = goal(now);
-  const Situation situation = {status_.mode, status_.armed, status_.failsafe, controlled_, wanted, order_, pending_};
+  const Situation situation = {status_.mode, status_.armed, status_.failsafe, controlled_,
+                               wanted,       order_,        pending_,         goal_ == Goal::Hover && battery_low()};
   Step step = next_step(situation);
   if (wanted == Goal::Obey && step.done) pending_ = false;
   if (goal_ != Goal::Obey) {
@@ -349,8 +423,16 @@ void EyebotDriver::fault(TimeNs now, std::string_view why) {
 
 // --- what it is told ---
 
+/// By our clock, as the protocol has it, unless the robot's is so far off that it takes what we say for old.
+TimeNs EyebotDriver::stamp_ns(TimeNs now) const noexcept {
+  const TimeNs own = settings_.unix_clock();
+  if (!robots_clock_ || !clock_.known()) return own;
+  const TimeNs robots = now - clock_.offset_ns();
+  return own - robots < kClocksAgree && robots - own < kClocksAgree ? own : robots;
+}
+
 void EyebotDriver::send(Voice& voice, TimeNs now) noexcept {
-  put_big_endian(std::span(voice.bytes).subspan(8, 8), static_cast<std::uint64_t>(settings_.unix_clock() / 1000));
+  put_big_endian(std::span(voice.bytes).subspan(8, 8), static_cast<std::uint64_t>(stamp_ns(now) / 1000));
   put_big_endian(std::span(voice.bytes).subspan(16, 4), static_cast<std::uint32_t>(voice.seq));
   put_big_endian(std::span(voice.bytes).subspan(20, 4), static_cast<std::uint32_t>(settings_.session));
   voice.seq = static_cast<std::int32_t>(static_cast<std::uint32_t>(voice.seq) + 1U);
@@ -455,12 +537,12 @@ void EyebotDriver::say_order(TimeNs now) noexcept {
   messages::CmdMode m{};
   m.action = static_cast<std::int8_t>(order->action);
   m.param = order->param;
+  ordered_ = order->action;
   voice(Told::Mode).seq = order->seq;  // the same as often as it is said
   say(Told::Mode, m, 0, now);
 }
 
 void EyebotDriver::say_heartbeat(TimeNs now) noexcept {
-  if (started_ns_ == 0) started_ns_ = now;
   if (voice(Told::Heartbeat).size != 0 && now - voice(Told::Heartbeat).said_ns < kBeat) return;
   own_heartbeat_.uptime_ms = (now - started_ns_) / hal::kNsPerMs;
   say(Told::Heartbeat, own_heartbeat_, 0, now);
@@ -476,7 +558,7 @@ void EyebotDriver::commit(TimeNs now) noexcept {
   advance(now);
   if (settings_.observe) return;
   if (may_fly_) say_setpoint(now);
-  say_devices(now);
+  if (was_active_ && !others_robot(now)) say_devices(now);
 }
 
 void EyebotDriver::pump(TimeNs now) noexcept {
@@ -488,8 +570,10 @@ void EyebotDriver::pump(TimeNs now) noexcept {
 
 void EyebotDriver::advance(TimeNs now) noexcept {
   now_ns_ = now;
+  if (started_ns_ == 0) started_ns_ = now;
   take_all(now);
   update_state(now);
+  report_silence(now);
   if (setpoint_ != Told::Heartbeat && goal_ == Goal::Obey) {
     if (state_ != RobotState::Active) {
       ++statistics_.link_stops;
@@ -548,21 +632,27 @@ std::string EyebotDriver::refused_order() const {
 
 std::string EyebotDriver::trouble() const {
   const std::string beat = channel_of(settings_.name, Topic::Heartbeat);
-  if (state_ == RobotState::Absent) return "no heartbeat is heard on " + beat;
+  if (state_ == RobotState::Absent) {
+    const std::string robots = inbox_.neighbours().robots();
+    return "no heartbeat is heard on " + beat + (robots.empty() ? "" : "; heard are: " + robots);
+  }
   if (state_ == RobotState::Lost) return "its heartbeat on " + beat + " is gone";
   const auto& heartbeat = newests_.heartbeat.message;
   if (heartbeat.proto_major != 1) {
     return "it speaks version " + std::to_string(heartbeat.proto_major) + " of the messages, and we version 1";
   }
+  if (liveness_.twins(now_ns_)) return "two robots are called '" + settings_.name + "'; give one of them another name";
+  if (others_robot(now_ns_)) return inbox_.neighbours().commander() + " commands it";
+  if (status_.known && status_.failsafe != hal::FlightFailsafe::None) return failsafe_name(status_.failsafe);
+  if (status_.known && status_.mode == Mode::Stopped) return "its motors were cut in an emergency";
   if (state_ != RobotState::Active) {
-    if (liveness_.twins(now_ns_))
-      return "two robots are called '" + settings_.name + "'; give one of them another name";
+    if (liveness_.contested(now_ns_)) return "it was started anew, or another one has its name";
     if (!status_.known) return "it does not say its status on " + channel_of(settings_.name, Topic::Status);
-    return "its heartbeat or its status does not come in time";
+    if (!place_gate_.known()) return "it has not said a valid place on " + channel_of(settings_.name, Topic::State);
+    return liveness_.settled(now_ns_) ? "its heartbeat or its status does not come in time"
+                                      : "it has just been started";
   }
-  if (refused_) return "another hub controls it";
-  if (status_.failsafe != hal::FlightFailsafe::None) return failsafe_name(status_.failsafe);
-  if (status_.mode == Mode::Stopped) return "its motors were cut in an emergency";
+  if (refused_) return inbox_.neighbours().hub_of(newests_.status.message.cmd_session) + " controls it";
   if (const std::string refused = refused_order(); !refused.empty()) return refused;
   const std::string missing = missing_readings();
   return missing.empty() ? "" : "it does not say anything on" + missing;

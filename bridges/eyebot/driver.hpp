@@ -1,8 +1,9 @@
 // One eye-bot without threads: what it says becomes readings, commands become what it is told, safety lies between;
 // driven by whoever owns the time.
 //
-//   absent --a heartbeat--> ready --its status--> active
-//   active --three heartbeats missing, or its status, or a second robot of its name--> suspect --all is well--> active
+//   absent --a heartbeat--> ready --its status, a valid place, and nobody else for 300 ms--> active
+//   active --three heartbeats missing, or its status, or a second robot of its name, or a new start of it, or its own
+//            fail-safe--> suspect --all is well--> active
 //   active, suspect --no heartbeat for two seconds--> lost --it beats again--> active
 //
 // A tick of the caller:   latch(tick, now) -> controller step -> commit(now)
@@ -11,10 +12,12 @@
 //
 // A robot in the air must not be left to itself, and never with its motors off:
 //   not active, or no commit for `command_timeout_ns` -> hover; the next commits ramp
-//   `stop`, `fault`                                   -> hover until `resume`, then ramp
+//   it was started anew, saved itself, its clock was set -> counted as a stop, even when it is well at once
+//   `stop`, `fault`                                   -> hover until `resume`, then ramp; land when its battery is low
 //   `land`                                            -> land, then motors off
 //   command not finite, or beyond the limits          -> hover, or clamped; counted
 //   nothing of ours reaches it                        -> it hovers by itself after 2 s, and lands after 10 s
+//   another hub commands it, and it is not ours       -> nothing is said to it
 #pragma once
 #include <array>
 #include <span>
@@ -26,6 +29,7 @@
 #include "bridges/eyebot/inbox.hpp"
 #include "bridges/eyebot/liveness.hpp"
 #include "bridges/eyebot/mode_orders.hpp"
+#include "bridges/eyebot/place_gate.hpp"
 #include "bridges/eyebot/robot.hpp"
 #include "bridges/eyebot/topic.hpp"
 #include "bridges/eyebot/world_frame.hpp"
@@ -75,7 +79,8 @@ struct DriverStatistics {
   std::uint64_t not_finite = 0;       ///< commands with NaN or infinity: made safe
   std::uint64_t rearmed = 0;          ///< times that flying began anew with a ramp
   std::uint64_t watchdog_stops = 0;   ///< for want of commits
-  std::uint64_t link_stops = 0;       ///< because the robot was not active any more
+  std::uint64_t link_stops = 0;       ///< because the robot was not active any more, or had begun anew by itself
+  std::uint64_t saved_itself = 0;     ///< times that it went to safety though nobody told it
   std::uint64_t recovered = 0;        ///< times it became Active again
   std::uint64_t lost = 0;             ///< times it became Lost
   std::uint64_t faults = 0;           ///< reported with `fault`
@@ -118,6 +123,8 @@ class EyebotDriver {
   void land(hal::TimeNs now) noexcept;
   /// `stop` because the controller failed; `why` is logged with the robot's id. Every command becomes safe.
   void fault(hal::TimeNs now, std::string_view why);
+  /// Its battery is so low that it should not stay in the air.
+  bool battery_low() const noexcept;
   /// Motors off at once: it falls. For people who have no other way left.
   void cut_motors(hal::TimeNs now) noexcept;
 
@@ -137,6 +144,7 @@ class EyebotDriver {
   const Liveness& liveness() const noexcept { return liveness_; }
   const ClockOffset& clock() const noexcept { return clock_; }
   const ModeOrders& orders() const noexcept { return orders_; }
+  const PlaceGate& places() const noexcept { return place_gate_; }
   /// Newer than the number of any message that will be said within hours.
   std::int32_t last_words_seq() const noexcept;
 
@@ -182,8 +190,12 @@ class EyebotDriver {
   bool accept(const eyebot_messages::Header& header, hal::TimeNs received_ns);
   void complain(Topic topic, const char* flaw, hal::TimeNs now);
   void use_ack(hal::TimeNs received_ns);
-  void use_status() noexcept;
+  void use_status();
+  void use_state();
   void begin_anew();
+  void interrupt() noexcept;
+  void watch_clock();
+  void report_silence(hal::TimeNs now);
   template <class Port, class Message>
   void fill(Topic topic, const Newest<Message>& newest, hal::TimeNs now) noexcept;
   void fill_flight(hal::TimeNs now) noexcept;
@@ -191,6 +203,7 @@ class EyebotDriver {
   // What it does.
   void advance(hal::TimeNs now) noexcept;
   RobotState judge(hal::TimeNs now) const noexcept;
+  bool others_robot(hal::TimeNs now) const noexcept;
   void update_state(hal::TimeNs now);
   bool overdue(hal::TimeNs now) const noexcept;
   Goal goal(hal::TimeNs now) const noexcept;
@@ -211,6 +224,7 @@ class EyebotDriver {
   template <class Message>
   void say(Told told, Message& message, hal::TimeNs again_ns, hal::TimeNs now) noexcept;
   void send(Voice& voice, hal::TimeNs now) noexcept;
+  hal::TimeNs stamp_ns(hal::TimeNs now) const noexcept;
 
   DriverSettings settings_;
   Inbox& inbox_;
@@ -226,8 +240,13 @@ class EyebotDriver {
   Letter letter_;
   Newests newests_;
   std::array<hal::TimeNs, kTopics> taken_ns_{};
-  hal::TimeNs place_taken_ns_ = 0;  // of the newest place that was valid
-  hal::RangeAndBearing heard_;      // since the last `latch`
+  PlaceGate place_gate_;
+  eyebot_messages::State place_{};  // the newest whose place was valid and is believed, taken at
+  hal::TimeNs place_taken_ns_ = 0;
+  std::uint64_t clock_jumps_ = 0;  // that were noticed
+  bool robots_clock_ = false;      // commands are stamped by the robot's clock: it refuses those by ours
+  bool silence_told_ = false;
+  hal::RangeAndBearing heard_;  // since the last `latch`
   hal::TimeNs complained_ns_ = 0;
 
   RobotState state_ = RobotState::Absent;
@@ -245,6 +264,7 @@ class EyebotDriver {
   float order_m_s_ = 0.0F;
   bool pending_ = false;
   bool may_fly_ = false;
+  Action ordered_ = Action::Nop;     // which was said last
   Told setpoint_ = Told::Heartbeat;  // which was said last; Heartbeat: none
   bool interrupted_ = false;         // the next flying begins with a ramp
   bool ramping_ = false;

@@ -111,12 +111,6 @@ bool waits_for_clearance(const Situation& s, const Step& step) noexcept {
   return obeys_setpoints(s.mode) || (s.mode == Mode::Idle && step.action != Action::Nop);
 }
 
-bool hands_off(const Situation& s) noexcept {
-  return s.failsafe == FlightFailsafe::LowBattery || s.failsafe == FlightFailsafe::NoPosition ||
-         s.failsafe == FlightFailsafe::Geofence || s.failsafe == FlightFailsafe::Hardware ||
-         (s.failsafe == FlightFailsafe::LinkLost && s.mode == Mode::Land);
-}
-
 }  // namespace
 
 Mode mode_of(std::int8_t number) noexcept {
@@ -163,8 +157,19 @@ bool at_rest(Mode mode) noexcept {
          mode == Mode::Attached || mode == Mode::Stopped;
 }
 
+bool saves_itself(Mode mode, FlightFailsafe failsafe) noexcept {
+  return failsafe == FlightFailsafe::LowBattery || failsafe == FlightFailsafe::NoPosition ||
+         failsafe == FlightFailsafe::Geofence || failsafe == FlightFailsafe::Hardware ||
+         (failsafe == FlightFailsafe::LinkLost && mode == Mode::Land);
+}
+
+bool in_the_air(Mode mode) noexcept {
+  return mode == Mode::TakeOff || mode == Mode::Attaching || mode == Mode::Detaching || obeys_setpoints(mode);
+}
+
 Step next_step(const Situation& s) noexcept {
   if (s.goal == Goal::Hover) {
+    if (s.battery_low && s.controlled && in_the_air(s.mode)) return sink(s);
     if (at_rest(s.mode)) return kDone;
     return s.controlled ? ask(Action::Hover) : kWait;
   }
@@ -177,7 +182,7 @@ Step next_step(const Situation& s) noexcept {
   if (step.action == Action::Land || step.action == Action::Disarm) {
     return s.controlled ? step : ask(Action::Arm);  // landing is never against a fail-safe
   }
-  if (hands_off(s)) return {Action::Nop, false, step.done};
+  if (saves_itself(s.mode, s.failsafe)) return {Action::Nop, false, step.done};
   if (waits_for_clearance(s, step)) step = {Action::ClearFailsafe, false, false};
   if (step.action != Action::Nop && !s.controlled) step.action = Action::Arm;
   return step;

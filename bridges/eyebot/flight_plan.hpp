@@ -34,6 +34,11 @@ bool obeys_setpoints(Mode mode) noexcept;
 /// It stands on something, hangs on something, hovers, or is about to stand: nothing drives it on.
 bool at_rest(Mode mode) noexcept;
 
+/// The robot brings itself to safety, whatever it is told.
+bool saves_itself(Mode mode, hal::FlightFailsafe failsafe) noexcept;
+/// Its motors carry it.
+bool in_the_air(Mode mode) noexcept;
+
 /// What the bridge is after.
 enum class Goal : std::uint8_t {
   Obey,   ///< the controller's orders
@@ -48,7 +53,8 @@ struct Situation {
   bool controlled = false;  ///< by us: it has accepted our Arm
   Goal goal = Goal::Obey;
   hal::FlightOrder order = hal::FlightOrder::Fly;
-  bool pending = false;  ///< the order was not carried out yet
+  bool pending = false;      ///< the order was not carried out yet
+  bool battery_low = false;  ///< one that is to hover lands instead
 };
 
 struct Step {

@@ -10,6 +10,7 @@
 #include <span>
 #include <vector>
 
+#include "bridges/eyebot/neighbours.hpp"
 #include "bridges/eyebot/topic.hpp"
 
 namespace tandem::bridges::eyebot {
@@ -42,6 +43,9 @@ class Inbox {
   void wait(hal::TimeNs timeout_ns);
   void wake();
 
+  /// Who else is heard; thread-safe as well.
+  Neighbours& neighbours() noexcept { return neighbours_; }
+
   TopicStatistics statistics(Topic topic) const;
   TopicStatistics statistics() const;  ///< of all topics together
 
@@ -63,6 +67,7 @@ class Inbox {
   std::condition_variable changed_;
   bool news_ = false;
   std::array<Slot, kTopics> slots_;
+  Neighbours neighbours_;
 };
 
 }  // namespace tandem::bridges::eyebot

@@ -21,17 +21,22 @@ void Liveness::begin(std::int32_t session, hal::TimeNs received_ns) noexcept {
   }
   known_ = true;
   session_ = session;
-  others_in_row_ = 0;
-  seen_ns_ = received_ns;
+  begun_ns_ = seen_ns_ = received_ns;
+  rival_ = false;
+  turns_ = 0;
 }
 
 Sender Liveness::note(std::int32_t session, hal::TimeNs received_ns) noexcept {
-  if (known_ && session == session_) {
-    seen_ns_ = std::max(seen_ns_, received_ns);
-    return Sender::Current;
-  }
   if (!known_) {
     begin(session, received_ns);
+    return Sender::Current;
+  }
+  if (session == session_) {
+    if (rival_ && rival_ns_ >= seen_ns_ && received_ns > rival_ns_) {
+      turns_ = received_ns - turn_ns_ <= kRow ? turns_ + 1 : 1;
+      turn_ns_ = received_ns;
+    }
+    seen_ns_ = std::max(seen_ns_, received_ns);
     return Sender::Current;
   }
   if (received_ns < seen_ns_) return Sender::Other;  // it lay in the inbox while the robot restarted
@@ -39,10 +44,10 @@ Sender Liveness::note(std::int32_t session, hal::TimeNs received_ns) noexcept {
   for (std::size_t i = 0; i < befores_; ++i) {
     replaced = replaced || before_[(newest_ + before_.size() - i) % before_.size()] == session;
   }
-  if (replaced && received_ns - seen_ns_ <= kLostAfter) {
+  if (received_ns - seen_ns_ < (replaced ? kLostAfter : kTrial)) {
     ++others_;
-    others_in_row_ = received_ns - other_ns_ <= kRow ? others_in_row_ + 1 : 1;
-    other_ns_ = received_ns;
+    rival_ = true;
+    rival_ns_ = received_ns;
     return Sender::Other;
   }
   begin(session, received_ns);
@@ -76,7 +81,11 @@ hal::TimeNs Liveness::next_change(hal::TimeNs now) const noexcept {
 }
 
 bool Liveness::twins(hal::TimeNs now) const noexcept {
-  return others_in_row_ >= kTwins && now - other_ns_ < kTwinsShown;
+  return turns_ >= kTwins && now - turn_ns_ < kTwinsShown;
+}
+
+bool Liveness::contested(hal::TimeNs now) const noexcept {
+  return rival_ && now - rival_ns_ < kTrial;
 }
 
 }  // namespace tandem::bridges::eyebot

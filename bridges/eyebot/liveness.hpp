@@ -16,11 +16,15 @@ enum class Sender : std::uint8_t {
 
 enum class Pulse : std::uint8_t { Never, Beating, Stale, Lost };
 
-/// A robot draws a number at its start, its session. One that was replaced does not come back: if it does again and
-/// again, there are two robots of one name. Times are CLOCK_MONOTONIC. Not thread-safe.
+/// A robot draws a number at its start, its session. Another one is taken for the robot started anew once the one
+/// before has been silent for `kTrial`; when that speaks on, there are two robots of one name, and the one that was
+/// there first stays the robot. A session that was replaced does not come back unless the other is lost. Times are
+/// CLOCK_MONOTONIC. Not thread-safe.
 class Liveness {
  public:
   static constexpr hal::TimeNs kLostAfter = 2 * hal::kNsPerSecond;
+  /// In which a second robot of the name would have spoken fifteen times.
+  static constexpr hal::TimeNs kTrial = 300 * hal::kNsPerMs;
 
   /// Of every message that came, in about the order of their coming.
   Sender note(std::int32_t session, hal::TimeNs received_ns) noexcept;
@@ -32,8 +36,12 @@ class Liveness {
   /// When the pulse will change if no heartbeat comes.
   hal::TimeNs next_change(hal::TimeNs now) const noexcept;
   hal::TimeNs heartbeat_ns() const noexcept { return heartbeat_ns_; }
-  /// Messages of another start came three times or more within a short while, the last less than three seconds ago.
+  /// The robot and another of its name spoke in turn three times or more, the last time less than three seconds ago.
   bool twins(hal::TimeNs now) const noexcept;
+  /// Another start, or another robot of the name, has just spoken: it is not known yet which one it is.
+  bool contested(hal::TimeNs now) const noexcept;
+  /// It has been heard for so long that a second robot of its name would have been noticed.
+  bool settled(hal::TimeNs now) const noexcept { return known_ && now - begun_ns_ >= kTrial; }
 
   std::int32_t session() const noexcept { return session_; }
   std::uint64_t restarts() const noexcept { return restarts_; }
@@ -46,11 +54,14 @@ class Liveness {
 
   bool known_ = false;
   std::int32_t session_ = 0;
+  hal::TimeNs begun_ns_ = 0;
   hal::TimeNs seen_ns_ = 0;
   std::array<std::int32_t, 4> before_{};  // sessions that were replaced, the newest at `newest_`
   std::size_t befores_ = 0, newest_ = 0;
-  unsigned others_in_row_ = 0;
-  hal::TimeNs other_ns_ = 0;
+  bool rival_ = false;  // another session spoke, at
+  hal::TimeNs rival_ns_ = 0;
+  unsigned turns_ = 0;  // the robot spoke after its rival, again and again, at last at
+  hal::TimeNs turn_ns_ = 0;
   bool beating_ = false;
   hal::TimeNs heartbeat_ns_ = 0, period_ns_ = 200 * hal::kNsPerMs;
   std::uint64_t restarts_ = 0, others_ = 0;

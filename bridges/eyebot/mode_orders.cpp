@@ -50,7 +50,9 @@ const char* outcome_name(Outcome outcome) noexcept {
 void ModeOrders::want(Action action, float param, hal::TimeNs now) noexcept {
   if (out_ && order_.action == action) return;
   const Last& before = last(action);
-  if (before.outcome != Outcome::Never && now - before.at_ns < kTryAgain) return;
+  // One that was refused for its stamp gets another one.
+  const hal::TimeNs pause = before.outcome == Outcome::RejectedStale ? kSayAgain : kTryAgain;
+  if (before.outcome != Outcome::Never && now - before.at_ns < pause) return;
   out_ = true;
   order_ = {action, param, seq_, now};
   seq_ = static_cast<std::int32_t>(static_cast<std::uint32_t>(seq_) + 1U);

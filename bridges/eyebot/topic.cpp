@@ -37,6 +37,13 @@ constexpr std::array<Row, kTopics> kRows = {{{"heartbeat", ms(200), &messages::f
 constexpr std::array<std::string_view, kTold> kTolds = {"",     "mode",     "position", "velocity",
                                                         "leds", "pan_tilt", "scanner",  "rab"};
 
+std::string_view name_behind(std::string_view head, std::string_view channel) noexcept {
+  if (!channel.starts_with(head)) return {};
+  channel.remove_prefix(head.size());
+  const std::size_t end = channel.find('/');
+  return end == std::string_view::npos ? std::string_view() : channel.substr(0, end);
+}
+
 const Row& row(Topic topic) noexcept {
   return kRows[static_cast<std::size_t>(topic)];
 }
@@ -69,6 +76,15 @@ std::string channel_of(std::string_view robot, Topic topic) {
 std::string channel_of(std::string_view robot, std::string_view hub, Told told) {
   if (told == Told::Heartbeat) return "hub/" + std::string(hub) + "/heartbeat";
   return "eyebot/" + std::string(robot) + "/cmd/" + std::string(kTolds[static_cast<std::size_t>(told)]);
+}
+
+std::string_view robot_of(std::string_view channel) noexcept {
+  const std::string_view name = name_behind("eyebot/", channel);
+  return is_robot_name(name) ? name : std::string_view();
+}
+
+std::string_view hub_of(std::string_view channel) noexcept {
+  return name_behind("hub/", channel);
 }
 
 std::optional<Topic> topic_of(std::string_view robot, std::string_view channel) noexcept {

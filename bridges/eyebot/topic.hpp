@@ -46,6 +46,10 @@ bool is_robot_name(std::string_view name) noexcept;
 std::string channel_of(std::string_view robot, Topic topic);
 /// `hub`: name of the hub, which only the heartbeat's channel needs.
 std::string channel_of(std::string_view robot, std::string_view hub, Told told);
+/// The name in the channel of a robot, "eyebot/NAME/…", or of a hub, "hub/NAME/…"; empty for others, and for names that
+/// cannot be.
+std::string_view robot_of(std::string_view channel) noexcept;
+std::string_view hub_of(std::string_view channel) noexcept;
 /// The topic of a channel of that robot; nothing for others.
 std::optional<Topic> topic_of(std::string_view robot, std::string_view channel) noexcept;
 

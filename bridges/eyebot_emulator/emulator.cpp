@@ -81,6 +81,14 @@ struct Flyer {
   std::deque<Datagram> to_hub;
 };
 
+/// What another hub says that takes the robot for its own: its heartbeat, and lights.
+struct SecondHub {
+  std::int32_t session = draw_session();
+  std::int32_t seq = 0;
+  TimeNs begun_at = 0;
+  TimeNs next_at = 0;
+};
+
 class Server {
  public:
   Server(const Options& options, std::unique_ptr<EventLog> log_file, const std::vector<Fault>& faults);
@@ -94,6 +102,7 @@ class Server {
   void apply_faults(std::size_t i, TimeNs now);
   void fly(Flyer& flyer, TimeNs now);
   void publish(Flyer& flyer, TimeNs now);
+  void speak(SecondHub& hub, const std::string& robot, TimeNs now);
   TimeNs next_wake(TimeNs now) const;
   void wait_until(TimeNs at, TimeNs now) const;
   void tell_end(TimeNs at);
@@ -104,7 +113,8 @@ class Server {
   std::shared_ptr<LcmLink> link_;
   std::shared_ptr<Inbox> inbox_ = std::make_shared<Inbox>();
   std::vector<std::unique_ptr<Flyer>> flyers_;
-  std::vector<std::unique_ptr<Flyer>> twins_;  // of the flyer at the same place; none: null
+  std::vector<std::unique_ptr<Flyer>> twins_;          // of the flyer at the same place; none: null
+  std::vector<std::optional<SecondHub>> second_hubs_;  // likewise
 };
 
 Server::Server(const Options& options, std::unique_ptr<EventLog> log_file, const std::vector<Fault>& faults)
@@ -115,6 +125,7 @@ Server::Server(const Options& options, std::unique_ptr<EventLog> log_file, const
   const auto names = names_of(options.robot.name, options.count);
   for (std::size_t i = 0; i < names.size(); ++i) flyers_.push_back(make_flyer(names[i], i, faults, sink));
   twins_.resize(flyers_.size());
+  second_hubs_.resize(flyers_.size());
 }
 
 // Robots stand in rows of five, two metres apart.
@@ -194,6 +205,9 @@ void Server::tell_end(TimeNs at) {
 
 void Server::turn(TimeNs now) {
   for (std::size_t i = 0; i < flyers_.size(); ++i) apply_faults(i, now);
+  for (std::size_t i = 0; i < flyers_.size(); ++i) {
+    if (second_hubs_[i]) speak(*second_hubs_[i], flyers_[i]->robot.options().name, now);
+  }
   distribute();
   for (const auto& flyer : flyers_) fly(*flyer, now);
   for (const auto& twin : twins_) {
@@ -209,6 +223,10 @@ void Server::apply_faults(std::size_t i, TimeNs now) {
     if (fault.kind == FaultKind::Twin) {
       twins_[i] = change->begins ? make_flyer(flyer.robot.options().name, i + 1, {}, {}) : nullptr;
       if (twins_[i]) twins_[i]->robot.power_on(change->at, unix_us() - (monotonic_ns() - change->at) / 1000);
+    }
+    if (fault.kind == FaultKind::SecondHub) {
+      second_hubs_[i].reset();
+      if (change->begins) second_hubs_[i] = SecondHub{.begun_at = change->at, .next_at = change->at};
     }
     tell(change->at, "fault",
          {{"robot", flyer.robot.options().name}, {"fault", fault.text}, {"phase", change->begins ? "begin" : "end"}});
@@ -254,6 +272,15 @@ void Server::publish(Flyer& flyer, TimeNs now) {
     if (message.channel.ends_with("/state")) flyer.robot.state_left(monotonic_ns());
     link_->publish(message.channel, message.data);
     flyer.to_hub.pop_front();
+  }
+}
+
+void Server::speak(SecondHub& hub, const std::string& robot, TimeNs now) {
+  for (; hub.next_at <= now; hub.next_at += kHeartbeatPeriod_ms * hal::kNsPerMs) {
+    const Header header{unix_us(), hub.seq++, hub.session};
+    const std::int64_t uptime_ms = (now - hub.begun_at) / hal::kNsPerMs;
+    link_->publish("hub/second/heartbeat", write_heartbeat(header, "second", uptime_ms, true));
+    link_->publish("eyebot/" + robot + "/cmd/leds", write_leds(header, Lights{}));
   }
 }
 

@@ -251,7 +251,9 @@ void Eyebot::report(TimeNs at) {
   const auto send_state = [&] {
     state_seq_ = traffic_.contains("state") ? traffic_.find("state")->second.next_seq : 0;
     state_sent_at_ = at;
-    send("state", at, [&](const Header& h) { return write_state(h, senses_, !position_lost_); });
+    BodySenses believed = senses_;
+    believed.p_WB[0] += place_error_m_;
+    send("state", at, [&](const Header& h) { return write_state(h, believed, !position_lost_); });
   };
   if (state_rate_Hz_ <= kStateRate_Hz) {
     if (is_due(n, kStateRate_Hz, 0)) send_state();

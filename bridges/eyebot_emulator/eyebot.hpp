@@ -74,6 +74,8 @@ class Eyebot {
   void jump_clock(std::int64_t by_us) noexcept { clock_us_ += by_us; }
   void set_charge(double charge) noexcept;
   void set_position_lost(bool lost) noexcept { position_lost_ = lost; }
+  /// It believes itself so far east of where it is.
+  void set_place_error(double east_m) noexcept { place_error_m_ = east_m; }
   void set_hardware_fault(bool fault) noexcept { hardware_fault_ = fault; }
   /// How often the state is reported: `kStateRate_Hz` unless something is wrong.
   void set_state_rate_Hz(int rate) noexcept { state_rate_Hz_ = rate; }
@@ -130,6 +132,7 @@ class Eyebot {
   EmulatedBattery battery_;
   bool charge_is_set_ = false;
   bool position_lost_ = false;
+  double place_error_m_ = 0.0;
   bool hardware_fault_ = false;
   int state_rate_Hz_ = kStateRate_Hz;
   std::int64_t clock_us_ = 0;  // what the clock shows, less the time that it is told

@@ -11,7 +11,7 @@ namespace {
 
 using hal::TimeNs;
 
-enum class Value : std::uint8_t { None, Channel, Probability, Time, SignedTime, Charge, Rate };
+enum class Value : std::uint8_t { None, Channel, Probability, Time, SignedTime, Charge, Rate, Length };
 
 /// One line of the manual, and how the fault is read.
 struct Entry {
@@ -23,7 +23,7 @@ struct Entry {
   std::string_view doc;
 };
 
-constexpr std::array<Entry, 19> kEntries = {{
+constexpr std::array<Entry, 23> kEntries = {{
     {FaultKind::Silent, "silent", Value::Channel, false, "silent=state@5s+2s",
      "a channel of the robot is not sent; silent@5s: all"},
     {FaultKind::Deaf, "deaf", Value::Channel, false, "deaf=cmd/velocity@5s+2s",
@@ -48,7 +48,16 @@ constexpr std::array<Entry, 19> kEntries = {{
     {FaultKind::Hardware, "hardware", Value::None, false, "hardware@5s+1s", "the robot finds a fault in itself"},
     {FaultKind::Twin, "twin", Value::None, false, "twin@5s+5s", "there is a second robot of that name"},
     {FaultKind::Flood, "flood", Value::Rate, false, "flood=2000@5s+2s", "so many reports of its state a second"},
+    {FaultKind::Damage, "damage", Value::Channel, false, "damage=state",
+     "every report on a channel is damaged, from the start or for a while"},
+    {FaultKind::Future, "future", Value::Probability, false, "future=0.01", "a report is stamped an hour ahead"},
+    {FaultKind::Place, "place", Value::Length, false, "place=3m@5s+2s",
+     "the robot believes itself so far east of where it is"},
+    {FaultKind::SecondHub, "second-hub", Value::None, false, "second-hub@5s+5s",
+     "another hub, 'second', beats its heart and commands the robot's lights"},
 }};
+
+constexpr std::size_t kStampAt = 8;  // in a message, behind the fingerprint
 
 hal::Error wrong(std::string_view text, const std::string& why) {
   return hal::Error{"fault '" + std::string(text) + "': " + why + ". The faults are\n" + fault_manual()};
@@ -90,6 +99,12 @@ hal::Status read_value(const Entry& entry, std::string_view value, Fault& fault)
       const auto time = entry.value == Value::Time ? parse_time(value) : parse_signed_time(value);
       if (!time.ok()) return time.error();
       fault.time_ns = time.value();
+      break;
+    }
+    case Value::Length: {
+      const auto length = hal::parse_quantity(value, hal::unit::m);
+      if (!length.ok()) return length.error();
+      fault.length_m = length.value();
       break;
     }
     case Value::Rate: {
@@ -191,9 +206,16 @@ TimeNs FaultPlan::longest_ns(FaultKind kind, TimeNs at) const {
   return longest;
 }
 
-void FaultPlan::damage(Bytes& data, TimeNs at) {
-  if (happens(FaultKind::Fingerprint, at) && data.size() >= 8) {
+void FaultPlan::damage(const std::string& channel, Bytes& data, TimeNs at) {
+  const bool other = happens(FaultKind::Fingerprint, at) || is_mute(FaultKind::Damage, channel, at);
+  if (other && data.size() >= 8) {
     for (std::size_t i = 0; i < 8; ++i) data[i] ^= std::byte{0xFF};
+  }
+  if (happens(FaultKind::Future, at) && data.size() >= kStampAt + 8) {
+    std::uint64_t stamp_us = 0;
+    for (std::size_t i = 0; i < 8; ++i) stamp_us = stamp_us << 8U | std::to_integer<std::uint64_t>(data[kStampAt + i]);
+    stamp_us += 3'600'000'000;
+    for (std::size_t i = 8; i-- > 0; stamp_us >>= 8U) data[kStampAt + i] = static_cast<std::byte>(stamp_us & 0xFFU);
   }
   if (happens(FaultKind::Truncate, at)) data.resize(static_cast<std::size_t>(chance_.draw() % data.size()));
 }
@@ -219,7 +241,7 @@ void FaultPlan::pass(Way& way, Datagram message, std::vector<Datagram>& out) {
 
 void FaultPlan::to_hub(const Datagram& message, std::vector<Datagram>& out) {
   Datagram damaged = message;
-  damage(damaged.data, message.at);
+  damage(message.channel, damaged.data, message.at);
   pass(out_, std::move(damaged), out);
 }
 
@@ -241,6 +263,8 @@ void apply(const FaultPlan::Change& change, Eyebot& robot, std::int32_t new_sess
       return robot.set_position_lost(change.begins);
     case FaultKind::Hardware:
       return robot.set_hardware_fault(change.begins);
+    case FaultKind::Place:
+      return robot.set_place_error(change.begins ? fault.length_m : 0.0);
     case FaultKind::Flood:
       return robot.set_state_rate_Hz(change.begins ? fault.rate_Hz : Eyebot::kStateRate_Hz);
     default:

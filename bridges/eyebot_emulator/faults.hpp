@@ -29,7 +29,11 @@ enum class FaultKind : std::uint8_t {
   NoPosition,
   Hardware,
   Twin,
-  Flood
+  Flood,
+  Damage,
+  Future,
+  Place,
+  SecondHub
 };
 
 /// Active in [from, until), counted from the start of the emulator. Restart, Clock and Battery happen at `from`.
@@ -37,12 +41,14 @@ struct Fault {
   FaultKind kind = FaultKind::Silent;
   hal::TimeNs from = 0;
   hal::TimeNs until = kEndless;
-  std::string channel{};     ///< Silent, Deaf: the end of the channel's name; empty: all
-  double probability = 0.0;  ///< Drop, Double, Swap, Lose, Repeat, Overtake, Fingerprint, Truncate: of each message
-  hal::TimeNs time_ns = 0;   ///< Delay, Lag, Clock
-  double charge = 0.0;       ///< Battery: 0 to 1
-  int rate_Hz = 0;           ///< Flood
-  std::string text{};        ///< as written
+  std::string channel{};  ///< Silent, Deaf, Damage: the end of the channel's name; empty: all
+  double probability =
+      0.0;  ///< Drop, Double, Swap, Lose, Repeat, Overtake, Fingerprint, Truncate, Future: of each message
+  hal::TimeNs time_ns = 0;  ///< Delay, Lag, Clock
+  double charge = 0.0;      ///< Battery: 0 to 1
+  int rate_Hz = 0;          ///< Flood
+  double length_m = 0.0;    ///< Place
+  std::string text{};       ///< as written
 };
 
 /// Reads NAME[=VALUE][@START[+DURATION]]: "silent=state@5s+2s", "drop=0.01", "clock=1h@3s" … A bare number is in
@@ -85,7 +91,7 @@ class FaultPlan {
   bool is_mute(FaultKind kind, const std::string& channel, hal::TimeNs at) const;
   bool happens(FaultKind kind, hal::TimeNs at);
   hal::TimeNs longest_ns(FaultKind kind, hal::TimeNs at) const;
-  void damage(Bytes& data, hal::TimeNs at);
+  void damage(const std::string& channel, Bytes& data, hal::TimeNs at);
 
   std::vector<Fault> faults_;
   std::vector<Change> changes_;  // in order of time

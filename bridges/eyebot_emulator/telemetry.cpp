@@ -71,11 +71,11 @@ Direction direction_of(const Blob& blob, const BodySenses& senses) {
 
 }  // namespace
 
-Bytes write_heartbeat(const Header& header, const std::string& name, std::int64_t uptime_ms) {
+Bytes write_heartbeat(const Header& header, const std::string& name, std::int64_t uptime_ms, bool hub) {
   eyebot_heartbeat_t m{};
   m.hdr = head(header);
   m.name = text_of(name);
-  m.role = EYEBOT_HEARTBEAT_T_ROLE_ROBOT;
+  m.role = hub ? EYEBOT_HEARTBEAT_T_ROLE_HUB : EYEBOT_HEARTBEAT_T_ROLE_ROBOT;
   m.proto_major = kProtocolMajor;
   m.proto_minor = kProtocolMinor;
   m.period_ms = kHeartbeatPeriod_ms;

@@ -53,7 +53,8 @@ struct ScanSample {
 /// Promised by every heartbeat.
 inline constexpr std::int32_t kHeartbeatPeriod_ms = 200;
 
-Bytes write_heartbeat(const Header& header, const std::string& name, std::int64_t uptime_ms);
+/// A robot's, or a hub's.
+Bytes write_heartbeat(const Header& header, const std::string& name, std::int64_t uptime_ms, bool hub = false);
 Bytes write_status(const Header& header, const StatusReport& status);
 Bytes write_state(const Header& header, const BodySenses& senses, bool position_valid);
 Bytes write_altitude(const Header& header, const BodySenses& senses);

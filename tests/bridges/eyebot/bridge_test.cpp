@@ -332,6 +332,15 @@ TEST_F(OnLoopback, FliesARobotOfAnotherLanguageWithAWitness) {
   ASSERT_TRUE(ear.ok()) << ear.error().message;
   lcm_bus::Witness witness("(eyebot|hub)/.*");
   ASSERT_TRUE(witness.wait_until_it_hears(*ear.value()));
+  const auto armed = std::make_shared<std::atomic<int>>(-1);
+  ASSERT_TRUE(ear.value()
+                  ->subscribe("eyebot/py_1/status",
+                              [armed](const LcmMessage& m) {
+                                messages::Status status{};
+                                if (messages::decode(m.data, status) == messages::Flaw::None) *armed = status.armed;
+                              })
+                  .ok());
+  ASSERT_TRUE(ear.value()->start().ok());
   PythonRobot robot("py_1");
   double highest_m = 0.0, farthest_m = 0.0;
   {
@@ -354,6 +363,7 @@ TEST_F(OnLoopback, FliesARobotOfAnotherLanguageWithAWitness) {
   }
   EXPECT_GT(highest_m, 0.9);
   EXPECT_GT(farthest_m, 0.95);
+  for (int i = 0; i < 1000 && *armed != 0; ++i) std::this_thread::sleep_for(std::chrono::milliseconds(10));
   const auto events = witness.end();
   const auto orders = logged<messages::CmdMode>(events, "eyebot/py_1/cmd/mode");
   std::vector<int> actions;

@@ -38,9 +38,38 @@ TEST(EyebotDriver, IsActiveWithAHeartbeatAndAStatus) {
   EXPECT_EQ(s.driver.state(), RobotState::Ready);
   EXPECT_THAT(s.driver.trouble(), HasSubstr("eyebot/eb0/status"));
   s.robot.alive = true;
-  s.run(100);
+  s.run(400);
   EXPECT_EQ(s.driver.state(), RobotState::Active);
   EXPECT_EQ(s.driver.trouble(), "");
+}
+
+TEST(EyebotDriver, IsNotActiveBeforeItHasSaidAValidPlace) {
+  Scene s;
+  auto& task = s.actuator<hal::FlightTask>();
+  task.order = hal::FlightOrder::TakeOff;
+  s.robot.state.pos[0] = kNan;  // damaged from the start
+  s.run(3000);
+  EXPECT_EQ(s.driver.state(), RobotState::Ready);
+  EXPECT_THAT(s.driver.trouble(), HasSubstr("has not said a valid place on eyebot/eb0/state"));
+  s.robot.state.pos[0] = 0.0;
+  s.robot.state.pos_valid = 0;
+  s.run(1000);
+  EXPECT_EQ(s.driver.state(), RobotState::Ready);
+  EXPECT_TRUE(s.robot.obeyed.empty());
+  s.robot.state.pos_valid = 1;
+  s.run(500);
+  EXPECT_THAT(s.robot.obeyed, ElementsAre(CmdMode::ACT_ARM, CmdMode::ACT_TAKEOFF));
+}
+
+TEST(EyebotDriver, NamesTheRobotsThatAreHeardWhenItsOwnIsNot) {
+  Scene s;
+  s.robot.alive = false;
+  s.inbox.neighbours().hear_robot("eb9");
+  s.inbox.neighbours().hear_robot("eb1");
+  s.inbox.neighbours().hear_robot("eb9");
+  s.run(2100);
+  EXPECT_THAT(s.driver.trouble(), HasSubstr("no heartbeat is heard on eyebot/eb0/heartbeat; heard are: eb1, eb9"));
+  EXPECT_TRUE(s.has_logged("heard are: eb1, eb9"));
 }
 
 TEST(EyebotDriver, IsSuspectAfterThreePeriodsLostAfterTwoSecondsAndBackByItself) {
@@ -171,12 +200,12 @@ TEST(EyebotDriver, OfAFloodTheNewestWins) {
   const auto& place = s.sensor<hal::Positioning>();
   s.run(500);
   for (int i = 1; i <= 1000; ++i) {
-    s.robot.state.pos[0] = i;
+    s.robot.state.pos[0] = 1e-4 * i;
     s.robot.say(Topic::State, s.robot.state);
   }
   s.driver.pump(s.now);
   s.driver.latch(0, s.now);
-  EXPECT_EQ(place.p_WB[0], 1000.0);
+  EXPECT_EQ(place.p_WB[0], 0.1);
   EXPECT_EQ(s.inbox.statistics(Topic::State).replaced, 999U);
   EXPECT_EQ(s.inbox.statistics(Topic::State).lost, 0U);
 }
@@ -296,6 +325,198 @@ TEST(EyebotDriver, TwoRobotsOfOneNameAreATrouble) {
   EXPECT_EQ(s.driver.state(), RobotState::Active);
 }
 
+TEST(EyebotDriver, ASecondRobotOfItsNameThatIsThereFromTheStartKeepsItFromArming) {
+  Scene s;
+  s.actuator<hal::FlightTask>().order = hal::FlightOrder::TakeOff;
+  ScriptedRobot twin(s.inbox);
+  twin.session = 99;
+  for (int i = 0; i < 300; ++i) {
+    twin.live(s.now);
+    s.run(10);
+  }
+  EXPECT_TRUE(s.robot.obeyed.empty());
+  EXPECT_THAT(s.driver.trouble(), HasSubstr("two robots are called 'eb0'"));
+}
+
+TEST(EyebotDriver, AHubThatIsNotInControlYieldsToAnotherAndNamesIt) {
+  Scene s;
+  s.actuator<hal::FlightTask>().order = hal::FlightOrder::TakeOff;
+  s.actuator<hal::RingLeds>();
+  s.inbox.neighbours().hear_hub("lab2", 4711);
+  for (int i = 0; i < 300; ++i) {
+    if (i % 50 == 0) s.inbox.neighbours().hear_command(4711, s.now);
+    s.run(10);
+  }
+  EXPECT_TRUE(s.robot.obeyed.empty());
+  EXPECT_TRUE(s.robot.all("cmd/leds").empty());
+  EXPECT_EQ(s.driver.state(), RobotState::Ready);
+  EXPECT_EQ(s.driver.trouble(), "another hub, 'lab2', commands it");
+  s.run(4500);  // the other one is gone
+  EXPECT_THAT(s.robot.obeyed, ElementsAre(CmdMode::ACT_ARM, CmdMode::ACT_TAKEOFF));
+  s.inbox.neighbours().hear_command(4711, s.now);  // and back: now it is ours
+  s.run(500);
+  EXPECT_EQ(s.driver.state(), RobotState::Active);
+}
+
+TEST(EyebotDriver, ARestartInTheAirIsACountedStop) {
+  Scene s;
+  s.actuator<hal::QuadrotorSpeed>().set(1.0, 0.0, 0.0, 0.0);
+  s.fly();
+  s.robot.status.mode = Status::MODE_VELOCITY;
+  s.run(500);
+  ASSERT_EQ(s.driver.statistics().link_stops, 0U);
+  s.robot.session = 78;
+  s.robot.seq.clear();
+  s.robot.status.mode = Status::MODE_IDLE;
+  s.robot.status.armed = 0;
+  s.run(100);
+  EXPECT_EQ(s.driver.state(), RobotState::Suspect);
+  s.run(900);
+  EXPECT_EQ(s.driver.state(), RobotState::Active);
+  EXPECT_EQ(s.driver.liveness().restarts(), 1U);
+  EXPECT_EQ(s.driver.statistics().link_stops, 1U);
+}
+
+TEST(EyebotDriver, ARobotThatSavesItselfIsHeldAndSaysWhy) {
+  for (const auto& [failsafe, why] :
+       {std::pair{Status::FS_LOW_BATTERY, "its battery is low"}, std::pair{Status::FS_HARDWARE, "a device failed"}}) {
+    Scene s;
+    s.actuator<hal::QuadrotorSpeed>().set(1.0, 0.0, 0.0, 0.0);
+    s.fly();
+    s.robot.status.mode = Status::MODE_LAND;
+    s.robot.status.failsafe = failsafe;
+    s.run(500);
+    EXPECT_EQ(s.driver.state(), RobotState::Suspect);
+    EXPECT_EQ(s.driver.trouble(), why);
+    EXPECT_EQ(s.driver.statistics().saved_itself, 1U);
+    EXPECT_EQ(s.driver.statistics().link_stops, 1U);
+    EXPECT_TRUE(s.has_logged(why));
+  }
+}
+
+TEST(EyebotDriver, ALandingThatNobodyToldItIsACountedStop) {
+  Scene s;
+  s.actuator<hal::QuadrotorSpeed>().set(1.0, 0.0, 0.0, 0.0);
+  s.fly();
+  s.robot.status.mode = Status::MODE_LAND;
+  s.run(10);
+  s.driver.pump(s.now);
+  s.run(100);
+  EXPECT_EQ(s.driver.statistics().saved_itself, 1U);
+  EXPECT_EQ(s.driver.statistics().link_stops, 1U);
+}
+
+TEST(EyebotDriver, AnOrderedLandingIsNoStop) {
+  Scene s;
+  auto& task = s.actuator<hal::FlightTask>();
+  s.actuator<hal::QuadrotorSpeed>().set(1.0, 0.0, 0.0, 0.0);
+  s.fly();
+  task.order = hal::FlightOrder::Land;
+  s.run(1500);
+  ASSERT_EQ(s.robot.status.mode, Status::MODE_IDLE);
+  EXPECT_EQ(s.driver.statistics().saved_itself, 0U);
+  EXPECT_EQ(s.driver.statistics().link_stops, 0U);
+}
+
+TEST(EyebotDriver, LandsARobotThatIsToHoverWithALowBattery) {
+  Scene s;
+  s.actuator<hal::QuadrotorSpeed>().set(1.0, 0.0, 0.0, 0.0);
+  s.fly();
+  messages::Battery battery{};
+  battery.voltage = 10.0F;
+  battery.charge = 0.5F;
+  s.robot.say(Topic::Battery, battery);
+  s.driver.stop(s.now);
+  s.run(500);
+  EXPECT_EQ(s.robot.status.mode, Status::MODE_HOVER);
+  battery.low = 1;
+  s.robot.say(Topic::Battery, battery);
+  s.run(500);
+  EXPECT_EQ(s.robot.status.mode, Status::MODE_IDLE);
+  EXPECT_TRUE(s.driver.at_rest());
+}
+
+// --- its clock ---
+
+/// What the robot makes of stamps: a robot whose clock is synchronised refuses those that are 250 ms off.
+bool is_fresh(const Scene& s, const Said& said) {
+  const std::int64_t robots_us = (said.at_ns + s.robot.clock_minus_ours_ns) / 1000;
+  std::int64_t stamp_us = 0;
+  for (std::size_t i = 8; i < 16; ++i) stamp_us = stamp_us << 8 | std::to_integer<std::int64_t>(said.data[i]);
+  return std::abs(stamp_us - robots_us) <= 250'000;
+}
+const hal::TimeNs* g_now = nullptr;
+hal::TimeNs clock_of_scene() noexcept {
+  return *g_now + 1'700'000'000 * hal::kNsPerSecond;
+}
+DriverSettings synchronised() {
+  DriverSettings settings;
+  settings.unix_clock = &clock_of_scene;
+  return settings;
+}
+
+TEST(EyebotDriver, CommandsAreYoungEnoughWithinASecondAfterAClockWasSet) {
+  for (const hal::TimeNs jump : {3600 * hal::kNsPerSecond, -3600 * hal::kNsPerSecond}) {
+    Scene s(synchronised());
+    g_now = &s.now;
+    s.actuator<hal::QuadrotorSpeed>().set(1.0, 0.0, 0.0, 0.0);
+    s.fly();
+    s.robot.clock_minus_ours_ns += jump;
+    s.run(1000);
+    EXPECT_EQ(s.driver.clock().jumps(), 1U);
+    EXPECT_EQ(s.driver.statistics().link_stops, 1U);
+    EXPECT_TRUE(s.has_logged("clock was set"));
+    s.robot.said.clear();
+    s.run(500);
+    s.driver.land(s.now);
+    s.run(500);
+    ASSERT_FALSE(s.robot.all("cmd/velocity").empty());
+    for (const Said& said : s.robot.all("/cmd/velocity")) EXPECT_TRUE(is_fresh(s, said));
+    for (const Said& said : s.robot.all("/cmd/mode")) EXPECT_TRUE(is_fresh(s, said));
+    EXPECT_TRUE(s.driver.landed());
+  }
+}
+
+TEST(EyebotDriver, AnOrderThatIsRefusedForItsStampIsSaidAnewByTheRobotsClock) {
+  for (const hal::TimeNs jump : {600 * kMs, -600 * kMs}) {
+    Scene s(synchronised());
+    g_now = &s.now;
+    s.actuator<hal::FlightTask>();
+    s.fly();
+    s.robot.clock_minus_ours_ns += jump;
+    s.run(20);
+    s.robot.said.clear();
+    s.robot.result = messages::Ack::REJECTED_STALE;
+    s.driver.land(s.now);
+    s.robot.result = messages::Ack::OK;
+    s.run(600);
+    ASSERT_GE(s.robot.all("/cmd/mode").size(), 2U);
+    EXPECT_TRUE(is_fresh(s, s.robot.all("/cmd/mode")[1]));
+    EXPECT_TRUE(s.driver.landed());
+  }
+}
+
+// --- where it can be ---
+
+TEST(EyebotDriver, APlaceThatItCannotHaveFlownToIsNotBelieved) {
+  Scene s;
+  const auto& place = s.sensor<hal::Positioning>();
+  s.run(1000);
+  s.robot.state.pos[0] = 5.0;
+  s.run(300);
+  EXPECT_EQ(place.p_WB[0], 0.0);
+  EXPECT_EQ(place.validity, hal::Validity::Stale);
+  EXPECT_GT(s.driver.places().refused(), 10U);
+  s.robot.state.pos[0] = 0.1;
+  s.run(100);
+  EXPECT_EQ(place.p_WB[0], 0.1);
+  EXPECT_EQ(place.validity, hal::Validity::Fresh);
+  s.robot.state.pos[0] = 9.0;  // and stays there: its positioning has begun anew
+  s.run(1000);
+  EXPECT_EQ(place.p_WB[0], 9.0);
+  EXPECT_EQ(s.driver.places().jumps(), 1U);
+}
+
 // --- orders ---
 
 TEST(EyebotDriver, TakesOffByArmingFirst) {
@@ -349,7 +570,7 @@ TEST(EyebotDriver, GivesAnOrderUpAfterTenTimesAndTriesAgainLater) {
   Scene s;
   s.actuator<hal::FlightTask>().order = hal::FlightOrder::TakeOff;
   s.robot.deaf_times = 1000;
-  s.run(2200);
+  s.run(2500);
   EXPECT_EQ(s.robot.all("cmd/mode").size(), 10U);
   EXPECT_EQ(s.driver.orders().statistics().unanswered, 1U);
   s.run(1000);
@@ -586,7 +807,7 @@ TEST(EyebotDriver, SaysLightsWhenTheyChangeAndOnceASecond) {
   Scene s;
   auto& lower = s.actuator<hal::RingLeds>();
   auto& upper = s.actuator<hal::UpperRingLeds>();
-  s.run(100);
+  s.run(500);
   s.robot.said.clear();
   lower.set(3, hal::kRed);
   upper.set(15, hal::kBlue);
@@ -607,7 +828,7 @@ TEST(EyebotDriver, SaysWhereItsHeadsAreToLook) {
   head.tilt_rad = 0.5;
   head.laser = true;
   scanner.turn(std::acos(-1.0));
-  s.run(200);
+  s.run(500);
   const auto looks = s.robot.all("cmd/pan_tilt").back().as<messages::CmdPanTilt>();
   EXPECT_EQ(looks.pan_target, 1.0F);
   EXPECT_EQ(looks.tilt_target, 0.5F);
@@ -632,7 +853,7 @@ TEST(EyebotDriver, SendsMessagesToNeighbours) {
   radio.sending = true;
   radio.size = 3;
   radio.payload[2] = 42;
-  s.run(200);
+  s.run(500);
   auto m = s.robot.all("cmd/rab").back().as<messages::CmdRab>();
   ASSERT_EQ(m.len, 3);
   EXPECT_EQ(m.data[2], 42);

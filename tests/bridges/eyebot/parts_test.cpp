@@ -198,6 +198,27 @@ TEST(EyebotClock, NoticesThatItWasSetBackAfterFiveMessages) {
   EXPECT_EQ(clock.local(kEpoch - hour + 280'000, 280 * kMs), 280 * kMs);
 }
 
+TEST(EyebotClock, OneStampOfTheFutureChangesNothing) {
+  for (const std::int64_t ahead_us : {std::int64_t{200'000}, std::int64_t{3'600'000'000}}) {
+    ClockOffset clock;
+    clock.note_answer(kEpoch, 0, 2 * kMs);
+    for (int i = 1; i < 10; ++i) clock.note(kEpoch + i * 20'000, i * 20 * kMs);
+    const hal::TimeNs before = clock.offset_ns();
+    clock.note(kEpoch + 200'000 + ahead_us, 200 * kMs);
+    EXPECT_EQ(clock.local(kEpoch + 200'000 + ahead_us, 200 * kMs), 200 * kMs);
+    EXPECT_EQ(clock.offset_ns(), before);
+    EXPECT_EQ(clock.jumps(), 0U);
+  }
+}
+
+TEST(EyebotClock, AnAnswerStampedBeforeItsQuestionProvesThatItWasSetBack) {
+  ClockOffset clock;
+  for (int i = 0; i < 10; ++i) clock.note(kEpoch + i * 20'000, i * 20 * kMs);
+  clock.note_answer(kEpoch + 200'000 - 400'000, 199 * kMs, 201 * kMs);
+  EXPECT_EQ(clock.jumps(), 1U);
+  EXPECT_NEAR(static_cast<double>(clock.local(kEpoch + 300'000 - 400'000, 301 * kMs)), 300e6, 2e6);
+}
+
 TEST(EyebotClock, LeavesOutWhatNoClockShows) {
   ClockOffset clock;
   clock.note(std::numeric_limits<std::int64_t>::min(), kS);
@@ -209,34 +230,43 @@ TEST(EyebotClock, LeavesOutWhatNoClockShows) {
 
 // --- liveness ---
 
-TEST(EyebotLiveness, AMessageThatLayInTheInboxIsNoRestart) {
+TEST(EyebotLiveness, ANewSessionIsARestartOnceTheOldOneIsSilent) {
   Liveness alive;
   EXPECT_EQ(alive.note(1, 100 * kMs), Sender::Current);
-  EXPECT_EQ(alive.note(2, 200 * kMs), Sender::Restarted);
-  EXPECT_EQ(alive.note(1, 150 * kMs), Sender::Other);
-  EXPECT_EQ(alive.note(2, 210 * kMs), Sender::Current);
+  EXPECT_FALSE(alive.settled(399 * kMs));
+  EXPECT_TRUE(alive.settled(400 * kMs));
+  EXPECT_EQ(alive.note(2, 200 * kMs), Sender::Other);
+  EXPECT_TRUE(alive.contested(200 * kMs));
+  EXPECT_EQ(alive.note(2, 399 * kMs), Sender::Other);
+  EXPECT_EQ(alive.note(2, 400 * kMs), Sender::Restarted);
+  EXPECT_FALSE(alive.contested(400 * kMs));
+  EXPECT_FALSE(alive.settled(600 * kMs));
+  EXPECT_EQ(alive.note(1, 150 * kMs), Sender::Other);  // it lay in the inbox
+  EXPECT_EQ(alive.note(2, 410 * kMs), Sender::Current);
   EXPECT_EQ(alive.restarts(), 1U);
-  EXPECT_EQ(alive.others(), 0U);
 }
 
-TEST(EyebotLiveness, OnlyOneThatComesAgainAndAgainIsASecondRobot) {
+TEST(EyebotLiveness, TheOneThatWasThereFirstStaysTheRobot) {
   Liveness alive;
   (void)alive.note(1, 0);
-  (void)alive.note(2, 100 * kMs);
   for (int i = 1; i <= 3; ++i) {
-    EXPECT_FALSE(alive.twins((100 + 20 * i) * kMs)) << i;
-    EXPECT_EQ(alive.note(1, (100 + 20 * i) * kMs), Sender::Other);
+    EXPECT_FALSE(alive.twins(20 * i * kMs)) << i;
+    EXPECT_EQ(alive.note(2, (20 * i - 10) * kMs), Sender::Other);
+    EXPECT_EQ(alive.note(1, 20 * i * kMs), Sender::Current);
   }
-  EXPECT_TRUE(alive.twins(161 * kMs));
+  EXPECT_TRUE(alive.twins(61 * kMs));
   EXPECT_FALSE(alive.twins(4 * kS));
+  EXPECT_EQ(alive.session(), 1);
+  EXPECT_EQ(alive.restarts(), 0U);
+  EXPECT_EQ(alive.others(), 3U);
 }
 
-TEST(EyebotLiveness, WhenTheNewOneFallsSilentTheOldOneIsTaken) {
+TEST(EyebotLiveness, AStartThatWasReplacedComesBackOnlyWhenTheOtherIsLost) {
   Liveness alive;
   (void)alive.note(1, 0);
-  (void)alive.note(2, 100 * kMs);
-  EXPECT_EQ(alive.note(1, 200 * kMs), Sender::Other);
-  EXPECT_EQ(alive.note(1, 2200 * kMs), Sender::Restarted);
+  (void)alive.note(2, 500 * kMs);
+  EXPECT_EQ(alive.note(1, 2400 * kMs), Sender::Other);
+  EXPECT_EQ(alive.note(1, 2500 * kMs), Sender::Restarted);
   EXPECT_EQ(alive.session(), 1);
 }
 

@@ -72,7 +72,7 @@ TEST(Faults, OfTheManualAreAllGood) {
     EXPECT_TRUE(parse_fault(example).ok()) << example;
     ++count;
   }
-  EXPECT_EQ(count, 19);
+  EXPECT_EQ(count, 23);
 }
 
 TEST(Reports, PassWithoutFaults) {
@@ -105,6 +105,19 @@ TEST(Reports, AreLate) {
   EXPECT_EQ(late[0].at, 50 * kMs);
   EXPECT_EQ(late[1].at, 51 * kMs);
   EXPECT_EQ(late[2].at, 51 * kMs) << "none overtakes another";
+}
+
+TEST(Reports, OfOneChannelAreDamagedFromTheStart) {
+  for (const Datagram& d : after("damage=state", 3)) EXPECT_EQ(d.data[0], std::byte{0xFF});
+  for (const Datagram& d : after("damage=state", 3, "status")) EXPECT_EQ(d.data[0], std::byte{0});
+}
+
+TEST(Reports, AreStampedAnHourAhead) {
+  const auto ahead = after("future=1", 1);
+  ASSERT_EQ(ahead.size(), 1U);
+  std::uint64_t stamp_us = 0;
+  for (std::size_t i = 8; i < 16; ++i) stamp_us = stamp_us << 8U | std::to_integer<std::uint64_t>(ahead[0].data[i]);
+  EXPECT_EQ(stamp_us, 3'600'000'000U);
 }
 
 TEST(Reports, AreDamaged) {
