@@ -23,7 +23,7 @@ void add_run(CLI::App& app, RunOptions& o, int& code) {
                 "Change the experiment: path=value, e.g. framework.experiment.length=5; repeatable")
       ->allow_extra_args(false);
   c->add_option("--report", o.report, "Write a JSON report to this file ('-': standard output)");
-  c->add_option("--picture", o.picture, "Draw the space from above at the end, as SVG");
+  c->add_option("--picture", o.picture, "Draw the space from above at the end: FILE.svg, .png or .pdf");
   c->add_option("--trajectory", o.trajectory, "Write poses as CSV");
   c->add_flag("--quiet", o.quiet, "No table at the end");
   c->callback([&] { code = run(o); });

@@ -46,9 +46,4 @@ void Progress::draw(std::int64_t done, double now_s) {
   std::fflush(stderr);
 }
 
-void say(std::string_view text) {
-  std::fprintf(stderr, "%s%.*s\n", isatty(STDERR_FILENO) != 0 ? "\r\033[K" : "", static_cast<int>(text.size()),
-               text.data());
-}
-
 }  // namespace tandem::app

@@ -1,7 +1,6 @@
 // A progress bar, on a terminal only.
 #pragma once
 #include <cstdint>
-#include <string_view>
 
 namespace tandem::app {
 
@@ -27,8 +26,5 @@ class Progress {
   double began_s_ = 0.0;
   double next_s_ = 0.0;
 };
-
-/// Prints a line on standard error, over a progress bar that may stand there.
-void say(std::string_view text);
 
 }  // namespace tandem::app

@@ -1,5 +1,13 @@
 #include "app/robot_commands.hpp"
 
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <exception>
+#include <new>
+
+#include "app/terminal.hpp"
+
 namespace tandem::app {
 
 void add_robot_commands(CLI::App& app, RobotCommandOptions& options, int& code) {
@@ -33,14 +41,20 @@ void add_robot_commands(CLI::App& app, RobotCommandOptions& options, int& code) 
   inspect_command->callback([&options, &code] { code = inspect(options.inspect); });
 }
 
-int parse_and_run(CLI::App& app, int argc, char** argv, const int& code) {
+int parse_and_run(CLI::App& app, int argc, char** argv, int& code) {
   try {
     app.parse(argc, argv);
+    if (std::fflush(stdout) != 0)
+      code = complain(kFailedRunning, std::string("standard output: ") + std::strerror(errno));
   } catch (const CLI::Success& e) {
     return app.exit(e);
   } catch (const CLI::ParseError& e) {
     app.exit(e);
     return kWrongUsage;
+  } catch (const std::bad_alloc&) {
+    return complain(kFailedRunning, "out of memory");
+  } catch (const std::exception& e) {
+    return complain(kFailedRunning, e.what());
   }
   return code;
 }

@@ -17,6 +17,6 @@ struct RobotCommandOptions {
 void add_robot_commands(CLI::App& app, RobotCommandOptions& options, int& code);
 
 /// Runs the command that the arguments name, and tells of wrong ones. Returns `code`, or `kWrongUsage`.
-int parse_and_run(CLI::App& app, int argc, char** argv, const int& code);
+int parse_and_run(CLI::App& app, int argc, char** argv, int& code);
 
 }  // namespace tandem::app

@@ -19,7 +19,7 @@ struct RunOptions {
   std::optional<std::int64_t> threads;
   std::vector<std::string> overrides;
   std::string report;      ///< file, or "-"
-  std::string picture;     ///< SVG file
+  std::string picture;     ///< .svg, .png or .pdf
   std::string trajectory;  ///< CSV file, of every robot unless the experiment says which
   bool quiet = false;      ///< no table
 };

@@ -3,13 +3,14 @@
 
 #include "app/catalog.hpp"
 #include "app/command/command.hpp"
+#include "app/terminal.hpp"
 #include "core/config/xml.hpp"
 #include "mixed_reality/settings/map_file.hpp"
 
 namespace tandem::app {
 
 void print_problems(const core::Problems& problems) {
-  for (const core::Problem& problem : problems) fmt::print(stderr, "{}\n", core::to_text(problem));
+  for (const core::Problem& problem : problems) say(core::to_text(problem));
 }
 
 std::optional<core::Scenario> read_or_complain(const std::string& path, const std::vector<std::string>& overrides) {

@@ -11,6 +11,7 @@
 #include "app/report.hpp"
 #include "app/sha256.hpp"
 #include "app/signals.hpp"
+#include "app/terminal.hpp"
 #include "hal/plugin_loader.hpp"
 #include "mixed_reality/time/pacer.hpp"
 
@@ -77,10 +78,6 @@ int robot(const RobotOptions& options) {
   if (!item.bridge) item.bridge = core::BridgeConfig{};
   if (!options.link.empty()) item.bridge->link = options.link;
   const core::ControllerConfig& config = scenario->controllers[item.controller];
-  const auto complain = [](int code, const std::string& message) {
-    fmt::print(stderr, "error: {}\n", message);
-    return code;
-  };
 
   const hal::Log log([](hal::Severity, std::string_view text) { say(text); });
   auto made = make_driven_robot({item, config, scenario->ticks_per_second, scenario->seed.value_or(1)}, log);

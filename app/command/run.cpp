@@ -6,16 +6,14 @@
 #include "app/command/command.hpp"
 #include "app/measure.hpp"
 #include "app/progress.hpp"
-#include "app/report.hpp"
-#include "app/run_figures.hpp"
-#include "app/sha256.hpp"
+#include "app/run_outputs.hpp"
+#include "app/run_report.hpp"
 #include "app/signals.hpp"
+#include "app/terminal.hpp"
 #include "bridges/epuck/guardian.hpp"
 #include "bridges/eyebot/guardian.hpp"
 #include "bridges/footbot/guardian.hpp"
 #include "bridges/link/link_text.hpp"
-#include "core/config/xml.hpp"
-#include "core/record/trajectory.hpp"
 #include "core/sim/world.hpp"
 #include "core/view/picture.hpp"
 #include "hal/spec/epuck.hpp"
@@ -40,122 +38,28 @@ std::int64_t steps_of(const RunOptions& options, const core::Scenario& scenario)
   return seconds > 0.0 ? std::max<std::int64_t>(1, steps) : 0;  // a duration below a tick is one tick, not endless
 }
 
-std::unique_ptr<core::TrajectoryRecorder> open_trajectory(const RunOptions& options, const core::Scenario& scenario,
-                                                          const core::World& world, int& code) {
-  auto config = scenario.trajectory;
-  if (!options.trajectory.empty()) {
-    if (!config) config = core::TrajectoryConfig{{}, {"*"}, 1};
-    config->path = options.trajectory;
-  }
-  if (!config) return nullptr;
-  auto opened = core::TrajectoryRecorder::open(*config, world.space(), world.ticks_per_second());
-  if (opened.ok()) return std::move(opened).value();
-  fmt::print(stderr, "error: {}\n", opened.error().message);
-  code = kBadInput;
-  return nullptr;
-}
+/// Records what every tick leaves, and hands it to the system twice a second, so that even a killed run leaves all but
+/// its last second.
+class Recording {
+ public:
+  /// `trajectory` may be null.
+  Recording(core::TrajectoryRecorder* trajectory, double now_s) : trajectory_(trajectory), flushed_s_(now_s) {}
 
-void add_real_robots(Json& json, const mixed_reality::MixedReport& report) {
-  json.key("real_robots").begin_array();
-  for (const mixed_reality::RealRobotReport& r : report.robots) {
-    json.begin_object();
-    json.field("id", r.id)
-        .field("link", r.link)
-        .field("x_m", r.pose.x_m)
-        .field("y_m", r.pose.y_m)
-        .field("heading_rad", r.pose.heading_rad());
-    json.field("state", r.state).field("driving", r.driving).field("stop_confirmed", r.stop_confirmed);
-    json.field("ticks_driving", r.counts.ticks_driving)
-        .field("ticks_held", r.counts.ticks_held)
-        .field("stops", r.counts.stops);
-    json.field("rearms", r.counts.rearms).field("fenced_ticks", r.counts.fenced_ticks);
-    json.field("packets", r.conversation.packets)
-        .field("answers", r.conversation.answers)
-        .field("time_outs", r.conversation.time_outs);
-    json.field("bad_answers", r.conversation.bad_answers).field("resynchronised", r.conversation.resynchronised);
-    json.field("links_lost", r.conversation.links_lost);
-    json.key("incidents").begin_array();
-    for (const std::string& what : r.incidents) json.value(what);
-    json.end_array().end_object();
-  }
-  json.end_array();
-  json.key("pace").begin_object();
-  json.field("ticks", report.pace.ticks)
-      .field("deadline_misses", report.pace.deadline_misses)
-      .field("skipped_slots", report.pace.skipped_slots);
-  json.field("largest_lateness_ms", static_cast<double>(report.pace.largest_lateness_ns) * 1e-6);
-  json.field("wake_up_p99_ms", static_cast<double>(report.pace.wake_up.quantile_ns(0.99)) * 1e-6);
-  json.field("step_p99_ms", static_cast<double>(report.pace.step.quantile_ns(0.99)) * 1e-6);
-  json.end_object();
-}
-
-std::string report_of(const core::World& world, const hal::PluginLoader& loader, const RunFigures& figures,
-                      std::size_t robots, const mixed_reality::MixedReport* real) {
-  Json json;
-  json.begin_object();
-  add_run_fields(json, world, figures, robots);
-  json.field("finished", world.state() != core::RunState::Failed);
-  if (!world.failure().empty()) json.field("failure", world.failure());
-  json.key("controllers").begin_array();
-  for (const core::ControllerConfig& config : world.scenario().controllers) {
-    const auto file = loader.find(config.library);
-    if (!file.ok()) continue;
-    const auto digest = sha256_of_file(file.value().string());
-    json.begin_object().field("id", config.id).field("label", config.label).field("file", file.value().string());
-    if (digest.ok()) json.field("sha256", digest.value());
-    json.end_object();
-  }
-  json.end_array();
-  const core::Incidents& incidents = world.incidents();
-  json.key("incidents").begin_object();
-  json.field("commands_clamped", incidents.commands_clamped)
-      .field("commands_not_finite", incidents.commands_not_finite)
-      .field("controllers_thrown", incidents.controllers_thrown)
-      .field("bodies_escaped", incidents.bodies_escaped);
-  json.key("first").begin_array();
-  for (const std::string& what : incidents.first) json.value(what);
-  json.end_array().end_object();
-  if (real != nullptr) add_real_robots(json, *real);
-  json.field("settings", core::to_xml(world.scenario().effective));
-  json.end_object();
-  return json.text();
-}
-
-void print_result(const core::World& world, const RunFigures& figures, std::size_t robots,
-                  const mixed_reality::MixedReport* real) {
-  const core::Incidents& incidents = world.incidents();
-  const double virtual_s = figures.virtual_s(world.ticks_per_second());
-  std::vector<std::pair<std::string, std::string>> rows = {
-      {"experiment", fmt::format("{}, seed {}", world.scenario().name, world.seed())},
-      {"robots", fmt::format("{}", robots)},
-      {"time",
-       fmt::format("{:.1f} s in {} steps, taking {:.2f} s ({:.1f} times real time) after {:.2f} s of preparation",
-                   virtual_s, figures.steps, figures.wall_s, figures.wall_s > 0 ? virtual_s / figures.wall_s : 0.0,
-                   figures.init_s)},
-      {"cost", fmt::format("{:.0f} ns of processor time a robot and step, {:.0f} MB", figures.ns_per_robot_step(robots),
-                           peak_rss_mb())},
-      {"state", hash_text(world.state_hash())}};
-  if (world.scenario().time_mode == core::TimeMode::Realtime)
-    rows.emplace_back("missed deadlines", fmt::format("{}", figures.deadline_misses));
-  const std::uint64_t odd = incidents.commands_clamped + incidents.commands_not_finite + incidents.controllers_thrown +
-                            incidents.bodies_escaped;
-  if (odd > 0) {
-    rows.emplace_back("incidents",
-                      fmt::format("{} commands clamped, {} not finite, {} controllers threw, {} bodies escaped",
-                                  incidents.commands_clamped, incidents.commands_not_finite,
-                                  incidents.controllers_thrown, incidents.bodies_escaped));
-  }
-  if (real != nullptr) {
-    for (const mixed_reality::RealRobotReport& r : real->robots) {
-      rows.emplace_back(
-          "real robot",
-          fmt::format("{} on {}: {}; {} ticks driving, {} held, {} of {} packets answered, {}", r.id, r.link, r.state,
-                      r.counts.ticks_driving, r.counts.ticks_held, r.conversation.answers, r.conversation.packets,
-                      r.stop_confirmed ? "stop confirmed" : "STOP NOT CONFIRMED"));
+  void tick_done(const core::World& world) {
+    if (trajectory_ == nullptr || !state_.ok() || world.tick() == 0) return;  // 0: a hook went back to the start
+    state_ = trajectory_->record(world.space(), world.tick() - 1);            // the tick that was just done
+    if (const double now_s = wall_seconds(); state_.ok() && now_s >= flushed_s_ + 0.5) {
+      state_ = trajectory_->flush();
+      flushed_s_ = now_s;
     }
+    if (!state_.ok()) complain(kFailedRunning, state_.error().message + "; the run goes on");
   }
-  print_table(rows);
-}
+
+ private:
+  core::TrajectoryRecorder* trajectory_;
+  double flushed_s_;
+  hal::Status state_;
+};
 
 /// Steps a purely simulated world, paced when its file says so. @returns deadlines that were missed.
 template <class AfterTick>
@@ -297,26 +201,27 @@ std::unique_ptr<mixed_reality::MixedSession> join_real_robots(std::unique_ptr<co
 }
 
 /// Writes what was asked for at the end of a run. @returns whether all of it could be written.
-bool write_results(const RunOptions& options, const core::World& world, const hal::PluginLoader& loader,
-                   const RunFigures& figures, std::size_t robots, const mixed_reality::MixedReport* real) {
+bool write_results(RunOutputs& outputs, const RunResult& result, bool table) {
   bool good = true;
-  const auto complain = [&good](const hal::Status& status) {
-    if (status.ok()) return;
-    good = false;
-    fmt::print(stderr, "error: {}\n", status.error().message);
+  const auto check = [&good](const hal::Status& status) {
+    if (!status.ok()) good = complain(kFailedRunning, status.error().message) == kDone;
   };
-  if (!options.picture.empty()) {
+  if (outputs.trajectory != nullptr) check(outputs.trajectory->close());
+  if (outputs.picture) {
     core::PictureOptions picture;
-    picture.experiment = world.scenario().name;
-    picture.seed = world.seed();
-    picture.time_ns = hal::time_of_tick(world.tick(), world.ticks_per_second());
-    for (const auto& r : real != nullptr ? real->robots : std::vector<mixed_reality::RealRobotReport>{}) {
+    picture.experiment = result.world.scenario().name;
+    picture.seed = result.world.seed();
+    picture.time_ns = hal::time_of_tick(result.world.tick(), result.world.ticks_per_second());
+    for (const auto& r : result.real != nullptr ? result.real->robots : std::vector<mixed_reality::RealRobotReport>{}) {
       if (!r.driving) picture.trouble.push_back({r.robot, r.state});
     }
-    complain(core::write_picture(world.space(), options.picture, picture));
+    check(core::write_picture(result.world.space(), *outputs.picture, picture));
   }
-  if (!options.report.empty()) complain(write_report(options.report, report_of(world, loader, figures, robots, real)));
-  if (!options.quiet && options.report != "-") print_result(world, figures, robots, real);
+  if (outputs.report) {
+    const hal::Status written = outputs.report->write(report_of(result) + "\n");
+    check(written.ok() ? outputs.report->commit() : written);
+  }
+  if (table) print_result(result);
   return good;
 }
 
@@ -326,6 +231,8 @@ int run(const RunOptions& options) {
   const double began = wall_seconds();
   const auto scenario = read_or_complain(options.experiment, options.overrides);
   if (!scenario) return kBadInput;
+  if (const hal::Status paths = check_output_paths(options, *scenario); !paths.ok())
+    return complain(kBadInput, paths.error().message);
 
   Watch watch(*scenario);  // before any thread
   hal::PluginLoader loader(plugin_folders());
@@ -341,15 +248,17 @@ int run(const RunOptions& options) {
   print_problems(problems);
   if (made == nullptr) return kBadInput;
   core::World* const world = made.get();  // a mixed session takes it over
-  int code = kDone;
-  const auto trajectory = open_trajectory(options, *scenario, *world, code);
-  if (code != kDone) return code;
+  auto opened = open_outputs(options, *scenario, *world);
+  if (!opened.ok()) return complain(kBadInput, opened.error().message);
+  RunOutputs& outputs = opened.value();
 
+  int code = kDone;
   const std::atomic<bool>& stop = catch_signals();
   mixed_reality::MonotonicTime clock;
   const auto mixed = join_real_robots(made, watch, clock, stop, world_options.log, code);
   if (code != kDone) return stop.load() ? kDone : code;
 
+  const auto controllers = controller_files(*scenario, loader);
   const std::int64_t steps = steps_of(options, *scenario);
   const std::size_t robots = world->space().robot_count();
   RunFigures figures;
@@ -357,12 +266,11 @@ int run(const RunOptions& options) {
   figures.init_s = wall_seconds() - began;
   const double wall = wall_seconds();
   const double cpu = cpu_seconds();
-  hal::Status recorded;
   {
     Progress progress(steps, scenario->ticks_per_second);
+    Recording recording(outputs.trajectory.get(), wall);
     const auto after_tick = [&](core::World& w) {
-      if (trajectory != nullptr && recorded.ok() && w.tick() > 0)  // 0: a hook went back to the start
-        recorded = trajectory->record(w.space(), w.tick() - 1);    // the tick that was just done
+      recording.tick_done(w);
       progress.step(w.tick());
     };
     if (mixed != nullptr) {
@@ -381,16 +289,18 @@ int run(const RunOptions& options) {
     watch.end(*real);
   }
 
-  bool failed = world->state() == core::RunState::Failed;
-  if (failed) fmt::print(stderr, "error: {}\n", world->failure());
-  if (stop.load(std::memory_order_relaxed)) fmt::print(stderr, "interrupted at tick {}\n", world->tick());
-  if (trajectory != nullptr) {
-    const hal::Status closed = trajectory->close();
-    if (!closed.ok()) fmt::print(stderr, "error: {}\n", closed.error().message);
-    failed = failed || !closed.ok();
-  }
-  failed = !write_results(options, *world, loader, figures, robots, real ? &*real : nullptr) || failed;
-  return failed ? kFailedRunning : kDone;
+  const RunResult result{*world,
+                         controllers,
+                         figures,
+                         robots,
+                         end_of(*world, steps, stop.load(std::memory_order_relaxed)),
+                         real ? &*real : nullptr};
+  if (result.end.how == Ended::Failed) complain(kFailedRunning, result.end.failure);
+  if (result.end.how == Ended::Interrupted) say(fmt::format("interrupted at tick {}", world->tick()));
+  const bool table = !options.quiet && options.report != "-";
+  const bool written = write_results(outputs, result, table);
+  const bool failed = result.end.how == Ended::Failed || world->incidents().controllers_thrown > 0;
+  return failed || !written ? kFailedRunning : kDone;
 }
 
 }  // namespace tandem::app

@@ -1,26 +1,21 @@
 #include "core/record/trajectory.hpp"
 
 #include <algorithm>
-#include <cerrno>
 #include <charconv>
 #include <cmath>
-#include <cstdio>
-#include <cstring>
+#include <optional>
 #include <set>
 #include <utility>
 
 #include "core/scenario/element.hpp"
 #include "core/space/stores.hpp"
+#include "hal/output_file.hpp"
 
 namespace tandem::core {
 namespace {
 
 constexpr std::size_t kBufferBytes = std::size_t{1} << 18;
 constexpr std::size_t kNamesShown = 8;
-
-struct CloseFile {
-  void operator()(std::FILE* file) const noexcept { std::fclose(file); }
-};
 
 /// A field of a port, and how many columns it has.
 struct Column {
@@ -85,7 +80,7 @@ struct TrajectoryRecorder::Impl {
   std::string path;
   std::int64_t every = 1;
   std::int64_t ticks_per_second = 10;
-  std::unique_ptr<std::FILE, CloseFile> file;
+  std::optional<hal::OutputFile> file;
   std::vector<RobotId> robots;
   std::vector<std::string> names;
   std::vector<std::string> patterns;
@@ -94,7 +89,9 @@ struct TrajectoryRecorder::Impl {
   std::vector<const hal::PortType*> ports;
   std::vector<Column> columns;
   bool header_written = false;
-  std::string buffer;
+  hal::Tick flushed_until = 0;  // the first tick that `buffer` holds lines of
+  std::string buffer;           // whole lines, but while a record is made
+  UnwrittenRecords unwritten;
   std::string failure;
 
   hal::Status choose_robots(const Space& space);
@@ -104,10 +101,9 @@ struct TrajectoryRecorder::Impl {
   void write_line(const Space& space, std::size_t i, hal::Tick tick);
   void write_fields(const Space& space, RobotId robot);
   hal::Status flush();
-  hal::Status fail(int error) {
-    failure = "cannot write the trajectory '" + path + "': " + std::strerror(error);
-    buffer.clear();
-    return hal::Error{failure};
+  void show_buffer() noexcept {
+    unwritten.data.store(buffer.data(), std::memory_order_relaxed);
+    unwritten.size.store(buffer.size(), std::memory_order_release);
   }
 
   template <class Real, class... Format>
@@ -244,10 +240,13 @@ void TrajectoryRecorder::Impl::write_fields(const Space& space, RobotId robot) {
 
 hal::Status TrajectoryRecorder::Impl::flush() {
   if (!failure.empty()) return hal::Error{failure};
-  const std::size_t written = std::fwrite(buffer.data(), 1, buffer.size(), file.get());
-  if (written != buffer.size() || std::fflush(file.get()) != 0) return fail(errno);
+  unwritten.size.store(0, std::memory_order_release);  // what is written here is not to be written by another
+  const hal::Status written = file->write(buffer);
   buffer.clear();
-  return {};
+  if (written.ok()) return {};
+  failure = written.error().message + "; it is lost from tick " + std::to_string(flushed_until) + " on" +
+            (file->part().empty() ? "" : ", what came before is in '" + file->part() + "'");
+  return hal::Error{failure};
 }
 
 hal::Result<std::unique_ptr<TrajectoryRecorder>> TrajectoryRecorder::open(const TrajectoryConfig& config,
@@ -261,32 +260,39 @@ hal::Result<std::unique_ptr<TrajectoryRecorder>> TrajectoryRecorder::open(const 
   impl->patterns = config.entities;
   if (const hal::Status chosen = impl->choose_robots(space); !chosen.ok()) return chosen.error();
   if (const hal::Status chosen = impl->choose_ports(ports, space); !chosen.ok()) return chosen.error();
-  impl->file.reset(std::fopen(config.path.c_str(), "wb"));
-  if (!impl->file) return impl->fail(errno).error();
-  std::setvbuf(impl->file.get(), nullptr, _IONBF, 0);  // `buffer` is the only one
+  auto file = hal::OutputFile::open(config.path, "trajectory");
+  if (!file.ok()) return file.error();
+  impl->file = std::move(file).value();
   impl->buffer.reserve(2 * kBufferBytes);
+  impl->unwritten.descriptor = impl->file->descriptor();
   return std::unique_ptr<TrajectoryRecorder>(new TrajectoryRecorder(std::move(impl)));
 }
 
 TrajectoryRecorder::TrajectoryRecorder(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 
 TrajectoryRecorder::~TrajectoryRecorder() {
-  if (impl_->file) (void)close();
+  if (impl_->file && impl_->header_written) (void)close();
 }
 
 hal::Status TrajectoryRecorder::record(const Space& space, hal::Tick tick) {
   Impl& r = *impl_;
   if (!r.failure.empty()) return hal::Error{r.failure};
   if (tick % r.every != 0) return {};
+  r.unwritten.size.store(0, std::memory_order_release);  // the buffer may move
   if (r.generations != space.stores().generations) r.choose_newcomers(space);
   if (!r.header_written) r.write_header(space);
-  for (std::size_t i = 0; i < r.robots.size(); ++i) {
+  if (r.buffer.empty()) r.flushed_until = tick;
+  hal::Status flushed;
+  for (std::size_t i = 0; flushed.ok() && i < r.robots.size(); ++i) {
     if (!space.contains(r.robots[i])) continue;  // removed
     r.write_line(space, i, tick);
-    if (r.buffer.size() < kBufferBytes) continue;
-    if (const hal::Status flushed = r.flush(); !flushed.ok()) return flushed;
+    if (r.buffer.size() >= kBufferBytes) {
+      flushed = r.flush();
+      r.flushed_until = tick;
+    }
   }
-  return {};
+  r.show_buffer();
+  return flushed;
 }
 
 hal::Status TrajectoryRecorder::flush() {
@@ -297,10 +303,23 @@ hal::Status TrajectoryRecorder::close() {
   Impl& r = *impl_;
   if (!r.file) return r.failure.empty() ? hal::Status{} : hal::Status(hal::Error{r.failure});
   if (!r.header_written && r.failure.empty()) r.buffer += "tick,time_s,id,x_m,y_m,heading_rad\n";
-  const hal::Status flushed = r.flush();
-  const int closed = std::fclose(r.file.release());
-  if (!flushed.ok()) return flushed;
-  return closed == 0 ? hal::Status{} : r.fail(errno);
+  hal::Status closed = r.flush();
+  if (closed.ok()) {
+    closed = r.file->commit();
+  } else {
+    r.file->keep_part();
+  }
+  r.file.reset();
+  if (!closed.ok()) r.failure = closed.error().message;
+  return closed;
+}
+
+const UnwrittenRecords& TrajectoryRecorder::unwritten() const noexcept {
+  return impl_->unwritten;
+}
+
+const hal::OutputFile& TrajectoryRecorder::file() const noexcept {
+  return *impl_->file;
 }
 
 }  // namespace tandem::core

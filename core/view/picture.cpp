@@ -1,8 +1,8 @@
 #include "core/view/picture.hpp"
 
-#include <cerrno>
-#include <cstring>
-#include <fstream>
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
 
 #include "core/space/stores.hpp"
 #include "hal/unit.hpp"
@@ -91,12 +91,22 @@ Drawing drawing_of(const Space& space, const PictureOptions& options) {
   return drawing;
 }
 
-hal::Status write_picture(const Space& space, const std::string& path, const PictureOptions& options) {
-  std::ofstream file(path, std::ios::binary);
-  if (file) file << to_svg(drawing_of(space, options), options.size_px);
-  file.close();
-  if (!file) return hal::Error{"cannot write the picture '" + path + "': " + std::strerror(errno)};
-  return {};
+hal::Result<PictureFormat> picture_format(const std::string& path) {
+  std::string ending = std::filesystem::path(path).extension().string();
+  std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return std::tolower(c); });
+  if (ending == ".svg") return PictureFormat::Svg;
+  if (ending == ".png") return PictureFormat::Png;
+  if (ending == ".pdf") return PictureFormat::Pdf;
+  return hal::Error{"the picture '" + path + "' must end in .svg, .png or .pdf"};
+}
+
+hal::Status write_picture(const Space& space, hal::OutputFile& file, const PictureOptions& options) {
+  const auto format = picture_format(file.path());
+  if (!format.ok()) return format.error();
+  const auto rendered = render(to_svg(drawing_of(space, options), options.size_px), format.value());
+  if (!rendered.ok()) return rendered.error();
+  const hal::Status written = file.write(rendered.value());
+  return written.ok() ? file.commit() : written;
 }
 
 }  // namespace tandem::core

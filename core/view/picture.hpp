@@ -1,10 +1,12 @@
-// A picture of a space from above, as an SVG file: for servers without a display, reports and papers.
+// A picture of a space from above, as SVG, PNG or PDF: for servers without a display, reports and papers.
 #pragma once
 #include <string>
 #include <vector>
 
 #include "core/space/space.hpp"
 #include "core/view/drawing.hpp"
+#include "core/view/render.hpp"
+#include "hal/output_file.hpp"
 #include "hal/result.hpp"
 #include "hal/time.hpp"
 
@@ -27,7 +29,10 @@ struct PictureOptions {
 /// What there is to see in `space`. Refers to `space` for the floor: draw it before that changes.
 Drawing drawing_of(const Space& space, const PictureOptions& options);
 
-/// Writes `space` to `path` (.svg). Error: the file cannot be written.
-hal::Status write_picture(const Space& space, const std::string& path, const PictureOptions& options);
+/// By the ending of `path`: .svg, .png or .pdf. Error: another one; names those that there are.
+hal::Result<PictureFormat> picture_format(const std::string& path);
+
+/// Writes `space` to `file` in the format of its ending, and commits it. Error: the file cannot be written or rendered.
+hal::Status write_picture(const Space& space, hal::OutputFile& file, const PictureOptions& options);
 
 }  // namespace tandem::core

@@ -1,9 +1,12 @@
 // The command line as a user meets it: exit codes, messages, files.
 #include <algorithm>
 #include <gtest/gtest.h>
+#include <map>
+#include <sstream>
 
 #include "app/json.hpp"
 #include "app/sha256.hpp"
+#include "app/terminal.hpp"
 #include "tests/checkout.hpp"
 #include "tests/scenarios/process.hpp"
 
@@ -57,12 +60,45 @@ TEST(Run, EndsCleanlyWhenInterrupted) {
   Tandem run({"run", kConfigs + "epuck_diffusion.xml", "--set", "framework.experiment.length=0", "--set",
               "framework.time.mode=realtime", "--report", "r.json", "--trajectory", "t.csv"},
              folder.path());
-  ASSERT_TRUE(scenarios::eventually([&] { return scenarios::fs::exists(folder.path() / "t.csv"); }, 10));
-  std::this_thread::sleep_for(std::chrono::milliseconds(500));
+  ASSERT_TRUE(scenarios::eventually([&] { return text_of(folder.path() / "t.csv.part").size() > 1000; }, 20));
   run.signal(SIGINT);
-  EXPECT_EQ(run.wait(), 0);
-  EXPECT_NE(run.errors().find("interrupted"), std::string::npos);
-  EXPECT_GT(std::stoi("0" + json_value(text_of(folder.path() / "r.json"), "steps")), 0);
+  run.wait();
+  EXPECT_NE(run.errors().find("interrupted at tick"), std::string::npos);
+  EXPECT_NE(run.output().find("not finished"), std::string::npos);
+  const std::string report = text_of(folder.path() / "r.json");
+  EXPECT_GT(std::stoi("0" + json_value(report, "steps")), 0);
+  EXPECT_EQ(json_value(report, "finished"), "false");
+  EXPECT_EQ(json_value(report, "ended"), "interrupted");
+}
+
+/// Of the trajectory `file`: ticks that have a line for all of 50 robots, once.
+int whole_ticks(const scenarios::fs::path& file) {
+  std::istringstream in(text_of(file));
+  std::map<std::string, int> lines;
+  std::string line;
+  std::getline(in, line);
+  EXPECT_EQ(line, "tick,time_s,id,x_m,y_m,heading_rad") << file;
+  while (std::getline(in, line)) {
+    EXPECT_EQ(std::count(line.begin(), line.end(), ','), 5) << line;
+    ++lines[line.substr(0, line.find(','))];
+  }
+  int whole = 0;
+  for (const auto& [tick, robots] : lines) whole += robots == 50 ? 1 : 0;
+  EXPECT_EQ(static_cast<int>(lines.size()), whole) << file;
+  return whole;
+}
+
+TEST(Run, AKilledOneLeavesItsRecordsUpToTheLastSecond) {
+  Folder folder;
+  folder.write("t.csv", "old");
+  Tandem run({"run", kConfigs + "epuck_diffusion.xml", "--set", "framework.experiment.length=0", "--set",
+              "framework.time.mode=realtime", "--report", "r.json", "--trajectory", "t.csv"},
+             folder.path());
+  ASSERT_TRUE(scenarios::eventually([&] { return text_of(folder.path() / "t.csv.part").size() > 1000; }, 20));
+  run.signal(SIGKILL);
+  EXPECT_EQ(run.wait(), -SIGKILL);
+  EXPECT_GT(whole_ticks(folder.path() / "t.csv.part"), 3);
+  EXPECT_EQ(text_of(folder.path() / "t.csv"), "old");
 }
 
 class BadInput : public testing::Test {
@@ -144,9 +180,7 @@ TEST_F(BadInput, WrongUsageHasItsOwnCode) {
 }
 
 TEST_F(BadInput, AFailureWhileRunningHasItsOwnCode) {
-  fails({"run", changed("<box id=\"wall_north\"", "<box id=\"wall_n\""), "--report", "/no/such/folder/r.json",
-         "--seconds", "1"},
-        3, {"/no/such/folder/r.json"});
+  fails({"run", kConfigs + "epuck_diffusion.xml", "--report", "-", "--seconds", "1", "--picture", "p.png"}, 0, {});
   // Without walls robots leave the arena.
   std::string text = text_of(kConfigs + "epuck_diffusion.xml");
   for (const char* wall : {"wall_north", "wall_south", "wall_east", "wall_west"}) {
@@ -157,6 +191,42 @@ TEST_F(BadInput, AFailureWhileRunningHasItsOwnCode) {
   fails({"run", "open.xml", "--report", "r.json", "--trajectory", "t.csv"}, 3, {"left the arena", "escape="});
   EXPECT_EQ(json_value(text_of(folder_.path() / "r.json"), "finished"), "false");
   EXPECT_GT(text_of(folder_.path() / "t.csv").size(), 1000U);  // records are flushed
+}
+
+TEST_F(BadInput, OutputsThatCannotBeWrittenAreRefusedBeforeTheRun) {
+  const std::string experiment = changed("length=\"", "length=\"");
+  for (const char* option : {"--report", "--trajectory"}) {
+    fails({"run", experiment, option, "/no/such/folder/file"}, 1,
+          {"/no/such/folder/file", "No such file or directory"});
+    fails({"run", experiment, option, "."}, 1, {"it is a folder"});
+    fails({"run", experiment, option, "e.xml"}, 1, {"overwrite the experiment"});
+    fails({"run", experiment, option, folder_.path().string() + "/./e.xml"}, 1, {"overwrite the experiment"});
+  }
+  EXPECT_EQ(text_of(folder_.path() / "e.xml"), text_of(kConfigs + "epuck_diffusion.xml"));
+  fails({"run", experiment, "--picture", "/no/such/folder/p.svg"}, 1, {"/no/such/folder/p.svg"});
+  fails({"run", experiment, "--picture", "p.gif"}, 1, {"p.gif", ".png", ".pdf"});
+  fails({"run", experiment, "--report", "x", "--trajectory", "./x"}, 1, {"the trajectory and the report"});
+  EXPECT_FALSE(scenarios::fs::exists(folder_.path() / "x"));
+}
+
+TEST_F(BadInput, AFullDeviceIsTold) {
+  const std::string experiment = kConfigs + "epuck_diffusion.xml";
+  fails({"run", experiment, "--seconds", "1", "--report", "/dev/full"}, 3, {"report", "No space left"});
+  fails({"run", experiment, "--seconds", "1", "--trajectory", "/dev/full"}, 3,
+        {"trajectory", "No space left", "lost from tick"});
+  scenarios::fs::create_symlink("/dev/full", folder_.path() / "p.svg");
+  fails({"run", experiment, "--seconds", "1", "--picture", "p.svg"}, 3, {"picture", "No space left"});
+}
+
+TEST(Terminal, GetsNoControlCharactersOfOthers) {
+  EXPECT_EQ(app::printable("Zürich\t50 %\n"), "Zürich\t50 %\n");
+  EXPECT_EQ(app::printable("\033]0;title\007\033[2J"), "\\x1b]0;title\\x07\\x1b[2J");
+  EXPECT_EQ(app::printable("a\rb\x7f"), "a\\x0db\\x7f");
+  EXPECT_EQ(app::printable("\xc2\x9b"
+                           "31m \xff \xc3"),
+            "\\xc2\\x9b31m \\xff \\xc3");
+  EXPECT_EQ(app::printable("\xed\xa0\x80 \xc0\xaf \xf5\x80\x80\x80 \xf0\x9f\xa4\x96"),
+            "\\xed\\xa0\\x80 \\xc0\\xaf \\xf5\\x80\\x80\\x80 \xf0\x9f\xa4\x96");
 }
 
 TEST(ListAndDescribe, CoverWhatThereIs) {

@@ -12,6 +12,8 @@ namespace fs = std::filesystem;
 
 const LibraryOwners kOwners = {{"tinyxml2", "core/config"},
                                {"png.h", "core/space"},
+                               {"librsvg/", "core/view"},
+                               {"cairo", "core/view"},
                                {"Random123/", "core/random"},
                                {"libserial/", "bridges/link"},
                                {"lcm/", "bridges/lcm"},

@@ -170,8 +170,35 @@ TEST_F(Trajectory, IsThereInFullWhenTheRecorderIsDestroyedUnclosed) {
 TEST_F(Trajectory, FlushHandsOverWhatThereIs) {
   auto recorder = open({"scout"});
   ASSERT_TRUE(recorder->record(space_, 0).ok());
+  path_ += ".part";
   EXPECT_EQ(lines().size(), 0U);
+  EXPECT_GT(recorder->unwritten().size.load(), 0U);
   ASSERT_TRUE(recorder->flush().ok());
+  EXPECT_EQ(lines().size(), 2U);
+  EXPECT_EQ(recorder->unwritten().size.load(), 0U);
+}
+
+TEST_F(Trajectory, WhatIsUnwrittenAreWholeLines) {
+  auto recorder = open({"*"});
+  ASSERT_TRUE(recorder->record(space_, 0).ok());
+  ASSERT_TRUE(recorder->record(space_, 1).ok());
+  const UnwrittenRecords& unwritten = recorder->unwritten();
+  const std::string text(unwritten.data.load(), unwritten.size.load());
+  ASSERT_TRUE(recorder->close().ok());
+  EXPECT_EQ(written(), text);
+}
+
+TEST_F(Trajectory, TheOldFileStaysUntilTheRunIsOver) {
+  { std::ofstream(path_) << "old"; }
+  {
+    auto recorder = open({"scout"});
+    EXPECT_EQ(written(), "old");
+  }
+  EXPECT_EQ(written(), "old") << "nothing was recorded";
+  auto recorder = open({"scout"});
+  ASSERT_TRUE(recorder->record(space_, 0).ok());
+  EXPECT_EQ(written(), "old");
+  ASSERT_TRUE(recorder->close().ok());
   EXPECT_EQ(lines().size(), 2U);
 }
 
@@ -216,6 +243,7 @@ TEST_F(Trajectory, AFullDiskIsToldAndEndsTheRecording) {
   const hal::Status flushed = recorder->flush();
   ASSERT_FALSE(flushed.ok());
   EXPECT_NE(flushed.error().message.find("No space left"), std::string::npos) << flushed.error().message;
+  EXPECT_NE(flushed.error().message.find("lost from tick 0 on"), std::string::npos) << flushed.error().message;
   EXPECT_FALSE(recorder->record(space_, 1).ok());
   EXPECT_FALSE(recorder->close().ok());
   path_.clear();

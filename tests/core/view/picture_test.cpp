@@ -108,24 +108,53 @@ TEST(Picture, ShowsStaticThingsLampsAndAPaintedFloor) {
   EXPECT_NEAR(d.floor(1.0, 0.0), 1.0, 1e-6);
 }
 
+std::string written(const Space& space, const std::string& name) {
+  const std::string path = testing::TempDir() + name;
+  auto file = hal::OutputFile::open(path, "picture");
+  EXPECT_TRUE(file.ok());
+  const hal::Status status = write_picture(space, file.value(), {});
+  EXPECT_TRUE(status.ok()) << (status.ok() ? "" : status.error().message);
+  std::stringstream text;
+  text << std::ifstream(path, std::ios::binary).rdbuf();
+  std::remove(path.c_str());
+  return text.str();
+}
+
 TEST(Picture, IsWrittenAsAWellFormedFile) {
   Space space;
   set_up(space);
-  const std::string path = testing::TempDir() + "picture_test.svg";
-  const hal::Status status = write_picture(space, path, {});
-  ASSERT_TRUE(status.ok()) << status.error().message;
-  std::stringstream text;
-  text << std::ifstream(path).rdbuf();
-  EXPECT_EQ(why_not_well_formed(text.str()), "");
-  std::remove(path.c_str());
+  EXPECT_EQ(why_not_well_formed(written(space, "picture_test.svg")), "");
 }
 
-TEST(Picture, SaysWhereItCouldNotBeWritten) {
+TEST(Picture, IsWrittenInTheFormatOfItsEnding) {
   Space space;
-  const hal::Status status = write_picture(space, "/no/such/folder/p.svg", {});
-  ASSERT_FALSE(status.ok());
-  EXPECT_NE(status.error().message.find("/no/such/folder/p.svg"), std::string::npos);
-  EXPECT_NE(status.error().message.find("No such file"), std::string::npos);
+  set_up(space);
+  const std::string png = written(space, "picture_test.PNG");
+  ASSERT_GT(png.size(), 1000U);
+  EXPECT_EQ(png.substr(0, 8), "\x89PNG\r\n\x1a\n");
+  const auto pixels = [&png](std::size_t at) {  // of IHDR [PNG, 11.2.2]
+    return static_cast<unsigned char>(png[at + 2]) * 256 + static_cast<unsigned char>(png[at + 3]);
+  };
+  EXPECT_EQ(pixels(16), 1056);  // 1,000 and two margins
+  EXPECT_GT(pixels(20), 1000);
+  const std::string pdf = written(space, "picture_test.pdf");
+  EXPECT_EQ(pdf.substr(0, 5), "%PDF-");
+  EXPECT_NE(pdf.rfind("%%EOF"), std::string::npos);
+}
+
+TEST(Picture, RefusesOtherEndingsAndNamesThoseThatThereAre) {
+  for (const char* path : {"picture.jpg", "picture", "svg", "a.b/picture"}) {
+    const auto format = picture_format(path);
+    ASSERT_FALSE(format.ok()) << path;
+    EXPECT_NE(format.error().message.find(".png"), std::string::npos);
+    EXPECT_NE(format.error().message.find(path), std::string::npos);
+  }
+}
+
+TEST(Picture, SaysWhatCannotBeRendered) {
+  const auto rendered = render("<svg", PictureFormat::Png);
+  ASSERT_FALSE(rendered.ok());
+  EXPECT_NE(rendered.error().message.find("cannot be rendered"), std::string::npos);
 }
 
 }  // namespace

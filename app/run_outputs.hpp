@@ -1,0 +1,28 @@
+// The files that a run writes: opened before it, in their places after it.
+#pragma once
+#include <memory>
+#include <optional>
+
+#include "app/command/command.hpp"
+#include "core/record/trajectory.hpp"
+#include "core/sim/world.hpp"
+#include "hal/output_file.hpp"
+
+namespace tandem::app {
+
+/// What was asked for; the rest is empty.
+struct RunOutputs {
+  std::optional<hal::OutputFile> report;
+  std::optional<hal::OutputFile> picture;
+  std::unique_ptr<core::TrajectoryRecorder> trajectory;
+};
+
+/// Whether the paths make sense together. Errors: one names a file that the experiment is read from, or another
+/// output's; a picture of no known ending.
+hal::Status check_output_paths(const RunOptions& options, const core::Scenario& scenario);
+
+/// Opens all of them. Error: one cannot be written, or its robots are not there.
+hal::Result<RunOutputs> open_outputs(const RunOptions& options, const core::Scenario& scenario,
+                                     const core::World& world);
+
+}  // namespace tandem::app

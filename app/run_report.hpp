@@ -1,0 +1,50 @@
+// What is told of a run when it is over: the report and the table.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "app/run_figures.hpp"
+#include "core/sim/world.hpp"
+#include "mixed_reality/session/report.hpp"
+
+namespace tandem::app {
+
+/// How a run ended: its length was done, a hook ended it, somebody interrupted it, or it failed.
+enum class Ended { Length, Hook, Interrupted, Failed };
+
+/// A run that is over.
+struct RunEnd {
+  Ended how = Ended::Length;
+  std::string failure;            ///< what, who, which tick; empty while it did not fail
+  std::int64_t steps_wanted = 0;  ///< 0: endless
+
+  /// Whether it came to the end that it was to have.
+  bool finished() const noexcept { return how == Ended::Length || how == Ended::Hook; }
+};
+
+/// Of a world that is stepped no more; `stopped`: by a signal.
+RunEnd end_of(const core::World& world, std::int64_t steps_wanted, bool stopped);
+
+/// A file of controllers that takes part.
+struct ControllerFile {
+  std::string id, label, file;
+  std::string sha256;  ///< empty: it cannot be read
+};
+std::vector<ControllerFile> controller_files(const core::Scenario& scenario, const hal::PluginLoader& loader);
+
+/// What the report and the table are made of.
+struct RunResult {
+  const core::World& world;
+  const std::vector<ControllerFile>& controllers;
+  RunFigures figures;
+  std::size_t robots = 0;
+  RunEnd end;
+  const mixed_reality::MixedReport* real = nullptr;  ///< null: no real robots
+};
+
+/// One JSON object.
+std::string report_of(const RunResult& result);
+
+void print_result(const RunResult& result);
+
+}  // namespace tandem::app

@@ -1,0 +1,45 @@
+#include "core/view/render.hpp"
+
+#include <dlfcn.h>
+#include <filesystem>
+
+namespace tandem::core {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Renderer {
+  bool (*call)(const std::string& svg, PictureFormat format, std::string& out);
+};
+
+/// The renderer, from the folder lib beside that of this program. It stays loaded.
+hal::Result<Renderer> load_renderer() {
+  std::error_code error;
+  const fs::path program = fs::read_symlink("/proc/self/exe", error);
+  const fs::path file = program.parent_path().parent_path() / "lib" / "render" / "libtandem_render.so";
+  void* const library = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL | RTLD_NODELETE);
+  void* const symbol = library != nullptr ? dlsym(library, "tandem_render") : nullptr;
+  if (symbol != nullptr) return Renderer{reinterpret_cast<decltype(Renderer::call)>(symbol)};
+  const char* const why = dlerror();
+  return hal::Error{"the renderer of PNG and PDF pictures does not load: " +
+                    std::string(why != nullptr ? why : "unknown reason") + "; .svg needs none"};
+}
+
+}  // namespace
+
+hal::Status can_render(PictureFormat format) {
+  if (format == PictureFormat::Svg) return {};
+  const auto renderer = load_renderer();
+  return renderer.ok() ? hal::Status{} : hal::Status{renderer.error()};
+}
+
+hal::Result<std::string> render(const std::string& svg, PictureFormat format) {
+  if (format == PictureFormat::Svg) return svg;
+  const auto renderer = load_renderer();
+  if (!renderer.ok()) return renderer.error();
+  std::string out;
+  if (!renderer.value().call(svg, format, out)) return hal::Error{out};
+  return out;
+}
+
+}  // namespace tandem::core

@@ -1,0 +1,19 @@
+// Renders SVG documents as PNG or PDF.
+#pragma once
+#include <string>
+
+#include "hal/result.hpp"
+
+namespace tandem::core {
+
+enum class PictureFormat { Svg, Png, Pdf };
+
+/// Whether `render` will find its renderer: a shared object beside the program, loaded when it is needed. To be asked
+/// before a run.
+hal::Status can_render(PictureFormat format);
+
+/// `svg` as a file of this format; pixels of a PNG are the document's. Error: it cannot be rendered, with the
+/// renderer's words.
+hal::Result<std::string> render(const std::string& svg, PictureFormat format);
+
+}  // namespace tandem::core

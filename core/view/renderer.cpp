@@ -1,0 +1,83 @@
+// The renderer, a shared object of its own: it brings along more than the rest of the program, and most runs draw
+// nothing.
+#include <cairo-pdf.h>
+#include <cmath>
+#include <librsvg/rsvg.h>
+#include <memory>
+
+#include "core/view/render.hpp"
+
+namespace tandem::core {
+namespace {
+
+template <auto release>
+struct Release {
+  template <class T>
+  void operator()(T* object) const noexcept {
+    release(object);
+  }
+};
+using Handle = std::unique_ptr<RsvgHandle, Release<&g_object_unref>>;
+using Stream = std::unique_ptr<GInputStream, Release<&g_object_unref>>;
+using Surface = std::unique_ptr<cairo_surface_t, Release<&cairo_surface_destroy>>;
+using Context = std::unique_ptr<cairo_t, Release<&cairo_destroy>>;
+
+constexpr double kPoints_per_px = 72.0 / 96.0;  // CSS' pixel and PDF's unit
+
+hal::Error failed(const std::string& why) {
+  return {"the picture cannot be rendered: " + why};
+}
+
+hal::Error failed(GError* error) {
+  hal::Error told = failed(error != nullptr ? error->message : "unknown reason");
+  g_clear_error(&error);
+  return told;
+}
+
+cairo_status_t append(void* text, const unsigned char* data, unsigned int size) {
+  static_cast<std::string*>(text)->append(reinterpret_cast<const char*>(data), size);
+  return CAIRO_STATUS_SUCCESS;
+}
+
+hal::Result<std::string> render_here(const std::string& svg, PictureFormat format) {
+  GError* error = nullptr;
+  const Stream stream(g_memory_input_stream_new_from_data(svg.data(), static_cast<gssize>(svg.size()), nullptr));
+  // Large swarms have more elements than librsvg takes from strangers.
+  const Handle handle(
+      rsvg_handle_new_from_stream_sync(stream.get(), nullptr, RSVG_HANDLE_FLAG_UNLIMITED, nullptr, &error));
+  if (handle == nullptr) return failed(error);
+  double width_px = 0.0;
+  double height_px = 0.0;
+  if (rsvg_handle_get_intrinsic_size_in_pixels(handle.get(), &width_px, &height_px) == 0)
+    return failed("it has no size");
+
+  std::string text;
+  const bool pdf = format == PictureFormat::Pdf;
+  const double scale = pdf ? kPoints_per_px : 1.0;
+  const Surface surface(pdf ? cairo_pdf_surface_create_for_stream(&append, &text, scale * width_px, scale * height_px)
+                            : cairo_image_surface_create(CAIRO_FORMAT_RGB24, static_cast<int>(std::ceil(width_px)),
+                                                         static_cast<int>(std::ceil(height_px))));
+  const Context context(cairo_create(surface.get()));
+  const RsvgRectangle page{0.0, 0.0, scale * width_px, scale * height_px};
+  if (rsvg_handle_render_document(handle.get(), context.get(), &page, &error) == 0) return failed(error);
+  cairo_status_t status = cairo_status(context.get());
+  if (status == CAIRO_STATUS_SUCCESS && !pdf) status = cairo_surface_write_to_png_stream(surface.get(), &append, &text);
+  cairo_surface_finish(surface.get());
+  if (status == CAIRO_STATUS_SUCCESS) status = cairo_surface_status(surface.get());
+  if (status != CAIRO_STATUS_SUCCESS) return failed(cairo_status_to_string(status));
+  return text;
+}
+
+}  // namespace
+}  // namespace tandem::core
+
+extern "C" __attribute__((visibility("default"))) bool tandem_render(const std::string& svg,
+                                                                     tandem::core::PictureFormat format,
+                                                                     std::string& out);
+
+/// `out` is the picture; or, when false is returned, what is wrong.
+bool tandem_render(const std::string& svg, tandem::core::PictureFormat format, std::string& out) {
+  auto rendered = tandem::core::render_here(svg, format);
+  out = rendered.ok() ? std::move(rendered).value() : rendered.error().message;
+  return rendered.ok();
+}
