@@ -7,6 +7,7 @@
 #include "bridges/aseba/tcp_link.hpp"
 #include "bridges/can/can_link_opener.hpp"
 #include "bridges/link/link_text.hpp"
+#include "bridges/link/permitted_link.hpp"
 
 namespace tandem::bridges::aseba {
 namespace {
@@ -51,20 +52,21 @@ hal::Result<std::unique_ptr<MessageLink>> over_bytes(hal::Result<std::unique_ptr
 
 }  // namespace
 
-hal::Result<MessageLinkOpener> message_link_opener(std::string_view text) {
+hal::Result<MessageLinkOpener> message_link_opener(std::string_view text, const LinkTerms& terms) {
   if (text.starts_with(kTcp)) {
     const auto endpoint = parse_endpoint(text.substr(kTcp.size()));
     if (!endpoint) return endpoint.error();
-    return MessageLinkOpener([e = endpoint.value()] { return over_bytes(TcpLink::connect(e.host, e.port)); });
+    const auto connect = permitted([e = endpoint.value()] { return TcpLink::connect(e.host, e.port); }, terms.permit);
+    return MessageLinkOpener([connect] { return over_bytes(connect()); });
   }
   const auto address = parse_link(text);
   if (!address) return hal::Error{address.error().message + ", tcp:ROBOT:33333"};
   if (address.value().scheme == LinkScheme::Serial) {
-    const auto opener = byte_link_opener(address.value());
+    const auto opener = byte_link_opener(address.value(), terms);
     if (!opener) return opener.error();
     return MessageLinkOpener([open = opener.value()] { return over_bytes(open()); });
   }
-  const auto opener = can_link_opener(address.value(), aseba_filters());
+  const auto opener = can_link_opener(address.value(), aseba_filters(), terms);
   if (!opener) {
     return hal::Error{"link '" + std::string(text) +
                       "' does not carry a foot-bot's messages; use tcp:ROBOT:33333, serial:DEVICE@921600, "

@@ -3,6 +3,7 @@
 #include <string_view>
 
 #include "bridges/aseba/message_link.hpp"
+#include "bridges/link/link_terms.hpp"
 
 namespace tandem::bridges::aseba {
 
@@ -10,6 +11,6 @@ namespace tandem::bridges::aseba {
 /// stand in brackets: tcp:[::1]:33333.
 /// Errors: not a link; one that carries no ASEBA messages; no host; not a port. Errors of the device or the network
 /// come from the opener.
-hal::Result<MessageLinkOpener> message_link_opener(std::string_view text);
+hal::Result<MessageLinkOpener> message_link_opener(std::string_view text, const LinkTerms& terms = {});
 
 }  // namespace tandem::bridges::aseba

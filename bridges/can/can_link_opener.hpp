@@ -9,6 +9,7 @@ namespace tandem::bridges {
 /// adapters pass everything, and users must judge frames anyway. The serial line of an slcan adapter is opened at
 /// 3 Mbaud, which USB adapters ignore.
 /// Errors: any other scheme. Errors of the device itself come from the opener.
-hal::Result<CanOpener> can_link_opener(const LinkAddress& address, std::vector<CanFilter> filters = {});
+hal::Result<CanOpener> can_link_opener(const LinkAddress& address, std::vector<CanFilter> filters = {},
+                                       const LinkTerms& terms = {});
 
 }  // namespace tandem::bridges

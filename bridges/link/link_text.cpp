@@ -4,6 +4,7 @@
 #include <array>
 #include <charconv>
 
+#include "bridges/link/permitted_link.hpp"
 #include "bridges/link/serial_link.hpp"
 
 namespace tandem::bridges {
@@ -103,12 +104,12 @@ hal::Result<LinkAddress> parse_link(std::string_view text) {
   return address;
 }
 
-hal::Result<LinkOpener> byte_link_opener(const LinkAddress& address) {
+hal::Result<LinkOpener> byte_link_opener(const LinkAddress& address, const LinkTerms& terms) {
   if (address.scheme != LinkScheme::Serial) {
     return hal::Error{"link '" + to_text(address) +
                       "' does not carry a robot's bytes from here; use serial:DEVICE@BAUD"};
   }
-  return LinkOpener([address] { return SerialLink::open(address); });
+  return permitted([address, beside = terms.beside] { return SerialLink::open(address, beside); }, terms.permit);
 }
 
 }  // namespace tandem::bridges

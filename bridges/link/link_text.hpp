@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "bridges/link/link.hpp"
+#include "bridges/link/link_terms.hpp"
 #include "hal/result.hpp"
 
 namespace tandem::bridges {
@@ -33,6 +34,6 @@ hal::Result<LinkAddress> parse_link(std::string_view text);
 
 /// An opener for the byte links that reach a robot from here. Only `serial:` does.
 /// Errors: any other scheme. Errors of the device itself come from the opener.
-hal::Result<LinkOpener> byte_link_opener(const LinkAddress& address);
+hal::Result<LinkOpener> byte_link_opener(const LinkAddress& address, const LinkTerms& terms = {});
 
 }  // namespace tandem::bridges

@@ -106,10 +106,10 @@ struct Descriptor {
 
 /// 0, or why the device cannot be used. LibSerial must never see such a device: it would abort on giving it up. `probe`
 /// stays open meanwhile, so that a Bluetooth connection is made once.
-int check_device(int probe) noexcept {
+int check_device(int probe, bool beside) noexcept {
   if (probe < 0) return errno;
   if (::isatty(probe) == 0) return ENOTTY;
-  if (::flock(probe, LOCK_EX | LOCK_NB) != 0) return EBUSY;
+  if (!beside && ::flock(probe, LOCK_EX | LOCK_NB) != 0) return EBUSY;
   return 0;
 }
 
@@ -158,16 +158,15 @@ class SerialLink::Port {
   std::unique_ptr<LibSerial::SerialPort> serial_;
 };
 
-hal::Result<std::unique_ptr<ByteLink>> SerialLink::open(const LinkAddress& address) {
+hal::Result<std::unique_ptr<ByteLink>> SerialLink::open(const LinkAddress& address, bool beside) {
   const Descriptor probe(::open(address.target.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC));
-  if (const int error = check_device(probe.fd); error != 0) return open_error(address, error);
+  if (const int error = check_device(probe.fd, beside); error != 0) return open_error(address, error);
   try {
     auto port = std::make_unique<Port>(address);
     const int fd = port->descriptor();
+    ::ioctl(fd, TIOCNXCL);  // LibSerial has set it
     ::flock(probe.fd, LOCK_UN);
-    // The lock holds off our own kind also where root overrides TIOCEXCL.
-    if (::flock(fd, LOCK_EX | LOCK_NB) != 0) return open_error(address, EBUSY);
-    ::ioctl(fd, TIOCEXCL);
+    if (!beside && ::flock(fd, LOCK_EX | LOCK_NB) != 0) return open_error(address, EBUSY);
     ::fcntl(fd, F_SETFD, FD_CLOEXEC);
     ::fcntl(fd, F_SETFL, ::fcntl(fd, F_GETFL) | O_NONBLOCK);
     ::tcflush(fd, TCIFLUSH);

@@ -8,14 +8,16 @@
 namespace tandem::bridges {
 
 /// A serial port, 8 data bits, no parity, 1 stop bit, no flow control, raw. LibSerial opens and configures it; reading
-/// and writing are done here on its descriptor, because its own calls sleep and spin. The port is ours alone: others
-/// who open it, and a second SerialLink, are told that it is busy.
+/// and writing are done here on its descriptor, because its own calls sleep and spin. A second SerialLink, and others
+/// who lock devices before they use them, are told that it is busy. The kernel's own exclusive mode is left off: it
+/// would keep out our guardian while this program is frozen.
 class SerialLink final : public ByteLink {
  public:
   /// Blocks while the kernel does, for seconds on Bluetooth.
   /// Errors, each with what to do: no such device, no permission, busy, not a terminal, Bluetooth peer down, not
   /// configurable.
-  static hal::Result<std::unique_ptr<ByteLink>> open(const LinkAddress& address);
+  /// `beside`: whoever holds the port does not matter.
+  static hal::Result<std::unique_ptr<ByteLink>> open(const LinkAddress& address, bool beside = false);
   ~SerialLink() override;
 
   std::size_t write(std::span<const std::uint8_t> bytes, hal::TimeNs budget_ns) noexcept override;

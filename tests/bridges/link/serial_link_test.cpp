@@ -7,6 +7,7 @@
 #include <fstream>
 #include <gmock/gmock.h>
 #include <pty.h>
+#include <sys/ioctl.h>
 #include <sys/wait.h>
 #include <termios.h>
 #include <unistd.h>
@@ -146,6 +147,25 @@ TEST(SerialLink, IsBusyForASecondUserAndFreeAfterwards) {
   EXPECT_THAT(error_of(pty.path), HasSubstr("in use by another program"));
   link.reset();
   EXPECT_EQ(error_of(pty.path), "opened");
+}
+
+TEST(SerialLink, LetsAGuardianSpeakBesideItsUser) {
+  const Pty pty;
+  const auto link = pty.open();
+  int exclusive = 1;  // would keep out whoever is not root, also a guardian
+  ASSERT_EQ(::ioctl(link->descriptor(), TIOCGEXCL, &exclusive), 0);
+  EXPECT_EQ(exclusive, 0);
+  auto beside = SerialLink::open({LinkScheme::Serial, pty.path, 115200}, true);
+  ASSERT_TRUE(beside.ok()) << beside.error().message;
+  EXPECT_EQ(beside.value()->write(Bytes{'s'}, 0), 1U);
+  char heard = 0;
+  EXPECT_EQ(::read(pty.master, &heard, 1), 1);
+  EXPECT_EQ(heard, 's');
+  beside = hal::Error{"closed"};
+  EXPECT_EQ(link->write(Bytes{'x'}, 0), 1U);
+  EXPECT_EQ(::read(pty.master, &heard, 1), 1);
+  EXPECT_EQ(heard, 'x');
+  EXPECT_THAT(error_of(pty.path), HasSubstr("in use by another program"));
 }
 
 TEST(SerialLink, NamesADeviceThatIsNotThere) {
