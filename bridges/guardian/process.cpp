@@ -12,9 +12,11 @@
 #include <memory>
 #include <mutex>
 #include <poll.h>
+#include <pthread.h>
 #include <sys/eventfd.h>
 #include <sys/mman.h>
 #include <sys/prctl.h>
+#include <sys/resource.h>
 #include <sys/signalfd.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
@@ -32,6 +34,7 @@ using hal::TimeNs;
 
 constexpr TimeNs kSayAfter = hal::kNsPerSecond;  // that a robot has not stopped
 constexpr int kLookEvery_ms = 20;
+constexpr std::size_t kStack = 512 * 1024;
 
 TimeNs monotonic_ns() noexcept {
   timespec t{};
@@ -74,6 +77,23 @@ bool is_stopped(pid_t process) noexcept {
   return end != nullptr && end[1] == ' ' && (end[2] == 'T' || end[2] == 't');
 }
 
+/// What there is now, and what will be used later; the latter not where it is limited, since then threads and memory
+/// for them would be refused when robots are to be stopped.
+bool lock_memory() noexcept {
+  pthread_attr_t attributes;
+  ::pthread_attr_init(&attributes);
+  ::pthread_attr_setstacksize(&attributes, kStack);
+  ::pthread_setattr_default_np(&attributes);  // also for threads of libraries
+  ::pthread_attr_destroy(&attributes);
+  ::mallopt(M_ARENA_MAX, 1);  // an arena a thread would be locked memory for nothing
+  if (::mlockall(MCL_CURRENT) != 0) return false;
+  rlimit limit{};
+  const bool unlimited =
+      ::geteuid() == 0 || (::getrlimit(RLIMIT_MEMLOCK, &limit) == 0 && limit.rlim_cur == RLIM_INFINITY);
+  if (unlimited) ::mlockall(MCL_CURRENT | MCL_FUTURE | MCL_ONFAULT);
+  return true;
+}
+
 class Process {
  public:
   explicit Process(const Inheritance& inheritance) : in_(inheritance), pulse_(inheritance.limits) {}
@@ -84,7 +104,6 @@ class Process {
   enum class Hub : std::uint8_t { Alive, Frozen, Back, Ended, Gone };
 
   void settle_in();
-  void lock_memory();
   void open_takeover_socket();
   void look_at_hub();
   void look_at_robots();
@@ -108,7 +127,6 @@ class Process {
   std::mutex say_mutex_;
   int pidfd_ = -1, signals_ = -1, wake_ = -1, takeover_ = -1;
   Hub hub_ = Hub::Alive;
-  bool memory_locked_ = false;
   bool handing_back_ = false;
   TimeNs stopped_ns_ = 0;  // when the stop was begun
   bool told_ = false;
@@ -131,8 +149,8 @@ void Process::settle_in() {
   signals_ = ::signalfd(-1, &all, SFD_CLOEXEC | SFD_NONBLOCK);
   wake_ = ::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
   pidfd_ = open_pidfd(in_.hub);
-  ::mallopt(M_ARENA_MAX, 1);  // an arena a thread would be locked memory for nothing
-  lock_memory();
+  const bool locked = lock_memory();
+  const int why = errno;
 
   context_.types = in_.types;
   context_.hub = in_.hub;
@@ -145,16 +163,12 @@ void Process::settle_in() {
     const std::uint64_t one = 1;
     (void)!::write(wake_, &one, sizeof one);
   };
-  if (!memory_locked_) {
+  if (!locked) {
     context_.say_to_hub({Word::Warning,
                          {},
-                         std::string("the guardian process cannot lock its memory (") + std::strerror(errno) +
+                         std::string("the guardian process cannot lock its memory (") + std::strerror(why) +
                              "): on a machine that swaps it may stop robots late; see `ulimit -l`"});
   }
-}
-
-void Process::lock_memory() {
-  memory_locked_ = ::mlockall(MCL_CURRENT | MCL_FUTURE) == 0;
 }
 
 [[noreturn]] void Process::run() {
@@ -270,13 +284,7 @@ void Process::claim(const StopMessages& robot) {
     return;
   }
   auto watched = std::make_unique<WatchedRobot>(context_, robot);
-  hal::Status started = watched->start();
-  if (!started.ok() && memory_locked_) {  // it is locked memory that there is too little of
-    ::munlockall();
-    memory_locked_ = false;
-    started = watched->start();
-  }
-  if (!started.ok()) {
+  if (const hal::Status started = watched->start(); !started.ok()) {
     context_.say_to_hub({Word::Claimed, robot, started.error().message});
     return;
   }

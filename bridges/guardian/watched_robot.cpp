@@ -13,7 +13,6 @@ namespace {
 
 using hal::TimeNs;
 
-constexpr std::size_t kStack = 512 * 1024;  // locked in memory, as all that the guardian has
 constexpr TimeNs kShortestStep = 5 * hal::kNsPerMs;
 constexpr TimeNs kUnreachablePause = 100 * hal::kNsPerMs;
 constexpr TimeNs kHubMayBeDying = 500 * hal::kNsPerMs;  // its guardian has not noticed yet
@@ -51,26 +50,16 @@ WatchedRobot::WatchedRobot(const GuardianContext& context, const StopMessages& r
 
 WatchedRobot::~WatchedRobot() {
   let_go();
-  if (thread_) ::pthread_join(*thread_, nullptr);
+  if (thread_.joinable()) thread_.join();
 }
 
 hal::Status WatchedRobot::start() {
-  pthread_attr_t attributes;
-  ::pthread_attr_init(&attributes);
-  ::pthread_attr_setstacksize(&attributes, kStack);
-  pthread_t thread{};
-  const int error = ::pthread_create(&thread, &attributes, &WatchedRobot::run_thread, this);
-  ::pthread_attr_destroy(&attributes);
-  if (error != 0) {
-    return hal::Error{"the guardian process gets no thread for robot '" + robot_.robot + "': " + std::strerror(error)};
+  try {
+    thread_ = std::thread([this] { run(); });
+    return {};
+  } catch (const std::system_error& e) {
+    return hal::Error{"the guardian process gets no thread for robot '" + robot_.robot + "': " + e.what()};
   }
-  thread_ = thread;
-  return {};
-}
-
-void* WatchedRobot::run_thread(void* self) {
-  static_cast<WatchedRobot*>(self)->run();
-  return nullptr;
 }
 
 // --- from the main loop ---

@@ -4,9 +4,9 @@
 #include <functional>
 #include <mutex>
 #include <optional>
-#include <pthread.h>
 #include <span>
 #include <string>
+#include <thread>
 
 #include "bridges/guardian/packet.hpp"
 #include "bridges/guardian/robot_lock.hpp"
@@ -60,7 +60,6 @@ class WatchedRobot {
  private:
   enum class Claim : std::uint8_t { Due, Held, Refused };
 
-  static void* run_thread(void* self);
   void run();
   void take_lock();
   std::string try_to_lock();
@@ -84,7 +83,7 @@ class WatchedRobot {
   bool confirmed_ = false;
   StopState state_ = StopState::Unreachable;
   std::string trouble_;
-  std::optional<pthread_t> thread_;
+  std::thread thread_;
 };
 
 }  // namespace tandem::bridges::guardian
