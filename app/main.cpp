@@ -119,7 +119,7 @@ int main(int argc, char** argv) {
   emulate_command
       ->add_option("--link", emulate_options.link,
                    "pty:NAME makes a pseudo-terminal of that name (a foot-bot: with a CAN adapter's slcan on it); "
-                   "serial:DEVICE@BAUD; a foot-bot also can:INTERFACE and tcp-listen:PORT; an eye-bot "
+                   "serial:DEVICE@BAUD; a foot-bot also can:INTERFACE and tcp-listen:[ADDRESS:]PORT; an eye-bot "
                    "lcm:udpm://GROUP:PORT?ttl=0")
       ->required();
   emulate_command->add_option("--log", emulate_options.log, "File for one JSON object an event; default: none");

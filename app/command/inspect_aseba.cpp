@@ -1,4 +1,5 @@
 // `tandem inspect` on links that carry ASEBA messages: a foot-bot's modules, whatever they are called.
+#include <algorithm>
 #include <cstdio>
 #include <fmt/format.h>
 
@@ -15,6 +16,23 @@ namespace {
 namespace aseba = bridges::aseba;
 
 constexpr std::size_t kShown = 24;  // values of a variable
+// A module says who it is in many messages, and behind a translator or a switch one module after the other does.
+constexpr hal::TimeNs kLongest_ns = 20 * hal::kNsPerSecond;
+constexpr hal::TimeNs kQuiet_ns = hal::kNsPerSecond;  // without a new module: three rounds of asking
+
+/// Modules that were heard, by their number.
+std::vector<std::uint8_t> heard(const aseba::Network& network) {
+  std::vector<std::uint8_t> ids;
+  for (const std::uint8_t id : network.known()) {
+    if (network.node(id).state != aseba::NodeState::Absent) ids.push_back(id);
+  }
+  std::ranges::sort(ids);
+  return ids;
+}
+
+bool is_described(const aseba::Node& node) {
+  return node.ready() || (node.state == aseba::NodeState::Lost && !node.description.name.empty());
+}
 
 /// Has every variable of every node read that was not read yet.
 void ask_all(aseba::Network& network) {
@@ -25,6 +43,13 @@ void ask_all(aseba::Network& network) {
 }
 
 void print_node(const aseba::Node& node) {
+  if (!is_described(node)) {
+    fmt::print(
+        "node {} did not describe itself: {} of its messages were heard, {} of its descriptions were broken off\n",
+        node.id, node.statistics.messages, node.statistics.incomplete);
+    if (!node.trouble.empty()) fmt::print("  {}\n", node.trouble);
+    return;
+  }
   fmt::print("node {} '{}', {}, protocol {}; {} messages, {} reads answered of {}, {:.1f} ms round trip at most\n",
              node.id, node.description.name, aseba::node_state_name(node.state), node.version, node.statistics.messages,
              node.statistics.answers, node.statistics.reads,
@@ -59,10 +84,19 @@ int inspect_aseba(const InspectOptions& options) {
   aseba::Network network(link, {}, hal::Log([](hal::Severity severity, std::string_view text) {
                            if (severity != hal::Severity::Info) fmt::print(stderr, "{}\n", text);
                          }));
-  const hal::TimeNs end = bridges::monotonic_ns() + static_cast<hal::TimeNs>(options.seconds * 1e9);
-  for (hal::TimeNs now = bridges::monotonic_ns(); now < end && !stop.load(); now = bridges::monotonic_ns()) {
+  const hal::TimeNs begin = bridges::monotonic_ns();
+  const hal::TimeNs least = begin + static_cast<hal::TimeNs>(options.seconds * 1e9);
+  std::size_t modules = 0;
+  hal::TimeNs newest_ns = begin;
+  for (hal::TimeNs now = begin; !stop.load(); now = bridges::monotonic_ns()) {
     ask_all(network);
     network.poll(now);
+    const std::vector<std::uint8_t> ids = heard(network);
+    if (ids.size() != modules) newest_ns = now;
+    modules = ids.size();
+    const bool complete = !network.reading() && now - newest_ns >= kQuiet_ns &&
+                          std::ranges::all_of(ids, [&](std::uint8_t id) { return is_described(network.node(id)); });
+    if (now >= least && (complete || now - begin >= kLongest_ns)) break;
     link.wait(std::clamp<hal::TimeNs>(network.next_deadline() - now, 0, 20 * hal::kNsPerMs));
   }
   if (link.openings() == 0) {
@@ -70,16 +104,16 @@ int inspect_aseba(const InspectOptions& options) {
                     link.trouble().empty() ? "the link '" + options.link + "' did not open in time" : link.trouble());
   }
   bool any = false;
-  for (const std::uint8_t id : network.known()) {
+  for (const std::uint8_t id : heard(network)) {
     any = any || network.node(id).ready();
     print_node(network.node(id));
   }
   const auto messages = link.statistics();
-  const auto& heard = network.statistics();
+  const auto& bus = network.statistics();
   print_table({{"link", fmt::format("{}: {} messages in, {} out, {} broken, {} dropped", link.name(), messages.received,
                                     messages.sent, messages.broken_in, messages.dropped)},
-               {"bus", fmt::format("{} user events, {} messages of other hosts, {} not understood", heard.events,
-                                   heard.other_hosts, heard.not_understood)}});
+               {"bus", fmt::format("{} user events, {} messages of other hosts, {} not understood", bus.events,
+                                   bus.other_hosts, bus.not_understood)}});
   return any ? kDone
              : complain(kFailedRunning, "no module describes itself on " + link.name() +
                                             "; is the robot switched on, and the bus set to 1 Mbit/s?");

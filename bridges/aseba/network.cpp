@@ -90,6 +90,24 @@ void Network::forget_writes() noexcept {
   link_.clear();
 }
 
+bool Network::reading() const noexcept {
+  return std::ranges::any_of(known(), [this](std::uint8_t id) {
+    const Row& row = (*rows_)[id];
+    const auto wanted = [](std::uint8_t marks) { return (marks & Image::kWanted) != 0; };
+    return row.node.ready() && (row.read.active || std::ranges::any_of(row.node.image.marks, wanted));
+  });
+}
+
+void Network::stalled(hal::TimeNs duration) noexcept {
+  for (const std::uint8_t id : known()) {
+    Row& row = (*rows_)[id];
+    row.node.heard_ns += row.node.heard_ns != 0 ? duration : 0;
+    row.read.excused_ns += row.read.active ? duration : 0;
+    row.describe_at_ns += row.describe_at_ns != 0 ? duration : 0;
+  }
+  asking_until_ns_ += duration;
+}
+
 bool Network::send_event(std::uint16_t number, std::span<const std::int16_t> arguments) noexcept {
   payload_.clear();
   return number < kFirstBootloader && payload_.append(arguments) && link_.send(number, payload_.bytes());
@@ -213,7 +231,7 @@ void Network::lose(Row& row, std::string_view why) {
   row.draft.clear();
   row.has_candidate = false;
   row.describe_at_ns = 0;
-  row.read = {};
+  row.read = row.given_up = {};
   row.pinged = false;
 }
 
@@ -319,7 +337,7 @@ void Network::on_complete(Row& row, hal::TimeNs now) {
     if (row.has_candidate || node.ready()) ++node.statistics.changed;
     if (node.ready()) {
       node.image.unmark(0, node.image.size(), Image::kWanted | Image::kDirty);
-      row.read = {};
+      row.read = row.given_up = {};
       log_.warning(title(node) + " describes itself otherwise than before");
     }
     row.candidate = said;
@@ -340,7 +358,7 @@ void Network::accept(Row& row) {
   node.trouble.clear();
   ++node.generation;
   ++node.statistics.times_ready;
-  row.read = {};
+  row.read = row.given_up = {};
   row.cursor = 0;
   row.has_candidate = false;
   row.describe_tries = 0;
@@ -458,15 +476,26 @@ void Network::on_variables(Row& row, const Variables& variables, hal::TimeNs at)
     node.statistics.last_round_trip_ns = at - row.read.asked_ns;
     node.statistics.sum_round_trip_ns += at - row.read.asked_ns;
     node.statistics.max_round_trip_ns = std::max(node.statistics.max_round_trip_ns, at - row.read.asked_ns);
+    row.given_up = {};
   } else {
     ++node.statistics.unasked;  // late, or another host's: nothing vouches for its length
     return;
   }
   if (!node.ready() || start + count > node.image.size()) return;
+  const hal::TimeNs taken_ns = measured_ns(row, at);
   for (std::size_t i = 0; i < count; ++i) {
     node.image.values[start + i] = variables.words[i];
-    node.image.taken_ns[start + i] = at;
+    node.image.taken_ns[start + i] = std::max<hal::TimeNs>(taken_ns, 1);
   }
+}
+
+/// When the module looked, which answered at `at`: in the middle between question and answer. Of a question that was
+/// repeated it is the last one that was answered, unless answers are so slow here that it may have been the first.
+hal::TimeNs Network::measured_ns(const Row& row, hal::TimeNs at) const noexcept {
+  const NodeStatistics& s = row.node.statistics;
+  const bool quick = s.answers > 0 && 4 * s.sum_round_trip_ns < timing_.reply_ns * static_cast<hal::TimeNs>(s.answers);
+  const hal::TimeNs asked_ns = quick ? row.read.asked_ns : row.read.first_ns;
+  return at - std::max<hal::TimeNs>(at - asked_ns, 0) / 2;
 }
 
 bool Network::send_writes(Row& row) noexcept {
@@ -488,20 +517,21 @@ bool Network::send_writes(Row& row) noexcept {
 bool Network::send_read(Row& row, hal::TimeNs now) noexcept {
   Node& node = row.node;
   Read& read = row.read;
-  if (read.active && now - read.asked_ns < timing_.reply_ns) {
-    due(read.asked_ns + timing_.reply_ns);
+  if (read.active && now - read.asked_ns < timing_.reply_ns + read.excused_ns) {
+    due(read.asked_ns + timing_.reply_ns + read.excused_ns);
     return true;
   }
   if (read.active && read.tries >= timing_.read_tries) {
     ++node.statistics.unanswered;
-    node.image.unmark(read.start, read.count, Image::kWanted);  // old values stay, with their age
-    read = {};
+    row.given_up = read;
+    read = {};  // old values stay, with their age; it is asked for again when others had their turn
   }
   if (!read.active) {
     Image::Range range = node.image.next(Image::kWanted, row.cursor, kMostRead, timing_.merge_gap);
     if (range.count == 0) range = node.image.next(Image::kWanted, 0, kMostRead, timing_.merge_gap);
     if (range.count == 0) return true;
-    read = {true, range.start, range.count, now, 0};
+    const bool again = row.given_up.active && row.given_up.start == range.start;
+    read = {true, range.start, range.count, now, again ? row.given_up.first_ns : now, 0, 0};
     row.cursor = range.start + range.count;
   }
   payload_.clear();
@@ -514,6 +544,7 @@ bool Network::send_read(Row& row, hal::TimeNs now) noexcept {
   }
   ++(read.tries++ == 0 ? node.statistics.reads : node.statistics.asked_again);
   read.asked_ns = now;
+  read.excused_ns = 0;
   due(now + timing_.reply_ns);
   return true;
 }

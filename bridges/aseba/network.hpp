@@ -28,9 +28,9 @@ struct NetworkTiming {
   hal::TimeNs describe_ns = 150 * hal::kNsPerMs;  ///< without progress of a description until it is asked for again
   hal::TimeNs refused_ns = 400 * hal::kNsPerMs;   ///< until a node whose description was refused is asked again
   hal::TimeNs reply_ns = 100 * hal::kNsPerMs;     ///< for an answer to a read
-  int read_tries = 2;
-  hal::TimeNs lost_ns = 1200 * hal::kNsPerMs;  ///< of silence until a node counts as lost
-  std::size_t merge_gap = 8;                   ///< unwanted words that a read takes along rather than being two
+  int read_tries = 2;                             ///< until another read has its turn
+  hal::TimeNs lost_ns = 1200 * hal::kNsPerMs;     ///< of silence until a node counts as lost
+  std::size_t merge_gap = 8;                      ///< unwanted words that a read takes along rather than being two
 };
 
 /// A user event as it came.
@@ -68,6 +68,10 @@ class Network {
 
   /// Takes in what has arrived, applies time-outs, sends what is due. Never waits.
   void poll(hal::TimeNs now) noexcept;
+  /// Some words are wanted that were not answered yet.
+  bool reading() const noexcept;
+  /// Our own thread came too late by so much: no time-out counts it. Before the next `poll`.
+  void stalled(hal::TimeNs duration) noexcept;
   /// When to call `poll` at the latest, unless the link has something before.
   hal::TimeNs next_deadline() const noexcept { return deadline_; }
 
@@ -77,7 +81,8 @@ class Network {
   /// The first Ready node with one of these names, whatever their case; space, `-` and `_` are the same. Or null.
   const Node* find(std::span<const std::string> names) const noexcept;
 
-  /// Has these words read with the next polls; see `Node::taken_ns`. False, and counted: not Ready, or outside.
+  /// Has these words read with the next polls, and asked for again until they are answered or the node is lost; see
+  /// `Node::taken_ns`. False, and counted: not Ready, or outside.
   bool want(std::uint8_t id, std::size_t address, std::size_t count) noexcept;
   /// Has these words written with the next poll. There is no acknowledgement in the protocol: read back where it
   /// matters. False, and counted: not Ready, or outside.
@@ -98,7 +103,9 @@ class Network {
   struct Read {
     bool active = false;
     std::size_t start = 0, count = 0;
-    hal::TimeNs asked_ns = 0;
+    hal::TimeNs asked_ns = 0;  // the last time
+    hal::TimeNs first_ns = 0;
+    hal::TimeNs excused_ns = 0;  // of the wait for its answer
     int tries = 0;
   };
   struct Row {
@@ -109,6 +116,7 @@ class Network {
     hal::TimeNs describe_at_ns = 0;  // 0: not due
     int describe_tries = 0;
     Read read;
+    Read given_up;           // the last one that was; its answer may yet come
     std::size_t cursor = 0;  // where the next read begins to look
     bool pinged = false;
     int presented = 0;  // times in this round
@@ -120,6 +128,7 @@ class Network {
   void on_description_part(Row& row, hal::TimeNs now);
   void on_complete(Row& row, hal::TimeNs now);
   void on_variables(Row& row, const Variables& variables, hal::TimeNs at) noexcept;
+  hal::TimeNs measured_ns(const Row& row, hal::TimeNs at) const noexcept;
   void keep_event(const MessageView& view) noexcept;
   void program_error(Row& row, std::string what);
   void accept(Row& row);

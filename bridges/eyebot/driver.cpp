@@ -275,12 +275,13 @@ void EyebotDriver::latch(hal::Tick tick, TimeNs now) noexcept {
 // --- what it does ---
 
 RobotState EyebotDriver::judge(TimeNs now) const noexcept {
-  const Pulse pulse = liveness_.pulse(now);
+  const TimeNs patience = stalls_.patience_ns(now);
+  const Pulse pulse = liveness_.pulse(now - patience);
   if (pulse == Pulse::Never) return RobotState::Absent;
   if (pulse == Pulse::Lost) return was_active_ ? RobotState::Lost : RobotState::Absent;
   const bool well = pulse == Pulse::Beating && liveness_.settled(now) && !liveness_.contested(now) &&
                     !liveness_.twins(now) && !others_robot(now) && status_.known &&
-                    now - status_.taken_ns <= kStatusFresh && newests_.heartbeat.message.proto_major == 1 &&
+                    now - status_.taken_ns <= kStatusFresh + patience && newests_.heartbeat.message.proto_major == 1 &&
                     place_gate_.known() && !saves_itself(status_.mode, status_.failsafe) &&
                     status_.mode != Mode::Stopped;
   if (well) return RobotState::Active;
@@ -570,6 +571,7 @@ void EyebotDriver::pump(TimeNs now) noexcept {
 
 void EyebotDriver::advance(TimeNs now) noexcept {
   now_ns_ = now;
+  statistics_.stalls += stalls_.turn(now) > 0 ? 1 : 0;
   if (started_ns_ == 0) started_ns_ = now;
   take_all(now);
   update_state(now);

@@ -34,6 +34,7 @@
 #include "bridges/eyebot/topic.hpp"
 #include "bridges/eyebot/world_frame.hpp"
 #include "bridges/eyebot_messages/messages.hpp"
+#include "bridges/link/stall_meter.hpp"
 #include "hal/device/range_and_bearing.hpp"
 #include "hal/filter.hpp"
 #include "hal/log.hpp"
@@ -84,6 +85,7 @@ struct DriverStatistics {
   std::uint64_t recovered = 0;        ///< times it became Active again
   std::uint64_t lost = 0;             ///< times it became Lost
   std::uint64_t faults = 0;           ///< reported with `fault`
+  std::uint64_t stalls = 0;           ///< times that our own thread came too late
   std::uint64_t refused_control = 0;  ///< orders refused because another hub controls the robot
 };
 
@@ -269,6 +271,7 @@ class EyebotDriver {
   bool interrupted_ = false;         // the next flying begins with a ramp
   bool ramping_ = false;
   hal::TimeNs ramp_start_ns_ = 0;
+  StallMeter stalls_;
   hal::TimeNs now_ns_ = 0;  // of the last `advance`
   bool committed_ = false;
   hal::TimeNs last_commit_ns_ = 0;

@@ -15,6 +15,17 @@ namespace spec = hal::footbot;
 
 constexpr hal::TimeNs kSayAgain = 50 * hal::kNsPerMs;  // a stop that is not confirmed
 constexpr hal::TimeNs kLeastSuspect = 250 * hal::kNsPerMs;
+constexpr hal::TimeNs kSpare = 8 * hal::kNsPerMs;  // between the last answer and the tick that uses it
+
+/// The lines of the nodes, with the robot's name before them.
+hal::Log named(const hal::Log& log, const std::string& id) {
+  return hal::Log([log, who = "foot-bot '" + id + "': "](hal::Severity severity, std::string_view text) {
+    const std::string line = who + std::string(text);
+    if (severity == hal::Severity::Info) return log.info(line);
+    if (severity == hal::Severity::Warning) return log.warning(line);
+    log.error(line);
+  });
+}
 
 }  // namespace
 
@@ -38,9 +49,9 @@ const char* state_name(RobotState state) noexcept {
 
 FootbotDriver::FootbotDriver(DriverSettings settings, aseba::MessageLink& link, hal::Log log)
     : settings_(std::move(settings)),
-      log_(log),
+      log_(std::move(log)),
       robot_(settings_.robot, settings_.map),
-      network_(link, settings_.timing, std::move(log)),
+      network_(link, settings_.timing, named(log_, settings_.robot.id)),
       wiring_(settings_.map, network_, robot_, settings_.observe) {
   settings_.robot.tick_ns = std::max<hal::TimeNs>(settings_.robot.tick_ns, 1);
   if (settings_.suspect_ns <= 0) {
@@ -49,6 +60,7 @@ FootbotDriver::FootbotDriver(DriverSettings settings, aseba::MessageLink& link, 
 }
 
 void FootbotDriver::latch(hal::Tick tick, hal::TimeNs now) noexcept {
+  latched_ns_ = now;
   wiring_.fill(now);
   robot_.complete(tick);
 }
@@ -66,7 +78,7 @@ RobotState FootbotDriver::judge(hal::TimeNs now) const noexcept {
   }
   const hal::TimeNs oldest = wiring_.oldest_ns();
   if (oldest == 0) return RobotState::Ready;
-  if (now - std::min(oldest, now) <= settings_.suspect_ns) return RobotState::Active;
+  if (now - std::min(oldest, now) <= settings_.suspect_ns + stalls_.patience_ns(now)) return RobotState::Active;
   return was_active_ ? RobotState::Suspect : RobotState::Ready;
 }
 
@@ -139,7 +151,7 @@ void FootbotDriver::commit(hal::TimeNs now) noexcept {
     if (driving_) rest(now);
     wiring_.command(false, now);
   }
-  ask(now);
+  plan_question(now);
   pump(now);
 }
 
@@ -157,9 +169,33 @@ void FootbotDriver::send_commands(hal::TimeNs now) noexcept {
   robot_.port<hal::GripperDrive>() = gripper;
 }
 
+/// The next tick's readings are asked for so late that they are just there when it begins.
+void FootbotDriver::plan_question(hal::TimeNs now) noexcept {
+  const hal::TimeNs tick_ns = settings_.robot.tick_ns;
+  const bool ticks = latched_ns_ != 0 && now - latched_ns_ < tick_ns;
+  const hal::TimeNs lead = round_ns_ + round_ns_ / 4 + kSpare;
+  if (!ticks || round_ns_ == 0 || latched_ns_ + tick_ns - lead <= now) return ask(now);
+  ask_at_ns_ = latched_ns_ + tick_ns - lead;
+}
+
 void FootbotDriver::ask(hal::TimeNs now) noexcept {
   asked_ns_ = now;
+  ask_at_ns_ = 0;
+  answers_open_ = true;
   wiring_.ask(now);
+}
+
+void FootbotDriver::take_turn(hal::TimeNs now) noexcept {
+  const hal::TimeNs stall = stalls_.turn(now);
+  if (stall > 0) {
+    ++statistics_.stalls;
+    statistics_.longest_stall_ns = std::max(statistics_.longest_stall_ns, stall);
+    network_.stalled(stall);
+  }
+  network_.poll(now);
+  if (!answers_open_ || network_.reading()) return;
+  answers_open_ = false;
+  round_ns_ = std::max<hal::TimeNs>({now - asked_ns_, round_ns_ - round_ns_ / 50, 1});
 }
 
 void FootbotDriver::rest(hal::TimeNs now) noexcept {
@@ -173,15 +209,15 @@ void FootbotDriver::rest(hal::TimeNs now) noexcept {
 }
 
 void FootbotDriver::pump(hal::TimeNs now) noexcept {
-  network_.poll(now);
+  take_turn(now);
   wiring_.take_packets();
   bool more = false;
   if (wiring_.look()) {
     if (!driving_) wiring_.command(false, now);  // a module that is new here rests until told otherwise
     ask(now);
     more = true;
-  } else if (now - asked_ns_ >= settings_.robot.tick_ns * 3 / 2) {
-    ask(now);  // the loop does not run, or not yet
+  } else if ((ask_at_ns_ != 0 && now >= ask_at_ns_) || now - asked_ns_ >= settings_.robot.tick_ns * 5 / 2) {
+    ask(now);  // as planned; or the loop does not run, or not yet
     more = true;
   }
   update_state(now);
@@ -211,7 +247,8 @@ void FootbotDriver::pump(hal::TimeNs now) noexcept {
 }
 
 hal::TimeNs FootbotDriver::next_deadline() const noexcept {
-  hal::TimeNs deadline = std::min(network_.next_deadline(), asked_ns_ + settings_.robot.tick_ns * 3 / 2);
+  hal::TimeNs deadline = std::min(network_.next_deadline(), asked_ns_ + settings_.robot.tick_ns * 5 / 2);
+  if (ask_at_ns_ != 0) deadline = std::min(deadline, ask_at_ns_);
   if (driving_) deadline = std::min(deadline, last_commit_ns_ + settings_.command_timeout_ns + 1);
   if (resting_) deadline = std::min(deadline, rest_said_ns_ + kSayAgain);
   return deadline;

@@ -6,7 +6,8 @@
 //
 // A tick of the caller:   latch(tick, now) -> controller step -> commit(now)
 // Between ticks, whenever something may have come or `next_deadline()` is due: pump(now).
-// Commands leave within `commit`; what it asks for fills the ports of the next tick.
+// Commands leave within `commit`. Readings are asked for just before the next `latch`, as early as they took of late to
+// come: they are young when the controller sees them. No time-out counts what our own thread was late.
 //
 // The modules have no watchdog of their own: they keep their last command for ever. So the robot is told to rest in
 // every case of the table, and told again until it has confirmed:
@@ -19,6 +20,7 @@
 
 #include "bridges/aseba/network.hpp"
 #include "bridges/footbot/wiring.hpp"
+#include "bridges/link/stall_meter.hpp"
 #include "hal/filter.hpp"
 #include "hal/log.hpp"
 
@@ -35,7 +37,8 @@ struct DriverSettings {
   hal::TimeNs command_timeout_ns = 500 * hal::kNsPerMs;
   /// After an interruption the wheels' speed limit rises from 0 to the robot's in this time: no jump. 0: at once.
   hal::TimeNs ramp_ns = 500 * hal::kNsPerMs;
-  /// Age of a needed reading from which the robot is stopped; 0: two and a half ticks, at least 250 ms.
+  /// Age of a needed reading from which the robot is stopped, beside what this machine was late of late (StallMeter);
+  /// 0: two and a half ticks, at least 250 ms.
   hal::TimeNs suspect_ns = 0;
   bool observe = false;  ///< nothing is ever written
 };
@@ -51,6 +54,8 @@ struct DriverStatistics {
   std::uint64_t recovered = 0;  ///< times it became Active again
   std::uint64_t lost = 0;       ///< times it became Lost
   std::uint64_t faults = 0;     ///< reported with `fault`
+  std::uint64_t stalls = 0;     ///< times that our own thread came too late
+  hal::TimeNs longest_stall_ns = 0;
 };
 
 /// Not thread-safe.
@@ -98,6 +103,8 @@ class FootbotDriver {
   void filter_commands(hal::TimeNs now) noexcept;
   void send_commands(hal::TimeNs now) noexcept;
   void ask(hal::TimeNs now) noexcept;
+  void plan_question(hal::TimeNs now) noexcept;
+  void take_turn(hal::TimeNs now) noexcept;
 
   DriverSettings settings_;
   hal::Log log_;
@@ -113,7 +120,12 @@ class FootbotDriver {
   bool ramping_ = false;
   hal::TimeNs ramp_start_ns_ = 0;
   hal::TimeNs last_commit_ns_ = 0;
+  StallMeter stalls_;
+  hal::TimeNs latched_ns_ = 0;
   hal::TimeNs asked_ns_ = 0;
+  hal::TimeNs ask_at_ns_ = 0;  // 0: no question is planned
+  bool answers_open_ = false;  // of the last question
+  hal::TimeNs round_ns_ = 0;   // from a question to the last answer, the longest of late
   bool at_rest_ = false;
   bool resting_ = false;  // rest was said and is not confirmed
   hal::TimeNs rest_said_ns_ = 0;

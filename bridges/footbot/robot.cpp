@@ -74,6 +74,10 @@ FootbotRobot::FootbotRobot(RobotSettings settings, const FootbotMap& map) : sett
   scanner.short_max_m = static_cast<float>(spec::kShortMax_m);
   scanner.long_min_m = static_cast<float>(spec::kLongMin_m);
   scanner.long_max_m = static_cast<float>(spec::kLongMax_m);
+  // Heads that no variable of the map tells of see nothing, not something at 0 m.
+  for (std::size_t head = 0; head < hal::DistanceScanner::kHeads; ++head) {
+    scanner.distance_m[head] = hal::DistanceScanner::is_short(head) ? scanner.short_max_m : scanner.long_max_m;
+  }
 }
 
 const FootbotRobot::Row& FootbotRobot::row(const hal::PortType& type) const noexcept {

@@ -14,7 +14,8 @@ namespace {
 
 using hal::TimeNs;
 
-constexpr TimeNs kStopNs = 20 * hal::kNsPerMs;  // the stop flag is looked at this often
+constexpr TimeNs kMostBacklogNs = 20 * hal::kNsPerMs;  // on the bus; then the host waits
+constexpr TimeNs kStopNs = 20 * hal::kNsPerMs;         // the stop flag is looked at this often
 
 TimeNs monotonic_ns() {
   timespec t{};
@@ -47,6 +48,7 @@ class Server {
   hal::Status apply_faults(TimeNs now);
   void put_on_bus(TimeNs now);
   void show_host(TimeNs now);
+  bool is_full(TimeNs now) const noexcept { return bus_free_at_ > now + kMostBacklogNs; }
   TimeNs next_wake(TimeNs now) const;
   void wait_until(TimeNs at, TimeNs now) const;
   void tell_end(TimeNs at, const std::string& why);
@@ -119,7 +121,7 @@ void Server::tell_end(TimeNs at, const std::string& why) {
 hal::Status Server::turn(TimeNs now) {
   if (const hal::Status status = apply_faults(now); !status.ok()) return status;
   std::vector<Frame> from_host;
-  if (side_) {
+  if (side_ && !is_full(now)) {
     if (const hal::Status status = side_->take(now, from_host); !status.ok()) return status;
   }
   for (const Frame& frame : from_host) {
@@ -178,6 +180,7 @@ TimeNs Server::next_wake(TimeNs now) const {
   TimeNs wake = std::min(now + kStopNs, robot_.next_event());
   if (!to_robot_.empty()) wake = std::min(wake, to_robot_.front().at);
   if (!to_host_.empty()) wake = std::min(wake, to_host_.front().at);
+  if (is_full(now)) wake = std::min(wake, bus_free_at_ - kMostBacklogNs);
   if (const auto change = faults_.next_change_at()) wake = std::min(wake, *change);
   return wake;
 }
@@ -186,7 +189,7 @@ void Server::wait_until(TimeNs at, TimeNs now) const {
   const TimeNs left = std::max<TimeNs>(0, at - now);
   const timespec t{static_cast<time_t>(left / hal::kNsPerSecond), static_cast<long>(left % hal::kNsPerSecond)};
   std::vector<pollfd> polls;
-  if (side_) side_->add_polls(polls);
+  if (side_ && !is_full(now)) side_->add_polls(polls);
   ::ppoll(polls.data(), polls.size(), &t, nullptr);  // a signal wakes it too
 }
 

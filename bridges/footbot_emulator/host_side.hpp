@@ -17,7 +17,8 @@ class HostSide {
   virtual ~HostSide() = default;
   /// What is to be waited for.
   virtual void add_polls(std::vector<pollfd>& polls) const = 0;
-  /// Takes in what the host has sent; adds the frames that go onto the bus. Errors: the way is gone for good.
+  /// Takes in what the host has sent, or a part of it; adds the frames that go onto the bus. Errors: the way is gone
+  /// for good.
   virtual hal::Status take(hal::TimeNs now, std::vector<Frame>& to_bus) = 0;
   /// A frame of a module has passed on the bus.
   virtual void show(const Frame& frame, hal::TimeNs now) = 0;
@@ -28,8 +29,8 @@ class HostSide {
 };
 
 /// "pty:NAME" or "serial:DEVICE@1000000": an slcan adapter. "can:INTERFACE": the kernel's CAN.
-/// "tcp-listen:PORT" or "tcp-listen:HOST:PORT": messages over TCP; port 0 is any that is free. Errors: other links, and
-/// what cannot be opened.
+/// "tcp-listen:PORT", on this computer alone, or "tcp-listen:ADDRESS:PORT" (0.0.0.0 for all of its networks): messages
+/// over TCP; port 0 is any that is free. Errors: other links, and what cannot be opened.
 hal::Result<std::unique_ptr<HostSide>> open_host_side(const std::string& link, const EventSink& sink);
 
 hal::Result<std::unique_ptr<HostSide>> open_adapter(const std::string& link, const EventSink& sink);

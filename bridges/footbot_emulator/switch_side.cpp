@@ -17,6 +17,7 @@ namespace tandem::bridges::footbot_emulator {
 namespace {
 
 constexpr std::size_t kMostUnsent = 256 * 1024;  // bytes; a host that does not read is then cut off
+constexpr std::size_t kMostAtOnce = 1024;        // bytes of one host in one turn: none talks the others down
 
 /// The translator between bus and serial line on the robot, and the switch that serves the line's messages to any
 /// number of hosts. What one host says goes to the bus and to the other hosts.
@@ -85,12 +86,10 @@ class SwitchSide final : public HostSide {
 
   void listen_to(int descriptor, hal::TimeNs now, std::vector<Frame>& to_bus) {
     Client& client = clients_[descriptor];
-    std::array<std::uint8_t, 4096> buffer{};
-    ssize_t n = 0;
-    while ((n = ::recv(descriptor, buffer.data(), buffer.size(), MSG_DONTWAIT)) > 0) {
-      client.reader.push(std::span(buffer).first(static_cast<std::size_t>(n)));
-    }
+    std::array<std::uint8_t, kMostAtOnce> buffer{};
+    const ssize_t n = ::recv(descriptor, buffer.data(), buffer.size(), MSG_DONTWAIT);
     const int error = errno;
+    if (n > 0) client.reader.push(std::span(buffer).first(static_cast<std::size_t>(n)));
     while (const auto message = client.reader.next()) {
       tell_all(*message, descriptor);
       const auto frames = to_frames(*message);
@@ -98,7 +97,7 @@ class SwitchSide final : public HostSide {
     }
     if (client.reader.broken()) return cut_off(descriptor, now, "it announced a message that is too long");
     if (n == 0) return cut_off(descriptor, now, "it hung up");
-    if (error != EAGAIN && error != EINTR) cut_off(descriptor, now, std::strerror(error));
+    if (n < 0 && error != EAGAIN && error != EINTR) cut_off(descriptor, now, std::strerror(error));
   }
 
   void tell_all(const Message& message, int but) {
@@ -153,7 +152,8 @@ std::uint16_t port_of(int listener) {
 
 hal::Result<std::unique_ptr<HostSide>> open_switch(const std::string& endpoint, const EventSink& sink) {
   const std::size_t colon = endpoint.rfind(':');
-  const std::string host = colon == std::string::npos ? "0.0.0.0" : endpoint.substr(0, colon);
+  std::string host = colon == std::string::npos ? "127.0.0.1" : endpoint.substr(0, colon);
+  if (host.starts_with('[') && host.ends_with(']')) host = host.substr(1, host.size() - 2);
   const std::string port = colon == std::string::npos ? endpoint : endpoint.substr(colon + 1);
   const std::string whole = "tcp-listen:" + endpoint;
   std::uint16_t number = 0;

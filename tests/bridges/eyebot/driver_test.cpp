@@ -92,6 +92,20 @@ TEST(EyebotDriver, IsSuspectAfterThreePeriodsLostAfterTwoSecondsAndBackByItself)
   EXPECT_EQ(s.driver.statistics().recovered, 1U);
 }
 
+TEST(EyebotDriver, AStallOfOurOwnThreadIsNoLostLink) {
+  DriverSettings settings;
+  settings.command_timeout_ns = 2000 * kMs;
+  Scene s(settings);
+  s.actuator<hal::QuadrotorSpeed>().set(1.0, 0.0, 0.0, 0.0);
+  s.fly();
+  s.now += 700 * kMs;  // longer than three heartbeats
+  s.driver.pump(s.now);
+  EXPECT_EQ(s.driver.state(), RobotState::Active);
+  s.run(1000);
+  EXPECT_EQ(s.driver.statistics().link_stops, 0U);
+  EXPECT_EQ(s.driver.statistics().stalls, 1U);
+}
+
 TEST(EyebotDriver, DoesNotUnderstandAnotherVersion) {
   Scene s;
   s.robot.heartbeat.proto_major = 2;
