@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "app/bridge_status.hpp"
 #include "app/measure.hpp"
 #include "app/report.hpp"
 #include "app/sha256.hpp"
@@ -47,11 +48,7 @@ void add_real_robots(Json& json, const mixed_reality::MixedReport& report) {
         .field("ticks_held", r.counts.ticks_held)
         .field("stops", r.counts.stops);
     json.field("rearms", r.counts.rearms).field("fenced_ticks", r.counts.fenced_ticks);
-    json.field("packets", r.conversation.packets)
-        .field("answers", r.conversation.answers)
-        .field("time_outs", r.conversation.time_outs);
-    json.field("bad_answers", r.conversation.bad_answers).field("resynchronised", r.conversation.resynchronised);
-    json.field("links_lost", r.conversation.links_lost);
+    add_link_report(json, r.conversation);
     json.key("incidents").begin_array();
     for (const std::string& what : r.incidents) json.value(what);
     json.end_array().end_object();
@@ -153,8 +150,8 @@ void print_result(const RunResult& result) {
     for (const mixed_reality::RealRobotReport& r : real->robots) {
       rows.emplace_back(
           "real robot",
-          fmt::format("{} on {}: {}; {} ticks driving, {} held, {} of {} packets answered, {}", r.id, r.link, r.state,
-                      r.counts.ticks_driving, r.counts.ticks_held, r.conversation.answers, r.conversation.packets,
+          fmt::format("{} on {}: {}; {} ticks driving, {} held, {} of {} questions answered, {}", r.id, r.link, r.state,
+                      r.counts.ticks_driving, r.counts.ticks_held, r.conversation.answers, r.conversation.questions,
                       r.stop_confirmed ? "stop confirmed" : "STOP NOT CONFIRMED"));
     }
   }

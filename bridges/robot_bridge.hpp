@@ -1,6 +1,6 @@
 // Interface of a real robot behind the control interface: one class a kind of robot serves every command.
 //
-//   bridge->robot()                  a controller takes its ports here; they decide what the robot is asked for
+//   bridge->robot(), bridge->port()  a controller's ports; those that were taken decide what the robot is asked for
 //   bridge->start()                  its own I/O thread opens the link and finds the robot
 //   each tick: latch -> controller step -> commit
 //   stop / resume                    by whoever judges whether it may move
@@ -49,14 +49,15 @@ class StatusVisitor {
 };
 
 /// A real robot. No call but `shut_down` waits for the robot; `latch`, `commit`, `stop`, `resume` do not allocate.
-/// They and `robot()` belong to the loop's thread; the rest may be called from any. Times are CLOCK_MONOTONIC.
+/// They, `robot()`, `port()` and `set_origin` belong to the loop's thread; the rest may be called from any. Times are
+/// CLOCK_MONOTONIC.
 class RobotBridge {
  public:
   virtual ~RobotBridge() = default;
 
   virtual hal::Robot& robot() noexcept = 0;
-  /// The port of that type, taken if it was not yet; null when the robot has no such device. Compared by name, role
-  /// and layout.
+  /// The port of that type, taken if it was not yet, also where the configuration does not list it; null when the robot
+  /// has no such device that can be reached. Compared by name, role and layout. Lives as long as the bridge.
   virtual void* port(const hal::PortType& type) noexcept = 0;
   /// Readings are stamped from here.
   virtual void set_origin(hal::TimeNs origin_ns) noexcept = 0;
@@ -68,15 +69,22 @@ class RobotBridge {
 
   virtual void latch(hal::Tick tick, hal::TimeNs now) noexcept = 0;
   virtual void commit(hal::TimeNs now) noexcept = 0;
-  /// Stops the robot now, keeps trying until it confirms, and ignores commands until `resume`.
+  /// Stops the robot now, keeps trying until it confirms, and ignores commands until `resume`. One that flies hovers.
   virtual void stop(hal::TimeNs now) noexcept = 0;
+  /// `stop`; one that flies lands as well, without anybody's waiting.
+  virtual void land(hal::TimeNs now) noexcept { stop(now); }
   virtual void resume() noexcept = 0;
 
+  /// As of the last `latch`.
   virtual LinkHealth health() const noexcept = 0;
+  /// It answers, and is another one than the settings say: waiting for it is in vain. `trouble` says what differs.
+  virtual bool mismatched() const noexcept { return false; }
   /// Whether the robot itself has confirmed the last `stop`, and nothing that moves it was sent since.
   virtual bool at_rest() const noexcept = 0;
   /// What is wrong, for people; empty when nothing is.
   virtual std::string trouble() const = 0;
+  /// What people can look at when it does not answer: "is it switched on, …?"
+  virtual std::string advice() const = 0;
   /// Who answers: firmware, version; empty before it answered.
   virtual std::string identity() const = 0;
   /// The link as it is open now; "" while there is none.

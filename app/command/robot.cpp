@@ -2,10 +2,11 @@
 #include <cstdio>
 #include <fmt/format.h>
 
+#include "app/bridge_status.hpp"
 #include "app/bridged_controller.hpp"
 #include "app/catalog.hpp"
 #include "app/command/command.hpp"
-#include "app/driven_robot.hpp"
+#include "app/guarded_robots.hpp"
 #include "app/measure.hpp"
 #include "app/progress.hpp"
 #include "app/report.hpp"
@@ -13,6 +14,7 @@
 #include "app/signals.hpp"
 #include "app/terminal.hpp"
 #include "hal/plugin_loader.hpp"
+#include "mixed_reality/settings/bridge_types.hpp"
 #include "mixed_reality/time/pacer.hpp"
 
 namespace tandem::app {
@@ -20,6 +22,8 @@ namespace {
 
 constexpr hal::TimeNs kConnectWithin_ns = 15 * hal::kNsPerSecond;
 constexpr hal::TimeNs kOpenWithin_ns = hal::kNsPerSecond;
+constexpr hal::TimeNs kStopWithin_ns = 2 * hal::kNsPerSecond;
+constexpr hal::TimeNs kPollEvery_ns = 20 * hal::kNsPerMs;  // while waiting for the robot
 
 /// The one robot of the file that is to be driven; prints what is wrong otherwise.
 const core::RobotItem* only_robot(const core::Scenario& scenario, const std::string& link) {
@@ -42,29 +46,64 @@ const core::RobotItem* only_robot(const core::Scenario& scenario, const std::str
   return found;
 }
 
-std::string report_of(const core::Scenario& scenario, const core::RobotItem& item, const DrivenRobot& robot,
-                      const mixed_reality::PaceLedger& pace, const std::string& library, const std::string& failure) {
-  Json json;
-  json.begin_object();
-  json.field("experiment", scenario.name).field("robot", item.id).field("link", robot.link());
-  json.field("steps", pace.ticks).field("deadline_misses", pace.deadline_misses);
-  json.field("wake_up_p99_ms", static_cast<double>(pace.wake_up.quantile_ns(0.99)) * 1e-6);
-  robot.add_to_report(json);
-  if (const auto digest = sha256_of_file(library); digest.ok())
-    json.field("controller", library).field("sha256", digest.value());
-  if (!failure.empty()) json.field("failure", failure);
-  json.end_object();
-  return json.text();
+const std::atomic<bool> kNever{false};
+
+/// Waits until the robot answers, or it is clear that it will not. Error: it does not; says what is known.
+hal::Status connect(bridges::RobotBridge& bridge, mixed_reality::TimeSource& clock, const std::atomic<bool>& stop) {
+  const hal::TimeNs began_ns = clock.now_ns();
+  for (hal::TimeNs now = began_ns; !stop.load(); now = clock.now_ns()) {
+    bridge.latch(0, now);
+    if (bridge.health() == bridges::LinkHealth::Active) return {};
+    const std::string trouble = bridge.trouble();
+    if (bridge.mismatched()) return hal::Error{trouble};
+    const bool shut = now - began_ns >= kOpenWithin_ns && bridge.link().empty() && !trouble.empty();
+    if (shut || now - began_ns >= kConnectWithin_ns) {
+      return hal::Error{"it is not there: " + (trouble.empty() ? "" : trouble + "; ") + bridge.advice()};
+    }
+    clock.sleep_until(now + kPollEvery_ns, stop);
+  }
+  return hal::Error{"interrupted while waiting for it"};
 }
 
-void print_result(const core::RobotItem& item, const DrivenRobot& robot, const mixed_reality::PaceLedger& pace) {
-  const std::string link = robot.link();
+/// Stops the robot and waits a while for it to confirm.
+void stop_and_wait(bridges::RobotBridge& bridge, mixed_reality::TimeSource& clock) {
+  const hal::TimeNs give_up_ns = clock.now_ns() + kStopWithin_ns;
+  bridge.stop(clock.now_ns());
+  while (!bridge.at_rest() && clock.now_ns() < give_up_ns) {
+    clock.sleep_until(clock.now_ns() + kPollEvery_ns, kNever);
+    bridge.latch(0, clock.now_ns());
+  }
+}
+
+/// Begins the report; what the end adds comes later.
+void begin_report(Json& json, const core::Scenario& scenario, const core::RobotItem& item,
+                  const bridges::RobotBridge& bridge, const mixed_reality::PaceLedger& pace) {
+  json.begin_object();
+  json.field("experiment", scenario.name).field("robot", item.id).field("link", bridge.link());
+  json.field("steps", pace.ticks).field("deadline_misses", pace.deadline_misses);
+  json.field("wake_up_p99_ms", static_cast<double>(pace.wake_up.quantile_ns(0.99)) * 1e-6);
+  add_link_report(json, bridge.report());
+  JsonStatus status(json);
+  bridge.describe(status);
+}
+
+std::vector<std::pair<std::string, std::string>> result_table(const core::RobotItem& item,
+                                                              const bridges::RobotBridge& bridge,
+                                                              const mixed_reality::PaceLedger& pace) {
+  const bridges::LinkReport link = bridge.report();
+  const std::string open = bridge.link(), identity = bridge.identity(), trouble = bridge.trouble();
   std::vector<std::pair<std::string, std::string>> rows = {
-      {"robot", fmt::format("{} on {}", item.id, link.empty() ? item.bridge->link : link)},
+      {"robot", fmt::format("{} on {}", item.id, open.empty() ? item.bridge->link : open)},
       {"ticks", fmt::format("{}, {} missed their deadline, {:.2f} ms late at most", pace.ticks, pace.deadline_misses,
                             static_cast<double>(pace.largest_lateness_ns) * 1e-6)}};
-  for (auto& row : robot.table()) rows.push_back(std::move(row));
-  print_table(rows);
+  if (!identity.empty()) rows.emplace_back("it says it is", identity);
+  rows.emplace_back("answers", fmt::format("{} to {} questions, {:.1f} ms round trip on average", link.answers,
+                                           link.questions, static_cast<double>(link.mean_round_trip_ns) * 1e-6));
+  rows.emplace_back("trouble",
+                    fmt::format("{} answers too late, {} implausible; found again {} times, link lost {} times",
+                                link.time_outs, link.bad_answers, link.resynchronised, link.links_lost));
+  if (!trouble.empty()) rows.emplace_back("at the end", trouble);
+  return rows;
 }
 
 }  // namespace
@@ -80,9 +119,10 @@ int robot(const RobotOptions& options) {
   const core::ControllerConfig& config = scenario->controllers[item.controller];
 
   const hal::Log log([](hal::Severity, std::string_view text) { say(text); });
-  auto made = make_driven_robot({item, config, scenario->ticks_per_second, scenario->seed.value_or(1)}, log);
+  GuardedRobots guarded({item}, log);  // before any thread
+  auto made = mixed_reality::make_bridge({item, config, scenario->ticks_per_second, scenario->seed.value_or(1)}, log);
   if (!made.ok()) return complain(kBadInput, made.error().message);
-  DrivenRobot& driven = **made;
+  bridges::RobotBridge& bridge = **made;
   hal::PluginLoader loader(plugin_folders());
   const auto type = loader.controller(config.library, config.label);
   if (!type.ok()) return complain(kBadInput, "controller '" + config.id + "': " + type.error().message);
@@ -95,58 +135,64 @@ int robot(const RobotOptions& options) {
 
   std::unique_ptr<BridgedController> controller;
   try {
-    controller = std::make_unique<BridgedController>(*type.value(), driven.robot(), params.get());
+    controller = std::make_unique<BridgedController>(*type.value(), bridge.robot(), params.get());
   } catch (const std::exception& e) {
     return complain(kBadInput, "controller '" + config.id + "' of robot '" + item.id + "' " + e.what());
   }
 
   const std::atomic<bool>& stop = catch_signals();
-  driven.start();
-  hal::Status ready;
-  for (hal::TimeNs waited = 0; waited < kConnectWithin_ns && !stop.load(); waited += 200 * hal::kNsPerMs) {
-    ready = driven.wait_active(200 * hal::kNsPerMs);
-    if (ready.ok() || (waited >= kOpenWithin_ns && driven.unreachable())) break;
-  }
-  if (stop.load() || !ready.ok()) driven.forget();  // it was never driven
+  mixed_reality::MonotonicTime clock;
+  bridge.start();
+  const hal::Status ready = connect(bridge, clock, stop);
   if (stop.load()) return kDone;
   if (!ready.ok()) return complain(kFailedRunning, "robot '" + item.id + "': " + ready.error().message);
-  if (const hal::Status who = driven.check_identity(); !who.ok()) {
-    driven.forget();
-    return complain(kFailedRunning, who.error().message);
-  }
 
-  mixed_reality::MonotonicTime clock;
   mixed_reality::Pacer pacer(clock, scenario->ticks_per_second);
   const double seconds = options.seconds.value_or(scenario->length_s);
   const auto steps = static_cast<std::int64_t>(seconds * static_cast<double>(scenario->ticks_per_second) + 0.5);
   std::string failure;
-  driven.set_origin(clock.now_ns());
+  guarded.add(bridge);
+  bridge.set_origin(clock.now_ns());
   {
     Progress progress(steps, scenario->ticks_per_second);
     pacer.start();
     for (hal::Tick tick = 0; (steps == 0 || tick < steps) && !stop.load(std::memory_order_relaxed); ++tick) {
-      driven.latch(tick, clock.now_ns());
+      bridge.latch(tick, clock.now_ns());
       if (!controller->step(failure)) {
         failure = "controller '" + config.id + "' of robot '" + item.id + "' threw at tick " + std::to_string(tick) +
                   ": " + failure + "; the robot is stopped";
-        driven.fault(clock.now_ns(), failure);
         break;
       }
-      driven.commit(clock.now_ns());  // at once, not after the wait
+      guarded.update();
+      bridge.commit(clock.now_ns());  // at once, not after the wait
       progress.step(tick + 1);
       if (!pacer.wait_for_next(stop)) break;
     }
   }
-  driven.shut_down();
-  if (const std::string loss = driven.loss(); failure.empty() && !stop.load() && !loss.empty()) {
-    failure = "robot '" + item.id + "' was lost at the end: " + loss;
+  if (failure.empty() && !stop.load() && bridge.health() == bridges::LinkHealth::Lost) {
+    failure = "robot '" + item.id + "' was lost at the end: " + bridge.trouble();
   }
+  stop_and_wait(bridge, clock);
+  Json json;
+  begin_report(json, *scenario, item, bridge, pacer.ledger());
+  const auto table = result_table(item, bridge, pacer.ledger());
+  bridge.shut_down();
+  const bool confirmed = guarded.release_rested().empty();
   controller.reset();
-  print_result(item, driven, pacer.ledger());
+  print_table(table);
+  if (!confirmed) {
+    const std::string unconfirmed =
+        "robot '" + item.id + "' did not confirm its stop: switch it off by hand if it moves";
+    failure += (failure.empty() ? "" : "\n") + unconfirmed;
+  }
   if (!options.report.empty()) {
+    json.field("stop_confirmed", confirmed);
     const std::string library = loader.find(config.library).value().string();
-    const hal::Status written =
-        write_report(options.report, report_of(*scenario, item, driven, pacer.ledger(), library, failure));
+    if (const auto digest = sha256_of_file(library); digest.ok())
+      json.field("controller", library).field("sha256", digest.value());
+    if (!failure.empty()) json.field("failure", failure);
+    json.end_object();
+    const hal::Status written = write_report(options.report, json.text());
     if (!written.ok()) return complain(kFailedRunning, written.error().message);
   }
   return failure.empty() ? kDone : complain(kFailedRunning, failure);

@@ -4,24 +4,15 @@
 
 #include "app/catalog.hpp"
 #include "app/command/command.hpp"
+#include "app/guarded_robots.hpp"
 #include "app/measure.hpp"
 #include "app/progress.hpp"
 #include "app/run_outputs.hpp"
 #include "app/run_report.hpp"
 #include "app/signals.hpp"
 #include "app/terminal.hpp"
-#include "bridges/epuck/guardian.hpp"
-#include "bridges/eyebot/guardian.hpp"
-#include "bridges/footbot/guardian.hpp"
-#include "bridges/link/link_text.hpp"
 #include "core/sim/world.hpp"
 #include "core/view/picture.hpp"
-#include "hal/spec/epuck.hpp"
-#include "hal/spec/eyebot.hpp"
-#include "hal/spec/footbot.hpp"
-#include "mixed_reality/epuck/real_epuck.hpp"
-#include "mixed_reality/eyebot/real_eyebot.hpp"
-#include "mixed_reality/footbot/real_footbot.hpp"
 #include "mixed_reality/session/mixed_session.hpp"
 #include "mixed_reality/time/pacer.hpp"
 
@@ -79,80 +70,6 @@ std::uint64_t run_alone(core::World& world, std::int64_t steps, const std::atomi
   return pacer.ledger().deadline_misses;
 }
 
-/// Tells the guardians which robots to stop should this program be killed, or that all of them are stopped.
-class Watch {
- public:
-  /// Before any thread exists.
-  explicit Watch(const core::Scenario& scenario) {
-    for (const core::RobotItem& item : scenario.robots) {
-      if (item.bridge) robots_.push_back({item.bridge->link, item.kind, nullptr, nullptr});
-    }
-    const auto any = [this](std::string_view kind) {
-      return std::any_of(robots_.begin(), robots_.end(), [&](const Watched& w) { return w.kind == kind; });
-    };
-    if (any(hal::epuck::kDataSheet.kind)) start(epucks_);
-    if (any(hal::footbot::kDataSheet.kind)) start(footbots_);
-    if (any(hal::eyebot::kDataSheet.kind)) start(eyebots_);
-  }
-  /// Remembers the real robot that was made for the next one of its kind in the file; it must live until `end`.
-  void note(const mixed_reality::RealFootbot& real) { next(hal::footbot::kDataSheet.kind).footbot = &real; }
-  void note(const mixed_reality::RealEyebot& real) { next(hal::eyebot::kDataSheet.kind).eyebot = &real; }
-
-  /// When all answer.
-  void begin() {
-    for (const Watched& w : robots_) {
-      if (w.kind == hal::footbot::kDataSheet.kind) {
-        if (footbots_ && w.footbot != nullptr) footbots_->watch(w.link, w.footbot->last_words());
-      } else if (w.kind == hal::eyebot::kDataSheet.kind) {
-        if (eyebots_ && w.eyebot != nullptr) eyebots_->watch(w.eyebot->last_words());
-      } else if (const auto address = bridges::parse_link(w.link); epucks_ && address.ok()) {
-        epucks_->watch(address.value().target, address.value().rate);
-      }
-    }
-  }
-  /// Robots that confirmed their stop need no guardian any more; those of the report are in the order of the file.
-  void end(const mixed_reality::MixedReport& report) {
-    for (std::size_t i = 0; i < robots_.size() && i < report.robots.size(); ++i) {
-      const Watched& w = robots_[i];
-      if (!report.robots[i].stop_confirmed) continue;
-      if (w.kind == hal::footbot::kDataSheet.kind) {
-        if (footbots_) footbots_->release(w.link);
-      } else if (w.kind == hal::eyebot::kDataSheet.kind) {
-        // It hovers. It is landed as its bridge ends, and by its guardian where that fails.
-      } else if (const auto address = bridges::parse_link(w.link); epucks_ && address.ok()) {
-        epucks_->release(address.value().target);
-      }
-    }
-  }
-
- private:
-  struct Watched {
-    std::string link;
-    std::string kind;
-    const mixed_reality::RealFootbot* footbot = nullptr;
-    const mixed_reality::RealEyebot* eyebot = nullptr;
-  };
-  template <class Guardian>
-  static void start(std::optional<Guardian>& guardian) {
-    auto started = Guardian::start();
-    if (started.ok()) {
-      guardian.emplace(std::move(started).value());
-    } else {
-      say("warning: " + started.error().message);
-    }
-  }
-  Watched& next(std::string_view kind) {
-    return *std::find_if(robots_.begin(), robots_.end(), [&](const Watched& w) {
-      return w.kind == kind && w.footbot == nullptr && w.eyebot == nullptr;
-    });
-  }
-
-  std::vector<Watched> robots_;
-  std::optional<bridges::epuck::Guardian> epucks_;
-  std::optional<bridges::footbot::Guardian> footbots_;
-  std::optional<bridges::eyebot::Guardian> eyebots_;
-};
-
 bool has_real_robots(const core::Scenario& scenario) {
   for (const core::RobotItem& item : scenario.robots) {
     if (item.bridge) return true;
@@ -161,42 +78,27 @@ bool has_real_robots(const core::Scenario& scenario) {
 }
 
 /// Where a world's real robots take part; null when it has none. `code` is not kDone when they cannot.
-std::unique_ptr<mixed_reality::MixedSession> join_real_robots(std::unique_ptr<core::World>& world, Watch& watch,
-                                                              mixed_reality::TimeSource& clock,
+std::unique_ptr<mixed_reality::MixedSession> join_real_robots(std::unique_ptr<core::World>& world,
+                                                              GuardedRobots& guarded, mixed_reality::TimeSource& clock,
                                                               const std::atomic<bool>& stop, const hal::Log& log,
                                                               int& code) {
   if (!has_real_robots(world->scenario())) return nullptr;
   mixed_reality::MixedOptions options;
   options.log = log;
-  using RealRobotMade = hal::Result<std::unique_ptr<mixed_reality::RealRobot>>;
-  const auto maker = [&](const mixed_reality::RealRobotRequest& r) -> RealRobotMade {
-    if (r.item.kind == hal::footbot::kDataSheet.kind) {
-      auto footbot = mixed_reality::make_real_footbot(r, log);
-      if (!footbot.ok()) return footbot.error();
-      watch.note(**footbot);
-      return std::unique_ptr<mixed_reality::RealRobot>(std::move(footbot).value());
-    }
-    if (r.item.kind == hal::eyebot::kDataSheet.kind) {
-      auto eyebot = mixed_reality::make_real_eyebot(r, log);
-      if (!eyebot.ok()) return eyebot.error();
-      watch.note(**eyebot);
-      return std::unique_ptr<mixed_reality::RealRobot>(std::move(eyebot).value());
-    }
-    return mixed_reality::make_real_robot(r, log);
+  options.before_commands = [&guarded] { guarded.update(); };
+  const auto maker = [&](const mixed_reality::BridgeRequest& request) {
+    auto bridge = mixed_reality::make_bridge(request, log);
+    if (bridge.ok()) guarded.add(**bridge);
+    return bridge;
   };
   auto made = mixed_reality::MixedSession::make(std::move(world), maker, clock, options);
   if (!made.ok()) {
-    fmt::print(stderr, "error: {}\n", made.error().message);
-    code = kBadInput;
+    code = complain(kBadInput, made.error().message);
     return nullptr;
   }
   auto session = std::move(made).value();
   const hal::Status connected = session->connect(stop);
-  if (!connected.ok()) {
-    fmt::print(stderr, "error: {}\n", connected.error().message);
-    code = kFailedRunning;
-  }
-  watch.begin();
+  if (!connected.ok()) code = complain(kFailedRunning, connected.error().message);
   return session;
 }
 
@@ -234,7 +136,7 @@ int run(const RunOptions& options) {
   if (const hal::Status paths = check_output_paths(options, *scenario); !paths.ok())
     return complain(kBadInput, paths.error().message);
 
-  Watch watch(*scenario);  // before any thread
+  GuardedRobots guarded(scenario->robots, hal::Log([](hal::Severity, std::string_view text) { say(text); }));
   hal::PluginLoader loader(plugin_folders());
   int warned = 0;
   core::WorldOptions world_options;
@@ -255,7 +157,7 @@ int run(const RunOptions& options) {
   int code = kDone;
   const std::atomic<bool>& stop = catch_signals();
   mixed_reality::MonotonicTime clock;
-  const auto mixed = join_real_robots(made, watch, clock, stop, world_options.log, code);
+  const auto mixed = join_real_robots(made, guarded, clock, stop, world_options.log, code);
   if (code != kDone) return stop.load() ? kDone : code;
 
   const auto controllers = controller_files(*scenario, loader);
@@ -285,8 +187,9 @@ int run(const RunOptions& options) {
   figures.steps = world->tick();
   std::optional<mixed_reality::MixedReport> real;
   if (mixed != nullptr) {
+    mixed->shut_down();
     real = mixed->report();
-    watch.end(*real);
+    (void)guarded.release_rested();
   }
 
   const RunResult result{*world,

@@ -5,6 +5,7 @@
 
 #include "bridges/link/pending_link.hpp"
 #include "hal/check.hpp"
+#include "hal/spec/epuck.hpp"
 
 namespace tandem::bridges::epuck {
 namespace {
@@ -126,6 +127,7 @@ void EpuckBridge::say_farewell(ByteLink& link) {
   const TimeNs end = monotonic_ns() + settings_.farewell_ns;
   {
     const std::lock_guard lock(mutex_);
+    note_stop();
     driver_.farewell(monotonic_ns());
     pump_now(monotonic_ns());
   }
@@ -153,14 +155,28 @@ hal::Status EpuckBridge::wait_active(TimeNs timeout_ns) {
   const std::string who = "e-puck '" + std::string(driver_.robot().id()) + "' is not there: ";
   if (!link_error_.empty()) return hal::Error{who + link_error_};
   const char* trouble = driver_.session().trouble();
-  return hal::Error{
-      who + (*trouble != '\0' ? trouble : state_name(driver_.state())) +
-      "; is it switched on, its selector at 3 (Bluetooth) or 8 (USB, e-puck2), and the baud rate 115200?"};
+  return hal::Error{who + (*trouble != '\0' ? trouble : state_name(driver_.state())) + "; " + advice()};
 }
 
 void EpuckBridge::latch(hal::Tick tick, TimeNs now) noexcept {
   const std::lock_guard lock(mutex_);
   driver_.latch(tick, now);
+  note_health();
+}
+
+void EpuckBridge::note_health() noexcept {
+  const std::uint64_t handshakes = driver_.session().statistics().handshakes;
+  const bool begun_anew = was_active_ && handshakes != handshakes_;  // and every handshake stops the robot
+  handshakes_ = handshakes;
+  const SessionState state = driver_.state();
+  if (state == SessionState::Active && !firmware_differs()) {
+    health_ = begun_anew ? LinkHealth::Suspect : LinkHealth::Active;
+    was_active_ = true;
+  } else if (!was_active_ || state == SessionState::Active) {
+    health_ = LinkHealth::Connecting;
+  } else {
+    health_ = state == SessionState::Lost ? LinkHealth::Lost : LinkHealth::Suspect;
+  }
 }
 
 void EpuckBridge::commit(TimeNs now) noexcept {
@@ -171,19 +187,117 @@ void EpuckBridge::commit(TimeNs now) noexcept {
 
 void EpuckBridge::fault(TimeNs now, std::string_view why) {
   const std::lock_guard lock(mutex_);
+  note_stop();
   driver_.fault(now, why);
   pump_now(now);
 }
 
+/// The first stop after a `resume` counts: what the robot confirms of it holds until the next.
+void EpuckBridge::note_stop() noexcept {
+  if (stop_noted_) return;
+  stop_noted_ = true;
+  confirmed_at_stop_ = driver_.session().statistics().stops_confirmed;
+  resynchronised_at_stop_ = driver_.session().statistics().resynchronised;
+}
+
 void EpuckBridge::stop(TimeNs now) noexcept {
   const std::lock_guard lock(mutex_);
+  note_stop();
   driver_.stop(now);
   pump_now(now);
 }
 
 void EpuckBridge::resume() noexcept {
   const std::lock_guard lock(mutex_);
+  stop_noted_ = false;
   driver_.resume();
+}
+
+// --- what is known ---
+
+LinkHealth EpuckBridge::health() const noexcept {
+  const std::lock_guard lock(mutex_);
+  return health_;
+}
+
+bool EpuckBridge::firmware_differs() const noexcept {
+  return driver_.state() == SessionState::Active &&
+         !firmware_fits(settings_.firmware, driver_.session().identity().firmware);
+}
+
+bool EpuckBridge::mismatched() const noexcept {
+  const std::lock_guard lock(mutex_);
+  return firmware_differs();
+}
+
+bool EpuckBridge::at_rest() const noexcept {
+  const std::lock_guard lock(mutex_);
+  const SessionStatistics& s = driver_.session().statistics();
+  // A handshake begins with a stop of its own.
+  return stop_noted_ && (s.stops_confirmed > confirmed_at_stop_ || s.resynchronised > resynchronised_at_stop_);
+}
+
+std::string EpuckBridge::trouble() const {
+  const std::lock_guard lock(mutex_);
+  if (!link_error_.empty()) return link_error_;
+  if (firmware_differs()) {
+    return "it runs the firmware '" + std::string(driver_.session().identity().version_text()) + "', not '" +
+           settings_.firmware + "' as the file says; correct firmware=\"…\" or say auto";
+  }
+  return driver_.session().trouble();
+}
+
+std::string EpuckBridge::advice() const {
+  return "is it switched on, its selector at 3 (Bluetooth) or 8 (USB, e-puck2), and the baud rate 115200?";
+}
+
+std::string EpuckBridge::identity() const {
+  const std::lock_guard lock(mutex_);
+  return std::string(driver_.session().identity().version_text());
+}
+
+std::string EpuckBridge::link() const {
+  const std::lock_guard lock(mutex_);
+  return link_ != nullptr ? link_->name() : "";
+}
+
+StopMessages EpuckBridge::stop_messages() const {
+  return {settings_.driver.robot.id, std::string(hal::epuck::kDataSheet.kind), absolute_link(settings_.link), "",
+          kStopVersion};
+}
+
+LinkReport EpuckBridge::report() const {
+  const std::lock_guard lock(mutex_);
+  const SessionStatistics& s = driver_.session().statistics();
+  LinkReport report;
+  report.questions = s.packets;
+  report.answers = s.answers;
+  report.time_outs = s.silent + s.cut_short;
+  report.bad_answers = s.implausible;
+  report.resynchronised = s.resynchronised;
+  report.links_lost = s.links_lost;
+  report.mean_round_trip_ns = s.answers > 0 ? s.sum_round_trip_ns / static_cast<TimeNs>(s.answers) : 0;
+  report.max_round_trip_ns = s.max_round_trip_ns;
+  return report;
+}
+
+void EpuckBridge::describe(StatusVisitor& visitor) const {
+  const BridgeStatus s = status();
+  visitor.text("firmware", s.identity.version_text());
+  visitor.text("state", state_name(s.state));
+  visitor.count("silent", s.session.silent);
+  visitor.count("cut_short", s.session.cut_short);
+  visitor.count("restarts", s.session.restarts);
+  visitor.count("not_understood", s.session.not_understood);
+  visitor.count("encoder_jumps", s.session.encoder_jumps);
+  visitor.count("stops_for_want_of_commands", s.driver.watchdog_stops);
+  visitor.count("commands_clamped", s.driver.clamped);
+  visitor.count("commands_not_finite", s.driver.not_finite);
+  visitor.count("links_opened", s.links_opened);
+  visitor.count("bytes_in", s.bytes.bytes_in);
+  visitor.count("bytes_out", s.bytes.bytes_out);
+  visitor.number("rolled_left_m", s.odometry.left_m);
+  visitor.number("rolled_right_m", s.odometry.right_m);
 }
 
 SessionState EpuckBridge::state() const noexcept {

@@ -18,11 +18,14 @@
 
 #include "bridges/epuck/driver.hpp"
 #include "bridges/link/link_text.hpp"
+#include "bridges/robot_bridge.hpp"
 
 namespace tandem::bridges::epuck {
 
 struct BridgeSettings {
   DriverSettings driver;
+  std::string link = {};                          ///< as the experiment says it, for whoever stops the robot without us
+  std::string firmware = "auto";                  ///< which one it must run; with another one it never becomes Active
   hal::TimeNs reopen_ns = 500 * hal::kNsPerMs;    ///< between tries to open the link, doubled up to 4 s
   hal::TimeNs farewell_ns = 300 * hal::kNsPerMs;  ///< how long the end waits for the robot to confirm its stop
 };
@@ -50,32 +53,43 @@ struct BridgeStatus {
   std::uint64_t links_opened = 0;
 };
 
-/// Owns link and thread. `robot()`, `latch`, `commit`, `fault` belong to the loop's thread; all else may be called from
-/// any.
-class EpuckBridge {
+/// Owns link and thread.
+class EpuckBridge final : public RobotBridge {
  public:
   /// `opener` is called from threads of the bridge, again after each hang-up. Times given to the bridge are
   /// CLOCK_MONOTONIC.
   EpuckBridge(BridgeSettings settings, LinkOpener opener, hal::Log log = {});
   /// Stops the robot, waits at most `farewell_ns` for it to confirm, closes the link.
-  ~EpuckBridge();
+  ~EpuckBridge() override;
   EpuckBridge(const EpuckBridge&) = delete;
   EpuckBridge& operator=(const EpuckBridge&) = delete;
 
-  EpuckRobot& robot() noexcept { return driver_.robot(); }
+  EpuckRobot& robot() noexcept override { return driver_.robot(); }
+  void* port(const hal::PortType& type) noexcept override { return driver_.robot().find(type); }
+  void set_origin(hal::TimeNs origin_ns) noexcept override { driver_.robot().set_origin(origin_ns); }
 
-  /// Starts the thread. Once, after the ports were taken.
-  void start();
+  void start() override;
   /// Errors: not active within `timeout_ns`; says what is known (link does not open, nobody answers …) and what to do.
   hal::Status wait_active(hal::TimeNs timeout_ns);
-  /// Stops the robot and ends the thread; the destructor does the same.
-  void shut_down();
+  void shut_down() override;
 
-  void latch(hal::Tick tick, hal::TimeNs now) noexcept;
-  void commit(hal::TimeNs now) noexcept;
+  void latch(hal::Tick tick, hal::TimeNs now) noexcept override;
+  void commit(hal::TimeNs now) noexcept override;
   void fault(hal::TimeNs now, std::string_view why);
-  void stop(hal::TimeNs now) noexcept;
-  void resume() noexcept;
+  void stop(hal::TimeNs now) noexcept override;
+  void resume() noexcept override;
+
+  LinkHealth health() const noexcept override;
+  bool mismatched() const noexcept override;
+  bool at_rest() const noexcept override;
+  std::string trouble() const override;
+  std::string advice() const override;
+  std::string identity() const override;
+  std::string link() const override;
+  StopMessages stop_messages() const override;
+  std::uint64_t stop_version() const noexcept override { return kStopVersion; }
+  LinkReport report() const override;
+  void describe(StatusVisitor& visitor) const override;
 
   SessionState state() const noexcept;
   Odometry odometry() const noexcept;
@@ -87,6 +101,11 @@ class EpuckBridge {
   void serve(ByteLink& link);
   void say_farewell(ByteLink& link);
   void pump_now(hal::TimeNs now) noexcept;
+  bool firmware_differs() const noexcept;
+  void note_health() noexcept;
+  void note_stop() noexcept;
+
+  static constexpr std::uint64_t kStopVersion = 1;  // one robot, one device: nothing of it changes
 
   BridgeSettings settings_;
   LinkOpener opener_;
@@ -98,6 +117,12 @@ class EpuckBridge {
   std::string link_error_;
   LinkStatistics bytes_before_;  // of links that are gone
   std::uint64_t links_opened_ = 0;
+  LinkHealth health_ = LinkHealth::Connecting;
+  bool was_active_ = false;
+  std::uint64_t handshakes_ = 0;  // at the last `latch`
+  bool stop_noted_ = false;       // since the last `resume`, with what the session had counted until then
+  std::uint64_t confirmed_at_stop_ = 0;
+  std::uint64_t resynchronised_at_stop_ = 0;
   std::atomic<bool> ending_{false};
   std::thread thread_;
 };

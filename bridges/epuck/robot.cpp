@@ -33,12 +33,12 @@ EpuckRobot::EpuckRobot(RobotSettings settings) : settings_(std::move(settings)) 
       {&hal::port_type<hal::Battery>(), &battery_, {Quantity::Battery}},
       {&hal::port_type<hal::WheelEncoders>(), &encoders_, {Quantity::Encoders}},
       {&hal::port_type<hal::Clock>(), &clock_, {}},
-      {&hal::port_type<hal::RangeAndBearing>(), &rab_, {}},
+      {&hal::port_type<hal::RangeAndBearing>(), &rab_, {}, false},
       {&hal::port_type<hal::WheelSpeeds>(), &wheels_, {}},
       {&hal::port_type<hal::RingLeds>(), &ring_, {}},
       {&hal::port_type<hal::BodyLed>(), &body_, {}},
       {&hal::port_type<hal::FrontLed>(), &front_, {}},
-      {&hal::port_type<hal::RangeAndBearingSend>(), &rab_send_, {}},
+      {&hal::port_type<hal::RangeAndBearingSend>(), &rab_send_, {}, false},
   };
 }
 
@@ -65,10 +65,21 @@ void* EpuckRobot::take(const hal::PortType& type) {
   if (!listed(type)) {
     throw hal::DeviceError("e-puck '" + settings_.id + "': the configuration does not list " + what + "; add it there");
   }
-  const auto same = [&](const PortView& view) { return view.data == device->data; };
-  if (std::none_of(taken_.begin(), taken_.end(), same)) taken_.push_back({device->type, device->data});
-  demand_.add(device->needs);
-  return device->data;
+  return take(*device);
+}
+
+void* EpuckRobot::take(const Device& device) {
+  const auto same = [&](const PortView& view) { return view.data == device.data; };
+  if (std::none_of(taken_.begin(), taken_.end(), same)) taken_.push_back({device.type, device.data});
+  demand_.add(device.needs);
+  return device.data;
+}
+
+void* EpuckRobot::find(const hal::PortType& type) noexcept {
+  const auto device = std::find_if(devices_.begin(), devices_.end(), [&](const Device& d) {
+    return d.over_serial && d.type->role == type.role && d.type->name == type.name && d.type->layout == type.layout;
+  });
+  return device != devices_.end() ? take(*device) : nullptr;
 }
 
 void EpuckRobot::stamp(hal::Reading& reading, Quantity quantity, const Samples& samples,

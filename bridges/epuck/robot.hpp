@@ -41,6 +41,9 @@ class EpuckRobot final : public hal::Robot {
   /// Takes a port by its description, for those who fuse, record or inspect. The memory lives as long as the robot.
   /// @throws hal::DeviceError
   void* require(const hal::PortType& type) { return take(type); }
+  /// Takes a port whatever the configuration lists; null when there is none of that name, role and layout that can be
+  /// had over the serial link.
+  void* find(const hal::PortType& type) noexcept;
 
   /// One port that was taken.
   struct PortView {
@@ -71,7 +74,9 @@ class EpuckRobot final : public hal::Robot {
     const hal::PortType* type;
     void* data;
     QuantitySet needs;
+    bool over_serial = true;
   };
+  void* take(const Device& device);
   bool listed(const hal::PortType& type) const;
   void stamp(hal::Reading& reading, Quantity quantity, const Samples& samples, hal::TimeNs now) const noexcept;
 

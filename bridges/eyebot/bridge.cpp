@@ -4,8 +4,10 @@
 #include <chrono>
 #include <random>
 
+#include "bridges/eyebot/stop_body.hpp"
 #include "bridges/eyebot_messages/codec.hpp"
 #include "hal/check.hpp"
+#include "hal/spec/eyebot.hpp"
 
 namespace tandem::bridges::eyebot {
 namespace {
@@ -151,13 +153,31 @@ hal::Status EyebotBridge::wait_active(TimeNs timeout_ns) {
   if (changed_.wait_for(lock, std::chrono::nanoseconds(timeout_ns), active) && !ending_) return {};
   const std::string who = "eye-bot '" + std::string(driver_.robot().id()) + "' is not there: ";
   if (!link_trouble_.empty()) return hal::Error{who + link_trouble_};
-  return hal::Error{who + driver_.trouble() + "; is it switched on, in the same network, and called so?"};
+  return hal::Error{who + driver_.trouble() + "; " + advice()};
 }
 
 void EyebotBridge::latch(hal::Tick tick, TimeNs now) noexcept {
   const std::lock_guard lock(mutex_);
   driver_.pump(now);
   driver_.latch(tick, now);
+  note_health();
+}
+
+void EyebotBridge::note_health() noexcept {
+  // Every interruption has it hover, also one that is over already.
+  const DriverStatistics& s = driver_.statistics();
+  const std::uint64_t interruptions = s.link_stops + s.watchdog_stops;
+  const bool begun_anew = was_active_ && interruptions != interruptions_;
+  interruptions_ = interruptions;
+  const RobotState state = driver_.state();
+  if (state == RobotState::Active) {
+    health_ = begun_anew ? LinkHealth::Suspect : LinkHealth::Active;
+    was_active_ = true;
+  } else if (!was_active_) {
+    health_ = LinkHealth::Connecting;
+  } else {
+    health_ = state == RobotState::Lost ? LinkHealth::Lost : LinkHealth::Suspect;
+  }
 }
 
 void EyebotBridge::commit(TimeNs now) noexcept {
@@ -183,6 +203,79 @@ void EyebotBridge::land(TimeNs now) noexcept {
 void EyebotBridge::resume() noexcept {
   const std::lock_guard lock(mutex_);
   driver_.resume();
+}
+
+// --- what is known ---
+
+LinkHealth EyebotBridge::health() const noexcept {
+  const std::lock_guard lock(mutex_);
+  return health_;
+}
+
+std::string EyebotBridge::trouble() const {
+  const std::lock_guard lock(mutex_);
+  return link_trouble_.empty() ? driver_.trouble() : link_trouble_;
+}
+
+std::string EyebotBridge::advice() const {
+  return "is it switched on, in the same network, and called so?";
+}
+
+std::string EyebotBridge::identity() const {
+  const std::lock_guard lock(mutex_);
+  if (driver_.liveness().pulse(lcm_bus::monotonic_ns()) == Pulse::Never) return {};
+  return driver_.settings().name + ", session " + std::to_string(driver_.liveness().session());
+}
+
+std::string EyebotBridge::link() const {
+  const std::lock_guard lock(mutex_);
+  return link_ ? "lcm:" + link_->url() : "";
+}
+
+StopMessages EyebotBridge::stop_messages() const {
+  return {settings_.driver.robot.id, std::string(hal::eyebot::kDataSheet.kind), "lcm:" + settings_.url,
+          to_stop_body(last_words()), kStopVersion};
+}
+
+/// Orders alone are answered; the rest of what is said and heard is in `describe`.
+LinkReport EyebotBridge::report() const {
+  const std::lock_guard lock(mutex_);
+  const OrderStatistics& orders = driver_.orders().statistics();
+  LinkReport report;
+  report.questions = orders.orders;
+  report.answers = orders.accepted + orders.refused;
+  report.time_outs = orders.unanswered;
+  report.bad_answers = mail_->inbox.statistics().refused + driver_.statistics().not_understood;
+  report.resynchronised = driver_.statistics().recovered;
+  report.links_lost = driver_.statistics().lost;
+  if (report.answers > 0) report.mean_round_trip_ns = orders.sum_round_trip_ns / static_cast<TimeNs>(report.answers);
+  report.max_round_trip_ns = orders.max_round_trip_ns;
+  return report;
+}
+
+void EyebotBridge::describe(StatusVisitor& visitor) const {
+  const BridgeStatus s = status();
+  visitor.text("state", state_name(s.state));
+  visitor.text("mode", mode_name(s.flight.mode));
+  visitor.flag("landed", s.landed);
+  visitor.count("messages_in", s.messages.received);
+  visitor.count("messages_out", s.driver.said);
+  visitor.count("messages_lost", s.messages.lost);
+  visitor.count("messages_old", s.messages.old);
+  visitor.count("messages_replaced", s.messages.replaced);
+  visitor.count("messages_refused", s.messages.refused + s.driver.not_understood);
+  visitor.count("messages_unsent", s.driver.unsent);
+  visitor.count("from_other_senders", s.other_senders);
+  visitor.count("interruptions", s.driver.link_stops);
+  visitor.count("stops_for_want_of_commands", s.driver.watchdog_stops);
+  visitor.count("restarts", s.restarts);
+  visitor.count("clock_jumps", s.clock_jumps);
+  visitor.count("links_opened", s.links_opened);
+  visitor.count("orders_said_again", s.orders.said_again);
+  visitor.count("orders_refused", s.orders.refused);
+  visitor.count("refused_for_another_hub", s.driver.refused_control);
+  visitor.count("commands_clamped", s.driver.clamped);
+  visitor.count("commands_not_finite", s.driver.not_finite);
 }
 
 RobotState EyebotBridge::state() const noexcept {
@@ -225,9 +318,9 @@ BridgeStatus EyebotBridge::status() const {
   return status;
 }
 
-LastWords EyebotBridge::last_words(const std::string& url) const {
+LastWords EyebotBridge::last_words() const {
   const DriverSettings& driver = driver_.settings();  // does not change
-  return {url, driver.name, driver.hub, driver.session, settings_.farewell.land};
+  return {settings_.url, driver.name, driver.hub, driver.session, settings_.farewell.land};
 }
 
 }  // namespace tandem::bridges::eyebot

@@ -3,8 +3,7 @@
 //   EyebotBridge bridge(settings, opener, log);
 //   controller = type.construct(memory, bridge.robot(), params);   // takes its ports: they decide what is told
 //   bridge.start();
-//   if (auto ready = bridge.wait_active(5 s); !ready) …
-//   each tick:  bridge.latch(tick, now);  controller step;  bridge.commit(now);   (bridge.fault(now, what) if it threw)
+//   each tick:  bridge.latch(tick, now);  controller step;  bridge.commit(now);
 //   ~EyebotBridge: the robot hovers, then lands.
 //
 // The thread takes in what arrives, beats the hub's heart, says again what is not answered, opens the link anew when
@@ -21,6 +20,7 @@
 #include "bridges/eyebot/driver.hpp"
 #include "bridges/eyebot/farewell.hpp"
 #include "bridges/lcm/lcm_link.hpp"
+#include "bridges/robot_bridge.hpp"
 
 namespace tandem::bridges::eyebot {
 
@@ -30,6 +30,7 @@ using LcmOpener = std::function<hal::Result<std::shared_ptr<lcm_bus::LcmLink>>()
 struct BridgeSettings {
   DriverSettings driver;  ///< session 0: one is drawn
   FarewellSettings farewell = {};
+  std::string url = {};  ///< of the link, as whoever opens it after us must write it
 };
 
 /// A copy of everything that can be told about the bridge.
@@ -63,9 +64,8 @@ struct LastWords {
   bool land = true;
 };
 
-/// Owns the thread. `robot()`, `latch`, `commit`, `fault`, `stop`, `land`, `resume` belong to the loop's thread; all
-/// else may be called from any.
-class EyebotBridge final : private Outbox {
+/// Owns the thread.
+class EyebotBridge final : public RobotBridge, private Outbox {
  public:
   /// `opener` is called by the bridge's thread, and again whenever the link is dead. Times given to the bridge are
   /// CLOCK_MONOTONIC.
@@ -75,29 +75,39 @@ class EyebotBridge final : private Outbox {
   EyebotBridge(const EyebotBridge&) = delete;
   EyebotBridge& operator=(const EyebotBridge&) = delete;
 
-  EyebotRobot& robot() noexcept { return driver_.robot(); }
+  EyebotRobot& robot() noexcept override { return driver_.robot(); }
+  void* port(const hal::PortType& type) noexcept override { return driver_.robot().find(type); }
+  void set_origin(hal::TimeNs origin_ns) noexcept override { driver_.robot().set_origin(origin_ns); }
 
-  /// Starts the thread. Once, after the ports were taken.
-  void start();
+  void start() override;
   /// Errors: not active within `timeout_ns`; says what is known (no link, nothing heard, another version …).
   hal::Status wait_active(hal::TimeNs timeout_ns);
-  /// Ends as the destructor does.
-  void shut_down();
+  void shut_down() override;
 
-  void latch(hal::Tick tick, hal::TimeNs now) noexcept;
-  void commit(hal::TimeNs now) noexcept;
+  void latch(hal::Tick tick, hal::TimeNs now) noexcept override;
+  void commit(hal::TimeNs now) noexcept override;
   void fault(hal::TimeNs now, std::string_view why);
-  void stop(hal::TimeNs now) noexcept;
-  void land(hal::TimeNs now) noexcept;
-  void resume() noexcept;
+  void stop(hal::TimeNs now) noexcept override;
+  void land(hal::TimeNs now) noexcept override;
+  void resume() noexcept override;
+
+  LinkHealth health() const noexcept override;
+  bool at_rest() const noexcept override;
+  std::string trouble() const override;
+  std::string advice() const override;
+  std::string identity() const override;
+  std::string link() const override;
+  /// The body is that of stop_body.hpp.
+  StopMessages stop_messages() const override;
+  std::uint64_t stop_version() const noexcept override { return kStopVersion; }
+  LinkReport report() const override;
+  void describe(StatusVisitor& visitor) const override;
 
   // What a loop asks in every tick; `status` copies much more.
   RobotState state() const noexcept;
-  bool at_rest() const noexcept;
   DriverStatistics statistics() const noexcept;
   BridgeStatus status() const;
-  /// `url`: of the link, as whoever opens it after us must write it.
-  LastWords last_words(const std::string& url) const;
+  LastWords last_words() const;
 
  private:
   /// What handlers of the link write to; theirs as long as the link lives.
@@ -111,6 +121,9 @@ class EyebotBridge final : private Outbox {
   void keep_link();
   hal::Result<std::shared_ptr<lcm_bus::LcmLink>> open();
   void say_farewell();
+  void note_health() noexcept;
+
+  static constexpr std::uint64_t kStopVersion = 1;  // its name and ours: nothing of it changes
 
   BridgeSettings settings_;
   LcmOpener opener_;
@@ -122,6 +135,9 @@ class EyebotBridge final : private Outbox {
   hal::TimeNs opened_ns_ = 0, tried_ns_ = 0;
   std::uint64_t links_opened_ = 0;
   EyebotDriver driver_;
+  LinkHealth health_ = LinkHealth::Connecting;
+  bool was_active_ = false;
+  std::uint64_t interruptions_ = 0;  // at the last `latch`
   std::atomic<bool> ending_{false};
   std::thread thread_;
 };

@@ -65,11 +65,20 @@ void* EyebotRobot::take(const hal::PortType& type) {
     throw hal::DeviceError(who + ": the controller was built for another form of " + what + "; rebuild it");
   }
   if (!listed(type)) throw hal::DeviceError(who + ": the configuration does not list " + what + "; add it there");
-  if (!found->taken) {
-    order_.push_back(static_cast<std::size_t>(found - rows_.begin()));
-    found->taken = true;
-  }
-  return found->data.get();
+  return take(*found);
+}
+
+void* EyebotRobot::take(Row& row) {
+  if (!row.taken) order_.push_back(static_cast<std::size_t>(&row - rows_.data()));
+  row.taken = true;
+  return row.data.get();
+}
+
+void* EyebotRobot::find(const hal::PortType& type) noexcept {
+  const auto found = std::ranges::find_if(rows_, [&](const Row& r) {
+    return r.type->role == type.role && r.type->name == type.name && r.type->layout == type.layout;
+  });
+  return found != rows_.end() ? take(*found) : nullptr;
 }
 
 std::vector<EyebotRobot::PortView> EyebotRobot::taken() const {

@@ -40,6 +40,8 @@ class EyebotRobot final : public hal::Robot {
   /// Takes a port by its description, for those who fuse, record or inspect. The memory lives as long as the robot.
   /// @throws hal::DeviceError
   void* require(const hal::PortType& type) { return take(type); }
+  /// Takes a port whatever the configuration lists; null when there is none of that name, role and layout.
+  void* find(const hal::PortType& type) noexcept;
 
   struct PortView {
     const hal::PortType* type;
@@ -78,6 +80,7 @@ class EyebotRobot final : public hal::Robot {
   };
   const Row& row(const hal::PortType& type) const noexcept;
   bool listed(const hal::PortType& type) const;
+  void* take(Row& row);
 
   RobotSettings settings_;
   std::vector<Row> rows_;  // parallel to `port_types()`

@@ -5,7 +5,10 @@
 #include <ctime>
 #include <poll.h>
 
+#include "bridges/footbot/stop_body.hpp"
+#include "bridges/link/link_text.hpp"
 #include "hal/check.hpp"
+#include "hal/spec/footbot.hpp"
 
 namespace tandem::bridges::footbot {
 namespace {
@@ -27,6 +30,7 @@ FootbotBridge::~FootbotBridge() {
 void FootbotBridge::start() {
   TANDEM_CHECK(!thread_.joinable() && !ending_, "a bridge is started once");
   driver_.note_ports();
+  stop_version_ = driver_.wiring().last_words_version();
   thread_ = std::thread([this] { run(); });
 }
 
@@ -48,6 +52,7 @@ void FootbotBridge::run() {
       const std::lock_guard lock(mutex_);
       const RobotState before = driver_.state();
       driver_.pump(now);
+      stop_version_ = driver_.wiring().last_words_version();
       if (driver_.state() != before) changed_.notify_all();
       wait = std::clamp<TimeNs>(driver_.next_deadline() - now, 0, kLongestWait);
       descriptor = link_.descriptor();
@@ -95,18 +100,36 @@ hal::Status FootbotBridge::wait_active(TimeNs timeout_ns) {
   const std::string who = "foot-bot '" + std::string(driver_.robot().id()) + "' is not there: ";
   if (!link_.trouble().empty()) return hal::Error{who + link_.trouble()};
   const std::string trouble = driver_.trouble();
-  return hal::Error{who + (trouble.empty() ? "its nodes do not answer" : trouble) +
-                    "; is it switched on, and are its nodes and their variables called as in the map?"};
+  return hal::Error{who + (trouble.empty() ? "its nodes do not answer" : trouble) + "; " + advice()};
 }
 
 void FootbotBridge::latch(hal::Tick tick, TimeNs now) noexcept {
   const std::lock_guard lock(mutex_);
   driver_.latch(tick, now);
+  note_health();
+}
+
+void FootbotBridge::note_health() noexcept {
+  // Every interruption stops the robot, also one that is over already.
+  const DriverStatistics& s = driver_.statistics();
+  const std::uint64_t interruptions = s.link_stops + s.watchdog_stops;
+  const bool begun_anew = was_active_ && interruptions != interruptions_;
+  interruptions_ = interruptions;
+  const RobotState state = driver_.state();
+  if (state == RobotState::Active) {
+    health_ = begun_anew ? LinkHealth::Suspect : LinkHealth::Active;
+    was_active_ = true;
+  } else if (!was_active_) {
+    health_ = LinkHealth::Connecting;
+  } else {
+    health_ = state == RobotState::Lost ? LinkHealth::Lost : LinkHealth::Suspect;
+  }
 }
 
 void FootbotBridge::commit(TimeNs now) noexcept {
   const std::lock_guard lock(mutex_);
   driver_.commit(now);
+  stop_version_ = driver_.wiring().last_words_version();
 }
 
 void FootbotBridge::fault(TimeNs now, std::string_view why) {
@@ -122,6 +145,94 @@ void FootbotBridge::stop(TimeNs now) noexcept {
 void FootbotBridge::resume() noexcept {
   const std::lock_guard lock(mutex_);
   driver_.resume();
+}
+
+// --- what is known ---
+
+LinkHealth FootbotBridge::health() const noexcept {
+  const std::lock_guard lock(mutex_);
+  return health_;
+}
+
+std::string FootbotBridge::trouble() const {
+  const std::lock_guard lock(mutex_);
+  return link_.trouble().empty() ? driver_.trouble() : link_.trouble();
+}
+
+std::string FootbotBridge::advice() const {
+  return "is it switched on, and are its nodes and their variables called as in the map?";
+}
+
+std::string FootbotBridge::identity() const {
+  const std::lock_guard lock(mutex_);
+  std::string modules;
+  for (const NodeStatus& node : driver_.wiring().nodes()) {
+    if (node.state == aseba::NodeState::Ready) modules += (modules.empty() ? "" : ", ") + node.name;
+  }
+  return modules;
+}
+
+std::string FootbotBridge::link() const {
+  const std::lock_guard lock(mutex_);
+  return link_.name();
+}
+
+StopMessages FootbotBridge::stop_messages() const {
+  const std::lock_guard lock(mutex_);
+  return {settings_.driver.robot.id, std::string(hal::footbot::kDataSheet.kind), absolute_link(settings_.link),
+          to_stop_body(driver_.wiring().last_words()), driver_.wiring().last_words_version()};
+}
+
+LinkReport FootbotBridge::report() const {
+  const std::lock_guard lock(mutex_);
+  LinkReport report;
+  TimeNs sum_round_trip_ns = 0;
+  for (const NodeStatus& node : driver_.wiring().nodes()) {
+    report.questions += node.statistics.reads;
+    report.answers += node.statistics.answers;
+    report.time_outs += node.statistics.asked_again + node.statistics.unanswered;
+    report.bad_answers += node.statistics.wrong_length + node.statistics.not_understood;
+    sum_round_trip_ns += node.statistics.sum_round_trip_ns;
+    report.max_round_trip_ns = std::max(report.max_round_trip_ns, node.statistics.max_round_trip_ns);
+  }
+  if (report.answers > 0) report.mean_round_trip_ns = sum_round_trip_ns / static_cast<TimeNs>(report.answers);
+  report.resynchronised = driver_.statistics().recovered;
+  report.links_lost = driver_.statistics().lost;
+  return report;
+}
+
+void FootbotBridge::describe(StatusVisitor& visitor) const {
+  const BridgeStatus s = status();
+  visitor.text("state", state_name(s.state));
+  visitor.count("messages_in", s.messages.received);
+  visitor.count("messages_out", s.messages.sent);
+  visitor.count("messages_dropped", s.messages.dropped);
+  visitor.count("interruptions", s.driver.link_stops);
+  visitor.count("stops_for_want_of_commands", s.driver.watchdog_stops);
+  visitor.count("other_hosts", s.network.other_hosts);
+  visitor.count("not_understood", s.network.not_understood);
+  visitor.count("counter_jumps", s.wiring.counter_jumps);
+  visitor.count("not_obeyed", s.wiring.not_obeyed);
+  visitor.count("commands_clamped", s.driver.clamped);
+  visitor.count("commands_not_finite", s.driver.not_finite);
+  visitor.count("links_opened", s.links_opened);
+  visitor.begin_list("nodes");
+  for (const NodeStatus& n : s.nodes) {
+    visitor.begin_row();
+    visitor.text("name", n.name);
+    visitor.number("id", n.id);
+    visitor.flag("needed", n.needed);
+    visitor.text("state", aseba::node_state_name(n.state));
+    visitor.text("trouble", n.trouble);
+    visitor.count("reads", n.statistics.reads);
+    visitor.count("answers", n.statistics.answers);
+    visitor.count("unanswered", n.statistics.unanswered);
+    visitor.count("writes", n.statistics.writes);
+    visitor.count("times_lost", n.statistics.times_lost);
+    visitor.count("times_ready", n.statistics.times_ready);
+    visitor.end_row();
+  }
+  visitor.end_list();
 }
 
 RobotState FootbotBridge::state() const noexcept {

@@ -3,8 +3,7 @@
 //   FootbotBridge bridge(settings, opener, log);
 //   controller = type.construct(memory, bridge.robot(), params);   // takes its ports: they decide what is asked for
 //   bridge.start();
-//   if (auto ready = bridge.wait_active(5 s); !ready) …
-//   each tick:  bridge.latch(tick, now);  controller step;  bridge.commit(now);   (bridge.fault(now, what) if it threw)
+//   each tick:  bridge.latch(tick, now);  controller step;  bridge.commit(now);
 //   ~FootbotBridge: the robot is stopped.
 //
 // The thread takes in what arrives, answers time-outs, opens the link anew when it was lost, and stops the robot when
@@ -20,11 +19,13 @@
 
 #include "bridges/aseba/reopening_messages.hpp"
 #include "bridges/footbot/driver.hpp"
+#include "bridges/robot_bridge.hpp"
 
 namespace tandem::bridges::footbot {
 
 struct BridgeSettings {
   DriverSettings driver;
+  std::string link = {};                          ///< as the experiment says it, for whoever stops the robot without us
   hal::TimeNs farewell_ns = 300 * hal::kNsPerMs;  ///< how long the end waits for the robot to confirm its stop
 };
 
@@ -44,36 +45,47 @@ struct BridgeStatus {
   std::uint64_t links_opened = 0;
 };
 
-/// Owns link and thread. `robot()`, `latch`, `commit`, `fault`, `stop`, `resume` belong to the loop's thread; all else
-/// may be called from any.
-class FootbotBridge {
+/// Owns link and thread.
+class FootbotBridge final : public RobotBridge {
  public:
   /// `opener` is called from threads of the bridge, from now on, and again whenever the link is gone. Times given to
   /// the bridge are CLOCK_MONOTONIC.
   FootbotBridge(BridgeSettings settings, aseba::MessageLinkOpener opener, hal::Log log = {});
   /// Stops the robot, waits at most `farewell_ns` for it to confirm, closes the link.
-  ~FootbotBridge();
+  ~FootbotBridge() override;
   FootbotBridge(const FootbotBridge&) = delete;
   FootbotBridge& operator=(const FootbotBridge&) = delete;
 
-  FootbotRobot& robot() noexcept { return driver_.robot(); }
+  FootbotRobot& robot() noexcept override { return driver_.robot(); }
+  void* port(const hal::PortType& type) noexcept override { return driver_.robot().find(type); }
+  void set_origin(hal::TimeNs origin_ns) noexcept override { driver_.robot().set_origin(origin_ns); }
 
-  /// Starts the thread. Once, after the ports were taken.
-  void start();
+  void start() override;
   /// Errors: not active within `timeout_ns`; says what is known (link does not open, which node is missing …).
   hal::Status wait_active(hal::TimeNs timeout_ns);
-  /// Stops the robot and ends the thread; the destructor does the same.
-  void shut_down();
+  void shut_down() override;
 
-  void latch(hal::Tick tick, hal::TimeNs now) noexcept;
-  void commit(hal::TimeNs now) noexcept;
+  void latch(hal::Tick tick, hal::TimeNs now) noexcept override;
+  void commit(hal::TimeNs now) noexcept override;
   void fault(hal::TimeNs now, std::string_view why);
-  void stop(hal::TimeNs now) noexcept;
-  void resume() noexcept;
+  void stop(hal::TimeNs now) noexcept override;
+  void resume() noexcept override;
+
+  LinkHealth health() const noexcept override;
+  bool at_rest() const noexcept override;
+  std::string trouble() const override;
+  std::string advice() const override;
+  /// The modules that are there.
+  std::string identity() const override;
+  std::string link() const override;
+  /// The body is that of stop_body.hpp.
+  StopMessages stop_messages() const override;
+  std::uint64_t stop_version() const noexcept override { return stop_version_; }
+  LinkReport report() const override;
+  void describe(StatusVisitor& visitor) const override;
 
   // What a loop asks in every tick; `status` copies much more.
   RobotState state() const noexcept;
-  bool at_rest() const noexcept;
   DriverStatistics statistics() const noexcept;
   BridgeStatus status() const;
   /// Changes whenever nodes come; empty while there are none.
@@ -82,6 +94,7 @@ class FootbotBridge {
  private:
   void run();
   void say_farewell();
+  void note_health() noexcept;
   /// Waits for input without holding the link, at most `timeout_ns`.
   void wait_outside(hal::TimeNs timeout_ns, int descriptor);
 
@@ -90,6 +103,10 @@ class FootbotBridge {
   std::condition_variable changed_;
   aseba::ReopeningMessages link_;
   FootbotDriver driver_;
+  LinkHealth health_ = LinkHealth::Connecting;
+  bool was_active_ = false;
+  std::uint64_t interruptions_ = 0;  // at the last `latch`
+  std::atomic<std::uint64_t> stop_version_{0};
   std::atomic<bool> ending_{false};
   std::thread thread_;
 };

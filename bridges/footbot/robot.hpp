@@ -41,6 +41,8 @@ class FootbotRobot final : public hal::Robot {
   /// Takes a port by its description, for those who fuse, record or inspect. The memory lives as long as the robot.
   /// @throws hal::DeviceError
   void* require(const hal::PortType& type) { return take(type); }
+  /// Takes a port whatever the configuration lists; null when the map feeds none of that name, role and layout.
+  void* find(const hal::PortType& type) noexcept;
 
   struct PortView {
     const hal::PortType* type;
@@ -82,6 +84,7 @@ class FootbotRobot final : public hal::Robot {
   };
   const Row& row(const hal::PortType& type) const noexcept;
   bool listed(const hal::PortType& type) const;
+  void* take(Row& row);
   void reckon() noexcept;
 
   RobotSettings settings_;

@@ -62,7 +62,9 @@ void Wiring::note_demand() noexcept {
     row.used = !row.map->packets.empty() && robot_.uses(hal::port_type<hal::RangeAndBearing>());
     for (VariableRow& v : row.variables) {
       const bool commanded = std::ranges::any_of(v.map->writes, used);
-      v.controlled = !observe_ && !v.map->writes.empty() && (commanded || row.map->need == Need::Always);
+      const bool controlled = !observe_ && !v.map->writes.empty() && (commanded || row.map->need == Need::Always);
+      if (controlled != v.controlled) ++last_words_version_;
+      v.controlled = controlled;
       row.used = row.used || commanded || std::ranges::any_of(v.map->reads, used);
       v.read_first = v.map->words;
       v.read_behind = 0;
@@ -100,6 +102,7 @@ bool Wiring::look() noexcept {
   }
   if (print == seen_) return false;
   seen_ = print;
+  ++last_words_version_;
   for (NodeRow& row : rows_) {
     if (ready(row)) continue;
     const aseba::Node* node = network_.find(row.map->names);

@@ -79,6 +79,8 @@ class Wiring {
   /// Messages that have everything rest, for whoever must stop the robot when this process cannot. They are right as
   /// long as the nodes that are there now keep their descriptions.
   std::vector<LastWords> last_words() const;
+  /// Grows whenever `last_words` may have changed.
+  std::uint64_t last_words_version() const noexcept { return last_words_version_; }
   const WiringStatistics& statistics() const noexcept { return statistics_; }
 
  private:
@@ -134,6 +136,7 @@ class Wiring {
   bool observe_;
   std::vector<NodeRow> rows_;
   std::uint64_t seen_ = ~std::uint64_t{0};  // fingerprint of who is there
+  std::uint64_t last_words_version_ = 0;
   hal::TimeNs rested_ns_ = 0;
   hal::RangeAndBearing heard_;  // since the last `fill`
   aseba::Event event_;

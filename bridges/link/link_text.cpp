@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <filesystem>
 
 #include "bridges/link/permitted_link.hpp"
 #include "bridges/link/serial_link.hpp"
@@ -71,6 +72,17 @@ std::string to_text(const LinkAddress& address) {
   std::string text = std::string(scheme_name(address.scheme)) + ":" + address.target;
   if (address.rate != 0) text += "@" + std::to_string(address.rate);
   return text;
+}
+
+std::string absolute_link(std::string_view text) {
+  auto parsed = parse_link(text);
+  if (!parsed.ok()) return std::string(text);
+  LinkAddress address = std::move(parsed).value();
+  if (address.scheme != LinkScheme::Serial && address.scheme != LinkScheme::Slcan) return std::string(text);
+  std::error_code error;
+  const auto path = std::filesystem::absolute(address.target, error);
+  if (!error) address.target = path.string();
+  return to_text(address);
 }
 
 std::span<const std::uint32_t> serial_rates() noexcept {

@@ -25,6 +25,10 @@ std::string_view scheme_name(LinkScheme scheme) noexcept;
 /// The text that `parse_link` reads back as the same address.
 std::string to_text(const LinkAddress& address);
 
+/// The same link for a process with another current folder: a device's path becomes absolute. Other links, and what is
+/// no link at all, stay as they are.
+std::string absolute_link(std::string_view text);
+
 /// Baud rates that serial devices are opened with, ascending.
 std::span<const std::uint32_t> serial_rates() noexcept;
 

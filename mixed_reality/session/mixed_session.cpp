@@ -1,6 +1,8 @@
 #include "mixed_reality/session/mixed_session.hpp"
 
 #include <algorithm>
+#include <system_error>
+#include <thread>
 
 #include "hal/unit.hpp"
 #include "mixed_reality/settings/patience.hpp"
@@ -21,16 +23,16 @@ hal::Error about(const core::RobotItem& item, const std::string& file, const std
 }
 
 /// Whoever tells where the robot is: its wheels, or its own word.
-hal::Result<std::unique_ptr<PoseSource>> make_pose_source(const core::RobotItem& item, const RealRobot& real,
+hal::Result<std::unique_ptr<PoseSource>> make_pose_source(const core::RobotItem& item, bridges::RobotBridge& real,
                                                           const core::Pose& start, const hal::DataSheet& sheet) {
   const std::string source = item.tracker ? item.tracker->source : sheet.flies ? "positioning" : "odometry";
   if (source == "positioning") {
-    const auto* places = static_cast<const hal::Positioning*>(real.reading(hal::port_type<hal::Positioning>()));
+    const auto* places = static_cast<const hal::Positioning*>(real.port(hal::port_type<hal::Positioning>()));
     if (places == nullptr) return hal::Error{"it does not say itself where it is; take the tracker odometry"};
     return std::unique_ptr<PoseSource>(std::make_unique<Positioned>(start, *places));
   }
   if (source != "odometry") return hal::Error{"there is no tracker '" + source + "'; there are: odometry, positioning"};
-  const auto* encoders = static_cast<const hal::WheelEncoders*>(real.reading(hal::port_type<hal::WheelEncoders>()));
+  const auto* encoders = static_cast<const hal::WheelEncoders*>(real.port(hal::port_type<hal::WheelEncoders>()));
   if (encoders == nullptr) return hal::Error{"it has no wheel encoders, so odometry cannot tell where it is"};
   return std::unique_ptr<PoseSource>(std::make_unique<Odometry>(start, sheet, *encoders));
 }
@@ -40,12 +42,12 @@ hal::Result<std::unique_ptr<PoseSource>> make_pose_source(const core::RobotItem&
 // --- making one ---
 
 hal::Result<std::unique_ptr<MixedSession>> MixedSession::make(std::unique_ptr<core::World> world,
-                                                              const RealRobotMaker& make_robot, TimeSource& time,
+                                                              const BridgeMaker& make_bridge, TimeSource& time,
                                                               const MixedOptions& options) {
   std::unique_ptr<MixedSession> session(new MixedSession(std::move(world), time, options));
   for (const core::RobotItem& item : session->world_->scenario().robots) {
     if (!item.bridge) continue;
-    if (const hal::Status added = session->add_twin(item, make_robot); !added.ok()) return added.error();
+    if (const hal::Status added = session->add_twin(item, make_bridge); !added.ok()) return added.error();
   }
   const std::size_t count = session->twins_.size();
   session->last_.resize(count);
@@ -57,15 +59,15 @@ hal::Result<std::unique_ptr<MixedSession>> MixedSession::make(std::unique_ptr<co
 MixedSession::MixedSession(std::unique_ptr<core::World> world, TimeSource& time, const MixedOptions& options)
     : world_(std::move(world)), time_(time), options_(options), pacer_(time, world_->ticks_per_second()) {}
 
-hal::Status MixedSession::add_twin(const core::RobotItem& item, const RealRobotMaker& make_robot) {
+hal::Status MixedSession::add_twin(const core::RobotItem& item, const BridgeMaker& make_bridge) {
   const core::Scenario& scenario = world_->scenario();
   core::Space& space = world_->space();
   const core::RobotId robot = space.find_robot(item.id);
   if (item.distribute || !robot.valid())
     return about(item, scenario.file, "a <bridge> stands for one real robot; it cannot be distributed");
-  auto made = make_robot({item, scenario.controllers[item.controller], scenario.ticks_per_second});
+  auto made = make_bridge({item, scenario.controllers[item.controller], scenario.ticks_per_second, world_->seed()});
   if (!made.ok()) return about(item, scenario.file, made.error().message);
-  std::unique_ptr<RealRobot> real = std::move(made).value();
+  std::unique_ptr<bridges::RobotBridge> real = std::move(made).value();
 
   auto poses = make_pose_source(item, *real, space.pose(robot), space.data_sheet(robot));
   if (!poses.ok()) return about(item, scenario.file, poses.error().message);
@@ -83,11 +85,19 @@ hal::Status MixedSession::add_twin(const core::RobotItem& item, const RealRobotM
 MixedSession::~MixedSession() {
   world_->set_external(nullptr);
   if (!stopped_) stop_robots();
+  shut_down();
 }
 
 // --- before the run ---
 
+void MixedSession::start_bridges() {
+  if (started_) return;
+  started_ = true;
+  for (const auto& twin : twins_) twin->real().start();
+}
+
 hal::Status MixedSession::connect(const std::atomic<bool>& stop) {
+  start_bridges();
   const hal::TimeNs give_up_ns = time_.now_ns() + options_.connect_timeout_ns;
   stopped_ = false;  // from here on robots may hear from us
   phase_ = RunPhase::Waiting;
@@ -132,6 +142,7 @@ hal::Status MixedSession::run(hal::Tick ticks, const std::atomic<bool>& stop,
     const hal::Status granted = ask_for_realtime_priority(options_.realtime_priority);
     if (!granted.ok()) options_.log.warning(granted.error().message + "; going on without");
   }
+  start_bridges();
   stopped_ = false;
   phase_ = RunPhase::Running;
   world_->start();
@@ -166,6 +177,7 @@ void MixedSession::after_sense(core::World&) {
 }
 
 void MixedSession::after_filter(core::World&) {
+  if (options_.before_commands) options_.before_commands();
   for (std::size_t i = 0; i < twins_.size(); ++i) {
     Twin& twin = *twins_[i];
     twin.after_filter({now_.run_ns, time_.now_ns()});
@@ -180,16 +192,15 @@ void MixedSession::after_filter(core::World&) {
 bool MixedSession::stop_robots() {
   if (phase_ == RunPhase::Running) now_ = moment();
   phase_ = RunPhase::Stopping;
-  const auto at = [this] { return Moment{now_.run_ns, time_.now_ns()}; };
-  for (const auto& twin : twins_) twin->real().stop(at());
+  for (const auto& twin : twins_) twin->real().stop(time_.now_ns());
   const hal::TimeNs give_up_ns = time_.now_ns() + options_.stop_timeout_ns;
   bool all = false;
   for (;;) {
-    for (std::size_t i = 0; i < twins_.size(); ++i) confirmed_[i] = twins_[i]->real().stopped() ? 1 : 0;
+    for (std::size_t i = 0; i < twins_.size(); ++i) confirmed_[i] = twins_[i]->real().at_rest() ? 1 : 0;
     all = std::all_of(confirmed_.begin(), confirmed_.end(), [](std::uint8_t c) { return c != 0; });
     if (all || time_.now_ns() >= give_up_ns) break;
     time_.sleep_until(time_.now_ns() + kPollEvery_ns, kNever);
-    for (const auto& twin : twins_) twin->real().latch(at());
+    for (const auto& twin : twins_) twin->real().latch(0, time_.now_ns());
   }
   for (std::size_t i = 0; i < twins_.size(); ++i) {
     if (confirmed_[i] != 0) continue;
@@ -198,6 +209,18 @@ bool MixedSession::stop_robots() {
   }
   stopped_ = true;
   return all;
+}
+
+void MixedSession::shut_down() {
+  std::vector<std::jthread> ends;  // each may wait for its robot
+  for (const auto& twin : twins_) {
+    const auto end = [&real = twin->real()] { real.shut_down(); };
+    try {
+      ends.emplace_back(end);
+    } catch (const std::system_error&) {  // no more threads: then one after the other
+      end();
+    }
+  }
 }
 
 MixedReport MixedSession::report() const {

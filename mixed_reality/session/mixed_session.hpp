@@ -13,28 +13,25 @@
 #include "hal/log.hpp"
 #include "hal/result.hpp"
 #include "mixed_reality/session/report.hpp"
+#include "mixed_reality/settings/bridge_types.hpp"
 #include "mixed_reality/time/monotonic.hpp"
 #include "mixed_reality/time/pacer.hpp"
 #include "mixed_reality/twin/twin.hpp"
 
 namespace tandem::mixed_reality {
 
-/// Whom to reach, for whoever makes real robots.
-struct RealRobotRequest {
-  const core::RobotItem& item;  ///< `item.bridge` is set
-  const core::ControllerConfig& controller;
-  std::int64_t ticks_per_second = 10;
-};
-
 /// Makes the real robot behind one `<bridge>`. Does not wait for it to answer. Error: no such link, or no bridge for
 /// that kind of robot.
-using RealRobotMaker = std::function<hal::Result<std::unique_ptr<RealRobot>>(const RealRobotRequest&)>;
+using BridgeMaker = std::function<MadeBridge(const BridgeRequest&)>;
 
 struct MixedOptions {
   RearmParams rearm;
   hal::TimeNs connect_timeout_ns = 15 * hal::kNsPerSecond;  ///< for all robots to answer before the start
   hal::TimeNs stop_timeout_ns = 2 * hal::kNsPerSecond;      ///< for all robots to confirm their stop at the end
   int realtime_priority = 0;  ///< SCHED_FIFO for the stepping thread; 0: none is asked for
+  /// Called before the first and every later command of the run leaves: whoever stops robots when this process dies is
+  /// to know how.
+  std::function<void()> before_commands = {};
   hal::Log log;
 };
 
@@ -45,7 +42,7 @@ class MixedSession final : private core::ExternalRobots {
   /// Makes a twin of every robot of the world whose item has a `<bridge>`, and its real robot. `time` must outlive the
   /// session. Error: a robot that cannot be made, or whose pose nobody can tell.
   static hal::Result<std::unique_ptr<MixedSession>> make(std::unique_ptr<core::World> world,
-                                                         const RealRobotMaker& make_robot, TimeSource& time,
+                                                         const BridgeMaker& make_bridge, TimeSource& time,
                                                          const MixedOptions& options);
   ~MixedSession() override;
   MixedSession(const MixedSession&) = delete;
@@ -64,6 +61,9 @@ class MixedSession final : private core::ExternalRobots {
   /// Stops every real robot and waits a while for each to confirm. @returns whether all did; those that did not are
   /// logged.
   bool stop_robots();
+  /// Ends the conversations, all at once: robots that fly land, where they are to. Whether one is known to rest may
+  /// change by that.
+  void shut_down();
 
   core::World& world() noexcept { return *world_; }
   const core::World& world() const noexcept { return *world_; }
@@ -71,7 +71,8 @@ class MixedSession final : private core::ExternalRobots {
 
  private:
   MixedSession(std::unique_ptr<core::World> world, TimeSource& time, const MixedOptions& options);
-  hal::Status add_twin(const core::RobotItem& item, const RealRobotMaker& make_robot);
+  hal::Status add_twin(const core::RobotItem& item, const BridgeMaker& make_bridge);
+  void start_bridges();
 
   void latch(core::World& world) override;
   void after_sense(core::World& world) override;
@@ -95,6 +96,7 @@ class MixedSession final : private core::ExternalRobots {
   std::vector<std::string> links_;  // parallel to `twins_`, as the next two
   std::vector<LastState> last_;
   std::vector<std::uint8_t> confirmed_;
+  bool started_ = false;
   RunPhase phase_ = RunPhase::Waiting;
   Moment now_;           // of the running tick
   bool stopped_ = true;  // nothing was commanded since the robots were stopped

@@ -19,7 +19,7 @@ struct RealRobotReport {
   std::string state;            ///< why it was not, for people; "driving" when it was
   bool stop_confirmed = false;  ///< after the run, by the robot itself
   TwinCounts counts;
-  LinkReport conversation;
+  bridges::LinkReport conversation;
   std::uint64_t poses_rejected = 0;    ///< measurements that the pose source did not believe
   std::vector<std::string> incidents;  ///< "robot 'ep0' at 12.3 s: link lost (…)", the first few
 };

@@ -18,8 +18,8 @@ hal::Result<EyebotParts> eyebot_parts(const core::RobotItem& item, std::int64_t 
     return hal::Error{"link '" + bridge.link + "' does not carry an eye-bot's messages; write lcm:" +
                       std::string(bridges::lcm_bus::kDefaultLcmUrl)};
   EyebotParts parts;
-  parts.url = address.value().target;
-  parts.opener = [url = parts.url] { return bridges::lcm_bus::LcmLink::open(url); };
+  parts.settings.url = address.value().target;
+  parts.opener = [url = parts.settings.url] { return bridges::lcm_bus::LcmLink::open(url); };
   bridges::eyebot::DriverSettings& driver = parts.settings.driver;
   driver.session = 0;  // to be drawn
   driver.name = bridge.name.empty() ? item.id : bridge.name;

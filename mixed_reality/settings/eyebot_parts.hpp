@@ -1,7 +1,5 @@
 // What an experiment says of a real eye-bot, as its bridge needs it.
 #pragma once
-#include <string>
-
 #include "bridges/eyebot/bridge.hpp"
 #include "core/scenario/scenario.hpp"
 #include "hal/result.hpp"
@@ -13,7 +11,6 @@ namespace tandem::mixed_reality {
 struct EyebotParts {
   bridges::eyebot::BridgeSettings settings;
   bridges::eyebot::LcmOpener opener;
-  std::string url;
 };
 hal::Result<EyebotParts> eyebot_parts(const core::RobotItem& item, std::int64_t ticks_per_second);
 

@@ -27,6 +27,7 @@ hal::Result<FootbotParts> footbot_parts(const core::RobotItem& item, std::int64_
   }
   FootbotParts parts;
   parts.opener = std::move(opener).value();
+  parts.settings.link = bridge.link;
   parts.settings.driver.map = std::move(*map);
   parts.settings.driver.robot.id = item.id;
   parts.settings.driver.robot.tick_ns = hal::time_of_tick(1, ticks_per_second);

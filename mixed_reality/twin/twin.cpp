@@ -1,7 +1,9 @@
 #include "mixed_reality/twin/twin.hpp"
 
 #include <algorithm>
+#include <cstring>
 
+#include "hal/device/body_sensors.hpp"
 #include "hal/unit.hpp"
 #include "mixed_reality/tracking/odometry.hpp"
 
@@ -25,10 +27,15 @@ bool is_wheels(const hal::PortType& type) {
   return is<hal::WheelSpeeds>(type);
 }
 
+/// The clock of a twin is the run's.
+const void* reading_of(bridges::RobotBridge& real, const hal::PortType& type) {
+  return type.name == hal::Clock::kName ? nullptr : real.port(type);
+}
+
 }  // namespace
 
-Twin::Twin(core::Space& space, core::RobotId robot, std::unique_ptr<RealRobot> real, std::unique_ptr<PoseSource> poses,
-           const TwinParams& params, const hal::Log& log)
+Twin::Twin(core::Space& space, core::RobotId robot, std::unique_ptr<bridges::RobotBridge> real,
+           std::unique_ptr<PoseSource> poses, const TwinParams& params, const hal::Log& log)
     : space_(space),
       robot_(robot),
       id_(space.robot_name(robot)),
@@ -37,12 +44,13 @@ Twin::Twin(core::Space& space, core::RobotId robot, std::unique_ptr<RealRobot> r
       params_(params),
       log_(log),
       fence_(arena_of(space)),
-      fusion_(space, robot, [this](const hal::PortType& type) { return real_->reading(type); }),
+      fusion_(space, robot, [this](const hal::PortType& type) { return reading_of(*real_, type); }),
+      real_wheels_(real_->port(hal::port_type<hal::WheelSpeeds>())),
       supervisor_(params.rearm) {
   std::size_t largest = 1;
   for (const hal::PortType* type : space.ports(robot)) {
     if (type->role != hal::Role::Actuator) continue;
-    outputs_.push_back({type, space.port(robot, *type)});
+    outputs_.push_back({type, space.port(robot, *type), real_->port(*type)});
     largest = std::max(largest, type->size);
   }
   safe_ = std::make_unique<std::max_align_t[]>((largest + sizeof(std::max_align_t) - 1) / sizeof(std::max_align_t));
@@ -53,7 +61,8 @@ Twin::Twin(core::Space& space, core::RobotId robot, std::unique_ptr<RealRobot> r
 
 void Twin::latch(const Moment& now, RunPhase phase) {
   running_ = phase == RunPhase::Running;
-  real_->latch(now);
+  real_->set_origin(now.monotonic_ns - now.run_ns);
+  real_->latch(0, now.monotonic_ns);
   Conditions conditions;
   conditions.run = phase;
   conditions.operator_holds = space_.halted_by(robot_, core::HaltOwner::Operator);
@@ -92,7 +101,7 @@ void Twin::after_filter(const Moment& now) {
   const bool alive = supervisor_.verdict().may_drive && !space_.halted(robot_);
   if (running_) alive ? ++counts_.ticks_driving : ++counts_.ticks_held;
   send_commands(alive, now);
-  real_->commit(now);
+  real_->commit(now.monotonic_ns);
 }
 
 void Twin::send_commands(bool alive, const Moment& now) {
@@ -117,10 +126,12 @@ void Twin::send_commands(bool alive, const Moment& now) {
       if (keep_inside(fence_, target_)) ++counts_.fenced_ticks;
       command = &target_;
     }
-    if (real_->command(*output.type, command) && is_wheels(*output.type)) wheels_sent = true;
+    if (output.real == nullptr) continue;
+    std::memcpy(output.real, command, output.type->size);
+    wheels_sent = wheels_sent || is_wheels(*output.type);
   }
   // A controller without wheels leaves them where they are safe.
-  if (!wheels_sent) (void)real_->command(hal::port_type<hal::WheelSpeeds>(), &sent_);
+  if (!wheels_sent && real_wheels_ != nullptr) std::memcpy(real_wheels_, &sent_, sizeof sent_);
 }
 
 void Twin::hold(bool held) {

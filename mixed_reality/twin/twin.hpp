@@ -6,13 +6,14 @@
 #include <string_view>
 #include <vector>
 
+#include "bridges/robot_bridge.hpp"
 #include "core/space/space.hpp"
 #include "hal/log.hpp"
 #include "mixed_reality/fence/fence.hpp"
 #include "mixed_reality/fusion/port_fusion.hpp"
 #include "mixed_reality/safety/supervisor.hpp"
+#include "mixed_reality/time/moment.hpp"
 #include "mixed_reality/tracking/pose_source.hpp"
-#include "mixed_reality/twin/real_robot.hpp"
 
 namespace tandem::mixed_reality {
 
@@ -37,8 +38,8 @@ struct TwinCounts {
 class Twin {
  public:
   /// The entity becomes external: engines do not move it, others bump into it. All but `real` must outlive this.
-  Twin(core::Space& space, core::RobotId robot, std::unique_ptr<RealRobot> real, std::unique_ptr<PoseSource> poses,
-       const TwinParams& params, const hal::Log& log);
+  Twin(core::Space& space, core::RobotId robot, std::unique_ptr<bridges::RobotBridge> real,
+       std::unique_ptr<PoseSource> poses, const TwinParams& params, const hal::Log& log);
 
   /// Takes over the newest readings and pose, and decides whether the robot may move; its controller is held if not.
   void latch(const Moment& now, RunPhase phase);
@@ -49,8 +50,8 @@ class Twin {
 
   const std::string& id() const noexcept { return id_; }
   core::RobotId robot() const noexcept { return robot_; }
-  RealRobot& real() noexcept { return *real_; }
-  const RealRobot& real() const noexcept { return *real_; }
+  bridges::RobotBridge& real() noexcept { return *real_; }
+  const bridges::RobotBridge& real() const noexcept { return *real_; }
   /// Where the robot is in this tick: the tracked pose, carried on by what was commanded since it was taken.
   const core::Pose& pose() const noexcept { return pose_; }
   const PoseSource& poses() const noexcept { return *poses_; }
@@ -65,6 +66,7 @@ class Twin {
   struct Output {
     const hal::PortType* type;
     const void* port;  // in the space
+    void* real;        // null: the robot has none such
   };
 
   hal::Validity track(const Moment& now) noexcept;
@@ -75,13 +77,14 @@ class Twin {
   core::Space& space_;
   core::RobotId robot_;
   std::string id_;
-  std::unique_ptr<RealRobot> real_;
+  std::unique_ptr<bridges::RobotBridge> real_;
   std::unique_ptr<PoseSource> poses_;
   TwinParams params_;
   const hal::Log& log_;
   Fence fence_;
   PortFusion fusion_;
   std::vector<Output> outputs_;
+  void* real_wheels_;                         // null: it has none
   std::unique_ptr<std::max_align_t[]> safe_;  // the largest command, to be reset
   Supervisor supervisor_;
   core::Pose pose_;

@@ -1,17 +1,17 @@
 // A real robot for tests: a body that drives as it was last told, behind a link that the test cuts and mends.
 #pragma once
 #include <cmath>
-#include <cstring>
 #include <map>
 #include <string>
 #include <vector>
 
+#include "bridges/robot_bridge.hpp"
 #include "hal/device/leds.hpp"
 #include "hal/device/ring_sensors.hpp"
 #include "hal/device/wheels.hpp"
 #include "hal/spec/epuck.hpp"
+#include "mixed_reality/safety/supervisor.hpp"
 #include "mixed_reality/tracking/odometry.hpp"
-#include "mixed_reality/twin/real_robot.hpp"
 
 namespace tandem::mixed_reality {
 
@@ -44,21 +44,33 @@ struct FakeBody {
 };
 
 /// What a commit asks for is there at the next latch, stamped with the time of the commit.
-class FakeRobot final : public RealRobot {
+class FakeRobot final : public bridges::RobotBridge, private hal::Robot {
  public:
   explicit FakeRobot(FakeBody& body) : body_(body) {
     proximity_.count = 8;
     proximity_.range_m = 0.1F;
   }
 
-  void latch(const Moment& now) noexcept override {
-    if (first_) body_.moved_to_ns = now.monotonic_ns;
+  hal::Robot& robot() noexcept override { return *this; }
+  void* port(const hal::PortType& type) noexcept override {
+    if (type.layout == hal::port_type<hal::WheelEncoders>().layout) return &encoders_;
+    if (type.layout == hal::port_type<hal::Proximity>().layout) return &proximity_;
+    if (type.layout == hal::port_type<hal::WheelSpeeds>().layout) return &wheels_;
+    if (type.layout == hal::port_type<hal::RingLeds>().layout) return &leds_;
+    return nullptr;
+  }
+  void set_origin(hal::TimeNs origin_ns) noexcept override { origin_ns_ = origin_ns; }
+  void start() override { ++starts; }
+  void shut_down() override { ++ends; }
+
+  void latch(hal::Tick, hal::TimeNs now) noexcept override {
+    if (first_) body_.moved_to_ns = now;
     first_ = false;
-    body_.move_to(now.monotonic_ns);
+    body_.move_to(now);
     health_ = body_.link_up ? body_.health_when_up : LinkHealth::Lost;
     if (!sampled_) return;
     encoders_ = sample_;
-    encoders_.taken_ns = now.to_run(sampled_at_ns_);
+    encoders_.taken_ns = sampled_at_ns_ - origin_ns_;
     encoders_.validity = hal::Validity::Fresh;
     proximity_.distance_m.fill(static_cast<float>(body_.real_proximity_m));
     proximity_.taken_ns = encoders_.taken_ns;
@@ -66,41 +78,49 @@ class FakeRobot final : public RealRobot {
   }
   LinkHealth health() const noexcept override { return health_; }
   std::string trouble() const override { return body_.link_up ? "" : "cable out"; }
+  std::string advice() const override { return "is it switched on?"; }
+  std::string identity() const override { return "fake"; }
+  std::string link() const override { return body_.link_up ? "fake" : ""; }
+  bridges::StopMessages stop_messages() const override { return {"", "fake", "fake", "", 1}; }
+  std::uint64_t stop_version() const noexcept override { return 1; }
 
-  const void* reading(const hal::PortType& type) const noexcept override {
-    if (type.layout == hal::port_type<hal::WheelEncoders>().layout) return &encoders_;
-    if (type.layout == hal::port_type<hal::Proximity>().layout) return &proximity_;
-    return nullptr;
-  }
-  bool command(const hal::PortType& type, const void* port) noexcept override {
-    if (type.layout == hal::port_type<hal::WheelSpeeds>().layout)
-      return std::memcpy(&wheels_, port, type.size) != nullptr;
-    if (type.layout == hal::port_type<hal::RingLeds>().layout) return std::memcpy(&leds_, port, type.size) != nullptr;
-    return false;
-  }
-  void commit(const Moment& now) noexcept override {
+  void commit(hal::TimeNs now) noexcept override {
     if (!body_.link_up) return;
-    body_.move_to(now.monotonic_ns);
+    body_.move_to(now);
     body_.wheels = wheels_;
     body_.leds = leds_;
-    body_.received.push_back({now.monotonic_ns, wheels_});
+    body_.received.push_back({now, wheels_});
     sample_.left_m = body_.left_m;
     sample_.right_m = body_.right_m;
-    sampled_at_ns_ = now.monotonic_ns;
+    sampled_at_ns_ = now;
     sampled_ = true;
   }
-  void stop(const Moment& now) noexcept override {
+  void stop(hal::TimeNs now) noexcept override {
     ++stops;
     wheels_ = {};
     commit(now);
   }
-  bool stopped() const noexcept override { return stops > 0 && body_.link_up && body_.confirms_stops; }
-  LinkReport report() const override { return {.packets = body_.received.size()}; }
+  void resume() noexcept override {}
+  bool at_rest() const noexcept override { return stops > 0 && body_.link_up && body_.confirms_stops; }
+  bridges::LinkReport report() const override { return {.questions = body_.received.size()}; }
+  void describe(bridges::StatusVisitor& visitor) const override { visitor.text("state", "fake"); }
 
+  int starts = 0;
   int stops = 0;
+  int ends = 0;
 
  private:
+  std::string_view id() const noexcept override { return "fake"; }
+  const hal::DataSheet& data_sheet() const noexcept override { return hal::epuck::kDataSheet; }
+  std::uint64_t seed() const noexcept override { return 0; }
+  void* take(const hal::PortType& type) override {
+    void* data = port(type);
+    if (data == nullptr) throw hal::DeviceError("a fake robot has no '" + std::string(type.name) + "'");
+    return data;
+  }
+
   FakeBody& body_;
+  hal::TimeNs origin_ns_ = 0;
   bool first_ = true;
   bool sampled_ = false;
   hal::TimeNs sampled_at_ns_ = 0;

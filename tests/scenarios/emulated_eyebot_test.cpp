@@ -68,7 +68,7 @@ TEST_F(EmulatedEyebotFlies, AndLandsWhenItsHubEnds) {
   EXPECT_TRUE(eyebot.lines("malformed").empty()) << eyebot.log();
   const std::string report = text_of(folder.path() / "r.json");
   EXPECT_EQ(json_value(report, "state"), "active") << report;
-  EXPECT_EQ(json_value(report, "losses"), "0") << report;
+  EXPECT_EQ(json_value(report, "links_lost"), "0") << report;
   EXPECT_EQ(json_value(report, "messages_refused"), "0") << report;
   EXPECT_EQ(eyebot.end(), 0);
 }

@@ -172,7 +172,7 @@ TEST(EyebotBridge, FliesARobotInMemoryAndLandsItAtTheEnd) {
     ASSERT_TRUE(loop_until(bridge, [&] { return robot.seen().velocity_x > 0.0; }));
     EXPECT_EQ(place.validity, hal::Validity::Fresh);
     EXPECT_EQ(place.p_WB[2], 1.25);
-    EXPECT_NE(bridge.last_words("memq://").session, 0);
+    EXPECT_NE(bridge.last_words().session, 0);
   }
   const auto end = robot.seen();
   EXPECT_EQ(end.status.mode, messages::Status::MODE_IDLE);
@@ -266,7 +266,7 @@ TEST_F(OnLoopback, TheGuardianLandsARobotWhoseHubIsGone) {
     bridge.start();
     ASSERT_TRUE(bridge.wait_active(30 * hal::kNsPerSecond).ok());
     ASSERT_TRUE(loop_until(bridge, [&] { return bridge.status().flight.mode == Mode::Hover; }));
-    words = bridge.last_words("");
+    words = bridge.last_words();
     words.land = true;
     guardian->watch(words);
   }

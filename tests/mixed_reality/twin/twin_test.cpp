@@ -23,7 +23,7 @@ class TwinTest : public testing::Test {
     auto real = std::make_unique<FakeRobot>(body_);
     auto poses = std::make_unique<Odometry>(
         space_.pose(robot_), hal::epuck::kDataSheet,
-        *static_cast<const hal::WheelEncoders*>(real->reading(port_type<hal::WheelEncoders>())));
+        *static_cast<const hal::WheelEncoders*>(real->port(port_type<hal::WheelEncoders>())));
     TwinParams params;
     params.rearm = {.settle_s = 0.2, .ramp_m_s2 = 0.2};
     twin_ = std::make_unique<Twin>(space_, robot_, std::move(real), std::move(poses), params, log_);

@@ -1,7 +1,9 @@
-#include "mixed_reality/eyebot/real_eyebot.hpp"
+#include "mixed_reality/settings/eyebot_parts.hpp"
 
 #include <gmock/gmock.h>
 
+#include "bridges/eyebot/stop_body.hpp"
+#include "bridges/lcm/lcm_link.hpp"
 #include "hal/device/body_sensors.hpp"
 #include "hal/device/flight.hpp"
 #include "hal/device/wheels.hpp"
@@ -30,7 +32,7 @@ TEST(RealEyebotParts, AreWhatTheFileSays) {
   item.bridge->land_at_end = false;
   auto parts = eyebot_parts(item, 10);
   ASSERT_TRUE(parts.ok());
-  EXPECT_EQ(parts->url, "udpm://239.255.76.67:7667?ttl=0");
+  EXPECT_EQ(parts->settings.url, "udpm://239.255.76.67:7667?ttl=0");
   EXPECT_EQ(parts->settings.driver.name, "eb0");
   EXPECT_EQ(parts->settings.driver.robot.tick_ns, 100 * hal::kNsPerMs);
   EXPECT_EQ(parts->settings.driver.command_timeout_ns, 200 * hal::kNsPerMs);  // two ticks at least
@@ -59,31 +61,35 @@ TEST(RealEyebotParts, AreRefusedWithAReason) {
   EXPECT_THAT(error_of(item), HasSubstr("not an eye-bot"));
 }
 
-TEST(RealEyebot, HasItsDevicesButTheClockAndNoWheels) {
+TEST(RealEyebot, HasItsDevicesAndNoWheels) {
   auto parts = eyebot_parts(item_with(kLink), 10);
   ASSERT_TRUE(parts.ok());
-  parts->opener = [] { return bridges::lcm_bus::LcmLink::open("memq://"); };
-  RealEyebot robot(parts->settings, parts->opener, parts->url, {});
-  EXPECT_NE(robot.reading(hal::port_type<hal::Positioning>()), nullptr);
-  EXPECT_EQ(robot.reading(hal::port_type<hal::Clock>()), nullptr);
-  EXPECT_EQ(robot.reading(hal::port_type<hal::WheelEncoders>()), nullptr);
-  EXPECT_EQ(robot.reading(hal::port_type<hal::QuadrotorSpeed>()), nullptr);  // that is none
-  const hal::WheelSpeeds wheels;
-  EXPECT_FALSE(robot.command(hal::port_type<hal::WheelSpeeds>(), &wheels));
-  const hal::QuadrotorSpeed speed;
-  EXPECT_TRUE(robot.command(hal::port_type<hal::QuadrotorSpeed>(), &speed));
-  EXPECT_EQ(robot.last_words().name, "eb0");
-  EXPECT_EQ(robot.last_words().url, "udpm://239.255.76.67:7667?ttl=0");
+  bridges::eyebot::EyebotBridge robot(parts->settings, [] { return bridges::lcm_bus::LcmLink::open("memq://"); });
+  EXPECT_NE(robot.port(hal::port_type<hal::Positioning>()), nullptr);
+  EXPECT_EQ(robot.port(hal::port_type<hal::WheelEncoders>()), nullptr);
+  EXPECT_EQ(robot.port(hal::port_type<hal::WheelSpeeds>()), nullptr);
+  EXPECT_NE(robot.port(hal::port_type<hal::QuadrotorSpeed>()), nullptr);
+  const bridges::StopMessages messages = robot.stop_messages();
+  EXPECT_EQ(messages.link, kLink);
+  const auto words = bridges::eyebot::from_stop_body(messages.body);
+  ASSERT_TRUE(words);
+  EXPECT_EQ(words->name, "eb0");
+  EXPECT_EQ(words->session, robot.last_words().session);
+  EXPECT_EQ(words->hub, robot.last_words().hub);
+  EXPECT_TRUE(words->land);
+  EXPECT_FALSE(bridges::eyebot::from_stop_body("eb0"));
 }
 
 TEST(RealEyebot, ConnectsAsLongAsItWasNeverHeardOf) {
   auto parts = eyebot_parts(item_with(kLink), 10);
   ASSERT_TRUE(parts.ok());
-  RealEyebot robot(parts->settings, [] { return bridges::lcm_bus::LcmLink::open("memq://"); }, parts->url, {});
-  robot.latch({0, bridges::lcm_bus::monotonic_ns()});
-  EXPECT_EQ(robot.health(), LinkHealth::Connecting);
+  bridges::eyebot::EyebotBridge robot(parts->settings, [] { return bridges::lcm_bus::LcmLink::open("memq://"); });
+  robot.start();
+  robot.latch(0, bridges::lcm_bus::monotonic_ns());
+  EXPECT_EQ(robot.health(), bridges::LinkHealth::Connecting);
   EXPECT_THAT(robot.trouble(), HasSubstr("eyebot/eb0/heartbeat"));
-  EXPECT_FALSE(robot.stopped());
+  EXPECT_EQ(robot.identity(), "");
+  EXPECT_FALSE(robot.at_rest());
 }
 
 }  // namespace

@@ -1,7 +1,5 @@
 // Whole runs with the e-puck's bridge and the firmware emulator on pseudo-terminals, in real time. What is believed is
 // what the emulated robots say they did.
-#include "mixed_reality/epuck/real_epuck.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <condition_variable>
@@ -14,6 +12,8 @@
 #include "bridges/epuck_emulator/emulator.hpp"
 #include "bridges/link/link_text.hpp"
 #include "hal/spec/epuck.hpp"
+#include "mixed_reality/session/mixed_session.hpp"
+#include "mixed_reality/settings/epuck_parts.hpp"
 #include "tests/core/scenes.hpp"
 
 namespace tandem::mixed_reality {
@@ -164,20 +164,17 @@ class FourRealEpucks : public testing::Test {
   }
   static void TearDownTestSuite() { robots_.clear(); }
 
-  static hal::Result<std::unique_ptr<RealRobot>> make_robot(const RealRobotRequest& request) {
-    if (request.item.id != "is_cut") return make_real_robot(request, {});
-    auto opener = bridges::byte_link_opener(bridges::parse_link(request.item.bridge->link).value());
-    bridges::epuck::BridgeSettings settings;
-    settings.driver.robot.id = request.item.id;
-    settings.driver.robot.tick_ns = hal::time_of_tick(1, request.ticks_per_second);
-    return std::unique_ptr<RealRobot>(std::make_unique<RealEpuck>(
-        std::move(settings),
-        [opener = std::move(opener).value()]() -> hal::Result<std::unique_ptr<bridges::ByteLink>> {
-          auto inner = opener();
-          if (!inner.ok()) return inner.error();
-          return std::unique_ptr<bridges::ByteLink>(std::make_unique<CutLink>(std::move(inner).value(), cut_));
-        },
-        hal::Log{}));
+  static MadeBridge make_robot(const BridgeRequest& request) {
+    if (request.item.id != "is_cut") return make_bridge(request, {});
+    auto parts = epuck_parts(request.item, request.ticks_per_second);
+    if (!parts.ok()) return parts.error();
+    const auto open = [opener = parts->opener]() -> hal::Result<std::unique_ptr<bridges::ByteLink>> {
+      auto inner = opener();
+      if (!inner.ok()) return inner.error();
+      return std::unique_ptr<bridges::ByteLink>(std::make_unique<CutLink>(std::move(inner).value(), cut_));
+    };
+    return std::unique_ptr<bridges::RobotBridge>(
+        std::make_unique<bridges::epuck::EpuckBridge>(std::move(parts->settings), open));
   }
   static double distance(const core::Pose& a, const core::Pose& b) { return std::hypot(a.x_m - b.x_m, a.y_m - b.y_m); }
   static const RealRobotReport& report_of(const std::string& id) {
@@ -273,8 +270,8 @@ TEST(RealEpuck, AHangingHubIsStoppedByItsOwnBridge) {
   core::MadeWorld made = core::make(scene);
   ASSERT_TRUE(made.world) << made.all_problems();
   MonotonicTime time;
-  auto session = MixedSession::make(
-      std::move(made.world), [](const RealRobotRequest& request) { return make_real_robot(request, {}); }, time, {});
+  auto session = MixedSession::make(std::move(made.world),
+                                    [](const BridgeRequest& request) { return make_bridge(request, {}); }, time, {});
   ASSERT_TRUE(session.ok()) << session.error().message;
   ASSERT_TRUE(session.value()->connect(kGoOn).ok());
   EmulatedEpuck::Wheels before{}, during{};
@@ -305,30 +302,12 @@ TEST(RealEpuck, SaysWhatIsWrongWhenNobodyIsThere) {
   options.connect_timeout_ns = 100 * hal::kNsPerMs;
   options.stop_timeout_ns = 20 * hal::kNsPerMs;
   auto session = MixedSession::make(
-      std::move(made.world), [](const RealRobotRequest& request) { return make_real_robot(request, {}); }, time,
-      options);
+      std::move(made.world), [](const BridgeRequest& request) { return make_bridge(request, {}); }, time, options);
   ASSERT_TRUE(session.ok()) << session.error().message;
   const hal::Status connected = session.value()->connect(kGoOn);
   ASSERT_FALSE(connected.ok());
   EXPECT_NE(connected.error().message.find("'ep0' on serial:/dev/no_such_device"), std::string::npos)
       << connected.error().message;
-}
-
-TEST(RealEpuck, RefusesLinksAndKindsThatItCannotReach) {
-  core::RobotItem item;
-  item.kind = "e-puck";
-  item.id = "ep0";
-  item.bridge = core::BridgeConfig{"can:can0", "auto", 0.5, {}, 1};
-  const core::ControllerConfig controller;
-  EXPECT_FALSE(make_real_robot({item, controller, 10}, {}).ok());
-  item.bridge->link = "nonsense";
-  EXPECT_FALSE(make_real_robot({item, controller, 10}, {}).ok());
-  item.bridge->link = "serial:/dev/ttyUSB0";
-  EXPECT_TRUE(make_real_robot({item, controller, 10}, {}).ok());
-  item.kind = "foot-bot";
-  const auto made = make_real_robot({item, controller, 10}, {});
-  ASSERT_FALSE(made.ok());
-  EXPECT_NE(made.error().message.find("foot-bot"), std::string::npos);
 }
 
 }  // namespace

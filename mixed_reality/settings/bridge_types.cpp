@@ -1,0 +1,54 @@
+#include "mixed_reality/settings/bridge_types.hpp"
+
+#include <array>
+
+#include "hal/spec/epuck.hpp"
+#include "hal/spec/eyebot.hpp"
+#include "hal/spec/footbot.hpp"
+#include "mixed_reality/settings/epuck_parts.hpp"
+#include "mixed_reality/settings/eyebot_parts.hpp"
+#include "mixed_reality/settings/footbot_parts.hpp"
+
+namespace tandem::mixed_reality {
+namespace {
+
+std::vector<std::string> device_names(const std::vector<core::DeviceChoice>& choices) {
+  std::vector<std::string> names;
+  for (const core::DeviceChoice& c : choices) names.push_back(c.device);
+  return names;
+}
+
+/// From the parts of one kind, which `Parts` names, to its bridge.
+template <class Bridge, auto Parts>
+MadeBridge make(const BridgeRequest& request, const hal::Log& log) {
+  auto parts = Parts(request.item, request.ticks_per_second);
+  if (!parts.ok()) return parts.error();
+  auto& robot = parts->settings.driver.robot;
+  robot.seed = request.seed;
+  robot.sensors = device_names(request.controller.sensors);
+  robot.actuators = device_names(request.controller.actuators);
+  return std::unique_ptr<bridges::RobotBridge>(
+      std::make_unique<Bridge>(std::move(parts->settings), std::move(parts->opener), log));
+}
+
+}  // namespace
+
+std::span<const BridgeType> bridge_types() noexcept {
+  static const std::array<BridgeType, 3> types = {{
+      {hal::epuck::kDataSheet.kind, &make<bridges::epuck::EpuckBridge, &epuck_parts>},
+      {hal::footbot::kDataSheet.kind, &make<bridges::footbot::FootbotBridge, &footbot_parts>},
+      {hal::eyebot::kDataSheet.kind, &make<bridges::eyebot::EyebotBridge, &eyebot_parts>},
+  }};
+  return types;
+}
+
+MadeBridge make_bridge(const BridgeRequest& request, const hal::Log& log) {
+  std::string kinds;
+  for (const BridgeType& type : bridge_types()) {
+    if (type.kind == request.item.kind) return type.make(request, log);
+    kinds += (kinds.empty() ? "" : ", ") + std::string(type.kind);
+  }
+  return hal::Error{"there is no bridge to robots of the kind '" + request.item.kind + "'; there is: " + kinds};
+}
+
+}  // namespace tandem::mixed_reality

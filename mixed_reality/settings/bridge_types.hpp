@@ -1,0 +1,35 @@
+// The kinds of real robots that there are bridges to, and how each bridge is made from an experiment file.
+#pragma once
+#include <memory>
+#include <span>
+#include <string_view>
+
+#include "bridges/robot_bridge.hpp"
+#include "core/scenario/scenario.hpp"
+#include "hal/log.hpp"
+#include "hal/result.hpp"
+
+namespace tandem::mixed_reality {
+
+/// Whom to reach.
+struct BridgeRequest {
+  const core::RobotItem& item;  ///< `item.bridge` is set
+  const core::ControllerConfig& controller;
+  std::int64_t ticks_per_second = 10;
+  std::uint64_t seed = 1;
+};
+
+using MadeBridge = hal::Result<std::unique_ptr<bridges::RobotBridge>>;
+
+/// One kind's bridge. `make` does not wait for the robot.
+struct BridgeType {
+  std::string_view kind;
+  MadeBridge (*make)(const BridgeRequest& request, const hal::Log& log);
+};
+std::span<const BridgeType> bridge_types() noexcept;
+
+/// Makes the bridge that the robot's kind needs; both `tandem run` and `tandem robot` do so. Errors: no bridge for that
+/// kind; a link that does not suit it; what its own configuration lacks.
+MadeBridge make_bridge(const BridgeRequest& request, const hal::Log& log);
+
+}  // namespace tandem::mixed_reality

@@ -1,0 +1,64 @@
+#include "mixed_reality/settings/bridge_types.hpp"
+
+#include <gmock/gmock.h>
+
+#include "bridges/link/link_text.hpp"
+#include "hal/device/body_sensors.hpp"
+#include "hal/device/range_and_bearing.hpp"
+#include "hal/device/ring_sensors.hpp"
+#include "hal/device/wheels.hpp"
+
+namespace tandem::mixed_reality {
+namespace {
+
+using testing::HasSubstr;
+
+core::RobotItem epuck_on(const std::string& link) {
+  core::RobotItem item;
+  item.kind = "e-puck";
+  item.id = "ep0";
+  item.bridge = core::BridgeConfig{link, "auto", 0.5, {}, 1};
+  return item;
+}
+
+TEST(BridgeTypes, RefuseLinksAndKindsThatTheyCannotReach) {
+  core::RobotItem item = epuck_on("can:can0");
+  const core::ControllerConfig controller;
+  EXPECT_FALSE(make_bridge({item, controller}, {}).ok());
+  item.bridge->link = "nonsense";
+  EXPECT_FALSE(make_bridge({item, controller}, {}).ok());
+  item.bridge->link = "serial:/dev/ttyUSB0";
+  EXPECT_TRUE(make_bridge({item, controller}, {}).ok());
+  item.kind = "marsupial";
+  auto made = make_bridge({item, controller}, {});
+  ASSERT_FALSE(made.ok());
+  EXPECT_THAT(made.error().message, HasSubstr("'marsupial'; there is: e-puck, foot-bot, eye-bot"));
+}
+
+TEST(BridgeTypes, GiveTheGuardianALinkThatAProcessInAnotherFolderCanOpen) {
+  const core::RobotItem item = epuck_on("serial:dev/ep0");
+  auto made = make_bridge({item, {}}, {});
+  ASSERT_TRUE(made.ok());
+  const bridges::StopMessages messages = (*made)->stop_messages();
+  EXPECT_EQ(messages.robot, "ep0");
+  EXPECT_EQ(messages.kind, "e-puck");
+  EXPECT_THAT(messages.link, testing::MatchesRegex("serial:/.*/dev/ep0@115200"));
+  EXPECT_EQ(messages.version, (*made)->stop_version());
+}
+
+TEST(BridgeTypes, LetMoreBeReadThanTheControllerListsButNotByTheController) {
+  const core::RobotItem item = epuck_on("serial:/dev/ttyUSB0");
+  core::ControllerConfig controller;
+  controller.actuators.emplace_back().device = "differential_steering";
+  auto made = make_bridge({item, controller}, {});
+  ASSERT_TRUE(made.ok());
+  bridges::RobotBridge& bridge = **made;
+  EXPECT_THROW((void)bridge.robot().sensor<hal::Proximity>(), hal::DeviceError);
+  EXPECT_NE(bridge.port(hal::port_type<hal::WheelEncoders>()), nullptr);
+  EXPECT_NE(bridge.port(hal::port_type<hal::Battery>()), nullptr);
+  EXPECT_EQ(bridge.port(hal::port_type<hal::WheelSpeeds>()), &bridge.robot().actuator<hal::WheelSpeeds>());
+  EXPECT_EQ(bridge.port(hal::port_type<hal::RangeAndBearing>()), nullptr);  // not over the serial link
+}
+
+}  // namespace
+}  // namespace tandem::mixed_reality
