@@ -262,8 +262,11 @@ std::string EpuckBridge::link() const {
 }
 
 StopMessages EpuckBridge::stop_messages() const {
-  return {settings_.driver.robot.id, std::string(hal::epuck::kDataSheet.kind), absolute_link(settings_.link), "",
-          kStopVersion};
+  return {.robot = settings_.driver.robot.id,
+          .kind = std::string(hal::epuck::kDataSheet.kind),
+          .link = absolute_link(settings_.link),
+          .body = {},
+          .version = kStopVersion};
 }
 
 LinkReport EpuckBridge::report() const {

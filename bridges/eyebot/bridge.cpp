@@ -233,8 +233,12 @@ std::string EyebotBridge::link() const {
 }
 
 StopMessages EyebotBridge::stop_messages() const {
-  return {settings_.driver.robot.id, std::string(hal::eyebot::kDataSheet.kind), "lcm:" + settings_.url,
-          to_stop_body(last_words()), kStopVersion};
+  return {.robot = settings_.driver.robot.id,
+          .kind = std::string(hal::eyebot::kDataSheet.kind),
+          .link = "lcm:" + settings_.url,
+          .body = to_stop_body(last_words()),
+          .version = kStopVersion,
+          .name = driver_.settings().name};
 }
 
 /// Orders alone are answered; the rest of what is said and heard is in `describe`.

@@ -179,8 +179,11 @@ std::string FootbotBridge::link() const {
 
 StopMessages FootbotBridge::stop_messages() const {
   const std::lock_guard lock(mutex_);
-  return {settings_.driver.robot.id, std::string(hal::footbot::kDataSheet.kind), absolute_link(settings_.link),
-          to_stop_body(driver_.wiring().last_words()), driver_.wiring().last_words_version()};
+  return {.robot = settings_.driver.robot.id,
+          .kind = std::string(hal::footbot::kDataSheet.kind),
+          .link = absolute_link(settings_.link),
+          .body = to_stop_body(driver_.wiring().last_words()),
+          .version = driver_.wiring().last_words_version()};
 }
 
 LinkReport FootbotBridge::report() const {
