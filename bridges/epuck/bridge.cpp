@@ -35,7 +35,7 @@ SessionTiming timing_for(std::string_view link_name) noexcept {
   if (link_name.find("rfcomm") != std::string_view::npos) {
     timing.answer_ns = 500 * hal::kNsPerMs;
     timing.gap_ns = 200 * hal::kNsPerMs;
-    timing.drain_ns = 500 * hal::kNsPerMs;
+    timing.quiet_ns = 150 * hal::kNsPerMs;
   }
   return timing;
 }

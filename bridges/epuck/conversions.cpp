@@ -18,8 +18,6 @@ double charge_at(double supply_V) noexcept {
   return clamp_unit((supply_V - spec::kBatteryEmpty_V) / (spec::kBatteryFull_V - spec::kBatteryEmpty_V));
 }
 
-constexpr double kWebotsRest = 2000.0;  // counts at rest of Webots' firmware [Webots, remote control plug-in]
-
 // e-puck2: 12-bit converter at 3 V behind a divider of 220 and 330 kOhm [e-puck2_main-processor, battery code].
 constexpr double kEpuck2VoltsPerCount = 3.0 / 4096.0 * (220.0 + 330.0) / 330.0;
 
@@ -68,15 +66,6 @@ double light_level(std::uint16_t ambient) noexcept {
 
 double ground_reflectance(std::uint16_t counts) noexcept {
   return clamp_unit(counts / double{spec::kGroundWhiteRaw});
-}
-
-std::array<double, 3> force_m_s2(const std::array<std::int16_t, 3>& counts, Firmware firmware) noexcept {
-  constexpr double kScale = spec::kGravity_m_s2 / spec::kCountsPerG;
-  if (firmware == Firmware::Webots) {
-    return {-(counts[0] - kWebotsRest) * kScale, (counts[1] - kWebotsRest) * kScale,
-            (counts[2] - kWebotsRest) * kScale};
-  }
-  return {counts[0] * kScale, counts[1] * kScale, counts[2] * kScale};
 }
 
 double sound_level(std::uint16_t volume) noexcept {

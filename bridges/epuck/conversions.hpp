@@ -31,8 +31,6 @@ double proximity_counts(double distance_m) noexcept;
 double light_level(std::uint16_t ambient) noexcept;
 /// Reflectance, 0 black to 1 white.
 double ground_reflectance(std::uint16_t counts) noexcept;
-/// Specific force along one axis. Webots' firmware sends raw counts with 2000 at rest; all others are zeroed at start.
-std::array<double, 3> force_m_s2(const std::array<std::int16_t, 3>& counts, Firmware firmware) noexcept;
 /// 0 silence to 1 full scale.
 double sound_level(std::uint16_t volume) noexcept;
 

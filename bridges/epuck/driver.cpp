@@ -1,6 +1,7 @@
 #include "bridges/epuck/driver.hpp"
 
 #include <algorithm>
+#include <limits>
 
 #include "bridges/epuck/conversions.hpp"
 #include "hal/filter.hpp"
@@ -14,13 +15,51 @@ constexpr double kMaxSpeed_m_s = hal::epuck::kDataSheet.max_wheel_speed_m_s;
 // A packet has at most 64 bytes; a link that does not take them at once is about to hang.
 constexpr hal::TimeNs kWriteBudget = 2 * hal::kNsPerMs;
 
+constexpr hal::TimeNs kNever = std::numeric_limits<hal::TimeNs>::max();
+
+// Between an answer and the latch that it is for.
+constexpr hal::TimeNs kLeastMargin = 2 * hal::kNsPerMs;
+constexpr hal::TimeNs kLargestMargin = 20 * hal::kNsPerMs;
+
+constexpr hal::TimeNs kPumpEvery = 20 * hal::kNsPerMs;
+constexpr hal::TimeNs kStall = 30 * hal::kNsPerMs;
+
 }  // namespace
 
 EpuckDriver::EpuckDriver(DriverSettings settings, hal::Log log)
-    : settings_(std::move(settings)), log_(std::move(log)), robot_(settings_.robot), session_(settings_.timing) {}
+    : settings_(std::move(settings)),
+      log_(std::move(log)),
+      robot_(settings_.robot),
+      session_(settings_.timing),
+      ask_due_ns_(kNever),
+      margin_ns_(kLeastMargin) {}
 
 void EpuckDriver::latch(hal::Tick tick, hal::TimeNs now) noexcept {
   robot_.fill(session_.samples(), session_.identity(), tick, now);
+  judge_margin();
+  foresee_latch(now);
+}
+
+// Latches come at even intervals, some of them late: an early one sets the rhythm, a late one hardly.
+void EpuckDriver::foresee_latch(hal::TimeNs now) noexcept {
+  const hal::TimeNs tick_ns = settings_.robot.tick_ns;
+  const hal::TimeNs late = now - next_latch_ns_;
+  if (next_latch_ns_ == 0 || late < 0 || late > tick_ns / 2)
+    next_latch_ns_ = now + tick_ns;
+  else
+    next_latch_ns_ += tick_ns + late / 16;
+}
+
+void EpuckDriver::judge_margin() noexcept {
+  if (asked_ns_ == 0) return;
+  const hal::TimeNs taken = session_.samples().taken_ns[static_cast<std::size_t>(Quantity::Encoders)];
+  if (taken >= asked_ns_) {
+    margin_ns_ = std::max(kLeastMargin, margin_ns_ - margin_ns_ / 32);
+  } else if (session_.state() == SessionState::Active) {
+    ++statistics_.late_answers;
+    margin_ns_ = std::min(2 * margin_ns_, kLargestMargin);
+  }
+  asked_ns_ = 0;
 }
 
 hal::WheelSpeeds EpuckDriver::filtered(hal::TimeNs now) noexcept {
@@ -69,7 +108,31 @@ void EpuckDriver::commit(hal::TimeNs now) noexcept {
     actuation.right = to_steps_per_s(wheels.right_m_s);
   }
   moving_ = actuation.left.value != 0 || actuation.right.value != 0;
+  const hal::TimeNs lead = session_.expected_round_trip(robot_.demand()) + margin_ns_;
+  ask_due_ns_ = std::min(ask_due_ns_, next_latch_ns_ - lead);
+  if (ask_due_ns_ > now) {
+    session_.command(actuation, now);
+    return;
+  }
   session_.request(actuation, robot_.demand(), now);
+  asked_ns_ = now;
+  ask_due_ns_ = kNever;
+}
+
+void EpuckDriver::ask_when_due(hal::TimeNs now) noexcept {
+  if (now < ask_due_ns_) return;
+  session_.ask(robot_.demand(), now);
+  asked_ns_ = now;
+  ask_due_ns_ = kNever;
+}
+
+// Whoever was kept from pumping was probably not alone: the robot's side may have been as well.
+void EpuckDriver::notice_stall(hal::TimeNs now) noexcept {
+  if (pumped_ns_ != 0 && now - pumped_ns_ >= kStall) {
+    ++statistics_.stalls;
+    session_.stalled(now - pumped_ns_ - kPumpEvery);
+  }
+  pumped_ns_ = now;
 }
 
 void EpuckDriver::send(ByteLink& link) noexcept {
@@ -81,6 +144,7 @@ void EpuckDriver::send(ByteLink& link) noexcept {
 
 void EpuckDriver::pump(ByteLink& link, hal::TimeNs now) noexcept {
   std::array<std::uint8_t, 256> buffer;
+  notice_stall(now);
   if (link.state() == LinkState::Open) session_.link_up(now);
   send(link);  // what commit or stop queued goes first
   for (Received r = link.read(buffer); r.size > 0; r = link.read(buffer)) {
@@ -89,6 +153,7 @@ void EpuckDriver::pump(ByteLink& link, hal::TimeNs now) noexcept {
   }
   if (link.state() != LinkState::Open) session_.link_down(now);
   session_.poll(now);
+  ask_when_due(now);
   if (moving_ && now - last_commit_ns_ > settings_.command_timeout_ns) {
     ++statistics_.watchdog_stops;
     moving_ = false;
@@ -107,7 +172,7 @@ void EpuckDriver::link_gone(hal::TimeNs now) noexcept {
 }
 
 hal::TimeNs EpuckDriver::next_deadline() const noexcept {
-  const hal::TimeNs deadline = session_.next_deadline();
+  const hal::TimeNs deadline = std::min(session_.next_deadline(), ask_due_ns_);
   return moving_ ? std::min(deadline, last_commit_ns_ + settings_.command_timeout_ns + 1) : deadline;
 }
 
@@ -143,8 +208,18 @@ Odometry EpuckDriver::odometry() const noexcept {
 
 void EpuckDriver::log_change() {
   const SessionState state = session_.state();
-  if (state == logged_) return;
+  const AccelerometerCheck& accelerometer = session_.samples().accelerometer;
+  if (state == logged_ && accelerometer.verdict() == logged_accelerometer_) return;
   const std::string who = "e-puck '" + settings_.robot.id + "': ";
+  if (accelerometer.verdict() != logged_accelerometer_) {
+    logged_accelerometer_ = accelerometer.verdict();
+    if (logged_accelerometer_ == AccelerometerCheck::Verdict::Refused) {
+      log_.warning(who + "its accelerometer reads " + std::to_string(accelerometer.at_rest_m_s2()) +
+                   " m/s2 at rest instead of 9.8: its readings are not believed; is it another firmware than '" +
+                   std::string(session_.identity().version_text()) + "'?");
+    }
+  }
+  if (state == logged_) return;
   if (state == SessionState::Active) {
     log_.info(who + "active, " + std::string(firmware_name(session_.identity().firmware)) + ", " +
               std::string(session_.identity().version_text()));

@@ -1,8 +1,11 @@
 // One e-puck without threads: robot, session and safety, driven by whoever owns the time.
 //
 // A tick of the caller:   latch(tick, now) -> controller step -> commit(now) -> pump(link, now)
-// Between ticks, whenever bytes may have come or `next_deadline()` is due: pump(link, now).
-// What is asked for by the commit of tick k fills the ports of tick k + 1.
+// Between ticks, whenever bytes may have come or `next_deadline()` is due, and at least each 20 ms: pump(link, now).
+//
+// Commands leave at once. The question whose answer fills the ports of tick k + 1 leaves as late as it may: the next
+// latch is foreseen from the last ones, a round trip is foreseen from the last ones and the bytes' own time, and a
+// margin grows when answers came too late. When a tick is too short for that, both leave in one packet.
 #pragma once
 #include <string>
 
@@ -29,13 +32,15 @@ struct DriverStatistics {
   std::uint64_t watchdog_stops = 0;  ///< for want of commits
   std::uint64_t faults = 0;          ///< reported with `fault`
   std::uint64_t refused_bytes = 0;   ///< that the link did not take
+  std::uint64_t late_answers = 0;    ///< not there when they were to be latched
+  std::uint64_t stalls = 0;          ///< times that `pump` was not called for 30 ms and more
 };
 
 /// What the wheels rolled, as their counters tell.
 struct Odometry {
   double left_m = 0.0;
   double right_m = 0.0;
-  hal::TimeNs taken_ns = 0;   ///< arrival on the link's clock; 0: nothing yet
+  hal::TimeNs taken_ns = 0;   ///< when the robot measured it, on the link's clock; 0: nothing yet
   std::uint64_t rebased = 0;  ///< grows when motion in between is unknown (restart, long loss)
 };
 
@@ -75,6 +80,8 @@ class EpuckDriver {
   const DriverStatistics& statistics() const noexcept { return statistics_; }
   Odometry odometry() const noexcept;
   bool stopped() const noexcept { return halted_; }
+  /// The robot itself has confirmed that it stands, and nothing that moves it was sent since.
+  bool at_rest() const noexcept { return session_.at_rest(); }
   /// Nothing is awaited from the robot.
   bool idle() const noexcept { return session_.idle(); }
 
@@ -82,6 +89,10 @@ class EpuckDriver {
   void send(ByteLink& link) noexcept;
   void log_change();
   hal::WheelSpeeds filtered(hal::TimeNs now) noexcept;
+  void foresee_latch(hal::TimeNs now) noexcept;
+  void judge_margin() noexcept;
+  void ask_when_due(hal::TimeNs now) noexcept;
+  void notice_stall(hal::TimeNs now) noexcept;
 
   DriverSettings settings_;
   hal::Log log_;
@@ -96,6 +107,12 @@ class EpuckDriver {
   hal::TimeNs last_commit_ns_ = 0;
   hal::TimeNs ramp_start_ns_ = 0;
   bool ramping_ = false;
+  hal::TimeNs next_latch_ns_ = 0;  // foreseen; 0: not yet
+  hal::TimeNs ask_due_ns_;         // never: no question waits for its time
+  hal::TimeNs asked_ns_ = 0;       // for the next latch; 0: not
+  hal::TimeNs margin_ns_;
+  hal::TimeNs pumped_ns_ = 0;  // 0: not yet
+  AccelerometerCheck::Verdict logged_accelerometer_ = AccelerometerCheck::Verdict::Unchecked;
 };
 
 }  // namespace tandem::bridges::epuck

@@ -11,8 +11,38 @@ constexpr std::string_view kGreeting = "\x0C\x07WELCOME";
 constexpr std::string_view kVersionMark = "v,Version ";
 constexpr std::string_view kHardwareMark = "HW version: ";
 
-/// [GCtronic, EPFL, Webots] version strings of the firmwares in use.
+/// [GCtronic, EPFL, Webots] version strings of the firmwares in use. Any two differ in at least ten letters.
+struct Known {
+  std::string_view version;
+  Firmware firmware;
+};
+constexpr std::array<Known, 4> kKnown = {{{"Version 2.0.0 January 2008", Firmware::BTcom},
+                                          {"Version 1.2.2 August 2008 GCtronic", Firmware::GCtronic},
+                                          {"Version 1.5.3 November 2016 (Webots)", Firmware::Webots},
+                                          {"Version 2.0 January 2018 GCtronic", Firmware::Epuck2}}};
+constexpr std::size_t kFewLetters = 4;
+
+/// Letters to be inserted, taken away or changed to make one of the other [Levenshtein 1966].
+std::size_t letters_apart(std::string_view a, std::string_view b) noexcept {
+  std::array<std::size_t, 64> row{};
+  if (b.size() >= row.size()) return row.size();
+  for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i + 1;
+    for (std::size_t j = 0; j < b.size(); ++j) {
+      const std::size_t changed = diagonal + (a[i] == b[j] ? 0 : 1);
+      diagonal = row[j + 1];
+      row[j + 1] = std::min({changed, row[j] + 1, row[j + 1] + 1});
+    }
+  }
+  return row[b.size()];
+}
+
 Firmware firmware_of(std::string_view version) noexcept {
+  for (const Known& known : kKnown) {
+    if (letters_apart(version, known.version) <= kFewLetters) return known.firmware;
+  }
   if (version.find("Webots") != std::string_view::npos) return Firmware::Webots;
   if (version.starts_with("Version 2.0.0")) return Firmware::BTcom;
   if (version.starts_with("Version 2.")) return Firmware::Epuck2;
@@ -105,6 +135,10 @@ std::string_view firmware_name(Firmware firmware) noexcept {
 
 std::string_view Identity::version_text() const noexcept {
   return {version.data(), static_cast<std::size_t>(std::find(version.begin(), version.end(), '\0') - version.begin())};
+}
+
+bool is_known_version(std::string_view version) noexcept {
+  return std::any_of(kKnown.begin(), kKnown.end(), [&](const Known& known) { return known.version == version; });
 }
 
 bool parse_version(std::string_view line, Identity& identity) noexcept {

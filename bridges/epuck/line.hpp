@@ -57,7 +57,10 @@ struct Identity {
   std::string_view version_text() const noexcept;
   bool is_epuck2() const noexcept { return firmware == Firmware::Epuck2; }
 };
-/// Finds "v,Version …" anywhere in the line (rests of other answers may stand before it).
+/// Whether this is, letter for letter, what a firmware in use says of itself.
+bool is_known_version(std::string_view version) noexcept;
+/// Finds "v,Version …" anywhere in the line (rests of other answers may stand before it). A few letters that were lost
+/// or changed on the way do not hide a known firmware.
 bool parse_version(std::string_view line, Identity& identity) noexcept;
 /// "HW version: 1A", hexadecimal.
 bool parse_hardware(std::string_view line, std::uint32_t& hardware) noexcept;

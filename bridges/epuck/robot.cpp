@@ -85,7 +85,8 @@ void* EpuckRobot::find(const hal::PortType& type) noexcept {
 void EpuckRobot::stamp(hal::Reading& reading, Quantity quantity, const Samples& samples,
                        hal::TimeNs now) const noexcept {
   if (!samples.known.has(quantity)) return;  // stays absent: never received, or not to be had from this firmware
-  const hal::TimeNs taken = samples.taken_ns[static_cast<std::size_t>(quantity)];
+  // A stamp in the future is not believed.
+  const hal::TimeNs taken = std::min(samples.taken_ns[static_cast<std::size_t>(quantity)], now);
   reading.taken_ns = taken - settings_.origin_ns;
   reading.validity = now - taken <= settings_.fresh_ns ? hal::Validity::Fresh : hal::Validity::Stale;
 }
@@ -105,11 +106,17 @@ void EpuckRobot::fill(const Samples& samples, const Identity& identity, hal::Tic
     convert(raw.proximity, proximity_.count, proximity_.distance_m, proximity_distance_m);
   }
   if (samples.known.has(Quantity::Ambient)) convert(raw.ambient, light_.count, light_.level, light_level);
-  if (samples.known.has(Quantity::Ground)) convert(raw.ground, ground_.count, ground_.reflectance, ground_reflectance);
+  if (samples.known.has(Quantity::Ground)) {
+    // The board counts from the left, the data sheet from the right.
+    convert(std::array{raw.ground[2], raw.ground[1], raw.ground[0]}, ground_.count, ground_.reflectance,
+            ground_reflectance);
+  }
   if (samples.known.has(Quantity::Microphones))
     convert(raw.microphones, microphones_.count, microphones_.level, sound_level);
-  if (samples.known.has(Quantity::Acceleration)) {
-    const auto force = force_m_s2(raw.acceleration, identity.firmware);
+  if (samples.accelerometer.verdict() != AccelerometerCheck::Verdict::Believed) {
+    accelerometer_.validity = hal::Validity::Absent;
+  } else if (samples.known.has(Quantity::Acceleration)) {
+    const auto force = force_m_s2(raw.acceleration, samples.accelerometer.zero());
     std::transform(force.begin(), force.end(), accelerometer_.force_m_s2.begin(),
                    [](double v) { return static_cast<float>(v); });
   }

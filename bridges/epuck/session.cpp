@@ -12,13 +12,18 @@ namespace {
 using hal::TimeNs;
 
 constexpr TimeNs kNever = std::numeric_limits<TimeNs>::max();
-constexpr TimeNs kByteNs = 86'806;       // 10 bits at 115200 baud
-constexpr std::size_t kSpeedsSize = 4;   // answer of E
-constexpr std::size_t kFlushZeros = 40;  // the longest payload of a binary command has 35 bytes
+constexpr TimeNs kByteNs = 86'806;      // 10 bits at 115200 baud
+constexpr std::size_t kSpeedsSize = 4;  // answer of E
+
+// Zeros behind "set speeds": however many of its own four bytes are lost, what follows is not taken for speeds.
+constexpr std::size_t kBehindSpeeds = 8;
+constexpr std::size_t kBehindLamps = 2;
+constexpr std::size_t kVersionBytes = 100;  // of both lines
+constexpr TimeNs kMostAllowed = 500 * hal::kNsPerMs;
 
 // No e-puck turns its wheels faster [e-puck2, MOTOR_SPEED_LIMIT].
 constexpr double kFastestSteps_s = 1100.0;
-// Readings may be this much older or younger than their arrival says.
+// Readings may be this much older or younger than their stamp says.
 constexpr double kStampDoubt_s = 0.25;
 // Beyond this the 16-bit counters may have gone round once.
 constexpr TimeNs kCountersAmbiguous = 25 * hal::kNsPerSecond;
@@ -27,15 +32,17 @@ void append_zeros(Packet& packet, std::size_t n) noexcept {
   for (std::size_t i = 0; i < n; ++i) packet.append({0});
 }
 
-void append_stop(Packet& packet) noexcept {
-  append_speeds(packet, {}, {});
-  append_end(packet);
-  append_line(packet, 'S');
-}
-
 bool known_probe_size(Quantity quantity, std::size_t size) noexcept {
   if (quantity == Quantity::Battery) return size == 0 || size == 2;
   return size == 0 || size == 6 || size == 8 || size == 10;
+}
+
+bool same_lamps(const Actuation& a, const Actuation& b) noexcept {
+  return a.ring == b.ring && a.body == b.body && a.front == b.front;
+}
+
+TimeNs transfer_ns(std::size_t bytes) noexcept {
+  return static_cast<TimeNs>(bytes) * kByteNs;
 }
 
 }  // namespace
@@ -58,14 +65,17 @@ const char* state_name(SessionState state) noexcept {
   return "";
 }
 
+Session::Session(const SessionTiming& timing) noexcept
+    : timing_(timing), stop_(StopTiming{.quiet_ns = timing.quiet_ns, .answer_ns = timing.answer_ns}) {}
+
 // --- link ---
 
 void Session::link_up(TimeNs now) noexcept {
   if (phase_ != Phase::Down) return;
   if (state_ == SessionState::Absent) state_ = SessionState::Handshake;
-  layout_known_ = false;  // another robot may be at this port now
-  attempts_ = 1;
-  begin_handshake(now, true);
+  identity_known_ = layout_known_ = false;  // another robot may be at this port now
+  attempts_ = 0;
+  begin_handshake(now);
 }
 
 void Session::link_down(TimeNs) noexcept {
@@ -76,67 +86,114 @@ void Session::link_down(TimeNs) noexcept {
   ++statistics_.links_lost;
   output_.clear();
   pending_ = false;
+  at_rest_ = false;
 }
 
-// --- handshake ---
+void Session::stalled(TimeNs duration) noexcept {
+  const TimeNs by = std::clamp<TimeNs>(duration, 0, kMostAllowed - allowed_ns_);
+  allowed_ns_ += by;
+  if (phase_ == Phase::Stop)
+    stop_.extend(by);
+  else if (phase_ != Phase::Rest && phase_ != Phase::Idle && phase_ != Phase::Down)
+    deadline_ns_ += by;
+}
 
-void Session::begin_handshake(TimeNs now, bool quick) noexcept {
+// --- stop and handshake ---
+
+void Session::begin_handshake(TimeNs now) noexcept {
   ++statistics_.handshakes;
   handshaking_ = true;
-  stop_line_due_ = false;
   pending_ = false;
+  pending_quantities_ = {};
   wanted_.left = wanted_.right = {};
-  lines_.clear();
-  output_.clear();
-  append_zeros(output_, kFlushZeros);
-  append_speeds(output_, {}, {});  // a robot that hears but is not heard stops as well
-  append_end(output_);
-  output_.append({'\r'});
-  if (quick) {
-    ask_version();
-    deadline_ns_ = now + 2 * timing_.answer_ns + 150 * kByteNs;
-  } else {
-    phase_ = Phase::Drain;
-    deadline_ns_ = now + timing_.drain_ns;
+  version_asks_ = 0;
+  asked_again_ = told_again_ = false;
+  begin_stop(now);
+}
+
+void Session::begin_stop(TimeNs now) noexcept {
+  at_rest_ = false;
+  lamps_known_ = false;  // S puts the ring out as well
+  speeds_due_ = false;
+  failed_rounds_ = 0;
+  allowed_ns_ = 0;
+  phase_ = Phase::Stop;
+  stop_.begin(now);
+  go_on_stopping(now);
+}
+
+void Session::go_on_stopping(TimeNs now) noexcept {
+  stop_.poll(now, output_);
+  for (; failed_rounds_ < stop_.failed_rounds(); ++failed_rounds_) {
+    allowed_ns_ = 0;
+    ++statistics_.handshake_failures;
+    if (!handshaking_) {  // so the robot has lost step, not only been stopped
+      handshaking_ = true;
+      ++statistics_.handshakes;
+      state_ = SessionState::Suspect;
+      trouble_ = "a stop was not confirmed";
+    }
+    if (++attempts_ < timing_.tries) continue;
+    state_ = SessionState::Lost;
+    if (*trouble_ == '\0') trouble_ = "no e-puck answers";
   }
 }
 
-void Session::ask_version() noexcept {
-  append_line(output_, 'V');
-  append_line(output_, 'S');
-  phase_ = Phase::Version;
+void Session::on_rest(TimeNs now) noexcept {
+  at_rest_ = true;
+  sent_.left = sent_.right = {};
+  speeds_before_ = {};
+  if (stop_asked_) ++statistics_.stops_confirmed;
+  stop_asked_ = false;
+  if (ending_ || resting_) {
+    phase_ = Phase::Rest;
+    deadline_ns_ = ending_ ? kNever : now + timing_.retry_ns;
+    resting_ = false;
+  } else if (!handshaking_) {
+    phase_ = Phase::Idle;
+  } else if (identity_known_) {
+    introduced(now);
+  } else {
+    ask_version(now);
+  }
 }
 
 void Session::attempt_failed(TimeNs now) noexcept {
   ++statistics_.handshake_failures;
-  if (attempts_ < timing_.tries) {
-    ++attempts_;
-    begin_handshake(now, false);
-    return;
+  if (++attempts_ >= timing_.tries) {
+    state_ = SessionState::Lost;
+    if (*trouble_ == '\0') trouble_ = "no e-puck answers";
   }
-  if (*trouble_ == '\0') trouble_ = "no e-puck answers";
-  rest(now);
+  begin_handshake(now);
 }
 
-void Session::rest(TimeNs now) noexcept {
-  state_ = SessionState::Lost;
-  phase_ = Phase::Rest;
-  handshaking_ = false;
-  pending_ = false;
-  wanted_.left = wanted_.right = {};
-  say_stop_blindly();
-  deadline_ns_ = now + timing_.retry_ns;
+void Session::ask_version(TimeNs now) noexcept {
+  ++version_asks_;
+  lines_.clear();
+  output_.clear();
+  append_line(output_, 'V');
+  phase_ = Phase::Version;
+  allowed_ns_ = 0;
+  deadline_ns_ = now + timing_.answer_ns + transfer_ns(kVersionBytes);
+}
+
+void Session::introduced(TimeNs now) noexcept {
+  if (layout_known_)
+    finish_handshake();
+  else
+    send_probe(Phase::ProbeBattery, Quantity::Battery, now);
 }
 
 void Session::send_probe(Phase phase, Quantity quantity, TimeNs now) noexcept {
-  // Speeds 0 first, so that E answers four zeros: they show that this is the answer, and where it ends.
-  append_speeds(output_, {}, {});
+  // The robot's commanded speeds are 0, so E answers four zeros: they show that this is the answer, and where it ends.
   append_query(output_, quantity);
   append_query(output_, Quantity::CommandedSpeeds);
   append_end(output_);
+  append_end(output_);
   phase_ = phase;
   answer_size_ = 0;
-  deadline_ns_ = now + timing_.answer_ns + timing_.gap_ns + 32 * kByteNs;
+  allowed_ns_ = 0;
+  deadline_ns_ = now + timing_.answer_ns + timing_.gap_ns;
 }
 
 void Session::on_probe_byte(std::uint8_t byte, TimeNs at) noexcept {
@@ -173,23 +230,24 @@ void Session::finish_handshake() noexcept {
   state_ = SessionState::Ready;
   phase_ = Phase::Idle;
   handshaking_ = false;
+  attempts_ = 0;
   ++epoch_;
-  sent_known_ = false;
   counters_doubtful_ = true;
   pending_ = true;  // the first exchange makes it active
+  pending_quantities_ = wanted_quantities_;
 }
 
 void Session::lose_step(const char* why, TimeNs now) noexcept {
   state_ = SessionState::Suspect;
   trouble_ = why;
-  if (++odd_answers_ >= 2) layout_known_ = false;
+  attempts_ = 0;
+  if (++odd_answers_ >= 2) identity_known_ = layout_known_ = false;
   if (odd_answers_ > timing_.tries) {
     // It shakes hands well and then answers oddly, again and again: no hammering.
-    rest(now);
-    return;
+    state_ = SessionState::Lost;
+    resting_ = true;
   }
-  attempts_ = 1;
-  begin_handshake(now, true);
+  begin_handshake(now);
 }
 
 // --- bytes in ---
@@ -198,6 +256,7 @@ void Session::on_bytes(std::span<const std::uint8_t> bytes, TimeNs at) noexcept 
   for (const std::uint8_t byte : bytes) on_byte(byte, at);
   // Only now: bytes that follow an answer at once cannot be the answer to what is sent here.
   if (phase_ == Phase::Idle) send_pending(at);
+  if (phase_ == Phase::Stop) go_on_stopping(at);
 }
 
 void Session::on_byte(std::uint8_t byte, TimeNs at) noexcept {
@@ -207,8 +266,14 @@ void Session::on_byte(std::uint8_t byte, TimeNs at) noexcept {
     return;
   }
   switch (phase_) {
+    case Phase::Stop:
+      stop_.on_byte(byte, at);
+      if (stop_.confirmed()) on_rest(at);
+      break;
+    case Phase::Hardware:
+      deadline_ns_ = std::max(deadline_ns_, at + timing_.gap_ns);
+      [[fallthrough]];
     case Phase::Version:
-    case Phase::StopLine:
       if (lines_.push(byte)) on_line(lines_.line(), at);
       statistics_.cut_lines = lines_.cut_lines();
       break;
@@ -218,13 +283,16 @@ void Session::on_byte(std::uint8_t byte, TimeNs at) noexcept {
       break;
     case Phase::Answer:
       answer_[answer_size_++] = byte;
+      deadline_ns_ = std::max(deadline_ns_, at + timing_.quiet_ns);  // it is coming
       if (answer_size_ == answer_expected_) on_answer(at);
+      break;
+    case Phase::Again:
+      deadline_ns_ = std::min(std::max(deadline_ns_, at + timing_.quiet_ns), given_up_ns_);
       break;
     case Phase::Idle:
       ++statistics_.unasked_bytes;
       lose_step("bytes came that were not asked for", at);
       break;
-    case Phase::Drain:
     case Phase::Rest:
     case Phase::Down:
       break;
@@ -233,76 +301,116 @@ void Session::on_byte(std::uint8_t byte, TimeNs at) noexcept {
 
 void Session::on_greeting(TimeNs at) noexcept {
   restarted_ = true;
-  layout_known_ = false;
+  identity_known_ = layout_known_ = false;
+  attempts_ = 0;
   if (epoch_ > 0) {
     ++statistics_.restarts;
     trouble_ = "the robot was restarted";
     state_ = SessionState::Handshake;
   }
-  attempts_ = 1;
-  begin_handshake(at, true);
+  begin_handshake(at);
 }
 
 void Session::on_line(std::string_view line, TimeNs at) noexcept {
   if (line.starts_with("z,")) ++statistics_.not_understood;
-  if (phase_ == Phase::Version) {
-    if (!parse_version(line, identity_)) return;  // greeting, rests of older answers
-    phase_ = Phase::StopLine;
-    deadline_ns_ = answer_deadline(48, at);
+  if (phase_ == Phase::Hardware) {
+    if (parse_hardware(line, identity_.hardware)) on_version(at);
     return;
   }
-  if (parse_hardware(line, identity_.hardware) || line != "s") return;
-  if (!handshaking_) {
-    ++statistics_.stops_confirmed;
-    phase_ = Phase::Idle;
-  } else if (layout_known_) {
-    finish_handshake();
-  } else {
-    send_probe(Phase::ProbeBattery, Quantity::Battery, at);
+  Identity heard;
+  if (!parse_version(line, heard)) return;  // greeting, rests of older answers
+  const bool clean = is_known_version(heard.version_text());
+  if (!clean) ++statistics_.odd_versions;
+  // What no known firmware says is believed when it is said twice alike, and in the end anyhow.
+  const bool twice = version_asks_ > 1 && heard.version_text() == identity_.version_text();
+  identity_ = heard;
+  identity_known_ = clean || twice || version_asks_ >= timing_.tries;
+  phase_ = Phase::Hardware;
+  deadline_ns_ = at + timing_.gap_ns;
+}
+
+// Both lines have come, or the second does not.
+void Session::on_version(TimeNs at) noexcept {
+  if (!identity_known_) {
+    ask_version(at);
+    return;
   }
+  samples_.accelerometer.reset(identity_.firmware);
+  introduced(at);
 }
 
 void Session::on_answer(TimeNs at) noexcept {
-  phase_ = stop_line_due_ ? Phase::StopLine : Phase::Idle;
-  stop_line_due_ = false;
+  phase_ = Phase::Idle;
   RawSensors raw = samples_.raw;
   if (decode_answer(std::span(answer_.data(), answer_size_), asked_, layout_, raw) != Decoded::Ok) {
     ++statistics_.implausible;
     lose_step("an answer held values that cannot be", at);
     return;
   }
-  if (!counters_doubtful_ && counters_known_ && !encoders_plausible(raw.encoders, at)) {
+  const TimeNs round_trip = at - asked_ns_;
+  const TimeNs latency = std::max<TimeNs>(0, round_trip - transfer_ns(asked_bytes_ + answer_expected_)) / 2;
+  latency_ns_ = std::max(latency, latency_ns_ - (latency_ns_ - latency) / 8);
+  // The robot measures when it has read the question: before its answer travels.
+  const TimeNs taken = std::clamp(at - transfer_ns(answer_expected_) - latency, std::min(asked_ns_, at), at);
+  if (asked_.has(Quantity::Encoders) && counters_known_ && !counters_doubtful_ &&
+      !encoders_plausible(raw.encoders, taken)) {
     ++statistics_.encoder_jumps;
     lose_step("the wheel counters jumped", at);
     return;
   }
-  take_encoders(raw.encoders, at);
-  samples_.raw = raw;
-  samples_.known.add(asked_);
-  for (std::size_t i = 0; i < kQuantityCount; ++i) {
-    if (asked_.has(static_cast<Quantity>(i))) samples_.taken_ns[i] = at;
-  }
+  asked_again_ = false;
+  if (!speeds_as_told(raw.commanded, at)) return;
+  take_samples(raw, taken);
   state_ = SessionState::Active;
   trouble_ = "";
   ++statistics_.answers;
-  statistics_.last_round_trip_ns = at - asked_ns_;
-  statistics_.max_round_trip_ns = std::max(statistics_.max_round_trip_ns, statistics_.last_round_trip_ns);
-  statistics_.sum_round_trip_ns += statistics_.last_round_trip_ns;
+  statistics_.last_round_trip_ns = round_trip;
+  statistics_.max_round_trip_ns = std::max(statistics_.max_round_trip_ns, round_trip);
+  statistics_.sum_round_trip_ns += round_trip;
+}
+
+bool Session::speeds_as_told(const std::array<std::int16_t, 2>& commanded, TimeNs at) noexcept {
+  if (commanded[0] == sent_.left.value && commanded[1] == sent_.right.value) {
+    told_again_ = false;
+    return true;
+  }
+  ++statistics_.wrong_speeds;
+  // Its old speeds: the command was lost as a whole.
+  if (!told_again_ && commanded[0] == speeds_before_[0].value && commanded[1] == speeds_before_[1].value) {
+    told_again_ = true;
+    speeds_due_ = true;
+    pending_ = true;
+    return true;
+  }
+  lose_step("it has other wheel speeds than it was told", at);
+  return false;
+}
+
+void Session::take_samples(const RawSensors& raw, TimeNs taken) noexcept {
+  const bool stands =
+      asked_.has(Quantity::Encoders) && counters_known_ && at_rest_ && raw.encoders == samples_.raw.encoders;
+  if (stands && asked_.has(Quantity::Acceleration)) samples_.accelerometer.at_rest(raw.acceleration);
+  if (asked_.has(Quantity::Encoders)) take_encoders(raw.encoders, taken);
+  samples_.raw = raw;
+  samples_.known.add(asked_);
+  for (std::size_t i = 0; i < kQuantityCount; ++i) {
+    if (asked_.has(static_cast<Quantity>(i))) samples_.taken_ns[i] = taken;
+  }
 }
 
 // --- wheel counters ---
 
-bool Session::encoders_plausible(const std::array<std::int16_t, 2>& counters, TimeNs at) const noexcept {
-  const TimeNs since = at - samples_.taken_ns[static_cast<std::size_t>(Quantity::Encoders)];
+bool Session::encoders_plausible(const std::array<std::int16_t, 2>& counters, TimeNs taken) const noexcept {
+  const TimeNs since = taken - samples_.taken_ns[static_cast<std::size_t>(Quantity::Encoders)];
   if (since > kCountersAmbiguous) return false;
   const double most = kFastestSteps_s * (hal::to_seconds(since) + kStampDoubt_s);
   return std::abs(encoder_difference(counters[0], samples_.raw.encoders[0])) <= most &&
          std::abs(encoder_difference(counters[1], samples_.raw.encoders[1])) <= most;
 }
 
-void Session::take_encoders(const std::array<std::int16_t, 2>& counters, TimeNs at) noexcept {
-  const double since_s = hal::to_seconds(at - samples_.taken_ns[static_cast<std::size_t>(Quantity::Encoders)]);
-  const bool continues = counters_known_ && !restarted_ && encoders_plausible(counters, at);
+void Session::take_encoders(const std::array<std::int16_t, 2>& counters, TimeNs taken) noexcept {
+  const double since_s = hal::to_seconds(taken - samples_.taken_ns[static_cast<std::size_t>(Quantity::Encoders)]);
+  const bool continues = counters_known_ && !restarted_ && encoders_plausible(counters, taken);
   if (counters_known_ && !continues) ++statistics_.encoder_rebased;
   const std::int32_t left = continues ? encoder_difference(counters[0], samples_.raw.encoders[0]) : 0;
   const std::int32_t right = continues ? encoder_difference(counters[1], samples_.raw.encoders[1]) : 0;
@@ -317,11 +425,8 @@ void Session::take_encoders(const std::array<std::int16_t, 2>& counters, TimeNs 
 
 // --- time-outs ---
 
-TimeNs Session::answer_deadline(std::size_t bytes_in, TimeNs now) const noexcept {
-  return now + timing_.answer_ns + static_cast<TimeNs>(output_.size() + bytes_in) * kByteNs;
-}
-
 TimeNs Session::next_deadline() const noexcept {
+  if (phase_ == Phase::Stop) return stop_.next_deadline();
   return phase_ == Phase::Down || phase_ == Phase::Idle ? kNever : deadline_ns_;
 }
 
@@ -329,30 +434,34 @@ void Session::poll(TimeNs now) noexcept {
   if (phase_ == Phase::Idle) send_pending(now);
   if (now < next_deadline()) return;
   switch (phase_) {
-    case Phase::Drain:
-      ask_version();
-      deadline_ns_ = now + timing_.version_ns;
+    case Phase::Stop:
+      go_on_stopping(now);
+      break;
+    case Phase::Version:
+      if (version_asks_ < timing_.tries)
+        ask_version(now);
+      else
+        attempt_failed(now);
+      break;
+    case Phase::Hardware:
+      on_version(now);
       break;
     case Phase::ProbeBattery:
     case Phase::ProbeGround:
       finish_probe(now);
       break;
     case Phase::Rest:
-      attempts_ = timing_.tries;  // one try, then rest again
-      begin_handshake(now, false);
+      attempts_ = timing_.tries;
+      begin_handshake(now);
       break;
     case Phase::Answer:
-      ++(answer_size_ == 0 ? statistics_.silent : statistics_.cut_short);
-      lose_step(answer_size_ == 0 ? "no answer" : "an answer was cut short", now);
+      miss_answer(now);
       break;
-    case Phase::Version:
-    case Phase::StopLine:
-      if (handshaking_) {
-        attempt_failed(now);
-      } else {
-        ++statistics_.silent;
-        lose_step("a stop was not confirmed", now);
-      }
+    case Phase::Again:
+      speeds_due_ = true;
+      pending_ = true;
+      pending_quantities_.add(asked_);
+      send_pending(now);
       break;
     case Phase::Idle:
     case Phase::Down:
@@ -360,18 +469,57 @@ void Session::poll(TimeNs now) noexcept {
   }
 }
 
+void Session::miss_answer(TimeNs now) noexcept {
+  const bool silent = answer_size_ == 0;
+  ++(silent ? statistics_.silent : statistics_.cut_short);
+  if (asked_again_ || state_ != SessionState::Active) {
+    lose_step(silent ? "no answer" : "an answer was cut short", now);
+    return;
+  }
+  asked_again_ = true;
+  ++statistics_.asked_again;
+  append_zeros(output_, kBehindSpeeds);  // end what may be half-received
+  phase_ = Phase::Again;
+  deadline_ns_ = now + timing_.quiet_ns;
+  given_up_ns_ = now + 10 * timing_.quiet_ns;
+}
+
+TimeNs Session::expected_round_trip(QuantitySet quantities) const noexcept {
+  quantities.add({Quantity::Encoders, Quantity::CommandedSpeeds});
+  constexpr std::size_t kQuestion = kQuantityCount + 2;  // and fewer bytes where less is asked
+  return transfer_ns(kQuestion + answer_size(quantities, layout_)) + 2 * latency_ns_;
+}
+
 // --- bytes out ---
 
-void Session::request(const Actuation& actuation, QuantitySet quantities, TimeNs now) noexcept {
-  const bool talking = state_ == SessionState::Ready || state_ == SessionState::Active;
+void Session::keep(const Actuation& actuation) noexcept {
   wanted_ = actuation;
-  if (!talking) wanted_.left = wanted_.right = {};
-  wanted_quantities_ = quantities;
-  wanted_quantities_.add(Quantity::Encoders);
-  if (!talking) return;
-  if (pending_ && phase_ != Phase::Idle) ++statistics_.replaced;
+  if (!talking() || ending_) wanted_.left = wanted_.right = {};
+}
+
+void Session::command(const Actuation& actuation, TimeNs now) noexcept {
+  keep(actuation);
+  if (!talking()) return;
+  const bool other_speeds = wanted_.left != sent_.left || wanted_.right != sent_.right;
+  const bool due = !lamps_known_ || now - refreshed_ns_ >= timing_.refresh_ns;
+  if (!other_speeds && !due && same_lamps(wanted_, sent_)) return;
   pending_ = true;
   if (phase_ == Phase::Idle) send_pending(now);
+}
+
+void Session::ask(QuantitySet quantities, TimeNs now) noexcept {
+  wanted_quantities_ = quantities;
+  wanted_quantities_.add(Quantity::Encoders);
+  if (!talking()) return;
+  if (!pending_quantities_.empty() && phase_ != Phase::Idle) ++statistics_.replaced;
+  pending_quantities_.add(wanted_quantities_);
+  pending_ = true;
+  if (phase_ == Phase::Idle) send_pending(now);
+}
+
+void Session::request(const Actuation& actuation, QuantitySet quantities, TimeNs now) noexcept {
+  keep(actuation);
+  ask(quantities, now);
 }
 
 void Session::send_pending(TimeNs now) noexcept {
@@ -379,29 +527,45 @@ void Session::send_pending(TimeNs now) noexcept {
   pending_ = false;
   if (state_ == SessionState::Active) odd_answers_ = 0;  // nothing followed the last answer that should not have
   output_.clear();
-  append_actuation(now);
-  append_queries(output_, wanted_quantities_, layout_);
+  append_lamps(now);
+  append_wheels();
+  asked_ = pending_quantities_;
+  asked_.add(Quantity::CommandedSpeeds);
+  pending_quantities_ = {};
+  append_queries(output_, asked_, layout_);
   append_end(output_);
-  asked_ = wanted_quantities_;
+  append_end(output_);  // one of them may be lost
   if (layout_.battery_bytes == 0) asked_.remove(Quantity::Battery);
   if (layout_.ground_bytes == 0) asked_.remove(Quantity::Ground);
   if (layout_.gyro_bytes == 0) asked_.remove(Quantity::Gyro);
   answer_expected_ = answer_size(asked_, layout_);
   answer_size_ = 0;
+  asked_bytes_ = output_.size();
   asked_ns_ = now;
-  deadline_ns_ = answer_deadline(answer_expected_, now);
+  allowed_ns_ = 0;
+  deadline_ns_ = now + timing_.answer_ns + transfer_ns(asked_bytes_ + answer_expected_);
   phase_ = Phase::Answer;
   ++statistics_.packets;
 }
 
-void Session::append_actuation(TimeNs now) noexcept {
-  const bool all = !sent_known_ || now - refreshed_ns_ >= timing_.refresh_ns;
+void Session::append_wheels() noexcept {
+  const bool other = wanted_.left != sent_.left || wanted_.right != sent_.right;
+  // Each speed setting switches the motor phases off for an instant: only on change.
+  if (!other && !speeds_due_) return;
+  append_speeds(output_, wanted_.left, wanted_.right);
+  append_zeros(output_, kBehindSpeeds);
+  if (other) speeds_before_ = {sent_.left, sent_.right};
+  sent_.left = wanted_.left;
+  sent_.right = wanted_.right;
+  speeds_due_ = false;
+  if (sent_.left.value != 0 || sent_.right.value != 0) at_rest_ = false;
+}
+
+void Session::append_lamps(TimeNs now) noexcept {
+  const bool all = !lamps_known_ || now - refreshed_ns_ >= timing_.refresh_ns;
   const auto led = [&](std::uint8_t index, bool on, bool was_on) {
     if (all || on != was_on) append_led(output_, index, on ? LedAction::On : LedAction::Off);
   };
-  // Each speed setting switches the motor phases off for an instant: only on change.
-  if (all || wanted_.left != sent_.left || wanted_.right != sent_.right)
-    append_speeds(output_, wanted_.left, wanted_.right);
   bool rgb_changed = all;
   std::array<std::uint8_t, 12> rgb_percent{};
   for (std::size_t i = 0; i < wanted_.ring.size(); ++i) {
@@ -418,43 +582,37 @@ void Session::append_actuation(TimeNs now) noexcept {
   if (identity_.is_epuck2() && rgb_changed) append_rgb_leds(output_, rgb_percent);
   led(kBodyLedIndex, wanted_.body, sent_.body);
   led(kFrontLedIndex, wanted_.front, sent_.front);
+  if (!output_.empty()) append_zeros(output_, kBehindLamps);
   if (all) refreshed_ns_ = now;
-  sent_ = wanted_;
-  sent_known_ = true;
+  sent_.ring = wanted_.ring;
+  sent_.body = wanted_.body;
+  sent_.front = wanted_.front;
+  lamps_known_ = true;
 }
 
 void Session::stop(TimeNs now) noexcept {
   wanted_.left = wanted_.right = {};
-  pending_ = false;
-  sent_known_ = false;  // S puts the ring out as well
-  const bool stopping = stop_line_due_ || phase_ == Phase::StopLine;
-  if (phase_ == Phase::Down || handshaking_ || stopping) return;  // a handshake stops the robot itself
+  if (phase_ == Phase::Down || stop_asked_) return;
   ++statistics_.stops;
-  if (phase_ == Phase::Rest) {
-    say_stop_blindly();
+  if (at_rest_) {
+    ++statistics_.stops_confirmed;
     return;
   }
-  lines_.clear();
-  append_stop(output_);
-  stop_line_due_ = phase_ == Phase::Answer;
-  deadline_ns_ = std::max(stop_line_due_ ? deadline_ns_ : 0, answer_deadline(3, now));
-  if (!stop_line_due_) phase_ = Phase::StopLine;
+  stop_asked_ = true;
+  pending_ = false;
+  pending_quantities_ = {};
+  if (phase_ != Phase::Stop) begin_stop(now);
 }
 
 void Session::farewell(TimeNs now) noexcept {
-  stop(now);
-  if (!handshaking_) return;
-  say_stop_blindly();
-  handshaking_ = false;
-  state_ = SessionState::Lost;
-  phase_ = Phase::Rest;
-  deadline_ns_ = kNever;
-}
-
-void Session::say_stop_blindly() noexcept {
-  output_.clear();
-  append_zeros(output_, kFlushZeros);
-  append_stop(output_);
+  ending_ = true;
+  wanted_.left = wanted_.right = {};
+  pending_ = false;
+  pending_quantities_ = {};
+  if (phase_ == Phase::Down) return;
+  if (!stop_asked_) ++statistics_.stops;
+  stop_asked_ = true;
+  if (phase_ != Phase::Stop) begin_stop(now);
 }
 
 }  // namespace tandem::bridges::epuck

@@ -267,14 +267,22 @@ void Firmware::play(std::int32_t sound, hal::TimeNs at) {
   event(at, "sound", {{"number", sound >= 1 && sound <= 5 ? sound : 0}});
 }
 
-std::array<int, 3> Firmware::acceleration(const BodySenses& senses) const {
-  std::array<int, 3> raw{};
-  for (std::size_t i = 0; i < raw.size(); ++i) raw[i] = acceleration_counts(senses.force_m_s2[i]);
-  if (facts_.acceleration_zero != 0) {  // unsigned readings around that zero, x the other way round
-    raw = {facts_.acceleration_zero - raw[0], facts_.acceleration_zero + raw[1], facts_.acceleration_zero + raw[2]};
-    for (int& value : raw) value = std::clamp(value, 0, hal::epuck::kAdcMax);
+// The chip is mounted so that its first axis points left, its second forward, its third up.
+std::array<int, 3> Firmware::acceleration(const BodySenses& senses, int zero) const {
+  const std::array<double, 3>& force = senses.force_m_s2;
+  std::array<int, 3> raw = {acceleration_counts(force[1]), acceleration_counts(force[0]),
+                            acceleration_counts(force[2])};
+  for (int& value : raw) {
+    value += zero;
+    if (zero != 0) value = std::clamp(value, 0, hal::epuck::kAdcMax);  // the converter's own, without sign
   }
   return raw;
+}
+
+// The board counts from left to right; the body as the data sheet does.
+std::array<double, 3> Firmware::ground(const BodySenses& senses) const {
+  if (!options_.ground_board) return {};
+  return {senses.ground[2], senses.ground[1], senses.ground[0]};
 }
 
 std::array<int, 8> Firmware::proximity(const BodySenses& senses, bool calibrated) const {

@@ -116,7 +116,8 @@ class Firmware {
   void actuate(hal::TimeNs at);
   void count_steps(hal::TimeNs at);
   void play(std::int32_t sound, hal::TimeNs at);
-  std::array<int, 3> acceleration(const BodySenses& senses) const;
+  std::array<int, 3> acceleration(const BodySenses& senses, int zero) const;
+  std::array<double, 3> ground(const BodySenses& senses) const;
   std::array<int, 8> proximity(const BodySenses& senses, bool calibrated) const;
   int battery_raw(const BodySenses& senses) const;
   std::size_t image_bytes() const;

@@ -76,7 +76,7 @@ bool Firmware::obey_question(char letter, hal::TimeNs at) {
   const BodySenses senses = body_.sense(at);
   switch (letter) {
     case 'A':
-      send_text(answer_of('a', acceleration(senses)), at);
+      send_text(answer_of('a', acceleration(senses, facts_.acceleration_zero_ascii)), at);
       return true;
     case 'C':
       send_text(answer_of('c', std::array{int{options_.selector}}), at);
@@ -94,7 +94,7 @@ bool Firmware::obey_question(char letter, hal::TimeNs at) {
     }
     case 'M': {
       std::vector<int> ground;
-      for (const double g : senses.ground) ground.push_back(options_.ground_board ? ground_counts(g) : 0);
+      for (const double g : this->ground(senses)) ground.push_back(ground_counts(g));
       if (options_.cliff_sensors && facts_.small_b_g) {
         for (const double g : senses.cliff) ground.push_back(ground_counts(g));
       }
@@ -183,10 +183,11 @@ bool Firmware::obey_order(char letter, std::string_view arguments, hal::TimeNs a
     }
     case 'S': {
       event(at, "stop", {});
-      if (facts_.stop_clears_speeds) m.speed_left = m.speed_right = 0;
+      if (facts_.stop_clears_all) m.speed_left = m.speed_right = 0;
       set_speeds(0, 0, "S", at);
       BodyCommand lights = m.lights;
       lights.ring = 0;
+      if (facts_.stop_clears_all) lights.body_led = lights.front_led = false;
       show_lights(lights, at);
       send_text("s\r\n", at);
       return true;

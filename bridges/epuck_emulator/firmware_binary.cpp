@@ -104,10 +104,10 @@ void Firmware::obey_binary_letter(char letter, hal::TimeNs at) {
   const BodySenses senses = body_.sense(at);
   switch (letter) {
     case 'a':
-      for (const int value : acceleration(senses)) put16(value);
+      for (const int value : acceleration(senses, facts_.acceleration_zero)) put16(value);
       break;
     case 'A': {
-      const Tilt tilt = tilt_of(acceleration(senses));
+      const Tilt tilt = tilt_of(acceleration(senses, 0));
       put_float(tilt.acceleration_raw);
       put_float(tilt.orientation_deg);
       put_float(tilt.inclination_deg);
@@ -203,7 +203,7 @@ void Firmware::put_float(float value) {
 
 // The e-puck2 runs its loop one round too far: 8 bytes, and the host that counts on 6 is out of step.
 void Firmware::put_ground(const BodySenses& senses) {
-  for (const double g : senses.ground) put16(options_.ground_board ? ground_counts(g) : 0);
+  for (const double g : ground(senses)) put16(ground_counts(g));
   if (options_.variant == Variant::Epuck2) {
     put16(0);
   } else if (options_.cliff_sensors && options_.variant == Variant::Gctronic) {

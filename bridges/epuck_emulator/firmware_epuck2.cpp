@@ -113,9 +113,8 @@ void Firmware::set_all_actuators(hal::TimeNs at) {
 
 // 103 bytes, in the order of the table in e-puck2_cpp_remote_library.
 void Firmware::put_all_sensors(const BodySenses& senses) {
-  const std::array<int, 3> force = acceleration(senses);
-  const Tilt tilt = tilt_of(force);
-  for (const int value : force) put16(value);
+  const Tilt tilt = tilt_of(acceleration(senses, 0));
+  for (const int value : acceleration(senses, facts_.acceleration_zero)) put16(value);
   put_float(tilt.acceleration_raw);
   put_float(tilt.orientation_deg);
   put_float(tilt.inclination_deg);
@@ -132,7 +131,7 @@ void Firmware::put_all_sensors(const BodySenses& senses) {
   put8(0);                              // no memory card
   for (int i = 0; i < 3; ++i) put8(0);  // no remote control
   put8(options_.selector);
-  for (const double g : senses.ground) put16(options_.ground_board ? ground_counts(g) : 0);
+  for (const double g : ground(senses)) put16(ground_counts(g));
   for (int i = 0; i < 3; ++i) put16(0);  // ambient light beneath the robot
   put8(0);
 }

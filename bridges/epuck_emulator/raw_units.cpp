@@ -64,15 +64,15 @@ int battery_percent(double battery_V) {
 }
 
 Tilt tilt_of(const std::array<int, 3>& raw) {
-  const double x = raw[0];
-  const double y = raw[1];
-  const double z = raw[2];
-  const double flat = std::hypot(x, y);
+  const double left = raw[0];
+  const double ahead = raw[1];
+  const double up = raw[2];
+  const double flat = std::hypot(ahead, left);
   Tilt tilt;
-  tilt.acceleration_raw = static_cast<float>(std::hypot(flat, z));
-  const double orientation_deg = std::atan2(y, x) * kDegrees;
+  tilt.acceleration_raw = static_cast<float>(std::hypot(flat, up));
+  const double orientation_deg = std::atan2(left, ahead) * kDegrees;
   tilt.orientation_deg = static_cast<float>(orientation_deg < 0.0 ? orientation_deg + 360.0 : orientation_deg);
-  tilt.inclination_deg = static_cast<float>(std::atan2(flat, z) * kDegrees);
+  tilt.inclination_deg = static_cast<float>(std::atan2(flat, up) * kDegrees);
   return tilt;
 }
 

@@ -24,10 +24,10 @@ int battery_counts_epuck2(double battery_V);
 /// 0 at 3.4 V, 100 at 4.2 V.
 int battery_percent(double battery_V);
 
-/// What the firmware derives from the accelerometer.
+/// What the firmware derives from the accelerometer, whose axes point left, forward and up.
 struct Tilt {
   float acceleration_raw = 0.0F;  ///< length of the vector of counts
-  float orientation_deg = 0.0F;   ///< of its part in the plane of the body, counter-clockwise from x, 0 to 360
+  float orientation_deg = 0.0F;   ///< of its part in the plane of the body, counter-clockwise from ahead, 0 to 360
   float inclination_deg = 0.0F;   ///< between it and the body's vertical, 0 to 180
 };
 Tilt tilt_of(const std::array<int, 3>& counts);

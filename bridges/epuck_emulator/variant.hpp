@@ -23,9 +23,10 @@ struct VariantFacts {
   bool small_b_g;                    ///< b (battery) and g (gyro) are commands of their own
   bool link_test;                    ///< X
   bool i2c;                          ///< W, Y, Z
-  bool stop_clears_speeds;           ///< E answers 0 after S
+  bool stop_clears_all;              ///< S puts out body and front as well, and E answers 0 after it
   bool calibrated_binary;            ///< binary N has the offsets taken off
-  int acceleration_zero;             ///< what the accelerometer reads without a force
+  int acceleration_zero;             ///< binary: what the accelerometer reads without a force
+  int acceleration_zero_ascii;       ///< the same in a line
   std::size_t buffer_bytes;          ///< for one image; lines and answers have some more
 };
 

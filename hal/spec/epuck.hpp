@@ -24,7 +24,7 @@ inline constexpr double kProximityRange_m = 0.1;                                
 inline constexpr double kRabRange_m = 0.8;                                                         // [ARGoS]
 inline constexpr unsigned kRabPayload = 2;                                                         // [ARGoS]
 inline constexpr double kGravity_m_s2 = 9.81;
-inline constexpr double kCountsPerG = 800.0;  // [Webots] accelerometer
+inline constexpr double kCountsPerG = 800.0;  // accelerometer [GCtronic, Webots]
 inline constexpr int kAdcMax = 4095;          // 12 bits
 inline constexpr int kAmbientDarkRaw =
     4095;  // ambient light falls with brightness: 4095 dark, 0 saturated, linear between
@@ -56,7 +56,8 @@ inline constexpr std::array<Mount, 8> kInfrared = {
     detail::on_rim(50, 0.642787609686539, 0.766044443118978, kBodyRadius_m, kSensorHeight_m),
     detail::on_rim(17, 0.956304755963035, 0.292371704722737, kBodyRadius_m, kSensorHeight_m)};
 
-// Ground sensors [ARGoS]: 30 mm ahead, index 0 right.
+// Ground sensors [ARGoS]: 30 mm ahead, index 0 right. The real board counts from the left [GCtronic, sensors/ground.h]:
+// the bridge turns its readings round.
 inline constexpr std::array<Mount, 3> kGround = {Mount{0, 0.03, -0.009, 0}, Mount{0, 0.03, 0, 0},
                                                  Mount{0, 0.03, 0.009, 0}};
 

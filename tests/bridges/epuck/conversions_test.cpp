@@ -88,19 +88,6 @@ TEST(EpuckGround, IsBlackAtZeroAndWhiteAtFullScale) {
   EXPECT_DOUBLE_EQ(ground_reflectance(65535), 1.0);
 }
 
-TEST(EpuckAccelerometer, ReadsGravityAtRest) {
-  const auto rest = force_m_s2({0, 0, 800}, Firmware::GCtronic);
-  EXPECT_NEAR(rest[2], 9.81, 1e-9);
-  EXPECT_NEAR(rest[0], 0.0, 1e-9);
-}
-
-TEST(EpuckAccelerometer, TakesWebotsRawCountsFromTheirRestValue) {
-  const auto rest = force_m_s2({2000, 2000, 2800}, Firmware::Webots);
-  EXPECT_NEAR(rest[2], 9.81, 1e-9);
-  EXPECT_NEAR(rest[0], 0.0, 1e-9);
-  EXPECT_LT(force_m_s2({2400, 2000, 2800}, Firmware::Webots)[0], 0.0);
-}
-
 TEST(EpuckBattery, IsLinearBetweenTheDocumentedPoints) {
   EXPECT_NEAR(battery_state(2070, Firmware::GCtronic).supply_V, 3.4, 1e-9);
   EXPECT_NEAR(battery_state(2070, Firmware::GCtronic).charge, 0.0, 1e-9);

@@ -362,6 +362,8 @@ TEST(EpuckDriver, LeavesTheRobotStoppedAtTheEnd) {
   rig.driver.farewell(rig.now);
   rig.run(20 * kMs);
   EXPECT_EQ(rig.robot.left, 0);
+  rig.run(200 * kMs);
+  EXPECT_EQ(rig.robot.left, 0);
   EXPECT_TRUE(rig.driver.idle());
   EXPECT_EQ(rig.driver.session().statistics().stops_confirmed, 1U);
 }
@@ -374,6 +376,30 @@ TEST(EpuckDriver, LogsEachChangeOnceWithItsReason) {
   for (int i = 0; i < 60; ++i) rig.tick();
   EXPECT_THAT(rig.log, testing::ElementsAre(HasSubstr("active, asercom (GCtronic)"), HasSubstr("suspect: no answer"),
                                             HasSubstr("lost: no answer")));
+}
+
+TEST(EpuckDriver, RefusesAnAccelerometerThatDoesNotReadGravityAtRestAndSaysSo) {
+  Rig rig;
+  rig.robot.acceleration = {0, 0, 800};  // of another firmware than this one's version promises
+  const auto& accelerometer = rig.driver.robot().sensor<hal::Accelerometer>();
+  rig.connect();
+  for (int i = 0; i < 5; ++i) rig.tick();
+  EXPECT_EQ(accelerometer.validity, hal::Validity::Absent);
+  EXPECT_THAT(rig.log, testing::Contains(HasSubstr("at rest instead of 9.8: its readings are not believed")));
+  rig.robot.acceleration = {2048, 2048, 2848};
+  for (int i = 0; i < 5; ++i) rig.tick();
+  EXPECT_EQ(accelerometer.validity, hal::Validity::Fresh);
+}
+
+TEST(EpuckDriver, TurnsTheGroundSensorsRound) {
+  Rig rig;
+  const auto& ground = rig.driver.robot().sensor<hal::Ground>();
+  rig.robot.ground = {1023, 512, 0, 0, 0};  // left, centre, right
+  rig.connect();
+  rig.tick();
+  rig.driver.latch(1, rig.now);
+  EXPECT_FLOAT_EQ(ground.reflectance[0], 0.0F) << "the data sheet's first is on the right";
+  EXPECT_FLOAT_EQ(ground.reflectance[2], 1.0F);
 }
 
 TEST(EpuckDriver, HoldsOutAgainstALinkThatLosesCorruptsAndBreaks) {

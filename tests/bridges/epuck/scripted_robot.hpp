@@ -26,12 +26,14 @@ class ScriptedRobot {
   std::array<int, 8> ambient{4095, 4095, 4095, 4095, 4095, 4095, 4095, 4095};
   std::array<int, 5> ground{1023, 0, 1023, 4, 5};
   int battery = 2315;
+  std::array<int, 3> acceleration{2048, 2048, 2848};
   std::array<int, 10> leds{};
   std::array<int, 12> rgb{};
   std::vector<std::pair<int, int>> speeds;  ///< every setting, in order
   int stops = 0;                            ///< S
   int packets = 0;                          ///< binary
   int lines_not_found = 0;
+  int led_settings = 0;
 
   Bytes hear(std::span<const std::uint8_t> bytes) {
     reply_.clear();
@@ -121,6 +123,7 @@ class ScriptedRobot {
         break;
       case 0xB4:
         if (payload_[0] < 10) leds[payload_[0]] = payload_[1];
+        ++led_settings;
         break;
       case 0xB0:
         encoders = {word(0), word(2)};
@@ -138,7 +141,7 @@ class ScriptedRobot {
         for (const int v : ambient) put(v);
         break;
       case 0x9F:
-        for (const int v : {0, 0, 800}) put(v);
+        for (const int v : acceleration) put(v);
         break;
       case 0x8B:
         for (const int v : {1, 2, 3}) put(v);

@@ -164,6 +164,9 @@ TEST(FirmwareAscii, StopsWheelsAndRingButNotTheOtherLights) {
   webots.say("D,300,300\r");
   webots.say("S\r");
   EXPECT_EQ(webots.say("E\r"), "e,0,0\r\n");
+  webots.say("F,1\r");
+  webots.say("S\r");
+  EXPECT_FALSE(webots.body.command().front_led);
 }
 
 TEST(FirmwareAscii, ReportsWhatItSenses) {
@@ -177,8 +180,8 @@ TEST(FirmwareAscii, ReportsWhatItSenses) {
   robot.body.set_senses(senses);
   EXPECT_EQ(robot.say("N\r"), "n,0,120,384,4095,0,1800,0,0\r\n");
   EXPECT_EQ(robot.say("O\r"), "o,4095,0,2048,4095,4095,4095,4095,4095\r\n");
-  EXPECT_EQ(robot.say("M\r"), "m,1023,512,0\r\n");
-  EXPECT_EQ(robot.say("A\r"), "a,0,-800,400\r\n");
+  EXPECT_EQ(robot.say("M\r"), "m,0,512,1023\r\n") << "the board counts from the left";
+  EXPECT_EQ(robot.say("A\r"), "a,1248,2048,2448\r\n") << "left, ahead, up";
   EXPECT_EQ(robot.say("U\r"), "u,0,2048,4095\r\n");
   EXPECT_EQ(robot.say("g\r"), "g,0,0,0\r\n");
   EXPECT_EQ(robot.say("G\r"), "g IR check : 0x0, address : 0x0, data : 0x0\r\n");

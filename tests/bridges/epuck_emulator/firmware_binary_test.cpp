@@ -21,7 +21,7 @@ TEST(FirmwareBinary, DoesOneControlCycle) {
   ASSERT_EQ(answer.size(), 26U);
   EXPECT_EQ(answer.substr(0, 4), bytes("00 00 00 00"));
   for (std::size_t i = 0; i < 8; ++i) EXPECT_EQ(int16_at(answer, 4 + 2 * i), 120);
-  EXPECT_EQ(answer.substr(20), bytes("00 00 00 00 20 03"));
+  EXPECT_EQ(answer.substr(20), bytes("00 08 00 08 20 0B"));
   EXPECT_EQ(robot.count("\"event\":\"wheels\",\"left\":500,\"right\":-500"), 1);
   robot.wait(kSecond);
   const std::string counts = robot.say(bytes("AF 00"));
@@ -183,23 +183,49 @@ TEST(FirmwareBinary, SendsSoundSamplesBeforeTheOtherAnswers) {
   EXPECT_EQ(robot.say(bytes("00")), bytes("02 01 04 03 63"));
 }
 
-TEST(FirmwareBinary, WebotsFirmwareSendsRawProximityAndAccelerationAroundTwoThousand) {
+TEST(FirmwareBinary, WebotsFirmwareSendsRawProximity) {
   Bench robot(Variant::Webots);
   EXPECT_EQ(int16_at(robot.say(bytes("B2 00")), 0), 40);
   EXPECT_EQ(robot.say("N\r"), "n,0,0,0,0,0,0,0,0\r\n");
-  BodySenses senses;
-  senses.force_m_s2 = {hal::epuck::kGravity_m_s2, hal::epuck::kGravity_m_s2, hal::epuck::kGravity_m_s2};
-  robot.body.set_senses(senses);
-  const std::string raw = robot.say(bytes("9F 00"));
-  EXPECT_EQ(int16_at(raw, 0), 1200);
-  EXPECT_EQ(int16_at(raw, 2), 2800);
-  EXPECT_EQ(int16_at(raw, 4), 2800);
+}
+
+// A level robot, and one that stands on a slope of 30 degrees with its front lower: ahead -4.9, left 0, up 8.5 m/s².
+TEST(FirmwareBinary, SendsTheAccelerometerWithTheZeroOfEachFirmwareAndItsAxesLeftAheadUp) {
+  struct Case {
+    Variant variant;
+    const char* level;
+    const char* slope;
+    const char* level_line;
+  };
+  for (const Case& c : {Case{Variant::Btcom, "00 00 00 00 20 03", "00 00 70 FE B5 02", "a,0,0,800\r\n"},
+                        Case{Variant::Gctronic, "00 08 00 08 20 0B", "00 08 70 06 B5 0A", "a,2048,2048,2848\r\n"},
+                        Case{Variant::Webots, "00 08 00 08 20 0B", "00 08 70 06 B5 0A", "a,0,0,800\r\n"},
+                        Case{Variant::Epuck2, "00 08 00 08 20 0B", "00 08 70 06 B5 0A", "a,2048,2048,2848\r\n"}}) {
+    Bench robot(c.variant);
+    EXPECT_EQ(robot.say(bytes("9F 00")), bytes(c.level));
+    EXPECT_EQ(robot.say("A\r"), c.level_line);
+    BodySenses senses;
+    senses.force_m_s2 = {-0.5 * hal::epuck::kGravity_m_s2, 0.0, 0.8660254 * hal::epuck::kGravity_m_s2};
+    robot.body.set_senses(senses);
+    EXPECT_EQ(robot.say(bytes("9F 00")), bytes(c.slope));
+  }
+}
+
+TEST(FirmwareBinary, SendsTheGroundSensorsFromLeftToRight) {
+  for (const auto& [variant, answer] :
+       {std::pair(Variant::Gctronic, "00 00 00 02 FF 03"), std::pair(Variant::Epuck2, "00 00 00 02 FF 03 00 00")}) {
+    Bench robot(variant);
+    BodySenses senses;
+    senses.ground = {1.0, 0.5, 0.0};  // as the data sheet: right, middle, left
+    robot.body.set_senses(senses);
+    EXPECT_EQ(robot.say(bytes("B3 00")), bytes(answer));
+  }
 }
 
 TEST(FirmwareBinary, DerivesTiltFromTheAccelerometer) {
   Bench robot;
   BodySenses senses;
-  senses.force_m_s2 = {0.0, -hal::epuck::kGravity_m_s2, 0.0};
+  senses.force_m_s2 = {0.0, -hal::epuck::kGravity_m_s2, 0.0};  // to the right
   robot.body.set_senses(senses);
   const std::string tilt = robot.say(bytes("BF 00"));
   EXPECT_FLOAT_EQ(float_at(tilt, 0), 800.0F);
@@ -222,14 +248,14 @@ TEST(FirmwareEpuck2, DoesACycleOfTheRemoteLibrary) {
   senses.temperature_C = -5.0;
   senses.sound = {0.0, 0.0, 0.0, 1.0};
   senses.light.fill(1.0);
-  senses.ground = {0.0, 0.5, 1.0};
+  senses.ground = {1.0, 0.5, 0.0};  // right, middle, left
   robot.body.set_senses(senses);
   robot.say("P,1,-2\r");
   const std::string all = robot.say(bytes("F7 00 F4 01 0C FE 01 00 00 00 00 00 00 00 00 00 00 00 00 00 F8 00"));
   ASSERT_EQ(all.size(), 103U);
   EXPECT_EQ(robot.count("\"event\":\"wheels\",\"left\":500,\"right\":-500,\"by\":\"F7\""), 1);
   EXPECT_EQ(robot.body.command().ring, 0x01);
-  EXPECT_EQ(int16_at(all, 4), 800);
+  EXPECT_EQ(int16_at(all, 4), 2848);
   EXPECT_FLOAT_EQ(float_at(all, 6), 800.0F);
   EXPECT_FLOAT_EQ(float_at(all, 14), 0.0F);
   EXPECT_EQ(int16_at(all, 22), -7510);  // 57.296 degrees a second of 250
