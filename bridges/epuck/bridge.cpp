@@ -13,7 +13,6 @@ namespace {
 using hal::TimeNs;
 
 constexpr TimeNs kLongestWait = 20 * hal::kNsPerMs;  // then deadlines and the end are looked at
-constexpr TimeNs kLongestReopen = 4 * hal::kNsPerSecond;
 
 LinkStatistics sum(const LinkStatistics& a, const LinkStatistics& b) noexcept {
   return {a.bytes_in + b.bytes_in, a.bytes_out + b.bytes_out, a.bytes_refused + b.bytes_refused, a.errors + b.errors};
@@ -32,11 +31,10 @@ hal::Result<LinkOpener> epuck_link_opener(const LinkAddress& address) {
 
 SessionTiming timing_for(std::string_view link_name) noexcept {
   SessionTiming timing;
-  if (link_name.find("rfcomm") != std::string_view::npos) {
-    timing.answer_ns = 500 * hal::kNsPerMs;
-    timing.gap_ns = 200 * hal::kNsPerMs;
-    timing.quiet_ns = 150 * hal::kNsPerMs;
-  }
+  const StopTiming stop = stop_timing_for(link_name);
+  timing.answer_ns = stop.answer_ns;
+  timing.quiet_ns = stop.quiet_ns;
+  if (link_name.find("rfcomm") != std::string_view::npos) timing.gap_ns = 200 * hal::kNsPerMs;
   return timing;
 }
 
@@ -81,13 +79,13 @@ void EpuckBridge::run() {
     link_ = nullptr;
     bytes_before_ = sum(bytes_before_, link->statistics());
     if (!ending_) driver_.link_gone(monotonic_ns());
+    driver_.tell();
     changed_.notify_all();
   }
 }
 
 /// Tries until the link opens; null at the end.
 std::unique_ptr<ByteLink> EpuckBridge::open_link() {
-  TimeNs pause = settings_.reopen_ns;
   std::string logged;
   while (!ending_) {
     PendingLink pending(opener_);
@@ -104,8 +102,7 @@ std::unique_ptr<ByteLink> EpuckBridge::open_link() {
     if (link_error_ != logged)
       log_.warning("e-puck '" + std::string(driver_.robot().id()) + "': " + link_error_ + "; trying on");
     logged = link_error_;
-    changed_.wait_for(lock, std::chrono::nanoseconds(pause), ended);
-    pause = std::min(2 * pause, kLongestReopen);
+    changed_.wait_for(lock, std::chrono::nanoseconds(settings_.reopen_ns), ended);
   }
   return nullptr;
 }
@@ -117,6 +114,7 @@ void EpuckBridge::serve(ByteLink& link) {
     {
       const std::lock_guard lock(mutex_);
       pump_now(now);
+      driver_.tell();
       wait = std::clamp<TimeNs>(driver_.next_deadline() - now, 0, kLongestWait);
     }
     link.wait(wait);

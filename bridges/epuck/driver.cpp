@@ -159,16 +159,12 @@ void EpuckDriver::pump(ByteLink& link, hal::TimeNs now) noexcept {
     moving_ = false;
     interrupted_ = true;
     session_.stop(now);
-    log_.warning("e-puck '" + settings_.robot.id + "': stopped, no commands came for " +
-                 std::to_string((now - last_commit_ns_) / hal::kNsPerMs) + " ms");
   }
   send(link);
-  log_change();
 }
 
 void EpuckDriver::link_gone(hal::TimeNs now) noexcept {
   session_.link_down(now);
-  log_change();
 }
 
 hal::TimeNs EpuckDriver::next_deadline() const noexcept {
@@ -206,19 +202,25 @@ Odometry EpuckDriver::odometry() const noexcept {
           session_.statistics().encoder_rebased};
 }
 
-void EpuckDriver::log_change() {
-  const SessionState state = session_.state();
+void EpuckDriver::tell_accelerometer(const std::string& who) {
   const AccelerometerCheck& accelerometer = session_.samples().accelerometer;
-  if (state == logged_ && accelerometer.verdict() == logged_accelerometer_) return;
+  if (accelerometer.verdict() == logged_accelerometer_) return;
+  logged_accelerometer_ = accelerometer.verdict();
+  if (logged_accelerometer_ != AccelerometerCheck::Verdict::Refused) return;
+  log_.warning(who + "its accelerometer reads " + std::to_string(accelerometer.at_rest_m_s2()) +
+               " m/s2 at rest instead of 9.8: its readings are not believed; is it another firmware than '" +
+               std::string(session_.identity().version_text()) + "'?");
+}
+
+void EpuckDriver::tell() {
   const std::string who = "e-puck '" + settings_.robot.id + "': ";
-  if (accelerometer.verdict() != logged_accelerometer_) {
-    logged_accelerometer_ = accelerometer.verdict();
-    if (logged_accelerometer_ == AccelerometerCheck::Verdict::Refused) {
-      log_.warning(who + "its accelerometer reads " + std::to_string(accelerometer.at_rest_m_s2()) +
-                   " m/s2 at rest instead of 9.8: its readings are not believed; is it another firmware than '" +
-                   std::string(session_.identity().version_text()) + "'?");
-    }
+  tell_accelerometer(who);
+  if (statistics_.watchdog_stops != told_watchdog_stops_) {
+    told_watchdog_stops_ = statistics_.watchdog_stops;
+    log_.warning(who + "stopped, no commands came for " + std::to_string(settings_.command_timeout_ns / hal::kNsPerMs) +
+                 " ms");
   }
+  const SessionState state = session_.state();
   if (state == logged_) return;
   if (state == SessionState::Active) {
     log_.info(who + "active, " + std::string(firmware_name(session_.identity().firmware)) + ", " +

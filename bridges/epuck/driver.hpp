@@ -62,10 +62,13 @@ class EpuckDriver {
   /// Filters the commands, queues them and the next question. Send them at once with `pump`.
   void commit(hal::TimeNs now) noexcept;
   /// Sends what is due, takes in what has arrived, applies time-outs. Never waits.
+  /// `latch`, `commit`, `pump`, `stop` and `resume` do not allocate.
   void pump(ByteLink& link, hal::TimeNs now) noexcept;
   /// There is no link at present.
   void link_gone(hal::TimeNs now) noexcept;
   hal::TimeNs next_deadline() const noexcept;
+  /// Logs what has changed since the last call. For the thread that owns the link.
+  void tell();
 
   /// Stops the robot and keeps it stopped, LEDs off, until `resume`. Sent with the next `pump`.
   void stop(hal::TimeNs now) noexcept;
@@ -87,7 +90,7 @@ class EpuckDriver {
 
  private:
   void send(ByteLink& link) noexcept;
-  void log_change();
+  void tell_accelerometer(const std::string& who);
   hal::WheelSpeeds filtered(hal::TimeNs now) noexcept;
   void foresee_latch(hal::TimeNs now) noexcept;
   void judge_margin() noexcept;
@@ -112,6 +115,7 @@ class EpuckDriver {
   hal::TimeNs asked_ns_ = 0;       // for the next latch; 0: not
   hal::TimeNs margin_ns_;
   hal::TimeNs pumped_ns_ = 0;  // 0: not yet
+  std::uint64_t told_watchdog_stops_ = 0;
   AccelerometerCheck::Verdict logged_accelerometer_ = AccelerometerCheck::Verdict::Unchecked;
 };
 

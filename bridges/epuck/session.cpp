@@ -118,7 +118,7 @@ void Session::begin_stop(TimeNs now) noexcept {
   failed_rounds_ = 0;
   allowed_ns_ = 0;
   phase_ = Phase::Stop;
-  stop_.begin(now);
+  stop_.begin(now, 2 * latency_ns_);
   go_on_stopping(now);
 }
 

@@ -13,6 +13,7 @@ constexpr TimeNs kNever = std::numeric_limits<TimeNs>::max();
 // The longest payload has 35 bytes, a 0 ends the packet, and eight may be lost.
 constexpr std::size_t kLeadIn = 35 + 1 + 8;
 constexpr std::size_t kWords = 10;
+constexpr TimeNs kLongestQuiet = 320 * hal::kNsPerMs;
 constexpr std::size_t kBehindSpeeds = 12;  // four are the speeds, eight may be lost
 
 constexpr std::array<std::uint8_t, kLeadIn + 2 * kWords> kStopWords = [] {
@@ -44,7 +45,17 @@ std::span<const std::uint8_t> rest_question() noexcept {
   return kRestQuestion;
 }
 
-void StopProcedure::begin(TimeNs now) noexcept {
+StopTiming stop_timing_for(std::string_view link_name) noexcept {
+  StopTiming timing;
+  if (link_name.find("rfcomm") != std::string_view::npos) {
+    timing.quiet_ns = 60 * hal::kNsPerMs;
+    timing.answer_ns = 500 * hal::kNsPerMs;
+  }
+  return timing;
+}
+
+void StopProcedure::begin(TimeNs now, TimeNs round_trip_ns) noexcept {
+  quiet_ns_ = std::clamp(timing_.quiet_ns + round_trip_ns, quiet_ns_, std::max(quiet_ns_, kLongestQuiet));
   failed_rounds_ = 0;
   answered_ = false;
   first_known_ = false;
@@ -55,6 +66,8 @@ void StopProcedure::begin(TimeNs now) noexcept {
 
 void StopProcedure::fail_round(TimeNs now) noexcept {
   ++failed_rounds_;
+  if (step_ == Step::Apart || answer_size_ > 0) quiet_ns_ = std::max(quiet_ns_, std::min(2 * quiet_ns_, kLongestQuiet));
+  answer_size_ = 0;
   first_known_ = false;
   step_ = Step::Burst;
   burst_ = 0;
@@ -74,7 +87,7 @@ void StopProcedure::on_byte(std::uint8_t byte, TimeNs at) noexcept {
     case Step::Confirmed:
       break;  // answers to `S`, and older ones
     case Step::Settle:
-      due_ns_ = std::min(std::max(due_ns_, at + timing_.quiet_ns), settled_by_ns_);
+      due_ns_ = std::min(std::max(due_ns_, at + quiet_ns_), settled_by_ns_);
       break;
     case Step::Answer:
       answer_[answer_size_++] = byte;
@@ -112,8 +125,8 @@ void StopProcedure::poll(TimeNs now, Packet& out) noexcept {
       due_ns_ = now + kStopBurstGap;
       if (++burst_ < kStopBursts) break;
       step_ = Step::Settle;
-      due_ns_ = now + std::max(kStopBurstGap, timing_.quiet_ns);
-      settled_by_ns_ = now + 10 * timing_.quiet_ns;
+      due_ns_ = now + std::max(kStopBurstGap, quiet_ns_);
+      settled_by_ns_ = now + 10 * quiet_ns_;
       break;
     case Step::Settle:
     case Step::Apart:

@@ -19,6 +19,7 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <string_view>
 
 #include "bridges/epuck/codec.hpp"
 #include "hal/time.hpp"
@@ -40,14 +41,18 @@ struct StopTiming {
   hal::TimeNs apart_ns = 40 * hal::kNsPerMs;    ///< between the two readings
 };
 
+/// For a link of this name: Bluetooth (rfcomm) devices answer late.
+StopTiming stop_timing_for(std::string_view link_name) noexcept;
+
 /// The stop as a conversation, without I/O and without a clock. Begun once, it says stop, asks, and begins a new round
-/// until the robot confirms, however long that takes: in a dead link about every 150 ms. Allocates nothing.
+/// until the robot confirms, however long that takes: in a dead link about every 150 ms. Where older answers are taken
+/// for the right one because the line is slow, the silence that it waits for is doubled. Allocates nothing.
 class StopProcedure {
  public:
-  explicit StopProcedure(const StopTiming& timing = {}) noexcept : timing_(timing) {}
+  explicit StopProcedure(const StopTiming& timing = {}) noexcept : timing_(timing), quiet_ns_(timing.quiet_ns) {}
 
-  /// Begins anew: the first burst is due at once.
-  void begin(hal::TimeNs now) noexcept;
+  /// Begins anew: the first burst is due at once. What is under way may still come for `round_trip_ns`.
+  void begin(hal::TimeNs now, hal::TimeNs round_trip_ns = 0) noexcept;
   void on_byte(std::uint8_t byte, hal::TimeNs at) noexcept;
   /// Appends what is due to `out`, which the caller sends at once; applies time-outs.
   void poll(hal::TimeNs now, Packet& out) noexcept;
@@ -72,6 +77,7 @@ class StopProcedure {
   void fail_round(hal::TimeNs now) noexcept;
 
   StopTiming timing_;
+  hal::TimeNs quiet_ns_;  // what the line turned out to need
   Step step_ = Step::Confirmed;
   std::size_t burst_ = 0;
   hal::TimeNs due_ns_ = 0;

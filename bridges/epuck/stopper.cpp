@@ -15,15 +15,6 @@ using hal::TimeNs;
 constexpr TimeNs kStep = 40 * hal::kNsPerMs;
 constexpr TimeNs kWriteWithin = 20 * hal::kNsPerMs;  // four times as long as the longest burst takes
 
-StopTiming timing_for_stop(const std::string& link) {
-  StopTiming timing;
-  if (link.find("rfcomm") != std::string::npos) {  // Bluetooth answers late
-    timing.quiet_ns = 60 * hal::kNsPerMs;
-    timing.answer_ns = 500 * hal::kNsPerMs;
-  }
-  return timing;
-}
-
 std::unique_ptr<guardian::Stopper> make(const StopMessages& messages, guardian::StopCause) {
   const auto opener = [link = messages.link]() -> hal::Result<std::unique_ptr<ByteLink>> {
     const auto address = parse_link(link);
@@ -34,7 +25,7 @@ std::unique_ptr<guardian::Stopper> make(const StopMessages& messages, guardian::
     if (!open.ok()) return open.error();
     return open.value()();
   };
-  return std::make_unique<EpuckStopper>(opener, timing_for_stop(messages.link));
+  return std::make_unique<EpuckStopper>(opener, stop_timing_for(messages.link));
 }
 
 }  // namespace

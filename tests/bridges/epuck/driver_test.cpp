@@ -41,6 +41,7 @@ struct Rig {
     for (const hal::TimeNs end = now + duration; now < end;) {
       now += kMs;
       driver.pump(*near, now);
+      driver.tell();
       serve_robot();
     }
     driver.pump(*near, now);

@@ -1,0 +1,234 @@
+// The driver against the emulated firmware over a line of 115200 baud: ages, stamps, stalls, outages, lost bytes.
+#include <gtest/gtest.h>
+
+#include "hal/device/body_sensors.hpp"
+#include "hal/device/ring_sensors.hpp"
+#include "hal/device/wheels.hpp"
+#include "tests/bridges/epuck/wire_rig.hpp"
+
+namespace tandem::bridges::epuck {
+namespace {
+
+constexpr double kCruise_m_s = 0.05;
+
+DriverSettings ticking(hal::TimeNs tick_ns) {
+  DriverSettings settings;
+  settings.robot.tick_ns = tick_ns;
+  return settings;
+}
+
+/// Takes every sensor, so that questions and answers are the longest.
+hal::WheelSpeeds& take_all(WireRig& rig) {
+  EpuckRobot& robot = rig.driver.robot();
+  robot.sensor<hal::Proximity>();
+  robot.sensor<hal::Light>();
+  robot.sensor<hal::Ground>();
+  robot.sensor<hal::Accelerometer>();
+  robot.sensor<hal::Microphones>();
+  robot.sensor<hal::Battery>();
+  robot.sensor<hal::WheelEncoders>();
+  return robot.actuator<hal::WheelSpeeds>();
+}
+
+TEST(EpuckWire, IsActiveWithinHalfASecond) {
+  for (const auto variant : {epuck_emulator::Variant::Btcom, epuck_emulator::Variant::Gctronic,
+                             epuck_emulator::Variant::Webots, epuck_emulator::Variant::Epuck2}) {
+    WireRig rig({}, 1, variant);
+    rig.run(500 * kMs);
+    EXPECT_EQ(rig.driver.state(), SessionState::Active);
+    EXPECT_EQ(rig.driver.session().statistics().handshake_failures, 0U);
+  }
+}
+
+TEST(EpuckWire, ReadingsAreAtMost15MsOldAtControlAtTenHertz) {
+  WireRig rig(ticking(100 * kMs));
+  auto& wheels = take_all(rig);
+  rig.run(500 * kMs);
+  hal::TimeNs oldest = 0;
+  for (int i = 0; i < 100; ++i) {
+    if (i > 3) oldest = std::max(oldest, rig.now - rig.body.sensed_ns);
+    rig.tick(100 * kMs, [&] { wheels.set(0.001 * i, kCruise_m_s); });
+  }
+  EXPECT_LE(oldest, 15 * kMs);
+  EXPECT_GT(oldest, 2 * kMs);
+  EXPECT_LE(rig.driver.statistics().late_answers, 1U) << "the first, before the rhythm was known";
+}
+
+TEST(EpuckWire, ReadingsAreAsFreshWhenTheLineIsSlow) {
+  WireRig rig(ticking(100 * kMs));
+  take_all(rig);
+  rig.to_robot.delay_ns = rig.to_host.delay_ns = 10 * kMs;  // Bluetooth
+  rig.run(800 * kMs);
+  hal::TimeNs oldest = 0;
+  for (int i = 0; i < 100; ++i) {
+    if (i > 10) oldest = std::max(oldest, rig.now - rig.body.sensed_ns);
+    rig.tick(100 * kMs);
+  }
+  EXPECT_LE(oldest, 25 * kMs);
+}
+
+TEST(EpuckWire, StampsReadingsWhenTheRobotMeasuredThem) {
+  for (const hal::TimeNs delay_ns : {0 * kMs, 40 * kMs}) {
+    WireRig rig(ticking(200 * kMs));
+    take_all(rig);
+    const auto& encoders = rig.driver.robot().sensor<hal::WheelEncoders>();
+    rig.to_robot.delay_ns = rig.to_host.delay_ns = delay_ns;
+    rig.run(1500 * kMs);
+    for (int i = 0; i < 30; ++i) {
+      rig.tick(200 * kMs, [&] {
+        const hal::TimeNs wrong = std::abs(encoders.taken_ns - rig.body.sensed_ns);
+        if (i > 5) {
+          EXPECT_LE(wrong, 3 * kMs / 2) << "delay " << delay_ns / kMs << " ms";
+        }
+      });
+    }
+  }
+}
+
+TEST(EpuckWire, NeverTimesOutFalselyAt50And100HertzOnAMachineThatStalls) {
+  for (const hal::TimeNs tick_ns : {20 * kMs, 10 * kMs}) {
+    WireRig rig(ticking(tick_ns), 7);
+    auto& wheels = take_all(rig);
+    rig.run(500 * kMs);
+    std::mt19937 chance(3);
+    for (int i = 0; i < 12'000; ++i) {
+      if (rig.stalled_until <= rig.now && chance() % 50 == 0)
+        rig.stalled_until = rig.now + static_cast<hal::TimeNs>(chance() % 200) * kMs;
+      const bool late = rig.stalled_until > rig.now;  // so is the loop
+      if (late)
+        rig.run(tick_ns);
+      else
+        rig.tick(tick_ns, [&] { wheels.set(kCruise_m_s, kCruise_m_s); });
+    }
+    const SessionStatistics& s = rig.driver.session().statistics();
+    EXPECT_EQ(rig.driver.session().epoch(), 1U)
+        << tick_ns / kMs << " ms: " << s.silent << " silent, " << s.cut_short << " cut short, " << s.unasked_bytes
+        << " unasked, " << s.wrong_speeds << " wrong speeds, " << s.encoder_jumps << " jumps, " << s.stops << " stops";
+    EXPECT_EQ(rig.driver.statistics().watchdog_stops, 0U);
+    EXPECT_GT(rig.driver.statistics().stalls, 20U);
+  }
+}
+
+TEST(EpuckWire, StopsARobotWithin200MsAndDrivesItWithin1sAfterAnOutage) {
+  for (const hal::TimeNs outage : {300 * kMs, 1000 * kMs, 3700 * kMs, 20'050 * kMs}) {
+    WireRig rig(ticking(50 * kMs));
+    auto& wheels = take_all(rig);
+    rig.run(500 * kMs);
+    const auto drive = [&] { wheels.set(kCruise_m_s, kCruise_m_s); };
+    for (int i = 0; i < 20; ++i) rig.tick(50 * kMs, drive);
+    ASSERT_TRUE(rig.body.moves());
+    rig.to_robot.cut = rig.to_host.cut = true;
+    for (const hal::TimeNs end = rig.now + outage; rig.now < end;) rig.tick(50 * kMs, drive);
+    EXPECT_TRUE(rig.body.moves()) << "nobody can reach it";
+    rig.to_robot.cut = rig.to_host.cut = false;
+    const hal::TimeNs back = rig.now;
+    hal::TimeNs stopped = 0;
+    hal::TimeNs driven = 0;
+    rig.each_step = [&] {
+      if (stopped == 0 && !rig.body.moves()) stopped = rig.now;
+      if (stopped != 0 && driven == 0 && rig.body.moves()) driven = rig.now;
+    };
+    for (int i = 0; i < 30; ++i) rig.tick(50 * kMs, drive);
+    EXPECT_LE(stopped - back, 200 * kMs) << outage / kMs;
+    EXPECT_GT(driven, stopped);
+    EXPECT_LE(driven - back, 1000 * kMs) << outage / kMs;
+  }
+}
+
+TEST(EpuckWire, StopsADeafRobotThatIsHeardAgainWithin200Ms) {
+  WireRig rig(ticking(50 * kMs));
+  auto& wheels = take_all(rig);
+  rig.run(500 * kMs);
+  const auto drive = [&] { wheels.set(kCruise_m_s, kCruise_m_s); };
+  for (int i = 0; i < 20; ++i) rig.tick(50 * kMs, drive);
+  rig.to_robot.cut = true;
+  for (int i = 0; i < 67; ++i) rig.tick(50 * kMs, drive);
+  rig.to_robot.cut = false;
+  rig.tick(50 * kMs, drive);
+  for (int i = 0; i < 3; ++i) rig.tick(50 * kMs, drive);
+  EXPECT_GT(rig.driver.session().statistics().handshakes, 1U);
+  EXPECT_LT(rig.body.left_m_s, kCruise_m_s) << "it was stopped, or begins with a ramp";
+}
+
+TEST(EpuckWire, IsDrivenWithin1sOfANewLink) {
+  WireRig rig(ticking(50 * kMs));
+  auto& wheels = take_all(rig);
+  rig.run(500 * kMs);
+  const auto drive = [&] { wheels.set(kCruise_m_s, kCruise_m_s); };
+  for (int i = 0; i < 20; ++i) rig.tick(50 * kMs, drive);
+  rig.driver.link_gone(rig.now);
+  rig.plug_in();
+  const hal::TimeNs back = rig.now;
+  hal::TimeNs stopped = 0;
+  hal::TimeNs driven = 0;
+  rig.each_step = [&] {
+    if (stopped == 0 && !rig.body.moves()) stopped = rig.now;
+    if (stopped != 0 && driven == 0 && rig.body.moves()) driven = rig.now;
+  };
+  for (int i = 0; i < 30; ++i) rig.tick(50 * kMs, drive);
+  EXPECT_LE(stopped - back, 50 * kMs);
+  EXPECT_GT(driven, 0);
+  EXPECT_LE(driven - back, 1000 * kMs);
+}
+
+// The stop itself under loss, over many seeds. What is left of it must not drive.
+TEST(EpuckWire, NeverEndsDrivingAfterAStopWithTenToThirtyPercentOfAllBytesLost) {
+  int confirmed = 0;
+  for (std::uint64_t seed = 1; seed <= 150; ++seed) {
+    WireRig rig(ticking(100 * kMs), seed);
+    auto& wheels = take_all(rig);
+    rig.run(500 * kMs);
+    const auto drive = [&] { wheels.set(kCruise_m_s, -kCruise_m_s); };
+    for (int i = 0; i < 5; ++i) rig.tick(100 * kMs, drive);
+    ASSERT_TRUE(rig.body.moves());
+    rig.to_robot.loss = rig.to_host.loss = 0.1 + 0.1 * static_cast<double>(seed % 3);
+    rig.run(static_cast<hal::TimeNs>(seed % 7) * 13 * kMs);
+    rig.driver.stop(rig.now);
+    rig.run(300 * kMs);
+    EXPECT_FALSE(rig.body.moves()) << "seed " << seed;
+    bool moved = false;
+    rig.each_step = [&] { moved = moved || rig.body.moves(); };
+    for (int i = 0; i < 20; ++i) rig.tick(100 * kMs, drive);
+    EXPECT_FALSE(moved) << "seed " << seed;
+    if (rig.driver.at_rest()) ++confirmed;
+    rig.to_robot.loss = rig.to_host.loss = 0.0;
+    for (int i = 0; i < 10; ++i) rig.tick(100 * kMs, drive);
+    EXPECT_TRUE(rig.driver.at_rest()) << "seed " << seed;
+    EXPECT_FALSE(moved) << "seed " << seed;
+  }
+  EXPECT_GT(confirmed, 0);
+}
+
+// Ordinary driving, bytes lost towards the robot: how long wheels may turn in a way that they were never told to.
+TEST(EpuckWire, WrongSpeedsLastNoLongerThanTheBoundThatTheDocsName) {
+  hal::TimeNs longest = 0;
+  int times = 0;
+  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+    WireRig rig(ticking(100 * kMs), seed);
+    auto& wheels = take_all(rig);
+    rig.run(500 * kMs);
+    rig.tick(100 * kMs);
+    rig.to_robot.loss = 0.02;
+    hal::TimeNs wrong_since = 0;
+    rig.each_step = [&] {
+      const double fastest = std::max(std::fabs(rig.body.left_m_s), std::fabs(rig.body.right_m_s));
+      if (fastest <= 1.1 * kCruise_m_s) {  // the firmware's periods are whole ticks
+        wrong_since = 0;
+        return;
+      }
+      if (wrong_since == 0) {
+        wrong_since = rig.now;
+        ++times;
+      }
+      longest = std::max(longest, rig.now - wrong_since);
+    };
+    for (int i = 0; i < 300; ++i) {
+      rig.tick(100 * kMs, [&] { wheels.set(i % 2 == 0 ? kCruise_m_s : -kCruise_m_s, 0.5 * kCruise_m_s); });
+    }
+  }
+  EXPECT_GT(times, 20) << "the test must see some";
+  EXPECT_LE(longest, 150 * kMs);
+}
+
+}  // namespace
+}  // namespace tandem::bridges::epuck
