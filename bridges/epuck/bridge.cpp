@@ -125,7 +125,6 @@ void EpuckBridge::say_farewell(ByteLink& link) {
   const TimeNs end = monotonic_ns() + settings_.farewell_ns;
   {
     const std::lock_guard lock(mutex_);
-    note_stop();
     driver_.farewell(monotonic_ns());
     pump_now(monotonic_ns());
   }
@@ -185,29 +184,18 @@ void EpuckBridge::commit(TimeNs now) noexcept {
 
 void EpuckBridge::fault(TimeNs now, std::string_view why) {
   const std::lock_guard lock(mutex_);
-  note_stop();
   driver_.fault(now, why);
   pump_now(now);
 }
 
-/// The first stop after a `resume` counts: what the robot confirms of it holds until the next.
-void EpuckBridge::note_stop() noexcept {
-  if (stop_noted_) return;
-  stop_noted_ = true;
-  confirmed_at_stop_ = driver_.session().statistics().stops_confirmed;
-  resynchronised_at_stop_ = driver_.session().statistics().resynchronised;
-}
-
 void EpuckBridge::stop(TimeNs now) noexcept {
   const std::lock_guard lock(mutex_);
-  note_stop();
   driver_.stop(now);
   pump_now(now);
 }
 
 void EpuckBridge::resume() noexcept {
   const std::lock_guard lock(mutex_);
-  stop_noted_ = false;
   driver_.resume();
 }
 
@@ -230,9 +218,7 @@ bool EpuckBridge::mismatched() const noexcept {
 
 bool EpuckBridge::at_rest() const noexcept {
   const std::lock_guard lock(mutex_);
-  const SessionStatistics& s = driver_.session().statistics();
-  // A handshake begins with a stop of its own.
-  return stop_noted_ && (s.stops_confirmed > confirmed_at_stop_ || s.resynchronised > resynchronised_at_stop_);
+  return driver_.stopped() && driver_.at_rest();
 }
 
 std::string EpuckBridge::trouble() const {
@@ -288,9 +274,13 @@ void EpuckBridge::describe(StatusVisitor& visitor) const {
   visitor.text("state", state_name(s.state));
   visitor.count("silent", s.session.silent);
   visitor.count("cut_short", s.session.cut_short);
+  visitor.count("asked_again", s.session.asked_again);
+  visitor.count("late_answers", s.driver.late_answers);
+  visitor.count("wrong_speeds", s.session.wrong_speeds);
   visitor.count("restarts", s.session.restarts);
   visitor.count("not_understood", s.session.not_understood);
   visitor.count("encoder_jumps", s.session.encoder_jumps);
+  visitor.flag("accelerometer_believed", s.samples.accelerometer.verdict() != AccelerometerCheck::Verdict::Refused);
   visitor.count("stops_for_want_of_commands", s.driver.watchdog_stops);
   visitor.count("commands_clamped", s.driver.clamped);
   visitor.count("commands_not_finite", s.driver.not_finite);

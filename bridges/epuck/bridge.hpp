@@ -103,7 +103,6 @@ class EpuckBridge final : public RobotBridge {
   void pump_now(hal::TimeNs now) noexcept;
   bool firmware_differs() const noexcept;
   void note_health() noexcept;
-  void note_stop() noexcept;
 
   static constexpr std::uint64_t kStopVersion = 1;  // one robot, one device: nothing of it changes
 
@@ -120,9 +119,6 @@ class EpuckBridge final : public RobotBridge {
   LinkHealth health_ = LinkHealth::Connecting;
   bool was_active_ = false;
   std::uint64_t handshakes_ = 0;  // at the last `latch`
-  bool stop_noted_ = false;       // since the last `resume`, with what the session had counted until then
-  std::uint64_t confirmed_at_stop_ = 0;
-  std::uint64_t resynchronised_at_stop_ = 0;
   std::atomic<bool> ending_{false};
   std::thread thread_;
 };

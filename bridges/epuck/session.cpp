@@ -86,7 +86,6 @@ void Session::link_down(TimeNs) noexcept {
   ++statistics_.links_lost;
   output_.clear();
   pending_ = false;
-  at_rest_ = false;
 }
 
 void Session::stalled(TimeNs duration) noexcept {
