@@ -64,10 +64,10 @@ void ObjectIndex::build_of(const std::vector<Object>& objects, Listed&& listed, 
   const auto for_each_cell_of = [&](const Object& s, auto&& visit) {
     const auto [ex, ey] = extents(s);
     // A cell at the edge also stands for what lies beyond it, so the rectangle is clamped, not cut.
-    const std::uint32_t x0 = at(s.x_m - ex - reach_m - min_x_m, columns_);
-    const std::uint32_t x1 = at(s.x_m + ex + reach_m - min_x_m, columns_);
-    const std::uint32_t y0 = at(s.y_m - ey - reach_m - min_y_m, lines_);
-    const std::uint32_t y1 = at(s.y_m + ey + reach_m - min_y_m, lines_);
+    const std::uint32_t x0 = at(s.x_m - ex - reach_m - min_x_m_, columns_);
+    const std::uint32_t x1 = at(s.x_m + ex + reach_m - min_x_m_, columns_);
+    const std::uint32_t y0 = at(s.y_m - ey - reach_m - min_y_m_, lines_);
+    const std::uint32_t y1 = at(s.y_m + ey + reach_m - min_y_m_, lines_);
     for (std::uint32_t y = y0; y <= y1; ++y) {
       for (std::uint32_t x = x0; x <= x1; ++x) {
         const double cx = min_x_m_ + (x + 0.5) * cell_m_;
