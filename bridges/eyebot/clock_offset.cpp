@@ -9,6 +9,7 @@ namespace {
 constexpr std::int64_t kLatest = 3'786'912'000'000'000;  // microseconds: the year 2090
 constexpr hal::TimeNs kWindow = 5 * hal::kNsPerSecond;
 constexpr hal::TimeNs kJump = hal::kNsPerSecond;
+constexpr hal::TimeNs kLate = 100 * hal::kNsPerMs;
 constexpr unsigned kBelieveAfter = 5;
 constexpr hal::TimeNs kBurst = 50 * hal::kNsPerMs;
 constexpr hal::TimeNs kBoundHolds = 10 * hal::kNsPerSecond;
@@ -26,6 +27,7 @@ void ClockOffset::begin(hal::TimeNs least, hal::TimeNs received_ns) noexcept {
   least_ = least_before_ = least;
   window_start_ns_ = received_ns;
   bounded_ = false;
+  late_in_row_ = 0;
   odd_in_row_ = 0;
 }
 
@@ -41,6 +43,7 @@ void ClockOffset::note(std::int64_t utime, hal::TimeNs received_ns) noexcept {
   const hal::TimeNs floor = bounded ? std::max(below_ - kDriftSlack, least - kJump) : least - kJump;
   if (difference < floor || difference > least + kJump) return note_odd(difference, received_ns);
   odd_in_row_ = 0;
+  late_in_row_ = difference > least + kLate ? late_in_row_ + 1 : 0;
   if (received_ns - window_start_ns_ >= kWindow) {
     least_before_ = least_;
     least_ = difference;

@@ -25,6 +25,9 @@ class ClockOffset {
   /// is known.
   hal::TimeNs local(std::int64_t utime, hal::TimeNs received_ns) const noexcept;
 
+  /// Messages have come late one after the other: the way is longer now, or the clock was set back by less than a
+  /// second. An answer tells which.
+  bool doubtful() const noexcept { return late_in_row_ >= kDoubtAfter; }
   bool known() const noexcept { return known_; }
   hal::TimeNs offset_ns() const noexcept;
   std::uint64_t jumps() const noexcept { return jumps_; }
@@ -39,6 +42,8 @@ class ClockOffset {
   hal::TimeNs window_start_ns_ = 0;
   bool bounded_ = false;
   hal::TimeNs below_ = 0, below_at_ns_ = 0;
+  static constexpr unsigned kDoubtAfter = 10;
+  unsigned late_in_row_ = 0;
   unsigned odd_in_row_ = 0;  // messages that say the clock was set
   hal::TimeNs odd_least_ = 0, odd_since_ns_ = 0;
   std::uint64_t jumps_ = 0, implausible_ = 0;

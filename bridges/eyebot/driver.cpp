@@ -147,7 +147,7 @@ void EyebotDriver::begin_anew() {
   log_.warning("eye-bot '" + settings_.robot.id + "': it was started anew");
   interrupt();
   place_gate_.forget();
-  controlled_ = refused_ = false;
+  controlled_ = refused_ = doubts_control_ = false;
   status_.known = false;
   // It stands on the ground, if all is well: it must be told again to take off.
   pending_ = pending_ && order_ == hal::FlightOrder::Land;
@@ -174,7 +174,7 @@ void EyebotDriver::use_status() {
   const messages::Status& m = newests_.status.message;
   // It refuses to go where it is told: somebody may have taken it over while we could not hear it.
   const bool refuses = status_.known && m.cmd_rejected > status_.rejected && mode_of(m.mode) == Mode::Hover;
-  if (refuses && setpoint_ != Told::Heartbeat) controlled_ = false;
+  if (refuses && setpoint_ != Told::Heartbeat) doubts_control_ = true;
   const FlightStatus before = status_;
   status_.known = true;
   status_.mode = mode_of(m.mode);
@@ -208,6 +208,7 @@ void EyebotDriver::use_ack(TimeNs received_ns) {
   if (outcome == Outcome::RejectedStale) robots_clock_ = !robots_clock_;  // then by the other clock
   watch_clock();
   if (outcome == Outcome::Done) {
+    doubts_control_ = doubts_control_ && *answered == Action::Nop;
     if (*answered == Action::Arm) {
       controlled_ = true;
       refused_ = false;
@@ -216,13 +217,14 @@ void EyebotDriver::use_ack(TimeNs received_ns) {
     return;
   }
   if (outcome == Outcome::RejectedSource) {
-    controlled_ = false;
+    controlled_ = doubts_control_ = false;
     refused_ = true;
     ++statistics_.refused_control;
   }
   // One that is armed, and listened to us last, need not be armed again.
   const bool ours = newests_.status.message.cmd_session == settings_.session && status_.armed;
   if (*answered == Action::Arm && outcome == Outcome::RejectedMode && ours) controlled_ = true;
+  if (*answered == Action::Nop) return;
   log_.warning("eye-bot '" + settings_.robot.id + "' did not " + action_name(*answered) + ": " + outcome_name(outcome) +
                (m.text.empty() ? "" : " (" + m.text + ")"));
 }
@@ -313,7 +315,7 @@ void EyebotDriver::update_state(TimeNs now) {
 bool EyebotDriver::others_robot(TimeNs now) const noexcept {
   const TimeNs commanded_ns = inbox_.neighbours().commanded_ns();
   const TimeNs wait_ns = kOthersRobot + kOthersSpread * (settings_.session & 15);
-  return !controlled_ && commanded_ns != 0 && now - commanded_ns < wait_ns;
+  return (!controlled_ || doubts_control_) && commanded_ns != 0 && now - commanded_ns < wait_ns;
 }
 
 bool EyebotDriver::battery_low() const noexcept {
@@ -375,7 +377,9 @@ void EyebotDriver::guide(TimeNs now) noexcept {
   if (cut_) step = {status_.mode == Mode::Stopped ? Action::Nop : Action::Stop, false, false};
   const bool takes_speed =
       step.action == Action::TakeOff || step.action == Action::Land || step.action == Action::Attach;
-  if (step.action == Action::Nop) {
+  if (step.action == Action::Nop && clock_.doubtful()) {
+    orders_.want(Action::Nop, 0.0F, now);  // its answer tells whether the clock was set
+  } else if (step.action == Action::Nop) {
     orders_.withdraw();
   } else {
     orders_.want(step.action, takes_speed && goal_ == Goal::Obey ? order_m_s_ : 0.0F, now);
@@ -538,7 +542,7 @@ void EyebotDriver::say_order(TimeNs now) noexcept {
   messages::CmdMode m{};
   m.action = static_cast<std::int8_t>(order->action);
   m.param = order->param;
-  ordered_ = order->action;
+  if (order->action != Action::Nop) ordered_ = order->action;
   voice(Told::Mode).seq = order->seq;  // the same as often as it is said
   say(Told::Mode, m, 0, now);
 }
@@ -623,7 +627,7 @@ std::string EyebotDriver::missing_readings() const {
 
 /// The order that is wanted and was refused or not answered.
 std::string EyebotDriver::refused_order() const {
-  for (std::size_t i = 0; i < kActions; ++i) {
+  for (std::size_t i = 1; i < kActions; ++i) {
     const auto action = static_cast<Action>(i);
     const Outcome outcome = orders_.last(action).outcome;
     if (outcome == Outcome::Never || outcome == Outcome::Done || orders_.saying() != action) continue;

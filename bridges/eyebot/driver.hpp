@@ -255,6 +255,7 @@ class EyebotDriver {
   bool was_active_ = false;
   FlightStatus status_;
   bool controlled_ = false;
+  bool doubts_control_ = false;  // it did not go where we told it: perhaps another hub's
   bool refused_ = false;  // another hub controls it
 
   Goal goal_ = Goal::Obey;
