@@ -227,7 +227,7 @@ void Network::lose(Row& row, std::string_view why) {
     log_.warning(title(row.node) + " is lost: " + std::string(why));
   }
   row.node.state = NodeState::Lost;
-  row.node.image.unmark(0, row.node.image.size(), Image::kWanted | Image::kDirty);
+  row.node.image.unmark(0, row.node.image.size(), Image::kDirty);
   row.draft.clear();
   row.has_candidate = false;
   row.describe_at_ns = 0;
@@ -352,8 +352,11 @@ void Network::on_complete(Row& row, hal::TimeNs now) {
 
 void Network::accept(Row& row) {
   Node& node = row.node;
+  const bool as_before = node.generation > 0 && row.draft.description() == node.description;
+  const std::vector<std::uint8_t> marks = as_before ? std::move(node.image.marks) : std::vector<std::uint8_t>();
   node.description = row.draft.description();
   node.image.resize(node.description.named_words());
+  for (std::size_t i = 0; i < marks.size(); ++i) node.image.marks[i] = marks[i] & Image::kWanted;
   node.state = NodeState::Ready;
   node.trouble.clear();
   ++node.generation;
@@ -493,6 +496,7 @@ void Network::on_variables(Row& row, const Variables& variables, hal::TimeNs at)
 /// repeated it is the last one that was answered, unless answers are so slow here that it may have been the first.
 hal::TimeNs Network::measured_ns(const Row& row, hal::TimeNs at) const noexcept {
   const NodeStatistics& s = row.node.statistics;
+  if (row.read.asked_ns == 0) return at;
   const bool quick = s.answers > 0 && 4 * s.sum_round_trip_ns < timing_.reply_ns * static_cast<hal::TimeNs>(s.answers);
   const hal::TimeNs asked_ns = quick ? row.read.asked_ns : row.read.first_ns;
   return at - std::max<hal::TimeNs>(at - asked_ns, 0) / 2;

@@ -81,8 +81,8 @@ class Network {
   /// The first Ready node with one of these names, whatever their case; space, `-` and `_` are the same. Or null.
   const Node* find(std::span<const std::string> names) const noexcept;
 
-  /// Has these words read with the next polls, and asked for again until they are answered or the node is lost; see
-  /// `Node::taken_ns`. False, and counted: not Ready, or outside.
+  /// Has these words read with the next polls, and asked for again until they are answered, also of a node that was
+  /// lost meanwhile and came back as it was; see `Node::taken_ns`. False, and counted: not Ready, or outside.
   bool want(std::uint8_t id, std::size_t address, std::size_t count) noexcept;
   /// Has these words written with the next poll. There is no acknowledgement in the protocol: read back where it
   /// matters. False, and counted: not Ready, or outside.

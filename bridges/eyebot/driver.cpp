@@ -191,7 +191,10 @@ void EyebotDriver::use_status() {
                      (status_.mode == Mode::Land || status_.mode == Mode::Idle || status_.mode == Mode::Off ||
                       status_.mode == Mode::Stopped);
   if (!before.known || !was_active_ || settings_.observe || !((begins && !late) || sinks)) return;
-  ++statistics_.saved_itself;
+  // What an outage makes it do is the link's stop, and over with it.
+  const bool by_link =
+      status_.failsafe == hal::FlightFailsafe::CommandTimeout || status_.failsafe == hal::FlightFailsafe::LinkLost;
+  statistics_.saved_itself += by_link ? 0 : 1;
   log_.warning(
       "eye-bot '" + settings_.robot.id + "': it goes to safety by itself, " + mode_name(status_.mode) +
       (status_.failsafe == hal::FlightFailsafe::None ? "" : std::string(": ") + failsafe_name(status_.failsafe)));

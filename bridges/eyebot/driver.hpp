@@ -81,7 +81,7 @@ struct DriverStatistics {
   std::uint64_t rearmed = 0;          ///< times that flying began anew with a ramp
   std::uint64_t watchdog_stops = 0;   ///< for want of commits
   std::uint64_t link_stops = 0;       ///< because the robot was not active any more, or had begun anew by itself
-  std::uint64_t saved_itself = 0;     ///< times that it went to safety though nobody told it
+  std::uint64_t saved_itself = 0;     ///< times that it went to safety, and not for want of us
   std::uint64_t recovered = 0;        ///< times it became Active again
   std::uint64_t lost = 0;             ///< times it became Lost
   std::uint64_t faults = 0;           ///< reported with `fault`
@@ -256,7 +256,7 @@ class EyebotDriver {
   FlightStatus status_;
   bool controlled_ = false;
   bool doubts_control_ = false;  // it did not go where we told it: perhaps another hub's
-  bool refused_ = false;  // another hub controls it
+  bool refused_ = false;         // another hub controls it
 
   Goal goal_ = Goal::Obey;
   hal::TimeNs goal_since_ns_ = 0;

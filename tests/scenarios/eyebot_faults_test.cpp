@@ -258,6 +258,16 @@ TEST(EyebotFaults, ARobotThatSavesItselfIsHeldWithItsReason) {
   }
 }
 
+TEST(EyebotFaults, AnOutageIsNoStopOfTheRobotsOwnAndIsOverWithinASecond) {
+  Flight f({"deaf@8s+4s"});
+  f.fly_until(12.0);
+  EXPECT_NE(f.mode(), Mode::Velocity);
+  f.fly_until(13.0);
+  EXPECT_EQ(f.mode(), Mode::Velocity) << f.logged;
+  EXPECT_EQ(f.driver.statistics().saved_itself, 0U);
+  EXPECT_GE(f.driver.statistics().link_stops, 1U);
+}
+
 TEST(EyebotFaults, ALowBatteryLandsARobotThatIsStopped) {
   Flight f({"battery=0.15@8s"});  // low, and not yet so low that the robot lands by itself
   f.fly_until(10.0);

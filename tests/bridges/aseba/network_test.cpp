@@ -158,6 +158,22 @@ TEST(Network, AsksUntilItIsAnsweredAndKeepsTheOldValueWithItsAge) {
   EXPECT_FALSE(robot.network.reading());
 }
 
+TEST(Network, WhatIsWantedOfANodeThatIsLostIsReadWhenItIsBack) {
+  RobotOnBus robot;
+  FakeNode& motor = robot.add_motor();
+  ASSERT_TRUE(robot.pass_until_ready(1));
+  motor.memory[34] = 6;
+  motor.on = false;
+  robot.network.want(1, 34, 1);
+  robot.pass(2000 * kMs);
+  ASSERT_EQ(robot.network.node(1).state, NodeState::Lost);
+  EXPECT_FALSE(robot.network.reading());
+  motor.on = true;
+  ASSERT_TRUE(robot.pass_until_ready(1));
+  robot.pass(50 * kMs);
+  EXPECT_EQ(robot.network.node(1).value(34), 6);
+}
+
 TEST(Network, DoesNotCountWhatOurOwnThreadWasLate) {
   RobotOnBus robot;
   robot.add_motor();

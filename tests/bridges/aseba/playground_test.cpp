@@ -108,10 +108,18 @@ class Playground : public testing::Test {
     }
     return false;
   }
-  bool read(std::size_t address, std::size_t count) {
+  testing::AssertionResult read(std::size_t address, std::size_t count) {
     const hal::TimeNs asked = monotonic_ns();
-    return network_->want(1, address, count) &&
-           serve_until([&] { return network_->node(1).taken_ns(address, count) >= asked; });
+    const bool wanted = network_->want(1, address, count);
+    if (wanted && serve_until([&] { return network_->node(1).taken_ns(address, count) >= asked; })) {
+      return testing::AssertionSuccess();
+    }
+    const NodeStatistics& s = network_->node(1).statistics;
+    return testing::AssertionFailure() << "node " << node_state_name(network_->node(1).state) << ", " << s.messages
+                                       << " messages, " << s.reads << " reads, " << s.asked_again << " asked again, "
+                                       << s.answers << " answered, " << s.unanswered << " not, " << s.unasked
+                                       << " unasked, " << s.wrong_length << " of a wrong length, lost " << s.times_lost
+                                       << " times";
   }
 
   std::filesystem::path folder_;
