@@ -18,7 +18,7 @@ constexpr hal::TimeNs kWriteBudget = 2 * hal::kNsPerMs;
 constexpr hal::TimeNs kNever = std::numeric_limits<hal::TimeNs>::max();
 
 // Between an answer and the latch that it is for.
-constexpr hal::TimeNs kLeastMargin = 2 * hal::kNsPerMs;
+constexpr hal::TimeNs kLeastMargin = 4 * hal::kNsPerMs;
 constexpr hal::TimeNs kLargestMargin = 20 * hal::kNsPerMs;
 
 constexpr hal::TimeNs kPumpEvery = 20 * hal::kNsPerMs;

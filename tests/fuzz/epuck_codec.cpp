@@ -76,7 +76,7 @@ void act(Session& session, Script& script, tandem::hal::TimeNs& now) {
   static constexpr std::uint8_t kZeros[128] = {};
   const std::uint8_t op = script.next();
   const std::uint8_t argument = script.next();
-  switch (op % 10) {
+  switch (op % 13) {
     case 0:
       session.on_bytes(script.take(argument), now);
       break;
@@ -109,6 +109,18 @@ void act(Session& session, Script& script, tandem::hal::TimeNs& now) {
       break;
     case 8:
       session.link_up(now);
+      break;
+    case 10: {
+      Actuation a;
+      a.right.value = static_cast<std::int16_t>(argument * 8 - 1000);
+      session.command(a, now);
+      break;
+    }
+    case 11:
+      session.ask({Quantity::Proximity, Quantity::Acceleration}, now);
+      break;
+    case 12:
+      session.stalled(argument * tandem::hal::kNsPerMs);
       break;
     case 9:
       argument > 250 ? session.farewell(now) : session.poll(now);
