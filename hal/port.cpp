@@ -193,14 +193,18 @@ void fuse(const PortType& type, void* real, const void* virtual_) noexcept {
   if (virtual_stamp->validity == Validity::Absent) return;
   if (real_stamp->validity == Validity::Absent) {
     // Only fields that may come from the virtual side alone do; a device that is not there stays absent otherwise.
-    bool any_virtual = type.merge != nullptr;
-    for (const Field& f : type.fields) any_virtual = any_virtual || f.fusion == Fusion::Virtual;
+    bool any_virtual = false;
+    for (const Field& f : type.fields)
+      any_virtual = any_virtual || f.fusion == Fusion::Virtual || f.fusion == Fusion::Union;
     if (any_virtual) std::memcpy(real, virtual_, type.size);
     return;
   }
   for (const Field& f : type.fields) {
-    if (is_stamp(f) || f.fusion == Fusion::Real || f.fusion == Fusion::Union) continue;
-    for (std::size_t i = 0; i < f.count; ++i) {
+    if (is_stamp(f)) continue;
+    if (f.fusion == Fusion::Real || f.fusion == Fusion::Union || f.fusion == Fusion::ByAngle) continue;
+    const std::size_t count =
+        f.fusion == Fusion::Virtual ? f.count : std::min(used_count(type, real, f), used_count(type, virtual_, f));
+    for (std::size_t i = 0; i < count; ++i) {
       const double a = get_value(real, f, i);
       const double b = get_value(virtual_, f, i);
       const double fused = f.fusion == Fusion::Virtual  ? b

@@ -43,7 +43,8 @@ enum class Fusion : std::uint8_t {
   Virtual,  ///< the simulated device's value
   Nearer,   ///< the smaller (distances)
   Larger,   ///< the larger (activations)
-  Union     ///< entries of both (message lists); done by the port's own `merge`
+  Union,    ///< entries of both, each once (messages, blobs); done by the port's own `merge`
+  ByAngle   ///< the nearer of those that look the same way (distances of a scanner); done by the port's own `merge`
 };
 
 /// One field of a port: `count` scalars at `offset`.
@@ -69,7 +70,7 @@ struct PortType {
   std::uint64_t layout = 0;  ///< fingerprint of names, offsets and types: equal on both sides of a plug-in border
   std::vector<Field> fields;
   void (*reset)(void*) = nullptr;  ///< writes the default: an absent reading, or the safe command
-  void (*merge)(void* real, const void* virtual_) = nullptr;  ///< adds virtual entries (Fusion::Union); null where none
+  void (*merge)(void* real, const void* virtual_) = nullptr;  ///< for Fusion::Union and ByAngle; null where none
 
   const Field* field(std::string_view field_name) const noexcept;
 };
@@ -186,8 +187,9 @@ double max_difference(const PortType& type, const void* a, const void* b) noexce
 /// True when every floating-point value in the port is finite.
 bool all_finite(const PortType& type, const void* port) noexcept;
 
-/// Makes `real` the fused reading of both, field by field as each says. An absent side is left out. A stale real
-/// reading stays stale.
+/// Makes `real` the fused reading of both, field by field as each says: of a field with `used_by`, as many entries as
+/// both sides use. An absent side is left out; the virtual side alone stands in for an absent device where all that it
+/// says may come from there (fields of Fusion::Virtual or Union). A stale real reading stays stale.
 void fuse(const PortType& type, void* real, const void* virtual_) noexcept;
 
 }  // namespace tandem::hal

@@ -2,6 +2,7 @@
 #pragma once
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 
 #include "hal/device/leds.hpp"
@@ -42,9 +43,12 @@ struct OmnidirectionalCamera : Reading {
     bearing_rad[at] = bearing;
     set_color(at, c);
   }
-  /// Adds the blobs of `other`.
+  /// Adds the blobs of `other` that are not there: about the same colour within kSamePlace_m is the same light.
   void merge(const OmnidirectionalCamera& other) noexcept {
-    for (std::size_t i = 0; i < other.count; ++i) insert(other.distance_m[i], other.bearing_rad[i], other.color(i));
+    const OmnidirectionalCamera own = *this;
+    for (std::size_t i = 0; i < other.count; ++i) {
+      if (!own.has(other, i)) insert(other.distance_m[i], other.bearing_rad[i], other.color(i));
+    }
     dropped += other.dropped;
   }
   void describe(FieldList& f) const {
@@ -57,6 +61,18 @@ struct OmnidirectionalCamera : Reading {
   }
 
  private:
+  static constexpr float kSamePlace_m = 0.02F;  // LEDs of a ring are farther apart
+
+  bool has(const OmnidirectionalCamera& other, std::size_t i) const noexcept {
+    for (std::size_t k = 0; k < count; ++k) {
+      const float x_m = distance_m[k] * std::cos(bearing_rad[k]);
+      const float y_m = distance_m[k] * std::sin(bearing_rad[k]);
+      const float dx_m = other.distance_m[i] * std::cos(other.bearing_rad[i]) - x_m;
+      const float dy_m = other.distance_m[i] * std::sin(other.bearing_rad[i]) - y_m;
+      if (dx_m * dx_m + dy_m * dy_m < kSamePlace_m * kSamePlace_m && alike(color(k), other.color(i))) return true;
+    }
+    return false;
+  }
   void set_color(std::size_t i, Rgb c) noexcept {
     rgb[3 * i] = c.r;
     rgb[3 * i + 1] = c.g;
@@ -94,9 +110,13 @@ struct PerspectiveCamera : Reading {
     rgb[3 * count + 2] = c.b;
     ++count;
   }
-  /// Adds the blobs of `other`, whose image has as many pixels.
+  /// Adds the blobs of `other`, whose image has as many pixels, that are not there: about the same colour within
+  /// kSamePlace_px is the same light.
   void merge(const PerspectiveCamera& other) noexcept {
-    for (std::size_t i = 0; i < other.count; ++i) append(other.x_px[i], other.y_px[i], other.color(i));
+    const PerspectiveCamera own = *this;
+    for (std::size_t i = 0; i < other.count; ++i) {
+      if (!own.has(other, i)) append(other.x_px[i], other.y_px[i], other.color(i));
+    }
     dropped += other.dropped;
   }
   void describe(FieldList& f) const {
@@ -107,6 +127,18 @@ struct PerspectiveCamera : Reading {
     f.add("x", x_px, unit::none, Frame::Sensor, Fusion::Union, "pixels from the left").used_by = "count";
     f.add("y", y_px, unit::none, Frame::Sensor, Fusion::Union, "pixels from the top").used_by = "count";
     f.add("rgb", rgb, unit::none, Frame::None, Fusion::Union, "r, g, b of each blob, 0 to 255").used_by = "count";
+  }
+
+ private:
+  static constexpr float kSamePlace_px = 4.0F;
+
+  bool has(const PerspectiveCamera& other, std::size_t i) const noexcept {
+    for (std::size_t k = 0; k < count; ++k) {
+      const bool near =
+          std::fabs(x_px[k] - other.x_px[i]) < kSamePlace_px && std::fabs(y_px[k] - other.y_px[i]) < kSamePlace_px;
+      if (near && alike(color(k), other.color(i))) return true;
+    }
+    return false;
   }
 };
 

@@ -1,7 +1,10 @@
 // A distance scanner: range sensors on a ring that turns about the robot's vertical axis.
 #pragma once
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
+#include <numbers>
 
 #include "hal/port.hpp"
 
@@ -66,6 +69,27 @@ struct DistanceScanner : Reading {
   bool sees_nothing(std::size_t head, std::size_t sample) const noexcept {
     return distance(head, sample) >= (is_short(head) ? short_max_m : long_max_m);
   }
+  /// Shortens each distance to the nearest that a head of the same sort measured in `other` in about the same
+  /// direction: within half of what `other` turned from one measurement to the next, at least kSameWay_rad. The two
+  /// need not have measured equally often, nor begin at the same angle.
+  void merge(const DistanceScanner& other) noexcept {
+    const std::size_t theirs = std::min<std::size_t>(other.samples, kSamples);
+    const std::size_t ours = std::min<std::size_t>(samples, kSamples);
+    if (theirs == 0) return;
+    const float step_rad = theirs > 1 ? std::fabs(turned(other.angle(0, 1), other.angle(0, 0))) : 0.0F;
+    const float within_rad = std::max(kSameWay_rad, 0.5F * step_rad + 1e-4F);
+    for (std::size_t head = 0; head < kHeads; ++head) {
+      for (std::size_t i = 0; i < ours; ++i) {
+        float& mine = distance_m[at(head, i)];
+        for (std::size_t k = head % 2; k < kHeads; k += 2) {
+          for (std::size_t j = 0; j < theirs; ++j) {
+            const bool same_way = std::fabs(turned(other.angle(k, j), angle(head, i))) <= within_rad;
+            if (same_way) mine = std::min(mine, other.distance(k, j));
+          }
+        }
+      }
+    }
+  }
   void describe(FieldList& f) const {
     f.add("count", count, unit::none, Frame::None, Fusion::Real, "measurements of all heads");
     f.add("samples", samples, unit::none, Frame::None, Fusion::Real, "measurements of each head");
@@ -75,7 +99,14 @@ struct DistanceScanner : Reading {
     f.add("long_max", long_max_m, unit::m, Frame::None, Fusion::Real, "heads 1 and 3 read this where nothing is");
     f.add("turn", turn_rad, unit::rad, Frame::Body, Fusion::Real, "of the scanner, counter-clockwise from forward");
     f.add("angle", angle_rad, unit::rad, Frame::Body, Fusion::Real, "where the head looked").used_by = "count";
-    f.add("distance", distance_m, unit::m, Frame::Body, Fusion::Nearer, "from the robot's axis").used_by = "count";
+    f.add("distance", distance_m, unit::m, Frame::Body, Fusion::ByAngle, "from the robot's axis").used_by = "count";
+  }
+
+ private:
+  static constexpr float kSameWay_rad = 0.05F;  // 3 degrees: at 1.5 m what an e-puck hides to both sides of its axis
+
+  static float turned(float to_rad, float from_rad) noexcept {
+    return std::remainder(to_rad - from_rad, 2.0F * std::numbers::pi_v<float>);
   }
 };
 

@@ -13,6 +13,13 @@ struct Rgb {
   friend bool operator==(const Rgb&, const Rgb&) = default;
 };
 
+/// Whether both may be one light, as a camera shows its colour and as it was set.
+constexpr bool alike(Rgb a, Rgb b) noexcept {
+  constexpr int kMost = 64;
+  const auto near = [](int one, int other) { return one - other < kMost && other - one < kMost; };
+  return near(a.r, b.r) && near(a.g, b.g) && near(a.b, b.b);
+}
+
 inline constexpr Rgb kBlack{0, 0, 0};
 inline constexpr Rgb kRed{255, 0, 0};
 inline constexpr Rgb kGreen{0, 255, 0};

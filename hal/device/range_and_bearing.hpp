@@ -3,6 +3,7 @@
 #pragma once
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 
 #include "hal/port.hpp"
@@ -66,9 +67,12 @@ struct RangeAndBearing : Reading {
     size[at] = n;
     std::copy_n(bytes, std::min<std::size_t>(n, kRabPayloadMax), payload.data() + at * kRabPayloadMax);
   }
-  /// Adds the messages of `other`.
+  /// Adds the messages of `other` that are not there: the same bytes from a place within kSamePlace_m are the same
+  /// message.
   void merge(const RangeAndBearing& other) noexcept {
+    const RangeAndBearing own = *this;
     for (std::size_t i = 0; i < other.count; ++i) {
+      if (own.has(other, i)) continue;
       insert(other.range_m[i], other.bearing_rad[i], other.elevation_rad[i], other.message(i), other.size[i]);
     }
     dropped += other.dropped;
@@ -85,6 +89,24 @@ struct RangeAndBearing : Reading {
   }
 
  private:
+  static constexpr float kSamePlace_m = 0.05F;  // two boards cannot be so near: an e-puck is 0.07 m wide
+
+  bool has(const RangeAndBearing& other, std::size_t i) const noexcept {
+    for (std::size_t k = 0; k < count; ++k) {
+      if (size[k] != other.size[i] || !std::equal(message(k), message(k) + size[k], other.message(i))) continue;
+      float apart2 = 0.0F;
+      const std::array<float, 3> a = place(k);
+      const std::array<float, 3> b = other.place(i);
+      for (std::size_t axis = 0; axis < 3; ++axis) apart2 += (a[axis] - b[axis]) * (a[axis] - b[axis]);
+      if (apart2 < kSamePlace_m * kSamePlace_m) return true;
+    }
+    return false;
+  }
+  std::array<float, 3> place(std::size_t i) const noexcept {
+    const float flat_m = range_m[i] * std::cos(elevation_rad[i]);
+    return {flat_m * std::cos(bearing_rad[i]), flat_m * std::sin(bearing_rad[i]),
+            range_m[i] * std::sin(elevation_rad[i])};
+  }
   void copy_entry(std::size_t to, std::size_t from) noexcept {
     range_m[to] = range_m[from];
     bearing_rad[to] = bearing_rad[from];

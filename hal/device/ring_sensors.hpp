@@ -54,7 +54,7 @@ struct Ground : Reading {
   std::array<float, kCapacity> reflectance{};
 
   void describe(FieldList& f) const {
-    f.add("count", count, unit::none, Frame::None, Fusion::Real, "number of sensors");
+    f.add("count", count, unit::none, Frame::None, Fusion::Virtual, "number of sensors");
     f.add("reflectance", reflectance, unit::none, Frame::None, Fusion::Virtual, "0 black to 1 white").used_by = "count";
   }
 };

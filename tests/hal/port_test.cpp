@@ -6,6 +6,7 @@
 #include <rapidcheck.h>
 
 #include "hal/device/body_sensors.hpp"
+#include "hal/device/cameras.hpp"
 #include "hal/device/distance_scanner.hpp"
 #include "hal/device/gripper.hpp"
 #include "hal/device/leds.hpp"
@@ -304,12 +305,114 @@ TEST(RangeAndBearing, FusesToTheUnion) {
   for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(real.range_m[i], static_cast<float>(i + 1));
 }
 
+TEST(RangeAndBearing, ANearEqualMessageOfBothWorldsIsOne) {
+  RangeAndBearing real = heard({1, 4});
+  const std::uint8_t one = 1, two = 2;
+  RangeAndBearing virt = heard({});
+  virt.insert(1.02F, 0.51F, 0.0F, &one, 1);  // the same
+  virt.insert(1.02F, 0.51F, 0.0F, &two, 1);  // other bytes
+  virt.insert(1.02F, 0.61F, 0.0F, &one, 1);  // from elsewhere
+  virt.insert(1.02F, 0.61F, 0.0F, &one, 1);  // two that are only in one world are two
+  fuse(port_type<RangeAndBearing>(), &real, &virt);
+  EXPECT_EQ(real.count, 5U);
+}
+
 TEST(RangeAndBearing, AnAbsentRealBoardHearsTheVirtualOne) {
   RangeAndBearing real;
   const RangeAndBearing virt = heard({2});
   fuse(port_type<RangeAndBearing>(), &real, &virt);
   EXPECT_EQ(real.count, 1U);
   EXPECT_EQ(real.validity, Validity::Fresh);
+}
+
+TEST(Cameras, ALightOfBothWorldsIsOneBlob) {
+  OmnidirectionalCamera real;
+  real.validity = Validity::Fresh;
+  real.insert(0.5F, 0.3F, {200, 20, 10});
+  OmnidirectionalCamera virt;
+  virt.validity = Validity::Fresh;
+  virt.insert(0.51F, 0.31F, kRed);   // the same
+  virt.insert(0.51F, 0.31F, kBlue);  // of another colour
+  virt.insert(0.55F, 0.31F, kRed);   // elsewhere
+  fuse(port_type<OmnidirectionalCamera>(), &real, &virt);
+  EXPECT_EQ(real.count, 3U);
+  PerspectiveCamera seen;
+  seen.validity = Validity::Fresh;
+  seen.append(100.0F, 50.0F, kGreen);
+  PerspectiveCamera virtually = seen;
+  virtually.append(110.0F, 50.0F, kGreen);
+  fuse(port_type<PerspectiveCamera>(), &seen, &virtually);
+  EXPECT_EQ(seen.count, 2U);
+}
+
+DistanceScanner scan(std::uint32_t samples, float step_rad, float distance_m) {
+  DistanceScanner port;
+  port.validity = Validity::Fresh;
+  port.samples = samples;
+  port.count = samples * DistanceScanner::kHeads;
+  port.short_min_m = 0.04F;
+  port.short_max_m = 0.3F;
+  port.long_min_m = 0.2F;
+  port.long_max_m = 1.5F;
+  for (std::size_t head = 0; head < DistanceScanner::kHeads; ++head) {
+    for (std::size_t k = 0; k < samples; ++k) {
+      const float angle = 1.5707963F * static_cast<float>(head) - step_rad * static_cast<float>(samples - 1 - k);
+      port.angle_rad[port.at(head, k)] = std::remainder(angle, 6.2831853F);
+      port.distance_m[port.at(head, k)] = distance_m;
+    }
+  }
+  return port;
+}
+
+TEST(Scanner, AVirtualScannerThatMeasuredNothingChangesNothing) {
+  DistanceScanner real = scan(1, 0.0F, 0.25F);
+  DistanceScanner virt;
+  virt.validity = Validity::Fresh;
+  fuse(port_type<DistanceScanner>(), &real, &virt);
+  for (std::size_t i = 0; i < real.count; ++i) EXPECT_EQ(real.distance_m[i], 0.25F) << i;
+}
+
+TEST(Scanner, TakesTheNearerOfWhatLooksTheSameWayHoweverOftenEachMeasured) {
+  DistanceScanner real = scan(1, 0.0F, 0.25F);
+  DistanceScanner virt = scan(6, 0.3F, 0.28F);
+  virt.distance_m[virt.at(1, 5)] = 0.21F;  // as head 1 looks
+  virt.distance_m[virt.at(2, 0)] = 0.05F;  // where none of the real heads looked
+  fuse(port_type<DistanceScanner>(), &real, &virt);
+  EXPECT_EQ(real.samples, 1U);
+  EXPECT_EQ(real.distance_m[0], 0.25F);
+  EXPECT_EQ(real.distance_m[1], 0.21F);
+  EXPECT_EQ(real.distance_m[2], 0.25F);
+  EXPECT_EQ(real.distance_m[3], 0.25F);
+}
+
+TEST(Scanner, AnAbsentOneIsNotMadeUp) {
+  DistanceScanner real;
+  const DistanceScanner virt = scan(1, 0.0F, 0.1F);
+  fuse(port_type<DistanceScanner>(), &real, &virt);
+  EXPECT_EQ(real.validity, Validity::Absent);
+}
+
+TEST(Fuse, FieldsInUseAreThoseOfBothAndTheVirtualFloorBringsItsOwnNumber) {
+  Proximity near;
+  near.validity = Validity::Fresh;
+  near.count = 8;
+  near.distance_m.fill(0.1F);
+  Proximity virt;
+  virt.validity = Validity::Fresh;
+  virt.count = 3;  // the rest of its array is 0, which means nothing
+  virt.distance_m.fill(0.0F);
+  fuse(port_type<Proximity>(), &near, &virt);
+  EXPECT_EQ(near.distance_m[2], 0.0F);
+  EXPECT_EQ(near.distance_m[3], 0.1F);
+  Ground floor;
+  floor.validity = Validity::Fresh;
+  Ground painted;
+  painted.validity = Validity::Fresh;
+  painted.count = 3;
+  painted.reflectance = {0.5F, 0.6F, 0.7F};
+  fuse(port_type<Ground>(), &floor, &painted);
+  EXPECT_EQ(floor.count, 3U);
+  EXPECT_EQ(floor.reflectance[2], 0.7F);
 }
 
 // --- every port of the control interface ---
