@@ -39,7 +39,8 @@ bool same_medium(std::uint16_t led, std::uint16_t camera) noexcept {
 /// Bodies that may stand between the camera and a robot are looked up once for all of that robot's LEDs.
 class Lookout {
  public:
-  Lookout() { between_.reserve(kRoom); }
+  /// `sense`: real robots that its own camera sees are left out of what a real robot's twin sees.
+  explicit Lookout(RealSense sense) : sense_(sense) { between_.reserve(kRoom); }
 
   /// To be called in every tick before it looks.
   void measure(const SpaceStores& stores) noexcept {
@@ -99,7 +100,7 @@ class Lookout {
     stores.body_index.for_each_near(from[0], from[1], reach_m + widest_ring_m_, [&](const IndexEntry& o) {
       const std::size_t other = o.row();
       const ShownLeds& shown = stores.shown_leds[other];
-      if (other == row || shown.lit == 0) return;
+      if (other == row || shown.lit == 0 || stores.senses_really(row, other, sense_)) return;
       const hal::DataSheet& sheet = stores.sheet_of_row(other);
       const double spread_m = ring_m(sheet);
       if (!near(b.x_m[other], b.y_m[other], from, reach_m + spread_m)) return;
@@ -220,6 +221,7 @@ class Lookout {
     return in_sight(stores, from[0], from[1], from[2], from[0] + t * dx, from[1] + t * dy, from[2] + t * dz);
   }
 
+  RealSense sense_;
   double widest_body_m_ = 0.0, widest_ring_m_ = 0.0;  // of all kinds of robots
   std::vector<Blocker> between_;
 };
@@ -315,7 +317,7 @@ class OmniSensor final : public Sensor {
   double height_m_, reach_m_;
   std::uint16_t medium_;
   Flaws flaws_;
-  Lookout lookout_;
+  Lookout lookout_{RealSense::OmniCamera};
 };
 
 bool has_omni_camera(const hal::DataSheet& sheet) {
@@ -464,7 +466,7 @@ class LensSensor final : public Sensor {
   Flaws flaws_;
   double px_per_tangent_ = 1.0;
   Aim aim_;  // of a robot that looks along x, whose camera hangs in no head
-  Lookout lookout_;
+  Lookout lookout_{RealSense::LensCamera};
   std::array<Blob, hal::PerspectiveCamera::kCapacity> blobs_{};  // nearest first, of one image
   std::size_t found_ = 0;
 };

@@ -40,6 +40,11 @@ inline bool obeys(const DeviceContext& context, std::size_t i) noexcept {
   return (flags & (kAlive | kExternal)) == kAlive && context.block.halted[i] == 0;
 }
 
+/// Whether robot `i` is a real robot's twin: what it is and does comes from outside.
+inline bool led_from_outside(const DeviceContext& context, std::size_t i) noexcept {
+  return (context.stores.bodies.flags[context.block.first_row + i] & kExternal) != 0;
+}
+
 inline void stamp(const DeviceContext& context, hal::Reading& port) noexcept {
   port.taken_ns = context.now_ns;
   port.validity = hal::Validity::Fresh;

@@ -38,6 +38,7 @@ class ScannerActuator final : public Actuator {
   void act(const DeviceContext& context, SpaceStores& stores, const void* ports) noexcept override {
     const auto* drives = static_cast<const hal::ScannerDrive*>(ports);
     for (std::size_t i = 0; i < context.block.used; ++i) {
+      if (led_from_outside(context, i)) continue;
       const std::size_t row = context.block.first_row + i;
       ScannerState& scanner = stores.bodies.scanners[row];
       scanner.mode = obeys(context, i) ? drives[i].mode : ScannerMode::Off;
@@ -170,6 +171,7 @@ class ScannerSensor final : public Sensor {
       const double wy = o.y_m - b.y_m[row];
       const double within = farthest_m_ + static_cast<double>(o.radius_m);
       if (o.row() == row || wx * wx + wy * wy > within * within) return;
+      if (stores.senses_really(row, o.row(), RealSense::Scanner)) return;
       const double low = stores.base_m(o.row());
       if (height < low || height > low + stores.sheet_of_row(o.row()).body_height_m) return;
       bodies_.push_back({static_cast<float>(b.cos_h[row] * wx + b.sin_h[row] * wy),

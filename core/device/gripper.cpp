@@ -37,7 +37,7 @@ class GripperActuator final : public Actuator {
       const std::size_t row = context.block.first_row + i;
       GripState& grip = stores.bodies.grips[row];
       const bool able = obeys(context, i);
-      grip.aperture_rad = able ? drives[i].aperture_rad : 0.0;
+      if (!led_from_outside(context, i)) grip.aperture_rad = able ? drives[i].aperture_rad : 0.0;
       grip.wants = able && drives[i].locks();
       grip.slips = grip.wants && failure_prob_ > 0.0 && slips(context, stores.bodies.entity[row]);
     }

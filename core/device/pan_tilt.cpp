@@ -36,6 +36,7 @@ class HeadActuator final : public Actuator {
     const auto* drives = static_cast<const hal::PanTiltDrive*>(ports);
     const double most_rad = sheet_.turn_rad_s * context.tick_s;
     for (std::size_t i = 0; i < context.block.used; ++i) {
+      if (led_from_outside(context, i)) continue;
       const std::size_t row = context.block.first_row + i;
       hal::PanTiltDrive drive = obeys(context, i) ? drives[i] : hal::PanTiltDrive{};
       if (noise_rad_ > 0.0) {

@@ -61,6 +61,7 @@ struct Waiting {
   const Bodies& b = stores.bodies;
   const IndexEntry* entries = stores.body_index.entries();
   const bool heights = !b.motion.empty();  // else all robots stand on the ground, at the height of the rays
+  const bool twins = !b.real_senses.empty();
   std::size_t count = 0;
   for (std::size_t k = 0; k < waiting.count; ++k) {
     const Candidate candidate = waiting.candidates[k];
@@ -74,6 +75,7 @@ struct Waiting {
     waiting.sights[count] = {c * wx + s * wy, c * wy - s * wx, o.radius_m, candidate.slot};
     bool in_reach = (wx * wx + wy * wy < within * within) & (o.row() != row);
     if (heights && in_reach) in_reach = stands_at(stores, o.row(), ray_height_m(stores, ring, row));
+    if (twins && in_reach) in_reach = !stores.senses_really(row, o.row(), RealSense::Proximity);
     count += in_reach ? 1U : 0U;
   }
   for (std::size_t k = 0; k < count; ++k) {

@@ -366,6 +366,7 @@ class RabSensor final : public Sensor {
                hal::RangeAndBearing& port) const noexcept {
     const SpaceStores& stores = context.stores;
     const Bodies& b = stores.bodies;
+    if (stores.senses_really(row, sender.row, RealSense::Messages)) return;
     const Broadcast& message = stores.broadcasts[sender.row];
     const double x = b.x_m[row];
     const double y = b.y_m[row];

@@ -36,6 +36,7 @@ class TurretActuator final : public Actuator {
     Bodies& b = stores.bodies;
     for (std::size_t i = 0; i < context.block.used; ++i) {
       const std::size_t row = context.block.first_row + i;
+      if (led_from_outside(context, i)) continue;
       TurretState& turret = b.turrets[row];
       command(context, i, drives[i], turret);
       if (b.grips.empty() || !b.grips[row].holding()) turn(turret, context.tick_s);

@@ -43,6 +43,7 @@ void Bodies::resize(std::size_t rows) {
   if (!scanners.empty()) scanners.resize(rows);
   if (!hidden_rolls.empty()) hidden_rolls.resize(rows);
   if (!heads.empty()) heads.resize(rows);
+  if (!real_senses.empty()) real_senses.resize(rows);
 }
 
 void Bodies::reserve(std::size_t rows) {
@@ -283,6 +284,34 @@ void Space::set_external(RobotId robot, bool external) noexcept {
   if (!contains(robot)) return;
   std::uint8_t& flags = stores_->bodies.flags[stores_->row_of(robot)];
   flags = static_cast<std::uint8_t>(external ? flags | kExternal : flags & ~kExternal);
+  stores_->bodies.real_senses.resize(stores_->bodies.size());
+  stores_->bodies.real_senses[stores_->row_of(robot)] = 0;
+}
+
+void Space::set_real_senses(RobotId robot, std::uint8_t senses) noexcept {
+  if (external(robot)) stores_->bodies.real_senses[stores_->row_of(robot)] = senses;
+}
+
+void Space::set_turret(RobotId robot, double angle_rad, double speed_rad_s) noexcept {
+  Bodies& b = stores_->bodies;
+  if (b.turrets.empty() || !external(robot)) return;
+  b.turrets[stores_->row_of(robot)] = {hal::TurretMode::Off, 0.0, wrapped(angle_rad), speed_rad_s};
+}
+
+void Space::set_gripper(RobotId robot, double aperture_rad) noexcept {
+  Bodies& b = stores_->bodies;
+  if (!b.grips.empty() && external(robot)) b.grips[stores_->row_of(robot)].aperture_rad = aperture_rad;
+}
+
+void Space::set_scanner(RobotId robot, hal::ScannerMode mode, double angle_rad, double swept_rad) noexcept {
+  Bodies& b = stores_->bodies;
+  if (b.scanners.empty() || !external(robot)) return;
+  b.scanners[stores_->row_of(robot)] = {mode, wrapped(angle_rad), swept_rad};
+}
+
+void Space::set_camera_head(RobotId robot, double pan_rad, double tilt_rad, bool laser) noexcept {
+  Bodies& b = stores_->bodies;
+  if (!b.heads.empty() && external(robot)) b.heads[stores_->row_of(robot)] = {wrapped(pan_rad), tilt_rad, laser};
 }
 
 const void* Space::port(RobotId robot, const hal::PortType& type) const noexcept {

@@ -25,6 +25,7 @@
 #include "core/space/large_memory.hpp"
 #include "core/space/mechanisms.hpp"
 #include "core/space/object_index.hpp"
+#include "core/space/real_sense.hpp"
 #include "core/space/region.hpp"
 #include "core/space/space.hpp"
 #include "hal/controller.hpp"
@@ -98,6 +99,7 @@ struct Bodies {
   std::vector<ScannerState> scanners;
   std::vector<HiddenRoll> hidden_rolls;
   std::vector<HeadState> heads;
+  std::vector<std::uint8_t> real_senses;  ///< bits of RealSense; empty while no pose is set from outside
 
   std::size_t size() const noexcept { return x_m.size(); }
   void resize(std::size_t rows);
@@ -285,6 +287,12 @@ struct SpaceStores {
     return low < other_low + sheet_of_row(other).body_height_m && other_low < low + sheet_of_row(row).body_height_m;
   }
 
+  /// Whether the body in `row` is a real robot that senses `other`, another real one, by itself.
+  bool senses_really(std::size_t row, std::size_t other, RealSense sense) const noexcept {
+    return !bodies.real_senses.empty() && (bodies.real_senses[row] & bit(sense)) != 0 &&
+           (bodies.flags[other] & kExternal) != 0 &&
+           (sense != RealSense::Messages || (bodies.real_senses[other] & bit(sense)) != 0);
+  }
   std::size_t row_of(RobotId id) const noexcept {
     const RobotEntity& e = robots[id.index];
     return blocks[e.block].first_row + e.slot;

@@ -549,5 +549,83 @@ TEST(FootbotDevices, AnEpuckHasNoneOfThem) {
     EXPECT_THAT(world.all_problems(), HasSubstr("the robot 'e-puck' has no device '" + std::string(device) + "'"));
 }
 
+// --- twins of real robots ---
+
+/// Two real foot-bots and a simulated one, each in sight of the others, all within reach of their proximity sensors.
+class AmongTwins : public testing::Test {
+ protected:
+  void SetUp() override {
+    Scene scene = footbot_scene();
+    add_footbot(scene, "r1", 0.0, 0.0);
+    add_footbot(scene, "r2", 2.0 * kR + 0.04, 0.0);
+    add_footbot(scene, "sim", 0.0, 2.0 * kR + 0.04);
+    world_ = made(scene);
+    for (const char* id : {"r1", "r2"}) world_->space().set_external(robot(id), true);
+    for (const char* id : {"r1", "r2", "sim"}) command<hal::RangeAndBearingSend>(world_, id).say(7);
+  }
+  RobotId robot(const std::string& id) const { return world_.world->space().find_robot(id); }
+  void sense_really(const std::string& id, std::uint8_t senses) { world_->space().set_real_senses(robot(id), senses); }
+  /// Which sides see something.
+  std::string seen_by(const std::string& id) const {
+    const auto& port = reading<hal::Proximity>(world_, id);
+    std::string sides;
+    const auto seen = [&](std::size_t i) { return port.distance_m[i] < port.range_m; };
+    if (seen(0) || seen(port.count - 1)) sides += "front ";
+    if (seen(port.count / 4) || seen(port.count / 4 - 1)) sides += "left ";
+    return sides;
+  }
+  MadeWorld world_;
+};
+
+TEST_F(AmongTwins, WithoutSensesOfItsOwnATwinSensesAll) {
+  steps(world_, 2);
+  EXPECT_EQ(seen_by("r1"), "front left ");
+  EXPECT_EQ(reading<hal::RangeAndBearing>(world_, "r1").count, 2U);
+}
+
+TEST_F(AmongTwins, WhatTheRobotSensesItselfOfRealRobotsIsLeftOut) {
+  for (const char* id : {"r1", "r2"}) sense_really(id, bit(RealSense::Proximity) | bit(RealSense::Messages));
+  steps(world_, 2);
+  EXPECT_EQ(seen_by("r1"), "left ");  // the simulated one
+  EXPECT_EQ(reading<hal::RangeAndBearing>(world_, "r1").count, 1U);
+  EXPECT_EQ(reading<hal::RangeAndBearing>(world_, "r2").count, 1U);
+  EXPECT_EQ(seen_by("sim"), "");  // others are behind and to its right
+  EXPECT_EQ(reading<hal::RangeAndBearing>(world_, "sim").count, 2U);
+}
+
+TEST_F(AmongTwins, MessagesBetweenRobotsOfWhichOneHasNoBoardAreRelayed) {
+  sense_really("r1", bit(RealSense::Messages));
+  steps(world_, 2);
+  EXPECT_EQ(reading<hal::RangeAndBearing>(world_, "r1").count, 2U);
+  EXPECT_EQ(reading<hal::RangeAndBearing>(world_, "r2").count, 2U);
+}
+
+TEST_F(AmongTwins, AScannerLeavesOutWhatTheRealOneSees) {
+  command<hal::ScannerDrive>(world_, "r1").go_to(0.0);
+  world_->space().set_scanner(robot("r1"), hal::ScannerMode::Position, 0.0, 0.0);
+  steps(world_, 2);
+  const auto& scan = reading<hal::DistanceScanner>(world_, "r1");
+  ASSERT_EQ(scan.samples, 1U);
+  EXPECT_FALSE(scan.sees_nothing(0, 0));
+  EXPECT_FALSE(scan.sees_nothing(1, 0));
+  sense_really("r1", bit(RealSense::Scanner));
+  world_->step();
+  EXPECT_TRUE(scan.sees_nothing(0, 0));   // ahead: the real one
+  EXPECT_FALSE(scan.sees_nothing(1, 0));  // left: the simulated one
+}
+
+TEST_F(AmongTwins, MechanismsStandWhereTheyWerePutAndObeyNoCommand) {
+  Space& space = world_->space();
+  space.set_turret(robot("r1"), 0.7, 0.1);
+  space.set_gripper(robot("r1"), 1.0);
+  command<hal::TurretDrive>(world_, "r1").turn(1.0);
+  steps(world_, 5);
+  EXPECT_NEAR(reading<hal::TurretEncoder>(world_, "r1").angle_rad, 0.7, 1e-12);
+  EXPECT_NEAR(space.turret_rad(robot("r1")), 0.7, 1e-12);
+  EXPECT_FLOAT_EQ(reading<hal::Gripper>(world_, "r1").aperture_rad, 1.0F);
+  space.set_turret(robot("sim"), 0.7, 0.1);  // a simulated one's is its engine's business
+  EXPECT_EQ(space.turret_rad(robot("sim")), 0.0);
+}
+
 }  // namespace
 }  // namespace tandem::core

@@ -1,0 +1,21 @@
+// Senses that a real robot has of the others around it, beside those of its twin.
+#pragma once
+#include <cstdint>
+
+namespace tandem::core {
+
+/// What a real robot measures of other real robots by itself: its twin's sensors leave those out, so that nobody is
+/// seen or heard twice. Bits of `Bodies::real_senses`.
+enum class RealSense : std::uint8_t {
+  Proximity = 1,
+  Scanner = 2,
+  Messages = 4,  ///< its own range-and-bearing board: between two robots that both have one
+  OmniCamera = 8,
+  LensCamera = 16
+};
+
+constexpr std::uint8_t bit(RealSense sense) noexcept {
+  return static_cast<std::uint8_t>(sense);
+}
+
+}  // namespace tandem::core
