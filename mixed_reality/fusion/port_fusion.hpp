@@ -25,12 +25,16 @@ class PortFusion {
 
   /// To be called when the space's ports hold the virtual readings: they then hold the fused ones. Allocates nothing.
   void fuse() noexcept;
+  /// A reading that the controller asked for, that the real robot has a device for, and that never came; null: all did.
+  /// Not meant are devices that the virtual ones may stand in for, and a scanner: it measures only when told to.
+  const hal::PortType* missing() const noexcept;
 
  private:
   struct Pair {
     const hal::PortType* type;
     void* port;        // in the space
     const void* real;  // null: no such device
+    bool needed;
   };
   std::vector<Pair> pairs_;
   std::unique_ptr<std::max_align_t[]> scratch_;  // one port, the largest

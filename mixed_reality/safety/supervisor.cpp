@@ -14,7 +14,7 @@ using O = StopOwner;
 
 // First row that applies decides. Everything that is not known to be well stops the robot.
 // clang-format off
-constexpr std::array<SafetyRule, 16> kTable = {{
+constexpr std::array<SafetyRule, 17> kTable = {{
     {[](const C& c) noexcept { return c.run == RunPhase::Stopping; },     held(O::Run, "the run is stopping")},
     {[](const C& c) noexcept { return c.run == RunPhase::Waiting; },      held(O::Run, "waiting for the start")},
     {[](const C& c) noexcept { return c.controller_failed; },             held(O::Controller, "controller failed")},
@@ -34,6 +34,8 @@ constexpr std::array<SafetyRule, 16> kTable = {{
     {[](const C& c) noexcept { return c.pose == hal::Validity::Stale; },  held(O::Pose, "pose stale")},
     {[](const C& c) noexcept { return c.pose_jumped; },                   held(O::Pose, "pose jumped"),
      Recovery::Rearm, "pose jumped; waits to be re-armed"},
+    {[](const C& c) noexcept { return c.wheels_differ; },                 held(O::Pose, "wheels and pose differ"),
+     Recovery::Rearm, "wheels and pose differed; waits to be re-armed"},
     {[](const C&) noexcept { return true; }, Verdict{true, true, false, O::Nobody, "driving"}},
 }};
 // clang-format on

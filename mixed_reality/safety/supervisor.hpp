@@ -32,7 +32,8 @@ struct Conditions {
   LinkHealth link = LinkHealth::Connecting;
   bool readings_missing = false;  ///< one that the controller asked for never came
   hal::Validity pose = hal::Validity::Absent;
-  bool pose_jumped = false;  ///< since the last judgement: farther than the robot can have moved; or two sources differ
+  bool pose_jumped = false;    ///< since the last judgement: farther than the robot can have moved
+  bool wheels_differ = false;  ///< since the last judgement: they roll, and the robot does not move as they say
 };
 
 /// Who holds a robot.

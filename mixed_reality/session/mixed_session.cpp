@@ -29,7 +29,7 @@ hal::Result<std::unique_ptr<PoseSource>> make_pose_source(const core::RobotItem&
   if (source == "positioning") {
     const auto* places = static_cast<const hal::Positioning*>(real.port(hal::port_type<hal::Positioning>()));
     if (places == nullptr) return hal::Error{"it does not say itself where it is; take the tracker odometry"};
-    return std::unique_ptr<PoseSource>(std::make_unique<Positioned>(start, *places));
+    return std::unique_ptr<PoseSource>(std::make_unique<Positioned>(start, *places, sheet));
   }
   if (source != "odometry") return hal::Error{"there is no tracker '" + source + "'; there are: odometry, positioning"};
   const auto* encoders = static_cast<const hal::WheelEncoders*>(real.port(hal::port_type<hal::WheelEncoders>()));

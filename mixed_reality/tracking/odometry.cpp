@@ -40,14 +40,19 @@ Odometry::Odometry(const core::Pose& start, const hal::DataSheet& sheet, const h
 TrackedPose Odometry::latch(const Moment& now) noexcept {
   if (encoders_.validity == hal::Validity::Absent) return tracked_;
   const hal::TimeNs taken_ns = now.to_monotonic(encoders_.taken_ns);
-  if (taken_ns > now.monotonic_ns || (tracked_.known && taken_ns <= tracked_.taken_ns)) return tracked_;
+  if (taken_ns > now.monotonic_ns) {
+    if (encoders_.taken_ns != future_ns_) ++rejected_;
+    future_ns_ = encoders_.taken_ns;
+    return tracked_;
+  }
+  if (tracked_.known && taken_ns <= tracked_.taken_ns) return tracked_;
   const double left_m = encoders_.left_m - left_m_;
   const double right_m = encoders_.right_m - right_m_;
   if (tracked_.known) {
     if (believable(left_m, right_m, taken_ns - tracked_.taken_ns)) {
       tracked_.pose = rolled(tracked_.pose, left_m, right_m, wheel_base_m_);
     } else {
-      ++jumps_;
+      ++rejected_;
     }
   }
   if (!std::isfinite(left_m) || !std::isfinite(right_m)) return tracked_;

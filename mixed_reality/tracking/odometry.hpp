@@ -18,7 +18,7 @@ core::Pose rolled(const core::Pose& pose, double left_m, double right_m, double 
 ///
 /// The first reading is the reference. What the wheels rolled while the link was down counts when it is back, as
 /// far as the robot can have rolled it in that time; encoders that have moved farther were reset or misread: such a
-/// step is counted, and the robot stays where it was.
+/// step is counted, and the robot stays where it was. So is a stamp that lies in the future.
 class Odometry final : public PoseSource {
  public:
   /// `encoders` must outlive this; its stamps are on the run's clock. `sheet`: wheel base and largest speed.
@@ -27,7 +27,8 @@ class Odometry final : public PoseSource {
   /// As old as the encoders' reading.
   TrackedPose latch(const Moment& now) noexcept override;
 
-  std::uint64_t rejected() const noexcept override { return jumps_; }
+  std::uint64_t rejected() const noexcept override { return rejected_; }
+  bool by_wheels() const noexcept override { return true; }
 
  private:
   bool believable(double left_m, double right_m, hal::TimeNs since_ns) const noexcept;
@@ -37,7 +38,8 @@ class Odometry final : public PoseSource {
   double max_speed_m_s_;
   TrackedPose tracked_;
   double left_m_ = 0.0, right_m_ = 0.0;  // of the reading that `tracked_` belongs to
-  std::uint64_t jumps_ = 0;
+  hal::TimeNs future_ns_ = -1;           // the last stamp that lay in the future
+  std::uint64_t rejected_ = 0;
 };
 
 }  // namespace tandem::mixed_reality

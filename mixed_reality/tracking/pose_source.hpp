@@ -25,6 +25,10 @@ class PoseSource {
   virtual TrackedPose latch(const Moment& now) noexcept = 0;
   /// How many measurements it did not believe.
   virtual std::uint64_t rejected() const noexcept = 0;
+  /// How often it believed in the end that the robot is farther from where it was than it can have moved.
+  virtual std::uint64_t jumps() const noexcept { return 0; }
+  /// Whether it knows of nothing but the wheels: what they slip it cannot tell.
+  virtual bool by_wheels() const noexcept { return false; }
 };
 
 }  // namespace tandem::mixed_reality

@@ -1,9 +1,10 @@
 #include "mixed_reality/twin/twin.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 
-#include "hal/device/body_sensors.hpp"
+#include "core/space/stores.hpp"
 #include "hal/unit.hpp"
 #include "mixed_reality/tracking/odometry.hpp"
 
@@ -16,7 +17,7 @@ Fence arena_of(const core::Space& space) {
   const double half_x_m = 0.5 * space.arena_size_x_m();
   const double half_y_m = 0.5 * space.arena_size_y_m();
   return {space.arena_center_x_m() - half_x_m, space.arena_center_y_m() - half_y_m, space.arena_center_x_m() + half_x_m,
-          space.arena_center_y_m() + half_y_m};
+          space.arena_center_y_m() + half_y_m, space.stores().max_z_m};
 }
 
 template <class Port>
@@ -44,9 +45,15 @@ Twin::Twin(core::Space& space, core::RobotId robot, std::unique_ptr<bridges::Rob
       params_(params),
       log_(log),
       fence_(arena_of(space)),
+      inner_fence_(fence_.for_body(space.data_sheet(robot).body_radius_m, space.data_sheet(robot).body_height_m)),
       fusion_(space, robot, [this](const hal::PortType& type) { return reading_of(*real_, type); }),
+      mechanisms_(space, robot, [this](const hal::PortType& type) { return reading_of(*real_, type); }),
+      positioning_(space.port<hal::Positioning>(robot)),
       real_wheels_(real_->port(hal::port_type<hal::WheelSpeeds>())),
-      supervisor_(params.rearm) {
+      real_task_(space.data_sheet(robot).flies ? real_->port(hal::port_type<hal::FlightTask>()) : nullptr),
+      supervisor_(params.rearm),
+      pose_(space.pose(robot)),
+      smooth_(pose_) {
   std::size_t largest = 1;
   for (const hal::PortType* type : space.ports(robot)) {
     if (type->role != hal::Role::Actuator) continue;
@@ -56,7 +63,14 @@ Twin::Twin(core::Space& space, core::RobotId robot, std::unique_ptr<bridges::Rob
   safe_ = std::make_unique<std::max_align_t[]>((largest + sizeof(std::max_align_t) - 1) / sizeof(std::max_align_t));
   incidents_.reserve(kIncidentsKept);
   space_.set_external(robot_, true);
-  pose_ = space_.pose(robot_);
+  const hal::DataSheet& sheet = space.data_sheet(robot);
+  if (!poses_->by_wheels() && sheet.wheel_base_m > 0.0) {
+    const auto* encoders = static_cast<const hal::WheelEncoders*>(real_->port(hal::port_type<hal::WheelEncoders>()));
+    if (encoders != nullptr) slip_ = std::make_unique<SlipWatch>(*encoders, sheet.wheel_base_m);
+  }
+  // On a slow line only what its controller reads anyway is asked for.
+  const bool asks_battery = sheet.flies || sheet.turret_turn_rad_s > 0.0 || space.port<hal::Battery>(robot) != nullptr;
+  if (asks_battery) battery_ = static_cast<const hal::Battery*>(real_->port(hal::port_type<hal::Battery>()));
 }
 
 void Twin::latch(const Moment& now, RunPhase phase) {
@@ -71,37 +85,86 @@ void Twin::latch(const Moment& now, RunPhase phase) {
   conditions.controller_failed = space_.halted_by(robot_, core::HaltOwner::Controller);
   conditions.hub_was_frozen =
       running_ && last_latch_ns_ != 0 && now.monotonic_ns - last_latch_ns_ > params_.frozen_after_ns;
-  last_latch_ns_ = now.monotonic_ns;
+  mechanisms_.follow(last_latch_ns_ == 0 ? 0.0 : hal::to_seconds(now.monotonic_ns - last_latch_ns_));
   conditions.link = real_->health();
-  conditions.pose = track(now);
+  conditions.readings_missing = fusion_.missing() != nullptr;
+  conditions.battery_low = battery_low(now);
+  track(now, conditions);
+  pose_validity_ = conditions.pose;
+  last_latch_ns_ = now.monotonic_ns;
   hold(!supervisor_.judge(conditions, now.run_ns).controller_steps);
   note(now);
 }
 
-hal::Validity Twin::track(const Moment& now) noexcept {
+void Twin::track(const Moment& now, Conditions& conditions) noexcept {
   const TrackedPose tracked = poses_->latch(now);
+  pose_taken_ns_ = now.to_run(tracked.taken_ns);
   const hal::TimeNs age_ns = now.monotonic_ns - tracked.taken_ns;
   const bool fresh = tracked.known && age_ns <= params_.pose_timeout_ns;
-  pose_ = tracked.pose;
-  // A pose is about a tick old when it is used, and the robot has driven on: by the speeds that it was last given.
-  if (fresh && space_.data_sheet(robot_).wheel_base_m > 0.0) {
-    const double age_s = hal::to_seconds(age_ns);
-    pose_ = rolled(pose_, sent_.left_m_s * age_s, sent_.right_m_s * age_s, space_.data_sheet(robot_).wheel_base_m);
-  }
+  conditions.pose = !tracked.known ? hal::Validity::Absent : fresh ? hal::Validity::Fresh : hal::Validity::Stale;
+  conditions.pose_jumped = poses_->jumps() != jumps_;
+  jumps_ = poses_->jumps();
+  conditions.wheels_differ = slip_ != nullptr && slip_->differs(tracked);
+
+  // A pose is about a tick old when it is used, and the robot has driven on by what it was last told; in an outage much
+  // longer, until something else stops it.
+  const double age_s = hal::to_seconds(age_ns);
+  const double tick_s = last_latch_ns_ == 0 ? 0.0 : hal::to_seconds(now.monotonic_ns - last_latch_ns_);
+  const core::Pose expected = carried_on(pose_, std::min(tick_s, params_.coast_s - (age_s - tick_s)));
+  pose_ = tracked.known ? carried_on(tracked.pose, std::min(age_s, params_.coast_s)) : tracked.pose;
   // A twin beyond the edge would end the run as an escaped body; the fence brings the real robot back.
-  space_.set_pose(robot_, fence_.clamped(pose_));
-  return !tracked.known ? hal::Validity::Absent : fresh ? hal::Validity::Fresh : hal::Validity::Stale;
+  space_.set_pose(robot_, fence_.clamped(running_ ? smooth_.follow(pose_, expected, tick_s) : smooth_.set(pose_)));
+}
+
+/// `pose` after so much more time of what the robot was last told while it could hear.
+core::Pose Twin::carried_on(const core::Pose& pose, double for_s) const noexcept {
+  const double wheel_base_m = space_.data_sheet(robot_).wheel_base_m;
+  if (wheel_base_m <= 0.0 || for_s <= 0.0) return pose;
+  return rolled(pose, driven_.left_m_s * for_s, driven_.right_m_s * for_s, wheel_base_m);
+}
+
+/// One bad reading does not end a flight.
+bool Twin::battery_low(const Moment& now) noexcept {
+  const bool low = battery_ != nullptr && battery_->validity == hal::Validity::Fresh &&
+                   static_cast<double>(battery_->charge) < params_.low_battery;
+  if (!low) battery_well_ns_ = now.monotonic_ns;
+  return low && hal::to_seconds(now.monotonic_ns - battery_well_ns_) >= params_.low_battery_s;
 }
 
 void Twin::after_sense() noexcept {
   fusion_.fuse();
+  tell_place();
+}
+
+/// A robot that does not measure its place itself is told the one of its twin.
+void Twin::tell_place() noexcept {
+  if (positioning_ == nullptr || positioning_->validity != hal::Validity::Absent) return;
+  if (pose_validity_ == hal::Validity::Absent) return;
+  positioning_->p_WB = {pose_.x_m, pose_.y_m, pose_.z_m};
+  const double half_rad = 0.5 * pose_.heading_rad();
+  positioning_->q_WB = {std::cos(half_rad), 0.0, 0.0, std::sin(half_rad)};
+  positioning_->taken_ns = pose_taken_ns_;
+  positioning_->validity = pose_validity_;
 }
 
 void Twin::after_filter(const Moment& now) {
   const bool alive = supervisor_.verdict().may_drive && !space_.halted(robot_);
   if (running_) alive ? ++counts_.ticks_driving : ++counts_.ticks_held;
+  if (running_) look_for_intrusions(now);
   send_commands(alive, now);
+  if (real_->health() == LinkHealth::Active) driven_ = sent_;
   real_->commit(now.monotonic_ns);
+}
+
+/// After engines have parted what they can part.
+void Twin::look_for_intrusions(const Moment& now) {
+  intrusion_ = intrusion_of(space_, robot_, pose_);
+  if (smooth_.blending() && intrusion_.robot.valid()) intrusion_ = {};  // engines part them from where it is shown
+  if (intrusion_.deep() && !intruding_) {
+    ++counts_.intrusions;
+    note_incident(now, "its twin stands in '" + name_of(space_, intrusion_) + "'", true);
+  }
+  intruding_ = intruding_ ? intrusion_.depth_m > 0.0 : intrusion_.deep();
 }
 
 void Twin::send_commands(bool alive, const Moment& now) {
@@ -114,16 +177,18 @@ void Twin::send_commands(bool alive, const Moment& now) {
       command = safe_.get();
     } else if (is_wheels(*output.type)) {
       sent_ = supervisor_.allowed(*static_cast<const hal::WheelSpeeds*>(command), now.run_ns);
-      if (keep_inside(fence_, pose_, params_.fence_ahead_s, sent_)) ++counts_.fenced_ticks;
+      if (keep_inside(inner_fence_, pose_, params_.fence_ahead_s, sent_)) ++counts_.fenced_ticks;
+      keep_out(intrusion_, pose_, sent_);
       command = &sent_;
     } else if (is<hal::QuadrotorSpeed>(*output.type)) {
       speed_ = supervisor_.allowed(*static_cast<const hal::QuadrotorSpeed*>(command), now.run_ns);
-      if (keep_inside(fence_, pose_, params_.fence_ahead_s, speed_)) ++counts_.fenced_ticks;
+      keep_out(intrusion_, speed_);
+      if (keep_inside(inner_fence_, pose_, params_.fence_ahead_s, speed_)) ++counts_.fenced_ticks;
       command = &speed_;
     } else if (is<hal::QuadrotorPosition>(*output.type)) {
       target_ = supervisor_.allowed(*static_cast<const hal::QuadrotorPosition*>(command),
                                     {pose_.x_m, pose_.y_m, pose_.z_m}, now.run_ns);
-      if (keep_inside(fence_, target_)) ++counts_.fenced_ticks;
+      if (keep_inside(inner_fence_, pose_, target_)) ++counts_.fenced_ticks;
       command = &target_;
     }
     if (output.real == nullptr) continue;
@@ -132,6 +197,14 @@ void Twin::send_commands(bool alive, const Moment& now) {
   }
   // A controller without wheels leaves them where they are safe.
   if (!wheels_sent && real_wheels_ != nullptr) std::memcpy(real_wheels_, &sent_, sizeof sent_);
+  if (real_task_ != nullptr && supervisor_.verdict().land && running_) {
+    const hal::FlightTask landing{.order = hal::FlightOrder::Land};
+    std::memcpy(real_task_, &landing, sizeof landing);
+    landing_ = true;
+  } else if (landing_) {
+    landing_ = false;
+    hal::port_type<hal::FlightTask>().reset(real_task_);  // its controller may not have taken the device
+  }
 }
 
 void Twin::hold(bool held) {
@@ -144,12 +217,18 @@ void Twin::note(const Moment& now) {
   const Verdict& verdict = supervisor_.verdict();
   if (!running_ || verdict.reason == noted_) return;
   noted_ = verdict.reason;
-  std::string what = "robot '" + id_ + "' at " + hal::format_number(hal::to_seconds(now.run_ns)) +
-                     " s: " + std::string(verdict.reason);
-  const std::string trouble = real_->trouble();
+  std::string what(verdict.reason);
+  const hal::PortType* missing = verdict.owner == StopOwner::Readings ? fusion_.missing() : nullptr;
+  std::string trouble = missing != nullptr ? std::string(missing->name) : "";
+  if (const std::string more = real_->trouble(); !more.empty()) trouble += (trouble.empty() ? "" : "; ") + more;
   if (!verdict.may_drive && !trouble.empty()) what += " (" + trouble + ")";
-  verdict.may_drive ? log_.info(what) : log_.warning(what);
-  if (incidents_.size() < kIncidentsKept) incidents_.push_back(std::move(what));
+  note_incident(now, what, !verdict.may_drive);
+}
+
+void Twin::note_incident(const Moment& now, const std::string& what, bool serious) {
+  std::string text = "robot '" + id_ + "' at " + hal::format_number(hal::to_seconds(now.run_ns)) + " s: " + what;
+  serious ? log_.warning(text) : log_.info(text);
+  if (incidents_.size() < kIncidentsKept) incidents_.push_back(std::move(text));
 }
 
 TwinCounts Twin::counts() const noexcept {

@@ -8,12 +8,17 @@
 
 #include "bridges/robot_bridge.hpp"
 #include "core/space/space.hpp"
+#include "hal/device/body_sensors.hpp"
 #include "hal/log.hpp"
 #include "mixed_reality/fence/fence.hpp"
+#include "mixed_reality/fence/intrusion.hpp"
 #include "mixed_reality/fusion/port_fusion.hpp"
 #include "mixed_reality/safety/supervisor.hpp"
 #include "mixed_reality/time/moment.hpp"
 #include "mixed_reality/tracking/pose_source.hpp"
+#include "mixed_reality/tracking/slip_watch.hpp"
+#include "mixed_reality/twin/mechanisms.hpp"
+#include "mixed_reality/twin/smooth_pose.hpp"
 
 namespace tandem::mixed_reality {
 
@@ -22,6 +27,9 @@ struct TwinParams {
   hal::TimeNs pose_timeout_ns = 500 * hal::kNsPerMs;  ///< age from which a pose is stale
   hal::TimeNs frozen_after_ns = hal::kNsPerSecond;    ///< two ticks that lie farther apart: the hub was frozen
   double fence_ahead_s = 0.5;                         ///< how far ahead the arena's edge is looked for
+  double coast_s = 2.0;        ///< in an outage the twin drives on as last commanded, at most for so long
+  double low_battery = 0.05;   ///< part of the full charge …
+  double low_battery_s = 2.0;  ///< … below which it must have been for so long
 };
 
 /// Counted in the ticks of the run.
@@ -31,6 +39,7 @@ struct TwinCounts {
   std::uint64_t stops = 0;  ///< times it was stopped by the safety table
   std::uint64_t rearms = 0;
   std::uint64_t fenced_ticks = 0;  ///< commands cut because they led out of the arena
+  std::uint64_t intrusions = 0;    ///< times its twin came to stand in something virtual
 };
 
 /// Keeps the entity `robot` of a space and a real robot one. Three calls a tick, in this order; none waits or
@@ -52,7 +61,8 @@ class Twin {
   core::RobotId robot() const noexcept { return robot_; }
   bridges::RobotBridge& real() noexcept { return *real_; }
   const bridges::RobotBridge& real() const noexcept { return *real_; }
-  /// Where the robot is in this tick: the tracked pose, carried on by what was commanded since it was taken.
+  /// Where the robot is in this tick, as well as is known: the tracked pose, carried on by what was commanded since it
+  /// was taken. Its entity comes there without jumps.
   const core::Pose& pose() const noexcept { return pose_; }
   const PoseSource& poses() const noexcept { return *poses_; }
   const Verdict& verdict() const noexcept { return supervisor_.verdict(); }
@@ -69,7 +79,12 @@ class Twin {
     void* real;        // null: the robot has none such
   };
 
-  hal::Validity track(const Moment& now) noexcept;
+  void track(const Moment& now, Conditions& conditions) noexcept;
+  void tell_place() noexcept;
+  core::Pose carried_on(const core::Pose& pose, double for_s) const noexcept;
+  bool battery_low(const Moment& now) noexcept;
+  void look_for_intrusions(const Moment& now);
+  void note_incident(const Moment& now, const std::string& what, bool serious);
   void hold(bool held);
   void note(const Moment& now);
   void send_commands(bool alive, const Moment& now);
@@ -81,19 +96,34 @@ class Twin {
   std::unique_ptr<PoseSource> poses_;
   TwinParams params_;
   const hal::Log& log_;
-  Fence fence_;
+  Fence fence_;        // for poses of the twin
+  Fence inner_fence_;  // for where its middle may go
   PortFusion fusion_;
+  Mechanisms mechanisms_;
+  hal::Positioning* positioning_;  // the controller's; null: it took none
   std::vector<Output> outputs_;
-  void* real_wheels_;                         // null: it has none
+  void* real_wheels_;                         // null, as the next one: it has none
+  void* real_task_;                           // of flight
   std::unique_ptr<std::max_align_t[]> safe_;  // the largest command, to be reset
   Supervisor supervisor_;
+  std::unique_ptr<SlipWatch> slip_;        // null: there is nothing to compare the wheels with
+  const hal::Battery* battery_ = nullptr;  // null: it tells nothing
+  hal::TimeNs battery_well_ns_ = 0;        // when it was last well
+  std::uint64_t jumps_ = 0;                // of the pose, as far as they were judged
   core::Pose pose_;
+  SmoothPose smooth_;
+  Intrusion intrusion_;
+  bool intruding_ = false;
+  bool landing_ = false;  // it was told to, by us
   hal::WheelSpeeds sent_;
+  hal::WheelSpeeds driven_;  // what it was last told while it could hear
   hal::QuadrotorSpeed speed_;
   hal::QuadrotorPosition target_;
   bool running_ = false;
   bool held_ = false;  // by the safety table
   hal::TimeNs last_latch_ns_ = 0;
+  hal::TimeNs pose_taken_ns_ = 0;  // on the run's clock
+  hal::Validity pose_validity_ = hal::Validity::Absent;
   std::string_view noted_;
   TwinCounts counts_;
   std::vector<std::string> incidents_;

@@ -8,7 +8,7 @@ namespace tandem::mixed_reality {
 namespace {
 
 using std::numbers::pi;
-constexpr Fence kFence{-1.0, -0.5, 1.0, 0.5};
+constexpr Fence kFence{-1.0, -0.5, 1.0, 0.5, 2.0};
 
 core::Pose at(double x_m, double y_m, double heading_rad) {
   return {x_m, y_m, 0.0, std::cos(heading_rad), std::sin(heading_rad)};
@@ -67,15 +67,61 @@ TEST(ArenaFence, ARobotThatFliesKeepsThePartOfItsVelocityThatStaysInside) {
 
 TEST(ArenaFence, APlaceOutsideBecomesTheNearestInside) {
   hal::QuadrotorPosition position;
-  position.set(5.0, -5.0, 2.0, 1.0);
-  EXPECT_TRUE(keep_inside(kFence, position));
+  position.set(5.0, -5.0, 3.0, 1.0);
+  EXPECT_TRUE(keep_inside(kFence, at(0.0, 0.0, 0.0), position));
   EXPECT_EQ(position.target[0], 1.0);
   EXPECT_EQ(position.target[1], -0.5);
   EXPECT_EQ(position.target[2], 2.0);
-  EXPECT_FALSE(keep_inside(kFence, position));
+  EXPECT_FALSE(keep_inside(kFence, at(0.0, 0.0, 0.0), position));
   position.set(5.0, 0.0, 0.0, 0.0);
   position.hover();
-  EXPECT_FALSE(keep_inside(kFence, position));  // it goes nowhere
+  EXPECT_FALSE(keep_inside(kFence, at(0.0, 0.0, 0.0), position));  // it goes nowhere
+}
+
+core::Pose above(double z_m) {
+  core::Pose pose = at(0.2, 0.1, 0.5);
+  pose.z_m = z_m;
+  return pose;
+}
+
+TEST(ArenaFence, NothingRisesThroughTheCeiling) {
+  hal::QuadrotorSpeed speed;
+  speed.set(0.1, 0.0, 0.4, 0.0);
+  EXPECT_FALSE(keep_inside(kFence, above(1.7), 0.5, speed));
+  EXPECT_TRUE(keep_inside(kFence, above(1.9), 0.5, speed));
+  EXPECT_EQ(speed.velocity[2], 0.0);
+  EXPECT_EQ(speed.velocity[0], 0.1);
+}
+
+TEST(ArenaFence, ARobotAboveTheCeilingIsBroughtBackWhateverWasWanted) {
+  hal::QuadrotorSpeed hover;
+  EXPECT_TRUE(keep_inside(kFence, above(3.0), 0.5, hover));
+  EXPECT_EQ(hover.velocity[2], -kSinkIntoFence_m_s);
+  hover.set(0.0, 0.0, -0.5, 0.0);
+  EXPECT_FALSE(keep_inside(kFence, above(3.0), 0.5, hover));
+  EXPECT_EQ(hover.velocity[2], -0.5);
+  hal::QuadrotorPosition hold;
+  EXPECT_TRUE(keep_inside(kFence, above(3.0), hold));
+  EXPECT_FALSE(hold.hold);
+  EXPECT_EQ(hold.target[0], 0.2);
+  EXPECT_EQ(hold.target[2], 2.0);
+}
+
+TEST(ArenaFence, WithoutACeilingNothingIsTooHigh) {
+  constexpr Fence kOpen{-1.0, -0.5, 1.0, 0.5};
+  hal::QuadrotorSpeed speed;
+  speed.set(0.0, 0.0, 0.4, 0.0);
+  EXPECT_FALSE(keep_inside(kOpen, above(100.0), 0.5, speed));
+}
+
+TEST(ArenaFence, KnowsTheBody) {
+  const Fence inner = kFence.for_body(0.2, 0.5);
+  EXPECT_NEAR(inner.min_x_m, -0.8, 1e-12);
+  EXPECT_NEAR(inner.max_y_m, 0.3, 1e-12);
+  EXPECT_NEAR(inner.max_z_m, 1.5, 1e-12);
+  const Fence narrow = kFence.for_body(0.7, 3.0);
+  EXPECT_EQ(narrow.min_y_m, narrow.max_y_m);
+  EXPECT_EQ(narrow.max_z_m, 0.0);
 }
 
 }  // namespace

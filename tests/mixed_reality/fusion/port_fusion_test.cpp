@@ -99,6 +99,19 @@ TEST_F(FusedPorts, WhatTheRobotDoesNotHaveIsAbsentNotInvented) {
   EXPECT_EQ(port<hal::Accelerometer>().validity, Validity::Absent);
 }
 
+TEST_F(FusedPorts, AReadingThatNeverCameIsNamed) {
+  hal::Accelerometer accelerometer;
+  hal::RangeAndBearing board;
+  const PortFusion fusion(space_, robot_, [&](const hal::PortType& type) -> const void* {
+    if (type.layout == port_type<hal::Accelerometer>().layout) return &accelerometer;
+    if (type.layout == port_type<hal::RangeAndBearing>().layout) return &board;  // the virtual one stands in for it
+    return nullptr;
+  });
+  EXPECT_EQ(fusion.missing(), &port_type<hal::Accelerometer>());
+  accelerometer.validity = Validity::Stale;
+  EXPECT_EQ(fusion.missing(), nullptr);
+}
+
 TEST_F(FusedPorts, AStaleOrAbsentRealReadingIsNotMadeFreshByAVirtualOne) {
   real_proximity_.validity = Validity::Stale;
   fuse();

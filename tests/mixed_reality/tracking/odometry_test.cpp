@@ -132,5 +132,17 @@ TEST_F(WheelOdometry, UsesEachReadingOnceAndNoneFromTheFuture) {
   EXPECT_GT(odometry_.latch(moment(now_ + kTick)).pose.x_m, once.pose.x_m);
 }
 
+TEST_F(WheelOdometry, AStampOfTheFutureIsCountedAndNotUsed) {
+  (void)roll_to(0.0, 0.0);
+  encoders_.left_m = encoders_.right_m = 0.01;
+  encoders_.taken_ns = now_ + hal::kNsPerSecond;
+  const TrackedPose tracked = odometry_.latch(moment(now_));
+  (void)odometry_.latch(moment(now_));
+  EXPECT_EQ(tracked.pose.x_m, 0.3);
+  EXPECT_EQ(odometry_.rejected(), 1U);
+  now_ += kTick;
+  EXPECT_GT(roll_to(0.01, 0.01).pose.x_m, 0.3);
+}
+
 }  // namespace
 }  // namespace tandem::mixed_reality

@@ -17,9 +17,9 @@ constexpr hal::TimeNs kTick = 100 * hal::kNsPerMs;
 class TwinTest : public testing::Test {
  protected:
   void SetUp() override {
-    robot_ =
-        core::add_robot(space_, hal::epuck::kDataSheet, "ep0", 0.0, 0.0, 0.0,
-                        {&port_type<hal::Proximity>(), &port_type<hal::WheelSpeeds>(), &port_type<hal::RingLeds>()});
+    robot_ = core::add_robot(space_, hal::epuck::kDataSheet, "ep0", 0.0, 0.0, 0.0,
+                             {&port_type<hal::Proximity>(), &port_type<hal::WheelSpeeds>(), &port_type<hal::RingLeds>(),
+                              &port_type<hal::Positioning>()});
     auto real = std::make_unique<FakeRobot>(body_);
     auto poses = std::make_unique<Odometry>(
         space_.pose(robot_), hal::epuck::kDataSheet,
@@ -245,6 +245,90 @@ TEST_F(TwinTest, ARobotCarriedOutOfTheArenaKeepsItsTwinAtTheEdge) {
   }
   EXPECT_GT(twin_->pose().x_m, 1.2);
   EXPECT_EQ(space_.pose(robot_).x_m, 1.0);
+}
+
+TEST_F(TwinTest, GoesOnSmoothlyThroughAnOutageAndComesBackWithoutAJump) {
+  get_under_way(0.1, 0.1);
+  double farthest_m = 0.0;
+  core::Pose before = space_.pose(robot_);
+  const auto watch = [&] {
+    const core::Pose now = space_.pose(robot_);
+    farthest_m = std::max(farthest_m, std::hypot(now.x_m - before.x_m, now.y_m - before.y_m));
+    EXPECT_GE(now.x_m, before.x_m - 1e-9);  // it never jumps back
+    before = now;
+  };
+  body_.link_up = false;
+  for (int i = 0; i < 10; ++i) {
+    tick(0.1, 0.1);
+    watch();
+    EXPECT_NEAR(space_.pose(robot_).x_m, body_.pose.x_m, 1e-9) << i;  // nobody stopped it, and the twin knows that
+    EXPECT_EQ(twin_->verdict().may_drive, false);
+  }
+  EXPECT_NEAR(farthest_m, 0.01, 1e-9);
+  for (int i = 0; i < 30; ++i) {
+    tick(0.1, 0.1);
+    watch();
+  }
+  EXPECT_LT(space_.pose(robot_).x_m, body_.pose.x_m - 0.1);  // it is not believed to drive for ever
+  const double behind_m = body_.pose.x_m - space_.pose(robot_).x_m;
+  farthest_m = 0.0;
+  body_.link_up = true;
+  for (int i = 0; i < 5; ++i) {
+    tick(0.1, 0.1);
+    watch();
+  }
+  EXPECT_LT(farthest_m, behind_m / 3.0 + 0.011);  // spread over 0.3 s
+  expect_twin_where_the_robot_is();
+}
+
+TEST_F(TwinTest, WhatIsSafeGoesByWhereTheRobotIsNotByWhereItIsShown) {
+  get_under_way(0.1, 0.1);
+  body_.link_up = false;
+  for (int i = 0; i < 60; ++i) tick(0.1, 0.1);
+  body_.link_up = true;
+  tick(0.0, 0.0);
+  tick(0.0, 0.0);
+  EXPECT_NEAR(twin_->pose().x_m, body_.pose.x_m, 1e-9);
+  EXPECT_LT(space_.pose(robot_).x_m, body_.pose.x_m - 0.01);
+}
+
+TEST_F(TwinTest, IsToldItsPlaceByItsTwin) {
+  get_under_way(0.1, 0.08);
+  const auto& place = *space_.port<hal::Positioning>(robot_);
+  EXPECT_EQ(place.validity, hal::Validity::Fresh);
+  EXPECT_NEAR(place.p_WB[0], body_.pose.x_m, 1e-9);
+  EXPECT_NEAR(place.p_WB[1], body_.pose.y_m, 1e-9);
+  EXPECT_NEAR(2.0 * std::atan2(place.q_WB[3], place.q_WB[0]), body_.pose.heading_rad(), 1e-9);
+  EXPECT_LE(place.taken_ns, now_.run_ns);
+}
+
+TEST_F(TwinTest, DrivesIntoAVirtualWallNoFartherAndSaysSo) {
+  core::Object& wall = core::add_object(space_, core::Object::Kind::Box, 0.4, 0.0, 0.0, 0.1);
+  wall.id = "wall_3";
+  wall.half_x_m = 0.05;
+  wall.half_y_m = 0.5;
+  for (int i = 0; i < 100; ++i) tick(0.1, 0.1);
+  const double touch_m = 0.35 - hal::epuck::kDataSheet.body_radius_m;
+  EXPECT_GT(body_.pose.x_m, touch_m + Intrusion::kTouch_m);
+  EXPECT_LT(body_.pose.x_m, touch_m + Intrusion::kTouch_m + 0.02);  // two ticks
+  EXPECT_EQ(twin_->counts().intrusions, 1U);
+  EXPECT_NE(twin_->incidents().back().find("its twin stands in 'wall_3'"), std::string::npos);
+  EXPECT_TRUE(twin_->verdict().may_drive);
+  for (int i = 0; i < 20; ++i) tick(-0.05, -0.05);  // and may come out of it
+  EXPECT_LT(body_.pose.x_m, touch_m);
+}
+
+TEST_F(TwinTest, ReadingsAreNeverFromTheFutureAfterAStall) {
+  get_under_way(0.05, 0.05);
+  now_.monotonic_ns += 700 * hal::kNsPerMs;  // slots of the schedule were left out: the run's clock knows nothing of it
+  for (int i = 0; i < 5; ++i) {
+    tick(0.05, 0.05);
+    const hal::TimeNs taken_ns = space_.port<hal::Proximity>(robot_)->taken_ns;
+    EXPECT_LE(taken_ns, now_.run_ns);
+    if (i > 0) {
+      EXPECT_GE(taken_ns, now_.run_ns - kTick) << i;
+    }
+  }
 }
 
 }  // namespace

@@ -1,0 +1,123 @@
+#include "mixed_reality/twin/mechanisms.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/space/mechanisms.hpp"
+
+namespace tandem::mixed_reality {
+namespace {
+
+/// Whether the device is there and has ever measured.
+bool there(const hal::Reading* reading) noexcept {
+  return reading != nullptr && reading->validity != hal::Validity::Absent;
+}
+
+/// One tick of the way to `target_rad` by the shorter way round.
+double step_to(double target_rad, double from_rad, double most_rad) noexcept {
+  return std::clamp(core::wrapped(target_rad - from_rad), -most_rad, most_rad);
+}
+
+}  // namespace
+
+template <class Port>
+bool Mechanisms::takes() const noexcept {
+  return space_.port<Port>(robot_) != nullptr;
+}
+
+template <class Sensor>
+const Sensor* Mechanisms::if_used(const RealReadings& real, bool used) const {
+  return used ? static_cast<const Sensor*>(real(hal::port_type<Sensor>())) : nullptr;
+}
+
+Mechanisms::Mechanisms(core::Space& space, core::RobotId robot, const RealReadings& real)
+    : space_(space),
+      robot_(robot),
+      turret_drive_(space.port<hal::TurretDrive>(robot)),
+      gripper_drive_(space.port<hal::GripperDrive>(robot)),
+      scanner_drive_(space.port<hal::ScannerDrive>(robot)),
+      head_drive_(space.port<hal::PanTiltDrive>(robot)) {
+  turret_ = if_used<hal::TurretEncoder>(real, turret_drive_ != nullptr || takes<hal::TurretEncoder>());
+  gripper_ = if_used<hal::Gripper>(real, gripper_drive_ != nullptr || takes<hal::Gripper>());
+  scanner_ = if_used<hal::DistanceScanner>(real, takes<hal::DistanceScanner>());
+  head_ = if_used<hal::PanTiltEncoder>(real, head_drive_ != nullptr || takes<hal::PanTiltEncoder>());
+  proximity_ = if_used<hal::Proximity>(real, takes<hal::Proximity>());
+  messages_ = if_used<hal::RangeAndBearing>(real, takes<hal::RangeAndBearing>() || takes<hal::RangeAndBearingSend>());
+  omni_camera_ = if_used<hal::OmnidirectionalCamera>(real, takes<hal::OmnidirectionalCamera>());
+  lens_camera_ = if_used<hal::PerspectiveCamera>(real, takes<hal::PerspectiveCamera>());
+}
+
+void Mechanisms::follow(double tick_s) noexcept {
+  space_.set_real_senses(robot_, senses());
+  follow_turret(tick_s);
+  follow_scanner(tick_s);
+  follow_head(tick_s);
+  if (there(gripper_))
+    space_.set_gripper(robot_, static_cast<double>(gripper_->aperture_rad));
+  else if (gripper_drive_ != nullptr)
+    space_.set_gripper(robot_, gripper_drive_->aperture_rad);
+}
+
+std::uint8_t Mechanisms::senses() const noexcept {
+  using core::RealSense;
+  unsigned senses = 0;
+  const auto add = [&senses](const hal::Reading* reading, RealSense sense) {
+    if (there(reading)) senses |= core::bit(sense);
+  };
+  add(proximity_, RealSense::Proximity);
+  add(scanner_, RealSense::Scanner);
+  add(messages_, RealSense::Messages);
+  add(omni_camera_, RealSense::OmniCamera);
+  add(lens_camera_, RealSense::LensCamera);
+  return static_cast<std::uint8_t>(senses);
+}
+
+void Mechanisms::follow_turret(double tick_s) noexcept {
+  double step_rad = 0.0;
+  if (there(turret_)) {
+    step_rad = core::wrapped(turret_->angle_rad - turret_rad_);
+  } else if (turret_drive_ != nullptr && turret_drive_->mode == hal::TurretMode::Speed) {
+    step_rad = turret_drive_->speed_rad_s * tick_s;
+  } else if (turret_drive_ != nullptr && turret_drive_->mode == hal::TurretMode::Position) {
+    step_rad = step_to(turret_drive_->angle_rad, turret_rad_, space_.data_sheet(robot_).turret_turn_rad_s * tick_s);
+  }
+  turret_rad_ = core::wrapped(turret_rad_ + step_rad);
+  const double speed_rad_s = there(turret_) ? static_cast<double>(turret_->speed_rad_s)
+                             : tick_s > 0.0 ? step_rad / tick_s
+                                            : 0.0;
+  space_.set_turret(robot_, turret_rad_, speed_rad_s);
+}
+
+/// The virtual heads measure where the real ones do: they sweep what was commanded, and end where the robot says. One
+/// that measures without having been told to stands still.
+void Mechanisms::follow_scanner(double tick_s) noexcept {
+  hal::ScannerMode mode = scanner_drive_ == nullptr ? hal::ScannerMode::Off : scanner_drive_->mode;
+  double swept_rad = 0.0;
+  if (mode == hal::ScannerMode::Speed) swept_rad = scanner_drive_->speed_rad_s * tick_s;
+  if (there(scanner_)) {
+    if (scanner_->count == 0) mode = hal::ScannerMode::Off;
+    if (scanner_->count > 0 && mode == hal::ScannerMode::Off) mode = hal::ScannerMode::Position;
+    scanner_rad_ = static_cast<double>(scanner_->turn_rad);
+  } else {
+    if (mode == hal::ScannerMode::Position) {
+      swept_rad =
+          step_to(scanner_drive_->angle_rad, scanner_rad_, space_.data_sheet(robot_).scanner_turn_rad_s * tick_s);
+    }
+    scanner_rad_ = core::wrapped(scanner_rad_ + swept_rad);
+  }
+  space_.set_scanner(robot_, mode, scanner_rad_, swept_rad);
+}
+
+void Mechanisms::follow_head(double tick_s) noexcept {
+  if (there(head_)) {
+    pan_rad_ = head_->pan_rad;
+    tilt_rad_ = head_->tilt_rad;
+  } else if (head_drive_ != nullptr) {
+    const double most_rad = space_.data_sheet(robot_).camera_head.turn_rad_s * tick_s;
+    pan_rad_ = core::wrapped(pan_rad_ + step_to(head_drive_->pan_rad, pan_rad_, most_rad));
+    tilt_rad_ += std::clamp(head_drive_->tilt_rad - tilt_rad_, -most_rad, most_rad);
+  }
+  space_.set_camera_head(robot_, pan_rad_, tilt_rad_, head_drive_ != nullptr && head_drive_->laser);
+}
+
+}  // namespace tandem::mixed_reality

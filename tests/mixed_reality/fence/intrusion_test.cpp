@@ -1,0 +1,90 @@
+#include "mixed_reality/fence/intrusion.hpp"
+
+#include <cmath>
+#include <gtest/gtest.h>
+#include <numbers>
+
+#include "hal/spec/epuck.hpp"
+#include "tests/core/space_by_hand.hpp"
+
+namespace tandem::mixed_reality {
+namespace {
+
+constexpr double kR = hal::epuck::kBodyRadius_m;
+
+class Intruder : public testing::Test {
+ protected:
+  Intruder() { robot_ = core::add_robot(space_, hal::epuck::kDataSheet, "ep0", 0.0, 0.0, 0.0); }
+  core::Object& box(double x_m, double y_m, double half_x_m, double half_y_m) {
+    core::Object& o = core::add_object(space_, core::Object::Kind::Box, x_m, y_m, 0.0, 0.1);
+    o.half_x_m = half_x_m;
+    o.half_y_m = half_y_m;
+    return o;
+  }
+  Intrusion at(double x_m, double y_m, double z_m = 0.0) const {
+    return intrusion_of(space_, robot_, core::Pose::at(x_m, y_m, 0.0, z_m));
+  }
+  core::Space space_;
+  core::RobotId robot_;
+};
+
+TEST_F(Intruder, IsAsDeepInABoxAsItsRimIs) {
+  box(0.5, 0.0, 0.1, 0.3);
+  EXPECT_EQ(at(0.0, 0.0).depth_m, 0.0);
+  const Intrusion rim = at(0.4 - kR + 0.02, 0.1);
+  EXPECT_NEAR(rim.depth_m, 0.02, 1e-9);
+  EXPECT_NEAR(rim.out_x, -1.0, 1e-9);
+  const Intrusion inside = at(0.45, 0.1);  // out by the nearest side
+  EXPECT_NEAR(inside.depth_m, kR + 0.05, 1e-9);
+  EXPECT_NEAR(inside.out_x, -1.0, 1e-9);
+  EXPECT_EQ(name_of(space_, inside), "object0");
+  EXPECT_EQ(at(0.45, 0.1, 0.2).depth_m, 0.0);  // it flies over it
+}
+
+TEST_F(Intruder, ABoxMayStandAskew) {
+  core::Object& o = box(0.5, 0.0, 0.2, 0.2);
+  o.cos_h = o.sin_h = std::numbers::sqrt2 / 2.0;
+  const double corner_x_m = 0.5 - 0.2 * std::numbers::sqrt2;
+  const Intrusion corner = at(corner_x_m - kR + 0.015, 0.0);
+  EXPECT_NEAR(corner.depth_m, 0.015, 1e-9);
+  EXPECT_NEAR(corner.out_x, -1.0, 1e-9);
+}
+
+TEST_F(Intruder, RobotsCountButNotTwinsOfRealOnes) {
+  const core::RobotId other = core::add_robot(space_, hal::epuck::kDataSheet, "sim", 0.0, 2.0 * kR - 0.02, 0.0);
+  const Intrusion beside = at(0.0, 0.0);
+  EXPECT_NEAR(beside.depth_m, 0.02, 1e-6);
+  EXPECT_NEAR(beside.out_y, -1.0, 1e-9);
+  EXPECT_EQ(name_of(space_, beside), "sim");
+  space_.set_external(other, true);
+  EXPECT_EQ(at(0.0, 0.0).depth_m, 0.0);
+}
+
+TEST_F(Intruder, LosesWhatLeadsDeeperAndKeepsTheRest) {
+  box(0.5, 0.0, 0.1, 0.3);
+  const core::Pose pose = core::Pose::at(0.4 - kR + 0.02, 0.1, 0.0);
+  const Intrusion rim = intrusion_of(space_, robot_, pose);
+  hal::WheelSpeeds wheels;
+  wheels.set(0.1, 0.06);
+  EXPECT_TRUE(keep_out(rim, pose, wheels));
+  EXPECT_NEAR(wheels.left_m_s, 0.02, 1e-12);
+  EXPECT_NEAR(wheels.right_m_s, -0.02, 1e-12);
+  wheels.set(-0.1, -0.1);
+  EXPECT_FALSE(keep_out(rim, pose, wheels));
+  hal::QuadrotorSpeed speed;
+  speed.set(0.3, 0.2, 0.1, 0.0);
+  EXPECT_TRUE(keep_out(rim, speed));
+  EXPECT_NEAR(speed.velocity[0], 0.0, 1e-12);
+  EXPECT_NEAR(speed.velocity[1], 0.2, 1e-12);
+}
+
+TEST_F(Intruder, ATouchIsNoIntrusion) {
+  box(0.5, 0.0, 0.1, 0.3);
+  const core::Pose pose = core::Pose::at(0.4 - kR + 0.005, 0.0, 0.0);
+  hal::WheelSpeeds wheels;
+  wheels.set(0.1, 0.1);
+  EXPECT_FALSE(keep_out(intrusion_of(space_, robot_, pose), pose, wheels));
+}
+
+}  // namespace
+}  // namespace tandem::mixed_reality
