@@ -2,7 +2,6 @@
 
 #include <cerrno>
 #include <cstring>
-#include <fcntl.h>
 #include <filesystem>
 #include <spawn.h>
 #include <sys/mman.h>
@@ -14,18 +13,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A file in memory, or one of the disk; closed at the end.
-class File {
+/// A file in memory; closed at the end.
+class MemoryFile {
  public:
-  static File in_memory() { return File(memfd_create("gnuplot", MFD_CLOEXEC)); }
-  static File written(const std::string& path) {
-    return File(open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666));
-  }
-  ~File() {
+  MemoryFile() : fd_(memfd_create("gnuplot", MFD_CLOEXEC)) {}
+  ~MemoryFile() {
     if (fd_ >= 0) close(fd_);
   }
-  File(const File&) = delete;
-  File& operator=(const File&) = delete;
+  MemoryFile(const MemoryFile&) = delete;
+  MemoryFile& operator=(const MemoryFile&) = delete;
 
   bool good() const { return fd_ >= 0; }
   int fd() const { return fd_; }
@@ -39,6 +35,13 @@ class File {
     }
     return lseek(fd_, 0, SEEK_SET) == 0;
   }
+  std::string text() const {
+    std::string all;
+    char buffer[65536];
+    for (ssize_t n = 0; (n = pread(fd_, buffer, sizeof buffer, static_cast<off_t>(all.size()))) > 0;)
+      all.append(buffer, static_cast<std::size_t>(n));
+    return all;
+  }
   std::string first_bytes() const {
     char buffer[2000];
     const ssize_t n = pread(fd_, buffer, sizeof buffer, 0);
@@ -46,19 +49,18 @@ class File {
   }
 
  private:
-  explicit File(int fd) : fd_(fd) {}
   int fd_;
 };
 
 /// Runs gnuplot without the user's settings: `script` in, the picture into `out`.
-hal::Status run_gnuplot(const std::string& script, const File& out) {
-  const File in = File::in_memory();
-  const File errors = File::in_memory();
+hal::Status run_gnuplot(const std::string& script, int out) {
+  const MemoryFile in;
+  const MemoryFile errors;
   if (!in.good() || !errors.good() || !in.fill(script)) return hal::Error{"no memory for gnuplot's script"};
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
   posix_spawn_file_actions_adddup2(&actions, in.fd(), STDIN_FILENO);
-  posix_spawn_file_actions_adddup2(&actions, out.fd(), STDOUT_FILENO);
+  posix_spawn_file_actions_adddup2(&actions, out, STDOUT_FILENO);
   posix_spawn_file_actions_adddup2(&actions, errors.fd(), STDERR_FILENO);
   char name[] = "gnuplot";
   char no_settings[] = "-d";
@@ -78,10 +80,6 @@ hal::Status run_gnuplot(const std::string& script, const File& out) {
   return {};
 }
 
-hal::Error cannot_write(const std::string& path) {
-  return {"the figure '" + path + "' cannot be written: " + std::strerror(errno)};
-}
-
 }  // namespace
 
 hal::Result<PictureKind> picture_kind(const std::string& path) {
@@ -91,26 +89,20 @@ hal::Result<PictureKind> picture_kind(const std::string& path) {
   return hal::Error{"'" + path + "' must end in .svg or .png"};
 }
 
-hal::Status can_draw(const std::string& path) {
-  if (const auto kind = picture_kind(path); !kind.ok()) return kind.error();
-  const fs::path folder = fs::path(path).has_parent_path() ? fs::path(path).parent_path() : fs::path(".");
-  if (access(folder.c_str(), W_OK) != 0) return cannot_write(path);
-  return run_gnuplot("exit\n", File::in_memory());
+hal::Status can_draw() {
+  const MemoryFile nothing;
+  return run_gnuplot("exit\n", nothing.fd());
 }
 
-hal::Status draw(const Figure& figure, const std::string& path) {
-  const auto kind = picture_kind(path);
+hal::Status draw(const Figure& figure, hal::OutputFile& file) {
+  const auto kind = picture_kind(file.path());
   if (!kind.ok()) return kind.error();
-  const std::string part = path + ".part";
-  hal::Status drawn;
-  {
-    const File out = File::written(part);
-    if (!out.good()) return cannot_write(path);
-    drawn = run_gnuplot(gnuplot_script(figure, kind.value()), out);
-  }
-  if (drawn.ok() && std::rename(part.c_str(), path.c_str()) != 0) drawn = cannot_write(path);
-  if (!drawn.ok()) unlink(part.c_str());
-  return drawn;
+  const MemoryFile picture;
+  if (!picture.good()) return hal::Error{"no memory for the figure"};
+  if (const hal::Status drawn = run_gnuplot(gnuplot_script(figure, kind.value()), picture.fd()); !drawn.ok())
+    return drawn;
+  const hal::Status written = file.write(picture.text());
+  return written.ok() ? file.commit() : written;
 }
 
 }  // namespace tandem::app

@@ -2,8 +2,9 @@
 
 #include <cmath>
 #include <fstream>
+#include <optional>
 
-#include "app/bench/flat_json.hpp"
+#include "hal/json/json.hpp"
 
 namespace tandem::app {
 namespace {
@@ -11,22 +12,27 @@ namespace {
 /// Takes fields out of an object; what is missing first is kept.
 class Fields {
  public:
-  explicit Fields(const FlatObject& object) : object_(object) {}
+  explicit Fields(const hal::Json& object) : object_(object) {}
 
   void text(const char* name, std::string& out) {
-    if (const auto* v = find<std::string>(name, "a text")) out = *v;
+    const hal::Json* v = find(name);
+    if (v == nullptr) return;
+    if (v->is_string())
+      out = v->get<std::string>();
+    else
+      complain("\"" + std::string(name) + "\" must be a text");
   }
   void seconds(const char* name, bool may_be_zero, double& out) {
-    const auto* v = find<double>(name, "a number");
-    if (v == nullptr) return;
+    const std::optional<double> v = number(name);
+    if (!v) return;
     out = *v;
     if (out < 0.0 || (out == 0.0 && !may_be_zero))
       complain("\"" + std::string(name) + "\" must be " + (may_be_zero ? "0 or greater" : "greater than 0"));
   }
   void count(const char* name, std::int64_t lowest, std::int64_t& out) {
     constexpr double kMost = 1e15;
-    const auto* v = find<double>(name, "a number");
-    if (v == nullptr) return;
+    const std::optional<double> v = number(name);
+    if (!v) return;
     if (*v != std::floor(*v) || *v < static_cast<double>(lowest) || *v > kMost)
       complain("\"" + std::string(name) + "\" must be a whole number from " + std::to_string(lowest));
     else
@@ -35,22 +41,24 @@ class Fields {
   const std::string& trouble() const { return trouble_; }
 
  private:
-  template <class T>
-  const T* find(const char* name, const char* sort) {
+  const hal::Json* find(const char* name) {
     const auto found = object_.find(name);
-    if (found == object_.end()) {
-      complain("there is no \"" + std::string(name) + "\" in it; is it a line of `tandem bench`?");
-      return nullptr;
-    }
-    const T* v = std::get_if<T>(&found->second);
-    if (v == nullptr) complain("\"" + std::string(name) + "\" must be " + sort);
-    return v;
+    if (found != object_.end()) return &*found;
+    complain("there is no \"" + std::string(name) + "\" in it; is it a line of `tandem bench`?");
+    return nullptr;
+  }
+  std::optional<double> number(const char* name) {
+    const hal::Json* v = find(name);
+    if (v == nullptr) return {};
+    if (v->is_number()) return v->get<double>();
+    complain("\"" + std::string(name) + "\" must be a number");
+    return {};
   }
   void complain(const std::string& what) {
     if (trouble_.empty()) trouble_ = what;
   }
 
-  const FlatObject& object_;
+  const hal::Json& object_;
   std::string trouble_;
 };
 
@@ -61,7 +69,7 @@ hal::Error at_line(const std::string& path, std::int64_t number, const std::stri
 }  // namespace
 
 hal::Result<ResultLine> parse_result_line(std::string_view text) {
-  const auto object = parse_flat_json(text);
+  const auto object = hal::parse_json_object(text);
   if (!object.ok()) return object.error();
   if (object.value().contains("failure")) return hal::Error{"this run failed, so its times mean nothing; remove it"};
   Fields fields(object.value());

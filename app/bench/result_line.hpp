@@ -24,7 +24,7 @@ struct ResultLine {
   double speedup() const { return cpu_s / wall_s; }
 };
 
-/// An error says what is wrong with the text: no flat JSON object, a field that is missing or of another sort, a run
+/// An error says what is wrong with the text: no JSON object, a field that is missing or of another sort, a run
 /// that failed, a time of zero.
 hal::Result<ResultLine> parse_result_line(std::string_view text);
 

@@ -1,8 +1,10 @@
 // `tandem bench`: measures a scene, the foot-bot's codec or how soon eye-bots are answered, prints one JSON object a
 // line, draws figures from them.
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include "app/bench/codec.hpp"
 #include "app/bench/comparison.hpp"
@@ -12,13 +14,16 @@
 #include "app/bench/sense_to_act.hpp"
 #include "app/catalog.hpp"
 #include "app/command/command.hpp"
+#include "app/measure.hpp"
 #include "app/signals.hpp"
+#include "app/terminal.hpp"
+#include "hal/output_file.hpp"
 
 namespace tandem::app {
 namespace {
 
-int complain(int code, const std::string& message) {
-  fmt::print(stderr, "tandem bench: {}\n", message);
+int refuse(int code, const std::string& message) {
+  say("tandem bench: " + message);
   return code;
 }
 
@@ -119,13 +124,66 @@ std::vector<BenchCase> cases_of(const Plan& plan, const BenchOptions& o) {
   return cases;
 }
 
+/// How long runs take, roughly before the first, from those that are done later on.
+class Forecast {
+ public:
+  explicit Forecast(const std::vector<BenchCase>& cases) : cases_(cases), terminal_(isatty(STDERR_FILENO) != 0) {
+    const double all_s = expected_s(0);
+    if (all_s > kWorthTelling_s)
+      say(fmt::format("{} runs of up to {} robots: about {}", cases.size(), largest(), duration_text(all_s)));
+  }
+  /// Shows where the benchmark is, on a terminal alone.
+  void begin(std::size_t run) {
+    began_s_ = wall_seconds();
+    if (!terminal_ || cases_.size() < 2) return;
+    fmt::print(stderr, "\r\033[Krun {} of {}, {} robots; about {} left", run + 1, cases_.size(), cases_[run].robots,
+               duration_text(expected_s(run)));
+    std::fflush(stderr);
+  }
+  void end(std::size_t run) {
+    if (terminal_ && cases_.size() >= 2) fmt::print(stderr, "\r\033[K");
+    took_s_ += wall_seconds() - began_s_;
+    guessed_s_ += guess_s(cases_[run]);
+  }
+
+ private:
+  static constexpr double kWorthTelling_s = 10.0;
+
+  /// Processor time of a core of the 2020s [docs/performance.md].
+  static double guess_s(const BenchCase& c) {
+    const double step_s = c.engine == "kinematics2d" ? 0.3e-6 : c.engine == "dynamics3d" ? 8e-6 : 1.5e-6;
+    return 0.1 + step_s * static_cast<double>(c.robots) * static_cast<double>(c.ticks);
+  }
+  double expected_s(std::size_t from) const {
+    double sum_s = 0.0;
+    for (std::size_t i = from; i < cases_.size(); ++i) sum_s += guess_s(cases_[i]);
+    return guessed_s_ > 0.0 ? sum_s * took_s_ / guessed_s_ : sum_s;
+  }
+  std::int64_t largest() const {
+    const auto fewer = [](const BenchCase& a, const BenchCase& b) { return a.robots < b.robots; };
+    return std::max_element(cases_.begin(), cases_.end(), fewer)->robots;
+  }
+  static std::string duration_text(double seconds) {
+    if (seconds < 100.0) return fmt::format("{:.0f} s", std::ceil(seconds));
+    if (seconds < 6000.0) return fmt::format("{:.0f} minutes", std::ceil(seconds / 60.0));
+    return fmt::format("{:.1f} hours", seconds / 3600.0);
+  }
+
+  const std::vector<BenchCase>& cases_;
+  bool terminal_;
+  double began_s_ = 0.0, took_s_ = 0.0, guessed_s_ = 0.0;
+};
+
 /// Prints each line as soon as it is there. @returns them; nothing when interrupted, or when `code` tells of a failure.
 std::vector<ResultLine> measure_all(const std::vector<BenchCase>& cases, int& code) {
   const std::atomic<bool>& stop = catch_signals();
   std::vector<ResultLine> lines;
-  for (const BenchCase& c : cases) {
+  Forecast forecast(cases);
+  for (std::size_t run = 0; run < cases.size(); ++run) {
     if (stop.load(std::memory_order_relaxed)) return {};
-    const Measurement measured = measure_apart(c, stop);
+    forecast.begin(run);
+    const Measurement measured = measure_apart(cases[run], stop);
+    forecast.end(run);
     if (!measured.line.empty()) {
       fmt::print("{}\n", measured.line);
       std::fflush(stdout);
@@ -134,7 +192,7 @@ std::vector<ResultLine> measure_all(const std::vector<BenchCase>& cases, int& co
     if (code != kDone || measured.line.empty()) return {};
     auto line = parse_result_line(measured.line);
     if (!line.ok()) {
-      code = complain(kFailedRunning, line.error().message);
+      code = refuse(kFailedRunning, line.error().message);
       return {};
     }
     line->number = static_cast<std::int64_t>(lines.size()) + 1;
@@ -152,7 +210,7 @@ bool chosen(const std::vector<T>& wanted, const T& value) {
 std::vector<ResultLine> choose_saved(const Plan& plan, const BenchOptions& o, int& code) {
   auto saved = read_result_lines(o.from);
   if (!saved.ok()) {
-    code = complain(kBadInput, saved.error().message);
+    code = refuse(kBadInput, saved.error().message);
     return {};
   }
   std::vector<std::string> splits;
@@ -165,12 +223,12 @@ std::vector<ResultLine> choose_saved(const Plan& plan, const BenchOptions& o, in
       lines.push_back(std::move(line));
   }
   if (lines.empty()) {
-    code = complain(kBadInput, o.from + ": error: none of its lines is what the other options choose");
+    code = refuse(kBadInput, o.from + ": error: none of its lines is what the other options choose");
     return {};
   }
   const hal::Status alike = check_alike(lines, o.from);
   if (alike.ok()) return lines;
-  code = complain(kBadInput, alike.error().message);
+  code = refuse(kBadInput, alike.error().message);
   return {};
 }
 
@@ -183,9 +241,9 @@ int sense_to_act(const BenchOptions& o) {
   constexpr std::int64_t kMostRobots = 100;
   const std::vector<std::int64_t> robots = o.robots.empty() ? std::vector<std::int64_t>{20} : o.robots;
   for (const std::int64_t n : robots) {
-    if (n > kMostRobots) return complain(kWrongUsage, fmt::format("at most {} eye-bots", kMostRobots));
+    if (n > kMostRobots) return refuse(kWrongUsage, fmt::format("at most {} eye-bots", kMostRobots));
     const hal::Status measured = bench_sense_to_act({n, o.seconds, o.real_time}, o.repeat);
-    if (!measured.ok()) return complain(kFailedRunning, measured.error().message);
+    if (!measured.ok()) return refuse(kFailedRunning, measured.error().message);
   }
   return kDone;
 }
@@ -194,24 +252,28 @@ int sense_to_act(const BenchOptions& o) {
 
 int bench(const BenchOptions& options) {
   const auto plan = plan_of(options);
-  if (!plan.ok()) return complain(kWrongUsage, plan.error().message);
+  if (!plan.ok()) return refuse(kWrongUsage, plan.error().message);
   if (options.name == "codec") {
     bench_codec(options.repeat);
     return kDone;
   }
   if (options.name == "sense_to_act") return sense_to_act(options);
+  std::optional<hal::OutputFile> plot;
   if (!options.plot.empty()) {
-    const hal::Status drawable = can_draw(options.plot);
-    if (!drawable.ok()) return complain(kFailedRunning, drawable.error().message);
+    const hal::Status drawable = can_draw();
+    if (!drawable.ok()) return refuse(kFailedRunning, drawable.error().message);
+    auto opened = hal::OutputFile::open(options.plot, "figure");
+    if (!opened.ok()) return refuse(kBadInput, opened.error().message);
+    plot = std::move(opened).value();
   }
   int code = kDone;
   const std::vector<ResultLine> lines = options.from.empty() ? measure_all(cases_of(plan.value(), options), code)
                                                              : choose_saved(plan.value(), options, code);
   if (lines.empty()) return code;
   if (options.compare_threads) print_comparison(lines);
-  if (options.plot.empty()) return kDone;
-  const hal::Status drawn = draw(figure_of(lines), options.plot);
-  return drawn.ok() ? kDone : complain(kFailedRunning, drawn.error().message);
+  if (!plot) return kDone;
+  const hal::Status drawn = draw(figure_of(lines), *plot);
+  return drawn.ok() ? kDone : refuse(kFailedRunning, drawn.error().message);
 }
 
 }  // namespace tandem::app

@@ -34,8 +34,8 @@ using EventFields = std::vector<EventField>;
 /// Takes events as they happen. `at` is CLOCK_MONOTONIC under a server, any clock in tests.
 using EventSink = std::function<void(hal::TimeNs at, std::string_view event, const EventFields& fields)>;
 
-/// {"t_ns":12,"event":"wheels","left":500,"right":-500} without line end. Bytes that are not ASCII are written as
-/// \u00XX.
+/// {"t_ns":12,"event":"wheels","left":500,"right":-500} without line end. Texts are UTF-8; bytes
+/// that are not become U+FFFD.
 std::string to_json(hal::TimeNs at, std::string_view event, const EventFields& fields);
 
 /// Appends to a file and flushes after every line, so that a killed emulator loses none.

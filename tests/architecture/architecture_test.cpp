@@ -11,6 +11,7 @@ namespace {
 namespace fs = std::filesystem;
 
 const LibraryOwners kOwners = {{"tinyxml2", "core/config"},
+                               {"nlohmann/", "hal/json"},
                                {"png.h", "core/space"},
                                {"librsvg/", "core/view"},
                                {"cairo", "core/view"},

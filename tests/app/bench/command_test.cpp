@@ -5,7 +5,7 @@
 #include <cstdlib>
 #include <gtest/gtest.h>
 
-#include "app/bench/flat_json.hpp"
+#include "hal/json/json.hpp"
 #include "tests/app/bench/lines.hpp"
 #include "tests/scenarios/process.hpp"
 
@@ -18,29 +18,29 @@ using scenarios::Folder;
 using scenarios::Tandem;
 using scenarios::text_of;
 
-std::vector<app::FlatObject> objects_in(const std::string& text) {
-  std::vector<app::FlatObject> all;
+std::vector<hal::Json> objects_in(const std::string& text) {
+  std::vector<hal::Json> all;
   std::istringstream in(text);
   for (std::string line; std::getline(in, line);) {
-    auto object = app::parse_flat_json(line);
+    auto object = hal::parse_json_object(line);
     EXPECT_TRUE(object.ok()) << line << "\n" << (object.ok() ? "" : object.error().message);
     if (object.ok()) all.push_back(std::move(object).value());
   }
   return all;
 }
 
-double number(const app::FlatObject& o, const char* key) {
+double number(const hal::Json& o, const char* key) {
   const auto found = o.find(key);
-  const double* value = found == o.end() ? nullptr : std::get_if<double>(&found->second);
-  EXPECT_NE(value, nullptr) << key;
-  return value == nullptr ? std::nan("") : *value;
+  const bool there = found != o.end() && found->is_number();
+  EXPECT_TRUE(there) << key;
+  return there ? found->get<double>() : std::nan("");
 }
 
-std::string text(const app::FlatObject& o, const char* key) {
+std::string text(const hal::Json& o, const char* key) {
   const auto found = o.find(key);
-  const std::string* value = found == o.end() ? nullptr : std::get_if<std::string>(&found->second);
-  EXPECT_NE(value, nullptr) << key;
-  return value == nullptr ? std::string() : *value;
+  const bool there = found != o.end() && found->is_string();
+  EXPECT_TRUE(there) << key;
+  return there ? found->get<std::string>() : std::string();
 }
 
 std::size_t count(const std::string& text, const std::string& part) {
@@ -99,7 +99,7 @@ TEST(BenchLines, AreComplete) {
   EXPECT_EQ(bench.errors(), "");
   const auto lines = objects_in(bench.output());
   ASSERT_EQ(lines.size(), 16U);
-  for (const app::FlatObject& o : lines) {
+  for (const hal::Json& o : lines) {
     EXPECT_EQ(text(o, "bench"), "diffusion");
     EXPECT_EQ(text(o, "robot"), "e-puck");
     EXPECT_EQ(text(o, "engine"), "kinematics2d");
@@ -190,7 +190,7 @@ TEST_F(BenchRefuses, WhatTheWorldRefusesInItsWords) {
 }
 
 TEST_F(BenchRefuses, FiguresThatCannotBeDrawnBeforeItMeasures) {
-  refuses({"--robots", "100000000", "--plot", "no/such/folder/f.svg"}, 3, {"no/such/folder/f.svg"});
+  refuses({"--robots", "100000000", "--plot", "no/such/folder/f.svg"}, 1, {"no/such/folder/f.svg"});
   const char* path = std::getenv("PATH");
   const std::string before = path == nullptr ? "" : path;
   setenv("PATH", "/nonexistent", 1);

@@ -35,7 +35,7 @@ TEST(ResultLine, SaysWhichFieldIsWrong) {
       {"\"cpu_s\": 6.5", "\"cpu_s\": -1", "\"cpu_s\" must be 0 or greater"},
       {"\"cpu_s\": 6.5", "\"cpu_s\": null", "\"cpu_s\" must be a number"},
       {"{", "{\"failure\": \"a robot left\", ", "this run failed"},
-      {"}", "", "no flat JSON object"}};
+      {"}", "", "no JSON object"}};
   for (const auto& [from, to, why] : kBroken) {
     auto line = parse_result_line(replaced(good, from, to));
     ASSERT_FALSE(line.ok()) << to;

@@ -17,8 +17,12 @@ TEST(EventLog, WritesOneObjectALine) {
 
 TEST(EventLog, EscapesWhateverBytesCameIn) {
   EXPECT_EQ(to_json(0, "x", {{"text", std::string("a\"\\\n\0\xFF", 6)}}),
-            "{\"t_ns\":0,\"event\":\"x\",\"text\":\"a\\\"\\\\\\u000a\\u0000\\u00ff\"}");
+            "{\"t_ns\":0,\"event\":\"x\",\"text\":\"a\\\"\\\\\\n\\u0000\xEF\xBF\xBD\"}");
   EXPECT_EQ(to_json(0, "x", {{"v", std::numeric_limits<double>::quiet_NaN()}}), R"({"t_ns":0,"event":"x","v":null})");
+}
+
+TEST(EventLog, WritesNamesAsTheyAre) {
+  EXPECT_EQ(to_json(0, "x", {{"name", "Zürich 🤖"}}), R"({"t_ns":0,"event":"x","name":"Zürich 🤖"})");
 }
 
 TEST(EventLog, IsReadableWhileItIsWritten) {
