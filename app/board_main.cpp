@@ -1,7 +1,9 @@
 // The `tandem` command on a robot's board: what the board's own robot needs, and no simulation.
+#include "app/emergency.hpp"
 #include "app/robot_commands.hpp"
 
 int main(int argc, char** argv) {
+  tandem::app::catch_crashes();
   using namespace tandem::app;
   CLI::App app{"Tandem on a robot's board: runs the robot's controller here.", "tandem"};
   app.footer("Simulation, emulation and mixed runs are commands of the whole program.");

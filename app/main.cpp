@@ -2,6 +2,7 @@
 #include <CLI/CLI.hpp>
 
 #include "app/command/command.hpp"
+#include "app/emergency.hpp"
 #include "app/robot_commands.hpp"
 
 namespace {
@@ -25,6 +26,11 @@ void add_run(CLI::App& app, RunOptions& o, int& code) {
   c->add_option("--report", o.report, "Write a JSON report to this file ('-': standard output)");
   c->add_option("--picture", o.picture, "Draw the space from above at the end: FILE.svg, .png or .pdf");
   c->add_option("--trajectory", o.trajectory, "Write poses as CSV");
+  c->add_option("--step-timeout", o.step_timeout_s,
+                "Seconds after which a controller or hook that has not returned is named; Ctrl-C then ends the run; 0: "
+                "never")
+      ->capture_default_str()
+      ->check(CLI::NonNegativeNumber);
   c->add_flag("--quiet", o.quiet, "No table at the end");
   c->callback([&] { code = run(o); });
 }
@@ -85,6 +91,7 @@ void add_bench(CLI::App& app, BenchOptions& o, int& code) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  tandem::app::catch_crashes();
   CLI::App app{"Tandem: one controller drives simulated robots, real ones, and both together.", "tandem"};
   app.footer("The launcher at the top of the checkout has further commands: test, build and format.");
   app.require_subcommand(1);

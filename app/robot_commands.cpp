@@ -1,6 +1,7 @@
 #include "app/robot_commands.hpp"
 
 #include <cerrno>
+#include <csignal>
 #include <cstdio>
 #include <cstring>
 #include <exception>
@@ -42,6 +43,7 @@ void add_robot_commands(CLI::App& app, RobotCommandOptions& options, int& code) 
 }
 
 int parse_and_run(CLI::App& app, int argc, char** argv, int& code) {
+  std::signal(SIGXFSZ, SIG_IGN);  // a file that grows too large is an error as any other
   try {
     app.parse(argc, argv);
     if (std::fflush(stdout) != 0)

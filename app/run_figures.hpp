@@ -25,7 +25,9 @@ struct RunFigures {
   }
 };
 
-/// The keys that every report has, into an object that is open.
-void add_run_fields(Json& json, const core::World& world, const RunFigures& figures, std::size_t robots);
+/// The keys that every report has, into an object that is open. Only `between_ticks` the state has a
+/// hash.
+void add_run_fields(Json& json, const core::World& world, const RunFigures& figures, std::size_t robots,
+                    bool between_ticks = true);
 
 }  // namespace tandem::app

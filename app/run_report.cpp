@@ -64,6 +64,29 @@ void add_real_robots(Json& json, const mixed_reality::MixedReport& report) {
   json.end_object();
 }
 
+void add_members(Json& json, const RunResult& result, bool between_ticks) {
+  const core::World& world = result.world;
+  add_run_fields(json, world, result.figures, result.robots, between_ticks);
+  json.key("controllers").begin_array();
+  for (const ControllerFile& file : result.controllers) {
+    json.begin_object().field("id", file.id).field("label", file.label).field("file", file.file);
+    if (!file.sha256.empty()) json.field("sha256", file.sha256);
+    json.end_object();
+  }
+  json.end_array();
+  const core::Incidents& incidents = world.incidents();
+  json.key("incidents").begin_object();
+  json.field("commands_clamped", incidents.commands_clamped)
+      .field("commands_not_finite", incidents.commands_not_finite)
+      .field("controllers_thrown", incidents.controllers_thrown)
+      .field("bodies_escaped", incidents.bodies_escaped);
+  json.key("first").begin_array();
+  for (const std::string& what : incidents.first) json.value(what);
+  json.end_array().end_object();
+  if (result.real != nullptr) add_real_robots(json, *result.real);
+  json.field("settings", core::to_xml(world.scenario().effective));
+}
+
 }  // namespace
 
 RunEnd end_of(const core::World& world, std::int64_t steps_wanted, bool stopped) {
@@ -90,32 +113,20 @@ std::vector<ControllerFile> controller_files(const core::Scenario& scenario, con
 }
 
 std::string report_of(const RunResult& result) {
-  const core::World& world = result.world;
   Json json;
   json.begin_object();
   json.field("finished", result.end.finished()).field("ended", word_of(result.end.how));
   if (!result.end.failure.empty()) json.field("failure", result.end.failure);
-  add_run_fields(json, world, result.figures, result.robots);
-  json.key("controllers").begin_array();
-  for (const ControllerFile& file : result.controllers) {
-    json.begin_object().field("id", file.id).field("label", file.label).field("file", file.file);
-    if (!file.sha256.empty()) json.field("sha256", file.sha256);
-    json.end_object();
-  }
-  json.end_array();
-  const core::Incidents& incidents = world.incidents();
-  json.key("incidents").begin_object();
-  json.field("commands_clamped", incidents.commands_clamped)
-      .field("commands_not_finite", incidents.commands_not_finite)
-      .field("controllers_thrown", incidents.controllers_thrown)
-      .field("bodies_escaped", incidents.bodies_escaped);
-  json.key("first").begin_array();
-  for (const std::string& what : incidents.first) json.value(what);
-  json.end_array().end_object();
-  if (result.real != nullptr) add_real_robots(json, *result.real);
-  json.field("settings", core::to_xml(world.scenario().effective));
+  add_members(json, result, true);
   json.end_object();
   return json.text();
+}
+
+std::string report_members(const RunResult& result) {
+  Json json;
+  json.begin_object();
+  add_members(json, result, false);
+  return json.text().substr(1);  // without the brace
 }
 
 void print_result(const RunResult& result) {

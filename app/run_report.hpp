@@ -44,6 +44,8 @@ struct RunResult {
 
 /// One JSON object.
 std::string report_of(const RunResult& result);
+/// Its members but those about the end, for a run that may have to be ended in the middle of a tick.
+std::string report_members(const RunResult& result);
 
 void print_result(const RunResult& result);
 

@@ -27,7 +27,7 @@ class Controller {
 
 /// What happened while a row of controllers stepped: who threw, if anybody.
 struct StepFault {
-  std::size_t index = 0;  ///< which of the row
+  std::size_t index = 0;  ///< which of the row; while the row steps: who is stepping
   std::string message;
 };
 
@@ -42,7 +42,8 @@ struct ControllerType {
   /// Constructs one controller in `where`. @throws whatever its constructor throws
   Controller* (*construct)(void* where, Robot& robot, const void* params) = nullptr;
   /// Steps `count` controllers that lie `stride` bytes apart, but those whose `halted` is not 0. Stops at the first
-  /// that throws: returns its index and fills `fault`; returns `count` when none did.
+  /// that throws: returns its index and fills `fault`; returns `count` when none did. Stores each index in
+  /// `fault.index` before its step, so that another thread can tell who does not return.
   std::size_t (*step_row)(std::byte* first, std::size_t stride, std::size_t begin, std::size_t count,
                           const std::uint8_t* halted, StepFault& fault) = nullptr;
   void (*destroy)(void* controller) = nullptr;
@@ -72,6 +73,7 @@ std::size_t step_row(std::byte* first, std::size_t stride, std::size_t begin, st
   try {
     for (; i < count; ++i) {
       if (halted[i] != 0) continue;
+      __atomic_store_n(&fault.index, i, __ATOMIC_RELAXED);
       std::launder(reinterpret_cast<T*>(first + i * stride))->T::step();
     }
     return count;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <dlfcn.h>
 
+#include "hal/plugin_call.hpp"
+
 namespace tandem::hal {
 namespace {
 
@@ -21,11 +23,33 @@ std::vector<fs::path> spellings(const fs::path& library) {
 
 struct EntryCollector final : Registrar {
   std::string library;
-  std::vector<PluginLoader::Entry>* entries = nullptr;
+  std::vector<PluginLoader::Entry> entries;
+  std::string problem;  // the first
+
   void add(std::string_view category, std::string_view name, const void* type) override {
-    entries->push_back({library, std::string(category), std::string(name), type});
+    const auto bad = [&](const char* what) {
+      if (problem.empty()) problem = "registers the " + std::string(category) + " '" + std::string(name) + "' " + what;
+    };
+    if (type == nullptr) return bad("without a type");
+    if (category == "controller") {
+      const auto& controller = *static_cast<const ControllerType*>(type);
+      if (controller.read_params == nullptr || controller.construct == nullptr || controller.step_row == nullptr ||
+          controller.destroy == nullptr || controller.size == 0 || controller.align == 0)
+        return bad("with a type that lacks functions; make it with add_controller");
+    }
+    entries.push_back({library, std::string(category), std::string(name), type});
   }
 };
+
+void name_library(const void* path, std::size_t loading, std::size_t /*index*/, FixedText& out) noexcept {
+  out << "library '" << static_cast<const char*>(path) << "', while it "
+      << (loading != 0 ? "was loaded," : "registered its types,");
+}
+
+void* load(const std::string& path) {
+  const PluginCall call(&name_library, path.c_str(), 1);
+  return dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
+}
 
 }  // namespace
 
@@ -61,9 +85,10 @@ Status PluginLoader::open(const std::string& library) {
   const auto found = find(library);
   if (!found.ok()) return found.error();
   const std::string path = found.value().string();
+  if (const auto why = unusable_.find(path); why != unusable_.end()) return Error{why->second};
   if (handles_.contains(path)) return {};
 
-  void* handle = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
+  void* handle = load(path);
   if (handle == nullptr) {
     const char* why = dlerror();
     return Error{"library '" + path + "' does not load: " + (why != nullptr ? why : "unknown reason")};
@@ -83,11 +108,28 @@ Status PluginLoader::open(const std::string& library) {
     dlclose(handle);
     return Error{"library '" + path + "' " + problem};
   }
-  handles_.emplace(path, handle);
+  handles_.emplace(path, handle);  // it stays open even when it is of no use: what it threw may be of its own types
+  const Status registered = register_types(path, *info);
+  if (!registered.ok()) unusable_.emplace(path, registered.error().message);
+  return registered;
+}
+
+Status PluginLoader::register_types(const std::string& path, const PluginInfo& info) {
   EntryCollector collector;
   collector.library = path;
-  collector.entries = &entries_;
-  info->register_all(collector);
+  std::string problem;
+  try {
+    const PluginCall call(&name_library, path.c_str());
+    if (info.register_all == nullptr) return Error{"library '" + path + "' has no function that registers its types"};
+    info.register_all(collector);
+    problem = collector.problem;
+  } catch (const std::exception& e) {
+    problem = "threw while it registered its types: " + std::string(e.what());
+  } catch (...) {
+    problem = "threw while it registered its types";
+  }
+  if (!problem.empty()) return Error{"library '" + path + "' " + problem};
+  entries_.insert(entries_.end(), collector.entries.begin(), collector.entries.end());
   return {};
 }
 

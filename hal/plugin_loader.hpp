@@ -21,7 +21,8 @@ class PluginLoader {
   PluginLoader& operator=(const PluginLoader&) = delete;
 
   /// Opens `library` ("build/lib/libx.so", "libx", "x": extension and prefix optional) once, however often asked.
-  /// Errors: not found (names every place looked at), not loadable, not a plug-in, built for another ABI.
+  /// Errors: not found (names every place looked at), not loadable, not a plug-in, built for another ABI, throws while
+  /// it registers, registers what is incomplete.
   Status open(const std::string& library);
 
   /// The file that `library` resolves to.
@@ -40,7 +41,10 @@ class PluginLoader {
 
  private:
   std::vector<std::filesystem::path> search_;
-  std::map<std::string, void*> handles_;  // by resolved path
+  Status register_types(const std::string& path, const PluginInfo& info);
+
+  std::map<std::string, void*> handles_;         // by resolved path
+  std::map<std::string, std::string> unusable_;  // by resolved path: why
   std::vector<Entry> entries_;
 };
 

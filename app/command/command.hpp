@@ -22,6 +22,7 @@ struct RunOptions {
   std::string picture;     ///< .svg, .png or .pdf
   std::string trajectory;  ///< CSV file, of every robot unless the experiment says which
   bool quiet = false;      ///< no table
+  double step_timeout_s = 5.0;  ///< after which a controller or hook that does not return is named; 0: never
 };
 int run(const RunOptions& options);
 

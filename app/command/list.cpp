@@ -7,9 +7,11 @@
 #include "app/catalog.hpp"
 #include "app/command/command.hpp"
 #include "app/port_types.hpp"
+#include "app/terminal.hpp"
 #include "core/device/device.hpp"
 #include "core/loop/hook.hpp"
 #include "core/sim/engine_factory.hpp"
+#include "core/sim/robot_factory.hpp"
 
 namespace tandem::app {
 namespace {
@@ -19,7 +21,7 @@ std::unique_ptr<hal::PluginLoader> open_all() {
   auto loader = std::make_unique<hal::PluginLoader>(plugin_folders());
   for (const auto& file : plugin_files()) {
     const hal::Status opened = loader->open(file.string());
-    if (!opened.ok()) fmt::print(stderr, "warning: {}\n", opened.error().message);
+    if (!opened.ok()) say("warning: " + opened.error().message);
   }
   return loader;
 }
@@ -35,7 +37,7 @@ void list_plugins(std::string_view category, std::string_view title) {
   bool none = true;
   for (const auto& entry : loader->entries()) {
     if (entry.category != category) continue;
-    fmt::print("  {:<22} {}\n", entry.name, summary_of(entry));
+    fmt::print("  {:<22} {}\n", printable(entry.name), printable(summary_of(entry)));
     none = false;
   }
   if (none) fmt::print("  none in the plug-in folders; TANDEM_PLUGIN_PATH names further ones\n");
@@ -118,7 +120,8 @@ bool describe_plugin(const std::string& name) {
   for (const auto& entry : loader->entries()) {
     if (entry.name != name) continue;
     found = true;
-    fmt::print("{} {}: {}\n  library: {}\n", entry.category, name, summary_of(entry), entry.library);
+    fmt::print("{} {}: {}\n  library: {}\n", entry.category, printable(name), printable(summary_of(entry)),
+               entry.library);
     core::ManualWriter manual;
     if (entry.category == "controller")
       (void)static_cast<const hal::ControllerType*>(entry.type)->read_params(manual);
@@ -139,6 +142,41 @@ bool describe_physics_engine(const std::string& name) {
   core::ManualWriter manual;
   core::describe_engine(name, manual);
   fmt::print("{}", manual.text());
+  return true;
+}
+
+/// Devices of this role that robots with this data sheet have: "a, b, c".
+std::string devices_of(const hal::DataSheet& sheet, hal::Role role) {
+  std::string all;
+  std::string_view last;
+  for (const core::DeviceType& type : core::device_types()) {
+    if (type.role != role || type.device == last || !type.fits(sheet)) continue;
+    last = type.device;
+    all += (all.empty() ? "" : ", ") + std::string(type.device);
+  }
+  return all;
+}
+
+/// What a kind of robot is and has.
+bool describe_robot(const std::string& name) {
+  const hal::DataSheet* const sheet = core::data_sheet_of(name);
+  if (sheet == nullptr) return false;
+  const double cm = 100.0;
+  fmt::print("robot <{}>: a disc of {:.3g} cm radius, {:.3g} cm high, {:.3g} kg\n", name, cm * sheet->body_radius_m,
+             cm * sheet->body_height_m, sheet->mass_kg);
+  if (sheet->wheel_base_m > 0.0) {
+    fmt::print("  drives on two wheels {:.3g} cm apart, each up to {:.3g} cm/s\n", cm * sheet->wheel_base_m,
+               cm * sheet->max_wheel_speed_m_s);
+  }
+  if (sheet->flies) {
+    fmt::print(
+        "  flies up to {:.3g} m/s and turns up to {:.3g} rad/s; needs an engine in space: particle3d, dynamics3d\n",
+        sheet->max_flight_speed_m_s, sheet->max_flight_turn_rad_s);
+  }
+  fmt::print("  sensors: {}\n  actuators: {}\n", devices_of(*sheet, hal::Role::Sensor),
+             devices_of(*sheet, hal::Role::Actuator));
+  fmt::print("  in experiment files: <{} id=\"…\"><body position=\"x,y,z\"/><controller config=\"…\"/></{}>\n", name,
+             name);
   return true;
 }
 
@@ -176,15 +214,17 @@ int list(const std::string& kind) {
 }
 
 int describe(const std::string& name) {
+  const bool robot = describe_robot(name);
   const bool engine = describe_physics_engine(name);
   const bool element = describe_element(name);
   const bool device = describe_device(name);
   const bool plugin = describe_plugin(name);
-  if (engine || element || device || plugin) return kDone;
+  if (robot || engine || element || device || plugin) return kDone;
   std::vector<std::string> all;
   for (const core::ElementManual& m : core::element_manuals()) all.emplace_back(m.name);
   for (const core::DeviceType& t : core::device_types()) all.emplace_back(t.device);
   for (const std::string& kind : core::engine_kinds()) all.push_back(kind);
+  for (const std::string& kind : core::robot_kinds()) all.push_back(kind);
   const auto loader = open_all();
   for (const auto& e : loader->entries()) all.push_back(e.name);
   const std::string near = core::closest(name, all);

@@ -1,9 +1,11 @@
 #include <algorithm>
+#include <csignal>
 #include <cstdio>
 #include <fmt/format.h>
 
 #include "app/catalog.hpp"
 #include "app/command/command.hpp"
+#include "app/emergency_outputs.hpp"
 #include "app/guarded_robots.hpp"
 #include "app/measure.hpp"
 #include "app/progress.hpp"
@@ -11,6 +13,7 @@
 #include "app/run_report.hpp"
 #include "app/signals.hpp"
 #include "app/terminal.hpp"
+#include "app/watchdog.hpp"
 #include "core/sim/world.hpp"
 #include "core/view/picture.hpp"
 #include "mixed_reality/session/mixed_session.hpp"
@@ -29,27 +32,74 @@ std::int64_t steps_of(const RunOptions& options, const core::Scenario& scenario)
   return seconds > 0.0 ? std::max<std::int64_t>(1, steps) : 0;  // a duration below a tick is one tick, not endless
 }
 
-/// Records what every tick leaves, and hands it to the system twice a second, so that even a killed run leaves all but
-/// its last second.
+/// What is kept of a run while it goes on, so that little is lost however it ends: records, which the system gets twice
+/// a second, and a report for the emergency. Lives from the first tick to the last.
 class Recording {
  public:
-  /// `trajectory` may be null.
-  Recording(core::TrajectoryRecorder* trajectory, double now_s) : trajectory_(trajectory), flushed_s_(now_s) {}
+  /// `now.figures` is brought up to date here. All must outlive this.
+  Recording(RunOutputs& outputs, RunResult& now, const mixed_reality::MixedSession* mixed, Watchdog& watchdog)
+      : outputs_(outputs),
+        now_(now),
+        mixed_(mixed),
+        watchdog_(watchdog),
+        emergency_(outputs),
+        began_s_(wall_seconds()),
+        began_cpu_s_(cpu_seconds()),
+        flushed_s_(began_s_) {
+    prepare_report();
+    watchdog_.set_save([this] {
+      if (outputs_.trajectory != nullptr) (void)outputs_.trajectory->flush();
+      set_report();
+    });
+  }
+  ~Recording() { watchdog_.set_save({}); }
+  Recording(const Recording&) = delete;
+  Recording& operator=(const Recording&) = delete;
 
-  void tick_done(const core::World& world) {
-    if (trajectory_ == nullptr || !state_.ok() || world.tick() == 0) return;  // 0: a hook went back to the start
-    state_ = trajectory_->record(world.space(), world.tick() - 1);            // the tick that was just done
-    if (const double now_s = wall_seconds(); state_.ok() && now_s >= flushed_s_ + 0.5) {
-      state_ = trajectory_->flush();
+  void tick_done() {
+    const std::lock_guard hold(watchdog_.lock());
+    core::TrajectoryRecorder* const trajectory = outputs_.trajectory.get();
+    const bool records = trajectory != nullptr && recorded_.ok();
+    if (records && now_.world.tick() > 0)                                         // 0: a hook went back to the start
+      recorded_ = trajectory->record(now_.world.space(), now_.world.tick() - 1);  // the tick that was just done
+    if (const double now_s = wall_seconds(); now_s >= flushed_s_ + kFlushEvery_s) {
       flushed_s_ = now_s;
+      if (records && recorded_.ok()) recorded_ = trajectory->flush();
+      prepare_report();
     }
-    if (!state_.ok()) complain(kFailedRunning, state_.error().message + "; the run goes on");
+    if (records && !recorded_.ok()) complain(kFailedRunning, recorded_.error().message + "; the run goes on");
+  }
+
+  void measure() {
+    now_.figures.wall_s = wall_seconds() - began_s_;
+    now_.figures.cpu_s = cpu_seconds() - began_cpu_s_;
+    now_.figures.steps = now_.world.tick();
   }
 
  private:
-  core::TrajectoryRecorder* trajectory_;
-  double flushed_s_;
-  hal::Status state_;
+  static constexpr double kFlushEvery_s = 0.5;
+
+  void prepare_report() {
+    if (!outputs_.report) return;
+    if (mixed_ != nullptr) real_ = mixed_->report();
+    set_report();
+  }
+  void set_report() {
+    if (!outputs_.report) return;
+    measure();
+    RunResult now = now_;
+    now.real = real_ ? &*real_ : nullptr;
+    emergency_.set_report(report_members(now));
+  }
+
+  RunOutputs& outputs_;
+  RunResult& now_;
+  const mixed_reality::MixedSession* mixed_;
+  Watchdog& watchdog_;
+  EmergencyOutputs emergency_;
+  double began_s_, began_cpu_s_, flushed_s_;
+  std::optional<mixed_reality::MixedReport> real_;
+  hal::Status recorded_;
 };
 
 /// Steps a purely simulated world, paced when its file says so. @returns deadlines that were missed.
@@ -136,7 +186,10 @@ int run(const RunOptions& options) {
   if (const hal::Status paths = check_output_paths(options, *scenario); !paths.ok())
     return complain(kBadInput, paths.error().message);
 
-  GuardedRobots guarded(scenario->robots, hal::Log([](hal::Severity, std::string_view text) { say(text); }));
+  GuardedRobots guarded(scenario->robots, hal::Log([](hal::Severity, std::string_view text) { say(text); }));  // before any thread
+  const std::atomic<bool>& stop = catch_signals();
+  std::signal(SIGPIPE, SIG_IGN);  // who reads our output may end before us
+  Watchdog watchdog(options.step_timeout_s, stop);
   hal::PluginLoader loader(plugin_folders());
   int warned = 0;
   core::WorldOptions world_options;
@@ -155,49 +208,38 @@ int run(const RunOptions& options) {
   RunOutputs& outputs = opened.value();
 
   int code = kDone;
-  const std::atomic<bool>& stop = catch_signals();
   mixed_reality::MonotonicTime clock;
   const auto mixed = join_real_robots(made, guarded, clock, stop, world_options.log, code);
   if (code != kDone) return stop.load() ? kDone : code;
 
   const auto controllers = controller_files(*scenario, loader);
   const std::int64_t steps = steps_of(options, *scenario);
-  const std::size_t robots = world->space().robot_count();
-  RunFigures figures;
-  figures.threads = world->threads();
-  figures.init_s = wall_seconds() - began;
-  const double wall = wall_seconds();
-  const double cpu = cpu_seconds();
+  RunResult result{*world, controllers, {}, world->space().robot_count(), {}, nullptr};
+  result.figures.threads = world->threads();
+  result.figures.init_s = wall_seconds() - began;
+  std::optional<mixed_reality::MixedReport> real;
   {
     Progress progress(steps, scenario->ticks_per_second);
-    Recording recording(outputs.trajectory.get(), wall);
+    Recording recording(outputs, result, mixed.get(), watchdog);
     const auto after_tick = [&](core::World& w) {
-      recording.tick_done(w);
+      recording.tick_done();
       progress.step(w.tick());
     };
     if (mixed != nullptr) {
       (void)mixed->run(steps, stop, after_tick);  // a failure is the world's, and told below
-      figures.deadline_misses = mixed->report().pace.deadline_misses;
     } else {
-      figures.deadline_misses = run_alone(*world, steps, stop, clock, after_tick);
+      result.figures.deadline_misses = run_alone(*world, steps, stop, clock, after_tick);
     }
+    recording.measure();
   }
-  figures.wall_s = wall_seconds() - wall;
-  figures.cpu_s = cpu_seconds() - cpu;
-  figures.steps = world->tick();
-  std::optional<mixed_reality::MixedReport> real;
   if (mixed != nullptr) {
     mixed->shut_down();
     real = mixed->report();
+    result.real = &*real;
+    result.figures.deadline_misses = real->pace.deadline_misses;
     (void)guarded.release_rested();
   }
-
-  const RunResult result{*world,
-                         controllers,
-                         figures,
-                         robots,
-                         end_of(*world, steps, stop.load(std::memory_order_relaxed)),
-                         real ? &*real : nullptr};
+  result.end = end_of(*world, steps, stop.load(std::memory_order_relaxed));
   if (result.end.how == Ended::Failed) complain(kFailedRunning, result.end.failure);
   if (result.end.how == Ended::Interrupted) say(fmt::format("interrupted at tick {}", world->tick()));
   const bool table = !options.quiet && options.report != "-";

@@ -32,10 +32,19 @@ void await_change(std::atomic<std::uint32_t>& value, std::uint32_t old, int spin
 ThreadPool::ThreadPool(std::size_t threads, Assignment assignment) : assignment_(assignment) {
   // Spinning only helps where every worker has a processor of its own.
   spins_ = threads <= std::thread::hardware_concurrency() ? kSpins : 0;
-  for (std::size_t i = 1; i < threads; ++i) workers_.emplace_back([this, i] { work_loop(i); });
+  try {
+    for (std::size_t i = 1; i < threads; ++i) workers_.emplace_back([this, i] { work_loop(i); });
+  } catch (...) {
+    end();
+    throw;
+  }
 }
 
 ThreadPool::~ThreadPool() {
+  end();
+}
+
+void ThreadPool::end() noexcept {
   ending_.store(true, std::memory_order_relaxed);
   round_.fetch_add(1, std::memory_order_release);
   round_.notify_all();

@@ -16,6 +16,7 @@ namespace tandem::core {
 /// Results of a phase must not depend on how it is cut: then they are the same for any number of threads.
 class ThreadPool {
  public:
+  /// @throws std::system_error when the system does not give so many; none of them is left then
   ThreadPool(std::size_t threads, Assignment assignment);
   ~ThreadPool();
   ThreadPool(const ThreadPool&) = delete;
@@ -61,6 +62,7 @@ class ThreadPool {
   void dispatch(const Phase& phase);
   void take_part(std::size_t worker);
   void work_loop(std::size_t worker);
+  void end() noexcept;
 
   Assignment assignment_;
   int spins_ = 0;  // looks at the next phase before sleeping

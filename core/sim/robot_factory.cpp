@@ -246,7 +246,16 @@ bool RobotFactory::prepare_group(std::size_t g, Problems& problems) {
   const Element& params = item.params ? *item.params : config.params;
   const std::size_t before = problems.size();
   ElementReader reader(params, problems);
-  group.params = group.controller->read_params(reader);
+  try {
+    const hal::PluginCall call(&name_params, this, group.config);
+    group.params = group.controller->read_params(reader);
+  } catch (const std::exception& e) {
+    problem(config.line, "controller '" + config.id + "' threw while it read its parameters: " + e.what());
+    return false;
+  } catch (...) {
+    problem(config.line, "controller '" + config.id + "' threw while it read its parameters");
+    return false;
+  }
   reader.finish();
   // Listed devices must exist even when the controller does not take them.
   bool good = !has_errors(problems, before);
@@ -340,6 +349,28 @@ void RobotFactory::place(const RobotRequest& request, Slot at) {
   b.entity[row] = request.entity;
 }
 
+void RobotFactory::name_controller(std::size_t block, std::size_t slot, hal::FixedText& out) const noexcept {
+  const RobotBlock& b = stores_.blocks[block];
+  const ControllerConfig& config = scenario_.controllers[stores_.groups[b.group].config];
+  out << "controller '" << config.id << "' (library '" << config.library << "') of robot '";
+  const RobotEntity& robot = stores_.robots[stores_.bodies.entity[b.first_row + slot]];
+  if (robot.item < stores_.names.size()) out << stores_.names[robot.item].prefix;
+  if (robot.number >= 0) out << std::int64_t{robot.number};
+  out << "'";
+}
+
+void RobotFactory::name_constructor(const void* factory, std::size_t block, std::size_t slot,
+                                    hal::FixedText& out) noexcept {
+  static_cast<const RobotFactory*>(factory)->name_controller(block, slot, out);
+  out << ", while it was made,";
+}
+
+void RobotFactory::name_params(const void* factory, std::size_t config, std::size_t /*index*/,
+                               hal::FixedText& out) noexcept {
+  const ControllerConfig& c = static_cast<const RobotFactory*>(factory)->scenario_.controllers[config];
+  out << "controller '" << c.id << "' (library '" << c.library << "'), while it read its parameters,";
+}
+
 /// Makes the controller of the robot that is placed there. Says what went wrong, or nothing.
 std::string RobotFactory::construct(Slot at) {
   RobotBlock& block = stores_.blocks[at.block];
@@ -348,6 +379,7 @@ std::string RobotFactory::construct(Slot at) {
   ConstructedRobot robot(scenario_, stores_, group, block, slab_, seed_);
   robot.select(at.slot, stores_.bodies.entity[block.first_row + at.slot]);
   std::string why;
+  const hal::PluginCall call(&name_constructor, this, at.block, at.slot);
   try {
     type.construct(block.controller(at.slot), robot, group.params.get());
     block.constructed[at.slot] = 1;
@@ -596,7 +628,16 @@ void destroy_controllers(SpaceStores& stores) noexcept {
   for (RobotBlock& block : stores.blocks) destroy_controllers(stores, block);
 }
 
+namespace {
+
+void name_destructor(const void* type, std::size_t /*part*/, std::size_t /*index*/, hal::FixedText& out) noexcept {
+  out << "a controller of class '" << static_cast<const hal::ControllerType*>(type)->name << "', in its destructor,";
+}
+
+}  // namespace
+
 void destroy_controllers(SpaceStores& stores, RobotBlock& block) noexcept {
+  const hal::PluginCall call(&name_destructor, stores.groups[block.group].controller);
   for (std::size_t slot = 0; slot < block.capacity; ++slot) {
     if (block.constructed[slot] != 0) stores.groups[block.group].controller->destroy(block.controller(slot));
     block.constructed[slot] = 0;

@@ -10,6 +10,7 @@
 #include "core/device/device.hpp"
 #include "core/scenario/scenario.hpp"
 #include "core/space/stores.hpp"
+#include "hal/plugin_call.hpp"
 #include "hal/plugin_loader.hpp"
 #include "hal/result.hpp"
 
@@ -57,6 +58,9 @@ class RobotFactory {
   hal::Result<RobotId> add(const RobotItem& item, const Pose& pose,
                            const std::function<hal::Status(std::size_t row)>& accepts);
 
+  /// "controller 'c' (library 'x') of robot 'ep3'": who has this slot of a block. For hal::PluginCall.
+  void name_controller(std::size_t block, std::size_t slot, hal::FixedText& out) const noexcept;
+
  private:
   std::vector<std::vector<std::uint32_t>> group(const std::vector<RobotRequest>& requests);
   void sort_by_place(const std::vector<RobotRequest>& requests, std::vector<std::uint32_t>& members) const;
@@ -68,6 +72,8 @@ class RobotFactory {
   std::uint32_t add_block(std::size_t g, std::size_t capacity);
   void place(const RobotRequest& request, Slot at);
   std::string construct(Slot at);
+  static void name_constructor(const void* factory, std::size_t block, std::size_t slot, hal::FixedText& out) noexcept;
+  static void name_params(const void* factory, std::size_t config, std::size_t index, hal::FixedText& out) noexcept;
   void complete(std::size_t g);
   hal::Result<std::size_t> group_for(const RobotItem& item);
   Slot free_slot(std::size_t g);

@@ -4,12 +4,18 @@
 #include <exception>
 
 #include "core/space/space.hpp"
+#include "hal/plugin_call.hpp"
 
 namespace tandem::core {
 namespace {
 
+void name_copy(const void* type, std::size_t /*part*/, std::size_t /*index*/, hal::FixedText& out) noexcept {
+  out << "a controller of class '" << static_cast<const hal::ControllerType*>(type)->name << "', while it was copied,";
+}
+
 /// Copies a controller. Says what it threw, or nothing.
 std::string copied(const hal::ControllerType& type, void* where, const void* from) {
+  const hal::PluginCall call(&name_copy, &type);
   try {
     type.copy(where, from);
     return {};

@@ -1,12 +1,15 @@
 #include "core/sim/world.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <utility>
 
 #include "core/sim/piloting.hpp"
 #include "core/sim/state_hash.hpp"
 #include "core/sim/world_impl.hpp"
 #include "hal/check.hpp"
 #include "hal/filter.hpp"
+#include "hal/unit.hpp"
 
 namespace tandem::core {
 
@@ -81,11 +84,13 @@ void World::Impl::sense(std::size_t block) {
 void World::Impl::control(std::size_t index) {
   RobotBlock& block = stores().blocks[index];
   const hal::ControllerType& type = *stores().groups[block.group].controller;
+  hal::PluginCall call(&name_step, this, index);
   std::size_t next = 0;
   while (next < block.used) {
     next =
-        type.step_row(block.controllers, block.controller_stride, next, block.used, block.halted.data(), faults[index]);
+        type.step_row(block.controllers, block.controller_stride, next, block.used, block.halted.data(), call.fault());
     if (next == block.used) break;
+    faults[index].message.swap(call.fault().message);
     block.halted[next] = kThrewInThisTick;  // reported, and its actuators made safe, after the phase
     block_trouble[index] = 1;
     ++next;
@@ -95,11 +100,21 @@ void World::Impl::control(std::size_t index) {
 void World::Impl::filter(std::size_t index) {
   const RobotGroup& group = stores().groups[stores().blocks[index].group];
   const hal::DataSheet& sheet = *group.sheet;
-  filter_port<hal::WheelSpeeds>(index, group.wheels,
-                                [&](auto& command) { return hal::filter(command, sheet.max_wheel_speed_m_s); });
+  filter_port<hal::WheelSpeeds>(index, group.wheels, [&](auto& command) {
+    const double asked_m_s = std::max(std::fabs(command.left_m_s), std::fabs(command.right_m_s));
+    const hal::FilterResult result = hal::filter(command, sheet.max_wheel_speed_m_s);
+    if (result == hal::FilterResult::Clamped)
+      note_excess(index, group.wheels, command, asked_m_s, sheet.max_wheel_speed_m_s);
+    return result;
+  });
   filter_port<hal::QuadrotorPosition>(index, group.flight_position, [](auto& command) { return hal::filter(command); });
   filter_port<hal::QuadrotorSpeed>(index, group.flight_speed, [&](auto& command) {
-    return hal::filter(command, sheet.max_flight_speed_m_s, sheet.max_flight_turn_rad_s);
+    const auto& v = command.velocity;
+    const double asked_m_s = std::max({std::fabs(v[0]), std::fabs(v[1]), std::fabs(v[2])});
+    const hal::FilterResult result = hal::filter(command, sheet.max_flight_speed_m_s, sheet.max_flight_turn_rad_s);
+    if (result == hal::FilterResult::Clamped)
+      note_excess(index, group.flight_speed, command, asked_m_s, sheet.max_flight_speed_m_s);
+    return result;
   });
   filter_port<hal::QuadrotorAttitude>(index, group.flight_attitude, [&](auto& command) {
     return hal::filter(command, sheet.flight.most_lean_rad, sheet.max_flight_turn_rad_s, sheet.flight.most_thrust);
@@ -133,10 +148,31 @@ void World::Impl::filter_port(std::size_t index, int port, Filter&& filter_one) 
   }
 }
 
+/// Remembers the first robot of the block whose speed is hardly meant, to be named after the phase; one of a group is
+/// named.
+template <class Port>
+void World::Impl::note_excess(std::size_t index, int port, const Port& command, double asked_m_s, double most_m_s) {
+  RobotBlock& block = stores().blocks[index];
+  if (asked_m_s <= kUnlikely * most_m_s || excess_named[block.group] != 0 || excess[index].most_m_s > 0.0) return;
+  const auto slot = &command - block.port_array<Port>(static_cast<std::size_t>(port));
+  excess[index] = {static_cast<std::size_t>(slot), asked_m_s, most_m_s};
+  block_trouble[index] = 1;
+}
+
+void World::Impl::report_excess(std::size_t index) {
+  const Excess found = std::exchange(excess[index], {});
+  const RobotBlock& block = stores().blocks[index];
+  if (found.most_m_s == 0.0 || std::exchange(excess_named[block.group], std::uint8_t{1}) != 0) return;
+  incident("controller of robot '" + name_of_row(block.first_row + found.slot) + "' commanded " +
+           hal::format_number(found.asked_m_s) + " m/s" + at_tick() + ", where " + hal::format_number(found.most_m_s) +
+           " m/s is the most that it can do; did you mean cm/s? Speeds are in m/s");
+}
+
 void World::Impl::report_trouble() {
   for (std::size_t index = 0; index < block_trouble.size(); ++index) {
     if (block_trouble[index] == 0) continue;
     block_trouble[index] = 0;
+    report_excess(index);
     RobotBlock& block = stores().blocks[index];
     for (std::size_t i = 0; i < block.used; ++i) {
       const std::size_t row = block.first_row + i;
@@ -173,14 +209,30 @@ void World::Impl::paint_floor_if_asked() {
   SpaceStores& s = stores();
   if (!s.repaint_floor || scenario.floor.source != "loop_functions" || hooks.empty()) return;
   s.repaint_floor = false;
+  hook_moment = "floor";
+  const hal::PluginCall marked(&name_hook, this, 0);
   s.floor.paint(s.min_x_m, s.min_y_m, s.max_x_m - s.min_x_m, s.max_y_m - s.min_y_m, scenario.floor.pixels_per_meter,
                 [&](double x, double y) { return hooks.front()->floor(x, y); });
 }
 
+void World::Impl::name_step(const void* impl, std::size_t block, std::size_t index, hal::FixedText& out) noexcept {
+  const Impl& w = *static_cast<const Impl*>(impl);
+  w.factory->name_controller(block, index, out);
+  out << " at tick " << w.tick;
+}
+
+void World::Impl::name_hook(const void* impl, std::size_t hook, std::size_t /*index*/, hal::FixedText& out) noexcept {
+  const Impl& w = *static_cast<const Impl*>(impl);
+  out << "hook '" << w.hook_names[hook] << "' (library '" << w.scenario.hooks[hook].library << "') in " << w.hook_moment
+      << " at tick " << w.tick;
+}
+
 template <class Call>
 void World::Impl::call_hooks(const char* moment, Call&& call) {
+  hook_moment = moment;
   for (std::size_t i = 0; i < hooks.size(); ++i) {
     HookContext context = hook_context();
+    const hal::PluginCall marked(&name_hook, this, i);
     try {
       call(*hooks[i], context);
     } catch (const std::exception& e) {
@@ -194,7 +246,13 @@ void World::Impl::call_hooks(const char* moment, Call&& call) {
 World::World(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 
 World::~World() {
-  destroy_controllers(impl_->stores());
+  Impl& w = *impl_;
+  destroy_controllers(w.stores());
+  w.hook_moment = "its destructor";
+  for (std::size_t i = 0; i < w.hooks.size(); ++i) {
+    const hal::PluginCall marked(&Impl::name_hook, &w, i);
+    w.hooks[i].reset();
+  }
 }
 
 void World::start() {
@@ -218,7 +276,9 @@ hal::Result<Snapshot> World::snapshot() {
   Impl& w = *impl_;
   if (w.external != nullptr) return hal::Error{"no snapshot: real robots take part, which cannot be put back"};
   auto moment = std::make_shared<Moment>();
+  w.hook_moment = "save";
   for (std::size_t i = 0; i < w.hooks.size(); ++i) {
+    const hal::PluginCall marked(&Impl::name_hook, &w, i);
     try {
       moment->hooks.push_back(w.hooks[i]->save());
     } catch (const std::exception& e) {
@@ -258,8 +318,11 @@ hal::Status World::restore(const Snapshot& snapshot) {
   w.not_finite = moment.not_finite;
   w.block_trouble.assign(w.clamped.size(), 0);
   w.faults.assign(w.clamped.size(), {});
+  w.excess.assign(w.clamped.size(), {});
   w.strays.clear();
+  w.hook_moment = "restore";
   for (std::size_t i = 0; i < w.hooks.size(); ++i) {
+    const hal::PluginCall marked(&Impl::name_hook, &w, i);
     try {
       w.hooks[i]->restore(moment.hooks[i]);
     } catch (const std::exception& e) {

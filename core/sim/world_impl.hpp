@@ -15,6 +15,7 @@
 #include "core/sim/world.hpp"
 #include "core/sim/world_editor.hpp"
 #include "core/space/stores.hpp"
+#include "hal/plugin_call.hpp"
 
 namespace tandem::core {
 
@@ -64,8 +65,16 @@ struct Moment {
   std::vector<std::any> hooks;
 };
 
+/// A speed so far beyond what a robot can do that it was written in another unit.
+struct Excess {
+  std::size_t slot = 0;  ///< of its block
+  double asked_m_s = 0.0;
+  double most_m_s = 0.0;  ///< 0: none
+};
+
 struct World::Impl {
   static constexpr std::size_t kIncidentsNamed = 20;
+  static constexpr double kUnlikely = 10.0;  // times what a robot can do: hardly meant
 
   Scenario scenario;
   WorldOptions options;
@@ -92,6 +101,7 @@ struct World::Impl {
   KeptMoments moments;
   std::vector<std::unique_ptr<Hook>> hooks;
   std::vector<std::string> hook_names;
+  const char* hook_moment = "";  // that is or was called last
   ExternalRobots* external = nullptr;
 
   hal::Tick tick = 0;
@@ -103,6 +113,8 @@ struct World::Impl {
   std::vector<hal::StepFault> faults;       // by block, for controllers that threw
   std::vector<std::uint64_t> clamped;       // by block, running counts
   std::vector<std::uint64_t> not_finite;
+  std::vector<Excess> excess;              // by block, of this tick
+  std::vector<std::uint8_t> excess_named;  // by group: once is enough
 
   SpaceStores& stores() noexcept { return space.stores(); }
 
@@ -123,10 +135,15 @@ struct World::Impl {
   void sense(std::size_t block);
   void control(std::size_t block);
   void filter(std::size_t block);
+  template <class Port>
+  void note_excess(std::size_t block, int port, const Port& command, double asked_m_s, double most_m_s);
+  void report_excess(std::size_t block);
   template <class Port, class Filter>
   void filter_port(std::size_t block, int port, Filter&& filter_one);
   void report_trouble();
   void paint_floor_if_asked();
+  static void name_step(const void* impl, std::size_t block, std::size_t index, hal::FixedText& out) noexcept;
+  static void name_hook(const void* impl, std::size_t hook, std::size_t index, hal::FixedText& out) noexcept;
   void fit_to_bodies();
   void forget_caches();
 

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <random>
+#include <system_error>
 
 #include "core/placement/placement.hpp"
 #include "core/sim/world_impl.hpp"
@@ -126,6 +127,30 @@ void assign_regions(const Scenario& scenario, const Placements& placements, cons
                         false});
 }
 
+void name_hook_made(const void* config, std::size_t /*part*/, std::size_t /*index*/, hal::FixedText& out) noexcept {
+  const auto& c = *static_cast<const HookConfig*>(config);
+  out << "hook '" << c.label << "' (library '" << c.library << "'), while it was made,";
+}
+
+/// Null when it cannot be made; `why` then says why.
+std::unique_ptr<Hook> make_hook(const HookType& type, const HookConfig& config, Problems& problems, std::string& why) {
+  if (type.make == nullptr) {
+    why = "has no function that makes it; register it with hook_type";
+    return nullptr;
+  }
+  const hal::PluginCall call(&name_hook_made, &config);
+  try {
+    std::unique_ptr<Hook> hook = type.make(config.options, problems);
+    if (hook == nullptr) why = "makes nothing";
+    return hook;
+  } catch (const std::exception& e) {
+    why = "threw while it was made: " + std::string(e.what());
+  } catch (...) {
+    why = "threw while it was made";
+  }
+  return nullptr;
+}
+
 }  // namespace
 
 std::unique_ptr<World> World::make(const Scenario& scenario, hal::PluginLoader& loader, const WorldOptions& options,
@@ -137,9 +162,17 @@ std::unique_ptr<World> World::make(const Scenario& scenario, hal::PluginLoader& 
   w.scenario = scenario;
   w.options = options;
   w.seed = options.seed ? *options.seed : scenario.seed ? *scenario.seed : seed_from_clock();
-  w.pool = std::make_unique<ThreadPool>(
-      static_cast<std::size_t>(std::max<std::int64_t>(0, options.threads.value_or(scenario.threads))),
-      options.assignment.value_or(scenario.assignment));
+  const std::int64_t threads = options.threads.value_or(scenario.threads);
+  try {
+    w.pool = std::make_unique<ThreadPool>(static_cast<std::size_t>(std::max<std::int64_t>(0, threads)),
+                                          options.assignment.value_or(scenario.assignment));
+  } catch (const std::system_error& e) {
+    problems.push_back({scenario.file, 0,
+                        std::to_string(threads) + " threads cannot be made: " + e.code().message() +
+                            "; ask for fewer (threads, --threads), or allow more (ulimit -u)",
+                        false});
+    return nullptr;
+  }
   SpaceStores& s = w.stores();
   s.min_x_m = scenario.arena_center[0] - 0.5 * scenario.arena_size[0];
   s.max_x_m = scenario.arena_center[0] + 0.5 * scenario.arena_size[0];
@@ -229,7 +262,14 @@ std::unique_ptr<World> World::make(const Scenario& scenario, hal::PluginLoader& 
       continue;
     }
     const auto* hook = static_cast<const HookType*>(type.value());
-    w.hooks.push_back(hook->make(config.options, problems));
+    std::string why;
+    std::unique_ptr<Hook> made = make_hook(*hook, config, problems, why);
+    if (made == nullptr) {
+      problems.push_back({scenario.file, config.line,
+                          "hook '" + std::string(hook->name) + "' (library '" + config.library + "') " + why, false});
+      continue;
+    }
+    w.hooks.push_back(std::move(made));
     w.hook_names.emplace_back(hook->name);
   }
   if (scenario.floor.source == "loop_functions" && scenario.hooks.empty()) {
@@ -242,6 +282,8 @@ std::unique_ptr<World> World::make(const Scenario& scenario, hal::PluginLoader& 
   w.faults.resize(blocks);
   w.clamped.assign(blocks, 0);
   w.not_finite.assign(blocks, 0);
+  w.excess.resize(blocks);
+  w.excess_named.assign(s.groups.size(), 0);
   auto world = std::unique_ptr<World>(new World(std::move(impl)));
   if (bad()) return nullptr;
   return world;

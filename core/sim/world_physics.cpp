@@ -70,7 +70,9 @@ void World::Impl::fit_to_bodies() {
     faults.resize(blocks);
     clamped.resize(blocks, 0);
     not_finite.resize(blocks, 0);
+    excess.resize(blocks);
   }
+  excess_named.resize(s.groups.size(), 0);
   const double needed_m = index_reach(s, tick_s());
   if (needed_m != reach_m) {
     reach_m = needed_m;

@@ -1,9 +1,10 @@
 #include "hal/plugin_loader.hpp"
-#include "tests/checkout.hpp"
 
 #include <filesystem>
 #include <fstream>
 #include <gmock/gmock.h>
+
+#include "tests/checkout.hpp"
 
 namespace tandem::hal {
 namespace {
@@ -54,6 +55,14 @@ TEST_F(Loader, GivesTheControllerAskedFor) {
   EXPECT_EQ(spin.value()->name, "spin");
   EXPECT_EQ(spin.value()->summary, "Turns on the spot.");
   EXPECT_EQ(loader_.entries().size(), 2U);
+}
+
+TEST_F(Loader, ALibraryThatThrowsOrRegistersNothingUsefulIsRefused) {
+  for (int i = 0; i < 2; ++i) {  // the second time, too
+    EXPECT_THAT(error_of("test_hal_throws"), AllOf(HasSubstr("threw while it registered"), HasSubstr("no licence")));
+    EXPECT_THAT(error_of("test_hal_null_type"), AllOf(HasSubstr("controller 'nobody'"), HasSubstr("without a type")));
+    EXPECT_THAT(error_of("test_hal_half_type"), AllOf(HasSubstr("controller 'half'"), HasSubstr("lacks functions")));
+  }
 }
 
 TEST_F(Loader, OpensALibraryOnce) {

@@ -1,0 +1,41 @@
+// Watches that calls into plug-ins return.
+#pragma once
+#include <atomic>
+#include <condition_variable>
+#include <functional>
+#include <mutex>
+#include <string>
+#include <thread>
+
+namespace tandem::app {
+
+/// Names a controller or hook that does not return within a time, and ends the process when it has not returned and a
+/// stop was asked for. Has a thread of its own; where none can be made, it says so and does nothing.
+class Watchdog {
+ public:
+  /// `limit_s` 0: nobody is named, and a stop waits 5 s. `stop` must outlive this.
+  Watchdog(double limit_s, const std::atomic<bool>& stop);
+  ~Watchdog();
+  Watchdog(const Watchdog&) = delete;
+  Watchdog& operator=(const Watchdog&) = delete;
+
+  /// What prepares the outputs before the process is ended. Is called on the watchdog's thread, while the thread that
+  /// steps is in the call that does not return; so that it stays there, it takes `lock` before it touches what `save`
+  /// reads.
+  void set_save(std::function<void()> save);
+  std::mutex& lock() noexcept { return lock_; }
+
+ private:
+  void watch();
+
+  const double limit_s_;
+  const std::atomic<bool>& stop_;
+  std::mutex lock_;
+  std::function<void()> save_;
+  std::mutex ending_lock_;
+  std::condition_variable ending_changed_;
+  bool ending_ = false;
+  std::thread thread_;
+};
+
+}  // namespace tandem::app

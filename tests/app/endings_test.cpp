@@ -1,0 +1,216 @@
+// How runs end: as they should, and when a plug-in takes the program down with it or never returns.
+#include <gmock/gmock.h>
+#include <map>
+#include <sstream>
+
+#include "tests/checkout.hpp"
+#include "tests/scenarios/process.hpp"
+
+namespace tandem {
+namespace {
+
+using scenarios::eventually;
+using scenarios::Folder;
+using scenarios::json_value;
+using scenarios::Tandem;
+using scenarios::text_of;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+
+constexpr int kRobots = 12;
+
+struct Experiment {
+  std::string library = "test_trouble";
+  std::string label = "troublemaker";
+  std::string params;
+  std::string hook;
+  int length_s = 2;
+};
+
+std::string text(const Experiment& e) {
+  return R"(<tandem>
+  <framework><experiment length=")" +
+         std::to_string(e.length_s) + R"(" ticks_per_second="10" random_seed="7"/></framework>
+  <controllers>
+    <)" + e.label +
+         R"( id="who" library=")" + e.library + R"(">
+      <actuators><differential_steering/></actuators>
+      <params )" +
+         e.params + R"(/>
+    </)" +
+         e.label +
+         R"(>
+  </controllers>
+  )" + e.hook +
+         R"(
+  <arena size="4,4,1">
+    <distribute>
+      <position method="uniform" min="-1,-1,0" max="1,1,0"/>
+      <orientation method="uniform" min="0,0,0" max="360,0,0"/>
+      <entity quantity="12" max_trials="1000"><e-puck id="ep"><controller config="who"/></e-puck></entity>
+    </distribute>
+  </arena>
+</tandem>
+)";
+}
+
+class Endings : public testing::Test {
+ protected:
+  std::unique_ptr<Tandem> start(const Experiment& e, const std::vector<std::string>& more = {}) {
+    folder_.write("e.xml", text(e));
+    folder_.write("t.csv", "old");
+    std::vector<std::string> words = {"run", "e.xml", "--report", "r.json", "--trajectory", "t.csv"};
+    words.insert(words.end(), more.begin(), more.end());
+    return std::make_unique<Tandem>(words, folder_.path());
+  }
+  std::string report() const { return text_of(folder_.path() / "r.json"); }
+  std::string value(const std::string& key) const { return json_value(report(), key); }
+
+  /// Ticks of the trajectory, each of which must have one line for every robot.
+  int whole_ticks() const {
+    std::istringstream in(text_of(folder_.path() / "t.csv"));
+    std::map<int, int> lines;
+    std::string line;
+    std::getline(in, line);
+    EXPECT_EQ(line, "tick,time_s,id,x_m,y_m,heading_rad");
+    while (std::getline(in, line)) {
+      EXPECT_EQ(std::count(line.begin(), line.end(), ','), 5) << line;
+      ++lines[std::stoi(line)];
+    }
+    for (const auto& [tick, count] : lines) EXPECT_EQ(count, kRobots) << "tick " << tick;
+    return static_cast<int>(lines.size());
+  }
+  /// Of a run that a plug-in ended before the records of tick `tick`.
+  void expect_saved(int tick, const std::string& failure) const {
+    EXPECT_EQ(value("finished"), "false") << report();
+    EXPECT_EQ(value("ended"), "failed");
+    EXPECT_THAT(report(), HasSubstr(failure));
+    EXPECT_EQ(value("experiment"), "e");
+    EXPECT_THAT(report(), testing::EndsWith("}\n"));
+    EXPECT_EQ(whole_ticks(), tick);
+    EXPECT_FALSE(scenarios::fs::exists(folder_.path() / "t.csv.part"));
+    EXPECT_FALSE(scenarios::fs::exists(folder_.path() / "r.json.part"));
+  }
+
+  Folder folder_;
+};
+
+TEST_F(Endings, ARunThatCameToItsEndSaysSo) {
+  auto run = start({});
+  ASSERT_EQ(run->wait(), 0) << run->errors();
+  EXPECT_EQ(value("finished"), "true");
+  EXPECT_EQ(value("ended"), "length");
+  EXPECT_EQ(whole_ticks(), 20);
+}
+
+TEST_F(Endings, ARunThatAHookEndedSaysSo) {
+  auto run = start({.hook = R"(<loop_functions library="test_hooks" label="diary" path="diary" done_at="7"/>)"});
+  ASSERT_EQ(run->wait(), 0) << run->errors();
+  EXPECT_EQ(value("finished"), "true");
+  EXPECT_EQ(value("ended"), "hook");
+  EXPECT_THAT(run->output(), HasSubstr("by a hook at tick 7 of 20"));
+}
+
+TEST_F(Endings, AHookThatThrowsEndsTheRunAsFailed) {
+  auto run = start({.hook = R"(<loop_functions library="test_hooks" label="diary" path="diary" throw_at="7"/>)"});
+  EXPECT_EQ(run->wait(), 3);
+  EXPECT_EQ(value("finished"), "false");
+  EXPECT_EQ(value("ended"), "failed");
+  EXPECT_THAT(run->output(), HasSubstr("not finished"));
+}
+
+TEST_F(Endings, AControllerThatThrewIsNoSuccess) {
+  auto run = start({.params = R"(what="throw" robot="ep4")"});
+  EXPECT_EQ(run->wait(), 3);
+  EXPECT_EQ(value("finished"), "true");
+  EXPECT_EQ(value("controllers_thrown"), "1");
+  EXPECT_EQ(whole_ticks(), 20);
+  EXPECT_THAT(run->errors(),
+              AllOf(HasSubstr("robot 'ep4' threw at tick 3"), HasSubstr("\\x1b[2J"), HasSubstr(" gone")));
+  EXPECT_THAT(run->errors() + run->output(), Not(HasSubstr("\033")));
+}
+
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // they have handlers of their own
+TEST_F(Endings, ACrashNamesControllerRobotAndTickAndKeepsTheRecords) {
+  const std::map<std::string, std::string> kinds = {{"memory", "SIGSEGV"},         {"divide", "SIGFPE"},
+                                                    {"abort", "SIGABRT"},          {"instruction", "SIGILL"},
+                                                    {"stack", "SIGSEGV"},          {"exit", "called exit(0)"},
+                                                    {"quick_exit", "called exit"}, {"noexcept", "lost in ?[2Jspace"}};
+  for (const auto& [what, word] : kinds) {
+    auto run = start({.params = "what=\"" + what + "\" robot=\"ep4\""});
+    EXPECT_EQ(run->wait(), 3) << what;
+    EXPECT_THAT(run->errors(), AllOf(HasSubstr("error: controller 'who' (library 'test_trouble') of robot 'ep4'"),
+                                     HasSubstr("at tick 3"), HasSubstr(word)));
+    expect_saved(3, "of robot 'ep4' at tick 3");
+  }
+}
+
+TEST_F(Endings, ACrashOnAnotherThreadIsNamedToo) {
+  std::string experiment = text({.params = R"(what="stack" robot="ep4100")"});
+  experiment.replace(experiment.find("quantity=\"12\""), 13, "quantity=\"4200\"");
+  experiment.replace(experiment.find("size=\"4,4,1\""), 12, "size=\"44,44,1\"");
+  experiment.replace(experiment.find("min=\"-1,-1,0\" max=\"1,1,0\""), 25, "min=\"-20,-20,0\" max=\"20,20,0\"");
+  folder_.write("e.xml", experiment);
+  Tandem run({"run", "e.xml", "--threads", "3", "--report", "r.json"}, folder_.path());
+  EXPECT_EQ(run.wait(), 3);
+  EXPECT_THAT(run.errors(), AllOf(HasSubstr("of robot 'ep4100' at tick 3"), HasSubstr("SIGSEGV")));
+  EXPECT_EQ(value("finished"), "false");
+}
+
+TEST_F(Endings, ACrashOfAHookNamesItAndItsMoment) {
+  auto run = start({.hook = R"(<loop_functions library="test_trouble" label="trouble" what="memory" at="5"/>)"});
+  EXPECT_EQ(run->wait(), 3);
+  EXPECT_THAT(run->errors(),
+              HasSubstr("error: hook 'trouble' (library 'test_trouble') in after_step at tick 5 crashed"));
+  expect_saved(5, "in after_step at tick 5");
+}
+
+TEST_F(Endings, ACrashBeforeTheFirstTickIsNamed) {
+  auto controller = start({.params = R"(what="memory" early="true" robot="ep4")"});
+  EXPECT_EQ(controller->wait(), 3);
+  EXPECT_THAT(controller->errors(), HasSubstr("of robot 'ep4', while it was made, crashed: SIGSEGV"));
+  auto hook = start({.hook = R"(<loop_functions library="test_trouble" label="trouble" what="exit" early="true"/>)"});
+  EXPECT_EQ(hook->wait(), 3);
+  EXPECT_THAT(hook->errors(), HasSubstr("hook 'trouble' (library 'test_trouble'), while it was made, called exit(0)"));
+  EXPECT_EQ(text_of(folder_.path() / "t.csv"), "old");
+  Tandem check({"check", "e.xml"}, folder_.path());
+  EXPECT_EQ(check.wait(), 3);
+}
+#endif
+
+TEST_F(Endings, AControllerThatDoesNotReturnIsNamedAndTheFirstCtrlCEndsTheRun) {
+  for (const char* threads : {"0", "2"}) {
+    auto run = start({.params = R"(what="loop" robot="ep4")"}, {"--step-timeout", "0.2", "--threads", threads});
+    ASSERT_TRUE(eventually([&] { return run->errors().find("has not returned") != std::string::npos; }, 20))
+        << run->errors();
+    EXPECT_THAT(run->errors(), HasSubstr("controller 'who' (library 'test_trouble') of robot 'ep4' at tick 3 has not "
+                                         "returned for 0."));
+    run->signal(SIGINT);
+    EXPECT_EQ(run->wait(), 3);
+    expect_saved(3, "of robot 'ep4' at tick 3 did not return");
+    EXPECT_EQ(value("steps"), "3");
+  }
+}
+
+TEST_F(Endings, AHookThatDoesNotReturnIsNamedAndTheFirstCtrlCEndsTheRun) {
+  auto run = start({.hook = R"(<loop_functions library="test_trouble" label="trouble" what="loop" at="5"/>)"},
+                   {"--step-timeout", "0.2"});
+  run->signal(0);
+  ASSERT_TRUE(eventually([&] { return run->errors().find("has not returned") != std::string::npos; }, 20));
+  run->signal(SIGTERM);
+  EXPECT_EQ(run->wait(), 3);
+  expect_saved(5, "hook 'trouble' (library 'test_trouble') in after_step at tick 5 did not return");
+}
+
+TEST_F(Endings, ACtrlCBeforeTheTimeIsOverCountsToo) {
+  auto run = start({.params = R"(what="loop" early="true")"}, {"--step-timeout", "0.5"});
+  ASSERT_TRUE(eventually([&] { return run->errors().find("has not returned") != std::string::npos; }, 20));
+  EXPECT_THAT(run->errors(), HasSubstr("while it was made, has not returned"));
+  run->signal(SIGINT);
+  EXPECT_EQ(run->wait(), 3);
+  EXPECT_EQ(text_of(folder_.path() / "t.csv"), "old");
+}
+
+}  // namespace
+}  // namespace tandem

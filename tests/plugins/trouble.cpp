@@ -1,0 +1,108 @@
+// A controller and a hook that do to the whole program what no plug-in should.
+#include <csignal>
+#include <cstdlib>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "core/loop/hook.hpp"
+#include "hal/device/wheels.hpp"
+#include "hal/plugin.hpp"
+
+namespace {
+
+using namespace tandem;
+
+std::size_t endless_stack(volatile char* outer) {
+  if (outer[0] == 0) return 0;  // never
+  volatile char frame[4096];
+  frame[0] = outer[0];
+  frame[4095] = frame[0];
+  return static_cast<std::size_t>(frame[4095]) + endless_stack(frame) + static_cast<std::size_t>(frame[1]);
+}
+
+/// Does what the word says.
+void make_trouble(const std::string& what) {
+  volatile int zero = 0;
+  volatile char seed = 1;
+  if (what == "loop") {
+    while (zero == 0) {
+    }
+  } else if (what == "memory") {
+    *static_cast<volatile int*>(nullptr) = 1;
+  } else if (what == "divide") {
+    zero = 77 / zero;
+  } else if (what == "abort") {
+    std::abort();
+  } else if (what == "stack") {
+    (void)endless_stack(&seed);
+  } else if (what == "instruction") {
+    std::raise(SIGILL);
+  } else if (what == "exit") {
+    std::exit(0);
+  } else if (what == "quick_exit") {
+    std::quick_exit(0);
+  } else if (what == "noexcept") {
+    []() noexcept { make_trouble("throw in noexcept"); }();
+  } else if (what == "throw in noexcept") {
+    throw std::runtime_error("lost in \033[2Jspace");
+  } else if (what == "throw") {
+    throw std::runtime_error("\033[2J\033]0;owned\007 gone");
+  }
+}
+
+struct Params {
+  std::string what = "nothing";
+  std::int64_t at = 3;
+  std::string robot;
+  bool early = false;
+  void describe(hal::ParamVisitor& v) {
+    v.text("what", what, "The trouble.");
+    v.integer("at", at, hal::kAny, "Step or tick of the trouble.");
+    v.text("robot", robot, "Id of the only robot that makes it; empty: all do.");
+    v.flag("early", early, "Already when it is made.");
+  }
+};
+
+class Troublemaker final : public hal::Controller {
+ public:
+  using Params = ::Params;
+  Troublemaker(hal::Robot& robot, const Params& params)
+      : wheels_(robot.actuator<hal::WheelSpeeds>()),
+        what_(params.robot.empty() || params.robot == robot.id() ? params.what : ""),
+        left_(params.at) {
+    if (params.early) make_trouble(what_);
+  }
+  void step() override {
+    wheels_.set(0.02, 0.02);
+    if (left_-- == 0) make_trouble(what_);
+  }
+
+ private:
+  hal::WheelSpeeds& wheels_;
+  std::string what_;
+  std::int64_t left_;
+};
+
+class Trouble final : public core::Hook {
+ public:
+  using Params = ::Params;
+  explicit Trouble(const Params& params) : params_(params) {
+    if (params_.early) make_trouble(params_.what);
+  }
+  void after_step(core::HookContext& c) override {
+    if (c.tick == params_.at) make_trouble(params_.what);
+  }
+
+ private:
+  Params params_;
+};
+
+void register_all(hal::Registrar& registrar) {
+  registrar.add_controller<Troublemaker>("troublemaker", "Ends the program, or does not return.");
+  registrar.add("hook", "trouble", &core::hook_type<Trouble>("trouble", "Ends the program, or does not return."));
+}
+
+}  // namespace
+
+TANDEM_PLUGIN(register_all)
