@@ -47,8 +47,8 @@ void EmergencyOutputs::save(std::string_view failure) const noexcept {
   const std::string* members = report_.load(std::memory_order_acquire);
   if (outputs_.report && members != nullptr) {
     const int report = outputs_.report->descriptor();
-    const bool written = write_now(report, "{\"finished\": false, \"ended\": \"failed\", \"failure\": \"") &&
-                         write_quoted(report, failure) && write_now(report, "\", ") && write_now(report, *members) &&
+    const bool written = write_now(report, "{\"finished\":false,\"ended\":\"failed\",\"failure\":\"") &&
+                         write_quoted(report, failure) && write_now(report, "\",") && write_now(report, *members) &&
                          write_now(report, "}\n");
     if (!written || !put_in_place(*outputs_.report))
       (void)write_now(STDERR_FILENO, "error: the report could not be saved\n");

@@ -3,8 +3,8 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "app/json.hpp"
 #include "core/sim/world.hpp"
+#include "hal/json/json.hpp"
 
 namespace tandem::app {
 
@@ -25,9 +25,9 @@ struct RunFigures {
   }
 };
 
-/// The keys that every report has, into an object that is open. Only `between_ticks` the state has a
+/// The keys that every report has, into an object. Only `between_ticks` the state has a
 /// hash.
-void add_run_fields(Json& json, const core::World& world, const RunFigures& figures, std::size_t robots,
+void add_run_fields(hal::Json& json, const core::World& world, const RunFigures& figures, std::size_t robots,
                     bool between_ticks = true);
 
 }  // namespace tandem::app

@@ -7,6 +7,7 @@
 #include "app/report.hpp"
 #include "app/sha256.hpp"
 #include "core/config/xml.hpp"
+#include "hal/json/json.hpp"
 
 namespace tandem::app {
 namespace {
@@ -34,57 +35,53 @@ std::string end_text(const RunEnd& end, hal::Tick tick) {
   return fmt::format("{} {}, not finished", word_of(end.how), at);
 }
 
-void add_real_robots(Json& json, const mixed_reality::MixedReport& report) {
-  json.key("real_robots").begin_array();
+void add_real_robots(hal::Json& json, const mixed_reality::MixedReport& report) {
+  hal::Json& robots = json["real_robots"] = hal::Json::array();
   for (const mixed_reality::RealRobotReport& r : report.robots) {
-    json.begin_object();
-    json.field("id", r.id)
-        .field("link", r.link)
-        .field("x_m", r.pose.x_m)
-        .field("y_m", r.pose.y_m)
-        .field("heading_rad", r.pose.heading_rad());
-    json.field("state", r.state).field("driving", r.driving).field("stop_confirmed", r.stop_confirmed);
-    json.field("ticks_driving", r.counts.ticks_driving)
-        .field("ticks_held", r.counts.ticks_held)
-        .field("stops", r.counts.stops);
-    json.field("rearms", r.counts.rearms).field("fenced_ticks", r.counts.fenced_ticks);
-    add_link_report(json, r.conversation);
-    json.key("incidents").begin_array();
-    for (const std::string& what : r.incidents) json.value(what);
-    json.end_array().end_object();
+    hal::Json robot;
+    robot["id"] = r.id;
+    robot["link"] = r.link;
+    robot["x_m"] = r.pose.x_m;
+    robot["y_m"] = r.pose.y_m;
+    robot["heading_rad"] = r.pose.heading_rad();
+    robot["state"] = r.state;
+    robot["driving"] = r.driving;
+    robot["stop_confirmed"] = r.stop_confirmed;
+    robot["ticks_driving"] = r.counts.ticks_driving;
+    robot["ticks_held"] = r.counts.ticks_held;
+    robot["stops"] = r.counts.stops;
+    robot["rearms"] = r.counts.rearms;
+    robot["fenced_ticks"] = r.counts.fenced_ticks;
+    add_link_report(robot, r.conversation);
+    robot["incidents"] = r.incidents;
+    robots.push_back(std::move(robot));
   }
-  json.end_array();
-  json.key("pace").begin_object();
-  json.field("ticks", report.pace.ticks)
-      .field("deadline_misses", report.pace.deadline_misses)
-      .field("skipped_slots", report.pace.skipped_slots);
-  json.field("largest_lateness_ms", static_cast<double>(report.pace.largest_lateness_ns) * 1e-6);
-  json.field("wake_up_p99_ms", static_cast<double>(report.pace.wake_up.quantile_ns(0.99)) * 1e-6);
-  json.field("step_p99_ms", static_cast<double>(report.pace.step.quantile_ns(0.99)) * 1e-6);
-  json.end_object();
+  hal::Json& pace = json["pace"];
+  pace["ticks"] = report.pace.ticks;
+  pace["deadline_misses"] = report.pace.deadline_misses;
+  pace["skipped_slots"] = report.pace.skipped_slots;
+  pace["largest_lateness_ms"] = static_cast<double>(report.pace.largest_lateness_ns) * 1e-6;
+  pace["wake_up_p99_ms"] = static_cast<double>(report.pace.wake_up.quantile_ns(0.99)) * 1e-6;
+  pace["step_p99_ms"] = static_cast<double>(report.pace.step.quantile_ns(0.99)) * 1e-6;
 }
 
-void add_members(Json& json, const RunResult& result, bool between_ticks) {
+void add_members(hal::Json& json, const RunResult& result, bool between_ticks) {
   const core::World& world = result.world;
   add_run_fields(json, world, result.figures, result.robots, between_ticks);
-  json.key("controllers").begin_array();
+  hal::Json& controllers = json["controllers"] = hal::Json::array();
   for (const ControllerFile& file : result.controllers) {
-    json.begin_object().field("id", file.id).field("label", file.label).field("file", file.file);
-    if (!file.sha256.empty()) json.field("sha256", file.sha256);
-    json.end_object();
+    hal::Json controller{{"id", file.id}, {"label", file.label}, {"file", file.file}};
+    if (!file.sha256.empty()) controller["sha256"] = file.sha256;
+    controllers.push_back(std::move(controller));
   }
-  json.end_array();
   const core::Incidents& incidents = world.incidents();
-  json.key("incidents").begin_object();
-  json.field("commands_clamped", incidents.commands_clamped)
-      .field("commands_not_finite", incidents.commands_not_finite)
-      .field("controllers_thrown", incidents.controllers_thrown)
-      .field("bodies_escaped", incidents.bodies_escaped);
-  json.key("first").begin_array();
-  for (const std::string& what : incidents.first) json.value(what);
-  json.end_array().end_object();
+  json["incidents"] = {{"commands_clamped", incidents.commands_clamped},
+                       {"commands_not_finite", incidents.commands_not_finite},
+                       {"controllers_thrown", incidents.controllers_thrown},
+                       {"bodies_escaped", incidents.bodies_escaped},
+                       {"first", incidents.first}};
   if (result.real != nullptr) add_real_robots(json, *result.real);
-  json.field("settings", core::to_xml(world.scenario().effective));
+  json["settings"] = core::to_xml(world.scenario().effective);
 }
 
 }  // namespace
@@ -113,20 +110,19 @@ std::vector<ControllerFile> controller_files(const core::Scenario& scenario, con
 }
 
 std::string report_of(const RunResult& result) {
-  Json json;
-  json.begin_object();
-  json.field("finished", result.end.finished()).field("ended", word_of(result.end.how));
-  if (!result.end.failure.empty()) json.field("failure", result.end.failure);
+  hal::Json json;
+  json["finished"] = result.end.finished();
+  json["ended"] = word_of(result.end.how);
+  if (!result.end.failure.empty()) json["failure"] = result.end.failure;
   add_members(json, result, true);
-  json.end_object();
-  return json.text();
+  return hal::to_text(json);
 }
 
 std::string report_members(const RunResult& result) {
-  Json json;
-  json.begin_object();
+  hal::Json json;
   add_members(json, result, false);
-  return json.text().substr(1);  // without the brace
+  const std::string text = hal::to_text(json);
+  return text.substr(1, text.size() - 2);  // without the braces
 }
 
 void print_result(const RunResult& result) {

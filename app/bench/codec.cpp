@@ -4,11 +4,11 @@
 #include <array>
 #include <fmt/format.h>
 
-#include "app/json.hpp"
 #include "app/measure.hpp"
 #include "bridges/aseba/fragments.hpp"
 #include "bridges/aseba/message.hpp"
 #include "bridges/aseba/stream_messages.hpp"
+#include "hal/json/json.hpp"
 
 namespace tandem::app {
 namespace {
@@ -24,14 +24,14 @@ void measure(const char* what, F&& once) {
   const double start = cpu_seconds();
   for (long long i = 0; i < kMessages; ++i) sum = sum * 31 + once(static_cast<std::uint16_t>(i));
   const double took_s = cpu_seconds() - start;
-  Json json;
-  json.begin_object()
-      .field("bench", "codec")
-      .field("what", what)
-      .field("messages", static_cast<std::int64_t>(kMessages));
-  json.field("cpu_s", took_s).field("messages_per_s", static_cast<double>(kMessages) / took_s);
-  json.field("check", fmt::format("{:#018x}", sum)).end_object();
-  fmt::print("{}\n", json.text());
+  hal::Json json;
+  json["bench"] = "codec";
+  json["what"] = what;
+  json["messages"] = static_cast<std::int64_t>(kMessages);
+  json["cpu_s"] = took_s;
+  json["messages_per_s"] = static_cast<double>(kMessages) / took_s;
+  json["check"] = fmt::format("{:#018x}", sum);
+  fmt::print("{}\n", hal::to_text(json));
 }
 
 /// Reads every word.

@@ -48,21 +48,22 @@ RunFigures time_loop(core::World& world, const BenchCase& c, const std::atomic<b
   return figures;
 }
 
-void add_case_fields(Json& json, const BenchCase& c) {
-  json.field("bench", c.bench)
-      .field("robot", c.robot)
-      .field("engine", c.engine)
-      .field("partition", c.partition)
-      .field("regions", c.regions)
-      .field("devices", c.devices)
-      .field("density", c.density)
-      .field("assignment", assignment_word(c.assignment))
-      .field("ticks", c.ticks)
-      .field("repeat", c.repeat);
+void add_case_fields(hal::Json& json, const BenchCase& c) {
+  json["bench"] = c.bench;
+  json["robot"] = c.robot;
+  json["engine"] = c.engine;
+  json["partition"] = c.partition;
+  json["regions"] = c.regions;
+  json["devices"] = c.devices;
+  json["density"] = c.density;
+  json["assignment"] = assignment_word(c.assignment);
+  json["ticks"] = c.ticks;
+  json["repeat"] = c.repeat;
 }
 
-void add_machine_fields(Json& json) {
-  json.field("cpu_model", cpu_model()).field("cores", static_cast<std::int64_t>(std::thread::hardware_concurrency()));
+void add_machine_fields(hal::Json& json) {
+  json["cpu_model"] = cpu_model();
+  json["cores"] = static_cast<std::int64_t>(std::thread::hardware_concurrency());
 }
 
 Measurement measure(const BenchCase& c, const std::atomic<bool>& stop) {
@@ -83,22 +84,21 @@ Measurement measure(const BenchCase& c, const std::atomic<bool>& stop) {
   const bool failed = world->state() == core::RunState::Failed;
   if (!failed && figures.steps < c.ticks) return {kDone, {}};  // a part of a benchmark is none
 
-  Json json;
-  json.begin_object();
+  hal::Json json;
   add_case_fields(json, c);
   const auto robots = static_cast<std::size_t>(c.robots);
   add_run_fields(json, *world, figures, robots);
   const double robot_steps = static_cast<double>(c.robots) * static_cast<double>(figures.steps);
-  json.field("cpu_ns_per_robot_step", figures.ns_per_robot_step(robots));
-  json.field("wall_ns_per_robot_step", figures.wall_s * 1e9 / robot_steps);
-  json.field("speedup", figures.wall_s > 0.0 ? figures.cpu_s / figures.wall_s : 0.0);
-  json.field("bytes_per_robot", (peak_rss_mb() - rss_before) * 1e6 / static_cast<double>(c.robots));
+  json["cpu_ns_per_robot_step"] = figures.ns_per_robot_step(robots);
+  json["wall_ns_per_robot_step"] = figures.wall_s * 1e9 / robot_steps;
+  json["speedup"] = figures.wall_s > 0.0 ? figures.cpu_s / figures.wall_s : 0.0;
+  json["bytes_per_robot"] = (peak_rss_mb() - rss_before) * 1e6 / static_cast<double>(c.robots);
   add_machine_fields(json);
-  if (failed) json.field("failure", world->failure());
+  if (failed) json["failure"] = world->failure();
   const double closing = wall_seconds();
   world.reset();
-  json.field("close_s", wall_seconds() - closing).end_object();
-  return {failed ? kFailedRunning : kDone, json.text()};
+  json["close_s"] = wall_seconds() - closing;
+  return {failed ? kFailedRunning : kDone, hal::to_text(json)};
 }
 
 void write_all(int fd, const std::string& text) {

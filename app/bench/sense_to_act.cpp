@@ -12,11 +12,11 @@
 #include <thread>
 #include <vector>
 
-#include "app/json.hpp"
 #include "bridges/eyebot/driver.hpp"
 #include "bridges/eyebot_emulator/emulator.hpp"
 #include "bridges/lcm/lcm_link.hpp"
 #include "hal/device/flight.hpp"
+#include "hal/json/json.hpp"
 
 namespace tandem::app {
 namespace {
@@ -184,21 +184,19 @@ double at_share_us(const std::vector<hal::TimeNs>& sorted, double share) {
 void print(const SenseToActCase& c, Witness& witness) {
   auto& times = witness.times_ns();
   std::sort(times.begin(), times.end());
-  Json json;
-  json.begin_object()
-      .field("bench", "sense_to_act")
-      .field("robots", c.robots)
-      .field("rate_hz", static_cast<std::int64_t>(emulator::Eyebot::kStateRate_Hz))
-      .field("seconds", c.seconds)
-      .field("scheduling", scheduling_class());
-  json.field("reports_answered", static_cast<std::int64_t>(times.size()))
-      .field("commands", witness.commands())
-      .field("commands_refused", witness.refused());
-  json.field("p50_us", at_share_us(times, 0.5))
-      .field("p99_us", at_share_us(times, 0.99))
-      .field("max_us", at_share_us(times, 1.0))
-      .end_object();
-  fmt::print("{}\n", json.text());
+  hal::Json json;
+  json["bench"] = "sense_to_act";
+  json["robots"] = c.robots;
+  json["rate_hz"] = static_cast<std::int64_t>(emulator::Eyebot::kStateRate_Hz);
+  json["seconds"] = c.seconds;
+  json["scheduling"] = scheduling_class();
+  json["reports_answered"] = static_cast<std::int64_t>(times.size());
+  json["commands"] = witness.commands();
+  json["commands_refused"] = witness.refused();
+  json["p50_us"] = at_share_us(times, 0.5);
+  json["p99_us"] = at_share_us(times, 0.99);
+  json["max_us"] = at_share_us(times, 1.0);
+  fmt::print("{}\n", hal::to_text(json));
   std::fflush(stdout);
 }
 

@@ -76,12 +76,14 @@ void stop_and_wait(bridges::RobotBridge& bridge, mixed_reality::TimeSource& cloc
 }
 
 /// Begins the report; what the end adds comes later.
-void begin_report(Json& json, const core::Scenario& scenario, const core::RobotItem& item,
+void begin_report(hal::Json& json, const core::Scenario& scenario, const core::RobotItem& item,
                   const bridges::RobotBridge& bridge, const mixed_reality::PaceLedger& pace) {
-  json.begin_object();
-  json.field("experiment", scenario.name).field("robot", item.id).field("link", bridge.link());
-  json.field("steps", pace.ticks).field("deadline_misses", pace.deadline_misses);
-  json.field("wake_up_p99_ms", static_cast<double>(pace.wake_up.quantile_ns(0.99)) * 1e-6);
+  json["experiment"] = scenario.name;
+  json["robot"] = item.id;
+  json["link"] = bridge.link();
+  json["steps"] = pace.ticks;
+  json["deadline_misses"] = pace.deadline_misses;
+  json["wake_up_p99_ms"] = static_cast<double>(pace.wake_up.quantile_ns(0.99)) * 1e-6;
   add_link_report(json, bridge.report());
   JsonStatus status(json);
   bridge.describe(status);
@@ -173,7 +175,7 @@ int robot(const RobotOptions& options) {
     failure = "robot '" + item.id + "' was lost at the end: " + bridge.trouble();
   }
   stop_and_wait(bridge, clock);
-  Json json;
+  hal::Json json;
   begin_report(json, *scenario, item, bridge, pacer.ledger());
   const auto table = result_table(item, bridge, pacer.ledger());
   bridge.shut_down();
@@ -186,13 +188,14 @@ int robot(const RobotOptions& options) {
     failure += (failure.empty() ? "" : "\n") + unconfirmed;
   }
   if (!options.report.empty()) {
-    json.field("stop_confirmed", confirmed);
+    json["stop_confirmed"] = confirmed;
     const std::string library = loader.find(config.library).value().string();
-    if (const auto digest = sha256_of_file(library); digest.ok())
-      json.field("controller", library).field("sha256", digest.value());
-    if (!failure.empty()) json.field("failure", failure);
-    json.end_object();
-    const hal::Status written = write_report(options.report, json.text());
+    if (const auto digest = sha256_of_file(library); digest.ok()) {
+      json["controller"] = library;
+      json["sha256"] = digest.value();
+    }
+    if (!failure.empty()) json["failure"] = failure;
+    const hal::Status written = write_report(options.report, hal::to_text(json));
     if (!written.ok()) return complain(kFailedRunning, written.error().message);
   }
   return failure.empty() ? kDone : complain(kFailedRunning, failure);

@@ -186,7 +186,8 @@ int run(const RunOptions& options) {
   if (const hal::Status paths = check_output_paths(options, *scenario); !paths.ok())
     return complain(kBadInput, paths.error().message);
 
-  GuardedRobots guarded(scenario->robots, hal::Log([](hal::Severity, std::string_view text) { say(text); }));  // before any thread
+  GuardedRobots guarded(scenario->robots,
+                        hal::Log([](hal::Severity, std::string_view text) { say(text); }));  // before any thread
   const std::atomic<bool>& stop = catch_signals();
   std::signal(SIGPIPE, SIG_IGN);  // who reads our output may end before us
   Watchdog watchdog(options.step_timeout_s, stop);

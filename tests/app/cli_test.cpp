@@ -4,7 +4,6 @@
 #include <map>
 #include <sstream>
 
-#include "app/json.hpp"
 #include "app/sha256.hpp"
 #include "app/terminal.hpp"
 #include "tests/checkout.hpp"
@@ -238,7 +237,7 @@ TEST(ListAndDescribe, CoverWhatThereIs) {
     EXPECT_NE(list.output().find(name), std::string::npos) << name;
   }
   for (const char* name : {"epuck_diffusion", "obstacle_avoidance", "proximity", "range_and_bearing", "arena",
-                           "distribute", "e-puck", "differential_steering"}) {
+                           "distribute", "e-puck", "foot-bot", "eye-bot", "differential_steering"}) {
     Tandem describe({"describe", name}, folder.path());
     EXPECT_EQ(describe.wait(), 0) << name << describe.errors();
     EXPECT_GT(describe.output().size(), 60U) << name;
@@ -297,13 +296,6 @@ TEST(Sha256, GivesThePublishedDigests) {
   EXPECT_EQ(app::sha256(""), "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
   EXPECT_EQ(app::sha256(std::string(1'000'000, 'a')),
             "cdc76e5c9914fb9281a1c7e284d73e67f1809a48a497200e046d39ccc7112cd0");
-}
-
-TEST(Json, QuotesAndNests) {
-  app::Json json;
-  json.begin_object().field("a", std::string("x\"y\\z\n")).field("n", 1.5).field("nan", std::nan(""));
-  json.key("list").begin_array().value(true).begin_object().end_object().end_array().end_object();
-  EXPECT_EQ(json.text(), "{\"a\": \"x\\\"y\\\\z\\u000a\", \"n\": 1.5, \"nan\": null, \"list\": [true, {}]}");
 }
 
 }  // namespace

@@ -23,8 +23,8 @@ constexpr int kRobots = 12;
 struct Experiment {
   std::string library = "test_trouble";
   std::string label = "troublemaker";
-  std::string params;
-  std::string hook;
+  std::string params = {};
+  std::string hook = {};
   int length_s = 2;
 };
 
@@ -129,6 +129,15 @@ TEST_F(Endings, AControllerThatThrewIsNoSuccess) {
   EXPECT_THAT(run->errors(),
               AllOf(HasSubstr("robot 'ep4' threw at tick 3"), HasSubstr("\\x1b[2J"), HasSubstr(" gone")));
   EXPECT_THAT(run->errors() + run->output(), Not(HasSubstr("\033")));
+}
+
+TEST_F(Endings, ASpeedThatIsHardlyMeantAsksForItsUnitOnce) {
+  auto run = start({.library = "test_controllers", .label = "drive", .params = R"(left="20" right="20")"});
+  EXPECT_EQ(run->wait(), 0);
+  const std::string said = run->errors();
+  EXPECT_THAT(said, AllOf(HasSubstr("commanded 20 m/s at tick 0"), HasSubstr("did you mean cm/s?")));
+  EXPECT_EQ(said.find("did you mean"), said.rfind("did you mean")) << said;
+  EXPECT_THAT(report(), HasSubstr("did you mean cm/s?"));
 }
 
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // they have handlers of their own
