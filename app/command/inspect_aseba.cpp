@@ -30,6 +30,8 @@ std::vector<std::uint8_t> heard(const aseba::Network& network) {
   return ids;
 }
 
+constexpr std::uint64_t kEnough = 12;  // descriptions that cannot be true: another one will not be, either
+
 bool is_described(const aseba::Node& node) {
   return node.ready() || (node.state == aseba::NodeState::Lost && !node.description.name.empty());
 }
@@ -40,6 +42,11 @@ void ask_all(aseba::Network& network) {
     const aseba::Node& node = network.node(id);
     if (node.ready() && node.statistics.reads == 0) (void)network.want(id, 0, node.image.size());
   }
+}
+
+/// It has described itself, or will not.
+bool is_told(const aseba::Node& node) {
+  return is_described(node) || (node.state == aseba::NodeState::Refused && node.statistics.impossible >= kEnough);
 }
 
 void print_node(const aseba::Node& node) {
@@ -95,7 +102,7 @@ int inspect_aseba(const InspectOptions& options) {
     if (ids.size() != modules) newest_ns = now;
     modules = ids.size();
     const bool complete = !network.reading() && now - newest_ns >= kQuiet_ns &&
-                          std::ranges::all_of(ids, [&](std::uint8_t id) { return is_described(network.node(id)); });
+                          std::ranges::all_of(ids, [&](std::uint8_t id) { return is_told(network.node(id)); });
     if (now >= least && (complete || now - begin >= kLongest_ns)) break;
     link.wait(std::clamp<hal::TimeNs>(network.next_deadline() - now, 0, 20 * hal::kNsPerMs));
   }

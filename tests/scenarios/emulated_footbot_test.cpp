@@ -202,6 +202,21 @@ TEST(EmulatedFootbot, IsInspectedAndNothingMoves) {
   EXPECT_TRUE(footbot.wheels().empty());
 }
 
+TEST(EmulatedFootbot, IsInspectedUntilEveryModuleHasDescribedItself) {
+  Folder folder;
+  EmulatedFootbot footbot(folder, {"--fault", "drop=0.02", "--fault", "lie=gripper:count"});
+  ASSERT_TRUE(footbot.ready());
+  Tandem inspect({"inspect", footbot.link()}, folder.path());
+  EXPECT_EQ(inspect.wait(60), 0) << inspect.errors();
+  const std::string text = inspect.output();
+  std::size_t at = 0;
+  for (int id = 1; id <= 9; ++id) {  // by number
+    const std::string line = id == 6 ? "node 6 did not describe itself" : "node " + std::to_string(id) + " '";
+    at = text.find(line, at);
+    ASSERT_NE(at, std::string::npos) << line << "\n" << text;
+  }
+}
+
 TEST(EmulatedFootbot, MayLiveInASimulatedArena) {
   Folder folder;
   folder.write(

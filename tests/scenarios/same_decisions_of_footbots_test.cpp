@@ -28,7 +28,8 @@ constexpr hal::TimeNs kHandshake_ns = 5 * hal::kNsPerSecond;
 
 bridge::FootbotMap default_map() {
   core::Problems problems;
-  const auto map = mixed_reality::read_footbot_map((std::string(test::kSourceDir) + "/configs/footbot_map.xml"), problems);
+  const auto map =
+      mixed_reality::read_footbot_map((std::string(test::kSourceDir) + "/configs/footbot_map.xml"), problems);
   for (const core::Problem& p : problems) ADD_FAILURE() << core::to_text(p);
   return map.value_or(bridge::FootbotMap{});
 }
