@@ -52,6 +52,7 @@ void add_real_robots(hal::Json& json, const mixed_reality::MixedReport& report) 
     robot["stops"] = r.counts.stops;
     robot["rearms"] = r.counts.rearms;
     robot["fenced_ticks"] = r.counts.fenced_ticks;
+    robot["intrusions"] = r.counts.intrusions;
     add_link_report(robot, r.conversation);
     robot["incidents"] = r.incidents;
     robots.push_back(std::move(robot));

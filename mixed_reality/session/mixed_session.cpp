@@ -169,6 +169,10 @@ Moment MixedSession::moment() const noexcept {
 
 void MixedSession::latch(core::World&) {
   now_ = moment();
+  if (const std::uint64_t freezes = options_.freezes ? options_.freezes() : 0; freezes != freezes_) {
+    freezes_ = freezes;
+    for (const auto& twin : twins_) twin->hub_was_frozen();
+  }
   for (const auto& twin : twins_) twin->latch(now_, phase_);
 }
 

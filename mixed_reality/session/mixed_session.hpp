@@ -28,6 +28,8 @@ struct MixedOptions {
   RearmParams rearm;
   hal::TimeNs connect_timeout_ns = 15 * hal::kNsPerSecond;  ///< for all robots to answer before the start
   hal::TimeNs stop_timeout_ns = 2 * hal::kNsPerSecond;      ///< for all robots to confirm their stop at the end
+  /// How often guardians have stopped the robots because this program did not run; empty: nobody counts that.
+  std::function<std::uint64_t()> freezes = {};
   int realtime_priority = 0;  ///< SCHED_FIFO for the stepping thread; 0: none is asked for
   /// Called before the first and every later command of the run leaves: whoever stops robots when this process dies is
   /// to know how.
@@ -98,8 +100,9 @@ class MixedSession final : private core::ExternalRobots {
   std::vector<std::uint8_t> confirmed_;
   bool started_ = false;
   RunPhase phase_ = RunPhase::Waiting;
-  Moment now_;           // of the running tick
-  bool stopped_ = true;  // nothing was commanded since the robots were stopped
+  Moment now_;                 // of the running tick
+  std::uint64_t freezes_ = 0;  // that the twins were told of
+  bool stopped_ = true;        // nothing was commanded since the robots were stopped
 };
 
 }  // namespace tandem::mixed_reality

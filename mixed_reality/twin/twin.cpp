@@ -83,8 +83,9 @@ void Twin::latch(const Moment& now, RunPhase phase) {
   conditions.hook_holds =
       space_.halted_by(robot_, core::HaltOwner::Hook) || space_.halted_by(robot_, core::HaltOwner::Removed);
   conditions.controller_failed = space_.halted_by(robot_, core::HaltOwner::Controller);
-  conditions.hub_was_frozen =
-      running_ && last_latch_ns_ != 0 && now.monotonic_ns - last_latch_ns_ > params_.frozen_after_ns;
+  conditions.hub_was_frozen = hub_was_frozen_ || (running_ && last_latch_ns_ != 0 &&
+                                                  now.monotonic_ns - last_latch_ns_ > params_.frozen_after_ns);
+  hub_was_frozen_ = false;
   mechanisms_.follow(last_latch_ns_ == 0 ? 0.0 : hal::to_seconds(now.monotonic_ns - last_latch_ns_));
   conditions.link = real_->health();
   conditions.readings_missing = fusion_.missing() != nullptr;

@@ -50,6 +50,10 @@ class Twin {
   Twin(core::Space& space, core::RobotId robot, std::unique_ptr<bridges::RobotBridge> real,
        std::unique_ptr<PoseSource> poses, const TwinParams& params, const hal::Log& log);
 
+  /// The robots were stopped by others because this program did not run; to be told before the next `latch`.
+  void hub_was_frozen() noexcept { hub_was_frozen_ = true; }
+  /// A person re-arms the robot.
+  void rearm() noexcept { supervisor_.rearm(); }
   /// Takes over the newest readings and pose, and decides whether the robot may move; its controller is held if not.
   void latch(const Moment& now, RunPhase phase);
   /// The space's ports, which hold the twin's virtual readings, get the fused ones.
@@ -120,6 +124,7 @@ class Twin {
   hal::QuadrotorSpeed speed_;
   hal::QuadrotorPosition target_;
   bool running_ = false;
+  bool hub_was_frozen_ = false;
   bool held_ = false;  // by the safety table
   hal::TimeNs last_latch_ns_ = 0;
   hal::TimeNs pose_taken_ns_ = 0;  // on the run's clock

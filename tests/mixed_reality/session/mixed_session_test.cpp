@@ -334,6 +334,25 @@ TEST_F(MixedRun, AStallOfTheHubIsCountedAndDoesNotMoveTheTwinFromTheRobot) {
   EXPECT_NEAR(report.robots[0].pose.x_m, bodies_["ep0"].pose.x_m, 0.0051);  // the last tick's, at the end of that tick
 }
 
+TEST_F(MixedRun, AfterGuardiansHaveStoppedTheRobotsTheyWaitForTheirRearm) {
+  core::Scene scene = drive(0.05, 0.05);
+  scene.robot("ep0", -1.0, 0.0);
+  std::uint64_t freezes = 0;
+  options_.freezes = [&freezes] { return freezes; };
+  open(real(scene, "ep0"));
+  run(60, [&](core::World& world) {
+    if (world.tick() == 30) freezes = 1;  // shorter than a tick's delay that it would notice itself
+    if (world.tick() >= 31 && world.tick() < 50) {
+      EXPECT_TRUE(bodies_["ep0"].stands()) << world.tick();
+    }
+  });
+  const MixedReport report = session_->report();
+  EXPECT_EQ(report.robots[0].state, "driving");
+  EXPECT_EQ(report.robots[0].counts.stops, 1U);
+  ASSERT_GE(report.robots[0].incidents.size(), 3U);
+  EXPECT_NE(report.robots[0].incidents[2].find("hub was frozen"), std::string::npos) << report.robots[0].incidents[2];
+}
+
 TEST_F(MixedRun, RefusesARobotThatCannotBeMadeOrFollowed) {
   core::Scene scene = drive(0.0, 0.0);
   scene.robot("ep0", 0.0, 0.0);
