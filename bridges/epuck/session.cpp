@@ -74,6 +74,7 @@ void Session::link_up(TimeNs now) noexcept {
   if (phase_ != Phase::Down) return;
   if (state_ == SessionState::Absent) state_ = SessionState::Handshake;
   identity_known_ = layout_known_ = false;  // another robot may be at this port now
+  at_rest_ = false;
   attempts_ = 0;
   begin_handshake(now);
 }
@@ -111,7 +112,6 @@ void Session::begin_handshake(TimeNs now) noexcept {
 }
 
 void Session::begin_stop(TimeNs now) noexcept {
-  at_rest_ = false;
   lamps_known_ = false;  // S puts the ring out as well
   speeds_due_ = false;
   failed_rounds_ = 0;
@@ -374,6 +374,7 @@ bool Session::speeds_as_told(const std::array<std::int16_t, 2>& commanded, TimeN
     return true;
   }
   ++statistics_.wrong_speeds;
+  at_rest_ = false;
   // Its old speeds: the command was lost as a whole.
   if (!told_again_ && commanded[0] == speeds_before_[0].value && commanded[1] == speeds_before_[1].value) {
     told_again_ = true;

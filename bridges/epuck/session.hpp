@@ -45,7 +45,7 @@ struct SessionTiming {
       100 * hal::kNsPerMs;  ///< to wait for an answer, beyond the time its bytes take; Bluetooth: 500 ms
   hal::TimeNs gap_ns = 60 * hal::kNsPerMs;     ///< silence that ends an answer of unknown length
   hal::TimeNs quiet_ns = 20 * hal::kNsPerMs;   ///< silence after which what was under way has come; Bluetooth: more
-  hal::TimeNs retry_ns = hal::kNsPerSecond;    ///< before a robot is tried again that answers oddly for ever
+  hal::TimeNs retry_ns = 200 * hal::kNsPerMs;  ///< before a robot is tried again that answers oddly for ever
   hal::TimeNs refresh_ns = hal::kNsPerSecond;  ///< LEDs are sent on change, and this often against lost bytes
   int tries = 3;
 };

@@ -13,7 +13,8 @@ constexpr TimeNs kNever = std::numeric_limits<TimeNs>::max();
 // The longest payload has 35 bytes, a 0 ends the packet, and eight may be lost.
 constexpr std::size_t kLeadIn = 35 + 1 + 8;
 constexpr std::size_t kWords = 10;
-constexpr TimeNs kLongestQuiet = 320 * hal::kNsPerMs;
+constexpr TimeNs kLongestQuiet = 160 * hal::kNsPerMs;
+constexpr TimeNs kLongestSettling = 300 * hal::kNsPerMs;
 constexpr std::size_t kBehindSpeeds = 12;  // four are the speeds, eight may be lost
 
 constexpr std::array<std::uint8_t, kLeadIn + 2 * kWords> kStopWords = [] {
@@ -66,7 +67,8 @@ void StopProcedure::begin(TimeNs now, TimeNs round_trip_ns) noexcept {
 
 void StopProcedure::fail_round(TimeNs now) noexcept {
   ++failed_rounds_;
-  if (step_ == Step::Apart || answer_size_ > 0) quiet_ns_ = std::max(quiet_ns_, std::min(2 * quiet_ns_, kLongestQuiet));
+  if (step_ == Step::Apart || answer_size_ == answer_.size())
+    quiet_ns_ = std::max(quiet_ns_, std::min(2 * quiet_ns_, kLongestQuiet));
   answer_size_ = 0;
   first_known_ = false;
   step_ = Step::Burst;
@@ -109,6 +111,7 @@ void StopProcedure::take_answer(TimeNs at) noexcept {
     fail_round(at);
   } else if (first_known_) {
     step_ = Step::Confirmed;
+    quiet_ns_ = std::max(timing_.quiet_ns, quiet_ns_ / 2);  // it may have been noise, not a slow line
   } else {
     first_known_ = true;
     step_ = Step::Apart;
@@ -126,7 +129,7 @@ void StopProcedure::poll(TimeNs now, Packet& out) noexcept {
       if (++burst_ < kStopBursts) break;
       step_ = Step::Settle;
       due_ns_ = now + std::max(kStopBurstGap, quiet_ns_);
-      settled_by_ns_ = now + 10 * quiet_ns_;
+      settled_by_ns_ = now + std::max(quiet_ns_, std::min(4 * quiet_ns_, kLongestSettling));
       break;
     case Step::Settle:
     case Step::Apart:

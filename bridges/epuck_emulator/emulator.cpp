@@ -183,7 +183,10 @@ void Server::run_robot(TimeNs now) {
   while (!to_robot_.empty() && to_robot_.front().at <= now) {
     const SentByte next = to_robot_.front();
     to_robot_.pop_front();
-    if (const auto byte = faults_.to_robot(next.byte, next.at)) firmware_.receive(*byte, next.at);
+    const auto byte = faults_.to_robot(next.byte, next.at);
+    if (!byte) continue;
+    firmware_.receive(*byte, next.at);
+    if (faults_.doubles(next.at)) firmware_.receive(*byte, next.at);
   }
   firmware_.run_until(now);
   sent_.clear();
@@ -192,7 +195,9 @@ void Server::run_robot(TimeNs now) {
     const auto byte = faults_.to_host(s.byte, s.at);
     if (!byte || !port_) continue;
     const TimeNs at = s.at + faults_.delay_ns(s.at);
-    to_host_.push_back({*byte, to_host_.empty() ? at : std::max(at, to_host_.back().at)});
+    const SentByte sent{*byte, to_host_.empty() ? at : std::max(at, to_host_.back().at)};
+    to_host_.push_back(sent);
+    if (faults_.doubles(s.at)) to_host_.push_back(sent);
   }
 }
 

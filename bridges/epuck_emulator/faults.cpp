@@ -17,13 +17,15 @@ struct Entry {
   std::string_view doc;
 };
 
-constexpr std::array<Entry, 9> kEntries = {{
+constexpr std::array<Entry, 10> kEntries = {{
     {FaultKind::Silent, "silent", Value::None, false, 0.0, "silent@5s+2s",
      "its answers do not arrive; it hears and obeys"},
     {FaultKind::Deaf, "deaf", Value::None, false, 0.0, "deaf@5s+2s", "nothing that is sent arrives at it"},
     {FaultKind::Garbage, "garbage", Value::None, false, 0.0, "garbage@4s+1s",
      "random bytes arrive instead of its answers"},
     {FaultKind::Drop, "drop", Value::Probability, false, 0.0, "drop=0.01", "loses each byte with this probability"},
+    {FaultKind::Double, "double", Value::Probability, false, 0.0, "double=0.01",
+     "brings each byte twice with this probability"},
     {FaultKind::Corrupt, "corrupt", Value::Probability, false, 0.0, "corrupt=0.001",
      "flips a bit of each byte with this probability"},
     {FaultKind::Delay, "delay", Value::Time, false, 0.0, "delay=20ms", "its bytes arrive later, as over Bluetooth"},
@@ -118,6 +120,14 @@ std::optional<std::uint8_t> FaultPlan::through_the_air(std::uint8_t byte, hal::T
     }
   }
   return byte;
+}
+
+bool FaultPlan::doubles(hal::TimeNs at) {
+  bool twice = false;
+  for (const Fault& f : faults_) {
+    if (f.kind == FaultKind::Double && f.from <= at && at < f.until) twice = chance_.hits(f.probability) || twice;
+  }
+  return twice;
 }
 
 hal::TimeNs FaultPlan::delay_ns(hal::TimeNs at) const {

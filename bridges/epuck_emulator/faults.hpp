@@ -11,14 +11,14 @@
 
 namespace tandem::bridges::epuck_emulator {
 
-enum class FaultKind : std::uint8_t { Silent, Deaf, Garbage, Drop, Corrupt, Delay, Reset, Truncate, Hangup };
+enum class FaultKind : std::uint8_t { Silent, Deaf, Garbage, Drop, Double, Corrupt, Delay, Reset, Truncate, Hangup };
 
 /// Active in [from, until), counted from the start of the emulator. Reset and Truncate happen at `from`.
 struct Fault {
   FaultKind kind = FaultKind::Silent;
   hal::TimeNs from = 0;
   hal::TimeNs until = kEndless;
-  double probability = 0.0;  ///< Drop, Corrupt: of each byte, in both directions
+  double probability = 0.0;  ///< Drop, Double, Corrupt: of each byte, in both directions
   hal::TimeNs delay_ns = 0;  ///< Delay: added to every byte towards the host
   std::string text;          ///< as written
 };
@@ -42,6 +42,8 @@ class FaultPlan {
   /// What arrives of `byte`, if anything.
   std::optional<std::uint8_t> to_robot(std::uint8_t byte, hal::TimeNs at);
   std::optional<std::uint8_t> to_host(std::uint8_t byte, hal::TimeNs at);
+  /// Whether what arrived of a byte arrives twice.
+  bool doubles(hal::TimeNs at);
   /// The longest of the delays at work.
   hal::TimeNs delay_ns(hal::TimeNs at) const;
   /// Any other byte than `byte`.

@@ -37,8 +37,9 @@ class WatchedBody final : public epuck_emulator::EmulatedBody {
   double right_m_s = 0.0;
 };
 
-/// What the line does to bytes; both directions have their own.
+/// What the line does to bytes; both directions have their own. `fault` says what arrives of a byte, and how often.
 struct Wire {
+  std::function<std::vector<std::uint8_t>(std::uint8_t byte, hal::TimeNs at)> fault = {};
   double loss = 0.0;
   bool cut = false;
   hal::TimeNs delay_ns = 0;
@@ -88,6 +89,7 @@ class WireRig {
   hal::TimeNs now = hal::kNsPerSecond;
   hal::Tick ticks = 0;
   hal::TimeNs stalled_until = 0;  ///< neither the driver's thread nor the robot's program runs
+  hal::TimeNs heard_ns = 0;       ///< when a byte last reached the host
   Wire to_robot, to_host;
   WatchedBody body;
   std::function<void()> each_step;
@@ -102,12 +104,22 @@ class WireRig {
   }
   bool passes(const Wire& wire) { return !wire.cut && !(std::uniform_real_distribution<>()(chance_) < wire.loss); }
 
+  static void travel(const Wire& wire, std::deque<epuck_emulator::SentByte>& queue, epuck_emulator::SentByte byte) {
+    const hal::TimeNs earliest = queue.empty() ? 0 : queue.back().at;
+    const hal::TimeNs at = std::max(earliest, byte.at + wire.delay_ns);
+    if (!wire.fault) {
+      queue.push_back({byte.byte, at});
+      return;
+    }
+    for (const std::uint8_t arrives : wire.fault(byte.byte, byte.at)) queue.push_back({arrives, at});
+  }
+
   void step_wire() {
     std::array<std::uint8_t, 256> buffer{};
     for (Received r = far_->read(buffer); r.size > 0; r = far_->read(buffer)) {
       for (std::size_t i = 0; i < r.size; ++i) {
         line_free_ns_ = std::max(line_free_ns_, now) + epuck_emulator::kByteNs;
-        if (passes(to_robot)) to_robot_.push_back({buffer[i], line_free_ns_ + to_robot.delay_ns});
+        if (passes(to_robot)) travel(to_robot, to_robot_, {buffer[i], line_free_ns_});
       }
     }
     if (stalled_until > now) return;
@@ -119,10 +131,11 @@ class WireRig {
     sent_.clear();
     firmware.take_sent(now, sent_);
     for (const epuck_emulator::SentByte& b : sent_) {
-      if (passes(to_host)) to_host_.push_back({b.byte, b.at + to_host.delay_ns});
+      if (passes(to_host)) travel(to_host, to_host_, b);
     }
     while (!to_host_.empty() && to_host_.front().at <= now) {
       (void)far_->write(std::span(&to_host_.front().byte, 1), 0);
+      heard_ns = now;
       to_host_.pop_front();
     }
   }

@@ -90,5 +90,16 @@ TEST(Faults, GarbleEveryByte) {
   for (int i = 0; i < 10000; ++i) EXPECT_NE(plan.garble(static_cast<std::uint8_t>(i)), static_cast<std::uint8_t>(i));
 }
 
+TEST(Faults, DoubleSomeBytesAndOnlyWhileTheyAreAtWork) {
+  FaultPlan plan({parsed("double=0.5@1s+1s")}, 3);
+  plan.begin(0);
+  int twice = 0;
+  for (int i = 0; i < 1000; ++i) {
+    EXPECT_FALSE(plan.doubles(kSecond / 2));
+    if (plan.doubles(3 * kSecond / 2)) ++twice;
+  }
+  EXPECT_NEAR(twice, 500, 80);
+}
+
 }  // namespace
 }  // namespace tandem::bridges::epuck_emulator
