@@ -2,60 +2,57 @@
 
 #include <algorithm>
 
-#include "bridges/eyebot/stop_body.hpp"
-#include "bridges/footbot/stop_body.hpp"
-#include "bridges/link/link_text.hpp"
-#include "hal/spec/epuck.hpp"
-#include "hal/spec/eyebot.hpp"
-#include "hal/spec/footbot.hpp"
+#include "app/signals.hpp"
+#include "bridges/epuck/stopper.hpp"
+#include "bridges/eyebot/stopper.hpp"
+#include "bridges/footbot/stopper.hpp"
 
 namespace tandem::app {
 namespace {
 
-bool is_epuck(std::string_view kind) {
-  return kind == hal::epuck::kDataSheet.kind;
-}
-bool is_footbot(std::string_view kind) {
-  return kind == hal::footbot::kDataSheet.kind;
-}
-bool is_eyebot(std::string_view kind) {
-  return kind == hal::eyebot::kDataSheet.kind;
-}
+using bridges::guardian::GuardianClient;
 
-template <class Guardian>
-void start(std::optional<Guardian>& guardian, const hal::Log& log) {
-  auto started = Guardian::start();
-  if (started.ok()) {
-    guardian.emplace(std::move(started).value());
-  } else {
-    log.warning(started.error().message);
-  }
-}
-
-std::optional<bridges::eyebot::LastWords> eyebot_words(const bridges::StopMessages& messages) {
-  auto words = bridges::eyebot::from_stop_body(messages.body);
-  const auto address = bridges::parse_link(messages.link);
-  if (words && address.ok()) words->url = address.value().target;
-  return words;
-}
+constexpr hal::TimeNs kConfirmWithin = 2 * hal::kNsPerSecond;  // to the guardian, after the bridges have ended
 
 }  // namespace
 
-GuardedRobots::GuardedRobots(const std::vector<core::RobotItem>& items, const hal::Log& log) {
-  const auto any = [&items](bool (*is)(std::string_view)) {
-    return std::ranges::any_of(items, [&](const core::RobotItem& i) { return i.bridge && is(i.kind); });
-  };
-  if (any(&is_epuck)) start(epucks_, log);
-  if (any(&is_footbot)) start(footbots_, log);
-  if (any(&is_eyebot)) start(eyebots_, log);
+GuardedRobots::GuardedRobots(const std::vector<core::RobotItem>& items, hal::Log log) : log_(std::move(log)) {
+  if (std::ranges::none_of(items, [](const core::RobotItem& i) { return i.bridge.has_value(); })) return;
+  bridges::guardian::GuardianOptions options;
+  options.suspend_asked = &suspend_asked();
+  auto started = GuardianClient::start(
+      {bridges::epuck::stopper_type(), bridges::footbot::stopper_type(), bridges::eyebot::stopper_type()}, options);
+  if (!started.ok()) {
+    log_.warning(started.error().message);
+    return;
+  }
+  guardian_ = std::move(started).value();
+  catch_suspend();
+}
+
+bridges::SendPermit GuardedRobots::permit() const noexcept {
+  return guardian_ ? guardian_->permit() : bridges::SendPermit();
+}
+
+std::uint64_t GuardedRobots::freezes() const noexcept {
+  return guardian_ ? guardian_->freezes().count : 0;
+}
+
+hal::Status GuardedRobots::claim() {
+  if (!guardian_) return {};
+  std::vector<bridges::StopMessages> all;
+  for (const Row& row : robots_) all.push_back(row.bridge->stop_messages());
+  return guardian_->claim(all);
 }
 
 void GuardedRobots::update() {
+  if (!guardian_) return;
+  for (const std::string& news : guardian_->take_news()) log_.warning(news);
   for (Row& row : robots_) {
     if (row.watched && row.bridge->stop_version() == row.told.version) continue;
     row.told = row.bridge->stop_messages();
     row.watched = true;
-    watch(row.told);
+    guardian_->watch(row.told);
   }
 }
 
@@ -63,36 +60,17 @@ std::vector<std::string> GuardedRobots::release_rested() {
   std::vector<std::string> left;
   for (Row& row : robots_) {
     if (!row.watched) continue;
+    row.watched = false;
     if (!row.bridge->at_rest()) {
       left.push_back(row.told.robot);
-      continue;
+    } else if (guardian_) {
+      guardian_->release(row.told.robot);
     }
-    release(row.told);
-    row.watched = false;
   }
+  if (left.empty() || !guardian_) return left;
+  left.clear();
+  for (const bridges::guardian::UnstoppedRobot& robot : guardian_->end(kConfirmWithin)) left.push_back(robot.robot);
   return left;
-}
-
-void GuardedRobots::watch(const bridges::StopMessages& messages) {
-  if (is_epuck(messages.kind) && epucks_) {
-    const auto address = bridges::parse_link(messages.link);
-    if (address.ok()) epucks_->watch(address.value().target, address.value().rate);
-  } else if (is_footbot(messages.kind) && footbots_) {
-    if (const auto words = bridges::footbot::from_stop_body(messages.body)) footbots_->watch(messages.link, *words);
-  } else if (is_eyebot(messages.kind) && eyebots_) {
-    if (const auto words = eyebot_words(messages)) eyebots_->watch(*words);
-  }
-}
-
-void GuardedRobots::release(const bridges::StopMessages& messages) {
-  if (is_epuck(messages.kind) && epucks_) {
-    const auto address = bridges::parse_link(messages.link);
-    if (address.ok()) epucks_->release(address.value().target);
-  } else if (is_footbot(messages.kind) && footbots_) {
-    footbots_->release(messages.link);
-  } else if (is_eyebot(messages.kind) && eyebots_) {
-    if (const auto words = eyebot_words(messages)) eyebots_->release(*words);
-  }
 }
 
 }  // namespace tandem::app

@@ -1,45 +1,49 @@
-// Keeps guardian processes told how each real robot is to be stopped, should this program die.
+// Keeps the guardian process told how each real robot is to be stopped, should this program die, freeze, or end before
+// a robot has confirmed its stop.
 #pragma once
-#include <optional>
+#include <memory>
 #include <string>
 #include <vector>
 
-#include "bridges/epuck/guardian.hpp"
-#include "bridges/eyebot/guardian.hpp"
-#include "bridges/footbot/guardian.hpp"
+#include "bridges/guardian/client.hpp"
 #include "bridges/robot_bridge.hpp"
 #include "core/scenario/scenario.hpp"
 #include "hal/log.hpp"
 
 namespace tandem::app {
 
-/// Make it before any other thread exists. Destroyed, it has every robot stopped that was not released.
+/// Make it before any other thread exists. Destroyed, it leaves robots that were not released to the guardian.
 class GuardedRobots {
  public:
-  /// Guardians for the robots of these items that have a `<bridge>`. Where no process can be made, `log` is told.
-  GuardedRobots(const std::vector<core::RobotItem>& items, const hal::Log& log);
+  /// A guardian, where any of these items has a `<bridge>`; from here on Ctrl-Z stops the robots first. Where no
+  /// process can be made, `log` is told.
+  GuardedRobots(const std::vector<core::RobotItem>& items, hal::Log log);
 
+  /// For bridges: without it they would write to robots that the guardian is stopping.
+  bridges::SendPermit permit() const noexcept;
+  /// Times that this program was frozen, and its robots stopped.
+  std::uint64_t freezes() const noexcept;
   /// `bridge` must outlive this, or the last call of anything here but the destructor.
   void add(const bridges::RobotBridge& bridge) { robots_.push_back({&bridge}); }
-  /// Tells what has changed since it was told last. Cheap where nothing has: call it before commands leave.
+  /// Before the first link is opened: nobody else drives these robots from now on. Error: somebody does.
+  hal::Status claim();
+  /// Tells what has changed since it was told last, and people what there is to tell. Cheap where there is nothing:
+  /// call it before commands leave.
   void update();
-  /// Robots that confirmed their stop need no guardian any more. @returns ids of those that did not, although they were
-  /// driven.
+  /// At the end, when all links are closed: robots that confirmed their stop need no guardian any more; the others get
+  /// a little time to confirm it to the guardian. @returns ids of those that did not, although they were driven.
   std::vector<std::string> release_rested();
 
  private:
   struct Row {
     const bridges::RobotBridge* bridge;
-    bridges::StopMessages told = {};  // version 0: nothing yet
+    bridges::StopMessages told = {};
     bool watched = false;
   };
-  void watch(const bridges::StopMessages& messages);
-  void release(const bridges::StopMessages& messages);
 
+  hal::Log log_;
   std::vector<Row> robots_;
-  std::optional<bridges::epuck::Guardian> epucks_;
-  std::optional<bridges::footbot::Guardian> footbots_;
-  std::optional<bridges::eyebot::Guardian> eyebots_;
+  std::unique_ptr<bridges::guardian::GuardianClient> guardian_;
 };
 
 }  // namespace tandem::app

@@ -122,7 +122,8 @@ int robot(const RobotOptions& options) {
 
   const hal::Log log([](hal::Severity, std::string_view text) { say(text); });
   GuardedRobots guarded({item}, log);  // before any thread
-  auto made = mixed_reality::make_bridge({item, config, scenario->ticks_per_second, scenario->seed.value_or(1)}, log);
+  auto made = mixed_reality::make_bridge(
+      {item, config, scenario->ticks_per_second, scenario->seed.value_or(1), guarded.permit()}, log);
   if (!made.ok()) return complain(kBadInput, made.error().message);
   bridges::RobotBridge& bridge = **made;
   hal::PluginLoader loader(plugin_folders());
@@ -144,6 +145,9 @@ int robot(const RobotOptions& options) {
 
   const std::atomic<bool>& stop = catch_signals();
   mixed_reality::MonotonicTime clock;
+  guarded.add(bridge);
+  if (const hal::Status claimed = guarded.claim(); !claimed.ok())
+    return complain(kFailedRunning, claimed.error().message);
   bridge.start();
   const hal::Status ready = connect(bridge, clock, stop);
   if (stop.load()) return kDone;
@@ -153,7 +157,6 @@ int robot(const RobotOptions& options) {
   const double seconds = options.seconds.value_or(scenario->length_s);
   const auto steps = static_cast<std::int64_t>(seconds * static_cast<double>(scenario->ticks_per_second) + 0.5);
   std::string failure;
-  guarded.add(bridge);
   bridge.set_origin(clock.now_ns());
   {
     Progress progress(steps, scenario->ticks_per_second);

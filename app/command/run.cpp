@@ -135,9 +135,12 @@ std::unique_ptr<mixed_reality::MixedSession> join_real_robots(std::unique_ptr<co
   if (!has_real_robots(world->scenario())) return nullptr;
   mixed_reality::MixedOptions options;
   options.log = log;
+  options.freezes = [&guarded] { return guarded.freezes(); };
   options.before_commands = [&guarded] { guarded.update(); };
   const auto maker = [&](const mixed_reality::BridgeRequest& request) {
-    auto bridge = mixed_reality::make_bridge(request, log);
+    mixed_reality::BridgeRequest permitted = request;
+    permitted.permit = guarded.permit();
+    auto bridge = mixed_reality::make_bridge(permitted, log);
     if (bridge.ok()) guarded.add(**bridge);
     return bridge;
   };
@@ -147,7 +150,8 @@ std::unique_ptr<mixed_reality::MixedSession> join_real_robots(std::unique_ptr<co
     return nullptr;
   }
   auto session = std::move(made).value();
-  const hal::Status connected = session->connect(stop);
+  const hal::Status claimed = guarded.claim();
+  const hal::Status connected = claimed.ok() ? session->connect(stop) : claimed;
   if (!connected.ok()) code = complain(kFailedRunning, connected.error().message);
   return session;
 }
@@ -219,6 +223,7 @@ int run(const RunOptions& options) {
   result.figures.threads = world->threads();
   result.figures.init_s = wall_seconds() - began;
   std::optional<mixed_reality::MixedReport> real;
+  std::vector<std::string> left;  // robots whose stop nobody has confirmed
   {
     Progress progress(steps, scenario->ticks_per_second);
     Recording recording(outputs, result, mixed.get(), watchdog);
@@ -238,7 +243,7 @@ int run(const RunOptions& options) {
     real = mixed->report();
     result.real = &*real;
     result.figures.deadline_misses = real->pace.deadline_misses;
-    (void)guarded.release_rested();
+    left = guarded.release_rested();
   }
   result.end = end_of(*world, steps, stop.load(std::memory_order_relaxed));
   if (result.end.how == Ended::Failed) complain(kFailedRunning, result.end.failure);
@@ -246,7 +251,7 @@ int run(const RunOptions& options) {
   const bool table = !options.quiet && options.report != "-";
   const bool written = write_results(outputs, result, table);
   const bool failed = result.end.how == Ended::Failed || world->incidents().controllers_thrown > 0;
-  return failed || !written ? kFailedRunning : kDone;
+  return failed || !written || !left.empty() ? kFailedRunning : kDone;
 }
 
 }  // namespace tandem::app

@@ -20,13 +20,13 @@ LinkStatistics sum(const LinkStatistics& a, const LinkStatistics& b) noexcept {
 
 }  // namespace
 
-hal::Result<LinkOpener> epuck_link_opener(const LinkAddress& address) {
+hal::Result<LinkOpener> epuck_link_opener(const LinkAddress& address, const LinkTerms& terms) {
   constexpr std::uint32_t kBaud = 115200;  // of every stock firmware
   if (address.scheme == LinkScheme::Serial && address.rate != kBaud) {
     return hal::Error{"an e-puck's firmware talks with 115200 baud, not with " + std::to_string(address.rate) +
                       ": write serial:" + address.target + "@115200"};
   }
-  return byte_link_opener(address);
+  return byte_link_opener(address, terms);
 }
 
 SessionTiming timing_for(std::string_view link_name) noexcept {

@@ -8,7 +8,7 @@
 //
 // The thread stamps bytes when they arrive, answers time-outs, opens the link anew when it was lost, and stops the
 // robot when the loop stops committing. The stock firmware has no watchdog of its own: when the link is cut while the
-// robot moves, it drives on until the link is back; when this process is killed, until a guardian (guardian.hpp), where
+// robot moves, it drives on until the link is back; when this process is killed, until a guardian (bridges/guardian), where
 // one was started, stops it. Keep speeds small where that matters.
 #pragma once
 #include <atomic>
@@ -35,7 +35,7 @@ SessionTiming timing_for(std::string_view link_name) noexcept;
 
 /// How to open the link to an e-puck. Errors: those of `byte_link_opener`; a baud rate that no e-puck's firmware has:
 /// what is sent at a wrong rate arrives as other bytes, and these could move the robot.
-hal::Result<LinkOpener> epuck_link_opener(const LinkAddress& address);
+hal::Result<LinkOpener> epuck_link_opener(const LinkAddress& address, const LinkTerms& terms = {});
 
 /// A copy of everything that can be told about the bridge.
 struct BridgeStatus {

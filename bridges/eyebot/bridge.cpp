@@ -6,6 +6,7 @@
 
 #include "bridges/eyebot/stop_body.hpp"
 #include "bridges/eyebot_messages/codec.hpp"
+#include "bridges/link/link_terms.hpp"
 #include "hal/check.hpp"
 #include "hal/spec/eyebot.hpp"
 
@@ -17,6 +18,8 @@ using hal::TimeNs;
 constexpr TimeNs kLongestWait = 20 * hal::kNsPerMs;  // then deadlines and the end are looked at
 constexpr TimeNs kOpenAgain = hal::kNsPerSecond;
 constexpr TimeNs kMute = 3 * hal::kNsPerSecond;  // fifteen of our own heartbeats
+// Numbers are for the hub and for its guardian by turns: newer is what lies less than 2^31 ahead.
+constexpr std::uint32_t kTurn = 500'000'000;
 
 BridgeSettings with_session(BridgeSettings settings) {
   while (settings.driver.session == 0) settings.driver.session = static_cast<std::int32_t>(std::random_device{}());
@@ -49,7 +52,7 @@ void EyebotBridge::shut_down() {
 }
 
 bool EyebotBridge::publish(const std::string& channel, std::span<const std::byte> data) noexcept {
-  return link_ && link_->publish(channel, data);
+  return link_ && settings_.permit.granted_since(turn_) && link_->publish(channel, data);
 }
 
 // --- the thread ---
@@ -77,6 +80,10 @@ void EyebotBridge::keep_link() {
   {
     const std::lock_guard lock(mutex_);
     const TimeNs now = lcm_bus::monotonic_ns();
+    if (link_ && !settings_.permit.granted_since(turn_)) {
+      link_trouble_ = not_permitted().message;
+      dead = std::move(link_);
+    }
     const bool speaks = !settings_.driver.observe;
     const TimeNs heard_ns = std::max(opened_ns_, mail_->echo_ns.load(std::memory_order_relaxed));
     if (link_ && speaks && now - heard_ns > kMute) {
@@ -86,7 +93,8 @@ void EyebotBridge::keep_link() {
     if (link_ || (tried_ns_ != 0 && now - tried_ns_ < kOpenAgain)) return;
     tried_ns_ = now;
   }
-  auto opened = open();
+  const std::uint32_t turn = settings_.permit.turn();
+  auto opened = settings_.permit.granted_since(turn) ? open() : not_permitted();
   const std::lock_guard lock(mutex_);
   if (!opened.ok()) {
     link_trouble_ = opened.error().message;
@@ -94,6 +102,11 @@ void EyebotBridge::keep_link() {
     return;
   }
   link_ = std::move(opened).value();
+  if (links_opened_ > 0 && turn != turn_) {  // our guardian has used the numbers in between
+    driver_.skip_ahead(2 * kTurn);
+    ++withdrawals_;
+  }
+  turn_ = turn;
   link_trouble_.clear();
   opened_ns_ = lcm_bus::monotonic_ns();
   ++links_opened_;
@@ -237,7 +250,7 @@ StopMessages EyebotBridge::stop_messages() const {
           .kind = std::string(hal::eyebot::kDataSheet.kind),
           .link = "lcm:" + settings_.url,
           .body = to_stop_body(last_words()),
-          .version = kStopVersion,
+          .version = stop_version(),
           .name = driver_.settings().name};
 }
 
@@ -324,7 +337,14 @@ BridgeStatus EyebotBridge::status() const {
 
 LastWords EyebotBridge::last_words() const {
   const DriverSettings& driver = driver_.settings();  // does not change
-  return {settings_.url, driver.name, driver.hub, driver.session, settings_.farewell.land};
+  const std::uint32_t first_seq =
+      static_cast<std::uint32_t>(driver.first_seq) + (2 * withdrawals_.load(std::memory_order_relaxed) + 1) * kTurn;
+  return {settings_.url,
+          driver.name,
+          driver.hub,
+          driver.session,
+          settings_.farewell.land,
+          static_cast<std::int32_t>(first_seq)};
 }
 
 }  // namespace tandem::bridges::eyebot

@@ -8,7 +8,7 @@
 //
 // The thread takes in what arrives, beats the hub's heart, says again what is not answered, opens the link anew when
 // our own heartbeat does not come back to us, and has the robot hover when the loop stops committing. When this process
-// is killed its guardian (guardian.hpp) has the robot hover and land; where nobody is left, the robot does so itself.
+// is killed its guardian (bridges/guardian) has the robot hover and land; where nobody is left, the robot does so itself.
 #pragma once
 #include <atomic>
 #include <condition_variable>
@@ -21,6 +21,7 @@
 #include "bridges/eyebot/farewell.hpp"
 #include "bridges/lcm/lcm_link.hpp"
 #include "bridges/robot_bridge.hpp"
+#include "bridges/send_permit.hpp"
 
 namespace tandem::bridges::eyebot {
 
@@ -30,7 +31,8 @@ using LcmOpener = std::function<hal::Result<std::shared_ptr<lcm_bus::LcmLink>>()
 struct BridgeSettings {
   DriverSettings driver;  ///< session 0: one is drawn
   FarewellSettings farewell = {};
-  std::string url = {};  ///< of the link, as whoever opens it after us must write it
+  std::string url = {};    ///< of the link, as whoever opens it after us must write it
+  SendPermit permit = {};  ///< asked before everything that is said
 };
 
 /// A copy of everything that can be told about the bridge.
@@ -62,6 +64,7 @@ struct LastWords {
   std::string hub;
   std::int32_t session = 0;
   bool land = true;
+  std::int32_t first_seq = 0;  ///< newer than any number of ours for years
 };
 
 /// Owns the thread.
@@ -99,7 +102,7 @@ class EyebotBridge final : public RobotBridge, private Outbox {
   std::string link() const override;
   /// The body is that of stop_body.hpp.
   StopMessages stop_messages() const override;
-  std::uint64_t stop_version() const noexcept override { return kStopVersion; }
+  std::uint64_t stop_version() const noexcept override { return 1 + withdrawals_.load(std::memory_order_relaxed); }
   LinkReport report() const override;
   void describe(StatusVisitor& visitor) const override;
 
@@ -123,8 +126,6 @@ class EyebotBridge final : public RobotBridge, private Outbox {
   void say_farewell();
   void note_health() noexcept;
 
-  static constexpr std::uint64_t kStopVersion = 1;  // its name and ours: nothing of it changes
-
   BridgeSettings settings_;
   LcmOpener opener_;
   std::shared_ptr<Mail> mail_;
@@ -132,6 +133,8 @@ class EyebotBridge final : public RobotBridge, private Outbox {
   std::condition_variable changed_;
   std::shared_ptr<lcm_bus::LcmLink> link_;
   std::string link_trouble_;
+  std::uint32_t turn_ = 0;  // of the permit, when the link was opened
+  std::atomic<std::uint32_t> withdrawals_{0};
   hal::TimeNs opened_ns_ = 0, tried_ns_ = 0;
   std::uint64_t links_opened_ = 0;
   EyebotDriver driver_;

@@ -611,8 +611,12 @@ TimeNs EyebotDriver::next_deadline() const noexcept {
   return deadline;
 }
 
-std::int32_t EyebotDriver::last_words_seq() const noexcept {
-  return static_cast<std::int32_t>(static_cast<std::uint32_t>(orders_.next_seq()) + 1'000'000'000U);
+void EyebotDriver::skip_ahead(std::uint32_t by) noexcept {
+  const auto ahead = [by](std::int32_t seq) { return static_cast<std::int32_t>(static_cast<std::uint32_t>(seq) + by); };
+  for (Voice& v : voices_) v.seq = ahead(v.seq);
+  orders_.withdraw();
+  orders_.forget();
+  orders_.begin_with(ahead(orders_.next_seq()));
 }
 
 // --- for people ---

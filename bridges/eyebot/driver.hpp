@@ -147,8 +147,9 @@ class EyebotDriver {
   const ClockOffset& clock() const noexcept { return clock_; }
   const ModeOrders& orders() const noexcept { return orders_; }
   const PlaceGate& places() const noexcept { return place_gate_; }
-  /// Newer than the number of any message that will be said within hours.
-  std::int32_t last_words_seq() const noexcept;
+  /// Goes on with numbers that are so much newer: somebody else has spoken in our name meanwhile. The order that is out
+  /// is given anew.
+  void skip_ahead(std::uint32_t by) noexcept;
 
  private:
   /// What is said on one channel.

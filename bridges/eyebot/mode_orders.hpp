@@ -85,7 +85,7 @@ class ModeOrders {
   void forget() noexcept { last_ = {}; }
   /// When the order that was answered last was first said.
   hal::TimeNs answered_issue_ns() const noexcept { return answered_issue_ns_; }
-  /// Before the first order: its number.
+  /// The number of the next order, while none is out.
   void begin_with(std::int32_t seq) noexcept { seq_ = seq; }
   /// The number of the next order.
   std::int32_t next_seq() const noexcept { return seq_; }

@@ -8,7 +8,8 @@
 
 namespace tandem::bridges::eyebot {
 
-/// One line: the robot's name, the hub's name, the hub's session, 1 to land or 0 to hover. The url is in the link.
+/// One line: the robot's name, the hub's name, the hub's session, 1 to land or 0 to hover, the first
+/// number of a message. The url is in the link.
 std::string to_stop_body(const LastWords& words);
 
 /// The same back, without the url; nothing where the text is not of that form.

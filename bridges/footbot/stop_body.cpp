@@ -6,6 +6,7 @@ namespace tandem::bridges::footbot {
 namespace {
 
 constexpr std::string_view kDigits = "0123456789abcdef";
+constexpr std::string_view kConfirm = " read back";
 
 /// All of `text` is one number of this base.
 template <class Number>
@@ -18,6 +19,10 @@ std::optional<LastWords> read_line(std::string_view line) {
   const std::size_t blank = line.find(' ');
   if (blank == std::string_view::npos) return std::nullopt;
   LastWords message;
+  if (line.ends_with(kConfirm)) {
+    message.confirm = true;
+    line.remove_suffix(kConfirm.size());
+  }
   if (!read_number(line.substr(0, blank), 10, message.type)) return std::nullopt;
   const std::string_view digits = line.substr(blank + 1);
   if (digits.size() % 2 != 0) return std::nullopt;
@@ -39,6 +44,7 @@ std::string to_stop_body(const std::vector<LastWords>& messages) {
       body += kDigits[byte >> 4];
       body += kDigits[byte & 15];
     }
+    if (message.confirm) body += kConfirm;
     body += '\n';
   }
   return body;

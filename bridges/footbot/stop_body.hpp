@@ -9,7 +9,7 @@
 
 namespace tandem::bridges::footbot {
 
-/// One message a line: its type, a blank, its payload in hexadecimal digits.
+/// One message a line: its type, a blank, its payload in hexadecimal digits, "read back" where it is to be confirmed.
 std::string to_stop_body(const std::vector<LastWords>& messages);
 
 /// The same back; nothing where the text is not of that form.

@@ -381,8 +381,9 @@ std::vector<LastWords> Wiring::last_words() const {
       payload.append(row.node->id);
       payload.append(v.address);
       if (!payload.append(std::span<const std::int16_t>(target))) continue;
-      all.push_back(
-          {static_cast<std::uint16_t>(aseba::Type::SetVariables), {payload.bytes().begin(), payload.bytes().end()}});
+      all.push_back({static_cast<std::uint16_t>(aseba::Type::SetVariables),
+                     {payload.bytes().begin(), payload.bytes().end()},
+                     v.map->verify && row.map->need == Need::Always});
     }
   }
   return all;

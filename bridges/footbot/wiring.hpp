@@ -27,6 +27,9 @@ struct NodeStatus {
 struct LastWords {
   std::uint16_t type = 0;
   std::vector<std::uint8_t> payload;
+  /// The robot rests only when these values are read back. Not where a module does not hold what was written, and not
+  /// of modules that the robot drives without.
+  bool confirm = false;
   friend bool operator==(const LastWords&, const LastWords&) = default;
 };
 

@@ -294,6 +294,7 @@ void Process::claim(const StopMessages& robot) {
 void Process::hand_back() {
   handing_back_ = false;
   hub_ = Hub::Alive;
+  for (const auto& [id, robot] : robots_) robot->hold();  // nothing begins to stop them anew
   pulse_.forget();
   const std::uint32_t turn = in_.page->turn.load(std::memory_order_relaxed);
   in_.page->turn.store(turn + 1, std::memory_order_release);
@@ -362,8 +363,8 @@ void Process::leave() {
 void Process::take_signals() {
   signalfd_siginfo info{};
   while (::read(signals_, &info, sizeof info) == sizeof info) {
-    const bool ends = info.ssi_signo == SIGTERM || info.ssi_signo == SIGINT;
-    if (!ends || (hub_ != Hub::Gone && hub_ != Hub::Ended)) continue;
+    // Before people were told they cannot mean it: a service manager ends all that a dead service has left.
+    if (info.ssi_signo != SIGTERM || !told_) continue;
     tell_of_unstopped();
     tell("process " + std::to_string(::getpid()) + " was told to end: see to these robots by hand");
     told_ = false;

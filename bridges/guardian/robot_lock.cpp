@@ -92,6 +92,11 @@ std::string lock_key(const StopMessages& robot) {
     std::error_code error;
     const auto real = std::filesystem::weakly_canonical(device, error);
     link = "device " + (error ? device : real.string());
+  } else {
+    // The same address in another network is another robot.
+    std::array<char, 64> network{};
+    const ssize_t n = ::readlink("/proc/self/ns/net", network.data(), network.size());
+    if (n > 0) link += " " + std::string(network.data(), static_cast<std::size_t>(n));
   }
   std::string key;
   for (const char c : link + (robot.name.empty() ? "" : " " + robot.name)) {

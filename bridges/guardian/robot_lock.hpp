@@ -26,7 +26,7 @@ struct LockHolder {
 hal::Result<std::string> lock_folder();
 
 /// Names the robot among all that can be reached from this machine: its link, and its name on a shared one. Two paths
-/// to one device give one key.
+/// to one device give one key, one address in two networks gives two.
 std::string lock_key(const StopMessages& robot);
 
 /// A held lock. Movable.

@@ -133,6 +133,7 @@ class SerialLink::Port {
     const int descriptor = serial_->IsOpen() ? serial_->GetFileDescriptor() : -1;
     if (descriptor < 0) return;
     ::ioctl(descriptor, TIOCNXCL);
+    ::flock(descriptor, LOCK_UN);  // a child that somebody has forked may hold it as well
     const Descriptor master(::posix_openpt(O_RDWR | O_NOCTTY));
     char path[64] = {};
     const bool made = master.fd >= 0 && ::grantpt(master.fd) == 0 && ::unlockpt(master.fd) == 0 &&

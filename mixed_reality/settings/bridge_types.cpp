@@ -21,7 +21,7 @@ std::vector<std::string> device_names(const std::vector<core::DeviceChoice>& cho
 /// From the parts of one kind, which `Parts` names, to its bridge.
 template <class Bridge, auto Parts>
 MadeBridge make(const BridgeRequest& request, const hal::Log& log) {
-  auto parts = Parts(request.item, request.ticks_per_second);
+  auto parts = Parts(request.item, request.ticks_per_second, request.permit);
   if (!parts.ok()) return parts.error();
   auto& robot = parts->settings.driver.robot;
   robot.seed = request.seed;

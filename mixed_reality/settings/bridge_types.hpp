@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "bridges/robot_bridge.hpp"
+#include "bridges/send_permit.hpp"
 #include "core/scenario/scenario.hpp"
 #include "hal/log.hpp"
 #include "hal/result.hpp"
@@ -17,6 +18,7 @@ struct BridgeRequest {
   const core::ControllerConfig& controller;
   std::int64_t ticks_per_second = 10;
   std::uint64_t seed = 1;
+  bridges::SendPermit permit = {};  ///< asked before everything that is said to the robot
 };
 
 using MadeBridge = hal::Result<std::unique_ptr<bridges::RobotBridge>>;

@@ -5,13 +5,14 @@
 
 namespace tandem::mixed_reality {
 
-hal::Result<EpuckParts> epuck_parts(const core::RobotItem& item, std::int64_t ticks_per_second) {
+hal::Result<EpuckParts> epuck_parts(const core::RobotItem& item, std::int64_t ticks_per_second,
+                                    bridges::SendPermit permit) {
   const core::BridgeConfig& bridge = item.bridge.value();
   if (item.kind != hal::epuck::kDataSheet.kind)
     return hal::Error{"robot '" + item.id + "' is of the kind '" + item.kind + "', not an e-puck"};
   const auto address = bridges::parse_link(bridge.link);
   if (!address.ok()) return address.error();
-  auto opener = bridges::epuck::epuck_link_opener(address.value());
+  auto opener = bridges::epuck::epuck_link_opener(address.value(), {permit});
   if (!opener.ok()) return opener.error();
   EpuckParts parts;
   parts.opener = std::move(opener).value();

@@ -12,6 +12,7 @@ struct EpuckParts {
   bridges::epuck::BridgeSettings settings;
   bridges::LinkOpener opener;
 };
-hal::Result<EpuckParts> epuck_parts(const core::RobotItem& item, std::int64_t ticks_per_second);
+hal::Result<EpuckParts> epuck_parts(const core::RobotItem& item, std::int64_t ticks_per_second,
+                                    bridges::SendPermit permit = {});
 
 }  // namespace tandem::mixed_reality

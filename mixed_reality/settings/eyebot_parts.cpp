@@ -6,7 +6,8 @@
 
 namespace tandem::mixed_reality {
 
-hal::Result<EyebotParts> eyebot_parts(const core::RobotItem& item, std::int64_t ticks_per_second) {
+hal::Result<EyebotParts> eyebot_parts(const core::RobotItem& item, std::int64_t ticks_per_second,
+                                      bridges::SendPermit permit) {
   const core::BridgeConfig& bridge = item.bridge.value();
   if (item.kind != hal::eyebot::kDataSheet.kind)
     return hal::Error{"robot '" + item.id + "' is of the kind '" + item.kind + "', not an eye-bot"};
@@ -19,6 +20,7 @@ hal::Result<EyebotParts> eyebot_parts(const core::RobotItem& item, std::int64_t 
                       std::string(bridges::lcm_bus::kDefaultLcmUrl)};
   EyebotParts parts;
   parts.settings.url = address.value().target;
+  parts.settings.permit = permit;
   parts.opener = [url = parts.settings.url] { return bridges::lcm_bus::LcmLink::open(url); };
   bridges::eyebot::DriverSettings& driver = parts.settings.driver;
   driver.session = 0;  // to be drawn

@@ -12,6 +12,7 @@ struct EyebotParts {
   bridges::eyebot::BridgeSettings settings;
   bridges::eyebot::LcmOpener opener;
 };
-hal::Result<EyebotParts> eyebot_parts(const core::RobotItem& item, std::int64_t ticks_per_second);
+hal::Result<EyebotParts> eyebot_parts(const core::RobotItem& item, std::int64_t ticks_per_second,
+                                      bridges::SendPermit permit = {});
 
 }  // namespace tandem::mixed_reality

@@ -6,13 +6,14 @@
 
 namespace tandem::mixed_reality {
 
-hal::Result<FootbotParts> footbot_parts(const core::RobotItem& item, std::int64_t ticks_per_second) {
+hal::Result<FootbotParts> footbot_parts(const core::RobotItem& item, std::int64_t ticks_per_second,
+                                        bridges::SendPermit permit) {
   const core::BridgeConfig& bridge = item.bridge.value();
   if (item.kind != hal::footbot::kDataSheet.kind)
     return hal::Error{"robot '" + item.id + "' is of the kind '" + item.kind + "', not a foot-bot"};
   if (bridge.firmware != "auto")
     return hal::Error{"a foot-bot's modules have no firmware '" + bridge.firmware + "'; leave firmware out"};
-  auto opener = bridges::aseba::message_link_opener(bridge.link);
+  auto opener = bridges::aseba::message_link_opener(bridge.link, {permit});
   if (!opener.ok()) return opener.error();
   if (bridge.map.empty()) {
     return hal::Error{"the <bridge> of the foot-bot '" + item.id +

@@ -13,6 +13,7 @@ struct FootbotParts {
   bridges::footbot::BridgeSettings settings;
   bridges::aseba::MessageLinkOpener opener;
 };
-hal::Result<FootbotParts> footbot_parts(const core::RobotItem& item, std::int64_t ticks_per_second);
+hal::Result<FootbotParts> footbot_parts(const core::RobotItem& item, std::int64_t ticks_per_second,
+                                        bridges::SendPermit permit = {});
 
 }  // namespace tandem::mixed_reality

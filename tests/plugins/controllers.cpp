@@ -2,6 +2,7 @@
 #include <limits>
 #include <memory>
 #include <stdexcept>
+#include <unistd.h>
 
 #include "hal/device/body_sensors.hpp"
 #include "hal/device/cameras.hpp"
@@ -94,6 +95,23 @@ class Everything final : public Controller {
   const RangeAndBearing& heard_;
   const Clock& clock_;
   Params params_;
+};
+
+/// Drives, and forks a child that outlives the hub and keeps everything open that the hub has.
+class Forker final : public Drive {
+ public:
+  using Drive::Drive;
+  void step() override {
+    Drive::step();
+    if (forked_) return;
+    forked_ = true;
+    if (::fork() != 0) return;
+    ::sleep(20);
+    ::_exit(0);
+  }
+
+ private:
+  bool forked_ = false;
 };
 
 /// Drives, and throws at tick 3.
@@ -367,6 +385,7 @@ void register_all(Registrar& registrar) {
   registrar.add_controller<Drive>("drive", "Constant wheel speeds.");
   registrar.add_controller<CountingDrive>("counting_drive", "Constant wheel speeds; says how often it has stepped.");
   registrar.add_controller<Everything>("everything", "Takes every device.");
+  registrar.add_controller<Forker>("forker", "Forks a child.");
   registrar.add_controller<Thrower>("thrower", "Throws at tick 3.");
   registrar.add_controller<Careless>("careless", "Commands what is no number.");
   registrar.add_controller<Fly>("fly", "Constant velocity in the air.");

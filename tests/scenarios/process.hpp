@@ -92,14 +92,23 @@ class Tandem {
   }
   ~Tandem() {
     if (pid_ > 0 && !ended_) {
-      kill(pid_, SIGKILL);
+      kill(pid_, SIGKILL);  // also where it is stopped
       waitpid(pid_, nullptr, 0);
     }
   }
   Tandem(const Tandem&) = delete;
   Tandem& operator=(const Tandem&) = delete;
 
-  void signal(int number) const { kill(pid_, number); }
+  void signal(int number) const {
+    if (pid_ > 0 && !ended_) kill(pid_, number);
+  }
+
+  /// Whether the system has suspended it.
+  bool suspended() const {
+    const std::string stat = text_of("/proc/" + std::to_string(pid_) + "/stat");
+    const std::size_t end = stat.rfind(')');
+    return end != std::string::npos && stat.compare(end, 3, ") T") == 0;
+  }
 
   /// Exit code, or -signal; -1000 when it did not end within `seconds`.
   int wait(double seconds = 30.0) {
@@ -136,6 +145,7 @@ inline std::string json_value(const std::string& json, const std::string& key, s
 class EmulatedRobot {
  public:
   bool ready() const { return ready_; }
+  void signal(int number) const { process_->signal(number); }
   std::string log() const { return text_of(folder_.path() / "witness.jsonl"); }
   /// Ends it as a user does, so that its log is whole.
   int end() {

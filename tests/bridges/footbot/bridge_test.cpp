@@ -10,7 +10,6 @@
 #include <thread>
 #include <unistd.h>
 
-#include "bridges/footbot/guardian.hpp"
 #include "hal/device/ring_sensors.hpp"
 #include "hal/device/wheels.hpp"
 #include "tests/bridges/footbot/fake_footbot.hpp"
@@ -196,86 +195,6 @@ TEST(FootbotBridge, SaysWhyItDoesNotStart) {
   const hal::Status ready = bridge.wait_active(hal::kNsPerMs);
   ASSERT_FALSE(ready.ok());
   EXPECT_EQ(ready.error().message, "foot-bot 'fb' is not there: cannot open memory: there is no such bus");
-}
-
-// --- the guardian ---
-
-/// A port on this machine that somebody may connect to, and all that he then says.
-class Listener {
- public:
-  Listener() : fd_(::socket(AF_INET, SOCK_STREAM, 0)) {
-    sockaddr_in address{};
-    address.sin_family = AF_INET;
-    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-    socklen_t size = sizeof address;
-    EXPECT_EQ(::bind(fd_, reinterpret_cast<const sockaddr*>(&address), size), 0);
-    EXPECT_EQ(::listen(fd_, 4), 0);
-    EXPECT_EQ(::fcntl(fd_, F_SETFL, O_NONBLOCK), 0);
-    ::getsockname(fd_, reinterpret_cast<sockaddr*>(&address), &size);
-    link = "tcp:127.0.0.1:" + std::to_string(ntohs(address.sin_port));
-  }
-  ~Listener() { ::close(fd_); }
-  Listener(const Listener&) = delete;
-  Listener& operator=(const Listener&) = delete;
-  /// What the first that connected has said; he has left. Empty: nobody did.
-  std::vector<std::uint8_t> said() const {
-    const int peer = ::accept(fd_, nullptr, nullptr);
-    if (peer < 0) return {};
-    std::vector<std::uint8_t> all(4096);
-    std::size_t size = 0;
-    for (ssize_t n = 1; n > 0 && size < all.size(); size += static_cast<std::size_t>(n)) {
-      n = std::max<ssize_t>(::read(peer, all.data() + size, all.size() - size), 0);
-    }
-    ::close(peer);
-    all.resize(size);
-    return all;
-  }
-  std::string link;
-
- private:
-  int fd_;
-};
-
-const std::vector<LastWords> kWords = {{0xA00C, {1, 0, 34, 0, 0, 0}}, {0xA00C, {2, 0, 34, 0, 0, 0}}};
-
-TEST(FootbotGuardian, SaysTheLastWordsOfAHubThatWasKilled) {
-  const Listener robot, released, replaced;
-  std::array<int, 2> alive{};  // ends when the guardian does, which inherits it
-  ASSERT_EQ(::pipe(alive.data()), 0);
-  const pid_t hub = ::fork();
-  if (hub == 0) {
-    auto guardian = Guardian::start();
-    guardian->watch(robot.link, kWords);
-    guardian->watch(released.link, kWords);
-    guardian->release(released.link);
-    guardian->watch(replaced.link, kWords);
-    guardian->watch(replaced.link, {});
-    ::kill(::getpid(), SIGKILL);
-  }
-  int status = 0;
-  ::waitpid(hub, &status, 0);
-  ASSERT_TRUE(WIFSIGNALED(status));
-  ::close(alive[1]);
-  char nothing = 0;
-  EXPECT_EQ(::read(alive[0], &nothing, 1), 0);
-  ::close(alive[0]);
-  const std::vector<std::uint8_t> said = robot.said();
-  const std::vector<std::uint8_t> once = {6, 0, 0, 0, 0x0C, 0xA0, 1, 0, 34, 0, 0, 0,
-                                          6, 0, 0, 0, 0x0C, 0xA0, 2, 0, 34, 0, 0, 0};
-  ASSERT_EQ(said.size(), 4 * once.size());
-  for (std::size_t i = 0; i < said.size(); ++i) EXPECT_EQ(said[i], once[i % once.size()]);
-  EXPECT_TRUE(released.said().empty());
-  EXPECT_TRUE(replaced.said().empty());
-}
-
-TEST(FootbotGuardian, EndsWithItsHubAndStopsWhatWasNotReleased) {
-  const Listener robot;
-  {
-    auto guardian = Guardian::start();
-    ASSERT_TRUE(guardian.ok());
-    guardian->watch(robot.link, kWords);
-  }
-  EXPECT_FALSE(robot.said().empty());
 }
 
 }  // namespace

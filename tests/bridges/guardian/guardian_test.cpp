@@ -175,9 +175,9 @@ class Guarded : public testing::Test {
   }
 
   /// Drives these robots, and does as it is told: 'r' releases the first, 'e' ends, 'f' forks a child that keeps all
-  /// descriptors, 'n' tells the news.
+  /// descriptors, 'n' tells the news, 'v' renews the stop messages of the first.
   Hub::Story drives(std::vector<StopMessages> robots, std::atomic<bool>* suspend = nullptr) const {
-    return [robots, suspend](Hub& hub) {
+    return [robots, suspend](Hub& hub) mutable {
       auto started = GuardianClient::start(kTypes, {suspend, {}});
       if (!started.ok()) return 99;
       GuardianClient& guardian = **started;
@@ -205,6 +205,10 @@ class Guarded : public testing::Test {
             freezes = guardian.freezes().count;
             hub.say("back " + std::to_string(guardian.freezes().last_ns / kNsPerMs) + " " +
                     std::to_string(guardian.permit().turn()));
+            break;
+          case 'v':  // a module came
+            robots.front().version++;
+            guardian.watch(robots.front());
             break;
           case 'n':
             for (const std::string& line : guardian.take_news()) hub.say("news " + line);
@@ -308,10 +312,12 @@ TEST_F(Guarded, RobotIsStoppedWhenItsHubIsFrozenAndTheHubKnowsWhenItIsBack) {
   EXPECT_GE(lasted_ms, 80);
   EXPECT_LE(lasted_ms, (now_ns() - frozen) / kNsPerMs);
   EXPECT_EQ(turn, 2);
+  hub.tell('v');  // nothing of the hub's turn has the guardian stop anybody
   hub.tell('n');
   ASSERT_TRUE(hub.said("freezes 1"));
   EXPECT_THAT(hub.line("news this program was frozen for"),
               HasSubstr("its guardian process has stopped all real robots"));
+  EXPECT_EQ(times("r", "frozen").size(), 2U);
   // It happens again; and this time the hub does not come back.
   hub.signal(SIGSTOP);
   ASSERT_TRUE(was("r", "rests", 3));

@@ -149,6 +149,15 @@ TEST(SerialLink, IsBusyForASecondUserAndFreeAfterwards) {
   EXPECT_EQ(error_of(pty.path), "opened");
 }
 
+TEST(SerialLink, IsFreeAfterwardsThoughAChildKeepsItsDescriptor) {
+  const Pty pty;
+  auto link = pty.open();
+  const int inherited = ::dup(link->descriptor());  // as a fork does
+  link.reset();
+  EXPECT_EQ(error_of(pty.path), "opened");
+  ::close(inherited);
+}
+
 TEST(SerialLink, LetsAGuardianSpeakBesideItsUser) {
   const Pty pty;
   const auto link = pty.open();

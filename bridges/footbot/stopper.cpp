@@ -1,0 +1,124 @@
+#include "bridges/footbot/stopper.hpp"
+
+#include <algorithm>
+
+#include "bridges/aseba/message.hpp"
+#include "bridges/aseba/message_link_text.hpp"
+#include "bridges/footbot/stop_body.hpp"
+#include "bridges/link/link.hpp"
+#include "hal/spec/footbot.hpp"
+
+namespace tandem::bridges::footbot {
+namespace {
+
+using aseba::Carrier;
+using guardian::StopState;
+using hal::TimeNs;
+
+constexpr TimeNs kStep = 40 * hal::kNsPerMs;
+constexpr TimeNs kWait = 5 * hal::kNsPerMs;
+constexpr TimeNs kSayAgain = 50 * hal::kNsPerMs;
+// What comes sooner may be the answer to a question that the hub has asked.
+constexpr TimeNs kOldAnswers = 40 * hal::kNsPerMs;
+constexpr std::size_t kHead = 4;  // bytes of a SetVariables: the node and where to begin
+
+std::uint16_t word_at(const std::vector<std::uint8_t>& bytes, std::size_t at) noexcept {
+  return static_cast<std::uint16_t>(bytes[at] | static_cast<unsigned>(bytes[at + 1]) << 8U);
+}
+
+std::unique_ptr<guardian::Stopper> make(const StopMessages& messages, guardian::StopCause) {
+  const auto opener = [link = messages.link]() -> hal::Result<std::unique_ptr<aseba::MessageLink>> {
+    LinkTerms terms;
+    terms.beside = true;
+    const auto open = aseba::message_link_opener(link, terms);
+    if (!open.ok()) return open.error();
+    return open.value()();
+  };
+  return std::make_unique<FootbotStopper>(opener, from_stop_body(messages.body).value_or(std::vector<LastWords>{}));
+}
+
+}  // namespace
+
+guardian::StopperType stopper_type() noexcept {
+  return {hal::footbot::kDataSheet.kind, &make};
+}
+
+FootbotStopper::FootbotStopper(aseba::MessageLinkOpener opener, const std::vector<LastWords>& messages)
+    : opener_(std::move(opener)) {
+  for (const LastWords& message : messages) {
+    Row row;
+    row.message = message;
+    if (message.payload.size() < kHead) continue;
+    row.node = word_at(message.payload, 0);
+    row.start = word_at(message.payload, 2);
+    row.words.assign(message.payload.begin() + kHead, message.payload.end());
+    row.confirmed = !message.confirm;
+    rows_.push_back(std::move(row));
+  }
+}
+
+bool FootbotStopper::open() {
+  auto opened = opener_();
+  if (!opened.ok()) {
+    trouble_ = opened.error().message;
+    return false;
+  }
+  link_ = std::move(opened).value();
+  for (Row& row : rows_) row.confirmed = !row.message.confirm;
+  first_said_ns_ = say_due_ns_ = 0;
+  return true;
+}
+
+void FootbotStopper::say() {
+  for (const Row& row : rows_) (void)link_->send(row.message.type, row.message.payload);
+  aseba::Payload question;
+  for (const Row& row : rows_) {
+    if (!row.message.confirm) continue;
+    if (aseba::encode(aseba::GetVariables{row.node, row.start, static_cast<std::uint16_t>(row.words.size() / 2)},
+                      question)) {
+      (void)link_->send(static_cast<std::uint16_t>(aseba::Type::GetVariables), question.bytes());
+    }
+  }
+}
+
+void FootbotStopper::hear(const aseba::MessageView& message) {
+  if (message.type != static_cast<std::uint16_t>(aseba::Type::Variables) || message.payload.size() < 2) return;
+  heard_ = true;
+  const auto start = static_cast<std::uint16_t>(message.payload[0] | static_cast<unsigned>(message.payload[1]) << 8U);
+  for (Row& row : rows_) {
+    if (!row.message.confirm || row.node != message.source || row.start != start) continue;
+    row.confirmed = std::ranges::equal(message.payload.subspan(2), row.words) &&
+                    (row.confirmed || message.at_ns - first_said_ns_ >= kOldAnswers);
+  }
+}
+
+bool FootbotStopper::all_confirmed() const {
+  return std::ranges::all_of(rows_, &Row::confirmed);
+}
+
+StopState FootbotStopper::step(TimeNs now) {
+  if (rows_.empty()) return StopState::Confirmed;
+  if (!link_ && !open()) return StopState::Unreachable;
+  const TimeNs end = std::max(now, monotonic_ns()) + kStep;  // opening may have taken long
+  for (now = monotonic_ns(); now < end; now = monotonic_ns()) {
+    if (link_->state() == Carrier::Gone) {
+      link_.reset();
+      trouble_ = "the link is gone";
+      return StopState::Unreachable;
+    }
+    if (link_->state() == Carrier::Up && now >= say_due_ns_) {
+      if (first_said_ns_ == 0) first_said_ns_ = now;
+      say_due_ns_ = now + kSayAgain;
+      say();
+    }
+    aseba::MessageView message;
+    while (link_->receive(message)) hear(message);
+    // Also what is not to be confirmed is said twice.
+    if (all_confirmed() && first_said_ns_ != 0 && now - first_said_ns_ >= 2 * kSayAgain) return StopState::Confirmed;
+    link_->wait(kWait);
+  }
+  trouble_ = heard_ ? "its modules do not hold the resting values" : "its modules do not answer";
+  return heard_ ? StopState::Stopping : StopState::Unreachable;
+}
+
+}  // namespace tandem::bridges::footbot

@@ -1,0 +1,44 @@
+// Stops a foot-bot whose hub is gone: writes the resting values to its modules, and reads them back.
+#pragma once
+#include <vector>
+
+#include "bridges/aseba/message_link.hpp"
+#include "bridges/footbot/wiring.hpp"
+#include "bridges/guardian/stopper.hpp"
+
+namespace tandem::bridges::footbot {
+
+/// Says all messages again and again, over a link that is opened again whenever it is gone, until all that are to be
+/// confirmed were read back. A robot of which no module was ever wired has nothing to confirm.
+class FootbotStopper final : public guardian::Stopper {
+ public:
+  FootbotStopper(aseba::MessageLinkOpener opener, const std::vector<LastWords>& messages);
+
+  guardian::StopState step(hal::TimeNs now) override;
+  std::string trouble() const override { return trouble_; }
+
+ private:
+  struct Row {
+    LastWords message;
+    std::uint16_t node = 0, start = 0;
+    std::vector<std::uint8_t> words;  // as they are to be read back
+    bool confirmed = false;
+  };
+  bool open();
+  void say();
+  void hear(const aseba::MessageView& message);
+  bool all_confirmed() const;
+
+  aseba::MessageLinkOpener opener_;
+  std::vector<Row> rows_;
+  std::unique_ptr<aseba::MessageLink> link_;
+  hal::TimeNs first_said_ns_ = 0;  // on this link
+  hal::TimeNs say_due_ns_ = 0;
+  bool heard_ = false;
+  std::string trouble_;
+};
+
+/// Understands bodies as `to_stop_body` makes them.
+guardian::StopperType stopper_type() noexcept;
+
+}  // namespace tandem::bridges::footbot
