@@ -12,8 +12,13 @@ namespace tandem::app {
 /// "0x" and 16 digits.
 std::string hash_text(std::uint64_t hash);
 
-/// Writes `text` to a file, or to standard output for "-".
-hal::Status write_report(const std::string& path, const std::string& text);
+/// A file that the command line or the experiment names, and what it is.
+struct NamedFile {
+  std::string what;
+  std::string path;
+};
+/// Error: an output would overwrite an input or another output, also by another name. Empty paths and "-" are none.
+hal::Status check_apart(const std::vector<NamedFile>& outputs, const std::vector<NamedFile>& inputs);
 
 /// Two columns, aligned.
 void print_table(const std::vector<std::pair<std::string, std::string>>& rows);

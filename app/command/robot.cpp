@@ -1,6 +1,7 @@
 // `tandem robot`: one real robot's controller, run here.
 #include <cstdio>
 #include <fmt/format.h>
+#include <optional>
 
 #include "app/bridge_status.hpp"
 #include "app/bridged_controller.hpp"
@@ -13,6 +14,8 @@
 #include "app/sha256.hpp"
 #include "app/signals.hpp"
 #include "app/terminal.hpp"
+#include "app/watchdog.hpp"
+#include "hal/output_file.hpp"
 #include "hal/plugin_loader.hpp"
 #include "mixed_reality/settings/bridge_types.hpp"
 #include "mixed_reality/time/pacer.hpp"
@@ -20,6 +23,7 @@
 namespace tandem::app {
 namespace {
 
+constexpr double kStepTimeout_s = 5.0;  // after which a controller that does not return is named
 constexpr hal::TimeNs kConnectWithin_ns = 15 * hal::kNsPerSecond;
 constexpr hal::TimeNs kOpenWithin_ns = hal::kNsPerSecond;
 constexpr hal::TimeNs kStopWithin_ns = 2 * hal::kNsPerSecond;
@@ -119,6 +123,16 @@ int robot(const RobotOptions& options) {
   if (!item.bridge) item.bridge = core::BridgeConfig{};
   if (!options.link.empty()) item.bridge->link = options.link;
   const core::ControllerConfig& config = scenario->controllers[item.controller];
+  if (const hal::Status apart =
+          check_apart({{"report", options.report}}, {{"experiment", options.file}, {"robot's map", item.bridge->map}});
+      !apart.ok())
+    return complain(kBadInput, apart.error().message);
+  std::optional<hal::OutputFile> report;
+  if (!options.report.empty()) {
+    auto opened = hal::OutputFile::open(options.report, "report");
+    if (!opened.ok()) return complain(kBadInput, opened.error().message);
+    report = std::move(opened).value();
+  }
 
   const hal::Log log([](hal::Severity, std::string_view text) { say(text); });
   GuardedRobots guarded({item}, log);  // before any thread
@@ -144,6 +158,7 @@ int robot(const RobotOptions& options) {
   }
 
   const std::atomic<bool>& stop = catch_signals();
+  const Watchdog watchdog(kStepTimeout_s, stop);
   mixed_reality::MonotonicTime clock;
   guarded.add(bridge);
   if (const hal::Status claimed = guarded.claim(); !claimed.ok())
@@ -174,7 +189,8 @@ int robot(const RobotOptions& options) {
       if (!pacer.wait_for_next(stop)) break;
     }
   }
-  if (failure.empty() && !stop.load() && bridge.health() == bridges::LinkHealth::Lost) {
+  const bool interrupted = stop.load();
+  if (failure.empty() && !interrupted && bridge.health() == bridges::LinkHealth::Lost) {
     failure = "robot '" + item.id + "' was lost at the end: " + bridge.trouble();
   }
   stop_and_wait(bridge, clock);
@@ -190,15 +206,19 @@ int robot(const RobotOptions& options) {
         "robot '" + item.id + "' did not confirm its stop: switch it off by hand if it moves";
     failure += (failure.empty() ? "" : "\n") + unconfirmed;
   }
-  if (!options.report.empty()) {
+  if (report) {
     json["stop_confirmed"] = confirmed;
     const std::string library = loader.find(config.library).value().string();
     if (const auto digest = sha256_of_file(library); digest.ok()) {
       json["controller"] = library;
       json["sha256"] = digest.value();
     }
+    json["finished"] = failure.empty() && !interrupted;
+    json["ended"] = !failure.empty() ? "failed" : interrupted ? "interrupted" : "length";
     if (!failure.empty()) json["failure"] = failure;
-    const hal::Status written = write_report(options.report, hal::to_text(json));
+    std::fflush(stdout);
+    hal::Status written = report->write(hal::to_text(json) + "\n");
+    if (written.ok()) written = report->commit();
     if (!written.ok()) return complain(kFailedRunning, written.error().message);
   }
   return failure.empty() ? kDone : complain(kFailedRunning, failure);

@@ -208,6 +208,12 @@ TEST_F(BadInput, OutputsThatCannotBeWrittenAreRefusedBeforeTheRun) {
   EXPECT_FALSE(scenarios::fs::exists(folder_.path() / "x"));
 }
 
+TEST_F(BadInput, TheReportOfARealRobotIsOpenedBeforeItIsDriven) {
+  const std::string experiment = kConfigs + "epuck_robot.xml";
+  fails({"robot", experiment, "--report", "/no/such/folder/r.json"}, 1, {"/no/such/folder/r.json", "No such file"});
+  fails({"robot", experiment, "--report", experiment}, 1, {"overwrite the experiment"});
+}
+
 TEST_F(BadInput, AFullDeviceIsTold) {
   const std::string experiment = kConfigs + "epuck_diffusion.xml";
   fails({"run", experiment, "--seconds", "1", "--report", "/dev/full"}, 3, {"report", "No space left"});
