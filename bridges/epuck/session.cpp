@@ -140,6 +140,7 @@ void Session::go_on_stopping(TimeNs now) noexcept {
 
 void Session::on_rest(TimeNs now) noexcept {
   at_rest_ = true;
+  rest_doubted_ = false;
   sent_.left = sent_.right = {};
   speeds_before_ = {};
   if (stop_asked_) ++statistics_.stops_confirmed;
@@ -359,6 +360,9 @@ void Session::on_answer(TimeNs at) noexcept {
   }
   asked_again_ = false;
   if (!speeds_as_told(raw.commanded, at)) return;
+  const bool stands = sent_.left.value == 0 && sent_.right.value == 0 && raw.commanded[0] == 0 && raw.commanded[1] == 0;
+  if (rest_doubted_) at_rest_ = stands;
+  rest_doubted_ = false;
   take_samples(raw, taken);
   state_ = SessionState::Active;
   trouble_ = "";
@@ -529,6 +533,11 @@ void Session::send_pending(TimeNs now) noexcept {
   output_.clear();
   append_lamps(now);
   append_wheels();
+  if (at_rest_ && !output_.empty()) {
+    // A single wrong bit makes "light a lamp" a "set speeds", or another speed of 0: the answer tells whether it did.
+    at_rest_ = false;
+    rest_doubted_ = true;
+  }
   asked_ = pending_quantities_;
   asked_.add(Quantity::CommandedSpeeds);
   pending_quantities_ = {};

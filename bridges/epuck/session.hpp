@@ -218,7 +218,8 @@ class Session {
   bool ending_ = false;      // or by nothing
   bool stop_asked_ = false;  // by `stop`, and not yet confirmed
   bool at_rest_ = false;
-  bool restarted_ = false;  // since the wheel counters were last read
+  bool rest_doubted_ = false;  // until the next answer
+  bool restarted_ = false;     // since the wheel counters were last read
   bool counters_known_ = false;
   bool counters_doubtful_ = false;  // first reading after a handshake
   bool asked_again_ = false;

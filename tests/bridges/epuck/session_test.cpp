@@ -576,6 +576,34 @@ TEST(EpuckSession, StopsAlsoWhileAnAnswerIsAwaited) {
   EXPECT_FALSE(rig.session.at_rest());
 }
 
+TEST(EpuckSession, IsAtRestOnlyWhenWhatItWasToldSinceHasNotMovedIt) {
+  Rig rig;
+  rig.connect();
+  rig.session.stop(rig.now);
+  rig.run(300 * kMs);
+  ASSERT_TRUE(rig.session.at_rest());
+  rig.downstream = [](Bytes b) {
+    if (!b.empty() && b[0] == 0xB4) b[0] = 0xBC;  // "lamp" becomes "speeds"
+    return b;
+  };
+  rig.upstream = [](Bytes) { return Bytes{}; };
+  Actuation lit;
+  lit.ring[0] = {255, 0, 0};
+  rig.request(lit);
+  EXPECT_NE(rig.robot.left, 0);
+  EXPECT_FALSE(rig.session.at_rest());
+  rig.upstream = rig.downstream = [](Bytes b) { return b; };
+  rig.run(500 * kMs);
+  EXPECT_EQ(rig.robot.left, 0);
+  EXPECT_TRUE(rig.session.at_rest());
+  rig.request(lit);
+  EXPECT_TRUE(rig.session.at_rest());  // the answer said so
+  lit.ring[0] = {0, 0, 0};
+  rig.upstream = [](Bytes) { return Bytes{}; };
+  rig.request(lit);
+  EXPECT_FALSE(rig.session.at_rest());  // nothing has said so yet
+}
+
 TEST(EpuckSession, DoesNotTakeAStopForConfirmedWhileTheWheelsTurn) {
   Rig rig;
   rig.connect();
