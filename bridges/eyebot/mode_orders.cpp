@@ -50,8 +50,10 @@ const char* outcome_name(Outcome outcome) noexcept {
 void ModeOrders::want(Action action, float param, hal::TimeNs now) noexcept {
   if (out_ && order_.action == action) return;
   const Last& before = last(action);
-  // One that was refused for its stamp gets another one.
-  const hal::TimeNs pause = before.outcome == Outcome::RejectedStale ? kSayAgain : kTryAgain;
+  // One that was refused for its stamp gets another one; a fail-safe is cleared as soon as its cause is gone.
+  const bool soon = before.outcome == Outcome::RejectedStale ||
+                    (action == Action::ClearFailsafe && before.outcome == Outcome::Failed);
+  const hal::TimeNs pause = soon ? kSayAgain : kTryAgain;
   if (before.outcome != Outcome::Never && now - before.at_ns < pause) return;
   out_ = true;
   order_ = {action, param, seq_, now};

@@ -64,7 +64,7 @@ class ModeOrders {
   };
 
   /// Has the robot do `action`, unless just that is being said, or was answered less than a second ago (refused as too
-  /// late: a fifth of a second).
+  /// late, or a fail-safe whose cause lasted: a fifth of a second).
   void want(Action action, float param, hal::TimeNs now) noexcept;
   /// Nothing is to be said any more.
   void withdraw() noexcept { out_ = false; }

@@ -331,6 +331,17 @@ TEST(EyebotOrders, OneThatWasRefusedIsGivenAgainAfterASecond) {
   EXPECT_TRUE(orders.due(kS));
 }
 
+TEST(EyebotOrders, AFailSafeWhoseCauseLastedIsClearedAFifthOfASecondLater) {
+  ModeOrders orders;
+  orders.want(Action::ClearFailsafe, 0.0F, 0);
+  ASSERT_TRUE(orders.due(0));
+  ASSERT_TRUE(orders.take(answer(5, 0, messages::Ack::FAILED), 5, 0));
+  orders.want(Action::ClearFailsafe, 0.0F, 199 * kMs);
+  EXPECT_FALSE(orders.due(199 * kMs));
+  orders.want(Action::ClearFailsafe, 0.0F, 200 * kMs);
+  EXPECT_TRUE(orders.due(200 * kMs));
+}
+
 TEST(EyebotOrders, AnUnknownResultIsAFailure) {
   ModeOrders orders;
   orders.want(Action::Arm, 0.0F, 0);
