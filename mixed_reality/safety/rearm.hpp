@@ -32,7 +32,7 @@ std::string to_text(const RearmPolicy& policy);
 /// From a link that is back, to driving: `settle_s` after the first tick in which all is well, at once with the ramp.
 struct RearmParams {
   RearmPolicy policy = {};  ///< for the stops whose row of the safety table needs a re-arm
-  double settle_s = 0.5;    ///< after every other stop, all must have been well for this long
+  double settle_s = 0.3;    ///< after every other stop, all must have been well for this long
   double ramp_m_s2 = 0.25;  ///< then the largest speed grows from 0 by this
   void describe(hal::ParamVisitor& v) {
     v.number("settle_after", settle_s, hal::unit::s, {0.0, 60.0},

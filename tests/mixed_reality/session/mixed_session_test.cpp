@@ -221,7 +221,7 @@ TEST_F(MixedRun, ALinkThatIsCutHoldsTheRobotAndTheRestGoesOn) {
   EXPECT_EQ(report.robots[0].counts.stops, 1U);
   EXPECT_EQ(report.robots[0].state, "driving");
   EXPECT_EQ(report.robots[1].counts.stops, 0U);
-  EXPECT_EQ(report.robots[1].counts.ticks_driving, 95U);  // all but the time to settle
+  EXPECT_EQ(report.robots[1].counts.ticks_driving, 97U);  // all but the time to settle
   EXPECT_NEAR(pose("sim").x_m, -1.5 + 0.1 * 9.9, 1e-9);
   EXPECT_NE(log_.find("robot 'ep0' at 3 s: link lost (cable out)"), std::string::npos) << log_;
   expect_all_stand();
