@@ -96,29 +96,35 @@ bool FootbotStopper::all_confirmed() const {
   return std::ranges::all_of(rows_, &Row::confirmed);
 }
 
-StopState FootbotStopper::step(TimeNs now) {
+StopState FootbotStopper::poll(TimeNs now) {
   if (rows_.empty()) return StopState::Confirmed;
   if (!link_ && !open()) return StopState::Unreachable;
-  const TimeNs end = std::max(now, monotonic_ns()) + kStep;  // opening may have taken long
-  for (now = monotonic_ns(); now < end; now = monotonic_ns()) {
-    if (link_->state() == Carrier::Gone) {
-      link_.reset();
-      trouble_ = "the link is gone";
-      return StopState::Unreachable;
-    }
-    if (link_->state() == Carrier::Up && now >= say_due_ns_) {
-      if (first_said_ns_ == 0) first_said_ns_ = now;
-      say_due_ns_ = now + kSayAgain;
-      say();
-    }
-    aseba::MessageView message;
-    while (link_->receive(message)) hear(message);
-    // Also what is not to be confirmed is said twice.
-    if (all_confirmed() && first_said_ns_ != 0 && now - first_said_ns_ >= 2 * kSayAgain) return StopState::Confirmed;
-    link_->wait(kWait);
+  if (link_->state() == Carrier::Gone) {
+    link_.reset();
+    trouble_ = "the link is gone";
+    return StopState::Unreachable;
   }
+  if (link_->state() == Carrier::Up && now >= say_due_ns_) {
+    if (first_said_ns_ == 0) first_said_ns_ = now;
+    say_due_ns_ = now + kSayAgain;
+    say();
+  }
+  aseba::MessageView message;
+  while (link_->receive(message)) hear(message);
+  // Also what is not to be confirmed is said twice.
+  if (all_confirmed() && first_said_ns_ != 0 && now - first_said_ns_ >= 2 * kSayAgain) return StopState::Confirmed;
   trouble_ = heard_ ? "its modules do not hold the resting values" : "its modules do not answer";
   return heard_ ? StopState::Stopping : StopState::Unreachable;
+}
+
+StopState FootbotStopper::step(TimeNs now) {
+  StopState state = poll(now);
+  now = monotonic_ns();  // opening may have taken long
+  for (const TimeNs end = now + kStep; state != StopState::Confirmed && link_ && now < end; now = monotonic_ns()) {
+    link_->wait(kWait);
+    state = poll(monotonic_ns());
+  }
+  return state;
 }
 
 }  // namespace tandem::bridges::footbot

@@ -15,6 +15,8 @@ class FootbotStopper final : public guardian::Stopper {
   FootbotStopper(aseba::MessageLinkOpener opener, const std::vector<LastWords>& messages);
 
   guardian::StopState step(hal::TimeNs now) override;
+  /// The same without waiting, in the caller's time: says what is due, takes in what has come.
+  guardian::StopState poll(hal::TimeNs now);
   std::string trouble() const override { return trouble_; }
 
  private:
