@@ -6,8 +6,9 @@
 namespace tandem::core {
 namespace {
 
-constexpr double kNear_m = 5e-4;  // gaps that count as contacts even of bodies at rest
-constexpr double kSkin_m = 2e-3;  // around bodies that lean, for ODE's finders see overlaps only
+constexpr double kNear_m = 5e-4;         // gaps that count as contacts even of bodies at rest
+constexpr double kCarriesUpTo_m = 2e-4;  // gaps of bodies at rest that do not keep them from being carried
+constexpr double kSkin_m = 2e-3;         // around bodies that lean, for ODE's finders see overlaps only
 constexpr double kSlides_m_s = 1e-6;
 constexpr double kCarries = 0.7;        // vertical share of a normal from which on a body stands on what it touches
 constexpr double kCasterLift_m = 1e-4;  // wheels, not casters, carry the weight
@@ -64,8 +65,23 @@ void Contacts::touch(Twin& a, Twin* b) {
   if (b != nullptr) take(*b, &a);
 }
 
+void Contacts::note_support(Twin& a, Twin* b, const Touch& at, const Grip& grip) {
+  if (a.robot() || (b != nullptr && b->robot())) {
+    a.driven = true;
+    if (b != nullptr) b->driven = true;
+    return;
+  }
+  if (b != nullptr) {
+    Twin& top = top_of_heap(a);
+    Twin& other = top_of_heap(*b);
+    if (&top != &other) other.heap = &top;
+  }
+  if (at.depth_m > -kCarriesUpTo_m) supports_.push_back({&a, b, at.p_m, at.normal, std::min(grip.along, grip.across)});
+}
+
 void Contacts::add(Twin& a, Twin* b, const Touch& at, const Grip& grip) {
   touch(a, b);
+  note_support(a, b, at, grip);
   if (at.normal[2] > kCarries) a.standing = true;
   if (b != nullptr && at.normal[2] < -kCarries) b->standing = true;
   Vector3 slip = velocity_at(a, at.p_m);

@@ -3,6 +3,7 @@
 #include <array>
 #include <vector>
 
+#include "core/physics/dynamics3d/standing.hpp"
 #include "core/physics/dynamics3d/twin.hpp"
 
 namespace tandem::core {
@@ -24,6 +25,13 @@ struct Surfaces {
   double robot_friction = 0.1;   ///< the rims of robots on whatever they touch
 };
 
+/// The one that stands for all objects of its heap: those that touch one another, directly or through others.
+inline Twin& top_of_heap(Twin& twin) noexcept {
+  Twin* top = &twin;
+  while (top->heap != nullptr) top = top->heap;
+  return *top;
+}
+
 /// Makes ODE's contact joints. ODE itself sees a contact when bodies overlap already; those made here start while there
 /// is a gap, and allow just the approach that closes it within the sub-step. So bodies meet instead of overlapping and
 /// being pushed apart.
@@ -34,11 +42,14 @@ class Contacts {
   void begin(dWorldID world, double dt_s) noexcept {
     world_ = world;
     dt_s_ = dt_s;
+    supports_.clear();
   }
   void between(Twin& a, Twin& b, const Surfaces& surfaces);
   void with_still(Twin& a, Still& still, const Surfaces& surfaces);
   /// With floor and ceiling; of what lives in ODE.
   void with_ground(Twin& a, const Surfaces& surfaces);
+  /// Where objects touch one another and what does not move, in this sub-step.
+  const std::vector<Support>& supports() const noexcept { return supports_; }
   /// Ends the sub-step.
   void clear() { dJointGroupEmpty(group_.get()); }
 
@@ -49,6 +60,7 @@ class Contacts {
     bool level = false;  ///< the first direction is level, whichever way the bodies slide
   };
   void touch(Twin& a, Twin* b);
+  void note_support(Twin& a, Twin* b, const Touch& at, const Grip& grip);
   void add(Twin& a, Twin* b, const Touch& touch, const Grip& grip);
   void join(dBodyID a, dBodyID b, const Touch& touch, const Grip& grip, const Vector3& first);
   void lean(Twin& a, Twin* b, dGeomID geom_b, const Prism& prism_b, const Grip& grip);
@@ -60,6 +72,7 @@ class Contacts {
   dWorldID world_ = nullptr;
   double dt_s_ = 0.0;
   OdeJointGroup group_;
+  std::vector<Support> supports_;
 };
 
 }  // namespace tandem::core

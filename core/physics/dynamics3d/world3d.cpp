@@ -1,7 +1,10 @@
 #include "core/physics/dynamics3d/world3d.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <mutex>
+#include <utility>
 
 #include "hal/unit.hpp"
 
@@ -38,6 +41,38 @@ Sort sort_of(const SpaceStores& stores, BodyKey key, const World3dSettings& sett
   return settings.wheels && sheet.wheel_radius_m > 0.0 && !external_in(stores, key) ? Sort::Wheels : Sort::Base;
 }
 
+/// Of the fastest of its points, at most; of what lives in ODE.
+double speed_of(const Twin& twin) noexcept {
+  const dReal* v = dBodyGetLinearVel(twin.body.get());
+  const dReal* w = dBodyGetAngularVel(twin.body.get());
+  const double reach_m =
+      length({twin.prism.round ? twin.prism.radius_m : twin.prism.half_x_m,
+              twin.prism.round ? 0.0 : twin.prism.half_y_m, std::max(twin.origin_m, twin.height_m - twin.origin_m)});
+  return length({v[0], v[1], v[2]}) + length({w[0], w[1], w[2]}) * reach_m;
+}
+
+/// Fingerprint of all that decides whether a heap stands.
+std::uint64_t mark_of(const std::vector<Twin*>& objects, const std::vector<Support>& supports) noexcept {
+  std::uint64_t mark = 0xCBF29CE484222325ULL;
+  const auto mix = [&mark](double value) {
+    mark = (mark ^ std::bit_cast<std::uint64_t>(value)) * 0x9E3779B97F4A7C15ULL;
+    mark ^= mark >> 29;
+  };
+  for (const Twin* object : objects) {
+    mix(static_cast<double>(object->key.value));
+    mix(object->mass_kg);
+    for (const double x : object->before_m) mix(x);
+    for (const double x : object->turned_before) mix(x);
+  }
+  for (const Support& support : supports) {
+    mix(support.b == nullptr ? -1.0 : static_cast<double>(support.b->key.value));
+    for (const double x : support.p_m) mix(x);
+    for (const double x : support.normal) mix(x);
+    mix(support.friction);
+  }
+  return mark;
+}
+
 /// The same as the store holds, for all that its double keeps.
 bool agrees(const Twin& twin, const BodyState& store) noexcept {
   BodyState own = state_of(twin);
@@ -61,10 +96,35 @@ void World3d::guarded(const SolverContext& context, Work&& work) {
     work();
   } catch (const OdeError& error) {
     broken_ = true;
+    abandon();
     const Region& region = context.region;
     const BodyKey first = region.owned.empty() ? region.mirrored.front() : region.owned.front();
     trouble.push_back({first, "is in a region that cannot be solved: " + std::string(error.what())});
   }
+}
+
+/// Everything of a world that ODE gave up in is kept until the process ends: its destructors would give up, too.
+void World3d::abandon() {
+  struct Remains {
+    OdeThreading threading;
+    OdeWorld world;
+    std::unique_ptr<Contacts> contacts;
+    std::vector<Still> stills;
+    Roster<Double> roster;
+    std::vector<Held> held;
+  };
+  static std::mutex lock;
+  static auto& all = *new std::vector<std::unique_ptr<Remains>>;
+  auto remains = std::make_unique<Remains>();
+  remains->threading = std::exchange(threading_, {});
+  remains->world = std::exchange(world_, {});
+  remains->contacts = std::move(contacts_);
+  remains->stills = std::exchange(stills_, {});
+  remains->roster = std::exchange(roster_, {});
+  remains->held = std::exchange(held_, {});
+  version_ = 0;
+  const std::lock_guard hold(lock);
+  all.push_back(std::move(remains));
 }
 
 void World3d::report(const Twin& twin, std::string what) {
@@ -334,7 +394,10 @@ void World3d::advance(const SolverContext& context) {
       for (auto& entry : entries) {
         if (entry.body->touched) enter(*entry.body);
       }
+      find_heaps();
+      rest_heaps();
       dWorldQuickStep(world_.get(), dt_s);
+      stop_heaps(dt_s);
       contacts_->clear();
       for (auto& entry : entries) {
         if (entry.body->lost) continue;
@@ -353,15 +416,17 @@ void World3d::plan(const SpaceStores& stores, Twin& twin, double dt_s) {
   const double fall_m_s = settings_.gravity_m_s2 * dt_s;
   twin.touched = false;
   twin.engaged = false;
+  twin.driven = false;
+  twin.heap = nullptr;
+  if (std::exchange(twin.resting, false)) dBodyEnable(twin.body.get());
   if (!twin.light()) {
     if (twin.sort == Sort::Wheels) drive_wheels(twin, stores.bodies.left_m_s[i], stores.bodies.right_m_s[i]);
     if (twin.sort == Sort::Rotors) drive_rotors(twin, flight_of(stores.bodies, i), settings_.gravity_m_s2, dt_s);
-    const dReal* v = dBodyGetLinearVel(twin.body.get());
-    const dReal* w = dBodyGetAngularVel(twin.body.get());
-    const double reach_m =
-        length({twin.prism.round ? twin.prism.radius_m : twin.prism.half_x_m,
-                twin.prism.round ? 0.0 : twin.prism.half_y_m, std::max(twin.origin_m, twin.height_m - twin.origin_m)});
-    twin.hop_m = (length({v[0], v[1], v[2]}) + fall_m_s + length({w[0], w[1], w[2]}) * reach_m) * dt_s;
+    const dReal* p = dBodyGetPosition(twin.body.get());
+    const dReal* q = dBodyGetQuaternion(twin.body.get());
+    twin.before_m = {p[0], p[1], p[2]};
+    std::copy_n(q, 4, twin.turned_before);
+    twin.hop_m = (speed_of(twin) + fall_m_s) * dt_s;
     return;
   }
   if (twin.external) {
@@ -431,6 +496,7 @@ void World3d::find_contacts() {
   auto& entries = roster_.entries();
   for (Held& held : held_) {
     for (Twin* twin : {held.twin_a, held.twin_b}) {
+      twin->driven = true;
       twin->touched = twin->light();
       twin->engaged = twin->sort == Sort::Base && !twin->external;
     }
@@ -465,6 +531,87 @@ void World3d::enter(Twin& twin) {
     engage(twin, world_.get());
   else
     release(twin);
+}
+
+/// Heaps of objects that touch one another, directly or through others, and the ground, and no robot.
+void World3d::find_heaps() {
+  auto& entries = roster_.entries();
+  heaps_.clear();
+  for (auto& entry : entries) {
+    Twin& twin = *entry.body;
+    if (twin.sort == Sort::Object && (twin.driven || twin.lost)) top_of_heap(twin).driven = true;
+  }
+  for (auto& entry : entries) {
+    Twin& twin = *entry.body;
+    if (twin.sort != Sort::Object || top_of_heap(twin).driven) continue;
+    heaps_.push_back({&top_of_heap(twin), &twin});
+  }
+  const auto by_key = [](const HeapMember& a, const HeapMember& b) {
+    return a.top != b.top ? a.top->key < b.top->key : a.twin->key < b.twin->key;
+  };
+  std::sort(heaps_.begin(), heaps_.end(), by_key);
+}
+
+/// Calls `use(first, past)` for every heap of `heaps_`.
+template <class Use>
+void World3d::each_heap(Use&& use) {
+  for (std::size_t first = 0; first < heaps_.size();) {
+    std::size_t past = first;
+    while (past < heaps_.size() && heaps_[past].top == heaps_[first].top) ++past;
+    use(first, past);
+    first = past;
+  }
+}
+
+/// Whether a heap can stay as it is. What stood in the last sub-step and is unchanged stands.
+bool World3d::stands(std::size_t first, std::size_t past) {
+  heap_.clear();
+  supports_.clear();
+  for (std::size_t i = first; i < past; ++i) heap_.push_back(heaps_[i].twin);
+  for (const Support& support : contacts_->supports()) {
+    if (&top_of_heap(*support.a) == heaps_[first].top) supports_.push_back(support);
+  }
+  const std::uint64_t mark = mark_of(heap_, supports_);
+  const bool known = std::binary_search(stood_.begin(), stood_.end(), mark);
+  if (!known && !standing_.stands(heap_, supports_, settings_.gravity_m_s2)) return false;
+  stands_now_.push_back(mark);
+  return true;
+}
+
+/// Heaps at rest that stand take no part in the sub-step.
+void World3d::rest_heaps() {
+  std::swap(stood_, stands_now_);
+  stands_now_.clear();
+  std::sort(stood_.begin(), stood_.end());
+  each_heap([&](std::size_t first, std::size_t past) {
+    for (std::size_t i = first; i < past; ++i) {
+      if (speed_of(*heaps_[i].twin) != 0.0) return;
+    }
+    if (!stands(first, past)) return;
+    for (std::size_t i = first; i < past; ++i) {
+      heaps_[i].twin->resting = true;
+      dBodyDisable(heaps_[i].twin->body.get());
+    }
+  });
+}
+
+/// Heaps that stand, and are so slow that friction stops them within half a sub-step, come to rest.
+void World3d::stop_heaps(double dt_s) {
+  const double friction = std::min(settings_.surfaces.floor_friction, settings_.surfaces.object_friction);
+  const double slow_m_s = 0.5 * std::min(1.0, friction) * settings_.gravity_m_s2 * dt_s;
+  each_heap([&](std::size_t first, std::size_t past) {
+    for (std::size_t i = first; i < past; ++i) {
+      if (heaps_[i].twin->resting || speed_of(*heaps_[i].twin) >= slow_m_s) return;
+    }
+    if (!stands(first, past)) return;
+    for (std::size_t i = first; i < past; ++i) {
+      const Twin& twin = *heaps_[i].twin;
+      dBodySetPosition(twin.body.get(), twin.before_m[0], twin.before_m[1], twin.before_m[2]);
+      dBodySetQuaternion(twin.body.get(), twin.turned_before);
+      dBodySetLinearVel(twin.body.get(), 0.0, 0.0, 0.0);
+      dBodySetAngularVel(twin.body.get(), 0.0, 0.0, 0.0);
+    }
+  });
 }
 
 /// Takes it out again, and moves those that were not in.

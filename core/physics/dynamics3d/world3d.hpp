@@ -49,6 +49,7 @@ class World3d final : public Solver {
 
   template <class Work>
   void guarded(const SolverContext& context, Work&& work);
+  void abandon();
   void report(const Twin& twin, std::string what);
 
   void make_world();
@@ -67,6 +68,12 @@ class World3d final : public Solver {
   bool may_touch(const Twin& a, const Still& still) const noexcept;
   void find_contacts();
   void enter(Twin& twin);
+  void find_heaps();
+  template <class Use>
+  void each_heap(Use&& use);
+  bool stands(std::size_t first, std::size_t past);
+  void rest_heaps();
+  void stop_heaps(double dt_s);
   void leave(Twin& twin, double dt_s);
   void check(Twin& twin);
   void write_back(SpaceStores& stores, const Twin& twin, double tick_s) const;
@@ -84,6 +91,16 @@ class World3d final : public Solver {
   std::vector<Held> held_;
   PairFinder finder_;
   std::vector<PairFinder::Pair> candidates_;
+
+  struct HeapMember {
+    const Twin* top;
+    Twin* twin;
+  };
+  std::vector<HeapMember> heaps_;  // of this sub-step, heap by heap
+  std::vector<Twin*> heap_;        // the one that is looked at
+  std::vector<Support> supports_;
+  Standing standing_;
+  std::vector<std::uint64_t> stood_, stands_now_;  // fingerprints of heaps that stood in the last sub-step, and in this
 };
 
 }  // namespace tandem::core

@@ -51,6 +51,72 @@ TEST(Dynamics3dFalling, EndsOnTheFloorWhereverThatIs) {
   }
 }
 
+/// Stacks as people build them: untouched they stay as they are.
+TEST(Dynamics3dFalling, AStackStands) {
+  for (const bool aside : {false, true}) {
+    ByHand hand;
+    constexpr int kBoxes = 8;
+    for (int i = 0; i < kBoxes; ++i)
+      hand.block(aside ? 0.01 * (i % 2) : 0.0, 0.0, 0.1 * i, 0.1, 0.1, 0.1, 0.5, aside ? 0.2 * i : 0.0);
+    for (int i = 0; i < 3000; ++i) {
+      hand.tick();
+      for (int k = 0; k < kBoxes; ++k) {
+        const auto number = static_cast<std::size_t>(k);
+        ASSERT_NEAR(hand.z_m(number), 0.1 * k, 2e-3) << "box " << k << " after " << 0.1 * i << " s";
+        ASSERT_NEAR(hand.object(number).x_m, aside ? 0.01 * (k % 2) : 0.0, 2e-3) << k << " after " << 0.1 * i << " s";
+        ASSERT_GT(hand.upright(number), 0.9999) << "box " << k << " after " << 0.1 * i << " s";
+      }
+    }
+  }
+}
+
+/// Bricks that each stick out over the one below by 1/(2n) of their length, the top one first, just stand.
+TEST(Dynamics3dFalling, OverhangingBricksStandUpToTheClosedForm) {
+  for (const double share : {0.95, 1.05}) {
+    ByHand hand;
+    constexpr int kBricks = 5;
+    constexpr double kLength_m = 0.2;
+    double x_m = 0.0;
+    for (int i = 0; i < kBricks; ++i) {
+      hand.block(x_m, 0.0, 0.05 * i, kLength_m, 0.1, 0.05, 0.5);
+      x_m += share * kLength_m / 2.0 / (kBricks - 1 - i);
+    }
+    hand.ticks(300);
+    const bool stands = share < 1.0;
+    for (int i = 0; i < kBricks; ++i) {
+      if (stands) EXPECT_NEAR(hand.z_m(static_cast<std::size_t>(i)), 0.05 * i, 1e-6);
+    }
+    if (!stands) EXPECT_LT(hand.z_m(kBricks - 1), 0.15);
+  }
+}
+
+TEST(Dynamics3dFalling, WhatWasDroppedComesToRest) {
+  ByHand hand;
+  for (int i = 0; i < 4; ++i) hand.block(0.003 * i, 0.0, 0.1 * i + 0.02 * (i + 1), 0.1, 0.1, 0.1, 0.5, 0.1 * i);
+  hand.ticks(50);
+  std::vector<double> places;
+  for (std::size_t i = 0; i < 4; ++i) {
+    places.push_back(hand.object(i).x_m);
+    places.push_back(hand.z_m(i));
+    EXPECT_EQ(hand.object_motion(i).v_m_s, (std::array<double, 3>{})) << i;
+  }
+  hand.ticks(500);
+  for (std::size_t i = 0; i < 4; ++i) {
+    EXPECT_EQ(hand.object(i).x_m, places[2 * i]);
+    EXPECT_EQ(hand.z_m(i), places[2 * i + 1]);
+  }
+}
+
+TEST(Dynamics3dFalling, AStackFallsWhenItsFootGoes) {
+  ByHand hand;
+  for (int i = 0; i < 3; ++i) hand.block(0.0, 0.0, 0.1 * i, 0.1, 0.1, 0.1, 0.5);
+  hand.ticks(20);
+  hand.object(0).x_m += 0.5;  // a hook takes it away
+  hand.ticks(10);
+  EXPECT_NEAR(hand.z_m(1), 0.0, 2e-3);
+  EXPECT_NEAR(hand.z_m(2), 0.1, 5e-3);
+}
+
 TEST(Dynamics3dFalling, ARegionsBottomIsAFloor) {
   ByHand hand;
   hand.region();
