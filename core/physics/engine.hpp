@@ -40,8 +40,12 @@ class Engine {
   /// be engines of another kind. Reads the stores only.
   virtual void load(const PhysicsContext& /*context*/) {}
 
-  /// Moves every body of its regions by one tick. Between this and `settle` the step treats bodies that left their
-  /// region or the arena and rebuilds the indices.
+  /// In how many parts the tick is to go, so that none of its bodies jumps over anything before contacts are resolved:
+  /// `advance` is called so often, each time for a part of the tick, and `settle` after each.
+  virtual int parts(const PhysicsContext& /*context*/) const { return 1; }
+
+  /// Moves every body of its regions by one part of a tick, which lasts `context.tick_s`. Between this and `settle` the
+  /// step treats bodies that left their region or the arena and rebuilds the indices.
   virtual void advance(const PhysicsContext& context) = 0;
 
   /// Resolves contacts on up-to-date indices, for engines that need those; entries of the index are moved along with

@@ -83,6 +83,7 @@ struct World::Impl {
   std::unique_ptr<ThreadPool> pool;
   MeasuredPhase sensing, controlling;
   std::vector<std::unique_ptr<Engine>> engines;
+  std::vector<int> parts;  // of the tick, by engine
   RegionKeeper keeper;
   std::vector<std::uint8_t> kinematic;  // by region: kinematics2d moves its bodies
   bool one_kind = true;                 // kinematics2d moves all bodies
@@ -121,6 +122,7 @@ struct World::Impl {
   // --- one tick ---
   void act();
   void physics();
+  void move_part(int part);
   void settle_changes();
   void stop_on_trouble();
   void find_stray_objects();

@@ -31,7 +31,22 @@ void World::Impl::physics() {
   keeper.list(stores(), *pool);
   stores().bodies_changed = false;
   for (const auto& engine : engines) engine->load(context);
-  for (const auto& engine : engines) engine->advance(context);
+  int most = 1;
+  parts.resize(engines.size());
+  for (std::size_t i = 0; i < engines.size(); ++i) {
+    parts[i] = engines[i]->parts(context);
+    most = std::max(most, parts[i]);
+  }
+  for (int part = 0; part < most && (part == 0 || state == RunState::Running); ++part) move_part(part);
+  index_lit_objects();
+  follow_loads(stores(), tick_s());
+}
+
+/// Engines that go in fewer parts have come to the tick's end before the others.
+void World::Impl::move_part(int part) {
+  for (std::size_t i = 0; i < engines.size(); ++i) {
+    if (part < parts[i]) engines[i]->advance({stores(), *pool, tick_s() / parts[i], tick});
+  }
   ++stores().poses_version;
   stores().touched.clear();
   stop_on_trouble();
@@ -44,10 +59,8 @@ void World::Impl::physics() {
     trouble.store(0, std::memory_order_relaxed);
     strays.clear();
   }
-  index_movables();
-  index_lit_objects();
-  for (const auto& engine : engines) engine->settle(context);
-  follow_loads(stores(), tick_s());
+  if (part == 0) index_movables();
+  for (const auto& engine : engines) engine->settle({stores(), *pool, tick_s(), tick});
 }
 
 /// What hooks, operators and real robots changed since the last step.

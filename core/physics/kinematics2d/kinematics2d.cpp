@@ -11,7 +11,7 @@ namespace {
 constexpr std::size_t kChunk = 512;  // entries whose active ones form one list
 constexpr std::size_t kChunksWorthThreads = 2;
 constexpr double kLargestTurn_rad = 0.5;  // of one sub-step: where the series below are exact to 1e-13
-constexpr double kLargestHop = 0.5;       // of one sub-step, in body radii: nothing is jumped over
+constexpr double kLargestHop = 0.5;       // before contacts are resolved, in body radii: nothing is jumped over
 constexpr double kSlack_m = 0.02;         // bodies nearer than this may come to touch within the passes of one tick
 
 /// Rolls rows [begin, end) of one block along their arcs.
@@ -53,10 +53,15 @@ void roll(Bodies& b, std::size_t begin, std::size_t end, double wheel_base_m, do
   }
 }
 
+/// In how many hops a robot rolls at a speed.
+double hops(double speed_m_s, double radius_m, double tick_s) noexcept {
+  return speed_m_s * tick_s / (kLargestHop * radius_m);
+}
+
 /// How many sub-steps keep turns and hops small at the robot's highest speed.
 int sub_steps(const hal::DataSheet& sheet, double tick_s) noexcept {
   const double turn = 2.0 * sheet.max_wheel_speed_m_s / sheet.wheel_base_m * tick_s / kLargestTurn_rad;
-  const double hop = sheet.max_wheel_speed_m_s * tick_s / (kLargestHop * sheet.body_radius_m);
+  const double hop = hops(sheet.max_wheel_speed_m_s, sheet.body_radius_m, tick_s);
   return std::max(1, static_cast<int>(std::ceil(std::max(turn, hop))));
 }
 
@@ -190,6 +195,22 @@ std::pair<double, double> push_of(const Contacts& contacts, const IndexEntry& e)
 }
 
 }  // namespace
+
+int Kinematics2d::parts(const PhysicsContext& context) const {
+  const SpaceStores& stores = context.stores;
+  double most = 0.0;
+  for (const RobotBlock& block : stores.blocks) {
+    const hal::DataSheet& sheet = *stores.groups[block.group].sheet;
+    // With most ticks no robot is fast enough at all.
+    if (sheet.flies || hops(sheet.max_wheel_speed_m_s, sheet.body_radius_m, context.tick_s) <= 1.0) continue;
+    const Bodies& b = stores.bodies;
+    double fastest_m_s = 0.0;
+    for (std::size_t row = block.first_row; row < block.first_row + block.used; ++row)
+      fastest_m_s = std::max(fastest_m_s, std::fabs(b.left_m_s[row] + b.right_m_s[row]) * 0.5);
+    most = std::max(most, hops(fastest_m_s, sheet.body_radius_m, context.tick_s));
+  }
+  return std::max(1, static_cast<int>(std::ceil(most)));
+}
 
 void Kinematics2d::advance(const PhysicsContext& context) {
   SpaceStores& stores = context.stores;

@@ -23,6 +23,8 @@ class Kinematics2d final : public Engine {
   explicit Kinematics2d(const Params& params) : params_(params) {}
 
   std::string_view kind() const noexcept override { return "kinematics2d"; }
+  /// One, but for ticks so long that a robot rolls farther than half its radius in one.
+  int parts(const PhysicsContext& context) const override;
   void advance(const PhysicsContext& context) override;
   void settle(const PhysicsContext& context) override;
 
