@@ -2,11 +2,13 @@
 #pragma once
 #include <array>
 #include <concepts>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "hal/unit.hpp"
 
@@ -20,6 +22,27 @@ struct Range {
 
 inline constexpr Range kAny{};
 inline constexpr Range kNotNegative{0.0, std::numeric_limits<double>::infinity()};
+
+class ParamVisitor;
+
+/// A struct whose `describe(ParamVisitor&)` spells its parameters.
+template <class T>
+concept Described = requires(T t, ParamVisitor& v) {
+  t.describe(v);
+};
+
+/// A list of described structs, for visitors that do not know their type.
+class ParamList {
+ public:
+  virtual ~ParamList() = default;
+  virtual std::size_t size() const = 0;
+  virtual void describe(std::size_t index, ParamVisitor& visitor) = 0;
+  virtual void clear() = 0;
+  /// Appends one with its defaults, and describes it to `visitor`.
+  virtual void add(ParamVisitor& visitor) = 0;
+  /// Describes one with its defaults that is in no list.
+  virtual void describe_default(ParamVisitor& visitor) const = 0;
+};
 
 /// One visitor, many uses: the reader of experiment files fills the values in, the manual prints them, the report saves
 /// them. A value that is absent keeps what it has: the in-class initialiser is the default.
@@ -39,12 +62,35 @@ class ParamVisitor {
   /// "x,y,z", each in `bare`.
   virtual void vector(std::string_view name, std::array<double, 3>& value_si, const Unit& bare,
                       std::string_view doc) = 0;
-};
 
-/// A struct whose `describe(ParamVisitor&)` spells its parameters.
-template <class T>
-concept Described = requires(T t, ParamVisitor& v) {
-  t.describe(v);
+  /// A struct within the struct: in a file, the attributes of a child element `name`, of which there is one at most.
+  template <Described T>
+  void group(std::string_view name, T& value, std::string_view doc) {
+    visit_group(
+        name, &value, [](void* described, ParamVisitor& v) { static_cast<T*>(described)->describe(v); }, doc);
+  }
+
+  /// Any number of structs: in a file, one child element `name` each, in their order. A file that has any replaces the
+  /// whole list.
+  template <Described T>
+  void list(std::string_view name, std::vector<T>& values, std::string_view doc) {
+    struct Typed final : ParamList {
+      std::vector<T>& all;
+      explicit Typed(std::vector<T>& v) : all(v) {}
+      std::size_t size() const override { return all.size(); }
+      void describe(std::size_t index, ParamVisitor& visitor) override { all[index].describe(visitor); }
+      void clear() override { all.clear(); }
+      void add(ParamVisitor& visitor) override { all.emplace_back().describe(visitor); }
+      void describe_default(ParamVisitor& visitor) const override { T{}.describe(visitor); }
+    } typed(values);
+    visit_list(name, typed, doc);
+  }
+
+ protected:
+  using Describe = void (*)(void* value, ParamVisitor& visitor);
+  /// `describe(value, v)` describes the inner struct to any visitor.
+  virtual void visit_group(std::string_view name, void* value, Describe describe, std::string_view doc) = 0;
+  virtual void visit_list(std::string_view name, ParamList& list, std::string_view doc) = 0;
 };
 
 }  // namespace tandem::hal

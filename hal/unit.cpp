@@ -57,6 +57,16 @@ std::string format_number(double value) {
   return status == std::errc{} ? std::string(buffer.data(), end) : std::string("?");
 }
 
+namespace {
+
+std::string with_symbol(double number, const Unit& unit) {
+  std::string text = format_number(number);
+  if (!unit.symbol.empty()) text += " " + std::string(unit.symbol);
+  return text;
+}
+
+}  // namespace
+
 std::string format_quantity(double value_si, const Unit& unit) {
   // Round to 12 digits so that 0.05 m/s reads "5 cm/s" and not "5.000000000000001 cm/s".
   double shown = value_si / unit.to_si;
@@ -64,9 +74,27 @@ std::string format_quantity(double value_si, const Unit& unit) {
     const double scale = std::pow(10.0, 12.0 - std::ceil(std::log10(std::fabs(shown))));
     shown = std::round(shown * scale) / scale;
   }
-  std::string text = format_number(shown);
-  if (!unit.symbol.empty()) text += " " + std::string(unit.symbol);
-  return text;
+  return with_symbol(shown, unit);
+}
+
+std::string format_exactly(double value_si, const Unit& unit) {
+  const auto reads_back = [&](const std::string& text) {
+    const Result<double> read = parse_quantity(text, unit);
+    return read.ok() && read.value() == value_si;
+  };
+  std::string text = format_quantity(value_si, unit);
+  if (reads_back(text)) return text;
+  for (const Unit& si : kUnits) {
+    if (si.dim == unit.dim && si.to_si == 1.0) return with_symbol(value_si, si);
+  }
+  // A unit of no dimension: what is nearest to the quotient and gives the value when multiplied again.
+  double shown = value_si / unit.to_si;
+  for (const double direction : {-HUGE_VAL, HUGE_VAL}) {
+    double near = shown;
+    for (int i = 0; i < 4 && near * unit.to_si != value_si; ++i) near = std::nextafter(near, direction);
+    if (near * unit.to_si == value_si) shown = near;
+  }
+  return with_symbol(shown, unit);
 }
 
 }  // namespace tandem::hal

@@ -51,7 +51,11 @@ Result<double> parse_quantity(std::string_view text, const Unit& bare);
 /// The shortest decimal text that reads back as the same double.
 std::string format_number(double value);
 
-/// `value_si` written in `unit`, e.g. "5 cm/s".
+/// `value_si` written in `unit` for people, e.g. "5 cm/s": rounded to 12 digits.
 std::string format_quantity(double value_si, const Unit& unit);
+
+/// The same for files: `parse_quantity` with this unit gives the same bits back. In `unit` where a short number does
+/// that, else in the SI unit of its dimension.
+std::string format_exactly(double value_si, const Unit& unit);
 
 }  // namespace tandem::hal

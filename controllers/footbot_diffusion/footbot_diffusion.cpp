@@ -42,18 +42,20 @@ FootbotDiffusion::FootbotDiffusion(hal::Robot& robot, const Params& params)
       delta_(static_cast<float>(params.delta)),
       tan_alpha_(static_cast<float>(hal::tan(params.alpha_rad))),
       velocity_m_s_(params.velocity_m_s) {
-  if (params.talk || params.look) company_ = std::make_unique<Company>();
+  if (!params.talk && !params.look) return;
+  Company company;
   if (params.talk) {
-    company_->heard = &robot.sensor<hal::RangeAndBearing>();
-    company_->said = &robot.actuator<hal::RangeAndBearingSend>();
+    company.heard = &robot.sensor<hal::RangeAndBearing>();
+    company.said = &robot.actuator<hal::RangeAndBearingSend>();
   }
   if (params.look) {
-    company_->seen = &robot.sensor<hal::OmnidirectionalCamera>();
-    company_->leds = &robot.actuator<hal::RingLeds>();
+    company.seen = &robot.sensor<hal::OmnidirectionalCamera>();
+    company.leds = &robot.actuator<hal::RingLeds>();
   }
+  company_.reset(new Company(company));
 }
 
-void FootbotDiffusion::Company::step() noexcept {
+void FootbotDiffusion::Company::step() const noexcept {
   if (said != nullptr) said->say(static_cast<std::uint8_t>(heard->count));
   if (leds != nullptr) leds->set_all(seen->count == 0 ? hal::kRed : hal::kGreen);
 }

@@ -45,14 +45,20 @@ class FootbotDiffusion final : public hal::Controller {
   void step() noexcept override;
 
  private:
-  /// What `talk` and `look` ask for; null otherwise.
+  /// What `talk` and `look` ask for.
   struct Company {
     const hal::RangeAndBearing* heard = nullptr;
     hal::RangeAndBearingSend* said = nullptr;
     const hal::OmnidirectionalCamera* seen = nullptr;
     hal::RingLeds* leds = nullptr;
 
-    void step() noexcept;
+    void step() const noexcept;
+  };
+  /// Null without both: the many without stay small. Copies have their own.
+  struct CompanyOwner : std::unique_ptr<const Company> {
+    CompanyOwner() = default;
+    CompanyOwner(const CompanyOwner& other)
+        : unique_ptr(other == nullptr ? nullptr : std::make_unique<const Company>(*other)) {}
   };
 
   const hal::Proximity& proximity_;
@@ -62,7 +68,7 @@ class FootbotDiffusion final : public hal::Controller {
   float tan_alpha_;
   double velocity_m_s_;
   int turning_ = 0;  // 1 left, -1 right
-  std::unique_ptr<Company> company_;
+  CompanyOwner company_;
 };
 
 }  // namespace tandem::controllers

@@ -92,6 +92,9 @@ class ArenaReader {
     out_.floor.pixels_per_meter = f.pixels_per_meter;
     out_.floor.path = resolve(f.path, out_.file);
     out_.floor.line = e.line;
+    if (!f.path.empty())
+      *std::find_if(e.attributes.begin(), e.attributes.end(), [](const auto& a) { return a.name == "path"; }) = {
+          "path", out_.floor.path, e.line};
     if (f.source == "image" && f.path.empty()) reading_.error(e, "<floor source=\"image\"> needs the attribute 'path'");
   }
 
@@ -328,7 +331,7 @@ class ArenaReader {
     if (distribute != nullptr) item.distribute = *distribute;
     if (e.child("controller") == nullptr) reading_.error(e, "<" + e.name + "> needs a <controller config=\"…\"/>");
     reading_.once(e, "controller", [&](Element& c) { controller(c, item); });
-    reading_.once(e, "battery", [&](Element& c) { item.battery = battery(c); });
+    reading_.once_or_default(e, "battery", [&](Element& c) { item.battery = battery(c); });
     reading_.once(e, "bridge", [&](Element& c) {
       const auto b = reading_.read<schema::Bridge>(c);
       item.bridge = BridgeConfig{b.link, b.firmware, b.timeout_s, c, c.line, resolve(b.map, c.file)};

@@ -133,7 +133,9 @@ void read_engine(Reading& reading, Element& e) {
     reading.error(e, "unknown physics engine <" + e.name + ">; known: " + listed(reading.known().engines) +
                          did_you_mean(config.kind, reading.known().engines));
   }
-  const auto attributes = reading.read_open<schema::Engine>(e);
+  auto attributes = reading.read_open<schema::Engine>(e);
+  ElementWriter writer(e);
+  attributes.describe(writer);
   config.id = attributes.id;
   config.regions = attributes.regions;
   if (!good_regions(config.regions))

@@ -55,6 +55,13 @@ std::vector<std::string> contents(const Element& parent) {
   return names;
 }
 
+Element& add(Element& parent, const std::string& name, const std::string& origin) {
+  Element& added = parent.children.emplace_back();
+  added.name = name;
+  added.file = origin;
+  return added;
+}
+
 Element* select(Element& parent, const Part& part, const std::string& origin, std::string& why) {
   std::vector<Element*> same;
   for (Element& child : parent.children) {
@@ -70,11 +77,11 @@ Element* select(Element& parent, const Part& part, const std::string& origin, st
     const std::string* id = same[i]->attribute("id");
     if ((id != nullptr && *id == part.selector) || std::to_string(i) == part.selector) return same[i];
   }
+  const bool of_a_plugin =
+      parent.name == "params" || parent.name == "loop_functions";  // which judges its groups itself
+  if (part.selector.empty() && same.empty() && of_a_plugin) return &add(parent, part.name, origin);
   if (part.selector.empty() && std::find(kMayBeAdded.begin(), kMayBeAdded.end(), part.name) != kMayBeAdded.end()) {
-    Element& added = parent.children.emplace_back();
-    added.name = part.name;
-    added.file = origin;
-    return &added;
+    return &add(parent, part.name, origin);
   }
   std::vector<std::string> names;
   for (const Element& child : parent.children) names.push_back(child.name);

@@ -31,8 +31,7 @@ std::vector<std::string> Reading::check(const Element& element, const schema::El
   }
   for (const Element& child : element.children) {
     if (std::find(allowed.begin(), allowed.end(), child.name) != allowed.end()) continue;
-    error(child, "<" + element.name + "> cannot hold <" + child.name + ">; it may hold: " + listed(allowed) +
-                     did_you_mean(child.name, allowed));
+    error(child, cannot_hold(element, child, allowed));
   }
   return missing;
 }

@@ -37,7 +37,7 @@ class Reading {
     const std::vector<std::string> missing = check(element, T::kElement);
     ElementReader reader(element, problems_);
     value.describe(reader);
-    reader.finish();
+    reader.finish_attributes();
     ElementWriter writer(element);
     value.describe(writer);
     std::erase_if(element.attributes,

@@ -7,11 +7,7 @@ namespace tandem::core {
 
 template <class Options>
 Options read_options(const Element& element, Problems& problems) {
-  Options options;
-  ElementReader reader(element, problems, {"implementation"});
-  options.describe(reader);
-  reader.finish();
-  return options;
+  return read_settings<Options>(element, problems, {"implementation"});
 }
 
 template <class Options>

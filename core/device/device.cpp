@@ -17,6 +17,13 @@ const std::vector<DeviceType>& device_types() {
   return all;
 }
 
+const GroupRecipes::Listed* GroupRecipes::find(std::string_view device, hal::Role role) const noexcept {
+  for (const Listed& one : listed) {
+    if (one.device == device && one.role == role) return &one;
+  }
+  return nullptr;
+}
+
 const DeviceType* find_device(std::string_view device, hal::Role role, std::string_view implementation) {
   for (const DeviceType& type : device_types()) {
     if (type.device == device && type.role == role && type.implementation == implementation) return &type;

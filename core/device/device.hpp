@@ -85,6 +85,19 @@ struct DeviceType {
   void (*describe)(hal::ParamVisitor& visitor) = nullptr;
 };
 
+/// The devices that a configuration lists, read for the robots of one group.
+struct GroupRecipes {
+  struct Listed {
+    std::string_view device;  ///< the port's name
+    hal::Role role;
+    Recipe<Sensor> sensor;  ///< one of the two is set
+    Recipe<Actuator> actuator;
+  };
+  std::vector<Listed> listed;
+
+  const Listed* find(std::string_view device, hal::Role role) const noexcept;
+};
+
 /// All implementations of all devices; the first of a device is its default.
 const std::vector<DeviceType>& device_types();
 

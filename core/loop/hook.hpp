@@ -2,6 +2,7 @@
 #pragma once
 #include <any>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "core/scenario/element.hpp"
@@ -48,9 +49,10 @@ class Hook {
   virtual bool is_done(HookContext&) { return false; }
   virtual void after_run(HookContext&) {}
 
-  /// Reflectance of the floor at (x, y) in W, 0 black to 1 white; asked once a floor pixel when the file says
-  /// `<floor source="loop_functions"/>`, and again after `Space::repaint_floor`.
-  virtual double floor(double /*x_m*/, double /*y_m*/) { return 0.5; }
+  /// Reflectance of the floor at (x, y) in W, 0 black to 1 white; none: the hook leaves what is there. Asked once a
+  /// floor pixel when the file says `<floor source="loop_functions"/>`, and again after `Space::repaint_floor`. Hooks
+  /// paint in the order of the file, each over those before it; what none paints is grey.
+  virtual std::optional<double> floor(double /*x_m*/, double /*y_m*/) { return std::nullopt; }
 
   /// What the hook remembers that its later calls depend on, for snapshots; and taking it back. A hook without such
   /// needs neither. What `save` leaves out survives going back: a count of attempts, say.
@@ -75,11 +77,7 @@ const HookType& hook_type(std::string_view name, std::string_view summary) {
   type.name = name;
   type.summary = summary;
   type.make = [](const Element& options, Problems& problems) -> std::unique_ptr<Hook> {
-    typename T::Params params;
-    ElementReader reader(options, problems, {"library", "label"});
-    params.describe(reader);
-    reader.finish();
-    return std::make_unique<T>(params);
+    return std::make_unique<T>(read_settings<typename T::Params>(options, problems, {"library", "label"}));
   };
   type.describe = [](hal::ParamVisitor& visitor) {
     typename T::Params params;

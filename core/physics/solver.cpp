@@ -3,12 +3,30 @@
 #include <algorithm>
 #include <iterator>
 
+#include "hal/unit.hpp"
+
 namespace tandem::core {
 namespace {
 
 constexpr std::size_t kFewBodies = 100;  // whose solving takes less than waking threads is worth
 
 }  // namespace
+
+std::string beyond_limits(std::string_view engine, const Object& object, std::initializer_list<double> sizes_m,
+                          double thinnest_m) {
+  constexpr double kLightest_kg = 1e-9;
+  constexpr double kHeaviest_kg = 1e9;
+  constexpr double kLargest_m = 1e6;
+  const std::string name = "the engine " + std::string(engine) + " moves objects of ";
+  for (const double size_m : sizes_m) {
+    if (size_m >= thinnest_m && size_m <= kLargest_m) continue;
+    return "measures " + hal::format_number(size_m) + " m; " + name + hal::format_number(thinnest_m) + " m to " +
+           hal::format_number(kLargest_m) + " m";
+  }
+  if (object.mass_kg >= kLightest_kg && object.mass_kg <= kHeaviest_kg) return "";
+  return "weighs " + hal::format_number(object.mass_kg) + " kg; " + name + hal::format_number(kLightest_kg) +
+         " kg to " + hal::format_number(kHeaviest_kg) + " kg";
+}
 
 template <class Work>
 void SolverEngine::each_busy_part(ThreadPool& pool, Work&& work) {

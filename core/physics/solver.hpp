@@ -1,7 +1,9 @@
 // Engines that give every region a world of its own, and run these in parallel.
 #pragma once
 #include <cstdint>
+#include <initializer_list>
 #include <memory>
+#include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -55,9 +57,16 @@ struct SolverType {
   /// checks them; problems are reported with their lines.
   std::shared_ptr<const void> (*read)(const Element& options, Problems& problems) = nullptr;
   void (*describe)(hal::ParamVisitor& visitor) = nullptr;
+  /// Why it cannot move an object of this size and mass; empty: it can. Null: it moves none or all.
+  std::string (*unfit)(const Object& object) = nullptr;
   std::unique_ptr<Solver> (*make)(const std::shared_ptr<const void>& params, const SpaceStores& stores,
                                   const Region& region, double tick_s) = nullptr;
 };
+
+/// For SolverType::unfit: what is thinner than `thinnest_m` in any of its `sizes_m`, or lighter or heavier than numbers
+/// can follow.
+std::string beyond_limits(std::string_view engine, const Object& object, std::initializer_list<double> sizes_m,
+                          double thinnest_m);
 
 /// All engines of one such kind in a run: a solver a region, stepped in parallel. Regions that neither hold
 /// nor mirror a body rest; few bodies are left to the calling thread.

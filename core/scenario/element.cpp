@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 namespace tandem::core {
 namespace {
@@ -96,6 +97,11 @@ std::string listed(const std::vector<std::string>& names) {
   return names.size() > kShown ? text + ", …" : text;
 }
 
+std::string cannot_hold(const Element& parent, const Element& child, const std::vector<std::string>& allowed) {
+  return "<" + parent.name + "> cannot hold <" + child.name + ">; it may hold: " + listed(allowed) +
+         did_you_mean(child.name, allowed);
+}
+
 std::string did_you_mean(std::string_view word, const std::vector<std::string>& candidates) {
   const std::string near = closest(word, candidates);
   return near.empty() ? "" : ". Did you mean '" + near + "'?";
@@ -116,8 +122,9 @@ std::string closest(std::string_view word, const std::vector<std::string>& candi
   return best;
 }
 
-ElementReader::ElementReader(const Element& element, Problems& problems, std::vector<std::string> ignore)
-    : element_(element), problems_(problems), known_(std::move(ignore)) {}
+ElementReader::ElementReader(const Element& element, Problems& problems, std::vector<std::string> ignore,
+                             std::vector<std::string> ignore_children)
+    : element_(element), problems_(problems), known_(std::move(ignore)), known_children_(std::move(ignore_children)) {}
 
 const std::string* ElementReader::find(std::string_view name) {
   known_.emplace_back(name);
@@ -206,7 +213,44 @@ void ElementReader::vector(std::string_view name, std::array<double, 3>& value_s
   value_si = parsed;
 }
 
+void ElementReader::visit_group(std::string_view name, void* value, Describe describe, std::string_view) {
+  known_children_.emplace_back(name);
+  const Element* first = nullptr;
+  for (const Element& child : element_.children) {
+    if (child.name != name) continue;
+    if (first != nullptr) {
+      problems_.push_back(
+          problem_at(child, "a second <" + child.name + ">; the first is on line " + std::to_string(first->line)));
+      continue;
+    }
+    first = &child;
+    ElementReader reader(child, problems_);
+    describe(value, reader);
+    reader.finish();
+  }
+}
+
+void ElementReader::visit_list(std::string_view name, hal::ParamList& list, std::string_view) {
+  known_children_.emplace_back(name);
+  bool any = false;
+  for (const Element& child : element_.children) {
+    if (child.name != name) continue;
+    if (!std::exchange(any, true)) list.clear();
+    ElementReader reader(child, problems_);
+    list.add(reader);
+    reader.finish();
+  }
+}
+
 void ElementReader::finish() {
+  finish_attributes();
+  for (const Element& child : element_.children) {
+    if (std::find(known_children_.begin(), known_children_.end(), child.name) != known_children_.end()) continue;
+    problems_.push_back(problem_at(child, cannot_hold(element_, child, known_children_)));
+  }
+}
+
+void ElementReader::finish_attributes() {
   for (const Element::Attribute& a : element_.attributes) {
     if (std::find(known_.begin(), known_.end(), a.name) != known_.end()) continue;
     problems_.push_back(problem_of(
@@ -220,7 +264,7 @@ void ElementWriter::add(std::string_view name, std::string value) {
 
 void ElementWriter::number(std::string_view name, double& value_si, const hal::Unit& bare, hal::Range,
                            std::string_view) {
-  add(name, hal::format_quantity(value_si, bare));
+  add(name, hal::format_exactly(value_si, bare));
 }
 void ElementWriter::integer(std::string_view name, std::int64_t& value, hal::Range, std::string_view) {
   add(name, std::to_string(value));
@@ -236,15 +280,63 @@ void ElementWriter::choice(std::string_view name, std::string& value, std::span<
   add(name, value);
 }
 void ElementWriter::vector(std::string_view name, std::array<double, 3>& v, const hal::Unit& bare, std::string_view) {
-  add(name, hal::format_quantity(v[0], bare) + "," + hal::format_quantity(v[1], bare) + "," +
-                hal::format_quantity(v[2], bare));
+  add(name,
+      hal::format_exactly(v[0], bare) + "," + hal::format_exactly(v[1], bare) + "," + hal::format_exactly(v[2], bare));
+}
+
+Element& ElementWriter::add_child(std::string_view name) {
+  Element& child = element_.children.emplace_back();
+  child.name = name;
+  child.file = element_.file;
+  child.line = element_.line;
+  return child;
+}
+
+void ElementWriter::visit_group(std::string_view name, void* value, Describe describe, std::string_view) {
+  const auto same = [&](const Element& child) { return child.name == name; };
+  const auto found = std::find_if(element_.children.begin(), element_.children.end(), same);
+  ElementWriter writer(found != element_.children.end() ? *found : add_child(name));
+  describe(value, writer);
+}
+
+void ElementWriter::visit_list(std::string_view name, hal::ParamList& list, std::string_view) {
+  bool any = false;
+  for (Element& child : element_.children) {
+    if (child.name != name) continue;
+    any = true;
+    ElementWriter writer(child);
+    list.describe_default(writer);
+  }
+  for (std::size_t i = 0; !any && i < list.size(); ++i) {
+    ElementWriter writer(add_child(name));
+    list.describe(i, writer);
+  }
 }
 
 void ManualWriter::line(std::string_view name, const std::string& value, const std::string& range,
                         std::string_view doc) {
-  text_ += "  " + std::string(name) + "=\"" + value + "\"";
+  text_ += indent_ + std::string(name) + "=\"" + value + "\"";
   if (!range.empty()) text_ += "  (" + range + ")";
-  text_ += "\n      " + std::string(doc) + "\n";
+  text_ += "\n" + indent_ + "    " + std::string(doc) + "\n";
+}
+
+void ManualWriter::child(std::string_view name, std::string_view what, std::string_view doc) {
+  text_ += indent_ + "<" + std::string(name) + ">  (" + std::string(what) + ")\n" + indent_ + "    " +
+           std::string(doc) + "\n";
+}
+
+void ManualWriter::visit_group(std::string_view name, void* value, Describe describe, std::string_view doc) {
+  child(name, "an element inside", doc);
+  indent_ += "    ";
+  describe(value, *this);
+  indent_.resize(indent_.size() - 4);
+}
+
+void ManualWriter::visit_list(std::string_view name, hal::ParamList& list, std::string_view doc) {
+  child(name, "any number of elements inside; left out: " + std::to_string(list.size()), doc);
+  indent_ += "    ";
+  list.describe_default(*this);
+  indent_.resize(indent_.size() - 4);
 }
 
 void ManualWriter::number(std::string_view name, double& value_si, const hal::Unit& bare, hal::Range range,

@@ -49,18 +49,24 @@ Problem problem_at(const Element& element, std::string_view attribute, std::stri
 /// "a, b, c": at most the first 20, for messages.
 std::string listed(const std::vector<std::string>& names);
 
+/// "<parent> cannot hold <child>; it may hold: …", for messages.
+std::string cannot_hold(const Element& parent, const Element& child, const std::vector<std::string>& allowed);
+
 /// ". Did you mean 'x'?" with the closest candidate, or empty when none is near.
 std::string did_you_mean(std::string_view word, const std::vector<std::string>& candidates);
 
 /// The closest of `candidates` to `word` by edit distance, or empty when none is near: for "did you mean".
 std::string closest(std::string_view word, const std::vector<std::string>& candidates);
 
-/// Fills described parameters from an element's attributes. Every attribute must be asked for, else it is unknown: call
-/// `finish()` after `describe` to have unknown ones reported with "did you mean".
+/// Fills described parameters from an element's attributes, groups and lists of them from its children. Every one must
+/// be asked for, else it is unknown: call `finish()` after `describe` to have unknown ones reported with "did you
+/// mean".
 class ElementReader final : public hal::ParamVisitor {
  public:
-  /// `ignore` are attributes that belong to somebody else (e.g. "id", "library", "implementation").
-  ElementReader(const Element& element, Problems& problems, std::vector<std::string> ignore = {});
+  /// `ignore` are attributes that belong to somebody else (e.g. "id", "library", "implementation"), `ignore_children`
+  /// elements that do.
+  ElementReader(const Element& element, Problems& problems, std::vector<std::string> ignore = {},
+                std::vector<std::string> ignore_children = {});
 
   void number(std::string_view name, double& value_si, const hal::Unit& bare, hal::Range range_si,
               std::string_view doc) override;
@@ -72,6 +78,12 @@ class ElementReader final : public hal::ParamVisitor {
   void vector(std::string_view name, std::array<double, 3>& value_si, const hal::Unit& bare,
               std::string_view doc) override;
   void finish();
+  /// For elements whose children are somebody else's.
+  void finish_attributes();
+
+ protected:
+  void visit_group(std::string_view name, void* value, Describe describe, std::string_view doc) override;
+  void visit_list(std::string_view name, hal::ParamList& list, std::string_view doc) override;
 
  private:
   const std::string* find(std::string_view name);
@@ -81,10 +93,22 @@ class ElementReader final : public hal::ParamVisitor {
 
   const Element& element_;
   Problems& problems_;
-  std::vector<std::string> known_;
+  std::vector<std::string> known_, known_children_;
 };
 
-/// Completes an element with the attributes that a described struct has and the file left out: the effective settings.
+/// Reads all that an element says of a described struct. `ignore` and `ignore_children` as ElementReader has them.
+template <hal::Described T>
+T read_settings(const Element& element, Problems& problems, std::vector<std::string> ignore = {},
+                std::vector<std::string> ignore_children = {}) {
+  T value{};
+  ElementReader reader(element, problems, std::move(ignore), std::move(ignore_children));
+  value.describe(reader);
+  reader.finish();
+  return value;
+}
+
+/// Completes an element with what a described struct has and the file left out, attributes and groups: the effective
+/// settings. Numbers are written so that they read back as the same bits.
 class ElementWriter final : public hal::ParamVisitor {
  public:
   explicit ElementWriter(Element& element) : element_(element) {}
@@ -99,8 +123,13 @@ class ElementWriter final : public hal::ParamVisitor {
   void vector(std::string_view name, std::array<double, 3>& value_si, const hal::Unit& bare,
               std::string_view doc) override;
 
+ protected:
+  void visit_group(std::string_view name, void* value, Describe describe, std::string_view doc) override;
+  void visit_list(std::string_view name, hal::ParamList& list, std::string_view doc) override;
+
  private:
   void add(std::string_view name, std::string value);
+  Element& add_child(std::string_view name);
   Element& element_;
 };
 
@@ -119,9 +148,15 @@ class ManualWriter final : public hal::ParamVisitor {
 
   const std::string& text() const noexcept { return text_; }
 
+ protected:
+  void visit_group(std::string_view name, void* value, Describe describe, std::string_view doc) override;
+  void visit_list(std::string_view name, hal::ParamList& list, std::string_view doc) override;
+
  private:
   void line(std::string_view name, const std::string& value, const std::string& range, std::string_view doc);
+  void child(std::string_view name, std::string_view what, std::string_view doc);
   std::string text_;
+  std::string indent_ = "  ";
 };
 
 }  // namespace tandem::core

@@ -15,9 +15,10 @@
 namespace tandem::core {
 namespace {
 
-constexpr double kRobotsPerPart = 600.0;  // where a solver's data still fit the second-level cache
-constexpr double kNarrowestPart_m = 4.0;  // narrower ones spend their time on bodies mirrored across borders
-constexpr std::size_t kMostPartsASide = 8;
+constexpr double kRobotsPerPart = 600.0;    // where a solver's data still fit the second-level cache
+constexpr double kNarrowestPart_m = 4.0;    // narrower ones spend their time on bodies mirrored across borders
+constexpr std::size_t kMostPartsASide = 8;  // … of a split chosen here
+constexpr std::size_t kMostParts = 4096;    // of one that the file says
 
 const std::vector<const SolverType*>& solver_types() {
   static const std::vector<const SolverType*> types = {&dynamics2d_type(), &dynamics3d_type(), &particle3d_type()};
@@ -167,14 +168,8 @@ class Maker {
   }
 
   void add_kinematics(const EngineConfig& config, std::size_t number) {
-    Kinematics2d::Params params;
-    ElementReader reader(config.options, problems_, {"id", "regions"});
-    params.describe(reader);
-    reader.finish();
-    for (const Element& child : config.options.children) {
-      if (child.name == "boundaries") continue;
-      problem(child.line, "<kinematics2d> may not hold <" + child.name + ">; it may hold: boundaries");
-    }
+    const auto params =
+        read_settings<Kinematics2d::Params>(config.options, problems_, {"id", "regions"}, {"boundaries"});
     if (!kinematics_) {
       kinematics_ = params;
       engines_.push_back(std::make_unique<Kinematics2d>(params));
@@ -204,6 +199,10 @@ class Maker {
       return;
     }
     const Split split = splits ? split_of(config, robots_, stores_) : Split{};
+    if (split.columns * split.lines > kMostParts) {
+      problem(config.line, "regions=\"" + config.regions + "\" are more than " + std::to_string(kMostParts) + " parts");
+      return;
+    }
     if (split.columns * split.lines == 1) {
       stores_.regions.push_back(std::move(region));
       return;
@@ -374,6 +373,11 @@ void describe_engine(std::string_view kind, hal::ParamVisitor& visitor) {
     Kinematics2d::Params params;
     params.describe(visitor);
   }
+}
+
+std::string unfit_for(std::string_view kind, const Object& object) {
+  const SolverType* type = solver_type(kind);
+  return type == nullptr || type->unfit == nullptr ? "" : type->unfit(object);
 }
 
 std::vector<std::unique_ptr<Engine>> make_engines(const Scenario& scenario, std::size_t robots, SpaceStores& stores,

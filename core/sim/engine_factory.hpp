@@ -24,6 +24,9 @@ EngineTraits engine_traits(std::string_view kind);
 /// Shows the parameters of a kind to `visitor`, for the manual.
 void describe_engine(std::string_view kind, hal::ParamVisitor& visitor);
 
+/// Why engines of a kind cannot move an object of this size and mass; empty: they can.
+std::string unfit_for(std::string_view kind, const Object& object);
+
 /// One engine a kind. Fills `stores.regions`; the arena and `robots`, their number, must be known. Problems
 /// (overlapping regions, parameters) are appended with their lines.
 std::vector<std::unique_ptr<Engine>> make_engines(const Scenario& scenario, std::size_t robots, SpaceStores& stores,

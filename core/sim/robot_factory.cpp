@@ -243,31 +243,49 @@ bool RobotFactory::prepare_group(std::size_t g, Problems& problems) {
     return false;
   }
   group.controller = type.value();
-  const Element& params = item.params ? *item.params : config.params;
-  const std::size_t before = problems.size();
-  ElementReader reader(params, problems);
-  try {
-    const hal::PluginCall call(&name_params, this, group.config);
-    group.params = group.controller->read_params(reader);
-  } catch (const std::exception& e) {
-    problem(config.line, "controller '" + config.id + "' threw while it read its parameters: " + e.what());
-    return false;
-  } catch (...) {
-    problem(config.line, "controller '" + config.id + "' threw while it read its parameters");
-    return false;
-  }
-  reader.finish();
+  Problems found;
+  group.params = read_params(group, item, found);
   // Listed devices must exist even when the controller does not take them.
-  bool good = !has_errors(problems, before);
-  good = check_devices(config, config.sensors, hal::Role::Sensor, *group.sheet, problems) && good;
-  good = check_devices(config, config.actuators, hal::Role::Actuator, *group.sheet, problems) && good;
+  auto recipes = std::make_shared<GroupRecipes>();
+  bool good = read_devices(group, hal::Role::Sensor, *recipes, found);
+  good = read_devices(group, hal::Role::Actuator, *recipes, found) && good && !has_errors(found);
+  group.recipes = std::move(recipes);
+  for (Problem& one : found) {  // what groups share is wrong once
+    const auto same = [&](const Problem& other) {
+      return other.file == one.file && other.line == one.line && other.message == one.message;
+    };
+    if (std::none_of(problems.begin(), problems.end(), same)) problems.push_back(std::move(one));
+  }
   return good;
 }
 
-bool RobotFactory::check_devices(const ControllerConfig& config, const std::vector<DeviceChoice>& choices,
-                                 hal::Role role, const hal::DataSheet& sheet, Problems& problems) {
+/// The parameters of a robot's controller; null, with a problem, where the controller's own description of them throws.
+std::shared_ptr<const void> RobotFactory::read_params(const RobotGroup& group, const RobotItem& item,
+                                                      Problems& problems) const {
+  const ControllerConfig& config = scenario_.controllers[group.config];
+  const Element& params = item.params ? *item.params : config.params;
+  std::string why = "controller '" + config.id + "' threw while it read its parameters";
+  try {
+    const hal::PluginCall call(&name_params, this, group.config);
+    ElementReader reader(params, problems);
+    auto read = group.controller->read_params(reader);
+    reader.finish();
+    return read;
+  } catch (const std::exception& e) {
+    why += std::string(": ") + e.what();
+  } catch (...) {
+  }
+  problems.push_back({scenario_.file, config.line, std::move(why), false});
+  return nullptr;
+}
+
+bool RobotFactory::read_devices(const RobotGroup& group, hal::Role role, GroupRecipes& recipes,
+                                Problems& problems) const {
+  const ControllerConfig& config = scenario_.controllers[group.config];
+  const DeviceSetup setup{*group.sheet, *group.item, 1.0 / static_cast<double>(scenario_.ticks_per_second),
+                          &scenario_.media};
   bool good = true;
-  for (const DeviceChoice& choice : choices) {
+  for (const DeviceChoice& choice : role == hal::Role::Sensor ? config.sensors : config.actuators) {
     const DeviceType* type = find_device(choice.device, role, choice.implementation);
     const int line = choice.options.line != 0 ? choice.options.line : config.line;
     const auto problem = [&](std::string message) {
@@ -283,16 +301,13 @@ bool RobotFactory::check_devices(const ControllerConfig& config, const std::vect
       problem(known.empty() ? "no simulated device '" + choice.device + "'"
                             : "device '" + choice.device + "' has no implementation '" + choice.implementation +
                                   "'; it has: " + known);
-    } else if (!type->fits(sheet)) {
-      problem("the robot '" + std::string(sheet.kind) + "' has no device '" + choice.device + "'");
+    } else if (!type->fits(*group.sheet)) {
+      problem("the robot '" + std::string(group.sheet->kind) + "' has no device '" + choice.device + "'");
     } else {
-      Problems found;
-      const RobotItem none;
-      const DeviceSetup setup{sheet, none, 0.1, &scenario_.media};
-      if (type->make_sensor != nullptr) (void)type->make_sensor(choice.options, found, setup);
-      if (type->make_actuator != nullptr) (void)type->make_actuator(choice.options, found, setup);
-      if (checked_.insert(&choice).second) problems.insert(problems.end(), found.begin(), found.end());
-      good = good && !has_errors(found);
+      GroupRecipes::Listed listed{type->device, role, nullptr, nullptr};
+      if (type->make_sensor != nullptr) listed.sensor = type->make_sensor(choice.options, problems, setup);
+      if (type->make_actuator != nullptr) listed.actuator = type->make_actuator(choice.options, problems, setup);
+      recipes.listed.push_back(std::move(listed));
     }
   }
   return good;
@@ -320,7 +335,7 @@ bool RobotFactory::make_blocks(std::size_t g, const std::vector<RobotRequest>& r
     stores_.blocks[block].used = count;
     for (std::uint32_t slot = 0; slot < count; ++slot) place(requests[members[begin + slot]], {block, slot});
     for (std::uint32_t slot = 0; slot < count; ++slot) {
-      const std::string why = construct({block, slot});
+      const std::string why = construct({block, slot}, stores_.groups[g].params);
       if (why.empty()) continue;
       problems.push_back({scenario_.file, scenario_.controllers[stores_.groups[g].config].line, why, false});
       return false;
@@ -372,7 +387,7 @@ void RobotFactory::name_params(const void* factory, std::size_t config, std::siz
 }
 
 /// Makes the controller of the robot that is placed there. Says what went wrong, or nothing.
-std::string RobotFactory::construct(Slot at) {
+std::string RobotFactory::construct(Slot at, const std::shared_ptr<const void>& params) {
   RobotBlock& block = stores_.blocks[at.block];
   RobotGroup& group = stores_.groups[block.group];
   const hal::ControllerType& type = *group.controller;
@@ -381,7 +396,7 @@ std::string RobotFactory::construct(Slot at) {
   std::string why;
   const hal::PluginCall call(&name_constructor, this, at.block, at.slot);
   try {
-    type.construct(block.controller(at.slot), robot, group.params.get());
+    type.construct(block.controller(at.slot), robot, params.get());
     block.constructed[at.slot] = 1;
     return {};
   } catch (const std::exception& e) {
@@ -396,9 +411,6 @@ std::string RobotFactory::construct(Slot at) {
 /// Gives every block of the group arrays and devices for all ports that its controllers have taken by now.
 void RobotFactory::complete(std::size_t g) {
   const RobotGroup& group = stores_.groups[g];
-  const ControllerConfig& config = scenario_.controllers[group.config];
-  const DeviceSetup setup{*group.sheet, *group.item, 1.0 / static_cast<double>(scenario_.ticks_per_second),
-                          &scenario_.media};
   devices_.blocks.resize(stores_.blocks.size());
   for (const std::size_t b : group.blocks) add_port_arrays(group, stores_.blocks[b], slab_);
   for (std::size_t p = 0; p < group.ports.size(); ++p) {
@@ -406,20 +418,12 @@ void RobotFactory::complete(std::size_t g) {
     if (std::none_of(group.blocks.begin(), group.blocks.end(), lacks)) continue;
     const hal::PortType& port = *group.ports[p];
     const bool is_sensor = port.role == hal::Role::Sensor;
-    const DeviceChoice* choice = nullptr;
-    for (const DeviceChoice& c : is_sensor ? config.sensors : config.actuators) {
-      if (c.device == port.name) choice = &c;
-    }
-    const DeviceType* type = find_device(port.name, port.role, choice->implementation);
-    Problems already_reported;
-    const Recipe<Sensor> sensor = is_sensor ? type->make_sensor(choice->options, already_reported, setup) : nullptr;
-    const Recipe<Actuator> actuator =
-        is_sensor ? nullptr : type->make_actuator(choice->options, already_reported, setup);
+    const GroupRecipes::Listed& made = *group.recipes->find(port.name, port.role);
     for (const std::size_t b : group.blocks) {
       if (!lacks(b)) continue;
       const std::size_t capacity = stores_.blocks[b].capacity;
-      devices_.blocks[b].sensors.push_back(is_sensor ? sensor(capacity) : nullptr);
-      devices_.blocks[b].actuators.push_back(is_sensor ? nullptr : actuator(capacity));
+      devices_.blocks[b].sensors.push_back(is_sensor ? made.sensor(capacity) : nullptr);
+      devices_.blocks[b].actuators.push_back(is_sensor ? nullptr : made.actuator(capacity));
     }
   }
 }
@@ -473,19 +477,28 @@ void RobotFactory::keep_mechanisms() {
 
 // --- while the run goes on ---
 
+namespace {
+
+hal::Error cannot_be_made(const RobotItem& item, const Problems& problems) {
+  std::string message = "robot '" + item.id + "' cannot be made:";
+  for (const Problem& problem : problems) message += " " + problem.message + ";";
+  message.pop_back();
+  return hal::Error{message};
+}
+
+}  // namespace
+
+/// The first group of that kit: parameters are each robot's own.
 hal::Result<std::size_t> RobotFactory::group_for(const RobotItem& item) {
   std::vector<RobotGroup>& groups = stores_.groups;
   for (std::size_t g = 0; g < groups.size(); ++g) {
-    if (same_kit(*groups[g].item, item) && same_params(groups[g].item->params, item.params)) return g;
+    if (same_kit(*groups[g].item, item)) return g;
   }
   groups.emplace_back().item = std::make_shared<RobotItem>(item);
   Problems problems;
   if (prepare_group(groups.size() - 1, problems)) return groups.size() - 1;
   groups.pop_back();
-  std::string message = "robot '" + item.id + "' cannot be made:";
-  for (const Problem& problem : problems) message += " " + problem.message + ";";
-  message.pop_back();
-  return hal::Error{message};
+  return cannot_be_made(item, problems);
 }
 
 Slot RobotFactory::free_slot(std::size_t g) {
@@ -549,6 +562,13 @@ hal::Result<RobotId> RobotFactory::add(const RobotItem& item, const Pose& pose,
   const hal::Result<std::size_t> found = group_for(item);
   if (!found.ok()) return found.error();
   const std::size_t g = found.value();
+  std::shared_ptr<const void> params = stores_.groups[g].params;
+  const bool own_params = !same_params(stores_.groups[g].item->params, item.params);
+  if (own_params) {
+    Problems problems;
+    params = read_params(stores_.groups[g], item, problems);
+    if (has_errors(problems)) return cannot_be_made(item, problems);
+  }
   const Slot slot = free_slot(g);
   if (devices_.blocks.size() < stores_.blocks.size()) complete(g);
   const std::size_t ports_before = stores_.groups[g].ports.size();
@@ -589,7 +609,7 @@ hal::Result<RobotId> RobotFactory::add(const RobotItem& item, const Pose& pose,
 
   hal::Status fits = accepts(row);
   if (fits.ok()) {
-    const std::string why = construct(slot);
+    const std::string why = construct(slot, params);
     if (!why.empty()) fits = hal::Error{why};
   }
   if (fits.ok() && !(fits = can_hold(slot)).ok()) {
@@ -600,6 +620,9 @@ hal::Result<RobotId> RobotFactory::add(const RobotItem& item, const Pose& pose,
     give_back(g, slot, ports_before, entity_before);
     return fits.error();
   }
+  RobotBlock& home = stores_.blocks[slot.block];
+  if (own_params && home.params.size() <= slot.slot) home.params.resize(slot.slot + 1U);
+  if (slot.slot < home.params.size()) home.params[slot.slot] = own_params ? std::move(params) : nullptr;
   if (stores_.groups[g].ports.size() > ports_before) complete(g);  // its controller took ports that no other has
   keep_sizes();
   if (!stores_.broadcasts.empty()) stores_.broadcasts[row] = {};

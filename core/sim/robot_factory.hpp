@@ -3,7 +3,6 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -65,13 +64,13 @@ class RobotFactory {
   std::vector<std::vector<std::uint32_t>> group(const std::vector<RobotRequest>& requests);
   void sort_by_place(const std::vector<RobotRequest>& requests, std::vector<std::uint32_t>& members) const;
   bool prepare_group(std::size_t g, Problems& problems);
-  bool check_devices(const ControllerConfig& config, const std::vector<DeviceChoice>& choices, hal::Role role,
-                     const hal::DataSheet& sheet, Problems& problems);
+  std::shared_ptr<const void> read_params(const RobotGroup& group, const RobotItem& item, Problems& problems) const;
+  bool read_devices(const RobotGroup& group, hal::Role role, GroupRecipes& recipes, Problems& problems) const;
   bool make_blocks(std::size_t g, const std::vector<RobotRequest>& requests, const std::vector<std::uint32_t>& members,
                    Problems& problems);
   std::uint32_t add_block(std::size_t g, std::size_t capacity);
   void place(const RobotRequest& request, Slot at);
-  std::string construct(Slot at);
+  std::string construct(Slot at, const std::shared_ptr<const void>& params);
   static void name_constructor(const void* factory, std::size_t block, std::size_t slot, hal::FixedText& out) noexcept;
   static void name_params(const void* factory, std::size_t config, std::size_t index, hal::FixedText& out) noexcept;
   void complete(std::size_t g);
@@ -88,7 +87,6 @@ class RobotFactory {
   SpaceStores& stores_;
   RobotDevices& devices_;
   Slab* slab_ = nullptr;  // where blocks get their memory; null: each on its own
-  std::set<const DeviceChoice*> checked_;
 };
 
 /// Ends the life of every controller. Before the loader closes its plug-ins.

@@ -210,9 +210,23 @@ void World::Impl::paint_floor_if_asked() {
   if (!s.repaint_floor || scenario.floor.source != "loop_functions" || hooks.empty()) return;
   s.repaint_floor = false;
   hook_moment = "floor";
-  const hal::PluginCall marked(&name_hook, this, 0);
-  s.floor.paint(s.min_x_m, s.min_y_m, s.max_x_m - s.min_x_m, s.max_y_m - s.min_y_m, scenario.floor.pixels_per_meter,
-                [&](double x, double y) { return hooks.front()->floor(x, y); });
+  std::size_t asked = 0;
+  const auto shade = [&](double x, double y) {
+    double painted = Floor::kGrey;
+    for (asked = 0; asked < hooks.size(); ++asked) {
+      const hal::PluginCall marked(&name_hook, this, asked);
+      painted = hooks[asked]->floor(x, y).value_or(painted);
+    }
+    return painted;
+  };
+  try {
+    s.floor.paint(s.min_x_m, s.min_y_m, s.max_x_m - s.min_x_m, s.max_y_m - s.min_y_m, scenario.floor.pixels_per_meter,
+                  shade);
+  } catch (const std::exception& e) {
+    fail("hook '" + hook_names.at(asked) + "' threw in floor" + at_tick() + ": " + e.what());
+  } catch (...) {
+    fail("hook '" + hook_names.at(asked) + "' threw in floor" + at_tick());
+  }
 }
 
 void World::Impl::name_step(const void* impl, std::size_t block, std::size_t index, hal::FixedText& out) noexcept {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/sim/engine_factory.hpp"
 #include "hal/device/body_sensors.hpp"
 
 namespace tandem::core {
@@ -18,11 +19,25 @@ std::string text_of(double x_m, double y_m) {
   return "(" + hal::format_number(x_m) + ", " + hal::format_number(y_m) + ")";
 }
 
-/// The configuration's parameters with others in their place.
+/// The configuration's parameters with others in their place; "group.name" is a parameter of a group.
 Element overridden(Element params, const std::vector<std::pair<std::string, std::string>>& others) {
-  for (const auto& [name, value] : others) {
-    std::erase_if(params.attributes, [&key = name](const Element::Attribute& a) { return a.name == key; });
-    params.attributes.push_back({name, value, params.line, "add_robot"});
+  for (const auto& [path, value] : others) {
+    Element* in = &params;
+    std::string name = path;
+    for (std::size_t dot = 0; (dot = name.find('.')) != std::string::npos; name.erase(0, dot + 1)) {
+      const std::string group = name.substr(0, dot);
+      auto found = std::find_if(in->children.begin(), in->children.end(),
+                                [&](const Element& child) { return child.name == group; });
+      if (found == in->children.end()) {
+        found = in->children.emplace(found);
+        found->name = group;
+        found->file = params.file;
+        found->line = params.line;
+      }
+      in = &*found;
+    }
+    std::erase_if(in->attributes, [&](const Element::Attribute& a) { return a.name == name; });
+    in->attributes.push_back({name, value, params.line, "add_robot"});
   }
   return params;
 }
@@ -244,6 +259,18 @@ hal::Status WorldEditor::check_shape(const Object& object) const {
                       : hal::Status(hal::Error{who + " needs a finite position and a heading as cosine and sine"});
 }
 
+/// Whether the region's engine can move it.
+hal::Status WorldEditor::check_mover(const Object& object, std::uint16_t region) const {
+  const std::string who = (object.kind == Object::Kind::Box ? "box '" : "cylinder '") + object.id + "'";
+  if (region == kNoRegion) {
+    return hal::Error{who + " would be at " + text_of(object.x_m, object.y_m) +
+                      ", in no region of an engine that moves objects (dynamics2d, dynamics3d)"};
+  }
+  if (scenario_.engines.empty()) return {};
+  const std::string why = unfit_for(scenario_.engines[stores_.regions[region].engine].kind, object);
+  return why.empty() ? hal::Status{} : hal::Status(hal::Error{who + " " + why});
+}
+
 hal::Result<ObjectId> WorldEditor::add_object(const Object& wanted) {
   if (const hal::Status shape = check_shape(wanted); !shape.ok()) return shape.error();
   const std::size_t number = stores_.objects.size();
@@ -260,8 +287,7 @@ hal::Result<ObjectId> WorldEditor::add_object(const Object& wanted) {
     fits = hal::Error{would_be + ", where " + name_of(*other) + " is"};
   } else if (object.movable) {
     stores_.object_region.back() = keeper_.find(stores_, self);
-    if (stores_.object_region.back() == kNoRegion)
-      fits = hal::Error{would_be + ", in no region of an engine that moves objects (dynamics2d, dynamics3d)"};
+    fits = check_mover(object, stores_.object_region.back());
   }
   if (!fits.ok()) {
     stores_.objects.pop_back();
@@ -290,10 +316,9 @@ hal::Status WorldEditor::set_object(ObjectId id, const Object& changed) {
   object = next;
   if (next.movable) {
     const std::uint16_t region = keeper_.find(stores_, self);
-    if (region == kNoRegion) {
+    if (const hal::Status fits = check_mover(next, region); !fits.ok()) {
       object = before;
-      return hal::Error{name_of(self) + " would be at " + text_of(next.x_m, next.y_m) +
-                        ", in no region of an engine that moves objects (dynamics2d, dynamics3d)"};
+      return fits;
     }
     stores_.object_region[id.index] = region;
   }

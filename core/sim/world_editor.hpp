@@ -28,6 +28,7 @@ class WorldEditor final : public Editor {
   hal::Result<RobotItem> item_for(const NewRobot& wanted) const;
   hal::Status check_place(const std::string& who, const Pose& pose) const;
   hal::Status check_shape(const Object& object) const;
+  hal::Status check_mover(const Object& object, std::uint16_t region) const;
   hal::Status accept(const std::string& who, std::size_t row);
   std::string name_of(BodyKey body) const;
   /// What `o` would overlap, if anything; `of_immovable`: what cannot move may overlap its like.

@@ -5,6 +5,7 @@
 #include <system_error>
 
 #include "core/placement/placement.hpp"
+#include "core/sim/settings.hpp"
 #include "core/sim/world_impl.hpp"
 
 namespace tandem::core {
@@ -113,7 +114,9 @@ void assign_regions(const Scenario& scenario, const Placements& placements, cons
     s.object_region[i] = keeper.find(s, BodyKey::object(i));
     std::string why = "lies in no region of an engine that moves objects (dynamics2d, dynamics3d)";
     if (s.object_region[i] != kNoRegion) {
-      why = too_wide_for(s, s.regions[s.object_region[i]], narrowest_width_m(s.objects[i]));
+      const Region& region = s.regions[s.object_region[i]];
+      why = too_wide_for(s, region, narrowest_width_m(s.objects[i]));
+      if (why.empty() && !scenario.engines.empty()) why = unfit_for(scenario.engines[region.engine].kind, s.objects[i]);
       if (why.empty()) continue;
     }
     complain(scenario.objects[placements.objects[i].item].line,
@@ -125,6 +128,20 @@ void assign_regions(const Scenario& scenario, const Placements& placements, cons
     problems.push_back({scenario.file, 0,
                         "... and " + std::to_string(bad - kNamed) + " more bodies in no region or too large for theirs",
                         false});
+}
+
+void check_pixels(const Scenario& scenario, Problems& problems) {
+  const double per_m = scenario.floor.pixels_per_meter;
+  const Vec3& size = scenario.arena_size;
+  const double area_m2 = size[0] * size[1];
+  if (area_m2 * per_m * per_m <= Floor::kMostPixels) return;
+  problems.push_back({scenario.file, scenario.floor.line,
+                      "the floor would have " + std::to_string(std::llround(size[0] * per_m)) + " x " +
+                          std::to_string(std::llround(size[1] * per_m)) +
+                          " pixels, at most 100 million can be painted: choose pixels_per_meter=\"" +
+                          hal::format_number(std::floor(100.0 * std::sqrt(Floor::kMostPixels / area_m2)) / 100.0) +
+                          "\" or less",
+                      false});
 }
 
 void name_hook_made(const void* config, std::size_t /*part*/, std::size_t /*index*/, hal::FixedText& out) noexcept {
@@ -253,6 +270,7 @@ std::unique_ptr<World> World::make(const Scenario& scenario, hal::PluginLoader& 
         s.floor.load_png(scenario.floor.path, s.min_x_m, s.min_y_m, scenario.arena_size[0], scenario.arena_size[1]);
     if (!loaded.ok()) problems.push_back({scenario.file, scenario.floor.line, loaded.error().message, false});
   }
+  if (scenario.floor.source == "loop_functions") check_pixels(scenario, problems);
   s.repaint_floor = true;
 
   for (const HookConfig& config : scenario.hooks) {
@@ -276,6 +294,8 @@ std::unique_ptr<World> World::make(const Scenario& scenario, hal::PluginLoader& 
     problems.push_back({scenario.file, scenario.floor.line,
                         "the floor is to be painted by loop functions, but there are none", false});
   }
+
+  if (!bad()) complete_settings(w.scenario, loader, w.seed);
 
   const std::size_t blocks = s.blocks.size();
   w.block_trouble.assign(blocks, 0);

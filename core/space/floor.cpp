@@ -12,6 +12,12 @@ hal::Status Floor::load_png(const std::string& path, double min_x_m, double min_
   if (png_image_begin_read_from_file(&image, path.c_str()) == 0) {
     return hal::Error{"floor image '" + path + "' cannot be read: " + image.message + ". Give the path of a PNG file."};
   }
+  if (static_cast<double>(image.width) * image.height > kMostPixels) {
+    const hal::Status too_large = hal::Error{"floor image '" + path + "' has " + std::to_string(image.width) + " x " +
+                                             std::to_string(image.height) + " pixels; at most 100 million can be used"};
+    png_image_free(&image);
+    return too_large;
+  }
   image.format = PNG_FORMAT_RGB;
   std::vector<std::uint8_t> rgb(PNG_IMAGE_SIZE(image));
   if (png_image_finish_read(&image, nullptr, rgb.data(), 0, nullptr) == 0) {

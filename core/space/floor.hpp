@@ -14,6 +14,7 @@ namespace tandem::core {
 class Floor {
  public:
   static constexpr float kGrey = 0.5F;
+  static constexpr double kMostPixels = 1e8;  ///< one byte each
 
   /// Lays the image over the whole rectangle, its top to the north. Colours become their luminance [ITU-R BT.601].
   hal::Status load_png(const std::string& path, double min_x_m, double min_y_m, double size_x_m, double size_y_m);

@@ -36,7 +36,8 @@
 
 namespace tandem::core {
 
-struct RobotItem;  // core/scenario/scenario.hpp
+struct RobotItem;     // core/scenario/scenario.hpp
+struct GroupRecipes;  // core/device/device.hpp
 
 inline constexpr std::size_t kBlockRows = 256;
 
@@ -122,21 +123,21 @@ struct Slot {
 
 /// What the robots of a group have in common.
 struct RobotGroup {
-  std::shared_ptr<const RobotItem>
-      item;  ///< one of theirs: what it says of battery, radio and parameters holds for all
+  std::shared_ptr<const RobotItem> item;  ///< one of theirs: what it says of battery and radio holds for all
   const hal::DataSheet* sheet = nullptr;
   const hal::ControllerType* controller = nullptr;
-  std::size_t config = 0;  ///< index into Scenario::controllers
-  std::shared_ptr<const void> params;
-  std::vector<const hal::PortType*> ports;  ///< those that its controllers took, in the order of taking
-  int wheels = -1;                          ///< index in `ports` of the wheel command; -1: none
-  int flight_position = -1;                 ///< … of the place to fly to
-  int flight_speed = -1;                    ///< … of the velocity to fly with
-  int flight_attitude = -1;                 ///< … of how to lean
-  int flight_task = -1;                     ///< … of what to do as a whole
-  int camera_head = -1;                     ///< … of where the camera is to look
-  int turret = -1, gripper = -1;            ///< … of what the turret and the gripper are to do
-  int scanner = -1;                         ///< … of how the distance scanner is to turn
+  std::size_t config = 0;                       ///< index into Scenario::controllers
+  std::shared_ptr<const void> params;           ///< of those that have none of their own in RobotBlock::params
+  std::shared_ptr<const GroupRecipes> recipes;  ///< of the devices that its configuration lists
+  std::vector<const hal::PortType*> ports;      ///< those that its controllers took, in the order of taking
+  int wheels = -1;                              ///< index in `ports` of the wheel command; -1: none
+  int flight_position = -1;                     ///< … of the place to fly to
+  int flight_speed = -1;                        ///< … of the velocity to fly with
+  int flight_attitude = -1;                     ///< … of how to lean
+  int flight_task = -1;                         ///< … of what to do as a whole
+  int camera_head = -1;                         ///< … of where the camera is to look
+  int turret = -1, gripper = -1;                ///< … of what the turret and the gripper are to do
+  int scanner = -1;                             ///< … of how the distance scanner is to turn
   double rab_range_m = 0.0;
   unsigned rab_payload = 0;
   double sees_m = 0.0;  ///< how far along the ground its cameras see; 0: its controllers took none
@@ -154,6 +155,8 @@ struct RobotBlock {
   std::vector<std::byte*> ports;  ///< parallel to RobotGroup::ports
   std::byte* controllers = nullptr;
   std::size_t controller_stride = 0;
+  /// By slot, of robots that came while the run goes on with parameters of their own; as long as the last such needs.
+  std::vector<std::shared_ptr<const void>> params;
   /// Arrays that are not the slab's: those made while the run goes on. Shared with the snapshots that put them back.
   std::vector<std::shared_ptr<std::byte>> own_arrays;
   std::array<std::uint8_t, kBlockRows> halted{};       ///< bits of HaltOwner; 0: its controller steps

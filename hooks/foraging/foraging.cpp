@@ -86,7 +86,7 @@ void Foraging::after_step(core::HookContext& context) {
   state_.lines.push_back(line);
 }
 
-double Foraging::floor(double x_m, double y_m) {
+std::optional<double> Foraging::floor(double x_m, double y_m) {
   if (x_m < params_.nest_x_m) return kGrey;
   for (const Item& item : state_.items) {
     if (!item.taken && std::hypot(item.x_m - x_m, item.y_m - y_m) <= params_.radius_m) return kBlack;

@@ -50,7 +50,7 @@ class Foraging final : public core::Hook {
   void after_step(core::HookContext& context) override;
   /// @throws std::runtime_error when the file cannot be written
   void after_run(core::HookContext& context) override;
-  double floor(double x_m, double y_m) override;
+  std::optional<double> floor(double x_m, double y_m) override;
   std::any save() const override { return state_; }
   void restore(const std::any& saved) override { state_ = std::any_cast<State>(saved); }
 

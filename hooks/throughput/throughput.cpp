@@ -82,7 +82,7 @@ bool Throughput::put_back(core::Space& space, std::size_t number) const {
   return false;
 }
 
-double Throughput::floor(double x_m, double /*y_m*/) {
+std::optional<double> Throughput::floor(double x_m, double /*y_m*/) {
   return x_m < params_.nest_x_m ? 0.0 : 1.0;
 }
 

@@ -126,6 +126,10 @@ struct NumberNotes final : hal::ParamVisitor {
   void text(std::string_view, std::string&, std::string_view) override {}
   void choice(std::string_view, std::string&, std::span<const std::string_view>, std::string_view) override {}
   void vector(std::string_view, std::array<double, 3>&, const hal::Unit&, std::string_view) override {}
+  void visit_group(std::string_view, void* value, Describe describe, std::string_view) override {
+    describe(value, *this);
+  }
+  void visit_list(std::string_view, hal::ParamList& list, std::string_view) override { list.describe_default(*this); }
 };
 
 /// What `nm -D` says of a shared object; empty when there is no nm.

@@ -36,6 +36,10 @@ class Numbers final : public ParamVisitor {
   void text(std::string_view, std::string&, std::string_view) override {}
   void choice(std::string_view, std::string&, std::span<const std::string_view>, std::string_view) override {}
   void vector(std::string_view, std::array<double, 3>&, const Unit&, std::string_view) override {}
+  void visit_group(std::string_view, void* value, Describe describe, std::string_view) override {
+    describe(value, *this);
+  }
+  void visit_list(std::string_view, ParamList&, std::string_view) override {}
 
  private:
   double value_;

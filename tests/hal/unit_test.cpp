@@ -110,6 +110,17 @@ TEST(Units, FormattedQuantitiesReadBackToTwelveDigits) {
   }));
 }
 
+TEST(Units, ExactTextReadsBackAsTheSameBits) {
+  EXPECT_EQ(format_exactly(0.05, unit::cm_s), "5 cm/s");
+  EXPECT_EQ(format_exactly(0.1 + 0.2, unit::m), "0.30000000000000004 m");
+  EXPECT_TRUE(rc::check([](std::int64_t mantissa, std::uint8_t exponent) {
+    const Unit u = any_unit();
+    const double value = static_cast<double>(mantissa) / 3.0 * std::pow(10.0, exponent % 24 - 12);
+    if (u.symbol == unit::percent.symbol) return;  // no dimension, so no unit to fall back on
+    RC_ASSERT(parse_quantity(format_exactly(value, u), u).value() == value);
+  }));
+}
+
 TEST(ParseQuantity, NeverCrashesAndNeverReturnsWhatIsNotFinite) {
   EXPECT_TRUE(rc::check([](const std::string& text) {
     const auto result = parse_quantity(text, any_unit());

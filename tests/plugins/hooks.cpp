@@ -39,7 +39,7 @@ class Diary final : public core::Hook {
   void after_step(core::HookContext& c) override { out_ << "after_step " << c.tick << "\n"; }
   bool is_done(core::HookContext& c) override { return c.tick == params_.done_at; }
   void after_run(core::HookContext& c) override { out_ << "after_run " << c.tick << "\n"; }
-  double floor(double x_m, double /*y_m*/) override { return x_m > 0.0 ? 1.0 : 0.0; }
+  std::optional<double> floor(double x_m, double /*y_m*/) override { return x_m > 0.0 ? 1.0 : 0.0; }
 
  private:
   Params params_;
@@ -126,7 +126,35 @@ class Shepherd final : public core::Hook {
   std::int64_t went_back_ = 0;  // survives going back
 };
 
+/// Paints a disc.
+class Painter final : public core::Hook {
+ public:
+  struct Params {
+    double x_m = 0.0, radius_m = 0.5, shade = 0.0;
+    std::string fails;
+    void describe(hal::ParamVisitor& v) {
+      v.number("x", x_m, hal::unit::m, hal::kAny, "Its middle.");
+      v.number("radius", radius_m, hal::unit::m, hal::kNotNegative, "Its radius.");
+      v.number("shade", shade, hal::unit::none, {0.0, 1.0}, "How light.");
+      v.text("fails", fails, "Where it throws: params, constructor or floor.");
+      if (fails == "params") throw std::runtime_error("no such brush");
+    }
+  };
+  explicit Painter(const Params& params) : params_(params) {
+    if (params.fails == "constructor") throw std::runtime_error("no paint");
+  }
+  std::optional<double> floor(double x_m, double y_m) override {
+    if (params_.fails == "floor") throw std::runtime_error("spilt");
+    if (std::hypot(x_m - params_.x_m, y_m) > params_.radius_m) return std::nullopt;
+    return params_.shade;
+  }
+
+ private:
+  Params params_;
+};
+
 void register_all(hal::Registrar& registrar) {
+  registrar.add("hook", "painter", &core::hook_type<Painter>("painter", "Paints a disc."));
   registrar.add("hook", "shepherd", &core::hook_type<Shepherd>("shepherd", "Robots and boxes come and go."));
   registrar.add("hook", "diary", &core::hook_type<Diary>("diary", "Writes its calls down."));
 }

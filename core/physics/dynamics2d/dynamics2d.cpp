@@ -4,6 +4,7 @@
 #include <box2d/b2_distance.h>
 #include <box2d/box2d.h>
 #include <cmath>
+#include <string>
 
 #include "core/physics/dynamics2d/params.hpp"
 #include "core/physics/roster.hpp"
@@ -26,6 +27,7 @@ constexpr double kLongestLead_m = 0.2;         // in a tick, of a body that is l
 constexpr float kRest = 0.5F * b2_linearSlop;  // how deep bodies rest in one another: Box2D then sees that they touch
 constexpr double kSamePlace_m = 1e-5;
 constexpr double kFarthest_m = 1e6;       // from where Box2D's floats still tell places apart, somehow
+constexpr double kThinnest_m = 0.001;     // of a movable object: Box2D's skin around polygons
 constexpr double kSmallest_m = 0.005;     // radius below which hops are not made smaller
 constexpr double kLargestTurn_rad = 1.0;  // of an object in one sub-step
 constexpr double kMostHops = 200.0;       // sub-steps a tick for the sake of fast objects
@@ -38,8 +40,9 @@ struct Twin {
   b2Joint* hold = nullptr;  ///< to the ground: a movable object's friction, or a robot's drive while it pushes
   // The state in the stores that the double agrees with.
   double x_m = NAN, y_m = NAN, cos_h = 0.0, sin_h = 0.0, vx_m_s = 0.0, vy_m_s = 0.0, w_rad_s = 0.0;
-  double turn_rad = 0.0;  ///< of a robot that pushes nothing: in this sub-step, by its wheels
-  bool flawed = false;    ///< takes no part in this tick: its state is no number that Box2D can have
+  double turn_rad = 0.0;   ///< of a robot that pushes nothing: in this sub-step, by its wheels
+  std::string unfit = {};  ///< why Box2D cannot have it at all; empty: it can
+  bool flawed = false;     ///< takes no part in this tick: its state is no number that Box2D can have
 };
 
 /// Cosine and sine of a heading.
@@ -98,6 +101,12 @@ const char* flaw_of(const SpaceStores& s, BodyKey key) noexcept {
   return largest > kFarthest_m ? "is farther away, or faster, than its engine can follow" : nullptr;
 }
 
+std::string unfit(const Object& o) {
+  const bool round = o.kind == Object::Kind::Cylinder;
+  return beyond_limits("dynamics2d", o,
+                       {2.0 * (round ? o.radius_m : o.half_x_m), 2.0 * (round ? o.radius_m : o.half_y_m)}, kThinnest_m);
+}
+
 class Dynamics2d final : public Solver {
  public:
   Dynamics2d(const Params& params, const SpaceStores& stores)
@@ -116,7 +125,7 @@ class Dynamics2d final : public Solver {
     hops_ = 0.0;
     for (auto& entry : entries) {
       Twin& twin = entry.body;
-      const char* flaw = flaw_of(s, entry.key);
+      const char* flaw = twin.unfit.empty() ? flaw_of(s, entry.key) : twin.unfit.c_str();
       twin.flawed = flaw != nullptr;
       if (twin.body->IsEnabled() == twin.flawed) twin.body->SetEnabled(!twin.flawed);
       if (twin.flawed)
@@ -257,6 +266,8 @@ class Dynamics2d final : public Solver {
       if (placed) def.position = at(o.x_m, o.y_m);
       if (placed) def.angle = static_cast<float>(std::atan2(o.sin_h, o.cos_h));
       twin.body = world_->CreateBody(&def);
+      twin.unfit = unfit(o);
+      if (!twin.unfit.empty()) return twin;
       const double area =
           o.kind == Object::Kind::Cylinder ? M_PI * o.radius_m * o.radius_m : 4 * o.half_x_m * o.half_y_m;
       add_fixture(twin.body, o, false, static_cast<float>(o.mass_kg / (area * kUnits_m * kUnits_m)));
@@ -658,6 +669,7 @@ const SolverType& dynamics2d_type() {
       return box2d::read_params(options, problems);
     };
     t.describe = [](hal::ParamVisitor& visitor) { Params{}.describe(visitor); };
+    t.unfit = &unfit;
     t.make = [](const std::shared_ptr<const void>& params, const SpaceStores& stores, const Region&,
                 double) -> std::unique_ptr<Solver> {
       return std::make_unique<Dynamics2d>(*static_cast<const Params*>(params.get()), stores);

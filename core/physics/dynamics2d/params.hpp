@@ -9,6 +9,17 @@ namespace tandem::core::box2d {
 
 inline constexpr std::int64_t kMostSubSteps = 1000;  // a tick
 
+/// Chipmunk's, which ARGoS 3 is built on. Box2D finds neighbours in a tree and needs none.
+struct SpatialHash {
+  double cell_size_m = 0.1;
+  std::int64_t cell_num = 1000;
+
+  void describe(hal::ParamVisitor& v) {
+    v.number("cell_size", cell_size_m, hal::unit::m, {0.0, 1e6}, "Without effect.");
+    v.integer("cell_num", cell_num, {0, 1e9}, "Without effect.");
+  }
+};
+
 /// Parameters, by ARGoS 3's names where it has them.
 struct Params {
   std::int64_t iterations = 0;
@@ -20,6 +31,7 @@ struct Params {
   double cylinder_angular_friction = -1.0;
   double friction = 0.1;
   double elevation_m = 0.0;
+  SpatialHash spatial_hash;
 
   void describe(hal::ParamVisitor& v) {
     v.integer(
@@ -40,6 +52,7 @@ struct Params {
     v.number("friction", friction, hal::unit::none, {0.0, 10.0}, "Coulomb's coefficient between bodies that touch.");
     v.number("elevation", elevation_m, hal::unit::m, {-1e6, 1e6},
              "Height of the plane; read for ARGoS 3's files, without effect on results.");
+    v.group("spatial_hash", spatial_hash, "Read for ARGoS 3's files.");
   }
 };
 

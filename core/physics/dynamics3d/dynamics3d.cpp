@@ -15,6 +15,23 @@ constexpr double kRotorSubStep_s = 0.005;  // … of robots with rotors: a sixth
 constexpr std::array<std::string_view, 2> kDrives = {"base", "wheels"};
 constexpr std::array<std::string_view, 2> kFlights = {"thrust", "rotors"};
 
+struct Gravity {
+  double g_m_s2 = 9.81;
+  void describe(hal::ParamVisitor& v) {
+    v.number("g", g_m_s2, hal::unit::m_s2, {0.0, 1000.0}, "Acceleration of free fall.");
+  }
+};
+
+struct FloorParams {
+  double friction = -1.0;
+  double height_m = 0.0;
+  void describe(hal::ParamVisitor& v) {
+    v.number("friction", friction, hal::unit::none, {-1.0, 100.0},
+             "Coulomb's coefficient of the floor. Negative: default_friction.");
+    v.number("height", height_m, hal::unit::m, {-1e6, 1e6}, "Where the floor is.");
+  }
+};
+
 struct Params {
   std::int64_t iterations = 0;
   double default_friction = 1.0;
@@ -24,9 +41,8 @@ struct Params {
   std::int64_t solver_iterations = 30;
   double erp = 0.2;
   double cfm = 1e-10;
-  double gravity_m_s2 = 9.81;
-  double floor_friction = -1.0;
-  double floor_m = 0.0;
+  Gravity gravity;
+  FloorParams floor;
 
   void describe(hal::ParamVisitor& v) {
     v.integer("iterations", iterations, {0, 1000},
@@ -44,38 +60,13 @@ struct Params {
     v.integer("solver_iterations", solver_iterations, {1, 10000}, "ODE's passes over all constraints, a sub-step.");
     v.number("erp", erp, hal::unit::none, {0.0, 1.0}, "Share of an overlap that ODE takes back in a sub-step.");
     v.number("cfm", cfm, hal::unit::none, {0.0, 1.0}, "How far ODE lets constraints give way, per newton, in m/s.");
-  }
-  void describe_gravity(hal::ParamVisitor& v, std::string_view name) {
-    v.number(name, gravity_m_s2, hal::unit::m_s2, {0.0, 1000.0}, "<gravity g=…>: acceleration of free fall.");
-  }
-  void describe_floor(hal::ParamVisitor& v, std::string_view friction, std::string_view height) {
-    v.number(friction, floor_friction, hal::unit::none, {-1.0, 100.0},
-             "<floor friction=…>: Coulomb's coefficient of the floor. Negative: default_friction.");
-    v.number(height, floor_m, hal::unit::m, {-1e6, 1e6}, "<floor height=…>: where the floor is.");
+    v.group("gravity", gravity, "Gravity.");
+    v.group("floor", floor, "The floor.");
   }
 };
 
 std::shared_ptr<const void> read(const Element& options, Problems& problems) {
-  auto params = std::make_shared<Params>();
-  ElementReader reader(options, problems, {"id", "regions"});
-  params->describe(reader);
-  reader.finish();
-  for (const Element& child : options.children) {
-    if (child.name == "boundaries") continue;
-    ElementReader inner(child, problems);
-    if (child.name == "gravity") {
-      params->describe_gravity(inner, "g");
-    } else if (child.name == "floor") {
-      params->describe_floor(inner, "friction", "height");
-    } else {
-      problems.push_back({options.file, child.line,
-                          "<dynamics3d> may not hold <" + child.name + ">; it may hold: gravity, floor, boundaries",
-                          false});
-      continue;
-    }
-    inner.finish();
-  }
-  return params;
+  return std::make_shared<Params>(read_settings<Params>(options, problems, {"id", "regions"}, {"boundaries"}));
 }
 
 World3dSettings settings_for(const Params& params, double tick_s) {
@@ -86,15 +77,29 @@ World3dSettings settings_for(const Params& params, double tick_s) {
   settings.sub_steps = params.iterations > 0
                            ? params.iterations
                            : std::max<std::int64_t>(1, static_cast<std::int64_t>(std::ceil(tick_s / longest_s - 1e-6)));
-  settings.gravity_m_s2 = params.gravity_m_s2;
-  settings.surfaces.floor_m = params.floor_m;
-  settings.surfaces.floor_friction = params.floor_friction < 0.0 ? params.default_friction : params.floor_friction;
+  settings.gravity_m_s2 = params.gravity.g_m_s2;
+  settings.surfaces.floor_m = params.floor.height_m;
+  settings.surfaces.floor_friction = params.floor.friction < 0.0 ? params.default_friction : params.floor.friction;
   settings.surfaces.object_friction = params.default_friction;
   settings.surfaces.robot_friction = params.robot_friction;
   settings.solver_iterations = params.solver_iterations;
   settings.erp = params.erp;
   settings.cfm = params.cfm;
   return settings;
+}
+
+}  // namespace
+
+namespace {
+
+constexpr double kThinnest_m = 1e-4;
+
+std::string unfit(const Object& o) {
+  const bool round = o.kind == Object::Kind::Cylinder;
+  return beyond_limits(
+      "dynamics3d", o,
+      {2.0 * (round ? o.radius_m : o.half_x_m), 2.0 * (round ? o.radius_m : o.half_y_m), o.z_high_m - o.z_low_m},
+      kThinnest_m);
 }
 
 }  // namespace
@@ -106,12 +111,8 @@ const SolverType& dynamics3d_type() {
     t.summary = "Masses, forces, friction and gravity in space, on ODE.";
     t.plane = false;
     t.read = &read;
-    t.describe = [](hal::ParamVisitor& visitor) {
-      Params params;
-      params.describe(visitor);
-      params.describe_gravity(visitor, "gravity.g");
-      params.describe_floor(visitor, "floor.friction", "floor.height");
-    };
+    t.describe = [](hal::ParamVisitor& visitor) { Params{}.describe(visitor); };
+    t.unfit = &unfit;
     t.make = [](const std::shared_ptr<const void>& params, const SpaceStores&, const Region&,
                 double tick_s) -> std::unique_ptr<Solver> {
       return std::make_unique<World3d>(settings_for(*static_cast<const Params*>(params.get()), tick_s));

@@ -613,15 +613,7 @@ void Particle3d::write(SpaceStores& stores, std::size_t i, double tick_s) noexce
 }
 
 std::shared_ptr<const void> read(const Element& options, Problems& problems) {
-  auto params = std::make_shared<Params>();
-  ElementReader reader(options, problems, {"id", "regions"});
-  params->describe(reader);
-  reader.finish();
-  for (const Element& child : options.children) {
-    if (child.name == "boundaries") continue;
-    problems.push_back(problem_at(child, "<particle3d> may not hold <" + child.name + ">; it may hold: boundaries"));
-  }
-  return params;
+  return std::make_shared<Params>(read_settings<Params>(options, problems, {"id", "regions"}, {"boundaries"}));
 }
 
 }  // namespace

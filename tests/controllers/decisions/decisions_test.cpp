@@ -50,6 +50,8 @@ class Defaults final : public hal::ParamVisitor {
   void text(std::string_view, std::string&, std::string_view) override {}
   void choice(std::string_view, std::string&, std::span<const std::string_view>, std::string_view) override {}
   void vector(std::string_view, std::array<double, 3>&, const hal::Unit&, std::string_view) override {}
+  void visit_group(std::string_view, void*, Describe, std::string_view) override {}
+  void visit_list(std::string_view, hal::ParamList&, std::string_view) override {}
 };
 
 /// The robot that a controller is named after; an e-puck where it is named after none.

@@ -28,6 +28,47 @@ struct Settings {
   }
 };
 
+/// Parameters that hold others.
+struct Gains {
+  double p = 0.1 + 0.2;
+  struct Limit {
+    std::int64_t most = 9;
+    void describe(hal::ParamVisitor& v) { v.integer("most", most, {0, 100}, "At most."); }
+  } limit;
+  void describe(hal::ParamVisitor& v) {
+    v.number("p", p, hal::unit::none, {0.0, 5.0}, "Proportional.");
+    v.group("limit", limit, "Bounds.");
+  }
+};
+struct Point {
+  double x_m = 1.0;
+  void describe(hal::ParamVisitor& v) { v.number("x", x_m, hal::unit::m, hal::kAny, "East."); }
+};
+struct Plan {
+  std::string name = "tour";
+  Gains gains;
+  std::vector<Point> points = {{5.0}, {6.0}};
+  void describe(hal::ParamVisitor& v) {
+    v.text("name", name, "Its name.");
+    v.group("gains", gains, "Of the loop.");
+    v.list("point", points, "Where to go.");
+  }
+};
+
+Element with_children(Element e, std::vector<Element> children) {
+  e.children = std::move(children);
+  return e;
+}
+
+Element child(const std::string& name, int line, std::vector<Element::Attribute> attributes = {}) {
+  Element e;
+  e.name = name;
+  e.file = "file.xml";
+  e.line = line;
+  e.attributes = std::move(attributes);
+  return e;
+}
+
 Element element(std::vector<Element::Attribute> attributes) {
   Element e;
   e.name = "thing";
@@ -214,6 +255,79 @@ TEST(Listed, IsShortForManyNames) {
   const std::vector<std::string> many(1000, "x");
   EXPECT_THAT(listed(many), testing::EndsWith("x, …"));
   EXPECT_LT(listed(many).size(), 100U);
+}
+
+TEST(ElementReader, ReadsGroupsAndListsFromChildren) {
+  Problems problems;
+  const Element e = with_children(
+      element({}), {with_children(child("gains", 4, {{"p", "2", 4}}), {child("limit", 5, {{"most", "7", 5}})}),
+                    child("point", 6, {{"x", "30 cm", 6}}), child("point", 7)});
+  const Plan plan = read_settings<Plan>(e, problems);
+  EXPECT_TRUE(problems.empty());
+  EXPECT_EQ(plan.gains.p, 2.0);
+  EXPECT_EQ(plan.gains.limit.most, 7);
+  ASSERT_EQ(plan.points.size(), 2U);
+  EXPECT_EQ(plan.points[0].x_m, 0.3);
+  EXPECT_EQ(plan.points[1].x_m, 1.0);
+}
+
+TEST(ElementReader, KeepsGroupsAndListsThatTheFileLeavesOut) {
+  Problems problems;
+  const Plan plan = read_settings<Plan>(element({}), problems);
+  EXPECT_TRUE(problems.empty());
+  EXPECT_EQ(plan.gains.limit.most, 9);
+  ASSERT_EQ(plan.points.size(), 2U);
+  EXPECT_EQ(plan.points[1].x_m, 6.0);
+}
+
+TEST(ElementReader, NamesEveryWrongChildWithItsLine) {
+  Problems problems;
+  const Element e =
+      with_children(element({}), {with_children(child("gains", 4, {{"q", "2", 4}}), {child("limits", 5)}),
+                                  child("gains", 6), child("piont", 7), child("point", 8, {{"x", "far", 8}})});
+  (void)read_settings<Plan>(e, problems);
+  std::vector<std::string> texts;
+  for (const Problem& p : problems) texts.push_back(to_text(p));
+  EXPECT_THAT(
+      texts,
+      testing::UnorderedElementsAre(
+          HasSubstr("file.xml:4: error: <gains> has no attribute 'q'"),
+          HasSubstr("file.xml:5: error: <gains> cannot hold <limits>; it may hold: limit. Did you mean 'limit'?"),
+          HasSubstr("file.xml:6: error: a second <gains>; the first is on line 4"),
+          HasSubstr("file.xml:7: error: <thing> cannot hold <piont>; it may hold: gains, point. Did you mean 'point'?"),
+          HasSubstr("file.xml:8: error: <point x>")));
+}
+
+TEST(ElementReader, AllowsNoChildWhereNoneIsDescribed) {
+  Problems problems;
+  (void)read_settings<Settings>(with_children(element({}), {child("more", 4)}), problems);
+  ASSERT_EQ(problems.size(), 1U);
+  EXPECT_EQ(to_text(problems[0]), "file.xml:4: error: <thing> cannot hold <more>; it may hold: none");
+}
+
+TEST(ElementWriter, CompletesGroupsAndListsSoThatTheyReadBackAsTheSameBits) {
+  Element e = with_children(element({}), {child("gains", 4)});
+  Plan plan;
+  ElementWriter writer(e);
+  plan.describe(writer);
+  Problems problems;
+  const Plan back = read_settings<Plan>(e, problems);
+  EXPECT_TRUE(problems.empty());
+  EXPECT_EQ(back.gains.p, 0.1 + 0.2);
+  EXPECT_EQ(back.gains.limit.most, 9);
+  ASSERT_EQ(back.points.size(), 2U);
+  EXPECT_EQ(back.points[0].x_m, 5.0);
+  ASSERT_NE(e.child("gains"), nullptr);
+  EXPECT_NE(e.child("gains")->child("limit"), nullptr);
+}
+
+TEST(ManualWriter, ShowsGroupsAndListsWithWhatTheyHold) {
+  ManualWriter manual;
+  Plan plan;
+  plan.describe(manual);
+  EXPECT_THAT(manual.text(), HasSubstr("  <gains>  (an element inside)\n      Of the loop.\n      p="));
+  EXPECT_THAT(manual.text(), HasSubstr("          most=\"9\""));
+  EXPECT_THAT(manual.text(), HasSubstr("  <point>  (any number of elements inside"));
 }
 
 }  // namespace

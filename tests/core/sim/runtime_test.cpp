@@ -324,6 +324,34 @@ TEST(Robots, TenThousandComeAndGo) {
   EXPECT_EQ(world->state(), RunState::Running) << world->failure();
 }
 
+/// Robots with parameters that nobody else has come and go.
+TEST(Robots, WithParametersOfTheirOwnLeaveTheirPlacesToOthers) {
+  Scene s(4.0);
+  s.robot("first", -1.5, -1.5);
+  auto world = make(s);
+  ASSERT_TRUE(world.world) << world.all_problems();
+  world->start();
+  Space& space = world->space();
+  for (int i = 0; i < 3000; ++i) {
+    NewRobot wanted{.id = "r" + std::to_string(i), .controller = "c", .pose = Pose::at(0, 0, 0)};
+    const double speed_m_s = 1e-5 * (i + 1);
+    wanted.params = {{"left", hal::format_number(speed_m_s) + " m/s"},
+                     {"right", hal::format_number(speed_m_s) + " m/s"}};
+    const auto robot = space.add_robot(wanted);
+    ASSERT_TRUE(robot.ok()) << robot.error().message;
+    world->step();
+    ASSERT_DOUBLE_EQ(space.port<hal::WheelSpeeds>(robot.value())->left_m_s, speed_m_s);
+    space.remove_robot(robot.value());
+  }
+  EXPECT_EQ(space.stores().groups.size(), 1U);
+  EXPECT_LT(space.stores().bodies.size(), 50U);
+  NewRobot plain{.id = "plain", .controller = "c", .pose = Pose::at(0, 0, 0)};
+  const auto robot = space.add_robot(plain);
+  ASSERT_TRUE(robot.ok()) << robot.error().message;
+  world->step();
+  EXPECT_EQ(space.port<hal::WheelSpeeds>(robot.value())->left_m_s, 0.0);
+}
+
 TEST_P(Runtime, AVelocityIsReadAndWhereItExistsSet) {
   auto world = make(scene("drive").param("left", "0.1").param("right", "0.1").robot("a", 0, 0, 0.5));
   world->start();

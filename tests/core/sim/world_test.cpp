@@ -1,5 +1,6 @@
 #include <cmath>
 #include <fstream>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sstream>
 
@@ -61,6 +62,27 @@ TEST(World, AWallStopsARobot) {
   }
   EXPECT_LE(farthest, 0.9 - hal::epuck::kBodyRadius_m + 1e-12);
   EXPECT_GT(farthest, 0.86);
+}
+
+/// Ticks in which a robot rolls farther than a wall is thick, and farther than two robots are wide.
+TEST(World, NothingIsJumpedOverInLongTicks) {
+  for (const std::int64_t rate : {1, 2, 3}) {
+    Scene s;
+    s.param("left", "0.128").param("right", "0.128");
+    s.scenario.ticks_per_second = rate;
+    s.box(0.5, 0, 0.005, 3.0).robot("walled", 0.0, 1.0).robot("a", -0.5, 0.0).robot("b", 0.3, 0.0, M_PI);
+    auto world = make(s);
+    ASSERT_TRUE(world.world) << world.all_problems();
+    const Space& space = world->space();
+    world->start();
+    for (std::int64_t i = 0; i < 30 * rate; ++i) {
+      world->step();
+      ASSERT_LT(space.pose(space.find_robot("walled")).x_m, 0.5 - 0.03);
+      if (i < 6 * rate)  // later they roll round one another
+        ASSERT_LT(space.pose(space.find_robot("a")).x_m, space.pose(space.find_robot("b")).x_m);
+    }
+    EXPECT_NEAR(space.pose(space.find_robot("walled")).x_m, 0.4975 - 0.035, 2e-3);
+  }
 }
 
 TEST(World, RobotsThatMeetHeadOnStopEachOther) {
@@ -252,6 +274,53 @@ TEST(Hooks, OneThatThrowsEndsTheRunByName) {
       << world->failure();
 }
 
+/// Three painters, one after the other; `fails` is what the second does.
+Scene painted(const std::string& fails = "") {
+  Scene s;
+  s.scenario.floor = {"loop_functions", "", 10.0, 5};
+  const auto painter = [&](const char* x, const char* shade, const std::string& flaw) {
+    HookConfig hook;
+    hook.library = "test_hooks";
+    hook.label = "painter";
+    hook.line = 20 + static_cast<int>(s.scenario.hooks.size());
+    hook.options.name = "loop_functions";
+    hook.options.file = "scene";
+    hook.options.line = hook.line;
+    hook.options.attributes = {{"x", x, 0}, {"shade", shade, 0}, {"fails", flaw, 0}};
+    s.scenario.hooks.push_back(hook);
+  };
+  painter("0", "0", "");
+  painter("0.4", "1", fails);
+  painter("-0.4", "0.2", "");
+  return s;
+}
+
+TEST(Hooks, PaintTheFloorEachOverThoseBeforeIt) {
+  auto world = make(painted());
+  ASSERT_TRUE(world.world) << world.all_problems();
+  run(*world.world, 1);
+  const Space& space = world->space();
+  EXPECT_NEAR(space.floor(0.0, 0.45), 0.0, 0.01);  // the first alone
+  EXPECT_NEAR(space.floor(0.3, 0.0), 1.0, 0.01);   // the second over it
+  EXPECT_NEAR(space.floor(0.0, 0.0), 0.2, 0.01);   // the third over both
+  EXPECT_NEAR(space.floor(-0.8, 0.0), 0.2, 0.01);  // the third alone
+  EXPECT_NEAR(space.floor(1.5, 1.5), 0.5, 0.01);   // nobody
+}
+
+TEST(Hooks, ThatThrowWhileTheyAreMadeOrPaintAreNamed) {
+  for (const char* where : {"params", "constructor"}) {
+    auto world = make(painted(where));
+    EXPECT_EQ(world.world, nullptr);
+    EXPECT_THAT(world.all_problems(),
+                testing::HasSubstr("scene:21: error: hook 'painter' (library 'test_hooks') threw while it was made: no "));
+  }
+  auto world = make(painted("floor"));
+  ASSERT_TRUE(world.world) << world.all_problems();
+  run(*world.world, 3);
+  EXPECT_EQ(world->state(), RunState::Failed);
+  EXPECT_EQ(world->failure(), "hook 'painter' threw in floor at tick 0: spilt");
+}
+
 TEST(Hooks, MayMoveRobots) {
   Scene scene;
   scene.robot("a", 0, 0);
@@ -259,6 +328,57 @@ TEST(Hooks, MayMoveRobots) {
   auto world = make(scene);
   run(*world.world, 5);
   EXPECT_EQ(world->space().pose(world->space().robot(0)).y_m, 1.0);
+}
+
+TEST(World, SaysWhichElementsNobodyAskedFor) {
+  Scene s = painted();
+  const auto child = [](Element& parent, const std::string& name, int line) {
+    Element& e = parent.children.emplace_back();
+    e.name = name;
+    e.file = "scene";
+    e.line = line;
+  };
+  ControllerConfig& config = s.scenario.controllers.back();
+  config.params.name = "params";
+  config.sensors[0].options.name = "proximity";
+  child(config.params, "gains", 31);
+  child(config.sensors[0].options, "filter", 32);
+  child(s.scenario.hooks[0].options, "brush", 33);
+  s.robot("a", 1.0, 1.0);
+  const std::string all = make(s).all_problems();
+  EXPECT_THAT(all, testing::HasSubstr("scene:31: error: <params> cannot hold <gains>; it may hold: none"));
+  EXPECT_THAT(all, testing::HasSubstr("scene:32: error: <proximity> cannot hold <filter>"));
+  EXPECT_THAT(all, testing::HasSubstr("scene:33: error: <loop_functions> cannot hold <brush>"));
+}
+
+TEST(World, SaysWhichObjectsEnginesCannotMove) {
+  const auto problems_with = [](const std::string& engine, double width_m, double mass_kg) {
+    Scene s;
+    s.engine(engine).box(0, 0, width_m, width_m).movable(mass_kg);
+    s.scenario.objects.back().line = 17;
+    return make(s).all_problems();
+  };
+  for (const char* engine : {"dynamics2d", "dynamics3d"}) {
+    EXPECT_EQ(problems_with(engine, 0.1, 0.5), "");
+    EXPECT_THAT(problems_with(engine, 1e-5, 0.5),
+                testing::HasSubstr("scene:17: error: movable box 'box0' at (0, 0) measures 1e-05 m"));
+    EXPECT_THAT(problems_with(engine, 1e-5, 0.5), testing::HasSubstr(std::string("the engine ") + engine));
+    EXPECT_THAT(problems_with(engine, 0.1, 1e-12), testing::HasSubstr("weighs 1e-12 kg"));
+  }
+  auto world = make(Scene().engine("dynamics2d").box(0, 0, 0.1, 0.1).movable(0.5));
+  Object chip = world->space().objects()[0];
+  chip.id = "chip";
+  chip.x_m = 1.0;
+  chip.half_x_m = 1e-5;
+  EXPECT_THAT(world->space().add_object(chip).error().message, testing::HasSubstr("box 'chip' measures 2e-05 m"));
+}
+
+TEST(World, SaysWhichFloorIsTooFine) {
+  Scene s = painted();
+  s.scenario.arena_size = {1e4, 1e4, 1.0};
+  EXPECT_THAT(make(s).all_problems(),
+              testing::HasSubstr("scene:5: error: the floor would have 100000 x 100000 pixels, at most 100 million can "
+                                 "be painted: choose pixels_per_meter=\"1\" or less"));
 }
 
 TEST(World, SaysWhichControllerOrDeviceIsWrong) {

@@ -398,7 +398,7 @@ TEST(Trouble, BadAttributesAreNamedWithTheirLine) {
   EXPECT_EQ(problems.size(), 3U) << all;
   EXPECT_NE(all.find("file:5: error:"), std::string::npos) << all;
   EXPECT_NE(all.find("drag"), std::string::npos) << all;
-  EXPECT_NE(all.find("file:7: error: <particle3d> may not hold <spatial_hash>"), std::string::npos) << all;
+  EXPECT_NE(all.find("file:7: error: <particle3d> cannot hold <spatial_hash>"), std::string::npos) << all;
 }
 
 }  // namespace

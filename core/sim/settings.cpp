@@ -1,0 +1,150 @@
+#include "core/sim/settings.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "core/device/device.hpp"
+#include "core/loop/hook.hpp"
+#include "core/sim/engine_factory.hpp"
+
+namespace tandem::core {
+namespace {
+
+/// Adds to an element what is described and left out there. A description that throws leaves it as it is: it was read
+/// before, so nothing depends on it.
+template <class Describe>
+void complete(Element& element, Describe&& describe) {
+  Element completed = element;
+  ElementWriter writer(completed);
+  try {
+    describe(writer);
+    element = std::move(completed);
+  } catch (...) {
+  }
+}
+
+Element* child_of(Element& parent, std::string_view name) {
+  const auto found = std::find_if(parent.children.begin(), parent.children.end(),
+                                  [&](const Element& child) { return child.name == name; });
+  return found == parent.children.end() ? nullptr : &*found;
+}
+
+void set_attribute(Element& element, std::string_view name, const std::string& value) {
+  for (Element::Attribute& a : element.attributes) {
+    if (a.name != name) continue;
+    a.value = value;
+    return;
+  }
+  element.attributes.push_back({std::string(name), value, 0});
+}
+
+/// The file's own element, with what has been completed in its place.
+void put(Element& parent, Element completed) {
+  Element* there = child_of(parent, completed.name);
+  if (there == nullptr)
+    parent.children.push_back(std::move(completed));
+  else
+    *there = std::move(completed);
+}
+
+void complete_devices(std::vector<DeviceChoice>& choices, hal::Role role) {
+  for (DeviceChoice& choice : choices) {
+    const DeviceType* type = find_device(choice.device, role, choice.implementation);
+    if (type == nullptr) continue;
+    complete(choice.options, type->describe);
+  }
+}
+
+void put_devices(Element& configuration, std::string_view list, const std::vector<DeviceChoice>& choices) {
+  Element* there = child_of(configuration, list);
+  if (there == nullptr || there->children.size() != choices.size()) return;
+  for (std::size_t i = 0; i < choices.size(); ++i) there->children[i] = choices[i].options;
+}
+
+void complete_controllers(Scenario& scenario, hal::PluginLoader& loader) {
+  std::vector<const hal::ControllerType*> types(scenario.controllers.size(), nullptr);
+  for (RobotItem& robot : scenario.robots) {
+    ControllerConfig& config = scenario.controllers[robot.controller];
+    const hal::ControllerType*& type = types[robot.controller];
+    if (type == nullptr) {
+      const auto found = loader.controller(config.library, config.label);
+      if (!found.ok()) continue;
+      type = found.value();
+      complete_devices(config.sensors, hal::Role::Sensor);
+      complete_devices(config.actuators, hal::Role::Actuator);
+      complete(config.params, type->read_params);
+    }
+    if (!robot.params) continue;
+    complete(*robot.params, type->read_params);
+  }
+  Element* all = child_of(scenario.effective, "controllers");
+  if (all == nullptr || all->children.size() != scenario.controllers.size()) return;
+  for (std::size_t i = 0; i < types.size(); ++i) {
+    if (types[i] == nullptr) continue;
+    put_devices(all->children[i], "sensors", scenario.controllers[i].sensors);
+    put_devices(all->children[i], "actuators", scenario.controllers[i].actuators);
+    put(all->children[i], scenario.controllers[i].params);
+  }
+}
+
+/// Robots lie in <arena> in the order in which the reader met them, some in <distribute><entity>.
+void put_params_of_robots(Scenario& scenario) {
+  Element* arena = child_of(scenario.effective, "arena");
+  if (arena == nullptr) return;
+  std::size_t next = 0;
+  const auto visit = [&](Element& e) {
+    if (next == scenario.robots.size() || e.name != scenario.robots[next].kind) return;
+    const RobotItem& robot = scenario.robots[next++];
+    Element* controller = child_of(e, "controller");
+    if (controller != nullptr && robot.params) put(*controller, *robot.params);
+  };
+  for (Element& e : arena->children) {
+    Element* entity = e.name == "distribute" ? child_of(e, "entity") : nullptr;
+    if (entity == nullptr)
+      visit(e);
+    else if (!entity->children.empty())
+      visit(entity->children.front());
+  }
+}
+
+void complete_engines(Scenario& scenario) {
+  for (EngineConfig& engine : scenario.engines) {
+    complete(engine.options, [&](hal::ParamVisitor& visitor) { describe_engine(engine.kind, visitor); });
+  }
+  Element* all = child_of(scenario.effective, "physics_engines");
+  if (all == nullptr || all->children.size() != scenario.engines.size()) return;
+  for (std::size_t i = 0; i < scenario.engines.size(); ++i) all->children[i] = scenario.engines[i].options;
+}
+
+void complete_hooks(Scenario& scenario, hal::PluginLoader& loader) {
+  for (HookConfig& hook : scenario.hooks) {
+    const auto found = loader.get(hook.library, "hook", hook.label);
+    if (!found.ok()) continue;
+    const auto* type = static_cast<const HookType*>(found.value());
+    set_attribute(hook.options, "label", std::string(type->name));
+    if (type->describe != nullptr) complete(hook.options, type->describe);
+  }
+  std::size_t next = 0;
+  for (Element& e : scenario.effective.children) {
+    if (e.name == "loop_functions" && next < scenario.hooks.size()) e = scenario.hooks[next++].options;
+  }
+}
+
+void put_seed(Scenario& scenario, std::uint64_t seed) {
+  Element* framework = child_of(scenario.effective, "framework");
+  Element* experiment = framework == nullptr ? nullptr : child_of(*framework, "experiment");
+  if (experiment == nullptr) return;
+  set_attribute(*experiment, "random_seed", std::to_string(seed));
+}
+
+}  // namespace
+
+void complete_settings(Scenario& scenario, hal::PluginLoader& loader, std::uint64_t seed) {
+  complete_controllers(scenario, loader);
+  put_params_of_robots(scenario);
+  complete_engines(scenario);
+  complete_hooks(scenario, loader);
+  put_seed(scenario, seed);
+}
+
+}  // namespace tandem::core
