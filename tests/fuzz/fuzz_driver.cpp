@@ -1,11 +1,16 @@
-// Runs a fuzz target without a fuzzer: a fixed number of generated inputs, the same ones every time.
+// Runs a fuzz target without a fuzzer: the inputs kept in a folder, then a fixed number of generated ones, the same
+// ones every time. Arguments: how many, the folder; both may be left out. A file instead of a folder: that input alone.
 //
 // Input n is made of short runs of random bytes, small numbers and repeats, so that op codes, lengths and texts all
 // occur. With a clang build and TANDEM_FUZZ the same entry function is driven by libFuzzer instead.
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <vector>
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
@@ -47,10 +52,26 @@ void make_input(std::uint64_t number, std::vector<std::uint8_t>& input) {
   }
 }
 
+std::size_t replay(const std::filesystem::path& kept) {
+  std::vector<std::filesystem::path> files;
+  std::error_code none;
+  for (const auto& entry : std::filesystem::directory_iterator(kept, none)) files.push_back(entry.path());
+  if (std::filesystem::is_regular_file(kept, none)) files.push_back(kept);
+  std::sort(files.begin(), files.end());
+  for (const std::filesystem::path& path : files) {
+    std::ifstream in(path, std::ios::binary);
+    const std::vector<char> bytes{std::istreambuf_iterator<char>(in), {}};
+    std::fprintf(stderr, "%s\n", path.filename().c_str());
+    LLVMFuzzerTestOneInput(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());
+  }
+  return files.size();
+}
+
 }  // namespace
 
 int main(int count, char** arguments) {
   const std::uint64_t inputs = count > 1 ? std::strtoull(arguments[1], nullptr, 10) : 1'000'000;
+  if (count > 2) std::printf("%zu kept inputs\n", replay(arguments[2]));
   std::vector<std::uint8_t> input;
   std::uint64_t bytes = 0;
   for (std::uint64_t i = 0; i < inputs; ++i) {
