@@ -217,7 +217,7 @@ void connect_media(Reading& reading) {
       for (DeviceChoice& choice : *list) {
         const std::string* wanted = choice.options.attribute("medium");
         const std::string_view kind = medium_kind(choice.device);
-        if (wanted == nullptr || kind.empty()) continue;
+        if (wanted == nullptr || wanted->empty() || kind.empty()) continue;  // empty: the default
         const MediumConfig* found = medium_of(reading, choice.options, kind, *wanted);
         if (found == nullptr) continue;
         // What a medium says holds for the sensors that listen to it, unless they say otherwise.

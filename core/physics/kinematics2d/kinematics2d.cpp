@@ -207,6 +207,7 @@ int Kinematics2d::parts(const PhysicsContext& context) const {
     double fastest_m_s = 0.0;
     for (std::size_t row = block.first_row; row < block.first_row + block.used; ++row)
       fastest_m_s = std::max(fastest_m_s, std::fabs(b.left_m_s[row] + b.right_m_s[row]) * 0.5);
+    fastest_m_s = std::min(fastest_m_s, sheet.max_wheel_speed_m_s);  // hooks may write anything
     most = std::max(most, hops(fastest_m_s, sheet.body_radius_m, context.tick_s));
   }
   return std::max(1, static_cast<int>(std::ceil(most)));
