@@ -45,6 +45,11 @@ hal::Status GuardedRobots::claim() {
   return guardian_->claim(all);
 }
 
+void GuardedRobots::remove(const bridges::RobotBridge& bridge) {
+  if (guardian_) guardian_->release(bridge.stop_messages().robot);
+  std::erase_if(robots_, [&bridge](const Row& row) { return row.bridge == &bridge; });
+}
+
 void GuardedRobots::update() {
   if (!guardian_) return;
   for (const std::string& news : guardian_->take_news()) log_.warning(news);

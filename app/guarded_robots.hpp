@@ -25,6 +25,8 @@ class GuardedRobots {
   std::uint64_t freezes() const noexcept;
   /// `bridge` must outlive this, or the last call of anything here but the destructor.
   void add(const bridges::RobotBridge& bridge) { robots_.push_back({&bridge}); }
+  /// It takes no part any more, and was never driven.
+  void remove(const bridges::RobotBridge& bridge);
   /// Before the first link is opened: nobody else drives these robots from now on. Error: somebody does.
   hal::Status claim();
   /// Tells what has changed since it was told last, and people what there is to tell. Cheap where there is nothing:

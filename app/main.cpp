@@ -31,6 +31,8 @@ void add_run(CLI::App& app, RunOptions& o, int& code) {
                 "never")
       ->capture_default_str()
       ->check(CLI::NonNegativeNumber);
+  c->add_option("--without", o.without, "Simulate this robot instead of driving the real one; repeatable")
+      ->allow_extra_args(false);
   c->add_flag("--quiet", o.quiet, "No table at the end");
   c->callback([&] { code = run(o); });
 }

@@ -7,16 +7,24 @@ namespace {
 
 std::atomic<bool> stop_asked{false};
 std::atomic<bool> suspension_asked{false};
+std::atomic<int> stop_signal{0};  // the first one
+std::atomic<bool> rearming_asked{false};
 #if !defined(__ARM_ARCH) || __ARM_ARCH > 5  // ARMv5 stores a bool with one instruction, but promises nothing wider
 static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may only touch lock-free atomics");
 #endif
 
-void note(int) {
+void note(int signal) {
+  int none = 0;
+  stop_signal.compare_exchange_strong(none, signal, std::memory_order_relaxed);
   stop_asked.store(true, std::memory_order_relaxed);
 }
 
 void note_suspension(int) {
   suspension_asked.store(true, std::memory_order_relaxed);
+}
+
+void note_rearm(int) {
+  rearming_asked.store(true, std::memory_order_relaxed);
 }
 
 }  // namespace
@@ -38,6 +46,22 @@ void catch_suspend() {
   action.sa_handler = &note_suspension;
   action.sa_flags = SA_RESTART;
   sigaction(SIGTSTP, &action, nullptr);
+}
+
+int interrupted_code() noexcept {
+  const int signal = stop_signal.load(std::memory_order_relaxed);
+  return signal != 0 ? 128 + signal : 0;
+}
+
+std::atomic<bool>& rearm_asked() noexcept {
+  return rearming_asked;
+}
+
+void catch_rearm() {
+  struct sigaction action {};
+  action.sa_handler = &note_rearm;
+  action.sa_flags = SA_RESTART;
+  sigaction(SIGUSR1, &action, nullptr);
 }
 
 void request_stop() noexcept {

@@ -11,6 +11,13 @@ const std::atomic<bool>& catch_signals();
 std::atomic<bool>& suspend_asked() noexcept;
 void catch_suspend();
 
+/// What the program's exit code is when a signal ended its run: 130 after SIGINT, 143 after SIGTERM; 0: none came.
+int interrupted_code() noexcept;
+
+/// Set by SIGUSR1 from `catch_rearm` on: a person re-arms the real robots that wait for it.
+std::atomic<bool>& rearm_asked() noexcept;
+void catch_rearm();
+
 /// Sets the flag as a signal would.
 void request_stop() noexcept;
 

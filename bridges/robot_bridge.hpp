@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "bridges/stop_messages.hpp"
 #include "hal/port.hpp"
@@ -48,6 +49,12 @@ class StatusVisitor {
   virtual void end_list() = 0;
 };
 
+/// A port that was taken.
+struct PortView {
+  const hal::PortType* type;
+  void* data;
+};
+
 /// A real robot. No call but `shut_down` waits for the robot; `latch`, `commit`, `stop`, `resume` do not allocate.
 /// They, `robot()`, `port()` and `set_origin` belong to the loop's thread; the rest may be called from any. Times are
 /// CLOCK_MONOTONIC.
@@ -59,6 +66,8 @@ class RobotBridge {
   /// The port of that type, taken if it was not yet, also where the configuration does not list it; null when the robot
   /// has no such device that can be reached. Compared by name, role and layout. Lives as long as the bridge.
   virtual void* port(const hal::PortType& type) noexcept = 0;
+  /// Ports that were taken, in this order.
+  virtual std::vector<PortView> taken() const = 0;
   /// Readings are stamped from here.
   virtual void set_origin(hal::TimeNs origin_ns) noexcept = 0;
 
@@ -77,6 +86,9 @@ class RobotBridge {
 
   /// As of the last `latch`.
   virtual LinkHealth health() const noexcept = 0;
+  /// Between the last two calls of `latch` the robot restarted, or its own fail-safe took over; also when all is well
+  /// again.
+  virtual bool stopped_itself() const noexcept { return false; }
   /// It answers, and is another one than the settings say: waiting for it is in vain. `trouble` says what differs.
   virtual bool mismatched() const noexcept { return false; }
   /// Whether the robot itself has confirmed the last `stop`, and nothing that moves it was sent since.

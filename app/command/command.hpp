@@ -21,6 +21,7 @@ struct RunOptions {
   std::string report;      ///< file, or "-"
   std::string picture;     ///< .svg, .png or .pdf
   std::string trajectory;  ///< CSV file, of every robot unless the experiment says which
+  std::vector<std::string> without;  ///< real robots that are simulated instead, by id
   bool quiet = false;      ///< no table
   double step_timeout_s = 5.0;  ///< after which a controller or hook that does not return is named; 0: never
 };

@@ -17,17 +17,18 @@
 #include "app/watchdog.hpp"
 #include "hal/output_file.hpp"
 #include "hal/plugin_loader.hpp"
+#include "mixed_reality/safety/supervised_robot.hpp"
 #include "mixed_reality/settings/bridge_types.hpp"
+#include "mixed_reality/settings/patience.hpp"
 #include "mixed_reality/time/pacer.hpp"
 
 namespace tandem::app {
 namespace {
 
 constexpr double kStepTimeout_s = 5.0;  // after which a controller that does not return is named
-constexpr hal::TimeNs kConnectWithin_ns = 15 * hal::kNsPerSecond;
 constexpr hal::TimeNs kOpenWithin_ns = hal::kNsPerSecond;
-constexpr hal::TimeNs kStopWithin_ns = 2 * hal::kNsPerSecond;
-constexpr hal::TimeNs kPollEvery_ns = 20 * hal::kNsPerMs;  // while waiting for the robot
+constexpr hal::TimeNs kFrozenAfter_ns = 500 * hal::kNsPerMs;  // guardians have stopped the robot meanwhile
+constexpr hal::TimeNs kPollEvery_ns = 20 * hal::kNsPerMs;     // while waiting for the robot
 
 /// The one robot of the file that is to be driven; prints what is wrong otherwise.
 const core::RobotItem* only_robot(const core::Scenario& scenario, const std::string& link) {
@@ -52,16 +53,21 @@ const core::RobotItem* only_robot(const core::Scenario& scenario, const std::str
 
 const std::atomic<bool> kNever{false};
 
-/// Waits until the robot answers, or it is clear that it will not. Error: it does not; says what is known.
-hal::Status connect(bridges::RobotBridge& bridge, mixed_reality::TimeSource& clock, const std::atomic<bool>& stop) {
+/// Waits until the robot answers, has told all that its controller asked for, and stands armed; or it is clear that it
+/// will not. Error: it does not; says what is known.
+hal::Status connect(mixed_reality::SupervisedRobot& robot, bridges::RobotBridge& bridge,
+                    const core::BridgeConfig& config, mixed_reality::TimeSource& clock, const std::atomic<bool>& stop) {
   const hal::TimeNs began_ns = clock.now_ns();
   for (hal::TimeNs now = began_ns; !stop.load(); now = clock.now_ns()) {
-    bridge.latch(0, now);
-    if (bridge.health() == bridges::LinkHealth::Active) return {};
+    (void)robot.latch(0, now);
+    if (robot.verdict().may_drive) return {};
+    robot.commit(now);
     const std::string trouble = bridge.trouble();
     if (bridge.mismatched()) return hal::Error{trouble};
     const bool shut = now - began_ns >= kOpenWithin_ns && bridge.link().empty() && !trouble.empty();
-    if (shut || now - began_ns >= kConnectWithin_ns) {
+    const bool late = shut || hal::to_seconds(now - began_ns) >= config.connect_s;
+    if (late && config.if_missing != core::IfMissing::Wait) {
+      if (bridge.health() == bridges::LinkHealth::Active) return hal::Error{"it cannot be driven: " + robot.reason()};
       return hal::Error{"it is not there: " + (trouble.empty() ? "" : trouble + "; ") + bridge.advice()};
     }
     clock.sleep_until(now + kPollEvery_ns, stop);
@@ -70,10 +76,10 @@ hal::Status connect(bridges::RobotBridge& bridge, mixed_reality::TimeSource& clo
 }
 
 /// Stops the robot and waits a while for it to confirm.
-void stop_and_wait(bridges::RobotBridge& bridge, mixed_reality::TimeSource& clock) {
-  const hal::TimeNs give_up_ns = clock.now_ns() + kStopWithin_ns;
-  bridge.stop(clock.now_ns());
-  while (!bridge.at_rest() && clock.now_ns() < give_up_ns) {
+void stop_and_wait(bridges::RobotBridge& bridge, double within_s, mixed_reality::TimeSource& clock) {
+  const hal::TimeNs began_ns = clock.now_ns();
+  bridge.stop(began_ns);
+  while (!bridge.at_rest() && hal::to_seconds(clock.now_ns() - began_ns) < within_s) {
     clock.sleep_until(clock.now_ns() + kPollEvery_ns, kNever);
     bridge.latch(0, clock.now_ns());
   }
@@ -81,13 +87,16 @@ void stop_and_wait(bridges::RobotBridge& bridge, mixed_reality::TimeSource& cloc
 
 /// Begins the report; what the end adds comes later.
 void begin_report(hal::Json& json, const core::Scenario& scenario, const core::RobotItem& item,
-                  const bridges::RobotBridge& bridge, const mixed_reality::PaceLedger& pace) {
+                  const bridges::RobotBridge& bridge, const mixed_reality::Supervisor& supervisor,
+                  const mixed_reality::PaceLedger& pace) {
   json["experiment"] = scenario.name;
   json["robot"] = item.id;
   json["link"] = bridge.link();
   json["steps"] = pace.ticks;
   json["deadline_misses"] = pace.deadline_misses;
   json["wake_up_p99_ms"] = static_cast<double>(pace.wake_up.quantile_ns(0.99)) * 1e-6;
+  json["stops"] = supervisor.stops();
+  json["rearms"] = supervisor.rearms();
   add_link_report(json, bridge.report());
   JsonStatus status(json);
   bridge.describe(status);
@@ -163,28 +172,42 @@ int robot(const RobotOptions& options) {
   guarded.add(bridge);
   if (const hal::Status claimed = guarded.claim(); !claimed.ok())
     return complain(kFailedRunning, claimed.error().message);
+  catch_rearm();
+  mixed_reality::SupervisedParams supervision;
+  supervision.rearm = mixed_reality::rearm_params(*item.bridge);
+  supervision.tick_ns = hal::time_of_tick(1, scenario->ticks_per_second);
+  supervision.frozen_after_ns = supervision.tick_ns + kFrozenAfter_ns;
+  mixed_reality::SupervisedRobot supervised(item.id, bridge, supervision, log);
   bridge.start();
-  const hal::Status ready = connect(bridge, clock, stop);
-  if (stop.load()) return kDone;
+  const hal::Status ready = connect(supervised, bridge, *item.bridge, clock, stop);
+  if (stop.load()) return interrupted_code();
   if (!ready.ok()) return complain(kFailedRunning, "robot '" + item.id + "': " + ready.error().message);
 
   mixed_reality::Pacer pacer(clock, scenario->ticks_per_second);
   const double seconds = options.seconds.value_or(scenario->length_s);
   const auto steps = static_cast<std::int64_t>(seconds * static_cast<double>(scenario->ticks_per_second) + 0.5);
   std::string failure;
-  bridge.set_origin(clock.now_ns());
+  std::uint64_t freezes = guarded.freezes();
+  if (scenario->priority > 0) {
+    const hal::Status granted = mixed_reality::ask_for_realtime_priority(scenario->priority);
+    if (!granted.ok()) log.warning(granted.error().message + "; going on without");
+  }
   {
     Progress progress(steps, scenario->ticks_per_second);
     pacer.start();
     for (hal::Tick tick = 0; (steps == 0 || tick < steps) && !stop.load(std::memory_order_relaxed); ++tick) {
-      bridge.latch(tick, clock.now_ns());
-      if (!controller->step(failure)) {
+      if (rearm_asked().exchange(false)) supervised.rearm();
+      if (const std::uint64_t count = guarded.freezes(); count != freezes) {
+        freezes = count;
+        supervised.hub_was_frozen();
+      }
+      if (supervised.latch(tick, clock.now_ns()) && !controller->step(failure)) {
         failure = "controller '" + config.id + "' of robot '" + item.id + "' threw at tick " + std::to_string(tick) +
                   ": " + failure + "; the robot is stopped";
         break;
       }
       guarded.update();
-      bridge.commit(clock.now_ns());  // at once, not after the wait
+      supervised.commit(clock.now_ns());  // at once, not after the wait
       progress.step(tick + 1);
       if (!pacer.wait_for_next(stop)) break;
     }
@@ -193,9 +216,9 @@ int robot(const RobotOptions& options) {
   if (failure.empty() && !interrupted && bridge.health() == bridges::LinkHealth::Lost) {
     failure = "robot '" + item.id + "' was lost at the end: " + bridge.trouble();
   }
-  stop_and_wait(bridge, clock);
+  stop_and_wait(bridge, item.bridge->stop_s, clock);
   hal::Json json;
-  begin_report(json, *scenario, item, bridge, pacer.ledger());
+  begin_report(json, *scenario, item, bridge, supervised.supervisor(), pacer.ledger());
   const auto table = result_table(item, bridge, pacer.ledger());
   bridge.shut_down();
   const bool confirmed = guarded.release_rested().empty();
@@ -221,7 +244,8 @@ int robot(const RobotOptions& options) {
     if (written.ok()) written = report->commit();
     if (!written.ok()) return complain(kFailedRunning, written.error().message);
   }
-  return failure.empty() ? kDone : complain(kFailedRunning, failure);
+  if (!failure.empty()) return complain(kFailedRunning, failure);
+  return interrupted ? interrupted_code() : kDone;
 }
 
 }  // namespace tandem::app

@@ -120,6 +120,25 @@ std::uint64_t run_alone(core::World& world, std::int64_t steps, const std::atomi
   return pacer.ledger().deadline_misses;
 }
 
+/// Makes robots that are real in the file ordinary ones. Error: there is no such real robot.
+hal::Status leave_out(core::Scenario& scenario, const std::vector<std::string>& ids) {
+  for (const std::string& id : ids) {
+    std::string real;
+    bool found = false;
+    for (core::RobotItem& item : scenario.robots) {
+      if (!item.bridge) continue;
+      real += (real.empty() ? "" : ", ") + item.id;
+      if (item.id != id) continue;
+      item.bridge.reset();
+      found = true;
+    }
+    if (!found)
+      return hal::Error{"--without " + id +
+                        ": there is no real robot of this name; there are: " + (real.empty() ? "none" : real)};
+  }
+  return {};
+}
+
 bool has_real_robots(const core::Scenario& scenario) {
   for (const core::RobotItem& item : scenario.robots) {
     if (item.bridge) return true;
@@ -136,6 +155,9 @@ std::unique_ptr<mixed_reality::MixedSession> join_real_robots(std::unique_ptr<co
   mixed_reality::MixedOptions options;
   options.log = log;
   options.freezes = [&guarded] { return guarded.freezes(); };
+  catch_rearm();
+  options.rearm_asked = &rearm_asked();
+  options.on_left_out = [&guarded](const bridges::RobotBridge& bridge) { guarded.remove(bridge); };
   options.before_commands = [&guarded] { guarded.update(); };
   const auto maker = [&](const mixed_reality::BridgeRequest& request) {
     mixed_reality::BridgeRequest permitted = request;
@@ -185,8 +207,10 @@ bool write_results(RunOutputs& outputs, const RunResult& result, bool table) {
 
 int run(const RunOptions& options) {
   const double began = wall_seconds();
-  const auto scenario = read_or_complain(options.experiment, options.overrides);
+  auto scenario = read_or_complain(options.experiment, options.overrides);
   if (!scenario) return kBadInput;
+  if (const hal::Status left_out = leave_out(*scenario, options.without); !left_out.ok())
+    return complain(kBadInput, left_out.error().message);
   if (const hal::Status paths = check_output_paths(options, *scenario); !paths.ok())
     return complain(kBadInput, paths.error().message);
 
@@ -215,7 +239,7 @@ int run(const RunOptions& options) {
   int code = kDone;
   mixed_reality::MonotonicTime clock;
   const auto mixed = join_real_robots(made, guarded, clock, stop, world_options.log, code);
-  if (code != kDone) return stop.load() ? kDone : code;
+  if (code != kDone) return stop.load() ? interrupted_code() : code;
 
   const auto controllers = controller_files(*scenario, loader);
   const std::int64_t steps = steps_of(options, *scenario);
@@ -251,7 +275,8 @@ int run(const RunOptions& options) {
   const bool table = !options.quiet && options.report != "-";
   const bool written = write_results(outputs, result, table);
   const bool failed = result.end.how == Ended::Failed || world->incidents().controllers_thrown > 0;
-  return failed || !written || !left.empty() ? kFailedRunning : kDone;
+  if (failed || !written || !left.empty()) return kFailedRunning;
+  return result.end.how == Ended::Interrupted ? interrupted_code() : kDone;
 }
 
 }  // namespace tandem::app

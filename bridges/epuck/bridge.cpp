@@ -165,6 +165,9 @@ void EpuckBridge::note_health() noexcept {
   const std::uint64_t handshakes = driver_.session().statistics().handshakes;
   const bool begun_anew = was_active_ && handshakes != handshakes_;  // and every handshake stops the robot
   handshakes_ = handshakes;
+  const std::uint64_t restarts = driver_.session().statistics().restarts;
+  stopped_itself_ = was_active_ && restarts != restarts_;
+  restarts_ = restarts;
   const SessionState state = driver_.state();
   if (state == SessionState::Active && !firmware_differs()) {
     health_ = begun_anew ? LinkHealth::Suspect : LinkHealth::Active;
@@ -201,9 +204,20 @@ void EpuckBridge::resume() noexcept {
 
 // --- what is known ---
 
+std::vector<PortView> EpuckBridge::taken() const {
+  std::vector<PortView> all;
+  for (const auto& view : driver_.robot().taken()) all.push_back({view.type, view.data});
+  return all;
+}
+
 LinkHealth EpuckBridge::health() const noexcept {
   const std::lock_guard lock(mutex_);
   return health_;
+}
+
+bool EpuckBridge::stopped_itself() const noexcept {
+  const std::lock_guard lock(mutex_);
+  return stopped_itself_;
 }
 
 bool EpuckBridge::firmware_differs() const noexcept {

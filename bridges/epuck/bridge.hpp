@@ -66,6 +66,7 @@ class EpuckBridge final : public RobotBridge {
 
   EpuckRobot& robot() noexcept override { return driver_.robot(); }
   void* port(const hal::PortType& type) noexcept override { return driver_.robot().find(type); }
+  std::vector<PortView> taken() const override;
   void set_origin(hal::TimeNs origin_ns) noexcept override { driver_.robot().set_origin(origin_ns); }
 
   void start() override;
@@ -80,6 +81,7 @@ class EpuckBridge final : public RobotBridge {
   void resume() noexcept override;
 
   LinkHealth health() const noexcept override;
+  bool stopped_itself() const noexcept override;
   bool mismatched() const noexcept override;
   bool at_rest() const noexcept override;
   std::string trouble() const override;
@@ -119,6 +121,8 @@ class EpuckBridge final : public RobotBridge {
   LinkHealth health_ = LinkHealth::Connecting;
   bool was_active_ = false;
   std::uint64_t handshakes_ = 0;  // at the last `latch`
+  std::uint64_t restarts_ = 0;    // the same
+  bool stopped_itself_ = false;
   std::atomic<bool> ending_{false};
   std::thread thread_;
 };

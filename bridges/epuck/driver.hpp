@@ -56,6 +56,7 @@ class EpuckDriver {
 
   /// To construct a controller with, and to take further ports from.
   EpuckRobot& robot() noexcept { return robot_; }
+  const EpuckRobot& robot() const noexcept { return robot_; }
 
   /// Fills the ports that were taken with the newest values.
   void latch(hal::Tick tick, hal::TimeNs now) noexcept;

@@ -182,6 +182,9 @@ void EyebotBridge::note_health() noexcept {
   const std::uint64_t interruptions = s.link_stops + s.watchdog_stops;
   const bool begun_anew = was_active_ && interruptions != interruptions_;
   interruptions_ = interruptions;
+  const std::uint64_t own_stops = driver_.liveness().restarts() + s.saved_itself;
+  stopped_itself_ = was_active_ && own_stops != own_stops_;
+  own_stops_ = own_stops;
   const RobotState state = driver_.state();
   if (state == RobotState::Active) {
     health_ = begun_anew ? LinkHealth::Suspect : LinkHealth::Active;
@@ -220,9 +223,20 @@ void EyebotBridge::resume() noexcept {
 
 // --- what is known ---
 
+std::vector<PortView> EyebotBridge::taken() const {
+  std::vector<PortView> all;
+  for (const auto& view : driver_.robot().taken()) all.push_back({view.type, view.data});
+  return all;
+}
+
 LinkHealth EyebotBridge::health() const noexcept {
   const std::lock_guard lock(mutex_);
   return health_;
+}
+
+bool EyebotBridge::stopped_itself() const noexcept {
+  const std::lock_guard lock(mutex_);
+  return stopped_itself_;
 }
 
 std::string EyebotBridge::trouble() const {

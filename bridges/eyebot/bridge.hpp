@@ -80,6 +80,7 @@ class EyebotBridge final : public RobotBridge, private Outbox {
 
   EyebotRobot& robot() noexcept override { return driver_.robot(); }
   void* port(const hal::PortType& type) noexcept override { return driver_.robot().find(type); }
+  std::vector<PortView> taken() const override;
   void set_origin(hal::TimeNs origin_ns) noexcept override { driver_.robot().set_origin(origin_ns); }
 
   void start() override;
@@ -95,6 +96,7 @@ class EyebotBridge final : public RobotBridge, private Outbox {
   void resume() noexcept override;
 
   LinkHealth health() const noexcept override;
+  bool stopped_itself() const noexcept override;
   bool at_rest() const noexcept override;
   std::string trouble() const override;
   std::string advice() const override;
@@ -141,6 +143,8 @@ class EyebotBridge final : public RobotBridge, private Outbox {
   LinkHealth health_ = LinkHealth::Connecting;
   bool was_active_ = false;
   std::uint64_t interruptions_ = 0;  // at the last `latch`
+  std::uint64_t own_stops_ = 0;      // the same: starts anew, and times that it saved itself
+  bool stopped_itself_ = false;
   std::atomic<bool> ending_{false};
   std::thread thread_;
 };

@@ -109,6 +109,7 @@ class EyebotDriver {
 
   /// To construct a controller with, and to take further ports from.
   EyebotRobot& robot() noexcept { return robot_; }
+  const EyebotRobot& robot() const noexcept { return robot_; }
 
   /// Fills the ports that were taken with the newest values.
   void latch(hal::Tick tick, hal::TimeNs now) noexcept;

@@ -149,6 +149,12 @@ void FootbotBridge::resume() noexcept {
 
 // --- what is known ---
 
+std::vector<PortView> FootbotBridge::taken() const {
+  std::vector<PortView> all;
+  for (const auto& view : driver_.robot().taken()) all.push_back({view.type, view.data});
+  return all;
+}
+
 LinkHealth FootbotBridge::health() const noexcept {
   const std::lock_guard lock(mutex_);
   return health_;

@@ -58,6 +58,7 @@ class FootbotBridge final : public RobotBridge {
 
   FootbotRobot& robot() noexcept override { return driver_.robot(); }
   void* port(const hal::PortType& type) noexcept override { return driver_.robot().find(type); }
+  std::vector<PortView> taken() const override;
   void set_origin(hal::TimeNs origin_ns) noexcept override { driver_.robot().set_origin(origin_ns); }
 
   void start() override;

@@ -68,6 +68,7 @@ class FootbotDriver {
 
   /// To construct a controller with, and to take further ports from.
   FootbotRobot& robot() noexcept { return robot_; }
+  const FootbotRobot& robot() const noexcept { return robot_; }
 
   /// Ports were taken: from now on they count. Every `commit` does the same.
   void note_ports() noexcept { wiring_.note_demand(); }

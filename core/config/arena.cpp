@@ -339,6 +339,14 @@ class ArenaReader {
       item.bridge->land_at_end = b.at_end == "land";
       item.bridge->origin_m = b.origin;
       item.bridge->turn_rad = b.turn_rad;
+      item.bridge->rearm = b.rearm;
+      item.bridge->settle_s = b.settle_s;
+      item.bridge->ramp_m_s2 = b.ramp_m_s2;
+      item.bridge->if_missing = b.missing == "simulate" ? IfMissing::Simulate
+                                : b.missing == "wait"   ? IfMissing::Wait
+                                                        : IfMissing::Refuse;
+      item.bridge->connect_s = b.connect_s;
+      item.bridge->stop_s = b.stop_s;
       if (distribute != nullptr) reading_.error(c, "a <bridge> stands for one real robot; it cannot be distributed");
     });
     reading_.once(e, "tracker", [&](Element& c) {

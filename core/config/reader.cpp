@@ -132,8 +132,11 @@ void read_framework(Reading& reading, Element& e) {
     const bool said = c.attribute("mode") != nullptr;
     schema::Time start;
     if (real_time) start.mode = "realtime";
-    const std::string mode = reading.read(c, start).mode;
-    out.time_mode = mode == "realtime" ? TimeMode::Realtime : mode == "lockstep" ? TimeMode::Lockstep : TimeMode::Fast;
+    const schema::Time time = reading.read(c, start);
+    const std::string& mode = time.mode;
+    out.time_mode = mode == "realtime" ? TimeMode::Realtime : TimeMode::Fast;
+    out.priority = static_cast<int>(time.priority);
+    if (mode == "lockstep") reading.error(c, "mode", "'lockstep' is not there yet; use realtime or fast");
     if (said && real_time && mode != "realtime")
       reading.error(c, "mode", "'" + mode + "' contradicts <experiment real_time=\"true\">; drop one of them");
   });

@@ -94,10 +94,13 @@ struct Profiling {
 struct Time {
   static constexpr ElementInfo kElement{"time", "How the run is paced."};
   std::string mode = "fast";
+  std::int64_t priority = 0;
   void describe(ParamVisitor& v) {
     static constexpr std::array<std::string_view, 3> kModes = {"fast", "realtime", "lockstep"};
     v.choice("mode", mode, kModes,
-             "fast: as fast as possible; realtime: paced by absolute time; lockstep: waits for every peer.");
+             "fast: as fast as possible; realtime: paced by absolute time; lockstep: not there yet.");
+    v.integer("priority", priority, {0, 99},
+              "Real-time priority (SCHED_FIFO, 1 to 99) of the thread that steps a run with real robots; 0: none.");
   }
 };
 
@@ -319,8 +322,8 @@ struct Battery {
 
 struct Bridge {
   static constexpr ElementInfo kElement{"bridge", "Makes the robot stand for a real one on this link.", "link"};
-  std::string link, firmware = "auto", map, name, at_end = "land";
-  double timeout_s = 0.5, turn_rad = 0.0;
+  std::string link, firmware = "auto", map, name, at_end = "land", rearm = "after 0.5 s", missing = "refuse";
+  double timeout_s = 0.5, turn_rad = 0.0, settle_s = 0.3, ramp_m_s2 = 0.25, connect_s = 15.0, stop_s = 2.0;
   Vec3 origin{};
   void describe(ParamVisitor& v) {
     static constexpr std::array<std::string_view, 5> kFirmware = {"auto", "btcom", "gctronic", "webots", "epuck2"};
@@ -334,6 +337,17 @@ struct Bridge {
     v.choice("at_end", at_end, kEnds, "What an eye-bot does when its run ends.");
     v.vector("origin", origin, unit::m, "Where the origin of an eye-bot's own world lies in the arena.");
     v.number("turn", turn_rad, unit::deg, {}, "How far its world is turned against the arena's, counter-clockwise.");
+    v.text("rearm", rearm,
+           "What lets the robot drive again when it stopped by itself (a restart, its own fail-safe, a frozen hub): "
+           "operator (SIGUSR1 to tandem), after a time in which all was well, never.");
+    v.number("settle_after", settle_s, unit::s, {0.0, 60.0},
+             "After any other stop, such as a lost link, all must have been well for this long.");
+    v.number("rearm_ramp", ramp_m_s2, unit::m_s2, {0.001, 100.0}, "Its largest speed then grows from 0 by this.");
+    static constexpr std::array<std::string_view, 3> kMissing = {"refuse", "simulate", "wait"};
+    v.choice("missing", missing, kMissing,
+             "When it is not there at the start: refuse to run, run with a simulated robot instead, or wait for it.");
+    v.number("connect_timeout", connect_s, unit::s, {0.1, 3600.0}, "How long it is waited for before it is missing.");
+    v.number("stop_timeout", stop_s, unit::s, {0.1, 60.0}, "How long it has to confirm its stop at the end.");
   }
 };
 

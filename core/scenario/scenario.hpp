@@ -22,7 +22,7 @@ struct Placement {
   double roll_rad = 0.0;
 };
 
-enum class TimeMode { Fast, Realtime, Lockstep };
+enum class TimeMode { Fast, Realtime };
 enum class Assignment { Static, Dynamic };        ///< of work to threads
 enum class EscapePolicy { Error, Stop, Remove };  ///< what happens to a body that leaves the arena
 
@@ -86,6 +86,10 @@ struct CameraConfig {
 };
 
 /// A robot that stands for a real one: where its bridge connects.
+/// What becomes of a run when a real robot is not there at its start. Refuse: it does not begin. Simulate: it begins with
+/// a simulated robot instead. Wait: it does not begin before the robot is there.
+enum class IfMissing : std::uint8_t { Refuse, Simulate, Wait };
+
 struct BridgeConfig {
   std::string link;               ///< "serial:/dev/ttyUSB0@115200"
   std::string firmware = "auto";  ///< the robot must run this one; auto: any
@@ -97,6 +101,12 @@ struct BridgeConfig {
   bool land_at_end = true;           ///< else a flying robot is left hovering
   std::array<double, 3> origin_m{};  ///< of the world that the robot's own positions are in, in W
   double turn_rad = 0.0;             ///< of that world's x axis from W's
+  std::string rearm = "after 0.5 s";   ///< who lets it go after a stop by itself: operator, after a time, never
+  double settle_s = 0.3;             ///< after any other stop, all must have been well for so long
+  double ramp_m_s2 = 0.25;           ///< then its largest speed grows from 0 by this
+  IfMissing if_missing = IfMissing::Refuse;
+  double connect_s = 15.0;  ///< from which it counts as missing, before the run
+  double stop_s = 2.0;      ///< for it to confirm its stop, at the end
 };
 
 struct TrackerConfig {
@@ -222,6 +232,7 @@ struct Scenario {
   std::int64_t threads = 0;
   Assignment assignment = Assignment::Static;
   TimeMode time_mode = TimeMode::Fast;
+  int priority = 0;  ///< SCHED_FIFO of the stepping thread of runs with real robots; 0: none is asked for
 
   Vec3 arena_size{};
   Vec3 arena_center{};

@@ -73,12 +73,12 @@ hal::Status MixedSession::add_twin(const core::RobotItem& item, const BridgeMake
   if (!poses.ok()) return about(item, scenario.file, poses.error().message);
 
   TwinParams params;
-  params.rearm = options_.rearm;
+  params.rearm = rearm_params(*item.bridge);
   params.frozen_after_ns = hal::time_of_tick(1, scenario.ticks_per_second) + kFrozenAfter_ns;
   params.pose_timeout_ns = lost_after_ns(item, scenario.ticks_per_second);
   twins_.push_back(
       std::make_unique<Twin>(space, robot, std::move(real), std::move(poses).value(), params, options_.log));
-  links_.push_back(item.bridge->link);
+  bridges_.push_back(*item.bridge);
   return {};
 }
 
@@ -98,7 +98,7 @@ void MixedSession::start_bridges() {
 
 hal::Status MixedSession::connect(const std::atomic<bool>& stop) {
   start_bridges();
-  const hal::TimeNs give_up_ns = time_.now_ns() + options_.connect_timeout_ns;
+  const hal::TimeNs began_ns = time_.now_ns();
   stopped_ = false;  // from here on robots may hear from us
   phase_ = RunPhase::Waiting;
   for (;;) {
@@ -108,12 +108,12 @@ hal::Status MixedSession::connect(const std::atomic<bool>& stop) {
       twin->after_filter(now_);  // stands still, and is asked for readings
     }
     if (all_answer()) return {};
+    const hal::TimeNs waited_ns = now_.monotonic_ns - began_ns;
     if (stop.load(std::memory_order_relaxed))
-      return hal::Error{"interrupted while waiting for real robots: " + missing_robots()};
-    if (now_.monotonic_ns >= give_up_ns) {
-      return hal::Error{"real robots did not answer within " +
-                        hal::format_number(hal::to_seconds(options_.connect_timeout_ns)) + " s: " + missing_robots()};
-    }
+      return hal::Error{"interrupted while waiting for real robots: " + missing_robots({})};
+    leave_out_missing(waited_ns);
+    if (const std::string missing = missing_robots(waited_ns); !missing.empty())
+      return hal::Error{"real robots did not answer: " + missing};
     time_.sleep_until(now_.monotonic_ns + kPollEvery_ns, stop);
   }
 }
@@ -123,23 +123,49 @@ bool MixedSession::all_answer() const noexcept {
                      [](const auto& twin) { return twin->real().health() == LinkHealth::Active; });
 }
 
-std::string MixedSession::missing_robots() const {
+/// Robots without which the run cannot begin, after so long; no time: all that do not answer.
+std::string MixedSession::missing_robots(std::optional<hal::TimeNs> waited_ns) const {
   std::string text;
   for (std::size_t i = 0; i < twins_.size(); ++i) {
-    if (twins_[i]->real().health() == LinkHealth::Active) continue;
-    const std::string trouble = twins_[i]->real().trouble();
-    text += (text.empty() ? "" : "; ") + ("'" + twins_[i]->id()) + "' on " + links_[i] +
-            (trouble.empty() ? "" : " (" + trouble + ")");
+    const bridges::RobotBridge& real = twins_[i]->real();
+    const core::BridgeConfig& bridge = bridges_[i];
+    if (real.health() == LinkHealth::Active) continue;
+    const bool waits =
+        waited_ns && (bridge.if_missing == core::IfMissing::Wait || hal::to_seconds(*waited_ns) < bridge.connect_s);
+    if (waits && !real.mismatched()) continue;
+    const std::string trouble = real.trouble();
+    text += (text.empty() ? "'" : "; '") + twins_[i]->id() + "' on " + bridge.link + " within " +
+            hal::format_number(bridge.connect_s) + " s (" + (trouble.empty() ? "" : trouble + "; ") + real.advice() +
+            ")";
   }
   return text;
+}
+
+void MixedSession::leave_out_missing(hal::TimeNs waited_ns) {
+  for (std::size_t i = twins_.size(); i-- > 0;) {
+    bridges::RobotBridge& real = twins_[i]->real();
+    const bool in_time = hal::to_seconds(waited_ns) < bridges_[i].connect_s;
+    if (bridges_[i].if_missing != core::IfMissing::Simulate || in_time || real.health() == LinkHealth::Active) continue;
+    options_.log.warning("robot '" + twins_[i]->id() + "' on " + bridges_[i].link +
+                         " is not there, and is simulated: " + real.trouble());
+    real.shut_down();
+    if (options_.on_left_out) options_.on_left_out(real);
+    twins_[i]->let_go();
+    const auto at = static_cast<std::ptrdiff_t>(i);
+    left_out_.push_back(std::move(twins_[i]));
+    twins_.erase(twins_.begin() + at);
+    bridges_.erase(bridges_.begin() + at);
+    last_.erase(last_.begin() + at);
+    confirmed_.erase(confirmed_.begin() + at);
+  }
 }
 
 // --- the run ---
 
 hal::Status MixedSession::run(hal::Tick ticks, const std::atomic<bool>& stop,
                               const std::function<void(core::World&)>& after_tick) {
-  if (options_.realtime_priority > 0) {
-    const hal::Status granted = ask_for_realtime_priority(options_.realtime_priority);
+  if (const int priority = world_->scenario().priority; priority > 0) {
+    const hal::Status granted = ask_for_realtime_priority(priority);
     if (!granted.ok()) options_.log.warning(granted.error().message + "; going on without");
   }
   start_bridges();
@@ -173,6 +199,10 @@ void MixedSession::latch(core::World&) {
     freezes_ = freezes;
     for (const auto& twin : twins_) twin->hub_was_frozen();
   }
+  const bool rearmed = options_.rearm_asked != nullptr && options_.rearm_asked->exchange(false);
+  for (const auto& twin : twins_) {
+    if (rearmed) twin->rearm();
+  }
   for (const auto& twin : twins_) twin->latch(now_, phase_);
 }
 
@@ -197,18 +227,24 @@ bool MixedSession::stop_robots() {
   if (phase_ == RunPhase::Running) now_ = moment();
   phase_ = RunPhase::Stopping;
   for (const auto& twin : twins_) twin->real().stop(time_.now_ns());
-  const hal::TimeNs give_up_ns = time_.now_ns() + options_.stop_timeout_ns;
-  bool all = false;
+  const hal::TimeNs began_ns = time_.now_ns();
+  bool all = false, waits = true;
   for (;;) {
-    for (std::size_t i = 0; i < twins_.size(); ++i) confirmed_[i] = twins_[i]->real().at_rest() ? 1 : 0;
-    all = std::all_of(confirmed_.begin(), confirmed_.end(), [](std::uint8_t c) { return c != 0; });
-    if (all || time_.now_ns() >= give_up_ns) break;
+    const double waited_s = hal::to_seconds(time_.now_ns() - began_ns);
+    all = true;
+    waits = false;
+    for (std::size_t i = 0; i < twins_.size(); ++i) {
+      confirmed_[i] = twins_[i]->real().at_rest() ? 1 : 0;
+      all = all && confirmed_[i] != 0;
+      waits = waits || (confirmed_[i] == 0 && waited_s < bridges_[i].stop_s);
+    }
+    if (!waits) break;
     time_.sleep_until(time_.now_ns() + kPollEvery_ns, kNever);
     for (const auto& twin : twins_) twin->real().latch(0, time_.now_ns());
   }
   for (std::size_t i = 0; i < twins_.size(); ++i) {
     if (confirmed_[i] != 0) continue;
-    options_.log.error("robot '" + twins_[i]->id() + "' on " + links_[i] +
+    options_.log.error("robot '" + twins_[i]->id() + "' on " + bridges_[i].link +
                        " did not confirm its stop: switch it off by hand if it moves");
   }
   stopped_ = true;
@@ -234,7 +270,7 @@ MixedReport MixedSession::report() const {
     const Twin& twin = *twins_[i];
     RealRobotReport robot;
     robot.id = twin.id();
-    robot.link = links_[i];
+    robot.link = bridges_[i].link;
     robot.robot = twin.robot();
     robot.pose = twin.pose();
     robot.health = last_[i].health;

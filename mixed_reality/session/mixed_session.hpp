@@ -6,6 +6,7 @@
 #include <atomic>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "core/sim/external.hpp"
@@ -25,12 +26,12 @@ namespace tandem::mixed_reality {
 using BridgeMaker = std::function<MadeBridge(const BridgeRequest&)>;
 
 struct MixedOptions {
-  RearmParams rearm;
-  hal::TimeNs connect_timeout_ns = 15 * hal::kNsPerSecond;  ///< for all robots to answer before the start
-  hal::TimeNs stop_timeout_ns = 2 * hal::kNsPerSecond;      ///< for all robots to confirm their stop at the end
   /// How often guardians have stopped the robots because this program did not run; empty: nobody counts that.
   std::function<std::uint64_t()> freezes = {};
-  int realtime_priority = 0;  ///< SCHED_FIFO for the stepping thread; 0: none is asked for
+  /// Set by a person who re-arms robots: all that wait for it; null: nobody can.
+  std::atomic<bool>* rearm_asked = nullptr;
+  /// Called for a robot that is not there and is simulated instead: its bridge has ended, and is asked nothing more.
+  std::function<void(const bridges::RobotBridge&)> on_left_out = {};
   /// Called before the first and every later command of the run leaves: whoever stops robots when this process dies is
   /// to know how.
   std::function<void()> before_commands = {};
@@ -50,8 +51,9 @@ class MixedSession final : private core::ExternalRobots {
   MixedSession(const MixedSession&) = delete;
   MixedSession& operator=(const MixedSession&) = delete;
 
-  /// Waits until every real robot answers and stands still. Error: one does not in time, named with what is wrong; or
-  /// `stop`.
+  /// Waits until every real robot answers and stands still, each as long as its bridge says. One that does not in time
+  /// is simulated instead, or waited for, where its bridge says so. Error: one does not in time, named with what is
+  /// wrong; or `stop`.
   hal::Status connect(const std::atomic<bool>& stop);
 
   /// Steps the world in real time until `ticks` are done (0: no end of its own), the world is done, or `stop` becomes
@@ -82,7 +84,8 @@ class MixedSession final : private core::ExternalRobots {
 
   Moment moment() const noexcept;
   bool all_answer() const noexcept;
-  std::string missing_robots() const;
+  std::string missing_robots(std::optional<hal::TimeNs> waited_ns) const;
+  void leave_out_missing(hal::TimeNs waited_ns);
 
   struct LastState {  // of the last tick, kept because the end stops all
     bool driving = false;
@@ -95,9 +98,10 @@ class MixedSession final : private core::ExternalRobots {
   MixedOptions options_;
   Pacer pacer_;
   std::vector<std::unique_ptr<Twin>> twins_;
-  std::vector<std::string> links_;  // parallel to `twins_`, as the next two
+  std::vector<core::BridgeConfig> bridges_;  // parallel to `twins_`, as the next two
   std::vector<LastState> last_;
   std::vector<std::uint8_t> confirmed_;
+  std::vector<std::unique_ptr<Twin>> left_out_;
   bool started_ = false;
   RunPhase phase_ = RunPhase::Waiting;
   Moment now_;                 // of the running tick

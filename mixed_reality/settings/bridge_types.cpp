@@ -24,6 +24,7 @@ MadeBridge make(const BridgeRequest& request, const hal::Log& log) {
   auto parts = Parts(request.item, request.ticks_per_second, request.permit);
   if (!parts.ok()) return parts.error();
   auto& robot = parts->settings.driver.robot;
+  parts->settings.driver.ramp_ns = 0;  // the supervisor's ramp is the only one
   robot.seed = request.seed;
   robot.sensors = device_names(request.controller.sensors);
   robot.actuators = device_names(request.controller.actuators);
@@ -31,24 +32,41 @@ MadeBridge make(const BridgeRequest& request, const hal::Log& log) {
       std::make_unique<Bridge>(std::move(parts->settings), std::move(parts->opener), log));
 }
 
+template <auto Parts>
+hal::Status check(const core::RobotItem& item, std::int64_t ticks_per_second) {
+  const auto parts = Parts(item, ticks_per_second, {});
+  return parts.ok() ? hal::Status{} : hal::Status{parts.error()};
+}
+
+hal::Result<const BridgeType*> type_for(std::string_view kind) {
+  std::string kinds;
+  for (const BridgeType& type : bridge_types()) {
+    if (type.kind == kind) return &type;
+    kinds += (kinds.empty() ? "" : ", ") + std::string(type.kind);
+  }
+  return hal::Error{"there is no bridge to robots of the kind '" + std::string(kind) + "'; there is: " + kinds};
+}
+
 }  // namespace
 
 std::span<const BridgeType> bridge_types() noexcept {
   static const std::array<BridgeType, 3> types = {{
-      {hal::epuck::kDataSheet.kind, &make<bridges::epuck::EpuckBridge, &epuck_parts>},
-      {hal::footbot::kDataSheet.kind, &make<bridges::footbot::FootbotBridge, &footbot_parts>},
-      {hal::eyebot::kDataSheet.kind, &make<bridges::eyebot::EyebotBridge, &eyebot_parts>},
+      {hal::epuck::kDataSheet.kind, &make<bridges::epuck::EpuckBridge, &epuck_parts>, &check<&epuck_parts>},
+      {hal::footbot::kDataSheet.kind, &make<bridges::footbot::FootbotBridge, &footbot_parts>, &check<&footbot_parts>},
+      {hal::eyebot::kDataSheet.kind, &make<bridges::eyebot::EyebotBridge, &eyebot_parts>, &check<&eyebot_parts>},
   }};
   return types;
 }
 
+hal::Status check_bridge(const core::RobotItem& item, std::int64_t ticks_per_second) {
+  const auto type = type_for(item.kind);
+  return type.ok() ? type.value()->check(item, ticks_per_second) : hal::Status{type.error()};
+}
+
 MadeBridge make_bridge(const BridgeRequest& request, const hal::Log& log) {
-  std::string kinds;
-  for (const BridgeType& type : bridge_types()) {
-    if (type.kind == request.item.kind) return type.make(request, log);
-    kinds += (kinds.empty() ? "" : ", ") + std::string(type.kind);
-  }
-  return hal::Error{"there is no bridge to robots of the kind '" + request.item.kind + "'; there is: " + kinds};
+  const auto type = type_for(request.item.kind);
+  if (!type.ok()) return type.error();
+  return type.value()->make(request, log);
 }
 
 }  // namespace tandem::mixed_reality

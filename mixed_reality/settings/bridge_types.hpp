@@ -27,11 +27,14 @@ using MadeBridge = hal::Result<std::unique_ptr<bridges::RobotBridge>>;
 struct BridgeType {
   std::string_view kind;
   MadeBridge (*make)(const BridgeRequest& request, const hal::Log& log);
+  /// The errors of `make`, without making anything.
+  hal::Status (*check)(const core::RobotItem& item, std::int64_t ticks_per_second);
 };
 std::span<const BridgeType> bridge_types() noexcept;
 
 /// Makes the bridge that the robot's kind needs; both `tandem run` and `tandem robot` do so. Errors: no bridge for that
 /// kind; a link that does not suit it; what its own configuration lacks.
+hal::Status check_bridge(const core::RobotItem& item, std::int64_t ticks_per_second);
 MadeBridge make_bridge(const BridgeRequest& request, const hal::Log& log);
 
 }  // namespace tandem::mixed_reality

@@ -1,12 +1,16 @@
-// How long a real robot may be silent.
+// How long a real robot may be silent, and how it gets under way again.
 #pragma once
 #include "core/scenario/scenario.hpp"
 #include "hal/time.hpp"
+#include "mixed_reality/safety/rearm.hpp"
 
 namespace tandem::mixed_reality {
 
 /// How long a robot with this bridge may be silent, or without commands, before it is stopped: the bridge's `timeout`,
 /// but two ticks at least, because it is asked once a tick.
 hal::TimeNs lost_after_ns(const core::RobotItem& item, std::int64_t ticks_per_second) noexcept;
+
+/// How a stopped robot with this bridge gets under way again. The text of `rearm` was checked.
+RearmParams rearm_params(const core::BridgeConfig& bridge);
 
 }  // namespace tandem::mixed_reality

@@ -87,6 +87,7 @@ void Twin::latch(const Moment& now, RunPhase phase) {
                                                   now.monotonic_ns - last_latch_ns_ > params_.frozen_after_ns);
   hub_was_frozen_ = false;
   mechanisms_.follow(last_latch_ns_ == 0 ? 0.0 : hal::to_seconds(now.monotonic_ns - last_latch_ns_));
+  conditions.robot_stopped_itself = real_->stopped_itself();
   conditions.link = real_->health();
   conditions.readings_missing = fusion_.missing() != nullptr;
   conditions.battery_low = battery_low(now);
@@ -206,6 +207,11 @@ void Twin::send_commands(bool alive, const Moment& now) {
     landing_ = false;
     hal::port_type<hal::FlightTask>().reset(real_task_);  // its controller may not have taken the device
   }
+}
+
+void Twin::let_go() {
+  hold(false);
+  space_.set_external(robot_, false);
 }
 
 void Twin::hold(bool held) {

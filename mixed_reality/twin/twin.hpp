@@ -60,6 +60,8 @@ class Twin {
   void after_sense() noexcept;
   /// Sends what the controller commanded, as far as it may be.
   void after_filter(const Moment& now);
+  /// The real robot takes no part any more: the entity becomes one of the simulated ones. No other call follows.
+  void let_go();
 
   const std::string& id() const noexcept { return id_; }
   core::RobotId robot() const noexcept { return robot_; }

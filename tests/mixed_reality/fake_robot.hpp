@@ -30,6 +30,7 @@ struct FakeBody {
   std::vector<Received> received;
   bool link_up = true;
   bool confirms_stops = true;
+  bool stopped_itself = false;
   LinkHealth health_when_up = LinkHealth::Active;
   hal::TimeNs moved_to_ns = 0;
 
@@ -59,6 +60,7 @@ class FakeRobot final : public bridges::RobotBridge, private hal::Robot {
     if (type.layout == hal::port_type<hal::RingLeds>().layout) return &leds_;
     return nullptr;
   }
+  std::vector<bridges::PortView> taken() const override { return taken_; }
   void set_origin(hal::TimeNs origin_ns) noexcept override { origin_ns_ = origin_ns; }
   void start() override { ++starts; }
   void shut_down() override { ++ends; }
@@ -77,6 +79,7 @@ class FakeRobot final : public bridges::RobotBridge, private hal::Robot {
     proximity_.validity = body_.link_up ? hal::Validity::Fresh : hal::Validity::Stale;
   }
   LinkHealth health() const noexcept override { return health_; }
+  bool stopped_itself() const noexcept override { return body_.stopped_itself; }
   std::string trouble() const override { return body_.link_up ? "" : "cable out"; }
   std::string advice() const override { return "is it switched on?"; }
   std::string identity() const override { return "fake"; }
@@ -116,10 +119,12 @@ class FakeRobot final : public bridges::RobotBridge, private hal::Robot {
   void* take(const hal::PortType& type) override {
     void* data = port(type);
     if (data == nullptr) throw hal::DeviceError("a fake robot has no '" + std::string(type.name) + "'");
+    taken_.push_back({&type, data});
     return data;
   }
 
   FakeBody& body_;
+  std::vector<bridges::PortView> taken_;
   hal::TimeNs origin_ns_ = 0;
   bool first_ = true;
   bool sampled_ = false;

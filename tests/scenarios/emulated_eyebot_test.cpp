@@ -91,7 +91,7 @@ TEST_F(EmulatedEyebotFlies, OnWhenItsLinkIsBack) {
   const long long again_ns = time_of(eyebot.lines("mode", {R"("to":"position")"}).back());
   EXPECT_LT(again_ns - back_ns, 2 * kSecond_ns) << "one second, and one for a busy machine";
   robot.signal(SIGINT);
-  EXPECT_EQ(robot.wait(60), 0) << robot.errors();
+  EXPECT_EQ(robot.wait(60), 130) << robot.errors();
   EXPECT_TRUE(eventually([&] { return eyebot.mode() == "idle"; }, 20.0)) << eyebot.modes();
 }
 
@@ -135,7 +135,7 @@ TEST_F(EmulatedEyebotFlies, OnNoStaleCommand) {
   }
   ASSERT_TRUE(eventually([&] { return eyebot.mode() == "position"; }, 20.0)) << robot.errors();
   robot.signal(SIGINT);
-  EXPECT_EQ(robot.wait(60), 0) << robot.errors();
+  EXPECT_EQ(robot.wait(60), 130) << robot.errors();
 }
 
 TEST_F(EmulatedEyebotFlies, OnABadNetwork) {

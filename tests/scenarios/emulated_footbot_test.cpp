@@ -67,7 +67,7 @@ TEST_P(EmulatedFootbotEndsStopped, OnSignals) {
   ASSERT_TRUE(eventually([&] { return footbot.moves(); }, 20.0)) << robot.errors();
   robot.signal(GetParam());
   const bool killed = GetParam() == SIGKILL;
-  EXPECT_EQ(robot.wait(), killed ? -SIGKILL : 0) << robot.errors();
+  EXPECT_EQ(robot.wait(), killed ? -SIGKILL : 128 + GetParam()) << robot.errors();
   EXPECT_TRUE(eventually([&] { return !footbot.moves(); }, killed ? 10.0 : 0.0)) << footbot.log();
 }
 
@@ -111,7 +111,7 @@ TEST(EmulatedFootbot, IsStoppedAfterALinkLossBeforeItDrivesOn) {
   EXPECT_EQ(since()[1].right, 0);
   EXPECT_TRUE(eventually([&] { return footbot.moves(); }, 20.0)) << robot.errors();
   robot.signal(SIGINT);
-  EXPECT_EQ(robot.wait(), 0) << robot.errors();
+  EXPECT_EQ(robot.wait(), 130) << robot.errors();
   EXPECT_FALSE(footbot.moves());
 }
 
@@ -132,7 +132,7 @@ TEST(EmulatedFootbot, IsFoundAgainWhenAMotorsModuleRestarts) {
       20.0))
       << robot.errors() << footbot.log();
   robot.signal(SIGTERM);
-  EXPECT_EQ(robot.wait(), 0) << robot.errors();
+  EXPECT_EQ(robot.wait(), 143) << robot.errors();
   EXPECT_FALSE(footbot.moves());
 }
 
@@ -149,7 +149,7 @@ TEST(EmulatedFootbot, WaitsForAModuleThatComesLate) {
     }
   }
   robot.signal(SIGINT);
-  EXPECT_EQ(robot.wait(), 0) << robot.errors();
+  EXPECT_EQ(robot.wait(), 130) << robot.errors();
   EXPECT_FALSE(footbot.moves());
 }
 
@@ -239,7 +239,7 @@ TEST(EmulatedFootbot, MayLiveInASimulatedArena) {
   };
   EXPECT_TRUE(eventually(turns, 30.0)) << robot.errors();
   robot.signal(SIGINT);
-  EXPECT_EQ(robot.wait(), 0) << robot.errors();
+  EXPECT_EQ(robot.wait(), 130) << robot.errors();
   EXPECT_FALSE(footbot.moves());
 
   Tandem nobody({"emulate", "footbot", "--link", "pty:x", "--arena", "arena.xml", "--body", "wall"}, folder.path());

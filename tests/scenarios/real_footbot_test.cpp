@@ -38,7 +38,7 @@ TEST_P(FootbotEndsStopped, OnSignals) {
   Tandem robot({"robot", kConfigs + "footbot_robot.xml", "--link", footbot.link}, folder.path());
   ASSERT_TRUE(eventually([&] { return footbot.moves(); }, 20.0)) << robot.errors();
   robot.signal(GetParam());
-  EXPECT_EQ(robot.wait(), GetParam() == SIGKILL ? -SIGKILL : 0) << robot.errors();
+  EXPECT_EQ(robot.wait(), GetParam() == SIGKILL ? -SIGKILL : 128 + GetParam()) << robot.errors();
   EXPECT_TRUE(eventually([&] { return !footbot.moves(); }, GetParam() == SIGKILL ? 10.0 : 0.0));
 }
 
@@ -53,7 +53,7 @@ TEST(RealFootbot, IsFoundAgainWhenTheConnectionBreaks) {
   ASSERT_TRUE(eventually([&] { return !footbot.moves(); }, 10.0)) << "before it drives on it is stopped";
   EXPECT_TRUE(eventually([&] { return footbot.moves(); }, 10.0)) << robot.errors();
   robot.signal(SIGINT);
-  EXPECT_EQ(robot.wait(), 0);
+  EXPECT_EQ(robot.wait(), 130);
   EXPECT_FALSE(footbot.moves());
 }
 

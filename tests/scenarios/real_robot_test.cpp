@@ -90,7 +90,7 @@ TEST_P(EndsStopped, OnSignals) {
   Tandem robot({"robot", kConfigs + "epuck_robot.xml"}, folder.path());
   ASSERT_TRUE(eventually([&] { return epuck.moves(); }, 10.0)) << robot.errors();
   robot.signal(GetParam());
-  EXPECT_EQ(robot.wait(), 0) << robot.errors();
+  EXPECT_EQ(robot.wait(), 128 + GetParam()) << robot.errors();
   EXPECT_FALSE(epuck.moves());
 }
 
@@ -101,7 +101,7 @@ TEST_P(EndsStopped, OnSignalsInAMixedRun) {
   Tandem run({"run", kConfigs + "epuck_mixed.xml"}, folder.path());
   ASSERT_TRUE(eventually([&] { return epuck.moves(); }, 10.0)) << run.errors();
   run.signal(GetParam());
-  EXPECT_EQ(run.wait(), 0) << run.errors();
+  EXPECT_EQ(run.wait(), 128 + GetParam()) << run.errors();
   EXPECT_FALSE(epuck.moves());
 }
 

@@ -79,6 +79,9 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"bad_choice",
              [](Parts& p) { p.framework = R"(<framework><experiment/><time mode="realtme"/></framework>)"; }, 2,
              "'realtme' is not one of: fast, realtime, lockstep. Did you mean 'realtime'?"},
+        Case{"lockstep",
+             [](Parts& p) { p.framework = R"(<framework><experiment/><time mode="lockstep"/></framework>)"; }, 2,
+             "'lockstep' is not there yet; use realtime or fast"},
         Case{"contradiction",
              [](Parts& p) {
                p.framework = R"(<framework><experiment real_time="true"/><time mode="fast"/></framework>)";

@@ -182,15 +182,17 @@ TEST(Reader, TakesUnitsEverywhere) {
 
 TEST(Reader, KnowsTandemsOwnElements) {
   Parts parts;
-  parts.framework = R"(<framework><experiment length="1"/><time mode="lockstep"/></framework>)";
+  parts.framework = R"(<framework><experiment length="1"/><time mode="realtime" priority="40"/></framework>)";
   parts.arena = R"(<arena size="4,4,1" escape="remove">)";
   parts.things = R"(<sound id="bell" position="1,2,0" level="0.5"/>
 <e-puck id="real"><body position="0,0,0"/><controller config="w"/>
-<bridge link="serial:/dev/ttyUSB0@115200" firmware="gctronic" timeout="200 ms"/>
+<bridge link="serial:/dev/ttyUSB0@115200" firmware="gctronic" timeout="200 ms" rearm="operator" settle_after="300 ms"
+        missing="wait" connect_timeout="1 min" stop_timeout="5 s"/>
 <tracker source="odometry"/></e-puck>)";
   parts.rest = R"(<record><trajectory path="out.csv" entities="ep*, real" every="3"/></record>)";
   const Scenario s = read(parts.text()).good();
-  EXPECT_EQ(s.time_mode, TimeMode::Lockstep);
+  EXPECT_EQ(s.time_mode, TimeMode::Realtime);
+  EXPECT_EQ(s.priority, 40);
   EXPECT_EQ(s.escape, EscapePolicy::Remove);
   ASSERT_EQ(s.sounds.size(), 1U);
   EXPECT_EQ(s.sounds[0].level, 0.5);
@@ -198,6 +200,11 @@ TEST(Reader, KnowsTandemsOwnElements) {
   EXPECT_EQ(s.robots[0].bridge->link, "serial:/dev/ttyUSB0@115200");
   EXPECT_EQ(s.robots[0].bridge->firmware, "gctronic");
   EXPECT_DOUBLE_EQ(s.robots[0].bridge->timeout_s, 0.2);
+  EXPECT_EQ(s.robots[0].bridge->rearm, "operator");
+  EXPECT_DOUBLE_EQ(s.robots[0].bridge->settle_s, 0.3);
+  EXPECT_EQ(s.robots[0].bridge->if_missing, IfMissing::Wait);
+  EXPECT_DOUBLE_EQ(s.robots[0].bridge->connect_s, 60.0);
+  EXPECT_DOUBLE_EQ(s.robots[0].bridge->stop_s, 5.0);
   EXPECT_EQ(s.robots[0].bridge->line, 8);
   ASSERT_TRUE(s.robots[0].tracker.has_value());
   ASSERT_TRUE(s.trajectory.has_value());

@@ -311,12 +311,70 @@ TEST_F(MixedRun, DoesNotBeginBeforeEveryRobotAnswersAndNamesThoseThatDoNot) {
   const hal::TimeNs began = time_.now_ns();
   const hal::Status status = session_->connect(kGoOn);
   ASSERT_FALSE(status.ok());
-  EXPECT_EQ(status.error().message, "real robots did not answer within 15 s: 'ep1' on fake:ep1 (cable out)");
+  EXPECT_EQ(status.error().message,
+            "real robots did not answer: 'ep1' on fake:ep1 within 15 s (cable out; is it switched on?)");
   EXPECT_GE(time_.now_ns() - began, 15'000 * kMs);
   EXPECT_EQ(session_->world().tick(), 0);
   bodies_["ep1"].link_up = true;
   EXPECT_TRUE(session_->connect(kGoOn).ok());
   EXPECT_FALSE(has_driven("ep0"));
+}
+
+TEST_F(MixedRun, ARobotThatIsNotThereIsSimulatedWhereItsBridgeSaysSo) {
+  core::Scene scene = drive(0.05, 0.05);
+  scene.robot("ep0", 0.0, 0.0).robot("ep1", 0.0, 0.5);
+  real(scene, "ep0");
+  real(scene, "ep1");
+  scene.scenario.robots[1].bridge->if_missing = core::IfMissing::Simulate;
+  scene.scenario.robots[1].bridge->connect_s = 3.0;
+  std::vector<const bridges::RobotBridge*> left_out;
+  options_.on_left_out = [&](const bridges::RobotBridge& bridge) { left_out.push_back(&bridge); };
+  open(scene);
+  bodies_["ep1"].link_up = false;
+  const hal::TimeNs began = time_.now_ns();
+  run(50);
+  EXPECT_GE(time_.now_ns() - began, 3'000 * kMs);
+  EXPECT_EQ(left_out.size(), 1U);
+  EXPECT_NE(log_.find("'ep1' on fake:ep1 is not there, and is simulated: cable out"), std::string::npos) << log_;
+  EXPECT_NEAR(pose("ep1").x_m, 0.05 * 4.9, 1e-9);  // as any simulated robot
+  ASSERT_EQ(session_->report().robots.size(), 1U);
+  EXPECT_EQ(session_->report().robots[0].id, "ep0");
+  EXPECT_TRUE(has_driven("ep0"));
+  EXPECT_TRUE(bodies_["ep1"].received.empty());
+}
+
+TEST_F(MixedRun, ARobotThatIsNotThereIsWaitedForWhereItsBridgeSaysSo) {
+  core::Scene scene = drive(0.05, 0.05);
+  scene.robot("ep0", 0.0, 0.0);
+  real(scene, "ep0");
+  scene.scenario.robots[0].bridge->if_missing = core::IfMissing::Wait;
+  open(scene);
+  bodies_["ep0"].link_up = false;
+  std::atomic<bool> stop{false};
+  time_.on_sleep = [&](hal::TimeNs now_ns) {
+    if (now_ns > 60'000 * kMs) bodies_["ep0"].link_up = true;
+  };
+  EXPECT_TRUE(session_->connect(stop).ok());
+  EXPECT_GT(time_.now_ns(), 60'000 * kMs);
+}
+
+TEST_F(MixedRun, ARobotThatRestartedWaitsForThePersonWhoReArmsIt) {
+  core::Scene scene = drive(0.05, 0.05);
+  scene.robot("ep0", 0.0, 0.0);
+  real(scene, "ep0");
+  scene.scenario.robots[0].bridge->rearm = "operator";
+  std::atomic<bool> rearm{false};
+  options_.rearm_asked = &rearm;
+  open(scene);
+  bool stood = true;
+  run(100, [&](core::World& world) {
+    bodies_["ep0"].stopped_itself = world.tick() == 20;
+    if (world.tick() > 25 && world.tick() <= 60) stood = stood && bodies_["ep0"].stands();
+    rearm = world.tick() == 60;
+  });
+  EXPECT_TRUE(stood);
+  EXPECT_EQ(session_->report().robots[0].state, "driving");
+  EXPECT_EQ(session_->report().robots[0].counts.stops, 1U);
 }
 
 TEST_F(MixedRun, AStallOfTheHubIsCountedAndDoesNotMoveTheTwinFromTheRobot) {
@@ -339,7 +397,9 @@ TEST_F(MixedRun, AfterGuardiansHaveStoppedTheRobotsTheyWaitForTheirRearm) {
   scene.robot("ep0", -1.0, 0.0);
   std::uint64_t freezes = 0;
   options_.freezes = [&freezes] { return freezes; };
-  open(real(scene, "ep0"));
+  real(scene, "ep0");
+  scene.scenario.robots[0].bridge->rearm = "after 2 s";
+  open(scene);
   run(60, [&](core::World& world) {
     if (world.tick() == 30) freezes = 1;  // shorter than a tick's delay that it would notice itself
     if (world.tick() >= 31 && world.tick() < 50) {

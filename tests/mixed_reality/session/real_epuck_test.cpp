@@ -296,11 +296,11 @@ TEST(RealEpuck, SaysWhatIsWrongWhenNobodyIsThere) {
   core::Scene scene(6.0, "drive");
   scene.robot("ep0", 0.0, 0.0);
   scene.scenario.robots[0].bridge = core::BridgeConfig{"serial:/dev/no_such_device", "auto", 0.5, {}, 1};
+  scene.scenario.robots[0].bridge->connect_s = 0.1;
+  scene.scenario.robots[0].bridge->stop_s = 0.02;
   core::MadeWorld made = core::make(scene);
   MonotonicTime time;
   MixedOptions options;
-  options.connect_timeout_ns = 100 * hal::kNsPerMs;
-  options.stop_timeout_ns = 20 * hal::kNsPerMs;
   auto session = MixedSession::make(
       std::move(made.world), [](const BridgeRequest& request) { return make_bridge(request, {}); }, time, options);
   ASSERT_TRUE(session.ok()) << session.error().message;

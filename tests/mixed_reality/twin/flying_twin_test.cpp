@@ -35,6 +35,7 @@ class FakeFlyer final : public bridges::RobotBridge, private hal::Robot {
     if (type.layout == port_type<hal::FlightTask>().layout) return &body_.task;
     return nullptr;
   }
+  std::vector<bridges::PortView> taken() const override { return {}; }
   void set_origin(hal::TimeNs origin_ns) noexcept override { origin_ns_ = origin_ns; }
   void start() override {}
   void shut_down() override {}
