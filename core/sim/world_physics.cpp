@@ -66,6 +66,12 @@ void World::Impl::move_part(int part) {
 /// What hooks, operators and real robots changed since the last step.
 void World::Impl::settle_changes() {
   SpaceStores& s = stores();
+  for (const BodyKey body : s.touched) {
+    if (body.is_object() || (s.bodies.flags[body.index()] & kAlive) == 0) continue;
+    const std::size_t row = body.index();
+    if (!std::isfinite(s.bodies.cos_h[row] + s.bodies.sin_h[row] + s.base_m(row)))
+      fail(name_of(body) + " was put where its heading or height is not a number" + at_tick());
+  }
   if (s.bodies_changed) fit_to_bodies();
   if (indexed_version != s.immovables_version) {
     s.static_index.build(s.objects, false, s.min_x_m, s.min_y_m, s.max_x_m, s.max_y_m, reach_m);

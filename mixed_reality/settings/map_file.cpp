@@ -57,7 +57,7 @@ class MapReader {
     ElementReader reader(root, problems_);
     reader.text("profile", map.profile, "");
     reader.number("refresh", refresh_s, hal::unit::s, {0.02, 60.0}, "");
-    reader.finish();
+    reader.finish_attributes();
     map.refresh_ns = to_ns(refresh_s);
     for (const Element& child : children(root, {"node"})) map.nodes.push_back(node(child));
     if (map.nodes.empty()) error(root, "there is no <node>");
@@ -105,7 +105,7 @@ class MapReader {
     node.names = names_of(e, reader);
     reader.integer("id", id, {0, 255}, "");
     reader.choice("needed", needed, kNeeds, "");
-    reader.finish();
+    reader.finish_attributes();
     node.id = static_cast<std::uint8_t>(id);
     node.need = needed == "always" ? Need::Always : needed == "never" ? Need::Never : Need::Used;
     claim(e, node.names, nodes_, "node");
@@ -145,7 +145,7 @@ class MapReader {
     reader.number("period", period_s, hal::unit::s, {0.0, 3600.0}, "");
     reader.flag("optional", v.optional, "");
     reader.flag("verify", v.verify, "");
-    reader.finish();
+    reader.finish_attributes();
     if (e.attribute("words") == nullptr) error(e, "words", "missing; write how many words the variable has");
     v.words = static_cast<std::size_t>(std::max<std::int64_t>(words, 1));
     v.period_ns = to_ns(period_s);
@@ -263,7 +263,7 @@ class MapReader {
       reader.integer("rest", rest, kInt32, "");
       reader.text("when", when, "");
     }
-    reader.finish();
+    reader.finish_attributes();
     f.form = static_cast<WordForm>(std::ranges::find(kForms, form) - kForms.begin());
     f.word = static_cast<std::size_t>(word);
     f.word_step = static_cast<int>(word_step);
@@ -367,7 +367,7 @@ class MapReader {
     reader.integer("number", number, {0, bridges::aseba::kFirstBootloader - 1}, "");
     reader.integer("words", words, {1, static_cast<double>(bridges::aseba::kMostWords)}, "");
     reader.text("port", port, "");
-    reader.finish();
+    reader.finish_attributes();
     for (const char* attribute : {"number", "words", "port"}) {
       if (e.attribute(attribute) == nullptr) error(e, attribute, "missing");
     }

@@ -248,6 +248,18 @@ HookConfig diary(const std::string& path, std::vector<Element::Attribute> more =
   return hook;
 }
 
+TEST(World, AHeadingThatIsNoNumberEndsTheRunByName) {
+  auto world = make(Scene().robot("lost", 0.5, 0.0));
+  ASSERT_TRUE(world.world) << world.all_problems();
+  world->start();
+  world->step();
+  Space& space = world->space();
+  space.set_pose(space.find_robot("lost"), Pose::at(0.1, 0.0, NAN));
+  world->step();
+  EXPECT_EQ(world->state(), RunState::Failed);
+  EXPECT_EQ(world->failure(), "robot 'lost' was put where its heading or height is not a number at tick 1");
+}
+
 TEST(Hooks, AreCalledAtTheirFiveMoments) {
   const std::string path = testing::TempDir() + "tandem_diary.txt";
   Scene scene;
@@ -311,8 +323,9 @@ TEST(Hooks, ThatThrowWhileTheyAreMadeOrPaintAreNamed) {
   for (const char* where : {"params", "constructor"}) {
     auto world = make(painted(where));
     EXPECT_EQ(world.world, nullptr);
-    EXPECT_THAT(world.all_problems(),
-                testing::HasSubstr("scene:21: error: hook 'painter' (library 'test_hooks') threw while it was made: no "));
+    EXPECT_THAT(
+        world.all_problems(),
+        testing::HasSubstr("scene:21: error: hook 'painter' (library 'test_hooks') threw while it was made: no "));
   }
   auto world = make(painted("floor"));
   ASSERT_TRUE(world.world) << world.all_problems();
