@@ -34,6 +34,10 @@ void add_run(CLI::App& app, RunOptions& o, int& code) {
   c->add_option("--without", o.without, "Simulate this robot instead of driving the real one; repeatable")
       ->allow_extra_args(false);
   c->add_flag("--quiet", o.quiet, "No table at the end");
+  c->add_option("--hub-fault", o.hub_faults,
+                "With real robots: a fault of this program, e.g. stall@5s+0.4s, freeze@5s+2s, kill@5s, clock=1h@5s; "
+                "repeatable")
+      ->allow_extra_args(false);
   c->callback([&] { code = run(o); });
 }
 

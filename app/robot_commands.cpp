@@ -28,6 +28,10 @@ void add_robot_commands(CLI::App& app, RobotCommandOptions& options, int& code) 
       ->check(CLI::PositiveNumber);
   robot_command->add_option("--report", options.robot.report,
                             "Write a JSON report to this file ('-': standard output)");
+  robot_command
+      ->add_option("--hub-fault", options.robot.hub_faults,
+                   "A fault of this program, e.g. stall@5s+0.4s, freeze@5s+2s, kill@5s, clock=1h@5s; repeatable")
+      ->allow_extra_args(false);
   robot_command->callback([&options, &code] { code = robot(options.robot); });
 
   CLI::App* inspect_command =

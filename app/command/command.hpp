@@ -18,12 +18,13 @@ struct RunOptions {
   std::optional<std::uint64_t> seed;
   std::optional<std::int64_t> threads;
   std::vector<std::string> overrides;
-  std::string report;      ///< file, or "-"
-  std::string picture;     ///< .svg, .png or .pdf
-  std::string trajectory;  ///< CSV file, of every robot unless the experiment says which
-  std::vector<std::string> without;  ///< real robots that are simulated instead, by id
-  bool quiet = false;      ///< no table
-  double step_timeout_s = 5.0;  ///< after which a controller or hook that does not return is named; 0: never
+  std::string report;                   ///< file, or "-"
+  std::string picture;                  ///< .svg, .png or .pdf
+  std::string trajectory;               ///< CSV file, of every robot unless the experiment says which
+  std::vector<std::string> without;     ///< real robots that are simulated instead, by id
+  std::vector<std::string> hub_faults;  ///< as `parse_hub_fault` reads them
+  bool quiet = false;                   ///< no table
+  double step_timeout_s = 5.0;          ///< after which a controller or hook that does not return is named; 0: never
 };
 int run(const RunOptions& options);
 
@@ -64,6 +65,7 @@ struct RobotOptions {
   std::string link;
   std::optional<double> seconds;
   std::string report;
+  std::vector<std::string> hub_faults;  ///< as `parse_hub_fault` reads them
 };
 int robot(const RobotOptions& options);
 

@@ -8,6 +8,7 @@
 #include "app/catalog.hpp"
 #include "app/command/command.hpp"
 #include "app/guarded_robots.hpp"
+#include "app/hub_faults.hpp"
 #include "app/measure.hpp"
 #include "app/progress.hpp"
 #include "app/report.hpp"
@@ -124,6 +125,8 @@ std::vector<std::pair<std::string, std::string>> result_table(const core::RobotI
 }  // namespace
 
 int robot(const RobotOptions& options) {
+  auto hub_faults = HubFaults::make(options.hub_faults);
+  if (!hub_faults.ok()) return complain(kBadInput, hub_faults.error().message);
   const auto scenario = read_or_complain(options.file, {});
   if (!scenario) return kBadInput;
   const core::RobotItem* found = only_robot(*scenario, options.link);
@@ -146,7 +149,7 @@ int robot(const RobotOptions& options) {
   const hal::Log log([](hal::Severity, std::string_view text) { say(text); });
   GuardedRobots guarded({item}, log);  // before any thread
   auto made = mixed_reality::make_bridge(
-      {item, config, scenario->ticks_per_second, scenario->seed.value_or(1), guarded.permit()}, log);
+      {item, config, scenario->ticks_per_second, scenario->seed.value_or(1), guarded.permit(), &hub_unix_ns}, log);
   if (!made.ok()) return complain(kBadInput, made.error().message);
   bridges::RobotBridge& bridge = **made;
   hal::PluginLoader loader(plugin_folders());
@@ -207,6 +210,7 @@ int robot(const RobotOptions& options) {
         break;
       }
       guarded.update();
+      hub_faults.value().apply(clock.now_ns());
       supervised.commit(clock.now_ns());  // at once, not after the wait
       progress.step(tick + 1);
       if (!pacer.wait_for_next(stop)) break;

@@ -7,6 +7,7 @@
 #include "app/command/command.hpp"
 #include "app/emergency_outputs.hpp"
 #include "app/guarded_robots.hpp"
+#include "app/hub_faults.hpp"
 #include "app/measure.hpp"
 #include "app/progress.hpp"
 #include "app/run_outputs.hpp"
@@ -148,7 +149,8 @@ bool has_real_robots(const core::Scenario& scenario) {
 
 /// Where a world's real robots take part; null when it has none. `code` is not kDone when they cannot.
 std::unique_ptr<mixed_reality::MixedSession> join_real_robots(std::unique_ptr<core::World>& world,
-                                                              GuardedRobots& guarded, mixed_reality::TimeSource& clock,
+                                                              GuardedRobots& guarded, HubFaults& hub_faults,
+                                                              mixed_reality::TimeSource& clock,
                                                               const std::atomic<bool>& stop, const hal::Log& log,
                                                               int& code) {
   if (!has_real_robots(world->scenario())) return nullptr;
@@ -158,10 +160,14 @@ std::unique_ptr<mixed_reality::MixedSession> join_real_robots(std::unique_ptr<co
   catch_rearm();
   options.rearm_asked = &rearm_asked();
   options.on_left_out = [&guarded](const bridges::RobotBridge& bridge) { guarded.remove(bridge); };
-  options.before_commands = [&guarded] { guarded.update(); };
+  options.before_commands = [&] {
+    guarded.update();
+    hub_faults.apply(clock.now_ns());
+  };
   const auto maker = [&](const mixed_reality::BridgeRequest& request) {
     mixed_reality::BridgeRequest permitted = request;
     permitted.permit = guarded.permit();
+    permitted.unix_clock = &hub_unix_ns;
     auto bridge = mixed_reality::make_bridge(permitted, log);
     if (bridge.ok()) guarded.add(**bridge);
     return bridge;
@@ -207,10 +213,14 @@ bool write_results(RunOutputs& outputs, const RunResult& result, bool table) {
 
 int run(const RunOptions& options) {
   const double began = wall_seconds();
+  auto hub_faults = HubFaults::make(options.hub_faults);
+  if (!hub_faults.ok()) return complain(kBadInput, hub_faults.error().message);
   auto scenario = read_or_complain(options.experiment, options.overrides);
   if (!scenario) return kBadInput;
   if (const hal::Status left_out = leave_out(*scenario, options.without); !left_out.ok())
     return complain(kBadInput, left_out.error().message);
+  if (!options.hub_faults.empty() && !has_real_robots(*scenario))
+    return complain(kBadInput, "--hub-fault needs a real robot: no robot of this experiment has a <bridge>");
   if (const hal::Status paths = check_output_paths(options, *scenario); !paths.ok())
     return complain(kBadInput, paths.error().message);
 
@@ -238,7 +248,7 @@ int run(const RunOptions& options) {
 
   int code = kDone;
   mixed_reality::MonotonicTime clock;
-  const auto mixed = join_real_robots(made, guarded, clock, stop, world_options.log, code);
+  const auto mixed = join_real_robots(made, guarded, hub_faults.value(), clock, stop, world_options.log, code);
   if (code != kDone) return stop.load() ? interrupted_code() : code;
 
   const auto controllers = controller_files(*scenario, loader);

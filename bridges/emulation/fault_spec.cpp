@@ -20,6 +20,17 @@ hal::Result<hal::TimeNs> parse_time(std::string_view text) {
   return ns < static_cast<double>(kEndless) ? static_cast<hal::TimeNs>(std::llround(ns)) : kEndless;
 }
 
+hal::Result<hal::TimeNs> parse_jump(std::string_view text) {
+  const bool back = text.starts_with('-');
+  const std::string_view rest = back ? text.substr(1) : text;
+  const double factor = rest.ends_with('h') ? 3600.0 : 1.0;
+  const auto time = hal::parse_quantity(factor > 1.0 ? rest.substr(0, rest.size() - 1) : rest, hal::unit::s);
+  if (!time.ok()) return time.error();
+  const double seconds = factor * time.value();
+  if (!(std::fabs(seconds) <= 1e9)) return hal::Error{"a clock jumps by less than 30 years"};
+  return static_cast<hal::TimeNs>(std::llround((back ? -1e9 : 1e9) * seconds));
+}
+
 hal::Result<double> parse_probability(std::string_view text) {
   const auto probability = hal::parse_quantity(text, hal::unit::none);
   if (!probability.ok()) return probability.error();

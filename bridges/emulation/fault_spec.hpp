@@ -29,6 +29,8 @@ hal::Result<FaultSpec> split_fault(std::string_view text);
 
 /// Any time that is not negative; at most `kEndless`.
 hal::Result<hal::TimeNs> parse_time(std::string_view text);
+/// A jump of a clock: seconds, minutes ("5 min") or hours ("1h"), forwards or backwards ("-1h").
+hal::Result<hal::TimeNs> parse_jump(std::string_view text);
 /// From 0 to 1.
 hal::Result<double> parse_probability(std::string_view text);
 

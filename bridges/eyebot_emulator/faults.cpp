@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 
 #include "hal/unit.hpp"
 
@@ -63,18 +62,6 @@ hal::Error wrong(std::string_view text, const std::string& why) {
   return hal::Error{"fault '" + std::string(text) + "': " + why + ". The faults are\n" + fault_manual()};
 }
 
-/// Seconds, minutes and hours, forwards or backwards.
-hal::Result<TimeNs> parse_signed_time(std::string_view text) {
-  const bool back = text.starts_with('-');
-  const std::string_view rest = back ? text.substr(1) : text;
-  const double factor = rest.ends_with('h') ? 3600.0 : 1.0;
-  const auto time = hal::parse_quantity(factor > 1.0 ? rest.substr(0, rest.size() - 1) : rest, hal::unit::s);
-  if (!time.ok()) return time.error();
-  const double seconds = factor * time.value();
-  if (!(std::fabs(seconds) <= 1e9)) return hal::Error{"a clock jumps by less than 30 years"};
-  return static_cast<TimeNs>(std::llround((back ? -1e9 : 1e9) * seconds));
-}
-
 hal::Status read_value(const Entry& entry, std::string_view value, Fault& fault) {
   switch (entry.value) {
     case Value::None:
@@ -96,7 +83,7 @@ hal::Status read_value(const Entry& entry, std::string_view value, Fault& fault)
     }
     case Value::Time:
     case Value::SignedTime: {
-      const auto time = entry.value == Value::Time ? parse_time(value) : parse_signed_time(value);
+      const auto time = entry.value == Value::Time ? parse_time(value) : parse_jump(value);
       if (!time.ok()) return time.error();
       fault.time_ns = time.value();
       break;

@@ -28,6 +28,9 @@ MadeBridge make(const BridgeRequest& request, const hal::Log& log) {
   robot.seed = request.seed;
   robot.sensors = device_names(request.controller.sensors);
   robot.actuators = device_names(request.controller.actuators);
+  if constexpr (requires { parts->settings.driver.unix_clock; }) {
+    if (request.unix_clock != nullptr) parts->settings.driver.unix_clock = request.unix_clock;
+  }
   return std::unique_ptr<bridges::RobotBridge>(
       std::make_unique<Bridge>(std::move(parts->settings), std::move(parts->opener), log));
 }

@@ -19,6 +19,8 @@ struct BridgeRequest {
   std::int64_t ticks_per_second = 10;
   std::uint64_t seed = 1;
   bridges::SendPermit permit = {};  ///< asked before everything that is said to the robot
+  /// The clock that shows the date, for robots that are told it; null: the system's.
+  hal::TimeNs (*unix_clock)() noexcept = nullptr;
 };
 
 using MadeBridge = hal::Result<std::unique_ptr<bridges::RobotBridge>>;

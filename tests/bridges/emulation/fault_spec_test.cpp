@@ -53,5 +53,12 @@ TEST(Chance, IsItsSeeds) {
   EXPECT_FALSE(a.hits(0.0));
 }
 
+TEST(FaultSpec, ClocksJumpByHoursForwardsAndBackwards) {
+  EXPECT_EQ(parse_jump("1h").value(), 3600 * hal::kNsPerSecond);
+  EXPECT_EQ(parse_jump("-90s").value(), -90 * hal::kNsPerSecond);
+  EXPECT_FALSE(parse_jump("soon").ok());
+  EXPECT_FALSE(parse_jump("1000000h").ok());
+}
+
 }  // namespace
 }  // namespace tandem::bridges
