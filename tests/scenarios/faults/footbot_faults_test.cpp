@@ -40,8 +40,9 @@ constexpr std::array<FaultChoice, 14> kChoices = {{
 const bridge::FootbotMap& default_map() {
   static const bridge::FootbotMap map = [] {
     core::Problems problems;
-    return mixed_reality::read_footbot_map(std::string(test::kSourceDir) + "/configs/footbot_map.xml", problems)
-        .value_or(bridge::FootbotMap{});
+    auto read = mixed_reality::read_footbot_map(std::string(test::kSourceDir) + "/configs/footbot_map.xml", problems);
+    for (const core::Problem& p : problems) ADD_FAILURE() << core::to_text(p);
+    return read.value_or(bridge::FootbotMap{});
   }();
   return map;
 }
