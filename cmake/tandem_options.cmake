@@ -24,7 +24,8 @@ add_library(tandem_flags INTERFACE)
 target_compile_options(tandem_flags INTERFACE
   -Wall -Wextra -Wpedantic -Wconversion -Wshadow -ffp-contract=off -fno-math-errno -fvisibility-inlines-hidden)
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-  target_compile_options(tandem_flags INTERFACE -Wno-restrict -Wno-maybe-uninitialized -Wno-stringop-overflow) # false alarms of GCC 12 on std::string
+  target_compile_options(tandem_flags INTERFACE -Wno-restrict -Wno-maybe-uninitialized -Wno-stringop-overflow -Wno-stringop-overread
+    -Wno-array-bounds -Wno-free-nonheap-object) # false alarms of GCC 12 on std::string
 endif()
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "^arm")
   target_compile_options(tandem_flags INTERFACE -Wno-psabi) # remarks on libraries built with GCC 6: there are none
@@ -86,7 +87,7 @@ add_compile_options(-ffile-prefix-map=${PROJECT_SOURCE_DIR}/=)
 find_program(TANDEM_CCACHE ccache)
 if(TANDEM_CCACHE)
   foreach(language C CXX)
-    set(CMAKE_${language}_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env CCACHE_BASEDIR=${PROJECT_SOURCE_DIR} CCACHE_NOHASHDIR=1
+    set(CMAKE_${language}_COMPILER_LAUNCHER env CCACHE_BASEDIR=${PROJECT_SOURCE_DIR} CCACHE_NOHASHDIR=1
       CCACHE_SLOPPINESS=pch_defines,time_macros CCACHE_PCH_EXTSUM=1 ${TANDEM_CCACHE})
   endforeach()
 endif()
