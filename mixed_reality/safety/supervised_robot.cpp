@@ -5,6 +5,7 @@
 #include <cstring>
 #include <utility>
 
+#include "hal/device/distance_scanner.hpp"
 #include "hal/device/flight.hpp"
 #include "hal/device/range_and_bearing.hpp"
 #include "hal/device/wheels.hpp"
@@ -12,9 +13,11 @@
 namespace tandem::mixed_reality {
 namespace {
 
-/// The clock is always there, and messages only come when somebody sends some.
+/// The clock is always there, messages only come when somebody sends some, and a scanner measures only once it was
+/// switched on.
 bool must_come(const hal::PortType& type) noexcept {
-  return type.role == hal::Role::Sensor && type.name != hal::Clock::kName && type.name != hal::RangeAndBearing::kName;
+  return type.role == hal::Role::Sensor && type.name != hal::Clock::kName && type.name != hal::RangeAndBearing::kName &&
+         type.name != hal::DistanceScanner::kName;
 }
 
 template <class Port>
@@ -49,6 +52,8 @@ SupervisedRobot::SupervisedRobot(std::string id, bridges::RobotBridge& bridge, c
   const bool taken = std::ranges::any_of(inputs_, [](const Input& i) { return is<hal::Battery>(*i.type); });
   const bool asks = taken || sheet.flies || sheet.turret_turn_rad_s > 0.0;
   battery_ = asks ? static_cast<const hal::Battery*>(bridge.port(hal::port_type<hal::Battery>())) : nullptr;
+  flight_ =
+      sheet.flies ? static_cast<const hal::FlightState*>(bridge.port(hal::port_type<hal::FlightState>())) : nullptr;
   position_ = static_cast<const hal::Positioning*>(bridge.port(hal::port_type<hal::Positioning>()));
 }
 
@@ -86,7 +91,12 @@ void SupervisedRobot::commit(hal::TimeNs now) noexcept {
   }
   for (std::size_t i = 0; i < outputs_.size(); ++i) {
     std::memcpy(kept(i), outputs_[i].port, outputs_[i].type->size);
-    verdict.may_drive ? hold_back(outputs_[i], now) : outputs_[i].type->reset(outputs_[i].port);
+    if (is<hal::FlightTask>(*outputs_[i].type)) {
+      auto& task = as<hal::FlightTask>(outputs_[i].port);
+      task = orders_.pass(task, verdict.may_drive, says_on_ground(flight_));
+    } else {
+      verdict.may_drive ? hold_back(outputs_[i], now) : outputs_[i].type->reset(outputs_[i].port);
+    }
   }
   bridge_.commit(now);
   for (std::size_t i = 0; i < outputs_.size(); ++i) {

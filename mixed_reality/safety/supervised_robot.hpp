@@ -12,6 +12,7 @@
 #include "bridges/robot_bridge.hpp"
 #include "hal/log.hpp"
 #include "mixed_reality/safety/battery_watch.hpp"
+#include "mixed_reality/safety/flight_order_gate.hpp"
 #include "mixed_reality/safety/supervisor.hpp"
 
 namespace tandem::mixed_reality {
@@ -68,10 +69,12 @@ class SupervisedRobot {
   hal::Log log_;
   Supervisor supervisor_;
   BatteryWatch battery_watch_;
+  FlightOrderGate orders_;
   std::vector<Output> outputs_;
   std::vector<Input> inputs_;
   const hal::Battery* battery_;        // null: it has none
   const hal::Positioning* position_;   // null: it does not know
+  const hal::FlightState* flight_;     // null: it does not fly
   std::size_t largest_ = 0;            // of the outputs, in bytes
   std::unique_ptr<std::byte[]> kept_;  // what the controller wrote, while other commands leave
   hal::TimeNs last_ns_ = 0;

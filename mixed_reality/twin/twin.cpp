@@ -52,6 +52,7 @@ Twin::Twin(core::Space& space, core::RobotId robot, std::unique_ptr<bridges::Rob
       real_wheels_(real_->port(hal::port_type<hal::WheelSpeeds>())),
       real_task_(space.data_sheet(robot).flies ? real_->port(hal::port_type<hal::FlightTask>()) : nullptr),
       supervisor_(params.rearm),
+      battery_watch_(params.battery),
       pose_(space.pose(robot)),
       smooth_(pose_) {
   std::size_t largest = 1;
@@ -70,6 +71,7 @@ Twin::Twin(core::Space& space, core::RobotId robot, std::unique_ptr<bridges::Rob
   }
   // On a slow line only what its controller reads anyway is asked for.
   const bool asks_battery = sheet.flies || sheet.turret_turn_rad_s > 0.0 || space.port<hal::Battery>(robot) != nullptr;
+  if (sheet.flies) flight_ = static_cast<const hal::FlightState*>(real_->port(hal::port_type<hal::FlightState>()));
   if (asks_battery) battery_ = static_cast<const hal::Battery*>(real_->port(hal::port_type<hal::Battery>()));
 }
 
@@ -90,7 +92,7 @@ void Twin::latch(const Moment& now, RunPhase phase) {
   conditions.robot_stopped_itself = real_->stopped_itself();
   conditions.link = real_->health();
   conditions.readings_missing = fusion_.missing() != nullptr;
-  conditions.battery_low = battery_low(now);
+  conditions.battery_low = battery_ != nullptr && battery_watch_.low(*battery_, now.monotonic_ns);
   track(now, conditions);
   pose_validity_ = conditions.pose;
   last_latch_ns_ = now.monotonic_ns;
@@ -123,14 +125,6 @@ core::Pose Twin::carried_on(const core::Pose& pose, double for_s) const noexcept
   const double wheel_base_m = space_.data_sheet(robot_).wheel_base_m;
   if (wheel_base_m <= 0.0 || for_s <= 0.0) return pose;
   return rolled(pose, driven_.left_m_s * for_s, driven_.right_m_s * for_s, wheel_base_m);
-}
-
-/// One bad reading does not end a flight.
-bool Twin::battery_low(const Moment& now) noexcept {
-  const bool low = battery_ != nullptr && battery_->validity == hal::Validity::Fresh &&
-                   static_cast<double>(battery_->charge) < params_.low_battery;
-  if (!low) battery_well_ns_ = now.monotonic_ns;
-  return low && hal::to_seconds(now.monotonic_ns - battery_well_ns_) >= params_.low_battery_s;
 }
 
 void Twin::after_sense() noexcept {
@@ -174,7 +168,10 @@ void Twin::send_commands(bool alive, const Moment& now) {
   bool wheels_sent = false;
   for (const Output& output : outputs_) {
     const void* command = output.port;
-    if (!alive) {
+    if (is<hal::FlightTask>(*output.type)) {
+      task_ = orders_.pass(*static_cast<const hal::FlightTask*>(command), alive, says_on_ground(flight_));
+      command = &task_;
+    } else if (!alive) {
       output.type->reset(safe_.get());
       command = safe_.get();
     } else if (is_wheels(*output.type)) {

@@ -13,6 +13,8 @@
 #include "mixed_reality/fence/fence.hpp"
 #include "mixed_reality/fence/intrusion.hpp"
 #include "mixed_reality/fusion/port_fusion.hpp"
+#include "mixed_reality/safety/battery_watch.hpp"
+#include "mixed_reality/safety/flight_order_gate.hpp"
 #include "mixed_reality/safety/supervisor.hpp"
 #include "mixed_reality/time/moment.hpp"
 #include "mixed_reality/tracking/pose_source.hpp"
@@ -27,9 +29,8 @@ struct TwinParams {
   hal::TimeNs pose_timeout_ns = 500 * hal::kNsPerMs;  ///< age from which a pose is stale
   hal::TimeNs frozen_after_ns = hal::kNsPerSecond;    ///< two ticks that lie farther apart: the hub was frozen
   double fence_ahead_s = 0.5;                         ///< how far ahead the arena's edge is looked for
-  double coast_s = 2.0;        ///< in an outage the twin drives on as last commanded, at most for so long
-  double low_battery = 0.05;   ///< part of the full charge …
-  double low_battery_s = 2.0;  ///< … below which it must have been for so long
+  double coast_s = 2.0;  ///< in an outage the twin drives on as last commanded, at most for so long
+  BatteryLimit battery = {};
 };
 
 /// Counted in the ticks of the run.
@@ -88,7 +89,6 @@ class Twin {
   void track(const Moment& now, Conditions& conditions) noexcept;
   void tell_place() noexcept;
   core::Pose carried_on(const core::Pose& pose, double for_s) const noexcept;
-  bool battery_low(const Moment& now) noexcept;
   void look_for_intrusions(const Moment& now);
   void note_incident(const Moment& now, const std::string& what, bool serious);
   void hold(bool held);
@@ -114,8 +114,11 @@ class Twin {
   Supervisor supervisor_;
   std::unique_ptr<SlipWatch> slip_;        // null: there is nothing to compare the wheels with
   const hal::Battery* battery_ = nullptr;  // null: it tells nothing
-  hal::TimeNs battery_well_ns_ = 0;        // when it was last well
-  std::uint64_t jumps_ = 0;                // of the pose, as far as they were judged
+  BatteryWatch battery_watch_;
+  const hal::FlightState* flight_ = nullptr;  // null: it does not fly
+  FlightOrderGate orders_;
+  hal::FlightTask task_;
+  std::uint64_t jumps_ = 0;  // of the pose, as far as they were judged
   core::Pose pose_;
   SmoothPose smooth_;
   Intrusion intrusion_;
