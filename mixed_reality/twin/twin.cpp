@@ -197,7 +197,8 @@ void Twin::send_commands(bool alive, const Moment& now) {
   // A controller without wheels leaves them where they are safe.
   if (!wheels_sent && real_wheels_ != nullptr) std::memcpy(real_wheels_, &sent_, sizeof sent_);
   if (real_task_ != nullptr && supervisor_.verdict().land && running_) {
-    const hal::FlightTask landing{.order = hal::FlightOrder::Land};
+    hal::FlightTask landing;
+    landing.order = hal::FlightOrder::Land;
     std::memcpy(real_task_, &landing, sizeof landing);
     landing_ = true;
   } else if (landing_) {
