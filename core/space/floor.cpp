@@ -61,7 +61,8 @@ void Floor::paint(double min_x_m, double min_y_m, double size_x_m, double size_y
 float Floor::at(double x_m, double y_m) const noexcept {
   if (shade_.empty()) return kGrey;
   const auto cell = [](double offset, std::size_t count) {
-    return static_cast<std::size_t>(std::clamp(offset, 0.0, static_cast<double>(count - 1)));
+    const auto last = static_cast<double>(count - 1);
+    return static_cast<std::size_t>(offset > 0.0 ? std::min(offset, last) : 0.0);  // what is no number counts to cell 0
   };
   const std::size_t column = cell((x_m - min_x_m_) * columns_per_m_, columns_);
   const std::size_t line = cell((y_m - min_y_m_) * lines_per_m_, lines_);

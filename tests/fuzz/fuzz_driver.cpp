@@ -72,11 +72,15 @@ std::size_t replay(const std::filesystem::path& kept) {
 int main(int count, char** arguments) {
   const std::uint64_t inputs = count > 1 ? std::strtoull(arguments[1], nullptr, 10) : 1'000'000;
   if (count > 2) std::printf("%zu kept inputs\n", replay(arguments[2]));
+  const char* keep = std::getenv("TANDEM_FUZZ_KEEP");  // a file for each input before it is tried
   std::vector<std::uint8_t> input;
   std::uint64_t bytes = 0;
   for (std::uint64_t i = 0; i < inputs; ++i) {
     make_input(i, input);
     bytes += input.size();
+    if (keep != nullptr)  // so that what ends the program can be replayed
+      std::ofstream(keep, std::ios::binary)
+          .write(reinterpret_cast<const char*>(input.data()), static_cast<std::streamsize>(input.size()));
     LLVMFuzzerTestOneInput(input.data(), input.size());
   }
   std::printf("%llu inputs, %llu bytes\n", static_cast<unsigned long long>(inputs),

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <tuple>
 
+#include "hal/unit.hpp"
+
 namespace tandem::core {
 namespace {
 
@@ -12,6 +14,7 @@ constexpr std::size_t kChunk = 512;  // entries whose active ones form one list
 constexpr std::size_t kChunksWorthThreads = 2;
 constexpr double kLargestTurn_rad = 0.5;  // of one sub-step: where the series below are exact to 1e-13
 constexpr double kLargestHop = 0.5;       // before contacts are resolved, in body radii: nothing is jumped over
+constexpr double kFastest_m_s = 100.0;    // what is faster is an error of somebody's
 constexpr double kSlack_m = 0.02;         // bodies nearer than this may come to touch within the passes of one tick
 
 /// Rolls rows [begin, end) of one block along their arcs.
@@ -63,6 +66,18 @@ int sub_steps(const hal::DataSheet& sheet, double tick_s) noexcept {
   const double turn = 2.0 * sheet.max_wheel_speed_m_s / sheet.wheel_base_m * tick_s / kLargestTurn_rad;
   const double hop = hops(sheet.max_wheel_speed_m_s, sheet.body_radius_m, tick_s);
   return std::max(1, static_cast<int>(std::ceil(std::max(turn, hop))));
+}
+
+bool too_fast(double left_m_s, double right_m_s) noexcept {
+  return !(std::fabs(left_m_s) <= kFastest_m_s && std::fabs(right_m_s) <= kFastest_m_s);  // also when no number
+}
+
+/// Commands are within the data sheet, but hooks write what they like, and a file may multiply it.
+bool any_too_fast(const Bodies& b, const RobotBlock& block) noexcept {
+  bool any = false;
+  for (std::size_t row = block.first_row; row < block.first_row + block.used; ++row)
+    any |= too_fast(b.left_m_s[row], b.right_m_s[row]);
+  return any;
 }
 
 /// Whether this engine moves the bodies of a region.
@@ -223,6 +238,7 @@ void Kinematics2d::advance(const PhysicsContext& context) {
       const hal::DataSheet& sheet = *stores.groups[block.group].sheet;
       if (sheet.flies) continue;  // never this engine's
       const int steps = sub_steps(sheet, context.tick_s);
+      if (any_too_fast(stores.bodies, block)) too_fast_in_.store(&stores, std::memory_order_relaxed);
       const std::size_t end = block.first_row + block.used;
       std::size_t row = block.first_row;
       while (row < end) {  // runs of rows that are this engine's: with one engine, all of them
@@ -235,6 +251,19 @@ void Kinematics2d::advance(const PhysicsContext& context) {
       }
     }
   });
+}
+
+void Kinematics2d::collect(std::vector<Trouble>& all) {
+  const SpaceStores* stores = too_fast_in_.exchange(nullptr);
+  if (stores == nullptr) return;
+  const Bodies& b = stores->bodies;
+  for (std::size_t row = 0; row < b.size(); ++row) {
+    if ((b.flags[row] & kAlive) == 0 || !mine(*stores, b.region[row]) || !too_fast(b.left_m_s[row], b.right_m_s[row]))
+      continue;
+    all.push_back({BodyKey::robot(row), "has wheels that are faster than its engine can follow (" +
+                                            hal::format_number(b.left_m_s[row]) + " and " +
+                                            hal::format_number(b.right_m_s[row]) + " m/s)"});
+  }
 }
 
 void Kinematics2d::settle(const PhysicsContext& context) {

@@ -1,5 +1,6 @@
 // Kinematics in the plane: wheels roll without slip, discs that overlap are pushed apart. No forces, no masses.
 #pragma once
+#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -27,6 +28,7 @@ class Kinematics2d final : public Engine {
   int parts(const PhysicsContext& context) const override;
   void advance(const PhysicsContext& context) override;
   void settle(const PhysicsContext& context) override;
+  void collect(std::vector<Trouble>& all) override;
 
  private:
   /// An entry of the index that is near enough to something to touch it, and where it is pushed to in this pass.
@@ -36,6 +38,7 @@ class Kinematics2d final : public Engine {
   };
 
   Params params_;
+  std::atomic<const SpaceStores*> too_fast_in_{nullptr};  // where somebody is, in this tick
   std::unique_ptr<Active[]>
       active_;  // a list for every chunk of entries, with room for all; unused ends stay untouched
   std::vector<std::uint32_t> counts_;  // how long each is

@@ -260,6 +260,18 @@ TEST(World, AHeadingThatIsNoNumberEndsTheRunByName) {
   EXPECT_EQ(world->failure(), "robot 'lost' was put where its heading or height is not a number at tick 1");
 }
 
+TEST(World, WheelsThatNoEngineCanFollowEndTheRunByName) {
+  auto world = make(Scene().robot("quick", 0.5, 0.0));
+  ASSERT_TRUE(world.world) << world.all_problems();
+  world->start();
+  world->step();
+  Space& space = world->space();
+  space.port<hal::WheelSpeeds>(space.find_robot("quick"))->set(1e9, 0.0);  // a hook's: nobody clamps it
+  world->step();
+  EXPECT_EQ(world->failure(),
+            "robot 'quick' has wheels that are faster than its engine can follow (1e+09 and 0 m/s) at tick 1");
+}
+
 TEST(Hooks, AreCalledAtTheirFiveMoments) {
   const std::string path = testing::TempDir() + "tandem_diary.txt";
   Scene scene;
@@ -317,6 +329,16 @@ TEST(Hooks, PaintTheFloorEachOverThoseBeforeIt) {
   EXPECT_NEAR(space.floor(0.0, 0.0), 0.2, 0.01);   // the third over both
   EXPECT_NEAR(space.floor(-0.8, 0.0), 0.2, 0.01);  // the third alone
   EXPECT_NEAR(space.floor(1.5, 1.5), 0.5, 0.01);   // nobody
+}
+
+TEST(World, APaintedFloorHasAShadeEverywhere) {
+  auto world = make(painted());
+  ASSERT_TRUE(world.world) << world.all_problems();
+  run(*world.world, 1);
+  for (const double x_m : {-1e300, -3.0, 3.0, 1e300, std::nan("")}) {
+    const double shade = world->space().floor(x_m, -x_m);
+    EXPECT_TRUE(shade >= 0.0 && shade <= 1.0) << x_m;
+  }
 }
 
 TEST(Hooks, ThatThrowWhileTheyAreMadeOrPaintAreNamed) {
