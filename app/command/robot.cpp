@@ -1,4 +1,5 @@
 // `tandem robot`: one real robot's controller, run here.
+#include <algorithm>
 #include <cstdio>
 #include <fmt/format.h>
 #include <optional>
@@ -57,12 +58,17 @@ const std::atomic<bool> kNever{false};
 /// Waits until the robot answers, has told all that its controller asked for, and stands armed; or it is clear that it
 /// will not. Error: it does not; says what is known.
 hal::Status connect(mixed_reality::SupervisedRobot& robot, bridges::RobotBridge& bridge,
-                    const core::BridgeConfig& config, mixed_reality::TimeSource& clock, const std::atomic<bool>& stop) {
+                    const core::BridgeConfig& config, hal::TimeNs tick_ns, mixed_reality::TimeSource& clock,
+                    const std::atomic<bool>& stop) {
   const hal::TimeNs began_ns = clock.now_ns();
+  hal::TimeNs commit_ns = began_ns;  // the next; bridges learn from it when to ask
   for (hal::TimeNs now = began_ns; !stop.load(); now = clock.now_ns()) {
     (void)robot.latch(0, now);
     if (robot.verdict().may_drive) return {};
-    robot.commit(now);
+    if (now >= commit_ns) {
+      commit_ns = now + tick_ns;
+      robot.commit(now);
+    }
     const std::string trouble = bridge.trouble();
     if (bridge.mismatched()) return hal::Error{trouble};
     const bool shut = now - began_ns >= kOpenWithin_ns && bridge.link().empty() && !trouble.empty();
@@ -71,7 +77,7 @@ hal::Status connect(mixed_reality::SupervisedRobot& robot, bridges::RobotBridge&
       if (bridge.health() == bridges::LinkHealth::Active) return hal::Error{"it cannot be driven: " + robot.reason()};
       return hal::Error{"it is not there: " + (trouble.empty() ? "" : trouble + "; ") + bridge.advice()};
     }
-    clock.sleep_until(now + kPollEvery_ns, stop);
+    clock.sleep_until(std::min(now + kPollEvery_ns, std::max(commit_ns, now + 1)), stop);
   }
   return hal::Error{"interrupted while waiting for it"};
 }
@@ -182,7 +188,7 @@ int robot(const RobotOptions& options) {
   supervision.frozen_after_ns = supervision.tick_ns + kFrozenAfter_ns;
   mixed_reality::SupervisedRobot supervised(item.id, bridge, supervision, log);
   bridge.start();
-  const hal::Status ready = connect(supervised, bridge, *item.bridge, clock, stop);
+  const hal::Status ready = connect(supervised, bridge, *item.bridge, supervision.tick_ns, clock, stop);
   if (stop.load()) return interrupted_code();
   if (!ready.ok()) return complain(kFailedRunning, "robot '" + item.id + "': " + ready.error().message);
 

@@ -99,13 +99,16 @@ void MixedSession::start_bridges() {
 hal::Status MixedSession::connect(const std::atomic<bool>& stop) {
   start_bridges();
   const hal::TimeNs began_ns = time_.now_ns();
-  stopped_ = false;  // from here on robots may hear from us
+  hal::TimeNs commit_ns = began_ns;  // the next; bridges learn from it when to ask
+  stopped_ = false;                  // from here on robots may hear from us
   phase_ = RunPhase::Waiting;
   for (;;) {
     now_ = moment();
+    const bool commits = now_.monotonic_ns >= commit_ns;
+    if (commits) commit_ns = now_.monotonic_ns + hal::time_of_tick(1, world_->ticks_per_second());
     for (const auto& twin : twins_) {
       twin->latch(now_, phase_);
-      twin->after_filter(now_);  // stands still, and is asked for readings
+      if (commits) twin->after_filter(now_);  // stands still, and is asked for readings
     }
     if (all_answer()) return {};
     const hal::TimeNs waited_ns = now_.monotonic_ns - began_ns;

@@ -20,8 +20,11 @@ TEST(RealFootbot, IsDrivenByTheControllerOfTheSimulatedOnes) {
       {"robot", kConfigs + "footbot_robot.xml", "--link", footbot.link, "--seconds", "2", "--report", "r.json"},
       folder.path());
   EXPECT_TRUE(eventually([&] { return footbot.moves(); }, 20.0));
-  const int ahead = footbot.with([](auto& m) { return static_cast<int>(m.word("left motor", "speed")); });
-  EXPECT_EQ(ahead, 12);  // 5 cm/s with nothing in sight
+  // 5 cm/s with nothing in sight, when the ramp is over.
+  const auto ahead = [&] {
+    return footbot.with([](auto& m) { return static_cast<int>(m.word("left motor", "speed")); });
+  };
+  EXPECT_TRUE(eventually([&] { return ahead() == 12; }, 20.0)) << ahead();
   ASSERT_EQ(robot.wait(), 0) << robot.errors();
   EXPECT_FALSE(footbot.moves());
   const std::string report = text_of(folder.path() / "r.json");
