@@ -64,7 +64,7 @@ TEST(EffectiveSettings, ShowDefaultsAndOverrides) {
   EXPECT_THAT(text, HasSubstr("length=\"33\""));
   EXPECT_THAT(text, HasSubstr("ticks_per_second=\"10\""));
   EXPECT_THAT(text, HasSubstr("<system threads=\"0\" method=\"balance_quantity\""));
-  EXPECT_THAT(text, HasSubstr("<time mode=\"realtime\"/>"));
+  EXPECT_THAT(text, HasSubstr("<time mode=\"realtime\" priority=\"0\"/>"));
   EXPECT_THAT(text, HasSubstr("<kinematics2d id=\"kinematics2d\""));
   EXPECT_THAT(text, HasSubstr("escape=\"error\""));
   EXPECT_THAT(text, HasSubstr("<proximity implementation=\"default\"/>"));
