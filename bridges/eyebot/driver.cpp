@@ -30,6 +30,7 @@ constexpr TimeNs kSilence = 2 * hal::kNsPerSecond;             // then it is tol
 constexpr TimeNs kOthersRobot = 2 * hal::kNsPerSecond;         // after another hub's last command
 constexpr TimeNs kOthersSpread = 100 * hal::kNsPerMs;          // two hubs do not try again at the same moment
 constexpr TimeNs kClocksAgree = 100 * hal::kNsPerMs;           // a robot takes stamps that are 250 ms off
+constexpr TimeNs kOwnJump = 150 * hal::kNsPerMs;               // robots refuse what is stamped 250 ms off
 constexpr float kLandCharge = 0.15F;                           // [chosen] where a robot says nothing of it itself
 constexpr double kPlaceSpeed_m_s = 1.5 * spec::kMaxSpeed_m_s;  // also one that is pushed
 constexpr std::size_t kPayloadAt = messages::kHeaderEnd;
@@ -133,6 +134,14 @@ void EyebotDriver::watch_clock() {
   robots_clock_ = true;
   log_.warning("eye-bot '" + settings_.robot.id + "': its clock was set; commands are now stamped by it");
   interrupt();
+}
+
+/// The robot would refuse for ever what is stamped by a clock that was set here.
+void EyebotDriver::watch_own_clock(TimeNs now) noexcept {
+  const TimeNs ahead = settings_.unix_clock() - now;
+  const TimeNs jump = ahead - own_clock_ns_.value_or(ahead);
+  own_clock_ns_ = ahead;
+  robots_clock_ = robots_clock_ || jump > kOwnJump || jump < -kOwnJump;
 }
 
 /// Whatever becomes of it, whoever has it fly must be told that something was between. One that is not active has been
@@ -580,6 +589,7 @@ void EyebotDriver::advance(TimeNs now) noexcept {
   now_ns_ = now;
   statistics_.stalls += stalls_.turn(now) > 0 ? 1 : 0;
   if (started_ns_ == 0) started_ns_ = now;
+  watch_own_clock(now);
   take_all(now);
   update_state(now);
   report_silence(now);

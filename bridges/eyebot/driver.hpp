@@ -20,6 +20,7 @@
 //   another hub commands it, and it is not ours       -> nothing is said to it
 #pragma once
 #include <array>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -199,6 +200,7 @@ class EyebotDriver {
   void begin_anew();
   void interrupt() noexcept;
   void watch_clock();
+  void watch_own_clock(hal::TimeNs now) noexcept;
   void report_silence(hal::TimeNs now);
   template <class Port, class Message>
   void fill(Topic topic, const Newest<Message>& newest, hal::TimeNs now) noexcept;
@@ -247,8 +249,9 @@ class EyebotDriver {
   PlaceGate place_gate_;
   eyebot_messages::State place_{};  // the newest whose place was valid and is believed, taken at
   hal::TimeNs place_taken_ns_ = 0;
-  std::uint64_t clock_jumps_ = 0;  // that were noticed
-  bool robots_clock_ = false;      // commands are stamped by the robot's clock: it refuses those by ours
+  std::uint64_t clock_jumps_ = 0;            // that were noticed
+  std::optional<hal::TimeNs> own_clock_ns_;  // how far this machine's clock is ahead of CLOCK_MONOTONIC
+  bool robots_clock_ = false;                // commands are stamped by the robot's clock: it refuses those by ours
   bool silence_told_ = false;
   hal::RangeAndBearing heard_;  // since the last `latch`
   hal::TimeNs complained_ns_ = 0;

@@ -491,6 +491,30 @@ TEST(EyebotDriver, CommandsAreYoungEnoughWithinASecondAfterAClockWasSet) {
   }
 }
 
+hal::TimeNs g_set_by = 0;
+hal::TimeNs clock_that_is_set() noexcept {
+  return clock_of_scene() + g_set_by;
+}
+
+TEST(EyebotDriver, CommandsStayYoungWhenTheClockOfThisMachineIsSet) {
+  for (const hal::TimeNs jump : {3600 * hal::kNsPerSecond, -400 * kMs}) {
+    DriverSettings settings;
+    settings.unix_clock = &clock_that_is_set;
+    g_set_by = 0;
+    Scene s(settings);
+    g_now = &s.now;
+    s.actuator<hal::QuadrotorSpeed>().set(1.0, 0.0, 0.0, 0.0);
+    s.robot.clock_minus_ours_ns = 1'700'000'000 * hal::kNsPerSecond;
+    s.fly();
+    s.robot.said.clear();
+    g_set_by = jump;
+    s.run(1000);
+    ASSERT_FALSE(s.robot.all("cmd/velocity").empty());
+    for (const Said& said : s.robot.all("/cmd/velocity")) EXPECT_TRUE(is_fresh(s, said));
+    EXPECT_EQ(s.driver.statistics().link_stops, 0U);
+  }
+}
+
 TEST(EyebotDriver, AnOrderThatIsRefusedForItsStampIsSaidAnewByTheRobotsClock) {
   for (const hal::TimeNs jump : {600 * kMs, -600 * kMs}) {
     Scene s(synchronised());
