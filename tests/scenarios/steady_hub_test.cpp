@@ -22,14 +22,14 @@ int stops_of(const EmulatedRobot& robot) {
   return stops - 1;  // the end
 }
 
-/// Around 28 m by 18 m: nobody leaves.
+/// Around 28 m by 18 m, closed at the corners: nobody leaves.
 std::string walls() {
   const auto wall = [](const std::string& id, const std::string& size, const std::string& place) {
     return "<box id=\"" + id + "\" size=\"" + size + ",0.5\" movable=\"false\"><body position=\"" + place +
            ",0\"/></box>";
   };
-  return wall("n", "28,0.2", "0,9.5") + wall("s", "28,0.2", "0,-9.5") + wall("e", "0.2,19", "14.2,0") +
-         wall("w", "0.2,19", "-14.5,0");
+  return wall("n", "30,0.2", "0,9.5") + wall("s", "30,0.2", "0,-9.5") + wall("e", "0.2,20", "14.2,0") +
+         wall("w", "0.2,20", "-14.2,0");
 }
 
 TEST(SteadyHub, StopsNoRobotWithoutAReason) {

@@ -102,7 +102,7 @@ class TestedEyebot final : public TestedRobot {
 
   void live(TimeNs now) override {
     air_.now = now;
-    hub_unix_ns = kUnix + now;
+    hub_unix_ns = kUnix + now + jumped_ns_;
     while (const auto change = plan_.next_change(now)) emulator::apply(*change, robot_, ++session_);
     std::vector<emulator::Datagram> passing;
     for (const emulator::Datagram& message : air_.to_robot) plan_.to_robot(message, passing);
@@ -178,6 +178,8 @@ class TestedEyebot final : public TestedRobot {
   }
   const hal::Light& light() const override { return light_; }
 
+  void jump_clock(TimeNs by) override { jumped_ns_ += by; }
+
   void begin_guarding(TimeNs now, bool hub_is_gone) override {
     // As its stopper does: numbers newer than the hub's, and than those of a stopper before.
     guardian_.emplace(settings(), static_cast<std::int32_t>(kTurn * turns_ + now / (10 * kMs)), hub_is_gone, air_);
@@ -239,6 +241,7 @@ class TestedEyebot final : public TestedRobot {
   hal::FlightTask& task_;
   hal::QuadrotorSpeed& speed_;
   int grounded_ticks_ = 0;
+  TimeNs jumped_ns_ = 0;
   std::uint32_t turns_ = 1;  // of guardians so far
   bool open_ = false;
   std::optional<Guardian> guardian_;

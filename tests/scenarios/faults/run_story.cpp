@@ -178,6 +178,9 @@ class Run {
     run_until(hub_from_);
     if (story_.hub == HubFault::Stall) stall();
     if (story_.hub == HubFault::Freeze) freeze();
+    if (story_.hub == HubFault::Clock) {
+      for (Actor& a : actors_) a.robot->jump_clock(story_.jump_ns);
+    }
     if (story_.hub == HubFault::End) hub_ends();
     if (story_.hub_goes()) hub_is_gone();
     back_from_ = std::max(back_from_, now_);

@@ -33,6 +33,7 @@ enum class HubFault : std::uint8_t {
   None,
   Stall,   ///< the loop is late; the I/O threads go on
   Freeze,  ///< the whole process sleeps, and comes back
+  Clock,   ///< its clock that shows the date jumps
   Kill,
   End  ///< it ends in order, whatever goes wrong at the moment
 };
@@ -42,6 +43,7 @@ struct Story {
   std::vector<std::vector<DrawnFault>> robots;
   HubFault hub = HubFault::None;
   TimeNs hub_from = 0, hub_until = 0;
+  TimeNs jump_ns = 0;       ///< Clock
   bool supervised = false;  ///< the safety table decides when it drives, as in `tandem run`; else the driver alone
 
   TimeNs end(std::size_t robot) const {
@@ -59,7 +61,7 @@ inline std::string seconds(TimeNs t) {
 }
 
 inline std::string to_text(const Story& story) {
-  static constexpr std::string_view kHub[] = {"none", "stall", "freeze", "kill", "end"};
+  static constexpr std::string_view kHub[] = {"none", "stall", "freeze", "clock", "kill", "end"};
   std::string text = "TANDEM_FAULT_SEED=" + std::to_string(story.seed) + "\n";
   for (std::size_t i = 0; i < story.robots.size(); ++i) {
     text += "  robot " + std::to_string(i) + ":";
@@ -68,8 +70,10 @@ inline std::string to_text(const Story& story) {
   }
   text += "  hub:";
   if (story.hub != HubFault::None) {
-    text += " " + std::string(kHub[static_cast<std::size_t>(story.hub)]) + "@" + seconds(story.hub_from);
-    if (!story.hub_goes()) text += "+" + seconds(story.hub_until - story.hub_from);
+    text += " " + std::string(kHub[static_cast<std::size_t>(story.hub)]);
+    if (story.hub == HubFault::Clock) text += "=" + std::to_string(story.jump_ns / kMs) + "ms";
+    text += "@" + seconds(story.hub_from);
+    if (story.hub_until > story.hub_from) text += "+" + seconds(story.hub_until - story.hub_from);
   }
   return text + (story.supervised ? "  (safety table)" : "  (driver alone)");
 }
@@ -116,7 +120,7 @@ inline Story draw_story(std::uint64_t seed, std::span<const FaultChoice> choices
   story.seed = seed;
   story.supervised = draw.unit() < 0.5;
   const std::size_t robots = draw.unit() < 0.7 ? 1 : 2 + draw.below(2);
-  story.hub = static_cast<HubFault>(draw.unit() < 0.3 ? 0 : 1 + draw.below(4));
+  story.hub = static_cast<HubFault>(draw.unit() < 0.3 ? 0 : 1 + draw.below(5));
   for (std::size_t i = 0; i < robots; ++i) {
     auto& faults = story.robots.emplace_back();
     const double many = draw.unit();
@@ -126,7 +130,8 @@ inline Story draw_story(std::uint64_t seed, std::span<const FaultChoice> choices
   }
   story.hub_from = draw.between(0.0, 2.0);
   story.hub_until = story.hub_from + (draw.unit() < 0.4 ? draw.between(0.02, 0.4) : draw.between(0.3, 2.5));
-  if (story.hub_goes()) story.hub_until = story.hub_from;
+  story.jump_ns = draw.between(0.02, draw.unit() < 0.5 ? 1.0 : 3600.0) * (draw.unit() < 0.5 ? -1 : 1);
+  if (story.hub_goes() || story.hub == HubFault::Clock) story.hub_until = story.hub_from;
   return story;
 }
 

@@ -69,6 +69,8 @@ class TestedRobot {
   virtual void stop(TimeNs now) = 0;
   /// The robot has confirmed the last stop, and nothing that moves it was sent since.
   virtual bool at_rest() const = 0;
+  /// The hub's clock that shows the date jumps; for those who are told the date.
+  virtual void jump_clock(TimeNs) {}
   /// The last that the hub says; then it pumps until `ended`, for a while.
   virtual void end(TimeNs now) = 0;
   virtual bool ended() const = 0;
