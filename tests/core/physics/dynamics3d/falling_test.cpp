@@ -84,9 +84,13 @@ TEST(Dynamics3dFalling, OverhangingBricksStandUpToTheClosedForm) {
     hand.ticks(300);
     const bool stands = share < 1.0;
     for (int i = 0; i < kBricks; ++i) {
-      if (stands) EXPECT_NEAR(hand.z_m(static_cast<std::size_t>(i)), 0.05 * i, 1e-6);
+      if (stands) {
+        EXPECT_NEAR(hand.z_m(static_cast<std::size_t>(i)), 0.05 * i, 1e-6);
+      }
     }
-    if (!stands) EXPECT_LT(hand.z_m(kBricks - 1), 0.15);
+    if (!stands) {
+      EXPECT_LT(hand.z_m(kBricks - 1), 0.15);
+    }
   }
 }
 
