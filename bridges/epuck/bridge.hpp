@@ -8,8 +8,8 @@
 //
 // The thread stamps bytes when they arrive, answers time-outs, opens the link anew when it was lost, and stops the
 // robot when the loop stops committing. The stock firmware has no watchdog of its own: when the link is cut while the
-// robot moves, it drives on until the link is back; when this process is killed, until a guardian (bridges/guardian), where
-// one was started, stops it. Keep speeds small where that matters.
+// robot moves, it drives on until the link is back; when this process is killed, until a guardian (bridges/guardian),
+// where one was started, stops it. Keep speeds small where that matters.
 #pragma once
 #include <atomic>
 #include <condition_variable>

@@ -8,7 +8,8 @@
 //
 // The thread takes in what arrives, beats the hub's heart, says again what is not answered, opens the link anew when
 // our own heartbeat does not come back to us, and has the robot hover when the loop stops committing. When this process
-// is killed its guardian (bridges/guardian) has the robot hover and land; where nobody is left, the robot does so itself.
+// is killed its guardian (bridges/guardian) has the robot hover and land; where nobody is left, the robot does so
+// itself.
 #pragma once
 #include <atomic>
 #include <condition_variable>

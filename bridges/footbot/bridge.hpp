@@ -8,8 +8,8 @@
 //
 // The thread takes in what arrives, answers time-outs, opens the link anew when it was lost, and stops the robot when
 // the loop stops committing. Modules have no watchdog: when the link is cut while the robot moves, it drives on until
-// the link is back; when this process is killed, until a guardian (bridges/guardian), where one was started, stops it. A
-// program on the motors' modules that sets the speed to 0 when nothing was written for a while is the only remedy.
+// the link is back; when this process is killed, until a guardian (bridges/guardian), where one was started, stops it.
+// A program on the motors' modules that sets the speed to 0 when nothing was written for a while is the only remedy.
 #pragma once
 #include <atomic>
 #include <condition_variable>

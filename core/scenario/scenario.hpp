@@ -86,8 +86,8 @@ struct CameraConfig {
 };
 
 /// A robot that stands for a real one: where its bridge connects.
-/// What becomes of a run when a real robot is not there at its start. Refuse: it does not begin. Simulate: it begins with
-/// a simulated robot instead. Wait: it does not begin before the robot is there.
+/// What becomes of a run when a real robot is not there at its start. Refuse: it does not begin. Simulate: it begins
+/// with a simulated robot instead. Wait: it does not begin before the robot is there.
 enum class IfMissing : std::uint8_t { Refuse, Simulate, Wait };
 
 struct BridgeConfig {
@@ -96,14 +96,14 @@ struct BridgeConfig {
   double timeout_s = 0.5;         ///< age from which the link counts as lost
   Element options;
   int line = 0;
-  std::string map = {};              ///< file that says what the variables of the robot's modules mean; empty: none
-  std::string name = {};             ///< in an eye-bot's channels; empty: the robot's id
-  bool land_at_end = true;           ///< else a flying robot is left hovering
-  std::array<double, 3> origin_m{};  ///< of the world that the robot's own positions are in, in W
-  double turn_rad = 0.0;             ///< of that world's x axis from W's
-  std::string rearm = "after 0.5 s";   ///< who lets it go after a stop by itself: operator, after a time, never
-  double settle_s = 0.3;             ///< after any other stop, all must have been well for so long
-  double ramp_m_s2 = 0.25;           ///< then its largest speed grows from 0 by this
+  std::string map = {};               ///< file that says what the variables of the robot's modules mean; empty: none
+  std::string name = {};              ///< in an eye-bot's channels; empty: the robot's id
+  bool land_at_end = true;            ///< else a flying robot is left hovering
+  std::array<double, 3> origin_m{};   ///< of the world that the robot's own positions are in, in W
+  double turn_rad = 0.0;              ///< of that world's x axis from W's
+  std::string rearm = "after 0.5 s";  ///< who lets it go after a stop by itself: operator, after a time, never
+  double settle_s = 0.3;              ///< after any other stop, all must have been well for so long
+  double ramp_m_s2 = 0.25;            ///< then its largest speed grows from 0 by this
   IfMissing if_missing = IfMissing::Refuse;
   double connect_s = 15.0;  ///< from which it counts as missing, before the run
   double stop_s = 2.0;      ///< for it to confirm its stop, at the end

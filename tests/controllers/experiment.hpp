@@ -49,8 +49,8 @@ struct Experiment {
       : loader(std::make_unique<hal::PluginLoader>(
             std::vector<std::filesystem::path>{std::string(test::kBuildDir) + "/lib"})) {
     core::Problems problems;
-    auto scenario = core::read_experiment(std::string(test::kSourceDir) + "/configs/" + config, overrides,
-                                          known_names(), problems);
+    auto scenario =
+        core::read_experiment(std::string(test::kSourceDir) + "/configs/" + config, overrides, known_names(), problems);
     if (scenario && !engine.empty()) {
       scenario->engines.at(0).kind = engine;
       scenario->engines.at(0).options.name = engine;

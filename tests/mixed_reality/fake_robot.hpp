@@ -84,7 +84,9 @@ class FakeRobot final : public bridges::RobotBridge, private hal::Robot {
   std::string advice() const override { return "is it switched on?"; }
   std::string identity() const override { return "fake"; }
   std::string link() const override { return body_.link_up ? "fake" : ""; }
-  bridges::StopMessages stop_messages() const override { return {.kind = "fake", .link = "fake", .version = 1}; }
+  bridges::StopMessages stop_messages() const override {
+    return {.robot = "fake", .kind = "fake", .link = "fake", .body = "", .version = 1};
+  }
   std::uint64_t stop_version() const noexcept override { return 1; }
 
   void commit(hal::TimeNs now) noexcept override {

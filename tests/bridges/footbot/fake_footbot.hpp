@@ -50,7 +50,8 @@ inline FootbotMap map_of(const std::string& text) {
 inline const FootbotMap& default_map() {
   static const FootbotMap map = [] {
     core::Problems problems;
-    const auto read = mixed_reality::read_footbot_map((std::string(test::kSourceDir) + "/configs/footbot_map.xml"), problems);
+    const auto read =
+        mixed_reality::read_footbot_map((std::string(test::kSourceDir) + "/configs/footbot_map.xml"), problems);
     for (const core::Problem& p : problems) ADD_FAILURE() << core::to_text(p);
     return read.value_or(FootbotMap{});
   }();

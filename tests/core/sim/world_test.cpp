@@ -78,8 +78,9 @@ TEST(World, NothingIsJumpedOverInLongTicks) {
     for (std::int64_t i = 0; i < 30 * rate; ++i) {
       world->step();
       ASSERT_LT(space.pose(space.find_robot("walled")).x_m, 0.5 - 0.03);
-      if (i < 6 * rate)  // later they roll round one another
+      if (i < 6 * rate) {  // later they roll round one another
         ASSERT_LT(space.pose(space.find_robot("a")).x_m, space.pose(space.find_robot("b")).x_m);
+      }
     }
     EXPECT_NEAR(space.pose(space.find_robot("walled")).x_m, 0.4975 - 0.035, 2e-3);
   }

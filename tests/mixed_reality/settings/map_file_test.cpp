@@ -1,8 +1,9 @@
 // The file of a foot-bot's names: what it says, and every way to get it wrong.
 #include "mixed_reality/settings/map_file.hpp"
-#include "tests/checkout.hpp"
 
 #include <gmock/gmock.h>
+
+#include "tests/checkout.hpp"
 
 namespace tandem::mixed_reality {
 namespace {
