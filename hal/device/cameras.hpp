@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "hal/device/leds.hpp"
+#include "hal/elementary.hpp"
 #include "hal/port.hpp"
 
 namespace tandem::hal {
@@ -65,10 +66,12 @@ struct OmnidirectionalCamera : Reading {
 
   bool has(const OmnidirectionalCamera& other, std::size_t i) const noexcept {
     for (std::size_t k = 0; k < count; ++k) {
-      const float x_m = distance_m[k] * std::cos(bearing_rad[k]);
-      const float y_m = distance_m[k] * std::sin(bearing_rad[k]);
-      const float dx_m = other.distance_m[i] * std::cos(other.bearing_rad[i]) - x_m;
-      const float dy_m = other.distance_m[i] * std::sin(other.bearing_rad[i]) - y_m;
+      const float x_m = distance_m[k] * static_cast<float>(hal::cos(static_cast<double>(bearing_rad[k])));
+      const float y_m = distance_m[k] * static_cast<float>(hal::sin(static_cast<double>(bearing_rad[k])));
+      const float dx_m =
+          other.distance_m[i] * static_cast<float>(hal::cos(static_cast<double>(other.bearing_rad[i]))) - x_m;
+      const float dy_m =
+          other.distance_m[i] * static_cast<float>(hal::sin(static_cast<double>(other.bearing_rad[i]))) - y_m;
       if (dx_m * dx_m + dy_m * dy_m < kSamePlace_m * kSamePlace_m && alike(color(k), other.color(i))) return true;
     }
     return false;

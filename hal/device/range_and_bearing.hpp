@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "hal/elementary.hpp"
 #include "hal/port.hpp"
 
 namespace tandem::hal {
@@ -103,9 +104,11 @@ struct RangeAndBearing : Reading {
     return false;
   }
   std::array<float, 3> place(std::size_t i) const noexcept {
-    const float flat_m = range_m[i] * std::cos(elevation_rad[i]);
-    return {flat_m * std::cos(bearing_rad[i]), flat_m * std::sin(bearing_rad[i]),
-            range_m[i] * std::sin(elevation_rad[i])};
+    const auto elevation = static_cast<double>(elevation_rad[i]);
+    const auto bearing = static_cast<double>(bearing_rad[i]);
+    const double flat_m = static_cast<double>(range_m[i]) * hal::cos(elevation);
+    return {static_cast<float>(flat_m * hal::cos(bearing)), static_cast<float>(flat_m * hal::sin(bearing)),
+            static_cast<float>(static_cast<double>(range_m[i]) * hal::sin(elevation))};
   }
   void copy_entry(std::size_t to, std::size_t from) noexcept {
     range_m[to] = range_m[from];

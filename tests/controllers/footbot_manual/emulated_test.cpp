@@ -40,7 +40,7 @@ TEST(ManualRobot, DrivesWhileItIsToldAndStopsWhenItsOperatorFallsSilent) {
       20.0))
       << robot.errors();
   robot.signal(SIGINT);
-  EXPECT_EQ(robot.wait(), 0) << robot.errors();
+  EXPECT_EQ(robot.wait(), 130) << robot.errors();
   EXPECT_FALSE(footbot.moves());
 }
 
