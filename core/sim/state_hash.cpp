@@ -80,7 +80,7 @@ std::uint64_t mix_scenery(std::uint64_t hash, const SpaceStores& s) noexcept {
     hash = mix(hash, i);
     for (const ObjectLed& led : o.leds) {
       for (const double value : {led.x_m, led.y_m, led.z_m}) hash = mix(hash, bits_of(value));
-      hash = mix(hash, led.color.r | led.color.g << 8U | led.color.b << 16U);
+      hash = mix(hash, static_cast<std::uint64_t>(led.color.r | led.color.g << 8U | led.color.b << 16U));
     }
   }
   for (const LightSource& light : s.lights) {

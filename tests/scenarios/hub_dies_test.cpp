@@ -129,7 +129,7 @@ TEST_F(RobotsOfAllKinds, AreStoppedWhileTheirHubIsFrozenAndDriveOnAfterwards) {
   EXPECT_GT(epuck->wheels().back().t_ns, thawed);
   EXPECT_THAT(hub.errors(), HasSubstr("this program was frozen for"));
   hub.signal(SIGINT);
-  EXPECT_EQ(hub.wait(60.0), 0) << hub.errors();
+  EXPECT_EQ(hub.wait(60.0), 130) << hub.errors();
   EXPECT_THAT(text_of(hub_folder.path() / "r.json"), HasSubstr("hub was frozen"));
   EXPECT_FALSE(epuck->moves());
   EXPECT_FALSE(footbot->moves());
