@@ -25,7 +25,7 @@ core::Scene hall(const std::string& engine) {
   scene.robot("me", 0, 0, 0).robot("other", 1, 0, 0);
   for (core::RobotItem& item : scene.scenario.robots) {
     item.kind = "eye-bot";
-    item.controller = static_cast<int>(scene.scenario.controllers.size()) - 1;
+    item.controller = scene.scenario.controllers.size() - 1;
   }
   return scene;
 }

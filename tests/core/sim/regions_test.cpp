@@ -481,7 +481,8 @@ TEST_P(Regions, RobotsThatMeetAcrossABorderOverlapNoMoreThanWithinOneRegion) {
   };
   // The arena is split in 2 x 2: borders along both axes. Meeting points: on one border, where four regions
   // meet, and a little beside.
-  for (const auto& [px, py] : {std::pair{0.0, 0.5}, {0.0, 0.0}, {0.5, 0.0}, {0.01, -0.4}, {-0.02, 0.03}}) {
+  for (const auto& at : {std::pair{0.0, 0.5}, {0.0, 0.0}, {0.5, 0.0}, {0.01, -0.4}, {-0.02, 0.03}}) {
+    const double px = at.first, py = at.second;
     for (const Way& way : {Way{0.0, 0.0}, Way{0.5 * pi, 0.0}, Way{0.3, 0.02}, Way{0.25 * pi, 0.0}, Way{-1.2, -0.03}}) {
       for (const double speed_m_s : {0.03, 0.1288}) {
         const auto start = [&](const char* split) {
@@ -568,7 +569,7 @@ Contacts contacts_of(const std::string& kind, const std::string& split, std::uin
 TEST_P(Regions, ACrowdTouchesAsOftenAndAsDeepAcrossBordersAsWithinOneRegion) {
   Contacts whole;
   Contacts parts;
-  for (const std::uint64_t seed : {1, 2, 3}) {
+  for (const std::uint64_t seed : {1U, 2U, 3U}) {
     const Contacts w = contacts_of(GetParam(), "1x1", seed);
     const Contacts p = contacts_of(GetParam(), "4x4", seed);
     whole = {whole.pairs + w.pairs, whole.overlap_m + w.overlap_m, whole.deepest_m + w.deepest_m};
@@ -820,7 +821,7 @@ TEST_P(TwoKinds, RobotsSeeAndHearThoseOfTheOtherEngine) {
     const double aside_rad = 17.0 * std::numbers::pi / 180.0;
     const double half_chord_m = std::sqrt(kRobotRadius_m * kRobotRadius_m - std::pow(0.1 * std::sin(aside_rad), 2));
     const double seen_m = 0.1 * std::cos(aside_rad) - half_chord_m - kRobotRadius_m;
-    for (const std::size_t front : {0, 7}) EXPECT_NEAR(proximity->distance_m[front], seen_m, 2e-3) << id;
+    for (const std::size_t front : {0U, 7U}) EXPECT_NEAR(proximity->distance_m[front], seen_m, 2e-3) << id;
     EXPECT_EQ(proximity->distance_m[3], proximity->range_m) << id;
     const auto* heard = space.port<hal::RangeAndBearing>(space.find_robot(id));
     ASSERT_NE(heard, nullptr);
