@@ -45,7 +45,11 @@ class Folder {
     std::string pattern = (fs::temp_directory_path() / "tandem_XXXXXX").string();
     path_ = mkdtemp(pattern.data());
   }
-  ~Folder() { fs::remove_all(path_); }
+  /// A guardian that outlives its hub may still be writing here: what it leaves behind then stays.
+  ~Folder() {
+    std::error_code error;
+    for (int i = 0; i < 100 && fs::exists(path_, error); ++i) fs::remove_all(path_, error);
+  }
   Folder(const Folder&) = delete;
   Folder& operator=(const Folder&) = delete;
   const fs::path& path() const { return path_; }

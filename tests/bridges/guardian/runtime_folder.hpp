@@ -14,7 +14,11 @@ class RuntimeFolder {
     path_ = ::mkdtemp(pattern.data());
     ::setenv("XDG_RUNTIME_DIR", path_.c_str(), 1);
   }
-  ~RuntimeFolder() { std::filesystem::remove_all(path_); }
+  /// A guardian that outlives its hub may still be writing here: what it leaves behind then stays.
+  ~RuntimeFolder() {
+    std::error_code error;
+    for (int i = 0; i < 100 && std::filesystem::exists(path_, error); ++i) std::filesystem::remove_all(path_, error);
+  }
   RuntimeFolder(const RuntimeFolder&) = delete;
   RuntimeFolder& operator=(const RuntimeFolder&) = delete;
   const std::filesystem::path& path() const { return path_; }
