@@ -217,6 +217,7 @@ TEST(EyebotBridge, SaysWhyThereIsNoRobot) {
 }
 
 TEST(EyebotBridge, OpensTheLinkAnewWhenItsOwnWordsDoNotComeBack) {
+  std::atomic<bool> block{true};  // outlives the link, whose thread reads it
   const auto deaf = LcmLink::open("memq://");
   ASSERT_TRUE(deaf.ok());
   int opened = 0;
@@ -226,7 +227,6 @@ TEST(EyebotBridge, OpensTheLinkAnewWhenItsOwnWordsDoNotComeBack) {
     return deaf;
   });
   // Nobody takes messages out of a link whose thread is kept busy.
-  std::atomic<bool> block{true};
   ASSERT_TRUE(deaf.value()
                   ->subscribe("hub/.*",
                               [&block](const LcmMessage&) {
