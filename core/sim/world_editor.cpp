@@ -121,7 +121,10 @@ Obstacle WorldEditor::obstacle_of(BodyKey body) const {
 
 std::optional<BodyKey> WorldEditor::in_the_way(const Obstacle& o, BodyKey self, bool of_immovable) {
   const auto enter = [&](BodyKey body) {
-    if (alive(body)) occupancy_->add(obstacle_of(body));
+    if (!alive(body)) return;
+    const Obstacle place = obstacle_of(body);
+    if (std::isfinite(place.x_m + place.y_m + place.cos_h + place.sin_h))
+      occupancy_->add(place);  // else a hook put it nowhere: the run ends by that
   };
   if (!occupancy_ || entered_version_ != stores_.poses_version) {
     double cell_m = 0.02;

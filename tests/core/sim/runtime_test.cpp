@@ -352,6 +352,17 @@ TEST(Robots, WithParametersOfTheirOwnLeaveTheirPlacesToOthers) {
   EXPECT_EQ(space.port<hal::WheelSpeeds>(robot.value())->left_m_s, 0.0);
 }
 
+TEST(Robots, ComeBesideOneThatAHookPutNowhere) {
+  Scene s(4.0);
+  s.robot("lost", -1.5, -1.5);
+  auto world = make(s);
+  ASSERT_TRUE(world.world) << world.all_problems();
+  world->start();
+  Space& space = world->space();
+  space.set_pose(space.find_robot("lost"), Pose::at(NAN, 0.0, NAN));
+  EXPECT_TRUE(space.add_robot({.id = "new", .controller = "c", .pose = Pose::at(0, 0, 0)}).ok());
+}
+
 TEST_P(Runtime, AVelocityIsReadAndWhereItExistsSet) {
   auto world = make(scene("drive").param("left", "0.1").param("right", "0.1").robot("a", 0, 0, 0.5));
   world->start();
