@@ -1,0 +1,64 @@
+#include "mixed_reality/settings/bridge_check.hpp"
+
+#include <gmock/gmock.h>
+
+namespace tandem::mixed_reality {
+namespace {
+
+using testing::HasSubstr;
+
+core::RobotItem robot(const std::string& kind, const std::string& id, const std::string& link, int line) {
+  core::RobotItem item;
+  item.kind = kind;
+  item.id = id;
+  item.line = line;
+  item.bridge = core::BridgeConfig{};
+  item.bridge->link = link;
+  item.bridge->line = line + 1;
+  return item;
+}
+
+std::string problems_of(const std::vector<core::RobotItem>& robots) {
+  core::Scenario scenario;
+  scenario.file = "e.xml";
+  scenario.robots = robots;
+  core::Problems problems;
+  check_bridges(scenario, problems);
+  std::string text;
+  for (const core::Problem& p : problems) text += core::to_text(p) + "\n";
+  return text;
+}
+
+const std::string kBus = "lcm:udpm://239.255.76.67:7667?ttl=0";
+
+TEST(BridgeCheck, FindsNothingWrongWithRobotsThatHaveALinkOrANameEach) {
+  EXPECT_EQ(
+      problems_of({robot("e-puck", "ep0", "serial:/dev/ttyUSB0", 1), robot("e-puck", "ep1", "serial:/dev/ttyUSB1", 3),
+                   robot("eye-bot", "eb0", kBus, 5), robot("eye-bot", "eb1", kBus, 7)}),
+      "");
+}
+
+TEST(BridgeCheck, NamesTheSecondRobotBehindALink) {
+  EXPECT_THAT(problems_of({robot("e-puck", "ep0", "serial:/dev/ttyUSB0", 1),
+                           robot("e-puck", "ep1", "serial:/dev/ttyUSB0@115200", 3)}),
+              HasSubstr("e.xml:4: error: robot 'ep1': a second robot behind the link serial:/dev/ttyUSB0@115200; the "
+                        "first is 'ep0' on line 1"));
+  auto other = robot("eye-bot", "eb1", kBus, 3);
+  other.bridge->name = "eb0";
+  EXPECT_THAT(problems_of({robot("eye-bot", "eb0", kBus, 1), other}), HasSubstr("as 'eb0'; the first is 'eb0'"));
+}
+
+TEST(BridgeCheck, SaysWhatCannotBeReadWithItsLine) {
+  auto item = robot("e-puck", "ep0", "serial:/dev/ttyUSB0@57600", 1);
+  item.bridge->rearm = "soon";
+  const std::string text =
+      problems_of({item, robot("e-puck", "ep1", "cereal:x", 3), robot("marsupial", "m0", "can:can0", 5)});
+  EXPECT_THAT(text, HasSubstr("e.xml:2: error: robot 'ep0': 'soon' is no way to re-arm; there are: operator"));
+  EXPECT_THAT(text,
+              HasSubstr("e.xml:2: error: robot 'ep0': an e-puck's firmware talks with 115200 baud, not with 57600"));
+  EXPECT_THAT(text, HasSubstr("e.xml:4: error: robot 'ep1': link 'cereal:x': unknown scheme"));
+  EXPECT_THAT(text, HasSubstr("e.xml:6: error: robot 'm0': there is no bridge to robots of the kind 'marsupial'"));
+}
+
+}  // namespace
+}  // namespace tandem::mixed_reality
