@@ -185,7 +185,7 @@ TEST_F(BenchRefuses, WordsThatItDoesNotKnowAndNamesTheChoices) {
 
 TEST_F(BenchRefuses, WhatTheWorldRefusesInItsWords) {
   refuses({"--engine", "dynamics2d", "--regions", "999x999", "--robots", "1", "--plot", "f.svg"}, 1,
-          {"bench diffusion: error: more than 65534 regions"});
+          {"bench diffusion: error: regions=\"999x999\" are more than 4096 parts"});
   EXPECT_FALSE(scenarios::fs::exists(folder_.path() / "f.svg"));
 }
 
