@@ -23,7 +23,7 @@ GuardedRobots::GuardedRobots(const std::vector<core::RobotItem>& items, hal::Log
   auto started = GuardianClient::start(
       {bridges::epuck::stopper_type(), bridges::footbot::stopper_type(), bridges::eyebot::stopper_type()}, options);
   if (!started.ok()) {
-    log_.warning(started.error().message);
+    started_ = started.error();
     return;
   }
   guardian_ = std::move(started).value();

@@ -16,11 +16,15 @@ namespace tandem::app {
 class GuardedRobots {
  public:
   /// A guardian, where any of these items has a `<bridge>`; from here on Ctrl-Z stops the robots first. Where no
-  /// process can be made, `log` is told.
+  /// process can be made, `started` says so.
   GuardedRobots(const std::vector<core::RobotItem>& items, hal::Log log);
 
   /// For bridges: without it they would write to robots that the guardian is stopping.
   bridges::SendPermit permit() const noexcept;
+  /// Error: there is no guardian process, and no robot may be driven.
+  const hal::Status& started() const noexcept { return started_; }
+  /// The guardian process lives, or no robot needs one. It is not made anew: without it no robot may be driven.
+  bool guarded() const noexcept { return !guardian_ || guardian_->guards(); }
   /// Times that this program was frozen, and its robots stopped.
   std::uint64_t freezes() const noexcept;
   /// `bridge` must outlive this, or the last call of anything here but the destructor.
@@ -44,6 +48,7 @@ class GuardedRobots {
   };
 
   hal::Log log_;
+  hal::Status started_;
   std::vector<Row> robots_;
   std::unique_ptr<bridges::guardian::GuardianClient> guardian_;
 };

@@ -154,6 +154,7 @@ int robot(const RobotOptions& options) {
 
   const hal::Log log([](hal::Severity, std::string_view text) { say(text); });
   GuardedRobots guarded({item}, log);  // before any thread
+  if (!guarded.started().ok()) return complain(kFailedRunning, guarded.started().error().message);
   auto made = mixed_reality::make_bridge(
       {item, config, scenario->ticks_per_second, scenario->seed.value_or(1), guarded.permit(), &hub_unix_ns}, log);
   if (!made.ok()) return complain(kBadInput, made.error().message);
@@ -206,6 +207,7 @@ int robot(const RobotOptions& options) {
     pacer.start();
     for (hal::Tick tick = 0; (steps == 0 || tick < steps) && !stop.load(std::memory_order_relaxed); ++tick) {
       if (rearm_asked().exchange(false)) supervised.rearm();
+      supervised.set_guarded(guarded.guarded());
       if (const std::uint64_t count = guarded.freezes(); count != freezes) {
         freezes = count;
         supervised.hub_was_frozen();
@@ -226,6 +228,7 @@ int robot(const RobotOptions& options) {
   if (failure.empty() && !interrupted && bridge.health() == bridges::LinkHealth::Lost) {
     failure = "robot '" + item.id + "' was lost at the end: " + bridge.trouble();
   }
+  if (failure.empty() && !guarded.guarded()) failure = "robot '" + item.id + "' stood: the guardian process was gone";
   stop_and_wait(bridge, item.bridge->stop_s, clock);
   hal::Json json;
   begin_report(json, *scenario, item, bridge, supervised.supervisor(), pacer.ledger());

@@ -157,6 +157,7 @@ std::unique_ptr<mixed_reality::MixedSession> join_real_robots(std::unique_ptr<co
   mixed_reality::MixedOptions options;
   options.log = log;
   options.freezes = [&guarded] { return guarded.freezes(); };
+  options.guarded = [&guarded] { return guarded.guarded(); };
   catch_rearm();
   options.rearm_asked = &rearm_asked();
   options.on_left_out = [&guarded](const bridges::RobotBridge& bridge) { guarded.remove(bridge); };
@@ -226,6 +227,7 @@ int run(const RunOptions& options) {
 
   GuardedRobots guarded(scenario->robots,
                         hal::Log([](hal::Severity, std::string_view text) { say(text); }));  // before any thread
+  if (!guarded.started().ok()) return complain(kFailedRunning, guarded.started().error().message);
   const std::atomic<bool>& stop = catch_signals();
   std::signal(SIGPIPE, SIG_IGN);  // who reads our output may end before us
   Watchdog watchdog(options.step_timeout_s, stop);
@@ -272,6 +274,7 @@ int run(const RunOptions& options) {
     }
     recording.measure();
   }
+  const bool was_guarded = guarded.guarded();
   if (mixed != nullptr) {
     mixed->shut_down();
     real = mixed->report();
@@ -285,7 +288,7 @@ int run(const RunOptions& options) {
   const bool table = !options.quiet && options.report != "-";
   const bool written = write_results(outputs, result, table);
   const bool failed = result.end.how == Ended::Failed || world->incidents().controllers_thrown > 0;
-  if (failed || !written || !left.empty()) return kFailedRunning;
+  if (failed || !was_guarded || !written || !left.empty()) return kFailedRunning;
   return result.end.how == Ended::Interrupted ? interrupted_code() : kDone;
 }
 

@@ -187,7 +187,9 @@ void GuardianClient::Heart::take_from_guardian(bool readable) {
     guards_ = false;
     if (!ended_) {
       news_.emplace_back(
-          "the guardian process is gone: real robots would drive on if this program were killed; end this run");
+          "the guardian process is gone, and nobody would stop real robots if this program were killed: they are "
+          "stopped, and "
+          "do not drive any more in this run");
     }
     changed_.notify_all();
   }

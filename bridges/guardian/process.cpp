@@ -34,7 +34,11 @@ using hal::TimeNs;
 
 constexpr TimeNs kSayAfter = hal::kNsPerSecond;  // that a robot has not stopped
 constexpr int kLookEvery_ms = 20;
+#ifdef __SANITIZE_THREAD__
+constexpr std::size_t kStack = 8 * 1024 * 1024;  // its own variables lie on a thread's stack too
+#else
 constexpr std::size_t kStack = 512 * 1024;
+#endif
 
 TimeNs monotonic_ns() noexcept {
   timespec t{};

@@ -70,6 +70,7 @@ bool SupervisedRobot::latch(hal::Tick tick, hal::TimeNs now) {
 Conditions SupervisedRobot::conditions(hal::TimeNs now) noexcept {
   Conditions c;
   c.hub_was_frozen = std::exchange(frozen_, false) || (last_ns_ != 0 && now - last_ns_ > params_.frozen_after_ns);
+  c.guardian_gone = !guarded_;
   c.robot_stopped_itself = bridge_.stopped_itself();
   c.battery_low = battery_ != nullptr && battery_watch_.low(*battery_, now);
   c.link = bridge_.health();

@@ -39,6 +39,8 @@ class SupervisedRobot {
 
   /// Guardians have stopped the robot because this program did not run: noted by the next `latch`.
   void hub_was_frozen() noexcept { frozen_ = true; }
+  /// Whether somebody would stop the robot if this program died; heeded by the next `latch`.
+  void set_guarded(bool guarded) noexcept { guarded_ = guarded; }
   /// A person re-arms the robot.
   void rearm() noexcept { supervisor_.rearm(); }
   const Supervisor& supervisor() const noexcept { return supervisor_; }
@@ -79,6 +81,7 @@ class SupervisedRobot {
   std::unique_ptr<std::byte[]> kept_;  // what the controller wrote, while other commands leave
   hal::TimeNs last_ns_ = 0;
   bool frozen_ = false;
+  bool guarded_ = true;
   bool landing_ = false;
   std::string_view noted_;
 };

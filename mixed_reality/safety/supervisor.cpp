@@ -14,12 +14,13 @@ using O = StopOwner;
 
 // First row that applies decides. Everything that is not known to be well stops the robot.
 // clang-format off
-constexpr std::array<SafetyRule, 17> kTable = {{
+constexpr std::array<SafetyRule, 18> kTable = {{
     {[](const C& c) noexcept { return c.run == RunPhase::Stopping; },     held(O::Run, "the run is stopping")},
     {[](const C& c) noexcept { return c.run == RunPhase::Waiting; },      held(O::Run, "waiting for the start")},
     {[](const C& c) noexcept { return c.controller_failed; },             held(O::Controller, "controller failed")},
     {[](const C& c) noexcept { return c.operator_holds; },                held(O::Operator, "held by the operator")},
     {[](const C& c) noexcept { return c.hook_holds; },                    held(O::Hook, "held by a hook")},
+    {[](const C& c) noexcept { return c.guardian_gone; },                 landing(O::Guardian, "guardian gone")},
     {[](const C& c) noexcept { return c.hub_was_frozen; },                held(O::Hub, "hub was frozen"),
      Recovery::Rearm, "hub was frozen; waits to be re-armed"},
     {[](const C& c) noexcept { return c.robot_stopped_itself; },          held(O::Robot, "robot stopped by itself"),
@@ -58,8 +59,9 @@ const SafetyRule* needs_rearm(const Conditions& conditions) noexcept {
 }  // namespace
 
 std::string_view name_of(StopOwner owner) noexcept {
-  constexpr std::array<std::string_view, kStopOwners> kNames = {
-      "nobody", "run", "operator", "hook", "controller", "hub", "robot", "battery", "link", "readings", "pose"};
+  constexpr std::array<std::string_view, kStopOwners> kNames = {"nobody",     "run",  "operator", "hook",
+                                                                "controller", "hub",  "guardian", "robot",
+                                                                "battery",    "link", "readings", "pose"};
   return kNames[static_cast<std::size_t>(owner)];
 }
 

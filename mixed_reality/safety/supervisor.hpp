@@ -27,6 +27,7 @@ struct Conditions {
   bool hook_holds = false;            ///< a hook does
   bool controller_failed = false;     ///< it threw
   bool hub_was_frozen = false;        ///< since the last judgement: it did not run for so long that it counted as dead
+  bool guardian_gone = false;         ///< nobody would stop it if this program died
   bool robot_stopped_itself = false;  ///< since the last judgement: it restarted, or its own fail-safe took over
   bool battery_low = false;
   LinkHealth link = LinkHealth::Connecting;
@@ -44,13 +45,14 @@ enum class StopOwner : std::uint8_t {
   Hook,
   Controller,
   Hub,
+  Guardian,
   Robot,
   Battery,
   Link,
   Readings,
   Pose
 };
-inline constexpr std::size_t kStopOwners = 11;
+inline constexpr std::size_t kStopOwners = 12;
 /// As in reports: "link".
 std::string_view name_of(StopOwner owner) noexcept;
 

@@ -202,11 +202,13 @@ void MixedSession::latch(core::World&) {
     freezes_ = freezes;
     for (const auto& twin : twins_) twin->hub_was_frozen();
   }
+  const bool guarded = !options_.guarded || options_.guarded();
   const bool rearmed = options_.rearm_asked != nullptr && options_.rearm_asked->exchange(false);
   for (const auto& twin : twins_) {
     if (rearmed) twin->rearm();
+    twin->set_guarded(guarded);
+    twin->latch(now_, phase_);
   }
-  for (const auto& twin : twins_) twin->latch(now_, phase_);
 }
 
 void MixedSession::after_sense(core::World&) {

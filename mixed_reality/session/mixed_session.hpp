@@ -28,6 +28,8 @@ using BridgeMaker = std::function<MadeBridge(const BridgeRequest&)>;
 struct MixedOptions {
   /// How often guardians have stopped the robots because this program did not run; empty: nobody counts that.
   std::function<std::uint64_t()> freezes = {};
+  /// Whether the process lives that stops the robots when this one dies; empty: nobody asks.
+  std::function<bool()> guarded = {};
   /// Set by a person who re-arms robots: all that wait for it; null: nobody can.
   std::atomic<bool>* rearm_asked = nullptr;
   /// Called for a robot that is not there and is simulated instead: its bridge has ended, and is asked nothing more.

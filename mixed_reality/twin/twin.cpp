@@ -88,6 +88,7 @@ void Twin::latch(const Moment& now, RunPhase phase) {
   conditions.hub_was_frozen = hub_was_frozen_ || (running_ && last_latch_ns_ != 0 &&
                                                   now.monotonic_ns - last_latch_ns_ > params_.frozen_after_ns);
   hub_was_frozen_ = false;
+  conditions.guardian_gone = !guarded_;
   mechanisms_.follow(last_latch_ns_ == 0 ? 0.0 : hal::to_seconds(now.monotonic_ns - last_latch_ns_));
   conditions.robot_stopped_itself = real_->stopped_itself();
   conditions.link = real_->health();

@@ -53,6 +53,8 @@ class Twin {
 
   /// The robots were stopped by others because this program did not run; to be told before the next `latch`.
   void hub_was_frozen() noexcept { hub_was_frozen_ = true; }
+  /// Whether somebody would stop the robot if this program died; heeded by the next `latch`.
+  void set_guarded(bool guarded) noexcept { guarded_ = guarded; }
   /// A person re-arms the robot.
   void rearm() noexcept { supervisor_.rearm(); }
   /// Takes over the newest readings and pose, and decides whether the robot may move; its controller is held if not.
@@ -130,6 +132,7 @@ class Twin {
   hal::QuadrotorPosition target_;
   bool running_ = false;
   bool hub_was_frozen_ = false;
+  bool guarded_ = true;
   bool held_ = false;  // by the safety table
   hal::TimeNs last_latch_ns_ = 0;
   hal::TimeNs pose_taken_ns_ = 0;  // on the run's clock

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <gtest/gtest.h>
 #include <memory>
 #include <signal.h>
 #include <spawn.h>
@@ -73,7 +74,22 @@ inline std::vector<std::string> tandem_words() {
   return words;
 }
 
-/// A running `tandem`. Killed, if need be, when this ends.
+/// Processes whose environment has `mark`, but for those that are dead and not yet waited for: what a program has
+/// started carries what was in its own.
+inline std::vector<pid_t> processes_marked(const std::string& mark) {
+  std::vector<pid_t> all;
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator("/proc", error)) {
+    const std::string name = entry.path().filename().string();
+    if (name.find_first_not_of("0123456789") != std::string::npos) continue;
+    const std::string text = text_of(entry.path() / "environ");  // empty, where the process is another user's, or dead
+    if (text.find(mark) != std::string::npos) all.push_back(std::stoi(name));
+  }
+  return all;
+}
+
+/// A running `tandem`. Killed, if need be, when this ends, with all that it has left behind: a guardian goes on until
+/// its robots have confirmed their stop, and a test's robots may be gone.
 class Tandem {
  public:
   Tandem(std::vector<std::string> arguments, const fs::path& folder) : folder_(folder) {
@@ -85,13 +101,18 @@ class Tandem {
     std::vector<char*> argv;
     for (std::string& a : arguments) argv.push_back(a.data());
     argv.push_back(nullptr);
+    mark_ = "TANDEM_TEST_PROCESS=" + std::to_string(getpid()) + "." + std::to_string(count) + ".";
+    std::vector<char*> environment;
+    for (char** e = environ; *e != nullptr; ++e) environment.push_back(*e);
+    environment.push_back(mark_.data());
+    environment.push_back(nullptr);
     posix_spawn_file_actions_t actions;
     posix_spawn_file_actions_init(&actions);
     posix_spawn_file_actions_addopen(&actions, 0, "/dev/null", O_RDONLY, 0);
     posix_spawn_file_actions_addopen(&actions, 1, output_.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
     posix_spawn_file_actions_addopen(&actions, 2, errors_.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
     posix_spawn_file_actions_addchdir_np(&actions, folder.c_str());
-    if (posix_spawnp(&pid_, argv[0], &actions, nullptr, argv.data(), environ) != 0) pid_ = -1;
+    if (posix_spawnp(&pid_, argv[0], &actions, nullptr, argv.data(), environment.data()) != 0) pid_ = -1;
     posix_spawn_file_actions_destroy(&actions);
   }
   ~Tandem() {
@@ -99,6 +120,7 @@ class Tandem {
       kill(pid_, SIGKILL);  // also where it is stopped
       waitpid(pid_, nullptr, 0);
     }
+    end_what_is_left();
   }
   Tandem(const Tandem&) = delete;
   Tandem& operator=(const Tandem&) = delete;
@@ -128,8 +150,26 @@ class Tandem {
   std::string output() const { return text_of(output_); }
   std::string errors() const { return text_of(errors_); }
 
+  /// The process that stops its robots when it is gone; -1: there is none.
+  pid_t guardian() const {
+    for (const pid_t process : processes_marked(mark_)) {
+      if (text_of("/proc/" + std::to_string(process) + "/comm") == "tandem-guard\n") return process;
+    }
+    return -1;
+  }
+
  private:
+  void end_what_is_left() const {
+    const auto none = [this] {
+      const auto left = processes_marked(mark_);
+      for (const pid_t process : left) kill(process, SIGKILL);
+      return left.empty();
+    };
+    if (!eventually(none, 10.0)) ADD_FAILURE() << "a process of " << mark_ << " cannot be ended";
+  }
+
   fs::path folder_, output_, errors_;
+  std::string mark_;
   pid_t pid_ = -1;
   bool ended_ = false;
   int code_ = 0;

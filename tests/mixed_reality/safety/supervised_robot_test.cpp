@@ -171,6 +171,19 @@ TEST_F(SupervisedRobotTest, ARestartIsAStopThatNeedsAReArm) {
   EXPECT_EQ(bridge_.sent.left_m_s, 0.1);
 }
 
+TEST_F(SupervisedRobotTest, StandsForGoodOnceNobodyGuardsIt) {
+  get_under_way();
+  robot_->set_guarded(false);
+  for (int i = 0; i < 100; ++i) {
+    tick();
+    EXPECT_EQ(bridge_.sent.left_m_s, 0.0);
+    robot_->rearm();
+  }
+  EXPECT_TRUE(bridge_.landing);
+  EXPECT_EQ(robot_->supervisor().stops_by(StopOwner::Guardian), 1U);
+  EXPECT_THAT(log_, HasSubstr("robot 'ep0': guardian gone"));
+}
+
 TEST_F(SupervisedRobotTest, ALowBatteryStopsAndLandsItForGood) {
   get_under_way();
   bridge_.battery.charge = 0.02F;

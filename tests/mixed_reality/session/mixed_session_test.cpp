@@ -413,6 +413,22 @@ TEST_F(MixedRun, AfterGuardiansHaveStoppedTheRobotsTheyWaitForTheirRearm) {
   EXPECT_NE(report.robots[0].incidents[2].find("hub was frozen"), std::string::npos) << report.robots[0].incidents[2];
 }
 
+TEST_F(MixedRun, NoRobotDrivesOnceNobodyGuardsThem) {
+  core::Scene scene = drive(0.05, 0.05);
+  scene.robot("ep0", -1.0, 0.0);
+  bool guarded = true;
+  options_.guarded = [&guarded] { return guarded; };
+  open(real(scene, "ep0"));
+  run(60, [&](core::World& world) {
+    EXPECT_TRUE(world.tick() != 30 || !bodies_["ep0"].stands());
+    guarded = world.tick() < 30;
+    EXPECT_TRUE(world.tick() <= 31 || bodies_["ep0"].stands()) << world.tick();
+  });
+  const MixedReport report = session_->report();
+  EXPECT_EQ(report.robots[0].state, "guardian gone");
+  EXPECT_EQ(report.robots[0].counts.stops, 1U);
+}
+
 TEST_F(MixedRun, RefusesARobotThatCannotBeMadeOrFollowed) {
   core::Scene scene = drive(0.0, 0.0);
   scene.robot("ep0", 0.0, 0.0);
