@@ -289,6 +289,7 @@ void EpuckBridge::describe(StatusVisitor& visitor) const {
   visitor.count("silent", s.session.silent);
   visitor.count("cut_short", s.session.cut_short);
   visitor.count("asked_again", s.session.asked_again);
+  visitor.count("overdue", s.session.overdue);
   visitor.count("late_answers", s.driver.late_answers);
   visitor.count("wrong_speeds", s.session.wrong_speeds);
   visitor.count("restarts", s.session.restarts);

@@ -21,9 +21,6 @@ constexpr hal::TimeNs kNever = std::numeric_limits<hal::TimeNs>::max();
 constexpr hal::TimeNs kLeastMargin = 4 * hal::kNsPerMs;
 constexpr hal::TimeNs kLargestMargin = 20 * hal::kNsPerMs;
 
-constexpr hal::TimeNs kPumpEvery = 20 * hal::kNsPerMs;
-constexpr hal::TimeNs kStall = 30 * hal::kNsPerMs;
-
 }  // namespace
 
 EpuckDriver::EpuckDriver(DriverSettings settings, hal::Log log)
@@ -128,11 +125,12 @@ void EpuckDriver::ask_when_due(hal::TimeNs now) noexcept {
 
 // Whoever was kept from pumping was probably not alone: the robot's side may have been as well.
 void EpuckDriver::notice_stall(hal::TimeNs now) noexcept {
-  if (pumped_ns_ != 0 && now - pumped_ns_ >= kStall) {
+  const hal::TimeNs stall = stalls_.turn(now);
+  if (stall > 0) {
     ++statistics_.stalls;
-    session_.stalled(now - pumped_ns_ - kPumpEvery);
+    session_.stalled(stall);
   }
-  pumped_ns_ = now;
+  session_.be_patient(stalls_.patience_ns(now));
 }
 
 void EpuckDriver::send(ByteLink& link) noexcept {

@@ -11,6 +11,7 @@
 
 #include "bridges/epuck/robot.hpp"
 #include "bridges/link/link.hpp"
+#include "bridges/link/stall_meter.hpp"
 #include "hal/log.hpp"
 
 namespace tandem::bridges::epuck {
@@ -33,7 +34,7 @@ struct DriverStatistics {
   std::uint64_t faults = 0;          ///< reported with `fault`
   std::uint64_t refused_bytes = 0;   ///< that the link did not take
   std::uint64_t late_answers = 0;    ///< not there when they were to be latched
-  std::uint64_t stalls = 0;          ///< times that `pump` was not called for 30 ms and more
+  std::uint64_t stalls = 0;          ///< times that `pump` was called late (StallMeter)
 };
 
 /// What the wheels rolled, as their counters tell.
@@ -115,7 +116,7 @@ class EpuckDriver {
   hal::TimeNs ask_due_ns_;         // never: no question waits for its time
   hal::TimeNs asked_ns_ = 0;       // for the next latch; 0: not
   hal::TimeNs margin_ns_;
-  hal::TimeNs pumped_ns_ = 0;  // 0: not yet
+  StallMeter stalls_;
   std::uint64_t told_watchdog_stops_ = 0;
   AccelerometerCheck::Verdict logged_accelerometer_ = AccelerometerCheck::Verdict::Unchecked;
 };

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <limits>
+#include <utility>
 
 #include "bridges/epuck/conversions.hpp"
 
@@ -43,6 +44,13 @@ bool same_lamps(const Actuation& a, const Actuation& b) noexcept {
 
 TimeNs transfer_ns(std::size_t bytes) noexcept {
   return static_cast<TimeNs>(bytes) * kByteNs;
+}
+
+constexpr const char* kImplausible = "an answer held values that cannot be";
+
+bool tells(std::span<const std::uint8_t> speeds, const std::array<StepsPerS, 2>& told) noexcept {
+  const auto word = [&](std::size_t at) { return static_cast<std::int16_t>(speeds[at] | speeds[at + 1] << 8); };
+  return word(0) == told[0].value && word(2) == told[1].value;
 }
 
 }  // namespace
@@ -282,12 +290,11 @@ void Session::on_byte(std::uint8_t byte, TimeNs at) noexcept {
       on_probe_byte(byte, at);
       break;
     case Phase::Answer:
-      answer_[answer_size_++] = byte;
-      deadline_ns_ = std::max(deadline_ns_, at + timing_.quiet_ns);  // it is coming
-      if (answer_size_ == answer_expected_) on_answer(at);
+      on_answer_byte(byte, at);
       break;
     case Phase::Again:
       deadline_ns_ = std::min(std::max(deadline_ns_, at + timing_.quiet_ns), given_up_ns_);
+      on_answer_byte(byte, at);
       break;
     case Phase::Idle:
       ++statistics_.unasked_bytes;
@@ -339,34 +346,97 @@ void Session::on_version(TimeNs at) noexcept {
   introduced(at);
 }
 
-void Session::on_answer(TimeNs at) noexcept {
+std::span<const std::uint8_t> Session::received(std::size_t from, std::size_t size) const noexcept {
+  return std::span(answer_).subspan(from, size);
+}
+
+void Session::on_answer_byte(std::uint8_t byte, TimeNs at) noexcept {
+  answer_[answer_size_++] = byte;
+  heard_ns_ = at;
+  const std::size_t most = question_.answer_size + (earlier_awaited_ ? earlier_.answer_size : 0);
+  if (answer_size_ == most) judge_answers(at);
+}
+
+/// The second of two answers has come whole, the first not, or not whole.
+bool Session::second_alone() const noexcept {
+  if (!earlier_awaited_ || answer_size_ != earlier_size_ + question_.answer_size) return false;
+  const auto answer = received(earlier_size_, question_.answer_size);
+  return tells(answer.last(kSpeedsSize), question_.told) && (!question_.marked || tells(answer, question_.told));
+}
+
+/// All has come that can, or no more comes.
+void Session::judge_answers(TimeNs now) noexcept {
+  const bool late = phase_ == Phase::Again;
   phase_ = Phase::Idle;
-  RawSensors raw = samples_.raw;
-  if (decode_answer(std::span(answer_.data(), answer_size_), asked_, layout_, raw) != Decoded::Ok) {
-    ++statistics_.implausible;
-    lose_step("an answer held values that cannot be", at);
-    return;
+  const bool two_awaited = std::exchange(earlier_awaited_, false);
+  const std::size_t first = two_awaited ? earlier_.answer_size : 0;
+  if (answer_size_ == first + question_.answer_size) {
+    statistics_.overdue += late || two_awaited ? 1 : 0;
+    RawSensors passed_over;
+    if (two_awaited && !decode(earlier_, received(0, first), passed_over)) return lose_step(kImplausible, now);
+    on_answer(question_, received(first, question_.answer_size), heard_ns_);
+  } else if (two_awaited && answer_size_ == earlier_size_ + question_.answer_size) {
+    on_answer(question_, received(earlier_size_, question_.answer_size), heard_ns_);
+  } else if (two_awaited && answer_size_ == first && tells(received(0, first).last(kSpeedsSize), earlier_.told)) {
+    take_late_answer(now);
+  } else {
+    miss_answer(now);
   }
-  const TimeNs round_trip = at - asked_ns_;
-  const TimeNs latency = std::max<TimeNs>(0, round_trip - transfer_ns(asked_bytes_ + answer_expected_)) / 2;
+}
+
+/// Of the two answers only the first has come: the second is overdue as well.
+void Session::take_late_answer(TimeNs now) noexcept {
+  ++statistics_.overdue;
+  on_answer(earlier_, received(0, earlier_.answer_size), heard_ns_);
+  answer_size_ = 0;
+  if (phase_ == Phase::Idle) begin_again(now);
+}
+
+/// An answer that came in time was measured when the robot had read the question: before the answer travels.
+Session::Measured Session::measured(const Question& question, TimeNs at) noexcept {
+  const TimeNs round_trip = at - question.asked_ns;
+  const TimeNs travel = transfer_ns(question.question_size + question.answer_size);
+  const TimeNs latency = std::max<TimeNs>(0, round_trip - travel) / 2;
+  const bool dated = round_trip <= timing_.answer_ns + travel && allowed_ns_ == 0;
+  if (!dated) return {std::min(question.asked_ns, at), at};
   latency_ns_ = std::max(latency, latency_ns_ - (latency_ns_ - latency) / 8);
-  // The robot measures when it has read the question: before its answer travels.
-  const TimeNs taken = std::clamp(at - transfer_ns(answer_expected_) - latency, std::min(asked_ns_, at), at);
-  if (asked_.has(Quantity::Encoders) && counters_known_ && !counters_doubtful_ &&
-      !encoders_plausible(raw.encoders, taken)) {
+  const TimeNs taken =
+      std::clamp(at - transfer_ns(question.answer_size) - latency, std::min(question.asked_ns, at), at);
+  return {taken, taken};
+}
+
+bool Session::decode(const Question& question, std::span<const std::uint8_t> bytes, RawSensors& raw) noexcept {
+  const bool odd_mark = question.marked && !std::ranges::equal(bytes.first(kSpeedsSize), bytes.last(kSpeedsSize));
+  const auto values = bytes.subspan(question.marked ? kSpeedsSize : 0);
+  if (!odd_mark && decode_answer(values, question.asked, layout_, raw) == Decoded::Ok) return true;
+  ++statistics_.implausible;
+  return false;
+}
+
+void Session::on_answer(const Question& question, std::span<const std::uint8_t> bytes, TimeNs at) noexcept {
+  RawSensors raw = samples_.raw;
+  if (!decode(question, bytes, raw)) return lose_step(kImplausible, at);
+  const Measured when = measured(question, at);
+  if (question.asked.has(Quantity::Encoders) && counters_known_ && !counters_doubtful_ &&
+      !encoders_plausible(raw.encoders, when.latest_ns)) {
     ++statistics_.encoder_jumps;
     lose_step("the wheel counters jumped", at);
     return;
   }
   asked_again_ = false;
-  if (!speeds_as_told(raw.commanded, at)) return;
-  const bool stands = sent_.left.value == 0 && sent_.right.value == 0 && raw.commanded[0] == 0 && raw.commanded[1] == 0;
-  if (rest_doubted_) at_rest_ = stands;
-  rest_doubted_ = false;
-  take_samples(raw, taken);
+  const bool newest = &question == &question_;  // nothing was told since
+  if (newest) {
+    if (!speeds_as_told(raw.commanded, at)) return;
+    const bool stands =
+        sent_.left.value == 0 && sent_.right.value == 0 && raw.commanded[0] == 0 && raw.commanded[1] == 0;
+    if (rest_doubted_) at_rest_ = stands;
+    rest_doubted_ = false;
+  }
+  take_samples(question.asked, raw, when);
   state_ = SessionState::Active;
   trouble_ = "";
   ++statistics_.answers;
+  const TimeNs round_trip = at - question.asked_ns;
   statistics_.last_round_trip_ns = round_trip;
   statistics_.max_round_trip_ns = std::max(statistics_.max_round_trip_ns, round_trip);
   statistics_.sum_round_trip_ns += round_trip;
@@ -390,31 +460,33 @@ bool Session::speeds_as_told(const std::array<std::int16_t, 2>& commanded, TimeN
   return false;
 }
 
-void Session::take_samples(const RawSensors& raw, TimeNs taken) noexcept {
+void Session::take_samples(QuantitySet asked, const RawSensors& raw, const Measured& when) noexcept {
   const bool stands =
-      asked_.has(Quantity::Encoders) && counters_known_ && at_rest_ && raw.encoders == samples_.raw.encoders;
-  if (stands && asked_.has(Quantity::Acceleration)) samples_.accelerometer.at_rest(raw.acceleration);
-  if (asked_.has(Quantity::Encoders)) take_encoders(raw.encoders, taken);
+      asked.has(Quantity::Encoders) && counters_known_ && at_rest_ && raw.encoders == samples_.raw.encoders;
+  if (stands && asked.has(Quantity::Acceleration)) samples_.accelerometer.at_rest(raw.acceleration);
+  if (asked.has(Quantity::Encoders)) take_encoders(raw.encoders, when);
   samples_.raw = raw;
-  samples_.known.add(asked_);
+  samples_.known.add(asked);
   for (std::size_t i = 0; i < kQuantityCount; ++i) {
-    if (asked_.has(static_cast<Quantity>(i))) samples_.taken_ns[i] = taken;
+    if (asked.has(static_cast<Quantity>(i))) samples_.taken_ns[i] = when.taken_ns;
   }
 }
 
 // --- wheel counters ---
 
-bool Session::encoders_plausible(const std::array<std::int16_t, 2>& counters, TimeNs taken) const noexcept {
-  const TimeNs since = taken - samples_.taken_ns[static_cast<std::size_t>(Quantity::Encoders)];
+bool Session::encoders_plausible(const std::array<std::int16_t, 2>& counters, TimeNs latest) const noexcept {
+  const TimeNs since = latest - samples_.taken_ns[static_cast<std::size_t>(Quantity::Encoders)];
   if (since > kCountersAmbiguous) return false;
   const double most = kFastestSteps_s * (hal::to_seconds(since) + kStampDoubt_s);
   return std::abs(encoder_difference(counters[0], samples_.raw.encoders[0])) <= most &&
          std::abs(encoder_difference(counters[1], samples_.raw.encoders[1])) <= most;
 }
 
-void Session::take_encoders(const std::array<std::int16_t, 2>& counters, TimeNs taken) noexcept {
-  const double since_s = hal::to_seconds(taken - samples_.taken_ns[static_cast<std::size_t>(Quantity::Encoders)]);
-  const bool continues = counters_known_ && !restarted_ && encoders_plausible(counters, taken);
+void Session::take_encoders(const std::array<std::int16_t, 2>& counters, const Measured& when) noexcept {
+  // Over the longest time that it may have been: where stamps are in doubt a wheel is not faster than it was.
+  const double since_s =
+      hal::to_seconds(when.latest_ns - samples_.taken_ns[static_cast<std::size_t>(Quantity::Encoders)]);
+  const bool continues = counters_known_ && !restarted_ && encoders_plausible(counters, when.latest_ns);
   if (counters_known_ && !continues) ++statistics_.encoder_rebased;
   const std::int32_t left = continues ? encoder_difference(counters[0], samples_.raw.encoders[0]) : 0;
   const std::int32_t right = continues ? encoder_difference(counters[1], samples_.raw.encoders[1]) : 0;
@@ -431,6 +503,7 @@ void Session::take_encoders(const std::array<std::int16_t, 2>& counters, TimeNs 
 
 TimeNs Session::next_deadline() const noexcept {
   if (phase_ == Phase::Stop) return stop_.next_deadline();
+  if (phase_ == Phase::Answer) return answer_deadline();
   return phase_ == Phase::Down || phase_ == Phase::Idle ? kNever : deadline_ns_;
 }
 
@@ -459,12 +532,12 @@ void Session::poll(TimeNs now) noexcept {
       begin_handshake(now);
       break;
     case Phase::Answer:
-      miss_answer(now);
+      judge_answers(now);
       break;
     case Phase::Again:
       speeds_due_ = true;
       pending_ = true;
-      pending_quantities_.add(asked_);
+      pending_quantities_.add(question_.asked);
       send_pending(now);
       break;
     case Phase::Idle:
@@ -473,13 +546,23 @@ void Session::poll(TimeNs now) noexcept {
   }
 }
 
+TimeNs Session::answer_deadline() const noexcept {
+  if (heard_ns_ == 0) return deadline_ns_;
+  const TimeNs quiet_ns = heard_ns_ + timing_.quiet_ns;  // before that more may be coming
+  return second_alone() ? quiet_ns : std::max(deadline_ns_, quiet_ns);
+}
+
 void Session::miss_answer(TimeNs now) noexcept {
-  const bool silent = answer_size_ == 0;
+  const bool silent = heard_ns_ == 0;
   ++(silent ? statistics_.silent : statistics_.cut_short);
   if (asked_again_ || state_ != SessionState::Active) {
     lose_step(silent ? "no answer" : "an answer was cut short", now);
     return;
   }
+  begin_again(now);
+}
+
+void Session::begin_again(TimeNs now) noexcept {
   asked_again_ = true;
   ++statistics_.asked_again;
   append_zeros(output_, kBehindSpeeds);  // end what may be half-received
@@ -538,23 +621,36 @@ void Session::send_pending(TimeNs now) noexcept {
     at_rest_ = false;
     rest_doubted_ = true;
   }
-  asked_ = pending_quantities_;
-  asked_.add(Quantity::CommandedSpeeds);
+  append_question(now);
+  ++statistics_.packets;
+}
+
+void Session::append_question(TimeNs now) noexcept {
+  earlier_awaited_ = phase_ == Phase::Again;
+  if (earlier_awaited_) earlier_ = question_;
+  earlier_size_ = earlier_awaited_ ? answer_size_ : 0;
+  answer_size_ = earlier_size_;
+  heard_ns_ = 0;
+  question_.asked = pending_quantities_;
+  question_.asked.add(Quantity::CommandedSpeeds);
   pending_quantities_ = {};
-  append_queries(output_, asked_, layout_);
+  const std::size_t size = answer_size(question_.asked, layout_);
+  question_.marked = earlier_awaited_ && earlier_.answer_size - earlier_size_ != size + kSpeedsSize;
+  question_.answer_size = size + (question_.marked ? kSpeedsSize : 0);
+  if (question_.marked) append_query(output_, Quantity::CommandedSpeeds);
+  append_queries(output_, question_.asked, layout_);
   append_end(output_);
   append_end(output_);  // one of them may be lost
-  if (layout_.battery_bytes == 0) asked_.remove(Quantity::Battery);
-  if (layout_.ground_bytes == 0) asked_.remove(Quantity::Ground);
-  if (layout_.gyro_bytes == 0) asked_.remove(Quantity::Gyro);
-  answer_expected_ = answer_size(asked_, layout_);
-  answer_size_ = 0;
-  asked_bytes_ = output_.size();
-  asked_ns_ = now;
+  if (layout_.battery_bytes == 0) question_.asked.remove(Quantity::Battery);
+  if (layout_.ground_bytes == 0) question_.asked.remove(Quantity::Ground);
+  if (layout_.gyro_bytes == 0) question_.asked.remove(Quantity::Gyro);
+  question_.question_size = output_.size();
+  question_.told = {sent_.left, sent_.right};
+  question_.asked_ns = now;
   allowed_ns_ = 0;
-  deadline_ns_ = now + timing_.answer_ns + transfer_ns(asked_bytes_ + answer_expected_);
+  deadline_ns_ = now + timing_.answer_ns + transfer_ns(question_.question_size + question_.answer_size) +
+                 (asked_again_ ? patience_ns_ : 0);
   phase_ = Phase::Answer;
-  ++statistics_.packets;
 }
 
 void Session::append_wheels() noexcept {

@@ -16,6 +16,12 @@
 // asks for the commanded speeds as well (`E`): when they are not those that were told, the robot is told again once,
 // and stopped if it tells its old ones no longer. An answer that does not come is asked for again once, with the
 // speeds.
+//
+// An answer that did not come may be late, not lost. So after asking again up to two answers are awaited, in order: the
+// second question asks for one quantity more where their sizes would not tell them apart, and what has come is judged
+// by size and speeds once both have come or the line is quiet. The robot is stopped when neither comes, or anything
+// else does. When only the first one comes the second is overdue in its turn. A late answer is dated with its question:
+// nobody knows when after that the robot measured.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -80,6 +86,7 @@ struct SessionStatistics {
   std::uint64_t cut_short = 0;      ///< time-outs with part of an answer
   std::uint64_t implausible = 0;    ///< values that cannot be
   std::uint64_t asked_again = 0;    ///< answers that did not come at once
+  std::uint64_t overdue = 0;        ///< answers that came after all, when they had been asked for again
   std::uint64_t wrong_speeds = 0;   ///< readings of other commanded speeds than told
   std::uint64_t encoder_jumps = 0;  ///< wheel counters farther on than a wheel can turn
   std::uint64_t encoder_rebased =
@@ -120,6 +127,9 @@ class Session {
 
   /// The caller was kept from calling for so long: what is awaited may take as much longer, within 0.5 s an answer.
   void stalled(hal::TimeNs duration) noexcept;
+  /// What the second of two questions may take longer than the first, from now on: the robot is stopped when its
+  /// answer does not come.
+  void be_patient(hal::TimeNs duration) noexcept { patience_ns_ = duration; }
 
   /// Sets `actuation`: at once when no answer is awaited, else as soon as it has come. Outside Ready and Active only
   /// the LEDs are kept.
@@ -167,15 +177,27 @@ class Session {
     ProbeGround,
     Idle,
     Answer,
-    Again,  // an answer did not come; what is under way is let pass before it is asked for again
+    Again,  // an answer did not come; what is under way may still come before it is asked for again
     Rest
+  };
+  struct Question {
+    QuantitySet asked;
+    bool marked = false;          // speeds first as well
+    std::size_t answer_size = 0;  // in bytes
+    std::size_t question_size = 0;
+    std::array<StepsPerS, 2> told{};  // with it, or before
+    hal::TimeNs asked_ns = 0;
   };
 
   void on_byte(std::uint8_t byte, hal::TimeNs at) noexcept;
   void on_line(std::string_view line, hal::TimeNs at) noexcept;
   void on_version(hal::TimeNs at) noexcept;
   void on_probe_byte(std::uint8_t byte, hal::TimeNs at) noexcept;
-  void on_answer(hal::TimeNs at) noexcept;
+  void on_answer_byte(std::uint8_t byte, hal::TimeNs at) noexcept;
+  void judge_answers(hal::TimeNs now) noexcept;
+  void take_late_answer(hal::TimeNs now) noexcept;
+  bool decode(const Question& question, std::span<const std::uint8_t> bytes, RawSensors& raw) noexcept;
+  void on_answer(const Question& question, std::span<const std::uint8_t> bytes, hal::TimeNs at) noexcept;
   void on_greeting(hal::TimeNs at) noexcept;
 
   void begin_handshake(hal::TimeNs now) noexcept;
@@ -190,24 +212,34 @@ class Session {
   void finish_handshake() noexcept;
   void lose_step(const char* why, hal::TimeNs now) noexcept;
   void miss_answer(hal::TimeNs now) noexcept;
+  void begin_again(hal::TimeNs now) noexcept;
+  hal::TimeNs answer_deadline() const noexcept;
+  bool second_alone() const noexcept;
+  std::span<const std::uint8_t> received(std::size_t from, std::size_t size) const noexcept;
   bool speeds_as_told(const std::array<std::int16_t, 2>& commanded, hal::TimeNs at) noexcept;
 
   bool talking() const noexcept { return state_ == SessionState::Ready || state_ == SessionState::Active; }
   void keep(const Actuation& actuation) noexcept;
   void send_pending(hal::TimeNs now) noexcept;
+  void append_question(hal::TimeNs now) noexcept;
   void append_lamps(hal::TimeNs now) noexcept;
   void append_wheels() noexcept;
-  void take_samples(const RawSensors& raw, hal::TimeNs at) noexcept;
-  void take_encoders(const std::array<std::int16_t, 2>& counters, hal::TimeNs taken) noexcept;
-  bool encoders_plausible(const std::array<std::int16_t, 2>& counters, hal::TimeNs taken) const noexcept;
+  struct Measured {
+    hal::TimeNs taken_ns, latest_ns;  // most likely, or earliest; and latest
+  };
+  Measured measured(const Question& question, hal::TimeNs at) noexcept;
+  void take_samples(QuantitySet asked, const RawSensors& raw, const Measured& when) noexcept;
+  void take_encoders(const std::array<std::int16_t, 2>& counters, const Measured& when) noexcept;
+  bool encoders_plausible(const std::array<std::int16_t, 2>& counters, hal::TimeNs latest) const noexcept;
 
   SessionTiming timing_;
   SessionState state_ = SessionState::Absent;
   Phase phase_ = Phase::Down;
   const char* trouble_ = "";
   hal::TimeNs deadline_ns_ = 0;
-  hal::TimeNs asked_ns_ = 0;
-  hal::TimeNs allowed_ns_ = 0;   // for stalls, of the answer that is awaited
+  hal::TimeNs heard_ns_ = 0;    // the last byte of the answers that are awaited; 0: none
+  hal::TimeNs allowed_ns_ = 0;  // for stalls, of the answer that is awaited
+  hal::TimeNs patience_ns_ = 0;
   hal::TimeNs given_up_ns_ = 0;  // Again: by then, however noisy the link is
   hal::TimeNs latency_ns_ = 0;   // one way, the bytes' own time aside; follows its peaks
   int attempts_ = 0;             // in vain since it was lost
@@ -233,11 +265,12 @@ class Session {
   Packet output_;
   LineReader lines_;
   GreetingSpotter greeting_;
-  std::array<std::uint8_t, kLongestAnswer> answer_{};
+  Question question_;  // the newest
+  Question earlier_;   // whose answer may come before that of the newest
+  bool earlier_awaited_ = false;
+  std::size_t earlier_size_ = 0;                                 // bytes that came before the newest question was asked
+  std::array<std::uint8_t, 2 * (kLongestAnswer + 4)> answer_{};  // of both
   std::size_t answer_size_ = 0;
-  std::size_t answer_expected_ = 0;
-  std::size_t asked_bytes_ = 0;
-  QuantitySet asked_;
 
   bool pending_ = false;
   Actuation wanted_;

@@ -1,6 +1,7 @@
 #include "bridges/epuck/session.hpp"
 
 #include <cstring>
+#include <deque>
 #include <functional>
 #include <gmock/gmock.h>
 #include <rapidcheck/gtest.h>
@@ -319,6 +320,221 @@ TEST(EpuckSession, StopsTheRobotWhenItsSecondAnswerIsTruncatedToo) {
   EXPECT_EQ(rig.session.state(), SessionState::Active);
   EXPECT_EQ(rig.session.statistics().resynchronised, 1U);
   EXPECT_EQ(rig.robot.left, 0);  // stands until it is asked anew
+}
+
+/// A robot whose answers are held back, and come in the order of the questions.
+struct LateRig : Rig {
+  std::deque<Bytes> held;
+  bool hold = true;
+  LateRig() {
+    connect();
+    request(driving(500, 500));
+    run(10 * kMs);
+    upstream = [this](Bytes b) {
+      if (hold && !b.empty()) held.push_back(b);
+      return hold ? Bytes{} : b;
+    };
+  }
+  void release() {
+    const Bytes bytes = held.front();
+    held.pop_front();
+    hear(bytes);
+  }
+  hal::TimeNs taken() const { return session.samples().taken_ns[static_cast<std::size_t>(Quantity::Proximity)]; }
+  void expect_undisturbed() {
+    EXPECT_EQ(session.state(), SessionState::Active) << session.trouble();
+    EXPECT_EQ(session.epoch(), 1U);
+    EXPECT_EQ(robot.left, 500);
+    EXPECT_EQ(session.statistics().unasked_bytes, 0U);
+  }
+  /// Answers come in time again.
+  void expect_in_step() {
+    hold = false;
+    for (int i = 1; i <= 5; ++i) {
+      robot.proximity[0] = 1000 + i;
+      robot.encoders[0] += 5;
+      request(driving(500, 500));
+      run(20 * kMs);
+      EXPECT_EQ(session.samples().raw.proximity[0], 1000 + i) << "not the answer to an older question";
+      EXPECT_GE(taken(), now - 20 * kMs);
+    }
+    expect_undisturbed();
+  }
+};
+
+TEST(EpuckSession, GoesOnWhenTheFirstAnswerIsLateAndTheSecondFollows) {
+  LateRig rig;
+  rig.robot.proximity[0] = 11;
+  rig.request(driving(500, 500));
+  rig.run(140 * kMs);
+  ASSERT_EQ(rig.held.size(), 2U) << "it was asked again";
+  rig.release();
+  rig.run(3 * kMs);
+  rig.release();
+  rig.run(5 * kMs);
+  EXPECT_EQ(rig.session.statistics().overdue, 1U);
+  EXPECT_EQ(rig.session.samples().raw.proximity[0], 11);
+  EXPECT_TRUE(rig.session.idle());
+  rig.expect_in_step();
+}
+
+TEST(EpuckSession, TakesTheFirstAnswerOldAsItIsWhenTheSecondIsLost) {
+  LateRig rig;
+  rig.robot.proximity[0] = 11;
+  const hal::TimeNs asked = rig.now;
+  rig.request(driving(500, 500));
+  rig.run(140 * kMs);
+  ASSERT_EQ(rig.held.size(), 2U);
+  rig.release();
+  rig.held.clear();
+  rig.hold = false;
+  rig.run(110 * kMs);
+  EXPECT_EQ(rig.session.samples().raw.proximity[0], 11);
+  EXPECT_EQ(rig.taken(), asked) << "nobody knows when after that it was measured";
+  rig.run(60 * kMs);
+  EXPECT_GT(rig.taken(), asked) << "and it was asked again";
+  rig.expect_in_step();
+}
+
+TEST(EpuckSession, GoesOnWhenBothAnswersAreLateAndTellsTheSecondFromThatOfTheNextQuestion) {
+  LateRig rig;
+  rig.robot.proximity[0] = 11;
+  rig.request(driving(500, 500));
+  rig.run(150 * kMs);
+  rig.robot.proximity[0] = 33;
+  rig.run(50 * kMs);
+  rig.release();
+  rig.run(60 * kMs);
+  ASSERT_EQ(rig.session.statistics().asked_again, 2U) << "the second one is overdue as well";
+  ASSERT_EQ(rig.held.size(), 2U) << "asked for the third time";
+  rig.release();
+  rig.run(5 * kMs);
+  EXPECT_EQ(rig.session.samples().raw.proximity[0], 11);
+  rig.release();
+  EXPECT_EQ(rig.session.samples().raw.proximity[0], 33) << "of the third question";
+  EXPECT_GE(rig.taken(), rig.now - 20 * kMs);
+  EXPECT_EQ(rig.session.statistics().overdue, 2U);
+  rig.expect_in_step();
+}
+
+/// However slow the robot is, no reading is younger than its question, and none is taken for another's.
+TEST(EpuckSession, DrivesARobotThatIsAlwaysLate) {
+  for (const hal::TimeNs late : {60 * kMs, 110 * kMs, 130 * kMs, 160 * kMs, 190 * kMs, 220 * kMs}) {
+    LateRig rig;
+    std::deque<std::pair<hal::TimeNs, Bytes>> under_way;
+    rig.upstream = [&](Bytes b) {
+      if (!b.empty()) under_way.emplace_back(rig.now + late, b);
+      return Bytes{};
+    };
+    hal::TimeNs oldest = 0;
+    for (int ms = 0; ms < 3000; ++ms) {
+      rig.robot.proximity[0] = ms;  // the robot tells the time
+      const hal::TimeNs measured = rig.now;
+      if (ms % 20 == 0) rig.request(driving(500, 500));
+      rig.run(kMs);
+      while (!under_way.empty() && under_way.front().first <= rig.now) {
+        const Bytes bytes = under_way.front().second;
+        under_way.pop_front();
+        rig.hear(bytes);
+      }
+      if (ms < 300) continue;
+      const hal::TimeNs truth = measured - (ms - rig.session.samples().raw.proximity[0]) * kMs;
+      ASSERT_LE(rig.taken(), truth + late / 2 + 2 * kMs) << late / kMs << " ms late, " << ms;
+      oldest = std::max(oldest, rig.now - rig.taken());
+    }
+    EXPECT_LE(oldest, 600 * kMs) << late / kMs;
+    rig.expect_undisturbed();
+  }
+}
+
+TEST(EpuckSession, GoesOnWhenTheRestOfAnAnswerIsLate) {
+  LateRig rig;
+  rig.request(driving(500, 500));
+  const Bytes whole = rig.held.front();
+  rig.held.clear();
+  const auto half = whole.begin() + 9;
+  rig.hear(Bytes(whole.begin(), half));
+  rig.run(150 * kMs);
+  ASSERT_EQ(rig.held.size(), 1U);
+  rig.hear(Bytes(half, whole.end()));
+  rig.release();
+  rig.expect_in_step();
+}
+
+TEST(EpuckSession, DatesAnAnswerThatComesBeforeItIsAskedForAgainWithItsQuestion) {
+  LateRig rig;
+  const hal::TimeNs asked = rig.now;
+  rig.request(driving(500, 500));
+  rig.run(115 * kMs);
+  ASSERT_EQ(rig.held.size(), 1U);
+  rig.release();
+  EXPECT_EQ(rig.taken(), asked);
+  EXPECT_TRUE(rig.session.idle());
+  rig.expect_in_step();
+}
+
+TEST(EpuckSession, DoesNotTakeWheelsForFasterBecauseAnAnswerWasLate) {
+  LateRig rig;
+  rig.request(driving(500, 500));
+  rig.run(140 * kMs);
+  rig.held[0][0] = 60;  // measured 120 ms after the question, at 500 a second
+  rig.held.pop_back();
+  rig.release();
+  rig.run(100 * kMs);
+  EXPECT_EQ(rig.session.samples().left_steps, 60);
+  EXPECT_LE(rig.session.samples().left_steps_per_s, 500.0);
+  rig.expect_undisturbed();
+}
+
+TEST(EpuckSession, StopsARobotWhoseLateAnswersAreNotWhatWasAskedFor) {
+  const auto shortened = [](Bytes& first, Bytes&) { first.pop_back(); };
+  const auto lengthened = [](Bytes& first, Bytes&) { first.push_back(7); };
+  const auto doubled = [](Bytes& first, Bytes&) { first.insert(first.end(), first.begin(), first.end()); };
+  const auto second_doubled = [](Bytes&, Bytes& second) { second.insert(second.end(), second.begin(), second.end()); };
+  const auto second_cut = [](Bytes& first, Bytes& second) {
+    first.clear();
+    second.pop_back();
+  };
+  const auto other_speeds = [](Bytes&, Bytes& second) { second[second.size() - 1] ^= 1; };
+  const auto other_speeds_alone = [](Bytes& first, Bytes& second) {
+    second.clear();
+    first[first.size() - 2] ^= 1;
+  };
+  const auto counters = [](Bytes&, Bytes& second) { second[5] ^= 0x40; };
+  const auto impossible = [](Bytes& first, Bytes&) { first[4 + 1] = 0x70; };
+  const std::vector<std::function<void(Bytes&, Bytes&)>> faults = {shortened,          lengthened, doubled,
+                                                                   second_doubled,     second_cut, other_speeds,
+                                                                   other_speeds_alone, counters,   impossible};
+  for (std::size_t i = 0; i < faults.size(); ++i) {
+    LateRig rig;
+    rig.robot.proximity = {10, 20, 30, 40, 50, 60, 70, 80};
+    rig.robot.encoders = {300, 290};
+    rig.request(driving(500, 500));
+    rig.run(140 * kMs);
+    ASSERT_EQ(rig.held.size(), 2U);
+    faults[i](rig.held[0], rig.held[1]);
+    rig.release();
+    rig.release();
+    rig.run(150 * kMs);
+    EXPECT_NE(rig.session.state(), SessionState::Active) << i;
+    EXPECT_EQ(rig.robot.left, 0) << i;
+    rig.hold = false;
+    rig.run(600 * kMs);
+    EXPECT_EQ(rig.session.state(), SessionState::Active) << i;
+    EXPECT_EQ(rig.robot.left, 0) << i;
+  }
+}
+
+TEST(EpuckSession, WaitsLongerForTheSecondAnswerOnlyWhenTheMachineIsSlow) {
+  LateRig rig;
+  rig.session.be_patient(200 * kMs);
+  rig.request(driving(500, 500));
+  rig.run(400 * kMs);
+  rig.expect_undisturbed();
+  EXPECT_EQ(rig.session.statistics().asked_again, 1U) << "the first one is asked for again at once";
+  rig.run(40 * kMs);
+  EXPECT_EQ(rig.session.state(), SessionState::Suspect);
+  EXPECT_EQ(rig.robot.left, 0);
 }
 
 TEST(EpuckSession, WaitsLongerWhenItsCallerWasStalled) {

@@ -88,8 +88,9 @@ class WireRig {
 
   hal::TimeNs now = hal::kNsPerSecond;
   hal::Tick ticks = 0;
-  hal::TimeNs stalled_until = 0;  ///< neither the driver's thread nor the robot's program runs
-  hal::TimeNs heard_ns = 0;       ///< when a byte last reached the host
+  hal::TimeNs stalled_until = 0;        ///< neither the driver's thread nor the robot's program runs
+  hal::TimeNs robot_stalled_until = 0;  ///< the robot's program does not run
+  hal::TimeNs heard_ns = 0;             ///< when a byte last reached the host
   Wire to_robot, to_host;
   WatchedBody body;
   std::function<void()> each_step;
@@ -122,7 +123,7 @@ class WireRig {
         if (passes(to_robot)) travel(to_robot, to_robot_, {buffer[i], line_free_ns_});
       }
     }
-    if (stalled_until > now) return;
+    if (std::max(stalled_until, robot_stalled_until) > now) return;
     while (!to_robot_.empty() && to_robot_.front().at <= now) {
       firmware.receive(to_robot_.front().byte, to_robot_.front().at);
       to_robot_.pop_front();

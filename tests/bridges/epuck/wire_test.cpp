@@ -109,6 +109,36 @@ TEST(EpuckWire, NeverTimesOutFalselyAt50And100HertzOnAMachineThatStalls) {
   }
 }
 
+/// An emulated robot's program waits for its turn, that of the hub does not.
+TEST(EpuckWire, NeverStopsARobotWhoseAnswersAreUpTo200MsLate) {
+  for (const hal::TimeNs tick_ns : {100 * kMs, 20 * kMs, 10 * kMs}) {
+    WireRig rig(ticking(tick_ns), 7);
+    auto& wheels = take_all(rig);
+    const auto& encoders = rig.driver.robot().sensor<hal::WheelEncoders>();
+    rig.run(500 * kMs);
+    std::mt19937 chance(3);
+    hal::TimeNs youngest = 0;
+    for (int i = 0; i < 6'000; ++i) {
+      if (rig.robot_stalled_until <= rig.now && chance() % 20 == 0)
+        rig.robot_stalled_until = rig.now + static_cast<hal::TimeNs>(chance() % 200) * kMs;
+      const double turn_m_s = i / 40 % 2 == 0 ? 0.01 : -0.01;
+      rig.tick(tick_ns, [&] {
+        wheels.set(kCruise_m_s + turn_m_s, kCruise_m_s - turn_m_s);
+        youngest = std::max(youngest, encoders.taken_ns - rig.body.sensed_ns);
+      });
+    }
+    const SessionStatistics& s = rig.driver.session().statistics();
+    EXPECT_EQ(rig.driver.session().epoch(), 1U)
+        << tick_ns / kMs << " ms: " << s.silent << " silent, " << s.cut_short << " cut short, " << s.unasked_bytes
+        << " unasked, " << s.wrong_speeds << " wrong speeds, " << s.encoder_jumps << " jumps, " << s.implausible
+        << " implausible";
+    EXPECT_GT(s.asked_again, 20U);
+    EXPECT_GT(s.overdue, 20U);
+    EXPECT_LE(youngest, 60 * kMs) << "half of what an answer that came in time may have taken";
+    EXPECT_TRUE(rig.body.moves());
+  }
+}
+
 TEST(EpuckWire, StopsARobotWithin200MsAndDrivesItWithin1sAfterAnOutage) {
   for (const hal::TimeNs outage : {300 * kMs, 1000 * kMs, 3700 * kMs, 20'050 * kMs}) {
     WireRig rig(ticking(50 * kMs));
