@@ -112,7 +112,9 @@ void FootbotBridge::latch(hal::Tick tick, TimeNs now) noexcept {
 void FootbotBridge::note_health() noexcept {
   // Every interruption stops the robot, also one that is over already.
   const DriverStatistics& s = driver_.statistics();
-  const std::uint64_t interruptions = s.link_stops + s.watchdog_stops;
+  const std::uint64_t interruptions = s.link_stops + s.watchdog_stops + s.restarts;
+  stopped_itself_ = was_active_ && s.restarts != restarts_;
+  restarts_ = s.restarts;
   const bool begun_anew = was_active_ && interruptions != interruptions_;
   interruptions_ = interruptions;
   const RobotState state = driver_.state();
@@ -158,6 +160,11 @@ std::vector<PortView> FootbotBridge::taken() const {
 LinkHealth FootbotBridge::health() const noexcept {
   const std::lock_guard lock(mutex_);
   return health_;
+}
+
+bool FootbotBridge::stopped_itself() const noexcept {
+  const std::lock_guard lock(mutex_);
+  return stopped_itself_;
 }
 
 std::string FootbotBridge::trouble() const {
@@ -217,6 +224,7 @@ void FootbotBridge::describe(StatusVisitor& visitor) const {
   visitor.count("messages_out", s.messages.sent);
   visitor.count("messages_dropped", s.messages.dropped);
   visitor.count("interruptions", s.driver.link_stops);
+  visitor.count("restarts", s.driver.restarts);
   visitor.count("stops_for_want_of_commands", s.driver.watchdog_stops);
   visitor.count("other_hosts", s.network.other_hosts);
   visitor.count("not_understood", s.network.not_understood);

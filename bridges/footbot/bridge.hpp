@@ -73,6 +73,7 @@ class FootbotBridge final : public RobotBridge {
   void resume() noexcept override;
 
   LinkHealth health() const noexcept override;
+  bool stopped_itself() const noexcept override;
   bool at_rest() const noexcept override;
   std::string trouble() const override;
   std::string advice() const override;
@@ -107,6 +108,8 @@ class FootbotBridge final : public RobotBridge {
   LinkHealth health_ = LinkHealth::Connecting;
   bool was_active_ = false;
   std::uint64_t interruptions_ = 0;  // at the last `latch`
+  std::uint64_t restarts_ = 0;
+  bool stopped_itself_ = false;
   std::atomic<std::uint64_t> stop_version_{0};
   std::atomic<bool> ending_{false};
   std::thread thread_;

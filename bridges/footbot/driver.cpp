@@ -208,10 +208,21 @@ void FootbotDriver::rest(hal::TimeNs now) noexcept {
   wiring_.rest(now);
 }
 
+/// A module that lost its memory has stopped, and may have more than that to be told: nothing moves until the loop has
+/// been told. @returns whether there is something to send.
+bool FootbotDriver::look_for_restarts(hal::TimeNs now) noexcept {
+  const std::string_view who = wiring_.look_for_restarts();
+  if (who.empty() || !was_active_) return false;
+  ++statistics_.restarts;
+  log_.warning("foot-bot '" + settings_.robot.id + "': its node '" + std::string(who) + "' restarted");
+  if (driving_) rest(now);
+  return true;
+}
+
 void FootbotDriver::pump(hal::TimeNs now) noexcept {
   take_turn(now);
   wiring_.take_packets();
-  bool more = false;
+  bool more = look_for_restarts(now);
   if (wiring_.look()) {
     if (!driving_) wiring_.command(false, now);  // a module that is new here rests until told otherwise
     ask(now);

@@ -12,6 +12,8 @@
 // The modules have no watchdog of their own: they keep their last command for ever. So the robot is told to rest in
 // every case of the table, and told again until it has confirmed:
 //   needed node lost, link lost, not yet active  -> rest; drives on with a ramp once all answer again
+//   such a node restarted: it holds zeros that nobody wrote, or its counters begin anew
+//                                                -> rest, and told as a stop of the robot's own
 //   no commit for `command_timeout_ns`           -> rest; the next commit ramps
 //   `stop`, `fault`                              -> rest until `resume`, then ramp
 //   command not finite, or beyond the limits     -> the safe one, or clamped; counted
@@ -50,6 +52,7 @@ struct DriverStatistics {
   std::uint64_t rearmed = 0;         ///< times that driving began anew with a ramp
   std::uint64_t watchdog_stops = 0;  ///< for want of commits
   std::uint64_t link_stops = 0;      ///< because a needed node, or the link, did not answer
+  std::uint64_t restarts = 0;        ///< of modules that it never drives without, since it was first active
   std::uint64_t stops_confirmed = 0;
   std::uint64_t recovered = 0;  ///< times it became Active again
   std::uint64_t lost = 0;       ///< times it became Lost
@@ -106,6 +109,7 @@ class FootbotDriver {
   void ask(hal::TimeNs now) noexcept;
   void plan_question(hal::TimeNs now) noexcept;
   void take_turn(hal::TimeNs now) noexcept;
+  bool look_for_restarts(hal::TimeNs now) noexcept;
 
   DriverSettings settings_;
   hal::Log log_;

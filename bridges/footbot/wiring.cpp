@@ -45,7 +45,8 @@ Wiring::Wiring(const FootbotMap& map, aseba::Network& network, FootbotRobot& rob
       v.map = &variable;
       v.target.assign(variable.words, 0);
       v.sent = v.target;
-      for (const FieldMap& field : variable.reads) v.reads.push_back({&field, 0, std::vector<Counter>(field.count)});
+      for (const FieldMap& field : variable.reads)
+        v.reads.push_back({&field, 0, std::vector<Counter>(field.count), {}});
       row.variables.push_back(std::move(v));
     }
     rows_.push_back(std::move(row));
@@ -69,7 +70,8 @@ void Wiring::note_demand() noexcept {
       v.read_first = v.map->words;
       v.read_behind = 0;
       for (const FieldMap& f : v.map->reads) {
-        if (!used(f)) continue;
+        const bool watched = !observe_ && f.accumulate && row.map->need == Need::Always;  // for restarts
+        if (!used(f) && !watched) continue;
         const WordRange range = words_of(f);
         v.read_first = std::min(v.read_first, static_cast<std::size_t>(range.first));
         v.read_behind = std::max(v.read_behind, static_cast<std::size_t>(range.behind));
@@ -109,6 +111,34 @@ bool Wiring::look() noexcept {
     if (node != nullptr) bind(row, node);
   }
   return true;
+}
+
+std::string_view Wiring::look_for_restarts() noexcept {
+  std::string_view who;
+  for (NodeRow& row : rows_) {
+    if (row.map->need != Need::Always || !ready(row)) continue;
+    bool restarted = false;
+    for (VariableRow& v : row.variables) restarted = forgot(row, v) || restarted;
+    if (!restarted) continue;
+    ++statistics_.restarts;
+    who = row.node->description.name;
+  }
+  return who;
+}
+
+bool Wiring::forgot(const NodeRow& row, VariableRow& v) const noexcept {
+  if (!v.bound) return false;
+  bool forgot = false;
+  const auto variable = std::span<const std::int16_t>(row.node->image.values).subspan(v.address, v.map->words);
+  if (v.controlled && v.map->verify) forgot = v.told.forgotten(variable, row.node->taken_ns(v.address, v.map->words));
+  for (FieldRow& f : v.reads) {
+    if (!f.map->accumulate) continue;
+    const WordRange range = words_of(*f.map);
+    const auto first = static_cast<std::size_t>(range.first), behind = static_cast<std::size_t>(range.behind);
+    const hal::TimeNs taken_ns = row.node->taken_ns(v.address + first, behind - first);
+    forgot = f.module_counter.began_anew(raw_number(*f.map, variable, 0), taken_ns) || forgot;
+  }
+  return forgot;
 }
 
 void Wiring::bind(NodeRow& row, const aseba::Node* node) {
@@ -365,6 +395,7 @@ void Wiring::write(NodeRow& row, VariableRow& v, bool drive, hal::TimeNs now) no
     statistics_.not_obeyed += lost ? 1 : 0;
   }
   if (!changed && !lost && now - v.sent_ns < map_.refresh_ns) return;
+  v.told.sent(v.target, now);
   v.sent_known = network_.write(node.id, v.address, v.target);
   v.sent = v.target;
   v.sent_ns = now;

@@ -2,10 +2,12 @@
 #pragma once
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "bridges/aseba/network.hpp"
 #include "bridges/footbot/map.hpp"
+#include "bridges/footbot/memory_watch.hpp"
 #include "bridges/footbot/robot.hpp"
 #include "bridges/footbot/words.hpp"
 #include "hal/device/range_and_bearing.hpp"
@@ -35,6 +37,7 @@ struct LastWords {
 
 struct WiringStatistics {
   std::uint64_t counter_jumps = 0;  ///< counters that changed faster than can be, or began anew
+  std::uint64_t restarts = 0;       ///< of nodes that the robot never drives without, as far as their words show it
   std::uint64_t not_obeyed = 0;     ///< written values that were not there when read back
   std::uint64_t packets_unfit = 0;  ///< range-and-bearing events of another length than the map says
   std::uint64_t packets = 0;        ///< range-and-bearing messages received
@@ -50,6 +53,9 @@ class Wiring {
   void note_demand() noexcept;
   /// Looks who is there. True when something changed.
   bool look() noexcept;
+  /// Looks whether nodes that the robot never drives without have lost their memory. @returns the name of one that
+  /// has; "" when none has.
+  std::string_view look_for_restarts() noexcept;
   /// Takes over the range-and-bearing messages that came.
   void take_packets() noexcept;
 
@@ -96,6 +102,7 @@ class Wiring {
     const FieldMap* map;
     hal::TimeNs taken_ns = 0;  // of the values that are in the port
     std::vector<Counter> counters;
+    ModuleCounter module_counter = {};  // of number 0, where it counts
   };
   struct VariableRow {
     const VariableMap* map;
@@ -107,6 +114,7 @@ class Wiring {
     std::vector<std::int16_t> target, sent;
     bool sent_known = false;
     hal::TimeNs sent_ns = 0;
+    ToldWords told = {};
     std::vector<FieldRow> reads;
   };
   struct NodeRow {
@@ -132,6 +140,7 @@ class Wiring {
   void make_target(const VariableMap& map, bool drive, std::span<std::int16_t> target) const noexcept;
   void write(NodeRow& row, VariableRow& variable, bool drive, hal::TimeNs now) noexcept;
   bool rests(const NodeRow& row, const VariableRow& variable) const noexcept;
+  bool forgot(const NodeRow& row, VariableRow& variable) const noexcept;
 
   const FootbotMap& map_;
   aseba::Network& network_;

@@ -119,7 +119,7 @@ TEST(EmulatedFootbot, IsFoundAgainWhenAMotorsModuleRestarts) {
   Folder folder;
   EmulatedFootbot footbot(folder, {"--fault", "restart=left-motor@4s"});
   ASSERT_TRUE(footbot.ready());
-  Tandem robot(drive(footbot), folder.path());
+  Tandem robot(drive(footbot, {"--report", "r.json"}), folder.path());
   ASSERT_TRUE(eventually([&] { return footbot.moves(); }, 20.0)) << robot.errors();
   const std::string restart = R"("by":"fault")";
   ASSERT_TRUE(eventually([&] { return footbot.log().find(restart) != std::string::npos; }, 20.0));
@@ -134,6 +134,9 @@ TEST(EmulatedFootbot, IsFoundAgainWhenAMotorsModuleRestarts) {
   robot.signal(SIGTERM);
   EXPECT_EQ(robot.wait(), 143) << robot.errors();
   EXPECT_FALSE(footbot.moves());
+  EXPECT_THAT(robot.errors(), HasSubstr("its node 'left motor' restarted"));
+  EXPECT_THAT(robot.errors(), HasSubstr("robot stopped by itself"));
+  EXPECT_EQ(json_value(text_of(folder.path() / "r.json"), "restarts"), "1");
 }
 
 TEST(EmulatedFootbot, WaitsForAModuleThatComesLate) {

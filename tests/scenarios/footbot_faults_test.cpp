@@ -229,6 +229,7 @@ TEST(FootbotFaults, AnOutageIsACountedStopAndItDrivesWithinASecondAfterIt) {
       d.drive_until(end_s + 1.0);
       EXPECT_TRUE(d.moves()) << fault;
       EXPECT_EQ(d.driver.statistics().link_stops, 1U) << fault << d.logged;
+      EXPECT_EQ(d.driver.statistics().restarts, 0U) << fault << d.logged;
     }
   }
 }
@@ -237,6 +238,7 @@ TEST(FootbotFaults, AModuleThatRestartsIsToldAnew) {
   Drive d({"restart=left-motor@5s"});
   d.drive_until(8.0);
   EXPECT_EQ(d.driver.state(), RobotState::Active);
+  EXPECT_EQ(d.driver.statistics().restarts, 1U) << d.logged;
   EXPECT_TRUE(d.moves());
   EXPECT_TRUE(d.comes_to_rest(kSecond));
 }

@@ -1,4 +1,5 @@
 // The command as a user types it, against a foot-bot whose modules sit behind a TCP port of this test.
+#include <algorithm>
 #include <gmock/gmock.h>
 
 #include "tests/bridges/footbot/footbot_on_tcp.hpp"
@@ -59,6 +60,44 @@ TEST(RealFootbot, IsFoundAgainWhenTheConnectionBreaks) {
   EXPECT_EQ(robot.wait(), 130);
   EXPECT_FALSE(footbot.moves());
 }
+
+class KilledHub : public testing::TestWithParam<const char*> {};
+
+TEST_P(KilledHub, LeavesAFootbotStoppedWhereItsModulesKeepTheirVariablesNow) {
+  Folder folder;
+  FootbotOnTcp footbot;
+  footbot.with([](auto& m) { m.word("base", "battery") = 3777; });
+  folder.write("e.xml",
+               R"(<tandem><framework><experiment length="0" ticks_per_second="10"/><time mode="realtime"/></framework>
+<controllers><drive id="d" library="test_controllers"><actuators><differential_steering/></actuators>
+<sensors/><params left="5 cm/s" right="5 cm/s"/></drive></controllers>
+<arena size="40,40,1"><foot-bot id="fb0"><body position="0,0,0"/><controller config="d"/>
+<bridge link=")" + footbot.link +
+                   R"(" map=")" + kConfigs + R"(footbot_map.xml"/></foot-bot></arena>
+<physics_engines><kinematics2d id="k"/></physics_engines></tandem>)");
+  Tandem hub({GetParam(), "e.xml"}, folder.path());
+  const auto speed = [&](const char* motor) {
+    return footbot.with([&](auto& m) { return static_cast<int>(m.word(motor, "speed")); });
+  };
+  const auto drives = [&] { return speed("left motor") == 12 && speed("right motor") == 12; };
+  ASSERT_TRUE(eventually(drives, 20.0)) << hub.errors();
+  // A module is switched off, gets another program, and is there again.
+  footbot.with([](auto& m) { m["left motor"].on = false; });
+  ASSERT_TRUE(eventually([&] { return hub.errors().find("'left motor' is lost") != std::string::npos; }, 20.0));
+  footbot.with([](auto& m) {
+    auto& node = m["left motor"];
+    const auto named = std::find_if(node.variables.begin(), node.variables.end(),
+                                    [](const auto& variable) { return variable.first == "speed"; });
+    node.variables.insert(named, {"temperature", 3});
+    node.memory.assign(static_cast<std::size_t>(node.words()), 0);
+    node.on = true;
+  });
+  ASSERT_TRUE(eventually(drives, 20.0)) << hub.errors();
+  hub.signal(SIGKILL);
+  EXPECT_TRUE(eventually([&] { return speed("left motor") == 0 && speed("right motor") == 0; }, 10.0));
+}
+
+INSTANTIATE_TEST_SUITE_P(Both, KilledHub, testing::Values("run", "robot"));
 
 TEST(RealFootbot, IsNotDrivenWithoutItsSensors) {
   Folder folder;

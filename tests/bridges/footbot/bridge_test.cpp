@@ -11,6 +11,7 @@
 #include <unistd.h>
 
 #include "hal/device/ring_sensors.hpp"
+#include "hal/device/turret.hpp"
 #include "hal/device/wheels.hpp"
 #include "tests/bridges/footbot/fake_footbot.hpp"
 
@@ -166,6 +167,42 @@ TEST(FootbotBridge, StopsAtOnceWhenTheControllerFails) {
   bridge.fault(monotonic_ns(), "test");
   EXPECT_TRUE(wait_until([&] { return live.speed("left motor") == 0; }));
   EXPECT_TRUE(bridge.status().stopped);
+}
+
+TEST(FootbotBridge, TellsARestartAsAStopOfTheRobotsOwnAndRenewsTheStopMessages) {
+  LiveModules live;
+  live.with([](FakeModules& m) { m["turret"].on = false; });
+  FootbotBridge bridge(settings(), live.opener());
+  auto* wheels = static_cast<hal::WheelSpeeds*>(bridge.robot().require(hal::port_type<hal::WheelSpeeds>()));
+  (void)bridge.robot().require(hal::port_type<hal::TurretDrive>());
+  bridge.start();
+  ASSERT_TRUE(wait_until([&] { return !bridge.stop_messages().body.empty(); }));
+  const StopMessages early = bridge.stop_messages();
+  live.with([](FakeModules& m) { m["turret"].on = true; });
+  ASSERT_TRUE(bridge.wait_active(kLong).ok());
+  wheels->set(0.1, 0.1);
+  ASSERT_TRUE(tick_until(bridge, [&] { return live.speed("left motor") == 24; }));
+  const StopMessages late = bridge.stop_messages();
+  EXPECT_GT(late.version, early.version);
+  EXPECT_EQ(bridge.stop_version(), late.version);
+  EXPECT_GT(std::ranges::count(late.body, '\n'), std::ranges::count(early.body, '\n')) << late.body;
+  live.with([](FakeModules& m) { m.word("left motor", "odo") = 5000; });
+  const hal::TimeNs later = monotonic_ns() + hal::kNsPerSecond;
+  ASSERT_TRUE(tick_until(bridge, [&] { return monotonic_ns() > later; }));  // the counter was read
+  EXPECT_FALSE(bridge.stopped_itself());
+  live.with([](FakeModules& m) { m["left motor"].memory.assign(m["left motor"].memory.size(), 0); });
+  EXPECT_TRUE(tick_until(bridge, [&] { return bridge.stopped_itself(); }));
+  bridge.commit(monotonic_ns());
+  bridge.latch(1, monotonic_ns());
+  EXPECT_FALSE(bridge.stopped_itself());  // told once
+  EXPECT_EQ(bridge.statistics().restarts, 1U);
+  // One that was away for long describes itself anew: the guardian is told, whether it has the same to say or not.
+  const std::uint64_t before = bridge.stop_version();
+  live.with([](FakeModules& m) { m["left motor"].on = false; });
+  ASSERT_TRUE(tick_until(bridge, [&] { return bridge.state() == RobotState::Lost; }));
+  live.with([](FakeModules& m) { m["left motor"].on = true; });
+  ASSERT_TRUE(tick_until(bridge, [&] { return bridge.state() == RobotState::Active; }));
+  EXPECT_GT(bridge.stop_version(), before);
 }
 
 TEST(FootbotBridge, ComesBackWhenTheCableIsInAgain) {

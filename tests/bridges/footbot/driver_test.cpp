@@ -572,13 +572,46 @@ TEST(FootbotSafety, WritesAgainWhatAModuleForgot) {
   Whole robot;
   drive(robot);
   robot.modules.word("left motor", "speed") = 0;  // it restarted so quickly that nobody saw it
-  robot.tick();
-  robot.tick();
+  for (int i = 0; i < 10; ++i) robot.tick();
   EXPECT_EQ(robot.modules.word("left motor", "speed"), 24);
-  EXPECT_GE(robot.driver.wiring().statistics().not_obeyed, 1U);
+  EXPECT_EQ(robot.driver.statistics().restarts, 1U);
   robot.modules.word("turret", "turret.mode") = 0;
   for (int i = 0; i < 6; ++i) robot.tick();
   EXPECT_EQ(robot.modules.word("turret", "turret.mode"), 2);  // half a second later: it is not read back
+}
+
+TEST(FootbotSafety, StopsOnceWhenAModuleRestarts) {
+  Whole robot;
+  drive(robot);
+  FakeNode& left = robot.modules["left motor"];
+  // While it drives: its memory is empty, and the other wheel must not go on alone.
+  left.memory.assign(left.memory.size(), 0);
+  robot.tick();
+  ASSERT_EQ(robot.driver.statistics().restarts, 1U);
+  EXPECT_EQ(robot.modules.word("right motor", "speed"), 0);
+  for (int i = 0; i < 20; ++i) robot.tick();
+  EXPECT_EQ(robot.modules.word("left motor", "speed"), 24);
+  EXPECT_EQ(robot.driver.statistics().restarts, 1U);
+  EXPECT_EQ(robot.driver.statistics().link_stops, 0U);
+  // While it does not answer for so long that it is suspect, and is told to rest: its counter tells.
+  robot.modules.word("left motor", "odo") = 5000;
+  for (int i = 0; i < 5; ++i) robot.tick();
+  left.on = false;
+  for (int i = 0; i < 8; ++i) robot.tick();
+  EXPECT_NE(robot.driver.state(), RobotState::Active);
+  left.memory.assign(left.memory.size(), 0);
+  left.on = true;
+  for (int i = 0; i < 10; ++i) robot.tick();
+  EXPECT_EQ(robot.driver.statistics().restarts, 2U);
+  // One that was silent, and kept its memory, has not restarted.
+  robot.modules.word("left motor", "odo") = 5000;
+  for (int i = 0; i < 5; ++i) robot.tick();
+  left.on = false;
+  for (int i = 0; i < 8; ++i) robot.tick();
+  left.on = true;
+  for (int i = 0; i < 20; ++i) robot.tick();
+  EXPECT_EQ(robot.driver.state(), RobotState::Active);
+  EXPECT_EQ(robot.driver.statistics().restarts, 2U);
 }
 
 TEST(FootbotSafety, WritesNothingWhenItOnlyLooks) {

@@ -1,0 +1,41 @@
+// Notices by what a module holds that it has lost its memory: it restarted. Modules do not tell.
+#pragma once
+#include <cstdint>
+#include <span>
+
+#include "hal/time.hpp"
+
+namespace tandem::bridges::footbot {
+
+/// Words that a module is told and that are read back: it held others, nobody told it zeros, and it holds zeros.
+class ToldWords {
+ public:
+  /// An answer may have been under way for so long when zeros were sent.
+  static constexpr hal::TimeNs kOldAnswers_ns = 500 * hal::kNsPerMs;
+
+  void sent(std::span<const std::int16_t> words, hal::TimeNs now) noexcept;
+  /// What was read, and when. @returns whether the module has forgotten what it held; once for each time.
+  bool forgotten(std::span<const std::int16_t> words, hal::TimeNs taken_ns) noexcept;
+
+ private:
+  bool held_ = false;  // other words than zeros
+  hal::TimeNs taken_ns_ = 0;
+  hal::TimeNs zeros_sent_ns_ = -kOldAnswers_ns;
+};
+
+/// A counter that a module counts from 0 since its start: it is 0 again, and cannot have come there by counting.
+class ModuleCounter {
+ public:
+  static constexpr double kLeast = 100.0;    ///< counts: nearer to 0 it may have come there
+  static constexpr double kMostTimes = 3.0;  ///< as fast as before it may count
+
+  /// @returns whether it began anew; once for each time.
+  bool began_anew(std::int32_t raw, hal::TimeNs taken_ns) noexcept;
+
+ private:
+  std::int32_t raw_ = 0;
+  hal::TimeNs taken_ns_ = 0;  // 0: never
+  double counts_per_ns_ = 0.0;
+};
+
+}  // namespace tandem::bridges::footbot
