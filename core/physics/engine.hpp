@@ -55,9 +55,10 @@ class Engine {
   /// Adds what went wrong in the last tick, in the order of regions and bodies.
   virtual void collect(std::vector<Trouble>& /*all*/) {}
 
-  /// Forgets every cache that the stores do not hold, so that what follows depends on the stores alone: a run goes on
-  /// alike from a snapshot and from the moment that the snapshot was taken.
-  virtual void forget() {}
+  /// What the engine holds beyond the stores, as it is between two ticks; null: nothing. Changes nothing of the run.
+  virtual std::shared_ptr<const void> keep() { return nullptr; }
+  /// Goes on from what `keep` of this engine gave. The stores are as they were then.
+  virtual void put_back(const std::shared_ptr<const void>& /*kept*/) {}
 };
 
 }  // namespace tandem::core

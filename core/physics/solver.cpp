@@ -64,8 +64,17 @@ void SolverEngine::collect(std::vector<Trouble>& all) {
   }
 }
 
-void SolverEngine::forget() {
-  for (Part& part : parts_) part.solver->forget();
+std::shared_ptr<const void> SolverEngine::keep() {
+  auto all = std::make_shared<std::vector<std::shared_ptr<const void>>>();
+  for (Part& part : parts_) all->push_back(part.solver->keep());
+  return all;
+}
+
+void SolverEngine::put_back(const std::shared_ptr<const void>& kept) {
+  const auto& all = *static_cast<const std::vector<std::shared_ptr<const void>>*>(kept.get());
+  for (std::size_t i = 0; i < parts_.size(); ++i) {
+    if (all[i] != nullptr) parts_[i].solver->put_back(all[i].get());
+  }
 }
 
 }  // namespace tandem::core

@@ -40,8 +40,10 @@ class Solver {
   /// Anything that is not finite, or faster than physics allows, is reported and not written back.
   virtual void advance(const SolverContext& context) = 0;
 
-  /// Drops its world; the next `load` makes it anew from the stores alone.
-  virtual void forget() = 0;
+  /// What it holds between two ticks that the stores do not; null: nothing. Changes nothing of the run.
+  virtual std::shared_ptr<const void> keep() { return nullptr; }
+  /// Goes on from what its own `keep` gave. Never called for null.
+  virtual void put_back(const void* /*kept*/) {}
 
   std::vector<Trouble> trouble;  ///< of the last tick; emptied by whoever collects it
 };
@@ -80,7 +82,8 @@ class SolverEngine final : public Engine {
   void load(const PhysicsContext& context) override;
   void advance(const PhysicsContext& context) override;
   void collect(std::vector<Trouble>& all) override;
-  void forget() override;
+  std::shared_ptr<const void> keep() override;
+  void put_back(const std::shared_ptr<const void>& kept) override;
 
  private:
   struct Part {

@@ -56,6 +56,8 @@ hal::Result<std::unique_ptr<SpaceCopy>> SpaceCopy::take(const Space& space, cons
   copy->lights_ = s.lights;
   copy->sounds_ = s.sounds;
   copy->body_index_ = s.body_index;
+  copy->static_index_ = s.static_index;
+  copy->movable_index_ = s.movable_index;
   copy->floor_ = s.floor;
   copy->repaint_floor_ = s.repaint_floor;
   copy->altered_ = s.altered;
@@ -142,6 +144,8 @@ hal::Status SpaceCopy::put_back(Space& space, RobotDevices& devices) const {
   s.lights = lights_;
   s.sounds = sounds_;
   s.body_index = body_index_;
+  s.static_index = static_index_;
+  s.movable_index = movable_index_;
   s.floor = floor_;
   s.repaint_floor = repaint_floor_;
   s.altered = altered_;

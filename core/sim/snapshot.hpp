@@ -76,6 +76,8 @@ class SpaceCopy {
   std::vector<LightSource> lights_;
   std::vector<SoundSource> sounds_;
   BodyIndex body_index_;  // its cells are chosen by what was there before
+  ObjectIndex static_index_,
+      movable_index_;  // as old as they were: whoever looks before the next physics sees the same
   Floor floor_;
   bool repaint_floor_ = false;
   bool altered_ = false;

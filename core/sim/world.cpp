@@ -280,12 +280,6 @@ void World::finish() {
 
 // --- snapshots ---
 
-/// Nothing but the stores may tell what happens next.
-void World::Impl::forget_caches() {
-  for (const auto& engine : engines) engine->forget();
-  stores().bodies_changed = true;
-}
-
 hal::Result<Snapshot> World::snapshot() {
   Impl& w = *impl_;
   if (w.external != nullptr) return hal::Error{"no snapshot: real robots take part, which cannot be put back"};
@@ -303,7 +297,7 @@ hal::Result<Snapshot> World::snapshot() {
   }
   hal::Result<std::unique_ptr<SpaceCopy>> copy = SpaceCopy::take(w.space, w.devices);
   if (!copy.ok()) return copy.error();
-  w.forget_caches();
+  for (const auto& engine : w.engines) moment->engines.push_back(engine->keep());
   moment->of = w.identity;
   moment->space = std::move(copy.value());
   moment->tick = w.tick;
@@ -313,6 +307,7 @@ hal::Result<Snapshot> World::snapshot() {
   moment->clamped = w.clamped;
   moment->not_finite = w.not_finite;
   moment->reach_m = w.reach_m;
+  moment->indexed = w.indexed_version == w.stores().immovables_version;
   return Snapshot(w.tick, std::move(moment));
 }
 
@@ -322,8 +317,9 @@ hal::Status World::restore(const Snapshot& snapshot) {
   if (moment.of != w.identity) return hal::Error{"the snapshot is of another world"};
   if (w.external != nullptr) return hal::Error{"no way back: real robots take part, which cannot be put back"};
   hal::Status all = moment.space->put_back(w.space, w.devices);
-  w.forget_caches();
+  for (std::size_t i = 0; i < w.engines.size(); ++i) w.engines[i]->put_back(moment.engines[i]);
   w.reach_m = moment.reach_m;
+  w.indexed_version = moment.indexed ? w.stores().immovables_version : 0;
   w.tick = moment.tick;
   w.state = moment.state;
   w.failure = moment.failure;

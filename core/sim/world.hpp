@@ -57,10 +57,8 @@ class World {
   /// Keeps this moment: the whole space, ports, devices, controllers, time, incidents, the state of the run, and what
   /// the hooks' `save` gives. Call between steps, or ask for it through HookContext::checkpoints.
   ///
-  /// Engines drop what the stores do not hold (impulses of contacts that they start the next tick from, search trees),
-  /// so that the run goes on from here as it will from the snapshot, to the last bit. A run with dynamics2d or
-  /// dynamics3d therefore differs, from the first snapshot on and as a chaotic system does, from one without snapshots;
-  /// kinematics2d and particle3d keep nothing that could be dropped.
+  /// With it goes what engines hold beyond the stores (impulses of contacts that they start the next tick from, search
+  /// trees), so that no bit of the run depends on whether snapshots are taken, nor of one that goes on from a snapshot.
   ///
   /// Errors: a controller whose class has no copy constructor, a copy constructor or `save` that throws; real robots
   /// take part: they cannot be put back.

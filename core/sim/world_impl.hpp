@@ -62,6 +62,8 @@ struct Moment {
   Incidents incidents;
   std::vector<std::uint64_t> clamped, not_finite;
   double reach_m = 0.0;  ///< of the indices, which the space's copy holds
+  bool indexed = false;  ///< the index of immovable objects was up to date
+  std::vector<std::shared_ptr<const void>> engines;
   std::vector<std::any> hooks;
 };
 
@@ -147,7 +149,6 @@ struct World::Impl {
   static void name_step(const void* impl, std::size_t block, std::size_t index, hal::FixedText& out) noexcept;
   static void name_hook(const void* impl, std::size_t hook, std::size_t index, hal::FixedText& out) noexcept;
   void fit_to_bodies();
-  void forget_caches();
 
   template <class Call>
   void call_hooks(const char* moment, Call&& call);

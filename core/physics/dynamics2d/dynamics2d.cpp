@@ -1,14 +1,18 @@
 #include "core/physics/dynamics2d/dynamics2d.hpp"
 
 #include <algorithm>
+#include <array>
 #include <box2d/b2_distance.h>
 #include <box2d/box2d.h>
 #include <cmath>
+#include <new>
 #include <string>
 
 #include "core/physics/dynamics2d/params.hpp"
 #include "core/physics/roster.hpp"
+#include "core/physics/world_memory.hpp"
 #include "core/space/object_index.hpp"
+#include "hal/check.hpp"
 
 namespace tandem::core {
 namespace {
@@ -115,6 +119,7 @@ class Dynamics2d final : public Solver {
         origin_y_m_(0.5 * (stores.min_y_m + stores.max_y_m)) {}
 
   void load(const SolverContext& context) override {
+    const WorldMemory::Use use(&memory_);
     const SpaceStores& s = context.stores;
     if (world_ == nullptr) make_world();
     if (version_ != s.immovables_version) place_immovables(context);
@@ -137,6 +142,7 @@ class Dynamics2d final : public Solver {
   }
 
   void advance(const SolverContext& context) override {
+    const WorldMemory::Use use(&memory_);
     SpaceStores& s = context.stores;
     const int steps = sub_steps(s, context.tick_s);
     const double dt = context.tick_s / steps;
@@ -169,13 +175,20 @@ class Dynamics2d final : public Solver {
     for (std::size_t i = 0; i < headings_.size(); ++i) write_back(s, i, context.tick_s, dt);
   }
 
-  void forget() override {
-    roster_.clear();
-    joints_.clear();
-    world_.reset();
-    anchor_ = nullptr;
-    immovable_ = nullptr;
-    version_ = 0;
+  std::shared_ptr<const void> keep() override {
+    return std::make_shared<Kept>(Kept{memory_.copy(), world_, anchor_, immovable_, placed_, roster_, joints_});
+  }
+
+  void put_back(const void* kept) override {
+    const Kept& k = *static_cast<const Kept*>(kept);
+    memory_.put_back(*k.memory);
+    world_ = k.world;
+    anchor_ = k.anchor;
+    immovable_ = k.immovable;
+    placed_ = k.placed;
+    version_ = 0;  // looks whether they are those that stand there
+    roster_ = k.roster;
+    joints_ = k.joints;
   }
 
  private:
@@ -183,6 +196,22 @@ class Dynamics2d final : public Solver {
     std::size_t number;
     std::uint32_t generation;
     b2Joint* joint;
+  };
+  /// An immovable object as it stands in Box2D.
+  struct Placed {
+    Object::Kind kind;
+    std::array<double, 7> shape;
+    friend bool operator==(const Placed&, const Placed&) = default;
+  };
+  /// Box2D's memory, and what points into it.
+  struct Kept {
+    std::shared_ptr<const WorldMemory::Image> memory;
+    b2World* world;
+    b2Body* anchor;
+    b2Body* immovable;
+    std::vector<Placed> placed;
+    Roster<Twin> roster;
+    std::vector<Held> joints;
   };
 
   b2Vec2 at(double x_m, double y_m) const noexcept {
@@ -195,7 +224,8 @@ class Dynamics2d final : public Solver {
   // --- the world ---
 
   void make_world() {
-    world_ = std::make_unique<b2World>(b2Vec2(0.0F, 0.0F));
+    world_ = new (memory_.allocate(sizeof(b2World))) b2World(b2Vec2(0.0F, 0.0F));  // goes with its memory
+    TANDEM_CHECK(memory_.blocks() > 1, "Box2D must take its memory from the engine");
     world_->SetAllowSleeping(false);
     world_->SetContinuousPhysics(false);  // nothing moves far enough in a sub-step
     b2BodyDef def;
@@ -203,14 +233,22 @@ class Dynamics2d final : public Solver {
     version_ = 0;
   }
 
+  /// Those that stand as they stood are left alone, with what touches them.
   void place_immovables(const SolverContext& context) {
+    version_ = context.stores.immovables_version;
+    std::vector<const Object*> here;
+    std::vector<Placed> wanted;
+    for (const Object& o : context.stores.objects) {
+      if (!o.alive || o.movable || !context.region.touches(o, kTouchMargin_m + context.stores.border_reach_m)) continue;
+      here.push_back(&o);
+      wanted.push_back({o.kind, {o.x_m, o.y_m, o.cos_h, o.sin_h, o.half_x_m, o.half_y_m, o.radius_m}});
+    }
+    if (immovable_ != nullptr && wanted == placed_) return;
+    placed_ = std::move(wanted);
     if (immovable_ != nullptr) world_->DestroyBody(immovable_);
     b2BodyDef def;
     immovable_ = world_->CreateBody(&def);
-    for (const Object& o : context.stores.objects) {
-      if (!o.alive || o.movable || !context.region.touches(o, kTouchMargin_m + context.stores.border_reach_m)) continue;
-      add_fixture(immovable_, o, true, 0.0F);
-    }
+    for (const Object* o : here) add_fixture(immovable_, *o, true, 0.0F);
     const auto& sides = context.region.sides;
     for (std::size_t i = 0; i < sides.size(); ++i) {
       if (!sides[i].wall) continue;
@@ -222,7 +260,6 @@ class Dynamics2d final : public Solver {
       fixture.friction = static_cast<float>(params_.friction);
       immovable_->CreateFixture(&fixture);
     }
-    version_ = context.stores.immovables_version;
   }
 
   /// `placed`: the shape lies at the object's pose; else at the body's origin.
@@ -647,10 +684,12 @@ class Dynamics2d final : public Solver {
   Params params_;
   // Of Box2D's frame: the arena's middle for every region, so that a robot rounds alike in all of them.
   double origin_x_m_, origin_y_m_;
-  std::unique_ptr<b2World> world_;
+  WorldMemory memory_;  // all of Box2D's
+  b2World* world_ = nullptr;
   b2Body* anchor_ = nullptr;     // the ground that drives and friction push against
   b2Body* immovable_ = nullptr;  // walls, boxes, cylinders
   std::uint64_t version_ = 0;    // of the immovable objects
+  std::vector<Placed> placed_;   // of these, those near the region
   Roster<Twin> roster_;
   std::vector<Heading> headings_;  // parallel to the roster, within a tick
   std::vector<b2Vec2> braking_;
@@ -690,4 +729,13 @@ void b2Timer::Reset() {}
 
 float b2Timer::GetMilliseconds() const {
   return 0.0F;
+}
+
+// So are these, that all of Box2D's memory comes from.
+void* b2Alloc_Default(int32 size) {
+  return tandem::core::WorldMemory::allocate_in_use(static_cast<std::size_t>(size));
+}
+
+void b2Free_Default(void* memory) {
+  tandem::core::WorldMemory::free_in_use(memory);
 }

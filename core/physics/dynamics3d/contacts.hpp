@@ -37,7 +37,8 @@ inline Twin& top_of_heap(Twin& twin) noexcept {
 /// being pushed apart.
 class Contacts {
  public:
-  Contacts() : group_(dJointGroupCreate(0)) {}
+  /// Call once a world is made.
+  void make_group() { group_ = OdeJointGroup(dJointGroupCreate(0)); }
 
   void begin(dWorldID world, double dt_s) noexcept {
     world_ = world;

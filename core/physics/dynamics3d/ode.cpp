@@ -1,8 +1,10 @@
 #include "core/physics/dynamics3d/ode.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstdarg>
 #include <cstdio>
+#include <cstring>
 
 namespace tandem::core {
 namespace {
@@ -17,6 +19,14 @@ namespace {
 class Library {
  public:
   Library() {
+    dSetAllocHandler([](dsizeint bytes) { return WorldMemory::allocate_in_use(bytes); });
+    dSetReallocHandler([](void* block, dsizeint bytes, dsizeint wanted) {
+      void* larger = WorldMemory::allocate_in_use(wanted);
+      if (block != nullptr) std::memcpy(larger, block, std::min(bytes, wanted));
+      WorldMemory::free_in_use(block);
+      return larger;
+    });
+    dSetFreeHandler([](void* block, dsizeint) { WorldMemory::free_in_use(block); });
     dInitODE2(0);
     dSetErrorHandler([](int number, const char* message, va_list arguments) { give_up(number, message, arguments); });
     dSetDebugHandler([](int number, const char* message, va_list arguments) { give_up(number, message, arguments); });

@@ -159,8 +159,7 @@ BodyState state_of(const Twin& twin) noexcept {
   return at;
 }
 
-Twin make_twin(const SpaceStores& stores, BodyKey key, Sort sort, dWorldID world) {
-  Twin twin;
+void make_twin(Twin& twin, const SpaceStores& stores, BodyKey key, Sort sort, dWorldID world) {
   twin.key = key;
   twin.sort = sort;
   Prism& prism = twin.prism;
@@ -179,7 +178,7 @@ Twin make_twin(const SpaceStores& stores, BodyKey key, Sort sort, dWorldID world
     else
       dMassSetBoxTotal(&mass, o.mass_kg, 2.0 * o.half_x_m, 2.0 * o.half_y_m, twin.height_m);
     twin.body = make_body(world, mass);
-    return twin;
+    return;
   }
   twin.sheet = &stores.sheet_of_row(key.index());
   twin.mass_kg = twin.sheet->mass_kg;
@@ -193,7 +192,12 @@ Twin make_twin(const SpaceStores& stores, BodyKey key, Sort sort, dWorldID world
     dMassSetParameters(&mass, twin.mass_kg, 0.0, 0.0, 0.0, inertia, inertia, inertia, 0.0, 0.0, 0.0);
     twin.body = make_body(world, mass);
   }
-  return twin;
+}
+
+void end_twin(Twin& twin) noexcept {
+  for (OdeJoint* joint : {&twin.axles[0], &twin.axles[1], &twin.push, &twin.turn}) joint->destroy();
+  for (OdeBody* body : {&twin.wheels[0], &twin.wheels[1], &twin.body}) body->destroy();
+  twin.geom = OdeGeom();
 }
 
 void put(Twin& twin, const BodyState& at) {
@@ -272,8 +276,10 @@ Vector3 velocity_at(const Twin& twin, const Vector3& p_m) noexcept {
 
 OdeGeom make_geom(const Prism& prism, double height_m, double skin_m) {
   const double height = height_m + 2.0 * skin_m;
-  if (prism.round) return OdeGeom(dCreateCylinder(nullptr, prism.radius_m + skin_m, height));
-  return OdeGeom(dCreateBox(nullptr, 2.0 * (prism.half_x_m + skin_m), 2.0 * (prism.half_y_m + skin_m), height));
+  return OdeGeom::made_by([&] {
+    if (prism.round) return dCreateCylinder(nullptr, prism.radius_m + skin_m, height);
+    return dCreateBox(nullptr, 2.0 * (prism.half_x_m + skin_m), 2.0 * (prism.half_y_m + skin_m), height);
+  });
 }
 
 dGeomID geom_of(Twin& twin, double skin_m) {

@@ -85,8 +85,10 @@ BodyState stored_state(const SpaceStores& stores, BodyKey key) noexcept;
 /// Of a double, exactly as it is written to the stores.
 BodyState state_of(const Twin& twin) noexcept;
 
-/// Makes a double without a place. `drive_on_wheels`: robots on the ground get turning wheels.
-Twin make_twin(const SpaceStores& stores, BodyKey key, Sort sort, dWorldID world);
+/// Makes a double without a place.
+void make_twin(Twin& twin, const SpaceStores& stores, BodyKey key, Sort sort, dWorldID world);
+/// Ends what it has in ODE.
+void end_twin(Twin& twin) noexcept;
 /// Puts a double where `at` says, with its velocities.
 void put(Twin& twin, const BodyState& at);
 /// Gives a light double its body in ODE.

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <mutex>
 #include <utility>
 
 #include "hal/unit.hpp"
@@ -93,38 +92,56 @@ void World3d::guarded(const SolverContext& context, Work&& work) {
   if (broken_) return;
   try {
     use_ode();
+    const WorldMemory::Use use(&memory_);
     work();
   } catch (const OdeError& error) {
     broken_ = true;
-    abandon();
+    drop_world();
     const Region& region = context.region;
     const BodyKey first = region.owned.empty() ? region.mirrored.front() : region.owned.front();
     trouble.push_back({first, "is in a region that cannot be solved: " + std::string(error.what())});
   }
 }
 
-/// Everything of a world that ODE gave up in is kept until the process ends: its destructors would give up, too.
-void World3d::abandon() {
-  struct Remains {
-    OdeThreading threading;
-    OdeWorld world;
-    std::unique_ptr<Contacts> contacts;
-    std::vector<Still> stills;
-    Roster<Double> roster;
-    std::vector<Held> held;
-  };
-  static std::mutex lock;
-  static auto& all = *new std::vector<std::unique_ptr<Remains>>;
-  auto remains = std::make_unique<Remains>();
-  remains->threading = std::exchange(threading_, {});
-  remains->world = std::exchange(world_, {});
-  remains->contacts = std::move(contacts_);
-  remains->stills = std::exchange(stills_, {});
-  remains->roster = std::exchange(roster_, {});
-  remains->held = std::exchange(held_, {});
+/// Also one that ODE gave up in.
+void World3d::drop_world() noexcept {
+  threading_ = {};
+  world_ = {};
+  contacts_ = {};
+  stills_.clear();
+  roster_.clear();
+  held_.clear();
   version_ = 0;
-  const std::lock_guard hold(lock);
-  all.push_back(std::move(remains));
+  memory_.clear();
+}
+
+std::shared_ptr<const void> World3d::keep() {
+  if (world_) {
+    use_ode();
+    const WorldMemory::Use use(&memory_);
+    dWorldCleanupWorkingMemory(world_.get());  // what a step needs for itself
+  }
+  auto kept = std::make_shared<Kept>(Kept{memory_.copy(), threading_, world_, contacts_, {}, held_});
+  for (const auto& entry : roster_.entries())
+    kept->twins.push_back({entry.key, entry.identity, entry.owned, *entry.body});
+  return kept;
+}
+
+void World3d::put_back(const void* kept) {
+  const Kept& k = *static_cast<const Kept*>(kept);
+  drop_world();
+  memory_.put_back(*k.memory);
+  threading_ = k.threading;
+  world_ = k.world;
+  contacts_ = k.contacts;
+  for (const auto& entry : k.twins)
+    roster_.entries().push_back({entry.key, entry.identity, entry.owned, std::make_unique<Twin>(entry.body)});
+  for (auto& entry : roster_.entries()) entry.body->heap = nullptr;  // of the last sub-step
+  held_ = k.held;
+  for (Held& held : held_) {
+    held.twin_a = find(held.a);
+    held.twin_b = find(held.b);
+  }
 }
 
 void World3d::report(const Twin& twin, std::string what) {
@@ -143,7 +160,8 @@ void World3d::make_world() {
   dWorldSetCFM(world, settings_.cfm);
   dWorldSetQuickStepNumIterations(world, static_cast<int>(settings_.solver_iterations));
   dWorldSetContactMaxCorrectingVel(world, kPartingSpeed_m_s);
-  contacts_ = std::make_unique<Contacts>();
+  dWorldSetAutoDisableAverageSamplesCount(world, 0);  // else every body has arrays for it on the heap
+  contacts_.make_group();
   version_ = 0;
 }
 
@@ -203,17 +221,6 @@ void World3d::place_stills(const SolverContext& context) {
   version_ = s.immovables_version;
 }
 
-void World3d::forget() {
-  held_.clear();
-  roster_.clear();
-  contacts_.reset();
-  stills_.clear();
-  world_.reset();
-  threading_.reset();
-  version_ = 0;
-  broken_ = false;
-}
-
 // --- doubles ---
 
 void World3d::load(const SolverContext& context) {
@@ -238,13 +245,15 @@ void World3d::load(const SolverContext& context) {
 }
 
 World3d::Double World3d::make(const SpaceStores& stores, BodyKey key) {
+  auto twin = std::make_unique<Twin>();
   try {
-    auto twin = std::make_unique<Twin>(make_twin(stores, key, sort_of(stores, key, settings_), world_.get()));
+    make_twin(*twin, stores, key, sort_of(stores, key, settings_), world_.get());
     twin->p_m[0] = NAN;  // nowhere yet
     return twin;
   } catch (const OdeError& error) {
     trouble.push_back({key, "cannot be simulated: " + std::string(error.what())});
-    auto twin = std::make_unique<Twin>();
+    end_twin(*twin);
+    *twin = Twin();
     twin->key = key;
     twin->sort = Sort::Base;
     twin->unfit = true;
@@ -253,7 +262,12 @@ World3d::Double World3d::make(const SpaceStores& stores, BodyKey key) {
 }
 
 void World3d::drop_double(Double& twin) {
-  std::erase_if(held_, [&](const Held& held) { return held.a == twin->key || held.b == twin->key; });
+  std::erase_if(held_, [&](Held& held) {
+    if (held.a != twin->key && held.b != twin->key) return false;
+    held.joint.destroy();
+    return true;
+  });
+  end_twin(*twin);
   twin.reset();
 }
 
@@ -304,9 +318,11 @@ Twin* World3d::find(BodyKey key) noexcept {
 }
 
 void World3d::join(const SpaceStores& stores) {
-  std::erase_if(held_, [&](const Held& held) {
+  std::erase_if(held_, [&](Held& held) {
     const Joint& joint = stores.joints[held.number];
-    return !joint.alive || joint.generation != held.generation;
+    if (joint.alive && joint.generation == held.generation) return false;
+    held.joint.destroy();
+    return true;
   });
   for (std::size_t i = 0; i < stores.joints.size(); ++i) {
     const Joint& joint = stores.joints[i];
@@ -389,7 +405,7 @@ void World3d::advance(const SolverContext& context) {
         strayed = strayed || moved_m + twin.hop_m > twin.margin_m;
       }
       if (strayed) find_candidates();
-      contacts_->begin(world_.get(), dt_s);
+      contacts_.begin(world_.get(), dt_s);
       find_contacts();
       for (auto& entry : entries) {
         if (entry.body->touched) enter(*entry.body);
@@ -398,7 +414,7 @@ void World3d::advance(const SolverContext& context) {
       rest_heaps();
       dWorldQuickStep(world_.get(), dt_s);
       stop_heaps(dt_s);
-      contacts_->clear();
+      contacts_.clear();
       for (auto& entry : entries) {
         if (entry.body->lost) continue;
         leave(*entry.body, dt_s);
@@ -505,14 +521,14 @@ void World3d::find_contacts() {
     Twin& a = *entries[pair.first].body;
     if (a.lost) continue;
     if (pair.second >= entries.size()) {
-      contacts_->with_still(a, stills_[pair.second - entries.size()], surfaces_);
+      contacts_.with_still(a, stills_[pair.second - entries.size()], surfaces_);
     } else if (!entries[pair.second].body->lost) {
-      contacts_->between(a, *entries[pair.second].body, surfaces_);
+      contacts_.between(a, *entries[pair.second].body, surfaces_);
     }
   }
   for (auto& entry : entries) {
     if (entry.body->lost || entry.body->light()) continue;
-    contacts_->with_ground(*entry.body, entry.body->sort == Sort::Rotors ? surfaces_in_air_ : surfaces_);
+    contacts_.with_ground(*entry.body, entry.body->sort == Sort::Rotors ? surfaces_in_air_ : surfaces_);
   }
 }
 
@@ -568,7 +584,7 @@ bool World3d::stands(std::size_t first, std::size_t past) {
   heap_.clear();
   supports_.clear();
   for (std::size_t i = first; i < past; ++i) heap_.push_back(heaps_[i].twin);
-  for (const Support& support : contacts_->supports()) {
+  for (const Support& support : contacts_.supports()) {
     if (&top_of_heap(*support.a) == heaps_[first].top) supports_.push_back(support);
   }
   const std::uint64_t mark = mark_of(heap_, supports_);

@@ -34,7 +34,8 @@ class World3d final : public Solver {
 
   void load(const SolverContext& context) override;
   void advance(const SolverContext& context) override;
-  void forget() override;
+  std::shared_ptr<const void> keep() override;
+  void put_back(const void* kept) override;
 
  private:
   using Double = std::unique_ptr<Twin>;
@@ -46,10 +47,19 @@ class World3d final : public Solver {
     Twin* twin_b;
     OdeJoint joint;
   };
+  /// ODE's memory, and what points into it.
+  struct Kept {
+    std::shared_ptr<const WorldMemory::Image> memory;
+    OdeThreading threading;
+    OdeWorld world;
+    Contacts contacts;
+    std::vector<Roster<Twin>::Entry> twins;
+    std::vector<Held> held;
+  };
 
   template <class Work>
   void guarded(const SolverContext& context, Work&& work);
-  void abandon();
+  void drop_world() noexcept;
   void report(const Twin& twin, std::string what);
 
   void make_world();
@@ -80,9 +90,10 @@ class World3d final : public Solver {
 
   World3dSettings settings_;
   bool broken_ = false;     // ODE gave up in this tick
+  WorldMemory memory_;      // all of ODE's
   OdeThreading threading_;  // of its own: the one that ODE's worlds share is for one thread
   OdeWorld world_;
-  std::unique_ptr<Contacts> contacts_;
+  Contacts contacts_;
   std::vector<Still> stills_;
   std::uint64_t version_ = 0;  // of the immovable objects
   Surfaces surfaces_, surfaces_in_air_;

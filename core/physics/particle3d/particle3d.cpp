@@ -102,7 +102,6 @@ class Particle3d final : public Solver {
 
   void load(const SolverContext& context) override;
   void advance(const SolverContext& context) override;
-  void forget() override {}  // nothing lives longer than a tick but in the stores
 
  private:
   void load_body(const SolverContext& context, std::size_t i, std::uint32_t row, bool owned);

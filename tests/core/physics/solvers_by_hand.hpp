@@ -112,9 +112,6 @@ class SolversByHand {
   }
   /// The next tick has this number.
   void start_at(hal::Tick tick) noexcept { tick_ = tick; }
-  void forget() {
-    for (const auto& solver : solvers_) solver->forget();
-  }
 
   /// From the robot's forward direction at the first of two headings to that at the second, in (-pi, pi].
   double relative_heading_rad(BodyKey a, BodyKey b) {

@@ -279,22 +279,6 @@ TEST(Snapshots, OfAnotherWorldAreRefused) {
   EXPECT_THAT(restored.error().message, HasSubstr("another world"));
 }
 
-TEST(Snapshots, LeaveKinematicsAsTheyAre) {
-  auto with = make(crowd("kinematics2d"));
-  ASSERT_TRUE(with.world) << with.all_problems();
-  auto without = make(crowd("kinematics2d"));
-  with->start();
-  without->start();
-  for (int i = 0; i < 40; ++i) {
-    if (i % 7 == 0) {
-      EXPECT_TRUE(with->snapshot().ok());
-    }
-    with->step();
-    without->step();
-    ASSERT_EQ(with->state_hash(), without->state_hash()) << "step " << i;
-  }
-}
-
 Scene with_shepherd(std::vector<Element::Attribute> more) {
   Scene s(4.0, "everything");
   s.param("left", "0.05").param("right", "0.045").walls().robots(20, 1.0);

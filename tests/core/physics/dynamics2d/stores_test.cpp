@@ -1,4 +1,4 @@
-// The stores are the truth: what changes there counts, what is no number is named, and caches may be forgotten.
+// The stores are the truth: what changes there counts, what is no number is named.
 #include <limits>
 
 #include "tests/core/physics/dynamics2d/by_hand.hpp"
@@ -27,48 +27,6 @@ TEST(Dynamics2dStores, TheSameBitsTwice) {
     one.tick();
     two.tick();
     ASSERT_EQ(one.state(), two.state()) << i;
-  }
-}
-
-TEST(Dynamics2dStores, AfterForgettingOnlyTheStoresCount) {
-  ByHand one;
-  crowd(one);
-  one.ticks(40);
-  one.forget();
-  // Another that never saw the ticks before, but has the same stores.
-  ByHand two;
-  crowd(two);
-  two.stores().bodies = one.stores().bodies;
-  for (std::size_t i = 0; i < one.stores().objects.size(); ++i) {
-    two.object(i) = one.object(i);
-    two.object_motion(i) = one.object_motion(i);
-  }
-  for (int i = 0; i < 60; ++i) {
-    one.tick();
-    two.tick();
-    ASSERT_EQ(one.state(), two.state()) << i;
-    if (i == 30) {
-      one.forget();
-      two.forget();
-    }
-  }
-}
-
-TEST(Dynamics2dStores, ForgettingIsNoJolt) {
-  ByHand plain;
-  ByHand forgetful;
-  crowd(plain);
-  crowd(forgetful);
-  plain.ticks(60);
-  forgetful.ticks(60);
-  forgetful.forget();
-  plain.tick();
-  forgetful.tick();
-  // Box2D starts from the forces of the tick before, where it knows them: else it comes less near to rest.
-  constexpr double kATicksWay_m = 0.0126;  // of the fastest
-  for (std::size_t i = 0; i < plain.bodies().size(); ++i) {
-    EXPECT_NEAR(plain.bodies().x_m[i], forgetful.bodies().x_m[i], kATicksWay_m) << i;
-    EXPECT_NEAR(plain.bodies().y_m[i], forgetful.bodies().y_m[i], kATicksWay_m) << i;
   }
 }
 

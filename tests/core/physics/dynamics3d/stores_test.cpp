@@ -50,24 +50,6 @@ TEST(Dynamics3dStores, TwoSolversAtOnceDoNotDisturbOneAnother) {
   EXPECT_EQ(two.state(), alone.state());
 }
 
-TEST(Dynamics3dStores, AfterForgettingOnlyTheStoresCount) {
-  ByHand one;
-  crowd(one);
-  one.ticks(30);
-  one.forget();
-  ByHand two;  // never saw the ticks before, but has the same stores
-  crowd(two);
-  two.stores().bodies = one.stores().bodies;
-  two.stores().objects = one.stores().objects;
-  two.stores().object_motion = one.stores().object_motion;
-  two.start_at(30);
-  for (int i = 0; i < 30; ++i) {
-    one.tick();
-    two.tick();
-    ASSERT_EQ(one.state(), two.state()) << i;
-  }
-}
-
 TEST(Dynamics3dStores, WhatIsNoNumberIsNamedAndLeavesOthersAlone) {
   const double infinite = std::numeric_limits<double>::infinity();
   for (const bool at_once : {true, false}) {

@@ -89,9 +89,6 @@ class Bench {
   void steps(int count) {
     for (int i = 0; i < count; ++i) step();
   }
-  void forget() {
-    for (auto& solver : solvers_) solver->forget();
-  }
   /// What the solvers reported since the last time.
   std::vector<Trouble> troubles() {
     std::vector<Trouble> all;

@@ -1,0 +1,67 @@
+// Memory of the world that a physics library keeps for one solver: copied and put back as a whole, bit for bit.
+#pragma once
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+namespace tandem::core {
+
+/// Gives out memory and can go back to how it was at an earlier moment, with every block at the same address. Solvers
+/// let their library take all that lives between ticks from here: then a checkpoint holds the library's contacts, trees
+/// and lists without knowing what they are. For one thread at a time.
+class WorldMemory {
+ public:
+  /// A copy of all that was given out at a moment.
+  class Image;
+
+  WorldMemory() = default;
+  WorldMemory(const WorldMemory&) = delete;
+  WorldMemory& operator=(const WorldMemory&) = delete;
+
+  /// Aligned for any type. Throws std::bad_alloc.
+  void* allocate(std::size_t bytes);
+  /// `block` is one that `allocate` gave; null is none.
+  void free(void* block) noexcept;
+  /// Takes everything back. What lives there ends without its destructors.
+  void clear() noexcept;
+  std::size_t blocks() const noexcept { return blocks_; }  ///< given out now
+
+  std::shared_ptr<const Image> copy() const;
+  /// `image` is of this memory.
+  void put_back(const Image& image) noexcept;
+
+  /// While one lives, the libraries' allocations on this thread go to `memory`; null: to the heap.
+  class Use {
+   public:
+    explicit Use(WorldMemory* memory) noexcept;
+    Use(const Use&) = delete;
+    Use& operator=(const Use&) = delete;
+    ~Use();
+
+   private:
+    WorldMemory* before_;
+  };
+  /// What a library's allocation calls on this thread: from the memory in use, or else from the heap.
+  static void* allocate_in_use(std::size_t bytes);
+  static void free_in_use(void* block) noexcept;
+
+ private:
+  static constexpr std::size_t kClasses = 72;  // of sizes up to kLargestShared
+
+  struct Chunk {
+    std::unique_ptr<std::byte[]> bytes;
+    std::size_t size = 0;
+    std::size_t used = 0;  ///< a prefix; of a chunk with one large block all of it, or nothing
+  };
+  void* carve(std::size_t bytes);
+
+  std::vector<Chunk> shared_;  // cut into small blocks, one after the other
+  std::vector<Chunk> large_;   // one block each
+  std::size_t filling_ = 0;    // index of the shared chunk that is cut at present
+  std::size_t blocks_ = 0;
+  std::array<void*, kClasses> unused_{};  // by class of size: blocks that were freed, linked by their first bytes
+};
+
+}  // namespace tandem::core
