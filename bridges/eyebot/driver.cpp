@@ -31,7 +31,6 @@ constexpr TimeNs kOthersRobot = 2 * hal::kNsPerSecond;         // after another 
 constexpr TimeNs kOthersSpread = 100 * hal::kNsPerMs;          // two hubs do not try again at the same moment
 constexpr TimeNs kClocksAgree = 100 * hal::kNsPerMs;           // a robot takes stamps that are 250 ms off
 constexpr TimeNs kOwnJump = 150 * hal::kNsPerMs;               // robots refuse what is stamped 250 ms off
-constexpr float kLandCharge = 0.15F;                           // [chosen] where a robot says nothing of it itself
 constexpr double kPlaceSpeed_m_s = 1.5 * spec::kMaxSpeed_m_s;  // also one that is pushed
 constexpr std::size_t kPayloadAt = messages::kHeaderEnd;
 
@@ -334,7 +333,7 @@ bool EyebotDriver::battery_low() const noexcept {
   if (taken(Topic::Battery) == 0) return false;
   hal::Battery battery;
   read(newests_.battery.message, battery);
-  return newests_.battery.message.low != 0 || battery.charge <= kLandCharge;
+  return newests_.battery.message.low != 0 || battery.charge <= static_cast<float>(spec::kBatteryLow);
 }
 
 void EyebotDriver::report_silence(TimeNs now) {

@@ -31,7 +31,8 @@ inline constexpr int kAmbientDarkRaw =
 inline constexpr int kGroundWhiteRaw = 1023;    // [GCtronic] the ground board's converter has 10 bits; 0 is black
 inline constexpr int kMicrophoneMaxRaw = 4095;  // [GCtronic] a volume is the spread of 12-bit samples
 inline constexpr double kBatteryFull_V = 4.2;   // [GCtronic] raw 2560
-inline constexpr double kBatteryEmpty_V = 3.4;  // [GCtronic] raw 2070; stop driving below
+inline constexpr double kBatteryEmpty_V = 3.4;  // [GCtronic] raw 2070
+inline constexpr double kBatteryLow_V = 3.4;    // [GCtronic] older boards say "empty" below it; stop driving
 inline constexpr int kBatteryFullRaw = 2560;
 inline constexpr int kBatteryEmptyRaw = 2070;
 

@@ -47,6 +47,7 @@ inline constexpr double kScannerTurn_rad_s = 2.0 * std::numbers::pi;  // …
 
 inline constexpr double kBatteryFull_V = 12.6;  // [chosen] three lithium-polymer cells
 inline constexpr double kBatteryEmpty_V = 9.9;
+inline constexpr double kBatteryLow = 0.15;  // [chosen] of the full charge: land, while a minute of flight is left
 
 // The camera looks down from the base, or ahead from the rim. [chosen] its figures are those of the foot-bot's, but
 // that it sees the ground from as high as range-and-bearing reaches.

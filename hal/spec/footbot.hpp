@@ -60,7 +60,8 @@ inline constexpr unsigned kCameraWidth_px = 640;       // [chosen] VGA, as small
 inline constexpr unsigned kCameraHeight_px = 480;
 
 inline constexpr double kBatteryFull_V = 4.2;   // [marXbot] one lithium-polymer cell of 10 Ah
-inline constexpr double kBatteryEmpty_V = 3.4;  // [chosen] as for the e-puck's cell: stop driving below
+inline constexpr double kBatteryEmpty_V = 3.4;  // [chosen] as for the e-puck's cell
+inline constexpr double kBatteryLow_V = 3.4;    // [chosen] …: stop driving
 
 // 24 proximity and light sensors [ARGoS]: the first at 7.5 degrees, one every 15 degrees, counter-clockwise.
 inline const std::array<Mount, 24> kRing = ring_of<24>(7.5, kBodyRadius_m, kSensorHeight_m);

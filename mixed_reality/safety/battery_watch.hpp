@@ -5,10 +5,11 @@
 
 namespace tandem::mixed_reality {
 
-/// Below this part of the full charge, for so long, a battery is low: a motor that starts draws the voltage down for a
-/// moment, and that is not meant.
+/// A battery is low at or below this for so long: a motor that starts draws the voltage down for a moment, and that is
+/// not meant. Each kind of robot has its own, from its data sheet.
 struct BatteryLimit {
-  double charge = 0.05;
+  double charge = 0.05;   ///< of the full one
+  double supply_V = 0.0;  ///< instead of the charge, where the robot measures it; 0: the charge counts
   double for_s = 2.0;
 };
 
@@ -18,13 +19,18 @@ class BatteryWatch {
 
   /// Once a tick; readings that are not fresh say nothing.
   bool low(const hal::Battery& battery, hal::TimeNs now) noexcept {
-    const bool below = battery.validity == hal::Validity::Fresh && static_cast<double>(battery.charge) < limit_.charge;
-    if (!below) well_ns_ = now;
+    const bool by_volts = limit_.supply_V > 0.0 && battery.supply_V > 0.0F;
+    const bool reached = by_volts ? battery.supply_V <= static_cast<float>(limit_.supply_V)
+                                  : battery.charge <= static_cast<float>(limit_.charge);
+    const bool below = battery.validity == hal::Validity::Fresh && reached;
+    if (!below || !begun_) well_ns_ = now;
+    begun_ = true;
     return below && hal::to_seconds(now - well_ns_) >= limit_.for_s;
   }
 
  private:
   BatteryLimit limit_;
+  bool begun_ = false;
   hal::TimeNs well_ns_ = 0;
 };
 

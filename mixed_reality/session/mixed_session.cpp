@@ -74,6 +74,7 @@ hal::Status MixedSession::add_twin(const core::RobotItem& item, const BridgeMake
 
   TwinParams params;
   params.rearm = rearm_params(*item.bridge);
+  params.battery = battery_limit(item.kind);
   params.frozen_after_ns = hal::time_of_tick(1, scenario.ticks_per_second) + kFrozenAfter_ns;
   params.pose_timeout_ns = lost_after_ns(item, scenario.ticks_per_second);
   twins_.push_back(

@@ -54,11 +54,27 @@ hal::Result<const BridgeType*> type_for(std::string_view kind) {
 
 std::span<const BridgeType> bridge_types() noexcept {
   static const std::array<BridgeType, 3> types = {{
-      {hal::epuck::kDataSheet.kind, &make<bridges::epuck::EpuckBridge, &epuck_parts>, &check<&epuck_parts>},
-      {hal::footbot::kDataSheet.kind, &make<bridges::footbot::FootbotBridge, &footbot_parts>, &check<&footbot_parts>},
-      {hal::eyebot::kDataSheet.kind, &make<bridges::eyebot::EyebotBridge, &eyebot_parts>, &check<&eyebot_parts>},
+      {hal::epuck::kDataSheet.kind,
+       &make<bridges::epuck::EpuckBridge, &epuck_parts>,
+       &check<&epuck_parts>,
+       {.charge = 0.0, .supply_V = hal::epuck::kBatteryLow_V}},
+      {hal::footbot::kDataSheet.kind,
+       &make<bridges::footbot::FootbotBridge, &footbot_parts>,
+       &check<&footbot_parts>,
+       {.charge = 0.0, .supply_V = hal::footbot::kBatteryLow_V}},
+      {hal::eyebot::kDataSheet.kind,
+       &make<bridges::eyebot::EyebotBridge, &eyebot_parts>,
+       &check<&eyebot_parts>,
+       {.charge = hal::eyebot::kBatteryLow}},
   }};
   return types;
+}
+
+BatteryLimit battery_limit(std::string_view kind) noexcept {
+  for (const BridgeType& type : bridge_types()) {
+    if (type.kind == kind) return type.battery;
+  }
+  return {};
 }
 
 hal::Status check_bridge(const core::RobotItem& item, std::int64_t ticks_per_second) {

@@ -9,6 +9,7 @@
 #include "core/scenario/scenario.hpp"
 #include "hal/log.hpp"
 #include "hal/result.hpp"
+#include "mixed_reality/safety/battery_watch.hpp"
 
 namespace tandem::mixed_reality {
 
@@ -31,8 +32,11 @@ struct BridgeType {
   MadeBridge (*make)(const BridgeRequest& request, const hal::Log& log);
   /// The errors of `make`, without making anything.
   hal::Status (*check)(const core::RobotItem& item, std::int64_t ticks_per_second);
+  BatteryLimit battery;  ///< from its data sheet
 };
 std::span<const BridgeType> bridge_types() noexcept;
+/// When a robot of this kind is to be stopped for its battery.
+BatteryLimit battery_limit(std::string_view kind) noexcept;
 
 /// Makes the bridge that the robot's kind needs; both `tandem run` and `tandem robot` do so. Errors: no bridge for that
 /// kind; a link that does not suit it; what its own configuration lacks.

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "bridges/robot_bridge.hpp"
+#include "hal/device/flight.hpp"
 #include "hal/device/leds.hpp"
 #include "hal/device/ring_sensors.hpp"
 #include "hal/device/wheels.hpp"
@@ -31,6 +32,8 @@ struct FakeBody {
   bool link_up = true;
   bool confirms_stops = true;
   bool stopped_itself = false;
+  bool tells_place = false;  ///< it measures where it is
+  bool held_fast = false;    ///< its wheels turn, and it does not move
   LinkHealth health_when_up = LinkHealth::Active;
   hal::TimeNs moved_to_ns = 0;
 
@@ -39,7 +42,7 @@ struct FakeBody {
     moved_to_ns = now_ns;
     left_m += wheels.left_m_s * dt_s;
     right_m += wheels.right_m_s * dt_s;
-    pose = rolled(pose, wheels.left_m_s * dt_s, wheels.right_m_s * dt_s, hal::epuck::kWheelBase_m);
+    if (!held_fast) pose = rolled(pose, wheels.left_m_s * dt_s, wheels.right_m_s * dt_s, hal::epuck::kWheelBase_m);
   }
   bool stands() const { return wheels.left_m_s == 0.0 && wheels.right_m_s == 0.0; }
 };
@@ -58,6 +61,7 @@ class FakeRobot final : public bridges::RobotBridge, private hal::Robot {
     if (type.layout == hal::port_type<hal::Proximity>().layout) return &proximity_;
     if (type.layout == hal::port_type<hal::WheelSpeeds>().layout) return &wheels_;
     if (type.layout == hal::port_type<hal::RingLeds>().layout) return &leds_;
+    if (body_.tells_place && type.layout == hal::port_type<hal::Positioning>().layout) return &place_;
     return nullptr;
   }
   std::vector<bridges::PortView> taken() const override { return taken_; }
@@ -77,6 +81,9 @@ class FakeRobot final : public bridges::RobotBridge, private hal::Robot {
     proximity_.distance_m.fill(static_cast<float>(body_.real_proximity_m));
     proximity_.taken_ns = encoders_.taken_ns;
     proximity_.validity = body_.link_up ? hal::Validity::Fresh : hal::Validity::Stale;
+    place_ = place_sample_;
+    place_.taken_ns = encoders_.taken_ns;
+    place_.validity = hal::Validity::Fresh;
   }
   LinkHealth health() const noexcept override { return health_; }
   bool stopped_itself() const noexcept override { return body_.stopped_itself; }
@@ -97,6 +104,9 @@ class FakeRobot final : public bridges::RobotBridge, private hal::Robot {
     body_.received.push_back({now, wheels_});
     sample_.left_m = body_.left_m;
     sample_.right_m = body_.right_m;
+    const double half_rad = 0.5 * body_.pose.heading_rad();
+    place_sample_.p_WB = {body_.pose.x_m, body_.pose.y_m, body_.pose.z_m};
+    place_sample_.q_WB = {std::cos(half_rad), 0.0, 0.0, std::sin(half_rad)};
     sampled_at_ns_ = now;
     sampled_ = true;
   }
@@ -134,6 +144,7 @@ class FakeRobot final : public bridges::RobotBridge, private hal::Robot {
   LinkHealth health_ = LinkHealth::Connecting;
   hal::WheelEncoders encoders_, sample_;
   hal::Proximity proximity_;
+  hal::Positioning place_, place_sample_;
   hal::WheelSpeeds wheels_;
   hal::RingLeds leds_;
 };

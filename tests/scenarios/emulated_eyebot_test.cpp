@@ -138,6 +138,18 @@ TEST_F(EmulatedEyebotFlies, OnNoStaleCommand) {
   EXPECT_EQ(robot.wait(60), 130) << robot.errors();
 }
 
+TEST_F(EmulatedEyebotFlies, UntilItsBatteryIsLowAndLandsBeforeItSavesItself) {
+  EmulatedEyebot eyebot(folder, {"--fault", "battery=0.13@12s"});
+  ASSERT_TRUE(eyebot.ready());
+  Tandem robot(drive(), folder.path());
+  ASSERT_TRUE(eventually([&] { return eyebot.mode() == "position"; }, 11.0)) << robot.errors();
+  EXPECT_TRUE(eventually([&] { return eyebot.mode() == "idle"; }, 60.0)) << eyebot.modes();
+  EXPECT_THAT(robot.errors(), HasSubstr("battery low"));
+  EXPECT_TRUE(eyebot.lines("failsafe").empty()) << eyebot.log();
+  robot.signal(SIGINT);
+  EXPECT_EQ(robot.wait(60), 130) << robot.errors();
+}
+
 TEST_F(EmulatedEyebotFlies, OnABadNetwork) {
   EmulatedEyebot eyebot(folder, {"--fault", "drop=0.1", "--fault", "lose=0.1", "--fault", "double=0.1", "--fault",
                                  "repeat=0.1", "--fault", "swap=0.1", "--fault", "overtake=0.1", "--fault",

@@ -413,6 +413,32 @@ TEST_F(MixedRun, AfterGuardiansHaveStoppedTheRobotsTheyWaitForTheirRearm) {
   EXPECT_NE(report.robots[0].incidents[2].find("hub was frozen"), std::string::npos) << report.robots[0].incidents[2];
 }
 
+TEST_F(MixedRun, ARobotThatIsHeldFastWhileItsWheelsTurnIsStoppedAndDrivesOnWhenItIsFree) {
+  core::Scene scene = drive(0.1, 0.1);
+  scene.robot("ep0", -1.5, 0.0);
+  real(scene, "ep0");
+  scene.scenario.robots[0].tracker = core::TrackerConfig{"positioning", {}, 8};
+  scene.scenario.robots[0].bridge->rearm = "after 0.5 s";
+  bodies_["ep0"].tells_place = true;
+  open(scene);
+  FakeBody& body = bodies_["ep0"];
+  int stood = -1;
+  run(120, [&](core::World& world) {
+    body.held_fast = world.tick() >= 50 && stood < 0;
+    EXPECT_TRUE(world.tick() != 50 || !body.stands());
+    if (world.tick() > 50 && stood < 0 && body.stands()) stood = static_cast<int>(world.tick());
+  });
+  EXPECT_GT(stood, 50);
+  EXPECT_LE(stood, 71) << "two spans of a second";
+  const MixedReport report = session_->report();
+  EXPECT_EQ(report.robots[0].state, "driving");
+  EXPECT_EQ(report.robots[0].counts.stops, 1U);
+  EXPECT_NE(log_.find("wheels and pose differ"), std::string::npos) << log_;
+  EXPECT_LT(distance(report.robots[0].pose, body.pose), 0.03);
+  // One that goes by its wheels alone cannot know.
+  EXPECT_GT(body.left_m, body.pose.x_m + 1.5 + 0.05);
+}
+
 TEST_F(MixedRun, NoRobotDrivesOnceNobodyGuardsThem) {
   core::Scene scene = drive(0.05, 0.05);
   scene.robot("ep0", -1.0, 0.0);

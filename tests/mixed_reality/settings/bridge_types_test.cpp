@@ -60,5 +60,37 @@ TEST(BridgeTypes, LetMoreBeReadThanTheControllerListsButNotByTheController) {
   EXPECT_EQ(bridge.port(hal::port_type<hal::RangeAndBearing>()), nullptr);  // not over the serial link
 }
 
+struct Charge {
+  const char* kind;
+  float supply_V, charge;
+  bool low;
+};
+
+/// How a battery of this kind is after so long at that.
+class BatteryOf : public testing::TestWithParam<Charge> {};
+
+TEST_P(BatteryOf, IsLowWhereItsDataSheetSaysSo) {
+  BatteryWatch watch(battery_limit(GetParam().kind));
+  hal::Battery battery;
+  battery.validity = hal::Validity::Fresh;
+  battery.supply_V = GetParam().supply_V;
+  battery.charge = GetParam().charge;
+  hal::TimeNs now = 100 * hal::kNsPerSecond;
+  EXPECT_FALSE(watch.low(battery, now)) << "a motor that starts draws it down for a moment";
+  now += 3 * hal::kNsPerSecond;
+  EXPECT_EQ(watch.low(battery, now), GetParam().low);
+  battery.validity = hal::Validity::Stale;
+  EXPECT_FALSE(watch.low(battery, now));
+}
+
+INSTANTIATE_TEST_SUITE_P(Kinds, BatteryOf,
+                         testing::Values(Charge{"e-puck", 3.41F, 0.0125F, false}, Charge{"e-puck", 3.4F, 0.0F, true},
+                                         Charge{"e-puck", 3.2F, 0.0F, true}, Charge{"foot-bot", 3.41F, 0.0125F, false},
+                                         Charge{"foot-bot", 3.4F, 0.0F, true},
+                                         // A map may have no volts.
+                                         Charge{"foot-bot", 0.0F, 0.1F, false}, Charge{"foot-bot", 0.0F, 0.0F, true},
+                                         Charge{"eye-bot", 10.3F, 0.16F, false}, Charge{"eye-bot", 10.3F, 0.15F, true},
+                                         Charge{"eye-bot", 12.0F, 0.1F, true}));
+
 }  // namespace
 }  // namespace tandem::mixed_reality
