@@ -3,18 +3,24 @@
 #include <cstddef>
 #include <new>
 #include <string>
+#include <utility>
 
 #include "hal/controller.hpp"
 #include "hal/plugin_call.hpp"
+#include "hal/time.hpp"
 
 namespace tandem::app {
 
 /// One controller made for a real robot, in memory of its own.
 class BridgedController {
  public:
-  BridgedController(const hal::ControllerType& type, hal::Robot& robot, const void* params)
-      : type_(type), memory_(::operator new (type.size, std::align_val_t{type.align})) {
-    const hal::PluginCall call(&name, &type_);
+  /// `who` names it where it crashes or does not return: "controller 'walk' (library 'walk') of robot 'ep0'"; empty: by
+  /// its label.
+  BridgedController(const hal::ControllerType& type, hal::Robot& robot, const void* params, std::string who = {})
+      : type_(type),
+        who_(who.empty() ? "controller '" + std::string(type.name) + "'" : std::move(who)),
+        memory_(::operator new (type.size, std::align_val_t{type.align})) {
+    const hal::PluginCall call(&name, this, kMade);
     try {
       type.construct(memory_, robot, params);
     } catch (...) {
@@ -23,7 +29,7 @@ class BridgedController {
     }
   }
   ~BridgedController() {
-    const hal::PluginCall call(&name, &type_);
+    const hal::PluginCall call(&name, this, kDestroyed);
     type_.destroy(memory_);
     ::operator delete (memory_, std::align_val_t{type_.align});
   }
@@ -31,20 +37,31 @@ class BridgedController {
   BridgedController& operator=(const BridgedController&) = delete;
 
   /// False when it threw; `why` then says what.
-  bool step(std::string& why) {
+  bool step(std::string& why, hal::Tick tick = 0) {
     const std::uint8_t running = 0;
-    hal::PluginCall call(&name, &type_);
+    hal::PluginCall call(&name, this, kSteps + static_cast<std::size_t>(tick));
     if (type_.step_row(static_cast<std::byte*>(memory_), type_.size, 0, 1, &running, call.fault()) == 1) return true;
     why = call.fault().message;
     return false;
   }
 
  private:
-  static void name(const void* type, std::size_t /*part*/, std::size_t /*index*/, hal::FixedText& out) noexcept {
-    out << "controller '" << static_cast<const hal::ControllerType*>(type)->name << "'";
+  // Parts of the calls: from kSteps on they are ticks.
+  static constexpr std::size_t kMade = 0, kDestroyed = 1, kSteps = 2;
+
+  static void name(const void* self, std::size_t part, std::size_t /*index*/, hal::FixedText& out) noexcept {
+    out << static_cast<const BridgedController*>(self)->who_;
+    if (part == kMade) {
+      out << ", while it was made,";
+    } else if (part == kDestroyed) {
+      out << ", while it was destroyed,";
+    } else {
+      out << " at tick " << static_cast<std::int64_t>(part - kSteps);
+    }
   }
 
   const hal::ControllerType& type_;
+  std::string who_;
   void* memory_;
 };
 

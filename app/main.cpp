@@ -26,11 +26,7 @@ void add_run(CLI::App& app, RunOptions& o, int& code) {
   c->add_option("--report", o.report, "Write a JSON report to this file ('-': standard output)");
   c->add_option("--picture", o.picture, "Draw the space from above at the end: FILE.svg, .png or .pdf");
   c->add_option("--trajectory", o.trajectory, "Write poses as CSV");
-  c->add_option("--step-timeout", o.step_timeout_s,
-                "Seconds after which a controller or hook that has not returned is named; Ctrl-C then ends the run; 0: "
-                "never")
-      ->capture_default_str()
-      ->check(CLI::NonNegativeNumber);
+  add_step_timeout(*c, o.step_timeout_s);
   c->add_option("--without", o.without, "Simulate this robot instead of driving the real one; repeatable")
       ->allow_extra_args(false);
   c->add_flag("--quiet", o.quiet, "No table at the end");

@@ -11,6 +11,15 @@
 
 namespace tandem::app {
 
+void add_step_timeout(CLI::App& command, double& seconds) {
+  command
+      .add_option("--step-timeout", seconds,
+                  "Seconds after which a controller or hook that has not returned is named; Ctrl-C then ends the run; "
+                  "0: never")
+      ->capture_default_str()
+      ->check(CLI::NonNegativeNumber);
+}
+
 void add_robot_commands(CLI::App& app, RobotCommandOptions& options, int& code) {
   CLI::App* check_command = app.add_subcommand("check", "Validate an experiment and print every problem.");
   check_command->add_option("experiment", options.check.experiment, "The experiment file (.xml)")->required();
@@ -28,6 +37,7 @@ void add_robot_commands(CLI::App& app, RobotCommandOptions& options, int& code) 
       ->check(CLI::PositiveNumber);
   robot_command->add_option("--report", options.robot.report,
                             "Write a JSON report to this file ('-': standard output)");
+  add_step_timeout(*robot_command, options.robot.step_timeout_s);
   robot_command
       ->add_option("--hub-fault", options.robot.hub_faults,
                    "A fault of this program, e.g. stall@5s+0.4s, freeze@5s+2s, kill@5s, clock=1h@5s; repeatable")

@@ -16,6 +16,9 @@ struct RobotCommandOptions {
 /// must outlive `app`.
 void add_robot_commands(CLI::App& app, RobotCommandOptions& options, int& code);
 
+/// The option `--step-timeout`.
+void add_step_timeout(CLI::App& command, double& seconds);
+
 /// Runs the command that the arguments name, and tells of wrong ones. Returns `code`, or `kWrongUsage`.
 int parse_and_run(CLI::App& app, int argc, char** argv, int& code);
 

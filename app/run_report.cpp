@@ -119,11 +119,10 @@ std::string report_of(const RunResult& result) {
   return hal::to_text(json);
 }
 
-std::string report_members(const RunResult& result) {
+hal::Json report_members(const RunResult& result) {
   hal::Json json;
   add_members(json, result, false);
-  const std::string text = hal::to_text(json);
-  return text.substr(1, text.size() - 2);  // without the braces
+  return json;
 }
 
 void print_result(const RunResult& result) {

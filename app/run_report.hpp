@@ -5,6 +5,7 @@
 
 #include "app/run_figures.hpp"
 #include "core/sim/world.hpp"
+#include "hal/json/json.hpp"
 #include "mixed_reality/session/report.hpp"
 
 namespace tandem::app {
@@ -45,7 +46,7 @@ struct RunResult {
 /// One JSON object.
 std::string report_of(const RunResult& result);
 /// Its members but those about the end, for a run that may have to be ended in the middle of a tick.
-std::string report_members(const RunResult& result);
+hal::Json report_members(const RunResult& result);
 
 void print_result(const RunResult& result);
 

@@ -19,14 +19,14 @@ class Watchdog {
   Watchdog(const Watchdog&) = delete;
   Watchdog& operator=(const Watchdog&) = delete;
 
-  /// What prepares the outputs before the process is ended. Is called on the watchdog's thread, while the thread that
-  /// steps is in the call that does not return; so that it stays there, it takes `lock` before it touches what `save`
-  /// reads.
-  void set_save(std::function<void()> save);
+  /// See `SaveAtEnd`.
   std::mutex& lock() noexcept { return lock_; }
 
  private:
   void watch();
+
+  friend class SaveAtEnd;
+  void set_save(std::function<void()> save);
 
   const double limit_s_;
   const std::atomic<bool>& stop_;
@@ -36,6 +36,23 @@ class Watchdog {
   std::condition_variable ending_changed_;
   bool ending_ = false;
   std::thread thread_;
+};
+
+/// What prepares the outputs before the watchdog ends the process, for as long as it lives. Is called on the watchdog's
+/// thread, while the thread that steps is in the call that does not return; so that it stays there, it takes
+/// `Watchdog::lock` before it touches what `save` reads.
+class SaveAtEnd {
+ public:
+  /// `watchdog` must outlive this.
+  SaveAtEnd(Watchdog& watchdog, std::function<void()> save) : watchdog_(watchdog) {
+    watchdog.set_save(std::move(save));
+  }
+  ~SaveAtEnd() { watchdog_.set_save({}); }
+  SaveAtEnd(const SaveAtEnd&) = delete;
+  SaveAtEnd& operator=(const SaveAtEnd&) = delete;
+
+ private:
+  Watchdog& watchdog_;
 };
 
 }  // namespace tandem::app

@@ -66,6 +66,7 @@ struct RobotOptions {
   std::optional<double> seconds;
   std::string report;
   std::vector<std::string> hub_faults;  ///< as `parse_hub_fault` reads them
+  double step_timeout_s = 5.0;          ///< as for `run`
 };
 int robot(const RobotOptions& options);
 

@@ -1,13 +1,16 @@
 // `tandem robot`: one real robot's controller, run here.
 #include <algorithm>
+#include <csignal>
 #include <cstdio>
 #include <fmt/format.h>
+#include <mutex>
 #include <optional>
 
 #include "app/bridge_status.hpp"
 #include "app/bridged_controller.hpp"
 #include "app/catalog.hpp"
 #include "app/command/command.hpp"
+#include "app/emergency_report.hpp"
 #include "app/guarded_robots.hpp"
 #include "app/hub_faults.hpp"
 #include "app/measure.hpp"
@@ -27,7 +30,6 @@
 namespace tandem::app {
 namespace {
 
-constexpr double kStepTimeout_s = 5.0;  // after which a controller that does not return is named
 constexpr hal::TimeNs kOpenWithin_ns = hal::kNsPerSecond;
 constexpr hal::TimeNs kFrozenAfter_ns = 500 * hal::kNsPerMs;  // guardians have stopped the robot meanwhile
 constexpr hal::TimeNs kPollEvery_ns = 20 * hal::kNsPerMs;     // while waiting for the robot
@@ -155,6 +157,9 @@ int robot(const RobotOptions& options) {
   const hal::Log log([](hal::Severity, std::string_view text) { say(text); });
   GuardedRobots guarded({item}, log);  // before any thread
   if (!guarded.started().ok()) return complain(kFailedRunning, guarded.started().error().message);
+  const std::atomic<bool>& stop = catch_signals();
+  std::signal(SIGPIPE, SIG_IGN);  // who reads our output may end before us
+  Watchdog watchdog(options.step_timeout_s, stop);
   auto made = mixed_reality::make_bridge(
       {item, config, scenario->ticks_per_second, scenario->seed.value_or(1), guarded.permit(), &hub_unix_ns}, log);
   if (!made.ok()) return complain(kBadInput, made.error().message);
@@ -169,15 +174,15 @@ int robot(const RobotOptions& options) {
   print_problems(problems);
   if (core::has_errors(problems)) return kBadInput;
 
+  const std::string who =
+      "controller '" + config.id + "' (library '" + config.library + "') of robot '" + item.id + "'";
   std::unique_ptr<BridgedController> controller;
   try {
-    controller = std::make_unique<BridgedController>(*type.value(), bridge.robot(), params.get());
+    controller = std::make_unique<BridgedController>(*type.value(), bridge.robot(), params.get(), who);
   } catch (const std::exception& e) {
-    return complain(kBadInput, "controller '" + config.id + "' of robot '" + item.id + "' " + e.what());
+    return complain(kBadInput, who + " " + e.what());
   }
 
-  const std::atomic<bool>& stop = catch_signals();
-  const Watchdog watchdog(kStepTimeout_s, stop);
   mixed_reality::MonotonicTime clock;
   guarded.add(bridge);
   if (const hal::Status claimed = guarded.claim(); !claimed.ok())
@@ -185,6 +190,7 @@ int robot(const RobotOptions& options) {
   catch_rearm();
   mixed_reality::SupervisedParams supervision;
   supervision.rearm = mixed_reality::rearm_params(*item.bridge);
+  supervision.battery = mixed_reality::battery_limit(item.kind);
   supervision.tick_ns = hal::time_of_tick(1, scenario->ticks_per_second);
   supervision.frozen_after_ns = supervision.tick_ns + kFrozenAfter_ns;
   mixed_reality::SupervisedRobot supervised(item.id, bridge, supervision, log);
@@ -204,6 +210,14 @@ int robot(const RobotOptions& options) {
   }
   {
     Progress progress(steps, scenario->ticks_per_second);
+    EmergencyReport emergency(report);
+    const auto prepare = [&] {
+      hal::Json json;
+      begin_report(json, *scenario, item, bridge, supervised.supervisor(), pacer.ledger());
+      if (report) emergency.set_report(json);
+    };
+    const SaveAtEnd save(watchdog, prepare);
+    prepare();
     pacer.start();
     for (hal::Tick tick = 0; (steps == 0 || tick < steps) && !stop.load(std::memory_order_relaxed); ++tick) {
       if (rearm_asked().exchange(false)) supervised.rearm();
@@ -212,15 +226,16 @@ int robot(const RobotOptions& options) {
         freezes = count;
         supervised.hub_was_frozen();
       }
-      if (supervised.latch(tick, clock.now_ns()) && !controller->step(failure)) {
-        failure = "controller '" + config.id + "' of robot '" + item.id + "' threw at tick " + std::to_string(tick) +
-                  ": " + failure + "; the robot is stopped";
+      if (supervised.latch(tick, clock.now_ns()) && !controller->step(failure, tick)) {
+        failure = who + " threw at tick " + std::to_string(tick) + ": " + failure + "; the robot is stopped";
         break;
       }
+      const std::lock_guard hold(watchdog.lock());  // from here on, what is saved changes
       guarded.update();
       hub_faults.value().apply(clock.now_ns());
       supervised.commit(clock.now_ns());  // at once, not after the wait
       progress.step(tick + 1);
+      if (emergency.due()) prepare();
       if (!pacer.wait_for_next(stop)) break;
     }
   }

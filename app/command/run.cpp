@@ -46,16 +46,12 @@ class Recording {
         emergency_(outputs),
         began_s_(wall_seconds()),
         began_cpu_s_(cpu_seconds()),
-        flushed_s_(began_s_) {
+        save_(watchdog, [this] {
+          if (outputs_.trajectory != nullptr) (void)outputs_.trajectory->flush();
+          set_report();
+        }) {
     prepare_report();
-    watchdog_.set_save([this] {
-      if (outputs_.trajectory != nullptr) (void)outputs_.trajectory->flush();
-      set_report();
-    });
   }
-  ~Recording() { watchdog_.set_save({}); }
-  Recording(const Recording&) = delete;
-  Recording& operator=(const Recording&) = delete;
 
   void tick_done() {
     const std::lock_guard hold(watchdog_.lock());
@@ -63,8 +59,7 @@ class Recording {
     const bool records = trajectory != nullptr && recorded_.ok();
     if (records && now_.world.tick() > 0)                                         // 0: a hook went back to the start
       recorded_ = trajectory->record(now_.world.space(), now_.world.tick() - 1);  // the tick that was just done
-    if (const double now_s = wall_seconds(); now_s >= flushed_s_ + kFlushEvery_s) {
-      flushed_s_ = now_s;
+    if (emergency_.due()) {
       if (records && recorded_.ok()) recorded_ = trajectory->flush();
       prepare_report();
     }
@@ -78,8 +73,6 @@ class Recording {
   }
 
  private:
-  static constexpr double kFlushEvery_s = 0.5;
-
   void prepare_report() {
     if (!outputs_.report) return;
     if (mixed_ != nullptr) real_ = mixed_->report();
@@ -98,9 +91,10 @@ class Recording {
   const mixed_reality::MixedSession* mixed_;
   Watchdog& watchdog_;
   EmergencyOutputs emergency_;
-  double began_s_, began_cpu_s_, flushed_s_;
+  double began_s_, began_cpu_s_;
   std::optional<mixed_reality::MixedReport> real_;
   hal::Status recorded_;
+  SaveAtEnd save_;
 };
 
 /// Steps a purely simulated world, paced when its file says so. @returns deadlines that were missed.

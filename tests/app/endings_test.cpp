@@ -221,5 +221,65 @@ TEST_F(Endings, ACtrlCBeforeTheTimeIsOverCountsToo) {
   EXPECT_EQ(text_of(folder_.path() / "t.csv"), "old");
 }
 
+/// `tandem robot`, whose controller takes the program with it, or never returns.
+class RobotEndings : public testing::Test {
+ protected:
+  std::unique_ptr<Tandem> start(const std::string& params, const std::vector<std::string>& more = {}) {
+    ::setenv("XDG_RUNTIME_DIR", folder_.path().c_str(), 1);
+    folder_.write("e.xml", R"(<tandem><framework><experiment length="0" ticks_per_second="10"/></framework><controllers>
+<troublemaker id="who" library="test_trouble"><actuators><differential_steering/></actuators><params )" +
+                               params + R"(/></troublemaker></controllers><arena size="4,4,1"><e-puck id="ep0">
+<body position="0,0,0"/><controller config="who"/><bridge link="serial:ep0"/></e-puck></arena></tandem>)");
+    folder_.write("r.json", "old");
+    std::vector<std::string> words = {"robot", "e.xml", "--report", "r.json"};
+    words.insert(words.end(), more.begin(), more.end());
+    return std::make_unique<Tandem>(words, folder_.path());
+  }
+  std::string report() const { return text_of(folder_.path() / "r.json"); }
+  void expect_saved(const std::string& failure) const {
+    EXPECT_EQ(json_value(report(), "finished"), "false") << report();
+    EXPECT_EQ(json_value(report(), "ended"), "failed");
+    EXPECT_EQ(json_value(report(), "robot"), "ep0");
+    EXPECT_THAT(report(), AllOf(HasSubstr(failure), testing::EndsWith("}\n")));
+    EXPECT_FALSE(scenarios::fs::exists(folder_.path() / "r.json.part"));
+    EXPECT_TRUE(eventually([&] { return !epuck_.moves(); }, 20)) << epuck_.log();
+  }
+
+  Folder folder_;
+  scenarios::EmulatedEpuck epuck_{folder_};
+};
+
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+TEST_F(RobotEndings, ACrashNamesControllerRobotAndTickAndKeepsAReport) {
+  for (const auto& [what, word] :
+       std::map<std::string, std::string>{{"memory", "SIGSEGV"}, {"exit", "called exit(0)"}}) {
+    auto robot = start("what=\"" + what + "\" at=\"9\"");
+    EXPECT_EQ(robot->wait(60), 3);
+    const std::string who = "controller 'who' (library 'test_trouble') of robot 'ep0' at tick 9";
+    EXPECT_THAT(robot->errors(), AllOf(HasSubstr("error: " + who), HasSubstr(word)));
+    expect_saved(who);
+  }
+  EXPECT_TRUE(epuck_.has_moved());
+}
+
+TEST_F(RobotEndings, ACrashBeforeTheFirstTickIsNamed) {
+  auto robot = start(R"(what="memory" early="true")");
+  EXPECT_EQ(robot->wait(), 3);
+  EXPECT_THAT(robot->errors(), HasSubstr("of robot 'ep0', while it was made, crashed: SIGSEGV"));
+  EXPECT_EQ(report(), "old");
+}
+#endif
+
+TEST_F(RobotEndings, AControllerThatDoesNotReturnIsNamedAndTheFirstCtrlCEndsIt) {
+  auto robot = start(R"(what="loop" at="9")", {"--step-timeout", "0.3"});
+  const std::string who = "controller 'who' (library 'test_trouble') of robot 'ep0' at tick 9";
+  ASSERT_TRUE(eventually([&] { return robot->errors().find(who + " has not returned") != std::string::npos; }, 30))
+      << robot->errors();
+  robot->signal(SIGINT);
+  EXPECT_EQ(robot->wait(), 3);
+  expect_saved(who + " did not return");
+  EXPECT_EQ(json_value(report(), "steps"), "9");
+}
+
 }  // namespace
 }  // namespace tandem
