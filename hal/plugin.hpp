@@ -8,7 +8,7 @@
 namespace tandem::hal {
 
 /// Raised whenever a type that crosses the plug-in border changes.
-inline constexpr std::uint32_t kAbiNumber = 4;
+inline constexpr std::uint32_t kAbiNumber = 5;
 inline constexpr std::uint32_t kPluginMagic = 0x544E444D;  // "TNDM"
 
 /// Receives what a plug-in offers. `category` is "controller" (`type` is a ControllerType) or "hook" (core's HookType).

@@ -6,24 +6,6 @@
 namespace tandem::hal {
 namespace {
 
-std::size_t size_of(Scalar scalar) noexcept {
-  switch (scalar) {
-    case Scalar::U8:
-    case Scalar::Bool:
-      return 1;
-    case Scalar::U16:
-      return 2;
-    case Scalar::F32:
-    case Scalar::U32:
-    case Scalar::I32:
-      return 4;
-    case Scalar::F64:
-    case Scalar::I64:
-      return 8;
-  }
-  return 1;
-}
-
 template <class T>
 T load(const std::byte* at) noexcept {
   T value;
@@ -48,7 +30,7 @@ bool is_stamp(const Field& field) noexcept {
 
 namespace detail {
 
-std::uint64_t layout_fingerprint(const PortType& type) noexcept {
+std::uint64_t layout_fingerprint(const RowType& type) noexcept {
   std::uint64_t hash = 1469598103934665603ULL;  // FNV-1a
   const auto mix = [&hash](std::uint64_t value) {
     for (int i = 0; i < 8; ++i) hash = (hash ^ ((value >> (8 * i)) & 0xFF)) * 1099511628211ULL;
@@ -71,15 +53,15 @@ std::uint64_t layout_fingerprint(const PortType& type) noexcept {
 
 }  // namespace detail
 
-const Field* PortType::field(std::string_view field_name) const noexcept {
+const Field* RowType::field(std::string_view field_name) const noexcept {
   for (const Field& f : fields) {
     if (f.name == field_name) return &f;
   }
   return nullptr;
 }
 
-double get_value(const void* port, const Field& field, std::size_t index) noexcept {
-  const std::byte* at = static_cast<const std::byte*>(port) + field.offset + index * size_of(field.scalar);
+double get_value(const void* row, const Field& field, std::size_t index) noexcept {
+  const std::byte* at = static_cast<const std::byte*>(row) + field.offset + index * size_of(field.scalar);
   switch (field.scalar) {
     case Scalar::F32:
       return static_cast<double>(load<float>(at));
@@ -100,8 +82,8 @@ double get_value(const void* port, const Field& field, std::size_t index) noexce
   return 0.0;
 }
 
-void set_value(void* port, const Field& field, std::size_t index, double value) noexcept {
-  std::byte* at = static_cast<std::byte*>(port) + field.offset + index * size_of(field.scalar);
+void set_value(void* row, const Field& field, std::size_t index, double value) noexcept {
+  std::byte* at = static_cast<std::byte*>(row) + field.offset + index * size_of(field.scalar);
   switch (field.scalar) {
     case Scalar::F32:
       store<float>(at, value);
@@ -130,18 +112,26 @@ void set_value(void* port, const Field& field, std::size_t index, double value) 
   }
 }
 
-std::size_t used_count(const PortType& type, const void* port, const Field& field) noexcept {
-  if (field.used_by.empty()) return field.count;
+UsedBy used_by(const RowType& type, const Field& field) noexcept {
+  if (field.used_by.empty()) return {};
   const Field* used = type.field(field.used_by);
-  if (used == nullptr) return field.count;
-  const auto entries = static_cast<std::size_t>(std::max(0.0, get_value(port, *used, 0)));
+  if (used == nullptr) return {};
   // A field may hold several scalars an entry; its first field of that length tells how many entries there can be.
   std::size_t capacity = field.count;
   for (const Field& f : type.fields) {
     if (f.used_by == field.used_by) capacity = std::min(capacity, f.count);
   }
-  const std::size_t per_entry = std::max<std::size_t>(1, field.count / capacity);
-  return std::min(field.count, entries * per_entry);
+  return {used, std::max<std::size_t>(1, field.count / capacity)};
+}
+
+std::size_t used_count(const UsedBy& used, const void* row, const Field& field) noexcept {
+  if (used.field == nullptr) return field.count;
+  const auto entries = static_cast<std::size_t>(std::max(0.0, get_value(row, *used.field, 0)));
+  return std::min(field.count, entries * used.per_entry);
+}
+
+std::size_t used_count(const RowType& type, const void* row, const Field& field) noexcept {
+  return used_count(used_by(type, field), row, field);
 }
 
 std::string to_text(const PortType& type, const void* port) {

@@ -1,4 +1,5 @@
 // Ports: one device of one robot as plain data that describes its own fields.
+// Rows of what the simulation keeps for a robot describe themselves in the same way.
 //
 // A reading (sensor) carries when it was taken and whether it can be trusted; a command (actuator),
 // default-constructed, is the safe one. `port_type<T>()` gives the description at run time, so that recording,
@@ -47,7 +48,26 @@ enum class Fusion : std::uint8_t {
   ByAngle   ///< the nearer of those that look the same way (distances of a scanner); done by the port's own `merge`
 };
 
-/// One field of a port: `count` scalars at `offset`.
+/// In bytes.
+constexpr std::size_t size_of(Scalar scalar) noexcept {
+  switch (scalar) {
+    case Scalar::U8:
+    case Scalar::Bool:
+      return 1;
+    case Scalar::U16:
+      return 2;
+    case Scalar::F32:
+    case Scalar::U32:
+    case Scalar::I32:
+      return 4;
+    case Scalar::F64:
+    case Scalar::I64:
+      return 8;
+  }
+  return 1;
+}
+
+/// One field of a row: `count` scalars at `offset`.
 struct Field {
   std::string_view name;
   std::size_t offset = 0;
@@ -60,19 +80,24 @@ struct Field {
   std::string_view used_by = {};  ///< name of the field that holds how many of `count` are in use; empty: all
 };
 
-/// The run-time description of a port class. One per class and program; compare by name and `layout`.
-struct PortType {
-  std::string_view name;  ///< as written in experiment files, e.g. "proximity"
-  Role role = Role::Sensor;
+/// The run-time description of plain data. One per class and program; compare by name and `layout`.
+struct RowType {
+  std::string_view name;  ///< of a port: as written in experiment files, e.g. "proximity"
   std::string_view doc;
   std::size_t size = 0;
   std::size_t align = 0;
   std::uint64_t layout = 0;  ///< fingerprint of names, offsets and types: equal on both sides of a plug-in border
   std::vector<Field> fields;
-  void (*reset)(void*) = nullptr;  ///< writes the default: an absent reading, or the safe command
-  void (*merge)(void* real, const void* virtual_) = nullptr;  ///< for Fusion::Union and ByAngle; null where none
+  void (*reset)(void*) = nullptr;  ///< writes the default
+  const void* initial = nullptr;   ///< a row as `reset` leaves it
 
   const Field* field(std::string_view field_name) const noexcept;
+};
+
+/// The run-time description of a port class. Its default is an absent reading, or the safe command.
+struct PortType : RowType {
+  Role role = Role::Sensor;
+  void (*merge)(void* real, const void* virtual_) = nullptr;  ///< for Fusion::Union and ByAngle; null where none
 };
 
 namespace detail {
@@ -99,16 +124,16 @@ constexpr Scalar scalar_of() {
     return Scalar::I64;
   }
 }
-std::uint64_t layout_fingerprint(const PortType& type) noexcept;
+std::uint64_t layout_fingerprint(const RowType& type) noexcept;
 }  // namespace detail
 
-/// Collects the fields of one port class; handed to `T::describe`.
+/// Collects the fields of one class of rows; handed to `T::describe`.
 class FieldList {
  public:
   FieldList(const void* base, std::vector<Field>& fields)
       : base_(static_cast<const std::byte*>(base)), fields_(fields) {}
 
-  /// `member` is a scalar or a (nested) array of scalars of the port at hand. Shape: all scalars in it.
+  /// `member` is a scalar or an array of scalars of the row at hand.
   template <class M>
   Field& add(std::string_view name, const M& member, const Unit& unit, Frame frame, Fusion fusion,
              std::string_view doc) {
@@ -132,6 +157,12 @@ class FieldList {
     return fields_.back();
   }
 
+  /// A field of a row that no real robot has.
+  template <class M>
+  Field& add(std::string_view name, const M& member, const Unit& unit, std::string_view doc) {
+    return add(name, member, unit, Frame::None, Fusion::Virtual, doc);
+  }
+
  private:
   const std::byte* base_;
   std::vector<Field>& fields_;
@@ -142,41 +173,71 @@ concept SensorPort = std::is_base_of_v<Reading, T>;
 template <class T>
 concept ActuatorPort = std::is_base_of_v<Command, T>;
 
-/// The description of port class `T`, which has `kName`, `kDoc` and `void describe(FieldList&) const`.
+namespace detail {
+/// Fills in all but `layout`; `list_more` adds the fields that stand before T's own.
+template <class T, class ListMore>
+void describe_row(RowType& type, ListMore&& list_more) {
+  static_assert(std::is_trivially_copyable_v<T>, "a row is plain data");
+  static const T prototype{};
+  type.name = T::kName;
+  type.doc = T::kDoc;
+  type.size = sizeof(T);
+  type.align = alignof(T);
+  type.initial = &prototype;
+  type.reset = [](void* row) { *static_cast<T*>(row) = T{}; };
+  FieldList list(&prototype, type.fields);
+  list_more(list, prototype);
+  prototype.describe(list);
+  type.layout = layout_fingerprint(type);
+}
+}  // namespace detail
+
+/// The description of class `T`, which has `kName`, `kDoc` and `void describe(FieldList&) const`.
 template <class T>
-const PortType& port_type() {
-  static_assert(SensorPort<T> || ActuatorPort<T>);
-  static_assert(std::is_trivially_copyable_v<T>, "a port is plain data");
-  static const PortType type = [] {
-    PortType t;
-    t.name = T::kName;
-    t.doc = T::kDoc;
-    t.role = SensorPort<T> ? Role::Sensor : Role::Actuator;
-    t.size = sizeof(T);
-    t.align = alignof(T);
-    static const T prototype{};
-    FieldList list(&prototype, t.fields);
-    if constexpr (SensorPort<T>) {
-      list.add("taken_ns", prototype.taken_ns, unit::none, Frame::None, Fusion::Real, "when the values were measured");
-      list.add("validity", prototype.validity, unit::none, Frame::None, Fusion::Real, "0 absent, 1 stale, 2 fresh");
-    }
-    prototype.describe(list);
-    t.reset = [](void* port) { *static_cast<T*>(port) = T{}; };
-    if constexpr (requires(T & a, const T& b) { a.merge(b); }) {
-      t.merge = [](void* real, const void* virt) { static_cast<T*>(real)->merge(*static_cast<const T*>(virt)); };
-    }
-    t.layout = detail::layout_fingerprint(t);
+const RowType& row_type() {
+  static const RowType type = [] {
+    RowType t;
+    detail::describe_row<T>(t, [](FieldList&, const T&) {});
     return t;
   }();
   return type;
 }
 
-/// Element `index` of `field` in the port at `port`, as a double (exact for all but large 64-bit integers).
-double get_value(const void* port, const Field& field, std::size_t index) noexcept;
-void set_value(void* port, const Field& field, std::size_t index, double value) noexcept;
+/// The description of port class `T`.
+template <class T>
+const PortType& port_type() {
+  static_assert(SensorPort<T> || ActuatorPort<T>);
+  static const PortType type = [] {
+    PortType t;
+    t.role = SensorPort<T> ? Role::Sensor : Role::Actuator;
+    detail::describe_row<T>(t, [](FieldList& list, const T& port) {
+      if constexpr (SensorPort<T>) {
+        list.add("taken_ns", port.taken_ns, unit::none, Frame::None, Fusion::Real, "when the values were measured");
+        list.add("validity", port.validity, unit::none, Frame::None, Fusion::Real, "0 absent, 1 stale, 2 fresh");
+      }
+    });
+    if constexpr (requires(T & a, const T& b) { a.merge(b); }) {
+      t.merge = [](void* real, const void* virt) { static_cast<T*>(real)->merge(*static_cast<const T*>(virt)); };
+    }
+    return t;
+  }();
+  return type;
+}
 
-/// How many elements of `field` are in use in this port.
-std::size_t used_count(const PortType& type, const void* port, const Field& field) noexcept;
+/// Element `index` of `field` in `row`, as a double (exact for all but large 64-bit integers).
+double get_value(const void* row, const Field& field, std::size_t index) noexcept;
+void set_value(void* row, const Field& field, std::size_t index, double value) noexcept;
+
+/// Where it stands how many entries of a field are in use, and how many scalars each has. No field: all are in use.
+struct UsedBy {
+  const Field* field = nullptr;
+  std::size_t per_entry = 1;
+};
+UsedBy used_by(const RowType& type, const Field& field) noexcept;
+
+/// How many elements of `field` are in use in this row.
+std::size_t used_count(const RowType& type, const void* row, const Field& field) noexcept;
+std::size_t used_count(const UsedBy& used, const void* row, const Field& field) noexcept;
 
 /// "proximity: distance=[0.1 0.1 …] m validity=2 …": every field in use, for people.
 std::string to_text(const PortType& type, const void* port);
