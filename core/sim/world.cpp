@@ -4,8 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "core/sim/fingerprint.hpp"
 #include "core/sim/piloting.hpp"
-#include "core/sim/state_hash.hpp"
 #include "core/sim/world_impl.hpp"
 #include "hal/check.hpp"
 #include "hal/filter.hpp"
@@ -406,7 +406,11 @@ const Incidents& World::incidents() const noexcept {
 }
 
 std::uint64_t World::state_hash() const noexcept {
-  return hash_of_state(impl_->stores(), impl_->seed, impl_->tick);
+  return fingerprint(state_view());
+}
+
+StateView World::state_view() const noexcept {
+  return {impl_->stores(), impl_->devices, impl_->seed, impl_->tick};
 }
 
 }  // namespace tandem::core

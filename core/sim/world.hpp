@@ -10,6 +10,7 @@
 #include "core/scenario/scenario.hpp"
 #include "core/sim/external.hpp"
 #include "core/sim/snapshot.hpp"
+#include "core/sim/state_values.hpp"
 #include "core/space/space.hpp"
 #include "hal/log.hpp"
 #include "hal/plugin_loader.hpp"
@@ -84,8 +85,10 @@ class World {
   const Space& space() const noexcept;
   const Incidents& incidents() const noexcept;
 
-  /// Fingerprint of everything that later steps depend on, in the order of entities: equal for any number of threads.
+  /// Fingerprint of everything that later steps depend on: equal for any number of threads.
   std::uint64_t state_hash() const noexcept;
+  /// The same value by value: for `state_values`. Call between steps; what it shows is that of the next step then.
+  StateView state_view() const noexcept;
 
  private:
   void do_requests();

@@ -43,15 +43,27 @@ inline constexpr std::size_t kBlockRows = 256;
 
 /// What engines with forces or a third dimension know of a body beyond its place in the plane. In W.
 struct Motion {
+  static constexpr std::string_view kName = "motion";
+  static constexpr std::string_view kDoc = "Height, attitude and velocities.";
   double z_m = 0.0;  ///< of the base above the ground
   std::array<double, 4> q_WB = {1.0, 0.0, 0.0,
                                 0.0};  ///< w, x, y, z; its yaw is the heading. Engines of the plane: unused
   std::array<double, 3> v_m_s{};
   std::array<double, 3> w_rad_s{};
+
+  void describe(hal::FieldList& f) const {
+    f.add("z", z_m, hal::unit::m, "of the base above the ground");
+    f.add("q_WB", q_WB, hal::unit::none, "w, x, y, z");
+    f.add("v", v_m_s, hal::unit::m_s, "in W");
+    f.add("w", w_rad_s, hal::unit::rad_s, "in W");
+  }
 };
 
 /// What a flying robot is told to do, by whatever flies it.
 struct FlightCommand {
+  static constexpr std::string_view kName = "flight_command";
+  static constexpr std::string_view kDoc = "What pilots tell flying robots to do.";
+
   enum class Mode : std::uint8_t {
     None,  ///< motors off: it falls or stands
     Velocity,
@@ -63,6 +75,12 @@ struct FlightCommand {
   /// Velocity in m/s, or position in m, in W; Attitude: roll and pitch in rad, thrust in parts of the weight.
   std::array<double, 3> target{};
   double yaw = 0.0;  ///< Velocity, Attitude: turn rate in rad/s; Position: heading in rad
+
+  void describe(hal::FieldList& f) const {
+    f.add("mode", mode, hal::unit::none, "");
+    f.add("target", target, hal::unit::none, "in W; an attitude: roll, pitch, thrust");
+    f.add("yaw", yaw, hal::unit::none, "in rad/s, of a position in rad");
+  }
 };
 
 /// Two bodies held together. Both are moved by the engine of the one that sorts first, wherever they are.
