@@ -267,10 +267,10 @@ TEST(Golden, TheBenchmarkKeepsItsBits) {
   Folder folder;
   Tandem bench({"bench", "diffusion", "--robots", "1000", "--ticks", "100"}, folder.path());
   ASSERT_EQ(bench.wait(), 0) << bench.errors();
-  EXPECT_EQ(json_value(bench.output(), "state_hash"), "0x2891440467e4230b");
+  EXPECT_EQ(json_value(bench.output(), "state_hash"), "0x3846a2483d57e45b");
   Tandem run({"run", kConfigs + "epuck_diffusion.xml", "--report", "-"}, folder.path());
   ASSERT_EQ(run.wait(), 0) << run.errors();
-  EXPECT_EQ(json_value(run.output(), "state_hash"), "0xabba2706408fb50f");
+  EXPECT_EQ(json_value(run.output(), "state_hash"), "0x582f940842abfb97");
 }
 
 TEST(Bench, MeasuresEveryRunAfresh) {
