@@ -26,6 +26,11 @@ void add_run(CLI::App& app, RunOptions& o, int& code) {
   c->add_option("--report", o.report, "Write a JSON report to this file ('-': standard output)");
   c->add_option("--picture", o.picture, "Draw the space from above at the end: FILE.svg, .png or .pdf");
   c->add_option("--trajectory", o.trajectory, "Write poses as CSV");
+  auto* dump =
+      c->add_option("--dump", o.dump, "Write every value of the state at the end as CSV, for `tandem compare`");
+  c->add_option("--dump-every", o.dump_every, "… and after every so many ticks")
+      ->check(CLI::PositiveNumber)
+      ->needs(dump);
   add_step_timeout(*c, o.step_timeout_s);
   c->add_option("--without", o.without, "Simulate this robot instead of driving the real one; repeatable")
       ->allow_extra_args(false);
@@ -35,6 +40,25 @@ void add_run(CLI::App& app, RunOptions& o, int& code) {
                 "repeatable")
       ->allow_extra_args(false);
   c->callback([&] { code = run(o); });
+}
+
+void add_compare(CLI::App& app, CompareOptions& o, int& code) {
+  CLI::App* c = app.add_subcommand("compare", "Name the first tick and the values in which two runs differ.");
+  c->footer("Exit code: 0 equal, 4 different. Real robots are simulated; hooks do not learn of the end.");
+  c->add_option("a", o.a, "An experiment, which is run, or what `tandem run --dump` wrote")->required();
+  c->add_option("b", o.b, "The other one; default: the same again");
+  auto* seconds = c->add_option("--seconds", o.seconds, "Virtual duration of runs, instead of the file's")
+                      ->check(CLI::PositiveNumber);
+  c->add_option("--steps", o.steps, "Number of control steps, instead of the file's length")
+      ->check(CLI::PositiveNumber)
+      ->excludes(seconds);
+  c->add_option("--seed", o.seed, "Seed of all chance in both, instead of the files'");
+  c->add_option("--threads-a", o.threads_a, "Threads that step A")->check(CLI::Range(0, 1024));
+  c->add_option("--threads-b", o.threads_b, "Threads that step B")->check(CLI::Range(0, 1024));
+  c->add_option("--set", o.overrides, "Change both experiments: path=value; repeatable")->allow_extra_args(false);
+  c->add_option("--set-a", o.overrides_a, "Change A alone; repeatable")->allow_extra_args(false);
+  c->add_option("--set-b", o.overrides_b, "Change B alone; repeatable")->allow_extra_args(false);
+  c->callback([&] { code = compare(o); });
 }
 
 void add_bench(CLI::App& app, BenchOptions& o, int& code) {
@@ -103,6 +127,9 @@ int main(int argc, char** argv) {
 
   RunOptions run_options;
   add_run(app, run_options, code);
+
+  CompareOptions compare_options;
+  add_compare(app, compare_options, code);
 
   std::string kind;
   CLI::App* list_command =

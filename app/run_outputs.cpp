@@ -28,9 +28,11 @@ hal::Status check_output_paths(const RunOptions& options, const core::Scenario& 
     if (!format.ok()) return hal::Error{"--picture: " + format.error().message};
     if (const hal::Status renderer = core::can_render(format.value()); !renderer.ok()) return renderer;
   }
-  return check_apart(
-      {{"report", options.report}, {"picture", options.picture}, {"trajectory", trajectory_path(options, scenario)}},
-      inputs_of(scenario));
+  return check_apart({{"report", options.report},
+                      {"picture", options.picture},
+                      {"trajectory", trajectory_path(options, scenario)},
+                      {"dump", options.dump}},
+                     inputs_of(scenario));
 }
 
 hal::Result<RunOutputs> open_outputs(const RunOptions& options, const core::Scenario& scenario,
@@ -49,6 +51,11 @@ hal::Result<RunOutputs> open_outputs(const RunOptions& options, const core::Scen
     auto opened = core::TrajectoryRecorder::open(config, world.space(), world.ticks_per_second());
     if (!opened.ok()) return opened.error();
     outputs.trajectory = std::move(opened).value();
+  }
+  if (!options.dump.empty()) {
+    auto opened = StateDump::open(options.dump, options.dump_every);
+    if (!opened.ok()) return opened.error();
+    outputs.dump = std::move(opened).value();
   }
   return outputs;
 }

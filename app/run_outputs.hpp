@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "app/command/command.hpp"
+#include "app/state_dump.hpp"
 #include "core/record/trajectory.hpp"
 #include "core/sim/world.hpp"
 #include "hal/output_file.hpp"
@@ -15,6 +16,7 @@ struct RunOutputs {
   std::optional<hal::OutputFile> report;
   std::optional<hal::OutputFile> picture;
   std::unique_ptr<core::TrajectoryRecorder> trajectory;
+  std::optional<StateDump> dump;
 };
 
 /// Whether the paths make sense together. Errors: one names a file that the experiment is read from, or another

@@ -9,7 +9,7 @@
 
 namespace tandem::app {
 
-enum ExitCode : int { kDone = 0, kBadInput = 1, kWrongUsage = 2, kFailedRunning = 3 };
+enum ExitCode : int { kDone = 0, kBadInput = 1, kWrongUsage = 2, kFailedRunning = 3, kDifferent = 4 };
 
 struct RunOptions {
   std::string experiment;
@@ -21,12 +21,25 @@ struct RunOptions {
   std::string report;                   ///< file, or "-"
   std::string picture;                  ///< .svg, .png or .pdf
   std::string trajectory;               ///< CSV file, of every robot unless the experiment says which
+  std::string dump;                     ///< CSV file of every value of the state
+  std::int64_t dump_every = 0;          ///< ticks; 0: at the end alone
   std::vector<std::string> without;     ///< real robots that are simulated instead, by id
   std::vector<std::string> hub_faults;  ///< as `parse_hub_fault` reads them
   bool quiet = false;                   ///< no table
   double step_timeout_s = 5.0;          ///< after which a controller or hook that does not return is named; 0: never
 };
 int run(const RunOptions& options);
+
+struct CompareOptions {
+  std::string a, b;  ///< experiments or dumps; an empty b is a
+  std::optional<double> seconds;
+  std::optional<std::int64_t> steps;
+  std::optional<std::uint64_t> seed;
+  std::optional<std::int64_t> threads_a, threads_b;
+  std::vector<std::string> overrides, overrides_a, overrides_b;  ///< of both; of one
+};
+/// kDifferent: a value differs.
+int compare(const CompareOptions& options);
 
 struct CheckOptions {
   std::string experiment;
@@ -96,6 +109,9 @@ int inspect_aseba(const InspectOptions& options);
 int inspect_lcm(const InspectOptions& options);
 
 // --- shared by the commands ---
+
+/// Steps to do; 0: until interrupted or a hook ends the run.
+std::int64_t steps_of(std::optional<std::int64_t> steps, std::optional<double> seconds, const core::Scenario& scenario);
 
 /// Reads an experiment and prints every problem; nothing when there is an error.
 std::optional<core::Scenario> read_or_complain(const std::string& path, const std::vector<std::string>& overrides);

@@ -1,4 +1,5 @@
 // Files as the commands read them: every problem is printed.
+#include <algorithm>
 #include <fmt/format.h>
 
 #include "app/catalog.hpp"
@@ -21,6 +22,14 @@ std::optional<core::Scenario> read_or_complain(const std::string& path, const st
   print_problems(problems);
   if (core::has_errors(problems)) return std::nullopt;
   return scenario;
+}
+
+std::int64_t steps_of(std::optional<std::int64_t> steps, std::optional<double> seconds,
+                      const core::Scenario& scenario) {
+  if (steps) return *steps;
+  const double length_s = seconds.value_or(scenario.length_s);
+  const auto wanted = static_cast<std::int64_t>(length_s * static_cast<double>(scenario.ticks_per_second) + 0.5);
+  return length_s > 0.0 ? std::max<std::int64_t>(1, wanted) : 0;  // a duration below a tick is one tick, not endless
 }
 
 bool is_map(const std::string& path) {

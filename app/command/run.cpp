@@ -25,14 +25,6 @@ namespace {
 
 constexpr int kWarningsShown = 20;
 
-/// Steps to do; 0: until interrupted or a hook ends the run.
-std::int64_t steps_of(const RunOptions& options, const core::Scenario& scenario) {
-  if (options.steps) return *options.steps;
-  const double seconds = options.seconds.value_or(scenario.length_s);
-  const auto steps = static_cast<std::int64_t>(seconds * static_cast<double>(scenario.ticks_per_second) + 0.5);
-  return seconds > 0.0 ? std::max<std::int64_t>(1, steps) : 0;  // a duration below a tick is one tick, not endless
-}
-
 /// What is kept of a run while it goes on, so that little is lost however it ends: records, which the system gets twice
 /// a second, and a report for the emergency. Lives from the first tick to the last.
 class Recording {
@@ -64,6 +56,9 @@ class Recording {
       prepare_report();
     }
     if (records && !recorded_.ok()) complain(kFailedRunning, recorded_.error().message + "; the run goes on");
+    if (!outputs_.dump) return;
+    if (const hal::Status dumped = outputs_.dump->tick_done(now_.world); !dumped.ok())
+      complain(kFailedRunning, dumped.error().message + "; the run goes on");
   }
 
   void measure() {
@@ -186,6 +181,7 @@ bool write_results(RunOutputs& outputs, const RunResult& result, bool table) {
     if (!status.ok()) good = complain(kFailedRunning, status.error().message) == kDone;
   };
   if (outputs.trajectory != nullptr) check(outputs.trajectory->close());
+  if (outputs.dump) check(outputs.dump->close(result.world));
   if (outputs.picture) {
     core::PictureOptions picture;
     picture.experiment = result.world.scenario().name;
@@ -248,7 +244,7 @@ int run(const RunOptions& options) {
   if (code != kDone) return stop.load() ? interrupted_code() : code;
 
   const auto controllers = controller_files(*scenario, loader);
-  const std::int64_t steps = steps_of(options, *scenario);
+  const std::int64_t steps = steps_of(options.steps, options.seconds, *scenario);
   RunResult result{*world, controllers, {}, world->space().robot_count(), {}, nullptr};
   result.figures.threads = world->threads();
   result.figures.init_s = wall_seconds() - began;

@@ -273,6 +273,58 @@ TEST(Golden, TheBenchmarkKeepsItsBits) {
   EXPECT_EQ(json_value(run.output(), "state_hash"), "0x582f940842abfb97");
 }
 
+TEST(Compare, FindsRunsWithOtherThreadsEqual) {
+  Folder folder;
+  Tandem compare({"compare", kConfigs + "epuck_benchmark.xml", "--threads-a", "0", "--threads-b", "2", "--steps", "5"},
+                 folder.path());
+  EXPECT_EQ(compare.wait(), 0) << compare.errors();
+  EXPECT_EQ(compare.output(), "equal at 6 moments, the last one tick 5\n");
+}
+
+TEST(Compare, NamesTheFirstTickAndTheValuesThatDiffer) {
+  Folder folder;
+  Tandem compare({"compare", kConfigs + "epuck_diffusion.xml", "--set-b", "controllers.epuck_diffusion.params.alpha=3"},
+                 folder.path());
+  EXPECT_EQ(compare.wait(), 4) << compare.errors();
+  const std::string said = compare.output();
+  EXPECT_NE(said.find("B: " + kConfigs + "epuck_diffusion.xml --set controllers.epuck_diffusion.params.alpha=3\n"),
+            std::string::npos)
+      << said;
+  EXPECT_NE(said.find("equal until tick 99\ntick 100: 1 value differs\n"), std::string::npos) << said;
+  EXPECT_NE(said.find("robot ep11  actuator differential_steering  right  0.05  -\n"), std::string::npos) << said;
+}
+
+TEST(Compare, TellsWhichOneEndedBeforeTheOther) {
+  Folder folder;
+  Tandem compare({"compare", kConfigs + "epuck_diffusion.xml", "--set-b", "framework.experiment.length=1"},
+                 folder.path());
+  EXPECT_EQ(compare.wait(), 4) << compare.errors();
+  EXPECT_EQ(compare.output(), "equal until tick 10; then only B ended: its time was over\n");
+}
+
+TEST(Compare, TakesADumpForARun) {
+  Folder folder;
+  const std::string experiment = kConfigs + "epuck_diffusion.xml";
+  for (const char* seed : {"1", "2"}) {
+    Tandem run({"run", experiment, "--seed", seed, "--steps", "7", "--dump", std::string(seed) + ".csv", "--dump-every",
+                "3", "--quiet"},
+               folder.path());
+    ASSERT_EQ(run.wait(), 0) << run.errors();
+  }
+  EXPECT_EQ(text_of(folder.path() / "1.csv").substr(0, 34), "tick,who,what,field,value\n3,world,");
+  Tandem equal({"compare", experiment, "1.csv", "--seed", "1"}, folder.path());
+  EXPECT_EQ(equal.wait(), 0) << equal.output() << equal.errors();
+  EXPECT_EQ(equal.output(), "equal at 3 moments, the last one tick 7\n");
+  Tandem other({"compare", "1.csv", "2.csv"}, folder.path());
+  EXPECT_EQ(other.wait(), 4) << other.output() << other.errors();
+  EXPECT_NE(other.output().find("\ntick 3: "), std::string::npos) << other.output();
+  EXPECT_NE(other.output().find(" seed "), std::string::npos) << other.output();
+  folder.write("bad.csv", "tick,who,what,field,value\n3,world,world,seed,1\nthree,world\n");
+  Tandem bad({"compare", "bad.csv", "1.csv"}, folder.path());
+  EXPECT_EQ(bad.wait(), 1) << bad.output();
+  EXPECT_NE(bad.errors().find("bad.csv:3"), std::string::npos) << bad.errors();
+}
+
 TEST(Bench, MeasuresEveryRunAfresh) {
   Folder folder;
   Tandem bench({"bench", "diffusion", "--robots", "4000,100,4000", "--ticks", "5"}, folder.path());
