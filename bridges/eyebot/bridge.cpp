@@ -201,11 +201,6 @@ void EyebotBridge::commit(TimeNs now) noexcept {
   driver_.commit(now);
 }
 
-void EyebotBridge::fault(TimeNs now, std::string_view why) {
-  const std::lock_guard lock(mutex_);
-  driver_.fault(now, why);
-}
-
 void EyebotBridge::stop(TimeNs now) noexcept {
   const std::lock_guard lock(mutex_);
   driver_.stop(now);
@@ -263,7 +258,7 @@ StopMessages EyebotBridge::stop_messages() const {
   return {.robot = settings_.driver.robot.id,
           .kind = std::string(hal::eyebot::kDataSheet.kind),
           .link = "lcm:" + settings_.url,
-          .body = to_stop_body(last_words()),
+          .body = to_stop_body(stop_details()),
           .version = stop_version(),
           .name = driver_.settings().name};
 }
@@ -349,7 +344,7 @@ BridgeStatus EyebotBridge::status() const {
   return status;
 }
 
-LastWords EyebotBridge::last_words() const {
+StopDetails EyebotBridge::stop_details() const {
   const DriverSettings& driver = driver_.settings();  // does not change
   const std::uint32_t first_seq =
       static_cast<std::uint32_t>(driver.first_seq) + (2 * withdrawals_.load(std::memory_order_relaxed) + 1) * kTurn;

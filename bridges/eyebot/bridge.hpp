@@ -59,7 +59,7 @@ struct BridgeStatus {
 };
 
 /// For a guardian: all that it takes to go on in the hub's name.
-struct LastWords {
+struct StopDetails {
   std::string url;
   std::string name;
   std::string hub;
@@ -91,7 +91,6 @@ class EyebotBridge final : public RobotBridge, private Outbox {
 
   void latch(hal::Tick tick, hal::TimeNs now) noexcept override;
   void commit(hal::TimeNs now) noexcept override;
-  void fault(hal::TimeNs now, std::string_view why);
   void stop(hal::TimeNs now) noexcept override;
   void land(hal::TimeNs now) noexcept override;
   void resume() noexcept override;
@@ -113,7 +112,7 @@ class EyebotBridge final : public RobotBridge, private Outbox {
   RobotState state() const noexcept;
   DriverStatistics statistics() const noexcept;
   BridgeStatus status() const;
-  LastWords last_words() const;
+  StopDetails stop_details() const;
 
  private:
   /// What handlers of the link write to; theirs as long as the link lives.

@@ -430,13 +430,6 @@ void EyebotDriver::cut_motors(TimeNs now) noexcept {
   pump(now);
 }
 
-void EyebotDriver::fault(TimeNs now, std::string_view why) {
-  ++statistics_.faults;
-  robot_.make_safe();
-  stop(now);
-  log_.error("eye-bot '" + settings_.robot.id + "': hovers, its controller failed: " + std::string(why));
-}
-
 // --- what it is told ---
 
 /// By our clock, as the protocol has it, unless the robot's is so far off that it takes what we say for old.
@@ -477,30 +470,17 @@ void EyebotDriver::count(hal::FilterResult result) noexcept {
   statistics_.not_finite += result == hal::FilterResult::NotFinite ? 1 : 0;
 }
 
-/// How much of its speed the robot may use: less than 1 for a while after an interruption.
-double EyebotDriver::share(TimeNs now) noexcept {
-  if (interrupted_) {
-    interrupted_ = false;
-    ramping_ = settings_.ramp_ns > 0;
-    ramp_start_ns_ = now;
-    ++statistics_.rearmed;
-  }
-  if (!ramping_) return 1.0;
-  const double done = static_cast<double>(now - ramp_start_ns_) / static_cast<double>(settings_.ramp_ns);
-  ramping_ = done < 1.0;
-  return ramping_ ? done : 1.0;
-}
-
 /// What the controller wrote stays as it is: it may write once and never again.
 void EyebotDriver::say_setpoint(TimeNs now) noexcept {
-  const double part = share(now);
+  statistics_.rearmed += interrupted_ ? 1 : 0;
+  interrupted_ = false;
   hal::QuadrotorPosition position;
   if (robot_.uses<hal::QuadrotorPosition>()) position = robot_.port<hal::QuadrotorPosition>();
   count(hal::filter(position));
   if (!position.hold) {
     messages::CmdPosition m{};
     write(position, settings_.world, m);
-    m.max_speed = static_cast<float>(std::max(part * spec::kMaxSpeed_m_s, 0.05));  // 0 would be the robot's own
+    m.max_speed = static_cast<float>(spec::kMaxSpeed_m_s);
     m.timeout_ms = kPositionHolds_ms;
     if (setpoint_ != Told::Position) voice(Told::Position).size = 0;
     setpoint_ = Told::Position;
@@ -510,7 +490,6 @@ void EyebotDriver::say_setpoint(TimeNs now) noexcept {
   hal::QuadrotorSpeed speed;
   if (robot_.uses<hal::QuadrotorSpeed>()) speed = robot_.port<hal::QuadrotorSpeed>();
   count(hal::filter(speed, spec::kMaxSpeed_m_s, spec::kMaxTurn_rad_s));
-  if (part < 1.0) hal::filter(speed, part * spec::kMaxSpeed_m_s, part * spec::kMaxTurn_rad_s);
   messages::CmdVelocity m{};
   write(speed, settings_.world, m);
   m.timeout_ms = kVelocityHolds_ms;

@@ -11,9 +11,9 @@
 // Commands leave within `commit`.
 //
 // A robot in the air must not be left to itself, and never with its motors off:
-//   not active, or no commit for `command_timeout_ns` -> hover; the next commits ramp
+//   not active, or no commit for `command_timeout_ns` -> hover, until the next commit
 //   it was started anew, saved itself, its clock was set -> counted as a stop, even when it is well at once
-//   `stop`, `fault`                                   -> hover until `resume`, then ramp; land when its battery is low
+//   `stop`                                            -> hover until `resume`; land when its battery is low
 //   `land`                                            -> land, then motors off
 //   command not finite, or beyond the limits          -> hover, or clamped; counted
 //   nothing of ours reaches it                        -> it hovers by itself after 2 s, and lands after 10 s
@@ -64,8 +64,6 @@ struct DriverSettings {
   WorldFrame world = {};
   /// The robot hovers when no commit came for so long: the loop hangs, or the controller does.
   hal::TimeNs command_timeout_ns = 500 * hal::kNsPerMs;
-  /// After an interruption the speed limit rises from 0 to the robot's in this time: no jump. 0: at once.
-  hal::TimeNs ramp_ns = 500 * hal::kNsPerMs;
   bool observe = false;        ///< nothing is ever said
   std::int32_t first_seq = 0;  ///< of every channel
   bool controlled = false;     ///< `session` has been given control of the robot before
@@ -79,13 +77,12 @@ struct DriverStatistics {
   std::uint64_t not_understood = 0;   ///< messages of the robot that are damaged
   std::uint64_t clamped = 0;          ///< commands beyond the robot's limits
   std::uint64_t not_finite = 0;       ///< commands with NaN or infinity: made safe
-  std::uint64_t rearmed = 0;          ///< times that flying began anew with a ramp
+  std::uint64_t rearmed = 0;          ///< times that flying began anew after an interruption
   std::uint64_t watchdog_stops = 0;   ///< for want of commits
   std::uint64_t link_stops = 0;       ///< because the robot was not active any more, or had begun anew by itself
   std::uint64_t saved_itself = 0;     ///< times that it went to safety, and not for want of us
   std::uint64_t recovered = 0;        ///< times it became Active again
   std::uint64_t lost = 0;             ///< times it became Lost
-  std::uint64_t faults = 0;           ///< reported with `fault`
   std::uint64_t stalls = 0;           ///< times that our own thread came too late
   std::uint64_t refused_control = 0;  ///< orders refused because another hub controls the robot
 };
@@ -125,8 +122,6 @@ class EyebotDriver {
   void resume() noexcept;
   /// Lands, and switches the motors off on the ground. One that hangs at the ceiling stays there. Until `resume`.
   void land(hal::TimeNs now) noexcept;
-  /// `stop` because the controller failed; `why` is logged with the robot's id. Every command becomes safe.
-  void fault(hal::TimeNs now, std::string_view why);
   /// Its battery is so low that it should not stay in the air.
   bool battery_low() const noexcept;
   /// Motors off at once: it falls. For people who have no other way left.
@@ -222,7 +217,6 @@ class EyebotDriver {
 
   // What it is told.
   void count(hal::FilterResult result) noexcept;
-  double share(hal::TimeNs now) noexcept;
   void say_setpoint(hal::TimeNs now) noexcept;
   void say_devices(hal::TimeNs now) noexcept;
   void say_order(hal::TimeNs now) noexcept;
@@ -274,9 +268,7 @@ class EyebotDriver {
   bool may_fly_ = false;
   Action ordered_ = Action::Nop;     // which was said last
   Told setpoint_ = Told::Heartbeat;  // which was said last; Heartbeat: none
-  bool interrupted_ = false;         // the next flying begins with a ramp
-  bool ramping_ = false;
-  hal::TimeNs ramp_start_ns_ = 0;
+  bool interrupted_ = false;         // the next flying begins anew
   StallMeter stalls_;
   hal::TimeNs now_ns_ = 0;  // of the last `advance`
   bool committed_ = false;

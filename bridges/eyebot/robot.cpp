@@ -103,10 +103,4 @@ void EyebotRobot::tell_time(hal::Tick tick) noexcept {
   clock.validity = hal::Validity::Fresh;
 }
 
-void EyebotRobot::make_safe() noexcept {
-  for (Row& r : rows_) {
-    if (r.type->role == hal::Role::Actuator) r.type->reset(r.data.get());
-  }
-}
-
 }  // namespace tandem::bridges::eyebot

@@ -66,8 +66,6 @@ class EyebotRobot final : public hal::Robot {
   void stamp(hal::Reading& reading, hal::TimeNs taken, hal::TimeNs period_ns, hal::TimeNs now) const noexcept;
   /// Fills the clock.
   void tell_time(hal::Tick tick) noexcept;
-  /// Writes the safe value into every command.
-  void make_safe() noexcept;
 
  protected:
   void* take(const hal::PortType& type) override;

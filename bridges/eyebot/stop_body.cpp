@@ -4,19 +4,19 @@
 
 namespace tandem::bridges::eyebot {
 
-std::string to_stop_body(const LastWords& words) {
-  return words.name + " " + words.hub + " " + std::to_string(words.session) + (words.land ? " 1 " : " 0 ") +
-         std::to_string(words.first_seq) + "\n";
+std::string to_stop_body(const StopDetails& details) {
+  return details.name + " " + details.hub + " " + std::to_string(details.session) + (details.land ? " 1 " : " 0 ") +
+         std::to_string(details.first_seq) + "\n";
 }
 
-std::optional<LastWords> from_stop_body(std::string_view body) {
+std::optional<StopDetails> from_stop_body(std::string_view body) {
   std::istringstream text{std::string(body)};
-  LastWords words;
+  StopDetails details;
   int land = 0;
-  if (!(text >> words.name >> words.hub >> words.session >> land >> words.first_seq)) return std::nullopt;
+  if (!(text >> details.name >> details.hub >> details.session >> land >> details.first_seq)) return std::nullopt;
   if (land < 0 || land > 1) return std::nullopt;
-  words.land = land == 1;
-  return words;
+  details.land = land == 1;
+  return details;
 }
 
 }  // namespace tandem::bridges::eyebot

@@ -10,9 +10,9 @@ namespace tandem::bridges::eyebot {
 
 /// One line: the robot's name, the hub's name, the hub's session, 1 to land or 0 to hover, the first
 /// number of a message. The url is in the link.
-std::string to_stop_body(const LastWords& words);
+std::string to_stop_body(const StopDetails& details);
 
 /// The same back, without the url; nothing where the text is not of that form.
-std::optional<LastWords> from_stop_body(std::string_view body);
+std::optional<StopDetails> from_stop_body(std::string_view body);
 
 }  // namespace tandem::bridges::eyebot

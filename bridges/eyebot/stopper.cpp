@@ -14,23 +14,23 @@ constexpr TimeNs kWait = 20 * hal::kNsPerMs;
 constexpr TimeNs kMute = 3 * hal::kNsPerSecond;
 constexpr TimeNs kHoverWithin = 2 * hal::kNsPerSecond;  // then it is told to land all the same
 
-DriverSettings settings_for(const LastWords& words) {
+DriverSettings settings_for(const StopDetails& details) {
   DriverSettings s;
-  s.robot.id = s.name = words.name;
-  s.hub = words.hub;
-  s.session = words.session;
+  s.robot.id = s.name = details.name;
+  s.hub = details.hub;
+  s.session = details.session;
   // Newer than what an earlier stopper has said: no channel carries a hundred messages a second.
   const TimeNs hundredths = unix_ns() / (10 * hal::kNsPerMs) % 400'000'000;
   s.first_seq =
-      static_cast<std::int32_t>(static_cast<std::uint32_t>(words.first_seq) + static_cast<std::uint32_t>(hundredths));
+      static_cast<std::int32_t>(static_cast<std::uint32_t>(details.first_seq) + static_cast<std::uint32_t>(hundredths));
   s.controlled = true;
   return s;
 }
 
 std::unique_ptr<guardian::Stopper> make(const StopMessages& messages, StopCause cause) {
-  LastWords words = from_stop_body(messages.body).value_or(LastWords{});
-  if (const auto address = parse_link(messages.link); address.ok()) words.url = address.value().target;
-  return std::make_unique<EyebotStopper>(words, cause);
+  StopDetails details = from_stop_body(messages.body).value_or(StopDetails{});
+  if (const auto address = parse_link(messages.link); address.ok()) details.url = address.value().target;
+  return std::make_unique<EyebotStopper>(details, cause);
 }
 
 }  // namespace
@@ -39,23 +39,23 @@ guardian::StopperType stopper_type() noexcept {
   return {hal::eyebot::kDataSheet.kind, &make};
 }
 
-EyebotStopper::EyebotStopper(const LastWords& words, StopCause cause)
-    : words_(words),
-      land_(words.land && cause == StopCause::HubGone),
+EyebotStopper::EyebotStopper(const StopDetails& details, StopCause cause)
+    : details_(details),
+      land_(details.land && cause == StopCause::HubGone),
       inbox_(std::make_shared<Inbox>()),
-      driver_(settings_for(words), *inbox_, *this) {}
+      driver_(settings_for(details), *inbox_, *this) {}
 
 bool EyebotStopper::publish(const std::string& channel, std::span<const std::byte> data) noexcept {
   return link_ && link_->publish(channel, data);
 }
 
 bool EyebotStopper::open() {
-  auto opened = lcm_bus::LcmLink::open(words_.url);
-  const auto deliver = [inbox = inbox_, name = words_.name](const lcm_bus::LcmMessage& m) {
+  auto opened = lcm_bus::LcmLink::open(details_.url);
+  const auto deliver = [inbox = inbox_, name = details_.name](const lcm_bus::LcmMessage& m) {
     if (const auto topic = topic_of(name, m.channel)) inbox->deliver(*topic, m.data, m.received_ns);
   };
   hal::Status ready = opened.ok() ? hal::Status{} : hal::Status{opened.error()};
-  if (ready.ok()) ready = opened.value()->subscribe("eyebot/" + words_.name + "/[a-z_]+", deliver);
+  if (ready.ok()) ready = opened.value()->subscribe("eyebot/" + details_.name + "/[a-z_]+", deliver);
   if (ready.ok()) ready = opened.value()->start();
   if (!ready.ok()) {
     link_trouble_ = ready.error().message;
@@ -72,7 +72,7 @@ std::string EyebotStopper::trouble() const {
 }
 
 StopState EyebotStopper::step(TimeNs now) {
-  if (words_.name.empty()) return StopState::Confirmed;  // nobody has ever spoken to it
+  if (details_.name.empty()) return StopState::Confirmed;  // nobody has ever spoken to it
   if (!link_) {
     if (!open()) return StopState::Unreachable;
     now = lcm_bus::monotonic_ns();  // opening may have taken long

@@ -10,7 +10,7 @@ namespace tandem::bridges::eyebot {
 /// after 10 s.
 class EyebotStopper final : public guardian::Stopper, private Outbox {
  public:
-  EyebotStopper(const LastWords& words, guardian::StopCause cause);
+  EyebotStopper(const StopDetails& details, guardian::StopCause cause);
 
   guardian::StopState step(hal::TimeNs now) override;
   std::string trouble() const override;
@@ -19,7 +19,7 @@ class EyebotStopper final : public guardian::Stopper, private Outbox {
   bool open();
   bool publish(const std::string& channel, std::span<const std::byte> data) noexcept override;
 
-  LastWords words_;
+  StopDetails details_;
   bool land_;
   std::shared_ptr<Inbox> inbox_;
   EyebotDriver driver_;

@@ -30,7 +30,7 @@ FootbotBridge::~FootbotBridge() {
 void FootbotBridge::start() {
   TANDEM_CHECK(!thread_.joinable() && !ending_, "a bridge is started once");
   driver_.note_ports();
-  stop_version_ = driver_.wiring().last_words_version();
+  stop_version_ = driver_.wiring().rest_version();
   thread_ = std::thread([this] { run(); });
 }
 
@@ -52,7 +52,7 @@ void FootbotBridge::run() {
       const std::lock_guard lock(mutex_);
       const RobotState before = driver_.state();
       driver_.pump(now);
-      stop_version_ = driver_.wiring().last_words_version();
+      stop_version_ = driver_.wiring().rest_version();
       if (driver_.state() != before) changed_.notify_all();
       wait = std::clamp<TimeNs>(driver_.next_deadline() - now, 0, kLongestWait);
       descriptor = link_.descriptor();
@@ -131,12 +131,7 @@ void FootbotBridge::note_health() noexcept {
 void FootbotBridge::commit(TimeNs now) noexcept {
   const std::lock_guard lock(mutex_);
   driver_.commit(now);
-  stop_version_ = driver_.wiring().last_words_version();
-}
-
-void FootbotBridge::fault(TimeNs now, std::string_view why) {
-  const std::lock_guard lock(mutex_);
-  driver_.fault(now, why);
+  stop_version_ = driver_.wiring().rest_version();
 }
 
 void FootbotBridge::stop(TimeNs now) noexcept {
@@ -195,8 +190,8 @@ StopMessages FootbotBridge::stop_messages() const {
   return {.robot = settings_.driver.robot.id,
           .kind = std::string(hal::footbot::kDataSheet.kind),
           .link = absolute_link(settings_.link),
-          .body = to_stop_body(driver_.wiring().last_words()),
-          .version = driver_.wiring().last_words_version()};
+          .body = to_stop_body(driver_.wiring().rest_messages()),
+          .version = driver_.wiring().rest_version()};
 }
 
 LinkReport FootbotBridge::report() const {
@@ -283,11 +278,6 @@ BridgeStatus FootbotBridge::status() const {
   status.messages = link_.statistics();
   status.links_opened = link_.openings();
   return status;
-}
-
-std::vector<LastWords> FootbotBridge::last_words() const {
-  const std::lock_guard lock(mutex_);
-  return driver_.wiring().last_words();
 }
 
 }  // namespace tandem::bridges::footbot

@@ -35,7 +35,7 @@ struct BridgeStatus {
   std::string trouble;       ///< why it is not active, or what is missing; `link_trouble` when there is some
   std::string link_trouble;  ///< the opener's message, when it has failed since the link was last open
   std::string link;
-  bool stopped = false;  ///< by `stop` or `fault`
+  bool stopped = false;  ///< by `stop`
   bool at_rest = false;  ///< and the robot has confirmed it
   std::vector<NodeStatus> nodes;
   DriverStatistics driver;
@@ -68,7 +68,6 @@ class FootbotBridge final : public RobotBridge {
 
   void latch(hal::Tick tick, hal::TimeNs now) noexcept override;
   void commit(hal::TimeNs now) noexcept override;
-  void fault(hal::TimeNs now, std::string_view why);
   void stop(hal::TimeNs now) noexcept override;
   void resume() noexcept override;
 
@@ -90,8 +89,6 @@ class FootbotBridge final : public RobotBridge {
   RobotState state() const noexcept;
   DriverStatistics statistics() const noexcept;
   BridgeStatus status() const;
-  /// Changes whenever nodes come; empty while there are none.
-  std::vector<LastWords> last_words() const;
 
  private:
   void run();

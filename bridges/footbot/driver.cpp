@@ -118,22 +118,14 @@ void FootbotDriver::count(hal::FilterResult result) noexcept {
 }
 
 /// Limits the commands in their ports.
-void FootbotDriver::filter_commands(hal::TimeNs now) noexcept {
+void FootbotDriver::filter_commands() noexcept {
   auto& wheels = robot_.port<hal::WheelSpeeds>();
   count(hal::filter(wheels, spec::kMaxWheelSpeed_m_s));
   count(hal::filter(robot_.port<hal::TurretDrive>(), spec::kTurretTurn_rad_s));
   count(hal::filter(robot_.port<hal::ScannerDrive>(), spec::kScannerTurn_rad_s));
   count(hal::filter(robot_.port<hal::GripperDrive>()));
-  if (interrupted_) {
-    interrupted_ = false;
-    ramping_ = settings_.ramp_ns > 0;
-    ramp_start_ns_ = now;
-    ++statistics_.rearmed;
-  }
-  if (!ramping_) return;
-  const double share = static_cast<double>(now - ramp_start_ns_) / static_cast<double>(settings_.ramp_ns);
-  ramping_ = share < 1.0;
-  if (ramping_) hal::filter(wheels, share * spec::kMaxWheelSpeed_m_s);
+  statistics_.rearmed += interrupted_ ? 1 : 0;
+  interrupted_ = false;
 }
 
 void FootbotDriver::commit(hal::TimeNs now) noexcept {
@@ -161,7 +153,7 @@ void FootbotDriver::send_commands(hal::TimeNs now) noexcept {
   const auto turret = robot_.port<hal::TurretDrive>();
   const auto scanner = robot_.port<hal::ScannerDrive>();
   const auto gripper = robot_.port<hal::GripperDrive>();
-  filter_commands(now);
+  filter_commands();
   wiring_.command(true, now);
   robot_.port<hal::WheelSpeeds>() = wheels;
   robot_.port<hal::TurretDrive>() = turret;
@@ -269,13 +261,6 @@ void FootbotDriver::stop(hal::TimeNs now) noexcept {
   halted_ = true;
   rest(now);
   pump(now);
-}
-
-void FootbotDriver::fault(hal::TimeNs now, std::string_view why) {
-  ++statistics_.faults;
-  robot_.make_safe();
-  stop(now);
-  log_.error("foot-bot '" + settings_.robot.id + "': stopped, its controller failed: " + std::string(why));
 }
 
 }  // namespace tandem::bridges::footbot

@@ -11,11 +11,11 @@
 //
 // The modules have no watchdog of their own: they keep their last command for ever. So the robot is told to rest in
 // every case of the table, and told again until it has confirmed:
-//   needed node lost, link lost, not yet active  -> rest; drives on with a ramp once all answer again
+//   needed node lost, link lost, not yet active  -> rest; drives on once all answer again
 //   such a node restarted: it holds zeros that nobody wrote, or its counters begin anew
 //                                                -> rest, and told as a stop of the robot's own
-//   no commit for `command_timeout_ns`           -> rest; the next commit ramps
-//   `stop`, `fault`                              -> rest until `resume`, then ramp
+//   no commit for `command_timeout_ns`           -> rest, until the next commit
+//   `stop`                                       -> rest until `resume`
 //   command not finite, or beyond the limits     -> the safe one, or clamped; counted
 #pragma once
 #include <string>
@@ -37,8 +37,6 @@ struct DriverSettings {
   aseba::NetworkTiming timing = {};
   /// The robot is stopped when no commit came for so long: the loop hangs, or the controller does.
   hal::TimeNs command_timeout_ns = 500 * hal::kNsPerMs;
-  /// After an interruption the wheels' speed limit rises from 0 to the robot's in this time: no jump. 0: at once.
-  hal::TimeNs ramp_ns = 500 * hal::kNsPerMs;
   /// Age of a needed reading from which the robot is stopped, beside what this machine was late of late (StallMeter);
   /// 0: two and a half ticks, at least 250 ms.
   hal::TimeNs suspect_ns = 0;
@@ -49,14 +47,13 @@ struct DriverStatistics {
   std::uint64_t commits = 0;
   std::uint64_t clamped = 0;         ///< commands beyond the robot's limits
   std::uint64_t not_finite = 0;      ///< commands with NaN or infinity: made safe
-  std::uint64_t rearmed = 0;         ///< times that driving began anew with a ramp
+  std::uint64_t rearmed = 0;         ///< times that driving began anew after an interruption
   std::uint64_t watchdog_stops = 0;  ///< for want of commits
   std::uint64_t link_stops = 0;      ///< because a needed node, or the link, did not answer
   std::uint64_t restarts = 0;        ///< of modules that it never drives without, since it was first active
   std::uint64_t stops_confirmed = 0;
   std::uint64_t recovered = 0;  ///< times it became Active again
   std::uint64_t lost = 0;       ///< times it became Lost
-  std::uint64_t faults = 0;     ///< reported with `fault`
   std::uint64_t stalls = 0;     ///< times that our own thread came too late
   hal::TimeNs longest_stall_ns = 0;
 };
@@ -86,8 +83,6 @@ class FootbotDriver {
   /// Stops the robot now and keeps it stopped until `resume`.
   void stop(hal::TimeNs now) noexcept;
   void resume() noexcept { halted_ = false; }
-  /// `stop` because the controller failed; `why` is logged with the robot's id. Every command becomes safe.
-  void fault(hal::TimeNs now, std::string_view why);
 
   RobotState state() const noexcept { return state_; }
   bool stopped() const noexcept { return halted_; }
@@ -104,7 +99,7 @@ class FootbotDriver {
   RobotState judge(hal::TimeNs now) const noexcept;
   void rest(hal::TimeNs now) noexcept;
   void count(hal::FilterResult result) noexcept;
-  void filter_commands(hal::TimeNs now) noexcept;
+  void filter_commands() noexcept;
   void send_commands(hal::TimeNs now) noexcept;
   void ask(hal::TimeNs now) noexcept;
   void plan_question(hal::TimeNs now) noexcept;
@@ -121,9 +116,7 @@ class FootbotDriver {
   bool was_active_ = false;
   bool halted_ = false;
   bool driving_ = false;      // commands, and not rest, were sent last
-  bool interrupted_ = false;  // the next driving begins with a ramp
-  bool ramping_ = false;
-  hal::TimeNs ramp_start_ns_ = 0;
+  bool interrupted_ = false;  // the next driving begins anew
   hal::TimeNs last_commit_ns_ = 0;
   StallMeter stalls_;
   hal::TimeNs latched_ns_ = 0;

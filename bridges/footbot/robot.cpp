@@ -196,10 +196,4 @@ void FootbotRobot::complete(hal::Tick tick) noexcept {
   }
 }
 
-void FootbotRobot::make_safe() noexcept {
-  for (Row& r : rows_) {
-    if (r.type->role == hal::Role::Actuator) r.type->reset(r.data.get());
-  }
-}
-
 }  // namespace tandem::bridges::footbot

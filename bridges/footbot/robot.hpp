@@ -69,8 +69,6 @@ class FootbotRobot final : public hal::Robot {
   /// What follows from the readings that were just filled: clock, odometry, where the scanner's heads look, whether
   /// the gripper holds.
   void complete(hal::Tick tick) noexcept;
-  /// Writes the safe value into every command.
-  void make_safe() noexcept;
 
  protected:
   void* take(const hal::PortType& type) override;

@@ -15,10 +15,10 @@ bool read_number(std::string_view text, int base, Number& number) {
   return error == std::errc{} && end == text.data() + text.size();
 }
 
-std::optional<LastWords> read_line(std::string_view line) {
+std::optional<RestMessage> read_line(std::string_view line) {
   const std::size_t blank = line.find(' ');
   if (blank == std::string_view::npos) return std::nullopt;
-  LastWords message;
+  RestMessage message;
   if (line.ends_with(kConfirm)) {
     message.confirm = true;
     line.remove_suffix(kConfirm.size());
@@ -36,9 +36,9 @@ std::optional<LastWords> read_line(std::string_view line) {
 
 }  // namespace
 
-std::string to_stop_body(const std::vector<LastWords>& messages) {
+std::string to_stop_body(const std::vector<RestMessage>& messages) {
   std::string body;
-  for (const LastWords& message : messages) {
+  for (const RestMessage& message : messages) {
     body += std::to_string(message.type) + ' ';
     for (const std::uint8_t byte : message.payload) {
       body += kDigits[byte >> 4];
@@ -50,8 +50,8 @@ std::string to_stop_body(const std::vector<LastWords>& messages) {
   return body;
 }
 
-std::optional<std::vector<LastWords>> from_stop_body(std::string_view body) {
-  std::vector<LastWords> messages;
+std::optional<std::vector<RestMessage>> from_stop_body(std::string_view body) {
+  std::vector<RestMessage> messages;
   while (!body.empty()) {
     const std::size_t end = body.find('\n');
     if (end == std::string_view::npos) return std::nullopt;

@@ -34,7 +34,7 @@ std::unique_ptr<guardian::Stopper> make(const StopMessages& messages, guardian::
     if (!open.ok()) return open.error();
     return open.value()();
   };
-  return std::make_unique<FootbotStopper>(opener, from_stop_body(messages.body).value_or(std::vector<LastWords>{}));
+  return std::make_unique<FootbotStopper>(opener, from_stop_body(messages.body).value_or(std::vector<RestMessage>{}));
 }
 
 }  // namespace
@@ -43,9 +43,9 @@ guardian::StopperType stopper_type() noexcept {
   return {hal::footbot::kDataSheet.kind, &make};
 }
 
-FootbotStopper::FootbotStopper(aseba::MessageLinkOpener opener, const std::vector<LastWords>& messages)
+FootbotStopper::FootbotStopper(aseba::MessageLinkOpener opener, const std::vector<RestMessage>& messages)
     : opener_(std::move(opener)) {
-  for (const LastWords& message : messages) {
+  for (const RestMessage& message : messages) {
     Row row;
     row.message = message;
     if (message.payload.size() < kHead) continue;

@@ -12,7 +12,7 @@ namespace tandem::bridges::footbot {
 /// confirmed were read back. A robot of which no module was ever wired has nothing to confirm.
 class FootbotStopper final : public guardian::Stopper {
  public:
-  FootbotStopper(aseba::MessageLinkOpener opener, const std::vector<LastWords>& messages);
+  FootbotStopper(aseba::MessageLinkOpener opener, const std::vector<RestMessage>& messages);
 
   guardian::StopState step(hal::TimeNs now) override;
   /// The same without waiting, in the caller's time: says what is due, takes in what has come.
@@ -21,7 +21,7 @@ class FootbotStopper final : public guardian::Stopper {
 
  private:
   struct Row {
-    LastWords message;
+    RestMessage message;
     std::uint16_t node = 0, start = 0;
     std::vector<std::uint8_t> words;  // as they are to be read back
     bool confirmed = false;

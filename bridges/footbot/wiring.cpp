@@ -64,7 +64,7 @@ void Wiring::note_demand() noexcept {
     for (VariableRow& v : row.variables) {
       const bool commanded = std::ranges::any_of(v.map->writes, used);
       const bool controlled = !observe_ && !v.map->writes.empty() && (commanded || row.map->need == Need::Always);
-      if (controlled != v.controlled) ++last_words_version_;
+      if (controlled != v.controlled) ++rest_version_;
       v.controlled = controlled;
       row.used = row.used || commanded || std::ranges::any_of(v.map->reads, used);
       v.read_first = v.map->words;
@@ -104,7 +104,7 @@ bool Wiring::look() noexcept {
   }
   if (print == seen_) return false;
   seen_ = print;
-  ++last_words_version_;
+  ++rest_version_;
   for (NodeRow& row : rows_) {
     if (ready(row)) continue;
     const aseba::Node* node = network_.find(row.map->names);
@@ -401,8 +401,8 @@ void Wiring::write(NodeRow& row, VariableRow& v, bool drive, hal::TimeNs now) no
   v.sent_ns = now;
 }
 
-std::vector<LastWords> Wiring::last_words() const {
-  std::vector<LastWords> all;
+std::vector<RestMessage> Wiring::rest_messages() const {
+  std::vector<RestMessage> all;
   for (const NodeRow& row : rows_) {
     for (const VariableRow& v : row.variables) {
       if (row.node == nullptr || !v.bound || !v.controlled) continue;

@@ -26,13 +26,13 @@ struct NodeStatus {
 };
 
 /// A message that has variables of one node rest.
-struct LastWords {
+struct RestMessage {
   std::uint16_t type = 0;
   std::vector<std::uint8_t> payload;
   /// The robot rests only when these values are read back. Not where a module does not hold what was written, and not
   /// of modules that the robot drives without.
   bool confirm = false;
-  friend bool operator==(const LastWords&, const LastWords&) = default;
+  friend bool operator==(const RestMessage&, const RestMessage&) = default;
 };
 
 struct WiringStatistics {
@@ -87,9 +87,9 @@ class Wiring {
   std::vector<NodeStatus> nodes() const;
   /// Messages that have everything rest, for whoever must stop the robot when this process cannot. They are right as
   /// long as the nodes that are there now keep their descriptions.
-  std::vector<LastWords> last_words() const;
-  /// Grows whenever `last_words` may have changed.
-  std::uint64_t last_words_version() const noexcept { return last_words_version_; }
+  std::vector<RestMessage> rest_messages() const;
+  /// Grows whenever `rest_messages` may have changed.
+  std::uint64_t rest_version() const noexcept { return rest_version_; }
   const WiringStatistics& statistics() const noexcept { return statistics_; }
 
  private:
@@ -148,7 +148,7 @@ class Wiring {
   bool observe_;
   std::vector<NodeRow> rows_;
   std::uint64_t seen_ = ~std::uint64_t{0};  // fingerprint of who is there
-  std::uint64_t last_words_version_ = 0;
+  std::uint64_t rest_version_ = 0;
   hal::TimeNs rested_ns_ = 0;
   hal::RangeAndBearing heard_;  // since the last `fill`
   aseba::Event event_;

@@ -24,7 +24,6 @@ MadeBridge make(const BridgeRequest& request, const hal::Log& log) {
   auto parts = Parts(request.item, request.ticks_per_second, request.permit);
   if (!parts.ok()) return parts.error();
   auto& robot = parts->settings.driver.robot;
-  parts->settings.driver.ramp_ns = 0;  // the supervisor's ramp is the only one
   robot.seed = request.seed;
   robot.sensors = device_names(request.controller.sensors);
   robot.actuators = device_names(request.controller.actuators);

@@ -21,6 +21,7 @@ hal::Result<EpuckParts> epuck_parts(const core::RobotItem& item, std::int64_t ti
   parts.settings.driver.robot.id = item.id;
   parts.settings.driver.robot.tick_ns = hal::time_of_tick(1, ticks_per_second);
   parts.settings.driver.timing = bridges::epuck::timing_for(bridge.link);
+  parts.settings.driver.ramp_ns = 0;  // the supervisor's ramp is the only one
   parts.settings.driver.command_timeout_ns = lost_after_ns(item, ticks_per_second);
   return parts;
 }

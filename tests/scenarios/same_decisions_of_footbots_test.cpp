@@ -72,7 +72,6 @@ class LockStepFootbot final : public core::ExternalRobots {
     s.map = default_map();
     s.robot.id = "me";
     s.robot.origin_ns = kHandshake_ns;
-    s.ramp_ns = 0;
     return s;
   }
 

@@ -172,7 +172,7 @@ TEST(EyebotBridge, FliesARobotInMemoryAndLandsItAtTheEnd) {
     ASSERT_TRUE(loop_until(bridge, [&] { return robot.seen().velocity_x > 0.0; }));
     EXPECT_EQ(place.validity, hal::Validity::Fresh);
     EXPECT_EQ(place.p_WB[2], 1.25);
-    EXPECT_NE(bridge.last_words().session, 0);
+    EXPECT_NE(bridge.stop_details().session, 0);
   }
   const auto end = robot.seen();
   EXPECT_EQ(end.status.mode, messages::Status::MODE_IDLE);
@@ -264,7 +264,7 @@ TEST_F(OnLoopback, AStopperLandsARobotWhoseHubIsGone) {
   ASSERT_TRUE(link.ok()) << link.error().message;
   LivingRobot robot(link.value(), "eb3");
   StopMessages how;
-  LastWords words;
+  StopDetails words;
   {
     BridgeSettings settings = settings_for("eb3");
     settings.farewell.land = false;  // as if it had been killed
@@ -273,7 +273,7 @@ TEST_F(OnLoopback, AStopperLandsARobotWhoseHubIsGone) {
     bridge.start();
     ASSERT_TRUE(bridge.wait_active(30 * hal::kNsPerSecond).ok());
     ASSERT_TRUE(loop_until(bridge, [&] { return bridge.status().flight.mode == Mode::Hover; }));
-    words = bridge.last_words();
+    words = bridge.stop_details();
     words.land = true;
     how = bridge.stop_messages();
     how.body = to_stop_body(words);

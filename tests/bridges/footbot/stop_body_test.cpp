@@ -6,10 +6,10 @@ namespace tandem::bridges::footbot {
 namespace {
 
 TEST(FootbotStopBody, IsReadBackAsItWasWritten) {
-  const std::vector<LastWords> messages = {{0xA001, {0x07, 0x00, 0xFF, 0x10}}, {3, {}}, {0xA00C, {1}, true}};
+  const std::vector<RestMessage> messages = {{0xA001, {0x07, 0x00, 0xFF, 0x10}}, {3, {}}, {0xA00C, {1}, true}};
   EXPECT_EQ(to_stop_body(messages), "40961 0700ff10\n3 \n40972 01 read back\n");
   EXPECT_EQ(from_stop_body(to_stop_body(messages)), messages);
-  EXPECT_EQ(from_stop_body(""), std::vector<LastWords>{});
+  EXPECT_EQ(from_stop_body(""), std::vector<RestMessage>{});
 }
 
 TEST(FootbotStopBody, IsRefusedWhenItIsCutShortOrNoNumbers) {

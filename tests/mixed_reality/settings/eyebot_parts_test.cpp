@@ -74,8 +74,8 @@ TEST(RealEyebot, HasItsDevicesAndNoWheels) {
   const auto words = bridges::eyebot::from_stop_body(messages.body);
   ASSERT_TRUE(words);
   EXPECT_EQ(words->name, "eb0");
-  EXPECT_EQ(words->session, robot.last_words().session);
-  EXPECT_EQ(words->hub, robot.last_words().hub);
+  EXPECT_EQ(words->session, robot.stop_details().session);
+  EXPECT_EQ(words->hub, robot.stop_details().hub);
   EXPECT_TRUE(words->land);
   EXPECT_FALSE(bridges::eyebot::from_stop_body("eb0"));
 }

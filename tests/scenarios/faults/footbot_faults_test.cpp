@@ -180,7 +180,7 @@ class TestedFootbot final : public TestedRobot {
       std::unique_ptr<bridges::aseba::MessageLink> link = std::make_unique<CanMessages>(bus_.attach(), kOpen, clock());
       return link;
     };
-    stopper_.emplace(open, driver_.wiring().last_words());
+    stopper_.emplace(open, driver_.wiring().rest_messages());
   }
   bool guard(TimeNs now) override { return stopper_->poll(now) == bridges::guardian::StopState::Confirmed; }
   void end_guarding(TimeNs) override { stopper_.reset(); }
