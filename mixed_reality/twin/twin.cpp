@@ -145,7 +145,9 @@ void Twin::tell_place() noexcept {
 }
 
 void Twin::after_filter(const Moment& now) {
-  const bool alive = supervisor_.verdict().may_drive && !space_.halted(robot_);
+  // The verdict and the command are of the latch: a loop that was kept from running since must not send them.
+  const bool of_late = now.monotonic_ns - last_latch_ns_ <= params_.pose_timeout_ns;
+  const bool alive = supervisor_.verdict().may_drive && !space_.halted(robot_) && of_late;
   if (running_) alive ? ++counts_.ticks_driving : ++counts_.ticks_held;
   if (running_) look_for_intrusions(now);
   send_commands(alive, now);

@@ -130,6 +130,17 @@ TEST_F(TwinTest, AStalePoseStopsItAlthoughTheLinkIsWell) {
   EXPECT_TRUE(body_.stands());
 }
 
+TEST_F(TwinTest, SendsNoCommandThatWasDecidedUponBeforeTheHubsStall) {
+  get_under_way(0.05, 0.05);
+  now_.run_ns += kTick;
+  now_.monotonic_ns += kTick;
+  twin_->latch(now_, RunPhase::Running);
+  ASSERT_TRUE(twin_->verdict().may_drive);
+  now_.monotonic_ns += 601 * hal::kNsPerMs;
+  twin_->after_filter(now_);
+  EXPECT_TRUE(body_.stands());
+}
+
 TEST_F(TwinTest, NeverWakesAControllerThatTheWorldStopped) {
   get_under_way(0.05, 0.05);
   space_.set_halted(robot_, true);
