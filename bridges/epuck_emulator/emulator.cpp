@@ -17,6 +17,7 @@ namespace {
 using hal::TimeNs;
 
 constexpr TimeNs kStopNs = 20 * hal::kNsPerMs;  // the stop flag is looked at this often
+constexpr TimeNs kLateNs = 20 * hal::kNsPerMs;  // a robot has its processor to itself: what is told of
 constexpr TimeNs kBatchNs = hal::kNsPerMs;  // bytes of one burst are handed over this often, as a serial adapter does
 constexpr TimeNs kNoiseNs = 5 * hal::kNsPerMs;  // a garbled line is not quiet either
 constexpr std::size_t kQueueBytes = 4096;       // the host's driver holds as much
@@ -124,7 +125,10 @@ hal::Status Server::serve(const std::atomic<bool>& stop) {
   while (!stop.load(std::memory_order_relaxed)) {
     const TimeNs now = monotonic_ns();
     hal::Status status = turn(now);
-    if (status.ok()) status = wait_until(next_wake(now));
+    const TimeNs due = next_wake(now);
+    if (status.ok()) status = wait_until(due);
+    if (const TimeNs woken = monotonic_ns(); woken - due >= kLateNs)
+      tell(woken, "late", {{"by_ms", (woken - due) / hal::kNsPerMs}});
     if (!status.ok()) {
       tell(monotonic_ns(), "end", {{"why", status.error().message}});
       return status;

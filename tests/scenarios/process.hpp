@@ -190,6 +190,7 @@ class EmulatedRobot {
  public:
   bool ready() const { return ready_; }
   void signal(int number) const { process_->signal(number); }
+  bool suspended() const { return process_->suspended(); }
   std::string log() const { return text_of(folder_.path() / "witness.jsonl"); }
   /// Ends it as a user does, so that its log is whole.
   int end() {
