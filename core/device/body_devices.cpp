@@ -2,6 +2,7 @@
 #include "core/device/sight.hpp"
 #include "core/device/types.hpp"
 #include "core/random/random.hpp"
+#include "core/space/mechanisms.hpp"
 #include "hal/device/body_sensors.hpp"
 
 namespace tandem::core {
@@ -36,15 +37,36 @@ std::array<double, 3> to_body(const std::array<double, 4>& q, const std::array<d
   return {v[0] + 2.0 * outer[0], v[1] + 2.0 * outer[1], v[2] + 2.0 * outer[2]};
 }
 
+/// What accelerometers of robots that drive measured against.
+struct DrivenSpeed {
+  static constexpr std::string_view kName = "driven_speed";
+  static constexpr std::string_view kDoc = "Speed of robots that drive, a tick ago.";
+
+  double speed_m_s = 0.0;
+
+  void describe(hal::FieldList& f) const { f.add("speed", speed_m_s, hal::unit::m_s, "forward"); }
+};
+
+/// … and those of robots that fly.
+struct FlownVelocity {
+  static constexpr std::string_view kName = "flown_velocity";
+  static constexpr std::string_view kDoc = "Velocity of robots that fly, a tick ago.";
+
+  std::array<double, 3> velocity_m_s{};
+
+  void describe(hal::FieldList& f) const { f.add("velocity", velocity_m_s, hal::unit::m_s, "in W"); }
+};
+
 /// From the wheels' speeds: forward their mean's change, sideways speed times turn rate, upwards gravity. Of robots
 /// that fly: the change of their velocity and gravity, in the body's frame.
 class AccelerometerSensor final : public Sensor {
  public:
-  AccelerometerSensor(const hal::DataSheet& sheet, double noise, std::size_t capacity)
+  AccelerometerSensor(const hal::DataSheet& sheet, double noise, const BlockColumns& columns)
       : wheel_base_m_(sheet.wheel_base_m),
         flies_(sheet.flies),
         noise_m_s2_(noise),
-        last_m_s_(capacity, sheet.flies ? 3 : 1, 0.0) {}
+        driven_(columns.find<DrivenSpeed>()),
+        flown_(columns.find<FlownVelocity>()) {}
 
   void sense(const DeviceContext& context, void* ports) noexcept override {
     auto* meters = static_cast<hal::Accelerometer*>(ports);
@@ -65,22 +87,21 @@ class AccelerometerSensor final : public Sensor {
       for (std::size_t k = 0; k < 3; ++k) port.force_m_s2[k] = static_cast<float>(force[k]);
     }
   }
-  DeviceMemory* memory() noexcept override { return &last_m_s_; }
 
  private:
   std::array<double, 3> driven(const DeviceContext& context, std::size_t row, std::size_t i) noexcept {
     const Bodies& b = context.stores.bodies;
     const double speed = 0.5 * (b.left_m_s[row] + b.right_m_s[row]);
     const double turn = (b.right_m_s[row] - b.left_m_s[row]) / wheel_base_m_;
-    const std::array<double, 3> force{(speed - last_m_s_.values[i]) / context.tick_s, speed * turn, kGravity_m_s2};
-    last_m_s_.values[i] = speed;
+    const std::array<double, 3> force{(speed - driven_[i].speed_m_s) / context.tick_s, speed * turn, kGravity_m_s2};
+    driven_[i].speed_m_s = speed;
     return force;
   }
   std::array<double, 3> flown(const DeviceContext& context, std::size_t row, std::size_t i) noexcept {
     const Motion& m = context.stores.bodies.motion[row];
     std::array<double, 3> force{};
     for (std::size_t k = 0; k < 3; ++k) {
-      double& last = last_m_s_.values[3 * i + k];
+      double& last = flown_[i].velocity_m_s[k];
       force[k] = (m.v_m_s[k] - last) / context.tick_s + (k == 2 ? kGravity_m_s2 : 0.0);
       last = m.v_m_s[k];
     }
@@ -90,7 +111,8 @@ class AccelerometerSensor final : public Sensor {
   double wheel_base_m_;
   bool flies_;
   double noise_m_s2_;
-  DeviceMemory last_m_s_;
+  DrivenSpeed* driven_;   // of robots that drive
+  FlownVelocity* flown_;  // of robots that fly
 };
 
 bool has_accelerometer(const hal::DataSheet& sheet) {
@@ -102,9 +124,10 @@ Recipe<Sensor> make_accelerometer(const Element& element, Problems& problems, co
   const auto options = read_options<Options>(element, problems);
   double noise = 0.0;
   if constexpr (requires { options.noise_level_m_s2; }) noise = options.noise_level_m_s2;
-  return [&sheet = setup.sheet, noise](std::size_t capacity) {
-    return std::make_unique<AccelerometerSensor>(sheet, noise, capacity);
+  const auto make = [&sheet = setup.sheet, noise](const BlockColumns& columns) {
+    return std::make_unique<AccelerometerSensor>(sheet, noise, columns);
   };
+  return {make, {setup.sheet.flies ? keeps<FlownVelocity>() : keeps<DrivenSpeed>()}};
 }
 
 // --- gyroscope ---
@@ -167,8 +190,9 @@ Recipe<Sensor> make_gyroscope(const Element& element, Problems& problems, const 
   const auto options = read_options<Options>(element, problems);
   double noise = 0.0;
   if constexpr (requires { options.noise_level_rad_s; }) noise = options.noise_level_rad_s;
-  return
-      [base = setup.sheet.wheel_base_m, noise](std::size_t) { return std::make_unique<GyroscopeSensor>(base, noise); };
+  return [base = setup.sheet.wheel_base_m, noise](const BlockColumns&) {
+    return std::make_unique<GyroscopeSensor>(base, noise);
+  };
 }
 
 // --- microphones ---
@@ -235,7 +259,8 @@ Recipe<Sensor> make_microphones(const Element& element, Problems& problems, cons
   const auto options = read_options<Options>(element, problems);
   double noise = 0.0;
   if constexpr (requires { options.noise_level; }) noise = options.noise_level;
-  return [&sheet = setup.sheet, noise](std::size_t) { return std::make_unique<MicrophoneSensor>(sheet, noise); };
+  return
+      [&sheet = setup.sheet, noise](const BlockColumns&) { return std::make_unique<MicrophoneSensor>(sheet, noise); };
 }
 
 // --- battery ---
@@ -251,13 +276,13 @@ struct ChargeNoise {
 /// ARGoS' three discharge models: a part a tick, a part a metre and a radian moved, or both.
 class BatterySensor final : public Sensor {
  public:
-  BatterySensor(const DeviceSetup& setup, double noise, std::size_t capacity)
+  BatterySensor(const DeviceSetup& setup, double noise, const BlockColumns& columns)
       : config_(setup.item.battery),
         noise_(noise),
         full_V_(setup.sheet.battery_full_V),
         empty_V_(setup.sheet.battery_empty_V),
         wheel_base_m_(setup.sheet.wheel_base_m),
-        charge_(capacity, 1, setup.item.battery.start_charge) {
+        charges_(columns.find<ChargeState>()) {
     by_time_ = config_.model != "motion";
     by_motion_ = config_.model != "time";
   }
@@ -272,7 +297,7 @@ class BatterySensor final : public Sensor {
         const Way way = wheel_base_m_ > 0.0 ? rolled(b, row) : flown(b, row);
         used += context.tick_s * (config_.pos_delta * way.speed_m_s + config_.orient_delta * way.turn_rad_s);
       }
-      double& charge = charge_.values[i];
+      double& charge = charges_[i].charge;
       charge = std::max(0.0, charge - used);
       double read = config_.full_charge > 0.0 ? charge / config_.full_charge : 0.0;
       if (noise_ > 0.0) {
@@ -287,7 +312,6 @@ class BatterySensor final : public Sensor {
       port.supply_V = static_cast<float>(empty_V_ + read * (full_V_ - empty_V_));
     }
   }
-  DeviceMemory* memory() noexcept override { return &charge_; }
 
  private:
   struct Way {
@@ -307,7 +331,7 @@ class BatterySensor final : public Sensor {
   BatteryConfig config_;
   double noise_;
   double full_V_, empty_V_, wheel_base_m_;
-  DeviceMemory charge_;
+  ChargeState* charges_;
   bool by_time_ = true;
   bool by_motion_ = false;
 };
@@ -321,7 +345,10 @@ Recipe<Sensor> make_battery(const Element& element, Problems& problems, const De
   const auto options = read_options<Options>(element, problems);
   double noise = 0.0;
   if constexpr (requires { options.noise_range; }) noise = options.noise_range;
-  return [setup, noise](std::size_t capacity) { return std::make_unique<BatterySensor>(setup, noise, capacity); };
+  const auto make = [setup, noise](const BlockColumns& columns) {
+    return std::make_unique<BatterySensor>(setup, noise, columns);
+  };
+  return {make, {keeps(ChargeState{setup.item.battery.start_charge})}};
 }
 
 // --- clock ---
@@ -369,7 +396,7 @@ Recipe<Sensor> make_clock(const Element& element, Problems& problems, const Devi
   const auto options = read_options<Options>(element, problems);
   double jitter_s = 0.0;
   if constexpr (requires { options.jitter_s; }) jitter_s = options.jitter_s;
-  return [jitter_s](std::size_t) { return std::make_unique<ClockSensor>(jitter_s); };
+  return [jitter_s](const BlockColumns&) { return std::make_unique<ClockSensor>(jitter_s); };
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include "core/device/sight.hpp"
 #include "core/device/types.hpp"
 #include "core/random/random.hpp"
+#include "core/space/mechanisms.hpp"
 
 namespace tandem::core {
 
@@ -40,7 +41,9 @@ bool same_medium(std::uint16_t led, std::uint16_t camera) noexcept {
 class Lookout {
  public:
   /// `sense`: real robots that its own camera sees are left out of what a real robot's twin sees.
-  explicit Lookout(RealSense sense) : sense_(sense) { between_.reserve(kRoom); }
+  Lookout(RealSense sense, const Column<TurretState>& turrets) : sense_(sense), turrets_(turrets) {
+    between_.reserve(kRoom);
+  }
 
   /// To be called in every tick before it looks.
   void measure(const SpaceStores& stores) noexcept {
@@ -139,8 +142,8 @@ class Lookout {
     }
   }
 
-  static Point place_of(const SpaceStores& stores, std::size_t row, const hal::DataSheet& sheet,
-                        std::size_t i) noexcept {
+  Point place_of(const SpaceStores& stores, std::size_t row, const hal::DataSheet& sheet,
+                 std::size_t i) const noexcept {
     const Bodies& b = stores.bodies;
     const hal::Mount beside_camera{0.0, sheet.camera.usual.x_m, 0.0, sheet.camera.usual.z_m};
     const hal::Mount& mount = i == ShownLeds::kBody     ? sheet.body_lamp
@@ -150,9 +153,10 @@ class Lookout {
                                                         : sheet.leds[i];
     double c = b.cos_h[row];
     double s = b.sin_h[row];
-    if (sheet.leds_on_turret && !b.turrets.empty() && b.turrets[row].angle_rad != 0.0) {
-      const double ct = std::cos(b.turrets[row].angle_rad);
-      const double st = std::sin(b.turrets[row].angle_rad);
+    const TurretState* turret = sheet.leds_on_turret ? stores.state_of(turrets_, row) : nullptr;
+    if (turret != nullptr && turret->angle_rad != 0.0) {
+      const double ct = std::cos(turret->angle_rad);
+      const double st = std::sin(turret->angle_rad);
       const double turned = c * ct - s * st;
       s = s * ct + c * st;
       c = turned;
@@ -222,6 +226,7 @@ class Lookout {
   }
 
   RealSense sense_;
+  Column<TurretState> turrets_;
   double widest_body_m_ = 0.0, widest_ring_m_ = 0.0;  // of all kinds of robots
   std::vector<Blocker> between_;
 };
@@ -275,8 +280,9 @@ struct OmniOptions : CameraOptions {
 /// Lights below it whose distance along the ground is within reach.
 class OmniSensor final : public Sensor {
  public:
-  OmniSensor(const DeviceSetup& setup, std::uint16_t medium, const Flaws& flaws)
-      : height_m_(setup.sheet.omni_camera.height_m),
+  OmniSensor(const DeviceSetup& setup, std::uint16_t medium, const Flaws& flaws, const BlockColumns& columns)
+      : lookout_(RealSense::OmniCamera, columns.of_all<TurretState>()),
+        height_m_(setup.sheet.omni_camera.height_m),
         reach_m_(omni_reach_m(setup.sheet, setup.item.camera)),
         medium_(medium),
         flaws_(flaws) {}
@@ -314,10 +320,10 @@ class OmniSensor final : public Sensor {
     });
   }
 
+  Lookout lookout_;
   double height_m_, reach_m_;
   std::uint16_t medium_;
   Flaws flaws_;
-  Lookout lookout_{RealSense::OmniCamera};
 };
 
 bool has_omni_camera(const hal::DataSheet& sheet) {
@@ -329,8 +335,8 @@ Recipe<Sensor> make_omni(const Element& element, Problems& problems, const Devic
   const auto options = read_options<Options>(element, problems);
   Flaws flaws;
   if constexpr (requires { options.miss_prob; }) flaws = {options.noise_std_dev_m, options.miss_prob};
-  return [setup, medium = setup.led_medium(options.medium), flaws](std::size_t) {
-    return std::make_unique<OmniSensor>(setup, medium, flaws);
+  return [setup, medium = setup.led_medium(options.medium), flaws](const BlockColumns& columns) {
+    return std::make_unique<OmniSensor>(setup, medium, flaws, columns);
   };
 }
 
@@ -351,8 +357,10 @@ struct LensOptions : CameraOptions {
 /// A pinhole camera. What it sees is nearer than its range and falls into its image.
 class LensSensor final : public Sensor {
  public:
-  LensSensor(const DeviceSetup& setup, std::uint16_t medium, const Flaws& flaws)
-      : camera_(camera_of(setup.sheet, setup.item.camera)),
+  LensSensor(const DeviceSetup& setup, std::uint16_t medium, const Flaws& flaws, const BlockColumns& columns)
+      : lookout_(RealSense::LensCamera, columns.of_all<TurretState>()),
+        heads_(columns.find<HeadState>()),
+        camera_(camera_of(setup.sheet, setup.item.camera)),
         in_head_(setup.sheet.camera_head.turn_rad_s > 0.0 && !setup.item.camera.front),
         medium_(medium),
         flaws_(flaws) {
@@ -397,12 +405,12 @@ class LensSensor final : public Sensor {
     double cos_tilt = 1.0, sin_tilt = 0.0;
   };
 
-  Aim aim_of(const Bodies& b, std::size_t row) const noexcept {
+  Aim aim_of(const Bodies& b, std::size_t row, std::size_t slot) const noexcept {
     Aim aim = aim_;
     aim.cos_h = b.cos_h[row];
     aim.sin_h = b.sin_h[row];
-    if (!in_head_ || b.heads.empty()) return aim;
-    const HeadState& head = b.heads[row];
+    if (!in_head_ || heads_ == nullptr) return aim;
+    const HeadState& head = heads_[slot];
     const double c = std::cos(head.pan_rad);
     const double s = std::sin(head.pan_rad);
     aim.cos_h = b.cos_h[row] * c - b.sin_h[row] * s;
@@ -431,7 +439,7 @@ class LensSensor final : public Sensor {
     const Point from{b.x_m[row] + b.cos_h[row] * mount.x_m, b.y_m[row] + b.sin_h[row] * mount.x_m,
                      context.stores.base_m(row) + mount.z_m};
     const double range2 = camera_.range_m * camera_.range_m;
-    const Aim aim = aim_of(b, row);
+    const Aim aim = aim_of(b, row, row - context.block.first_row);
     const auto covers = [&](const Point& p) {
       return p[0] * p[0] + p[1] * p[1] + p[2] * p[2] <= range2 && pixel(aim, p).inside;
     };
@@ -460,13 +468,14 @@ class LensSensor final : public Sensor {
     blobs_[at] = blob;
   }
 
+  Lookout lookout_;
+  const HeadState* heads_;  // null: their controllers turn none
   hal::CameraSheet camera_;
   bool in_head_;
   std::uint16_t medium_;
   Flaws flaws_;
   double px_per_tangent_ = 1.0;
   Aim aim_;  // of a robot that looks along x, whose camera hangs in no head
-  Lookout lookout_{RealSense::LensCamera};
   std::array<Blob, hal::PerspectiveCamera::kCapacity> blobs_{};  // nearest first, of one image
   std::size_t found_ = 0;
 };
@@ -480,8 +489,8 @@ Recipe<Sensor> make_lens(const Element& element, Problems& problems, const Devic
   const auto options = read_options<Options>(element, problems);
   Flaws flaws;
   if constexpr (requires { options.miss_prob; }) flaws = {options.noise_std_dev_px, options.miss_prob};
-  return [setup, medium = setup.led_medium(options.medium), flaws](std::size_t) {
-    return std::make_unique<LensSensor>(setup, medium, flaws);
+  return [setup, medium = setup.led_medium(options.medium), flaws](const BlockColumns& columns) {
+    return std::make_unique<LensSensor>(setup, medium, flaws, columns);
   };
 }
 

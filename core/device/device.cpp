@@ -1,5 +1,6 @@
 #include "core/device/device.hpp"
 
+#include "core/device/coupling.hpp"
 #include "core/device/types.hpp"
 
 namespace tandem::core {
@@ -17,11 +18,24 @@ const std::vector<DeviceType>& device_types() {
   return all;
 }
 
+const std::vector<CouplingType>& coupling_types() {
+  static const std::vector<CouplingType> all = {piloting_type(), gripping_type()};
+  return all;
+}
+
 const GroupRecipes::Listed* GroupRecipes::find(std::string_view device, hal::Role role) const noexcept {
   for (const Listed& one : listed) {
-    if (one.device == device && one.role == role) return &one;
+    if (one.type->device == device && one.type->role == role) return &one;
   }
   return nullptr;
+}
+
+std::string_view device_with_forces(const RobotGroup& group) noexcept {
+  for (const hal::PortType* port : group.ports) {
+    const GroupRecipes::Listed* made = group.recipes->find(port->name, port->role);
+    if (made != nullptr && made->type->needs_forces) return port->name;
+  }
+  return {};
 }
 
 const DeviceType* find_device(std::string_view device, hal::Role role, std::string_view implementation) {

@@ -22,31 +22,38 @@ struct DeviceContext {
   std::uint64_t seed;
 };
 
-/// What a device keeps from tick to tick: `per_slot` numbers for every slot of its block.
-struct DeviceMemory {
-  std::size_t per_slot = 1;
-  double at_first = 0.0;  ///< what a new robot starts with
-  std::vector<double> values;
+/// The columns of one block, for the devices that are made for it and keep what they find.
+class BlockColumns {
+ public:
+  BlockColumns(Columns& columns, std::size_t block) : columns_(columns), block_(block) {}
 
-  DeviceMemory(std::size_t capacity, std::size_t numbers_per_slot, double first)
-      : per_slot(numbers_per_slot), at_first(first), values(capacity * numbers_per_slot, first) {}
-  void renew(std::size_t slot) noexcept {
-    for (std::size_t i = slot * per_slot; i < (slot + 1) * per_slot; ++i) values[i] = at_first;
+  /// The rows of the block's robots; null where no device of theirs keeps such.
+  template <class T>
+  T* find() const {
+    return columns_.of<T>().of_block(block_);
   }
+  /// The column of all robots.
+  template <class T>
+  Column<T> of_all() const {
+    return columns_.of<T>();
+  }
+
+ private:
+  Columns& columns_;
+  std::size_t block_;
 };
 
-/// Fills the ports of one block. One object a block, so that state (a battery's charge) needs no locks. Reads the
-/// space, never other robots' ports.
+/// Fills the ports of one block; one object a block. Keeps nothing from tick to tick but in columns: it may be made
+/// anew at any time. Reads the space, never other robots' ports; writes no columns but rows of its own block.
 class Sensor {
  public:
   virtual ~Sensor() = default;
   /// `ports` is the block's array of this port class; rows [0, block.used) are filled.
   virtual void sense(const DeviceContext& context, void* ports) noexcept = 0;
-  /// All that it keeps from tick to tick, or null. Snapshots copy it, and a slot's part is renewed for a new robot.
-  virtual DeviceMemory* memory() noexcept { return nullptr; }
 };
 
-/// Carries the commands of one block into the space, at the start of a tick. Keeps nothing from tick to tick.
+/// Carries the commands of one block into the space, at the start of a tick. Keeps nothing from tick to tick but in
+/// columns.
 class Actuator {
  public:
   virtual ~Actuator() = default;
@@ -67,8 +74,17 @@ struct DeviceSetup {
   }
 };
 
+/// Makes a device for one block.
 template <class Device>
-using Recipe = std::function<std::unique_ptr<Device>(std::size_t capacity)>;
+struct Recipe {
+  std::function<std::unique_ptr<Device>(const BlockColumns& columns)> make;
+  std::vector<KeptColumn> columns;  ///< that its robots need for it
+
+  Recipe() = default;
+  template <class Make>
+  requires std::is_invocable_v<Make, const BlockColumns&> Recipe(Make how, std::vector<KeptColumn> kept = {})
+      : make(std::move(how)), columns(std::move(kept)) {}
+};
 
 /// One implementation of one device class.
 struct DeviceType {
@@ -83,20 +99,27 @@ struct DeviceType {
   Recipe<Actuator> (*make_actuator)(const Element& options, Problems& problems, const DeviceSetup& setup) = nullptr;
   /// Shows its options, for the manual.
   void (*describe)(hal::ParamVisitor& visitor) = nullptr;
+  bool needs_forces = false;  ///< it works by joints: only where the robot's engine knows forces
 };
 
 /// The devices that a configuration lists, read for the robots of one group.
 struct GroupRecipes {
   struct Listed {
-    std::string_view device;  ///< the port's name
-    hal::Role role;
+    const DeviceType* type = nullptr;
     Recipe<Sensor> sensor;  ///< one of the two is set
     Recipe<Actuator> actuator;
+
+    const std::vector<KeptColumn>& columns() const noexcept {
+      return type->role == hal::Role::Sensor ? sensor.columns : actuator.columns;
+    }
   };
   std::vector<Listed> listed;
 
   const Listed* find(std::string_view device, hal::Role role) const noexcept;
 };
+
+/// The name of a device among the group's that works by joints; empty: none does.
+std::string_view device_with_forces(const RobotGroup& group) noexcept;
 
 /// All implementations of all devices; the first of a device is its default.
 const std::vector<DeviceType>& device_types();

@@ -33,14 +33,15 @@ struct TurnErrors {
 
 class ScannerActuator final : public Actuator {
  public:
-  ScannerActuator(double fastest_rad_s, double noise) : fastest_rad_s_(fastest_rad_s), noise_(noise) {}
+  ScannerActuator(double fastest_rad_s, double noise, const BlockColumns& columns)
+      : fastest_rad_s_(fastest_rad_s), noise_(noise), scanners_(columns.find<ScannerState>()) {}
 
   void act(const DeviceContext& context, SpaceStores& stores, const void* ports) noexcept override {
     const auto* drives = static_cast<const hal::ScannerDrive*>(ports);
     for (std::size_t i = 0; i < context.block.used; ++i) {
       if (led_from_outside(context, i)) continue;
       const std::size_t row = context.block.first_row + i;
-      ScannerState& scanner = stores.bodies.scanners[row];
+      ScannerState& scanner = scanners_[i];
       scanner.mode = obeys(context, i) ? drives[i].mode : ScannerMode::Off;
       scanner.swept_rad = step_rad(context, stores.bodies.entity[row], scanner, drives[i]);
       scanner.angle_rad = wrapped(scanner.angle_rad + scanner.swept_rad);
@@ -65,6 +66,7 @@ class ScannerActuator final : public Actuator {
 
   double fastest_rad_s_;
   double noise_;
+  ScannerState* scanners_;
 };
 
 template <class Options>
@@ -72,9 +74,10 @@ Recipe<Actuator> make_turning(const Element& element, Problems& problems, const 
   const auto options = read_options<Options>(element, problems);
   double noise = 0.0;
   if constexpr (requires { options.noise_std_dev; }) noise = options.noise_std_dev;
-  return [fastest = setup.sheet.scanner_turn_rad_s, noise](std::size_t) {
-    return std::make_unique<ScannerActuator>(fastest, noise);
+  const auto make = [fastest = setup.sheet.scanner_turn_rad_s, noise](const BlockColumns& columns) {
+    return std::make_unique<ScannerActuator>(fastest, noise, columns);
   };
+  return {make, {keeps<ScannerState>()}};
 }
 
 template <class Options>
@@ -106,8 +109,9 @@ struct ScanNoise : IdealScan {
 /// robot itself is where it is at the tick's end.
 class ScannerSensor final : public Sensor {
  public:
-  ScannerSensor(const DeviceSetup& setup, double noise_m)
+  ScannerSensor(const DeviceSetup& setup, double noise_m, const BlockColumns& columns)
       : sheet_(setup.sheet),
+        scanners_(columns.find<ScannerState>()),
         noise_m_(static_cast<float>(noise_m)),
         samples_(static_cast<std::uint32_t>(std::clamp<double>(std::round(setup.sheet.scanner_rate_hz * setup.tick_s),
                                                                1.0, DistanceScanner::kSamples))),
@@ -129,7 +133,7 @@ class ScannerSensor final : public Sensor {
       port.short_max_m = static_cast<float>(sheet_.scanner[0].max_m);
       port.long_min_m = static_cast<float>(sheet_.scanner[1].min_m);
       port.long_max_m = static_cast<float>(sheet_.scanner[1].max_m);
-      aim(context.stores.bodies.scanners[row], port);
+      aim(scanners_[i], port);
       if (port.count == 0) continue;
       look(context.stores, row, widest_m, port);
       if (noise_m_ > 0.0F) add_noise(context, context.stores.bodies.entity[row], port);
@@ -266,6 +270,7 @@ class ScannerSensor final : public Sensor {
   }
 
   const hal::DataSheet& sheet_;
+  const ScannerState* scanners_;
   float noise_m_;
   std::uint32_t samples_;  // of each head, in a tick in which the scanner turns
   double farthest_m_ = 0.0;
@@ -285,7 +290,10 @@ Recipe<Sensor> make_scanner(const Element& element, Problems& problems, const De
   const auto options = read_options<Options>(element, problems);
   double noise_m = 0.0;
   if constexpr (requires { options.noise_range_m; }) noise_m = options.noise_range_m;
-  return [setup, noise_m](std::size_t) { return std::make_unique<ScannerSensor>(setup, noise_m); };
+  const auto make = [setup, noise_m](const BlockColumns& columns) {
+    return std::make_unique<ScannerSensor>(setup, noise_m, columns);
+  };
+  return {make, {keeps<ScannerState>()}};
 }
 
 template <class Options>

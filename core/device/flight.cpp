@@ -4,6 +4,7 @@
 
 #include "core/device/types.hpp"
 #include "core/random/random.hpp"
+#include "core/space/mechanisms.hpp"
 
 namespace tandem::core {
 namespace {
@@ -61,92 +62,100 @@ std::array<double, 3> errors(const DeviceContext& context, std::size_t row, Stre
   return {std_dev * xy[0], std_dev * xy[1], std_dev * to_normal(bits[2], bits[3])[0]};
 }
 
-/// Each flight actuator notes what its port asks for; which of them counts is seen once all have (core/sim/piloting).
+/// Each flight actuator notes what its port asks for; which of them counts is seen once all have
+/// (core/device/piloting).
 class PositionActuator final : public Actuator {
  public:
-  explicit PositionActuator(double noise_m) : noise_m_(noise_m) {}
+  PositionActuator(double noise_m, const BlockColumns& columns)
+      : noise_m_(noise_m), setpoints_(columns.find<FlightSetpoint>()) {}
 
-  void act(const DeviceContext& context, SpaceStores& stores, const void* ports) noexcept override {
+  void act(const DeviceContext& context, SpaceStores& /*stores*/, const void* ports) noexcept override {
     const auto* targets = static_cast<const hal::QuadrotorPosition*>(ports);
     for (std::size_t i = 0; i < context.block.used; ++i) {
       const std::size_t row = context.block.first_row + i;
-      FlightWish& wish = stores.bodies.wishes[row];
-      wish.to_place = !targets[i].hold;
-      wish.target_m = targets[i].target;
-      wish.heading_rad = targets[i].yaw_rad;
-      if (noise_m_ == 0.0 || !wish.to_place) continue;
+      FlightSetpoint& setpoint = setpoints_[i];
+      setpoint.to_place = !targets[i].hold;
+      setpoint.target_m = targets[i].target;
+      setpoint.heading_rad = targets[i].yaw_rad;
+      if (noise_m_ == 0.0 || !setpoint.to_place) continue;
       const auto error = errors(context, row, Stream::FlightNoise, noise_m_);
-      for (std::size_t k = 0; k < 3; ++k) wish.target_m[k] += error[k];
+      for (std::size_t k = 0; k < 3; ++k) setpoint.target_m[k] += error[k];
     }
   }
 
  private:
   double noise_m_;
+  FlightSetpoint* setpoints_;
 };
 
 class SpeedActuator final : public Actuator {
  public:
-  explicit SpeedActuator(double noise_m_s) : noise_m_s_(noise_m_s) {}
+  SpeedActuator(double noise_m_s, const BlockColumns& columns)
+      : noise_m_s_(noise_m_s), setpoints_(columns.find<FlightSetpoint>()) {}
 
-  void act(const DeviceContext& context, SpaceStores& stores, const void* ports) noexcept override {
+  void act(const DeviceContext& context, SpaceStores& /*stores*/, const void* ports) noexcept override {
     const auto* speeds = static_cast<const hal::QuadrotorSpeed*>(ports);
     for (std::size_t i = 0; i < context.block.used; ++i) {
       const std::size_t row = context.block.first_row + i;
-      FlightWish& wish = stores.bodies.wishes[row];
-      wish.velocity_m_s = speeds[i].velocity;
-      wish.turn_rad_s = speeds[i].yaw_rad_s;
+      FlightSetpoint& setpoint = setpoints_[i];
+      setpoint.velocity_m_s = speeds[i].velocity;
+      setpoint.turn_rad_s = speeds[i].yaw_rad_s;
       if (noise_m_s_ == 0.0) continue;
       const auto error = errors(context, row, Stream::FlightNoise, noise_m_s_);
-      for (std::size_t k = 0; k < 3; ++k) wish.velocity_m_s[k] += error[k];
+      for (std::size_t k = 0; k < 3; ++k) setpoint.velocity_m_s[k] += error[k];
     }
   }
 
  private:
   double noise_m_s_;
+  FlightSetpoint* setpoints_;
 };
 
 class AttitudeActuator final : public Actuator {
  public:
-  explicit AttitudeActuator(double noise) : noise_(noise) {}
+  AttitudeActuator(double noise, const BlockColumns& columns)
+      : noise_(noise), setpoints_(columns.find<FlightSetpoint>()) {}
 
-  void act(const DeviceContext& context, SpaceStores& stores, const void* ports) noexcept override {
+  void act(const DeviceContext& context, SpaceStores& /*stores*/, const void* ports) noexcept override {
     const auto* attitudes = static_cast<const hal::QuadrotorAttitude*>(ports);
     for (std::size_t i = 0; i < context.block.used; ++i) {
       const std::size_t row = context.block.first_row + i;
-      hal::QuadrotorAttitude& wish = stores.bodies.wishes[row].attitude;
-      wish = attitudes[i];
-      if (noise_ == 0.0 || !wish.active) continue;
+      hal::QuadrotorAttitude& setpoint = setpoints_[i].attitude;
+      setpoint = attitudes[i];
+      if (noise_ == 0.0 || !setpoint.active) continue;
       const auto error = errors(context, row, Stream::AttitudeNoise, noise_);
-      wish.roll_rad += error[0];
-      wish.pitch_rad += error[1];
-      wish.thrust = std::max(0.0, wish.thrust + error[2]);
+      setpoint.roll_rad += error[0];
+      setpoint.pitch_rad += error[1];
+      setpoint.thrust = std::max(0.0, setpoint.thrust + error[2]);
     }
   }
 
  private:
   double noise_;
+  FlightSetpoint* setpoints_;
 };
 
 class TaskActuator final : public Actuator {
  public:
-  explicit TaskActuator(double noise) : noise_(noise) {}
+  TaskActuator(double noise, const BlockColumns& columns) : noise_(noise), setpoints_(columns.find<FlightSetpoint>()) {}
 
-  void act(const DeviceContext& context, SpaceStores& stores, const void* ports) noexcept override {
+  void act(const DeviceContext& context, SpaceStores& /*stores*/, const void* ports) noexcept override {
     const auto* tasks = static_cast<const hal::FlightTask*>(ports);
     const hal::FlightSheet& sheet = context.group.sheet->flight;
     for (std::size_t i = 0; i < context.block.used; ++i) {
       const std::size_t row = context.block.first_row + i;
-      hal::FlightTask& wish = stores.bodies.wishes[row].task;
-      wish = tasks[i];
+      hal::FlightTask& setpoint = setpoints_[i].task;
+      setpoint = tasks[i];
       if (noise_ == 0.0) continue;
-      if (wish.speed_m_s == 0.0)
-        wish.speed_m_s = wish.order == hal::FlightOrder::Land ? sheet.sink_m_s : sheet.climb_m_s;
-      wish.speed_m_s *= std::max(0.1, 1.0 + errors(context, row, Stream::TaskNoise, noise_)[0]);
+      if (setpoint.speed_m_s == 0.0)
+        setpoint.speed_m_s = setpoint.order == hal::FlightOrder::Land ? sheet.sink_m_s : sheet.climb_m_s;
+      setpoint.speed_m_s *= std::max(0.1, 1.0 + errors(context, row, Stream::TaskNoise, noise_)[0]);
     }
   }
 
  private:
   double noise_;
+  FlightSetpoint* setpoints_;
 };
 
 template <class Device, class Options>
@@ -154,7 +163,8 @@ Recipe<Actuator> make_flight(const Element& element, Problems& problems, const D
   const auto options = read_options<Options>(element, problems);
   double noise = 0.0;
   if constexpr (requires { options.noise_std_dev; }) noise = options.noise_std_dev;
-  return [noise](std::size_t) { return std::make_unique<Device>(noise); };
+  const auto make = [noise](const BlockColumns& columns) { return std::make_unique<Device>(noise, columns); };
+  return {make, {keeps<FlightSetpoint>(), keeps<PilotState>()}};
 }
 
 template <class Device, class Options>
@@ -237,7 +247,7 @@ Recipe<Sensor> make_positioning(const Element& element, Problems& problems, cons
   PlaceErrors<0> errors;
   if constexpr (requires { options.pos_noise_m; })
     errors = {options.pos_noise_m, options.angle_noise_rad, options.axis_noise};
-  return [errors](std::size_t) { return std::make_unique<PositioningSensor>(errors); };
+  return [errors](const BlockColumns&) { return std::make_unique<PositioningSensor>(errors); };
 }
 
 template <class Options>

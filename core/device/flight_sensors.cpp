@@ -2,6 +2,7 @@
 #include "core/device/altitude.hpp"
 #include "core/device/types.hpp"
 #include "core/random/random.hpp"
+#include "core/space/mechanisms.hpp"
 #include "hal/device/flight.hpp"
 
 namespace tandem::core {
@@ -28,7 +29,8 @@ struct VelocityNoise {
 
 class FlightStateSensor final : public Sensor {
  public:
-  explicit FlightStateSensor(double noise_m_s) : noise_m_s_(noise_m_s) {}
+  FlightStateSensor(double noise_m_s, const BlockColumns& columns)
+      : noise_m_s_(noise_m_s), pilots_(columns.find<PilotState>()) {}
 
   void sense(const DeviceContext& context, void* ports) noexcept override {
     auto* states = static_cast<hal::FlightState*>(ports);
@@ -37,7 +39,7 @@ class FlightStateSensor final : public Sensor {
       const std::size_t row = context.block.first_row + i;
       hal::FlightState& port = states[i];
       stamp(context, port);
-      port.phase = b.pilots[row].phase;
+      port.phase = pilots_[i].phase;
       port.failsafe = hal::FlightFailsafe::None;
       port.velocity = b.motion[row].v_m_s;
       port.yaw_rad_s = b.motion[row].w_rad_s[2];
@@ -54,6 +56,7 @@ class FlightStateSensor final : public Sensor {
 
  private:
   double noise_m_s_;
+  const PilotState* pilots_;
 };
 
 template <class Options>
@@ -61,7 +64,10 @@ Recipe<Sensor> make_state(const Element& element, Problems& problems, const Devi
   const auto options = read_options<Options>(element, problems);
   double noise = 0.0;
   if constexpr (requires { options.noise_std_dev; }) noise = options.noise_std_dev;
-  return [noise](std::size_t) { return std::make_unique<FlightStateSensor>(noise); };
+  const auto make = [noise](const BlockColumns& columns) {
+    return std::make_unique<FlightStateSensor>(noise, columns);
+  };
+  return {make, {keeps<PilotState>()}};
 }
 
 template <class Options>
@@ -123,7 +129,7 @@ Recipe<Sensor> make_altimeter(const Element& element, Problems& problems, const 
   const auto options = read_options<Options>(element, problems);
   double noise = 0.0;
   if constexpr (requires { options.noise_std_dev_m; }) noise = options.noise_std_dev_m;
-  return [&sheet = setup.sheet, noise](std::size_t) { return std::make_unique<AltimeterSensor>(sheet, noise); };
+  return [&sheet = setup.sheet, noise](const BlockColumns&) { return std::make_unique<AltimeterSensor>(sheet, noise); };
 }
 
 template <class Options>

@@ -29,13 +29,14 @@ struct Gripping {
 
 class GripperActuator final : public Actuator {
  public:
-  explicit GripperActuator(double failure_prob) : failure_prob_(failure_prob) {}
+  GripperActuator(double failure_prob, const BlockColumns& columns)
+      : failure_prob_(failure_prob), grips_(columns.find<GripState>()) {}
 
   void act(const DeviceContext& context, SpaceStores& stores, const void* ports) noexcept override {
     const auto* drives = static_cast<const hal::GripperDrive*>(ports);
     for (std::size_t i = 0; i < context.block.used; ++i) {
       const std::size_t row = context.block.first_row + i;
-      GripState& grip = stores.bodies.grips[row];
+      GripState& grip = grips_[i];
       const bool able = obeys(context, i);
       if (!led_from_outside(context, i)) grip.aperture_rad = able ? drives[i].aperture_rad : 0.0;
       grip.wants = able && drives[i].locks();
@@ -49,6 +50,7 @@ class GripperActuator final : public Actuator {
   }
 
   double failure_prob_;
+  GripState* grips_;
 };
 
 template <class Options>
@@ -56,13 +58,18 @@ Recipe<Actuator> make_gripping(const Element& element, Problems& problems, const
   const auto options = read_options<Options>(element, problems);
   double failure_prob = 0.0;
   if constexpr (requires { options.failure_prob; }) failure_prob = options.failure_prob;
-  return [failure_prob](std::size_t) { return std::make_unique<GripperActuator>(failure_prob); };
+  const auto make = [failure_prob](const BlockColumns& columns) {
+    return std::make_unique<GripperActuator>(failure_prob, columns);
+  };
+  return {make, {keeps<GripState>()}};
 }
 
 template <class Options>
 DeviceType gripping_type(std::string_view implementation, std::string_view summary) {
-  return actuator_type(hal::GripperDrive::kName, implementation, summary, &has_gripper, &make_gripping<Options>,
-                       &describe_options<Options>);
+  DeviceType type = actuator_type(hal::GripperDrive::kName, implementation, summary, &has_gripper,
+                                  &make_gripping<Options>, &describe_options<Options>);
+  type.needs_forces = true;
+  return type;
 }
 
 // --- sensor ---
@@ -82,14 +89,15 @@ struct ApertureNoise {
 
 class GripperSensor final : public Sensor {
  public:
-  explicit GripperSensor(double noise_rad) : noise_rad_(noise_rad) {}
+  GripperSensor(double noise_rad, const BlockColumns& columns)
+      : noise_rad_(noise_rad), grips_(columns.find<GripState>()) {}
 
   void sense(const DeviceContext& context, void* ports) noexcept override {
     auto* grippers = static_cast<hal::Gripper*>(ports);
     const Bodies& b = context.stores.bodies;
     for (std::size_t i = 0; i < context.block.used; ++i) {
       const std::size_t row = context.block.first_row + i;
-      const GripState& grip = b.grips[row];
+      const GripState& grip = grips_[i];
       hal::Gripper& port = grippers[i];
       stamp(context, port);
       double aperture_rad = grip.aperture_rad;
@@ -105,6 +113,7 @@ class GripperSensor final : public Sensor {
 
  private:
   double noise_rad_;
+  const GripState* grips_;
 };
 
 template <class Options>
@@ -112,7 +121,10 @@ Recipe<Sensor> make_gripper(const Element& element, Problems& problems, const De
   const auto options = read_options<Options>(element, problems);
   double noise_rad = 0.0;
   if constexpr (requires { options.noise_range_rad; }) noise_rad = options.noise_range_rad;
-  return [noise_rad](std::size_t) { return std::make_unique<GripperSensor>(noise_rad); };
+  const auto make = [noise_rad](const BlockColumns& columns) {
+    return std::make_unique<GripperSensor>(noise_rad, columns);
+  };
+  return {make, {keeps<GripState>()}};
 }
 
 template <class Options>

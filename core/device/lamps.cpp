@@ -137,7 +137,7 @@ Recipe<Actuator> make_lamp(const Element& element, Problems& problems, const Dev
     errors.brightness_std_dev = read.brightness_std_dev;
     errors.dead_prob = read.dead_prob;
   }
-  return [&sheet = setup.sheet, shine = Shine(errors, setup.led_medium(read.medium))](std::size_t) {
+  return [&sheet = setup.sheet, shine = Shine(errors, setup.led_medium(read.medium))](const BlockColumns&) {
     return std::make_unique<Device>(sheet, shine);
   };
 }

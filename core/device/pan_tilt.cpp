@@ -30,7 +30,8 @@ struct AimErrors {
 /// Turns about both axes at once, pan the shorter way round.
 class HeadActuator final : public Actuator {
  public:
-  HeadActuator(const hal::HeadSheet& sheet, double noise_rad) : sheet_(sheet), noise_rad_(noise_rad) {}
+  HeadActuator(const hal::HeadSheet& sheet, double noise_rad, const BlockColumns& columns)
+      : sheet_(sheet), noise_rad_(noise_rad), heads_(columns.find<HeadState>()) {}
 
   void act(const DeviceContext& context, SpaceStores& stores, const void* ports) noexcept override {
     const auto* drives = static_cast<const hal::PanTiltDrive*>(ports);
@@ -45,7 +46,7 @@ class HeadActuator final : public Actuator {
         drive.pan_rad += noise_rad_ * error[0];
         drive.tilt_rad += noise_rad_ * error[1];
       }
-      HeadState& head = stores.bodies.heads[row];
+      HeadState& head = heads_[i];
       const double tilt = std::clamp(drive.tilt_rad, -sheet_.most_tilt_rad, sheet_.most_tilt_rad);
       head.pan_rad = wrapped(head.pan_rad + std::clamp(wrapped(drive.pan_rad - head.pan_rad), -most_rad, most_rad));
       head.tilt_rad += std::clamp(tilt - head.tilt_rad, -most_rad, most_rad);
@@ -56,6 +57,7 @@ class HeadActuator final : public Actuator {
  private:
   hal::HeadSheet sheet_;
   double noise_rad_;
+  HeadState* heads_;
 };
 
 template <class Options>
@@ -63,7 +65,10 @@ Recipe<Actuator> make_head(const Element& element, Problems& problems, const Dev
   const auto options = read_options<Options>(element, problems);
   double noise = 0.0;
   if constexpr (requires { options.noise_std_dev; }) noise = options.noise_std_dev;
-  return [sheet = setup.sheet.camera_head, noise](std::size_t) { return std::make_unique<HeadActuator>(sheet, noise); };
+  const auto make = [sheet = setup.sheet.camera_head, noise](const BlockColumns& columns) {
+    return std::make_unique<HeadActuator>(sheet, noise, columns);
+  };
+  return {make, {keeps<HeadState>()}};
 }
 
 template <class Options>
@@ -85,7 +90,8 @@ struct AngleNoise {
 
 class HeadEncoderSensor final : public Sensor {
  public:
-  explicit HeadEncoderSensor(double noise_rad) : noise_rad_(noise_rad) {}
+  HeadEncoderSensor(double noise_rad, const BlockColumns& columns)
+      : noise_rad_(noise_rad), heads_(columns.find<HeadState>()) {}
 
   void sense(const DeviceContext& context, void* ports) noexcept override {
     auto* encoders = static_cast<hal::PanTiltEncoder*>(ports);
@@ -93,8 +99,8 @@ class HeadEncoderSensor final : public Sensor {
     for (std::size_t i = 0; i < context.block.used; ++i) {
       const std::size_t row = context.block.first_row + i;
       stamp(context, encoders[i]);
-      double pan_rad = b.heads[row].pan_rad;
-      double tilt_rad = b.heads[row].tilt_rad;
+      double pan_rad = heads_[i].pan_rad;
+      double tilt_rad = heads_[i].tilt_rad;
       if (noise_rad_ > 0.0) {
         const auto bits = draw(context.seed, b.entity[row], Stream::HeadEncoderNoise, context.tick);
         pan_rad = wrapped(pan_rad + noise_rad_ * to_symmetric(bits[0]));
@@ -107,6 +113,7 @@ class HeadEncoderSensor final : public Sensor {
 
  private:
   double noise_rad_;
+  const HeadState* heads_;
 };
 
 template <class Options>
@@ -114,7 +121,10 @@ Recipe<Sensor> make_encoder(const Element& element, Problems& problems, const De
   const auto options = read_options<Options>(element, problems);
   double noise = 0.0;
   if constexpr (requires { options.noise_range_rad; }) noise = options.noise_range_rad;
-  return [noise](std::size_t) { return std::make_unique<HeadEncoderSensor>(noise); };
+  const auto make = [noise](const BlockColumns& columns) {
+    return std::make_unique<HeadEncoderSensor>(noise, columns);
+  };
+  return {make, {keeps<HeadState>()}};
 }
 
 template <class Options>

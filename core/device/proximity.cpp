@@ -242,7 +242,7 @@ Recipe<Sensor> make_proximity(const Element& element, Problems& problems, const 
   const auto options = read_options<Options>(element, problems);
   double noise = 0.0;
   if constexpr (requires { options.noise_level; }) noise = options.noise_level;
-  return [&sheet = setup.sheet, noise](std::size_t) { return std::make_unique<ProximitySensor>(sheet, noise); };
+  return [&sheet = setup.sheet, noise](const BlockColumns&) { return std::make_unique<ProximitySensor>(sheet, noise); };
 }
 
 template <class Options>

@@ -429,7 +429,7 @@ Recipe<Sensor> make_hearing(const Element& element, Problems& problems, const De
     options.noise_std_dev_m = read.noise_std_dev_m;
     options.packet_drop_prob = read.packet_drop_prob;
   }
-  return [options](std::size_t) { return std::make_unique<RabSensor>(options); };
+  return [options](const BlockColumns&) { return std::make_unique<RabSensor>(options); };
 }
 
 template <class Options>
@@ -487,7 +487,7 @@ Recipe<Actuator> make_sending(const Element& element, Problems& problems, const 
   const auto options = read_options<Options>(element, problems);
   double failure_prob = 0.0;
   if constexpr (requires { options.failure_prob; }) failure_prob = options.failure_prob;
-  return [failure_prob](std::size_t) { return std::make_unique<RabActuator>(failure_prob); };
+  return [failure_prob](const BlockColumns&) { return std::make_unique<RabActuator>(failure_prob); };
 }
 
 template <class Options>

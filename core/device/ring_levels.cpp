@@ -149,7 +149,7 @@ bool has_motor_ground(const hal::DataSheet& sheet) {
 template <class Device, class Options>
 Recipe<Sensor> make_levels(const Element& element, Problems& problems, const DeviceSetup& setup) {
   const double noise = read_options<Options>(element, problems).level();
-  return [&sheet = setup.sheet, noise](std::size_t) { return std::make_unique<Device>(sheet, noise); };
+  return [&sheet = setup.sheet, noise](const BlockColumns&) { return std::make_unique<Device>(sheet, noise); };
 }
 
 template <class Device, class Options>

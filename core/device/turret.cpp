@@ -29,17 +29,18 @@ struct TurretErrors {
 /// Turns what carries no load at once; a turret that holds something is turned by the physics engine.
 class TurretActuator final : public Actuator {
  public:
-  TurretActuator(double fastest_rad_s, double noise) : fastest_rad_s_(fastest_rad_s), noise_(noise) {}
+  TurretActuator(double fastest_rad_s, double noise, const BlockColumns& columns)
+      : fastest_rad_s_(fastest_rad_s),
+        noise_(noise),
+        turrets_(columns.find<TurretState>()),
+        grips_(columns.find<GripState>()) {}
 
-  void act(const DeviceContext& context, SpaceStores& stores, const void* ports) noexcept override {
+  void act(const DeviceContext& context, SpaceStores& /*stores*/, const void* ports) noexcept override {
     const auto* drives = static_cast<const hal::TurretDrive*>(ports);
-    Bodies& b = stores.bodies;
     for (std::size_t i = 0; i < context.block.used; ++i) {
-      const std::size_t row = context.block.first_row + i;
       if (led_from_outside(context, i)) continue;
-      TurretState& turret = b.turrets[row];
-      command(context, i, drives[i], turret);
-      if (b.grips.empty() || !b.grips[row].holding()) turn(turret, context.tick_s);
+      command(context, i, drives[i], turrets_[i]);
+      if (grips_ == nullptr || !grips_[i].holding()) turn(turrets_[i], context.tick_s);
     }
   }
 
@@ -66,6 +67,8 @@ class TurretActuator final : public Actuator {
 
   double fastest_rad_s_;
   double noise_;
+  TurretState* turrets_;
+  const GripState* grips_;  // null: they have no grippers
 };
 
 template <class Options>
@@ -73,9 +76,10 @@ Recipe<Actuator> make_turret(const Element& element, Problems& problems, const D
   const auto options = read_options<Options>(element, problems);
   double noise = 0.0;
   if constexpr (requires { options.noise_std_dev; }) noise = options.noise_std_dev;
-  return [fastest = setup.sheet.turret_turn_rad_s, noise](std::size_t) {
-    return std::make_unique<TurretActuator>(fastest, noise);
+  const auto make = [fastest = setup.sheet.turret_turn_rad_s, noise](const BlockColumns& columns) {
+    return std::make_unique<TurretActuator>(fastest, noise, columns);
   };
+  return {make, {keeps<TurretState>()}};
 }
 
 template <class Options>
@@ -101,7 +105,8 @@ struct AngleNoise {
 
 class TurretEncoderSensor final : public Sensor {
  public:
-  explicit TurretEncoderSensor(double noise_rad) : noise_rad_(noise_rad) {}
+  TurretEncoderSensor(double noise_rad, const BlockColumns& columns)
+      : noise_rad_(noise_rad), turrets_(columns.find<TurretState>()) {}
 
   void sense(const DeviceContext& context, void* ports) noexcept override {
     auto* encoders = static_cast<hal::TurretEncoder*>(ports);
@@ -110,8 +115,8 @@ class TurretEncoderSensor final : public Sensor {
       const std::size_t row = context.block.first_row + i;
       hal::TurretEncoder& port = encoders[i];
       stamp(context, port);
-      port.angle_rad = b.turrets[row].angle_rad;
-      port.speed_rad_s = static_cast<float>(b.turrets[row].speed_rad_s);
+      port.angle_rad = turrets_[i].angle_rad;
+      port.speed_rad_s = static_cast<float>(turrets_[i].speed_rad_s);
       if (noise_rad_ == 0.0) continue;
       const auto bits = draw(context.seed, b.entity[row], Stream::TurretEncoderNoise, context.tick);
       port.angle_rad = wrapped(port.angle_rad + noise_rad_ * to_symmetric(bits[0]));
@@ -120,6 +125,7 @@ class TurretEncoderSensor final : public Sensor {
 
  private:
   double noise_rad_;
+  const TurretState* turrets_;
 };
 
 template <class Options>
@@ -127,7 +133,10 @@ Recipe<Sensor> make_encoder(const Element& element, Problems& problems, const De
   const auto options = read_options<Options>(element, problems);
   double noise_rad = 0.0;
   if constexpr (requires { options.noise_range_rad; }) noise_rad = options.noise_range_rad;
-  return [noise_rad](std::size_t) { return std::make_unique<TurretEncoderSensor>(noise_rad); };
+  const auto make = [noise_rad](const BlockColumns& columns) {
+    return std::make_unique<TurretEncoderSensor>(noise_rad, columns);
+  };
+  return {make, {keeps<TurretState>()}};
 }
 
 template <class Options>

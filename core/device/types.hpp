@@ -18,7 +18,4 @@ std::vector<DeviceType> scanner_types();
 std::vector<DeviceType> camera_types();
 std::vector<DeviceType> lamp_types();
 
-/// The implementation of the wheels that needs Bodies::hidden_rolls.
-inline constexpr std::string_view kSlanted = "slanted";
-
 }  // namespace tandem::core

@@ -3,6 +3,7 @@
 
 #include "core/device/types.hpp"
 #include "core/random/random.hpp"
+#include "core/space/mechanisms.hpp"
 
 namespace tandem::core {
 namespace {
@@ -88,7 +89,8 @@ struct Slant {
 
 class SlantedActuator final : public Actuator {
  public:
-  explicit SlantedActuator(double sigma) : sigma_(sigma) {}
+  SlantedActuator(double sigma, const BlockColumns& columns)
+      : sigma_(sigma), hidden_rolls_(columns.find<HiddenRoll>()), grips_(columns.find<GripState>()) {}
 
   void act(const DeviceContext& context, SpaceStores& stores, const void* ports) noexcept override {
     const auto* wheels = static_cast<const hal::WheelSpeeds*>(ports);
@@ -97,11 +99,11 @@ class SlantedActuator final : public Actuator {
       const std::size_t row = context.block.first_row + i;
       const hal::WheelSpeeds told = obeys(context, i) ? wheels[i] : hal::WheelSpeeds{};
       const double sum = told.left_m_s + told.right_m_s;
-      HiddenRoll& hidden = b.hidden_rolls[row];
+      HiddenRoll& hidden = hidden_rolls_[i];
       hidden.left_m_s = 0.0;
       hidden.right_m_s = 0.0;
       if (sum != 0.0) {
-        const double part = drawn(context.seed, b, row);
+        const double part = drawn(context.seed, b.entity[row], i);
         if (sum > 0.0)
           hidden.right_m_s = part * told.right_m_s;
         else
@@ -115,18 +117,23 @@ class SlantedActuator final : public Actuator {
   }
 
  private:
-  double drawn(std::uint64_t seed, const Bodies& b, std::size_t row) const noexcept {
-    const std::uint32_t grips = b.grips.empty() ? 0 : b.grips[row].grips;
-    const auto bits = draw(seed, b.entity[row], Stream::TreelSlant, grips);
+  double drawn(std::uint64_t seed, std::uint32_t entity, std::size_t slot) const noexcept {
+    const std::uint32_t grips = grips_ == nullptr ? 0 : grips_[slot].grips;
+    const auto bits = draw(seed, entity, Stream::TreelSlant, grips);
     return sigma_ * std::sqrt(-2.0 * std::log(1.0 - to_unit(bits[0], bits[1])));
   }
 
   double sigma_;
+  HiddenRoll* hidden_rolls_;
+  const GripState* grips_;  // null: they have no grippers
 };
 
 Recipe<Actuator> make_slanted(const Element& element, Problems& problems, const DeviceSetup&) {
   const auto options = read_options<Slant>(element, problems);
-  return [sigma = options.sigma](std::size_t) { return std::make_unique<SlantedActuator>(sigma); };
+  const auto make = [sigma = options.sigma](const BlockColumns& columns) {
+    return std::make_unique<SlantedActuator>(sigma, columns);
+  };
+  return {make, {keeps<HiddenRoll>()}};
 }
 
 template <class Options>
@@ -137,7 +144,7 @@ Recipe<Actuator> make_wheels(const Element& element, Problems& problems, const D
     errors = {options.bias_left_m_s, options.bias_right_m_s, options.factor_left, options.factor_right,
               options.noise_std_dev};
   }
-  return [errors](std::size_t) { return std::make_unique<WheelActuator>(errors); };
+  return [errors](const BlockColumns&) { return std::make_unique<WheelActuator>(errors); };
 }
 
 template <class Options>
@@ -164,10 +171,23 @@ struct EncoderErrors {
   }
 };
 
+/// What noisy encoders have counted beyond what was rolled.
+struct EncoderDrift {
+  static constexpr std::string_view kName = "encoder_drift";
+  static constexpr std::string_view kDoc = "What noisy encoders have counted beyond what was rolled.";
+
+  double left_m = 0.0, right_m = 0.0;
+
+  void describe(hal::FieldList& f) const {
+    f.add("left", left_m, hal::unit::m, "since the start");
+    f.add("right", right_m, hal::unit::m, "since the start");
+  }
+};
+
 class EncoderSensor final : public Sensor {
  public:
-  EncoderSensor(const EncoderErrors<0>& errors, std::size_t capacity)
-      : errors_(errors), drift_m_(errors.dist_noise_m > 0.0 ? capacity : 0, 2, 0.0) {}
+  EncoderSensor(const EncoderErrors<0>& errors, const BlockColumns& columns)
+      : errors_(errors), drifts_(columns.find<EncoderDrift>()), hidden_rolls_(columns.find<HiddenRoll>()) {}
 
   void sense(const DeviceContext& context, void* ports) noexcept override {
     auto* encoders = static_cast<hal::WheelEncoders*>(ports);
@@ -182,11 +202,10 @@ class EncoderSensor final : public Sensor {
       port.right_m = b.right_m[row];
       port.left_m_s = static_cast<float>(b.left_m_s[row]);
       port.right_m_s = static_cast<float>(b.right_m_s[row]);
-      if (!b.hidden_rolls.empty()) hide(b.hidden_rolls[row], port);
+      if (hidden_rolls_ != nullptr) hide(hidden_rolls_[i], port);
       if (noisy) add_noise(context, b.entity[row], i, port);
     }
   }
-  DeviceMemory* memory() noexcept override { return drift_m_.values.empty() ? nullptr : &drift_m_; }
 
  private:
   static void hide(const HiddenRoll& hidden, hal::WheelEncoders& port) noexcept {
@@ -201,17 +220,17 @@ class EncoderSensor final : public Sensor {
     const auto symmetric = [&bits](std::size_t k) { return 2.0 * to_unit(bits[k]) - 1.0; };
     port.left_m_s += static_cast<float>(errors_.vel_noise_m_s * symmetric(0));
     port.right_m_s += static_cast<float>(errors_.vel_noise_m_s * symmetric(1));
-    if (drift_m_.values.empty()) return;
-    double& left_m = drift_m_.values[2 * i];
-    double& right_m = drift_m_.values[2 * i + 1];
-    left_m += errors_.dist_noise_m * symmetric(2);
-    right_m += errors_.dist_noise_m * symmetric(3);
-    port.left_m += left_m;
-    port.right_m += right_m;
+    if (drifts_ == nullptr) return;
+    EncoderDrift& drift = drifts_[i];
+    drift.left_m += errors_.dist_noise_m * symmetric(2);
+    drift.right_m += errors_.dist_noise_m * symmetric(3);
+    port.left_m += drift.left_m;
+    port.right_m += drift.right_m;
   }
 
   EncoderErrors<0> errors_;
-  DeviceMemory drift_m_;  // left, right of each slot
+  EncoderDrift* drifts_;            // null: their distances are exact
+  const HiddenRoll* hidden_rolls_;  // null: their wheels roll as they count
 };
 
 template <class Options>
@@ -219,7 +238,9 @@ Recipe<Sensor> make_encoders(const Element& element, Problems& problems, const D
   const auto options = read_options<Options>(element, problems);
   EncoderErrors<0> errors;
   if constexpr (requires { options.dist_noise_m; }) errors = {options.vel_noise_m_s, options.dist_noise_m};
-  return [errors](std::size_t capacity) { return std::make_unique<EncoderSensor>(errors, capacity); };
+  const auto make = [errors](const BlockColumns& columns) { return std::make_unique<EncoderSensor>(errors, columns); };
+  if (errors.dist_noise_m > 0.0) return {make, {keeps<EncoderDrift>()}};
+  return make;
 }
 
 template <class Options>
@@ -239,24 +260,44 @@ struct OdometryErrors {
   }
 };
 
+/// Where odometry believes the robot to be.
+struct Reckoned {
+  static constexpr std::string_view kName = "odometry";
+  static constexpr std::string_view kDoc = "Where odometry believes robots to be.";
+
+  double x_m = 0.0, y_m = 0.0, heading_rad = 0.0;
+  double left_m = 0.0, right_m = 0.0;  ///< that were taken into account
+
+  void describe(hal::FieldList& f) const {
+    f.add("x", x_m, hal::unit::m, "from where the robot started, ahead");
+    f.add("y", y_m, hal::unit::m, "from where the robot started, to the left");
+    f.add("heading", heading_rad, hal::unit::rad, "relative to that at the start");
+    f.add("left", left_m, hal::unit::m, "that was taken into account");
+    f.add("right", right_m, hal::unit::m, "that was taken into account");
+  }
+};
+
 /// Adds up what the encoders saw in each tick as an arc [Siegwart et al. 2011, Introduction to Autonomous Mobile
 /// Robots, section 5.2.4].
 class OdometrySensor final : public Sensor {
  public:
-  OdometrySensor(double wheel_base_m, double noise_m, std::size_t capacity)
-      : wheel_base_m_(wheel_base_m), noise_m_(noise_m), reckoned_(capacity, 5, 0.0) {}
+  OdometrySensor(double wheel_base_m, double noise_m, const BlockColumns& columns)
+      : wheel_base_m_(wheel_base_m),
+        noise_m_(noise_m),
+        reckoned_(columns.find<Reckoned>()),
+        hidden_rolls_(columns.find<HiddenRoll>()) {}
 
   void sense(const DeviceContext& context, void* ports) noexcept override {
     auto* places = static_cast<hal::Odometry*>(ports);
     const Bodies& b = context.stores.bodies;
     for (std::size_t i = 0; i < context.block.used; ++i) {
       const std::size_t row = context.block.first_row + i;
-      Reckoned r = reckoned(i);
+      Reckoned& r = reckoned_[i];
       double left_m = b.left_m[row];
       double right_m = b.right_m[row];
-      if (!b.hidden_rolls.empty()) {
-        left_m -= b.hidden_rolls[row].left_m;
-        right_m -= b.hidden_rolls[row].right_m;
+      if (hidden_rolls_ != nullptr) {
+        left_m -= hidden_rolls_[i].left_m;
+        right_m -= hidden_rolls_[i].right_m;
       }
       double rolled_left_m = left_m - r.left_m;
       double rolled_right_m = right_m - r.right_m;
@@ -273,24 +314,10 @@ class OdometrySensor final : public Sensor {
       port.x_m = r.x_m;
       port.y_m = r.y_m;
       port.heading_rad = r.heading_rad;
-      keep(i, r);
     }
   }
-  DeviceMemory* memory() noexcept override { return &reckoned_; }
 
  private:
-  struct Reckoned {
-    double x_m = 0.0, y_m = 0.0, heading_rad = 0.0;
-    double left_m = 0.0, right_m = 0.0;  // that were taken into account
-  };
-  Reckoned reckoned(std::size_t slot) const noexcept {
-    const double* v = reckoned_.values.data() + slot * reckoned_.per_slot;
-    return {v[0], v[1], v[2], v[3], v[4]};
-  }
-  void keep(std::size_t slot, const Reckoned& r) noexcept {
-    const std::array<double, 5> v = {r.x_m, r.y_m, r.heading_rad, r.left_m, r.right_m};
-    std::copy(v.begin(), v.end(), reckoned_.values.data() + slot * reckoned_.per_slot);
-  }
   /// Along an arc: its chord points half of the turn to the side.
   static void go(Reckoned& r, double way_m, double turn_rad) noexcept {
     const double half = 0.5 * turn_rad;
@@ -302,7 +329,8 @@ class OdometrySensor final : public Sensor {
 
   double wheel_base_m_;
   double noise_m_;
-  DeviceMemory reckoned_;
+  Reckoned* reckoned_;
+  const HiddenRoll* hidden_rolls_;  // null: their wheels roll as they count
 };
 
 template <class Options>
@@ -310,9 +338,10 @@ Recipe<Sensor> make_odometry(const Element& element, Problems& problems, const D
   const auto options = read_options<Options>(element, problems);
   double noise_m = 0.0;
   if constexpr (requires { options.dist_noise_m; }) noise_m = options.dist_noise_m;
-  return [base = setup.sheet.wheel_base_m, noise_m](std::size_t capacity) {
-    return std::make_unique<OdometrySensor>(base, noise_m, capacity);
+  const auto make = [base = setup.sheet.wheel_base_m, noise_m](const BlockColumns& columns) {
+    return std::make_unique<OdometrySensor>(base, noise_m, columns);
   };
+  return {make, {keeps<Reckoned>()}};
 }
 
 template <class Options>
@@ -327,7 +356,7 @@ std::vector<DeviceType> wheel_types() {
   return {wheels_type<WheelErrors<0>>("default", "The commanded speeds, with bias, factor and noise where asked for."),
           wheels_type<IdealWheels>("ideal", "The commanded speeds, exactly."),
           wheels_type<WheelErrors<50>>("noisy", "Each wheel with a relative error of its own every tick."),
-          actuator_type(hal::WheelSpeeds::kName, kSlanted,
+          actuator_type(hal::WheelSpeeds::kName, "slanted",
                         "Draws to one side by an error that the encoders do not see and every grip changes.",
                         &has_wheels, &make_slanted, &describe_options<Slant>),
           encoder_type<EncoderErrors<0>>("default", "What the wheels rolled, with noise where asked for."),

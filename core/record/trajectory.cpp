@@ -18,7 +18,7 @@ constexpr std::size_t kBufferBytes = std::size_t{1} << 18;
 constexpr std::size_t kNamesShown = 8;
 
 /// A field of a port, and how many columns it has.
-struct Column {
+struct CsvColumns {
   const hal::PortType* port;
   const hal::Field* field;
   std::size_t values;
@@ -87,7 +87,7 @@ struct TrajectoryRecorder::Impl {
   std::set<std::pair<std::uint32_t, std::uint32_t>> newcomers;  // of `robots`: index and generation
   std::uint32_t generations = 0;                                // of the space when they were looked for last
   std::vector<const hal::PortType*> ports;
-  std::vector<Column> columns;
+  std::vector<CsvColumns> columns;
   bool header_written = false;
   hal::Tick flushed_until = 0;  // the first tick that `buffer` holds lines of
   std::string buffer;           // whole lines, but while a record is made
@@ -222,7 +222,7 @@ void TrajectoryRecorder::Impl::write_line(const Space& space, std::size_t i, hal
 void TrajectoryRecorder::Impl::write_fields(const Space& space, RobotId robot) {
   const hal::PortType* port = nullptr;
   const void* data = nullptr;
-  for (const Column& column : columns) {
+  for (const CsvColumns& column : columns) {
     if (column.port != port) data = space.port(robot, *(port = column.port));
     const std::size_t used = data == nullptr ? 0 : hal::used_count(*port, data, *column.field);
     for (std::size_t i = 0; i < column.values; ++i) {

@@ -304,9 +304,13 @@ bool RobotFactory::read_devices(const RobotGroup& group, hal::Role role, GroupRe
     } else if (!type->fits(*group.sheet)) {
       problem("the robot '" + std::string(group.sheet->kind) + "' has no device '" + choice.device + "'");
     } else {
-      GroupRecipes::Listed listed{type->device, role, nullptr, nullptr};
+      GroupRecipes::Listed listed{type, {}, {}};
       if (type->make_sensor != nullptr) listed.sensor = type->make_sensor(choice.options, problems, setup);
       if (type->make_actuator != nullptr) listed.actuator = type->make_actuator(choice.options, problems, setup);
+      for (const KeptColumn& column : listed.columns()) {
+        const auto known = stores_.columns.of(*column.type);
+        if (!known.ok()) problem("device '" + choice.device + "': " + known.error().message);
+      }
       recipes.listed.push_back(std::move(listed));
     }
   }
@@ -408,22 +412,54 @@ std::string RobotFactory::construct(Slot at, const std::shared_ptr<const void>& 
          std::string(robot.id()) + "' " + why;
 }
 
-/// Gives every block of the group arrays and devices for all ports that its controllers have taken by now.
+/// The columns that the devices of the group's ports need, and those of robots that fly.
+void RobotFactory::choose_columns(RobotGroup& group) {
+  const auto add = [&](const KeptColumn& wanted) {
+    ColumnArrays* const arrays = stores_.columns.of(*wanted.type).value();
+    const auto same = [arrays](const KeptColumn& other) { return other.arrays == arrays; };
+    if (std::any_of(group.columns.begin(), group.columns.end(), same)) return;
+    group.columns.push_back(wanted);
+    group.columns.back().arrays = arrays;
+  };
+  if (group.sheet->flies) {
+    add(keeps<FlightCommand>());
+    add(keeps<RotorState>());
+  }
+  for (const hal::PortType* port : group.ports) {
+    const GroupRecipes::Listed& made = *group.recipes->find(port->name, port->role);
+    for (const KeptColumn& column : made.columns()) add(column);
+  }
+}
+
+/// Gives a block the rows of its group's columns that it lacks.
+void RobotFactory::add_rows(std::size_t block_index) {
+  RobotBlock& block = stores_.blocks[block_index];
+  for (const KeptColumn& column : stores_.groups[block.group].columns) {
+    std::vector<std::byte*>& arrays = column.arrays->of_block;
+    if (arrays.size() <= block_index) arrays.resize(block_index + 1, nullptr);
+    if (arrays[block_index] != nullptr) continue;
+    arrays[block_index] = make_array(block, slab_, column.type->size * block.capacity, column.type->align);
+    for (std::size_t slot = 0; slot < block.capacity; ++slot) column.start(block_index, slot);
+  }
+}
+
+/// Gives every block of the group arrays, rows and devices for all ports that its controllers have taken by now.
 void RobotFactory::complete(std::size_t g) {
-  const RobotGroup& group = stores_.groups[g];
+  RobotGroup& group = stores_.groups[g];
   devices_.blocks.resize(stores_.blocks.size());
-  for (const std::size_t b : group.blocks) add_port_arrays(group, stores_.blocks[b], slab_);
-  for (std::size_t p = 0; p < group.ports.size(); ++p) {
-    const auto lacks = [&](std::size_t b) { return devices_.blocks[b].sensors.size() <= p; };
-    if (std::none_of(group.blocks.begin(), group.blocks.end(), lacks)) continue;
-    const hal::PortType& port = *group.ports[p];
-    const bool is_sensor = port.role == hal::Role::Sensor;
-    const GroupRecipes::Listed& made = *group.recipes->find(port.name, port.role);
-    for (const std::size_t b : group.blocks) {
-      if (!lacks(b)) continue;
-      const std::size_t capacity = stores_.blocks[b].capacity;
-      devices_.blocks[b].sensors.push_back(is_sensor ? made.sensor(capacity) : nullptr);
-      devices_.blocks[b].actuators.push_back(is_sensor ? nullptr : made.actuator(capacity));
+  choose_columns(group);
+  for (const std::size_t b : group.blocks) {
+    add_port_arrays(group, stores_.blocks[b], slab_);
+    add_rows(b);
+    BlockDevices& devices = devices_.blocks[b];
+    if (devices.sensors.size() == group.ports.size()) continue;
+    devices = {};  // those that are there may find more columns now
+    const BlockColumns columns(stores_.columns, b);
+    for (const hal::PortType* port : group.ports) {
+      const GroupRecipes::Listed& made = *group.recipes->find(port->name, port->role);
+      const bool is_sensor = port->role == hal::Role::Sensor;
+      devices.sensors.push_back(is_sensor ? made.sensor.make(columns) : nullptr);
+      devices.actuators.push_back(is_sensor ? nullptr : made.actuator.make(columns));
     }
   }
 }
@@ -437,42 +473,9 @@ void RobotFactory::keep_sizes() {
   };
   if (!stores_.broadcasts.empty() || std::any_of(stores_.groups.begin(), stores_.groups.end(), sends))
     stores_.broadcasts.resize(stores_.bodies.size());
-  const auto flies = [](const RobotGroup& group) { return group.sheet != nullptr && group.sheet->flies; };
-  if (std::any_of(stores_.groups.begin(), stores_.groups.end(), flies)) {
-    stores_.bodies.flight.resize(stores_.bodies.size());
-    stores_.bodies.wishes.resize(stores_.bodies.size());
-    stores_.bodies.pilots.resize(stores_.bodies.size());
-    stores_.bodies.rotors.resize(stores_.bodies.size());
-  }
   const auto sees = [](const RobotGroup& group) { return group.sees_m > 0.0; };
   if (!stores_.shown_leds.empty() || std::any_of(stores_.groups.begin(), stores_.groups.end(), sees))
     stores_.shown_leds.resize(stores_.bodies.size());
-  keep_mechanisms();
-}
-
-/// Rows for what turns and holds, where a controller takes any port of it.
-void RobotFactory::keep_mechanisms() {
-  Bodies& b = stores_.bodies;
-  const auto taken = [this](std::initializer_list<std::string_view> names) {
-    for (const RobotGroup& made : stores_.groups) {
-      for (const hal::PortType* port : made.ports) {
-        if (std::find(names.begin(), names.end(), port->name) != names.end()) return true;
-      }
-    }
-    return false;
-  };
-  const auto slants = [this](const RobotGroup& made) {
-    const auto& choices = scenario_.controllers[made.config].actuators;
-    return made.wheels >= 0 && std::any_of(choices.begin(), choices.end(), [](const DeviceChoice& choice) {
-             return choice.device == hal::WheelSpeeds::kName && choice.implementation == kSlanted;
-           });
-  };
-  if (!b.turrets.empty() || taken({hal::TurretDrive::kName, hal::TurretEncoder::kName})) b.turrets.resize(b.size());
-  if (!b.grips.empty() || taken({hal::GripperDrive::kName})) b.grips.resize(b.size());
-  if (!b.scanners.empty() || taken({hal::ScannerDrive::kName})) b.scanners.resize(b.size());
-  if (!b.heads.empty() || taken({hal::PanTiltDrive::kName, hal::PanTiltEncoder::kName})) b.heads.resize(b.size());
-  if (!b.hidden_rolls.empty() || std::any_of(stores_.groups.begin(), stores_.groups.end(), slants))
-    b.hidden_rolls.resize(b.size());
 }
 
 // --- while the run goes on ---
@@ -526,9 +529,10 @@ hal::Status RobotFactory::can_hold(Slot at) const {
   const RobotBlock& block = stores_.blocks[at.block];
   const std::size_t row = block.first_row + at.slot;
   const Region& region = stores_.regions[stores_.bodies.region[row]];
-  if (stores_.groups[block.group].gripper < 0 || region.forces) return {};
-  return hal::Error{"robot '" + stores_.names[stores_.robots[stores_.bodies.entity[row]].item].prefix +
-                    "' has a gripper, but its engine '" + region.name +
+  const std::string_view device = device_with_forces(stores_.groups[block.group]);
+  if (device.empty() || region.forces) return {};
+  return hal::Error{"robot '" + stores_.names[stores_.robots[stores_.bodies.entity[row]].item].prefix + "' has a " +
+                    std::string(device) + ", but its engine '" + region.name +
                     "' knows no forces, so that nothing can be held there; use dynamics2d or dynamics3d"};
 }
 
@@ -585,22 +589,10 @@ hal::Result<RobotId> RobotFactory::add(const RobotItem& item, const Pose& pose,
   const std::uint32_t entity_before = b.entity[row];
   for (auto* array : {&b.left_m_s, &b.right_m_s, &b.left_m, &b.right_m}) (*array)[row] = 0.0;
   if (!b.motion.empty()) b.motion[row] = {};
-  if (!b.flight.empty()) b.flight[row] = {};
-  if (!b.wishes.empty()) b.wishes[row] = {};
-  if (!b.pilots.empty()) b.pilots[row] = {};
-  if (!b.rotors.empty()) b.rotors[row] = {};
-  if (!b.heads.empty()) b.heads[row] = {};
-  if (!b.turrets.empty()) b.turrets[row] = {};
-  if (!b.grips.empty()) b.grips[row] = {};
-  if (!b.scanners.empty()) b.scanners[row] = {};
-  if (!b.hidden_rolls.empty()) b.hidden_rolls[row] = {};
+  for (const KeptColumn& column : stores_.groups[g].columns) column.start(slot.block, slot.slot);
   for (std::size_t p = 0; p < block.ports.size(); ++p) {
     const hal::PortType& type = *stores_.groups[g].ports[p];
     type.reset(block.ports[p] + slot.slot * type.size);
-  }
-  for (const auto& sensor : devices_.blocks[slot.block].sensors) {
-    DeviceMemory* memory = sensor == nullptr ? nullptr : sensor->memory();
-    if (memory != nullptr) memory->renew(slot.slot);
   }
   block.halted[slot.slot] = 0;
   place({made.item, entity, pose.x_m, pose.y_m, pose.z_m, pose.heading_rad()}, slot);

@@ -73,13 +73,14 @@ class RobotFactory {
   std::string construct(Slot at, const std::shared_ptr<const void>& params);
   static void name_constructor(const void* factory, std::size_t block, std::size_t slot, hal::FixedText& out) noexcept;
   static void name_params(const void* factory, std::size_t config, std::size_t index, hal::FixedText& out) noexcept;
+  void choose_columns(RobotGroup& group);
+  void add_rows(std::size_t block);
   void complete(std::size_t g);
   hal::Result<std::size_t> group_for(const RobotItem& item);
   Slot free_slot(std::size_t g);
   void give_back(std::size_t g, Slot slot, std::size_t ports_before, std::uint32_t entity_before);
   hal::Status can_hold(Slot at) const;
   void keep_sizes();
-  void keep_mechanisms();
 
   const Scenario& scenario_;
   std::uint64_t seed_;

@@ -40,8 +40,9 @@ hal::Result<std::unique_ptr<SpaceCopy>> SpaceCopy::take(const Space& space, cons
   copy->groups_ = s.groups;
   copy->blocks_.reserve(s.blocks.size());
   for (std::size_t b = 0; b < s.blocks.size(); ++b) {
-    if (const hal::Status done = copy->copy_block(space, devices, b); !done.ok()) return done.error();
+    if (const hal::Status done = copy->copy_block(space, b); !done.ok()) return done.error();
   }
+  for (const auto& column : s.columns.all()) copy->column_arrays_.emplace_back(column.get(), column->of_block);
   copy->bodies_ = s.bodies;
   copy->robots_ = s.robots;
   copy->living_ = s.living;
@@ -66,7 +67,7 @@ hal::Result<std::unique_ptr<SpaceCopy>> SpaceCopy::take(const Space& space, cons
   return copy;
 }
 
-hal::Status SpaceCopy::copy_block(const Space& space, const RobotDevices& devices, std::size_t b) {
+hal::Status SpaceCopy::copy_block(const Space& space, std::size_t b) {
   const RobotBlock& from = space.stores().blocks[b];
   Block& to = blocks_.emplace_back();
   to.was = from;
@@ -75,9 +76,9 @@ hal::Status SpaceCopy::copy_block(const Space& space, const RobotDevices& device
     const std::byte* bytes = from.ports[p];
     to.ports.emplace_back(bytes, bytes + groups_[from.group].ports[p]->size * from.capacity);
   }
-  for (const auto& sensor : devices.blocks[b].sensors) {
-    const DeviceMemory* memory = sensor == nullptr ? nullptr : sensor->memory();
-    to.memories.push_back(memory == nullptr ? std::vector<double>{} : memory->values);
+  for (const KeptColumn& column : groups_[from.group].columns) {
+    const std::byte* rows = column.arrays->array(b);
+    to.columns.emplace_back(rows, rows + column.type->size * from.capacity);
   }
   to.controllers = memory_.take(from.controller_stride * from.capacity, type.align);
   for (; to.copied < from.used; ++to.copied) {
@@ -107,10 +108,9 @@ hal::Status SpaceCopy::put_back_block(std::size_t b, Space& space) const {
   to.constructed.fill(0);
   for (std::size_t p = 0; p < from.ports.size(); ++p)
     std::copy(from.ports[p].begin(), from.ports[p].end(), to.ports[p]);
-  for (std::size_t p = 0; p < from.memories.size(); ++p) {
-    DeviceMemory* memory = devices_.blocks[b].sensors[p] == nullptr ? nullptr : devices_.blocks[b].sensors[p]->memory();
-    if (memory != nullptr) memory->values = from.memories[p];
-  }
+  const std::vector<KeptColumn>& columns = groups_[from.was.group].columns;
+  for (std::size_t c = 0; c < from.columns.size(); ++c)
+    std::copy(from.columns[c].begin(), from.columns[c].end(), columns[c].arrays->array(b));
   hal::Status all;
   for (std::size_t slot = 0; slot < from.copied; ++slot) {
     if (from.was.constructed[slot] == 0) continue;
@@ -133,6 +133,8 @@ hal::Status SpaceCopy::put_back(Space& space, RobotDevices& devices) const {
   s.names = names_;
   s.added_robots = added_robots_;
   devices = devices_;
+  for (const auto& column : s.columns.all()) column->of_block.clear();  // also those that came since
+  for (const auto& [column, arrays] : column_arrays_) column->of_block = arrays;
   s.bodies = bodies_;
   s.robots = robots_;
   s.living = living_;

@@ -29,7 +29,7 @@ class Snapshot {
   std::shared_ptr<const Moment> moment_;
 };
 
-/// A copy of the stores, of what devices remember and of all controllers.
+/// A copy of the stores and of all controllers.
 class SpaceCopy {
  public:
   /// Errors: a controller whose class cannot be copied, or whose copy constructor throws; names it.
@@ -51,17 +51,18 @@ class SpaceCopy {
     std::byte* controllers = nullptr;  // of memory_; as in `was.constructed` as far as they are `copied`
     std::size_t copied = 0;            // slots
     std::vector<std::vector<std::byte>> ports;
-    std::vector<std::vector<double>> memories;  // of its sensors
+    std::vector<std::vector<std::byte>> columns;
 
     std::byte* controller(std::size_t slot) const noexcept { return controllers + slot * was.controller_stride; }
   };
-  hal::Status copy_block(const Space& space, const RobotDevices& devices, std::size_t b);
+  hal::Status copy_block(const Space& space, std::size_t b);
   const hal::ControllerType& type_of(const Block& block) const noexcept { return *groups_[block.was.group].controller; }
   hal::Status put_back_block(std::size_t b, Space& space) const;
 
   Slab memory_;
   std::vector<RobotGroup> groups_;
   std::vector<Block> blocks_;
+  std::vector<std::pair<ColumnArrays*, std::vector<std::byte*>>> column_arrays_;
   Bodies bodies_;
   std::vector<RobotEntity> robots_;
   std::vector<std::uint32_t> living_;

@@ -5,8 +5,6 @@
 #include <cstring>
 #include <unordered_map>
 
-#include "core/space/mechanisms.hpp"
-
 namespace tandem::core {
 namespace {
 
@@ -75,26 +73,6 @@ void visit_bodies(const Bodies& b, std::size_t row, Rows& rows) {
   rows.value(kBody, "region", &b.region[row]);
   if (!b.real_senses.empty()) rows.value(kBody, "real_senses", &b.real_senses[row]);
   rows.state(b.motion, row);
-  rows.state(b.flight, row);
-  rows.state(b.wishes, row);
-  rows.state(b.pilots, row);
-  rows.state(b.rotors, row);
-  rows.state(b.turrets, row);
-  rows.state(b.grips, row);
-  rows.state(b.scanners, row);
-  rows.state(b.hidden_rolls, row);
-  rows.state(b.heads, row);
-}
-
-void visit_memories(const BlockDevices& devices, const RobotGroup& group, StateVisitor& visitor) {
-  for (std::size_t p = 0; p < devices.sensors.size(); ++p) {
-    const DeviceMemory* memory = devices.sensors[p] == nullptr ? nullptr : devices.sensors[p]->memory();
-    if (memory == nullptr) continue;
-    FieldRows rows{ValueSet::Own, group.ports[p]->name, "memory", Scalar::F64, memory->per_slot};
-    rows.first = bytes_of(memory->values.data());
-    rows.stride = memory->per_slot * sizeof(double);
-    visitor.visit(rows);
-  }
 }
 
 void visit_block(const StateView& state, std::size_t index, StateVisitor& visitor) {
@@ -115,7 +93,7 @@ void visit_block(const StateView& state, std::size_t index, StateVisitor& visito
     const hal::PortType& type = *group.ports[p];
     rows.fields(type.role == hal::Role::Sensor ? ValueSet::Sensor : ValueSet::Actuator, type, block.ports[p]);
   }
-  visit_memories(state.devices.blocks[index], group, visitor);
+  for (const KeptColumn& column : group.columns) rows.fields(ValueSet::Own, *column.type, column.arrays->array(index));
 }
 
 /// Calls `visit(first, rows, numbers)` for up to kBlockRows of the living at a time.

@@ -8,17 +8,15 @@
 #include <string_view>
 #include <vector>
 
-#include "core/sim/robot_factory.hpp"
 #include "core/space/stores.hpp"
 #include "hal/port.hpp"
 #include "hal/time.hpp"
 
 namespace tandem::core {
 
-/// The state of a world: its stores, what devices remember, and what its chance is drawn from.
+/// The state of a world: its stores, and what its chance is drawn from.
 struct StateView {
   const SpaceStores& stores;
-  const RobotDevices& devices;
   std::uint64_t seed;
   hal::Tick tick;
 };

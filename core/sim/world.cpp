@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "core/sim/fingerprint.hpp"
-#include "core/sim/piloting.hpp"
 #include "core/sim/world_impl.hpp"
 #include "hal/check.hpp"
 #include "hal/filter.hpp"
@@ -52,7 +51,7 @@ void World::Impl::act() {
       for (std::size_t i = 0; i < actuators.size(); ++i) {
         if (actuators[i] != nullptr) actuators[i]->act(context, s, s.blocks[block].ports[i]);
       }
-      if (context.group.sheet->flies) pilot(context, s);
+      for (const auto& coupling : couplings) coupling->drive(context, s);
     }
   });
 }
@@ -410,7 +409,7 @@ std::uint64_t World::state_hash() const noexcept {
 }
 
 StateView World::state_view() const noexcept {
-  return {impl_->stores(), impl_->devices, impl_->seed, impl_->tick};
+  return {impl_->stores(), impl_->seed, impl_->tick};
 }
 
 }  // namespace tandem::core

@@ -218,12 +218,8 @@ double* WorldEditor::charge_of(RobotId robot, double& full) const {
   const RobotEntity& e = stores_.robots[robot.index];
   const RobotGroup& group = stores_.groups[stores_.blocks[e.block].group];
   full = group.item->battery.full_charge;
-  for (std::size_t p = 0; p < group.ports.size(); ++p) {
-    if (group.ports[p]->name != hal::Battery::kName || group.ports[p]->role != hal::Role::Sensor) continue;
-    DeviceMemory* memory = devices_.blocks[e.block].sensors[p]->memory();
-    return memory == nullptr ? nullptr : &memory->values[e.slot];
-  }
-  return nullptr;
+  ChargeState* const state = stores_.columns.of<ChargeState>().at(e.block, e.slot);
+  return state == nullptr ? nullptr : &state->charge;
 }
 
 hal::Result<double> WorldEditor::battery(RobotId robot) const {

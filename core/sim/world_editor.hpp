@@ -13,9 +13,8 @@ namespace tandem::core {
 /// What Space asks for what it cannot do by itself. Everything that it is handed must outlive it.
 class WorldEditor final : public Editor {
  public:
-  WorldEditor(const Scenario& scenario, SpaceStores& stores, RobotFactory& factory, const RobotDevices& devices,
-              const RegionKeeper& keeper)
-      : scenario_(scenario), stores_(stores), factory_(factory), devices_(devices), keeper_(keeper) {}
+  WorldEditor(const Scenario& scenario, SpaceStores& stores, RobotFactory& factory, const RegionKeeper& keeper)
+      : scenario_(scenario), stores_(stores), factory_(factory), keeper_(keeper) {}
 
   hal::Result<RobotId> add_robot(const NewRobot& wanted) override;
   hal::Result<double> battery(RobotId robot) const override;
@@ -41,7 +40,6 @@ class WorldEditor final : public Editor {
   const Scenario& scenario_;
   SpaceStores& stores_;
   RobotFactory& factory_;
-  const RobotDevices& devices_;
   const RegionKeeper& keeper_;
   // Where bodies stood when they were entered. They are looked up in the stores again: this only tells whom to ask.
   std::optional<Occupancy> occupancy_;

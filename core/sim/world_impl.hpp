@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "core/device/coupling.hpp"
 #include "core/device/device.hpp"
 #include "core/sim/engine_factory.hpp"
 #include "core/sim/region_keeper.hpp"
@@ -98,6 +99,7 @@ struct World::Impl {
   std::vector<BodyKey> strays;  // left their region in this tick, or were put where there is none
   std::vector<Trouble> troubles;
   RobotDevices devices;
+  std::vector<std::unique_ptr<Coupling>> couplings;
   std::unique_ptr<RobotFactory> factory;
   std::unique_ptr<WorldEditor> editor;
   std::shared_ptr<const int> identity = std::make_shared<int>(0);  // tells this world's snapshots from others'

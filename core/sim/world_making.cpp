@@ -42,18 +42,21 @@ BodySize size_of_kind(const std::string& kind) {
   return sheet != nullptr ? BodySize{sheet->body_radius_m, sheet->body_height_m, sheet->flies} : BodySize{};
 }
 
-/// Grippers hold by joints: robots whose controller takes one need an engine that has them. One problem an item.
-void check_grippers(const Scenario& scenario, const SpaceStores& s, Problems& problems) {
+/// Some devices work by joints: robots whose controller takes one need an engine that has them. One problem an item.
+void check_forces(const Scenario& scenario, const SpaceStores& s, Problems& problems) {
   std::uint32_t complained = 0xFFFFFFFFU;
+  std::vector<std::string_view> devices;
+  for (const RobotGroup& group : s.groups) devices.push_back(device_with_forces(group));
   for (const RobotEntity& e : s.robots) {
     const RobotBlock& block = s.blocks[e.block];
     const std::uint16_t region = s.bodies.region[block.first_row + e.slot];
-    if (s.groups[block.group].gripper < 0 || region == kNoRegion || s.regions[region].forces || e.item == complained)
+    if (devices[block.group].empty() || region == kNoRegion || s.regions[region].forces || e.item == complained)
       continue;
     complained = e.item;
     const std::string name = s.names[e.item].prefix + (e.number < 0 ? "" : std::to_string(e.number));
     problems.push_back({scenario.file, scenario.robots[e.item].line,
-                        "robot '" + name + "' has a gripper, but its engine '" + s.regions[region].name +
+                        "robot '" + name + "' has a " + std::string(devices[block.group]) + ", but its engine '" +
+                            s.regions[region].name +
                             "' knows no forces, so that nothing can be held there; use dynamics2d or dynamics3d",
                         false});
   }
@@ -108,7 +111,7 @@ void assign_regions(const Scenario& scenario, const Placements& placements, cons
     }
     complain(scenario.robots[e.item].line, "robot '" + name + "'", s.bodies.x_m[row], s.bodies.y_m[row], why);
   }
-  check_grippers(scenario, s, problems);
+  check_forces(scenario, s, problems);
   for (std::size_t i = 0; i < s.objects.size(); ++i) {
     if (!s.objects[i].movable) continue;
     s.object_region[i] = keeper.find(s, BodyKey::object(i));
@@ -244,7 +247,8 @@ std::unique_ptr<World> World::make(const Scenario& scenario, hal::PluginLoader& 
   }
   w.factory = std::make_unique<RobotFactory>(w.scenario, w.seed, loader, s, w.devices);
   w.factory->make(requests, problems);
-  w.editor = std::make_unique<WorldEditor>(w.scenario, s, *w.factory, w.devices, w.keeper);
+  for (const CouplingType& type : coupling_types()) w.couplings.push_back(type.make(s.columns));
+  w.editor = std::make_unique<WorldEditor>(w.scenario, s, *w.factory, w.keeper);
   w.space.set_editor(w.editor.get());
 
   w.reach_m = index_reach(s, w.tick_s());

@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/sim/gripping.hpp"
 #include "core/sim/world_impl.hpp"
 
 namespace tandem::core {
@@ -26,7 +25,7 @@ double index_reach(const SpaceStores& stores, double tick_s) noexcept {
 
 void World::Impl::physics() {
   const PhysicsContext context{stores(), *pool, tick_s(), tick};
-  grip_and_release(stores(), tick_s());
+  for (const auto& coupling : couplings) coupling->before_physics(stores(), tick_s());
   settle_changes();
   keeper.list(stores(), *pool);
   stores().bodies_changed = false;
@@ -39,7 +38,7 @@ void World::Impl::physics() {
   }
   for (int part = 0; part < most && (part == 0 || state == RunState::Running); ++part) move_part(part);
   index_lit_objects();
-  follow_loads(stores(), tick_s());
+  for (const auto& coupling : couplings) coupling->after_physics(stores(), tick_s());
 }
 
 /// Engines that go in fewer parts have come to the tick's end before the others.

@@ -87,7 +87,7 @@ struct HeadState {
 };
 
 /// What a controller asks of its flying robot in this tick, through all the devices that it took.
-struct FlightWish {
+struct FlightSetpoint {
   static constexpr std::string_view kName = "flight_setpoint";
   static constexpr std::string_view kDoc = "What controllers ask of flying robots, through all their devices.";
   bool to_place = false;  ///< the next two count
@@ -146,6 +146,16 @@ struct RotorState {
     f.add("spun", spun, hal::unit::none, "they were simulated before");
     f.add("thrust", thrust_N, hal::unit::none, "in N");
   }
+};
+
+/// A battery's charge, in the units of its configuration.
+struct ChargeState {
+  static constexpr std::string_view kName = "battery";
+  static constexpr std::string_view kDoc = "Charge of batteries.";
+
+  double charge = 0.0;
+
+  void describe(hal::FieldList& f) const { f.add("charge", charge, hal::unit::none, "as the configuration counts it"); }
 };
 
 /// What the wheels rolled beyond what their encoders can see.

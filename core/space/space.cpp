@@ -34,15 +34,6 @@ void Bodies::resize(std::size_t rows) {
   entity.resize(rows, 0xFFFFFFFFU);
   region.resize(rows, 0);
   if (has_motion) motion.resize(rows);
-  if (!flight.empty()) flight.resize(rows);
-  if (!wishes.empty()) wishes.resize(rows);
-  if (!pilots.empty()) pilots.resize(rows);
-  if (!rotors.empty()) rotors.resize(rows);
-  if (!turrets.empty()) turrets.resize(rows);
-  if (!grips.empty()) grips.resize(rows);
-  if (!scanners.empty()) scanners.resize(rows);
-  if (!hidden_rolls.empty()) hidden_rolls.resize(rows);
-  if (!heads.empty()) heads.resize(rows);
   if (!real_senses.empty()) real_senses.resize(rows);
 }
 
@@ -237,14 +228,24 @@ void Space::remove_robot(RobotId robot) noexcept {
   s.living.erase(std::lower_bound(s.living.begin(), s.living.end(), robot.index));
 }
 
+void* Space::state(RobotId robot, const hal::RowType& type) const noexcept {
+  if (!contains(robot)) return nullptr;
+  const RobotEntity& e = stores_->robots[robot.index];
+  for (const KeptColumn& column : stores_->groups[stores_->blocks[e.block].group].columns) {
+    if (column.type->name == type.name && column.type->layout == type.layout)
+      return column.arrays->array(e.block) + e.slot * type.size;
+  }
+  return nullptr;
+}
+
 double Space::turret_rad(RobotId robot) const noexcept {
-  const Bodies& b = stores_->bodies;
-  return b.turrets.empty() || !contains(robot) ? 0.0 : b.turrets[stores_->row_of(robot)].angle_rad;
+  const auto* turret = state<TurretState>(robot);
+  return turret == nullptr ? 0.0 : turret->angle_rad;
 }
 
 bool Space::holding(RobotId robot) const noexcept {
-  const Bodies& b = stores_->bodies;
-  return !b.grips.empty() && contains(robot) && b.grips[stores_->row_of(robot)].holding();
+  const auto* grip = state<GripState>(robot);
+  return grip != nullptr && grip->holding();
 }
 
 bool Space::halted(RobotId robot) const noexcept {
@@ -290,28 +291,6 @@ void Space::set_external(RobotId robot, bool external) noexcept {
 
 void Space::set_real_senses(RobotId robot, std::uint8_t senses) noexcept {
   if (external(robot)) stores_->bodies.real_senses[stores_->row_of(robot)] = senses;
-}
-
-void Space::set_turret(RobotId robot, double angle_rad, double speed_rad_s) noexcept {
-  Bodies& b = stores_->bodies;
-  if (b.turrets.empty() || !external(robot)) return;
-  b.turrets[stores_->row_of(robot)] = {hal::TurretMode::Off, 0.0, wrapped(angle_rad), speed_rad_s};
-}
-
-void Space::set_gripper(RobotId robot, double aperture_rad) noexcept {
-  Bodies& b = stores_->bodies;
-  if (!b.grips.empty() && external(robot)) b.grips[stores_->row_of(robot)].aperture_rad = aperture_rad;
-}
-
-void Space::set_scanner(RobotId robot, hal::ScannerMode mode, double angle_rad, double swept_rad) noexcept {
-  Bodies& b = stores_->bodies;
-  if (b.scanners.empty() || !external(robot)) return;
-  b.scanners[stores_->row_of(robot)] = {mode, wrapped(angle_rad), swept_rad};
-}
-
-void Space::set_camera_head(RobotId robot, double pan_rad, double tilt_rad, bool laser) noexcept {
-  Bodies& b = stores_->bodies;
-  if (!b.heads.empty() && external(robot)) b.heads[stores_->row_of(robot)] = {wrapped(pan_rad), tilt_rad, laser};
 }
 
 const void* Space::port(RobotId robot, const hal::PortType& type) const noexcept {

@@ -12,7 +12,6 @@
 #include "core/space/ids.hpp"
 #include "core/space/pose.hpp"
 #include "core/space/real_sense.hpp"
-#include "hal/device/distance_scanner.hpp"
 #include "hal/device/leds.hpp"
 #include "hal/port.hpp"
 #include "hal/spec/data_sheet.hpp"
@@ -117,14 +116,20 @@ class Space {
   /// Whether the robot's pose is set from outside (a real robot's twin): engines do not move it, others bump into it.
   bool external(RobotId robot) const noexcept;
   void set_external(RobotId robot, bool external) noexcept;
-  /// For such a robot: which others it senses by itself (bits of RealSense), and where its mechanisms are. Its
-  /// actuators move nothing in the space. A scanner measures unless its mode is Off, evenly over what it swept in the
-  /// tick.
+  /// For such a robot: which others it senses by itself (bits of RealSense). Its actuators move nothing in the space:
+  /// where its mechanisms are is written to their `state`.
   void set_real_senses(RobotId robot, std::uint8_t senses) noexcept;
-  void set_turret(RobotId robot, double angle_rad, double speed_rad_s) noexcept;
-  void set_gripper(RobotId robot, double aperture_rad) noexcept;
-  void set_scanner(RobotId robot, hal::ScannerMode mode, double angle_rad, double swept_rad) noexcept;
-  void set_camera_head(RobotId robot, double pan_rad, double tilt_rad, bool laser) noexcept;
+  /// What the simulation keeps of that class for the robot (core/space/mechanisms.hpp), or null where none of its
+  /// devices needs it or the robot is gone.
+  void* state(RobotId robot, const hal::RowType& type) const noexcept;
+  template <class T>
+  T* state(RobotId robot) noexcept {
+    return static_cast<T*>(state(robot, hal::row_type<T>()));
+  }
+  template <class T>
+  const T* state(RobotId robot) const noexcept {
+    return static_cast<const T*>(state(robot, hal::row_type<T>()));
+  }
   /// A port of the robot as its controller sees it, or null when the controller took none of that name or the
   /// robot is gone. Sensor and actuator ports may share a name, so the role is part of it.
   const void* port(RobotId robot, const hal::PortType& type) const noexcept;

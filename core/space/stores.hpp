@@ -19,6 +19,7 @@
 
 #include "core/space/body_index.hpp"
 #include "core/space/body_key.hpp"
+#include "core/space/columns.hpp"
 #include "core/space/floor.hpp"
 #include "core/space/halt.hpp"
 #include "core/space/ids.hpp"
@@ -103,21 +104,11 @@ struct Bodies {
   LargeVector<double> left_m_s, right_m_s;  ///< rim speeds that the engine drives with in this tick
   LargeVector<double> left_m, right_m;      ///< rolled since the start
   LargeVector<float> radius_m;
-  LargeVector<std::uint8_t> flags;    ///< BodyFlag
-  LargeVector<std::uint32_t> entity;  ///< index of the robot's id
-  LargeVector<std::uint16_t> region;  ///< index into SpaceStores::regions
-  bool has_motion = false;            ///< an engine other than kinematics2d takes part
-  std::vector<Motion> motion;         ///< empty without
-  std::vector<FlightCommand> flight;  ///< empty while no robot flies; so with the next three
-  std::vector<FlightWish> wishes;
-  std::vector<PilotState> pilots;
-  std::vector<RotorState> rotors;
-  // Empty while no controller takes such a device.
-  std::vector<TurretState> turrets;
-  std::vector<GripState> grips;
-  std::vector<ScannerState> scanners;
-  std::vector<HiddenRoll> hidden_rolls;
-  std::vector<HeadState> heads;
+  LargeVector<std::uint8_t> flags;        ///< BodyFlag
+  LargeVector<std::uint32_t> entity;      ///< index of the robot's id
+  LargeVector<std::uint16_t> region;      ///< index into SpaceStores::regions
+  bool has_motion = false;                ///< an engine other than kinematics2d takes part
+  std::vector<Motion> motion;             ///< empty without
   std::vector<std::uint8_t> real_senses;  ///< bits of RealSense; empty while no pose is set from outside
 
   std::size_t size() const noexcept { return x_m.size(); }
@@ -148,6 +139,7 @@ struct RobotGroup {
   std::shared_ptr<const void> params;           ///< of those that have none of their own in RobotBlock::params
   std::shared_ptr<const GroupRecipes> recipes;  ///< of the devices that its configuration lists
   std::vector<const hal::PortType*> ports;      ///< those that its controllers took, in the order of taking
+  std::vector<KeptColumn> columns;              ///< that their devices need
   int wheels = -1;                              ///< index in `ports` of the wheel command; -1: none
   int flight_position = -1;                     ///< … of the place to fly to
   int flight_speed = -1;                        ///< … of the velocity to fly with
@@ -161,6 +153,16 @@ struct RobotGroup {
   double sees_m = 0.0;  ///< how far along the ground its cameras see; 0: its controllers took none
   std::vector<std::size_t> blocks;
   std::vector<Slot> free_slots;  ///< of robots that were removed; the last is used next
+
+  /// Whether its controllers took such a port.
+  template <class Port>
+  bool takes() const noexcept {
+    const hal::PortType& type = hal::port_type<Port>();
+    for (const hal::PortType* port : ports) {
+      if (port->layout == type.layout && port->role == type.role) return true;
+    }
+    return false;
+  }
 };
 
 /// Up to kBlockRows robots of one group. Slots below `used` hold or held robots; those of robots that were removed are
@@ -245,6 +247,9 @@ struct SpaceStores {
   double max_z_m = std::numeric_limits<double>::infinity();             ///< its ceiling: what flies stays below
 
   Bodies bodies;
+  Columns columns;
+  Column<FlightCommand> flight = columns.of<FlightCommand>();  ///< of robots that fly; so with the next
+  Column<RotorState> rotors = columns.of<RotorState>();
   Slab slab;  ///< holds ports and controllers of the blocks that were made at the start
   std::vector<RobotGroup> groups;
   std::vector<RobotBlock> blocks;
@@ -295,10 +300,23 @@ struct SpaceStores {
   }
   /// How high the base of a body stands above the ground, in m.
   double base_m(std::size_t row) const noexcept { return bodies.motion.empty() ? 0.0 : bodies.motion[row].z_m; }
+  /// What a column holds for the robot in this row; null: nothing.
+  template <class T>
+  T* state_of(const Column<T>& column, std::size_t row) const noexcept {
+    if (column.empty()) return nullptr;
+    const RobotEntity& e = robots[bodies.entity[row]];
+    return column.at(e.block, e.slot);
+  }
+  /// What the robot in this row is told to fly like; one that does not fly: nothing.
+  const FlightCommand& command_of(std::size_t row) const noexcept {
+    static constexpr FlightCommand kNone;
+    const FlightCommand* command = state_of(flight, row);
+    return command == nullptr ? kNone : *command;
+  }
   /// Whether engines leave the body where it is: its pose is set from outside, or it hangs at the ceiling.
   bool led_or_held(std::size_t row) const noexcept {
     return (bodies.flags[row] & kExternal) != 0 ||
-           (!bodies.flight.empty() && bodies.flight[row].mode == FlightCommand::Mode::Held);
+           (!flight.empty() && command_of(row).mode == FlightCommand::Mode::Held);
   }
   /// Whether some height belongs to both bodies. Call only while `bodies.motion` is there: else all stand on the
   /// ground.

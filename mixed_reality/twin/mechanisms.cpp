@@ -20,6 +20,11 @@ double step_to(double target_rad, double from_rad, double most_rad) noexcept {
 
 }  // namespace
 
+template <class State>
+State* Mechanisms::state() noexcept {
+  return space_.external(robot_) ? space_.state<State>(robot_) : nullptr;
+}
+
 template <class Port>
 bool Mechanisms::takes() const noexcept {
   return space_.port<Port>(robot_) != nullptr;
@@ -52,10 +57,7 @@ void Mechanisms::follow(double tick_s) noexcept {
   follow_turret(tick_s);
   follow_scanner(tick_s);
   follow_head(tick_s);
-  if (there(gripper_))
-    space_.set_gripper(robot_, static_cast<double>(gripper_->aperture_rad));
-  else if (gripper_drive_ != nullptr)
-    space_.set_gripper(robot_, gripper_drive_->aperture_rad);
+  follow_gripper();
 }
 
 std::uint8_t Mechanisms::senses() const noexcept {
@@ -72,6 +74,15 @@ std::uint8_t Mechanisms::senses() const noexcept {
   return static_cast<std::uint8_t>(senses);
 }
 
+void Mechanisms::follow_gripper() noexcept {
+  auto* const grip = state<core::GripState>();
+  if (grip == nullptr) return;
+  if (there(gripper_))
+    grip->aperture_rad = static_cast<double>(gripper_->aperture_rad);
+  else if (gripper_drive_ != nullptr)
+    grip->aperture_rad = gripper_drive_->aperture_rad;
+}
+
 void Mechanisms::follow_turret(double tick_s) noexcept {
   double step_rad = 0.0;
   if (there(turret_)) {
@@ -85,7 +96,8 @@ void Mechanisms::follow_turret(double tick_s) noexcept {
   const double speed_rad_s = there(turret_) ? static_cast<double>(turret_->speed_rad_s)
                              : tick_s > 0.0 ? step_rad / tick_s
                                             : 0.0;
-  space_.set_turret(robot_, turret_rad_, speed_rad_s);
+  if (auto* const turret = state<core::TurretState>(); turret != nullptr)
+    *turret = {hal::TurretMode::Off, 0.0, turret_rad_, speed_rad_s};
 }
 
 /// The virtual heads measure where the real ones do: they sweep what was commanded, and end where the robot says. One
@@ -105,7 +117,8 @@ void Mechanisms::follow_scanner(double tick_s) noexcept {
     }
     scanner_rad_ = core::wrapped(scanner_rad_ + swept_rad);
   }
-  space_.set_scanner(robot_, mode, scanner_rad_, swept_rad);
+  if (auto* const scanner = state<core::ScannerState>(); scanner != nullptr)
+    *scanner = {mode, core::wrapped(scanner_rad_), swept_rad};
 }
 
 void Mechanisms::follow_head(double tick_s) noexcept {
@@ -117,7 +130,8 @@ void Mechanisms::follow_head(double tick_s) noexcept {
     pan_rad_ = core::wrapped(pan_rad_ + step_to(head_drive_->pan_rad, pan_rad_, most_rad));
     tilt_rad_ += std::clamp(head_drive_->tilt_rad - tilt_rad_, -most_rad, most_rad);
   }
-  space_.set_camera_head(robot_, pan_rad_, tilt_rad_, head_drive_ != nullptr && head_drive_->laser);
+  if (auto* const head = state<core::HeadState>(); head != nullptr)
+    *head = {core::wrapped(pan_rad_), tilt_rad_, head_drive_ != nullptr && head_drive_->laser};
 }
 
 }  // namespace tandem::mixed_reality

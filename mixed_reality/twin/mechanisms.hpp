@@ -29,6 +29,9 @@ class Mechanisms {
   bool takes() const noexcept;
   template <class Sensor>
   const Sensor* if_used(const RealReadings& real, bool used) const;
+  template <class State>
+  State* state() noexcept;  // null: nothing to keep it for, or the robot is not led from outside
+  void follow_gripper() noexcept;
   void follow_turret(double tick_s) noexcept;
   void follow_scanner(double tick_s) noexcept;
   void follow_head(double tick_s) noexcept;

@@ -43,6 +43,20 @@ inline RobotId add_robot(Space& space, const hal::DataSheet& sheet, const std::s
   return robot;
 }
 
+/// Keeps a row of state for such a robot.
+template <class T>
+T& add_state(Space& space, RobotId robot) {
+  SpaceStores& s = space.stores();
+  const RobotEntity& e = s.robots[robot.index];
+  KeptColumn kept = keeps<T>();
+  kept.arrays = s.columns.of(*kept.type).value();
+  kept.arrays->of_block.resize(s.blocks.size());
+  kept.arrays->of_block[e.block] = s.slab.take(sizeof(T) * s.blocks[e.block].capacity, alignof(T));
+  kept.start(e.block, e.slot);
+  s.groups[s.blocks[e.block].group].columns.push_back(std::move(kept));
+  return *space.state<T>(robot);
+}
+
 /// Adds an immovable box or cylinder; call `index_objects` when all are there.
 inline Object& add_object(Space& space, Object::Kind kind, double x_m, double y_m, double z_low_m, double z_high_m) {
   SpaceStores& s = space.stores();

@@ -29,10 +29,6 @@ double length(const Vector3& v) noexcept {
   return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
 }
 
-FlightCommand flight_of(const Bodies& bodies, std::size_t row) noexcept {
-  return row < bodies.flight.size() ? bodies.flight[row] : FlightCommand{};
-}
-
 Sort sort_of(const SpaceStores& stores, BodyKey key, const World3dSettings& settings) noexcept {
   if (key.is_object()) return Sort::Object;
   const hal::DataSheet& sheet = stores.sheet_of_row(key.index());
@@ -288,7 +284,7 @@ void World3d::take_over(const SpaceStores& stores, Double& twin, double tick_s) 
     report(*twin, "has a position or speed that is not a finite number");
     return;
   }
-  if (sort == Sort::Rotors) twin->rotors = stores.bodies.rotors[key.index()];
+  if (sort == Sort::Rotors) twin->rotors = *stores.state_of(stores.rotors, key.index());
   twin->external = external_in(stores, key);
   if (twin->external)
     lead(*twin, store, tick_s);
@@ -437,7 +433,7 @@ void World3d::plan(const SpaceStores& stores, Twin& twin, double dt_s) {
   if (std::exchange(twin.resting, false)) dBodyEnable(twin.body.get());
   if (!twin.light()) {
     if (twin.sort == Sort::Wheels) drive_wheels(twin, stores.bodies.left_m_s[i], stores.bodies.right_m_s[i]);
-    if (twin.sort == Sort::Rotors) drive_rotors(twin, flight_of(stores.bodies, i), settings_.gravity_m_s2, dt_s);
+    if (twin.sort == Sort::Rotors) drive_rotors(twin, stores.command_of(i), settings_.gravity_m_s2, dt_s);
     const dReal* p = dBodyGetPosition(twin.body.get());
     const dReal* q = dBodyGetQuaternion(twin.body.get());
     twin.before_m = {p[0], p[1], p[2]};
@@ -453,7 +449,7 @@ void World3d::plan(const SpaceStores& stores, Twin& twin, double dt_s) {
   }
   twin.aloft = twin.sort == Sort::Flyer || twin.p_m[2] > surfaces_.floor_m + kFloats_m;
   if (twin.sort == Sort::Flyer) {
-    drive_flyer(twin, flight_of(stores.bodies, i), settings_.gravity_m_s2, dt_s);
+    drive_flyer(twin, stores.command_of(i), settings_.gravity_m_s2, dt_s);
   } else {
     if (!twin.aloft || twin.standing) drive_base(twin, stores.bodies.left_m_s[i], stores.bodies.right_m_s[i], dt_s);
     if (twin.aloft) {
@@ -704,7 +700,7 @@ void World3d::write_back(SpaceStores& stores, const Twin& twin, double tick_s) c
   b.cos_h[i] = at.cos_h;
   b.sin_h[i] = at.sin_h;
   b.motion[i] = motion;
-  if (twin.sort == Sort::Rotors) b.rotors[i] = twin.rotors;
+  if (twin.sort == Sort::Rotors) *stores.state_of(stores.rotors, i) = twin.rotors;
   b.left_m[i] += twin.sort == Sort::Wheels ? twin.rolled_m[0] : b.left_m_s[i] * tick_s;
   b.right_m[i] += twin.sort == Sort::Wheels ? twin.rolled_m[1] : b.right_m_s[i] * tick_s;
 }

@@ -157,12 +157,10 @@ const char* flaw_of(const SpaceStores& s, std::uint32_t row) noexcept {
   const double speed = std::hypot(m.v_m_s[0], m.v_m_s[1], m.v_m_s[2]);
   if (!std::isfinite(b.left_m_s[row]) || !std::isfinite(b.right_m_s[row]))
     return "is commanded a wheel speed that is not a number";
-  if (!b.flight.empty()) {
-    const FlightCommand& f = b.flight[row];
-    if (!std::isfinite(f.target[0]) || !std::isfinite(f.target[1]) || !std::isfinite(f.target[2]) ||
-        !std::isfinite(f.yaw))
-      return "is commanded a flight that is not a number";
-  }
+  const FlightCommand& f = s.command_of(row);
+  if (!std::isfinite(f.target[0]) || !std::isfinite(f.target[1]) || !std::isfinite(f.target[2]) ||
+      !std::isfinite(f.yaw))
+    return "is commanded a flight that is not a number";
   if (speed > kFastest_m_s) return "is faster than 1000 m/s";
   if (std::fabs(b.x_m[row]) > kFarthest_m || std::fabs(b.y_m[row]) > kFarthest_m || std::fabs(m.z_m) > kFarthest_m)
     return "is farther than 10000 km away";
@@ -262,8 +260,7 @@ void Particle3d::load_body(const SolverContext& context, std::size_t i, std::uin
 
 void Particle3d::load_flight(const SpaceStores& stores, std::size_t i, double tick_s) {
   const hal::DataSheet& sheet = *runs_.back().sheet;
-  const FlightCommand none;
-  const FlightCommand& f = stores.bodies.flight.empty() ? none : stores.bodies.flight[p_.row[i]];
+  const FlightCommand& f = stores.command_of(p_.row[i]);
   if (f.mode == FlightCommand::Mode::None) {
     p_.thrust[i] = 0.0;
     return;

@@ -395,7 +395,7 @@ struct Slanted {
     choose(scene, "differential_steering", Role::Actuator, "slanted", {{"sigma", "0.05", 11}});
     world = made(scene);
     drive(0.1, 1);
-    mu = world->space().stores().bodies.hidden_rolls[row()].right_m_s / 0.1;
+    mu = world->space().state<HiddenRoll>(world->space().find_robot("fb"))->right_m_s / 0.1;
     drive(-0.1, 1);
     world->space().set_pose(world->space().find_robot("fb"), Pose::at(0.0, 0.0, 0.0));
   }
@@ -602,7 +602,7 @@ TEST_F(AmongTwins, MessagesBetweenRobotsOfWhichOneHasNoBoardAreRelayed) {
 
 TEST_F(AmongTwins, AScannerLeavesOutWhatTheRealOneSees) {
   command<hal::ScannerDrive>(world_, "r1").go_to(0.0);
-  world_->space().set_scanner(robot("r1"), hal::ScannerMode::Position, 0.0, 0.0);
+  *world_->space().state<ScannerState>(robot("r1")) = {hal::ScannerMode::Position, 0.0, 0.0};
   steps(world_, 2);
   const auto& scan = reading<hal::DistanceScanner>(world_, "r1");
   ASSERT_EQ(scan.samples, 1U);
@@ -616,15 +616,13 @@ TEST_F(AmongTwins, AScannerLeavesOutWhatTheRealOneSees) {
 
 TEST_F(AmongTwins, MechanismsStandWhereTheyWerePutAndObeyNoCommand) {
   Space& space = world_->space();
-  space.set_turret(robot("r1"), 0.7, 0.1);
-  space.set_gripper(robot("r1"), 1.0);
+  space.state<TurretState>(robot("r1"))->angle_rad = 0.7;
+  space.state<GripState>(robot("r1"))->aperture_rad = 1.0;
   command<hal::TurretDrive>(world_, "r1").turn(1.0);
   steps(world_, 5);
   EXPECT_NEAR(reading<hal::TurretEncoder>(world_, "r1").angle_rad, 0.7, 1e-12);
   EXPECT_NEAR(space.turret_rad(robot("r1")), 0.7, 1e-12);
   EXPECT_FLOAT_EQ(reading<hal::Gripper>(world_, "r1").aperture_rad, 1.0F);
-  space.set_turret(robot("sim"), 0.7, 0.1);  // a simulated one's is its engine's business
-  EXPECT_EQ(space.turret_rad(robot("sim")), 0.0);
 }
 
 }  // namespace

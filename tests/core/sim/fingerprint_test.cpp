@@ -42,52 +42,48 @@ class Places {
     add(who + " w", m.w_rad_s);
   }
 
-  void add_mechanisms(const std::string& who, Bodies& b, std::size_t row) {
-    if (!b.turrets.empty()) {
-      TurretState& t = b.turrets[row];
-      add(who + " turret mode", t.mode);
-      for (double* value : {&t.target, &t.angle_rad, &t.speed_rad_s}) add(who + " turret", *value);
+  void add_mechanisms(const std::string& who, Space& space, RobotId robot) {
+    if (auto* t = space.state<TurretState>(robot); t != nullptr) {
+      add(who + " turret mode", t->mode);
+      for (double* value : {&t->target, &t->angle_rad, &t->speed_rad_s}) add(who + " turret", *value);
     }
-    if (!b.grips.empty()) {
-      add(who + " grip", b.grips[row].joint);
-      add(who + " grips", b.grips[row].grips);
-      add(who + " aperture", b.grips[row].aperture_rad);
-      add(who + " turn", b.grips[row].turn_rad);
+    if (auto* g = space.state<GripState>(robot); g != nullptr) {
+      add(who + " grip", g->joint);
+      add(who + " grips", g->grips);
+      for (double* value : {&g->aperture_rad, &g->turn_rad}) add(who + " gripper", *value);
     }
-    if (!b.scanners.empty()) {
-      add(who + " scanner mode", b.scanners[row].mode);
-      add(who + " scanner", b.scanners[row].angle_rad);
+    if (auto* c = space.state<ScannerState>(robot); c != nullptr) {
+      add(who + " scanner mode", c->mode);
+      add(who + " scanner", c->angle_rad);
     }
-    if (!b.hidden_rolls.empty()) {
-      HiddenRoll& h = b.hidden_rolls[row];
-      for (double* value : {&h.left_m, &h.right_m, &h.left_m_s, &h.right_m_s}) add(who + " hidden roll", *value);
+    if (auto* h = space.state<HiddenRoll>(robot); h != nullptr) {
+      for (double* value : {&h->left_m, &h->right_m, &h->left_m_s, &h->right_m_s}) add(who + " hidden roll", *value);
     }
-    if (!b.heads.empty()) {
-      add(who + " pan", b.heads[row].pan_rad);
-      add(who + " tilt", b.heads[row].tilt_rad);
-      add(who + " laser", b.heads[row].laser);
+    if (auto* h = space.state<HeadState>(robot); h != nullptr) {
+      for (double* value : {&h->pan_rad, &h->tilt_rad}) add(who + " head", *value);
+      add(who + " laser", h->laser);
     }
-    if (!b.rotors.empty()) {
-      add(who + " rotors spun", b.rotors[row].spun);
-      add(who + " thrust", b.rotors[row].thrust_N);
+    if (auto* r = space.state<RotorState>(robot); r != nullptr) {
+      add(who + " rotors spun", r->spun);
+      add(who + " thrust", r->thrust_N);
     }
-    if (!b.flight.empty()) {
-      add(who + " flight", b.flight[row].mode);
-      add(who + " flight", b.flight[row].target);
-      add(who + " flight", b.flight[row].yaw);
+    if (auto* f = space.state<FlightCommand>(robot); f != nullptr) {
+      add(who + " flight mode", f->mode);
+      add(who + " flight target", f->target);
+      add(who + " flight yaw", f->yaw);
     }
-    if (!b.pilots.empty()) {
-      PilotState& p = b.pilots[row];
-      add(who + " phase", p.phase);
-      add(who + " order", p.order);
-      add(who + " started", p.started);
-      add(who + " stuck", p.stuck_ticks);
-      add(who + " place", p.place_m);
-      add(who + " heading", p.heading_rad);
+    if (auto* p = space.state<PilotState>(robot); p != nullptr) {
+      add(who + " phase", p->phase);
+      add(who + " order", p->order);
+      add(who + " started", p->started);
+      add(who + " stuck", p->stuck_ticks);
+      add(who + " place", p->place_m);
+      add(who + " heading", p->heading_rad);
     }
   }
 
-  void add_robot(SpaceStores& s, std::uint32_t entity) {
+  void add_robot(Space& space, std::uint32_t entity) {
+    SpaceStores& s = space.stores();
     const std::string who = "robot " + std::to_string(entity);
     RobotBlock& block = s.blocks[s.robots[entity].block];
     const std::size_t slot = s.robots[entity].slot;
@@ -98,7 +94,7 @@ class Places {
     add(who + " halted", block.halted[slot]);
     add(who + " region", b.region[row]);
     if (!b.motion.empty()) add_motion(who, b.motion[row]);
-    add_mechanisms(who, b, row);
+    add_mechanisms(who, space, {entity, s.robots[entity].generation});
     for (std::size_t p = 0; p < block.ports.size(); ++p) {
       const hal::PortType& type = *s.groups[block.group].ports[p];
       std::byte* const port = block.ports[p] + slot * type.size;
@@ -140,10 +136,10 @@ class Places {
   std::vector<Place> all;
 };
 
-Places places_in(SpaceStores& s) {
+Places places_in(Space& space) {
   Places places;
-  for (const std::uint32_t entity : s.living) places.add_robot(s, entity);
-  places.add_scenery(s);
+  for (const std::uint32_t entity : space.stores().living) places.add_robot(space, entity);
+  places.add_scenery(space.stores());
   return places;
 }
 
@@ -201,7 +197,7 @@ MadeWorld driving_world() {
 void expect_every_value_seen(const MadeWorld& world) {
   const std::uint64_t before = world->state_hash();
   const auto values = state_values(world->state_view());
-  const Places places = places_in(world->space().stores());
+  const Places places = places_in(world->space());
   ASSERT_GT(places.all.size(), 50U);
   std::size_t named = 0;
   for (const Place& place : places.all) {
@@ -239,8 +235,6 @@ TEST(Fingerprint, DoesNotTellAStateThatNobodyTouchedFromNone) {
   const MadeWorld world = driving_world();
   const std::uint64_t before = world->state_hash();
   Bodies& b = world->space().stores().bodies;
-  b.turrets.resize(b.size());
-  b.pilots.resize(b.size());
   b.motion.resize(b.size());
   EXPECT_EQ(world->state_hash(), before);
 }

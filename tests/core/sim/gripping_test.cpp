@@ -1,10 +1,9 @@
 // Grippers and loaded turrets, with both engines that know forces.
-#include "core/sim/gripping.hpp"
-
 #include <cmath>
 #include <gmock/gmock.h>
 #include <numbers>
 
+#include "core/space/mechanisms.hpp"
 #include "tests/core/footbots.hpp"
 
 namespace tandem::core {
@@ -243,8 +242,7 @@ TEST_P(Gripping, EveryGripDrawsTheTreelsSlantAnew) {
   auto world = made(s);
   const auto slant = [&world] {
     const Space& space = world->space();
-    const std::size_t row = space.stores().row_of(space.find_robot("fb"));
-    return space.stores().bodies.hidden_rolls[row].left_m_s;
+    return space.state<HiddenRoll>(space.find_robot("fb"))->left_m_s;
   };
   command<WheelSpeeds>(world, "fb").set(-0.01, -0.01);
   steps(world, 2);
@@ -347,7 +345,7 @@ TEST(GrippingAtLoad, OtherDevicesDoWithoutForces) {
   command<WheelSpeeds>(world, "fb").set(0.1, 0.1);
   steps(world, 10);
   EXPECT_NEAR(pose_of(world, "fb").x_m, 0.1, 1e-9);
-  EXPECT_TRUE(world->space().stores().bodies.grips.empty());
+  EXPECT_EQ(world->space().state<GripState>(world->space().find_robot("fb")), nullptr);
   EXPECT_EQ(world->space().turret_rad(world->space().find_robot("fb")), 0.0);
 }
 

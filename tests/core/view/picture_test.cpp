@@ -49,12 +49,8 @@ TEST(Picture, TakesTurretsAndGrippersFromTheSpace) {
   Space space;
   set_up(space);
   add_robot(space, hal::footbot::kDataSheet, "fb", 1.0, 1.0, 0.0, {&hal::port_type<hal::RingLeds>()});
-  Bodies& b = space.stores().bodies;
-  b.turrets.resize(b.size());
-  b.grips.resize(b.size());
-  const std::size_t row = space.stores().row_of(space.robot(2));
-  b.turrets[row].angle_rad = -0.75;
-  b.grips[row].joint = 0;
+  add_state<TurretState>(space, space.robot(2)).angle_rad = -0.75;
+  add_state<GripState>(space, space.robot(2)).joint = 0;
   space.port<hal::RingLeds>(space.robot(2))->set(hal::footbot::kBeacon, hal::kBlue);
   const Drawing d = drawing_of(space, {});
   ASSERT_EQ(d.kinds.size(), 2U);

@@ -23,10 +23,9 @@ class FootbotMechanisms : public testing::Test {
         space_, hal::footbot::kDataSheet, "fb", 0.0, 0.0, 0.0,
         {&port_type<hal::TurretDrive>(), &port_type<hal::GripperDrive>(), &port_type<hal::ScannerDrive>(),
          &port_type<hal::DistanceScanner>(), &port_type<hal::Proximity>(), &port_type<hal::RangeAndBearing>()});
-    core::Bodies& b = space_.stores().bodies;
-    b.turrets.resize(1);
-    b.grips.resize(1);
-    b.scanners.resize(1);
+    core::add_state<core::TurretState>(space_, robot_);
+    core::add_state<core::GripState>(space_, robot_);
+    core::add_state<core::ScannerState>(space_, robot_);
     space_.set_external(robot_, true);
   }
   template <class Port>
@@ -39,7 +38,7 @@ class FootbotMechanisms : public testing::Test {
               return found == readings_.end() || type.role != hal::Role::Sensor ? nullptr : found->second;
             }};
   }
-  const core::ScannerState& scanner() { return space_.stores().bodies.scanners[0]; }
+  const core::ScannerState& scanner() { return *space_.state<core::ScannerState>(robot_); }
   std::uint8_t senses() { return space_.stores().bodies.real_senses[0]; }
 
   core::Space space_;
@@ -59,7 +58,7 @@ TEST_F(FootbotMechanisms, StandWhereTheRobotSaysThatTheyAre) {
   space_.port<hal::TurretDrive>(robot_)->go_to(-2.0);  // it is not there yet
   mechanisms.follow(kTick_s);
   EXPECT_NEAR(space_.turret_rad(robot_), 0.8, 1e-12);
-  EXPECT_NEAR(space_.stores().bodies.grips[0].aperture_rad, 0.5, 1e-6);
+  EXPECT_NEAR(space_.state<core::GripState>(robot_)->aperture_rad, 0.5, 1e-6);
 }
 
 TEST_F(FootbotMechanisms, GoWhereTheyWereToldWhereNothingMeasuresThem) {
@@ -73,7 +72,7 @@ TEST_F(FootbotMechanisms, GoWhereTheyWereToldWhereNothingMeasuresThem) {
   space_.port<hal::TurretDrive>(robot_)->turn(-0.5);
   mechanisms.follow(kTick_s);
   EXPECT_NEAR(space_.turret_rad(robot_), 0.25, 1e-12);
-  EXPECT_EQ(space_.stores().bodies.grips[0].aperture_rad, hal::GripperDrive::kMost_rad);
+  EXPECT_EQ(space_.state<core::GripState>(robot_)->aperture_rad, hal::GripperDrive::kMost_rad);
 }
 
 TEST_F(FootbotMechanisms, TheVirtualScannerMeasuresWhereTheRealOneDoes) {
@@ -117,7 +116,7 @@ TEST(EyebotMechanisms, TheHeadFollowsItsEncoderAndTheLaserItsCommand) {
   core::Space space;
   const core::RobotId robot =
       core::add_robot(space, hal::eyebot::kDataSheet, "eb", 0.0, 0.0, 0.0, {&port_type<hal::PanTiltDrive>()});
-  space.stores().bodies.heads.resize(1);
+  const core::HeadState& head = core::add_state<core::HeadState>(space, robot);
   space.set_external(robot, true);
   hal::PanTiltEncoder encoder;
   Mechanisms mechanisms(space, robot, [&](const hal::PortType& type) -> const void* {
@@ -125,7 +124,6 @@ TEST(EyebotMechanisms, TheHeadFollowsItsEncoderAndTheLaserItsCommand) {
   });
   space.port<hal::PanTiltDrive>(robot)->laser = true;
   space.port<hal::PanTiltDrive>(robot)->pan_rad = 1.0;
-  const core::HeadState& head = space.stores().bodies.heads[0];
   mechanisms.follow(kTick_s);
   EXPECT_NEAR(head.pan_rad, std::min(1.0, hal::eyebot::kDataSheet.camera_head.turn_rad_s * kTick_s), 1e-12);
   encoder = {};

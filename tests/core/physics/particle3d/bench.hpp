@@ -34,7 +34,7 @@ class Bench {
   SpaceStores& stores() { return space_.stores(); }
   Space& space() { return space_; }
   Motion& motion(std::size_t row) { return stores().bodies.motion[row]; }
-  FlightCommand& flight(std::size_t row) { return stores().bodies.flight[row]; }
+  FlightCommand& flight(std::size_t row) { return *stores().state_of(stores().flight, row); }
   double x(std::size_t row) { return stores().bodies.x_m[row]; }
   double y(std::size_t row) { return stores().bodies.y_m[row]; }
   double z(std::size_t row) { return motion(row).z_m; }
@@ -47,13 +47,12 @@ class Bench {
   /// A robot that hovers; its row.
   std::size_t flyer(double x_m, double y_m, double z_m, double heading_rad = 0.0) {
     const std::size_t row = robot(hal::eyebot::kDataSheet, x_m, y_m, z_m, heading_rad);
-    stores().bodies.flight.resize(row + 1);
+    add_state<FlightCommand>(space_, {stores().bodies.entity[row], 0});
     flight(row).mode = FlightCommand::Mode::Velocity;
     return row;
   }
   std::size_t roller(double x_m, double y_m, double heading_rad, double left_m_s, double right_m_s, double z_m = 0.0) {
     const std::size_t row = robot(hal::epuck::kDataSheet, x_m, y_m, z_m, heading_rad);
-    if (!stores().bodies.flight.empty()) stores().bodies.flight.resize(row + 1);
     stores().bodies.left_m_s[row] = left_m_s;
     stores().bodies.right_m_s[row] = right_m_s;
     return row;

@@ -1,8 +1,10 @@
-#include "core/sim/gripping.hpp"
-
+// What grippers hold: joints between robots and what is before their claws, and turrets that carry a load.
 #include <algorithm>
 #include <cmath>
 #include <limits>
+
+#include "core/device/coupling.hpp"
+#include "core/space/mechanisms.hpp"
 
 namespace tandem::core {
 namespace {
@@ -152,7 +154,7 @@ std::uint32_t free_joint(SpaceStores& s) {
 }
 
 /// Joins the robot's axis with the point of the body that is there, so that what is held turns about the axis.
-void take_hold(SpaceStores& s, std::size_t row, BodyKey held, double height_m, double turret_rad) {
+void take_hold(SpaceStores& s, std::size_t row, GripState& grip, BodyKey held, double height_m, double turret_rad) {
   const Place a = place_of(s, BodyKey::robot(row));
   const Place b = place_of(s, held);
   const std::uint32_t number = free_joint(s);
@@ -170,7 +172,6 @@ void take_hold(SpaceStores& s, std::size_t row, BodyKey held, double height_m, d
   joint.by_m = b.cos_h * wy - b.sin_h * wx;
   joint.bz_m = height_m - b.low_m;
   joint.heading_rad = turn_between(a, b);
-  GripState& grip = s.bodies.grips[row];
   grip.joint = number;
   grip.generation = generation;
   grip.turn_rad = wrapped(turret_rad - joint.heading_rad);
@@ -191,25 +192,25 @@ bool there(const SpaceStores& s, BodyKey body) noexcept {
 }
 
 /// What the turret asks of the joint.
-struct Wish {
+struct Drive {
   bool turns = false;
   double motor_torque_Nm = 0.0;
   double motor_rad_s = 0.0;
 };
 
-Wish wish_of(const TurretState& turret, const hal::DataSheet& sheet, double tick_s) noexcept {
+Drive drive_of(const TurretState& turret, const hal::DataSheet& sheet, double tick_s) noexcept {
   const auto drive = [&](double rad_s) {
     const double most = sheet.turret_turn_rad_s;
-    return Wish{true, sheet.turret_torque_Nm, std::clamp(rad_s, -most, most)};
+    return Drive{true, sheet.turret_torque_Nm, std::clamp(rad_s, -most, most)};
   };
   switch (turret.mode) {
     case hal::TurretMode::Passive:
       return {true, 0.0, 0.0};
     case hal::TurretMode::Speed:
-      return turret.target == 0.0 ? Wish{} : drive(turret.target);
+      return turret.target == 0.0 ? Drive{} : drive(turret.target);
     case hal::TurretMode::Position: {
       const double left_rad = wrapped(turret.target - turret.angle_rad);
-      return std::fabs(left_rad) < kThere_rad ? Wish{} : drive(left_rad / tick_s);
+      return std::fabs(left_rad) < kThere_rad ? Drive{} : drive(left_rad / tick_s);
     }
     case hal::TurretMode::Off:
       break;
@@ -218,19 +219,19 @@ Wish wish_of(const TurretState& turret, const hal::DataSheet& sheet, double tick
 }
 
 /// Makes the joint do what the turret asks. Engines take over a joint of another sort as a new one.
-void drive_load(SpaceStores& s, std::size_t row, Joint& joint, double tick_s) noexcept {
-  if (s.bodies.turrets.empty()) return;
-  const Wish wish = wish_of(s.bodies.turrets[row], s.sheet_of_row(row), tick_s);
-  joint.motor_rad_s = wish.motor_rad_s;
-  if (joint.turns == wish.turns && joint.motor_torque_Nm == wish.motor_torque_Nm) return;
-  joint.turns = wish.turns;
-  joint.motor_torque_Nm = wish.motor_torque_Nm;
+void drive_load(SpaceStores& s, std::size_t row, GripState& grip, const TurretState& turret, Joint& joint,
+                double tick_s) noexcept {
+  const Drive drive = drive_of(turret, s.sheet_of_row(row), tick_s);
+  joint.motor_rad_s = drive.motor_rad_s;
+  if (joint.turns == drive.turns && joint.motor_torque_Nm == drive.motor_torque_Nm) return;
+  joint.turns = drive.turns;
+  joint.motor_torque_Nm = drive.motor_torque_Nm;
   joint.heading_rad = turn_between(place_of(s, joint.a), place_of(s, joint.b));
-  s.bodies.grips[row].generation = joint.generation = ++s.joint_generations;
+  grip.generation = joint.generation = ++s.joint_generations;
 }
 
-void treat(SpaceStores& s, std::size_t row, double tick_s) {
-  GripState& grip = s.bodies.grips[row];
+/// `turret`: null where the gripper sits on none.
+void treat(SpaceStores& s, std::size_t row, GripState& grip, const TurretState* turret, double tick_s) {
   Joint* joint = joint_of(s, grip);
   if (joint == nullptr) grip.joint = GripState::kNothing;
   const BodyKey self = BodyKey::robot(row);
@@ -240,37 +241,68 @@ void treat(SpaceStores& s, std::size_t row, double tick_s) {
     grip.joint = GripState::kNothing;
   }
   if (grip.wants && !grip.slips && joint == nullptr && there(s, self) && in_forces(s, self)) {
-    const double turret_rad = s.bodies.turrets.empty() ? 0.0 : s.bodies.turrets[row].angle_rad;
+    const double turret_rad = turret == nullptr ? 0.0 : turret->angle_rad;
     BodyKey found;
     double height_m = 0.0;
-    if (find_hold(s, row, turret_rad, found, height_m)) take_hold(s, row, found, height_m, turret_rad);
+    if (find_hold(s, row, turret_rad, found, height_m)) take_hold(s, row, grip, found, height_m, turret_rad);
     joint = joint_of(s, grip);
   }
-  if (joint != nullptr) drive_load(s, row, *joint, tick_s);
+  if (joint != nullptr && turret != nullptr) drive_load(s, row, grip, *turret, *joint, tick_s);
 }
+
+/// After every gripper and turret took its command: claws that opened take hold of the nearest body before them, those
+/// that closed let go, and joints follow what the turrets were told.
+///
+/// Open claws hold the first thing that the line from the robot's rim outwards meets within the data sheet's reach, at
+/// the claws' height: a movable box or cylinder, or a robot whose kind has a gripper itself. They keep trying while
+/// nothing is there. What they hold turns with the turret: firmly while that is off or has arrived, freely while it is
+/// passive, else with the turret's motor. Robots whose pose comes from outside neither hold nor are held.
+///
+/// After physics, turrets that carry a load look where the load went.
+class Gripping final : public Coupling {
+ public:
+  explicit Gripping(Columns& columns) : grips_(columns.of<GripState>()), turrets_(columns.of<TurretState>()) {}
+
+  void before_physics(SpaceStores& stores, double tick_s) override {
+    each(stores, [&](std::size_t row, GripState& grip, TurretState* turret) {
+      if (grip.wants || grip.holding()) treat(stores, row, grip, turret, tick_s);
+    });
+  }
+
+  void after_physics(SpaceStores& stores, double tick_s) noexcept override {
+    each(stores, [&](std::size_t /*row*/, GripState& grip, TurretState* turret) {
+      const Joint* joint = turret == nullptr ? nullptr : joint_of(stores, grip);
+      if (joint == nullptr) return;
+      const double angle_rad =
+          wrapped(grip.turn_rad + turn_between(place_of(stores, joint->a), place_of(stores, joint->b)));
+      turret->speed_rad_s = wrapped(angle_rad - turret->angle_rad) / tick_s;
+      turret->angle_rad = angle_rad;
+    });
+  }
+
+ private:
+  template <class Visit>
+  void each(SpaceStores& stores, Visit&& visit) const {
+    if (grips_.empty()) return;
+    for (std::size_t b = 0; b < stores.blocks.size(); ++b) {
+      GripState* const grips = grips_.of_block(b);
+      if (grips == nullptr) continue;
+      TurretState* const turrets = turrets_.of_block(b);
+      const RobotBlock& block = stores.blocks[b];
+      for (std::size_t i = 0; i < block.used; ++i)
+        visit(block.first_row + i, grips[i], turrets == nullptr ? nullptr : turrets + i);
+    }
+  }
+
+  Column<GripState> grips_;
+  Column<TurretState> turrets_;
+};
 
 }  // namespace
 
-void grip_and_release(SpaceStores& stores, double tick_s) {
-  for (std::size_t row = 0; row < stores.bodies.grips.size(); ++row) {
-    const GripState& grip = stores.bodies.grips[row];
-    if (grip.wants || grip.holding()) treat(stores, row, tick_s);
-  }
-}
-
-void follow_loads(SpaceStores& stores, double tick_s) noexcept {
-  Bodies& b = stores.bodies;
-  if (b.turrets.empty()) return;
-  for (std::size_t row = 0; row < b.grips.size(); ++row) {
-    const GripState& grip = b.grips[row];
-    const Joint* joint = joint_of(stores, grip);
-    if (joint == nullptr) continue;
-    TurretState& turret = b.turrets[row];
-    const double angle_rad =
-        wrapped(grip.turn_rad + turn_between(place_of(stores, joint->a), place_of(stores, joint->b)));
-    turret.speed_rad_s = wrapped(angle_rad - turret.angle_rad) / tick_s;
-    turret.angle_rad = angle_rad;
-  }
+CouplingType gripping_type() {
+  return {"gripping", "Claws take hold of what is before them; turrets turn what they hold.",
+          [](Columns& columns) -> std::unique_ptr<Coupling> { return std::make_unique<Gripping>(columns); }};
 }
 
 }  // namespace tandem::core

@@ -1,10 +1,11 @@
-#include "core/sim/piloting.hpp"
-
+// From what a controller asks of a flying robot to what its engine is told.
 #include <algorithm>
 #include <cmath>
 
 #include "core/device/altitude.hpp"
+#include "core/device/coupling.hpp"
 #include "core/device/types.hpp"
+#include "core/space/mechanisms.hpp"
 
 namespace tandem::core {
 namespace {
@@ -25,36 +26,37 @@ constexpr double kSlowDown_1_s = 2.0;       // climbing speed for each metre tha
 /// One robot of the block.
 class Pilot {
  public:
-  Pilot(const DeviceContext& context, SpaceStores& stores, std::size_t row, bool obeys)
+  Pilot(const DeviceContext& context, SpaceStores& stores, std::size_t slot, const FlightSetpoint& setpoint,
+        PilotState& state, FlightCommand& command)
       : stores_(stores),
         sheet_(*context.group.sheet),
-        row_(row),
+        row_(context.block.first_row + slot),
         tick_s_(context.tick_s),
-        obeys_(obeys),
-        wish_(stores.bodies.wishes[row]),
-        state_(stores.bodies.pilots[row]),
-        command_(stores.bodies.flight[row]) {}
+        obeys_(obeys(context, slot)),
+        setpoint_(setpoint),
+        state_(state),
+        command_(command) {}
 
   void fly() noexcept {
     if (!obeys_) return hover_by_speed();
-    if (wish_.attitude.active) {
-      const hal::QuadrotorAttitude& a = wish_.attitude;
+    if (setpoint_.attitude.active) {
+      const hal::QuadrotorAttitude& a = setpoint_.attitude;
       command_ = {Mode::Attitude, {a.roll_rad, a.pitch_rad, a.thrust}, a.yaw_rad_s};
       state_.phase = FlightPhase::Flying;
-    } else if (wish_.to_place) {
-      command_ = {Mode::Position, wish_.target_m, wish_.heading_rad};
+    } else if (setpoint_.to_place) {
+      command_ = {Mode::Position, setpoint_.target_m, setpoint_.heading_rad};
       state_.phase = FlightPhase::Flying;
     } else {
-      command_ = {Mode::Velocity, wish_.velocity_m_s, wish_.turn_rad_s};
-      const std::array<double, 3>& v = wish_.velocity_m_s;
-      const bool rests = v[0] == 0.0 && v[1] == 0.0 && v[2] == 0.0 && wish_.turn_rad_s == 0.0;
+      command_ = {Mode::Velocity, setpoint_.velocity_m_s, setpoint_.turn_rad_s};
+      const std::array<double, 3>& v = setpoint_.velocity_m_s;
+      const bool rests = v[0] == 0.0 && v[1] == 0.0 && v[2] == 0.0 && setpoint_.turn_rad_s == 0.0;
       state_.phase = rests ? FlightPhase::Hovering : FlightPhase::Flying;
     }
   }
 
   void carry_out_task() noexcept {
     if (!state_.started) start();
-    const FlightOrder order = obeys_ ? wish_.task.order : FlightOrder::Fly;
+    const FlightOrder order = obeys_ ? setpoint_.task.order : FlightOrder::Fly;
     if (order != state_.order) begin(order);
     state_.order = order;
     switch (state_.phase) {
@@ -83,7 +85,9 @@ class Pilot {
  private:
   const Bodies& bodies() const noexcept { return stores_.bodies; }
   double base_m() const noexcept { return stores_.base_m(row_); }
-  double speed_or(double own_m_s) const noexcept { return wish_.task.speed_m_s > 0.0 ? wish_.task.speed_m_s : own_m_s; }
+  double speed_or(double own_m_s) const noexcept {
+    return setpoint_.task.speed_m_s > 0.0 ? setpoint_.task.speed_m_s : own_m_s;
+  }
   bool in_the_air() const noexcept {
     return state_.phase == FlightPhase::Hovering || state_.phase == FlightPhase::Flying ||
            state_.phase == FlightPhase::TakingOff || state_.phase == FlightPhase::Landing ||
@@ -172,24 +176,51 @@ class Pilot {
   std::size_t row_;
   double tick_s_;
   bool obeys_;
-  const FlightWish& wish_;
+  const FlightSetpoint& setpoint_;
   PilotState& state_;
   FlightCommand& command_;
 };
 
+/// Goes through flying robots once all their actuators have acted: which of their commands counts, and how far tasks
+/// (taking off, landing, holding on to the ceiling) have come.
+///
+/// A robot whose controller takes FlightTask starts landed where it stands on something, else in the air; others obey
+/// their commands from the start. One that is halted hovers, or stays where it stands or hangs.
+class Piloting final : public Coupling {
+ public:
+  explicit Piloting(Columns& columns)
+      : setpoints_(columns.of<FlightSetpoint>()),
+        pilots_(columns.of<PilotState>()),
+        commands_(columns.of<FlightCommand>()) {}
+
+  void drive(const DeviceContext& context, SpaceStores& stores) noexcept override {
+    if (setpoints_.empty()) return;
+    const auto b = static_cast<std::size_t>(&context.block - stores.blocks.data());
+    const FlightSetpoint* const setpoints = setpoints_.of_block(b);
+    if (setpoints == nullptr) return;
+    PilotState* const states = pilots_.of_block(b);
+    FlightCommand* const commands = commands_.of_block(b);
+    const bool tasks = context.group.takes<hal::FlightTask>();
+    for (std::size_t i = 0; i < context.block.used; ++i) {
+      Pilot robot(context, stores, i, setpoints[i], states[i], commands[i]);
+      if (tasks && !led_from_outside(context, i))
+        robot.carry_out_task();
+      else
+        robot.fly();
+    }
+  }
+
+ private:
+  Column<FlightSetpoint> setpoints_;
+  Column<PilotState> pilots_;
+  Column<FlightCommand> commands_;
+};
+
 }  // namespace
 
-void pilot(const DeviceContext& context, SpaceStores& stores) noexcept {
-  const RobotGroup& group = context.group;
-  const bool tasks = group.flight_task >= 0;
-  if (!tasks && group.flight_attitude < 0 && group.flight_position < 0 && group.flight_speed < 0) return;
-  for (std::size_t i = 0; i < context.block.used; ++i) {
-    Pilot robot(context, stores, context.block.first_row + i, obeys(context, i));
-    if (tasks && (stores.bodies.flags[context.block.first_row + i] & kExternal) == 0)
-      robot.carry_out_task();
-    else
-      robot.fly();
-  }
+CouplingType piloting_type() {
+  return {"piloting", "Carries out flight tasks, and chooses among the commands of flight devices.",
+          [](Columns& columns) -> std::unique_ptr<Coupling> { return std::make_unique<Piloting>(columns); }};
 }
 
 }  // namespace tandem::core

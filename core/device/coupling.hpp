@@ -1,0 +1,38 @@
+// Couplings: what ties devices to bodies once a tick, beyond what one device does for one block of robots.
+#pragma once
+#include <memory>
+#include <string_view>
+#include <vector>
+
+#include "core/device/device.hpp"
+
+namespace tandem::core {
+
+/// Keeps nothing from tick to tick but in columns.
+class Coupling {
+ public:
+  virtual ~Coupling() = default;
+  /// Once all actuators of a block have acted, on any thread. Writes only rows of that block.
+  virtual void drive(const DeviceContext& /*context*/, SpaceStores& /*stores*/) noexcept {}
+  /// Once all blocks have, and before the engines move anything: for what robots have in common, such as joints. Goes
+  /// through them in the order of rows.
+  virtual void before_physics(SpaceStores& /*stores*/, double /*tick_s*/) {}
+  /// Once all bodies have moved.
+  virtual void after_physics(SpaceStores& /*stores*/, double /*tick_s*/) noexcept {}
+};
+
+/// One class of couplings. A world has one of each; those that nobody's columns ask for find nothing to do.
+struct CouplingType {
+  std::string_view name;
+  std::string_view summary;
+  std::unique_ptr<Coupling> (*make)(Columns& columns) = nullptr;
+};
+
+/// All of them, in the order in which they act.
+const std::vector<CouplingType>& coupling_types();
+
+// The list's entries, one a file of this folder.
+CouplingType piloting_type();
+CouplingType gripping_type();
+
+}  // namespace tandem::core
