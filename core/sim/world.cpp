@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "core/sim/fingerprint.hpp"
+#include "core/space/fingerprint.hpp"
 #include "core/sim/world_impl.hpp"
 #include "hal/check.hpp"
 #include "hal/filter.hpp"

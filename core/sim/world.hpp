@@ -10,7 +10,7 @@
 #include "core/scenario/scenario.hpp"
 #include "core/sim/external.hpp"
 #include "core/sim/snapshot.hpp"
-#include "core/sim/state_values.hpp"
+#include "core/space/state_values.hpp"
 #include "core/space/space.hpp"
 #include "hal/log.hpp"
 #include "hal/plugin_loader.hpp"

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <png.h>
 
 namespace tandem::core {
@@ -36,7 +37,20 @@ hal::Status Floor::load_png(const std::string& path, double min_x_m, double min_
       shade_[line * columns_ + column] = static_cast<std::uint8_t>((299 * p[0] + 587 * p[1] + 114 * p[2] + 500) / 1000);
     }
   }
+  take_mark();
   return {};
+}
+
+/// Eight pixels at a time.
+void Floor::take_mark() noexcept {
+  std::uint64_t mark = (columns_ << 32) ^ lines_;
+  for (std::size_t at = 0; at < shade_.size(); at += sizeof(std::uint64_t)) {
+    std::uint64_t word = 0;
+    std::memcpy(&word, shade_.data() + at, std::min(sizeof word, shade_.size() - at));
+    mark = (mark ^ word) * 0x9E3779B97F4A7C15ULL;
+    mark ^= mark >> 32;
+  }
+  mark_ = mark;
 }
 
 void Floor::paint(double min_x_m, double min_y_m, double size_x_m, double size_y_m, double pixels_per_m,
@@ -56,6 +70,7 @@ void Floor::paint(double min_x_m, double min_y_m, double size_x_m, double size_y
           static_cast<std::uint8_t>(std::lround(255.0 * std::clamp(shade(x, y), 0.0, 1.0)));
     }
   }
+  take_mark();
 }
 
 float Floor::at(double x_m, double y_m) const noexcept {

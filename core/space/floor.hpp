@@ -25,12 +25,17 @@ class Floor {
 
   float at(double x_m, double y_m) const noexcept;
   bool uniform() const noexcept { return shade_.empty(); }
+  /// Fingerprint of all pixels; 0 of a uniform one.
+  std::uint64_t mark() const noexcept { return mark_; }
 
  private:
+  void take_mark() noexcept;
+
   double min_x_m_ = 0.0, min_y_m_ = 0.0;
   double columns_per_m_ = 1.0, lines_per_m_ = 1.0;
   std::size_t columns_ = 0, lines_ = 0;
   std::vector<std::uint8_t> shade_;
+  std::uint64_t mark_ = 0;
 };
 
 }  // namespace tandem::core

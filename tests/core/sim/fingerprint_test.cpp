@@ -1,5 +1,5 @@
 // The fingerprint sees every value on its own, wherever it is stored, and differences are named.
-#include "core/sim/fingerprint.hpp"
+#include "core/space/fingerprint.hpp"
 
 #include <chrono>
 #include <cstring>
@@ -231,6 +231,18 @@ TEST(Fingerprint, SeesWhatDevicesRemember) {
   EXPECT_NE(world->state_hash(), before);
 }
 
+TEST(Fingerprint, SeesOnePixelOfTheFloor) {
+  const MadeWorld world = driving_world();
+  Floor& floor = world->space().stores().floor;
+  const auto paint = [&floor](double at) { floor.paint(0, 0, 1, 1, 10, [at](double x, double) { return x < at; }); };
+  paint(0.5);
+  const std::uint64_t half = world->state_hash();
+  paint(0.6);
+  EXPECT_NE(world->state_hash(), half);
+  paint(0.5);
+  EXPECT_EQ(world->state_hash(), half);
+}
+
 TEST(Fingerprint, DoesNotTellAStateThatNobodyTouchedFromNone) {
   const MadeWorld world = driving_world();
   const std::uint64_t before = world->state_hash();
@@ -266,6 +278,20 @@ TEST(Fingerprint, IsCheapEnoughForEveryTick) {
   }
   RecordProperty("ns_a_robot", std::to_string(best_ns));
   EXPECT_LT(best_ns, 2000.0);
+}
+
+TEST(StateValues, OfRobotsOnTheGroundAreTheirsAloneBesideAFlyer) {
+  Scene scene = eyebot_scene();
+  scene.flyer("eb0", 0.0, 0.0, 1.0).engine("kinematics2d");
+  scene.robot("ep0", 2.0, 0.0);
+  const MadeWorld world = make(scene);
+  ASSERT_TRUE(world.world) << world.all_problems();
+  const Space& space = world->space();
+  EXPECT_NE(space.state<FlightCommand>(space.find_robot("eb0")), nullptr);
+  EXPECT_NE(space.state<PilotState>(space.find_robot("eb0")), nullptr);
+  for (const hal::RowType* type : {&hal::row_type<FlightCommand>(), &hal::row_type<FlightSetpoint>(),
+                                   &hal::row_type<PilotState>(), &hal::row_type<RotorState>()})
+    EXPECT_EQ(space.state(space.find_robot("ep0"), *type), nullptr) << type->name;
 }
 
 TEST(StateValues, NameTheOneThatDiffers) {

@@ -1,4 +1,4 @@
-#include "core/sim/state_values.hpp"
+#include "core/space/state_values.hpp"
 
 #include <algorithm>
 #include <charconv>
@@ -224,6 +224,7 @@ void visit_world(const StateView& state, StateVisitor& visitor) {
   value("objects", s.objects.size());
   value("lights", s.lights.size());
   value("sounds", s.sounds.size());
+  value("floor", s.floor.mark());
   value("repaint_floor", s.repaint_floor ? 1 : 0);
 }
 

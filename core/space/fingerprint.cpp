@@ -1,4 +1,4 @@
-#include "core/sim/fingerprint.hpp"
+#include "core/space/fingerprint.hpp"
 
 #include <algorithm>
 #include <array>

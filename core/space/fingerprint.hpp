@@ -2,7 +2,7 @@
 #pragma once
 #include <cstdint>
 
-#include "core/sim/state_values.hpp"
+#include "core/space/state_values.hpp"
 
 namespace tandem::core {
 
