@@ -3,7 +3,6 @@
 
 #include <bit>
 
-#include "core/device/cameras.hpp"
 #include "core/device/sight.hpp"
 #include "core/device/types.hpp"
 #include "core/random/random.hpp"
@@ -11,11 +10,15 @@
 
 namespace tandem::core {
 
+namespace {
+
+/// Radius of the disc on the ground that the camera on the axis sees; 0 without one.
 double omni_reach_m(const hal::DataSheet& sheet, const CameraConfig& config) noexcept {
   const double aperture = config.omni_aperture_rad < 0.0 ? sheet.omni_camera.aperture_rad : config.omni_aperture_rad;
   return sheet.omni_camera.height_m * std::tan(aperture);
 }
 
+/// The camera with a lens, with what the file says in the place of the data sheet's figures.
 hal::CameraSheet camera_of(const hal::DataSheet& sheet, const CameraConfig& config) noexcept {
   hal::CameraSheet camera = sheet.camera;
   if (config.aperture_rad >= 0.0) camera.aperture_rad = config.aperture_rad;
@@ -24,8 +27,6 @@ hal::CameraSheet camera_of(const hal::DataSheet& sheet, const CameraConfig& conf
   if (config.front) camera.usual = camera.front;
   return camera;
 }
-
-namespace {
 
 constexpr double kSurface_m = 0.002;  // an LED this deep in a surface is seen all the same: it sits on it
 
@@ -335,9 +336,12 @@ Recipe<Sensor> make_omni(const Element& element, Problems& problems, const Devic
   const auto options = read_options<Options>(element, problems);
   Flaws flaws;
   if constexpr (requires { options.miss_prob; }) flaws = {options.noise_std_dev_m, options.miss_prob};
-  return [setup, medium = setup.led_medium(options.medium), flaws](const BlockColumns& columns) {
+  const auto make = [setup, medium = setup.led_medium(options.medium), flaws](const BlockColumns& columns) {
     return std::make_unique<OmniSensor>(setup, medium, flaws, columns);
   };
+  Recipe<Sensor> recipe(make);
+  recipe.sees_m = omni_reach_m(setup.sheet, setup.item.camera);
+  return recipe;
 }
 
 // --- through a lens ---
@@ -489,9 +493,12 @@ Recipe<Sensor> make_lens(const Element& element, Problems& problems, const Devic
   const auto options = read_options<Options>(element, problems);
   Flaws flaws;
   if constexpr (requires { options.miss_prob; }) flaws = {options.noise_std_dev_px, options.miss_prob};
-  return [setup, medium = setup.led_medium(options.medium), flaws](const BlockColumns& columns) {
+  const auto make = [setup, medium = setup.led_medium(options.medium), flaws](const BlockColumns& columns) {
     return std::make_unique<LensSensor>(setup, medium, flaws, columns);
   };
+  Recipe<Sensor> recipe(make);
+  recipe.sees_m = camera_of(setup.sheet, setup.item.camera).range_m;
+  return recipe;
 }
 
 template <class Options>

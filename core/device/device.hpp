@@ -79,6 +79,8 @@ template <class Device>
 struct Recipe {
   std::function<std::unique_ptr<Device>(const BlockColumns& columns)> make;
   std::vector<KeptColumn> columns;  ///< that its robots need for it
+  double sees_m = 0.0;              ///< how far along the ground it sees what is lit; 0: nothing
+  bool sends = false;               ///< others may hear it
 
   Recipe() = default;
   template <class Make>
@@ -109,8 +111,13 @@ struct GroupRecipes {
     Recipe<Sensor> sensor;  ///< one of the two is set
     Recipe<Actuator> actuator;
 
-    const std::vector<KeptColumn>& columns() const noexcept {
-      return type->role == hal::Role::Sensor ? sensor.columns : actuator.columns;
+    /// Calls `visit` with the recipe that is set.
+    template <class Visit>
+    void with_recipe(Visit&& visit) const {
+      if (type->role == hal::Role::Sensor)
+        visit(sensor);
+      else
+        visit(actuator);
     }
   };
   std::vector<Listed> listed;

@@ -487,7 +487,10 @@ Recipe<Actuator> make_sending(const Element& element, Problems& problems, const 
   const auto options = read_options<Options>(element, problems);
   double failure_prob = 0.0;
   if constexpr (requires { options.failure_prob; }) failure_prob = options.failure_prob;
-  return [failure_prob](const BlockColumns&) { return std::make_unique<RabActuator>(failure_prob); };
+  const auto make = [failure_prob](const BlockColumns&) { return std::make_unique<RabActuator>(failure_prob); };
+  Recipe<Actuator> recipe(make);
+  recipe.sends = true;
+  return recipe;
 }
 
 template <class Options>

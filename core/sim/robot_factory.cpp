@@ -6,10 +6,8 @@
 #include <map>
 #include <set>
 
-#include "core/device/cameras.hpp"
 #include "core/device/types.hpp"
 #include "core/random/random.hpp"
-#include "hal/device/cameras.hpp"
 #include "hal/device/flight.hpp"
 #include "hal/device/gripper.hpp"
 #include "hal/device/pan_tilt.hpp"
@@ -86,7 +84,6 @@ class ConstructedRobot final : public hal::Robot {
     if (i == group_.ports.size()) {
       check_listed(type);
       group_.ports.push_back(&type);
-      note_camera(type);
       if (type.role == hal::Role::Actuator) {
         if (type.name == hal::WheelSpeeds::kName) group_.wheels = static_cast<int>(i);
         if (type.name == hal::QuadrotorPosition::kName) group_.flight_position = static_cast<int>(i);
@@ -109,15 +106,6 @@ class ConstructedRobot final : public hal::Robot {
   }
 
  private:
-  void note_camera(const hal::PortType& type) {
-    if (type.role != hal::Role::Sensor) return;
-    const CameraConfig& config = group_.item->camera;
-    if (type.name == hal::OmnidirectionalCamera::kName)
-      group_.sees_m = std::max(group_.sees_m, omni_reach_m(*group_.sheet, config));
-    if (type.name == hal::PerspectiveCamera::kName)
-      group_.sees_m = std::max(group_.sees_m, camera_of(*group_.sheet, config).range_m);
-  }
-
   void check_listed(const hal::PortType& type) const {
     const bool sensor = type.role == hal::Role::Sensor;
     const std::string role = sensor ? "sensor" : "actuator";
@@ -307,10 +295,12 @@ bool RobotFactory::read_devices(const RobotGroup& group, hal::Role role, GroupRe
       GroupRecipes::Listed listed{type, {}, {}};
       if (type->make_sensor != nullptr) listed.sensor = type->make_sensor(choice.options, problems, setup);
       if (type->make_actuator != nullptr) listed.actuator = type->make_actuator(choice.options, problems, setup);
-      for (const KeptColumn& column : listed.columns()) {
-        const auto known = stores_.columns.of(*column.type);
-        if (!known.ok()) problem("device '" + choice.device + "': " + known.error().message);
-      }
+      listed.with_recipe([&](const auto& recipe) {
+        for (const KeptColumn& column : recipe.columns) {
+          const auto known = stores_.columns.of(*column.type);
+          if (!known.ok()) problem("device '" + choice.device + "': " + known.error().message);
+        }
+      });
       recipes.listed.push_back(std::move(listed));
     }
   }
@@ -412,8 +402,8 @@ std::string RobotFactory::construct(Slot at, const std::shared_ptr<const void>& 
          std::string(robot.id()) + "' " + why;
 }
 
-/// The columns that the devices of the group's ports need, and those of robots that fly.
-void RobotFactory::choose_columns(RobotGroup& group) {
+/// What the devices of the group's ports need: columns, and arrays of all robots; with the columns of robots that fly.
+void RobotFactory::note_needs(RobotGroup& group) {
   const auto add = [&](const KeptColumn& wanted) {
     ColumnArrays* const arrays = stores_.columns.of(*wanted.type).value();
     const auto same = [arrays](const KeptColumn& other) { return other.arrays == arrays; };
@@ -427,7 +417,11 @@ void RobotFactory::choose_columns(RobotGroup& group) {
   }
   for (const hal::PortType* port : group.ports) {
     const GroupRecipes::Listed& made = *group.recipes->find(port->name, port->role);
-    for (const KeptColumn& column : made.columns()) add(column);
+    made.with_recipe([&](const auto& recipe) {
+      for (const KeptColumn& column : recipe.columns) add(column);
+      group.sees_m = std::max(group.sees_m, recipe.sees_m);
+      group.sends = group.sends || recipe.sends;
+    });
   }
 }
 
@@ -447,7 +441,7 @@ void RobotFactory::add_rows(std::size_t block_index) {
 void RobotFactory::complete(std::size_t g) {
   RobotGroup& group = stores_.groups[g];
   devices_.blocks.resize(stores_.blocks.size());
-  choose_columns(group);
+  note_needs(group);
   for (const std::size_t b : group.blocks) {
     add_port_arrays(group, stores_.blocks[b], slab_);
     add_rows(b);
@@ -466,11 +460,7 @@ void RobotFactory::complete(std::size_t g) {
 
 /// Arrays by row that only some runs have are as long as the others.
 void RobotFactory::keep_sizes() {
-  const auto sends = [](const RobotGroup& group) {
-    return std::any_of(group.ports.begin(), group.ports.end(), [](const hal::PortType* port) {
-      return port->name == hal::RangeAndBearingSend::kName && port->role == hal::Role::Actuator;
-    });
-  };
+  const auto sends = [](const RobotGroup& group) { return group.sends; };
   if (!stores_.broadcasts.empty() || std::any_of(stores_.groups.begin(), stores_.groups.end(), sends))
     stores_.broadcasts.resize(stores_.bodies.size());
   const auto sees = [](const RobotGroup& group) { return group.sees_m > 0.0; };

@@ -73,7 +73,7 @@ class RobotFactory {
   std::string construct(Slot at, const std::shared_ptr<const void>& params);
   static void name_constructor(const void* factory, std::size_t block, std::size_t slot, hal::FixedText& out) noexcept;
   static void name_params(const void* factory, std::size_t config, std::size_t index, hal::FixedText& out) noexcept;
-  void choose_columns(RobotGroup& group);
+  void note_needs(RobotGroup& group);
   void add_rows(std::size_t block);
   void complete(std::size_t g);
   hal::Result<std::size_t> group_for(const RobotItem& item);

@@ -151,6 +151,7 @@ struct RobotGroup {
   double rab_range_m = 0.0;
   unsigned rab_payload = 0;
   double sees_m = 0.0;  ///< how far along the ground its cameras see; 0: its controllers took none
+  bool sends = false;   ///< others may hear its robots
   std::vector<std::size_t> blocks;
   std::vector<Slot> free_slots;  ///< of robots that were removed; the last is used next
 
