@@ -12,7 +12,7 @@ const core::KnownNames& known_names() {
   static const core::KnownNames names = [] {
     core::KnownNames n;
     n.robots = core::robot_kinds();
-    n.engines = core::engine_kinds();
+    n.engines = core::known_engines();
     for (const core::DeviceType& type : core::device_types()) {
       auto& list = type.role == hal::Role::Sensor ? n.sensors : n.actuators;
       if (std::find(list.begin(), list.end(), type.device) == list.end()) list.emplace_back(type.device);

@@ -81,7 +81,8 @@ void add_bench(CLI::App& app, BenchOptions& o, int& code) {
                              "(foot-bot)")
                    ->delimiter(',');
   c->add_option("--engine", o.engines,
-                "Physics engines; `tandem list engines` names them; default: its first, for flocking particle3d")
+                "Physics engines; `tandem list engines` names them; default: its first, for flocking the first for "
+                "robots that fly")
       ->delimiter(',');
   c->add_option("--threads", o.threads, "Numbers of threads, e.g. 0,2; default: 0")
       ->delimiter(',')

@@ -44,6 +44,14 @@ hal::Status check_name(std::string_view what, const std::string& name, const std
       fmt::format("there is no {} '{}'; there {}: {}", what, name, known.size() == 1 ? "is" : "are", all)};
 }
 
+/// The first that there is; for robots that fly the first that is made for them.
+std::string usual_engine(bool flying) {
+  for (const core::KnownEngine& engine : known_names().engines) {
+    if (engine.traits.air == flying) return engine.name;
+  }
+  return known_names().engines.front().name;
+}
+
 std::vector<std::string> robots_of(const BenchOptions& o) {
   if (o.name == "flocking") return {"eye-bot"};
   return {"e-puck", "foot-bot"};
@@ -64,7 +72,7 @@ hal::Status check_words(const BenchOptions& o) {
   }
   for (const std::string& engine : o.engines) {
     // Saved lines may come from another build.
-    if (auto s = check_name("engine", engine, known_names().engines); !s.ok() && o.from.empty()) return s;
+    if (auto s = check_name("engine", engine, known_names().engine_names()); !s.ok() && o.from.empty()) return s;
   }
   if (!o.density.empty() && o.density != "equal") return hal::Error{"--density takes 'equal'"};
   if (!o.assignment.empty() && o.assignment != "static" && o.assignment != "dynamic")
@@ -93,8 +101,7 @@ hal::Result<Plan> plan_of(const BenchOptions& o) {
     plan.partitions.push_back(std::move(partition).value());
   }
   if (!o.from.empty()) return plan;
-  if (plan.engines.empty())
-    plan.engines = {o.name == "flocking" ? std::string("particle3d") : known_names().engines.front()};
+  if (plan.engines.empty()) plan.engines = {usual_engine(o.name == "flocking")};
   if (plan.partitions.empty()) plan.partitions = {{"auto", "auto"}};
   if (plan.robots.empty()) plan.robots = {1, 10, 100, 1000, 10'000, 100'000};
   if (plan.threads.empty()) plan.threads = {0};
@@ -151,8 +158,7 @@ class Forecast {
 
   /// Processor time of a core of the 2020s [docs/performance.md].
   static double guess_s(const BenchCase& c) {
-    const double step_s = c.engine == "kinematics2d" ? 0.3e-6 : c.engine == "dynamics3d" ? 8e-6 : 1.5e-6;
-    return 0.1 + step_s * static_cast<double>(c.robots) * static_cast<double>(c.ticks);
+    return 0.1 + 1e-6 * static_cast<double>(c.robots) * static_cast<double>(c.ticks);
   }
   double expected_s(std::size_t from) const {
     double sum_s = 0.0;

@@ -67,7 +67,7 @@ void list_names(std::string_view title, const std::vector<std::string>& names) {
 
 void list_elements() {
   fmt::print("elements of experiment files:\n");
-  for (const core::ElementManual& m : core::element_manuals()) fmt::print("  {:<22} {}\n", m.name, m.doc);
+  for (const core::ElementManual& m : core::element_manuals(known_names())) fmt::print("  {:<22} {}\n", m.name, m.doc);
 }
 
 const std::map<std::string, std::function<void()>>& kinds() {
@@ -75,7 +75,7 @@ const std::map<std::string, std::function<void()>>& kinds() {
       {"controllers", [] { list_plugins("controller", "controllers"); }},
       {"hooks", [] { list_plugins("hook", "hooks"); }},
       {"devices", &list_devices},
-      {"engines", [] { list_names("physics engines", known_names().engines); }},
+      {"engines", [] { list_names("physics engines", known_names().engine_names()); }},
       {"robots", [] { list_names("robots", known_names().robots); }},
       {"elements", &list_elements}};
   return all;
@@ -136,9 +136,10 @@ bool describe_physics_engine(const std::string& name) {
   const auto kinds = core::engine_kinds();
   if (std::find(kinds.begin(), kinds.end(), name) == kinds.end()) return false;
   const core::EngineTraits traits = core::engine_traits(name);
-  fmt::print("<{}> in <physics_engines>: {}{}{}\n", name, traits.summary,
+  fmt::print("<{}> in <physics_engines>: {}{}{}\n", name, core::engine_summary(name),
              traits.forces ? " Objects may be movable." : " Objects do not move.",
              traits.plane ? "" : " Robots may fly.");
+  fmt::print("joints: {}\n", traits.joints == 0 ? "none" : core::words_of(traits.joints));
   core::ManualWriter manual;
   core::describe_engine(name, manual);
   fmt::print("{}", manual.text());
@@ -169,9 +170,9 @@ bool describe_robot(const std::string& name) {
                cm * sheet->max_wheel_speed_m_s);
   }
   if (sheet->flies) {
-    fmt::print(
-        "  flies up to {:.3g} m/s and turns up to {:.3g} rad/s; needs an engine in space: particle3d, dynamics3d\n",
-        sheet->max_flight_speed_m_s, sheet->max_flight_turn_rad_s);
+    fmt::print("  flies up to {:.3g} m/s and turns up to {:.3g} rad/s; needs an engine in space: {}\n",
+               sheet->max_flight_speed_m_s, sheet->max_flight_turn_rad_s,
+               core::engines_that([](const core::EngineTraits& traits) { return !traits.plane; }));
   }
   fmt::print("  sensors: {}\n  actuators: {}\n", devices_of(*sheet, hal::Role::Sensor),
              devices_of(*sheet, hal::Role::Actuator));
@@ -182,7 +183,7 @@ bool describe_robot(const std::string& name) {
 
 bool describe_element(const std::string& name) {
   bool found = false;
-  for (const core::ElementManual& m : core::element_manuals()) {
+  for (const core::ElementManual& m : core::element_manuals(known_names())) {
     if (m.name != name) continue;
     found = true;
     fmt::print("<{}>{}: {}\n{}", m.name, m.parent.empty() ? "" : fmt::format(" in <{}>", m.parent), m.doc,
@@ -221,7 +222,7 @@ int describe(const std::string& name) {
   const bool plugin = describe_plugin(name);
   if (robot || engine || element || device || plugin) return kDone;
   std::vector<std::string> all;
-  for (const core::ElementManual& m : core::element_manuals()) all.emplace_back(m.name);
+  for (const core::ElementManual& m : core::element_manuals(known_names())) all.emplace_back(m.name);
   for (const core::DeviceType& t : core::device_types()) all.emplace_back(t.device);
   for (const std::string& kind : core::engine_kinds()) all.push_back(kind);
   for (const std::string& kind : core::robot_kinds()) all.push_back(kind);

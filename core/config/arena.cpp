@@ -265,18 +265,19 @@ class ArenaReader {
     return std::fabs(p[0]) < 0.5 * item.size[0] - kDeep_m && std::fabs(p[1]) < 0.5 * item.size[1] - kDeep_m;
   }
 
-  /// Kinematics move robots alone; an engine with forces is needed for the rest.
+  /// Objects need an engine with forces.
   void check_movable(const Element& e) {
+    std::string kinds;
     for (const EngineConfig& engine : out_.engines) {
-      if (engine.kind.starts_with("dynamics")) return;
+      const KnownEngine* known = reading_.known().engine(engine.kind);
+      if (known == nullptr || known->traits.forces) return;  // an unknown one is a problem of its own
+      if (kinds.find(engine.kind) == std::string::npos) kinds += (kinds.empty() ? "" : " and ") + engine.kind;
     }
-    std::vector<std::string> movers;
-    for (const std::string& kind : reading_.known().engines) {
-      if (kind.starts_with("dynamics")) movers.push_back(kind);
-    }
+    const auto moves = [](const EngineTraits& traits) { return traits.forces; };
     reading_.error(e, "movable",
-                   "kinematics2d moves no objects, only the engines dynamics2d and dynamics3d do; " +
-                       (movers.empty() ? "this program has neither: say movable=\"false\"" : "use " + listed(movers)));
+                   kinds + (kinds.find(' ') == std::string::npos ? " moves" : " move") +
+                       " no objects; use one of the engines that do (" + engines_that(reading_.known().engines, moves) +
+                       "), or say movable=\"false\"");
   }
 
   void light(Element& e, const Distribute* distribute) {

@@ -10,11 +10,6 @@ namespace {
 
 constexpr std::size_t kMostVertices = 1000;
 
-bool known_engine(const Reading& reading, const std::string& kind) {
-  const auto& engines = reading.known().engines;
-  return std::find(engines.begin(), engines.end(), kind) != engines.end();
-}
-
 bool good_regions(const std::string& text) {
   return text.empty() || text == "auto" || parse_split(text).has_value();
 }
@@ -127,11 +122,15 @@ void check_gates(Reading& reading) {
 
 void read_engine(Reading& reading, Element& e) {
   EngineConfig config;
-  config.kind = e.name == "pointmass3d" ? "particle3d" : e.name;
+  const auto& engines = reading.known().engines;
+  const auto argos = std::find_if(engines.begin(), engines.end(),
+                                  [&](const KnownEngine& engine) { return engine.argos_name == e.name; });
+  config.kind = argos == engines.end() ? e.name : argos->name;
   config.line = e.line;
-  if (!known_engine(reading, config.kind)) {
-    reading.error(e, "unknown physics engine <" + e.name + ">; known: " + listed(reading.known().engines) +
-                         did_you_mean(config.kind, reading.known().engines));
+  if (reading.known().engine(config.kind) == nullptr) {
+    const std::vector<std::string> names = reading.known().engine_names();
+    reading.error(
+        e, "unknown physics engine <" + e.name + ">; known: " + listed(names) + did_you_mean(config.kind, names));
   }
   auto attributes = reading.read_open<schema::Engine>(e);
   ElementWriter writer(e);
@@ -169,11 +168,23 @@ const MediumConfig* medium_of(Reading& reading, const Element& e, std::string_vi
 
 }  // namespace
 
+std::vector<std::string> KnownNames::engine_names() const {
+  std::vector<std::string> names;
+  for (const KnownEngine& one : engines) names.push_back(one.name);
+  return names;
+}
+
+const KnownEngine* KnownNames::engine(std::string_view name) const noexcept {
+  const auto found =
+      std::find_if(engines.begin(), engines.end(), [name](const KnownEngine& one) { return one.name == name; });
+  return found == engines.end() ? nullptr : &*found;
+}
+
 void read_engines(Reading& reading, Element& engines) {
   reading.read<schema::Engines>(engines);
-  if (engines.children.empty()) {
-    Element& added = Reading::add_child(engines, "kinematics2d");
-    added.attributes.push_back({"id", "kinematics2d", 0});
+  if (engines.children.empty() && !reading.known().engines.empty()) {
+    const std::string& usual = reading.known().engines.front().name;
+    Reading::add_child(engines, usual).attributes.push_back({"id", usual, 0});
   }
   std::map<std::string, int> lines;
   for (Element& e : engines.children) {

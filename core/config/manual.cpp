@@ -51,7 +51,7 @@ std::vector<ElementManual> expanded(const ElementManual& m, const KnownNames& kn
     names = known.robots;
     for (const std::string_view kind : kOwnElement) std::erase(names, kind);
   }
-  if (m.name == schema::Engine::kElement.name) names = known.engines;
+  if (m.name == schema::Engine::kElement.name) names = known.engine_names();
   if (m.name == schema::Medium::kElement.name) names = words(schema::Media::kElement.children);
   std::vector<ElementManual> out;
   for (const std::string& name : names) {
@@ -71,9 +71,8 @@ std::string parents_of(const ElementManual& m, const std::vector<ElementManual>&
   }
   // Those of which the parent says "anything".
   if (m.name == schema::Configuration::kElement.name) parents = {"controllers"};
-  if (m.name == schema::Boundaries::kElement.name) parents = known.engines;
-  if (std::find(known.engines.begin(), known.engines.end(), m.name) != known.engines.end())
-    parents = {"physics_engines"};
+  if (m.name == schema::Boundaries::kElement.name) parents = known.engine_names();
+  if (known.engine(m.name) != nullptr) parents = {"physics_engines"};
   return joined(parents, " or ");
 }
 

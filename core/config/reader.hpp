@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/scenario/engine_traits.hpp"
 #include "core/scenario/scenario.hpp"
 
 namespace tandem::core {
@@ -12,9 +13,12 @@ namespace tandem::core {
 /// What this program has, so that the reader can judge names.
 struct KnownNames {
   std::vector<std::string> robots;   ///< kinds, e.g. "e-puck"
-  std::vector<std::string> engines;  ///< kinds
+  std::vector<KnownEngine> engines;  ///< the first is that of files that name none
   std::vector<std::string> sensors;  ///< port names
   std::vector<std::string> actuators;
+
+  std::vector<std::string> engine_names() const;
+  const KnownEngine* engine(std::string_view name) const noexcept;  ///< null: there is none
 };
 
 /// Reads and checks `path` with `overrides` ("path=value") applied. All problems are collected, each with its line and
@@ -44,6 +48,6 @@ struct ElementManual {
 };
 
 /// The manual of every element, with one entry for every kind of robot and of engine in `known`.
-std::vector<ElementManual> element_manuals(const KnownNames& known = {{"e-puck"}, {"kinematics2d"}, {}, {}});
+std::vector<ElementManual> element_manuals(const KnownNames& known);
 
 }  // namespace tandem::core

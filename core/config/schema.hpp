@@ -424,20 +424,20 @@ struct Entity {
 
 struct Engines {
   static constexpr ElementInfo kElement{
-      "physics_engines", "What moves the bodies. None: one kinematics2d for the whole arena.", "", kAnything};
+      "physics_engines", "What moves the bodies. None: one of the first kind for the whole arena.", "", kAnything};
   void describe(ParamVisitor&) {}
 };
 
 /// What engines of every kind have; the rest of the attributes are the engine's own.
 struct Engine {
-  static constexpr ElementInfo kElement{
-      "engine", "A physics engine, written with the name of its kind, e.g. <kinematics2d>.", "id", kAnything};
+  static constexpr ElementInfo kElement{"engine", "A physics engine, written with the name of its kind.", "id",
+                                        kAnything};
   std::string id, regions;
   void describe(ParamVisitor& v) {
     v.text("id", id, "Name, for gates.");
     v.text("regions", regions,
            "How the arena is split, \"4x4\" (columns x lines) or \"auto\": from the number of robots. Left out: auto. "
-           "kinematics2d needs no split, any is the same to it.");
+           "Engines that work on all as one need no split: any is the same to them.");
   }
 };
 

@@ -30,12 +30,12 @@ const GroupRecipes::Listed* GroupRecipes::find(std::string_view device, hal::Rol
   return nullptr;
 }
 
-std::string_view device_with_forces(const RobotGroup& group) noexcept {
+const DeviceType* device_without_joints(const RobotGroup& group, JointKinds there) noexcept {
   for (const hal::PortType* port : group.ports) {
     const GroupRecipes::Listed* made = group.recipes->find(port->name, port->role);
-    if (made != nullptr && made->type->needs_forces) return port->name;
+    if (made != nullptr && (made->type->joints & ~there) != 0) return made->type;
   }
-  return {};
+  return nullptr;
 }
 
 const DeviceType* find_device(std::string_view device, hal::Role role, std::string_view implementation) {

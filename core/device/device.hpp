@@ -101,7 +101,7 @@ struct DeviceType {
   Recipe<Actuator> (*make_actuator)(const Element& options, Problems& problems, const DeviceSetup& setup) = nullptr;
   /// Shows its options, for the manual.
   void (*describe)(hal::ParamVisitor& visitor) = nullptr;
-  bool needs_forces = false;  ///< it works by joints: only where the robot's engine knows forces
+  JointKinds joints = 0;  ///< that it works by: only where the robot's engine has them
 };
 
 /// The devices that a configuration lists, read for the robots of one group.
@@ -125,8 +125,8 @@ struct GroupRecipes {
   const Listed* find(std::string_view device, hal::Role role) const noexcept;
 };
 
-/// The name of a device among the group's that works by joints; empty: none does.
-std::string_view device_with_forces(const RobotGroup& group) noexcept;
+/// The first device that the group's controllers took and that works by joints other than `there`; null: none.
+const DeviceType* device_without_joints(const RobotGroup& group, JointKinds there) noexcept;
 
 /// All implementations of all devices; the first of a device is its default.
 const std::vector<DeviceType>& device_types();

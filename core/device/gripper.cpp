@@ -68,7 +68,7 @@ template <class Options>
 DeviceType gripping_type(std::string_view implementation, std::string_view summary) {
   DeviceType type = actuator_type(hal::GripperDrive::kName, implementation, summary, &has_gripper,
                                   &make_gripping<Options>, &describe_options<Options>);
-  type.needs_forces = true;
+  type.joints = kJointsOfGrips;
   return type;
 }
 

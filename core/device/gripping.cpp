@@ -32,9 +32,9 @@ std::uint16_t region_of(const SpaceStores& s, BodyKey body) noexcept {
 }
 
 /// Whether the body's engine can hold it.
-bool in_forces(const SpaceStores& s, BodyKey body) noexcept {
+bool in_joints(const SpaceStores& s, BodyKey body) noexcept {
   const std::uint16_t region = region_of(s, body);
-  return region != kNoRegion && s.regions[region].forces;
+  return region != kNoRegion && (s.regions[region].joints & kJointsOfGrips) == kJointsOfGrips;
 }
 
 bool upright(const SpaceStores& s, BodyKey body) noexcept {
@@ -142,7 +142,7 @@ bool find_hold(const SpaceStores& s, std::size_t row, double turret_rad, BodyKey
   search.objects();
   found = search.found;
   height_m = search.height_m;
-  return search.can_hold && in_forces(s, search.found) && upright(s, search.found);
+  return search.can_hold && in_joints(s, search.found) && upright(s, search.found);
 }
 
 /// Slot of a new joint: one that is not in use, so that the list stays as long as the most that ever were.
@@ -193,7 +193,7 @@ bool there(const SpaceStores& s, BodyKey body) noexcept {
 
 /// What the turret asks of the joint.
 struct Drive {
-  bool turns = false;
+  JointKind kind = JointKind::Fixed;
   double motor_torque_Nm = 0.0;
   double motor_rad_s = 0.0;
 };
@@ -201,11 +201,11 @@ struct Drive {
 Drive drive_of(const TurretState& turret, const hal::DataSheet& sheet, double tick_s) noexcept {
   const auto drive = [&](double rad_s) {
     const double most = sheet.turret_turn_rad_s;
-    return Drive{true, sheet.turret_torque_Nm, std::clamp(rad_s, -most, most)};
+    return Drive{JointKind::Turning, sheet.turret_torque_Nm, std::clamp(rad_s, -most, most)};
   };
   switch (turret.mode) {
     case hal::TurretMode::Passive:
-      return {true, 0.0, 0.0};
+      return {JointKind::Turning, 0.0, 0.0};
     case hal::TurretMode::Speed:
       return turret.target == 0.0 ? Drive{} : drive(turret.target);
     case hal::TurretMode::Position: {
@@ -222,10 +222,10 @@ Drive drive_of(const TurretState& turret, const hal::DataSheet& sheet, double ti
 void drive_load(SpaceStores& s, std::size_t row, GripState& grip, const TurretState& turret, Joint& joint,
                 double tick_s) noexcept {
   const Drive drive = drive_of(turret, s.sheet_of_row(row), tick_s);
-  joint.motor_rad_s = drive.motor_rad_s;
-  if (joint.turns == drive.turns && joint.motor_torque_Nm == drive.motor_torque_Nm) return;
-  joint.turns = drive.turns;
-  joint.motor_torque_Nm = drive.motor_torque_Nm;
+  joint.form.motor_speed = drive.motor_rad_s;
+  if (joint.form.kind == drive.kind && joint.form.motor_most == drive.motor_torque_Nm) return;
+  joint.form.kind = drive.kind;
+  joint.form.motor_most = drive.motor_torque_Nm;
   joint.heading_rad = turn_between(place_of(s, joint.a), place_of(s, joint.b));
   grip.generation = joint.generation = ++s.joint_generations;
 }
@@ -235,12 +235,12 @@ void treat(SpaceStores& s, std::size_t row, GripState& grip, const TurretState* 
   Joint* joint = joint_of(s, grip);
   if (joint == nullptr) grip.joint = GripState::kNothing;
   const BodyKey self = BodyKey::robot(row);
-  if (joint != nullptr && !(grip.wants && there(s, joint->a) && there(s, joint->b) && in_forces(s, self))) {
+  if (joint != nullptr && !(grip.wants && there(s, joint->a) && there(s, joint->b) && in_joints(s, self))) {
     joint->alive = false;
     joint = nullptr;
     grip.joint = GripState::kNothing;
   }
-  if (grip.wants && !grip.slips && joint == nullptr && there(s, self) && in_forces(s, self)) {
+  if (grip.wants && !grip.slips && joint == nullptr && there(s, self) && in_joints(s, self)) {
     const double turret_rad = turret == nullptr ? 0.0 : turret->angle_rad;
     BodyKey found;
     double height_m = 0.0;

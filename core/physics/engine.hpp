@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/scenario/element.hpp"
+#include "core/scenario/engine_traits.hpp"
 #include "core/schedule/thread_pool.hpp"
 #include "core/space/stores.hpp"
 #include "hal/time.hpp"
@@ -59,6 +60,42 @@ class Engine {
   virtual std::shared_ptr<const void> keep() { return nullptr; }
   /// Goes on from what `keep` of this engine gave. The stores are as they were then.
   virtual void put_back(const std::shared_ptr<const void>& /*kept*/) {}
+};
+
+class Solver;  // core/physics/solver.hpp
+
+/// What an engine is made of: its regions in this run, each with what its element says.
+struct EngineOrder {
+  struct Part {
+    std::size_t region;                  ///< index into SpaceStores::regions
+    std::shared_ptr<const void> params;  ///< of `EngineType::read`
+    int line;                            ///< of the element
+  };
+  std::vector<Part> parts;  ///< at least one
+  const SpaceStores& stores;
+  double tick_s;
+  const std::string& file;
+  Problems& problems;
+};
+
+/// A kind of physics engine.
+struct EngineType {
+  std::string_view kind;             ///< the element's name in experiment files
+  std::string_view argos_name = {};  ///< … in ARGoS 3's, if that is another
+  std::string_view summary;          ///< for the manual
+  EngineTraits traits = {};
+  bool whole = false;  ///< works on all its regions as one: a split changes nothing, and they need no lists of bodies
+  /// Reads an engine element's own attributes and children (`id`, `regions` and <boundaries> are read by others), and
+  /// checks them; problems are reported with their lines.
+  std::shared_ptr<const void> (*read)(const Element& options, Problems& problems) = nullptr;
+  void (*describe)(hal::ParamVisitor& visitor) = nullptr;
+  /// Why it cannot move an object of this size and mass; empty: it can. Null: it moves none or all.
+  std::string (*unfit)(const Object& object) = nullptr;
+  /// All of this kind in a run. Problems: parts that cannot work together.
+  std::unique_ptr<Engine> (*make)(const EngineType& type, const EngineOrder& order) = nullptr;
+  /// For `make_solvers`, which is then its `make`.
+  std::unique_ptr<Solver> (*make_solver)(const std::shared_ptr<const void>& params, const SpaceStores& stores,
+                                         const Region& region, double tick_s) = nullptr;
 };
 
 }  // namespace tandem::core

@@ -28,6 +28,15 @@ std::string beyond_limits(std::string_view engine, const Object& object, std::in
          " kg to " + hal::format_number(kHeaviest_kg) + " kg";
 }
 
+std::unique_ptr<Engine> make_solvers(const EngineType& type, const EngineOrder& order) {
+  auto engine = std::make_unique<SolverEngine>(type.kind);
+  for (const EngineOrder::Part& part : order.parts) {
+    const Region& region = order.stores.regions[part.region];
+    engine->add(part.region, type.make_solver(part.params, order.stores, region, order.tick_s));
+  }
+  return engine;
+}
+
 template <class Work>
 void SolverEngine::each_busy_part(ThreadPool& pool, Work&& work) {
   const std::size_t grain = bodies_ < kFewBodies ? std::max<std::size_t>(1, busy_.size()) : 1;

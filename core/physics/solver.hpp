@@ -48,27 +48,13 @@ class Solver {
   std::vector<Trouble> trouble;  ///< of the last tick; emptied by whoever collects it
 };
 
-/// What makes solvers of one kind.
-struct SolverType {
-  std::string_view kind;     ///< the element's name in experiment files
-  std::string_view summary;  ///< for the manual
-  bool plane = true;         ///< bodies stay on the ground: it cannot carry robots that fly
-  bool air = false;          ///< made for flying robots: its region may lie over one for robots on the ground
-  bool forces = true;        ///< knows masses: can hold movable objects and joints
-  /// Reads an engine element's own attributes and children (`id`, `regions` and <boundaries> are read by others), and
-  /// checks them; problems are reported with their lines.
-  std::shared_ptr<const void> (*read)(const Element& options, Problems& problems) = nullptr;
-  void (*describe)(hal::ParamVisitor& visitor) = nullptr;
-  /// Why it cannot move an object of this size and mass; empty: it can. Null: it moves none or all.
-  std::string (*unfit)(const Object& object) = nullptr;
-  std::unique_ptr<Solver> (*make)(const std::shared_ptr<const void>& params, const SpaceStores& stores,
-                                  const Region& region, double tick_s) = nullptr;
-};
-
-/// For SolverType::unfit: what is thinner than `thinnest_m` in any of its `sizes_m`, or lighter or heavier than numbers
+/// For EngineType::unfit: what is thinner than `thinnest_m` in any of its `sizes_m`, or lighter or heavier than numbers
 /// can follow.
 std::string beyond_limits(std::string_view engine, const Object& object, std::initializer_list<double> sizes_m,
                           double thinnest_m);
+
+/// For EngineType::make of kinds that have `make_solver`: a SolverEngine.
+std::unique_ptr<Engine> make_solvers(const EngineType& type, const EngineOrder& order);
 
 /// All engines of one such kind in a run: a solver a region, stepped in parallel. Regions that neither hold
 /// nor mirror a body rest; few bodies are left to the calling thread.

@@ -190,7 +190,7 @@ struct BoundarySide {
 };
 
 struct EngineConfig {
-  std::string kind;  ///< kinematics2d, dynamics2d, dynamics3d, particle3d (ARGoS' pointmass3d is mapped)
+  std::string kind;  ///< name of a KnownEngine; ARGoS' names are mapped
   std::string id;
   std::optional<double> top_m, bottom_m;
   std::vector<BoundarySide> sides;  ///< empty: the whole arena

@@ -20,19 +20,19 @@ constexpr double kNarrowestPart_m = 4.0;    // narrower ones spend their time on
 constexpr std::size_t kMostPartsASide = 8;  // … of a split chosen here
 constexpr std::size_t kMostParts = 4096;    // of one that the file says
 
-const std::vector<const SolverType*>& solver_types() {
-  static const std::vector<const SolverType*> types = {&dynamics2d_type(), &dynamics3d_type(), &particle3d_type()};
+/// All kinds; the first is that of files without engines.
+const std::vector<const EngineType*>& engine_types() {
+  static const std::vector<const EngineType*> types = {&kinematics2d_type(), &dynamics2d_type(), &dynamics3d_type(),
+                                                       &particle3d_type()};
   return types;
 }
 
-const SolverType* solver_type(std::string_view kind) {
-  for (const SolverType* type : solver_types()) {
+const EngineType* engine_type(std::string_view kind) {
+  for (const EngineType* type : engine_types()) {
     if (type->kind == kind) return type;
   }
   return nullptr;
 }
-
-constexpr std::string_view kKinematics2d = "kinematics2d";
 
 /// From the load alone, so that results are the same on any machine.
 Split split_for(std::size_t robots, double width_m, double depth_m) {
@@ -123,21 +123,19 @@ class Maker {
   std::vector<std::unique_ptr<Engine>> make() {
     const std::size_t before = problems_.size();
     stores_.regions.clear();
-    EngineConfig usual;
-    usual.kind = std::string(kKinematics2d);
-    usual.id = usual.kind;
-    if (scenario_.engines.empty()) {
-      add(usual, 0);
-    } else {
-      for (std::size_t i = 0; i < scenario_.engines.size(); ++i) add(scenario_.engines[i], i);
+    if (configs_.empty()) {
+      EngineConfig usual;
+      usual.kind = usual.id = engine_types().front()->kind;
+      configs_.push_back(usual);
     }
-    if (stores_.regions.size() >= kNoRegion) problem(scenario_.engines.front().line, "more than 65534 regions");
+    for (std::size_t i = 0; i < configs_.size(); ++i) add(configs_[i], i);
+    if (stores_.regions.size() >= kNoRegion) problem(configs_.front().line, "more than 65534 regions");
     if (!has_errors(problems_, before)) check_overlaps();
     if (!has_errors(problems_, before)) {
       part_air_from_ground();
       open_gates();
     }
-    if (!has_errors(problems_, before)) make_solvers();
+    if (!has_errors(problems_, before)) make_engines();
     return std::move(engines_);
   }
 
@@ -147,42 +145,24 @@ class Maker {
   }
 
   void add(const EngineConfig& config, std::size_t number) {
-    if (config.kind == kKinematics2d) {
-      add_kinematics(config, number);
-      return;
-    }
-    const SolverType* type = solver_type(config.kind);
+    const EngineType* type = engine_type(config.kind);
     if (type == nullptr) {
-      std::string known;
-      for (const std::string& kind : engine_kinds()) known += (known.empty() ? "" : ", ") + kind;
-      problem(config.line, "unknown physics engine '" + config.kind + "'; known: " + known);
+      problem(config.line, "unknown physics engine '" + config.kind +
+                               "'; known: " + engines_that(known_engines(), [](const EngineTraits&) { return true; }));
       return;
     }
     Region region;
-    region.air = type->air;
-    region.plane = type->plane;
-    region.forces = type->forces;
-    region.listed = true;
+    region.air = type->traits.air;
+    region.plane = type->traits.plane;
+    region.forces = type->traits.forces;
+    region.joints = type->traits.joints;
+    region.listed = !type->whole;
     params_[number] = type->read(config.options, problems_);
-    add_regions(config, number, region);
-  }
-
-  void add_kinematics(const EngineConfig& config, std::size_t number) {
-    const auto params =
-        read_settings<Kinematics2d::Params>(config.options, problems_, {"id", "regions"}, {"boundaries"});
-    if (!kinematics_) {
-      kinematics_ = params;
-      engines_.push_back(std::make_unique<Kinematics2d>(params));
-    } else if (kinematics_->iterations != params.iterations) {
-      problem(config.line, "all <kinematics2d> work as one and need the same iterations: " +
-                               std::to_string(kinematics_->iterations) + " before, " +
-                               std::to_string(params.iterations) + " here");
-    }
-    add_regions(config, number, Region{}, false);
+    add_regions(config, number, region, !type->whole);
   }
 
   /// `splits`: whether a split of the arena makes any difference to the engine.
-  void add_regions(const EngineConfig& config, std::size_t number, Region region, bool splits = true) {
+  void add_regions(const EngineConfig& config, std::size_t number, Region region, bool splits) {
     region.engine = number;
     region.name = config.id;
     region.line = config.line;
@@ -267,7 +247,7 @@ class Maker {
     std::uint16_t found = kNoRegion;
     for (std::size_t i = 0; i < stores_.regions.size(); ++i) {
       const Region& region = stores_.regions[i];
-      if (scenario_.engines[region.engine].id != id) continue;
+      if (configs_[region.engine].id != id) continue;
       if (found != kNoRegion) return kNoRegion;  // several parts: whichever lies behind
       found = static_cast<std::uint16_t>(i);
     }
@@ -278,12 +258,12 @@ class Maker {
   /// are open where another engine's region lies behind.
   void open_gates() {
     bool named = false;
-    for (const EngineConfig& config : scenario_.engines) {
+    for (const EngineConfig& config : configs_) {
       for (const BoundarySide& side : config.sides) named = named || !side.gate.empty();
     }
     for (Region& region : stores_.regions) {
-      if (region.everywhere() || scenario_.engines.empty()) continue;
-      const EngineConfig& config = scenario_.engines[region.engine];
+      if (region.everywhere()) continue;
+      const EngineConfig& config = configs_[region.engine];
       if (config.sides.empty()) continue;  // a part of a split: open all around
       for (std::size_t i = 0; i < region.sides.size(); ++i) {
         RegionSide& side = region.sides[i];
@@ -329,54 +309,73 @@ class Maker {
     return false;
   }
 
-  void make_solvers() {
+  void make_engines() {
     const double tick_s = 1.0 / static_cast<double>(scenario_.ticks_per_second);
-    for (const SolverType* type : solver_types()) {
-      std::unique_ptr<SolverEngine> engine;
+    for (const EngineType* type : engine_types()) {
+      EngineOrder order{{}, stores_, tick_s, scenario_.file, problems_};
       for (std::size_t i = 0; i < stores_.regions.size(); ++i) {
-        const Region& region = stores_.regions[i];
-        if (scenario_.engines.empty() || scenario_.engines[region.engine].kind != type->kind) continue;
-        if (engine == nullptr) engine = std::make_unique<SolverEngine>(type->kind);
-        engine->add(i, type->make(params_[region.engine], stores_, region, tick_s));
+        const std::size_t number = stores_.regions[i].engine;
+        if (configs_[number].kind == type->kind) order.parts.push_back({i, params_[number], configs_[number].line});
       }
-      if (engine != nullptr) engines_.push_back(std::move(engine));
+      if (!order.parts.empty()) engines_.push_back(type->make(*type, order));
     }
   }
 
   const Scenario& scenario_;
+  std::vector<EngineConfig> configs_ = scenario_.engines;
   std::size_t robots_;
   SpaceStores& stores_;
   Problems& problems_;
-  std::optional<Kinematics2d::Params> kinematics_;
-  std::map<std::size_t, std::shared_ptr<const void>> params_;  // of solvers, by number of the engine
+  std::map<std::size_t, std::shared_ptr<const void>> params_;  // by number of the engine
   std::vector<std::unique_ptr<Engine>> engines_;
 };
 
 }  // namespace
 
+const std::vector<KnownEngine>& known_engines() {
+  static const std::vector<KnownEngine> all = [] {
+    std::vector<KnownEngine> known;
+    for (const EngineType* type : engine_types())
+      known.push_back({std::string(type->kind), std::string(type->argos_name), type->traits});
+    return known;
+  }();
+  return all;
+}
+
 std::vector<std::string> engine_kinds() {
-  std::vector<std::string> kinds{std::string(kKinematics2d)};
-  for (const SolverType* type : solver_types()) kinds.emplace_back(type->kind);
+  std::vector<std::string> kinds;
+  for (const EngineType* type : engine_types()) kinds.emplace_back(type->kind);
   return kinds;
 }
 
 EngineTraits engine_traits(std::string_view kind) {
-  const SolverType* type = solver_type(kind);
-  return type == nullptr ? EngineTraits{"Wheels roll without slip, discs that overlap are pushed apart.", true, false}
-                         : EngineTraits{type->summary, type->plane, type->forces};
+  const EngineType* type = engine_type(kind);
+  return type == nullptr ? EngineTraits{} : type->traits;
+}
+
+std::string engines_that(const std::function<bool(const EngineTraits&)>& fit) {
+  return engines_that(known_engines(), fit);
+}
+
+std::string lacks_joints(const Region& region, JointKinds needed) {
+  if ((region.joints & needed) == needed) return "";
+  return "its engine '" + region.name + "' has " +
+         (region.joints == 0 ? "no joints" : "only " + words_of(region.joints) + " joints") + ", but " +
+         words_of(needed) + " ones are needed; use " +
+         engines_that([needed](const EngineTraits& traits) { return traits.has(needed); });
+}
+
+std::string_view engine_summary(std::string_view kind) {
+  const EngineType* type = engine_type(kind);
+  return type == nullptr ? std::string_view{} : type->summary;
 }
 
 void describe_engine(std::string_view kind, hal::ParamVisitor& visitor) {
-  if (const SolverType* type = solver_type(kind)) {
-    type->describe(visitor);
-  } else {
-    Kinematics2d::Params params;
-    params.describe(visitor);
-  }
+  if (const EngineType* type = engine_type(kind); type != nullptr) type->describe(visitor);
 }
 
 std::string unfit_for(std::string_view kind, const Object& object) {
-  const SolverType* type = solver_type(kind);
+  const EngineType* type = engine_type(kind);
   return type == nullptr || type->unfit == nullptr ? "" : type->unfit(object);
 }
 

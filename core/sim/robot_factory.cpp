@@ -8,6 +8,7 @@
 
 #include "core/device/types.hpp"
 #include "core/random/random.hpp"
+#include "core/sim/engine_factory.hpp"
 #include "hal/device/flight.hpp"
 #include "hal/device/gripper.hpp"
 #include "hal/device/pan_tilt.hpp"
@@ -514,16 +515,15 @@ Slot RobotFactory::free_slot(std::size_t g) {
   return {block, 0};
 }
 
-/// Whether the robot's region has the forces that a gripper needs, if its controller took one.
+/// Whether the robot's region has the joints that a gripper needs, if its controller took one.
 hal::Status RobotFactory::can_hold(Slot at) const {
   const RobotBlock& block = stores_.blocks[at.block];
   const std::size_t row = block.first_row + at.slot;
   const Region& region = stores_.regions[stores_.bodies.region[row]];
-  const std::string_view device = device_with_forces(stores_.groups[block.group]);
-  if (device.empty() || region.forces) return {};
+  const DeviceType* device = device_without_joints(stores_.groups[block.group], region.joints);
+  if (device == nullptr) return {};
   return hal::Error{"robot '" + stores_.names[stores_.robots[stores_.bodies.entity[row]].item].prefix + "' has a " +
-                    std::string(device) + ", but its engine '" + region.name +
-                    "' knows no forces, so that nothing can be held there; use dynamics2d or dynamics3d"};
+                    std::string(device->device) + ", but " + lacks_joints(region, device->joints)};
 }
 
 /// Undoes a robot that did not come to be: the entity that was appended last.

@@ -199,8 +199,10 @@ hal::Status WorldEditor::accept(const std::string& who, std::size_t row) {
     return hal::Error{who + " would be at " + text_of(o.x_m, o.y_m) + ", where " + name_of(*other) + " is"};
   const std::uint16_t region = keeper_.find(stores_, self);
   if (region == kNoRegion) {
-    return hal::Error{who + " would be at " + text_of(o.x_m, o.y_m) + ", which lies in no region of an engine " +
-                      (o.flies ? "that can fly it (particle3d, dynamics3d)" : "for it")};
+    return hal::Error{
+        who + " would be at " + text_of(o.x_m, o.y_m) + ", which lies in no region of an engine " +
+        (o.flies ? "that can fly it; use " + engines_that([](const EngineTraits& traits) { return !traits.plane; })
+                 : "for it")};
   }
   stores_.bodies.region[row] = region;
   return {};
@@ -263,7 +265,8 @@ hal::Status WorldEditor::check_mover(const Object& object, std::uint16_t region)
   const std::string who = (object.kind == Object::Kind::Box ? "box '" : "cylinder '") + object.id + "'";
   if (region == kNoRegion) {
     return hal::Error{who + " would be at " + text_of(object.x_m, object.y_m) +
-                      ", in no region of an engine that moves objects (dynamics2d, dynamics3d)"};
+                      ", in no region of an engine that moves objects; use " +
+                      engines_that([](const EngineTraits& traits) { return traits.forces; })};
   }
   if (scenario_.engines.empty()) return {};
   const std::string why = unfit_for(scenario_.engines[stores_.regions[region].engine].kind, object);
@@ -344,13 +347,19 @@ hal::Status WorldEditor::set_object(ObjectId id, const Object& changed) {
 
 // --- joints ---
 
-hal::Result<JointId> WorldEditor::join(BodyKey a, BodyKey b, const std::array<double, 3>& p_W, bool turns) {
+hal::Result<JointId> WorldEditor::join(BodyKey a, BodyKey b, const std::array<double, 3>& p_W, const JointForm& form) {
   for (const BodyKey body : {a, b}) {
     const std::uint16_t region = region_now(body);
-    if (region == kNoRegion || !stores_.regions[region].forces) {
-      return hal::Error{name_of(body) + " cannot be joined: its engine knows no forces; " +
-                        "dynamics2d and dynamics3d hold joints"};
-    }
+    if (region == kNoRegion) return hal::Error{name_of(body) + " cannot be joined: it lies in no engine's region"};
+    const std::string why = lacks_joints(stores_.regions[region], bit(form.kind));
+    if (!why.empty()) return hal::Error{name_of(body) + " cannot be joined: " + why};
+  }
+  const Region& region = stores_.regions[region_now(std::min(a, b))];
+  if (form.kind == JointKind::Sliding && region.plane && form.axis[2] != 0.0) {
+    return hal::Error{name_of(b) + " cannot slide out of the plane: its engine '" + region.name +
+                      "' keeps bodies on the ground; use " + engines_that([](const EngineTraits& traits) {
+                        return !traits.plane && traits.has(bit(JointKind::Sliding));
+                      })};
   }
   const Pose pose_a = pose_of(stores_, a);
   const Pose pose_b = pose_of(stores_, b);
@@ -367,7 +376,10 @@ hal::Result<JointId> WorldEditor::join(BodyKey a, BodyKey b, const std::array<do
   joint.bx_m = in_b[0];
   joint.by_m = in_b[1];
   joint.bz_m = in_b[2];
-  joint.turns = turns;
+  joint.form = form;
+  const std::array<double, 3>& axis = form.axis;
+  joint.form.axis = {pose_a.cos_h * axis[0] + pose_a.sin_h * axis[1], pose_a.cos_h * axis[1] - pose_a.sin_h * axis[0],
+                     axis[2]};
   joint.heading_rad = std::remainder(pose_b.heading_rad() - pose_a.heading_rad(), 2.0 * std::numbers::pi);
   const auto unused =
       std::find_if(stores_.joints.begin(), stores_.joints.end(), [](const Joint& j) { return !j.alive; });

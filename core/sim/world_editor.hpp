@@ -21,7 +21,7 @@ class WorldEditor final : public Editor {
   hal::Status set_battery(RobotId robot, double charge) override;
   hal::Result<ObjectId> add_object(const Object& wanted) override;
   hal::Status set_object(ObjectId object, const Object& changed) override;
-  hal::Result<JointId> join(BodyKey a, BodyKey b, const std::array<double, 3>& p_W, bool turns) override;
+  hal::Result<JointId> join(BodyKey a, BodyKey b, const std::array<double, 3>& p_W, const JointForm& form) override;
 
  private:
   hal::Result<RobotItem> item_for(const NewRobot& wanted) const;

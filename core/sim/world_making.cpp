@@ -5,6 +5,7 @@
 #include <system_error>
 
 #include "core/placement/placement.hpp"
+#include "core/sim/engine_factory.hpp"
 #include "core/sim/settings.hpp"
 #include "core/sim/world_impl.hpp"
 
@@ -43,21 +44,21 @@ BodySize size_of_kind(const std::string& kind) {
 }
 
 /// Some devices work by joints: robots whose controller takes one need an engine that has them. One problem an item.
-void check_forces(const Scenario& scenario, const SpaceStores& s, Problems& problems) {
+void check_joints(const Scenario& scenario, const SpaceStores& s, Problems& problems) {
   std::uint32_t complained = 0xFFFFFFFFU;
-  std::vector<std::string_view> devices;
-  for (const RobotGroup& group : s.groups) devices.push_back(device_with_forces(group));
+  std::vector<bool> usable;  // by group: anywhere
+  for (const RobotGroup& group : s.groups) usable.push_back(device_without_joints(group, 0) == nullptr);
   for (const RobotEntity& e : s.robots) {
     const RobotBlock& block = s.blocks[e.block];
     const std::uint16_t region = s.bodies.region[block.first_row + e.slot];
-    if (devices[block.group].empty() || region == kNoRegion || s.regions[region].forces || e.item == complained)
-      continue;
+    if (usable[block.group] || region == kNoRegion || e.item == complained) continue;
+    const DeviceType* device = device_without_joints(s.groups[block.group], s.regions[region].joints);
+    if (device == nullptr) continue;
     complained = e.item;
     const std::string name = s.names[e.item].prefix + (e.number < 0 ? "" : std::to_string(e.number));
     problems.push_back({scenario.file, scenario.robots[e.item].line,
-                        "robot '" + name + "' has a " + std::string(devices[block.group]) + ", but its engine '" +
-                            s.regions[region].name +
-                            "' knows no forces, so that nothing can be held there; use dynamics2d or dynamics3d",
+                        "robot '" + name + "' has a " + std::string(device->device) + ", but " +
+                            lacks_joints(s.regions[region], device->joints),
                         false});
   }
 }
@@ -106,16 +107,18 @@ void assign_regions(const Scenario& scenario, const Placements& placements, cons
     const std::string name = s.names[e.item].prefix + (e.number < 0 ? "" : std::to_string(e.number));
     const bool flies = s.groups[s.blocks[e.block].group].sheet->flies;
     if (why.empty()) {
-      why = flies && !any_solid ? "flies: it needs an engine of three dimensions, particle3d or dynamics3d"
+      why = flies && !any_solid ? "flies: it needs an engine of three dimensions: " +
+                                      engines_that([](const EngineTraits& traits) { return !traits.plane; })
                                 : "lies in no engine's region";
     }
     complain(scenario.robots[e.item].line, "robot '" + name + "'", s.bodies.x_m[row], s.bodies.y_m[row], why);
   }
-  check_forces(scenario, s, problems);
+  check_joints(scenario, s, problems);
   for (std::size_t i = 0; i < s.objects.size(); ++i) {
     if (!s.objects[i].movable) continue;
     s.object_region[i] = keeper.find(s, BodyKey::object(i));
-    std::string why = "lies in no region of an engine that moves objects (dynamics2d, dynamics3d)";
+    std::string why = "lies in no region of an engine that moves objects; use " +
+                      engines_that([](const EngineTraits& traits) { return traits.forces; });
     if (s.object_region[i] != kNoRegion) {
       const Region& region = s.regions[s.object_region[i]];
       why = too_wide_for(s, region, narrowest_width_m(s.objects[i]));

@@ -7,6 +7,7 @@
 
 #include "core/space/body_key.hpp"
 #include "core/space/ids.hpp"
+#include "core/space/joint.hpp"
 #include "core/space/pose.hpp"
 #include "hal/result.hpp"
 
@@ -51,7 +52,7 @@ class Editor {
   virtual hal::Result<ObjectId> add_object(const Object& wanted) = 0;
   virtual hal::Status set_object(ObjectId object, const Object& changed) = 0;
   /// Bodies that are there, under their keys; the point in W.
-  virtual hal::Result<JointId> join(BodyKey a, BodyKey b, const std::array<double, 3>& p_W, bool turns) = 0;
+  virtual hal::Result<JointId> join(BodyKey a, BodyKey b, const std::array<double, 3>& p_W, const JointForm& form) = 0;
 };
 
 }  // namespace tandem::core

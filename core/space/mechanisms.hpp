@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <numbers>
 
+#include "core/scenario/engine_traits.hpp"
 #include "hal/device/distance_scanner.hpp"
 #include "hal/device/flight.hpp"
 #include "hal/device/turret.hpp"
@@ -29,6 +30,9 @@ struct TurretState {
     f.add("speed", speed_rad_s, hal::unit::rad_s, "over the last tick");
   }
 };
+
+/// What an engine must have for grippers to hold anything: loads are firm, or turn with the turret.
+inline constexpr JointKinds kJointsOfGrips = bit(JointKind::Fixed) | bit(JointKind::Turning);
 
 /// A gripper. What it holds is joined to the turret that it sits on.
 struct GripState {

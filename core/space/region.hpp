@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "core/scenario/engine_traits.hpp"
 #include "core/space/body_key.hpp"
 #include "core/space/space.hpp"
 
@@ -27,7 +28,8 @@ struct Region {
   std::size_t engine = 0;         ///< index into Scenario::engines
   bool air = false;               ///< of an engine made for flying bodies, in a run where these lie over others
   bool plane = true;              ///< bodies in it stay on the ground
-  bool forces = false;            ///< its engine knows masses: it can hold movable objects and joints
+  bool forces = false;            ///< its engine knows masses: it can hold movable objects
+  JointKinds joints = 0;          ///< that its engine has
   bool listed = false;            ///< its engine wants `owned` and `mirrored`
   int line = 0;                   ///< of its engine in the file
   std::vector<RegionSide> sides;  ///< empty: the whole plane

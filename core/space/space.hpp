@@ -166,9 +166,13 @@ class Space {
   hal::Status set_object_velocity(ObjectId object, const Velocity& velocity);
 
   // --- joints ---
-  /// Holds two bodies together at a point of W, as they stand; `turns`: about the vertical through it, they may turn.
-  /// Errors: one is gone or immovable; both are the same; an engine that knows no forces has one of them.
-  hal::Result<JointId> join(BodyId a, BodyId b, const std::array<double, 3>& p_W, bool turns = false);
+  /// Holds two bodies together at a point of W, as they stand. Errors: one is gone or immovable; both are the same; a
+  /// form that is none; an engine that lacks such joints has one of them.
+  hal::Result<JointId> join(BodyId a, BodyId b, const std::array<double, 3>& p_W, const JointForm& form = {});
+  /// Sets what the joint's motor strives for, in rad/s or m/s. Errors: gone; it has no motor; not finite.
+  hal::Status drive(JointId joint, double speed);
+  /// Where a turning joint is, in rad, or a sliding one, in m; of upright bodies. 0 of others.
+  double place(JointId joint) const noexcept;
   void release(JointId joint) noexcept;
   bool contains(JointId joint) const noexcept;  ///< false once released, or when one of its bodies is gone
 

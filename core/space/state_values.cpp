@@ -178,10 +178,16 @@ void visit_joints(const SpaceStores& s, StateVisitor& visitor) {
     value("bx", &j.bx_m);
     value("by", &j.by_m);
     value("bz", &j.bz_m);
-    value("turns", &j.turns);
+    value("turns", &j.form.kind);
     value("heading", &j.heading_rad);
-    value("motor_torque", &j.motor_torque_Nm);
-    value("motor_speed", &j.motor_rad_s);
+    value("axis_x", &j.form.axis[0]);
+    value("axis_y", &j.form.axis[1]);
+    value("axis_z", &j.form.axis[2]);
+    value("limited", &j.form.limited);
+    value("low", &j.form.low);
+    value("high", &j.form.high);
+    value("motor_torque", &j.form.motor_most);
+    value("motor_speed", &j.form.motor_speed);
   });
 }
 

@@ -23,6 +23,7 @@
 #include "core/space/floor.hpp"
 #include "core/space/halt.hpp"
 #include "core/space/ids.hpp"
+#include "core/space/joint.hpp"
 #include "core/space/large_memory.hpp"
 #include "core/space/mechanisms.hpp"
 #include "core/space/object_index.hpp"
@@ -82,19 +83,6 @@ struct FlightCommand {
     f.add("target", target, hal::unit::none, "in W; an attitude: roll, pitch, thrust");
     f.add("yaw", yaw, hal::unit::none, "in rad/s, of a position in rad");
   }
-};
-
-/// Two bodies held together. Both are moved by the engine of the one that sorts first, wherever they are.
-struct Joint {
-  bool alive = false;
-  std::uint32_t generation = 0;
-  BodyKey a, b;
-  double ax_m = 0.0, ay_m = 0.0, az_m = 0.0;  ///< where, in a's frame: from its centre, z from its base
-  double bx_m = 0.0, by_m = 0.0, bz_m = 0.0;  ///< the same point in b's frame
-  bool turns = false;                         ///< b may turn about the point, about the vertical
-  double heading_rad = 0.0;                   ///< of b relative to a while it may not
-  double motor_torque_Nm = 0.0;               ///< while it may: > 0: a motor turns b relative to a, at most so strongly
-  double motor_rad_s = 0.0;                   ///< … so fast; may change without a new generation
 };
 
 /// Bodies, one array a quantity. Positions and headings in W.

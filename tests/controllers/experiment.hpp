@@ -23,7 +23,7 @@ namespace tandem::test {
 inline core::KnownNames known_names() {
   core::KnownNames names;
   names.robots = core::robot_kinds();
-  names.engines = core::engine_kinds();
+  names.engines = core::known_engines();
   for (const core::DeviceType& type : core::device_types()) {
     auto& list = type.role == hal::Role::Sensor ? names.sensors : names.actuators;
     if (std::find(list.begin(), list.end(), type.device) == list.end()) list.emplace_back(type.device);

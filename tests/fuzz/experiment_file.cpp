@@ -64,7 +64,10 @@ constexpr std::array<std::string_view, 6> kPaths = {
 
 const KnownNames kKnown = {
     {"e-puck", "eye-bot"},
-    {"kinematics2d", "dynamics2d", "dynamics3d", "particle3d"},
+    {{"kinematics2d", "", {}},
+     {"dynamics2d", "", {.forces = true}},
+     {"dynamics3d", "", {.plane = false, .forces = true}},
+     {"particle3d", "pointmass3d", {.plane = false, .air = true}}},
     {"proximity", "range_and_bearing", "altimeter", "flight_state", "pan_tilt_encoder"},
     {"leds", "differential_steering", "flight_task", "pan_tilt", "quadrotor_attitude", "upper_leds", "camera_led"}};
 

@@ -256,7 +256,7 @@ const KnownNames& known_names() {
   static const KnownNames names = [] {
     KnownNames known;
     known.robots = robot_kinds();
-    known.engines = engine_kinds();
+    known.engines = known_engines();
     for (const DeviceType& type : device_types()) {
       auto& list = type.role == hal::Role::Sensor ? known.sensors : known.actuators;
       if (std::find(list.begin(), list.end(), type.device) == list.end()) list.emplace_back(type.device);

@@ -451,34 +451,57 @@ class Dynamics2d final : public Solver {
       for (const Twin* twin : {a, b})  // robots that push nothing turn in doubles alone
         twin->body->SetTransform(twin->body->GetPosition(),
                                  nearest_turn(std::atan2(twin->sin_h, twin->cos_h), twin->body->GetAngle()));
-      const b2Vec2 on_a(static_cast<float>(joint.ax_m * kUnits_m), static_cast<float>(joint.ay_m * kUnits_m));
-      const b2Vec2 on_b(static_cast<float>(joint.bx_m * kUnits_m), static_cast<float>(joint.by_m * kUnits_m));
-      b2Joint* made = nullptr;
-      if (joint.turns) {
-        b2RevoluteJointDef def;
-        def.bodyA = a->body;
-        def.bodyB = b->body;
-        def.localAnchorA = on_a;
-        def.localAnchorB = on_b;
-        def.enableMotor = joint.motor_torque_Nm > 0.0;
-        def.maxMotorTorque = static_cast<float>(joint.motor_torque_Nm * kUnits_m * kUnits_m);
-        made = world_->CreateJoint(&def);
-      } else {
-        b2WeldJointDef def;
-        def.bodyA = a->body;
-        def.bodyB = b->body;
-        def.localAnchorA = on_a;
-        def.localAnchorB = on_b;
-        def.referenceAngle = nearest_turn(joint.heading_rad, b->body->GetAngle() - a->body->GetAngle());
-        made = world_->CreateJoint(&def);
-      }
-      joints_.push_back({i, joint.generation, made});
+      joints_.push_back({i, joint.generation, make_joint(joint, a->body, b->body)});
     }
     for (const Held& held : joints_) {
-      const Joint& joint = s.joints[held.number];
-      if (joint.motor_torque_Nm > 0.0)
-        static_cast<b2RevoluteJoint*>(held.joint)->SetMotorSpeed(static_cast<float>(joint.motor_rad_s));
+      const JointForm& form = s.joints[held.number].form;
+      if (!(form.motor_most > 0.0)) continue;
+      if (form.kind == JointKind::Turning)
+        static_cast<b2RevoluteJoint*>(held.joint)->SetMotorSpeed(static_cast<float>(form.motor_speed));
+      else if (held.joint->GetType() == e_prismaticJoint)
+        static_cast<b2PrismaticJoint*>(held.joint)->SetMotorSpeed(static_cast<float>(form.motor_speed * kUnits_m));
     }
+  }
+
+  b2Joint* make_joint(const Joint& joint, b2Body* a, b2Body* b) {
+    const auto make = [&](auto& def) {
+      def.bodyA = a;
+      def.bodyB = b;
+      def.localAnchorA.Set(static_cast<float>(joint.ax_m * kUnits_m), static_cast<float>(joint.ay_m * kUnits_m));
+      def.localAnchorB.Set(static_cast<float>(joint.bx_m * kUnits_m), static_cast<float>(joint.by_m * kUnits_m));
+      return world_->CreateJoint(&def);
+    };
+    const JointForm& form = joint.form;
+    const float turned = b->GetAngle() - a->GetAngle();
+    if (form.kind == JointKind::Turning) {
+      b2RevoluteJointDef def;
+      if (form.limited) {  // counted from where the two have one heading, by whichever turns are between them
+        def.referenceAngle = nearest_turn(0.0, turned);
+        def.enableLimit = true;
+        // Of narrower ranges Box2D holds the lower end alone: the middle is nearer to what was asked.
+        const bool narrow = form.high - form.low < 2.0 * static_cast<double>(b2_angularSlop);
+        def.lowerAngle = static_cast<float>(narrow ? 0.5 * (form.low + form.high) : form.low);
+        def.upperAngle = narrow ? def.lowerAngle : static_cast<float>(form.high);
+      }
+      def.enableMotor = form.motor_most > 0.0;
+      def.maxMotorTorque = static_cast<float>(form.motor_most * kUnits_m * kUnits_m);
+      return make(def);
+    }
+    const double level = std::hypot(form.axis[0], form.axis[1]);
+    if (form.kind == JointKind::Sliding && level > 0.0) {
+      b2PrismaticJointDef def;
+      def.localAxisA.Set(static_cast<float>(form.axis[0] / level), static_cast<float>(form.axis[1] / level));
+      def.referenceAngle = nearest_turn(joint.heading_rad, turned);
+      def.enableLimit = form.limited;
+      def.lowerTranslation = static_cast<float>(form.low * kUnits_m);
+      def.upperTranslation = static_cast<float>(form.high * kUnits_m);
+      def.enableMotor = form.motor_most > 0.0;
+      def.maxMotorForce = static_cast<float>(form.motor_most * kUnits_m);
+      return make(def);
+    }
+    b2WeldJointDef def;
+    def.referenceAngle = nearest_turn(joint.heading_rad, turned);
+    return make(def);
   }
 
   // --- one tick ---
@@ -699,18 +722,21 @@ class Dynamics2d final : public Solver {
 
 }  // namespace
 
-const SolverType& dynamics2d_type() {
-  static const SolverType type = [] {
-    SolverType t;
+const EngineType& dynamics2d_type() {
+  static const EngineType type = [] {
+    EngineType t;
     t.kind = "dynamics2d";
     t.summary = "Masses, forces and friction in the plane, on Box2D.";
+    t.traits.forces = true;
+    t.traits.joints = kEveryJoint;
     t.read = [](const Element& options, Problems& problems) -> std::shared_ptr<const void> {
       return box2d::read_params(options, problems);
     };
     t.describe = [](hal::ParamVisitor& visitor) { Params{}.describe(visitor); };
     t.unfit = &unfit;
-    t.make = [](const std::shared_ptr<const void>& params, const SpaceStores& stores, const Region&,
-                double) -> std::unique_ptr<Solver> {
+    t.make = &make_solvers;
+    t.make_solver = [](const std::shared_ptr<const void>& params, const SpaceStores& stores, const Region&,
+                       double) -> std::unique_ptr<Solver> {
       return std::make_unique<Dynamics2d>(*static_cast<const Params*>(params.get()), stores);
     };
     return t;

@@ -6,6 +6,6 @@ namespace tandem::core {
 
 /// `<dynamics2d>`: robots are discs that their wheels pull to the commanded speed with a limited force; boxes and
 /// cylinders that are movable have mass, and rub on the ground.
-const SolverType& dynamics2d_type();
+const EngineType& dynamics2d_type();
 
 }  // namespace tandem::core

@@ -104,17 +104,18 @@ std::string unfit(const Object& o) {
 
 }  // namespace
 
-const SolverType& dynamics3d_type() {
-  static const SolverType type = [] {
-    SolverType t;
+const EngineType& dynamics3d_type() {
+  static const EngineType type = [] {
+    EngineType t;
     t.kind = "dynamics3d";
     t.summary = "Masses, forces, friction and gravity in space, on ODE.";
-    t.plane = false;
+    t.traits = {.plane = false, .forces = true, .joints = kEveryJoint};
     t.read = &read;
     t.describe = [](hal::ParamVisitor& visitor) { Params{}.describe(visitor); };
     t.unfit = &unfit;
-    t.make = [](const std::shared_ptr<const void>& params, const SpaceStores&, const Region&,
-                double tick_s) -> std::unique_ptr<Solver> {
+    t.make = &make_solvers;
+    t.make_solver = [](const std::shared_ptr<const void>& params, const SpaceStores&, const Region&,
+                       double tick_s) -> std::unique_ptr<Solver> {
       return std::make_unique<World3d>(settings_for(*static_cast<const Params*>(params.get()), tick_s));
     };
     return t;

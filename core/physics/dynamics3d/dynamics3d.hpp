@@ -8,6 +8,6 @@ namespace tandem::core {
 /// (`drive="wheels"`) bodies on two motorised wheels; robots that fly are held in the air by a limited thrust, or
 /// (`flight="rotors"`) by four rotors, and then lean to where they are to go; boxes and cylinders that are movable have
 /// mass, fall, and rub on the floor and on one another.
-const SolverType& dynamics3d_type();
+const EngineType& dynamics3d_type();
 
 }  // namespace tandem::core

@@ -330,9 +330,11 @@ void World3d::join(const SpaceStores& stores) {
     held_.push_back({i, joint.generation, joint.a, joint.b, a, b, make_joint(joint, *a, *b)});
   }
   for (const Held& held : held_) {
-    const Joint& joint = stores.joints[held.number];
+    const JointForm& form = stores.joints[held.number].form;
+    if (!(form.motor_most > 0.0)) continue;
     // ODE turns a hinge's first body relative to its second.
-    if (joint.motor_torque_Nm > 0.0) dJointSetHingeParam(held.joint.get(), dParamVel, -joint.motor_rad_s);
+    if (form.kind == JointKind::Turning) dJointSetHingeParam(held.joint.get(), dParamVel, -form.motor_speed);
+    if (form.kind == JointKind::Sliding) dJointSetSliderParam(held.joint.get(), dParamVel, form.motor_speed);
   }
 }
 
@@ -345,15 +347,21 @@ OdeJoint World3d::make_joint(const Joint& joint, Twin& a, Twin& b) {
   }
   const dBodyID body_a = a.body.get();
   const dBodyID body_b = b.body.get();
+  const JointForm& form = joint.form;
   dVector3 point{};
   dBodyGetRelPointPos(body_a, joint.ax_m, joint.ay_m, joint.az_m - a.origin_m, point);
-  OdeJoint made(joint.turns ? dJointCreateHinge(world_.get(), nullptr) : dJointCreateFixed(world_.get(), nullptr));
+  const dWorldID world = world_.get();
+  const OdeJoint made(form.kind == JointKind::Turning   ? dJointCreateHinge(world, nullptr)
+                      : form.kind == JointKind::Sliding ? dJointCreateSlider(world, nullptr)
+                                                        : dJointCreateFixed(world, nullptr));
   dJointAttach(made.get(), body_a, body_b);
   const std::array<dReal, 4> q_b{dBodyGetQuaternion(body_b)[0], dBodyGetQuaternion(body_b)[1],
                                  dBodyGetQuaternion(body_b)[2], dBodyGetQuaternion(body_b)[3]};
   const Vector3 p_b{dBodyGetPosition(body_b)[0], dBodyGetPosition(body_b)[1], dBodyGetPosition(body_b)[2]};
-  if (!joint.turns) {
-    const std::array<double, 4> turn = upright_turn(std::cos(joint.heading_rad), std::sin(joint.heading_rad));
+  const double middle_rad = 0.5 * (form.low + form.high);  // where a hinge with limits has its zero
+  if (form.kind != JointKind::Turning || form.limited) {
+    const double heading_rad = form.kind == JointKind::Turning ? middle_rad : joint.heading_rad;
+    const std::array<double, 4> turn = upright_turn(std::cos(heading_rad), std::sin(heading_rad));
     dQuaternion q{};
     dQMultiply0(q, dBodyGetQuaternion(body_a), turn.data());
     dBodySetQuaternion(body_b, q);
@@ -361,12 +369,31 @@ OdeJoint World3d::make_joint(const Joint& joint, Twin& a, Twin& b) {
   dVector3 arm{};
   dBodyVectorToWorld(body_b, joint.bx_m, joint.by_m, joint.bz_m - b.origin_m, arm);
   dBodySetPosition(body_b, point[0] - arm[0], point[1] - arm[1], point[2] - arm[2]);
-  if (joint.turns) {
-    dJointSetHingeAnchor(made.get(), point[0], point[1], point[2]);
-    dJointSetHingeAxis(made.get(), 0.0, 0.0, 1.0);
-    if (joint.motor_torque_Nm > 0.0) dJointSetHingeParam(made.get(), dParamFMax, joint.motor_torque_Nm);
-  } else {
-    dJointSetFixed(made.get());
+  switch (form.kind) {
+    case JointKind::Fixed:
+      dJointSetFixed(made.get());
+      break;
+    case JointKind::Turning:
+      dJointSetHingeAnchor(made.get(), point[0], point[1], point[2]);
+      dJointSetHingeAxis(made.get(), 0.0, 0.0, 1.0);
+      if (form.motor_most > 0.0) dJointSetHingeParam(made.get(), dParamFMax, form.motor_most);
+      if (form.limited) {
+        dJointSetHingeParam(made.get(), dParamLoStop, middle_rad - form.high);
+        dJointSetHingeParam(made.get(), dParamHiStop, middle_rad - form.low);
+      }
+      break;
+    case JointKind::Sliding: {
+      // ODE slides the first body relative to the second: against the axis, b's way along it counts.
+      dVector3 axis{};
+      dBodyVectorToWorld(body_a, form.axis[0], form.axis[1], form.axis[2], axis);
+      dJointSetSliderAxis(made.get(), -axis[0], -axis[1], -axis[2]);
+      if (form.motor_most > 0.0) dJointSetSliderParam(made.get(), dParamFMax, form.motor_most);
+      if (form.limited) {
+        dJointSetSliderParam(made.get(), dParamLoStop, form.low);
+        dJointSetSliderParam(made.get(), dParamHiStop, form.high);
+      }
+      break;
+    }
   }
   dBodySetPosition(body_b, p_b[0], p_b[1], p_b[2]);
   dBodySetQuaternion(body_b, q_b.data());

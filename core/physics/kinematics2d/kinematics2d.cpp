@@ -318,4 +318,43 @@ void Kinematics2d::settle(const PhysicsContext& context) {
   }
 }
 
+namespace {
+
+std::shared_ptr<const void> read(const Element& options, Problems& problems) {
+  using Params = Kinematics2d::Params;
+  return std::make_shared<Params>(read_settings<Params>(options, problems, {"id", "regions"}, {"boundaries"}));
+}
+
+std::unique_ptr<Engine> make(const EngineType& type, const EngineOrder& order) {
+  const auto params_of = [](const EngineOrder::Part& part) -> const Kinematics2d::Params& {
+    return *static_cast<const Kinematics2d::Params*>(part.params.get());
+  };
+  const Kinematics2d::Params& first = params_of(order.parts.front());
+  for (const EngineOrder::Part& part : order.parts) {
+    if (params_of(part).iterations == first.iterations) continue;
+    order.problems.push_back({order.file, part.line,
+                              "all <" + std::string(type.kind) +
+                                  "> work as one and need the same iterations: " + std::to_string(first.iterations) +
+                                  " before, " + std::to_string(params_of(part).iterations) + " here",
+                              false});
+  }
+  return std::make_unique<Kinematics2d>(first);
+}
+
+}  // namespace
+
+const EngineType& kinematics2d_type() {
+  static const EngineType type = [] {
+    EngineType t;
+    t.kind = "kinematics2d";
+    t.summary = "Wheels roll without slip, discs that overlap are pushed apart.";
+    t.whole = true;
+    t.read = &read;
+    t.describe = [](hal::ParamVisitor& visitor) { Kinematics2d::Params{}.describe(visitor); };
+    t.make = &make;
+    return t;
+  }();
+  return type;
+}
+
 }  // namespace tandem::core

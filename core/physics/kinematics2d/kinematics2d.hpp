@@ -44,4 +44,7 @@ class Kinematics2d final : public Engine {
   std::vector<std::uint32_t> counts_;  // how long each is
 };
 
+/// `<kinematics2d>`.
+const EngineType& kinematics2d_type();
+
 }  // namespace tandem::core

@@ -614,18 +614,18 @@ std::shared_ptr<const void> read(const Element& options, Problems& problems) {
 
 }  // namespace
 
-const SolverType& particle3d_type() {
-  static const SolverType type = [] {
-    SolverType t;
+const EngineType& particle3d_type() {
+  static const EngineType type = [] {
+    EngineType t;
     t.kind = "particle3d";
+    t.argos_name = "pointmass3d";
     t.summary = "Point masses in space with drag and limits of speed and acceleration: robots that fly.";
-    t.plane = false;
-    t.air = true;
-    t.forces = false;
+    t.traits = {.plane = false, .air = true};
     t.read = &read;
     t.describe = [](hal::ParamVisitor& visitor) { Params{}.describe(visitor); };
-    t.make = [](const std::shared_ptr<const void>& params, const SpaceStores&, const Region&,
-                double) -> std::unique_ptr<Solver> {
+    t.make = &make_solvers;
+    t.make_solver = [](const std::shared_ptr<const void>& params, const SpaceStores&, const Region&,
+                       double) -> std::unique_ptr<Solver> {
       return std::make_unique<Particle3d>(*static_cast<const Params*>(params.get()));
     };
     return t;

@@ -21,6 +21,6 @@ namespace tandem::core {
 /// pushed apart by half the overlap each, upwards and downwards where that is the shorter way; those moved from outside
 /// push but are not pushed. Passes are computed from the positions of the one before, so the order of bodies does not
 /// matter.
-const SolverType& particle3d_type();
+const EngineType& particle3d_type();
 
 }  // namespace tandem::core

@@ -28,10 +28,10 @@ Parts argos() {
 
 TEST(Cameras, AreReadFromFilesOfArgos) {
   const Outcome out = read(argos().text(), {},
-                           {{"e-puck", "foot-bot", "eye-bot"},
-                            {"kinematics2d"},
-                            {"omnidirectional_camera", "perspective_camera"},
-                            {"leds"}});
+                           KnownNames{{"e-puck", "foot-bot", "eye-bot"},
+                                      {{"kinematics2d", "", {}}},
+                                      {"omnidirectional_camera", "perspective_camera"},
+                                      {"leds"}});
   const Scenario& s = out.good();
   EXPECT_EQ(out.text(), "");
   ASSERT_EQ(s.controllers[0].sensors.size(), 2U);
@@ -60,8 +60,10 @@ TEST(Cameras, AreReadFromFilesOfArgos) {
 }
 
 TEST(Cameras, EffectiveSettingsReadBackAsTheSame) {
-  const KnownNames known = {
-      {"e-puck", "foot-bot", "eye-bot"}, {"kinematics2d"}, {"omnidirectional_camera", "perspective_camera"}, {"leds"}};
+  const KnownNames known = {{"e-puck", "foot-bot", "eye-bot"},
+                            {{"kinematics2d", "", {}}},
+                            {"omnidirectional_camera", "perspective_camera"},
+                            {"leds"}};
   Parts parts = argos();
   parts.things += R"(<foot-bot id="plain"><body position="2,0,0"/><controller config="w"/></foot-bot>)";
   const Scenario a = read(parts.text(), {}, known).good();
@@ -117,10 +119,10 @@ TEST(Leds, CamerasOfAnUnknownMediumAreErrors) {
   Parts parts = argos();
   parts.rest = R"(<media><led id="others"/></media>)";
   const std::string text = read(parts.text(), {},
-                                {{"e-puck", "foot-bot", "eye-bot"},
-                                 {"kinematics2d"},
-                                 {"omnidirectional_camera", "perspective_camera"},
-                                 {"leds"}})
+                                KnownNames{{"e-puck", "foot-bot", "eye-bot"},
+                                           {{"kinematics2d", "", {}}},
+                                           {"omnidirectional_camera", "perspective_camera"},
+                                           {"leds"}})
                                .text();
   EXPECT_THAT(text, HasSubstr("file.xml:3: error"));
   EXPECT_THAT(text, HasSubstr("'leds'; it has: others"));

@@ -49,7 +49,7 @@ TEST(Manual, ShowsAttributesWithDefaultsRangesAndWhatMustBeGiven) {
 TEST(Manual, NamesKindsOfRobotsAndEngines) {
   KnownNames known = known_names();
   known.robots = {"e-puck", "foot-bot"};
-  known.engines = {"kinematics2d", "dynamics2d"};
+  known.engines = {{"kinematics2d", "", {}}, {"dynamics2d", "", {}}};
   const auto manuals = element_manuals(known);
   for (const char* name : {"e-puck", "foot-bot", "kinematics2d", "dynamics2d", "range_and_bearing"})
     EXPECT_NE(find(manuals, name), nullptr) << name;

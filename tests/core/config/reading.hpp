@@ -12,7 +12,10 @@ namespace tandem::core {
 inline const KnownNames& known_names() {
   static const KnownNames names = {
       {"e-puck", "foot-bot", "eye-bot"},
-      {"kinematics2d", "dynamics2d", "dynamics3d", "particle3d"},
+      {{"kinematics2d", "", {}},
+       {"dynamics2d", "", {.forces = true}},
+       {"dynamics3d", "", {.plane = false, .forces = true}},
+       {"particle3d", "pointmass3d", {.plane = false, .air = true}}},
       {"accelerometer", "altimeter", "battery", "clock", "flight_state", "gripper", "ground", "light", "microphones",
        "motor_ground", "odometry", "omnidirectional_camera", "pan_tilt_encoder", "positioning", "proximity",
        "range_and_bearing", "wheel_encoders"},

@@ -23,7 +23,7 @@ inline constexpr double kReach_m = 4.0 * kRadius_m + 0.03;
 /// phase does.
 class SolversByHand {
  public:
-  SolversByHand(const SolverType& type, const std::vector<Element::Attribute>& options, double half_m,
+  SolversByHand(const EngineType& type, const std::vector<Element::Attribute>& options, double half_m,
                 const std::vector<Element>& children = {})
       : type_(type) {
     Element element;
@@ -75,13 +75,13 @@ class SolversByHand {
     stores().regions.push_back(r);
   }
   /// Holds two bodies together where they are, at the point (x, y). Returns the joint's number.
-  std::size_t hold(BodyKey a, BodyKey b, double x_m, double y_m, bool turns = false) {
+  std::size_t hold(BodyKey a, BodyKey b, double x_m, double y_m, const JointForm& form = {}) {
     Joint joint;
     joint.alive = true;
     joint.generation = 1;
     joint.a = a;
     joint.b = b;
-    joint.turns = turns;
+    joint.form = form;
     const Frame at_a = frame(a);
     const Frame at_b = frame(b);
     joint.ax_m = at_a.cos_h * (x_m - at_a.x_m) + at_a.sin_h * (y_m - at_a.y_m);
@@ -96,7 +96,7 @@ class SolversByHand {
   void tick() {
     if (stores().regions.empty()) region();
     while (solvers_.size() < stores().regions.size())
-      solvers_.push_back(type_.make(params_, stores(), stores().regions[solvers_.size()], kTick_s));
+      solvers_.push_back(type_.make_solver(params_, stores(), stores().regions[solvers_.size()], kTick_s));
     place();
     list();
     for (std::size_t i = 0; i < solvers_.size(); ++i) solvers_[i]->load(context(i));
@@ -210,7 +210,7 @@ class SolversByHand {
     }
   }
 
-  const SolverType& type_;
+  const EngineType& type_;
   std::shared_ptr<const void> params_;
   std::vector<std::unique_ptr<Solver>> solvers_;
   hal::Tick tick_ = 0;

@@ -122,7 +122,8 @@ class Places {
     }
     for (Joint& j : s.joints) {
       for (double* value :
-           {&j.ax_m, &j.ay_m, &j.az_m, &j.bx_m, &j.by_m, &j.bz_m, &j.heading_rad, &j.motor_torque_Nm, &j.motor_rad_s})
+           {&j.ax_m, &j.ay_m, &j.az_m, &j.bx_m, &j.by_m, &j.bz_m, &j.heading_rad, &j.form.low, &j.form.high,
+            &j.form.axis[0], &j.form.axis[1], &j.form.axis[2], &j.form.motor_most, &j.form.motor_speed})
         add("joint", *value);
     }
     for (LightSource& light : s.lights) {

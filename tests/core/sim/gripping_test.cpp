@@ -332,8 +332,9 @@ TEST(GrippingAtLoad, EnginesWithoutForcesRefuseARobotThatGrips) {
     s.scenario.robots.back().line = 42;
     const auto world = make(s);
     EXPECT_FALSE(world.world) << engine;
-    EXPECT_THAT(world.all_problems(), HasSubstr("scene:42: error: robot 'fb' has a gripper, but its engine '" + engine +
-                                                "' knows no forces"));
+    EXPECT_THAT(world.all_problems(),
+                HasSubstr("scene:42: error: robot 'fb' has a gripper, but its engine '" + engine +
+                          "' has no joints, but fixed and turning ones are needed; use dynamics2d, dynamics3d"));
   }
 }
 

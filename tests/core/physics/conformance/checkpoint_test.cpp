@@ -111,7 +111,7 @@ void meddle(World& world, const EngineTraits& traits, unsigned seed) {
       if (traits.forces) {
         const Pose at = space.pose(some);
         (void)space.join(some, space.robot(below(static_cast<unsigned>(space.robot_count()))), {at.x_m, at.y_m, 0.02},
-                         below(2) == 0);
+                         {.kind = static_cast<JointKind>(below(3))});
       }
       break;
     default:

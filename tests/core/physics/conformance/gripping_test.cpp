@@ -56,7 +56,7 @@ void hold(const MadeWorld& world, BodyKey a, BodyKey b, double x_m, double y_m, 
   into(at_a, joint.ax_m, joint.ay_m);
   into(at_b, joint.bx_m, joint.by_m);
   joint.az_m = joint.bz_m = 0.03;
-  joint.turns = turns;
+  joint.form.kind = turns ? JointKind::Turning : JointKind::Fixed;
   joint.heading_rad =
       std::atan2(at_b.sin_h * at_a.cos_h - at_b.cos_h * at_a.sin_h, at_b.cos_h * at_a.cos_h + at_b.sin_h * at_a.sin_h);
   s.joints.push_back(joint);

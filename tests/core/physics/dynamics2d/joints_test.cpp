@@ -69,7 +69,7 @@ TEST(Dynamics2dJoints, AnObjectThatMayTurnDoes) {
   ByHand hand({{"box_angular_friction", "0", 0}});
   hand.robot(0, 0, 0, -0.03, 0.03);
   hand.box(kRadius_m + 0.03, 0, 0.06, 0.06, 0.02);
-  hand.hold(BodyKey::robot(0), BodyKey::object(0), kRadius_m, 0, true);
+  hand.hold(BodyKey::robot(0), BodyKey::object(0), kRadius_m, 0, {.kind = JointKind::Turning});
   double lag_rad = 0.0;
   for (int i = 0; i < 20; ++i) {
     hand.tick();
@@ -139,7 +139,8 @@ TEST(Dynamics2dJoints, AChainOfManyKeepsTogether) {
   constexpr std::size_t kMany = 12;
   for (std::size_t i = 0; i < kMany; ++i) hand.robot(-0.075 * static_cast<double>(i), 0, 0, 0.1, 0.1);
   for (std::size_t i = 1; i < kMany; ++i)
-    hand.hold(BodyKey::robot(i - 1), BodyKey::robot(i), -0.075 * (static_cast<double>(i) - 0.5), 0, true);
+    hand.hold(BodyKey::robot(i - 1), BodyKey::robot(i), -0.075 * (static_cast<double>(i) - 0.5), 0,
+              {.kind = JointKind::Turning});
   hand.ticks(50);
   for (std::size_t i = 0; i + 1 < kMany; ++i) EXPECT_LE(apart_m(hand, i), 1e-3) << i;
   EXPECT_NEAR(hand.bodies().x_m[0], 0.5, 0.01);

@@ -124,7 +124,7 @@ class Bench {
     const auto params = particle3d_type().read(options_, problems);
     EXPECT_TRUE(problems.empty()) << to_text(problems.front());
     for (const Region& region : stores().regions)
-      solvers_.push_back(particle3d_type().make(params, stores(), region, tick_s_));
+      solvers_.push_back(particle3d_type().make_solver(params, stores(), region, tick_s_));
   }
 
   double tick_s_;

@@ -1,0 +1,24 @@
+#include "core/scenario/engine_traits.hpp"
+
+#include <utility>
+
+namespace tandem::core {
+
+std::string engines_that(const std::vector<KnownEngine>& engines, const std::function<bool(const EngineTraits&)>& fit) {
+  std::string all;
+  for (const KnownEngine& engine : engines) {
+    if (fit(engine.traits)) all += (all.empty() ? "" : ", ") + engine.name;
+  }
+  return all.empty() ? "none of this program's" : all;
+}
+
+std::string words_of(JointKinds kinds) {
+  std::string all;
+  for (const auto& [kind, word] : {std::pair{JointKind::Fixed, "fixed"}, std::pair{JointKind::Turning, "turning"},
+                                   std::pair{JointKind::Sliding, "sliding"}}) {
+    if ((kinds & bit(kind)) != 0) all += (all.empty() ? "" : " and ") + std::string(word);
+  }
+  return all;
+}
+
+}  // namespace tandem::core
