@@ -9,12 +9,15 @@ endif()
 
 # The control interface, compiled with the plug-in: the same arithmetic as in Tandem itself, and nothing of any world.
 if(NOT TARGET Tandem::hal)
+  find_package(Eigen3 REQUIRED NO_MODULE)
   file(GLOB Tandem_HAL_SOURCES "${Tandem_TOP}/hal/*.cpp")
   add_library(tandem_hal STATIC ${Tandem_HAL_SOURCES})
   set_target_properties(tandem_hal PROPERTIES POSITION_INDEPENDENT_CODE ON)
   target_compile_features(tandem_hal PUBLIC cxx_std_20)
   target_compile_options(tandem_hal PUBLIC -ffp-contract=off -fno-math-errno)
+  target_compile_definitions(tandem_hal PUBLIC EIGEN_DONT_VECTORIZE)
   target_include_directories(tandem_hal PUBLIC "${Tandem_TOP}")
+  target_link_libraries(tandem_hal PUBLIC Eigen3::Eigen)
   add_library(Tandem::hal ALIAS tandem_hal)
 endif()
 

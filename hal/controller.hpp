@@ -5,6 +5,7 @@
 #include <memory>
 #include <new>
 #include <string>
+#include <string_view>
 #include <type_traits>
 
 #include "hal/params.hpp"
@@ -23,6 +24,11 @@ class Controller {
   /// One control step: reads its sensors, writes its actuators. May run on any thread; must not block.
   /// An exception that leaves it stops the robot, by name.
   virtual void step() = 0;
+
+  /// The run begins anew, with this robot behind the same ports; its id and its chance may be others than before. True:
+  /// done, and what was not reset is kept (something learned, say). False: this object is destroyed and another
+  /// constructed in its place.
+  virtual bool reset(Robot& /*robot*/) { return false; }
 };
 
 /// What happened while a row of controllers stepped: who threw, if anybody.
@@ -35,6 +41,7 @@ struct StepFault {
 struct ControllerType {
   std::string_view name;  ///< as written in experiment files
   std::string_view summary;
+  std::string_view class_name;  ///< as the compiler spells it, for hooks that know the class
   std::size_t size = 0;
   std::size_t align = 0;
   /// Reads the parameters once for all robots of one configuration.
@@ -47,12 +54,23 @@ struct ControllerType {
   std::size_t (*step_row)(std::byte* first, std::size_t stride, std::size_t begin, std::size_t count,
                           const std::uint8_t* halted, StepFault& fault) = nullptr;
   void (*destroy)(void* controller) = nullptr;
+  /// Calls Controller::reset. @throws whatever it throws
+  bool (*reset)(void* controller, Robot& robot) = nullptr;
   /// Constructs in `where` a copy of the controller at `from`, for snapshots. Null where the class has no copy
   /// constructor. @throws whatever its copy constructor throws
   void (*copy)(void* where, const void* from) = nullptr;
 };
 
 namespace detail {
+
+/// "tandem::controllers::EpuckDiffusion": the same text in every library that one compiler built.
+template <class T>
+constexpr std::string_view class_name() noexcept {
+  const std::string_view all = __PRETTY_FUNCTION__;  // "… [with T = X; std::string_view = …]" or "… [T = X]"
+  const std::size_t begin = all.find("T = ") + 4;
+  const std::size_t end = all.find_first_of(";]", begin);
+  return all.substr(begin, end - begin);
+}
 
 struct NoParams {
   void describe(ParamVisitor&) {}
@@ -96,6 +114,7 @@ const ControllerType& controller_type(std::string_view name, std::string_view su
   static ControllerType type;
   type.name = name;
   type.summary = summary;
+  type.class_name = detail::class_name<T>();
   type.size = sizeof(T);
   type.align = alignof(T);
   type.read_params = [](ParamVisitor& visitor) -> std::shared_ptr<const void> {
@@ -112,6 +131,7 @@ const ControllerType& controller_type(std::string_view name, std::string_view su
   };
   type.step_row = &detail::step_row<T>;
   type.destroy = [](void* controller) { static_cast<T*>(controller)->~T(); };
+  type.reset = [](void* controller, Robot& robot) { return static_cast<T*>(controller)->T::reset(robot); };
   if constexpr (std::is_copy_constructible_v<T>)
     type.copy = [](void* where, const void* from) { ::new (where) T(*static_cast<const T*>(from)); };
   return type;

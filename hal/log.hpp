@@ -20,11 +20,11 @@ class Log {
   void info(std::string_view text) const { write(Severity::Info, text); }
   void warning(std::string_view text) const { write(Severity::Warning, text); }
   void error(std::string_view text) const { write(Severity::Error, text); }
-
- private:
   void write(Severity severity, std::string_view text) const {
     if (sink_) sink_(severity, text);
   }
+
+ private:
   Sink sink_;
 };
 

@@ -35,7 +35,7 @@ struct PluginInfo {
 /// Differs between builds whose standard library or settings lay types out differently.
 constexpr std::uint64_t border_layout() noexcept {
   return sizeof(std::string) * 1'000'003ULL + sizeof(std::shared_ptr<void>) * 10'007ULL +
-         sizeof(ControllerType) * 101ULL + sizeof(PortType) * 7ULL + sizeof(void*);
+         sizeof(ControllerType) * 101ULL + sizeof(PortType) * 7ULL + sizeof(Robot) * 31ULL + sizeof(void*);
 }
 
 }  // namespace tandem::hal

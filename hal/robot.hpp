@@ -1,11 +1,18 @@
 // A robot as its controller sees it while being constructed: who it is, and the devices it has.
 #pragma once
 #include <cstdint>
+#include <initializer_list>
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <tuple>
+#include <type_traits>
+#include <utility>
 
 #include "hal/port.hpp"
+#include "hal/published.hpp"
+#include "hal/random.hpp"
+#include "hal/robot_log.hpp"
 #include "hal/spec/data_sheet.hpp"
 
 namespace tandem::hal {
@@ -24,8 +31,12 @@ class Robot {
 
   virtual std::string_view id() const noexcept = 0;
   virtual const DataSheet& data_sheet() const noexcept = 0;
-  /// A number of this robot's own, from the run's seed and the robot's id: for controllers that need chance.
-  virtual std::uint64_t seed() const noexcept = 0;
+  /// The seed of the whole run.
+  virtual std::uint64_t run_seed() const noexcept = 0;
+  /// Random numbers of this robot's own, from the run's seed and the robot's id: the same in every world.
+  Random random(std::uint32_t stream = 0) const noexcept { return Random(seed_of(run_seed(), id()), stream); }
+  /// Where the controller may tell people something, while it steps too.
+  RobotLog log() const noexcept { return log_; }
 
   /// The reading of device class `T`; filled before every step.
   /// @throws DeviceError when the robot has no such device or its configuration does not list it.
@@ -41,9 +52,43 @@ class Robot {
     return *static_cast<T*>(take(port_type<T>()));
   }
 
+  /// Shows a member of the controller (a scalar, or an array of them) to records and views, which read it between
+  /// steps; publishing costs no time in a step. `member` must lie in the controller itself. One name, one member.
+  /// @throws std::logic_error otherwise
+  template <class M>
+  void publish(std::string_view name, const M& member, const Unit& unit = unit::none, std::string_view doc = {}) {
+    show(described(name, member, unit, doc), &member);
+  }
+  /// The same for an enumeration: `texts` name its values from 0 on.
+  template <class E>
+  requires std::is_enum_v<E>
+  void publish(std::string_view name, const E& member, std::initializer_list<std::string_view> texts,
+               std::string_view doc = {}) {
+    PublishedField field = described(name, member, unit::none, doc);
+    field.texts.assign(texts.begin(), texts.end());
+    show(std::move(field), &member);
+  }
+
+  /// For the world that the robot is in.
+  void set_log(const RobotLog& log) noexcept { log_ = log; }
+
  protected:
   /// Memory of a port with `type`'s layout. Never null; throws DeviceError.
   virtual void* take(const PortType& type) = 0;
+  /// Keeps the description of a member of the controller that is being constructed; its offset is the world's to find.
+  /// A world without records and views keeps none.
+  virtual void show(PublishedField /*field*/, const void* /*member*/) {}
+
+ private:
+  template <class M>
+  static PublishedField described(std::string_view name, const M& member, const Unit& unit, std::string_view doc) {
+    std::vector<Field> fields;
+    FieldList list(&member, fields);
+    const Field& f = list.add(name, member, unit, Frame::None, Fusion::Real, doc);
+    return {std::string(name), 0, f.scalar, f.count, unit, std::string(doc), {}};
+  }
+
+  RobotLog log_;
 };
 
 }  // namespace tandem::hal

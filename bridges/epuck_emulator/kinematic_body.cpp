@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "hal/angle.hpp"
+
 namespace tandem::bridges::epuck_emulator {
 namespace {
 
@@ -39,7 +41,7 @@ void KinematicBody::roll(double dt_s) {
   const double chord_m = v_m_s * dt_s * (std::fabs(half) < 1e-9 ? 1.0 : std::sin(half) / half);
   pose_.x_m += chord_m * std::cos(pose_.heading_rad + half);
   pose_.y_m += chord_m * std::sin(pose_.heading_rad + half);
-  pose_.heading_rad = std::remainder(pose_.heading_rad + turn_rad, 2.0 * std::numbers::pi);
+  pose_.heading_rad = hal::wrapped(pose_.heading_rad + turn_rad);
   if (!arena_) return;
   const double free_x_m = std::max(0.0, 0.5 * arena_->length_x_m - hal::epuck::kBodyRadius_m);
   const double free_y_m = std::max(0.0, 0.5 * arena_->length_y_m - hal::epuck::kBodyRadius_m);

@@ -1,7 +1,8 @@
 #include "bridges/eyebot/world_frame.hpp"
 
 #include <cmath>
-#include <numbers>
+
+#include "hal/angle.hpp"
 
 namespace tandem::bridges::eyebot {
 namespace {
@@ -39,8 +40,7 @@ Quaternion WorldFrame::orientation_in_run(const Quaternion& robots) const noexce
 }
 
 double WorldFrame::heading_of_robot(double runs_rad) const noexcept {
-  const double heading = std::remainder(runs_rad - turn_rad, 2.0 * std::numbers::pi);
-  return heading <= -std::numbers::pi ? std::numbers::pi : heading;
+  return hal::turn_between(turn_rad, runs_rad);
 }
 
 Vector turned(const Quaternion& q, const Vector& v) noexcept {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "hal/angle.hpp"
+
 namespace tandem::bridges::eyebot_emulator {
 namespace {
 
@@ -205,7 +207,7 @@ void Eyebot::sample_scan(TimeNs at) {
     ScanSample sample;
     sample.head = static_cast<std::uint8_t>(head);
     sample.utime = utime(at);
-    sample.angle_rad = std::remainder(senses_.scanner_rad + 0.5 * pi * static_cast<double>(head), 2.0 * pi);
+    sample.angle_rad = hal::wrapped(senses_.scanner_rad + 0.5 * pi * static_cast<double>(head));
     sample.range_m = range_m < spec::kScannerMin_m ? -1.0 : range_m > spec::kScannerMax_m ? -2.0 : range_m;
     scan_.push_back(sample);
   }

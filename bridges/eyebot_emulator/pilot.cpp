@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "hal/angle.hpp"
+
 namespace tandem::bridges::eyebot_emulator {
 namespace {
 
@@ -92,7 +94,7 @@ Guidance Pilot::towards_target(const BodySenses& here) const {
   const double speed_m_s = std::min({kPull_per_s * distance_m, can_stop_m_s, most_m_s_});
   if (distance_m > 0.0) guidance.velocity_m_s = scaled(way, speed_m_s / distance_m);
   if (yaw_rad_) {
-    const double turn_rad = std::remainder(*yaw_rad_ - here.yaw_rad(), 2.0 * std::numbers::pi);
+    const double turn_rad = hal::turn_between(here.yaw_rad(), *yaw_rad_);
     guidance.yaw_rad_s = std::clamp(kTurn_per_s * turn_rad, -spec::kMaxTurn_rad_s, spec::kMaxTurn_rad_s);
   }
   return guidance;

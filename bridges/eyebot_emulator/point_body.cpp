@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "hal/angle.hpp"
+
 namespace tandem::bridges::eyebot_emulator {
 namespace {
 
@@ -13,12 +15,8 @@ constexpr hal::TimeNs kStepNs = 10 * hal::kNsPerMs;
 constexpr double kGravity_m_s2 = 9.81;
 constexpr double kContact_m = 1e-3;  // nearer is touching
 
-double wrapped(double angle_rad) {
-  return std::remainder(angle_rad, 2.0 * pi);
-}
-
 double turn_to(double angle_rad, double target_rad, double most_rad) {
-  return wrapped(angle_rad + std::clamp(wrapped(target_rad - angle_rad), -most_rad, most_rad));
+  return hal::wrapped(angle_rad + std::clamp(hal::wrapped(target_rad - angle_rad), -most_rad, most_rad));
 }
 
 double norm(const Vec3& v) {
@@ -93,7 +91,7 @@ void PointBody::move(double dt_s) {
     const double most = spec::kMaxAcceleration_m_s2 * dt_s;
     const double scale = norm(dv) > most ? most / norm(dv) : 1.0;
     for (std::size_t i = 0; i < 3; ++i) v_[i] += scale * dv[i];
-    yaw_rad_ = wrapped(yaw_rad_ + command_.yaw_rad_s * dt_s);
+    yaw_rad_ = hal::wrapped(yaw_rad_ + command_.yaw_rad_s * dt_s);
   } else {
     v_[2] -= kGravity_m_s2 * dt_s;
   }
@@ -119,7 +117,7 @@ void PointBody::move(double dt_s) {
 void PointBody::turn_devices(double dt_s) {
   if (command_.scanner == ScannerMode::Speed) {
     const double rate = std::clamp(command_.scanner_rad_s, -spec::kScannerTurn_rad_s, spec::kScannerTurn_rad_s);
-    scanner_rad_ = wrapped(scanner_rad_ + rate * dt_s);
+    scanner_rad_ = hal::wrapped(scanner_rad_ + rate * dt_s);
   }
   if (command_.scanner == ScannerMode::Position) {
     scanner_rad_ = turn_to(scanner_rad_, command_.scanner_rad, spec::kScannerTurn_rad_s * dt_s);

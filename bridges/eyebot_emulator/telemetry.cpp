@@ -17,6 +17,7 @@
 #include <eyebot_c/eyebot_state_t.h>
 #include <eyebot_c/eyebot_status_t.h>
 
+#include "hal/angle.hpp"
 #include "hal/check.hpp"
 
 namespace tandem::bridges::eyebot_emulator {
@@ -65,8 +66,7 @@ Direction direction_of(const Blob& blob, const BodySenses& senses) {
   const double s = std::sin(senses.tilt_rad);
   const double along = c * ahead + s;
   const double down = c - s * ahead;
-  return {std::remainder(std::atan2(left, along) + senses.pan_rad, 2.0 * std::numbers::pi),
-          -std::atan2(down, std::hypot(along, left))};
+  return {hal::wrapped(std::atan2(left, along) + senses.pan_rad), -std::atan2(down, std::hypot(along, left))};
 }
 
 }  // namespace

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "hal/angle.hpp"
 #include "hal/check.hpp"
 #include "hal/device/body_sensors.hpp"
 #include "hal/device/distance_scanner.hpp"
@@ -25,11 +25,6 @@ constexpr hal::TimeNs kLeastFresh = 150 * hal::kNsPerMs;
 template <class... T>
 std::vector<const hal::PortType*> types() {
   return {&hal::port_type<T>()...};
-}
-
-double wrapped(double angle_rad) noexcept {
-  const double turned = std::remainder(angle_rad, 2.0 * std::numbers::pi);
-  return turned <= -std::numbers::pi ? std::numbers::pi : turned;
 }
 
 bool feeds(const FootbotMap& map, const hal::PortType& type, std::string_view field = {}) {
@@ -171,7 +166,7 @@ void FootbotRobot::reckon() noexcept {
   const double chord = 0.5 * (left + right) * (std::fabs(half) < 1e-9 ? 1.0 : hal::sin(half) / half);
   place.x_m += chord * hal::cos(place.heading_rad + half);
   place.y_m += chord * hal::sin(place.heading_rad + half);
-  place.heading_rad = wrapped(place.heading_rad + turn);
+  place.heading_rad = hal::wrapped(place.heading_rad + turn);
 }
 
 void FootbotRobot::complete(hal::Tick tick) noexcept {
@@ -186,7 +181,7 @@ void FootbotRobot::complete(hal::Tick tick) noexcept {
   scanner.samples = static_cast<std::uint32_t>(scanner.count / hal::DistanceScanner::kHeads);
   for (std::size_t head = 0; head < spec::kScanner.size() && scanner.samples == 1; ++head) {
     const double angle = static_cast<double>(scanner.turn_rad) + spec::kScanner[head].bearing_rad;
-    scanner.angle_rad[head] = static_cast<float>(wrapped(angle));
+    scanner.angle_rad[head] = static_cast<float>(hal::wrapped(angle));
   }
   auto& gripper = port<hal::Gripper>();
   if (!tells_holding_) {

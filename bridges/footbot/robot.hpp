@@ -36,7 +36,7 @@ class FootbotRobot final : public hal::Robot {
 
   std::string_view id() const noexcept override { return settings_.id; }
   const hal::DataSheet& data_sheet() const noexcept override { return hal::footbot::kDataSheet; }
-  std::uint64_t seed() const noexcept override { return settings_.seed; }
+  std::uint64_t run_seed() const noexcept override { return settings_.seed; }
 
   /// Takes a port by its description, for those who fuse, record or inspect. The memory lives as long as the robot.
   /// @throws hal::DeviceError

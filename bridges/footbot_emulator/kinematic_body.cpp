@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "hal/angle.hpp"
+
 namespace tandem::bridges::footbot_emulator {
 namespace {
 
@@ -21,10 +23,6 @@ double to_wall_m(double at_m, double per_m, double half_m) {
   return std::numeric_limits<double>::infinity();
 }
 
-double wrapped(double angle_rad) {
-  return std::remainder(angle_rad, 2.0 * pi);
-}
-
 /// From `angle_rad` towards `target_rad`, by `most_rad` at the most.
 double approach(double angle_rad, double target_rad, double most_rad) {
   return angle_rad + std::clamp(target_rad - angle_rad, -most_rad, most_rad);
@@ -32,7 +30,7 @@ double approach(double angle_rad, double target_rad, double most_rad) {
 
 /// The same, on the shorter way around the circle.
 double turn_to(double angle_rad, double target_rad, double most_rad) {
-  return wrapped(angle_rad + std::clamp(wrapped(target_rad - angle_rad), -most_rad, most_rad));
+  return hal::wrapped(angle_rad + std::clamp(hal::wrapped(target_rad - angle_rad), -most_rad, most_rad));
 }
 
 }  // namespace
@@ -58,7 +56,7 @@ void KinematicBody::roll(double dt_s) {
   const double chord_m = v_m_s * dt_s * (std::fabs(half) < 1e-9 ? 1.0 : std::sin(half) / half);
   pose_.x_m += chord_m * std::cos(pose_.heading_rad + half);
   pose_.y_m += chord_m * std::sin(pose_.heading_rad + half);
-  pose_.heading_rad = wrapped(pose_.heading_rad + turn_rad);
+  pose_.heading_rad = hal::wrapped(pose_.heading_rad + turn_rad);
   if (!arena_) return;
   const double free_x_m = std::max(0.0, 0.5 * arena_->length_x_m - spec::kBodyRadius_m);
   const double free_y_m = std::max(0.0, 0.5 * arena_->length_y_m - spec::kBodyRadius_m);
@@ -67,11 +65,11 @@ void KinematicBody::roll(double dt_s) {
 }
 
 void KinematicBody::turn_devices(hal::TimeNs until, double dt_s) {
-  if (command_.turret == TurretMode::Speed) turret_rad_ = wrapped(turret_rad_ + command_.turret_rad_s * dt_s);
+  if (command_.turret == TurretMode::Speed) turret_rad_ = hal::wrapped(turret_rad_ + command_.turret_rad_s * dt_s);
   if (command_.turret == TurretMode::Position) {
     turret_rad_ = turn_to(turret_rad_, command_.turret_rad, spec::kTurretTurn_rad_s * dt_s);
   }
-  if (command_.scanner == ScannerMode::Speed) scanner_rad_ = wrapped(scanner_rad_ + command_.scanner_rad_s * dt_s);
+  if (command_.scanner == ScannerMode::Speed) scanner_rad_ = hal::wrapped(scanner_rad_ + command_.scanner_rad_s * dt_s);
   if (command_.scanner == ScannerMode::Position) {
     scanner_rad_ = turn_to(scanner_rad_, command_.scanner_rad, spec::kScannerTurn_rad_s * dt_s);
   }

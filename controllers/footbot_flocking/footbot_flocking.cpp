@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "controllers/steering/colors.hpp"
-#include "hal/elementary.hpp"
 #include "hal/spec/footbot.hpp"
+#include "hal/vector.hpp"
 
 namespace tandem::controllers {
 namespace {
@@ -28,18 +28,16 @@ void FootbotFlocking::step() noexcept {
     wheels_.set(0.0, 0.0);
     return;
   }
-  const Vector others = flock();
-  const Vector lamp = light();
-  const Vector sum = {others.x + lamp.x, others.y + lamp.y};
-  const double ahead = std::clamp(sum.x, 0.0, 1.0);  // in reverse it would not see its way
-  const double turn = std::clamp(0.5 * sum.y, -0.5, 0.5) * (sum.x < 0.0 ? 2.0 : 1.0);
+  const hal::Vector2 sum = flock() + light();
+  const double ahead = std::clamp(sum.x(), 0.0, 1.0);  // in reverse it would not see its way
+  const double turn = std::clamp(0.5 * sum.y(), -0.5, 0.5) * (sum.x() < 0.0 ? 2.0 : 1.0);
   const double most = std::max(1.0, ahead + std::fabs(turn));
   wheels_.set(params_.velocity_m_s * (ahead - turn) / most, params_.velocity_m_s * (ahead + turn) / most);
 }
 
 /// Mean push and pull of the beacons in sight.
-Vector FootbotFlocking::flock() const noexcept {
-  Vector sum;
+hal::Vector2 FootbotFlocking::flock() const noexcept {
+  hal::Vector2 sum = hal::Vector2::Zero();
   int beacons = 0;
   for (std::size_t i = 0; i < camera_.count; ++i) {
     const double distance_m = static_cast<double>(camera_.distance_m[i]);
@@ -49,19 +47,18 @@ Vector FootbotFlocking::flock() const noexcept {
     const double square = params_.distance_m * params_.distance_m / (distance_m * distance_m);
     const double fourth = square * square;
     const double pull = -params_.gain * (fourth * fourth - fourth);
-    sum.x += pull * hal::cos(bearing_rad);
-    sum.y += pull * hal::sin(bearing_rad);
+    sum += hal::polar(pull, bearing_rad);
     ++beacons;
   }
-  return beacons == 0 ? Vector{} : Vector{sum.x / beacons, sum.y / beacons};
+  return beacons == 0 ? sum : hal::Vector2(sum / static_cast<double>(beacons));
 }
 
 /// The same pull however bright the light is.
-Vector FootbotFlocking::light() const noexcept {
-  const Vector way = to_light(light_, light_mounts_);
-  const double brightness = way.length();
-  if (brightness <= 0.0) return {};
-  return {params_.light * way.x / brightness, params_.light * way.y / brightness};
+hal::Vector2 FootbotFlocking::light() const noexcept {
+  const hal::Vector2 way = to_light(light_, light_mounts_);
+  const double brightness = hal::length_of(way);
+  if (brightness <= 0.0) return hal::Vector2::Zero();
+  return params_.light * way / brightness;
 }
 
 }  // namespace tandem::controllers

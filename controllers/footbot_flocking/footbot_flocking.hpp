@@ -42,8 +42,8 @@ class FootbotFlocking final : public hal::Controller {
   void step() noexcept override;
 
  private:
-  Vector flock() const noexcept;
-  Vector light() const noexcept;
+  hal::Vector2 flock() const noexcept;
+  hal::Vector2 light() const noexcept;
 
   const hal::OmnidirectionalCamera& camera_;
   const hal::Light& light_;

@@ -7,6 +7,7 @@
 #include "controllers/steering/drive.hpp"
 #include "controllers/steering/nearby.hpp"
 #include "hal/elementary.hpp"
+#include "hal/vector.hpp"
 
 namespace tandem::controllers {
 namespace {
@@ -44,9 +45,8 @@ void FootbotFollow::step() noexcept {
   const double along_m = range_m * hal::cos(static_cast<double>(heard_.elevation_rad[who])) - params_.keep_m;
   if (along_m <= 0.0) return;
   const double bearing_rad = static_cast<double>(heard_.bearing_rad[who]);
-  const Vector away = push_away(proximity_, mounts_);
-  const Vector way{hal::cos(bearing_rad) + kAvoid * away.x, hal::sin(bearing_rad) + kAvoid * away.y};
-  drive_towards(wheels_, way.bearing_rad(), std::min(params_.speed_m_s, kSlowDown_1_s * along_m + 0.01));
+  const hal::Vector2 way = hal::polar(1.0, bearing_rad) + kAvoid * push_away(proximity_, mounts_);
+  drive_towards(wheels_, hal::bearing_of(way), std::min(params_.speed_m_s, kSlowDown_1_s * along_m + 0.01));
 }
 
 }  // namespace tandem::controllers

@@ -5,7 +5,6 @@
 
 #include "controllers/steering/drive.hpp"
 #include "controllers/steering/nearby.hpp"
-#include "hal/elementary.hpp"
 #include "hal/spec/footbot.hpp"
 
 namespace tandem::controllers {
@@ -30,7 +29,7 @@ FootbotForaging::FootbotForaging(hal::Robot& robot, const Params& params)
       proximity_mounts_(robot.data_sheet().proximity),
       light_mounts_(robot.data_sheet().light),
       params_(params),
-      chance_(robot.seed()) {}
+      random_(robot.random()) {}
 
 void FootbotForaging::step() noexcept {
   if (proximity_.validity != hal::Validity::Fresh || ground_.validity != hal::Validity::Fresh) {
@@ -60,20 +59,20 @@ void FootbotForaging::enter(State state) noexcept {
 
 void FootbotForaging::rest() noexcept {
   wheels_.set(0.0, 0.0);
-  if (chance_.between(0.0, 1.0) < params_.leave * clock_.tick_s) enter(State::Search);
+  if (random_.chance(params_.leave * clock_.tick_s)) enter(State::Search);
 }
 
 void FootbotForaging::search() noexcept {
   if (all_see(-1.0F, kBlack)) return enter(State::Bring);
   if (in_state_s() > params_.search_s) return enter(State::GiveUp);
-  drift_rad_ = std::clamp(drift_rad_ + chance_.between(-kDrift_rad, kDrift_rad), -0.5, 0.5);
-  const Vector light = to_light(light_, light_mounts_);
-  const double brightness = light.length();
+  drift_rad_ = std::clamp(drift_rad_ + random_.uniform(-kDrift_rad, kDrift_rad), -0.5, 0.5);
+  const hal::Vector2 light = to_light(light_, light_mounts_);
+  const double brightness = hal::length_of(light);
   const bool leaving = (in_state_s() < kAway_s || all_see(kGreyLow, kGreyHigh)) && brightness > 0.0;
   if (leaving)
-    walk(-light.x / brightness, -light.y / brightness);
+    walk(-light / brightness);
   else
-    walk(hal::cos(drift_rad_), hal::sin(drift_rad_));
+    walk(hal::polar(1.0, drift_rad_));
 }
 
 void FootbotForaging::go_home() noexcept {
@@ -83,18 +82,18 @@ void FootbotForaging::go_home() noexcept {
                                            : std::max(params_.least, params_.leave - params_.less);
     return enter(State::Rest);
   }
-  const Vector light = to_light(light_, light_mounts_);
-  const double brightness = light.length();
+  const hal::Vector2 light = to_light(light_, light_mounts_);
+  const double brightness = hal::length_of(light);
   if (brightness > 0.0)
-    walk(light.x / brightness, light.y / brightness);
+    walk(light / brightness);
   else
-    walk(1.0, 0.0);
+    walk({1.0, 0.0});
 }
 
-/// Towards (x, y) in the body frame, but away from what is near.
-void FootbotForaging::walk(double x, double y) noexcept {
-  const Vector push = push_away(proximity_, proximity_mounts_);
-  drive_towards(wheels_, Vector{x + kPush * push.x, y + kPush * push.y}.bearing_rad(), params_.velocity_m_s);
+/// Along a vector of length 1, but away from what is near.
+void FootbotForaging::walk(const hal::Vector2& way) noexcept {
+  const hal::Vector2 push = push_away(proximity_, proximity_mounts_);
+  drive_towards(wheels_, hal::bearing_of(way + kPush * push), params_.velocity_m_s);
 }
 
 bool FootbotForaging::all_see(float low, float high) const noexcept {

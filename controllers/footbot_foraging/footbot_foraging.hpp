@@ -2,12 +2,13 @@
 #pragma once
 #include <span>
 
-#include "controllers/steering/chance.hpp"
 #include "hal/controller.hpp"
 #include "hal/device/body_sensors.hpp"
 #include "hal/device/leds.hpp"
 #include "hal/device/ring_sensors.hpp"
 #include "hal/device/wheels.hpp"
+#include "hal/random.hpp"
+#include "hal/vector.hpp"
 
 namespace tandem::controllers {
 
@@ -48,7 +49,7 @@ class FootbotForaging final : public hal::Controller {
   void search() noexcept;
   void go_home() noexcept;
   void enter(State state) noexcept;
-  void walk(double x, double y) noexcept;
+  void walk(const hal::Vector2& way) noexcept;
   bool all_see(float low, float high) const noexcept;
   double in_state_s() const noexcept { return static_cast<double>(clock_.now_ns - since_ns_) * 1e-9; }
 
@@ -61,7 +62,7 @@ class FootbotForaging final : public hal::Controller {
   std::span<const hal::Mount> proximity_mounts_;
   std::span<const hal::Mount> light_mounts_;
   Params params_;
-  Chance chance_;
+  hal::Random random_;
   State state_ = State::Rest;
   hal::TimeNs since_ns_ = 0;
   hal::TimeNs inside_ns_ = -1;  // when it came into the nest; -1: it is outside

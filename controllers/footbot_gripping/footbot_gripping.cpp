@@ -4,6 +4,7 @@
 
 #include "controllers/steering/drive.hpp"
 #include "controllers/steering/nearby.hpp"
+#include "hal/angle.hpp"
 #include "hal/elementary.hpp"
 
 namespace tandem::controllers {
@@ -53,7 +54,7 @@ double FootbotGripping::from_home_m() const noexcept {
 }
 
 double FootbotGripping::bearing_of_home_rad() const noexcept {
-  return wrapped(hal::atan2(-odometry_.y_m, -odometry_.x_m) - odometry_.heading_rad);
+  return hal::wrapped(hal::atan2(-odometry_.y_m, -odometry_.x_m) - odometry_.heading_rad);
 }
 
 void FootbotGripping::look() noexcept {

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "controllers/steering/nearby.hpp"
+#include "hal/angle.hpp"
 
 namespace tandem::controllers {
 namespace {
@@ -24,7 +25,7 @@ void FootbotShuttle::step() noexcept {
   wheels_.set(0.0, 0.0);
   if (odometry_.validity != hal::Validity::Fresh || done_ == params_.trips) return;
   if (turning_) {
-    const double left_rad = wrapped((home_ ? std::numbers::pi : 0.0) - odometry_.heading_rad);
+    const double left_rad = hal::wrapped((home_ ? std::numbers::pi : 0.0) - odometry_.heading_rad);
     if (std::fabs(left_rad) > kTurned_rad) {
       const double most_m_s = 0.5 * params_.velocity_m_s;
       const double rim_m_s = std::clamp(0.5 * kTurnGain_hz * wheel_base_m_ * left_rad, -most_m_s, most_m_s);

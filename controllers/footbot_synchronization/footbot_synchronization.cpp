@@ -9,7 +9,7 @@ FootbotSynchronization::FootbotSynchronization(hal::Robot& robot, const Params& 
       clock_(robot.sensor<hal::Clock>()),
       leds_(robot.actuator<hal::RingLeds>()),
       params_(params),
-      count_(Chance(robot.seed()).between(0.0, 1.0)) {}
+      count_(robot.random().uniform()) {}
 
 void FootbotSynchronization::step() noexcept {
   const bool flashes = clock_.now_ns < dark_from_ns_;

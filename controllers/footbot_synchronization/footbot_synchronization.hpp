@@ -1,6 +1,5 @@
 // Foot-bots that flash in unison, as fireflies do.
 #pragma once
-#include "controllers/steering/chance.hpp"
 #include "hal/controller.hpp"
 #include "hal/device/body_sensors.hpp"
 #include "hal/device/cameras.hpp"

@@ -4,7 +4,8 @@
 #include <numbers>
 
 #include "controllers/steering/drive.hpp"
-#include "hal/elementary.hpp"
+#include "hal/angle.hpp"
+#include "hal/vector.hpp"
 
 namespace tandem::controllers {
 namespace {
@@ -42,7 +43,7 @@ FootbotTaskPartitioning::FootbotTaskPartitioning(hal::Robot& robot, const Params
       light_mounts_(robot.data_sheet().light),
       params_(params),
       grasp_(robot, params.broadest_m),
-      chance_(robot.seed()) {
+      random_(robot.random()) {
   send_.sending = true;  // so that nobody takes it for an object
   send_.size = 1;
 }
@@ -75,12 +76,12 @@ bool FootbotTaskPartitioning::fresh() const noexcept {
          light_.validity == hal::Validity::Fresh;
 }
 
-double FootbotTaskPartitioning::distance_to(const Vector& place) const noexcept {
-  return hal::hypot(place.x - odometry_.x_m, place.y - odometry_.y_m);
+double FootbotTaskPartitioning::distance_to(const hal::Vector2& place) const noexcept {
+  return hal::length_of(place - hal::Vector2(odometry_.x_m, odometry_.y_m));
 }
 
-double FootbotTaskPartitioning::bearing_to(const Vector& place) const noexcept {
-  return wrapped(hal::atan2(place.y - odometry_.y_m, place.x - odometry_.x_m) - odometry_.heading_rad);
+double FootbotTaskPartitioning::bearing_to(const hal::Vector2& place) const noexcept {
+  return hal::turn_between(odometry_.heading_rad, hal::bearing_of(place - hal::Vector2(odometry_.x_m, odometry_.y_m)));
 }
 
 void FootbotTaskPartitioning::enter(State state) noexcept {
@@ -94,10 +95,10 @@ void FootbotTaskPartitioning::enter(State state) noexcept {
 void FootbotTaskPartitioning::explore() noexcept {
   if (found_something(State::Explore) || avoid_robots()) return;
   if (clock_.now_ns >= leg_until_ns_) {
-    leg_until_ns_ = clock_.now_ns + in_s(chance_.between(5.0, 15.0));
-    goal_heading_rad_ = wrapped(odometry_.heading_rad + chance_.between(-1.5, 1.5));
+    leg_until_ns_ = clock_.now_ns + in_s(random_.uniform(5.0, 15.0));
+    goal_heading_rad_ = hal::wrapped(odometry_.heading_rad + random_.uniform(-1.5, 1.5));
   }
-  drive_towards(wheels_, wrapped(goal_heading_rad_ - odometry_.heading_rad), params_.velocity_m_s);
+  drive_towards(wheels_, hal::wrapped(goal_heading_rad_ - odometry_.heading_rad), params_.velocity_m_s);
 }
 
 void FootbotTaskPartitioning::search() noexcept {
@@ -108,9 +109,9 @@ void FootbotTaskPartitioning::search() noexcept {
   }
   if (found_something(State::Search) || avoid_robots()) return;
   if (distance_to(waypoint_) < kNear_m || clock_.now_ns >= leg_until_ns_) {
-    const double direction_rad = chance_.between(-std::numbers::pi, std::numbers::pi);
-    const double away_m = params_.search_m * std::sqrt(chance_.between(0.0, 1.0));
-    waypoint_ = {place_.x + away_m * hal::cos(direction_rad), place_.y + away_m * hal::sin(direction_rad)};
+    const double direction_rad = random_.uniform(-std::numbers::pi, std::numbers::pi);
+    const double away_m = params_.search_m * std::sqrt(random_.uniform(0.0, 1.0));
+    waypoint_ = place_ + hal::polar(away_m, direction_rad);
     leg_until_ns_ = clock_.now_ns + in_s(5.0 + 2.0 * distance_to(waypoint_) / params_.velocity_m_s);
   }
   drive_towards(wheels_, bearing_to(waypoint_), params_.velocity_m_s);
@@ -145,8 +146,8 @@ bool FootbotTaskPartitioning::avoid_robots() noexcept {
 
 void FootbotTaskPartitioning::turn_away(double bearing_rad, State then) noexcept {
   after_ = then;
-  const double off_rad = std::numbers::pi + chance_.between(-1.2, 1.2);
-  goal_heading_rad_ = wrapped(odometry_.heading_rad + bearing_rad + off_rad);
+  const double off_rad = std::numbers::pi + random_.uniform(-1.2, 1.2);
+  goal_heading_rad_ = hal::wrapped(odometry_.heading_rad + bearing_rad + off_rad);
   turned_ = false;
   enter(State::Turn);
   turn();
@@ -154,7 +155,7 @@ void FootbotTaskPartitioning::turn_away(double bearing_rad, State then) noexcept
 
 void FootbotTaskPartitioning::turn() noexcept {
   if (!turned_) {
-    turned_ = turn_by(wheels_, wrapped(goal_heading_rad_ - odometry_.heading_rad), kTurn_m_s);
+    turned_ = turn_by(wheels_, hal::wrapped(goal_heading_rad_ - odometry_.heading_rad), kTurn_m_s);
     since_ns_ = clock_.now_ns;
     return;
   }
@@ -189,11 +190,11 @@ void FootbotTaskPartitioning::carry() noexcept {
   if ((home && distance_to(waypoint_) > kIntoNest_m) || distance_to(place_) > params_.carry_m ||
       in_state_s() > kCarryMost_s)
     return enter(State::Release);
-  Vector way = to_light(light_, light_mounts_);
-  const double brightness = way.length();
-  const Vector push = push_away(proximity_, proximity_mounts_, kCarried_rad);
-  way = brightness > 0.0 ? Vector{way.x / brightness, way.y / brightness} : Vector{1.0, 0.0};
-  double bearing_rad = Vector{way.x + 8.0 * push.x, way.y + 8.0 * push.y}.bearing_rad();
+  const hal::Vector2 light = to_light(light_, light_mounts_);
+  const double brightness = hal::length_of(light);
+  const hal::Vector2 push = push_away(proximity_, proximity_mounts_, kCarried_rad);
+  const hal::Vector2 way = brightness > 0.0 ? hal::Vector2(light / brightness) : hal::Vector2(1.0, 0.0);
+  double bearing_rad = hal::bearing_of(way + 8.0 * push);
   if (robot_near(heard_, 0.2, 0.8, kRobotAhead_m)) bearing_rad -= 1.0;  // everybody keeps right
   drive_towards(wheels_, bearing_rad, params_.velocity_m_s);
 }
@@ -224,9 +225,8 @@ void FootbotTaskPartitioning::go_back() noexcept {
   if (distance_to(place_) < params_.search_m && found_something(State::Return)) return;
   const double to_place_rad = bearing_to(place_);
   if (std::fabs(to_place_rad) > 0.6) return drive_towards(wheels_, to_place_rad, params_.velocity_m_s);
-  const Vector push = push_away(proximity_, proximity_mounts_);
-  const Vector way = {hal::cos(to_place_rad) + 8.0 * push.x, hal::sin(to_place_rad) + 8.0 * push.y};
-  double bearing_rad = way.bearing_rad();
+  const hal::Vector2 push = push_away(proximity_, proximity_mounts_);
+  double bearing_rad = hal::bearing_of(hal::polar(1.0, to_place_rad) + 8.0 * push);
   if (robot_near(heard_, 0.2, 0.8, kRobotAhead_m)) bearing_rad -= 1.0;
   drive_towards(wheels_, bearing_rad, params_.velocity_m_s);
 }

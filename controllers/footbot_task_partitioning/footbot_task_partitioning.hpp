@@ -1,10 +1,10 @@
 // Foraging by task partitioning: foot-bots carry objects towards the nest, each only so far as its odometry is good.
 #pragma once
 #include "controllers/grasping/grasp.hpp"
-#include "controllers/steering/chance.hpp"
 #include "controllers/steering/nearby.hpp"
 #include "hal/controller.hpp"
 #include "hal/device/leds.hpp"
+#include "hal/random.hpp"
 
 namespace tandem::controllers {
 
@@ -58,8 +58,8 @@ class FootbotTaskPartitioning final : public hal::Controller {
   bool avoid_robots() noexcept;
   bool fresh() const noexcept;
   double in_state_s() const noexcept { return static_cast<double>(clock_.now_ns - since_ns_) * 1e-9; }
-  double distance_to(const Vector& place) const noexcept;
-  double bearing_to(const Vector& place) const noexcept;
+  double distance_to(const hal::Vector2& place) const noexcept;
+  double bearing_to(const hal::Vector2& place) const noexcept;
 
   const hal::Proximity& proximity_;
   const hal::Light& light_;
@@ -74,7 +74,7 @@ class FootbotTaskPartitioning final : public hal::Controller {
   std::span<const hal::Mount> light_mounts_;
   Params params_;
   Grasp grasp_;
-  Chance chance_;
+  hal::Random random_;
 
   State state_ = State::Explore;
   State after_ = State::Explore;  // Grasp and Turn: what comes when there was nothing to grip
@@ -85,8 +85,8 @@ class FootbotTaskPartitioning final : public hal::Controller {
   hal::TimeNs return_until_ns_ = 0;
   bool knows_place_ = false;
   hal::TimeNs search_until_ns_ = 0;
-  Vector place_{};     // where it gripped last, as odometry had it
-  Vector waypoint_{};  // Search: where to look next
+  hal::Vector2 place_ = hal::Vector2::Zero();     // where it gripped last, as odometry had it
+  hal::Vector2 waypoint_ = hal::Vector2::Zero();  // Search: where to look next
 };
 
 }  // namespace tandem::controllers

@@ -1,9 +1,8 @@
 #include "controllers/steering/nearby.hpp"
 
 #include <cmath>
-#include <numbers>
 
-#include "hal/elementary.hpp"
+#include "hal/angle.hpp"
 
 namespace tandem::controllers {
 namespace {
@@ -18,23 +17,10 @@ bool sees(const hal::Proximity& proximity, std::size_t i) noexcept {
 
 }  // namespace
 
-double wrapped(double angle_rad) noexcept {
-  const double turns = std::ceil((angle_rad - std::numbers::pi) / (2.0 * std::numbers::pi));
-  return angle_rad - 2.0 * std::numbers::pi * turns;
-}
-
-double Vector::length() const noexcept {
-  return hal::hypot(x, y);
-}
-
-double Vector::bearing_rad() const noexcept {
-  return hal::atan2(y, x);
-}
-
 bool robot_near(const hal::RangeAndBearing& heard, double bearing_rad, double within_rad, double range_m) noexcept {
   for (std::size_t k = 0; k < heard.count; ++k) {
     if (static_cast<double>(heard.range_m[k]) <= range_m &&
-        std::fabs(wrapped(static_cast<double>(heard.bearing_rad[k]) - bearing_rad)) <= within_rad)
+        std::fabs(hal::wrapped(static_cast<double>(heard.bearing_rad[k]) - bearing_rad)) <= within_rad)
       return true;
   }
   return false;
@@ -63,43 +49,34 @@ Thing nearest_thing(const hal::Proximity& proximity, std::span<const hal::Mount>
   };
   const auto point = [&](std::size_t i) {
     const double d_m = static_cast<double>(proximity.distance_m[i]);
-    return Vector{mounts[i].x_m + d_m * hal::cos(mounts[i].bearing_rad),
-                  mounts[i].y_m + d_m * hal::sin(mounts[i].bearing_rad)};
+    return hal::Vector2(hal::Vector2(mounts[i].x_m, mounts[i].y_m) + hal::polar(d_m, mounts[i].bearing_rad));
   };
   const std::size_t right = end_of(n - 1);
   const std::size_t left = end_of(1);
-  const Vector a = point(right);
-  const Vector b = point(left);
-  Vector middle;
+  hal::Vector2 middle = hal::Vector2::Zero();
   for (std::size_t i = right;; i = (i + 1) % n) {
-    const double closeness = static_cast<double>(proximity.closeness(i));
-    middle.x += closeness * hal::cos(mounts[i].bearing_rad);
-    middle.y += closeness * hal::sin(mounts[i].bearing_rad);
+    middle += hal::polar(static_cast<double>(proximity.closeness(i)), mounts[i].bearing_rad);
     if (i == left) break;
   }
-  return {true, middle.bearing_rad(), static_cast<double>(proximity.distance_m[nearest]),
-          hal::hypot(a.x - b.x, a.y - b.y)};
+  return {true, hal::bearing_of(middle), static_cast<double>(proximity.distance_m[nearest]),
+          hal::length_of(point(right) - point(left))};
 }
 
-Vector push_away(const hal::Proximity& proximity, std::span<const hal::Mount> mounts, double from_rad) noexcept {
-  Vector push;
+hal::Vector2 push_away(const hal::Proximity& proximity, std::span<const hal::Mount> mounts, double from_rad) noexcept {
+  hal::Vector2 push = hal::Vector2::Zero();
   const std::size_t n = std::min<std::size_t>(proximity.count, mounts.size());
   for (std::size_t i = 0; i < n; ++i) {
-    if (std::fabs(wrapped(mounts[i].bearing_rad)) < from_rad) continue;
+    if (std::fabs(hal::wrapped(mounts[i].bearing_rad)) < from_rad) continue;
     const double closeness = static_cast<double>(proximity.closeness(i));
-    push.x -= closeness * hal::cos(mounts[i].bearing_rad) / static_cast<double>(n);
-    push.y -= closeness * hal::sin(mounts[i].bearing_rad) / static_cast<double>(n);
+    push -= hal::polar(closeness, mounts[i].bearing_rad) / static_cast<double>(n);
   }
   return push;
 }
 
-Vector to_light(const hal::Light& light, std::span<const hal::Mount> mounts) noexcept {
-  Vector sum;
+hal::Vector2 to_light(const hal::Light& light, std::span<const hal::Mount> mounts) noexcept {
+  hal::Vector2 sum = hal::Vector2::Zero();
   const std::size_t n = std::min<std::size_t>(light.count, mounts.size());
-  for (std::size_t i = 0; i < n; ++i) {
-    sum.x += static_cast<double>(light.level[i]) * hal::cos(mounts[i].bearing_rad);
-    sum.y += static_cast<double>(light.level[i]) * hal::sin(mounts[i].bearing_rad);
-  }
+  for (std::size_t i = 0; i < n; ++i) sum += hal::polar(static_cast<double>(light.level[i]), mounts[i].bearing_rad);
   return sum;
 }
 

@@ -1,23 +1,14 @@
 // What a robot makes of its rings of sensors: the nearest thing, the push away from what is near, the way to the light.
+// Vectors are in the body frame (x forward, y left), bearings counter-clockwise from forward.
 #pragma once
 #include <span>
 
 #include "hal/device/range_and_bearing.hpp"
 #include "hal/device/ring_sensors.hpp"
 #include "hal/spec/data_sheet.hpp"
+#include "hal/vector.hpp"
 
 namespace tandem::controllers {
-
-/// In (-pi, pi].
-double wrapped(double angle_rad) noexcept;
-
-/// In the body frame (x forward, y left).
-struct Vector {
-  double x = 0.0, y = 0.0;
-
-  double length() const noexcept;
-  double bearing_rad() const noexcept;  ///< counter-clockwise from forward; of the zero vector 0
-};
 
 /// Something that neighbouring proximity sensors see.
 struct Thing {
@@ -36,10 +27,11 @@ Thing nearest_thing(const hal::Proximity& proximity, std::span<const hal::Mount>
 
 /// Mean of what all sensors see that look more than `from_rad` away from straight ahead, as a vector away from it: each
 /// sensor counts 0 with nothing in range and 1 at contact.
-Vector push_away(const hal::Proximity& proximity, std::span<const hal::Mount> mounts, double from_rad = 0.0) noexcept;
+hal::Vector2 push_away(const hal::Proximity& proximity, std::span<const hal::Mount> mounts,
+                       double from_rad = 0.0) noexcept;
 
 /// Sum of the light that each sensor sees, along the sensor. `mounts` are the light sensors'.
-Vector to_light(const hal::Light& light, std::span<const hal::Mount> mounts) noexcept;
+hal::Vector2 to_light(const hal::Light& light, std::span<const hal::Mount> mounts) noexcept;
 
 /// Mean reflectance that the sensors see; 1 where there are none.
 double mean_reflectance(const hal::Ground& ground) noexcept;

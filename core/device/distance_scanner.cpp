@@ -5,6 +5,7 @@
 #include "core/device/ray_ring.hpp"
 #include "core/device/types.hpp"
 #include "core/space/mechanisms.hpp"
+#include "hal/angle.hpp"
 
 namespace tandem::core {
 namespace {
@@ -44,7 +45,7 @@ class ScannerActuator final : public Actuator {
       ScannerState& scanner = scanners_[i];
       scanner.mode = obeys(context, i) ? drives[i].mode : ScannerMode::Off;
       scanner.swept_rad = step_rad(context, stores.bodies.entity[row], scanner, drives[i]);
-      scanner.angle_rad = wrapped(scanner.angle_rad + scanner.swept_rad);
+      scanner.angle_rad = hal::wrapped(scanner.angle_rad + scanner.swept_rad);
     }
   }
 
@@ -53,7 +54,7 @@ class ScannerActuator final : public Actuator {
                   const hal::ScannerDrive& drive) const noexcept {
     if (scanner.mode == ScannerMode::Position) {
       const double most_rad = fastest_rad_s_ * context.tick_s;
-      return std::clamp(wrapped(drive.angle_rad - scanner.angle_rad), -most_rad, most_rad);
+      return std::clamp(hal::wrapped(drive.angle_rad - scanner.angle_rad), -most_rad, most_rad);
     }
     if (scanner.mode != ScannerMode::Speed) return 0.0;
     double error = 0.0;
@@ -151,7 +152,7 @@ class ScannerSensor final : public Sensor {
     for (std::size_t head = 0; head < DistanceScanner::kHeads; ++head) {
       for (std::size_t k = 0; k < port.samples; ++k) {
         const double back = scanner.swept_rad * (1.0 - static_cast<double>(k + 1) / port.samples);
-        const double angle = wrapped(scanner.angle_rad - back + sheet_.scanner[head].bearing_rad);
+        const double angle = hal::wrapped(scanner.angle_rad - back + sheet_.scanner[head].bearing_rad);
         const std::size_t ray = port.at(head, k);
         port.angle_rad[ray] = static_cast<float>(angle);
         ring_.dx[ray] = static_cast<float>(std::cos(angle));

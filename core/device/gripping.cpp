@@ -5,6 +5,7 @@
 
 #include "core/device/coupling.hpp"
 #include "core/space/mechanisms.hpp"
+#include "hal/angle.hpp"
 
 namespace tandem::core {
 namespace {
@@ -174,7 +175,7 @@ void take_hold(SpaceStores& s, std::size_t row, GripState& grip, BodyKey held, d
   joint.heading_rad = turn_between(a, b);
   grip.joint = number;
   grip.generation = generation;
-  grip.turn_rad = wrapped(turret_rad - joint.heading_rad);
+  grip.turn_rad = hal::wrapped(turret_rad - joint.heading_rad);
   ++grip.grips;
   s.bodies_changed = true;  // both belong to one region from now on
 }
@@ -209,7 +210,7 @@ Drive drive_of(const TurretState& turret, const hal::DataSheet& sheet, double ti
     case hal::TurretMode::Speed:
       return turret.target == 0.0 ? Drive{} : drive(turret.target);
     case hal::TurretMode::Position: {
-      const double left_rad = wrapped(turret.target - turret.angle_rad);
+      const double left_rad = hal::wrapped(turret.target - turret.angle_rad);
       return std::fabs(left_rad) < kThere_rad ? Drive{} : drive(left_rad / tick_s);
     }
     case hal::TurretMode::Off:
@@ -274,8 +275,8 @@ class Gripping final : public Coupling {
       const Joint* joint = turret == nullptr ? nullptr : joint_of(stores, grip);
       if (joint == nullptr) return;
       const double angle_rad =
-          wrapped(grip.turn_rad + turn_between(place_of(stores, joint->a), place_of(stores, joint->b)));
-      turret->speed_rad_s = wrapped(angle_rad - turret->angle_rad) / tick_s;
+          hal::wrapped(grip.turn_rad + turn_between(place_of(stores, joint->a), place_of(stores, joint->b)));
+      turret->speed_rad_s = hal::wrapped(angle_rad - turret->angle_rad) / tick_s;
       turret->angle_rad = angle_rad;
     });
   }

@@ -4,6 +4,7 @@
 #include "core/device/types.hpp"
 #include "core/random/random.hpp"
 #include "core/space/mechanisms.hpp"
+#include "hal/angle.hpp"
 
 namespace tandem::core {
 namespace {
@@ -48,7 +49,8 @@ class HeadActuator final : public Actuator {
       }
       HeadState& head = heads_[i];
       const double tilt = std::clamp(drive.tilt_rad, -sheet_.most_tilt_rad, sheet_.most_tilt_rad);
-      head.pan_rad = wrapped(head.pan_rad + std::clamp(wrapped(drive.pan_rad - head.pan_rad), -most_rad, most_rad));
+      head.pan_rad =
+          hal::wrapped(head.pan_rad + std::clamp(hal::wrapped(drive.pan_rad - head.pan_rad), -most_rad, most_rad));
       head.tilt_rad += std::clamp(tilt - head.tilt_rad, -most_rad, most_rad);
       head.laser = drive.laser;
     }
@@ -103,7 +105,7 @@ class HeadEncoderSensor final : public Sensor {
       double tilt_rad = heads_[i].tilt_rad;
       if (noise_rad_ > 0.0) {
         const auto bits = draw(context.seed, b.entity[row], Stream::HeadEncoderNoise, context.tick);
-        pan_rad = wrapped(pan_rad + noise_rad_ * to_symmetric(bits[0]));
+        pan_rad = hal::wrapped(pan_rad + noise_rad_ * to_symmetric(bits[0]));
         tilt_rad += noise_rad_ * to_symmetric(bits[1]);
       }
       encoders[i].pan_rad = pan_rad;

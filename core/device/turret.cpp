@@ -3,6 +3,7 @@
 
 #include "core/device/types.hpp"
 #include "core/space/mechanisms.hpp"
+#include "hal/angle.hpp"
 
 namespace tandem::core {
 namespace {
@@ -59,9 +60,9 @@ class TurretActuator final : public Actuator {
     if (turret.mode == hal::TurretMode::Speed) step_rad = turret.target * tick_s;
     if (turret.mode == hal::TurretMode::Position) {
       const double most_rad = fastest_rad_s_ * tick_s;
-      step_rad = std::clamp(wrapped(turret.target - turret.angle_rad), -most_rad, most_rad);
+      step_rad = std::clamp(hal::wrapped(turret.target - turret.angle_rad), -most_rad, most_rad);
     }
-    turret.angle_rad = wrapped(turret.angle_rad + step_rad);
+    turret.angle_rad = hal::wrapped(turret.angle_rad + step_rad);
     turret.speed_rad_s = step_rad / tick_s;
   }
 
@@ -119,7 +120,7 @@ class TurretEncoderSensor final : public Sensor {
       port.speed_rad_s = static_cast<float>(turrets_[i].speed_rad_s);
       if (noise_rad_ == 0.0) continue;
       const auto bits = draw(context.seed, b.entity[row], Stream::TurretEncoderNoise, context.tick);
-      port.angle_rad = wrapped(port.angle_rad + noise_rad_ * to_symmetric(bits[0]));
+      port.angle_rad = hal::wrapped(port.angle_rad + noise_rad_ * to_symmetric(bits[0]));
     }
   }
 

@@ -4,6 +4,7 @@
 #include "core/device/types.hpp"
 #include "core/random/random.hpp"
 #include "core/space/mechanisms.hpp"
+#include "hal/angle.hpp"
 
 namespace tandem::core {
 namespace {
@@ -324,7 +325,7 @@ class OdometrySensor final : public Sensor {
     const double chord_m = std::fabs(half) < 1e-6 ? way_m : way_m * std::sin(half) / half;
     r.x_m += chord_m * std::cos(r.heading_rad + half);
     r.y_m += chord_m * std::sin(r.heading_rad + half);
-    r.heading_rad = wrapped(r.heading_rad + turn_rad);
+    r.heading_rad = hal::wrapped(r.heading_rad + turn_rad);
   }
 
   double wheel_base_m_;

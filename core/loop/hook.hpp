@@ -5,14 +5,16 @@
 #include <optional>
 #include <string>
 
+#include "core/loop/measures.hpp"
 #include "core/scenario/element.hpp"
+#include "core/space/ids.hpp"
+#include "core/space/sketch.hpp"
+#include "core/space/space.hpp"
 #include "hal/plugin.hpp"
 #include "hal/result.hpp"
 #include "hal/time.hpp"
 
 namespace tandem::core {
-
-class Space;
 
 /// Lets a hook keep moments of the run and go back to them. Requests take effect when the current step is over (those
 /// of `before_run`: before the first step), in the order in which they were made; those of `after_run` have none.
@@ -26,6 +28,9 @@ class Checkpoints {
   /// Goes back: the next step is the one that followed the moment. Robots, objects, controllers, time and what hooks
   /// hand out in `Hook::save` are then as they were. Errors: there is no moment of that name.
   virtual hal::Status restore(const std::string& name) = 0;
+  /// Begins the run anew with this seed: World::reset. What hooks made is gone, checkpoints too. Of those of
+  /// `before_run`, which would never end, the run fails.
+  virtual void reset(std::uint64_t seed) = 0;
 };
 
 /// What a hook is handed: the whole simulated state, to read and to change, and where the run is.
@@ -35,6 +40,16 @@ struct HookContext {
   std::int64_t ticks_per_second = 10;
   std::uint64_t seed = 0;
   Checkpoints& checkpoints;
+  Sketch& sketch;
+  Measures& measures;
+
+  /// The robot's controller, to look at and to change between steps; null when it is of another class or the robot is
+  /// gone. Both plug-ins must be built from the same header of the class.
+  /// @throws std::runtime_error when the classes have one name and different sizes: one of them is to be rebuilt
+  template <class T>
+  T* controller(RobotId robot) const {
+    return static_cast<T*>(space.controller(robot, hal::detail::class_name<T>(), sizeof(T)));
+  }
 };
 
 /// Called from the thread that steps the world, never during a parallel phase. An exception ends the run, by name.
@@ -48,6 +63,9 @@ class Hook {
   /// Asked after every step; true ends the run.
   virtual bool is_done(HookContext&) { return false; }
   virtual void after_run(HookContext&) {}
+  /// The run begins anew, with another seed perhaps; `before_run` follows. True: the hook is at its start again, and
+  /// remembers what it wants to (the best run so far, say). False: it is destroyed and made anew.
+  virtual bool reset(std::uint64_t /*seed*/) { return false; }
 
   /// Reflectance of the floor at (x, y) in W, 0 black to 1 white; none: the hook leaves what is there. Asked once a
   /// floor pixel when the file says `<floor source="loop_functions"/>`, and again after `Space::repaint_floor`. Hooks

@@ -2,20 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "core/placement/occupancy.hpp"
 #include "core/random/random.hpp"
+#include "hal/angle.hpp"
 
 namespace tandem::core {
 namespace {
 
 /// The same angle in (-pi, pi].
-double wrapped(double angle_rad) noexcept {
-  const double a = std::remainder(angle_rad, 2.0 * std::numbers::pi);
-  return a <= -std::numbers::pi ? a + 2.0 * std::numbers::pi : a;
-}
-
 Obstacle obstacle_of(const ObjectItem& item, std::uint32_t index, const Vec3& p, double yaw_rad) noexcept {
   Obstacle o = item.shape == ShapeKind::Cylinder ? disc_at(p[0], p[1], item.size[0])
                                                  : box_at(p[0], p[1], item.size[0], item.size[1], yaw_rad);
@@ -150,7 +145,7 @@ class Placer {
   }
 
   void place_fixed_object(std::uint32_t i, const ObjectItem& item) {
-    const double yaw = wrapped(item.placement.yaw_rad);
+    const double yaw = hal::wrapped(item.placement.yaw_rad);
     const Obstacle o = obstacle_of(item, i, item.placement.p_W, yaw);
     const Obstacle* other = item.movable ? occupancy_.hit(o) : nullptr;
     if (other != nullptr) problem(item.line, name_of(o) + " overlaps " + name_of(*other) + "; move one of them");
@@ -173,11 +168,14 @@ class Placer {
     const Obstacle o = robot_at(p, i);
     if (!inside(p)) {
       problem(item.line, "robot '" + item.id + "' is at " + text_of(p) + ", outside the arena");
+    } else if (p[2] < 0.0) {
+      problem(item.line, "robot '" + item.id + "' is at a height of " + hal::format_number(p[2]) +
+                             " m, below the ground; <body position> is where its base stands");
     } else if (const Obstacle* other = occupancy_.hit(o); other != nullptr) {
       problem(item.line, "robot '" + item.id + "' overlaps " + name_of(*other) + "; move one of them");
     } else {
       occupancy_.add(o);
-      robots_by_item_[i].push_back({p[0], p[1], p[2], wrapped(item.placement.yaw_rad), i, -1});
+      robots_by_item_[i].push_back({p[0], p[1], p[2], hal::wrapped(item.placement.yaw_rad), i, -1});
     }
   }
 
@@ -247,7 +245,8 @@ class Placer {
       for (std::int64_t trial = 0; trial < trials && !attempt.placed; ++trial) {
         const auto t = static_cast<std::uint32_t>(trial);
         p = drawn(d.position, seed_, key, Stream::Placement, n, t);
-        attempt = try_place(d.base_num + n, p, wrapped(drawn(d.orientation, seed_, key, Stream::Orientation, n, t)[0]));
+        attempt =
+            try_place(d.base_num + n, p, hal::wrapped(drawn(d.orientation, seed_, key, Stream::Orientation, n, t)[0]));
       }
       if (attempt.placed) continue;
       const std::string last =

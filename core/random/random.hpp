@@ -1,12 +1,11 @@
 // Random numbers without a generator: a function of (seed, entity, stream, tick), the same on every thread and machine.
-//
-// Philox4x32-10 [Salmon et al. 2011, "Parallel random numbers: as easy as 1, 2, 3"], from the Random123 library.
 #pragma once
-#include <Random123/philox.h>
 #include <array>
 #include <cmath>
 #include <cstdint>
 #include <numbers>
+
+#include "hal/philox.hpp"
 
 namespace tandem::core {
 
@@ -56,11 +55,9 @@ enum class Stream : std::uint32_t {
 inline std::array<std::uint32_t, 4> draw(std::uint64_t seed, std::uint32_t entity, Stream stream, std::int64_t tick,
                                          std::uint32_t index = 0) noexcept {
   const auto t = static_cast<std::uint64_t>(tick);
-  const r123::Philox4x32::ctr_type counter = {{entity, static_cast<std::uint32_t>(stream) | (index << 8),
-                                               static_cast<std::uint32_t>(t), static_cast<std::uint32_t>(t >> 32)}};
-  const r123::Philox4x32::key_type key = {{static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32)}};
-  const auto out = r123::Philox4x32{}(counter, key);
-  return {out[0], out[1], out[2], out[3]};
+  return hal::philox({entity, static_cast<std::uint32_t>(stream) | (index << 8), static_cast<std::uint32_t>(t),
+                      static_cast<std::uint32_t>(t >> 32)},
+                     seed);
 }
 
 /// In [0, 1), 24 bits.

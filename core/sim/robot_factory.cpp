@@ -5,6 +5,7 @@
 #include <cstring>
 #include <map>
 #include <set>
+#include <stdexcept>
 
 #include "core/device/types.hpp"
 #include "core/random/random.hpp"
@@ -46,13 +47,16 @@ std::byte* make_array(RobotBlock& block, Slab* slab, std::size_t size, std::size
   return array;
 }
 
+void reset_ports(const hal::PortType& type, RobotBlock& block, std::size_t port) {
+  for (std::size_t i = 0; i < block.capacity; ++i) type.reset(block.ports[port] + i * type.size);
+}
+
 /// Gives the block an array for each port of its group that it has none for yet.
 void add_port_arrays(const RobotGroup& group, RobotBlock& block, Slab* slab) {
   for (std::size_t p = block.ports.size(); p < group.ports.size(); ++p) {
     const hal::PortType& type = *group.ports[p];
-    std::byte* const array = make_array(block, slab, type.size * block.capacity, type.align);
-    for (std::size_t i = 0; i < block.capacity; ++i) type.reset(array + i * type.size);
-    block.ports.push_back(array);
+    block.ports.push_back(make_array(block, slab, type.size * block.capacity, type.align));
+    reset_ports(type, block, p);
   }
 }
 
@@ -60,23 +64,26 @@ void add_port_arrays(const RobotGroup& group, RobotBlock& block, Slab* slab) {
 class ConstructedRobot final : public hal::Robot {
  public:
   ConstructedRobot(const Scenario& scenario, const SpaceStores& stores, RobotGroup& group, RobotBlock& block,
-                   Slab* slab, std::uint64_t run_seed)
-      : scenario_(scenario), stores_(stores), group_(group), block_(block), slab_(slab), run_seed_(run_seed) {}
+                   Slab* slab, std::uint64_t run_seed, hal::RobotLog::Sink& messages)
+      : scenario_(scenario),
+        stores_(stores),
+        group_(group),
+        block_(block),
+        slab_(slab),
+        run_seed_(run_seed),
+        messages_(messages) {}
 
   void select(std::size_t slot, std::uint32_t entity) {
     slot_ = slot;
-    entity_ = entity;
     const RobotEntity& e = stores_.robots[entity];
     id_ = stores_.names[e.item].prefix;
     if (e.number >= 0) id_ += std::to_string(e.number);
+    set_log(hal::RobotLog(messages_, entity));
   }
 
   std::string_view id() const noexcept override { return id_; }
   const hal::DataSheet& data_sheet() const noexcept override { return *group_.sheet; }
-  std::uint64_t seed() const noexcept override {
-    const auto bits = draw(run_seed_, entity_, Stream::ControllerSeed, 0);
-    return (static_cast<std::uint64_t>(bits[0]) << 32) | bits[1];
-  }
+  std::uint64_t run_seed() const noexcept override { return run_seed_; }
 
  protected:
   void* take(const hal::PortType& type) override {
@@ -106,6 +113,22 @@ class ConstructedRobot final : public hal::Robot {
     return block_.ports[i] + slot_ * type.size;
   }
 
+  void show(hal::PublishedField field, const void* member) override {
+    const auto at = reinterpret_cast<std::uintptr_t>(member);
+    const auto controller = reinterpret_cast<std::uintptr_t>(block_.controller(slot_));
+    if (at < controller || at + hal::size_of(field) > controller + group_.controller->size) {
+      throw std::logic_error("publishes '" + field.name +
+                             "', which does not lie in the controller itself: publish members that are values");
+    }
+    field.offset = at - controller;
+    for (const hal::PublishedField& known : group_.published) {
+      if (known.name != field.name) continue;
+      if (known == field) return;
+      throw std::logic_error("publishes two members under the name '" + field.name + "'");
+    }
+    group_.published.push_back(std::move(field));
+  }
+
  private:
   void check_listed(const hal::PortType& type) const {
     const bool sensor = type.role == hal::Role::Sensor;
@@ -132,8 +155,8 @@ class ConstructedRobot final : public hal::Robot {
   RobotBlock& block_;
   Slab* slab_;
   std::uint64_t run_seed_;
+  hal::RobotLog::Sink& messages_;
   std::size_t slot_ = 0;
-  std::uint32_t entity_ = 0;
   std::string id_;
 };
 
@@ -174,26 +197,68 @@ void RobotFactory::make(const std::vector<RobotRequest>& requests, Problems& pro
   for (std::size_t g = 0; g < unsorted.size(); ++g) {
     std::vector<std::uint32_t> members = unsorted[g];
     sort_by_place(requests, members);
-    if (prepare_group(g, problems) && make_blocks(g, requests, members, problems)) complete(g);
+    const bool prepared = stores_.groups[g].controller != nullptr;
+    if ((prepared || prepare_group(g, problems)) && make_blocks(g, requests, members, problems)) complete(g);
   }
   keep_sizes();
   slab_ = nullptr;
+  end_kept();
+  if (!start_groups_.empty()) return;
+  start_groups_ = stores_.groups;
+  start_blocks_ = stores_.blocks;
+  start_robots_ = stores_.robots.size();
+  for (const auto& column : stores_.columns.all()) start_columns_.emplace_back(column.get(), column->of_block);
+}
+
+/// Those that were not filled anew, because something went wrong.
+void RobotFactory::end_kept() noexcept {
+  for (; filled_ < kept_.size(); ++filled_) destroy_controllers(stores_, kept_[filled_]);
+  kept_.clear();
+  filled_ = 0;
+}
+
+RobotFactory::~RobotFactory() {
+  end_kept();
+}
+
+void RobotFactory::begin_anew(std::uint64_t seed) noexcept {
+  end_kept();
+  seed_ = seed;
+  kept_ = start_blocks_;
+  for (RobotBlock& block : kept_) block.constructed.fill(0);
+  for (std::size_t b = 0; b < stores_.blocks.size(); ++b) {
+    RobotBlock& block = stores_.blocks[b];
+    if (b >= kept_.size()) {
+      destroy_controllers(stores_, block);
+      continue;
+    }
+    for (std::size_t slot = 0; slot < block.used; ++slot) {
+      if (block.constructed[slot] != 0 && stores_.bodies.entity[block.first_row + slot] >= start_robots_) {
+        const hal::PluginCall call(&name_constructor, this, b, slot);
+        stores_.groups[block.group].controller->destroy(block.controller(slot));
+        block.constructed[slot] = 0;
+      }
+    }
+    kept_[b].constructed = block.constructed;
+  }
+  stores_.groups = start_groups_;
+  for (RobotGroup& group : stores_.groups) group.blocks.clear();
+  for (const auto& column : stores_.columns.all()) column->of_block.clear();  // also those that came since
+  for (const auto& [column, of_block] : start_columns_) column->of_block = of_block;
 }
 
 std::vector<std::vector<std::uint32_t>> RobotFactory::group(const std::vector<RobotRequest>& requests) {
-  std::vector<std::vector<std::uint32_t>> members;
-  std::vector<std::size_t> group_of_item(scenario_.robots.size(), 0);
-  for (std::size_t i = 0; i < scenario_.robots.size(); ++i) {
-    std::size_t g = 0;
-    while (g < members.size() && !same_group(*stores_.groups[g].item, scenario_.robots[i])) ++g;
-    if (g == members.size()) {
-      members.emplace_back();
-      stores_.groups.emplace_back().item = std::make_shared<RobotItem>(scenario_.robots[i]);
+  if (group_of_item_.empty()) {
+    for (const RobotItem& item : scenario_.robots) {
+      std::size_t g = 0;
+      while (g < stores_.groups.size() && !same_group(*stores_.groups[g].item, item)) ++g;
+      if (g == stores_.groups.size()) stores_.groups.emplace_back().item = std::make_shared<RobotItem>(item);
+      group_of_item_.push_back(g);
     }
-    group_of_item[i] = g;
   }
+  std::vector<std::vector<std::uint32_t>> members(stores_.groups.size());
   for (std::size_t r = 0; r < requests.size(); ++r)
-    members[group_of_item[requests[r].item]].push_back(static_cast<std::uint32_t>(r));
+    members[group_of_item_[requests[r].item]].push_back(static_cast<std::uint32_t>(r));
   return members;
 }
 
@@ -310,15 +375,26 @@ bool RobotFactory::read_devices(const RobotGroup& group, hal::Role role, GroupRe
 
 std::uint32_t RobotFactory::add_block(std::size_t g, std::size_t capacity) {
   RobotBlock block;
+  if (filled_ < kept_.size()) {
+    block = kept_[filled_++];
+    block.halted.fill(0);
+    for (std::size_t p = 0; p < block.ports.size(); ++p) reset_ports(*stores_.groups[g].ports[p], block, p);
+  } else {
+    block.capacity = capacity;
+    const hal::ControllerType& type = *stores_.groups[g].controller;
+    block.controller_stride = (type.size + type.align - 1) / type.align * type.align;
+    block.controllers = make_array(block, slab_, block.controller_stride * capacity, type.align);
+  }
   block.group = g;
   block.first_row = stores_.bodies.size();
-  block.capacity = capacity;
-  const hal::ControllerType& type = *stores_.groups[g].controller;
-  block.controller_stride = (type.size + type.align - 1) / type.align * type.align;
-  block.controllers = make_array(block, slab_, block.controller_stride * capacity, type.align);
   stores_.bodies.resize(block.first_row + capacity);
+  const std::size_t index = stores_.blocks.size();
+  for (const KeptColumn& column : stores_.groups[g].columns) {  // a block that was kept has its rows
+    if (column.arrays->array(index) == nullptr) continue;
+    for (std::size_t slot = 0; slot < block.capacity; ++slot) column.start(index, slot);
+  }
   stores_.blocks.push_back(std::move(block));
-  stores_.groups[g].blocks.push_back(stores_.blocks.size() - 1);
+  stores_.groups[g].blocks.push_back(index);
   return static_cast<std::uint32_t>(stores_.blocks.size() - 1);
 }
 
@@ -381,16 +457,21 @@ void RobotFactory::name_params(const void* factory, std::size_t config, std::siz
   out << "controller '" << c.id << "' (library '" << c.library << "'), while it read its parameters,";
 }
 
-/// Makes the controller of the robot that is placed there. Says what went wrong, or nothing.
+/// Makes or resets the controller of the robot that is placed there. Says what went wrong, or nothing.
 std::string RobotFactory::construct(Slot at, const std::shared_ptr<const void>& params) {
   RobotBlock& block = stores_.blocks[at.block];
   RobotGroup& group = stores_.groups[block.group];
   const hal::ControllerType& type = *group.controller;
-  ConstructedRobot robot(scenario_, stores_, group, block, slab_, seed_);
+  ConstructedRobot robot(scenario_, stores_, group, block, slab_, seed_, messages_);
   robot.select(at.slot, stores_.bodies.entity[block.first_row + at.slot]);
   std::string why;
   const hal::PluginCall call(&name_constructor, this, at.block, at.slot);
   try {
+    if (block.constructed[at.slot] != 0) {  // of the run before
+      if (type.reset(block.controller(at.slot), robot)) return {};
+      block.constructed[at.slot] = 0;
+      type.destroy(block.controller(at.slot));
+    }
     type.construct(block.controller(at.slot), robot, params.get());
     block.constructed[at.slot] = 1;
     return {};
@@ -527,17 +608,18 @@ hal::Status RobotFactory::can_hold(Slot at) const {
 }
 
 /// Undoes a robot that did not come to be: the entity that was appended last.
-void RobotFactory::give_back(std::size_t g, Slot slot, std::size_t ports_before, std::uint32_t entity_before) {
+void RobotFactory::give_back(std::size_t g, Slot slot, const Taken& before, std::uint32_t entity_before) {
   RobotBlock& block = stores_.blocks[slot.block];
   RobotGroup& group = stores_.groups[g];
-  group.ports.resize(ports_before);
-  if (block.ports.size() > ports_before) {  // their arrays are the last of its own
-    block.own_arrays.resize(block.own_arrays.size() - (block.ports.size() - ports_before));
-    block.ports.resize(ports_before);
+  group.ports.resize(before.ports);
+  group.published.resize(before.published);
+  if (block.ports.size() > before.ports) {  // their arrays are the last of its own
+    block.own_arrays.resize(block.own_arrays.size() - (block.ports.size() - before.ports));
+    block.ports.resize(before.ports);
   }
   for (int* command : {&group.wheels, &group.flight_position, &group.flight_speed, &group.flight_attitude,
                        &group.flight_task, &group.camera_head, &group.turret, &group.gripper, &group.scanner}) {
-    if (*command >= static_cast<int>(ports_before)) *command = -1;
+    if (*command >= static_cast<int>(before.ports)) *command = -1;
   }
   stores_.bodies.flags[block.first_row + slot.slot] = 0;
   stores_.bodies.entity[block.first_row + slot.slot] = entity_before;
@@ -565,7 +647,7 @@ hal::Result<RobotId> RobotFactory::add(const RobotItem& item, const Pose& pose,
   }
   const Slot slot = free_slot(g);
   if (devices_.blocks.size() < stores_.blocks.size()) complete(g);
-  const std::size_t ports_before = stores_.groups[g].ports.size();
+  const Taken before{stores_.groups[g].ports.size(), stores_.groups[g].published.size()};
   const auto entity = static_cast<std::uint32_t>(stores_.robots.size());
   stores_.names.push_back({item.id, -1, entity, 1});
   RobotEntity made;
@@ -599,13 +681,13 @@ hal::Result<RobotId> RobotFactory::add(const RobotItem& item, const Pose& pose,
     block.constructed[slot.slot] = 0;
   }
   if (!fits.ok()) {
-    give_back(g, slot, ports_before, entity_before);
+    give_back(g, slot, before, entity_before);
     return fits.error();
   }
   RobotBlock& home = stores_.blocks[slot.block];
   if (own_params && home.params.size() <= slot.slot) home.params.resize(slot.slot + 1U);
   if (slot.slot < home.params.size()) home.params[slot.slot] = own_params ? std::move(params) : nullptr;
-  if (stores_.groups[g].ports.size() > ports_before) complete(g);  // its controller took ports that no other has
+  if (stores_.groups[g].ports.size() > before.ports) complete(g);  // its controller took ports that no other has
   keep_sizes();
   if (!stores_.broadcasts.empty()) stores_.broadcasts[row] = {};
   if (!stores_.shown_leds.empty()) stores_.shown_leds[row] = {};

@@ -4,6 +4,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/device/device.hpp"
@@ -12,6 +13,7 @@
 #include "hal/plugin_call.hpp"
 #include "hal/plugin_loader.hpp"
 #include "hal/result.hpp"
+#include "hal/robot_log.hpp"
 
 namespace tandem::core {
 
@@ -44,12 +46,19 @@ std::vector<std::string> robot_kinds();
 class RobotFactory {
  public:
   RobotFactory(const Scenario& scenario, std::uint64_t seed, hal::PluginLoader& loader, SpaceStores& stores,
-               RobotDevices& devices)
-      : scenario_(scenario), seed_(seed), loader_(loader), stores_(stores), devices_(devices) {}
+               RobotDevices& devices, hal::RobotLog::Sink& messages)
+      : scenario_(scenario), seed_(seed), loader_(loader), stores_(stores), devices_(devices), messages_(messages) {}
+  ~RobotFactory();
+  RobotFactory(const RobotFactory&) = delete;
+  RobotFactory& operator=(const RobotFactory&) = delete;
 
   /// Fills the stores (bodies, groups, blocks, robots) and the devices. Every problem goes to `problems` with the line
   /// of the robot or controller that it is about. Robots of a group get rows in the order of a space-filling curve.
   void make(const std::vector<RobotRequest>& requests, Problems& problems);
+
+  /// Before the stores are emptied for a reset: ends the controllers of robots that came later, and remembers what
+  /// `make` made, so that the next `make` fills it anew: groups, blocks, ports, and controllers that can be reset.
+  void begin_anew(std::uint64_t seed) noexcept;
 
   /// Adds one robot, in the first free row of its group or a new one. `accepts(row)` is asked once the body stands in
   /// its row, before its controller is made. Errors: what is wrong with the parameters; what `accepts` says; a
@@ -70,6 +79,7 @@ class RobotFactory {
                    Problems& problems);
   std::uint32_t add_block(std::size_t g, std::size_t capacity);
   void place(const RobotRequest& request, Slot at);
+  void end_kept() noexcept;
   std::string construct(Slot at, const std::shared_ptr<const void>& params);
   static void name_constructor(const void* factory, std::size_t block, std::size_t slot, hal::FixedText& out) noexcept;
   static void name_params(const void* factory, std::size_t config, std::size_t index, hal::FixedText& out) noexcept;
@@ -78,7 +88,10 @@ class RobotFactory {
   void complete(std::size_t g);
   hal::Result<std::size_t> group_for(const RobotItem& item);
   Slot free_slot(std::size_t g);
-  void give_back(std::size_t g, Slot slot, std::size_t ports_before, std::uint32_t entity_before);
+  struct Taken {  // by the controllers of a group
+    std::size_t ports, published;
+  };
+  void give_back(std::size_t g, Slot slot, const Taken& before, std::uint32_t entity_before);
   hal::Status can_hold(Slot at) const;
   void keep_sizes();
 
@@ -87,7 +100,15 @@ class RobotFactory {
   hal::PluginLoader& loader_;
   SpaceStores& stores_;
   RobotDevices& devices_;
-  Slab* slab_ = nullptr;  // where blocks get their memory; null: each on its own
+  hal::RobotLog::Sink& messages_;
+  std::vector<std::size_t> group_of_item_;  // by the file's robots; decided once
+  std::vector<RobotGroup> start_groups_;    // as `make` left them
+  std::vector<RobotBlock> start_blocks_;
+  std::vector<std::pair<ColumnArrays*, std::vector<std::byte*>>> start_columns_;
+  std::size_t start_robots_ = 0;
+  std::vector<RobotBlock> kept_;  // start_blocks_ with their controllers, to be filled anew
+  std::size_t filled_ = 0;        // how many of them are
+  Slab* slab_ = nullptr;          // where blocks get their memory; null: each on its own
 };
 
 /// Ends the life of every controller. Before the loader closes its plug-ins.

@@ -17,11 +17,13 @@ namespace tandem::core {
 void World::step() {
   Impl& w = *impl_;
   if (w.state != RunState::Running) return;
+  w.stores().sketch.clear();
   w.call_hooks("before_step", [](Hook& hook, HookContext& c) { hook.before_step(c); });
   w.paint_floor_if_asked();
   if (w.external != nullptr) w.external->latch(*this);
   w.act();
   w.physics();
+  w.in_controllers = true;
   if (w.external == nullptr) {
     w.sense_and_control();
   } else {
@@ -33,13 +35,15 @@ void World::step() {
     });
     w.external->after_filter(*this);
   }
+  w.in_controllers = false;
+  w.report_messages();
   w.report_trouble();
   w.call_hooks("after_step", [](Hook& hook, HookContext& c) { hook.after_step(c); });
   ++w.tick;
   bool done = false;
   w.call_hooks("is_done", [&done](Hook& hook, HookContext& c) { done = hook.is_done(c) || done; });
   if (done && w.state == RunState::Running) w.state = RunState::Done;
-  do_requests();
+  do_requests(false);
 }
 
 void World::Impl::act() {
@@ -204,6 +208,24 @@ void World::Impl::report_trouble() {
   }
 }
 
+void World::Impl::write(std::uint32_t robot, hal::Severity severity, std::string_view text,
+                        std::uint32_t left_out) noexcept {
+  const RobotEntity& entity = stores().robots[robot];
+  std::string message = hal::message_of(space.robot_name({robot, entity.generation}), tick, text, left_out);
+  if (!in_controllers) return options.log.write(severity, message);
+  said[entity.block].push_back({severity, std::move(message)});
+  any_said.store(true, std::memory_order_relaxed);
+}
+
+/// In the order of blocks and slots, for any number of threads.
+void World::Impl::report_messages() {
+  if (!any_said.exchange(false, std::memory_order_relaxed)) return;
+  for (std::vector<Message>& block : said) {
+    for (const Message& message : block) options.log.write(message.severity, message.text);
+    block.clear();
+  }
+}
+
 void World::Impl::paint_floor_if_asked() {
   SpaceStores& s = stores();
   if (!s.repaint_floor || scenario.floor.source != "loop_functions" || hooks.empty()) return;
@@ -270,7 +292,7 @@ World::~World() {
 
 void World::start() {
   impl_->call_hooks("before_run", [](Hook& hook, HookContext& c) { hook.before_run(c); });
-  do_requests();
+  do_requests(true);
 }
 
 void World::finish() {
@@ -307,6 +329,7 @@ hal::Result<Snapshot> World::snapshot() {
   moment->not_finite = w.not_finite;
   moment->reach_m = w.reach_m;
   moment->indexed = w.indexed_version == w.stores().immovables_version;
+  moment->measures = w.measures;
   return Snapshot(w.tick, std::move(moment));
 }
 
@@ -323,10 +346,12 @@ hal::Status World::restore(const Snapshot& snapshot) {
   w.state = moment.state;
   w.failure = moment.failure;
   w.incidents = moment.incidents;
+  w.measures = moment.measures;
   w.clamped = moment.clamped;
   w.not_finite = moment.not_finite;
   w.block_trouble.assign(w.clamped.size(), 0);
   w.faults.assign(w.clamped.size(), {});
+  w.said.assign(w.clamped.size(), {});
   w.excess.assign(w.clamped.size(), {});
   w.strays.clear();
   w.hook_moment = "restore";
@@ -345,12 +370,18 @@ hal::Status World::restore(const Snapshot& snapshot) {
 }
 
 /// What hooks asked for while they were called.
-void World::do_requests() {
+void World::do_requests(bool before_first_step) {
   KeptMoments& moments = impl_->moments;
   const std::vector<KeptMoments::Request> requests = std::exchange(moments.requests, {});
   for (const KeptMoments::Request& request : requests) {
     if (impl_->state == RunState::Failed) return;
-    if (request.save) {
+    if (request.kind == KeptMoments::Request::Kind::Reset) {
+      if (before_first_step)
+        return impl_->fail("a hook asked in before_run for a reset, which would come to before_run again");
+      if (const hal::Status begun = reset(request.seed); !begun.ok()) impl_->fail("reset: " + begun.error().message);
+      return;  // what else was asked for is gone with the run
+    }
+    if (request.kind == KeptMoments::Request::Kind::Save) {
       hal::Result<Snapshot> kept = snapshot();
       if (!kept.ok()) {
         moments.forget(request.name);
@@ -402,6 +433,10 @@ const Incidents& World::incidents() const noexcept {
   for (const std::uint64_t n : impl_->clamped) i.commands_clamped += n;
   for (const std::uint64_t n : impl_->not_finite) i.commands_not_finite += n;
   return i;
+}
+
+const Measures& World::measures() const noexcept {
+  return impl_->measures;
 }
 
 std::uint64_t World::state_hash() const noexcept {

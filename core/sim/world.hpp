@@ -69,6 +69,13 @@ class World {
   /// a copy constructor or a hook's `restore` that throws: the run has failed then.
   hal::Status restore(const Snapshot& snapshot);
 
+  /// Begins the run anew, from the first tick, as a new world of this seed would, to the last bit; plug-ins, threads
+  /// and the memory of robots stay. Controllers and hooks are reset or made anew, as they want (Controller::reset,
+  /// Hook::reset); which controller object drives which robot of its group may change with the seed. Snapshots from
+  /// before are void. Calls `start`. Call between steps, or ask for it through HookContext::checkpoints. Errors: real
+  /// robots take part; the places of this seed cannot be had; what is thrown: the run has failed then.
+  hal::Status reset(std::uint64_t seed);
+
   /// Lets real robots take part; `external` must outlive the last step. Null: none.
   void set_external(ExternalRobots* external) noexcept;
 
@@ -84,6 +91,8 @@ class World {
   Space& space() noexcept;
   const Space& space() const noexcept;
   const Incidents& incidents() const noexcept;
+  /// What the hooks published.
+  const Measures& measures() const noexcept;
 
   /// Fingerprint of everything that later steps depend on: equal for any number of threads.
   std::uint64_t state_hash() const noexcept;
@@ -91,7 +100,7 @@ class World {
   StateView state_view() const noexcept;
 
  private:
-  void do_requests();
+  void do_requests(bool before_first_step);
 
   struct Impl;
   explicit World(std::unique_ptr<Impl> impl);

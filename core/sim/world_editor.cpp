@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "core/sim/engine_factory.hpp"
+#include "hal/angle.hpp"
 #include "hal/device/body_sensors.hpp"
 
 namespace tandem::core {
@@ -380,7 +380,7 @@ hal::Result<JointId> WorldEditor::join(BodyKey a, BodyKey b, const std::array<do
   const std::array<double, 3>& axis = form.axis;
   joint.form.axis = {pose_a.cos_h * axis[0] + pose_a.sin_h * axis[1], pose_a.cos_h * axis[1] - pose_a.sin_h * axis[0],
                      axis[2]};
-  joint.heading_rad = std::remainder(pose_b.heading_rad() - pose_a.heading_rad(), 2.0 * std::numbers::pi);
+  joint.heading_rad = hal::turn_between(pose_a.heading_rad(), pose_b.heading_rad());
   const auto unused =
       std::find_if(stores_.joints.begin(), stores_.joints.end(), [](const Joint& j) { return !j.alive; });
   const auto number = static_cast<std::uint32_t>(unused - stores_.joints.begin());

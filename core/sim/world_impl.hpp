@@ -24,26 +24,34 @@ namespace tandem::core {
 class KeptMoments final : public Checkpoints {
  public:
   struct Request {
-    bool save;
+    enum class Kind : std::uint8_t { Save, Restore, Reset };
+    Kind kind;
     std::string name;
+    std::uint64_t seed = 0;
   };
 
   void save(const std::string& name) override {
     names_.insert(name);
-    requests.push_back({true, name});
+    requests.push_back({Request::Kind::Save, name});
   }
   hal::Status restore(const std::string& name) override {
     if (!names_.contains(name)) {
       return hal::Error{"there is no checkpoint '" + name +
                         "'; there are: " + listed(std::vector<std::string>(names_.begin(), names_.end()))};
     }
-    requests.push_back({false, name});
+    requests.push_back({Request::Kind::Restore, name});
     return {};
   }
+  void reset(std::uint64_t seed) override { requests.push_back({Request::Kind::Reset, {}, seed}); }
 
   void forget(const std::string& name) {
     names_.erase(name);
     kept.erase(name);
+  }
+  void forget_all() {
+    names_.clear();
+    kept.clear();
+    requests.clear();
   }
 
   std::vector<Request> requests;
@@ -65,6 +73,7 @@ struct Moment {
   double reach_m = 0.0;  ///< of the indices, which the space's copy holds
   bool indexed = false;  ///< the index of immovable objects was up to date
   std::vector<std::shared_ptr<const void>> engines;
+  Measures measures;
   std::vector<std::any> hooks;
 };
 
@@ -75,12 +84,19 @@ struct Excess {
   double most_m_s = 0.0;  ///< 0: none
 };
 
-struct World::Impl {
+/// What a controller said while it stepped.
+struct Message {
+  hal::Severity severity;
+  std::string text;
+};
+
+struct World::Impl final : hal::RobotLog::Sink {
   static constexpr std::size_t kIncidentsNamed = 20;
   static constexpr double kUnlikely = 10.0;  // times what a robot can do: hardly meant
 
   Scenario scenario;
   WorldOptions options;
+  hal::PluginLoader* loader = nullptr;
   std::uint64_t seed = 0;
   Space space;
   std::unique_ptr<ThreadPool> pool;
@@ -106,6 +122,7 @@ struct World::Impl {
   KeptMoments moments;
   std::vector<std::unique_ptr<Hook>> hooks;
   std::vector<std::string> hook_names;
+  Measures measures;
   const char* hook_moment = "";  // that is or was called last
   ExternalRobots* external = nullptr;
 
@@ -120,8 +137,23 @@ struct World::Impl {
   std::vector<std::uint64_t> not_finite;
   std::vector<Excess> excess;              // by block, of this tick
   std::vector<std::uint8_t> excess_named;  // by group: once is enough
+  bool in_controllers = false;             // they step, side by side
+  std::vector<std::vector<Message>> said;  // by block, in this tick
+  std::atomic<bool> any_said{false};
 
   SpaceStores& stores() noexcept { return space.stores(); }
+
+  // --- making ---
+  void populate(Problems& problems);
+  void make_hooks(Problems& problems);
+  void reset_hooks(Problems& problems);
+  void size_ledgers();
+
+  // --- messages of controllers ---
+  hal::TimeNs now_ns() const noexcept override { return hal::time_of_tick(tick, scenario.ticks_per_second); }
+  void write(std::uint32_t robot, hal::Severity severity, std::string_view text,
+             std::uint32_t left_out) noexcept override;
+  void report_messages();
 
   // --- one tick ---
   void act();
@@ -154,7 +186,9 @@ struct World::Impl {
 
   template <class Call>
   void call_hooks(const char* moment, Call&& call);
-  HookContext hook_context() { return {space, tick, scenario.ticks_per_second, seed, moments}; }
+  HookContext hook_context() {
+    return {space, tick, scenario.ticks_per_second, seed, moments, space.sketch(), measures};
+  }
   DeviceContext device_context(std::size_t block) {
     SpaceStores& s = stores();
     return {s,

@@ -63,6 +63,25 @@ void check_joints(const Scenario& scenario, const SpaceStores& s, Problems& prob
   }
 }
 
+/// What engines of the plane leave out of a place: its height, and tilts. One warning an item.
+void check_upright(const Scenario& scenario, const SpaceStores& s, Problems& problems) {
+  std::uint32_t told = 0xFFFFFFFFU;
+  for (const RobotEntity& e : s.robots) {
+    const std::uint16_t region = s.bodies.region[s.blocks[e.block].first_row + e.slot];
+    const RobotItem& item = scenario.robots[e.item];
+    if (e.item == told || item.distribute || region == kNoRegion || !s.regions[region].plane) continue;
+    told = e.item;
+    const auto warn = [&](const std::string& what) {
+      problems.push_back({scenario.file, item.line,
+                          "robot '" + item.id + "' " + what + ", but its engine '" + s.regions[region].name +
+                              "' knows the plane alone: it stands upright on the ground",
+                          true});
+    };
+    if (item.placement.p_W[2] > 0.0) warn("is " + hal::format_number(item.placement.p_W[2]) + " m above the ground");
+    if (item.placement.pitch_rad != 0.0 || item.placement.roll_rad != 0.0) warn("is tilted");
+  }
+}
+
 /// How wide the narrowest strip is that lets an object through, in m.
 double narrowest_width_m(const Object& object) {
   return 2.0 * (object.kind == Object::Kind::Box ? std::min(object.half_x_m, object.half_y_m) : object.radius_m);
@@ -114,6 +133,7 @@ void assign_regions(const Scenario& scenario, const Placements& placements, cons
     complain(scenario.robots[e.item].line, "robot '" + name + "'", s.bodies.x_m[row], s.bodies.y_m[row], why);
   }
   check_joints(scenario, s, problems);
+  check_upright(scenario, s, problems);
   for (std::size_t i = 0; i < s.objects.size(); ++i) {
     if (!s.objects[i].movable) continue;
     s.object_region[i] = keeper.find(s, BodyKey::object(i));
@@ -183,6 +203,7 @@ std::unique_ptr<World> World::make(const Scenario& scenario, hal::PluginLoader& 
   const std::size_t before = problems.size();
   const auto bad = [&] { return has_errors(problems, before); };
   w.scenario = scenario;
+  w.loader = &loader;
   w.options = options;
   w.seed = options.seed ? *options.seed : scenario.seed ? *scenario.seed : seed_from_clock();
   const std::int64_t threads = options.threads.value_or(scenario.threads);
@@ -196,7 +217,25 @@ std::unique_ptr<World> World::make(const Scenario& scenario, hal::PluginLoader& 
                         false});
     return nullptr;
   }
-  SpaceStores& s = w.stores();
+  w.populate(problems);
+  w.make_hooks(problems);
+  if (scenario.floor.source == "loop_functions" && scenario.hooks.empty()) {
+    problems.push_back({scenario.file, scenario.floor.line,
+                        "the floor is to be painted by loop functions, but there are none", false});
+  }
+
+  if (!bad()) complete_settings(w.scenario, loader, w.seed);
+  w.size_ledgers();
+  auto world = std::unique_ptr<World>(new World(std::move(impl)));
+  if (bad()) return nullptr;
+  return world;
+}
+
+/// Fills the space, empty so far, with what the file says and the seed decides.
+void World::Impl::populate(Problems& problems) {
+  const std::size_t before = problems.size();
+  const auto bad = [&] { return has_errors(problems, before); };
+  SpaceStores& s = stores();
   s.min_x_m = scenario.arena_center[0] - 0.5 * scenario.arena_size[0];
   s.max_x_m = scenario.arena_center[0] + 0.5 * scenario.arena_size[0];
   s.min_y_m = scenario.arena_center[1] - 0.5 * scenario.arena_size[1];
@@ -204,14 +243,14 @@ std::unique_ptr<World> World::make(const Scenario& scenario, hal::PluginLoader& 
 
   if (scenario.arena_size[2] > 0.0) s.max_z_m = scenario.arena_center[2] + 0.5 * scenario.arena_size[2];
 
-  const Placements placements = place(scenario, w.seed, &size_of_kind, problems);
-  w.engines = make_engines(scenario, placements.robots.size(), s, problems);
-  if (bad()) return nullptr;
+  const Placements placements = place(scenario, seed, &size_of_kind, problems);
+  engines = make_engines(scenario, placements.robots.size(), s, problems);
+  if (bad()) return;
   for (const Region& region : s.regions) {
-    w.kinematic.push_back(region.listed ? 0 : 1);
-    if (region.listed) w.one_kind = false;
+    kinematic.push_back(region.listed ? 0 : 1);
+    if (region.listed) one_kind = false;
   }
-  s.bodies.has_motion = !w.one_kind;
+  s.bodies.has_motion = !one_kind;
 
   for (const PlacedObject& placed : placements.objects)
     s.objects.push_back(object_of(scenario, scenario.objects[placed.item], placed));
@@ -248,16 +287,16 @@ std::unique_ptr<World> World::make(const Scenario& scenario, hal::PluginLoader& 
     requests.push_back(
         {placed.item, static_cast<std::uint32_t>(i), placed.x_m, placed.y_m, placed.z_m, placed.yaw_rad});
   }
-  w.factory = std::make_unique<RobotFactory>(w.scenario, w.seed, loader, s, w.devices);
-  w.factory->make(requests, problems);
-  for (const CouplingType& type : coupling_types()) w.couplings.push_back(type.make(s.columns));
-  w.editor = std::make_unique<WorldEditor>(w.scenario, s, *w.factory, w.keeper);
-  w.space.set_editor(w.editor.get());
+  if (factory == nullptr) factory = std::make_unique<RobotFactory>(scenario, seed, *loader, s, devices, *this);
+  factory->make(requests, problems);
+  for (const CouplingType& type : coupling_types()) couplings.push_back(type.make(s.columns));
+  editor = std::make_unique<WorldEditor>(scenario, s, *factory, keeper);
+  space.set_editor(editor.get());
 
-  w.reach_m = index_reach(s, w.tick_s());
-  s.body_index.set_area(s.min_x_m, s.min_y_m, s.max_x_m, s.max_y_m, w.reach_m);
-  s.static_index.build(s.objects, false, s.min_x_m, s.min_y_m, s.max_x_m, s.max_y_m, w.reach_m);
-  w.indexed_version = s.immovables_version;
+  reach_m = index_reach(s, tick_s());
+  s.body_index.set_area(s.min_x_m, s.min_y_m, s.max_x_m, s.max_y_m, reach_m);
+  s.static_index.build(s.objects, false, s.min_x_m, s.min_y_m, s.max_x_m, s.max_y_m, reach_m);
+  indexed_version = s.immovables_version;
   s.object_motion.resize(s.objects.size());
   s.object_region.resize(s.objects.size(), kNoRegion);
   for (std::size_t i = 0; i < s.objects.size(); ++i) {
@@ -266,10 +305,10 @@ std::unique_ptr<World> World::make(const Scenario& scenario, hal::PluginLoader& 
     s.object_motion[i].z_m = s.objects[i].z_low_m;
     s.object_motion[i].q_WB = {std::cos(half_rad), 0.0, 0.0, std::sin(half_rad)};
   }
-  w.index_movables();
+  index_movables();
   if (!bad()) {
-    w.keeper.build(s, w.tick_s());
-    assign_regions(scenario, placements, w.keeper, s, problems);
+    keeper.build(s, tick_s());
+    assign_regions(scenario, placements, keeper, s, problems);
   }
 
   if (scenario.floor.source == "image") {
@@ -279,9 +318,11 @@ std::unique_ptr<World> World::make(const Scenario& scenario, hal::PluginLoader& 
   }
   if (scenario.floor.source == "loop_functions") check_pixels(scenario, problems);
   s.repaint_floor = true;
+}
 
+void World::Impl::make_hooks(Problems& problems) {
   for (const HookConfig& config : scenario.hooks) {
-    const auto type = loader.get(config.library, "hook", config.label);
+    const auto type = loader->get(config.library, "hook", config.label);
     if (!type.ok()) {
       problems.push_back({scenario.file, config.line, "loop_functions: " + type.error().message, false});
       continue;
@@ -294,26 +335,99 @@ std::unique_ptr<World> World::make(const Scenario& scenario, hal::PluginLoader& 
                           "hook '" + std::string(hook->name) + "' (library '" + config.library + "') " + why, false});
       continue;
     }
-    w.hooks.push_back(std::move(made));
-    w.hook_names.emplace_back(hook->name);
+    hooks.push_back(std::move(made));
+    hook_names.emplace_back(hook->name);
   }
-  if (scenario.floor.source == "loop_functions" && scenario.hooks.empty()) {
-    problems.push_back({scenario.file, scenario.floor.line,
-                        "the floor is to be painted by loop functions, but there are none", false});
+}
+
+void World::Impl::size_ledgers() {
+  const std::size_t blocks = stores().blocks.size();
+  block_trouble.assign(blocks, 0);
+  faults.assign(blocks, {});
+  clamped.assign(blocks, 0);
+  not_finite.assign(blocks, 0);
+  excess.assign(blocks, {});
+  excess_named.assign(stores().groups.size(), 0);
+  said.assign(blocks, {});
+}
+
+// --- making anew ---
+
+hal::Status World::reset(std::uint64_t seed) {
+  Impl& w = *impl_;
+  if (w.external != nullptr) return hal::Error{"no reset: real robots take part, which cannot be put back"};
+  SpaceStores& s = w.stores();
+  w.factory->begin_anew(seed);
+  w.engines.clear();
+  w.couplings.clear();
+  w.space.set_editor(nullptr);
+  w.editor.reset();
+  w.devices.blocks.clear();
+  SpaceStores empty;  // but for the memory of robots, and for what tells the new from the old
+  empty.slab = std::move(s.slab);
+  empty.groups = std::move(s.groups);
+  empty.columns = std::move(s.columns);
+  empty.flight = s.flight;
+  empty.rotors = s.rotors;
+  empty.generations = s.generations + 1;
+  empty.joint_generations = s.joint_generations + 1;
+  empty.immovables_version = s.immovables_version + 1;
+  empty.object_leds_version = s.object_leds_version + 1;
+  empty.poses_version = s.poses_version + 1;
+  s = std::move(empty);
+  w.seed = seed;
+  w.tick = 0;
+  w.state = RunState::Running;
+  w.failure.clear();
+  w.incidents = {};
+  w.measures = {};
+  w.moments.forget_all();
+  w.identity = std::make_shared<int>(0);
+  w.keeper = {};
+  w.kinematic.clear();
+  w.one_kind = true;
+  w.lit = {};
+  w.strays.clear();
+  w.troubles.clear();
+  Problems problems;
+  w.populate(problems);
+  if (!has_errors(problems)) w.reset_hooks(problems);
+  w.size_ledgers();
+  if (has_errors(problems)) {
+    std::string why;
+    for (const Problem& problem : problems) {
+      if (!problem.warning) why += (why.empty() ? "" : "; ") + problem.message;
+    }
+    w.fail("reset with seed " + std::to_string(seed) + ": " + why);
+    return hal::Error{w.failure};
   }
+  complete_settings(w.scenario, *w.loader, seed);
+  start();
+  return w.state == RunState::Failed ? hal::Status(hal::Error{w.failure}) : hal::Status{};
+}
 
-  if (!bad()) complete_settings(w.scenario, loader, w.seed);
-
-  const std::size_t blocks = s.blocks.size();
-  w.block_trouble.assign(blocks, 0);
-  w.faults.resize(blocks);
-  w.clamped.assign(blocks, 0);
-  w.not_finite.assign(blocks, 0);
-  w.excess.resize(blocks);
-  w.excess_named.assign(s.groups.size(), 0);
-  auto world = std::unique_ptr<World>(new World(std::move(impl)));
-  if (bad()) return nullptr;
-  return world;
+void World::Impl::reset_hooks(Problems& problems) {
+  hook_moment = "reset";
+  for (std::size_t i = 0; i < hooks.size(); ++i) {
+    const hal::PluginCall marked(&name_hook, this, i);
+    std::string why = "threw in reset";
+    try {
+      if (hooks[i]->reset(seed)) continue;
+      why.clear();
+    } catch (const std::exception& e) {
+      why += std::string(": ") + e.what();
+    } catch (...) {
+    }
+    if (why.empty()) {
+      const auto type = loader->get(scenario.hooks[i].library, "hook", scenario.hooks[i].label);
+      hooks[i].reset();  // closes its files before the next opens them
+      std::unique_ptr<Hook> made =
+          make_hook(*static_cast<const HookType*>(type.value()), scenario.hooks[i], problems, why);
+      hooks[i] = made != nullptr ? std::move(made) : std::make_unique<Hook>();  // which does nothing, in its place
+    }
+    if (!why.empty())
+      problems.push_back({scenario.file, scenario.hooks[i].line, "hook '" + hook_names[i] + "' " + why, false});
+  }
 }
 
 }  // namespace tandem::core

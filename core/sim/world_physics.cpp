@@ -89,6 +89,7 @@ void World::Impl::fit_to_bodies() {
     clamped.resize(blocks, 0);
     not_finite.resize(blocks, 0);
     excess.resize(blocks);
+    said.resize(blocks);
   }
   excess_named.resize(s.groups.size(), 0);
   const double needed_m = index_reach(s, tick_s());

@@ -2,9 +2,7 @@
 // from forward.
 #pragma once
 #include <array>
-#include <cmath>
 #include <cstdint>
-#include <numbers>
 
 #include "core/scenario/engine_traits.hpp"
 #include "hal/device/distance_scanner.hpp"
@@ -176,11 +174,5 @@ struct HiddenRoll {
     f.add("right_speed", right_m_s, hal::unit::m_s, "");
   }
 };
-
-/// The same direction, in (-pi, pi].
-inline double wrapped(double angle_rad) noexcept {
-  const double turned = std::remainder(angle_rad, 2.0 * std::numbers::pi);
-  return turned <= -std::numbers::pi ? std::numbers::pi : turned;
-}
 
 }  // namespace tandem::core

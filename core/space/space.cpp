@@ -5,8 +5,10 @@
 #include <cmath>
 #include <cstring>
 #include <numbers>
+#include <stdexcept>
 
 #include "core/space/stores.hpp"
+#include "hal/angle.hpp"
 #include "hal/check.hpp"
 
 namespace tandem::core {
@@ -215,6 +217,7 @@ void Space::remove_robot(RobotId robot) noexcept {
   set_halted(robot, true, HaltOwner::Removed);
   if (block.constructed[e.slot] != 0) group.controller->destroy(block.controller(e.slot));
   block.constructed[e.slot] = 0;
+  if (e.slot < block.params.size()) block.params[e.slot].reset();
   // A twin keeps pointers to its robot's ports: nobody else ever gets these.
   if ((s.bodies.flags[row] & kExternal) == 0) group.free_slots.push_back({e.block, e.slot});
   s.bodies.flags[row] = 0;
@@ -314,6 +317,56 @@ void* Space::port(RobotId robot, const hal::PortType& type) noexcept {
 std::vector<const hal::PortType*> Space::ports(RobotId robot) const {
   if (robot.index >= stores_->robots.size()) return {};
   return stores_->groups[stores_->blocks[stores_->robots[robot.index].block].group].ports;
+}
+
+std::span<const hal::PublishedField> Space::published(RobotId robot) const noexcept {
+  if (!contains(robot)) return {};
+  return stores_->groups[stores_->blocks[stores_->robots[robot.index].block].group].published;
+}
+
+hal::Result<const hal::PublishedField*> Space::find_published(RobotId robot, std::string_view name) const {
+  if (!contains(robot)) return gone("robot");
+  std::string known;
+  for (const hal::PublishedField& field : published(robot)) {
+    if (field.name == name) return &field;
+    known += (known.empty() ? "" : ", ") + field.name;
+  }
+  return hal::Error{"the controller of robot '" + robot_name(robot) + "' publishes no '" + std::string(name) +
+                    "'; it publishes: " + (known.empty() ? "nothing" : known)};
+}
+
+hal::Result<double> Space::published_value(RobotId robot, std::string_view name) const {
+  const auto field = find_published(robot, name);
+  if (!field.ok()) return field.error();
+  return hal::value_of(*field.value(), stores_->controller_of(robot));
+}
+
+hal::Result<std::string> Space::published_text(RobotId robot, std::string_view name) const {
+  const auto field = find_published(robot, name);
+  if (!field.ok()) return field.error();
+  return hal::text_of(*field.value(), stores_->controller_of(robot));
+}
+
+void* Space::controller(RobotId robot, std::string_view class_name, std::size_t size) {
+  if (!contains(robot)) return nullptr;
+  const RobotBlock& block = stores_->blocks[stores_->robots[robot.index].block];
+  const hal::ControllerType& type = *stores_->groups[block.group].controller;
+  if (type.class_name != class_name) return nullptr;
+  if (type.size != size) {
+    throw std::runtime_error("the class " + std::string(class_name) + " has " + std::to_string(size) +
+                             " bytes in the hook's library and " + std::to_string(type.size) +
+                             " in that of the controller '" + std::string(type.name) +
+                             "'; rebuild both from one header");
+  }
+  return stores_->controller_of(robot);
+}
+
+Sketch& Space::sketch() noexcept {
+  return stores_->sketch;
+}
+
+const Sketch& Space::sketch() const noexcept {
+  return stores_->sketch;
 }
 
 const std::vector<Object>& Space::objects() const noexcept {

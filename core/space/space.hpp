@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -12,8 +13,10 @@
 #include "core/space/ids.hpp"
 #include "core/space/pose.hpp"
 #include "core/space/real_sense.hpp"
+#include "core/space/sketch.hpp"
 #include "hal/device/leds.hpp"
 #include "hal/port.hpp"
+#include "hal/published.hpp"
 #include "hal/spec/data_sheet.hpp"
 
 namespace tandem::core {
@@ -144,6 +147,15 @@ class Space {
   }
   /// Descriptions of all ports that the robot's controller took.
   std::vector<const hal::PortType*> ports(RobotId robot) const;
+  /// What the controllers of the robot's group publish (hal::Robot::publish); gone: nothing.
+  std::span<const hal::PublishedField> published(RobotId robot) const noexcept;
+  /// One of them of this robot's controller, as a number and for people. Errors: gone; nothing is published under that
+  /// name.
+  hal::Result<double> published_value(RobotId robot, std::string_view name) const;
+  hal::Result<std::string> published_text(RobotId robot, std::string_view name) const;
+  /// The robot's controller when its class has this name; else, and when the robot is gone, null. HookContext knows the
+  /// class. @throws std::runtime_error when that class has another size in the controller's plug-in
+  void* controller(RobotId robot, std::string_view class_name, std::size_t size);
 
   // --- boxes and cylinders ---
   /// By number, in the order of the experiment file, then in that of being added; those removed are not `alive`.
@@ -198,6 +210,10 @@ class Space {
   /// Has the floor asked for anew from the hook that paints it, before the next step.
   void repaint_floor() noexcept;
 
+  /// What hooks draw into pictures and views.
+  Sketch& sketch() noexcept;
+  const Sketch& sketch() const noexcept;
+
   SpaceStores& stores() noexcept { return *stores_; }
   const SpaceStores& stores() const noexcept { return *stores_; }
   /// Lets `editor` add and change what the space cannot by itself; it must outlive the last call. Null: such are
@@ -206,6 +222,7 @@ class Space {
 
  private:
   bool id_taken(std::string_view id) const noexcept;
+  hal::Result<const hal::PublishedField*> find_published(RobotId robot, std::string_view name) const;
   hal::Result<BodyKey> key_of(const BodyId& body) const;
   void release_joints_of(BodyKey body) noexcept;
 

@@ -93,6 +93,12 @@ void visit_block(const StateView& state, std::size_t index, StateVisitor& visito
     const hal::PortType& type = *group.ports[p];
     rows.fields(type.role == hal::Role::Sensor ? ValueSet::Sensor : ValueSet::Actuator, type, block.ports[p]);
   }
+  for (const hal::PublishedField& field : group.published) {
+    FieldRows shown{ValueSet::Published, group.controller->name, field.name, field.scalar, field.count};
+    shown.first = block.controllers + field.offset;
+    shown.stride = block.controller_stride;
+    visitor.visit(shown);
+  }
   for (const KeptColumn& column : group.columns) rows.fields(ValueSet::Own, *column.type, column.arrays->array(index));
 }
 
@@ -305,9 +311,10 @@ class InWords final : public StateVisitor {
   void visit(const FieldRows& rows) override {
     static constexpr std::array<std::byte, 8> kZeros{};
     const std::size_t size = hal::size_of(rows.scalar);
-    const std::string what = (rows.set == ValueSet::Sensor     ? "sensor "
-                              : rows.set == ValueSet::Actuator ? "actuator "
-                                                               : "") +
+    const std::string what = (rows.set == ValueSet::Sensor      ? "sensor "
+                              : rows.set == ValueSet::Actuator  ? "actuator "
+                              : rows.set == ValueSet::Published ? "controller "
+                                                                : "") +
                              std::string(rows.name);
     for (std::size_t i = 0; i < owners_.numbers.size(); ++i) {
       if (owners_.numbers[i] == ValueOwners::kNobody) continue;

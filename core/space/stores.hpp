@@ -128,6 +128,7 @@ struct RobotGroup {
   std::shared_ptr<const GroupRecipes> recipes;  ///< of the devices that its configuration lists
   std::vector<const hal::PortType*> ports;      ///< those that its controllers took, in the order of taking
   std::vector<KeptColumn> columns;              ///< that their devices need
+  std::vector<hal::PublishedField> published;   ///< what its controllers show, with offsets into each of them
   int wheels = -1;                              ///< index in `ports` of the wheel command; -1: none
   int flight_position = -1;                     ///< … of the place to fly to
   int flight_speed = -1;                        ///< … of the velocity to fly with
@@ -267,6 +268,7 @@ struct SpaceStores {
   std::vector<SoundSource> sounds;
   Floor floor;
   bool repaint_floor = false;
+  Sketch sketch;
   std::vector<Broadcast> broadcasts;  ///< by row; empty when no robot can send
   std::vector<ShownLeds> shown_leds;  ///< by row; empty when no robot has a camera
 
@@ -324,6 +326,10 @@ struct SpaceStores {
   std::size_t row_of(RobotId id) const noexcept {
     const RobotEntity& e = robots[id.index];
     return blocks[e.block].first_row + e.slot;
+  }
+  std::byte* controller_of(RobotId id) const noexcept {
+    const RobotEntity& e = robots[id.index];
+    return blocks[e.block].controller(e.slot);
   }
   bool contains(RobotId id) const noexcept {
     return id.index < robots.size() && robots[id.index].alive && robots[id.index].generation == id.generation;

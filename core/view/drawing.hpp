@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/space/sketch.hpp"
 #include "hal/device/leds.hpp"
 
 namespace tandem::core {
@@ -74,6 +75,7 @@ struct Drawing {
   std::vector<Robot> robots;
   std::vector<LitLed> lit;
   std::vector<RealRobot> real;
+  std::vector<Sketch::Shape> shapes;  ///< that hooks drew
   /// Reflectance at (x, y), 0 black to 1 white; empty: a uniform floor, which is not drawn.
   std::function<double(double, double)> floor;
 };

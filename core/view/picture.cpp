@@ -88,6 +88,7 @@ Drawing drawing_of(const Space& space, const PictureOptions& options) {
     drawing.floor = [&space](double x_m, double y_m) { return space.floor(x_m, y_m); };
   }
   add_robots(space, options, drawing);
+  drawing.shapes = space.sketch().shapes();
   return drawing;
 }
 

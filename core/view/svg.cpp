@@ -136,11 +136,13 @@ class Page {
     lights();
     objects();
     robots();
+    sketch();
     svg_ << "</g>\n";
     real_robots();
     svg_ << "</g>\n";
     frame();
     labels();
+    sketch_texts();
     scale_bar();
     legend();
     svg_ << "</svg>\n";
@@ -360,6 +362,51 @@ class Page {
       }
     }
     svg_ << "</g>\n";
+  }
+
+  /// What hooks drew, but its texts.
+  void sketch() {
+    if (d_.shapes.empty()) return;
+    svg_ << "<g class=\"sketch\" fill=\"none\" stroke-linejoin=\"round\" stroke-linecap=\"round\">\n";
+    for (const Sketch::Shape& shape : d_.shapes) {
+      const std::string color = hex(shape.pen.color);
+      Svg look;
+      look << "\" stroke=\"" << color << "\" stroke-width=\"" << (shape.pen.width_m > 0.0 ? shape.pen.width_m : px(1.5))
+           << "\"";
+      if (shape.pen.filled && shape.kind != Sketch::Shape::Kind::Line)
+        look << " fill=\"" << color << "\" fill-opacity=\"0.35\"";
+      look << "/>\n";
+      switch (shape.kind) {
+        case Sketch::Shape::Kind::Line:
+          svg_ << "<polyline points=\"" << points_of(shape) << look.take();
+          break;
+        case Sketch::Shape::Kind::Polygon:
+          svg_ << "<polygon points=\"" << points_of(shape) << look.take();
+          break;
+        case Sketch::Shape::Kind::Circle:
+          svg_ << "<circle cx=\"" << shape.points.front().x_m << "\" cy=\"" << shape.points.front().y_m << "\" r=\""
+               << shape.radius_m << look.take();
+          break;
+        case Sketch::Shape::Kind::Text:
+          break;
+      }
+    }
+    svg_ << "</g>\n";
+  }
+
+  static std::string points_of(const Sketch::Shape& shape) {
+    Svg points;
+    for (const Sketch::Point& p : shape.points) points << p.x_m << "," << p.y_m << " ";
+    return points.take();
+  }
+
+  /// Texts stand upright whatever the drawing's directions.
+  void sketch_texts() {
+    for (const Sketch::Shape& shape : d_.shapes) {
+      if (shape.kind != Sketch::Shape::Kind::Text) continue;
+      text(x_px(shape.points.front().x_m), y_px(shape.points.front().y_m), 13.0, hex(shape.pen.color),
+           " class=\"sketch\" stroke=\"#ffffff\" stroke-width=\"3\" paint-order=\"stroke\"", shape.text);
+    }
   }
 
   void real_robots() {

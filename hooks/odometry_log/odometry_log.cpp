@@ -3,6 +3,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "hal/angle.hpp"
 #include "hal/device/wheels.hpp"
 #include "hal/unit.hpp"
 
@@ -13,7 +14,7 @@ namespace {
 core::Pose in_world(const core::Pose& frame, const hal::Odometry& in) {
   return core::Pose::at(frame.x_m + frame.cos_h * in.x_m - frame.sin_h * in.y_m,
                         frame.y_m + frame.sin_h * in.x_m + frame.cos_h * in.y_m,
-                        std::remainder(frame.heading_rad() + in.heading_rad, 2.0 * std::acos(-1.0)));
+                        hal::wrapped(frame.heading_rad() + in.heading_rad));
 }
 
 std::ostream& operator<<(std::ostream& out, const core::Pose& pose) {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/space/mechanisms.hpp"
+#include "hal/angle.hpp"
 
 namespace tandem::mixed_reality {
 namespace {
@@ -15,7 +16,7 @@ bool there(const hal::Reading* reading) noexcept {
 
 /// One tick of the way to `target_rad` by the shorter way round.
 double step_to(double target_rad, double from_rad, double most_rad) noexcept {
-  return std::clamp(core::wrapped(target_rad - from_rad), -most_rad, most_rad);
+  return std::clamp(hal::wrapped(target_rad - from_rad), -most_rad, most_rad);
 }
 
 }  // namespace
@@ -86,13 +87,13 @@ void Mechanisms::follow_gripper() noexcept {
 void Mechanisms::follow_turret(double tick_s) noexcept {
   double step_rad = 0.0;
   if (there(turret_)) {
-    step_rad = core::wrapped(turret_->angle_rad - turret_rad_);
+    step_rad = hal::wrapped(turret_->angle_rad - turret_rad_);
   } else if (turret_drive_ != nullptr && turret_drive_->mode == hal::TurretMode::Speed) {
     step_rad = turret_drive_->speed_rad_s * tick_s;
   } else if (turret_drive_ != nullptr && turret_drive_->mode == hal::TurretMode::Position) {
     step_rad = step_to(turret_drive_->angle_rad, turret_rad_, space_.data_sheet(robot_).turret_turn_rad_s * tick_s);
   }
-  turret_rad_ = core::wrapped(turret_rad_ + step_rad);
+  turret_rad_ = hal::wrapped(turret_rad_ + step_rad);
   const double speed_rad_s = there(turret_) ? static_cast<double>(turret_->speed_rad_s)
                              : tick_s > 0.0 ? step_rad / tick_s
                                             : 0.0;
@@ -115,10 +116,10 @@ void Mechanisms::follow_scanner(double tick_s) noexcept {
       swept_rad =
           step_to(scanner_drive_->angle_rad, scanner_rad_, space_.data_sheet(robot_).scanner_turn_rad_s * tick_s);
     }
-    scanner_rad_ = core::wrapped(scanner_rad_ + swept_rad);
+    scanner_rad_ = hal::wrapped(scanner_rad_ + swept_rad);
   }
   if (auto* const scanner = state<core::ScannerState>(); scanner != nullptr)
-    *scanner = {mode, core::wrapped(scanner_rad_), swept_rad};
+    *scanner = {mode, hal::wrapped(scanner_rad_), swept_rad};
 }
 
 void Mechanisms::follow_head(double tick_s) noexcept {
@@ -127,11 +128,11 @@ void Mechanisms::follow_head(double tick_s) noexcept {
     tilt_rad_ = head_->tilt_rad;
   } else if (head_drive_ != nullptr) {
     const double most_rad = space_.data_sheet(robot_).camera_head.turn_rad_s * tick_s;
-    pan_rad_ = core::wrapped(pan_rad_ + step_to(head_drive_->pan_rad, pan_rad_, most_rad));
+    pan_rad_ = hal::wrapped(pan_rad_ + step_to(head_drive_->pan_rad, pan_rad_, most_rad));
     tilt_rad_ += std::clamp(head_drive_->tilt_rad - tilt_rad_, -most_rad, most_rad);
   }
   if (auto* const head = state<core::HeadState>(); head != nullptr)
-    *head = {core::wrapped(pan_rad_), tilt_rad_, head_drive_ != nullptr && head_drive_->laser};
+    *head = {hal::wrapped(pan_rad_), tilt_rad_, head_drive_ != nullptr && head_drive_->laser};
 }
 
 }  // namespace tandem::mixed_reality

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "hal/angle.hpp"
+
 namespace tandem::mixed_reality {
 
 const core::Pose& SmoothPose::set(const core::Pose& honest) noexcept {
@@ -22,7 +24,7 @@ const core::Pose& SmoothPose::follow(const core::Pose& honest, const core::Pose&
     x_m_ -= dx_m;
     y_m_ -= dy_m;
     z_m_ -= dz_m;
-    turn_rad_ = std::remainder(turn_rad_ - turn_rad, 2.0 * std::acos(-1.0));
+    turn_rad_ = hal::turn_between(turn_rad, turn_rad_);
     left_s_ = kBlend_s;
   }
   if (left_s_ <= 0.0) return set(honest);

@@ -30,7 +30,7 @@ class TestRobot final : public hal::Robot {
 
   std::string_view id() const noexcept override { return "robot"; }
   const hal::DataSheet& data_sheet() const noexcept override { return sheet_; }
-  std::uint64_t seed() const noexcept override { return 1; }
+  std::uint64_t run_seed() const noexcept override { return 1; }
 
   void clear() { proximity.distance_m.fill(proximity.range_m); }
   void see(std::size_t sensor, double closeness) {

@@ -16,7 +16,7 @@ class WheelsOnly final : public Robot {
  public:
   std::string_view id() const noexcept override { return "ep0"; }
   const DataSheet& data_sheet() const noexcept override { return epuck::kDataSheet; }
-  std::uint64_t seed() const noexcept override { return 42; }
+  std::uint64_t run_seed() const noexcept override { return 42; }
   WheelSpeeds wheels;
 
  protected:
@@ -126,6 +126,33 @@ TEST(ControllerType, KnowsItsClass) {
   EXPECT_EQ(type.summary, "Counts its steps.");
   EXPECT_EQ(type.size, sizeof(Counter));
   EXPECT_EQ(type.align, alignof(Counter));
+}
+
+TEST(ControllerType, SpellsItsClass) {
+  EXPECT_NE(controller_type<Counter>("counter", "").class_name.find("tandem::hal::"), std::string_view::npos);
+  EXPECT_TRUE(controller_type<Counter>("counter", "").class_name.ends_with("::Counter"));
+  EXPECT_NE(controller_type<Blind>("blind", "").class_name, controller_type<Rude>("rude", "").class_name);
+}
+
+struct Learner : Controller {
+  explicit Learner(Robot& robot) : id(robot.id()) {}
+  void step() override { ++learned; }
+  bool reset(Robot& robot) override {
+    id = robot.id();
+    return true;
+  }
+  std::string id;
+  int learned = 0;
+};
+
+TEST(ControllerType, AClassMayKeepItsObjectsOverAReset) {
+  WheelsOnly robot;
+  Learner learner(robot);
+  learner.step();
+  EXPECT_TRUE(controller_type<Learner>("learner", "").reset(&learner, robot));
+  EXPECT_EQ(learner.learned, 1);
+  Rude rude(robot);
+  EXPECT_FALSE(controller_type<Rude>("rude", "").reset(&rude, robot)) << "by default another is made in its place";
 }
 
 TEST(ControllerType, AMissingDeviceIsAnErrorWhenItIsMade) {

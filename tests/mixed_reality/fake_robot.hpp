@@ -127,7 +127,7 @@ class FakeRobot final : public bridges::RobotBridge, private hal::Robot {
  private:
   std::string_view id() const noexcept override { return "fake"; }
   const hal::DataSheet& data_sheet() const noexcept override { return hal::epuck::kDataSheet; }
-  std::uint64_t seed() const noexcept override { return 0; }
+  std::uint64_t run_seed() const noexcept override { return 0; }
   void* take(const hal::PortType& type) override {
     void* data = port(type);
     if (data == nullptr) throw hal::DeviceError("a fake robot has no '" + std::string(type.name) + "'");

@@ -16,6 +16,7 @@
 #include "hal/device/turret.hpp"
 #include "hal/device/wheels.hpp"
 #include "hal/plugin.hpp"
+#include "tests/plugins/shown.hpp"
 
 namespace {
 
@@ -399,6 +400,7 @@ void register_all(Registrar& registrar) {
   registrar.add_controller<Reluctant>("reluctant", "Throws when it is copied after its third step.");
   registrar.add_controller<Picky>("picky", "Takes devices by its robot's id.");
   registrar.add_controller<Stillborn>("stillborn", "Throws when made.");
+  registrar.add_controller<tandem::test::Shown>("shown", "Uses all that a robot offers beside its devices.");
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 
 #include "core/loop/hook.hpp"
 #include "core/space/space.hpp"
+#include "tests/plugins/shown.hpp"
 
 namespace {
 
@@ -153,7 +154,50 @@ class Painter final : public core::Hook {
   Params params_;
 };
 
+/// Reaches controllers, draws, measures, and begins the run anew.
+class Teacher final : public core::Hook {
+ public:
+  struct Params {
+    std::int64_t reset_at = -1, resets = 1;
+    bool keeps = true, at_once = false;
+    double pace = 1.0;
+    void describe(hal::ParamVisitor& v) {
+      v.integer("reset_at", reset_at, hal::kAny, "Begins the run anew after this tick, with the next seed.");
+      v.integer("resets", resets, hal::kAny, "How often.");
+      v.flag("keeps", keeps, "It remembers how often it did.");
+      v.flag("at_once", at_once, "It asks for a reset before the run.");
+      v.number("pace", pace, hal::unit::none, hal::kAny, "What it tells the controllers.");
+    }
+  };
+  explicit Teacher(const Params& params) : params_(params) {}
+
+  void before_run(core::HookContext& c) override {
+    if (params_.at_once) c.checkpoints.reset(1);
+  }
+  void after_step(core::HookContext& c) override {
+    for (std::size_t i = 0; i < c.space.robot_count(); ++i) {
+      const core::RobotId robot = c.space.robot(i);
+      if (auto* shown = c.controller<test::Shown>(robot)) shown->pace = params_.pace;
+      const core::Pose pose = c.space.pose(robot);
+      c.sketch.circle({pose.x_m, pose.y_m}, 0.1);
+      c.sketch.text({pose.x_m, pose.y_m}, "<" + c.space.published_text(robot, "mode").value() + ">");
+    }
+    c.measures.add("steps");
+    c.measures.set("tick", static_cast<double>(c.tick));
+    if (c.tick != params_.reset_at || done_ == params_.resets) return;
+    ++done_;
+    c.checkpoints.reset(c.seed + 1);
+  }
+  bool reset(std::uint64_t) override { return params_.keeps; }
+  std::any save() const override { return 0; }
+
+ private:
+  Params params_;
+  std::int64_t done_ = 0;
+};
+
 void register_all(hal::Registrar& registrar) {
+  registrar.add("hook", "teacher", &core::hook_type<Teacher>("teacher", "Knows controllers by their class."));
   registrar.add("hook", "painter", &core::hook_type<Painter>("painter", "Paints a disc."));
   registrar.add("hook", "shepherd", &core::hook_type<Shepherd>("shepherd", "Robots and boxes come and go."));
   registrar.add("hook", "diary", &core::hook_type<Diary>("diary", "Writes its calls down."));

@@ -70,6 +70,21 @@ TEST_P(EveryExperiment, GivesTheSameBitsFromItsSavedSettings) {
   EXPECT_EQ(hash_after(*second, ticks), hash);
 }
 
+TEST_P(EveryExperiment, GivesTheSameBitsWhenItBeginsAnew) {
+  fs::current_path(kSourceDir);
+  const Experiment experiment(GetParam(), on_own_ports(GetParam()));
+  const int ticks = ticks_for(*experiment.world);
+  experiment->start();
+  const std::uint64_t hash = hash_after(*experiment.world, ticks);
+  const std::uint64_t seed = experiment->seed();
+  const hal::Status other = experiment->reset(seed + 1);
+  ASSERT_TRUE(other.ok()) << other.error().message;
+  (void)hash_after(*experiment.world, ticks);
+  const hal::Status again = experiment->reset(seed);
+  ASSERT_TRUE(again.ok()) << again.error().message;
+  EXPECT_EQ(hash_after(*experiment.world, ticks), hash);
+}
+
 TEST_P(EveryExperiment, GoesOnAlikeFromACheckpoint) {
   fs::current_path(kSourceDir);
   const Experiment experiment(GetParam(), on_own_ports(GetParam()));

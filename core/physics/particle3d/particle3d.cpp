@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <string>
 
 #include "core/physics/particle3d/near_pairs.hpp"
 #include "core/physics/particle3d/solid.hpp"
+#include "hal/angle.hpp"
 
 namespace tandem::core {
 namespace {
@@ -277,7 +277,7 @@ void Particle3d::load_flight(const SpaceStores& stores, std::size_t i, double ti
   if (f.mode == FlightCommand::Mode::Position) {
     p_.to_place[i] = 1.0;
     p_.goal_z[i] = std::clamp(f.target[2], p_.low[i], p_.high[i]);  // no thrust is lost on ground and ceiling
-    wanted = std::remainder(f.yaw - std::atan2(p_.s[i], p_.c[i]), 2.0 * std::numbers::pi);
+    wanted = hal::turn_between(std::atan2(p_.s[i], p_.c[i]), f.yaw);
   }
   p_.turn[i] = std::clamp(wanted, -most, most);
 }

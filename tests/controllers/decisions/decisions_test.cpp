@@ -122,6 +122,20 @@ TEST(Decisions, OfEveryControllerAreThoseOfEveryOtherMachine) {
   EXPECT_EQ(found, read_golden()) << "left: what it is here; right: " << kGolden;
 }
 
+/// World::snapshot copies controllers: one that cannot be copied would end every run that keeps a moment.
+TEST(Decisions, CanAllBeGoneBackTo) {
+  hal::PluginLoader loader({});
+  for (const std::string& library : libraries()) ASSERT_TRUE(loader.open(library).ok()) << library;
+  int controllers = 0;
+  for (const auto& entry : loader.entries()) {
+    if (entry.category != "controller") continue;
+    ++controllers;
+    EXPECT_NE(static_cast<const hal::ControllerType*>(entry.type)->copy, nullptr)
+        << entry.name << " has no copy constructor";
+  }
+  EXPECT_GT(controllers, 10);
+}
+
 /// Functions of the C library whose last bits differ between machines; hal/elementary.hpp has those that are needed.
 TEST(Decisions, AreMadeWithoutTheCLibrarysArithmetic) {
   const std::regex forbidden(

@@ -21,7 +21,7 @@ class MadeUpRobot final : public hal::Robot {
 
   std::string_view id() const noexcept override { return "robot"; }
   const hal::DataSheet& data_sheet() const noexcept override { return sheet_; }
-  std::uint64_t seed() const noexcept override { return 1; }
+  std::uint64_t run_seed() const noexcept override { return 1; }
 
   /// Fills every sensor that was taken.
   void sense(std::int64_t tick);

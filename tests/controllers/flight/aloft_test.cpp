@@ -28,7 +28,7 @@ class Flyer final : public hal::Robot {
   }
   std::string_view id() const noexcept override { return "flyer"; }
   const hal::DataSheet& data_sheet() const noexcept override { return hal::eyebot::kDataSheet; }
-  std::uint64_t seed() const noexcept override { return 1; }
+  std::uint64_t run_seed() const noexcept override { return 1; }
 
   hal::FlightTask task;
   hal::FlightState state;

@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 #include <numbers>
 
-#include "controllers/steering/chance.hpp"
 #include "controllers/steering/drive.hpp"
+#include "hal/angle.hpp"
 #include "hal/spec/footbot.hpp"
 #include "tests/controllers/test_robot.hpp"
 
@@ -39,14 +39,14 @@ struct Nearby : ::testing::Test {
 
 TEST_F(Nearby, NothingIsSeenWhereNothingIs) {
   EXPECT_FALSE(thing().seen);
-  EXPECT_EQ(push_away(robot.proximity, hal::footbot::kRing).length(), 0.0);
+  EXPECT_EQ(hal::length_of(push_away(robot.proximity, hal::footbot::kRing)), 0.0);
 }
 
 TEST_F(Nearby, ADiscIsSeenWhereItIsAndAsBroadAsItIs) {
   for (const double bearing_rad : {0.0, 1.0, 3.1, -2.0}) {
     see_disc(0.17 * std::cos(bearing_rad), 0.17 * std::sin(bearing_rad), 0.06);
     EXPECT_TRUE(thing().seen);
-    EXPECT_NEAR(wrapped(thing().bearing_rad - bearing_rad), 0.0, 0.1);
+    EXPECT_NEAR(hal::wrapped(thing().bearing_rad - bearing_rad), 0.0, 0.1);
     EXPECT_NEAR(thing().gap_m, 0.17 - 0.06 - hal::footbot::kBodyRadius_m, 0.005);
     EXPECT_LT(thing().breadth_m, 0.12);
     EXPECT_GT(thing().breadth_m, 0.025);  // two neighbouring sensors
@@ -72,12 +72,12 @@ TEST_F(Nearby, RobotsThatSendAreNoThings) {
 
 TEST_F(Nearby, PushesAwayFromWhatIsNearButNotFromTheLoad) {
   see_disc(0.0, 0.16, 0.06);
-  const Vector push = push_away(robot.proximity, hal::footbot::kRing);
-  EXPECT_LT(push.y, -0.03);
-  EXPECT_NEAR(push.x, 0.0, 1e-6);
+  const hal::Vector2 push = push_away(robot.proximity, hal::footbot::kRing);
+  EXPECT_LT(push.y(), -0.03);
+  EXPECT_NEAR(push.x(), 0.0, 1e-6);
   see_disc(0.16, 0.0, 0.06);
-  EXPECT_GT(push_away(robot.proximity, hal::footbot::kRing).length(), 0.03);
-  EXPECT_EQ(push_away(robot.proximity, hal::footbot::kRing, 1.0).length(), 0.0);
+  EXPECT_GT(hal::length_of(push_away(robot.proximity, hal::footbot::kRing)), 0.03);
+  EXPECT_EQ(hal::length_of(push_away(robot.proximity, hal::footbot::kRing, 1.0)), 0.0);
 }
 
 TEST_F(Nearby, TheLightIsWhereTheSensorsSeeMoreOfIt) {
@@ -85,15 +85,7 @@ TEST_F(Nearby, TheLightIsWhereTheSensorsSeeMoreOfIt) {
   light.count = 24;
   for (std::size_t i = 0; i < 24; ++i)
     light.level[i] = static_cast<float>(std::max(0.0, std::cos(hal::footbot::kRing[i].bearing_rad - 2.0)));
-  EXPECT_NEAR(to_light(light, hal::footbot::kRing).bearing_rad(), 2.0, 1e-6);
-}
-
-TEST(Wrapped, LiesBetweenMinusPiAndPi) {
-  EXPECT_DOUBLE_EQ(wrapped(kPi), kPi);
-  EXPECT_DOUBLE_EQ(wrapped(-kPi), kPi);
-  EXPECT_NEAR(wrapped(7.0), 7.0 - 2.0 * kPi, 1e-12);
-  EXPECT_NEAR(wrapped(-20.0), -20.0 + 6.0 * kPi, 1e-12);
-  EXPECT_EQ(wrapped(0.5), 0.5);
+  EXPECT_NEAR(hal::bearing_of(to_light(light, hal::footbot::kRing)), 2.0, 1e-6);
 }
 
 TEST(Drive, LeadsToTheBearing) {
@@ -111,21 +103,6 @@ TEST(Drive, LeadsToTheBearing) {
   EXPECT_EQ(wheels.right_m_s, 0.04);
   EXPECT_TRUE(turn_by(wheels, 0.05, 0.04));
   EXPECT_EQ(wheels.right_m_s, 0.0);
-}
-
-TEST(Chance, IsUniformAndFollowsItsSeed) {
-  Chance a(5), b(5), c(6);
-  double sum = 0.0;
-  int differ = 0;
-  for (int i = 0; i < 10000; ++i) {
-    const double x = a.between(2.0, 4.0);
-    EXPECT_EQ(x, b.between(2.0, 4.0));
-    differ += x != c.between(2.0, 4.0) ? 1 : 0;
-    ASSERT_TRUE(x >= 2.0 && x < 4.0);
-    sum += x;
-  }
-  EXPECT_NEAR(sum / 10000, 3.0, 0.03);  // five standard errors
-  EXPECT_GT(differ, 9990);
 }
 
 }  // namespace

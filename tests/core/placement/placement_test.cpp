@@ -370,6 +370,13 @@ TEST(Placement, RefusesARobotOutsideTheArena) {
   EXPECT_EQ(problem_of(s), "file.xml:10: error: robot 'b' is at (0, 0), outside the arena");
 }
 
+TEST(Placement, RefusesARobotBelowTheGround) {
+  Scenario s = arena(4);
+  s.robots = {robot("a", 0, 0)};
+  s.robots[0].placement.p_W[2] = -0.2;
+  EXPECT_THAT(problem_of(s), HasSubstr("robot 'a' is at a height of -0.2 m, below the ground"));
+}
+
 TEST(Placement, LeavesOutRobotsOfUnknownKinds) {
   Scenario s = arena(4);
   s.robots = {robot("a", 0, 0), robots("b", uniform(5, 1))};

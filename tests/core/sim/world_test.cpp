@@ -409,6 +409,22 @@ TEST(World, SaysWhichObjectsEnginesCannotMove) {
   EXPECT_THAT(world->space().add_object(chip).error().message, testing::HasSubstr("box 'chip' measures 2e-05 m"));
 }
 
+TEST(World, WarnsOfPlacesThatAnEngineOfThePlaneDoesNotKnow) {
+  Scene scene(4.0);
+  scene.robot("high", 0, 0).robot("tilted", 1, 0).robot("good", -1, 0);
+  scene.scenario.robots[0].placement.p_W[2] = 0.5;
+  scene.scenario.robots[1].placement.pitch_rad = 0.1;
+  const auto world = make(scene);
+  ASSERT_TRUE(world.world) << world.all_problems();
+  ASSERT_EQ(world.problems.size(), 2U) << world.all_problems();
+  EXPECT_NE(world.all_problems().find("warning: robot 'high' is 0.5 m above the ground, but its engine"),
+            std::string::npos)
+      << world.all_problems();
+  EXPECT_NE(world.all_problems().find("warning: robot 'tilted' is tilted"), std::string::npos) << world.all_problems();
+  scene.engine("dynamics3d");
+  EXPECT_EQ(make(scene).all_problems(), "");
+}
+
 TEST(World, SaysWhichFloorIsTooFine) {
   Scene s = painted();
   s.scenario.arena_size = {1e4, 1e4, 1.0};

@@ -56,7 +56,7 @@ class ScriptedBridge final : public bridges::RobotBridge, private hal::Robot {
  private:
   std::string_view id() const noexcept override { return "ep0"; }
   const hal::DataSheet& data_sheet() const noexcept override { return sheet_; }
-  std::uint64_t seed() const noexcept override { return 0; }
+  std::uint64_t run_seed() const noexcept override { return 0; }
   void* take(const hal::PortType& type) override {
     void* data = port(type);
     if (data == nullptr) throw hal::DeviceError("there is no " + std::string(type.name));

@@ -63,7 +63,7 @@ class FakeFlyer final : public bridges::RobotBridge, private hal::Robot {
  private:
   std::string_view id() const noexcept override { return "fake"; }
   const hal::DataSheet& data_sheet() const noexcept override { return hal::eyebot::kDataSheet; }
-  std::uint64_t seed() const noexcept override { return 0; }
+  std::uint64_t run_seed() const noexcept override { return 0; }
   void* take(const hal::PortType& type) override { return port(type); }
 
   Flyer& body_;
