@@ -1,4 +1,5 @@
 // The `tandem` command on a robot's board: what the board's own robot needs, and no simulation.
+#include "app/build_info.hpp"
 #include "app/emergency.hpp"
 #include "app/robot_commands.hpp"
 
@@ -8,7 +9,7 @@ int main(int argc, char** argv) {
   CLI::App app{"Tandem on a robot's board: runs the robot's controller here.", "tandem"};
   app.footer("Simulation, emulation and mixed runs are commands of the whole program.");
   app.require_subcommand(1);
-  app.set_version_flag("--version", TANDEM_VERSION);
+  app.set_version_flag("--version", version_text());
   app.failure_message(CLI::FailureMessage::help);
   int code = kDone;
   RobotCommandOptions options;

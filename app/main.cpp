@@ -1,6 +1,7 @@
 // The `tandem` command: its words and its exit codes.
 #include <CLI/CLI.hpp>
 
+#include "app/build_info.hpp"
 #include "app/command/command.hpp"
 #include "app/emergency.hpp"
 #include "app/robot_commands.hpp"
@@ -26,6 +27,7 @@ void add_run(CLI::App& app, RunOptions& o, int& code) {
   c->add_option("--report", o.report, "Write a JSON report to this file ('-': standard output)");
   c->add_option("--picture", o.picture, "Draw the space from above at the end: FILE.svg, .png or .pdf");
   c->add_option("--trajectory", o.trajectory, "Write poses as CSV");
+  c->add_option("--log", o.log, "Write all messages of the run to this file: of controllers, too");
   auto* dump =
       c->add_option("--dump", o.dump, "Write every value of the state at the end as CSV, for `tandem compare`");
   c->add_option("--dump-every", o.dump_every, "… and after every so many ticks")
@@ -122,7 +124,7 @@ int main(int argc, char** argv) {
   CLI::App app{"Tandem: one controller drives simulated robots, real ones, and both together.", "tandem"};
   app.footer("The launcher at the top of the checkout has further commands: test, build and format.");
   app.require_subcommand(1);
-  app.set_version_flag("--version", TANDEM_VERSION);
+  app.set_version_flag("--version", version_text());
   app.failure_message(CLI::FailureMessage::help);
   int code = kDone;
 
@@ -131,6 +133,12 @@ int main(int argc, char** argv) {
 
   CompareOptions compare_options;
   add_compare(app, compare_options, code);
+  UpgradeOptions upgrade_options;
+  CLI::App* upgrade_command = app.add_subcommand(
+      "upgrade", "Rewrite an experiment file in this program's vocabulary; layout and comments stay.");
+  upgrade_command->add_option("experiment", upgrade_options.experiment, "The experiment file (.xml)")->required();
+  upgrade_command->add_flag("--dry-run", upgrade_options.dry_run, "Only say what would change");
+  upgrade_command->callback([&] { code = upgrade(upgrade_options); });
 
   std::string kind;
   CLI::App* list_command =

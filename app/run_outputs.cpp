@@ -31,7 +31,8 @@ hal::Status check_output_paths(const RunOptions& options, const core::Scenario& 
   return check_apart({{"report", options.report},
                       {"picture", options.picture},
                       {"trajectory", trajectory_path(options, scenario)},
-                      {"dump", options.dump}},
+                      {"dump", options.dump},
+                      {"log", options.log}},
                      inputs_of(scenario));
 }
 

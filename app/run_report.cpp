@@ -3,11 +3,13 @@
 #include <fmt/format.h>
 
 #include "app/bridge_status.hpp"
+#include "app/build_info.hpp"
 #include "app/measure.hpp"
 #include "app/report.hpp"
 #include "app/sha256.hpp"
 #include "core/config/xml.hpp"
 #include "hal/json/json.hpp"
+#include "hal/unit.hpp"
 
 namespace tandem::app {
 namespace {
@@ -66,22 +68,35 @@ void add_real_robots(hal::Json& json, const mixed_reality::MixedReport& report) 
   pace["step_p99_ms"] = static_cast<double>(report.pace.step.quantile_ns(0.99)) * 1e-6;
 }
 
+hal::Json to_json(const InputFile& file) {
+  hal::Json json;
+  if (!file.id.empty()) json["id"] = file.id;
+  if (!file.label.empty()) json["label"] = file.label;
+  json["file"] = file.file;
+  if (!file.sha256.empty()) json["sha256"] = file.sha256;
+  return json;
+}
+
 void add_members(hal::Json& json, const RunResult& result, bool between_ticks) {
   const core::World& world = result.world;
   add_run_fields(json, world, result.figures, result.robots, between_ticks);
-  hal::Json& controllers = json["controllers"] = hal::Json::array();
-  for (const ControllerFile& file : result.controllers) {
-    hal::Json controller{{"id", file.id}, {"label", file.label}, {"file", file.file}};
-    if (!file.sha256.empty()) controller["sha256"] = file.sha256;
-    controllers.push_back(std::move(controller));
-  }
+  const auto add_files = [&json](const char* key, const std::vector<InputFile>& files) {
+    hal::Json& list = json[key] = hal::Json::array();
+    for (const InputFile& file : files) list.push_back(to_json(file));
+  };
+  json["file"] = to_json(result.inputs.experiment);
+  add_files("controllers", result.inputs.controllers);
+  if (!result.inputs.hooks.empty()) add_files("hooks", result.inputs.hooks);
+  if (!result.inputs.others.empty()) add_files("other_files", result.inputs.others);
   const core::Incidents& incidents = world.incidents();
   json["incidents"] = {{"commands_clamped", incidents.commands_clamped},
                        {"commands_not_finite", incidents.commands_not_finite},
                        {"controllers_thrown", incidents.controllers_thrown},
                        {"bodies_escaped", incidents.bodies_escaped},
                        {"first", incidents.first}};
+  if (!world.measures().all().empty()) json["measures"] = world.measures().all();
   if (result.real != nullptr) add_real_robots(json, *result.real);
+  json["program"] = to_json(build_info());
   json["settings"] = core::to_xml(world.scenario().effective);
 }
 
@@ -99,13 +114,24 @@ RunEnd end_of(const core::World& world, std::int64_t steps_wanted, bool stopped)
   return end;
 }
 
-std::vector<ControllerFile> controller_files(const core::Scenario& scenario, const hal::PluginLoader& loader) {
-  std::vector<ControllerFile> files;
+InputFiles input_files(const core::Scenario& scenario, const hal::PluginLoader& loader) {
+  const auto described = [](std::string id, std::string label, std::string path) {
+    const auto digest = sha256_of_file(path);
+    return InputFile{std::move(id), std::move(label), std::move(path), digest.ok() ? digest.value() : ""};
+  };
+  InputFiles files;
+  files.experiment = described("", "", scenario.file);
   for (const core::ControllerConfig& config : scenario.controllers) {
     const auto file = loader.find(config.library);
-    if (!file.ok()) continue;
-    const auto digest = sha256_of_file(file.value().string());
-    files.push_back({config.id, config.label, file.value().string(), digest.ok() ? digest.value() : ""});
+    if (file.ok()) files.controllers.push_back(described(config.id, config.label, file.value().string()));
+  }
+  for (const core::HookConfig& hook : scenario.hooks) {
+    const auto file = loader.find(hook.library);
+    if (file.ok()) files.hooks.push_back(described("", hook.label, file.value().string()));
+  }
+  if (scenario.floor.source == "image") files.others.push_back(described("", "", scenario.floor.path));
+  for (const core::RobotItem& robot : scenario.robots) {
+    if (robot.bridge && !robot.bridge->map.empty()) files.others.push_back(described(robot.id, "", robot.bridge->map));
   }
   return files;
 }
@@ -153,6 +179,7 @@ void print_result(const RunResult& result) {
                                   incidents.commands_clamped, incidents.commands_not_finite,
                                   incidents.controllers_thrown, incidents.bodies_escaped));
   }
+  for (const auto& [name, value] : world.measures().all()) rows.emplace_back(name, hal::format_number(value));
   if (real != nullptr) {
     for (const mixed_reality::RealRobotReport& r : real->robots) {
       rows.emplace_back(

@@ -26,17 +26,25 @@ struct RunEnd {
 /// Of a world that is stepped no more; `stopped`: by a signal.
 RunEnd end_of(const core::World& world, std::int64_t steps_wanted, bool stopped);
 
-/// A file of controllers that takes part.
-struct ControllerFile {
-  std::string id, label, file;
+/// A file that decides what a run does.
+struct InputFile {
+  std::string id;     ///< of the configuration; empty: none
+  std::string label;  ///< registered name; empty: the file has none
+  std::string file;
   std::string sha256;  ///< empty: it cannot be read
 };
-std::vector<ControllerFile> controller_files(const core::Scenario& scenario, const hal::PluginLoader& loader);
+/// The files of a run, as they are now: to be asked before it.
+struct InputFiles {
+  InputFile experiment;
+  std::vector<InputFile> controllers, hooks;
+  std::vector<InputFile> others;  ///< images of floors, maps of robots
+};
+InputFiles input_files(const core::Scenario& scenario, const hal::PluginLoader& loader);
 
 /// What the report and the table are made of.
 struct RunResult {
   const core::World& world;
-  const std::vector<ControllerFile>& controllers;
+  const InputFiles& inputs;
   RunFigures figures;
   std::size_t robots = 0;
   RunEnd end;

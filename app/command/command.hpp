@@ -23,6 +23,7 @@ struct RunOptions {
   std::string trajectory;               ///< CSV file, of every robot unless the experiment says which
   std::string dump;                     ///< CSV file of every value of the state
   std::int64_t dump_every = 0;          ///< ticks; 0: at the end alone
+  std::string log;                      ///< file for all messages
   std::vector<std::string> without;     ///< real robots that are simulated instead, by id
   std::vector<std::string> hub_faults;  ///< as `parse_hub_fault` reads them
   bool quiet = false;                   ///< no table
@@ -46,6 +47,12 @@ struct CheckOptions {
   std::vector<std::string> overrides;
 };
 int check(const CheckOptions& options);
+
+struct UpgradeOptions {
+  std::string experiment;
+  bool dry_run = false;  ///< only say what would change
+};
+int upgrade(const UpgradeOptions& options);
 
 /// Kinds: controllers, hooks, devices, engines, robots, elements; empty: all.
 int list(const std::string& kind);

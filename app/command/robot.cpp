@@ -8,6 +8,7 @@
 
 #include "app/bridge_status.hpp"
 #include "app/bridged_controller.hpp"
+#include "app/build_info.hpp"
 #include "app/catalog.hpp"
 #include "app/command/command.hpp"
 #include "app/emergency_report.hpp"
@@ -178,7 +179,8 @@ int robot(const RobotOptions& options) {
       "controller '" + config.id + "' (library '" + config.library + "') of robot '" + item.id + "'";
   std::unique_ptr<BridgedController> controller;
   try {
-    controller = std::make_unique<BridgedController>(*type.value(), bridge.robot(), params.get(), who);
+    controller = std::make_unique<BridgedController>(*type.value(), bridge.robot(), params.get(),
+                                                     scenario->ticks_per_second, log, who);
   } catch (const std::exception& e) {
     return complain(kBadInput, who + " " + e.what());
   }
@@ -259,6 +261,9 @@ int robot(const RobotOptions& options) {
   }
   if (report) {
     json["stop_confirmed"] = confirmed;
+    json["program"] = to_json(build_info());
+    if (const auto digest = sha256_of_file(options.file); digest.ok())
+      json["file"] = {{"file", options.file}, {"sha256", digest.value()}};
     const std::string library = loader.find(config.library).value().string();
     if (const auto digest = sha256_of_file(library); digest.ok()) {
       json["controller"] = library;

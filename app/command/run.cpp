@@ -10,6 +10,7 @@
 #include "app/hub_faults.hpp"
 #include "app/measure.hpp"
 #include "app/progress.hpp"
+#include "app/run_log.hpp"
 #include "app/run_outputs.hpp"
 #include "app/run_report.hpp"
 #include "app/signals.hpp"
@@ -22,8 +23,6 @@
 
 namespace tandem::app {
 namespace {
-
-constexpr int kWarningsShown = 20;
 
 /// What is kept of a run while it goes on, so that little is lost however it ends: records, which the system gets twice
 /// a second, and a report for the emergency. Lives from the first tick to the last.
@@ -222,13 +221,13 @@ int run(const RunOptions& options) {
   std::signal(SIGPIPE, SIG_IGN);  // who reads our output may end before us
   Watchdog watchdog(options.step_timeout_s, stop);
   hal::PluginLoader loader(plugin_folders());
-  int warned = 0;
+  auto opened_log = RunLog::open(options.log);
+  if (!opened_log.ok()) return complain(kBadInput, opened_log.error().message);
+  RunLog& run_log = *opened_log.value();
   core::WorldOptions world_options;
   world_options.seed = options.seed;
   world_options.threads = options.threads;
-  world_options.log = hal::Log([&warned](hal::Severity, std::string_view text) {
-    if (++warned <= kWarningsShown) say(text);
-  });
+  world_options.log = run_log.log();
   core::Problems problems;
   auto made = core::World::make(*scenario, loader, world_options, problems);
   print_problems(problems);
@@ -243,9 +242,9 @@ int run(const RunOptions& options) {
   const auto mixed = join_real_robots(made, guarded, hub_faults.value(), clock, stop, world_options.log, code);
   if (code != kDone) return stop.load() ? interrupted_code() : code;
 
-  const auto controllers = controller_files(*scenario, loader);
+  const InputFiles inputs = input_files(*scenario, loader);
   const std::int64_t steps = steps_of(options.steps, options.seconds, *scenario);
-  RunResult result{*world, controllers, {}, world->space().robot_count(), {}, nullptr};
+  RunResult result{*world, inputs, {}, world->space().robot_count(), {}, nullptr};
   result.figures.threads = world->threads();
   result.figures.init_s = wall_seconds() - began;
   std::optional<mixed_reality::MixedReport> real;
@@ -276,7 +275,9 @@ int run(const RunOptions& options) {
   if (result.end.how == Ended::Failed) complain(kFailedRunning, result.end.failure);
   if (result.end.how == Ended::Interrupted) say(fmt::format("interrupted at tick {}", world->tick()));
   const bool table = !options.quiet && options.report != "-";
-  const bool written = write_results(outputs, result, table);
+  bool written = write_results(outputs, result, table);
+  if (const hal::Status logged = run_log.close(); !logged.ok())
+    written = complain(kFailedRunning, logged.error().message) == kDone;
   const bool failed = result.end.how == Ended::Failed || world->incidents().controllers_thrown > 0;
   if (failed || !was_guarded || !written || !left.empty()) return kFailedRunning;
   return result.end.how == Ended::Interrupted ? interrupted_code() : kDone;

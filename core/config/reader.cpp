@@ -5,6 +5,7 @@
 
 #include "core/config/overrides.hpp"
 #include "core/config/reading.hpp"
+#include "core/config/upgrade.hpp"
 #include "core/config/xml.hpp"
 
 namespace tandem::core {
@@ -69,7 +70,10 @@ Scenario read_parts(Reading& reading, Element& root) {
         root, "the root element is <" + root.name + ">; an experiment starts with <tandem> or <argos-configuration>");
     return std::move(reading.out());
   }
-  reading.read<schema::Root>(root);
+  if (const std::string why = version_problem(reading.read<schema::Root>(root).version); !why.empty()) {
+    reading.error(root, "version", why);
+    return std::move(reading.out());
+  }
   if (root.child("framework") == nullptr) {
     reading.error(
         root,

@@ -38,7 +38,12 @@ struct Root {
   static constexpr ElementInfo kElement{
       "tandem", "An experiment. The name <argos-configuration> means the same.", "",
       "framework controllers arena physics_engines media visualization loop_functions record"};
-  void describe(ParamVisitor&) {}
+  std::int64_t version = 0;
+  void describe(ParamVisitor& v) {
+    v.integer("version", version, {0, 999'999'999},
+              "Of the vocabulary that the file is written in; `tandem upgrade` brings it to this program's. Left out "
+              "or 0: of before there were versions, or one of ARGoS'.");
+  }
 };
 
 struct Framework {

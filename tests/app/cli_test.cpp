@@ -39,6 +39,69 @@ TEST(Run, WritesReportPictureAndTrajectory) {
   EXPECT_EQ(run.errors(), "");  // no progress bar where there is no terminal
 }
 
+TEST(Run, ReportsWhatRan) {
+  Folder folder;
+  const std::string experiment = kConfigs + "epuck_diffusion.xml";
+  Tandem run({"run", experiment, "--steps", "1", "--report", "-"}, folder.path());
+  ASSERT_EQ(run.wait(), 0) << run.errors();
+  const std::string report = run.output();
+  Tandem version({"--version"}, folder.path());
+  ASSERT_EQ(version.wait(), 0);
+  EXPECT_EQ(version.output().find(json_value(report, "version")), 0U) << version.output();
+  for (const char* key : {"compiler", "build", "processor", "system", "Eigen3", "libtinyxml2", "libode"})
+    EXPECT_FALSE(json_value(report, key).empty()) << key << " in " << report;
+  EXPECT_NE(report.find("\"commit\""), std::string::npos);
+  const auto digest = app::sha256_of_file(experiment);
+  ASSERT_TRUE(digest.ok());
+  EXPECT_NE(report.find(digest.value()), std::string::npos) << "of the experiment";
+  if (const std::string commit = json_value(report, "commit"); !commit.empty()) {
+    ASSERT_GE(commit.size(), 40U);
+    EXPECT_NE(version.output().find(commit.substr(0, 12)), std::string::npos) << version.output();
+  }
+}
+
+/// An experiment with one robot whose controller says something in every step.
+std::string talking_experiment(const std::string& hook) {
+  return R"(<tandem>
+  <framework><experiment length="3" ticks_per_second="10" random_seed="1"/></framework>
+  <controllers><shown id="c" library="test_controllers">
+    <actuators><differential_steering/></actuators><params talks="true"/>
+  </shown></controllers>
+  )" + hook +
+         R"(<arena size="4,4,1"><e-puck id="ep"><body position="0,0,0"/><controller config="c"/></e-puck></arena>
+</tandem>)";
+}
+
+TEST(Run, KeepsWhatControllersSayInItsLog) {
+  Folder folder;
+  folder.write("talk.xml", talking_experiment(""));
+  Tandem run({"run", "talk.xml", "--log", "run.log", "--report", "-"}, folder.path());
+  ASSERT_EQ(run.wait(), 0) << run.errors();
+  const std::string log = text_of(folder.path() / "run.log");
+  EXPECT_EQ(log.find("info: robot 'ep' at tick 0: made\nwarning: robot 'ep' at tick 0: step 1\n"), 0U) << log;
+  EXPECT_NE(log.find("warning: robot 'ep' at tick 20: step 21 (9 messages before it were left out)\n"),
+            std::string::npos)
+      << log;
+  EXPECT_NE(run.errors().find("robot 'ep' at tick 0: step 1"), std::string::npos);
+  Tandem over({"run", "talk.xml", "--log", "talk.xml"}, folder.path());
+  EXPECT_EQ(over.wait(), 1) << "a log would overwrite the experiment";
+}
+
+TEST(Run, ReportsWhatHooksMeasuredAndDrawsWhatTheyDrew) {
+  Folder folder;
+  folder.write("teach.xml", talking_experiment(R"(<loop_functions library="test_hooks" label="teacher"/>)"));
+  Tandem run({"run", "teach.xml", "--picture", "end.svg", "--report", "r.json"}, folder.path());
+  ASSERT_EQ(run.wait(), 0) << run.errors();
+  const std::string report = text_of(folder.path() / "r.json");
+  const std::size_t measures = report.find("\"measures\"");
+  ASSERT_NE(measures, std::string::npos) << report;
+  EXPECT_EQ(std::stod(json_value(report, "steps", measures)), 30.0);
+  EXPECT_NE(report.find("libtest_hooks.so"), std::string::npos);
+  const std::string picture = text_of(folder.path() / "end.svg");
+  EXPECT_NE(picture.find("class=\"sketch\""), std::string::npos);
+  EXPECT_NE(picture.find("&lt;drive&gt;</text>"), std::string::npos);
+}
+
 TEST(Run, GivesTheSameStateForAnyNumberOfThreadsAndTheSeedThatWasSaid) {
   Folder folder;
   std::string first;

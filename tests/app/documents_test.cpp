@@ -121,6 +121,34 @@ TEST(Hooks, TheirExampleBuildsRunsAndDoesWhatItSays) {
   EXPECT_TRUE(fs::exists(folder.path() / "end.svg"));
 }
 
+TEST(Controllers, TheirExampleBuildsRunsAndDoesWhatItSays) {
+  const std::string page = text_of(kTop / "docs/controllers.md");
+  Folder folder;
+  const auto blocks = named_blocks(page);
+  for (const char* name : {"scout.hpp", "scout.cpp", "lessons.cpp", "CMakeLists.txt", "scouts.xml"}) {
+    ASSERT_TRUE(blocks.contains(name)) << name;
+    folder.write(name, blocks.at(name));
+  }
+  std::string commands = shell_block(page, "-DTandem_DIR");
+  replace(commands, "TANDEM=~/tandem", "TANDEM=" + kTop.string());
+  replace(commands, "$TANDEM/tandem run", std::string(test::kBuildDir) + "/bin/tandem run");
+  folder.write("commands.sh", commands);
+  const std::string run = "cd '" + folder.path().string() + "' && sh -e commands.sh >log 2>&1 </dev/null";
+  ASSERT_EQ(std::system(run.c_str()), 0) << text_of(folder.path() / "log");
+
+  const std::string log = text_of(folder.path() / "log");
+  std::vector<double> covered;
+  static const std::regex kTrial("legs of [0-9.]+ s: ([0-9.]+)\n");
+  for (const std::smatch& m : matches(log, kTrial)) covered.push_back(std::stod(m[1]));
+  ASSERT_EQ(covered.size(), 3U) << log;
+  EXPECT_LT(covered[0], covered[2]) << "longer legs cover more";
+  const std::string report = text_of(folder.path() / "scouts.json");
+  EXPECT_NEAR(std::stod(scenarios::json_value(report, "covered")), covered[2], 1e-4);
+  const std::string picture = text_of(folder.path() / "scouts.svg");
+  EXPECT_NE(picture.find("<polygon"), std::string::npos);
+  EXPECT_TRUE(picture.find(">walk</text>") != std::string::npos || picture.find(">turn</text>") != std::string::npos);
+}
+
 /// The words that follow "Subcommands:" or the options of a command, from the program's own help.
 std::set<std::string> words_of_help(const std::vector<std::string>& arguments, const std::regex& pattern) {
   Folder folder;

@@ -39,7 +39,7 @@ class LockStepFootbot final : public core::ExternalRobots {
  public:
   LockStepFootbot(core::RobotId robot, const hal::ControllerType& type, const void* params, emulator::Protocol protocol)
       : puppeteer_(robot, body_), modules_({.protocol = protocol}, body_, {}), driver_(settings(), messages_) {
-    controller_.emplace(type, driver_.robot(), params);
+    controller_.emplace(type, driver_.robot(), params, 10, hal::Log());
     modules_.power_on(0);
     while (now_ < kHandshake_ns) {
       driver_.latch(0, now_);
@@ -132,7 +132,7 @@ class SimulatedFootbot final : public hal::Robot {
  public:
   std::string_view id() const noexcept override { return "me"; }
   const hal::DataSheet& data_sheet() const noexcept override { return spec::kDataSheet; }
-  std::uint64_t seed() const noexcept override { return 0; }
+  std::uint64_t run_seed() const noexcept override { return 0; }
 
   hal::Proximity proximity;
   hal::WheelSpeeds wheels;
@@ -176,7 +176,7 @@ TEST_P(SameDecisionsOfFootbots, InSimulationAndThroughTheBus) {
   core::ElementReader reader(world->scenario().controllers[0].params, problems);
   const auto params = type.value()->read_params(reader);
   SimulatedFootbot direct;
-  app::BridgedController controller(*type.value(), direct, params.get());
+  app::BridgedController controller(*type.value(), direct, params.get(), 10, hal::Log());
 
   const core::RobotId me = world->space().find_robot("me");
   LockStepFootbot bridged(me, *type.value(), params.get(), GetParam());

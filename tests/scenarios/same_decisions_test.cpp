@@ -29,7 +29,7 @@ class LockStepRobot final : public core::ExternalRobots {
     auto [host, wire] = bridges::MemoryLink::make_pair([this] { return now_; });
     host_ = std::move(host);
     wire_ = std::move(wire);
-    controller_.emplace(type, driver_.robot(), params);
+    controller_.emplace(type, driver_.robot(), params, 10, hal::Log());
     firmware_.power_on(0);
     while (now_ < kHandshake_ns) {
       driver_.latch(0, now_);
@@ -122,7 +122,7 @@ class SimulatedRobot final : public hal::Robot {
  public:
   std::string_view id() const noexcept override { return "me"; }
   const hal::DataSheet& data_sheet() const noexcept override { return hal::epuck::kDataSheet; }
-  std::uint64_t seed() const noexcept override { return 0; }
+  std::uint64_t run_seed() const noexcept override { return 0; }
 
   hal::Proximity proximity;
   hal::WheelSpeeds wheels;
@@ -162,7 +162,7 @@ TEST_P(SameDecisions, InSimulationAndThroughTheWire) {
   core::ElementReader reader(world->scenario().controllers[0].params, problems);
   const auto params = type.value()->read_params(reader);
   SimulatedRobot direct;
-  app::BridgedController controller(*type.value(), direct, params.get());
+  app::BridgedController controller(*type.value(), direct, params.get(), 10, hal::Log());
 
   const auto variant = emulator::variant_from(GetParam());
   ASSERT_TRUE(variant.ok());

@@ -1,0 +1,33 @@
+// Messages of a run: the first few on the terminal, all of them in a file that was asked for.
+#pragma once
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+
+#include "hal/log.hpp"
+#include "hal/output_file.hpp"
+
+namespace tandem::app {
+
+/// May be used from any thread.
+class RunLog {
+ public:
+  /// `path` empty: no file. Error: it cannot be written.
+  static hal::Result<std::unique_ptr<RunLog>> open(const std::string& path);
+
+  /// Must not outlive this.
+  hal::Log log();
+  /// Puts the file in its place and tells how many messages the terminal did not get. Error: the disk is full or gone.
+  hal::Status close();
+
+ private:
+  void write(hal::Severity severity, std::string_view text);
+
+  std::mutex lock_;
+  std::optional<hal::OutputFile> file_;
+  hal::Status written_;
+  int count_ = 0;
+};
+
+}  // namespace tandem::app
