@@ -5,7 +5,6 @@
 
 #include "core/sim/engine_factory.hpp"
 #include "hal/angle.hpp"
-#include "hal/device/body_sensors.hpp"
 
 namespace tandem::core {
 namespace {
@@ -214,32 +213,6 @@ hal::Result<RobotId> WorldEditor::add_robot(const NewRobot& wanted) {
   const hal::Result<RobotItem> item = item_for(wanted);
   if (!item.ok()) return item.error();
   return factory_.add(item.value(), wanted.pose, [&](std::size_t row) { return accept(who, row); });
-}
-
-double* WorldEditor::charge_of(RobotId robot, double& full) const {
-  const RobotEntity& e = stores_.robots[robot.index];
-  const RobotGroup& group = stores_.groups[stores_.blocks[e.block].group];
-  full = group.item->battery.full_charge;
-  ChargeState* const state = stores_.columns.of<ChargeState>().at(e.block, e.slot);
-  return state == nullptr ? nullptr : &state->charge;
-}
-
-hal::Result<double> WorldEditor::battery(RobotId robot) const {
-  double full = 1.0;
-  const double* charge = charge_of(robot, full);
-  if (charge == nullptr) {
-    return hal::Error{name_of(BodyKey::robot(stores_.row_of(robot))) +
-                      " has no battery: its controller takes no sensor of that name"};
-  }
-  return full > 0.0 ? *charge / full : 0.0;
-}
-
-hal::Status WorldEditor::set_battery(RobotId robot, double charge) {
-  double full = 1.0;
-  double* kept = charge_of(robot, full);
-  if (kept == nullptr) return battery(robot).error();
-  *kept = charge * full;
-  return {};
 }
 
 // --- objects ---

@@ -17,8 +17,6 @@ class WorldEditor final : public Editor {
       : scenario_(scenario), stores_(stores), factory_(factory), keeper_(keeper) {}
 
   hal::Result<RobotId> add_robot(const NewRobot& wanted) override;
-  hal::Result<double> battery(RobotId robot) const override;
-  hal::Status set_battery(RobotId robot, double charge) override;
   hal::Result<ObjectId> add_object(const Object& wanted) override;
   hal::Status set_object(ObjectId object, const Object& changed) override;
   hal::Result<JointId> join(BodyKey a, BodyKey b, const std::array<double, 3>& p_W, const JointForm& form) override;
@@ -35,7 +33,6 @@ class WorldEditor final : public Editor {
   Obstacle obstacle_of(BodyKey body) const;
   bool alive(BodyKey body) const noexcept;
   std::uint16_t region_now(BodyKey body) const noexcept;
-  double* charge_of(RobotId robot, double& full) const;
 
   const Scenario& scenario_;
   SpaceStores& stores_;

@@ -47,8 +47,6 @@ class Editor {
   virtual ~Editor() = default;
 
   virtual hal::Result<RobotId> add_robot(const NewRobot& wanted) = 0;
-  virtual hal::Result<double> battery(RobotId robot) const = 0;
-  virtual hal::Status set_battery(RobotId robot, double charge) = 0;
   virtual hal::Result<ObjectId> add_object(const Object& wanted) = 0;
   virtual hal::Status set_object(ObjectId object, const Object& changed) = 0;
   /// Bodies that are there, under their keys; the point in W.

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "core/scenario/scenario.hpp"
 #include "core/space/stores.hpp"
 #include "hal/angle.hpp"
 #include "hal/check.hpp"
@@ -119,6 +120,15 @@ hal::Error no_world() {
   return {"this space belongs to no world: nothing can be added to it"};
 }
 
+hal::Error without_battery(const std::string& robot) {
+  return {"robot '" + robot + "' has no battery: its controller takes no sensor of that name"};
+}
+
+/// What its configuration counts as full.
+double full_charge(const SpaceStores& s, RobotId robot) noexcept {
+  return s.groups[s.blocks[s.robots[robot.index].block].group].item->battery.full_charge;
+}
+
 bool finite(const std::array<double, 3>& v) noexcept {
   return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]);
 }
@@ -198,13 +208,19 @@ hal::Status Space::set_velocity(RobotId robot, const Velocity& velocity) {
 
 hal::Result<double> Space::battery(RobotId robot) const {
   if (!contains(robot)) return gone("robot");
-  return editor_ == nullptr ? no_world() : editor_->battery(robot);
+  const auto* kept = state<ChargeState>(robot);
+  if (kept == nullptr) return without_battery(robot_name(robot));
+  const double full = full_charge(*stores_, robot);
+  return full > 0.0 ? kept->charge / full : 0.0;
 }
 
 hal::Status Space::set_battery(RobotId robot, double charge) {
   if (!contains(robot)) return gone("robot");
   if (!(charge >= 0.0 && charge <= 1.0)) return hal::Error{"a battery's charge is a part of the full one, 0 to 1"};
-  return editor_ == nullptr ? no_world() : editor_->set_battery(robot, charge);
+  auto* kept = state<ChargeState>(robot);
+  if (kept == nullptr) return without_battery(robot_name(robot));
+  kept->charge = charge * full_charge(*stores_, robot);
+  return {};
 }
 
 void Space::remove_robot(RobotId robot) noexcept {
