@@ -78,6 +78,7 @@ struct BenchOptions {
   double seconds = 5.0;    ///< sense_to_act: that are timed
   bool real_time = false;  ///< sense_to_act: with SCHED_FIFO
 };
+/// In the folder bench, which is above this one.
 int bench(const BenchOptions& options);
 
 struct RobotOptions {

@@ -22,7 +22,7 @@ const LibraryOwners kOwners = {{"tinyxml2", "core/config"},
                                {"eyebot/", "bridges/eyebot_messages"},
                                {"eyebot_c/", "bridges/eyebot_emulator"},
                                {"CLI/", "app"},
-                               {"fmt/", "app"},
+                               {"fmt/", "app bench"},
                                {"box2d/", "core/physics/dynamics2d"},
                                {"ode/", "core/physics/dynamics3d"}};
 

@@ -14,7 +14,7 @@ using Dependencies = std::map<std::string, std::set<std::string>>;
 /// Reads lines "folder : dependencies : libraries", as the build writes them.
 Dependencies read_dependencies(const std::filesystem::path& file);
 
-/// Third-party headers by their beginning, and the only folder that may include each.
+/// Third-party headers by their beginning, and the only folders that may include each, separated by spaces.
 using LibraryOwners = std::map<std::string, std::string>;
 
 /// Every broken rule as "file:line: why": an include of a folder that is not declared, a library's header outside of

@@ -1,12 +1,12 @@
-#include "app/bench/comparison.hpp"
+#include "bench/comparison.hpp"
 
 #include <algorithm>
 #include <fmt/format.h>
 #include <map>
 
-#include "app/bench/spread.hpp"
+#include "bench/spread.hpp"
 
-namespace tandem::app {
+namespace tandem::bench {
 
 std::vector<std::pair<std::string, std::string>> compare_threads(const std::vector<ResultLine>& lines) {
   std::vector<std::int64_t> threads;                                          // as they came
@@ -38,4 +38,4 @@ std::vector<std::pair<std::string, std::string>> compare_threads(const std::vect
   return rows;
 }
 
-}  // namespace tandem::app
+}  // namespace tandem::bench

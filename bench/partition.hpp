@@ -5,7 +5,7 @@
 
 #include "hal/result.hpp"
 
-namespace tandem::app {
+namespace tandem::bench {
 
 struct Partition {
   std::string name;
@@ -24,4 +24,4 @@ hal::Result<Partition> partition_split(const std::string& regions);
 /// In how many parts a split divides; 0 for "auto".
 std::int64_t parts_of(const std::string& regions);
 
-}  // namespace tandem::app
+}  // namespace tandem::bench

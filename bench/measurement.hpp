@@ -3,12 +3,12 @@
 #include <atomic>
 #include <string>
 
-#include "app/bench/bench_case.hpp"
+#include "bench/bench_case.hpp"
 
-namespace tandem::app {
+namespace tandem::bench {
 
 struct Measurement {
-  int code = 0;      ///< exit code: kDone also when the run was interrupted
+  int code = 0;      ///< exit code: app::kDone also when the run was interrupted
   std::string line;  ///< one JSON object without a line break; empty when interrupted or when the world cannot be made
 };
 
@@ -16,4 +16,4 @@ struct Measurement {
 /// Ends early, without a line, once `stop` is set.
 Measurement measure_apart(const BenchCase& c, const std::atomic<bool>& stop);
 
-}  // namespace tandem::app
+}  // namespace tandem::bench

@@ -1,9 +1,9 @@
-#include "app/bench/scene.hpp"
+#include "bench/scene.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-namespace tandem::app {
+namespace tandem::bench {
 namespace {
 
 constexpr double kArena_m = 40.0;
@@ -145,4 +145,4 @@ core::Scenario scene_of(const BenchCase& c) {
   return scenario;
 }
 
-}  // namespace tandem::app
+}  // namespace tandem::bench

@@ -1,4 +1,4 @@
-#include "app/bench/gnuplot.hpp"
+#include "bench/gnuplot.hpp"
 
 #include <cerrno>
 #include <cstring>
@@ -8,7 +8,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-namespace tandem::app {
+namespace tandem::bench {
 namespace {
 
 namespace fs = std::filesystem;
@@ -105,4 +105,4 @@ hal::Status draw(const Figure& figure, hal::OutputFile& file) {
   return written.ok() ? file.commit() : written;
 }
 
-}  // namespace tandem::app
+}  // namespace tandem::bench

@@ -1,11 +1,11 @@
-#include "app/bench/comparison.hpp"
+#include "bench/comparison.hpp"
 
 #include <gtest/gtest.h>
 
-#include "app/bench/spread.hpp"
-#include "tests/app/bench/lines.hpp"
+#include "bench/spread.hpp"
+#include "tests/bench/lines.hpp"
 
-namespace tandem::app {
+namespace tandem::bench {
 namespace {
 
 TEST(Comparison, DividesRunByRunAndShowsTheMedianOfTheRatios) {
@@ -39,4 +39,4 @@ TEST(Spread, IsTheMedianWithTheSmallestAndTheLargest) {
 }
 
 }  // namespace
-}  // namespace tandem::app
+}  // namespace tandem::bench

@@ -1,4 +1,4 @@
-#include "app/bench/figure.hpp"
+#include "bench/figure.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,9 +6,9 @@
 #include <map>
 #include <tuple>
 
-#include "app/bench/partition.hpp"
+#include "bench/partition.hpp"
 
-namespace tandem::app {
+namespace tandem::bench {
 namespace {
 
 /// What may be varied, each value once, in the order that figures show.
@@ -172,4 +172,4 @@ Figure figure_of(const std::vector<ResultLine>& lines) {
   return figure;
 }
 
-}  // namespace tandem::app
+}  // namespace tandem::bench

@@ -1,8 +1,8 @@
-#include "app/bench/partition.hpp"
+#include "bench/partition.hpp"
 
 #include <gtest/gtest.h>
 
-namespace tandem::app {
+namespace tandem::bench {
 namespace {
 
 TEST(Partitions, HaveTheNumberOfPartsThatTheirNamesSay) {
@@ -34,4 +34,4 @@ TEST(Partitions, ThatAreNoneAreRefusedWithTheChoices) {
 }
 
 }  // namespace
-}  // namespace tandem::app
+}  // namespace tandem::bench

@@ -4,7 +4,7 @@
 
 #include "hal/result.hpp"
 
-namespace tandem::app {
+namespace tandem::bench {
 
 struct SenseToActCase {
   std::int64_t robots = 20;
@@ -19,4 +19,4 @@ struct SenseToActCase {
 /// SCHED_FIFO, robots that do not take off.
 hal::Status bench_sense_to_act(const SenseToActCase& c, std::int64_t repeat);
 
-}  // namespace tandem::app
+}  // namespace tandem::bench

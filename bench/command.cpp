@@ -6,24 +6,24 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include "app/bench/codec.hpp"
-#include "app/bench/comparison.hpp"
-#include "app/bench/gnuplot.hpp"
-#include "app/bench/measurement.hpp"
-#include "app/bench/partition.hpp"
-#include "app/bench/sense_to_act.hpp"
 #include "app/catalog.hpp"
 #include "app/command/command.hpp"
 #include "app/measure.hpp"
 #include "app/signals.hpp"
 #include "app/terminal.hpp"
+#include "bench/codec.hpp"
+#include "bench/comparison.hpp"
+#include "bench/gnuplot.hpp"
+#include "bench/measurement.hpp"
+#include "bench/partition.hpp"
+#include "bench/sense_to_act.hpp"
 #include "hal/output_file.hpp"
 
-namespace tandem::app {
+namespace tandem::bench {
 namespace {
 
 int refuse(int code, const std::string& message) {
-  say("tandem bench: " + message);
+  app::say("tandem bench: " + message);
   return code;
 }
 
@@ -46,21 +46,21 @@ hal::Status check_name(std::string_view what, const std::string& name, const std
 
 /// The first that there is; for robots that fly the first that is made for them.
 std::string usual_engine(bool flying) {
-  for (const core::KnownEngine& engine : known_names().engines) {
+  for (const core::KnownEngine& engine : app::known_names().engines) {
     if (engine.traits.air == flying) return engine.name;
   }
-  return known_names().engines.front().name;
+  return app::known_names().engines.front().name;
 }
 
-std::vector<std::string> robots_of(const BenchOptions& o) {
+std::vector<std::string> robots_of(const app::BenchOptions& o) {
   if (o.name == "flocking") return {"eye-bot"};
   return {"e-puck", "foot-bot"};
 }
-std::string robot_of(const BenchOptions& o) {
+std::string robot_of(const app::BenchOptions& o) {
   return o.robot.empty() ? robots_of(o).front() : o.robot;
 }
 
-hal::Status check_words(const BenchOptions& o) {
+hal::Status check_words(const app::BenchOptions& o) {
   if (auto s = check_name("benchmark", o.name, {"diffusion", "flocking", "codec", "sense_to_act"}); !s.ok()) return s;
   const std::vector<std::string> robots = robots_of(o);
   if (auto s = check_name("robot", robot_of(o), robots); !s.ok()) return s;
@@ -72,7 +72,7 @@ hal::Status check_words(const BenchOptions& o) {
   }
   for (const std::string& engine : o.engines) {
     // Saved lines may come from another build.
-    if (auto s = check_name("engine", engine, known_names().engine_names()); !s.ok() && o.from.empty()) return s;
+    if (auto s = check_name("engine", engine, app::known_names().engine_names()); !s.ok() && o.from.empty()) return s;
   }
   if (!o.density.empty() && o.density != "equal") return hal::Error{"--density takes 'equal'"};
   if (!o.assignment.empty() && o.assignment != "static" && o.assignment != "dynamic")
@@ -87,7 +87,7 @@ hal::Status check_words(const BenchOptions& o) {
   return {};
 }
 
-hal::Result<Plan> plan_of(const BenchOptions& o) {
+hal::Result<Plan> plan_of(const app::BenchOptions& o) {
   if (auto s = check_words(o); !s.ok()) return s.error();
   Plan plan{o.engines, {}, o.robots, o.threads};
   for (const std::string& name : o.partitions) {
@@ -110,7 +110,7 @@ hal::Result<Plan> plan_of(const BenchOptions& o) {
 
 /// Every case once a round, so that what the machine does besides meets all of them; those that differ in threads alone
 /// follow one another.
-std::vector<BenchCase> cases_of(const Plan& plan, const BenchOptions& o) {
+std::vector<BenchCase> cases_of(const Plan& plan, const app::BenchOptions& o) {
   std::vector<BenchCase> cases;
   std::string devices;
   for (const std::string& device : o.devices) devices += (devices.empty() ? "" : ",") + device;
@@ -137,11 +137,11 @@ class Forecast {
   explicit Forecast(const std::vector<BenchCase>& cases) : cases_(cases), terminal_(isatty(STDERR_FILENO) != 0) {
     const double all_s = expected_s(0);
     if (all_s > kWorthTelling_s)
-      say(fmt::format("{} runs of up to {} robots: about {}", cases.size(), largest(), duration_text(all_s)));
+      app::say(fmt::format("{} runs of up to {} robots: about {}", cases.size(), largest(), duration_text(all_s)));
   }
   /// Shows where the benchmark is, on a terminal alone.
   void begin(std::size_t run) {
-    began_s_ = wall_seconds();
+    began_s_ = app::wall_seconds();
     if (!terminal_ || cases_.size() < 2) return;
     fmt::print(stderr, "\r\033[Krun {} of {}, {} robots; about {} left", run + 1, cases_.size(), cases_[run].robots,
                duration_text(expected_s(run)));
@@ -149,7 +149,7 @@ class Forecast {
   }
   void end(std::size_t run) {
     if (terminal_ && cases_.size() >= 2) fmt::print(stderr, "\r\033[K");
-    took_s_ += wall_seconds() - began_s_;
+    took_s_ += app::wall_seconds() - began_s_;
     guessed_s_ += guess_s(cases_[run]);
   }
 
@@ -182,7 +182,7 @@ class Forecast {
 
 /// Prints each line as soon as it is there. @returns them; nothing when interrupted, or when `code` tells of a failure.
 std::vector<ResultLine> measure_all(const std::vector<BenchCase>& cases, int& code) {
-  const std::atomic<bool>& stop = catch_signals();
+  const std::atomic<bool>& stop = app::catch_signals();
   std::vector<ResultLine> lines;
   Forecast forecast(cases);
   for (std::size_t run = 0; run < cases.size(); ++run) {
@@ -195,10 +195,10 @@ std::vector<ResultLine> measure_all(const std::vector<BenchCase>& cases, int& co
       std::fflush(stdout);
     }
     code = measured.code;
-    if (code != kDone || measured.line.empty()) return {};
+    if (code != app::kDone || measured.line.empty()) return {};
     auto line = parse_result_line(measured.line);
     if (!line.ok()) {
-      code = refuse(kFailedRunning, line.error().message);
+      code = refuse(app::kFailedRunning, line.error().message);
       return {};
     }
     line->number = static_cast<std::int64_t>(lines.size()) + 1;
@@ -213,10 +213,10 @@ bool chosen(const std::vector<T>& wanted, const T& value) {
 }
 
 /// The saved lines that the options choose; nothing, and a message, when there are none or they do not go together.
-std::vector<ResultLine> choose_saved(const Plan& plan, const BenchOptions& o, int& code) {
+std::vector<ResultLine> choose_saved(const Plan& plan, const app::BenchOptions& o, int& code) {
   auto saved = read_result_lines(o.from);
   if (!saved.ok()) {
-    code = refuse(kBadInput, saved.error().message);
+    code = refuse(app::kBadInput, saved.error().message);
     return {};
   }
   std::vector<std::string> splits;
@@ -229,12 +229,12 @@ std::vector<ResultLine> choose_saved(const Plan& plan, const BenchOptions& o, in
       lines.push_back(std::move(line));
   }
   if (lines.empty()) {
-    code = refuse(kBadInput, o.from + ": error: none of its lines is what the other options choose");
+    code = refuse(app::kBadInput, o.from + ": error: none of its lines is what the other options choose");
     return {};
   }
   const hal::Status alike = check_alike(lines, o.from);
   if (alike.ok()) return lines;
-  code = refuse(kBadInput, alike.error().message);
+  code = refuse(app::kBadInput, alike.error().message);
   return {};
 }
 
@@ -243,43 +243,48 @@ void print_comparison(const std::vector<ResultLine>& lines) {
   for (const auto& [group, ratios] : compare_threads(lines)) fmt::print(stderr, "{}: {}\n", group, ratios);
 }
 
-int sense_to_act(const BenchOptions& o) {
+int sense_to_act(const app::BenchOptions& o) {
   constexpr std::int64_t kMostRobots = 100;
   const std::vector<std::int64_t> robots = o.robots.empty() ? std::vector<std::int64_t>{20} : o.robots;
   for (const std::int64_t n : robots) {
-    if (n > kMostRobots) return refuse(kWrongUsage, fmt::format("at most {} eye-bots", kMostRobots));
+    if (n > kMostRobots) return refuse(app::kWrongUsage, fmt::format("at most {} eye-bots", kMostRobots));
     const hal::Status measured = bench_sense_to_act({n, o.seconds, o.real_time}, o.repeat);
-    if (!measured.ok()) return refuse(kFailedRunning, measured.error().message);
+    if (!measured.ok()) return refuse(app::kFailedRunning, measured.error().message);
   }
-  return kDone;
+  return app::kDone;
 }
 
 }  // namespace
 
-int bench(const BenchOptions& options) {
+/// @returns the program's exit code
+int run(const app::BenchOptions& options) {
   const auto plan = plan_of(options);
-  if (!plan.ok()) return refuse(kWrongUsage, plan.error().message);
+  if (!plan.ok()) return refuse(app::kWrongUsage, plan.error().message);
   if (options.name == "codec") {
     bench_codec(options.repeat);
-    return kDone;
+    return app::kDone;
   }
   if (options.name == "sense_to_act") return sense_to_act(options);
   std::optional<hal::OutputFile> plot;
   if (!options.plot.empty()) {
     const hal::Status drawable = can_draw();
-    if (!drawable.ok()) return refuse(kFailedRunning, drawable.error().message);
+    if (!drawable.ok()) return refuse(app::kFailedRunning, drawable.error().message);
     auto opened = hal::OutputFile::open(options.plot, "figure");
-    if (!opened.ok()) return refuse(kBadInput, opened.error().message);
+    if (!opened.ok()) return refuse(app::kBadInput, opened.error().message);
     plot = std::move(opened).value();
   }
-  int code = kDone;
+  int code = app::kDone;
   const std::vector<ResultLine> lines = options.from.empty() ? measure_all(cases_of(plan.value(), options), code)
                                                              : choose_saved(plan.value(), options, code);
   if (lines.empty()) return code;
   if (options.compare_threads) print_comparison(lines);
-  if (!plot) return kDone;
+  if (!plot) return app::kDone;
   const hal::Status drawn = draw(figure_of(lines), *plot);
-  return drawn.ok() ? kDone : refuse(kFailedRunning, drawn.error().message);
+  return drawn.ok() ? app::kDone : refuse(app::kFailedRunning, drawn.error().message);
 }
 
-}  // namespace tandem::app
+}  // namespace tandem::bench
+
+int tandem::app::bench(const BenchOptions& options) {
+  return bench::run(options);
+}

@@ -5,7 +5,7 @@
 
 #include "core/scenario/scenario.hpp"
 
-namespace tandem::app {
+namespace tandem::bench {
 
 struct BenchCase {
   std::string bench;  ///< "diffusion" or "flocking"
@@ -27,4 +27,4 @@ inline std::string assignment_word(core::Assignment a) {
   return a == core::Assignment::Static ? "static" : "dynamic";
 }
 
-}  // namespace tandem::app
+}  // namespace tandem::bench

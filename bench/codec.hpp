@@ -1,9 +1,9 @@
 // How many messages a second the foot-bot's codec and its two framings take.
 #pragma once
 
-namespace tandem::app {
+namespace tandem::bench {
 
 /// Prints one JSON object a line: `repeat` rounds of each case.
 void bench_codec(long long repeat);
 
-}  // namespace tandem::app
+}  // namespace tandem::bench

@@ -2,11 +2,11 @@
 #pragma once
 #include <string>
 
-#include "app/bench/figure.hpp"
+#include "bench/figure.hpp"
 #include "hal/output_file.hpp"
 #include "hal/result.hpp"
 
-namespace tandem::app {
+namespace tandem::bench {
 
 enum class PictureKind { Svg, Png };
 
@@ -22,4 +22,4 @@ std::string gnuplot_script(const Figure& figure, PictureKind kind);
 /// Draws into `file`, by its ending, and commits it. An error quotes gnuplot.
 hal::Status draw(const Figure& figure, hal::OutputFile& file);
 
-}  // namespace tandem::app
+}  // namespace tandem::bench

@@ -1,49 +1,37 @@
-#include "app/bench/measurement.hpp"
+#include "bench/measurement.hpp"
 
 #include <cerrno>
 #include <csignal>
 #include <fmt/format.h>
-#include <fstream>
 #include <poll.h>
 #include <sys/prctl.h>
-#include <sys/utsname.h>
 #include <sys/wait.h>
 #include <thread>
 #include <unistd.h>
 
-#include "app/bench/scene.hpp"
+#include "app/build_info.hpp"
 #include "app/catalog.hpp"
 #include "app/command/command.hpp"
 #include "app/measure.hpp"
 #include "app/report.hpp"
 #include "app/run_figures.hpp"
+#include "bench/scene.hpp"
 #include "core/sim/world.hpp"
 
-namespace tandem::app {
+namespace tandem::bench {
 namespace {
 
-/// What the system calls the processor; where it does not, the architecture.
-std::string cpu_model() {
-  std::ifstream in("/proc/cpuinfo");
-  for (std::string line; std::getline(in, line);) {
-    const std::size_t colon = line.find(": ");
-    if (line.starts_with("model name") && colon != std::string::npos) return line.substr(colon + 2);
-  }
-  utsname names{};
-  return uname(&names) == 0 ? names.machine : "unknown";
-}
-
-RunFigures time_loop(core::World& world, const BenchCase& c, const std::atomic<bool>& stop) {
-  RunFigures figures;
+app::RunFigures time_loop(core::World& world, const BenchCase& c, const std::atomic<bool>& stop) {
+  app::RunFigures figures;
   figures.threads = c.threads;
-  const double wall = wall_seconds();
-  const double cpu = cpu_seconds();
+  const double wall = app::wall_seconds();
+  const double cpu = app::cpu_seconds();
   for (std::int64_t i = 0; i < c.ticks && world.state() == core::RunState::Running; ++i) {
     if (stop.load(std::memory_order_relaxed)) break;
     world.step();
   }
-  figures.wall_s = wall_seconds() - wall;
-  figures.cpu_s = cpu_seconds() - cpu;
+  figures.wall_s = app::wall_seconds() - wall;
+  figures.cpu_s = app::cpu_seconds() - cpu;
   figures.steps = world.tick() - 1;
   return figures;
 }
@@ -62,43 +50,43 @@ void add_case_fields(hal::Json& json, const BenchCase& c) {
 }
 
 void add_machine_fields(hal::Json& json) {
-  json["cpu_model"] = cpu_model();
+  json["cpu_model"] = app::build_info().processor;
   json["cores"] = static_cast<std::int64_t>(std::thread::hardware_concurrency());
 }
 
 Measurement measure(const BenchCase& c, const std::atomic<bool>& stop) {
-  const double began = wall_seconds();
-  const double rss_before = peak_rss_mb();
+  const double began = app::wall_seconds();
+  const double rss_before = app::peak_rss_mb();
   const core::Scenario scenario = scene_of(c);
-  hal::PluginLoader loader(plugin_folders());
+  hal::PluginLoader loader(app::plugin_folders());
   core::Problems problems;
   auto world = core::World::make(scenario, loader, {}, problems);
-  print_problems(problems);
-  if (world == nullptr) return {kBadInput, {}};
+  app::print_problems(problems);
+  if (world == nullptr) return {app::kBadInput, {}};
   world->start();
   world->step();  // first touch of every page belongs to the preparation
-  const double init_s = wall_seconds() - began;
+  const double init_s = app::wall_seconds() - began;
 
-  RunFigures figures = time_loop(*world, c, stop);
+  app::RunFigures figures = time_loop(*world, c, stop);
   figures.init_s = init_s;
   const bool failed = world->state() == core::RunState::Failed;
-  if (!failed && figures.steps < c.ticks) return {kDone, {}};  // a part of a benchmark is none
+  if (!failed && figures.steps < c.ticks) return {app::kDone, {}};  // a part of a benchmark is none
 
   hal::Json json;
   add_case_fields(json, c);
   const auto robots = static_cast<std::size_t>(c.robots);
-  add_run_fields(json, *world, figures, robots);
+  app::add_run_fields(json, *world, figures, robots);
   const double robot_steps = static_cast<double>(c.robots) * static_cast<double>(figures.steps);
   json["cpu_ns_per_robot_step"] = figures.ns_per_robot_step(robots);
   json["wall_ns_per_robot_step"] = figures.wall_s * 1e9 / robot_steps;
   json["speedup"] = figures.wall_s > 0.0 ? figures.cpu_s / figures.wall_s : 0.0;
-  json["bytes_per_robot"] = (peak_rss_mb() - rss_before) * 1e6 / static_cast<double>(c.robots);
+  json["bytes_per_robot"] = (app::peak_rss_mb() - rss_before) * 1e6 / static_cast<double>(c.robots);
   add_machine_fields(json);
   if (failed) json["failure"] = world->failure();
-  const double closing = wall_seconds();
+  const double closing = app::wall_seconds();
   world.reset();
-  json["close_s"] = wall_seconds() - closing;
-  return {failed ? kFailedRunning : kDone, hal::to_text(json)};
+  json["close_s"] = app::wall_seconds() - closing;
+  return {failed ? app::kFailedRunning : app::kDone, hal::to_text(json)};
 }
 
 void write_all(int fd, const std::string& text) {
@@ -130,7 +118,7 @@ std::string read_all(int fd, pid_t child, const std::atomic<bool>& stop) {
 Measurement measure_apart(const BenchCase& c, const std::atomic<bool>& stop) {
   const auto fail = [&](const char* why) {
     fmt::print(stderr, "tandem bench: the run of {} robots {}\n", c.robots, why);
-    return Measurement{kFailedRunning, {}};
+    return Measurement{app::kFailedRunning, {}};
   };
   int ends[2];
   if (pipe(ends) != 0) return fail("cannot be started: no pipe can be made");
@@ -155,4 +143,4 @@ Measurement measure_apart(const BenchCase& c, const std::atomic<bool>& stop) {
   return measured;
 }
 
-}  // namespace tandem::app
+}  // namespace tandem::bench

@@ -7,7 +7,7 @@
 
 #include "hal/result.hpp"
 
-namespace tandem::app {
+namespace tandem::bench {
 
 /// What figures and comparisons need of one run.
 struct ResultLine {
@@ -35,4 +35,4 @@ hal::Result<std::vector<ResultLine>> read_result_lines(const std::string& path);
 /// the first one, and in what.
 hal::Status check_alike(const std::vector<ResultLine>& lines, const std::string& path);
 
-}  // namespace tandem::app
+}  // namespace tandem::bench

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace tandem::app {
+namespace tandem::bench {
 
 struct Spread {
   double median = 0.0;
@@ -19,4 +19,4 @@ inline Spread spread_of(std::vector<double> values) {
   return {0.5 * (values[(n - 1) / 2] + values[n / 2]), values.front(), values.back()};
 }
 
-}  // namespace tandem::app
+}  // namespace tandem::bench

@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 #include <string>
 
-#include "app/bench/partition.hpp"
-#include "app/bench/result_line.hpp"
+#include "bench/partition.hpp"
+#include "bench/result_line.hpp"
 
-namespace tandem::app {
+namespace tandem::bench {
 
 /// One run of `robots` robots on A1 that took `wall_s` of wall time and twice as much processor time.
 inline ResultLine line_of(std::int64_t robots, std::int64_t threads, double wall_s) {
@@ -46,4 +46,4 @@ inline std::string text_of(const ResultLine& l) {
       l.wall_s, l.cpu_s, l.cpu_model, l.cores);
 }
 
-}  // namespace tandem::app
+}  // namespace tandem::bench

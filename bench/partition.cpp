@@ -1,8 +1,8 @@
-#include "app/bench/partition.hpp"
+#include "bench/partition.hpp"
 
 #include "core/scenario/split.hpp"
 
-namespace tandem::app {
+namespace tandem::bench {
 
 const std::vector<Partition>& partitions() {
   static const std::vector<Partition> all = {
@@ -32,4 +32,4 @@ std::int64_t parts_of(const std::string& regions) {
   return split ? static_cast<std::int64_t>(split->columns * split->lines) : 0;
 }
 
-}  // namespace tandem::app
+}  // namespace tandem::bench

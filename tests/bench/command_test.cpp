@@ -6,14 +6,14 @@
 #include <gtest/gtest.h>
 
 #include "hal/json/json.hpp"
-#include "tests/app/bench/lines.hpp"
+#include "tests/bench/lines.hpp"
 #include "tests/scenarios/process.hpp"
 
 namespace tandem {
 namespace {
 
-using app::line_of;
-using app::on;
+using bench::line_of;
+using bench::on;
 using scenarios::Folder;
 using scenarios::Tandem;
 using scenarios::text_of;
@@ -199,12 +199,12 @@ TEST_F(BenchRefuses, FiguresThatCannotBeDrawnBeforeItMeasures) {
 }
 
 TEST_F(BenchRefuses, SavedLinesThatAreBrokenMixedOrNotThere) {
-  const std::string good = app::text_of(line_of(10, 0, 1.0)) + "\n";
-  app::ResultLine other = line_of(10, 2, 1.0);
+  const std::string good = bench::text_of(line_of(10, 0, 1.0)) + "\n";
+  bench::ResultLine other = line_of(10, 2, 1.0);
   other.density = "equal";
   folder_.write("good.jsonl", good);
   folder_.write("broken.jsonl", good + good.substr(0, 40) + "\n");
-  folder_.write("mixed.jsonl", good + good + app::text_of(other) + "\n");
+  folder_.write("mixed.jsonl", good + good + bench::text_of(other) + "\n");
   refuses({"--from", "nosuch.jsonl", "--plot", "f.svg"}, 1, {"nosuch.jsonl: error: "});
   refuses({"--from", "broken.jsonl", "--plot", "f.svg"}, 1, {"broken.jsonl:2: error: "});
   refuses({"--from", "mixed.jsonl", "--plot", "f.svg"}, 1, {"mixed.jsonl:3: error: density 'equal'"});
@@ -266,7 +266,7 @@ TEST(BenchFigure, HasAPanelForEachEngineAndPartitionAndIsPngWhereAsked) {
       for (const std::int64_t threads : {0, 4}) {
         for (const std::int64_t robots : {1, 1000, 100'000})
           lines +=
-              app::text_of(on(engine, partition, line_of(robots, threads, 1e-3 * static_cast<double>(robots)))) + "\n";
+              bench::text_of(on(engine, partition, line_of(robots, threads, 1e-3 * static_cast<double>(robots)))) + "\n";
       }
     }
   }
@@ -303,8 +303,8 @@ TEST(BenchFigure, ComparesThreadsOnStandardError) {
   Folder folder;
   std::string lines;
   for (const double slower : {1.0, 3.0, 10.0}) {
-    lines += app::text_of(line_of(1000, 0, 2.0 * slower)) + "\n";
-    lines += app::text_of(line_of(1000, 2, 1.0 * slower)) + "\n";
+    lines += bench::text_of(line_of(1000, 0, 2.0 * slower)) + "\n";
+    lines += bench::text_of(line_of(1000, 2, 1.0 * slower)) + "\n";
   }
   folder.write("t.jsonl", lines);
   Tandem saved({"bench", "--from", "t.jsonl", "--compare-threads"}, folder.path());

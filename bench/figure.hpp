@@ -4,10 +4,10 @@
 #include <string>
 #include <vector>
 
-#include "app/bench/result_line.hpp"
-#include "app/bench/spread.hpp"
+#include "bench/result_line.hpp"
+#include "bench/spread.hpp"
 
-namespace tandem::app {
+namespace tandem::bench {
 
 struct FigurePoint {
   double robots = 0.0;
@@ -43,4 +43,4 @@ struct Figure {
 /// `lines` hold at least one, and are alike (`check_alike`).
 Figure figure_of(const std::vector<ResultLine>& lines);
 
-}  // namespace tandem::app
+}  // namespace tandem::bench

@@ -1,11 +1,11 @@
-#include "app/bench/result_line.hpp"
+#include "bench/result_line.hpp"
 
 #include <gtest/gtest.h>
 
-#include "tests/app/bench/lines.hpp"
+#include "tests/bench/lines.hpp"
 #include "tests/scenarios/process.hpp"
 
-namespace tandem::app {
+namespace tandem::bench {
 namespace {
 
 std::string replaced(std::string text, const std::string& from, const std::string& to) {
@@ -86,4 +86,4 @@ TEST(ResultLines, OfDifferentScenesOrMachinesAreToldApart) {
 }
 
 }  // namespace
-}  // namespace tandem::app
+}  // namespace tandem::bench

@@ -1,12 +1,12 @@
-#include "app/bench/figure.hpp"
+#include "bench/figure.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "app/bench/gnuplot.hpp"
-#include "tests/app/bench/lines.hpp"
+#include "bench/gnuplot.hpp"
+#include "tests/bench/lines.hpp"
 
-namespace tandem::app {
+namespace tandem::bench {
 namespace {
 
 using testing::ElementsAre;
@@ -118,4 +118,4 @@ TEST(PictureKind, IsChosenByTheEnding) {
 }
 
 }  // namespace
-}  // namespace tandem::app
+}  // namespace tandem::bench

@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 #include <iterator>
 
-#include "app/bench/gnuplot.hpp"
+#include "bench/gnuplot.hpp"
 
-namespace tandem::app {
+namespace tandem::bench {
 namespace {
 
 // In points of the picture; SVG scales, PNG has kPngScale pixels a point.
@@ -190,4 +190,4 @@ std::string gnuplot_script(const Figure& figure, PictureKind kind) {
   return Script(figure, kind).text();
 }
 
-}  // namespace tandem::app
+}  // namespace tandem::bench

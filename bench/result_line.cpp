@@ -1,4 +1,4 @@
-#include "app/bench/result_line.hpp"
+#include "bench/result_line.hpp"
 
 #include <cmath>
 #include <fstream>
@@ -6,7 +6,7 @@
 
 #include "hal/json/json.hpp"
 
-namespace tandem::app {
+namespace tandem::bench {
 namespace {
 
 /// Takes fields out of an object; what is missing first is kept.
@@ -133,4 +133,4 @@ hal::Status check_alike(const std::vector<ResultLine>& lines, const std::string&
   return {};
 }
 
-}  // namespace tandem::app
+}  // namespace tandem::bench

@@ -1,4 +1,4 @@
-#include "app/bench/sense_to_act.hpp"
+#include "bench/sense_to_act.hpp"
 
 #include <algorithm>
 #include <atomic>
@@ -18,7 +18,7 @@
 #include "hal/device/flight.hpp"
 #include "hal/json/json.hpp"
 
-namespace tandem::app {
+namespace tandem::bench {
 namespace {
 
 namespace bridge = bridges::eyebot;
@@ -242,4 +242,4 @@ hal::Status bench_sense_to_act(const SenseToActCase& c, std::int64_t repeat) {
   return {};
 }
 
-}  // namespace tandem::app
+}  // namespace tandem::bench

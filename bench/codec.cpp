@@ -1,4 +1,4 @@
-#include "app/bench/codec.hpp"
+#include "bench/codec.hpp"
 
 #include <algorithm>
 #include <array>
@@ -10,7 +10,7 @@
 #include "bridges/aseba/stream_messages.hpp"
 #include "hal/json/json.hpp"
 
-namespace tandem::app {
+namespace tandem::bench {
 namespace {
 
 using namespace bridges::aseba;
@@ -21,9 +21,9 @@ constexpr long long kMessages = 2'000'000;
 template <class F>
 void measure(const char* what, F&& once) {
   std::uint64_t sum = 0;
-  const double start = cpu_seconds();
+  const double start = app::cpu_seconds();
   for (long long i = 0; i < kMessages; ++i) sum = sum * 31 + once(static_cast<std::uint16_t>(i));
-  const double took_s = cpu_seconds() - start;
+  const double took_s = app::cpu_seconds() - start;
   hal::Json json;
   json["bench"] = "codec";
   json["what"] = what;
@@ -91,4 +91,4 @@ void bench_codec(long long repeat) {
   for (long long i = 0; i < repeat; ++i) measure_all();
 }
 
-}  // namespace tandem::app
+}  // namespace tandem::bench
