@@ -70,7 +70,8 @@ void visit_bodies(const Bodies& b, std::size_t row, Rows& rows) {
   rows.value(kBody, "left_speed", &b.left_m_s[row]);
   rows.value(kBody, "right_speed", &b.right_m_s[row]);
   rows.value(kBody, "flags", &b.flags[row]);
-  rows.value(kBody, "region", &b.region[row]);
+  // An engine of places alone moves a body alike in every region.
+  if (b.has_motion) rows.value(kBody, "region", &b.region[row]);
   if (!b.real_senses.empty()) rows.value(kBody, "real_senses", &b.real_senses[row]);
   rows.state(b.motion, row);
 }

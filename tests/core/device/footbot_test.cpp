@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <numbers>
 
+#include "hal/angle.hpp"
 #include "hal/device/body_sensors.hpp"
 #include "hal/device/flight.hpp"
 #include "hal/device/ring_sensors.hpp"
@@ -63,7 +64,7 @@ TEST(Turret, ClampsSpeedsAndIsOffAtWhatIsNoNumber) {
   world->step();  // filtered at the end of this tick
   const double before = reading<hal::TurretEncoder>(world, "fb").angle_rad;
   world->step();
-  EXPECT_NEAR(wrapped(reading<hal::TurretEncoder>(world, "fb").angle_rad - before),
+  EXPECT_NEAR(hal::wrapped(reading<hal::TurretEncoder>(world, "fb").angle_rad - before),
               hal::footbot::kTurretTurn_rad_s * 0.1, 1e-12);
   EXPECT_EQ(world->incidents().commands_clamped, 1U);
   command<hal::TurretDrive>(world, "fb").angle_rad = std::nan("");
@@ -88,7 +89,7 @@ TEST(Turret, NoiseIsCentredAndAsLargeAsAsked) {
     squares += turned * turned;
     const Space& space = world->space();
     const double off =
-        wrapped(reading<hal::TurretEncoder>(world, "fb").angle_rad - space.turret_rad(space.find_robot("fb")));
+        hal::wrapped(reading<hal::TurretEncoder>(world, "fb").angle_rad - space.turret_rad(space.find_robot("fb")));
     error += off;
     worst = std::max(worst, std::fabs(off));
   }
@@ -321,7 +322,7 @@ TEST(FootbotWheels, OdometryReckonsACircleExactly) {
   const auto& port = reading<hal::Odometry>(world, "fb");
   EXPECT_NEAR(port.x_m, radius * std::sin(turn), 1e-9);
   EXPECT_NEAR(port.y_m, radius * (1.0 - std::cos(turn)), 1e-9);
-  EXPECT_NEAR(port.heading_rad, wrapped(turn), 1e-9);
+  EXPECT_NEAR(port.heading_rad, hal::wrapped(turn), 1e-9);
   EXPECT_NEAR(pose_of(world, "fb").x_m, port.x_m, 2e-3) << "the engine goes by chords";
 }
 

@@ -92,7 +92,7 @@ class Places {
     for (auto* quantity : {&b.x_m, &b.y_m, &b.cos_h, &b.sin_h, &b.left_m, &b.right_m})
       add(who + " body", (*quantity)[row]);
     add(who + " halted", block.halted[slot]);
-    add(who + " region", b.region[row]);
+    if (b.has_motion) add(who + " region", b.region[row]);
     if (!b.motion.empty()) add_motion(who, b.motion[row]);
     add_mechanisms(who, space, {entity, s.robots[entity].generation});
     for (std::size_t p = 0; p < block.ports.size(); ++p) {

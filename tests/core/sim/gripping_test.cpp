@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "core/space/mechanisms.hpp"
+#include "hal/angle.hpp"
 #include "tests/core/footbots.hpp"
 
 namespace tandem::core {
@@ -49,7 +50,7 @@ Scene with_cylinder(Scene scene, double gap_m = 0.01, double mass_kg = 0.2) {
 
 double bearing_of_thing(const MadeWorld& world) {
   const Pose at = pose_of(world, "fb");
-  return wrapped(std::atan2(thing(world).y_m - at.y_m, thing(world).x_m - at.x_m) - at.heading_rad());
+  return hal::wrapped(std::atan2(thing(world).y_m - at.y_m, thing(world).x_m - at.x_m) - at.heading_rad());
 }
 
 double distance_of_thing(const MadeWorld& world) {
