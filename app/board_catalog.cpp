@@ -1,12 +1,22 @@
 // The catalog of the program for a robot's board: bridges and controllers, nothing simulated.
-#include "app/board_names.hpp"
 #include "app/catalog.hpp"
+#include "hal/check.hpp"
+#include "hal/device/ports.hpp"
+#include "hal/spec/robots.hpp"
 
 namespace tandem::app {
 
-const core::KnownNames& known_names() {
-  static const core::KnownNames names = board_names();
-  return names;
+const hal::Catalog& catalog() {
+  static const hal::Catalog all = [] {
+    hal::Catalog made;
+    const hal::Status good = made.add_from(std::string(hal::Catalog::kInside), [](hal::Registrar& r) {
+      hal::register_ports(r);
+      hal::register_robots(r);
+    });
+    TANDEM_CHECK(good.ok(), good.error().message.c_str());
+    return made;
+  }();
+  return all;
 }
 
 }  // namespace tandem::app

@@ -1,25 +1,32 @@
 #include "app/catalog.hpp"
 
-#include <algorithm>
-
 #include "core/device/device.hpp"
-#include "core/sim/engine_factory.hpp"
-#include "core/sim/robot_factory.hpp"
+#include "core/physics/dynamics2d/dynamics2d.hpp"
+#include "core/physics/dynamics3d/dynamics3d.hpp"
+#include "core/physics/kinematics2d/kinematics2d.hpp"
+#include "core/physics/particle3d/particle3d.hpp"
+#include "hal/check.hpp"
+#include "hal/device/ports.hpp"
+#include "hal/spec/robots.hpp"
 
 namespace tandem::app {
 
-const core::KnownNames& known_names() {
-  static const core::KnownNames names = [] {
-    core::KnownNames n;
-    n.robots = core::robot_kinds();
-    n.engines = core::known_engines();
-    for (const core::DeviceType& type : core::device_types()) {
-      auto& list = type.role == hal::Role::Sensor ? n.sensors : n.actuators;
-      if (std::find(list.begin(), list.end(), type.device) == list.end()) list.emplace_back(type.device);
-    }
-    return n;
+const hal::Catalog& catalog() {
+  static const hal::Catalog all = [] {
+    hal::Catalog made;
+    const hal::Status good = made.add_from(std::string(hal::Catalog::kInside), [](hal::Registrar& r) {
+      hal::register_ports(r);
+      hal::register_robots(r);
+      core::register_devices(r);
+      core::register_kinematics2d(r);
+      core::register_dynamics2d(r);
+      core::register_dynamics3d(r);
+      core::register_particle3d(r);
+    });
+    TANDEM_CHECK(good.ok(), good.error().message.c_str());
+    return made;
   }();
-  return names;
+  return all;
 }
 
 }  // namespace tandem::app

@@ -2,12 +2,12 @@
 // one on a robot's board; a build has one of them.
 #pragma once
 #include "app/plugin_folders.hpp"
-#include "core/config/reader.hpp"
+#include "hal/catalog.hpp"
 #include "hal/plugin_loader.hpp"
 
 namespace tandem::app {
 
-/// Names that experiment files may use.
-const core::KnownNames& known_names();
+/// Everything that comes with this program.
+const hal::Catalog& catalog();
 
 }  // namespace tandem::app

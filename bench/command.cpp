@@ -1,5 +1,7 @@
 // `tandem bench`: measures a scene, the foot-bot's codec or how soon eye-bots are answered, prints one JSON object a
 // line, draws figures from them.
+#include "app/command/command.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -7,7 +9,6 @@
 #include <unistd.h>
 
 #include "app/catalog.hpp"
-#include "app/command/command.hpp"
 #include "app/measure.hpp"
 #include "app/signals.hpp"
 #include "app/terminal.hpp"
@@ -17,6 +18,7 @@
 #include "bench/measurement.hpp"
 #include "bench/partition.hpp"
 #include "bench/sense_to_act.hpp"
+#include "core/scenario/engine_traits.hpp"
 #include "hal/output_file.hpp"
 
 namespace tandem::bench {
@@ -46,10 +48,11 @@ hal::Status check_name(std::string_view what, const std::string& name, const std
 
 /// The first that there is; for robots that fly the first that is made for them.
 std::string usual_engine(bool flying) {
-  for (const core::KnownEngine& engine : app::known_names().engines) {
-    if (engine.traits.air == flying) return engine.name;
+  const auto engines = app::catalog().all<core::KnownEngine>();
+  for (const core::KnownEngine* engine : engines) {
+    if (engine->traits.air == flying) return std::string(engine->kind);
   }
-  return app::known_names().engines.front().name;
+  return std::string(engines.front()->kind);
 }
 
 std::vector<std::string> robots_of(const app::BenchOptions& o) {
@@ -72,7 +75,7 @@ hal::Status check_words(const app::BenchOptions& o) {
   }
   for (const std::string& engine : o.engines) {
     // Saved lines may come from another build.
-    if (auto s = check_name("engine", engine, app::known_names().engine_names()); !s.ok() && o.from.empty()) return s;
+    if (auto s = check_name("engine", engine, app::catalog().names("engine")); !s.ok() && o.from.empty()) return s;
   }
   if (!o.density.empty() && o.density != "equal") return hal::Error{"--density takes 'equal'"};
   if (!o.assignment.empty() && o.assignment != "static" && o.assignment != "dynamic")

@@ -58,7 +58,7 @@ Measurement measure(const BenchCase& c, const std::atomic<bool>& stop) {
   const double began = app::wall_seconds();
   const double rss_before = app::peak_rss_mb();
   const core::Scenario scenario = scene_of(c);
-  hal::PluginLoader loader(app::plugin_folders());
+  hal::PluginLoader loader(app::plugin_folders(), app::catalog());
   core::Problems problems;
   auto world = core::World::make(scenario, loader, {}, problems);
   app::print_problems(problems);

@@ -1,8 +1,9 @@
 // Plug-ins: what a shared object exports, and the check that both sides were built alike.
 #pragma once
 #include <cstdint>
-#include <string_view>
+#include <string>
 
+#include "hal/catalog.hpp"
 #include "hal/controller.hpp"
 
 namespace tandem::hal {
@@ -10,18 +11,6 @@ namespace tandem::hal {
 /// Raised whenever a type that crosses the plug-in border changes.
 inline constexpr std::uint32_t kAbiNumber = 5;
 inline constexpr std::uint32_t kPluginMagic = 0x544E444D;  // "TNDM"
-
-/// Receives what a plug-in offers. `category` is "controller" (`type` is a ControllerType) or "hook" (core's HookType).
-class Registrar {
- public:
-  virtual ~Registrar() = default;
-  virtual void add(std::string_view category, std::string_view name, const void* type) = 0;
-
-  template <class T>
-  void add_controller(std::string_view name, std::string_view summary) {
-    add("controller", name, &controller_type<T>(name, summary));
-  }
-};
 
 /// The first thing that the loader looks at; its layout never changes.
 struct PluginInfo {
@@ -35,7 +24,8 @@ struct PluginInfo {
 /// Differs between builds whose standard library or settings lay types out differently.
 constexpr std::uint64_t border_layout() noexcept {
   return sizeof(std::string) * 1'000'003ULL + sizeof(std::shared_ptr<void>) * 10'007ULL +
-         sizeof(ControllerType) * 101ULL + sizeof(PortType) * 7ULL + sizeof(Robot) * 31ULL + sizeof(void*);
+         sizeof(ControllerType) * 101ULL + sizeof(PortType) * 7ULL + sizeof(Robot) * 31ULL +
+         sizeof(CatalogItem) * 3ULL + sizeof(void*);
 }
 
 }  // namespace tandem::hal

@@ -21,25 +21,11 @@ std::vector<fs::path> spellings(const fs::path& library) {
   return names;
 }
 
-struct EntryCollector final : Registrar {
-  std::string library;
-  std::vector<PluginLoader::Entry> entries;
-  std::string problem;  // the first
-
-  void add(std::string_view category, std::string_view name, const void* type) override {
-    const auto bad = [&](const char* what) {
-      if (problem.empty()) problem = "registers the " + std::string(category) + " '" + std::string(name) + "' " + what;
-    };
-    if (type == nullptr) return bad("without a type");
-    if (category == "controller") {
-      const auto& controller = *static_cast<const ControllerType*>(type);
-      if (controller.read_params == nullptr || controller.construct == nullptr || controller.step_row == nullptr ||
-          controller.destroy == nullptr || controller.size == 0 || controller.align == 0)
-        return bad("with a type that lacks functions; make it with add_controller");
-    }
-    entries.push_back({library, std::string(category), std::string(name), type});
-  }
-};
+/// Whether a type of controllers has all that a world calls.
+bool complete(const ControllerType& type) noexcept {
+  return type.read_params != nullptr && type.construct != nullptr && type.step_row != nullptr &&
+         type.destroy != nullptr && type.size != 0 && type.align != 0;
+}
 
 void name_library(const void* path, std::size_t loading, std::size_t /*index*/, FixedText& out) noexcept {
   out << "library '" << static_cast<const char*>(path) << "', while it "
@@ -53,7 +39,8 @@ void* load(const std::string& path) {
 
 }  // namespace
 
-PluginLoader::PluginLoader(std::vector<fs::path> search) : search_(std::move(search)) {}
+PluginLoader::PluginLoader(std::vector<fs::path> search, Catalog inside)
+    : search_(std::move(search)), catalog_(std::move(inside)) {}
 
 PluginLoader::~PluginLoader() {
   for (auto& [path, handle] : handles_) dlclose(handle);
@@ -115,46 +102,45 @@ Status PluginLoader::open(const std::string& library) {
 }
 
 Status PluginLoader::register_types(const std::string& path, const PluginInfo& info) {
-  EntryCollector collector;
-  collector.library = path;
-  std::string problem;
+  const std::string library = "library '" + path + "'";
+  if (info.register_all == nullptr) return Error{library + " has no function that registers its types"};
+  Catalog with = catalog_;
+  Status added;
   try {
     const PluginCall call(&name_library, path.c_str());
-    if (info.register_all == nullptr) return Error{"library '" + path + "' has no function that registers its types"};
-    info.register_all(collector);
-    problem = collector.problem;
+    added = with.add_from(path, info.register_all);
   } catch (const std::exception& e) {
-    problem = "threw while it registered its types: " + std::string(e.what());
+    return Error{library + " threw while it registered its types: " + std::string(e.what())};
   } catch (...) {
-    problem = "threw while it registered its types";
+    return Error{library + " threw while it registered its types"};
   }
-  if (!problem.empty()) return Error{"library '" + path + "' " + problem};
-  entries_.insert(entries_.end(), collector.entries.begin(), collector.entries.end());
+  if (!added.ok()) return Error{"library " + added.error().message};
+  for (const ControllerType* type : with.all<ControllerType>()) {
+    if (complete(*type)) continue;
+    return Error{library + " registers the controller '" + std::string(type->name) +
+                 "' with a type that lacks functions; make it with controller_type"};
+  }
+  catalog_ = std::move(with);
   return {};
 }
 
-Result<const void*> PluginLoader::get(const std::string& library, std::string_view category, std::string_view name) {
+Result<const void*> PluginLoader::get(const std::string& library, std::string_view category, std::uint64_t layout,
+                                      std::string_view name) {
   if (const Status opened = open(library); !opened.ok()) return opened.error();
   const std::string path = find(library).value().string();
   std::string names;
-  const Entry* only = nullptr;
+  const void* only = nullptr;
   std::size_t count = 0;
-  for (const Entry& e : entries_) {
-    if (e.library != path || e.category != category) continue;
-    if (e.name == name) return e.type;
+  for (const Catalog::Entry& e : catalog_.entries()) {
+    if (e.origin != path || e.category != category || e.layout != layout) continue;
+    if (e.name == name) return e.entry;
     names += (names.empty() ? "" : ", ") + e.name;
-    only = &e;
+    only = e.entry;
     ++count;
   }
-  if (name.empty() && count == 1) return only->type;
+  if (name.empty() && count == 1) return only;
   return Error{"library '" + path + "' has no " + std::string(category) + " '" + std::string(name) +
                "'; it has: " + (names.empty() ? "none" : names)};
-}
-
-Result<const ControllerType*> PluginLoader::controller(const std::string& library, std::string_view name) {
-  const auto found = get(library, "controller", name);
-  if (!found.ok()) return found.error();
-  return static_cast<const ControllerType*>(found.value());
 }
 
 }  // namespace tandem::hal

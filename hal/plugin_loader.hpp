@@ -11,18 +11,19 @@
 
 namespace tandem::hal {
 
-/// Opened plug-ins and the types they registered. Must outlive every object made by them.
+/// Opened plug-ins, and the catalog that they add to. Must outlive every object made by them.
 class PluginLoader {
  public:
-  /// `search` are the folders in which a library is looked for after the path as written.
-  explicit PluginLoader(std::vector<std::filesystem::path> search);
+  /// `search` are the folders in which a library is looked for after the path as written. `inside` is what there is
+  /// without any library.
+  explicit PluginLoader(std::vector<std::filesystem::path> search, Catalog inside = {});
   ~PluginLoader();
   PluginLoader(const PluginLoader&) = delete;
   PluginLoader& operator=(const PluginLoader&) = delete;
 
   /// Opens `library` ("build/lib/libx.so", "libx", "x": extension and prefix optional) once, however often asked.
   /// Errors: not found (names every place looked at), not loadable, not a plug-in, built for another ABI, throws while
-  /// it registers, registers what is incomplete.
+  /// it registers, registers what is incomplete or what the catalog refuses.
   Status open(const std::string& library);
 
   /// The file that `library` resolves to.
@@ -30,22 +31,28 @@ class PluginLoader {
 
   /// What the plug-in `library` registered under `name`, or under its only name when `name` is empty. Opens it if
   /// needed. Errors: as `open`; no such name (lists those there are).
-  Result<const void*> get(const std::string& library, std::string_view category, std::string_view name);
-  Result<const ControllerType*> controller(const std::string& library, std::string_view name);
+  template <class T>
+  Result<const T*> get(const std::string& library, std::string_view name) {
+    const auto found = get(library, T::kCategory, entry_layout<T>(), name);
+    if (!found.ok()) return found.error();
+    return static_cast<const T*>(found.value());
+  }
+  Result<const ControllerType*> controller(const std::string& library, std::string_view name) {
+    return get<ControllerType>(library, name);
+  }
 
-  struct Entry {
-    std::string library, category, name;
-    const void* type;
-  };
-  const std::vector<Entry>& entries() const noexcept { return entries_; }
+  /// What there is now; entries of a library have its resolved path as their origin.
+  const Catalog& catalog() const noexcept { return catalog_; }
 
  private:
-  std::vector<std::filesystem::path> search_;
+  Result<const void*> get(const std::string& library, std::string_view category, std::uint64_t layout,
+                          std::string_view name);
   Status register_types(const std::string& path, const PluginInfo& info);
 
+  std::vector<std::filesystem::path> search_;
   std::map<std::string, void*> handles_;         // by resolved path
   std::map<std::string, std::string> unusable_;  // by resolved path: why
-  std::vector<Entry> entries_;
+  Catalog catalog_;
 };
 
 }  // namespace tandem::hal

@@ -60,6 +60,10 @@ const Field* RowType::field(std::string_view field_name) const noexcept {
   return nullptr;
 }
 
+std::string port_entry(std::string_view name, Role role) {
+  return (role == Role::Sensor ? "sensor " : "actuator ") + std::string(name);
+}
+
 double get_value(const void* row, const Field& field, std::size_t index) noexcept {
   const std::byte* at = static_cast<const std::byte*>(row) + field.offset + index * size_of(field.scalar);
   switch (field.scalar) {

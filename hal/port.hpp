@@ -5,6 +5,7 @@
 // default-constructed, is the safe one. `port_type<T>()` gives the description at run time, so that recording,
 // printing, comparing and fusing need no code per device.
 #pragma once
+#include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -14,6 +15,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "hal/limits.hpp"
 #include "hal/time.hpp"
 #include "hal/unit.hpp"
 
@@ -29,7 +31,8 @@ struct Reading {
   Validity validity = Validity::Absent;
 };
 
-/// First base of every actuator port. A default-constructed command is the safe one (wheels 0, LEDs off).
+/// First base of every actuator port. A default-constructed command is the safe one (wheels 0, LEDs off). How others
+/// are made safe is said by its `limit` (hal/limits.hpp).
 struct Command {};
 
 enum class Role : std::uint8_t { Sensor, Actuator };
@@ -94,10 +97,30 @@ struct RowType {
   const Field* field(std::string_view field_name) const noexcept;
 };
 
+/// "sensor proximity": the name of a port and its role, as the catalog has it.
+std::string port_entry(std::string_view name, Role role);
+
 /// The run-time description of a port class. Its default is an absent reading, or the safe command.
 struct PortType : RowType {
+  static constexpr std::string_view kCategory = "port";
   Role role = Role::Sensor;
   void (*merge)(void* real, const void* virtual_) = nullptr;  ///< for Fusion::Union and ByAngle; null where none
+
+  /// Makes commands safe, in place, from number `first` on: stops after the first of them that had to be changed, tells
+  /// in `what` how, and returns its number; `end` when none had. Null where any value is safe, and for sensors.
+  std::size_t (*limit)(void* commands, std::size_t first, std::size_t end, const DataSheet& sheet,
+                       Limited& what) = nullptr;
+  /// The three that follow are set for commands that move the robot, and are asked for real robots alone.
+  /// Slows the command so that the robot moves with `most_m_s` at most; the way and the direction stay. `at`: where it
+  /// is; null: nobody knows.
+  void (*slow_down)(void* command, double most_m_s, const Pose* at) = nullptr;
+  /// Takes away, or replaces, what leads out of the fence within `look_ahead_s`. @returns whether there was such.
+  bool (*keep_inside)(void* command, const Fence& fence, const Pose& at, double look_ahead_s) = nullptr;
+  /// Takes away what leads deeper into something; (out_x, out_y) is the way out in W, of length 1. Turning and coming
+  /// out stay possible. @returns whether there was such.
+  bool (*keep_out)(void* command, const Pose& at, double out_x, double out_y) = nullptr;
+
+  std::string catalog_name() const { return port_entry(name, role); }
 };
 
 namespace detail {
@@ -125,6 +148,60 @@ constexpr Scalar scalar_of() {
   }
 }
 std::uint64_t layout_fingerprint(const RowType& type) noexcept;
+
+template <class T>
+std::size_t limit_commands(void* commands, std::size_t first, std::size_t end, const DataSheet& sheet,
+                           Limited& what) noexcept {
+  T* const all = static_cast<T*>(commands);
+  for (std::size_t i = first; i < end; ++i) {
+    const Limited limited = all[i].limit(sheet);
+    if (limited.result == LimitResult::Passed) continue;
+    what = limited;
+    return i;
+  }
+  return end;
+}
+
+template <class T>
+concept MovesRobot = requires(T t, const Fence& fence, const Pose& at) {
+  t.slow_down(0.0, &at);
+  { t.keep_inside(fence, at, 0.0) } -> std::same_as<bool>;
+  { t.keep_out(at, 0.0, 0.0) } -> std::same_as<bool>;
+};
+
+/// What keeps commands of class `T` safe.
+template <class T>
+void fill_limits(PortType& t) {
+  constexpr bool limited = requires(T c, const DataSheet& sheet) {
+    c.limit(sheet);
+  };
+  constexpr bool any_is_safe = requires {
+    T::kAnyValueIsSafe;
+  };
+  static_assert(limited != any_is_safe,
+                "an actuator says how its commands are made safe: by `Limited limit(const DataSheet&) noexcept`, or by "
+                "`static constexpr bool kAnyValueIsSafe = true;`");
+  if constexpr (limited) t.limit = &limit_commands<T>;
+  constexpr bool part = requires(T c, const Fence& fence, const Pose& at) {
+    c.keep_inside(fence, at, 0.0);
+  }
+  || requires(T c, const Pose& at) {
+    c.slow_down(0.0, &at);
+  }
+  || requires(T c, const Pose& at) {
+    c.keep_out(at, 0.0, 0.0);
+  };
+  static_assert(!part || MovesRobot<T>, "a command that moves the robot has slow_down, keep_inside and keep_out");
+  if constexpr (MovesRobot<T>) {
+    t.slow_down = [](void* c, double most_m_s, const Pose* at) { static_cast<T*>(c)->slow_down(most_m_s, at); };
+    t.keep_inside = [](void* c, const Fence& fence, const Pose& at, double look_ahead_s) {
+      return static_cast<T*>(c)->keep_inside(fence, at, look_ahead_s);
+    };
+    t.keep_out = [](void* c, const Pose& at, double out_x, double out_y) {
+      return static_cast<T*>(c)->keep_out(at, out_x, out_y);
+    };
+  }
+}
 }  // namespace detail
 
 /// Collects the fields of one class of rows; handed to `T::describe`.
@@ -219,6 +296,7 @@ const PortType& port_type() {
     if constexpr (requires(T & a, const T& b) { a.merge(b); }) {
       t.merge = [](void* real, const void* virt) { static_cast<T*>(real)->merge(*static_cast<const T*>(virt)); };
     }
+    if constexpr (ActuatorPort<T>) detail::fill_limits<T>(t);
     return t;
   }();
   return type;

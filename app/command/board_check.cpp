@@ -1,8 +1,8 @@
 // `tandem check` on a robot's board: what can be told without a world.
 #include <fmt/format.h>
 
+#include "app/catalog.hpp"
 #include "app/command/command.hpp"
-#include "app/plugin_folders.hpp"
 #include "hal/plugin_loader.hpp"
 
 namespace tandem::app {
@@ -28,7 +28,7 @@ int check(const CheckOptions& options) {
   if (is_map(options.experiment)) return check_map(options.experiment);
   const auto scenario = read_or_complain(options.experiment, options.overrides);
   if (!scenario) return kBadInput;
-  hal::PluginLoader loader(plugin_folders());
+  hal::PluginLoader loader(plugin_folders(), catalog());
   core::Problems problems;
   std::size_t driven = 0;
   for (const core::RobotItem& item : scenario->robots) {

@@ -11,7 +11,7 @@ int check(const CheckOptions& options) {
   const auto scenario = read_or_complain(options.experiment, options.overrides);
   if (!scenario) return kBadInput;
   // What only making the world can tell: libraries, devices, parameters, places.
-  hal::PluginLoader loader(plugin_folders());
+  hal::PluginLoader loader(plugin_folders(), catalog());
   core::Problems problems;
   core::WorldOptions world_options;
   if (!scenario->seed) world_options.seed = 1;

@@ -32,7 +32,7 @@ class Side {
 class Run final : public Side {
  public:
   Run(core::Scenario scenario, std::int64_t steps)
-      : scenario_(std::move(scenario)), loader_(plugin_folders()), steps_left_(steps) {}
+      : scenario_(std::move(scenario)), loader_(plugin_folders(), catalog()), steps_left_(steps) {}
 
   bool make(const core::WorldOptions& options) {
     core::Problems problems;

@@ -51,7 +51,7 @@ int emulate_robot(const EmulateOptions& options, Emulated emulated) {
   if constexpr (requires { emulated.firmware; }) {
     if (!options.firmware.empty()) emulated.firmware = options.firmware;
   }
-  hal::PluginLoader loader(plugin_folders());
+  hal::PluginLoader loader(plugin_folders(), catalog());
   std::unique_ptr<Arena> arena;
   if (!options.arena.empty()) {
     arena = make_arena<Arena, Puppeteer>(options, loader, stop);

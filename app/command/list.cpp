@@ -1,24 +1,23 @@
 // `tandem list` and `tandem describe`: what there is, and its manual, from the schemas.
 #include <algorithm>
+#include <filesystem>
 #include <fmt/format.h>
-#include <functional>
 #include <map>
 
 #include "app/catalog.hpp"
 #include "app/command/command.hpp"
-#include "app/port_types.hpp"
 #include "app/terminal.hpp"
+#include "core/config/reader.hpp"
 #include "core/device/device.hpp"
 #include "core/loop/hook.hpp"
-#include "core/sim/engine_factory.hpp"
-#include "core/sim/robot_factory.hpp"
+#include "core/physics/solver.hpp"
 
 namespace tandem::app {
 namespace {
 
 /// All plug-ins of the plug-in folders, opened; those that do not load are named on standard error.
 std::unique_ptr<hal::PluginLoader> open_all() {
-  auto loader = std::make_unique<hal::PluginLoader>(plugin_folders());
+  auto loader = std::make_unique<hal::PluginLoader>(plugin_folders(), catalog());
   for (const auto& file : plugin_files()) {
     const hal::Status opened = loader->open(file.string());
     if (!opened.ok()) say("warning: " + opened.error().message);
@@ -26,145 +25,150 @@ std::unique_ptr<hal::PluginLoader> open_all() {
   return loader;
 }
 
-std::string_view summary_of(const hal::PluginLoader::Entry& entry) {
-  if (entry.category == "controller") return static_cast<const hal::ControllerType*>(entry.type)->summary;
-  return static_cast<const core::HookType*>(entry.type)->summary;
+/// " (libx.so)" behind what a plug-in brought.
+std::string from(const hal::Catalog& catalog, const void* entry) {
+  const std::string origin = catalog.origin_of(entry);
+  return origin == hal::Catalog::kInside ? "" : " (" + std::filesystem::path(origin).filename().string() + ")";
 }
 
-void list_plugins(std::string_view category, std::string_view title) {
-  const auto loader = open_all();
+template <class T>
+void list_plugins(const hal::Catalog& catalog, std::string_view title) {
   fmt::print("{}:\n", title);
-  bool none = true;
-  for (const auto& entry : loader->entries()) {
-    if (entry.category != category) continue;
-    fmt::print("  {:<22} {}\n", printable(entry.name), printable(summary_of(entry)));
-    none = false;
-  }
-  if (none) fmt::print("  none in the plug-in folders; TANDEM_PLUGIN_PATH names further ones\n");
+  for (const T* type : catalog.all<T>())
+    fmt::print("  {:<22} {}{}\n", printable(type->name), printable(type->summary), from(catalog, type));
+  if (catalog.all<T>().empty()) fmt::print("  none in the plug-in folders; TANDEM_PLUGIN_PATH names further ones\n");
 }
 
-void list_devices() {
+void list_devices(const hal::Catalog& catalog) {
   fmt::print("devices (implementations):\n");
   for (const hal::Role role : {hal::Role::Sensor, hal::Role::Actuator}) {
-    std::string last;
-    for (const core::DeviceType& type : core::device_types()) {
-      if (type.role != role || type.device == last) continue;
-      last = type.device;
+    std::string_view last;
+    for (const core::DeviceType* type : catalog.all<core::DeviceType>()) {
+      if (type->role != role || type->device == last) continue;
+      last = type->device;
       std::string names;
-      for (const core::DeviceType& t : core::device_types()) {
-        if (t.device == type.device && t.role == role)
-          names += (names.empty() ? "" : ", ") + std::string(t.implementation);
+      for (const core::DeviceType* t : catalog.all<core::DeviceType>()) {
+        if (t->device == type->device && t->role == role)
+          names += (names.empty() ? "" : ", ") + std::string(t->implementation) + from(catalog, t);
       }
-      fmt::print("  {:<22} {:<9} {}\n", type.device, role == hal::Role::Sensor ? "sensor" : "actuator", names);
+      fmt::print("  {:<22} {:<9} {}\n", type->device, role == hal::Role::Sensor ? "sensor" : "actuator", names);
     }
   }
 }
 
-void list_names(std::string_view title, const std::vector<std::string>& names) {
+void list_names(const hal::Catalog& catalog, std::string_view category, std::string_view title) {
   fmt::print("{}:\n", title);
-  for (const std::string& name : names) fmt::print("  {}\n", name);
+  for (const hal::Catalog::Entry& e : catalog.entries()) {
+    if (e.category == category) fmt::print("  {}{}\n", e.name, from(catalog, e.entry));
+  }
 }
 
-void list_elements() {
+void list_elements(const hal::Catalog& catalog) {
   fmt::print("elements of experiment files:\n");
-  for (const core::ElementManual& m : core::element_manuals(known_names())) fmt::print("  {:<22} {}\n", m.name, m.doc);
+  for (const core::ElementManual& m : core::element_manuals(catalog)) fmt::print("  {:<22} {}\n", m.name, m.doc);
 }
 
-const std::map<std::string, std::function<void()>>& kinds() {
-  static const std::map<std::string, std::function<void()>> all = {
-      {"controllers", [] { list_plugins("controller", "controllers"); }},
-      {"hooks", [] { list_plugins("hook", "hooks"); }},
+using ListKind = void (*)(const hal::Catalog&);
+
+const std::map<std::string, ListKind>& kinds() {
+  static const std::map<std::string, ListKind> all = {
+      {"controllers", [](const hal::Catalog& c) { list_plugins<hal::ControllerType>(c, "controllers"); }},
+      {"hooks", [](const hal::Catalog& c) { list_plugins<core::HookType>(c, "hooks"); }},
       {"devices", &list_devices},
-      {"engines", [] { list_names("physics engines", known_names().engine_names()); }},
-      {"robots", [] { list_names("robots", known_names().robots); }},
+      {"engines", [](const hal::Catalog& c) { list_names(c, core::EngineType::kCategory, "physics engines"); }},
+      {"robots", [](const hal::Catalog& c) { list_names(c, hal::DataSheet::kCategory, "robots"); }},
       {"elements", &list_elements}};
   return all;
 }
 
 /// The port class behind a device name, for its fields.
-void describe_fields(std::string_view name, hal::Role role) {
-  for (const hal::PortType* port : all_port_types()) {
-    if (port->name != name || port->role != role) continue;
-    fmt::print("  what a controller {}: {}\n", role == hal::Role::Sensor ? "reads" : "writes", port->doc);
-    for (const hal::Field& f : port->fields) {
-      fmt::print("    {:<14} {}{}{}\n", f.name, f.doc, f.count > 1 ? fmt::format(", up to {}", f.count) : "",
-                 f.unit.symbol.empty() ? "" : fmt::format(" [{}]", f.unit.symbol));
-    }
+void describe_fields(const hal::Catalog& catalog, std::string_view name, hal::Role role) {
+  const auto* const port = catalog.find<hal::PortType>(hal::port_entry(name, role));
+  if (port == nullptr) return;
+  fmt::print("  what a controller {}: {}{}\n", role == hal::Role::Sensor ? "reads" : "writes", port->doc,
+             from(catalog, port));
+  for (const hal::Field& f : port->fields) {
+    fmt::print("    {:<14} {}{}{}\n", f.name, f.doc, f.count > 1 ? fmt::format(", up to {}", f.count) : "",
+               f.unit.symbol.empty() ? "" : fmt::format(" [{}]", f.unit.symbol));
   }
 }
 
-bool describe_device(const std::string& name) {
+bool describe_device(const hal::Catalog& catalog, const std::string& name) {
   bool found = false;
   for (const hal::Role role : {hal::Role::Sensor, hal::Role::Actuator}) {
     bool first = true;
-    for (const core::DeviceType& type : core::device_types()) {
-      if (type.device != name || type.role != role) continue;
+    for (const core::DeviceType* type : catalog.all<core::DeviceType>()) {
+      if (type->device != name || type->role != role) continue;
       if (first) {
         fmt::print("{} <{}>\n", role == hal::Role::Sensor ? "sensor" : "actuator", name);
-        describe_fields(name, role);
+        describe_fields(catalog, name, role);
       }
       first = false;
       found = true;
-      fmt::print("  implementation=\"{}\": {}\n", type.implementation, type.summary);
+      fmt::print("  implementation=\"{}\": {}{}\n", type->implementation, type->summary, from(catalog, type));
       core::ManualWriter manual;
-      type.describe(manual);
+      type->describe(manual);
       fmt::print("{}", manual.text());
     }
   }
   return found;
 }
 
-bool describe_plugin(const std::string& name) {
-  const auto loader = open_all();
+void describe_params(const hal::ControllerType& type, hal::ParamVisitor& manual) {
+  (void)type.read_params(manual);
+}
+void describe_params(const core::HookType& type, hal::ParamVisitor& manual) {
+  type.describe(manual);
+}
+
+template <class T>
+bool describe_plugin(const hal::Catalog& catalog, const std::string& name) {
   bool found = false;
-  for (const auto& entry : loader->entries()) {
-    if (entry.name != name) continue;
+  for (const T* type : catalog.all<T>()) {
+    if (type->name != name) continue;
     found = true;
-    fmt::print("{} {}: {}\n  library: {}\n", entry.category, printable(name), printable(summary_of(entry)),
-               entry.library);
+    fmt::print("{} {}: {}\n  library: {}\n", T::kCategory, printable(name), printable(type->summary),
+               catalog.origin_of(type));
     core::ManualWriter manual;
-    if (entry.category == "controller")
-      (void)static_cast<const hal::ControllerType*>(entry.type)->read_params(manual);
-    else
-      static_cast<const core::HookType*>(entry.type)->describe(manual);
+    describe_params(*type, manual);
     fmt::print("parameters:\n{}", manual.text().empty() ? "  none\n" : manual.text());
   }
   return found;
 }
 
-bool describe_physics_engine(const std::string& name) {
-  const auto kinds = core::engine_kinds();
-  if (std::find(kinds.begin(), kinds.end(), name) == kinds.end()) return false;
-  const core::EngineTraits traits = core::engine_traits(name);
-  fmt::print("<{}> in <physics_engines>: {}{}{}\n", name, core::engine_summary(name),
+bool describe_physics_engine(const hal::Catalog& catalog, const std::string& name) {
+  const auto* const type = catalog.find<core::EngineType>(name);
+  if (type == nullptr) return false;
+  const core::EngineTraits& traits = type->traits;
+  fmt::print("<{}> in <physics_engines>: {}{}{}{}\n", name, type->summary,
              traits.forces ? " Objects may be movable." : " Objects do not move.",
-             traits.plane ? "" : " Robots may fly.");
+             traits.plane ? "" : " Robots may fly.", from(catalog, type));
   fmt::print("joints: {}\n", traits.joints == 0 ? "none" : core::words_of(traits.joints));
   core::ManualWriter manual;
-  core::describe_engine(name, manual);
+  type->describe(manual);
   fmt::print("{}", manual.text());
   return true;
 }
 
 /// Devices of this role that robots with this data sheet have: "a, b, c".
-std::string devices_of(const hal::DataSheet& sheet, hal::Role role) {
+std::string devices_of(const hal::Catalog& catalog, const hal::DataSheet& sheet, hal::Role role) {
   std::string all;
   std::string_view last;
-  for (const core::DeviceType& type : core::device_types()) {
-    if (type.role != role || type.device == last || !type.fits(sheet)) continue;
-    last = type.device;
-    all += (all.empty() ? "" : ", ") + std::string(type.device);
+  for (const core::DeviceType* type : catalog.all<core::DeviceType>()) {
+    if (type->role != role || type->device == last || !type->fits(sheet)) continue;
+    last = type->device;
+    all += (all.empty() ? "" : ", ") + std::string(type->device);
   }
   return all;
 }
 
 /// What a kind of robot is and has.
-bool describe_robot(const std::string& name) {
-  const hal::DataSheet* const sheet = core::data_sheet_of(name);
+bool describe_robot(const hal::Catalog& catalog, const std::string& name) {
+  const auto* const sheet = catalog.find<hal::DataSheet>(name);
   if (sheet == nullptr) return false;
   const double cm = 100.0;
-  fmt::print("robot <{}>: a disc of {:.3g} cm radius, {:.3g} cm high, {:.3g} kg\n", name, cm * sheet->body_radius_m,
-             cm * sheet->body_height_m, sheet->mass_kg);
+  fmt::print("robot <{}>: a disc of {:.3g} cm radius, {:.3g} cm high, {:.3g} kg{}\n", name, cm * sheet->body_radius_m,
+             cm * sheet->body_height_m, sheet->mass_kg, from(catalog, sheet));
   if (sheet->wheel_base_m > 0.0) {
     fmt::print("  drives on two wheels {:.3g} cm apart, each up to {:.3g} cm/s\n", cm * sheet->wheel_base_m,
                cm * sheet->max_wheel_speed_m_s);
@@ -172,18 +176,18 @@ bool describe_robot(const std::string& name) {
   if (sheet->flies) {
     fmt::print("  flies up to {:.3g} m/s and turns up to {:.3g} rad/s; needs an engine in space: {}\n",
                sheet->max_flight_speed_m_s, sheet->max_flight_turn_rad_s,
-               core::engines_that([](const core::EngineTraits& traits) { return !traits.plane; }));
+               core::engines_that(catalog, [](const core::EngineTraits& traits) { return !traits.plane; }));
   }
-  fmt::print("  sensors: {}\n  actuators: {}\n", devices_of(*sheet, hal::Role::Sensor),
-             devices_of(*sheet, hal::Role::Actuator));
+  fmt::print("  sensors: {}\n  actuators: {}\n", devices_of(catalog, *sheet, hal::Role::Sensor),
+             devices_of(catalog, *sheet, hal::Role::Actuator));
   fmt::print("  in experiment files: <{} id=\"…\"><body position=\"x,y,z\"/><controller config=\"…\"/></{}>\n", name,
              name);
   return true;
 }
 
-bool describe_element(const std::string& name) {
+bool describe_element(const hal::Catalog& catalog, const std::string& name) {
   bool found = false;
-  for (const core::ElementManual& m : core::element_manuals(known_names())) {
+  for (const core::ElementManual& m : core::element_manuals(catalog)) {
     if (m.name != name) continue;
     found = true;
     fmt::print("<{}>{}: {}\n{}", m.name, m.parent.empty() ? "" : fmt::format(" in <{}>", m.parent), m.doc,
@@ -199,35 +203,34 @@ bool describe_element(const std::string& name) {
 }  // namespace
 
 int list(const std::string& kind) {
-  if (kind.empty()) {
-    for (const auto& [name, print] : kinds()) print();
-    return kDone;
-  }
   const auto found = kinds().find(kind);
-  if (found == kinds().end()) {
+  if (!kind.empty() && found == kinds().end()) {
     std::string all;
     for (const auto& [name, print] : kinds()) all += (all.empty() ? "" : ", ") + name;
     fmt::print(stderr, "tandem list: there is no kind '{}'; there are: {}\n", kind, all);
     return kWrongUsage;
   }
-  found->second();
+  const auto loader = open_all();
+  for (const auto& [name, print] : kinds()) {
+    if (kind.empty() || name == kind) print(loader->catalog());
+  }
   return kDone;
 }
 
 int describe(const std::string& name) {
-  const bool robot = describe_robot(name);
-  const bool engine = describe_physics_engine(name);
-  const bool element = describe_element(name);
-  const bool device = describe_device(name);
-  const bool plugin = describe_plugin(name);
-  if (robot || engine || element || device || plugin) return kDone;
-  std::vector<std::string> all;
-  for (const core::ElementManual& m : core::element_manuals(known_names())) all.emplace_back(m.name);
-  for (const core::DeviceType& t : core::device_types()) all.emplace_back(t.device);
-  for (const std::string& kind : core::engine_kinds()) all.push_back(kind);
-  for (const std::string& kind : core::robot_kinds()) all.push_back(kind);
   const auto loader = open_all();
-  for (const auto& e : loader->entries()) all.push_back(e.name);
+  const hal::Catalog& catalog = loader->catalog();
+  const bool robot = describe_robot(catalog, name);
+  const bool engine = describe_physics_engine(catalog, name);
+  const bool element = describe_element(catalog, name);
+  const bool device = describe_device(catalog, name);
+  const bool controller = describe_plugin<hal::ControllerType>(catalog, name);
+  const bool hook = describe_plugin<core::HookType>(catalog, name);
+  if (robot || engine || element || device || controller || hook) return kDone;
+  std::vector<std::string> all;
+  for (const core::ElementManual& m : core::element_manuals(catalog)) all.emplace_back(m.name);
+  for (const core::DeviceType* t : catalog.all<core::DeviceType>()) all.emplace_back(t->device);
+  for (const hal::Catalog::Entry& e : catalog.entries()) all.push_back(e.name);
   const std::string near = core::closest(name, all);
   fmt::print(stderr, "tandem describe: there is nothing called '{}'{}. `tandem list` shows what there is.\n", name,
              near.empty() ? "" : "; did you mean '" + near + "'?");

@@ -5,6 +5,7 @@
 #include "app/catalog.hpp"
 #include "app/command/command.hpp"
 #include "app/terminal.hpp"
+#include "core/config/reader.hpp"
 #include "core/config/xml.hpp"
 #include "mixed_reality/settings/bridge_check.hpp"
 #include "mixed_reality/settings/map_file.hpp"
@@ -17,7 +18,7 @@ void print_problems(const core::Problems& problems) {
 
 std::optional<core::Scenario> read_or_complain(const std::string& path, const std::vector<std::string>& overrides) {
   core::Problems problems;
-  auto scenario = core::read_experiment(path, overrides, known_names(), problems);
+  auto scenario = core::read_experiment(path, overrides, catalog(), problems);
   if (scenario) mixed_reality::check_bridges(*scenario, problems);
   print_problems(problems);
   if (core::has_errors(problems)) return std::nullopt;

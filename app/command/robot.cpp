@@ -165,7 +165,7 @@ int robot(const RobotOptions& options) {
       {item, config, scenario->ticks_per_second, scenario->seed.value_or(1), guarded.permit(), &hub_unix_ns}, log);
   if (!made.ok()) return complain(kBadInput, made.error().message);
   bridges::RobotBridge& bridge = **made;
-  hal::PluginLoader loader(plugin_folders());
+  hal::PluginLoader loader(plugin_folders(), catalog());
   const auto type = loader.controller(config.library, config.label);
   if (!type.ok()) return complain(kBadInput, "controller '" + config.id + "': " + type.error().message);
   core::Problems problems;

@@ -220,7 +220,7 @@ int run(const RunOptions& options) {
   const std::atomic<bool>& stop = catch_signals();
   std::signal(SIGPIPE, SIG_IGN);  // who reads our output may end before us
   Watchdog watchdog(options.step_timeout_s, stop);
-  hal::PluginLoader loader(plugin_folders());
+  hal::PluginLoader loader(plugin_folders(), catalog());
   auto opened_log = RunLog::open(options.log);
   if (!opened_log.ok()) return complain(kBadInput, opened_log.error().message);
   RunLog& run_log = *opened_log.value();

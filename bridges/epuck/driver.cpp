@@ -4,7 +4,6 @@
 #include <limits>
 
 #include "bridges/epuck/conversions.hpp"
-#include "hal/filter.hpp"
 #include "hal/spec/epuck.hpp"
 
 namespace tandem::bridges::epuck {
@@ -61,14 +60,14 @@ void EpuckDriver::judge_margin() noexcept {
 
 hal::WheelSpeeds EpuckDriver::filtered(hal::TimeNs now) noexcept {
   hal::WheelSpeeds wheels = robot_.wheels();
-  switch (hal::filter(wheels, kMaxSpeed_m_s)) {
-    case hal::FilterResult::Clamped:
+  switch (wheels.limit(hal::epuck::kDataSheet).result) {
+    case hal::LimitResult::Clamped:
       ++statistics_.clamped;
       break;
-    case hal::FilterResult::NotFinite:
+    case hal::LimitResult::NotFinite:
       ++statistics_.not_finite;
       break;
-    case hal::FilterResult::Passed:
+    case hal::LimitResult::Passed:
       break;
   }
   const bool wanted = wheels.left_m_s != 0.0 || wheels.right_m_s != 0.0;
@@ -89,7 +88,7 @@ hal::WheelSpeeds EpuckDriver::filtered(hal::TimeNs now) noexcept {
   if (ramping_) {
     const double share = static_cast<double>(now - ramp_start_ns_) / static_cast<double>(settings_.ramp_ns);
     ramping_ = share < 1.0;
-    if (ramping_) hal::filter(wheels, share * kMaxSpeed_m_s);
+    if (ramping_) wheels.limit_to(share * kMaxSpeed_m_s);
   }
   return wheels;
 }

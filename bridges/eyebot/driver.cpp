@@ -357,7 +357,7 @@ void EyebotDriver::note_order() noexcept {
       robot_.uses<hal::FlightTask>() || robot_.uses<hal::QuadrotorPosition>() || robot_.uses<hal::QuadrotorSpeed>();
   if (!robot_.uses<hal::FlightTask>()) return;
   hal::FlightTask task = robot_.port<hal::FlightTask>();
-  count(hal::filter(task, spec::kMaxSpeed_m_s));
+  count(task.limit(spec::kDataSheet));
   const hal::FlightOrder order = task.order;
   order_m_s_ = static_cast<float>(task.speed_m_s);
   if (order == order_) return;
@@ -465,9 +465,9 @@ void EyebotDriver::say(Told told, Message& message, TimeNs again_ns, TimeNs now)
   send(v, now);
 }
 
-void EyebotDriver::count(hal::FilterResult result) noexcept {
-  statistics_.clamped += result == hal::FilterResult::Clamped ? 1 : 0;
-  statistics_.not_finite += result == hal::FilterResult::NotFinite ? 1 : 0;
+void EyebotDriver::count(const hal::Limited& limited) noexcept {
+  statistics_.clamped += limited.result == hal::LimitResult::Clamped ? 1 : 0;
+  statistics_.not_finite += limited.result == hal::LimitResult::NotFinite ? 1 : 0;
 }
 
 /// What the controller wrote stays as it is: it may write once and never again.
@@ -476,7 +476,7 @@ void EyebotDriver::say_setpoint(TimeNs now) noexcept {
   interrupted_ = false;
   hal::QuadrotorPosition position;
   if (robot_.uses<hal::QuadrotorPosition>()) position = robot_.port<hal::QuadrotorPosition>();
-  count(hal::filter(position));
+  count(position.limit(spec::kDataSheet));
   if (!position.hold) {
     messages::CmdPosition m{};
     write(position, settings_.world, m);
@@ -489,7 +489,7 @@ void EyebotDriver::say_setpoint(TimeNs now) noexcept {
   }
   hal::QuadrotorSpeed speed;
   if (robot_.uses<hal::QuadrotorSpeed>()) speed = robot_.port<hal::QuadrotorSpeed>();
-  count(hal::filter(speed, spec::kMaxSpeed_m_s, spec::kMaxTurn_rad_s));
+  count(speed.limit(spec::kDataSheet));
   messages::CmdVelocity m{};
   write(speed, settings_.world, m);
   m.timeout_ms = kVelocityHolds_ms;
@@ -508,14 +508,14 @@ void EyebotDriver::say_devices(TimeNs now) noexcept {
   }
   if (robot_.uses<hal::PanTiltDrive>()) {
     hal::PanTiltDrive drive = robot_.port<hal::PanTiltDrive>();
-    count(hal::filter(drive, spec::kHeadMostTilt_rad));
+    count(drive.limit(spec::kDataSheet));
     messages::CmdPanTilt m{};
     write(drive, m);
     say(Told::PanTilt, m, kDeviceAgain, now);
   }
   if (robot_.uses<hal::ScannerDrive>()) {
     hal::ScannerDrive drive = robot_.port<hal::ScannerDrive>();
-    count(hal::filter(drive, spec::kScannerTurn_rad_s));
+    count(drive.limit(spec::kDataSheet));
     messages::CmdScanner m{};
     write(drive, m);
     say(Told::Scanner, m, kDeviceAgain, now);

@@ -37,7 +37,6 @@
 #include "bridges/eyebot_messages/messages.hpp"
 #include "bridges/link/stall_meter.hpp"
 #include "hal/device/range_and_bearing.hpp"
-#include "hal/filter.hpp"
 #include "hal/log.hpp"
 
 namespace tandem::bridges::eyebot {
@@ -216,7 +215,7 @@ class EyebotDriver {
   std::string refused_order() const;
 
   // What it is told.
-  void count(hal::FilterResult result) noexcept;
+  void count(const hal::Limited& limited) noexcept;
   void say_setpoint(hal::TimeNs now) noexcept;
   void say_devices(hal::TimeNs now) noexcept;
   void say_order(hal::TimeNs now) noexcept;

@@ -6,7 +6,6 @@
 #include "hal/device/gripper.hpp"
 #include "hal/device/turret.hpp"
 #include "hal/device/wheels.hpp"
-#include "hal/filter.hpp"
 
 namespace tandem::bridges::footbot {
 namespace {
@@ -112,18 +111,18 @@ std::string FootbotDriver::trouble() const {
 
 // --- commands ---
 
-void FootbotDriver::count(hal::FilterResult result) noexcept {
-  statistics_.clamped += result == hal::FilterResult::Clamped ? 1 : 0;
-  statistics_.not_finite += result == hal::FilterResult::NotFinite ? 1 : 0;
+void FootbotDriver::count(const hal::Limited& limited) noexcept {
+  statistics_.clamped += limited.result == hal::LimitResult::Clamped ? 1 : 0;
+  statistics_.not_finite += limited.result == hal::LimitResult::NotFinite ? 1 : 0;
 }
 
 /// Limits the commands in their ports.
 void FootbotDriver::filter_commands() noexcept {
   auto& wheels = robot_.port<hal::WheelSpeeds>();
-  count(hal::filter(wheels, spec::kMaxWheelSpeed_m_s));
-  count(hal::filter(robot_.port<hal::TurretDrive>(), spec::kTurretTurn_rad_s));
-  count(hal::filter(robot_.port<hal::ScannerDrive>(), spec::kScannerTurn_rad_s));
-  count(hal::filter(robot_.port<hal::GripperDrive>()));
+  count(wheels.limit(spec::kDataSheet));
+  count(robot_.port<hal::TurretDrive>().limit(spec::kDataSheet));
+  count(robot_.port<hal::ScannerDrive>().limit(spec::kDataSheet));
+  count(robot_.port<hal::GripperDrive>().limit(spec::kDataSheet));
   statistics_.rearmed += interrupted_ ? 1 : 0;
   interrupted_ = false;
 }

@@ -23,7 +23,6 @@
 #include "bridges/aseba/network.hpp"
 #include "bridges/footbot/wiring.hpp"
 #include "bridges/link/stall_meter.hpp"
-#include "hal/filter.hpp"
 #include "hal/log.hpp"
 
 namespace tandem::bridges::footbot {
@@ -98,7 +97,7 @@ class FootbotDriver {
   void update_state(hal::TimeNs now);
   RobotState judge(hal::TimeNs now) const noexcept;
   void rest(hal::TimeNs now) noexcept;
-  void count(hal::FilterResult result) noexcept;
+  void count(const hal::Limited& limited) noexcept;
   void filter_commands() noexcept;
   void send_commands(hal::TimeNs now) noexcept;
   void ask(hal::TimeNs now) noexcept;

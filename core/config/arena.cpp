@@ -276,7 +276,7 @@ class ArenaReader {
     const auto moves = [](const EngineTraits& traits) { return traits.forces; };
     reading_.error(e, "movable",
                    kinds + (kinds.find(' ') == std::string::npos ? " moves" : " move") +
-                       " no objects; use one of the engines that do (" + engines_that(reading_.known().engines, moves) +
+                       " no objects; use one of the engines that do (" + engines_that(reading_.known().catalog, moves) +
                        "), or say movable=\"false\"");
   }
 

@@ -122,13 +122,14 @@ void check_gates(Reading& reading) {
 
 void read_engine(Reading& reading, Element& e) {
   EngineConfig config;
-  const auto& engines = reading.known().engines;
-  const auto argos = std::find_if(engines.begin(), engines.end(),
-                                  [&](const KnownEngine& engine) { return engine.argos_name == e.name; });
-  config.kind = argos == engines.end() ? e.name : argos->name;
+  const std::vector<std::string>& names = reading.known().engines;
+  config.kind = e.name;
+  for (const KnownEngine* engine : reading.known().catalog.all<KnownEngine>()) {
+    if (engine->argos_name == e.name) config.kind = engine->kind;
+  }
   config.line = e.line;
-  if (reading.known().engine(config.kind) == nullptr) {
-    const std::vector<std::string> names = reading.known().engine_names();
+  // A program without any engine simulates nothing, and does not judge what others are to simulate with.
+  if (!names.empty() && reading.known().engine(config.kind) == nullptr) {
     reading.error(
         e, "unknown physics engine <" + e.name + ">; known: " + listed(names) + did_you_mean(config.kind, names));
   }
@@ -168,22 +169,10 @@ const MediumConfig* medium_of(Reading& reading, const Element& e, std::string_vi
 
 }  // namespace
 
-std::vector<std::string> KnownNames::engine_names() const {
-  std::vector<std::string> names;
-  for (const KnownEngine& one : engines) names.push_back(one.name);
-  return names;
-}
-
-const KnownEngine* KnownNames::engine(std::string_view name) const noexcept {
-  const auto found =
-      std::find_if(engines.begin(), engines.end(), [name](const KnownEngine& one) { return one.name == name; });
-  return found == engines.end() ? nullptr : &*found;
-}
-
 void read_engines(Reading& reading, Element& engines) {
   reading.read<schema::Engines>(engines);
   if (engines.children.empty() && !reading.known().engines.empty()) {
-    const std::string& usual = reading.known().engines.front().name;
+    const std::string& usual = reading.known().engines.front();
     Reading::add_child(engines, usual).attributes.push_back({"id", usual, 0});
   }
   std::map<std::string, int> lines;

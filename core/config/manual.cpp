@@ -51,7 +51,7 @@ std::vector<ElementManual> expanded(const ElementManual& m, const KnownNames& kn
     names = known.robots;
     for (const std::string_view kind : kOwnElement) std::erase(names, kind);
   }
-  if (m.name == schema::Engine::kElement.name) names = known.engine_names();
+  if (m.name == schema::Engine::kElement.name) names = known.engines;
   if (m.name == schema::Medium::kElement.name) names = words(schema::Media::kElement.children);
   std::vector<ElementManual> out;
   for (const std::string& name : names) {
@@ -71,14 +71,15 @@ std::string parents_of(const ElementManual& m, const std::vector<ElementManual>&
   }
   // Those of which the parent says "anything".
   if (m.name == schema::Configuration::kElement.name) parents = {"controllers"};
-  if (m.name == schema::Boundaries::kElement.name) parents = known.engine_names();
+  if (m.name == schema::Boundaries::kElement.name) parents = known.engines;
   if (known.engine(m.name) != nullptr) parents = {"physics_engines"};
   return joined(parents, " or ");
 }
 
 }  // namespace
 
-std::vector<ElementManual> element_manuals(const KnownNames& known) {
+std::vector<ElementManual> element_manuals(const hal::Catalog& catalog) {
+  const KnownNames known(catalog);
   std::vector<ElementManual> manuals;
   for (const ElementManual& m : all_manuals()) {
     for (ElementManual& one : expanded(m, known)) manuals.push_back(std::move(one));

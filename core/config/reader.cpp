@@ -97,11 +97,11 @@ Scenario read_parts(Reading& reading, Element& root) {
 
 /// `found` are the problems of the XML so far.
 std::optional<Scenario> read_root(std::optional<Element> root, const std::vector<std::string>& overrides,
-                                  const KnownNames& known, Problems found, Problems& problems) {
+                                  const hal::Catalog& catalog, Problems found, Problems& problems) {
   std::optional<Scenario> scenario;
   if (root) {
     for (const std::string& assignment : overrides) apply_override(*root, assignment, found);
-    Reading reading(known, found);
+    Reading reading(catalog, found);
     scenario = read_parts(reading, *root);
     scenario->effective = std::move(*root);
   }
@@ -198,18 +198,18 @@ void read_visualization(Reading& reading, Element& visualization) {
 }
 
 std::optional<Scenario> read_experiment(const std::string& path, const std::vector<std::string>& overrides,
-                                        const KnownNames& known, Problems& problems) {
+                                        const hal::Catalog& catalog, Problems& problems) {
   Problems found;
   auto root = read_xml_file(path, found);
-  return read_root(std::move(root), overrides, known, std::move(found), problems);
+  return read_root(std::move(root), overrides, catalog, std::move(found), problems);
 }
 
 std::optional<Scenario> read_experiment_text(const std::string& text, const std::string& name,
-                                             const std::vector<std::string>& overrides, const KnownNames& known,
+                                             const std::vector<std::string>& overrides, const hal::Catalog& catalog,
                                              Problems& problems) {
   Problems found;
   auto root = read_xml_text(text, name, found);
-  return read_root(std::move(root), overrides, known, std::move(found), problems);
+  return read_root(std::move(root), overrides, catalog, std::move(found), problems);
 }
 
 std::string effective_settings(const Scenario& scenario) {

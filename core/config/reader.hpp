@@ -5,31 +5,20 @@
 #include <string_view>
 #include <vector>
 
-#include "core/scenario/engine_traits.hpp"
 #include "core/scenario/scenario.hpp"
+#include "hal/catalog.hpp"
 
 namespace tandem::core {
 
-/// What this program has, so that the reader can judge names.
-struct KnownNames {
-  std::vector<std::string> robots;   ///< kinds, e.g. "e-puck"
-  std::vector<KnownEngine> engines;  ///< the first is that of files that name none
-  std::vector<std::string> sensors;  ///< port names
-  std::vector<std::string> actuators;
-
-  std::vector<std::string> engine_names() const;
-  const KnownEngine* engine(std::string_view name) const noexcept;  ///< null: there is none
-};
-
-/// Reads and checks `path` with `overrides` ("path=value") applied. All problems are collected, each with its line and
-/// in the order of the file; nothing is returned when there is an error among them. Paths of files in it are relative
-/// to the working directory, or else to its own folder.
+/// Reads and checks `path`, whose robots, engines and devices are to be in `catalog`, with `overrides` ("path=value")
+/// applied. All problems are collected, each with its line and in the order of the file; nothing is returned when there
+/// is an error among them. Paths of files in it are relative to the working directory, or else to its own folder.
 std::optional<Scenario> read_experiment(const std::string& path, const std::vector<std::string>& overrides,
-                                        const KnownNames& known, Problems& problems);
+                                        const hal::Catalog& catalog, Problems& problems);
 
 /// The same from text; `name` stands for the file in messages.
 std::optional<Scenario> read_experiment_text(const std::string& text, const std::string& name,
-                                             const std::vector<std::string>& overrides, const KnownNames& known,
+                                             const std::vector<std::string>& overrides, const hal::Catalog& catalog,
                                              Problems& problems);
 
 /// The scenario as an experiment file with every default written out. Reads back as the same scenario.
@@ -47,7 +36,7 @@ struct ElementManual {
   std::vector<std::string> children;  ///< "*": anything
 };
 
-/// The manual of every element, with one entry for every kind of robot and of engine in `known`.
-std::vector<ElementManual> element_manuals(const KnownNames& known);
+/// The manual of every element, with one entry for every kind of robot and of engine in `catalog`.
+std::vector<ElementManual> element_manuals(const hal::Catalog& catalog);
 
 }  // namespace tandem::core

@@ -12,6 +12,12 @@ std::vector<std::string> words(std::string_view list) {
   return out;
 }
 
+KnownNames::KnownNames(const hal::Catalog& all)
+    : robots(all.names(hal::DataSheet::kCategory)), engines(all.names(KnownEngine::kCategory)), catalog(all) {
+  for (const hal::PortType* port : all.all<hal::PortType>())
+    (port->role == hal::Role::Sensor ? sensors : actuators).emplace_back(port->name);
+}
+
 std::vector<std::string> Reading::check(const Element& element, const schema::ElementInfo& info) {
   std::vector<std::string> missing;
   for (const std::string& name : words(info.required)) {

@@ -7,16 +7,28 @@
 
 #include "core/config/reader.hpp"
 #include "core/config/schema.hpp"
+#include "core/scenario/engine_traits.hpp"
+#include "hal/port.hpp"
 
 namespace tandem::core {
 
 /// The words of a list separated by spaces.
 std::vector<std::string> words(std::string_view list);
 
+/// What the catalog has, so that the reader can judge names.
+struct KnownNames {
+  std::vector<std::string> robots, engines, sensors, actuators;
+  const hal::Catalog& catalog;
+  explicit KnownNames(const hal::Catalog& catalog);
+
+  /// An engine's traits; null: there is none of that name.
+  const KnownEngine* engine(std::string_view kind) const noexcept { return catalog.find<KnownEngine>(kind); }
+};
+
 /// One reading of one file: what is known, what was found, and the Scenario in the making.
 class Reading {
  public:
-  Reading(const KnownNames& known, Problems& problems) : known_(known), problems_(problems) {}
+  Reading(const hal::Catalog& catalog, Problems& problems) : known_(catalog), problems_(problems) {}
 
   const KnownNames& known() const noexcept { return known_; }
   Scenario& out() noexcept { return out_; }
@@ -81,7 +93,7 @@ class Reading {
   }
 
  private:
-  const KnownNames& known_;
+  KnownNames known_;
   Problems& problems_;
   Scenario out_;
 };

@@ -21,17 +21,16 @@ class Coupling {
   virtual void after_physics(SpaceStores& /*stores*/, double /*tick_s*/) noexcept {}
 };
 
-/// One class of couplings. A world has one of each; those that nobody's columns ask for find nothing to do.
+/// One class of couplings. A world has one of each in the catalog, which act in its order; those that nobody's columns
+/// ask for find nothing to do.
 struct CouplingType {
+  static constexpr std::string_view kCategory = "coupling";
   std::string_view name;
   std::string_view summary;
   std::unique_ptr<Coupling> (*make)(Columns& columns) = nullptr;
 };
 
-/// All of them, in the order in which they act.
-const std::vector<CouplingType>& coupling_types();
-
-// The list's entries, one a file of this folder.
+// Those of this folder, one a file.
 CouplingType piloting_type();
 CouplingType gripping_type();
 

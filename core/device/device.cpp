@@ -5,7 +5,7 @@
 
 namespace tandem::core {
 
-const std::vector<DeviceType>& device_types() {
+void register_devices(hal::Registrar& registrar) {
   static const std::vector<DeviceType> all = [] {
     std::vector<DeviceType> types;
     for (auto& part : {wheel_types(), flight_types(), flight_sensor_types(), pan_tilt_types(), proximity_types(),
@@ -15,12 +15,9 @@ const std::vector<DeviceType>& device_types() {
     }
     return types;
   }();
-  return all;
-}
-
-const std::vector<CouplingType>& coupling_types() {
-  static const std::vector<CouplingType> all = {piloting_type(), gripping_type()};
-  return all;
+  for (const DeviceType& type : all) registrar.add(type);
+  static const std::vector<CouplingType> couplings = {piloting_type(), gripping_type()};
+  for (const CouplingType& type : couplings) registrar.add(type);
 }
 
 const GroupRecipes::Listed* GroupRecipes::find(std::string_view device, hal::Role role) const noexcept {
@@ -38,11 +35,13 @@ const DeviceType* device_without_joints(const RobotGroup& group, JointKinds ther
   return nullptr;
 }
 
-const DeviceType* find_device(std::string_view device, hal::Role role, std::string_view implementation) {
-  for (const DeviceType& type : device_types()) {
-    if (type.device == device && type.role == role && type.implementation == implementation) return &type;
-  }
-  return nullptr;
+std::string DeviceType::device_entry(std::string_view device, hal::Role role, std::string_view implementation) {
+  return hal::port_entry(device, role) + " " + std::string(implementation);
+}
+
+const DeviceType* find_device(const hal::Catalog& catalog, std::string_view device, hal::Role role,
+                              std::string_view implementation) {
+  return catalog.find<DeviceType>(DeviceType::device_entry(device, role, implementation));
 }
 
 }  // namespace tandem::core

@@ -7,6 +7,7 @@
 
 #include "core/scenario/scenario.hpp"
 #include "core/space/stores.hpp"
+#include "hal/catalog.hpp"
 #include "hal/port.hpp"
 
 namespace tandem::core {
@@ -90,6 +91,7 @@ struct Recipe {
 
 /// One implementation of one device class.
 struct DeviceType {
+  static constexpr std::string_view kCategory = "device";
   std::string_view device;  ///< the port's name
   std::string_view implementation;
   std::string_view summary;
@@ -102,6 +104,10 @@ struct DeviceType {
   /// Shows its options, for the manual.
   void (*describe)(hal::ParamVisitor& visitor) = nullptr;
   JointKinds joints = 0;  ///< that it works by: only where the robot's engine has them
+
+  std::string catalog_name() const { return device_entry(device, role, implementation); }
+  /// As the catalog names it: "sensor proximity noisy".
+  static std::string device_entry(std::string_view device, hal::Role role, std::string_view implementation);
 };
 
 /// The devices that a configuration lists, read for the robots of one group.
@@ -128,10 +134,11 @@ struct GroupRecipes {
 /// The first device that the group's controllers took and that works by joints other than `there`; null: none.
 const DeviceType* device_without_joints(const RobotGroup& group, JointKinds there) noexcept;
 
-/// All implementations of all devices; the first of a device is its default.
-const std::vector<DeviceType>& device_types();
+/// Adds every simulated device and every coupling of this folder.
+void register_devices(hal::Registrar& registrar);
 
-/// The implementation that an experiment file names, or null. "default" is always the first.
-const DeviceType* find_device(std::string_view device, hal::Role role, std::string_view implementation);
+/// The implementation that an experiment file names, or null. "default" is one of every device.
+const DeviceType* find_device(const hal::Catalog& catalog, std::string_view device, hal::Role role,
+                              std::string_view implementation);
 
 }  // namespace tandem::core

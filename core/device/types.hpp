@@ -1,4 +1,4 @@
-// The lists of implementations, one a file of this folder; device.cpp joins them.
+// The lists of implementations, one a file of this folder; `register_devices` adds them all.
 #pragma once
 #include "core/device/describe.hpp"
 #include "core/device/proximity.hpp"

@@ -78,8 +78,9 @@ class Hook {
   virtual void restore(const std::any& /*saved*/) {}
 };
 
-/// What a plug-in registers under category "hook".
+/// A class of hooks: what a plug-in registers.
 struct HookType {
+  static constexpr std::string_view kCategory = "hook";
   std::string_view name;
   std::string_view summary;
   /// Reads its options from the file; problems are reported with their lines.

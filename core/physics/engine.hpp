@@ -79,11 +79,9 @@ struct EngineOrder {
 };
 
 /// A kind of physics engine.
-struct EngineType {
-  std::string_view kind;             ///< the element's name in experiment files
-  std::string_view argos_name = {};  ///< … in ARGoS 3's, if that is another
-  std::string_view summary;          ///< for the manual
-  EngineTraits traits = {};
+struct EngineType : KnownEngine {
+  static constexpr std::string_view kCategory = "engine";
+  std::string_view summary;  ///< for the manual
   bool whole = false;  ///< works on all its regions as one: a split changes nothing, and they need no lists of bodies
   /// Reads an engine element's own attributes and children (`id`, `regions` and <boundaries> are read by others), and
   /// checks them; problems are reported with their lines.
@@ -97,5 +95,11 @@ struct EngineType {
   std::unique_ptr<Solver> (*make_solver)(const std::shared_ptr<const void>& params, const SpaceStores& stores,
                                          const Region& region, double tick_s) = nullptr;
 };
+
+/// Adds an engine, and what readers of files need of it.
+inline void register_engine(hal::Registrar& registrar, const EngineType& type) {
+  registrar.add<KnownEngine>(type);
+  registrar.add(type);
+}
 
 }  // namespace tandem::core

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/physics/engine.hpp"
+#include "hal/catalog.hpp"
 
 namespace tandem::core {
 

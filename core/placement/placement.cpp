@@ -54,7 +54,7 @@ Vec3 drawn(const Distribution& d, std::uint64_t seed, std::uint32_t key, Stream 
 
 class Placer {
  public:
-  Placer(const Scenario& scenario, std::uint64_t seed, SizeOf size_of, Problems& problems)
+  Placer(const Scenario& scenario, std::uint64_t seed, const SizeOf& size_of, Problems& problems)
       : scenario_(scenario),
         seed_(seed),
         problems_(problems),
@@ -83,7 +83,7 @@ class Placer {
     const Obstacle* other = nullptr;  // null and not placed: outside the arena
   };
 
-  static std::vector<BodySize> sizes(const Scenario& scenario, SizeOf size_of) {
+  static std::vector<BodySize> sizes(const Scenario& scenario, const SizeOf& size_of) {
     std::vector<BodySize> out;
     for (const RobotItem& r : scenario.robots) out.push_back(size_of(r.kind));
     return out;
@@ -285,7 +285,7 @@ class Placer {
 
 }  // namespace
 
-Placements place(const Scenario& scenario, std::uint64_t seed, SizeOf size_of, Problems& problems) {
+Placements place(const Scenario& scenario, std::uint64_t seed, const SizeOf& size_of, Problems& problems) {
   return Placer(scenario, seed, size_of, problems).run();
 }
 

@@ -1,6 +1,8 @@
 // Where everything starts: expands `<distribute>` into places without overlap.
 #pragma once
 #include <cstdint>
+#include <functional>
+#include <string>
 #include <vector>
 
 #include "core/scenario/scenario.hpp"
@@ -41,13 +43,13 @@ struct BodySize {
   double height_m = 0.0;
   bool flies = false;
 };
-using SizeOf = BodySize (*)(const std::string& kind);
+using SizeOf = std::function<BodySize(const std::string& kind)>;
 
 /// Places what has a place of its own first, then draws places for what is distributed, in the order of the file: a
 /// pure function of the scenario and the seed. Bodies never overlap one another nor boxes and
 /// cylinders; only things that cannot move may overlap among themselves where the file says so. Yaws come out in (-pi,
 /// pi]. Problems, each with its line: two placed things that overlap, a robot outside the arena, and `max_trials` draws
 /// without a free place (says how many were placed, and what is in the way).
-Placements place(const Scenario& scenario, std::uint64_t seed, SizeOf size_of, Problems& problems);
+Placements place(const Scenario& scenario, std::uint64_t seed, const SizeOf& size_of, Problems& problems);
 
 }  // namespace tandem::core

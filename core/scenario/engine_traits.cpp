@@ -4,10 +4,10 @@
 
 namespace tandem::core {
 
-std::string engines_that(const std::vector<KnownEngine>& engines, const std::function<bool(const EngineTraits&)>& fit) {
+std::string engines_that(const hal::Catalog& catalog, const std::function<bool(const EngineTraits&)>& fit) {
   std::string all;
-  for (const KnownEngine& engine : engines) {
-    if (fit(engine.traits)) all += (all.empty() ? "" : ", ") + engine.name;
+  for (const KnownEngine* engine : catalog.all<KnownEngine>()) {
+    if (fit(engine->traits)) all += (all.empty() ? "" : ", ") + std::string(engine->kind);
   }
   return all.empty() ? "none of this program's" : all;
 }

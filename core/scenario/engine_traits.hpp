@@ -4,7 +4,8 @@
 #include <functional>
 #include <string>
 #include <string_view>
-#include <vector>
+
+#include "hal/catalog.hpp"
 
 namespace tandem::core {
 
@@ -31,15 +32,19 @@ struct EngineTraits {
   bool has(JointKinds kinds) const noexcept { return (joints & kinds) == kinds; }
 };
 
-/// A kind of engine that this program has.
+/// A kind of engine, as far as files are read and checked by it; the first of a catalog is that of files that name
+/// none.
 struct KnownEngine {
-  std::string name;        ///< of its element in experiment files
-  std::string argos_name;  ///< of its element in ARGoS 3's files, if that is another
+  static constexpr std::string_view kCategory = "engine traits";
+  std::string_view kind;        ///< the element's name in experiment files
+  std::string_view argos_name;  ///< … in ARGoS 3's, if that is another
   EngineTraits traits;
+
+  std::string_view catalog_name() const noexcept { return kind; }
 };
 
-/// Of those that fit, for messages: "a, b", or that there is none.
-std::string engines_that(const std::vector<KnownEngine>& engines, const std::function<bool(const EngineTraits&)>& fit);
+/// Those of the catalog that fit, for messages: "a, b", or that there is none.
+std::string engines_that(const hal::Catalog& catalog, const std::function<bool(const EngineTraits&)>& fit);
 /// "fixed and turning", in words.
 std::string words_of(JointKinds kinds);
 

@@ -5,11 +5,7 @@
 #include <map>
 #include <optional>
 
-#include "core/physics/dynamics2d/dynamics2d.hpp"
-#include "core/physics/dynamics3d/dynamics3d.hpp"
-#include "core/physics/kinematics2d/kinematics2d.hpp"
-#include "core/physics/particle3d/particle3d.hpp"
-#include "core/physics/solver.hpp"
+#include "core/physics/engine.hpp"
 #include "core/scenario/split.hpp"
 
 namespace tandem::core {
@@ -19,20 +15,6 @@ constexpr double kRobotsPerPart = 600.0;    // where a solver's data still fit t
 constexpr double kNarrowestPart_m = 4.0;    // narrower ones spend their time on bodies mirrored across borders
 constexpr std::size_t kMostPartsASide = 8;  // … of a split chosen here
 constexpr std::size_t kMostParts = 4096;    // of one that the file says
-
-/// All kinds; the first is that of files without engines.
-const std::vector<const EngineType*>& engine_types() {
-  static const std::vector<const EngineType*> types = {&kinematics2d_type(), &dynamics2d_type(), &dynamics3d_type(),
-                                                       &particle3d_type()};
-  return types;
-}
-
-const EngineType* engine_type(std::string_view kind) {
-  for (const EngineType* type : engine_types()) {
-    if (type->kind == kind) return type;
-  }
-  return nullptr;
-}
 
 /// From the load alone, so that results are the same on any machine.
 Split split_for(std::size_t robots, double width_m, double depth_m) {
@@ -117,15 +99,17 @@ std::optional<std::pair<double, double>> overlap(const Region& one, const Region
 
 class Maker {
  public:
-  Maker(const Scenario& scenario, std::size_t robots, SpaceStores& stores, Problems& problems)
-      : scenario_(scenario), robots_(robots), stores_(stores), problems_(problems) {}
+  Maker(const Scenario& scenario, const hal::Catalog& catalog, std::size_t robots, SpaceStores& stores,
+        Problems& problems)
+      : scenario_(scenario), catalog_(catalog), robots_(robots), stores_(stores), problems_(problems) {}
 
   std::vector<std::unique_ptr<Engine>> make() {
     const std::size_t before = problems_.size();
     stores_.regions.clear();
     if (configs_.empty()) {
       EngineConfig usual;
-      usual.kind = usual.id = engine_types().front()->kind;
+      const auto engines = catalog_.all<EngineType>();
+      if (!engines.empty()) usual.kind = usual.id = engines.front()->kind;
       configs_.push_back(usual);
     }
     for (std::size_t i = 0; i < configs_.size(); ++i) add(configs_[i], i);
@@ -145,10 +129,10 @@ class Maker {
   }
 
   void add(const EngineConfig& config, std::size_t number) {
-    const EngineType* type = engine_type(config.kind);
+    const EngineType* type = catalog_.find<EngineType>(config.kind);
     if (type == nullptr) {
-      problem(config.line, "unknown physics engine '" + config.kind +
-                               "'; known: " + engines_that(known_engines(), [](const EngineTraits&) { return true; }));
+      problem(config.line,
+              "unknown physics engine '" + config.kind + "'; known: " + listed(catalog_.names(EngineType::kCategory)));
       return;
     }
     Region region;
@@ -311,7 +295,7 @@ class Maker {
 
   void make_engines() {
     const double tick_s = 1.0 / static_cast<double>(scenario_.ticks_per_second);
-    for (const EngineType* type : engine_types()) {
+    for (const EngineType* type : catalog_.all<EngineType>()) {
       EngineOrder order{{}, stores_, tick_s, scenario_.file, problems_};
       for (std::size_t i = 0; i < stores_.regions.size(); ++i) {
         const std::size_t number = stores_.regions[i].engine;
@@ -323,6 +307,7 @@ class Maker {
 
   const Scenario& scenario_;
   std::vector<EngineConfig> configs_ = scenario_.engines;
+  const hal::Catalog& catalog_;
   std::size_t robots_;
   SpaceStores& stores_;
   Problems& problems_;
@@ -332,56 +317,22 @@ class Maker {
 
 }  // namespace
 
-const std::vector<KnownEngine>& known_engines() {
-  static const std::vector<KnownEngine> all = [] {
-    std::vector<KnownEngine> known;
-    for (const EngineType* type : engine_types())
-      known.push_back({std::string(type->kind), std::string(type->argos_name), type->traits});
-    return known;
-  }();
-  return all;
-}
-
-std::vector<std::string> engine_kinds() {
-  std::vector<std::string> kinds;
-  for (const EngineType* type : engine_types()) kinds.emplace_back(type->kind);
-  return kinds;
-}
-
-EngineTraits engine_traits(std::string_view kind) {
-  const EngineType* type = engine_type(kind);
-  return type == nullptr ? EngineTraits{} : type->traits;
-}
-
-std::string engines_that(const std::function<bool(const EngineTraits&)>& fit) {
-  return engines_that(known_engines(), fit);
-}
-
-std::string lacks_joints(const Region& region, JointKinds needed) {
+std::string lacks_joints(const hal::Catalog& catalog, const Region& region, JointKinds needed) {
   if ((region.joints & needed) == needed) return "";
   return "its engine '" + region.name + "' has " +
          (region.joints == 0 ? "no joints" : "only " + words_of(region.joints) + " joints") + ", but " +
          words_of(needed) + " ones are needed; use " +
-         engines_that([needed](const EngineTraits& traits) { return traits.has(needed); });
+         engines_that(catalog, [needed](const EngineTraits& traits) { return traits.has(needed); });
 }
 
-std::string_view engine_summary(std::string_view kind) {
-  const EngineType* type = engine_type(kind);
-  return type == nullptr ? std::string_view{} : type->summary;
-}
-
-void describe_engine(std::string_view kind, hal::ParamVisitor& visitor) {
-  if (const EngineType* type = engine_type(kind); type != nullptr) type->describe(visitor);
-}
-
-std::string unfit_for(std::string_view kind, const Object& object) {
-  const EngineType* type = engine_type(kind);
+std::string unfit_for(const hal::Catalog& catalog, std::string_view kind, const Object& object) {
+  const auto* const type = catalog.find<EngineType>(kind);
   return type == nullptr || type->unfit == nullptr ? "" : type->unfit(object);
 }
 
-std::vector<std::unique_ptr<Engine>> make_engines(const Scenario& scenario, std::size_t robots, SpaceStores& stores,
-                                                  Problems& problems) {
-  return Maker(scenario, robots, stores, problems).make();
+std::vector<std::unique_ptr<Engine>> make_engines(const Scenario& scenario, const hal::Catalog& catalog,
+                                                  std::size_t robots, SpaceStores& stores, Problems& problems) {
+  return Maker(scenario, catalog, robots, stores, problems).make();
 }
 
 }  // namespace tandem::core

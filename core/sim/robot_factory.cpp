@@ -14,9 +14,6 @@
 #include "hal/device/gripper.hpp"
 #include "hal/device/pan_tilt.hpp"
 #include "hal/device/range_and_bearing.hpp"
-#include "hal/spec/epuck.hpp"
-#include "hal/spec/eyebot.hpp"
-#include "hal/spec/footbot.hpp"
 
 namespace tandem::core {
 namespace {
@@ -63,9 +60,10 @@ void add_port_arrays(const RobotGroup& group, RobotBlock& block, Slab* slab) {
 /// A controller constructor's view of the robot that it is to drive.
 class ConstructedRobot final : public hal::Robot {
  public:
-  ConstructedRobot(const Scenario& scenario, const SpaceStores& stores, RobotGroup& group, RobotBlock& block,
-                   Slab* slab, std::uint64_t run_seed, hal::RobotLog::Sink& messages)
+  ConstructedRobot(const Scenario& scenario, const hal::Catalog& catalog, const SpaceStores& stores, RobotGroup& group,
+                   RobotBlock& block, Slab* slab, std::uint64_t run_seed, hal::RobotLog::Sink& messages)
       : scenario_(scenario),
+        catalog_(catalog),
         stores_(stores),
         group_(group),
         block_(block),
@@ -91,18 +89,9 @@ class ConstructedRobot final : public hal::Robot {
     while (i < group_.ports.size() && !(group_.ports[i]->name == type.name && group_.ports[i]->role == type.role)) ++i;
     if (i == group_.ports.size()) {
       check_listed(type);
-      group_.ports.push_back(&type);
-      if (type.role == hal::Role::Actuator) {
-        if (type.name == hal::WheelSpeeds::kName) group_.wheels = static_cast<int>(i);
-        if (type.name == hal::QuadrotorPosition::kName) group_.flight_position = static_cast<int>(i);
-        if (type.name == hal::QuadrotorSpeed::kName) group_.flight_speed = static_cast<int>(i);
-        if (type.name == hal::QuadrotorAttitude::kName) group_.flight_attitude = static_cast<int>(i);
-        if (type.name == hal::FlightTask::kName) group_.flight_task = static_cast<int>(i);
-        if (type.name == hal::PanTiltDrive::kName) group_.camera_head = static_cast<int>(i);
-        if (type.name == hal::TurretDrive::kName) group_.turret = static_cast<int>(i);
-        if (type.name == hal::GripperDrive::kName) group_.gripper = static_cast<int>(i);
-        if (type.name == hal::ScannerDrive::kName) group_.scanner = static_cast<int>(i);
-      }
+      // The program's own description, where it has one: limits are not left to a plug-in.
+      const auto* const known = catalog_.find<hal::PortType>(hal::port_entry(type.name, type.role));
+      group_.ports.push_back(known != nullptr ? known : &type);
     }
     if (group_.ports[i]->layout != type.layout) {
       throw hal::DeviceError("device '" + std::string(type.name) +
@@ -134,10 +123,11 @@ class ConstructedRobot final : public hal::Robot {
     const bool sensor = type.role == hal::Role::Sensor;
     const std::string role = sensor ? "sensor" : "actuator";
     const std::string name(type.name);
-    if (find_device(type.name, type.role, "default") == nullptr) {
+    const DeviceType* device = find_device(catalog_, type.name, type.role, "default");
+    if (device == nullptr) {
       throw hal::DeviceError("asks for the " + role + " '" + name + "', which no simulated robot has");
     }
-    if (!find_device(type.name, type.role, "default")->fits(*group_.sheet)) {
+    if (!device->fits(*group_.sheet)) {
       throw hal::DeviceError("asks for the " + role + " '" + name + "', which the robot '" +
                              std::string(group_.sheet->kind) + "' does not have");
     }
@@ -150,6 +140,7 @@ class ConstructedRobot final : public hal::Robot {
   }
 
   const Scenario& scenario_;
+  const hal::Catalog& catalog_;
   const SpaceStores& stores_;
   RobotGroup& group_;
   RobotBlock& block_;
@@ -284,7 +275,7 @@ bool RobotFactory::prepare_group(std::size_t g, Problems& problems) {
   };
   RobotGroup& group = stores_.groups[g];
   group.config = item.controller;
-  group.sheet = data_sheet_of(item.kind);
+  group.sheet = data_sheet_of(loader_.catalog(), item.kind);
   if (group.sheet == nullptr) {
     problem(item.line, "unknown kind of robot '" + item.kind + "'");
     return false;
@@ -340,7 +331,7 @@ bool RobotFactory::read_devices(const RobotGroup& group, hal::Role role, GroupRe
                           &scenario_.media};
   bool good = true;
   for (const DeviceChoice& choice : role == hal::Role::Sensor ? config.sensors : config.actuators) {
-    const DeviceType* type = find_device(choice.device, role, choice.implementation);
+    const DeviceType* type = find_device(loader_.catalog(), choice.device, role, choice.implementation);
     const int line = choice.options.line != 0 ? choice.options.line : config.line;
     const auto problem = [&](std::string message) {
       problems.push_back({scenario_.file, line, std::move(message), false});
@@ -348,9 +339,9 @@ bool RobotFactory::read_devices(const RobotGroup& group, hal::Role role, GroupRe
     };
     if (type == nullptr) {
       std::string known;
-      for (const DeviceType& t : device_types()) {
-        if (t.device == choice.device && t.role == role)
-          known += (known.empty() ? "" : ", ") + std::string(t.implementation);
+      for (const DeviceType* t : loader_.catalog().all<DeviceType>()) {
+        if (t->device == choice.device && t->role == role)
+          known += (known.empty() ? "" : ", ") + std::string(t->implementation);
       }
       problem(known.empty() ? "no simulated device '" + choice.device + "'"
                             : "device '" + choice.device + "' has no implementation '" + choice.implementation +
@@ -462,7 +453,7 @@ std::string RobotFactory::construct(Slot at, const std::shared_ptr<const void>& 
   RobotBlock& block = stores_.blocks[at.block];
   RobotGroup& group = stores_.groups[block.group];
   const hal::ControllerType& type = *group.controller;
-  ConstructedRobot robot(scenario_, stores_, group, block, slab_, seed_, messages_);
+  ConstructedRobot robot(scenario_, loader_.catalog(), stores_, group, block, slab_, seed_, messages_);
   robot.select(at.slot, stores_.bodies.entity[block.first_row + at.slot]);
   std::string why;
   const hal::PluginCall call(&name_constructor, this, at.block, at.slot);
@@ -604,7 +595,7 @@ hal::Status RobotFactory::can_hold(Slot at) const {
   const DeviceType* device = device_without_joints(stores_.groups[block.group], region.joints);
   if (device == nullptr) return {};
   return hal::Error{"robot '" + stores_.names[stores_.robots[stores_.bodies.entity[row]].item].prefix + "' has a " +
-                    std::string(device->device) + ", but " + lacks_joints(region, device->joints)};
+                    std::string(device->device) + ", but " + lacks_joints(loader_.catalog(), region, device->joints)};
 }
 
 /// Undoes a robot that did not come to be: the entity that was appended last.
@@ -616,10 +607,6 @@ void RobotFactory::give_back(std::size_t g, Slot slot, const Taken& before, std:
   if (block.ports.size() > before.ports) {  // their arrays are the last of its own
     block.own_arrays.resize(block.own_arrays.size() - (block.ports.size() - before.ports));
     block.ports.resize(before.ports);
-  }
-  for (int* command : {&group.wheels, &group.flight_position, &group.flight_speed, &group.flight_attitude,
-                       &group.flight_task, &group.camera_head, &group.turret, &group.gripper, &group.scanner}) {
-    if (*command >= static_cast<int>(before.ports)) *command = -1;
   }
   stores_.bodies.flags[block.first_row + slot.slot] = 0;
   stores_.bodies.entity[block.first_row + slot.slot] = entity_before;
@@ -697,18 +684,6 @@ hal::Result<RobotId> RobotFactory::add(const RobotItem& item, const Pose& pose,
   stores_.altered = true;
   stores_.touch(BodyKey::robot(row));
   return RobotId{entity, stores_.robots[entity].generation};
-}
-
-const hal::DataSheet* data_sheet_of(std::string_view kind) {
-  for (const hal::DataSheet* sheet : {&hal::epuck::kDataSheet, &hal::eyebot::kDataSheet, &hal::footbot::kDataSheet}) {
-    if (sheet->kind == kind) return sheet;
-  }
-  return nullptr;
-}
-
-std::vector<std::string> robot_kinds() {
-  return {std::string(hal::epuck::kDataSheet.kind), std::string(hal::eyebot::kDataSheet.kind),
-          std::string(hal::footbot::kDataSheet.kind)};
 }
 
 void destroy_controllers(SpaceStores& stores) noexcept {

@@ -37,9 +37,10 @@ struct RobotDevices {
   std::vector<BlockDevices> blocks;  ///< parallel to SpaceStores::blocks
 };
 
-/// The data sheet of a kind of robot, or null. The kinds that this build knows: `robot_kinds()`.
-const hal::DataSheet* data_sheet_of(std::string_view kind);
-std::vector<std::string> robot_kinds();
+/// What is known of a kind of robot, by its name in the catalog; null: there is no such kind.
+inline const hal::DataSheet* data_sheet_of(const hal::Catalog& catalog, std::string_view kind) {
+  return catalog.find<hal::DataSheet>(kind);
+}
 
 /// Makes the robots of a file at the start, and others while the run goes on. Everything that it is handed must outlive
 /// it.
@@ -51,6 +52,8 @@ class RobotFactory {
   ~RobotFactory();
   RobotFactory(const RobotFactory&) = delete;
   RobotFactory& operator=(const RobotFactory&) = delete;
+
+  const hal::Catalog& catalog() const noexcept { return loader_.catalog(); }
 
   /// Fills the stores (bodies, groups, blocks, robots) and the devices. Every problem goes to `problems` with the line
   /// of the robot or controller that it is about. Robots of a group get rows in the order of a space-filling curve.

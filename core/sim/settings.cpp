@@ -5,7 +5,7 @@
 
 #include "core/device/device.hpp"
 #include "core/loop/hook.hpp"
-#include "core/sim/engine_factory.hpp"
+#include "core/physics/solver.hpp"
 
 namespace tandem::core {
 namespace {
@@ -47,9 +47,9 @@ void put(Element& parent, Element completed) {
     *there = std::move(completed);
 }
 
-void complete_devices(std::vector<DeviceChoice>& choices, hal::Role role) {
+void complete_devices(const hal::Catalog& catalog, std::vector<DeviceChoice>& choices, hal::Role role) {
   for (DeviceChoice& choice : choices) {
-    const DeviceType* type = find_device(choice.device, role, choice.implementation);
+    const DeviceType* type = find_device(catalog, choice.device, role, choice.implementation);
     if (type == nullptr) continue;
     complete(choice.options, type->describe);
   }
@@ -70,8 +70,8 @@ void complete_controllers(Scenario& scenario, hal::PluginLoader& loader) {
       const auto found = loader.controller(config.library, config.label);
       if (!found.ok()) continue;
       type = found.value();
-      complete_devices(config.sensors, hal::Role::Sensor);
-      complete_devices(config.actuators, hal::Role::Actuator);
+      complete_devices(loader.catalog(), config.sensors, hal::Role::Sensor);
+      complete_devices(loader.catalog(), config.actuators, hal::Role::Actuator);
       complete(config.params, type->read_params);
     }
     if (!robot.params) continue;
@@ -107,9 +107,10 @@ void put_params_of_robots(Scenario& scenario) {
   }
 }
 
-void complete_engines(Scenario& scenario) {
+void complete_engines(Scenario& scenario, const hal::Catalog& catalog) {
   for (EngineConfig& engine : scenario.engines) {
-    complete(engine.options, [&](hal::ParamVisitor& visitor) { describe_engine(engine.kind, visitor); });
+    const auto* const type = catalog.find<EngineType>(engine.kind);
+    if (type != nullptr && type->describe != nullptr) complete(engine.options, type->describe);
   }
   Element* all = child_of(scenario.effective, "physics_engines");
   if (all == nullptr || all->children.size() != scenario.engines.size()) return;
@@ -118,9 +119,9 @@ void complete_engines(Scenario& scenario) {
 
 void complete_hooks(Scenario& scenario, hal::PluginLoader& loader) {
   for (HookConfig& hook : scenario.hooks) {
-    const auto found = loader.get(hook.library, "hook", hook.label);
+    const auto found = loader.get<HookType>(hook.library, hook.label);
     if (!found.ok()) continue;
-    const auto* type = static_cast<const HookType*>(found.value());
+    const HookType* type = found.value();
     set_attribute(hook.options, "label", std::string(type->name));
     if (type->describe != nullptr) complete(hook.options, type->describe);
   }
@@ -142,7 +143,7 @@ void put_seed(Scenario& scenario, std::uint64_t seed) {
 void complete_settings(Scenario& scenario, hal::PluginLoader& loader, std::uint64_t seed) {
   complete_controllers(scenario, loader);
   put_params_of_robots(scenario);
-  complete_engines(scenario);
+  complete_engines(scenario, loader.catalog());
   complete_hooks(scenario, loader);
   put_seed(scenario, seed);
 }

@@ -4,10 +4,9 @@
 #include <cmath>
 #include <utility>
 
-#include "core/space/fingerprint.hpp"
 #include "core/sim/world_impl.hpp"
+#include "core/space/fingerprint.hpp"
 #include "hal/check.hpp"
-#include "hal/filter.hpp"
 #include "hal/unit.hpp"
 
 namespace tandem::core {
@@ -31,7 +30,7 @@ void World::step() {
     w.external->after_sense(*this);
     w.each_block(w.controlling, [&w](std::size_t block) {
       w.control(block);
-      w.filter(block);
+      w.limit(block);
     });
     w.external->after_filter(*this);
   }
@@ -72,7 +71,7 @@ void World::Impl::sense_and_control() {
   each_block(controlling, [this](std::size_t block) {
     sense(block);
     control(block);
-    filter(block);
+    limit(block);
   });
 }
 
@@ -100,65 +99,37 @@ void World::Impl::control(std::size_t index) {
   }
 }
 
-void World::Impl::filter(std::size_t index) {
-  const RobotGroup& group = stores().groups[stores().blocks[index].group];
-  const hal::DataSheet& sheet = *group.sheet;
-  filter_port<hal::WheelSpeeds>(index, group.wheels, [&](auto& command) {
-    const double asked_m_s = std::max(std::fabs(command.left_m_s), std::fabs(command.right_m_s));
-    const hal::FilterResult result = hal::filter(command, sheet.max_wheel_speed_m_s);
-    if (result == hal::FilterResult::Clamped)
-      note_excess(index, group.wheels, command, asked_m_s, sheet.max_wheel_speed_m_s);
-    return result;
-  });
-  filter_port<hal::QuadrotorPosition>(index, group.flight_position, [](auto& command) { return hal::filter(command); });
-  filter_port<hal::QuadrotorSpeed>(index, group.flight_speed, [&](auto& command) {
-    const auto& v = command.velocity;
-    const double asked_m_s = std::max({std::fabs(v[0]), std::fabs(v[1]), std::fabs(v[2])});
-    const hal::FilterResult result = hal::filter(command, sheet.max_flight_speed_m_s, sheet.max_flight_turn_rad_s);
-    if (result == hal::FilterResult::Clamped)
-      note_excess(index, group.flight_speed, command, asked_m_s, sheet.max_flight_speed_m_s);
-    return result;
-  });
-  filter_port<hal::QuadrotorAttitude>(index, group.flight_attitude, [&](auto& command) {
-    return hal::filter(command, sheet.flight.most_lean_rad, sheet.max_flight_turn_rad_s, sheet.flight.most_thrust);
-  });
-  filter_port<hal::FlightTask>(index, group.flight_task,
-                               [&](auto& command) { return hal::filter(command, sheet.max_flight_speed_m_s); });
-  filter_port<hal::PanTiltDrive>(index, group.camera_head,
-                                 [&](auto& command) { return hal::filter(command, sheet.camera_head.most_tilt_rad); });
-  filter_port<hal::TurretDrive>(index, group.turret,
-                                [&](auto& command) { return hal::filter(command, sheet.turret_turn_rad_s); });
-  filter_port<hal::GripperDrive>(index, group.gripper, [](auto& command) { return hal::filter(command); });
-  filter_port<hal::ScannerDrive>(index, group.scanner,
-                                 [&](auto& command) { return hal::filter(command, sheet.scanner_turn_rad_s); });
+void World::Impl::limit(std::size_t index) {
+  RobotBlock& block = stores().blocks[index];
+  const RobotGroup& group = stores().groups[block.group];
+  hal::Limited what;
+  for (std::size_t p = 0; p < group.ports.size(); ++p) {
+    const hal::PortType& type = *group.ports[p];
+    if (type.limit == nullptr) continue;
+    for (std::size_t i = 0; (i = type.limit(block.ports[p], i, block.used, *group.sheet, what)) < block.used; ++i)
+      note_limited(index, i, what);
+  }
 }
 
-template <class Port, class Filter>
-void World::Impl::filter_port(std::size_t index, int port, Filter&& filter_one) {
-  if (port < 0) return;
+void World::Impl::note_limited(std::size_t index, std::size_t slot, const hal::Limited& what) {
   RobotBlock& block = stores().blocks[index];
-  auto* commands = block.port_array<Port>(static_cast<std::size_t>(port));
-  for (std::size_t i = 0; i < block.used; ++i) {
-    const hal::FilterResult result = filter_one(commands[i]);
-    if (result == hal::FilterResult::Passed) continue;
-    if (result == hal::FilterResult::Clamped) {
-      ++clamped[index];
-    } else {
-      ++not_finite[index];
-      block_trouble[index] = 1;
-      stores().bodies.flags[block.first_row + i] |= kNotFinite;
-    }
+  if (what.result == hal::LimitResult::Clamped) {
+    ++clamped[index];
+    note_excess(index, slot, what);
+  } else {
+    ++not_finite[index];
+    block_trouble[index] = 1;
+    stores().bodies.flags[block.first_row + slot] |= kNotFinite;
   }
 }
 
 /// Remembers the first robot of the block whose speed is hardly meant, to be named after the phase; one of a group is
 /// named.
-template <class Port>
-void World::Impl::note_excess(std::size_t index, int port, const Port& command, double asked_m_s, double most_m_s) {
-  RobotBlock& block = stores().blocks[index];
-  if (asked_m_s <= kUnlikely * most_m_s || excess_named[block.group] != 0 || excess[index].most_m_s > 0.0) return;
-  const auto slot = &command - block.port_array<Port>(static_cast<std::size_t>(port));
-  excess[index] = {static_cast<std::size_t>(slot), asked_m_s, most_m_s};
+void World::Impl::note_excess(std::size_t index, std::size_t slot, const hal::Limited& what) {
+  const RobotBlock& block = stores().blocks[index];
+  if (what.asked_m_s <= kUnlikely * what.most_m_s || excess_named[block.group] != 0 || excess[index].most_m_s > 0.0)
+    return;
+  excess[index] = {slot, what.asked_m_s, what.most_m_s};
   block_trouble[index] = 1;
 }
 

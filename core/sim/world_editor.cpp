@@ -164,9 +164,10 @@ hal::Status WorldEditor::check_place(const std::string& who, const Pose& pose) c
 // --- robots ---
 
 hal::Result<RobotItem> WorldEditor::item_for(const NewRobot& wanted) const {
-  if (data_sheet_of(wanted.kind) == nullptr) {
-    return hal::Error{"robot '" + wanted.id + "': there is no kind '" + wanted.kind +
-                      "'; there are: " + listed(robot_kinds()) + did_you_mean(wanted.kind, robot_kinds())};
+  if (data_sheet_of(factory_.catalog(), wanted.kind) == nullptr) {
+    const std::vector<std::string> kinds = factory_.catalog().names(hal::DataSheet::kCategory);
+    return hal::Error{"robot '" + wanted.id + "': there is no kind '" + wanted.kind + "'; there are: " + listed(kinds) +
+                      did_you_mean(wanted.kind, kinds)};
   }
   std::vector<std::string> ids;
   for (const ControllerConfig& config : scenario_.controllers) ids.push_back(config.id);
@@ -200,7 +201,8 @@ hal::Status WorldEditor::accept(const std::string& who, std::size_t row) {
   if (region == kNoRegion) {
     return hal::Error{
         who + " would be at " + text_of(o.x_m, o.y_m) + ", which lies in no region of an engine " +
-        (o.flies ? "that can fly it; use " + engines_that([](const EngineTraits& traits) { return !traits.plane; })
+        (o.flies ? "that can fly it; use " +
+                       engines_that(factory_.catalog(), [](const EngineTraits& traits) { return !traits.plane; })
                  : "for it")};
   }
   stores_.bodies.region[row] = region;
@@ -239,10 +241,10 @@ hal::Status WorldEditor::check_mover(const Object& object, std::uint16_t region)
   if (region == kNoRegion) {
     return hal::Error{who + " would be at " + text_of(object.x_m, object.y_m) +
                       ", in no region of an engine that moves objects; use " +
-                      engines_that([](const EngineTraits& traits) { return traits.forces; })};
+                      engines_that(factory_.catalog(), [](const EngineTraits& traits) { return traits.forces; })};
   }
   if (scenario_.engines.empty()) return {};
-  const std::string why = unfit_for(scenario_.engines[stores_.regions[region].engine].kind, object);
+  const std::string why = unfit_for(factory_.catalog(), scenario_.engines[stores_.regions[region].engine].kind, object);
   return why.empty() ? hal::Status{} : hal::Status(hal::Error{who + " " + why});
 }
 
@@ -324,13 +326,14 @@ hal::Result<JointId> WorldEditor::join(BodyKey a, BodyKey b, const std::array<do
   for (const BodyKey body : {a, b}) {
     const std::uint16_t region = region_now(body);
     if (region == kNoRegion) return hal::Error{name_of(body) + " cannot be joined: it lies in no engine's region"};
-    const std::string why = lacks_joints(stores_.regions[region], bit(form.kind));
+    const std::string why = lacks_joints(factory_.catalog(), stores_.regions[region], bit(form.kind));
     if (!why.empty()) return hal::Error{name_of(body) + " cannot be joined: " + why};
   }
   const Region& region = stores_.regions[region_now(std::min(a, b))];
   if (form.kind == JointKind::Sliding && region.plane && form.axis[2] != 0.0) {
     return hal::Error{name_of(b) + " cannot slide out of the plane: its engine '" + region.name +
-                      "' keeps bodies on the ground; use " + engines_that([](const EngineTraits& traits) {
+                      "' keeps bodies on the ground; use " +
+                      engines_that(factory_.catalog(), [](const EngineTraits& traits) {
                         return !traits.plane && traits.has(bit(JointKind::Sliding));
                       })};
   }

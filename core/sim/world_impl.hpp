@@ -172,12 +172,10 @@ struct World::Impl final : hal::RobotLog::Sink {
   void sense_and_control();
   void sense(std::size_t block);
   void control(std::size_t block);
-  void filter(std::size_t block);
-  template <class Port>
-  void note_excess(std::size_t block, int port, const Port& command, double asked_m_s, double most_m_s);
+  void limit(std::size_t block);
+  void note_limited(std::size_t block, std::size_t slot, const hal::Limited& what);
+  void note_excess(std::size_t block, std::size_t slot, const hal::Limited& what);
   void report_excess(std::size_t block);
-  template <class Port, class Filter>
-  void filter_port(std::size_t block, int port, Filter&& filter_one);
   void report_trouble();
   void paint_floor_if_asked();
   static void name_step(const void* impl, std::size_t block, std::size_t index, hal::FixedText& out) noexcept;

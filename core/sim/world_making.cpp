@@ -38,13 +38,13 @@ Object object_of(const Scenario& scenario, const ObjectItem& item, const PlacedO
   return shape;
 }
 
-BodySize size_of_kind(const std::string& kind) {
-  const hal::DataSheet* sheet = data_sheet_of(kind);
+BodySize size_of_kind(const hal::Catalog& catalog, const std::string& kind) {
+  const hal::DataSheet* sheet = data_sheet_of(catalog, kind);
   return sheet != nullptr ? BodySize{sheet->body_radius_m, sheet->body_height_m, sheet->flies} : BodySize{};
 }
 
 /// Some devices work by joints: robots whose controller takes one need an engine that has them. One problem an item.
-void check_joints(const Scenario& scenario, const SpaceStores& s, Problems& problems) {
+void check_joints(const Scenario& scenario, const hal::Catalog& catalog, const SpaceStores& s, Problems& problems) {
   std::uint32_t complained = 0xFFFFFFFFU;
   std::vector<bool> usable;  // by group: anywhere
   for (const RobotGroup& group : s.groups) usable.push_back(device_without_joints(group, 0) == nullptr);
@@ -58,7 +58,7 @@ void check_joints(const Scenario& scenario, const SpaceStores& s, Problems& prob
     const std::string name = s.names[e.item].prefix + (e.number < 0 ? "" : std::to_string(e.number));
     problems.push_back({scenario.file, scenario.robots[e.item].line,
                         "robot '" + name + "' has a " + std::string(device->device) + ", but " +
-                            lacks_joints(s.regions[region], device->joints),
+                            lacks_joints(catalog, s.regions[region], device->joints),
                         false});
   }
 }
@@ -105,8 +105,8 @@ std::string too_wide_for(const SpaceStores& s, const Region& region, double widt
 }
 
 /// Every body's region; robots and movable objects that lie in none, or are too large for theirs, are problems.
-void assign_regions(const Scenario& scenario, const Placements& placements, const RegionKeeper& keeper, SpaceStores& s,
-                    Problems& problems) {
+void assign_regions(const Scenario& scenario, const hal::Catalog& catalog, const Placements& placements,
+                    const RegionKeeper& keeper, SpaceStores& s, Problems& problems) {
   constexpr std::size_t kNamed = 20;
   std::size_t bad = 0;
   const auto complain = [&](int line, const std::string& who, double x_m, double y_m, const std::string& why) {
@@ -127,22 +127,23 @@ void assign_regions(const Scenario& scenario, const Placements& placements, cons
     const bool flies = s.groups[s.blocks[e.block].group].sheet->flies;
     if (why.empty()) {
       why = flies && !any_solid ? "flies: it needs an engine of three dimensions: " +
-                                      engines_that([](const EngineTraits& traits) { return !traits.plane; })
+                                      engines_that(catalog, [](const EngineTraits& traits) { return !traits.plane; })
                                 : "lies in no engine's region";
     }
     complain(scenario.robots[e.item].line, "robot '" + name + "'", s.bodies.x_m[row], s.bodies.y_m[row], why);
   }
-  check_joints(scenario, s, problems);
+  check_joints(scenario, catalog, s, problems);
   check_upright(scenario, s, problems);
   for (std::size_t i = 0; i < s.objects.size(); ++i) {
     if (!s.objects[i].movable) continue;
     s.object_region[i] = keeper.find(s, BodyKey::object(i));
     std::string why = "lies in no region of an engine that moves objects; use " +
-                      engines_that([](const EngineTraits& traits) { return traits.forces; });
+                      engines_that(catalog, [](const EngineTraits& traits) { return traits.forces; });
     if (s.object_region[i] != kNoRegion) {
       const Region& region = s.regions[s.object_region[i]];
       why = too_wide_for(s, region, narrowest_width_m(s.objects[i]));
-      if (why.empty() && !scenario.engines.empty()) why = unfit_for(scenario.engines[region.engine].kind, s.objects[i]);
+      if (why.empty() && !scenario.engines.empty())
+        why = unfit_for(catalog, scenario.engines[region.engine].kind, s.objects[i]);
       if (why.empty()) continue;
     }
     complain(scenario.objects[placements.objects[i].item].line,
@@ -243,8 +244,10 @@ void World::Impl::populate(Problems& problems) {
 
   if (scenario.arena_size[2] > 0.0) s.max_z_m = scenario.arena_center[2] + 0.5 * scenario.arena_size[2];
 
-  const Placements placements = place(scenario, seed, &size_of_kind, problems);
-  engines = make_engines(scenario, placements.robots.size(), s, problems);
+  const hal::Catalog& catalog = loader->catalog();
+  const auto size_of = [&catalog](const std::string& kind) { return size_of_kind(catalog, kind); };
+  const Placements placements = place(scenario, seed, size_of, problems);
+  engines = make_engines(scenario, catalog, placements.robots.size(), s, problems);
   if (bad()) return;
   for (const Region& region : s.regions) {
     kinematic.push_back(region.listed ? 0 : 1);
@@ -289,7 +292,7 @@ void World::Impl::populate(Problems& problems) {
   }
   if (factory == nullptr) factory = std::make_unique<RobotFactory>(scenario, seed, *loader, s, devices, *this);
   factory->make(requests, problems);
-  for (const CouplingType& type : coupling_types()) couplings.push_back(type.make(s.columns));
+  for (const CouplingType* type : catalog.all<CouplingType>()) couplings.push_back(type->make(s.columns));
   editor = std::make_unique<WorldEditor>(scenario, s, *factory, keeper);
   space.set_editor(editor.get());
 
@@ -308,7 +311,7 @@ void World::Impl::populate(Problems& problems) {
   index_movables();
   if (!bad()) {
     keeper.build(s, tick_s());
-    assign_regions(scenario, placements, keeper, s, problems);
+    assign_regions(scenario, catalog, placements, keeper, s, problems);
   }
 
   if (scenario.floor.source == "image") {
@@ -322,12 +325,12 @@ void World::Impl::populate(Problems& problems) {
 
 void World::Impl::make_hooks(Problems& problems) {
   for (const HookConfig& config : scenario.hooks) {
-    const auto type = loader->get(config.library, "hook", config.label);
+    const auto type = loader->get<HookType>(config.library, config.label);
     if (!type.ok()) {
       problems.push_back({scenario.file, config.line, "loop_functions: " + type.error().message, false});
       continue;
     }
-    const auto* hook = static_cast<const HookType*>(type.value());
+    const HookType* hook = type.value();
     std::string why;
     std::unique_ptr<Hook> made = make_hook(*hook, config, problems, why);
     if (made == nullptr) {
@@ -419,10 +422,9 @@ void World::Impl::reset_hooks(Problems& problems) {
     } catch (...) {
     }
     if (why.empty()) {
-      const auto type = loader->get(scenario.hooks[i].library, "hook", scenario.hooks[i].label);
+      const auto type = loader->get<HookType>(scenario.hooks[i].library, scenario.hooks[i].label);
       hooks[i].reset();  // closes its files before the next opens them
-      std::unique_ptr<Hook> made =
-          make_hook(*static_cast<const HookType*>(type.value()), scenario.hooks[i], problems, why);
+      std::unique_ptr<Hook> made = make_hook(*type.value(), scenario.hooks[i], problems, why);
       hooks[i] = made != nullptr ? std::move(made) : std::make_unique<Hook>();  // which does nothing, in its place
     }
     if (!why.empty())

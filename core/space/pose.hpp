@@ -1,18 +1,9 @@
-// Where a body is in the plane, and how high its base stands.
+// Poses of bodies (hal/pose.hpp), by the name that all of core uses.
 #pragma once
+#include "hal/pose.hpp"
 
 namespace tandem::core {
 
-/// Pose of a body B in W. The heading is kept as its cosine and sine.
-struct Pose {
-  double x_m = 0.0;
-  double y_m = 0.0;
-  double z_m = 0.0;    ///< of the base above the ground
-  double cos_h = 1.0;  ///< heading: counter-clockwise from x
-  double sin_h = 0.0;
-
-  double heading_rad() const noexcept;  ///< in (-pi, pi]
-  static Pose at(double x_m, double y_m, double heading_rad, double z_m = 0.0) noexcept;
-};
+using hal::Pose;
 
 }  // namespace tandem::core

@@ -14,14 +14,6 @@
 
 namespace tandem::core {
 
-double Pose::heading_rad() const noexcept {
-  return std::atan2(sin_h, cos_h);
-}
-
-Pose Pose::at(double x_m, double y_m, double heading_rad, double z_m) noexcept {
-  return {x_m, y_m, z_m, std::cos(heading_rad), std::sin(heading_rad)};
-}
-
 double Object::reach_m() const noexcept {
   return kind == Kind::Cylinder ? radius_m : std::hypot(half_x_m, half_y_m);
 }

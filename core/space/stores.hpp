@@ -129,14 +129,6 @@ struct RobotGroup {
   std::vector<const hal::PortType*> ports;      ///< those that its controllers took, in the order of taking
   std::vector<KeptColumn> columns;              ///< that their devices need
   std::vector<hal::PublishedField> published;   ///< what its controllers show, with offsets into each of them
-  int wheels = -1;                              ///< index in `ports` of the wheel command; -1: none
-  int flight_position = -1;                     ///< … of the place to fly to
-  int flight_speed = -1;                        ///< … of the velocity to fly with
-  int flight_attitude = -1;                     ///< … of how to lean
-  int flight_task = -1;                         ///< … of what to do as a whole
-  int camera_head = -1;                         ///< … of where the camera is to look
-  int turret = -1, gripper = -1;                ///< … of what the turret and the gripper are to do
-  int scanner = -1;                             ///< … of how the distance scanner is to turn
   double rab_range_m = 0.0;
   unsigned rab_payload = 0;
   double sees_m = 0.0;  ///< how far along the ground its cameras see; 0: its controllers took none

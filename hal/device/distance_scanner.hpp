@@ -35,6 +35,9 @@ struct ScannerDrive : Command {
     mode = ScannerMode::Position;
     angle_rad = rad;
   }
+  Limited limit(const DataSheet& sheet) noexcept {
+    return limit_turn(*this, ScannerMode::Position, sheet.scanner_turn_rad_s);
+  }
   void describe(FieldList& f) const {
     f.add("mode", mode, unit::none, Frame::None, Fusion::Real, "0 off, 1 speed, 2 position");
     f.add("speed", speed_rad_s, unit::rad_s, Frame::Body, Fusion::Real, "turn rate, counter-clockwise from above");

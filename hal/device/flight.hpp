@@ -3,8 +3,11 @@
 // What a robot obeys that takes several of these commands: the task, while it is another than Fly; then the attitude
 // while it is active; then the position while that is not on hold; else the speed.
 #pragma once
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
+#include <limits>
 
 #include "hal/port.hpp"
 
@@ -25,6 +28,45 @@ struct QuadrotorPosition : Command {
     yaw_rad = yaw;
   }
   void hover() noexcept { hold = true; }
+
+  /// A target that is not finite becomes the safe command, which is to hover; also one that is on hold.
+  Limited limit(const DataSheet&) noexcept {
+    bool finite = std::isfinite(yaw_rad);
+    for (const double c : target) finite = finite && std::isfinite(c);
+    if (finite) return kPassed;
+    *this = {};
+    return kNotFinite;
+  }
+  /// A flying robot goes to a target about so fast that it would be there after this time (the eye-bot's controller of
+  /// position closes 0.8 to 1.2 of the distance a second).
+  static constexpr double kStep_s = 1.0;
+  /// A target that is farther away than the robot may come within `kStep_s` is drawn near along the line to it.
+  void slow_down(double most_m_s, const Pose* at) noexcept {
+    if (hold || at == nullptr) return;
+    const std::array<double, 3> p_WB = {at->x_m, at->y_m, at->z_m};
+    double way2 = 0.0;
+    for (std::size_t i = 0; i < 3; ++i) way2 += (target[i] - p_WB[i]) * (target[i] - p_WB[i]);
+    const double most_m = most_m_s * kStep_s;
+    if (!(way2 > most_m * most_m)) return;
+    const double part = most_m / std::sqrt(way2);
+    for (std::size_t i = 0; i < 3; ++i) target[i] = p_WB[i] + part * (target[i] - p_WB[i]);
+  }
+  /// A target outside becomes the nearest inside. On hold above the ceiling it becomes the place beneath.
+  bool keep_inside(const Fence& fence, const Pose& at, double) noexcept {
+    if (hold) {
+      if (at.z_m <= fence.max_z_m) return false;
+      const Pose inside = fence.clamped(at);
+      set(inside.x_m, inside.y_m, inside.z_m, at.heading_rad());
+      return true;
+    }
+    const std::array<double, 3> wanted = target;
+    target[0] = std::clamp(wanted[0], fence.min_x_m, fence.max_x_m);
+    target[1] = std::clamp(wanted[1], fence.min_y_m, fence.max_y_m);
+    target[2] = std::min(wanted[2], fence.max_z_m);
+    return target != wanted;
+  }
+  /// Where it goes to is left to its controller: the way there may lead out.
+  bool keep_out(const Pose&, double, double) noexcept { return false; }
   void describe(FieldList& f) const {
     f.add("hold", hold, unit::none, Frame::None, Fusion::Real, "hover; the target does not count");
     f.add("target", target, unit::m, Frame::World, Fusion::Real, "place of the body's base");
@@ -43,6 +85,60 @@ struct QuadrotorSpeed : Command {
   void set(double x_m_s, double y_m_s, double z_m_s, double turn_rad_s) noexcept {
     velocity = {x_m_s, y_m_s, z_m_s};
     yaw_rad_s = turn_rad_s;
+  }
+
+  /// Velocities beyond the limit are shortened along their direction, turn rates clamped; a command that is not finite
+  /// becomes the safe one, which is to hover.
+  Limited limit_to(double most_m_s, double most_rad_s) noexcept {
+    auto& v = velocity;
+    // Not by hypot: GCC 12's form of three arguments overlooks what is no number.
+    const double speed = std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+    const double turn = std::fabs(yaw_rad_s);
+    if (speed <= most_m_s && turn <= most_rad_s) return kPassed;  // false when any is NaN
+    if (!std::isfinite(v[0]) || !std::isfinite(v[1]) || !std::isfinite(v[2]) || !std::isfinite(turn)) {
+      *this = {};
+      return kNotFinite;
+    }
+    const double largest = std::max({std::fabs(v[0]), std::fabs(v[1]), std::fabs(v[2])});
+    if (!(speed <= most_m_s)) {
+      // In two steps: the length of what is finite need not be.
+      for (double& c : v) c /= largest;
+      const double scale = most_m_s / std::hypot(v[0], v[1], v[2]);
+      for (double& c : v) c *= scale;
+    }
+    yaw_rad_s = std::clamp(yaw_rad_s, -most_rad_s, most_rad_s);
+    return {LimitResult::Clamped, largest, most_m_s};
+  }
+  Limited limit(const DataSheet& sheet) noexcept {
+    return limit_to(sheet.max_flight_speed_m_s, sheet.max_flight_turn_rad_s);
+  }
+  void slow_down(double most_m_s, const Pose*) noexcept { limit_to(most_m_s, std::numeric_limits<double>::max()); }
+  /// How fast a robot above the ceiling sinks.
+  static constexpr double kSinkIntoFence_m_s = 0.2;
+  /// The robot loses the part of its velocity that leads out, and sinks while it is above the ceiling, whatever was
+  /// wanted.
+  bool keep_inside(const Fence& fence, const Pose& at, double look_ahead_s) noexcept {
+    auto& v = velocity;
+    const bool x = Fence::leads_out(at.x_m, v[0] * look_ahead_s, fence.min_x_m, fence.max_x_m);
+    const bool y = Fence::leads_out(at.y_m, v[1] * look_ahead_s, fence.min_y_m, fence.max_y_m);
+    if (x) v[0] = 0.0;
+    if (y) v[1] = 0.0;
+    bool z = false;
+    if (at.z_m > fence.max_z_m) {
+      z = v[2] > -kSinkIntoFence_m_s;
+      if (z) v[2] = -kSinkIntoFence_m_s;
+    } else if (at.z_m + v[2] * look_ahead_s > fence.max_z_m) {
+      z = true;
+      v[2] = 0.0;
+    }
+    return x || y || z;
+  }
+  bool keep_out(const Pose&, double out_x, double out_y) noexcept {
+    const double out_m_s = velocity[0] * out_x + velocity[1] * out_y;
+    if (out_m_s >= 0.0) return false;
+    velocity[0] -= out_m_s * out_x;
+    velocity[1] -= out_m_s * out_y;
+    return true;
   }
   void describe(FieldList& f) const {
     f.add("velocity", velocity, unit::m_s, Frame::World, Fusion::Real, "velocity of the body");
@@ -69,6 +165,25 @@ struct QuadrotorAttitude : Command {
     thrust = thrust_weights;
   }
   void release() noexcept { *this = {}; }
+
+  /// Leans, turn rates and thrusts are clamped; a command that is not finite becomes the safe one.
+  Limited limit_to(double most_lean_rad, double most_turn_rad_s, double most_thrust) noexcept {
+    if (!std::isfinite(roll_rad) || !std::isfinite(pitch_rad) || !std::isfinite(yaw_rad_s) || !std::isfinite(thrust)) {
+      *this = {};
+      return kNotFinite;
+    }
+    const QuadrotorAttitude before = *this;
+    roll_rad = std::clamp(roll_rad, -most_lean_rad, most_lean_rad);
+    pitch_rad = std::clamp(pitch_rad, -most_lean_rad, most_lean_rad);
+    yaw_rad_s = std::clamp(yaw_rad_s, -most_turn_rad_s, most_turn_rad_s);
+    thrust = std::clamp(thrust, 0.0, most_thrust);
+    const bool same = roll_rad == before.roll_rad && pitch_rad == before.pitch_rad && yaw_rad_s == before.yaw_rad_s &&
+                      thrust == before.thrust;
+    return same ? kPassed : kClamped;
+  }
+  Limited limit(const DataSheet& sheet) noexcept {
+    return limit_to(sheet.flight.most_lean_rad, sheet.max_flight_turn_rad_s, sheet.flight.most_thrust);
+  }
   void describe(FieldList& f) const {
     f.add("active", active, unit::none, Frame::None, Fusion::Real, "the rest counts");
     f.add("roll", roll_rad, unit::rad, Frame::Body, Fusion::Real, "lean about x, positive to the right");
@@ -96,6 +211,16 @@ struct FlightTask : Command {
   FlightOrder order = FlightOrder::Fly;
   double speed_m_s = 0.0;  ///< of climbing or sinking; 0: the robot's own
 
+  /// Speeds are clamped; an order with a speed that is not finite, or that is none, becomes the safe one.
+  Limited limit(const DataSheet& sheet) noexcept {
+    if (!std::isfinite(speed_m_s) || order > FlightOrder::Detach) {
+      *this = {};
+      return kNotFinite;
+    }
+    if (speed_m_s >= 0.0 && speed_m_s <= sheet.max_flight_speed_m_s) return kPassed;
+    speed_m_s = std::clamp(speed_m_s, 0.0, sheet.max_flight_speed_m_s);
+    return kClamped;
+  }
   void describe(FieldList& f) const {
     f.add("order", order, unit::none, Frame::None, Fusion::Real, "0 fly, 1 take off, 2 land, 3 attach, 4 detach");
     f.add("speed", speed_m_s, unit::m_s, Frame::None, Fusion::Real, "of climbing or sinking; 0: the robot's own");

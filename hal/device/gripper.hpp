@@ -19,6 +19,16 @@ struct GripperDrive : Command {
   void lock() noexcept { aperture_rad = kMost_rad; }
   void unlock() noexcept { aperture_rad = 0.0; }
   bool locks() const noexcept { return std::fabs(aperture_rad) >= kHolds_rad; }
+  /// Apertures beyond what the claws reach are clamped; one that is not finite becomes the safe one, which lets go.
+  Limited limit(const DataSheet&) noexcept {
+    if (std::fabs(aperture_rad) <= kMost_rad) return kPassed;
+    if (!std::isfinite(aperture_rad)) {
+      *this = {};
+      return kNotFinite;
+    }
+    aperture_rad = std::clamp(aperture_rad, -kMost_rad, kMost_rad);
+    return kClamped;
+  }
   void describe(FieldList& f) const {
     f.add("aperture", aperture_rad, unit::rad, Frame::None, Fusion::Real, "0 lets go, from 45 degrees on holds");
   }

@@ -31,6 +31,7 @@ inline constexpr Rgb kWhite{255, 255, 255};
 struct RingLeds : Command {
   static constexpr std::string_view kName = "leds";
   static constexpr std::string_view kDoc = "Colours of the LED ring.";
+  static constexpr bool kAnyValueIsSafe = true;
   static constexpr std::size_t kCapacity = 16;
 
   std::array<std::uint8_t, 3 * kCapacity> rgb{};  ///< r, g, b of LED 0, then of LED 1, …
@@ -60,6 +61,7 @@ struct UpperRingLeds : RingLeds {
 struct CameraLed : Command {
   static constexpr std::string_view kName = "camera_led";
   static constexpr std::string_view kDoc = "Colour of the light beside the camera.";
+  static constexpr bool kAnyValueIsSafe = true;
 
   std::array<std::uint8_t, 3> rgb{};
 
@@ -71,6 +73,7 @@ struct CameraLed : Command {
 struct BodyLed : Command {
   static constexpr std::string_view kName = "body_led";
   static constexpr std::string_view kDoc = "The light inside the body.";
+  static constexpr bool kAnyValueIsSafe = true;
   bool on = false;
   void describe(FieldList& f) const { f.add("on", on, unit::none, Frame::None, Fusion::Real, "lit"); }
 };
@@ -79,6 +82,7 @@ struct BodyLed : Command {
 struct FrontLed : Command {
   static constexpr std::string_view kName = "front_led";
   static constexpr std::string_view kDoc = "The bright light at the front.";
+  static constexpr bool kAnyValueIsSafe = true;
   bool on = false;
   void describe(FieldList& f) const { f.add("on", on, unit::none, Frame::None, Fusion::Real, "lit"); }
 };

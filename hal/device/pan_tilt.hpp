@@ -13,6 +13,17 @@ struct PanTiltDrive : Command {
   double tilt_rad = 0.0;  ///< 0 straight down, pi/2 level, along the pan angle
   bool laser = false;
 
+  /// Tilts are clamped to what the head reaches; angles that are not finite make it look straight down.
+  Limited limit(const DataSheet& sheet) noexcept {
+    const double most_rad = sheet.camera_head.most_tilt_rad;
+    if (!std::isfinite(pan_rad) || !std::isfinite(tilt_rad)) {
+      *this = {};
+      return kNotFinite;
+    }
+    if (std::fabs(tilt_rad) <= most_rad) return kPassed;
+    tilt_rad = std::clamp(tilt_rad, -most_rad, most_rad);
+    return kClamped;
+  }
   void describe(FieldList& f) const {
     f.add("pan", pan_rad, unit::rad, Frame::Body, Fusion::Real, "counter-clockwise from forward");
     f.add("tilt", tilt_rad, unit::rad, Frame::Body, Fusion::Real, "0 straight down, pi/2 level");

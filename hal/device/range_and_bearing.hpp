@@ -18,6 +18,7 @@ inline constexpr std::size_t kRabPayloadMax =
 struct RangeAndBearingSend : Command {
   static constexpr std::string_view kName = "range_and_bearing";
   static constexpr std::string_view kDoc = "The message broadcast to robots in range.";
+  static constexpr bool kAnyValueIsSafe = true;  // who sends it looks at `size`
 
   bool sending = false;
   std::uint8_t size = 0;

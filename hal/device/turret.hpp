@@ -31,6 +31,9 @@ struct TurretDrive : Command {
     mode = TurretMode::Position;
     angle_rad = rad;
   }
+  Limited limit(const DataSheet& sheet) noexcept {
+    return limit_turn(*this, TurretMode::Position, sheet.turret_turn_rad_s);
+  }
   void describe(FieldList& f) const {
     f.add("mode", mode, unit::none, Frame::None, Fusion::Real, "0 off, 1 passive, 2 speed, 3 position");
     f.add("speed", speed_rad_s, unit::rad_s, Frame::Body, Fusion::Real, "turn rate, counter-clockwise from above");

@@ -1,5 +1,8 @@
 // Differential drive: the command for two wheels, and what their encoders counted and make of it.
 #pragma once
+#include <algorithm>
+#include <cmath>
+
 #include "hal/port.hpp"
 
 namespace tandem::hal {
@@ -15,6 +18,48 @@ struct WheelSpeeds : Command {
   void set(double left, double right) noexcept {
     left_m_s = left;
     right_m_s = right;
+  }
+  /// Speeds beyond the limit are clamped, both by the same factor so that the curve driven stays the same; a command
+  /// that is not finite becomes the safe one.
+  Limited limit_to(double most_m_s) noexcept {
+    const double left = std::fabs(left_m_s);
+    const double right = std::fabs(right_m_s);
+    if (left <= most_m_s && right <= most_m_s) return kPassed;  // false when either is NaN
+    if (!std::isfinite(left) || !std::isfinite(right)) {
+      *this = {};
+      return kNotFinite;
+    }
+    const double fastest = std::max(left, right);
+    const double scale = most_m_s / fastest;
+    left_m_s *= scale;
+    right_m_s *= scale;
+    return {LimitResult::Clamped, fastest, most_m_s};
+  }
+  Limited limit(const DataSheet& sheet) noexcept { return limit_to(sheet.max_wheel_speed_m_s); }
+
+  void slow_down(double most_m_s, const Pose*) noexcept { limit_to(most_m_s); }
+  /// The robot may turn wherever it is, but drive only where it stays inside, or comes back in: else both wheels lose
+  /// what they have in common.
+  bool keep_inside(const Fence& fence, const Pose& at, double look_ahead_s) noexcept {
+    const double step_m = forward_m_s() * look_ahead_s;
+    if (!Fence::leads_out(at.x_m, step_m * at.cos_h, fence.min_x_m, fence.max_x_m) &&
+        !Fence::leads_out(at.y_m, step_m * at.sin_h, fence.min_y_m, fence.max_y_m)) {
+      return false;
+    }
+    stay();
+    return true;
+  }
+  bool keep_out(const Pose& at, double out_x, double out_y) noexcept {
+    if (forward_m_s() * (at.cos_h * out_x + at.sin_h * out_y) >= 0.0) return false;
+    stay();
+    return true;
+  }
+  double forward_m_s() const noexcept { return 0.5 * (left_m_s + right_m_s); }
+  /// What is left turns the robot on the spot.
+  void stay() noexcept {
+    const double forward = forward_m_s();
+    left_m_s -= forward;
+    right_m_s -= forward;
   }
   void describe(FieldList& f) const {
     f.add("left", left_m_s, unit::m_s, Frame::Body, Fusion::Real, "rim speed of the left wheel, forward positive");

@@ -73,6 +73,7 @@ struct HeadSheet {
 
 /// One kind of robot. All spans point at constants.
 struct DataSheet {
+  static constexpr std::string_view kCategory = "robot";
   std::string_view kind;  ///< as the element in experiment files, e.g. "e-puck"
   double body_radius_m = 0.0;
   double body_height_m = 0.0;
@@ -119,6 +120,8 @@ struct DataSheet {
   OmniCameraSheet omni_camera = {};
   CameraSheet camera = {};
   HeadSheet camera_head = {};  ///< that the camera hangs in where it sits usually
+
+  std::string_view catalog_name() const noexcept { return kind; }
 };
 
 }  // namespace tandem::hal

@@ -4,9 +4,8 @@
 
 namespace {
 void register_all(tandem::hal::Registrar& registrar) {
-  registrar.add("hook", "foraging",
-                &tandem::core::hook_type<tandem::hooks::Foraging>(
-                    "foraging", "Food items on the floor, the nest, and the balance of energy."));
+  registrar.add(tandem::core::hook_type<tandem::hooks::Foraging>(
+      "foraging", "Food items on the floor, the nest, and the balance of energy."));
 }
 }  // namespace
 

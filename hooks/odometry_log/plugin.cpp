@@ -4,9 +4,8 @@
 
 namespace {
 void register_all(tandem::hal::Registrar& registrar) {
-  registrar.add("hook", "odometry_log",
-                &tandem::core::hook_type<tandem::hooks::OdometryLog>(
-                    "odometry_log", "Writes where robots think that they are, beside where they are."));
+  registrar.add(tandem::core::hook_type<tandem::hooks::OdometryLog>(
+      "odometry_log", "Writes where robots think that they are, beside where they are."));
 }
 }  // namespace
 

@@ -4,9 +4,8 @@
 
 namespace {
 void register_all(tandem::hal::Registrar& registrar) {
-  registrar.add("hook", "throughput",
-                &tandem::core::hook_type<tandem::hooks::Throughput>(
-                    "throughput", "Counts objects that are brought to the nest, and puts them back to the source."));
+  registrar.add(tandem::core::hook_type<tandem::hooks::Throughput>(
+      "throughput", "Counts objects that are brought to the nest, and puts them back to the source."));
 }
 }  // namespace
 

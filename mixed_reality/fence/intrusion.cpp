@@ -79,22 +79,4 @@ std::string name_of(const core::Space& space, const Intrusion& intrusion) {
   return space.contains(intrusion.object) ? space.objects()[intrusion.object.index].id : "";
 }
 
-bool keep_out(const Intrusion& intrusion, const core::Pose& pose, hal::WheelSpeeds& wheels) noexcept {
-  if (!intrusion.deep()) return false;
-  const double forward_m_s = 0.5 * (wheels.left_m_s + wheels.right_m_s);
-  if (forward_m_s * (pose.cos_h * intrusion.out_x + pose.sin_h * intrusion.out_y) >= 0.0) return false;
-  wheels.left_m_s -= forward_m_s;
-  wheels.right_m_s -= forward_m_s;
-  return true;
-}
-
-bool keep_out(const Intrusion& intrusion, hal::QuadrotorSpeed& speed) noexcept {
-  if (!intrusion.deep()) return false;
-  const double out_m_s = speed.velocity[0] * intrusion.out_x + speed.velocity[1] * intrusion.out_y;
-  if (out_m_s >= 0.0) return false;
-  speed.velocity[0] -= out_m_s * intrusion.out_x;
-  speed.velocity[1] -= out_m_s * intrusion.out_y;
-  return true;
-}
-
 }  // namespace tandem::mixed_reality

@@ -3,8 +3,6 @@
 #include <string>
 
 #include "core/space/space.hpp"
-#include "hal/device/flight.hpp"
-#include "hal/device/wheels.hpp"
 
 namespace tandem::mixed_reality {
 
@@ -25,9 +23,5 @@ struct Intrusion {
 Intrusion intrusion_of(const core::Space& space, core::RobotId robot, const core::Pose& pose) noexcept;
 /// Its id, for people.
 std::string name_of(const core::Space& space, const Intrusion& intrusion);
-
-/// Takes from a command what leads deeper; turning and coming out stay possible. @returns whether anything was taken.
-bool keep_out(const Intrusion& intrusion, const core::Pose& pose, hal::WheelSpeeds& wheels) noexcept;
-bool keep_out(const Intrusion& intrusion, hal::QuadrotorSpeed& speed) noexcept;
 
 }  // namespace tandem::mixed_reality

@@ -8,7 +8,6 @@
 #include "hal/device/distance_scanner.hpp"
 #include "hal/device/flight.hpp"
 #include "hal/device/range_and_bearing.hpp"
-#include "hal/device/wheels.hpp"
 
 namespace tandem::mixed_reality {
 namespace {
@@ -90,31 +89,20 @@ void SupervisedRobot::commit(hal::TimeNs now) noexcept {
     landing_ = verdict.land;
     landing_ ? bridge_.land(now) : bridge_.resume();
   }
+  const hal::Pose at =
+      position_ == nullptr ? hal::Pose{} : hal::Pose{position_->p_WB[0], position_->p_WB[1], position_->p_WB[2]};
   for (std::size_t i = 0; i < outputs_.size(); ++i) {
     std::memcpy(kept(i), outputs_[i].port, outputs_[i].type->size);
     if (is<hal::FlightTask>(*outputs_[i].type)) {
       auto& task = as<hal::FlightTask>(outputs_[i].port);
       task = orders_.pass(task, verdict.may_drive, says_on_ground(flight_));
     } else {
-      verdict.may_drive ? hold_back(outputs_[i], now) : outputs_[i].type->reset(outputs_[i].port);
+      supervisor_.allow(*outputs_[i].type, outputs_[i].port, position_ == nullptr ? nullptr : &at, now);
     }
   }
   bridge_.commit(now);
   for (std::size_t i = 0; i < outputs_.size(); ++i) {
     std::memcpy(outputs_[i].port, kept(i), outputs_[i].type->size);
-  }
-}
-
-void SupervisedRobot::hold_back(const Output& output, hal::TimeNs now) noexcept {
-  if (is<hal::WheelSpeeds>(*output.type)) {
-    auto& wheels = as<hal::WheelSpeeds>(output.port);
-    wheels = supervisor_.allowed(wheels, now);
-  } else if (is<hal::QuadrotorSpeed>(*output.type)) {
-    auto& speed = as<hal::QuadrotorSpeed>(output.port);
-    speed = supervisor_.allowed(speed, now);
-  } else if (is<hal::QuadrotorPosition>(*output.type) && position_ != nullptr) {
-    auto& target = as<hal::QuadrotorPosition>(output.port);
-    target = supervisor_.allowed(target, position_->p_WB, now);
   }
 }
 

@@ -61,7 +61,6 @@ class SupervisedRobot {
 
   Conditions conditions(hal::TimeNs now) noexcept;
   const Input* missing() const noexcept;
-  void hold_back(const Output& output, hal::TimeNs now) noexcept;
   std::byte* kept(std::size_t output) noexcept { return kept_.get() + output * largest_; }
   void note();
 

@@ -115,20 +115,11 @@ void Supervisor::rearm() noexcept {
   well_ = false;  // it settles from now on
 }
 
-hal::WheelSpeeds Supervisor::allowed(const hal::WheelSpeeds& wanted, hal::TimeNs now_ns) const noexcept {
-  if (!verdict_.may_drive) return {};
-  return Ramp::after(hal::to_seconds(now_ns - armed_at_ns_), params_.ramp_m_s2).held_back(wanted);
-}
-
-hal::QuadrotorSpeed Supervisor::allowed(const hal::QuadrotorSpeed& wanted, hal::TimeNs now_ns) const noexcept {
-  if (!verdict_.may_drive) return {};
-  return Ramp::after(hal::to_seconds(now_ns - armed_at_ns_), params_.ramp_m_s2).held_back(wanted);
-}
-
-hal::QuadrotorPosition Supervisor::allowed(const hal::QuadrotorPosition& wanted, const std::array<double, 3>& p_WB,
-                                           hal::TimeNs now_ns) const noexcept {
-  if (!verdict_.may_drive) return {};
-  return Ramp::after(hal::to_seconds(now_ns - armed_at_ns_), params_.ramp_m_s2).held_back(wanted, p_WB);
+void Supervisor::allow(const hal::PortType& type, void* command, const hal::Pose* at,
+                       hal::TimeNs now_ns) const noexcept {
+  if (!verdict_.may_drive) return type.reset(command);
+  if (type.slow_down == nullptr) return;
+  type.slow_down(command, std::max(0.0, hal::to_seconds(now_ns - armed_at_ns_)) * params_.ramp_m_s2, at);
 }
 
 }  // namespace tandem::mixed_reality

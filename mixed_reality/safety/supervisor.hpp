@@ -1,6 +1,6 @@
 // What a real robot may do, and when: one table for all kinds of robots and all commands, and the way back from a stop.
 //
-//   every tick: conditions -> judge -> verdict;  command -> allowed -> what goes to the robot
+//   every tick: conditions -> judge -> verdict;  command -> allow -> what goes to the robot
 #pragma once
 #include <array>
 #include <cstdint>
@@ -10,7 +10,6 @@
 #include "bridges/robot_bridge.hpp"
 #include "hal/port.hpp"
 #include "hal/time.hpp"
-#include "mixed_reality/safety/ramp.hpp"
 #include "mixed_reality/safety/rearm.hpp"
 
 namespace tandem::mixed_reality {
@@ -100,12 +99,14 @@ class Supervisor {
   /// Whether it stands only because nobody re-armed it.
   bool awaits_rearm() const noexcept { return well_ && latched_ != nullptr; }
 
-  /// What of `wanted` goes to the robot in this tick.
-  hal::WheelSpeeds allowed(const hal::WheelSpeeds& wanted, hal::TimeNs now_ns) const noexcept;
-  /// The same for a robot that flies; `p_WB` is where it is.
-  hal::QuadrotorSpeed allowed(const hal::QuadrotorSpeed& wanted, hal::TimeNs now_ns) const noexcept;
-  hal::QuadrotorPosition allowed(const hal::QuadrotorPosition& wanted, const std::array<double, 3>& p_WB,
-                                 hal::TimeNs now_ns) const noexcept;
+  /// Leaves of a command what goes to the robot in this tick: the safe one while it may not drive; then, of those that
+  /// move it, what is no faster than a limit that grows evenly from 0. `at`: where the robot is; null: nobody knows.
+  void allow(const hal::PortType& type, void* command, const hal::Pose* at, hal::TimeNs now_ns) const noexcept;
+  template <hal::ActuatorPort Port>
+  Port allowed(Port wanted, hal::TimeNs now_ns, const hal::Pose* at = nullptr) const noexcept {
+    allow(hal::port_type<Port>(), &wanted, at, now_ns);
+    return wanted;
+  }
 
   const Verdict& verdict() const noexcept { return verdict_; }
   std::uint64_t stops() const noexcept { return stops_; }    ///< from driving to not

@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t kIncidentsKept = 50;
 
-Fence arena_of(const core::Space& space) {
+hal::Fence arena_of(const core::Space& space) {
   const double half_x_m = 0.5 * space.arena_size_x_m();
   const double half_y_m = 0.5 * space.arena_size_y_m();
   return {space.arena_center_x_m() - half_x_m, space.arena_center_y_m() - half_y_m, space.arena_center_x_m() + half_x_m,
@@ -61,7 +61,7 @@ Twin::Twin(core::Space& space, core::RobotId robot, std::unique_ptr<bridges::Rob
     outputs_.push_back({type, space.port(robot, *type), real_->port(*type)});
     largest = std::max(largest, type->size);
   }
-  safe_ = std::make_unique<std::max_align_t[]>((largest + sizeof(std::max_align_t) - 1) / sizeof(std::max_align_t));
+  told_ = std::make_unique<std::max_align_t[]>((largest + sizeof(std::max_align_t) - 1) / sizeof(std::max_align_t));
   incidents_.reserve(kIncidentsKept);
   space_.set_external(robot_, true);
   const hal::DataSheet& sheet = space.data_sheet(robot);
@@ -170,31 +170,19 @@ void Twin::send_commands(bool alive, const Moment& now) {
   sent_ = {};
   bool wheels_sent = false;
   for (const Output& output : outputs_) {
-    const void* command = output.port;
+    void* const told = told_.get();
+    std::memcpy(told, output.port, output.type->size);
     if (is<hal::FlightTask>(*output.type)) {
-      task_ = orders_.pass(*static_cast<const hal::FlightTask*>(command), alive, says_on_ground(flight_));
-      command = &task_;
+      auto& task = *static_cast<hal::FlightTask*>(told);
+      task = orders_.pass(task, alive, says_on_ground(flight_));
     } else if (!alive) {
-      output.type->reset(safe_.get());
-      command = safe_.get();
-    } else if (is_wheels(*output.type)) {
-      sent_ = supervisor_.allowed(*static_cast<const hal::WheelSpeeds*>(command), now.run_ns);
-      if (keep_inside(inner_fence_, pose_, params_.fence_ahead_s, sent_)) ++counts_.fenced_ticks;
-      keep_out(intrusion_, pose_, sent_);
-      command = &sent_;
-    } else if (is<hal::QuadrotorSpeed>(*output.type)) {
-      speed_ = supervisor_.allowed(*static_cast<const hal::QuadrotorSpeed*>(command), now.run_ns);
-      keep_out(intrusion_, speed_);
-      if (keep_inside(inner_fence_, pose_, params_.fence_ahead_s, speed_)) ++counts_.fenced_ticks;
-      command = &speed_;
-    } else if (is<hal::QuadrotorPosition>(*output.type)) {
-      target_ = supervisor_.allowed(*static_cast<const hal::QuadrotorPosition*>(command),
-                                    {pose_.x_m, pose_.y_m, pose_.z_m}, now.run_ns);
-      if (keep_inside(inner_fence_, pose_, target_)) ++counts_.fenced_ticks;
-      command = &target_;
+      output.type->reset(told);
+    } else {
+      confine(*output.type, told, now);
     }
+    if (is_wheels(*output.type)) sent_ = *static_cast<const hal::WheelSpeeds*>(told);
     if (output.real == nullptr) continue;
-    std::memcpy(output.real, command, output.type->size);
+    std::memcpy(output.real, told, output.type->size);
     wheels_sent = wheels_sent || is_wheels(*output.type);
   }
   // A controller without wheels leaves them where they are safe.
@@ -208,6 +196,14 @@ void Twin::send_commands(bool alive, const Moment& now) {
     landing_ = false;
     hal::port_type<hal::FlightTask>().reset(real_task_);  // its controller may not have taken the device
   }
+}
+
+/// Leaves of a command what the safety table, the arena's edge and virtual things leave.
+void Twin::confine(const hal::PortType& type, void* command, const Moment& now) noexcept {
+  supervisor_.allow(type, command, &pose_, now.run_ns);
+  if (type.keep_inside == nullptr) return;
+  if (intrusion_.deep()) type.keep_out(command, pose_, intrusion_.out_x, intrusion_.out_y);
+  if (type.keep_inside(command, inner_fence_, pose_, params_.fence_ahead_s)) ++counts_.fenced_ticks;
 }
 
 void Twin::let_go() {

@@ -9,8 +9,9 @@
 #include "bridges/robot_bridge.hpp"
 #include "core/space/space.hpp"
 #include "hal/device/body_sensors.hpp"
+#include "hal/device/flight.hpp"
+#include "hal/device/wheels.hpp"
 #include "hal/log.hpp"
-#include "mixed_reality/fence/fence.hpp"
 #include "mixed_reality/fence/intrusion.hpp"
 #include "mixed_reality/fusion/port_fusion.hpp"
 #include "mixed_reality/safety/battery_watch.hpp"
@@ -96,6 +97,7 @@ class Twin {
   void hold(bool held);
   void note(const Moment& now);
   void send_commands(bool alive, const Moment& now);
+  void confine(const hal::PortType& type, void* command, const Moment& now) noexcept;
 
   core::Space& space_;
   core::RobotId robot_;
@@ -104,22 +106,21 @@ class Twin {
   std::unique_ptr<PoseSource> poses_;
   TwinParams params_;
   const hal::Log& log_;
-  Fence fence_;        // for poses of the twin
-  Fence inner_fence_;  // for where its middle may go
+  hal::Fence fence_;        // for poses of the twin
+  hal::Fence inner_fence_;  // for where its middle may go
   PortFusion fusion_;
   Mechanisms mechanisms_;
   hal::Positioning* positioning_;  // the controller's; null: it took none
   std::vector<Output> outputs_;
   void* real_wheels_;                         // null, as the next one: it has none
   void* real_task_;                           // of flight
-  std::unique_ptr<std::max_align_t[]> safe_;  // the largest command, to be reset
+  std::unique_ptr<std::max_align_t[]> told_;  // a command as it goes to the robot; room for the largest
   Supervisor supervisor_;
   std::unique_ptr<SlipWatch> slip_;        // null: there is nothing to compare the wheels with
   const hal::Battery* battery_ = nullptr;  // null: it tells nothing
   BatteryWatch battery_watch_;
   const hal::FlightState* flight_ = nullptr;  // null: it does not fly
   FlightOrderGate orders_;
-  hal::FlightTask task_;
   std::uint64_t jumps_ = 0;  // of the pose, as far as they were judged
   core::Pose pose_;
   SmoothPose smooth_;
@@ -128,8 +129,6 @@ class Twin {
   bool landing_ = false;  // it was told to, by us
   hal::WheelSpeeds sent_;
   hal::WheelSpeeds driven_;  // what it was last told while it could hear
-  hal::QuadrotorSpeed speed_;
-  hal::QuadrotorPosition target_;
   bool running_ = false;
   bool hub_was_frozen_ = false;
   bool guarded_ = true;

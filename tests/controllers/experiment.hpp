@@ -11,25 +11,11 @@
 #include <vector>
 
 #include "core/config/reader.hpp"
-#include "core/device/types.hpp"
-#include "core/sim/engine_factory.hpp"
-#include "core/sim/robot_factory.hpp"
 #include "core/sim/world.hpp"
 #include "tests/checkout.hpp"
+#include "tests/core/catalog.hpp"
 
 namespace tandem::test {
-
-/// Names that experiment files may use.
-inline core::KnownNames known_names() {
-  core::KnownNames names;
-  names.robots = core::robot_kinds();
-  names.engines = core::known_engines();
-  for (const core::DeviceType& type : core::device_types()) {
-    auto& list = type.role == hal::Role::Sensor ? names.sensors : names.actuators;
-    if (std::find(list.begin(), list.end(), type.device) == list.end()) list.emplace_back(type.device);
-  }
-  return names;
-}
 
 inline core::WorldOptions seeded(std::uint64_t seed, std::int64_t threads = 0) {
   core::WorldOptions options;
@@ -47,10 +33,10 @@ struct Experiment {
   explicit Experiment(const std::string& config, const std::vector<std::string>& overrides = {},
                       const core::WorldOptions& options = {}, const std::string& engine = "")
       : loader(std::make_unique<hal::PluginLoader>(
-            std::vector<std::filesystem::path>{std::string(test::kBuildDir) + "/lib"})) {
+            std::vector<std::filesystem::path>{std::string(test::kBuildDir) + "/lib"}, catalog())) {
     core::Problems problems;
     auto scenario =
-        core::read_experiment(std::string(test::kSourceDir) + "/configs/" + config, overrides, known_names(), problems);
+        core::read_experiment(std::string(test::kSourceDir) + "/configs/" + config, overrides, catalog(), problems);
     if (scenario && !engine.empty()) {
       scenario->engines.at(0).kind = engine;
       scenario->engines.at(0).options.name = engine;

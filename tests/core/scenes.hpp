@@ -7,6 +7,7 @@
 
 #include "core/sim/world.hpp"
 #include "tests/checkout.hpp"
+#include "tests/core/catalog.hpp"
 
 namespace tandem::core {
 
@@ -205,8 +206,8 @@ struct MadeWorld {
 
 inline MadeWorld make(const Scene& scene, const WorldOptions& options = {}) {
   MadeWorld made;
-  made.loader =
-      std::make_unique<hal::PluginLoader>(std::vector<std::filesystem::path>{std::string(test::kBuildDir) + "/lib"});
+  made.loader = std::make_unique<hal::PluginLoader>(
+      std::vector<std::filesystem::path>{std::string(test::kBuildDir) + "/lib"}, test::catalog());
   made.world = World::make(scene.scenario, *made.loader, options, made.problems);
   return made;
 }

@@ -13,6 +13,7 @@
 #include <string_view>
 
 #include "core/config/reader.hpp"
+#include "tests/core/config/names.hpp"
 
 namespace {
 
@@ -62,14 +63,7 @@ constexpr std::array<std::string_view, 6> kPaths = {
     "arena.box[b].size=",           "controllers.c[c].params.a=",
     "framework.system.threads=",    "arena."};
 
-const KnownNames kKnown = {
-    {"e-puck", "eye-bot"},
-    {{"kinematics2d", "", {}},
-     {"dynamics2d", "", {.forces = true}},
-     {"dynamics3d", "", {.plane = false, .forces = true}},
-     {"particle3d", "pointmass3d", {.plane = false, .air = true}}},
-    {"proximity", "range_and_bearing", "altimeter", "flight_state", "pan_tilt_encoder"},
-    {"leds", "differential_steering", "flight_task", "pan_tilt", "quadrotor_attitude", "upper_leds", "camera_led"}};
+const tandem::hal::Catalog kKnown = known_names();
 
 void expect(bool condition) {
   if (!condition) std::abort();

@@ -18,7 +18,6 @@
 
 #include "core/config/reader.hpp"
 #include "core/device/device.hpp"
-#include "core/sim/engine_factory.hpp"
 #include "core/sim/robot_factory.hpp"
 #include "hal/device/distance_scanner.hpp"
 #include "hal/device/flight.hpp"
@@ -26,6 +25,7 @@
 #include "hal/device/turret.hpp"
 #include "hal/device/wheels.hpp"
 #include "tests/checkout.hpp"
+#include "tests/core/catalog.hpp"
 
 namespace {
 
@@ -82,22 +82,22 @@ struct Kind {
 constexpr std::array<Kind, 3> kKinds = {{{"e-puck", "everything"}, {"foot-bot", "puppet"}, {"eye-bot", "eye_puppet"}}};
 
 const hal::DataSheet& sheet_of(const Kind& kind) {
-  return *data_sheet_of(kind.name);
+  return *data_sheet_of(test::catalog(), kind.name);
 }
 
 /// <sensors> or <actuators> with all devices of a kind of robot, some of them with an implementation and an option.
 std::string devices(Bytes& r, const Kind& kind, hal::Role role) {
   std::string text;
   std::vector<std::string_view> seen;
-  for (const DeviceType& type : device_types()) {
-    if (type.role != role || !type.fits(sheet_of(kind))) continue;
-    if (std::find(seen.begin(), seen.end(), type.device) != seen.end()) continue;
-    seen.push_back(type.device);
-    text += "<" + std::string(type.device);
+  for (const DeviceType* type : test::catalog().all<DeviceType>()) {
+    if (type->role != role || !type->fits(sheet_of(kind))) continue;
+    if (std::find(seen.begin(), seen.end(), type->device) != seen.end()) continue;
+    seen.push_back(type->device);
+    text += "<" + std::string(type->device);
     if (r.one_in(4)) {
       std::vector<const DeviceType*> all;
-      for (const DeviceType& t : device_types()) {
-        if (t.role == role && t.device == type.device) all.push_back(&t);
+      for (const DeviceType* t : test::catalog().all<DeviceType>()) {
+        if (t->role == role && t->device == type->device) all.push_back(t);
       }
       const DeviceType& chosen = *all[r.below(all.size())];
       text += " implementation=\"" + std::string(chosen.implementation) + "\"";
@@ -140,7 +140,7 @@ std::string engine(Bytes& r, const std::string& id, const std::string& inside) {
   if (r.one_in(3)) {
     Element options;
     ElementWriter writer(options);
-    describe_engine(name, writer);
+    test::engine_type(name).describe(writer);
     if (!options.attributes.empty()) {
       const auto& option = options.attributes[r.below(options.attributes.size())];
       const bool there = text.find(" " + option.name + "=") != std::string::npos;
@@ -252,22 +252,8 @@ void spoil(std::string& text, Bytes& r) {
   text.replace(quote + 2, end - quote - 2, r.one_in(2) ? r.pick(kNasty) : r.pick(kLengths));
 }
 
-const KnownNames& known_names() {
-  static const KnownNames names = [] {
-    KnownNames known;
-    known.robots = robot_kinds();
-    known.engines = known_engines();
-    for (const DeviceType& type : device_types()) {
-      auto& list = type.role == hal::Role::Sensor ? known.sensors : known.actuators;
-      if (std::find(list.begin(), list.end(), type.device) == list.end()) list.emplace_back(type.device);
-    }
-    return known;
-  }();
-  return names;
-}
-
 hal::PluginLoader& loader() {
-  static hal::PluginLoader one({std::string(test::kBuildDir) + "/lib"});
+  static hal::PluginLoader one({std::string(test::kBuildDir) + "/lib"}, test::catalog());
   return one;
 }
 
@@ -336,7 +322,7 @@ std::unique_ptr<World> made(const Scenario& scenario, std::int64_t threads) {
 
 void try_out(const std::string& text, Bytes& r) {
   Problems problems;
-  const auto scenario = read_experiment_text(text, "fuzz.xml", {}, known_names(), problems);
+  const auto scenario = read_experiment_text(text, "fuzz.xml", {}, test::catalog(), problems);
   expect(scenario.has_value() != has_errors(problems), "an error is said exactly when there is no scenario");
   if (std::getenv("TANDEM_FUZZ_SHOW") != nullptr) {
     std::fprintf(stderr, "%s\n", text.c_str());
@@ -357,7 +343,7 @@ void try_out(const std::string& text, Bytes& r) {
   if (also == 1) {
     Problems again;
     const auto saved =
-        read_experiment_text(effective_settings(world->scenario()), "saved.xml", {}, known_names(), again);
+        read_experiment_text(effective_settings(world->scenario()), "saved.xml", {}, test::catalog(), again);
     expect(saved.has_value(), "saved settings read back");
     const auto other = made(*saved, 0);
     expect(other != nullptr, "saved settings make a world");

@@ -20,7 +20,7 @@ class Loader : public testing::Test {
   std::string error_of(const std::string& library) {
     const Status opened = loader_.open(library);
     EXPECT_FALSE(opened.ok());
-    EXPECT_TRUE(loader_.entries().empty()) << "a library that is refused registers nothing";
+    EXPECT_TRUE(loader_.catalog().entries().empty()) << "a library that is refused registers nothing";
     return opened.ok() ? "" : opened.error().message;
   }
   PluginLoader loader_{{kFolder}};
@@ -54,7 +54,7 @@ TEST_F(Loader, GivesTheControllerAskedFor) {
   ASSERT_TRUE(spin.ok()) << spin.error().message;
   EXPECT_EQ(spin.value()->name, "spin");
   EXPECT_EQ(spin.value()->summary, "Turns on the spot.");
-  EXPECT_EQ(loader_.entries().size(), 2U);
+  EXPECT_EQ(loader_.catalog().entries().size(), 2U);
 }
 
 TEST_F(Loader, ALibraryThatThrowsOrRegistersNothingUsefulIsRefused) {
@@ -70,13 +70,13 @@ TEST_F(Loader, OpensALibraryOnce) {
   ASSERT_TRUE(loader_.open("libtest_hal_pair.so").ok());
   EXPECT_EQ(loader_.controller("test_hal_pair", "spin").value(),
             loader_.controller("libtest_hal_pair", "spin").value());
-  EXPECT_EQ(loader_.entries().size(), 2U);
+  EXPECT_EQ(loader_.catalog().entries().size(), 2U);
 }
 
 TEST_F(Loader, KeepsLibrariesApart) {
   ASSERT_TRUE(loader_.open("test_hal_pair").ok());
   ASSERT_TRUE(loader_.open("test_hal_single").ok());
-  EXPECT_EQ(loader_.entries().size(), 3U);
+  EXPECT_EQ(loader_.catalog().entries().size(), 3U);
   EXPECT_FALSE(loader_.controller("test_hal_single", "spin").ok());
 }
 
@@ -91,8 +91,14 @@ TEST_F(Loader, TakesTheOnlyOneWhenNoNameIsGiven) {
   EXPECT_FALSE(loader_.controller("test_hal_pair", "").ok()) << "there are two";
 }
 
+/// Another kind of entries.
+struct Hook {
+  static constexpr std::string_view kCategory = "hook";
+  std::string_view name;
+};
+
 TEST_F(Loader, TellsControllersFromHooks) {
-  const auto hook = loader_.get("test_hal_single", "hook", "idle");
+  const auto hook = loader_.get<Hook>("test_hal_single", "idle");
   ASSERT_FALSE(hook.ok());
   EXPECT_THAT(hook.error().message, HasSubstr("has no hook 'idle'; it has: none"));
 }

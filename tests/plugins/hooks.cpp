@@ -197,10 +197,10 @@ class Teacher final : public core::Hook {
 };
 
 void register_all(hal::Registrar& registrar) {
-  registrar.add("hook", "teacher", &core::hook_type<Teacher>("teacher", "Knows controllers by their class."));
-  registrar.add("hook", "painter", &core::hook_type<Painter>("painter", "Paints a disc."));
-  registrar.add("hook", "shepherd", &core::hook_type<Shepherd>("shepherd", "Robots and boxes come and go."));
-  registrar.add("hook", "diary", &core::hook_type<Diary>("diary", "Writes its calls down."));
+  registrar.add(core::hook_type<Teacher>("teacher", "Knows controllers by their class."));
+  registrar.add(core::hook_type<Painter>("painter", "Paints a disc."));
+  registrar.add(core::hook_type<Shepherd>("shepherd", "Robots and boxes come and go."));
+  registrar.add(core::hook_type<Diary>("diary", "Writes its calls down."));
 }
 
 }  // namespace

@@ -100,7 +100,7 @@ class Trouble final : public core::Hook {
 
 void register_all(hal::Registrar& registrar) {
   registrar.add_controller<Troublemaker>("troublemaker", "Ends the program, or does not return.");
-  registrar.add("hook", "trouble", &core::hook_type<Trouble>("trouble", "Ends the program, or does not return."));
+  registrar.add(core::hook_type<Trouble>("trouble", "Ends the program, or does not return."));
 }
 
 }  // namespace

@@ -59,10 +59,10 @@ TEST_P(EveryExperiment, GivesTheSameBitsFromItsSavedSettings) {
     hash = hash_after(*first.world, ticks);
   }
   core::Problems problems;
-  const auto scenario = core::read_experiment_text(saved, "saved.xml", {}, known_names(), problems);
+  const auto scenario = core::read_experiment_text(saved, "saved.xml", {}, catalog(), problems);
   for (const core::Problem& p : problems) EXPECT_TRUE(p.warning) << core::to_text(p);
   ASSERT_TRUE(scenario);
-  hal::PluginLoader loader({std::string(kBuildDir) + "/lib"});
+  hal::PluginLoader loader({std::string(kBuildDir) + "/lib"}, test::catalog());
   const auto second = core::World::make(*scenario, loader, {}, problems);
   ASSERT_TRUE(second) << core::to_text(problems.back());
   EXPECT_EQ(core::effective_settings(second->scenario()), saved);
@@ -103,8 +103,7 @@ TEST(Experiments, UseEveryShippedControllerAndHook) {
   std::set<std::string> used;
   for (const std::string& name : experiments()) {
     core::Problems problems;
-    const auto scenario =
-        core::read_experiment(std::string(kSourceDir) + "/configs/" + name, {}, known_names(), problems);
+    const auto scenario = core::read_experiment(std::string(kSourceDir) + "/configs/" + name, {}, catalog(), problems);
     ASSERT_TRUE(scenario) << name;
     for (const auto& controller : scenario->controllers) used.insert(fs::path(controller.library).stem().string());
     for (const auto& hook : scenario->hooks) used.insert(fs::path(hook.library).stem().string());

@@ -8,4 +8,8 @@ namespace tandem::core {
 /// cylinders that are movable have mass, and rub on the ground.
 const EngineType& dynamics2d_type();
 
+inline void register_dynamics2d(hal::Registrar& registrar) {
+  register_engine(registrar, dynamics2d_type());
+}
+
 }  // namespace tandem::core

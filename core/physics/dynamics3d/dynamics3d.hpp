@@ -10,4 +10,8 @@ namespace tandem::core {
 /// mass, fall, and rub on the floor and on one another.
 const EngineType& dynamics3d_type();
 
+inline void register_dynamics3d(hal::Registrar& registrar) {
+  register_engine(registrar, dynamics3d_type());
+}
+
 }  // namespace tandem::core

@@ -5,7 +5,7 @@
 #include <memory>
 #include <vector>
 
-#include "core/physics/engine.hpp"
+#include "core/physics/solver.hpp"
 
 namespace tandem::core {
 
@@ -46,5 +46,9 @@ class Kinematics2d final : public Engine {
 
 /// `<kinematics2d>`.
 const EngineType& kinematics2d_type();
+
+inline void register_kinematics2d(hal::Registrar& registrar) {
+  register_engine(registrar, kinematics2d_type());
+}
 
 }  // namespace tandem::core

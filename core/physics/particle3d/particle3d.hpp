@@ -23,4 +23,8 @@ namespace tandem::core {
 /// matter.
 const EngineType& particle3d_type();
 
+inline void register_particle3d(hal::Registrar& registrar) {
+  register_engine(registrar, particle3d_type());
+}
+
 }  // namespace tandem::core

@@ -102,17 +102,17 @@ std::vector<std::string> libraries() {
 }
 
 TEST(Decisions, OfEveryControllerAreThoseOfEveryOtherMachine) {
-  hal::PluginLoader loader({});
+  hal::PluginLoader loader({}, test::catalog());
   for (const std::string& library : libraries()) {
     const hal::Status opened = loader.open(library);
     ASSERT_TRUE(opened.ok()) << opened.error().message;
   }
   std::map<std::string, std::string> found;
-  for (const auto& entry : loader.entries()) {
-    if (entry.category != "controller") continue;
-    const Decisions decisions = decisions_of(*static_cast<const hal::ControllerType*>(entry.type));
-    found[entry.name] = decisions.text();
-    EXPECT_EQ(decisions.changes > 0, !kDecideNothing.contains(entry.name)) << entry.name;
+  for (const hal::ControllerType* type : loader.catalog().all<hal::ControllerType>()) {
+    const Decisions decisions = decisions_of(*type);
+    const std::string name(type->name);
+    found[name] = decisions.text();
+    EXPECT_EQ(decisions.changes > 0, !kDecideNothing.contains(name)) << name;
   }
   if (std::getenv("TANDEM_REWRITE_DECISIONS") != nullptr) {
     std::ofstream out(kGolden);
@@ -124,14 +124,12 @@ TEST(Decisions, OfEveryControllerAreThoseOfEveryOtherMachine) {
 
 /// World::snapshot copies controllers: one that cannot be copied would end every run that keeps a moment.
 TEST(Decisions, CanAllBeGoneBackTo) {
-  hal::PluginLoader loader({});
+  hal::PluginLoader loader({}, test::catalog());
   for (const std::string& library : libraries()) ASSERT_TRUE(loader.open(library).ok()) << library;
   int controllers = 0;
-  for (const auto& entry : loader.entries()) {
-    if (entry.category != "controller") continue;
+  for (const auto* type : loader.catalog().all<hal::ControllerType>()) {
     ++controllers;
-    EXPECT_NE(static_cast<const hal::ControllerType*>(entry.type)->copy, nullptr)
-        << entry.name << " has no copy constructor";
+    EXPECT_NE(type->copy, nullptr) << type->name << " has no copy constructor";
   }
   EXPECT_GT(controllers, 10);
 }

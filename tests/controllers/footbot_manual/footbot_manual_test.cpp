@@ -207,10 +207,10 @@ TEST(Manual, AnswersWhatItCannotDoAndDrivesOnNotForThat) {
 TEST(Manual, SaysWhenAPortIsTaken) {
   const test::Operator other;
   core::Problems problems;
-  hal::PluginLoader loader({std::string(test::kBuildDir) + "/lib"});
+  hal::PluginLoader loader({std::string(test::kBuildDir) + "/lib"}, test::catalog());
   const auto scenario = core::read_experiment(
       std::string(test::kSourceDir) + "/configs/" + kConfig,
-      {"controllers.footbot_manual[hand].params.port=" + std::to_string(other.port())}, test::known_names(), problems);
+      {"controllers.footbot_manual[hand].params.port=" + std::to_string(other.port())}, test::catalog(), problems);
   ASSERT_TRUE(scenario);
   EXPECT_EQ(core::World::make(*scenario, loader, {}, problems), nullptr);
   std::string all;

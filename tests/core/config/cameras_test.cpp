@@ -27,11 +27,7 @@ Parts argos() {
 }
 
 TEST(Cameras, AreReadFromFilesOfArgos) {
-  const Outcome out = read(argos().text(), {},
-                           KnownNames{{"e-puck", "foot-bot", "eye-bot"},
-                                      {{"kinematics2d", "", {}}},
-                                      {"omnidirectional_camera", "perspective_camera"},
-                                      {"leds"}});
+  const Outcome out = read(argos().text(), {}, catalog_with({"kinematics2d"}));
   const Scenario& s = out.good();
   EXPECT_EQ(out.text(), "");
   ASSERT_EQ(s.controllers[0].sensors.size(), 2U);
@@ -60,10 +56,7 @@ TEST(Cameras, AreReadFromFilesOfArgos) {
 }
 
 TEST(Cameras, EffectiveSettingsReadBackAsTheSame) {
-  const KnownNames known = {{"e-puck", "foot-bot", "eye-bot"},
-                            {{"kinematics2d", "", {}}},
-                            {"omnidirectional_camera", "perspective_camera"},
-                            {"leds"}};
+  const hal::Catalog known = catalog_with({"kinematics2d"});
   Parts parts = argos();
   parts.things += R"(<foot-bot id="plain"><body position="2,0,0"/><controller config="w"/></foot-bot>)";
   const Scenario a = read(parts.text(), {}, known).good();
@@ -118,12 +111,7 @@ TEST(Leds, ErrorsNameTheirLine) {
 TEST(Leds, CamerasOfAnUnknownMediumAreErrors) {
   Parts parts = argos();
   parts.rest = R"(<media><led id="others"/></media>)";
-  const std::string text = read(parts.text(), {},
-                                KnownNames{{"e-puck", "foot-bot", "eye-bot"},
-                                           {{"kinematics2d", "", {}}},
-                                           {"omnidirectional_camera", "perspective_camera"},
-                                           {"leds"}})
-                               .text();
+  const std::string text = read(parts.text(), {}, catalog_with({"kinematics2d"})).text();
   EXPECT_THAT(text, HasSubstr("file.xml:3: error"));
   EXPECT_THAT(text, HasSubstr("'leds'; it has: others"));
 }

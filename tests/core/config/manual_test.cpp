@@ -47,14 +47,11 @@ TEST(Manual, ShowsAttributesWithDefaultsRangesAndWhatMustBeGiven) {
 }
 
 TEST(Manual, NamesKindsOfRobotsAndEngines) {
-  KnownNames known = known_names();
-  known.robots = {"e-puck", "foot-bot"};
-  known.engines = {{"kinematics2d", "", {}}, {"dynamics2d", "", {}}};
-  const auto manuals = element_manuals(known);
+  const auto manuals = element_manuals(catalog_with({"kinematics2d", "dynamics2d"}));
   for (const char* name : {"e-puck", "foot-bot", "kinematics2d", "dynamics2d", "range_and_bearing"})
     EXPECT_NE(find(manuals, name), nullptr) << name;
   EXPECT_THAT(find(manuals, "arena")->children, testing::Contains("foot-bot"));
-  EXPECT_EQ(find(manuals, "battery")->parent, "e-puck or foot-bot");
+  EXPECT_EQ(find(manuals, "battery")->parent, "e-puck or foot-bot or eye-bot");
   EXPECT_EQ(find(manuals, "dynamics2d")->parent, "physics_engines");
 }
 

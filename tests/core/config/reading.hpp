@@ -6,23 +6,9 @@
 #include <vector>
 
 #include "core/config/reader.hpp"
+#include "tests/core/config/names.hpp"
 
 namespace tandem::core {
-
-inline const KnownNames& known_names() {
-  static const KnownNames names = {
-      {"e-puck", "foot-bot", "eye-bot"},
-      {{"kinematics2d", "", {}},
-       {"dynamics2d", "", {.forces = true}},
-       {"dynamics3d", "", {.plane = false, .forces = true}},
-       {"particle3d", "pointmass3d", {.plane = false, .air = true}}},
-      {"accelerometer", "altimeter", "battery", "clock", "flight_state", "gripper", "ground", "light", "microphones",
-       "motor_ground", "odometry", "omnidirectional_camera", "pan_tilt_encoder", "positioning", "proximity",
-       "range_and_bearing", "wheel_encoders"},
-      {"body_led", "camera_led", "differential_steering", "flight_task", "front_led", "gripper", "leds", "pan_tilt",
-       "quadrotor_attitude", "quadrotor_position", "quadrotor_speed", "range_and_bearing", "turret", "upper_leds"}};
-  return names;
-}
 
 struct Outcome {
   std::optional<Scenario> scenario;
@@ -41,7 +27,7 @@ struct Outcome {
 };
 
 inline Outcome read(const std::string& text, const std::vector<std::string>& overrides = {},
-                    const KnownNames& known = known_names()) {
+                    const hal::Catalog& known = known_names()) {
   Outcome out;
   out.scenario = read_experiment_text(text, "file.xml", overrides, known, out.problems);
   return out;

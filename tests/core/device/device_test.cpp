@@ -247,14 +247,14 @@ TEST(NoisyDevices, SendersFailAndClocksJitterAsAsked) {
 
 TEST(Devices, EveryImplementationIsDocumentedAndStartsWithDefault) {
   std::string last;
-  for (const DeviceType& type : device_types()) {
-    EXPECT_FALSE(type.summary.empty()) << type.device;
-    EXPECT_NE(type.describe, nullptr);
-    EXPECT_TRUE((type.make_sensor != nullptr) != (type.make_actuator != nullptr));
-    EXPECT_NE(find_device(type.device, type.role, "default"), nullptr) << type.device;
-    EXPECT_NE(find_device(type.device, type.role, "ideal"), nullptr) << type.device;
+  for (const DeviceType* type : test::catalog().all<DeviceType>()) {
+    EXPECT_FALSE(type->summary.empty()) << type->device;
+    EXPECT_NE(type->describe, nullptr);
+    EXPECT_TRUE((type->make_sensor != nullptr) != (type->make_actuator != nullptr));
+    EXPECT_NE(find_device(test::catalog(), type->device, type->role, "default"), nullptr) << type->device;
+    EXPECT_NE(find_device(test::catalog(), type->device, type->role, "ideal"), nullptr) << type->device;
     ManualWriter manual;
-    type.describe(manual);
+    type->describe(manual);
   }
 }
 

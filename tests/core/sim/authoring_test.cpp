@@ -247,13 +247,13 @@ class Reset : public testing::TestWithParam<std::string> {
   Scene scene(std::uint64_t seed, const std::string& learns) const {
     Scene s = shown({{"learns", learns, 0}});
     s.engine(GetParam()).implementations("noisy").walls().robots(300, 1.7).cylinder(0.3, 0.3, 0.1);
-    if (engine_traits(GetParam()).forces) s.movable(0.3);
+    if (test::engine_traits(GetParam()).forces) s.movable(0.3);
     s.scenario.escape = EscapePolicy::Stop;
     s.scenario.seed = seed;
     return s;
   }
 };
-INSTANTIATE_TEST_SUITE_P(Engines, Reset, testing::ValuesIn(engine_kinds()),
+INSTANTIATE_TEST_SUITE_P(Engines, Reset, testing::ValuesIn(test::engine_kinds()),
                          [](const auto& kind) { return kind.param; });
 
 TEST_P(Reset, GoesOnAsANewWorldOfThatSeed) {

@@ -218,7 +218,7 @@ TEST_P(Above, RobotsOnTheGroundAndInTheAirHearButDoNotTouchOrSeeOneAnother) {
 }
 
 TEST_P(Above, AnEngineOfThePlaneCannotCarryRobotsThatFly) {
-  if (!engine_traits(GetParam()).plane) return;
+  if (!test::engine_traits(GetParam()).plane) return;
   Scene s = hall(4.0);
   s.engine(GetParam());
   s = with_flyers(s).flyer("icarus", 0, 0, 1.0).velocity({0, 0, 0});
@@ -230,7 +230,7 @@ TEST_P(Above, AnEngineOfThePlaneCannotCarryRobotsThatFly) {
 }
 
 std::vector<std::string> ground_kinds() {
-  std::vector<std::string> kinds = engine_kinds();
+  std::vector<std::string> kinds = test::engine_kinds();
   std::erase(kinds, "particle3d");
   return kinds;
 }

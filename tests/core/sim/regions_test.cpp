@@ -582,7 +582,7 @@ TEST_P(Regions, ACrowdTouchesAsOftenAndAsDeepAcrossBordersAsWithinOneRegion) {
   EXPECT_LE(parts.deepest_m, 1.25 * whole.deepest_m + 3 * 5e-5);
 }
 
-INSTANTIATE_TEST_SUITE_P(Physics, Regions, testing::ValuesIn(engine_kinds()), name_of_kind);
+INSTANTIATE_TEST_SUITE_P(Physics, Regions, testing::ValuesIn(test::engine_kinds()), name_of_kind);
 
 /// Movable objects, for engines with forces.
 using MovableAcrossBorders = EveryEngine;
@@ -730,8 +730,8 @@ using KindPair = std::pair<std::string, std::string>;
 /// All pairs of different kinds.
 std::vector<KindPair> kind_pairs() {
   std::vector<KindPair> pairs;
-  for (const std::string& one : engine_kinds()) {
-    for (const std::string& other : engine_kinds()) {
+  for (const std::string& one : test::engine_kinds()) {
+    for (const std::string& other : test::engine_kinds()) {
       if (one != other) pairs.emplace_back(one, other);
     }
   }

@@ -55,10 +55,10 @@ class Runtime : public testing::TestWithParam<std::string> {
     s.engine(GetParam());
     return s;
   }
-  bool forces() const { return engine_traits(GetParam()).forces; }
+  bool forces() const { return test::engine_traits(GetParam()).forces; }
 };
 
-INSTANTIATE_TEST_SUITE_P(Engines, Runtime, testing::ValuesIn(engine_kinds()),
+INSTANTIATE_TEST_SUITE_P(Engines, Runtime, testing::ValuesIn(test::engine_kinds()),
                          [](const auto& kind) { return kind.param; });
 
 // --- robots ---

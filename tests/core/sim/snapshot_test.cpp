@@ -34,7 +34,7 @@ Scene crowd(const std::string& kind, const std::string& controller = "everything
   if (kind != "particle3d") s.split("2x2");
   s.scenario.escape = EscapePolicy::Stop;
   s.scenario.robots[0].battery.delta = 0.001;
-  if (engine_traits(kind).forces) {
+  if (test::engine_traits(kind).forces) {
     s.box(1.0, 0, 0.1, 0.2, 0.0, 0.06).movable(0.2).cylinder(-1.0, 0.0, 0.06).movable(0.1);
     s.box(0.0, 1.0, 0.1, 0.1, 0.3, 0.06).movable(0.1);
   }
@@ -46,7 +46,7 @@ NewRobot at(const std::string& id, double x_m, double y_m) {
 }
 
 class Going : public testing::TestWithParam<std::string> {};
-INSTANTIATE_TEST_SUITE_P(Engines, Going, testing::ValuesIn(engine_kinds()),
+INSTANTIATE_TEST_SUITE_P(Engines, Going, testing::ValuesIn(test::engine_kinds()),
                          [](const auto& kind) { return kind.param; });
 
 TEST_P(Going, BackGoesOnAsBefore) {
@@ -140,7 +140,7 @@ TEST_P(Going, BackToAMomentWithThoseWhoCame) {
     ASSERT_TRUE(space.add_robot(at("new" + std::to_string(i), -1.8 + 0.1 * i, -1.7)).ok());
   }
   const RobotId kept = space.find_robot("new4");
-  if (engine_traits(GetParam()).forces) {
+  if (test::engine_traits(GetParam()).forces) {
     ASSERT_TRUE(space.join(kept, space.find_robot("new5"), {-1.35, -1.7, 0.02}).ok());
   }
   world->step();
@@ -187,7 +187,7 @@ TEST_P(Going, BackAndThenOnToAMomentOfAnotherBranch) {
 }
 
 TEST_P(Going, BackWithAFootBotThatSwingsItsLoad) {
-  if (!engine_traits(GetParam()).forces) GTEST_SKIP() << "an engine without masses";
+  if (!test::engine_traits(GetParam()).forces) GTEST_SKIP() << "an engine without masses";
   Scene scene = footbot_scene(GetParam());
   scene.cylinder(hal::footbot::kBodyRadius_m + 0.11, 0, 0.1).movable(0.2);
   choose(scene, "differential_steering", hal::Role::Actuator, "slanted");
@@ -334,7 +334,7 @@ class Fuzzer {
     Scene s(4.0, "everything");
     s.engine(kind).param("left", "0.06").param("right", "0.05").implementations("noisy").walls().robots(kRobots, 1.5);
     s.scenario.escape = EscapePolicy::Stop;
-    forces_ = engine_traits(kind).forces;
+    forces_ = test::engine_traits(kind).forces;
     WorldOptions options;
     options.threads = threads;
     made_ = make(s, options);

@@ -6,7 +6,7 @@ namespace {
 void register_all(tandem::hal::Registrar& registrar) {
   static tandem::hal::ControllerType half;
   half.name = "half";
-  registrar.add("controller", "half", &half);
+  registrar.add(half);
 }
 
 }  // namespace

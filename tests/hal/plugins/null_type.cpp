@@ -4,7 +4,7 @@
 namespace {
 
 void register_all(tandem::hal::Registrar& registrar) {
-  registrar.add("controller", "nobody", nullptr);
+  registrar.add({"controller", "nobody", tandem::hal::entry_layout<tandem::hal::ControllerType>(), nullptr});
 }
 
 }  // namespace

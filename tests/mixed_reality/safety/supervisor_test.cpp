@@ -3,6 +3,9 @@
 #include <gtest/gtest.h>
 #include <set>
 
+#include "hal/device/flight.hpp"
+#include "hal/device/wheels.hpp"
+
 namespace tandem::mixed_reality {
 namespace {
 

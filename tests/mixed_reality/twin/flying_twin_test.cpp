@@ -122,7 +122,7 @@ TEST_F(FlyingTwin, ARobotAboveTheArenaIsBroughtBack) {
   }
   ASSERT_NEAR(body_.p_m[2], 3.0, 0.01);
   EXPECT_TRUE(twin_->verdict().may_drive);
-  EXPECT_EQ(body_.speed.velocity[2], -kSinkIntoFence_m_s);
+  EXPECT_EQ(body_.speed.velocity[2], -hal::QuadrotorSpeed::kSinkIntoFence_m_s);
   EXPECT_LE(space_.pose(robot_).z_m, 2.0);
   EXPECT_GT(twin_->counts().fenced_ticks, 0U);
 }

@@ -3,7 +3,7 @@
 #include <map>
 #include <random>
 
-#include "core/sim/engine_factory.hpp"
+#include "core/physics/solver.hpp"
 #include "hal/device/gripper.hpp"
 #include "hal/device/turret.hpp"
 #include "hal/device/wheels.hpp"
@@ -23,7 +23,7 @@ struct Way {
 
 std::vector<Way> ways() {
   std::vector<Way> all;
-  for (const std::string& kind : engine_kinds()) all.push_back({kind, kind, {}});
+  for (const std::string& kind : test::engine_kinds()) all.push_back({kind, kind, {}});
   all.push_back(
       {"dynamics3d_wheels_rotors", "dynamics3d", {{"drive", "wheels", 100}, {"flight", "rotors", 100}}, true});
   return all;
@@ -33,7 +33,7 @@ class Checkpoints : public testing::TestWithParam<Way> {};
 
 /// Crowds in four regions that push crates, heaps, foot-bots that hold and swing theirs, and eye-bots above.
 Scene busy_scene(const Way& way) {
-  const EngineTraits traits = engine_traits(way.kind);
+  const EngineTraits& traits = test::engine_traits(way.kind);
   Scene s(4.0, "everything");
   s.param("left", "0.11").param("right", "0.1").implementations("noisy").walls();
   s.engine(way.kind, "", way.options).split("2x2");
@@ -120,7 +120,7 @@ void meddle(World& world, const EngineTraits& traits, unsigned seed) {
 }
 
 void do_tick(World& world, const Way& way, unsigned seed) {
-  meddle(world, engine_traits(way.kind), seed);
+  meddle(world, test::engine_traits(way.kind), seed);
   world.step();
 }
 

@@ -233,7 +233,7 @@ TEST_P(Contact, ARobotMovedByOthersPushesThoseInItsWay) {
   EXPECT_GT(pose_of(world, "a").x_m, 0.2 + 2 * kRobotRadius_m - 0.005 - 2 * depth_m());
 }
 
-INSTANTIATE_TEST_SUITE_P(Physics, Contact, testing::ValuesIn(engine_kinds()), name_of_kind);
+INSTANTIATE_TEST_SUITE_P(Physics, Contact, testing::ValuesIn(test::engine_kinds()), name_of_kind);
 
 }  // namespace
 }  // namespace tandem::core

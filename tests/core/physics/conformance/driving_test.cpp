@@ -223,7 +223,7 @@ TEST_P(Driving, RobotsFarApartDoNotFeelOneAnother) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Physics, Driving, testing::ValuesIn(engine_kinds()), name_of_kind);
+INSTANTIATE_TEST_SUITE_P(Physics, Driving, testing::ValuesIn(test::engine_kinds()), name_of_kind);
 
 }  // namespace
 }  // namespace tandem::core

@@ -19,14 +19,14 @@ inline constexpr double kWheelBase_m = hal::epuck::kWheelBase_m;
 
 /// Kinds that move objects by forces.
 inline std::vector<std::string> kinds_with_forces() {
-  std::vector<std::string> kinds = engine_kinds();
-  std::erase_if(kinds, [](const std::string& kind) { return !engine_traits(kind).forces; });
+  std::vector<std::string> kinds = test::engine_kinds();
+  std::erase_if(kinds, [](const std::string& kind) { return !test::engine_traits(kind).forces; });
   return kinds;
 }
 
 /// How deep a body at rest may sit in another, in m: engines of three dimensions may give a little more.
 inline double depth_bar_m(const std::string& kind) {
-  return engine_traits(kind).plane ? 1e-3 : 2e-3;
+  return test::engine_traits(kind).plane ? 1e-3 : 2e-3;
 }
 
 /// One engine kind a test, by name.

@@ -109,7 +109,7 @@ TEST_P(Failures, MoreRobotsThanFitAreALoadError) {
   EXPECT_NE(world.all_problems().find("error"), std::string::npos);
 }
 
-INSTANTIATE_TEST_SUITE_P(Physics, Failures, testing::ValuesIn(engine_kinds()), name_of_kind);
+INSTANTIATE_TEST_SUITE_P(Physics, Failures, testing::ValuesIn(test::engine_kinds()), name_of_kind);
 
 TEST(Failures, AnEngineKindThatDoesNotExistIsALoadErrorWithItsLine) {
   auto world = make(Scene().engine("dynamics4d").robot("a", 0, 0));

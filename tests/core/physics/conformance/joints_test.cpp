@@ -13,9 +13,9 @@ struct Case {
 
 std::vector<Case> cases() {
   std::vector<Case> all;
-  for (const KnownEngine& engine : known_engines()) {
+  for (const KnownEngine* engine : test::catalog().all<KnownEngine>()) {
     for (const JointKind joint : {JointKind::Fixed, JointKind::Turning, JointKind::Sliding}) {
-      if (engine.traits.has(bit(joint))) all.push_back({engine.name, joint});
+      if (engine->traits.has(bit(joint))) all.push_back({std::string(engine->kind), joint});
     }
   }
   return all;
@@ -31,7 +31,7 @@ class Joints : public testing::TestWithParam<Case> {
  protected:
   void make_world(double mass_a_kg = 0.2, double mass_b_kg = 0.2) {
     Scene s(4.0);
-    const bool plane = engine_traits(GetParam().engine).plane;
+    const bool plane = test::engine_traits(GetParam().engine).plane;
     s.engine(GetParam().engine, "",
              plane ? std::vector<Element::Attribute>{{"box_linear_friction", "0", 100}, {"friction", "0", 100}}
                    : std::vector<Element::Attribute>{{"default_friction", "0", 100}});
@@ -154,7 +154,7 @@ TEST_P(Joints, OfABadFormAreRefused) {
             std::string::npos);
   EXPECT_NE(error({.motor_most = -1.0}).find("motor"), std::string::npos);
   const std::string lifted = error({.kind = JointKind::Sliding, .axis = {0.0, 0.0, 1.0}});
-  const bool plane = engine_traits(GetParam().engine).plane;
+  const bool plane = test::engine_traits(GetParam().engine).plane;
   EXPECT_EQ(lifted.find("keeps bodies on the ground; use dynamics3d") != std::string::npos, plane) << lifted;
 }
 
@@ -166,8 +166,8 @@ class Lifting : public testing::TestWithParam<std::string> {};
 
 std::vector<std::string> kinds_that_lift() {
   std::vector<std::string> kinds;
-  for (const KnownEngine& engine : known_engines()) {
-    if (!engine.traits.plane && engine.traits.has(bit(JointKind::Sliding))) kinds.push_back(engine.name);
+  for (const KnownEngine* engine : test::catalog().all<KnownEngine>()) {
+    if (!engine->traits.plane && engine->traits.has(bit(JointKind::Sliding))) kinds.emplace_back(engine->kind);
   }
   return kinds;
 }
@@ -220,10 +220,10 @@ INSTANTIATE_TEST_SUITE_P(Physics, Lifting, testing::ValuesIn(kinds_that_lift()),
 // --- engines without ---
 
 TEST(JointTraits, WhereAnEngineLacksAJointTheMessageNamesThoseThatHaveIt) {
-  for (const KnownEngine& engine : known_engines()) {
-    if (engine.traits.joints != 0 || !engine.traits.plane) continue;
+  for (const KnownEngine* engine : test::catalog().all<KnownEngine>()) {
+    if (engine->traits.joints != 0 || !engine->traits.plane) continue;
     Scene s(4.0);
-    auto world = make(s.engine(engine.name).robot("a", 0, 0).robot("b", 0.2, 0));
+    auto world = make(s.engine(std::string(engine->kind)).robot("a", 0, 0).robot("b", 0.2, 0));
     ASSERT_TRUE(world.world) << world.all_problems();
     Space& space = world->space();
     const auto joint = space.join(space.find_robot("a"), space.find_robot("b"), {0.1, 0, 0.02});

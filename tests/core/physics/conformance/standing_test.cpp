@@ -30,14 +30,14 @@ TEST_P(LongTicks, NobodyPassesAThinWall) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Physics, LongTicks, testing::ValuesIn(engine_kinds()), name_of_kind);
+INSTANTIATE_TEST_SUITE_P(Physics, LongTicks, testing::ValuesIn(test::engine_kinds()), name_of_kind);
 
 /// Engines in which things stand on one another.
 class Heaps : public EveryEngine {};
 
 std::vector<std::string> kinds_with_heaps() {
   std::vector<std::string> kinds = kinds_with_forces();
-  std::erase_if(kinds, [](const std::string& kind) { return engine_traits(kind).plane; });
+  std::erase_if(kinds, [](const std::string& kind) { return test::engine_traits(kind).plane; });
   return kinds;
 }
 

@@ -104,7 +104,7 @@ Scene crowd(const std::string& kind, const std::string& regions) {
   s.engine(kind);
   if (!regions.empty()) s.split(regions);
   s.walls().cylinder(0.3, 0.3, 0.1).box(-0.5, 0.4, 0.3, 0.2, 0.5).robots(150, 1.2);
-  if (engine_traits(kind).forces)
+  if (test::engine_traits(kind).forces)
     s.box(0.8, -0.6, 0.15, 0.15, 0.2).movable(0.2).cylinder(-0.8, -0.7, 0.08).movable(0.3);
   return s;
 }
@@ -140,7 +140,7 @@ TEST_P(Symmetry, AnotherSeedGivesAnotherRun) {
   EXPECT_NE(hash_of(s, 1, Assignment::Static, 10), first);
 }
 
-INSTANTIATE_TEST_SUITE_P(Physics, Symmetry, testing::ValuesIn(engine_kinds()), name_of_kind);
+INSTANTIATE_TEST_SUITE_P(Physics, Symmetry, testing::ValuesIn(test::engine_kinds()), name_of_kind);
 
 }  // namespace
 }  // namespace tandem::core

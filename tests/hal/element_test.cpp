@@ -1,9 +1,9 @@
-#include "core/scenario/element.hpp"
+#include "hal/element.hpp"
 
 #include <array>
 #include <gmock/gmock.h>
 
-namespace tandem::core {
+namespace tandem::hal {
 namespace {
 
 using testing::ElementsAre;
@@ -17,14 +17,14 @@ struct Settings {
   std::string name = "nobody";
   std::string mode = "slow";
   std::array<double, 3> place_m{1.0, 2.0, 3.0};
-  void describe(hal::ParamVisitor& v) {
+  void describe(ParamVisitor& v) {
     static constexpr std::array<std::string_view, 2> kModes = {"slow", "quick"};
-    v.number("speed", speed_m_s, hal::unit::cm_s, {0.0, 0.129}, "How fast.");
+    v.number("speed", speed_m_s, unit::cm_s, {0.0, 0.129}, "How fast.");
     v.integer("count", count, {1, 10}, "How many.");
     v.flag("loud", loud, "Whether it is heard.");
     v.text("name", name, "Who.");
     v.choice("mode", mode, kModes, "In which way.");
-    v.vector("place", place_m, hal::unit::m, "Where.");
+    v.vector("place", place_m, unit::m, "Where.");
   }
 };
 
@@ -33,22 +33,22 @@ struct Gains {
   double p = 0.1 + 0.2;
   struct Limit {
     std::int64_t most = 9;
-    void describe(hal::ParamVisitor& v) { v.integer("most", most, {0, 100}, "At most."); }
+    void describe(ParamVisitor& v) { v.integer("most", most, {0, 100}, "At most."); }
   } limit;
-  void describe(hal::ParamVisitor& v) {
-    v.number("p", p, hal::unit::none, {0.0, 5.0}, "Proportional.");
+  void describe(ParamVisitor& v) {
+    v.number("p", p, unit::none, {0.0, 5.0}, "Proportional.");
     v.group("limit", limit, "Bounds.");
   }
 };
 struct Point {
   double x_m = 1.0;
-  void describe(hal::ParamVisitor& v) { v.number("x", x_m, hal::unit::m, hal::kAny, "East."); }
+  void describe(ParamVisitor& v) { v.number("x", x_m, unit::m, kAny, "East."); }
 };
 struct Plan {
   std::string name = "tour";
   Gains gains;
   std::vector<Point> points = {{5.0}, {6.0}};
-  void describe(hal::ParamVisitor& v) {
+  void describe(ParamVisitor& v) {
     v.text("name", name, "Its name.");
     v.group("gains", gains, "Of the loop.");
     v.list("point", points, "Where to go.");
@@ -331,4 +331,4 @@ TEST(ManualWriter, ShowsGroupsAndListsWithWhatTheyHold) {
 }
 
 }  // namespace
-}  // namespace tandem::core
+}  // namespace tandem::hal

@@ -1,4 +1,4 @@
-#include "core/scenario/element.hpp"
+#include "hal/element.hpp"
 
 #include <algorithm>
 #include <charconv>
@@ -6,7 +6,7 @@
 #include <numeric>
 #include <utility>
 
-namespace tandem::core {
+namespace tandem::hal {
 namespace {
 
 /// Levenshtein's distance.
@@ -25,13 +25,12 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
   return row[b.size()];
 }
 
-std::string range_text(hal::Range range, const hal::Unit& unit) {
+std::string range_text(Range range, const Unit& unit) {
   const bool low = range.min > -std::numeric_limits<double>::infinity();
   const bool high = range.max < std::numeric_limits<double>::infinity();
-  if (low && high)
-    return "from " + hal::format_quantity(range.min, unit) + " to " + hal::format_quantity(range.max, unit);
-  if (low) return "at least " + hal::format_quantity(range.min, unit);
-  return "at most " + hal::format_quantity(range.max, unit);
+  if (low && high) return "from " + format_quantity(range.min, unit) + " to " + format_quantity(range.max, unit);
+  if (low) return "at least " + format_quantity(range.min, unit);
+  return "at most " + format_quantity(range.max, unit);
 }
 
 std::string_view trimmed(std::string_view text) {
@@ -135,8 +134,8 @@ void ElementReader::problem(std::string_view attribute, std::string message) {
   problems_.push_back(problem_at(element_, attribute, std::move(message)));
 }
 
-bool ElementReader::in_range(std::string_view name, const std::string& text, double value, hal::Range range,
-                             const hal::Unit& unit) {
+bool ElementReader::in_range(std::string_view name, const std::string& text, double value, Range range,
+                             const Unit& unit) {
   constexpr double kSlack = 1e-12;  // 12.9 cm passes where 0.129 m is the limit
   if (value >= range.min - kSlack * std::fabs(range.min) && value <= range.max + kSlack * std::fabs(range.max))
     return true;
@@ -144,17 +143,17 @@ bool ElementReader::in_range(std::string_view name, const std::string& text, dou
   return false;
 }
 
-void ElementReader::number(std::string_view name, double& value_si, const hal::Unit& bare, hal::Range range_si,
+void ElementReader::number(std::string_view name, double& value_si, const Unit& bare, Range range_si,
                            std::string_view) {
   const std::string* text = find(name);
   if (text == nullptr) return;
-  const auto parsed = hal::parse_quantity(*text, bare);
+  const auto parsed = parse_quantity(*text, bare);
   if (!parsed.ok()) return problem(name, parsed.error().message);
   if (in_range(name, *text, parsed.value(), range_si, bare))
     value_si = std::clamp(parsed.value(), range_si.min, range_si.max);
 }
 
-void ElementReader::integer(std::string_view name, std::int64_t& value, hal::Range range, std::string_view) {
+void ElementReader::integer(std::string_view name, std::int64_t& value, Range range, std::string_view) {
   const std::string* text = find(name);
   if (text == nullptr) return;
   std::string_view digits = trimmed(*text);
@@ -164,7 +163,7 @@ void ElementReader::integer(std::string_view name, std::int64_t& value, hal::Ran
   if (status == std::errc::result_out_of_range) return problem(name, "'" + *text + "' is too large a number");
   if (status != std::errc{} || end != digits.data() + digits.size())
     return problem(name, "'" + *text + "' is not a whole number");
-  if (in_range(name, *text, static_cast<double>(parsed), range, hal::unit::none)) value = parsed;
+  if (in_range(name, *text, static_cast<double>(parsed), range, unit::none)) value = parsed;
 }
 
 void ElementReader::flag(std::string_view name, bool& value, std::string_view) {
@@ -195,8 +194,7 @@ void ElementReader::choice(std::string_view name, std::string& value, std::span<
   value = word;
 }
 
-void ElementReader::vector(std::string_view name, std::array<double, 3>& value_si, const hal::Unit& bare,
-                           std::string_view) {
+void ElementReader::vector(std::string_view name, std::array<double, 3>& value_si, const Unit& bare, std::string_view) {
   const std::string* text = find(name);
   if (text == nullptr) return;
   std::array<double, 3> parsed{};
@@ -205,7 +203,7 @@ void ElementReader::vector(std::string_view name, std::array<double, 3>& value_s
     const std::size_t comma = rest.find(',');
     if ((comma == std::string_view::npos) != (i == 2))
       return problem(name, "'" + *text + "' must be three numbers, \"x,y,z\"");
-    const auto part = hal::parse_quantity(rest.substr(0, comma), bare);
+    const auto part = parse_quantity(rest.substr(0, comma), bare);
     if (!part.ok()) return problem(name, part.error().message);
     parsed[i] = part.value();
     if (i < 2) rest.remove_prefix(comma + 1);
@@ -230,7 +228,7 @@ void ElementReader::visit_group(std::string_view name, void* value, Describe des
   }
 }
 
-void ElementReader::visit_list(std::string_view name, hal::ParamList& list, std::string_view) {
+void ElementReader::visit_list(std::string_view name, ParamList& list, std::string_view) {
   known_children_.emplace_back(name);
   bool any = false;
   for (const Element& child : element_.children) {
@@ -262,11 +260,10 @@ void ElementWriter::add(std::string_view name, std::string value) {
   if (element_.attribute(name) == nullptr) element_.attributes.push_back({std::string(name), std::move(value), 0});
 }
 
-void ElementWriter::number(std::string_view name, double& value_si, const hal::Unit& bare, hal::Range,
-                           std::string_view) {
-  add(name, hal::format_exactly(value_si, bare));
+void ElementWriter::number(std::string_view name, double& value_si, const Unit& bare, Range, std::string_view) {
+  add(name, format_exactly(value_si, bare));
 }
-void ElementWriter::integer(std::string_view name, std::int64_t& value, hal::Range, std::string_view) {
+void ElementWriter::integer(std::string_view name, std::int64_t& value, Range, std::string_view) {
   add(name, std::to_string(value));
 }
 void ElementWriter::flag(std::string_view name, bool& value, std::string_view) {
@@ -279,9 +276,8 @@ void ElementWriter::choice(std::string_view name, std::string& value, std::span<
                            std::string_view) {
   add(name, value);
 }
-void ElementWriter::vector(std::string_view name, std::array<double, 3>& v, const hal::Unit& bare, std::string_view) {
-  add(name,
-      hal::format_exactly(v[0], bare) + "," + hal::format_exactly(v[1], bare) + "," + hal::format_exactly(v[2], bare));
+void ElementWriter::vector(std::string_view name, std::array<double, 3>& v, const Unit& bare, std::string_view) {
+  add(name, format_exactly(v[0], bare) + "," + format_exactly(v[1], bare) + "," + format_exactly(v[2], bare));
 }
 
 Element& ElementWriter::add_child(std::string_view name) {
@@ -299,7 +295,7 @@ void ElementWriter::visit_group(std::string_view name, void* value, Describe des
   describe(value, writer);
 }
 
-void ElementWriter::visit_list(std::string_view name, hal::ParamList& list, std::string_view) {
+void ElementWriter::visit_list(std::string_view name, ParamList& list, std::string_view) {
   bool any = false;
   for (Element& child : element_.children) {
     if (child.name != name) continue;
@@ -332,25 +328,25 @@ void ManualWriter::visit_group(std::string_view name, void* value, Describe desc
   indent_.resize(indent_.size() - 4);
 }
 
-void ManualWriter::visit_list(std::string_view name, hal::ParamList& list, std::string_view doc) {
+void ManualWriter::visit_list(std::string_view name, ParamList& list, std::string_view doc) {
   child(name, "any number of elements inside; left out: " + std::to_string(list.size()), doc);
   indent_ += "    ";
   list.describe_default(*this);
   indent_.resize(indent_.size() - 4);
 }
 
-void ManualWriter::number(std::string_view name, double& value_si, const hal::Unit& bare, hal::Range range,
+void ManualWriter::number(std::string_view name, double& value_si, const Unit& bare, Range range,
                           std::string_view doc) {
   const bool bounded =
       range.min > -std::numeric_limits<double>::infinity() || range.max < std::numeric_limits<double>::infinity();
   const std::string unit = bare.symbol.empty() ? "" : "a bare number is in " + std::string(bare.symbol);
   const std::string limits = bounded ? range_text(range, bare) : "";
-  line(name, hal::format_quantity(value_si, bare), limits + (limits.empty() || unit.empty() ? "" : "; ") + unit, doc);
+  line(name, format_quantity(value_si, bare), limits + (limits.empty() || unit.empty() ? "" : "; ") + unit, doc);
 }
-void ManualWriter::integer(std::string_view name, std::int64_t& value, hal::Range range, std::string_view doc) {
+void ManualWriter::integer(std::string_view name, std::int64_t& value, Range range, std::string_view doc) {
   const bool bounded =
       range.min > -std::numeric_limits<double>::infinity() || range.max < std::numeric_limits<double>::infinity();
-  line(name, std::to_string(value), bounded ? range_text(range, hal::unit::none) : "", doc);
+  line(name, std::to_string(value), bounded ? range_text(range, unit::none) : "", doc);
 }
 void ManualWriter::flag(std::string_view name, bool& value, std::string_view doc) {
   line(name, value ? "true" : "false", "true or false", doc);
@@ -364,12 +360,11 @@ void ManualWriter::choice(std::string_view name, std::string& value, std::span<c
   for (const std::string_view option : options) list += (list.empty() ? "" : ", ") + std::string(option);
   line(name, value, list, doc);
 }
-void ManualWriter::vector(std::string_view name, std::array<double, 3>& v, const hal::Unit& bare,
-                          std::string_view doc) {
+void ManualWriter::vector(std::string_view name, std::array<double, 3>& v, const Unit& bare, std::string_view doc) {
   line(name,
-       hal::format_number(v[0] / bare.to_si) + "," + hal::format_number(v[1] / bare.to_si) + "," +
-           hal::format_number(v[2] / bare.to_si),
+       format_number(v[0] / bare.to_si) + "," + format_number(v[1] / bare.to_si) + "," +
+           format_number(v[2] / bare.to_si),
        "three numbers" + (bare.symbol.empty() ? std::string() : " in " + std::string(bare.symbol)), doc);
 }
 
-}  // namespace tandem::core
+}  // namespace tandem::hal

@@ -1,23 +1,25 @@
-#include "mixed_reality/fence/fence.hpp"
 
 #include <cmath>
 #include <gtest/gtest.h>
 #include <numbers>
 
-namespace tandem::mixed_reality {
+#include "hal/device/flight.hpp"
+#include "hal/device/wheels.hpp"
+
+namespace tandem::hal {
 namespace {
 
 using std::numbers::pi;
 constexpr Fence kFence{-1.0, -0.5, 1.0, 0.5, 2.0};
 
-core::Pose at(double x_m, double y_m, double heading_rad) {
+Pose at(double x_m, double y_m, double heading_rad) {
   return {x_m, y_m, 0.0, std::cos(heading_rad), std::sin(heading_rad)};
 }
 
-hal::WheelSpeeds kept(const core::Pose& pose, double left, double right) {
-  hal::WheelSpeeds wheels;
+WheelSpeeds kept(const Pose& pose, double left, double right) {
+  WheelSpeeds wheels;
   wheels.set(left, right);
-  keep_inside(kFence, pose, 0.5, wheels);
+  wheels.keep_inside(kFence, pose, 0.5);
   return wheels;
 }
 
@@ -28,8 +30,8 @@ TEST(ArenaFence, LeavesARobotAloneThatIsFarFromTheEdge) {
 
 TEST(ArenaFence, ARobotThatWouldLeaveMayStillTurn) {
   for (const double heading : {0.0, pi / 2.0, pi, -pi / 2.0}) {
-    const core::Pose edge = at(0.99 * std::cos(heading), 0.49 * std::sin(heading), heading);
-    const hal::WheelSpeeds wheels = kept(edge, 0.1, 0.06);
+    const Pose edge = at(0.99 * std::cos(heading), 0.49 * std::sin(heading), heading);
+    const WheelSpeeds wheels = kept(edge, 0.1, 0.06);
     EXPECT_NEAR(wheels.left_m_s, 0.02, 1e-12) << heading;
     EXPECT_NEAR(wheels.right_m_s, -0.02, 1e-12) << heading;
   }
@@ -52,56 +54,56 @@ TEST(ArenaFence, ClampsPosesAndKnowsWhatIsInside) {
 }
 
 TEST(ArenaFence, ARobotThatFliesKeepsThePartOfItsVelocityThatStaysInside) {
-  hal::QuadrotorSpeed speed;
+  QuadrotorSpeed speed;
   speed.set(0.5, 0.3, -0.2, 0.1);
-  EXPECT_FALSE(keep_inside(kFence, at(0.0, 0.0, 0.0), 0.5, speed));
-  EXPECT_TRUE(keep_inside(kFence, at(0.9, 0.0, 0.0), 0.5, speed));
+  EXPECT_FALSE(speed.keep_inside(kFence, at(0.0, 0.0, 0.0), 0.5));
+  EXPECT_TRUE(speed.keep_inside(kFence, at(0.9, 0.0, 0.0), 0.5));
   EXPECT_EQ(speed.velocity[0], 0.0);
   EXPECT_EQ(speed.velocity[1], 0.3);
   EXPECT_EQ(speed.velocity[2], -0.2);
   EXPECT_EQ(speed.yaw_rad_s, 0.1);
   speed.set(-0.5, 0.0, 0.0, 0.0);
-  EXPECT_FALSE(keep_inside(kFence, at(1.5, 0.0, 0.0), 0.5, speed));  // it comes back
+  EXPECT_FALSE(speed.keep_inside(kFence, at(1.5, 0.0, 0.0), 0.5));  // it comes back
   EXPECT_EQ(speed.velocity[0], -0.5);
 }
 
 TEST(ArenaFence, APlaceOutsideBecomesTheNearestInside) {
-  hal::QuadrotorPosition position;
+  QuadrotorPosition position;
   position.set(5.0, -5.0, 3.0, 1.0);
-  EXPECT_TRUE(keep_inside(kFence, at(0.0, 0.0, 0.0), position));
+  EXPECT_TRUE(position.keep_inside(kFence, at(0.0, 0.0, 0.0), 0.5));
   EXPECT_EQ(position.target[0], 1.0);
   EXPECT_EQ(position.target[1], -0.5);
   EXPECT_EQ(position.target[2], 2.0);
-  EXPECT_FALSE(keep_inside(kFence, at(0.0, 0.0, 0.0), position));
+  EXPECT_FALSE(position.keep_inside(kFence, at(0.0, 0.0, 0.0), 0.5));
   position.set(5.0, 0.0, 0.0, 0.0);
   position.hover();
-  EXPECT_FALSE(keep_inside(kFence, at(0.0, 0.0, 0.0), position));  // it goes nowhere
+  EXPECT_FALSE(position.keep_inside(kFence, at(0.0, 0.0, 0.0), 0.5));  // it goes nowhere
 }
 
-core::Pose above(double z_m) {
-  core::Pose pose = at(0.2, 0.1, 0.5);
+Pose above(double z_m) {
+  Pose pose = at(0.2, 0.1, 0.5);
   pose.z_m = z_m;
   return pose;
 }
 
 TEST(ArenaFence, NothingRisesThroughTheCeiling) {
-  hal::QuadrotorSpeed speed;
+  QuadrotorSpeed speed;
   speed.set(0.1, 0.0, 0.4, 0.0);
-  EXPECT_FALSE(keep_inside(kFence, above(1.7), 0.5, speed));
-  EXPECT_TRUE(keep_inside(kFence, above(1.9), 0.5, speed));
+  EXPECT_FALSE(speed.keep_inside(kFence, above(1.7), 0.5));
+  EXPECT_TRUE(speed.keep_inside(kFence, above(1.9), 0.5));
   EXPECT_EQ(speed.velocity[2], 0.0);
   EXPECT_EQ(speed.velocity[0], 0.1);
 }
 
 TEST(ArenaFence, ARobotAboveTheCeilingIsBroughtBackWhateverWasWanted) {
-  hal::QuadrotorSpeed hover;
-  EXPECT_TRUE(keep_inside(kFence, above(3.0), 0.5, hover));
-  EXPECT_EQ(hover.velocity[2], -kSinkIntoFence_m_s);
+  QuadrotorSpeed hover;
+  EXPECT_TRUE(hover.keep_inside(kFence, above(3.0), 0.5));
+  EXPECT_EQ(hover.velocity[2], -QuadrotorSpeed::kSinkIntoFence_m_s);
   hover.set(0.0, 0.0, -0.5, 0.0);
-  EXPECT_FALSE(keep_inside(kFence, above(3.0), 0.5, hover));
+  EXPECT_FALSE(hover.keep_inside(kFence, above(3.0), 0.5));
   EXPECT_EQ(hover.velocity[2], -0.5);
-  hal::QuadrotorPosition hold;
-  EXPECT_TRUE(keep_inside(kFence, above(3.0), hold));
+  QuadrotorPosition hold;
+  EXPECT_TRUE(hold.keep_inside(kFence, above(3.0), 0.5));
   EXPECT_FALSE(hold.hold);
   EXPECT_EQ(hold.target[0], 0.2);
   EXPECT_EQ(hold.target[2], 2.0);
@@ -109,9 +111,9 @@ TEST(ArenaFence, ARobotAboveTheCeilingIsBroughtBackWhateverWasWanted) {
 
 TEST(ArenaFence, WithoutACeilingNothingIsTooHigh) {
   constexpr Fence kOpen{-1.0, -0.5, 1.0, 0.5};
-  hal::QuadrotorSpeed speed;
+  QuadrotorSpeed speed;
   speed.set(0.0, 0.0, 0.4, 0.0);
-  EXPECT_FALSE(keep_inside(kOpen, above(100.0), 0.5, speed));
+  EXPECT_FALSE(speed.keep_inside(kOpen, above(100.0), 0.5));
 }
 
 TEST(ArenaFence, KnowsTheBody) {
@@ -125,4 +127,4 @@ TEST(ArenaFence, KnowsTheBody) {
 }
 
 }  // namespace
-}  // namespace tandem::mixed_reality
+}  // namespace tandem::hal

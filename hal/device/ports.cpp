@@ -1,0 +1,34 @@
+#include "hal/device/ports.hpp"
+
+#include "hal/device/body_sensors.hpp"
+#include "hal/device/cameras.hpp"
+#include "hal/device/distance_scanner.hpp"
+#include "hal/device/flight.hpp"
+#include "hal/device/gripper.hpp"
+#include "hal/device/leds.hpp"
+#include "hal/device/pan_tilt.hpp"
+#include "hal/device/range_and_bearing.hpp"
+#include "hal/device/ring_sensors.hpp"
+#include "hal/device/turret.hpp"
+#include "hal/device/wheels.hpp"
+
+namespace tandem::hal {
+
+namespace {
+
+template <class... Port>
+void add_all(Registrar& registrar) {
+  (registrar.add(port_type<Port>()), ...);
+}
+
+}  // namespace
+
+void register_ports(Registrar& registrar) {
+  add_all<WheelSpeeds, WheelEncoders, Proximity, Light, Ground, Accelerometer, Microphones, Battery, Clock, RingLeds,
+          BodyLed, FrontLed, RangeAndBearing, RangeAndBearingSend, QuadrotorPosition, QuadrotorSpeed, Positioning,
+          Odometry, Gyroscope, BaseGround, MotorGround, TurretDrive, TurretEncoder, GripperDrive, Gripper, ScannerDrive,
+          DistanceScanner, OmnidirectionalCamera, PerspectiveCamera, UpperRingLeds, QuadrotorAttitude, FlightTask,
+          FlightState, Altimeter, CameraLed, PanTiltDrive, PanTiltEncoder>(registrar);
+}
+
+}  // namespace tandem::hal

@@ -1,0 +1,156 @@
+// A piece of an experiment file as plain data: names, attributes, children, and the line of each.
+#pragma once
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "hal/params.hpp"
+
+namespace tandem::hal {
+
+/// Something wrong in an experiment file. Printed as `file:line: error: message`.
+struct Problem {
+  std::string file;
+  int line = 0;
+  std::string message;
+  bool warning = false;
+};
+using Problems = std::vector<Problem>;
+
+/// `file:line: error: message`, or `warning:`.
+std::string to_text(const Problem& problem);
+/// Whether an error is among the problems from number `first` on.
+bool has_errors(const Problems& problems, std::size_t first = 0) noexcept;
+
+/// An XML element without the XML library.
+struct Element {
+  struct Attribute {
+    std::string name;
+    std::string value;
+    int line = 0;
+    std::string origin = {};  ///< where it was set when not in the file, e.g. "--set framework.experiment.length=5"
+  };
+  std::string name;
+  std::string file;
+  int line = 0;
+  std::vector<Attribute> attributes;
+  std::vector<Element> children;
+
+  const std::string* attribute(std::string_view attribute_name) const noexcept;
+  const Element* child(std::string_view child_name) const noexcept;
+};
+
+/// A problem with an element, or with one of its attributes (named in the message, even when it is not there).
+Problem problem_at(const Element& element, std::string message);
+Problem problem_at(const Element& element, std::string_view attribute, std::string message);
+
+/// "a, b, c": at most the first 20, for messages.
+std::string listed(const std::vector<std::string>& names);
+
+/// "<parent> cannot hold <child>; it may hold: …", for messages.
+std::string cannot_hold(const Element& parent, const Element& child, const std::vector<std::string>& allowed);
+
+/// ". Did you mean 'x'?" with the closest candidate, or empty when none is near.
+std::string did_you_mean(std::string_view word, const std::vector<std::string>& candidates);
+
+/// The closest of `candidates` to `word` by edit distance, or empty when none is near: for "did you mean".
+std::string closest(std::string_view word, const std::vector<std::string>& candidates);
+
+/// Fills described parameters from an element's attributes, groups and lists of them from its children. Every one must
+/// be asked for, else it is unknown: call `finish()` after `describe` to have unknown ones reported with "did you
+/// mean".
+class ElementReader final : public ParamVisitor {
+ public:
+  /// `ignore` are attributes that belong to somebody else (e.g. "id", "library", "implementation"), `ignore_children`
+  /// elements that do.
+  ElementReader(const Element& element, Problems& problems, std::vector<std::string> ignore = {},
+                std::vector<std::string> ignore_children = {});
+
+  void number(std::string_view name, double& value_si, const Unit& bare, Range range_si, std::string_view doc) override;
+  void integer(std::string_view name, std::int64_t& value, Range range, std::string_view doc) override;
+  void flag(std::string_view name, bool& value, std::string_view doc) override;
+  void text(std::string_view name, std::string& value, std::string_view doc) override;
+  void choice(std::string_view name, std::string& value, std::span<const std::string_view> options,
+              std::string_view doc) override;
+  void vector(std::string_view name, std::array<double, 3>& value_si, const Unit& bare, std::string_view doc) override;
+  void finish();
+  /// For elements whose children are somebody else's.
+  void finish_attributes();
+
+ protected:
+  void visit_group(std::string_view name, void* value, Describe describe, std::string_view doc) override;
+  void visit_list(std::string_view name, ParamList& list, std::string_view doc) override;
+
+ private:
+  const std::string* find(std::string_view name);
+  void problem(std::string_view attribute, std::string message);
+  /// Whether `value` lies in `range`; says so when not.
+  bool in_range(std::string_view name, const std::string& text, double value, Range range, const Unit& unit);
+
+  const Element& element_;
+  Problems& problems_;
+  std::vector<std::string> known_, known_children_;
+};
+
+/// Reads all that an element says of a described struct. `ignore` and `ignore_children` as ElementReader has them.
+template <Described T>
+T read_settings(const Element& element, Problems& problems, std::vector<std::string> ignore = {},
+                std::vector<std::string> ignore_children = {}) {
+  T value{};
+  ElementReader reader(element, problems, std::move(ignore), std::move(ignore_children));
+  value.describe(reader);
+  reader.finish();
+  return value;
+}
+
+/// Completes an element with what a described struct has and the file left out, attributes and groups: the effective
+/// settings. Numbers are written so that they read back as the same bits.
+class ElementWriter final : public ParamVisitor {
+ public:
+  explicit ElementWriter(Element& element) : element_(element) {}
+
+  void number(std::string_view name, double& value_si, const Unit& bare, Range range_si, std::string_view doc) override;
+  void integer(std::string_view name, std::int64_t& value, Range range, std::string_view doc) override;
+  void flag(std::string_view name, bool& value, std::string_view doc) override;
+  void text(std::string_view name, std::string& value, std::string_view doc) override;
+  void choice(std::string_view name, std::string& value, std::span<const std::string_view> options,
+              std::string_view doc) override;
+  void vector(std::string_view name, std::array<double, 3>& value_si, const Unit& bare, std::string_view doc) override;
+
+ protected:
+  void visit_group(std::string_view name, void* value, Describe describe, std::string_view doc) override;
+  void visit_list(std::string_view name, ParamList& list, std::string_view doc) override;
+
+ private:
+  void add(std::string_view name, std::string value);
+  Element& add_child(std::string_view name);
+  Element& element_;
+};
+
+/// Lists described parameters for people, one a line: name, default, range, what it means.
+class ManualWriter final : public ParamVisitor {
+ public:
+  void number(std::string_view name, double& value_si, const Unit& bare, Range range_si, std::string_view doc) override;
+  void integer(std::string_view name, std::int64_t& value, Range range, std::string_view doc) override;
+  void flag(std::string_view name, bool& value, std::string_view doc) override;
+  void text(std::string_view name, std::string& value, std::string_view doc) override;
+  void choice(std::string_view name, std::string& value, std::span<const std::string_view> options,
+              std::string_view doc) override;
+  void vector(std::string_view name, std::array<double, 3>& value_si, const Unit& bare, std::string_view doc) override;
+
+  const std::string& text() const noexcept { return text_; }
+
+ protected:
+  void visit_group(std::string_view name, void* value, Describe describe, std::string_view doc) override;
+  void visit_list(std::string_view name, ParamList& list, std::string_view doc) override;
+
+ private:
+  void line(std::string_view name, const std::string& value, const std::string& range, std::string_view doc);
+  void child(std::string_view name, std::string_view what, std::string_view doc);
+  std::string text_;
+  std::string indent_ = "  ";
+};
+
+}  // namespace tandem::hal

@@ -1,0 +1,42 @@
+// A catalog of names, for tests of the reader: it knows no engine, only what they are called.
+#pragma once
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/scenario/engine_traits.hpp"
+#include "hal/catalog.hpp"
+#include "hal/check.hpp"
+#include "hal/device/ports.hpp"
+#include "hal/port.hpp"
+#include "hal/spec/data_sheet.hpp"
+#include "hal/spec/robots.hpp"
+
+namespace tandem::core {
+
+/// Every port and every robot of the control interface, and these engines.
+inline hal::Catalog catalog_with(const std::vector<std::string_view>& engines) {
+  static constexpr KnownEngine kAll[] = {{"kinematics2d", "", {}},
+                                         {"dynamics2d", "", {.forces = true}},
+                                         {"dynamics3d", "", {.plane = false, .forces = true}},
+                                         {"particle3d", "pointmass3d", {.plane = false, .air = true}}};
+  hal::Catalog catalog;
+  const hal::Status good = catalog.add_from("tests", [&](hal::Registrar& r) {
+    hal::register_ports(r);
+    hal::register_robots(r);
+    for (const KnownEngine& engine : kAll) {
+      for (const std::string_view wanted : engines) {
+        if (wanted == engine.kind) r.add(engine);
+      }
+    }
+  });
+  TANDEM_CHECK(good.ok(), good.error().message.c_str());
+  return catalog;
+}
+
+inline const hal::Catalog& known_names() {
+  static const hal::Catalog names = catalog_with({"kinematics2d", "dynamics2d", "dynamics3d", "particle3d"});
+  return names;
+}
+
+}  // namespace tandem::core

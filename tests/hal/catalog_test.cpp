@@ -1,0 +1,112 @@
+#include "hal/catalog.hpp"
+
+#include <gmock/gmock.h>
+#include <stdexcept>
+
+namespace tandem::hal {
+namespace {
+
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+struct Engine {
+  static constexpr std::string_view kCategory = "engine";
+  std::string_view name;
+};
+struct OtherEngine {  // of the same category, as a library built against other headers would have it
+  static constexpr std::string_view kCategory = "engine";
+  std::string_view name;
+  double mass_kg = 0.0;
+};
+struct Robot {
+  static constexpr std::string_view kCategory = "robot";
+  std::string_view kind;
+  std::string_view catalog_name() const { return kind; }
+};
+struct Hook {
+  static constexpr std::string_view kCategory = "hook";
+  std::string_view name;
+};
+
+constexpr Engine kRolling{"rolling"}, kFloating{"floating"}, kAnonymous{""};
+constexpr OtherEngine kStrange{"strange", 1.0};
+constexpr Robot kRover{"rover"};
+constexpr Hook kPainter{"painter"}, kOtherPainter{"painter"};
+
+template <class... T>
+std::string error_of(Catalog& catalog, const std::string& origin, const T&... entries) {
+  const Status added = catalog.add_from(origin, [&](Registrar& r) { (r.add(entries), ...); });
+  return added.ok() ? "" : added.error().message;
+}
+
+TEST(Catalog, FindsEntriesByCategoryAndNameAndTellsWhereTheyCameFrom) {
+  Catalog catalog;
+  EXPECT_EQ(error_of(catalog, "tandem", kRolling, kRover, kFloating), "");
+  EXPECT_EQ(catalog.find<Engine>("floating"), &kFloating);
+  EXPECT_EQ(catalog.find<Robot>("rover"), &kRover);
+  EXPECT_EQ(catalog.find<Robot>("floating"), nullptr);
+  EXPECT_EQ(catalog.find<Engine>("Floating"), nullptr);
+  EXPECT_THAT(catalog.all<Engine>(), ElementsAre(&kRolling, &kFloating));
+  EXPECT_THAT(catalog.names("engine"), ElementsAre("rolling", "floating"));
+  EXPECT_EQ(catalog.origin_of(&kRover), "tandem");
+  EXPECT_EQ(catalog.origin_of(&catalog), "");
+}
+
+TEST(Catalog, RefusesTwoOfOneNameAndNamesBothOrigins) {
+  Catalog catalog;
+  ASSERT_EQ(error_of(catalog, "tandem", kRolling), "");
+  EXPECT_THAT(error_of(catalog, "libmine.so", kFloating, Engine{"rolling"}),
+              AllOf(HasSubstr("'libmine.so' registers the engine 'rolling' a second time"),
+                    HasSubstr("the first is from tandem")));
+  EXPECT_EQ(catalog.find<Engine>("floating"), nullptr) << "an origin with problems adds nothing";
+  EXPECT_THAT(error_of(catalog, "libmine.so", kFloating, kFloating), HasSubstr("the first is from libmine.so"));
+}
+
+TEST(Catalog, ControllersAndHooksOfTwoLibrariesMayShareAName) {
+  Catalog catalog;
+  EXPECT_EQ(error_of(catalog, "libone.so", kPainter), "");
+  EXPECT_EQ(error_of(catalog, "libtwo.so", kOtherPainter), "");
+  EXPECT_EQ(catalog.all<Hook>().size(), 2U);
+  EXPECT_THAT(error_of(catalog, "libthree.so", kPainter, kOtherPainter), HasSubstr("a second time"));
+}
+
+TEST(Catalog, RefusesWhatHasNoNameOrNoType) {
+  Catalog catalog;
+  const Status added = catalog.add_from("libbad.so", [](Registrar& r) {
+    r.add(kAnonymous);
+    r.add(CatalogItem{"engine", "nothing", entry_layout<Engine>(), nullptr});
+  });
+  ASSERT_FALSE(added.ok());
+  EXPECT_THAT(added.error().message,
+              AllOf(HasSubstr("engine '' without a name"), HasSubstr("engine 'nothing' without a type")));
+}
+
+TEST(Catalog, RefusesATypeOfAnotherForm) {
+  Catalog catalog;
+  ASSERT_EQ(error_of(catalog, "tandem", kRolling), "");
+  EXPECT_THAT(error_of(catalog, "libold.so", kStrange),
+              AllOf(HasSubstr("engine 'strange'"), HasSubstr("another form than in tandem")));
+}
+
+TEST(Catalog, IsAsBeforeWhenSomebodyThrowsWhileRegistering) {
+  Catalog catalog;
+  const auto fill = [](Registrar& r) {
+    r.add(kRolling);
+    throw std::runtime_error("no licence");
+  };
+  EXPECT_THROW((void)catalog.add_from("libpaid.so", fill), std::runtime_error);
+  EXPECT_TRUE(catalog.entries().empty());
+}
+
+TEST(Catalog, CopiesAreIndependent) {
+  Catalog catalog;
+  ASSERT_EQ(error_of(catalog, "tandem", kRolling), "");
+  Catalog copy = catalog;
+  ASSERT_EQ(error_of(copy, "libmore.so", kFloating), "");
+  EXPECT_EQ(catalog.find<Engine>("floating"), nullptr);
+  EXPECT_EQ(copy.find<Engine>("rolling"), &kRolling);
+}
+
+}  // namespace
+}  // namespace tandem::hal
