@@ -102,7 +102,7 @@ std::vector<std::string> libraries() {
 }
 
 TEST(Decisions, OfEveryControllerAreThoseOfEveryOtherMachine) {
-  hal::PluginLoader loader({}, test::catalog());
+  hal::PluginLoader loader({});
   for (const std::string& library : libraries()) {
     const hal::Status opened = loader.open(library);
     ASSERT_TRUE(opened.ok()) << opened.error().message;
@@ -124,7 +124,7 @@ TEST(Decisions, OfEveryControllerAreThoseOfEveryOtherMachine) {
 
 /// World::snapshot copies controllers: one that cannot be copied would end every run that keeps a moment.
 TEST(Decisions, CanAllBeGoneBackTo) {
-  hal::PluginLoader loader({}, test::catalog());
+  hal::PluginLoader loader({});
   for (const std::string& library : libraries()) ASSERT_TRUE(loader.open(library).ok()) << library;
   int controllers = 0;
   for (const auto* type : loader.catalog().all<hal::ControllerType>()) {
