@@ -1,5 +1,6 @@
 // What a hub does about real robots that are left out, wait for a person, or do not confirm their stop: both commands,
 // against emulated e-pucks whose own logs are the witnesses.
+#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <optional>
 #include <sys/prctl.h>
@@ -130,6 +131,7 @@ TEST_P(Hubs, StopRobotsWhoseGuardianIsGone) {
 }
 
 TEST_P(Hubs, DriveNoRobotWithoutAGuardian) {
+  for (int fd = 3; fd < 256; ++fd) ::fcntl(fd, F_SETFD, FD_CLOEXEC);  // what this test was begun with
   rlimit before{};
   ::getrlimit(RLIMIT_NOFILE, &before);
   const rlimit few{4, before.rlim_max};  // files can be read; a guardian needs two more

@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <cstdlib>
 
+#include "hal/device/wheels.hpp"
 #include "mixed_reality/safety/supervisor.hpp"
 
 namespace tandem::faults {
