@@ -103,7 +103,7 @@ struct QuadrotorSpeed : Command {
     if (!(speed <= most_m_s)) {
       // In two steps: the length of what is finite need not be.
       for (double& c : v) c /= largest;
-      const double scale = most_m_s / std::hypot(v[0], v[1], v[2]);
+      const double scale = most_m_s / std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
       for (double& c : v) c *= scale;
     }
     yaw_rad_s = std::clamp(yaw_rad_s, -most_rad_s, most_rad_s);

@@ -37,7 +37,10 @@ struct WheelSpeeds : Command {
   }
   Limited limit(const DataSheet& sheet) noexcept { return limit_to(sheet.max_wheel_speed_m_s); }
 
-  void slow_down(double most_m_s, const Pose*) noexcept { limit_to(most_m_s); }
+  /// What is no finite number stays: `limit` comes afterwards, and counts it.
+  void slow_down(double most_m_s, const Pose*) noexcept {
+    if (std::isfinite(left_m_s) && std::isfinite(right_m_s)) limit_to(most_m_s);
+  }
   /// The robot may turn wherever it is, but drive only where it stays inside, or comes back in: else both wheels lose
   /// what they have in common.
   bool keep_inside(const Fence& fence, const Pose& at, double look_ahead_s) noexcept {
