@@ -24,8 +24,8 @@ struct StateView {
 /// Whose value it is. Robots, objects, joints, lights and sounds have numbers: robots the index of their id.
 enum class ValueOwner : std::uint8_t { World, Robot, Object, Joint, Light, Sound };
 
-/// Where a value belongs: `name` is that of a port (of a sensor or an actuator), of a controller that publishes it, or of
-/// anything else that has fields.
+/// Where a value belongs: `name` is that of a port (of a sensor or an actuator), of a controller that publishes it, or
+/// of anything else that has fields.
 enum class ValueSet : std::uint8_t { Own, Sensor, Actuator, Published };
 
 /// Up to kBlockRows owners of one kind, by number; of a row with kNobody nothing counts.

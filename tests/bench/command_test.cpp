@@ -265,8 +265,8 @@ TEST(BenchFigure, HasAPanelForEachEngineAndPartitionAndIsPngWhereAsked) {
     for (const char* partition : {"A1", "A4", "A16"}) {
       for (const std::int64_t threads : {0, 4}) {
         for (const std::int64_t robots : {1, 1000, 100'000})
-          lines +=
-              bench::text_of(on(engine, partition, line_of(robots, threads, 1e-3 * static_cast<double>(robots)))) + "\n";
+          lines += bench::text_of(on(engine, partition, line_of(robots, threads, 1e-3 * static_cast<double>(robots)))) +
+                   "\n";
       }
     }
   }

@@ -161,7 +161,7 @@ TEST(SerialLink, IsFreeAfterwardsThoughAChildKeepsItsDescriptor) {
 TEST(SerialLink, LetsAGuardianSpeakBesideItsUser) {
   const Pty pty;
   const auto link = pty.open();
-  int exclusive = 0;  // 1 would keep out whoever is not root, also a guardian
+  int exclusive = 0;                                         // 1 would keep out whoever is not root, also a guardian
   (void)::ioctl(link->descriptor(), TIOCGEXCL, &exclusive);  // qemu's user mode does not know this request
   EXPECT_EQ(exclusive, 0);
   auto beside = SerialLink::open({LinkScheme::Serial, pty.path, 115200}, true);

@@ -172,7 +172,9 @@ class TestedFootbot final : public TestedRobot {
         return LinkHealth::Lost;
     }
   }
-  std::uint64_t interruptions() const override { return driver_.statistics().link_stops + driver_.statistics().restarts; }
+  std::uint64_t interruptions() const override {
+    return driver_.statistics().link_stops + driver_.statistics().restarts;
+  }
   const hal::Light& light() const override { return light_; }
 
   void begin_guarding(TimeNs, bool) override {
