@@ -25,8 +25,10 @@ TEST(Random, IsTheSameOnEveryMachine) {
   Random random(seed_of(7, "ep3"));
   std::uint64_t hash = 0;
   for (int i = 0; i < 1000; ++i) hash = hash * 31 + random();
-  for (int i = 0; i < 1000; ++i) hash = hash * 31 + static_cast<std::uint64_t>(random.normal() * 0x1p40);
-  for (int i = 0; i < 1000; ++i) hash = hash * 31 + static_cast<std::uint64_t>(random.exponential() * 0x1p40);
+  for (int i = 0; i < 1000; ++i)
+    hash = hash * 31 + static_cast<std::uint64_t>(static_cast<std::int64_t>(random.normal() * 0x1p40));
+  for (int i = 0; i < 1000; ++i)
+    hash = hash * 31 + static_cast<std::uint64_t>(static_cast<std::int64_t>(random.exponential() * 0x1p40));
   EXPECT_EQ(hash, 12375695099442348091U);
 }
 
