@@ -1,5 +1,8 @@
 // The catalog of the program for a robot's board: bridges and controllers, nothing simulated.
 #include "app/catalog.hpp"
+#include "bridges/epuck/register.hpp"
+#include "bridges/eyebot/register.hpp"
+#include "bridges/footbot/register.hpp"
 #include "hal/check.hpp"
 #include "hal/device/ports.hpp"
 #include "hal/spec/robots.hpp"
@@ -12,6 +15,9 @@ const hal::Catalog& catalog() {
     const hal::Status good = made.add_from(std::string(hal::Catalog::kInside), [](hal::Registrar& r) {
       hal::register_ports(r);
       hal::register_robots(r);
+      bridges::epuck::register_bridge(r);
+      bridges::footbot::register_bridge(r);
+      bridges::eyebot::register_bridge(r);
     });
     TANDEM_CHECK(good.ok(), good.error().message.c_str());
     return made;

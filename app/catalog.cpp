@@ -1,5 +1,11 @@
 #include "app/catalog.hpp"
 
+#include "bridges/epuck/register.hpp"
+#include "bridges/epuck_emulator/register.hpp"
+#include "bridges/eyebot/register.hpp"
+#include "bridges/eyebot_emulator/register.hpp"
+#include "bridges/footbot/register.hpp"
+#include "bridges/footbot_emulator/register.hpp"
 #include "core/device/device.hpp"
 #include "core/physics/dynamics2d/dynamics2d.hpp"
 #include "core/physics/dynamics3d/dynamics3d.hpp"
@@ -22,6 +28,12 @@ const hal::Catalog& catalog() {
       core::register_dynamics2d(r);
       core::register_dynamics3d(r);
       core::register_particle3d(r);
+      bridges::epuck::register_bridge(r);
+      bridges::footbot::register_bridge(r);
+      bridges::eyebot::register_bridge(r);
+      bridges::epuck_emulator::register_emulator(r);
+      bridges::footbot_emulator::register_emulator(r);
+      bridges::eyebot_emulator::register_emulator(r);
     });
     TANDEM_CHECK(good.ok(), good.error().message.c_str());
     return made;

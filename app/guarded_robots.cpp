@@ -2,10 +2,9 @@
 
 #include <algorithm>
 
+#include "app/catalog.hpp"
 #include "app/signals.hpp"
-#include "bridges/epuck/stopper.hpp"
-#include "bridges/eyebot/stopper.hpp"
-#include "bridges/footbot/stopper.hpp"
+#include "bridges/guardian/stopper.hpp"
 
 namespace tandem::app {
 namespace {
@@ -20,8 +19,9 @@ GuardedRobots::GuardedRobots(const std::vector<core::RobotItem>& items, hal::Log
   if (std::ranges::none_of(items, [](const core::RobotItem& i) { return i.bridge.has_value(); })) return;
   bridges::guardian::GuardianOptions options;
   options.suspend_asked = &suspend_asked();
-  auto started = GuardianClient::start(
-      {bridges::epuck::stopper_type(), bridges::footbot::stopper_type(), bridges::eyebot::stopper_type()}, options);
+  std::vector<bridges::guardian::StopperType> stoppers;
+  for (const auto* type : catalog().all<bridges::guardian::StopperType>()) stoppers.push_back(*type);
+  auto started = GuardianClient::start(std::move(stoppers), options);
   if (!started.ok()) {
     started_ = started.error();
     return;

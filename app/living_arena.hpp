@@ -6,25 +6,24 @@
 #include <memory>
 #include <thread>
 
+#include "app/port_puppeteer.hpp"
 #include "core/sim/world.hpp"
 #include "mixed_reality/time/pacer.hpp"
 
 namespace tandem::app {
 
-/// Steps the world on its own thread until `stop`, or until its end. `Puppeteer` couples a robot of it to the body.
-template <class Puppeteer, class Body>
+/// Steps the world on its own thread until `stop`, or until its end; one of its robots is the body behind `ports`.
 class LivingArena {
  public:
-  LivingArena(std::unique_ptr<core::World> world, core::RobotId robot, const std::atomic<bool>& stop)
-      : world_(std::move(world)), puppeteer_(robot, body_) {
+  LivingArena(std::unique_ptr<core::World> world, core::RobotId robot, bridges::SharedPorts& ports,
+              const std::atomic<bool>& stop)
+      : world_(std::move(world)), puppeteer_(*world_, robot, ports) {
     world_->set_external(&puppeteer_);
     thread_ = std::thread([this, &stop] { live(stop); });
   }
   ~LivingArena() { thread_.join(); }
   LivingArena(const LivingArena&) = delete;
   LivingArena& operator=(const LivingArena&) = delete;
-
-  Body& body() { return body_; }
 
  private:
   void live(const std::atomic<bool>& stop) {
@@ -43,8 +42,7 @@ class LivingArena {
   }
 
   std::unique_ptr<core::World> world_;
-  Body body_;
-  Puppeteer puppeteer_;
+  PortPuppeteer puppeteer_;
   std::thread thread_;
 };
 

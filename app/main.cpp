@@ -117,6 +117,23 @@ void add_bench(CLI::App& app, BenchOptions& o, int& code) {
   c->callback([&] { code = bench(o); });
 }
 
+/// "--name value" and "--name=value", as the emulators' own options are written.
+std::vector<std::pair<std::string, std::string>> own_options(const std::vector<std::string>& words) {
+  std::vector<std::pair<std::string, std::string>> own;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    const std::string& word = words[i];
+    if (word.size() < 3 || !word.starts_with("--")) throw CLI::ExtrasError("emulate", {word});
+    const std::size_t equals = word.find('=');
+    if (equals != std::string::npos) {
+      own.emplace_back(word.substr(2, equals - 2), word.substr(equals + 1));
+    } else {
+      if (i + 1 == words.size()) throw CLI::ArgumentMismatch(word + " needs a value");
+      own.emplace_back(word.substr(2), words[++i]);
+    }
+  }
+  return own;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -160,35 +177,25 @@ int main(int argc, char** argv) {
 
   EmulateOptions emulate_options;
   CLI::App* emulate_command = app.add_subcommand("emulate", "Behave as a robot's firmware on a link.");
-  emulate_command->add_option("robot", emulate_options.robot, "epuck, footbot or eyebot")->required();
+  emulate_command->add_option("robot", emulate_options.robot, "Which; `tandem list emulators` names them")->required();
   emulate_command
       ->add_option("--link", emulate_options.link,
-                   "pty:NAME makes a pseudo-terminal of that name (a foot-bot: with a CAN adapter's slcan on it); "
-                   "serial:DEVICE@BAUD; a foot-bot also can:INTERFACE and tcp-listen:[ADDRESS:]PORT; an eye-bot "
-                   "lcm:udpm://GROUP:PORT?ttl=0")
+                   "Where; pty:NAME makes a pseudo-terminal of that name; `tandem describe NAME` tells an emulator's")
       ->required();
   emulate_command->add_option("--log", emulate_options.log, "File for one JSON object an event; default: none");
-  emulate_command->add_option(
-      "--firmware", emulate_options.firmware,
-      "An e-puck's: btcom, gctronic (default), webots or epuck2; a foot-bot's: v4 (default) or v5");
   emulate_command->add_option("--fault", emulate_options.faults, "A fault to show, e.g. silent@5s+2s; repeatable")
       ->allow_extra_args(false);
-  auto* arena =
-      emulate_command->add_option("--arena", emulate_options.arena,
-                                  "Experiment file: one of its robots, an e-puck driven by `puppet`, a foot-bot by "
-                                  "`footbot_puppet` or an eye-bot by `eyebot_puppet`, is the body");
+  auto* arena = emulate_command->add_option(
+      "--arena", emulate_options.arena,
+      "Experiment file: one of its robots, driven by the emulator's puppet (`tandem describe NAME`), is the body");
   emulate_command->add_option("--body", emulate_options.body, "Which of its robots; default: the first that can be")
       ->needs(arena);
-  emulate_command->add_option("--name", emulate_options.name, "An eye-bot's name, or that of the first; default: eb0");
-  emulate_command->add_option("--count", emulate_options.count, "How many eye-bots: eb0, eb1, …; default: 1");
-  emulate_command
-      ->add_option("--clock", emulate_options.clock,
-                   "synced (default): an eye-bot refuses commands whose stamps are 250 ms off its clock; unsynced")
-      ->check(CLI::IsMember({"synced", "unsynced"}));
-  emulate_command
-      ->add_option("--images", emulate_options.images_Hz, "Images that an eye-bot sends a second; default: 0")
-      ->check(CLI::Range(0.0, 2.0));
-  emulate_command->callback([&] { code = emulate(emulate_options); });
+  emulate_command->footer("Further options are the emulator's own: --firmware gctronic, --name eb0, …");
+  emulate_command->allow_extras();
+  emulate_command->callback([&] {
+    emulate_options.own = own_options(emulate_command->remaining());
+    code = emulate(emulate_options);
+  });
 
   return parse_and_run(app, argc, argv, code);
 }

@@ -2,6 +2,7 @@
 
 #include "app/report.hpp"
 #include "core/view/picture.hpp"
+#include "mixed_reality/settings/bridge_request.hpp"
 
 namespace tandem::app {
 namespace {
@@ -11,18 +12,21 @@ std::string trajectory_path(const RunOptions& options, const core::Scenario& sce
   return scenario.trajectory ? scenario.trajectory->path : "";
 }
 
-std::vector<NamedFile> inputs_of(const core::Scenario& scenario) {
+std::vector<NamedFile> inputs_of(const core::Scenario& scenario, const hal::Catalog& catalog) {
   std::vector<NamedFile> inputs{{"experiment", scenario.file}};
   if (scenario.floor.source == "image") inputs.push_back({"floor's image", scenario.floor.path});
   for (const core::RobotItem& robot : scenario.robots) {
-    if (robot.bridge && !robot.bridge->map.empty()) inputs.push_back({"robot's map", robot.bridge->map});
+    if (!robot.bridge) continue;
+    for (const auto& [what, path] :
+         mixed_reality::bridge_inputs(catalog, mixed_reality::bridge_request(scenario, robot, 0)))
+      inputs.push_back({what, path});
   }
   return inputs;
 }
 
 }  // namespace
 
-hal::Status check_output_paths(const RunOptions& options, const core::Scenario& scenario) {
+hal::Status check_output_paths(const RunOptions& options, const core::Scenario& scenario, const hal::Catalog& catalog) {
   if (!options.picture.empty()) {
     const auto format = core::picture_format(options.picture);
     if (!format.ok()) return hal::Error{"--picture: " + format.error().message};
@@ -33,7 +37,7 @@ hal::Status check_output_paths(const RunOptions& options, const core::Scenario& 
                       {"trajectory", trajectory_path(options, scenario)},
                       {"dump", options.dump},
                       {"log", options.log}},
-                     inputs_of(scenario));
+                     inputs_of(scenario, catalog));
 }
 
 hal::Result<RunOutputs> open_outputs(const RunOptions& options, const core::Scenario& scenario,

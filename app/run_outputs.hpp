@@ -7,6 +7,7 @@
 #include "app/state_dump.hpp"
 #include "core/record/trajectory.hpp"
 #include "core/sim/world.hpp"
+#include "hal/catalog.hpp"
 #include "hal/output_file.hpp"
 
 namespace tandem::app {
@@ -21,7 +22,7 @@ struct RunOutputs {
 
 /// Whether the paths make sense together. Errors: one names a file that the experiment is read from, or another
 /// output's; a picture of no known ending.
-hal::Status check_output_paths(const RunOptions& options, const core::Scenario& scenario);
+hal::Status check_output_paths(const RunOptions& options, const core::Scenario& scenario, const hal::Catalog& catalog);
 
 /// Opens all of them. Error: one cannot be written, or its robots are not there.
 hal::Result<RunOutputs> open_outputs(const RunOptions& options, const core::Scenario& scenario,

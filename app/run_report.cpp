@@ -7,9 +7,10 @@
 #include "app/measure.hpp"
 #include "app/report.hpp"
 #include "app/sha256.hpp"
-#include "core/config/xml.hpp"
 #include "hal/json/json.hpp"
 #include "hal/unit.hpp"
+#include "hal/xml/xml.hpp"
+#include "mixed_reality/settings/bridge_request.hpp"
 
 namespace tandem::app {
 namespace {
@@ -97,7 +98,7 @@ void add_members(hal::Json& json, const RunResult& result, bool between_ticks) {
   if (!world.measures().all().empty()) json["measures"] = world.measures().all();
   if (result.real != nullptr) add_real_robots(json, *result.real);
   json["program"] = to_json(build_info());
-  json["settings"] = core::to_xml(world.scenario().effective);
+  json["settings"] = hal::to_xml(world.scenario().effective);
 }
 
 }  // namespace
@@ -131,7 +132,10 @@ InputFiles input_files(const core::Scenario& scenario, const hal::PluginLoader& 
   }
   if (scenario.floor.source == "image") files.others.push_back(described("", "", scenario.floor.path));
   for (const core::RobotItem& robot : scenario.robots) {
-    if (robot.bridge && !robot.bridge->map.empty()) files.others.push_back(described(robot.id, "", robot.bridge->map));
+    if (!robot.bridge) continue;
+    for (const auto& file :
+         mixed_reality::bridge_inputs(loader.catalog(), mixed_reality::bridge_request(scenario, robot, 0)))
+      files.others.push_back(described(robot.id, "", file.second));
   }
   return files;
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <filesystem>
 #include <numeric>
 #include <utility>
 
@@ -119,6 +120,13 @@ std::string closest(std::string_view word, const std::vector<std::string>& candi
     }
   }
   return best;
+}
+
+std::string path_beside(const std::string& path, const std::string& file) {
+  namespace fs = std::filesystem;
+  std::error_code ignored;
+  if (path.empty() || fs::path(path).is_absolute() || fs::exists(path, ignored)) return path;
+  return (fs::path(file).parent_path() / path).string();
 }
 
 ElementReader::ElementReader(const Element& element, Problems& problems, std::vector<std::string> ignore,

@@ -58,6 +58,9 @@ std::string did_you_mean(std::string_view word, const std::vector<std::string>& 
 /// The closest of `candidates` to `word` by edit distance, or empty when none is near: for "did you mean".
 std::string closest(std::string_view word, const std::vector<std::string>& candidates);
 
+/// A path as a file names it: relative to the working directory, or else to the folder of that file.
+std::string path_beside(const std::string& path, const std::string& file);
+
 /// Fills described parameters from an element's attributes, groups and lists of them from its children. Every one must
 /// be asked for, else it is unknown: call `finish()` after `describe` to have unknown ones reported with "did you
 /// mean".

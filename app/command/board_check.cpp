@@ -25,7 +25,7 @@ void check_controller(const core::Scenario& scenario, const core::RobotItem& ite
 }  // namespace
 
 int check(const CheckOptions& options) {
-  if (is_map(options.experiment)) return check_map(options.experiment);
+  if (const auto other = check_other_file(options.experiment)) return *other;
   const auto scenario = read_or_complain(options.experiment, options.overrides);
   if (!scenario) return kBadInput;
   hal::PluginLoader loader(plugin_folders(), catalog());

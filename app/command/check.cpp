@@ -7,7 +7,7 @@
 namespace tandem::app {
 
 int check(const CheckOptions& options) {
-  if (is_map(options.experiment)) return check_map(options.experiment);
+  if (const auto other = check_other_file(options.experiment)) return *other;
   const auto scenario = read_or_complain(options.experiment, options.overrides);
   if (!scenario) return kBadInput;
   // What only making the world can tell: libraries, devices, parameters, places.

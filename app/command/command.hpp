@@ -54,7 +54,7 @@ struct UpgradeOptions {
 };
 int upgrade(const UpgradeOptions& options);
 
-/// Kinds: controllers, hooks, devices, engines, robots, elements; empty: all.
+/// Kinds: bridges, controllers, devices, elements, emulators, engines, hooks, robots; empty: all.
 int list(const std::string& kind);
 int describe(const std::string& name);
 
@@ -95,14 +95,10 @@ struct EmulateOptions {
   std::string robot;
   std::string link;
   std::string log;
-  std::string firmware;  ///< empty: what that robot usually has
   std::vector<std::string> faults;
-  std::string arena;             ///< experiment one of whose robots is the body
-  std::string body;              ///< which robot; empty: the first that can be
-  std::string name = "eb0";      ///< of an eye-bot, or of the first
-  int count = 1;                 ///< how many eye-bots
-  std::string clock = "synced";  ///< an eye-bot's: synced or unsynced with its hub's
-  double images_Hz = 0.0;        ///< how many images an eye-bot sends a second
+  std::string arena;                                       ///< experiment one of whose robots is the body
+  std::string body;                                        ///< which robot; empty: the first that can be
+  std::vector<std::pair<std::string, std::string>> own{};  ///< the emulator's own options: name, value
 };
 int emulate(const EmulateOptions& options);
 
@@ -111,10 +107,6 @@ struct InspectOptions {
   double seconds = 2.0;
 };
 int inspect(const InspectOptions& options);
-/// The same for links that carry ASEBA messages.
-int inspect_aseba(const InspectOptions& options);
-/// The same for LCM.
-int inspect_lcm(const InspectOptions& options);
 
 // --- shared by the commands ---
 
@@ -124,9 +116,7 @@ std::int64_t steps_of(std::optional<std::int64_t> steps, std::optional<double> s
 /// Reads an experiment and prints every problem; nothing when there is an error.
 std::optional<core::Scenario> read_or_complain(const std::string& path, const std::vector<std::string>& overrides);
 void print_problems(const core::Problems& problems);
-/// Whether the file is a foot-bot's map, and no experiment.
-bool is_map(const std::string& path);
-/// `check` for such a map.
-int check_map(const std::string& path);
+/// `check` for files of the catalog's other types; nothing when it is none.
+std::optional<int> check_other_file(const std::string& path);
 
 }  // namespace tandem::app

@@ -4,107 +4,83 @@
 
 #include "app/catalog.hpp"
 #include "app/command/command.hpp"
-#include "app/eyebot_puppeteer.hpp"
-#include "app/footbot_puppeteer.hpp"
 #include "app/living_arena.hpp"
-#include "app/puppeteer.hpp"
 #include "app/signals.hpp"
-#include "bridges/epuck_emulator/emulator.hpp"
-#include "bridges/eyebot_emulator/emulator.hpp"
-#include "bridges/eyebot_emulator/shared_body.hpp"
-#include "bridges/footbot_emulator/emulator.hpp"
 
 namespace tandem::app {
 namespace {
 
-namespace epuck = bridges::epuck_emulator;
-namespace footbot = bridges::footbot_emulator;
-namespace eyebot = bridges::eyebot_emulator;
+using bridges::EmulatorType;
+
+int complain(const std::string& message, int code = kBadInput) {
+  fmt::print(stderr, "error: {}\n", message);
+  return code;
+}
 
 /// The world of `options.arena` with its robot in it; null, when it was told what is wrong.
-template <class Arena, class Puppeteer>
-std::unique_ptr<Arena> make_arena(const EmulateOptions& options, hal::PluginLoader& loader,
-                                  const std::atomic<bool>& stop) {
+std::unique_ptr<LivingArena> make_arena(const EmulateOptions& options, const EmulatorType& emulator,
+                                        hal::PluginLoader& loader, bridges::SharedPorts& ports,
+                                        const std::atomic<bool>& stop) {
   const auto scenario = read_or_complain(options.arena, {});
   if (!scenario) return nullptr;
   core::Problems problems;
   auto world = core::World::make(*scenario, loader, {}, problems);
   print_problems(problems);
   if (world == nullptr) return nullptr;
-  const auto robot = Puppeteer::find(*world, options.body);
+  const auto robot = PortPuppeteer::find(*world, emulator, options.body);
   if (!robot.ok()) {
-    fmt::print(stderr, "error: {}\n", robot.error().message);
+    complain(robot.error().message);
     return nullptr;
   }
-  return std::make_unique<Arena>(std::move(world), robot.value(), stop);
+  return std::make_unique<LivingArena>(std::move(world), robot.value(), ports, stop);
 }
 
-/// Runs an emulator, whose options begin as `emulated`, in the arena that was asked for.
-template <class Puppeteer, class Body, class Emulated>
-int emulate_robot(const EmulateOptions& options, Emulated emulated) {
-  using Arena = LivingArena<Puppeteer, Body>;
-  const std::atomic<bool>& stop = catch_signals();
-  emulated.link = options.link;
-  emulated.log_file = options.log;
-  emulated.faults = options.faults;
-  emulated.log = hal::Log([](hal::Severity, std::string_view text) { fmt::print(stderr, "{}\n", text); });
-  if constexpr (requires { emulated.firmware; }) {
-    if (!options.firmware.empty()) emulated.firmware = options.firmware;
-  }
-  hal::PluginLoader loader(plugin_folders(), catalog());
-  std::unique_ptr<Arena> arena;
-  if (!options.arena.empty()) {
-    arena = make_arena<Arena, Puppeteer>(options, loader, stop);
-    if (arena == nullptr) return kBadInput;
-    emulated.body = &arena->body();
-  }
-  const hal::Status ended = run(emulated, stop);
-  if (ended.ok()) return kDone;
-  fmt::print(stderr, "error: {}\n", ended.error().message);
-  request_stop();  // the arena's thread looks at the same flag
-  return kBadInput;
-}
-
-/// How a host reaches the foot-bot that is shown at `path`.
-std::string host_link(const std::string& path) {
-  if (path.starts_with("tcp:") || path.starts_with("can:")) return path;
-  return "slcan:" + path + "@1000000";
-}
-
-int emulate_eyebots(const EmulateOptions& options) {
-  eyebot::Options emulated;
-  emulated.robot.name = options.name;
-  emulated.robot.clock_synced = options.clock == "synced";
-  emulated.robot.image_hz = options.images_Hz;
-  emulated.count = options.count;
-  emulated.ready = [&](const std::string& url) {
-    const std::string who = options.count > 1 ? fmt::format("{} eye-bots", options.count) : "eye-bot " + options.name;
-    fmt::print(stderr, "{} on {}: connect with --link lcm:{}; Ctrl-C ends it\n", who, url, url);
-  };
-  return emulate_robot<EyebotPuppeteer, eyebot::SharedBody>(options, std::move(emulated));
+/// What the command line says of the emulator's own options.
+hal::Result<std::shared_ptr<const void>> read_own(const EmulateOptions& options, const EmulatorType& emulator) {
+  hal::Element element;
+  element.name = "emulate " + std::string(emulator.name);
+  element.file = "tandem";
+  for (const auto& [name, value] : options.own) element.attributes.push_back({name, value, 0});
+  hal::Problems problems;
+  hal::ElementReader reader(element, problems);
+  auto own = emulator.read(reader);
+  reader.finish();
+  if (problems.empty()) return own;
+  std::string message;
+  for (const hal::Problem& p : problems) message += (message.empty() ? "" : "\n") + p.message;
+  return hal::Error{message};
 }
 
 }  // namespace
 
 int emulate(const EmulateOptions& options) {
-  if (options.robot == "eyebot") return emulate_eyebots(options);
-  if (options.robot == "epuck") {
-    epuck::Options emulated;
-    emulated.ready = [](const std::string& path) {
-      fmt::print(stderr, "e-puck's firmware on {}: connect with --link serial:{}@115200; Ctrl-C ends it\n", path, path);
-    };
-    return emulate_robot<Puppeteer, epuck::SharedBody>(options, std::move(emulated));
+  const auto* const emulator = catalog().find<EmulatorType>(options.robot);
+  if (emulator == nullptr) {
+    fmt::print(stderr, "tandem emulate: there is no emulator of '{}'; there are: {}\n", options.robot,
+               hal::listed(catalog().names(EmulatorType::kCategory)));
+    return kWrongUsage;
   }
-  if (options.robot == "footbot") {
-    footbot::Options emulated;
-    emulated.ready = [](const std::string& path) {
-      fmt::print(stderr, "foot-bot's modules on {}: connect with --link {}; Ctrl-C ends it\n", path, host_link(path));
-    };
-    return emulate_robot<FootbotPuppeteer, footbot::SharedBody>(options, std::move(emulated));
+  auto own = read_own(options, *emulator);
+  if (!own.ok()) return complain(own.error().message);
+  const std::atomic<bool>& stop = catch_signals();
+  bridges::EmulatorRequest request;
+  request.link = options.link;
+  request.log_file = options.log;
+  request.faults = options.faults;
+  request.options = std::move(own).value();
+  request.log = hal::Log([](hal::Severity, std::string_view text) { fmt::print(stderr, "{}\n", text); });
+  request.ready = [](const std::string& text) { fmt::print(stderr, "{}; Ctrl-C ends it\n", text); };
+  hal::PluginLoader loader(plugin_folders(), catalog());
+  bridges::SharedPorts ports(emulator->ports());
+  std::unique_ptr<LivingArena> arena;
+  if (!options.arena.empty()) {
+    arena = make_arena(options, *emulator, loader, ports, stop);
+    if (arena == nullptr) return kBadInput;
   }
-  fmt::print(stderr, "tandem emulate: there is no emulator of '{}'; there are: epuck, footbot, eyebot\n",
-             options.robot);
-  return kWrongUsage;
+  const hal::Status ended = emulator->run(request, arena == nullptr ? nullptr : &ports, stop);
+  if (ended.ok()) return kDone;
+  request_stop();  // the arena's thread looks at the same flag
+  return complain(ended.error().message);
 }
 
 }  // namespace tandem::app

@@ -7,6 +7,8 @@
 #include "app/catalog.hpp"
 #include "app/command/command.hpp"
 #include "app/terminal.hpp"
+#include "bridges/bridge_type.hpp"
+#include "bridges/emulation/emulator_type.hpp"
 #include "core/config/reader.hpp"
 #include "core/device/device.hpp"
 #include "core/loop/hook.hpp"
@@ -74,7 +76,9 @@ const std::map<std::string, ListKind>& kinds() {
   static const std::map<std::string, ListKind> all = {
       {"controllers", [](const hal::Catalog& c) { list_plugins<hal::ControllerType>(c, "controllers"); }},
       {"hooks", [](const hal::Catalog& c) { list_plugins<core::HookType>(c, "hooks"); }},
+      {"bridges", [](const hal::Catalog& c) { list_plugins<bridges::BridgeType>(c, "bridges to real robots"); }},
       {"devices", &list_devices},
+      {"emulators", [](const hal::Catalog& c) { list_plugins<bridges::EmulatorType>(c, "emulators"); }},
       {"engines", [](const hal::Catalog& c) { list_names(c, core::EngineType::kCategory, "physics engines"); }},
       {"robots", [](const hal::Catalog& c) { list_names(c, hal::DataSheet::kCategory, "robots"); }},
       {"elements", &list_elements}};
@@ -185,6 +189,18 @@ bool describe_robot(const hal::Catalog& catalog, const std::string& name) {
   return true;
 }
 
+/// An emulator, and what the command line may say to it.
+bool describe_emulator(const hal::Catalog& catalog, const std::string& name) {
+  const auto* const type = catalog.find<bridges::EmulatorType>(name);
+  if (type == nullptr) return false;
+  fmt::print("emulator {}: {}{}\n  its body in an --arena: an {} under {}\n", name, type->summary, from(catalog, type),
+             type->kind, type->puppet);
+  core::ManualWriter manual;
+  (void)type->read(manual);
+  fmt::print("options, written --name value:\n{}", manual.text().empty() ? "  none\n" : manual.text());
+  return true;
+}
+
 bool describe_element(const hal::Catalog& catalog, const std::string& name) {
   bool found = false;
   for (const core::ElementManual& m : core::element_manuals(catalog)) {
@@ -226,7 +242,8 @@ int describe(const std::string& name) {
   const bool device = describe_device(catalog, name);
   const bool controller = describe_plugin<hal::ControllerType>(catalog, name);
   const bool hook = describe_plugin<core::HookType>(catalog, name);
-  if (robot || engine || element || device || controller || hook) return kDone;
+  const bool emulator = describe_emulator(catalog, name);
+  if (robot || engine || element || device || controller || hook || emulator) return kDone;
   std::vector<std::string> all;
   for (const core::ElementManual& m : core::element_manuals(catalog)) all.emplace_back(m.name);
   for (const core::DeviceType* t : catalog.all<core::DeviceType>()) all.emplace_back(t->device);

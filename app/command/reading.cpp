@@ -6,9 +6,9 @@
 #include "app/command/command.hpp"
 #include "app/terminal.hpp"
 #include "core/config/reader.hpp"
-#include "core/config/xml.hpp"
+#include "hal/file_type.hpp"
+#include "hal/xml/xml.hpp"
 #include "mixed_reality/settings/bridge_check.hpp"
-#include "mixed_reality/settings/map_file.hpp"
 
 namespace tandem::app {
 
@@ -19,7 +19,7 @@ void print_problems(const core::Problems& problems) {
 std::optional<core::Scenario> read_or_complain(const std::string& path, const std::vector<std::string>& overrides) {
   core::Problems problems;
   auto scenario = core::read_experiment(path, overrides, catalog(), problems);
-  if (scenario) mixed_reality::check_bridges(*scenario, problems);
+  if (scenario) mixed_reality::check_bridges(*scenario, catalog(), problems);
   print_problems(problems);
   if (core::has_errors(problems)) return std::nullopt;
   return scenario;
@@ -33,20 +33,16 @@ std::int64_t steps_of(std::optional<std::int64_t> steps, std::optional<double> s
   return length_s > 0.0 ? std::max<std::int64_t>(1, wanted) : 0;  // a duration below a tick is one tick, not endless
 }
 
-bool is_map(const std::string& path) {
-  core::Problems ignored;
-  const auto root = core::read_xml_file(path, ignored);
-  return root && root->name == "footbot_map";
-}
-
-int check_map(const std::string& path) {
+std::optional<int> check_other_file(const std::string& path) {
   core::Problems problems;
-  const auto map = mixed_reality::read_footbot_map(path, problems);
+  const auto root = hal::read_xml_file(path, problems);
+  const auto* const type = root ? catalog().find<hal::FileType>(root->name) : nullptr;
+  if (type == nullptr) return std::nullopt;
+  problems.clear();
+  const std::string content = type->check(path, problems);
   print_problems(problems);
-  if (!map) return kBadInput;
-  std::size_t variables = 0;
-  for (const auto& node : map->nodes) variables += node.variables.size();
-  fmt::print("{}: good: {} nodes, {} variables\n", path, map->nodes.size(), variables);
+  if (content.empty()) return kBadInput;
+  fmt::print("{}: good: {}\n", path, content);
   return kDone;
 }
 

@@ -24,7 +24,7 @@
 #include "hal/output_file.hpp"
 #include "hal/plugin_loader.hpp"
 #include "mixed_reality/safety/supervised_robot.hpp"
-#include "mixed_reality/settings/bridge_types.hpp"
+#include "mixed_reality/settings/bridge_request.hpp"
 #include "mixed_reality/settings/patience.hpp"
 #include "mixed_reality/time/pacer.hpp"
 
@@ -95,6 +95,13 @@ void stop_and_wait(bridges::RobotBridge& bridge, double within_s, mixed_reality:
   }
 }
 
+/// The files that the command reads: the experiment, and those that the bridge asks for.
+std::vector<NamedFile> input_files(const bridges::BridgeRequest& request, const std::string& experiment) {
+  std::vector<NamedFile> files = {{"experiment", experiment}};
+  for (const auto& [what, path] : mixed_reality::bridge_inputs(catalog(), request)) files.push_back({what, path});
+  return files;
+}
+
 /// Begins the report; what the end adds comes later.
 void begin_report(hal::Json& json, const core::Scenario& scenario, const core::RobotItem& item,
                   const bridges::RobotBridge& bridge, const mixed_reality::Supervisor& supervisor,
@@ -144,8 +151,8 @@ int robot(const RobotOptions& options) {
   if (!item.bridge) item.bridge = core::BridgeConfig{};
   if (!options.link.empty()) item.bridge->link = options.link;
   const core::ControllerConfig& config = scenario->controllers[item.controller];
-  if (const hal::Status apart =
-          check_apart({{"report", options.report}}, {{"experiment", options.file}, {"robot's map", item.bridge->map}});
+  bridges::BridgeRequest request = mixed_reality::bridge_request(*scenario, item, scenario->seed.value_or(1));
+  if (const hal::Status apart = check_apart({{"report", options.report}}, input_files(request, options.file));
       !apart.ok())
     return complain(kBadInput, apart.error().message);
   std::optional<hal::OutputFile> report;
@@ -161,8 +168,9 @@ int robot(const RobotOptions& options) {
   const std::atomic<bool>& stop = catch_signals();
   std::signal(SIGPIPE, SIG_IGN);  // who reads our output may end before us
   Watchdog watchdog(options.step_timeout_s, stop);
-  auto made = mixed_reality::make_bridge(
-      {item, config, scenario->ticks_per_second, scenario->seed.value_or(1), guarded.permit(), &hub_unix_ns}, log);
+  request.permit = guarded.permit();
+  request.unix_clock = &hub_unix_ns;
+  auto made = mixed_reality::make_bridge(catalog(), request, log);
   if (!made.ok()) return complain(kBadInput, made.error().message);
   bridges::RobotBridge& bridge = **made;
   hal::PluginLoader loader(plugin_folders(), catalog());
@@ -192,7 +200,7 @@ int robot(const RobotOptions& options) {
   catch_rearm();
   mixed_reality::SupervisedParams supervision;
   supervision.rearm = mixed_reality::rearm_params(*item.bridge);
-  supervision.battery = mixed_reality::battery_limit(item.kind);
+  supervision.battery = mixed_reality::battery_limit(catalog(), item.kind);
   supervision.tick_ns = hal::time_of_tick(1, scenario->ticks_per_second);
   supervision.frozen_after_ns = supervision.tick_ns + kFrozenAfter_ns;
   mixed_reality::SupervisedRobot supervised(item.id, bridge, supervision, log);

@@ -144,6 +144,7 @@ std::unique_ptr<mixed_reality::MixedSession> join_real_robots(std::unique_ptr<co
   if (!has_real_robots(world->scenario())) return nullptr;
   mixed_reality::MixedOptions options;
   options.log = log;
+  options.catalog = &catalog();
   options.freezes = [&guarded] { return guarded.freezes(); };
   options.guarded = [&guarded] { return guarded.guarded(); };
   catch_rearm();
@@ -153,11 +154,11 @@ std::unique_ptr<mixed_reality::MixedSession> join_real_robots(std::unique_ptr<co
     guarded.update();
     hub_faults.apply(clock.now_ns());
   };
-  const auto maker = [&](const mixed_reality::BridgeRequest& request) {
-    mixed_reality::BridgeRequest permitted = request;
+  const auto maker = [&](const bridges::BridgeRequest& request) {
+    bridges::BridgeRequest permitted = request;
     permitted.permit = guarded.permit();
     permitted.unix_clock = &hub_unix_ns;
-    auto bridge = mixed_reality::make_bridge(permitted, log);
+    auto bridge = mixed_reality::make_bridge(catalog(), permitted, log);
     if (bridge.ok()) guarded.add(**bridge);
     return bridge;
   };
@@ -211,7 +212,7 @@ int run(const RunOptions& options) {
     return complain(kBadInput, left_out.error().message);
   if (!options.hub_faults.empty() && !has_real_robots(*scenario))
     return complain(kBadInput, "--hub-fault needs a real robot: no robot of this experiment has a <bridge>");
-  if (const hal::Status paths = check_output_paths(options, *scenario); !paths.ok())
+  if (const hal::Status paths = check_output_paths(options, *scenario, catalog()); !paths.ok())
     return complain(kBadInput, paths.error().message);
 
   GuardedRobots guarded(scenario->robots,

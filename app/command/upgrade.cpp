@@ -9,15 +9,15 @@
 
 #include "app/command/command.hpp"
 #include "app/terminal.hpp"
-#include "core/config/xml.hpp"
 #include "hal/output_file.hpp"
+#include "hal/xml/xml.hpp"
 
 namespace tandem::app {
 
 int upgrade(const UpgradeOptions& options) {
   const std::string& path = options.experiment;
   core::Problems problems;
-  if (!core::read_xml_file(path, problems)) {  // judges what kind of file it is, too
+  if (!hal::read_xml_file(path, problems)) {  // judges what kind of file it is, too
     print_problems(problems);
     return kBadInput;
   }

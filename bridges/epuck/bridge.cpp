@@ -48,20 +48,6 @@ EpuckBridge::~EpuckBridge() {
   shut_down();
 }
 
-void EpuckBridge::start() {
-  TANDEM_CHECK(!thread_.joinable() && !ending_, "a bridge is started once");
-  thread_ = std::thread([this] { run(); });
-}
-
-void EpuckBridge::shut_down() {
-  ending_ = true;
-  {
-    const std::lock_guard lock(mutex_);
-    changed_.notify_all();
-  }
-  if (thread_.joinable()) thread_.join();
-}
-
 // --- the thread ---
 
 void EpuckBridge::run() {
@@ -136,6 +122,12 @@ void EpuckBridge::say_farewell(ByteLink& link) {
   }
 }
 
+/// Every handshake stops the robot.
+Interruptions EpuckBridge::interruptions() const noexcept {
+  const SessionStatistics& s = driver_.session().statistics();
+  return {s.handshakes, s.restarts};
+}
+
 void EpuckBridge::pump_now(TimeNs now) noexcept {
   if (link_ == nullptr) return;
   const SessionState before = driver_.state();
@@ -147,87 +139,23 @@ void EpuckBridge::pump_now(TimeNs now) noexcept {
 
 hal::Status EpuckBridge::wait_active(TimeNs timeout_ns) {
   std::unique_lock lock(mutex_);
-  const auto active = [this] { return ending_ || driver_.state() == SessionState::Active; };
-  if (changed_.wait_for(lock, std::chrono::nanoseconds(timeout_ns), active) && !ending_) return {};
+  if (active_within(lock, timeout_ns)) return {};
   const std::string who = "e-puck '" + std::string(driver_.robot().id()) + "' is not there: ";
   if (!link_error_.empty()) return hal::Error{who + link_error_};
   const char* trouble = driver_.session().trouble();
   return hal::Error{who + (*trouble != '\0' ? trouble : state_name(driver_.state())) + "; " + advice()};
 }
 
-void EpuckBridge::latch(hal::Tick tick, TimeNs now) noexcept {
-  const std::lock_guard lock(mutex_);
-  driver_.latch(tick, now);
-  note_health();
-}
-
-void EpuckBridge::note_health() noexcept {
-  const std::uint64_t handshakes = driver_.session().statistics().handshakes;
-  const bool begun_anew = was_active_ && handshakes != handshakes_;  // and every handshake stops the robot
-  handshakes_ = handshakes;
-  const std::uint64_t restarts = driver_.session().statistics().restarts;
-  stopped_itself_ = was_active_ && restarts != restarts_;
-  restarts_ = restarts;
-  const SessionState state = driver_.state();
-  if (state == SessionState::Active && !firmware_differs()) {
-    health_ = begun_anew ? LinkHealth::Suspect : LinkHealth::Active;
-    was_active_ = true;
-  } else if (!was_active_ || state == SessionState::Active) {
-    health_ = LinkHealth::Connecting;
-  } else {
-    health_ = state == SessionState::Lost ? LinkHealth::Lost : LinkHealth::Suspect;
-  }
-}
-
-void EpuckBridge::commit(TimeNs now) noexcept {
-  const std::lock_guard lock(mutex_);
-  driver_.commit(now);
-  pump_now(now);
-}
-
-void EpuckBridge::fault(TimeNs now, std::string_view why) {
-  const std::lock_guard lock(mutex_);
-  driver_.fault(now, why);
-  pump_now(now);
-}
-
-void EpuckBridge::stop(TimeNs now) noexcept {
-  const std::lock_guard lock(mutex_);
-  driver_.stop(now);
-  pump_now(now);
-}
-
-void EpuckBridge::resume() noexcept {
-  const std::lock_guard lock(mutex_);
-  driver_.resume();
-}
-
 // --- what is known ---
 
-std::vector<PortView> EpuckBridge::taken() const {
-  std::vector<PortView> all;
-  for (const auto& view : driver_.robot().taken()) all.push_back({view.type, view.data});
-  return all;
-}
-
-LinkHealth EpuckBridge::health() const noexcept {
-  const std::lock_guard lock(mutex_);
-  return health_;
-}
-
-bool EpuckBridge::stopped_itself() const noexcept {
-  const std::lock_guard lock(mutex_);
-  return stopped_itself_;
-}
-
-bool EpuckBridge::firmware_differs() const noexcept {
+bool EpuckBridge::is_another() const noexcept {
   return driver_.state() == SessionState::Active &&
          !firmware_fits(settings_.firmware, driver_.session().identity().firmware);
 }
 
 bool EpuckBridge::mismatched() const noexcept {
   const std::lock_guard lock(mutex_);
-  return firmware_differs();
+  return is_another();
 }
 
 bool EpuckBridge::at_rest() const noexcept {
@@ -238,7 +166,7 @@ bool EpuckBridge::at_rest() const noexcept {
 std::string EpuckBridge::trouble() const {
   const std::lock_guard lock(mutex_);
   if (!link_error_.empty()) return link_error_;
-  if (firmware_differs()) {
+  if (is_another()) {
     return "it runs the firmware '" + std::string(driver_.session().identity().version_text()) + "', not '" +
            settings_.firmware + "' as the file says; correct firmware=\"…\" or say auto";
   }
@@ -304,11 +232,6 @@ void EpuckBridge::describe(StatusVisitor& visitor) const {
   visitor.count("bytes_out", s.bytes.bytes_out);
   visitor.number("rolled_left_m", s.odometry.left_m);
   visitor.number("rolled_right_m", s.odometry.right_m);
-}
-
-SessionState EpuckBridge::state() const noexcept {
-  const std::lock_guard lock(mutex_);
-  return driver_.state();
 }
 
 Odometry EpuckBridge::odometry() const noexcept {

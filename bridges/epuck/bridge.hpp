@@ -11,14 +11,11 @@
 // robot moves, it drives on until the link is back; when this process is killed, until a guardian (bridges/guardian),
 // where one was started, stops it. Keep speeds small where that matters.
 #pragma once
-#include <atomic>
-#include <condition_variable>
-#include <mutex>
-#include <thread>
+#include <memory>
 
+#include "bridges/driver_bridge.hpp"
 #include "bridges/epuck/driver.hpp"
 #include "bridges/link/link_text.hpp"
-#include "bridges/robot_bridge.hpp"
 
 namespace tandem::bridges::epuck {
 
@@ -54,34 +51,23 @@ struct BridgeStatus {
 };
 
 /// Owns link and thread.
-class EpuckBridge final : public RobotBridge {
+class EpuckBridge final : public DriverBridge<EpuckBridge, EpuckRobot> {
  public:
   /// `opener` is called from threads of the bridge, again after each hang-up. Times given to the bridge are
   /// CLOCK_MONOTONIC.
   EpuckBridge(BridgeSettings settings, LinkOpener opener, hal::Log log = {});
   /// Stops the robot, waits at most `farewell_ns` for it to confirm, closes the link.
   ~EpuckBridge() override;
-  EpuckBridge(const EpuckBridge&) = delete;
-  EpuckBridge& operator=(const EpuckBridge&) = delete;
 
-  EpuckRobot& robot() noexcept override { return driver_.robot(); }
-  void* port(const hal::PortType& type) noexcept override { return driver_.robot().find(type); }
-  std::vector<PortView> taken() const override;
-  void set_origin(hal::TimeNs origin_ns) noexcept override { driver_.robot().set_origin(origin_ns); }
-
-  void start() override;
   /// Errors: not active within `timeout_ns`; says what is known (link does not open, nobody answers …) and what to do.
   hal::Status wait_active(hal::TimeNs timeout_ns);
-  void shut_down() override;
+  /// `stop`, because the robot's controller failed.
+  void fault(hal::TimeNs now, std::string_view why) {
+    const std::lock_guard lock(mutex_);
+    driver_.fault(now, why);
+    pump_now(now);
+  }
 
-  void latch(hal::Tick tick, hal::TimeNs now) noexcept override;
-  void commit(hal::TimeNs now) noexcept override;
-  void fault(hal::TimeNs now, std::string_view why);
-  void stop(hal::TimeNs now) noexcept override;
-  void resume() noexcept override;
-
-  LinkHealth health() const noexcept override;
-  bool stopped_itself() const noexcept override;
   bool mismatched() const noexcept override;
   bool at_rest() const noexcept override;
   std::string trouble() const override;
@@ -93,38 +79,30 @@ class EpuckBridge final : public RobotBridge {
   LinkReport report() const override;
   void describe(StatusVisitor& visitor) const override;
 
-  SessionState state() const noexcept;
   Odometry odometry() const noexcept;
   BridgeStatus status() const;
 
  private:
+  friend DriverBridge;
   void run();
+  Interruptions interruptions() const noexcept;
+  bool is_another() const noexcept;
+  void after_command(hal::TimeNs now) noexcept { pump_now(now); }
   std::unique_ptr<ByteLink> open_link();
   void serve(ByteLink& link);
   void say_farewell(ByteLink& link);
   void pump_now(hal::TimeNs now) noexcept;
-  bool firmware_differs() const noexcept;
-  void note_health() noexcept;
 
   static constexpr std::uint64_t kStopVersion = 1;  // one robot, one device: nothing of it changes
 
   BridgeSettings settings_;
   LinkOpener opener_;
   hal::Log log_;
-  mutable std::mutex mutex_;         // guards everything below but the ports
-  std::condition_variable changed_;  // state, or end
   EpuckDriver driver_;
   ByteLink* link_ = nullptr;  // while served
   std::string link_error_;
   LinkStatistics bytes_before_;  // of links that are gone
   std::uint64_t links_opened_ = 0;
-  LinkHealth health_ = LinkHealth::Connecting;
-  bool was_active_ = false;
-  std::uint64_t handshakes_ = 0;  // at the last `latch`
-  std::uint64_t restarts_ = 0;    // the same
-  bool stopped_itself_ = false;
-  std::atomic<bool> ending_{false};
-  std::thread thread_;
 };
 
 }  // namespace tandem::bridges::epuck

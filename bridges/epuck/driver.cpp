@@ -59,7 +59,7 @@ void EpuckDriver::judge_margin() noexcept {
 }
 
 hal::WheelSpeeds EpuckDriver::filtered(hal::TimeNs now) noexcept {
-  hal::WheelSpeeds wheels = robot_.wheels();
+  hal::WheelSpeeds wheels = robot_.port<hal::WheelSpeeds>();
   switch (wheels.limit(hal::epuck::kDataSheet).result) {
     case hal::LimitResult::Clamped:
       ++statistics_.clamped;

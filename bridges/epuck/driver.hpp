@@ -12,6 +12,7 @@
 #include "bridges/epuck/robot.hpp"
 #include "bridges/link/link.hpp"
 #include "bridges/link/stall_meter.hpp"
+#include "hal/device/wheels.hpp"
 #include "hal/log.hpp"
 
 namespace tandem::bridges::epuck {

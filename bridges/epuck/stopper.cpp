@@ -30,8 +30,9 @@ std::unique_ptr<guardian::Stopper> make(const StopMessages& messages, guardian::
 
 }  // namespace
 
-guardian::StopperType stopper_type() noexcept {
-  return {hal::epuck::kDataSheet.kind, &make};
+const guardian::StopperType& stopper_type() noexcept {
+  static constexpr guardian::StopperType type{hal::epuck::kDataSheet.kind, &make};
+  return type;
 }
 
 bool EpuckStopper::open(TimeNs now) {

@@ -25,6 +25,6 @@ class EpuckStopper final : public guardian::Stopper {
 };
 
 /// Understands stop messages without a body: the link says all.
-guardian::StopperType stopper_type() noexcept;
+const guardian::StopperType& stopper_type() noexcept;
 
 }  // namespace tandem::bridges::epuck

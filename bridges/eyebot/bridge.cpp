@@ -38,17 +38,10 @@ EyebotBridge::~EyebotBridge() {
   shut_down();
 }
 
-void EyebotBridge::start() {
-  TANDEM_CHECK(!thread_.joinable() && !ending_, "a bridge is started once");
-  thread_ = std::thread([this] { run(); });
-}
-
-void EyebotBridge::shut_down() {
-  ending_ = true;
-  mail_->inbox.wake();
-  if (thread_.joinable()) thread_.join();
-  const std::lock_guard lock(mutex_);
-  changed_.notify_all();
+/// Every interruption has it hover, also one that is over already.
+Interruptions EyebotBridge::interruptions() const noexcept {
+  const DriverStatistics& s = driver_.statistics();
+  return {s.link_stops + s.watchdog_stops, driver_.liveness().restarts() + s.saved_itself};
 }
 
 bool EyebotBridge::publish(const std::string& channel, std::span<const std::byte> data) noexcept {
@@ -162,48 +155,10 @@ void EyebotBridge::say_farewell() {
 
 hal::Status EyebotBridge::wait_active(TimeNs timeout_ns) {
   std::unique_lock lock(mutex_);
-  const auto active = [this] { return ending_ || driver_.state() == RobotState::Active; };
-  if (changed_.wait_for(lock, std::chrono::nanoseconds(timeout_ns), active) && !ending_) return {};
+  if (active_within(lock, timeout_ns)) return {};
   const std::string who = "eye-bot '" + std::string(driver_.robot().id()) + "' is not there: ";
   if (!link_trouble_.empty()) return hal::Error{who + link_trouble_};
   return hal::Error{who + driver_.trouble() + "; " + advice()};
-}
-
-void EyebotBridge::latch(hal::Tick tick, TimeNs now) noexcept {
-  const std::lock_guard lock(mutex_);
-  driver_.pump(now);
-  driver_.latch(tick, now);
-  note_health();
-}
-
-void EyebotBridge::note_health() noexcept {
-  // Every interruption has it hover, also one that is over already.
-  const DriverStatistics& s = driver_.statistics();
-  const std::uint64_t interruptions = s.link_stops + s.watchdog_stops;
-  const bool begun_anew = was_active_ && interruptions != interruptions_;
-  interruptions_ = interruptions;
-  const std::uint64_t own_stops = driver_.liveness().restarts() + s.saved_itself;
-  stopped_itself_ = was_active_ && own_stops != own_stops_;
-  own_stops_ = own_stops;
-  const RobotState state = driver_.state();
-  if (state == RobotState::Active) {
-    health_ = begun_anew ? LinkHealth::Suspect : LinkHealth::Active;
-    was_active_ = true;
-  } else if (!was_active_) {
-    health_ = LinkHealth::Connecting;
-  } else {
-    health_ = state == RobotState::Lost ? LinkHealth::Lost : LinkHealth::Suspect;
-  }
-}
-
-void EyebotBridge::commit(TimeNs now) noexcept {
-  const std::lock_guard lock(mutex_);
-  driver_.commit(now);
-}
-
-void EyebotBridge::stop(TimeNs now) noexcept {
-  const std::lock_guard lock(mutex_);
-  driver_.stop(now);
 }
 
 void EyebotBridge::land(TimeNs now) noexcept {
@@ -211,28 +166,7 @@ void EyebotBridge::land(TimeNs now) noexcept {
   driver_.land(now);
 }
 
-void EyebotBridge::resume() noexcept {
-  const std::lock_guard lock(mutex_);
-  driver_.resume();
-}
-
 // --- what is known ---
-
-std::vector<PortView> EyebotBridge::taken() const {
-  std::vector<PortView> all;
-  for (const auto& view : driver_.robot().taken()) all.push_back({view.type, view.data});
-  return all;
-}
-
-LinkHealth EyebotBridge::health() const noexcept {
-  const std::lock_guard lock(mutex_);
-  return health_;
-}
-
-bool EyebotBridge::stopped_itself() const noexcept {
-  const std::lock_guard lock(mutex_);
-  return stopped_itself_;
-}
 
 std::string EyebotBridge::trouble() const {
   const std::lock_guard lock(mutex_);
@@ -304,19 +238,9 @@ void EyebotBridge::describe(StatusVisitor& visitor) const {
   visitor.count("commands_not_finite", s.driver.not_finite);
 }
 
-RobotState EyebotBridge::state() const noexcept {
-  const std::lock_guard lock(mutex_);
-  return driver_.state();
-}
-
 bool EyebotBridge::at_rest() const noexcept {
   const std::lock_guard lock(mutex_);
   return driver_.at_rest();
-}
-
-DriverStatistics EyebotBridge::statistics() const noexcept {
-  const std::lock_guard lock(mutex_);
-  return driver_.statistics();
 }
 
 BridgeStatus EyebotBridge::status() const {

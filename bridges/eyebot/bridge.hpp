@@ -12,16 +12,13 @@
 // itself.
 #pragma once
 #include <atomic>
-#include <condition_variable>
 #include <functional>
 #include <memory>
-#include <mutex>
-#include <thread>
 
+#include "bridges/driver_bridge.hpp"
 #include "bridges/eyebot/driver.hpp"
 #include "bridges/eyebot/farewell.hpp"
 #include "bridges/lcm/lcm_link.hpp"
-#include "bridges/robot_bridge.hpp"
 #include "bridges/send_permit.hpp"
 
 namespace tandem::bridges::eyebot {
@@ -69,34 +66,19 @@ struct StopDetails {
 };
 
 /// Owns the thread.
-class EyebotBridge final : public RobotBridge, private Outbox {
+class EyebotBridge final : public DriverBridge<EyebotBridge, EyebotRobot>, private Outbox {
  public:
   /// `opener` is called by the bridge's thread, and again whenever the link is dead. Times given to the bridge are
   /// CLOCK_MONOTONIC.
   EyebotBridge(BridgeSettings settings, LcmOpener opener, hal::Log log = {});
   /// Has the robot hover and land, as the settings say, and waits as long as they say.
   ~EyebotBridge() override;
-  EyebotBridge(const EyebotBridge&) = delete;
-  EyebotBridge& operator=(const EyebotBridge&) = delete;
 
-  EyebotRobot& robot() noexcept override { return driver_.robot(); }
-  void* port(const hal::PortType& type) noexcept override { return driver_.robot().find(type); }
-  std::vector<PortView> taken() const override;
-  void set_origin(hal::TimeNs origin_ns) noexcept override { driver_.robot().set_origin(origin_ns); }
-
-  void start() override;
   /// Errors: not active within `timeout_ns`; says what is known (no link, nothing heard, another version …).
   hal::Status wait_active(hal::TimeNs timeout_ns);
-  void shut_down() override;
 
-  void latch(hal::Tick tick, hal::TimeNs now) noexcept override;
-  void commit(hal::TimeNs now) noexcept override;
-  void stop(hal::TimeNs now) noexcept override;
   void land(hal::TimeNs now) noexcept override;
-  void resume() noexcept override;
 
-  LinkHealth health() const noexcept override;
-  bool stopped_itself() const noexcept override;
   bool at_rest() const noexcept override;
   std::string trouble() const override;
   std::string advice() const override;
@@ -109,8 +91,6 @@ class EyebotBridge final : public RobotBridge, private Outbox {
   void describe(StatusVisitor& visitor) const override;
 
   // What a loop asks in every tick; `status` copies much more.
-  RobotState state() const noexcept;
-  DriverStatistics statistics() const noexcept;
   BridgeStatus status() const;
   StopDetails stop_details() const;
 
@@ -122,17 +102,18 @@ class EyebotBridge final : public RobotBridge, private Outbox {
   };
 
   bool publish(const std::string& channel, std::span<const std::byte> data) noexcept override;
+  friend DriverBridge;
   void run();
+  void wake() { mail_->inbox.wake(); }
+  Interruptions interruptions() const noexcept;
+  void before_latch(hal::TimeNs now) noexcept { driver_.pump(now); }
   void keep_link();
   hal::Result<std::shared_ptr<lcm_bus::LcmLink>> open();
   void say_farewell();
-  void note_health() noexcept;
 
   BridgeSettings settings_;
   LcmOpener opener_;
   std::shared_ptr<Mail> mail_;
-  mutable std::mutex mutex_;  // guards everything below but the ports
-  std::condition_variable changed_;
   std::shared_ptr<lcm_bus::LcmLink> link_;
   std::string link_trouble_;
   std::uint32_t turn_ = 0;  // of the permit, when the link was opened
@@ -140,13 +121,6 @@ class EyebotBridge final : public RobotBridge, private Outbox {
   hal::TimeNs opened_ns_ = 0, tried_ns_ = 0;
   std::uint64_t links_opened_ = 0;
   EyebotDriver driver_;
-  LinkHealth health_ = LinkHealth::Connecting;
-  bool was_active_ = false;
-  std::uint64_t interruptions_ = 0;  // at the last `latch`
-  std::uint64_t own_stops_ = 0;      // the same: starts anew, and times that it saved itself
-  bool stopped_itself_ = false;
-  std::atomic<bool> ending_{false};
-  std::thread thread_;
 };
 
 }  // namespace tandem::bridges::eyebot

@@ -35,8 +35,9 @@ std::unique_ptr<guardian::Stopper> make(const StopMessages& messages, StopCause 
 
 }  // namespace
 
-guardian::StopperType stopper_type() noexcept {
-  return {hal::eyebot::kDataSheet.kind, &make};
+const guardian::StopperType& stopper_type() noexcept {
+  static constexpr guardian::StopperType type{hal::eyebot::kDataSheet.kind, &make};
+  return type;
 }
 
 EyebotStopper::EyebotStopper(const StopDetails& details, StopCause cause)

@@ -30,6 +30,6 @@ class EyebotStopper final : public guardian::Stopper, private Outbox {
 };
 
 /// Understands bodies as `to_stop_body` makes them.
-guardian::StopperType stopper_type() noexcept;
+const guardian::StopperType& stopper_type() noexcept;
 
 }  // namespace tandem::bridges::eyebot

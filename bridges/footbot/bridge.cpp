@@ -27,18 +27,15 @@ FootbotBridge::~FootbotBridge() {
   shut_down();
 }
 
-void FootbotBridge::start() {
-  TANDEM_CHECK(!thread_.joinable() && !ending_, "a bridge is started once");
+void FootbotBridge::before_start() {
   driver_.note_ports();
   stop_version_ = driver_.wiring().rest_version();
-  thread_ = std::thread([this] { run(); });
 }
 
-void FootbotBridge::shut_down() {
-  ending_ = true;
-  if (thread_.joinable()) thread_.join();
-  const std::lock_guard lock(mutex_);
-  changed_.notify_all();
+/// Every interruption stops the robot, also one that is over already.
+Interruptions FootbotBridge::interruptions() const noexcept {
+  const DriverStatistics& s = driver_.statistics();
+  return {s.link_stops + s.watchdog_stops + s.restarts, s.restarts};
 }
 
 // --- the thread ---
@@ -95,72 +92,14 @@ void FootbotBridge::say_farewell() {
 
 hal::Status FootbotBridge::wait_active(TimeNs timeout_ns) {
   std::unique_lock lock(mutex_);
-  const auto active = [this] { return ending_ || driver_.state() == RobotState::Active; };
-  if (changed_.wait_for(lock, std::chrono::nanoseconds(timeout_ns), active) && !ending_) return {};
+  if (active_within(lock, timeout_ns)) return {};
   const std::string who = "foot-bot '" + std::string(driver_.robot().id()) + "' is not there: ";
   if (!link_.trouble().empty()) return hal::Error{who + link_.trouble()};
   const std::string trouble = driver_.trouble();
   return hal::Error{who + (trouble.empty() ? "its nodes do not answer" : trouble) + "; " + advice()};
 }
 
-void FootbotBridge::latch(hal::Tick tick, TimeNs now) noexcept {
-  const std::lock_guard lock(mutex_);
-  driver_.latch(tick, now);
-  note_health();
-}
-
-void FootbotBridge::note_health() noexcept {
-  // Every interruption stops the robot, also one that is over already.
-  const DriverStatistics& s = driver_.statistics();
-  const std::uint64_t interruptions = s.link_stops + s.watchdog_stops + s.restarts;
-  stopped_itself_ = was_active_ && s.restarts != restarts_;
-  restarts_ = s.restarts;
-  const bool begun_anew = was_active_ && interruptions != interruptions_;
-  interruptions_ = interruptions;
-  const RobotState state = driver_.state();
-  if (state == RobotState::Active) {
-    health_ = begun_anew ? LinkHealth::Suspect : LinkHealth::Active;
-    was_active_ = true;
-  } else if (!was_active_) {
-    health_ = LinkHealth::Connecting;
-  } else {
-    health_ = state == RobotState::Lost ? LinkHealth::Lost : LinkHealth::Suspect;
-  }
-}
-
-void FootbotBridge::commit(TimeNs now) noexcept {
-  const std::lock_guard lock(mutex_);
-  driver_.commit(now);
-  stop_version_ = driver_.wiring().rest_version();
-}
-
-void FootbotBridge::stop(TimeNs now) noexcept {
-  const std::lock_guard lock(mutex_);
-  driver_.stop(now);
-}
-
-void FootbotBridge::resume() noexcept {
-  const std::lock_guard lock(mutex_);
-  driver_.resume();
-}
-
 // --- what is known ---
-
-std::vector<PortView> FootbotBridge::taken() const {
-  std::vector<PortView> all;
-  for (const auto& view : driver_.robot().taken()) all.push_back({view.type, view.data});
-  return all;
-}
-
-LinkHealth FootbotBridge::health() const noexcept {
-  const std::lock_guard lock(mutex_);
-  return health_;
-}
-
-bool FootbotBridge::stopped_itself() const noexcept {
-  const std::lock_guard lock(mutex_);
-  return stopped_itself_;
-}
 
 std::string FootbotBridge::trouble() const {
   const std::lock_guard lock(mutex_);
@@ -247,19 +186,9 @@ void FootbotBridge::describe(StatusVisitor& visitor) const {
   visitor.end_list();
 }
 
-RobotState FootbotBridge::state() const noexcept {
-  const std::lock_guard lock(mutex_);
-  return driver_.state();
-}
-
 bool FootbotBridge::at_rest() const noexcept {
   const std::lock_guard lock(mutex_);
   return driver_.at_rest();
-}
-
-DriverStatistics FootbotBridge::statistics() const noexcept {
-  const std::lock_guard lock(mutex_);
-  return driver_.statistics();
 }
 
 BridgeStatus FootbotBridge::status() const {

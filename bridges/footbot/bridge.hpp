@@ -12,14 +12,11 @@
 // A program on the motors' modules that sets the speed to 0 when nothing was written for a while is the only remedy.
 #pragma once
 #include <atomic>
-#include <condition_variable>
-#include <mutex>
-#include <thread>
 #include <vector>
 
 #include "bridges/aseba/reopening_messages.hpp"
+#include "bridges/driver_bridge.hpp"
 #include "bridges/footbot/driver.hpp"
-#include "bridges/robot_bridge.hpp"
 
 namespace tandem::bridges::footbot {
 
@@ -46,33 +43,17 @@ struct BridgeStatus {
 };
 
 /// Owns link and thread.
-class FootbotBridge final : public RobotBridge {
+class FootbotBridge final : public DriverBridge<FootbotBridge, FootbotRobot> {
  public:
   /// `opener` is called from threads of the bridge, from now on, and again whenever the link is gone. Times given to
   /// the bridge are CLOCK_MONOTONIC.
   FootbotBridge(BridgeSettings settings, aseba::MessageLinkOpener opener, hal::Log log = {});
   /// Stops the robot, waits at most `farewell_ns` for it to confirm, closes the link.
   ~FootbotBridge() override;
-  FootbotBridge(const FootbotBridge&) = delete;
-  FootbotBridge& operator=(const FootbotBridge&) = delete;
 
-  FootbotRobot& robot() noexcept override { return driver_.robot(); }
-  void* port(const hal::PortType& type) noexcept override { return driver_.robot().find(type); }
-  std::vector<PortView> taken() const override;
-  void set_origin(hal::TimeNs origin_ns) noexcept override { driver_.robot().set_origin(origin_ns); }
-
-  void start() override;
   /// Errors: not active within `timeout_ns`; says what is known (link does not open, which node is missing …).
   hal::Status wait_active(hal::TimeNs timeout_ns);
-  void shut_down() override;
 
-  void latch(hal::Tick tick, hal::TimeNs now) noexcept override;
-  void commit(hal::TimeNs now) noexcept override;
-  void stop(hal::TimeNs now) noexcept override;
-  void resume() noexcept override;
-
-  LinkHealth health() const noexcept override;
-  bool stopped_itself() const noexcept override;
   bool at_rest() const noexcept override;
   std::string trouble() const override;
   std::string advice() const override;
@@ -86,30 +67,22 @@ class FootbotBridge final : public RobotBridge {
   void describe(StatusVisitor& visitor) const override;
 
   // What a loop asks in every tick; `status` copies much more.
-  RobotState state() const noexcept;
-  DriverStatistics statistics() const noexcept;
   BridgeStatus status() const;
 
  private:
+  friend DriverBridge;
+  void before_start();
   void run();
+  Interruptions interruptions() const noexcept;
+  void after_command(hal::TimeNs) noexcept { stop_version_ = driver_.wiring().rest_version(); }
   void say_farewell();
-  void note_health() noexcept;
   /// Waits for input without holding the link, at most `timeout_ns`.
   void wait_outside(hal::TimeNs timeout_ns, int descriptor);
 
   BridgeSettings settings_;
-  mutable std::mutex mutex_;  // guards everything below but the ports
-  std::condition_variable changed_;
   aseba::ReopeningMessages link_;
   FootbotDriver driver_;
-  LinkHealth health_ = LinkHealth::Connecting;
-  bool was_active_ = false;
-  std::uint64_t interruptions_ = 0;  // at the last `latch`
-  std::uint64_t restarts_ = 0;
-  bool stopped_itself_ = false;
   std::atomic<std::uint64_t> stop_version_{0};
-  std::atomic<bool> ending_{false};
-  std::thread thread_;
 };
 
 }  // namespace tandem::bridges::footbot

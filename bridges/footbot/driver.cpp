@@ -118,11 +118,7 @@ void FootbotDriver::count(const hal::Limited& limited) noexcept {
 
 /// Limits the commands in their ports.
 void FootbotDriver::filter_commands() noexcept {
-  auto& wheels = robot_.port<hal::WheelSpeeds>();
-  count(wheels.limit(spec::kDataSheet));
-  count(robot_.port<hal::TurretDrive>().limit(spec::kDataSheet));
-  count(robot_.port<hal::ScannerDrive>().limit(spec::kDataSheet));
-  count(robot_.port<hal::GripperDrive>().limit(spec::kDataSheet));
+  robot_.limit_commands([this](const hal::Limited& limited) { count(limited); });
   statistics_.rearmed += interrupted_ ? 1 : 0;
   interrupted_ = false;
 }
@@ -148,16 +144,10 @@ void FootbotDriver::commit(hal::TimeNs now) noexcept {
 
 /// What the controller wrote stays as it is: it may write once and never again.
 void FootbotDriver::send_commands(hal::TimeNs now) noexcept {
-  const auto wheels = robot_.port<hal::WheelSpeeds>();
-  const auto turret = robot_.port<hal::TurretDrive>();
-  const auto scanner = robot_.port<hal::ScannerDrive>();
-  const auto gripper = robot_.port<hal::GripperDrive>();
+  robot_.keep_commands();
   filter_commands();
   wiring_.command(true, now);
-  robot_.port<hal::WheelSpeeds>() = wheels;
-  robot_.port<hal::TurretDrive>() = turret;
-  robot_.port<hal::ScannerDrive>() = scanner;
-  robot_.port<hal::GripperDrive>() = gripper;
+  robot_.restore_commands();
 }
 
 /// The next tick's readings are asked for so late that they are just there when it begins.

@@ -39,8 +39,9 @@ std::unique_ptr<guardian::Stopper> make(const StopMessages& messages, guardian::
 
 }  // namespace
 
-guardian::StopperType stopper_type() noexcept {
-  return {hal::footbot::kDataSheet.kind, &make};
+const guardian::StopperType& stopper_type() noexcept {
+  static constexpr guardian::StopperType type{hal::footbot::kDataSheet.kind, &make};
+  return type;
 }
 
 FootbotStopper::FootbotStopper(aseba::MessageLinkOpener opener, const std::vector<RestMessage>& messages)

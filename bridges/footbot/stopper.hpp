@@ -41,6 +41,6 @@ class FootbotStopper final : public guardian::Stopper {
 };
 
 /// Understands bodies as `to_stop_body` makes them.
-guardian::StopperType stopper_type() noexcept;
+const guardian::StopperType& stopper_type() noexcept;
 
 }  // namespace tandem::bridges::footbot

@@ -31,8 +31,11 @@ class Stopper {
 
 /// One kind's stopper. `make` neither blocks nor throws.
 struct StopperType {
+  static constexpr std::string_view kCategory = "stopper";
   std::string_view kind;
   std::unique_ptr<Stopper> (*make)(const StopMessages& messages, StopCause cause);
+
+  std::string_view catalog_name() const noexcept { return kind; }
 };
 
 }  // namespace tandem::bridges::guardian

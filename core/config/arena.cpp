@@ -1,7 +1,6 @@
 // Reads <arena>: the space and what is in it.
 #include <charconv>
 #include <cmath>
-#include <filesystem>
 #include <map>
 
 #include "core/config/reading.hpp"
@@ -34,15 +33,6 @@ bool parse_color(const std::string& text, std::array<std::uint8_t, 3>& rgb) {
 }  // namespace schema
 
 namespace {
-
-namespace fs = std::filesystem;
-
-/// Paths of files are relative to the working directory, or else to the experiment's folder.
-std::string resolve(const std::string& path, const std::string& experiment) {
-  std::error_code ignored;
-  if (path.empty() || fs::path(path).is_absolute() || fs::exists(path, ignored)) return path;
-  return (fs::path(experiment).parent_path() / path).string();
-}
 
 /// Reads the things in the arena; `distribute` is what they stand in, if anything.
 class ArenaReader {
@@ -90,7 +80,7 @@ class ArenaReader {
     const auto f = reading_.read<schema::Floor>(e);
     out_.floor.source = f.source;
     out_.floor.pixels_per_meter = f.pixels_per_meter;
-    out_.floor.path = resolve(f.path, out_.file);
+    out_.floor.path = hal::path_beside(f.path, out_.file);
     out_.floor.line = e.line;
     if (!f.path.empty())
       *std::find_if(e.attributes.begin(), e.attributes.end(), [](const auto& a) { return a.name == "path"; }) = {
@@ -334,12 +324,9 @@ class ArenaReader {
     reading_.once(e, "controller", [&](Element& c) { controller(c, item); });
     reading_.once_or_default(e, "battery", [&](Element& c) { item.battery = battery(c); });
     reading_.once(e, "bridge", [&](Element& c) {
-      const auto b = reading_.read<schema::Bridge>(c);
-      item.bridge = BridgeConfig{b.link, b.firmware, b.timeout_s, c, c.line, resolve(b.map, c.file)};
-      item.bridge->name = b.name;
-      item.bridge->land_at_end = b.at_end == "land";
-      item.bridge->origin_m = b.origin;
-      item.bridge->turn_rad = b.turn_rad;
+      std::shared_ptr<const void> own;
+      const auto b = reading_.read_with_options<schema::Bridge>(c, "bridge of " + e.name, own);
+      item.bridge = BridgeConfig{b.link, b.timeout_s, c, c.line, std::move(own)};
       item.bridge->rearm = b.rearm;
       item.bridge->settle_s = b.settle_s;
       item.bridge->ramp_m_s2 = b.ramp_m_s2;

@@ -76,6 +76,19 @@ std::string parents_of(const ElementManual& m, const std::vector<ElementManual>&
   return joined(parents, " or ");
 }
 
+/// What parts add to an element: "  of e-puck:" and their attributes.
+std::string options_of_parts(const std::string& element, const hal::Catalog& catalog) {
+  std::string text;
+  const std::string begin = element + " of ";
+  for (const hal::ElementOptions* options : catalog.all<hal::ElementOptions>()) {
+    if (!options->name.starts_with(begin)) continue;
+    ManualWriter writer;
+    (void)options->read(writer);
+    if (!writer.text().empty()) text += "  of " + options->name.substr(begin.size()) + ":\n" + writer.text();
+  }
+  return text;
+}
+
 }  // namespace
 
 std::vector<ElementManual> element_manuals(const hal::Catalog& catalog) {
@@ -84,7 +97,10 @@ std::vector<ElementManual> element_manuals(const hal::Catalog& catalog) {
   for (const ElementManual& m : all_manuals()) {
     for (ElementManual& one : expanded(m, known)) manuals.push_back(std::move(one));
   }
-  for (ElementManual& m : manuals) m.parent = parents_of(m, manuals, known);
+  for (ElementManual& m : manuals) {
+    m.parent = parents_of(m, manuals, known);
+    m.attributes += options_of_parts(m.name, catalog);
+  }
   return manuals;
 }
 

@@ -6,7 +6,7 @@
 #include "core/config/overrides.hpp"
 #include "core/config/reading.hpp"
 #include "core/config/upgrade.hpp"
-#include "core/config/xml.hpp"
+#include "hal/xml/xml.hpp"
 
 namespace tandem::core {
 namespace {
@@ -200,7 +200,7 @@ void read_visualization(Reading& reading, Element& visualization) {
 std::optional<Scenario> read_experiment(const std::string& path, const std::vector<std::string>& overrides,
                                         const hal::Catalog& catalog, Problems& problems) {
   Problems found;
-  auto root = read_xml_file(path, found);
+  auto root = hal::read_xml_file(path, found);
   return read_root(std::move(root), overrides, catalog, std::move(found), problems);
 }
 
@@ -208,12 +208,12 @@ std::optional<Scenario> read_experiment_text(const std::string& text, const std:
                                              const std::vector<std::string>& overrides, const hal::Catalog& catalog,
                                              Problems& problems) {
   Problems found;
-  auto root = read_xml_text(text, name, found);
+  auto root = hal::read_xml_text(text, name, found);
   return read_root(std::move(root), overrides, catalog, std::move(found), problems);
 }
 
 std::string effective_settings(const Scenario& scenario) {
-  return to_xml(scenario.effective);
+  return hal::to_xml(scenario.effective);
 }
 
 std::string device_name(std::string_view argos_name, bool sensor) {

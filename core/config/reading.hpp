@@ -1,6 +1,7 @@
 // What every part of the reader of experiment files needs: elements read by their schema, and problems noted.
 #pragma once
 #include <algorithm>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -8,6 +9,7 @@
 #include "core/config/reader.hpp"
 #include "core/config/schema.hpp"
 #include "core/scenario/engine_traits.hpp"
+#include "hal/element_options.hpp"
 #include "hal/port.hpp"
 
 namespace tandem::core {
@@ -28,7 +30,7 @@ struct KnownNames {
 /// One reading of one file: what is known, what was found, and the Scenario in the making.
 class Reading {
  public:
-  Reading(const hal::Catalog& catalog, Problems& problems) : known_(catalog), problems_(problems) {}
+  Reading(const hal::Catalog& catalog, Problems& problems) : catalog_(catalog), known_(catalog), problems_(problems) {}
 
   const KnownNames& known() const noexcept { return known_; }
   Scenario& out() noexcept { return out_; }
@@ -52,8 +54,24 @@ class Reading {
     reader.finish_attributes();
     ElementWriter writer(element);
     value.describe(writer);
-    std::erase_if(element.attributes,
-                  [&](const auto& a) { return std::find(missing.begin(), missing.end(), a.name) != missing.end(); });
+    drop(element, missing);
+    return value;
+  }
+
+  /// The same for an element whose further attributes and children are the catalog's options of that name, where there
+  /// are such: `own` becomes them.
+  template <class T>
+  T read_with_options(Element& element, const std::string& name, std::shared_ptr<const void>& own, T value = {}) {
+    const auto* const options = catalog_.find<hal::ElementOptions>(name);
+    const std::vector<std::string> missing = check(element, T::kElement);
+    ElementReader reader(element, problems_);
+    value.describe(reader);
+    if (options != nullptr) own = options->read(reader);
+    reader.finish();
+    ElementWriter writer(element);
+    value.describe(writer);
+    if (options != nullptr) (void)options->read(writer);
+    drop(element, missing);
     return value;
   }
 
@@ -87,12 +105,18 @@ class Reading {
   }
 
   static Element& add_child(Element& parent, std::string_view name);
+  /// Takes attributes away.
+  static void drop(Element& element, const std::vector<std::string>& names) {
+    std::erase_if(element.attributes,
+                  [&](const auto& a) { return std::find(names.begin(), names.end(), a.name) != names.end(); });
+  }
 
   bool is_robot(const std::string& kind) const {
     return std::find(known_.robots.begin(), known_.robots.end(), kind) != known_.robots.end();
   }
 
  private:
+  const hal::Catalog& catalog_;
   KnownNames known_;
   Problems& problems_;
   Scenario out_;

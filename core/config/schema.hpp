@@ -326,22 +326,15 @@ struct Battery {
 };
 
 struct Bridge {
-  static constexpr ElementInfo kElement{"bridge", "Makes the robot stand for a real one on this link.", "link"};
-  std::string link, firmware = "auto", map, name, at_end = "land", rearm = "after 0.5 s", missing = "refuse";
-  double timeout_s = 0.5, turn_rad = 0.0, settle_s = 0.3, ramp_m_s2 = 0.25, connect_s = 15.0, stop_s = 2.0;
-  Vec3 origin{};
+  static constexpr ElementInfo kElement{
+      "bridge", "Makes the robot stand for a real one on this link. Further attributes are those of its kind.", "link",
+      kAnything};
+  std::string link, rearm = "after 0.5 s", missing = "refuse";
+  double timeout_s = 0.5, settle_s = 0.3, ramp_m_s2 = 0.25, connect_s = 15.0, stop_s = 2.0;
   void describe(ParamVisitor& v) {
-    static constexpr std::array<std::string_view, 5> kFirmware = {"auto", "btcom", "gctronic", "webots", "epuck2"};
     v.text("link", link, "Where the real robot is, e.g. serial:/dev/ttyUSB0@115200.");
-    v.choice("firmware", firmware, kFirmware, "Which firmware it runs; auto asks it.");
-    v.text("map", map, "File that says which variable of a foot-bot's modules is which reading or command.");
     v.number("timeout", timeout_s, unit::s, {0.05, 60.0},
              "Age of the last answer from which the robot counts as lost and is stopped.");
-    static constexpr std::array<std::string_view, 2> kEnds = {"land", "hover"};
-    v.text("name", name, "What an eye-bot is called in its LCM channels; empty: its id.");
-    v.choice("at_end", at_end, kEnds, "What an eye-bot does when its run ends.");
-    v.vector("origin", origin, unit::m, "Where the origin of an eye-bot's own world lies in the arena.");
-    v.number("turn", turn_rad, unit::deg, {}, "How far its world is turned against the arena's, counter-clockwise.");
     v.text("rearm", rearm,
            "What lets the robot drive again when it stopped by itself (a restart, its own fail-safe, a frozen hub): "
            "operator (SIGUSR1 to tandem), after a time in which all was well, never.");

@@ -7,7 +7,7 @@
 #include <string_view>
 
 #include "core/config/reader.hpp"
-#include "core/config/xml.hpp"
+#include "hal/xml/xml.hpp"
 
 namespace tandem::core {
 namespace {
@@ -173,7 +173,7 @@ std::string version_problem(std::int64_t version) {
 
 hal::Result<Upgrade> upgraded(const std::string& text, const std::string& name) {
   Problems problems;
-  const std::optional<Element> root = read_xml_text(text, name, problems);
+  const std::optional<Element> root = hal::read_xml_text(text, name, problems);
   if (!root) return hal::Error{to_text(problems.front())};
   if (root->name != "tandem" && root->name != "argos-configuration")
     return hal::Error{name + ": the root element is <" + root->name + ">: this is no experiment"};

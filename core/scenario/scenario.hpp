@@ -4,6 +4,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -91,19 +92,14 @@ struct CameraConfig {
 enum class IfMissing : std::uint8_t { Refuse, Simulate, Wait };
 
 struct BridgeConfig {
-  std::string link;               ///< "serial:/dev/ttyUSB0@115200"
-  std::string firmware = "auto";  ///< the robot must run this one; auto: any
-  double timeout_s = 0.5;         ///< age from which the link counts as lost
+  std::string link;        ///< "serial:/dev/ttyUSB0@115200"
+  double timeout_s = 0.5;  ///< age from which the link counts as lost
   Element options;
   int line = 0;
-  std::string map = {};               ///< file that says what the variables of the robot's modules mean; empty: none
-  std::string name = {};              ///< in an eye-bot's channels; empty: the robot's id
-  bool land_at_end = true;            ///< else a flying robot is left hovering
-  std::array<double, 3> origin_m{};   ///< of the world that the robot's own positions are in, in W
-  double turn_rad = 0.0;              ///< of that world's x axis from W's
-  std::string rearm = "after 0.5 s";  ///< who lets it go after a stop by itself: operator, after a time, never
-  double settle_s = 0.3;              ///< after any other stop, all must have been well for so long
-  double ramp_m_s2 = 0.25;            ///< then its largest speed grows from 0 by this
+  std::shared_ptr<const void> own = {};  ///< the attributes of its kind, as its bridge reads them; null: left out
+  std::string rearm = "after 0.5 s";     ///< who lets it go after a stop by itself: operator, after a time, never
+  double settle_s = 0.3;                 ///< after any other stop, all must have been well for so long
+  double ramp_m_s2 = 0.25;               ///< then its largest speed grows from 0 by this
   IfMissing if_missing = IfMissing::Refuse;
   double connect_s = 15.0;  ///< from which it counts as missing, before the run
   double stop_s = 2.0;      ///< for it to confirm its stop, at the end

@@ -1,17 +1,12 @@
 // When a real robot's battery is so low that the robot is to be stopped.
 #pragma once
+#include "bridges/bridge_type.hpp"
 #include "hal/device/body_sensors.hpp"
 #include "hal/time.hpp"
 
 namespace tandem::mixed_reality {
 
-/// A battery is low at or below this for so long: a motor that starts draws the voltage down for a moment, and that is
-/// not meant. Each kind of robot has its own, from its data sheet.
-struct BatteryLimit {
-  double charge = 0.05;   ///< of the full one
-  double supply_V = 0.0;  ///< instead of the charge, where the robot measures it; 0: the charge counts
-  double for_s = 2.0;
-};
+using bridges::BatteryLimit;
 
 class BatteryWatch {
  public:

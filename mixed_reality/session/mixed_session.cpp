@@ -65,7 +65,7 @@ hal::Status MixedSession::add_twin(const core::RobotItem& item, const BridgeMake
   const core::RobotId robot = space.find_robot(item.id);
   if (item.distribute || !robot.valid())
     return about(item, scenario.file, "a <bridge> stands for one real robot; it cannot be distributed");
-  auto made = make_bridge({item, scenario.controllers[item.controller], scenario.ticks_per_second, world_->seed()});
+  auto made = make_bridge(bridge_request(scenario, item, world_->seed()));
   if (!made.ok()) return about(item, scenario.file, made.error().message);
   std::unique_ptr<bridges::RobotBridge> real = std::move(made).value();
 
@@ -74,7 +74,7 @@ hal::Status MixedSession::add_twin(const core::RobotItem& item, const BridgeMake
 
   TwinParams params;
   params.rearm = rearm_params(*item.bridge);
-  params.battery = battery_limit(item.kind);
+  if (options_.catalog != nullptr) params.battery = battery_limit(*options_.catalog, item.kind);
   params.frozen_after_ns = hal::time_of_tick(1, scenario.ticks_per_second) + kFrozenAfter_ns;
   params.pose_timeout_ns = lost_after_ns(item, scenario.ticks_per_second);
   twins_.push_back(

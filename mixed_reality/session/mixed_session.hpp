@@ -14,7 +14,7 @@
 #include "hal/log.hpp"
 #include "hal/result.hpp"
 #include "mixed_reality/session/report.hpp"
-#include "mixed_reality/settings/bridge_types.hpp"
+#include "mixed_reality/settings/bridge_request.hpp"
 #include "mixed_reality/time/monotonic.hpp"
 #include "mixed_reality/time/pacer.hpp"
 #include "mixed_reality/twin/twin.hpp"
@@ -23,7 +23,7 @@ namespace tandem::mixed_reality {
 
 /// Makes the real robot behind one `<bridge>`. Does not wait for it to answer. Error: no such link, or no bridge for
 /// that kind of robot.
-using BridgeMaker = std::function<MadeBridge(const BridgeRequest&)>;
+using BridgeMaker = std::function<bridges::MadeBridge(const bridges::BridgeRequest&)>;
 
 struct MixedOptions {
   /// How often guardians have stopped the robots because this program did not run; empty: nobody counts that.
@@ -37,6 +37,7 @@ struct MixedOptions {
   /// Called before the first and every later command of the run leaves: whoever stops robots when this process dies is
   /// to know how.
   std::function<void()> before_commands = {};
+  const hal::Catalog* catalog = nullptr;  ///< what is known of the kinds of real robots; null: nothing
   hal::Log log;
 };
 

@@ -31,12 +31,13 @@ struct Experiment {
   std::unique_ptr<core::World> world;
 
   explicit Experiment(const std::string& config, const std::vector<std::string>& overrides = {},
-                      const core::WorldOptions& options = {}, const std::string& engine = "")
+                      const core::WorldOptions& options = {}, const std::string& engine = "",
+                      const hal::Catalog& parts = catalog())
       : loader(std::make_unique<hal::PluginLoader>(
-            std::vector<std::filesystem::path>{std::string(test::kBuildDir) + "/lib"}, catalog())) {
+            std::vector<std::filesystem::path>{std::string(test::kBuildDir) + "/lib"}, parts)) {
     core::Problems problems;
     auto scenario =
-        core::read_experiment(std::string(test::kSourceDir) + "/configs/" + config, overrides, catalog(), problems);
+        core::read_experiment(std::string(test::kSourceDir) + "/configs/" + config, overrides, parts, problems);
     if (scenario && !engine.empty()) {
       scenario->engines.at(0).kind = engine;
       scenario->engines.at(0).options.name = engine;

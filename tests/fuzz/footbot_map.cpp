@@ -13,8 +13,8 @@
 #include <string_view>
 #include <vector>
 
+#include "bridges/footbot/map_file.hpp"
 #include "bridges/footbot/words.hpp"
-#include "mixed_reality/settings/map_file.hpp"
 
 namespace {
 
@@ -113,10 +113,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const bool raw = recipe.next() % 16 == 0;
   std::string text(raw ? recipe.rest() : kMap);
   for (int i = 0; i < 8 && !raw && !recipe.done(); ++i) spoil(text, recipe);
-  core::Problems problems;
-  const auto map = mixed_reality::read_footbot_map_text(text, "map.xml", problems);
-  expect(map.has_value() != core::has_errors(problems));
-  for (const core::Problem& p : problems) expect(!p.message.empty() && p.file == "map.xml");
+  hal::Problems problems;
+  const auto map = bridges::footbot::read_footbot_map_text(text, "map.xml", problems);
+  expect(map.has_value() != hal::has_errors(problems));
+  for (const hal::Problem& p : problems) expect(!p.message.empty() && p.file == "map.xml");
   if (map) use(*map);
   return 0;
 }

@@ -45,7 +45,7 @@ class Drive {
         if (stopped) rig.driver.stop(rig.now);
         wheels_.set(0.06, turn_ ? 0.03 : 0.06);
         turn_ = !turn_;
-        const bool old = rig.now - rig.heard_ns > rig.driver.robot().fresh_ns() + kTick;
+        const bool old = rig.now - rig.heard_ns > rig.driver.robot().settings().fresh_ns + kTick;
         if (old && proximity_.validity == hal::Validity::Fresh) ++stale_as_fresh;
       });
     }

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <set>
 
+#include "app/catalog.hpp"
 #include "core/config/reader.hpp"
 #include "tests/controllers/experiment.hpp"
 
@@ -52,17 +53,17 @@ TEST_P(EveryExperiment, GivesTheSameBitsFromItsSavedSettings) {
   std::uint64_t hash = 0;
   int ticks = 0;
   {
-    const Experiment first(GetParam(), on_own_ports(GetParam()));
+    const Experiment first(GetParam(), on_own_ports(GetParam()), {}, "", app::catalog());
     saved = core::effective_settings(first->scenario());
     ticks = ticks_for(*first.world);
     first->start();
     hash = hash_after(*first.world, ticks);
   }
   core::Problems problems;
-  const auto scenario = core::read_experiment_text(saved, "saved.xml", {}, catalog(), problems);
+  const auto scenario = core::read_experiment_text(saved, "saved.xml", {}, app::catalog(), problems);
   for (const core::Problem& p : problems) EXPECT_TRUE(p.warning) << core::to_text(p);
   ASSERT_TRUE(scenario);
-  hal::PluginLoader loader({std::string(kBuildDir) + "/lib"}, test::catalog());
+  hal::PluginLoader loader({std::string(kBuildDir) + "/lib"}, app::catalog());
   const auto second = core::World::make(*scenario, loader, {}, problems);
   ASSERT_TRUE(second) << core::to_text(problems.back());
   EXPECT_EQ(core::effective_settings(second->scenario()), saved);
@@ -72,7 +73,7 @@ TEST_P(EveryExperiment, GivesTheSameBitsFromItsSavedSettings) {
 
 TEST_P(EveryExperiment, GivesTheSameBitsWhenItBeginsAnew) {
   fs::current_path(kSourceDir);
-  const Experiment experiment(GetParam(), on_own_ports(GetParam()));
+  const Experiment experiment(GetParam(), on_own_ports(GetParam()), {}, "", app::catalog());
   const int ticks = ticks_for(*experiment.world);
   experiment->start();
   const std::uint64_t hash = hash_after(*experiment.world, ticks);
@@ -87,7 +88,7 @@ TEST_P(EveryExperiment, GivesTheSameBitsWhenItBeginsAnew) {
 
 TEST_P(EveryExperiment, GoesOnAlikeFromACheckpoint) {
   fs::current_path(kSourceDir);
-  const Experiment experiment(GetParam(), on_own_ports(GetParam()));
+  const Experiment experiment(GetParam(), on_own_ports(GetParam()), {}, "", app::catalog());
   experiment->start();
   const int ticks = ticks_for(*experiment.world) / 2;
   (void)hash_after(*experiment.world, ticks);
@@ -103,7 +104,8 @@ TEST(Experiments, UseEveryShippedControllerAndHook) {
   std::set<std::string> used;
   for (const std::string& name : experiments()) {
     core::Problems problems;
-    const auto scenario = core::read_experiment(std::string(kSourceDir) + "/configs/" + name, {}, catalog(), problems);
+    const auto scenario =
+        core::read_experiment(std::string(kSourceDir) + "/configs/" + name, {}, app::catalog(), problems);
     ASSERT_TRUE(scenario) << name;
     for (const auto& controller : scenario->controllers) used.insert(fs::path(controller.library).stem().string());
     for (const auto& hook : scenario->hooks) used.insert(fs::path(hook.library).stem().string());

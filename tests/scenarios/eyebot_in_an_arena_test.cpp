@@ -2,8 +2,10 @@
 #include <cmath>
 #include <gtest/gtest.h>
 
-#include "app/eyebot_puppeteer.hpp"
+#include "app/catalog.hpp"
+#include "app/port_puppeteer.hpp"
 #include "bridges/eyebot_emulator/eyebot.hpp"
+#include "bridges/eyebot_emulator/port_body.hpp"
 #include "tests/bridges/eyebot_emulator/hand_written.hpp"
 #include "tests/core/eyebots.hpp"
 
@@ -16,6 +18,10 @@ using emulator::Action;
 using emulator::Mode;
 
 constexpr std::int32_t kHub = 4711;
+
+const bridges::EmulatorType& eyebot_emulator() {
+  return *app::catalog().find<bridges::EmulatorType>("eyebot");
+}
 
 core::Scene hall(const std::string& engine) {
   core::Scene scene = core::eyebot_scene(engine);
@@ -37,10 +43,10 @@ class Flight : public testing::TestWithParam<std::string> {
 
   void SetUp() override {
     ASSERT_TRUE(world.world) << world.all_problems();
-    const auto found = app::EyebotPuppeteer::find(*world.world, "me");
+    const auto found = app::PortPuppeteer::find(*world.world, eyebot_emulator(), "me");
     ASSERT_TRUE(found.ok()) << found.error().message;
     me = found.value();
-    puppeteer.emplace(me, body);
+    puppeteer.emplace(*world.world, me, ports);
     world->set_external(&*puppeteer);
     world->start();
     world->step();
@@ -71,9 +77,10 @@ class Flight : public testing::TestWithParam<std::string> {
   std::array<double, 3> p() const { return world->space().port<hal::Positioning>(me)->p_WB; }
 
   core::MadeWorld world;
-  emulator::SharedBody body;
+  bridges::SharedPorts ports{emulator::body_ports()};
+  emulator::PortBody body{ports};
   core::RobotId me;
-  std::optional<app::EyebotPuppeteer> puppeteer;
+  std::optional<app::PortPuppeteer> puppeteer;
   std::optional<emulator::Eyebot> firmware;
 
  private:
@@ -146,10 +153,10 @@ INSTANTIATE_TEST_SUITE_P(Engines, Flight, testing::Values("particle3d", "dynamic
 TEST(AnEyebotsBody, IsOneOfTheArenas) {
   const core::MadeWorld world = core::make(hall("particle3d"));
   ASSERT_TRUE(world.world) << world.all_problems();
-  const auto first = app::EyebotPuppeteer::find(*world.world, "");
+  const auto first = app::PortPuppeteer::find(*world.world, eyebot_emulator(), "");
   ASSERT_TRUE(first.ok()) << first.error().message;
   EXPECT_EQ(world->space().find_robot("me"), first.value());
-  const auto missing = app::EyebotPuppeteer::find(*world.world, "nobody");
+  const auto missing = app::PortPuppeteer::find(*world.world, eyebot_emulator(), "nobody");
   ASSERT_FALSE(missing.ok());
   EXPECT_NE(missing.error().message.find("'nobody'"), std::string::npos);
 }

@@ -7,11 +7,11 @@
 
 #include "bridges/aseba/can_messages.hpp"
 #include "bridges/footbot/driver.hpp"
+#include "bridges/footbot/map_file.hpp"
 #include "bridges/footbot_emulator/faults.hpp"
 #include "bridges/footbot_emulator/kinematic_body.hpp"
 #include "hal/device/ring_sensors.hpp"
 #include "hal/device/wheels.hpp"
-#include "mixed_reality/settings/map_file.hpp"
 #include "tests/checkout.hpp"
 
 namespace tandem::scenarios {
@@ -29,10 +29,10 @@ constexpr TimeNs kStart = 1000 * kSecond;
 
 const footbot::FootbotMap& default_map() {
   static const footbot::FootbotMap map = [] {
-    core::Problems problems;
+    hal::Problems problems;
     const auto read =
-        mixed_reality::read_footbot_map(std::string(test::kSourceDir) + "/configs/footbot_map.xml", problems);
-    for (const core::Problem& p : problems) ADD_FAILURE() << core::to_text(p);
+        bridges::footbot::read_footbot_map(std::string(test::kSourceDir) + "/configs/footbot_map.xml", problems);
+    for (const hal::Problem& p : problems) ADD_FAILURE() << hal::to_text(p);
     return read.value_or(footbot::FootbotMap{});
   }();
   return map;

@@ -4,15 +4,16 @@
 #include <optional>
 
 #include "app/bridged_controller.hpp"
-#include "app/footbot_puppeteer.hpp"
+#include "app/port_puppeteer.hpp"
 #include "bridges/aseba/can_messages.hpp"
 #include "bridges/can/memory_bus.hpp"
 #include "bridges/footbot/driver.hpp"
+#include "bridges/footbot/map_file.hpp"
 #include "bridges/footbot_emulator/footbot.hpp"
+#include "bridges/footbot_emulator/port_body.hpp"
 #include "hal/device/ring_sensors.hpp"
 #include "hal/device/wheels.hpp"
 #include "hal/spec/footbot.hpp"
-#include "mixed_reality/settings/map_file.hpp"
 #include "tests/checkout.hpp"
 #include "tests/core/scenes.hpp"
 
@@ -27,18 +28,19 @@ constexpr hal::TimeNs kTick_ns = 100 * hal::kNsPerMs;
 constexpr hal::TimeNs kHandshake_ns = 5 * hal::kNsPerSecond;
 
 bridge::FootbotMap default_map() {
-  core::Problems problems;
+  hal::Problems problems;
   const auto map =
-      mixed_reality::read_footbot_map((std::string(test::kSourceDir) + "/configs/footbot_map.xml"), problems);
-  for (const core::Problem& p : problems) ADD_FAILURE() << core::to_text(p);
+      bridges::footbot::read_footbot_map((std::string(test::kSourceDir) + "/configs/footbot_map.xml"), problems);
+  for (const hal::Problem& p : problems) ADD_FAILURE() << hal::to_text(p);
   return map.value_or(bridge::FootbotMap{});
 }
 
 /// Controller, bridge, CAN bus and modules of one foot-bot, in time that the test turns by hand.
 class LockStepFootbot final : public core::ExternalRobots {
  public:
-  LockStepFootbot(core::RobotId robot, const hal::ControllerType& type, const void* params, emulator::Protocol protocol)
-      : puppeteer_(robot, body_), modules_({.protocol = protocol}, body_, {}), driver_(settings(), messages_) {
+  LockStepFootbot(const core::World& world, core::RobotId robot, const hal::ControllerType& type, const void* params,
+                  emulator::Protocol protocol)
+      : puppeteer_(world, robot, ports_), modules_({.protocol = protocol}, body_, {}), driver_(settings(), messages_) {
     controller_.emplace(type, driver_.robot(), params, 10, hal::Log());
     modules_.power_on(0);
     while (now_ < kHandshake_ns) {
@@ -97,8 +99,9 @@ class LockStepFootbot final : public core::ExternalRobots {
   hal::TimeNs now_ = 0;
   bridges::MemoryBus bus_{[this] { return now_; }};
   std::unique_ptr<bridges::CanLink> robots_end_ = bus_.attach();
-  emulator::SharedBody body_;
-  app::FootbotPuppeteer puppeteer_;
+  bridges::SharedPorts ports_{emulator::body_ports()};
+  emulator::PortBody body_{ports_};
+  app::PortPuppeteer puppeteer_;
   emulator::Footbot modules_;
   bridges::aseba::CanMessages messages_{bus_.attach(), {}, [this] { return now_; }};
   bridge::FootbotDriver driver_;
@@ -172,14 +175,14 @@ TEST_P(SameDecisionsOfFootbots, InSimulationAndThroughTheBus) {
   ASSERT_TRUE(world.world) << world.all_problems();
   const auto type = world.loader->controller("footbot_diffusion", "footbot_diffusion");
   ASSERT_TRUE(type.ok());
-  core::Problems problems;
+  hal::Problems problems;
   core::ElementReader reader(world->scenario().controllers[0].params, problems);
   const auto params = type.value()->read_params(reader);
   SimulatedFootbot direct;
   app::BridgedController controller(*type.value(), direct, params.get(), 10, hal::Log());
 
   const core::RobotId me = world->space().find_robot("me");
-  LockStepFootbot bridged(me, *type.value(), params.get(), GetParam());
+  LockStepFootbot bridged(*world.world, me, *type.value(), params.get(), GetParam());
   ASSERT_EQ(bridged.driver().state(), bridge::RobotState::Active) << bridged.driver().trouble();
   world->set_external(&bridged);
   const auto* read =

@@ -5,10 +5,13 @@
 #include <optional>
 
 #include "app/bridged_controller.hpp"
-#include "app/puppeteer.hpp"
+#include "app/port_puppeteer.hpp"
 #include "bridges/epuck/driver.hpp"
 #include "bridges/epuck_emulator/firmware.hpp"
+#include "bridges/epuck_emulator/port_body.hpp"
 #include "bridges/link/memory_link.hpp"
+#include "hal/device/ring_sensors.hpp"
+#include "hal/device/wheels.hpp"
 #include "hal/spec/epuck.hpp"
 #include "tests/core/scenes.hpp"
 
@@ -24,8 +27,9 @@ constexpr hal::TimeNs kHandshake_ns = 4 * hal::kNsPerSecond;
 /// Controller, bridge, serial line and firmware of one e-puck, in time that the test turns by hand.
 class LockStepRobot final : public core::ExternalRobots {
  public:
-  LockStepRobot(core::RobotId robot, const hal::ControllerType& type, const void* params, emulator::Variant variant)
-      : puppeteer_(robot, body_), firmware_(options_of(variant), body_, {}), driver_(settings()) {
+  LockStepRobot(const core::World& world, core::RobotId robot, const hal::ControllerType& type, const void* params,
+                emulator::Variant variant)
+      : puppeteer_(world, robot, ports_), firmware_(options_of(variant), body_, {}), driver_(settings()) {
     auto [host, wire] = bridges::MemoryLink::make_pair([this] { return now_; });
     host_ = std::move(host);
     wire_ = std::move(wire);
@@ -91,8 +95,9 @@ class LockStepRobot final : public core::ExternalRobots {
     }
   }
 
-  emulator::SharedBody body_;
-  app::Puppeteer puppeteer_;
+  bridges::SharedPorts ports_{emulator::body_ports()};
+  emulator::PortBody body_{ports_};
+  app::PortPuppeteer puppeteer_;
   emulator::Firmware firmware_;
   bridge::EpuckDriver driver_;
   std::unique_ptr<bridges::MemoryLink> host_, wire_;
@@ -167,7 +172,7 @@ TEST_P(SameDecisions, InSimulationAndThroughTheWire) {
   const auto variant = emulator::variant_from(GetParam());
   ASSERT_TRUE(variant.ok());
   const core::RobotId me = world->space().find_robot("me");
-  LockStepRobot bridged(me, *type.value(), params.get(), variant.value());
+  LockStepRobot bridged(*world.world, me, *type.value(), params.get(), variant.value());
   ASSERT_EQ(bridged.driver().state(), bridge::SessionState::Active) << bridged.driver().session().trouble();
   world->set_external(&bridged);
 
@@ -187,7 +192,7 @@ TEST_P(SameDecisions, InSimulationAndThroughTheWire) {
       ASSERT_NEAR(direct.proximity.distance_m[i], read->distance_m[i], kReadingQuantum_m)
           << "tick " << tick << " sensor " << i;
     }
-    const hal::WheelSpeeds& through = bridged.robot().wheels();
+    const hal::WheelSpeeds& through = bridged.robot().port<hal::WheelSpeeds>();
     if (through.left_m_s != direct.wheels.left_m_s || through.right_m_s != direct.wheels.right_m_s) {
       ++edges;
       ASSERT_TRUE(on_the_edge(direct.proximity))

@@ -5,6 +5,11 @@
 
 #include "bridges/epuck/conversions.hpp"
 #include "bridges/link/memory_link.hpp"
+#include "hal/device/body_sensors.hpp"
+#include "hal/device/leds.hpp"
+#include "hal/device/range_and_bearing.hpp"
+#include "hal/device/ring_sensors.hpp"
+#include "hal/device/wheels.hpp"
 #include "tests/bridges/epuck/scripted_robot.hpp"
 
 namespace tandem::bridges::epuck {

@@ -9,6 +9,11 @@
 #include "bridges/link/faulty_link.hpp"
 #include "bridges/link/memory_link.hpp"
 #include "hal/controller.hpp"
+#include "hal/device/body_sensors.hpp"
+#include "hal/device/leds.hpp"
+#include "hal/device/range_and_bearing.hpp"
+#include "hal/device/ring_sensors.hpp"
+#include "hal/device/wheels.hpp"
 #include "hal/spec/epuck.hpp"
 #include "tests/bridges/epuck/scripted_robot.hpp"
 

@@ -6,6 +6,8 @@
 
 #include "bridges/epuck/bridge.hpp"
 #include "bridges/epuck_emulator/emulator.hpp"
+#include "hal/device/body_sensors.hpp"
+#include "hal/device/ring_sensors.hpp"
 
 namespace tandem::bridges::epuck {
 namespace {

@@ -5,6 +5,8 @@
 #include <new>
 
 #include "bridges/epuck/driver.hpp"
+#include "hal/device/body_sensors.hpp"
+#include "hal/device/ring_sensors.hpp"
 #include "hal/spec/epuck.hpp"
 #include "tests/bridges/epuck/scripted_robot.hpp"
 

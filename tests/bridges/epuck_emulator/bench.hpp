@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "bridges/epuck_emulator/firmware.hpp"
-#include "bridges/epuck_emulator/shared_body.hpp"
+#include "tests/bridges/epuck_emulator/held_body.hpp"
 
 namespace tandem::bridges::epuck_emulator {
 
@@ -81,7 +81,7 @@ class Bench {
     return n;
   }
 
-  SharedBody body;
+  HeldBody body;
   std::vector<std::string> events;
   std::vector<SentByte> heard;
   TimeNs now = 0;

@@ -3,9 +3,12 @@
 #include <thread>
 
 #include "bridges/epuck_emulator/kinematic_body.hpp"
+#include "bridges/epuck_emulator/port_body.hpp"
 #include "bridges/epuck_emulator/raw_units.hpp"
-#include "bridges/epuck_emulator/shared_body.hpp"
 #include "bridges/epuck_emulator/stepper.hpp"
+#include "hal/device/leds.hpp"
+#include "hal/device/ring_sensors.hpp"
+#include "hal/device/wheels.hpp"
 
 namespace tandem::bridges::epuck_emulator {
 namespace {
@@ -88,9 +91,10 @@ TEST(KinematicBody, SeesAndIsStoppedByWalls) {
   EXPECT_NEAR(senses.ahead_m, 0.0, 1e-9);
 }
 
-TEST(SharedBody, PassesBothWaysBetweenThreads) {
-  SharedBody body;
-  std::thread robot([&body] {
+TEST(PortBody, PassesBothWaysBetweenThreads) {
+  SharedPorts ports(body_ports());
+  std::thread robot([&ports] {
+    PortBody body(ports);
     for (int i = 1; i <= 1000; ++i) {
       body.actuate(i, {.left_m_s = i * 0.001, .right_m_s = i * 0.001});
       const BodySenses s = body.sense(i);
@@ -98,14 +102,31 @@ TEST(SharedBody, PassesBothWaysBetweenThreads) {
     }
   });
   for (int i = 0; i < 1000; ++i) {
-    BodySenses senses;
-    senses.distance_m.fill(i * 1e-4);
-    body.set_senses(senses);
-    const BodyCommand command = body.command();
-    EXPECT_EQ(command.left_m_s, command.right_m_s) << "torn";
+    ports.tell([i](const PortBank& bank) {
+      auto& proximity = bank.port<hal::Proximity>();
+      proximity.validity = hal::Validity::Fresh;
+      proximity.distance_m.fill(static_cast<float>(i) * 1e-4F);
+    });
+    ports.with([](const PortBank& bank) {
+      const auto& wheels = bank.port<hal::WheelSpeeds>();
+      EXPECT_EQ(wheels.left_m_s, wheels.right_m_s) << "torn";
+    });
   }
   robot.join();
-  EXPECT_EQ(body.command().left_m_s, 1.0);
+  ports.with([](const PortBank& bank) { EXPECT_EQ(bank.port<hal::WheelSpeeds>().left_m_s, 1.0); });
+}
+
+TEST(PortBody, IsOnOpenGroundAsLongAsNothingIsTold) {
+  SharedPorts ports(body_ports());
+  PortBody body(ports);
+  EXPECT_EQ(body.sense(0).distance_m, BodySenses{}.distance_m);
+  EXPECT_EQ(body.sense(0).battery_V, BodySenses{}.battery_V);
+  body.actuate(0, {.ring = 0b101, .body_led = true});
+  ports.with([](const PortBank& bank) {
+    EXPECT_EQ(bank.port<hal::RingLeds>().color(0), hal::kRed);
+    EXPECT_EQ(bank.port<hal::RingLeds>().color(1), hal::kBlack);
+    EXPECT_TRUE(bank.port<hal::BodyLed>().on);
+  });
 }
 
 TEST(RawUnits, FollowTheInfraredCurveAndFallWithDistance) {

@@ -16,7 +16,7 @@
 #include <thread>
 #include <unistd.h>
 
-#include "bridges/epuck_emulator/shared_body.hpp"
+#include "tests/bridges/epuck_emulator/held_body.hpp"
 #include "tests/checkout.hpp"
 
 namespace tandem::bridges::epuck_emulator {
@@ -360,7 +360,7 @@ TEST(Emulator, HangsUpAndComesBackUnderTheSameName) {
 }
 
 TEST(Emulator, LivesInABodyOfSomebodyElse) {
-  SharedBody body;
+  HeldBody body;
   BodySenses senses;
   senses.distance_m.fill(0.05);
   Running robot({.body = &body});

@@ -103,7 +103,7 @@ TEST(FirmwareAscii, TakesATypedTAsTheSound) {
 
 TEST(FirmwareAscii, TellsBatteryFromBodyLightByCaseWhereItCan) {
   Bench robot;
-  SharedBody& body = robot.body;
+  HeldBody& body = robot.body;
   BodySenses senses;
   senses.battery_V = 4.2;
   body.set_senses(senses);

@@ -61,7 +61,7 @@ TEST(FirmwareBinary, IgnoresUnknownCommands) {
 }
 
 TEST(FirmwareBinary, AnswersRightAfterTheGreeting) {
-  SharedBody body;
+  HeldBody body;
   Firmware firmware({}, body, {});
   firmware.power_on(0);
   firmware.receive(0xAF, kByteNs);  // while the greeting leaves

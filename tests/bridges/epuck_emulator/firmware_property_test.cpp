@@ -18,7 +18,7 @@ rc::Gen<std::uint8_t> talk() {
 
 std::vector<SentByte> heard_of(Variant variant, const std::vector<std::uint8_t>& said,
                                const std::vector<TimeNs>& looks) {
-  SharedBody body;
+  HeldBody body;
   Firmware firmware({.variant = variant}, body, {});
   firmware.power_on(0);
   std::vector<SentByte> out;

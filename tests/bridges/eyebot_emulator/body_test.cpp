@@ -4,7 +4,9 @@
 
 #include "bridges/eyebot_emulator/battery.hpp"
 #include "bridges/eyebot_emulator/point_body.hpp"
-#include "bridges/eyebot_emulator/shared_body.hpp"
+#include "bridges/eyebot_emulator/port_body.hpp"
+#include "hal/device/flight.hpp"
+#include "hal/device/range_and_bearing.hpp"
 
 namespace tandem::bridges::eyebot_emulator {
 namespace {
@@ -142,16 +144,31 @@ TEST(PointBody, IsTheSameHoweverOftenItIsLookedAt) {
   EXPECT_EQ(rarely.sense(5 * kSecond).q_WB, often.sense(5 * kSecond).q_WB);
 }
 
-TEST(SharedBody, CarriesBothWays) {
-  SharedBody body;
-  BodySenses senses;
-  senses.p_WB = {1.0, 2.0, 3.0};
-  body.set_senses(senses, {Heard{4, 1.0, 0.0, 0.0, {9}}});
-  EXPECT_EQ(body.sense(0).p_WB, senses.p_WB);
-  EXPECT_EQ(body.take_heard().size(), 1U);
+TEST(PortBody, CarriesBothWays) {
+  SharedPorts ports(body_ports());
+  PortBody body(ports);
   EXPECT_TRUE(body.take_heard().empty());
-  body.actuate(0, flying(1.0, 0.0, 0.0));
-  EXPECT_EQ(body.command(), flying(1.0, 0.0, 0.0));
+  ports.tell([](const PortBank& bank) {
+    auto& place = bank.port<hal::Positioning>();
+    place.validity = hal::Validity::Fresh;
+    place.p_WB = {1.0, 2.0, 3.0};
+    bank.port<hal::FlightState>().phase = hal::FlightPhase::Hovering;
+    const std::uint8_t byte = 9;
+    bank.port<hal::RangeAndBearing>().insert(1.0F, 0.0F, 0.0F, &byte, 1);
+  });
+  EXPECT_EQ(body.sense(0).p_WB, (Vec3{1.0, 2.0, 3.0}));
+  ASSERT_EQ(body.take_heard().size(), 1U);
+  EXPECT_TRUE(body.take_heard().empty()) << "nothing was told since";
+  BodyCommand command = flying(1.0, 0.0, 0.0);
+  command.manoeuvre = Manoeuvre::TakeOff;
+  body.actuate(0, command);
+  ports.with([](const PortBank& bank) {
+    EXPECT_EQ(bank.port<hal::QuadrotorSpeed>().velocity[0], 1.0);
+    EXPECT_EQ(bank.port<hal::FlightTask>().order, hal::FlightOrder::Fly) << "it is through with taking off";
+  });
+  command.motors = false;
+  body.actuate(0, command);
+  ports.with([](const PortBank& bank) { EXPECT_EQ(bank.port<hal::QuadrotorSpeed>().velocity[0], 0.0); });
 }
 
 TEST(Battery, RunsDownFasterInFlight) {

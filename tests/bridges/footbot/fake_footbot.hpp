@@ -7,7 +7,7 @@
 #include "bridges/can/faulty_can_link.hpp"
 #include "bridges/can/memory_bus.hpp"
 #include "bridges/footbot/driver.hpp"
-#include "mixed_reality/settings/map_file.hpp"
+#include "bridges/footbot/map_file.hpp"
 #include "tests/bridges/aseba/fake_node.hpp"
 #include "tests/checkout.hpp"
 
@@ -41,18 +41,18 @@ inline std::vector<std::pair<std::string, Named>> default_modules() {
 }
 
 inline FootbotMap map_of(const std::string& text) {
-  core::Problems problems;
-  const auto map = mixed_reality::read_footbot_map_text(text, "map.xml", problems);
-  for (const core::Problem& p : problems) ADD_FAILURE() << core::to_text(p);
+  hal::Problems problems;
+  const auto map = bridges::footbot::read_footbot_map_text(text, "map.xml", problems);
+  for (const hal::Problem& p : problems) ADD_FAILURE() << hal::to_text(p);
   return map.value_or(FootbotMap{});
 }
 
 inline const FootbotMap& default_map() {
   static const FootbotMap map = [] {
-    core::Problems problems;
+    hal::Problems problems;
     const auto read =
-        mixed_reality::read_footbot_map((std::string(test::kSourceDir) + "/configs/footbot_map.xml"), problems);
-    for (const core::Problem& p : problems) ADD_FAILURE() << core::to_text(p);
+        bridges::footbot::read_footbot_map((std::string(test::kSourceDir) + "/configs/footbot_map.xml"), problems);
+    for (const hal::Problem& p : problems) ADD_FAILURE() << hal::to_text(p);
     return read.value_or(FootbotMap{});
   }();
   return map;

@@ -1,8 +1,8 @@
 // The whole robot on its bus: hand-written frames in, frames out.
 #include "bridges/footbot_emulator/footbot.hpp"
 
-#include "bridges/footbot_emulator/shared_body.hpp"
 #include "tests/bridges/footbot_emulator/bench.hpp"
+#include "tests/bridges/footbot_emulator/held_body.hpp"
 
 namespace tandem::bridges::footbot_emulator {
 namespace {
@@ -247,7 +247,7 @@ TEST(Footbot, LogsEveryFrame) {
 }
 
 TEST(Footbot, MayLiveInABodyThatIsElsewhere) {
-  SharedBody body;
+  HeldBody body;
   Footbot robot({}, body, {});
   robot.power_on(0);
   BodySenses senses;

@@ -2,7 +2,7 @@
 #include <gmock/gmock.h>
 #include <numbers>
 
-#include "core/config/xml.hpp"
+#include "hal/xml/xml.hpp"
 #include "tests/core/config/reading.hpp"
 
 namespace tandem::core {

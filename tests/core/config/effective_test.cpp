@@ -2,7 +2,7 @@
 #include <filesystem>
 #include <gmock/gmock.h>
 
-#include "core/config/xml.hpp"
+#include "hal/xml/xml.hpp"
 #include "tests/checkout.hpp"
 #include "tests/core/config/reading.hpp"
 
@@ -29,10 +29,10 @@ void expect_same(const Scenario& a, const Scenario& b) {
   for (std::size_t i = 0; i < a.controllers.size(); ++i) {
     EXPECT_EQ(a.controllers[i].id, b.controllers[i].id);
     EXPECT_EQ(a.controllers[i].library, b.controllers[i].library);
-    EXPECT_EQ(to_xml(a.controllers[i].params), to_xml(b.controllers[i].params));
+    EXPECT_EQ(hal::to_xml(a.controllers[i].params), hal::to_xml(b.controllers[i].params));
     ASSERT_EQ(a.controllers[i].sensors.size(), b.controllers[i].sensors.size());
     for (std::size_t k = 0; k < a.controllers[i].sensors.size(); ++k) {
-      EXPECT_EQ(to_xml(a.controllers[i].sensors[k].options), to_xml(b.controllers[i].sensors[k].options));
+      EXPECT_EQ(hal::to_xml(a.controllers[i].sensors[k].options), hal::to_xml(b.controllers[i].sensors[k].options));
     }
   }
   ASSERT_EQ(a.robots.size(), b.robots.size());
@@ -89,6 +89,27 @@ TEST(EffectiveSettings, OfEveryExperimentHereReadBackAsTheSame) {
     expect_same(first.good(), second.good());
   }
   EXPECT_GE(files, 3);
+}
+
+TEST(Effective, ShowsWhatAKindOfRobotAddsToItsBridge) {
+  Parts parts;
+  parts.things =
+      R"(<e-puck id="real"><body position="0,0,0"/><controller config="w"/><bridge link="serial:x"/></e-puck>)";
+  const Outcome out = read(parts.text());
+  const std::string text = effective_settings(out.good());
+  for (const char* part : {"firmware=\"auto\"", "timeout=\"0.5 s\""}) EXPECT_THAT(text, testing::HasSubstr(part));
+  EXPECT_EQ(effective_settings(read(text).good()), text);
+}
+
+TEST(Effective, ABridgeHasNoAttributesOrChildrenOfOtherKinds) {
+  Parts parts;
+  parts.things = R"(<e-puck id="a"><body position="0,0,0"/><controller config="w"/>
+<bridge link="serial:x" firmwear="y"><lense/></bridge></e-puck>
+<foot-bot id="b"><body position="1,0,0"/><controller config="w"/><bridge link="can:can0" firmware="y"/></foot-bot>)";
+  const std::string text = read(parts.text()).text();
+  EXPECT_THAT(text, testing::HasSubstr("<bridge> has no attribute 'firmwear'. Did you mean 'firmware'?"));
+  EXPECT_THAT(text, testing::HasSubstr("<bridge> cannot hold <lense>; it may hold: none"));
+  EXPECT_THAT(text, testing::HasSubstr("file.xml:8: error: <bridge> has no attribute 'firmware'"));
 }
 
 }  // namespace

@@ -4,6 +4,9 @@
 #include <string_view>
 #include <vector>
 
+#include "bridges/epuck/register.hpp"
+#include "bridges/eyebot/register.hpp"
+#include "bridges/footbot/register.hpp"
 #include "core/scenario/engine_traits.hpp"
 #include "hal/catalog.hpp"
 #include "hal/check.hpp"
@@ -14,7 +17,7 @@
 
 namespace tandem::core {
 
-/// Every port and every robot of the control interface, and these engines.
+/// Every port and every robot of the control interface, the bridges to those, and these engines.
 inline hal::Catalog catalog_with(const std::vector<std::string_view>& engines) {
   static constexpr KnownEngine kAll[] = {{"kinematics2d", "", {}},
                                          {"dynamics2d", "", {.forces = true}},
@@ -24,6 +27,9 @@ inline hal::Catalog catalog_with(const std::vector<std::string_view>& engines) {
   const hal::Status good = catalog.add_from("tests", [&](hal::Registrar& r) {
     hal::register_ports(r);
     hal::register_robots(r);
+    bridges::epuck::register_bridge(r);
+    bridges::footbot::register_bridge(r);
+    bridges::eyebot::register_bridge(r);
     for (const KnownEngine& engine : kAll) {
       for (const std::string_view wanted : engines) {
         if (wanted == engine.kind) r.add(engine);

@@ -1,4 +1,4 @@
-#include "core/config/xml.hpp"
+#include "hal/xml/xml.hpp"
 
 #include <filesystem>
 #include <fstream>
@@ -72,9 +72,9 @@ TEST(Xml, TakesByteOrderMarksWindowsLinesAndEntities) {
 
 TEST(Xml, WritesWhatItRead) {
   Problems problems;
-  const auto element = read_xml_text(R"(<a x="1 &lt; 2"><b y="&quot;"/><c><d/></c></a>)", "t", problems);
+  const auto element = hal::read_xml_text(R"(<a x="1 &lt; 2"><b y="&quot;"/><c><d/></c></a>)", "t", problems);
   ASSERT_TRUE(element.has_value());
-  const auto again = read_xml_text(to_xml(*element), "t", problems);
+  const auto again = hal::read_xml_text(hal::to_xml(*element), "t", problems);
   ASSERT_TRUE(again.has_value());
   EXPECT_EQ(*again->attribute("x"), "1 < 2");
   EXPECT_EQ(*again->child("b")->attribute("y"), "\"");

@@ -20,7 +20,7 @@ const std::atomic<bool> kGoOn{false};
 /// Makes the robot with this id a real one.
 core::Scene& real(core::Scene& scene, const std::string& id) {
   for (core::RobotItem& item : scene.scenario.robots) {
-    if (item.id == id) item.bridge = core::BridgeConfig{"fake:" + id, "auto", 0.5, {}, 7};
+    if (item.id == id) item.bridge = core::BridgeConfig{"fake:" + id, 0.5, {}, 7};
   }
   return scene;
 }
@@ -39,8 +39,8 @@ class MixedRun : public testing::Test {
     options_.log = hal::Log([this](hal::Severity, std::string_view text) { log_ += std::string(text) + "\n"; });
     auto session = MixedSession::make(
         std::move(made_.world),
-        [this](const BridgeRequest& request) -> MadeBridge {
-          return std::unique_ptr<bridges::RobotBridge>(std::make_unique<FakeRobot>(bodies_[request.item.id]));
+        [this](const bridges::BridgeRequest& request) -> bridges::MadeBridge {
+          return std::unique_ptr<bridges::RobotBridge>(std::make_unique<FakeRobot>(bodies_[request.robot]));
         },
         time_, options_);
     ASSERT_TRUE(session.ok()) << session.error().message;
@@ -460,14 +460,14 @@ TEST_F(MixedRun, RefusesARobotThatCannotBeMadeOrFollowed) {
   scene.robot("ep0", 0.0, 0.0);
   real(scene, "ep0");
   core::MadeWorld made = core::make(scene);
-  const auto failing = [](const BridgeRequest&) -> MadeBridge { return hal::Error{"no such link"}; };
+  const auto failing = [](const bridges::BridgeRequest&) -> bridges::MadeBridge { return hal::Error{"no such link"}; };
   auto session = MixedSession::make(std::move(made.world), failing, time_, options_);
   ASSERT_FALSE(session.ok());
   EXPECT_EQ(session.error().message, "scene:7: error: robot 'ep0': no such link");
 
   scene.scenario.robots[0].tracker = core::TrackerConfig{"crystal_ball", {}, 8};
   made = core::make(scene);
-  const auto making = [this](const BridgeRequest&) -> MadeBridge {
+  const auto making = [this](const bridges::BridgeRequest&) -> bridges::MadeBridge {
     return std::unique_ptr<bridges::RobotBridge>(std::make_unique<FakeRobot>(bodies_["ep0"]));
   };
   session = MixedSession::make(std::move(made.world), making, time_, options_);

@@ -9,11 +9,13 @@
 #include <unistd.h>
 
 #include "bridges/emulation/event_log.hpp"
+#include "bridges/epuck/bridge.hpp"
 #include "bridges/epuck_emulator/emulator.hpp"
 #include "bridges/link/link_text.hpp"
 #include "hal/spec/epuck.hpp"
 #include "mixed_reality/session/mixed_session.hpp"
-#include "mixed_reality/settings/epuck_parts.hpp"
+#include "mixed_reality/settings/bridge_request.hpp"
+#include "tests/bridges/catalog.hpp"
 #include "tests/core/scenes.hpp"
 
 namespace tandem::mixed_reality {
@@ -132,7 +134,7 @@ class FourRealEpucks : public testing::Test {
       if (!is_real) return;
       auto& epuck = robots_[id];
       epuck = std::make_unique<EmulatedEpuck>(id, emulator::Pose{x_m, y_m, 0.0});
-      item.bridge = core::BridgeConfig{"serial:" + epuck->path(), "auto", 0.5, {}, 1};
+      item.bridge = core::BridgeConfig{"serial:" + epuck->path(), 0.5, {}, 1};
     };
     robot("meets", -2.0, -1.5, 0, true);
     robot("dummy", -1.85, -1.495, 3, false);
@@ -164,17 +166,21 @@ class FourRealEpucks : public testing::Test {
   }
   static void TearDownTestSuite() { robots_.clear(); }
 
-  static MadeBridge make_robot(const BridgeRequest& request) {
-    if (request.item.id != "is_cut") return make_bridge(request, {});
-    auto parts = epuck_parts(request.item, request.ticks_per_second);
-    if (!parts.ok()) return parts.error();
-    const auto open = [opener = parts->opener]() -> hal::Result<std::unique_ptr<bridges::ByteLink>> {
-      auto inner = opener();
+  static bridges::MadeBridge make_robot(const bridges::BridgeRequest& request) {
+    if (request.robot != "is_cut") return make_bridge(test::bridges(), request, {});
+    bridges::epuck::BridgeSettings settings;
+    bridges::apply(request, settings);
+    settings.link = request.link;
+    settings.driver.timing = bridges::epuck::timing_for(request.link);
+    const auto opener = bridges::epuck::epuck_link_opener(bridges::parse_link(request.link).value());
+    if (!opener.ok()) return opener.error();
+    const auto open = [inner_opener = opener.value()]() -> hal::Result<std::unique_ptr<bridges::ByteLink>> {
+      auto inner = inner_opener();
       if (!inner.ok()) return inner.error();
       return std::unique_ptr<bridges::ByteLink>(std::make_unique<CutLink>(std::move(inner).value(), cut_));
     };
     return std::unique_ptr<bridges::RobotBridge>(
-        std::make_unique<bridges::epuck::EpuckBridge>(std::move(parts->settings), open));
+        std::make_unique<bridges::epuck::EpuckBridge>(std::move(settings), open));
   }
   static double distance(const core::Pose& a, const core::Pose& b) { return std::hypot(a.x_m - b.x_m, a.y_m - b.y_m); }
   static const RealRobotReport& report_of(const std::string& id) {
@@ -266,12 +272,13 @@ TEST(RealEpuck, AHangingHubIsStoppedByItsOwnBridge) {
   core::Scene scene(6.0, "drive");
   scene.scenario.ticks_per_second = 20;
   scene.param("left", "0.1").param("right", "0.1").robot("ep0", 0.0, 0.0);
-  scene.scenario.robots[0].bridge = core::BridgeConfig{"serial:" + epuck.path(), "auto", 0.3, {}, 1};
+  scene.scenario.robots[0].bridge = core::BridgeConfig{"serial:" + epuck.path(), 0.3, {}, 1};
   core::MadeWorld made = core::make(scene);
   ASSERT_TRUE(made.world) << made.all_problems();
   MonotonicTime time;
-  auto session = MixedSession::make(std::move(made.world),
-                                    [](const BridgeRequest& request) { return make_bridge(request, {}); }, time, {});
+  auto session = MixedSession::make(
+      std::move(made.world),
+      [](const bridges::BridgeRequest& request) { return make_bridge(test::bridges(), request, {}); }, time, {});
   ASSERT_TRUE(session.ok()) << session.error().message;
   ASSERT_TRUE(session.value()->connect(kGoOn).ok());
   EmulatedEpuck::Wheels before{}, during{};
@@ -295,14 +302,15 @@ TEST(RealEpuck, AHangingHubIsStoppedByItsOwnBridge) {
 TEST(RealEpuck, SaysWhatIsWrongWhenNobodyIsThere) {
   core::Scene scene(6.0, "drive");
   scene.robot("ep0", 0.0, 0.0);
-  scene.scenario.robots[0].bridge = core::BridgeConfig{"serial:/dev/no_such_device", "auto", 0.5, {}, 1};
+  scene.scenario.robots[0].bridge = core::BridgeConfig{"serial:/dev/no_such_device", 0.5, {}, 1};
   scene.scenario.robots[0].bridge->connect_s = 0.1;
   scene.scenario.robots[0].bridge->stop_s = 0.02;
   core::MadeWorld made = core::make(scene);
   MonotonicTime time;
   MixedOptions options;
   auto session = MixedSession::make(
-      std::move(made.world), [](const BridgeRequest& request) { return make_bridge(request, {}); }, time, options);
+      std::move(made.world),
+      [](const bridges::BridgeRequest& request) { return make_bridge(test::bridges(), request, {}); }, time, options);
   ASSERT_TRUE(session.ok()) << session.error().message;
   const hal::Status connected = session.value()->connect(kGoOn);
   ASSERT_FALSE(connected.ok());

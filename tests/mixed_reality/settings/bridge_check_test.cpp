@@ -2,6 +2,9 @@
 
 #include <gmock/gmock.h>
 
+#include "hal/element_options.hpp"
+#include "tests/bridges/catalog.hpp"
+
 namespace tandem::mixed_reality {
 namespace {
 
@@ -22,8 +25,9 @@ std::string problems_of(const std::vector<core::RobotItem>& robots) {
   core::Scenario scenario;
   scenario.file = "e.xml";
   scenario.robots = robots;
+  scenario.controllers.emplace_back();
   core::Problems problems;
-  check_bridges(scenario, problems);
+  check_bridges(scenario, test::bridges(), problems);
   std::string text;
   for (const core::Problem& p : problems) text += core::to_text(p) + "\n";
   return text;
@@ -44,7 +48,11 @@ TEST(BridgeCheck, NamesTheSecondRobotBehindALink) {
               HasSubstr("e.xml:4: error: robot 'ep1': a second robot behind the link serial:/dev/ttyUSB0@115200; the "
                         "first is 'ep0' on line 1"));
   auto other = robot("eye-bot", "eb1", kBus, 3);
-  other.bridge->name = "eb0";
+  hal::Element bridge;
+  bridge.attributes = {{"name", "eb0", 4}};
+  hal::Problems none;
+  hal::ElementReader reader(bridge, none);
+  other.bridge->own = test::bridges().find<hal::ElementOptions>("bridge of eye-bot")->read(reader);
   EXPECT_THAT(problems_of({robot("eye-bot", "eb0", kBus, 1), other}), HasSubstr("as 'eb0'; the first is 'eb0'"));
 }
 

@@ -5,11 +5,11 @@
 #include "bridges/aseba/can_messages.hpp"
 #include "bridges/can/memory_bus.hpp"
 #include "bridges/footbot/driver.hpp"
+#include "bridges/footbot/map_file.hpp"
 #include "bridges/footbot/stopper.hpp"
 #include "bridges/footbot_emulator/faults.hpp"
 #include "bridges/footbot_emulator/footbot.hpp"
 #include "hal/device/wheels.hpp"
-#include "mixed_reality/settings/map_file.hpp"
 #include "tests/checkout.hpp"
 #include "tests/scenarios/faults/run_story.hpp"
 
@@ -39,9 +39,10 @@ constexpr std::array<FaultChoice, 14> kChoices = {{
 
 const bridge::FootbotMap& default_map() {
   static const bridge::FootbotMap map = [] {
-    core::Problems problems;
-    auto read = mixed_reality::read_footbot_map(std::string(test::kSourceDir) + "/configs/footbot_map.xml", problems);
-    for (const core::Problem& p : problems) ADD_FAILURE() << core::to_text(p);
+    hal::Problems problems;
+    auto read =
+        bridges::footbot::read_footbot_map(std::string(test::kSourceDir) + "/configs/footbot_map.xml", problems);
+    for (const hal::Problem& p : problems) ADD_FAILURE() << hal::to_text(p);
     return read.value_or(bridge::FootbotMap{});
   }();
   return map;

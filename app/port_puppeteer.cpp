@@ -1,0 +1,62 @@
+#include "app/port_puppeteer.hpp"
+
+#include <algorithm>
+#include <cstring>
+
+namespace tandem::app {
+namespace {
+
+bool fits(const core::Space& space, core::RobotId robot, const bridges::EmulatorType& emulator) {
+  if (space.data_sheet(robot).kind != emulator.kind) return false;
+  const auto needed = emulator.needs();
+  return std::ranges::all_of(needed, [&](const hal::PortType* type) { return space.port(robot, *type) != nullptr; });
+}
+
+}  // namespace
+
+hal::Result<core::RobotId> PortPuppeteer::find(const core::World& world, const bridges::EmulatorType& emulator,
+                                               const std::string& id) {
+  const core::Space& space = world.space();
+  const std::string advice = "give it the controller " + std::string(emulator.puppet);
+  if (!id.empty()) {
+    const core::RobotId robot = space.find_robot(id);
+    if (!robot.valid()) return hal::Error{"the arena has no robot '" + id + "'"};
+    if (fits(space, robot, emulator)) return robot;
+    return hal::Error{"robot '" + id + "' is no " + std::string(emulator.kind) +
+                      ", or its controller does not take what the emulated firmware needs; " + advice};
+  }
+  for (std::size_t i = 0; i < space.robot_count(); ++i) {
+    if (fits(space, space.robot(i), emulator)) return space.robot(i);
+  }
+  return hal::Error{"the arena has no " + std::string(emulator.kind) +
+                    " whose controller takes what the emulated firmware needs; " + advice};
+}
+
+PortPuppeteer::PortPuppeteer(const core::World& world, core::RobotId robot, bridges::SharedPorts& ports)
+    : robot_(robot), ports_(ports) {
+  for (const hal::PortType* type : world.space().ports(robot)) {
+    if (ports.with([&](const bridges::PortBank& bank) { return bank.find(*type) != nullptr; })) types_.push_back(type);
+  }
+}
+
+void PortPuppeteer::after_sense(core::World& world) {
+  const core::Space& space = world.space();
+  if (!space.contains(robot_)) return;  // a hook took it away: its firmware goes on without a body
+  ports_.tell([&](const bridges::PortBank& bank) {
+    for (const hal::PortType* type : types_) {
+      if (type->role == hal::Role::Sensor) std::memcpy(bank.find(*type), space.port(robot_, *type), type->size);
+    }
+  });
+}
+
+void PortPuppeteer::after_filter(core::World& world) {
+  core::Space& space = world.space();
+  if (!space.contains(robot_)) return;
+  ports_.with([&](const bridges::PortBank& bank) {
+    for (const hal::PortType* type : types_) {
+      if (type->role == hal::Role::Actuator) std::memcpy(space.port(robot_, *type), bank.find(*type), type->size);
+    }
+  });
+}
+
+}  // namespace tandem::app

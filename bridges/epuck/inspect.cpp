@@ -1,0 +1,85 @@
+// `tandem inspect` on a serial line: an e-puck, and everything that it senses.
+#include "bridges/epuck/inspect.hpp"
+
+#include <array>
+
+#include "bridges/epuck/bridge.hpp"
+#include "hal/device/body_sensors.hpp"
+#include "hal/device/ring_sensors.hpp"
+#include "hal/device/wheels.hpp"
+#include "hal/spec/epuck.hpp"
+
+namespace tandem::bridges::epuck {
+namespace {
+
+/// Everything that an e-puck senses.
+void take_all(EpuckRobot& robot) {
+  for (const hal::PortType* type : port_types_of<hal::Proximity, hal::Light, hal::Ground, hal::Accelerometer,
+                                                 hal::Microphones, hal::Battery, hal::WheelEncoders>())
+    (void)robot.require(*type);
+}
+
+/// Error: nobody answers in time.
+hal::Status wait_for(EpuckBridge& bridge, const std::atomic<bool>& stop) {
+  hal::Status ready;
+  for (hal::TimeNs waited = 0; waited < 10 * hal::kNsPerSecond && !stop.load(); waited += 200 * hal::kNsPerMs) {
+    ready = bridge.wait_active(200 * hal::kNsPerMs);
+    if (ready.ok()) return ready;
+    if (waited >= hal::kNsPerSecond && bridge.status().links_opened == 0 && !bridge.status().trouble.empty())
+      return ready;
+  }
+  return ready;
+}
+
+void print_status(const InspectRequest& request, const BridgeStatus& s) {
+  const double mean_ms = s.session.answers > 0 ? static_cast<double>(s.session.sum_round_trip_ns) * 1e-6 /
+                                                     static_cast<double>(s.session.answers)
+                                               : 0.0;
+  request.print("e-puck on " + s.link);
+  request.print_table(
+      {{"firmware", std::string(s.identity.version_text())},
+       {"hardware",
+        s.identity.hardware != 0 ? formatted("%X", static_cast<unsigned>(s.identity.hardware)) : "not told"},
+       {"state", state_name(s.state)},
+       {"round trip", formatted("%.1f ms on average, %.1f ms at most", mean_ms,
+                                static_cast<double>(s.session.max_round_trip_ns) * 1e-6)},
+       {"link", std::to_string(s.bytes.bytes_in) + " bytes in, " + std::to_string(s.bytes.bytes_out) + " out; " +
+                    std::to_string(s.session.answers) + " answers to " + std::to_string(s.session.packets) +
+                    " packets, " + std::to_string(s.session.silent) + " silences, " +
+                    std::to_string(s.session.cut_short) + " cut short"}});
+}
+
+bool reads(const std::string& link) {
+  const auto address = parse_link(link);
+  return address.ok() && epuck_link_opener(address.value()).ok();
+}
+
+hal::Status run(const InspectRequest& request) {
+  const auto address = parse_link(request.link);
+  if (!address.ok()) return address.error();
+  auto opener = epuck_link_opener(address.value());
+  if (!opener.ok()) return opener.error();
+  BridgeSettings settings;
+  settings.driver.timing = timing_for(request.link);
+  EpuckBridge bridge(settings, std::move(opener).value(), request.log);
+  take_all(bridge.robot());
+  bridge.start();
+  if (hal::Status ready = wait_for(bridge, request.stop); !ready.ok()) return ready;
+  // The commands are untouched: wheels 0, lamps off.
+  latch_for(request, std::array{&bridge}, [](EpuckBridge& b) { b.commit(inspector_now_ns()); });
+  const BridgeStatus status = bridge.status();
+  print_status(request, status);
+  print_readings(request, bridge.taken());
+  bridge.shut_down();
+  if (status.state == SessionState::Active) return {};
+  return hal::Error{"the robot does not answer any more: " + status.trouble};
+}
+
+}  // namespace
+
+const InspectorType& inspector_type() noexcept {
+  static constexpr InspectorType type{hal::epuck::kDataSheet.kind, "serial:DEVICE@115200", &reads, &run};
+  return type;
+}
+
+}  // namespace tandem::bridges::epuck

@@ -1,0 +1,101 @@
+#include "bridges/footbot_emulator/port_body.hpp"
+
+#include <algorithm>
+
+#include "hal/device/body_sensors.hpp"
+#include "hal/device/distance_scanner.hpp"
+#include "hal/device/gripper.hpp"
+#include "hal/device/leds.hpp"
+#include "hal/device/range_and_bearing.hpp"
+#include "hal/device/ring_sensors.hpp"
+#include "hal/device/turret.hpp"
+#include "hal/device/wheels.hpp"
+
+namespace tandem::bridges::footbot_emulator {
+namespace {
+
+template <class From, class To>
+void copy(const From& from, To& to) {
+  std::copy_n(from.begin(), std::min(from.size(), to.size()), to.begin());
+}
+
+/// The newest measurement of each head.
+void read_scanner(const hal::DistanceScanner& scanner, BodySenses& senses) {
+  senses.scanner_rad = static_cast<double>(scanner.turn_rad);
+  for (std::size_t head = 0; head < senses.scan_m.size() && scanner.samples > 0; ++head) {
+    const std::size_t last = scanner.samples - 1;
+    if (!scanner.sees_nothing(head, last)) senses.scan_m[head] = static_cast<double>(scanner.distance(head, last));
+  }
+}
+
+}  // namespace
+
+std::vector<const hal::PortType*> body_ports() {
+  return port_types_of<hal::Proximity, hal::Light, hal::BaseGround, hal::MotorGround, hal::DistanceScanner,
+                       hal::TurretEncoder, hal::Gripper, hal::Battery, hal::Accelerometer, hal::Gyroscope,
+                       hal::RangeAndBearing, hal::WheelSpeeds, hal::RingLeds, hal::TurretDrive, hal::GripperDrive,
+                       hal::ScannerDrive, hal::RangeAndBearingSend>();
+}
+
+BodySenses PortBody::sense(hal::TimeNs /*now*/) {
+  BodySenses senses;
+  ports_.with([&](const PortBank& bank) {
+    const auto with = [&]<class Port>(auto read) {
+      const auto& port = bank.port<Port>();
+      if (port.validity != hal::Validity::Absent) read(port);
+    };
+    with.operator()<hal::Proximity>([&](const auto& p) { copy(p.distance_m, senses.distance_m); });
+    with.operator()<hal::Light>([&](const auto& p) { copy(p.level, senses.light); });
+    with.operator()<hal::BaseGround>([&](const auto& p) { copy(p.reflectance, senses.base_ground); });
+    with.operator()<hal::MotorGround>([&](const auto& p) { copy(p.reflectance, senses.motor_ground); });
+    with.operator()<hal::DistanceScanner>([&](const auto& p) { read_scanner(p, senses); });
+    with.operator()<hal::TurretEncoder>([&](const auto& p) { senses.turret_rad = p.angle_rad; });
+    with.operator()<hal::Gripper>([&](const auto& p) {
+      // Claws that hold nothing are closed again when the robot has tried its grip.
+      senses.gripper_rad = p.holding || p.busy ? static_cast<double>(p.aperture_rad) : 0.0;
+      senses.gripper_busy = p.busy;
+    });
+    with.operator()<hal::Battery>([&](const auto& p) { senses.battery_V = static_cast<double>(p.supply_V); });
+    with.operator()<hal::Accelerometer>([&](const auto& p) { copy(p.force_m_s2, senses.force_m_s2); });
+    with.operator()<hal::Gyroscope>([&](const auto& p) { senses.turn_rad_s = static_cast<double>(p.rate_rad_s[2]); });
+  });
+  return senses;
+}
+
+std::vector<Heard> PortBody::take_heard() {
+  std::vector<Heard> all;
+  ports_.with([&](const PortBank& bank) {
+    if (std::exchange(heard_, ports_.told()) == ports_.told()) return;
+    const auto& radio = bank.port<hal::RangeAndBearing>();
+    all.resize(radio.count);
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      all[i].range_m = static_cast<double>(radio.range_m[i]);
+      all[i].bearing_rad = static_cast<double>(radio.bearing_rad[i]);
+      all[i].elevation_rad = static_cast<double>(radio.elevation_rad[i]);
+      std::copy_n(radio.message(i), std::min<std::size_t>(radio.size[i], kRadioBytes), all[i].payload.begin());
+    }
+  });
+  return all;
+}
+
+void PortBody::actuate(hal::TimeNs /*now*/, const BodyCommand& command) {
+  ports_.with([&](PortBank& bank) {
+    bank.port<hal::WheelSpeeds>().set(command.left_m_s, command.right_m_s);
+    copy(command.rgb, bank.port<hal::RingLeds>().rgb);
+    auto& turret = bank.port<hal::TurretDrive>();
+    turret.mode = static_cast<hal::TurretMode>(command.turret);
+    turret.speed_rad_s = command.turret_rad_s;
+    turret.angle_rad = command.turret_rad;
+    bank.port<hal::GripperDrive>().aperture_rad = command.gripper_rad;
+    auto& scanner = bank.port<hal::ScannerDrive>();
+    scanner.mode = static_cast<hal::ScannerMode>(command.scanner);
+    scanner.speed_rad_s = command.scanner_rad_s;
+    scanner.angle_rad = command.scanner_rad;
+    auto& radio = bank.port<hal::RangeAndBearingSend>();
+    radio.sending = command.radio_sends;
+    radio.size = static_cast<std::uint8_t>(kRadioBytes);
+    copy(command.radio, radio.payload);
+  });
+}
+
+}  // namespace tandem::bridges::footbot_emulator

@@ -1,0 +1,138 @@
+#include "hal/xml/xml.hpp"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <tinyxml2.h>
+
+namespace tandem::hal {
+namespace {
+
+constexpr std::uintmax_t kLargestFile = 64U << 20U;
+
+class Converter {
+ public:
+  Converter(const std::string& file, Problems& problems) : file_(file), problems_(problems) {}
+
+  /// `free`: somebody else's content, in which text may stand.
+  Element convert(const tinyxml2::XMLElement& from, bool free) {
+    Element element;
+    element.name = from.Name();
+    element.file = file_;
+    element.line = from.GetLineNum();
+    free = free || element.name == "params" || element.name == "loop_functions" || element.name == "visualization";
+    for (const auto* a = from.FirstAttribute(); a != nullptr; a = a->Next()) {
+      element.attributes.push_back({a->Name(), a->Value(), a->GetLineNum()});
+    }
+    for (const auto* node = from.FirstChild(); node != nullptr; node = node->NextSibling()) {
+      if (const auto* child = node->ToElement(); child != nullptr) {
+        element.children.push_back(convert(*child, free));
+      } else if (node->ToText() != nullptr && !free) {
+        const std::string text = node->Value();
+        problem(node->GetLineNum(), "<" + element.name + "> holds the text '" + text.substr(0, 30) +
+                                        "', which means nothing; values stand in attributes, comments in <!-- -->");
+      }
+    }
+    return element;
+  }
+
+  void problem(int line, std::string message) { problems_.push_back({file_, line, std::move(message), false}); }
+
+ private:
+  const std::string& file_;
+  Problems& problems_;
+};
+
+void print(const Element& element, tinyxml2::XMLPrinter& printer) {
+  printer.OpenElement(element.name.c_str());
+  for (const Element::Attribute& a : element.attributes) printer.PushAttribute(a.name.c_str(), a.value.c_str());
+  for (const Element& child : element.children) print(child, printer);
+  printer.CloseElement();
+}
+
+std::string why_not_xml(const tinyxml2::XMLDocument& document) {
+  switch (document.ErrorID()) {
+    case tinyxml2::XML_ERROR_EMPTY_DOCUMENT:
+      return "the file is empty";
+    case tinyxml2::XML_ERROR_MISMATCHED_ELEMENT:
+      return "not well-formed XML: a tag is closed that is not the last one opened, or one is never closed";
+    case tinyxml2::XML_ERROR_PARSING_ATTRIBUTE:
+      return "not well-formed XML: an attribute must be written name=\"value\", and only once";
+    case tinyxml2::XML_ERROR_PARSING_COMMENT:
+      return "not well-formed XML: a comment <!-- is never closed with -->";
+    case tinyxml2::XML_ERROR_PARSING_TEXT:
+      return "not well-formed XML: there is text outside of the elements; is this an XML file?";
+    case tinyxml2::XML_ELEMENT_DEPTH_EXCEEDED:
+      return "the elements are nested too deeply";
+    case tinyxml2::XML_ERROR_PARSING_ELEMENT:
+      return "not well-formed XML: a tag is broken or never closed with >";
+    case tinyxml2::XML_ERROR_PARSING:
+      return "not well-formed XML: an element is never closed";
+    default:
+      return std::string("not well-formed XML: ") + document.ErrorName();
+  }
+}
+
+/// Binary content, which XML must not have.
+int line_of_zero_byte(const std::string& text) {
+  const std::size_t zero = text.find('\0');
+  return zero == std::string::npos
+             ? 0
+             : 1 + static_cast<int>(std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(zero), '\n'));
+}
+
+}  // namespace
+
+std::optional<Element> read_xml_file(const std::string& path, Problems& problems) {
+  namespace fs = std::filesystem;
+  std::error_code error;
+  const auto refuse = [&](std::string why) {
+    problems.push_back({path, 0, std::move(why), false});
+    return std::nullopt;
+  };
+  const fs::file_status status = fs::status(path, error);
+  if (status.type() == fs::file_type::not_found) return refuse("there is no such file");
+  if (status.type() == fs::file_type::directory)
+    return refuse("this is a folder; give the path of an experiment file (.xml)");
+  if (status.type() != fs::file_type::regular) return refuse("this is not a regular file that can be read");
+  if (fs::file_size(path, error) > kLargestFile) return refuse("the file is larger than 64 MiB; that is no experiment");
+  std::ifstream in(path, std::ios::binary);
+  if (!in) return refuse(std::string("the file cannot be read: ") + std::strerror(errno));
+  std::string text{std::istreambuf_iterator<char>(in), {}};
+  if (in.bad()) return refuse("the file cannot be read to its end");
+  return read_xml_text(text, path, problems);
+}
+
+std::optional<Element> read_xml_text(const std::string& text, const std::string& name, Problems& problems) {
+  Converter converter(name, problems);
+  if (const int line = line_of_zero_byte(text); line > 0) {
+    converter.problem(line, "there is a zero byte: this is not an XML file");
+    return std::nullopt;
+  }
+  tinyxml2::XMLDocument document;
+  if (document.Parse(text.data(), text.size()) != tinyxml2::XML_SUCCESS) {
+    converter.problem(std::max(document.ErrorLineNum(), 1), why_not_xml(document));
+    return std::nullopt;
+  }
+  const tinyxml2::XMLElement* root = document.RootElement();
+  if (root == nullptr) {
+    converter.problem(1, "there is no element in the file");
+    return std::nullopt;
+  }
+  for (const auto* next = root->NextSiblingElement(); next != nullptr; next = next->NextSiblingElement()) {
+    converter.problem(next->GetLineNum(),
+                      std::string("a second root element <") + next->Name() + ">; everything belongs in one");
+  }
+  return converter.convert(*root, false);
+}
+
+std::string to_xml(const Element& element) {
+  tinyxml2::XMLPrinter printer;
+  print(element, printer);
+  return printer.CStr();
+}
+
+}  // namespace tandem::hal

@@ -1,0 +1,66 @@
+#include "mixed_reality/settings/bridge_request.hpp"
+
+#include "mixed_reality/settings/patience.hpp"
+
+namespace tandem::mixed_reality {
+namespace {
+
+using bridges::BridgeType;
+
+std::vector<std::string> device_names(const std::vector<core::DeviceChoice>& choices) {
+  std::vector<std::string> names;
+  for (const core::DeviceChoice& c : choices) names.push_back(c.device);
+  return names;
+}
+
+hal::Result<const BridgeType*> type_for(const hal::Catalog& catalog, const std::string& kind) {
+  if (const auto* const type = catalog.find<BridgeType>(kind)) return type;
+  return hal::Error{"there is no bridge to robots of the kind '" + kind +
+                    "'; there is: " + hal::listed(catalog.names(BridgeType::kCategory))};
+}
+
+}  // namespace
+
+bridges::BridgeRequest bridge_request(const core::Scenario& scenario, const core::RobotItem& item, std::uint64_t seed) {
+  bridges::BridgeRequest request;
+  request.kind = item.kind;
+  request.robot = item.id;
+  request.link = item.bridge->link;
+  request.file = scenario.file;
+  request.options = item.bridge->own;
+  request.tick_ns = hal::time_of_tick(1, scenario.ticks_per_second);
+  request.lost_after_ns = lost_after_ns(item, scenario.ticks_per_second);
+  request.seed = seed;
+  if (item.controller < scenario.controllers.size()) {
+    request.sensors = device_names(scenario.controllers[item.controller].sensors);
+    request.actuators = device_names(scenario.controllers[item.controller].actuators);
+  }
+  return request;
+}
+
+bridges::MadeBridge make_bridge(const hal::Catalog& catalog, const bridges::BridgeRequest& request,
+                                const hal::Log& log) {
+  const auto type = type_for(catalog, request.kind);
+  if (!type.ok()) return type.error();
+  return type.value()->make(request, log);
+}
+
+std::vector<bridges::InputFile> bridge_inputs(const hal::Catalog& catalog, const bridges::BridgeRequest& request) {
+  const auto* const type = catalog.find<BridgeType>(request.kind);
+  if (type == nullptr || type->inputs == nullptr) return {};
+  std::vector<bridges::InputFile> files = type->inputs(request);
+  std::erase_if(files, [](const bridges::InputFile& file) { return file.second.empty(); });
+  return files;
+}
+
+bridges::BatteryLimit battery_limit(const hal::Catalog& catalog, std::string_view kind) noexcept {
+  const auto* const type = catalog.find<BridgeType>(kind);
+  return type == nullptr ? bridges::BatteryLimit{} : type->battery;
+}
+
+hal::Status check_bridge(const hal::Catalog& catalog, const bridges::BridgeRequest& request) {
+  const auto type = type_for(catalog, request.kind);
+  return type.ok() ? type.value()->check(request) : hal::Status{type.error()};
+}
+
+}  // namespace tandem::mixed_reality
