@@ -78,7 +78,7 @@ hal::Status run(const InspectRequest& request) {
 }  // namespace
 
 const InspectorType& inspector_type() noexcept {
-  static constexpr InspectorType type{hal::epuck::kDataSheet.kind, "serial:DEVICE@115200", &reads, &run};
+  static const InspectorType type{hal::epuck::kDataSheet.kind, "serial:DEVICE@115200", &reads, &run};
   return type;
 }
 

@@ -42,11 +42,11 @@ MadeBridge make(const BridgeRequest& request, const hal::Log& log) {
       std::make_unique<EpuckBridge>(std::move(settings), std::move(opener).value(), log));
 }
 
-constexpr BridgeType kType{.name = hal::epuck::kDataSheet.kind,
-                           .summary = "serial:DEVICE@115200",
-                           .make = &make,
-                           .check = &check,
-                           .battery = {.charge = 0.0, .supply_V = hal::epuck::kBatteryLow_V}};
+const BridgeType kType{.name = hal::epuck::kDataSheet.kind,
+                       .summary = "serial:DEVICE@115200",
+                       .make = &make,
+                       .check = &check,
+                       .battery = {.charge = 0.0, .supply_V = hal::epuck::kBatteryLow_V}};
 
 }  // namespace
 

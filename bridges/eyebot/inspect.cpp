@@ -97,7 +97,7 @@ hal::Status run(const InspectRequest& request) {
 }  // namespace
 
 const InspectorType& inspector_type() noexcept {
-  static constexpr InspectorType type{hal::eyebot::kDataSheet.kind, "lcm:URL", &reads, &run};
+  static const InspectorType type{hal::eyebot::kDataSheet.kind, "lcm:URL", &reads, &run};
   return type;
 }
 

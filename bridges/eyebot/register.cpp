@@ -45,12 +45,12 @@ std::string reached_by(const BridgeRequest& request) {
   return absolute_link(request.link) + " as '" + name_of(request) + "'";
 }
 
-constexpr BridgeType kType{.name = hal::eyebot::kDataSheet.kind,
-                           .summary = "lcm:URL",
-                           .make = &make,
-                           .check = &check,
-                           .reached_by = &reached_by,
-                           .battery = {.charge = hal::eyebot::kBatteryLow}};
+const BridgeType kType{.name = hal::eyebot::kDataSheet.kind,
+                       .summary = "lcm:URL",
+                       .make = &make,
+                       .check = &check,
+                       .reached_by = &reached_by,
+                       .battery = {.charge = hal::eyebot::kBatteryLow}};
 
 }  // namespace
 

@@ -36,7 +36,7 @@ std::unique_ptr<guardian::Stopper> make(const StopMessages& messages, StopCause 
 }  // namespace
 
 const guardian::StopperType& stopper_type() noexcept {
-  static constexpr guardian::StopperType type{hal::eyebot::kDataSheet.kind, &make};
+  static const guardian::StopperType type{hal::eyebot::kDataSheet.kind, &make};
   return type;
 }
 

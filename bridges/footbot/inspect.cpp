@@ -130,9 +130,9 @@ hal::Status run(const InspectRequest& request) {
 }  // namespace
 
 const InspectorType& inspector_type() noexcept {
-  static constexpr InspectorType type{hal::footbot::kDataSheet.kind,
-                                      "can:INTERFACE, slcan:DEVICE@RATE, serial:DEVICE@921600, tcp:HOST:PORT", &reads,
-                                      &run};
+  static const InspectorType type{hal::footbot::kDataSheet.kind,
+                                  "can:INTERFACE, slcan:DEVICE@RATE, serial:DEVICE@921600, tcp:HOST:PORT", &reads,
+                                  &run};
   return type;
 }
 

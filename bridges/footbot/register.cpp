@@ -69,12 +69,12 @@ std::vector<InputFile> inputs(const BridgeRequest& request) {
   return {{"robot's map", map_of(request)}};
 }
 
-constexpr BridgeType kType{.name = hal::footbot::kDataSheet.kind,
-                           .summary = "can:INTERFACE, slcan:DEVICE@RATE, serial:DEVICE@921600, tcp:HOST:PORT",
-                           .make = &make,
-                           .check = &check,
-                           .inputs = &inputs,
-                           .battery = {.charge = 0.0, .supply_V = hal::footbot::kBatteryLow_V}};
+const BridgeType kType{.name = hal::footbot::kDataSheet.kind,
+                       .summary = "can:INTERFACE, slcan:DEVICE@RATE, serial:DEVICE@921600, tcp:HOST:PORT",
+                       .make = &make,
+                       .check = &check,
+                       .inputs = &inputs,
+                       .battery = {.charge = 0.0, .supply_V = hal::footbot::kBatteryLow_V}};
 
 std::string check_map(const std::string& path, hal::Problems& problems) {
   const auto map = read_footbot_map(path, problems);

@@ -40,7 +40,7 @@ std::unique_ptr<guardian::Stopper> make(const StopMessages& messages, guardian::
 }  // namespace
 
 const guardian::StopperType& stopper_type() noexcept {
-  static constexpr guardian::StopperType type{hal::footbot::kDataSheet.kind, &make};
+  static const guardian::StopperType type{hal::footbot::kDataSheet.kind, &make};
   return type;
 }
 

@@ -361,7 +361,7 @@ TEST_F(OnLoopback, FliesARobotOfAnotherLanguageWithAWitness) {
   EXPECT_GT(highest_m, 0.9);
   EXPECT_GT(farthest_m, 0.95);
   for (int i = 0; i < 1000 && *armed != 0; ++i) std::this_thread::sleep_for(std::chrono::milliseconds(10));
-  const auto events = witness.end();
+  const auto events = witness.end(*ear.value());
   const auto orders = logged<messages::CmdMode>(events, "eyebot/py_1/cmd/mode");
   std::vector<int> actions;
   for (const auto& m : orders) {

@@ -166,7 +166,7 @@ TEST_F(OnLoopback, LcmsOwnRecorderHearsTheSame) {
   for (int i = 0; i < 20; ++i) ASSERT_TRUE(link->publish("eyebot/eb0/n" + std::to_string(i), bytes("data")));
   ASSERT_TRUE(witness.wait_for("eyebot/eb0/n19", *link));
   int n = 0;
-  for (const LoggedEvent& event : witness.end()) {
+  for (const LoggedEvent& event : witness.end(*link)) {
     if (event.channel.find("/n") == std::string::npos) continue;
     EXPECT_EQ(event.channel, "eyebot/eb0/n" + std::to_string(n++));
     EXPECT_EQ(std::string(event.data.begin(), event.data.end()), "data");

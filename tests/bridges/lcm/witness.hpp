@@ -27,7 +27,7 @@ class Witness {
     ::_exit(127);
   }
   ~Witness() {
-    end();
+    stop();
     ::unlink(path_.c_str());
   }
   Witness(const Witness&) = delete;
@@ -45,17 +45,24 @@ class Witness {
     return false;
   }
   std::vector<LoggedEvent> events() const { return read_event_log(path_); }
-  /// Ends the recorder, which writes what it still has.
-  std::vector<LoggedEvent> end() {
+  /// Ends the recorder when it has heard all that was said before: it drops what still waits when it is told to end.
+  std::vector<LoggedEvent> end(LcmLink& link) {
+    for (int i = 0; i < 600 && !has("witness/end"); ++i) {
+      (void)link.publish("witness/end", {});
+      std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    }
+    stop();
+    return events();
+  }
+
+ private:
+  void stop() {
     if (child_ > 0) {
       ::kill(child_, SIGINT);
       while (::waitpid(child_, nullptr, 0) < 0 && errno == EINTR) continue;
       child_ = -1;
     }
-    return events();
   }
-
- private:
   bool has(const std::string& channel) const {
     for (const LoggedEvent& e : events()) {
       if (e.channel == channel) return true;
