@@ -70,17 +70,17 @@ void add_bench(CLI::App& app, BenchOptions& o, int& code) {
       "choose among the saved lines.");
   c->add_option(
        "name", o.name,
-       "diffusion: the standard scene; flocking: eye-bots in space; codec: messages of the foot-bot, only with "
-       "--repeat; sense_to_act: how soon eye-bots are answered over LCM, with --robots, --seconds, --real-time, "
+       "diffusion: the standard scene; flocking: robots that fly, in space; codec: messages of a bridge, only with "
+       "--repeat; sense_to_act: how soon robots are answered over LCM, with --robots, --seconds, --real-time, "
        "--repeat")
       ->capture_default_str();
   c->add_option("--robots", o.robots, "Numbers of robots, e.g. 1000,10000; default: 1 to 100000")
       ->delimiter(',')
       ->check(CLI::Range(std::int64_t{1}, std::int64_t{100'000'000}));
-  auto* robot = c->add_option("--robot", o.robot, "Kind of robot; default: e-puck for diffusion, eye-bot for flocking");
+  auto* robot = c->add_option("--robot", o.robot, "Kind of robot; default: the one of the benchmark's scene");
   auto* with = c->add_option("--with", o.devices,
                              "Devices besides proximity sensors and wheels: range_and_bearing, omnidirectional_camera "
-                             "(foot-bot)")
+                             "(of robots that have one)")
                    ->delimiter(',');
   c->add_option("--engine", o.engines,
                 "Physics engines; `tandem list engines` names them; default: its first, for flocking the first for "

@@ -7,6 +7,7 @@
 #include <fstream>
 #include <iterator>
 
+#include "app/catalog.hpp"
 #include "app/command/command.hpp"
 #include "app/terminal.hpp"
 #include "hal/output_file.hpp"
@@ -24,7 +25,7 @@ int upgrade(const UpgradeOptions& options) {
   std::ifstream in(path, std::ios::binary);
   const std::string text{std::istreambuf_iterator<char>(in), {}};
   if (!in) return complain(kBadInput, path + ": the file cannot be read: " + std::strerror(errno));
-  const auto made = core::upgraded(text, path);
+  const auto made = core::upgraded(text, path, catalog());
   if (!made.ok()) return complain(kBadInput, made.error().message);
   if (made.value().changes.empty()) {
     fmt::print("{}: up to date\n", path);

@@ -11,24 +11,30 @@
 namespace tandem::core {
 namespace {
 
+/// What follows the kind of robot that ARGoS' name of a device begins with; empty where it begins with none.
+std::string_view without_robot(std::string_view argos_name, const hal::Catalog& catalog) {
+  for (std::string kind : catalog.names(hal::DataSheet::kCategory)) {
+    std::erase(kind, '-');
+    if (argos_name.starts_with(kind + "_")) return argos_name.substr(kind.size() + 1);
+  }
+  return {};
+}
+
 void read_devices(Reading& reading, Element& list, bool sensors, std::vector<DeviceChoice>& choices) {
   const std::vector<std::string>& known = sensors ? reading.known().sensors : reading.known().actuators;
   std::map<std::string, int> lines;
   for (Element& e : list.children) {
     DeviceChoice choice;
-    choice.device = device_name(e.name, sensors);
+    choice.device = device_name(e.name, sensors ? hal::Role::Sensor : hal::Role::Actuator, reading.catalog());
     if (e.attribute("implementation") == nullptr) e.attributes.push_back({"implementation", "default", 0});
     choice.implementation = *e.attribute("implementation");
     choice.options = e;
     if (std::find(known.begin(), known.end(), choice.device) == known.end()) {
       const std::string what = sensors ? "sensor" : "actuator";
-      // A robot's prefix would hide what was meant: "epuck_proximty".
-      const std::size_t prefix =
-          choice.device.find("puck_") != std::string::npos || choice.device.find("bot_") != std::string::npos
-              ? choice.device.find('_') + 1
-              : 0;
+      // A robot's name would hide what was meant where the rest is misspelt.
+      const std::string_view bare = without_robot(e.name, reading.catalog());
       reading.error(e, "unknown " + what + " <" + e.name + ">; known: " + listed(known) +
-                           did_you_mean(choice.device.substr(prefix), known));
+                           did_you_mean(bare.empty() ? choice.device : std::string(bare), known));
       continue;
     }
     const auto [first, fresh] = lines.emplace(choice.device, e.line);
@@ -216,21 +222,15 @@ std::string effective_settings(const Scenario& scenario) {
   return hal::to_xml(scenario.effective);
 }
 
-std::string device_name(std::string_view argos_name, bool sensor) {
-  if (argos_name == "differential_steering") return sensor ? "wheel_encoders" : "differential_steering";
-  if (argos_name == "epuck_leds") return "leds";
+std::string device_name(std::string_view argos_name, hal::Role role, const hal::Catalog& catalog) {
+  const bool sensor = role == hal::Role::Sensor;
+  if (argos_name == "differential_steering" && sensor) return "wheel_encoders";
   if (argos_name == "colored_blob_omnidirectional_camera") return "omnidirectional_camera";
   if (argos_name == "colored_blob_perspective_camera") return "perspective_camera";
-  for (const std::string_view prefix : {"epuck_", "footbot_", "eyebot_"}) {
-    if (!argos_name.starts_with(prefix)) continue;
-    const std::string_view rest = argos_name.substr(prefix.size());
-    if (rest == "proximity" || rest == "light" || rest == "ground") return std::string(rest);
-    if (rest == "base_ground" || rest == "motor_ground" || rest == "turret" || rest == "turret_encoder" ||
-        rest == "gripper" || rest == "distance_scanner")
-      return std::string(rest);
-    if (rest == "encoder") return "wheel_encoders";
-  }
-  return std::string(argos_name);
+  const std::string_view bare = without_robot(argos_name, catalog);
+  if (bare.empty()) return std::string(argos_name);
+  if (bare == "encoder" && sensor) return "wheel_encoders";
+  return std::string(catalog.find<hal::PortType>(hal::port_entry(bare, role)) != nullptr ? bare : argos_name);
 }
 
 }  // namespace tandem::core

@@ -7,6 +7,7 @@
 
 #include "core/scenario/scenario.hpp"
 #include "hal/catalog.hpp"
+#include "hal/port.hpp"
 
 namespace tandem::core {
 
@@ -24,8 +25,9 @@ std::optional<Scenario> read_experiment_text(const std::string& text, const std:
 /// The scenario as an experiment file with every default written out. Reads back as the same scenario.
 std::string effective_settings(const Scenario& scenario);
 
-/// Our name of an ARGoS device ("epuck_proximity" -> "proximity"); unknown names come back as they are.
-std::string device_name(std::string_view argos_name, bool sensor);
+/// Our name of an ARGoS device: one that begins with the name of a kind of robot, without its hyphens, and "_" loses
+/// that when the catalog has the device that remains. Unknown names come back as they are.
+std::string device_name(std::string_view argos_name, hal::Role role, const hal::Catalog& catalog);
 
 /// One element of the schema, for the manual.
 struct ElementManual {

@@ -32,6 +32,7 @@ class Reading {
  public:
   Reading(const hal::Catalog& catalog, Problems& problems) : catalog_(catalog), known_(catalog), problems_(problems) {}
 
+  const hal::Catalog& catalog() const noexcept { return catalog_; }
   const KnownNames& known() const noexcept { return known_; }
   Scenario& out() noexcept { return out_; }
 

@@ -128,7 +128,7 @@ std::int64_t version_of(const Element& root) {
 }
 
 /// To version 1: ARGoS' names of the root and of devices become Tandem's.
-Upgrade to_version_1(const std::string& text) {
+Upgrade to_version_1(const std::string& text, const hal::Catalog& catalog) {
   Edits edits(text);
   std::vector<std::string> path;
   Tags tags(text);
@@ -152,7 +152,8 @@ Upgrade to_version_1(const std::string& text) {
           edits.insert_behind(tag->name, " version=\"1\"");
       }
     } else if (device) {
-      if (const std::string name = device_name(tag->name, path[3] == "sensors"); name != tag->name) {
+      const hal::Role role = path[3] == "sensors" ? hal::Role::Sensor : hal::Role::Actuator;
+      if (const std::string name = device_name(tag->name, role, catalog); name != tag->name) {
         if (tag->kind != Tag::Kind::End)
           edits.note(tag->name, "<" + std::string(tag->name) + "> is now <" + name + ">");
         edits.replace(tag->name, name);
@@ -171,7 +172,7 @@ std::string version_problem(std::int64_t version) {
          std::to_string(kFileVersion) + "; use a later program";
 }
 
-hal::Result<Upgrade> upgraded(const std::string& text, const std::string& name) {
+hal::Result<Upgrade> upgraded(const std::string& text, const std::string& name, const hal::Catalog& catalog) {
   Problems problems;
   const std::optional<Element> root = hal::read_xml_text(text, name, problems);
   if (!root) return hal::Error{to_text(problems.front())};
@@ -180,7 +181,7 @@ hal::Result<Upgrade> upgraded(const std::string& text, const std::string& name) 
   const std::int64_t version = version_of(*root);
   if (const std::string why = version_problem(version); !why.empty()) return hal::Error{name + ": " + why};
   if (version >= 1) return Upgrade{text, {}};
-  return to_version_1(text);
+  return to_version_1(text, catalog);
 }
 
 }  // namespace tandem::core

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "hal/catalog.hpp"
 #include "hal/result.hpp"
 
 namespace tandem::core {
@@ -18,8 +19,9 @@ struct Upgrade {
   std::vector<std::string> changes;  ///< "line 12: …", in the order of the file; empty: it was up to date
 };
 
-/// `name` stands for the file in messages. Errors: not XML; a later version than this program knows.
-hal::Result<Upgrade> upgraded(const std::string& text, const std::string& name);
+/// `name` stands for the file in messages; `catalog` knows the robots and devices that it may name. Errors: not XML; a
+/// later version than this program knows.
+hal::Result<Upgrade> upgraded(const std::string& text, const std::string& name, const hal::Catalog& catalog);
 
 /// Why a file of this version cannot be read; empty: it can.
 std::string version_problem(std::int64_t version);

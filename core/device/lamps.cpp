@@ -105,7 +105,7 @@ class CameraLamp final : public Actuator {
   Shine shine_;
 };
 
-/// One of an e-puck's other lamps.
+/// One of the lamps in the body and at the front.
 template <class Port>
 class BodyLamp final : public Actuator {
  public:

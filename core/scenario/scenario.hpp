@@ -29,7 +29,7 @@ enum class EscapePolicy { Error, Stop, Remove };  ///< what happens to a body th
 
 /// One listed device of a controller configuration: `<proximity implementation="noisy" noise_level="0.1"/>`.
 struct DeviceChoice {
-  std::string device;          ///< the port's name; ARGoS' names ("epuck_proximity") are already mapped to ours
+  std::string device;          ///< the port's name; ARGoS' names are already mapped to ours
   std::string implementation;  ///< as written, "default" when absent
   Element options;
 };
@@ -113,7 +113,7 @@ struct TrackerConfig {
 
 /// A robot, or with `distribute` as many as it says: ids are then `id` + number.
 struct RobotItem {
-  std::string kind;  ///< "e-puck"
+  std::string kind;  ///< of the catalog's robots
   std::string id;
   std::size_t controller = 0;     ///< index into Scenario::controllers
   std::optional<Element> params;  ///< overrides of the controller's parameters, for these robots alone

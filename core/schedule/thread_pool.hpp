@@ -93,7 +93,7 @@ class MeasuredPhase {
   }
 
  private:
-  // 1,000 e-pucks (50 us of sensing and control) are stepped slower by two processors than by one, 2,000 faster.
+  // 1,000 small robots (50 us of sensing and control) are stepped slower by two processors than by one, 2,000 faster.
   static constexpr double kWorthThreads_s = 80e-6;
   double item_s_ = 1.0;  // not measured yet: shared out
 };

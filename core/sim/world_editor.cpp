@@ -163,12 +163,15 @@ hal::Status WorldEditor::check_place(const std::string& who, const Pose& pose) c
 
 // --- robots ---
 
+std::string WorldEditor::usual_kind(std::size_t controller) const {
+  const std::vector<RobotItem>& robots = scenario_.robots;
+  const auto same =
+      std::find_if(robots.begin(), robots.end(), [&](const RobotItem& r) { return r.controller == controller; });
+  if (same != robots.end()) return same->kind;
+  return robots.empty() ? std::string() : robots.front().kind;
+}
+
 hal::Result<RobotItem> WorldEditor::item_for(const NewRobot& wanted) const {
-  if (data_sheet_of(factory_.catalog(), wanted.kind) == nullptr) {
-    const std::vector<std::string> kinds = factory_.catalog().names(hal::DataSheet::kCategory);
-    return hal::Error{"robot '" + wanted.id + "': there is no kind '" + wanted.kind + "'; there are: " + listed(kinds) +
-                      did_you_mean(wanted.kind, kinds)};
-  }
   std::vector<std::string> ids;
   for (const ControllerConfig& config : scenario_.controllers) ids.push_back(config.id);
   const auto config = std::find(ids.begin(), ids.end(), wanted.controller);
@@ -177,8 +180,13 @@ hal::Result<RobotItem> WorldEditor::item_for(const NewRobot& wanted) const {
                       "'; there are: " + listed(ids) + did_you_mean(wanted.controller, ids)};
   }
   RobotItem item;
-  item.kind = wanted.kind;
   item.controller = static_cast<std::size_t>(config - ids.begin());
+  item.kind = wanted.kind.empty() ? usual_kind(item.controller) : wanted.kind;
+  if (data_sheet_of(factory_.catalog(), item.kind) == nullptr) {
+    const std::vector<std::string> kinds = factory_.catalog().names(hal::DataSheet::kCategory);
+    return hal::Error{"robot '" + wanted.id + "': there is no kind '" + item.kind + "'; there are: " + listed(kinds) +
+                      did_you_mean(item.kind, kinds)};
+  }
   for (const RobotItem& like : scenario_.robots) {
     if (like.kind != item.kind || like.controller != item.controller) continue;
     item.battery = like.battery;

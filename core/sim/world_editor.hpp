@@ -22,6 +22,7 @@ class WorldEditor final : public Editor {
   hal::Result<JointId> join(BodyKey a, BodyKey b, const std::array<double, 3>& p_W, const JointForm& form) override;
 
  private:
+  std::string usual_kind(std::size_t controller) const;
   hal::Result<RobotItem> item_for(const NewRobot& wanted) const;
   hal::Status check_place(const std::string& who, const Pose& pose) const;
   hal::Status check_shape(const Object& object) const;

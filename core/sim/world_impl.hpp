@@ -104,10 +104,10 @@ struct World::Impl final : hal::RobotLog::Sink {
   std::vector<std::unique_ptr<Engine>> engines;
   std::vector<int> parts;  // of the tick, by engine
   RegionKeeper keeper;
-  std::vector<std::uint8_t> kinematic;  // by region: kinematics2d moves its bodies
-  bool one_kind = true;                 // kinematics2d moves all bodies
-  double reach_m = 0.0;                 // of the indices
-  std::uint64_t indexed_version = 0;    // of the immovable objects
+  std::vector<std::uint8_t> in_rows;  // by region: its engine moves bodies where they stand, and lists none
+  bool all_in_rows = true;            // … that of every region
+  double reach_m = 0.0;               // of the indices
+  std::uint64_t indexed_version = 0;  // of the immovable objects
   struct {
     double reach_m = 0.0;
     std::uint64_t immovables = 0, leds = 0;
@@ -208,9 +208,9 @@ struct World::Impl final : hal::RobotLog::Sink {
     if (incidents.first.size() < kIncidentsNamed) incidents.first.push_back(std::move(what));
   }
   std::string at_tick() const { return " at tick " + std::to_string(tick); }
-  bool moved_by_kinematics(std::size_t row) noexcept {
+  bool moved_in_rows(std::size_t row) noexcept {
     const std::uint16_t region = stores().bodies.region[row];
-    return region != kNoRegion && kinematic[region] != 0;
+    return region != kNoRegion && in_rows[region] != 0;
   }
   std::string name_of(BodyKey body) {
     if (!body.is_object()) return "robot '" + name_of_row(body.index()) + "'";

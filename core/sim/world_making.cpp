@@ -250,10 +250,10 @@ void World::Impl::populate(Problems& problems) {
   engines = make_engines(scenario, catalog, placements.robots.size(), s, problems);
   if (bad()) return;
   for (const Region& region : s.regions) {
-    kinematic.push_back(region.listed ? 0 : 1);
-    if (region.listed) one_kind = false;
+    in_rows.push_back(region.listed ? 0 : 1);
+    if (region.listed) all_in_rows = false;
   }
-  s.bodies.has_motion = !one_kind;
+  s.bodies.has_motion = !all_in_rows;
 
   for (const PlacedObject& placed : placements.objects)
     s.objects.push_back(object_of(scenario, scenario.objects[placed.item], placed));
@@ -387,8 +387,8 @@ hal::Status World::reset(std::uint64_t seed) {
   w.moments.forget_all();
   w.identity = std::make_shared<int>(0);
   w.keeper = {};
-  w.kinematic.clear();
-  w.one_kind = true;
+  w.in_rows.clear();
+  w.all_in_rows = true;
   w.lit = {};
   w.strays.clear();
   w.troubles.clear();

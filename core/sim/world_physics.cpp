@@ -156,7 +156,7 @@ void World::Impl::rebuild_index() {
     return {x_m, y_m, true};
   };
   const auto fill = [&](std::size_t row) noexcept {
-    const bool fixed = (b.flags[row] & kExternal) != 0 || (!one_kind && !moved_by_kinematics(row));
+    const bool fixed = (b.flags[row] & kExternal) != 0 || (!all_in_rows && !moved_in_rows(row));
     return IndexEntry{b.x_m[row], b.y_m[row], b.radius_m[row],
                       static_cast<std::uint32_t>(row) | (fixed ? IndexEntry::kFixedFlag : 0U)};
   };

@@ -18,7 +18,9 @@ struct Object;
 /// A robot to be added. Battery and radio are those of the file's first robots of that kind and configuration; the
 /// file's defaults where it has none.
 struct NewRobot {
-  std::string kind = "e-puck";
+  /// As the element in experiment files; empty: that of the file's first robot with this configuration, or of its
+  /// first.
+  std::string kind = {};
   std::string id;          ///< no robot, object, light or sound has or had it
   std::string controller;  ///< id of a configuration of the file
   Pose pose = {};

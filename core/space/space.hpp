@@ -100,7 +100,7 @@ class Space {
   /// Moves a robot at once. Takes effect for physics and sensing from the next phase on. It may be put onto others:
   /// engines then part them.
   void set_pose(RobotId robot, const Pose& pose) noexcept;
-  /// Of its centre, as its engine left it. Where the engine keeps none (kinematics2d): what its wheels do.
+  /// Of its centre, as its engine left it. Where the engine keeps none: what its wheels do.
   Velocity velocity(RobotId robot) const noexcept;
   /// Errors: the robot is gone; its engine keeps no velocities, the wheels' commands are all there is.
   hal::Status set_velocity(RobotId robot, const Velocity& velocity);

@@ -95,7 +95,7 @@ struct Bodies {
   LargeVector<std::uint8_t> flags;        ///< BodyFlag
   LargeVector<std::uint32_t> entity;      ///< index of the robot's id
   LargeVector<std::uint16_t> region;      ///< index into SpaceStores::regions
-  bool has_motion = false;                ///< an engine other than kinematics2d takes part
+  bool has_motion = false;                ///< an engine takes part that keeps bodies of its own
   std::vector<Motion> motion;             ///< empty without
   std::vector<std::uint8_t> real_senses;  ///< bits of RealSense; empty while no pose is set from outside
 

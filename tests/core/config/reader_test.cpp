@@ -291,20 +291,23 @@ TEST(Reader, ResolvesTheFloorsPictureBesideTheFile) {
 }
 
 TEST(DeviceName, MapsArgosNamesToPorts) {
-  EXPECT_EQ(device_name("epuck_proximity", true), "proximity");
-  EXPECT_EQ(device_name("footbot_proximity", true), "proximity");
-  EXPECT_EQ(device_name("eyebot_light", true), "light");
-  EXPECT_EQ(device_name("footbot_base_ground", true), "base_ground");
-  EXPECT_EQ(device_name("footbot_motor_ground", true), "motor_ground");
-  EXPECT_EQ(device_name("epuck_ground", true), "ground");
-  EXPECT_EQ(device_name("differential_steering", true), "wheel_encoders");
-  EXPECT_EQ(device_name("differential_steering", false), "differential_steering");
-  EXPECT_EQ(device_name("epuck_leds", false), "leds");
-  EXPECT_EQ(device_name("footbot_gripper", false), "gripper");
-  EXPECT_EQ(device_name("footbot_turret", false), "turret");
-  EXPECT_EQ(device_name("footbot_turret_encoder", true), "turret_encoder");
-  EXPECT_EQ(device_name("footbot_distance_scanner", true), "distance_scanner");
-  EXPECT_EQ(device_name("footbot_tail", false), "footbot_tail");
+  EXPECT_EQ(device_name("epuck_proximity", hal::Role::Sensor, known_names()), "proximity");
+  EXPECT_EQ(device_name("footbot_proximity", hal::Role::Sensor, known_names()), "proximity");
+  EXPECT_EQ(device_name("eyebot_light", hal::Role::Sensor, known_names()), "light");
+  EXPECT_EQ(device_name("footbot_base_ground", hal::Role::Sensor, known_names()), "base_ground");
+  EXPECT_EQ(device_name("footbot_motor_ground", hal::Role::Sensor, known_names()), "motor_ground");
+  EXPECT_EQ(device_name("epuck_ground", hal::Role::Sensor, known_names()), "ground");
+  EXPECT_EQ(device_name("differential_steering", hal::Role::Sensor, known_names()), "wheel_encoders");
+  EXPECT_EQ(device_name("differential_steering", hal::Role::Actuator, known_names()), "differential_steering");
+  EXPECT_EQ(device_name("epuck_leds", hal::Role::Actuator, known_names()), "leds");
+  EXPECT_EQ(device_name("footbot_gripper", hal::Role::Actuator, known_names()), "gripper");
+  EXPECT_EQ(device_name("footbot_turret", hal::Role::Actuator, known_names()), "turret");
+  EXPECT_EQ(device_name("footbot_turret_encoder", hal::Role::Sensor, known_names()), "turret_encoder");
+  EXPECT_EQ(device_name("footbot_distance_scanner", hal::Role::Sensor, known_names()), "distance_scanner");
+  EXPECT_EQ(device_name("footbot_tail", hal::Role::Actuator, known_names()), "footbot_tail");
+  EXPECT_EQ(device_name("epuck_range_and_bearing", hal::Role::Sensor, known_names()), "range_and_bearing");
+  EXPECT_EQ(device_name("footbot_encoder", hal::Role::Sensor, known_names()), "wheel_encoders");
+  EXPECT_EQ(device_name("pipuck_proximity", hal::Role::Sensor, known_names()), "pipuck_proximity");
 }
 
 }  // namespace

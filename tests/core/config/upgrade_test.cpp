@@ -47,7 +47,7 @@ std::string replaced(std::string text, const std::string& from, const std::strin
 }
 
 TEST(Upgrade, GivesArgosFilesOurNamesAndLeavesTheRestAsItStands) {
-  const auto made = upgraded(kOld, "old.xml");
+  const auto made = upgraded(kOld, "old.xml", known_names());
   ASSERT_TRUE(made.ok()) << made.error().message;
   std::string expected = kOld;
   expected = replaced(expected, "\n<argos-configuration>", "\n<tandem version=\"1\">");
@@ -65,16 +65,16 @@ TEST(Upgrade, GivesArgosFilesOurNamesAndLeavesTheRestAsItStands) {
 }
 
 TEST(Upgrade, ChangesNothingASecondTime) {
-  const auto once = upgraded(kOld, "old.xml");
+  const auto once = upgraded(kOld, "old.xml", known_names());
   ASSERT_TRUE(once.ok());
-  const auto twice = upgraded(once.value().text, "old.xml");
+  const auto twice = upgraded(once.value().text, "old.xml", known_names());
   ASSERT_TRUE(twice.ok());
   EXPECT_EQ(twice.value().text, once.value().text);
   EXPECT_THAT(twice.value().changes, testing::IsEmpty());
 }
 
 TEST(Upgrade, ReadsAsTheSameExperiment) {
-  const auto made = upgraded(kOld, "old.xml");
+  const auto made = upgraded(kOld, "old.xml", known_names());
   ASSERT_TRUE(made.ok());
   const Scenario before = read(kOld).good();
   const Scenario after = read(made.value().text).good();
@@ -89,16 +89,16 @@ TEST(Upgrade, ReadsAsTheSameExperiment) {
 }
 
 TEST(Upgrade, AVersionThatIsSaidIsReplaced) {
-  const auto made = upgraded("<tandem version = '0'\n  a=\"1\"/>", "x");
+  const auto made = upgraded("<tandem version = '0'\n  a=\"1\"/>", "x", known_names());
   ASSERT_TRUE(made.ok());
   EXPECT_EQ(made.value().text, "<tandem version = '1'\n  a=\"1\"/>");
 }
 
 TEST(Upgrade, RefusesWhatItDoesNotKnow) {
-  EXPECT_THAT(upgraded("<tandem version=\"7\"/>", "new.xml").error().message,
+  EXPECT_THAT(upgraded("<tandem version=\"7\"/>", "new.xml", known_names()).error().message,
               HasSubstr("new.xml: the file is of version 7, and this program knows files up to version 1"));
-  EXPECT_THAT(upgraded("<footbot_map/>", "map.xml").error().message, HasSubstr("no experiment"));
-  EXPECT_THAT(upgraded("<tandem>", "half.xml").error().message, HasSubstr("half.xml:1"));
+  EXPECT_THAT(upgraded("<footbot_map/>", "map.xml", known_names()).error().message, HasSubstr("no experiment"));
+  EXPECT_THAT(upgraded("<tandem>", "half.xml", known_names()).error().message, HasSubstr("half.xml:1"));
 }
 
 TEST(Version, OfAFileIsJudgedBeforeAnythingElseOfIt) {
