@@ -81,8 +81,6 @@ class BridgedRobot : public hal::Robot {
   /// once and never again.
   void keep_commands() noexcept;
   void restore_commands() noexcept;
-  /// Writes the safe value into every command.
-  void make_safe() noexcept { bank_.make_safe(); }
 
  protected:
   void* take(const hal::PortType& type) override;

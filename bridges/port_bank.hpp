@@ -63,13 +63,6 @@ class PortBank {
     return *static_cast<Port*>(rows_[row_of(hal::port_type<Port>())].data());
   }
 
-  /// Writes the safe value into every command.
-  void make_safe() noexcept {
-    for (const Row& row : rows_) {
-      if (row.type->role == hal::Role::Actuator) row.type->reset(row.data());
-    }
-  }
-
  private:
   std::vector<Row> rows_;
 };

@@ -61,12 +61,6 @@ class EpuckBridge final : public DriverBridge<EpuckBridge, EpuckRobot> {
 
   /// Errors: not active within `timeout_ns`; says what is known (link does not open, nobody answers …) and what to do.
   hal::Status wait_active(hal::TimeNs timeout_ns);
-  /// `stop`, because the robot's controller failed.
-  void fault(hal::TimeNs now, std::string_view why) {
-    const std::lock_guard lock(mutex_);
-    driver_.fault(now, why);
-    pump_now(now);
-  }
 
   bool mismatched() const noexcept override;
   bool at_rest() const noexcept override;

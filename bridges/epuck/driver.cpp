@@ -9,8 +9,6 @@
 namespace tandem::bridges::epuck {
 namespace {
 
-constexpr double kMaxSpeed_m_s = hal::epuck::kDataSheet.max_wheel_speed_m_s;
-
 // A packet has at most 64 bytes; a link that does not take them at once is about to hang.
 constexpr hal::TimeNs kWriteBudget = 2 * hal::kNsPerMs;
 
@@ -58,7 +56,7 @@ void EpuckDriver::judge_margin() noexcept {
   asked_ns_ = 0;
 }
 
-hal::WheelSpeeds EpuckDriver::filtered(hal::TimeNs now) noexcept {
+hal::WheelSpeeds EpuckDriver::filtered() noexcept {
   hal::WheelSpeeds wheels = robot_.port<hal::WheelSpeeds>();
   switch (wheels.limit(hal::epuck::kDataSheet).result) {
     case hal::LimitResult::Clamped:
@@ -79,17 +77,8 @@ hal::WheelSpeeds EpuckDriver::filtered(hal::TimeNs now) noexcept {
     interrupted_ = interrupted_ || armed_epoch_ != 0;
     armed_epoch_ = session_.epoch();
   }
-  if (interrupted_) {
-    interrupted_ = false;
-    ramping_ = settings_.ramp_ns > 0;
-    ramp_start_ns_ = now;
-    ++statistics_.rearmed;
-  }
-  if (ramping_) {
-    const double share = static_cast<double>(now - ramp_start_ns_) / static_cast<double>(settings_.ramp_ns);
-    ramping_ = share < 1.0;
-    if (ramping_) wheels.limit_to(share * kMaxSpeed_m_s);
-  }
+  statistics_.rearmed += interrupted_ ? 1 : 0;
+  interrupted_ = false;
   return wheels;
 }
 
@@ -98,7 +87,7 @@ void EpuckDriver::commit(hal::TimeNs now) noexcept {
   last_commit_ns_ = now;
   Actuation actuation;
   if (!halted_) {
-    const hal::WheelSpeeds wheels = filtered(now);
+    const hal::WheelSpeeds wheels = filtered();
     actuation = robot_.lamps();
     actuation.left = to_steps_per_s(wheels.left_m_s);
     actuation.right = to_steps_per_s(wheels.right_m_s);
@@ -178,13 +167,6 @@ void EpuckDriver::stop(hal::TimeNs now) noexcept {
 
 void EpuckDriver::resume() noexcept {
   halted_ = false;
-}
-
-void EpuckDriver::fault(hal::TimeNs now, std::string_view why) {
-  ++statistics_.faults;
-  robot_.make_safe();
-  stop(now);
-  log_.error("e-puck '" + settings_.robot.id + "': stopped, its controller failed: " + std::string(why));
 }
 
 void EpuckDriver::farewell(hal::TimeNs now) noexcept {

@@ -22,17 +22,14 @@ struct DriverSettings {
   SessionTiming timing = {};
   /// The robot is stopped when no commit came for so long: the loop hangs, or the controller does.
   hal::TimeNs command_timeout_ns = 500 * hal::kNsPerMs;
-  /// After an interruption the speed limit rises from 0 to the robot's in this time: no jump. 0: at once.
-  hal::TimeNs ramp_ns = 500 * hal::kNsPerMs;
 };
 
 struct DriverStatistics {
   std::uint64_t commits = 0;
   std::uint64_t clamped = 0;         ///< commands beyond the robot's speed
   std::uint64_t not_finite = 0;      ///< commands with NaN or infinity: made 0
-  std::uint64_t rearmed = 0;         ///< times that driving began anew with a ramp
+  std::uint64_t rearmed = 0;         ///< times that driving began anew after an interruption
   std::uint64_t watchdog_stops = 0;  ///< for want of commits
-  std::uint64_t faults = 0;          ///< reported with `fault`
   std::uint64_t refused_bytes = 0;   ///< that the link did not take
   std::uint64_t late_answers = 0;    ///< not there when they were to be latched
   std::uint64_t stalls = 0;          ///< times that `pump` was called late (StallMeter)
@@ -48,10 +45,11 @@ struct Odometry {
 
 /// Safety as a table:
 ///   first connection, standing      -> commands pass
-///   link lost, step lost, restart   -> robot stopped by the session; commands are ignored until a fresh answer, then
-///   ramp no commit for command_timeout   -> stop; next commit ramps `stop()`, `fault()`             -> stop, commands
-///   safe until `resume()`, then ramp NaN, infinite, too fast         -> 0, 0, clamped; counted
-/// Not thread-safe.
+///   link lost, step lost, restart   -> robot stopped by the session; commands are ignored until a fresh answer
+///   no commit for command_timeout   -> stop; the next commit's commands pass
+///   `stop()`                        -> stop; commands are safe until `resume()`
+///   NaN, infinite, too fast         -> 0, 0, clamped; counted
+/// How fast it may drive after any of these is decided above. Not thread-safe.
 class EpuckDriver {
  public:
   explicit EpuckDriver(DriverSettings settings, hal::Log log = {});
@@ -76,8 +74,6 @@ class EpuckDriver {
   /// Stops the robot and keeps it stopped, LEDs off, until `resume`. Sent with the next `pump`.
   void stop(hal::TimeNs now) noexcept;
   void resume() noexcept;
-  /// `stop` because the controller failed; `why` is logged with the robot's id. Every command becomes safe.
-  void fault(hal::TimeNs now, std::string_view why);
   /// The end: stops the robot whatever it is doing. Then pump until `idle`, for a little while.
   void farewell(hal::TimeNs now) noexcept;
 
@@ -94,7 +90,7 @@ class EpuckDriver {
  private:
   void send(ByteLink& link) noexcept;
   void tell_accelerometer(const std::string& who);
-  hal::WheelSpeeds filtered(hal::TimeNs now) noexcept;
+  hal::WheelSpeeds filtered() noexcept;
   void foresee_latch(hal::TimeNs now) noexcept;
   void judge_margin() noexcept;
   void ask_when_due(hal::TimeNs now) noexcept;
@@ -108,11 +104,9 @@ class EpuckDriver {
   SessionState logged_ = SessionState::Absent;
   bool halted_ = false;
   bool moving_ = false;            // speeds other than 0 were handed to the session
-  bool interrupted_ = false;       // the next driving begins with a ramp
+  bool interrupted_ = false;       // the next driving begins anew
   std::uint64_t armed_epoch_ = 0;  // 0: not yet
   hal::TimeNs last_commit_ns_ = 0;
-  hal::TimeNs ramp_start_ns_ = 0;
-  bool ramping_ = false;
   hal::TimeNs next_latch_ns_ = 0;  // foreseen; 0: not yet
   hal::TimeNs ask_due_ns_;         // never: no question waits for its time
   hal::TimeNs asked_ns_ = 0;       // for the next latch; 0: not

@@ -34,7 +34,6 @@ MadeBridge make(const BridgeRequest& request, const hal::Log& log) {
   if (!opener.ok()) return opener.error();
   BridgeSettings settings;
   apply(request, settings);
-  settings.driver.ramp_ns = 0;  // the supervisor's ramp is the only one
   settings.link = request.link;
   settings.firmware = options_of<Options>(request).firmware;
   settings.driver.timing = timing_for(request.link);

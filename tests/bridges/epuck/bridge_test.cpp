@@ -144,7 +144,7 @@ TEST(EpuckBridge, SaysWhyTheRobotIsNotThere) {
   EXPECT_THAT(ready.error().message, HasSubstr("no such device"));
 }
 
-TEST(EpuckBridge, StopsTheRobotWhenTheControllerFails) {
+TEST(EpuckBridge, StopsTheRobotWhenTold) {
   LiveRobot live;
   EpuckBridge bridge(quick(), live.opener());
   auto& wheels = bridge.robot().actuator<hal::WheelSpeeds>();
@@ -152,7 +152,7 @@ TEST(EpuckBridge, StopsTheRobotWhenTheControllerFails) {
   ASSERT_TRUE(bridge.wait_active(kLong).ok());
   wheels.set(0.05, 0.05);
   EXPECT_TRUE(tick_until(bridge, [&] { return live.with([](ScriptedRobot& r) { return r.left != 0; }); }));
-  bridge.fault(monotonic_ns(), "it threw");
+  bridge.stop(monotonic_ns());
   EXPECT_TRUE(
       tick_until(bridge, [&] { return live.with([](ScriptedRobot& r) { return r.left == 0 && r.stops >= 2; }); }));
   EXPECT_TRUE(bridge.status().stopped);

@@ -8,7 +8,6 @@
 #include "bridges/epuck/conversions.hpp"
 #include "bridges/link/faulty_link.hpp"
 #include "bridges/link/memory_link.hpp"
-#include "hal/controller.hpp"
 #include "hal/device/body_sensors.hpp"
 #include "hal/device/leds.hpp"
 #include "hal/device/range_and_bearing.hpp"
@@ -222,7 +221,7 @@ TEST(EpuckDriver, DrivesAtOnceWhenFirstConnectedAndStanding) {
   EXPECT_EQ(rig.driver.statistics().rearmed, 0U);
 }
 
-TEST(EpuckDriver, StopsThenRampsWithoutAJumpAfterALostLink) {
+TEST(EpuckDriver, StopsBeforeItDrivesOnAfterALostLink) {
   Rig rig;
   auto& wheels = rig.driver.robot().actuator<hal::WheelSpeeds>();
   rig.connect();
@@ -236,15 +235,10 @@ TEST(EpuckDriver, StopsThenRampsWithoutAJumpAfterALostLink) {
   rig.plug_in();
   rig.robot.speeds.clear();
   for (int i = 0; i < 12; ++i) rig.tick();
-  ASSERT_GE(rig.robot.speeds.size(), 5U);
+  ASSERT_FALSE(rig.robot.speeds.empty());
   EXPECT_EQ(rig.robot.speeds.front(), std::pair(0, 0));
-  int before = 0;
-  for (const auto& [left, right] : rig.robot.speeds) {
-    EXPECT_LE(std::abs(left - before), 250);
-    EXPECT_NEAR(right, 0.5 * left, 1.0);  // the curve stays the same
-    before = left;
-  }
   EXPECT_EQ(rig.robot.left, 1000);
+  EXPECT_EQ(rig.robot.right, 500);
   EXPECT_EQ(rig.driver.statistics().rearmed, 1U);
 }
 
@@ -292,13 +286,12 @@ TEST(EpuckDriver, StopsTheRobotWhenNobodyCommits) {
   rig.run(20 * kMs);
   EXPECT_EQ(rig.robot.left, 0);
   EXPECT_EQ(rig.driver.statistics().watchdog_stops, 1U);
-  rig.tick();
-  EXPECT_EQ(rig.robot.left, 0);  // the ramp begins at 0
   for (int i = 0; i < 6; ++i) rig.tick();
   EXPECT_EQ(rig.robot.left, to_steps_per_s(0.05).value);
+  EXPECT_EQ(rig.driver.statistics().rearmed, 1U);
 }
 
-TEST(EpuckDriver, StaysStoppedAfterAFaultUntilResumed) {
+TEST(EpuckDriver, StaysStoppedUntilResumed) {
   Rig rig;
   auto& wheels = rig.driver.robot().actuator<hal::WheelSpeeds>();
   auto& leds = rig.driver.robot().actuator<hal::RingLeds>();
@@ -306,57 +299,16 @@ TEST(EpuckDriver, StaysStoppedAfterAFaultUntilResumed) {
   wheels.set(0.05, 0.05);
   leds.set_all(hal::kRed);
   rig.tick();
-  rig.driver.fault(rig.now, "division by zero");
+  rig.driver.stop(rig.now);
   rig.driver.pump(*rig.near, rig.now);
   rig.serve_robot();
   EXPECT_EQ(rig.robot.left, 0);
-  EXPECT_EQ(wheels.left_m_s, 0.0);
-  wheels.set(0.05, 0.05);
   for (int i = 0; i < 3; ++i) rig.tick();
   EXPECT_EQ(rig.robot.left, 0);
   EXPECT_EQ(rig.robot.leds[0], 0);
-  EXPECT_THAT(rig.log, testing::Contains(HasSubstr("division by zero")));
   rig.driver.resume();
   for (int i = 0; i < 8; ++i) rig.tick();
   EXPECT_EQ(rig.robot.left, to_steps_per_s(0.05).value);
-}
-
-/// Drives, and throws in its third step.
-class Faulty final : public hal::Controller {
- public:
-  explicit Faulty(hal::Robot& robot) : wheels_(robot.actuator<hal::WheelSpeeds>()) {}
-  void step() override {
-    wheels_.set(0.05, 0.05);
-    if (++steps_ == 3) throw std::runtime_error("out of ideas");
-  }
-
- private:
-  hal::WheelSpeeds& wheels_;
-  int steps_ = 0;
-};
-
-TEST(EpuckDriver, StopsTheRobotWhoseControllerThrows) {
-  Rig rig;
-  const hal::ControllerType& type = hal::controller_type<Faulty>("faulty", "");
-  Faulty controller(rig.driver.robot());
-  std::uint8_t halted = 0;
-  rig.connect();
-  std::vector<int> lefts;
-  for (int i = 0; i < 6; ++i) {
-    rig.driver.latch(i, rig.now);
-    hal::StepFault fault;
-    if (type.step_row(reinterpret_cast<std::byte*>(&controller), type.size, 0, 1, &halted, fault) == 0 && halted == 0) {
-      rig.driver.fault(rig.now, fault.message);
-      halted = 1;
-    }
-    rig.driver.commit(rig.now);
-    rig.run(100 * kMs);
-    lefts.push_back(rig.robot.left);
-  }
-  const int full = to_steps_per_s(0.05).value;
-  EXPECT_THAT(lefts, testing::ElementsAre(full, full, 0, 0, 0, 0));
-  EXPECT_EQ(rig.driver.statistics().faults, 1U);
-  EXPECT_THAT(rig.log, testing::Contains(HasSubstr("out of ideas")));
 }
 
 TEST(EpuckDriver, LeavesTheRobotStoppedAtTheEnd) {

@@ -174,10 +174,13 @@ TEST(EpuckWire, StopsADeafRobotThatIsHeardAgainWithin200Ms) {
   rig.to_robot.cut = true;
   for (int i = 0; i < 67; ++i) rig.tick(50 * kMs, drive);
   rig.to_robot.cut = false;
-  rig.tick(50 * kMs, drive);
-  for (int i = 0; i < 3; ++i) rig.tick(50 * kMs, drive);
+  double slowest_m_s = kCruise_m_s;
+  for (int i = 0; i < 4; ++i) {
+    rig.tick(50 * kMs, drive);
+    slowest_m_s = std::min(slowest_m_s, rig.body.left_m_s);
+  }
   EXPECT_GT(rig.driver.session().statistics().handshakes, 1U);
-  EXPECT_LT(rig.body.left_m_s, kCruise_m_s) << "it was stopped, or begins with a ramp";
+  EXPECT_LT(slowest_m_s, kCruise_m_s) << "it was not stopped";
 }
 
 TEST(EpuckWire, IsDrivenWithin1sOfANewLink) {
