@@ -2,18 +2,12 @@
 
 #include <charconv>
 
+#include "core/record/csv.hpp"
+
 namespace tandem::app {
 namespace {
 
 constexpr std::string_view kHeader = "tick,who,what,field,value";
-
-/// As RFC 4180 wants it in a cell.
-std::string cell(const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return quoted + "\"";
-}
 
 std::string uncell(const std::string& cell) {
   if (cell.size() < 2 || cell.front() != '"' || cell.back() != '"') return cell;
@@ -51,7 +45,7 @@ hal::Status StateDump::write(const core::World& world) {
   std::string text;
   const std::string tick = std::to_string(world.tick()) + ",";
   for (const core::StateValue& v : core::state_values(world.state_view()))
-    text += tick + cell(v.who) + "," + v.what + "," + v.field + "," + v.value + "\n";
+    text += tick + core::csv_cell(v.who) + "," + v.what + "," + v.field + "," + v.value + "\n";
   state_ = file_.write(text);
   return state_;
 }

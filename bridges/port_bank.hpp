@@ -1,5 +1,6 @@
 // The ports of one robot, real or emulated: memory for each class, found by type.
 #pragma once
+#include <algorithm>
 #include <cstddef>
 #include <memory>
 #include <mutex>
@@ -62,10 +63,22 @@ class PortBank {
   Port& port() const noexcept {
     return *static_cast<Port*>(rows_[row_of(hal::port_type<Port>())].data());
   }
+  /// Lets `use` at a reading, unless it was never measured.
+  template <class Port, class Use>
+  void read(Use&& use) const {
+    const Port& reading = port<Port>();
+    if (reading.validity != hal::Validity::Absent) use(reading);
+  }
 
  private:
   std::vector<Row> rows_;
 };
+
+/// Copies as many values as both have.
+template <class From, class To>
+void copy_values(const From& from, To& to) {
+  std::copy_n(from.begin(), std::min(from.size(), to.size()), to.begin());
+}
 
 /// The ports of an emulated robot that lives in somebody else's world: that side fills the readings and takes the
 /// commands, the firmware's side the other way round, each from its own thread.

@@ -16,22 +16,13 @@ std::vector<const hal::PortType*> body_ports() {
 
 BodySenses PortBody::sense(hal::TimeNs /*now*/) {
   BodySenses senses;
-  const auto copy = [](const hal::Reading& port, const auto& from, auto& to) {
-    if (port.validity != hal::Validity::Absent) std::copy_n(from.begin(), std::min(from.size(), to.size()), to.begin());
-  };
   ports_.with([&](const PortBank& bank) {
-    const auto& proximity = bank.port<hal::Proximity>();
-    const auto& light = bank.port<hal::Light>();
-    const auto& ground = bank.port<hal::Ground>();
-    const auto& accelerometer = bank.port<hal::Accelerometer>();
-    const auto& microphones = bank.port<hal::Microphones>();
-    const auto& battery = bank.port<hal::Battery>();
-    copy(proximity, proximity.distance_m, senses.distance_m);
-    copy(light, light.level, senses.light);
-    copy(ground, ground.reflectance, senses.ground);
-    copy(accelerometer, accelerometer.force_m_s2, senses.force_m_s2);
-    copy(microphones, microphones.level, senses.sound);
-    if (battery.validity != hal::Validity::Absent) senses.battery_V = static_cast<double>(battery.supply_V);
+    bank.read<hal::Proximity>([&](const auto& p) { copy_values(p.distance_m, senses.distance_m); });
+    bank.read<hal::Light>([&](const auto& p) { copy_values(p.level, senses.light); });
+    bank.read<hal::Ground>([&](const auto& p) { copy_values(p.reflectance, senses.ground); });
+    bank.read<hal::Accelerometer>([&](const auto& p) { copy_values(p.force_m_s2, senses.force_m_s2); });
+    bank.read<hal::Microphones>([&](const auto& p) { copy_values(p.level, senses.sound); });
+    bank.read<hal::Battery>([&](const auto& p) { senses.battery_V = static_cast<double>(p.supply_V); });
   });
   return senses;
 }

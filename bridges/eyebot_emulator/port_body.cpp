@@ -18,11 +18,6 @@ namespace {
 using hal::FlightOrder;
 using hal::FlightPhase;
 
-template <class From, class To>
-void copy(const From& from, To& to) {
-  std::copy_n(from.begin(), std::min(from.size(), to.size()), to.begin());
-}
-
 /// The newest measurement of each head.
 void read_scanner(const hal::DistanceScanner& scanner, BodySenses& senses) {
   senses.scanner_rad = static_cast<double>(scanner.turn_rad);
@@ -80,29 +75,25 @@ std::vector<const hal::PortType*> body_ports() {
 BodySenses PortBody::sense(hal::TimeNs /*now*/) {
   BodySenses senses;
   ports_.with([&](const PortBank& bank) {
-    const auto with = [&]<class Port>(auto read) {
-      const auto& port = bank.port<Port>();
-      if (port.validity != hal::Validity::Absent) read(port);
-    };
-    with.operator()<hal::Positioning>([&](const auto& p) {
+    bank.read<hal::Positioning>([&](const auto& p) {
       senses.p_WB = p.p_WB;
       senses.q_WB = p.q_WB;
       senses.ground_m = std::max(0.0, p.p_WB[2]);
     });
-    with.operator()<hal::FlightState>([&](const auto& p) { read_flight(p, senses); });
-    with.operator()<hal::Altimeter>([&](const auto& p) {
+    bank.read<hal::FlightState>([&](const auto& p) { read_flight(p, senses); });
+    bank.read<hal::Altimeter>([&](const auto& p) {
       senses.ground_m = static_cast<double>(p.ground_m);
       senses.ceiling_m = static_cast<double>(p.ceiling_m);
     });
-    with.operator()<hal::Proximity>([&](const auto& p) { copy(p.distance_m, senses.distance_m); });
-    with.operator()<hal::Light>([&](const auto& p) { copy(p.level, senses.light); });
-    with.operator()<hal::DistanceScanner>([&](const auto& p) { read_scanner(p, senses); });
-    with.operator()<hal::PanTiltEncoder>([&](const auto& p) {
+    bank.read<hal::Proximity>([&](const auto& p) { copy_values(p.distance_m, senses.distance_m); });
+    bank.read<hal::Light>([&](const auto& p) { copy_values(p.level, senses.light); });
+    bank.read<hal::DistanceScanner>([&](const auto& p) { read_scanner(p, senses); });
+    bank.read<hal::PanTiltEncoder>([&](const auto& p) {
       senses.pan_rad = p.pan_rad;
       senses.tilt_rad = p.tilt_rad;
     });
-    with.operator()<hal::PerspectiveCamera>([&](const auto& p) { read_camera(p, senses); });
-    with.operator()<hal::Battery>([&](const auto& p) { senses.charge = static_cast<double>(p.charge); });
+    bank.read<hal::PerspectiveCamera>([&](const auto& p) { read_camera(p, senses); });
+    bank.read<hal::Battery>([&](const auto& p) { senses.charge = static_cast<double>(p.charge); });
   });
   return senses;
 }
@@ -134,10 +125,10 @@ void PortBody::actuate(hal::TimeNs /*now*/, const BodyCommand& command) {
     const Lights& lights = command.lights;
     auto& lower = bank.port<hal::RingLeds>();
     lower.rgb = {};
-    if (lights.lower_on) copy(lights.lower, lower.rgb);
+    if (lights.lower_on) copy_values(lights.lower, lower.rgb);
     auto& upper = bank.port<hal::UpperRingLeds>();
     upper.rgb = {};
-    if (lights.upper_on) copy(lights.upper, upper.rgb);
+    if (lights.upper_on) copy_values(lights.upper, upper.rgb);
     bank.port<hal::CameraLed>().rgb = lights.beacon_on ? lights.beacon : std::array<std::uint8_t, 3>{};
     auto& head = bank.port<hal::PanTiltDrive>();
     head.pan_rad = command.pan_rad;
@@ -151,7 +142,7 @@ void PortBody::actuate(hal::TimeNs /*now*/, const BodyCommand& command) {
     radio.sending = !command.radio.empty();
     radio.size = static_cast<std::uint8_t>(std::min<std::size_t>(command.radio.size(), radio.payload.size()));
     radio.payload = {};
-    copy(command.radio, radio.payload);
+    copy_values(command.radio, radio.payload);
   });
 }
 

@@ -14,11 +14,6 @@
 namespace tandem::bridges::footbot_emulator {
 namespace {
 
-template <class From, class To>
-void copy(const From& from, To& to) {
-  std::copy_n(from.begin(), std::min(from.size(), to.size()), to.begin());
-}
-
 /// The newest measurement of each head.
 void read_scanner(const hal::DistanceScanner& scanner, BodySenses& senses) {
   senses.scanner_rad = static_cast<double>(scanner.turn_rad);
@@ -40,24 +35,20 @@ std::vector<const hal::PortType*> body_ports() {
 BodySenses PortBody::sense(hal::TimeNs /*now*/) {
   BodySenses senses;
   ports_.with([&](const PortBank& bank) {
-    const auto with = [&]<class Port>(auto read) {
-      const auto& port = bank.port<Port>();
-      if (port.validity != hal::Validity::Absent) read(port);
-    };
-    with.operator()<hal::Proximity>([&](const auto& p) { copy(p.distance_m, senses.distance_m); });
-    with.operator()<hal::Light>([&](const auto& p) { copy(p.level, senses.light); });
-    with.operator()<hal::BaseGround>([&](const auto& p) { copy(p.reflectance, senses.base_ground); });
-    with.operator()<hal::MotorGround>([&](const auto& p) { copy(p.reflectance, senses.motor_ground); });
-    with.operator()<hal::DistanceScanner>([&](const auto& p) { read_scanner(p, senses); });
-    with.operator()<hal::TurretEncoder>([&](const auto& p) { senses.turret_rad = p.angle_rad; });
-    with.operator()<hal::Gripper>([&](const auto& p) {
+    bank.read<hal::Proximity>([&](const auto& p) { copy_values(p.distance_m, senses.distance_m); });
+    bank.read<hal::Light>([&](const auto& p) { copy_values(p.level, senses.light); });
+    bank.read<hal::BaseGround>([&](const auto& p) { copy_values(p.reflectance, senses.base_ground); });
+    bank.read<hal::MotorGround>([&](const auto& p) { copy_values(p.reflectance, senses.motor_ground); });
+    bank.read<hal::DistanceScanner>([&](const auto& p) { read_scanner(p, senses); });
+    bank.read<hal::TurretEncoder>([&](const auto& p) { senses.turret_rad = p.angle_rad; });
+    bank.read<hal::Gripper>([&](const auto& p) {
       // Claws that hold nothing are closed again when the robot has tried its grip.
       senses.gripper_rad = p.holding || p.busy ? static_cast<double>(p.aperture_rad) : 0.0;
       senses.gripper_busy = p.busy;
     });
-    with.operator()<hal::Battery>([&](const auto& p) { senses.battery_V = static_cast<double>(p.supply_V); });
-    with.operator()<hal::Accelerometer>([&](const auto& p) { copy(p.force_m_s2, senses.force_m_s2); });
-    with.operator()<hal::Gyroscope>([&](const auto& p) { senses.turn_rad_s = static_cast<double>(p.rate_rad_s[2]); });
+    bank.read<hal::Battery>([&](const auto& p) { senses.battery_V = static_cast<double>(p.supply_V); });
+    bank.read<hal::Accelerometer>([&](const auto& p) { copy_values(p.force_m_s2, senses.force_m_s2); });
+    bank.read<hal::Gyroscope>([&](const auto& p) { senses.turn_rad_s = static_cast<double>(p.rate_rad_s[2]); });
   });
   return senses;
 }
@@ -81,7 +72,7 @@ std::vector<Heard> PortBody::take_heard() {
 void PortBody::actuate(hal::TimeNs /*now*/, const BodyCommand& command) {
   ports_.with([&](PortBank& bank) {
     bank.port<hal::WheelSpeeds>().set(command.left_m_s, command.right_m_s);
-    copy(command.rgb, bank.port<hal::RingLeds>().rgb);
+    copy_values(command.rgb, bank.port<hal::RingLeds>().rgb);
     auto& turret = bank.port<hal::TurretDrive>();
     turret.mode = static_cast<hal::TurretMode>(command.turret);
     turret.speed_rad_s = command.turret_rad_s;
@@ -94,7 +85,7 @@ void PortBody::actuate(hal::TimeNs /*now*/, const BodyCommand& command) {
     auto& radio = bank.port<hal::RangeAndBearingSend>();
     radio.sending = command.radio_sends;
     radio.size = static_cast<std::uint8_t>(kRadioBytes);
-    copy(command.radio, radio.payload);
+    copy_values(command.radio, radio.payload);
   });
 }
 

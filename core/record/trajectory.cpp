@@ -7,6 +7,7 @@
 #include <set>
 #include <utility>
 
+#include "core/record/csv.hpp"
 #include "core/scenario/element.hpp"
 #include "core/space/stores.hpp"
 #include "hal/output_file.hpp"
@@ -38,14 +39,6 @@ std::string hint(const std::string& word, const std::vector<std::string>& known)
 
 bool is_stamp(const hal::Field& field) {
   return field.name == "taken_ns" || field.name == "validity";
-}
-
-/// As RFC 4180 wants it in a cell.
-std::string cell(const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return quoted + "\"";
 }
 
 /// Whether two port classes, perhaps from two plug-ins, are the same.
@@ -137,7 +130,7 @@ hal::Status TrajectoryRecorder::Impl::choose_robots(const Space& space) {
   for (std::size_t i = 0; i < all.size(); ++i) {
     if (chosen[i] == 0) continue;
     robots.push_back(space.robot(i));
-    names.push_back(cell(all[i]));
+    names.push_back(csv_cell(all[i]));
   }
   return {};
 }
@@ -152,7 +145,7 @@ void TrajectoryRecorder::Impl::choose_newcomers(const Space& space) {
     if (!patterns.empty() && std::none_of(patterns.begin(), patterns.end(), fits)) continue;
     if (!newcomers.emplace(robot.index, robot.generation).second) continue;
     robots.push_back(robot);
-    names.push_back(cell(name));
+    names.push_back(csv_cell(name));
   }
 }
 
