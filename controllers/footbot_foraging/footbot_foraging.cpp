@@ -29,7 +29,9 @@ FootbotForaging::FootbotForaging(hal::Robot& robot, const Params& params)
       proximity_mounts_(robot.data_sheet().proximity),
       light_mounts_(robot.data_sheet().light),
       params_(params),
-      random_(robot.random()) {}
+      random_(robot.random()) {
+  robot.publish("state", state_, {"rest", "search", "bring", "give up"}, "what it does");
+}
 
 void FootbotForaging::step() noexcept {
   if (proximity_.validity != hal::Validity::Fresh || ground_.validity != hal::Validity::Fresh) {

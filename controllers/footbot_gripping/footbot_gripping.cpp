@@ -26,6 +26,7 @@ FootbotGripping::FootbotGripping(hal::Robot& robot, const Params& params)
       grasp_(robot, params.broadest_m) {
   send_.sending = true;  // so that others of its kind do not grip it
   send_.size = 1;
+  robot.publish("state", state_, {"look", "grasp", "turn", "home", "leave", "stay"}, "what it does");
 }
 
 void FootbotGripping::step() noexcept {

@@ -46,6 +46,7 @@ FootbotTaskPartitioning::FootbotTaskPartitioning(hal::Robot& robot, const Params
       random_(robot.random()) {
   send_.sending = true;  // so that nobody takes it for an object
   send_.size = 1;
+  robot.publish("state", state_, {"explore", "return", "search", "grasp", "turn", "carry", "release"}, "what it does");
 }
 
 void FootbotTaskPartitioning::step() noexcept {

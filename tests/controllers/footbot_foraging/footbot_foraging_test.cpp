@@ -50,6 +50,7 @@ TEST(Foraging, CountsAnItemForEachRobotThatComesHomeWithAGreenBeacon) {
     e->step();
     for (std::size_t i = 0; i < space.robot_count(); ++i) {
       const bool green = space.port<hal::RingLeds>(space.robot(i))->color(hal::footbot::kBeacon) == hal::kGreen;
+      ASSERT_EQ(space.published_text(space.robot(i), "state").value() == "bring", green) << "at tick " << t;
       const bool home = space.pose(space.robot(i)).x_m < -1.5;
       if (green && !home) out_with_item[i] = true;
       if (home && out_with_item[i]) {
