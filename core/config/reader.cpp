@@ -68,6 +68,14 @@ void read_configuration(Reading& reading, Element& e) {
   reading.out().controllers.push_back(std::move(config));
 }
 
+/// Nobody waits for a simulated robot.
+void check_priority(Reading& reading, Element& root) {
+  const std::vector<RobotItem>& robots = reading.out().robots;
+  if (reading.out().priority == 0 || std::any_of(robots.begin(), robots.end(), [](const auto& r) { return r.bridge; }))
+    return;
+  reading.warn(*root.child("framework")->child("time"), "'priority' has no effect: no robot has a <bridge>");
+}
+
 Scenario read_parts(Reading& reading, Element& root) {
   reading.out().file = root.file;
   reading.out().name = std::filesystem::path(root.file).stem().string();
@@ -98,6 +106,7 @@ Scenario read_parts(Reading& reading, Element& root) {
   reading.once(root, "visualization", [&](Element& e) { read_visualization(reading, e); });
   connect_media(reading);
   check_ids(reading);
+  check_priority(reading, root);
   return std::move(reading.out());
 }
 

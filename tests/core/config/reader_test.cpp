@@ -180,6 +180,13 @@ TEST(Reader, TakesUnitsEverywhere) {
   EXPECT_DOUBLE_EQ(s.robots[0].rab_range_m, 0.8);
 }
 
+TEST(Reader, SaysWhereAPriorityHasNoEffect) {
+  Parts parts;
+  parts.framework = R"(<framework><experiment length="1"/><time mode="realtime" priority="40"/></framework>)";
+  EXPECT_THAT(read(parts.text()).text(),
+              testing::HasSubstr("warning: 'priority' has no effect: no robot has a <bridge>"));
+}
+
 TEST(Reader, KnowsTandemsOwnElements) {
   Parts parts;
   parts.framework = R"(<framework><experiment length="1"/><time mode="realtime" priority="40"/></framework>)";
