@@ -147,6 +147,8 @@ class Placer {
   void place_fixed_object(std::uint32_t i, const ObjectItem& item) {
     const double yaw = hal::wrapped(item.placement.yaw_rad);
     const Obstacle o = obstacle_of(item, i, item.placement.p_W, yaw);
+    if (item.movable && !inside(item.placement.p_W))
+      return problem(item.line, name_of(o) + " is at " + text_of(item.placement.p_W) + ", outside the arena");
     const Obstacle* other = item.movable ? occupancy_.hit(o) : nullptr;
     if (other != nullptr) problem(item.line, name_of(o) + " overlaps " + name_of(*other) + "; move one of them");
     occupancy_.add(o);

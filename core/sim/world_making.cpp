@@ -63,22 +63,34 @@ void check_joints(const Scenario& scenario, const hal::Catalog& catalog, const S
   }
 }
 
-/// What engines of the plane leave out of a place: its height, and tilts. One warning an item.
-void check_upright(const Scenario& scenario, const SpaceStores& s, Problems& problems) {
+/// What engines of the plane leave out of a place: its height, and tilts.
+void warn_of_upright(const Scenario& scenario, const Region& region, int line, const std::string& who,
+                     const Placement& placement, Problems& problems) {
+  const auto warn = [&](const std::string& what) {
+    problems.push_back({scenario.file, line,
+                        who + " " + what + ", but its engine '" + region.name +
+                            "' knows the plane alone: it stands upright on the ground",
+                        true});
+  };
+  if (placement.p_W[2] > 0.0) warn("is " + hal::format_number(placement.p_W[2]) + " m above the ground");
+  if (placement.pitch_rad != 0.0 || placement.roll_rad != 0.0) warn("is tilted");
+}
+
+/// One warning an item.
+void check_upright(const Scenario& scenario, const Placements& placements, const SpaceStores& s, Problems& problems) {
   std::uint32_t told = 0xFFFFFFFFU;
   for (const RobotEntity& e : s.robots) {
     const std::uint16_t region = s.bodies.region[s.blocks[e.block].first_row + e.slot];
     const RobotItem& item = scenario.robots[e.item];
     if (e.item == told || item.distribute || region == kNoRegion || !s.regions[region].plane) continue;
     told = e.item;
-    const auto warn = [&](const std::string& what) {
-      problems.push_back({scenario.file, item.line,
-                          "robot '" + item.id + "' " + what + ", but its engine '" + s.regions[region].name +
-                              "' knows the plane alone: it stands upright on the ground",
-                          true});
-    };
-    if (item.placement.p_W[2] > 0.0) warn("is " + hal::format_number(item.placement.p_W[2]) + " m above the ground");
-    if (item.placement.pitch_rad != 0.0 || item.placement.roll_rad != 0.0) warn("is tilted");
+    warn_of_upright(scenario, s.regions[region], item.line, "robot '" + item.id + "'", item.placement, problems);
+  }
+  for (std::size_t i = 0; i < s.objects.size(); ++i) {
+    const ObjectItem& item = scenario.objects[placements.objects[i].item];
+    const std::uint16_t region = s.object_region[i];
+    if (!s.objects[i].movable || item.distribute || region == kNoRegion || !s.regions[region].plane) continue;
+    warn_of_upright(scenario, s.regions[region], item.line, "'" + item.id + "'", item.placement, problems);
   }
 }
 
@@ -133,7 +145,6 @@ void assign_regions(const Scenario& scenario, const hal::Catalog& catalog, const
     complain(scenario.robots[e.item].line, "robot '" + name + "'", s.bodies.x_m[row], s.bodies.y_m[row], why);
   }
   check_joints(scenario, catalog, s, problems);
-  check_upright(scenario, s, problems);
   for (std::size_t i = 0; i < s.objects.size(); ++i) {
     if (!s.objects[i].movable) continue;
     s.object_region[i] = keeper.find(s, BodyKey::object(i));
@@ -151,6 +162,7 @@ void assign_regions(const Scenario& scenario, const hal::Catalog& catalog, const
                  s.objects[i].id + "'",
              s.objects[i].x_m, s.objects[i].y_m, why);
   }
+  check_upright(scenario, placements, s, problems);
   if (bad > kNamed)
     problems.push_back({scenario.file, 0,
                         "... and " + std::to_string(bad - kNamed) + " more bodies in no region or too large for theirs",

@@ -370,6 +370,14 @@ TEST(Placement, RefusesARobotOutsideTheArena) {
   EXPECT_EQ(problem_of(s), "file.xml:10: error: robot 'b' is at (0, 0), outside the arena");
 }
 
+TEST(Placement, RefusesAMovableObjectOutsideTheArena) {
+  Scenario s = arena(4);
+  s.objects = {box(9, 0, 0.2, 0.2)};
+  EXPECT_EQ(placed(s).objects.size(), 1U) << "a wall may stand anywhere";
+  s.objects[0].movable = true;
+  EXPECT_THAT(problem_of(s), HasSubstr("box 'crate' of line 20 is at (9, 0), outside the arena"));
+}
+
 TEST(Placement, RefusesARobotBelowTheGround) {
   Scenario s = arena(4);
   s.robots = {robot("a", 0, 0)};

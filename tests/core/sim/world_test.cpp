@@ -423,6 +423,12 @@ TEST(World, WarnsOfPlacesThatAnEngineOfThePlaneDoesNotKnow) {
   EXPECT_NE(world.all_problems().find("warning: robot 'tilted' is tilted"), std::string::npos) << world.all_problems();
   scene.engine("dynamics3d");
   EXPECT_EQ(make(scene).all_problems(), "");
+
+  Scene pushed(4.0);
+  pushed.robot("good", -1, 0).box(1, 0, 0.3, 0.3).movable(1.0).engine("dynamics2d");
+  EXPECT_EQ(make(pushed).all_problems(), "");
+  pushed.scenario.objects[0].placement.p_W[2] = 0.5;
+  EXPECT_NE(make(pushed).all_problems().find("warning: 'box0' is 0.5 m above the ground"), std::string::npos);
 }
 
 TEST(World, SaysWhichFloorIsTooFine) {
