@@ -61,7 +61,7 @@ struct Waiting {
   const Bodies& b = stores.bodies;
   const IndexEntry* entries = stores.body_index.entries();
   const bool heights = !b.motion.empty();  // else all robots stand on the ground, at the height of the rays
-  const bool twins = !b.real_senses.empty();
+  const bool twins = stores.twins;
   std::size_t count = 0;
   for (std::size_t k = 0; k < waiting.count; ++k) {
     const Candidate candidate = waiting.candidates[k];

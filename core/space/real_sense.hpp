@@ -5,7 +5,7 @@
 namespace tandem::core {
 
 /// What a real robot measures of other real robots by itself: its twin's sensors leave those out, so that nobody is
-/// seen or heard twice. Bits of `Bodies::real_senses`.
+/// seen or heard twice. Bits of `RobotEntity::real_senses`.
 enum class RealSense : std::uint8_t {
   Proximity = 1,
   Scanner = 2,

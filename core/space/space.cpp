@@ -30,7 +30,6 @@ void Bodies::resize(std::size_t rows) {
   entity.resize(rows, 0xFFFFFFFFU);
   region.resize(rows, 0);
   if (has_motion) motion.resize(rows);
-  if (!real_senses.empty()) real_senses.resize(rows);
 }
 
 void Bodies::reserve(std::size_t rows) {
@@ -297,12 +296,12 @@ void Space::set_external(RobotId robot, bool external) noexcept {
   if (!contains(robot)) return;
   std::uint8_t& flags = stores_->bodies.flags[stores_->row_of(robot)];
   flags = static_cast<std::uint8_t>(external ? flags | kExternal : flags & ~kExternal);
-  stores_->bodies.real_senses.resize(stores_->bodies.size());
-  stores_->bodies.real_senses[stores_->row_of(robot)] = 0;
+  stores_->robots[robot.index].real_senses = 0;
+  stores_->twins = stores_->twins || external;
 }
 
 void Space::set_real_senses(RobotId robot, std::uint8_t senses) noexcept {
-  if (external(robot)) stores_->bodies.real_senses[stores_->row_of(robot)] = senses;
+  if (external(robot)) stores_->robots[robot.index].real_senses = senses;
 }
 
 const void* Space::port(RobotId robot, const hal::PortType& type) const noexcept {

@@ -72,8 +72,19 @@ void visit_bodies(const Bodies& b, std::size_t row, Rows& rows) {
   rows.value(kBody, "flags", &b.flags[row]);
   // An engine of places alone moves a body alike in every region.
   if (b.has_motion) rows.value(kBody, "region", &b.region[row]);
-  if (!b.real_senses.empty()) rows.value(kBody, "real_senses", &b.real_senses[row]);
   rows.state(b.motion, row);
+}
+
+/// Of those whose poses are set from outside.
+void visit_real_senses(const SpaceStores& s, const RobotBlock& block, const Numbers& numbers, Rows& rows) {
+  std::array<std::uint8_t, kBlockRows> senses{};
+  bool any = false;
+  for (std::size_t i = 0; i < block.used; ++i) {
+    if ((s.bodies.flags[block.first_row + i] & kExternal) == 0) continue;
+    senses[i] = s.robots[numbers[i]].real_senses;
+    any = any || senses[i] != 0;
+  }
+  if (any) rows.value("body", "real_senses", senses.data());
 }
 
 void visit_block(const StateView& state, std::size_t index, StateVisitor& visitor) {
@@ -90,6 +101,7 @@ void visit_block(const StateView& state, std::size_t index, StateVisitor& visito
   Rows rows(visitor, ValueOwner::Robot, used);
   visit_bodies(s.bodies, block.first_row, rows);
   rows.value("body", "halted", block.halted.data());
+  visit_real_senses(s, block, numbers, rows);
   for (std::size_t p = 0; p < block.ports.size(); ++p) {
     const hal::PortType& type = *group.ports[p];
     rows.fields(type.role == hal::Role::Sensor ? ValueSet::Sensor : ValueSet::Actuator, type, block.ports[p]);

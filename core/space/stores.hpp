@@ -92,12 +92,11 @@ struct Bodies {
   LargeVector<double> left_m_s, right_m_s;  ///< rim speeds that the engine drives with in this tick
   LargeVector<double> left_m, right_m;      ///< rolled since the start
   LargeVector<float> radius_m;
-  LargeVector<std::uint8_t> flags;        ///< BodyFlag
-  LargeVector<std::uint32_t> entity;      ///< index of the robot's id
-  LargeVector<std::uint16_t> region;      ///< index into SpaceStores::regions
-  bool has_motion = false;                ///< an engine takes part that keeps bodies of its own
-  std::vector<Motion> motion;             ///< empty without
-  std::vector<std::uint8_t> real_senses;  ///< bits of RealSense; empty while no pose is set from outside
+  LargeVector<std::uint8_t> flags;    ///< BodyFlag
+  LargeVector<std::uint32_t> entity;  ///< index of the robot's id
+  LargeVector<std::uint16_t> region;  ///< index into SpaceStores::regions
+  bool has_motion = false;            ///< an engine takes part that keeps bodies of its own
+  std::vector<Motion> motion;         ///< empty without
 
   std::size_t size() const noexcept { return x_m.size(); }
   void resize(std::size_t rows);
@@ -179,6 +178,7 @@ struct RobotEntity {
   std::uint32_t item = 0;    ///< of SpaceStores::names
   std::int64_t number = -1;  ///< appended to the item's id; -1: nothing
   bool alive = false;
+  std::uint8_t real_senses = 0;  ///< bits of RealSense, of one whose pose is set from outside
 };
 
 /// Ids of robots are not stored one by one: "ep" + number, numbers rising from `base` for entities from `first_entity`.
@@ -237,6 +237,7 @@ struct SpaceStores {
   std::vector<RobotBlock> blocks;
   std::vector<RobotEntity> robots;    ///< by entity index
   std::vector<std::uint32_t> living;  ///< entity indices, rising
+  bool twins = false;                 ///< the pose of some robot is set from outside, or was
   std::vector<NameRange> names;       ///< those of the file, then those of the added robots, one each
   std::unordered_map<std::string, std::uint32_t> added_robots;  ///< entity index by id, also of robots that are gone
 
@@ -311,9 +312,9 @@ struct SpaceStores {
 
   /// Whether the body in `row` is a real robot that senses `other`, another real one, by itself.
   bool senses_really(std::size_t row, std::size_t other, RealSense sense) const noexcept {
-    return !bodies.real_senses.empty() && (bodies.real_senses[row] & bit(sense)) != 0 &&
-           (bodies.flags[other] & kExternal) != 0 &&
-           (sense != RealSense::Messages || (bodies.real_senses[other] & bit(sense)) != 0);
+    if (!twins || (bodies.flags[row] & bodies.flags[other] & kExternal) == 0) return false;
+    const auto has = [&](std::size_t which) { return (robots[bodies.entity[which]].real_senses & bit(sense)) != 0; };
+    return has(row) && (sense != RealSense::Messages || has(other));
   }
   std::size_t row_of(RobotId id) const noexcept {
     const RobotEntity& e = robots[id.index];

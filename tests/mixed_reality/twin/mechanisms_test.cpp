@@ -39,7 +39,7 @@ class FootbotMechanisms : public testing::Test {
             }};
   }
   const core::ScannerState& scanner() { return *space_.state<core::ScannerState>(robot_); }
-  std::uint8_t senses() { return space_.stores().bodies.real_senses[0]; }
+  std::uint8_t senses() { return space_.stores().robots[robot_.index].real_senses; }
 
   core::Space space_;
   core::RobotId robot_;
