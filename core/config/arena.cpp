@@ -4,6 +4,7 @@
 #include <map>
 
 #include "core/config/reading.hpp"
+#include "hal/element_options.hpp"
 
 namespace tandem::core {
 namespace schema {
@@ -325,7 +326,12 @@ class ArenaReader {
     reading_.once_or_default(e, "battery", [&](Element& c) { item.battery = battery(c); });
     reading_.once(e, "bridge", [&](Element& c) {
       std::shared_ptr<const void> own;
-      const auto b = reading_.read_with_options<schema::Bridge>(c, "bridge of " + e.name, own);
+      const auto* const options = reading_.catalog().find<hal::ElementOptions>("bridge of " + e.name);
+      const auto b = reading_.read_with<schema::Bridge>(c, [&](hal::ParamVisitor& v) {
+        if (options == nullptr) return;
+        auto read = options->read(v);
+        if (own == nullptr) own = std::move(read);
+      });
       item.bridge = BridgeConfig{b.link, b.timeout_s, c, c.line, std::move(own)};
       item.bridge->rearm = b.rearm;
       item.bridge->settle_s = b.settle_s;

@@ -145,28 +145,6 @@ void read_engine(Reading& reading, Element& e) {
   reading.out().engines.push_back(std::move(config));
 }
 
-/// ARGoS' name of the medium that a device listens to.
-std::string_view medium_kind(const std::string& device) {
-  if (device == "range_and_bearing") return "range_and_bearing";
-  static constexpr std::array<std::string_view, 5> kSeenOrSeeing = {"leds", "body_led", "front_led",
-                                                                    "omnidirectional_camera", "perspective_camera"};
-  return std::find(kSeenOrSeeing.begin(), kSeenOrSeeing.end(), device) != kSeenOrSeeing.end() ? "led" : "";
-}
-
-/// The medium of that kind and id; an error at `e` where there is none.
-const MediumConfig* medium_of(Reading& reading, const Element& e, std::string_view kind, const std::string& wanted) {
-  std::vector<std::string> ids;
-  for (const MediumConfig& medium : reading.out().media) {
-    if (medium.kind != kind) continue;
-    if (medium.id == wanted) return &medium;
-    ids.push_back(medium.id);
-  }
-  reading.error(e, "medium",
-                "<media> has no <" + std::string(kind) + "> with id '" + wanted + "'; it has: " + listed(ids) +
-                    did_you_mean(wanted, ids));
-  return nullptr;
-}
-
 }  // namespace
 
 void read_engines(Reading& reading, Element& engines) {
@@ -188,10 +166,13 @@ void read_engines(Reading& reading, Element& engines) {
 }
 
 void read_media(Reading& reading, Element& media) {
+  constexpr std::size_t kMost = 255;
   reading.read<schema::Media>(media);
   std::map<std::string, int> lines;
   for (Element& e : media.children) {
-    const auto medium = reading.read<schema::Medium>(e);
+    const auto* const type = reading.catalog().find<MediumType>(e.name);
+    const auto medium =
+        type == nullptr ? reading.read_open<schema::Medium>(e) : reading.read_with<schema::Medium>(e, type->describe);
     const auto [first, fresh] = lines.emplace(medium.id, e.line);
     if (!fresh && !medium.id.empty()) {
       reading.error(e, "id",
@@ -199,36 +180,22 @@ void read_media(Reading& reading, Element& media) {
     }
     reading.out().media.push_back({e.name, medium.id, e, e.line});
   }
+  if (media.children.size() > kMost)
+    reading.error(media, "<media> holds more than " + std::to_string(kMost) + " media");
 }
 
 void connect_media(Reading& reading) {
-  const auto check_leds = [&reading](std::string_view name, int line, const std::string& medium) {
-    if (medium.empty()) return;
+  const auto check = [&reading](std::string_view name, int line, const std::string& medium) {
+    const auto number = medium_number(reading.out().media, "led", medium);
+    if (number.ok()) return;
     Element at;
     at.name = name;
     at.file = reading.out().file;
     at.line = line;
-    (void)medium_of(reading, at, "led", medium);
+    reading.error(at, "medium", number.error().message);
   };
-  for (const ObjectItem& object : reading.out().objects) check_leds("leds", object.led_line, object.led_medium);
-  for (const LightItem& light : reading.out().lights) check_leds("light", light.line, light.medium);
-  for (ControllerConfig& controller : reading.out().controllers) {
-    for (auto* list : {&controller.sensors, &controller.actuators}) {
-      for (DeviceChoice& choice : *list) {
-        const std::string* wanted = choice.options.attribute("medium");
-        const std::string_view kind = medium_kind(choice.device);
-        if (wanted == nullptr || wanted->empty() || kind.empty()) continue;  // empty: the default
-        const MediumConfig* found = medium_of(reading, choice.options, kind, *wanted);
-        if (found == nullptr) continue;
-        // What a medium says holds for the sensors that listen to it, unless they say otherwise.
-        const bool hears = list == &controller.sensors && choice.device == "range_and_bearing";
-        if (hears && choice.options.attribute("check_occlusions") == nullptr) {
-          choice.options.attributes.push_back(
-              {"check_occlusions", *found->options.attribute("check_occlusions"), found->line});
-        }
-      }
-    }
-  }
+  for (const ObjectItem& object : reading.out().objects) check("leds", object.led_line, object.led_medium);
+  for (const LightItem& light : reading.out().lights) check("light", light.line, light.medium);
 }
 
 }  // namespace tandem::core

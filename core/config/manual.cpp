@@ -1,5 +1,6 @@
 // The manual of experiment files, from their schema.
 #include "core/config/reading.hpp"
+#include "hal/element_options.hpp"
 
 namespace tandem::core {
 namespace {
@@ -30,14 +31,18 @@ std::vector<ElementManual> all_manuals() {
   return manuals_of<Root, Framework, System, Experiment, Profiling, Time, Controllers, Configuration, Sensors,
                     Actuators, Arena, Floor, Box, Cylinder, Leds, Led, Light, Sound, Robot, FootBot, EyeBot, Body,
                     RobotController, Battery, Bridge, Tracker, DistributeElement, PositionDraw, OrientationDraw, Entity,
-                    Engines, Engine, Boundaries, Top, Bottom, Sides, Vertex, Media, Medium, Hook, Record, Trajectory,
-                    Visualization>();
+                    Engines, Engine, Boundaries, Top, Bottom, Sides, Vertex, Media, schema::Medium, Hook, Record,
+                    Trajectory, Visualization>();
 }
 
-void replace(std::vector<std::string>& names, std::string_view stand_in, const std::vector<std::string>& kinds) {
-  const auto at = std::find(names.begin(), names.end(), stand_in);
-  if (at == names.end()) return;
-  names.insert(names.erase(at), kinds.begin(), kinds.end());
+/// What a kind says of its own element.
+template <class Type>
+void add_own(const Type& type, ElementManual& manual) {
+  ManualWriter writer;
+  type.describe(writer);
+  manual.doc = type.summary;
+  manual.attributes += writer.text();
+  manual.children.clear();
 }
 
 /// An element whose name stands for several kinds becomes one a kind.
@@ -52,12 +57,13 @@ std::vector<ElementManual> expanded(const ElementManual& m, const KnownNames& kn
     for (const std::string_view kind : kOwnElement) std::erase(names, kind);
   }
   if (m.name == schema::Engine::kElement.name) names = known.engines;
-  if (m.name == schema::Medium::kElement.name) names = words(schema::Media::kElement.children);
+  if (m.name == schema::Medium::kElement.name) names = known.media;
   std::vector<ElementManual> out;
   for (const std::string& name : names) {
     out.push_back(m);
     out.back().name = name;
-    replace(out.back().children, schema::kRobotKind, known.robots);
+    out.back().children = known.children_of(m.children);
+    if (m.name == schema::Medium::kElement.name) add_own(*known.catalog.find<MediumType>(name), out.back());
   }
   return out;
 }

@@ -13,9 +13,21 @@ std::vector<std::string> words(std::string_view list) {
 }
 
 KnownNames::KnownNames(const hal::Catalog& all)
-    : robots(all.names(hal::DataSheet::kCategory)), engines(all.names(KnownEngine::kCategory)), catalog(all) {
+    : robots(all.names(hal::DataSheet::kCategory)),
+      engines(all.names(KnownEngine::kCategory)),
+      media(all.names(MediumType::kCategory)),
+      catalog(all) {
   for (const hal::PortType* port : all.all<hal::PortType>())
     (port->role == hal::Role::Sensor ? sensors : actuators).emplace_back(port->name);
+}
+
+std::vector<std::string> KnownNames::children_of(std::vector<std::string> names) const {
+  for (const auto& [stand_in, kinds] :
+       {std::pair(schema::kRobotKind, &robots), std::pair(schema::kMediumKind, &media)}) {
+    const auto at = std::find(names.begin(), names.end(), stand_in);
+    if (at != names.end()) names.insert(names.erase(at), kinds->begin(), kinds->end());
+  }
+  return names;
 }
 
 std::vector<std::string> Reading::check(const Element& element, const schema::ElementInfo& info) {
@@ -30,11 +42,8 @@ std::vector<std::string> Reading::check(const Element& element, const schema::El
     }
   }
   if (info.children == schema::kAnything) return missing;
-  std::vector<std::string> allowed = words(info.children);
-  if (const auto robots = std::find(allowed.begin(), allowed.end(), schema::kRobotKind); robots != allowed.end()) {
-    allowed.erase(robots);
-    allowed.insert(allowed.end(), known_.robots.begin(), known_.robots.end());
-  }
+  if (info.children == schema::kMediumKind && known_.media.empty()) return missing;  // a program without a world
+  const std::vector<std::string> allowed = known_.children_of(words(info.children));
   for (const Element& child : element.children) {
     if (std::find(allowed.begin(), allowed.end(), child.name) != allowed.end()) continue;
     error(child, cannot_hold(element, child, allowed));

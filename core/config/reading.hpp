@@ -9,7 +9,7 @@
 #include "core/config/reader.hpp"
 #include "core/config/schema.hpp"
 #include "core/scenario/engine_traits.hpp"
-#include "hal/element_options.hpp"
+#include "core/scenario/medium_type.hpp"
 #include "hal/port.hpp"
 
 namespace tandem::core {
@@ -19,10 +19,12 @@ std::vector<std::string> words(std::string_view list);
 
 /// What the catalog has, so that the reader can judge names.
 struct KnownNames {
-  std::vector<std::string> robots, engines, sensors, actuators;
+  std::vector<std::string> robots, engines, media, sensors, actuators;
   const hal::Catalog& catalog;
   explicit KnownNames(const hal::Catalog& catalog);
 
+  /// The names of an element's children, with those of all kinds in the place of what stands for them.
+  std::vector<std::string> children_of(std::vector<std::string> names) const;
   /// An engine's traits; null: there is none of that name.
   const KnownEngine* engine(std::string_view kind) const noexcept { return catalog.find<KnownEngine>(kind); }
 };
@@ -59,19 +61,18 @@ class Reading {
     return value;
   }
 
-  /// The same for an element whose further attributes and children are the catalog's options of that name, where there
-  /// are such: `own` becomes them.
-  template <class T>
-  T read_with_options(Element& element, const std::string& name, std::shared_ptr<const void>& own, T value = {}) {
-    const auto* const options = catalog_.find<hal::ElementOptions>(name);
+  /// The same for an element whose further attributes and children are a part's own; `more(visitor)` describes those,
+  /// first to be filled in, then to show what was left out.
+  template <class T, class More>
+  T read_with(Element& element, More&& more, T value = {}) {
     const std::vector<std::string> missing = check(element, T::kElement);
     ElementReader reader(element, problems_);
     value.describe(reader);
-    if (options != nullptr) own = options->read(reader);
+    more(reader);
     reader.finish();
     ElementWriter writer(element);
     value.describe(writer);
-    if (options != nullptr) (void)options->read(writer);
+    more(writer);
     drop(element, missing);
     return value;
   }
@@ -133,7 +134,7 @@ void read_hook(Reading& reading, Element& loop_functions);
 void read_record(Reading& reading, Element& record);
 void read_visualization(Reading& reading, Element& visualization);
 
-/// Judges what needs the whole file: that ids are unique, and that references to media lead somewhere.
+/// Judges what needs the whole file: that ids are unique, and that the media of lit things are there.
 void check_ids(Reading& reading);
 void connect_media(Reading& reading);
 

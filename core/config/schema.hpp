@@ -23,8 +23,9 @@ inline constexpr double kLargestQuantity = 1e8;
 inline constexpr double kSmallest_m = 1e-6;
 inline constexpr hal::Range kLensAngles_rad{0.1 * unit::deg.to_si, 89.0 * unit::deg.to_si};
 
-inline constexpr std::string_view kAnything = "*";       ///< as children: any element
-inline constexpr std::string_view kRobotKind = "ROBOT";  ///< in children: every kind of robot that the program knows
+inline constexpr std::string_view kAnything = "*";         ///< as children: any element
+inline constexpr std::string_view kRobotKind = "ROBOT";    ///< in children: every kind of robot that the program knows
+inline constexpr std::string_view kMediumKind = "MEDIUM";  ///< … and every kind of medium
 
 /// What an element is and holds. Lists are names separated by spaces.
 struct ElementInfo {
@@ -476,24 +477,21 @@ struct Vertex {
 };
 
 struct Media {
-  static constexpr ElementInfo kElement{"media", "What carries signals.", "",
-                                        "range_and_bearing led directional_led tag simple_radio"};
+  static constexpr ElementInfo kElement{"media", "What carries signals.", "", kMediumKind};
   void describe(ParamVisitor&) {}
 };
 
+/// What media of every kind have; the rest of the attributes are the kind's own.
 struct Medium {
-  static constexpr ElementInfo kElement{"medium",
-                                        "A medium, written with the name of its kind, e.g. <range_and_bearing>.", "id"};
+  static constexpr ElementInfo kElement{
+      "medium", "A medium, written with the name of its kind, e.g. <range_and_bearing>.", "id", kAnything};
   std::string id;
   std::string index;
   std::string grid_size;
-  bool check_occlusions = true;
   void describe(ParamVisitor& v) {
     v.text("id", id, "Name that devices refer to.");
     v.text("index", index, "Accepted for ARGoS files.");
     v.text("grid_size", grid_size, "Accepted for ARGoS files; the grid chooses its size itself.");
-    v.flag("check_occlusions", check_occlusions,
-           "Whether bodies, boxes and cylinders block messages (range_and_bearing).");
   }
 };
 

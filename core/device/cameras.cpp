@@ -5,6 +5,7 @@
 
 #include "core/device/sight.hpp"
 #include "core/device/types.hpp"
+#include "core/medium/led/led.hpp"
 #include "core/random/random.hpp"
 #include "core/space/mechanisms.hpp"
 
@@ -42,7 +43,11 @@ bool same_medium(std::uint16_t led, std::uint16_t camera) noexcept {
 class Lookout {
  public:
   /// `sense`: real robots that its own camera sees are left out of what a real robot's twin sees.
-  Lookout(RealSense sense, const Column<TurretState>& turrets) : sense_(sense), turrets_(turrets) {
+  Lookout(RealSense sense, const DeviceSetup& setup, const BlockColumns& columns)
+      : sense_(sense),
+        leds_(setup.medium_as<LedMedium>()),
+        medium_(setup.channel),
+        turrets_(columns.of_all<TurretState>()) {
     between_.reserve(kRoom);
   }
 
@@ -57,16 +62,16 @@ class Lookout {
   /// `row` has in sight from `from` (W) and for which `covers(p)` holds. The order depends on the space alone.
   /// `reach_m`: `covers` holds for nothing that is farther along the ground.
   template <class Covers, class See>
-  void look(const SpaceStores& stores, std::size_t row, const Point& from, double reach_m, std::uint16_t medium,
-            Covers&& covers, See&& see) noexcept {
+  void look(const SpaceStores& stores, std::size_t row, const Point& from, double reach_m, Covers&& covers,
+            See&& see) noexcept {
     const auto consider = [&](const Point& at, hal::Rgb color) {
       const Point p{at[0] - from[0], at[1] - from[1], at[2] - from[2]};
       if (covers(p) && open(stores, from, at)) see(p, color);
     };
-    look_at_robots(stores, row, from, reach_m, medium, consider);
-    look_at_objects(stores, row, from, reach_m, medium, consider);
+    look_at_robots(stores, row, from, reach_m, consider);
+    look_at_objects(stores, row, from, reach_m, consider);
     for (const LightSource& light : stores.lights) {
-      if (!light.alive || light.intensity <= 0.0 || !same_medium(light.medium, medium)) continue;
+      if (!light.alive || light.intensity <= 0.0 || !same_medium(light.medium, medium_)) continue;
       if (!near(light.x_m, light.y_m, from, reach_m)) continue;
       gather(stores, row, row, from, light.x_m, light.y_m, 0.0);
       consider({light.x_m, light.y_m, light.z_m}, light.color);
@@ -98,12 +103,12 @@ class Lookout {
 
   template <class Consider>
   void look_at_robots(const SpaceStores& stores, std::size_t row, const Point& from, double reach_m,
-                      std::uint16_t medium, Consider&& consider) noexcept {
-    if (stores.shown_leds.empty()) return;
+                      Consider&& consider) noexcept {
+    if (leds_.silent()) return;
     const Bodies& b = stores.bodies;
     stores.body_index.for_each_near(from[0], from[1], reach_m + widest_ring_m_, [&](const IndexEntry& o) {
       const std::size_t other = o.row();
-      const ShownLeds& shown = stores.shown_leds[other];
+      const ShownLeds& shown = leds_.of(other);
       if (other == row || shown.lit == 0 || stores.senses_really(row, other, sense_)) return;
       const hal::DataSheet& sheet = stores.sheet_of_row(other);
       const double spread_m = ring_m(sheet);
@@ -111,7 +116,7 @@ class Lookout {
       gather(stores, row, other, from, b.x_m[other], b.y_m[other], spread_m);
       for (std::uint64_t left = shown.lit; left != 0; left &= left - 1) {
         const auto i = static_cast<std::size_t>(std::countr_zero(left));
-        if (!same_medium(shown.medium(i), medium)) continue;
+        if (!same_medium(shown.medium(i), medium_)) continue;
         const Point at = place_of(stores, other, sheet, i);
         const hal::LightSpread& spread = spread_of(sheet, i);
         if (!shines_at(spread, at, from)) continue;
@@ -125,9 +130,8 @@ class Lookout {
 
   template <class Consider>
   void look_at_objects(const SpaceStores& stores, std::size_t row, const Point& from, double reach_m,
-                       std::uint16_t medium, Consider&& consider) noexcept {
-    if (stores.lit_index.empty()) return;
-    for (const std::uint32_t k : stores.lit_index.near(from[0], from[1])) {
+                       Consider&& consider) noexcept {
+    for (const std::uint32_t k : leds_.objects_near(from[0], from[1])) {
       const Object& object = stores.objects[k];
       double spread2 = 0.0;
       for (const ObjectLed& led : object.leds) spread2 = std::max(spread2, led.x_m * led.x_m + led.y_m * led.y_m);
@@ -135,7 +139,7 @@ class Lookout {
       if (!object.alive || !near(object.x_m, object.y_m, from, reach_m + spread_m)) continue;
       gather(stores, row, row, from, object.x_m, object.y_m, spread_m);
       for (const ObjectLed& led : object.leds) {
-        if (led.color == hal::kBlack || !same_medium(led.medium, medium)) continue;
+        if (led.color == hal::kBlack || !same_medium(led.medium, medium_)) continue;
         consider({object.x_m + object.cos_h * led.x_m - object.sin_h * led.y_m,
                   object.y_m + object.sin_h * led.x_m + object.cos_h * led.y_m, object.z_low_m + led.z_m},
                  led.color);
@@ -227,6 +231,8 @@ class Lookout {
   }
 
   RealSense sense_;
+  const LedMedium& leds_;
+  std::uint16_t medium_;  // of the camera
   Column<TurretState> turrets_;
   double widest_body_m_ = 0.0, widest_ring_m_ = 0.0;  // of all kinds of robots
   std::vector<Blocker> between_;
@@ -281,11 +287,10 @@ struct OmniOptions : CameraOptions {
 /// Lights below it whose distance along the ground is within reach.
 class OmniSensor final : public Sensor {
  public:
-  OmniSensor(const DeviceSetup& setup, std::uint16_t medium, const Flaws& flaws, const BlockColumns& columns)
-      : lookout_(RealSense::OmniCamera, columns.of_all<TurretState>()),
+  OmniSensor(const DeviceSetup& setup, const Flaws& flaws, const BlockColumns& columns)
+      : lookout_(RealSense::OmniCamera, setup, columns),
         height_m_(setup.sheet.omni_camera.height_m),
         reach_m_(omni_reach_m(setup.sheet, setup.item.camera)),
-        medium_(medium),
         flaws_(flaws) {}
 
   void sense(const DeviceContext& context, void* ports) noexcept override {
@@ -309,7 +314,7 @@ class OmniSensor final : public Sensor {
       return p[2] <= 0.0 && p[0] * p[0] + p[1] * p[1] <= reach_m_ * reach_m_;
     };
     std::uint32_t number = 0;
-    lookout_.look(context.stores, row, from, reach_m_, medium_, covers, [&](const Point& p, hal::Rgb color) {
+    lookout_.look(context.stores, row, from, reach_m_, covers, [&](const Point& p, hal::Rgb color) {
       const std::uint32_t n = number++;
       if (missed(flaws_, context, row, Stream::OmniCameraMiss, n)) return;
       const auto error = errors(flaws_, context, row, Stream::OmniCameraNoise, n);
@@ -323,7 +328,6 @@ class OmniSensor final : public Sensor {
 
   Lookout lookout_;
   double height_m_, reach_m_;
-  std::uint16_t medium_;
   Flaws flaws_;
 };
 
@@ -336,11 +340,12 @@ Recipe<Sensor> make_omni(const Element& element, Problems& problems, const Devic
   const auto options = read_options<Options>(element, problems);
   Flaws flaws;
   if constexpr (requires { options.miss_prob; }) flaws = {options.noise_std_dev_m, options.miss_prob};
-  const auto make = [setup, medium = setup.led_medium(options.medium), flaws](const BlockColumns& columns) {
-    return std::make_unique<OmniSensor>(setup, medium, flaws, columns);
+  const auto make = [setup, flaws](const BlockColumns& columns) {
+    return std::make_unique<OmniSensor>(setup, flaws, columns);
   };
   Recipe<Sensor> recipe(make);
-  recipe.sees_m = omni_reach_m(setup.sheet, setup.item.camera);
+  recipe.listens = true;
+  recipe.reach_m = omni_reach_m(setup.sheet, setup.item.camera);
   return recipe;
 }
 
@@ -361,12 +366,11 @@ struct LensOptions : CameraOptions {
 /// A pinhole camera. What it sees is nearer than its range and falls into its image.
 class LensSensor final : public Sensor {
  public:
-  LensSensor(const DeviceSetup& setup, std::uint16_t medium, const Flaws& flaws, const BlockColumns& columns)
-      : lookout_(RealSense::LensCamera, columns.of_all<TurretState>()),
+  LensSensor(const DeviceSetup& setup, const Flaws& flaws, const BlockColumns& columns)
+      : lookout_(RealSense::LensCamera, setup, columns),
         heads_(columns.find<HeadState>()),
         camera_(camera_of(setup.sheet, setup.item.camera)),
         in_head_(setup.sheet.camera_head.turn_rad_s > 0.0 && !setup.item.camera.front),
-        medium_(medium),
         flaws_(flaws) {
     const double width = camera_.width_px;
     const double height = camera_.height_px;
@@ -448,7 +452,7 @@ class LensSensor final : public Sensor {
       return p[0] * p[0] + p[1] * p[1] + p[2] * p[2] <= range2 && pixel(aim, p).inside;
     };
     std::uint32_t number = 0;
-    lookout_.look(context.stores, row, from, camera_.range_m, medium_, covers, [&](const Point& p, hal::Rgb color) {
+    lookout_.look(context.stores, row, from, camera_.range_m, covers, [&](const Point& p, hal::Rgb color) {
       const std::uint32_t n = number++;
       if (missed(flaws_, context, row, Stream::CameraMiss, n)) return;
       const Pixel at = pixel(aim, p);
@@ -476,7 +480,6 @@ class LensSensor final : public Sensor {
   const HeadState* heads_;  // null: their controllers turn none
   hal::CameraSheet camera_;
   bool in_head_;
-  std::uint16_t medium_;
   Flaws flaws_;
   double px_per_tangent_ = 1.0;
   Aim aim_;  // of a robot that looks along x, whose camera hangs in no head
@@ -493,24 +496,25 @@ Recipe<Sensor> make_lens(const Element& element, Problems& problems, const Devic
   const auto options = read_options<Options>(element, problems);
   Flaws flaws;
   if constexpr (requires { options.miss_prob; }) flaws = {options.noise_std_dev_px, options.miss_prob};
-  const auto make = [setup, medium = setup.led_medium(options.medium), flaws](const BlockColumns& columns) {
-    return std::make_unique<LensSensor>(setup, medium, flaws, columns);
+  const auto make = [setup, flaws](const BlockColumns& columns) {
+    return std::make_unique<LensSensor>(setup, flaws, columns);
   };
   Recipe<Sensor> recipe(make);
-  recipe.sees_m = camera_of(setup.sheet, setup.item.camera).range_m;
+  recipe.listens = true;
+  recipe.reach_m = camera_of(setup.sheet, setup.item.camera).range_m;
   return recipe;
 }
 
 template <class Options>
 DeviceType omni_type(std::string_view implementation, std::string_view summary) {
-  return sensor_type(hal::OmnidirectionalCamera::kName, implementation, summary, &has_omni_camera, &make_omni<Options>,
-                     &describe_options<Options>);
+  return in_medium(LedMedium::kKind, sensor_type(hal::OmnidirectionalCamera::kName, implementation, summary,
+                                                 &has_omni_camera, &make_omni<Options>, &describe_options<Options>));
 }
 
 template <class Options>
 DeviceType lens_type(std::string_view implementation, std::string_view summary) {
-  return sensor_type(hal::PerspectiveCamera::kName, implementation, summary, &has_camera, &make_lens<Options>,
-                     &describe_options<Options>);
+  return in_medium(LedMedium::kKind, sensor_type(hal::PerspectiveCamera::kName, implementation, summary, &has_camera,
+                                                 &make_lens<Options>, &describe_options<Options>));
 }
 
 }  // namespace

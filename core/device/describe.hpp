@@ -30,6 +30,12 @@ inline DeviceType actuator_type(std::string_view device, std::string_view implem
   return {device, implementation, summary, hal::Role::Actuator, fits, nullptr, make, describe};
 }
 
+/// A device that works in a medium of that kind.
+inline DeviceType in_medium(std::string_view kind, DeviceType type) {
+  type.medium = kind;
+  return type;
+}
+
 /// Whether robot `i` of the block does what its controller says.
 inline bool obeys(const DeviceContext& context, std::size_t i) noexcept {
   const std::uint8_t flags = context.stores.bodies.flags[context.block.first_row + i];

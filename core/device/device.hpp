@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/medium/medium.hpp"
 #include "core/scenario/scenario.hpp"
 #include "core/space/stores.hpp"
 #include "hal/catalog.hpp"
@@ -67,11 +68,13 @@ struct DeviceSetup {
   const hal::DataSheet& sheet;
   const RobotItem& item;
   double tick_s = 0.1;
-  const std::vector<MediumConfig>* media = nullptr;  ///< of the file; null: none
+  Medium* medium = nullptr;  ///< that the device works in, if any; lives as long as the world
+  std::uint8_t channel = 0;  ///< number of the one that the file names, as `medium_number` gives it
 
-  /// The number of an LED medium, as in ObjectLed::medium.
-  std::uint16_t led_medium(const std::string& id) const noexcept {
-    return media == nullptr ? std::uint16_t{0} : led_medium_number(*media, id);
+  /// The medium by its class; `DeviceType::medium` is of that kind.
+  template <class M>
+  M& medium_as() const noexcept {
+    return static_cast<M&>(*medium);
   }
 };
 
@@ -79,9 +82,9 @@ struct DeviceSetup {
 template <class Device>
 struct Recipe {
   std::function<std::unique_ptr<Device>(const BlockColumns& columns)> make;
-  std::vector<KeptColumn> columns;  ///< that its robots need for it
-  double sees_m = 0.0;              ///< how far along the ground it sees what is lit; 0: nothing
-  bool sends = false;               ///< others may hear it
+  std::vector<KeptColumn> columns;          ///< that its robots need for it
+  bool publishes = false, listens = false;  ///< in the device's medium
+  double reach_m = 0.0;                     ///< as MediumUse has it
 
   Recipe() = default;
   template <class Make>
@@ -103,7 +106,8 @@ struct DeviceType {
   Recipe<Actuator> (*make_actuator)(const Element& options, Problems& problems, const DeviceSetup& setup) = nullptr;
   /// Shows its options, for the manual.
   void (*describe)(hal::ParamVisitor& visitor) = nullptr;
-  JointKinds joints = 0;  ///< that it works by: only where the robot's engine has them
+  JointKinds joints = 0;         ///< that it works by: only where the robot's engine has them
+  std::string_view medium = {};  ///< kind of the medium that it works in; it then has an option `medium`, an id
 
   std::string catalog_name() const { return device_entry(device, role, implementation); }
   /// As the catalog names it: "sensor proximity noisy".

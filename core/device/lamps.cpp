@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/device/types.hpp"
+#include "core/medium/led/led.hpp"
 #include "core/random/random.hpp"
 #include "hal/device/leds.hpp"
 
@@ -32,10 +33,15 @@ struct Lamp : IdealLamp {
 
 class Shine {
  public:
-  Shine(const Lamp<0>& errors, std::uint16_t medium)
-      : errors_(errors), exact_(errors.brightness_std_dev == 0.0 && errors.dead_prob == 0.0), medium_(medium) {}
+  Shine(const Lamp<0>& errors, const DeviceSetup& setup)
+      : errors_(errors),
+        exact_(errors.brightness_std_dev == 0.0 && errors.dead_prob == 0.0),
+        leds_(&setup.medium_as<LedMedium>()),
+        medium_(setup.channel) {}
 
   std::uint16_t medium() const noexcept { return medium_; }
+  /// Where the block's robots shine; null: nobody sees them.
+  ShownLeds* publish(const RobotBlock& block) const noexcept { return leds_->publish(block); }
 
   /// What lamp `i` of ShownLeds shows when told to show `c`.
   hal::Rgb operator()(const DeviceContext& context, std::size_t row, std::size_t i, hal::Rgb c) const noexcept {
@@ -53,6 +59,7 @@ class Shine {
  private:
   Lamp<0> errors_;
   bool exact_;
+  LedMedium* leds_;
   std::uint16_t medium_;
 };
 
@@ -65,12 +72,13 @@ class RingLamps final : public Actuator {
   RingLamps(const hal::DataSheet& sheet, const Shine& shine)
       : count_(std::min((kUpper ? sheet.upper_leds : sheet.leds).size(), hal::RingLeds::kCapacity)), shine_(shine) {}
 
-  void act(const DeviceContext& context, SpaceStores& stores, const void* ports) noexcept override {
-    if (stores.shown_leds.empty()) return;
+  void act(const DeviceContext& context, SpaceStores& /*stores*/, const void* ports) noexcept override {
+    ShownLeds* const shining = shine_.publish(context.block);
+    if (shining == nullptr) return;
     const auto* leds = static_cast<const Port*>(ports);
     for (std::size_t i = 0; i < context.block.used; ++i) {
       const std::size_t row = context.block.first_row + i;
-      ShownLeds& shown = stores.shown_leds[row];
+      ShownLeds& shown = shining[i];
       for (std::size_t k = 0; k < count_; ++k) {
         const std::size_t lamp = kUpper ? ShownLeds::kUpper + k : k;
         shown.show(lamp, shine_(context, row, lamp, leds[i].color(k)));
@@ -89,12 +97,13 @@ class CameraLamp final : public Actuator {
  public:
   CameraLamp(const hal::DataSheet&, const Shine& shine) : shine_(shine) {}
 
-  void act(const DeviceContext& context, SpaceStores& stores, const void* ports) noexcept override {
-    if (stores.shown_leds.empty()) return;
+  void act(const DeviceContext& context, SpaceStores& /*stores*/, const void* ports) noexcept override {
+    ShownLeds* const shining = shine_.publish(context.block);
+    if (shining == nullptr) return;
     const auto* lamps = static_cast<const hal::CameraLed*>(ports);
     for (std::size_t i = 0; i < context.block.used; ++i) {
       const std::size_t row = context.block.first_row + i;
-      ShownLeds& shown = stores.shown_leds[row];
+      ShownLeds& shown = shining[i];
       const hal::Rgb told{lamps[i].rgb[0], lamps[i].rgb[1], lamps[i].rgb[2]};
       shown.show(ShownLeds::kCamera, shine_(context, row, ShownLeds::kCamera, told));
       shown.camera_medium = shine_.medium();
@@ -111,14 +120,15 @@ class BodyLamp final : public Actuator {
  public:
   BodyLamp(const hal::DataSheet&, const Shine& shine) : shine_(shine) {}
 
-  void act(const DeviceContext& context, SpaceStores& stores, const void* ports) noexcept override {
-    if (stores.shown_leds.empty()) return;
+  void act(const DeviceContext& context, SpaceStores& /*stores*/, const void* ports) noexcept override {
+    ShownLeds* const shining = shine_.publish(context.block);
+    if (shining == nullptr) return;
     constexpr bool kIsFront = std::is_same_v<Port, hal::FrontLed>;
     constexpr std::size_t kLamp = kIsFront ? ShownLeds::kFront : ShownLeds::kBody;
     const auto* lamps = static_cast<const Port*>(ports);
     for (std::size_t i = 0; i < context.block.used; ++i) {
       const std::size_t row = context.block.first_row + i;
-      ShownLeds& shown = stores.shown_leds[row];
+      ShownLeds& shown = shining[i];
       const hal::Rgb told = !lamps[i].on ? hal::kBlack : kIsFront ? hal::kRed : hal::kGreen;
       shown.show(kLamp, shine_(context, row, kLamp, told));
       (kIsFront ? shown.front_medium : shown.body_medium) = shine_.medium();
@@ -137,19 +147,21 @@ Recipe<Actuator> make_lamp(const Element& element, Problems& problems, const Dev
     errors.brightness_std_dev = read.brightness_std_dev;
     errors.dead_prob = read.dead_prob;
   }
-  return [&sheet = setup.sheet, shine = Shine(errors, setup.led_medium(read.medium))](const BlockColumns&) {
+  Recipe<Actuator> recipe([&sheet = setup.sheet, shine = Shine(errors, setup)](const BlockColumns&) {
     return std::make_unique<Device>(sheet, shine);
-  };
+  });
+  recipe.publishes = true;
+  return recipe;
 }
 
 template <class Device>
 void add(std::vector<DeviceType>& types, std::string_view lamp, bool (*fits)(const hal::DataSheet&)) {
-  types.push_back(actuator_type(lamp, "default", "Shines; unevenly where asked for.", fits, &make_lamp<Device, Lamp<0>>,
-                                &describe_options<Lamp<0>>));
-  types.push_back(
-      actuator_type(lamp, "ideal", "Shines.", fits, &make_lamp<Device, IdealLamp>, &describe_options<IdealLamp>));
-  types.push_back(actuator_type(lamp, "noisy", "Shines; some lamps are dimmer than others, and some dead.", fits,
-                                &make_lamp<Device, Lamp<10>>, &describe_options<Lamp<10>>));
+  const auto add_one = [&](const DeviceType& type) { types.push_back(in_medium(LedMedium::kKind, type)); };
+  add_one(actuator_type(lamp, "default", "Shines; unevenly where asked for.", fits, &make_lamp<Device, Lamp<0>>,
+                        &describe_options<Lamp<0>>));
+  add_one(actuator_type(lamp, "ideal", "Shines.", fits, &make_lamp<Device, IdealLamp>, &describe_options<IdealLamp>));
+  add_one(actuator_type(lamp, "noisy", "Shines; some lamps are dimmer than others, and some dead.", fits,
+                        &make_lamp<Device, Lamp<10>>, &describe_options<Lamp<10>>));
 }
 
 bool has_body_lamps(const hal::DataSheet& sheet) {

@@ -8,6 +8,7 @@
 #include "core/device/shadows.hpp"
 #include "core/device/sight.hpp"
 #include "core/device/types.hpp"
+#include "core/medium/range_and_bearing/range_and_bearing.hpp"
 #include "core/random/random.hpp"
 
 namespace tandem::core {
@@ -60,7 +61,8 @@ bool disc_blocks(double cx, double cy, double radius_m, double low_m, double hig
 /// tested with every body that is near.
 class RabSensor final : public Sensor {
  public:
-  explicit RabSensor(const Hearing<0>& options) : options_(options) {}
+  RabSensor(const Hearing<0>& options, const DeviceSetup& setup)
+      : options_(options), medium_(setup.medium_as<RangeAndBearingMedium>()), channel_(setup.channel) {}
 
   void sense(const DeviceContext& context, void* ports) noexcept override {
     auto* receivers = static_cast<hal::RangeAndBearing*>(ports);
@@ -81,7 +83,7 @@ class RabSensor final : public Sensor {
       stamp(context, port);
       port.count = 0;
       port.dropped = 0;
-      if (context.stores.broadcasts.empty()) continue;
+      if (medium_.silent()) continue;
       if (shadows && space_ && hear_in_space(context, context.block.first_row + i, farthest_m, port)) continue;
       if (shadows)
         hear_in_shadows(context, context.block.first_row + i, farthest_m, port);
@@ -139,11 +141,15 @@ class RabSensor final : public Sensor {
     return lowest_m < highest_m - kOnTop_m;
   }
 
+  bool hears(const Broadcast& message) const noexcept {
+    return message.size != Broadcast::kSilent && (message.channel == channel_ || message.channel == 0 || channel_ == 0);
+  }
+
   /// The sender in `other` if its message reaches so far.
   bool in_range(const DeviceContext& context, std::uint32_t other, double wx, double wy, double height_m,
                 Sender& sender) const noexcept {
-    const Broadcast& message = context.stores.broadcasts[other];
-    if (message.sending == 0) return false;
+    const Broadcast& message = medium_.of(other);
+    if (!hears(message)) return false;
     const double reach = static_cast<double>(message.range_m);
     if (wx * wx + wy * wy > reach * reach) return false;
     sender = {other, wx, wy, board_m(context.stores, other) - height_m};
@@ -233,10 +239,10 @@ class RabSensor final : public Sensor {
     std::size_t heard = 0;
     for (std::size_t i = 0; i < count; ++i) {
       const Around& n = around_[i];
-      const Broadcast& message = stores.broadcasts[n.row];
+      const Broadcast& message = medium_.of(n.row);
       const auto reach_m = static_cast<double>(message.range_m);
       const double range2 = around_flat2_[i] + n.board_m * n.board_m;
-      if (message.sending == 0 || range2 > reach_m * reach_m || something_between(i, count)) continue;
+      if (!hears(message) || range2 > reach_m * reach_m || something_between(i, count)) continue;
       std::size_t at = heard++;
       for (; at > 0 && range2 < heard_[at - 1].range2; --at) heard_[at] = heard_[at - 1];
       heard_[at] = {range2, i};
@@ -367,7 +373,7 @@ class RabSensor final : public Sensor {
     const SpaceStores& stores = context.stores;
     const Bodies& b = stores.bodies;
     if (stores.senses_really(row, sender.row, RealSense::Messages)) return;
-    const Broadcast& message = stores.broadcasts[sender.row];
+    const Broadcast& message = medium_.of(sender.row);
     const double x = b.x_m[row];
     const double y = b.y_m[row];
     double wx = sender.wx;
@@ -402,6 +408,8 @@ class RabSensor final : public Sensor {
   }
 
   Hearing<0> options_;
+  const RangeAndBearingMedium& medium_;
+  std::uint8_t channel_;
   const hal::DataSheet* only_sheet_ = nullptr;  // of all robots, or null where there are several kinds
   bool flat_ = false;                           // all boards are equally high
   bool space_ = false;                          // there are robots that fly
@@ -421,7 +429,7 @@ class RabSensor final : public Sensor {
 };
 
 template <class Options>
-Recipe<Sensor> make_hearing(const Element& element, Problems& problems, const DeviceSetup&) {
+Recipe<Sensor> make_hearing(const Element& element, Problems& problems, const DeviceSetup& setup) {
   const auto read = read_options<Options>(element, problems);
   Hearing<0> options;
   options.check_occlusions = read.check_occlusions;
@@ -429,13 +437,15 @@ Recipe<Sensor> make_hearing(const Element& element, Problems& problems, const De
     options.noise_std_dev_m = read.noise_std_dev_m;
     options.packet_drop_prob = read.packet_drop_prob;
   }
-  return [options](const BlockColumns&) { return std::make_unique<RabSensor>(options); };
+  Recipe<Sensor> recipe([options, setup](const BlockColumns&) { return std::make_unique<RabSensor>(options, setup); });
+  recipe.listens = true;
+  return recipe;
 }
 
 template <class Options>
 DeviceType hearing_type(std::string_view implementation, std::string_view summary) {
-  return sensor_type("range_and_bearing", implementation, summary, &has_rab, &make_hearing<Options>,
-                     &describe_options<Options>);
+  return in_medium(RangeAndBearingMedium::kKind, sensor_type("range_and_bearing", implementation, summary, &has_rab,
+                                                             &make_hearing<Options>, &describe_options<Options>));
 }
 
 // --- sending ---
@@ -457,17 +467,21 @@ struct Sending : IdealSending {
 
 class RabActuator final : public Actuator {
  public:
-  explicit RabActuator(double failure_prob) : failure_prob_(failure_prob) {}
+  RabActuator(double failure_prob, const DeviceSetup& setup)
+      : failure_prob_(failure_prob), medium_(setup.medium_as<RangeAndBearingMedium>()), channel_(setup.channel) {}
 
   void act(const DeviceContext& context, SpaceStores& stores, const void* ports) noexcept override {
+    Broadcast* const broadcasts = medium_.publish(context.block);
+    if (broadcasts == nullptr) return;
     const auto* senders = static_cast<const hal::RangeAndBearingSend*>(ports);
     const auto most = static_cast<std::uint8_t>(std::min<std::size_t>(context.group.rab_payload, hal::kRabPayloadMax));
     for (std::size_t i = 0; i < context.block.used; ++i) {
       const std::size_t row = context.block.first_row + i;
-      Broadcast& out = stores.broadcasts[row];
+      Broadcast& out = broadcasts[i];
       const bool able = (stores.bodies.flags[row] & kAlive) != 0 && context.block.halted[i] == 0;
-      out.sending = able && senders[i].sending && !fails(context, stores.bodies.entity[row]) ? 1 : 0;
-      out.size = std::min(senders[i].size, most);
+      const bool sends = able && senders[i].sending && !fails(context, stores.bodies.entity[row]);
+      out.size = sends ? std::min(senders[i].size, most) : Broadcast::kSilent;
+      out.channel = channel_;
       out.payload = senders[i].payload;
       out.range_m = static_cast<float>(context.group.rab_range_m);
     }
@@ -480,23 +494,25 @@ class RabActuator final : public Actuator {
   }
 
   double failure_prob_;
+  RangeAndBearingMedium& medium_;
+  std::uint8_t channel_;
 };
 
 template <class Options>
-Recipe<Actuator> make_sending(const Element& element, Problems& problems, const DeviceSetup&) {
+Recipe<Actuator> make_sending(const Element& element, Problems& problems, const DeviceSetup& setup) {
   const auto options = read_options<Options>(element, problems);
   double failure_prob = 0.0;
   if constexpr (requires { options.failure_prob; }) failure_prob = options.failure_prob;
-  const auto make = [failure_prob](const BlockColumns&) { return std::make_unique<RabActuator>(failure_prob); };
-  Recipe<Actuator> recipe(make);
-  recipe.sends = true;
+  Recipe<Actuator> recipe(
+      [failure_prob, setup](const BlockColumns&) { return std::make_unique<RabActuator>(failure_prob, setup); });
+  recipe.publishes = true;
   return recipe;
 }
 
 template <class Options>
 DeviceType sending_type(std::string_view implementation, std::string_view summary) {
-  return actuator_type("range_and_bearing", implementation, summary, &has_rab, &make_sending<Options>,
-                       &describe_options<Options>);
+  return in_medium(RangeAndBearingMedium::kKind, actuator_type("range_and_bearing", implementation, summary, &has_rab,
+                                                               &make_sending<Options>, &describe_options<Options>));
 }
 
 }  // namespace

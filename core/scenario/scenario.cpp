@@ -2,13 +2,17 @@
 
 namespace tandem::core {
 
-std::uint16_t led_medium_number(const std::vector<MediumConfig>& media, const std::string& id) noexcept {
-  std::uint16_t number = 0;
-  for (const MediumConfig& medium : media) {
-    ++number;
-    if (medium.kind == "led" && !id.empty() && medium.id == id) return number;
+hal::Result<std::uint8_t> medium_number(const std::vector<MediumConfig>& media, std::string_view kind,
+                                        const std::string& id) {
+  if (id.empty()) return std::uint8_t{0};
+  std::vector<std::string> ids;
+  for (std::size_t i = 0; i < media.size(); ++i) {
+    if (media[i].kind != kind) continue;
+    if (media[i].id == id) return static_cast<std::uint8_t>(i + 1);
+    ids.push_back(media[i].id);
   }
-  return 0;
+  return hal::Error{"<media> has no <" + std::string(kind) + "> with id '" + id + "'; it has: " + listed(ids) +
+                    did_you_mean(id, ids)};
 }
 
 }  // namespace tandem::core

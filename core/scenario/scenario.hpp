@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/scenario/element.hpp"
+#include "hal/result.hpp"
 
 namespace tandem::core {
 
@@ -32,6 +33,7 @@ struct DeviceChoice {
   std::string device;          ///< the port's name; ARGoS' names are already mapped to ours
   std::string implementation;  ///< as written, "default" when absent
   Element options;
+  std::uint8_t medium = 0;  ///< number of the medium that the options name, as `medium_number` gives it
 };
 
 struct ControllerConfig {
@@ -196,14 +198,15 @@ struct EngineConfig {
 };
 
 struct MediumConfig {
-  std::string kind;  ///< range_and_bearing, led
+  std::string kind;  ///< name of a MediumType
   std::string id;
   Element options;
   int line = 0;
 };
 
-/// Place of the LED medium with this id among `media`, counted from 1; 0: none is named, or there is none.
-std::uint16_t led_medium_number(const std::vector<MediumConfig>& media, const std::string& id) noexcept;
+/// The place of the medium of that kind and id among `media`, counted from 1; 0: none is named. Error: there is none.
+hal::Result<std::uint8_t> medium_number(const std::vector<MediumConfig>& media, std::string_view kind,
+                                        const std::string& id);
 
 struct HookConfig {
   std::string library;

@@ -191,7 +191,7 @@ void RobotFactory::make(const std::vector<RobotRequest>& requests, Problems& pro
     const bool prepared = stores_.groups[g].controller != nullptr;
     if ((prepared || prepare_group(g, problems)) && make_blocks(g, requests, members, problems)) complete(g);
   }
-  keep_sizes();
+  media_.fit(stores_);
   slab_ = nullptr;
   end_kept();
   if (!start_groups_.empty()) return;
@@ -324,11 +324,9 @@ std::shared_ptr<const void> RobotFactory::read_params(const RobotGroup& group, c
   return nullptr;
 }
 
-bool RobotFactory::read_devices(const RobotGroup& group, hal::Role role, GroupRecipes& recipes,
-                                Problems& problems) const {
+bool RobotFactory::read_devices(const RobotGroup& group, hal::Role role, GroupRecipes& recipes, Problems& problems) {
   const ControllerConfig& config = scenario_.controllers[group.config];
-  const DeviceSetup setup{*group.sheet, *group.item, 1.0 / static_cast<double>(scenario_.ticks_per_second),
-                          &scenario_.media};
+  DeviceSetup setup{*group.sheet, *group.item, 1.0 / static_cast<double>(scenario_.ticks_per_second)};
   bool good = true;
   for (const DeviceChoice& choice : role == hal::Role::Sensor ? config.sensors : config.actuators) {
     const DeviceType* type = find_device(loader_.catalog(), choice.device, role, choice.implementation);
@@ -349,6 +347,15 @@ bool RobotFactory::read_devices(const RobotGroup& group, hal::Role role, GroupRe
     } else if (!type->fits(*group.sheet)) {
       problem("the robot '" + std::string(group.sheet->kind) + "' has no device '" + choice.device + "'");
     } else {
+      setup.channel = choice.medium;
+      if (!type->medium.empty()) {
+        const auto medium = media_.of(loader_.catalog(), type->medium);
+        if (!medium.ok()) {
+          problem("device '" + choice.device + "': " + medium.error().message);
+          continue;
+        }
+        setup.medium = medium.value();
+      }
       GroupRecipes::Listed listed{type, {}, {}};
       if (type->make_sensor != nullptr) listed.sensor = type->make_sensor(choice.options, problems, setup);
       if (type->make_actuator != nullptr) listed.actuator = type->make_actuator(choice.options, problems, setup);
@@ -475,7 +482,7 @@ std::string RobotFactory::construct(Slot at, const std::shared_ptr<const void>& 
          std::string(robot.id()) + "' " + why;
 }
 
-/// What the devices of the group's ports need: columns, and arrays of all robots; with the columns of robots that fly.
+/// What the devices of the group's ports need: columns, with those of robots that fly, and media.
 void RobotFactory::note_needs(RobotGroup& group) {
   const auto add = [&](const KeptColumn& wanted) {
     ColumnArrays* const arrays = stores_.columns.of(*wanted.type).value();
@@ -492,8 +499,14 @@ void RobotFactory::note_needs(RobotGroup& group) {
     const GroupRecipes::Listed& made = *group.recipes->find(port->name, port->role);
     made.with_recipe([&](const auto& recipe) {
       for (const KeptColumn& column : recipe.columns) add(column);
-      group.sees_m = std::max(group.sees_m, recipe.sees_m);
-      group.sends = group.sends || recipe.sends;
+      if (!recipe.publishes && !recipe.listens) return;
+      const Medium* const medium = media_.of(loader_.catalog(), made.type->medium).value();
+      const auto same = [medium](const MediumUse& other) { return other.medium == medium; };
+      auto use = std::find_if(group.media.begin(), group.media.end(), same);
+      if (use == group.media.end()) use = group.media.insert(use, MediumUse{medium});
+      use->publishes = use->publishes || recipe.publishes;
+      use->listens = use->listens || recipe.listens;
+      use->reach_m = std::max(use->reach_m, recipe.reach_m);
     });
   }
 }
@@ -529,16 +542,6 @@ void RobotFactory::complete(std::size_t g) {
       devices.actuators.push_back(is_sensor ? nullptr : made.actuator.make(columns));
     }
   }
-}
-
-/// Arrays by row that only some runs have are as long as the others.
-void RobotFactory::keep_sizes() {
-  const auto sends = [](const RobotGroup& group) { return group.sends; };
-  if (!stores_.broadcasts.empty() || std::any_of(stores_.groups.begin(), stores_.groups.end(), sends))
-    stores_.broadcasts.resize(stores_.bodies.size());
-  const auto sees = [](const RobotGroup& group) { return group.sees_m > 0.0; };
-  if (!stores_.shown_leds.empty() || std::any_of(stores_.groups.begin(), stores_.groups.end(), sees))
-    stores_.shown_leds.resize(stores_.bodies.size());
 }
 
 // --- while the run goes on ---
@@ -633,7 +636,10 @@ hal::Result<RobotId> RobotFactory::add(const RobotItem& item, const Pose& pose,
     if (has_errors(problems)) return cannot_be_made(item, problems);
   }
   const Slot slot = free_slot(g);
-  if (devices_.blocks.size() < stores_.blocks.size()) complete(g);
+  if (devices_.blocks.size() < stores_.blocks.size()) {
+    complete(g);
+    media_.fit(stores_);
+  }
   const Taken before{stores_.groups[g].ports.size(), stores_.groups[g].published.size()};
   const auto entity = static_cast<std::uint32_t>(stores_.robots.size());
   stores_.names.push_back({item.id, -1, entity, 1});
@@ -674,10 +680,10 @@ hal::Result<RobotId> RobotFactory::add(const RobotItem& item, const Pose& pose,
   RobotBlock& home = stores_.blocks[slot.block];
   if (own_params && home.params.size() <= slot.slot) home.params.resize(slot.slot + 1U);
   if (slot.slot < home.params.size()) home.params[slot.slot] = own_params ? std::move(params) : nullptr;
-  if (stores_.groups[g].ports.size() > before.ports) complete(g);  // its controller took ports that no other has
-  keep_sizes();
-  if (!stores_.broadcasts.empty()) stores_.broadcasts[row] = {};
-  if (!stores_.shown_leds.empty()) stores_.shown_leds[row] = {};
+  if (stores_.groups[g].ports.size() > before.ports) {  // its controller took ports that no other has
+    complete(g);
+    media_.fit(stores_);
+  }
   stores_.robots[entity].generation = ++stores_.generations;
   stores_.living.push_back(entity);
   stores_.added_robots.emplace(item.id, entity);

@@ -47,8 +47,14 @@ inline const hal::DataSheet* data_sheet_of(const hal::Catalog& catalog, std::str
 class RobotFactory {
  public:
   RobotFactory(const Scenario& scenario, std::uint64_t seed, hal::PluginLoader& loader, SpaceStores& stores,
-               RobotDevices& devices, hal::RobotLog::Sink& messages)
-      : scenario_(scenario), seed_(seed), loader_(loader), stores_(stores), devices_(devices), messages_(messages) {}
+               RobotDevices& devices, Media& media, hal::RobotLog::Sink& messages)
+      : scenario_(scenario),
+        seed_(seed),
+        loader_(loader),
+        stores_(stores),
+        devices_(devices),
+        media_(media),
+        messages_(messages) {}
   ~RobotFactory();
   RobotFactory(const RobotFactory&) = delete;
   RobotFactory& operator=(const RobotFactory&) = delete;
@@ -77,7 +83,7 @@ class RobotFactory {
   void sort_by_place(const std::vector<RobotRequest>& requests, std::vector<std::uint32_t>& members) const;
   bool prepare_group(std::size_t g, Problems& problems);
   std::shared_ptr<const void> read_params(const RobotGroup& group, const RobotItem& item, Problems& problems) const;
-  bool read_devices(const RobotGroup& group, hal::Role role, GroupRecipes& recipes, Problems& problems) const;
+  bool read_devices(const RobotGroup& group, hal::Role role, GroupRecipes& recipes, Problems& problems);
   bool make_blocks(std::size_t g, const std::vector<RobotRequest>& requests, const std::vector<std::uint32_t>& members,
                    Problems& problems);
   std::uint32_t add_block(std::size_t g, std::size_t capacity);
@@ -96,13 +102,13 @@ class RobotFactory {
   };
   void give_back(std::size_t g, Slot slot, const Taken& before, std::uint32_t entity_before);
   hal::Status can_hold(Slot at) const;
-  void keep_sizes();
 
   const Scenario& scenario_;
   std::uint64_t seed_;
   hal::PluginLoader& loader_;
   SpaceStores& stores_;
   RobotDevices& devices_;
+  Media& media_;
   hal::RobotLog::Sink& messages_;
   std::vector<std::size_t> group_of_item_;  // by the file's robots; decided once
   std::vector<RobotGroup> start_groups_;    // as `make` left them

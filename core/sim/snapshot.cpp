@@ -62,8 +62,6 @@ hal::Result<std::unique_ptr<SpaceCopy>> SpaceCopy::take(const Space& space, cons
   copy->floor_ = s.floor;
   copy->repaint_floor_ = s.repaint_floor;
   copy->altered_ = s.altered;
-  copy->broadcasts_ = s.broadcasts;
-  copy->shown_leds_ = s.shown_leds;
   return copy;
 }
 
@@ -151,8 +149,6 @@ hal::Status SpaceCopy::put_back(Space& space, RobotDevices& devices) const {
   s.floor = floor_;
   s.repaint_floor = repaint_floor_;
   s.altered = altered_;
-  s.broadcasts = broadcasts_;
-  s.shown_leds = shown_leds_;
   ++s.generations;  // who looks for newcomers finds those who are back
   ++s.immovables_version;
   ++s.object_leds_version;

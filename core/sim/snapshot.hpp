@@ -82,8 +82,6 @@ class SpaceCopy {
   Floor floor_;
   bool repaint_floor_ = false;
   bool altered_ = false;
-  std::vector<Broadcast> broadcasts_;
-  std::vector<ShownLeds> shown_leds_;
 };
 
 }  // namespace tandem::core

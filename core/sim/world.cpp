@@ -310,6 +310,7 @@ hal::Status World::restore(const Snapshot& snapshot) {
   if (moment.of != w.identity) return hal::Error{"the snapshot is of another world"};
   if (w.external != nullptr) return hal::Error{"no way back: real robots take part, which cannot be put back"};
   hal::Status all = moment.space->put_back(w.space, w.devices);
+  w.media.fit(w.stores());
   for (std::size_t i = 0; i < w.engines.size(); ++i) w.engines[i]->put_back(moment.engines[i]);
   w.reach_m = moment.reach_m;
   w.indexed_version = moment.indexed ? w.stores().immovables_version : 0;

@@ -108,12 +108,9 @@ struct World::Impl final : hal::RobotLog::Sink {
   bool all_in_rows = true;            // … that of every region
   double reach_m = 0.0;               // of the indices
   std::uint64_t indexed_version = 0;  // of the immovable objects
-  struct {
-    double reach_m = 0.0;
-    std::uint64_t immovables = 0, leds = 0;
-  } lit;                        // what the index of lit objects was built for
-  std::vector<BodyKey> strays;  // left their region in this tick, or were put where there is none
+  std::vector<BodyKey> strays;        // left their region in this tick, or were put where there is none
   std::vector<Trouble> troubles;
+  Media media;
   RobotDevices devices;
   std::vector<std::unique_ptr<Coupling>> couplings;
   std::unique_ptr<RobotFactory> factory;
@@ -166,7 +163,6 @@ struct World::Impl final : hal::RobotLog::Sink {
   void treat_escape(BodyKey body);
   void rebuild_index();
   void index_movables();
-  void index_lit_objects();
   template <class Work>
   void each_block(MeasuredPhase& phase, Work&& work);
   void sense_and_control();

@@ -4,7 +4,9 @@
 #include <random>
 #include <system_error>
 
+#include "core/medium/led/led.hpp"
 #include "core/placement/placement.hpp"
+#include "core/sim/device_media.hpp"
 #include "core/sim/engine_factory.hpp"
 #include "core/sim/settings.hpp"
 #include "core/sim/world_impl.hpp"
@@ -15,6 +17,11 @@ namespace {
 std::uint64_t seed_from_clock() {
   std::random_device device;
   return (static_cast<std::uint64_t>(device()) << 32 | device()) >> 11;  // exact as a double, easy to write in a file
+}
+
+std::uint16_t led_medium(const Scenario& scenario, const std::string& id) {
+  const auto number = medium_number(scenario.media, LedMedium::kKind, id);
+  return number.ok() ? number.value() : std::uint16_t{0};
 }
 
 Object object_of(const Scenario& scenario, const ObjectItem& item, const PlacedObject& placed) {
@@ -32,7 +39,7 @@ Object object_of(const Scenario& scenario, const ObjectItem& item, const PlacedO
   shape.z_high_m = placed.p_W[2] + item.size[2];
   shape.movable = item.movable;
   shape.mass_kg = item.mass_kg;
-  const std::uint16_t medium = led_medium_number(scenario.media, item.led_medium);
+  const std::uint16_t medium = led_medium(scenario, item.led_medium);
   for (const LedItem& led : item.leds)
     shape.leds.push_back({led.p_O[0], led.p_O[1], led.p_O[2], {led.rgb[0], led.rgb[1], led.rgb[2]}, medium});
   return shape;
@@ -230,6 +237,7 @@ std::unique_ptr<World> World::make(const Scenario& scenario, hal::PluginLoader& 
                         false});
     return nullptr;
   }
+  name_media(w.scenario, loader.catalog(), problems);
   w.populate(problems);
   w.make_hooks(problems);
   if (scenario.floor.source == "loop_functions" && scenario.hooks.empty()) {
@@ -278,7 +286,7 @@ void World::Impl::populate(Problems& problems) {
                         item.intensity,
                         {item.rgb[0], item.rgb[1], item.rgb[2]},
                         true,
-                        led_medium_number(scenario.media, item.medium)});
+                        led_medium(scenario, item.medium)});
   }
   for (const SoundItem& item : scenario.sounds)
     s.sounds.push_back({item.id, item.p_W[0], item.p_W[1], item.p_W[2], item.level});
@@ -302,7 +310,7 @@ void World::Impl::populate(Problems& problems) {
     requests.push_back(
         {placed.item, static_cast<std::uint32_t>(i), placed.x_m, placed.y_m, placed.z_m, placed.yaw_rad});
   }
-  if (factory == nullptr) factory = std::make_unique<RobotFactory>(scenario, seed, *loader, s, devices, *this);
+  if (factory == nullptr) factory = std::make_unique<RobotFactory>(scenario, seed, *loader, s, devices, media, *this);
   factory->make(requests, problems);
   for (const CouplingType* type : catalog.all<CouplingType>()) couplings.push_back(type->make(s.columns));
   editor = std::make_unique<WorldEditor>(scenario, s, *factory, keeper);
@@ -401,7 +409,6 @@ hal::Status World::reset(std::uint64_t seed) {
   w.keeper = {};
   w.in_rows.clear();
   w.all_in_rows = true;
-  w.lit = {};
   w.strays.clear();
   w.troubles.clear();
   Problems problems;

@@ -37,7 +37,7 @@ void World::Impl::physics() {
     most = std::max(most, parts[i]);
   }
   for (int part = 0; part < most && (part == 0 || state == RunState::Running); ++part) move_part(part);
-  index_lit_objects();
+  media.index(stores());
   for (const auto& coupling : couplings) coupling->after_physics(stores(), tick_s());
 }
 
@@ -113,31 +113,6 @@ void World::Impl::index_movables() {
       std::any_of(s.objects.begin(), s.objects.end(), [](const Object& o) { return o.alive && o.movable; });
   if (any || !s.movable_index.empty())
     s.movable_index.build(s.objects, true, s.min_x_m, s.min_y_m, s.max_x_m, s.max_y_m, reach_m);
-}
-
-/// As far as cameras see; nothing where there are none.
-void World::Impl::index_lit_objects() {
-  SpaceStores& s = stores();
-  double reach = 0.0;
-  for (const RobotGroup& group : s.groups) reach = std::max(reach, group.sees_m);
-  if (reach == 0.0) return;
-  double farthest2 = 0.0;
-  bool any = false;
-  bool movable = false;
-  for (const Object& o : s.objects) {
-    if (o.leds.empty() || !o.alive) continue;
-    any = true;
-    movable = movable || o.movable;
-    for (const ObjectLed& led : o.leds) farthest2 = std::max(farthest2, led.x_m * led.x_m + led.y_m * led.y_m);
-  }
-  if (!any && s.lit_index.empty()) return;
-  reach += std::sqrt(farthest2);
-  if (!movable && reach == lit.reach_m && lit.immovables == s.immovables_version && lit.leds == s.object_leds_version)
-    return;
-  s.lit_index.build_lit(s.objects, movable, s.min_x_m, s.min_y_m, s.max_x_m, s.max_y_m, reach);
-  lit.reach_m = reach;
-  lit.immovables = s.immovables_version;
-  lit.leds = s.object_leds_version;
 }
 
 void World::Impl::rebuild_index() {

@@ -230,8 +230,6 @@ void Space::remove_robot(RobotId robot) noexcept {
   s.bodies.flags[row] = 0;
   s.bodies.left_m_s[row] = 0.0;
   s.bodies.right_m_s[row] = 0.0;
-  if (!s.broadcasts.empty()) s.broadcasts[row].sending = 0;
-  if (!s.shown_leds.empty()) s.shown_leds[row] = {};
   e.alive = false;
   ++e.generation;
   release_joints_of(BodyKey::robot(row));

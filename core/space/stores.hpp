@@ -31,8 +31,6 @@
 #include "core/space/region.hpp"
 #include "core/space/space.hpp"
 #include "hal/controller.hpp"
-#include "hal/device/range_and_bearing.hpp"
-#include "hal/device/wheels.hpp"
 #include "hal/port.hpp"
 #include "hal/spec/data_sheet.hpp"
 
@@ -40,6 +38,7 @@ namespace tandem::core {
 
 struct RobotItem;     // core/scenario/scenario.hpp
 struct GroupRecipes;  // core/device/device.hpp
+class Medium;         // core/medium/medium.hpp
 
 inline constexpr std::size_t kBlockRows = 256;
 
@@ -117,6 +116,13 @@ struct Slot {
   std::uint32_t slot = 0;
 };
 
+/// What the devices of a group do in a medium.
+struct MediumUse {
+  const Medium* medium = nullptr;
+  bool publishes = false, listens = false;
+  double reach_m = 0.0;  ///< how far along the ground they look for signals; 0: as far as those reach
+};
+
 /// What the robots of a group have in common.
 struct RobotGroup {
   std::shared_ptr<const RobotItem> item;  ///< one of theirs: what it says of battery and radio holds for all
@@ -130,8 +136,7 @@ struct RobotGroup {
   std::vector<hal::PublishedField> published;   ///< what its controllers show, with offsets into each of them
   double rab_range_m = 0.0;
   unsigned rab_payload = 0;
-  double sees_m = 0.0;  ///< how far along the ground its cameras see; 0: its controllers took none
-  bool sends = false;   ///< others may hear its robots
+  std::vector<MediumUse> media;  ///< that the devices work in
   std::vector<std::size_t> blocks;
   std::vector<Slot> free_slots;  ///< of robots that were removed; the last is used next
 
@@ -143,6 +148,12 @@ struct RobotGroup {
       if (port->layout == type.layout && port->role == type.role) return true;
     }
     return false;
+  }
+  const MediumUse* use_of(const Medium& medium) const noexcept {
+    for (const MediumUse& use : media) {
+      if (use.medium == &medium) return &use;
+    }
+    return nullptr;
   }
 };
 
@@ -189,41 +200,6 @@ struct NameRange {
   std::uint32_t count = 1;
 };
 
-/// What robots broadcast, as latched at the start of the tick.
-struct Broadcast {
-  std::uint8_t sending = 0;
-  std::uint8_t size = 0;
-  std::array<std::uint8_t, hal::kRabPayloadMax> payload{};
-  float range_m = 0.0F;  ///< how far the sender reaches
-};
-
-/// What a robot's LEDs and lamps show, as latched at the start of the tick.
-struct ShownLeds {
-  static constexpr std::size_t kBody = hal::RingLeds::kCapacity;             ///< after the ring: the body's lamp
-  static constexpr std::size_t kFront = kBody + 1;                           ///< … and the one at the front
-  static constexpr std::size_t kUpper = kFront + 1;                          ///< the upper ring
-  static constexpr std::size_t kCamera = kUpper + hal::RingLeds::kCapacity;  ///< the light beside the camera
-  static constexpr std::size_t kCount = kCamera + 1;
-
-  std::uint64_t lit = 0;  ///< bit i: number i is not black
-  std::array<hal::Rgb, kCount> color{};
-  std::uint16_t ring_medium = 0, body_medium = 0, front_medium = 0, upper_medium = 0,
-                camera_medium = 0;  ///< as ObjectLed::medium
-
-  void show(std::size_t i, hal::Rgb c) noexcept {
-    color[i] = c;
-    const std::uint64_t bit = std::uint64_t{1} << i;
-    lit = c == hal::kBlack ? lit & ~bit : lit | bit;
-  }
-  std::uint16_t medium(std::size_t i) const noexcept {
-    return i < kBody     ? ring_medium
-           : i == kBody  ? body_medium
-           : i == kFront ? front_medium
-           : i < kCamera ? upper_medium
-                         : camera_medium;
-  }
-};
-
 struct SpaceStores {
   double min_x_m = -1.0, min_y_m = -1.0, max_x_m = 1.0, max_y_m = 1.0;  ///< the arena
   double max_z_m = std::numeric_limits<double>::infinity();             ///< its ceiling: what flies stays below
@@ -249,7 +225,6 @@ struct SpaceStores {
   std::unordered_map<std::string, std::uint32_t> object_numbers;  ///< by id, also of objects that are gone
   ObjectIndex static_index;                                       ///< of the immovable ones
   ObjectIndex movable_index;
-  ObjectIndex lit_index;                  ///< of those with a lit LED, as far as cameras see; empty without cameras
   std::uint64_t object_leds_version = 1;  ///< rises whenever an LED of an object changes
   std::vector<Joint> joints;              ///< by number
 
@@ -262,8 +237,6 @@ struct SpaceStores {
   Floor floor;
   bool repaint_floor = false;
   Sketch sketch;
-  std::vector<Broadcast> broadcasts;  ///< by row; empty when no robot can send
-  std::vector<ShownLeds> shown_leds;  ///< by row; empty when no robot has a camera
 
   std::uint32_t generations = 0;  ///< rises with every id that is given out after the start, and with every restore
   std::uint32_t joint_generations = 0;  ///< the same for joints

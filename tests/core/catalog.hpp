@@ -4,6 +4,9 @@
 #include <vector>
 
 #include "core/device/device.hpp"
+#include "core/medium/led/led.hpp"
+#include "core/medium/medium.hpp"
+#include "core/medium/range_and_bearing/range_and_bearing.hpp"
 #include "core/physics/dynamics2d/dynamics2d.hpp"
 #include "core/physics/dynamics3d/dynamics3d.hpp"
 #include "core/physics/kinematics2d/kinematics2d.hpp"
@@ -21,6 +24,9 @@ inline const hal::Catalog& catalog() {
     const hal::Status good = made.add_from("tests", [](hal::Registrar& r) {
       hal::register_ports(r);
       hal::register_robots(r);
+      core::register_led_medium(r);
+      core::register_range_and_bearing_medium(r);
+      core::register_unused_media(r);
       core::register_devices(r);
       core::register_kinematics2d(r);
       core::register_dynamics2d(r);

@@ -204,10 +204,11 @@ struct MadeWorld {
   }
 };
 
-inline MadeWorld make(const Scene& scene, const WorldOptions& options = {}) {
+inline MadeWorld make(const Scene& scene, const WorldOptions& options = {},
+                      const hal::Catalog& catalog = test::catalog()) {
   MadeWorld made;
   made.loader = std::make_unique<hal::PluginLoader>(
-      std::vector<std::filesystem::path>{std::string(test::kBuildDir) + "/lib"}, test::catalog());
+      std::vector<std::filesystem::path>{std::string(test::kBuildDir) + "/lib"}, catalog);
   made.world = World::make(scene.scenario, *made.loader, options, made.problems);
   return made;
 }

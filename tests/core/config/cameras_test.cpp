@@ -49,10 +49,11 @@ TEST(Cameras, AreReadFromFilesOfArgos) {
   EXPECT_EQ(s.objects[0].leds[0].p_O, (Vec3{0.2, 0.0, 0.3}));
   EXPECT_EQ(s.objects[0].leds[0].rgb, (std::array<std::uint8_t, 3>{255, 0, 0}));
   EXPECT_EQ(s.objects[0].leds[1].rgb, (std::array<std::uint8_t, 3>{1, 2, 3}));
-  EXPECT_EQ(led_medium_number(s.media, s.objects[0].led_medium), 1);
-  EXPECT_EQ(led_medium_number(s.media, s.lights[0].medium), 1);
-  EXPECT_EQ(led_medium_number(s.media, ""), 0);
-  EXPECT_EQ(led_medium_number(s.media, "none"), 0);
+  EXPECT_EQ(medium_number(s.media, "led", s.objects[0].led_medium).value(), 1);
+  EXPECT_EQ(medium_number(s.media, "led", s.lights[0].medium).value(), 1);
+  EXPECT_EQ(medium_number(s.media, "led", "").value(), 0);
+  EXPECT_FALSE(medium_number(s.media, "led", "none").ok());
+  EXPECT_FALSE(medium_number(s.media, "range_and_bearing", "leds").ok()) << "that is an LED medium's";
 }
 
 TEST(Cameras, EffectiveSettingsReadBackAsTheSame) {
@@ -106,14 +107,6 @@ TEST(Leds, ErrorsNameTheirLine) {
   const std::string inside = problem_with(R"(<leds><led offset="0.1,0,0.15" color="red"/></leds>)");
   EXPECT_THAT(inside, HasSubstr("file.xml:7: warning"));
   EXPECT_THAT(inside, HasSubstr("no camera sees it"));
-}
-
-TEST(Leds, CamerasOfAnUnknownMediumAreErrors) {
-  Parts parts = argos();
-  parts.rest = R"(<media><led id="others"/></media>)";
-  const std::string text = read(parts.text(), {}, catalog_with({"kinematics2d"})).text();
-  EXPECT_THAT(text, HasSubstr("file.xml:3: error"));
-  EXPECT_THAT(text, HasSubstr("'leds'; it has: others"));
 }
 
 }  // namespace

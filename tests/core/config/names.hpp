@@ -8,6 +8,7 @@
 #include "bridges/eyebot/register.hpp"
 #include "bridges/footbot/register.hpp"
 #include "core/scenario/engine_traits.hpp"
+#include "core/scenario/medium_type.hpp"
 #include "hal/catalog.hpp"
 #include "hal/check.hpp"
 #include "hal/device/ports.hpp"
@@ -23,10 +24,13 @@ inline hal::Catalog catalog_with(const std::vector<std::string_view>& engines) {
                                          {"dynamics2d", "", {.forces = true}},
                                          {"dynamics3d", "", {.plane = false, .forces = true}},
                                          {"particle3d", "pointmass3d", {.plane = false, .air = true}}};
+  static constexpr auto kNothing = [](hal::ParamVisitor&) {};
+  static constexpr MediumType kMedia[] = {{"range_and_bearing", "Messages.", kNothing}, {"led", "Light.", kNothing}};
   hal::Catalog catalog;
   const hal::Status good = catalog.add_from("tests", [&](hal::Registrar& r) {
     hal::register_ports(r);
     hal::register_robots(r);
+    for (const MediumType& medium : kMedia) r.add(medium);
     bridges::epuck::register_bridge(r);
     bridges::footbot::register_bridge(r);
     bridges::eyebot::register_bridge(r);

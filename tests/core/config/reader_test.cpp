@@ -49,7 +49,7 @@ TEST(Reader, TakesEverythingThatAnArgosFileSays) {
     </distribute>
   </arena>
   <physics_engines><kinematics2d id="kin2d"/></physics_engines>
-  <media><led id="leds" grid_size="1,1,1"/><range_and_bearing id="rab" check_occlusions="false"/></media>
+  <media><led id="leds" grid_size="1,1,1"/><range_and_bearing id="rab"/></media>
   <visualization><qt-opengl><camera><placements><placement index="0" position="0,0,3" look_at="0,0,0"/></placements></camera></qt-opengl></visualization>
 </argos-configuration>)");
   const Scenario& s = out.good();
@@ -75,7 +75,6 @@ TEST(Reader, TakesEverythingThatAnArgosFileSays) {
   EXPECT_EQ(c.sensors[1].device, "wheel_encoders");
   EXPECT_EQ(c.sensors[2].device, "light");
   EXPECT_EQ(c.sensors[2].implementation, "rot_z_only");
-  EXPECT_EQ(*c.sensors[3].options.attribute("check_occlusions"), "false") << "as its medium says";
   ASSERT_EQ(c.actuators.size(), 3U);
   EXPECT_EQ(c.actuators[0].device, "differential_steering");
   EXPECT_EQ(c.actuators[1].device, "leds");
