@@ -7,6 +7,8 @@
 #include <link.h>
 #include <sys/utsname.h>
 
+#include "hal/plugin_note.hpp"
+
 extern const char* const kTandemCommit;  // written by every build: cmake/write_commit.cmake
 
 namespace tandem::app {
@@ -53,7 +55,7 @@ int note_library(dl_phdr_info* info, std::size_t /*size*/, void* out) {
 const BuildInfo& build_info() {
   static const BuildInfo info = [] {
     BuildInfo b;
-    b.version = TANDEM_VERSION;
+    b.version = hal::to_text(hal::kRelease);
     b.commit = kTandemCommit;
 #ifdef __clang__
     b.compiler = "Clang " __clang_version__;

@@ -7,6 +7,7 @@
 #include "bridges/footbot/register.hpp"
 #include "bridges/footbot_emulator/register.hpp"
 #include "core/device/device.hpp"
+#include "core/loop/hook.hpp"
 #include "core/medium/led/led.hpp"
 #include "core/medium/medium.hpp"
 #include "core/medium/range_and_bearing/range_and_bearing.hpp"
@@ -23,6 +24,7 @@ namespace tandem::app {
 const hal::Catalog& catalog() {
   static const hal::Catalog all = [] {
     hal::Catalog made;
+    made.know<core::HookType>();
     const hal::Status good = made.add_from(std::string(hal::Catalog::kInside), [](hal::Registrar& r) {
       hal::register_ports(r);
       hal::register_robots(r);

@@ -18,6 +18,7 @@
 #include "bridges/send_permit.hpp"
 #include "hal/log.hpp"
 #include "hal/result.hpp"
+#include "hal/surface.hpp"
 #include "hal/time.hpp"
 
 namespace tandem::bridges {
@@ -54,6 +55,8 @@ struct BatteryLimit {
 
 struct BridgeType {
   static constexpr std::string_view kCategory = "bridge";
+  using Crosses = hal::Layouts<RobotBridge, BridgeRequest, MadeBridge, InputFile, BatteryLimit, SendPermit,
+                               StopMessages, LinkReport, PortView, hal::Log>;
   std::string_view name;     ///< the kind of robot, as the element in experiment files
   std::string_view summary;  ///< over which links, for people
   /// Does not wait for the robot. Errors: a link that does not suit it, options that make no sense, files that it

@@ -10,6 +10,7 @@
 #include "bridges/robot_bridge.hpp"
 #include "hal/log.hpp"
 #include "hal/result.hpp"
+#include "hal/surface.hpp"
 #include "hal/time.hpp"
 
 namespace tandem::bridges {
@@ -25,6 +26,7 @@ struct InspectRequest {
 
 struct InspectorType {
   static constexpr std::string_view kCategory = "inspector";
+  using Crosses = hal::Layouts<InspectRequest, RobotBridge, PortView, hal::Log>;
   std::string_view name;     ///< the kind of robot
   std::string_view summary;  ///< over which links
   /// Whether it understands what passes on such a link. The first of the catalog that does is asked.

@@ -1,6 +1,8 @@
 #include "hal/catalog.hpp"
 
 #include <algorithm>
+#include <cstddef>
+#include <cstring>
 
 namespace tandem::hal {
 namespace {
@@ -10,32 +12,60 @@ bool named_with_library(std::string_view category) noexcept {
   return category == "controller" || category == "hook";
 }
 
+/// The entry with zeros behind it, up to the size that its type has here.
+std::shared_ptr<const void> widened(const CatalogItem& item, std::size_t size) {
+  auto memory = std::make_shared<std::vector<std::max_align_t>>(size / sizeof(std::max_align_t) + 1);
+  std::memset(memory->data(), 0, size);
+  std::memcpy(memory->data(), item.entry, item.size);
+  return {memory, memory->data()};
+}
+
 /// Checks what one origin registers against what there is.
 class Collector final : public Registrar {
  public:
-  Collector(const std::string& origin, const std::vector<Catalog::Entry>& known) : origin_(origin), known_(known) {}
+  Collector(const std::string& origin, const Catalog& catalog)
+      : surfaces(catalog), origin_(origin), known_(catalog.entries()) {}
+
+  void know(const Surface& surface) override { surfaces.know(surface); }
 
   void add(const CatalogItem& item) override {
     const std::string what = "registers the " + std::string(item.category) + " '" + std::string(item.name) + "'";
     if (item.name.empty() || item.category.empty()) return problem(what + " without a name");
     if (item.entry == nullptr) return problem(what + " without a type");
+    Catalog::Entry entry{std::string(item.category), std::string(item.name), item.layout, item.entry, origin_};
+    for (const Surface& surface : surfaces.surfaces()) {
+      if (surface.name != item.category) continue;
+      if (detail::mixed(surface.digest, surface.number) != item.layout || surface.size < item.size)
+        return problem(what + ", whose type has another form than in " + first_origin(item.category) +
+                       ": build both against the same headers");
+      if (item.size == 0 || item.size == surface.size) continue;
+      entry.widened = widened(item, surface.size);
+      entry.entry = entry.widened.get();
+    }
     for (const auto* list : std::initializer_list<const std::vector<Catalog::Entry>*>{&known_, &added}) {
       for (const Catalog::Entry& e : *list) {
-        if (e.category != item.category) continue;
-        if (e.layout != item.layout)
-          return problem(what + ", whose type has another form than in " + e.origin +
-                         ": build both against the same headers");
-        if (e.name != item.name || (list == &known_ && named_with_library(item.category))) continue;
+        if (e.category != item.category || e.name != item.name) continue;
+        if (list == &known_ && named_with_library(item.category)) continue;
         return problem(what + " a second time: the first is from " + e.origin + "; give one of them another name");
       }
     }
-    added.push_back({std::string(item.category), std::string(item.name), item.layout, item.entry, origin_});
+    added.push_back(std::move(entry));
   }
 
+  Catalog surfaces;  // what it knows with this origin
   std::vector<Catalog::Entry> added;
   std::string problems;
 
  private:
+  /// Of the first entry of a category.
+  std::string first_origin(std::string_view category) const {
+    for (const auto* list : std::initializer_list<const std::vector<Catalog::Entry>*>{&known_, &added}) {
+      for (const Catalog::Entry& e : *list) {
+        if (e.category == category) return e.origin;
+      }
+    }
+    return "this program";
+  }
   void problem(const std::string& text) { problems += (problems.empty() ? "" : "\n  ") + text; }
 
   const std::string& origin_;
@@ -45,12 +75,18 @@ class Collector final : public Registrar {
 }  // namespace
 
 Status Catalog::add_from(const std::string& origin, const std::function<void(Registrar&)>& fill) {
-  Collector collector(origin, entries_);
+  Collector collector(origin, *this);
   fill(collector);
   if (!collector.problems.empty()) return Error{"'" + origin + "' " + collector.problems};
+  surfaces_ = collector.surfaces.surfaces();
   entries_.insert(entries_.end(), std::make_move_iterator(collector.added.begin()),
                   std::make_move_iterator(collector.added.end()));
   return {};
+}
+
+void Catalog::know(const Surface& surface) {
+  if (std::none_of(surfaces_.begin(), surfaces_.end(), [&](const Surface& s) { return s.name == surface.name; }))
+    surfaces_.push_back(surface);
 }
 
 std::vector<std::string> Catalog::names(std::string_view category) const {

@@ -10,31 +10,31 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <type_traits>
 #include <vector>
 
 #include "hal/result.hpp"
+#include "hal/surface.hpp"
 
 namespace tandem::hal {
 
-/// An entry as it crosses the border between libraries: its type is known by the category's name and a layout, never by
-/// the language's own type information, which two libraries need not share.
+/// An entry as it crosses the border between libraries: its type is known by the category's name and its surface, never
+/// by the language's own type information, which two libraries need not share.
 struct CatalogItem {
   std::string_view category;  ///< "engine"
   std::string_view name;      ///< as files and people write it
   std::uint64_t layout = 0;   ///< of the entry's type: `entry_layout<T>()`
   const void* entry = nullptr;
+  std::uint32_t size = 0;  ///< of the entry, in bytes: less than here where its type was appended to since
 };
 
-/// Differs when a type of entries was compiled to another form. A type may raise `kRevision` when the meaning of a
-/// member changes and its size does not.
+/// Differs when a type of entries, or what crosses with them, was compiled to another form (hal/surface.hpp).
 template <class T>
 constexpr std::uint64_t entry_layout() noexcept {
-  std::uint64_t layout = sizeof(T) * 1'000'003ULL + alignof(T);
-  if constexpr (requires { T::kRevision; }) layout += 10'007ULL * T::kRevision;
-  return layout;
+  return detail::mixed(SurfaceOf<T>::kDigest, SurfaceOf<T>::kNumber);
 }
 
 /// The name of an entry in its category: what its `catalog_name()` says, or its `name`.
@@ -57,11 +57,15 @@ class Registrar {
  public:
   virtual ~Registrar() = default;
   virtual void add(const CatalogItem& item) = 0;
+  /// Entries of this surface may be added. Of plug-ins that is known before they are loaded.
+  virtual void know(const Surface& surface) = 0;
 
   template <class T>
   requires(!std::is_same_v<T, CatalogItem>) void add(const T& entry) {
+    detail::note_surface<T>();
+    know(SurfaceOf<T>::value());
     const std::string name = hal::catalog_name(entry);
-    add(CatalogItem{T::kCategory, name, entry_layout<T>(), &entry});
+    add(CatalogItem{T::kCategory, name, entry_layout<T>(), &entry, sizeof(T)});
   }
   /// A class of controllers, as `controller_type` makes its table.
   template <class T>
@@ -81,12 +85,13 @@ class Catalog {
     std::uint64_t layout = 0;
     const void* entry = nullptr;
     std::string origin;
+    std::shared_ptr<const void> widened = {};  ///< holds `entry`, where the one that was added is shorter
   };
 
   /// Adds all that `fill` registers, or nothing. Errors, all in one message: an entry without a name or without a type;
-  /// two of one category and name, with both origins; a category whose entries have another layout in the library that
-  /// brought the first of them. Controllers and hooks are named together with their library: theirs need differ within
-  /// one origin alone. What `fill` throws passes through.
+  /// two of one category and name, with both origins; one whose type has another layout than here. Controllers and
+  /// hooks are named together with their library: theirs need differ within one origin alone. What `fill` throws passes
+  /// through.
   Status add_from(const std::string& origin, const std::function<void(Registrar&)>& fill);
 
   /// The entry of that name, or null.
@@ -108,10 +113,19 @@ class Catalog {
   std::string origin_of(const void* entry) const;
   const std::vector<Entry>& entries() const noexcept { return entries_; }
 
+  /// Plug-ins may add entries of this type, also where there is none yet.
+  template <class T>
+  void know() {
+    know(SurfaceOf<T>::value());
+  }
+  void know(const Surface& surface);
+  const std::vector<Surface>& surfaces() const noexcept { return surfaces_; }
+
  private:
   const void* find(std::string_view category, std::uint64_t layout, std::string_view name) const noexcept;
 
   std::vector<Entry> entries_;
+  std::vector<Surface> surfaces_;  // one a category
 };
 
 }  // namespace tandem::hal

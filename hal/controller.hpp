@@ -40,6 +40,8 @@ struct StepFault {
 /// A class of controllers as the worlds see it: a table of functions, one call a row and not a robot.
 struct ControllerType {
   static constexpr std::string_view kCategory = "controller";
+  using Crosses = Layouts<Controller, Robot, StepFault, ParamVisitor, ParamList, PublishedField, RobotLog, Random,
+                          PortType, RowType, Field>;
   std::string_view name;  ///< as written in experiment files
   std::string_view summary;
   std::string_view class_name;  ///< as the compiler spells it, for hooks that know the class

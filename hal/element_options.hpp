@@ -4,12 +4,14 @@
 #include <string>
 
 #include "hal/params.hpp"
+#include "hal/surface.hpp"
 
 namespace tandem::hal {
 
 /// What a part adds to an element that others describe, too.
 struct ElementOptions {
   static constexpr std::string_view kCategory = "options";
+  using Crosses = Layouts<ParamVisitor, ParamList>;
   std::string name;  ///< the element, and whose: "bridge of e-puck"
   /// Makes the part's options with their defaults, has the visitor fill or show them, and gives them back.
   std::shared_ptr<const void> (*read)(ParamVisitor& visitor) = nullptr;

@@ -1,9 +1,12 @@
 #include "hal/plugin_loader.hpp"
 
 #include <algorithm>
+#include <cstdlib>
+#include <cxxabi.h>
 #include <dlfcn.h>
 
 #include "hal/plugin_call.hpp"
+#include "hal/plugin_note.hpp"
 
 namespace tandem::hal {
 namespace {
@@ -32,6 +35,33 @@ void name_library(const void* path, std::size_t loading, std::size_t /*index*/, 
       << (loading != 0 ? "was loaded," : "registered its types,");
 }
 
+/// What the system says of the library that it did not load.
+std::string why_not_loaded() {
+  const char* const why = dlerror();
+  if (why == nullptr) return "unknown reason";
+  const std::string text = why;
+  constexpr std::string_view kMissing = "undefined symbol: ";
+  const std::size_t at = text.find(kMissing);
+  if (at == std::string::npos) return text;
+  const std::string symbol =
+      text.substr(at + kMissing.size(), text.find_first_of(" \t(,", at + kMissing.size()) - at - kMissing.size());
+  int status = -1;
+  const std::unique_ptr<char, void (*)(void*)> plain(abi::__cxa_demangle(symbol.c_str(), nullptr, nullptr, &status),
+                                                     &std::free);
+  return "nobody has its symbol " + (status == 0 ? std::string(plain.get()) + " (" + symbol + ")" : symbol) +
+         ". Link the library that has it, or build it against the headers of this program";
+}
+
+/// The command that makes a library anew, as far as its place tells.
+std::string how_to_rebuild(const fs::path& library) {
+  std::error_code ignored;
+  for (fs::path folder = library.parent_path(); folder.has_relative_path(); folder = folder.parent_path()) {
+    if (fs::is_regular_file(folder / "CMakeCache.txt", ignored))
+      return "Rebuild it against the headers of this program: cmake --build " + folder.string();
+  }
+  return "Rebuild it against the headers of this program, in its own build folder: cmake --build FOLDER";
+}
+
 void* load(const std::string& path) {
   const PluginCall call(&name_library, path.c_str(), 1);
   return dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
@@ -40,7 +70,10 @@ void* load(const std::string& path) {
 }  // namespace
 
 PluginLoader::PluginLoader(std::vector<fs::path> search, Catalog inside)
-    : search_(std::move(search)), catalog_(std::move(inside)) {}
+    : search_(std::move(search)), catalog_(std::move(inside)) {
+  catalog_.know<Border>();
+  catalog_.know<ControllerType>();
+}
 
 PluginLoader::~PluginLoader() {
   for (auto& [path, handle] : handles_) dlclose(handle);
@@ -74,34 +107,38 @@ Status PluginLoader::open(const std::string& library) {
   const std::string path = found.value().string();
   if (const auto why = unusable_.find(path); why != unusable_.end()) return Error{why->second};
   if (handles_.contains(path)) return {};
+  const auto note = judge(path);
+  if (!note.ok()) return note.error();
 
   void* handle = load(path);
-  if (handle == nullptr) {
-    const char* why = dlerror();
-    return Error{"library '" + path + "' does not load: " + (why != nullptr ? why : "unknown reason")};
-  }
+  if (handle == nullptr) return Error{"library '" + path + "' does not load: " + why_not_loaded()};
   const auto* info = static_cast<const PluginInfo*>(dlsym(handle, "tandem_plugin"));
-  std::string problem;
-  if (info == nullptr || info->magic != kPluginMagic) {
-    problem = "is not a Tandem plug-in: it has no TANDEM_PLUGIN(…)";
-  } else if (info->abi != kAbiNumber) {
-    problem = "was built for plug-in ABI " + std::to_string(info->abi) + "; this program has ABI " +
-              std::to_string(kAbiNumber) + ". Rebuild it against the headers of this program";
-  } else if (info->layout != border_layout()) {
-    problem = std::string("was built with another compiler or standard library (") + info->compiler +
-              "; this program: " + __VERSION__ + "). Rebuild it with the same settings";
-  }
-  if (!problem.empty()) {
+  if (info == nullptr) {
     dlclose(handle);
-    return Error{"library '" + path + "' " + problem};
+    return Error{"library '" + path +
+                 "' hides the symbol tandem_plugin: link it without a version script or export list"};
   }
   handles_.emplace(path, handle);  // it stays open even when it is of no use: what it threw may be of its own types
-  const Status registered = register_types(path, *info);
+  const Status registered = register_types(path, *info, note.value());
   if (!registered.ok()) unusable_.emplace(path, registered.error().message);
   return registered;
 }
 
-Status PluginLoader::register_types(const std::string& path, const PluginInfo& info) {
+Result<PluginNote> PluginLoader::inspect(const std::string& library) const {
+  const auto found = find(library);
+  if (!found.ok()) return found.error();
+  return judge(found.value().string());
+}
+
+Result<PluginNote> PluginLoader::judge(const std::string& path) const {
+  auto note = read_plugin_note(path);
+  if (!note.ok()) return Error{"library '" + path + "' " + note.error().message};
+  if (const std::string why = misfit(note.value(), catalog_.surfaces()); !why.empty())
+    return Error{"library '" + path + "' " + why + "\n  " + how_to_rebuild(path)};
+  return note;
+}
+
+Status PluginLoader::register_types(const std::string& path, const PluginInfo& info, const PluginNote& note) {
   const std::string library = "library '" + path + "'";
   if (info.register_all == nullptr) return Error{library + " has no function that registers its types"};
   Catalog with = catalog_;
@@ -115,6 +152,11 @@ Status PluginLoader::register_types(const std::string& path, const PluginInfo& i
     return Error{library + " threw while it registered its types"};
   }
   if (!added.ok()) return Error{"library " + added.error().message};
+  for (const Catalog::Entry& e : with.entries()) {
+    if (e.origin == path && !note.uses(e.category))
+      return Error{library + " registers the " + e.category + " '" + e.name +
+                   "' past its note; add it with hal::Registrar::add(entry)"};
+  }
   for (const ControllerType* type : with.all<ControllerType>()) {
     if (complete(*type)) continue;
     return Error{library + " registers the controller '" + std::string(type->name) +

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "hal/plugin.hpp"
+#include "hal/plugin_note.hpp"
 #include "hal/result.hpp"
 
 namespace tandem::hal {
@@ -22,9 +23,13 @@ class PluginLoader {
   PluginLoader& operator=(const PluginLoader&) = delete;
 
   /// Opens `library` ("build/lib/libx.so", "libx", "x": extension and prefix optional) once, however often asked.
-  /// Errors: not found (names every place looked at), not loadable, not a plug-in, built for another ABI, throws while
-  /// it registers, registers what is incomplete or what the catalog refuses.
+  /// Errors: those of `inspect`; not loadable, throws while it registers, registers what is incomplete or what the
+  /// catalog refuses.
   Status open(const std::string& library);
+
+  /// Judges `library` by its file alone; nothing of it runs. Errors: not found (names every place looked at), no
+  /// plug-in, for another processor, built against other layouts than this program's.
+  Result<PluginNote> inspect(const std::string& library) const;
 
   /// The file that `library` resolves to.
   Result<std::filesystem::path> find(const std::string& library) const;
@@ -47,7 +52,8 @@ class PluginLoader {
  private:
   Result<const void*> get(const std::string& library, std::string_view category, std::uint64_t layout,
                           std::string_view name);
-  Status register_types(const std::string& path, const PluginInfo& info);
+  Result<PluginNote> judge(const std::string& path) const;
+  Status register_types(const std::string& path, const PluginInfo& info, const PluginNote& note);
 
   std::vector<std::filesystem::path> search_;
   std::map<std::string, void*> handles_;         // by resolved path

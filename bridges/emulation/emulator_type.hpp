@@ -11,6 +11,7 @@
 #include "hal/log.hpp"
 #include "hal/params.hpp"
 #include "hal/result.hpp"
+#include "hal/surface.hpp"
 
 namespace tandem::bridges {
 
@@ -27,6 +28,7 @@ struct EmulatorRequest {
 
 struct EmulatorType {
   static constexpr std::string_view kCategory = "emulator";
+  using Crosses = hal::Layouts<EmulatorRequest, SharedPorts, PortBank, hal::PortType, hal::ParamVisitor, hal::Log>;
   std::string_view name;  ///< for the command line
   std::string_view kind;  ///< of robots
   std::string_view summary;

@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "bridges/stop_messages.hpp"
+#include "hal/surface.hpp"
 #include "hal/time.hpp"
 
 namespace tandem::bridges::guardian {
@@ -32,6 +33,7 @@ class Stopper {
 /// One kind's stopper. `make` neither blocks nor throws.
 struct StopperType {
   static constexpr std::string_view kCategory = "stopper";
+  using Crosses = hal::Layouts<Stopper, StopMessages>;
   std::string_view kind;
   std::unique_ptr<Stopper> (*make)(const StopMessages& messages, StopCause cause);
 

@@ -25,6 +25,7 @@ class Coupling {
 /// ask for find nothing to do.
 struct CouplingType {
   static constexpr std::string_view kCategory = "coupling";
+  using Crosses = hal::Layouts<StoreLayouts, Coupling, DeviceContext>;
   std::string_view name;
   std::string_view summary;
   std::unique_ptr<Coupling> (*make)(Columns& columns) = nullptr;

@@ -81,6 +81,8 @@ class Hook {
 /// A class of hooks: what a plug-in registers.
 struct HookType {
   static constexpr std::string_view kCategory = "hook";
+  using Crosses =
+      hal::Layouts<Hook, HookContext, Space, Checkpoints, Sketch, Measures, Element, Problem, hal::ParamVisitor>;
   std::string_view name;
   std::string_view summary;
   /// Reads its options from the file; problems are reported with their lines.

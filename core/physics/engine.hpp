@@ -81,6 +81,8 @@ struct EngineOrder {
 /// A kind of physics engine.
 struct EngineType : KnownEngine {
   static constexpr std::string_view kCategory = "engine";
+  using Crosses = hal::Layouts<StoreLayouts, Engine, PhysicsContext, Trouble, EngineOrder, EngineOrder::Part, Element,
+                               Problem, hal::ParamVisitor>;
   std::string_view summary;  ///< for the manual
   bool whole = false;  ///< works on all its regions as one: a split changes nothing, and they need no lists of bodies
   /// Reads an engine element's own attributes and children (`id`, `regions` and <boundaries> are read by others), and

@@ -36,6 +36,7 @@ struct EngineTraits {
 /// none.
 struct KnownEngine {
   static constexpr std::string_view kCategory = "engine traits";
+  using Crosses = hal::Layouts<EngineTraits>;
   std::string_view kind;        ///< the element's name in experiment files
   std::string_view argos_name;  ///< … in ARGoS 3's, if that is another
   EngineTraits traits;

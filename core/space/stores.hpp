@@ -33,6 +33,7 @@
 #include "hal/controller.hpp"
 #include "hal/port.hpp"
 #include "hal/spec/data_sheet.hpp"
+#include "hal/surface.hpp"
 
 namespace tandem::core {
 
@@ -311,5 +312,10 @@ struct SpaceStores {
     bodies_changed = true;
   }
 };
+
+/// What plug-ins that work on the stores must have been built against.
+using StoreLayouts =
+    hal::Layouts<SpaceStores, Bodies, Motion, FlightCommand, Columns, ColumnArrays, KeptColumn, RobotGroup, RobotBlock,
+                 RobotEntity, Object, Joint, Region, LightSource, SoundSource, hal::RowType>;
 
 }  // namespace tandem::core

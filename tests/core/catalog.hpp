@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/device/device.hpp"
+#include "core/loop/hook.hpp"
 #include "core/medium/led/led.hpp"
 #include "core/medium/medium.hpp"
 #include "core/medium/range_and_bearing/range_and_bearing.hpp"
@@ -21,6 +22,7 @@ namespace tandem::test {
 inline const hal::Catalog& catalog() {
   static const hal::Catalog all = [] {
     hal::Catalog made;
+    made.know<core::HookType>();
     const hal::Status good = made.add_from("tests", [](hal::Registrar& r) {
       hal::register_ports(r);
       hal::register_robots(r);

@@ -1,5 +1,6 @@
 #include "hal/catalog.hpp"
 
+#include <array>
 #include <gmock/gmock.h>
 #include <stdexcept>
 
@@ -16,8 +17,14 @@ struct Engine {
 };
 struct OtherEngine {  // of the same category, as a library built against other headers would have it
   static constexpr std::string_view kCategory = "engine";
+  using Crosses = Layouts<std::array<char, 1000>>;
+  std::string_view name;
+};
+struct LongerEngine {  // … or one built against later headers of the same number
+  static constexpr std::string_view kCategory = "engine";
   std::string_view name;
   double mass_kg = 0.0;
+  int (*wheels)() = nullptr;
 };
 struct Robot {
   static constexpr std::string_view kCategory = "robot";
@@ -30,7 +37,8 @@ struct Hook {
 };
 
 constexpr Engine kRolling{"rolling"}, kFloating{"floating"}, kAnonymous{""};
-constexpr OtherEngine kStrange{"strange", 1.0};
+constexpr OtherEngine kStrange{"strange"};
+constexpr LongerEngine kLonger{"longer", 2.0, nullptr};
 constexpr Robot kRover{"rover"};
 constexpr Hook kPainter{"painter"}, kOtherPainter{"painter"};
 
@@ -87,6 +95,32 @@ TEST(Catalog, RefusesATypeOfAnotherForm) {
   ASSERT_EQ(error_of(catalog, "tandem", kRolling), "");
   EXPECT_THAT(error_of(catalog, "libold.so", kStrange),
               AllOf(HasSubstr("engine 'strange'"), HasSubstr("another form than in tandem")));
+  EXPECT_THAT(error_of(catalog, "liblate.so", kLonger),
+              AllOf(HasSubstr("engine 'longer'"), HasSubstr("another form than in tandem")));
+}
+
+TEST(Catalog, ATableFromBeforeSomethingWasAppendedHasZerosThere) {
+  Catalog catalog;
+  ASSERT_EQ(error_of(catalog, "tandem", kLonger), "");
+  ASSERT_EQ(error_of(catalog, "libearly.so", kRolling), "");
+  const auto* rolling = catalog.find<LongerEngine>("rolling");
+  ASSERT_NE(rolling, nullptr);
+  EXPECT_EQ(rolling->name, "rolling");
+  EXPECT_EQ(rolling->mass_kg, 0.0);
+  EXPECT_EQ(rolling->wheels, nullptr);
+  EXPECT_EQ(catalog.origin_of(rolling), "libearly.so");
+  const Catalog copy = catalog;
+  EXPECT_EQ(copy.find<LongerEngine>("rolling"), rolling);
+}
+
+TEST(Catalog, KnowsSurfacesOfWhichThereIsNoEntry) {
+  Catalog catalog;
+  catalog.know<Engine>();
+  ASSERT_EQ(catalog.surfaces().size(), 1U);
+  EXPECT_EQ(catalog.surfaces()[0], SurfaceOf<Engine>::value());
+  EXPECT_THAT(error_of(catalog, "libold.so", kStrange), HasSubstr("another form than in this program"));
+  ASSERT_EQ(error_of(catalog, "libmine.so", kRover), "");
+  EXPECT_EQ(catalog.surfaces().size(), 2U);
 }
 
 TEST(Catalog, IsAsBeforeWhenSomebodyThrowsWhileRegistering) {

@@ -4,7 +4,8 @@
 namespace {
 
 void register_all(tandem::hal::Registrar& registrar) {
-  registrar.add({"controller", "nobody", tandem::hal::entry_layout<tandem::hal::ControllerType>(), nullptr});
+  registrar.add(tandem::hal::CatalogItem{"controller", "nobody",
+                                         tandem::hal::entry_layout<tandem::hal::ControllerType>(), nullptr});
 }
 
 }  // namespace

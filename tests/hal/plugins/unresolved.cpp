@@ -1,5 +1,16 @@
 // Needs a symbol that nobody has.
-extern "C" int nobody_has_this();
-extern "C" __attribute__((visibility("default"))) int ask() {
-  return nobody_has_this();
+#include "hal/plugin.hpp"
+
+namespace nobody {
+int has_this(double x);
 }
+
+namespace {
+
+void register_all(tandem::hal::Registrar& /*registrar*/) {
+  (void)nobody::has_this(1.0);
+}
+
+}  // namespace
+
+TANDEM_PLUGIN(register_all)
