@@ -1,8 +1,5 @@
 #include "app/guarded_robots.hpp"
 
-#include <algorithm>
-
-#include "app/catalog.hpp"
 #include "app/signals.hpp"
 #include "bridges/guardian/stopper.hpp"
 
@@ -15,12 +12,12 @@ constexpr hal::TimeNs kConfirmWithin = 2 * hal::kNsPerSecond;  // to the guardia
 
 }  // namespace
 
-GuardedRobots::GuardedRobots(const std::vector<core::RobotItem>& items, hal::Log log) : log_(std::move(log)) {
-  if (std::ranges::none_of(items, [](const core::RobotItem& i) { return i.bridge.has_value(); })) return;
+GuardedRobots::GuardedRobots(bool real_robots, const hal::Catalog& catalog, hal::Log log) : log_(std::move(log)) {
+  if (!real_robots) return;
   bridges::guardian::GuardianOptions options;
   options.suspend_asked = &suspend_asked();
   std::vector<bridges::guardian::StopperType> stoppers;
-  for (const auto* type : catalog().all<bridges::guardian::StopperType>()) stoppers.push_back(*type);
+  for (const auto* type : catalog.all<bridges::guardian::StopperType>()) stoppers.push_back(*type);
   auto started = GuardianClient::start(std::move(stoppers), options);
   if (!started.ok()) {
     started_ = started.error();

@@ -7,7 +7,7 @@
 
 #include "bridges/guardian/client.hpp"
 #include "bridges/robot_bridge.hpp"
-#include "core/scenario/scenario.hpp"
+#include "hal/catalog.hpp"
 #include "hal/log.hpp"
 
 namespace tandem::app {
@@ -15,9 +15,9 @@ namespace tandem::app {
 /// Make it before any other thread exists. Destroyed, it leaves robots that were not released to the guardian.
 class GuardedRobots {
  public:
-  /// A guardian, where any of these items has a `<bridge>`; from here on Ctrl-Z stops the robots first. Where no
-  /// process can be made, `started` says so.
-  GuardedRobots(const std::vector<core::RobotItem>& items, hal::Log log);
+  /// A guardian, where there are real robots, which stops them with what `catalog` has by now; from here on Ctrl-Z
+  /// stops the robots first. Where no process can be made, `started` says so.
+  GuardedRobots(bool real_robots, const hal::Catalog& catalog, hal::Log log);
 
   /// For bridges: without it they would write to robots that the guardian is stopping.
   bridges::SendPermit permit() const noexcept;

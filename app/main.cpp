@@ -41,6 +41,7 @@ void add_run(CLI::App& app, RunOptions& o, int& code) {
                 "With real robots: a fault of this program, e.g. stall@5s+0.4s, freeze@5s+2s, kill@5s, clock=1h@5s; "
                 "repeatable")
       ->allow_extra_args(false);
+  add_plugins(*c, o.plugins);
   c->callback([&] { code = run(o); });
 }
 
@@ -60,6 +61,7 @@ void add_compare(CLI::App& app, CompareOptions& o, int& code) {
   c->add_option("--set", o.overrides, "Change both experiments: path=value; repeatable")->allow_extra_args(false);
   c->add_option("--set-a", o.overrides_a, "Change A alone; repeatable")->allow_extra_args(false);
   c->add_option("--set-b", o.overrides_b, "Change B alone; repeatable")->allow_extra_args(false);
+  add_plugins(*c, o.plugins);
   c->callback([&] { code = compare(o); });
 }
 
@@ -114,6 +116,7 @@ void add_bench(CLI::App& app, BenchOptions& o, int& code) {
   c->add_flag("--real-time", o.real_time, "Of sense_to_act: with the scheduling class SCHED_FIFO");
   c->add_flag("--compare-threads", o.compare_threads,
               "Print how many times faster each number of threads is than the first");
+  add_plugins(*c, o.plugins);
   c->callback([&] { code = bench(o); });
 }
 
@@ -155,19 +158,23 @@ int main(int argc, char** argv) {
       "upgrade", "Rewrite an experiment file in this program's vocabulary; layout and comments stay.");
   upgrade_command->add_option("experiment", upgrade_options.experiment, "The experiment file (.xml)")->required();
   upgrade_command->add_flag("--dry-run", upgrade_options.dry_run, "Only say what would change");
+  add_plugins(*upgrade_command, upgrade_options.plugins);
   upgrade_command->callback([&] { code = upgrade(upgrade_options); });
 
   std::string kind;
   CLI::App* list_command =
       app.add_subcommand("list", "List what there is: controllers, hooks, devices, engines, robots, elements.");
   list_command->add_option("kind", kind, "Only this kind");
-  list_command->callback([&] { code = list(kind); });
+  Libraries plugins;
+  add_plugins(*list_command, plugins);
+  list_command->callback([&] { code = list(kind, plugins); });
 
   std::string name;
   CLI::App* describe_command =
       app.add_subcommand("describe", "Print the manual of a controller, device, hook or element.");
   describe_command->add_option("name", name, "Its name")->required();
-  describe_command->callback([&] { code = describe(name); });
+  add_plugins(*describe_command, plugins);
+  describe_command->callback([&] { code = describe(name, plugins); });
 
   RobotCommandOptions robot_command_options;
   add_robot_commands(app, robot_command_options, code);
@@ -190,6 +197,7 @@ int main(int argc, char** argv) {
       "Experiment file: one of its robots, driven by the emulator's puppet (`tandem describe NAME`), is the body");
   emulate_command->add_option("--body", emulate_options.body, "Which of its robots; default: the first that can be")
       ->needs(arena);
+  add_plugins(*emulate_command, emulate_options.plugins);
   emulate_command->footer("Further options are the emulator's own: --firmware gctronic, --name eb0, …");
   emulate_command->allow_extras();
   emulate_command->callback([&] {

@@ -20,11 +20,19 @@ void add_step_timeout(CLI::App& command, double& seconds) {
       ->check(CLI::NonNegativeNumber);
 }
 
+void add_plugins(CLI::App& command, Libraries& plugins) {
+  command
+      .add_option("--plugin", plugins,
+                  "Library whose parts this call may name: devices, robots, engines, bridges, …; repeatable")
+      ->allow_extra_args(false);
+}
+
 void add_robot_commands(CLI::App& app, RobotCommandOptions& options, int& code) {
   CLI::App* check_command = app.add_subcommand("check", "Validate an experiment and print every problem.");
   check_command->add_option("experiment", options.check.experiment, "The experiment file (.xml)")->required();
   check_command->add_option("--set", options.check.overrides, "Change the experiment first: path=value")
       ->allow_extra_args(false);
+  add_plugins(*check_command, options.check.plugins);
   check_command->callback([&options, &code] { code = check(options.check); });
 
   CLI::App* robot_command = app.add_subcommand("robot", "Run one real robot's controller here.");
@@ -42,6 +50,7 @@ void add_robot_commands(CLI::App& app, RobotCommandOptions& options, int& code) 
       ->add_option("--hub-fault", options.robot.hub_faults,
                    "A fault of this program, e.g. stall@5s+0.4s, freeze@5s+2s, kill@5s, clock=1h@5s; repeatable")
       ->allow_extra_args(false);
+  add_plugins(*robot_command, options.robot.plugins);
   robot_command->callback([&options, &code] { code = robot(options.robot); });
 
   CLI::App* inspect_command =
@@ -53,6 +62,7 @@ void add_robot_commands(CLI::App& app, RobotCommandOptions& options, int& code) 
   inspect_command->add_option("--seconds", options.inspect.seconds, "How long to listen")
       ->capture_default_str()
       ->check(CLI::Range(0.1, 3600.0));
+  add_plugins(*inspect_command, options.inspect.plugins);
   inspect_command->callback([&options, &code] { code = inspect(options.inspect); });
 }
 

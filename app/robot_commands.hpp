@@ -16,6 +16,9 @@ struct RobotCommandOptions {
 /// must outlive `app`.
 void add_robot_commands(CLI::App& app, RobotCommandOptions& options, int& code);
 
+/// The option `--plugin`.
+void add_plugins(CLI::App& command, Libraries& plugins);
+
 /// The option `--step-timeout`.
 void add_step_timeout(CLI::App& command, double& seconds);
 

@@ -86,6 +86,7 @@ void add_members(hal::Json& json, const RunResult& result, bool between_ticks) {
     for (const InputFile& file : files) list.push_back(to_json(file));
   };
   json["file"] = to_json(result.inputs.experiment);
+  if (!result.inputs.plugins.empty()) add_files("plugins", result.inputs.plugins);
   add_files("controllers", result.inputs.controllers);
   if (!result.inputs.hooks.empty()) add_files("hooks", result.inputs.hooks);
   if (!result.inputs.others.empty()) add_files("other_files", result.inputs.others);
@@ -122,6 +123,7 @@ InputFiles input_files(const core::Scenario& scenario, const hal::PluginLoader& 
   };
   InputFiles files;
   files.experiment = described("", "", scenario.file);
+  for (const std::string& library : loader.plugins()) files.plugins.push_back(described("", "", library));
   for (const core::ControllerConfig& config : scenario.controllers) {
     const auto file = loader.find(config.library);
     if (file.ok()) files.controllers.push_back(described(config.id, config.label, file.value().string()));

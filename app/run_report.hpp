@@ -36,7 +36,7 @@ struct InputFile {
 /// The files of a run, as they are now: to be asked before it.
 struct InputFiles {
   InputFile experiment;
-  std::vector<InputFile> controllers, hooks;
+  std::vector<InputFile> plugins, controllers, hooks;
   std::vector<InputFile> others;  ///< images of floors, maps of robots
 };
 InputFiles input_files(const core::Scenario& scenario, const hal::PluginLoader& loader);

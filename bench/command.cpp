@@ -8,8 +8,8 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include "app/catalog.hpp"
 #include "app/measure.hpp"
+#include "app/plugins.hpp"
 #include "app/signals.hpp"
 #include "app/terminal.hpp"
 #include "bench/codec.hpp"
@@ -47,8 +47,8 @@ hal::Status check_name(std::string_view what, const std::string& name, const std
 }
 
 /// The first that there is; for robots that fly the first that is made for them.
-std::string usual_engine(bool flying) {
-  const auto engines = app::catalog().all<core::KnownEngine>();
+std::string usual_engine(const hal::Catalog& catalog, bool flying) {
+  const auto engines = catalog.all<core::KnownEngine>();
   for (const core::KnownEngine* engine : engines) {
     if (engine->traits.air == flying) return std::string(engine->kind);
   }
@@ -63,7 +63,7 @@ std::string robot_of(const app::BenchOptions& o) {
   return o.robot.empty() ? robots_of(o).front() : o.robot;
 }
 
-hal::Status check_words(const app::BenchOptions& o) {
+hal::Status check_words(const hal::Catalog& catalog, const app::BenchOptions& o) {
   if (auto s = check_name("benchmark", o.name, {"diffusion", "flocking", "codec", "sense_to_act"}); !s.ok()) return s;
   const std::vector<std::string> robots = robots_of(o);
   if (auto s = check_name("robot", robot_of(o), robots); !s.ok()) return s;
@@ -75,7 +75,7 @@ hal::Status check_words(const app::BenchOptions& o) {
   }
   for (const std::string& engine : o.engines) {
     // Saved lines may come from another build.
-    if (auto s = check_name("engine", engine, app::catalog().names("engine")); !s.ok() && o.from.empty()) return s;
+    if (auto s = check_name("engine", engine, catalog.names("engine")); !s.ok() && o.from.empty()) return s;
   }
   if (!o.density.empty() && o.density != "equal") return hal::Error{"--density takes 'equal'"};
   if (!o.assignment.empty() && o.assignment != "static" && o.assignment != "dynamic")
@@ -90,8 +90,8 @@ hal::Status check_words(const app::BenchOptions& o) {
   return {};
 }
 
-hal::Result<Plan> plan_of(const app::BenchOptions& o) {
-  if (auto s = check_words(o); !s.ok()) return s.error();
+hal::Result<Plan> plan_of(const hal::Catalog& catalog, const app::BenchOptions& o) {
+  if (auto s = check_words(catalog, o); !s.ok()) return s.error();
   Plan plan{o.engines, {}, o.robots, o.threads};
   for (const std::string& name : o.partitions) {
     auto partition = partition_named(name);
@@ -104,7 +104,7 @@ hal::Result<Plan> plan_of(const app::BenchOptions& o) {
     plan.partitions.push_back(std::move(partition).value());
   }
   if (!o.from.empty()) return plan;
-  if (plan.engines.empty()) plan.engines = {usual_engine(o.name == "flocking")};
+  if (plan.engines.empty()) plan.engines = {usual_engine(catalog, o.name == "flocking")};
   if (plan.partitions.empty()) plan.partitions = {{"auto", "auto"}};
   if (plan.robots.empty()) plan.robots = {1, 10, 100, 1000, 10'000, 100'000};
   if (plan.threads.empty()) plan.threads = {0};
@@ -184,14 +184,14 @@ class Forecast {
 };
 
 /// Prints each line as soon as it is there. @returns them; nothing when interrupted, or when `code` tells of a failure.
-std::vector<ResultLine> measure_all(const std::vector<BenchCase>& cases, int& code) {
+std::vector<ResultLine> measure_all(const std::vector<BenchCase>& cases, hal::PluginLoader& loader, int& code) {
   const std::atomic<bool>& stop = app::catch_signals();
   std::vector<ResultLine> lines;
   Forecast forecast(cases);
   for (std::size_t run = 0; run < cases.size(); ++run) {
     if (stop.load(std::memory_order_relaxed)) return {};
     forecast.begin(run);
-    const Measurement measured = measure_apart(cases[run], stop);
+    const Measurement measured = measure_apart(cases[run], loader, stop);
     forecast.end(run);
     if (!measured.line.empty()) {
       fmt::print("{}\n", measured.line);
@@ -261,7 +261,9 @@ int sense_to_act(const app::BenchOptions& o) {
 
 /// @returns the program's exit code
 int run(const app::BenchOptions& options) {
-  const auto plan = plan_of(options);
+  hal::PluginLoader loader = app::make_loader();
+  if (!app::open_plugins(loader, options.plugins)) return app::kBadInput;
+  const auto plan = plan_of(loader.catalog(), options);
   if (!plan.ok()) return refuse(app::kWrongUsage, plan.error().message);
   if (options.name == "codec") {
     bench_codec(options.repeat);
@@ -277,8 +279,9 @@ int run(const app::BenchOptions& options) {
     plot = std::move(opened).value();
   }
   int code = app::kDone;
-  const std::vector<ResultLine> lines = options.from.empty() ? measure_all(cases_of(plan.value(), options), code)
-                                                             : choose_saved(plan.value(), options, code);
+  const std::vector<ResultLine> lines = options.from.empty()
+                                            ? measure_all(cases_of(plan.value(), options), loader, code)
+                                            : choose_saved(plan.value(), options, code);
   if (lines.empty()) return code;
   if (options.compare_threads) print_comparison(lines);
   if (!plot) return app::kDone;

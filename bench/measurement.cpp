@@ -10,7 +10,6 @@
 #include <unistd.h>
 
 #include "app/build_info.hpp"
-#include "app/catalog.hpp"
 #include "app/command/command.hpp"
 #include "app/measure.hpp"
 #include "app/report.hpp"
@@ -54,11 +53,10 @@ void add_machine_fields(hal::Json& json) {
   json["cores"] = static_cast<std::int64_t>(std::thread::hardware_concurrency());
 }
 
-Measurement measure(const BenchCase& c, const std::atomic<bool>& stop) {
+Measurement measure(const BenchCase& c, hal::PluginLoader& loader, const std::atomic<bool>& stop) {
   const double began = app::wall_seconds();
   const double rss_before = app::peak_rss_mb();
   const core::Scenario scenario = scene_of(c);
-  hal::PluginLoader loader(app::plugin_folders(), app::catalog());
   core::Problems problems;
   auto world = core::World::make(scenario, loader, {}, problems);
   app::print_problems(problems);
@@ -115,7 +113,7 @@ std::string read_all(int fd, pid_t child, const std::atomic<bool>& stop) {
 
 }  // namespace
 
-Measurement measure_apart(const BenchCase& c, const std::atomic<bool>& stop) {
+Measurement measure_apart(const BenchCase& c, hal::PluginLoader& loader, const std::atomic<bool>& stop) {
   const auto fail = [&](const char* why) {
     fmt::print(stderr, "tandem bench: the run of {} robots {}\n", c.robots, why);
     return Measurement{app::kFailedRunning, {}};
@@ -126,7 +124,7 @@ Measurement measure_apart(const BenchCase& c, const std::atomic<bool>& stop) {
   if (child == 0) {
     prctl(PR_SET_PDEATHSIG, SIGKILL);
     close(ends[0]);
-    const Measurement measured = measure(c, stop);
+    const Measurement measured = measure(c, loader, stop);
     write_all(ends[1], measured.line);
     _exit(measured.code);
   }

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "bench/bench_case.hpp"
+#include "hal/plugin_loader.hpp"
 
 namespace tandem::bench {
 
@@ -12,8 +13,8 @@ struct Measurement {
   std::string line;  ///< one JSON object without a line break; empty when interrupted or when the world cannot be made
 };
 
-/// Runs in a process of its own, so that no run inherits memory from the one before; its problems go to standard error.
-/// Ends early, without a line, once `stop` is set.
-Measurement measure_apart(const BenchCase& c, const std::atomic<bool>& stop);
+/// The world is made with the parts of `loader`. Runs in a process of its own, so that no run inherits memory from the
+/// one before; its problems go to standard error. Ends early, without a line, once `stop` is set.
+Measurement measure_apart(const BenchCase& c, hal::PluginLoader& loader, const std::atomic<bool>& stop);
 
 }  // namespace tandem::bench

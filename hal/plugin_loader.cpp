@@ -82,7 +82,10 @@ PluginLoader::~PluginLoader() {
 Result<fs::path> PluginLoader::find(const std::string& library) const {
   std::string looked;
   std::vector<fs::path> places{fs::path{}};
-  if (!fs::path(library).is_absolute()) places.insert(places.end(), search_.begin(), search_.end());
+  if (!fs::path(library).is_absolute()) {
+    if (!beside_.empty()) places.insert(places.begin(), beside_);
+    places.insert(places.end(), search_.begin(), search_.end());
+  }
   for (const fs::path& folder : places) {
     for (const fs::path& name : spellings(library)) {
       std::error_code ignored;
@@ -102,6 +105,14 @@ Result<fs::path> PluginLoader::find(const std::string& library) const {
 }
 
 Status PluginLoader::open(const std::string& library) {
+  const Status good = load_once(library);
+  if (!good.ok()) return good;
+  const std::string path = find(library).value().string();
+  if (std::find(plugins_.begin(), plugins_.end(), path) == plugins_.end()) plugins_.push_back(path);
+  return {};
+}
+
+Status PluginLoader::load_once(const std::string& library) {
   const auto found = find(library);
   if (!found.ok()) return found.error();
   const std::string path = found.value().string();
@@ -168,7 +179,7 @@ Status PluginLoader::register_types(const std::string& path, const PluginInfo& i
 
 Result<const void*> PluginLoader::get(const std::string& library, std::string_view category, std::uint64_t layout,
                                       std::string_view name) {
-  if (const Status opened = open(library); !opened.ok()) return opened.error();
+  if (const Status opened = load_once(library); !opened.ok()) return opened.error();
   const std::string path = find(library).value().string();
   std::string names;
   const void* only = nullptr;

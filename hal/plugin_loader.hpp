@@ -22,6 +22,9 @@ class PluginLoader {
   PluginLoader(const PluginLoader&) = delete;
   PluginLoader& operator=(const PluginLoader&) = delete;
 
+  /// Libraries are looked for in the folder of this file first: they are named by it.
+  void look_beside(const std::filesystem::path& file) { beside_ = file.parent_path(); }
+
   /// Opens `library` ("build/lib/libx.so", "libx", "x": extension and prefix optional) once, however often asked.
   /// Errors: those of `inspect`; not loadable, throws while it registers, registers what is incomplete or what the
   /// catalog refuses.
@@ -46,18 +49,24 @@ class PluginLoader {
     return get<ControllerType>(library, name);
   }
 
+  /// The libraries that were opened for all that they bring, in this order; those of `get` are not among them.
+  const std::vector<std::string>& plugins() const noexcept { return plugins_; }
+
   /// What there is now; entries of a library have its resolved path as their origin.
   const Catalog& catalog() const noexcept { return catalog_; }
 
  private:
   Result<const void*> get(const std::string& library, std::string_view category, std::uint64_t layout,
                           std::string_view name);
+  Status load_once(const std::string& library);
   Result<PluginNote> judge(const std::string& path) const;
   Status register_types(const std::string& path, const PluginInfo& info, const PluginNote& note);
 
+  std::filesystem::path beside_;
   std::vector<std::filesystem::path> search_;
   std::map<std::string, void*> handles_;         // by resolved path
   std::map<std::string, std::string> unusable_;  // by resolved path: why
+  std::vector<std::string> plugins_;             // resolved paths
   Catalog catalog_;
 };
 

@@ -1,8 +1,8 @@
 // `tandem check` on a robot's board: what can be told without a world.
 #include <fmt/format.h>
 
-#include "app/catalog.hpp"
 #include "app/command/command.hpp"
+#include "app/plugins.hpp"
 #include "hal/plugin_loader.hpp"
 
 namespace tandem::app {
@@ -25,10 +25,11 @@ void check_controller(const core::Scenario& scenario, const core::RobotItem& ite
 }  // namespace
 
 int check(const CheckOptions& options) {
-  if (const auto other = check_other_file(options.experiment)) return *other;
-  const auto scenario = read_or_complain(options.experiment, options.overrides);
+  hal::PluginLoader loader = make_loader();
+  if (!open_plugins(loader, options.plugins)) return kBadInput;
+  if (const auto other = check_other_file(options.experiment, loader.catalog())) return *other;
+  const auto scenario = read_or_complain(loader, {}, options.experiment, options.overrides);
   if (!scenario) return kBadInput;
-  hal::PluginLoader loader(plugin_folders(), catalog());
   core::Problems problems;
   std::size_t driven = 0;
   for (const core::RobotItem& item : scenario->robots) {

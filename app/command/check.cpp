@@ -1,17 +1,18 @@
 #include <fmt/format.h>
 
-#include "app/catalog.hpp"
 #include "app/command/command.hpp"
+#include "app/plugins.hpp"
 #include "core/sim/world.hpp"
 
 namespace tandem::app {
 
 int check(const CheckOptions& options) {
-  if (const auto other = check_other_file(options.experiment)) return *other;
-  const auto scenario = read_or_complain(options.experiment, options.overrides);
+  hal::PluginLoader loader = make_loader();
+  if (!open_plugins(loader, options.plugins)) return kBadInput;
+  if (const auto other = check_other_file(options.experiment, loader.catalog())) return *other;
+  const auto scenario = read_or_complain(loader, {}, options.experiment, options.overrides);
   if (!scenario) return kBadInput;
   // What only making the world can tell: libraries, devices, parameters, places.
-  hal::PluginLoader loader(plugin_folders(), catalog());
   core::Problems problems;
   core::WorldOptions world_options;
   if (!scenario->seed) world_options.seed = 1;

@@ -6,12 +6,17 @@
 #include <vector>
 
 #include "core/scenario/scenario.hpp"
+#include "hal/catalog.hpp"
 
 namespace tandem::app {
 
 enum ExitCode : int { kDone = 0, kBadInput = 1, kWrongUsage = 2, kFailedRunning = 3, kDifferent = 4 };
 
+/// Of --plugin: libraries whose parts this call may name besides the program's own.
+using Libraries = std::vector<std::string>;
+
 struct RunOptions {
+  Libraries plugins;
   std::string experiment;
   std::optional<double> seconds;
   std::optional<std::int64_t> steps;
@@ -32,6 +37,7 @@ struct RunOptions {
 int run(const RunOptions& options);
 
 struct CompareOptions {
+  Libraries plugins;
   std::string a, b;  ///< experiments or dumps; an empty b is a
   std::optional<double> seconds;
   std::optional<std::int64_t> steps;
@@ -43,23 +49,26 @@ struct CompareOptions {
 int compare(const CompareOptions& options);
 
 struct CheckOptions {
+  Libraries plugins;
   std::string experiment;
   std::vector<std::string> overrides;
 };
 int check(const CheckOptions& options);
 
 struct UpgradeOptions {
+  Libraries plugins;
   std::string experiment;
   bool dry_run = false;  ///< only say what would change
 };
 int upgrade(const UpgradeOptions& options);
 
-/// Kinds: bridges, controllers, devices, elements, emulators, engines, hooks, robots; empty: all.
-int list(const std::string& kind);
-int describe(const std::string& name);
+/// Kinds: bridges, controllers, couplings, devices, elements, emulators, engines, hooks, plugins, robots; empty: all.
+int list(const std::string& kind, const Libraries& plugins);
+int describe(const std::string& name, const Libraries& plugins);
 
 /// Lists that are left empty: the usual values when measuring, every saved line with `from`.
 struct BenchOptions {
+  Libraries plugins;
   std::string name = "diffusion";
   std::vector<std::int64_t> robots;
   std::string robot;                 ///< empty: the benchmark's own
@@ -82,6 +91,7 @@ struct BenchOptions {
 int bench(const BenchOptions& options);
 
 struct RobotOptions {
+  Libraries plugins;
   std::string file;
   std::string link;
   std::optional<double> seconds;
@@ -92,6 +102,7 @@ struct RobotOptions {
 int robot(const RobotOptions& options);
 
 struct EmulateOptions {
+  Libraries plugins;
   std::string robot;
   std::string link;
   std::string log;
@@ -103,6 +114,7 @@ struct EmulateOptions {
 int emulate(const EmulateOptions& options);
 
 struct InspectOptions {
+  Libraries plugins;
   std::string link;
   double seconds = 2.0;
 };
@@ -113,10 +125,8 @@ int inspect(const InspectOptions& options);
 /// Steps to do; 0: until interrupted or a hook ends the run.
 std::int64_t steps_of(std::optional<std::int64_t> steps, std::optional<double> seconds, const core::Scenario& scenario);
 
-/// Reads an experiment and prints every problem; nothing when there is an error.
-std::optional<core::Scenario> read_or_complain(const std::string& path, const std::vector<std::string>& overrides);
 void print_problems(const core::Problems& problems);
 /// `check` for files of the catalog's other types; nothing when it is none.
-std::optional<int> check_other_file(const std::string& path);
+std::optional<int> check_other_file(const std::string& path, const hal::Catalog& catalog);
 
 }  // namespace tandem::app

@@ -3,6 +3,7 @@
 
 #include "app/catalog.hpp"
 #include "app/command/command.hpp"
+#include "app/plugins.hpp"
 #include "app/signals.hpp"
 #include "app/state_dump.hpp"
 #include "app/terminal.hpp"
@@ -31,12 +32,12 @@ class Side {
 
 class Run final : public Side {
  public:
-  Run(core::Scenario scenario, std::int64_t steps)
-      : scenario_(std::move(scenario)), loader_(plugin_folders(), catalog()), steps_left_(steps) {}
+  Run(std::unique_ptr<hal::PluginLoader> loader, core::Scenario scenario, std::int64_t steps)
+      : loader_(std::move(loader)), scenario_(std::move(scenario)), steps_left_(steps) {}
 
   bool make(const core::WorldOptions& options) {
     core::Problems problems;
-    world_ = core::World::make(scenario_, loader_, options, problems);
+    world_ = core::World::make(scenario_, *loader_, options, problems);
     print_problems(problems);
     return world_ != nullptr;
   }
@@ -62,8 +63,8 @@ class Run final : public Side {
   }
 
  private:
+  std::unique_ptr<hal::PluginLoader> loader_;
   core::Scenario scenario_;
-  hal::PluginLoader loader_;
   std::unique_ptr<core::World> world_;
   std::int64_t steps_left_;
   bool started_ = false;
@@ -105,7 +106,8 @@ std::unique_ptr<Side> make_side(const CompareOptions& options, const SideOptions
   }
   std::vector<std::string> overrides = options.overrides;
   overrides.insert(overrides.end(), side.overrides.begin(), side.overrides.end());
-  auto scenario = read_or_complain(side.path, overrides);
+  auto loader = std::make_unique<hal::PluginLoader>(plugin_folders(), catalog());
+  auto scenario = read_or_complain(*loader, options.plugins, side.path, overrides);
   if (!scenario) return nullptr;
   for (core::RobotItem& robot : scenario->robots) robot.bridge.reset();
   const std::int64_t steps = steps_of(options.steps, options.seconds, *scenario);
@@ -117,7 +119,7 @@ std::unique_ptr<Side> make_side(const CompareOptions& options, const SideOptions
   world_options.seed = options.seed;
   if (!options.seed && !scenario->seed) world_options.seed = seed;
   world_options.threads = side.threads;
-  auto run = std::make_unique<Run>(std::move(*scenario), steps);
+  auto run = std::make_unique<Run>(std::move(loader), std::move(*scenario), steps);
   if (!run->make(world_options)) return nullptr;
   if (!seed) seed = run->seed();
   run->name = side.path;

@@ -2,9 +2,9 @@
 #include <cstdio>
 #include <fmt/format.h>
 
-#include "app/catalog.hpp"
 #include "app/command/command.hpp"
 #include "app/living_arena.hpp"
+#include "app/plugins.hpp"
 #include "app/signals.hpp"
 
 namespace tandem::app {
@@ -21,7 +21,7 @@ int complain(const std::string& message, int code = kBadInput) {
 std::unique_ptr<LivingArena> make_arena(const EmulateOptions& options, const EmulatorType& emulator,
                                         hal::PluginLoader& loader, bridges::SharedPorts& ports,
                                         const std::atomic<bool>& stop) {
-  const auto scenario = read_or_complain(options.arena, {});
+  const auto scenario = read_or_complain(loader, {}, options.arena, {});
   if (!scenario) return nullptr;
   core::Problems problems;
   auto world = core::World::make(*scenario, loader, {}, problems);
@@ -54,10 +54,12 @@ hal::Result<std::shared_ptr<const void>> read_own(const EmulateOptions& options,
 }  // namespace
 
 int emulate(const EmulateOptions& options) {
-  const auto* const emulator = catalog().find<EmulatorType>(options.robot);
+  hal::PluginLoader loader = make_loader();
+  if (!open_plugins(loader, options.plugins)) return kBadInput;
+  const auto* const emulator = loader.catalog().find<EmulatorType>(options.robot);
   if (emulator == nullptr) {
     fmt::print(stderr, "tandem emulate: there is no emulator of '{}'; there are: {}\n", options.robot,
-               hal::listed(catalog().names(EmulatorType::kCategory)));
+               hal::listed(loader.catalog().names(EmulatorType::kCategory)));
     return kWrongUsage;
   }
   auto own = read_own(options, *emulator);
@@ -70,7 +72,6 @@ int emulate(const EmulateOptions& options) {
   request.options = std::move(own).value();
   request.log = hal::Log([](hal::Severity, std::string_view text) { fmt::print(stderr, "{}\n", text); });
   request.ready = [](const std::string& text) { fmt::print(stderr, "{}; Ctrl-C ends it\n", text); };
-  hal::PluginLoader loader(plugin_folders(), catalog());
   bridges::SharedPorts ports(emulator->ports());
   std::unique_ptr<LivingArena> arena;
   if (!options.arena.empty()) {

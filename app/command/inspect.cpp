@@ -2,8 +2,8 @@
 #include <cstdio>
 #include <fmt/format.h>
 
-#include "app/catalog.hpp"
 #include "app/command/command.hpp"
+#include "app/plugins.hpp"
 #include "app/report.hpp"
 #include "app/signals.hpp"
 #include "bridges/inspector_type.hpp"
@@ -16,9 +16,11 @@ int inspect(const InspectOptions& options) {
     fmt::print(stderr, "error: {}\n", message);
     return code;
   };
+  hal::PluginLoader loader = make_loader();
+  if (!open_plugins(loader, options.plugins)) return kBadInput;
   const bridges::InspectorType* chosen = nullptr;
   std::string known;
-  for (const auto* type : catalog().all<bridges::InspectorType>()) {
+  for (const auto* type : loader.catalog().all<bridges::InspectorType>()) {
     if (chosen == nullptr && type->reads(options.link)) chosen = type;
     known += "\n  " + std::string(type->name) + ": " + std::string(type->summary);
   }

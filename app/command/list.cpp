@@ -6,10 +6,12 @@
 
 #include "app/catalog.hpp"
 #include "app/command/command.hpp"
+#include "app/plugins.hpp"
 #include "app/terminal.hpp"
 #include "bridges/bridge_type.hpp"
 #include "bridges/emulation/emulator_type.hpp"
 #include "core/config/reader.hpp"
+#include "core/device/coupling.hpp"
 #include "core/device/device.hpp"
 #include "core/loop/hook.hpp"
 #include "core/physics/solver.hpp"
@@ -18,8 +20,10 @@ namespace tandem::app {
 namespace {
 
 /// All plug-ins of the plug-in folders, opened; those that do not load are named on standard error.
-std::unique_ptr<hal::PluginLoader> open_all() {
+/// Those of `--plugin` come first; null, when one of them cannot be opened.
+std::unique_ptr<hal::PluginLoader> open_all(const Libraries& plugins) {
   auto loader = std::make_unique<hal::PluginLoader>(plugin_folders(), catalog());
+  if (!open_plugins(*loader, plugins)) return nullptr;
   for (const auto& file : plugin_files()) {
     const hal::Status opened = loader->open(file.string());
     if (!opened.ok()) say("warning: " + opened.error().message);
@@ -38,7 +42,8 @@ void list_plugins(const hal::Catalog& catalog, std::string_view title) {
   fmt::print("{}:\n", title);
   for (const T* type : catalog.all<T>())
     fmt::print("  {:<22} {}{}\n", printable(type->name), printable(type->summary), from(catalog, type));
-  if (catalog.all<T>().empty()) fmt::print("  none in the plug-in folders; TANDEM_PLUGIN_PATH names further ones\n");
+  if (catalog.all<T>().empty())
+    fmt::print("  none in the plug-in folders; TANDEM_PLUGIN_PATH and --plugin name further ones\n");
 }
 
 void list_devices(const hal::Catalog& catalog) {
@@ -70,6 +75,21 @@ void list_elements(const hal::Catalog& catalog) {
   for (const core::ElementManual& m : core::element_manuals(catalog)) fmt::print("  {:<22} {}\n", m.name, m.doc);
 }
 
+/// The plug-ins, each with what it brings: "libx.so  2 controllers, 1 device".
+void list_libraries(const hal::Catalog& catalog) {
+  std::map<std::string, std::map<std::string, int>> brought;
+  for (const hal::Catalog::Entry& e : catalog.entries()) {
+    if (e.origin != hal::Catalog::kInside) ++brought[e.origin][e.category];
+  }
+  fmt::print("plug-ins:\n");
+  for (const auto& [library, counts] : brought) {
+    std::string all;
+    for (const auto& [category, count] : counts)
+      all += fmt::format("{}{} {}{}", all.empty() ? "" : ", ", count, category, count == 1 ? "" : "s");
+    fmt::print("  {}: {}\n", printable(library), printable(all));
+  }
+}
+
 using ListKind = void (*)(const hal::Catalog&);
 
 const std::map<std::string, ListKind>& kinds() {
@@ -77,9 +97,11 @@ const std::map<std::string, ListKind>& kinds() {
       {"controllers", [](const hal::Catalog& c) { list_plugins<hal::ControllerType>(c, "controllers"); }},
       {"hooks", [](const hal::Catalog& c) { list_plugins<core::HookType>(c, "hooks"); }},
       {"bridges", [](const hal::Catalog& c) { list_plugins<bridges::BridgeType>(c, "bridges to real robots"); }},
+      {"couplings", [](const hal::Catalog& c) { list_plugins<core::CouplingType>(c, "couplings"); }},
       {"devices", &list_devices},
       {"emulators", [](const hal::Catalog& c) { list_plugins<bridges::EmulatorType>(c, "emulators"); }},
       {"engines", [](const hal::Catalog& c) { list_names(c, core::EngineType::kCategory, "physics engines"); }},
+      {"plugins", &list_libraries},
       {"robots", [](const hal::Catalog& c) { list_names(c, hal::DataSheet::kCategory, "robots"); }},
       {"elements", &list_elements}};
   return all;
@@ -201,6 +223,12 @@ bool describe_emulator(const hal::Catalog& catalog, const std::string& name) {
   return true;
 }
 
+bool describe_coupling(const hal::Catalog& catalog, const std::string& name) {
+  const auto* const type = catalog.find<core::CouplingType>(name);
+  if (type != nullptr) fmt::print("coupling {}: {}{}\n", name, printable(type->summary), from(catalog, type));
+  return type != nullptr;
+}
+
 bool describe_element(const hal::Catalog& catalog, const std::string& name) {
   bool found = false;
   for (const core::ElementManual& m : core::element_manuals(catalog)) {
@@ -218,7 +246,7 @@ bool describe_element(const hal::Catalog& catalog, const std::string& name) {
 
 }  // namespace
 
-int list(const std::string& kind) {
+int list(const std::string& kind, const Libraries& plugins) {
   const auto found = kinds().find(kind);
   if (!kind.empty() && found == kinds().end()) {
     std::string all;
@@ -226,15 +254,17 @@ int list(const std::string& kind) {
     fmt::print(stderr, "tandem list: there is no kind '{}'; there are: {}\n", kind, all);
     return kWrongUsage;
   }
-  const auto loader = open_all();
+  const auto loader = open_all(plugins);
+  if (loader == nullptr) return kBadInput;
   for (const auto& [name, print] : kinds()) {
     if (kind.empty() || name == kind) print(loader->catalog());
   }
   return kDone;
 }
 
-int describe(const std::string& name) {
-  const auto loader = open_all();
+int describe(const std::string& name, const Libraries& plugins) {
+  const auto loader = open_all(plugins);
+  if (loader == nullptr) return kBadInput;
   const hal::Catalog& catalog = loader->catalog();
   const bool robot = describe_robot(catalog, name);
   const bool engine = describe_physics_engine(catalog, name);
@@ -243,7 +273,8 @@ int describe(const std::string& name) {
   const bool controller = describe_plugin<hal::ControllerType>(catalog, name);
   const bool hook = describe_plugin<core::HookType>(catalog, name);
   const bool emulator = describe_emulator(catalog, name);
-  if (robot || engine || element || device || controller || hook || emulator) return kDone;
+  const bool coupling = describe_coupling(catalog, name);
+  if (robot || engine || coupling || element || device || controller || hook || emulator) return kDone;
   std::vector<std::string> all;
   for (const core::ElementManual& m : core::element_manuals(catalog)) all.emplace_back(m.name);
   for (const core::DeviceType* t : catalog.all<core::DeviceType>()) all.emplace_back(t->device);

@@ -2,27 +2,15 @@
 #include <algorithm>
 #include <fmt/format.h>
 
-#include "app/catalog.hpp"
 #include "app/command/command.hpp"
 #include "app/terminal.hpp"
-#include "core/config/reader.hpp"
 #include "hal/file_type.hpp"
 #include "hal/xml/xml.hpp"
-#include "mixed_reality/settings/bridge_check.hpp"
 
 namespace tandem::app {
 
 void print_problems(const core::Problems& problems) {
   for (const core::Problem& problem : problems) say(core::to_text(problem));
-}
-
-std::optional<core::Scenario> read_or_complain(const std::string& path, const std::vector<std::string>& overrides) {
-  core::Problems problems;
-  auto scenario = core::read_experiment(path, overrides, catalog(), problems);
-  if (scenario) mixed_reality::check_bridges(*scenario, catalog(), problems);
-  print_problems(problems);
-  if (core::has_errors(problems)) return std::nullopt;
-  return scenario;
 }
 
 std::int64_t steps_of(std::optional<std::int64_t> steps, std::optional<double> seconds,
@@ -33,10 +21,10 @@ std::int64_t steps_of(std::optional<std::int64_t> steps, std::optional<double> s
   return length_s > 0.0 ? std::max<std::int64_t>(1, wanted) : 0;  // a duration below a tick is one tick, not endless
 }
 
-std::optional<int> check_other_file(const std::string& path) {
+std::optional<int> check_other_file(const std::string& path, const hal::Catalog& catalog) {
   core::Problems problems;
   const auto root = hal::read_xml_file(path, problems);
-  const auto* const type = root ? catalog().find<hal::FileType>(root->name) : nullptr;
+  const auto* const type = root ? catalog.find<hal::FileType>(root->name) : nullptr;
   if (type == nullptr) return std::nullopt;
   problems.clear();
   const std::string content = type->check(path, problems);

@@ -9,12 +9,12 @@
 #include "app/bridge_status.hpp"
 #include "app/bridged_controller.hpp"
 #include "app/build_info.hpp"
-#include "app/catalog.hpp"
 #include "app/command/command.hpp"
 #include "app/emergency_report.hpp"
 #include "app/guarded_robots.hpp"
 #include "app/hub_faults.hpp"
 #include "app/measure.hpp"
+#include "app/plugins.hpp"
 #include "app/progress.hpp"
 #include "app/report.hpp"
 #include "app/sha256.hpp"
@@ -22,7 +22,6 @@
 #include "app/terminal.hpp"
 #include "app/watchdog.hpp"
 #include "hal/output_file.hpp"
-#include "hal/plugin_loader.hpp"
 #include "mixed_reality/safety/supervised_robot.hpp"
 #include "mixed_reality/settings/bridge_request.hpp"
 #include "mixed_reality/settings/patience.hpp"
@@ -96,9 +95,10 @@ void stop_and_wait(bridges::RobotBridge& bridge, double within_s, mixed_reality:
 }
 
 /// The files that the command reads: the experiment, and those that the bridge asks for.
-std::vector<NamedFile> input_files(const bridges::BridgeRequest& request, const std::string& experiment) {
+std::vector<NamedFile> input_files(const hal::Catalog& catalog, const bridges::BridgeRequest& request,
+                                   const std::string& experiment) {
   std::vector<NamedFile> files = {{"experiment", experiment}};
-  for (const auto& [what, path] : mixed_reality::bridge_inputs(catalog(), request)) files.push_back({what, path});
+  for (const auto& [what, path] : mixed_reality::bridge_inputs(catalog, request)) files.push_back({what, path});
   return files;
 }
 
@@ -143,7 +143,12 @@ std::vector<std::pair<std::string, std::string>> result_table(const core::RobotI
 int robot(const RobotOptions& options) {
   auto hub_faults = HubFaults::make(options.hub_faults);
   if (!hub_faults.ok()) return complain(kBadInput, hub_faults.error().message);
-  const auto scenario = read_or_complain(options.file, {});
+  hal::PluginLoader loader = make_loader();
+  ExperimentReading reading(loader, options.plugins);
+  if (!reading.open(options.file, {})) return kBadInput;
+  const hal::Log log([](hal::Severity, std::string_view text) { say(text); });
+  GuardedRobots guarded(true, loader.catalog(), log);  // before any thread
+  const auto scenario = reading.read();
   if (!scenario) return kBadInput;
   const core::RobotItem* found = only_robot(*scenario, options.link);
   if (found == nullptr) return kBadInput;
@@ -152,7 +157,8 @@ int robot(const RobotOptions& options) {
   if (!options.link.empty()) item.bridge->link = options.link;
   const core::ControllerConfig& config = scenario->controllers[item.controller];
   bridges::BridgeRequest request = mixed_reality::bridge_request(*scenario, item, scenario->seed.value_or(1));
-  if (const hal::Status apart = check_apart({{"report", options.report}}, input_files(request, options.file));
+  if (const hal::Status apart =
+          check_apart({{"report", options.report}}, input_files(loader.catalog(), request, options.file));
       !apart.ok())
     return complain(kBadInput, apart.error().message);
   std::optional<hal::OutputFile> report;
@@ -162,18 +168,15 @@ int robot(const RobotOptions& options) {
     report = std::move(opened).value();
   }
 
-  const hal::Log log([](hal::Severity, std::string_view text) { say(text); });
-  GuardedRobots guarded({item}, log);  // before any thread
   if (!guarded.started().ok()) return complain(kFailedRunning, guarded.started().error().message);
   const std::atomic<bool>& stop = catch_signals();
   std::signal(SIGPIPE, SIG_IGN);  // who reads our output may end before us
   Watchdog watchdog(options.step_timeout_s, stop);
   request.permit = guarded.permit();
   request.unix_clock = &hub_unix_ns;
-  auto made = mixed_reality::make_bridge(catalog(), request, log);
+  auto made = mixed_reality::make_bridge(loader.catalog(), request, log);
   if (!made.ok()) return complain(kBadInput, made.error().message);
   bridges::RobotBridge& bridge = **made;
-  hal::PluginLoader loader(plugin_folders(), catalog());
   const auto type = loader.controller(config.library, config.label);
   if (!type.ok()) return complain(kBadInput, "controller '" + config.id + "': " + type.error().message);
   core::Problems problems;
@@ -200,7 +203,7 @@ int robot(const RobotOptions& options) {
   catch_rearm();
   mixed_reality::SupervisedParams supervision;
   supervision.rearm = mixed_reality::rearm_params(*item.bridge);
-  supervision.battery = mixed_reality::battery_limit(catalog(), item.kind);
+  supervision.battery = mixed_reality::battery_limit(loader.catalog(), item.kind);
   supervision.tick_ns = hal::time_of_tick(1, scenario->ticks_per_second);
   supervision.frozen_after_ns = supervision.tick_ns + kFrozenAfter_ns;
   mixed_reality::SupervisedRobot supervised(item.id, bridge, supervision, log);
@@ -276,6 +279,10 @@ int robot(const RobotOptions& options) {
     if (const auto digest = sha256_of_file(library); digest.ok()) {
       json["controller"] = library;
       json["sha256"] = digest.value();
+    }
+    for (const std::string& plugin : loader.plugins()) {
+      const auto digest = sha256_of_file(plugin);
+      json["plugins"].push_back({{"file", plugin}, {"sha256", digest.ok() ? digest.value() : ""}});
     }
     json["finished"] = failure.empty() && !interrupted;
     json["ended"] = !failure.empty() ? "failed" : interrupted ? "interrupted" : "length";

@@ -3,12 +3,12 @@
 #include <cstdio>
 #include <fmt/format.h>
 
-#include "app/catalog.hpp"
 #include "app/command/command.hpp"
 #include "app/emergency_outputs.hpp"
 #include "app/guarded_robots.hpp"
 #include "app/hub_faults.hpp"
 #include "app/measure.hpp"
+#include "app/plugins.hpp"
 #include "app/progress.hpp"
 #include "app/run_log.hpp"
 #include "app/run_outputs.hpp"
@@ -136,15 +136,13 @@ bool has_real_robots(const core::Scenario& scenario) {
 }
 
 /// Where a world's real robots take part; null when it has none. `code` is not kDone when they cannot.
-std::unique_ptr<mixed_reality::MixedSession> join_real_robots(std::unique_ptr<core::World>& world,
-                                                              GuardedRobots& guarded, HubFaults& hub_faults,
-                                                              mixed_reality::TimeSource& clock,
-                                                              const std::atomic<bool>& stop, const hal::Log& log,
-                                                              int& code) {
+std::unique_ptr<mixed_reality::MixedSession> join_real_robots(
+    const hal::Catalog& catalog, std::unique_ptr<core::World>& world, GuardedRobots& guarded, HubFaults& hub_faults,
+    mixed_reality::TimeSource& clock, const std::atomic<bool>& stop, const hal::Log& log, int& code) {
   if (!has_real_robots(world->scenario())) return nullptr;
   mixed_reality::MixedOptions options;
   options.log = log;
-  options.catalog = &catalog();
+  options.catalog = &catalog;
   options.freezes = [&guarded] { return guarded.freezes(); };
   options.guarded = [&guarded] { return guarded.guarded(); };
   catch_rearm();
@@ -158,7 +156,7 @@ std::unique_ptr<mixed_reality::MixedSession> join_real_robots(std::unique_ptr<co
     bridges::BridgeRequest permitted = request;
     permitted.permit = guarded.permit();
     permitted.unix_clock = &hub_unix_ns;
-    auto bridge = mixed_reality::make_bridge(catalog(), permitted, log);
+    auto bridge = mixed_reality::make_bridge(catalog, permitted, log);
     if (bridge.ok()) guarded.add(**bridge);
     return bridge;
   };
@@ -206,22 +204,24 @@ int run(const RunOptions& options) {
   const double began = wall_seconds();
   auto hub_faults = HubFaults::make(options.hub_faults);
   if (!hub_faults.ok()) return complain(kBadInput, hub_faults.error().message);
-  auto scenario = read_or_complain(options.experiment, options.overrides);
+  hal::PluginLoader loader = make_loader();
+  ExperimentReading reading(loader, options.plugins);
+  if (!reading.open(options.experiment, options.overrides)) return kBadInput;
+  GuardedRobots guarded(reading.has_real_robots(options.without), loader.catalog(),
+                        hal::Log([](hal::Severity, std::string_view text) { say(text); }));  // before any thread
+  auto scenario = reading.read();
   if (!scenario) return kBadInput;
   if (const hal::Status left_out = leave_out(*scenario, options.without); !left_out.ok())
     return complain(kBadInput, left_out.error().message);
   if (!options.hub_faults.empty() && !has_real_robots(*scenario))
     return complain(kBadInput, "--hub-fault needs a real robot: no robot of this experiment has a <bridge>");
-  if (const hal::Status paths = check_output_paths(options, *scenario, catalog()); !paths.ok())
+  if (const hal::Status paths = check_output_paths(options, *scenario, loader.catalog()); !paths.ok())
     return complain(kBadInput, paths.error().message);
 
-  GuardedRobots guarded(scenario->robots,
-                        hal::Log([](hal::Severity, std::string_view text) { say(text); }));  // before any thread
   if (!guarded.started().ok()) return complain(kFailedRunning, guarded.started().error().message);
   const std::atomic<bool>& stop = catch_signals();
   std::signal(SIGPIPE, SIG_IGN);  // who reads our output may end before us
   Watchdog watchdog(options.step_timeout_s, stop);
-  hal::PluginLoader loader(plugin_folders(), catalog());
   auto opened_log = RunLog::open(options.log);
   if (!opened_log.ok()) return complain(kBadInput, opened_log.error().message);
   RunLog& run_log = *opened_log.value();
@@ -240,7 +240,8 @@ int run(const RunOptions& options) {
 
   int code = kDone;
   mixed_reality::MonotonicTime clock;
-  const auto mixed = join_real_robots(made, guarded, hub_faults.value(), clock, stop, world_options.log, code);
+  const auto mixed =
+      join_real_robots(loader.catalog(), made, guarded, hub_faults.value(), clock, stop, world_options.log, code);
   if (code != kDone) return stop.load() ? interrupted_code() : code;
 
   const InputFiles inputs = input_files(*scenario, loader);

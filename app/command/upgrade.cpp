@@ -7,8 +7,8 @@
 #include <fstream>
 #include <iterator>
 
-#include "app/catalog.hpp"
 #include "app/command/command.hpp"
+#include "app/plugins.hpp"
 #include "app/terminal.hpp"
 #include "hal/output_file.hpp"
 #include "hal/xml/xml.hpp"
@@ -18,14 +18,22 @@ namespace tandem::app {
 int upgrade(const UpgradeOptions& options) {
   const std::string& path = options.experiment;
   core::Problems problems;
-  if (!hal::read_xml_file(path, problems)) {  // judges what kind of file it is, too
+  const auto root = hal::read_xml_file(path, problems);  // judges what kind of file it is, too
+  if (!root) {
     print_problems(problems);
     return kBadInput;
+  }
+  hal::PluginLoader loader = make_loader();
+  if (!open_plugins(loader, options.plugins)) return kBadInput;
+  loader.look_beside(path);
+  for (const core::PluginConfig& plugin : core::plugins_of(*root)) {  // one that is not built yet is no obstacle
+    const hal::Status opened = loader.open(plugin.library);
+    if (!opened.ok()) print_problems({{path, plugin.line, "<plugins>: " + opened.error().message, true}});
   }
   std::ifstream in(path, std::ios::binary);
   const std::string text{std::istreambuf_iterator<char>(in), {}};
   if (!in) return complain(kBadInput, path + ": the file cannot be read: " + std::strerror(errno));
-  const auto made = core::upgraded(text, path, catalog());
+  const auto made = core::upgraded(text, path, loader.catalog());
   if (!made.ok()) return complain(kBadInput, made.error().message);
   if (made.value().changes.empty()) {
     fmt::print("{}: up to date\n", path);

@@ -28,7 +28,7 @@ std::vector<ElementManual> manuals_of() {
 
 std::vector<ElementManual> all_manuals() {
   using namespace schema;
-  return manuals_of<Root, Framework, System, Experiment, Profiling, Time, Controllers, Configuration, Sensors,
+  return manuals_of<Root, Plugins, Framework, System, Experiment, Profiling, Time, Controllers, Configuration, Sensors,
                     Actuators, Arena, Floor, Box, Cylinder, Leds, Led, Light, Sound, Robot, FootBot, EyeBot, Body,
                     RobotController, Battery, Bridge, Tracker, DistributeElement, PositionDraw, OrientationDraw, Entity,
                     Engines, Engine, Boundaries, Top, Bottom, Sides, Vertex, Media, schema::Medium, Hook, Record,

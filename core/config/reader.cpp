@@ -101,6 +101,7 @@ Scenario read_parts(Reading& reading, Element& root) {
   reading.once(root, "arena", [&](Element& e) { read_arena(reading, e); });
   for (Element& e : root.children) {
     if (e.name == "loop_functions") read_hook(reading, e);
+    if (e.name == "plugins") reading.out().plugins.push_back({reading.read<schema::Plugins>(e).library, e.line});
   }
   reading.once(root, "record", [&](Element& e) { read_record(reading, e); });
   reading.once(root, "visualization", [&](Element& e) { read_visualization(reading, e); });
@@ -110,20 +111,16 @@ Scenario read_parts(Reading& reading, Element& root) {
   return std::move(reading.out());
 }
 
-/// `found` are the problems of the XML so far.
-std::optional<Scenario> read_root(std::optional<Element> root, const std::vector<std::string>& overrides,
-                                  const hal::Catalog& catalog, Problems found, Problems& problems) {
-  std::optional<Scenario> scenario;
-  if (root) {
-    for (const std::string& assignment : overrides) apply_override(*root, assignment, found);
-    Reading reading(catalog, found);
-    scenario = read_parts(reading, *root);
-    scenario->effective = std::move(*root);
-  }
+ExperimentFile opened(Element root, const std::vector<std::string>& overrides, Problems found) {
+  ExperimentFile file{std::move(root), std::move(found)};
+  for (const std::string& assignment : overrides) apply_override(file.root, assignment, file.problems);
+  return file;
+}
+
+/// Hands what was found on, in the order of the file.
+void report(Problems found, Problems& problems) {
   std::stable_sort(found.begin(), found.end(), [](const Problem& a, const Problem& b) { return a.line < b.line; });
-  if (has_errors(found)) scenario.reset();
   problems.insert(problems.end(), found.begin(), found.end());
-  return scenario;
 }
 
 }  // namespace
@@ -212,11 +209,46 @@ void read_visualization(Reading& reading, Element& visualization) {
   }
 }
 
-std::optional<Scenario> read_experiment(const std::string& path, const std::vector<std::string>& overrides,
-                                        const hal::Catalog& catalog, Problems& problems) {
+std::optional<ExperimentFile> open_experiment(const std::string& path, const std::vector<std::string>& overrides,
+                                              Problems& problems) {
   Problems found;
   auto root = hal::read_xml_file(path, found);
-  return read_root(std::move(root), overrides, catalog, std::move(found), problems);
+  if (root) return opened(std::move(*root), overrides, std::move(found));
+  report(std::move(found), problems);
+  return std::nullopt;
+}
+
+std::vector<PluginConfig> plugins_of(const Element& root) {
+  std::vector<PluginConfig> plugins;
+  for (const Element& e : root.children) {
+    const std::string* const library = e.attribute("library");
+    if (e.name == schema::Plugins::kElement.name && library != nullptr) plugins.push_back({*library, e.line});
+  }
+  return plugins;
+}
+
+bool names_real_robots(const Element& root, const std::vector<std::string>& without) {
+  const std::string* const id = root.attribute("id");
+  const bool left_out = id != nullptr && std::find(without.begin(), without.end(), *id) != without.end();
+  return std::any_of(root.children.begin(), root.children.end(), [&](const Element& e) {
+    return e.name == schema::Bridge::kElement.name ? !left_out : names_real_robots(e, without);
+  });
+}
+
+std::optional<Scenario> read_experiment(ExperimentFile file, const hal::Catalog& catalog, Problems& problems) {
+  Problems found = std::move(file.problems);
+  Reading reading(catalog, found);
+  std::optional<Scenario> scenario = read_parts(reading, file.root);
+  scenario->effective = std::move(file.root);
+  if (has_errors(found)) scenario.reset();
+  report(std::move(found), problems);
+  return scenario;
+}
+
+std::optional<Scenario> read_experiment(const std::string& path, const std::vector<std::string>& overrides,
+                                        const hal::Catalog& catalog, Problems& problems) {
+  auto file = open_experiment(path, overrides, problems);
+  return file ? read_experiment(std::move(*file), catalog, problems) : std::nullopt;
 }
 
 std::optional<Scenario> read_experiment_text(const std::string& text, const std::string& name,
@@ -224,7 +256,9 @@ std::optional<Scenario> read_experiment_text(const std::string& text, const std:
                                              Problems& problems) {
   Problems found;
   auto root = hal::read_xml_text(text, name, found);
-  return read_root(std::move(root), overrides, catalog, std::move(found), problems);
+  if (root) return read_experiment(opened(std::move(*root), overrides, std::move(found)), catalog, problems);
+  report(std::move(found), problems);
+  return std::nullopt;
 }
 
 std::string effective_settings(const Scenario& scenario) {

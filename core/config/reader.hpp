@@ -11,9 +11,26 @@
 
 namespace tandem::core {
 
-/// Reads and checks `path`, whose robots, engines and devices are to be in `catalog`, with `overrides` ("path=value")
-/// applied. All problems are collected, each with its line and in the order of the file; nothing is returned when there
-/// is an error among them. Paths of files in it are relative to the working directory, or else to its own folder.
+/// An experiment file whose names nobody has judged yet: the plug-ins that it names come first.
+struct ExperimentFile {
+  Element root;
+  Problems problems;  ///< so far
+};
+
+/// Reads `path`, with `overrides` ("path=value") applied. Nothing, and `problems`, when it is no XML.
+std::optional<ExperimentFile> open_experiment(const std::string& path, const std::vector<std::string>& overrides,
+                                              Problems& problems);
+/// The libraries of its <plugins>, in their order.
+std::vector<PluginConfig> plugins_of(const Element& root);
+/// Whether a robot of the file has a <bridge>, leaving out those of the ids `without`. Other problems are for later.
+bool names_real_robots(const Element& root, const std::vector<std::string>& without);
+
+/// Reads and checks a file, whose robots, engines and devices are to be in `catalog`. All problems are collected, each
+/// with its line and in the order of the file; nothing is returned when there is an error among them. Paths of files in
+/// it are relative to the working directory, or else to its own folder.
+std::optional<Scenario> read_experiment(ExperimentFile file, const hal::Catalog& catalog, Problems& problems);
+
+/// The two steps in one, for files without plug-ins.
 std::optional<Scenario> read_experiment(const std::string& path, const std::vector<std::string>& overrides,
                                         const hal::Catalog& catalog, Problems& problems);
 

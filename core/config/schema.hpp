@@ -38,12 +38,21 @@ struct ElementInfo {
 struct Root {
   static constexpr ElementInfo kElement{
       "tandem", "An experiment. The name <argos-configuration> means the same.", "",
-      "framework controllers arena physics_engines media visualization loop_functions record"};
+      "plugins framework controllers arena physics_engines media visualization loop_functions record"};
   std::int64_t version = 0;
   void describe(ParamVisitor& v) {
     v.integer("version", version, {0, 999'999'999},
               "Of the vocabulary that the file is written in; `tandem upgrade` brings it to this program's. Left out "
               "or 0: of before there were versions, or one of ARGoS'.");
+  }
+};
+
+struct Plugins {
+  static constexpr ElementInfo kElement{
+      "plugins", "A library with parts for this experiment: devices, robots, engines, bridges, …", "library"};
+  std::string library;
+  void describe(ParamVisitor& v) {
+    v.text("library", library, "Shared object; folder, prefix and extension may be left out.");
   }
 };
 

@@ -208,6 +208,12 @@ struct MediumConfig {
 hal::Result<std::uint8_t> medium_number(const std::vector<MediumConfig>& media, std::string_view kind,
                                         const std::string& id);
 
+/// A library that adds to the catalog of the run.
+struct PluginConfig {
+  std::string library;
+  int line = 0;
+};
+
 struct HookConfig {
   std::string library;
   std::string label;
@@ -245,6 +251,7 @@ struct Scenario {
   std::vector<ObjectItem> objects;
   std::vector<LightItem> lights;
   std::vector<SoundItem> sounds;
+  std::vector<PluginConfig> plugins;
   std::vector<HookConfig> hooks;
   std::optional<TrajectoryConfig> trajectory;
   Element camera;     ///< placements of ARGoS' view, kept for ours

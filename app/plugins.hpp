@@ -1,0 +1,52 @@
+// The plug-ins of one call of the program, opened in the order that docs/plugins.md states.
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/config/reader.hpp"
+#include "hal/plugin_loader.hpp"
+
+namespace tandem::app {
+
+/// A loader with the parts that come with this program.
+hal::PluginLoader make_loader();
+
+/// Opens the libraries of `--plugin`, for commands that read no experiment. Complains where one cannot be.
+bool open_plugins(hal::PluginLoader& loader, const std::vector<std::string>& libraries);
+
+/// An experiment file on its way to a scenario, with its plug-ins and those of `--plugin`. What goes wrong is printed.
+class ExperimentReading {
+ public:
+  /// `loader` must outlive this, and all that is made with its catalog.
+  ExperimentReading(hal::PluginLoader& loader, const std::vector<std::string>& plugins);
+
+  /// Reads the file, judges all plug-ins, and opens those with what stops real robots: what a guardian needs. Starts no
+  /// thread. False: complained.
+  bool open(const std::string& path, const std::vector<std::string>& overrides);
+  /// Whether a robot of the file has a <bridge>, leaving out those of the ids `without`.
+  bool has_real_robots(const std::vector<std::string>& without) const;
+  /// Opens the other plug-ins, and judges the file by the catalog that is then complete.
+  std::optional<core::Scenario> read();
+
+ private:
+  struct Library {
+    std::string name;
+    int line = 0;  ///< of the file; 0: --plugin
+    bool stops_robots = false;
+  };
+  bool judge();
+  bool open_those(bool that_stop_robots);
+  void complain_about(const Library& library, const std::string& message) const;
+
+  hal::PluginLoader& loader_;
+  std::vector<Library> libraries_;
+  std::string path_;
+  std::optional<core::ExperimentFile> file_;
+};
+
+/// All of it, for commands without real robots.
+std::optional<core::Scenario> read_or_complain(hal::PluginLoader& loader, const std::vector<std::string>& plugins,
+                                               const std::string& path, const std::vector<std::string>& overrides);
+
+}  // namespace tandem::app
