@@ -4,6 +4,7 @@
 #include <string_view>
 
 #include "hal/params.hpp"
+#include "hal/surface.hpp"
 
 namespace tandem::core {
 
@@ -11,6 +12,7 @@ class Medium;  // core/medium/medium.hpp
 
 struct MediumType {
   static constexpr std::string_view kCategory = "medium";
+  using Crosses = hal::Layouts<hal::ParamVisitor>;
   std::string_view name;  ///< the element's in experiment files
   std::string_view summary;
   /// Has the visitor fill or show what such an element says beside its id. What sensors have options of the same name

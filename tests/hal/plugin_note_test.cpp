@@ -4,14 +4,13 @@
 #include <array>
 #include <cstring>
 #include <elf.h>
-#include <fstream>
 #include <gmock/gmock.h>
-#include <iterator>
 
 #include "hal/catalog.hpp"
 #include "hal/controller.hpp"
 #include "hal/plugin.hpp"
 #include "tests/checkout.hpp"
+#include "tests/hal/plugin_file.hpp"
 
 namespace tandem::hal {
 namespace {
@@ -20,31 +19,12 @@ using testing::AllOf;
 using testing::HasSubstr;
 
 std::vector<std::byte> plugin() {
-  std::ifstream in(std::string(test::kBuildDir) + "/tests/hal_plugins/libtest_hal_pair.so", std::ios::binary);
-  const std::string text{std::istreambuf_iterator<char>(in), {}};
-  std::vector<std::byte> bytes(text.size());
-  std::memcpy(bytes.data(), text.data(), text.size());
-  return bytes;
+  return test::bytes_of(std::string(test::kBuildDir) + "/tests/hal_plugins/libtest_hal_pair.so");
 }
 
 std::string error_of(const std::vector<std::byte>& file) {
   const auto note = parse_plugin_note(file);
   return note.ok() ? "" : note.error().message;
-}
-
-/// Where our first note of this type begins.
-std::size_t place_of(const std::vector<std::byte>& file, std::uint32_t type) {
-  for (std::size_t at = 8; at + 12 < file.size(); at += 4) {
-    std::uint32_t word = 0;
-    std::memcpy(&word, file.data() + at - 4, 4);
-    if (word == type && std::memcmp(file.data() + at, "Tandem", 7) == 0) return at - 12;
-  }
-  ADD_FAILURE() << "there is no such note";
-  return 0;
-}
-
-void put(std::vector<std::byte>& file, std::size_t at, std::uint32_t word) {
-  std::memcpy(file.data() + at, &word, sizeof word);
 }
 
 TEST(PluginNote, TellsWhatAPluginWasBuiltAgainst) {
@@ -135,10 +115,10 @@ TEST(PluginNote, AFileThatWasCutOffIsNotWhole) {
 
 TEST(PluginNote, ANoteThatIsNoneIsDamaged) {
   std::vector<std::byte> file = plugin();
-  put(file, place_of(file, detail::kSurfaceNote) + 8, 77);  // another type
+  test::put(file, test::notes_of(file, detail::kSurfaceNote).front() + 8, 77);  // another type
   EXPECT_THAT(error_of(file), HasSubstr("damaged note"));
   file = plugin();
-  const std::size_t build = place_of(file, detail::kBuildNote);
+  const std::size_t build = test::notes_of(file, detail::kBuildNote).front();
   std::memcpy(file.data() + build + 12, "Random", 6);
   EXPECT_THAT(error_of(file), HasSubstr("is not a Tandem plug-in"));
 }
