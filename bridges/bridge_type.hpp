@@ -55,6 +55,7 @@ struct BatteryLimit {
 
 struct BridgeType {
   static constexpr std::string_view kCategory = "bridge";
+  static constexpr std::uint32_t kNumber = 2;
   using Crosses = hal::Layouts<RobotBridge, BridgeRequest, MadeBridge, InputFile, BatteryLimit, SendPermit,
                                StopMessages, LinkReport, PortView, hal::Log>;
   std::string_view name;     ///< the kind of robot, as the element in experiment files

@@ -40,6 +40,7 @@ struct StepFault {
 /// A class of controllers as the worlds see it: a table of functions, one call a row and not a robot.
 struct ControllerType {
   static constexpr std::string_view kCategory = "controller";
+  static constexpr std::uint32_t kNumber = 2;
   using Crosses = Layouts<Controller, Robot, StepFault, ParamVisitor, ParamList, PublishedField, RobotLog, Random,
                           PortType, RowType, Field>;
   std::string_view name;  ///< as written in experiment files

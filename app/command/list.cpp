@@ -85,7 +85,8 @@ void list_libraries(const hal::Catalog& catalog) {
   for (const auto& [library, counts] : brought) {
     std::string all;
     for (const auto& [category, count] : counts)
-      all += fmt::format("{}{} {}{}", all.empty() ? "" : ", ", count, category, count == 1 ? "" : "s");
+      all += fmt::format("{}{} {}{}", all.empty() ? "" : ", ", count, category,
+                         count == 1 || category.ends_with('s') ? "" : "s");
     fmt::print("  {}: {}\n", printable(library), printable(all));
   }
 }

@@ -25,6 +25,7 @@ class Coupling {
 /// ask for find nothing to do.
 struct CouplingType {
   static constexpr std::string_view kCategory = "coupling";
+  static constexpr std::uint32_t kNumber = 2;
   using Crosses = hal::Layouts<StoreLayouts, Coupling, DeviceContext>;
   std::string_view name;
   std::string_view summary;

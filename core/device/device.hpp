@@ -95,6 +95,7 @@ struct Recipe {
 /// One implementation of one device class.
 struct DeviceType {
   static constexpr std::string_view kCategory = "device";
+  static constexpr std::uint32_t kNumber = 2;
   using Crosses = hal::Layouts<StoreLayouts, DeviceContext, BlockColumns, DeviceSetup, Recipe<Sensor>, Recipe<Actuator>,
                                Sensor, Actuator, Element, Problem, hal::ParamVisitor>;
   std::string_view device;  ///< the port's name

@@ -81,6 +81,7 @@ class Hook {
 /// A class of hooks: what a plug-in registers.
 struct HookType {
   static constexpr std::string_view kCategory = "hook";
+  static constexpr std::uint32_t kNumber = 2;
   using Crosses =
       hal::Layouts<Hook, HookContext, Space, Checkpoints, Sketch, Measures, Element, Problem, hal::ParamVisitor>;
   std::string_view name;

@@ -81,6 +81,7 @@ struct EngineOrder {
 /// A kind of physics engine.
 struct EngineType : KnownEngine {
   static constexpr std::string_view kCategory = "engine";
+  static constexpr std::uint32_t kNumber = 2;
   using Crosses = hal::Layouts<StoreLayouts, Engine, PhysicsContext, Trouble, EngineOrder, EngineOrder::Part, Element,
                                Problem, hal::ParamVisitor>;
   std::string_view summary;  ///< for the manual

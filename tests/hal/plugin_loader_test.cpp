@@ -110,8 +110,25 @@ TEST_F(Loader, RefusesASharedObjectThatIsNoPlugin) {
 
 TEST_F(Loader, RefusesAPluginOfAnotherReleaseBeforeAnyOfItRuns) {
   const std::string error = error_of("test_hal_stale");  // running it would abort
-  EXPECT_THAT(error, AllOf(HasSubstr("it uses controller 0 (layout "), HasSubstr("here is controller 1 (layout ")));
+  EXPECT_THAT(error, AllOf(HasSubstr("it uses controller 0 (layout "),
+                           HasSubstr("here is controller " + std::to_string(SurfaceOf<ControllerType>::kNumber))));
   EXPECT_THAT(error, HasSubstr("cmake --build " + std::string(test::kBuildDir)));
+}
+
+/// Binaries of single.cpp as former states of the program built them, on x86-64 and stripped: kept/.
+TEST_F(Loader, RefusesPluginsThatWereBuiltBefore) {
+  const std::string kept = std::string(test::kSourceDir) + "/tests/hal/plugins/kept/";
+#ifdef __x86_64__
+  EXPECT_THAT(error_of(kept + "libsingle_before_notes_x86-64.so"),
+              AllOf(HasSubstr("one of before 0.1.0"), HasSubstr("no note")));
+  EXPECT_THAT(
+      error_of(kept + "libsingle_0.1.0_x86-64.so"),
+      AllOf(HasSubstr("was built against Tandem 0.1.0 by GCC 12.2.0"), HasSubstr("it uses controller 1 (layout"),
+            HasSubstr("here is controller " + std::to_string(SurfaceOf<ControllerType>::kNumber))));
+#else
+  EXPECT_THAT(error_of(kept + "libsingle_0.1.0_x86-64.so"),
+              HasSubstr("is for another processor (x86-64 with 64 bits)"));
+#endif
 }
 
 TEST_F(Loader, RefusesAPluginWhosePartsWereBuiltAgainstDifferentHeaders) {
