@@ -5,7 +5,7 @@
 #include "bridges/footbot/register.hpp"
 #include "hal/check.hpp"
 #include "hal/device/ports.hpp"
-#include "hal/spec/robots.hpp"
+#include "hal/robot/robots.hpp"
 
 namespace tandem::app {
 

@@ -17,7 +17,7 @@
 #include "core/physics/particle3d/particle3d.hpp"
 #include "hal/check.hpp"
 #include "hal/device/ports.hpp"
-#include "hal/spec/robots.hpp"
+#include "hal/robot/robots.hpp"
 
 namespace tandem::app {
 

@@ -7,7 +7,7 @@ namespace tandem::app {
 namespace {
 
 bool fits(const core::Space& space, core::RobotId robot, const bridges::EmulatorType& emulator) {
-  if (space.data_sheet(robot).kind != emulator.kind) return false;
+  if (space.kind(robot).name != emulator.kind) return false;
   const auto needed = emulator.needs();
   return std::ranges::all_of(needed, [&](const hal::PortType* type) { return space.port(robot, *type) != nullptr; });
 }

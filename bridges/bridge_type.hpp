@@ -25,11 +25,12 @@ namespace tandem::bridges {
 
 /// One `<bridge>`, and what the run adds to it.
 struct BridgeRequest {
-  std::string kind;                          ///< of robot
-  std::string robot;                         ///< its id
-  std::string link;                          ///< "serial:/dev/ttyUSB0@115200"
-  std::string file = {};                     ///< the experiment; files that it names may lie beside it
-  std::shared_ptr<const void> options = {};  ///< its own attributes, as read; null: all left out
+  std::string kind;                            ///< of robot
+  const hal::RobotKind* robot_kind = nullptr;  ///< what is known of it; null: what the bridge knows itself
+  std::string robot;                           ///< its id
+  std::string link;                            ///< "serial:/dev/ttyUSB0@115200"
+  std::string file = {};                       ///< the experiment; files that it names may lie beside it
+  std::shared_ptr<const void> options = {};    ///< its own attributes, as read; null: all left out
   hal::TimeNs tick_ns = 100 * hal::kNsPerMs;
   hal::TimeNs lost_after_ns = 500 * hal::kNsPerMs;  ///< silence, or lack of commands, after which it is stopped
   std::uint64_t seed = 1;
@@ -45,18 +46,10 @@ using MadeBridge = hal::Result<std::unique_ptr<RobotBridge>>;
 /// A file that a bridge reads: what it is, and its path.
 using InputFile = std::pair<std::string, std::string>;
 
-/// A battery is low at or below this for so long: a motor that starts draws the voltage down for a moment, and that is
-/// not meant. Each kind of robot has its own, from its data sheet.
-struct BatteryLimit {
-  double charge = 0.05;   ///< of the full one
-  double supply_V = 0.0;  ///< instead of the charge, where the robot measures it; 0: the charge counts
-  double for_s = 2.0;
-};
-
 struct BridgeType {
   static constexpr std::string_view kCategory = "bridge";
   static constexpr std::uint32_t kNumber = 2;
-  using Crosses = hal::Layouts<RobotBridge, BridgeRequest, MadeBridge, InputFile, BatteryLimit, SendPermit,
+  using Crosses = hal::Layouts<RobotBridge, BridgeRequest, MadeBridge, InputFile, hal::RobotKind, SendPermit,
                                StopMessages, LinkReport, PortView, hal::Log>;
   std::string_view name;     ///< the kind of robot, as the element in experiment files
   std::string_view summary;  ///< over which links, for people
@@ -69,7 +62,6 @@ struct BridgeType {
   std::string (*reached_by)(const BridgeRequest& request) = nullptr;
   /// The files that `make` reads; null: none.
   std::vector<InputFile> (*inputs)(const BridgeRequest& request) = nullptr;
-  BatteryLimit battery = {};  ///< when a robot of this kind is to be stopped for its battery
 };
 
 /// The options of a request, or their defaults.
@@ -83,6 +75,7 @@ template <class Settings>
 void apply(const BridgeRequest& request, Settings& settings) {
   auto& driver = settings.driver;
   driver.robot.id = request.robot;
+  driver.robot.kind = request.robot_kind;
   driver.robot.seed = request.seed;
   driver.robot.tick_ns = request.tick_ns;
   driver.robot.sensors = request.sensors;

@@ -13,9 +13,13 @@ constexpr hal::TimeNs kLeastFresh = 150 * hal::kNsPerMs;
 
 }  // namespace
 
-BridgedRobot::BridgedRobot(std::string_view noun, const hal::DataSheet& sheet, RobotSettings settings,
+BridgedRobot::BridgedRobot(std::string_view noun, const hal::RobotKind& kind, RobotSettings settings,
                            std::span<const hal::PortType* const> types)
-    : noun_(noun), sheet_(sheet), settings_(std::move(settings)), bank_(types), state_(types.size()) {
+    : noun_(noun),
+      kind_(settings.kind != nullptr ? *settings.kind : kind),
+      settings_(std::move(settings)),
+      bank_(types),
+      state_(types.size()) {
   settings_.tick_ns = std::max<hal::TimeNs>(settings_.tick_ns, 1);
   if (settings_.fresh_ns <= 0) settings_.fresh_ns = std::max(2 * settings_.tick_ns, kLeastFresh);
   std::size_t bytes = 0;

@@ -16,6 +16,7 @@ namespace tandem::bridges {
 
 struct RobotSettings {
   std::string id = "robot";
+  const hal::RobotKind* kind = nullptr;  ///< what is known of it, for as long as it lives; null: what the bridge knows
   std::uint64_t seed = 0;
   hal::TimeNs tick_ns = 100 * hal::kNsPerMs;
   hal::TimeNs origin_ns = 0;  ///< start of the run on the link's clock; readings are stamped from there
@@ -30,14 +31,14 @@ struct RobotSettings {
 /// asked for and told. Not thread-safe: one thread constructs, latches, steps and commits.
 class BridgedRobot : public hal::Robot {
  public:
-  /// `noun`: what such a robot is called in messages, "foot-bot".
-  BridgedRobot(std::string_view noun, const hal::DataSheet& sheet, RobotSettings settings,
+  /// `noun`: what such a robot is called in messages, "foot-bot". `kind`: unless the settings have one.
+  BridgedRobot(std::string_view noun, const hal::RobotKind& kind, RobotSettings settings,
                std::span<const hal::PortType* const> types);
   BridgedRobot(const BridgedRobot&) = delete;
   BridgedRobot& operator=(const BridgedRobot&) = delete;
 
   std::string_view id() const noexcept override { return settings_.id; }
-  const hal::DataSheet& data_sheet() const noexcept override { return sheet_; }
+  const hal::RobotKind& kind() const noexcept override { return kind_; }
   std::uint64_t run_seed() const noexcept override { return settings_.seed; }
 
   /// Takes a port by its description, for those who fuse, record or inspect. The memory lives as long as the robot.
@@ -69,12 +70,12 @@ class BridgedRobot : public hal::Robot {
   void stamp(hal::Reading& reading, hal::TimeNs taken, hal::TimeNs period_ns, hal::TimeNs now) const noexcept;
   /// Fills the clock.
   void tell_time(hal::Tick tick) noexcept;
-  /// Makes every command safe against the robot's data sheet; calls `count` for each that was changed.
+  /// Makes every command safe against the robot's kind; calls `count` for each that was changed.
   template <class Count>
   void limit_commands(Count&& count) noexcept {
     for (const PortBank::Row& row : bank_.rows()) {
       hal::Limited what;
-      if (row.type->limit != nullptr && row.type->limit(row.data(), 0, 1, sheet_, what) == 0) count(what);
+      if (row.type->limit != nullptr && row.type->limit(row.data(), 0, 1, kind_, what) == 0) count(what);
     }
   }
   /// Keeps every command as it is now; `restore_commands` brings it back: what a controller wrote stays, it may write
@@ -100,7 +101,7 @@ class BridgedRobot : public hal::Robot {
   void* take(std::size_t row);
 
   std::string noun_;
-  const hal::DataSheet& sheet_;
+  const hal::RobotKind& kind_;
   RobotSettings settings_;
   PortBank bank_;
   std::vector<State> state_;  // parallel to the bank's rows

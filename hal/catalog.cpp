@@ -32,6 +32,7 @@ class Collector final : public Registrar {
     const std::string what = "registers the " + std::string(item.category) + " '" + std::string(item.name) + "'";
     if (item.name.empty() || item.category.empty()) return problem(what + " without a name");
     if (item.entry == nullptr) return problem(what + " without a type");
+    if (!item.flaw.empty()) return problem(what + ", which " + std::string(item.flaw));
     Catalog::Entry entry{std::string(item.category), std::string(item.name), item.layout, item.entry, origin_};
     for (const Surface& surface : surfaces.surfaces()) {
       if (surface.name != item.category) continue;

@@ -28,7 +28,8 @@ struct CatalogItem {
   std::string_view name;      ///< as files and people write it
   std::uint64_t layout = 0;   ///< of the entry's type: `entry_layout<T>()`
   const void* entry = nullptr;
-  std::uint32_t size = 0;  ///< of the entry, in bytes: less than here where its type was appended to since
+  std::uint32_t size = 0;      ///< of the entry, in bytes: less than here where its type was appended to since
+  std::string_view flaw = {};  ///< what makes it unusable, as in "has no body; …"; empty: nothing
 };
 
 /// Differs when a type of entries, or what crosses with them, was compiled to another form (hal/surface.hpp).
@@ -65,7 +66,9 @@ class Registrar {
     detail::note_surface<T>();
     know(SurfaceOf<T>::value());
     const std::string name = hal::catalog_name(entry);
-    add(CatalogItem{T::kCategory, name, entry_layout<T>(), &entry, sizeof(T)});
+    std::string flaw;
+    if constexpr (requires { entry.flaw(); }) flaw = entry.flaw();
+    add(CatalogItem{T::kCategory, name, entry_layout<T>(), &entry, sizeof(T), flaw});
   }
   /// A class of controllers, as `controller_type` makes its table.
   template <class T>
@@ -88,10 +91,10 @@ class Catalog {
     std::shared_ptr<const void> widened = {};  ///< holds `entry`, where the one that was added is shorter
   };
 
-  /// Adds all that `fill` registers, or nothing. Errors, all in one message: an entry without a name or without a type;
-  /// two of one category and name, with both origins; one whose type has another layout than here. Controllers and
-  /// hooks are named together with their library: theirs need differ within one origin alone. What `fill` throws passes
-  /// through.
+  /// Adds all that `fill` registers, or nothing. Errors, all in one message: an entry without a name or without a type,
+  /// or with a flaw (`std::string flaw() const` of its type); two of one category and name, with both origins; one
+  /// whose type has another layout than here. Controllers and hooks are named together with their library: theirs need
+  /// differ within one origin alone. What `fill` throws passes through.
   Status add_from(const std::string& origin, const std::function<void(Registrar&)>& fill);
 
   /// The entry of that name, or null.

@@ -375,4 +375,54 @@ void ManualWriter::vector(std::string_view name, std::array<double, 3>& v, const
        "three numbers" + (bare.symbol.empty() ? std::string() : " in " + std::string(bare.symbol)), doc);
 }
 
+void FactWriter::fact(std::string_view name, const std::string& value, std::string_view doc) {
+  if (in_line_) {
+    text_ += " " + std::string(name) + " " + value;
+    return;
+  }
+  const std::string what = indent_ + std::string(name) + ": " + value;
+  constexpr std::size_t kColumn = 32;
+  const std::size_t gap = name == "source" || what.size() + 2 > kColumn ? 2 : kColumn - what.size();
+  text_ += what + (name == "source" ? "" : std::string(gap, ' ') + std::string(doc)) + "\n";
+}
+
+void FactWriter::number(std::string_view name, double& value_si, const Unit& bare, Range, std::string_view doc) {
+  fact(name, format_quantity(std::fabs(value_si) < 1e-15 ? 0.0 : value_si, bare), doc);
+}
+void FactWriter::integer(std::string_view name, std::int64_t& value, Range, std::string_view doc) {
+  fact(name, std::to_string(value), doc);
+}
+void FactWriter::flag(std::string_view name, bool& value, std::string_view doc) {
+  fact(name, value ? "yes" : "no", doc);
+}
+void FactWriter::text(std::string_view name, std::string& value, std::string_view doc) {
+  fact(name, value, doc);
+}
+void FactWriter::choice(std::string_view name, std::string& value, std::span<const std::string_view>,
+                        std::string_view doc) {
+  fact(name, value, doc);
+}
+void FactWriter::vector(std::string_view name, std::array<double, 3>& v, const Unit& bare, std::string_view doc) {
+  fact(name, format_quantity(v[0], bare) + ", " + format_quantity(v[1], bare) + ", " + format_quantity(v[2], bare),
+       doc);
+}
+
+void FactWriter::visit_group(std::string_view name, void* value, Describe describe, std::string_view doc) {
+  text_ += indent_ + std::string(name) + ": " + std::string(doc) + "\n";
+  indent_ += "  ";
+  describe(value, *this);
+  indent_.resize(indent_.size() - 2);
+}
+
+void FactWriter::visit_list(std::string_view name, ParamList& list, std::string_view doc) {
+  if (list.size() > 0) text_ += indent_ + std::string(doc) + "\n";
+  in_line_ = true;
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    text_ += indent_ + "  " + std::string(name) + " " + std::to_string(i) + ":";
+    list.describe(i, *this);
+    text_ += "\n";
+  }
+  in_line_ = false;
+}
+
 }  // namespace tandem::hal

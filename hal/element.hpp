@@ -156,4 +156,29 @@ class ManualWriter final : public ParamVisitor {
   std::string indent_ = "  ";
 };
 
+/// Lists described values for people, one a line: name, value, what it means. Structs of a list take one line each.
+class FactWriter final : public ParamVisitor {
+ public:
+  void number(std::string_view name, double& value_si, const Unit& bare, Range range_si, std::string_view doc) override;
+  void integer(std::string_view name, std::int64_t& value, Range range, std::string_view doc) override;
+  void flag(std::string_view name, bool& value, std::string_view doc) override;
+  void text(std::string_view name, std::string& value, std::string_view doc) override;
+  void choice(std::string_view name, std::string& value, std::span<const std::string_view> options,
+              std::string_view doc) override;
+  void vector(std::string_view name, std::array<double, 3>& value_si, const Unit& bare, std::string_view doc) override;
+
+  const std::string& text() const noexcept { return text_; }
+
+ protected:
+  void visit_group(std::string_view name, void* value, Describe describe, std::string_view doc) override;
+  void visit_list(std::string_view name, ParamList& list, std::string_view doc) override;
+
+ private:
+  void fact(std::string_view name, const std::string& value, std::string_view doc);
+
+  std::string text_;
+  std::string indent_ = "  ";
+  bool in_line_ = false;
+};
+
 }  // namespace tandem::hal

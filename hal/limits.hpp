@@ -1,7 +1,8 @@
 // Limits of commands. Every command, also one that makes no sense, is made safe before a robot gets it; those that move
 // a real robot are also held back while it gets under way again, and kept inside the arena.
 //
-//   Limited limit(const DataSheet&)                       what the robot's parts allow; every actuator has it
+//   using LimitedBy = TurretPart;                         a part of the robot, its locomotion, or RobotKind
+//   Limited limit(const LimitedBy&)                       what that allows; every actuator has it
 //   void slow_down(double most_m_s, const Pose* at)       actuators that move the robot have these three
 //   bool keep_inside(const Fence&, const Pose& at, double look_ahead_s)
 //   bool keep_out(const Pose& at, double out_x, double out_y)
@@ -12,7 +13,6 @@
 #include <limits>
 
 #include "hal/pose.hpp"
-#include "hal/spec/data_sheet.hpp"
 
 namespace tandem::hal {
 

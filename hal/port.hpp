@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "hal/limits.hpp"
+#include "hal/robot_kind.hpp"
 #include "hal/surface.hpp"
 #include "hal/time.hpp"
 #include "hal/unit.hpp"
@@ -105,13 +106,13 @@ std::string port_entry(std::string_view name, Role role);
 struct PortType : RowType {
   static constexpr std::string_view kCategory = "port";
   static constexpr std::uint32_t kNumber = 2;
-  using Crosses = Layouts<RowType, Field, Unit, Reading, Command, Limited, Fence, Pose>;
+  using Crosses = Layouts<RowType, Field, Unit, Reading, Command, Limited, Fence, Pose, RobotKind>;
   Role role = Role::Sensor;
   void (*merge)(void* real, const void* virtual_) = nullptr;  ///< for Fusion::Union and ByAngle; null where none
 
   /// Makes commands safe, in place, from number `first` on: stops after the first of them that had to be changed, tells
   /// in `what` how, and returns its number; `end` when none had. Null where any value is safe, and for sensors.
-  std::size_t (*limit)(void* commands, std::size_t first, std::size_t end, const DataSheet& sheet,
+  std::size_t (*limit)(void* commands, std::size_t first, std::size_t end, const RobotKind& kind,
                        Limited& what) = nullptr;
   /// The three that follow are set for commands that move the robot, and are asked for real robots alone.
   /// Slows the command so that the robot moves with `most_m_s` at most; the way and the direction stay. `at`: where it
@@ -125,6 +126,18 @@ struct PortType : RowType {
 
   std::string catalog_name() const { return port_entry(name, role); }
 };
+
+/// What limits the commands of robots of a kind. A kind without such a part: one that allows nothing.
+template <class Part>
+const Part& limiting(const RobotKind& kind) noexcept {
+  if constexpr (std::is_same_v<Part, RobotKind>) {
+    return kind;
+  } else {
+    static const Part none{};
+    const Part* const part = kind.part<Part>();
+    return part != nullptr ? *part : none;
+  }
+}
 
 namespace detail {
 template <class T>
@@ -153,11 +166,12 @@ constexpr Scalar scalar_of() {
 std::uint64_t layout_fingerprint(const RowType& type) noexcept;
 
 template <class T>
-std::size_t limit_commands(void* commands, std::size_t first, std::size_t end, const DataSheet& sheet,
+std::size_t limit_commands(void* commands, std::size_t first, std::size_t end, const RobotKind& kind,
                            Limited& what) noexcept {
   T* const all = static_cast<T*>(commands);
+  const auto& by = limiting<typename T::LimitedBy>(kind);
   for (std::size_t i = first; i < end; ++i) {
-    const Limited limited = all[i].limit(sheet);
+    const Limited limited = all[i].limit(by);
     if (limited.result == LimitResult::Passed) continue;
     what = limited;
     return i;
@@ -175,14 +189,15 @@ concept MovesRobot = requires(T t, const Fence& fence, const Pose& at) {
 /// What keeps commands of class `T` safe.
 template <class T>
 void fill_limits(PortType& t) {
-  constexpr bool limited = requires(T c, const DataSheet& sheet) {
-    c.limit(sheet);
+  constexpr bool limited = requires(T c, const typename T::LimitedBy& by) {
+    c.limit(by);
   };
   constexpr bool any_is_safe = requires {
     T::kAnyValueIsSafe;
   };
   static_assert(limited != any_is_safe,
-                "an actuator says how its commands are made safe: by `Limited limit(const DataSheet&) noexcept`, or by "
+                "an actuator says how its commands are made safe: by `using LimitedBy = TurretPart;` (a part, a "
+                "locomotion, or RobotKind) and `Limited limit(const LimitedBy&) noexcept`, or by "
                 "`static constexpr bool kAnyValueIsSafe = true;`");
   if constexpr (limited) t.limit = &limit_commands<T>;
   constexpr bool part = requires(T c, const Fence& fence, const Pose& at) {

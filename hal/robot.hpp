@@ -12,8 +12,8 @@
 #include "hal/port.hpp"
 #include "hal/published.hpp"
 #include "hal/random.hpp"
+#include "hal/robot_kind.hpp"
 #include "hal/robot_log.hpp"
-#include "hal/spec/data_sheet.hpp"
 
 namespace tandem::hal {
 
@@ -30,7 +30,18 @@ class Robot {
   virtual ~Robot() = default;
 
   virtual std::string_view id() const noexcept = 0;
-  virtual const DataSheet& data_sheet() const noexcept = 0;
+  /// What kind of robot it is: its body, how it moves, its parts. Lives as long as the robot.
+  virtual const RobotKind& kind() const noexcept = 0;
+  /// A part of it, or its locomotion: `robot.part<DifferentialDrive>().wheel_base_m`.
+  /// @throws DeviceError when robots of its kind are built without.
+  template <class P>
+  const P& part() const {
+    const P* const found = kind().template part<P>();
+    if (found == nullptr)
+      throw DeviceError("needs the part '" + std::string(P::kName) + "', which the robot '" + kind().name +
+                        "' is built without, or has in another form than the controller was compiled for");
+    return *found;
+  }
   /// The seed of the whole run.
   virtual std::uint64_t run_seed() const noexcept = 0;
   /// Random numbers of this robot's own, from the run's seed and the robot's id: the same in every world.

@@ -64,7 +64,8 @@ struct Surface {
 
 /// Of entries of class `T`: its category, and, where it says so, `static constexpr std::uint32_t kNumber` (else 1) and
 /// `using Crosses = Layouts<…>`. Members are only ever appended to `T`, and zero says that there is no such; anything
-/// else raises `kNumber`.
+/// else raises `kNumber`. A class that cannot be copied byte by byte says `static constexpr bool kWhole = true`: its size
+/// is part of its form.
 template <class T>
 struct SurfaceOf {
   static constexpr std::string_view kName = T::kCategory;
@@ -77,6 +78,7 @@ struct SurfaceOf {
   static constexpr std::uint64_t kDigest = [] {
     std::uint64_t digest = Layouts<>::digest();
     if constexpr (requires { typename T::Crosses; }) digest = T::Crosses::digest();
+    if constexpr (requires { T::kWhole; }) digest = detail::mixed(digest, sizeof(T));
     return detail::mixed(digest, alignof(T));
   }();
   static constexpr std::uint32_t kSize = sizeof(T);

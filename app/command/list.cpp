@@ -103,7 +103,7 @@ const std::map<std::string, ListKind>& kinds() {
       {"emulators", [](const hal::Catalog& c) { list_plugins<bridges::EmulatorType>(c, "emulators"); }},
       {"engines", [](const hal::Catalog& c) { list_names(c, core::EngineType::kCategory, "physics engines"); }},
       {"plugins", &list_libraries},
-      {"robots", [](const hal::Catalog& c) { list_names(c, hal::DataSheet::kCategory, "robots"); }},
+      {"robots", [](const hal::Catalog& c) { list_plugins<hal::RobotKind>(c, "robots"); }},
       {"elements", &list_elements}};
   return all;
 }
@@ -177,12 +177,12 @@ bool describe_physics_engine(const hal::Catalog& catalog, const std::string& nam
   return true;
 }
 
-/// Devices of this role that robots with this data sheet have: "a, b, c".
-std::string devices_of(const hal::Catalog& catalog, const hal::DataSheet& sheet, hal::Role role) {
+/// Devices of this role that robots of this kind have: "a, b, c".
+std::string devices_of(const hal::Catalog& catalog, const hal::RobotKind& kind, hal::Role role) {
   std::string all;
   std::string_view last;
   for (const core::DeviceType* type : catalog.all<core::DeviceType>()) {
-    if (type->role != role || type->device == last || !type->fits(sheet)) continue;
+    if (type->role != role || type->device == last || !type->fits(kind)) continue;
     last = type->device;
     all += (all.empty() ? "" : ", ") + std::string(type->device);
   }
@@ -191,24 +191,20 @@ std::string devices_of(const hal::Catalog& catalog, const hal::DataSheet& sheet,
 
 /// What a kind of robot is and has.
 bool describe_robot(const hal::Catalog& catalog, const std::string& name) {
-  const auto* const sheet = catalog.find<hal::DataSheet>(name);
-  if (sheet == nullptr) return false;
-  const double cm = 100.0;
-  fmt::print("robot <{}>: a disc of {:.3g} cm radius, {:.3g} cm high, {:.3g} kg{}\n", name, cm * sheet->body_radius_m,
-             cm * sheet->body_height_m, sheet->mass_kg, from(catalog, sheet));
-  if (sheet->wheel_base_m > 0.0) {
-    fmt::print("  drives on two wheels {:.3g} cm apart, each up to {:.3g} cm/s\n", cm * sheet->wheel_base_m,
-               cm * sheet->max_wheel_speed_m_s);
-  }
-  if (sheet->flies) {
-    fmt::print("  flies up to {:.3g} m/s and turns up to {:.3g} rad/s; needs an engine in space: {}\n",
-               sheet->max_flight_speed_m_s, sheet->max_flight_turn_rad_s,
+  const auto* const kind = catalog.find<hal::RobotKind>(name);
+  if (kind == nullptr) return false;
+  fmt::print("robot <{}>: {}{}\n", name, printable(kind->summary), from(catalog, kind));
+  fmt::print("  sensors: {}\n  actuators: {}\n", devices_of(catalog, *kind, hal::Role::Sensor),
+             devices_of(catalog, *kind, hal::Role::Actuator));
+  if (kind->flies())
+    fmt::print("  needs an engine in space: {}\n",
                core::engines_that(catalog, [](const core::EngineTraits& traits) { return !traits.plane; }));
-  }
-  fmt::print("  sensors: {}\n  actuators: {}\n", devices_of(catalog, *sheet, hal::Role::Sensor),
-             devices_of(catalog, *sheet, hal::Role::Actuator));
   fmt::print("  in experiment files: <{} id=\"…\"><body position=\"x,y,z\"/><controller config=\"…\"/></{}>\n", name,
              name);
+  hal::RobotKind shown = *kind;
+  hal::FactWriter facts;
+  shown.describe(facts);
+  fmt::print("{}", facts.text());
   return true;
 }
 

@@ -157,6 +157,7 @@ int robot(const RobotOptions& options) {
   if (!options.link.empty()) item.bridge->link = options.link;
   const core::ControllerConfig& config = scenario->controllers[item.controller];
   bridges::BridgeRequest request = mixed_reality::bridge_request(*scenario, item, scenario->seed.value_or(1));
+  request.robot_kind = loader.catalog().find<hal::RobotKind>(item.kind);
   if (const hal::Status apart =
           check_apart({{"report", options.report}}, input_files(loader.catalog(), request, options.file));
       !apart.ok())
@@ -203,7 +204,6 @@ int robot(const RobotOptions& options) {
   catch_rearm();
   mixed_reality::SupervisedParams supervision;
   supervision.rearm = mixed_reality::rearm_params(*item.bridge);
-  supervision.battery = mixed_reality::battery_limit(loader.catalog(), item.kind);
   supervision.tick_ns = hal::time_of_tick(1, scenario->ticks_per_second);
   supervision.frozen_after_ns = supervision.tick_ns + kFrozenAfter_ns;
   mixed_reality::SupervisedRobot supervised(item.id, bridge, supervision, log);

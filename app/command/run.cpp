@@ -142,7 +142,6 @@ std::unique_ptr<mixed_reality::MixedSession> join_real_robots(
   if (!has_real_robots(world->scenario())) return nullptr;
   mixed_reality::MixedOptions options;
   options.log = log;
-  options.catalog = &catalog;
   options.freezes = [&guarded] { return guarded.freezes(); };
   options.guarded = [&guarded] { return guarded.guarded(); };
   catch_rearm();

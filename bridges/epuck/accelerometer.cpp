@@ -2,11 +2,12 @@
 
 #include <cmath>
 
-#include "hal/spec/epuck.hpp"
+#include "bridges/epuck/wire.hpp"
 
 namespace tandem::bridges::epuck {
 namespace {
 
+constexpr double kGravity_m_s2 = 9.81;
 constexpr int kMiddle = 2048;  // of the 12-bit converter
 constexpr double kTolerance = 0.2;
 constexpr int kReadings = 3;
@@ -17,7 +18,7 @@ double length_m_s2(const std::array<std::int16_t, 3>& raw, int zero) noexcept {
 }
 
 bool is_gravity(double length_m_s2) noexcept {
-  return std::fabs(length_m_s2 - hal::epuck::kGravity_m_s2) <= kTolerance * hal::epuck::kGravity_m_s2;
+  return std::fabs(length_m_s2 - kGravity_m_s2) <= kTolerance * kGravity_m_s2;
 }
 
 }  // namespace
@@ -27,7 +28,7 @@ int accelerometer_zero(Firmware firmware) noexcept {
 }
 
 std::array<double, 3> force_m_s2(const std::array<std::int16_t, 3>& raw, int zero) noexcept {
-  constexpr double kScale = hal::epuck::kGravity_m_s2 / hal::epuck::kCountsPerG;
+  constexpr double kScale = kGravity_m_s2 / wire::kCountsPerG;
   return {(raw[1] - zero) * kScale, (raw[0] - zero) * kScale, (raw[2] - zero) * kScale};
 }
 

@@ -5,7 +5,7 @@
 
 #include "bridges/link/pending_link.hpp"
 #include "hal/check.hpp"
-#include "hal/spec/epuck.hpp"
+#include "hal/robot/epuck.hpp"
 
 namespace tandem::bridges::epuck {
 namespace {
@@ -189,7 +189,7 @@ std::string EpuckBridge::link() const {
 
 StopMessages EpuckBridge::stop_messages() const {
   return {.robot = settings_.driver.robot.id,
-          .kind = std::string(hal::epuck::kDataSheet.kind),
+          .kind = std::string(hal::epuck::kName),
           .link = absolute_link(settings_.link),
           .body = {},
           .version = kStopVersion};

@@ -2,16 +2,15 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <vector>
 
 #include "bridges/epuck/codec.hpp"
 #include "bridges/epuck/line.hpp"
+#include "hal/device/body_sensors.hpp"
 #include "hal/device/leds.hpp"
+#include "hal/device/ring_sensors.hpp"
 
 namespace tandem::bridges::epuck {
-
-/// Nearest whole number of steps a second, within +-`kMaxSteps_s`. Not finite: 0.
-StepsPerS to_steps_per_s(double speed_m_s) noexcept;
-double to_m_s(StepsPerS speed) noexcept;
 
 /// Steps from one reading of a 16-bit wheel counter to the next, the short way round.
 /// Unambiguous while less than 32768 steps lie between: 32 s at full speed.
@@ -19,14 +18,6 @@ constexpr std::int32_t encoder_difference(std::int16_t newer, std::int16_t older
   return static_cast<std::int16_t>(
       static_cast<std::uint16_t>(static_cast<std::uint16_t>(newer) - static_cast<std::uint16_t>(older)));
 }
-double steps_to_m(std::int64_t steps) noexcept;
-
-/// Distance at which white paper gives `counts`: the data sheet's curve read backwards, straight between its knots.
-/// 0 counts and fewer: the range of the sensor. The curve's largest and more: contact, 0.
-double proximity_distance_m(double counts) noexcept;
-/// The curve read forwards: counts at `distance_m`; beyond the range 0.
-double proximity_counts(double distance_m) noexcept;
-
 /// Ambient light, 0 dark to 1 saturated, from counts that fall with brightness.
 double light_level(std::uint16_t ambient) noexcept;
 /// Reflectance, 0 black to 1 white.
@@ -38,8 +29,36 @@ struct BatteryState {
   double supply_V = 0.0;
   double charge = 0.0;  ///< 0 empty to 1 full, linear in the voltage
 };
-/// Raw value of `b`. Boards before HW1.3 only tell 1 (above 3.4 V) or 0: then the middle of what that leaves, or empty.
-BatteryState battery_state(std::uint16_t raw, Firmware firmware) noexcept;
+
+/// Conversions that depend on the robot: on its wheels, its infrared sensors and its battery.
+class Conversions {
+ public:
+  explicit Conversions(const hal::RobotKind& kind);
+
+  /// Nearest whole number of steps a second, within +-`wire::kMaxSteps_s`. Not finite: 0.
+  StepsPerS to_steps_per_s(double speed_m_s) const noexcept;
+  double to_m_s(StepsPerS speed) const noexcept { return to_m_s(static_cast<double>(speed.value)); }
+  double to_m_s(double steps_per_s) const noexcept { return steps_per_s * metres_per_step_; }
+  double steps_to_m(std::int64_t steps) const noexcept { return static_cast<double>(steps) * metres_per_step_; }
+
+  /// Distance at which white paper gives `counts`: the sensors' response read backwards, straight between its points.
+  /// 0 counts and fewer: the range of the sensor. The response's largest and more: contact, 0.
+  double proximity_distance_m(double counts) const noexcept;
+  /// The response read forwards: counts at `distance_m`; beyond the range 0.
+  double proximity_counts(double distance_m) const noexcept;
+  double proximity_range_m() const noexcept { return infrared_.range_m; }
+
+  /// Raw value of `b`. Boards before HW1.3 only tell 1 (above empty) or 0: then the middle of what that leaves, or
+  /// empty.
+  BatteryState battery_state(std::uint16_t raw, Firmware firmware) const noexcept;
+
+ private:
+  double charge_at(double supply_V) const noexcept;
+
+  double metres_per_step_;
+  hal::ProximityPart infrared_;
+  hal::BatteryPart battery_;
+};
 
 /// A lamp of one colour is on when any channel is above half.
 constexpr bool lamp_on(hal::Rgb color) noexcept {

@@ -4,7 +4,6 @@
 #include <limits>
 
 #include "bridges/epuck/conversions.hpp"
-#include "hal/spec/epuck.hpp"
 
 namespace tandem::bridges::epuck {
 namespace {
@@ -24,6 +23,7 @@ EpuckDriver::EpuckDriver(DriverSettings settings, hal::Log log)
     : settings_(std::move(settings)),
       log_(std::move(log)),
       robot_(settings_.robot),
+      wheels_(robot_.part<hal::DifferentialDrive>()),
       session_(settings_.timing),
       ask_due_ns_(kNever),
       margin_ns_(kLeastMargin) {}
@@ -58,7 +58,7 @@ void EpuckDriver::judge_margin() noexcept {
 
 hal::WheelSpeeds EpuckDriver::filtered() noexcept {
   hal::WheelSpeeds wheels = robot_.port<hal::WheelSpeeds>();
-  switch (wheels.limit(hal::epuck::kDataSheet).result) {
+  switch (wheels.limit(wheels_).result) {
     case hal::LimitResult::Clamped:
       ++statistics_.clamped;
       break;
@@ -89,8 +89,8 @@ void EpuckDriver::commit(hal::TimeNs now) noexcept {
   if (!halted_) {
     const hal::WheelSpeeds wheels = filtered();
     actuation = robot_.lamps();
-    actuation.left = to_steps_per_s(wheels.left_m_s);
-    actuation.right = to_steps_per_s(wheels.right_m_s);
+    actuation.left = robot_.conversions().to_steps_per_s(wheels.left_m_s);
+    actuation.right = robot_.conversions().to_steps_per_s(wheels.right_m_s);
   }
   moving_ = actuation.left.value != 0 || actuation.right.value != 0;
   const hal::TimeNs lead = session_.expected_round_trip(robot_.demand()) + margin_ns_;
@@ -177,8 +177,9 @@ void EpuckDriver::farewell(hal::TimeNs now) noexcept {
 
 Odometry EpuckDriver::odometry() const noexcept {
   const Samples& s = session_.samples();
-  return {steps_to_m(s.left_steps), steps_to_m(s.right_steps), s.taken_ns[static_cast<std::size_t>(Quantity::Encoders)],
-          session_.statistics().encoder_rebased};
+  const Conversions& conversions = robot_.conversions();
+  return {conversions.steps_to_m(s.left_steps), conversions.steps_to_m(s.right_steps),
+          s.taken_ns[static_cast<std::size_t>(Quantity::Encoders)], session_.statistics().encoder_rebased};
 }
 
 void EpuckDriver::tell_accelerometer(const std::string& who) {

@@ -99,6 +99,7 @@ class EpuckDriver {
   DriverSettings settings_;
   hal::Log log_;
   EpuckRobot robot_;
+  const hal::DifferentialDrive& wheels_;
   Session session_;
   DriverStatistics statistics_;
   SessionState logged_ = SessionState::Absent;

@@ -7,7 +7,7 @@
 #include "hal/device/body_sensors.hpp"
 #include "hal/device/ring_sensors.hpp"
 #include "hal/device/wheels.hpp"
-#include "hal/spec/epuck.hpp"
+#include "hal/robot/epuck.hpp"
 
 namespace tandem::bridges::epuck {
 namespace {
@@ -78,7 +78,7 @@ hal::Status run(const InspectRequest& request) {
 }  // namespace
 
 const InspectorType& inspector_type() noexcept {
-  static const InspectorType type{hal::epuck::kDataSheet.kind, "serial:DEVICE@115200", &reads, &run};
+  static const InspectorType type{hal::epuck::kName, "serial:DEVICE@115200", &reads, &run};
   return type;
 }
 

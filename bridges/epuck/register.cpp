@@ -5,7 +5,7 @@
 #include "bridges/epuck/inspect.hpp"
 #include "bridges/epuck/stopper.hpp"
 #include "hal/element_options.hpp"
-#include "hal/spec/epuck.hpp"
+#include "hal/robot/epuck.hpp"
 
 namespace tandem::bridges::epuck {
 namespace {
@@ -41,11 +41,7 @@ MadeBridge make(const BridgeRequest& request, const hal::Log& log) {
       std::make_unique<EpuckBridge>(std::move(settings), std::move(opener).value(), log));
 }
 
-const BridgeType kType{.name = hal::epuck::kDataSheet.kind,
-                       .summary = "serial:DEVICE@115200",
-                       .make = &make,
-                       .check = &check,
-                       .battery = {.charge = 0.0, .supply_V = hal::epuck::kBatteryLow_V}};
+const BridgeType kType{.name = hal::epuck::kName, .summary = "serial:DEVICE@115200", .make = &make, .check = &check};
 
 }  // namespace
 

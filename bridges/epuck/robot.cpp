@@ -8,12 +8,10 @@
 #include "hal/device/range_and_bearing.hpp"
 #include "hal/device/ring_sensors.hpp"
 #include "hal/device/wheels.hpp"
-#include "hal/spec/epuck.hpp"
+#include "hal/robot/epuck.hpp"
 
 namespace tandem::bridges::epuck {
 namespace {
-
-namespace spec = hal::epuck;
 
 const std::vector<const hal::PortType*>& port_types() {
   static const auto all =
@@ -34,7 +32,7 @@ void convert(const std::array<std::uint16_t, N>& raw, std::uint32_t& count, std:
 }  // namespace
 
 EpuckRobot::EpuckRobot(RobotSettings settings)
-    : BridgedRobot("e-puck", spec::kDataSheet, std::move(settings), port_types()) {
+    : BridgedRobot("e-puck", hal::epuck::kind(), std::move(settings), port_types()), conversions_(kind()) {
   leave_out(hal::port_type<hal::RangeAndBearing>());
   leave_out(hal::port_type<hal::RangeAndBearingSend>());
 }
@@ -70,13 +68,14 @@ void EpuckRobot::fill(const Samples& samples, const Identity& identity, hal::Tic
   auto& battery = stamped.operator()<hal::Battery>(Quantity::Battery);
   auto& encoders = stamped.operator()<hal::WheelEncoders>(Quantity::Encoders);
 
-  proximity.range_m = static_cast<float>(spec::kProximityRange_m);
+  proximity.range_m = static_cast<float>(conversions_.proximity_range_m());
   if (samples.known.has(Quantity::Proximity)) {
-    convert(raw.proximity, proximity.count, proximity.distance_m, proximity_distance_m);
+    convert(raw.proximity, proximity.count, proximity.distance_m,
+            [this](std::uint16_t counts) { return conversions_.proximity_distance_m(counts); });
   }
   if (samples.known.has(Quantity::Ambient)) convert(raw.ambient, light.count, light.level, light_level);
   if (samples.known.has(Quantity::Ground)) {
-    // The board counts from the left, the data sheet from the right.
+    // The board counts from the left, the kind from the right.
     convert(std::array{raw.ground[2], raw.ground[1], raw.ground[0]}, ground.count, ground.reflectance,
             ground_reflectance);
   }
@@ -90,14 +89,14 @@ void EpuckRobot::fill(const Samples& samples, const Identity& identity, hal::Tic
                    [](double v) { return static_cast<float>(v); });
   }
   if (samples.known.has(Quantity::Battery)) {
-    const BatteryState state = battery_state(raw.battery, identity.firmware);
+    const BatteryState state = conversions_.battery_state(raw.battery, identity.firmware);
     battery.supply_V = static_cast<float>(state.supply_V);
     battery.charge = static_cast<float>(state.charge);
   }
-  encoders.left_m = steps_to_m(samples.left_steps);
-  encoders.right_m = steps_to_m(samples.right_steps);
-  encoders.left_m_s = static_cast<float>(samples.left_steps_per_s * spec::kMetresPerStep);
-  encoders.right_m_s = static_cast<float>(samples.right_steps_per_s * spec::kMetresPerStep);
+  encoders.left_m = conversions_.steps_to_m(samples.left_steps);
+  encoders.right_m = conversions_.steps_to_m(samples.right_steps);
+  encoders.left_m_s = static_cast<float>(conversions_.to_m_s(samples.left_steps_per_s));
+  encoders.right_m_s = static_cast<float>(conversions_.to_m_s(samples.right_steps_per_s));
 
   tell_time(tick);
   port<hal::RangeAndBearing>() = {};  // messages are of one tick; whoever relays them does so after this

@@ -1,6 +1,7 @@
 // The e-puck as its controller sees it: ports that a session fills and drains.
 #pragma once
 #include "bridges/bridged_robot.hpp"
+#include "bridges/epuck/conversions.hpp"
 #include "bridges/epuck/session.hpp"
 
 namespace tandem::bridges::epuck {
@@ -17,6 +18,10 @@ class EpuckRobot final : public BridgedRobot {
   void fill(const Samples& samples, const Identity& identity, hal::Tick tick, hal::TimeNs now) noexcept;
   /// LEDs as commanded; speeds 0.
   Actuation lamps() const noexcept;
+  const Conversions& conversions() const noexcept { return conversions_; }
+
+ private:
+  Conversions conversions_;
 };
 
 }  // namespace tandem::bridges::epuck

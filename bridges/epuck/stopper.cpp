@@ -4,7 +4,7 @@
 #include <array>
 
 #include "bridges/link/link_text.hpp"
-#include "hal/spec/epuck.hpp"
+#include "hal/robot/epuck.hpp"
 
 namespace tandem::bridges::epuck {
 namespace {
@@ -31,7 +31,7 @@ std::unique_ptr<guardian::Stopper> make(const StopMessages& messages, guardian::
 }  // namespace
 
 const guardian::StopperType& stopper_type() noexcept {
-  static const guardian::StopperType type{hal::epuck::kDataSheet.kind, &make};
+  static const guardian::StopperType type{hal::epuck::kName, &make};
   return type;
 }
 

@@ -2,24 +2,32 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <limits>
 
-#include "hal/spec/epuck.hpp"
+#include "hal/robot/epuck.hpp"
 #include "hal/time.hpp"
 
 namespace tandem::bridges::epuck_emulator {
 
-/// Everything that the robot's devices can measure at one instant. Rings are in the order of the data sheet.
+/// What is known of the emulated robot as a body, which simulator and bridge know, too. What its modules say is their
+/// own business.
+template <class Part>
+const Part& robot_part() {
+  return *hal::epuck::kind().part<Part>();
+}
+
+/// Everything that the robot's devices can measure at one instant. Rings are in the order of the kind's parts.
 /// The defaults are a robot at rest on white ground in the middle of nowhere.
 struct BodySenses {
-  std::array<double, 8> distance_m = filled<8>(hal::epuck::kProximityRange_m);  ///< from each infrared sensor
-  std::array<double, 8> light = filled<8>(0.5);                                 ///< 0 dark, 1 saturated
-  std::array<double, 3> ground = filled<3>(1.0);                             ///< 0 black, 1 white; right, middle, left
-  std::array<double, 2> cliff = filled<2>(1.0);                              ///< as ground; right, left
-  std::array<double, 3> force_m_s2 = {0.0, 0.0, hal::epuck::kGravity_m_s2};  ///< specific force, body frame
-  std::array<double, 3> turn_rad_s{};                                        ///< turn rates, body frame
-  std::array<double, 3> magnetic_uT = {20.0, 0.0, -44.0};                    ///< body frame
-  std::array<double, 4> sound{};                                             ///< 0 silence, 1 full scale
-  double ahead_m = 2.0;                                                      ///< the time-of-flight sensor's reading
+  std::array<double, 8> distance_m = filled<8>(std::numeric_limits<double>::infinity());  ///< from each infrared sensor
+  std::array<double, 8> light = filled<8>(0.5);                                           ///< 0 dark, 1 saturated
+  std::array<double, 3> ground = filled<3>(1.0);           ///< 0 black, 1 white; right, middle, left
+  std::array<double, 2> cliff = filled<2>(1.0);            ///< as ground; right, left
+  std::array<double, 3> force_m_s2 = {0.0, 0.0, 9.81};     ///< specific force, body frame
+  std::array<double, 3> turn_rad_s{};                      ///< turn rates, body frame
+  std::array<double, 3> magnetic_uT = {20.0, 0.0, -44.0};  ///< body frame
+  std::array<double, 4> sound{};                           ///< 0 silence, 1 full scale
+  double ahead_m = 2.0;                                    ///< the time-of-flight sensor's reading
   double battery_V = 4.0;
   double temperature_C = 25.0;
 

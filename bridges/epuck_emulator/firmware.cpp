@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "bridges/epuck_emulator/converters.hpp"
 #include "bridges/epuck_emulator/raw_units.hpp"
 
 namespace tandem::bridges::epuck_emulator {
@@ -224,8 +225,8 @@ void Firmware::turn_wheels(std::int32_t left, std::int32_t right, hal::TimeNs at
 
 void Firmware::actuate(hal::TimeNs at) {
   BodyCommand command = memory_.lights;
-  command.left_m_s = left_.real_steps_s() * hal::epuck::kMetresPerStep;
-  command.right_m_s = right_.real_steps_s() * hal::epuck::kMetresPerStep;
+  command.left_m_s = left_.real_steps_s() * step_m();
+  command.right_m_s = right_.real_steps_s() * step_m();
   body_.actuate(at, command);
 }
 
@@ -274,12 +275,12 @@ std::array<int, 3> Firmware::acceleration(const BodySenses& senses, int zero) co
                             acceleration_counts(force[2])};
   for (int& value : raw) {
     value += zero;
-    if (zero != 0) value = std::clamp(value, 0, hal::epuck::kAdcMax);  // the converter's own, without sign
+    if (zero != 0) value = std::clamp(value, 0, kTwelveBits);  // the converter's own, without sign
   }
   return raw;
 }
 
-// The board counts from left to right; the body as the data sheet does.
+// The board counts from left to right; the body as the kind does.
 std::array<double, 3> Firmware::ground(const BodySenses& senses) const {
   if (!options_.ground_board) return {};
   return {senses.ground[2], senses.ground[1], senses.ground[0]};
@@ -290,7 +291,7 @@ std::array<int, 8> Firmware::proximity(const BodySenses& senses, bool calibrated
   for (std::size_t i = 0; i < raw.size(); ++i) {
     raw[i] = proximity_counts(senses.distance_m[i]) + kInfraredOffsetRaw;
     if (calibrated) raw[i] = std::max(0, raw[i] - memory_.infrared_offset[i]);
-    raw[i] = std::min(raw[i], hal::epuck::kAdcMax);
+    raw[i] = std::min(raw[i], kTwelveBits);
   }
   return raw;
 }

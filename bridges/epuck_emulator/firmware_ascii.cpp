@@ -1,6 +1,7 @@
 // The commands that people type: a letter, arguments, a line end.
 #include <algorithm>
 
+#include "bridges/epuck_emulator/converters.hpp"
 #include "bridges/epuck_emulator/firmware.hpp"
 #include "bridges/epuck_emulator/raw_units.hpp"
 
@@ -215,7 +216,7 @@ bool Firmware::obey_optional(char letter, std::string_view arguments, hal::TimeN
     if (measured) {
       send_text("b," + std::to_string(raw) + " (" + std::to_string(battery_percent(battery_V)) + "%)\r\n", at);
     } else {
-      send_text(battery_V < hal::epuck::kBatteryEmpty_V ? "b,0\r\n" : "b,1\r\n", at);
+      send_text(battery_V < kCellEmpty_V ? "b,0\r\n" : "b,1\r\n", at);
     }
     return true;
   }

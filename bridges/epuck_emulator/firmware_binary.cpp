@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <bit>
 
+#include "bridges/epuck_emulator/converters.hpp"
 #include "bridges/epuck_emulator/firmware.hpp"
 #include "bridges/epuck_emulator/raw_units.hpp"
 
@@ -117,7 +118,7 @@ void Firmware::obey_binary_letter(char letter, hal::TimeNs at) {
       if (options_.variant == Variant::Epuck2 || options_.hardware_1_3)
         put16(battery_raw(senses));
       else
-        put16(senses.battery_V < hal::epuck::kBatteryEmpty_V ? 0 : 1);
+        put16(senses.battery_V < kCellEmpty_V ? 0 : 1);
       break;
     case 'D':
       // A 32-bit int keeps the 16 bits unsigned: E then prints 65036 for -500, while the motors take them right.

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "hal/angle.hpp"
+#include "hal/device/ring_sensors.hpp"
 
 namespace tandem::bridges::epuck_emulator {
 namespace {
@@ -35,7 +36,8 @@ void KinematicBody::advance(hal::TimeNs now) {
 
 void KinematicBody::roll(double dt_s) {
   const double v_m_s = 0.5 * (command_.left_m_s + command_.right_m_s);
-  const double turn_rad = (command_.right_m_s - command_.left_m_s) / hal::epuck::kWheelBase_m * dt_s;
+  const double turn_rad =
+      (command_.right_m_s - command_.left_m_s) / robot_part<hal::DifferentialDrive>().wheel_base_m * dt_s;
   // The chord of the arc that the centre drives.
   const double half = 0.5 * turn_rad;
   const double chord_m = v_m_s * dt_s * (std::fabs(half) < 1e-9 ? 1.0 : std::sin(half) / half);
@@ -43,8 +45,8 @@ void KinematicBody::roll(double dt_s) {
   pose_.y_m += chord_m * std::sin(pose_.heading_rad + half);
   pose_.heading_rad = hal::wrapped(pose_.heading_rad + turn_rad);
   if (!arena_) return;
-  const double free_x_m = std::max(0.0, 0.5 * arena_->length_x_m - hal::epuck::kBodyRadius_m);
-  const double free_y_m = std::max(0.0, 0.5 * arena_->length_y_m - hal::epuck::kBodyRadius_m);
+  const double free_x_m = std::max(0.0, 0.5 * arena_->length_x_m - robot_part<hal::Body>().radius_m);
+  const double free_y_m = std::max(0.0, 0.5 * arena_->length_y_m - robot_part<hal::Body>().radius_m);
   pose_.x_m = std::clamp(pose_.x_m, -free_x_m, free_x_m);
   pose_.y_m = std::clamp(pose_.y_m, -free_y_m, free_y_m);
 }
@@ -57,19 +59,19 @@ double KinematicBody::distance_to_wall_m(double x_m, double y_m, double directio
 BodySenses KinematicBody::sense(hal::TimeNs now) {
   advance(now);
   BodySenses senses = surroundings;
-  senses.turn_rad_s[2] = (command_.right_m_s - command_.left_m_s) / hal::epuck::kWheelBase_m;
+  senses.turn_rad_s[2] = (command_.right_m_s - command_.left_m_s) / robot_part<hal::DifferentialDrive>().wheel_base_m;
   if (!arena_) return senses;
   const double c = std::cos(pose_.heading_rad);
   const double s = std::sin(pose_.heading_rad);
   for (std::size_t i = 0; i < senses.distance_m.size(); ++i) {
-    const hal::Mount& m = hal::epuck::kInfrared[i];
+    const hal::Mount& m = robot_part<hal::ProximityPart>().mounts[i];
     const double free_m = distance_to_wall_m(pose_.x_m + c * m.x_m - s * m.y_m, pose_.y_m + s * m.x_m + c * m.y_m,
                                              pose_.heading_rad + m.bearing_rad);
-    senses.distance_m[i] = std::min({senses.distance_m[i], free_m, hal::epuck::kProximityRange_m});
+    senses.distance_m[i] = std::min({senses.distance_m[i], free_m, robot_part<hal::ProximityPart>().range_m});
   }
   senses.ahead_m =
-      std::min(senses.ahead_m, distance_to_wall_m(pose_.x_m + c * hal::epuck::kBodyRadius_m,
-                                                  pose_.y_m + s * hal::epuck::kBodyRadius_m, pose_.heading_rad));
+      std::min(senses.ahead_m, distance_to_wall_m(pose_.x_m + c * robot_part<hal::Body>().radius_m,
+                                                  pose_.y_m + s * robot_part<hal::Body>().radius_m, pose_.heading_rad));
   return senses;
 }
 

@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
+
+#include "bridges/epuck_emulator/converters.hpp"
+#include "hal/device/ring_sensors.hpp"
 
 namespace tandem::bridges::epuck_emulator {
 namespace {
-
-namespace spec = hal::epuck;
 
 constexpr double kDegrees = 180.0 / std::numbers::pi;
 
@@ -19,30 +21,30 @@ int counts(double value, int low, int high) {
 }  // namespace
 
 int proximity_counts(double distance_m) {
-  const auto& curve = spec::kInfraredCurve;
-  if (!(distance_m > curve.front().distance_m)) return counts(curve.front().counts, 0, spec::kAdcMax);
+  const auto& curve = robot_part<hal::ProximityPart>().response;
+  if (!(distance_m > curve.front().distance_m)) return counts(curve.front().counts, 0, kTwelveBits);
   for (std::size_t i = 1; i < curve.size(); ++i) {
     if (distance_m > curve[i].distance_m) continue;
     const double share = (distance_m - curve[i - 1].distance_m) / (curve[i].distance_m - curve[i - 1].distance_m);
-    return counts(curve[i - 1].counts + share * (curve[i].counts - curve[i - 1].counts), 0, spec::kAdcMax);
+    return counts(curve[i - 1].counts + share * (curve[i].counts - curve[i - 1].counts), 0, kTwelveBits);
   }
   return 0;
 }
 
 int ambient_counts(double level) {
-  return counts(spec::kAmbientDarkRaw * (1.0 - level), 0, spec::kAdcMax);
+  return counts(kTwelveBits * (1.0 - level), 0, kTwelveBits);
 }
 
 int ground_counts(double reflectance) {
-  return counts(reflectance * spec::kGroundWhiteRaw, 0, spec::kGroundWhiteRaw);
+  return counts(reflectance * kTenBits, 0, kTenBits);
 }
 
 int microphone_counts(double level) {
-  return counts(level * spec::kMicrophoneMaxRaw, 0, spec::kMicrophoneMaxRaw);
+  return counts(level * kTwelveBits, 0, kTwelveBits);
 }
 
 int acceleration_counts(double force_m_s2) {
-  return counts(force_m_s2 / spec::kGravity_m_s2 * spec::kCountsPerG, -spec::kAdcMax, spec::kAdcMax);
+  return counts(force_m_s2 / kGravity_m_s2 * kGravityRaw, -kTwelveBits, kTwelveBits);
 }
 
 int gyro_counts(double turn_rad_s) {
@@ -50,16 +52,16 @@ int gyro_counts(double turn_rad_s) {
 }
 
 int battery_counts(double battery_V) {
-  const double share = (battery_V - spec::kBatteryEmpty_V) / (spec::kBatteryFull_V - spec::kBatteryEmpty_V);
-  return counts(spec::kBatteryEmptyRaw + share * (spec::kBatteryFullRaw - spec::kBatteryEmptyRaw), 0, spec::kAdcMax);
+  const double share = (battery_V - kCellEmpty_V) / (kCellFull_V - kCellEmpty_V);
+  return counts(kCellEmptyRaw + share * (kCellFullRaw - kCellEmptyRaw), 0, kTwelveBits);
 }
 
 int battery_counts_epuck2(double battery_V) {
-  return counts(battery_V * 330.0 / (220.0 + 330.0) * 4096.0 / 3.0, 0, spec::kAdcMax);
+  return counts(battery_V * 330.0 / (220.0 + 330.0) * 4096.0 / 3.0, 0, kTwelveBits);
 }
 
 int battery_percent(double battery_V) {
-  const double share = (battery_V - spec::kBatteryEmpty_V) / (spec::kBatteryFull_V - spec::kBatteryEmpty_V);
+  const double share = (battery_V - kCellEmpty_V) / (kCellFull_V - kCellEmpty_V);
   return counts(100.0 * share, 0, 100);
 }
 

@@ -8,7 +8,7 @@ namespace tandem::bridges::epuck_emulator {
 /// value serves to tell calibrated from uncalibrated answers.
 inline constexpr int kInfraredOffsetRaw = 40;
 
-/// Infrared response above the offset: the data sheet's curve, straight between its knots; 0 beyond its end.
+/// Infrared response above the offset: the kind's curve, straight between its knots; 0 beyond its end.
 int proximity_counts(double distance_m);
 /// Larger is darker.
 int ambient_counts(double level);

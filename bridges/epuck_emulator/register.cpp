@@ -30,7 +30,7 @@ hal::Status run_type(const EmulatorRequest& request, SharedPorts* ports, const s
 }
 
 const EmulatorType kType{.name = "epuck",
-                         .kind = hal::epuck::kDataSheet.kind,
+                         .kind = hal::epuck::kName,
                          .summary = "An e-puck's stock firmware behind a serial line: pty:NAME, serial:DEVICE@115200.",
                          .puppet = "<puppet library=\"puppet\" …>",
                          .needs = &port_types_of<hal::FrontLed, hal::Microphones>,

@@ -8,7 +8,7 @@
 #include "bridges/eyebot_messages/codec.hpp"
 #include "bridges/link/link_terms.hpp"
 #include "hal/check.hpp"
-#include "hal/spec/eyebot.hpp"
+#include "hal/robot/eyebot.hpp"
 
 namespace tandem::bridges::eyebot {
 namespace {
@@ -190,7 +190,7 @@ std::string EyebotBridge::link() const {
 
 StopMessages EyebotBridge::stop_messages() const {
   return {.robot = settings_.driver.robot.id,
-          .kind = std::string(hal::eyebot::kDataSheet.kind),
+          .kind = std::string(hal::eyebot::kName),
           .link = "lcm:" + settings_.url,
           .body = to_stop_body(stop_details()),
           .version = stop_version(),

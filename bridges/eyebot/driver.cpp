@@ -9,12 +9,12 @@
 #include "bridges/eyebot/readings.hpp"
 #include "bridges/eyebot_messages/codec.hpp"
 #include "hal/check.hpp"
+#include "hal/device/body_sensors.hpp"
 
 namespace tandem::bridges::eyebot {
 namespace {
 
 namespace messages = eyebot_messages;
-namespace spec = hal::eyebot;
 using hal::TimeNs;
 
 constexpr TimeNs kBeat = 200 * hal::kNsPerMs;
@@ -26,18 +26,23 @@ constexpr TimeNs kDeviceAgain = hal::kNsPerSecond;
 constexpr TimeNs kStatusFresh = 600 * hal::kNsPerMs;  // ten a second are promised
 constexpr TimeNs kReleasedAfter = 10 * hal::kNsPerSecond;
 constexpr TimeNs kComplainAgain = 10 * hal::kNsPerSecond;
-constexpr TimeNs kSilence = 2 * hal::kNsPerSecond;             // then it is told who is heard instead
-constexpr TimeNs kOthersRobot = 2 * hal::kNsPerSecond;         // after another hub's last command
-constexpr TimeNs kOthersSpread = 100 * hal::kNsPerMs;          // two hubs do not try again at the same moment
-constexpr TimeNs kClocksAgree = 100 * hal::kNsPerMs;           // a robot takes stamps that are 250 ms off
-constexpr TimeNs kOwnJump = 150 * hal::kNsPerMs;               // robots refuse what is stamped 250 ms off
-constexpr double kPlaceSpeed_m_s = 1.5 * spec::kMaxSpeed_m_s;  // also one that is pushed
+constexpr TimeNs kSilence = 2 * hal::kNsPerSecond;      // then it is told who is heard instead
+constexpr TimeNs kOthersRobot = 2 * hal::kNsPerSecond;  // after another hub's last command
+constexpr TimeNs kOthersSpread = 100 * hal::kNsPerMs;   // two hubs do not try again at the same moment
+constexpr TimeNs kClocksAgree = 100 * hal::kNsPerMs;    // a robot takes stamps that are 250 ms off
+constexpr TimeNs kOwnJump = 150 * hal::kNsPerMs;        // robots refuse what is stamped 250 ms off
+constexpr double kPushed = 1.5;                         // times as fast as it flies by itself a robot may be
 constexpr std::size_t kPayloadAt = messages::kHeaderEnd;
 
 std::string id_of_session(std::int32_t session) {
   std::array<char, 32> text{};
   std::snprintf(text.data(), text.size(), "tandem-%08x", static_cast<unsigned>(session));
   return text.data();
+}
+
+template <class Drive>
+hal::Limited limited(Drive& drive, const hal::RobotKind& kind) noexcept {
+  return drive.limit(hal::limiting<typename Drive::LimitedBy>(kind));
 }
 
 void put_big_endian(std::span<std::byte> bytes, std::uint64_t n) noexcept {
@@ -63,7 +68,8 @@ EyebotDriver::EyebotDriver(DriverSettings settings, Inbox& inbox, Outbox& outbox
       outbox_(outbox),
       log_(std::move(log)),
       robot_(settings_.robot),
-      place_gate_(kPlaceSpeed_m_s) {
+      flight_(robot_.part<hal::Quadrotor>()),
+      place_gate_(kPushed * flight_.max_speed_m_s) {
   if (settings_.name.empty()) settings_.name = settings_.robot.id;
   if (settings_.hub.empty()) settings_.hub = id_of_session(settings_.session);
   for (std::size_t i = 0; i < kTold; ++i) {
@@ -246,7 +252,10 @@ template <class Port, class Message>
 void EyebotDriver::fill(Topic topic, const Newest<Message>& newest, TimeNs now) noexcept {
   if (!robot_.uses<Port>() || taken(topic) == 0) return;
   auto& port = robot_.port<Port>();
-  read(newest.message, port);
+  if constexpr (requires { read(newest.message, robot_.kind(), port); })
+    read(newest.message, robot_.kind(), port);
+  else
+    read(newest.message, port);
   robot_.stamp(port, taken(topic), topic_period_ns(topic), now);
 }
 
@@ -331,9 +340,12 @@ bool EyebotDriver::others_robot(TimeNs now) const noexcept {
 
 bool EyebotDriver::battery_low() const noexcept {
   if (taken(Topic::Battery) == 0) return false;
+  if (newests_.battery.message.low != 0) return true;
+  const auto* const part = robot_.kind().part<hal::BatteryPart>();
+  if (part == nullptr) return false;
   hal::Battery battery;
-  read(newests_.battery.message, battery);
-  return newests_.battery.message.low != 0 || battery.charge <= static_cast<float>(spec::kBatteryLow);
+  read(newests_.battery.message, robot_.kind(), battery);
+  return battery.charge <= static_cast<float>(part->low_charge);
 }
 
 void EyebotDriver::report_silence(TimeNs now) {
@@ -357,7 +369,7 @@ void EyebotDriver::note_order() noexcept {
       robot_.uses<hal::FlightTask>() || robot_.uses<hal::QuadrotorPosition>() || robot_.uses<hal::QuadrotorSpeed>();
   if (!robot_.uses<hal::FlightTask>()) return;
   hal::FlightTask task = robot_.port<hal::FlightTask>();
-  count(task.limit(spec::kDataSheet));
+  count(task.limit(flight_));
   const hal::FlightOrder order = task.order;
   order_m_s_ = static_cast<float>(task.speed_m_s);
   if (order == order_) return;
@@ -476,11 +488,11 @@ void EyebotDriver::say_setpoint(TimeNs now) noexcept {
   interrupted_ = false;
   hal::QuadrotorPosition position;
   if (robot_.uses<hal::QuadrotorPosition>()) position = robot_.port<hal::QuadrotorPosition>();
-  count(position.limit(spec::kDataSheet));
+  count(position.limit(flight_));
   if (!position.hold) {
     messages::CmdPosition m{};
     write(position, settings_.world, m);
-    m.max_speed = static_cast<float>(spec::kMaxSpeed_m_s);
+    m.max_speed = static_cast<float>(flight_.max_speed_m_s);
     m.timeout_ms = kPositionHolds_ms;
     if (setpoint_ != Told::Position) voice(Told::Position).size = 0;
     setpoint_ = Told::Position;
@@ -489,7 +501,7 @@ void EyebotDriver::say_setpoint(TimeNs now) noexcept {
   }
   hal::QuadrotorSpeed speed;
   if (robot_.uses<hal::QuadrotorSpeed>()) speed = robot_.port<hal::QuadrotorSpeed>();
-  count(speed.limit(spec::kDataSheet));
+  count(speed.limit(flight_));
   messages::CmdVelocity m{};
   write(speed, settings_.world, m);
   m.timeout_ms = kVelocityHolds_ms;
@@ -508,14 +520,14 @@ void EyebotDriver::say_devices(TimeNs now) noexcept {
   }
   if (robot_.uses<hal::PanTiltDrive>()) {
     hal::PanTiltDrive drive = robot_.port<hal::PanTiltDrive>();
-    count(drive.limit(spec::kDataSheet));
+    count(limited(drive, robot_.kind()));
     messages::CmdPanTilt m{};
     write(drive, m);
     say(Told::PanTilt, m, kDeviceAgain, now);
   }
   if (robot_.uses<hal::ScannerDrive>()) {
     hal::ScannerDrive drive = robot_.port<hal::ScannerDrive>();
-    count(drive.limit(spec::kDataSheet));
+    count(limited(drive, robot_.kind()));
     messages::CmdScanner m{};
     write(drive, m);
     say(Told::Scanner, m, kDeviceAgain, now);

@@ -239,6 +239,7 @@ class EyebotDriver {
   Letter letter_;
   Newests newests_;
   std::array<hal::TimeNs, kTopics> taken_ns_{};
+  const hal::Quadrotor& flight_;
   PlaceGate place_gate_;
   eyebot_messages::State place_{};  // the newest whose place was valid and is believed, taken at
   hal::TimeNs place_taken_ns_ = 0;

@@ -7,7 +7,7 @@
 
 #include "bridges/eyebot/bridge.hpp"
 #include "bridges/link/link_text.hpp"
-#include "hal/spec/eyebot.hpp"
+#include "hal/robot/eyebot.hpp"
 
 namespace tandem::bridges::eyebot {
 namespace {
@@ -97,7 +97,7 @@ hal::Status run(const InspectRequest& request) {
 }  // namespace
 
 const InspectorType& inspector_type() noexcept {
-  static const InspectorType type{hal::eyebot::kDataSheet.kind, "lcm:URL", &reads, &run};
+  static const InspectorType type{hal::eyebot::kName, "lcm:URL", &reads, &run};
   return type;
 }
 

@@ -5,12 +5,10 @@
 #include <numbers>
 
 #include "bridges/eyebot/flight_plan.hpp"
-#include "hal/spec/eyebot.hpp"
 
 namespace tandem::bridges::eyebot {
 namespace {
 
-namespace spec = hal::eyebot;
 namespace messages = eyebot_messages;
 
 constexpr double kRpm = 2.0 * std::numbers::pi / 60.0;  // rad/s
@@ -52,19 +50,22 @@ void read(const messages::Altitude& m, hal::Altimeter& port) noexcept {
   port.ceiling_m = m.ceiling < 0.0F ? -1.0F : m.ceiling;
 }
 
-void read(const messages::Battery& m, hal::Battery& port) noexcept {
-  constexpr auto kEmpty = static_cast<float>(spec::kBatteryEmpty_V);
-  constexpr auto kFull = static_cast<float>(spec::kBatteryFull_V);
+void read(const messages::Battery& m, const hal::RobotKind& kind, hal::Battery& port) noexcept {
+  const auto* const part = kind.part<hal::BatteryPart>();
+  const float empty = part != nullptr ? static_cast<float>(part->empty_V) : 0.0F;
+  const float full = part != nullptr ? static_cast<float>(part->full_V) : 1.0F;
   port.supply_V = m.voltage;
-  port.charge = std::clamp(m.charge < 0.0F ? (m.voltage - kEmpty) / (kFull - kEmpty) : m.charge, 0.0F, 1.0F);
+  port.charge = std::clamp(m.charge < 0.0F ? (m.voltage - empty) / (full - empty) : m.charge, 0.0F, 1.0F);
 }
 
-void read(const messages::Scan& m, hal::DistanceScanner& port) noexcept {
+void read(const messages::Scan& m, const hal::RobotKind& kind, hal::DistanceScanner& port) noexcept {
   using hal::DistanceScanner;
-  constexpr auto kLeast = static_cast<float>(spec::kScannerMin_m);  // all heads see alike
-  constexpr auto kMost = static_cast<float>(spec::kScannerMax_m);
-  port.short_min_m = port.long_min_m = kLeast;
-  port.short_max_m = port.long_max_m = kMost;
+  const auto* const part = kind.part<hal::ScannerPart>();
+  const hal::ScannerHead head_part = part != nullptr ? part->heads[0] : hal::ScannerHead{};  // all heads see alike
+  const auto least_m = static_cast<float>(head_part.min_m);
+  const auto most_m = static_cast<float>(head_part.max_m);
+  port.short_min_m = port.long_min_m = least_m;
+  port.short_max_m = port.long_max_m = most_m;
   port.turn_rad = m.head_angle;
   std::array<std::size_t, DistanceScanner::kHeads> counts{};
   const auto n = static_cast<std::size_t>(m.n);
@@ -80,27 +81,31 @@ void read(const messages::Scan& m, hal::DistanceScanner& port) noexcept {
     if (head >= counts.size() || seen[head]++ + DistanceScanner::kSamples < counts[head]) continue;
     const std::size_t at = port.at(head, kept[head]++);
     port.angle_rad[at] = m.angle[i];
-    port.distance_m[at] = m.range[i] <= -2.0F ? kMost : std::clamp(m.range[i], kLeast, kMost);  // -1: too near
+    port.distance_m[at] = m.range[i] <= -2.0F ? most_m : std::clamp(m.range[i], least_m, most_m);  // -1: too near
   }
   for (std::size_t head = 0; head < kept.size(); ++head) {
     for (std::size_t k = kept[head]; k < port.samples; ++k) {
       port.angle_rad[port.at(head, k)] = m.head_angle;
-      port.distance_m[port.at(head, k)] = kMost;
+      port.distance_m[port.at(head, k)] = most_m;
     }
   }
 }
 
-void read(const messages::Prox& m, hal::Proximity& port) noexcept {
-  port.count = static_cast<std::uint32_t>(spec::kRing.size());
-  port.range_m = static_cast<float>(spec::kProximityRange_m);
-  for (std::size_t i = 0; i < spec::kRing.size(); ++i) {
+void read(const messages::Prox& m, const hal::RobotKind& kind, hal::Proximity& port) noexcept {
+  const auto* const part = kind.part<hal::ProximityPart>();
+  if (part == nullptr) return;
+  port.count = static_cast<std::uint32_t>(std::min(part->mounts.size(), std::size(m.proximity)));
+  port.range_m = static_cast<float>(part->range_m);
+  for (std::size_t i = 0; i < port.count; ++i) {
     port.distance_m[i] = port.range_m * (1.0F - std::clamp(m.proximity[i], 0.0F, 1.0F));
   }
 }
 
-void read(const messages::Light& m, hal::Light& port) noexcept {
-  port.count = static_cast<std::uint32_t>(spec::kRing.size());
-  for (std::size_t i = 0; i < spec::kRing.size(); ++i) port.level[i] = std::clamp(m.light[i], 0.0F, 1.0F);
+void read(const messages::Light& m, const hal::RobotKind& kind, hal::Light& port) noexcept {
+  const auto* const part = kind.part<hal::LightPart>();
+  if (part == nullptr) return;
+  port.count = static_cast<std::uint32_t>(std::min(part->mounts.size(), std::size(m.light)));
+  for (std::size_t i = 0; i < port.count; ++i) port.level[i] = std::clamp(m.light[i], 0.0F, 1.0F);
 }
 
 void read(const messages::PanTilt& m, hal::PanTiltEncoder& port) noexcept {

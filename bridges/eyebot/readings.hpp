@@ -20,11 +20,11 @@ void read(const eyebot_messages::State& m, hal::Gyroscope& port) noexcept;
 void read(const eyebot_messages::Status& m, hal::FlightState& port) noexcept;
 void read(const eyebot_messages::Altitude& m, hal::Altimeter& port) noexcept;
 /// A charge that the robot does not know is taken from the voltage, along a straight line from empty to full.
-void read(const eyebot_messages::Battery& m, hal::Battery& port) noexcept;
+void read(const eyebot_messages::Battery& m, const hal::RobotKind& kind, hal::Battery& port) noexcept;
 /// Of each head the newest samples; a head that has fewer than another looks into emptiness for the rest.
-void read(const eyebot_messages::Scan& m, hal::DistanceScanner& port) noexcept;
-void read(const eyebot_messages::Prox& m, hal::Proximity& port) noexcept;
-void read(const eyebot_messages::Light& m, hal::Light& port) noexcept;
+void read(const eyebot_messages::Scan& m, const hal::RobotKind& kind, hal::DistanceScanner& port) noexcept;
+void read(const eyebot_messages::Prox& m, const hal::RobotKind& kind, hal::Proximity& port) noexcept;
+void read(const eyebot_messages::Light& m, const hal::RobotKind& kind, hal::Light& port) noexcept;
 void read(const eyebot_messages::PanTilt& m, hal::PanTiltEncoder& port) noexcept;
 /// The nearest first; those of unknown distance behind them, in their order.
 void read(const eyebot_messages::Blobs& m, hal::PerspectiveCamera& port) noexcept;

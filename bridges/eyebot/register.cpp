@@ -4,7 +4,7 @@
 #include "bridges/eyebot/stopper.hpp"
 #include "bridges/link/link_text.hpp"
 #include "hal/element_options.hpp"
-#include "hal/spec/eyebot.hpp"
+#include "hal/robot/eyebot.hpp"
 
 namespace tandem::bridges::eyebot {
 namespace {
@@ -45,12 +45,8 @@ std::string reached_by(const BridgeRequest& request) {
   return absolute_link(request.link) + " as '" + name_of(request) + "'";
 }
 
-const BridgeType kType{.name = hal::eyebot::kDataSheet.kind,
-                       .summary = "lcm:URL",
-                       .make = &make,
-                       .check = &check,
-                       .reached_by = &reached_by,
-                       .battery = {.charge = hal::eyebot::kBatteryLow}};
+const BridgeType kType{
+    .name = hal::eyebot::kName, .summary = "lcm:URL", .make = &make, .check = &check, .reached_by = &reached_by};
 
 }  // namespace
 

@@ -1,7 +1,7 @@
 // The eye-bot as its controller sees it: ports that the driver fills and drains.
 #pragma once
 #include "bridges/bridged_robot.hpp"
-#include "hal/spec/eyebot.hpp"
+#include "hal/robot/eyebot.hpp"
 
 namespace tandem::bridges::eyebot {
 
@@ -11,7 +11,7 @@ const std::vector<const hal::PortType*>& port_types();
 class EyebotRobot final : public BridgedRobot {
  public:
   explicit EyebotRobot(RobotSettings settings)
-      : BridgedRobot("eye-bot", hal::eyebot::kDataSheet, std::move(settings), port_types()) {
+      : BridgedRobot("eye-bot", hal::eyebot::kind(), std::move(settings), port_types()) {
     never_had = " that can be reached over LCM";
   }
 };

@@ -1,7 +1,7 @@
 #include "bridges/eyebot/stopper.hpp"
 
 #include "bridges/link/link_text.hpp"
-#include "hal/spec/eyebot.hpp"
+#include "hal/robot/eyebot.hpp"
 
 namespace tandem::bridges::eyebot {
 namespace {
@@ -36,7 +36,7 @@ std::unique_ptr<guardian::Stopper> make(const StopMessages& messages, StopCause 
 }  // namespace
 
 const guardian::StopperType& stopper_type() noexcept {
-  static const guardian::StopperType type{hal::eyebot::kDataSheet.kind, &make};
+  static const guardian::StopperType type{hal::eyebot::kName, &make};
   return type;
 }
 

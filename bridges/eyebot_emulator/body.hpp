@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "hal/spec/eyebot.hpp"
+#include "hal/robot/eyebot.hpp"
 #include "hal/time.hpp"
 
 namespace tandem::bridges::eyebot_emulator {
@@ -31,7 +31,14 @@ struct Blob {
   friend bool operator==(const Blob&, const Blob&) = default;
 };
 
-/// Everything that the robot's devices measure at one instant. Rings are in the order of the data sheet. The defaults
+/// What is known of the emulated robot as a body, which simulator and bridge know, too. What its modules say is their
+/// own business.
+template <class Part>
+const Part& robot_part() {
+  return *hal::eyebot::kind().part<Part>();
+}
+
+/// Everything that the robot's devices measure at one instant. Rings are in the order of the kind's parts. The defaults
 /// are a robot at rest on the ground, in the middle of nowhere.
 struct BodySenses {
   Vec3 p_WB{};  ///< of the body's base, m
@@ -43,7 +50,7 @@ struct BodySenses {
   bool on_ground = true;           ///< the feet carry the weight
   bool at_ceiling = false;         ///< the magnet holds
   std::optional<double> charge{};  ///< 0 to 1, where the body has a battery of its own
-  std::array<double, 24> distance_m = filled<24>(hal::eyebot::kProximityRange_m);
+  std::array<double, 24> distance_m = filled<24>(std::numeric_limits<double>::infinity());
   std::array<double, 24> light = filled<24>(0.5);  ///< 0 dark, 1 saturated
   /// By each head of the scanner, from the robot's axis; infinite where nothing is.
   std::array<double, 4> scan_m = filled<4>(std::numeric_limits<double>::infinity());

@@ -4,11 +4,14 @@
 #include <cmath>
 
 #include "hal/angle.hpp"
+#include "hal/device/body_sensors.hpp"
+#include "hal/device/distance_scanner.hpp"
 
 namespace tandem::bridges::eyebot_emulator {
 namespace {
 
-namespace spec = hal::eyebot;
+constexpr std::size_t kRadioBytes = 10;  // of a message, at most
+
 using hal::TimeNs;
 using std::numbers::pi;
 
@@ -208,7 +211,8 @@ void Eyebot::sample_scan(TimeNs at) {
     sample.head = static_cast<std::uint8_t>(head);
     sample.utime = utime(at);
     sample.angle_rad = hal::wrapped(senses_.scanner_rad + 0.5 * pi * static_cast<double>(head));
-    sample.range_m = range_m < spec::kScannerMin_m ? -1.0 : range_m > spec::kScannerMax_m ? -2.0 : range_m;
+    const hal::ScannerHead& seen = robot_part<hal::ScannerPart>().heads[head];
+    sample.range_m = range_m < seen.min_m ? -1.0 : range_m > seen.max_m ? -2.0 : range_m;
     scan_.push_back(sample);
   }
 }
@@ -272,7 +276,8 @@ void Eyebot::report(TimeNs at) {
     const bool motors = supervisor_.motors();
     BatteryReport battery;
     battery.charge = battery_.charge();
-    battery.voltage_V = spec::kBatteryEmpty_V + battery.charge * (spec::kBatteryFull_V - spec::kBatteryEmpty_V);
+    const auto& cells = robot_part<hal::BatteryPart>();
+    battery.voltage_V = cells.empty_V + battery.charge * (cells.full_V - cells.empty_V);
     battery.current_A = motors ? kAmpere : 0.05 * kAmpere;
     battery.time_left_s = battery_.time_left_s(motors);
     battery.low = battery.charge < EmulatedBattery::kLow;
@@ -450,8 +455,8 @@ Answer Eyebot::obey(const CommandBody& body, std::int32_t session, TimeNs at) {
     command_.scanner_rad_s = static_cast<double>(scanner->rpm) * pi / 30.0;
     command_.scanner_rad = static_cast<double>(scanner->angle);
   } else if (const auto* radio = std::get_if<RadioCommand>(&body)) {
-    if (radio->data.size() > spec::kRabPayload) {
-      return {Verdict::RejectedRange, "the radio sends " + std::to_string(spec::kRabPayload) + " bytes at most"};
+    if (radio->data.size() > kRadioBytes) {
+      return {Verdict::RejectedRange, "the radio sends " + std::to_string(kRadioBytes) + " bytes at most"};
     }
     command_.radio = radio->data;
   }

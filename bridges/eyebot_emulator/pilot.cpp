@@ -8,8 +8,6 @@
 namespace tandem::bridges::eyebot_emulator {
 namespace {
 
-namespace spec = hal::eyebot;
-
 constexpr double kPull_per_s = 2.0;      // speed for a distance, near the target
 constexpr double kTurn_per_s = 3.0;      // turn rate for an angle
 constexpr double kBraking = 0.5;         // of the greatest acceleration: room for what the body is late
@@ -65,7 +63,7 @@ Answer Pilot::go_to(const PositionCommand& command, const BodySenses& here) {
   if (!fence_.contains(target)) return {Verdict::RejectedRange, "the place is outside of the fence"};
   target_ = target;
   yaw_rad_ = command.use_yaw ? std::optional(yaw_rad) : std::nullopt;
-  most_m_s_ = spec::kMaxSpeed_m_s;
+  most_m_s_ = robot_part<hal::Quadrotor>().max_speed_m_s;
   if (command.max_speed > 0.0F) most_m_s_ = std::min(most_m_s_, static_cast<double>(command.max_speed));
   return {};
 }
@@ -78,11 +76,11 @@ Answer Pilot::fly(const VelocityCommand& command) {
 
 void Pilot::stay(const BodySenses& here) {
   Vec3 rest = here.p_WB;
-  const double stopping_s = 0.5 * norm(here.v_WB) / (kBraking * spec::kMaxAcceleration_m_s2);
+  const double stopping_s = 0.5 * norm(here.v_WB) / (kBraking * robot_part<hal::Quadrotor>().max_acceleration_m_s2);
   for (std::size_t i = 0; i < 3; ++i) rest[i] += stopping_s * here.v_WB[i];
   target_ = fence_.nearest_inside(rest, kFenceMargin_m);
   yaw_rad_.reset();
-  most_m_s_ = spec::kMaxSpeed_m_s;
+  most_m_s_ = robot_part<hal::Quadrotor>().max_speed_m_s;
 }
 
 Guidance Pilot::towards_target(const BodySenses& here) const {
@@ -90,18 +88,20 @@ Guidance Pilot::towards_target(const BodySenses& here) const {
   Vec3 way{};
   for (std::size_t i = 0; i < 3; ++i) way[i] = target_[i] - here.p_WB[i];
   const double distance_m = norm(way);
-  const double can_stop_m_s = std::sqrt(2.0 * kBraking * spec::kMaxAcceleration_m_s2 * distance_m);
+  const double can_stop_m_s =
+      std::sqrt(2.0 * kBraking * robot_part<hal::Quadrotor>().max_acceleration_m_s2 * distance_m);
   const double speed_m_s = std::min({kPull_per_s * distance_m, can_stop_m_s, most_m_s_});
   if (distance_m > 0.0) guidance.velocity_m_s = scaled(way, speed_m_s / distance_m);
   if (yaw_rad_) {
     const double turn_rad = hal::turn_between(here.yaw_rad(), *yaw_rad_);
-    guidance.yaw_rad_s = std::clamp(kTurn_per_s * turn_rad, -spec::kMaxTurn_rad_s, spec::kMaxTurn_rad_s);
+    guidance.yaw_rad_s = std::clamp(kTurn_per_s * turn_rad, -robot_part<hal::Quadrotor>().max_turn_rad_s,
+                                    robot_part<hal::Quadrotor>().max_turn_rad_s);
   }
   return guidance;
 }
 
 Guidance Pilot::guide(const Supervisor& supervisor, const BodySenses& here) const {
-  const double vertical_m_s = std::min(supervisor.speed_m_s(), spec::kMaxSpeed_m_s);
+  const double vertical_m_s = std::min(supervisor.speed_m_s(), robot_part<hal::Quadrotor>().max_speed_m_s);
   switch (supervisor.mode()) {
     case Mode::TakeOff:
     case Mode::Attaching:
@@ -115,8 +115,9 @@ Guidance Pilot::guide(const Supervisor& supervisor, const BodySenses& here) cons
     case Mode::Velocity: {
       const bool body = velocity_.frame == static_cast<std::int8_t>(Frame::Body);
       const Vec3 v = body ? turned(velocity_.vel, here.yaw_rad()) : velocity_.vel;
-      return {limited(v, spec::kMaxSpeed_m_s),
-              std::clamp(velocity_.yaw_rate, -spec::kMaxTurn_rad_s, spec::kMaxTurn_rad_s)};
+      return {limited(v, robot_part<hal::Quadrotor>().max_speed_m_s),
+              std::clamp(velocity_.yaw_rate, -robot_part<hal::Quadrotor>().max_turn_rad_s,
+                         robot_part<hal::Quadrotor>().max_turn_rad_s)};
     }
     case Mode::Off:
     case Mode::Idle:

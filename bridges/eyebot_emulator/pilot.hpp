@@ -23,7 +23,7 @@ struct Guidance {
   double yaw_rad_s = 0.0;
 };
 
-/// Remembers the setpoint. Speeds are limited to those of the data sheet.
+/// Remembers the setpoint. Speeds are limited to those of the kind.
 class Pilot {
  public:
   explicit Pilot(const Fence& fence) : fence_(fence) {}
@@ -44,7 +44,7 @@ class Pilot {
   Fence fence_;
   Vec3 target_{};
   std::optional<double> yaw_rad_{};
-  double most_m_s_ = hal::eyebot::kMaxSpeed_m_s;
+  double most_m_s_ = robot_part<hal::Quadrotor>().max_speed_m_s;
   VelocityCommand velocity_{};
 };
 

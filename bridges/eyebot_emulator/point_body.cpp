@@ -4,11 +4,14 @@
 #include <cmath>
 
 #include "hal/angle.hpp"
+#include "hal/device/distance_scanner.hpp"
+#include "hal/device/flight.hpp"
+#include "hal/device/pan_tilt.hpp"
+#include "hal/device/ring_sensors.hpp"
 
 namespace tandem::bridges::eyebot_emulator {
 namespace {
 
-namespace spec = hal::eyebot;
 using std::numbers::pi;
 
 constexpr hal::TimeNs kStepNs = 10 * hal::kNsPerMs;
@@ -88,7 +91,7 @@ void PointBody::move(double dt_s) {
   } else if (command_.motors) {
     Vec3 dv{};
     for (std::size_t i = 0; i < 3; ++i) dv[i] = command_.velocity_m_s[i] - v_[i];
-    const double most = spec::kMaxAcceleration_m_s2 * dt_s;
+    const double most = robot_part<hal::Quadrotor>().max_acceleration_m_s2 * dt_s;
     const double scale = norm(dv) > most ? most / norm(dv) : 1.0;
     for (std::size_t i = 0; i < 3; ++i) v_[i] += scale * dv[i];
     yaw_rad_ = hal::wrapped(yaw_rad_ + command_.yaw_rad_s * dt_s);
@@ -107,25 +110,26 @@ void PointBody::move(double dt_s) {
     a_ = {};
   }
   if (!room_) return;
-  const double free_x_m = std::max(0.0, 0.5 * room_->length_x_m - spec::kBodyRadius_m);
-  const double free_y_m = std::max(0.0, 0.5 * room_->length_y_m - spec::kBodyRadius_m);
+  const double free_x_m = std::max(0.0, 0.5 * room_->length_x_m - robot_part<hal::Body>().radius_m);
+  const double free_y_m = std::max(0.0, 0.5 * room_->length_y_m - robot_part<hal::Body>().radius_m);
   stopped_by(p_[0], v_[0], -free_x_m, free_x_m);
   stopped_by(p_[1], v_[1], -free_y_m, free_y_m);
-  if (stopped_by(p_[2], v_[2], 0.0, std::max(0.0, room_->height_m - spec::kHeight_m))) a_ = {};
+  if (stopped_by(p_[2], v_[2], 0.0, std::max(0.0, room_->height_m - robot_part<hal::Body>().height_m))) a_ = {};
 }
 
 void PointBody::turn_devices(double dt_s) {
   if (command_.scanner == ScannerMode::Speed) {
-    const double rate = std::clamp(command_.scanner_rad_s, -spec::kScannerTurn_rad_s, spec::kScannerTurn_rad_s);
+    const double most_rad_s = robot_part<hal::ScannerPart>().turn_rad_s;
+    const double rate = std::clamp(command_.scanner_rad_s, -most_rad_s, most_rad_s);
     scanner_rad_ = hal::wrapped(scanner_rad_ + rate * dt_s);
   }
   if (command_.scanner == ScannerMode::Position) {
-    scanner_rad_ = turn_to(scanner_rad_, command_.scanner_rad, spec::kScannerTurn_rad_s * dt_s);
+    scanner_rad_ = turn_to(scanner_rad_, command_.scanner_rad, robot_part<hal::ScannerPart>().turn_rad_s * dt_s);
   }
-  pan_rad_ = turn_to(pan_rad_, command_.pan_rad, spec::kHeadTurn_rad_s * dt_s);
-  const double most = spec::kHeadTurn_rad_s * dt_s;
-  tilt_rad_ += std::clamp(std::clamp(command_.tilt_rad, -spec::kHeadMostTilt_rad, spec::kHeadMostTilt_rad) - tilt_rad_,
-                          -most, most);
+  pan_rad_ = turn_to(pan_rad_, command_.pan_rad, robot_part<hal::HeadPart>().turn_rad_s * dt_s);
+  const double most = robot_part<hal::HeadPart>().turn_rad_s * dt_s;
+  const double most_tilt = robot_part<hal::HeadPart>().max_tilt_rad;
+  tilt_rad_ += std::clamp(std::clamp(command_.tilt_rad, -most_tilt, most_tilt) - tilt_rad_, -most, most);
 }
 
 double PointBody::distance_to_wall_m(double direction_rad, double offset_m) const {
@@ -143,10 +147,10 @@ BodySenses PointBody::sense(hal::TimeNs now) {
   senses.q_WB = leaning(yaw_rad_, a_);
   senses.turn_rad_s = {0.0, 0.0, command_.motors ? command_.yaw_rad_s : 0.0};
   senses.on_ground = p_[2] <= kContact_m;
-  senses.ground_m = p_[2] <= spec::kAltimeter_m ? p_[2] : -1.0;
+  senses.ground_m = p_[2] <= robot_part<hal::AltimeterPart>().range_m ? p_[2] : -1.0;
   senses.at_ceiling = held();
   senses.ceiling_m = -1.0;
-  if (room_ && room_->height_m - top_m() <= spec::kAltimeter_m)
+  if (room_ && room_->height_m - top_m() <= robot_part<hal::AltimeterPart>().range_m)
     senses.ceiling_m = std::max(0.0, room_->height_m - top_m());
   senses.scanner_rad = scanner_rad_;
   senses.pan_rad = pan_rad_;
@@ -155,8 +159,9 @@ BodySenses PointBody::sense(hal::TimeNs now) {
   if (!scans) senses.scan_m.fill(std::numeric_limits<double>::infinity());
   if (!room_) return senses;
   for (std::size_t i = 0; i < senses.distance_m.size(); ++i) {
-    const double wall_m = distance_to_wall_m(yaw_rad_ + spec::kRing[i].bearing_rad, spec::kRingRadius_m);
-    senses.distance_m[i] = std::min({senses.distance_m[i], wall_m, spec::kProximityRange_m});
+    const hal::Mount& mount = robot_part<hal::ProximityPart>().mounts[i];
+    const double wall_m = distance_to_wall_m(yaw_rad_ + mount.bearing_rad, std::hypot(mount.x_m, mount.y_m));
+    senses.distance_m[i] = std::min({senses.distance_m[i], wall_m, robot_part<hal::ProximityPart>().range_m});
   }
   for (std::size_t head = 0; head < senses.scan_m.size() && scans; ++head) {
     const double direction_rad = yaw_rad_ + scanner_rad_ + 0.5 * pi * static_cast<double>(head);

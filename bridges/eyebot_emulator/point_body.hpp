@@ -19,7 +19,7 @@ struct Start {
   double yaw_rad = 0.0;
 };
 
-/// Follows the commanded velocity with the data sheet's greatest acceleration while the motors run, and falls while
+/// Follows the commanded velocity with the kind's greatest acceleration while the motors run, and falls while
 /// they do not. Ground, ceiling and walls stop it without a bounce; the magnet holds it where its top touches the
 /// ceiling. It leans as its acceleration asks: thrust along the body's z axis. Scanner, pan and tilt turn at speeds of
 /// their own. Moves only when a call tells it a later time, in steps of 10 ms. One thread at a time.
@@ -45,7 +45,7 @@ class PointBody final : public EmulatedBody {
   void move(double dt_s);
   void turn_devices(double dt_s);
   double distance_to_wall_m(double direction_rad, double offset_m) const;
-  double top_m() const { return p_[2] + hal::eyebot::kHeight_m; }
+  double top_m() const { return p_[2] + robot_part<hal::Body>().height_m; }
   bool held() const;
 
   std::optional<Room> room_;

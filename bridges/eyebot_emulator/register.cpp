@@ -40,7 +40,7 @@ hal::Status run_type(const EmulatorRequest& request, SharedPorts* ports, const s
 
 const EmulatorType kType{
     .name = "eyebot",
-    .kind = hal::eyebot::kDataSheet.kind,
+    .kind = hal::eyebot::kName,
     .summary = "Eye-bots on a network: lcm:udpm://GROUP:PORT?ttl=0.",
     .puppet = "<eyebot_puppet library=\"puppet\" …> with flight_task, quadrotor_speed, flight_state and positioning",
     .needs = &port_types_of<hal::FlightTask, hal::QuadrotorSpeed, hal::FlightState, hal::Positioning>,

@@ -6,7 +6,6 @@
 
 #include "bridges/eyebot_emulator/commands.hpp"
 #include "bridges/eyebot_emulator/sender.hpp"
-#include "hal/spec/eyebot.hpp"
 #include "hal/time.hpp"
 
 namespace tandem::bridges::eyebot_emulator {
@@ -59,10 +58,10 @@ class Supervisor {
  public:
   static constexpr hal::TimeNs kLinkLostNs = 2 * hal::kNsPerSecond;   ///< without a heartbeat of the hub in control
   static constexpr hal::TimeNs kLinkGoneNs = 10 * hal::kNsPerSecond;  ///< it lands, and may be taken by another
-  static constexpr double kTakeOffHeight_m = 0.95 * hal::eyebot::kTakeOff_m;  ///< where taking off turns into hovering
-  static constexpr double kDetachDrop_m = 0.3;                                ///< [chosen] where detaching ends
-  static constexpr double kClimb_m_s = hal::eyebot::kClimb_m_s;               ///< the robot's own speeds
-  static constexpr double kSink_m_s = hal::eyebot::kSink_m_s;                 ///< as the protocol's blind descent, too
+  static constexpr double kTakeOffHeight_m = 0.95;                    ///< where taking off, to 1 m, turns into hovering
+  static constexpr double kDetachDrop_m = 0.3;                        ///< [chosen] where detaching ends
+  static constexpr double kClimb_m_s = 0.5;                           ///< the robot's own speeds
+  static constexpr double kSink_m_s = 0.3;                            ///< as the protocol's blind descent, too
 
   /// From Off to Idle.
   void power_on();

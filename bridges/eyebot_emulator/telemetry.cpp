@@ -19,11 +19,11 @@
 
 #include "hal/angle.hpp"
 #include "hal/check.hpp"
+#include "hal/device/cameras.hpp"
+#include "hal/device/ring_sensors.hpp"
 
 namespace tandem::bridges::eyebot_emulator {
 namespace {
-
-namespace spec = hal::eyebot;
 
 eyebot_header_t head(const Header& h) {
   return {h.utime, h.seq, h.session};
@@ -59,9 +59,12 @@ struct Direction {
 
 /// Where a pixel looks, in the body frame. The upper edge of the image is ahead of a camera that looks down.
 Direction direction_of(const Blob& blob, const BodySenses& senses) {
-  const double per_px = 2.0 * std::tan(0.5 * spec::kCameraAperture_rad) / spec::kCameraWidth_px;
-  const double ahead = (0.5 * spec::kCameraHeight_px - blob.y_px) * per_px;
-  const double left = (0.5 * spec::kCameraWidth_px - blob.x_px) * per_px;
+  const auto& camera = robot_part<hal::CameraPart>();
+  const auto width = static_cast<double>(camera.width_px);
+  const auto height = static_cast<double>(camera.height_px);
+  const double per_px = 2.0 * std::tan(0.5 * camera.aperture_rad) / width;
+  const double ahead = (0.5 * height - blob.y_px) * per_px;
+  const double left = (0.5 * width - blob.x_px) * per_px;
   const double c = std::cos(senses.tilt_rad);
   const double s = std::sin(senses.tilt_rad);
   const double along = c * ahead + s;
@@ -180,7 +183,8 @@ Bytes write_proximity(const Header& header, const BodySenses& senses) {
   eyebot_prox_t m{};
   m.hdr = head(header);
   for (std::size_t i = 0; i < senses.distance_m.size(); ++i) {
-    m.proximity[i] = as_float(std::clamp(1.0 - senses.distance_m[i] / spec::kProximityRange_m, 0.0, 1.0));
+    m.proximity[i] =
+        as_float(std::clamp(1.0 - senses.distance_m[i] / robot_part<hal::ProximityPart>().range_m, 0.0, 1.0));
   }
   return encoded<eyebot_prox_t_encoded_size, eyebot_prox_t_encode>(m);
 }
@@ -217,8 +221,8 @@ Bytes write_blobs(const Header& header, const BodySenses& senses) {
   }
   eyebot_blobs_t m{};
   m.hdr = head(header);
-  m.width = static_cast<std::int16_t>(spec::kCameraWidth_px);
-  m.height = static_cast<std::int16_t>(spec::kCameraHeight_px);
+  m.width = static_cast<std::int16_t>(robot_part<hal::CameraPart>().width_px);
+  m.height = static_cast<std::int16_t>(robot_part<hal::CameraPart>().height_px);
   m.n = static_cast<std::int32_t>(blobs.size());
   m.blob = blobs.data();
   return encoded<eyebot_blobs_t_encoded_size, eyebot_blobs_t_encode>(m);
@@ -228,7 +232,8 @@ Bytes write_image(const Header& header, const BodySenses& senses) {
   constexpr int kWidth = 64;
   constexpr int kHeight = 48;
   constexpr std::int32_t kGrey = 'G' | 'R' << 8 | 'E' << 16 | 'Y' << 24;
-  const double m_per_px = 2.0 * std::max(0.0, senses.p_WB[2]) * std::tan(0.5 * spec::kCameraAperture_rad) / kWidth;
+  const double m_per_px =
+      2.0 * std::max(0.0, senses.p_WB[2]) * std::tan(0.5 * robot_part<hal::CameraPart>().aperture_rad) / kWidth;
   std::vector<std::uint8_t> pixels;
   for (int row = 0; row < kHeight; ++row) {
     for (int column = 0; column < kWidth; ++column) {

@@ -8,7 +8,7 @@
 #include "bridges/footbot/stop_body.hpp"
 #include "bridges/link/link_text.hpp"
 #include "hal/check.hpp"
-#include "hal/spec/footbot.hpp"
+#include "hal/robot/footbot.hpp"
 
 namespace tandem::bridges::footbot {
 namespace {
@@ -127,7 +127,7 @@ std::string FootbotBridge::link() const {
 StopMessages FootbotBridge::stop_messages() const {
   const std::lock_guard lock(mutex_);
   return {.robot = settings_.driver.robot.id,
-          .kind = std::string(hal::footbot::kDataSheet.kind),
+          .kind = std::string(hal::footbot::kName),
           .link = absolute_link(settings_.link),
           .body = to_stop_body(driver_.wiring().rest_messages()),
           .version = driver_.wiring().rest_version()};

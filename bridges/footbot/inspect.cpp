@@ -7,7 +7,7 @@
 #include "bridges/aseba/network.hpp"
 #include "bridges/aseba/reopening_messages.hpp"
 #include "bridges/link/link_text.hpp"
-#include "hal/spec/footbot.hpp"
+#include "hal/robot/footbot.hpp"
 
 namespace tandem::bridges::footbot {
 namespace {
@@ -130,9 +130,8 @@ hal::Status run(const InspectRequest& request) {
 }  // namespace
 
 const InspectorType& inspector_type() noexcept {
-  static const InspectorType type{hal::footbot::kDataSheet.kind,
-                                  "can:INTERFACE, slcan:DEVICE@RATE, serial:DEVICE@921600, tcp:HOST:PORT", &reads,
-                                  &run};
+  static const InspectorType type{
+      hal::footbot::kName, "can:INTERFACE, slcan:DEVICE@RATE, serial:DEVICE@921600, tcp:HOST:PORT", &reads, &run};
   return type;
 }
 

@@ -9,7 +9,7 @@
 #include "hal/element.hpp"
 #include "hal/element_options.hpp"
 #include "hal/file_type.hpp"
-#include "hal/spec/footbot.hpp"
+#include "hal/robot/footbot.hpp"
 
 namespace tandem::bridges::footbot {
 namespace {
@@ -69,12 +69,11 @@ std::vector<InputFile> inputs(const BridgeRequest& request) {
   return {{"robot's map", map_of(request)}};
 }
 
-const BridgeType kType{.name = hal::footbot::kDataSheet.kind,
+const BridgeType kType{.name = hal::footbot::kName,
                        .summary = "can:INTERFACE, slcan:DEVICE@RATE, serial:DEVICE@921600, tcp:HOST:PORT",
                        .make = &make,
                        .check = &check,
-                       .inputs = &inputs,
-                       .battery = {.charge = 0.0, .supply_V = hal::footbot::kBatteryLow_V}};
+                       .inputs = &inputs};
 
 std::string check_map(const std::string& path, hal::Problems& problems) {
   const auto map = read_footbot_map(path, problems);

@@ -18,8 +18,6 @@
 namespace tandem::bridges::footbot {
 namespace {
 
-namespace spec = hal::footbot;
-
 bool feeds(const FootbotMap& map, const hal::PortType& type, std::string_view field = {}) {
   const auto is = [&](const FieldMap& f) { return f.port == &type && (field.empty() || f.field->name == field); };
   for (const NodeMap& node : map.nodes) {
@@ -43,7 +41,9 @@ const std::vector<const hal::PortType*>& port_types() {
 }
 
 FootbotRobot::FootbotRobot(RobotSettings settings, const FootbotMap& map)
-    : BridgedRobot("foot-bot", spec::kDataSheet, std::move(settings), port_types()) {
+    : BridgedRobot("foot-bot", hal::footbot::kind(), std::move(settings), port_types()),
+      wheel_base_m_(kind().drive() != nullptr ? kind().drive()->wheel_base_m : 0.0),
+      heads_(kind().part<hal::ScannerPart>()) {
   const bool counts = feeds(map, hal::port_type<hal::WheelEncoders>());
   for (const hal::PortType* type : port_types()) {
     const bool made_here =
@@ -52,12 +52,15 @@ FootbotRobot::FootbotRobot(RobotSettings settings, const FootbotMap& map)
       leave_out(*type, " in its map: no variable there is for it; add it to the map");
   }
   tells_holding_ = feeds(map, hal::port_type<hal::Gripper>(), "holding");
-  port<hal::Proximity>().range_m = static_cast<float>(spec::kProximityRange_m);
+  if (const auto* const part = kind().part<hal::ProximityPart>(); part != nullptr)
+    port<hal::Proximity>().range_m = static_cast<float>(part->range_m);
   auto& scanner = port<hal::DistanceScanner>();
-  scanner.short_min_m = static_cast<float>(spec::kShortMin_m);
-  scanner.short_max_m = static_cast<float>(spec::kShortMax_m);
-  scanner.long_min_m = static_cast<float>(spec::kLongMin_m);
-  scanner.long_max_m = static_cast<float>(spec::kLongMax_m);
+  if (heads_ != nullptr) {
+    scanner.short_min_m = static_cast<float>(heads_->heads[0].min_m);
+    scanner.short_max_m = static_cast<float>(heads_->heads[0].max_m);
+    scanner.long_min_m = static_cast<float>(heads_->heads[1].min_m);
+    scanner.long_max_m = static_cast<float>(heads_->heads[1].max_m);
+  }
   // Heads that no variable of the map tells of see nothing, not something at 0 m.
   for (std::size_t head = 0; head < hal::DistanceScanner::kHeads; ++head) {
     scanner.distance_m[head] = hal::DistanceScanner::is_short(head) ? scanner.short_max_m : scanner.long_max_m;
@@ -84,7 +87,7 @@ void FootbotRobot::reckon() noexcept {
     return;
   }
   // Along the arc's chord, whose direction is the mean of the headings before and after.
-  const double turn = (right - left) / spec::kWheelBase_m;
+  const double turn = wheel_base_m_ > 0.0 ? (right - left) / wheel_base_m_ : 0.0;
   const double half = 0.5 * turn;
   const double chord = 0.5 * (left + right) * (std::fabs(half) < 1e-9 ? 1.0 : hal::sin(half) / half);
   place.x_m += chord * hal::cos(place.heading_rad + half);
@@ -97,8 +100,8 @@ void FootbotRobot::complete(hal::Tick tick) noexcept {
   reckon();
   auto& scanner = port<hal::DistanceScanner>();
   scanner.samples = static_cast<std::uint32_t>(scanner.count / hal::DistanceScanner::kHeads);
-  for (std::size_t head = 0; head < spec::kScanner.size() && scanner.samples == 1; ++head) {
-    const double angle = static_cast<double>(scanner.turn_rad) + spec::kScanner[head].bearing_rad;
+  for (std::size_t head = 0; heads_ != nullptr && head < heads_->heads.size() && scanner.samples == 1; ++head) {
+    const double angle = static_cast<double>(scanner.turn_rad) + heads_->heads[head].bearing_rad;
     scanner.angle_rad[head] = static_cast<float>(hal::wrapped(angle));
   }
   auto& gripper = port<hal::Gripper>();

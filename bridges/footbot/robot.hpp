@@ -4,7 +4,8 @@
 
 #include "bridges/bridged_robot.hpp"
 #include "bridges/footbot/map.hpp"
-#include "hal/spec/footbot.hpp"
+#include "hal/device/distance_scanner.hpp"
+#include "hal/robot/footbot.hpp"
 
 namespace tandem::bridges::footbot {
 
@@ -26,7 +27,9 @@ class FootbotRobot final : public BridgedRobot {
  private:
   void reckon() noexcept;
 
-  bool tells_holding_ = false;  // the map does
+  double wheel_base_m_;
+  const hal::ScannerPart* heads_;  // null: it has no scanner
+  bool tells_holding_ = false;     // the map does
   bool reckoning_ = false;
   double left_m_ = 0.0, right_m_ = 0.0;  // that the odometry has seen
 };

@@ -6,7 +6,7 @@
 #include "bridges/aseba/message_link_text.hpp"
 #include "bridges/footbot/stop_body.hpp"
 #include "bridges/link/link.hpp"
-#include "hal/spec/footbot.hpp"
+#include "hal/robot/footbot.hpp"
 
 namespace tandem::bridges::footbot {
 namespace {
@@ -40,7 +40,7 @@ std::unique_ptr<guardian::Stopper> make(const StopMessages& messages, guardian::
 }  // namespace
 
 const guardian::StopperType& stopper_type() noexcept {
-  static const guardian::StopperType type{hal::footbot::kDataSheet.kind, &make};
+  static const guardian::StopperType type{hal::footbot::kName, &make};
   return type;
 }
 

@@ -5,12 +5,12 @@
 #include <limits>
 #include <vector>
 
-#include "hal/spec/footbot.hpp"
+#include "hal/robot/footbot.hpp"
 #include "hal/time.hpp"
 
 namespace tandem::bridges::footbot_emulator {
 
-inline constexpr std::size_t kRadioBytes = hal::footbot::kRabPayload;
+inline constexpr std::size_t kRadioBytes = 10;  // of a message, says the protocol
 
 /// A message that the range-and-bearing board has heard.
 struct Heard {
@@ -21,12 +21,20 @@ struct Heard {
   friend bool operator==(const Heard&, const Heard&) = default;
 };
 
-/// Everything that the robot's devices measure at one instant. Rings are in the order of the data sheet. The defaults
+/// What is known of the emulated robot as a body, which simulator and bridge know, too. What its modules say is their
+/// own business.
+template <class Part>
+const Part& robot_part() {
+  return *hal::footbot::kind().part<Part>();
+}
+
+/// Everything that the robot's devices measure at one instant. Rings are in the order of the kind's parts. The defaults
 /// are a robot at rest on white ground in the middle of nowhere.
 struct BodySenses {
-  std::array<double, 24> distance_m = filled<24>(hal::footbot::kProximityRange_m);  ///< from each infrared sensor
-  std::array<double, 24> light = filled<24>(0.5);                                   ///< 0 dark, 1 saturated
-  std::array<double, 8> base_ground = filled<8>(1.0);                               ///< 0 black, 1 white
+  std::array<double, 24> distance_m =
+      filled<24>(std::numeric_limits<double>::infinity());  ///< from each infrared sensor
+  std::array<double, 24> light = filled<24>(0.5);           ///< 0 dark, 1 saturated
+  std::array<double, 8> base_ground = filled<8>(1.0);       ///< 0 black, 1 white
   std::array<double, 4> motor_ground = filled<4>(1.0);
   /// By each head of the scanner, from the robot's axis; infinite where nothing is.
   std::array<double, 4> scan_m = filled<4>(std::numeric_limits<double>::infinity());

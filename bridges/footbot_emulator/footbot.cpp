@@ -5,14 +5,14 @@
 #include <tuple>
 
 #include "bridges/footbot_emulator/raw_units.hpp"
+#include "hal/device/distance_scanner.hpp"
 
 namespace tandem::bridges::footbot_emulator {
 namespace {
 
-namespace spec = hal::footbot;
-
 constexpr hal::TimeNs kLoopNs = 10 * hal::kNsPerMs;  // modules look at their devices at least so often
-constexpr auto kPulsePeriodNs = static_cast<std::int64_t>(spec::kPulsePeriod_s * 1e9);
+constexpr auto kPulsePeriodNs = static_cast<std::int64_t>(kPulsePeriod_s * 1e9);
+constexpr std::size_t kBeacon = 12;       // behind the ring
 constexpr std::uint16_t kHeardEvent = 0;  // number of the radio's user event
 
 template <std::size_t n, class Convert>
@@ -189,7 +189,8 @@ void Footbot::sensors_to_variables(hal::TimeNs at) {
   fill(ground.last(4), s.motor_ground, motor_ground_raw);
   const auto range = module(Place::Scanner).words("scan.range");
   for (std::size_t i = 0; i < range.size(); ++i) {
-    range[i] = scan_raw(s.scan_m[i], spec::kScanner[i].min_m, spec::kScanner[i].max_m);
+    const hal::ScannerHead& head = robot_part<hal::ScannerPart>().heads[i];
+    range[i] = scan_raw(s.scan_m[i], head.min_m, head.max_m);
   }
   module(Place::Scanner).words("scan.angle")[0] = angle_raw(s.scanner_rad);
   module(Place::Turret).words("turret.angle")[0] = angle_raw(s.turret_rad);
@@ -222,7 +223,7 @@ BodyCommand Footbot::commanded(bool gripper_busy) const {
   for (std::size_t color = 0; color < kColors.size(); ++color) {
     const auto words = module(Place::Leds).words(kColors[color]);
     for (std::size_t i = 0; i < words.size(); ++i) c.rgb[3 * i + color] = light(words[i]);
-    c.rgb[3 * spec::kBeacon + color] = light(beacon[color]);
+    c.rgb[3 * kBeacon + color] = light(beacon[color]);
   }
   // A radio that has nothing but zeros to say is silent.
   c.radio = bytes_of(module(Place::RangeAndBearing).words("rab.tx"));

@@ -5,11 +5,13 @@
 #include <limits>
 
 #include "hal/angle.hpp"
+#include "hal/device/distance_scanner.hpp"
+#include "hal/device/ring_sensors.hpp"
+#include "hal/device/turret.hpp"
 
 namespace tandem::bridges::footbot_emulator {
 namespace {
 
-namespace spec = hal::footbot;
 using std::numbers::pi;
 
 constexpr hal::TimeNs kStepNs = 10 * hal::kNsPerMs;  // between two looks at the walls
@@ -50,7 +52,8 @@ void KinematicBody::advance(hal::TimeNs now) {
 
 void KinematicBody::roll(double dt_s) {
   const double v_m_s = 0.5 * (command_.left_m_s + command_.right_m_s);
-  const double turn_rad = (command_.right_m_s - command_.left_m_s) / spec::kWheelBase_m * dt_s;
+  const double turn_rad =
+      (command_.right_m_s - command_.left_m_s) / robot_part<hal::DifferentialDrive>().wheel_base_m * dt_s;
   // The chord of the arc that the centre drives.
   const double half = 0.5 * turn_rad;
   const double chord_m = v_m_s * dt_s * (std::fabs(half) < 1e-9 ? 1.0 : std::sin(half) / half);
@@ -58,8 +61,8 @@ void KinematicBody::roll(double dt_s) {
   pose_.y_m += chord_m * std::sin(pose_.heading_rad + half);
   pose_.heading_rad = hal::wrapped(pose_.heading_rad + turn_rad);
   if (!arena_) return;
-  const double free_x_m = std::max(0.0, 0.5 * arena_->length_x_m - spec::kBodyRadius_m);
-  const double free_y_m = std::max(0.0, 0.5 * arena_->length_y_m - spec::kBodyRadius_m);
+  const double free_x_m = std::max(0.0, 0.5 * arena_->length_x_m - robot_part<hal::Body>().radius_m);
+  const double free_y_m = std::max(0.0, 0.5 * arena_->length_y_m - robot_part<hal::Body>().radius_m);
   pose_.x_m = std::clamp(pose_.x_m, -free_x_m, free_x_m);
   pose_.y_m = std::clamp(pose_.y_m, -free_y_m, free_y_m);
 }
@@ -67,11 +70,11 @@ void KinematicBody::roll(double dt_s) {
 void KinematicBody::turn_devices(hal::TimeNs until, double dt_s) {
   if (command_.turret == TurretMode::Speed) turret_rad_ = hal::wrapped(turret_rad_ + command_.turret_rad_s * dt_s);
   if (command_.turret == TurretMode::Position) {
-    turret_rad_ = turn_to(turret_rad_, command_.turret_rad, spec::kTurretTurn_rad_s * dt_s);
+    turret_rad_ = turn_to(turret_rad_, command_.turret_rad, robot_part<hal::TurretPart>().turn_rad_s * dt_s);
   }
   if (command_.scanner == ScannerMode::Speed) scanner_rad_ = hal::wrapped(scanner_rad_ + command_.scanner_rad_s * dt_s);
   if (command_.scanner == ScannerMode::Position) {
-    scanner_rad_ = turn_to(scanner_rad_, command_.scanner_rad, spec::kScannerTurn_rad_s * dt_s);
+    scanner_rad_ = turn_to(scanner_rad_, command_.scanner_rad, robot_part<hal::ScannerPart>().turn_rad_s * dt_s);
   }
   if (trying_grip_ && until >= grip_tried_at_) {
     trying_grip_ = false;
@@ -88,7 +91,7 @@ double KinematicBody::distance_to_wall_m(double x_m, double y_m, double directio
 BodySenses KinematicBody::sense(hal::TimeNs now) {
   advance(now);
   BodySenses senses = surroundings;
-  senses.turn_rad_s = (command_.right_m_s - command_.left_m_s) / spec::kWheelBase_m;
+  senses.turn_rad_s = (command_.right_m_s - command_.left_m_s) / robot_part<hal::DifferentialDrive>().wheel_base_m;
   senses.scanner_rad = scanner_rad_;
   senses.turret_rad = turret_rad_;
   senses.gripper_rad = gripper_rad_;
@@ -99,13 +102,13 @@ BodySenses KinematicBody::sense(hal::TimeNs now) {
   const double c = std::cos(pose_.heading_rad);
   const double s = std::sin(pose_.heading_rad);
   for (std::size_t i = 0; i < senses.distance_m.size(); ++i) {
-    const hal::Mount& m = spec::kRing[i];
+    const hal::Mount& m = robot_part<hal::ProximityPart>().mounts[i];
     const double free_m = distance_to_wall_m(pose_.x_m + c * m.x_m - s * m.y_m, pose_.y_m + s * m.x_m + c * m.y_m,
                                              pose_.heading_rad + m.bearing_rad);
-    senses.distance_m[i] = std::min({senses.distance_m[i], free_m, spec::kProximityRange_m});
+    senses.distance_m[i] = std::min({senses.distance_m[i], free_m, robot_part<hal::ProximityPart>().range_m});
   }
   for (std::size_t i = 0; i < senses.scan_m.size() && scans; ++i) {
-    const double direction_rad = pose_.heading_rad + scanner_rad_ + spec::kScanner[i].bearing_rad;
+    const double direction_rad = pose_.heading_rad + scanner_rad_ + robot_part<hal::ScannerPart>().heads[i].bearing_rad;
     senses.scan_m[i] = std::min(senses.scan_m[i], distance_to_wall_m(pose_.x_m, pose_.y_m, direction_rad));
   }
   return senses;

@@ -4,12 +4,14 @@
 #include <cmath>
 #include <numbers>
 
-#include "hal/spec/footbot.hpp"
+#include "bridges/footbot_emulator/body.hpp"
+#include "hal/device/distance_scanner.hpp"
+#include "hal/device/ring_sensors.hpp"
+#include "hal/device/turret.hpp"
 
 namespace tandem::bridges::footbot_emulator {
 namespace {
 
-namespace spec = hal::footbot;
 using std::numbers::pi;
 
 /// Rounds and keeps within what a word can say; what is no number reads as 0.
@@ -22,11 +24,11 @@ std::int16_t raw(double value, double low = -32768.0, double high = 32767.0) {
 
 double wheel_m_s(std::int16_t speed_raw) {
   const int pulses = std::clamp<int>(speed_raw, -kMostSpeedRaw, kMostSpeedRaw);
-  return pulses / (spec::kPulsesPerMetre * spec::kPulsePeriod_s);
+  return pulses / (kPulsesPerMetre * kPulsePeriod_s);
 }
 
 std::int16_t proximity_raw(double distance_m) {
-  return raw(4096.0 * (1.0 - distance_m / spec::kProximityRange_m), 0.0, 4096.0);
+  return raw(4096.0 * (1.0 - distance_m / robot_part<hal::ProximityPart>().range_m), 0.0, 4096.0);
 }
 
 std::int16_t level_raw(double level) {
@@ -54,11 +56,12 @@ double angle_rad(std::int16_t raw) {
 }
 
 double turret_rad_s(std::int16_t raw) {
-  return std::clamp<int>(raw, -4, 4) * spec::kTurretTurn_rad_s / 4.0;
+  return std::clamp<int>(raw, -4, 4) * robot_part<hal::TurretPart>().turn_rad_s / 4.0;
 }
 
 double scanner_rad_s(std::int16_t raw) {
-  return std::clamp(raw * 2.0 * pi / 60.0, -spec::kScannerTurn_rad_s, spec::kScannerTurn_rad_s);
+  const double most_rad_s = robot_part<hal::ScannerPart>().turn_rad_s;
+  return std::clamp(raw * 2.0 * pi / 60.0, -most_rad_s, most_rad_s);
 }
 
 std::int16_t thousandths_raw(double value) {

@@ -8,6 +8,8 @@ namespace tandem::bridges::footbot_emulator {
 
 /// Pulses per 5 ms that the wheels' controllers keep to: 30 cm/s.
 inline constexpr int kMostSpeedRaw = 72;
+inline constexpr double kPulsesPerMetre = 48312.0;  ///< of the wheels' encoders
+inline constexpr double kPulsePeriod_s = 0.005;     ///< speeds are in pulses a period
 double wheel_m_s(std::int16_t speed_raw);
 
 /// 0 nothing within reach, 4096 contact, straight between.

@@ -35,7 +35,7 @@ hal::Status run_type(const EmulatorRequest& request, SharedPorts* ports, const s
 
 const EmulatorType kType{
     .name = "footbot",
-    .kind = hal::footbot::kDataSheet.kind,
+    .kind = hal::footbot::kName,
     .summary = "A foot-bot's modules behind a CAN adapter or its switch: pty:NAME, can:INTERFACE, tcp-listen:PORT.",
     .puppet = "<footbot_puppet library=\"puppet\" …>",
     .needs = &port_types_of<hal::WheelSpeeds>,

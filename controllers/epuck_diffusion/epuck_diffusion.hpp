@@ -2,9 +2,9 @@
 #pragma once
 #include "hal/controller.hpp"
 #include "hal/device/range_and_bearing.hpp"
+#include "hal/device/ring_directions.hpp"
 #include "hal/device/ring_sensors.hpp"
 #include "hal/device/wheels.hpp"
-#include "hal/spec/ring_directions.hpp"
 
 namespace tandem::controllers {
 

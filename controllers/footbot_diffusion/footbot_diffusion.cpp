@@ -38,7 +38,7 @@ Vector sum(const hal::Proximity& proximity, const hal::RingDirections& look) noe
 FootbotDiffusion::FootbotDiffusion(hal::Robot& robot, const Params& params)
     : proximity_(robot.sensor<hal::Proximity>()),
       wheels_(robot.actuator<hal::WheelSpeeds>()),
-      directions_(hal::ring_directions(robot.data_sheet().proximity)),
+      directions_(hal::ring_directions(robot.part<hal::ProximityPart>().mounts)),
       delta_(static_cast<float>(params.delta)),
       tan_alpha_(static_cast<float>(hal::tan(params.alpha_rad))),
       velocity_m_s_(params.velocity_m_s) {

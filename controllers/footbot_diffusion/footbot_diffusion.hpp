@@ -7,9 +7,9 @@
 #include "hal/device/cameras.hpp"
 #include "hal/device/leds.hpp"
 #include "hal/device/range_and_bearing.hpp"
+#include "hal/device/ring_directions.hpp"
 #include "hal/device/ring_sensors.hpp"
 #include "hal/device/wheels.hpp"
-#include "hal/spec/ring_directions.hpp"
 
 namespace tandem::controllers {
 

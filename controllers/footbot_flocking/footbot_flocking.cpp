@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "controllers/steering/colors.hpp"
-#include "hal/spec/footbot.hpp"
 #include "hal/vector.hpp"
 
 namespace tandem::controllers {
@@ -19,11 +18,12 @@ FootbotFlocking::FootbotFlocking(hal::Robot& robot, const Params& params)
       light_(robot.sensor<hal::Light>()),
       wheels_(robot.actuator<hal::WheelSpeeds>()),
       leds_(robot.actuator<hal::RingLeds>()),
-      light_mounts_(robot.data_sheet().light),
+      light_mounts_(robot.part<hal::LightPart>().mounts),
+      beacon_(robot.part<hal::LedsPart>().beacon_led()),
       params_(params) {}
 
 void FootbotFlocking::step() noexcept {
-  leds_.set(hal::footbot::kBeacon, hal::kRed);
+  leds_.set(beacon_, hal::kRed);
   if (camera_.validity != hal::Validity::Fresh || light_.validity != hal::Validity::Fresh) {
     wheels_.set(0.0, 0.0);
     return;

@@ -50,6 +50,7 @@ class FootbotFlocking final : public hal::Controller {
   hal::WheelSpeeds& wheels_;
   hal::RingLeds& leds_;
   std::span<const hal::Mount> light_mounts_;
+  std::size_t beacon_;
   Params params_;
 };
 

@@ -30,8 +30,8 @@ FootbotFollow::FootbotFollow(hal::Robot& robot, const Params& params)
       proximity_(robot.sensor<hal::Proximity>()),
       wheels_(robot.actuator<hal::WheelSpeeds>()),
       leds_(robot.actuator<hal::RingLeds>()),
-      mounts_(robot.data_sheet().proximity),
-      beacon_(robot.data_sheet().leds.size() - 1),
+      mounts_(robot.part<hal::ProximityPart>().mounts),
+      beacon_(robot.part<hal::LedsPart>().beacon_led()),
       params_(params) {}
 
 void FootbotFollow::step() noexcept {

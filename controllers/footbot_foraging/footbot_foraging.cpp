@@ -5,7 +5,6 @@
 
 #include "controllers/steering/drive.hpp"
 #include "controllers/steering/nearby.hpp"
-#include "hal/spec/footbot.hpp"
 
 namespace tandem::controllers {
 namespace {
@@ -26,8 +25,9 @@ FootbotForaging::FootbotForaging(hal::Robot& robot, const Params& params)
       clock_(robot.sensor<hal::Clock>()),
       wheels_(robot.actuator<hal::WheelSpeeds>()),
       leds_(robot.actuator<hal::RingLeds>()),
-      proximity_mounts_(robot.data_sheet().proximity),
-      light_mounts_(robot.data_sheet().light),
+      proximity_mounts_(robot.part<hal::ProximityPart>().mounts),
+      light_mounts_(robot.part<hal::LightPart>().mounts),
+      beacon_(robot.part<hal::LedsPart>().beacon_led()),
       params_(params),
       random_(robot.random()) {
   robot.publish("state", state_, {"rest", "search", "bring", "give up"}, "what it does");
@@ -54,9 +54,7 @@ void FootbotForaging::enter(State state) noexcept {
   since_ns_ = clock_.now_ns;
   inside_ns_ = -1;
   drift_rad_ = 0.0;
-  leds_.set(hal::footbot::kBeacon, state == State::Bring    ? hal::kGreen
-                                   : state == State::Search ? hal::kBlue
-                                                            : hal::kBlack);
+  leds_.set(beacon_, state == State::Bring ? hal::kGreen : state == State::Search ? hal::kBlue : hal::kBlack);
 }
 
 void FootbotForaging::rest() noexcept {

@@ -61,6 +61,7 @@ class FootbotForaging final : public hal::Controller {
   hal::RingLeds& leds_;
   std::span<const hal::Mount> proximity_mounts_;
   std::span<const hal::Mount> light_mounts_;
+  std::size_t beacon_;
   Params params_;
   hal::Random random_;
   State state_ = State::Rest;

@@ -24,8 +24,8 @@ FootbotManual::FootbotManual(hal::Robot& robot, const Params& params)
       wheels_(robot.actuator<hal::WheelSpeeds>()),
       turret_(where_listed<hal::TurretDrive>(robot)),
       gripper_(where_listed<hal::GripperDrive>(robot)),
-      wheel_base_m_(robot.data_sheet().wheel_base_m),
-      fastest_m_s_(robot.data_sheet().max_wheel_speed_m_s),
+      wheel_base_m_(robot.part<hal::DifferentialDrive>().wheel_base_m),
+      fastest_m_s_(robot.part<hal::DifferentialDrive>().max_speed_m_s),
       silence_ns_(static_cast<hal::TimeNs>(params.silence_s * 1e9)),
       heard_ns_(-silence_ns_),
       datagrams_(std::make_shared<Datagrams>(params.address, static_cast<std::uint16_t>(params.port))) {}

@@ -18,7 +18,7 @@ constexpr double kTurned_rad = 0.001;
 FootbotShuttle::FootbotShuttle(hal::Robot& robot, const Params& params)
     : odometry_(robot.sensor<hal::Odometry>()),
       wheels_(robot.actuator<hal::WheelSpeeds>()),
-      wheel_base_m_(robot.data_sheet().wheel_base_m),
+      wheel_base_m_(robot.part<hal::DifferentialDrive>().wheel_base_m),
       params_(params) {}
 
 void FootbotShuttle::step() noexcept {

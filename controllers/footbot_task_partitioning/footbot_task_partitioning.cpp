@@ -5,6 +5,7 @@
 
 #include "controllers/steering/drive.hpp"
 #include "hal/angle.hpp"
+#include "hal/device/ring_sensors.hpp"
 #include "hal/vector.hpp"
 
 namespace tandem::controllers {
@@ -39,8 +40,8 @@ FootbotTaskPartitioning::FootbotTaskPartitioning(hal::Robot& robot, const Params
       wheels_(robot.actuator<hal::WheelSpeeds>()),
       send_(robot.actuator<hal::RangeAndBearingSend>()),
       leds_(robot.actuator<hal::RingLeds>()),
-      proximity_mounts_(robot.data_sheet().proximity),
-      light_mounts_(robot.data_sheet().light),
+      proximity_mounts_(robot.part<hal::ProximityPart>().mounts),
+      light_mounts_(robot.part<hal::LightPart>().mounts),
       params_(params),
       grasp_(robot, params.broadest_m),
       random_(robot.random()) {

@@ -23,9 +23,9 @@ Grasp::Grasp(hal::Robot& robot, double broadest_m)
       clock_(robot.sensor<hal::Clock>()),
       wheels_(robot.actuator<hal::WheelSpeeds>()),
       claws_(robot.actuator<hal::GripperDrive>()),
-      mounts_(robot.data_sheet().proximity),
+      mounts_(robot.part<hal::ProximityPart>().mounts),
       broadest_m_(broadest_m),
-      reach_m_(robot.data_sheet().gripper_reach_m) {}
+      reach_m_(robot.part<hal::GripperPart>().reach_m) {}
 
 Thing Grasp::thing() const noexcept {
   return nearest_thing(proximity_, mounts_, heard_);

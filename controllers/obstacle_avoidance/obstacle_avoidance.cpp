@@ -7,7 +7,7 @@ namespace tandem::controllers {
 ObstacleAvoidance::ObstacleAvoidance(hal::Robot& robot, const Params& params)
     : proximity_(robot.sensor<hal::Proximity>()),
       wheels_(robot.actuator<hal::WheelSpeeds>()),
-      directions_(hal::ring_directions(robot.data_sheet().proximity)),
+      directions_(hal::ring_directions(robot.part<hal::ProximityPart>().mounts)),
       params_(params) {}
 
 void ObstacleAvoidance::step() noexcept {

@@ -1,9 +1,9 @@
 // Smooth obstacle avoidance for any two-wheeled robot with a ring of proximity sensors.
 #pragma once
 #include "hal/controller.hpp"
+#include "hal/device/ring_directions.hpp"
 #include "hal/device/ring_sensors.hpp"
 #include "hal/device/wheels.hpp"
-#include "hal/spec/ring_directions.hpp"
 
 namespace tandem::controllers {
 

@@ -5,7 +5,7 @@
 
 #include "hal/device/range_and_bearing.hpp"
 #include "hal/device/ring_sensors.hpp"
-#include "hal/spec/data_sheet.hpp"
+#include "hal/robot_kind.hpp"
 #include "hal/vector.hpp"
 
 namespace tandem::controllers {

@@ -13,7 +13,7 @@ namespace {
 
 /// What follows the kind of robot that ARGoS' name of a device begins with; empty where it begins with none.
 std::string_view without_robot(std::string_view argos_name, const hal::Catalog& catalog) {
-  for (std::string kind : catalog.names(hal::DataSheet::kCategory)) {
+  for (std::string kind : catalog.names(hal::RobotKind::kCategory)) {
     std::erase(kind, '-');
     if (argos_name.starts_with(kind + "_")) return argos_name.substr(kind.size() + 1);
   }

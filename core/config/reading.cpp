@@ -13,7 +13,7 @@ std::vector<std::string> words(std::string_view list) {
 }
 
 KnownNames::KnownNames(const hal::Catalog& all)
-    : robots(all.names(hal::DataSheet::kCategory)),
+    : robots(all.names(hal::RobotKind::kCategory)),
       engines(all.names(KnownEngine::kCategory)),
       media(all.names(MediumType::kCategory)),
       catalog(all) {

@@ -7,9 +7,10 @@
 #include <vector>
 
 #include "core/scenario/scenario.hpp"
+#include "hal/device/cameras.hpp"
 #include "hal/params.hpp"
-#include "hal/spec/eyebot.hpp"
-#include "hal/spec/footbot.hpp"
+#include "hal/robot/eyebot.hpp"
+#include "hal/robot/footbot.hpp"
 
 namespace tandem::core::schema {
 
@@ -265,18 +266,17 @@ struct Robot {
   std::int64_t rab_data_size = -1;
   void describe(ParamVisitor& v) {
     v.text("id", id, "Name; inside <distribute> the beginning of the names.");
-    v.number("rab_range", rab_range_m, unit::m, {-1.0, 1e4}, "Reach of range-and-bearing; negative: the data sheet's.");
-    v.integer("rab_data_size", rab_data_size, {-1, 10},
-              "Bytes of a range-and-bearing message; negative: the data sheet's.");
+    v.number("rab_range", rab_range_m, unit::m, {-1.0, 1e4}, "Reach of range-and-bearing; negative: the kind's.");
+    v.integer("rab_data_size", rab_data_size, {-1, 10}, "Bytes of a range-and-bearing message; negative: the kind's.");
   }
 };
 
 struct FootBot : Robot {
   static constexpr ElementInfo kElement{"foot-bot", "A foot-bot.", "id", "body controller battery bridge tracker"};
-  double omni_aperture_rad = hal::footbot::kOmniCameraAperture_rad;
-  double aperture_rad = hal::footbot::kCameraAperture_rad;
-  double focal_length_m = hal::footbot::kCameraFocalLength_m;
-  double range_m = hal::footbot::kCameraRange_m;
+  double omni_aperture_rad = hal::footbot::kind().part<hal::OmniCameraPart>()->aperture_rad;
+  double aperture_rad = hal::footbot::kind().part<hal::CameraPart>()->aperture_rad;
+  double focal_length_m = hal::footbot::kind().part<hal::CameraPart>()->focal_length_m;
+  double range_m = hal::footbot::kind().part<hal::CameraPart>()->range_m;
   bool front = false;
   void describe(ParamVisitor& v) {
     Robot::describe(v);
@@ -294,9 +294,9 @@ struct FootBot : Robot {
 
 struct EyeBot : Robot {
   static constexpr ElementInfo kElement{"eye-bot", "An eye-bot.", "id", "body controller battery bridge tracker"};
-  double aperture_rad = hal::eyebot::kCameraAperture_rad;
-  double focal_length_m = hal::eyebot::kCameraFocalLength_m;
-  double range_m = hal::eyebot::kCameraRange_m;
+  double aperture_rad = hal::eyebot::kind().part<hal::CameraPart>()->aperture_rad;
+  double focal_length_m = hal::eyebot::kind().part<hal::CameraPart>()->focal_length_m;
+  double range_m = hal::eyebot::kind().part<hal::CameraPart>()->range_m;
   bool front = false;
   void describe(ParamVisitor& v) {
     Robot::describe(v);

@@ -28,7 +28,7 @@ void each_body_in_line(const SpaceStores& stores, std::size_t row, See&& see) no
     const auto radius_m = static_cast<double>(o.radius_m);
     if (o.row() == row || dx * dx + dy * dy > radius_m * radius_m) return;
     const double low_m = stores.base_m(o.row());
-    see(low_m, low_m + stores.sheet_of_row(o.row()).body_height_m);
+    see(low_m, low_m + stores.kind_of_row(o.row()).body.height_m);
   });
 }
 
@@ -59,7 +59,7 @@ double room_below_m(const SpaceStores& stores, std::size_t row, bool bodies) noe
 
 double room_above_m(const SpaceStores& stores, std::size_t row) noexcept {
   const Bodies& b = stores.bodies;
-  const double top_m = stores.base_m(row) + stores.sheet_of_row(row).body_height_m;
+  const double top_m = stores.base_m(row) + stores.kind_of_row(row).body.height_m;
   double lowest_m = ceiling_m(stores, row);
   const auto consider = [&](double low_m) {
     if (low_m >= top_m - kWithin_m) lowest_m = std::min(lowest_m, low_m);

@@ -57,13 +57,18 @@ struct FlownVelocity {
   void describe(hal::FieldList& f) const { f.add("velocity", velocity_m_s, hal::unit::m_s, "in W"); }
 };
 
+/// 0: robots of this kind have no wheels.
+double wheel_base_m(const hal::RobotKind& kind) noexcept {
+  return kind.drive() != nullptr ? kind.drive()->wheel_base_m : 0.0;
+}
+
 /// From the wheels' speeds: forward their mean's change, sideways speed times turn rate, upwards gravity. Of robots
 /// that fly: the change of their velocity and gravity, in the body's frame.
 class AccelerometerSensor final : public Sensor {
  public:
-  AccelerometerSensor(const hal::DataSheet& sheet, double noise, const BlockColumns& columns)
-      : wheel_base_m_(sheet.wheel_base_m),
-        flies_(sheet.flies),
+  AccelerometerSensor(const hal::RobotKind& kind, double noise, const BlockColumns& columns)
+      : wheel_base_m_(wheel_base_m(kind)),
+        flies_(kind.flies()),
         noise_m_s2_(noise),
         driven_(columns.find<DrivenSpeed>()),
         flown_(columns.find<FlownVelocity>()) {}
@@ -92,7 +97,7 @@ class AccelerometerSensor final : public Sensor {
   std::array<double, 3> driven(const DeviceContext& context, std::size_t row, std::size_t i) noexcept {
     const Bodies& b = context.stores.bodies;
     const double speed = 0.5 * (b.left_m_s[row] + b.right_m_s[row]);
-    const double turn = (b.right_m_s[row] - b.left_m_s[row]) / wheel_base_m_;
+    const double turn = wheel_base_m_ > 0.0 ? (b.right_m_s[row] - b.left_m_s[row]) / wheel_base_m_ : 0.0;
     const std::array<double, 3> force{(speed - driven_[i].speed_m_s) / context.tick_s, speed * turn, kGravity_m_s2};
     driven_[i].speed_m_s = speed;
     return force;
@@ -115,19 +120,15 @@ class AccelerometerSensor final : public Sensor {
   FlownVelocity* flown_;  // of robots that fly
 };
 
-bool has_accelerometer(const hal::DataSheet& sheet) {
-  return sheet.wheel_base_m > 0.0 || sheet.flies;
-}
-
 template <class Options>
 Recipe<Sensor> make_accelerometer(const Element& element, Problems& problems, const DeviceSetup& setup) {
   const auto options = read_options<Options>(element, problems);
   double noise = 0.0;
   if constexpr (requires { options.noise_level_m_s2; }) noise = options.noise_level_m_s2;
-  const auto make = [&sheet = setup.sheet, noise](const BlockColumns& columns) {
-    return std::make_unique<AccelerometerSensor>(sheet, noise, columns);
+  const auto make = [&kind = setup.kind, noise](const BlockColumns& columns) {
+    return std::make_unique<AccelerometerSensor>(kind, noise, columns);
   };
-  return {make, {setup.sheet.flies ? keeps<FlownVelocity>() : keeps<DrivenSpeed>()}};
+  return {make, {setup.kind.flies() ? keeps<FlownVelocity>() : keeps<DrivenSpeed>()}};
 }
 
 // --- gyroscope ---
@@ -181,16 +182,12 @@ class GyroscopeSensor final : public Sensor {
   double noise_rad_s_;
 };
 
-bool has_gyroscope(const hal::DataSheet& sheet) {
-  return sheet.gyroscope;
-}
-
 template <class Options>
 Recipe<Sensor> make_gyroscope(const Element& element, Problems& problems, const DeviceSetup& setup) {
   const auto options = read_options<Options>(element, problems);
   double noise = 0.0;
   if constexpr (requires { options.noise_level_rad_s; }) noise = options.noise_level_rad_s;
-  return [base = setup.sheet.wheel_base_m, noise](const BlockColumns&) {
+  return [base = wheel_base_m(setup.kind), noise](const BlockColumns&) {
     return std::make_unique<GyroscopeSensor>(base, noise);
   };
 }
@@ -210,7 +207,7 @@ struct SoundNoise {
 /// distance in the far field. Sources add up, at most to 1.
 class MicrophoneSensor final : public Sensor {
  public:
-  MicrophoneSensor(const hal::DataSheet& sheet, double noise) : mounts_(sheet.microphones), noise_(noise) {}
+  MicrophoneSensor(const hal::MicrophonesPart& part, double noise) : mounts_(part.mounts), noise_(noise) {}
 
   void sense(const DeviceContext& context, void* ports) noexcept override {
     auto* microphones = static_cast<hal::Microphones*>(ports);
@@ -250,17 +247,14 @@ class MicrophoneSensor final : public Sensor {
   double noise_;
 };
 
-bool has_microphones(const hal::DataSheet& sheet) {
-  return !sheet.microphones.empty();
-}
-
 template <class Options>
 Recipe<Sensor> make_microphones(const Element& element, Problems& problems, const DeviceSetup& setup) {
   const auto options = read_options<Options>(element, problems);
   double noise = 0.0;
   if constexpr (requires { options.noise_level; }) noise = options.noise_level;
-  return
-      [&sheet = setup.sheet, noise](const BlockColumns&) { return std::make_unique<MicrophoneSensor>(sheet, noise); };
+  return [&part = *setup.kind.part<hal::MicrophonesPart>(), noise](const BlockColumns&) {
+    return std::make_unique<MicrophoneSensor>(part, noise);
+  };
 }
 
 // --- battery ---
@@ -279,9 +273,9 @@ class BatterySensor final : public Sensor {
   BatterySensor(const DeviceSetup& setup, double noise, const BlockColumns& columns)
       : config_(setup.item.battery),
         noise_(noise),
-        full_V_(setup.sheet.battery_full_V),
-        empty_V_(setup.sheet.battery_empty_V),
-        wheel_base_m_(setup.sheet.wheel_base_m),
+        full_V_(setup.kind.part<hal::BatteryPart>()->full_V),
+        empty_V_(setup.kind.part<hal::BatteryPart>()->empty_V),
+        wheel_base_m_(wheel_base_m(setup.kind)),
         charges_(columns.find<ChargeState>()) {
     by_time_ = config_.model != "motion";
     by_motion_ = config_.model != "time";
@@ -336,10 +330,6 @@ class BatterySensor final : public Sensor {
   bool by_motion_ = false;
 };
 
-bool has_battery(const hal::DataSheet& sheet) {
-  return sheet.battery_full_V > 0.0;
-}
-
 template <class Options>
 Recipe<Sensor> make_battery(const Element& element, Problems& problems, const DeviceSetup& setup) {
   const auto options = read_options<Options>(element, problems);
@@ -387,7 +377,7 @@ class ClockSensor final : public Sensor {
   double jitter_s_;
 };
 
-bool always(const hal::DataSheet&) {
+bool always(const hal::RobotKind&) {
   return true;
 }
 
@@ -403,29 +393,30 @@ Recipe<Sensor> make_clock(const Element& element, Problems& problems, const Devi
 
 std::vector<DeviceType> body_device_types() {
   return {
-      sensor_type("accelerometer", "default", "From the change of speed; noise where asked for.", &has_accelerometer,
-                  &make_accelerometer<ForceNoise<0>>, &describe_options<ForceNoise<0>>),
-      sensor_type("accelerometer", "ideal", "From the change of speed.", &has_accelerometer,
+      sensor_type("accelerometer", "default", "From the change of speed; noise where asked for.",
+                  &has<hal::AccelerometerPart>, &make_accelerometer<ForceNoise<0>>, &describe_options<ForceNoise<0>>),
+      sensor_type("accelerometer", "ideal", "From the change of speed.", &has<hal::AccelerometerPart>,
                   &make_accelerometer<NoOptions>, &describe_options<NoOptions>),
-      sensor_type("accelerometer", "noisy", "From the change of speed, with normal noise.", &has_accelerometer,
-                  &make_accelerometer<ForceNoise<200>>, &describe_options<ForceNoise<200>>),
-      sensor_type("gyroscope", "default", "Turn rates of the body; noise where asked for.", &has_gyroscope,
+      sensor_type("accelerometer", "noisy", "From the change of speed, with normal noise.",
+                  &has<hal::AccelerometerPart>, &make_accelerometer<ForceNoise<200>>,
+                  &describe_options<ForceNoise<200>>),
+      sensor_type("gyroscope", "default", "Turn rates of the body; noise where asked for.", &has<hal::GyroscopePart>,
                   &make_gyroscope<RateNoise<0>>, &describe_options<RateNoise<0>>),
-      sensor_type("gyroscope", "ideal", "Turn rates of the body.", &has_gyroscope, &make_gyroscope<NoOptions>,
+      sensor_type("gyroscope", "ideal", "Turn rates of the body.", &has<hal::GyroscopePart>, &make_gyroscope<NoOptions>,
                   &describe_options<NoOptions>),
-      sensor_type("gyroscope", "noisy", "Turn rates of the body, with normal noise.", &has_gyroscope,
+      sensor_type("gyroscope", "noisy", "Turn rates of the body, with normal noise.", &has<hal::GyroscopePart>,
                   &make_gyroscope<RateNoise<20>>, &describe_options<RateNoise<20>>),
-      sensor_type("microphones", "default", "Sources around; noise where asked for.", &has_microphones,
+      sensor_type("microphones", "default", "Sources around; noise where asked for.", &has<hal::MicrophonesPart>,
                   &make_microphones<SoundNoise<0>>, &describe_options<SoundNoise<0>>),
-      sensor_type("microphones", "ideal", "Sources around.", &has_microphones, &make_microphones<NoOptions>,
+      sensor_type("microphones", "ideal", "Sources around.", &has<hal::MicrophonesPart>, &make_microphones<NoOptions>,
                   &describe_options<NoOptions>),
-      sensor_type("microphones", "noisy", "Sources around and background noise.", &has_microphones,
+      sensor_type("microphones", "noisy", "Sources around and background noise.", &has<hal::MicrophonesPart>,
                   &make_microphones<SoundNoise<20>>, &describe_options<SoundNoise<20>>),
-      sensor_type("battery", "default", "The robot's discharge model; noise where asked for.", &has_battery,
+      sensor_type("battery", "default", "The robot's discharge model; noise where asked for.", &has<hal::BatteryPart>,
                   &make_battery<ChargeNoise<0>>, &describe_options<ChargeNoise<0>>),
-      sensor_type("battery", "ideal", "The robot's discharge model.", &has_battery, &make_battery<NoOptions>,
+      sensor_type("battery", "ideal", "The robot's discharge model.", &has<hal::BatteryPart>, &make_battery<NoOptions>,
                   &describe_options<NoOptions>),
-      sensor_type("battery", "noisy", "The robot's discharge model, with noise.", &has_battery,
+      sensor_type("battery", "noisy", "The robot's discharge model, with noise.", &has<hal::BatteryPart>,
                   &make_battery<ChargeNoise<10>>, &describe_options<ChargeNoise<10>>),
       sensor_type("clock", "default", "The run's time; jitter where asked for.", &always, &make_clock<ClockNoise<0>>,
                   &describe_options<ClockNoise<0>>),

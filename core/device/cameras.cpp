@@ -2,32 +2,88 @@
 #include "hal/device/cameras.hpp"
 
 #include <bit>
+#include <span>
 
 #include "core/device/sight.hpp"
 #include "core/device/types.hpp"
 #include "core/medium/led/led.hpp"
 #include "core/random/random.hpp"
 #include "core/space/mechanisms.hpp"
+#include "hal/device/leds.hpp"
+#include "hal/device/pan_tilt.hpp"
 
 namespace tandem::core {
 
 namespace {
 
-/// Radius of the disc on the ground that the camera on the axis sees; 0 without one.
-double omni_reach_m(const hal::DataSheet& sheet, const CameraConfig& config) noexcept {
-  const double aperture = config.omni_aperture_rad < 0.0 ? sheet.omni_camera.aperture_rad : config.omni_aperture_rad;
-  return sheet.omni_camera.height_m * std::tan(aperture);
+/// Radius of the disc on the ground that the camera on the axis sees.
+double omni_reach_m(const hal::OmniCameraPart& camera, const CameraConfig& config) noexcept {
+  const double aperture = config.omni_aperture_rad < 0.0 ? camera.aperture_rad : config.omni_aperture_rad;
+  return camera.height_m * std::tan(aperture);
 }
 
-/// The camera with a lens, with what the file says in the place of the data sheet's figures.
-hal::CameraSheet camera_of(const hal::DataSheet& sheet, const CameraConfig& config) noexcept {
-  hal::CameraSheet camera = sheet.camera;
+/// The camera with a lens, with what the file says in the place of the kind's figures.
+hal::CameraPart camera_of(const hal::RobotKind& kind, const CameraConfig& config) {
+  hal::CameraPart camera = *kind.part<hal::CameraPart>();
   if (config.aperture_rad >= 0.0) camera.aperture_rad = config.aperture_rad;
   if (config.focal_length_m >= 0.0) camera.focal_length_m = config.focal_length_m;
   if (config.range_m >= 0.0) camera.range_m = config.range_m;
   if (config.front) camera.usual = camera.front;
   return camera;
 }
+
+/// Where robots of a kind carry their lights, numbered as in ShownLeds.
+class LampPlaces {
+ public:
+  explicit LampPlaces(const hal::RobotKind& kind) : kind_(&kind) {
+    double widest2 = 0.0;
+    const auto place = [&](const std::vector<hal::Mount>& ring) {
+      for (const hal::Mount& led : ring) widest2 = std::max(widest2, led.x_m * led.x_m + led.y_m * led.y_m);
+      return std::span<const hal::Mount>(ring);
+    };
+    if (const auto* leds = kind.part<hal::LedsPart>(); leds != nullptr) {
+      ring_ = place(leds->mounts);
+      ring_spread_ = leds->spread;
+      on_turret_ = leds->on_turret;
+    }
+    if (const auto* upper = kind.part<hal::UpperLedsPart>(); upper != nullptr) {
+      upper_ = place(upper->mounts);
+      upper_spread_ = upper->spread;
+    }
+    const auto* const body = kind.part<hal::BodyLedPart>();
+    const auto* const front = kind.part<hal::FrontLedPart>();
+    const auto* const camera = kind.part<hal::CameraPart>();
+    if (body != nullptr) body_ = body->mount;
+    if (front != nullptr) front_ = front->mount;
+    if (camera != nullptr) camera_ = {0.0, camera->usual.x_m, 0.0, camera->usual.z_m};
+    widest_m_ = std::max(std::sqrt(widest2), body != nullptr || front != nullptr ? kind.body.radius_m : 0.0);
+  }
+
+  const hal::RobotKind& kind() const noexcept { return *kind_; }
+  /// How far they sit from the axis.
+  double widest_m() const noexcept { return widest_m_; }
+  bool on_turret() const noexcept { return on_turret_; }
+  const hal::Mount& mount(std::size_t i) const noexcept {
+    return i == ShownLeds::kBody     ? body_
+           : i == ShownLeds::kFront  ? front_
+           : i == ShownLeds::kCamera ? camera_
+           : i >= ShownLeds::kUpper  ? upper_[i - ShownLeds::kUpper]
+                                     : ring_[i];
+  }
+  const hal::LightSpread& spread(std::size_t i) const noexcept {
+    static constexpr hal::LightSpread kEverywhere;
+    if (i == ShownLeds::kBody || i == ShownLeds::kFront) return kEverywhere;
+    return i >= ShownLeds::kUpper && i < ShownLeds::kCamera ? upper_spread_ : ring_spread_;
+  }
+
+ private:
+  const hal::RobotKind* kind_;
+  std::span<const hal::Mount> ring_, upper_;
+  hal::LightSpread ring_spread_, upper_spread_;
+  hal::Mount body_, front_, camera_;
+  double widest_m_ = 0.0;
+  bool on_turret_ = false;
+};
 
 constexpr double kSurface_m = 0.002;  // an LED this deep in a surface is seen all the same: it sits on it
 
@@ -49,13 +105,16 @@ class Lookout {
         medium_(setup.channel),
         turrets_(columns.of_all<TurretState>()) {
     between_.reserve(kRoom);
+    lamps_.reserve(kRoom);
   }
 
   /// To be called in every tick before it looks.
   void measure(const SpaceStores& stores) noexcept {
     widest_body_m_ = widest_body_m(stores);
     widest_ring_m_ = 0.0;
-    for (const RobotGroup& group : stores.groups) widest_ring_m_ = std::max(widest_ring_m_, ring_m(*group.sheet));
+    lamps_.clear();
+    for (const RobotGroup& group : stores.groups)
+      widest_ring_m_ = std::max(widest_ring_m_, lamps_.emplace_back(*group.kind).widest_m());
   }
 
   /// Calls `see(p, color)`, p from the camera to the light in W, for every light of the camera's medium that robot
@@ -92,15 +151,6 @@ class Lookout {
     return dx * dx + dy * dy <= reach_m * reach_m;
   }
 
-  /// How far LEDs sit from the axis of a kind of robot.
-  static double ring_m(const hal::DataSheet& sheet) noexcept {
-    double widest2 = 0.0;
-    for (const auto& ring : {sheet.leds, sheet.upper_leds}) {
-      for (const hal::Mount& led : ring) widest2 = std::max(widest2, led.x_m * led.x_m + led.y_m * led.y_m);
-    }
-    return std::max(std::sqrt(widest2), sheet.body_lamps ? sheet.body_radius_m : 0.0);
-  }
-
   template <class Consider>
   void look_at_robots(const SpaceStores& stores, std::size_t row, const Point& from, double reach_m,
                       Consider&& consider) noexcept {
@@ -110,19 +160,19 @@ class Lookout {
       const std::size_t other = o.row();
       const ShownLeds& shown = leds_.of(other);
       if (other == row || shown.lit == 0 || stores.senses_really(row, other, sense_)) return;
-      const hal::DataSheet& sheet = stores.sheet_of_row(other);
-      const double spread_m = ring_m(sheet);
+      const LampPlaces& lamps = lamps_[stores.blocks[stores.robots[b.entity[other]].block].group];
+      const double spread_m = lamps.widest_m();
       if (!near(b.x_m[other], b.y_m[other], from, reach_m + spread_m)) return;
       gather(stores, row, other, from, b.x_m[other], b.y_m[other], spread_m);
       for (std::uint64_t left = shown.lit; left != 0; left &= left - 1) {
         const auto i = static_cast<std::size_t>(std::countr_zero(left));
         if (!same_medium(shown.medium(i), medium_)) continue;
-        const Point at = place_of(stores, other, sheet, i);
-        const hal::LightSpread& spread = spread_of(sheet, i);
+        const Point at = place_of(stores, other, lamps, i);
+        const hal::LightSpread& spread = lamps.spread(i);
         if (!shines_at(spread, at, from)) continue;
         // A robot's body hides the LEDs on its far side, but not the light in it.
         const bool hidden =
-            i != ShownLeds::kBody && !spread.past_body && behind_own_body(stores, other, sheet, from, at);
+            i != ShownLeds::kBody && !spread.past_body && behind_own_body(stores, other, lamps.kind(), from, at);
         if (!hidden) consider(at, shown.color[i]);
       }
     });
@@ -147,18 +197,12 @@ class Lookout {
     }
   }
 
-  Point place_of(const SpaceStores& stores, std::size_t row, const hal::DataSheet& sheet,
-                 std::size_t i) const noexcept {
+  Point place_of(const SpaceStores& stores, std::size_t row, const LampPlaces& lamps, std::size_t i) const noexcept {
     const Bodies& b = stores.bodies;
-    const hal::Mount beside_camera{0.0, sheet.camera.usual.x_m, 0.0, sheet.camera.usual.z_m};
-    const hal::Mount& mount = i == ShownLeds::kBody     ? sheet.body_lamp
-                              : i == ShownLeds::kFront  ? sheet.front_lamp
-                              : i == ShownLeds::kCamera ? beside_camera
-                              : i >= ShownLeds::kUpper  ? sheet.upper_leds[i - ShownLeds::kUpper]
-                                                        : sheet.leds[i];
+    const hal::Mount& mount = lamps.mount(i);
     double c = b.cos_h[row];
     double s = b.sin_h[row];
-    const TurretState* turret = sheet.leds_on_turret ? stores.state_of(turrets_, row) : nullptr;
+    const TurretState* turret = lamps.on_turret() ? stores.state_of(turrets_, row) : nullptr;
     if (turret != nullptr && turret->angle_rad != 0.0) {
       const double ct = std::cos(turret->angle_rad);
       const double st = std::sin(turret->angle_rad);
@@ -168,12 +212,6 @@ class Lookout {
     }
     return {b.x_m[row] + c * mount.x_m - s * mount.y_m, b.y_m[row] + s * mount.x_m + c * mount.y_m,
             stores.base_m(row) + mount.z_m};
-  }
-
-  static const hal::LightSpread& spread_of(const hal::DataSheet& sheet, std::size_t i) noexcept {
-    static constexpr hal::LightSpread kEverywhere;
-    if (i == ShownLeds::kBody || i == ShownLeds::kFront) return kEverywhere;
-    return i >= ShownLeds::kUpper && i < ShownLeds::kCamera ? sheet.upper_leds_spread : sheet.leds_spread;
   }
 
   /// Whether an LED there sends light to a camera.
@@ -186,12 +224,12 @@ class Lookout {
     return dz >= spread.sin_lowest * distance_m && dz <= spread.sin_highest * distance_m;
   }
 
-  static bool behind_own_body(const SpaceStores& stores, std::size_t row, const hal::DataSheet& sheet,
-                              const Point& from, const Point& at) noexcept {
+  static bool behind_own_body(const SpaceStores& stores, std::size_t row, const hal::RobotKind& kind, const Point& from,
+                              const Point& at) noexcept {
     const Bodies& b = stores.bodies;
     const double low_m = stores.base_m(row);
     return disc_on_line(b.x_m[row], b.y_m[row], static_cast<double>(b.radius_m[row]) - kSurface_m, low_m,
-                        low_m + sheet.body_height_m - kSurface_m, from, at);
+                        low_m + kind.body.height_m - kSurface_m, from, at);
   }
 
   /// Notes the bodies, but the camera's own and `bearer`, that a line from the camera to anywhere within `spread_m` of
@@ -212,7 +250,7 @@ class Lookout {
       if (!Lookout::near(wx - t * dx, wy - t * dy, {}, radius_m + spread_m)) return false;
       const double low_m = stores.base_m(other);
       between_.push_back(
-          {b.x_m[other], b.y_m[other], radius_m, low_m, low_m + stores.sheet_of_row(other).body_height_m});
+          {b.x_m[other], b.y_m[other], radius_m, low_m, low_m + stores.kind_of_row(other).body.height_m});
       return false;
     });
   }
@@ -235,6 +273,7 @@ class Lookout {
   std::uint16_t medium_;  // of the camera
   Column<TurretState> turrets_;
   double widest_body_m_ = 0.0, widest_ring_m_ = 0.0;  // of all kinds of robots
+  std::vector<LampPlaces> lamps_;                     // of each group
   std::vector<Blocker> between_;
 };
 
@@ -289,8 +328,8 @@ class OmniSensor final : public Sensor {
  public:
   OmniSensor(const DeviceSetup& setup, const Flaws& flaws, const BlockColumns& columns)
       : lookout_(RealSense::OmniCamera, setup, columns),
-        height_m_(setup.sheet.omni_camera.height_m),
-        reach_m_(omni_reach_m(setup.sheet, setup.item.camera)),
+        height_m_(setup.kind.part<hal::OmniCameraPart>()->height_m),
+        reach_m_(omni_reach_m(*setup.kind.part<hal::OmniCameraPart>(), setup.item.camera)),
         flaws_(flaws) {}
 
   void sense(const DeviceContext& context, void* ports) noexcept override {
@@ -331,10 +370,6 @@ class OmniSensor final : public Sensor {
   Flaws flaws_;
 };
 
-bool has_omni_camera(const hal::DataSheet& sheet) {
-  return sheet.omni_camera.height_m > 0.0;
-}
-
 template <class Options>
 Recipe<Sensor> make_omni(const Element& element, Problems& problems, const DeviceSetup& setup) {
   const auto options = read_options<Options>(element, problems);
@@ -345,7 +380,7 @@ Recipe<Sensor> make_omni(const Element& element, Problems& problems, const Devic
   };
   Recipe<Sensor> recipe(make);
   recipe.listens = true;
-  recipe.reach_m = omni_reach_m(setup.sheet, setup.item.camera);
+  recipe.reach_m = omni_reach_m(*setup.kind.part<hal::OmniCameraPart>(), setup.item.camera);
   return recipe;
 }
 
@@ -369,11 +404,11 @@ class LensSensor final : public Sensor {
   LensSensor(const DeviceSetup& setup, const Flaws& flaws, const BlockColumns& columns)
       : lookout_(RealSense::LensCamera, setup, columns),
         heads_(columns.find<HeadState>()),
-        camera_(camera_of(setup.sheet, setup.item.camera)),
-        in_head_(setup.sheet.camera_head.turn_rad_s > 0.0 && !setup.item.camera.front),
+        camera_(camera_of(setup.kind, setup.item.camera)),
+        in_head_(setup.kind.part<hal::HeadPart>() != nullptr && !setup.item.camera.front),
         flaws_(flaws) {
-    const double width = camera_.width_px;
-    const double height = camera_.height_px;
+    const auto width = static_cast<double>(camera_.width_px);
+    const auto height = static_cast<double>(camera_.height_px);
     px_per_tangent_ = 0.5 * std::sqrt(width * width + height * height) / std::tan(camera_.aperture_rad);
     aim_.cos_tilt = std::cos(camera_.usual.tilt_rad);
     aim_.sin_tilt = std::sin(camera_.usual.tilt_rad);
@@ -387,8 +422,8 @@ class LensSensor final : public Sensor {
       if ((context.stores.bodies.flags[row] & kAlive) == 0) continue;
       hal::PerspectiveCamera& port = cameras[i];
       stamp(context, port);
-      port.width_px = camera_.width_px;
-      port.height_px = camera_.height_px;
+      port.width_px = static_cast<std::uint32_t>(camera_.width_px);
+      port.height_px = static_cast<std::uint32_t>(camera_.height_px);
       found_ = 0;
       port.dropped = 0;
       see_ahead(context, row, port);
@@ -434,8 +469,8 @@ class LensSensor final : public Sensor {
     const double left = aim.cos_h * p[1] - aim.sin_h * p[0];
     const double depth = aim.cos_tilt * ahead + aim.sin_tilt * p[2];
     if (depth <= 0.0) return {0.0, 0.0, false};
-    const double width = camera_.width_px;
-    const double height = camera_.height_px;
+    const auto width = static_cast<double>(camera_.width_px);
+    const auto height = static_cast<double>(camera_.height_px);
     const double x = 0.5 * width - px_per_tangent_ * left / depth;
     const double y = 0.5 * height + px_per_tangent_ * (aim.sin_tilt * ahead - aim.cos_tilt * p[2]) / depth;
     return {x, y, x >= 0.0 && x <= width && y >= 0.0 && y <= height};
@@ -478,7 +513,7 @@ class LensSensor final : public Sensor {
 
   Lookout lookout_;
   const HeadState* heads_;  // null: their controllers turn none
-  hal::CameraSheet camera_;
+  hal::CameraPart camera_;
   bool in_head_;
   Flaws flaws_;
   double px_per_tangent_ = 1.0;
@@ -486,10 +521,6 @@ class LensSensor final : public Sensor {
   std::array<Blob, hal::PerspectiveCamera::kCapacity> blobs_{};  // nearest first, of one image
   std::size_t found_ = 0;
 };
-
-bool has_camera(const hal::DataSheet& sheet) {
-  return sheet.camera.aperture_rad > 0.0;
-}
 
 template <class Options>
 Recipe<Sensor> make_lens(const Element& element, Problems& problems, const DeviceSetup& setup) {
@@ -501,20 +532,22 @@ Recipe<Sensor> make_lens(const Element& element, Problems& problems, const Devic
   };
   Recipe<Sensor> recipe(make);
   recipe.listens = true;
-  recipe.reach_m = camera_of(setup.sheet, setup.item.camera).range_m;
+  recipe.reach_m = camera_of(setup.kind, setup.item.camera).range_m;
   return recipe;
 }
 
 template <class Options>
 DeviceType omni_type(std::string_view implementation, std::string_view summary) {
-  return in_medium(LedMedium::kKind, sensor_type(hal::OmnidirectionalCamera::kName, implementation, summary,
-                                                 &has_omni_camera, &make_omni<Options>, &describe_options<Options>));
+  return in_medium(LedMedium::kKind,
+                   sensor_type(hal::OmnidirectionalCamera::kName, implementation, summary, &has<hal::OmniCameraPart>,
+                               &make_omni<Options>, &describe_options<Options>));
 }
 
 template <class Options>
 DeviceType lens_type(std::string_view implementation, std::string_view summary) {
-  return in_medium(LedMedium::kKind, sensor_type(hal::PerspectiveCamera::kName, implementation, summary, &has_camera,
-                                                 &make_lens<Options>, &describe_options<Options>));
+  return in_medium(LedMedium::kKind,
+                   sensor_type(hal::PerspectiveCamera::kName, implementation, summary, &has<hal::CameraPart>,
+                               &make_lens<Options>, &describe_options<Options>));
 }
 
 }  // namespace

@@ -16,15 +16,21 @@ void describe_options(hal::ParamVisitor& visitor) {
   options.describe(visitor);
 }
 
+/// Whether robots of a kind are built with the part. For DeviceType::fits.
+template <class Part>
+bool has(const hal::RobotKind& kind) {
+  return kind.part<Part>() != nullptr;
+}
+
 inline DeviceType sensor_type(std::string_view device, std::string_view implementation, std::string_view summary,
-                              bool (*fits)(const hal::DataSheet&),
+                              bool (*fits)(const hal::RobotKind&),
                               Recipe<Sensor> (*make)(const Element&, Problems&, const DeviceSetup&),
                               void (*describe)(hal::ParamVisitor&)) {
   return {device, implementation, summary, hal::Role::Sensor, fits, make, nullptr, describe};
 }
 
 inline DeviceType actuator_type(std::string_view device, std::string_view implementation, std::string_view summary,
-                                bool (*fits)(const hal::DataSheet&),
+                                bool (*fits)(const hal::RobotKind&),
                                 Recipe<Actuator> (*make)(const Element&, Problems&, const DeviceSetup&),
                                 void (*describe)(hal::ParamVisitor&)) {
   return {device, implementation, summary, hal::Role::Actuator, fits, nullptr, make, describe};

@@ -65,7 +65,7 @@ class Actuator {
 
 /// What a device is made for.
 struct DeviceSetup {
-  const hal::DataSheet& sheet;
+  const hal::RobotKind& kind;
   const RobotItem& item;
   double tick_s = 0.1;
   Medium* medium = nullptr;  ///< that the device works in, if any; lives as long as the world
@@ -102,8 +102,8 @@ struct DeviceType {
   std::string_view implementation;
   std::string_view summary;
   hal::Role role = hal::Role::Sensor;
-  /// Whether robots with this data sheet have the device at all.
-  bool (*fits)(const hal::DataSheet& sheet) = nullptr;
+  /// Whether robots of this kind are built with what the device at all.
+  bool (*fits)(const hal::RobotKind& kind) = nullptr;
   /// Reads the options (problems with lines); the recipe then makes one object a block. One of the two is set.
   Recipe<Sensor> (*make_sensor)(const Element& options, Problems& problems, const DeviceSetup& setup) = nullptr;
   Recipe<Actuator> (*make_actuator)(const Element& options, Problems& problems, const DeviceSetup& setup) = nullptr;

@@ -13,10 +13,6 @@ namespace {
 using hal::DistanceScanner;
 using hal::ScannerMode;
 
-bool has_scanner(const hal::DataSheet& sheet) {
-  return sheet.scanner.size() == DistanceScanner::kHeads;
-}
-
 // --- actuator ---
 
 struct IdealTurning {
@@ -75,7 +71,7 @@ Recipe<Actuator> make_turning(const Element& element, Problems& problems, const 
   const auto options = read_options<Options>(element, problems);
   double noise = 0.0;
   if constexpr (requires { options.noise_std_dev; }) noise = options.noise_std_dev;
-  const auto make = [fastest = setup.sheet.scanner_turn_rad_s, noise](const BlockColumns& columns) {
+  const auto make = [fastest = setup.kind.part<hal::ScannerPart>()->turn_rad_s, noise](const BlockColumns& columns) {
     return std::make_unique<ScannerActuator>(fastest, noise, columns);
   };
   return {make, {keeps<ScannerState>()}};
@@ -83,8 +79,8 @@ Recipe<Actuator> make_turning(const Element& element, Problems& problems, const 
 
 template <class Options>
 DeviceType turning_type(std::string_view implementation, std::string_view summary) {
-  return actuator_type(hal::ScannerDrive::kName, implementation, summary, &has_scanner, &make_turning<Options>,
-                       &describe_options<Options>);
+  return actuator_type(hal::ScannerDrive::kName, implementation, summary, &has<hal::ScannerPart>,
+                       &make_turning<Options>, &describe_options<Options>);
 }
 
 // --- sensor ---
@@ -111,13 +107,13 @@ struct ScanNoise : IdealScan {
 class ScannerSensor final : public Sensor {
  public:
   ScannerSensor(const DeviceSetup& setup, double noise_m, const BlockColumns& columns)
-      : sheet_(setup.sheet),
+      : part_(*setup.kind.part<hal::ScannerPart>()),
         scanners_(columns.find<ScannerState>()),
         noise_m_(static_cast<float>(noise_m)),
-        samples_(static_cast<std::uint32_t>(std::clamp<double>(std::round(setup.sheet.scanner_rate_hz * setup.tick_s),
-                                                               1.0, DistanceScanner::kSamples))),
+        samples_(static_cast<std::uint32_t>(
+            std::clamp<double>(std::round(part_.rate_hz * setup.tick_s), 1.0, DistanceScanner::kSamples))),
         ring_(std::array<hal::Mount, RayRing::kCapacity>{}, 0.0) {
-    for (const hal::ScannerHead& head : sheet_.scanner) farthest_m_ = std::max(farthest_m_, head.max_m);
+    for (const hal::ScannerHead& head : part_.heads) farthest_m_ = std::max(farthest_m_, head.max_m);
     bodies_.reserve(256);
     near_.reserve(256);
   }
@@ -125,15 +121,15 @@ class ScannerSensor final : public Sensor {
   void sense(const DeviceContext& context, void* ports) noexcept override {
     auto* scanners = static_cast<DistanceScanner*>(ports);
     double widest_m = 0.0;
-    for (const RobotGroup& group : context.stores.groups) widest_m = std::max(widest_m, group.sheet->body_radius_m);
+    for (const RobotGroup& group : context.stores.groups) widest_m = std::max(widest_m, group.kind->body.radius_m);
     for (std::size_t i = 0; i < context.block.used; ++i) {
       const std::size_t row = context.block.first_row + i;
       DistanceScanner& port = scanners[i];
       stamp(context, port);
-      port.short_min_m = static_cast<float>(sheet_.scanner[0].min_m);
-      port.short_max_m = static_cast<float>(sheet_.scanner[0].max_m);
-      port.long_min_m = static_cast<float>(sheet_.scanner[1].min_m);
-      port.long_max_m = static_cast<float>(sheet_.scanner[1].max_m);
+      port.short_min_m = static_cast<float>(part_.heads[0].min_m);
+      port.short_max_m = static_cast<float>(part_.heads[0].max_m);
+      port.long_min_m = static_cast<float>(part_.heads[1].min_m);
+      port.long_max_m = static_cast<float>(part_.heads[1].max_m);
       aim(scanners_[i], port);
       if (port.count == 0) continue;
       look(context.stores, row, widest_m, port);
@@ -152,7 +148,7 @@ class ScannerSensor final : public Sensor {
     for (std::size_t head = 0; head < DistanceScanner::kHeads; ++head) {
       for (std::size_t k = 0; k < port.samples; ++k) {
         const double back = scanner.swept_rad * (1.0 - static_cast<double>(k + 1) / port.samples);
-        const double angle = hal::wrapped(scanner.angle_rad - back + sheet_.scanner[head].bearing_rad);
+        const double angle = hal::wrapped(scanner.angle_rad - back + part_.heads[head].bearing_rad);
         const std::size_t ray = port.at(head, k);
         port.angle_rad[ray] = static_cast<float>(angle);
         ring_.dx[ray] = static_cast<float>(std::cos(angle));
@@ -163,7 +159,7 @@ class ScannerSensor final : public Sensor {
   }
 
   double height_m(const SpaceStores& stores, std::size_t row) const noexcept {
-    return sheet_.scanner_height_m + stores.base_m(row);
+    return part_.height_m + stores.base_m(row);
   }
 
   /// Lists the discs and objects that the rays may meet, then tests all rays against each.
@@ -178,7 +174,7 @@ class ScannerSensor final : public Sensor {
       if (o.row() == row || wx * wx + wy * wy > within * within) return;
       if (stores.senses_really(row, o.row(), RealSense::Scanner)) return;
       const double low = stores.base_m(o.row());
-      if (height < low || height > low + stores.sheet_of_row(o.row()).body_height_m) return;
+      if (height < low || height > low + stores.kind_of_row(o.row()).body.height_m) return;
       bodies_.push_back({static_cast<float>(b.cos_h[row] * wx + b.sin_h[row] * wy),
                          static_cast<float>(b.cos_h[row] * wy - b.sin_h[row] * wx), o.radius_m});
     });
@@ -233,7 +229,7 @@ class ScannerSensor final : public Sensor {
     const Bodies& b = stores.bodies;
     near_.clear();
     for (std::size_t head = 0; head < DistanceScanner::kHeads; ++head) {
-      const double length_m = sheet_.scanner[head].max_m;
+      const double length_m = part_.heads[head].max_m;
       const int hops = 1 + static_cast<int>(length_m / (1.9 * stores.static_index.reach()));
       for (std::size_t k = 0; k < port.samples; ++k) {
         const auto dx = static_cast<double>(ring_.dx[port.at(head, k)]);
@@ -261,8 +257,8 @@ class ScannerSensor final : public Sensor {
 
   void keep_in_range(DistanceScanner& port) const noexcept {
     for (std::size_t head = 0; head < DistanceScanner::kHeads; ++head) {
-      const auto least = static_cast<float>(sheet_.scanner[head].min_m);
-      const auto most = static_cast<float>(sheet_.scanner[head].max_m);
+      const auto least = static_cast<float>(part_.heads[head].min_m);
+      const auto most = static_cast<float>(part_.heads[head].max_m);
       for (std::size_t k = 0; k < port.samples; ++k) {
         const std::size_t ray = port.at(head, k);
         port.distance_m[ray] = std::min(std::max(best_[ray], least), most);
@@ -270,7 +266,7 @@ class ScannerSensor final : public Sensor {
     }
   }
 
-  const hal::DataSheet& sheet_;
+  const hal::ScannerPart& part_;
   const ScannerState* scanners_;
   float noise_m_;
   std::uint32_t samples_;  // of each head, in a tick in which the scanner turns
@@ -299,7 +295,7 @@ Recipe<Sensor> make_scanner(const Element& element, Problems& problems, const De
 
 template <class Options>
 DeviceType scanner_type(std::string_view implementation, std::string_view summary) {
-  return sensor_type(DistanceScanner::kName, implementation, summary, &has_scanner, &make_scanner<Options>,
+  return sensor_type(DistanceScanner::kName, implementation, summary, &has<hal::ScannerPart>, &make_scanner<Options>,
                      &describe_options<Options>);
 }
 

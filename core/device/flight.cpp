@@ -9,10 +9,6 @@
 namespace tandem::core {
 namespace {
 
-bool flies(const hal::DataSheet& sheet) {
-  return sheet.flies;
-}
-
 // --- actuators ---
 
 struct IdealFlight {
@@ -141,14 +137,14 @@ class TaskActuator final : public Actuator {
 
   void act(const DeviceContext& context, SpaceStores& /*stores*/, const void* ports) noexcept override {
     const auto* tasks = static_cast<const hal::FlightTask*>(ports);
-    const hal::FlightSheet& sheet = context.group.sheet->flight;
+    const hal::Quadrotor& flight = *context.group.kind->flight();
     for (std::size_t i = 0; i < context.block.used; ++i) {
       const std::size_t row = context.block.first_row + i;
       hal::FlightTask& setpoint = setpoints_[i].task;
       setpoint = tasks[i];
       if (noise_ == 0.0) continue;
       if (setpoint.speed_m_s == 0.0)
-        setpoint.speed_m_s = setpoint.order == hal::FlightOrder::Land ? sheet.sink_m_s : sheet.climb_m_s;
+        setpoint.speed_m_s = setpoint.order == hal::FlightOrder::Land ? flight.sink_m_s : flight.climb_m_s;
       setpoint.speed_m_s *= std::max(0.1, 1.0 + errors(context, row, Stream::TaskNoise, noise_)[0]);
     }
   }
@@ -169,7 +165,7 @@ Recipe<Actuator> make_flight(const Element& element, Problems& problems, const D
 
 template <class Device, class Options>
 DeviceType flight_type(std::string_view device, std::string_view implementation, std::string_view summary) {
-  return actuator_type(device, implementation, summary, &flies, &make_flight<Device, Options>,
+  return actuator_type(device, implementation, summary, &has<hal::Quadrotor>, &make_flight<Device, Options>,
                        &describe_options<Options>);
 }
 
@@ -253,7 +249,7 @@ Recipe<Sensor> make_positioning(const Element& element, Problems& problems, cons
 template <class Options>
 DeviceType positioning_type(std::string_view implementation, std::string_view summary) {
   return sensor_type(
-      hal::Positioning::kName, implementation, summary, [](const hal::DataSheet&) { return true; },
+      hal::Positioning::kName, implementation, summary, [](const hal::RobotKind&) { return true; },
       &make_positioning<Options>, &describe_options<Options>);
 }
 

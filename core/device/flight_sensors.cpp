@@ -14,10 +14,6 @@ struct NoOptions {
 
 // --- flight state ---
 
-bool flies(const hal::DataSheet& sheet) {
-  return sheet.flies;
-}
-
 template <int kPerMille>
 struct VelocityNoise {
   double noise_std_dev = kPerMille * 1e-3;
@@ -72,15 +68,11 @@ Recipe<Sensor> make_state(const Element& element, Problems& problems, const Devi
 
 template <class Options>
 DeviceType state_type(std::string_view implementation, std::string_view summary) {
-  return sensor_type(hal::FlightState::kName, implementation, summary, &flies, &make_state<Options>,
+  return sensor_type(hal::FlightState::kName, implementation, summary, &has<hal::Quadrotor>, &make_state<Options>,
                      &describe_options<Options>);
 }
 
 // --- altimeter ---
-
-bool has_altimeter(const hal::DataSheet& sheet) {
-  return sheet.flight.altimeter_m > 0.0;
-}
 
 template <int kPerMille>
 struct EchoNoise {
@@ -93,8 +85,7 @@ struct EchoNoise {
 
 class AltimeterSensor final : public Sensor {
  public:
-  AltimeterSensor(const hal::DataSheet& sheet, double noise_m)
-      : farthest_m_(sheet.flight.altimeter_m), noise_m_(noise_m) {}
+  AltimeterSensor(double farthest_m, double noise_m) : farthest_m_(farthest_m), noise_m_(noise_m) {}
 
   void sense(const DeviceContext& context, void* ports) noexcept override {
     auto* altimeters = static_cast<hal::Altimeter*>(ports);
@@ -129,12 +120,14 @@ Recipe<Sensor> make_altimeter(const Element& element, Problems& problems, const 
   const auto options = read_options<Options>(element, problems);
   double noise = 0.0;
   if constexpr (requires { options.noise_std_dev_m; }) noise = options.noise_std_dev_m;
-  return [&sheet = setup.sheet, noise](const BlockColumns&) { return std::make_unique<AltimeterSensor>(sheet, noise); };
+  return [farthest = setup.kind.part<hal::AltimeterPart>()->range_m, noise](const BlockColumns&) {
+    return std::make_unique<AltimeterSensor>(farthest, noise);
+  };
 }
 
 template <class Options>
 DeviceType altimeter_type(std::string_view implementation, std::string_view summary) {
-  return sensor_type(hal::Altimeter::kName, implementation, summary, &has_altimeter, &make_altimeter<Options>,
+  return sensor_type(hal::Altimeter::kName, implementation, summary, &has<hal::AltimeterPart>, &make_altimeter<Options>,
                      &describe_options<Options>);
 }
 

@@ -8,10 +8,6 @@
 namespace tandem::core {
 namespace {
 
-bool has_gripper(const hal::DataSheet& sheet) {
-  return sheet.gripper_reach_m > 0.0;
-}
-
 // --- actuator ---
 
 struct IdealGripping {
@@ -66,7 +62,7 @@ Recipe<Actuator> make_gripping(const Element& element, Problems& problems, const
 
 template <class Options>
 DeviceType gripping_type(std::string_view implementation, std::string_view summary) {
-  DeviceType type = actuator_type(hal::GripperDrive::kName, implementation, summary, &has_gripper,
+  DeviceType type = actuator_type(hal::GripperDrive::kName, implementation, summary, &has<hal::GripperPart>,
                                   &make_gripping<Options>, &describe_options<Options>);
   type.joints = kJointsOfGrips;
   return type;
@@ -129,7 +125,7 @@ Recipe<Sensor> make_gripper(const Element& element, Problems& problems, const De
 
 template <class Options>
 DeviceType gripper_type(std::string_view implementation, std::string_view summary) {
-  return sensor_type(hal::Gripper::kName, implementation, summary, &has_gripper, &make_gripper<Options>,
+  return sensor_type(hal::Gripper::kName, implementation, summary, &has<hal::GripperPart>, &make_gripper<Options>,
                      &describe_options<Options>);
 }
 

@@ -6,6 +6,8 @@
 #include "core/device/coupling.hpp"
 #include "core/space/mechanisms.hpp"
 #include "hal/angle.hpp"
+#include "hal/device/gripper.hpp"
+#include "hal/device/turret.hpp"
 
 namespace tandem::core {
 namespace {
@@ -100,16 +102,16 @@ struct Search {
   }
   void robots() noexcept {
     double widest_m = 0.0;
-    for (const RobotGroup& group : s.groups) widest_m = std::max(widest_m, group.sheet->body_radius_m);
+    for (const RobotGroup& group : s.groups) widest_m = std::max(widest_m, group.kind->body.radius_m);
     s.body_index.for_each_near(at.x_m, at.y_m, nearest_m + widest_m, [&](const IndexEntry& o) {
       const std::size_t other = o.row();
       const std::uint8_t flags = s.bodies.flags[other];
       if (other == row || (flags & kAlive) == 0) return;
-      const hal::DataSheet& sheet = s.sheet_of_row(other);
+      const hal::RobotKind& kind = s.kind_of_row(other);
       const Place there = place_of(s, BodyKey::robot(other));
-      if (height_m < there.low_m || height_m > there.low_m + sheet.body_height_m) return;
-      const bool holdable = sheet.gripper_reach_m > 0.0 && (flags & kExternal) == 0;
-      const double along = along_to_disc(there.x_m - at.x_m, there.y_m - at.y_m, sheet.body_radius_m, dx, dy);
+      if (height_m < there.low_m || height_m > there.low_m + kind.body.height_m) return;
+      const bool holdable = (flags & kExternal) == 0 && kind.part<hal::GripperPart>() != nullptr;
+      const double along = along_to_disc(there.x_m - at.x_m, there.y_m - at.y_m, kind.body.radius_m, dx, dy);
       offer(BodyKey::robot(other), along, holdable);
     });
   }
@@ -128,7 +130,8 @@ struct Search {
 /// What the open claws of the robot would hold, or false.
 bool find_hold(const SpaceStores& s, std::size_t row, double turret_rad, BodyKey& found, double& height_m) noexcept {
   if (s.body_index.size() == 0) return false;  // before the first tick, whose physics makes the index
-  const hal::DataSheet& sheet = s.sheet_of_row(row);
+  const hal::RobotKind& kind = s.kind_of_row(row);
+  const hal::GripperPart& claws = *kind.part<hal::GripperPart>();
   const Place at = place_of(s, BodyKey::robot(row));
   const double c = std::cos(turret_rad);
   const double d = std::sin(turret_rad);
@@ -137,8 +140,8 @@ bool find_hold(const SpaceStores& s, std::size_t row, double turret_rad, BodyKey
                 at,
                 at.cos_h * c - at.sin_h * d,
                 at.sin_h * c + at.cos_h * d,
-                at.low_m + sheet.gripper_height_m,
-                sheet.body_radius_m + sheet.gripper_reach_m};
+                at.low_m + claws.height_m,
+                kind.body.radius_m + claws.reach_m};
   search.robots();
   search.objects();
   found = search.found;
@@ -199,10 +202,10 @@ struct Drive {
   double motor_rad_s = 0.0;
 };
 
-Drive drive_of(const TurretState& turret, const hal::DataSheet& sheet, double tick_s) noexcept {
+Drive drive_of(const TurretState& turret, const hal::TurretPart& part, double tick_s) noexcept {
   const auto drive = [&](double rad_s) {
-    const double most = sheet.turret_turn_rad_s;
-    return Drive{JointKind::Turning, sheet.turret_torque_Nm, std::clamp(rad_s, -most, most)};
+    const double most = part.turn_rad_s;
+    return Drive{JointKind::Turning, part.torque_Nm, std::clamp(rad_s, -most, most)};
   };
   switch (turret.mode) {
     case hal::TurretMode::Passive:
@@ -222,7 +225,7 @@ Drive drive_of(const TurretState& turret, const hal::DataSheet& sheet, double ti
 /// Makes the joint do what the turret asks. Engines take over a joint of another sort as a new one.
 void drive_load(SpaceStores& s, std::size_t row, GripState& grip, const TurretState& turret, Joint& joint,
                 double tick_s) noexcept {
-  const Drive drive = drive_of(turret, s.sheet_of_row(row), tick_s);
+  const Drive drive = drive_of(turret, *s.kind_of_row(row).part<hal::TurretPart>(), tick_s);
   joint.form.motor_speed = drive.motor_rad_s;
   if (joint.form.kind == drive.kind && joint.form.motor_most == drive.motor_torque_Nm) return;
   joint.form.kind = drive.kind;
@@ -254,7 +257,7 @@ void treat(SpaceStores& s, std::size_t row, GripState& grip, const TurretState* 
 /// After every gripper and turret took its command: claws that opened take hold of the nearest body before them, those
 /// that closed let go, and joints follow what the turrets were told.
 ///
-/// Open claws hold the first thing that the line from the robot's rim outwards meets within the data sheet's reach, at
+/// Open claws hold the first thing that the line from the robot's rim outwards meets within the gripper's reach, at
 /// the claws' height: a movable box or cylinder, or a robot whose kind has a gripper itself. They keep trying while
 /// nothing is there. What they hold turns with the turret: firmly while that is off or has arrived, freely while it is
 /// passive, else with the turret's motor. Robots whose pose comes from outside neither hold nor are held.

@@ -69,8 +69,10 @@ class RingLamps final : public Actuator {
   static constexpr bool kUpper = std::is_same_v<Port, hal::UpperRingLeds>;
 
  public:
-  RingLamps(const hal::DataSheet& sheet, const Shine& shine)
-      : count_(std::min((kUpper ? sheet.upper_leds : sheet.leds).size(), hal::RingLeds::kCapacity)), shine_(shine) {}
+  using Part = std::conditional_t<kUpper, hal::UpperLedsPart, hal::LedsPart>;
+
+  RingLamps(const hal::RobotKind& kind, const Shine& shine)
+      : count_(std::min(kind.part<Part>()->mounts.size(), hal::RingLeds::kCapacity)), shine_(shine) {}
 
   void act(const DeviceContext& context, SpaceStores& /*stores*/, const void* ports) noexcept override {
     ShownLeds* const shining = shine_.publish(context.block);
@@ -95,7 +97,7 @@ class RingLamps final : public Actuator {
 /// The light beside a camera.
 class CameraLamp final : public Actuator {
  public:
-  CameraLamp(const hal::DataSheet&, const Shine& shine) : shine_(shine) {}
+  CameraLamp(const hal::RobotKind&, const Shine& shine) : shine_(shine) {}
 
   void act(const DeviceContext& context, SpaceStores& /*stores*/, const void* ports) noexcept override {
     ShownLeds* const shining = shine_.publish(context.block);
@@ -118,7 +120,7 @@ class CameraLamp final : public Actuator {
 template <class Port>
 class BodyLamp final : public Actuator {
  public:
-  BodyLamp(const hal::DataSheet&, const Shine& shine) : shine_(shine) {}
+  BodyLamp(const hal::RobotKind&, const Shine& shine) : shine_(shine) {}
 
   void act(const DeviceContext& context, SpaceStores& /*stores*/, const void* ports) noexcept override {
     ShownLeds* const shining = shine_.publish(context.block);
@@ -147,15 +149,15 @@ Recipe<Actuator> make_lamp(const Element& element, Problems& problems, const Dev
     errors.brightness_std_dev = read.brightness_std_dev;
     errors.dead_prob = read.dead_prob;
   }
-  Recipe<Actuator> recipe([&sheet = setup.sheet, shine = Shine(errors, setup)](const BlockColumns&) {
-    return std::make_unique<Device>(sheet, shine);
+  Recipe<Actuator> recipe([&kind = setup.kind, shine = Shine(errors, setup)](const BlockColumns&) {
+    return std::make_unique<Device>(kind, shine);
   });
   recipe.publishes = true;
   return recipe;
 }
 
 template <class Device>
-void add(std::vector<DeviceType>& types, std::string_view lamp, bool (*fits)(const hal::DataSheet&)) {
+void add(std::vector<DeviceType>& types, std::string_view lamp, bool (*fits)(const hal::RobotKind&)) {
   const auto add_one = [&](const DeviceType& type) { types.push_back(in_medium(LedMedium::kKind, type)); };
   add_one(actuator_type(lamp, "default", "Shines; unevenly where asked for.", fits, &make_lamp<Device, Lamp<0>>,
                         &describe_options<Lamp<0>>));
@@ -164,21 +166,15 @@ void add(std::vector<DeviceType>& types, std::string_view lamp, bool (*fits)(con
                         &make_lamp<Device, Lamp<10>>, &describe_options<Lamp<10>>));
 }
 
-bool has_body_lamps(const hal::DataSheet& sheet) {
-  return sheet.body_lamps;
-}
-
 }  // namespace
 
 std::vector<DeviceType> lamp_types() {
   std::vector<DeviceType> types;
-  add<RingLamps<hal::RingLeds>>(types, hal::RingLeds::kName,
-                                [](const hal::DataSheet& sheet) { return !sheet.leds.empty(); });
-  add<RingLamps<hal::UpperRingLeds>>(types, hal::UpperRingLeds::kName,
-                                     [](const hal::DataSheet& sheet) { return !sheet.upper_leds.empty(); });
-  add<CameraLamp>(types, hal::CameraLed::kName, [](const hal::DataSheet& sheet) { return sheet.camera_led; });
-  add<BodyLamp<hal::BodyLed>>(types, hal::BodyLed::kName, &has_body_lamps);
-  add<BodyLamp<hal::FrontLed>>(types, hal::FrontLed::kName, &has_body_lamps);
+  add<RingLamps<hal::RingLeds>>(types, hal::RingLeds::kName, &has<hal::LedsPart>);
+  add<RingLamps<hal::UpperRingLeds>>(types, hal::UpperRingLeds::kName, &has<hal::UpperLedsPart>);
+  add<CameraLamp>(types, hal::CameraLed::kName, &has<hal::CameraLedPart>);
+  add<BodyLamp<hal::BodyLed>>(types, hal::BodyLed::kName, &has<hal::BodyLedPart>);
+  add<BodyLamp<hal::FrontLed>>(types, hal::FrontLed::kName, &has<hal::FrontLedPart>);
   return types;
 }
 

@@ -9,10 +9,6 @@
 namespace tandem::core {
 namespace {
 
-bool has_head(const hal::DataSheet& sheet) {
-  return sheet.camera_head.turn_rad_s > 0.0;
-}
-
 struct Ideal {
   void describe(hal::ParamVisitor&) {}
 };
@@ -31,12 +27,12 @@ struct AimErrors {
 /// Turns about both axes at once, pan the shorter way round.
 class HeadActuator final : public Actuator {
  public:
-  HeadActuator(const hal::HeadSheet& sheet, double noise_rad, const BlockColumns& columns)
-      : sheet_(sheet), noise_rad_(noise_rad), heads_(columns.find<HeadState>()) {}
+  HeadActuator(const hal::HeadPart& part, double noise_rad, const BlockColumns& columns)
+      : part_(part), noise_rad_(noise_rad), heads_(columns.find<HeadState>()) {}
 
   void act(const DeviceContext& context, SpaceStores& stores, const void* ports) noexcept override {
     const auto* drives = static_cast<const hal::PanTiltDrive*>(ports);
-    const double most_rad = sheet_.turn_rad_s * context.tick_s;
+    const double most_rad = part_.turn_rad_s * context.tick_s;
     for (std::size_t i = 0; i < context.block.used; ++i) {
       if (led_from_outside(context, i)) continue;
       const std::size_t row = context.block.first_row + i;
@@ -48,7 +44,7 @@ class HeadActuator final : public Actuator {
         drive.tilt_rad += noise_rad_ * error[1];
       }
       HeadState& head = heads_[i];
-      const double tilt = std::clamp(drive.tilt_rad, -sheet_.most_tilt_rad, sheet_.most_tilt_rad);
+      const double tilt = std::clamp(drive.tilt_rad, -part_.max_tilt_rad, part_.max_tilt_rad);
       head.pan_rad =
           hal::wrapped(head.pan_rad + std::clamp(hal::wrapped(drive.pan_rad - head.pan_rad), -most_rad, most_rad));
       head.tilt_rad += std::clamp(tilt - head.tilt_rad, -most_rad, most_rad);
@@ -57,7 +53,7 @@ class HeadActuator final : public Actuator {
   }
 
  private:
-  hal::HeadSheet sheet_;
+  const hal::HeadPart& part_;
   double noise_rad_;
   HeadState* heads_;
 };
@@ -67,15 +63,15 @@ Recipe<Actuator> make_head(const Element& element, Problems& problems, const Dev
   const auto options = read_options<Options>(element, problems);
   double noise = 0.0;
   if constexpr (requires { options.noise_std_dev; }) noise = options.noise_std_dev;
-  const auto make = [sheet = setup.sheet.camera_head, noise](const BlockColumns& columns) {
-    return std::make_unique<HeadActuator>(sheet, noise, columns);
+  const auto make = [&part = *setup.kind.part<hal::HeadPart>(), noise](const BlockColumns& columns) {
+    return std::make_unique<HeadActuator>(part, noise, columns);
   };
   return {make, {keeps<HeadState>()}};
 }
 
 template <class Options>
 DeviceType head_type(std::string_view implementation, std::string_view summary) {
-  return actuator_type(hal::PanTiltDrive::kName, implementation, summary, &has_head, &make_head<Options>,
+  return actuator_type(hal::PanTiltDrive::kName, implementation, summary, &has<hal::HeadPart>, &make_head<Options>,
                        &describe_options<Options>);
 }
 
@@ -131,7 +127,7 @@ Recipe<Sensor> make_encoder(const Element& element, Problems& problems, const De
 
 template <class Options>
 DeviceType encoder_type(std::string_view implementation, std::string_view summary) {
-  return sensor_type(hal::PanTiltEncoder::kName, implementation, summary, &has_head, &make_encoder<Options>,
+  return sensor_type(hal::PanTiltEncoder::kName, implementation, summary, &has<hal::HeadPart>, &make_encoder<Options>,
                      &describe_options<Options>);
 }
 

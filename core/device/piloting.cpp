@@ -29,7 +29,8 @@ class Pilot {
   Pilot(const DeviceContext& context, SpaceStores& stores, std::size_t slot, const FlightSetpoint& setpoint,
         PilotState& state, FlightCommand& command)
       : stores_(stores),
-        sheet_(*context.group.sheet),
+        body_(context.group.kind->body),
+        flight_(*context.group.kind->flight()),
         row_(context.block.first_row + slot),
         tick_s_(context.tick_s),
         obeys_(obeys(context, slot)),
@@ -111,8 +112,8 @@ class Pilot {
     state_.stuck_ticks = 0;
     if (order == FlightOrder::TakeOff && state_.phase == FlightPhase::Landed) {
       note_place();
-      const double most_m = ceiling_m(stores_, row_) - sheet_.body_height_m - kClearOfCeiling_m;
-      state_.place_m[2] = std::max(base_m(), std::min(base_m() + sheet_.flight.take_off_m, most_m));
+      const double most_m = ceiling_m(stores_, row_) - body_.height_m - kClearOfCeiling_m;
+      state_.place_m[2] = std::max(base_m(), std::min(base_m() + flight_.take_off_m, most_m));
       state_.phase = FlightPhase::TakingOff;
       return;
     }
@@ -144,11 +145,10 @@ class Pilot {
   void rise_to_place() noexcept {
     const double left_m = state_.place_m[2] - base_m();
     if (left_m <= kArrived_m) return hover();
-    command_ = {
-        Mode::Velocity, {0.0, 0.0, std::min(speed_or(sheet_.flight.climb_m_s), 0.1 + kSlowDown_1_s * left_m)}, 0.0};
+    command_ = {Mode::Velocity, {0.0, 0.0, std::min(speed_or(flight_.climb_m_s), 0.1 + kSlowDown_1_s * left_m)}, 0.0};
   }
   void land() noexcept {
-    const double sink_m_s = speed_or(sheet_.flight.sink_m_s);
+    const double sink_m_s = speed_or(flight_.sink_m_s);
     command_ = {Mode::Velocity, {0.0, 0.0, -sink_m_s}, 0.0};
     const bool slow = bodies().motion[row_].v_m_s[2] > -std::min(kSinks_m_s, 0.5 * sink_m_s);
     state_.stuck_ticks = slow ? state_.stuck_ticks + 1 : 0;
@@ -157,8 +157,8 @@ class Pilot {
     state_.phase = FlightPhase::Landed;
   }
   void attach() noexcept {
-    command_ = {Mode::Velocity, {0.0, 0.0, speed_or(sheet_.flight.climb_m_s)}, 0.0};
-    if (ceiling_m(stores_, row_) - base_m() - sheet_.body_height_m > kHangs_m) return;
+    command_ = {Mode::Velocity, {0.0, 0.0, speed_or(flight_.climb_m_s)}, 0.0};
+    if (ceiling_m(stores_, row_) - base_m() - body_.height_m > kHangs_m) return;
     command_ = {Mode::Held, {}, 0.0};
     state_.phase = FlightPhase::Attached;
     Motion& m = stores_.bodies.motion[row_];
@@ -167,12 +167,13 @@ class Pilot {
   }
   void let_go() noexcept {
     if (base_m() <= state_.place_m[2] + kArrived_m) return hover();
-    command_ = {Mode::Velocity, {0.0, 0.0, -speed_or(sheet_.flight.sink_m_s)}, 0.0};
+    command_ = {Mode::Velocity, {0.0, 0.0, -speed_or(flight_.sink_m_s)}, 0.0};
   }
   double heading_rad() const noexcept { return std::atan2(bodies().sin_h[row_], bodies().cos_h[row_]); }
 
   SpaceStores& stores_;
-  const hal::DataSheet& sheet_;
+  const hal::Body& body_;
+  const hal::Quadrotor& flight_;
   std::size_t row_;
   double tick_s_;
   bool obeys_;

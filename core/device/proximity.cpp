@@ -29,7 +29,7 @@ constexpr std::size_t kWaiting = 1024;  // neighbours found and not met yet; mor
 /// Whether a body is where rays at this height pass.
 bool stands_at(const SpaceStores& stores, std::size_t row, double height_m) noexcept {
   const double low_m = stores.bodies.motion[row].z_m;
-  return height_m >= low_m && height_m <= low_m + stores.sheet_of_row(row).body_height_m;
+  return height_m >= low_m && height_m <= low_m + stores.kind_of_row(row).body.height_m;
 }
 
 /// Of the rays above the ground under the arena.
@@ -181,8 +181,8 @@ void sense_block_avx2(const DeviceContext& context, const RayRing& ring, hal::Pr
 
 class ProximitySensor final : public Sensor {
  public:
-  ProximitySensor(const hal::DataSheet& sheet, double noise_level)
-      : ring_(sheet.proximity, sheet.proximity_range_m), noise_(static_cast<float>(noise_level)) {}
+  ProximitySensor(const hal::ProximityPart& part, double noise_level)
+      : ring_(part.mounts, part.range_m), noise_(static_cast<float>(noise_level)) {}
 
   void sense(const DeviceContext& context, void* ports) noexcept override {
     auto* proximity = static_cast<hal::Proximity*>(ports);
@@ -233,21 +233,19 @@ struct NoiseOptions : NoOptions {
   }
 };
 
-bool has_proximity(const hal::DataSheet& sheet) {
-  return !sheet.proximity.empty();
-}
-
 template <class Options>
 Recipe<Sensor> make_proximity(const Element& element, Problems& problems, const DeviceSetup& setup) {
   const auto options = read_options<Options>(element, problems);
   double noise = 0.0;
   if constexpr (requires { options.noise_level; }) noise = options.noise_level;
-  return [&sheet = setup.sheet, noise](const BlockColumns&) { return std::make_unique<ProximitySensor>(sheet, noise); };
+  return [&part = *setup.kind.part<hal::ProximityPart>(), noise](const BlockColumns&) {
+    return std::make_unique<ProximitySensor>(part, noise);
+  };
 }
 
 template <class Options>
 DeviceType proximity_type(std::string_view implementation, std::string_view summary) {
-  return sensor_type("proximity", implementation, summary, &has_proximity, &make_proximity<Options>,
+  return sensor_type("proximity", implementation, summary, &has<hal::ProximityPart>, &make_proximity<Options>,
                      &describe_options<Options>);
 }
 

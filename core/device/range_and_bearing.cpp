@@ -14,10 +14,6 @@
 namespace tandem::core {
 namespace {
 
-bool has_rab(const hal::DataSheet& sheet) {
-  return sheet.rab_range_m > 0.0;
-}
-
 struct IdealHearing {
   std::string medium;
   bool check_occlusions = true;
@@ -68,16 +64,17 @@ class RabSensor final : public Sensor {
     auto* receivers = static_cast<hal::RangeAndBearing*>(ports);
     double farthest_m = 0.0;
     for (const RobotGroup& group : context.stores.groups) farthest_m = std::max(farthest_m, group.rab_range_m);
-    only_sheet_ = context.stores.groups.front().sheet;
+    const RobotGroup& first = context.stores.groups.front();
+    like_all_ = &first;
     for (const RobotGroup& group : context.stores.groups) {
-      if (group.sheet != only_sheet_) only_sheet_ = nullptr;
+      if (group.kind != first.kind) like_all_ = nullptr;
     }
-    flat_ = only_sheet_ != nullptr && std::all_of(context.stores.regions.begin(), context.stores.regions.end(),
-                                                  [](const Region& region) { return region.plane; });
+    flat_ = like_all_ != nullptr && std::all_of(context.stores.regions.begin(), context.stores.regions.end(),
+                                                [](const Region& region) { return region.plane; });
     const bool shadows = options_.check_occlusions && bodies_block(context.stores);
     widest_m_ = widest_body_m(context.stores);
     space_ = std::any_of(context.stores.groups.begin(), context.stores.groups.end(),
-                         [](const RobotGroup& group) { return group.sheet->flies; });
+                         [](const RobotGroup& group) { return group.kind->flies(); });
     for (std::size_t i = 0; i < context.block.used; ++i) {
       hal::RangeAndBearing& port = receivers[i];
       stamp(context, port);
@@ -122,11 +119,12 @@ class RabSensor final : public Sensor {
     std::uint32_t row;
   };
 
-  const hal::DataSheet& sheet_of(const SpaceStores& stores, std::size_t row) const noexcept {
-    return only_sheet_ != nullptr ? *only_sheet_ : stores.sheet_of_row(row);
+  /// A group of the robot's kind.
+  const RobotGroup& group_of(const SpaceStores& stores, std::size_t row) const noexcept {
+    return like_all_ != nullptr ? *like_all_ : stores.group_of_row(row);
   }
   double board_m(const SpaceStores& stores, std::size_t row) const noexcept {
-    return sheet_of(stores, row).rab_height_m + stores.base_m(row);
+    return group_of(stores, row).rab_height_m + stores.base_m(row);
   }
 
   /// False where all boards look over all bodies: robots of such kinds on level ground.
@@ -134,9 +132,9 @@ class RabSensor final : public Sensor {
     double lowest_m = std::numeric_limits<double>::infinity();
     double highest_m = 0.0;
     for (const RobotGroup& group : stores.groups) {
-      if (group.sheet->flies) return true;
-      if (group.rab_range_m > 0.0) lowest_m = std::min(lowest_m, group.sheet->rab_height_m);
-      highest_m = std::max(highest_m, group.sheet->body_height_m);
+      if (group.kind->flies()) return true;
+      if (group.rab_range_m > 0.0) lowest_m = std::min(lowest_m, group.rab_height_m);
+      highest_m = std::max(highest_m, group.kind->body.height_m);
     }
     return lowest_m < highest_m - kOnTop_m;
   }
@@ -224,8 +222,8 @@ class RabSensor final : public Sensor {
       // Neither a sender nor in the way where no line leads.
       const double low_m = stores.base_m(o.row()) - height_m;
       if (low_m > farthest_m) return;
-      const hal::DataSheet& sheet = sheet_of(stores, o.row());
-      if (low_m + sheet.body_height_m < -farthest_m) return;
+      const RobotGroup& group = group_of(stores, o.row());
+      if (low_m + group.kind->body.height_m < -farthest_m) return;
       crowd = count == kCrowd;
       if (crowd) return;
       const auto radius_m = static_cast<double>(o.radius_m);
@@ -233,7 +231,8 @@ class RabSensor final : public Sensor {
       around_y_[count] = wy;
       around_flat2_[count] = flat2;
       around_aside2_[count] = kSurelyAside * radius_m * radius_m;
-      around_[count++] = {low_m, low_m + sheet.body_height_m - kOnTop_m, low_m + sheet.rab_height_m, radius_m, o.row()};
+      around_[count++] = {low_m, low_m + group.kind->body.height_m - kOnTop_m, low_m + group.rab_height_m, radius_m,
+                          o.row()};
     });
     if (crowd) return false;
     std::size_t heard = 0;
@@ -330,7 +329,7 @@ class RabSensor final : public Sensor {
   /// one.
   void cast_shadow(const SpaceStores& stores, double height_m, const Neighbour& n) noexcept {
     const double low_m = stores.base_m(n.row);
-    const double high_m = low_m + sheet_of(stores, n.row).body_height_m - kOnTop_m;
+    const double high_m = low_m + group_of(stores, n.row).kind->body.height_m - kOnTop_m;
     if (low_m <= height_m - kLevel_m && high_m >= height_m + kLevel_m)
       shadows_.add(n.wx, n.wy, static_cast<double>(n.radius_m));
     else if (low_m <= height_m + kLevel_m && high_m >= height_m - kLevel_m)
@@ -342,7 +341,7 @@ class RabSensor final : public Sensor {
     const Bodies& b = stores.bodies;
     const double low_m = stores.base_m(other);
     return disc_blocks(b.x_m[other], b.y_m[other], static_cast<double>(b.radius_m[other]), low_m,
-                       low_m + sheet_of(stores, other).body_height_m - kOnTop_m, from, to);
+                       low_m + group_of(stores, other).kind->body.height_m - kOnTop_m, from, to);
   }
 
   bool behind_partial(const SpaceStores& stores, std::size_t row, double height_m,
@@ -363,7 +362,7 @@ class RabSensor final : public Sensor {
       if (other == row || other == sender.row) return false;
       const double low_m = stores.base_m(other);
       return disc_on_line(b.x_m[other], b.y_m[other], static_cast<double>(b.radius_m[other]), low_m,
-                          low_m + sheet_of(stores, other).body_height_m - kOnTop_m, from, to);
+                          low_m + group_of(stores, other).kind->body.height_m - kOnTop_m, from, to);
     });
   }
 
@@ -410,9 +409,9 @@ class RabSensor final : public Sensor {
   Hearing<0> options_;
   const RangeAndBearingMedium& medium_;
   std::uint8_t channel_;
-  const hal::DataSheet* only_sheet_ = nullptr;  // of all robots, or null where there are several kinds
-  bool flat_ = false;                           // all boards are equally high
-  bool space_ = false;                          // there are robots that fly
+  const RobotGroup* like_all_ = nullptr;  // a group, where all are of one kind
+  bool flat_ = false;                     // all boards are equally high
+  bool space_ = false;                    // there are robots that fly
   // While one robot listens: who is near, what lies in their shadow, and who blocks some heights only.
   std::vector<Neighbour> near_, sorted_;
   double widest_m_ = 0.0;  // of all bodies
@@ -444,8 +443,9 @@ Recipe<Sensor> make_hearing(const Element& element, Problems& problems, const De
 
 template <class Options>
 DeviceType hearing_type(std::string_view implementation, std::string_view summary) {
-  return in_medium(RangeAndBearingMedium::kKind, sensor_type("range_and_bearing", implementation, summary, &has_rab,
-                                                             &make_hearing<Options>, &describe_options<Options>));
+  return in_medium(RangeAndBearingMedium::kKind,
+                   sensor_type("range_and_bearing", implementation, summary, &has<hal::RangeAndBearingPart>,
+                               &make_hearing<Options>, &describe_options<Options>));
 }
 
 // --- sending ---
@@ -511,8 +511,9 @@ Recipe<Actuator> make_sending(const Element& element, Problems& problems, const 
 
 template <class Options>
 DeviceType sending_type(std::string_view implementation, std::string_view summary) {
-  return in_medium(RangeAndBearingMedium::kKind, actuator_type("range_and_bearing", implementation, summary, &has_rab,
-                                                               &make_sending<Options>, &describe_options<Options>));
+  return in_medium(RangeAndBearingMedium::kKind,
+                   actuator_type("range_and_bearing", implementation, summary, &has<hal::RangeAndBearingPart>,
+                                 &make_sending<Options>, &describe_options<Options>));
 }
 
 }  // namespace

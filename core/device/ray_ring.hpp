@@ -7,7 +7,7 @@
 #include <cstring>
 #include <span>
 
-#include "hal/spec/data_sheet.hpp"
+#include "hal/robot_kind.hpp"
 
 namespace tandem::core {
 

@@ -37,7 +37,8 @@ void add_noise(const DeviceContext& context, std::size_t i, Stream stream, float
 /// to it. Levels of several lamps add up. Boxes and cylinders cast shadows.
 class LightSensor final : public Sensor {
  public:
-  LightSensor(const hal::DataSheet& sheet, double noise) : mounts_(sheet.light), noise_(static_cast<float>(noise)) {
+  using Part = hal::LightPart;
+  LightSensor(const Part& part, double noise) : mounts_(part.mounts), noise_(static_cast<float>(noise)) {
     for (const hal::Mount& m : mounts_) looks_.push_back({std::cos(m.bearing_rad), std::sin(m.bearing_rad)});
   }
 
@@ -120,66 +121,55 @@ class GroundSensor : public Sensor {
 
 class PlainGround final : public GroundSensor {
  public:
-  PlainGround(const hal::DataSheet& sheet, double noise) : GroundSensor(sheet.ground, Stream::GroundNoise, noise) {}
+  using Part = hal::GroundPart;
+  PlainGround(const Part& part, double noise) : GroundSensor(part.mounts, Stream::GroundNoise, noise) {}
 };
 class BaseGround final : public GroundSensor {
  public:
-  BaseGround(const hal::DataSheet& sheet, double noise) : GroundSensor(sheet.base_ground, Stream::GroundNoise, noise) {}
+  using Part = hal::BaseGroundPart;
+  BaseGround(const Part& part, double noise) : GroundSensor(part.mounts, Stream::GroundNoise, noise) {}
 };
 class MotorGround final : public GroundSensor {
  public:
-  MotorGround(const hal::DataSheet& sheet, double noise)
-      : GroundSensor(sheet.motor_ground, Stream::MotorGroundNoise, noise) {}
+  using Part = hal::MotorGroundPart;
+  MotorGround(const Part& part, double noise) : GroundSensor(part.mounts, Stream::MotorGroundNoise, noise) {}
 };
 static_assert(sizeof(hal::BaseGround) == sizeof(hal::Ground) && sizeof(hal::MotorGround) == sizeof(hal::Ground));
-
-bool has_light(const hal::DataSheet& sheet) {
-  return !sheet.light.empty();
-}
-bool has_ground(const hal::DataSheet& sheet) {
-  return !sheet.ground.empty();
-}
-bool has_base_ground(const hal::DataSheet& sheet) {
-  return !sheet.base_ground.empty();
-}
-bool has_motor_ground(const hal::DataSheet& sheet) {
-  return !sheet.motor_ground.empty();
-}
 
 template <class Device, class Options>
 Recipe<Sensor> make_levels(const Element& element, Problems& problems, const DeviceSetup& setup) {
   const double noise = read_options<Options>(element, problems).level();
-  return [&sheet = setup.sheet, noise](const BlockColumns&) { return std::make_unique<Device>(sheet, noise); };
+  return [&part = *setup.kind.part<typename Device::Part>(), noise](const BlockColumns&) {
+    return std::make_unique<Device>(part, noise);
+  };
 }
 
 template <class Device, class Options>
-DeviceType levels_type(std::string_view device, std::string_view implementation, std::string_view summary,
-                       bool (*fits)(const hal::DataSheet&)) {
-  return sensor_type(device, implementation, summary, fits, &make_levels<Device, Options>, &describe_options<Options>);
+DeviceType levels_type(std::string_view device, std::string_view implementation, std::string_view summary) {
+  return sensor_type(device, implementation, summary, &has<typename Device::Part>, &make_levels<Device, Options>,
+                     &describe_options<Options>);
 }
 
 template <class Device>
-void add_grounds(std::string_view device, bool (*fits)(const hal::DataSheet&), std::vector<DeviceType>& types) {
+void add_grounds(std::string_view device, std::vector<DeviceType>& types) {
   types.push_back(
-      levels_type<Device, LevelNoise<0, false>>(device, "default", "The floor's shade; noise where asked for.", fits));
-  types.push_back(levels_type<Device, LevelNoise<-1, false>>(device, "ideal", "The floor's shade.", fits));
-  types.push_back(levels_type<Device, LevelNoise<20, false>>(device, "noisy", "The floor's shade, with noise.", fits));
-  types.push_back(
-      levels_type<Device, LevelNoise<0, false>>(device, "rot_z_only", "ARGoS' name for the default.", fits));
+      levels_type<Device, LevelNoise<0, false>>(device, "default", "The floor's shade; noise where asked for."));
+  types.push_back(levels_type<Device, LevelNoise<-1, false>>(device, "ideal", "The floor's shade."));
+  types.push_back(levels_type<Device, LevelNoise<20, false>>(device, "noisy", "The floor's shade, with noise."));
+  types.push_back(levels_type<Device, LevelNoise<0, false>>(device, "rot_z_only", "ARGoS' name for the default."));
 }
 
 }  // namespace
 
 std::vector<DeviceType> ring_level_types() {
   std::vector<DeviceType> types = {
-      levels_type<LightSensor, LevelNoise<0, true>>("light", "default", "Lamps in sight; noise where asked for.",
-                                                    &has_light),
-      levels_type<LightSensor, LevelNoise<-1, true>>("light", "ideal", "Lamps in sight.", &has_light),
-      levels_type<LightSensor, LevelNoise<20, true>>("light", "noisy", "Lamps in sight, with noise.", &has_light),
-      levels_type<LightSensor, LevelNoise<0, true>>("light", "rot_z_only", "ARGoS' name for the default.", &has_light)};
-  add_grounds<PlainGround>(hal::Ground::kName, &has_ground, types);
-  add_grounds<BaseGround>(hal::BaseGround::kName, &has_base_ground, types);
-  add_grounds<MotorGround>(hal::MotorGround::kName, &has_motor_ground, types);
+      levels_type<LightSensor, LevelNoise<0, true>>("light", "default", "Lamps in sight; noise where asked for."),
+      levels_type<LightSensor, LevelNoise<-1, true>>("light", "ideal", "Lamps in sight."),
+      levels_type<LightSensor, LevelNoise<20, true>>("light", "noisy", "Lamps in sight, with noise."),
+      levels_type<LightSensor, LevelNoise<0, true>>("light", "rot_z_only", "ARGoS' name for the default.")};
+  add_grounds<PlainGround>(hal::Ground::kName, types);
+  add_grounds<BaseGround>(hal::BaseGround::kName, types);
+  add_grounds<MotorGround>(hal::MotorGround::kName, types);
   return types;
 }
 

@@ -53,7 +53,7 @@ inline bool disc_on_line(double cx, double cy, double radius_m, double low_m, do
 
 inline double widest_body_m(const SpaceStores& stores) noexcept {
   double widest_m = 0.0;
-  for (const RobotGroup& group : stores.groups) widest_m = std::max(widest_m, group.sheet->body_radius_m);
+  for (const RobotGroup& group : stores.groups) widest_m = std::max(widest_m, group.kind->body.radius_m);
   return widest_m;
 }
 

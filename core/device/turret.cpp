@@ -8,10 +8,6 @@
 namespace tandem::core {
 namespace {
 
-bool has_turret(const hal::DataSheet& sheet) {
-  return sheet.turret_turn_rad_s > 0.0;
-}
-
 // --- actuator ---
 
 struct IdealTurret {
@@ -77,7 +73,7 @@ Recipe<Actuator> make_turret(const Element& element, Problems& problems, const D
   const auto options = read_options<Options>(element, problems);
   double noise = 0.0;
   if constexpr (requires { options.noise_std_dev; }) noise = options.noise_std_dev;
-  const auto make = [fastest = setup.sheet.turret_turn_rad_s, noise](const BlockColumns& columns) {
+  const auto make = [fastest = setup.kind.part<hal::TurretPart>()->turn_rad_s, noise](const BlockColumns& columns) {
     return std::make_unique<TurretActuator>(fastest, noise, columns);
   };
   return {make, {keeps<TurretState>()}};
@@ -85,7 +81,7 @@ Recipe<Actuator> make_turret(const Element& element, Problems& problems, const D
 
 template <class Options>
 DeviceType turret_type(std::string_view implementation, std::string_view summary) {
-  return actuator_type(hal::TurretDrive::kName, implementation, summary, &has_turret, &make_turret<Options>,
+  return actuator_type(hal::TurretDrive::kName, implementation, summary, &has<hal::TurretPart>, &make_turret<Options>,
                        &describe_options<Options>);
 }
 
@@ -142,7 +138,7 @@ Recipe<Sensor> make_encoder(const Element& element, Problems& problems, const De
 
 template <class Options>
 DeviceType encoder_type(std::string_view implementation, std::string_view summary) {
-  return sensor_type(hal::TurretEncoder::kName, implementation, summary, &has_turret, &make_encoder<Options>,
+  return sensor_type(hal::TurretEncoder::kName, implementation, summary, &has<hal::TurretPart>, &make_encoder<Options>,
                      &describe_options<Options>);
 }
 

@@ -9,10 +9,6 @@
 namespace tandem::core {
 namespace {
 
-bool has_wheels(const hal::DataSheet& sheet) {
-  return sheet.wheel_base_m > 0.0;
-}
-
 // --- actuator ---
 
 struct IdealWheels {
@@ -150,8 +146,8 @@ Recipe<Actuator> make_wheels(const Element& element, Problems& problems, const D
 
 template <class Options>
 DeviceType wheels_type(std::string_view implementation, std::string_view summary) {
-  return actuator_type("differential_steering", implementation, summary, &has_wheels, &make_wheels<Options>,
-                       &describe_options<Options>);
+  return actuator_type("differential_steering", implementation, summary, &has<hal::DifferentialDrive>,
+                       &make_wheels<Options>, &describe_options<Options>);
 }
 
 // --- encoders ---
@@ -246,7 +242,7 @@ Recipe<Sensor> make_encoders(const Element& element, Problems& problems, const D
 
 template <class Options>
 DeviceType encoder_type(std::string_view implementation, std::string_view summary) {
-  return sensor_type("wheel_encoders", implementation, summary, &has_wheels, &make_encoders<Options>,
+  return sensor_type("wheel_encoders", implementation, summary, &has<hal::DifferentialDrive>, &make_encoders<Options>,
                      &describe_options<Options>);
 }
 
@@ -339,7 +335,7 @@ Recipe<Sensor> make_odometry(const Element& element, Problems& problems, const D
   const auto options = read_options<Options>(element, problems);
   double noise_m = 0.0;
   if constexpr (requires { options.dist_noise_m; }) noise_m = options.dist_noise_m;
-  const auto make = [base = setup.sheet.wheel_base_m, noise_m](const BlockColumns& columns) {
+  const auto make = [base = setup.kind.drive()->wheel_base_m, noise_m](const BlockColumns& columns) {
     return std::make_unique<OdometrySensor>(base, noise_m, columns);
   };
   return {make, {keeps<Reckoned>()}};
@@ -347,8 +343,8 @@ Recipe<Sensor> make_odometry(const Element& element, Problems& problems, const D
 
 template <class Options>
 DeviceType odometry_type(std::string_view implementation, std::string_view summary) {
-  return sensor_type(hal::Odometry::kName, implementation, summary, &has_wheels, &make_odometry<Options>,
-                     &describe_options<Options>);
+  return sensor_type(hal::Odometry::kName, implementation, summary, &has<hal::DifferentialDrive>,
+                     &make_odometry<Options>, &describe_options<Options>);
 }
 
 }  // namespace
@@ -359,7 +355,7 @@ std::vector<DeviceType> wheel_types() {
           wheels_type<WheelErrors<50>>("noisy", "Each wheel with a relative error of its own every tick."),
           actuator_type(hal::WheelSpeeds::kName, "slanted",
                         "Draws to one side by an error that the encoders do not see and every grip changes.",
-                        &has_wheels, &make_slanted, &describe_options<Slant>),
+                        &has<hal::DifferentialDrive>, &make_slanted, &describe_options<Slant>),
           encoder_type<EncoderErrors<0>>("default", "What the wheels rolled, with noise where asked for."),
           encoder_type<IdealEncoders>("ideal", "What the wheels rolled."),
           encoder_type<EncoderErrors<100>>("noisy", "What the wheels rolled, with noise that adds up."),

@@ -78,7 +78,7 @@ struct BatteryConfig {
   double orient_delta = 0.0;  ///< charge lost a radian (motion)
 };
 
-/// What the file says of a robot's cameras; negative: what its data sheet says.
+/// What the file says of a robot's cameras; negative: what its kind says.
 struct CameraConfig {
   double omni_aperture_rad = -1.0;
   double aperture_rad = -1.0;
@@ -121,8 +121,8 @@ struct RobotItem {
   std::optional<Element> params;  ///< overrides of the controller's parameters, for these robots alone
   Placement placement;
   std::optional<Distribute> distribute;
-  double rab_range_m = -1.0;      ///< negative: the data sheet's
-  std::int64_t rab_payload = -1;  ///< bytes; negative: the data sheet's
+  double rab_range_m = -1.0;      ///< negative: the kind's
+  std::int64_t rab_payload = -1;  ///< bytes; negative: the kind's
   BatteryConfig battery;
   std::optional<BridgeConfig> bridge;
   std::optional<TrackerConfig> tracker;

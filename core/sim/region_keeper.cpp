@@ -18,9 +18,9 @@ Where where_is(const SpaceStores& s, BodyKey body) noexcept {
   const std::size_t i = body.index();
   if (body.is_object()) return {s.objects[i].x_m, s.objects[i].y_m, s.objects[i].z_low_m, false};
   const RobotEntity& e = s.robots[s.bodies.entity[i]];
-  const hal::DataSheet* sheet = s.groups[s.blocks[e.block].group].sheet;
+  const hal::RobotKind* kind = s.groups[s.blocks[e.block].group].kind;
   const double z_m = s.bodies.motion.empty() ? 0.0 : s.bodies.motion[i].z_m;
-  return {s.bodies.x_m[i], s.bodies.y_m[i], z_m, sheet != nullptr && sheet->flies};
+  return {s.bodies.x_m[i], s.bodies.y_m[i], z_m, kind != nullptr && kind->flies()};
 }
 
 double radius_of(const SpaceStores& s, BodyKey body) noexcept {
@@ -69,9 +69,9 @@ void RegionKeeper::fit(SpaceStores& stores, double tick_s) {
   double robot_m = 0.0;
   double hop_m = 0.0;
   for (const RobotGroup& group : stores.groups) {
-    if (group.sheet == nullptr) continue;
-    robot_m = std::max(robot_m, group.sheet->body_radius_m);
-    hop_m = std::max(hop_m, std::max(group.sheet->max_wheel_speed_m_s, group.sheet->max_flight_speed_m_s) * tick_s);
+    if (group.kind == nullptr) continue;
+    robot_m = std::max(robot_m, group.kind->body.radius_m);
+    hop_m = std::max(hop_m, group.kind->top_speed_m_s() * tick_s);
   }
   largest_m = robot_m;
   for (const Object& o : stores.objects) {

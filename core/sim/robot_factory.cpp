@@ -80,7 +80,7 @@ class ConstructedRobot final : public hal::Robot {
   }
 
   std::string_view id() const noexcept override { return id_; }
-  const hal::DataSheet& data_sheet() const noexcept override { return *group_.sheet; }
+  const hal::RobotKind& kind() const noexcept override { return *group_.kind; }
   std::uint64_t run_seed() const noexcept override { return run_seed_; }
 
  protected:
@@ -127,9 +127,9 @@ class ConstructedRobot final : public hal::Robot {
     if (device == nullptr) {
       throw hal::DeviceError("asks for the " + role + " '" + name + "', which no simulated robot has");
     }
-    if (!device->fits(*group_.sheet)) {
-      throw hal::DeviceError("asks for the " + role + " '" + name + "', which the robot '" +
-                             std::string(group_.sheet->kind) + "' does not have");
+    if (!device->fits(*group_.kind)) {
+      throw hal::DeviceError("asks for the " + role + " '" + name + "', which the robot '" + group_.kind->name +
+                             "' does not have");
     }
     const ControllerConfig& config = scenario_.controllers[group_.config];
     for (const DeviceChoice& choice : sensor ? config.sensors : config.actuators) {
@@ -275,13 +275,16 @@ bool RobotFactory::prepare_group(std::size_t g, Problems& problems) {
   };
   RobotGroup& group = stores_.groups[g];
   group.config = item.controller;
-  group.sheet = data_sheet_of(loader_.catalog(), item.kind);
-  if (group.sheet == nullptr) {
+  group.kind = robot_kind_of(loader_.catalog(), item.kind);
+  if (group.kind == nullptr) {
     problem(item.line, "unknown kind of robot '" + item.kind + "'");
     return false;
   }
-  group.rab_range_m = item.rab_range_m >= 0.0 ? item.rab_range_m : group.sheet->rab_range_m;
-  group.rab_payload = item.rab_payload >= 0 ? static_cast<unsigned>(item.rab_payload) : group.sheet->rab_payload;
+  if (const auto* board = group.kind->part<hal::RangeAndBearingPart>(); board != nullptr) {
+    group.rab_range_m = item.rab_range_m >= 0.0 ? item.rab_range_m : board->range_m;
+    group.rab_payload = static_cast<unsigned>(item.rab_payload >= 0 ? item.rab_payload : board->payload);
+    group.rab_height_m = board->height_m;
+  }
   const auto type = loader_.controller(config.library, config.label);
   if (!type.ok()) {
     problem(config.line, "controller '" + config.id + "': " + type.error().message);
@@ -326,7 +329,7 @@ std::shared_ptr<const void> RobotFactory::read_params(const RobotGroup& group, c
 
 bool RobotFactory::read_devices(const RobotGroup& group, hal::Role role, GroupRecipes& recipes, Problems& problems) {
   const ControllerConfig& config = scenario_.controllers[group.config];
-  DeviceSetup setup{*group.sheet, *group.item, 1.0 / static_cast<double>(scenario_.ticks_per_second)};
+  DeviceSetup setup{*group.kind, *group.item, 1.0 / static_cast<double>(scenario_.ticks_per_second)};
   bool good = true;
   for (const DeviceChoice& choice : role == hal::Role::Sensor ? config.sensors : config.actuators) {
     const DeviceType* type = find_device(loader_.catalog(), choice.device, role, choice.implementation);
@@ -344,8 +347,10 @@ bool RobotFactory::read_devices(const RobotGroup& group, hal::Role role, GroupRe
       problem(known.empty() ? "no simulated device '" + choice.device + "'"
                             : "device '" + choice.device + "' has no implementation '" + choice.implementation +
                                   "'; it has: " + known);
-    } else if (!type->fits(*group.sheet)) {
-      problem("the robot '" + std::string(group.sheet->kind) + "' has no device '" + choice.device + "'");
+    } else if (!type->fits(*group.kind)) {
+      problem("the robot '" + group.kind->name + "' has no device '" + choice.device +
+              "'; take it out of the controller configuration '" + config.id + "', or make one of its own for '" +
+              group.kind->name + "'");
     } else {
       setup.channel = choice.medium;
       if (!type->medium.empty()) {
@@ -424,7 +429,7 @@ void RobotFactory::place(const RobotRequest& request, Slot at) {
   b.y_m[row] = request.y_m;
   b.cos_h[row] = std::cos(request.yaw_rad);
   b.sin_h[row] = std::sin(request.yaw_rad);
-  b.radius_m[row] = static_cast<float>(stores_.groups[stores_.blocks[at.block].group].sheet->body_radius_m);
+  b.radius_m[row] = static_cast<float>(stores_.groups[stores_.blocks[at.block].group].kind->body.radius_m);
   if (b.has_motion) {
     b.motion[row].z_m = request.z_m;
     b.motion[row].q_WB = {std::cos(0.5 * request.yaw_rad), 0.0, 0.0, std::sin(0.5 * request.yaw_rad)};
@@ -491,7 +496,7 @@ void RobotFactory::note_needs(RobotGroup& group) {
     group.columns.push_back(wanted);
     group.columns.back().arrays = arrays;
   };
-  if (group.sheet->flies) {
+  if (group.kind->flies()) {
     add(keeps<FlightCommand>());
     add(keeps<RotorState>());
   }

@@ -7,6 +7,7 @@
 #include "core/sim/world_impl.hpp"
 #include "core/space/fingerprint.hpp"
 #include "hal/check.hpp"
+#include "hal/device/turret.hpp"
 #include "hal/unit.hpp"
 
 namespace tandem::core {
@@ -106,7 +107,7 @@ void World::Impl::limit(std::size_t index) {
   for (std::size_t p = 0; p < group.ports.size(); ++p) {
     const hal::PortType& type = *group.ports[p];
     if (type.limit == nullptr) continue;
-    for (std::size_t i = 0; (i = type.limit(block.ports[p], i, block.used, *group.sheet, what)) < block.used; ++i)
+    for (std::size_t i = 0; (i = type.limit(block.ports[p], i, block.used, *group.kind, what)) < block.used; ++i)
       note_limited(index, i, what);
   }
 }
@@ -154,16 +155,16 @@ void World::Impl::report_trouble() {
       if ((flags & kNotFinite) != 0) {
         flags = static_cast<std::uint8_t>(flags & ~kNotFinite);
         if (incidents.first.size() < kIncidentsNamed) {
-          const hal::DataSheet& sheet = *stores().groups[block.group].sheet;
-          const bool more = sheet.turret_turn_rad_s > 0.0;  // than wheels to command
+          const hal::RobotKind& kind = *stores().groups[block.group].kind;
+          const bool more = kind.part<hal::TurretPart>() != nullptr;  // than wheels to command
           incident("controller of robot '" + name_of_row(row) + "' commanded " +
-                   (sheet.flies ? "a flight"
-                    : more      ? "something"
-                                : "a wheel speed") +
+                   (kind.flies() ? "a flight"
+                    : more       ? "something"
+                                 : "a wheel speed") +
                    " that is not a finite number" + at_tick() +
-                   (sheet.flies ? ": it hovers for this tick"
-                    : more      ? ": that device is off for this tick"
-                                : ": wheels stopped for this tick"));
+                   (kind.flies() ? ": it hovers for this tick"
+                    : more       ? ": that device is off for this tick"
+                                 : ": wheels stopped for this tick"));
         }
       }
       if ((block.halted[i] & kThrewInThisTick) != 0) {

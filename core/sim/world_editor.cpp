@@ -107,12 +107,12 @@ Obstacle WorldEditor::obstacle_of(BodyKey body) const {
     o.z_high_m = object.z_high_m;
   } else {
     const Bodies& b = stores_.bodies;
-    const hal::DataSheet& sheet = *stores_.groups[stores_.blocks[stores_.robots[b.entity[i]].block].group].sheet;
-    o = disc_at(b.x_m[i], b.y_m[i], sheet.body_radius_m);
+    const hal::RobotKind& kind = *stores_.groups[stores_.blocks[stores_.robots[b.entity[i]].block].group].kind;
+    o = disc_at(b.x_m[i], b.y_m[i], kind.body.radius_m);
     o.is_robot = true;
-    o.flies = sheet.flies;
+    o.flies = kind.flies();
     o.z_low_m = b.motion.empty() ? 0.0 : b.motion[i].z_m;
-    o.z_high_m = o.z_low_m + sheet.body_height_m;
+    o.z_high_m = o.z_low_m + kind.body.height_m;
   }
   o.item = body.value;
   return o;
@@ -127,7 +127,7 @@ std::optional<BodyKey> WorldEditor::in_the_way(const Obstacle& o, BodyKey self, 
   };
   if (!occupancy_ || entered_version_ != stores_.poses_version) {
     double cell_m = 0.02;
-    for (const RobotGroup& group : stores_.groups) cell_m = std::max(cell_m, 2.0 * group.sheet->body_radius_m);
+    for (const RobotGroup& group : stores_.groups) cell_m = std::max(cell_m, 2.0 * group.kind->body.radius_m);
     occupancy_.emplace(cell_m);
     occupancy_->reserve(stores_.living.size() + stores_.objects.size());
     for (std::size_t row = 0; row < stores_.bodies.size(); ++row) enter(BodyKey::robot(row));
@@ -182,8 +182,8 @@ hal::Result<RobotItem> WorldEditor::item_for(const NewRobot& wanted) const {
   RobotItem item;
   item.controller = static_cast<std::size_t>(config - ids.begin());
   item.kind = wanted.kind.empty() ? usual_kind(item.controller) : wanted.kind;
-  if (data_sheet_of(factory_.catalog(), item.kind) == nullptr) {
-    const std::vector<std::string> kinds = factory_.catalog().names(hal::DataSheet::kCategory);
+  if (robot_kind_of(factory_.catalog(), item.kind) == nullptr) {
+    const std::vector<std::string> kinds = factory_.catalog().names(hal::RobotKind::kCategory);
     return hal::Error{"robot '" + wanted.id + "': there is no kind '" + item.kind + "'; there are: " + listed(kinds) +
                       did_you_mean(item.kind, kinds)};
   }

@@ -45,9 +45,9 @@ Object object_of(const Scenario& scenario, const ObjectItem& item, const PlacedO
   return shape;
 }
 
-BodySize size_of_kind(const hal::Catalog& catalog, const std::string& kind) {
-  const hal::DataSheet* sheet = data_sheet_of(catalog, kind);
-  return sheet != nullptr ? BodySize{sheet->body_radius_m, sheet->body_height_m, sheet->flies} : BodySize{};
+BodySize size_of_kind(const hal::Catalog& catalog, const std::string& name) {
+  const hal::RobotKind* kind = robot_kind_of(catalog, name);
+  return kind != nullptr ? BodySize{kind->body.radius_m, kind->body.height_m, kind->flies()} : BodySize{};
 }
 
 /// Some devices work by joints: robots whose controller takes one need an engine that has them. One problem an item.
@@ -143,7 +143,7 @@ void assign_regions(const Scenario& scenario, const hal::Catalog& catalog, const
       if (why.empty()) continue;
     }
     const std::string name = s.names[e.item].prefix + (e.number < 0 ? "" : std::to_string(e.number));
-    const bool flies = s.groups[s.blocks[e.block].group].sheet->flies;
+    const bool flies = s.groups[s.blocks[e.block].group].kind->flies();
     if (why.empty()) {
       why = flies && !any_solid ? "flies: it needs an engine of three dimensions: " +
                                       engines_that(catalog, [](const EngineTraits& traits) { return !traits.plane; })

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "core/sim/world_impl.hpp"
+#include "hal/device/ring_sensors.hpp"
 
 namespace tandem::core {
 namespace {
@@ -14,11 +15,12 @@ constexpr double kContactReach_m = 0.03;  // beyond the bodies' rims: what conta
 double index_reach(const SpaceStores& stores, double tick_s) noexcept {
   double reach_m = 2.0 * kContactReach_m;
   for (const RobotGroup& group : stores.groups) {
-    if (group.sheet == nullptr) continue;
-    reach_m = std::max(
-        reach_m, 2.0 * group.sheet->body_radius_m + std::max(group.sheet->proximity_range_m, kContactReach_m) + 0.01);
-    if (group.sheet->flies)  // where it may be at the end of the tick
-      reach_m = std::max(reach_m, 2.0 * group.sheet->body_radius_m + tick_s * group.sheet->max_flight_speed_m_s);
+    if (group.kind == nullptr) continue;
+    const auto* const proximity = group.kind->part<hal::ProximityPart>();
+    const double sees_m = proximity != nullptr ? proximity->range_m : 0.0;
+    reach_m = std::max(reach_m, 2.0 * group.kind->body.radius_m + std::max(sees_m, kContactReach_m) + 0.01);
+    if (group.kind->flies())  // where it may be at the end of the tick
+      reach_m = std::max(reach_m, 2.0 * group.kind->body.radius_m + tick_s * group.kind->flight()->max_speed_m_s);
   }
   return reach_m;
 }

@@ -138,10 +138,10 @@ std::string Space::robot_name(RobotId robot) const {
   return e.number < 0 ? prefix : prefix + std::to_string(e.number);
 }
 
-const hal::DataSheet& Space::data_sheet(RobotId robot) const noexcept {
-  static constexpr hal::DataSheet kNone;
-  if (robot.index >= stores_->robots.size()) return kNone;
-  return *stores_->groups[stores_->blocks[stores_->robots[robot.index].block].group].sheet;
+const hal::RobotKind& Space::kind(RobotId robot) const noexcept {
+  static const hal::RobotKind none;
+  if (robot.index >= stores_->robots.size()) return none;
+  return *stores_->groups[stores_->blocks[stores_->robots[robot.index].block].group].kind;
 }
 
 Pose Space::pose(RobotId robot) const noexcept {
@@ -175,9 +175,9 @@ Velocity Space::velocity(RobotId robot) const noexcept {
   const std::uint16_t region = b.region[row];
   if (!b.motion.empty() && region != kNoRegion && stores_->regions[region].listed)
     return {b.motion[row].v_m_s, b.motion[row].w_rad_s};
-  const double base_m = data_sheet(robot).wheel_base_m;
+  const hal::DifferentialDrive* const drive = kind(robot).drive();
   const double speed = 0.5 * (b.left_m_s[row] + b.right_m_s[row]);
-  const double turn = base_m > 0.0 ? (b.right_m_s[row] - b.left_m_s[row]) / base_m : 0.0;
+  const double turn = drive != nullptr ? (b.right_m_s[row] - b.left_m_s[row]) / drive->wheel_base_m : 0.0;
   return {{b.cos_h[row] * speed, b.sin_h[row] * speed, 0.0}, {0.0, 0.0, turn}};
 }
 

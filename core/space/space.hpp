@@ -17,7 +17,7 @@
 #include "hal/device/leds.hpp"
 #include "hal/port.hpp"
 #include "hal/published.hpp"
-#include "hal/spec/data_sheet.hpp"
+#include "hal/robot_kind.hpp"
 
 namespace tandem::core {
 
@@ -88,7 +88,7 @@ class Space {
   RobotId find_robot(std::string_view id) const noexcept;  ///< invalid when there is none
   bool contains(RobotId robot) const noexcept;             ///< false once removed
   std::string robot_name(RobotId robot) const;             ///< also of one that is gone
-  const hal::DataSheet& data_sheet(RobotId robot) const noexcept;
+  const hal::RobotKind& kind(RobotId robot) const noexcept;
   /// Makes a robot; it senses and steps from the next step on. Errors: an id that is taken or was; an unknown kind or
   /// configuration; bad parameters; a place that is occupied, outside the arena, or in no engine's region; a
   /// controller that throws. Nothing has changed then.

@@ -32,7 +32,7 @@
 #include "core/space/space.hpp"
 #include "hal/controller.hpp"
 #include "hal/port.hpp"
-#include "hal/spec/data_sheet.hpp"
+#include "hal/robot_kind.hpp"
 #include "hal/surface.hpp"
 
 namespace tandem::core {
@@ -127,7 +127,7 @@ struct MediumUse {
 /// What the robots of a group have in common.
 struct RobotGroup {
   std::shared_ptr<const RobotItem> item;  ///< one of theirs: what it says of battery and radio holds for all
-  const hal::DataSheet* sheet = nullptr;
+  const hal::RobotKind* kind = nullptr;
   const hal::ControllerType* controller = nullptr;
   std::size_t config = 0;                       ///< index into Scenario::controllers
   std::shared_ptr<const void> params;           ///< of those that have none of their own in RobotBlock::params
@@ -136,6 +136,7 @@ struct RobotGroup {
   std::vector<KeptColumn> columns;              ///< that their devices need
   std::vector<hal::PublishedField> published;   ///< what its controllers show, with offsets into each of them
   double rab_range_m = 0.0;
+  double rab_height_m = 0.0;  ///< of their range-and-bearing boards, where they have any
   unsigned rab_payload = 0;
   std::vector<MediumUse> media;  ///< that the devices work in
   std::vector<std::size_t> blocks;
@@ -253,9 +254,10 @@ struct SpaceStores {
     for (const std::uint32_t k : movable_index.near(x_m, y_m)) visit(objects[k]);
   }
 
-  const hal::DataSheet& sheet_of_row(std::size_t row) const noexcept {
-    return *groups[blocks[robots[bodies.entity[row]].block].group].sheet;
+  const RobotGroup& group_of_row(std::size_t row) const noexcept {
+    return groups[blocks[robots[bodies.entity[row]].block].group];
   }
+  const hal::RobotKind& kind_of_row(std::size_t row) const noexcept { return *group_of_row(row).kind; }
   /// How high the base of a body stands above the ground, in m.
   double base_m(std::size_t row) const noexcept { return bodies.motion.empty() ? 0.0 : bodies.motion[row].z_m; }
   /// What a column holds for the robot in this row; null: nothing.
@@ -281,7 +283,7 @@ struct SpaceStores {
   bool side_by_side(std::size_t row, std::size_t other) const noexcept {
     const double low = bodies.motion[row].z_m;
     const double other_low = bodies.motion[other].z_m;
-    return low < other_low + sheet_of_row(other).body_height_m && other_low < low + sheet_of_row(row).body_height_m;
+    return low < other_low + kind_of_row(other).body.height_m && other_low < low + kind_of_row(row).body.height_m;
   }
 
   /// Whether the body in `row` is a real robot that senses `other`, another real one, by itself.
@@ -316,6 +318,6 @@ struct SpaceStores {
 /// What plug-ins that work on the stores must have been built against.
 using StoreLayouts =
     hal::Layouts<SpaceStores, Bodies, Motion, FlightCommand, Columns, ColumnArrays, KeptColumn, RobotGroup, RobotBlock,
-                 RobotEntity, Object, Joint, Region, LightSource, SoundSource, hal::RowType>;
+                 RobotEntity, Object, Joint, Region, LightSource, SoundSource, hal::RowType, hal::RobotKind>;
 
 }  // namespace tandem::core

@@ -5,17 +5,27 @@
 #include <filesystem>
 
 #include "core/space/stores.hpp"
+#include "hal/device/gripper.hpp"
+#include "hal/device/leds.hpp"
 #include "hal/unit.hpp"
 
 namespace tandem::core {
 namespace {
 
-std::uint32_t kind_of(const hal::DataSheet& sheet, Drawing& drawing) {
+std::uint32_t kind_of(const hal::RobotKind& robot, Drawing& drawing) {
   for (std::uint32_t k = 0; k < drawing.kinds.size(); ++k) {
-    if (drawing.kinds[k].name == sheet.kind) return k;
+    if (drawing.kinds[k].name == robot.name) return k;
   }
-  Drawing::Kind kind{std::string(sheet.kind), sheet.body_radius_m, {}, sheet.leds_on_turret, sheet.gripper_reach_m};
-  for (const hal::Mount& led : sheet.leds) kind.leds.push_back({led.x_m, led.y_m});
+  const auto* const leds = robot.part<hal::LedsPart>();
+  const auto* const gripper = robot.part<hal::GripperPart>();
+  Drawing::Kind kind{robot.name,
+                     robot.body.radius_m,
+                     {},
+                     leds != nullptr && leds->on_turret,
+                     gripper != nullptr ? gripper->reach_m : 0.0};
+  if (leds != nullptr) {
+    for (const hal::Mount& led : leds->mounts) kind.leds.push_back({led.x_m, led.y_m});
+  }
   drawing.kinds.push_back(std::move(kind));
   return static_cast<std::uint32_t>(drawing.kinds.size() - 1);
 }
@@ -41,7 +51,7 @@ void add_robots(const Space& space, const PictureOptions& options, Drawing& draw
     robot.x_m = pose.x_m;
     robot.y_m = pose.y_m;
     robot.heading_rad = pose.heading_rad();
-    robot.kind = kind_of(space.data_sheet(id), drawing);
+    robot.kind = kind_of(space.kind(id), drawing);
     robot.halted = space.halted(id);
     robot.turret_rad = space.turret_rad(id);
     robot.holding = space.holding(id);

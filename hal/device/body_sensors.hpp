@@ -3,6 +3,8 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <string>
+#include <vector>
 
 #include "hal/port.hpp"
 
@@ -20,6 +22,14 @@ struct Accelerometer : Reading {
   }
 };
 
+/// An accelerometer with three axes.
+struct AccelerometerPart {
+  static constexpr std::string_view kName = "accelerometer";
+  static constexpr std::string_view kDoc = "An accelerometer with three axes.";
+  std::string source = {};
+  void describe(ParamVisitor& v) { v.text("source", source, "How this is known."); }
+};
+
 /// Turn rates in the body frame.
 struct Gyroscope : Reading {
   static constexpr std::string_view kName = "gyroscope";
@@ -30,6 +40,14 @@ struct Gyroscope : Reading {
   void describe(FieldList& f) const {
     f.add("rate", rate_rad_s, unit::rad_s, Frame::Body, Fusion::Real, "about x forward, y left, z up");
   }
+};
+
+/// A gyroscope with three axes.
+struct GyroscopePart {
+  static constexpr std::string_view kName = "gyroscope";
+  static constexpr std::string_view kDoc = "A gyroscope with three axes.";
+  std::string source = {};
+  void describe(ParamVisitor& v) { v.text("source", source, "How this is known."); }
 };
 
 /// Sound level at each microphone: 0 silence, 1 full scale.
@@ -47,6 +65,20 @@ struct Microphones : Reading {
   }
 };
 
+/// Microphones.
+struct MicrophonesPart {
+  static constexpr std::string_view kName = "microphones";
+  static constexpr std::string_view kDoc = "Microphones.";
+  std::vector<Mount> mounts = {};
+  std::string source = {};
+
+  void describe(ParamVisitor& v) {
+    v.list("mount", mounts, "A sensor, in the order of the readings.");
+    v.text("source", source, "Where these figures come from.");
+  }
+  std::string flaw() const { return mounts_flaw(mounts, Microphones::kCapacity); }
+};
+
 /// State of the battery.
 struct Battery : Reading {
   static constexpr std::string_view kName = "battery";
@@ -58,6 +90,25 @@ struct Battery : Reading {
   void describe(FieldList& f) const {
     f.add("charge", charge, unit::none, Frame::None, Fusion::Real, "0 empty to 1 full");
     f.add("supply", supply_V, unit::V, Frame::None, Fusion::Real, "terminal voltage");
+  }
+};
+
+/// The battery: voltages when full and empty, and when a real robot is to be stopped for it.
+struct BatteryPart {
+  static constexpr std::string_view kName = "battery";
+  static constexpr std::string_view kDoc = "The battery.";
+  double full_V = 0.0;
+  double empty_V = 0.0;
+  double low_charge = 0.05;  ///< of the full one: it is low at or below this …
+  double low_V = 0.0;        ///< … or, where this is not 0, at or below this voltage
+  std::string source = {};
+
+  void describe(ParamVisitor& v) {
+    v.number("full", full_V, unit::V, {1e-9, 1e4}, "Voltage when full.");
+    v.number("empty", empty_V, unit::V, kNotNegative, "Voltage when empty.");
+    v.number("low_charge", low_charge, unit::none, {0.0, 1.0}, "Part of the charge at which a real robot is stopped.");
+    v.number("low", low_V, unit::V, kNotNegative, "Voltage at which it is stopped; 0: the charge counts.");
+    v.text("source", source, "Where these figures come from.");
   }
 };
 

@@ -4,12 +4,29 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <string>
 
 #include "hal/device/leds.hpp"
 #include "hal/elementary.hpp"
 #include "hal/port.hpp"
 
 namespace tandem::hal {
+
+/// A camera on the axis that looks all around and down.
+struct OmniCameraPart {
+  static constexpr std::string_view kName = "omnidirectional_camera";
+  static constexpr std::string_view kDoc = "A camera on the axis that looks all around and down.";
+  double height_m = 0.0;
+  double aperture_rad = 0.0;  ///< from straight down to the farthest that it sees on the ground
+  std::string source = {};
+
+  void describe(ParamVisitor& v) {
+    v.number("height", height_m, unit::m, {1e-9, 1e4}, "Above the ground.");
+    v.number("aperture", aperture_rad, unit::deg, kNotNegative,
+             "From straight down to the farthest that it sees on the ground.");
+    v.text("source", source, "Where these figures come from.");
+  }
+};
 
 /// What a camera that looks all around sees, nearest first; the farthest are dropped when there are more than
 /// `kCapacity`. A robot's own LEDs are not among them.
@@ -80,6 +97,42 @@ struct OmnidirectionalCamera : Reading {
     rgb[3 * i] = c.r;
     rgb[3 * i + 1] = c.g;
     rgb[3 * i + 2] = c.b;
+  }
+};
+
+/// Where a camera with a lens sits and looks.
+struct CameraMount {
+  double x_m = 0.0;
+  double z_m = 0.0;
+  double tilt_rad = 0.0;  ///< of its axis above straight ahead: pi/2 looks up, -pi/2 down
+  void describe(ParamVisitor& v) {
+    v.number("x", x_m, unit::m, kAny, "Forward of the axis.");
+    v.number("z", z_m, unit::m, kAny, "Above the ground.");
+    v.number("tilt", tilt_rad, unit::deg, kAny, "Of its axis above straight ahead.");
+  }
+};
+
+/// A camera with a lens.
+struct CameraPart {
+  static constexpr std::string_view kName = "perspective_camera";
+  static constexpr std::string_view kDoc = "A camera with a lens.";
+  CameraMount usual = {}, front = {};  ///< where it sits unless told otherwise, and where as a front camera
+  double aperture_rad = 0.0;           ///< from its axis to a corner of the image
+  double focal_length_m = 0.0;
+  double range_m = 0.0;  ///< up to which it makes out LEDs
+  std::int64_t width_px = 0;
+  std::int64_t height_px = 0;
+  std::string source = {};
+
+  void describe(ParamVisitor& v) {
+    v.number("aperture", aperture_rad, unit::deg, {1e-9, 1.6}, "From its axis to a corner of the image.");
+    v.number("focal_length", focal_length_m, unit::m, kNotNegative, "Of its lens.");
+    v.number("range", range_m, unit::m, kNotNegative, "Up to which it makes out LEDs.");
+    v.integer("width", width_px, {1, 65535}, "Pixels of the image from left to right.");
+    v.integer("height", height_px, {1, 65535}, "Pixels of the image from top to bottom.");
+    v.group("usual", usual, "Where it sits unless told otherwise.");
+    v.group("front", front, "Where it sits as a front camera.");
+    v.text("source", source, "Where these figures come from.");
   }
 };
 

@@ -5,10 +5,47 @@
 #include <cmath>
 #include <cstdint>
 #include <numbers>
+#include <string>
+#include <vector>
 
 #include "hal/port.hpp"
 
 namespace tandem::hal {
+
+/// A range sensor of a scanner.
+struct ScannerHead {
+  double bearing_rad = 0.0;  ///< where it looks while the scanner is at angle 0
+  double min_m = 0.0;        ///< nearest and farthest distance that it measures, from the robot's axis
+  double max_m = 0.0;
+  void describe(ParamVisitor& v) {
+    v.number("bearing", bearing_rad, unit::deg, kAny, "Where it looks while the scanner is at angle 0.");
+    v.number("min", min_m, unit::m, kNotNegative, "Nearest distance that it measures, from the robot's axis.");
+    v.number("max", max_m, unit::m, kNotNegative, "Farthest distance.");
+  }
+};
+
+/// The scanner: four heads on a ring with a motor.
+struct ScannerPart {
+  static constexpr std::string_view kName = "distance_scanner";
+  static constexpr std::string_view kDoc = "Range sensors on a ring that turns about the robot's axis.";
+  static constexpr std::size_t kHeads = 4;
+  double height_m = 0.0;
+  double turn_rad_s = 0.0;  ///< fastest turn
+  double rate_hz = 0.0;     ///< measurements a second of each head
+  std::vector<ScannerHead> heads = {};
+  std::string source = {};
+
+  void describe(ParamVisitor& v) {
+    v.number("height", height_m, unit::m, kNotNegative, "Of the heads above the ground.");
+    v.number("turn", turn_rad_s, unit::rad_s, kNotNegative, "Fastest turn.");
+    v.number("rate", rate_hz, unit::hz, kNotNegative, "Measurements a second of each head.");
+    v.list("head", heads, "A head; short distances and long ones by turns.");
+    v.text("source", source, "Where these figures come from.");
+  }
+  std::string flaw() const {
+    return heads.size() == kHeads ? "" : "has " + std::to_string(heads.size()) + " heads; give it 4";
+  }
+};
 
 /// What moves a scanner. The numbers are part of the port.
 enum class ScannerMode : std::uint8_t {
@@ -35,8 +72,9 @@ struct ScannerDrive : Command {
     mode = ScannerMode::Position;
     angle_rad = rad;
   }
-  Limited limit(const DataSheet& sheet) noexcept {
-    return limit_turn(*this, ScannerMode::Position, sheet.scanner_turn_rad_s);
+  using LimitedBy = ScannerPart;
+  Limited limit(const ScannerPart& scanner) noexcept {
+    return limit_turn(*this, ScannerMode::Position, scanner.turn_rad_s);
   }
   void describe(FieldList& f) const {
     f.add("mode", mode, unit::none, Frame::None, Fusion::Real, "0 off, 1 speed, 2 position");
@@ -51,7 +89,7 @@ struct ScannerDrive : Command {
 struct DistanceScanner : Reading {
   static constexpr std::string_view kName = "distance_scanner";
   static constexpr std::string_view kDoc = "Distances that the scanner's four heads measured during the last tick.";
-  static constexpr std::size_t kHeads = 4;
+  static constexpr std::size_t kHeads = ScannerPart::kHeads;
   static constexpr std::size_t kSamples = 6;  ///< of one head in one tick, at most
 
   std::uint32_t count = 0;    ///< entries in use, of all heads together: the first are head 0's

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <string>
 
 #include "hal/port.hpp"
 
@@ -29,8 +30,9 @@ struct QuadrotorPosition : Command {
   }
   void hover() noexcept { hold = true; }
 
+  using LimitedBy = Quadrotor;
   /// A target that is not finite becomes the safe command, which is to hover; also one that is on hold.
-  Limited limit(const DataSheet&) noexcept {
+  Limited limit(const Quadrotor&) noexcept {
     bool finite = std::isfinite(yaw_rad);
     for (const double c : target) finite = finite && std::isfinite(c);
     if (finite) return kPassed;
@@ -109,9 +111,8 @@ struct QuadrotorSpeed : Command {
     yaw_rad_s = std::clamp(yaw_rad_s, -most_rad_s, most_rad_s);
     return {LimitResult::Clamped, largest, most_m_s};
   }
-  Limited limit(const DataSheet& sheet) noexcept {
-    return limit_to(sheet.max_flight_speed_m_s, sheet.max_flight_turn_rad_s);
-  }
+  using LimitedBy = Quadrotor;
+  Limited limit(const Quadrotor& flight) noexcept { return limit_to(flight.max_speed_m_s, flight.max_turn_rad_s); }
   void slow_down(double most_m_s, const Pose*) noexcept { limit_to(most_m_s, std::numeric_limits<double>::max()); }
   /// How fast a robot above the ceiling sinks.
   static constexpr double kSinkIntoFence_m_s = 0.2;
@@ -181,8 +182,9 @@ struct QuadrotorAttitude : Command {
                       thrust == before.thrust;
     return same ? kPassed : kClamped;
   }
-  Limited limit(const DataSheet& sheet) noexcept {
-    return limit_to(sheet.flight.most_lean_rad, sheet.max_flight_turn_rad_s, sheet.flight.most_thrust);
+  using LimitedBy = Quadrotor;
+  Limited limit(const Quadrotor& flight) noexcept {
+    return limit_to(flight.max_lean_rad, flight.max_turn_rad_s, flight.max_thrust);
   }
   void describe(FieldList& f) const {
     f.add("active", active, unit::none, Frame::None, Fusion::Real, "the rest counts");
@@ -211,14 +213,15 @@ struct FlightTask : Command {
   FlightOrder order = FlightOrder::Fly;
   double speed_m_s = 0.0;  ///< of climbing or sinking; 0: the robot's own
 
+  using LimitedBy = Quadrotor;
   /// Speeds are clamped; an order with a speed that is not finite, or that is none, becomes the safe one.
-  Limited limit(const DataSheet& sheet) noexcept {
+  Limited limit(const Quadrotor& flight) noexcept {
     if (!std::isfinite(speed_m_s) || order > FlightOrder::Detach) {
       *this = {};
       return kNotFinite;
     }
-    if (speed_m_s >= 0.0 && speed_m_s <= sheet.max_flight_speed_m_s) return kPassed;
-    speed_m_s = std::clamp(speed_m_s, 0.0, sheet.max_flight_speed_m_s);
+    if (speed_m_s >= 0.0 && speed_m_s <= flight.max_speed_m_s) return kPassed;
+    speed_m_s = std::clamp(speed_m_s, 0.0, flight.max_speed_m_s);
     return kClamped;
   }
   void describe(FieldList& f) const {
@@ -270,6 +273,19 @@ struct FlightState : Reading {
           "0 none, 1 command timed out, 2 link lost, 3 low battery, 4 no position, 5 geofence, 6 hardware");
     f.add("velocity", velocity, unit::m_s, Frame::World, Fusion::Real, "velocity of the body");
     f.add("yaw_rate", yaw_rad_s, unit::rad_s, Frame::World, Fusion::Real, "turn rate, counter-clockwise from above");
+  }
+};
+
+/// The altimeter.
+struct AltimeterPart {
+  static constexpr std::string_view kName = "altimeter";
+  static constexpr std::string_view kDoc = "Range sensors that look straight down and straight up.";
+  double range_m = 0.0;  ///< farthest echo
+  std::string source = {};
+
+  void describe(ParamVisitor& v) {
+    v.number("range", range_m, unit::m, {1e-9, 1e4}, "Farthest echo.");
+    v.text("source", source, "Where these figures come from.");
   }
 };
 

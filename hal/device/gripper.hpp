@@ -2,10 +2,26 @@
 #pragma once
 #include <cmath>
 #include <numbers>
+#include <string>
 
 #include "hal/port.hpp"
 
 namespace tandem::hal {
+
+/// The claws. They look where the turret does.
+struct GripperPart {
+  static constexpr std::string_view kName = "gripper";
+  static constexpr std::string_view kDoc = "Two claws that hold what they open inside of.";
+  double reach_m = 0.0;   ///< beyond the body's rim
+  double height_m = 0.0;  ///< above the ground
+  std::string source = {};
+
+  void describe(ParamVisitor& v) {
+    v.number("reach", reach_m, unit::m, {1e-9, 1e4}, "Beyond the body's rim.");
+    v.number("height", height_m, unit::m, kNotNegative, "Of the claws above the ground.");
+    v.text("source", source, "Where these figures come from.");
+  }
+};
 
 /// How far the claws are to open. 0: they are together and hold nothing. Safe value: 0.
 struct GripperDrive : Command {
@@ -19,8 +35,9 @@ struct GripperDrive : Command {
   void lock() noexcept { aperture_rad = kMost_rad; }
   void unlock() noexcept { aperture_rad = 0.0; }
   bool locks() const noexcept { return std::fabs(aperture_rad) >= kHolds_rad; }
+  using LimitedBy = GripperPart;
   /// Apertures beyond what the claws reach are clamped; one that is not finite becomes the safe one, which lets go.
-  Limited limit(const DataSheet&) noexcept {
+  Limited limit(const GripperPart&) noexcept {
     if (std::fabs(aperture_rad) <= kMost_rad) return kPassed;
     if (!std::isfinite(aperture_rad)) {
       *this = {};

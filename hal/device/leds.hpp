@@ -2,6 +2,8 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <string>
+#include <vector>
 
 #include "hal/port.hpp"
 
@@ -26,7 +28,7 @@ inline constexpr Rgb kGreen{0, 255, 0};
 inline constexpr Rgb kBlue{0, 0, 255};
 inline constexpr Rgb kWhite{255, 255, 255};
 
-/// The ring of LEDs on the rim, in the order of the data sheet; a beacon on top, where a robot has one, is the last.
+/// The ring of LEDs on the rim, in the order of the part's mounts; a beacon on top, where a robot has one, is the last.
 /// Safe value: all off.
 struct RingLeds : Command {
   static constexpr std::string_view kName = "leds";
@@ -50,11 +52,62 @@ struct RingLeds : Command {
   }
 };
 
+/// From which elevations, seen from the LED, a group of LEDs is seen.
+struct LightSpread {
+  double sin_lowest = -1.0;  ///< sine of the lowest: -1 is straight beneath
+  double sin_highest = 1.0;  ///< … of the highest
+  bool past_body = false;    ///< its own robot's body hides none of them
+  void describe(ParamVisitor& v) {
+    v.number("sin_lowest", sin_lowest, unit::none, {-1.0, 1.0},
+             "Sine of the lowest elevation from which they are seen; -1 is straight beneath.");
+    v.number("sin_highest", sin_highest, unit::none, {-1.0, 1.0}, "Sine of the highest.");
+    v.flag("past_body", past_body, "The robot's own body hides none of them.");
+  }
+};
+
+/// The ring of LEDs.
+struct LedsPart {
+  static constexpr std::string_view kName = "leds";
+  static constexpr std::string_view kDoc = "The ring of LEDs.";
+  bool on_turret = false;  ///< they turn with the turret
+  bool beacon = false;     ///< the last of them stands on top
+  LightSpread spread = {};
+  std::vector<Mount> mounts = {};
+  std::string source = {};
+
+  /// Number of the one that shows best what the robot does: the beacon, else the last.
+  std::size_t beacon_led() const noexcept { return mounts.empty() ? 0 : mounts.size() - 1; }
+  void describe(ParamVisitor& v) {
+    v.flag("on_turret", on_turret, "They turn with the turret.");
+    v.flag("beacon", beacon, "The last of them stands on top.");
+    v.group("spread", spread, "From where they are seen.");
+    v.list("mount", mounts, "An LED, in the order of the commands.");
+    v.text("source", source, "Where these figures come from.");
+  }
+  std::string flaw() const { return mounts_flaw(mounts, RingLeds::kCapacity); }
+};
+
 /// The upper of an eye-bot's two rings, which is seen from the side; `leds` is the lower one, seen from beneath. Safe
 /// value: all off.
 struct UpperRingLeds : RingLeds {
   static constexpr std::string_view kName = "upper_leds";
   static constexpr std::string_view kDoc = "Colours of the upper LED ring.";
+};
+
+/// The upper of two rings of LEDs.
+struct UpperLedsPart {
+  static constexpr std::string_view kName = "upper_leds";
+  static constexpr std::string_view kDoc = "The upper of two rings of LEDs.";
+  LightSpread spread = {};
+  std::vector<Mount> mounts = {};
+  std::string source = {};
+
+  void describe(ParamVisitor& v) {
+    v.group("spread", spread, "From where they are seen.");
+    v.list("mount", mounts, "An LED, in the order of the commands.");
+    v.text("source", source, "Where these figures come from.");
+  }
+  std::string flaw() const { return mounts_flaw(mounts, UpperRingLeds::kCapacity); }
 };
 
 /// The light beside an eye-bot's camera. Safe value: off.
@@ -69,6 +122,14 @@ struct CameraLed : Command {
   void describe(FieldList& f) const { f.add("rgb", rgb, unit::none, Frame::None, Fusion::Real, "r, g, b, 0 to 255"); }
 };
 
+/// A light beside the camera, seen as the ring of LEDs is.
+struct CameraLedPart {
+  static constexpr std::string_view kName = "camera_led";
+  static constexpr std::string_view kDoc = "A light beside the camera, seen as the ring of LEDs is.";
+  std::string source = {};
+  void describe(ParamVisitor& v) { v.text("source", source, "How this is known."); }
+};
+
 /// The green light inside an e-puck's translucent body. Safe value: off.
 struct BodyLed : Command {
   static constexpr std::string_view kName = "body_led";
@@ -78,6 +139,19 @@ struct BodyLed : Command {
   void describe(FieldList& f) const { f.add("on", on, unit::none, Frame::None, Fusion::Real, "lit"); }
 };
 
+/// A light inside a translucent body.
+struct BodyLedPart {
+  static constexpr std::string_view kName = "body_led";
+  static constexpr std::string_view kDoc = "A light inside the translucent body.";
+  Mount mount = {};
+  std::string source = {};
+
+  void describe(ParamVisitor& v) {
+    v.group("mount", mount, "Its place.");
+    v.text("source", source, "Where these figures come from.");
+  }
+};
+
 /// The bright red light at an e-puck's front. Safe value: off.
 struct FrontLed : Command {
   static constexpr std::string_view kName = "front_led";
@@ -85,6 +159,19 @@ struct FrontLed : Command {
   static constexpr bool kAnyValueIsSafe = true;
   bool on = false;
   void describe(FieldList& f) const { f.add("on", on, unit::none, Frame::None, Fusion::Real, "lit"); }
+};
+
+/// A bright light at the front.
+struct FrontLedPart {
+  static constexpr std::string_view kName = "front_led";
+  static constexpr std::string_view kDoc = "A bright light at the front.";
+  Mount mount = {};
+  std::string source = {};
+
+  void describe(ParamVisitor& v) {
+    v.group("mount", mount, "Its place.");
+    v.text("source", source, "Where these figures come from.");
+  }
 };
 
 }  // namespace tandem::hal

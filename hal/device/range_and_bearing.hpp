@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <string>
 
 #include "hal/elementary.hpp"
 #include "hal/port.hpp"
@@ -13,6 +14,23 @@ namespace tandem::hal {
 
 inline constexpr std::size_t kRabPayloadMax =
     10;  ///< bytes; the foot-bot's. An e-puck sends 2 unless its file says otherwise
+
+/// The range-and-bearing board.
+struct RangeAndBearingPart {
+  static constexpr std::string_view kName = "range_and_bearing";
+  static constexpr std::string_view kDoc = "A board that sends messages to the robots in range.";
+  double range_m = 0.0;      ///< between centres
+  double height_m = 0.0;     ///< above the ground
+  std::int64_t payload = 0;  ///< bytes of a message
+  std::string source = {};
+
+  void describe(ParamVisitor& v) {
+    v.number("range", range_m, unit::m, {1e-9, 1e4}, "How far its messages reach, between the robots' axes.");
+    v.number("height", height_m, unit::m, kNotNegative, "Above the ground.");
+    v.integer("payload", payload, {0, static_cast<double>(kRabPayloadMax)}, "Bytes of a message.");
+    v.text("source", source, "Where these figures come from.");
+  }
+};
 
 /// What the robot broadcasts in this tick. Safe value: nothing.
 struct RangeAndBearingSend : Command {

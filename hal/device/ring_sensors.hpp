@@ -1,8 +1,10 @@
 // Sensors that sit in a ring around the body: infrared proximity, ambient light, ground reflectance.
-// Which sensor looks where is in the robot's data sheet (`Robot::data_sheet()`), in the same order.
+// Which sensor looks where is in the part of the robot (`robot.part<ProximityPart>().mounts`), in the same order.
 #pragma once
 #include <array>
 #include <cstdint>
+#include <string>
+#include <vector>
 
 #include "hal/port.hpp"
 
@@ -29,6 +31,35 @@ struct Proximity : Reading {
   }
 };
 
+/// What an infrared sensor reports of white paper at a distance from it.
+struct InfraredResponse {
+  double distance_m = 0.0;
+  double counts = 0.0;
+  void describe(ParamVisitor& v) {
+    v.number("distance", distance_m, unit::m, kNotNegative, "From the sensor.");
+    v.number("counts", counts, unit::none, kNotNegative, "What it then reports, without ambient light.");
+  }
+};
+
+/// The ring of infrared proximity sensors. `response` is strictly falling, nearest first; straight between its points.
+/// Empty: it is not known, or the robot tells distances itself.
+struct ProximityPart {
+  static constexpr std::string_view kName = "proximity";
+  static constexpr std::string_view kDoc = "Infrared proximity sensors.";
+  double range_m = 0.0;  ///< from the sensor
+  std::vector<Mount> mounts = {};
+  std::vector<InfraredResponse> response = {};
+  std::string source = {};
+
+  void describe(ParamVisitor& v) {
+    v.number("range", range_m, unit::m, {1e-9, 1e4}, "How far they see, from the sensor.");
+    v.list("response", response, "A point of the sensors' response, the nearest first.");
+    v.list("mount", mounts, "A sensor, in the order of the readings.");
+    v.text("source", source, "Where these figures come from.");
+  }
+  std::string flaw() const { return mounts_flaw(mounts, Proximity::kCapacity); }
+};
+
 /// Ambient light at each sensor: 0 dark, 1 saturated.
 struct Light : Reading {
   static constexpr std::string_view kName = "light";
@@ -42,6 +73,20 @@ struct Light : Reading {
     f.add("count", count, unit::none, Frame::None, Fusion::Real, "number of sensors");
     f.add("level", level, unit::none, Frame::Sensor, Fusion::Larger, "0 dark to 1 saturated").used_by = "count";
   }
+};
+
+/// Sensors of ambient light.
+struct LightPart {
+  static constexpr std::string_view kName = "light";
+  static constexpr std::string_view kDoc = "Sensors of ambient light.";
+  std::vector<Mount> mounts = {};
+  std::string source = {};
+
+  void describe(ParamVisitor& v) {
+    v.list("mount", mounts, "A sensor, in the order of the readings.");
+    v.text("source", source, "Where these figures come from.");
+  }
+  std::string flaw() const { return mounts_flaw(mounts, Light::kCapacity); }
 };
 
 /// Reflectance of the floor beneath each sensor: 0 black, 1 white.
@@ -59,16 +104,58 @@ struct Ground : Reading {
   }
 };
 
+/// Sensors that look at the floor.
+struct GroundPart {
+  static constexpr std::string_view kName = "ground";
+  static constexpr std::string_view kDoc = "Sensors that look at the floor.";
+  std::vector<Mount> mounts = {};
+  std::string source = {};
+
+  void describe(ParamVisitor& v) {
+    v.list("mount", mounts, "A sensor, in the order of the readings.");
+    v.text("source", source, "Where these figures come from.");
+  }
+  std::string flaw() const { return mounts_flaw(mounts, Ground::kCapacity); }
+};
+
 /// The foot-bot's sensors around its base, which see the floor beside the tracks.
 struct BaseGround : Ground {
   static constexpr std::string_view kName = "base_ground";
   static constexpr std::string_view kDoc = "Reflectance of the floor beneath the rim of the base, 0 black to 1 white.";
 };
 
+/// Sensors around the base that look at the floor.
+struct BaseGroundPart {
+  static constexpr std::string_view kName = "base_ground";
+  static constexpr std::string_view kDoc = "Sensors around the base that look at the floor.";
+  std::vector<Mount> mounts = {};
+  std::string source = {};
+
+  void describe(ParamVisitor& v) {
+    v.list("mount", mounts, "A sensor, in the order of the readings.");
+    v.text("source", source, "Where these figures come from.");
+  }
+  std::string flaw() const { return mounts_flaw(mounts, Ground::kCapacity); }
+};
+
 /// The foot-bot's sensors between its tracks.
 struct MotorGround : Ground {
   static constexpr std::string_view kName = "motor_ground";
   static constexpr std::string_view kDoc = "Reflectance of the floor between the tracks, 0 black to 1 white.";
+};
+
+/// Sensors between the tracks that look at the floor.
+struct MotorGroundPart {
+  static constexpr std::string_view kName = "motor_ground";
+  static constexpr std::string_view kDoc = "Sensors between the tracks that look at the floor.";
+  std::vector<Mount> mounts = {};
+  std::string source = {};
+
+  void describe(ParamVisitor& v) {
+    v.list("mount", mounts, "A sensor, in the order of the readings.");
+    v.text("source", source, "Where these figures come from.");
+  }
+  std::string flaw() const { return mounts_flaw(mounts, Ground::kCapacity); }
 };
 
 }  // namespace tandem::hal

@@ -1,8 +1,25 @@
 // A turret: a ring that turns about the robot's vertical axis and carries its gripper and LEDs.
 #pragma once
+#include <string>
+
 #include "hal/port.hpp"
 
 namespace tandem::hal {
+
+/// The turret and its motor.
+struct TurretPart {
+  static constexpr std::string_view kName = "turret";
+  static constexpr std::string_view kDoc = "A ring that turns about the robot's axis and carries its gripper and LEDs.";
+  double turn_rad_s = 0.0;  ///< fastest turn
+  double torque_Nm = 0.0;   ///< that its motor turns a load with
+  std::string source = {};
+
+  void describe(ParamVisitor& v) {
+    v.number("turn", turn_rad_s, unit::rad_s, {1e-9, 1e4}, "Fastest turn.");
+    v.number("torque", torque_Nm, unit::none, kNotNegative, "In Nm, that its motor turns a load with.");
+    v.text("source", source, "Where these figures come from.");
+  }
+};
 
 /// What moves a turret. The numbers are part of the port.
 enum class TurretMode : std::uint8_t {
@@ -31,8 +48,9 @@ struct TurretDrive : Command {
     mode = TurretMode::Position;
     angle_rad = rad;
   }
-  Limited limit(const DataSheet& sheet) noexcept {
-    return limit_turn(*this, TurretMode::Position, sheet.turret_turn_rad_s);
+  using LimitedBy = TurretPart;
+  Limited limit(const TurretPart& turret) noexcept {
+    return limit_turn(*this, TurretMode::Position, turret.turn_rad_s);
   }
   void describe(FieldList& f) const {
     f.add("mode", mode, unit::none, Frame::None, Fusion::Real, "0 off, 1 passive, 2 speed, 3 position");

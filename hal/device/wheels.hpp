@@ -35,7 +35,8 @@ struct WheelSpeeds : Command {
     right_m_s *= scale;
     return {LimitResult::Clamped, fastest, most_m_s};
   }
-  Limited limit(const DataSheet& sheet) noexcept { return limit_to(sheet.max_wheel_speed_m_s); }
+  using LimitedBy = DifferentialDrive;
+  Limited limit(const DifferentialDrive& drive) noexcept { return limit_to(drive.max_speed_m_s); }
 
   /// What is no finite number stays: `limit` comes afterwards, and counts it.
   void slow_down(double most_m_s, const Pose*) noexcept {

@@ -6,7 +6,6 @@
 #include <stdexcept>
 
 #include "hal/device/leds.hpp"
-#include "hal/spec/footbot.hpp"
 #include "hal/unit.hpp"
 
 namespace tandem::hooks {
@@ -53,7 +52,8 @@ void Foraging::treat(core::Space& space, core::RobotId robot) {
     return space.repaint_floor();
   }
   const auto* leds = space.port<hal::RingLeds>(robot);
-  if (home || leds == nullptr || leds->color(hal::footbot::kBeacon) != hal::kGreen) return;
+  const auto* const mounted = space.kind(robot).part<hal::LedsPart>();
+  if (home || leds == nullptr || mounted == nullptr || leds->color(mounted->beacon_led()) != hal::kGreen) return;
   for (Item& there : state_.items) {
     if (there.taken || std::hypot(there.x_m - pose.x_m, there.y_m - pose.y_m) > params_.radius_m) continue;
     there.taken = true;

@@ -6,6 +6,7 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "hal/device/gripper.hpp"
 #include "hal/unit.hpp"
 
 namespace tandem::hooks {
@@ -18,8 +19,10 @@ bool held(const core::Space& space, const core::Object& object) {
     const core::RobotId robot = space.robot(i);
     if (!space.holding(robot)) continue;
     const core::Pose pose = space.pose(robot);
-    const hal::DataSheet& sheet = space.data_sheet(robot);
-    const double most_m = sheet.body_radius_m + sheet.gripper_reach_m + object.reach_m();
+    const hal::RobotKind& kind = space.kind(robot);
+    const auto* const gripper = kind.part<hal::GripperPart>();
+    const double claws_m = gripper != nullptr ? gripper->reach_m : 0.0;
+    const double most_m = kind.body.radius_m + claws_m + object.reach_m();
     if (std::hypot(pose.x_m - object.x_m, pose.y_m - object.y_m) <= most_m) return true;
   }
   return false;
@@ -29,7 +32,7 @@ bool is_free(const core::Space& space, std::size_t number, double x_m, double y_
   const double reach_m = space.objects()[number].reach_m();
   for (std::size_t i = 0; i < space.robot_count(); ++i) {
     const core::Pose pose = space.pose(space.robot(i));
-    const double radius_m = space.data_sheet(space.robot(i)).body_radius_m;
+    const double radius_m = space.kind(space.robot(i)).body.radius_m;
     if (std::hypot(pose.x_m - x_m, pose.y_m - y_m) < radius_m + reach_m + 0.01) return false;
   }
   for (std::size_t i = 0; i < space.objects().size(); ++i) {

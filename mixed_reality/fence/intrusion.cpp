@@ -44,8 +44,8 @@ Overlap with_object(const core::Object& o, const core::Pose& pose, double radius
 
 Intrusion intrusion_of(const core::Space& space, core::RobotId robot, const core::Pose& pose) noexcept {
   Intrusion deepest;
-  const hal::DataSheet& sheet = space.data_sheet(robot);
-  const double top_m = pose.z_m + sheet.body_height_m;
+  const hal::RobotKind& kind = space.kind(robot);
+  const double top_m = pose.z_m + kind.body.height_m;
   const auto take = [&deepest](const Overlap& overlap) {
     if (overlap.depth_m <= deepest.depth_m) return false;
     deepest = {overlap.depth_m, overlap.out_x, overlap.out_y, {}, {}};
@@ -55,7 +55,7 @@ Intrusion intrusion_of(const core::Space& space, core::RobotId robot, const core
   for (std::size_t i = 0; i < objects.size(); ++i) {
     const core::Object& o = objects[i];
     if (!o.alive || o.z_low_m >= top_m || o.z_high_m <= pose.z_m) continue;
-    if (take(with_object(o, pose, sheet.body_radius_m))) deepest.object = space.object(i);
+    if (take(with_object(o, pose, kind.body.radius_m))) deepest.object = space.object(i);
   }
   // Row by row: this looks at all robots in every tick.
   const core::SpaceStores& stores = space.stores();
@@ -63,12 +63,12 @@ Intrusion intrusion_of(const core::Space& space, core::RobotId robot, const core
   for (std::size_t row = 0; row < b.size(); ++row) {
     const double x = pose.x_m - b.x_m[row];
     const double y = pose.y_m - b.y_m[row];
-    const double within_m = sheet.body_radius_m + static_cast<double>(b.radius_m[row]);
+    const double within_m = kind.body.radius_m + static_cast<double>(b.radius_m[row]);
     if (x * x + y * y >= within_m * within_m) continue;
     if ((b.flags[row] & (core::kAlive | core::kExternal)) != core::kAlive || b.entity[row] == robot.index) continue;
     const double low_m = stores.base_m(row);
-    if (low_m >= top_m || low_m + stores.sheet_of_row(row).body_height_m <= pose.z_m) continue;
-    if (take(with_disc(x, y, sheet.body_radius_m, static_cast<double>(b.radius_m[row]))))
+    if (low_m >= top_m || low_m + stores.kind_of_row(row).body.height_m <= pose.z_m) continue;
+    if (take(with_disc(x, y, kind.body.radius_m, static_cast<double>(b.radius_m[row]))))
       deepest.robot = {b.entity[row], stores.robots[b.entity[row]].generation};
   }
   return deepest;

@@ -8,6 +8,7 @@
 #include "hal/device/distance_scanner.hpp"
 #include "hal/device/flight.hpp"
 #include "hal/device/range_and_bearing.hpp"
+#include "hal/device/turret.hpp"
 
 namespace tandem::mixed_reality {
 namespace {
@@ -38,7 +39,7 @@ SupervisedRobot::SupervisedRobot(std::string id, bridges::RobotBridge& bridge, c
       params_(params),
       log_(std::move(log)),
       supervisor_(params.rearm),
-      battery_watch_(params.battery) {
+      battery_watch_(bridge.robot().kind()) {
   for (const bridges::PortView& view : bridge.taken()) {
     if (must_come(*view.type)) inputs_.push_back({view.type, static_cast<const hal::Reading*>(view.data)});
     if (view.type->role != hal::Role::Actuator) continue;
@@ -47,12 +48,12 @@ SupervisedRobot::SupervisedRobot(std::string id, bridges::RobotBridge& bridge, c
   }
   kept_ = std::make_unique<std::byte[]>(outputs_.size() * largest_);
   // On a slow line only what the controller reads anyway is asked for.
-  const hal::DataSheet& sheet = bridge.robot().data_sheet();
+  const hal::RobotKind& kind = bridge.robot().kind();
   const bool taken = std::ranges::any_of(inputs_, [](const Input& i) { return is<hal::Battery>(*i.type); });
-  const bool asks = taken || sheet.flies || sheet.turret_turn_rad_s > 0.0;
+  const bool asks = taken || kind.flies() || kind.part<hal::TurretPart>() != nullptr;
   battery_ = asks ? static_cast<const hal::Battery*>(bridge.port(hal::port_type<hal::Battery>())) : nullptr;
   flight_ =
-      sheet.flies ? static_cast<const hal::FlightState*>(bridge.port(hal::port_type<hal::FlightState>())) : nullptr;
+      kind.flies() ? static_cast<const hal::FlightState*>(bridge.port(hal::port_type<hal::FlightState>())) : nullptr;
   position_ = static_cast<const hal::Positioning*>(bridge.port(hal::port_type<hal::Positioning>()));
 }
 

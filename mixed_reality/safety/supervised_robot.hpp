@@ -19,7 +19,6 @@ namespace tandem::mixed_reality {
 
 struct SupervisedParams {
   RearmParams rearm = {};
-  BatteryLimit battery = {};
   hal::TimeNs tick_ns = 100 * hal::kNsPerMs;
   hal::TimeNs frozen_after_ns = hal::kNsPerSecond;  ///< two ticks that lie farther apart: the hub was frozen
 };

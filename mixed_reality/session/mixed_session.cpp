@@ -24,17 +24,18 @@ hal::Error about(const core::RobotItem& item, const std::string& file, const std
 
 /// Whoever tells where the robot is: its wheels, or its own word.
 hal::Result<std::unique_ptr<PoseSource>> make_pose_source(const core::RobotItem& item, bridges::RobotBridge& real,
-                                                          const core::Pose& start, const hal::DataSheet& sheet) {
-  const std::string source = item.tracker ? item.tracker->source : sheet.flies ? "positioning" : "odometry";
+                                                          const core::Pose& start, const hal::RobotKind& kind) {
+  const std::string source = item.tracker ? item.tracker->source : kind.flies() ? "positioning" : "odometry";
   if (source == "positioning") {
     const auto* places = static_cast<const hal::Positioning*>(real.port(hal::port_type<hal::Positioning>()));
     if (places == nullptr) return hal::Error{"it does not say itself where it is; take the tracker odometry"};
-    return std::unique_ptr<PoseSource>(std::make_unique<Positioned>(start, *places, sheet));
+    return std::unique_ptr<PoseSource>(std::make_unique<Positioned>(start, *places, kind));
   }
   if (source != "odometry") return hal::Error{"there is no tracker '" + source + "'; there are: odometry, positioning"};
   const auto* encoders = static_cast<const hal::WheelEncoders*>(real.port(hal::port_type<hal::WheelEncoders>()));
-  if (encoders == nullptr) return hal::Error{"it has no wheel encoders, so odometry cannot tell where it is"};
-  return std::unique_ptr<PoseSource>(std::make_unique<Odometry>(start, sheet, *encoders));
+  if (encoders == nullptr || kind.drive() == nullptr)
+    return hal::Error{"it has no wheel encoders, so odometry cannot tell where it is"};
+  return std::unique_ptr<PoseSource>(std::make_unique<Odometry>(start, *kind.drive(), *encoders));
 }
 
 }  // namespace
@@ -65,16 +66,17 @@ hal::Status MixedSession::add_twin(const core::RobotItem& item, const BridgeMake
   const core::RobotId robot = space.find_robot(item.id);
   if (item.distribute || !robot.valid())
     return about(item, scenario.file, "a <bridge> stands for one real robot; it cannot be distributed");
-  auto made = make_bridge(bridge_request(scenario, item, world_->seed()));
+  bridges::BridgeRequest request = bridge_request(scenario, item, world_->seed());
+  request.robot_kind = &space.kind(robot);
+  auto made = make_bridge(request);
   if (!made.ok()) return about(item, scenario.file, made.error().message);
   std::unique_ptr<bridges::RobotBridge> real = std::move(made).value();
 
-  auto poses = make_pose_source(item, *real, space.pose(robot), space.data_sheet(robot));
+  auto poses = make_pose_source(item, *real, space.pose(robot), space.kind(robot));
   if (!poses.ok()) return about(item, scenario.file, poses.error().message);
 
   TwinParams params;
   params.rearm = rearm_params(*item.bridge);
-  if (options_.catalog != nullptr) params.battery = battery_limit(*options_.catalog, item.kind);
   params.frozen_after_ns = hal::time_of_tick(1, scenario.ticks_per_second) + kFrozenAfter_ns;
   params.pose_timeout_ns = lost_after_ns(item, scenario.ticks_per_second);
   twins_.push_back(

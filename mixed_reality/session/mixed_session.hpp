@@ -37,7 +37,6 @@ struct MixedOptions {
   /// Called before the first and every later command of the run leaves: whoever stops robots when this process dies is
   /// to know how.
   std::function<void()> before_commands = {};
-  const hal::Catalog* catalog = nullptr;  ///< what is known of the kinds of real robots; null: nothing
   hal::Log log;
 };
 

@@ -53,11 +53,6 @@ std::vector<bridges::InputFile> bridge_inputs(const hal::Catalog& catalog, const
   return files;
 }
 
-bridges::BatteryLimit battery_limit(const hal::Catalog& catalog, std::string_view kind) noexcept {
-  const auto* const type = catalog.find<BridgeType>(kind);
-  return type == nullptr ? bridges::BatteryLimit{} : type->battery;
-}
-
 hal::Status check_bridge(const hal::Catalog& catalog, const bridges::BridgeRequest& request) {
   const auto type = type_for(catalog, request.kind);
   return type.ok() ? type.value()->check(request) : hal::Status{type.error()};

@@ -22,7 +22,4 @@ hal::Status check_bridge(const hal::Catalog& catalog, const bridges::BridgeReque
 /// The files that the bridge reads.
 std::vector<bridges::InputFile> bridge_inputs(const hal::Catalog& catalog, const bridges::BridgeRequest& request);
 
-/// When a robot of this kind is to be stopped for its battery.
-bridges::BatteryLimit battery_limit(const hal::Catalog& catalog, std::string_view kind) noexcept;
-
 }  // namespace tandem::mixed_reality

@@ -5,7 +5,7 @@
 namespace tandem::mixed_reality {
 namespace {
 
-constexpr double kSpeedMargin = 1.25;   // firmwares clamp above the data sheet's speed, and stamps jitter
+constexpr double kSpeedMargin = 1.25;   // firmwares clamp above the kind's speed, and stamps jitter
 constexpr double kStepMargin_m = 0.01;  // what jitter of the stamps may add in a short step
 
 }  // namespace
@@ -32,8 +32,8 @@ core::Pose rolled(const core::Pose& pose, double left_m, double right_m, double 
   return next;
 }
 
-Odometry::Odometry(const core::Pose& start, const hal::DataSheet& sheet, const hal::WheelEncoders& encoders)
-    : encoders_(encoders), wheel_base_m_(sheet.wheel_base_m), max_speed_m_s_(sheet.max_wheel_speed_m_s) {
+Odometry::Odometry(const core::Pose& start, const hal::DifferentialDrive& drive, const hal::WheelEncoders& encoders)
+    : encoders_(encoders), wheel_base_m_(drive.wheel_base_m), max_speed_m_s_(drive.max_speed_m_s) {
   tracked_.pose = start;
 }
 

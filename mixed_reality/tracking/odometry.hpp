@@ -3,7 +3,7 @@
 #include <cstdint>
 
 #include "hal/device/wheels.hpp"
-#include "hal/spec/data_sheet.hpp"
+#include "hal/robot_kind.hpp"
 #include "mixed_reality/tracking/pose_source.hpp"
 
 namespace tandem::mixed_reality {
@@ -21,8 +21,8 @@ core::Pose rolled(const core::Pose& pose, double left_m, double right_m, double 
 /// step is counted, and the robot stays where it was. So is a stamp that lies in the future.
 class Odometry final : public PoseSource {
  public:
-  /// `encoders` must outlive this; its stamps are on the run's clock. `sheet`: wheel base and largest speed.
-  Odometry(const core::Pose& start, const hal::DataSheet& sheet, const hal::WheelEncoders& encoders);
+  /// `encoders` must outlive this; its stamps are on the run's clock.
+  Odometry(const core::Pose& start, const hal::DifferentialDrive& drive, const hal::WheelEncoders& encoders);
 
   /// As old as the encoders' reading.
   TrackedPose latch(const Moment& now) noexcept override;

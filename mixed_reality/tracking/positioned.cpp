@@ -11,8 +11,8 @@ constexpr double kStepMargin_m = 0.1;  // noise of two places
 
 }  // namespace
 
-Positioned::Positioned(const core::Pose& start, const hal::Positioning& places, const hal::DataSheet& sheet)
-    : places_(places), max_speed_m_s_(std::max(sheet.max_flight_speed_m_s, sheet.max_wheel_speed_m_s)) {
+Positioned::Positioned(const core::Pose& start, const hal::Positioning& places, const hal::RobotKind& kind)
+    : places_(places), max_speed_m_s_(kind.top_speed_m_s()) {
   tracked_.pose = start;
 }
 

@@ -1,7 +1,7 @@
 // Where a robot is by its own word: a flying robot's positioning system.
 #pragma once
 #include "hal/device/flight.hpp"
-#include "hal/spec/data_sheet.hpp"
+#include "hal/robot_kind.hpp"
 #include "mixed_reality/tracking/pose_source.hpp"
 
 namespace tandem::mixed_reality {
@@ -15,8 +15,8 @@ class Positioned final : public PoseSource {
  public:
   static constexpr int kInsists = 5;
 
-  /// `places` must outlive this; its stamps are on the run's clock. `sheet`: the largest speed.
-  Positioned(const core::Pose& start, const hal::Positioning& places, const hal::DataSheet& sheet);
+  /// `places` must outlive this; its stamps are on the run's clock. `kind`: the largest speed.
+  Positioned(const core::Pose& start, const hal::Positioning& places, const hal::RobotKind& kind);
 
   /// As old as the reading.
   TrackedPose latch(const Moment& now) noexcept override;

@@ -9,6 +9,13 @@
 namespace tandem::mixed_reality {
 namespace {
 
+/// The fastest turn of a part; 0: robots of the kind have none.
+template <class Part>
+double turn_rad_s(const hal::RobotKind& kind) noexcept {
+  const Part* const part = kind.part<Part>();
+  return part != nullptr ? part->turn_rad_s : 0.0;
+}
+
 /// Whether the device is there and has ever measured.
 bool there(const hal::Reading* reading) noexcept {
   return reading != nullptr && reading->validity != hal::Validity::Absent;
@@ -91,7 +98,8 @@ void Mechanisms::follow_turret(double tick_s) noexcept {
   } else if (turret_drive_ != nullptr && turret_drive_->mode == hal::TurretMode::Speed) {
     step_rad = turret_drive_->speed_rad_s * tick_s;
   } else if (turret_drive_ != nullptr && turret_drive_->mode == hal::TurretMode::Position) {
-    step_rad = step_to(turret_drive_->angle_rad, turret_rad_, space_.data_sheet(robot_).turret_turn_rad_s * tick_s);
+    step_rad =
+        step_to(turret_drive_->angle_rad, turret_rad_, turn_rad_s<hal::TurretPart>(space_.kind(robot_)) * tick_s);
   }
   turret_rad_ = hal::wrapped(turret_rad_ + step_rad);
   const double speed_rad_s = there(turret_) ? static_cast<double>(turret_->speed_rad_s)
@@ -114,7 +122,7 @@ void Mechanisms::follow_scanner(double tick_s) noexcept {
   } else {
     if (mode == hal::ScannerMode::Position) {
       swept_rad =
-          step_to(scanner_drive_->angle_rad, scanner_rad_, space_.data_sheet(robot_).scanner_turn_rad_s * tick_s);
+          step_to(scanner_drive_->angle_rad, scanner_rad_, turn_rad_s<hal::ScannerPart>(space_.kind(robot_)) * tick_s);
     }
     scanner_rad_ = hal::wrapped(scanner_rad_ + swept_rad);
   }
@@ -127,7 +135,7 @@ void Mechanisms::follow_head(double tick_s) noexcept {
     pan_rad_ = head_->pan_rad;
     tilt_rad_ = head_->tilt_rad;
   } else if (head_drive_ != nullptr) {
-    const double most_rad = space_.data_sheet(robot_).camera_head.turn_rad_s * tick_s;
+    const double most_rad = turn_rad_s<hal::HeadPart>(space_.kind(robot_)) * tick_s;
     pan_rad_ = hal::wrapped(pan_rad_ + step_to(head_drive_->pan_rad, pan_rad_, most_rad));
     tilt_rad_ += std::clamp(head_drive_->tilt_rad - tilt_rad_, -most_rad, most_rad);
   }

@@ -14,7 +14,7 @@
 namespace tandem::mixed_reality {
 
 /// A mechanism stands where the robot's own sensor says; where there is none, where its commands have led it, as fast
-/// as its data sheet allows.
+/// as its kind allows.
 class Mechanisms {
  public:
   /// Asks `real` only for what the robot's controller reads or commands. What it returns and the space must outlive

@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "core/space/stores.hpp"
+#include "hal/device/turret.hpp"
 #include "hal/unit.hpp"
 #include "mixed_reality/tracking/odometry.hpp"
 
@@ -45,14 +46,14 @@ Twin::Twin(core::Space& space, core::RobotId robot, std::unique_ptr<bridges::Rob
       params_(params),
       log_(log),
       fence_(arena_of(space)),
-      inner_fence_(fence_.for_body(space.data_sheet(robot).body_radius_m, space.data_sheet(robot).body_height_m)),
+      inner_fence_(fence_.for_body(space.kind(robot).body.radius_m, space.kind(robot).body.height_m)),
       fusion_(space, robot, [this](const hal::PortType& type) { return reading_of(*real_, type); }),
       mechanisms_(space, robot, [this](const hal::PortType& type) { return reading_of(*real_, type); }),
       positioning_(space.port<hal::Positioning>(robot)),
       real_wheels_(real_->port(hal::port_type<hal::WheelSpeeds>())),
-      real_task_(space.data_sheet(robot).flies ? real_->port(hal::port_type<hal::FlightTask>()) : nullptr),
+      real_task_(space.kind(robot).flies() ? real_->port(hal::port_type<hal::FlightTask>()) : nullptr),
       supervisor_(params.rearm),
-      battery_watch_(params.battery),
+      battery_watch_(space.kind(robot)),
       pose_(space.pose(robot)),
       smooth_(pose_) {
   std::size_t largest = 1;
@@ -64,14 +65,15 @@ Twin::Twin(core::Space& space, core::RobotId robot, std::unique_ptr<bridges::Rob
   told_ = std::make_unique<std::max_align_t[]>((largest + sizeof(std::max_align_t) - 1) / sizeof(std::max_align_t));
   incidents_.reserve(kIncidentsKept);
   space_.set_external(robot_, true);
-  const hal::DataSheet& sheet = space.data_sheet(robot);
-  if (!poses_->by_wheels() && sheet.wheel_base_m > 0.0) {
+  const hal::RobotKind& kind = space.kind(robot);
+  if (!poses_->by_wheels() && kind.drive() != nullptr) {
     const auto* encoders = static_cast<const hal::WheelEncoders*>(real_->port(hal::port_type<hal::WheelEncoders>()));
-    if (encoders != nullptr) slip_ = std::make_unique<SlipWatch>(*encoders, sheet.wheel_base_m);
+    if (encoders != nullptr) slip_ = std::make_unique<SlipWatch>(*encoders, kind.drive()->wheel_base_m);
   }
   // On a slow line only what its controller reads anyway is asked for.
-  const bool asks_battery = sheet.flies || sheet.turret_turn_rad_s > 0.0 || space.port<hal::Battery>(robot) != nullptr;
-  if (sheet.flies) flight_ = static_cast<const hal::FlightState*>(real_->port(hal::port_type<hal::FlightState>()));
+  const bool asks_battery =
+      kind.flies() || kind.part<hal::TurretPart>() != nullptr || space.port<hal::Battery>(robot) != nullptr;
+  if (kind.flies()) flight_ = static_cast<const hal::FlightState*>(real_->port(hal::port_type<hal::FlightState>()));
   if (asks_battery) battery_ = static_cast<const hal::Battery*>(real_->port(hal::port_type<hal::Battery>()));
 }
 
@@ -123,9 +125,9 @@ void Twin::track(const Moment& now, Conditions& conditions) noexcept {
 
 /// `pose` after so much more time of what the robot was last told while it could hear.
 core::Pose Twin::carried_on(const core::Pose& pose, double for_s) const noexcept {
-  const double wheel_base_m = space_.data_sheet(robot_).wheel_base_m;
-  if (wheel_base_m <= 0.0 || for_s <= 0.0) return pose;
-  return rolled(pose, driven_.left_m_s * for_s, driven_.right_m_s * for_s, wheel_base_m);
+  const hal::DifferentialDrive* const drive = space_.kind(robot_).drive();
+  if (drive == nullptr || for_s <= 0.0) return pose;
+  return rolled(pose, driven_.left_m_s * for_s, driven_.right_m_s * for_s, drive->wheel_base_m);
 }
 
 void Twin::after_sense() noexcept {

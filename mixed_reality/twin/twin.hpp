@@ -31,7 +31,6 @@ struct TwinParams {
   hal::TimeNs frozen_after_ns = hal::kNsPerSecond;    ///< two ticks that lie farther apart: the hub was frozen
   double fence_ahead_s = 0.5;                         ///< how far ahead the arena's edge is looked for
   double coast_s = 2.0;  ///< in an outage the twin drives on as last commanded, at most for so long
-  BatteryLimit battery = {};
 };
 
 /// Counted in the ticks of the run.

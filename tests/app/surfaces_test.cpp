@@ -3,7 +3,6 @@
 #include <gmock/gmock.h>
 
 #include "app/catalog.hpp"
-#include "hal/spec/data_sheet.hpp"
 #include "tests/checkout.hpp"
 #include "tests/hal/plugin_file.hpp"
 
@@ -65,7 +64,6 @@ TEST_F(Surfaces, OneThatTheProgramDoesNotHaveIsRefused) {
 TEST(TheCatalog, SaysOfEverySurfaceWhatCrosses) {
   const std::uint64_t nothing = hal::Layouts<>::digest();
   for (const hal::Surface& surface : catalog().surfaces()) {
-    if (surface.name == hal::DataSheet::kCategory) continue;  // it is all that crosses
     EXPECT_NE(surface.digest, hal::detail::mixed(nothing, alignof(void*)))
         << surface.name << ": its type needs `using Crosses = hal::Layouts<…>`";
   }

@@ -13,28 +13,28 @@
 #include "hal/device/wheels.hpp"
 #include "hal/params.hpp"
 #include "hal/robot.hpp"
-#include "hal/spec/epuck.hpp"
+#include "hal/robot/epuck.hpp"
 
 namespace tandem::test {
 
 /// A two-wheeled robot with a proximity ring; nothing in sight, readings fresh.
 class TestRobot final : public hal::Robot {
  public:
-  explicit TestRobot(const hal::DataSheet& sheet = hal::epuck::kDataSheet, bool has_wheels = true)
-      : sheet_(sheet), has_wheels_(has_wheels) {
+  explicit TestRobot(const hal::RobotKind& kind = hal::epuck::kind(), bool has_wheels = true)
+      : kind_(kind), has_wheels_(has_wheels) {
     proximity.validity = hal::Validity::Fresh;
-    proximity.count = static_cast<std::uint32_t>(sheet.proximity.size());
-    proximity.range_m = static_cast<float>(sheet.proximity_range_m);
+    proximity.count = static_cast<std::uint32_t>(kind.part<hal::ProximityPart>()->mounts.size());
+    proximity.range_m = static_cast<float>(kind.part<hal::ProximityPart>()->range_m);
     clear();
   }
 
   std::string_view id() const noexcept override { return "robot"; }
-  const hal::DataSheet& data_sheet() const noexcept override { return sheet_; }
+  const hal::RobotKind& kind() const noexcept override { return kind_; }
   std::uint64_t run_seed() const noexcept override { return 1; }
 
   void clear() { proximity.distance_m.fill(proximity.range_m); }
   void see(std::size_t sensor, double closeness) {
-    proximity.distance_m[sensor] = static_cast<float>((1.0 - closeness) * sheet_.proximity_range_m);
+    proximity.distance_m[sensor] = static_cast<float>((1.0 - closeness) * kind_.part<hal::ProximityPart>()->range_m);
   }
 
   hal::Proximity proximity;
@@ -48,7 +48,7 @@ class TestRobot final : public hal::Robot {
   }
 
  private:
-  const hal::DataSheet& sheet_;
+  const hal::RobotKind& kind_;
   bool has_wheels_;
 };
 
@@ -70,7 +70,7 @@ struct Room {
   }
 
   void look(TestRobot& robot) const {
-    const auto mounts = robot.data_sheet().proximity;
+    const auto mounts = robot.kind().part<hal::ProximityPart>()->mounts;
     const double c = std::cos(heading_rad);
     const double s = std::sin(heading_rad);
     for (std::size_t i = 0; i < mounts.size(); ++i) {
@@ -78,7 +78,7 @@ struct Room {
       const double py = y_m + s * mounts[i].x_m + c * mounts[i].y_m;
       const double dx = std::cos(heading_rad + mounts[i].bearing_rad);
       const double dy = std::sin(heading_rad + mounts[i].bearing_rad);
-      double nearest = robot.data_sheet().proximity_range_m;
+      double nearest = robot.kind().part<hal::ProximityPart>()->range_m;
       for (const Wall& w : walls) {
         const double approach = dx * w.nx + dy * w.ny;
         if (approach > 0.0) nearest = std::min(nearest, std::max(0.0, (w.c - px * w.nx - py * w.ny) / approach));
@@ -89,7 +89,7 @@ struct Room {
 
   void roll(const TestRobot& robot, double dt_s) {
     const double v = 0.5 * (robot.wheels.left_m_s + robot.wheels.right_m_s);
-    const double turn = (robot.wheels.right_m_s - robot.wheels.left_m_s) / robot.data_sheet().wheel_base_m * dt_s;
+    const double turn = (robot.wheels.right_m_s - robot.wheels.left_m_s) / robot.kind().drive()->wheel_base_m * dt_s;
     x_m += v * dt_s * std::cos(heading_rad + 0.5 * turn);
     y_m += v * dt_s * std::sin(heading_rad + 0.5 * turn);
     heading_rad += turn;

@@ -15,7 +15,7 @@
 #include "hal/catalog.hpp"
 #include "hal/check.hpp"
 #include "hal/device/ports.hpp"
-#include "hal/spec/robots.hpp"
+#include "hal/robot/robots.hpp"
 
 namespace tandem::test {
 

@@ -4,7 +4,7 @@
 
 #include "hal/device/flight.hpp"
 #include "hal/device/pan_tilt.hpp"
-#include "hal/spec/eyebot.hpp"
+#include "hal/robot/eyebot.hpp"
 #include "tests/core/footbots.hpp"
 
 namespace tandem::core {

@@ -7,7 +7,7 @@
 #include "hal/device/gripper.hpp"
 #include "hal/device/turret.hpp"
 #include "hal/device/wheels.hpp"
-#include "hal/spec/footbot.hpp"
+#include "hal/robot/footbot.hpp"
 #include "tests/core/scenes.hpp"
 
 namespace tandem::core {

@@ -10,18 +10,18 @@
 namespace tandem::core {
 
 /// Adds a robot with the given ports, in a group and a block of its own. It has no controller.
-inline RobotId add_robot(Space& space, const hal::DataSheet& sheet, const std::string& id, double x_m, double y_m,
+inline RobotId add_robot(Space& space, const hal::RobotKind& kind, const std::string& id, double x_m, double y_m,
                          double heading_rad, const std::vector<const hal::PortType*>& ports = {}) {
   SpaceStores& s = space.stores();
   const auto entity = static_cast<std::uint32_t>(s.robots.size());
   const std::size_t row = s.bodies.size();
   s.bodies.resize(row + 1);
-  s.bodies.radius_m[row] = static_cast<float>(sheet.body_radius_m);
+  s.bodies.radius_m[row] = static_cast<float>(kind.body.radius_m);
   s.bodies.flags[row] = kAlive;
   s.bodies.entity[row] = entity;
 
   RobotGroup group;
-  group.sheet = &sheet;
+  group.kind = &kind;
   group.ports = ports;
   RobotBlock block;
   block.group = s.groups.size();

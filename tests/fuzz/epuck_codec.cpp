@@ -11,8 +11,11 @@
 
 #include "bridges/epuck/conversions.hpp"
 #include "bridges/epuck/session.hpp"
+#include "hal/robot/epuck.hpp"
 
 namespace {
+
+const tandem::bridges::epuck::Conversions kUnits{tandem::hal::epuck::kind()};
 
 using namespace tandem::bridges::epuck;
 
@@ -59,7 +62,7 @@ void decode_alone(std::span<const std::uint8_t> bytes) {
   const AnswerLayout layout{static_cast<std::uint8_t>(bytes[2] % 6 * 2), static_cast<std::uint8_t>(bytes[2] & 2U), 6};
   RawSensors sensors;
   decode_answer(bytes.subspan(3), asked, layout, sensors);
-  for (const std::uint16_t v : sensors.proximity) expect(proximity_distance_m(v) >= 0.0);
+  for (const std::uint16_t v : sensors.proximity) expect(kUnits.proximity_distance_m(v) >= 0.0);
   AllSensors all;
   decode_all_sensors(bytes, all);
   LineAnswer answer;

@@ -81,8 +81,8 @@ struct Kind {
 };
 constexpr std::array<Kind, 3> kKinds = {{{"e-puck", "everything"}, {"foot-bot", "puppet"}, {"eye-bot", "eye_puppet"}}};
 
-const hal::DataSheet& sheet_of(const Kind& kind) {
-  return *data_sheet_of(test::catalog(), kind.name);
+const hal::RobotKind& kind_of(const Kind& kind) {
+  return *robot_kind_of(test::catalog(), kind.name);
 }
 
 /// <sensors> or <actuators> with all devices of a kind of robot, some of them with an implementation and an option.
@@ -90,7 +90,7 @@ std::string devices(Bytes& r, const Kind& kind, hal::Role role) {
   std::string text;
   std::vector<std::string_view> seen;
   for (const DeviceType* type : test::catalog().all<DeviceType>()) {
-    if (type->role != role || !type->fits(sheet_of(kind))) continue;
+    if (type->role != role || !type->fits(kind_of(kind))) continue;
     if (std::find(seen.begin(), seen.end(), type->device) != seen.end()) continue;
     seen.push_back(type->device);
     text += "<" + std::string(type->device);

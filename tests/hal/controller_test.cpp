@@ -6,7 +6,7 @@
 
 #include "hal/device/ring_sensors.hpp"
 #include "hal/device/wheels.hpp"
-#include "hal/spec/epuck.hpp"
+#include "hal/robot/epuck.hpp"
 
 namespace tandem::hal {
 namespace {
@@ -15,7 +15,7 @@ namespace {
 class WheelsOnly final : public Robot {
  public:
   std::string_view id() const noexcept override { return "ep0"; }
-  const DataSheet& data_sheet() const noexcept override { return epuck::kDataSheet; }
+  const RobotKind& kind() const noexcept override { return epuck::kind(); }
   std::uint64_t run_seed() const noexcept override { return 42; }
   WheelSpeeds wheels;
 

@@ -16,51 +16,34 @@
 namespace tandem::hal {
 namespace {
 
-template <class Set>
-DataSheet sheet(Set&& set) {
-  DataSheet made;
-  set(made);
-  return made;
-}
-
 // Each command against a robot with the limits that a test names.
 LimitResult limit(WheelSpeeds& command, double most_m_s) {
-  return command.limit(sheet([=](DataSheet& s) { s.max_wheel_speed_m_s = most_m_s; })).result;
+  return command.limit({.max_speed_m_s = most_m_s}).result;
 }
 LimitResult limit(QuadrotorSpeed& command, double most_m_s, double most_rad_s) {
-  return command
-      .limit(sheet([=](DataSheet& s) {
-        s.max_flight_speed_m_s = most_m_s;
-        s.max_flight_turn_rad_s = most_rad_s;
-      }))
-      .result;
+  return command.limit({.max_speed_m_s = most_m_s, .max_turn_rad_s = most_rad_s}).result;
 }
 LimitResult limit(QuadrotorPosition& command) {
-  return command.limit(DataSheet{}).result;
+  return command.limit({}).result;
 }
 LimitResult limit(QuadrotorAttitude& command, double most_lean_rad, double most_turn_rad_s, double most_thrust) {
-  return command
-      .limit(sheet([=](DataSheet& s) {
-        s.max_flight_turn_rad_s = most_turn_rad_s;
-        s.flight.most_lean_rad = most_lean_rad;
-        s.flight.most_thrust = most_thrust;
-      }))
+  return command.limit({.max_turn_rad_s = most_turn_rad_s, .max_lean_rad = most_lean_rad, .max_thrust = most_thrust})
       .result;
 }
 LimitResult limit(FlightTask& command, double most_m_s) {
-  return command.limit(sheet([=](DataSheet& s) { s.max_flight_speed_m_s = most_m_s; })).result;
+  return command.limit({.max_speed_m_s = most_m_s}).result;
 }
 LimitResult limit(PanTiltDrive& command, double most_tilt_rad) {
-  return command.limit(sheet([=](DataSheet& s) { s.camera_head.most_tilt_rad = most_tilt_rad; })).result;
+  return command.limit({.max_tilt_rad = most_tilt_rad}).result;
 }
 LimitResult limit(GripperDrive& command) {
-  return command.limit(DataSheet{}).result;
+  return command.limit({}).result;
 }
 LimitResult limit(TurretDrive& command, double most_rad_s) {
-  return command.limit(sheet([=](DataSheet& s) { s.turret_turn_rad_s = most_rad_s; })).result;
+  return command.limit({.turn_rad_s = most_rad_s}).result;
 }
 LimitResult limit(ScannerDrive& command, double most_rad_s) {
-  return command.limit(sheet([=](DataSheet& s) { s.scanner_turn_rad_s = most_rad_s; })).result;
+  return command.limit({.turn_rad_s = most_rad_s}).result;
 }
 
 WheelSpeeds speeds(double left, double right) {
@@ -267,10 +250,22 @@ TEST(HeadLimits, ClampsTheTiltAndLooksDownWhenNotFinite) {
   EXPECT_FALSE(command.laser);
 }
 
+TEST(LimitOfABlock, AllowsNothingToAKindWithoutTheDevice) {
+  std::array<WheelSpeeds, 1> wheels = {speeds(0.1, -0.1)};
+  std::array<TurretDrive, 1> turrets;
+  turrets[0].turn(1.0);
+  Limited what;
+  EXPECT_EQ(port_type<WheelSpeeds>().limit(wheels.data(), 0, 1, RobotKind{}, what), 0U);
+  EXPECT_EQ(wheels[0].left_m_s, 0.0);
+  EXPECT_EQ(port_type<TurretDrive>().limit(turrets.data(), 0, 1, RobotKind{}, what), 0U);
+  EXPECT_EQ(turrets[0].speed_rad_s, 0.0);
+}
+
 TEST(LimitOfABlock, StopsAfterTheFirstThatItChangedAndTellsWhatItWas) {
   const PortType& type = port_type<WheelSpeeds>();
   std::array<WheelSpeeds, 4> block = {speeds(0.1, 0.1), speeds(0.4, -2.0), speeds(0.1, 0.1), speeds(0.0, NAN)};
-  const DataSheet slow = sheet([](DataSheet& s) { s.max_wheel_speed_m_s = 0.2; });
+  RobotKind slow;
+  slow.locomotion = DifferentialDrive{.max_speed_m_s = 0.2};
   Limited what;
   ASSERT_EQ(type.limit(block.data(), 0, block.size(), slow, what), 1U);
   EXPECT_EQ(what.result, LimitResult::Clamped);

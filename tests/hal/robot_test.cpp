@@ -5,7 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "hal/spec/epuck.hpp"
+#include "hal/robot/epuck.hpp"
 
 namespace tandem::hal {
 namespace {
@@ -16,7 +16,7 @@ class Named final : public Robot {
  public:
   Named(std::string id, std::uint64_t run_seed) : id_(std::move(id)), run_seed_(run_seed) {}
   std::string_view id() const noexcept override { return id_; }
-  const DataSheet& data_sheet() const noexcept override { return epuck::kDataSheet; }
+  const RobotKind& kind() const noexcept override { return epuck::kind(); }
   std::uint64_t run_seed() const noexcept override { return run_seed_; }
 
   std::vector<PublishedField> shown;

@@ -10,7 +10,7 @@
 #include "hal/device/leds.hpp"
 #include "hal/device/ring_sensors.hpp"
 #include "hal/device/wheels.hpp"
-#include "hal/spec/epuck.hpp"
+#include "hal/robot/epuck.hpp"
 #include "mixed_reality/safety/supervisor.hpp"
 #include "mixed_reality/tracking/odometry.hpp"
 
@@ -42,7 +42,8 @@ struct FakeBody {
     moved_to_ns = now_ns;
     left_m += wheels.left_m_s * dt_s;
     right_m += wheels.right_m_s * dt_s;
-    if (!held_fast) pose = rolled(pose, wheels.left_m_s * dt_s, wheels.right_m_s * dt_s, hal::epuck::kWheelBase_m);
+    if (!held_fast)
+      pose = rolled(pose, wheels.left_m_s * dt_s, wheels.right_m_s * dt_s, hal::epuck::kind().drive()->wheel_base_m);
   }
   bool stands() const { return wheels.left_m_s == 0.0 && wheels.right_m_s == 0.0; }
 };
@@ -126,7 +127,7 @@ class FakeRobot final : public bridges::RobotBridge, private hal::Robot {
 
  private:
   std::string_view id() const noexcept override { return "fake"; }
-  const hal::DataSheet& data_sheet() const noexcept override { return hal::epuck::kDataSheet; }
+  const hal::RobotKind& kind() const noexcept override { return hal::epuck::kind(); }
   std::uint64_t run_seed() const noexcept override { return 0; }
   void* take(const hal::PortType& type) override {
     void* data = port(type);

@@ -323,14 +323,14 @@ class DrivenPuppet final : public Controller {
 class Watcher final : public Controller {
  public:
   explicit Watcher(Robot& robot) {
-    const DataSheet& sheet = robot.data_sheet();
-    if (sheet.omni_camera.height_m > 0.0) robot.sensor<OmnidirectionalCamera>();
-    if (sheet.camera.aperture_rad > 0.0) robot.sensor<PerspectiveCamera>();
-    if (sheet.wheel_base_m > 0.0) robot.actuator<WheelSpeeds>();
-    if (sheet.turret_turn_rad_s > 0.0) robot.actuator<TurretDrive>();
-    if (sheet.flies) robot.actuator<QuadrotorSpeed>();
+    const RobotKind& kind = robot.kind();
+    if (kind.part<OmniCameraPart>() != nullptr) robot.sensor<OmnidirectionalCamera>();
+    if (kind.part<CameraPart>() != nullptr) robot.sensor<PerspectiveCamera>();
+    if (kind.drive() != nullptr) robot.actuator<WheelSpeeds>();
+    if (kind.part<TurretPart>() != nullptr) robot.actuator<TurretDrive>();
+    if (kind.flies()) robot.actuator<QuadrotorSpeed>();
     robot.actuator<RingLeds>();
-    if (!sheet.body_lamps) return;
+    if (kind.part<BodyLedPart>() == nullptr) return;
     robot.actuator<BodyLed>();
     robot.actuator<FrontLed>();
   }

@@ -11,7 +11,7 @@
 #include "bridges/guardian/stopper.hpp"
 #include "hal/device/wheels.hpp"
 #include "hal/plugin.hpp"
-#include "hal/spec/epuck.hpp"
+#include "hal/robot/epuck.hpp"
 
 #ifdef TANDEM_TEST_THREADED
 /// A thread that starts while the library is loaded.
@@ -28,13 +28,13 @@ constexpr std::string_view kKind = "crawler";
 constexpr std::string_view kScheme = "file:";
 
 /// An e-puck's body under another name.
-const hal::DataSheet& crawler() {
-  static const hal::DataSheet sheet = [] {
-    hal::DataSheet s = hal::epuck::kDataSheet;
-    s.kind = kKind;
+const hal::RobotKind& crawler() {
+  static const hal::RobotKind kind = [] {
+    hal::RobotKind s = hal::epuck::kind();
+    s.name = kKind;
     return s;
   }();
-  return sheet;
+  return kind;
 }
 
 std::string path_of(const std::string& link) {

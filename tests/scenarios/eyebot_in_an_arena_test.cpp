@@ -118,18 +118,18 @@ TEST_P(Flight, HangsTheSimulatedBodyOnTheCeiling) {
   order(Action::Attach);
   pass(6.0);
   EXPECT_EQ(mode(), Mode::Attached);
-  EXPECT_NEAR(p()[2], 3.0 - hal::eyebot::kHeight_m, 0.1);
+  EXPECT_NEAR(p()[2], 3.0 - hal::eyebot::kind().body.height_m, 0.1);
   order(Action::Detach);
   pass(5.0);
   EXPECT_EQ(mode(), Mode::Hover);
-  EXPECT_LT(p()[2], 3.0 - hal::eyebot::kHeight_m - 0.2);
+  EXPECT_LT(p()[2], 3.0 - hal::eyebot::kind().body.height_m - 0.2);
 }
 
 TEST_P(Flight, GivesTheFirmwareWhatTheBodySenses) {
   pass(0.5);
   const emulator::BodySenses& senses = firmware->senses();
   EXPECT_NEAR(senses.ground_m, 0.0, 0.02);
-  EXPECT_NEAR(senses.ceiling_m, 3.0 - hal::eyebot::kHeight_m, 0.05);
+  EXPECT_NEAR(senses.ceiling_m, 3.0 - hal::eyebot::kind().body.height_m, 0.05);
   // The other robot stands a metre ahead: the nearest rays are those at +-7.5 degrees.
   EXPECT_LT(senses.distance_m[0], 0.7);
   EXPECT_LT(senses.distance_m[23], 0.7);

@@ -13,7 +13,7 @@
 #include "bridges/footbot_emulator/port_body.hpp"
 #include "hal/device/ring_sensors.hpp"
 #include "hal/device/wheels.hpp"
-#include "hal/spec/footbot.hpp"
+#include "hal/robot/footbot.hpp"
 #include "tests/checkout.hpp"
 #include "tests/core/scenes.hpp"
 
@@ -134,7 +134,7 @@ core::Scene room() {
 class SimulatedFootbot final : public hal::Robot {
  public:
   std::string_view id() const noexcept override { return "me"; }
-  const hal::DataSheet& data_sheet() const noexcept override { return spec::kDataSheet; }
+  const hal::RobotKind& kind() const noexcept override { return spec::kind(); }
   std::uint64_t run_seed() const noexcept override { return 0; }
 
   hal::Proximity proximity;
@@ -148,8 +148,8 @@ class SimulatedFootbot final : public hal::Robot {
   }
 };
 
-constexpr double kReadingQuantum_m = spec::kProximityRange_m / 4096;
-constexpr double kSpeedQuantum_m_s = 1.0 / (spec::kPulsesPerMetre * spec::kPulsePeriod_s);
+const double kReadingQuantum_m = spec::kind().part<hal::ProximityPart>()->range_m / 4096;
+constexpr double kSpeedQuantum_m_s = 1.0 / (48312.0 * 0.005);
 constexpr double kFloat_m = 1e-7;
 
 /// Whether readings that differ by half a quantum can tip the controller's decision (see its source): the sum of the
@@ -159,11 +159,11 @@ bool on_the_edge(const hal::Proximity& exact) {
   double x_m = 0.0;
   double y_m = 0.0;
   for (std::size_t i = 0; i < exact.count; ++i) {
-    const double close_m = spec::kProximityRange_m - static_cast<double>(exact.distance_m[i]);
-    x_m += close_m * std::cos(spec::kRing[i].bearing_rad);
-    y_m += close_m * std::sin(spec::kRing[i].bearing_rad);
+    const double close_m = spec::kind().part<hal::ProximityPart>()->range_m - static_cast<double>(exact.distance_m[i]);
+    x_m += close_m * std::cos(spec::kind().part<hal::ProximityPart>()->mounts[i].bearing_rad);
+    y_m += close_m * std::sin(spec::kind().part<hal::ProximityPart>()->mounts[i].bearing_rad);
   }
-  const double free_m = 0.01 * spec::kProximityRange_m * 24;
+  const double free_m = 0.01 * spec::kind().part<hal::ProximityPart>()->range_m * 24;
   return std::fabs(std::hypot(x_m, y_m) - free_m) < slack_m || std::fabs(y_m) < slack_m ||
          std::fabs(std::fabs(y_m) + x_m * std::tan(7.5 * M_PI / 180)) < slack_m;
 }

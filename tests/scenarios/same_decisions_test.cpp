@@ -12,7 +12,7 @@
 #include "bridges/link/memory_link.hpp"
 #include "hal/device/ring_sensors.hpp"
 #include "hal/device/wheels.hpp"
-#include "hal/spec/epuck.hpp"
+#include "hal/robot/epuck.hpp"
 #include "tests/core/scenes.hpp"
 
 namespace tandem {
@@ -126,7 +126,7 @@ core::Scene room(const std::string& controller, const std::string& library, cons
 class SimulatedRobot final : public hal::Robot {
  public:
   std::string_view id() const noexcept override { return "me"; }
-  const hal::DataSheet& data_sheet() const noexcept override { return hal::epuck::kDataSheet; }
+  const hal::RobotKind& kind() const noexcept override { return hal::epuck::kind(); }
   std::uint64_t run_seed() const noexcept override { return 0; }
 
   hal::Proximity proximity;
@@ -145,12 +145,14 @@ constexpr double kReadingQuantum_m = 5e-4;  // what one count of the converter i
 /// Whether readings that differ by the quantum can tip the diffusion controller's decision (see its header): the sum of
 /// the closenesses is near its threshold, or points nearly ahead, or nearly along the border of the free direction.
 bool on_the_edge(const hal::Proximity& exact) {
-  const double slack = 8 * kReadingQuantum_m / hal::epuck::kProximityRange_m;
+  const double slack = 8 * kReadingQuantum_m / hal::epuck::kind().part<hal::ProximityPart>()->range_m;
   double x = 0.0;
   double y = 0.0;
   for (std::size_t i = 0; i < exact.count; ++i) {
-    x += static_cast<double>(exact.closeness(i)) * std::cos(hal::epuck::kInfrared[i].bearing_rad);
-    y += static_cast<double>(exact.closeness(i)) * std::sin(hal::epuck::kInfrared[i].bearing_rad);
+    x += static_cast<double>(exact.closeness(i)) *
+         std::cos(hal::epuck::kind().part<hal::ProximityPart>()->mounts[i].bearing_rad);
+    y += static_cast<double>(exact.closeness(i)) *
+         std::sin(hal::epuck::kind().part<hal::ProximityPart>()->mounts[i].bearing_rad);
   }
   return std::fabs(std::hypot(x, y) - 0.1) < slack || std::fabs(y) < slack ||
          std::fabs(std::fabs(y) + x * std::tan(7.5 * M_PI / 180)) < slack;

@@ -10,6 +10,7 @@
 
 #include "core/physics/dynamics2d/params.hpp"
 #include "core/physics/roster.hpp"
+#include "core/physics/wheels.hpp"
 #include "core/physics/world_memory.hpp"
 #include "core/space/object_index.hpp"
 #include "hal/check.hpp"
@@ -287,8 +288,8 @@ class Dynamics2d final : public Solver {
 
   // --- doubles ---
 
-  static const hal::DataSheet& sheet_of(const SpaceStores& s, std::size_t row) noexcept {
-    return *s.groups[s.blocks[s.robots[s.bodies.entity[row]].block].group].sheet;
+  static const hal::RobotKind& kind_of(const SpaceStores& s, std::size_t row) noexcept {
+    return *s.groups[s.blocks[s.robots[s.bodies.entity[row]].block].group].kind;
   }
 
   Twin make(const SpaceStores& s, BodyKey key) {
@@ -320,7 +321,7 @@ class Dynamics2d final : public Solver {
           static_cast<float>(o.mass_kg * (torque < 0.0 ? force * mean_radius_m(o) : torque) * kUnits_m * kUnits_m);
       twin.hold = world_->CreateJoint(&rub);
     } else {
-      const hal::DataSheet& sheet = sheet_of(s, i);
+      const hal::RobotKind& kind = kind_of(s, i);
       if (placed) def.position = at(s.bodies.x_m[i], s.bodies.y_m[i]);
       if (placed) def.angle = static_cast<float>(std::atan2(s.bodies.sin_h[i], s.bodies.cos_h[i]));
       twin.body = world_->CreateBody(&def);
@@ -329,7 +330,7 @@ class Dynamics2d final : public Solver {
       b2FixtureDef fixture;
       fixture.shape = &disc;
       fixture.friction = static_cast<float>(params_.friction);
-      fixture.density = static_cast<float>(sheet.mass_kg) / (b2_pi * disc.m_radius * disc.m_radius);
+      fixture.density = static_cast<float>(kind.body.mass_kg) / (b2_pi * disc.m_radius * disc.m_radius);
       twin.body->CreateFixture(&fixture);
       twin.body->SetFixedRotation(true);
     }
@@ -511,8 +512,8 @@ class Dynamics2d final : public Solver {
     double hop = std::min(hops_, kMostHops);
     if (!joints_.empty()) hop = std::max(hop, tick_s / kHoldingStep_s);
     for (const RobotGroup& group : s.groups) {
-      if (group.sheet != nullptr)
-        hop = std::max(hop, group.sheet->max_wheel_speed_m_s * tick_s / (kLargestHop * group.sheet->body_radius_m));
+      if (group.kind != nullptr)
+        hop = std::max(hop, wheels_of(*group.kind).max_speed_m_s * tick_s / (kLargestHop * group.kind->body.radius_m));
     }
     return static_cast<int>(std::clamp(std::ceil(hop), 1.0, static_cast<double>(box2d::kMostSubSteps)));
   }
@@ -533,8 +534,9 @@ class Dynamics2d final : public Solver {
     const std::size_t row = entry.key.index();
     if ((s.bodies.flags[row] & kExternal) != 0) return;
     Twin& twin = entry.body;
-    const hal::DataSheet& sheet = sheet_of(s, row);
-    const double turn = (s.bodies.right_m_s[row] - s.bodies.left_m_s[row]) / sheet.wheel_base_m * dt;
+    const hal::RobotKind& kind = kind_of(s, row);
+    const hal::DifferentialDrive& wheels = wheels_of(kind);
+    const double turn = (s.bodies.right_m_s[row] - s.bodies.left_m_s[row]) / wheels.wheel_base_m * dt;
     const double way = 0.5 * (s.bodies.left_m_s[row] + s.bodies.right_m_s[row]) * dt;
     // The chord of the arc: its direction is the heading in the middle, its length a little less than the arc's.
     const double half = 0.5 * turn;
@@ -544,7 +546,7 @@ class Dynamics2d final : public Solver {
     const double dx = chord * middle.cos_h;
     const double dy = chord * middle.sin_h;
     if (pushes(twin) || holds(twin)) {
-      drive(twin, sheet, dx, dy, turn, std::atan2(headings_[index].sin_h, headings_[index].cos_h));
+      drive(twin, wheels, dx, dy, turn, std::atan2(headings_[index].sin_h, headings_[index].cos_h));
       return;
     }
     if (twin.hold != nullptr) {
@@ -554,7 +556,7 @@ class Dynamics2d final : public Solver {
     }
     // The wheels hold the heading against whatever the disc rubs on.
     twin.turn_rad = turn;
-    const auto most = static_cast<float>(sheet.drive_force_N / sheet.mass_kg * dt * kUnits_m);
+    const auto most = static_cast<float>(wheels.force_N / kind.body.mass_kg * dt * kUnits_m);
     b2Vec2 change = speed(dx / dt, dy / dt) - twin.body->GetLinearVelocity();
     const float length = change.Length();
     if (length > most) change *= most / length;
@@ -626,7 +628,8 @@ class Dynamics2d final : public Solver {
   }
 
   /// The drive as a joint to the ground: its force is part of what Box2D solves, so pushing against a load is exact.
-  void drive(Twin& twin, const hal::DataSheet& sheet, double dx_m, double dy_m, double turn_rad, double heading_rad) {
+  void drive(Twin& twin, const hal::DifferentialDrive& wheels, double dx_m, double dy_m, double turn_rad,
+             double heading_rad) {
     const b2Vec2 target = twin.body->GetPosition() + speed(dx_m, dy_m);
     const float angle = twin.body->GetAngle() + static_cast<float>(turn_rad);
     if (twin.hold == nullptr) {
@@ -634,8 +637,8 @@ class Dynamics2d final : public Solver {
       def.bodyA = anchor_;
       def.bodyB = twin.body;
       def.collideConnected = true;
-      def.maxForce = static_cast<float>(sheet.drive_force_N * kUnits_m);
-      def.maxTorque = static_cast<float>(sheet.drive_torque_Nm * kUnits_m * kUnits_m);
+      def.maxForce = static_cast<float>(wheels.force_N * kUnits_m);
+      def.maxTorque = static_cast<float>(wheels.torque_Nm * kUnits_m * kUnits_m);
       def.correctionFactor = kLinearSlowing;
       twin.hold = world_->CreateJoint(&def);
       twin.body->SetFixedRotation(false);

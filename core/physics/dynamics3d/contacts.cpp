@@ -225,7 +225,7 @@ void Contacts::wheels_on_floor(Twin& a, const Surfaces& surfaces) {
     if (size < 0.1) continue;  // it lies on its side
     for (double& x : ahead) x /= size;
     const Vector3 down = cross(axis, ahead);  // of the disc: its lowest point lies there
-    const double radius = a.sheet->wheel_radius_m;
+    const double radius = a.drive->wheel_radius_m;
     Touch at;
     for (std::size_t i = 0; i < 3; ++i) at.p_m[i] = centre[i] + radius * down[i];
     at.normal = {0.0, 0.0, 1.0};

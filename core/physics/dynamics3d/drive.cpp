@@ -31,13 +31,13 @@ void approach(Vector3& v, const Vector3& goal, double most) noexcept {
 }
 
 /// The velocity with which a flyer nears `target_m` such that it can stop there.
-Vector3 towards(const Vector3& p_m, const Vector3& target_m, const hal::DataSheet& sheet, double near_1_s) noexcept {
+Vector3 towards(const Vector3& p_m, const Vector3& target_m, const hal::Quadrotor& flight, double near_1_s) noexcept {
   Vector3 way{target_m[0] - p_m[0], target_m[1] - p_m[1], target_m[2] - p_m[2]};
   const double distance = std::sqrt(way[0] * way[0] + way[1] * way[1] + way[2] * way[2]);
   if (distance == 0.0) return {};
   // Half the braking power is kept in hand.
-  const double speed = std::min(
-      {sheet.max_flight_speed_m_s, near_1_s * distance, std::sqrt(sheet.max_flight_acceleration_m_s2 * distance)});
+  const double speed =
+      std::min({flight.max_speed_m_s, near_1_s * distance, std::sqrt(flight.max_acceleration_m_s2 * distance)});
   for (double& w : way) w *= speed / distance;
   return way;
 }
@@ -46,33 +46,33 @@ double length(const Vector3& v) noexcept {
   return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
 }
 
-/// The velocity that a command asks for, within the data sheet's limit.
-Vector3 wanted_velocity(const Vector3& p_m, const FlightCommand& command, const hal::DataSheet& sheet,
+/// The velocity that a command asks for, within the kind's limit.
+Vector3 wanted_velocity(const Vector3& p_m, const FlightCommand& command, const hal::Quadrotor& flight,
                         double near_1_s) noexcept {
   const bool to_place = command.mode == FlightCommand::Mode::Position;
-  Vector3 goal = to_place ? towards(p_m, command.target, sheet, near_1_s) : command.target;
+  Vector3 goal = to_place ? towards(p_m, command.target, flight, near_1_s) : command.target;
   const double size = length(goal);
-  if (size > sheet.max_flight_speed_m_s) {
-    for (double& g : goal) g *= sheet.max_flight_speed_m_s / size;
+  if (size > flight.max_speed_m_s) {
+    for (double& g : goal) g *= flight.max_speed_m_s / size;
   }
   return goal;
 }
 
 /// The turn rate that a command asks for.
-double wanted_turn(double cos_h, double sin_h, const FlightCommand& command, const hal::DataSheet& sheet) noexcept {
+double wanted_turn(double cos_h, double sin_h, const FlightCommand& command, const hal::Quadrotor& flight) noexcept {
   double turn = command.yaw;
   if (command.mode == FlightCommand::Mode::Position) {
     const double c = std::cos(command.yaw);
     const double s = std::sin(command.yaw);
     turn = kApproach_1_s * std::atan2(s * cos_h - c * sin_h, c * cos_h + s * sin_h);
   }
-  return std::clamp(turn, -sheet.max_flight_turn_rad_s, sheet.max_flight_turn_rad_s);
+  return std::clamp(turn, -flight.max_turn_rad_s, flight.max_turn_rad_s);
 }
 
 /// What rotors push a body that leans as told with, gravity apart, in m/s^2 of W.
-Vector3 lift_of(const FlightCommand& command, const hal::DataSheet& sheet, double cos_h, double sin_h,
+Vector3 lift_of(const FlightCommand& command, const hal::Quadrotor& flight, double cos_h, double sin_h,
                 double gravity_m_s2) noexcept {
-  const double lift = std::clamp(command.target[2], 0.0, sheet.flight.most_thrust) * gravity_m_s2;
+  const double lift = std::clamp(command.target[2], 0.0, flight.max_thrust) * gravity_m_s2;
   const double ahead = lift * std::sin(command.target[1]) * std::cos(command.target[0]);
   const double aside = -lift * std::sin(command.target[0]);
   return {cos_h * ahead - sin_h * aside, sin_h * ahead + cos_h * aside,
@@ -82,10 +82,10 @@ Vector3 lift_of(const FlightCommand& command, const hal::DataSheet& sheet, doubl
 }  // namespace
 
 void drive_base(Twin& twin, double left_m_s, double right_m_s, double dt_s) noexcept {
-  const hal::DataSheet& sheet = *twin.sheet;
-  twin.turn_rad_s = (right_m_s - left_m_s) / sheet.wheel_base_m;
+  const hal::DifferentialDrive& wheels = *twin.drive;
+  twin.turn_rad_s = (right_m_s - left_m_s) / wheels.wheel_base_m;
   const double inertia = 0.5 * twin.mass_kg * twin.prism.radius_m * twin.prism.radius_m;
-  twin.next_w_rad_s = nearer(twin.w_rad_s, twin.turn_rad_s, sheet.drive_torque_Nm / inertia * dt_s);
+  twin.next_w_rad_s = nearer(twin.w_rad_s, twin.turn_rad_s, wheels.torque_Nm / inertia * dt_s);
   // The chord of the arc: its direction is the heading in the middle, its length a little less than the arc's.
   const double half = 0.5 * twin.next_w_rad_s * dt_s;
   const double half2 = half * half;
@@ -97,7 +97,7 @@ void drive_base(Twin& twin, double left_m_s, double right_m_s, double dt_s) noex
   const Vector3 goal{twin.cos_h * twin.forward_m_s - twin.sin_h * twin.leftward_m_s,
                      twin.sin_h * twin.forward_m_s + twin.cos_h * twin.leftward_m_s, twin.v_m_s[2]};
   twin.next_v_m_s = twin.v_m_s;
-  approach(twin.next_v_m_s, goal, sheet.drive_force_N / twin.mass_kg * dt_s);
+  approach(twin.next_v_m_s, goal, wheels.force_N / twin.mass_kg * dt_s);
 }
 
 void drive_flyer(Twin& twin, const FlightCommand& command, double gravity_m_s2, double dt_s) noexcept {
@@ -105,26 +105,25 @@ void drive_flyer(Twin& twin, const FlightCommand& command, double gravity_m_s2, 
     drop(twin, gravity_m_s2, dt_s);
     return;
   }
-  const hal::DataSheet& sheet = *twin.sheet;
+  const hal::Quadrotor& flight = *twin.flight;
   twin.next_v_m_s = twin.v_m_s;
-  twin.next_w_rad_s = wanted_turn(twin.cos_h, twin.sin_h, command, sheet);
+  twin.next_w_rad_s = wanted_turn(twin.cos_h, twin.sin_h, command, flight);
   if (command.mode == FlightCommand::Mode::Attitude) {
-    const Vector3 lift = lift_of(command, sheet, twin.cos_h, twin.sin_h, gravity_m_s2);
+    const Vector3 lift = lift_of(command, flight, twin.cos_h, twin.sin_h, gravity_m_s2);
     for (std::size_t i = 0; i < 3; ++i) twin.next_v_m_s[i] += lift[i] * dt_s;
     twin.next_v_m_s[2] -= gravity_m_s2 * dt_s;
     const double speed = length(twin.next_v_m_s);
-    if (speed > sheet.max_flight_speed_m_s) {
-      for (double& v : twin.next_v_m_s) v *= sheet.max_flight_speed_m_s / speed;
+    if (speed > flight.max_speed_m_s) {
+      for (double& v : twin.next_v_m_s) v *= flight.max_speed_m_s / speed;
     }
     return;
   }
-  approach(twin.next_v_m_s, wanted_velocity(twin.p_m, command, sheet, kApproach_1_s),
-           sheet.max_flight_acceleration_m_s2 * dt_s);
+  approach(twin.next_v_m_s, wanted_velocity(twin.p_m, command, flight, kApproach_1_s),
+           flight.max_acceleration_m_s2 * dt_s);
 }
 
 void drive_rotors(Twin& twin, const FlightCommand& command, double gravity_m_s2, double dt_s) {
-  const hal::DataSheet& sheet = *twin.sheet;
-  const hal::FlightSheet& flight = sheet.flight;
+  const hal::Quadrotor& flight = *twin.flight;
   const dBodyID body = twin.body.get();
   const dReal* p = dBodyGetPosition(body);
   const dReal* r = dBodyGetRotation(body);
@@ -146,12 +145,12 @@ void drive_rotors(Twin& twin, const FlightCommand& command, double gravity_m_s2,
   const double cos_h = level > 0.0 ? r[0] / level : 1.0;
   const double sin_h = level > 0.0 ? r[4] / level : 0.0;
   if (command.mode == FlightCommand::Mode::Attitude) {
-    force = lift_of(command, sheet, cos_h, sin_h, gravity_m_s2);
+    force = lift_of(command, flight, cos_h, sin_h, gravity_m_s2);
   } else if (command.mode != FlightCommand::Mode::None) {
     const Vector3 base{p[0], p[1], p[2] - twin.origin_m};
-    const Vector3 goal = wanted_velocity(base, command, sheet, kPlace_1_s);
+    const Vector3 goal = wanted_velocity(base, command, flight, kPlace_1_s);
     Vector3 wanted{kSpeed_1_s * (goal[0] - v[0]), kSpeed_1_s * (goal[1] - v[1]), kSpeed_1_s * (goal[2] - v[2])};
-    approach(force, wanted, sheet.max_flight_acceleration_m_s2);
+    approach(force, wanted, flight.max_acceleration_m_s2);
     force[2] += gravity_m_s2;
   }
   for (double& f : force) f *= twin.mass_kg;
@@ -165,7 +164,7 @@ void drive_rotors(Twin& twin, const FlightCommand& command, double gravity_m_s2,
         to_body({(up[1] * force[2] - up[2] * force[1]) / size, (up[2] * force[0] - up[0] * force[2]) / size,
                  (up[0] * force[1] - up[1] * force[0]) / size});
     const Vector3 rate = to_body({w[0], w[1], w[2]});
-    const double turn = wanted_turn(cos_h, sin_h, command, sheet);
+    const double turn = wanted_turn(cos_h, sin_h, command, flight);
     torque = {flight.inertia_kg_m2 * (kLean_1_s2 * lacks[0] - kLeanRate_1_s * rate[0]),
               flight.inertia_kg_m2 * (kLean_1_s2 * lacks[1] - kLeanRate_1_s * rate[1]),
               flight.inertia_kg_m2 * kTurn_1_s * (turn - rate[2])};
@@ -176,7 +175,7 @@ void drive_rotors(Twin& twin, const FlightCommand& command, double gravity_m_s2,
   constexpr std::array<double, 4> kLeft = {1.0, 1.0, -1.0, -1.0};
   constexpr std::array<double, 4> kSpin = {1.0, -1.0, 1.0, -1.0};
   const double arm_m = flight.rotor_arm_m * std::sqrt(0.5);
-  const double most_N = 0.25 * flight.most_thrust * twin.mass_kg * kGravity_m_s2;
+  const double most_N = 0.25 * flight.max_thrust * twin.mass_kg * kGravity_m_s2;
   const double share = 1.0 - std::exp(-dt_s / flight.rotor_lag_s);
   double all_N = 0.0;
   Vector3 done{};
@@ -209,9 +208,9 @@ void engage(Twin& twin, dWorldID world) {
     dJointSetAMotorMode(twin.turn.get(), dAMotorUser);
     dJointSetAMotorNumAxes(twin.turn.get(), 1);
     dJointSetAMotorAxis(twin.turn.get(), 0, 0, 0.0, 0.0, 1.0);
-    dJointSetAMotorParam(twin.turn.get(), dParamFMax, twin.sheet->drive_torque_Nm);
-    dJointSetLMotorParam(twin.push.get(), dParamFMax1, twin.sheet->drive_force_N);
-    dJointSetLMotorParam(twin.push.get(), dParamFMax2, twin.sheet->drive_force_N);
+    dJointSetAMotorParam(twin.turn.get(), dParamFMax, twin.drive->torque_Nm);
+    dJointSetLMotorParam(twin.push.get(), dParamFMax1, twin.drive->force_N);
+    dJointSetLMotorParam(twin.push.get(), dParamFMax2, twin.drive->force_N);
     dJointSetLMotorParam(twin.push.get(), dParamFMax3, dInfinity);
     dJointSetLMotorParam(twin.push.get(), dParamVel3, 0.0);
   }
@@ -234,13 +233,13 @@ void release(Twin& twin) noexcept {
 }
 
 void drive_wheels(Twin& twin, double left_m_s, double right_m_s) {
-  dJointSetHingeParam(twin.axles[0].get(), dParamVel, left_m_s / twin.sheet->wheel_radius_m);
-  dJointSetHingeParam(twin.axles[1].get(), dParamVel, right_m_s / twin.sheet->wheel_radius_m);
+  dJointSetHingeParam(twin.axles[0].get(), dParamVel, left_m_s / twin.drive->wheel_radius_m);
+  dJointSetHingeParam(twin.axles[1].get(), dParamVel, right_m_s / twin.drive->wheel_radius_m);
 }
 
 void count_wheels(Twin& twin, double dt_s) noexcept {
   for (std::size_t side = 0; side < 2; ++side)
-    twin.rolled_m[side] += dJointGetHingeAngleRate(twin.axles[side].get()) * twin.sheet->wheel_radius_m * dt_s;
+    twin.rolled_m[side] += dJointGetHingeAngleRate(twin.axles[side].get()) * twin.drive->wheel_radius_m * dt_s;
 }
 
 }  // namespace tandem::core

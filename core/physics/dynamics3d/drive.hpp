@@ -7,7 +7,7 @@ namespace tandem::core {
 /// Lets a base start this sub-step towards what its wheels command.
 void drive_base(Twin& twin, double left_m_s, double right_m_s, double dt_s) noexcept;
 /// Lets the thrust of a flyer, if its command has any, and gravity act for this sub-step. Its limits are those of its
-/// data sheet.
+/// kind.
 void drive_flyer(Twin& twin, const FlightCommand& command, double gravity_m_s2, double dt_s) noexcept;
 /// Adds what the rotors of a flyer do in this sub-step to the forces on its body: the thrust and the torque that its
 /// command asks for, as far as the rotors have them and with their lag. Attitude is held by a controller of its own.

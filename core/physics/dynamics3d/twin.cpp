@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/physics/wheels.hpp"
+
 namespace tandem::core {
 namespace {
 
@@ -39,14 +41,15 @@ OdeBody make_body(dWorldID world, const dMass& mass) {
 }
 
 void give_wheels(Twin& twin, dWorldID world) {
-  const hal::DataSheet& sheet = *twin.sheet;
+  const hal::RobotKind& kind = *twin.kind;
+  const hal::DifferentialDrive& wheels = *twin.drive;
   dMass mass;
-  dMassSetCylinderTotal(&mass, (1.0 - 2.0 * kWheelShare) * twin.mass_kg, 3, sheet.body_radius_m, sheet.body_height_m);
+  dMassSetCylinderTotal(&mass, (1.0 - 2.0 * kWheelShare) * twin.mass_kg, 3, kind.body.radius_m, kind.body.height_m);
   twin.body = make_body(world, mass);
   for (std::size_t side = 0; side < 2; ++side) {
-    dMassSetCylinderTotal(&mass, kWheelShare * twin.mass_kg, 2, sheet.wheel_radius_m, 0.1 * sheet.wheel_radius_m);
+    dMassSetCylinderTotal(&mass, kWheelShare * twin.mass_kg, 2, wheels.wheel_radius_m, 0.1 * wheels.wheel_radius_m);
     twin.wheels[side] = make_body(world, mass);
-    const double y = (side == 0 ? 0.5 : -0.5) * sheet.wheel_base_m;
+    const double y = (side == 0 ? 0.5 : -0.5) * wheels.wheel_base_m;
     dBodySetPosition(twin.body.get(), 0.0, 0.0, 0.0);
     dBodySetPosition(twin.wheels[side].get(), 0.0, y, 0.0);
     twin.axles[side] = OdeJoint(dJointCreateHinge(world, nullptr));
@@ -54,7 +57,7 @@ void give_wheels(Twin& twin, dWorldID world) {
     dJointAttach(axle, twin.wheels[side].get(), twin.body.get());
     dJointSetHingeAnchor(axle, 0.0, y, 0.0);
     dJointSetHingeAxis(axle, 0.0, 1.0, 0.0);
-    dJointSetHingeParam(axle, dParamFMax, 0.5 * sheet.drive_force_N * sheet.wheel_radius_m);
+    dJointSetHingeParam(axle, dParamFMax, 0.5 * wheels.force_N * wheels.wheel_radius_m);
   }
 }
 
@@ -71,12 +74,12 @@ void put_in_ode(Twin& twin, const BodyState& at) {
   if (twin.sort != Sort::Wheels) return;
   const dReal* r = dBodyGetRotation(body);
   for (std::size_t side = 0; side < 2; ++side) {
-    const double y = (side == 0 ? 0.5 : -0.5) * twin.sheet->wheel_base_m;
+    const double y = (side == 0 ? 0.5 : -0.5) * twin.drive->wheel_base_m;
     const Vector3 arm{r[1] * y, r[5] * y, r[9] * y};
     const dReal* w = dBodyGetAngularVel(body);
     const Vector3 v{at.v_m_s[0] + w[1] * arm[2] - w[2] * arm[1], at.v_m_s[1] + w[2] * arm[0] - w[0] * arm[2],
                     at.v_m_s[2] + w[0] * arm[1] - w[1] * arm[0]};
-    const double spin = (v[0] * r[0] + v[1] * r[4] + v[2] * r[8]) / twin.sheet->wheel_radius_m;  // it rolls
+    const double spin = (v[0] * r[0] + v[1] * r[4] + v[2] * r[8]) / twin.drive->wheel_radius_m;  // it rolls
     const dBodyID wheel = twin.wheels[side].get();
     dBodySetPosition(wheel, at.x_m + arm[0], at.y_m + arm[1], at.z_m + twin.origin_m + arm[2]);
     dBodySetQuaternion(wheel, dBodyGetQuaternion(body));
@@ -180,14 +183,16 @@ void make_twin(Twin& twin, const SpaceStores& stores, BodyKey key, Sort sort, dW
     twin.body = make_body(world, mass);
     return;
   }
-  twin.sheet = &stores.sheet_of_row(key.index());
-  twin.mass_kg = twin.sheet->mass_kg;
-  twin.height_m = twin.sheet->body_height_m;
-  twin.origin_m = sort == Sort::Wheels ? twin.sheet->wheel_radius_m : 0.5 * twin.height_m;
+  twin.kind = &stores.kind_of_row(key.index());
+  twin.flight = twin.kind->flight();
+  if (twin.flight == nullptr) twin.drive = &wheels_of(*twin.kind);
+  twin.mass_kg = twin.kind->body.mass_kg;
+  twin.height_m = twin.kind->body.height_m;
+  twin.origin_m = sort == Sort::Wheels ? twin.drive->wheel_radius_m : 0.5 * twin.height_m;
   prism.radius_m = static_cast<double>(stores.bodies.radius_m[key.index()]);
   if (sort == Sort::Wheels) give_wheels(twin, world);
   if (sort == Sort::Rotors) {
-    const double inertia = twin.sheet->flight.inertia_kg_m2;
+    const double inertia = twin.flight->inertia_kg_m2;
     dMass mass;
     dMassSetParameters(&mass, twin.mass_kg, 0.0, 0.0, 0.0, inertia, inertia, inertia, 0.0, 0.0, 0.0);
     twin.body = make_body(world, mass);

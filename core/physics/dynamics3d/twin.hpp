@@ -44,12 +44,14 @@ struct Twin {
   bool touched = false;   ///< light: in ODE for this sub-step
   bool engaged = false;   ///< of a base: pushes something that can move, so its drive is part of what ODE solves
   // Of an object, in this sub-step:
-  bool driven = false;          ///< touched by a robot, or joined to something
-  bool resting = false;         ///< left out of ODE's step: it stands, and stays where it is
-  Twin* heap = nullptr;         ///< one of those that it touches, and so on to one that stands for all of them
-  Vector3 before_m{};           ///< where ODE's body was when the sub-step began
-  dQuaternion turned_before{};  ///< … and how it was turned
-  const hal::DataSheet* sheet = nullptr;  ///< of a robot
+  bool driven = false;                   ///< touched by a robot, or joined to something
+  bool resting = false;                  ///< left out of ODE's step: it stands, and stays where it is
+  Twin* heap = nullptr;                  ///< one of those that it touches, and so on to one that stands for all of them
+  Vector3 before_m{};                    ///< where ODE's body was when the sub-step began
+  dQuaternion turned_before{};           ///< … and how it was turned
+  const hal::RobotKind* kind = nullptr;  ///< of a robot
+  const hal::DifferentialDrive* drive = nullptr;  ///< of a robot that does not fly
+  const hal::Quadrotor* flight = nullptr;         ///< of one that does
   BodyKey key;
 
   double mass_kg = 1.0;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "core/physics/wheels.hpp"
 #include "hal/unit.hpp"
 
 namespace tandem::core {
@@ -31,9 +32,10 @@ double length(const Vector3& v) noexcept {
 
 Sort sort_of(const SpaceStores& stores, BodyKey key, const World3dSettings& settings) noexcept {
   if (key.is_object()) return Sort::Object;
-  const hal::DataSheet& sheet = stores.sheet_of_row(key.index());
-  if (sheet.flies) return settings.rotors && !external_in(stores, key) ? Sort::Rotors : Sort::Flyer;
-  return settings.wheels && sheet.wheel_radius_m > 0.0 && !external_in(stores, key) ? Sort::Wheels : Sort::Base;
+  const hal::RobotKind& kind = stores.kind_of_row(key.index());
+  if (kind.flies()) return settings.rotors && !external_in(stores, key) ? Sort::Rotors : Sort::Flyer;
+  return settings.wheels && wheels_of(kind).wheel_radius_m > 0.0 && !external_in(stores, key) ? Sort::Wheels
+                                                                                              : Sort::Base;
 }
 
 /// Of the fastest of its points, at most; of what lives in ODE.

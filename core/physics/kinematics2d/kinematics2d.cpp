@@ -5,6 +5,7 @@
 #include <cmath>
 #include <tuple>
 
+#include "core/physics/wheels.hpp"
 #include "hal/unit.hpp"
 
 namespace tandem::core {
@@ -62,9 +63,10 @@ double hops(double speed_m_s, double radius_m, double tick_s) noexcept {
 }
 
 /// How many sub-steps keep turns and hops small at the robot's highest speed.
-int sub_steps(const hal::DataSheet& sheet, double tick_s) noexcept {
-  const double turn = 2.0 * sheet.max_wheel_speed_m_s / sheet.wheel_base_m * tick_s / kLargestTurn_rad;
-  const double hop = hops(sheet.max_wheel_speed_m_s, sheet.body_radius_m, tick_s);
+int sub_steps(const hal::RobotKind& kind, double tick_s) noexcept {
+  const hal::DifferentialDrive& wheels = wheels_of(kind);
+  const double turn = 2.0 * wheels.max_speed_m_s / wheels.wheel_base_m * tick_s / kLargestTurn_rad;
+  const double hop = hops(wheels.max_speed_m_s, kind.body.radius_m, tick_s);
   return std::max(1, static_cast<int>(std::ceil(std::max(turn, hop))));
 }
 
@@ -72,7 +74,7 @@ bool too_fast(double left_m_s, double right_m_s) noexcept {
   return !(std::fabs(left_m_s) <= kFastest_m_s && std::fabs(right_m_s) <= kFastest_m_s);  // also when no number
 }
 
-/// Commands are within the data sheet, but hooks write what they like, and a file may multiply it.
+/// Commands are within the kind's limits, but hooks write what they like, and a file may multiply it.
 bool any_too_fast(const Bodies& b, const RobotBlock& block) noexcept {
   bool any = false;
   for (std::size_t row = block.first_row; row < block.first_row + block.used; ++row)
@@ -130,7 +132,7 @@ struct Contacts {
   bool heights = false;  // some fly
 
   explicit Contacts(const SpaceStores& s) : stores(s), index(s.body_index), heights(!s.bodies.motion.empty()) {
-    for (const RobotGroup& group : s.groups) largest_radius_m = std::max(largest_radius_m, group.sheet->body_radius_m);
+    for (const RobotGroup& group : s.groups) largest_radius_m = std::max(largest_radius_m, group.kind->body.radius_m);
     for (const Region& region : s.regions) {
       for (const RegionSide& side : region.sides) walls = walls || (side.wall && !region.listed);
     }
@@ -215,15 +217,16 @@ int Kinematics2d::parts(const PhysicsContext& context) const {
   const SpaceStores& stores = context.stores;
   double most = 0.0;
   for (const RobotBlock& block : stores.blocks) {
-    const hal::DataSheet& sheet = *stores.groups[block.group].sheet;
+    const hal::RobotKind& kind = *stores.groups[block.group].kind;
     // With most ticks no robot is fast enough at all.
-    if (sheet.flies || hops(sheet.max_wheel_speed_m_s, sheet.body_radius_m, context.tick_s) <= 1.0) continue;
+    const double most_m_s = wheels_of(kind).max_speed_m_s;
+    if (kind.flies() || hops(most_m_s, kind.body.radius_m, context.tick_s) <= 1.0) continue;
     const Bodies& b = stores.bodies;
     double fastest_m_s = 0.0;
     for (std::size_t row = block.first_row; row < block.first_row + block.used; ++row)
       fastest_m_s = std::max(fastest_m_s, std::fabs(b.left_m_s[row] + b.right_m_s[row]) * 0.5);
-    fastest_m_s = std::min(fastest_m_s, sheet.max_wheel_speed_m_s);  // hooks may write anything
-    most = std::max(most, hops(fastest_m_s, sheet.body_radius_m, context.tick_s));
+    fastest_m_s = std::min(fastest_m_s, most_m_s);  // hooks may write anything
+    most = std::max(most, hops(fastest_m_s, kind.body.radius_m, context.tick_s));
   }
   return std::max(1, static_cast<int>(std::ceil(most)));
 }
@@ -235,9 +238,10 @@ void Kinematics2d::advance(const PhysicsContext& context) {
   context.pool.run(stores.blocks.size(), 8, [&](std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) {
       const RobotBlock& block = stores.blocks[i];
-      const hal::DataSheet& sheet = *stores.groups[block.group].sheet;
-      if (sheet.flies) continue;  // never this engine's
-      const int steps = sub_steps(sheet, context.tick_s);
+      const hal::RobotKind& kind = *stores.groups[block.group].kind;
+      if (kind.flies()) continue;  // never this engine's
+      const double wheel_base_m = wheels_of(kind).wheel_base_m;
+      const int steps = sub_steps(kind, context.tick_s);
       if (any_too_fast(stores.bodies, block)) too_fast_in_.store(&stores, std::memory_order_relaxed);
       const std::size_t end = block.first_row + block.used;
       std::size_t row = block.first_row;
@@ -245,7 +249,7 @@ void Kinematics2d::advance(const PhysicsContext& context) {
         std::size_t next = all_mine ? end : row;
         while (!all_mine && next < end && mine(stores, stores.bodies.region[next])) ++next;
         for (int step = 0; step < steps && next > row; ++step)
-          roll(stores.bodies, row, next, sheet.wheel_base_m, context.tick_s / steps);
+          roll(stores.bodies, row, next, wheel_base_m, context.tick_s / steps);
         row = next;
         while (row < end && !mine(stores, stores.bodies.region[row])) ++row;
       }

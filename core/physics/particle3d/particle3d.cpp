@@ -7,6 +7,7 @@
 
 #include "core/physics/particle3d/near_pairs.hpp"
 #include "core/physics/particle3d/solid.hpp"
+#include "core/physics/wheels.hpp"
 #include "hal/angle.hpp"
 
 namespace tandem::core {
@@ -93,7 +94,8 @@ struct Particles {
 /// Neighbouring bodies of one kind.
 struct Run {
   std::size_t begin, end;
-  const hal::DataSheet* sheet;
+  const hal::RobotKind* kind;
+  const hal::Quadrotor* flight;  ///< null: they do not fly
 };
 
 class Particle3d final : public Solver {
@@ -135,10 +137,10 @@ class Particle3d final : public Solver {
 int sub_steps(const SpaceStores& stores, std::int64_t least, double tick_s) noexcept {
   double most = static_cast<double>(least);
   for (const RobotGroup& group : stores.groups) {
-    if (group.sheet == nullptr) continue;
-    const hal::DataSheet& sheet = *group.sheet;
-    const double speed = std::max(sheet.max_wheel_speed_m_s, sheet.max_flight_speed_m_s);
-    most = std::max(most, std::ceil(speed * tick_s / (kHop * sheet.body_radius_m)));
+    if (group.kind == nullptr) continue;
+    const hal::RobotKind& kind = *group.kind;
+    const double speed = kind.top_speed_m_s();
+    most = std::max(most, std::ceil(speed * tick_s / (kHop * kind.body.radius_m)));
   }
   return static_cast<int>(most);
 }
@@ -195,18 +197,19 @@ void Particle3d::load_body(const SolverContext& context, std::size_t i, std::uin
   const SpaceStores& stores = context.stores;
   const Bodies& b = stores.bodies;
   const Motion& m = b.motion[row];
-  const hal::DataSheet& sheet = stores.sheet_of_row(row);
-  if (runs_.empty() || runs_.back().sheet != &sheet) runs_.push_back({i, i, &sheet});
+  const hal::RobotKind& kind = stores.kind_of_row(row);
+  if (runs_.empty() || runs_.back().kind != &kind) runs_.push_back({i, i, &kind, kind.flight()});
   runs_.back().end = i + 1;
+  const hal::Quadrotor* const flight = runs_.back().flight;
 
   const bool fixed = stores.led_or_held(row);
   p_.row[i] = row;
   p_.owned[i] = owned ? 1 : 0;
   p_.fixed[i] = fixed ? 1 : 0;
-  p_.flies[i] = sheet.flies ? 1 : 0;
+  p_.flies[i] = flight != nullptr ? 1 : 0;
   p_.falls[i] = 0;
-  p_.radius[i] = sheet.body_radius_m;
-  p_.height[i] = sheet.body_height_m;
+  p_.radius[i] = kind.body.radius_m;
+  p_.height[i] = kind.body.height_m;
   p_.x[i] = p_.from_x[i] = b.x_m[row];
   p_.y[i] = p_.from_y[i] = b.y_m[row];
   p_.z[i] = m.z_m;
@@ -225,19 +228,19 @@ void Particle3d::load_body(const SolverContext& context, std::size_t i, std::uin
   p_.cos_d[i] = 1.0;
   const Solid solid(stores, context.region);
   p_.low[i] = fixed ? m.z_m : solid.ground_m();
-  p_.high[i] = fixed ? m.z_m : std::max(solid.ground_m(), solid.ceiling_m() - sheet.body_height_m);
+  p_.high[i] = fixed ? m.z_m : std::max(solid.ground_m(), solid.ceiling_m() - kind.body.height_m);
   p_.hop[i] = 0.0;
   if (fixed) return;
 
   const double speed = std::sqrt(p_.vx[i] * p_.vx[i] + p_.vy[i] * p_.vy[i] + p_.vz[i] * p_.vz[i]);
   double fastest = 0.0;
-  if (sheet.flies) {
+  if (flight != nullptr) {
     load_flight(stores, i, context.tick_s);
     const double freely = std::hypot(p_.free_x[i], p_.free_y[i], p_.free_z[i]);
     fastest = exact_ && p_.thrust[i] > 0.0
-                  ? sheet.max_flight_speed_m_s
-                  : speed + context.tick_s * std::max(freely * (1.0 - p_.thrust[i]),
-                                                      sheet.max_flight_acceleration_m_s2 * p_.thrust[i]);
+                  ? flight->max_speed_m_s
+                  : speed + context.tick_s *
+                                std::max(freely * (1.0 - p_.thrust[i]), flight->max_acceleration_m_s2 * p_.thrust[i]);
   } else {
     Mover body;
     body.x_m = p_.x[i];
@@ -251,7 +254,7 @@ void Particle3d::load_body(const SolverContext& context, std::size_t i, std::uin
       fastest = speed + params_.gravity_m_s2 * context.tick_s;
     } else {
       p_.z[i] = std::max(p_.z[i], p_.low[i]);
-      plan_wheels(i, b.left_m_s[row], b.right_m_s[row], sheet.wheel_base_m, context.tick_s / steps_);
+      plan_wheels(i, b.left_m_s[row], b.right_m_s[row], wheels_of(kind).wheel_base_m, context.tick_s / steps_);
       fastest = std::max(std::fabs(b.left_m_s[row]), std::fabs(b.right_m_s[row]));
     }
   }
@@ -259,13 +262,13 @@ void Particle3d::load_body(const SolverContext& context, std::size_t i, std::uin
 }
 
 void Particle3d::load_flight(const SpaceStores& stores, std::size_t i, double tick_s) {
-  const hal::DataSheet& sheet = *runs_.back().sheet;
+  const hal::Quadrotor& flight = *runs_.back().flight;
   const FlightCommand& f = stores.command_of(p_.row[i]);
   if (f.mode == FlightCommand::Mode::None) {
     p_.thrust[i] = 0.0;
     return;
   }
-  const double most = sheet.max_flight_turn_rad_s * tick_s;
+  const double most = flight.max_turn_rad_s * tick_s;
   double wanted = f.yaw * tick_s;
   if (f.mode == FlightCommand::Mode::Attitude) {
     load_attitude(f, i, tick_s);
@@ -283,14 +286,14 @@ void Particle3d::load_flight(const SpaceStores& stores, std::size_t i, double ti
 }
 
 /// Thrust along the axis of a body that leans as told at once: no goal, but an acceleration. When that would make it
-/// faster than its data sheet says, the velocity that is left of it is a goal instead.
+/// faster than its kind says, the velocity that is left of it is a goal instead.
 void Particle3d::load_attitude(const FlightCommand& f, std::size_t i, double tick_s) {
-  const hal::DataSheet& sheet = *runs_.back().sheet;
+  const hal::Quadrotor& flight = *runs_.back().flight;
   const double sin_roll = std::sin(f.target[0]);
   const double cos_roll = std::cos(f.target[0]);
   const double sin_pitch = std::sin(f.target[1]);
   const double cos_pitch = std::cos(f.target[1]);
-  const double lift = std::clamp(f.target[2], 0.0, sheet.flight.most_thrust) * params_.gravity_m_s2;
+  const double lift = std::clamp(f.target[2], 0.0, flight.max_thrust) * params_.gravity_m_s2;
   const double ahead = lift * sin_pitch * cos_roll;
   const double aside = lift * -sin_roll;
   p_.free_x[i] = -(p_.c[i] * ahead - p_.s[i] * aside);
@@ -301,8 +304,8 @@ void Particle3d::load_attitude(const FlightCommand& f, std::size_t i, double tic
   const double vy = p_.vy[i] - p_.free_y[i] * tick_s;
   const double vz = p_.vz[i] - p_.free_z[i] * tick_s;
   const double speed = std::sqrt(vx * vx + vy * vy + vz * vz);
-  if (speed <= sheet.max_flight_speed_m_s) return;
-  const double part = sheet.max_flight_speed_m_s / speed;
+  if (speed <= flight.max_speed_m_s) return;
+  const double part = flight.max_speed_m_s / speed;
   p_.goal_x[i] = part * vx;
   p_.goal_y[i] = part * vy;
   p_.goal_z[i] = part * vz;
@@ -336,9 +339,9 @@ void Particle3d::advance(const SolverContext& context) {
       p_.step_z[i] = p_.z[i];
     }
     for (const Run& run : runs_) {
-      if (run.sheet->flies && exact_)
+      if (run.flight != nullptr && exact_)
         fly_exactly(run, step.h_s);
-      else if (run.sheet->flies)
+      else if (run.flight != nullptr)
         fly(run, step);
       else
         roll(run);
@@ -371,9 +374,9 @@ void Particle3d::find_meetings(const Solid& solid) {
 /// Thrust accelerates towards the wanted velocity, as much as leads there by the sub-step's end if the robot can. What
 /// comes out lies between the old velocity, slowed by drag, and the wanted one: never faster than allowed.
 void Particle3d::fly(const Run& run, const SubStep& step) noexcept {
-  const double fastest = run.sheet->max_flight_speed_m_s;
-  const double most = run.sheet->max_flight_acceleration_m_s2 * step.coasts;
-  const double brake = kBrakeShare * run.sheet->max_flight_acceleration_m_s2;
+  const double fastest = run.flight->max_speed_m_s;
+  const double most = run.flight->max_acceleration_m_s2 * step.coasts;
+  const double brake = kBrakeShare * run.flight->max_acceleration_m_s2;
   const double response = std::max(kResponse_s, 3.0 * step.h_s);
   const double response2 = response * response;
   const double per_speed = step.gains / step.coasts;
@@ -432,7 +435,7 @@ void Particle3d::fly(const Run& run, const SubStep& step) noexcept {
 
 /// Velocities are there at once; those without a goal fall, or follow their thrust.
 void Particle3d::fly_exactly(const Run& run, double h_s) noexcept {
-  const double fastest = run.sheet->max_flight_speed_m_s;
+  const double fastest = run.flight->max_speed_m_s;
   for (std::size_t i = run.begin; i < run.end; ++i) {
     if (p_.fixed[i] != 0) continue;
     if (p_.thrust[i] > 0.0) {

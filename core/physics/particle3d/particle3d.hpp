@@ -4,11 +4,11 @@
 
 namespace tandem::core {
 
-/// `<particle3d>`. A robot is a point mass with the upright cylinder of its data sheet around it.
+/// `<particle3d>`. A robot is a point mass with the upright cylinder of its kind around it.
 ///
-/// One that flies is accelerated towards the velocity that FlightCommand asks for, by at most its data sheet's
+/// One that flies is accelerated towards the velocity that FlightCommand asks for, by at most its kind's
 /// acceleration beyond what holds it up, and against a drag that grows with its speed; it never gets faster than its
-/// data sheet says. Towards a position it flies as fast as it can still brake. With an attitude, its thrust accelerates
+/// kind says. Towards a position it flies as fast as it can still brake. With an attitude, its thrust accelerates
 /// it as if it leaned. FlightCommand::None: it falls, and lies where it lands; Held: it stays where it is. It stays
 /// upright, and turns at the commanded rate at once, within its limit. With `flight="exact"` it knows no masses: it has
 /// the wanted velocity at once, and arrives at positions exactly.

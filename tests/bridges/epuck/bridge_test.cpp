@@ -10,10 +10,13 @@
 #include "hal/device/range_and_bearing.hpp"
 #include "hal/device/ring_sensors.hpp"
 #include "hal/device/wheels.hpp"
+#include "hal/robot/epuck.hpp"
 #include "tests/bridges/epuck/scripted_robot.hpp"
 
 namespace tandem::bridges::epuck {
 namespace {
+
+const Conversions kUnits{hal::epuck::kind()};
 
 using testing::HasSubstr;
 
@@ -125,7 +128,7 @@ TEST(EpuckBridge, ComesBackByItselfWhenTheRobotIsPluggedInAgain) {
   live.unplug();
   EXPECT_TRUE(tick_until(bridge, [&] { return bridge.state() == SessionState::Lost; }));
   live.plug_in();
-  const int full = to_steps_per_s(0.05).value;
+  const int full = kUnits.to_steps_per_s(0.05).value;
   EXPECT_TRUE(tick_until(bridge, [&] { return live.with([&](ScriptedRobot& r) { return r.left == full; }); }));
   EXPECT_EQ(bridge.status().links_opened, 2U);
   EXPECT_EQ(bridge.status().driver.rearmed, 1U);

@@ -13,16 +13,18 @@
 #include "hal/device/range_and_bearing.hpp"
 #include "hal/device/ring_sensors.hpp"
 #include "hal/device/wheels.hpp"
-#include "hal/spec/epuck.hpp"
+#include "hal/robot/epuck.hpp"
 #include "tests/bridges/epuck/scripted_robot.hpp"
 
 namespace tandem::bridges::epuck {
 namespace {
 
+const Conversions kUnits{hal::epuck::kind()};
+
 using testing::HasSubstr;
 
 constexpr hal::TimeNs kMs = hal::kNsPerMs;
-constexpr double kMax_m_s = hal::epuck::kDataSheet.max_wheel_speed_m_s;
+const double kMax_m_s = hal::epuck::kind().drive()->max_speed_m_s;
 
 struct Rig {
   explicit Rig(DriverSettings settings = {})
@@ -68,7 +70,7 @@ struct Rig {
 
 TEST(EpuckRobot, HasTheDevicesOfAnEpuck) {
   EpuckRobot robot({});
-  EXPECT_EQ(robot.data_sheet().kind, "e-puck");
+  EXPECT_EQ(robot.kind().name, "e-puck");
   robot.sensor<hal::Proximity>();
   robot.sensor<hal::Light>();
   robot.sensor<hal::Ground>();
@@ -180,7 +182,7 @@ TEST(EpuckDriver, SendsCommandsAtOnce) {
   rig.driver.commit(rig.now);
   rig.driver.pump(*rig.near, rig.now);
   rig.serve_robot();
-  EXPECT_EQ(rig.robot.left, to_steps_per_s(0.05).value);
+  EXPECT_EQ(rig.robot.left, kUnits.to_steps_per_s(0.05).value);
   EXPECT_EQ(rig.robot.right, -rig.robot.left);
   EXPECT_EQ(rig.robot.leds[3], 1);
   EXPECT_EQ(rig.robot.leds[4], 0);
@@ -255,8 +257,8 @@ TEST(EpuckDriver, StandsAfterARestartUntilItHasAFreshAnswer) {
   rig.tick();
   rig.tick();
   for (const auto& [left, right] : rig.robot.speeds) EXPECT_LE(left, 250);
-  EXPECT_NEAR(encoders.left_m, steps_to_m(50), 1e-9);
-  EXPECT_NEAR(rig.driver.odometry().left_m, steps_to_m(50), 1e-9);
+  EXPECT_NEAR(encoders.left_m, kUnits.steps_to_m(50), 1e-9);
+  EXPECT_NEAR(rig.driver.odometry().left_m, kUnits.steps_to_m(50), 1e-9);
   EXPECT_EQ(rig.driver.odometry().rebased, 1U);
   rig.run(50 * kMs);
   for (int i = 0; i < 8; ++i) rig.tick();
@@ -287,7 +289,7 @@ TEST(EpuckDriver, StopsTheRobotWhenNobodyCommits) {
   EXPECT_EQ(rig.robot.left, 0);
   EXPECT_EQ(rig.driver.statistics().watchdog_stops, 1U);
   for (int i = 0; i < 6; ++i) rig.tick();
-  EXPECT_EQ(rig.robot.left, to_steps_per_s(0.05).value);
+  EXPECT_EQ(rig.robot.left, kUnits.to_steps_per_s(0.05).value);
   EXPECT_EQ(rig.driver.statistics().rearmed, 1U);
 }
 
@@ -308,7 +310,7 @@ TEST(EpuckDriver, StaysStoppedUntilResumed) {
   EXPECT_EQ(rig.robot.leds[0], 0);
   rig.driver.resume();
   for (int i = 0; i < 8; ++i) rig.tick();
-  EXPECT_EQ(rig.robot.left, to_steps_per_s(0.05).value);
+  EXPECT_EQ(rig.robot.left, kUnits.to_steps_per_s(0.05).value);
 }
 
 TEST(EpuckDriver, LeavesTheRobotStoppedAtTheEnd) {
@@ -356,7 +358,7 @@ TEST(EpuckDriver, TurnsTheGroundSensorsRound) {
   rig.connect();
   rig.tick();
   rig.driver.latch(1, rig.now);
-  EXPECT_FLOAT_EQ(ground.reflectance[0], 0.0F) << "the data sheet's first is on the right";
+  EXPECT_FLOAT_EQ(ground.reflectance[0], 0.0F) << "the kind's first is on the right";
   EXPECT_FLOAT_EQ(ground.reflectance[2], 1.0F);
 }
 

@@ -7,7 +7,7 @@
 #include "bridges/epuck/driver.hpp"
 #include "hal/device/body_sensors.hpp"
 #include "hal/device/ring_sensors.hpp"
-#include "hal/spec/epuck.hpp"
+#include "hal/robot/epuck.hpp"
 #include "tests/bridges/epuck/scripted_robot.hpp"
 
 namespace {

@@ -11,7 +11,7 @@
 #include "bridges/epuck/driver.hpp"
 #include "bridges/epuck_emulator/firmware.hpp"
 #include "bridges/link/memory_link.hpp"
-#include "hal/spec/epuck.hpp"
+#include "hal/robot/epuck.hpp"
 
 namespace tandem::bridges::epuck {
 

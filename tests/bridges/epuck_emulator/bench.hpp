@@ -1,6 +1,7 @@
 // A firmware on the bench: bytes in at line speed, answers out, time by hand.
 #pragma once
 #include <gtest/gtest.h>
+#include <numbers>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -12,6 +13,8 @@ namespace tandem::bridges::epuck_emulator {
 
 using hal::TimeNs;
 
+/// That a wheel of 41 mm rolls in one of the 1000 steps of a turn.
+inline constexpr double kStep_m = 0.041 * std::numbers::pi / 1000;
 inline constexpr TimeNs kSecond = hal::kNsPerSecond;
 inline constexpr std::string_view kGreeting =
     "\x0C\x07WELCOME to the SerCom protocol on e-Puck\r\nthe EPFL education robot type \"H\" for help\r\n";

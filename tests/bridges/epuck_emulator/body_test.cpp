@@ -60,7 +60,7 @@ TEST(Stepper, RoundsThePeriodOfVersionOne) {
 TEST(KinematicBody, DrivesACircle) {
   KinematicBody body;
   body.actuate(0, {.left_m_s = 0.05, .right_m_s = 0.1});
-  const double turn_rad_s = 0.05 / hal::epuck::kWheelBase_m;
+  const double turn_rad_s = 0.05 / hal::epuck::kind().drive()->wheel_base_m;
   const double radius_m = 0.075 / turn_rad_s;
   body.advance(kSecond);
   EXPECT_NEAR(body.pose().x_m, radius_m * std::sin(turn_rad_s), 1e-12);
@@ -79,15 +79,15 @@ TEST(KinematicBody, StandsStillUntilAskedWhateverTheClockSays) {
 
 TEST(KinematicBody, SeesAndIsStoppedByWalls) {
   KinematicBody body({}, Arena{.length_x_m = 0.5, .length_y_m = 0.5});
-  EXPECT_EQ(body.sense(0).distance_m[0], hal::epuck::kProximityRange_m);
+  EXPECT_EQ(body.sense(0).distance_m[0], hal::epuck::kind().part<hal::ProximityPart>()->range_m);
   body.actuate(0, {.left_m_s = 0.1, .right_m_s = 0.1});
   const BodySenses senses = body.sense(10 * kSecond);
-  EXPECT_NEAR(body.pose().x_m, 0.25 - hal::epuck::kBodyRadius_m, 1e-12);
+  EXPECT_NEAR(body.pose().x_m, 0.25 - hal::epuck::kind().body.radius_m, 1e-12);
   // ps0 looks 17 degrees off the axis from a rim that touches the wall.
   const double c = std::cos(17.0 * std::numbers::pi / 180.0);
-  EXPECT_NEAR(senses.distance_m[0], hal::epuck::kBodyRadius_m * (1.0 - c) / c, 1e-9);
+  EXPECT_NEAR(senses.distance_m[0], hal::epuck::kind().body.radius_m * (1.0 - c) / c, 1e-9);
   EXPECT_NEAR(senses.distance_m[7], senses.distance_m[0], 1e-12);
-  EXPECT_EQ(senses.distance_m[3], hal::epuck::kProximityRange_m);
+  EXPECT_EQ(senses.distance_m[3], hal::epuck::kind().part<hal::ProximityPart>()->range_m);
   EXPECT_NEAR(senses.ahead_m, 0.0, 1e-9);
 }
 
@@ -130,7 +130,7 @@ TEST(PortBody, IsOnOpenGroundAsLongAsNothingIsTold) {
 }
 
 TEST(RawUnits, FollowTheInfraredCurveAndFallWithDistance) {
-  for (const hal::epuck::InfraredKnot& knot : hal::epuck::kInfraredCurve) {
+  for (const hal::InfraredResponse& knot : hal::epuck::kind().part<hal::ProximityPart>()->response) {
     EXPECT_NEAR(proximity_counts(knot.distance_m), knot.counts, 0.5);
   }
   for (double d = 0.0; d < 0.12; d += 0.0005) EXPECT_GE(proximity_counts(d), proximity_counts(d + 0.0005));

@@ -10,6 +10,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <mutex>
+#include <numbers>
 #include <poll.h>
 #include <sys/wait.h>
 #include <termios.h>
@@ -371,8 +372,8 @@ TEST(Emulator, LivesInABodyOfSomebodyElse) {
   EXPECT_EQ(host.read_through("\r\n"), "n,120,120,120,120,120,120,120,120\r\n");
   host.write("D,1000,-500\r");
   EXPECT_EQ(host.read_through("\r\n"), "d\r\n");
-  EXPECT_NEAR(body.command().left_m_s, 1000 * hal::epuck::kMetresPerStep, 1e-9);
-  EXPECT_NEAR(body.command().right_m_s, -500 * hal::epuck::kMetresPerStep, 1e-9);
+  EXPECT_NEAR(body.command().left_m_s, 1000 * (0.041 * std::numbers::pi / 1000), 1e-9);
+  EXPECT_NEAR(body.command().right_m_s, -500 * (0.041 * std::numbers::pi / 1000), 1e-9);
 }
 
 /// A Python that has pyserial; empty: none. The first python3 of the path may be another than Debian's.

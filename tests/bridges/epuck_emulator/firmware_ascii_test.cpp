@@ -13,8 +13,8 @@ TEST(FirmwareAscii, GreetsOnceWhenSwitchedOn) {
 TEST(FirmwareAscii, SetsSpeedsAndAcknowledges) {
   Bench robot;
   EXPECT_EQ(robot.say(bytes("44 2C 35 30 30 2C 2D 35 30 30 0D")), bytes("64 0D 0A"));
-  EXPECT_NEAR(robot.body.command().left_m_s, 500 * hal::epuck::kMetresPerStep, 1e-9);
-  EXPECT_NEAR(robot.body.command().right_m_s, -500 * hal::epuck::kMetresPerStep, 1e-9);
+  EXPECT_NEAR(robot.body.command().left_m_s, 500 * kStep_m, 1e-9);
+  EXPECT_NEAR(robot.body.command().right_m_s, -500 * kStep_m, 1e-9);
   EXPECT_EQ(robot.say("E\r"), "e,500,-500\r\n");
   EXPECT_EQ(robot.count("\"event\":\"wheels\",\"left\":500,\"right\":-500"), 1);
 }
@@ -175,7 +175,7 @@ TEST(FirmwareAscii, ReportsWhatItSenses) {
   senses.distance_m = {0.1, 0.05, 0.02, 0.0, 0.5, 0.0075, 0.1, 0.1};
   senses.light = {0.0, 1.0, 0.5, 0, 0, 0, 0, 0};
   senses.ground = {1.0, 0.5, 0.0};
-  senses.force_m_s2 = {0.0, -hal::epuck::kGravity_m_s2, 0.5 * hal::epuck::kGravity_m_s2};
+  senses.force_m_s2 = {0.0, -9.81, 0.5 * 9.81};
   senses.sound = {0.0, 0.5, 1.0, 0.25};
   robot.body.set_senses(senses);
   EXPECT_EQ(robot.say("N\r"), "n,0,120,384,4095,0,1800,0,0\r\n");

@@ -136,7 +136,7 @@ TEST(FirmwareBinary, HasTheSignQuirkOfVersionTwo) {
   Bench robot(Variant::Epuck2);
   robot.say(bytes("BC 0C FE F4 01 00"));
   EXPECT_EQ(robot.say("E\r"), "e,65036,500\r\n");
-  EXPECT_NEAR(robot.body.command().left_m_s, -500 * hal::epuck::kMetresPerStep, 1e-6) << "but it drives right";
+  EXPECT_NEAR(robot.body.command().left_m_s, -500 * kStep_m, 1e-6) << "but it drives right";
   EXPECT_EQ(robot.count("\"left\":-500,\"right\":500"), 1);
   EXPECT_EQ(robot.say(bytes("BB 00")), bytes("0C FE F4 01"));
   robot.say(bytes("BC 00 00 00 00 B0 F0 FF 10 00 00"));
@@ -147,12 +147,12 @@ TEST(FirmwareBinary, HasTheSignQuirkOfVersionTwo) {
 TEST(FirmwareBinary, ClampsSpeeds) {
   Bench one;
   one.say(bytes("BC DC 05 24 FA 00"));  // 1500, -1500
-  EXPECT_NEAR(one.body.command().left_m_s, 1000 * hal::epuck::kMetresPerStep, 1e-9);
-  EXPECT_NEAR(one.body.command().right_m_s, -1000 * hal::epuck::kMetresPerStep, 1e-9);
+  EXPECT_NEAR(one.body.command().left_m_s, 1000 * kStep_m, 1e-9);
+  EXPECT_NEAR(one.body.command().right_m_s, -1000 * kStep_m, 1e-9);
   EXPECT_EQ(one.count("\"left\":1500,\"right\":-1500"), 1) << "the log has them as received";
   Bench two(Variant::Epuck2);
   two.say(bytes("BC DC 05 24 FA 00"));
-  EXPECT_NEAR(two.body.command().left_m_s, 1100 * hal::epuck::kMetresPerStep, 1e-6);
+  EXPECT_NEAR(two.body.command().left_m_s, 1100 * kStep_m, 1e-6);
 }
 
 TEST(FirmwareBinary, KeepsItsLastSpeedForEver) {
@@ -205,7 +205,7 @@ TEST(FirmwareBinary, SendsTheAccelerometerWithTheZeroOfEachFirmwareAndItsAxesLef
     EXPECT_EQ(robot.say(bytes("9F 00")), bytes(c.level));
     EXPECT_EQ(robot.say("A\r"), c.level_line);
     BodySenses senses;
-    senses.force_m_s2 = {-0.5 * hal::epuck::kGravity_m_s2, 0.0, 0.8660254 * hal::epuck::kGravity_m_s2};
+    senses.force_m_s2 = {-0.5 * 9.81, 0.0, 0.8660254 * 9.81};
     robot.body.set_senses(senses);
     EXPECT_EQ(robot.say(bytes("9F 00")), bytes(c.slope));
   }
@@ -216,7 +216,7 @@ TEST(FirmwareBinary, SendsTheGroundSensorsFromLeftToRight) {
        {std::pair(Variant::Gctronic, "00 00 00 02 FF 03"), std::pair(Variant::Epuck2, "00 00 00 02 FF 03 00 00")}) {
     Bench robot(variant);
     BodySenses senses;
-    senses.ground = {1.0, 0.5, 0.0};  // as the data sheet: right, middle, left
+    senses.ground = {1.0, 0.5, 0.0};  // as the kind: right, middle, left
     robot.body.set_senses(senses);
     EXPECT_EQ(robot.say(bytes("B3 00")), bytes(answer));
   }
@@ -225,7 +225,7 @@ TEST(FirmwareBinary, SendsTheGroundSensorsFromLeftToRight) {
 TEST(FirmwareBinary, DerivesTiltFromTheAccelerometer) {
   Bench robot;
   BodySenses senses;
-  senses.force_m_s2 = {0.0, -hal::epuck::kGravity_m_s2, 0.0};  // to the right
+  senses.force_m_s2 = {0.0, -9.81, 0.0};  // to the right
   robot.body.set_senses(senses);
   const std::string tilt = robot.say(bytes("BF 00"));
   EXPECT_FLOAT_EQ(float_at(tilt, 0), 800.0F);

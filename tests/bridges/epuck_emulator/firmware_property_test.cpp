@@ -74,7 +74,7 @@ RC_GTEST_PROP(FirmwareProperty, WheelsNeverTurnFasterThanTheMotorsCan, (std::int
   const Variant variant = any_variant();
   Bench robot(variant);
   robot.say("D," + std::to_string(left) + "," + std::to_string(right) + "\r");
-  const double limit_m_s = facts_of(variant).speed_limit_steps_s * hal::epuck::kMetresPerStep * (1.0 + 1e-5);
+  const double limit_m_s = facts_of(variant).speed_limit_steps_s * kStep_m * (1.0 + 1e-5);
   RC_ASSERT(std::abs(robot.body.command().left_m_s) <= limit_m_s);
   RC_ASSERT(std::abs(robot.body.command().right_m_s) <= limit_m_s);
 }

@@ -742,7 +742,7 @@ TEST(EyebotDriver, MakesSafeWhatIsNoNumberAndClampsWhatIsTooFast) {
   speed.set(100.0, 0.0, 0.0, 0.0);
   s.run(200);
   m = s.robot.all("cmd/velocity").back().as<CmdVelocity>();
-  EXPECT_DOUBLE_EQ(m.vel[0], hal::eyebot::kMaxSpeed_m_s);
+  EXPECT_DOUBLE_EQ(m.vel[0], hal::eyebot::kind().flight()->max_speed_m_s);
   EXPECT_GE(s.driver.statistics().clamped, 1U);
   EXPECT_EQ(speed.velocity[0], 100.0);  // the controller's own is left alone
 }

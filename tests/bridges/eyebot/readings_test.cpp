@@ -3,7 +3,8 @@
 #include <cmath>
 #include <gmock/gmock.h>
 
-#include "hal/spec/eyebot.hpp"
+#include "hal/device/distance_scanner.hpp"
+#include "hal/robot/eyebot.hpp"
 
 namespace tandem::bridges::eyebot {
 namespace {
@@ -48,7 +49,7 @@ TEST(EyebotReadings, ProximityIsTurnedIntoDistance) {
   m.proximity[1] = 0.25F;
   m.proximity[2] = 7.0F;
   hal::Proximity port;
-  read(m, port);
+  read(m, hal::eyebot::kind(), port);
   EXPECT_EQ(port.count, 24U);
   EXPECT_EQ(port.range_m, 3.0F);
   EXPECT_EQ(port.distance_m[0], 0.0F);
@@ -62,15 +63,15 @@ TEST(EyebotReadings, AnUnknownChargeComesFromTheVoltage) {
   m.voltage = 11.25F;
   m.charge = -1.0F;
   hal::Battery port;
-  read(m, port);
+  read(m, hal::eyebot::kind(), port);
   EXPECT_FLOAT_EQ(port.charge, 0.5F);
   EXPECT_EQ(port.supply_V, 11.25F);
   m.charge = 0.75F;
-  read(m, port);
+  read(m, hal::eyebot::kind(), port);
   EXPECT_EQ(port.charge, 0.75F);
   m.charge = -1.0F;
   m.voltage = 3.0F;
-  read(m, port);
+  read(m, hal::eyebot::kind(), port);
   EXPECT_EQ(port.charge, 0.0F);
 }
 
@@ -91,7 +92,7 @@ TEST(EyebotReadings, AScanIsSortedByHeads) {
   add_sample(m, 0, 0.2F, 99.0F);
   add_sample(m, 9, 0.0F, 1.0F);  // there is no such head
   hal::DistanceScanner port;
-  read(m, port);
+  read(m, hal::eyebot::kind(), port);
   EXPECT_EQ(port.samples, 2U);
   EXPECT_EQ(port.count, 8U);
   EXPECT_EQ(port.turn_rad, 0.5F);
@@ -99,7 +100,7 @@ TEST(EyebotReadings, AScanIsSortedByHeads) {
   EXPECT_EQ(port.distance(0, 0), 0.2F);
   EXPECT_TRUE(port.sees_nothing(0, 1));
   EXPECT_TRUE(port.too_near(1, 0));
-  EXPECT_EQ(port.distance(1, 0), static_cast<float>(hal::eyebot::kScannerMin_m));
+  EXPECT_EQ(port.distance(1, 0), static_cast<float>(hal::eyebot::kind().part<hal::ScannerPart>()->heads[0].min_m));
   EXPECT_TRUE(port.sees_nothing(1, 1));
   EXPECT_TRUE(port.sees_nothing(2, 0));
   EXPECT_TRUE(port.sees_nothing(3, 0));
@@ -109,12 +110,12 @@ TEST(EyebotReadings, OfALongScanTheNewestSamplesCount) {
   messages::Scan m{};
   for (int i = 0; i < 10; ++i) add_sample(m, 1, 0.1F * static_cast<float>(i), 0.5F + 0.05F * static_cast<float>(i));
   hal::DistanceScanner port;
-  read(m, port);
+  read(m, hal::eyebot::kind(), port);
   ASSERT_EQ(port.samples, hal::DistanceScanner::kSamples);
   EXPECT_THAT(port.distance(1, 0), FloatEq(0.7F));
   EXPECT_THAT(port.distance(1, 5), FloatEq(0.95F));
   messages::Scan none{};
-  read(none, port);
+  read(none, hal::eyebot::kind(), port);
   EXPECT_EQ(port.count, 0U);
 }
 

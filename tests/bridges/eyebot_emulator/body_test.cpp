@@ -7,6 +7,7 @@
 #include "bridges/eyebot_emulator/port_body.hpp"
 #include "hal/device/flight.hpp"
 #include "hal/device/range_and_bearing.hpp"
+#include "hal/device/ring_sensors.hpp"
 
 namespace tandem::bridges::eyebot_emulator {
 namespace {
@@ -35,7 +36,7 @@ TEST(PointBody, StandsWithoutMotors) {
 TEST(PointBody, ReachesASpeedWithTheGreatestAcceleration) {
   PointBody body(Start{{0.0, 0.0, 5.0}, 0.0});
   body.actuate(0, flying(1.2, 0.0, 0.0));
-  const double ramp_s = 1.2 / spec::kMaxAcceleration_m_s2;
+  const double ramp_s = 1.2 / spec::kind().flight()->max_acceleration_m_s2;
   body.advance(static_cast<hal::TimeNs>(ramp_s * 1e9));
   EXPECT_NEAR(body.sense(static_cast<hal::TimeNs>(ramp_s * 1e9)).p_WB[0], 0.5 * 1.2 * ramp_s, 1e-8);
   const BodySenses s = body.sense(2 * kSecond);
@@ -52,7 +53,8 @@ TEST(PointBody, LeansAsItAccelerates) {
   EXPECT_NEAR(w * w + x * x + y * y + z * z, 1.0, 1e-12);
   // The body's z axis in W points along gravity and acceleration.
   EXPECT_NEAR(2.0 * (x * z + w * y), 0.0, 1e-9);
-  EXPECT_NEAR(2.0 * (y * z - w * x) / (1.0 - 2.0 * (x * x + y * y)), spec::kMaxAcceleration_m_s2 / 9.81, 1e-9);
+  EXPECT_NEAR(2.0 * (y * z - w * x) / (1.0 - 2.0 * (x * x + y * y)),
+              spec::kind().flight()->max_acceleration_m_s2 / 9.81, 1e-9);
   EXPECT_NEAR(s.yaw_rad(), kPi / 2.0, 1e-9);
 }
 
@@ -79,15 +81,15 @@ TEST(PointBody, IsStoppedByWallsCeilingAndGround) {
   PointBody body(Start{{0.0, 0.0, 1.0}, 0.0}, Room{4.0, 6.0, 3.0});
   body.actuate(0, flying(2.0, 2.0, 2.0));
   BodySenses s = body.sense(20 * kSecond);
-  EXPECT_NEAR(s.p_WB[0], 2.0 - spec::kBodyRadius_m, 1e-12);
-  EXPECT_NEAR(s.p_WB[1], 3.0 - spec::kBodyRadius_m, 1e-12);
-  EXPECT_NEAR(s.p_WB[2], 3.0 - spec::kHeight_m, 1e-12);
+  EXPECT_NEAR(s.p_WB[0], 2.0 - spec::kind().body.radius_m, 1e-12);
+  EXPECT_NEAR(s.p_WB[1], 3.0 - spec::kind().body.radius_m, 1e-12);
+  EXPECT_NEAR(s.p_WB[2], 3.0 - spec::kind().body.height_m, 1e-12);
   EXPECT_NEAR(s.ceiling_m, 0.0, 1e-12);
   EXPECT_FALSE(s.at_ceiling) << "without its magnet";
   body.actuate(20 * kSecond, flying(0.0, 0.0, -1.0));
   s = body.sense(30 * kSecond);
   EXPECT_TRUE(s.on_ground);
-  EXPECT_NEAR(s.ceiling_m, 3.0 - spec::kHeight_m, 1e-12);
+  EXPECT_NEAR(s.ceiling_m, 3.0 - spec::kind().body.height_m, 1e-12);
 }
 
 TEST(PointBody, HangsOnItsMagnet) {
@@ -99,7 +101,7 @@ TEST(PointBody, HangsOnItsMagnet) {
   c.motors = false;
   body.actuate(5 * kSecond, c);
   EXPECT_TRUE(body.sense(60 * kSecond).at_ceiling);
-  EXPECT_NEAR(body.sense(60 * kSecond).p_WB[2], 3.0 - spec::kHeight_m, 1e-12);
+  EXPECT_NEAR(body.sense(60 * kSecond).p_WB[2], 3.0 - spec::kind().body.height_m, 1e-12);
   c.magnet = false;
   body.actuate(60 * kSecond, c);
   EXPECT_TRUE(body.sense(62 * kSecond).on_ground);
@@ -114,8 +116,8 @@ TEST(PointBody, SeesTheWallsAllAround) {
   BodySenses s = body.sense(0);
   EXPECT_NEAR(s.scan_m[0], 1.5, 1e-12);
   EXPECT_NEAR(s.scan_m[2], 2.5, 1e-12);
-  EXPECT_NEAR(s.distance_m[0], 1.5 / std::cos(7.5 * kPi / 180.0) - spec::kRingRadius_m, 1e-9);
-  EXPECT_EQ(s.distance_m[6], spec::kProximityRange_m);
+  EXPECT_NEAR(s.distance_m[0], 1.5 / std::cos(7.5 * kPi / 180.0) - 0.255, 1e-9);
+  EXPECT_EQ(s.distance_m[6], spec::kind().part<hal::ProximityPart>()->range_m);
   s = body.sense(kSecond);  // a quarter turn later the heads have changed places
   EXPECT_NEAR(s.scan_m[3], 1.5, 1e-9);
   EXPECT_NEAR(s.scan_m[1], 2.5, 1e-9);

@@ -121,9 +121,9 @@ TEST(Eyebot, LimitsVelocities) {
     bench.velocity(30.0, 40.0, 0.0, 99.0);
     bench.pass(200 * kMs);
   }
-  EXPECT_NEAR(bench.v()[0], 0.6 * hal::eyebot::kMaxSpeed_m_s, 1e-9);
-  EXPECT_NEAR(bench.v()[1], 0.8 * hal::eyebot::kMaxSpeed_m_s, 1e-9);
-  EXPECT_NEAR(bench.robot.senses().turn_rad_s[2], hal::eyebot::kMaxTurn_rad_s, 1e-9);
+  EXPECT_NEAR(bench.v()[0], 0.6 * hal::eyebot::kind().flight()->max_speed_m_s, 1e-9);
+  EXPECT_NEAR(bench.v()[1], 0.8 * hal::eyebot::kind().flight()->max_speed_m_s, 1e-9);
+  EXPECT_NEAR(bench.robot.senses().turn_rad_s[2], hal::eyebot::kind().flight()->max_turn_rad_s, 1e-9);
 }
 
 TEST(Eyebot, TurnsVelocitiesOfTheBodyWithItself) {
@@ -153,7 +153,7 @@ TEST(Eyebot, HangsAtTheCeilingAndComesBack) {
   bench.attach();
   const auto status = bench.status();
   EXPECT_TRUE(status.attached && status.magnet);
-  EXPECT_NEAR(bench.p()[2], 5.0 - hal::eyebot::kHeight_m, 1e-9);
+  EXPECT_NEAR(bench.p()[2], 5.0 - hal::eyebot::kind().body.height_m, 1e-9);
   EXPECT_FALSE(bench.robot.command().motors);
   bench.velocity(1.0, 0.0, 0.0);
   EXPECT_EQ(bench.mode(), Mode::Attached);
@@ -161,7 +161,7 @@ TEST(Eyebot, HangsAtTheCeilingAndComesBack) {
   EXPECT_EQ(bench.order(Action::Detach), 0);
   bench.pass(3 * kSecond);
   EXPECT_EQ(bench.mode(), Mode::Hover);
-  EXPECT_LT(bench.p()[2], 5.0 - hal::eyebot::kHeight_m - 0.25);
+  EXPECT_LT(bench.p()[2], 5.0 - hal::eyebot::kind().body.height_m - 0.25);
   EXPECT_NEAR(speed(bench), 0.0, 1e-2);
 }
 

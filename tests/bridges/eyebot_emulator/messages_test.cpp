@@ -5,6 +5,7 @@
 
 #include "bridges/eyebot_emulator/commands.hpp"
 #include "bridges/eyebot_emulator/telemetry.hpp"
+#include "hal/device/cameras.hpp"
 #include "tests/bridges/eyebot_emulator/hand_written.hpp"
 
 namespace tandem::bridges::eyebot_emulator {
@@ -212,7 +213,7 @@ TEST(Reports, SayWhereBlobsAre) {
     return all;
   };
   const float half_pi = static_cast<float>(std::numbers::pi / 2.0);
-  const float edge = static_cast<float>(hal::eyebot::kCameraAperture_rad / 2.0);
+  const float edge = static_cast<float>(hal::eyebot::kind().part<hal::CameraPart>()->aperture_rad / 2.0);
   // Straight down: the upper edge is ahead, the left edge to the left.
   EXPECT_NEAR(directions()[0].first, 0.0F, 1e-6F);
   EXPECT_NEAR(directions()[0].second, std::atan(std::tan(edge) * 480.0F / 640.0F) - half_pi, 1e-6F);

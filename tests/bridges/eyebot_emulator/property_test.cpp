@@ -82,8 +82,8 @@ TEST(AnyHub, FindsARobotWithinItsLimits) {
       bench.robot.run_until(bench.now += sent.pause);
       const Supervisor& s = bench.robot.supervisor();
       const Vec3& v = bench.robot.command().velocity_m_s;
-      RC_ASSERT(std::hypot(v[0], v[1], v[2]) <= hal::eyebot::kMaxSpeed_m_s + 1e-9);
-      RC_ASSERT(std::fabs(bench.robot.command().yaw_rad_s) <= hal::eyebot::kMaxTurn_rad_s);
+      RC_ASSERT(std::hypot(v[0], v[1], v[2]) <= hal::eyebot::kind().flight()->max_speed_m_s + 1e-9);
+      RC_ASSERT(std::fabs(bench.robot.command().yaw_rad_s) <= hal::eyebot::kind().flight()->max_turn_rad_s);
       for (const double p : bench.p()) RC_ASSERT(std::isfinite(p));
       RC_ASSERT(!s.motors() || s.armed());
       RC_ASSERT(s.mode() != Mode::Velocity || s.failsafe() == Failsafe::None);

@@ -3,6 +3,7 @@
 
 #include "bridges/footbot_emulator/kinematic_body.hpp"
 #include "bridges/footbot_emulator/raw_units.hpp"
+#include "hal/device/ring_sensors.hpp"
 
 namespace tandem::bridges::footbot_emulator {
 namespace {
@@ -17,7 +18,7 @@ TEST(KinematicBody, TurnsInACircle) {
   body.actuate(0, command);
   body.advance(2 * kSecond);
   // 0.1 m/s along, 1/1.4 rad/s around a centre 0.14 m to the left.
-  const double turn = 2 * 0.1 / hal::footbot::kWheelBase_m;
+  const double turn = 2 * 0.1 / hal::footbot::kind().drive()->wheel_base_m;
   const double radius = 0.14;
   EXPECT_NEAR(body.pose().x_m, radius * std::sin(turn), 1e-9);
   EXPECT_NEAR(body.pose().y_m, radius * (1 - std::cos(turn)), 1e-9);
@@ -30,11 +31,11 @@ TEST(KinematicBody, IsStoppedByWallsAndSeesThem) {
   command.left_m_s = command.right_m_s = 0.2;
   body.actuate(0, command);
   const BodySenses senses = body.sense(10 * kSecond);
-  EXPECT_DOUBLE_EQ(body.pose().x_m, 0.5 - hal::footbot::kBodyRadius_m);
+  EXPECT_DOUBLE_EQ(body.pose().x_m, 0.5 - hal::footbot::kind().body.radius_m);
   // The sensor at 7.5 degrees sits on the rim and looks along its radius.
   const double c = std::cos(7.5 * M_PI / 180);
-  EXPECT_NEAR(senses.distance_m[0], hal::footbot::kBodyRadius_m * (1 - c) / c, 1e-9);
-  EXPECT_DOUBLE_EQ(senses.distance_m[12], hal::footbot::kProximityRange_m);
+  EXPECT_NEAR(senses.distance_m[0], hal::footbot::kind().body.radius_m * (1 - c) / c, 1e-9);
+  EXPECT_DOUBLE_EQ(senses.distance_m[12], hal::footbot::kind().part<hal::ProximityPart>()->range_m);
 }
 
 TEST(KinematicBody, MeasuresNothingWhileItsScannerIsOff) {

@@ -14,9 +14,9 @@
 #include <sstream>
 
 #include "hal/plugin_loader.hpp"
-#include "hal/spec/epuck.hpp"
-#include "hal/spec/eyebot.hpp"
-#include "hal/spec/footbot.hpp"
+#include "hal/robot/epuck.hpp"
+#include "hal/robot/eyebot.hpp"
+#include "hal/robot/footbot.hpp"
 #include "tests/checkout.hpp"
 #include "tests/controllers/decisions/made_up_robot.hpp"
 
@@ -55,14 +55,14 @@ class Defaults final : public hal::ParamVisitor {
 };
 
 /// The robot that a controller is named after; an e-puck where it is named after none.
-const hal::DataSheet& sheet_for(std::string_view controller) {
-  if (controller.starts_with("footbot")) return hal::footbot::kDataSheet;
-  if (controller.starts_with("eyebot")) return hal::eyebot::kDataSheet;
-  return hal::epuck::kDataSheet;
+const hal::RobotKind& kind_for(std::string_view controller) {
+  if (controller.starts_with("footbot")) return hal::footbot::kind();
+  if (controller.starts_with("eyebot")) return hal::eyebot::kind();
+  return hal::epuck::kind();
 }
 
 Decisions decisions_of(const hal::ControllerType& type) {
-  MadeUpRobot robot(sheet_for(type.name));
+  MadeUpRobot robot(kind_for(type.name));
   Defaults defaults;
   const auto params = type.read_params(defaults);
   std::byte* memory = static_cast<std::byte*>(::operator new (type.size, std::align_val_t{type.align}));
@@ -138,7 +138,7 @@ TEST(Decisions, CanAllBeGoneBackTo) {
 TEST(Decisions, AreMadeWithoutTheCLibrarysArithmetic) {
   const std::regex forbidden(
       R"(\bstd::(sinf?|cosf?|tanf?|asinf?|acosf?|atanf?|atan2f?|sinh|cosh|tanh|exp|exp2|expm1|log|log2|log10|log1p|pow|cbrt|hypot|tgamma|lgamma|erf|normal_distribution|polar)\b)");
-  for (const char* layer : {"controllers", "hal/spec", "hal/device"}) {
+  for (const char* layer : {"controllers", "hal/robot", "hal/device"}) {
     for (const auto& file : fs::recursive_directory_iterator(fs::path(test::kSourceDir) / layer)) {
       if (file.path().extension() != ".cpp" && file.path().extension() != ".hpp") continue;
       std::ifstream in(file.path());

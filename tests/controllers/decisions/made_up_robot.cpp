@@ -4,10 +4,19 @@
 #include <cstring>
 #include <numbers>
 
+#include "hal/device/body_sensors.hpp"
+#include "hal/device/distance_scanner.hpp"
+#include "hal/device/ring_sensors.hpp"
 #include "hal/time.hpp"
 
 namespace tandem::decisions {
 namespace {
+
+template <class Part>
+std::size_t mounts_of(const hal::RobotKind& kind) {
+  const Part* const part = kind.part<Part>();
+  return part != nullptr ? part->mounts.size() : 0;
+}
 
 constexpr std::int64_t kTick_ns = 100 * hal::kNsPerMs;
 constexpr double kMostEntries = 12;  // of a list, e.g. of messages
@@ -91,13 +100,15 @@ void MadeUpRobot::fill(Device& device, std::int64_t tick) {
 }
 
 double MadeUpRobot::entries(const hal::PortType& type, const hal::Field& field, std::uint64_t bits) const {
-  const std::map<std::string_view, std::size_t> rings = {{"proximity", sheet_.proximity.size()},
-                                                         {"light", sheet_.light.size()},
-                                                         {"ground", sheet_.ground.size()},
-                                                         {"base_ground", sheet_.base_ground.size()},
-                                                         {"motor_ground", sheet_.motor_ground.size()},
-                                                         {"microphones", sheet_.microphones.size()},
-                                                         {"distance_scanner", sheet_.scanner.size()}};
+  const auto* const scanner = kind_.part<hal::ScannerPart>();
+  const std::map<std::string_view, std::size_t> rings = {
+      {"proximity", mounts_of<hal::ProximityPart>(kind_)},
+      {"light", mounts_of<hal::LightPart>(kind_)},
+      {"ground", mounts_of<hal::GroundPart>(kind_)},
+      {"base_ground", mounts_of<hal::BaseGroundPart>(kind_)},
+      {"motor_ground", mounts_of<hal::MotorGroundPart>(kind_)},
+      {"microphones", mounts_of<hal::MicrophonesPart>(kind_)},
+      {"distance_scanner", scanner != nullptr ? scanner->heads.size() : 0}};
   if (const auto ring = rings.find(type.name); ring != rings.end()) return static_cast<double>(ring->second);
   double capacity = kMostEntries;
   for (const hal::Field& other : type.fields) {
@@ -121,13 +132,14 @@ double MadeUpRobot::made_up(const hal::PortType& type, const hal::Field& field, 
   if (field.name == "orientation") return index == 0 ? 1.0 : 0.0;                 // a quaternion
   if (field.name == "phase") return bits % 8U == 0 ? whole(4, bits >> 8U) : 4.0;  // in the air, mostly
   if (field.name == "failsafe") return bits % 8U == 0 ? whole(2, bits >> 8U) : 0.0;
-  if (field.name == "range" && field.count == 1) return sheet_.proximity_range_m;
+  if (field.name == "range" && field.count == 1) return kind_.part<hal::ProximityPart>()->range_m;
   if (field.scalar == hal::Scalar::Bool) return whole(1, bits);
   if (!is_float(field.scalar)) return whole(field.count == 1 ? 2 : 255, bits);
   switch (field.unit.dim) {
     case hal::Dim::Length:
       if (type.field("range") != nullptr && type.field("range")->count == 1)
-        return bits % 2U == 0 ? sheet_.proximity_range_m : between(0.0, sheet_.proximity_range_m, bits);
+        return bits % 2U == 0 ? kind_.part<hal::ProximityPart>()->range_m
+                              : between(0.0, kind_.part<hal::ProximityPart>()->range_m, bits);
       return field.frame == hal::Frame::None || field.frame == hal::Frame::World ? between(-2.0, 2.0, bits)
                                                                                  : between(0.0, 1.5, bits);
     case hal::Dim::Speed:

@@ -13,14 +13,14 @@
 namespace tandem::decisions {
 
 /// Has every device that is asked for. What its sensors read is a function of (device, field, element, tick) alone,
-/// made from the device's own description: within what its unit, or the robot's data sheet, allows. Each value stays
+/// made from the device's own description: within what its unit, or the robot's kind, allows. Each value stays
 /// for a few ticks; a few readings in a hundred are stale or absent.
 class MadeUpRobot final : public hal::Robot {
  public:
-  explicit MadeUpRobot(const hal::DataSheet& sheet) : sheet_(sheet) {}
+  explicit MadeUpRobot(const hal::RobotKind& kind) : kind_(kind) {}
 
   std::string_view id() const noexcept override { return "robot"; }
-  const hal::DataSheet& data_sheet() const noexcept override { return sheet_; }
+  const hal::RobotKind& kind() const noexcept override { return kind_; }
   std::uint64_t run_seed() const noexcept override { return 1; }
 
   /// Fills every sensor that was taken.
@@ -45,7 +45,7 @@ class MadeUpRobot final : public hal::Robot {
   double made_up(const hal::PortType& type, const hal::Field& field, std::size_t index, std::uint64_t bits) const;
   double entries(const hal::PortType& type, const hal::Field& field, std::uint64_t bits) const;
 
-  const hal::DataSheet& sheet_;
+  const hal::RobotKind& kind_;
   std::map<std::string, Device> sensors_, actuators_;  // nodes stay where they are
 };
 

@@ -121,7 +121,7 @@ TEST(DiffusionDrive, NeverTouchesAWallWhateverTheAngle) {
     TestRobot robot;
     EpuckDiffusion controller(robot, {});
     Room room{.walls = {{1.0, 0.0, 0.3}}, .heading_rad = degrees * std::numbers::pi / 180.0};
-    EXPECT_GT(test::smallest_clearance(controller, robot, room, 600), hal::epuck::kBodyRadius_m) << degrees;
+    EXPECT_GT(test::smallest_clearance(controller, robot, room, 600), hal::epuck::kind().body.radius_m) << degrees;
   }
 }
 
@@ -131,7 +131,7 @@ TEST(DiffusionDrive, NeverTouchesTheWallsOfARoomAndKeepsMoving) {
     EpuckDiffusion controller(robot, {});
     Room room{.walls = {{1, 0, 0.4}, {-1, 0, 0.4}, {0, 1, 0.4}, {0, -1, 0.4}},
               .heading_rad = degrees * std::numbers::pi / 180.0};
-    EXPECT_GT(test::smallest_clearance(controller, robot, room, 3000), hal::epuck::kBodyRadius_m) << degrees;
+    EXPECT_GT(test::smallest_clearance(controller, robot, room, 3000), hal::epuck::kind().body.radius_m) << degrees;
     const double x_m = room.x_m;
     const double y_m = room.y_m;
     double farthest_m = 0.0;
@@ -166,7 +166,7 @@ TEST(DiffusionPlugin, LoadsAndSteersThroughItsTable) {
 }
 
 TEST(DiffusionPlugin, RefusesARobotWithoutWheels) {
-  TestRobot robot(hal::epuck::kDataSheet, false);
+  TestRobot robot(hal::epuck::kind(), false);
   EXPECT_THROW(EpuckDiffusion(robot, {}), hal::DeviceError);
 }
 

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 #include <string>
 
-#include "hal/spec/eyebot.hpp"
+#include "hal/robot/eyebot.hpp"
 
 namespace tandem::controllers {
 namespace {
@@ -27,7 +27,7 @@ class Flyer final : public hal::Robot {
     state.taken_ns = place.taken_ns = clock.now_ns;
   }
   std::string_view id() const noexcept override { return "flyer"; }
-  const hal::DataSheet& data_sheet() const noexcept override { return hal::eyebot::kDataSheet; }
+  const hal::RobotKind& kind() const noexcept override { return hal::eyebot::kind(); }
   std::uint64_t run_seed() const noexcept override { return 1; }
 
   hal::FlightTask task;

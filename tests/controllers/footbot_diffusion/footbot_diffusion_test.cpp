@@ -1,7 +1,7 @@
 #include "controllers/footbot_diffusion/footbot_diffusion.hpp"
 
 #include "hal/plugin_loader.hpp"
-#include "hal/spec/footbot.hpp"
+#include "hal/robot/footbot.hpp"
 #include "tests/checkout.hpp"
 #include "tests/controllers/test_robot.hpp"
 
@@ -16,7 +16,7 @@ using test::TestRobot;
 constexpr std::size_t kFrontLeft = 0, kLeft = 5, kRearLeft = 11, kRearRight = 12, kRight = 18, kFrontRight = 23;
 
 struct FootbotDiffusionSteps : ::testing::Test {
-  TestRobot robot{hal::footbot::kDataSheet};
+  TestRobot robot{hal::footbot::kind()};
   FootbotDiffusion controller{robot, {}};
 
   void expect_wheels(double left_m_s, double right_m_s) {
@@ -85,7 +85,7 @@ TEST_F(FootbotDiffusionSteps, StandStillWhenBlind) {
 }
 
 TEST(FootbotDiffusionParams, AreObeyed) {
-  TestRobot robot(hal::footbot::kDataSheet);
+  TestRobot robot(hal::footbot::kind());
   FootbotDiffusion controller(robot, {.alpha_rad = 0.6, .delta = 0.1, .velocity_m_s = 0.2});
   robot.see(kLeft, 1.0);  // an average of 1/24
   controller.step();
@@ -95,11 +95,11 @@ TEST(FootbotDiffusionParams, AreObeyed) {
 
 TEST(FootbotDiffusionDrive, NeverTouchesTheWallsOfARoomAndKeepsMoving) {
   for (int degrees = 0; degrees < 360; degrees += 5) {
-    TestRobot robot(hal::footbot::kDataSheet);
+    TestRobot robot(hal::footbot::kind());
     FootbotDiffusion controller(robot, {});
     Room room{.walls = {{1, 0, 0.6}, {-1, 0, 0.6}, {0, 1, 0.6}, {0, -1, 0.6}},
               .heading_rad = degrees * std::numbers::pi / 180.0};
-    EXPECT_GT(test::smallest_clearance(controller, robot, room, 3000), hal::footbot::kBodyRadius_m) << degrees;
+    EXPECT_GT(test::smallest_clearance(controller, robot, room, 3000), hal::footbot::kind().body.radius_m) << degrees;
     const double x_m = room.x_m;
     const double y_m = room.y_m;
     double farthest_m = 0.0;

@@ -3,7 +3,7 @@
 #include <numbers>
 
 #include "hal/device/leds.hpp"
-#include "hal/spec/footbot.hpp"
+#include "hal/robot/footbot.hpp"
 #include "tests/checkout.hpp"
 #include "tests/controllers/experiment.hpp"
 #include "tests/controllers/test_robot.hpp"
@@ -49,7 +49,9 @@ TEST(Foraging, CountsAnItemForEachRobotThatComesHomeWithAGreenBeacon) {
   for (int t = 0; t < 6000; ++t) {
     e->step();
     for (std::size_t i = 0; i < space.robot_count(); ++i) {
-      const bool green = space.port<hal::RingLeds>(space.robot(i))->color(hal::footbot::kBeacon) == hal::kGreen;
+      const bool green =
+          space.port<hal::RingLeds>(space.robot(i))->color(hal::footbot::kind().part<hal::LedsPart>()->beacon_led()) ==
+          hal::kGreen;
       ASSERT_EQ(space.published_text(space.robot(i), "state").value() == "bring", green) << "at tick " << t;
       const bool home = space.pose(space.robot(i)).x_m < -1.5;
       if (green && !home) out_with_item[i] = true;
@@ -96,7 +98,9 @@ TEST(Foraging, RobotsThatGoTakeNoFoodWithThem) {
   for (; t < 20000 && !taken; ++t) {
     e->step();
     for (std::size_t i = space.robot_count(); i-- > 0;) {
-      if (space.port<hal::RingLeds>(space.robot(i))->color(hal::footbot::kBeacon) != hal::kGreen) continue;
+      if (space.port<hal::RingLeds>(space.robot(i))->color(hal::footbot::kind().part<hal::LedsPart>()->beacon_led()) !=
+          hal::kGreen)
+        continue;
       space.remove_robot(space.robot(i));
       taken = true;
       break;

@@ -5,7 +5,7 @@
 #include "hal/device/gripper.hpp"
 #include "hal/device/turret.hpp"
 #include "hal/device/wheels.hpp"
-#include "hal/spec/footbot.hpp"
+#include "hal/robot/footbot.hpp"
 #include "tests/checkout.hpp"
 #include "tests/controllers/experiment.hpp"
 #include "tests/controllers/footbot_manual/operator.hpp"
@@ -109,8 +109,8 @@ TEST(Manual, DrivesAsItIsToldAndStopsWhenNobodySpeaksAnyMore) {
   EXPECT_EQ(d.port<hal::WheelSpeeds>().left_m_s, 0.0);
   d.say("drive 10 cm/s 0.5 rad/s");
   d.steps(1);
-  EXPECT_NEAR(d.port<hal::WheelSpeeds>().left_m_s, 0.1 - 0.25 * hal::footbot::kWheelBase_m, 1e-12);
-  EXPECT_NEAR(d.port<hal::WheelSpeeds>().right_m_s, 0.1 + 0.25 * hal::footbot::kWheelBase_m, 1e-12);
+  EXPECT_NEAR(d.port<hal::WheelSpeeds>().left_m_s, 0.1 - 0.25 * hal::footbot::kind().drive()->wheel_base_m, 1e-12);
+  EXPECT_NEAR(d.port<hal::WheelSpeeds>().right_m_s, 0.1 + 0.25 * hal::footbot::kind().drive()->wheel_base_m, 1e-12);
   EXPECT_EQ(d.port<hal::WheelSpeeds>("fb1").left_m_s, 0.0) << "the other one listens elsewhere";
   d.steps(4);  // the last 0.4 s after the order
   EXPECT_GT(d.port<hal::WheelSpeeds>().right_m_s, 0.1);
@@ -148,17 +148,17 @@ TEST(Manual, IsSlowerAlongTheSameArcWhereTheWheelsCannotFollow) {
   d.say("drive 3 m/s 10 rad/s");
   d.steps(1);
   const auto& wheels = d.port<hal::WheelSpeeds>();
-  const double fastest_m_s = hal::footbot::kDataSheet.max_wheel_speed_m_s;
+  const double fastest_m_s = hal::footbot::kind().drive()->max_speed_m_s;
   EXPECT_NEAR(wheels.right_m_s, fastest_m_s, 1e-12);
-  EXPECT_NEAR(
-      (wheels.right_m_s - wheels.left_m_s) / hal::footbot::kWheelBase_m * 2.0 / (wheels.right_m_s + wheels.left_m_s),
-      10.0 / 3.0, 1e-9);
+  EXPECT_NEAR((wheels.right_m_s - wheels.left_m_s) / hal::footbot::kind().drive()->wheel_base_m * 2.0 /
+                  (wheels.right_m_s + wheels.left_m_s),
+              10.0 / 3.0, 1e-9);
 }
 
 TEST(Manual, GripsAndKeepsItsHoldWhenNobodySpeaks) {
   const Driven d;
   d.experiment->space().set_pose(d.experiment->space().find_robot("fb0"),
-                                 core::Pose::at(0.7 - 0.06 - hal::footbot::kBodyRadius_m - 0.01, 0.0, 0.0));
+                                 core::Pose::at(0.7 - 0.06 - hal::footbot::kind().body.radius_m - 0.01, 0.0, 0.0));
   d.say("grip");
   d.steps(20);
   EXPECT_TRUE(d.experiment->space().holding(d.experiment->space().find_robot("fb0")));

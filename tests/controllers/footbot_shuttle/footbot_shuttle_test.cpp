@@ -1,7 +1,7 @@
 // What slanted treels do to a way there and back, and the hook that writes it down.
 #include <cmath>
 
-#include "hal/spec/footbot.hpp"
+#include "hal/robot/footbot.hpp"
 #include "tests/checkout.hpp"
 #include "tests/controllers/experiment.hpp"
 #include "tests/controllers/test_robot.hpp"
@@ -61,16 +61,17 @@ TEST(Shuttle, EndsElsewhereWithTreelsThatDrawToOneSideAndDoesNotNotice) {
     const auto lines = shuttle({}, seed);
     ASSERT_EQ(lines.size(), 1000U);
     // The heading turns by mu v / wheel base a second, to the left.
-    const double mu = lines[299].heading_rad / (0.1 * 29.9) * hal::footbot::kWheelBase_m;
+    const double mu = lines[299].heading_rad / (0.1 * 29.9) * hal::footbot::kind().drive()->wheel_base_m;
     EXPECT_GT(mu, 0.0);
     EXPECT_LT(mu, 0.0134 * 5.0);  // one in 270,000 is more
     // An arc: y = x^2 / (2 r) as long as that is small, r = wheel base / mu.
     const double along_m = lines[99].x_m + 2.0;
     EXPECT_NEAR(along_m, 1.0, 0.03);
-    EXPECT_NEAR(lines[99].y_m, 0.5 * along_m * along_m * mu / hal::footbot::kWheelBase_m, 0.003);
+    EXPECT_NEAR(lines[99].y_m, 0.5 * along_m * along_m * mu / hal::footbot::kind().drive()->wheel_base_m, 0.003);
     // After 4 m there and 4 m back the heading is off by both arcs' turns.
-    EXPECT_NEAR(lines.back().heading_rad, 8.0 * mu / hal::footbot::kWheelBase_m, 0.03);
-    EXPECT_GT(std::hypot(lines.back().x_m + 2.0, lines.back().y_m), 7.0 * mu / hal::footbot::kWheelBase_m);
+    EXPECT_NEAR(lines.back().heading_rad, 8.0 * mu / hal::footbot::kind().drive()->wheel_base_m, 0.03);
+    EXPECT_GT(std::hypot(lines.back().x_m + 2.0, lines.back().y_m),
+              7.0 * mu / hal::footbot::kind().drive()->wheel_base_m);
     for (const Line& l : lines) EXPECT_NEAR(l.odometry_y_m, 0.0, 0.01);
     EXPECT_NEAR(lines.back().odometry_x_m, -2.0, 0.02);
   }

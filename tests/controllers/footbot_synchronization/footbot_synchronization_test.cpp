@@ -4,7 +4,7 @@
 #include <numbers>
 
 #include "hal/device/leds.hpp"
-#include "hal/spec/footbot.hpp"
+#include "hal/robot/footbot.hpp"
 #include "tests/checkout.hpp"
 #include "tests/controllers/experiment.hpp"
 #include "tests/controllers/test_robot.hpp"
@@ -54,7 +54,9 @@ class Watch {
   void look() {
     const core::Space& space = experiment_->space();
     for (std::size_t i = 0; i < began_s_.size(); ++i) {
-      const bool lit = space.port<hal::RingLeds>(space.robot(i))->color(hal::footbot::kBeacon) == hal::kRed;
+      const bool lit =
+          space.port<hal::RingLeds>(space.robot(i))->color(hal::footbot::kind().part<hal::LedsPart>()->beacon_led()) ==
+          hal::kRed;
       if (lit && !lit_[i]) {
         began_s_[i] = now_s_;
         ++flashes_;

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "hal/device/ring_sensors.hpp"
 #include "hal/plugin_loader.hpp"
 #include "tests/checkout.hpp"
 #include "tests/controllers/test_robot.hpp"
@@ -83,7 +84,7 @@ TEST(AvoidanceDrive, NeverTouchesTheWallsOfARoom) {
     ObstacleAvoidance controller(robot, {});
     Room room{.walls = {{1, 0, 0.4}, {-1, 0, 0.4}, {0, 1, 0.4}, {0, -1, 0.4}},
               .heading_rad = degrees * std::numbers::pi / 180.0};
-    EXPECT_GT(test::smallest_clearance(controller, robot, room, 2000), hal::epuck::kBodyRadius_m) << degrees;
+    EXPECT_GT(test::smallest_clearance(controller, robot, room, 2000), hal::epuck::kind().body.radius_m) << degrees;
   }
 }
 
@@ -93,19 +94,17 @@ TEST(AvoidanceDrive, WorksWithAnyRing) {
     const double bearing_rad = (i + 0.5) * std::numbers::pi / 12.0;
     ring.push_back({bearing_rad, 0.085 * std::cos(bearing_rad), 0.085 * std::sin(bearing_rad), 0.05});
   }
-  hal::DataSheet sheet;
-  sheet.kind = "large";
-  sheet.body_radius_m = 0.085;
-  sheet.wheel_base_m = 0.14;
-  sheet.max_wheel_speed_m_s = 0.3;
-  sheet.proximity_range_m = 0.1;
-  sheet.proximity = ring;
+  hal::RobotKind kind;
+  kind.name = "large";
+  kind.body.radius_m = 0.085;
+  kind.locomotion = hal::DifferentialDrive{.wheel_base_m = 0.14, .max_speed_m_s = 0.3};
+  kind.add(hal::ProximityPart{.range_m = 0.1, .mounts = ring});
   for (int degrees = 0; degrees < 360; degrees += 10) {
-    TestRobot robot(sheet);
+    TestRobot robot(kind);
     ObstacleAvoidance controller(robot, {});
     Room room{.walls = {{1, 0, 0.6}, {-1, 0, 0.6}, {0, 1, 0.6}, {0, -1, 0.6}},
               .heading_rad = degrees * std::numbers::pi / 180.0};
-    EXPECT_GT(test::smallest_clearance(controller, robot, room, 2000), sheet.body_radius_m) << degrees;
+    EXPECT_GT(test::smallest_clearance(controller, robot, room, 2000), kind.body.radius_m) << degrees;
   }
 }
 

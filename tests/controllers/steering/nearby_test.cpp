@@ -5,7 +5,8 @@
 
 #include "controllers/steering/drive.hpp"
 #include "hal/angle.hpp"
-#include "hal/spec/footbot.hpp"
+#include "hal/device/ring_sensors.hpp"
+#include "hal/robot/footbot.hpp"
 #include "tests/controllers/test_robot.hpp"
 
 namespace tandem::controllers {
@@ -14,15 +15,17 @@ namespace {
 constexpr double kPi = std::numbers::pi;
 
 struct Nearby : ::testing::Test {
-  test::TestRobot robot{hal::footbot::kDataSheet};
+  test::TestRobot robot{hal::footbot::kind()};
   hal::RangeAndBearing heard;
 
-  Thing thing() const { return nearest_thing(robot.proximity, hal::footbot::kRing, heard); }
+  Thing thing() const {
+    return nearest_thing(robot.proximity, hal::footbot::kind().part<hal::ProximityPart>()->mounts, heard);
+  }
   /// What the ring sees of a disc.
   void see_disc(double x_m, double y_m, double radius_m) {
     robot.clear();
     for (std::size_t i = 0; i < 24; ++i) {
-      const hal::Mount& m = hal::footbot::kRing[i];
+      const hal::Mount& m = hal::footbot::kind().part<hal::ProximityPart>()->mounts[i];
       const double dx = std::cos(m.bearing_rad), dy = std::sin(m.bearing_rad);
       const double along = (x_m - m.x_m) * dx + (y_m - m.y_m) * dy;
       const double aside = (x_m - m.x_m) * dy - (y_m - m.y_m) * dx;
@@ -39,7 +42,7 @@ struct Nearby : ::testing::Test {
 
 TEST_F(Nearby, NothingIsSeenWhereNothingIs) {
   EXPECT_FALSE(thing().seen);
-  EXPECT_EQ(hal::length_of(push_away(robot.proximity, hal::footbot::kRing)), 0.0);
+  EXPECT_EQ(hal::length_of(push_away(robot.proximity, hal::footbot::kind().part<hal::ProximityPart>()->mounts)), 0.0);
 }
 
 TEST_F(Nearby, ADiscIsSeenWhereItIsAndAsBroadAsItIs) {
@@ -47,7 +50,7 @@ TEST_F(Nearby, ADiscIsSeenWhereItIsAndAsBroadAsItIs) {
     see_disc(0.17 * std::cos(bearing_rad), 0.17 * std::sin(bearing_rad), 0.06);
     EXPECT_TRUE(thing().seen);
     EXPECT_NEAR(hal::wrapped(thing().bearing_rad - bearing_rad), 0.0, 0.1);
-    EXPECT_NEAR(thing().gap_m, 0.17 - 0.06 - hal::footbot::kBodyRadius_m, 0.005);
+    EXPECT_NEAR(thing().gap_m, 0.17 - 0.06 - hal::footbot::kind().body.radius_m, 0.005);
     EXPECT_LT(thing().breadth_m, 0.12);
     EXPECT_GT(thing().breadth_m, 0.025);  // two neighbouring sensors
   }
@@ -61,7 +64,7 @@ TEST_F(Nearby, AWallIsBroaderThanAnyObject) {
 }
 
 TEST_F(Nearby, RobotsThatSendAreNoThings) {
-  see_disc(0.2, 0.0, hal::footbot::kBodyRadius_m);
+  see_disc(0.2, 0.0, hal::footbot::kind().body.radius_m);
   EXPECT_TRUE(thing().seen);
   hear(0.2, 0.0);
   EXPECT_FALSE(thing().seen);
@@ -72,20 +75,22 @@ TEST_F(Nearby, RobotsThatSendAreNoThings) {
 
 TEST_F(Nearby, PushesAwayFromWhatIsNearButNotFromTheLoad) {
   see_disc(0.0, 0.16, 0.06);
-  const hal::Vector2 push = push_away(robot.proximity, hal::footbot::kRing);
+  const hal::Vector2 push = push_away(robot.proximity, hal::footbot::kind().part<hal::ProximityPart>()->mounts);
   EXPECT_LT(push.y(), -0.03);
   EXPECT_NEAR(push.x(), 0.0, 1e-6);
   see_disc(0.16, 0.0, 0.06);
-  EXPECT_GT(hal::length_of(push_away(robot.proximity, hal::footbot::kRing)), 0.03);
-  EXPECT_EQ(hal::length_of(push_away(robot.proximity, hal::footbot::kRing, 1.0)), 0.0);
+  EXPECT_GT(hal::length_of(push_away(robot.proximity, hal::footbot::kind().part<hal::ProximityPart>()->mounts)), 0.03);
+  EXPECT_EQ(hal::length_of(push_away(robot.proximity, hal::footbot::kind().part<hal::ProximityPart>()->mounts, 1.0)),
+            0.0);
 }
 
 TEST_F(Nearby, TheLightIsWhereTheSensorsSeeMoreOfIt) {
   hal::Light light;
   light.count = 24;
   for (std::size_t i = 0; i < 24; ++i)
-    light.level[i] = static_cast<float>(std::max(0.0, std::cos(hal::footbot::kRing[i].bearing_rad - 2.0)));
-  EXPECT_NEAR(hal::bearing_of(to_light(light, hal::footbot::kRing)), 2.0, 1e-6);
+    light.level[i] = static_cast<float>(
+        std::max(0.0, std::cos(hal::footbot::kind().part<hal::ProximityPart>()->mounts[i].bearing_rad - 2.0)));
+  EXPECT_NEAR(hal::bearing_of(to_light(light, hal::footbot::kind().part<hal::ProximityPart>()->mounts)), 2.0, 1e-6);
 }
 
 TEST(Drive, LeadsToTheBearing) {

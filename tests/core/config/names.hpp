@@ -13,8 +13,8 @@
 #include "hal/check.hpp"
 #include "hal/device/ports.hpp"
 #include "hal/port.hpp"
-#include "hal/spec/data_sheet.hpp"
-#include "hal/spec/robots.hpp"
+#include "hal/robot/robots.hpp"
+#include "hal/robot_kind.hpp"
 
 namespace tandem::core {
 

@@ -6,18 +6,21 @@
 #include <gmock/gmock.h>
 #include <numbers>
 
-#include "hal/spec/epuck.hpp"
-#include "hal/spec/eyebot.hpp"
+#include "hal/robot/epuck.hpp"
+#include "hal/robot/eyebot.hpp"
 #include "tests/core/watchers.hpp"
 
 namespace tandem::core {
 namespace {
 
 namespace fb = hal::footbot;
+
+const double kLedRing_m = fb::kind().body.radius_m + 0.005;
 using testing::HasSubstr;
 
 constexpr double kPi = std::numbers::pi;
-const double kReach_m = fb::kOmniCameraHeight_m * std::tan(fb::kOmniCameraAperture_rad);
+const double kReach_m =
+    fb::kind().part<hal::OmniCameraPart>()->height_m * std::tan(fb::kind().part<hal::OmniCameraPart>()->aperture_rad);
 
 MadeWorld made(const Scene& scene, const WorldOptions& options = {}) {
   auto world = make(scene, options);
@@ -41,7 +44,7 @@ Scene two(double x_m, double y_m, double heading_rad = 0.0) {
 }
 
 void beacon(const MadeWorld& world, const std::string& id, hal::Rgb color) {
-  command<hal::RingLeds>(world, id).set(fb::kBeacon, color);
+  command<hal::RingLeds>(world, id).set(fb::kind().part<hal::LedsPart>()->beacon_led(), color);
 }
 
 // --- all around ---
@@ -91,7 +94,7 @@ TEST(OmnidirectionalCamera, SeesTheNearSideOfARing) {
   const auto& port = omni(world, "eye");
   ASSERT_EQ(port.count, 7U) << "six of twelve, and the beacon";
   for (std::size_t i = 1; i < port.count; ++i) EXPECT_GE(port.distance_m[i], port.distance_m[i - 1]);
-  EXPECT_NEAR(port.distance_m[0], std::hypot(0.5 - fb::kLedRadius_m * std::cos(kPi / 12), 0.0233), 1e-3);
+  EXPECT_NEAR(port.distance_m[0], std::hypot(0.5 - kLedRing_m * std::cos(kPi / 12), 0.0233), 1e-3);
 }
 
 TEST(OmnidirectionalCamera, SeesTheRingTurnWithTheTurret) {
@@ -102,7 +105,7 @@ TEST(OmnidirectionalCamera, SeesTheRingTurnWithTheTurret) {
   command<hal::TurretDrive>(world, "lamp").go_to(165.0 * kPi / 180.0);
   steps(world, 30);
   ASSERT_EQ(omni(world, "eye").count, 1U);
-  EXPECT_NEAR(omni(world, "eye").distance_m[0], 0.5 - fb::kLedRadius_m, 1e-6);
+  EXPECT_NEAR(omni(world, "eye").distance_m[0], 0.5 - kLedRing_m, 1e-6);
   EXPECT_NEAR(omni(world, "eye").bearing_rad[0], 0.0, 1e-6);
 }
 
@@ -121,7 +124,7 @@ TEST(OmnidirectionalCamera, KeepsTheNearestOfMany) {
   EXPECT_EQ(port.count, hal::OmnidirectionalCamera::kCapacity);
   EXPECT_GT(port.dropped, 0U);
   for (std::size_t i = 1; i < port.count; ++i) EXPECT_GE(port.distance_m[i], port.distance_m[i - 1]);
-  EXPECT_NEAR(port.distance_m[0], 0.3 - fb::kLedRadius_m, 0.01);
+  EXPECT_NEAR(port.distance_m[0], 0.3 - kLedRing_m, 0.01);
 }
 
 // --- who hides whom ---
@@ -163,13 +166,12 @@ TEST(OmnidirectionalCamera, SeesWhatEveryLineWithEveryBodySays) {
   for (int i = 0; i < kRobots; ++i) {
     const Pose at = space.pose(space.robot(static_cast<std::size_t>(i)));
     const double bearing = at.heading_rad() + (15.0 + 30.0 * (i % 12)) * kPi / 180.0;
-    bodies.push_back({at.x_m, at.y_m, fb::kBodyRadius_m, 0.0, fb::kHeight_m});
-    leds.push_back(
-        {at.x_m + fb::kLedRadius_m * std::cos(bearing), at.y_m + fb::kLedRadius_m * std::sin(bearing), 0.085});
+    bodies.push_back({at.x_m, at.y_m, fb::kind().body.radius_m, 0.0, fb::kind().body.height_m});
+    leds.push_back({at.x_m + kLedRing_m * std::cos(bearing), at.y_m + kLedRing_m * std::sin(bearing), 0.085});
   }
   int seen = 0, hidden = 0;
   for (std::size_t i = 0; i < kRobots; ++i) {
-    const Vec3 eye{bodies[i].x, bodies[i].y, fb::kOmniCameraHeight_m};
+    const Vec3 eye{bodies[i].x, bodies[i].y, fb::kind().part<hal::OmniCameraPart>()->height_m};
     const auto& port = omni(world, "fb" + std::to_string(i));
     ASSERT_EQ(port.dropped, 0U);
     for (std::size_t j = 0; j < kRobots; ++j) {
@@ -216,7 +218,7 @@ TEST(OmnidirectionalCamera, SeesTheLampsOfAnEpuck) {
   const auto& port = omni(world, "eye");
   ASSERT_EQ(port.count, 2U);
   EXPECT_EQ(port.color(0), hal::kRed);
-  EXPECT_NEAR(port.distance_m[0], 0.3 - hal::epuck::kBodyRadius_m, 1e-6);
+  EXPECT_NEAR(port.distance_m[0], 0.3 - hal::epuck::kind().body.radius_m, 1e-6);
   EXPECT_EQ(port.color(1), hal::kGreen);
   EXPECT_NEAR(port.distance_m[1], 0.3, 1e-6);
 }
@@ -367,7 +369,7 @@ TEST(PerspectiveCamera, LooksAheadAsAPinholeDoes) {
   world->step();
   const auto& port = lens(world, "eye");
   ASSERT_EQ(port.count, 1U);
-  const double depth = 1.0 - fb::kBodyRadius_m;
+  const double depth = 1.0 - fb::kind().body.radius_m;
   const double px_per_tangent = 400.0 / std::tan(kPi / 6);  // half the image's diagonal is what the aperture spans
   EXPECT_NEAR(port.x_px[0], 320.0 - 0.2 / depth * px_per_tangent, 1e-3) << "left of the middle";
   EXPECT_NEAR(port.y_px[0], 240.0, 1e-3) << "as high as the lens";
@@ -383,7 +385,7 @@ TEST(PerspectiveCamera, SeesAsFarAndAsWideAsItIsTold) {
     world->step();
     return lens(world, "eye").count;
   };
-  const double from = fb::kBodyRadius_m;
+  const double from = fb::kind().body.radius_m;
   EXPECT_EQ(count(from + 1.0, 0.0, 1.01, 0.5), 1U);
   EXPECT_EQ(count(from + 1.0, 0.0, 0.99, 0.5), 0U);
   const double half_width = 0.8 * std::tan(0.5);  // 640 of the diagonal's 800
@@ -405,7 +407,7 @@ TEST(PerspectiveCamera, LooksDownFromAnEyebot) {
   const Pose at = world->space().pose(world->space().find_robot("high"));
   ASSERT_EQ(port.count, 1U);
   // Northwards is ahead: towards the image's top. Westwards is to its left.
-  const double depth = at.z_m - fb::kBeaconHeight_m;
+  const double depth = at.z_m - fb::kind().part<hal::LedsPart>()->mounts.back().z_m;
   const double px_per_tangent = 400.0 / std::tan(kPi / 6);
   EXPECT_NEAR(port.x_px[0], 320.0 - (0.1 + at.x_m) / depth * px_per_tangent, 0.01);
   EXPECT_NEAR(port.y_px[0], 240.0 - (0.3 - at.y_m) / depth * px_per_tangent, 0.01);

@@ -8,13 +8,13 @@
 #include "hal/device/range_and_bearing.hpp"
 #include "hal/device/ring_sensors.hpp"
 #include "hal/device/wheels.hpp"
-#include "hal/spec/epuck.hpp"
+#include "hal/robot/epuck.hpp"
 #include "tests/core/scenes.hpp"
 
 namespace tandem::core {
 namespace {
 
-constexpr double kR = hal::epuck::kBodyRadius_m;
+const double kR = hal::epuck::kind().body.radius_m;
 
 template <class Port>
 Port read(const MadeWorld& world, std::size_t robot = 0) {
@@ -68,7 +68,8 @@ TEST(ProximitySensor, ReadsTheDistanceToTheNearestThingOnEveryRay) {
     ASSERT_EQ(port.count, 8U);
     EXPECT_EQ(port.validity, hal::Validity::Fresh);
     for (std::size_t k = 0; k < 8; ++k) {
-      const double expected = marched(scene, i, world->space(), hal::epuck::kInfrared[k].bearing_rad);
+      const double expected =
+          marched(scene, i, world->space(), hal::epuck::kind().part<hal::ProximityPart>()->mounts[k].bearing_rad);
       EXPECT_NEAR(static_cast<double>(port.distance_m[k]), expected, 2.5e-5) << "robot " << i << " sensor " << k;
       if (expected < 0.1) ++seen;
     }
@@ -143,7 +144,8 @@ TEST(WheelDevices, NoisyWheelsScatterAroundTheCommand) {
 TEST(LightSensor, FollowsTheSquareOfTheDistanceTheAngleAndTheShadow) {
   Scene scene(8, "everything");
   scene.robot("near", 0, 0).robot("shaded", 0, -2.0, M_PI / 2);
-  scene.scenario.lights.push_back({"lamp", {2.0, 0.0, hal::epuck::kSensorHeight_m}, {255, 255, 255}, 1.0, {}, 0});
+  scene.scenario.lights.push_back(
+      {"lamp", {2.0, 0.0, hal::epuck::kind().part<hal::ProximityPart>()->mounts[0].z_m}, {255, 255, 255}, 1.0, {}, 0});
   scene.box(1.0, -1.0, 0.3, 0.3);
   auto world = stepped(scene);
   const auto light = read<hal::Light>(world);

@@ -34,7 +34,7 @@ TEST(Altimeter, TellsHowFarItIsToGroundAndCeiling) {
   const auto& port = reading<hal::Altimeter>(world, "e");
   EXPECT_EQ(port.validity, hal::Validity::Fresh);
   EXPECT_NEAR(static_cast<double>(port.ground_m), 1.25, 1e-6);
-  EXPECT_NEAR(static_cast<double>(port.ceiling_m), 3.0 - 1.25 - eb::kHeight_m, 1e-6);
+  EXPECT_NEAR(static_cast<double>(port.ceiling_m), 3.0 - 1.25 - eb::kind().body.height_m, 1e-6);
 }
 
 TEST(Altimeter, SeesObjectsAndRobotsBeneathAndAbove) {
@@ -48,8 +48,9 @@ TEST(Altimeter, SeesObjectsAndRobotsBeneathAndAbove) {
   EXPECT_NEAR(ground("over_box"), 0.5, 1e-6);
   EXPECT_NEAR(ground("beside_box"), 1.0, 1e-6);
   EXPECT_NEAR(ground("over_can"), 0.7, 1e-6);
-  EXPECT_NEAR(ground("high"), 1.5 - 0.5 - eb::kHeight_m, 1e-6);
-  EXPECT_NEAR(static_cast<double>(reading<hal::Altimeter>(world, "low").ceiling_m), 1.5 - 0.5 - eb::kHeight_m, 1e-6);
+  EXPECT_NEAR(ground("high"), 1.5 - 0.5 - eb::kind().body.height_m, 1e-6);
+  EXPECT_NEAR(static_cast<double>(reading<hal::Altimeter>(world, "low").ceiling_m),
+              1.5 - 0.5 - eb::kind().body.height_m, 1e-6);
   EXPECT_NEAR(ground("aside"), 1.5, 1e-6) << "the other's rim is not beneath its middle";
 }
 
@@ -57,7 +58,8 @@ TEST(Altimeter, HasNoEchoFromFarAway) {
   Scene scene = eyebot_scene();
   scene.scenario.arena_size[2] = 40.0;
   scene.scenario.arena_center[2] = 20.0;
-  auto world = made(scene.flyer("e", 0, 0, eb::kAltimeter_m + 0.1).flyer("near", 2, 0, eb::kAltimeter_m - 0.1));
+  auto world = made(scene.flyer("e", 0, 0, eb::kind().part<hal::AltimeterPart>()->range_m + 0.1)
+                        .flyer("near", 2, 0, eb::kind().part<hal::AltimeterPart>()->range_m - 0.1));
   world->step();
   EXPECT_LT(reading<hal::Altimeter>(world, "e").ground_m, 0.0F);
   EXPECT_LT(reading<hal::Altimeter>(world, "e").ceiling_m, 0.0F);
@@ -191,7 +193,7 @@ TEST(PanTilt, TurnsAsFastAsItCanAndNoFarther) {
   auto world = made(eyebot_scene().flyer("e", 0, 0, 1));
   command<hal::PanTiltDrive>(world, "e") = {{}, 2.0, 3.0, true};
   world->step();  // the command is clamped after it
-  const double step_rad = eb::kHeadTurn_rad_s / 50.0;
+  const double step_rad = eb::kind().part<hal::HeadPart>()->turn_rad_s / 50.0;
   for (int i = 1; i <= 10; ++i) {
     world->step();
     EXPECT_NEAR(reading<hal::PanTiltEncoder>(world, "e").pan_rad, (i + 1) * step_rad, 1e-12);
@@ -263,8 +265,8 @@ TEST(EyeBotScanner, MeasuresAllAround) {
   const auto& port = reading<hal::DistanceScanner>(world, "e");
   ASSERT_EQ(port.samples, 1U);
   EXPECT_NEAR(static_cast<double>(port.distance(0, 0)), 1.9, 1e-5);
-  EXPECT_NEAR(static_cast<double>(port.distance(1, 0)), 1.5 - eb::kBodyRadius_m, 1e-5);
-  EXPECT_EQ(port.distance(2, 0), static_cast<float>(eb::kScannerMax_m));
+  EXPECT_NEAR(static_cast<double>(port.distance(1, 0)), 1.5 - eb::kind().body.radius_m, 1e-5);
+  EXPECT_EQ(port.distance(2, 0), static_cast<float>(eb::kind().part<hal::ScannerPart>()->heads[0].max_m));
   EXPECT_TRUE(port.sees_nothing(3, 0));
   command<hal::ScannerDrive>(world, "e").turn(kPi);
   steps(world, 10);
@@ -308,7 +310,7 @@ TEST(EyeBotRangeAndBearing, BodiesInSpaceAreInTheWay) {
 /// 1: the line between two boards passes through a body; 0: it does not; -1: it is a matter of 2 mm.
 int blocked(const std::vector<Vec3>& bases, std::size_t from, std::size_t to) {
   const auto board = [&](std::size_t i, std::size_t axis) {
-    return bases[i][axis] + (axis == 2 ? eb::kSensorHeight_m : 0);
+    return bases[i][axis] + (axis == 2 ? eb::kind().part<hal::RangeAndBearingPart>()->height_m : 0);
   };
   constexpr int kSamples = 1500;
   bool near = false;
@@ -318,8 +320,9 @@ int blocked(const std::vector<Vec3>& bases, std::size_t from, std::size_t to) {
       p[axis] = board(from, axis) + (board(to, axis) - board(from, axis)) * s / kSamples;
     for (std::size_t k = 0; k < bases.size(); ++k) {
       if (k == from || k == to) continue;
-      const double aside_m = std::hypot(p[0] - bases[k][0], p[1] - bases[k][1]) - eb::kBodyRadius_m;
-      const double outside_m = std::max({aside_m, bases[k][2] - p[2], p[2] - (bases[k][2] + eb::kHeight_m - 0.005)});
+      const double aside_m = std::hypot(p[0] - bases[k][0], p[1] - bases[k][1]) - eb::kind().body.radius_m;
+      const double outside_m =
+          std::max({aside_m, bases[k][2] - p[2], p[2] - (bases[k][2] + eb::kind().body.height_m - 0.005)});
       if (outside_m < -0.002) return 1;
       near = near || outside_m < 0.002;
     }
@@ -358,7 +361,7 @@ TEST(EyeBotRangeAndBearing, HearsExactlyThoseInReachAndInSight) {
       for (std::size_t k = 0; k < bases.size(); ++k) {
         const double range_m =
             std::hypot(bases[i][0] - bases[k][0], bases[i][1] - bases[k][1], bases[i][2] - bases[k][2]);
-        if (k == i || range_m > eb::kRabRange_m + 1e-6) continue;
+        if (k == i || range_m > eb::kind().part<hal::RangeAndBearingPart>()->range_m + 1e-6) continue;
         const int in_the_way = blocked(bases, i, k);
         least += in_the_way == 0 ? 1 : 0;
         most += in_the_way == 1 ? 0 : 1;
@@ -402,14 +405,14 @@ TEST_P(MixedSwarm, SeesAndHearsAcrossEngines) {
   const double x_m = GetParam().starts_with("dynamics3d") ? 1.5 : 0.0;
   scene.flyer("e", x_m, 0.0, 1.2);
   auto world = made(scene);
-  command<hal::RingLeds>(world, "fb").set(hal::footbot::kBeacon, hal::kBlue);
+  command<hal::RingLeds>(world, "fb").set(hal::footbot::kind().part<hal::LedsPart>()->beacon_led(), hal::kBlue);
   for (const char* id : {"fb", "e"}) {
     auto& send = command<hal::RangeAndBearingSend>(world, id);
     send.sending = true;
     send.size = 2;
     send.payload[0] = static_cast<std::uint8_t>(id[0]);
   }
-  const double down_m = 1.2 - hal::footbot::kBeaconHeight_m;
+  const double down_m = 1.2 - hal::footbot::kind().part<hal::LedsPart>()->mounts.back().z_m;
   command<hal::PanTiltDrive>(world, "e") = {{}, x_m > 0.4 ? kPi : 0.0, std::atan2(std::fabs(0.4 - x_m), down_m), false};
   steps(world, 30);
   EXPECT_EQ(world->state(), RunState::Running) << world->failure();
@@ -418,7 +421,8 @@ TEST_P(MixedSwarm, SeesAndHearsAcrossEngines) {
   EXPECT_EQ(image.color(0), hal::kBlue);
   EXPECT_NEAR(image.x_px[0], 320.0F, 1.0F);
   EXPECT_NEAR(image.y_px[0], 240.0F, 1.0F);
-  const double up_m = 1.2 + eb::kSensorHeight_m - hal::footbot::kRabHeight_m;
+  const double up_m = 1.2 + eb::kind().part<hal::RangeAndBearingPart>()->height_m -
+                      hal::footbot::kind().part<hal::RangeAndBearingPart>()->height_m;
   const auto& from_below = reading<hal::RangeAndBearing>(world, "e");
   ASSERT_EQ(from_below.count, 1U);
   EXPECT_EQ(from_below.message(0)[0], 'f');

@@ -9,14 +9,15 @@
 #include "hal/device/body_sensors.hpp"
 #include "hal/device/range_and_bearing.hpp"
 #include "hal/device/ring_sensors.hpp"
-#include "hal/spec/epuck.hpp"
-#include "hal/spec/eyebot.hpp"
+#include "hal/robot/epuck.hpp"
+#include "hal/robot/eyebot.hpp"
 #include "tests/core/scenes.hpp"
 
 namespace tandem::core {
 namespace {
 
-constexpr double kRadius_m = hal::eyebot::kBodyRadius_m;
+const double kRadius_m = hal::eyebot::kind().body.radius_m;
+constexpr double kRing_m = 0.255;  // of the proximity sensors
 
 /// An arena 8 m x 8 m x 6 m of particle3d alone, or with kinematics2d for robots on the ground.
 Scene air(bool ground_engine = false, const std::string& controller = "drive") {
@@ -102,8 +103,8 @@ TEST(Flight, APositionGoesBeforeASpeedAndWhatIsNoNumberHovers) {
   steps(world, 1);
   EXPECT_EQ(world->incidents().commands_clamped, 1U);
   const auto speed = port<hal::QuadrotorSpeed>(world, "e");
-  EXPECT_NEAR(std::hypot(speed.velocity[1], speed.velocity[2]), hal::eyebot::kMaxSpeed_m_s, 1e-12);
-  EXPECT_EQ(speed.yaw_rad_s, hal::eyebot::kMaxTurn_rad_s);
+  EXPECT_NEAR(std::hypot(speed.velocity[1], speed.velocity[2]), hal::eyebot::kind().flight()->max_speed_m_s, 1e-12);
+  EXPECT_EQ(speed.yaw_rad_s, hal::eyebot::kind().flight()->max_turn_rad_s);
   EXPECT_EQ(world->state(), RunState::Running) << world->failure();
 }
 
@@ -191,8 +192,8 @@ TEST(FlightSensing, RaysMeetWhatStandsAtTheirHeight) {
   const auto low = port<hal::Proximity>(world, "low");
   const double angle = 7.5 / 180.0 * std::numbers::pi;
   // Law of cosines from the body's middle along a ray that starts at its rim.
-  const double along = 0.8 * std::cos(angle) - std::sqrt(kRadius_m * kRadius_m - std::pow(0.8 * std::sin(angle), 2)) -
-                       hal::eyebot::kRingRadius_m;
+  const double along =
+      0.8 * std::cos(angle) - std::sqrt(kRadius_m * kRadius_m - std::pow(0.8 * std::sin(angle), 2)) - kRing_m;
   EXPECT_NEAR(static_cast<double>(low.distance_m[0]), along, 1e-5);
   EXPECT_NEAR(static_cast<double>(low.distance_m[23]), along, 1e-5);
   EXPECT_NEAR(static_cast<double>(port<hal::Proximity>(world, "low2").distance_m[11]), along, 1e-5);
@@ -205,7 +206,7 @@ TEST(FlightSensing, RaysMeetObjectsAtTheirHeight) {
   s.box(1.0, 0, 0.2, 2.0, 0.0, 1.0).pilot("fly").flyer("below", 0, 0, 0.5).flyer("above", 0, 0, 1.5);
   auto world = made(s);
   steps(world, 2);
-  const double along = 0.9 / std::cos(7.5 / 180.0 * std::numbers::pi) - hal::eyebot::kRingRadius_m;
+  const double along = 0.9 / std::cos(7.5 / 180.0 * std::numbers::pi) - kRing_m;
   EXPECT_NEAR(static_cast<double>(port<hal::Proximity>(world, "below").distance_m[0]), along, 1e-5);
   EXPECT_EQ(port<hal::Proximity>(world, "above").distance_m[0], 3.0F);
 }
@@ -238,7 +239,10 @@ TEST(FlightSensing, MessagesTellDistanceAndElevation) {
 
 TEST(FlightSensing, RobotsOnTheGroundAndInTheAirHearOneAnother) {
   Scene s = air(true, "everything");
-  s.robot("a", 0.3, 0).pilot("fly").flyer("e", 0, 0, 0.4 - hal::eyebot::kSensorHeight_m + hal::epuck::kHeight_m);
+  s.robot("a", 0.3, 0)
+      .pilot("fly")
+      .flyer("e", 0, 0,
+             0.4 - hal::eyebot::kind().part<hal::RangeAndBearingPart>()->height_m + hal::epuck::kind().body.height_m);
   auto world = made(s);
   steps(world, 3);
   const auto above = port<hal::RangeAndBearing>(world, "a");
@@ -258,8 +262,8 @@ TEST(FlightSensing, LampsAreSeenFromWhereTheRobotIs) {
   lamp.intensity = 1.0;
   s.scenario.lights.push_back(lamp);
   s.pilot("fly")
-      .flyer("near", 0, 0, 3.0 - hal::eyebot::kSensorHeight_m)
-      .flyer("far", 0, 0, 1.0 - hal::eyebot::kSensorHeight_m);
+      .flyer("near", 0, 0, 3.0 - hal::eyebot::kind().part<hal::RangeAndBearingPart>()->height_m)
+      .flyer("far", 0, 0, 1.0 - hal::eyebot::kind().part<hal::RangeAndBearingPart>()->height_m);
   auto world = made(s);
   steps(world, 2);
   const double facing = std::cos(7.5 / 180.0 * std::numbers::pi);
@@ -302,7 +306,7 @@ TEST(Air, WhatStandsOnTheGroundIsInTheWayThere) {
   for (int i = 0; i < 100; ++i) {
     world->step();
     const Pose a = pose(world, "a");
-    ASSERT_GT(std::hypot(a.x_m, a.y_m), kRadius_m + hal::epuck::kBodyRadius_m - 1e-3) << i;
+    ASSERT_GT(std::hypot(a.x_m, a.y_m), kRadius_m + hal::epuck::kind().body.radius_m - 1e-3) << i;
   }
 }
 

@@ -6,8 +6,10 @@
 
 #include "hal/angle.hpp"
 #include "hal/device/body_sensors.hpp"
+#include "hal/device/distance_scanner.hpp"
 #include "hal/device/flight.hpp"
 #include "hal/device/ring_sensors.hpp"
+#include "hal/device/turret.hpp"
 #include "tests/core/footbots.hpp"
 
 namespace tandem::core {
@@ -16,7 +18,7 @@ namespace {
 using hal::Role;
 using testing::HasSubstr;
 
-constexpr double kR = hal::footbot::kBodyRadius_m;
+const double kR = hal::footbot::kind().body.radius_m;
 constexpr double kPi = std::numbers::pi;
 
 MadeWorld made(const Scene& scene, const WorldOptions& options = {}) {
@@ -53,7 +55,8 @@ TEST(Turret, GoesToAnAngleTheShorterWayAndNoFasterThanItCan) {
   EXPECT_NEAR(reading<hal::TurretEncoder>(world, "fb").angle_rad, 0.9 * kPi, 1e-12);
   command<hal::TurretDrive>(world, "fb").go_to(-0.9 * kPi);  // 36 degrees through the back
   world->step();
-  EXPECT_NEAR(reading<hal::TurretEncoder>(world, "fb").speed_rad_s, hal::footbot::kTurretTurn_rad_s, 1e-6);
+  EXPECT_NEAR(reading<hal::TurretEncoder>(world, "fb").speed_rad_s,
+              hal::footbot::kind().part<hal::TurretPart>()->turn_rad_s, 1e-6);
   steps(world, 3);
   EXPECT_NEAR(reading<hal::TurretEncoder>(world, "fb").angle_rad, -0.9 * kPi, 1e-12);
 }
@@ -65,7 +68,7 @@ TEST(Turret, ClampsSpeedsAndIsOffAtWhatIsNoNumber) {
   const double before = reading<hal::TurretEncoder>(world, "fb").angle_rad;
   world->step();
   EXPECT_NEAR(hal::wrapped(reading<hal::TurretEncoder>(world, "fb").angle_rad - before),
-              hal::footbot::kTurretTurn_rad_s * 0.1, 1e-12);
+              hal::footbot::kind().part<hal::TurretPart>()->turn_rad_s * 0.1, 1e-12);
   EXPECT_EQ(world->incidents().commands_clamped, 1U);
   command<hal::TurretDrive>(world, "fb").angle_rad = std::nan("");
   world->step();
@@ -142,11 +145,11 @@ TEST(DistanceScanner, MeasuresAlongEveryHeadWhileItTurns) {
     const auto& port = reading<hal::DistanceScanner>(world, "fb");
     ASSERT_EQ(port.samples, 6U) << "60 a second, ten ticks a second";
     for (std::size_t head = 0; head < 4; ++head) {
-      const auto& sheet = hal::footbot::kScanner[head];
+      const auto& kind = hal::footbot::kind().part<hal::ScannerPart>()->heads[head];
       for (std::size_t k = 0; k < 6; ++k) {
-        const double expected = std::max(marched(scene, world, "fb", port.angle(head, k), sheet.max_m), sheet.min_m);
+        const double expected = std::max(marched(scene, world, "fb", port.angle(head, k), kind.max_m), kind.min_m);
         EXPECT_NEAR(port.distance(head, k), expected, 1e-4) << "head " << head << ", sample " << k;
-        EXPECT_NEAR(std::remainder(static_cast<double>(port.angle(head, k)) - sheet.bearing_rad -
+        EXPECT_NEAR(std::remainder(static_cast<double>(port.angle(head, k)) - kind.bearing_rad -
                                        kPi * 0.1 * (tick + (static_cast<double>(k) + 1) / 6.0),
                                    2 * kPi),
                     0.0, 1e-5);
@@ -239,14 +242,14 @@ TEST(FootbotGround, EachSensorReadsTheFloorBeneathIt) {
     ASSERT_EQ(base.count, 8U);
     ASSERT_EQ(motor.count, 4U);
     for (std::size_t k = 0; k < 8; ++k) {
-      const hal::Mount& m = hal::footbot::kBaseGround[k];
+      const hal::Mount& m = hal::footbot::kind().part<hal::BaseGroundPart>()->mounts[k];
       const double x = id == "edge" ? m.x_m : -m.y_m;
       if (std::fabs(x) > 0.01) {
         EXPECT_EQ(base.reflectance[k], x > 0.0 ? 1.0F : 0.0F) << id << " " << k;
       }
     }
     for (std::size_t k = 0; k < 4; ++k) {
-      const hal::Mount& m = hal::footbot::kMotorGround[k];
+      const hal::Mount& m = hal::footbot::kind().part<hal::MotorGroundPart>()->mounts[k];
       const double x = id == "edge" ? m.x_m : -m.y_m;
       if (std::fabs(x) > 0.011) {
         EXPECT_EQ(motor.reflectance[k], x > 0.0 ? 1.0F : 0.0F) << id << " " << k;
@@ -317,8 +320,8 @@ TEST(FootbotWheels, OdometryReckonsACircleExactly) {
   auto world = made(one());
   command<hal::WheelSpeeds>(world, "fb").set(0.05, 0.07);
   steps(world, 100);
-  const double turn = 0.02 / hal::footbot::kWheelBase_m * 10.0;
-  const double radius = 0.06 / (0.02 / hal::footbot::kWheelBase_m);
+  const double turn = 0.02 / hal::footbot::kind().drive()->wheel_base_m * 10.0;
+  const double radius = 0.06 / (0.02 / hal::footbot::kind().drive()->wheel_base_m);
   const auto& port = reading<hal::Odometry>(world, "fb");
   EXPECT_NEAR(port.x_m, radius * std::sin(turn), 1e-9);
   EXPECT_NEAR(port.y_m, radius * (1.0 - std::cos(turn)), 1e-9);
@@ -336,7 +339,7 @@ TEST(FootbotWheels, OdometryErrorsAddUpLikeARandomWalk) {
   for (int i = 0; i < 200; ++i)
     squares += std::pow(reading<hal::Odometry>(world, "fb" + std::to_string(i)).heading_rad, 2);
   // A hundred draws of two uniform errors of +-1 mm over the wheel base.
-  const double expected = std::sqrt(100 * 2 * 1e-6 / 3.0) / hal::footbot::kWheelBase_m;
+  const double expected = std::sqrt(100 * 2 * 1e-6 / 3.0) / hal::footbot::kind().drive()->wheel_base_m;
   EXPECT_NEAR(std::sqrt(squares / 200), expected, 0.12 * expected);
 }
 
@@ -404,8 +407,8 @@ struct Slanted {
     command<hal::WheelSpeeds>(world, "fb").set(speed_m_s, speed_m_s);
     steps(world, ticks);
   }
-  double turn_rad(double way_m) const { return mu * way_m / hal::footbot::kWheelBase_m; }
-  double curvature() const { return mu / (hal::footbot::kWheelBase_m * (1.0 + 0.5 * mu)); }
+  double turn_rad(double way_m) const { return mu * way_m / hal::footbot::kind().drive()->wheel_base_m; }
+  double curvature() const { return mu / (hal::footbot::kind().drive()->wheel_base_m * (1.0 + 0.5 * mu)); }
   std::size_t row() const { return world.world->space().stores().row_of(world.world->space().find_robot("fb")); }
 };
 
@@ -449,7 +452,7 @@ TEST(FootbotBody, GyroscopeAndAccelerometerFeelACircle) {
     auto world = made(one(engine));
     command<hal::WheelSpeeds>(world, "fb").set(0.08, 0.12);
     steps(world, 30);
-    const double turn = 0.04 / hal::footbot::kWheelBase_m;
+    const double turn = 0.04 / hal::footbot::kind().drive()->wheel_base_m;
     const auto& gyroscope = reading<hal::Gyroscope>(world, "fb");
     EXPECT_NEAR(gyroscope.rate_rad_s[2], turn, 0.02 * turn) << engine;
     EXPECT_NEAR(gyroscope.rate_rad_s[0], 0.0, 0.02) << engine;
@@ -544,10 +547,14 @@ TEST(FootbotDevices, BadOptionsAreErrorsWithTheirLine) {
 TEST(FootbotDevices, AnEpuckHasNoneOfThem) {
   Scene scene = one();
   scene.scenario.robots.back().kind = "e-puck";
+  scene.scenario.controllers[0].line = 7;
   const auto world = make(scene);
   EXPECT_FALSE(world.world);
   for (const char* device : {"turret", "gripper", "distance_scanner", "base_ground", "motor_ground", "gyroscope"})
-    EXPECT_THAT(world.all_problems(), HasSubstr("the robot 'e-puck' has no device '" + std::string(device) + "'"));
+    EXPECT_THAT(world.all_problems(),
+                HasSubstr("scene:7: error: the robot 'e-puck' has no device '" + std::string(device) +
+                          "'; take it out of the controller configuration 'c"))
+        << device;
 }
 
 // --- twins of real robots ---

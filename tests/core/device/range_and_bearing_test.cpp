@@ -7,8 +7,8 @@
 #include <set>
 
 #include "core/device/shadows.hpp"
-#include "hal/spec/epuck.hpp"
-#include "hal/spec/eyebot.hpp"
+#include "hal/robot/epuck.hpp"
+#include "hal/robot/eyebot.hpp"
 #include "tests/core/footbots.hpp"
 
 namespace tandem::core {
@@ -88,10 +88,12 @@ int between(const Ends& a, const Ends& b, const Ends& c) {
 }
 
 Ends ends_of(const Space& space, RobotId id) {
-  const hal::DataSheet& sheet = space.data_sheet(id);
+  const hal::RobotKind& kind = space.kind(id);
   const Pose at = space.pose(id);
-  return {
-      {at.x_m, at.y_m, at.z_m + sheet.rab_height_m}, sheet.body_radius_m, at.z_m, at.z_m + sheet.body_height_m - 0.005};
+  return {{at.x_m, at.y_m, at.z_m + kind.part<hal::RangeAndBearingPart>()->height_m},
+          kind.body.radius_m,
+          at.z_m,
+          at.z_m + kind.body.height_m - 0.005};
 }
 
 /// Whether robot `i` has robot `j` in sight, by every body between them: 0 yes, 1 no, -1 too close to tell.

@@ -8,7 +8,7 @@
 #include "core/medium/range_and_bearing/range_and_bearing.hpp"
 #include "hal/device/body_sensors.hpp"
 #include "hal/device/leds.hpp"
-#include "hal/spec/epuck.hpp"
+#include "hal/robot/epuck.hpp"
 #include "tests/core/footbots.hpp"
 #include "tests/core/space_by_hand.hpp"
 
@@ -89,7 +89,7 @@ class Listening final : public Sensor {
   double loudness_;
 };
 
-bool anybody(const hal::DataSheet&) {
+bool anybody(const hal::RobotKind&) {
   return true;
 }
 
@@ -304,7 +304,7 @@ TEST(RangeAndBearingMedia, SayWhetherBodiesAndBoxesBlockMessages) {
 TEST(RowMedium, HasRowsFromTheFirstThatPublishesToTheLast) {
   Space space;
   WhistleMedium medium;
-  for (const char* id : {"a", "b", "c", "d"}) add_robot(space, hal::epuck::kDataSheet, id, 0.0, 0.0, 0.0);
+  for (const char* id : {"a", "b", "c", "d"}) add_robot(space, hal::epuck::kind(), id, 0.0, 0.0, 0.0);
   SpaceStores& s = space.stores();
   s.groups[1].media = {{&medium, true, false}};
   s.groups[2].media = {{&medium, true, false}};

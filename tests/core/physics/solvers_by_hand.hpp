@@ -8,16 +8,16 @@
 #include <vector>
 
 #include "core/physics/solver.hpp"
-#include "hal/spec/epuck.hpp"
+#include "hal/robot/epuck.hpp"
 #include "tests/core/space_by_hand.hpp"
 
 namespace tandem::core {
 
 inline constexpr double kTick_s = 0.1;
-inline constexpr double kRadius_m = hal::epuck::kBodyRadius_m;
+inline const double kRadius_m = hal::epuck::kind().body.radius_m;
 
 /// How far outside a region its mirrored bodies may lie, as the world chooses it for e-pucks.
-inline constexpr double kReach_m = 4.0 * kRadius_m + 0.03;
+inline const double kReach_m = 4.0 * kRadius_m + 0.03;
 
 /// Some regions side by side, a solver each. Robots and objects are added by name; `tick()` does what a step's physics
 /// phase does.
@@ -46,8 +46,8 @@ class SolversByHand {
 
   /// Returns its row.
   std::size_t robot(double x_m, double y_m, double heading_rad, double left_m_s, double right_m_s,
-                    const hal::DataSheet& sheet = hal::epuck::kDataSheet) {
-    add_robot(space, sheet, "r" + std::to_string(bodies().size()), x_m, y_m, heading_rad);
+                    const hal::RobotKind& kind = hal::epuck::kind()) {
+    add_robot(space, kind, "r" + std::to_string(bodies().size()), x_m, y_m, heading_rad);
     bodies().left_m_s.back() = left_m_s;
     bodies().right_m_s.back() = right_m_s;
     return bodies().size() - 1;

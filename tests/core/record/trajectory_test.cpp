@@ -10,7 +10,7 @@
 #include "hal/device/range_and_bearing.hpp"
 #include "hal/device/ring_sensors.hpp"
 #include "hal/device/wheels.hpp"
-#include "hal/spec/epuck.hpp"
+#include "hal/robot/epuck.hpp"
 #include "tests/core/space_by_hand.hpp"
 
 namespace tandem::core {
@@ -21,10 +21,10 @@ class Trajectory : public testing::Test {
   void SetUp() override {
     using hal::port_type;
     ep0_ =
-        add_robot(space_, hal::epuck::kDataSheet, "ep0", 1.0, -2.5, std::numbers::pi,
+        add_robot(space_, hal::epuck::kind(), "ep0", 1.0, -2.5, std::numbers::pi,
                   {&port_type<hal::Proximity>(), &port_type<hal::WheelSpeeds>(), &port_type<hal::RangeAndBearing>()});
-    ep1_ = add_robot(space_, hal::epuck::kDataSheet, "ep1", 0.1234567, 1e-9, -0.5);
-    add_robot(space_, hal::epuck::kDataSheet, "scout", 0.0, 0.0, 0.0);
+    ep1_ = add_robot(space_, hal::epuck::kind(), "ep1", 0.1234567, 1e-9, -0.5);
+    add_robot(space_, hal::epuck::kind(), "scout", 0.0, 0.0, 0.0);
     path_ = testing::TempDir() + "trajectory_test_" + testing::UnitTest::GetInstance()->current_test_info()->name() +
             ".csv";
   }
@@ -135,7 +135,7 @@ TEST_F(Trajectory, ARobotThatComesHasLinesFromThenOn) {
   auto recorder = open({"ep*"});
   ASSERT_TRUE(recorder->record(space_, 0).ok());
   for (const char* id : {"epa", "scouter"}) {
-    add_robot(space_, hal::epuck::kDataSheet, id, 2.0, 0.5, 0.0);
+    add_robot(space_, hal::epuck::kind(), id, 2.0, 0.5, 0.0);
     space_.stores().robots.back().generation = ++space_.stores().generations;
   }
   ASSERT_TRUE(recorder->record(space_, 1).ok());
@@ -152,7 +152,7 @@ TEST_F(Trajectory, OfASpaceThatIsEmptyAtFirstHasThoseWhoCome) {
   auto recorder = open({"late*"});
   ASSERT_NE(recorder, nullptr);
   ASSERT_TRUE(recorder->record(space_, 0).ok());
-  add_robot(space_, hal::epuck::kDataSheet, "late1", 2.0, 0.5, 0.0);
+  add_robot(space_, hal::epuck::kind(), "late1", 2.0, 0.5, 0.0);
   space_.stores().robots.back().generation = ++space_.stores().generations;
   ASSERT_TRUE(recorder->record(space_, 1).ok());
   ASSERT_TRUE(recorder->close().ok());
@@ -209,7 +209,7 @@ TEST_F(Trajectory, ARunWithoutATickHasTheHeaderAlone) {
 }
 
 TEST_F(Trajectory, QuotesIdsThatWouldBreakTheTable) {
-  add_robot(space_, hal::epuck::kDataSheet, "a,\"b\"", 0.0, 0.0, 0.0);
+  add_robot(space_, hal::epuck::kind(), "a,\"b\"", 0.0, 0.0, 0.0);
   auto recorder = open({"a*"});
   ASSERT_TRUE(recorder->record(space_, 0).ok());
   ASSERT_TRUE(recorder->close().ok());

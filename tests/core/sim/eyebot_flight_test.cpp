@@ -11,7 +11,7 @@ namespace {
 using hal::FlightOrder;
 using hal::FlightPhase;
 
-constexpr double kHeight_m = hal::eyebot::kHeight_m;
+const double kHeight_m = hal::eyebot::kind().body.height_m;
 constexpr double kGravity_m_s2 = 9.81;
 
 class EyeBotFlight : public testing::TestWithParam<std::string> {
@@ -98,7 +98,7 @@ TEST_P(EyeBotFlight, TheStrongestThrustRises) {
   command<hal::QuadrotorAttitude>(world, "e").set(0.0, 0.0, 0.0, 5.0);  // it has 2
   steps(world, 15);
   EXPECT_EQ(world->incidents().commands_clamped, 1U);
-  EXPECT_EQ(command<hal::QuadrotorAttitude>(world, "e").thrust, hal::eyebot::kMostThrust);
+  EXPECT_EQ(command<hal::QuadrotorAttitude>(world, "e").thrust, hal::eyebot::kind().flight()->max_thrust);
   const double most_m = 0.5 * kGravity_m_s2 * 0.3 * 0.3;
   EXPECT_GT(pose_of(world, "e").z_m - 0.2, 0.4 * most_m);
   EXPECT_LT(pose_of(world, "e").z_m - 0.2, 1.1 * most_m);
@@ -119,8 +119,8 @@ TEST_P(EyeBotFlight, TakesOffHoversFliesAndLands) {
   world->step();
   EXPECT_EQ(phase(world), FlightPhase::TakingOff);
   const double rise_s = until(world, FlightPhase::Hovering, 5.0);
-  EXPECT_GT(rise_s, 1.0 / hal::eyebot::kClimb_m_s - 0.1);
-  EXPECT_LT(rise_s, 1.0 / hal::eyebot::kClimb_m_s + 1.2);
+  EXPECT_GT(rise_s, 1.0 / hal::eyebot::kind().flight()->climb_m_s - 0.1);
+  EXPECT_LT(rise_s, 1.0 / hal::eyebot::kind().flight()->climb_m_s + 1.2);
   steps(world, 100);
   EXPECT_NEAR(pose_of(world, "e").z_m, 1.0, 0.03);
   EXPECT_NEAR(pose_of(world, "e").x_m, 0.0, 0.02);

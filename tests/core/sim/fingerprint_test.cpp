@@ -161,7 +161,7 @@ MadeWorld mixed_world() {
   choose(scene, "differential_steering", hal::Role::Actuator, "slanted");
   add_footbot(scene, "fb0", 0.0, 0.0);
   add_footbot(scene, "fb1", 0.0, 0.6, 1.0);
-  scene.cylinder(hal::footbot::kBodyRadius_m + 0.11, 0, 0.1).movable(0.2);
+  scene.cylinder(hal::footbot::kind().body.radius_m + 0.11, 0, 0.1).movable(0.2);
   scene.scenario.objects.back().leds.push_back({{0.0, 0.0, 0.1}, {255, 0, 0}});
   scene.box(-1.0, -1.0, 0.3, 0.2);
   MadeWorld world = make(scene);

@@ -2,13 +2,13 @@
 #include "hal/device/flight.hpp"
 #include "hal/device/range_and_bearing.hpp"
 #include "hal/device/ring_sensors.hpp"
-#include "hal/spec/eyebot.hpp"
+#include "hal/robot/eyebot.hpp"
 #include "tests/core/physics/conformance/engines.hpp"
 
 namespace tandem::core {
 namespace {
 
-constexpr double kHeight_m = hal::eyebot::kHeight_m;
+const double kHeight_m = hal::eyebot::kind().body.height_m;
 
 Scene with_flyers(Scene s) {
   s.pilot("fly");
@@ -74,12 +74,12 @@ TEST_P(Flying, StaysBetweenGroundAndCeilingAndOutOfThings) {
     ASSERT_EQ(world->state(), RunState::Running) << world->failure();
     ASSERT_LE(pose_of(world, "up").z_m + kHeight_m, 3.0 + 0.01) << i;
     ASSERT_GE(pose_of(world, "down").z_m, -0.01) << i;
-    ASSERT_LE(pose_of(world, "into").x_m + hal::eyebot::kBodyRadius_m, 1.8 + 0.01) << i;
+    ASSERT_LE(pose_of(world, "into").x_m + hal::eyebot::kind().body.radius_m, 1.8 + 0.01) << i;
     if (i == 60) set_halted(world, "over");
   }
   EXPECT_GT(pose_of(world, "up").z_m + kHeight_m, 2.9);
   EXPECT_LT(pose_of(world, "down").z_m, 0.05);
-  EXPECT_GT(pose_of(world, "into").x_m + hal::eyebot::kBodyRadius_m, 1.7);
+  EXPECT_GT(pose_of(world, "into").x_m + hal::eyebot::kind().body.radius_m, 1.7);
   EXPECT_GT(pose_of(world, "over").x_m, 2.5);
 }
 
@@ -207,7 +207,8 @@ TEST_P(Above, RobotsOnTheGroundAndInTheAirHearButDoNotTouchOrSeeOneAnother) {
   for (std::size_t i = 0; i < heard->count; ++i) {
     if (heard->message(i)[0] != 42) continue;
     from_above = true;
-    const double up_m = pose_of(world, "hover").z_m + hal::eyebot::kSensorHeight_m - hal::epuck::kHeight_m;
+    const double up_m = pose_of(world, "hover").z_m + hal::eyebot::kind().part<hal::RangeAndBearingPart>()->height_m -
+                        hal::epuck::kind().body.height_m;
     EXPECT_NEAR(heard->range_m[i], std::hypot(0.05, up_m), 2e-3);
     EXPECT_NEAR(heard->elevation_rad[i], std::atan2(up_m, 0.05), 5e-3);
   }

@@ -5,6 +5,7 @@
 
 #include "core/space/mechanisms.hpp"
 #include "hal/angle.hpp"
+#include "hal/device/gripper.hpp"
 #include "tests/core/footbots.hpp"
 
 namespace tandem::core {
@@ -17,7 +18,7 @@ using hal::TurretEncoder;
 using hal::WheelSpeeds;
 using testing::HasSubstr;
 
-constexpr double kR = hal::footbot::kBodyRadius_m;
+const double kR = hal::footbot::kind().body.radius_m;
 constexpr double kPi = std::numbers::pi;
 
 class Gripping : public testing::TestWithParam<const char*> {
@@ -78,11 +79,11 @@ TEST_P(Gripping, WhatIsHeldComesAlongBackwardAndStaysWhenLetGo) {
 }
 
 TEST_P(Gripping, ClosedClawsAndShortOnesHoldNothing) {
-  auto world = made(with_cylinder(scene(), hal::footbot::kGripperReach_m + 0.005));
+  auto world = made(with_cylinder(scene(), hal::footbot::kind().part<hal::GripperPart>()->reach_m + 0.005));
   command<GripperDrive>(world, "fb").lock();
   steps(world, 5);
   EXPECT_FALSE(reading<Gripper>(world, "fb").holding) << "half a centimetre too far";
-  auto near = made(with_cylinder(scene(), hal::footbot::kGripperReach_m - 0.005));
+  auto near = made(with_cylinder(scene(), hal::footbot::kind().part<hal::GripperPart>()->reach_m - 0.005));
   command<GripperDrive>(near, "fb").aperture_rad = 0.2 * kPi;
   steps(near, 5);
   EXPECT_FALSE(reading<Gripper>(near, "fb").holding) << "not open enough";
@@ -131,7 +132,7 @@ TEST_P(Gripping, ThePassiveTurretLetsTheBodyTurnBeneathTheLoad) {
   command<WheelSpeeds>(world, "fb").set(-0.05, 0.05);
   steps(world, 20);
   const double turned = pose_of(world, "fb").heading_rad();
-  EXPECT_NEAR(turned, 0.1 / hal::footbot::kWheelBase_m * 2.0, 0.2);
+  EXPECT_NEAR(turned, 0.1 / hal::footbot::kind().drive()->wheel_base_m * 2.0, 0.2);
   EXPECT_NEAR(reading<TurretEncoder>(world, "fb").angle_rad, -turned, 0.05) << "the turret stays on the load";
   EXPECT_NEAR(bearing_of_thing(world), reading<TurretEncoder>(world, "fb").angle_rad, 0.05);
 }

@@ -11,7 +11,7 @@
 #include "hal/device/range_and_bearing.hpp"
 #include "hal/device/ring_sensors.hpp"
 #include "hal/device/wheels.hpp"
-#include "hal/spec/epuck.hpp"
+#include "hal/robot/epuck.hpp"
 #include "tests/core/footbots.hpp"
 #include "tests/core/scenes.hpp"
 
@@ -70,8 +70,8 @@ TEST_P(Runtime, AnAddedRobotDrivesSensesAndIsSeen) {
   for (int i = 0; i < 3; ++i) world->step();
   Space& space = world->space();
   const RobotId old = space.find_robot("old");
-  EXPECT_FLOAT_EQ(nearest_m(space, old), static_cast<float>(hal::epuck::kProximityRange_m));
-  const double x_m = space.pose(old).x_m + 2.0 * hal::epuck::kBodyRadius_m + 0.05;
+  EXPECT_FLOAT_EQ(nearest_m(space, old), static_cast<float>(hal::epuck::kind().part<hal::ProximityPart>()->range_m));
+  const double x_m = space.pose(old).x_m + 2.0 * hal::epuck::kind().body.radius_m + 0.05;
   const auto added = space.add_robot(at("new", x_m, 0, std::numbers::pi));  // face to face
   ASSERT_TRUE(added.ok()) << added.error().message;
   EXPECT_EQ(space.robot_count(), 2U);
@@ -100,7 +100,7 @@ TEST_P(Runtime, AnAddedRobotBumpsIntoOthers) {
   const Pose a = space.pose(space.find_robot("new"));
   const Pose b = space.pose(space.find_robot("old"));
   EXPECT_GT(a.x_m, 0.2);
-  EXPECT_GT(std::hypot(a.x_m - b.x_m, a.y_m - b.y_m), 2.0 * hal::epuck::kBodyRadius_m - 2e-3);
+  EXPECT_GT(std::hypot(a.x_m - b.x_m, a.y_m - b.y_m), 2.0 * hal::epuck::kind().body.radius_m - 2e-3);
 }
 
 TEST(AddRobot, SaysWhatIsWrongAndChangesNothing) {
@@ -259,7 +259,7 @@ TEST_P(Runtime, AFootBotComesIntoAUsedRowWithEmptyClaws) {
     EXPECT_EQ(world->state(), RunState::Running) << world->failure();
     return;
   }
-  s.cylinder(hal::footbot::kBodyRadius_m + 0.11, 0, 0.1).movable(0.2);
+  s.cylinder(hal::footbot::kind().body.radius_m + 0.11, 0, 0.1).movable(0.2);
   auto world = make(s);
   ASSERT_TRUE(world.world) << world.all_problems();
   world->start();
@@ -427,7 +427,7 @@ TEST_P(Runtime, ABoxIsSeenWhenItComesAndNoMoreWhenItIsGone) {
   world->step();
   Space& space = world->space();
   const RobotId a = space.find_robot("a");
-  const auto range = static_cast<float>(hal::epuck::kProximityRange_m);
+  const auto range = static_cast<float>(hal::epuck::kind().part<hal::ProximityPart>()->range_m);
   EXPECT_FLOAT_EQ(nearest_m(space, a), range);
   const auto wall = space.add_object(box("wall", 0.09, 0, 0.02, 0.5));
   ASSERT_TRUE(wall.ok()) << wall.error().message;
@@ -458,7 +458,7 @@ TEST_P(Runtime, ANewBoxStopsRobots) {
   for (int i = 0; i < 5; ++i) world->step();
   ASSERT_TRUE(world->space().add_object(box("wall", 0.5, 0, 0.2, 1.0)).ok());
   for (int i = 0; i < 80; ++i) world->step();
-  EXPECT_LT(world->space().pose(world->space().robot(0)).x_m, 0.4 - hal::epuck::kBodyRadius_m + 2e-3);
+  EXPECT_LT(world->space().pose(world->space().robot(0)).x_m, 0.4 - hal::epuck::kind().body.radius_m + 2e-3);
   world->space().remove_object(world->space().find_object("wall"));
   for (int i = 0; i < 60; ++i) world->step();
   EXPECT_GT(world->space().pose(world->space().robot(0)).x_m, 0.5);
@@ -514,7 +514,7 @@ TEST_P(Runtime, AMovableBoxIsPushedThrownMadeHeavierAndFixed) {
   EXPECT_THAT(error_of(space.set_object_velocity(id.value(), {})), HasSubstr("not movable"));
   for (int i = 0; i < 20; ++i) world->step();
   EXPECT_EQ(space.objects()[id.value().index].x_m, fixed.x_m);
-  EXPECT_LT(space.pose(space.robot(0)).x_m, fixed.x_m - 0.03 - hal::epuck::kBodyRadius_m + 2e-3);
+  EXPECT_LT(space.pose(space.robot(0)).x_m, fixed.x_m - 0.03 - hal::epuck::kind().body.radius_m + 2e-3);
 
   fixed.movable = true;
   fixed.y_m = 1.0;

@@ -189,7 +189,7 @@ TEST_P(Going, BackAndThenOnToAMomentOfAnotherBranch) {
 TEST_P(Going, BackWithAFootBotThatSwingsItsLoad) {
   if (!test::engine_traits(GetParam()).forces) GTEST_SKIP() << "an engine without masses";
   Scene scene = footbot_scene(GetParam());
-  scene.cylinder(hal::footbot::kBodyRadius_m + 0.11, 0, 0.1).movable(0.2);
+  scene.cylinder(hal::footbot::kind().body.radius_m + 0.11, 0, 0.1).movable(0.2);
   choose(scene, "differential_steering", hal::Role::Actuator, "slanted");
   choose(scene, "odometry", hal::Role::Sensor, "noisy");
   add_footbot(scene, "a", 0, 0);

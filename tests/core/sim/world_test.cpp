@@ -6,7 +6,7 @@
 
 #include "core/device/proximity.hpp"
 #include "hal/device/wheels.hpp"
-#include "hal/spec/epuck.hpp"
+#include "hal/robot/epuck.hpp"
 #include "tests/core/scenes.hpp"
 
 namespace tandem::core {
@@ -25,8 +25,8 @@ TEST(World, DrivesTheCircleThatTheWheelsAsk) {
   // Radius of the arc: base / 2 * (r + l) / (r - l) [Siegwart 2011, ch. 3].
   auto world = make(Scene().param("left", "0.02").param("right", "0.06").robot("a", 0, 0));
   ASSERT_TRUE(world.world) << world.all_problems();
-  const double radius = 0.5 * hal::epuck::kWheelBase_m * 0.08 / 0.04;
-  const double turn_rad_s = 0.04 / hal::epuck::kWheelBase_m;
+  const double radius = 0.5 * hal::epuck::kind().drive()->wheel_base_m * 0.08 / 0.04;
+  const double turn_rad_s = 0.04 / hal::epuck::kind().drive()->wheel_base_m;
   world->start();
   world->step();
   for (int tick = 1; tick <= 300; ++tick) {
@@ -46,7 +46,7 @@ TEST(World, ExactAlsoWithCoarseTicks) {
   ASSERT_TRUE(world.world) << world.all_problems();
   run(*world.world, 4);
   const Pose pose = world->space().pose(world->space().robot(0));
-  const double angle = 3.0 * 0.2 / hal::epuck::kWheelBase_m;
+  const double angle = 3.0 * 0.2 / hal::epuck::kind().drive()->wheel_base_m;
   EXPECT_NEAR(pose.cos_h, std::cos(angle), 1e-9);
   EXPECT_NEAR(pose.sin_h, std::sin(angle), 1e-9);
 }
@@ -60,7 +60,7 @@ TEST(World, AWallStopsARobot) {
     world->step();
     farthest = std::max(farthest, world->space().pose(world->space().robot(0)).x_m);
   }
-  EXPECT_LE(farthest, 0.9 - hal::epuck::kBodyRadius_m + 1e-12);
+  EXPECT_LE(farthest, 0.9 - hal::epuck::kind().body.radius_m + 1e-12);
   EXPECT_GT(farthest, 0.86);
 }
 
@@ -92,7 +92,7 @@ TEST(World, RobotsThatMeetHeadOnStopEachOther) {
   run(*world.world, 100);
   const Pose a = world->space().pose(world->space().robot(0));
   const Pose b = world->space().pose(world->space().robot(1));
-  EXPECT_NEAR(b.x_m - a.x_m, 2 * hal::epuck::kBodyRadius_m, 1e-9);
+  EXPECT_NEAR(b.x_m - a.x_m, 2 * hal::epuck::kind().body.radius_m, 1e-9);
   EXPECT_NEAR(a.x_m, -b.x_m, 1e-9);  // neither wins
 }
 
@@ -106,10 +106,10 @@ TEST(World, ACrowdIsPushedApartAndStaysInsideItsWalls) {
   double deepest = 0.0;
   for (std::size_t i = 0; i < space.robot_count(); ++i) {
     const Pose a = space.pose(space.robot(i));
-    EXPECT_LE(std::fabs(a.x_m), 0.7 - hal::epuck::kBodyRadius_m + 1e-9);
+    EXPECT_LE(std::fabs(a.x_m), 0.7 - hal::epuck::kind().body.radius_m + 1e-9);
     for (std::size_t j = 0; j < i; ++j) {
       const Pose b = space.pose(space.robot(j));
-      deepest = std::max(deepest, 2 * hal::epuck::kBodyRadius_m - std::hypot(a.x_m - b.x_m, a.y_m - b.y_m));
+      deepest = std::max(deepest, 2 * hal::epuck::kind().body.radius_m - std::hypot(a.x_m - b.x_m, a.y_m - b.y_m));
     }
   }
   EXPECT_LT(deepest, 0.005);
@@ -186,7 +186,7 @@ TEST(World, CommandsThatAreNoNumbersStopTheWheelsAndAreCounted) {
   const auto* wheels = space.port<hal::WheelSpeeds>(space.robot(0));
   EXPECT_EQ(wheels->left_m_s, 0.0);
   // Two clamped commands: the faster wheel at its limit, the other in proportion.
-  const double way = 2 * 0.1 * 0.75 * hal::epuck::kDataSheet.max_wheel_speed_m_s;
+  const double way = 2 * 0.1 * 0.75 * hal::epuck::kind().drive()->max_speed_m_s;
   const Pose pose = space.pose(space.robot(0));
   EXPECT_NEAR(std::hypot(pose.x_m, pose.y_m), way, 1e-3);
   ASSERT_FALSE(world->incidents().first.empty());

@@ -4,8 +4,8 @@
 #include <gmock/gmock.h>
 
 #include "core/space/mechanisms.hpp"
-#include "hal/spec/epuck.hpp"
-#include "hal/spec/footbot.hpp"
+#include "hal/robot/epuck.hpp"
+#include "hal/robot/footbot.hpp"
 #include "tests/core/space_by_hand.hpp"
 
 namespace tandem::core {
@@ -40,8 +40,8 @@ TEST(Columns, OfOneNameAndTwoLayoutsAreRefused) {
 
 TEST(Columns, HaveRowsForRobotsThatNeedThemAlone) {
   Space space;
-  const RobotId plain = add_robot(space, hal::epuck::kDataSheet, "ep", 0.0, 0.0, 0.0);
-  const RobotId turning = add_robot(space, hal::footbot::kDataSheet, "fb", 1.0, 0.0, 0.0);
+  const RobotId plain = add_robot(space, hal::epuck::kind(), "ep", 0.0, 0.0, 0.0);
+  const RobotId turning = add_robot(space, hal::footbot::kind(), "fb", 1.0, 0.0, 0.0);
   add_state<TurretState>(space, turning).angle_rad = 0.5;
   EXPECT_EQ(space.state<TurretState>(plain), nullptr);
   EXPECT_EQ(space.turret_rad(plain), 0.0);
@@ -55,7 +55,7 @@ TEST(Columns, HaveRowsForRobotsThatNeedThemAlone) {
 
 TEST(Columns, StartRobotsAsTheirDeviceSays) {
   Space space;
-  const RobotId robot = add_robot(space, hal::epuck::kDataSheet, "ep", 0.0, 0.0, 0.0);
+  const RobotId robot = add_robot(space, hal::epuck::kind(), "ep", 0.0, 0.0, 0.0);
   ChargeState& state = add_state<ChargeState>(space, robot);
   EXPECT_EQ(state.charge, 0.0);
   KeptColumn full = keeps(ChargeState{0.75});

@@ -7,8 +7,8 @@
 
 #include "core/space/stores.hpp"
 #include "hal/device/leds.hpp"
-#include "hal/spec/epuck.hpp"
-#include "hal/spec/footbot.hpp"
+#include "hal/robot/epuck.hpp"
+#include "hal/robot/footbot.hpp"
 #include "tests/core/space_by_hand.hpp"
 #include "tests/core/view/well_formed.hpp"
 
@@ -21,8 +21,8 @@ void set_up(Space& space) {
   s.max_x_m = 2.0;
   s.min_y_m = -1.0;
   s.max_y_m = 3.0;
-  add_robot(space, hal::epuck::kDataSheet, "ep0", 0.5, 0.25, 1.0, {&hal::port_type<hal::RingLeds>()});
-  const RobotId real = add_robot(space, hal::epuck::kDataSheet, "gina", -1.0, 0.0, -3.0);
+  add_robot(space, hal::epuck::kind(), "ep0", 0.5, 0.25, 1.0, {&hal::port_type<hal::RingLeds>()});
+  const RobotId real = add_robot(space, hal::epuck::kind(), "gina", -1.0, 0.0, -3.0);
   space.set_external(real, true);
 }
 
@@ -48,10 +48,10 @@ TEST(Picture, TakesArenaRobotsAndTitleFromTheSpace) {
 TEST(Picture, TakesTurretsAndGrippersFromTheSpace) {
   Space space;
   set_up(space);
-  add_robot(space, hal::footbot::kDataSheet, "fb", 1.0, 1.0, 0.0, {&hal::port_type<hal::RingLeds>()});
+  add_robot(space, hal::footbot::kind(), "fb", 1.0, 1.0, 0.0, {&hal::port_type<hal::RingLeds>()});
   add_state<TurretState>(space, space.robot(2)).angle_rad = -0.75;
   add_state<GripState>(space, space.robot(2)).joint = 0;
-  space.port<hal::RingLeds>(space.robot(2))->set(hal::footbot::kBeacon, hal::kBlue);
+  space.port<hal::RingLeds>(space.robot(2))->set(hal::footbot::kind().part<hal::LedsPart>()->beacon_led(), hal::kBlue);
   const Drawing d = drawing_of(space, {});
   ASSERT_EQ(d.kinds.size(), 2U);
   EXPECT_EQ(d.kinds[0].gripper_reach_m, 0.0);

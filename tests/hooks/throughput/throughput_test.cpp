@@ -70,12 +70,12 @@ TEST(ThroughputHook, CountsTheArrivalsOfTheWindow) {
 TEST(ThroughputHook, WaitsUntilTheRobotLetsGo) {
   Counted c;
   add_footbot(c.scene, "fb", -1.4, 0.0);
-  c.object(-1.4 + hal::footbot::kBodyRadius_m + 0.06 + 0.01, 0.0);
+  c.object(-1.4 + hal::footbot::kind().body.radius_m + 0.06 + 0.01, 0.0);
   c.begin();
   command<hal::GripperDrive>(c.world, "fb").unlock();
   c.put(0, 0.5, 0.0);
   steps(c.world, 2);
-  c.put(0, -1.4 + hal::footbot::kBodyRadius_m + 0.06 + 0.01 + 0.5, 0.0);  // outside still
+  c.put(0, -1.4 + hal::footbot::kind().body.radius_m + 0.06 + 0.01 + 0.5, 0.0);  // outside still
   Space& space = c.world->space();
   space.set_pose(space.find_robot("fb"), Pose::at(-0.9, 0.0, 0.0));
   command<hal::GripperDrive>(c.world, "fb").lock();

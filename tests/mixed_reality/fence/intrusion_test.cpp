@@ -4,17 +4,17 @@
 #include <gtest/gtest.h>
 #include <numbers>
 
-#include "hal/spec/epuck.hpp"
+#include "hal/robot/epuck.hpp"
 #include "tests/core/space_by_hand.hpp"
 
 namespace tandem::mixed_reality {
 namespace {
 
-constexpr double kR = hal::epuck::kBodyRadius_m;
+const double kR = hal::epuck::kind().body.radius_m;
 
 class Intruder : public testing::Test {
  protected:
-  Intruder() { robot_ = core::add_robot(space_, hal::epuck::kDataSheet, "ep0", 0.0, 0.0, 0.0); }
+  Intruder() { robot_ = core::add_robot(space_, hal::epuck::kind(), "ep0", 0.0, 0.0, 0.0); }
   core::Object& box(double x_m, double y_m, double half_x_m, double half_y_m) {
     core::Object& o = core::add_object(space_, core::Object::Kind::Box, x_m, y_m, 0.0, 0.1);
     o.half_x_m = half_x_m;
@@ -51,7 +51,7 @@ TEST_F(Intruder, ABoxMayStandAskew) {
 }
 
 TEST_F(Intruder, RobotsCountButNotTwinsOfRealOnes) {
-  const core::RobotId other = core::add_robot(space_, hal::epuck::kDataSheet, "sim", 0.0, 2.0 * kR - 0.02, 0.0);
+  const core::RobotId other = core::add_robot(space_, hal::epuck::kind(), "sim", 0.0, 2.0 * kR - 0.02, 0.0);
   const Intrusion beside = at(0.0, 0.0);
   EXPECT_NEAR(beside.depth_m, 0.02, 1e-6);
   EXPECT_NEAR(beside.out_y, -1.0, 1e-9);

@@ -6,7 +6,7 @@
 #include "hal/device/range_and_bearing.hpp"
 #include "hal/device/ring_sensors.hpp"
 #include "hal/device/wheels.hpp"
-#include "hal/spec/epuck.hpp"
+#include "hal/robot/epuck.hpp"
 #include "tests/core/space_by_hand.hpp"
 
 namespace tandem::mixed_reality {
@@ -18,7 +18,7 @@ using hal::Validity;
 class FusedPorts : public testing::Test {
  protected:
   void SetUp() override {
-    robot_ = core::add_robot(space_, hal::epuck::kDataSheet, "ep0", 0.0, 0.0, 0.0,
+    robot_ = core::add_robot(space_, hal::epuck::kind(), "ep0", 0.0, 0.0, 0.0,
                              {&port_type<hal::WheelSpeeds>(), &port_type<hal::Proximity>(), &port_type<hal::Ground>(),
                               &port_type<hal::RangeAndBearing>(), &port_type<hal::Accelerometer>(),
                               &port_type<hal::Clock>(), &port_type<hal::WheelEncoders>()});

@@ -55,7 +55,7 @@ class ScriptedBridge final : public bridges::RobotBridge, private hal::Robot {
 
  private:
   std::string_view id() const noexcept override { return "ep0"; }
-  const hal::DataSheet& data_sheet() const noexcept override { return sheet_; }
+  const hal::RobotKind& kind() const noexcept override { return kind_; }
   std::uint64_t run_seed() const noexcept override { return 0; }
   void* take(const hal::PortType& type) override {
     void* data = port(type);
@@ -63,7 +63,7 @@ class ScriptedBridge final : public bridges::RobotBridge, private hal::Robot {
     taken_.push_back({&type, data});
     return data;
   }
-  hal::DataSheet sheet_;
+  hal::RobotKind kind_;
   std::vector<bridges::PortView> taken_;
 };
 

@@ -14,7 +14,7 @@ namespace tandem::mixed_reality {
 namespace {
 
 constexpr hal::TimeNs kMs = hal::kNsPerMs;
-constexpr double kDiameter_m = 2.0 * hal::epuck::kBodyRadius_m;
+const double kDiameter_m = 2.0 * hal::epuck::kind().body.radius_m;
 const std::atomic<bool> kGoOn{false};
 
 /// Makes the robot with this id a real one.
@@ -247,7 +247,7 @@ TEST_F(MixedRun, CommandsThatAreNoNumbersNeverReachTheRobot) {
   EXPECT_TRUE(has_driven("ep0"));
   for (const auto& r : bodies_["ep0"].received) {
     EXPECT_TRUE(std::isfinite(r.wheels.left_m_s) && std::isfinite(r.wheels.right_m_s));
-    EXPECT_LE(std::fabs(r.wheels.left_m_s), hal::epuck::kDataSheet.max_wheel_speed_m_s + 1e-12);
+    EXPECT_LE(std::fabs(r.wheels.left_m_s), hal::epuck::kind().drive()->max_speed_m_s + 1e-12);
   }
 }
 

@@ -5,6 +5,7 @@
 #include <condition_variable>
 #include <gtest/gtest.h>
 #include <mutex>
+#include <numbers>
 #include <thread>
 #include <unistd.h>
 
@@ -12,7 +13,7 @@
 #include "bridges/epuck/bridge.hpp"
 #include "bridges/epuck_emulator/emulator.hpp"
 #include "bridges/link/link_text.hpp"
-#include "hal/spec/epuck.hpp"
+#include "hal/robot/epuck.hpp"
 #include "mixed_reality/session/mixed_session.hpp"
 #include "mixed_reality/settings/bridge_request.hpp"
 #include "tests/bridges/catalog.hpp"
@@ -23,7 +24,7 @@ namespace {
 
 namespace emulator = bridges::epuck_emulator;
 const std::atomic<bool> kGoOn{false};
-constexpr double kDiameter_m = 2.0 * hal::epuck::kBodyRadius_m;
+const double kDiameter_m = 2.0 * hal::epuck::kind().body.radius_m;
 
 /// An emulated e-puck on a pseudo-terminal, from its making to its end.
 class EmulatedEpuck {
@@ -247,7 +248,7 @@ TEST_F(FourRealEpucks, TheOneThatWasCutOffIsHeldAndGetsUnderWayAgainFromZero) {
   EXPECT_GE(report.conversation.resynchronised, 1U);
   // From every standstill the speed grows in small steps: 0.25 m/s2 in the 50 ms of a tick, doubled for a tick that
   // came late.
-  const auto largest_step = static_cast<std::int64_t>(2.0 * 0.25 * 0.05 / hal::epuck::kMetresPerStep) + 2;
+  const auto largest_step = static_cast<std::int64_t>(2.0 * 0.25 * 0.05 / (0.041 * std::numbers::pi / 1000)) + 2;
   const auto wheels = robots_["is_cut"]->wheels();
   for (std::size_t i = 1; i < wheels.size(); ++i) {
     EXPECT_LE(wheels[i].left - wheels[i - 1].left, largest_step) << i;

@@ -12,6 +12,7 @@
 #include "hal/device/wheels.hpp"
 #include "hal/element.hpp"
 #include "hal/element_options.hpp"
+#include "hal/robot/robots.hpp"
 #include "mixed_reality/safety/battery_watch.hpp"
 #include "tests/bridges/catalog.hpp"
 
@@ -157,8 +158,12 @@ struct Charge {
 /// How a battery of this kind is after so long at that.
 class BatteryOf : public testing::TestWithParam<Charge> {};
 
-TEST_P(BatteryOf, IsLowWhereItsDataSheetSaysSo) {
-  BatteryWatch watch(battery_limit(test::bridges(), GetParam().kind));
+TEST_P(BatteryOf, IsLowWhereItsPartSaysSo) {
+  hal::Catalog robots;
+  ASSERT_TRUE(robots.add_from("tests", hal::register_robots).ok());
+  const auto* const kind = robots.find<hal::RobotKind>(GetParam().kind);
+  ASSERT_NE(kind, nullptr);
+  BatteryWatch watch(*kind);
   hal::Battery battery;
   battery.validity = hal::Validity::Fresh;
   battery.supply_V = GetParam().supply_V;

@@ -5,14 +5,14 @@
 #include <limits>
 #include <numbers>
 
-#include "hal/spec/epuck.hpp"
+#include "hal/robot/epuck.hpp"
 
 namespace tandem::mixed_reality {
 namespace {
 
 using std::numbers::pi;
 
-constexpr double kBase_m = hal::epuck::kWheelBase_m;
+const double kBase_m = hal::epuck::kind().drive()->wheel_base_m;
 constexpr hal::TimeNs kHour = 3'600 * hal::kNsPerSecond;
 constexpr hal::TimeNs kTick = 100 * hal::kNsPerMs;
 
@@ -35,7 +35,7 @@ class WheelOdometry : public testing::Test {
   static Moment moment(hal::TimeNs now_ns) { return {now_ns, now_ns + kHour}; }
 
   hal::WheelEncoders encoders_;
-  Odometry odometry_{at(0.3, -0.2, 0.7), hal::epuck::kDataSheet, encoders_};
+  Odometry odometry_{at(0.3, -0.2, 0.7), *hal::epuck::kind().drive(), encoders_};
   hal::TimeNs now_ = 0;
 };
 

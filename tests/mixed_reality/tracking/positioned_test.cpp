@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 #include <limits>
 
-#include "hal/spec/eyebot.hpp"
+#include "hal/robot/eyebot.hpp"
 
 namespace tandem::mixed_reality {
 namespace {
@@ -13,7 +13,7 @@ constexpr hal::TimeNs kS = hal::kNsPerSecond;
 
 TEST(PositionedRobot, IsWhereItSaysWhenItSaysSo) {
   hal::Positioning places;
-  Positioned source(core::Pose::at(1.0, 1.0, 0.0), places, hal::eyebot::kDataSheet);
+  Positioned source(core::Pose::at(1.0, 1.0, 0.0), places, hal::eyebot::kind());
   TrackedPose tracked = source.latch({5 * kS, 105 * kS});
   EXPECT_FALSE(tracked.known);
   EXPECT_EQ(tracked.pose.x_m, 1.0);
@@ -37,7 +37,7 @@ TEST(PositionedRobot, StaysWhereItWasWhenItSaysNothingNew) {
   places.validity = hal::Validity::Fresh;
   places.taken_ns = kS;
   places.p_WB = {2.0, 0.0, 0.0};
-  Positioned source({}, places, hal::eyebot::kDataSheet);
+  Positioned source({}, places, hal::eyebot::kind());
   (void)source.latch({kS, 101 * kS});
   places.validity = hal::Validity::Stale;
   const TrackedPose tracked = source.latch({3 * kS, 103 * kS});
@@ -49,7 +49,7 @@ TEST(PositionedRobot, IsNotBelievedWhenItIsNowhere) {
   hal::Positioning places;
   places.validity = hal::Validity::Fresh;
   places.p_WB = {std::numeric_limits<double>::quiet_NaN(), 0.0, 0.0};
-  Positioned source(core::Pose::at(1.0, 0.0, 0.0), places, hal::eyebot::kDataSheet);
+  Positioned source(core::Pose::at(1.0, 0.0, 0.0), places, hal::eyebot::kind());
   const TrackedPose tracked = source.latch({kS, 101 * kS});
   EXPECT_FALSE(tracked.known);
   EXPECT_EQ(tracked.pose.x_m, 1.0);
@@ -67,7 +67,7 @@ class Said : public testing::Test {
     return source_.latch({now_ns_, now_ns_ + 100 * kS});
   }
   hal::Positioning places_;
-  Positioned source_{{}, places_, hal::eyebot::kDataSheet};
+  Positioned source_{{}, places_, hal::eyebot::kind()};
   hal::TimeNs now_ns_ = 0;
 };
 

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "hal/spec/footbot.hpp"
+#include "hal/robot/footbot.hpp"
 
 namespace tandem::mixed_reality {
 namespace {
@@ -28,7 +28,7 @@ class WatchedWheels : public testing::Test {
   }
   hal::WheelEncoders encoders_;
   TrackedPose tracked_{core::Pose::at(0.0, 0.0, 0.0), 5 * hal::kNsPerSecond, true};
-  SlipWatch watch_{encoders_, hal::footbot::kDataSheet.wheel_base_m};
+  SlipWatch watch_{encoders_, hal::footbot::kind().drive()->wheel_base_m};
 };
 
 TEST_F(WatchedWheels, ThatMoveTheRobotAreWell) {

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "core/space/stores.hpp"
-#include "hal/spec/eyebot.hpp"
+#include "hal/robot/eyebot.hpp"
 #include "mixed_reality/tracking/positioned.hpp"
 #include "mixed_reality/twin/twin.hpp"
 #include "tests/core/space_by_hand.hpp"
@@ -62,7 +62,7 @@ class FakeFlyer final : public bridges::RobotBridge, private hal::Robot {
 
  private:
   std::string_view id() const noexcept override { return "fake"; }
-  const hal::DataSheet& data_sheet() const noexcept override { return hal::eyebot::kDataSheet; }
+  const hal::RobotKind& kind() const noexcept override { return hal::eyebot::kind(); }
   std::uint64_t run_seed() const noexcept override { return 0; }
   void* take(const hal::PortType& type) override { return port(type); }
 
@@ -81,13 +81,13 @@ class FlyingTwin : public testing::Test {
     s.max_x_m = s.max_y_m = 2.0;
     s.max_z_m = 2.0;
     s.bodies.has_motion = true;
-    robot_ = core::add_robot(space_, hal::eyebot::kDataSheet, "eb0", 0.0, 0.0, 0.0,
+    robot_ = core::add_robot(space_, hal::eyebot::kind(), "eb0", 0.0, 0.0, 0.0,
                              {&port_type<hal::QuadrotorSpeed>(), &port_type<hal::QuadrotorPosition>()});
     body_.p_m = {0.0, 0.0, 1.0};
     auto real = std::make_unique<FakeFlyer>(body_);
     auto poses = std::make_unique<Positioned>(
         space_.pose(robot_), *static_cast<const hal::Positioning*>(real->port(port_type<hal::Positioning>())),
-        hal::eyebot::kDataSheet);
+        hal::eyebot::kind());
     twin_ = std::make_unique<Twin>(space_, robot_, std::move(real), std::move(poses), TwinParams{}, log_);
     tick(RunPhase::Waiting);
   }
@@ -130,8 +130,8 @@ TEST_F(FlyingTwin, ARobotAboveTheArenaIsBroughtBack) {
 TEST_F(FlyingTwin, DoesNotRiseThroughTheCeilingNorLeaveWithItsRim) {
   command = [this] { space_.port<hal::QuadrotorPosition>(robot_)->set(5.0, 0.0, 5.0, 0.0); };
   ticks(400);
-  EXPECT_NEAR(body_.position.target[2], 2.0 - hal::eyebot::kDataSheet.body_height_m, 1e-9);
-  EXPECT_NEAR(body_.position.target[0], 2.0 - hal::eyebot::kDataSheet.body_radius_m, 1e-9);
+  EXPECT_NEAR(body_.position.target[2], 2.0 - hal::eyebot::kind().body.height_m, 1e-9);
+  EXPECT_NEAR(body_.position.target[0], 2.0 - hal::eyebot::kind().body.radius_m, 1e-9);
 }
 
 TEST_F(FlyingTwin, ATargetFarAwayIsApproachedOnTheRamp) {

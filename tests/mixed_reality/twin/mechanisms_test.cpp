@@ -5,8 +5,10 @@
 #include <numbers>
 
 #include "core/space/stores.hpp"
-#include "hal/spec/eyebot.hpp"
-#include "hal/spec/footbot.hpp"
+#include "hal/device/pan_tilt.hpp"
+#include "hal/device/turret.hpp"
+#include "hal/robot/eyebot.hpp"
+#include "hal/robot/footbot.hpp"
 #include "tests/core/space_by_hand.hpp"
 
 namespace tandem::mixed_reality {
@@ -20,7 +22,7 @@ class FootbotMechanisms : public testing::Test {
  protected:
   FootbotMechanisms() {
     robot_ = core::add_robot(
-        space_, hal::footbot::kDataSheet, "fb", 0.0, 0.0, 0.0,
+        space_, hal::footbot::kind(), "fb", 0.0, 0.0, 0.0,
         {&port_type<hal::TurretDrive>(), &port_type<hal::GripperDrive>(), &port_type<hal::ScannerDrive>(),
          &port_type<hal::DistanceScanner>(), &port_type<hal::Proximity>(), &port_type<hal::RangeAndBearing>()});
     core::add_state<core::TurretState>(space_, robot_);
@@ -66,7 +68,8 @@ TEST_F(FootbotMechanisms, GoWhereTheyWereToldWhereNothingMeasuresThem) {
   space_.port<hal::TurretDrive>(robot_)->go_to(0.3);
   space_.port<hal::GripperDrive>(robot_)->lock();
   mechanisms.follow(kTick_s);
-  EXPECT_NEAR(space_.turret_rad(robot_), std::min(0.3, hal::footbot::kTurretTurn_rad_s * kTick_s), 1e-12);
+  EXPECT_NEAR(space_.turret_rad(robot_),
+              std::min(0.3, hal::footbot::kind().part<hal::TurretPart>()->turn_rad_s * kTick_s), 1e-12);
   for (int i = 0; i < 20; ++i) mechanisms.follow(kTick_s);
   EXPECT_NEAR(space_.turret_rad(robot_), 0.3, 1e-12);
   space_.port<hal::TurretDrive>(robot_)->turn(-0.5);
@@ -115,7 +118,7 @@ TEST_F(FootbotMechanisms, SensesOfItsOwnAreThoseThatEverMeasured) {
 TEST(EyebotMechanisms, TheHeadFollowsItsEncoderAndTheLaserItsCommand) {
   core::Space space;
   const core::RobotId robot =
-      core::add_robot(space, hal::eyebot::kDataSheet, "eb", 0.0, 0.0, 0.0, {&port_type<hal::PanTiltDrive>()});
+      core::add_robot(space, hal::eyebot::kind(), "eb", 0.0, 0.0, 0.0, {&port_type<hal::PanTiltDrive>()});
   const core::HeadState& head = core::add_state<core::HeadState>(space, robot);
   space.set_external(robot, true);
   hal::PanTiltEncoder encoder;
@@ -125,7 +128,7 @@ TEST(EyebotMechanisms, TheHeadFollowsItsEncoderAndTheLaserItsCommand) {
   space.port<hal::PanTiltDrive>(robot)->laser = true;
   space.port<hal::PanTiltDrive>(robot)->pan_rad = 1.0;
   mechanisms.follow(kTick_s);
-  EXPECT_NEAR(head.pan_rad, std::min(1.0, hal::eyebot::kDataSheet.camera_head.turn_rad_s * kTick_s), 1e-12);
+  EXPECT_NEAR(head.pan_rad, std::min(1.0, hal::eyebot::kind().part<hal::HeadPart>()->turn_rad_s * kTick_s), 1e-12);
   encoder = {};
   encoder.validity = hal::Validity::Fresh;
   encoder.pan_rad = -0.4;

@@ -17,12 +17,12 @@ constexpr hal::TimeNs kTick = 100 * hal::kNsPerMs;
 class TwinTest : public testing::Test {
  protected:
   void SetUp() override {
-    robot_ = core::add_robot(space_, hal::epuck::kDataSheet, "ep0", 0.0, 0.0, 0.0,
+    robot_ = core::add_robot(space_, hal::epuck::kind(), "ep0", 0.0, 0.0, 0.0,
                              {&port_type<hal::Proximity>(), &port_type<hal::WheelSpeeds>(), &port_type<hal::RingLeds>(),
                               &port_type<hal::Positioning>()});
     auto real = std::make_unique<FakeRobot>(body_);
     auto poses = std::make_unique<Odometry>(
-        space_.pose(robot_), hal::epuck::kDataSheet,
+        space_.pose(robot_), *hal::epuck::kind().drive(),
         *static_cast<const hal::WheelEncoders*>(real->port(port_type<hal::WheelEncoders>())));
     TwinParams params;
     params.rearm = {.settle_s = 0.2, .ramp_m_s2 = 0.2};
@@ -319,7 +319,7 @@ TEST_F(TwinTest, DrivesIntoAVirtualWallNoFartherAndSaysSo) {
   wall.half_x_m = 0.05;
   wall.half_y_m = 0.5;
   for (int i = 0; i < 100; ++i) tick(0.1, 0.1);
-  const double touch_m = 0.35 - hal::epuck::kDataSheet.body_radius_m;
+  const double touch_m = 0.35 - hal::epuck::kind().body.radius_m;
   EXPECT_GT(body_.pose.x_m, touch_m + Intrusion::kTouch_m);
   EXPECT_LT(body_.pose.x_m, touch_m + Intrusion::kTouch_m + 0.02);  // two ticks
   EXPECT_EQ(twin_->counts().intrusions, 1U);

@@ -56,7 +56,7 @@ Scene busy_scene(const Way& way) {
     for (int i = 0; i < kFootbots; ++i) {
       add_footbot(s, "fb" + std::to_string(i), -1.5 + 1.4 * i, 1.5);
       s.scenario.robots.back().controller = s.scenario.controllers.size() - 1;
-      s.box(-1.5 + 1.4 * i + hal::footbot::kBodyRadius_m + 0.06, 1.5, 0.1, 0.1, 0.0, 0.2).movable(0.15);
+      s.box(-1.5 + 1.4 * i + hal::footbot::kind().body.radius_m + 0.06, 1.5, 0.1, 0.1, 0.0, 0.2).movable(0.15);
     }
   }
   return s;

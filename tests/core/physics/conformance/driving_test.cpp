@@ -1,4 +1,7 @@
 // What every engine promises of a robot that drives freely.
+#include <gmock/gmock.h>
+
+#include "hal/check.hpp"
 #include "hal/device/wheels.hpp"
 #include "tests/core/physics/conformance/engines.hpp"
 
@@ -171,7 +174,7 @@ TEST_P(Driving, StopsWhenItsWheelsStop) {
   set_halted(world, "a");
   steps(world, 10);
   const Pose stopped = pose_of(world, "a");
-  const double brake_m = 0.1288 * 0.1288 / (2 * hal::epuck::kDriveForce_N / hal::epuck::kMass_kg);
+  const double brake_m = 0.1288 * 0.1288 / (2 * hal::epuck::kind().drive()->force_N / hal::epuck::kind().body.mass_kg);
   EXPECT_LE(stopped.x_m - before.x_m, 0.1 * 0.1288 + brake_m);
   EXPECT_GE(stopped.x_m, before.x_m);
   steps(world, 50);
@@ -221,6 +224,50 @@ TEST_P(Driving, RobotsFarApartDoNotFeelOneAnother) {
     ASSERT_NEAR(pose_of(alone, "a").x_m, pose_of(both, "a").x_m, 1e-9) << i;
     ASSERT_NEAR(pose_of(alone, "a").y_m, pose_of(both, "a").y_m, 1e-9) << i;
   }
+}
+
+/// An e-puck without wheels, among the kinds that there are.
+const hal::Catalog& with_posts() {
+  static const hal::RobotKind post = [] {
+    hal::RobotKind kind = hal::epuck::kind();
+    kind.name = "post";
+    kind.locomotion = {};
+    return kind;
+  }();
+  static const hal::Catalog all = [] {
+    hal::Catalog made = test::catalog();
+    const hal::Status good = made.add_from("posts", [](hal::Registrar& r) { r.add(post); });
+    TANDEM_CHECK(good.ok(), good.error().message.c_str());
+    return made;
+  }();
+  return all;
+}
+
+TEST_P(Driving, AKindWithoutLocomotionStaysWhereItIs) {
+  Scene s = scene(4.0, "watcher").robot("a", 0.5, -0.25, 0.3).robot("b", -0.5, 0.25, 0.6);
+  for (RobotItem& robot : s.scenario.robots) robot.kind = "post";
+  s.scenario.controllers[0].sensors.clear();
+  s.scenario.controllers[0].actuators = {
+      {"leds", "default", {}}, {"body_led", "default", {}}, {"front_led", "default", {}}};
+  auto world = make(s, {}, with_posts());
+  ASSERT_TRUE(world.world) << world.all_problems();
+  const Pose before = pose_of(world, "a");
+  steps(world, 20);
+  const Pose after = pose_of(world, "a");
+  EXPECT_NEAR(after.x_m, before.x_m, 1e-9);
+  EXPECT_NEAR(after.y_m, before.y_m, 1e-9);
+  EXPECT_NEAR(after.z_m, 0.0, 1e-6);
+  EXPECT_NEAR(turned_rad(before.heading_rad(), after.heading_rad()), 0.0, 1e-9);
+}
+
+TEST_P(Driving, AKindWithoutLocomotionHasNoWheelsToCommand) {
+  Scene s = scene().robot("a", 0.5, -0.25, 0.3);
+  s.scenario.robots[0].kind = "post";
+  const auto world = make(s, {}, with_posts());
+  EXPECT_FALSE(world.world);
+  EXPECT_THAT(world.all_problems(),
+              testing::HasSubstr("the robot 'post' has no device 'differential_steering'; take it "
+                                 "out of the controller configuration"));
 }
 
 INSTANTIATE_TEST_SUITE_P(Physics, Driving, testing::ValuesIn(test::engine_kinds()), name_of_kind);

@@ -9,13 +9,13 @@
 
 #include "core/sim/engine_factory.hpp"
 #include "core/space/stores.hpp"
-#include "hal/spec/epuck.hpp"
+#include "hal/robot/epuck.hpp"
 #include "tests/core/scenes.hpp"
 
 namespace tandem::core {
 
-inline constexpr double kRobotRadius_m = hal::epuck::kBodyRadius_m;
-inline constexpr double kWheelBase_m = hal::epuck::kWheelBase_m;
+inline const double kRobotRadius_m = hal::epuck::kind().body.radius_m;
+inline const double kWheelBase_m = hal::epuck::kind().drive()->wheel_base_m;
 
 /// Kinds that move objects by forces.
 inline std::vector<std::string> kinds_with_forces() {

@@ -102,7 +102,7 @@ TEST_P(Pushing, ARobotPushesALightBoxAtItsOwnSpeed) {
 
 TEST_P(Pushing, ABoxTooHeavyForTheDriveStays) {
   // Held with twice what the drive has.
-  const double mass_kg = 2 * hal::epuck::kDriveForce_N / grip();
+  const double mass_kg = 2 * hal::epuck::kind().drive()->force_N / grip();
   auto world =
       make(ground().box(0, 0, 0.1, 0.3, 0.0, 0.06).movable(mass_kg).robot("a", -0.2, 0).wheels(0.1288, 0.1288));
   ASSERT_TRUE(world.world) << world.all_problems();
@@ -114,7 +114,7 @@ TEST_P(Pushing, ABoxTooHeavyForTheDriveStays) {
 }
 
 TEST_P(Pushing, TwoRobotsMoveWhatOneCannot) {
-  const double mass_kg = 1.4 * hal::epuck::kDriveForce_N / grip();
+  const double mass_kg = 1.4 * hal::epuck::kind().drive()->force_N / grip();
   for (const bool both : {false, true}) {
     Scene s = ground().box(0, 0, 0.1, 0.3, 0.0, 0.06).movable(mass_kg);
     s.robot("a", -0.12, both ? 0.06 : 0.0).wheels(0.1, 0.1);

@@ -10,7 +10,7 @@ struct Point {
 
 /// Where the wheels bring a robot from (x, y, heading) in `time_s` [Siegwart 2011, ch. 3].
 Point arc(double x_m, double y_m, double heading_rad, double left_m_s, double right_m_s, double time_s) {
-  const double turn_rad = (right_m_s - left_m_s) / hal::epuck::kWheelBase_m * time_s;
+  const double turn_rad = (right_m_s - left_m_s) / hal::epuck::kind().drive()->wheel_base_m * time_s;
   const double way_m = 0.5 * (left_m_s + right_m_s) * time_s;
   if (turn_rad == 0.0) return {x_m + way_m * std::cos(heading_rad), y_m + way_m * std::sin(heading_rad)};
   const double radius_m = way_m / turn_rad;
@@ -40,8 +40,8 @@ TEST(Dynamics2dDriving, FreeRobotsFollowTheirArcsAsFarAsFloatsCanTell) {
 }
 
 TEST(Dynamics2dDriving, AWeakDriveAcceleratesWithItsForceOverItsMass) {
-  hal::DataSheet weak = hal::epuck::kDataSheet;
-  weak.drive_force_N = 0.015;  // 0.1 m/s^2
+  hal::RobotKind weak = hal::epuck::kind();
+  weak.part<hal::DifferentialDrive>()->force_N = 0.015;  // 0.1 m/s^2
   ByHand hand;
   hand.robot(0, 0, 0.4, 0.1, 0.1, weak);
   for (int i = 1; i <= 15; ++i) {

@@ -48,8 +48,8 @@ TEST(Dynamics2dStores, BodiesAreWhereAHookPutsThem) {
 
 TEST(Dynamics2dStores, ARenewedRowIsAnotherRobot) {
   ByHand hand;
-  hal::DataSheet weak = hal::epuck::kDataSheet;
-  weak.drive_force_N = 0.0015;  // 0.01 m/s^2
+  hal::RobotKind weak = hal::epuck::kind();
+  weak.part<hal::DifferentialDrive>()->force_N = 0.0015;  // 0.01 m/s^2
   hand.robot(0, 0, 0, 0.1, 0.1);
   hand.robot(1, 0, 0, 0.1, 0.1, weak);
   hand.ticks(5);

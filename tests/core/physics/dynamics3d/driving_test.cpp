@@ -17,7 +17,7 @@ TEST(Dynamics3dBase, FollowsItsArcExactly) {
     const double from_rad = std::atan2(hand.bodies().sin_h[0], hand.bodies().cos_h[0]);
     const double straight_m = hand.bodies().x_m[1];
     hand.ticks(200);
-    const double turn_rad = 0.04 / hal::epuck::kWheelBase_m * 20.0;
+    const double turn_rad = 0.04 / hal::epuck::kind().drive()->wheel_base_m * 20.0;
     const double radius_m = 0.08 * 20.0 / turn_rad;
     EXPECT_NEAR(hand.bodies().x_m[0], x_m + radius_m * (std::sin(from_rad + turn_rad) - std::sin(from_rad)), 1e-8);
     EXPECT_NEAR(hand.bodies().y_m[0], y_m - radius_m * (std::cos(from_rad + turn_rad) - std::cos(from_rad)), 1e-8);
@@ -28,8 +28,8 @@ TEST(Dynamics3dBase, FollowsItsArcExactly) {
 }
 
 TEST(Dynamics3dBase, AcceleratesWithItsForceOverItsMass) {
-  hal::DataSheet weak = hal::epuck::kDataSheet;
-  weak.drive_force_N = 0.1 * weak.mass_kg;
+  hal::RobotKind weak = hal::epuck::kind();
+  weak.part<hal::DifferentialDrive>()->force_N = 0.1 * weak.body.mass_kg;
   ByHand hand;
   hand.robot(0, 0, 0.4, 0.1, 0.1, weak);
   for (int i = 1; i <= 15; ++i) {
@@ -73,7 +73,8 @@ TEST(Dynamics3dWheels, RollAsTheyAreToldAndStandUpright) {
   EXPECT_NEAR(hand.bodies().x_m[0] - from_m, 0.8, 0.016);
   EXPECT_NEAR(hand.bodies().y_m[0], 0.0, 0.01);
   EXPECT_NEAR(hand.bodies().left_m[0] - rolled_m, 0.8, 0.016);
-  EXPECT_NEAR(turned_rad, 0.08 / hal::epuck::kWheelBase_m * 10.0, 0.03 * 0.08 / hal::epuck::kWheelBase_m * 10.0);
+  EXPECT_NEAR(turned_rad, 0.08 / hal::epuck::kind().drive()->wheel_base_m * 10.0,
+              0.03 * 0.08 / hal::epuck::kind().drive()->wheel_base_m * 10.0);
   EXPECT_NEAR(hand.bodies().x_m[1], 0.0, 0.01);
   EXPECT_TRUE(hand.trouble.empty());
 }

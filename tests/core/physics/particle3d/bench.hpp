@@ -6,18 +6,18 @@
 #include <vector>
 
 #include "core/physics/particle3d/particle3d.hpp"
-#include "hal/spec/epuck.hpp"
-#include "hal/spec/eyebot.hpp"
+#include "hal/robot/epuck.hpp"
+#include "hal/robot/eyebot.hpp"
 #include "tests/core/space_by_hand.hpp"
 
 namespace tandem::core {
 
-inline constexpr double kFlyerRadius_m = hal::eyebot::kBodyRadius_m;
-inline constexpr double kFlyerHeight_m = hal::eyebot::kHeight_m;
-inline constexpr double kFlyerSpeed_m_s = hal::eyebot::kMaxSpeed_m_s;
-inline constexpr double kFlyerAcceleration_m_s2 = hal::eyebot::kMaxAcceleration_m_s2;
-inline constexpr double kRollerRadius_m = hal::epuck::kBodyRadius_m;
-inline constexpr double kRollerHeight_m = hal::epuck::kHeight_m;
+inline const double kFlyerRadius_m = hal::eyebot::kind().body.radius_m;
+inline const double kFlyerHeight_m = hal::eyebot::kind().body.height_m;
+inline const double kFlyerSpeed_m_s = hal::eyebot::kind().flight()->max_speed_m_s;
+inline const double kFlyerAcceleration_m_s2 = hal::eyebot::kind().flight()->max_acceleration_m_s2;
+inline const double kRollerRadius_m = hal::epuck::kind().body.radius_m;
+inline const double kRollerHeight_m = hal::epuck::kind().body.height_m;
 
 /// An arena of 40 m x 40 m without a ceiling; regions are added before the first step, else one is everywhere.
 class Bench {
@@ -46,13 +46,13 @@ class Bench {
 
   /// A robot that hovers; its row.
   std::size_t flyer(double x_m, double y_m, double z_m, double heading_rad = 0.0) {
-    const std::size_t row = robot(hal::eyebot::kDataSheet, x_m, y_m, z_m, heading_rad);
+    const std::size_t row = robot(hal::eyebot::kind(), x_m, y_m, z_m, heading_rad);
     add_state<FlightCommand>(space_, {stores().bodies.entity[row], 0});
     flight(row).mode = FlightCommand::Mode::Velocity;
     return row;
   }
   std::size_t roller(double x_m, double y_m, double heading_rad, double left_m_s, double right_m_s, double z_m = 0.0) {
-    const std::size_t row = robot(hal::epuck::kDataSheet, x_m, y_m, z_m, heading_rad);
+    const std::size_t row = robot(hal::epuck::kind(), x_m, y_m, z_m, heading_rad);
     stores().bodies.left_m_s[row] = left_m_s;
     stores().bodies.right_m_s[row] = right_m_s;
     return row;
@@ -112,8 +112,8 @@ class Bench {
   }
 
  private:
-  std::size_t robot(const hal::DataSheet& sheet, double x_m, double y_m, double z_m, double heading_rad) {
-    const RobotId id = add_robot(space_, sheet, "r" + std::to_string(stores().bodies.size()), x_m, y_m, heading_rad);
+  std::size_t robot(const hal::RobotKind& kind, double x_m, double y_m, double z_m, double heading_rad) {
+    const RobotId id = add_robot(space_, kind, "r" + std::to_string(stores().bodies.size()), x_m, y_m, heading_rad);
     space_.set_pose(id, {x_m, y_m, z_m, std::cos(heading_rad), std::sin(heading_rad)});
     return stores().row_of(id);
   }

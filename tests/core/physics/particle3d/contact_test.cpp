@@ -26,21 +26,21 @@ double depth_in(const Object& o, double x, double y, double z, double radius, do
 }
 
 double depth_in_all(Bench& bench, std::size_t row) {
-  const hal::DataSheet& sheet = bench.stores().sheet_of_row(row);
+  const hal::RobotKind& kind = bench.stores().kind_of_row(row);
   double deepest = -1e9;
   for (const Object& o : bench.stores().objects) {
     deepest = std::max(deepest,
-                       depth_in(o, bench.x(row), bench.y(row), bench.z(row), sheet.body_radius_m, sheet.body_height_m));
+                       depth_in(o, bench.x(row), bench.y(row), bench.z(row), kind.body.radius_m, kind.body.height_m));
   }
   return deepest;
 }
 
 /// The least way apart of two robots; negative: the gap.
 double overlap(Bench& bench, std::size_t a, std::size_t b) {
-  const hal::DataSheet& sa = bench.stores().sheet_of_row(a);
-  const hal::DataSheet& sb = bench.stores().sheet_of_row(b);
-  return std::min({sa.body_radius_m + sb.body_radius_m - std::hypot(bench.x(a) - bench.x(b), bench.y(a) - bench.y(b)),
-                   bench.z(a) + sa.body_height_m - bench.z(b), bench.z(b) + sb.body_height_m - bench.z(a)});
+  const hal::RobotKind& sa = bench.stores().kind_of_row(a);
+  const hal::RobotKind& sb = bench.stores().kind_of_row(b);
+  return std::min({sa.body.radius_m + sb.body.radius_m - std::hypot(bench.x(a) - bench.x(b), bench.y(a) - bench.y(b)),
+                   bench.z(a) + sa.body.height_m - bench.z(b), bench.z(b) + sb.body.height_m - bench.z(a)});
 }
 
 TEST(Solid, IsNeverEnteredWhateverIsCommanded) {
@@ -74,7 +74,7 @@ TEST(Solid, IsNeverEnteredWhateverIsCommanded) {
     for (int tick = 0; tick < 300; ++tick) {
       for (std::size_t row = 0; row < s.bodies.size(); ++row) {
         if (random() % 8 != 0) continue;
-        if (!s.sheet_of_row(row).flies) {
+        if (!s.kind_of_row(row).flies()) {
           s.bodies.left_m_s[row] = between(-0.13, 0.13);
           s.bodies.right_m_s[row] = between(-0.13, 0.13);
         } else if (random() % 3 == 0) {
@@ -88,14 +88,14 @@ TEST(Solid, IsNeverEnteredWhateverIsCommanded) {
       bench.step();
       for (std::size_t row = 0; row < s.bodies.size(); ++row) {
         if ((s.bodies.flags[row] & kAlive) == 0) continue;
-        const hal::DataSheet& sheet = s.sheet_of_row(row);
+        const hal::RobotKind& kind = s.kind_of_row(row);
         const double depth = depth_in_all(bench, row);
         ASSERT_LE(depth, kDeepest_m) << "seed " << seed << " row " << row << " tick " << tick;
         if (depth > -1e-3) ++close;
-        const double room = 6.0 - sheet.body_radius_m;
+        const double room = 6.0 - kind.body.radius_m;
         ASSERT_LE(std::max(std::fabs(bench.x(row)), std::fabs(bench.y(row))), room + kDeepest_m) << seed;
         ASSERT_GE(bench.z(row), 0.0);
-        ASSERT_LE(bench.z(row), 4.0 - sheet.body_height_m + kDeepest_m);
+        ASSERT_LE(bench.z(row), 4.0 - kind.body.height_m + kDeepest_m);
       }
     }
     EXPECT_TRUE(bench.troubles().empty());

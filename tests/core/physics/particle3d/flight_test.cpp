@@ -142,7 +142,7 @@ TEST(Velocity, IsLimitedByDragWhereThatIsStronger) {
   }
 }
 
-TEST(Velocity, IsNeverMoreThanTheDataSheetSays) {
+TEST(Velocity, IsNeverMoreThanTheKindSays) {
   std::mt19937_64 random(5);
   std::uniform_real_distribution<double> any(-10.0, 10.0);
   for (const double drag : {0.0, 0.4, 5.0}) {
@@ -161,7 +161,7 @@ TEST(Velocity, IsNeverMoreThanTheDataSheetSays) {
   }
 }
 
-TEST(Velocity, ChangesNoFasterThanTheDataSheetSays) {
+TEST(Velocity, ChangesNoFasterThanTheKindSays) {
   std::mt19937_64 random(6);
   std::uniform_real_distribution<double> any(-10.0, 10.0);
   Bench bench(0.1, airless());
@@ -187,7 +187,7 @@ TEST(Velocity, TurnsAtTheCommandedRateWithinItsLimit) {
   bench.fly(fast, 0, 0, 0, -100.0);
   bench.steps(10);
   EXPECT_NEAR(bench.heading(slow), 3.5 - 2.0 * std::numbers::pi, 1e-12);
-  EXPECT_NEAR(bench.heading(fast), -hal::eyebot::kMaxTurn_rad_s, 1e-12);
+  EXPECT_NEAR(bench.heading(fast), -hal::eyebot::kind().flight()->max_turn_rad_s, 1e-12);
   EXPECT_NEAR(bench.motion(slow).w_rad_s[2], 0.5, 1e-15);
   const auto& q = bench.motion(slow).q_WB;
   EXPECT_NEAR(2.0 * std::atan2(q[3], q[0]), bench.heading(slow), 1e-12);
@@ -252,7 +252,8 @@ TEST(Position, TurnsTheShorterWayToItsHeading) {
   const std::size_t row = bench.flyer(0, 0, 5, 3.0);
   bench.fly_to(row, 0, 0, 5, -3.0);
   bench.step();
-  EXPECT_NEAR(bench.heading(row), 3.0 + 0.1 * hal::eyebot::kMaxTurn_rad_s - 2.0 * std::numbers::pi, 1e-12);
+  EXPECT_NEAR(bench.heading(row), 3.0 + 0.1 * hal::eyebot::kind().flight()->max_turn_rad_s - 2.0 * std::numbers::pi,
+              1e-12);
   bench.steps(5);
   EXPECT_NEAR(bench.heading(row), -3.0, 1e-12);
   bench.steps(20);
@@ -298,15 +299,15 @@ TEST(Wheels, RollAlongExactArcs) {
       const std::size_t row = bench.roller(0.3, -0.4, 0.8, left, right);
       const int ticks = static_cast<int>(std::lround(9.0 / tick_s));
       bench.steps(ticks);
-      const double turn = (right - left) / hal::epuck::kWheelBase_m * 9.0;
-      const double radius = 0.5 * (left + right) / (right - left) * hal::epuck::kWheelBase_m;
+      const double turn = (right - left) / hal::epuck::kind().drive()->wheel_base_m * 9.0;
+      const double radius = 0.5 * (left + right) / (right - left) * hal::epuck::kind().drive()->wheel_base_m;
       EXPECT_NEAR(bench.x(row), 0.3 + radius * (std::sin(0.8 + turn) - std::sin(0.8)), 1e-11) << tick_s;
       EXPECT_NEAR(bench.y(row), -0.4 - radius * (std::cos(0.8 + turn) - std::cos(0.8)), 1e-11) << tick_s;
       EXPECT_NEAR(std::remainder(bench.heading(row) - 0.8 - turn, 2.0 * std::numbers::pi), 0.0, 1e-11) << tick_s;
       EXPECT_NEAR(bench.stores().bodies.left_m[row], left * 9.0, 1e-12);
       EXPECT_NEAR(bench.stores().bodies.right_m[row], right * 9.0, 1e-12);
       EXPECT_EQ(bench.z(row), 0.0);
-      EXPECT_NEAR(bench.motion(row).w_rad_s[2], (right - left) / hal::epuck::kWheelBase_m, 1e-12);
+      EXPECT_NEAR(bench.motion(row).w_rad_s[2], (right - left) / hal::epuck::kind().drive()->wheel_base_m, 1e-12);
       EXPECT_NEAR(bench.speed(row), 0.08, 0.08 * 0.04);  // of the chord
     }
   }
@@ -318,7 +319,7 @@ TEST(Wheels, TurnOnTheSpot) {
   bench.steps(100);
   EXPECT_NEAR(bench.x(row), 1.0, 1e-12);
   EXPECT_NEAR(bench.y(row), 1.0, 1e-12);
-  const double turn = 2 * 0.1288 / hal::epuck::kWheelBase_m * 10.0;
+  const double turn = 2 * 0.1288 / hal::epuck::kind().drive()->wheel_base_m * 10.0;
   EXPECT_NEAR(std::remainder(bench.heading(row) - turn, 2.0 * std::numbers::pi), 0.0, 1e-11);
 }
 

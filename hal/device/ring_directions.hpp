@@ -1,13 +1,15 @@
-// Unit vectors of a ring's bearings, worked out once a kind of robot and shared by all its controllers.
+// Unit vectors of a ring's bearings, worked out once for all controllers of robots with the same ring.
 #pragma once
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <list>
 #include <mutex>
 #include <span>
+#include <vector>
 
 #include "hal/elementary.hpp"
-#include "hal/spec/data_sheet.hpp"
+#include "hal/robot_kind.hpp"
 
 namespace tandem::hal {
 
@@ -22,16 +24,18 @@ struct RingDirections {
 /// constructors, not for steps.
 inline const RingDirections& ring_directions(std::span<const Mount> mounts) {
   struct Known {
-    const Mount* mounts;
+    std::vector<double> bearings_rad;
     RingDirections directions;
   };
   static std::mutex guard;
   static std::list<Known> known;
   const std::lock_guard lock(guard);
   for (const Known& k : known) {
-    if (k.mounts == mounts.data()) return k.directions;
+    const auto same = [](double bearing_rad, const Mount& m) { return bearing_rad == m.bearing_rad; };
+    if (std::ranges::equal(k.bearings_rad, mounts, same)) return k.directions;
   }
-  Known& made = known.emplace_back(Known{mounts.data(), {}});
+  Known& made = known.emplace_back();
+  for (const Mount& m : mounts) made.bearings_rad.push_back(m.bearing_rad);
   for (std::size_t i = 0; i < mounts.size() && i < RingDirections::kCapacity; ++i) {
     made.directions.x[i] = static_cast<float>(cos(mounts[i].bearing_rad));
     made.directions.y[i] = static_cast<float>(sin(mounts[i].bearing_rad));

@@ -1,4 +1,4 @@
-// The kinds of robots whose data sheets stand in this folder.
+// The kinds of robots of this folder.
 #pragma once
 #include "hal/catalog.hpp"
 

@@ -1,0 +1,113 @@
+// Sources: [ARGoS] ARGoS 3, foot-bot plug-in; the real robot: its control interface as published with ARGoS 2;
+// [marXbot] Bonani et al. 2010; chosen: no figure is published, the reason stands beside.
+#include "hal/robot/footbot.hpp"
+
+#include <numbers>
+
+#include "hal/device/body_sensors.hpp"
+#include "hal/device/cameras.hpp"
+#include "hal/device/distance_scanner.hpp"
+#include "hal/device/gripper.hpp"
+#include "hal/device/leds.hpp"
+#include "hal/device/range_and_bearing.hpp"
+#include "hal/device/ring_sensors.hpp"
+#include "hal/device/turret.hpp"
+#include "hal/robot/ring.hpp"
+
+namespace tandem::hal::footbot {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+constexpr double kRadius_m = 0.085036758;
+constexpr double kWheelBase_m = 0.14;
+constexpr double kForce_N = 1.5;
+constexpr double kSensorHeight_m = 0.06;  // of proximity and light sensors
+constexpr double kBeaconHeight_m = 0.174249733;
+constexpr double kCameraHeight_m = 0.2887;  // of both
+
+/// A ring of 12, 5 mm outside the body, and the beacon on the axis.
+std::vector<Mount> ring_and_beacon() {
+  std::vector<Mount> all = ring_of(12, 15.0, kRadius_m + 0.005, 0.085);
+  all.push_back({0.0, 0.0, 0.0, kBeaconHeight_m});
+  return all;
+}
+
+RobotKind make() {
+  RobotKind kind;
+  kind.name = kName;
+  kind.summary = "The Swarmanoid project's robot on two treels, with turret and gripper.";
+  kind.body = {.radius_m = kRadius_m, .height_m = 0.146899733, .mass_kg = 1.6, .source = "ARGoS 3"};
+  kind.locomotion = DifferentialDrive{
+      .wheel_radius_m = 0.029112741,
+      .wheel_base_m = kWheelBase_m,
+      .max_speed_m_s = 0.3,
+      .force_N = kForce_N,
+      .torque_Nm = kForce_N * kWheelBase_m / 2,
+      .source =
+          "wheels: ARGoS 3 (the real robot measures its own wheel base at the start); speed: the real robot's "
+          "interface; force: what ARGoS 3's engines let both treels push with"};
+  kind.add(ProximityPart{.range_m = 0.1,
+                         .mounts = ring_of(24, 7.5, kRadius_m, kSensorHeight_m),
+                         .response = {},
+                         .source = "ARGoS 3: the first at 7.5 degrees, one every 15 degrees, counter-clockwise"});
+  kind.add(LightPart{.mounts = ring_of(24, 7.5, kRadius_m, kSensorHeight_m),
+                     .source = "ARGoS 3: the same devices as proximity"});
+  kind.add(BaseGroundPart{
+      .mounts = {Mount{0, 0.08, 0, 0}, Mount{0, 0.042, 0.065, 0}, Mount{0, 0, 0.08, 0}, Mount{0, -0.042, 0.065, 0},
+                 Mount{0, -0.08, 0, 0}, Mount{0, -0.042, -0.065, 0}, Mount{0, 0, -0.08, 0}, Mount{0, 0.042, -0.065, 0}},
+      .source = "the real robot's interface: eight around the base, the first ahead, counter-clockwise"});
+  kind.add(MotorGroundPart{.mounts = {Mount{0, 0.063, 0.0116, 0}, Mount{0, -0.063, 0.0116, 0},
+                                      Mount{0, -0.063, -0.0116, 0}, Mount{0, 0.063, -0.0116, 0}},
+                           .source = "the real robot's interface: four between the tracks, the first front left, "
+                                     "counter-clockwise"});
+  kind.add(AccelerometerPart{.source = "the real robot's interface"});
+  kind.add(GyroscopePart{.source = "the real robot's interface"});
+  kind.add(BatteryPart{.full_V = 4.2,
+                       .empty_V = 3.4,
+                       .low_charge = 0.0,
+                       .low_V = 3.4,
+                       .source = "marXbot: one lithium-polymer cell of 10 Ah; empty as the e-puck's cell"});
+  kind.add(RangeAndBearingPart{
+      .range_m = 3.0, .height_m = 0.1, .payload = 10, .source = "ARGoS 3; payload: the real robot's interface, too"});
+  kind.add(LedsPart{.on_turret = true,
+                    .beacon = true,
+                    .mounts = ring_and_beacon(),
+                    .source = "ARGoS 3: 5 mm outside the body, the first at 15 degrees, one every 30 degrees, "
+                              "counter-clockwise; the beacon on the axis"});
+  kind.add(TurretPart{.turn_rad_s = 0.5 * kPi,
+                      .torque_Nm = 0.5,
+                      .source = "chosen: a quarter turn a second; turns another foot-bot that does not drive"});
+  kind.add(
+      GripperPart{.reach_m = 0.03, .height_m = 0.085, .source = "height: ARGoS 3; reach: chosen, the claws' length"});
+  kind.add(ScannerPart{
+      .height_m = 0.1232,
+      .turn_rad_s = 2.0 * kPi,
+      .rate_hz = 60.0,
+      .heads = {{0.0, 0.04, 0.30}, {0.5 * kPi, 0.20, 1.50}, {kPi, 0.04, 0.30}, {-0.5 * kPi, 0.20, 1.50}},
+      .source =
+          "height: ARGoS 3; ranges and rate: the real robot's interface; turn: chosen, twice the 30 turns a minute "
+          "that are recommended"});
+  kind.add(OmniCameraPart{.height_m = kCameraHeight_m,
+                          .aperture_rad = 70.0 * (kPi / 180.0),
+                          .source = "ARGoS 3: it looks up into a mirror and sees a disc of the ground"});
+  kind.add(CameraPart{.usual = {0.0, kCameraHeight_m, 0.5 * kPi},
+                      .front = {kRadius_m, kBeaconHeight_m, 0.0},
+                      .aperture_rad = 30.0 * (kPi / 180.0),
+                      .focal_length_m = 0.035,
+                      .range_m = 2.0,
+                      .width_px = 640,
+                      .height_px = 480,
+                      .source =
+                          "aperture: ARGoS 3; chosen: focal length of a common lens (pixels do not depend on it), "
+                          "range (an LED is then seen at about one pixel), VGA as small cameras of its time have"});
+  return kind;
+}
+
+}  // namespace
+
+const RobotKind& kind() {
+  static const RobotKind made = make();
+  return made;
+}
+
+}  // namespace tandem::hal::footbot

@@ -1,0 +1,217 @@
+// A kind of robot: its body, how it moves, and the parts that it is built with, each with its source.
+//
+//   RobotKind kind;
+//   kind.name = "crab";
+//   kind.body = {.radius_m = 0.1, .height_m = 0.1, .mass_kg = 1.0, .source = "[paper]"};
+//   kind.locomotion = DifferentialDrive{…};
+//   kind.add(ProximityPart{…});       parts are defined with their devices, in hal/device or in a library of their own
+//   registrar.add(kind);              checks it
+//   kind.part<ProximityPart>()        null: it is built without
+#pragma once
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "hal/catalog.hpp"
+#include "hal/params.hpp"
+#include "hal/surface.hpp"
+
+namespace tandem::hal {
+
+/// A sensor or lamp on the body. Body frame: x forward, y left, z up; bearing counter-clockwise from forward.
+struct Mount {
+  double bearing_rad = 0.0;  ///< where it looks
+  double x_m = 0.0;
+  double y_m = 0.0;
+  double z_m = 0.0;
+  void describe(ParamVisitor& v);
+};
+
+/// An upright cylinder.
+struct Body {
+  static constexpr std::string_view kName = "body";
+  static constexpr std::string_view kDoc = "An upright cylinder.";
+  double radius_m = 0.0;
+  double height_m = 0.0;
+  double mass_kg = 0.0;
+  std::string source = {};  ///< of these figures
+  void describe(ParamVisitor& v);
+};
+
+/// Moves on two wheels, or tracks, beside each other.
+struct DifferentialDrive {
+  static constexpr std::string_view kName = "differential_drive";
+  static constexpr std::string_view kDoc = "Drives on two wheels beside each other.";
+  double wheel_radius_m = 0.0;
+  double wheel_base_m = 0.0;   ///< distance between the two wheels' contact points
+  double max_speed_m_s = 0.0;  ///< of a wheel, at its rim
+  double force_N = 0.0;        ///< that the wheels together can push with
+  double torque_Nm = 0.0;      ///< that they can turn the body with
+  std::string source = {};
+  void describe(ParamVisitor& v);
+};
+
+/// Flies on four rotors whose thrusts follow what is commanded with a lag [Mellinger and Kumar 2011, "Minimum snap
+/// trajectory generation and control for quadrotors", ICRA].
+struct Quadrotor {
+  static constexpr std::string_view kName = "quadrotor";
+  static constexpr std::string_view kDoc = "Flies on four rotors.";
+  double max_speed_m_s = 0.0;          ///< in any direction
+  double max_acceleration_m_s2 = 0.0;  ///< beyond what holds it up, in any direction
+  double max_turn_rad_s = 0.0;
+  double max_lean_rad = 0.0;    ///< that it obeys
+  double max_thrust = 0.0;      ///< of all rotors together, in parts of its weight
+  double climb_m_s = 0.0;       ///< when taking off or rising to the ceiling, unless told otherwise
+  double sink_m_s = 0.0;        ///< when landing, unless told otherwise
+  double take_off_m = 0.0;      ///< height to which it takes off
+  double inertia_kg_m2 = 0.0;   ///< moment of inertia about each axis
+  double rotor_arm_m = 0.0;     ///< from the axis to each of the rotors, at 45, 135, -135 and -45 degrees
+  double rotor_lag_s = 0.0;     ///< in which a rotor's thrust covers 63 % of a change
+  double rotor_torque_m = 0.0;  ///< drag torque about the rotor's axis for each newton of its thrust
+  std::string source = {};
+  void describe(ParamVisitor& v);
+};
+
+/// How a kind moves by itself; the first: not at all. The physics engines know these forms and no others.
+using Locomotion = std::variant<std::monostate, DifferentialDrive, Quadrotor>;
+
+/// Differs when a class of parts was compiled to another form: by size and alignment, those that it lists as `Crosses`
+/// (hal/surface.hpp), and the number `kNumber` that it may raise.
+template <class P>
+constexpr std::uint64_t part_layout() noexcept {
+  std::uint64_t layout = Layouts<P>::digest();
+  if constexpr (requires { typename P::Crosses; }) layout = detail::mixed(layout, P::Crosses::digest());
+  if constexpr (requires { P::kNumber; }) layout = detail::mixed(layout, P::kNumber);
+  return layout;
+}
+
+/// What a device needs to know of the robots that carry it. A part owns its data; it is found by name and layout, never
+/// by the language's own type information, which two libraries need not share. It may have `std::string flaw() const`:
+/// what makes it unusable, as in "has no mounts; give it at least one"; empty: nothing.
+template <class P>
+concept RobotPart = Described<P> && std::is_copy_constructible_v<P> && requires(const P& part) {
+  { P::kName } -> std::convertible_to<std::string_view>;
+  { P::kDoc } -> std::convertible_to<std::string_view>;
+  { part.source } -> std::convertible_to<std::string>;
+};
+
+/// A part of any class. Copies are deep.
+class AnyPart {
+ public:
+  template <RobotPart P>
+  explicit AnyPart(P part) : table_(&kTable<P>), data_(new P(std::move(part)), kTable<P>.destroy) {}
+  AnyPart(const AnyPart& other) : table_(other.table_), data_(other.table_->copy(other.data_.get()), table_->destroy) {}
+  AnyPart(AnyPart&&) noexcept = default;
+  AnyPart& operator=(AnyPart other) noexcept {
+    table_ = other.table_;
+    data_ = std::move(other.data_);
+    return *this;
+  }
+  ~AnyPart() = default;
+
+  std::string_view name() const noexcept { return table_->name; }
+  std::string_view doc() const noexcept { return table_->doc; }
+  std::string flaw() const { return table_->flaw(data_.get()); }
+  void describe(ParamVisitor& v);
+  /// Null when the part has another name or form.
+  void* as(std::string_view name, std::uint64_t layout) const noexcept {
+    return table_->layout == layout && table_->name == name ? data_.get() : nullptr;
+  }
+
+ private:
+  struct Table {
+    std::string_view name, doc;
+    std::uint64_t layout;
+    void (*describe)(void* part, ParamVisitor& visitor);
+    std::string (*flaw)(const void* part);
+    void* (*copy)(const void* part);
+    void (*destroy)(void* part);
+  };
+  template <class P>
+  static constexpr Table kTable = {P::kName,
+                                   P::kDoc,
+                                   part_layout<P>(),
+                                   [](void* part, ParamVisitor& v) { static_cast<P*>(part)->describe(v); },
+                                   [](const void* part) {
+                                     if constexpr (requires(const P& p) { p.flaw(); })
+                                       return std::string(static_cast<const P*>(part)->flaw());
+                                     else
+                                       return std::string();
+                                   },
+                                   [](const void* part) -> void* { return new P(*static_cast<const P*>(part)); },
+                                   [](void* part) { delete static_cast<P*>(part); }};
+
+  const Table* table_;
+  std::unique_ptr<void, void (*)(void*)> data_;
+};
+
+/// All that is known of a kind of robot. Constant while it is in a catalog: devices, bridges and controllers keep
+/// pointers into it.
+class RobotKind {
+ public:
+  static constexpr std::string_view kCategory = "robot";
+  static constexpr std::uint32_t kNumber = 2;
+  static constexpr bool kWhole = true;
+  using Crosses = Layouts<Body, Locomotion, DifferentialDrive, Quadrotor, AnyPart, std::string>;
+
+  std::string name;     ///< as the element in experiment files, e.g. "e-puck"
+  std::string summary;  ///< for people: a line
+  Body body;
+  Locomotion locomotion;
+
+  const DifferentialDrive* drive() const noexcept { return std::get_if<DifferentialDrive>(&locomotion); }
+  const Quadrotor* flight() const noexcept { return std::get_if<Quadrotor>(&locomotion); }
+  bool flies() const noexcept { return flight() != nullptr; }
+  /// The most that it moves with by itself; 0: it stays.
+  double top_speed_m_s() const noexcept {
+    return drive() != nullptr ? drive()->max_speed_m_s : flies() ? flight()->max_speed_m_s : 0.0;
+  }
+
+  template <RobotPart P>
+  RobotKind& add(P part) {
+    parts_.emplace_back(std::move(part));
+    return *this;
+  }
+  /// The part, or null. Body and locomotion are found in the same way. Not for loops: it looks the part up by name.
+  template <class P>
+  const P* part() const noexcept {
+    if constexpr (std::is_same_v<P, Body>)
+      return &body;
+    else if constexpr (std::is_same_v<P, DifferentialDrive> || std::is_same_v<P, Quadrotor>)
+      return std::get_if<P>(&locomotion);
+    else
+      return static_cast<const P*>(find(P::kName, part_layout<P>()));
+  }
+  template <class P>
+  P* part() noexcept {
+    return const_cast<P*>(std::as_const(*this).template part<P>());
+  }
+  const std::vector<AnyPart>& parts() const noexcept { return parts_; }
+
+  /// Body, locomotion and parts, each as a group of its own.
+  void describe(ParamVisitor& v);
+  /// What makes the kind unusable, as in "has no body; …"; empty: nothing. Asked when it is registered.
+  std::string flaw() const;
+
+ private:
+  void* find(std::string_view part, std::uint64_t layout) const noexcept {
+    for (const AnyPart& p : parts_) {
+      if (void* const found = p.as(part, layout); found != nullptr) return found;
+    }
+    return nullptr;
+  }
+
+  std::vector<AnyPart> parts_;
+};
+
+/// What is wrong with a list of mounts that a port with `capacity` values tells of; empty: nothing.
+std::string mounts_flaw(const std::vector<Mount>& mounts, std::size_t capacity);
+
+}  // namespace tandem::hal
