@@ -59,6 +59,14 @@ void AnyPart::describe(ParamVisitor& v) {
   table_->describe(data_.get(), v);
 }
 
+void AnyPart::attributes(ParamVisitor& v) {
+  table_->attributes(data_.get(), v);
+}
+
+void RobotKind::attributes(ParamVisitor& v) {
+  for (AnyPart& part : parts_) part.attributes(v);
+}
+
 void RobotKind::describe(ParamVisitor& v) {
   v.group(Body::kName, body, Body::kDoc);
   if (auto* drive = std::get_if<DifferentialDrive>(&locomotion))

@@ -94,7 +94,8 @@ constexpr std::uint64_t part_layout() noexcept {
 
 /// What a device needs to know of the robots that carry it. A part owns its data; it is found by name and layout, never
 /// by the language's own type information, which two libraries need not share. It may have `std::string flaw() const`:
-/// what makes it unusable, as in "has no mounts; give it at least one"; empty: nothing.
+/// what makes it unusable, as in "has no mounts; give it at least one"; empty: nothing. And `void
+/// attributes(ParamVisitor&)` : what of it the element of a robot may say otherwise for that robot alone.
 template <class P>
 concept RobotPart = Described<P> && std::is_copy_constructible_v<P> && requires(const P& part) {
   { P::kName } -> std::convertible_to<std::string_view>;
@@ -120,6 +121,7 @@ class AnyPart {
   std::string_view doc() const noexcept { return table_->doc; }
   std::string flaw() const { return table_->flaw(data_.get()); }
   void describe(ParamVisitor& v);
+  void attributes(ParamVisitor& v);
   /// Null when the part has another name or form.
   void* as(std::string_view name, std::uint64_t layout) const noexcept {
     return table_->layout == layout && table_->name == name ? data_.get() : nullptr;
@@ -130,6 +132,7 @@ class AnyPart {
     std::string_view name, doc;
     std::uint64_t layout;
     void (*describe)(void* part, ParamVisitor& visitor);
+    void (*attributes)(void* part, ParamVisitor& visitor);
     std::string (*flaw)(const void* part);
     void* (*copy)(const void* part);
     void (*destroy)(void* part);
@@ -139,6 +142,10 @@ class AnyPart {
                                    P::kDoc,
                                    part_layout<P>(),
                                    [](void* part, ParamVisitor& v) { static_cast<P*>(part)->describe(v); },
+                                   [](void* part, ParamVisitor& v) {
+                                     if constexpr (requires(P & p) { p.attributes(v); })
+                                       static_cast<P*>(part)->attributes(v);
+                                   },
                                    [](const void* part) {
                                      if constexpr (requires(const P& p) { p.flaw(); })
                                        return std::string(static_cast<const P*>(part)->flaw());
@@ -197,6 +204,8 @@ class RobotKind {
 
   /// Body, locomotion and parts, each as a group of its own.
   void describe(ParamVisitor& v);
+  /// What the element of a robot may say otherwise for that robot alone, in the order of the parts.
+  void attributes(ParamVisitor& v);
   /// What makes the kind unusable, as in "has no body; …"; empty: nothing. Asked when it is registered.
   std::string flaw() const;
 

@@ -296,28 +296,29 @@ class ArenaReader {
 
   // --- robots ---
 
-  /// What all robots have, and the cameras of the kinds that have some.
-  schema::Robot attributes_of_robot(Element& e, CameraConfig& camera) {
-    if (e.name == schema::FootBot::kElement.name) {
-      const auto r = reading_.read<schema::FootBot>(e);
-      camera = {r.omni_aperture_rad, r.aperture_rad, r.focal_length_m, r.range_m, r.front};
-      return r;
-    }
-    if (e.name == schema::EyeBot::kElement.name) {
-      const auto r = reading_.read<schema::EyeBot>(e);
-      camera = {-1.0, r.aperture_rad, r.focal_length_m, r.range_m, r.front};
-      return r;
-    }
-    return reading_.read<schema::Robot>(e);
+  /// The id, and what the element says of the robot's parts: a kind of its own in `item`, where that is anything new.
+  void attributes_of_robot(Element& e, RobotItem& item) {
+    const auto* const kind = reading_.catalog().find<hal::RobotKind>(e.name);
+    auto own = std::make_shared<hal::RobotKind>(*kind);
+    const std::string usual = attributes_of(*own);
+    item.id = reading_.read(e, schema::RobotOfKind{{}, *own}).id;
+    const std::string said = attributes_of(*own);
+    if (said != usual) item.own_kind = own_kinds_.try_emplace(e.name + said, std::move(own)).first->second;
+  }
+
+  static std::string attributes_of(hal::RobotKind& kind) {
+    Element e;
+    ElementWriter writer(e);
+    kind.attributes(writer);
+    std::string text;
+    for (const auto& a : e.attributes) text += ' ' + a.name + '=' + a.value;
+    return text;
   }
 
   void robot(Element& e, const Distribute* distribute) {
     RobotItem item;
-    const schema::Robot r = attributes_of_robot(e, item.camera);
+    attributes_of_robot(e, item);
     item.kind = e.name;
-    item.id = r.id;
-    item.rab_range_m = r.rab_range_m;
-    item.rab_payload = r.rab_data_size;
     item.line = e.line;
     item.placement = body(e, distribute);
     if (distribute != nullptr) item.distribute = *distribute;
@@ -392,7 +393,8 @@ class ArenaReader {
 
   Reading& reading_;
   Scenario& out_;
-  std::map<std::string, std::size_t> controllers_;  // by id
+  std::map<std::string, std::size_t> controllers_;                          // by id
+  std::map<std::string, std::shared_ptr<const hal::RobotKind>> own_kinds_;  // by what elements say
   int distributes_ = 0;
 };
 

@@ -29,10 +29,10 @@ std::vector<ElementManual> manuals_of() {
 std::vector<ElementManual> all_manuals() {
   using namespace schema;
   return manuals_of<Root, Plugins, Framework, System, Experiment, Profiling, Time, Controllers, Configuration, Sensors,
-                    Actuators, Arena, Floor, Box, Cylinder, Leds, Led, Light, Sound, Robot, FootBot, EyeBot, Body,
-                    RobotController, Battery, Bridge, Tracker, DistributeElement, PositionDraw, OrientationDraw, Entity,
-                    Engines, Engine, Boundaries, Top, Bottom, Sides, Vertex, Media, schema::Medium, Hook, Record,
-                    Trajectory, Visualization>();
+                    Actuators, Arena, Floor, Box, Cylinder, Leds, Led, Light, Sound, Robot, Body, RobotController,
+                    Battery, Bridge, Tracker, DistributeElement, PositionDraw, OrientationDraw, Entity, Engines, Engine,
+                    Boundaries, Top, Bottom, Sides, Vertex, Media, schema::Medium, Hook, Record, Trajectory,
+                    Visualization>();
 }
 
 /// What a kind says of its own element.
@@ -45,17 +45,18 @@ void add_own(const Type& type, ElementManual& manual) {
   manual.children.clear();
 }
 
+/// What the parts of a kind of robot let its element say.
+void add_attributes(hal::RobotKind kind, ElementManual& manual) {
+  ManualWriter writer;
+  kind.attributes(writer);
+  manual.doc = kind.summary;
+  manual.attributes += writer.text();
+}
+
 /// An element whose name stands for several kinds becomes one a kind.
 std::vector<ElementManual> expanded(const ElementManual& m, const KnownNames& known) {
-  static constexpr std::array<std::string_view, 2> kOwnElement = {schema::FootBot::kElement.name,
-                                                                  schema::EyeBot::kElement.name};
   std::vector<std::string> names{m.name};
-  const bool own = std::find(kOwnElement.begin(), kOwnElement.end(), m.name) != kOwnElement.end();
-  if (own && std::find(known.robots.begin(), known.robots.end(), m.name) == known.robots.end()) return {};
-  if (m.name == schema::Robot::kElement.name) {
-    names = known.robots;
-    for (const std::string_view kind : kOwnElement) std::erase(names, kind);
-  }
+  if (m.name == schema::Robot::kElement.name) names = known.robots;
   if (m.name == schema::Engine::kElement.name) names = known.engines;
   if (m.name == schema::Medium::kElement.name) names = known.media;
   std::vector<ElementManual> out;
@@ -63,6 +64,7 @@ std::vector<ElementManual> expanded(const ElementManual& m, const KnownNames& kn
     out.push_back(m);
     out.back().name = name;
     out.back().children = known.children_of(m.children);
+    if (m.name == schema::Robot::kElement.name) add_attributes(*known.catalog.find<hal::RobotKind>(name), out.back());
     if (m.name == schema::Medium::kElement.name) add_own(*known.catalog.find<MediumType>(name), out.back());
   }
   return out;
@@ -82,7 +84,7 @@ std::string parents_of(const ElementManual& m, const std::vector<ElementManual>&
   return joined(parents, " or ");
 }
 
-/// What parts add to an element: "  of e-puck:" and their attributes.
+/// What parts add to an element: of what they are, and their attributes.
 std::string options_of_parts(const std::string& element, const hal::Catalog& catalog) {
   std::string text;
   const std::string begin = element + " of ";

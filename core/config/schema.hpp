@@ -7,10 +7,8 @@
 #include <vector>
 
 #include "core/scenario/scenario.hpp"
-#include "hal/device/cameras.hpp"
 #include "hal/params.hpp"
-#include "hal/robot/eyebot.hpp"
-#include "hal/robot/footbot.hpp"
+#include "hal/robot_kind.hpp"
 
 namespace tandem::core::schema {
 
@@ -22,7 +20,6 @@ namespace unit = hal::unit;
 inline constexpr double kLargestArena_m = 1e6;
 inline constexpr double kLargestQuantity = 1e8;
 inline constexpr double kSmallest_m = 1e-6;
-inline constexpr hal::Range kLensAngles_rad{0.1 * unit::deg.to_si, 89.0 * unit::deg.to_si};
 
 inline constexpr std::string_view kAnything = "*";         ///< as children: any element
 inline constexpr std::string_view kRobotKind = "ROBOT";    ///< in children: every kind of robot that the program knows
@@ -259,53 +256,18 @@ struct Body {
 };
 
 struct Robot {
-  static constexpr ElementInfo kElement{"robot", "A robot, written with the name of its kind, e.g. <e-puck>.", "id",
+  static constexpr ElementInfo kElement{"robot", "A robot, written with the name of its kind.", "id",
                                         "body controller battery bridge tracker"};
   std::string id;
-  double rab_range_m = -1.0;
-  std::int64_t rab_data_size = -1;
-  void describe(ParamVisitor& v) {
-    v.text("id", id, "Name; inside <distribute> the beginning of the names.");
-    v.number("rab_range", rab_range_m, unit::m, {-1.0, 1e4}, "Reach of range-and-bearing; negative: the kind's.");
-    v.integer("rab_data_size", rab_data_size, {-1, 10}, "Bytes of a range-and-bearing message; negative: the kind's.");
-  }
+  void describe(ParamVisitor& v) { v.text("id", id, "Name; inside <distribute> the beginning of the names."); }
 };
 
-struct FootBot : Robot {
-  static constexpr ElementInfo kElement{"foot-bot", "A foot-bot.", "id", "body controller battery bridge tracker"};
-  double omni_aperture_rad = hal::footbot::kind().part<hal::OmniCameraPart>()->aperture_rad;
-  double aperture_rad = hal::footbot::kind().part<hal::CameraPart>()->aperture_rad;
-  double focal_length_m = hal::footbot::kind().part<hal::CameraPart>()->focal_length_m;
-  double range_m = hal::footbot::kind().part<hal::CameraPart>()->range_m;
-  bool front = false;
+/// With what its parts let the element say. `kind` becomes that robot's own.
+struct RobotOfKind : Robot {
+  hal::RobotKind& kind;
   void describe(ParamVisitor& v) {
     Robot::describe(v);
-    v.number("omnidirectional_camera_aperture", omni_aperture_rad, unit::deg, kLensAngles_rad,
-             "From straight down to the farthest that the omnidirectional camera sees on the ground.");
-    v.flag("perspective_camera_front", front, "The camera with a lens looks ahead; otherwise it looks up.");
-    v.number("perspective_camera_aperture", aperture_rad, unit::deg, kLensAngles_rad,
-             "From that camera's axis to a corner of its image.");
-    v.number("perspective_camera_focal_length", focal_length_m, unit::m, {kSmallest_m, 10.0},
-             "Of its lens; its image is as large as the aperture then needs, so that pixels do not depend on it.");
-    v.number("perspective_camera_range", range_m, unit::m, {kSmallest_m, kLargestArena_m},
-             "Up to which it makes out LEDs.");
-  }
-};
-
-struct EyeBot : Robot {
-  static constexpr ElementInfo kElement{"eye-bot", "An eye-bot.", "id", "body controller battery bridge tracker"};
-  double aperture_rad = hal::eyebot::kind().part<hal::CameraPart>()->aperture_rad;
-  double focal_length_m = hal::eyebot::kind().part<hal::CameraPart>()->focal_length_m;
-  double range_m = hal::eyebot::kind().part<hal::CameraPart>()->range_m;
-  bool front = false;
-  void describe(ParamVisitor& v) {
-    Robot::describe(v);
-    v.flag("camera_front", front, "The camera looks ahead; otherwise it looks down.");
-    v.number("camera_aperture", aperture_rad, unit::deg, kLensAngles_rad,
-             "From the camera's axis to a corner of its image.");
-    v.number("camera_focal_length", focal_length_m, unit::m, {kSmallest_m, 10.0},
-             "Of its lens; its image is as large as the aperture then needs, so that pixels do not depend on it.");
-    v.number("camera_range", range_m, unit::m, {kSmallest_m, kLargestArena_m}, "Up to which it makes out LEDs.");
+    kind.attributes(v);
   }
 };
 

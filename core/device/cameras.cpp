@@ -17,19 +17,9 @@ namespace tandem::core {
 namespace {
 
 /// Radius of the disc on the ground that the camera on the axis sees.
-double omni_reach_m(const hal::OmniCameraPart& camera, const CameraConfig& config) noexcept {
-  const double aperture = config.omni_aperture_rad < 0.0 ? camera.aperture_rad : config.omni_aperture_rad;
-  return camera.height_m * std::tan(aperture);
-}
-
-/// The camera with a lens, with what the file says in the place of the kind's figures.
-hal::CameraPart camera_of(const hal::RobotKind& kind, const CameraConfig& config) {
-  hal::CameraPart camera = *kind.part<hal::CameraPart>();
-  if (config.aperture_rad >= 0.0) camera.aperture_rad = config.aperture_rad;
-  if (config.focal_length_m >= 0.0) camera.focal_length_m = config.focal_length_m;
-  if (config.range_m >= 0.0) camera.range_m = config.range_m;
-  if (config.front) camera.usual = camera.front;
-  return camera;
+double omni_reach_m(const hal::RobotKind& kind) noexcept {
+  const auto& camera = *kind.part<hal::OmniCameraPart>();
+  return camera.height_m * std::tan(camera.aperture_rad);
 }
 
 /// Where robots of a kind carry their lights, numbered as in ShownLeds.
@@ -329,7 +319,7 @@ class OmniSensor final : public Sensor {
   OmniSensor(const DeviceSetup& setup, const Flaws& flaws, const BlockColumns& columns)
       : lookout_(RealSense::OmniCamera, setup, columns),
         height_m_(setup.kind.part<hal::OmniCameraPart>()->height_m),
-        reach_m_(omni_reach_m(*setup.kind.part<hal::OmniCameraPart>(), setup.item.camera)),
+        reach_m_(omni_reach_m(setup.kind)),
         flaws_(flaws) {}
 
   void sense(const DeviceContext& context, void* ports) noexcept override {
@@ -380,7 +370,7 @@ Recipe<Sensor> make_omni(const Element& element, Problems& problems, const Devic
   };
   Recipe<Sensor> recipe(make);
   recipe.listens = true;
-  recipe.reach_m = omni_reach_m(*setup.kind.part<hal::OmniCameraPart>(), setup.item.camera);
+  recipe.reach_m = omni_reach_m(setup.kind);
   return recipe;
 }
 
@@ -404,14 +394,14 @@ class LensSensor final : public Sensor {
   LensSensor(const DeviceSetup& setup, const Flaws& flaws, const BlockColumns& columns)
       : lookout_(RealSense::LensCamera, setup, columns),
         heads_(columns.find<HeadState>()),
-        camera_(camera_of(setup.kind, setup.item.camera)),
-        in_head_(setup.kind.part<hal::HeadPart>() != nullptr && !setup.item.camera.front),
+        camera_(*setup.kind.part<hal::CameraPart>()),
+        in_head_(setup.kind.part<hal::HeadPart>() != nullptr && !camera_.in_front),
         flaws_(flaws) {
     const auto width = static_cast<double>(camera_.width_px);
     const auto height = static_cast<double>(camera_.height_px);
     px_per_tangent_ = 0.5 * std::sqrt(width * width + height * height) / std::tan(camera_.aperture_rad);
-    aim_.cos_tilt = std::cos(camera_.usual.tilt_rad);
-    aim_.sin_tilt = std::sin(camera_.usual.tilt_rad);
+    aim_.cos_tilt = std::cos(camera_.mount().tilt_rad);
+    aim_.sin_tilt = std::sin(camera_.mount().tilt_rad);
   }
 
   void sense(const DeviceContext& context, void* ports) noexcept override {
@@ -478,7 +468,7 @@ class LensSensor final : public Sensor {
 
   void see_ahead(const DeviceContext& context, std::size_t row, hal::PerspectiveCamera& port) noexcept {
     const Bodies& b = context.stores.bodies;
-    const hal::CameraMount& mount = camera_.usual;
+    const hal::CameraMount& mount = camera_.mount();
     const Point from{b.x_m[row] + b.cos_h[row] * mount.x_m, b.y_m[row] + b.sin_h[row] * mount.x_m,
                      context.stores.base_m(row) + mount.z_m};
     const double range2 = camera_.range_m * camera_.range_m;
@@ -532,7 +522,7 @@ Recipe<Sensor> make_lens(const Element& element, Problems& problems, const Devic
   };
   Recipe<Sensor> recipe(make);
   recipe.listens = true;
-  recipe.reach_m = camera_of(setup.kind, setup.item.camera).range_m;
+  recipe.reach_m = setup.kind.part<hal::CameraPart>()->range_m;
   return recipe;
 }
 

@@ -11,6 +11,7 @@
 
 #include "core/scenario/element.hpp"
 #include "hal/result.hpp"
+#include "hal/robot_kind.hpp"
 
 namespace tandem::core {
 
@@ -78,21 +79,11 @@ struct BatteryConfig {
   double orient_delta = 0.0;  ///< charge lost a radian (motion)
 };
 
-/// What the file says of a robot's cameras; negative: what its kind says.
-struct CameraConfig {
-  double omni_aperture_rad = -1.0;
-  double aperture_rad = -1.0;
-  double focal_length_m = -1.0;
-  double range_m = -1.0;
-  bool front = false;  ///< the camera with a lens looks ahead
-  friend bool operator==(const CameraConfig&, const CameraConfig&) = default;
-};
-
-/// A robot that stands for a real one: where its bridge connects.
 /// What becomes of a run when a real robot is not there at its start. Refuse: it does not begin. Simulate: it begins
 /// with a simulated robot instead. Wait: it does not begin before the robot is there.
 enum class IfMissing : std::uint8_t { Refuse, Simulate, Wait };
 
+/// A robot that stands for a real one: where its bridge connects.
 struct BridgeConfig {
   std::string link;        ///< "serial:/dev/ttyUSB0@115200"
   double timeout_s = 0.5;  ///< age from which the link counts as lost
@@ -121,13 +112,13 @@ struct RobotItem {
   std::optional<Element> params;  ///< overrides of the controller's parameters, for these robots alone
   Placement placement;
   std::optional<Distribute> distribute;
-  double rab_range_m = -1.0;      ///< negative: the kind's
-  std::int64_t rab_payload = -1;  ///< bytes; negative: the kind's
   BatteryConfig battery;
   std::optional<BridgeConfig> bridge;
   std::optional<TrackerConfig> tracker;
   int line = 0;
-  CameraConfig camera = {};
+  /// The kind with what the robot's element says of its parts; null: as the catalog has it. Shared by those that say
+  /// the same.
+  std::shared_ptr<const hal::RobotKind> own_kind = {};
 };
 
 enum class ShapeKind { Box, Cylinder };

@@ -157,8 +157,8 @@ bool same_battery(const BatteryConfig& a, const BatteryConfig& b) {
 }
 
 bool same_kit(const RobotItem& a, const RobotItem& b) {
-  return a.kind == b.kind && a.controller == b.controller && a.rab_range_m == b.rab_range_m &&
-         a.rab_payload == b.rab_payload && a.camera == b.camera && same_battery(a.battery, b.battery);
+  return a.kind == b.kind && a.own_kind == b.own_kind && a.controller == b.controller &&
+         same_battery(a.battery, b.battery);
 }
 
 /// Robots that share a block must share everything that is not per robot.
@@ -275,14 +275,14 @@ bool RobotFactory::prepare_group(std::size_t g, Problems& problems) {
   };
   RobotGroup& group = stores_.groups[g];
   group.config = item.controller;
-  group.kind = robot_kind_of(loader_.catalog(), item.kind);
+  group.kind = item.own_kind != nullptr ? item.own_kind.get() : robot_kind_of(loader_.catalog(), item.kind);
   if (group.kind == nullptr) {
     problem(item.line, "unknown kind of robot '" + item.kind + "'");
     return false;
   }
   if (const auto* board = group.kind->part<hal::RangeAndBearingPart>(); board != nullptr) {
-    group.rab_range_m = item.rab_range_m >= 0.0 ? item.rab_range_m : board->range_m;
-    group.rab_payload = static_cast<unsigned>(item.rab_payload >= 0 ? item.rab_payload : board->payload);
+    group.rab_range_m = board->range_m;
+    group.rab_payload = static_cast<unsigned>(board->payload);
     group.rab_height_m = board->height_m;
   }
   const auto type = loader_.controller(config.library, config.label);

@@ -190,9 +190,7 @@ hal::Result<RobotItem> WorldEditor::item_for(const NewRobot& wanted) const {
   for (const RobotItem& like : scenario_.robots) {
     if (like.kind != item.kind || like.controller != item.controller) continue;
     item.battery = like.battery;
-    item.rab_range_m = like.rab_range_m;
-    item.rab_payload = like.rab_payload;
-    item.camera = like.camera;
+    item.own_kind = like.own_kind;
     break;
   }
   item.id = wanted.id;

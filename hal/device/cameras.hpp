@@ -12,6 +12,9 @@
 
 namespace tandem::hal {
 
+/// Half angles of view that a lens may have.
+inline constexpr Range kLensAngles_rad{0.1 * unit::deg.to_si, 89.0 * unit::deg.to_si};
+
 /// A camera on the axis that looks all around and down.
 struct OmniCameraPart {
   static constexpr std::string_view kName = "omnidirectional_camera";
@@ -25,6 +28,10 @@ struct OmniCameraPart {
     v.number("aperture", aperture_rad, unit::deg, kNotNegative,
              "From straight down to the farthest that it sees on the ground.");
     v.text("source", source, "Where these figures come from.");
+  }
+  void attributes(ParamVisitor& v) {
+    v.number("omnidirectional_camera_aperture", aperture_rad, unit::deg, kLensAngles_rad,
+             "From straight down to the farthest that the omnidirectional camera sees on the ground.");
   }
 };
 
@@ -117,13 +124,17 @@ struct CameraPart {
   static constexpr std::string_view kName = "perspective_camera";
   static constexpr std::string_view kDoc = "A camera with a lens.";
   CameraMount usual = {}, front = {};  ///< where it sits unless told otherwise, and where as a front camera
+  bool in_front = false;               ///< which of the two
   double aperture_rad = 0.0;           ///< from its axis to a corner of the image
   double focal_length_m = 0.0;
   double range_m = 0.0;  ///< up to which it makes out LEDs
   std::int64_t width_px = 0;
   std::int64_t height_px = 0;
+  /// Begin of the attributes that change it for one robot: "camera" gives camera_front, camera_range, …
+  std::string attributes_begin = "camera";
   std::string source = {};
 
+  const CameraMount& mount() const noexcept { return in_front ? front : usual; }
   void describe(ParamVisitor& v) {
     v.number("aperture", aperture_rad, unit::deg, {1e-9, 1.6}, "From its axis to a corner of the image.");
     v.number("focal_length", focal_length_m, unit::m, kNotNegative, "Of its lens.");
@@ -132,7 +143,16 @@ struct CameraPart {
     v.integer("height", height_px, {1, 65535}, "Pixels of the image from top to bottom.");
     v.group("usual", usual, "Where it sits unless told otherwise.");
     v.group("front", front, "Where it sits as a front camera.");
+    v.text("attributes", attributes_begin, "Begin of a robot's attributes that change it: with camera, camera_front.");
     v.text("source", source, "Where these figures come from.");
+  }
+  void attributes(ParamVisitor& v) {
+    v.flag(attributes_begin + "_front", in_front, "The camera looks ahead; otherwise as its kind's does.");
+    v.number(attributes_begin + "_aperture", aperture_rad, unit::deg, kLensAngles_rad,
+             "From the camera's axis to a corner of its image.");
+    v.number(attributes_begin + "_focal_length", focal_length_m, unit::m, {1e-6, 10.0},
+             "Of its lens; its image is as large as the aperture then needs, so that pixels do not depend on it.");
+    v.number(attributes_begin + "_range", range_m, unit::m, {1e-6, 1e6}, "Up to which it makes out LEDs.");
   }
 };
 

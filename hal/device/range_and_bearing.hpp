@@ -30,6 +30,11 @@ struct RangeAndBearingPart {
     v.integer("payload", payload, {0, static_cast<double>(kRabPayloadMax)}, "Bytes of a message.");
     v.text("source", source, "Where these figures come from.");
   }
+  void attributes(ParamVisitor& v) {
+    v.number("rab_range", range_m, unit::m, {0.0, 1e4}, "Reach of range-and-bearing.");
+    v.integer("rab_data_size", payload, {0, static_cast<double>(kRabPayloadMax)},
+              "Bytes of a range-and-bearing message.");
+  }
 };
 
 /// What the robot broadcasts in this tick. Safe value: nothing.

@@ -97,6 +97,7 @@ RobotKind make() {
                       .range_m = 2.0,
                       .width_px = 640,
                       .height_px = 480,
+                      .attributes_begin = "perspective_camera",
                       .source =
                           "aperture: ARGoS 3; chosen: focal length of a common lens (pixels do not depend on it), "
                           "range (an LED is then seen at about one pixel), VGA as small cameras of its time have"});

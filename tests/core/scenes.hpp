@@ -1,6 +1,7 @@
 // Scenarios built inline, for tests of the world.
 #pragma once
 #include <array>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -134,6 +135,21 @@ struct Scene {
     item.size = {radius_m, radius_m, 0.5};
     item.placement.p_W = {x_m, y_m, 0.0};
     scenario.objects.push_back(item);
+    return *this;
+  }
+  /// Changes the parts of all robots that are there, alike for those of one kind.
+  template <class Change>
+  Scene& parts(Change&& change) {
+    std::map<std::string, std::shared_ptr<const hal::RobotKind>> own;
+    for (RobotItem& robot : scenario.robots) {
+      auto& kind = own[robot.kind];
+      if (kind == nullptr) {
+        const auto made = std::make_shared<hal::RobotKind>(*test::catalog().find<hal::RobotKind>(robot.kind));
+        change(*made);
+        kind = made;
+      }
+      robot.own_kind = kind;
+    }
     return *this;
   }
   /// Makes the object added last a movable one.

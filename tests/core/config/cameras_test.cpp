@@ -1,4 +1,6 @@
 // What files say of cameras, of the LEDs that they see, and of their media.
+#include "hal/device/cameras.hpp"
+
 #include <gmock/gmock.h>
 #include <numbers>
 
@@ -35,15 +37,18 @@ TEST(Cameras, AreReadFromFilesOfArgos) {
   EXPECT_EQ(s.controllers[0].sensors[0].implementation, "rot_z_only");
   EXPECT_EQ(s.controllers[0].sensors[1].device, "perspective_camera");
   ASSERT_EQ(s.robots.size(), 2U);
-  const CameraConfig& foot = s.robots[0].camera;
-  EXPECT_NEAR(foot.omni_aperture_rad, 50 * kDeg, 1e-12);
+  ASSERT_NE(s.robots[0].own_kind, nullptr);
+  const auto& foot = *s.robots[0].own_kind->part<hal::CameraPart>();
+  EXPECT_NEAR(s.robots[0].own_kind->part<hal::OmniCameraPart>()->aperture_rad, 50 * kDeg, 1e-12);
   EXPECT_NEAR(foot.aperture_rad, 40 * kDeg, 1e-12);
   EXPECT_EQ(foot.focal_length_m, 0.05);
   EXPECT_EQ(foot.range_m, 7.0);
-  EXPECT_TRUE(foot.front);
-  EXPECT_NEAR(s.robots[1].camera.aperture_rad, 20 * kDeg, 1e-12);
-  EXPECT_EQ(s.robots[1].camera.range_m, 10.0);
-  EXPECT_TRUE(s.robots[1].camera.front);
+  EXPECT_TRUE(foot.in_front);
+  ASSERT_NE(s.robots[1].own_kind, nullptr);
+  const auto& eye = *s.robots[1].own_kind->part<hal::CameraPart>();
+  EXPECT_NEAR(eye.aperture_rad, 20 * kDeg, 1e-12);
+  EXPECT_EQ(eye.range_m, 10.0);
+  EXPECT_TRUE(eye.in_front);
   ASSERT_EQ(s.objects.size(), 1U);
   ASSERT_EQ(s.objects[0].leds.size(), 2U);
   EXPECT_EQ(s.objects[0].leds[0].p_O, (Vec3{0.2, 0.0, 0.3}));
@@ -56,6 +61,18 @@ TEST(Cameras, AreReadFromFilesOfArgos) {
   EXPECT_FALSE(medium_number(s.media, "range_and_bearing", "leds").ok()) << "that is an LED medium's";
 }
 
+TEST(Cameras, RobotsThatSayTheSameShareAKind) {
+  Parts parts = argos();
+  for (const char* id : {"c", "d"})
+    parts.things += R"(<eye-bot id=")" + std::string(id) +
+                    R"(" camera_range="10"><body position="1,-1,1"/><controller config="w"/></eye-bot>)";
+  const Scenario s = read(parts.text(), {}, catalog_with({"kinematics2d"})).good();
+  ASSERT_EQ(s.robots.size(), 4U);
+  EXPECT_NE(s.robots[2].own_kind, nullptr);
+  EXPECT_EQ(s.robots[2].own_kind, s.robots[3].own_kind);
+  EXPECT_NE(s.robots[1].own_kind, s.robots[2].own_kind);
+}
+
 TEST(Cameras, EffectiveSettingsReadBackAsTheSame) {
   const hal::Catalog known = catalog_with({"kinematics2d"});
   Parts parts = argos();
@@ -65,7 +82,8 @@ TEST(Cameras, EffectiveSettingsReadBackAsTheSame) {
   EXPECT_THAT(effective, HasSubstr("omnidirectional_camera_aperture=\"70 deg\""));
   const Scenario b = read(effective, {}, known).good();
   ASSERT_EQ(a.robots.size(), b.robots.size());
-  for (std::size_t i = 0; i < a.robots.size(); ++i) EXPECT_EQ(a.robots[i].camera, b.robots[i].camera);
+  EXPECT_EQ(b.robots[0].own_kind->part<hal::CameraPart>()->range_m, 7.0);
+  EXPECT_EQ(b.robots.back().own_kind, nullptr) << "as the catalog has it";
   ASSERT_EQ(b.objects[0].leds.size(), 2U);
   EXPECT_EQ(a.objects[0].leds[1].p_O, b.objects[0].leds[1].p_O);
   EXPECT_EQ(effective_settings(b), effective);

@@ -2,6 +2,7 @@
 #include <filesystem>
 #include <gmock/gmock.h>
 
+#include "hal/device/range_and_bearing.hpp"
 #include "hal/xml/xml.hpp"
 #include "tests/checkout.hpp"
 #include "tests/core/config/reading.hpp"
@@ -40,7 +41,11 @@ void expect_same(const Scenario& a, const Scenario& b) {
     EXPECT_EQ(a.robots[i].id, b.robots[i].id);
     EXPECT_EQ(a.robots[i].placement.p_W, b.robots[i].placement.p_W);
     EXPECT_EQ(a.robots[i].placement.yaw_rad, b.robots[i].placement.yaw_rad);
-    EXPECT_EQ(a.robots[i].rab_range_m, b.robots[i].rab_range_m);
+    ASSERT_EQ(a.robots[i].own_kind != nullptr, b.robots[i].own_kind != nullptr);
+    if (a.robots[i].own_kind != nullptr) {
+      EXPECT_EQ(a.robots[i].own_kind->part<hal::RangeAndBearingPart>()->range_m,
+                b.robots[i].own_kind->part<hal::RangeAndBearingPart>()->range_m);
+    }
     ASSERT_EQ(a.robots[i].distribute.has_value(), b.robots[i].distribute.has_value());
     if (!a.robots[i].distribute) continue;
     EXPECT_EQ(a.robots[i].distribute->quantity, b.robots[i].distribute->quantity);

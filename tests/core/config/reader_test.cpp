@@ -1,5 +1,6 @@
 #include <numbers>
 
+#include "hal/device/range_and_bearing.hpp"
 #include "tests/core/config/reading.hpp"
 
 namespace tandem::core {
@@ -102,8 +103,9 @@ TEST(Reader, TakesEverythingThatAnArgosFileSays) {
   ASSERT_EQ(s.robots.size(), 2U);
   const RobotItem& first = s.robots[0];
   EXPECT_EQ(first.kind, "e-puck");
-  EXPECT_EQ(first.rab_range_m, 0.6);
-  EXPECT_EQ(first.rab_payload, 4);
+  ASSERT_NE(first.own_kind, nullptr);
+  EXPECT_EQ(first.own_kind->part<hal::RangeAndBearingPart>()->range_m, 0.6);
+  EXPECT_EQ(first.own_kind->part<hal::RangeAndBearingPart>()->payload, 4);
   EXPECT_EQ(first.placement.p_W, (Vec3{-1, 0, 0}));
   EXPECT_DOUBLE_EQ(first.placement.yaw_rad, 45 * kDeg);
   EXPECT_EQ(first.battery.model, "time_motion");
@@ -150,7 +152,7 @@ TEST(Reader, FillsInWhatIsLeftOut) {
   ASSERT_EQ(s.engines.size(), 1U);
   EXPECT_EQ(s.engines[0].kind, "kinematics2d");
   EXPECT_EQ(s.floor.source, "none");
-  EXPECT_EQ(s.robots[0].rab_range_m, -1.0);
+  EXPECT_EQ(s.robots[0].own_kind, nullptr) << "as the catalog has it";
   EXPECT_EQ(s.controllers[0].sensors[0].implementation, "default");
   EXPECT_EQ(s.controllers[0].params.name, "params");
 }
@@ -176,7 +178,7 @@ TEST(Reader, TakesUnitsEverywhere) {
   ASSERT_EQ(s.robots.size(), 1U);
   EXPECT_EQ(s.robots[0].distribute->position.distances, (Vec3{0.5, 1, 1}));
   EXPECT_EQ(s.robots[0].distribute->orientation.values[0], 1.0);
-  EXPECT_DOUBLE_EQ(s.robots[0].rab_range_m, 0.8);
+  EXPECT_EQ(s.robots[0].own_kind, nullptr) << "it says what all of its kind have";
 }
 
 TEST(Reader, SaysWhereAPriorityHasNoEffect) {

@@ -36,6 +36,10 @@ const hal::PerspectiveCamera& lens(const MadeWorld& world, const std::string& id
   return reading<hal::PerspectiveCamera>(world, id);
 }
 
+void look_ahead(hal::RobotKind& kind) {
+  kind.part<hal::CameraPart>()->in_front = true;
+}
+
 Scene two(double x_m, double y_m, double heading_rad = 0.0) {
   Scene scene = camera_scene();
   add_footbot(scene, "eye", 0, 0, heading_rad);
@@ -77,7 +81,8 @@ TEST(OmnidirectionalCamera, SeesTheDiscThatItsApertureCovers) {
   for (const auto& [aperture_rad, reach_m] : {std::pair{-1.0, kReach_m}, std::pair{kPi / 3, 0.2887 * std::sqrt(3.0)}}) {
     for (const double beyond_m : {-1e-3, 1e-3}) {
       Scene scene = two(reach_m + beyond_m, 0.0);
-      for (RobotItem& robot : scene.scenario.robots) robot.camera.omni_aperture_rad = aperture_rad;
+      if (aperture_rad > 0.0)
+        scene.parts([&](hal::RobotKind& kind) { kind.part<hal::OmniCameraPart>()->aperture_rad = aperture_rad; });
       auto world = made(scene);
       beacon(world, "lamp", hal::kBlue);
       world->step();
@@ -363,7 +368,7 @@ TEST(Cameras, SeeOnlyTheirOwnMedium) {
 
 TEST(PerspectiveCamera, LooksAheadAsAPinholeDoes) {
   Scene scene = two(1.0, 0.2);
-  for (RobotItem& robot : scene.scenario.robots) robot.camera.front = true;
+  scene.parts(&look_ahead);
   auto world = made(scene);
   beacon(world, "lamp", hal::kRed);
   world->step();
@@ -379,7 +384,13 @@ TEST(PerspectiveCamera, LooksAheadAsAPinholeDoes) {
 TEST(PerspectiveCamera, SeesAsFarAndAsWideAsItIsTold) {
   const auto count = [](double x_m, double y_m, double range_m, double aperture_rad) {
     Scene scene = two(x_m, y_m);
-    for (RobotItem& robot : scene.scenario.robots) robot.camera = {-1.0, aperture_rad, 0.05, range_m, true};
+    scene.parts([&](hal::RobotKind& kind) {
+      look_ahead(kind);
+      auto& camera = *kind.part<hal::CameraPart>();
+      camera.aperture_rad = aperture_rad;
+      camera.focal_length_m = 0.05;
+      camera.range_m = range_m;
+    });
     auto world = made(scene);
     beacon(world, "lamp", hal::kRed);
     world->step();
@@ -419,7 +430,7 @@ TEST(PerspectiveCamera, IsBlockedByBodiesAndPutsTheNearestFirst) {
   add_footbot(scene, "near", 0.6, 0.0);
   add_footbot(scene, "far", 1.2, 0.02);
   add_footbot(scene, "aside", 1.0, 0.25);
-  for (RobotItem& robot : scene.scenario.robots) robot.camera.front = true;
+  scene.parts(&look_ahead);
   auto world = made(scene);
   // LEDs straight behind: on the side that faces the camera.
   command<hal::RingLeds>(world, "near").set(5, hal::kRed);
@@ -436,7 +447,7 @@ TEST(PerspectiveCamera, IsBlockedByBodiesAndPutsTheNearestFirst) {
 
 TEST(Cameras, NoiseHasTheDeviationThatWasAskedFor) {
   Scene scene = two(0.5, 0.0);
-  for (RobotItem& robot : scene.scenario.robots) robot.camera.front = true;
+  scene.parts(&look_ahead);
   choose_everywhere(scene, "omnidirectional_camera", "noisy", {{"noise_std_dev", "0.02", 0}, {"miss_prob", "0.25", 0}});
   choose_everywhere(scene, "perspective_camera", "default", {{"noise_std_dev", "3", 0}});
   auto world = made(scene);

@@ -247,7 +247,7 @@ TEST(PanTilt, WhatIsInBetweenHidesWhatIsBehind) {
 TEST(PanTilt, AFrontCameraHangsInNoHead) {
   Scene scene = eyebot_scene();
   scene.flyer("e", 0, 0, 1.5).flyer("lamp", 2, 0, 1.5);
-  for (RobotItem& item : scene.scenario.robots) item.camera.front = true;
+  scene.parts([](hal::RobotKind& kind) { kind.part<hal::CameraPart>()->in_front = true; });
   auto world = made(scene);
   command<hal::UpperRingLeds>(world, "lamp").set_all(hal::kRed);
   look(world, kPi, 0.0);

@@ -175,9 +175,11 @@ TEST(RabOcclusion, HeightsCount) {
   small.actuators = {{"differential_steering", "default", {}}, {"range_and_bearing", "default", {}}};
   scene.scenario.controllers.push_back(small);
   scene.robot("ep", -0.4, 0).robot("ep_before", -0.2, 0);
+  const auto far = std::make_shared<hal::RobotKind>(*test::catalog().find<hal::RobotKind>("e-puck"));
+  far->part<hal::RangeAndBearingPart>()->range_m = 3.0;
   for (std::size_t i : {5U, 6U}) {
     scene.scenario.robots[i].controller = scene.scenario.controllers.size() - 1;
-    scene.scenario.robots[i].rab_range_m = 3.0;
+    scene.scenario.robots[i].own_kind = far;
   }
   auto world = make(scene);
   ASSERT_TRUE(world.world) << world.all_problems();
