@@ -64,8 +64,8 @@ struct Surface {
 
 /// Of entries of class `T`: its category, and, where it says so, `static constexpr std::uint32_t kNumber` (else 1) and
 /// `using Crosses = Layouts<…>`. Members are only ever appended to `T`, and zero says that there is no such; anything
-/// else raises `kNumber`. A class that cannot be copied byte by byte says `static constexpr bool kWhole = true`: its size
-/// is part of its form.
+/// else raises `kNumber`. A class that cannot be copied byte by byte says `static constexpr bool kWhole = true`: its
+/// size is part of its form.
 template <class T>
 struct SurfaceOf {
   static constexpr std::string_view kName = T::kCategory;

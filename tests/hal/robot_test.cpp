@@ -5,6 +5,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "hal/device/ring_sensors.hpp"
+#include "hal/device/turret.hpp"
 #include "hal/robot/epuck.hpp"
 
 namespace tandem::hal {
@@ -33,6 +35,18 @@ class Named final : public Robot {
   std::string id_;
   std::uint64_t run_seed_;
 };
+
+TEST(Robot, TellsOfItsPartsAndWhichItIsBuiltWithout) {
+  const Named robot("a", 1);
+  EXPECT_EQ(&robot.part<DifferentialDrive>(), epuck::kind().drive());
+  EXPECT_EQ(&robot.part<ProximityPart>(), epuck::kind().part<ProximityPart>());
+  try {
+    robot.part<TurretPart>();
+    FAIL() << "an e-puck has no turret";
+  } catch (const DeviceError& e) {
+    EXPECT_THAT(e.what(), testing::StartsWith("needs the part 'turret', which the robot 'e-puck' is built without"));
+  }
+}
 
 TEST(Robot, HasChanceOfItsOwnBySeedAndId) {
   const auto first = [](const Robot& robot) { return robot.random()(); };
