@@ -42,7 +42,7 @@ struct ControllerType {
   static constexpr std::string_view kCategory = "controller";
   static constexpr std::uint32_t kNumber = 2;
   using Crosses = Layouts<Controller, Robot, StepFault, ParamVisitor, ParamList, PublishedField, RobotLog, Random,
-                          PortType, RowType, Field, RobotKind>;
+                          PortType, RowType, Field, RobotKind, RobotKind::Crosses>;
   std::string_view name;  ///< as written in experiment files
   std::string_view summary;
   std::string_view class_name;  ///< as the compiler spells it, for hooks that know the class

@@ -106,7 +106,7 @@ std::string port_entry(std::string_view name, Role role);
 struct PortType : RowType {
   static constexpr std::string_view kCategory = "port";
   static constexpr std::uint32_t kNumber = 2;
-  using Crosses = Layouts<RowType, Field, Unit, Reading, Command, Limited, Fence, Pose, RobotKind>;
+  using Crosses = Layouts<RowType, Field, Unit, Reading, Command, Limited, Fence, Pose, RobotKind, RobotKind::Crosses>;
   Role role = Role::Sensor;
   void (*merge)(void* real, const void* virtual_) = nullptr;  ///< for Fusion::Union and ByAngle; null where none
 

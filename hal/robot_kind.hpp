@@ -103,6 +103,19 @@ concept RobotPart = Described<P> && std::is_copy_constructible_v<P> && requires(
   { part.source } -> std::convertible_to<std::string>;
 };
 
+namespace detail {
+/// What is known of the parts of one class; in the library that was compiled with it.
+struct PartTable {
+  std::string_view name, doc;
+  std::uint64_t layout;
+  void (*describe)(void* part, ParamVisitor& visitor);
+  void (*attributes)(void* part, ParamVisitor& visitor);
+  std::string (*flaw)(const void* part);
+  void* (*copy)(const void* part);
+  void (*destroy)(void* part);
+};
+}  // namespace detail
+
 /// A part of any class. Copies are deep.
 class AnyPart {
  public:
@@ -128,34 +141,25 @@ class AnyPart {
   }
 
  private:
-  struct Table {
-    std::string_view name, doc;
-    std::uint64_t layout;
-    void (*describe)(void* part, ParamVisitor& visitor);
-    void (*attributes)(void* part, ParamVisitor& visitor);
-    std::string (*flaw)(const void* part);
-    void* (*copy)(const void* part);
-    void (*destroy)(void* part);
-  };
   template <class P>
-  static constexpr Table kTable = {P::kName,
-                                   P::kDoc,
-                                   part_layout<P>(),
-                                   [](void* part, ParamVisitor& v) { static_cast<P*>(part)->describe(v); },
-                                   [](void* part, ParamVisitor& v) {
-                                     if constexpr (requires(P & p) { p.attributes(v); })
-                                       static_cast<P*>(part)->attributes(v);
-                                   },
-                                   [](const void* part) {
-                                     if constexpr (requires(const P& p) { p.flaw(); })
-                                       return std::string(static_cast<const P*>(part)->flaw());
-                                     else
-                                       return std::string();
-                                   },
-                                   [](const void* part) -> void* { return new P(*static_cast<const P*>(part)); },
-                                   [](void* part) { delete static_cast<P*>(part); }};
+  static constexpr detail::PartTable kTable = {
+      P::kName,
+      P::kDoc,
+      part_layout<P>(),
+      [](void* part, ParamVisitor& v) { static_cast<P*>(part)->describe(v); },
+      [](void* part, ParamVisitor& v) {
+        if constexpr (requires(P & p) { p.attributes(v); }) static_cast<P*>(part)->attributes(v);
+      },
+      [](const void* part) {
+        if constexpr (requires(const P& p) { p.flaw(); })
+          return std::string(static_cast<const P*>(part)->flaw());
+        else
+          return std::string();
+      },
+      [](const void* part) -> void* { return new P(*static_cast<const P*>(part)); },
+      [](void* part) { delete static_cast<P*>(part); }};
 
-  const Table* table_;
+  const detail::PartTable* table_;
   std::unique_ptr<void, void (*)(void*)> data_;
 };
 
@@ -166,7 +170,7 @@ class RobotKind {
   static constexpr std::string_view kCategory = "robot";
   static constexpr std::uint32_t kNumber = 2;
   static constexpr bool kWhole = true;
-  using Crosses = Layouts<Body, Locomotion, DifferentialDrive, Quadrotor, AnyPart, std::string>;
+  using Crosses = Layouts<Body, Locomotion, DifferentialDrive, Quadrotor, AnyPart, detail::PartTable, std::string>;
 
   std::string name;     ///< as the element in experiment files, e.g. "e-puck"
   std::string summary;  ///< for people: a line

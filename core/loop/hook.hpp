@@ -83,7 +83,7 @@ struct HookType {
   static constexpr std::string_view kCategory = "hook";
   static constexpr std::uint32_t kNumber = 2;
   using Crosses = hal::Layouts<Hook, HookContext, Space, Checkpoints, Sketch, Measures, Element, Problem,
-                               hal::ParamVisitor, hal::RobotKind>;
+                               hal::ParamVisitor, hal::RobotKind, hal::RobotKind::Crosses>;
   std::string_view name;
   std::string_view summary;
   /// Reads its options from the file; problems are reported with their lines.

@@ -316,8 +316,8 @@ struct SpaceStores {
 };
 
 /// What plug-ins that work on the stores must have been built against.
-using StoreLayouts =
-    hal::Layouts<SpaceStores, Bodies, Motion, FlightCommand, Columns, ColumnArrays, KeptColumn, RobotGroup, RobotBlock,
-                 RobotEntity, Object, Joint, Region, LightSource, SoundSource, hal::RowType, hal::RobotKind>;
+using StoreLayouts = hal::Layouts<SpaceStores, Bodies, Motion, FlightCommand, Columns, ColumnArrays, KeptColumn,
+                                  RobotGroup, RobotBlock, RobotEntity, Object, Joint, Region, LightSource, SoundSource,
+                                  hal::RowType, hal::RobotKind, hal::RobotKind::Crosses>;
 
 }  // namespace tandem::core
