@@ -7,6 +7,7 @@
 #pragma once
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <array>
 
 #include "hal/elementary.hpp"
 
@@ -16,6 +17,20 @@ using Vector2 = Eigen::Matrix<double, 2, 1, Eigen::DontAlign>;
 using Vector3 = Eigen::Matrix<double, 3, 1, Eigen::DontAlign>;
 using Matrix3 = Eigen::Matrix<double, 3, 3, Eigen::DontAlign>;
 using Quaternion = Eigen::Quaternion<double, Eigen::DontAlign>;
+
+/// From and to the arrays that ports, the space and messages have; quaternions are w, x, y, z there.
+inline Vector3 vector_of(const std::array<double, 3>& a) noexcept {
+  return {a[0], a[1], a[2]};
+}
+inline std::array<double, 3> array_of(const Vector3& v) noexcept {
+  return {v.x(), v.y(), v.z()};
+}
+inline Quaternion quaternion_of(const std::array<double, 4>& a) noexcept {
+  return {a[0], a[1], a[2], a[3]};
+}
+inline std::array<double, 4> array_of(const Quaternion& q) noexcept {
+  return {q.w(), q.x(), q.y(), q.z()};
+}
 
 /// The vector of this length that points to the bearing (counter-clockwise from x).
 inline Vector2 polar(double length, double bearing_rad) noexcept {

@@ -4,6 +4,7 @@
 #include "core/random/random.hpp"
 #include "core/space/mechanisms.hpp"
 #include "hal/device/body_sensors.hpp"
+#include "hal/vector.hpp"
 
 namespace tandem::core {
 namespace {
@@ -24,17 +25,9 @@ struct ForceNoise {
   }
 };
 
-std::array<double, 3> cross(const std::array<double, 3>& m, const std::array<double, 3>& n) noexcept {
-  return {m[1] * n[2] - m[2] * n[1], m[2] * n[0] - m[0] * n[2], m[0] * n[1] - m[1] * n[0]};
-}
-
-/// From W to the body: by the inverse of its quaternion, v + 2 u x (u x v + q0 v) with u = -(q1, q2, q3).
-std::array<double, 3> to_body(const std::array<double, 4>& q, const std::array<double, 3>& v) noexcept {
-  const std::array<double, 3> u = {-q[1], -q[2], -q[3]};
-  std::array<double, 3> inner = cross(u, v);
-  for (std::size_t k = 0; k < 3; ++k) inner[k] += q[0] * v[k];
-  const std::array<double, 3> outer = cross(u, inner);
-  return {v[0] + 2.0 * outer[0], v[1] + 2.0 * outer[1], v[2] + 2.0 * outer[2]};
+/// From W to the body.
+std::array<double, 3> to_body(const std::array<double, 4>& q_WB, const std::array<double, 3>& v_W) noexcept {
+  return hal::array_of(hal::quaternion_of(q_WB).conjugate() * hal::vector_of(v_W));
 }
 
 /// What accelerometers of robots that drive measured against.
