@@ -7,6 +7,9 @@
 #include "bridges/footbot/register.hpp"
 #include "bridges/footbot_emulator/register.hpp"
 #include "core/device/device.hpp"
+#include "core/field/floor/floor.hpp"
+#include "core/field/light/light.hpp"
+#include "core/field/sound/sound.hpp"
 #include "core/loop/hook.hpp"
 #include "core/medium/led/led.hpp"
 #include "core/medium/medium.hpp"
@@ -28,6 +31,9 @@ const hal::Catalog& catalog() {
     const hal::Status good = made.add_from(std::string(hal::Catalog::kInside), [](hal::Registrar& r) {
       hal::register_ports(r);
       hal::register_robots(r);
+      core::register_floor(r);
+      core::register_light(r);
+      core::register_sound(r);
       core::register_led_medium(r);
       core::register_range_and_bearing_medium(r);
       core::register_unused_media(r);

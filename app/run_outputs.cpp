@@ -14,7 +14,10 @@ std::string trajectory_path(const RunOptions& options, const core::Scenario& sce
 
 std::vector<NamedFile> inputs_of(const core::Scenario& scenario, const hal::Catalog& catalog) {
   std::vector<NamedFile> inputs{{"experiment", scenario.file}};
-  if (scenario.floor.source == "image") inputs.push_back({"floor's image", scenario.floor.path});
+  for (const core::Element& field : scenario.fields) {
+    const std::string* path = field.attribute("path");
+    if (path != nullptr && !path->empty()) inputs.push_back({"file of the " + field.name, *path});
+  }
   for (const core::RobotItem& robot : scenario.robots) {
     if (!robot.bridge) continue;
     for (const auto& [what, path] :

@@ -132,7 +132,10 @@ InputFiles input_files(const core::Scenario& scenario, const hal::PluginLoader& 
     const auto file = loader.find(hook.library);
     if (file.ok()) files.hooks.push_back(described("", hook.label, file.value().string()));
   }
-  if (scenario.floor.source == "image") files.others.push_back(described("", "", scenario.floor.path));
+  for (const core::Element& field : scenario.fields) {
+    const std::string* path = field.attribute("path");
+    if (path != nullptr && !path->empty()) files.others.push_back(described("", "", *path));
+  }
   for (const core::RobotItem& robot : scenario.robots) {
     if (!robot.bridge) continue;
     for (const auto& file :

@@ -15,6 +15,8 @@
 #include "core/device/device.hpp"
 #include "core/loop/hook.hpp"
 #include "core/physics/solver.hpp"
+#include "core/scenario/field_type.hpp"
+#include "core/scenario/medium_type.hpp"
 
 namespace tandem::app {
 namespace {
@@ -104,6 +106,8 @@ const std::map<std::string, ListKind>& kinds() {
       {"engines", [](const hal::Catalog& c) { list_names(c, core::EngineType::kCategory, "physics engines"); }},
       {"plugins", &list_libraries},
       {"robots", [](const hal::Catalog& c) { list_plugins<hal::RobotKind>(c, "robots"); }},
+      {"fields", [](const hal::Catalog& c) { list_plugins<core::FieldType>(c, "fields"); }},
+      {"media", [](const hal::Catalog& c) { list_plugins<core::MediumType>(c, "media"); }},
       {"elements", &list_elements}};
   return all;
 }

@@ -50,7 +50,9 @@ class ArenaReader {
                   : a.escape == "remove" ? EscapePolicy::Remove
                                          : EscapePolicy::Error;
     check_lengths(e, a.size);
-    reading_.once_or_default(e, "floor", [&](Element& c) { floor(c); });
+    for (const FieldType* type : reading_.catalog().all<FieldType>()) {
+      if (type->describe != nullptr) reading_.once_or_default(e, type->name, [&](Element& c) { field(c, *type); });
+    }
     for (Element& c : e.children) {
       if (c.name == "distribute")
         distribute(c);
@@ -77,16 +79,12 @@ class ArenaReader {
     }
   }
 
-  void floor(Element& e) {
-    const auto f = reading_.read<schema::Floor>(e);
-    out_.floor.source = f.source;
-    out_.floor.pixels_per_meter = f.pixels_per_meter;
-    out_.floor.path = hal::path_beside(f.path, out_.file);
-    out_.floor.line = e.line;
-    if (!f.path.empty())
-      *std::find_if(e.attributes.begin(), e.attributes.end(), [](const auto& a) { return a.name == "path"; }) = {
-          "path", out_.floor.path, e.line};
-    if (f.source == "image" && f.path.empty()) reading_.error(e, "<floor source=\"image\"> needs the attribute 'path'");
+  void field(Element& e, const FieldType& type) {
+    for (Element::Attribute& a : e.attributes) {
+      if (a.name == "path" && !a.value.empty()) a.value = hal::path_beside(a.value, out_.file);
+    }
+    reading_.read_with<schema::FieldElement>(e, type.describe);
+    out_.fields.push_back(e);
   }
 
   void thing(Element& e, const Distribute* distribute) {

@@ -29,10 +29,10 @@ std::vector<ElementManual> manuals_of() {
 std::vector<ElementManual> all_manuals() {
   using namespace schema;
   return manuals_of<Root, Plugins, Framework, System, Experiment, Profiling, Time, Controllers, Configuration, Sensors,
-                    Actuators, Arena, Floor, Box, Cylinder, Leds, Led, Light, Sound, Robot, Body, RobotController,
-                    Battery, Bridge, Tracker, DistributeElement, PositionDraw, OrientationDraw, Entity, Engines, Engine,
-                    Boundaries, Top, Bottom, Sides, Vertex, Media, schema::Medium, Hook, Record, Trajectory,
-                    Visualization>();
+                    Actuators, Arena, FieldElement, Box, Cylinder, Leds, Led, Light, Sound, Robot, Body,
+                    RobotController, Battery, Bridge, Tracker, DistributeElement, PositionDraw, OrientationDraw, Entity,
+                    Engines, Engine, Boundaries, Top, Bottom, Sides, Vertex, Media, schema::Medium, Hook, Record,
+                    Trajectory, Visualization>();
 }
 
 /// What a kind says of its own element.
@@ -59,6 +59,7 @@ std::vector<ElementManual> expanded(const ElementManual& m, const KnownNames& kn
   if (m.name == schema::Robot::kElement.name) names = known.robots;
   if (m.name == schema::Engine::kElement.name) names = known.engines;
   if (m.name == schema::Medium::kElement.name) names = known.media;
+  if (m.name == schema::FieldElement::kElement.name) names = known.fields;
   std::vector<ElementManual> out;
   for (const std::string& name : names) {
     out.push_back(m);
@@ -66,6 +67,7 @@ std::vector<ElementManual> expanded(const ElementManual& m, const KnownNames& kn
     out.back().children = known.children_of(m.children);
     if (m.name == schema::Robot::kElement.name) add_attributes(*known.catalog.find<hal::RobotKind>(name), out.back());
     if (m.name == schema::Medium::kElement.name) add_own(*known.catalog.find<MediumType>(name), out.back());
+    if (m.name == schema::FieldElement::kElement.name) add_own(*known.catalog.find<FieldType>(name), out.back());
   }
   return out;
 }

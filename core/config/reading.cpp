@@ -17,13 +17,16 @@ KnownNames::KnownNames(const hal::Catalog& all)
       engines(all.names(KnownEngine::kCategory)),
       media(all.names(MediumType::kCategory)),
       catalog(all) {
+  for (const FieldType* field : all.all<FieldType>()) {
+    if (field->describe != nullptr) fields.emplace_back(field->name);
+  }
   for (const hal::PortType* port : all.all<hal::PortType>())
     (port->role == hal::Role::Sensor ? sensors : actuators).emplace_back(port->name);
 }
 
 std::vector<std::string> KnownNames::children_of(std::vector<std::string> names) const {
-  for (const auto& [stand_in, kinds] :
-       {std::pair(schema::kRobotKind, &robots), std::pair(schema::kMediumKind, &media)}) {
+  for (const auto& [stand_in, kinds] : {std::pair(schema::kRobotKind, &robots), std::pair(schema::kMediumKind, &media),
+                                        std::pair(schema::kFieldKind, &fields)}) {
     const auto at = std::find(names.begin(), names.end(), stand_in);
     if (at != names.end()) names.insert(names.erase(at), kinds->begin(), kinds->end());
   }
@@ -42,7 +45,11 @@ std::vector<std::string> Reading::check(const Element& element, const schema::El
     }
   }
   if (info.children == schema::kAnything) return missing;
-  if (info.children == schema::kMediumKind && known_.media.empty()) return missing;  // a program without a world
+  // A program without a world knows neither media nor fields.
+  const auto may_hold = [&](std::string_view kind) { return info.children.find(kind) != std::string_view::npos; };
+  if ((may_hold(schema::kMediumKind) && known_.media.empty()) ||
+      (may_hold(schema::kFieldKind) && known_.fields.empty()))
+    return missing;
   const std::vector<std::string> allowed = known_.children_of(words(info.children));
   for (const Element& child : element.children) {
     if (std::find(allowed.begin(), allowed.end(), child.name) != allowed.end()) continue;

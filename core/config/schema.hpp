@@ -23,6 +23,7 @@ inline constexpr double kSmallest_m = 1e-6;
 
 inline constexpr std::string_view kAnything = "*";         ///< as children: any element
 inline constexpr std::string_view kRobotKind = "ROBOT";    ///< in children: every kind of robot that the program knows
+inline constexpr std::string_view kFieldKind = "FIELD";    ///< … every field of which files say something
 inline constexpr std::string_view kMediumKind = "MEDIUM";  ///< … and every kind of medium
 
 /// What an element is and holds. Lists are names separated by spaces.
@@ -160,7 +161,7 @@ struct Hook {
 
 struct Arena {
   static constexpr ElementInfo kElement{"arena", "The space and what is in it.", "size",
-                                        "floor box cylinder light sound distribute ROBOT"};
+                                        "FIELD box cylinder light sound distribute ROBOT"};
   Vec3 size{1.0, 1.0, 1.0}, center{};
   Vec3 positional_grid_size{};
   std::string escape = "error";
@@ -175,19 +176,11 @@ struct Arena {
   }
 };
 
-struct Floor {
-  static constexpr ElementInfo kElement{"floor", "The floor's shade."};
-  std::string id, source = "none", path;
-  double pixels_per_meter = 100.0;
-  void describe(ParamVisitor& v) {
-    static constexpr std::array<std::string_view, 3> kSources = {"none", "image", "loop_functions"};
-    v.text("id", id, "Name.");
-    v.choice("source", source, kSources,
-             "Where the floor's shade comes from: even grey, a PNG image, or a hook's floor().");
-    v.text("path", path, "The PNG image, laid over the whole arena, its top to the north (+y).");
-    v.number("pixels_per_meter", pixels_per_meter, unit::none, {0.01, 10000.0},
-             "Resolution of a floor painted by a hook.");
-  }
+/// What fields of every kind have: nothing; the attributes are the kind's own.
+struct FieldElement {
+  static constexpr ElementInfo kElement{"field", "A field over the arena, written with its name, e.g. <floor>.", "",
+                                        kAnything};
+  void describe(ParamVisitor&) {}
 };
 
 struct Box {

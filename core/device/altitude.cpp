@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "core/device/sight.hpp"
+#include "core/space/sight.hpp"
 
 namespace tandem::core {
 namespace {

@@ -1,8 +1,9 @@
 // What a robot senses of itself and of the air: acceleration, turn rates, sound, battery, clock.
-#include "core/device/sight.hpp"
+#include "core/device/field_ring.hpp"
 #include "core/device/types.hpp"
 #include "core/random/random.hpp"
 #include "core/space/mechanisms.hpp"
+#include "core/space/sight.hpp"
 #include "hal/device/body_sensors.hpp"
 #include "hal/vector.hpp"
 
@@ -196,47 +197,27 @@ struct SoundNoise {
   }
 };
 
-/// A source of level L is heard at L / (1 + (d / 10 cm)^2): full level at the source, falling with the square of the
-/// distance in the far field. Sources add up, at most to 1.
+/// At most 1.
 class MicrophoneSensor final : public Sensor {
  public:
-  MicrophoneSensor(const hal::MicrophonesPart& part, double noise) : mounts_(part.mounts), noise_(noise) {}
+  MicrophoneSensor(const Field& field, const hal::MicrophonesPart& part, double noise)
+      : ring_(field, part.mounts), noise_(noise) {}
 
   void sense(const DeviceContext& context, void* ports) noexcept override {
-    auto* microphones = static_cast<hal::Microphones*>(ports);
-    const Bodies& b = context.stores.bodies;
-    for (std::size_t i = 0; i < context.block.used; ++i) {
-      const std::size_t row = context.block.first_row + i;
-      const auto bits = noise_ > 0.0 ? draw(context.seed, b.entity[row], Stream::MicrophoneNoise, context.tick)
+    ring_.sample(context, [&](std::size_t i, const double* values) {
+      const std::uint32_t entity = context.stores.bodies.entity[context.block.first_row + i];
+      const auto bits = noise_ > 0.0 ? draw(context.seed, entity, Stream::MicrophoneNoise, context.tick)
                                      : std::array<std::uint32_t, 4>{};
-      hal::Microphones& port = microphones[i];
-      port.taken_ns = context.now_ns;
-      port.validity = hal::Validity::Fresh;
-      port.count = static_cast<std::uint32_t>(mounts_.size());
-      for (std::size_t k = 0; k < mounts_.size(); ++k) {
-        const double x = b.x_m[row] + b.cos_h[row] * mounts_[k].x_m - b.sin_h[row] * mounts_[k].y_m;
-        const double y = b.y_m[row] + b.sin_h[row] * mounts_[k].x_m + b.cos_h[row] * mounts_[k].y_m;
-        const double level =
-            heard(context.stores, x, y, mounts_[k].z_m + context.stores.base_m(row)) + noise_ * to_unit(bits[k % 4]);
-        port.level[k] = static_cast<float>(std::min(level, 1.0));
-      }
-    }
+      hal::Microphones& port = static_cast<hal::Microphones*>(ports)[i];
+      stamp(context, port);
+      port.count = static_cast<std::uint32_t>(ring_.size());
+      for (std::size_t k = 0; k < ring_.size(); ++k)
+        port.level[k] = static_cast<float>(std::min(values[k] + noise_ * to_unit(bits[k % 4]), 1.0));
+    });
   }
 
  private:
-  static constexpr double kNear_m = 0.1;
-
-  static double heard(const SpaceStores& stores, double x, double y, double z) noexcept {
-    double level = 0.0;
-    for (const SoundSource& s : stores.sounds) {
-      if (!s.alive) continue;
-      const double d2 = (s.x_m - x) * (s.x_m - x) + (s.y_m - y) * (s.y_m - y) + (s.z_m - z) * (s.z_m - z);
-      level += s.level / (1.0 + d2 / (kNear_m * kNear_m));
-    }
-    return level;
-  }
-
-  std::span<const hal::Mount> mounts_;
+  FieldRing ring_;
   double noise_;
 };
 
@@ -245,8 +226,9 @@ Recipe<Sensor> make_microphones(const Element& element, Problems& problems, cons
   const auto options = read_options<Options>(element, problems);
   double noise = 0.0;
   if constexpr (requires { options.noise_level; }) noise = options.noise_level;
-  return [&part = *setup.kind.part<hal::MicrophonesPart>(), noise](const BlockColumns&) {
-    return std::make_unique<MicrophoneSensor>(part, noise);
+  const Field* const field = setup.field("sound", element, problems);
+  return [field, &part = *setup.kind.part<hal::MicrophonesPart>(), noise](const BlockColumns&) {
+    return std::make_unique<MicrophoneSensor>(*field, part, noise);
   };
 }
 

@@ -4,11 +4,11 @@
 #include <bit>
 #include <span>
 
-#include "core/device/sight.hpp"
 #include "core/device/types.hpp"
 #include "core/medium/led/led.hpp"
 #include "core/random/random.hpp"
 #include "core/space/mechanisms.hpp"
+#include "core/space/sight.hpp"
 #include "hal/device/leds.hpp"
 #include "hal/device/pan_tilt.hpp"
 

@@ -20,6 +20,16 @@ void register_devices(hal::Registrar& registrar) {
   for (const CouplingType& type : couplings) registrar.add(type);
 }
 
+const Field* DeviceSetup::field(std::string_view name, const Element& element, Problems& problems) const {
+  const Field* const found = fields->find(name);
+  if (found != nullptr) return found;
+  std::vector<std::string> names;
+  for (const Fields::Entry& entry : fields->all()) names.push_back(entry.name);
+  problems.push_back(problem_at(element, "<" + element.name + "> senses the field '" + std::string(name) +
+                                             "', which is not there; there are: " + listed(names)));
+  return nullptr;
+}
+
 const GroupRecipes::Listed* GroupRecipes::find(std::string_view device, hal::Role role) const noexcept {
   for (const Listed& one : listed) {
     if (one.type->device == device && one.type->role == role) return &one;

@@ -68,9 +68,12 @@ struct DeviceSetup {
   const hal::RobotKind& kind;
   const RobotItem& item;
   double tick_s = 0.1;
-  Medium* medium = nullptr;  ///< that the device works in, if any; lives as long as the world
-  std::uint8_t channel = 0;  ///< number of the one that the file names, as `medium_number` gives it
+  const Fields* fields = nullptr;  ///< of the world; they live as long
+  Medium* medium = nullptr;        ///< that the device works in, if any; lives as long as the world
+  std::uint8_t channel = 0;        ///< number of the one that the file names, as `medium_number` gives it
 
+  /// The field of that name; null, and a problem at `element`, where the world has none.
+  const Field* field(std::string_view name, const Element& element, Problems& problems) const;
   /// The medium by its class; `DeviceType::medium` is of that kind.
   template <class M>
   M& medium_as() const noexcept {

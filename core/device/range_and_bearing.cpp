@@ -6,10 +6,10 @@
 #include <numbers>
 
 #include "core/device/shadows.hpp"
-#include "core/device/sight.hpp"
 #include "core/device/types.hpp"
 #include "core/medium/range_and_bearing/range_and_bearing.hpp"
 #include "core/random/random.hpp"
+#include "core/space/sight.hpp"
 
 namespace tandem::core {
 namespace {

@@ -1,5 +1,5 @@
 // Ambient light and ground reflectance: one level a sensor of the ring.
-#include "core/device/sight.hpp"
+#include "core/device/field_ring.hpp"
 #include "core/device/types.hpp"
 #include "core/random/random.hpp"
 #include "hal/device/ring_sensors.hpp"
@@ -31,116 +31,74 @@ void add_noise(const DeviceContext& context, std::size_t i, Stream stream, float
   }
 }
 
-// --- light ---
-
-/// A sensor that faces a lamp of intensity I at distance d reads (I / d)^2, at most 1; less by the cosine of the angle
-/// to it. Levels of several lamps add up. Boxes and cylinders cast shadows.
-class LightSensor final : public Sensor {
+/// One value of a field a sensor of the ring, and one port a robot.
+template <class Port>
+class LevelSensor : public Sensor {
  public:
-  using Part = hal::LightPart;
-  LightSensor(const Part& part, double noise) : mounts_(part.mounts), noise_(static_cast<float>(noise)) {
-    for (const hal::Mount& m : mounts_) looks_.push_back({std::cos(m.bearing_rad), std::sin(m.bearing_rad)});
-  }
+  LevelSensor(const Field& field, std::span<const hal::Mount> mounts, Stream noise_stream, double noise)
+      : ring_(field, mounts), stream_(noise_stream), noise_(static_cast<float>(noise)) {}
 
   void sense(const DeviceContext& context, void* ports) noexcept override {
-    auto* lights = static_cast<hal::Light*>(ports);
-    for (std::size_t i = 0; i < context.block.used; ++i) {
-      hal::Light& port = lights[i];
-      port.taken_ns = context.now_ns;
-      port.validity = hal::Validity::Fresh;
-      port.count = static_cast<std::uint32_t>(mounts_.size());
-      port.level.fill(0.0F);
-      for (const LightSource& lamp : context.stores.lights) {
-        if (lamp.alive) add_lamp(context, i, lamp, port);
-      }
-      if (noise_ > 0.0F) add_noise(context, i, Stream::LightNoise, noise_, port.level.data(), mounts_.size());
-    }
+    ring_.sample(context, [&](std::size_t i, const double* values) {
+      Port& port = static_cast<Port*>(ports)[i];
+      stamp(context, port);
+      port.count = static_cast<std::uint32_t>(ring_.size());
+      float* const levels = levels_of(port);
+      for (std::size_t k = 0; k < ring_.size(); ++k) levels[k] = static_cast<float>(values[k]);
+      if (noise_ > 0.0F) add_noise(context, i, stream_, noise_, levels, ring_.size());
+    });
   }
 
  private:
-  struct Direction {
-    double x, y;
-  };
+  static float* levels_of(hal::Light& port) noexcept { return port.level.data(); }
+  static float* levels_of(hal::Ground& port) noexcept { return port.reflectance.data(); }
 
-  void add_lamp(const DeviceContext& context, std::size_t i, const LightSource& lamp, hal::Light& port) const noexcept {
-    const Bodies& b = context.stores.bodies;
-    const std::size_t row = context.block.first_row + i;
-    const double wx = lamp.x_m - b.x_m[row];
-    const double wy = lamp.y_m - b.y_m[row];
-    const double height = mounts_.front().z_m + context.stores.base_m(row);
-    const double wz = lamp.z_m - height;
-    const double d2 = std::max(wx * wx + wy * wy + wz * wz, 1e-6);
-    const double strength = std::min(lamp.intensity * lamp.intensity / d2, 1.0);
-    if (strength < 1e-4) return;  // below a twelve-bit converter's resolution
-    if (!in_sight(context.stores, b.x_m[row], b.y_m[row], height, lamp.x_m, lamp.y_m, lamp.z_m)) return;
-    const double bx = b.cos_h[row] * wx + b.sin_h[row] * wy;
-    const double by = b.cos_h[row] * wy - b.sin_h[row] * wx;
-    const double flat = std::sqrt(std::max(wx * wx + wy * wy, 1e-12));
-    for (std::size_t k = 0; k < mounts_.size(); ++k) {
-      const double facing = (bx * looks_[k].x + by * looks_[k].y) / flat;
-      if (facing > 0.0) port.level[k] = std::min(1.0F, port.level[k] + static_cast<float>(strength * facing));
-    }
-  }
-
-  std::span<const hal::Mount> mounts_;
-  std::vector<Direction> looks_;
+  FieldRing ring_;
+  Stream stream_;
   float noise_;
 };
 
-// --- ground ---
+class LightSensor final : public LevelSensor<hal::Light> {
+ public:
+  static constexpr std::string_view kField = "light";
+  using Part = hal::LightPart;
+  LightSensor(const Field& field, const Part& part, double noise)
+      : LevelSensor(field, part.mounts, Stream::LightNoise, noise) {}
+};
 
 /// For each of the ports that a robot may have for its floor: they differ in name and mounts only.
-class GroundSensor : public Sensor {
+class GroundSensor : public LevelSensor<hal::Ground> {
  public:
-  GroundSensor(std::span<const hal::Mount> mounts, Stream noise_stream, double noise)
-      : mounts_(mounts), stream_(noise_stream), noise_(static_cast<float>(noise)) {}
-
-  void sense(const DeviceContext& context, void* ports) noexcept override {
-    auto* grounds = static_cast<hal::Ground*>(ports);
-    const Bodies& b = context.stores.bodies;
-    for (std::size_t i = 0; i < context.block.used; ++i) {
-      const std::size_t row = context.block.first_row + i;
-      hal::Ground& port = grounds[i];
-      port.taken_ns = context.now_ns;
-      port.validity = hal::Validity::Fresh;
-      port.count = static_cast<std::uint32_t>(mounts_.size());
-      for (std::size_t k = 0; k < mounts_.size(); ++k) {
-        const hal::Mount& m = mounts_[k];
-        port.reflectance[k] = context.stores.floor.at(b.x_m[row] + b.cos_h[row] * m.x_m - b.sin_h[row] * m.y_m,
-                                                      b.y_m[row] + b.sin_h[row] * m.x_m + b.cos_h[row] * m.y_m);
-      }
-      if (noise_ > 0.0F) add_noise(context, i, stream_, noise_, port.reflectance.data(), mounts_.size());
-    }
-  }
-
- private:
-  std::span<const hal::Mount> mounts_;
-  Stream stream_;
-  float noise_;
+  static constexpr std::string_view kField = "floor";
+  using LevelSensor::LevelSensor;
 };
 
 class PlainGround final : public GroundSensor {
  public:
   using Part = hal::GroundPart;
-  PlainGround(const Part& part, double noise) : GroundSensor(part.mounts, Stream::GroundNoise, noise) {}
+  PlainGround(const Field& field, const Part& part, double noise)
+      : GroundSensor(field, part.mounts, Stream::GroundNoise, noise) {}
 };
 class BaseGround final : public GroundSensor {
  public:
   using Part = hal::BaseGroundPart;
-  BaseGround(const Part& part, double noise) : GroundSensor(part.mounts, Stream::GroundNoise, noise) {}
+  BaseGround(const Field& field, const Part& part, double noise)
+      : GroundSensor(field, part.mounts, Stream::GroundNoise, noise) {}
 };
 class MotorGround final : public GroundSensor {
  public:
   using Part = hal::MotorGroundPart;
-  MotorGround(const Part& part, double noise) : GroundSensor(part.mounts, Stream::MotorGroundNoise, noise) {}
+  MotorGround(const Field& field, const Part& part, double noise)
+      : GroundSensor(field, part.mounts, Stream::MotorGroundNoise, noise) {}
 };
 static_assert(sizeof(hal::BaseGround) == sizeof(hal::Ground) && sizeof(hal::MotorGround) == sizeof(hal::Ground));
 
 template <class Device, class Options>
 Recipe<Sensor> make_levels(const Element& element, Problems& problems, const DeviceSetup& setup) {
   const double noise = read_options<Options>(element, problems).level();
-  return [&part = *setup.kind.part<typename Device::Part>(), noise](const BlockColumns&) {
-    return std::make_unique<Device>(part, noise);
+  const Field* const field = setup.field(Device::kField, element, problems);
+  return [field, &part = *setup.kind.part<typename Device::Part>(), noise](const BlockColumns&) {
+    return std::make_unique<Device>(*field, part, noise);
   };
 }
 

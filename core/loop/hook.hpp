@@ -71,6 +71,10 @@ class Hook {
   /// floor pixel when the file says `<floor source="loop_functions"/>`, and again after `Space::repaint_floor`. Hooks
   /// paint in the order of the file, each over those before it; what none paints is grey.
   virtual std::optional<double> floor(double /*x_m*/, double /*y_m*/) { return std::nullopt; }
+  /// The same of any field that hooks paint.
+  virtual std::optional<double> field(std::string_view name, double x_m, double y_m) {
+    return name == "floor" ? floor(x_m, y_m) : std::nullopt;
+  }
 
   /// What the hook remembers that its later calls depend on, for snapshots; and taking it back. A hook without such
   /// needs neither. What `save` leaves out survives going back: a count of attempts, say.
@@ -81,7 +85,7 @@ class Hook {
 /// A class of hooks: what a plug-in registers.
 struct HookType {
   static constexpr std::string_view kCategory = "hook";
-  static constexpr std::uint32_t kNumber = 2;
+  static constexpr std::uint32_t kNumber = 3;
   using Crosses = hal::Layouts<Hook, HookContext, Space, Checkpoints, Sketch, Measures, Element, Problem,
                                hal::ParamVisitor, hal::RobotKind, hal::RobotKind::Crosses>;
   std::string_view name;

@@ -163,13 +163,6 @@ struct SoundItem {
   int line = 0;
 };
 
-struct FloorConfig {
-  std::string source = "none";  ///< none (grey), image, loop_functions
-  std::string path;             ///< of the image, resolved
-  double pixels_per_meter = 100.0;
-  int line = 0;
-};
-
 /// A vertex of a region's outline; the side that starts here is a wall, or a gate to `gate`.
 struct BoundarySide {
   double x_m = 0.0;
@@ -233,7 +226,7 @@ struct Scenario {
   Vec3 arena_size{};
   Vec3 arena_center{};
   EscapePolicy escape = EscapePolicy::Error;
-  FloorConfig floor;
+  std::vector<Element> fields;  ///< what the file says of fields, each the element of a FieldType
 
   std::vector<EngineConfig> engines;
   std::vector<MediumConfig> media;

@@ -59,8 +59,7 @@ hal::Result<std::unique_ptr<SpaceCopy>> SpaceCopy::take(const Space& space, cons
   copy->body_index_ = s.body_index;
   copy->static_index_ = s.static_index;
   copy->movable_index_ = s.movable_index;
-  copy->floor_ = s.floor;
-  copy->repaint_floor_ = s.repaint_floor;
+  for (const Fields::Entry& entry : s.fields.all()) copy->fields_.push_back(entry.field->keep());
   copy->altered_ = s.altered;
   return copy;
 }
@@ -146,8 +145,7 @@ hal::Status SpaceCopy::put_back(Space& space, RobotDevices& devices) const {
   s.body_index = body_index_;
   s.static_index = static_index_;
   s.movable_index = movable_index_;
-  s.floor = floor_;
-  s.repaint_floor = repaint_floor_;
+  for (std::size_t i = 0; i < fields_.size(); ++i) s.fields.all()[i].field->put_back(fields_[i]);
   s.altered = altered_;
   ++s.generations;  // who looks for newcomers finds those who are back
   ++s.immovables_version;

@@ -79,8 +79,7 @@ class SpaceCopy {
   BodyIndex body_index_;  // its cells are chosen by what was there before
   ObjectIndex static_index_,
       movable_index_;  // as old as they were: whoever looks before the next physics sees the same
-  Floor floor_;
-  bool repaint_floor_ = false;
+  std::vector<std::shared_ptr<const void>> fields_;
   bool altered_ = false;
 };
 

@@ -19,7 +19,7 @@ void World::step() {
   if (w.state != RunState::Running) return;
   w.stores().sketch.clear();
   w.call_hooks("before_step", [](Hook& hook, HookContext& c) { hook.before_step(c); });
-  w.paint_floor_if_asked();
+  w.paint_fields();
   if (w.external != nullptr) w.external->latch(*this);
   w.act();
   w.physics();
@@ -198,27 +198,25 @@ void World::Impl::report_messages() {
   }
 }
 
-void World::Impl::paint_floor_if_asked() {
-  SpaceStores& s = stores();
-  if (!s.repaint_floor || scenario.floor.source != "loop_functions" || hooks.empty()) return;
-  s.repaint_floor = false;
-  hook_moment = "floor";
-  std::size_t asked = 0;
-  const auto shade = [&](double x, double y) {
-    double painted = Floor::kGrey;
-    for (asked = 0; asked < hooks.size(); ++asked) {
-      const hal::PluginCall marked(&name_hook, this, asked);
-      painted = hooks[asked]->floor(x, y).value_or(painted);
+void World::Impl::paint_fields() {
+  for (const Fields::Entry& entry : stores().fields.all()) {
+    if (!entry.field->painted_by_hooks() || !entry.field->unpainted() || hooks.empty()) continue;
+    hook_moment = entry.name.c_str();
+    std::size_t asked = 0;
+    const Painter painter = [&, name = std::string_view(entry.name)](double x, double y, double painted) {
+      for (asked = 0; asked < hooks.size(); ++asked) {
+        const hal::PluginCall marked(&name_hook, this, asked);
+        painted = hooks[asked]->field(name, x, y).value_or(painted);
+      }
+      return painted;
+    };
+    try {
+      entry.field->paint(painter);
+    } catch (const std::exception& e) {
+      fail("hook '" + hook_names.at(asked) + "' threw in " + entry.name + at_tick() + ": " + e.what());
+    } catch (...) {
+      fail("hook '" + hook_names.at(asked) + "' threw in " + entry.name + at_tick());
     }
-    return painted;
-  };
-  try {
-    s.floor.paint(s.min_x_m, s.min_y_m, s.max_x_m - s.min_x_m, s.max_y_m - s.min_y_m, scenario.floor.pixels_per_meter,
-                  shade);
-  } catch (const std::exception& e) {
-    fail("hook '" + hook_names.at(asked) + "' threw in floor" + at_tick() + ": " + e.what());
-  } catch (...) {
-    fail("hook '" + hook_names.at(asked) + "' threw in floor" + at_tick());
   }
 }
 

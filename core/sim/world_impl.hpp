@@ -142,6 +142,7 @@ struct World::Impl final : hal::RobotLog::Sink {
 
   // --- making ---
   void populate(Problems& problems);
+  void make_fields(Problems& problems);
   void make_hooks(Problems& problems);
   void reset_hooks(Problems& problems);
   void size_ledgers();
@@ -173,7 +174,7 @@ struct World::Impl final : hal::RobotLog::Sink {
   void note_excess(std::size_t block, std::size_t slot, const hal::Limited& what);
   void report_excess(std::size_t block);
   void report_trouble();
-  void paint_floor_if_asked();
+  void paint_fields();
   static void name_step(const void* impl, std::size_t block, std::size_t index, hal::FixedText& out) noexcept;
   static void name_hook(const void* impl, std::size_t hook, std::size_t index, hal::FixedText& out) noexcept;
   void fit_to_bodies();

@@ -6,6 +6,7 @@
 
 #include "core/medium/led/led.hpp"
 #include "core/placement/placement.hpp"
+#include "core/scenario/field_type.hpp"
 #include "core/sim/device_media.hpp"
 #include "core/sim/engine_factory.hpp"
 #include "core/sim/settings.hpp"
@@ -176,20 +177,6 @@ void assign_regions(const Scenario& scenario, const hal::Catalog& catalog, const
                         false});
 }
 
-void check_pixels(const Scenario& scenario, Problems& problems) {
-  const double per_m = scenario.floor.pixels_per_meter;
-  const Vec3& size = scenario.arena_size;
-  const double area_m2 = size[0] * size[1];
-  if (area_m2 * per_m * per_m <= Floor::kMostPixels) return;
-  problems.push_back({scenario.file, scenario.floor.line,
-                      "the floor would have " + std::to_string(std::llround(size[0] * per_m)) + " x " +
-                          std::to_string(std::llround(size[1] * per_m)) +
-                          " pixels, at most 100 million can be painted: choose pixels_per_meter=\"" +
-                          hal::format_number(std::floor(100.0 * std::sqrt(Floor::kMostPixels / area_m2)) / 100.0) +
-                          "\" or less",
-                      false});
-}
-
 void name_hook_made(const void* config, std::size_t /*part*/, std::size_t /*index*/, hal::FixedText& out) noexcept {
   const auto& c = *static_cast<const HookConfig*>(config);
   out << "hook '" << c.label << "' (library '" << c.library << "'), while it was made,";
@@ -240,10 +227,6 @@ std::unique_ptr<World> World::make(const Scenario& scenario, hal::PluginLoader& 
   name_media(w.scenario, loader.catalog(), problems);
   w.populate(problems);
   w.make_hooks(problems);
-  if (scenario.floor.source == "loop_functions" && scenario.hooks.empty()) {
-    problems.push_back({scenario.file, scenario.floor.line,
-                        "the floor is to be painted by loop functions, but there are none", false});
-  }
 
   if (!bad()) complete_settings(w.scenario, loader, w.seed);
   w.size_ledgers();
@@ -252,10 +235,27 @@ std::unique_ptr<World> World::make(const Scenario& scenario, hal::PluginLoader& 
   return world;
 }
 
-/// Fills the space, empty so far, with what the file says and the seed decides.
+void World::Impl::make_fields(Problems& problems) {
+  SpaceStores& s = stores();
+  const FieldArea area{s.min_x_m, s.min_y_m, scenario.arena_size[0], scenario.arena_size[1]};
+  for (const FieldType* type : loader->catalog().all<FieldType>()) {
+    Element nothing;
+    nothing.name = type->name;
+    nothing.file = scenario.file;
+    const auto written = std::find_if(scenario.fields.begin(), scenario.fields.end(),
+                                      [&](const Element& element) { return element.name == type->name; });
+    const Element& element = written == scenario.fields.end() ? nothing : *written;
+    std::unique_ptr<Field> field = type->make(element, area, problems);
+    if (field->painted_by_hooks() && scenario.hooks.empty()) {
+      problems.push_back(problem_at(
+          element, "the " + std::string(type->name) + " is to be painted by loop functions, but there are none"));
+    }
+    s.fields.add(type->name, std::move(field));
+  }
+}
+
+/// Fills the space, empty so far but for what a reset leaves, with what the file says and the seed decides.
 void World::Impl::populate(Problems& problems) {
-  const std::size_t before = problems.size();
-  const auto bad = [&] { return has_errors(problems, before); };
   SpaceStores& s = stores();
   s.min_x_m = scenario.arena_center[0] - 0.5 * scenario.arena_size[0];
   s.max_x_m = scenario.arena_center[0] + 0.5 * scenario.arena_size[0];
@@ -263,6 +263,13 @@ void World::Impl::populate(Problems& problems) {
   s.max_y_m = scenario.arena_center[1] + 0.5 * scenario.arena_size[1];
 
   if (scenario.arena_size[2] > 0.0) s.max_z_m = scenario.arena_center[2] + 0.5 * scenario.arena_size[2];
+
+  if (s.fields.all().empty())
+    make_fields(problems);
+  else
+    s.fields.begin_anew();
+  const std::size_t before = problems.size();
+  const auto bad = [&] { return has_errors(problems, before); };
 
   const hal::Catalog& catalog = loader->catalog();
   const auto size_of = [&catalog](const std::string& kind) { return size_of_kind(catalog, kind); };
@@ -333,14 +340,6 @@ void World::Impl::populate(Problems& problems) {
     keeper.build(s, tick_s());
     assign_regions(scenario, catalog, placements, keeper, s, problems);
   }
-
-  if (scenario.floor.source == "image") {
-    const hal::Status loaded =
-        s.floor.load_png(scenario.floor.path, s.min_x_m, s.min_y_m, scenario.arena_size[0], scenario.arena_size[1]);
-    if (!loaded.ok()) problems.push_back({scenario.file, scenario.floor.line, loaded.error().message, false});
-  }
-  if (scenario.floor.source == "loop_functions") check_pixels(scenario, problems);
-  s.repaint_floor = true;
 }
 
 void World::Impl::make_hooks(Problems& problems) {
@@ -390,6 +389,7 @@ hal::Status World::reset(std::uint64_t seed) {
   empty.slab = std::move(s.slab);
   empty.groups = std::move(s.groups);
   empty.columns = std::move(s.columns);
+  empty.fields = std::move(s.fields);
   empty.flight = s.flight;
   empty.rotors = s.rotors;
   empty.generations = s.generations + 1;

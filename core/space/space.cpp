@@ -111,6 +111,12 @@ hal::Error no_world() {
   return {"this space belongs to no world: nothing can be added to it"};
 }
 
+hal::Error no_field(std::string_view name, const SpaceStores& s) {
+  std::vector<std::string> names;
+  for (const Fields::Entry& entry : s.fields.all()) names.push_back(entry.name);
+  return {"there is no field '" + std::string(name) + "'; there are: " + listed(names) + did_you_mean(name, names)};
+}
+
 hal::Error without_battery(const std::string& robot) {
   return {"robot '" + robot + "' has no battery: its controller takes no sensor of that name"};
 }
@@ -602,11 +608,23 @@ double Space::arena_center_x_m() const noexcept {
 double Space::arena_center_y_m() const noexcept {
   return 0.5 * (stores_->max_y_m + stores_->min_y_m);
 }
+hal::Result<double> Space::field(std::string_view name, double x_m, double y_m, double z_m) const {
+  const Field* field = stores_->fields.find(name);
+  if (field == nullptr) return no_field(name, *stores_);
+  return field->at(*stores_, x_m, y_m, z_m);
+}
+hal::Status Space::repaint(std::string_view name) {
+  Field* field = stores_->fields.find(name);
+  if (field == nullptr) return no_field(name, *stores_);
+  field->repaint();
+  return {};
+}
 double Space::floor(double x_m, double y_m) const noexcept {
-  return static_cast<double>(stores_->floor.at(x_m, y_m));
+  const Field* floor = stores_->fields.find("floor");
+  return floor == nullptr ? 0.5 : floor->at(*stores_, x_m, y_m, 0.0);
 }
 void Space::repaint_floor() noexcept {
-  stores_->repaint_floor = true;
+  if (Field* floor = stores_->fields.find("floor"); floor != nullptr) floor->repaint();
 }
 
 }  // namespace tandem::core

@@ -207,8 +207,12 @@ class Space {
   double arena_center_y_m() const noexcept;
   /// Reflectance of the floor at (x, y), 0 black to 1 white.
   double floor(double x_m, double y_m) const noexcept;
-  /// Has the floor asked for anew from the hook that paints it, before the next step.
+  /// Has the floor asked for anew from the hooks that paint it, before the next step.
   void repaint_floor() noexcept;
+  /// Value of a field at a point of W: of light, as if one faced every lamp. Error: there is none of that name.
+  hal::Result<double> field(std::string_view name, double x_m, double y_m, double z_m = 0.0) const;
+  /// Has it asked for anew, if hooks paint it. Error: as above.
+  hal::Status repaint(std::string_view field);
 
   /// What hooks draw into pictures and views.
   Sketch& sketch() noexcept;

@@ -249,8 +249,10 @@ void visit_world(const StateView& state, StateVisitor& visitor) {
   value("objects", s.objects.size());
   value("lights", s.lights.size());
   value("sounds", s.sounds.size());
-  value("floor", s.floor.mark());
-  value("repaint_floor", s.repaint_floor ? 1 : 0);
+  for (const Fields::Entry& entry : s.fields.all()) {
+    value(entry.name, entry.field->mark());
+    value("repaint_" + entry.name, entry.field->unpainted() ? 1 : 0);
+  }
 }
 
 }  // namespace

@@ -20,7 +20,7 @@
 #include "core/space/body_index.hpp"
 #include "core/space/body_key.hpp"
 #include "core/space/columns.hpp"
-#include "core/space/floor.hpp"
+#include "core/space/field.hpp"
 #include "core/space/halt.hpp"
 #include "core/space/ids.hpp"
 #include "core/space/joint.hpp"
@@ -236,8 +236,7 @@ struct SpaceStores {
 
   std::vector<LightSource> lights;
   std::vector<SoundSource> sounds;
-  Floor floor;
-  bool repaint_floor = false;
+  Fields fields;
   Sketch sketch;
 
   std::uint32_t generations = 0;  ///< rises with every id that is given out after the start, and with every restore
@@ -316,8 +315,9 @@ struct SpaceStores {
 };
 
 /// What plug-ins that work on the stores must have been built against.
-using StoreLayouts = hal::Layouts<SpaceStores, Bodies, Motion, FlightCommand, Columns, ColumnArrays, KeptColumn,
-                                  RobotGroup, RobotBlock, RobotEntity, Object, Joint, Region, LightSource, SoundSource,
-                                  hal::RowType, hal::RobotKind, hal::RobotKind::Crosses>;
+using StoreLayouts =
+    hal::Layouts<SpaceStores, Bodies, Motion, FlightCommand, Columns, ColumnArrays, KeptColumn, RobotGroup, RobotBlock,
+                 RobotEntity, Object, Joint, Region, LightSource, SoundSource, Field, Fields, FieldPlaces, FieldSpot,
+                 hal::RowType, hal::RobotKind, hal::RobotKind::Crosses>;
 
 }  // namespace tandem::core

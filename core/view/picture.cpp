@@ -94,7 +94,7 @@ Drawing drawing_of(const Space& space, const PictureOptions& options) {
   for (const LightSource& light : space.lights()) {
     if (light.alive) drawing.lights.push_back({light.x_m, light.y_m, light.color});
   }
-  if (!space.stores().floor.uniform()) {
+  if (const Field* floor = space.stores().fields.find("floor"); floor != nullptr && floor->mark() != 0) {
     drawing.floor = [&space](double x_m, double y_m) { return space.floor(x_m, y_m); };
   }
   add_robots(space, options, drawing);

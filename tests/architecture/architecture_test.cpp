@@ -13,7 +13,7 @@ namespace fs = std::filesystem;
 
 const LibraryOwners kOwners = {{"tinyxml2", "hal/xml"},
                                {"nlohmann/", "hal/json"},
-                               {"png.h", "core/space"},
+                               {"png.h", "core/field"},
                                {"librsvg/", "core/view"},
                                {"cairo", "core/view"},
                                {"Random123/", "hal"},

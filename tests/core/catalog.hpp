@@ -4,6 +4,9 @@
 #include <vector>
 
 #include "core/device/device.hpp"
+#include "core/field/floor/floor.hpp"
+#include "core/field/light/light.hpp"
+#include "core/field/sound/sound.hpp"
 #include "core/loop/hook.hpp"
 #include "core/medium/led/led.hpp"
 #include "core/medium/medium.hpp"
@@ -26,6 +29,9 @@ inline const hal::Catalog& catalog() {
     const hal::Status good = made.add_from("tests", [](hal::Registrar& r) {
       hal::register_ports(r);
       hal::register_robots(r);
+      core::register_floor(r);
+      core::register_light(r);
+      core::register_sound(r);
       core::register_led_medium(r);
       core::register_range_and_bearing_medium(r);
       core::register_unused_media(r);

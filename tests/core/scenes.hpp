@@ -184,6 +184,11 @@ struct Scene {
     scenario.engines.back().sides.push_back({x_m, y_m, gate, scenario.engines.back().line});
     return *this;
   }
+  /// What the file says of a field, on line 5.
+  Scene& field(const std::string& name, const std::vector<Element::Attribute>& attributes) {
+    scenario.fields.push_back({name, scenario.file, 5, attributes, {}});
+    return *this;
+  }
   /// Walls 10 cm thick around the arena, inside it.
   Scene& walls() {
     const double s = scenario.arena_size[0];

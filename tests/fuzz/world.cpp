@@ -268,8 +268,9 @@ bool bounded(const Scenario& s) {
     return std::all_of(items.begin(), items.end(),
                        [](const auto& item) { return !item.distribute || item.distribute->max_trials <= 1000; });
   };
-  const double pixels = s.floor.pixels_per_meter * s.floor.pixels_per_meter * s.arena_size[0] * s.arena_size[1];
-  const bool painted = s.floor.source == "loop_functions";
+  const Element& floor = s.fields.at(0);  // of five pixels a metre where hooks paint it
+  const double pixels = 25.0 * s.arena_size[0] * s.arena_size[1];
+  const bool painted = *floor.attribute("source") == "loop_functions";
   return robots <= kMostRobots && objects <= static_cast<std::int64_t>(kMostObjects) && trials(s.robots) &&
          trials(s.objects) && trials(s.lights) && (!painted || pixels <= 1e5 || pixels > 1e8);
 }

@@ -127,13 +127,14 @@ class Shepherd final : public core::Hook {
   std::int64_t went_back_ = 0;  // survives going back
 };
 
-/// Paints a disc.
+/// Paints a disc, on the floor or another field.
 class Painter final : public core::Hook {
  public:
   struct Params {
     double x_m = 0.0, radius_m = 0.5, shade = 0.0;
-    std::string fails;
+    std::string fails, field = "floor";
     void describe(hal::ParamVisitor& v) {
+      v.text("field", field, "What it paints.");
       v.number("x", x_m, hal::unit::m, hal::kAny, "Its middle.");
       v.number("radius", radius_m, hal::unit::m, hal::kNotNegative, "Its radius.");
       v.number("shade", shade, hal::unit::none, {0.0, 1.0}, "How light.");
@@ -148,6 +149,9 @@ class Painter final : public core::Hook {
     if (params_.fails == "floor") throw std::runtime_error("spilt");
     if (std::hypot(x_m - params_.x_m, y_m) > params_.radius_m) return std::nullopt;
     return params_.shade;
+  }
+  std::optional<double> field(std::string_view name, double x_m, double y_m) override {
+    return name == params_.field ? floor(x_m, y_m) : std::nullopt;
   }
 
  private:

@@ -8,6 +8,7 @@
 #include "bridges/eyebot/register.hpp"
 #include "bridges/footbot/register.hpp"
 #include "core/scenario/engine_traits.hpp"
+#include "core/scenario/field_type.hpp"
 #include "core/scenario/medium_type.hpp"
 #include "hal/catalog.hpp"
 #include "hal/check.hpp"
@@ -26,11 +27,21 @@ inline hal::Catalog catalog_with(const std::vector<std::string_view>& engines) {
                                          {"particle3d", "pointmass3d", {.plane = false, .air = true}}};
   static constexpr auto kNothing = [](hal::ParamVisitor&) {};
   static constexpr MediumType kMedia[] = {{"range_and_bearing", "Messages.", kNothing}, {"led", "Light.", kNothing}};
+  static constexpr auto kFloor = [](hal::ParamVisitor& v) {
+    std::string id, source = "none", path;
+    double pixels = 100.0;
+    v.text("id", id, "Name.");
+    v.text("source", source, "Where it comes from.");
+    v.text("path", path, "A picture.");
+    v.number("pixels_per_meter", pixels, hal::unit::none, hal::kNotNegative, "Resolution.");
+  };
+  static constexpr FieldType kFields[] = {{"floor", "Its shade.", kFloor}, {"light", "Has no element.", nullptr}};
   hal::Catalog catalog;
   const hal::Status good = catalog.add_from("tests", [&](hal::Registrar& r) {
     hal::register_ports(r);
     hal::register_robots(r);
     for (const MediumType& medium : kMedia) r.add(medium);
+    for (const FieldType& field : kFields) r.add(field);
     bridges::epuck::register_bridge(r);
     bridges::footbot::register_bridge(r);
     bridges::eyebot::register_bridge(r);

@@ -85,8 +85,10 @@ TEST(Reader, TakesEverythingThatAnArgosFileSays) {
   EXPECT_EQ(s.arena_size, (Vec3{4, 5, 1}));
   EXPECT_EQ(s.arena_center, (Vec3{0.5, 0, 0.5}));
   EXPECT_EQ(s.escape, EscapePolicy::Error);
-  EXPECT_EQ(s.floor.source, "image");
-  EXPECT_EQ(s.floor.pixels_per_meter, 50.0);
+  ASSERT_EQ(s.fields.size(), 1U);
+  EXPECT_EQ(s.fields[0].name, "floor");
+  EXPECT_EQ(*s.fields[0].attribute("source"), "image");
+  EXPECT_EQ(*s.fields[0].attribute("pixels_per_meter"), "50");
   ASSERT_EQ(s.objects.size(), 2U);
   EXPECT_EQ(s.objects[0].shape, ShapeKind::Box);
   EXPECT_EQ(s.objects[0].size, (Vec3{4, 0.1, 0.5}));
@@ -151,7 +153,7 @@ TEST(Reader, FillsInWhatIsLeftOut) {
   EXPECT_EQ(s.assignment, Assignment::Static);
   ASSERT_EQ(s.engines.size(), 1U);
   EXPECT_EQ(s.engines[0].kind, "kinematics2d");
-  EXPECT_EQ(s.floor.source, "none");
+  EXPECT_EQ(*s.fields.at(0).attribute("source"), "none") << "what files leave out is written down";
   EXPECT_EQ(s.robots[0].own_kind, nullptr) << "as the catalog has it";
   EXPECT_EQ(s.controllers[0].sensors[0].implementation, "default");
   EXPECT_EQ(s.controllers[0].params.name, "params");
@@ -294,7 +296,7 @@ TEST(Reader, ResolvesTheFloorsPictureBesideTheFile) {
   Problems problems;
   const auto s = read_experiment_text(parts.text(), "/some/where/x.xml", {}, known_names(), problems);
   ASSERT_TRUE(s.has_value());
-  EXPECT_EQ(s->floor.path, "/some/where/no_such_floor.png");
+  EXPECT_EQ(*s->fields.at(0).attribute("path"), "/some/where/no_such_floor.png");
   EXPECT_EQ(s->name, "x");
 }
 

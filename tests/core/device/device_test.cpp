@@ -158,7 +158,7 @@ TEST(LightSensor, FollowsTheSquareOfTheDistanceTheAngleAndTheShadow) {
 TEST(GroundSensor, ReadsTheFloorThatAHookPaints) {
   Scene scene(4, "everything");
   scene.robot("east", 1, 0).robot("west", -1, 0).robot("edge", -0.03, 0);
-  scene.scenario.floor.source = "loop_functions";
+  scene.field("floor", {{"source", "loop_functions", 5}});
   HookConfig hook;
   hook.library = "test_hooks";
   hook.label = "diary";

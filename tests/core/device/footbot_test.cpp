@@ -228,7 +228,7 @@ TEST(FootbotGround, EachSensorReadsTheFloorBeneathIt) {
   Scene scene = footbot_scene();
   add_footbot(scene, "edge", 0, 0, 0.0);          // forward half over white
   add_footbot(scene, "turned", 0, 1, 0.5 * kPi);  // right half over white
-  scene.scenario.floor.source = "loop_functions";
+  scene.field("floor", {{"source", "loop_functions", 5}});
   HookConfig hook;
   hook.library = "test_hooks";
   hook.label = "diary";  // white where x > 0, else black

@@ -228,7 +228,7 @@ TEST(Hooks, DrawForOneStepAndMeasureForTheRun) {
 
 TEST(Hooks, SeveralPaintOneFloorEachOverThoseBefore) {
   Scene scene = shown();
-  scene.robot("a", 1.5, 1.5).scenario.floor.source = "loop_functions";
+  scene.robot("a", 1.5, 1.5).field("floor", {{"source", "loop_functions", 5}});
   with_hook(scene, "painter", {{"radius", "0.5", 0}, {"shade", "0", 0}});
   with_hook(scene, "painter", {{"x", "0.4", 0}, {"radius", "0.5", 0}, {"shade", "1", 0}});
   auto world = make(scene);

@@ -5,6 +5,7 @@
 #include <cstring>
 #include <gmock/gmock.h>
 
+#include "core/field/floor/floor.hpp"
 #include "core/space/mechanisms.hpp"
 #include "hal/device/ring_sensors.hpp"
 #include "tests/core/eyebots.hpp"
@@ -232,10 +233,13 @@ TEST(Fingerprint, SeesWhatDevicesRemember) {
   EXPECT_NE(world->state_hash(), before);
 }
 
-TEST(Fingerprint, SeesOnePixelOfTheFloor) {
+TEST(Fingerprint, SeesOnePixelOfAField) {
   const MadeWorld world = driving_world();
-  Floor& floor = world->space().stores().floor;
-  const auto paint = [&floor](double at) { floor.paint(0, 0, 1, 1, 10, [at](double x, double) { return x < at; }); };
+  world->space().stores().fields.add("shade", std::make_unique<FloorField>(RasterArea{0.0, 0.0, 1.0, 1.0}, 10.0));
+  Field& floor = *world->space().stores().fields.find("shade");
+  const auto paint = [&floor](double at) {
+    floor.paint([at](double x, double, double) { return x < at ? 1.0 : 0.0; });
+  };
   paint(0.5);
   const std::uint64_t half = world->state_hash();
   paint(0.6);

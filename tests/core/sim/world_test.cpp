@@ -302,7 +302,7 @@ TEST(Hooks, OneThatThrowsEndsTheRunByName) {
 /// Three painters, one after the other; `fails` is what the second does.
 Scene painted(const std::string& fails = "") {
   Scene s;
-  s.scenario.floor = {"loop_functions", "", 10.0, 5};
+  s.field("floor", {{"source", "loop_functions", 5}, {"pixels_per_meter", "10", 5}});
   const auto painter = [&](const char* x, const char* shade, const std::string& flaw) {
     HookConfig hook;
     hook.library = "test_hooks";

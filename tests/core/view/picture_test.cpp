@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <sstream>
 
+#include "core/field/floor/floor.hpp"
 #include "core/space/stores.hpp"
 #include "hal/device/leds.hpp"
 #include "hal/robot/epuck.hpp"
@@ -92,7 +93,9 @@ TEST(Picture, ShowsStaticThingsLampsAndAPaintedFloor) {
   column.radius_m = 0.2;
   s.objects = {wall, column};
   s.lights.push_back({"lamp", 1.0, 1.0, 0.5, 1.0, {255, 0, 0}});
-  s.floor.paint(-2.0, -1.0, 4.0, 4.0, 10.0, [](double x, double) { return x < 0.0 ? 0.0 : 1.0; });
+  auto floor = std::make_unique<FloorField>(RasterArea{-2.0, -1.0, 4.0, 4.0}, 10.0);
+  floor->paint([](double x, double, double) { return x < 0.0 ? 0.0 : 1.0; });
+  s.fields.add("floor", std::move(floor));
   const Drawing d = drawing_of(space, {});
   ASSERT_EQ(d.boxes.size(), 1U);
   EXPECT_NEAR(d.boxes[0].heading_rad, 1.5707963, 1e-6);

@@ -1,0 +1,20 @@
+// The light of lamps.
+#pragma once
+#include "core/space/field.hpp"
+#include "hal/catalog.hpp"
+
+namespace tandem::core {
+
+/// A sensor that faces a lamp of intensity I at distance d reads (I / d)^2, at most 1; less by the cosine of the angle
+/// to it. Levels of several lamps add up, at most to 1. Boxes and cylinders cast shadows. All sensors of a robot count
+/// as in its middle, as high as the first of them.
+class LightField final : public Field {
+ public:
+  void sample(const FieldPlaces& places, double* values) const noexcept override;
+  /// Of a sensor that faced every lamp.
+  double at(const SpaceStores& stores, double x_m, double y_m, double z_m) const noexcept override;
+};
+
+void register_light(hal::Registrar& registrar);
+
+}  // namespace tandem::core

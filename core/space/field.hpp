@@ -1,0 +1,89 @@
+// Fields: a value at every place of the arena, such as the floor's shade, the light or the sound there.
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace tandem::core {
+
+struct SpaceStores;  // core/space/stores.hpp
+
+/// Where a sensor sits in its robot's frame, and which way it looks: a direction along the ground, of length 1.
+struct FieldSpot {
+  double x_m = 0.0, y_m = 0.0, z_m = 0.0;
+  double look_x = 1.0, look_y = 0.0;
+};
+
+/// Where a field is asked for: at the same spots of each robot in some rows.
+struct FieldPlaces {
+  const SpaceStores& stores;
+  std::size_t first_row = 0, rows = 0;
+  std::span<const FieldSpot> spots;
+};
+
+/// What hooks answer for a place in W; `otherwise` where none does.
+using Painter = std::function<double(double x_m, double y_m, double otherwise)>;
+
+/// A field may hold something itself, follow from what is in the space, or both. Only the thread that steps the world
+/// changes it, between parallel phases.
+class Field {
+ public:
+  virtual ~Field() = default;
+
+  /// The values at the spots of the first robot, then those of the next, … On any thread.
+  virtual void sample(const FieldPlaces& places, double* values) const noexcept = 0;
+  /// At a point of W, however one looks.
+  virtual double at(const SpaceStores& stores, double x_m, double y_m, double z_m) const noexcept = 0;
+
+  /// Whether hooks paint it, at all.
+  virtual bool painted_by_hooks() const noexcept { return false; }
+  /// Whether it has not been painted since it was made or since `repaint`.
+  virtual bool unpainted() const noexcept { return false; }
+  virtual void repaint() noexcept {}
+  /// Takes over what hooks answer. Lets through what `painter` throws.
+  virtual void paint(const Painter& /*painter*/) {}
+
+  /// Fingerprint of what it holds; 0: nothing.
+  virtual std::uint64_t mark() const noexcept { return 0; }
+  /// What it holds, for snapshots, and going back to that; null: nothing.
+  virtual std::shared_ptr<const void> keep() const { return nullptr; }
+  virtual void put_back(const std::shared_ptr<const void>& /*kept*/) {}
+};
+
+/// The fields of a space, by name.
+class Fields {
+ public:
+  struct Entry {
+    std::string name;
+    std::unique_ptr<Field> field;
+    std::shared_ptr<const void> start;  ///< what it held when it came
+  };
+
+  void add(std::string_view name, std::unique_ptr<Field> field) {
+    auto start = field->keep();
+    all_.push_back({std::string(name), std::move(field), std::move(start)});
+  }
+  /// Null: there is none of that name.
+  Field* find(std::string_view name) const noexcept {
+    for (const Entry& entry : all_) {
+      if (entry.name == name) return entry.field.get();
+    }
+    return nullptr;
+  }
+  const std::vector<Entry>& all() const noexcept { return all_; }
+  /// All as they came.
+  void begin_anew() {
+    for (const Entry& entry : all_) entry.field->put_back(entry.start);
+  }
+
+ private:
+  std::vector<Entry> all_;
+};
+
+}  // namespace tandem::core
