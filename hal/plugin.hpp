@@ -1,6 +1,11 @@
 // Plug-ins: what a shared object exports.
 #pragma once
 #include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
 
 #include "hal/catalog.hpp"
 #include "hal/controller.hpp"
@@ -11,6 +16,14 @@ namespace tandem::hal {
 struct PluginInfo {
   std::uint32_t size = sizeof(PluginInfo);
   void (*register_all)(Registrar&) = nullptr;
+};
+
+/// The border itself: a surface that every plug-in uses.
+struct Border {
+  static constexpr std::string_view kCategory = "plug-in";
+  static constexpr std::uint32_t kNumber = 7;
+  using Crosses = Layouts<PluginInfo, Registrar, CatalogItem, Surface, std::size_t, std::string, std::string_view,
+                          std::vector<int>, std::shared_ptr<void>, std::function<void()>>;
 };
 
 }  // namespace tandem::hal

@@ -7,12 +7,9 @@
 #pragma once
 #include <cstddef>
 #include <cstdint>
-#include <functional>
-#include <memory>
 #include <string>
 #include <string_view>
 #include <type_traits>
-#include <vector>
 
 namespace tandem::hal {
 
@@ -85,14 +82,6 @@ struct SurfaceOf {
   static_assert(kName.size() <= Surface::kLongestName);
 
   static Surface value() { return {std::string(kName), kNumber, kDigest, kSize}; }
-};
-
-/// The border itself: what every plug-in has to do with.
-struct Border {
-  static constexpr std::string_view kCategory = "plug-in";
-  static constexpr std::uint32_t kNumber = 6;
-  using Crosses = Layouts<void*, std::size_t, std::string, std::string_view, std::vector<int>, std::shared_ptr<void>,
-                          std::function<void()>>;
 };
 
 namespace detail {
