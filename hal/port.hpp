@@ -186,12 +186,18 @@ concept MovesRobot = requires(T t, const Fence& fence, const Pose& at) {
   { t.keep_out(at, 0.0, 0.0) } -> std::same_as<bool>;
 };
 
+template <class T>
+concept LimitsItself = requires {
+  typename T::LimitedBy;
+}
+&&requires(T c, const typename T::LimitedBy& by) {
+  c.limit(by);
+};
+
 /// What keeps commands of class `T` safe.
 template <class T>
 void fill_limits(PortType& t) {
-  constexpr bool limited = requires(T c, const typename T::LimitedBy& by) {
-    c.limit(by);
-  };
+  constexpr bool limited = LimitsItself<T>;
   constexpr bool any_is_safe = requires {
     T::kAnyValueIsSafe;
   };

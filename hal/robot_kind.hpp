@@ -97,11 +97,11 @@ constexpr std::uint64_t part_layout() noexcept {
 /// what makes it unusable, as in "has no mounts; give it at least one"; empty: nothing. And `void
 /// attributes(ParamVisitor&)` : what of it the element of a robot may say otherwise for that robot alone.
 template <class P>
-concept RobotPart = Described<P> && std::is_copy_constructible_v<P> && requires(const P& part) {
+concept RobotPart = Described<P> && requires(const P& part) {
   { P::kName } -> std::convertible_to<std::string_view>;
   { P::kDoc } -> std::convertible_to<std::string_view>;
   { part.source } -> std::convertible_to<std::string>;
-};
+} && std::is_copy_constructible_v<P>;
 
 namespace detail {
 /// What is known of the parts of one class; in the library that was compiled with it.
