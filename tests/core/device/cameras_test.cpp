@@ -78,7 +78,8 @@ TEST(OmnidirectionalCamera, SeesNothingThatIsOffAndNothingOfItself) {
 }
 
 TEST(OmnidirectionalCamera, SeesTheDiscThatItsApertureCovers) {
-  for (const auto& [aperture_rad, reach_m] : {std::pair{-1.0, kReach_m}, std::pair{kPi / 3, 0.2887 * std::sqrt(3.0)}}) {
+  for (const auto& [told_rad, reach_m] : {std::pair{-1.0, kReach_m}, std::pair{kPi / 3, 0.2887 * std::sqrt(3.0)}}) {
+    const double aperture_rad = told_rad;  // a lambda takes no structured binding
     for (const double beyond_m : {-1e-3, 1e-3}) {
       Scene scene = two(reach_m + beyond_m, 0.0);
       if (aperture_rad > 0.0)
