@@ -1,3 +1,4 @@
+#include <gmock/gmock.h>
 #include <numbers>
 
 #include "hal/device/range_and_bearing.hpp"
