@@ -23,7 +23,7 @@ struct OtherEngine {  // of the same category, as a library built against other 
 struct LongerEngine {  // … or one built against later headers of the same number
   static constexpr std::string_view kCategory = "engine";
   std::string_view name;
-  double mass_kg = 0.0;
+  float mass_kg = 0.0F;  // not a double, with which its alignment would change on a processor of 32 bits
   int (*wheels)() = nullptr;
 };
 struct Robot {
@@ -38,7 +38,7 @@ struct Hook {
 
 constexpr Engine kRolling{"rolling"}, kFloating{"floating"}, kAnonymous{""};
 constexpr OtherEngine kStrange{"strange"};
-constexpr LongerEngine kLonger{"longer", 2.0, nullptr};
+constexpr LongerEngine kLonger{"longer", 2.0F, nullptr};
 constexpr Robot kRover{"rover"};
 constexpr Hook kPainter{"painter"}, kOtherPainter{"painter"};
 
@@ -106,7 +106,7 @@ TEST(Catalog, ATableFromBeforeSomethingWasAppendedHasZerosThere) {
   const auto* rolling = catalog.find<LongerEngine>("rolling");
   ASSERT_NE(rolling, nullptr);
   EXPECT_EQ(rolling->name, "rolling");
-  EXPECT_EQ(rolling->mass_kg, 0.0);
+  EXPECT_EQ(rolling->mass_kg, 0.0F);
   EXPECT_EQ(rolling->wheels, nullptr);
   EXPECT_EQ(catalog.origin_of(rolling), "libearly.so");
   const Catalog copy = catalog;
