@@ -79,7 +79,10 @@ void* WorldMemory::allocate(std::size_t bytes) {
   });
   if (fit == large_.end()) {
     const std::size_t size = (wanted + kPage - 1) / kPage * kPage;
-    fit = large_.insert(fit, {std::make_unique_for_overwrite<std::byte[]>(size), size, 0});
+    auto made = std::make_unique_for_overwrite<std::byte[]>(size);
+    fit = std::find_if(large_.begin(), large_.end(), [](const Chunk& chunk) { return chunk.bytes == nullptr; });
+    if (fit == large_.end()) fit = large_.insert(fit, Chunk{});
+    *fit = {std::move(made), size, 0};
   }
   fit->used = wanted;
   write(fit->bytes.get(), kLarge | static_cast<std::uint64_t>(fit - large_.begin()));
@@ -92,7 +95,9 @@ void WorldMemory::free(void* block) noexcept {
   std::uint64_t what = 0;
   std::memcpy(&what, before(block), sizeof what);
   if ((what & kLarge) != 0) {
-    large_[what & ~kLarge].used = 0;
+    Chunk& chunk = large_[what & ~kLarge];
+    chunk.used = 0;
+    if (!copied_) chunk = {};  // no image wants it at this address
     return;
   }
   std::memcpy(block, &unused_[what], sizeof block);
@@ -110,6 +115,7 @@ void WorldMemory::clear() noexcept {
 
 std::shared_ptr<const WorldMemory::Image> WorldMemory::copy() const {
   auto image = std::make_shared<Image>();
+  copied_ = true;
   std::size_t sum = 0;
   for (const auto& [chunks, sizes] : {std::pair{&shared_, &image->shared}, std::pair{&large_, &image->large}}) {
     for (const Chunk& chunk : *chunks) {

@@ -57,9 +57,10 @@ class WorldMemory {
   };
   void* carve(std::size_t bytes);
 
-  std::vector<Chunk> shared_;  // cut into small blocks, one after the other
-  std::vector<Chunk> large_;   // one block each
-  std::size_t filling_ = 0;    // index of the shared chunk that is cut at present
+  std::vector<Chunk> shared_;    // cut into small blocks, one after the other
+  std::vector<Chunk> large_;     // one block each; without bytes where the block was given back to the heap
+  mutable bool copied_ = false;  // an image may want large blocks where they were
+  std::size_t filling_ = 0;      // index of the shared chunk that is cut at present
   std::size_t blocks_ = 0;
   std::array<void*, kClasses> unused_{};  // by class of size: blocks that were freed, linked by their first bytes
 };
