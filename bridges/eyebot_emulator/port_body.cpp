@@ -1,8 +1,8 @@
 #include "bridges/eyebot_emulator/port_body.hpp"
 
 #include <algorithm>
-#include <utility>
 
+#include "bridges/emulation/heard.hpp"
 #include "hal/device/body_sensors.hpp"
 #include "hal/device/cameras.hpp"
 #include "hal/device/distance_scanner.hpp"
@@ -99,19 +99,9 @@ BodySenses PortBody::sense(hal::TimeNs /*now*/) {
 }
 
 std::vector<Heard> PortBody::take_heard() {
-  std::vector<Heard> all;
-  ports_.with([&](const PortBank& bank) {
-    if (std::exchange(heard_, ports_.told()) == ports_.told()) return;
-    const auto& radio = bank.port<hal::RangeAndBearing>();
-    all.resize(radio.count);
-    for (std::size_t i = 0; i < all.size(); ++i) {
-      all[i].range_m = static_cast<double>(radio.range_m[i]);
-      all[i].bearing_rad = static_cast<double>(radio.bearing_rad[i]);
-      all[i].elevation_rad = static_cast<double>(radio.elevation_rad[i]);
-      all[i].payload.assign(radio.message(i), radio.message(i) + radio.size[i]);
-    }
+  return take_messages<Heard>(ports_, heard_, [](Heard& heard, const auto* bytes, std::size_t size) {
+    heard.payload.assign(bytes, bytes + size);
   });
-  return all;
 }
 
 void PortBody::actuate(hal::TimeNs /*now*/, const BodyCommand& command) {

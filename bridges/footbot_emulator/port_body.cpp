@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "bridges/emulation/heard.hpp"
 #include "hal/device/body_sensors.hpp"
 #include "hal/device/distance_scanner.hpp"
 #include "hal/device/gripper.hpp"
@@ -54,19 +55,9 @@ BodySenses PortBody::sense(hal::TimeNs /*now*/) {
 }
 
 std::vector<Heard> PortBody::take_heard() {
-  std::vector<Heard> all;
-  ports_.with([&](const PortBank& bank) {
-    if (std::exchange(heard_, ports_.told()) == ports_.told()) return;
-    const auto& radio = bank.port<hal::RangeAndBearing>();
-    all.resize(radio.count);
-    for (std::size_t i = 0; i < all.size(); ++i) {
-      all[i].range_m = static_cast<double>(radio.range_m[i]);
-      all[i].bearing_rad = static_cast<double>(radio.bearing_rad[i]);
-      all[i].elevation_rad = static_cast<double>(radio.elevation_rad[i]);
-      std::copy_n(radio.message(i), std::min<std::size_t>(radio.size[i], kRadioBytes), all[i].payload.begin());
-    }
+  return take_messages<Heard>(ports_, heard_, [](Heard& heard, const auto* bytes, std::size_t size) {
+    std::copy_n(bytes, std::min(size, kRadioBytes), heard.payload.begin());
   });
-  return all;
 }
 
 void PortBody::actuate(hal::TimeNs /*now*/, const BodyCommand& command) {

@@ -1,33 +1,20 @@
-// A body that senses what a test says, and keeps what it is told.
+// A body that senses and hears what a test says, and keeps what it is told.
 #pragma once
-#include <mutex>
 #include <utility>
 #include <vector>
 
 #include "bridges/footbot_emulator/body.hpp"
+#include "tests/bridges/held_body.hpp"
 
 namespace tandem::bridges::footbot_emulator {
 
-/// Every function may be called from any thread.
-class HeldBody final : public EmulatedBody {
+class HeldBody final : public HeldBodyOf<EmulatedBody, BodySenses, BodyCommand> {
  public:
-  void set_senses(const BodySenses& senses, const std::vector<Heard>& heard = {}) {
+  using HeldBodyOf::set_senses;
+  void set_senses(const BodySenses& senses, const std::vector<Heard>& heard) {
+    set_senses(senses);
     const std::lock_guard lock(guard_);
-    senses_ = senses;
     heard_.insert(heard_.end(), heard.begin(), heard.end());
-  }
-  BodyCommand command() const {
-    const std::lock_guard lock(guard_);
-    return command_;
-  }
-
-  BodySenses sense(hal::TimeNs /*now*/) override {
-    const std::lock_guard lock(guard_);
-    return senses_;
-  }
-  void actuate(hal::TimeNs /*now*/, const BodyCommand& command) override {
-    const std::lock_guard lock(guard_);
-    command_ = command;
   }
   std::vector<Heard> take_heard() override {
     const std::lock_guard lock(guard_);
@@ -35,9 +22,6 @@ class HeldBody final : public EmulatedBody {
   }
 
  private:
-  mutable std::mutex guard_;
-  BodySenses senses_;
-  BodyCommand command_;
   std::vector<Heard> heard_;
 };
 
