@@ -31,6 +31,13 @@ concept Described = requires(T t, ParamVisitor& v) {
   t.describe(v);
 };
 
+/// A struct of which one element of a file may stand for several: `T::add_to(list, v)` describes such an element to `v`
+/// and appends what it stands for. Others are described one by one.
+template <class T>
+concept AddedInGroups = requires(std::vector<T>& list, ParamVisitor& v) {
+  T::add_to(list, v);
+};
+
 /// A list of described structs, for visitors that do not know their type.
 class ParamList {
  public:
@@ -38,7 +45,7 @@ class ParamList {
   virtual std::size_t size() const = 0;
   virtual void describe(std::size_t index, ParamVisitor& visitor) = 0;
   virtual void clear() = 0;
-  /// Appends one with its defaults, and describes it to `visitor`.
+  /// Appends what an element stands for, which is one unless the class says otherwise, and describes it to `visitor`.
   virtual void add(ParamVisitor& visitor) = 0;
   /// Describes one with its defaults that is in no list.
   virtual void describe_default(ParamVisitor& visitor) const = 0;
@@ -80,8 +87,16 @@ class ParamVisitor {
       std::size_t size() const override { return all.size(); }
       void describe(std::size_t index, ParamVisitor& visitor) override { all[index].describe(visitor); }
       void clear() override { all.clear(); }
-      void add(ParamVisitor& visitor) override { all.emplace_back().describe(visitor); }
-      void describe_default(ParamVisitor& visitor) const override { T{}.describe(visitor); }
+      void add(ParamVisitor& visitor) override {
+        if constexpr (AddedInGroups<T>)
+          T::add_to(all, visitor);
+        else
+          all.emplace_back().describe(visitor);
+      }
+      void describe_default(ParamVisitor& visitor) const override {
+        std::vector<T> none;
+        Typed(none).add(visitor);
+      }
     } typed(values);
     visit_list(name, typed, doc);
   }

@@ -1,11 +1,19 @@
 #include "hal/robot_kind.hpp"
 
-#include <limits>
+#include <cmath>
+#include <numbers>
+
+#include "hal/elementary.hpp"
 
 namespace tandem::hal {
 namespace {
 
-constexpr Range kPositive{1e-9, std::numeric_limits<double>::infinity()};
+// Wide enough for every robot, and narrow enough that no square or quotient of them leaves the numbers.
+constexpr Range kExtent_m{1e-4, 100.0};
+constexpr Range kPlace_m{-100.0, 100.0};
+constexpr Range kTurns_rad{-4.0 * std::numbers::pi, 4.0 * std::numbers::pi};
+constexpr Range kAboveZero{1e-9, 1e6};
+constexpr double kLargestRing = 1000;
 
 /// A described value whose class is not known here.
 struct Erased {
@@ -16,42 +24,63 @@ struct Erased {
 }  // namespace
 
 void Mount::describe(ParamVisitor& v) {
-  v.number("bearing", bearing_rad, unit::deg, kAny, "Where it looks, counter-clockwise from forward.");
-  v.number("x", x_m, unit::m, kAny, "Forward of the axis.");
-  v.number("y", y_m, unit::m, kAny, "Left of the axis.");
-  v.number("z", z_m, unit::m, kAny, "Above the ground.");
+  v.number("bearing", bearing_rad, unit::deg, kTurns_rad, "Where it looks, counter-clockwise from forward.");
+  v.number("x", x_m, unit::m, kPlace_m, "Forward of the axis.");
+  v.number("y", y_m, unit::m, kPlace_m, "Left of the axis.");
+  v.number("z", z_m, unit::m, kPlace_m, "Above the ground.");
+}
+
+void Mount::add_to(std::vector<Mount>& mounts, ParamVisitor& v) {
+  Mount first;
+  double radius_m = 0.0;
+  std::int64_t count = 1;
+  first.describe(v);
+  v.number("radius", radius_m, unit::m, {0.0, kPlace_m.max}, "Moves it from x and y that far along its bearing.");
+  v.integer("count", count, {1, kLargestRing},
+            "A ring of so many: the others follow counter-clockwise, evenly spread around the axis.");
+  const double x_m = first.x_m + radius_m * cos(first.bearing_rad);
+  const double y_m = first.y_m + radius_m * sin(first.bearing_rad);
+  for (std::int64_t i = 0; i < count; ++i) {
+    const double turn_rad = 2.0 * std::numbers::pi * static_cast<double>(i) / static_cast<double>(count);
+    const double c = cos(turn_rad), s = sin(turn_rad);
+    mounts.push_back({first.bearing_rad, x_m, y_m, first.z_m});
+    if (i == 0) continue;
+    mounts.back().bearing_rad = std::remainder(first.bearing_rad + turn_rad, 2.0 * std::numbers::pi);
+    mounts.back().x_m = c * x_m - s * y_m;
+    mounts.back().y_m = s * x_m + c * y_m;
+  }
 }
 
 void Body::describe(ParamVisitor& v) {
-  v.number("radius", radius_m, unit::m, kPositive, "Of the cylinder.");
-  v.number("height", height_m, unit::m, kPositive, "Of the cylinder.");
-  v.number("mass", mass_kg, unit::kg, kPositive, "Of the whole robot.");
+  v.number("radius", radius_m, unit::m, kExtent_m, "Of the cylinder.");
+  v.number("height", height_m, unit::m, kExtent_m, "Of the cylinder.");
+  v.number("mass", mass_kg, unit::kg, {1e-6, 1e6}, "Of the whole robot.");
   v.text("source", source, "Where these figures come from.");
 }
 
 void DifferentialDrive::describe(ParamVisitor& v) {
-  v.number("wheel_radius", wheel_radius_m, unit::m, kNotNegative, "Of each wheel.");
-  v.number("wheel_base", wheel_base_m, unit::m, kPositive, "Distance between the wheels' contact points.");
-  v.number("max_speed", max_speed_m_s, unit::m_s, kNotNegative, "Of a wheel, at its rim.");
-  v.number("force", force_N, unit::none, kNotNegative, "In N, that the wheels together can push with.");
-  v.number("torque", torque_Nm, unit::none, kNotNegative, "In Nm, that they can turn the body with.");
+  v.number("wheel_radius", wheel_radius_m, unit::m, kExtent_m, "Of each wheel.");
+  v.number("wheel_base", wheel_base_m, unit::m, kExtent_m, "Distance between the wheels' contact points.");
+  v.number("max_speed", max_speed_m_s, unit::m_s, {1e-6, 1000.0}, "Of a wheel, at its rim.");
+  v.number("force", force_N, unit::none, kAboveZero, "In N, that the wheels together can push with.");
+  v.number("torque", torque_Nm, unit::none, kAboveZero, "In Nm, that they can turn the body with.");
   v.text("source", source, "Where these figures come from.");
 }
 
 void Quadrotor::describe(ParamVisitor& v) {
-  v.number("max_speed", max_speed_m_s, unit::m_s, kNotNegative, "In any direction.");
-  v.number("max_acceleration", max_acceleration_m_s2, unit::m_s2, kNotNegative,
+  v.number("max_speed", max_speed_m_s, unit::m_s, {1e-6, 1000.0}, "In any direction.");
+  v.number("max_acceleration", max_acceleration_m_s2, unit::m_s2, kAboveZero,
            "Beyond what holds it up, in any direction.");
-  v.number("max_turn", max_turn_rad_s, unit::rad_s, kNotNegative, "Fastest turn about the vertical axis.");
-  v.number("max_lean", max_lean_rad, unit::deg, kNotNegative, "Lean that it obeys.");
-  v.number("max_thrust", max_thrust, unit::none, kNotNegative, "Of all rotors together, in parts of its weight.");
-  v.number("climb", climb_m_s, unit::m_s, kNotNegative, "When it takes off, unless told otherwise.");
-  v.number("sink", sink_m_s, unit::m_s, kNotNegative, "When it lands, unless told otherwise.");
-  v.number("take_off", take_off_m, unit::m, kNotNegative, "Height to which it takes off.");
-  v.number("inertia", inertia_kg_m2, unit::none, kNotNegative, "Moment of inertia about each axis, in kg m2.");
-  v.number("rotor_arm", rotor_arm_m, unit::m, kNotNegative, "From the axis to each of the four rotors.");
-  v.number("rotor_lag", rotor_lag_s, unit::s, kNotNegative, "In which a rotor's thrust covers 63 % of a change.");
-  v.number("rotor_torque", rotor_torque_m, unit::m, kNotNegative, "Drag torque for each newton of a rotor's thrust.");
+  v.number("max_turn", max_turn_rad_s, unit::rad_s, kAboveZero, "Fastest turn about the vertical axis.");
+  v.number("max_lean", max_lean_rad, unit::deg, kAboveZero, "Lean that it obeys.");
+  v.number("max_thrust", max_thrust, unit::none, kAboveZero, "Of all rotors together, in parts of its weight.");
+  v.number("climb", climb_m_s, unit::m_s, kAboveZero, "When it takes off, unless told otherwise.");
+  v.number("sink", sink_m_s, unit::m_s, kAboveZero, "When it lands, unless told otherwise.");
+  v.number("take_off", take_off_m, unit::m, kAboveZero, "Height to which it takes off.");
+  v.number("inertia", inertia_kg_m2, unit::none, kAboveZero, "Moment of inertia about each axis, in kg m2.");
+  v.number("rotor_arm", rotor_arm_m, unit::m, kExtent_m, "From the axis to each of the four rotors.");
+  v.number("rotor_lag", rotor_lag_s, unit::s, kAboveZero, "In which a rotor's thrust covers 63 % of a change.");
+  v.number("rotor_torque", rotor_torque_m, unit::m, kAboveZero, "Drag torque for each newton of a rotor's thrust.");
   v.text("source", source, "Where these figures come from.");
 }
 

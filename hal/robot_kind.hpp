@@ -12,6 +12,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -32,6 +33,8 @@ struct Mount {
   double y_m = 0.0;
   double z_m = 0.0;
   void describe(ParamVisitor& v);
+  /// In files, one element of a list may stand for a ring of them, and give its place by its distance from the axis.
+  static void add_to(std::vector<Mount>& mounts, ParamVisitor& v);
 };
 
 /// An upright cylinder.
@@ -163,6 +166,24 @@ class AnyPart {
   std::unique_ptr<void, void (*)(void*)> data_;
 };
 
+/// A class of parts, so that files can name it: `registrar.add(hal::part_type<LiftPart>())`, where its port is
+/// registered.
+struct PartType {
+  static constexpr std::string_view kCategory = "part";
+  using Crosses = Layouts<AnyPart, detail::PartTable, ParamVisitor, ParamList, Mount, std::string>;
+  std::string_view name;        ///< of the element in that of a kind
+  std::string_view summary;     ///< for people: a line
+  AnyPart (*make)() = nullptr;  ///< with the defaults of the class
+};
+
+/// The table of a class of parts.
+template <RobotPart P>
+requires std::is_default_constructible_v<P>
+const PartType& part_type() {
+  static constexpr PartType type{P::kName, P::kDoc, [] { return AnyPart(P{}); }};
+  return type;
+}
+
 /// All that is known of a kind of robot. Constant while it is in a catalog: devices, bridges and controllers keep
 /// pointers into it.
 class RobotKind {
@@ -190,6 +211,14 @@ class RobotKind {
     parts_.emplace_back(std::move(part));
     return *this;
   }
+  RobotKind& add(AnyPart part) {
+    parts_.push_back(std::move(part));
+    return *this;
+  }
+  /// Takes the part of that name away. False: it has none.
+  bool remove(std::string_view part) {
+    return std::erase_if(parts_, [&](const AnyPart& p) { return p.name() == part; }) > 0;
+  }
   /// The part, or null. Body and locomotion are found in the same way. Not for loops: it looks the part up by name.
   template <class P>
   const P* part() const noexcept {
@@ -205,6 +234,7 @@ class RobotKind {
     return const_cast<P*>(std::as_const(*this).template part<P>());
   }
   const std::vector<AnyPart>& parts() const noexcept { return parts_; }
+  std::span<AnyPart> parts() noexcept { return parts_; }
 
   /// Body, locomotion and parts, each as a group of its own.
   void describe(ParamVisitor& v);

@@ -21,6 +21,11 @@ void add_all(Registrar& registrar) {
   (registrar.add(port_type<Port>()), ...);
 }
 
+template <class... Part>
+void add_parts(Registrar& registrar) {
+  (registrar.add(part_type<Part>()), ...);
+}
+
 }  // namespace
 
 void register_ports(Registrar& registrar) {
@@ -29,6 +34,10 @@ void register_ports(Registrar& registrar) {
           Odometry, Gyroscope, BaseGround, MotorGround, TurretDrive, TurretEncoder, GripperDrive, Gripper, ScannerDrive,
           DistanceScanner, OmnidirectionalCamera, PerspectiveCamera, UpperRingLeds, QuadrotorAttitude, FlightTask,
           FlightState, Altimeter, CameraLed, PanTiltDrive, PanTiltEncoder>(registrar);
+  add_parts<ProximityPart, LightPart, GroundPart, BaseGroundPart, MotorGroundPart, AccelerometerPart, GyroscopePart,
+            MicrophonesPart, BatteryPart, RangeAndBearingPart, LedsPart, UpperLedsPart, BodyLedPart, FrontLedPart,
+            CameraLedPart, TurretPart, GripperPart, ScannerPart, OmniCameraPart, CameraPart, HeadPart, AltimeterPart>(
+      registrar);
 }
 
 }  // namespace tandem::hal

@@ -57,7 +57,14 @@ struct ProximityPart {
     v.list("mount", mounts, "A sensor, in the order of the readings.");
     v.text("source", source, "Where these figures come from.");
   }
-  std::string flaw() const { return mounts_flaw(mounts, Proximity::kCapacity); }
+  std::string flaw() const {
+    for (std::size_t i = 1; i < response.size(); ++i) {
+      if (!(response[i].distance_m > response[i - 1].distance_m && response[i].counts < response[i - 1].counts))
+        return "has a response whose point " + std::to_string(i) +
+               " is not farther, with fewer counts, than the one before; give the nearest first";
+    }
+    return mounts_flaw(mounts, Proximity::kCapacity);
+  }
 };
 
 /// Ambient light at each sensor: 0 dark, 1 saturated.

@@ -1,8 +1,11 @@
 #include "hal/robot_kind.hpp"
 
+#include <cmath>
 #include <gmock/gmock.h>
+#include <numbers>
 
 #include "hal/device/body_sensors.hpp"
+#include "hal/device/ports.hpp"
 #include "hal/device/ring_sensors.hpp"
 #include "hal/device/turret.hpp"
 #include "hal/element.hpp"
@@ -121,6 +124,90 @@ TEST(RobotKind, WithWheelsInOnePlaceIsRefused) {
   RobotKind kind = crab();
   kind.locomotion = DifferentialDrive{};
   EXPECT_THAT(error_of(kind), HasSubstr("give its differential_drive a wheel_base above 0"));
+}
+
+TEST(RobotKind, WithAResponseThatCannotBeInvertedIsRefused) {
+  RobotKind kind = crab();
+  kind.part<ProximityPart>()->response = {{0.0, 100.0}, {0.1, 50.0}, {0.1, 20.0}};
+  EXPECT_THAT(error_of(kind), HasSubstr("point 2 is not farther, with fewer counts, than the one before"));
+}
+
+TEST(PartType, MakesAPartWithTheDefaultsOfItsClass) {
+  Catalog catalog;
+  ASSERT_TRUE(catalog.add_from("library 'crab.so'", [](Registrar& r) { r.add(part_type<WinchPart>()); }).ok());
+  const auto* const type = catalog.find<PartType>("winch");
+  ASSERT_NE(type, nullptr);
+  EXPECT_EQ(type->summary, "Pulls a rope.");
+  RobotKind kind = crab();
+  EXPECT_TRUE(kind.remove("winch"));
+  EXPECT_FALSE(kind.remove("winch"));
+  kind.add(type->make());
+  ASSERT_NE(kind.part<WinchPart>(), nullptr);
+  EXPECT_EQ(kind.part<WinchPart>()->force_N, 0.0);
+}
+
+TEST(PartType, IsThereForEveryPartOfTandemsRobots) {
+  Catalog catalog;
+  ASSERT_TRUE(catalog.add_from("tandem", register_robots).ok());
+  ASSERT_TRUE(catalog.add_from("ports", register_ports).ok());
+  for (const RobotKind* kind : catalog.all<RobotKind>()) {
+    for (const AnyPart& part : kind->parts())
+      EXPECT_NE(catalog.find<PartType>(part.name()), nullptr) << kind->name << ": " << part.name();
+  }
+  for (const PartType* type : catalog.all<PartType>()) {
+    EXPECT_EQ(type->make().name(), type->name);
+    EXPECT_EQ(type->make().doc(), type->summary);
+  }
+}
+
+/// The mounts of a proximity element with these.
+std::vector<Mount> mounts_of(const std::vector<std::vector<std::pair<std::string, std::string>>>& elements) {
+  Element proximity{"proximity", "crab.xml", 3, {}, {}};
+  for (const auto& attributes : elements) {
+    Element& mount = proximity.children.emplace_back();
+    mount.name = "mount";
+    for (const auto& [name, value] : attributes) mount.attributes.push_back({name, value, 4});
+  }
+  ProximityPart part;
+  Problems problems;
+  ElementReader reader(proximity, problems);
+  part.describe(reader);
+  reader.finish();
+  for (const Problem& p : problems) ADD_FAILURE() << to_text(p);
+  return part.mounts;
+}
+
+TEST(Mount, OfAFileMayStandForARing) {
+  const auto mounts =
+      mounts_of({{{"bearing", "45"}, {"radius", "0.1"}, {"z", "0.02"}, {"count", "4"}}, {{"x", "0.01"}, {"z", "0.3"}}});
+  ASSERT_EQ(mounts.size(), 5U);
+  constexpr double kDiagonal_m = 0.07071067811865475;
+  const double signs[4][2] = {{1, 1}, {-1, 1}, {-1, -1}, {1, -1}};
+  const double degrees[4] = {45, 135, -135, -45};
+  for (std::size_t i = 0; i < 4; ++i) {
+    EXPECT_NEAR(mounts[i].bearing_rad, degrees[i] * unit::deg.to_si, 1e-12) << i;
+    EXPECT_NEAR(mounts[i].x_m, kDiagonal_m * signs[i][0], 1e-15) << i;
+    EXPECT_NEAR(mounts[i].y_m, kDiagonal_m * signs[i][1], 1e-15) << i;
+    EXPECT_EQ(mounts[i].z_m, 0.02);
+  }
+  EXPECT_EQ(mounts[4].x_m, 0.01);
+  EXPECT_EQ(mounts[4].bearing_rad, 0.0);
+}
+
+TEST(Mount, OfARingBesideTheAxisGoesAroundTheAxis) {
+  const auto mounts = mounts_of({{{"x", "0.03"}, {"y", "0.04"}, {"count", "2"}}});
+  ASSERT_EQ(mounts.size(), 2U);
+  EXPECT_NEAR(mounts[1].x_m, -0.03, 1e-15);
+  EXPECT_NEAR(mounts[1].y_m, -0.04, 1e-15);
+  EXPECT_NEAR(std::fabs(mounts[1].bearing_rad), std::numbers::pi, 1e-15);
+}
+
+TEST(Mount, TellsInItsManualThatItMayBeARing) {
+  ManualWriter manual;
+  ProximityPart part;
+  part.describe(manual);
+  EXPECT_THAT(manual.text(), HasSubstr("count=\"1\""));
+  EXPECT_THAT(manual.text(), HasSubstr("radius=\"0 m\""));
 }
 
 TEST(RobotKind, TellsEveryFactWithItsSource) {
