@@ -1,11 +1,14 @@
 // From LINK texts to message links: tcp:ROBOT:33333, serial:/dev/ttymxc4@921600, can:can0, slcan:/dev/ttyACM0@1000000.
 #pragma once
+#include <cstdint>
 #include <string_view>
 
 #include "bridges/aseba/message_link.hpp"
 #include "bridges/link/link_terms.hpp"
 
 namespace tandem::bridges::aseba {
+
+inline constexpr std::uint16_t kAsebaPort = 33333;  ///< [Dashel's and asebaswitch's default]
 
 /// An opener for the link that the text names. The port of `tcp:` is 33333 where none is written; addresses of IPv6
 /// stand in brackets: tcp:[::1]:33333.

@@ -1,14 +1,11 @@
 #include <algorithm>
 #include <cerrno>
-#include <charconv>
 #include <cstring>
 #include <map>
-#include <netdb.h>
-#include <netinet/in.h>
-#include <netinet/tcp.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include "bridges/emulation/listener.hpp"
 #include "bridges/footbot_emulator/assembler.hpp"
 #include "bridges/footbot_emulator/host_side.hpp"
 #include "bridges/footbot_emulator/stream.hpp"
@@ -23,17 +20,16 @@ constexpr std::size_t kMostAtOnce = 1024;        // bytes of one host in one tur
 /// number of hosts. What one host says goes to the bus and to the other hosts.
 class SwitchSide final : public HostSide {
  public:
-  SwitchSide(int listener, std::string path, EventSink sink)
-      : listener_(listener), path_(std::move(path)), sink_(std::move(sink)) {}
+  SwitchSide(std::unique_ptr<Listener> listener, EventSink sink)
+      : listener_(std::move(listener)), sink_(std::move(sink)) {}
   ~SwitchSide() override {
     for (const auto& [descriptor, client] : clients_) ::close(descriptor);
-    ::close(listener_);
   }
   SwitchSide(const SwitchSide&) = delete;
   SwitchSide& operator=(const SwitchSide&) = delete;
 
   void add_polls(std::vector<pollfd>& polls) const override {
-    polls.push_back({listener_, POLLIN, 0});
+    polls.push_back({listener_->descriptor(), POLLIN, 0});
     for (const auto& [descriptor, client] : clients_) {
       const short room = client.unsent.empty() ? 0 : POLLOUT;
       polls.push_back({descriptor, static_cast<short>(POLLIN | room), 0});
@@ -66,7 +62,7 @@ class SwitchSide final : public HostSide {
     for (const int descriptor : lost) cut_off(descriptor, now, "it does not read");
   }
 
-  const std::string& path() const override { return path_; }
+  const std::string& path() const override { return listener_->path(); }
 
  private:
   struct Client {
@@ -76,9 +72,7 @@ class SwitchSide final : public HostSide {
 
   void greet(hal::TimeNs now) {
     int descriptor = -1;
-    while ((descriptor = ::accept4(listener_, nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC)) >= 0) {
-      const int at_once = 1;
-      ::setsockopt(descriptor, IPPROTO_TCP, TCP_NODELAY, &at_once, sizeof at_once);
+    while ((descriptor = listener_->accept()) >= 0) {
       clients_[descriptor];
       sink_(now, "host", {{"connected", true}, {"hosts", clients_.size()}});
     }
@@ -113,66 +107,18 @@ class SwitchSide final : public HostSide {
     sink_(now, "host", {{"connected", false}, {"hosts", clients_.size()}, {"why", why}});
   }
 
-  int listener_;
-  std::string path_;
+  std::unique_ptr<Listener> listener_;
   EventSink sink_;
   Assembler assembler_;
   std::map<int, Client> clients_;  // by descriptor
 };
 
-struct AddressList {
-  ~AddressList() {
-    if (first != nullptr) ::freeaddrinfo(first);
-  }
-  addrinfo* first = nullptr;
-};
-
-/// -1 with errno set where it cannot be.
-int listen_at(const addrinfo& address) {
-  const int descriptor = ::socket(address.ai_family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
-  if (descriptor < 0) return -1;
-  const int reuse = 1;
-  ::setsockopt(descriptor, SOL_SOCKET, SO_REUSEADDR, &reuse, sizeof reuse);
-  if (::bind(descriptor, address.ai_addr, address.ai_addrlen) == 0 && ::listen(descriptor, 8) == 0) return descriptor;
-  const int error = errno;
-  ::close(descriptor);
-  errno = error;
-  return -1;
-}
-
-std::uint16_t port_of(int listener) {
-  sockaddr_storage address{};
-  socklen_t size = sizeof address;
-  ::getsockname(listener, reinterpret_cast<sockaddr*>(&address), &size);
-  if (address.ss_family == AF_INET6) return ntohs(reinterpret_cast<const sockaddr_in6&>(address).sin6_port);
-  return ntohs(reinterpret_cast<const sockaddr_in&>(address).sin_port);
-}
-
 }  // namespace
 
 hal::Result<std::unique_ptr<HostSide>> open_switch(const std::string& endpoint, const EventSink& sink) {
-  const std::size_t colon = endpoint.rfind(':');
-  std::string host = colon == std::string::npos ? "127.0.0.1" : endpoint.substr(0, colon);
-  if (host.starts_with('[') && host.ends_with(']')) host = host.substr(1, host.size() - 2);
-  const std::string port = colon == std::string::npos ? endpoint : endpoint.substr(colon + 1);
-  const std::string whole = "tcp-listen:" + endpoint;
-  std::uint16_t number = 0;
-  const auto [end, error] = std::from_chars(port.data(), port.data() + port.size(), number);
-  if (port.empty() || error != std::errc{} || end != port.data() + port.size()) {
-    return hal::Error{"link '" + whole + "': '" + port + "' is no port; write for example tcp-listen:33333"};
-  }
-  addrinfo wish{};
-  wish.ai_socktype = SOCK_STREAM;
-  wish.ai_flags = AI_PASSIVE | AI_NUMERICSERV;
-  AddressList list;
-  if (const int failed = ::getaddrinfo(host.c_str(), port.c_str(), &wish, &list.first); failed != 0) {
-    return hal::Error{"link '" + whole + "': there is no host '" + host + "': " + ::gai_strerror(failed)};
-  }
-  const int listener = listen_at(*list.first);
-  if (listener < 0) return hal::Error{"cannot listen at " + whole + ": " + std::strerror(errno)};
-  const std::string shown = host == "0.0.0.0" ? "127.0.0.1" : host;
-  return std::unique_ptr<HostSide>(
-      std::make_unique<SwitchSide>(listener, "tcp:" + shown + ":" + std::to_string(port_of(listener)), sink));
+  auto listener = Listener::open("tcp-listen", "tcp", endpoint);
+  if (!listener.ok()) return listener.error();
+  return std::unique_ptr<HostSide>(std::make_unique<SwitchSide>(std::move(listener).value(), sink));
 }
 
 }  // namespace tandem::bridges::footbot_emulator

@@ -7,6 +7,7 @@
 
 #include "bridges/link/permitted_link.hpp"
 #include "bridges/link/serial_link.hpp"
+#include "bridges/link/tcp_link.hpp"
 
 namespace tandem::bridges {
 namespace {
@@ -19,8 +20,9 @@ struct SchemeRow {
   std::uint32_t default_rate;  // 0: takes none
 };
 
-constexpr std::array<SchemeRow, 5> kSchemes = {{
+constexpr std::array<SchemeRow, 6> kSchemes = {{
     {LinkScheme::Serial, "serial", "serial:/dev/ttyUSB0@115200", "device", 115200},
+    {LinkScheme::Tcp, "tcp", "tcp:192.168.1.20:3000", "host", 0},
     {LinkScheme::Slcan, "slcan", "slcan:/dev/ttyACM0@1000000", "device", 1000000},
     {LinkScheme::Can, "can", "can:can0", "CAN interface", 0},
     {LinkScheme::Lcm, "lcm", "lcm:udpm://239.255.76.67:7667?ttl=0", "LCM url", 0},
@@ -117,9 +119,14 @@ hal::Result<LinkAddress> parse_link(std::string_view text) {
 }
 
 hal::Result<LinkOpener> byte_link_opener(const LinkAddress& address, const LinkTerms& terms) {
+  if (address.scheme == LinkScheme::Tcp) {
+    const auto endpoint = parse_endpoint("tcp", address.target);
+    if (!endpoint.ok()) return endpoint.error();
+    return permitted([e = endpoint.value()] { return TcpLink::connect(e); }, terms.permit);
+  }
   if (address.scheme != LinkScheme::Serial) {
     return hal::Error{"link '" + to_text(address) +
-                      "' does not carry a robot's bytes from here; use serial:DEVICE@BAUD"};
+                      "' does not carry a robot's bytes from here; use serial:DEVICE@BAUD or tcp:HOST:PORT"};
   }
   return permitted([address, beside = terms.beside] { return SerialLink::open(address, beside); }, terms.permit);
 }

@@ -1,4 +1,5 @@
-// Links as people write them: serial:/dev/ttyUSB0@115200, slcan:/dev/ttyACM0@1000000, can:can0, lcm:URL, pty:NAME.
+// Links as people write them: serial:/dev/ttyUSB0@115200, tcp:HOST:PORT, slcan:/dev/ttyACM0@1000000, can:can0, lcm:URL,
+// pty:NAME.
 #pragma once
 #include <cstdint>
 #include <span>
@@ -11,12 +12,12 @@
 
 namespace tandem::bridges {
 
-enum class LinkScheme : std::uint8_t { Serial, Slcan, Can, Lcm, Pty };
+enum class LinkScheme : std::uint8_t { Serial, Tcp, Slcan, Can, Lcm, Pty };
 
 /// A LINK text taken apart.
 struct LinkAddress {
   LinkScheme scheme = LinkScheme::Serial;
-  std::string target;      ///< device path, CAN interface, LCM url, or name of the pseudo-terminal
+  std::string target;      ///< device path, host and port, CAN interface, LCM url, or name of the pseudo-terminal
   std::uint32_t rate = 0;  ///< baud of a serial device (115200 when not written), bit/s of slcan's bus; 0: has none
 };
 
@@ -36,7 +37,7 @@ std::span<const std::uint32_t> serial_rates() noexcept;
 /// the colon, a rate that is no number, a baud rate that serial devices do not have (names the nearest).
 hal::Result<LinkAddress> parse_link(std::string_view text);
 
-/// An opener for the byte links that reach a robot from here. Only `serial:` does.
+/// An opener for the byte links that reach a robot from here: `serial:`, and `tcp:` with a port.
 /// Errors: any other scheme. Errors of the device itself come from the opener.
 hal::Result<LinkOpener> byte_link_opener(const LinkAddress& address, const LinkTerms& terms = {});
 

@@ -27,7 +27,7 @@ TEST(LinkText, TakesTheUsualRateWhereNoneIsWritten) {
 
 TEST(LinkText, ReadsWhatItWrites) {
   for (const char* text : {"serial:/dev/ttyUSB0@115200", "slcan:/dev/ttyACM0@1000000", "can:can0",
-                           "lcm:udpm://239.255.76.67:7667?ttl=0", "pty:ep0"}) {
+                           "lcm:udpm://239.255.76.67:7667?ttl=0", "pty:ep0", "tcp:robot:3000"}) {
     const auto link = parse_link(text);
     ASSERT_TRUE(link.ok()) << text;
     EXPECT_EQ(to_text(link.value()), text);
@@ -53,8 +53,12 @@ TEST(LinkText, SaysWhatIsWrong) {
   EXPECT_THAT(error_of("serial:/dev/ttyS0@115000"), HasSubstr("nearest they have is 115200"));
 }
 
-TEST(LinkText, OpensOnlySerialLinksForBytes) {
+TEST(LinkText, OpensSerialLinksAndTcpForBytes) {
   EXPECT_TRUE(byte_link_opener(parse_link("serial:/dev/ttyUSB0").value()).ok());
+  EXPECT_TRUE(byte_link_opener(parse_link("tcp:robot:3000").value()).ok());
+  const auto no_port = byte_link_opener(parse_link("tcp:robot").value());
+  ASSERT_FALSE(no_port.ok());
+  EXPECT_THAT(no_port.error().message, HasSubstr("no port; write for example tcp:robot:3000"));
   const auto can = byte_link_opener(parse_link("can:can0").value());
   ASSERT_FALSE(can.ok());
   EXPECT_THAT(can.error().message, HasSubstr("serial:DEVICE@BAUD"));

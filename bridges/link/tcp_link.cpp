@@ -1,6 +1,7 @@
-#include "bridges/aseba/tcp_link.hpp"
+#include "bridges/link/tcp_link.hpp"
 
 #include <cerrno>
+#include <charconv>
 #include <cstring>
 #include <fcntl.h>
 #include <netdb.h>
@@ -10,13 +11,13 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
-namespace tandem::bridges::aseba {
+namespace tandem::bridges {
 namespace {
 
-std::string advice(int error) {
+std::string advice(int error, std::string_view who_listens) {
   switch (error) {
     case ECONNREFUSED:
-      return "nobody listens there; is asebaswitch running on the robot?";
+      return "nobody listens there; " + std::string(who_listens);
     case ETIMEDOUT:
     case EHOSTUNREACH:
     case ENETUNREACH:
@@ -59,14 +60,45 @@ void set_option(int socket, int level, int option, int value) noexcept {
 
 }  // namespace
 
-hal::Result<std::unique_ptr<ByteLink>> TcpLink::connect(const std::string& host, std::uint16_t port,
-                                                        hal::TimeNs timeout_ns) {
-  const std::string name = "tcp:" + host + ":" + std::to_string(port);
+hal::Result<Endpoint> parse_endpoint(std::string_view scheme, std::string_view text, std::uint16_t usual_port) {
+  const std::string whole = "link '" + std::string(scheme) + ":" + std::string(text) + "': ";
+  const std::string number = usual_port != 0 ? std::to_string(usual_port) : "3000";
+  Endpoint endpoint{"", usual_port};
+  std::string_view port;
+  if (text.starts_with('[')) {
+    const std::size_t end = text.find(']');
+    if (end == std::string_view::npos) return hal::Error{whole + "the [ is never closed"};
+    endpoint.host = text.substr(1, end - 1);
+    port = text.substr(end + 1);
+    if (!port.empty() && !port.starts_with(':')) return hal::Error{whole + "after the ] comes :PORT"};
+  } else {
+    const std::size_t colon = text.find(':');
+    endpoint.host = text.substr(0, colon);
+    port = colon == std::string_view::npos ? std::string_view{} : text.substr(colon);
+  }
+  if (endpoint.host.empty())
+    return hal::Error{whole + "no host; write for example " + std::string(scheme) + ":192.168.1.20:" + number};
+  if (port.empty()) {
+    if (usual_port != 0) return endpoint;
+    return hal::Error{whole + "no port; write for example " + std::string(scheme) + ":" + endpoint.host + ":" + number};
+  }
+  port.remove_prefix(1);
+  const auto [end, error] = std::from_chars(port.data(), port.data() + port.size(), endpoint.port);
+  if (error != std::errc{} || end != port.data() + port.size() || endpoint.port == 0) {
+    return hal::Error{whole + "'" + std::string(port) + "' is not a port; write a number from 1 to 65535"};
+  }
+  return endpoint;
+}
+
+hal::Result<std::unique_ptr<ByteLink>> TcpLink::connect(const Endpoint& endpoint, std::string_view scheme,
+                                                        std::string_view who_listens, hal::TimeNs timeout_ns) {
+  const std::string port = std::to_string(endpoint.port);
+  const std::string name = std::string(scheme) + ":" + endpoint.host + ":" + port;
   addrinfo hints{};
   hints.ai_family = AF_UNSPEC;
   hints.ai_socktype = SOCK_STREAM;
   addrinfo* found = nullptr;
-  if (const int why = ::getaddrinfo(host.c_str(), std::to_string(port).c_str(), &hints, &found); why != 0) {
+  if (const int why = ::getaddrinfo(endpoint.host.c_str(), port.c_str(), &hints, &found); why != 0) {
     return hal::Error{"cannot open " + name + ": the host is not known here (" + ::gai_strerror(why) +
                       "); write its name or address"};
   }
@@ -84,7 +116,7 @@ hal::Result<std::unique_ptr<ByteLink>> TcpLink::connect(const std::string& host,
     set_option(fd, IPPROTO_TCP, TCP_USER_TIMEOUT, 3000);  // ms
     return std::unique_ptr<ByteLink>(new TcpLink(name, fd));
   }
-  return hal::Error{"cannot open " + name + ": " + advice(error)};
+  return hal::Error{"cannot open " + name + ": " + advice(error, who_listens)};
 }
 
 TcpLink::~TcpLink() {
@@ -92,8 +124,7 @@ TcpLink::~TcpLink() {
 }
 
 void TcpLink::hang_up() noexcept {
-  if (open_) ++statistics_.errors;
-  open_ = false;
+  if (open_.exchange(false)) ++errors_;
 }
 
 std::size_t TcpLink::write(std::span<const std::uint8_t> bytes, hal::TimeNs budget_ns) noexcept {
@@ -112,8 +143,8 @@ std::size_t TcpLink::write(std::span<const std::uint8_t> bytes, hal::TimeNs budg
       ::poll(&p, 1, left_ms);
     }
   }
-  statistics_.bytes_out += done;
-  statistics_.bytes_refused += bytes.size() - done;
+  bytes_out_ += done;
+  bytes_refused_ += bytes.size() - done;
   return done;
 }
 
@@ -121,7 +152,7 @@ Received TcpLink::read(std::span<std::uint8_t> buffer) noexcept {
   if (!open_ || buffer.empty()) return {};
   const ssize_t n = ::recv(socket_, buffer.data(), buffer.size(), MSG_DONTWAIT);
   if (n > 0) {
-    statistics_.bytes_in += static_cast<std::uint64_t>(n);
+    bytes_in_ += static_cast<std::uint64_t>(n);
     return {static_cast<std::size_t>(n), monotonic_ns()};
   }
   if (n == 0 || (errno != EAGAIN && errno != EINTR)) hang_up();
@@ -139,4 +170,4 @@ bool TcpLink::wait(hal::TimeNs timeout_ns) noexcept {
   return ::ppoll(&p, 1, &t, nullptr) > 0;
 }
 
-}  // namespace tandem::bridges::aseba
+}  // namespace tandem::bridges

@@ -1,0 +1,56 @@
+// A TCP connection as a byte link: to a robot in the network, a serial server (ser2net), asebaswitch, a simulated
+// robot.
+#pragma once
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "bridges/link/link.hpp"
+
+namespace tandem::bridges {
+
+/// Where somebody listens.
+struct Endpoint {
+  std::string host;
+  std::uint16_t port = 0;
+};
+
+/// Takes "host:port", "[address]:port" apart, and the same without a port where there is a usual one. `scheme`: what
+/// stands before it in a LINK text, for messages.
+/// Errors: no host, not a port, no port where none is usual (`usual_port` 0).
+hal::Result<Endpoint> parse_endpoint(std::string_view scheme, std::string_view text, std::uint16_t usual_port = 0);
+
+/// A connection made by this side, without delays for small packets, and with keep-alive so that a peer that lost its
+/// power is noticed: 3 to 4 s after its last sign of life the link has hung up.
+class TcpLink final : public ByteLink {
+ public:
+  /// Blocks for the look-up of the name, and at most `timeout_ns` for the connection.
+  /// Errors, each with what to do: unknown host, refused, no route, no answer. `scheme`: of the LINK text, for names
+  /// and messages; `who_listens`: "is asebaswitch running on the robot?", what people look at when the other side
+  /// refuses.
+  static hal::Result<std::unique_ptr<ByteLink>> connect(const Endpoint& endpoint, std::string_view scheme = "tcp",
+                                                        std::string_view who_listens = "is its program running?",
+                                                        hal::TimeNs timeout_ns = 3 * hal::kNsPerSecond);
+  ~TcpLink() override;
+
+  std::size_t write(std::span<const std::uint8_t> bytes, hal::TimeNs budget_ns) noexcept override;
+  Received read(std::span<std::uint8_t> buffer) noexcept override;
+  bool wait(hal::TimeNs timeout_ns) noexcept override;
+  int descriptor() const noexcept override { return socket_; }
+  LinkState state() const noexcept override { return open_ ? LinkState::Open : LinkState::HungUp; }
+  LinkStatistics statistics() const noexcept override { return {bytes_in_, bytes_out_, bytes_refused_, errors_}; }
+  std::string name() const override { return name_; }
+
+ private:
+  TcpLink(std::string name, int socket) : name_(std::move(name)), socket_(socket) {}
+  void hang_up() noexcept;
+
+  std::string name_;
+  int socket_;
+  std::atomic<bool> open_{true};
+  std::atomic<std::uint64_t> bytes_in_{0}, bytes_out_{0}, bytes_refused_{0}, errors_{0};
+};
+
+}  // namespace tandem::bridges
