@@ -20,6 +20,8 @@ foreach(flags "${CMAKE_C_FLAGS}" "${CMAKE_CXX_FLAGS}")
   endif()
 endforeach()
 
+set(tandem_quick_build $<$<AND:$<CONFIG:Release>,$<NOT:$<BOOL:${TANDEM_BOARD}>>>:-O1>)
+
 add_library(tandem_flags INTERFACE)
 target_compile_options(tandem_flags INTERFACE
   -Wall -Wextra -Wpedantic -Wconversion -Wshadow -ffp-contract=off -fno-math-errno -fvisibility-inlines-hidden)
