@@ -56,7 +56,9 @@ function(tandem_plugin)
   set_target_properties(${arg_NAME} PROPERTIES PREFIX "lib" CXX_VISIBILITY_PRESET hidden
     LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/lib)
   target_link_libraries(${arg_NAME} PRIVATE tandem_flags)
-  target_precompile_headers(${arg_NAME} REUSE_FROM tandem_headers)
+  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU") # clang wants the same visibility in both
+    target_precompile_headers(${arg_NAME} REUSE_FROM tandem_headers)
+  endif()
   foreach(dep ${arg_DEPS})
     tandem_target_of(dep_target ${dep})
     target_link_libraries(${arg_NAME} PRIVATE ${dep_target})
