@@ -1,4 +1,4 @@
-// What a bridge tells of itself, as part of a report.
+// Status of a bridge, as part of a report.
 #pragma once
 #include <string>
 

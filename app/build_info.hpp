@@ -1,4 +1,4 @@
-// What this program is made of, for reports and --version: so that a result can be had again.
+// Versions, compiler and commit of this program, for reports and --version: enough to repeat a result.
 #pragma once
 #include <string>
 #include <utility>

@@ -1,4 +1,4 @@
-// The end of a process that cannot go on: names the plug-in, saves what was recorded.
+// Emergency exit of a process that cannot go on: names the plug-in, saves what was recorded.
 #pragma once
 #include <string_view>
 

@@ -1,4 +1,4 @@
-// What a run costs: wall time, processor time, memory.
+// Measures the cost of a run: wall time, processor time, memory.
 #pragma once
 #include <ctime>
 #include <sys/resource.h>

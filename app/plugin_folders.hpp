@@ -1,4 +1,4 @@
-// Where plug-ins are.
+// Folders in which plug-ins are looked for.
 #pragma once
 #include <filesystem>
 #include <vector>

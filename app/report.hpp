@@ -1,4 +1,4 @@
-// What a run reports: JSON for programs, a short table for people.
+// Reports of runs: JSON for programs, a short table for people.
 #pragma once
 #include <cstdint>
 #include <string>

@@ -1,4 +1,4 @@
-// What a run costs, for its report.
+// Cost figures of a run, for its report.
 #pragma once
 #include <cstddef>
 #include <cstdint>

@@ -1,4 +1,4 @@
-// What is told of a run when it is over: the report and the table.
+// Makes the report and the table of a finished run.
 #pragma once
 #include <string>
 #include <vector>

@@ -1,4 +1,4 @@
-// How many messages a second the foot-bot's codec and its two framings take.
+// Throughput of the foot-bot's codec and its two framings, in messages a second.
 #pragma once
 
 namespace tandem::bench {

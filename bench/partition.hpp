@@ -1,4 +1,4 @@
-// How the benchmark's arena is divided: the names that the literature gave, and any other split.
+// Division of the benchmark's arena into regions: the names from the literature, and any other split.
 #pragma once
 #include <string>
 #include <vector>

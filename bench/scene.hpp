@@ -1,4 +1,4 @@
-// What benchmarks run: the standard scene of Pinciroli et al. (2012), section 4.1, robots that diffuse through 3 x 3
+// Scenes of the benchmarks: the standard one of Pinciroli et al. (2012), section 4.1, robots that diffuse through 3 x 3
 // rooms; and a flock of robots that fly.
 #pragma once
 #include "bench/bench_case.hpp"

@@ -1,4 +1,4 @@
-// How long it takes from an eye-bot's report of its state to the command that answers it, over LCM.
+// Latency from an eye-bot's state report to the command that answers it, over LCM.
 #pragma once
 #include <cstdint>
 

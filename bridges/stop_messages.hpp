@@ -1,4 +1,4 @@
-// How to stop one robot without its hub: what the guardian process is told of it, as plain text.
+// Instructions for stopping one robot without its hub, as plain text for the guardian process.
 #pragma once
 #include <cstdint>
 #include <string>

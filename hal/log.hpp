@@ -1,4 +1,4 @@
-// Where libraries say what a person should know. Passed in; nothing here prints by itself.
+// Log for messages of libraries to people. Passed in; nothing here prints by itself.
 #pragma once
 #include <functional>
 #include <string>

@@ -1,4 +1,4 @@
-// Where a body is in the plane, and how high its base stands.
+// Pose of a body in the plane, with the height of its base.
 #pragma once
 #include <cmath>
 

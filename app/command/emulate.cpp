@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include "app/command/command.hpp"
-#include "app/living_arena.hpp"
 #include "app/plugins.hpp"
+#include "app/real_time_world.hpp"
 #include "app/signals.hpp"
 
 namespace tandem::app {
@@ -18,21 +18,21 @@ int complain(const std::string& message, int code = kBadInput) {
 }
 
 /// The world of `options.arena` with its robot in it; null, when it was told what is wrong.
-std::unique_ptr<LivingArena> make_arena(const EmulateOptions& options, const EmulatorType& emulator,
-                                        hal::PluginLoader& loader, bridges::SharedPorts& ports,
-                                        const std::atomic<bool>& stop) {
+std::unique_ptr<RealTimeWorld> make_arena(const EmulateOptions& options, const EmulatorType& emulator,
+                                          hal::PluginLoader& loader, bridges::SharedPorts& ports,
+                                          const std::atomic<bool>& stop) {
   const auto scenario = read_or_complain(loader, {}, options.arena, {});
   if (!scenario) return nullptr;
   core::Problems problems;
   auto world = core::World::make(*scenario, loader, {}, problems);
   print_problems(problems);
   if (world == nullptr) return nullptr;
-  const auto robot = PortPuppeteer::find(*world, emulator, options.body);
+  const auto robot = SimulatedBody::find(*world, emulator, options.body);
   if (!robot.ok()) {
     complain(robot.error().message);
     return nullptr;
   }
-  return std::make_unique<LivingArena>(std::move(world), robot.value(), ports, stop);
+  return std::make_unique<RealTimeWorld>(std::move(world), robot.value(), ports, stop);
 }
 
 /// What the command line says of the emulator's own options.
@@ -73,7 +73,7 @@ int emulate(const EmulateOptions& options) {
   request.log = hal::Log([](hal::Severity, std::string_view text) { fmt::print(stderr, "{}\n", text); });
   request.ready = [](const std::string& text) { fmt::print(stderr, "{}; Ctrl-C ends it\n", text); };
   bridges::SharedPorts ports(emulator->ports());
-  std::unique_ptr<LivingArena> arena;
+  std::unique_ptr<RealTimeWorld> arena;
   if (!options.arena.empty()) {
     arena = make_arena(options, *emulator, loader, ports, stop);
     if (arena == nullptr) return kBadInput;

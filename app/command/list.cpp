@@ -13,7 +13,7 @@
 #include "core/config/reader.hpp"
 #include "core/device/coupling.hpp"
 #include "core/device/device.hpp"
-#include "core/loop/hook.hpp"
+#include "core/hook/hook.hpp"
 #include "core/physics/solver.hpp"
 #include "core/scenario/field_type.hpp"
 #include "core/scenario/medium_type.hpp"

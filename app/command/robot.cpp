@@ -24,7 +24,7 @@
 #include "hal/output_file.hpp"
 #include "mixed_reality/safety/supervised_robot.hpp"
 #include "mixed_reality/settings/bridge_request.hpp"
-#include "mixed_reality/settings/patience.hpp"
+#include "mixed_reality/settings/timeouts.hpp"
 #include "mixed_reality/time/pacer.hpp"
 
 namespace tandem::app {

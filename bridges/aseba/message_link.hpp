@@ -1,4 +1,5 @@
-// What carries ASEBA messages, whatever the framing: CAN fragments, or the byte stream of TCP and serial lines.
+// Interface of a link for ASEBA messages, whatever the framing: CAN fragments, or the byte stream of TCP and serial
+// lines.
 //
 // One thread at a time uses a link. `send` and `receive` never wait. Messages leave in the order in which they were
 // taken, whole or not at all.

@@ -1,4 +1,5 @@
-// From LINK texts to message links: tcp:ROBOT:33333, serial:/dev/ttymxc4@921600, can:can0, slcan:/dev/ttyACM0@1000000.
+// Opens message links from LINK texts: tcp:ROBOT:33333, serial:/dev/ttymxc4@921600, can:can0,
+// slcan:/dev/ttyACM0@1000000.
 #pragma once
 #include <cstdint>
 #include <string_view>

@@ -1,4 +1,4 @@
-// What is known of one node: how it describes itself, and an image of its variables.
+// One ASEBA node as the host knows it: its description, and an image of its variables.
 #pragma once
 #include <string>
 #include <vector>

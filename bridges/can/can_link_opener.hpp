@@ -1,4 +1,4 @@
-// From LINK texts to CAN links: can:can0, slcan:/dev/ttyACM0@1000000.
+// Opens CAN links from LINK texts: can:can0, slcan:/dev/ttyACM0@1000000.
 #pragma once
 #include "bridges/can/socketcan_link.hpp"
 #include "bridges/link/link_text.hpp"

@@ -1,4 +1,4 @@
-// How long a frame keeps the bus busy.
+// Length of a frame on the bus, in bits and in time.
 #pragma once
 #include <cstddef>
 

@@ -1,4 +1,4 @@
-// What an emulated robot did, one JSON object a line.
+// Event log of an emulated robot, one JSON object a line.
 #pragma once
 #include <concepts>
 #include <cstdint>

@@ -1,4 +1,4 @@
-// How faults of emulated robots are written: NAME[=VALUE][@START[+DURATION]].
+// Syntax of faults of emulated robots: NAME[=VALUE][@START[+DURATION]].
 #pragma once
 #include <limits>
 #include <optional>

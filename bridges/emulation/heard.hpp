@@ -1,4 +1,4 @@
-// What an emulated robot hears when its body lives elsewhere.
+// Messages that an emulated robot receives when its body is simulated elsewhere.
 #pragma once
 #include <cstdint>
 #include <utility>

@@ -1,4 +1,4 @@
-// Where hosts connect to an emulated robot over TCP.
+// TCP listener of an emulated robot, to which hosts connect.
 #pragma once
 #include <memory>
 #include <string>

@@ -1,4 +1,4 @@
-// Where an emulated robot's serial line comes out: a pseudo-terminal under a name of our own, or a real serial device.
+// Serial port of an emulated robot: a pseudo-terminal under a name of our own, or a real serial device.
 #pragma once
 #include <cstdint>
 #include <memory>

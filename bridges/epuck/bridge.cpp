@@ -60,7 +60,7 @@ void EpuckBridge::run() {
       ++links_opened_;
     }
     serve(*link);
-    if (ending_) say_farewell(*link);
+    if (ending_) run_shutdown(*link);
     const std::lock_guard lock(mutex_);
     link_ = nullptr;
     bytes_before_ = sum(bytes_before_, link->statistics());
@@ -107,11 +107,11 @@ void EpuckBridge::serve(ByteLink& link) {
   }
 }
 
-void EpuckBridge::say_farewell(ByteLink& link) {
-  const TimeNs end = monotonic_ns() + settings_.farewell_ns;
+void EpuckBridge::run_shutdown(ByteLink& link) {
+  const TimeNs end = monotonic_ns() + settings_.shutdown_ns;
   {
     const std::lock_guard lock(mutex_);
-    driver_.farewell(monotonic_ns());
+    driver_.shut_down(monotonic_ns());
     pump_now(monotonic_ns());
   }
   for (TimeNs now = monotonic_ns(); now < end && link.state() == LinkState::Open; now = monotonic_ns()) {

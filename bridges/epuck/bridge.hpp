@@ -24,7 +24,7 @@ struct BridgeSettings {
   std::string link = {};                          ///< as the experiment says it, for whoever stops the robot without us
   std::string firmware = "auto";                  ///< which one it must run; with another one it never becomes Active
   hal::TimeNs reopen_ns = 100 * hal::kNsPerMs;    ///< between tries to open the link
-  hal::TimeNs farewell_ns = 600 * hal::kNsPerMs;  ///< how long the end waits for the robot to confirm its stop
+  hal::TimeNs shutdown_ns = 600 * hal::kNsPerMs;  ///< how long the end waits for the robot to confirm its stop
 };
 
 /// Timing for a link of this name: Bluetooth (rfcomm) devices answer late.
@@ -56,7 +56,7 @@ class EpuckBridge final : public DriverBridge<EpuckBridge, EpuckRobot> {
   /// `opener` is called from threads of the bridge, again after each hang-up. Times given to the bridge are
   /// CLOCK_MONOTONIC.
   EpuckBridge(BridgeSettings settings, LinkOpener opener, hal::Log log = {});
-  /// Stops the robot, waits at most `farewell_ns` for it to confirm, closes the link.
+  /// Stops the robot, waits at most `shutdown_ns` for it to confirm, closes the link.
   ~EpuckBridge() override;
 
   /// Errors: not active within `timeout_ns`; says what is known (link does not open, nobody answers …) and what to do.
@@ -84,7 +84,7 @@ class EpuckBridge final : public DriverBridge<EpuckBridge, EpuckRobot> {
   void after_command(hal::TimeNs now) noexcept { pump_now(now); }
   std::unique_ptr<ByteLink> open_link();
   void serve(ByteLink& link);
-  void say_farewell(ByteLink& link);
+  void run_shutdown(ByteLink& link);
   void pump_now(hal::TimeNs now) noexcept;
 
   static constexpr std::uint64_t kStopVersion = 1;  // one robot, one device: nothing of it changes

@@ -1,4 +1,4 @@
-// Between the e-puck's raw values and SI units. Each wire value has its conversion here and nowhere else.
+// Conversions between the e-puck's raw values and SI units. Each wire value has its conversion here and nowhere else.
 #pragma once
 #include <array>
 #include <cstdint>

@@ -169,10 +169,10 @@ void EpuckDriver::resume() noexcept {
   halted_ = false;
 }
 
-void EpuckDriver::farewell(hal::TimeNs now) noexcept {
+void EpuckDriver::shut_down(hal::TimeNs now) noexcept {
   halted_ = true;
   moving_ = false;
-  session_.farewell(now);
+  session_.shut_down(now);
 }
 
 Odometry EpuckDriver::odometry() const noexcept {

@@ -75,7 +75,7 @@ class EpuckDriver {
   void stop(hal::TimeNs now) noexcept;
   void resume() noexcept;
   /// The end: stops the robot whatever it is doing. Then pump until `idle`, for a little while.
-  void farewell(hal::TimeNs now) noexcept;
+  void shut_down(hal::TimeNs now) noexcept;
 
   SessionState state() const noexcept { return session_.state(); }
   const Session& session() const noexcept { return session_; }

@@ -1,4 +1,4 @@
-// What looks at the robots on a link, for the catalog.
+// Inspector of e-pucks on a link, for the catalog.
 #pragma once
 #include "bridges/inspector_type.hpp"
 

@@ -709,7 +709,7 @@ void Session::stop(TimeNs now) noexcept {
   if (phase_ != Phase::Stop) begin_stop(now);
 }
 
-void Session::farewell(TimeNs now) noexcept {
+void Session::shut_down(TimeNs now) noexcept {
   ending_ = true;
   wanted_.left = wanted_.right = {};
   pending_ = false;

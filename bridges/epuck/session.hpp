@@ -146,7 +146,7 @@ class Session {
   /// later request moves it again.
   void stop(hal::TimeNs now) noexcept;
   /// Stops the robot for good, whatever it may be reading at the moment. Then wait for `idle()`: it has confirmed.
-  void farewell(hal::TimeNs now) noexcept;
+  void shut_down(hal::TimeNs now) noexcept;
   /// The robot itself has confirmed that it stands, and nothing that moves it was sent since.
   bool at_rest() const noexcept { return at_rest_; }
 

@@ -1,5 +1,5 @@
-// How an e-puck is stopped so that bytes lost, doubled or flipped on the way do not make it drive. Used by the session
-// and by the guardian, which has no session.
+// Stop sequence of an e-puck, safe against bytes lost, doubled or flipped on the way. Used by the session and by the
+// guardian, which has no session.
 //
 // The stock firmware reads a stream without frames: a byte that is lost shifts all that follow into other places, and
 // what stands behind a half-received "set speeds" becomes a speed. Hence three bursts with quiet times between them:

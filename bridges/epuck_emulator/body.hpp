@@ -1,4 +1,4 @@
-// What an emulated robot senses and does, in SI: the world behind the firmware.
+// Interface of an emulated e-puck's body: its senses and commands in SI, the world behind the firmware.
 #pragma once
 #include <array>
 #include <cstdint>

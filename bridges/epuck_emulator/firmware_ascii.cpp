@@ -173,12 +173,12 @@ bool Firmware::obey_order(char letter, std::string_view arguments, hal::TimeNs a
       return true;
     case 'R': {
       if (options_.variant == Variant::Epuck2) return true;  // neither answer nor effect
-      std::deque<SentByte> farewell;
+      std::deque<SentByte> last_bytes;
       send_text("r\r\n", at);
-      farewell.swap(sending_);
+      last_bytes.swap(sending_);
       const hal::TimeNs leaves = free_at_;
       reset(at, "command R");
-      sending_.swap(farewell);
+      sending_.swap(last_bytes);
       start_errand(Errand::Boot, leaves + options_.boot_ns);
       return true;
     }

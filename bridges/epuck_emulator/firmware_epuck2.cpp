@@ -1,4 +1,4 @@
-// What the e-puck2's firmware adds to the binary commands.
+// Binary commands that only the e-puck2's firmware has.
 #include <algorithm>
 
 #include "bridges/epuck_emulator/firmware.hpp"

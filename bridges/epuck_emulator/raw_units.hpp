@@ -1,4 +1,4 @@
-// From SI to the counts that the robot's converters give.
+// Conversions from SI to the counts of the robot's converters.
 #pragma once
 #include "bridges/epuck_emulator/body.hpp"
 

@@ -64,7 +64,7 @@ void EyebotBridge::run() {
     }
     mail_->inbox.wait(wait);
   }
-  say_farewell();
+  run_shutdown();
 }
 
 /// Opening may take seconds: it is done without the lock, so that no loop waits for it.
@@ -140,12 +140,12 @@ hal::Result<std::shared_ptr<lcm_bus::LcmLink>> EyebotBridge::open() {
   return opened;
 }
 
-void EyebotBridge::say_farewell() {
-  Farewell farewell(settings_.farewell);
+void EyebotBridge::run_shutdown() {
+  ShutdownSequence sequence(settings_.shutdown);
   for (bool done = false; !done;) {
     {
       const std::lock_guard lock(mutex_);
-      done = link_ == nullptr || farewell.step(driver_, lcm_bus::monotonic_ns());
+      done = link_ == nullptr || sequence.step(driver_, lcm_bus::monotonic_ns());
     }
     if (!done) mail_->inbox.wait(kLongestWait);
   }
@@ -276,7 +276,7 @@ StopDetails EyebotBridge::stop_details() const {
           driver.name,
           driver.hub,
           driver.session,
-          settings_.farewell.land,
+          settings_.shutdown.land,
           static_cast<std::int32_t>(first_seq)};
 }
 

@@ -17,7 +17,7 @@
 
 #include "bridges/driver_bridge.hpp"
 #include "bridges/eyebot/driver.hpp"
-#include "bridges/eyebot/farewell.hpp"
+#include "bridges/eyebot/shutdown_sequence.hpp"
 #include "bridges/lcm/lcm_link.hpp"
 #include "bridges/send_permit.hpp"
 
@@ -28,7 +28,7 @@ using LcmOpener = std::function<hal::Result<std::shared_ptr<lcm_bus::LcmLink>>()
 
 struct BridgeSettings {
   DriverSettings driver;  ///< session 0: one is drawn
-  FarewellSettings farewell = {};
+  ShutdownSettings shutdown = {};
   std::string url = {};    ///< of the link, as whoever opens it after us must write it
   SendPermit permit = {};  ///< asked before everything that is said
 };
@@ -109,7 +109,7 @@ class EyebotBridge final : public DriverBridge<EyebotBridge, EyebotRobot>, priva
   void before_latch(hal::TimeNs now) noexcept { driver_.pump(now); }
   void keep_link();
   hal::Result<std::shared_ptr<lcm_bus::LcmLink>> open();
-  void say_farewell();
+  void run_shutdown();
 
   BridgeSettings settings_;
   LcmOpener opener_;

@@ -1,4 +1,4 @@
-// What the robot's clock shows against ours, found from the stamps of what it says: no clock needs to be set right.
+// Estimates the offset of the robot's clock from the stamps of its messages: no clock needs to be set right.
 #pragma once
 #include <cstdint>
 

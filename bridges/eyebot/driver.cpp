@@ -302,7 +302,7 @@ RobotState EyebotDriver::judge(TimeNs now) const noexcept {
   if (pulse == Pulse::Never) return RobotState::Absent;
   if (pulse == Pulse::Lost) return was_active_ ? RobotState::Lost : RobotState::Absent;
   const bool well = pulse == Pulse::Beating && liveness_.settled(now) && !liveness_.contested(now) &&
-                    !liveness_.twins(now) && !others_robot(now) && status_.known &&
+                    !liveness_.namesakes(now) && !others_robot(now) && status_.known &&
                     now - status_.taken_ns <= kStatusFresh + patience && newests_.heartbeat.message.proto_major == 1 &&
                     place_gate_.known() && !saves_itself(status_.mode, status_.failsafe) &&
                     status_.mode != Mode::Stopped;
@@ -654,7 +654,8 @@ std::string EyebotDriver::trouble() const {
   if (heartbeat.proto_major != 1) {
     return "it speaks version " + std::to_string(heartbeat.proto_major) + " of the messages, and we version 1";
   }
-  if (liveness_.twins(now_ns_)) return "two robots are called '" + settings_.name + "'; give one of them another name";
+  if (liveness_.namesakes(now_ns_))
+    return "two robots are called '" + settings_.name + "'; give one of them another name";
   if (others_robot(now_ns_)) return inbox_.neighbours().commander() + " commands it";
   if (status_.known && status_.failsafe != hal::FlightFailsafe::None) return failsafe_name(status_.failsafe);
   if (status_.known && status_.mode == Mode::Stopped) return "its motors were cut in an emergency";

@@ -1,4 +1,4 @@
-// What to ask of the robot next, from what it does and what it is to do. A table: no time, no memory.
+// Chooses the next order for the robot from its state and its task. A table: no time, no memory.
 #pragma once
 #include <cstdint>
 

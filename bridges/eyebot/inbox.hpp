@@ -1,4 +1,4 @@
-// Between the thread that receives and the one that uses: the newest message of each topic wins.
+// Mailbox between the receiving thread and the one that uses the messages: the newest of each topic wins.
 //
 // Readings are states: the next one replaces them, so a user that is slow, or a sender that floods, leaves nothing
 // behind but the newest. Acknowledgements and heartbeats are kept in a row of some, of which the oldest are dropped.

@@ -1,4 +1,4 @@
-// What looks at the robots on a link, for the catalog.
+// Inspector of eye-bots on a network, for the catalog.
 #pragma once
 #include "bridges/inspector_type.hpp"
 

@@ -6,9 +6,9 @@
 namespace tandem::bridges::eyebot {
 namespace {
 
-constexpr unsigned kTwins = 3;
+constexpr unsigned kNamesakes = 3;
 constexpr hal::TimeNs kRow = 2 * hal::kNsPerSecond;
-constexpr hal::TimeNs kTwinsShown = 3 * hal::kNsPerSecond;
+constexpr hal::TimeNs kNamesakesShown = 3 * hal::kNsPerSecond;
 
 }  // namespace
 
@@ -80,8 +80,8 @@ hal::TimeNs Liveness::next_change(hal::TimeNs now) const noexcept {
   return std::numeric_limits<hal::TimeNs>::max();
 }
 
-bool Liveness::twins(hal::TimeNs now) const noexcept {
-  return turns_ >= kTwins && now - turn_ns_ < kTwinsShown;
+bool Liveness::namesakes(hal::TimeNs now) const noexcept {
+  return turns_ >= kNamesakes && now - turn_ns_ < kNamesakesShown;
 }
 
 bool Liveness::contested(hal::TimeNs now) const noexcept {

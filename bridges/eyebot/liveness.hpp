@@ -1,4 +1,4 @@
-// Whether a robot lives, whether it is still the same start of it, and whether it is the only one of its name.
+// Liveness of a robot: whether it is alive, has restarted, and is the only one of its name.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -37,7 +37,7 @@ class Liveness {
   hal::TimeNs next_change(hal::TimeNs now) const noexcept;
   hal::TimeNs heartbeat_ns() const noexcept { return heartbeat_ns_; }
   /// The robot and another of its name spoke in turn three times or more, the last time less than three seconds ago.
-  bool twins(hal::TimeNs now) const noexcept;
+  bool namesakes(hal::TimeNs now) const noexcept;
   /// Another start, or another robot of the name, has just spoken: it is not known yet which one it is.
   bool contested(hal::TimeNs now) const noexcept;
   /// It has been heard for so long that a second robot of its name would have been noticed.

@@ -1,4 +1,4 @@
-// What the robot's messages mean in ports, and ports in messages. Pure; stamps are left to others.
+// Conversions between the robot's messages and ports. Pure; stamps are left to others.
 #pragma once
 #include "bridges/eyebot/world_frame.hpp"
 #include "bridges/eyebot_messages/messages.hpp"

@@ -69,7 +69,7 @@ hal::Result<BridgeSettings> settings_for(const BridgeRequest& request) {
   if (request.unix_clock != nullptr) driver.unix_clock = request.unix_clock;
   const auto options = options_of<Options>(request);
   driver.world = {options.origin_m, options.turn_rad};
-  settings.farewell.land = options.at_end == "land";
+  settings.shutdown.land = options.at_end == "land";
   return settings;
 }
 

@@ -1,4 +1,4 @@
-// What an emulated eye-bot senses and does, in SI: the world around the firmware.
+// Interface of an emulated eye-bot's body: its senses and commands in SI, the world around the firmware.
 #pragma once
 #include <array>
 #include <cstdint>

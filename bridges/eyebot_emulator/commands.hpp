@@ -1,4 +1,4 @@
-// What hubs say to an eye-bot, taken out of LCM payloads; whatever is not exactly that is refused.
+// Decoder of commands to an eye-bot from LCM payloads; whatever is not exactly a command is refused.
 #pragma once
 #include <array>
 #include <cstddef>

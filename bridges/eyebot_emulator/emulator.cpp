@@ -113,7 +113,7 @@ class Server {
   std::shared_ptr<LcmLink> link_;
   std::shared_ptr<Inbox> inbox_ = std::make_shared<Inbox>();
   std::vector<std::unique_ptr<Flyer>> flyers_;
-  std::vector<std::unique_ptr<Flyer>> twins_;          // of the flyer at the same place; none: null
+  std::vector<std::unique_ptr<Flyer>> namesakes_;      // of the flyer at the same place; none: null
   std::vector<std::optional<SecondHub>> second_hubs_;  // likewise
 };
 
@@ -124,7 +124,7 @@ Server::Server(const Options& options, std::unique_ptr<EventLog> log_file, const
   };
   const auto names = names_of(options.robot.name, options.count);
   for (std::size_t i = 0; i < names.size(); ++i) flyers_.push_back(make_flyer(names[i], i, faults, sink));
-  twins_.resize(flyers_.size());
+  namesakes_.resize(flyers_.size());
   second_hubs_.resize(flyers_.size());
 }
 
@@ -210,8 +210,8 @@ void Server::turn(TimeNs now) {
   }
   distribute();
   for (const auto& flyer : flyers_) fly(*flyer, now);
-  for (const auto& twin : twins_) {
-    if (twin) fly(*twin, now);
+  for (const auto& namesake : namesakes_) {
+    if (namesake) fly(*namesake, now);
   }
 }
 
@@ -220,9 +220,9 @@ void Server::apply_faults(std::size_t i, TimeNs now) {
   while (const auto change = flyer.faults.next_change(now)) {
     const Fault& fault = *change->fault;
     apply(*change, flyer.robot, draw_session());
-    if (fault.kind == FaultKind::Twin) {
-      twins_[i] = change->begins ? make_flyer(flyer.robot.options().name, i + 1, {}, {}) : nullptr;
-      if (twins_[i]) twins_[i]->robot.power_on(change->at, unix_us() - (monotonic_ns() - change->at) / 1000);
+    if (fault.kind == FaultKind::Namesake) {
+      namesakes_[i] = change->begins ? make_flyer(flyer.robot.options().name, i + 1, {}, {}) : nullptr;
+      if (namesakes_[i]) namesakes_[i]->robot.power_on(change->at, unix_us() - (monotonic_ns() - change->at) / 1000);
     }
     if (fault.kind == FaultKind::SecondHub) {
       second_hubs_[i].reset();
@@ -245,8 +245,8 @@ void Server::distribute() {
       for (Datagram& d : arriving) flyer.to_robot.push_back(std::move(d));
     };
     for (const auto& flyer : flyers_) give(*flyer);
-    for (const auto& twin : twins_) {
-      if (twin) give(*twin);
+    for (const auto& namesake : namesakes_) {
+      if (namesake) give(*namesake);
     }
   }
 }
@@ -286,7 +286,7 @@ void Server::speak(SecondHub& hub, const std::string& robot, TimeNs now) {
 
 TimeNs Server::next_wake(TimeNs now) const {
   TimeNs wake = now + kStopNs;
-  for (const auto* crew : {&flyers_, &twins_}) {
+  for (const auto* crew : {&flyers_, &namesakes_}) {
     for (const auto& flyer : *crew) {
       if (!flyer) continue;
       wake = std::min(wake, flyer->robot.next_event());

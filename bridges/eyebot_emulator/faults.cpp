@@ -45,7 +45,7 @@ constexpr std::array<Entry, 23> kEntries = {{
     {FaultKind::NoPosition, "no-position", Value::None, false, "no-position@5s+3s",
      "the robot does not know where it is"},
     {FaultKind::Hardware, "hardware", Value::None, false, "hardware@5s+1s", "the robot finds a fault in itself"},
-    {FaultKind::Twin, "twin", Value::None, false, "twin@5s+5s", "there is a second robot of that name"},
+    {FaultKind::Namesake, "namesake", Value::None, false, "namesake@5s+5s", "there is a second robot of that name"},
     {FaultKind::Flood, "flood", Value::Rate, false, "flood=2000@5s+2s", "so many reports of its state a second"},
     {FaultKind::Damage, "damage", Value::Channel, false, "damage=state",
      "every report on a channel is damaged, from the start or for a while"},

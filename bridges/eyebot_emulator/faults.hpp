@@ -28,7 +28,7 @@ enum class FaultKind : std::uint8_t {
   Battery,
   NoPosition,
   Hardware,
-  Twin,
+  Namesake,
   Flood,
   Damage,
   Future,

@@ -1,4 +1,4 @@
-// What an eye-bot remembers of those who command it: how far they have counted, and what they were answered.
+// An eye-bot's record of each hub that commands it: the last sequence number, and the last answer.
 #pragma once
 #include <array>
 #include <cstdint>

@@ -1,4 +1,4 @@
-// What an eye-bot tells its hub, as LCM payloads.
+// Telemetry of an eye-bot, as LCM payloads.
 #pragma once
 #include <cstddef>
 #include <string>

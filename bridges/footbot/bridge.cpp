@@ -56,7 +56,7 @@ void FootbotBridge::run() {
     }
     wait_outside(wait, descriptor);
   }
-  say_farewell();
+  run_shutdown();
 }
 
 void FootbotBridge::wait_outside(TimeNs timeout_ns, int descriptor) {
@@ -69,8 +69,8 @@ void FootbotBridge::wait_outside(TimeNs timeout_ns, int descriptor) {
   ::nanosleep(&pause, nullptr);
 }
 
-void FootbotBridge::say_farewell() {
-  const TimeNs end = monotonic_ns() + settings_.farewell_ns;
+void FootbotBridge::run_shutdown() {
+  const TimeNs end = monotonic_ns() + settings_.shutdown_ns;
   for (bool said = false; true; said = true) {
     int descriptor = -1;
     {

@@ -23,7 +23,7 @@ namespace tandem::bridges::footbot {
 struct BridgeSettings {
   DriverSettings driver;
   std::string link = {};                          ///< as the experiment says it, for whoever stops the robot without us
-  hal::TimeNs farewell_ns = 300 * hal::kNsPerMs;  ///< how long the end waits for the robot to confirm its stop
+  hal::TimeNs shutdown_ns = 300 * hal::kNsPerMs;  ///< how long the end waits for the robot to confirm its stop
 };
 
 /// A copy of everything that can be told about the bridge.
@@ -48,7 +48,7 @@ class FootbotBridge final : public DriverBridge<FootbotBridge, FootbotRobot> {
   /// `opener` is called from threads of the bridge, from now on, and again whenever the link is gone. Times given to
   /// the bridge are CLOCK_MONOTONIC.
   FootbotBridge(BridgeSettings settings, aseba::MessageLinkOpener opener, hal::Log log = {});
-  /// Stops the robot, waits at most `farewell_ns` for it to confirm, closes the link.
+  /// Stops the robot, waits at most `shutdown_ns` for it to confirm, closes the link.
   ~FootbotBridge() override;
 
   /// Errors: not active within `timeout_ns`; says what is known (link does not open, which node is missing …).
@@ -75,7 +75,7 @@ class FootbotBridge final : public DriverBridge<FootbotBridge, FootbotRobot> {
   void run();
   Interruptions interruptions() const noexcept;
   void after_command(hal::TimeNs) noexcept { stop_version_ = driver_.wiring().rest_version(); }
-  void say_farewell();
+  void run_shutdown();
   /// Waits for input without holding the link, at most `timeout_ns`.
   void wait_outside(hal::TimeNs timeout_ns, int descriptor);
 

@@ -1,4 +1,4 @@
-// Which variable of which node is which field of which port: plain data, read from a file (mixed_reality/footbot).
+// Map from variables of nodes to fields of ports: plain data, read from a file.
 //
 // The names of nodes and variables differ from robot to robot, and with the programs of their modules. None of them is
 // known here: a robot with other names needs another map and no other code. Addresses are in no map, they come from the

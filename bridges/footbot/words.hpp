@@ -1,4 +1,4 @@
-// Between a variable's words and SI values, as a map says. Pure.
+// Conversions between a variable's words and SI values, as a map says. Pure.
 #pragma once
 #include <span>
 

@@ -1,4 +1,4 @@
-// What an emulated foot-bot senses and does, in SI: the world behind the modules.
+// Interface of an emulated foot-bot's body: its senses and commands in SI, the world behind the modules.
 #pragma once
 #include <array>
 #include <cstdint>

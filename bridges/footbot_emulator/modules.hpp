@@ -1,4 +1,4 @@
-// Which modules hang on a foot-bot's bus, and what their variables are called.
+// The modules on a foot-bot's bus, and the names of their variables.
 //
 // What is public of the marXbot's own firmware are the nodes "left motor", "right motor", "proximity sensors" and
 // "distance sensors" of its simulation in ASEBA's Enki target; the others are this project's convention. Units are

@@ -1,4 +1,4 @@
-// Between SI and the numbers in the modules' variables.
+// Conversions between SI and the numbers in the modules' variables.
 //
 // Source, unless another stands beside: the control interface of the real robot as published with ARGoS 2.
 #pragma once

@@ -1,4 +1,4 @@
-// What hub and guardian say to each other, one packet a datagram.
+// Packets between hub and guardian, one a datagram.
 #pragma once
 #include <cstddef>
 #include <optional>

@@ -1,4 +1,4 @@
-// Whether the hub's heart beats, judged fairly on a busy machine.
+// Judges fairly on a busy machine whether the hub still sends its heartbeat.
 #pragma once
 #include <cstdint>
 

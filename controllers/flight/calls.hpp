@@ -1,4 +1,4 @@
-// What robots call one another by range-and-bearing: the first byte of a message says what it is.
+// Range-and-bearing messages of flying robots: the first byte says which.
 #pragma once
 #include <cstdint>
 

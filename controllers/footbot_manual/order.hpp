@@ -1,4 +1,4 @@
-// What a person or a viewer tells a foot-bot to do: one line of text each.
+// Orders of a person or a viewer to a foot-bot: one line of text each.
 #pragma once
 #include <string_view>
 #include <variant>

@@ -1,4 +1,4 @@
-// How a foot-bot gets hold of a thing that its proximity sensors see.
+// Grasps a thing that a foot-bot's proximity sensors see.
 #pragma once
 #include <span>
 

@@ -1,4 +1,4 @@
-// What a robot makes of its rings of sensors: the nearest thing, the push away from what is near, the way to the light.
+// Evaluates a robot's rings of sensors: the nearest thing, the push away from what is near, the way to the light.
 // Vectors are in the body frame (x forward, y left), bearings counter-clockwise from forward.
 #pragma once
 #include <span>

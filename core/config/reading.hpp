@@ -1,4 +1,4 @@
-// What every part of the reader of experiment files needs: elements read by their schema, and problems noted.
+// Tools of all parts of the reader of experiment files: elements read by their schema, and problems noted.
 #pragma once
 #include <algorithm>
 #include <memory>

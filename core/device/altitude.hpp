@@ -1,4 +1,4 @@
-// How far it is straight down and straight up from a robot.
+// Distances straight down and straight up from a robot.
 #pragma once
 #include <limits>
 

@@ -1,4 +1,4 @@
-// What a robot senses of itself and of the air: acceleration, turn rates, sound, battery, clock.
+// Sensors of a robot's own state and of the air: acceleration, turn rates, sound, battery, clock.
 #include "core/device/field_ring.hpp"
 #include "core/device/types.hpp"
 #include "core/random/random.hpp"
@@ -115,7 +115,7 @@ class AccelerometerSensor final : public Sensor {
 };
 
 template <class Options>
-Recipe<Sensor> make_accelerometer(const Element& element, Problems& problems, const DeviceSetup& setup) {
+BlockFactory<Sensor> make_accelerometer(const Element& element, Problems& problems, const DeviceSetup& setup) {
   const auto options = read_options<Options>(element, problems);
   double noise = 0.0;
   if constexpr (requires { options.noise_level_m_s2; }) noise = options.noise_level_m_s2;
@@ -177,7 +177,7 @@ class GyroscopeSensor final : public Sensor {
 };
 
 template <class Options>
-Recipe<Sensor> make_gyroscope(const Element& element, Problems& problems, const DeviceSetup& setup) {
+BlockFactory<Sensor> make_gyroscope(const Element& element, Problems& problems, const DeviceSetup& setup) {
   const auto options = read_options<Options>(element, problems);
   double noise = 0.0;
   if constexpr (requires { options.noise_level_rad_s; }) noise = options.noise_level_rad_s;
@@ -222,7 +222,7 @@ class MicrophoneSensor final : public Sensor {
 };
 
 template <class Options>
-Recipe<Sensor> make_microphones(const Element& element, Problems& problems, const DeviceSetup& setup) {
+BlockFactory<Sensor> make_microphones(const Element& element, Problems& problems, const DeviceSetup& setup) {
   const auto options = read_options<Options>(element, problems);
   double noise = 0.0;
   if constexpr (requires { options.noise_level; }) noise = options.noise_level;
@@ -306,7 +306,7 @@ class BatterySensor final : public Sensor {
 };
 
 template <class Options>
-Recipe<Sensor> make_battery(const Element& element, Problems& problems, const DeviceSetup& setup) {
+BlockFactory<Sensor> make_battery(const Element& element, Problems& problems, const DeviceSetup& setup) {
   const auto options = read_options<Options>(element, problems);
   double noise = 0.0;
   if constexpr (requires { options.noise_range; }) noise = options.noise_range;
@@ -357,7 +357,7 @@ bool always(const hal::RobotKind&) {
 }
 
 template <class Options>
-Recipe<Sensor> make_clock(const Element& element, Problems& problems, const DeviceSetup&) {
+BlockFactory<Sensor> make_clock(const Element& element, Problems& problems, const DeviceSetup&) {
   const auto options = read_options<Options>(element, problems);
   double jitter_s = 0.0;
   if constexpr (requires { options.jitter_s; }) jitter_s = options.jitter_s;

@@ -361,17 +361,17 @@ class OmniSensor final : public Sensor {
 };
 
 template <class Options>
-Recipe<Sensor> make_omni(const Element& element, Problems& problems, const DeviceSetup& setup) {
+BlockFactory<Sensor> make_omni(const Element& element, Problems& problems, const DeviceSetup& setup) {
   const auto options = read_options<Options>(element, problems);
   Flaws flaws;
   if constexpr (requires { options.miss_prob; }) flaws = {options.noise_std_dev_m, options.miss_prob};
   const auto make = [setup, flaws](const BlockColumns& columns) {
     return std::make_unique<OmniSensor>(setup, flaws, columns);
   };
-  Recipe<Sensor> recipe(make);
-  recipe.listens = true;
-  recipe.reach_m = omni_reach_m(setup.kind);
-  return recipe;
+  BlockFactory<Sensor> factory(make);
+  factory.listens = true;
+  factory.reach_m = omni_reach_m(setup.kind);
+  return factory;
 }
 
 // --- through a lens ---
@@ -513,17 +513,17 @@ class LensSensor final : public Sensor {
 };
 
 template <class Options>
-Recipe<Sensor> make_lens(const Element& element, Problems& problems, const DeviceSetup& setup) {
+BlockFactory<Sensor> make_lens(const Element& element, Problems& problems, const DeviceSetup& setup) {
   const auto options = read_options<Options>(element, problems);
   Flaws flaws;
   if constexpr (requires { options.miss_prob; }) flaws = {options.noise_std_dev_px, options.miss_prob};
   const auto make = [setup, flaws](const BlockColumns& columns) {
     return std::make_unique<LensSensor>(setup, flaws, columns);
   };
-  Recipe<Sensor> recipe(make);
-  recipe.listens = true;
-  recipe.reach_m = setup.kind.part<hal::CameraPart>()->range_m;
-  return recipe;
+  BlockFactory<Sensor> factory(make);
+  factory.listens = true;
+  factory.reach_m = setup.kind.part<hal::CameraPart>()->range_m;
+  return factory;
 }
 
 template <class Options>

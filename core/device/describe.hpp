@@ -24,14 +24,14 @@ bool has(const hal::RobotKind& kind) {
 
 inline DeviceType sensor_type(std::string_view device, std::string_view implementation, std::string_view summary,
                               bool (*fits)(const hal::RobotKind&),
-                              Recipe<Sensor> (*make)(const Element&, Problems&, const DeviceSetup&),
+                              BlockFactory<Sensor> (*make)(const Element&, Problems&, const DeviceSetup&),
                               void (*describe)(hal::ParamVisitor&)) {
   return {device, implementation, summary, hal::Role::Sensor, fits, make, nullptr, describe};
 }
 
 inline DeviceType actuator_type(std::string_view device, std::string_view implementation, std::string_view summary,
                                 bool (*fits)(const hal::RobotKind&),
-                                Recipe<Actuator> (*make)(const Element&, Problems&, const DeviceSetup&),
+                                BlockFactory<Actuator> (*make)(const Element&, Problems&, const DeviceSetup&),
                                 void (*describe)(hal::ParamVisitor&)) {
   return {device, implementation, summary, hal::Role::Actuator, fits, nullptr, make, describe};
 }

@@ -30,7 +30,7 @@ const Field* DeviceSetup::field(std::string_view name, const Element& element, P
   return nullptr;
 }
 
-const GroupRecipes::Listed* GroupRecipes::find(std::string_view device, hal::Role role) const noexcept {
+const GroupFactories::Listed* GroupFactories::find(std::string_view device, hal::Role role) const noexcept {
   for (const Listed& one : listed) {
     if (one.type->device == device && one.type->role == role) return &one;
   }
@@ -39,7 +39,7 @@ const GroupRecipes::Listed* GroupRecipes::find(std::string_view device, hal::Rol
 
 const DeviceType* device_without_joints(const RobotGroup& group, JointKinds there) noexcept {
   for (const hal::PortType* port : group.ports) {
-    const GroupRecipes::Listed* made = group.recipes->find(port->name, port->role);
+    const GroupFactories::Listed* made = group.factories->find(port->name, port->role);
     if (made != nullptr && (made->type->joints & ~there) != 0) return made->type;
   }
   return nullptr;

@@ -83,15 +83,15 @@ struct DeviceSetup {
 
 /// Makes a device for one block.
 template <class Device>
-struct Recipe {
+struct BlockFactory {
   std::function<std::unique_ptr<Device>(const BlockColumns& columns)> make;
   std::vector<KeptColumn> columns;          ///< that its robots need for it
   bool publishes = false, listens = false;  ///< in the device's medium
   double reach_m = 0.0;                     ///< as MediumUse has it
 
-  Recipe() = default;
+  BlockFactory() = default;
   template <class Make>
-  requires std::is_invocable_v<Make, const BlockColumns&> Recipe(Make how, std::vector<KeptColumn> kept = {})
+  requires std::is_invocable_v<Make, const BlockColumns&> BlockFactory(Make how, std::vector<KeptColumn> kept = {})
       : make(std::move(how)), columns(std::move(kept)) {}
 };
 
@@ -99,17 +99,18 @@ struct Recipe {
 struct DeviceType {
   static constexpr std::string_view kCategory = "device";
   static constexpr std::uint32_t kNumber = 2;
-  using Crosses = hal::Layouts<StoreLayouts, DeviceContext, BlockColumns, DeviceSetup, Recipe<Sensor>, Recipe<Actuator>,
-                               Sensor, Actuator, Element, Problem, hal::ParamVisitor>;
+  using Crosses = hal::Layouts<StoreLayouts, DeviceContext, BlockColumns, DeviceSetup, BlockFactory<Sensor>,
+                               BlockFactory<Actuator>, Sensor, Actuator, Element, Problem, hal::ParamVisitor>;
   std::string_view device;  ///< the port's name
   std::string_view implementation;
   std::string_view summary;
   hal::Role role = hal::Role::Sensor;
   /// Whether robots of this kind are built with what the device at all.
   bool (*fits)(const hal::RobotKind& kind) = nullptr;
-  /// Reads the options (problems with lines); the recipe then makes one object a block. One of the two is set.
-  Recipe<Sensor> (*make_sensor)(const Element& options, Problems& problems, const DeviceSetup& setup) = nullptr;
-  Recipe<Actuator> (*make_actuator)(const Element& options, Problems& problems, const DeviceSetup& setup) = nullptr;
+  /// Reads the options (problems with lines); the factory then makes one object a block. One of the two is set.
+  BlockFactory<Sensor> (*make_sensor)(const Element& options, Problems& problems, const DeviceSetup& setup) = nullptr;
+  BlockFactory<Actuator> (*make_actuator)(const Element& options, Problems& problems,
+                                          const DeviceSetup& setup) = nullptr;
   /// Shows its options, for the manual.
   void (*describe)(hal::ParamVisitor& visitor) = nullptr;
   JointKinds joints = 0;         ///< that it works by: only where the robot's engine has them
@@ -121,15 +122,15 @@ struct DeviceType {
 };
 
 /// The devices that a configuration lists, read for the robots of one group.
-struct GroupRecipes {
+struct GroupFactories {
   struct Listed {
     const DeviceType* type = nullptr;
-    Recipe<Sensor> sensor;  ///< one of the two is set
-    Recipe<Actuator> actuator;
+    BlockFactory<Sensor> sensor;  ///< one of the two is set
+    BlockFactory<Actuator> actuator;
 
-    /// Calls `visit` with the recipe that is set.
+    /// Calls `visit` with the factory that is set.
     template <class Visit>
-    void with_recipe(Visit&& visit) const {
+    void with_factory(Visit&& visit) const {
       if (type->role == hal::Role::Sensor)
         visit(sensor);
       else

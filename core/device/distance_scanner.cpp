@@ -67,7 +67,7 @@ class ScannerActuator final : public Actuator {
 };
 
 template <class Options>
-Recipe<Actuator> make_turning(const Element& element, Problems& problems, const DeviceSetup& setup) {
+BlockFactory<Actuator> make_turning(const Element& element, Problems& problems, const DeviceSetup& setup) {
   const auto options = read_options<Options>(element, problems);
   double noise = 0.0;
   if constexpr (requires { options.noise_std_dev; }) noise = options.noise_std_dev;
@@ -283,7 +283,7 @@ class ScannerSensor final : public Sensor {
 static_assert(RayRing::kCapacity >= DistanceScanner::kHeads * DistanceScanner::kSamples);
 
 template <class Options>
-Recipe<Sensor> make_scanner(const Element& element, Problems& problems, const DeviceSetup& setup) {
+BlockFactory<Sensor> make_scanner(const Element& element, Problems& problems, const DeviceSetup& setup) {
   const auto options = read_options<Options>(element, problems);
   double noise_m = 0.0;
   if constexpr (requires { options.noise_range_m; }) noise_m = options.noise_range_m;

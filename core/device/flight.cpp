@@ -155,7 +155,7 @@ class TaskActuator final : public Actuator {
 };
 
 template <class Device, class Options>
-Recipe<Actuator> make_flight(const Element& element, Problems& problems, const DeviceSetup&) {
+BlockFactory<Actuator> make_flight(const Element& element, Problems& problems, const DeviceSetup&) {
   const auto options = read_options<Options>(element, problems);
   double noise = 0.0;
   if constexpr (requires { options.noise_std_dev; }) noise = options.noise_std_dev;
@@ -238,7 +238,7 @@ class PositioningSensor final : public Sensor {
 };
 
 template <class Options>
-Recipe<Sensor> make_positioning(const Element& element, Problems& problems, const DeviceSetup&) {
+BlockFactory<Sensor> make_positioning(const Element& element, Problems& problems, const DeviceSetup&) {
   const auto options = read_options<Options>(element, problems);
   PlaceErrors<0> errors;
   if constexpr (requires { options.pos_noise_m; })

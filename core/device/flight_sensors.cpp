@@ -1,4 +1,4 @@
-// What a flying robot knows of its flight: what it does and how fast it moves, and how far it is to ground and ceiling.
+// Sensors of flight: state and speed of a flying robot, and its distance to ground and ceiling.
 #include "core/device/altitude.hpp"
 #include "core/device/types.hpp"
 #include "core/random/random.hpp"
@@ -56,7 +56,7 @@ class FlightStateSensor final : public Sensor {
 };
 
 template <class Options>
-Recipe<Sensor> make_state(const Element& element, Problems& problems, const DeviceSetup&) {
+BlockFactory<Sensor> make_state(const Element& element, Problems& problems, const DeviceSetup&) {
   const auto options = read_options<Options>(element, problems);
   double noise = 0.0;
   if constexpr (requires { options.noise_std_dev; }) noise = options.noise_std_dev;
@@ -116,7 +116,7 @@ class AltimeterSensor final : public Sensor {
 };
 
 template <class Options>
-Recipe<Sensor> make_altimeter(const Element& element, Problems& problems, const DeviceSetup& setup) {
+BlockFactory<Sensor> make_altimeter(const Element& element, Problems& problems, const DeviceSetup& setup) {
   const auto options = read_options<Options>(element, problems);
   double noise = 0.0;
   if constexpr (requires { options.noise_std_dev_m; }) noise = options.noise_std_dev_m;

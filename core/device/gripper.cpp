@@ -50,7 +50,7 @@ class GripperActuator final : public Actuator {
 };
 
 template <class Options>
-Recipe<Actuator> make_gripping(const Element& element, Problems& problems, const DeviceSetup&) {
+BlockFactory<Actuator> make_gripping(const Element& element, Problems& problems, const DeviceSetup&) {
   const auto options = read_options<Options>(element, problems);
   double failure_prob = 0.0;
   if constexpr (requires { options.failure_prob; }) failure_prob = options.failure_prob;
@@ -113,7 +113,7 @@ class GripperSensor final : public Sensor {
 };
 
 template <class Options>
-Recipe<Sensor> make_gripper(const Element& element, Problems& problems, const DeviceSetup&) {
+BlockFactory<Sensor> make_gripper(const Element& element, Problems& problems, const DeviceSetup&) {
   const auto options = read_options<Options>(element, problems);
   double noise_rad = 0.0;
   if constexpr (requires { options.noise_range_rad; }) noise_rad = options.noise_range_rad;

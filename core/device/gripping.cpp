@@ -1,4 +1,4 @@
-// What grippers hold: joints between robots and what is before their claws, and turrets that carry a load.
+// Gripping: joints between robots and what is before their claws, and turrets that carry a load.
 #include <algorithm>
 #include <cmath>
 #include <limits>

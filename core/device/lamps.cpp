@@ -142,18 +142,18 @@ class BodyLamp final : public Actuator {
 };
 
 template <class Device, class Options>
-Recipe<Actuator> make_lamp(const Element& element, Problems& problems, const DeviceSetup& setup) {
+BlockFactory<Actuator> make_lamp(const Element& element, Problems& problems, const DeviceSetup& setup) {
   const auto read = read_options<Options>(element, problems);
   Lamp<0> errors;
   if constexpr (requires { read.dead_prob; }) {
     errors.brightness_std_dev = read.brightness_std_dev;
     errors.dead_prob = read.dead_prob;
   }
-  Recipe<Actuator> recipe([&kind = setup.kind, shine = Shine(errors, setup)](const BlockColumns&) {
+  BlockFactory<Actuator> factory([&kind = setup.kind, shine = Shine(errors, setup)](const BlockColumns&) {
     return std::make_unique<Device>(kind, shine);
   });
-  recipe.publishes = true;
-  return recipe;
+  factory.publishes = true;
+  return factory;
 }
 
 template <class Device>

@@ -59,7 +59,7 @@ class HeadActuator final : public Actuator {
 };
 
 template <class Options>
-Recipe<Actuator> make_head(const Element& element, Problems& problems, const DeviceSetup& setup) {
+BlockFactory<Actuator> make_head(const Element& element, Problems& problems, const DeviceSetup& setup) {
   const auto options = read_options<Options>(element, problems);
   double noise = 0.0;
   if constexpr (requires { options.noise_std_dev; }) noise = options.noise_std_dev;
@@ -115,7 +115,7 @@ class HeadEncoderSensor final : public Sensor {
 };
 
 template <class Options>
-Recipe<Sensor> make_encoder(const Element& element, Problems& problems, const DeviceSetup&) {
+BlockFactory<Sensor> make_encoder(const Element& element, Problems& problems, const DeviceSetup&) {
   const auto options = read_options<Options>(element, problems);
   double noise = 0.0;
   if constexpr (requires { options.noise_range_rad; }) noise = options.noise_range_rad;

@@ -1,4 +1,4 @@
-// From what a controller asks of a flying robot to what its engine is told.
+// Translates the commands of a flying robot's controller into setpoints of its engine.
 #include <algorithm>
 #include <cmath>
 

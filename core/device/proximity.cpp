@@ -234,7 +234,7 @@ struct NoiseOptions : NoOptions {
 };
 
 template <class Options>
-Recipe<Sensor> make_proximity(const Element& element, Problems& problems, const DeviceSetup& setup) {
+BlockFactory<Sensor> make_proximity(const Element& element, Problems& problems, const DeviceSetup& setup) {
   const auto options = read_options<Options>(element, problems);
   double noise = 0.0;
   if constexpr (requires { options.noise_level; }) noise = options.noise_level;

@@ -428,7 +428,7 @@ class RabSensor final : public Sensor {
 };
 
 template <class Options>
-Recipe<Sensor> make_hearing(const Element& element, Problems& problems, const DeviceSetup& setup) {
+BlockFactory<Sensor> make_hearing(const Element& element, Problems& problems, const DeviceSetup& setup) {
   const auto read = read_options<Options>(element, problems);
   Hearing<0> options;
   options.check_occlusions = read.check_occlusions;
@@ -436,9 +436,10 @@ Recipe<Sensor> make_hearing(const Element& element, Problems& problems, const De
     options.noise_std_dev_m = read.noise_std_dev_m;
     options.packet_drop_prob = read.packet_drop_prob;
   }
-  Recipe<Sensor> recipe([options, setup](const BlockColumns&) { return std::make_unique<RabSensor>(options, setup); });
-  recipe.listens = true;
-  return recipe;
+  BlockFactory<Sensor> factory(
+      [options, setup](const BlockColumns&) { return std::make_unique<RabSensor>(options, setup); });
+  factory.listens = true;
+  return factory;
 }
 
 template <class Options>
@@ -499,14 +500,14 @@ class RabActuator final : public Actuator {
 };
 
 template <class Options>
-Recipe<Actuator> make_sending(const Element& element, Problems& problems, const DeviceSetup& setup) {
+BlockFactory<Actuator> make_sending(const Element& element, Problems& problems, const DeviceSetup& setup) {
   const auto options = read_options<Options>(element, problems);
   double failure_prob = 0.0;
   if constexpr (requires { options.failure_prob; }) failure_prob = options.failure_prob;
-  Recipe<Actuator> recipe(
+  BlockFactory<Actuator> factory(
       [failure_prob, setup](const BlockColumns&) { return std::make_unique<RabActuator>(failure_prob, setup); });
-  recipe.publishes = true;
-  return recipe;
+  factory.publishes = true;
+  return factory;
 }
 
 template <class Options>

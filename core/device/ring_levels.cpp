@@ -94,7 +94,7 @@ class MotorGround final : public GroundSensor {
 static_assert(sizeof(hal::BaseGround) == sizeof(hal::Ground) && sizeof(hal::MotorGround) == sizeof(hal::Ground));
 
 template <class Device, class Options>
-Recipe<Sensor> make_levels(const Element& element, Problems& problems, const DeviceSetup& setup) {
+BlockFactory<Sensor> make_levels(const Element& element, Problems& problems, const DeviceSetup& setup) {
   const double noise = read_options<Options>(element, problems).level();
   const Field* const field = setup.field(Device::kField, element, problems);
   return [field, &part = *setup.kind.part<typename Device::Part>(), noise](const BlockColumns&) {

@@ -1,4 +1,4 @@
-// Which directions around a point are blocked by discs that lie nearer: for lines of sight to many at once.
+// Directions around a point that nearer discs block: for lines of sight to many at once.
 #pragma once
 #include <algorithm>
 #include <cmath>

@@ -69,7 +69,7 @@ class TurretActuator final : public Actuator {
 };
 
 template <class Options>
-Recipe<Actuator> make_turret(const Element& element, Problems& problems, const DeviceSetup& setup) {
+BlockFactory<Actuator> make_turret(const Element& element, Problems& problems, const DeviceSetup& setup) {
   const auto options = read_options<Options>(element, problems);
   double noise = 0.0;
   if constexpr (requires { options.noise_std_dev; }) noise = options.noise_std_dev;
@@ -126,7 +126,7 @@ class TurretEncoderSensor final : public Sensor {
 };
 
 template <class Options>
-Recipe<Sensor> make_encoder(const Element& element, Problems& problems, const DeviceSetup&) {
+BlockFactory<Sensor> make_encoder(const Element& element, Problems& problems, const DeviceSetup&) {
   const auto options = read_options<Options>(element, problems);
   double noise_rad = 0.0;
   if constexpr (requires { options.noise_range_rad; }) noise_rad = options.noise_range_rad;

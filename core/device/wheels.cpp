@@ -125,7 +125,7 @@ class SlantedActuator final : public Actuator {
   const GripState* grips_;  // null: they have no grippers
 };
 
-Recipe<Actuator> make_slanted(const Element& element, Problems& problems, const DeviceSetup&) {
+BlockFactory<Actuator> make_slanted(const Element& element, Problems& problems, const DeviceSetup&) {
   const auto options = read_options<Slant>(element, problems);
   const auto make = [sigma = options.sigma](const BlockColumns& columns) {
     return std::make_unique<SlantedActuator>(sigma, columns);
@@ -134,7 +134,7 @@ Recipe<Actuator> make_slanted(const Element& element, Problems& problems, const 
 }
 
 template <class Options>
-Recipe<Actuator> make_wheels(const Element& element, Problems& problems, const DeviceSetup&) {
+BlockFactory<Actuator> make_wheels(const Element& element, Problems& problems, const DeviceSetup&) {
   const auto options = read_options<Options>(element, problems);
   WheelErrors<0> errors;
   if constexpr (requires { options.noise_std_dev; }) {
@@ -231,7 +231,7 @@ class EncoderSensor final : public Sensor {
 };
 
 template <class Options>
-Recipe<Sensor> make_encoders(const Element& element, Problems& problems, const DeviceSetup&) {
+BlockFactory<Sensor> make_encoders(const Element& element, Problems& problems, const DeviceSetup&) {
   const auto options = read_options<Options>(element, problems);
   EncoderErrors<0> errors;
   if constexpr (requires { options.dist_noise_m; }) errors = {options.vel_noise_m_s, options.dist_noise_m};
@@ -331,7 +331,7 @@ class OdometrySensor final : public Sensor {
 };
 
 template <class Options>
-Recipe<Sensor> make_odometry(const Element& element, Problems& problems, const DeviceSetup& setup) {
+BlockFactory<Sensor> make_odometry(const Element& element, Problems& problems, const DeviceSetup& setup) {
   const auto options = read_options<Options>(element, problems);
   double noise_m = 0.0;
   if constexpr (requires { options.dist_noise_m; }) noise_m = options.dist_noise_m;

@@ -1,4 +1,4 @@
-// What carries signals between bodies: actuators publish at the start of a tick what sensors of others find at its end.
+// Interface of a medium: carries signals from actuators at the start of a tick to sensors of others at its end.
 #pragma once
 #include <algorithm>
 #include <cstddef>

@@ -1,4 +1,4 @@
-// What every physics engine is to the step: something that moves the bodies of its regions.
+// Interface of a physics engine: advances the bodies of its regions by one tick.
 #pragma once
 #include <cstddef>
 #include <memory>

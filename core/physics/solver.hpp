@@ -33,7 +33,7 @@ class Solver {
   virtual ~Solver() = default;
 
   /// Makes its world equal to the stores: creates doubles of bodies that came into `region.owned` or
-  /// `region.mirrored`, drops those that went, moves what is elsewhere than it was left (`core/physics/roster.hpp`
+  /// `region.mirrored`, drops those that went, moves what is elsewhere than it was left (`core/physics/body_table.hpp`
   /// does the bookkeeping), rebuilds immovable ones when `stores.immovables_version` rose, and joints.
   virtual void load(const SolverContext& context) = 0;
 

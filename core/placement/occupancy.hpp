@@ -1,4 +1,4 @@
-// What already stands in the arena: answers whether something new would overlap it.
+// Space already taken in the arena: answers whether something new would overlap it.
 #pragma once
 #include <array>
 #include <cstddef>

@@ -1,4 +1,4 @@
-// Where everything starts: expands `<distribute>` into places without overlap.
+// Start places: expands `<distribute>` into places without overlap.
 #pragma once
 #include <cstdint>
 #include <functional>

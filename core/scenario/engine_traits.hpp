@@ -1,4 +1,4 @@
-// What physics engines can do, as checks and messages ask for it: none goes by an engine's name.
+// Abilities of physics engines, as checks and messages ask for them: none goes by an engine's name.
 #pragma once
 #include <cstdint>
 #include <functional>

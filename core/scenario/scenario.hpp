@@ -1,4 +1,4 @@
-// What was asked: one experiment, read and checked. Immutable once read; any number of runs may share it.
+// The immutable input of runs: one experiment, read and checked. Any number of runs may share it.
 //
 // Lengths in metres, angles in radians, times in seconds, masses in kilograms. W is the world frame (x east, z up).
 #pragma once

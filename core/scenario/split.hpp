@@ -1,4 +1,4 @@
-// How an arena is divided among the solvers of one engine: columns x lines, as experiment files spell it.
+// Division of an arena among the solvers of one engine: columns x lines, as experiment files spell it.
 #pragma once
 #include <cstddef>
 #include <optional>

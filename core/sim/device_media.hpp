@@ -1,4 +1,4 @@
-// What files say of media, brought to the devices that name them.
+// Resolves the media that devices name in experiment files.
 #pragma once
 #include "core/scenario/scenario.hpp"
 #include "hal/catalog.hpp"

@@ -1,4 +1,4 @@
-// The door through which real robots take part in a simulated world.
+// Interface through which real robots take part in a simulated world.
 #pragma once
 
 namespace tandem::core {

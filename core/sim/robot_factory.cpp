@@ -294,10 +294,10 @@ bool RobotFactory::prepare_group(std::size_t g, Problems& problems) {
   Problems found;
   group.params = read_params(group, item, found);
   // Listed devices must exist even when the controller does not take them.
-  auto recipes = std::make_shared<GroupRecipes>();
-  bool good = read_devices(group, hal::Role::Sensor, *recipes, found);
-  good = read_devices(group, hal::Role::Actuator, *recipes, found) && good && !has_errors(found);
-  group.recipes = std::move(recipes);
+  auto factories = std::make_shared<GroupFactories>();
+  bool good = read_devices(group, hal::Role::Sensor, *factories, found);
+  good = read_devices(group, hal::Role::Actuator, *factories, found) && good && !has_errors(found);
+  group.factories = std::move(factories);
   for (Problem& one : found) {  // what groups share is wrong once
     const auto same = [&](const Problem& other) {
       return other.file == one.file && other.line == one.line && other.message == one.message;
@@ -327,7 +327,8 @@ std::shared_ptr<const void> RobotFactory::read_params(const RobotGroup& group, c
   return nullptr;
 }
 
-bool RobotFactory::read_devices(const RobotGroup& group, hal::Role role, GroupRecipes& recipes, Problems& problems) {
+bool RobotFactory::read_devices(const RobotGroup& group, hal::Role role, GroupFactories& factories,
+                                Problems& problems) {
   const ControllerConfig& config = scenario_.controllers[group.config];
   DeviceSetup setup{*group.kind, *group.item, 1.0 / static_cast<double>(scenario_.ticks_per_second), &stores_.fields};
   bool good = true;
@@ -361,16 +362,16 @@ bool RobotFactory::read_devices(const RobotGroup& group, hal::Role role, GroupRe
         }
         setup.medium = medium.value();
       }
-      GroupRecipes::Listed listed{type, {}, {}};
+      GroupFactories::Listed listed{type, {}, {}};
       if (type->make_sensor != nullptr) listed.sensor = type->make_sensor(choice.options, problems, setup);
       if (type->make_actuator != nullptr) listed.actuator = type->make_actuator(choice.options, problems, setup);
-      listed.with_recipe([&](const auto& recipe) {
-        for (const KeptColumn& column : recipe.columns) {
+      listed.with_factory([&](const auto& factory) {
+        for (const KeptColumn& column : factory.columns) {
           const auto known = stores_.columns.of(*column.type);
           if (!known.ok()) problem("device '" + choice.device + "': " + known.error().message);
         }
       });
-      recipes.listed.push_back(std::move(listed));
+      factories.listed.push_back(std::move(listed));
     }
   }
   return good;
@@ -501,17 +502,17 @@ void RobotFactory::note_needs(RobotGroup& group) {
     add(keeps<RotorState>());
   }
   for (const hal::PortType* port : group.ports) {
-    const GroupRecipes::Listed& made = *group.recipes->find(port->name, port->role);
-    made.with_recipe([&](const auto& recipe) {
-      for (const KeptColumn& column : recipe.columns) add(column);
-      if (!recipe.publishes && !recipe.listens) return;
+    const GroupFactories::Listed& made = *group.factories->find(port->name, port->role);
+    made.with_factory([&](const auto& factory) {
+      for (const KeptColumn& column : factory.columns) add(column);
+      if (!factory.publishes && !factory.listens) return;
       const Medium* const medium = media_.of(loader_.catalog(), made.type->medium).value();
       const auto same = [medium](const MediumUse& other) { return other.medium == medium; };
       auto use = std::find_if(group.media.begin(), group.media.end(), same);
       if (use == group.media.end()) use = group.media.insert(use, MediumUse{medium});
-      use->publishes = use->publishes || recipe.publishes;
-      use->listens = use->listens || recipe.listens;
-      use->reach_m = std::max(use->reach_m, recipe.reach_m);
+      use->publishes = use->publishes || factory.publishes;
+      use->listens = use->listens || factory.listens;
+      use->reach_m = std::max(use->reach_m, factory.reach_m);
     });
   }
 }
@@ -541,7 +542,7 @@ void RobotFactory::complete(std::size_t g) {
     devices = {};  // those that are there may find more columns now
     const BlockColumns columns(stores_.columns, b);
     for (const hal::PortType* port : group.ports) {
-      const GroupRecipes::Listed& made = *group.recipes->find(port->name, port->role);
+      const GroupFactories::Listed& made = *group.factories->find(port->name, port->role);
       const bool is_sensor = port->role == hal::Role::Sensor;
       devices.sensors.push_back(is_sensor ? made.sensor.make(columns) : nullptr);
       devices.actuators.push_back(is_sensor ? nullptr : made.actuator.make(columns));

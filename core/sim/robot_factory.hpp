@@ -83,7 +83,7 @@ class RobotFactory {
   void sort_by_place(const std::vector<RobotRequest>& requests, std::vector<std::uint32_t>& members) const;
   bool prepare_group(std::size_t g, Problems& problems);
   std::shared_ptr<const void> read_params(const RobotGroup& group, const RobotItem& item, Problems& problems) const;
-  bool read_devices(const RobotGroup& group, hal::Role role, GroupRecipes& recipes, Problems& problems);
+  bool read_devices(const RobotGroup& group, hal::Role role, GroupFactories& factories, Problems& problems);
   bool make_blocks(std::size_t g, const std::vector<RobotRequest>& requests, const std::vector<std::uint32_t>& members,
                    Problems& problems);
   std::uint32_t add_block(std::size_t g, std::size_t capacity);

@@ -4,7 +4,7 @@
 #include <limits>
 
 #include "core/device/device.hpp"
-#include "core/loop/hook.hpp"
+#include "core/hook/hook.hpp"
 #include "core/physics/solver.hpp"
 
 namespace tandem::core {

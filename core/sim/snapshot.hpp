@@ -1,4 +1,4 @@
-// A moment of a running world, kept to go back to.
+// Snapshot of a running world, to go back to.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -14,7 +14,7 @@
 
 namespace tandem::core {
 
-struct Moment;  // core/sim/world.cpp: everything beside the space
+struct SavedWorld;  // core/sim/world.cpp: everything beside the space
 
 /// What World::snapshot gives and World::restore takes. Its copies share what was kept, which never changes. Must not
 /// outlive the plug-ins whose controllers it holds.
@@ -24,9 +24,9 @@ class Snapshot {
 
  private:
   friend class World;
-  Snapshot(hal::Tick tick, std::shared_ptr<const Moment> moment) : tick_(tick), moment_(std::move(moment)) {}
+  Snapshot(hal::Tick tick, std::shared_ptr<const SavedWorld> state) : tick_(tick), state_(std::move(state)) {}
   hal::Tick tick_;
-  std::shared_ptr<const Moment> moment_;
+  std::shared_ptr<const SavedWorld> state_;
 };
 
 /// A copy of the stores and of all controllers.
@@ -38,7 +38,7 @@ class SpaceCopy {
   SpaceCopy(const SpaceCopy&) = delete;
   SpaceCopy& operator=(const SpaceCopy&) = delete;
 
-  /// Makes the space equal to the copy, whether that is of an earlier moment of what went on or of another way on from
+  /// Makes the space equal to the copy, whether that is of an earlier state of what went on or of another way on from
   /// an earlier one. `space` and `devices` are those that it was taken from: controllers and ports stand at the same
   /// addresses as then. Errors: a copy constructor that throws; the robot is then halted.
   hal::Status put_back(Space& space, RobotDevices& devices) const;

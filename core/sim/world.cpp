@@ -201,7 +201,7 @@ void World::Impl::report_messages() {
 void World::Impl::paint_fields() {
   for (const Fields::Entry& entry : stores().fields.all()) {
     if (!entry.field->painted_by_hooks() || !entry.field->unpainted() || hooks.empty()) continue;
-    hook_moment = entry.name.c_str();
+    hook_phase = entry.name.c_str();
     std::size_t asked = 0;
     const Painter painter = [&, name = std::string_view(entry.name)](double x, double y, double painted) {
       for (asked = 0; asked < hooks.size(); ++asked) {
@@ -228,22 +228,22 @@ void World::Impl::name_step(const void* impl, std::size_t block, std::size_t ind
 
 void World::Impl::name_hook(const void* impl, std::size_t hook, std::size_t /*index*/, hal::FixedText& out) noexcept {
   const Impl& w = *static_cast<const Impl*>(impl);
-  out << "hook '" << w.hook_names[hook] << "' (library '" << w.scenario.hooks[hook].library << "') in " << w.hook_moment
+  out << "hook '" << w.hook_names[hook] << "' (library '" << w.scenario.hooks[hook].library << "') in " << w.hook_phase
       << " at tick " << w.tick;
 }
 
 template <class Call>
-void World::Impl::call_hooks(const char* moment, Call&& call) {
-  hook_moment = moment;
+void World::Impl::call_hooks(const char* phase, Call&& call) {
+  hook_phase = phase;
   for (std::size_t i = 0; i < hooks.size(); ++i) {
     HookContext context = hook_context();
     const hal::PluginCall marked(&name_hook, this, i);
     try {
       call(*hooks[i], context);
     } catch (const std::exception& e) {
-      fail("hook '" + hook_names[i] + "' threw in " + moment + at_tick() + ": " + e.what());
+      fail("hook '" + hook_names[i] + "' threw in " + phase + at_tick() + ": " + e.what());
     } catch (...) {
-      fail("hook '" + hook_names[i] + "' threw in " + moment + at_tick());
+      fail("hook '" + hook_names[i] + "' threw in " + phase + at_tick());
     }
   }
 }
@@ -253,7 +253,7 @@ World::World(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 World::~World() {
   Impl& w = *impl_;
   destroy_controllers(w.stores());
-  w.hook_moment = "its destructor";
+  w.hook_phase = "its destructor";
   for (std::size_t i = 0; i < w.hooks.size(); ++i) {
     const hal::PluginCall marked(&Impl::name_hook, &w, i);
     w.hooks[i].reset();
@@ -274,12 +274,12 @@ void World::finish() {
 hal::Result<Snapshot> World::snapshot() {
   Impl& w = *impl_;
   if (w.external != nullptr) return hal::Error{"no snapshot: real robots take part, which cannot be put back"};
-  auto moment = std::make_shared<Moment>();
-  w.hook_moment = "save";
+  auto saved = std::make_shared<SavedWorld>();
+  w.hook_phase = "save";
   for (std::size_t i = 0; i < w.hooks.size(); ++i) {
     const hal::PluginCall marked(&Impl::name_hook, &w, i);
     try {
-      moment->hooks.push_back(w.hooks[i]->save());
+      saved->hooks.push_back(w.hooks[i]->save());
     } catch (const std::exception& e) {
       return hal::Error{"no snapshot: hook '" + w.hook_names[i] + "' threw in save" + w.at_tick() + ": " + e.what()};
     } catch (...) {
@@ -288,48 +288,48 @@ hal::Result<Snapshot> World::snapshot() {
   }
   hal::Result<std::unique_ptr<SpaceCopy>> copy = SpaceCopy::take(w.space, w.devices);
   if (!copy.ok()) return copy.error();
-  for (const auto& engine : w.engines) moment->engines.push_back(engine->keep());
-  moment->of = w.identity;
-  moment->space = std::move(copy.value());
-  moment->tick = w.tick;
-  moment->state = w.state;
-  moment->failure = w.failure;
-  moment->incidents = w.incidents;
-  moment->clamped = w.clamped;
-  moment->not_finite = w.not_finite;
-  moment->reach_m = w.reach_m;
-  moment->indexed = w.indexed_version == w.stores().immovables_version;
-  moment->measures = w.measures;
-  return Snapshot(w.tick, std::move(moment));
+  for (const auto& engine : w.engines) saved->engines.push_back(engine->keep());
+  saved->of = w.identity;
+  saved->space = std::move(copy.value());
+  saved->tick = w.tick;
+  saved->state = w.state;
+  saved->failure = w.failure;
+  saved->incidents = w.incidents;
+  saved->clamped = w.clamped;
+  saved->not_finite = w.not_finite;
+  saved->reach_m = w.reach_m;
+  saved->indexed = w.indexed_version == w.stores().immovables_version;
+  saved->measures = w.measures;
+  return Snapshot(w.tick, std::move(saved));
 }
 
 hal::Status World::restore(const Snapshot& snapshot) {
   Impl& w = *impl_;
-  const Moment& moment = *snapshot.moment_;
-  if (moment.of != w.identity) return hal::Error{"the snapshot is of another world"};
+  const SavedWorld& saved = *snapshot.state_;
+  if (saved.of != w.identity) return hal::Error{"the snapshot is of another world"};
   if (w.external != nullptr) return hal::Error{"no way back: real robots take part, which cannot be put back"};
-  hal::Status all = moment.space->put_back(w.space, w.devices);
+  hal::Status all = saved.space->put_back(w.space, w.devices);
   w.media.fit(w.stores());
-  for (std::size_t i = 0; i < w.engines.size(); ++i) w.engines[i]->put_back(moment.engines[i]);
-  w.reach_m = moment.reach_m;
-  w.indexed_version = moment.indexed ? w.stores().immovables_version : 0;
-  w.tick = moment.tick;
-  w.state = moment.state;
-  w.failure = moment.failure;
-  w.incidents = moment.incidents;
-  w.measures = moment.measures;
-  w.clamped = moment.clamped;
-  w.not_finite = moment.not_finite;
+  for (std::size_t i = 0; i < w.engines.size(); ++i) w.engines[i]->put_back(saved.engines[i]);
+  w.reach_m = saved.reach_m;
+  w.indexed_version = saved.indexed ? w.stores().immovables_version : 0;
+  w.tick = saved.tick;
+  w.state = saved.state;
+  w.failure = saved.failure;
+  w.incidents = saved.incidents;
+  w.measures = saved.measures;
+  w.clamped = saved.clamped;
+  w.not_finite = saved.not_finite;
   w.block_trouble.assign(w.clamped.size(), 0);
   w.faults.assign(w.clamped.size(), {});
   w.said.assign(w.clamped.size(), {});
   w.excess.assign(w.clamped.size(), {});
   w.strays.clear();
-  w.hook_moment = "restore";
+  w.hook_phase = "restore";
   for (std::size_t i = 0; i < w.hooks.size(); ++i) {
     const hal::PluginCall marked(&Impl::name_hook, &w, i);
     try {
-      w.hooks[i]->restore(moment.hooks[i]);
+      w.hooks[i]->restore(saved.hooks[i]);
     } catch (const std::exception& e) {
       all = hal::Error{"hook '" + w.hook_names[i] + "' threw in restore" + w.at_tick() + ": " + e.what()};
     } catch (...) {
@@ -342,25 +342,25 @@ hal::Status World::restore(const Snapshot& snapshot) {
 
 /// What hooks asked for while they were called.
 void World::do_requests(bool before_first_step) {
-  KeptMoments& moments = impl_->moments;
-  const std::vector<KeptMoments::Request> requests = std::exchange(moments.requests, {});
-  for (const KeptMoments::Request& request : requests) {
+  KeptCheckpoints& checkpoints = impl_->kept_checkpoints;
+  const std::vector<KeptCheckpoints::Request> requests = std::exchange(checkpoints.requests, {});
+  for (const KeptCheckpoints::Request& request : requests) {
     if (impl_->state == RunState::Failed) return;
-    if (request.kind == KeptMoments::Request::Kind::Reset) {
+    if (request.kind == KeptCheckpoints::Request::Kind::Reset) {
       if (before_first_step)
         return impl_->fail("a hook asked in before_run for a reset, which would come to before_run again");
       if (const hal::Status begun = reset(request.seed); !begun.ok()) impl_->fail("reset: " + begun.error().message);
       return;  // what else was asked for is gone with the run
     }
-    if (request.kind == KeptMoments::Request::Kind::Save) {
+    if (request.kind == KeptCheckpoints::Request::Kind::Save) {
       hal::Result<Snapshot> kept = snapshot();
       if (!kept.ok()) {
-        moments.forget(request.name);
+        checkpoints.forget(request.name);
         return impl_->fail("checkpoint '" + request.name + "': " + kept.error().message);
       }
-      moments.kept.insert_or_assign(request.name, std::move(kept.value()));
+      checkpoints.kept.insert_or_assign(request.name, std::move(kept.value()));
     } else {
-      const hal::Status gone_back = restore(Snapshot(moments.kept.at(request.name)));
+      const hal::Status gone_back = restore(Snapshot(checkpoints.kept.at(request.name)));
       if (!gone_back.ok()) return impl_->fail("checkpoint '" + request.name + "': " + gone_back.error().message);
     }
   }

@@ -1,4 +1,4 @@
-// What is: one running simulation. Made from a Scenario and a seed, then stepped.
+// The mutable state of one running simulation. Made from a Scenario and a seed, then stepped.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "core/loop/hook.hpp"
+#include "core/hook/hook.hpp"
 #include "core/scenario/scenario.hpp"
 #include "core/sim/external.hpp"
 #include "core/sim/snapshot.hpp"

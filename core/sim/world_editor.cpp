@@ -149,7 +149,7 @@ std::optional<BodyKey> WorldEditor::in_the_way(const Obstacle& o, BodyKey self, 
 std::uint16_t WorldEditor::region_now(BodyKey body) const noexcept {
   const std::size_t i = body.index();
   const bool known = body.is_object() ? stores_.object_region[i] != kNoRegion : (stores_.bodies.flags[i] & kMoved) == 0;
-  if (!known) return keeper_.find(stores_, body);
+  if (!known) return assigner_.find(stores_, body);
   return body.is_object() ? stores_.object_region[i] : stores_.bodies.region[i];
 }
 
@@ -203,7 +203,7 @@ hal::Status WorldEditor::accept(const std::string& who, std::size_t row) {
   const Obstacle o = obstacle_of(self);
   if (const auto other = in_the_way(o, self, false))
     return hal::Error{who + " would be at " + text_of(o.x_m, o.y_m) + ", where " + name_of(*other) + " is"};
-  const std::uint16_t region = keeper_.find(stores_, self);
+  const std::uint16_t region = assigner_.find(stores_, self);
   if (region == kNoRegion) {
     return hal::Error{
         who + " would be at " + text_of(o.x_m, o.y_m) + ", which lies in no region of an engine " +
@@ -269,7 +269,7 @@ hal::Result<ObjectId> WorldEditor::add_object(const Object& wanted) {
   if (const auto other = in_the_way(obstacle_of(self), self, !object.movable)) {
     fits = hal::Error{would_be + ", where " + name_of(*other) + " is"};
   } else if (object.movable) {
-    stores_.object_region.back() = keeper_.find(stores_, self);
+    stores_.object_region.back() = assigner_.find(stores_, self);
     fits = check_mover(object, stores_.object_region.back());
   }
   if (!fits.ok()) {
@@ -298,7 +298,7 @@ hal::Status WorldEditor::set_object(ObjectId id, const Object& changed) {
   next.version = before.version + (same_body(before, next) ? 0 : 1);
   object = next;
   if (next.movable) {
-    const std::uint16_t region = keeper_.find(stores_, self);
+    const std::uint16_t region = assigner_.find(stores_, self);
     if (const hal::Status fits = check_mover(next, region); !fits.ok()) {
       object = before;
       return fits;

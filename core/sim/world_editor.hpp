@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "core/placement/occupancy.hpp"
-#include "core/sim/region_keeper.hpp"
+#include "core/sim/region_assigner.hpp"
 #include "core/sim/robot_factory.hpp"
 #include "core/space/editor.hpp"
 
@@ -13,8 +13,8 @@ namespace tandem::core {
 /// What Space asks for what it cannot do by itself. Everything that it is handed must outlive it.
 class WorldEditor final : public Editor {
  public:
-  WorldEditor(const Scenario& scenario, SpaceStores& stores, RobotFactory& factory, const RegionKeeper& keeper)
-      : scenario_(scenario), stores_(stores), factory_(factory), keeper_(keeper) {}
+  WorldEditor(const Scenario& scenario, SpaceStores& stores, RobotFactory& factory, const RegionAssigner& assigner)
+      : scenario_(scenario), stores_(stores), factory_(factory), assigner_(assigner) {}
 
   hal::Result<RobotId> add_robot(const NewRobot& wanted) override;
   hal::Result<ObjectId> add_object(const Object& wanted) override;
@@ -38,7 +38,7 @@ class WorldEditor final : public Editor {
   const Scenario& scenario_;
   SpaceStores& stores_;
   RobotFactory& factory_;
-  const RegionKeeper& keeper_;
+  const RegionAssigner& assigner_;
   // Where bodies stood when they were entered. They are looked up in the stores again: this only tells whom to ask.
   std::optional<Occupancy> occupancy_;
   std::uint64_t entered_version_ = 0;  // of the poses

@@ -1,4 +1,4 @@
-// What a World is made of, for the files that make it and step it.
+// Parts of a World, for the files that make it and step it.
 #pragma once
 #include <any>
 #include <atomic>
@@ -11,7 +11,7 @@
 #include "core/device/coupling.hpp"
 #include "core/device/device.hpp"
 #include "core/sim/engine_factory.hpp"
-#include "core/sim/region_keeper.hpp"
+#include "core/sim/region_assigner.hpp"
 #include "core/sim/robot_factory.hpp"
 #include "core/sim/world.hpp"
 #include "core/sim/world_editor.hpp"
@@ -20,8 +20,8 @@
 
 namespace tandem::core {
 
-/// What hooks asked for in this step, and the moments that they keep.
-class KeptMoments final : public Checkpoints {
+/// What hooks asked for in this step, and the checkpoints that they keep.
+class KeptCheckpoints final : public Checkpoints {
  public:
   struct Request {
     enum class Kind : std::uint8_t { Save, Restore, Reset };
@@ -62,7 +62,7 @@ class KeptMoments final : public Checkpoints {
 };
 
 /// What a snapshot holds.
-struct Moment {
+struct SavedWorld {
   std::shared_ptr<const int> of;  ///< the world that it is of
   std::unique_ptr<SpaceCopy> space;
   hal::Tick tick = 0;
@@ -103,7 +103,7 @@ struct World::Impl final : hal::RobotLog::Sink {
   MeasuredPhase sensing, controlling;
   std::vector<std::unique_ptr<Engine>> engines;
   std::vector<int> parts;  // of the tick, by engine
-  RegionKeeper keeper;
+  RegionAssigner assigner;
   std::vector<std::uint8_t> in_rows;  // by region: its engine moves bodies where they stand, and lists none
   bool all_in_rows = true;            // … that of every region
   double reach_m = 0.0;               // of the indices
@@ -116,11 +116,11 @@ struct World::Impl final : hal::RobotLog::Sink {
   std::unique_ptr<RobotFactory> factory;
   std::unique_ptr<WorldEditor> editor;
   std::shared_ptr<const int> identity = std::make_shared<int>(0);  // tells this world's snapshots from others'
-  KeptMoments moments;
+  KeptCheckpoints kept_checkpoints;
   std::vector<std::unique_ptr<Hook>> hooks;
   std::vector<std::string> hook_names;
   Measures measures;
-  const char* hook_moment = "";  // that is or was called last
+  const char* hook_phase = "";  // that is or was called last
   ExternalRobots* external = nullptr;
 
   hal::Tick tick = 0;
@@ -180,9 +180,9 @@ struct World::Impl final : hal::RobotLog::Sink {
   void fit_to_bodies();
 
   template <class Call>
-  void call_hooks(const char* moment, Call&& call);
+  void call_hooks(const char* phase, Call&& call);
   HookContext hook_context() {
-    return {space, tick, scenario.ticks_per_second, seed, moments, space.sketch(), measures};
+    return {space, tick, scenario.ticks_per_second, seed, kept_checkpoints, space.sketch(), measures};
   }
   DeviceContext device_context(std::size_t block) {
     SpaceStores& s = stores();

@@ -1,4 +1,4 @@
-// From a scenario to a world that can be stepped.
+// Makes a steppable world from a scenario.
 #include <algorithm>
 #include <cmath>
 #include <random>
@@ -126,7 +126,7 @@ std::string too_wide_for(const SpaceStores& s, const Region& region, double widt
 
 /// Every body's region; robots and movable objects that lie in none, or are too large for theirs, are problems.
 void assign_regions(const Scenario& scenario, const hal::Catalog& catalog, const Placements& placements,
-                    const RegionKeeper& keeper, SpaceStores& s, Problems& problems) {
+                    const RegionAssigner& assigner, SpaceStores& s, Problems& problems) {
   constexpr std::size_t kNamed = 20;
   std::size_t bad = 0;
   const auto complain = [&](int line, const std::string& who, double x_m, double y_m, const std::string& why) {
@@ -137,7 +137,7 @@ void assign_regions(const Scenario& scenario, const hal::Catalog& catalog, const
   const bool any_solid = std::any_of(s.regions.begin(), s.regions.end(), [](const Region& r) { return !r.plane; });
   for (const RobotEntity& e : s.robots) {
     const std::size_t row = s.blocks[e.block].first_row + e.slot;
-    s.bodies.region[row] = keeper.find(s, BodyKey::robot(row));
+    s.bodies.region[row] = assigner.find(s, BodyKey::robot(row));
     std::string why;
     if (s.bodies.region[row] != kNoRegion) {
       why = too_wide_for(s, s.regions[s.bodies.region[row]], 2.0 * static_cast<double>(s.bodies.radius_m[row]));
@@ -155,7 +155,7 @@ void assign_regions(const Scenario& scenario, const hal::Catalog& catalog, const
   check_joints(scenario, catalog, s, problems);
   for (std::size_t i = 0; i < s.objects.size(); ++i) {
     if (!s.objects[i].movable) continue;
-    s.object_region[i] = keeper.find(s, BodyKey::object(i));
+    s.object_region[i] = assigner.find(s, BodyKey::object(i));
     std::string why = "lies in no region of an engine that moves objects; use " +
                       engines_that(catalog, [](const EngineTraits& traits) { return traits.forces; });
     if (s.object_region[i] != kNoRegion) {
@@ -320,7 +320,7 @@ void World::Impl::populate(Problems& problems) {
   if (factory == nullptr) factory = std::make_unique<RobotFactory>(scenario, seed, *loader, s, devices, media, *this);
   factory->make(requests, problems);
   for (const CouplingType* type : catalog.all<CouplingType>()) couplings.push_back(type->make(s.columns));
-  editor = std::make_unique<WorldEditor>(scenario, s, *factory, keeper);
+  editor = std::make_unique<WorldEditor>(scenario, s, *factory, assigner);
   space.set_editor(editor.get());
 
   reach_m = index_reach(s, tick_s());
@@ -337,8 +337,8 @@ void World::Impl::populate(Problems& problems) {
   }
   index_movables();
   if (!bad()) {
-    keeper.build(s, tick_s());
-    assign_regions(scenario, catalog, placements, keeper, s, problems);
+    assigner.build(s, tick_s());
+    assign_regions(scenario, catalog, placements, assigner, s, problems);
   }
 }
 
@@ -404,9 +404,9 @@ hal::Status World::reset(std::uint64_t seed) {
   w.failure.clear();
   w.incidents = {};
   w.measures = {};
-  w.moments.forget_all();
+  w.kept_checkpoints.forget_all();
   w.identity = std::make_shared<int>(0);
-  w.keeper = {};
+  w.assigner = {};
   w.in_rows.clear();
   w.all_in_rows = true;
   w.strays.clear();
@@ -429,7 +429,7 @@ hal::Status World::reset(std::uint64_t seed) {
 }
 
 void World::Impl::reset_hooks(Problems& problems) {
-  hook_moment = "reset";
+  hook_phase = "reset";
   for (std::size_t i = 0; i < hooks.size(); ++i) {
     const hal::PluginCall marked(&name_hook, this, i);
     std::string why = "threw in reset";

@@ -29,7 +29,7 @@ void World::Impl::physics() {
   const PhysicsContext context{stores(), *pool, tick_s(), tick};
   for (const auto& coupling : couplings) coupling->before_physics(stores(), tick_s());
   settle_changes();
-  keeper.list(stores(), *pool);
+  assigner.list(stores(), *pool);
   stores().bodies_changed = false;
   for (const auto& engine : engines) engine->load(context);
   int most = 1;
@@ -53,7 +53,7 @@ void World::Impl::move_part(int part) {
   stop_on_trouble();
   rebuild_index();
   find_stray_objects();
-  keeper.migrate(stores(), *pool, strays);
+  assigner.migrate(stores(), *pool, strays);
   if (trouble.load(std::memory_order_relaxed) != 0 || !strays.empty()) {
     treat_escapes();
     rebuild_index();
@@ -78,7 +78,7 @@ void World::Impl::settle_changes() {
     s.static_index.build(s.objects, false, s.min_x_m, s.min_y_m, s.max_x_m, s.max_y_m, reach_m);
     indexed_version = s.immovables_version;
   }
-  if (s.bodies_changed) keeper.place(s, strays);
+  if (s.bodies_changed) assigner.place(s, strays);
 }
 
 /// Robots came or went, or other objects: arrays by block, and how far indices and regions look.
@@ -100,7 +100,7 @@ void World::Impl::fit_to_bodies() {
     s.body_index.set_area(s.min_x_m, s.min_y_m, s.max_x_m, s.max_y_m, reach_m);
     ++s.immovables_version;
   }
-  keeper.fit(s, tick_s());
+  assigner.fit(s, tick_s());
 }
 
 void World::Impl::stop_on_trouble() {
@@ -203,7 +203,7 @@ void World::Impl::treat_escape(BodyKey body) {
   }
   x_m = std::clamp(x_m, s.min_x_m, s.max_x_m);
   y_m = std::clamp(y_m, s.min_y_m, s.max_y_m);
-  RegionKeeper::put_back(s, body);
+  RegionAssigner::put_back(s, body);
   Motion none;
   if (body.is_object()) {
     none.z_m = s.object_motion[body.index()].z_m;

@@ -1,4 +1,4 @@
-// Who is near whom: a uniform grid over the arena, rebuilt by counting sort every tick.
+// Neighbour search: a uniform grid over the arena, rebuilt by counting sort every tick.
 #pragma once
 #include <algorithm>
 #include <cmath>

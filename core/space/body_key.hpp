@@ -1,4 +1,4 @@
-// What an engine moves: a robot or a movable object, under one name.
+// Key of a body that engines move: a robot or a movable object.
 #pragma once
 #include <compare>
 #include <cstddef>

@@ -1,4 +1,4 @@
-// What hooks bring into a running space and change there beyond its numbers, and who does it for the space.
+// Structural changes of a running space that hooks ask for, and the interface that carries them out.
 #pragma once
 #include <array>
 #include <string>

@@ -1,4 +1,4 @@
-// What turns on robots, what they hold, and how their flight goes. Angles are relative to the body, counter-clockwise
+// Moving parts of robots, what they hold, and the state of flight. Angles are relative to the body, counter-clockwise
 // from forward.
 #pragma once
 #include <array>

@@ -1,4 +1,4 @@
-// Where boxes and cylinders are: a grid whose cells list what lies within reach of any point in them.
+// Index of boxes and cylinders: a grid whose cells list what lies within reach of any point in them.
 #pragma once
 #include <cstddef>
 #include <cstdint>

@@ -1,4 +1,4 @@
-// Which regions are near a point: answered for most points by one look into a grid.
+// Finds the regions near a point: for most points with one look into a grid.
 #pragma once
 #include <cstdint>
 #include <span>

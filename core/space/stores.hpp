@@ -37,9 +37,9 @@
 
 namespace tandem::core {
 
-struct RobotItem;     // core/scenario/scenario.hpp
-struct GroupRecipes;  // core/device/device.hpp
-class Medium;         // core/medium/medium.hpp
+struct RobotItem;       // core/scenario/scenario.hpp
+struct GroupFactories;  // core/device/device.hpp
+class Medium;           // core/medium/medium.hpp
 
 inline constexpr std::size_t kBlockRows = 256;
 
@@ -129,12 +129,12 @@ struct RobotGroup {
   std::shared_ptr<const RobotItem> item;  ///< one of theirs: what it says of battery and radio holds for all
   const hal::RobotKind* kind = nullptr;
   const hal::ControllerType* controller = nullptr;
-  std::size_t config = 0;                       ///< index into Scenario::controllers
-  std::shared_ptr<const void> params;           ///< of those that have none of their own in RobotBlock::params
-  std::shared_ptr<const GroupRecipes> recipes;  ///< of the devices that its configuration lists
-  std::vector<const hal::PortType*> ports;      ///< those that its controllers took, in the order of taking
-  std::vector<KeptColumn> columns;              ///< that their devices need
-  std::vector<hal::PublishedField> published;   ///< what its controllers show, with offsets into each of them
+  std::size_t config = 0;                           ///< index into Scenario::controllers
+  std::shared_ptr<const void> params;               ///< of those that have none of their own in RobotBlock::params
+  std::shared_ptr<const GroupFactories> factories;  ///< of the devices that its configuration lists
+  std::vector<const hal::PortType*> ports;          ///< those that its controllers took, in the order of taking
+  std::vector<KeptColumn> columns;                  ///< that their devices need
+  std::vector<hal::PublishedField> published;       ///< what its controllers show, with offsets into each of them
   double rab_range_m = 0.0;
   double rab_height_m = 0.0;  ///< of their range-and-bearing boards, where they have any
   unsigned rab_payload = 0;

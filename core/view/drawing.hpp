@@ -1,4 +1,4 @@
-// What a picture shows, as plain data: filled from a space, drawn as SVG.
+// Contents of a picture as plain data: filled from a space, drawn as SVG.
 #pragma once
 #include <array>
 #include <cstdint>

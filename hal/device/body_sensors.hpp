@@ -1,4 +1,4 @@
-// What a robot senses of itself and of the air around it: acceleration, turn rates, sound level,
+// Sensors of a robot's own state and of the air around it: acceleration, turn rates, sound level,
 // battery, clock.
 #pragma once
 #include <array>

@@ -1,10 +1,10 @@
-// Where robots think that they are, beside where they are.
+// Logs robots' odometry beside their true poses.
 #pragma once
 #include <fstream>
 #include <map>
 #include <string>
 
-#include "core/loop/hook.hpp"
+#include "core/hook/hook.hpp"
 #include "core/space/space.hpp"
 #include "hal/params.hpp"
 

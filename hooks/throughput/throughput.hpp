@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "core/loop/hook.hpp"
+#include "core/hook/hook.hpp"
 #include "core/space/space.hpp"
 #include "hal/params.hpp"
 

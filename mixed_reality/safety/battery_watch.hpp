@@ -1,4 +1,4 @@
-// When a real robot's battery is so low that the robot is to be stopped.
+// Stops a real robot whose battery is low.
 #pragma once
 #include "hal/device/body_sensors.hpp"
 #include "hal/time.hpp"

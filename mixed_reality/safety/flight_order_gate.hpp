@@ -1,4 +1,4 @@
-// What a flying robot is told of its controller's order to take off once the safety table has stopped it.
+// Holds back a controller's order to take off once the safety table has stopped the robot.
 #pragma once
 #include <optional>
 

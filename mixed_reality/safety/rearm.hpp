@@ -1,4 +1,4 @@
-// How a stopped robot gets under way again: what lets it go, and after which time.
+// Re-arming: under which condition and after which time a stopped robot may drive again.
 #pragma once
 #include <cstdint>
 #include <string>

@@ -1,4 +1,4 @@
-// What a real robot may do, and when: one table for all kinds of robots and all commands, and the way back from a stop.
+// The safety table of real robots: what each may do and when, for all kinds and commands, and the way back from a stop.
 //
 //   every tick: conditions -> judge -> verdict;  command -> allow -> what goes to the robot
 #pragma once

@@ -5,7 +5,7 @@
 #include <thread>
 
 #include "hal/unit.hpp"
-#include "mixed_reality/settings/patience.hpp"
+#include "mixed_reality/settings/timeouts.hpp"
 #include "mixed_reality/tracking/odometry.hpp"
 #include "mixed_reality/tracking/positioned.hpp"
 

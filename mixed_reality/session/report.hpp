@@ -1,4 +1,4 @@
-// What is to be told of a mixed run.
+// Report of a mixed run.
 #pragma once
 #include <string>
 #include <vector>

@@ -1,4 +1,4 @@
-// What an experiment says of its real robots, checked before any link is opened.
+// Checks what an experiment says of its real robots, before any link is opened.
 #pragma once
 #include "core/scenario/scenario.hpp"
 #include "hal/catalog.hpp"

@@ -1,6 +1,6 @@
 #include "mixed_reality/settings/bridge_request.hpp"
 
-#include "mixed_reality/settings/patience.hpp"
+#include "mixed_reality/settings/timeouts.hpp"
 
 namespace tandem::mixed_reality {
 namespace {

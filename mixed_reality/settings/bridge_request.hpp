@@ -1,4 +1,4 @@
-// From what an experiment says of a real robot to its bridge; both `tandem run` and `tandem robot` go this way.
+// Makes bridges from experiment files; both `tandem run` and `tandem robot` go this way.
 #pragma once
 #include <cstdint>
 #include <vector>

@@ -1,4 +1,4 @@
-// Where a paced run gets the time from, and how it waits: behind an interface, so that tests fake both.
+// Source of time of a paced run, and its waiting: behind an interface, so that tests fake both.
 #pragma once
 #include <atomic>
 

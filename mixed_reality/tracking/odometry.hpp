@@ -1,4 +1,4 @@
-// Where a robot is by what its wheels have rolled.
+// Pose of a robot by its wheels' odometry.
 #pragma once
 #include <cstdint>
 

@@ -1,4 +1,4 @@
-// Where a real robot is: what every tracker answers.
+// Interface of a tracker: the pose of a real robot.
 #pragma once
 #include <cstdint>
 

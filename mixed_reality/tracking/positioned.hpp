@@ -1,4 +1,4 @@
-// Where a robot is by its own word: a flying robot's positioning system.
+// Pose of a flying robot by its own positioning system.
 #pragma once
 #include "hal/device/flight.hpp"
 #include "hal/robot_kind.hpp"

@@ -7,7 +7,7 @@
 #include "core/field/floor/floor.hpp"
 #include "core/field/light/light.hpp"
 #include "core/field/sound/sound.hpp"
-#include "core/loop/hook.hpp"
+#include "core/hook/hook.hpp"
 #include "core/medium/led/led.hpp"
 #include "core/medium/medium.hpp"
 #include "core/medium/range_and_bearing/range_and_bearing.hpp"

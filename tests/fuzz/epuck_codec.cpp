@@ -126,7 +126,7 @@ void act(Session& session, Script& script, tandem::hal::TimeNs& now) {
       session.stalled(argument * tandem::hal::kNsPerMs);
       break;
     case 9:
-      argument > 250 ? session.farewell(now) : session.poll(now);
+      argument > 250 ? session.shut_down(now) : session.poll(now);
       break;
     default:
       break;

@@ -3,7 +3,7 @@
 #include <fstream>
 #include <stdexcept>
 
-#include "core/loop/hook.hpp"
+#include "core/hook/hook.hpp"
 #include "core/space/space.hpp"
 #include "tests/plugins/shown.hpp"
 

@@ -113,8 +113,8 @@ class ThermometerSensor final : public core::Sensor {
   const Warmth* warmth_;
 };
 
-core::Recipe<core::Sensor> make_thermometer(const core::Element& element, core::Problems& problems,
-                                            const core::DeviceSetup& /*setup*/) {
+core::BlockFactory<core::Sensor> make_thermometer(const core::Element& element, core::Problems& problems,
+                                                  const core::DeviceSetup& /*setup*/) {
   const auto options = core::read_options<Options>(element, problems);
   const auto make = [offset_K = options.offset_K](const core::BlockColumns& columns) {
     return std::make_unique<ThermometerSensor>(offset_K, columns);

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "core/loop/hook.hpp"
+#include "core/hook/hook.hpp"
 #include "hal/device/wheels.hpp"
 #include "hal/plugin.hpp"
 

@@ -115,7 +115,7 @@ TEST(EpuckFaults, OfAllKindsTogetherLeaveNoRobotMovingAndAllComeBack) {
       EXPECT_TRUE(drive.rig.driver.at_rest());
     }
     EXPECT_EQ(drive.stale_as_fresh, 0);
-    drive.rig.driver.farewell(drive.rig.now);
+    drive.rig.driver.shut_down(drive.rig.now);
     drive.rig.run(kSecond);
     EXPECT_FALSE(drive.rig.body.moves());
     EXPECT_TRUE(drive.rig.driver.at_rest());

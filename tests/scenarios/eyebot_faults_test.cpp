@@ -6,7 +6,7 @@
 #include <random>
 
 #include "bridges/eyebot/driver.hpp"
-#include "bridges/eyebot/farewell.hpp"
+#include "bridges/eyebot/shutdown_sequence.hpp"
 #include "bridges/eyebot_emulator/faults.hpp"
 #include "bridges/eyebot_emulator/point_body.hpp"
 #include "hal/device/body_sensors.hpp"
@@ -80,10 +80,10 @@ class Flight : private eyebot::Outbox {
   }
   /// The run ends: whether the robot is on the ground within a minute, by itself if its hub is gone before.
   bool comes_down() {
-    eyebot::Farewell farewell({});
+    eyebot::ShutdownSequence sequence({});
     for (const TimeNs end = g_now + 60 * kSecond; g_now < end;) {
       turn();
-      ended_ = ended_ || farewell.step(driver, g_now);
+      ended_ = ended_ || sequence.step(driver, g_now);
       if (ended_ && (mode() == Mode::Idle || mode() == Mode::Off)) return true;
     }
     return false;
@@ -133,7 +133,7 @@ class Flight : private eyebot::Outbox {
     g_now += 10 * kMs;
     while (const auto change = plan_.next_change(g_now)) {
       emulator::apply(*change, robot_.firmware, 2000 + ++restarts_);
-      if (change->fault->kind == emulator::FaultKind::Twin) {
+      if (change->fault->kind == emulator::FaultKind::Namesake) {
         twin_ = change->begins ? std::make_unique<Robot>(3001, bridges::EventSink{}) : nullptr;
       }
     }
@@ -289,14 +289,14 @@ TEST(EyebotFaults, WithoutAValidPlaceItIsNotArmed) {
 }
 
 TEST(EyebotFaults, ASecondRobotOfItsNameKeepsBothOnTheGround) {
-  Flight f({"twin"});
+  Flight f({"namesake"});
   f.fly_until(10.0);
   EXPECT_FALSE(f.armed());
   EXPECT_THAT(f.driver.trouble(), HasSubstr("two robots are called 'eb0'"));
 }
 
 TEST(EyebotFaults, ASecondRobotOfItsNameHasItHoverUntilItIsGone) {
-  Flight f({"twin@8s+3s"});
+  Flight f({"namesake@8s+3s"});
   f.fly_until(10.0);
   EXPECT_EQ(f.mode(), Mode::Hover) << f.logged;
   EXPECT_EQ(f.driver.statistics().link_stops, 1U);
@@ -326,7 +326,7 @@ TEST(EyebotFaults, StampsOfTheFutureChangeNothing) {
 TEST(EyebotFaults, OfAllKindsTogetherLeaveNoRobotInTheAir) {
   static constexpr std::array<const char*, 16> kFaults = {
       "clock=1h@8s",         "clock=-1h@9s",       "clock=-600ms@7s",   "restart@9s",
-      "battery=0.05@10s",    "no-position@8s+2s",  "hardware@11s",      "twin@8s+2s",
+      "battery=0.05@10s",    "no-position@8s+2s",  "hardware@11s",      "namesake@8s+2s",
       "place=5m@8s+1s",      "future=0.1",         "silent@9s+3s",      "deaf@9s+3s",
       "silent=status@8s+2s", "damage=state@8s+2s", "delay=150ms@8s+3s", "lag=150ms@8s+3s"};
   const char* wanted = std::getenv("TANDEM_FAULT_RUNS");

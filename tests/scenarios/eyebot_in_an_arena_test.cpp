@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "app/catalog.hpp"
-#include "app/port_puppeteer.hpp"
+#include "app/simulated_body.hpp"
 #include "bridges/eyebot_emulator/eyebot.hpp"
 #include "bridges/eyebot_emulator/port_body.hpp"
 #include "tests/bridges/eyebot_emulator/hand_written.hpp"
@@ -43,11 +43,11 @@ class Flight : public testing::TestWithParam<std::string> {
 
   void SetUp() override {
     ASSERT_TRUE(world.world) << world.all_problems();
-    const auto found = app::PortPuppeteer::find(*world.world, eyebot_emulator(), "me");
+    const auto found = app::SimulatedBody::find(*world.world, eyebot_emulator(), "me");
     ASSERT_TRUE(found.ok()) << found.error().message;
     me = found.value();
-    puppeteer.emplace(*world.world, me, ports);
-    world->set_external(&*puppeteer);
+    body_link.emplace(*world.world, me, ports);
+    world->set_external(&*body_link);
     world->start();
     world->step();
     firmware.emplace(options(), body, bridges::EventSink{});
@@ -80,7 +80,7 @@ class Flight : public testing::TestWithParam<std::string> {
   bridges::SharedPorts ports{emulator::body_ports()};
   emulator::PortBody body{ports};
   core::RobotId me;
-  std::optional<app::PortPuppeteer> puppeteer;
+  std::optional<app::SimulatedBody> body_link;
   std::optional<emulator::Eyebot> firmware;
 
  private:
@@ -153,10 +153,10 @@ INSTANTIATE_TEST_SUITE_P(Engines, Flight, testing::Values("particle3d", "dynamic
 TEST(AnEyebotsBody, IsOneOfTheArenas) {
   const core::MadeWorld world = core::make(hall("particle3d"));
   ASSERT_TRUE(world.world) << world.all_problems();
-  const auto first = app::PortPuppeteer::find(*world.world, eyebot_emulator(), "");
+  const auto first = app::SimulatedBody::find(*world.world, eyebot_emulator(), "");
   ASSERT_TRUE(first.ok()) << first.error().message;
   EXPECT_EQ(world->space().find_robot("me"), first.value());
-  const auto missing = app::PortPuppeteer::find(*world.world, eyebot_emulator(), "nobody");
+  const auto missing = app::SimulatedBody::find(*world.world, eyebot_emulator(), "nobody");
   ASSERT_FALSE(missing.ok());
   EXPECT_NE(missing.error().message.find("'nobody'"), std::string::npos);
 }

@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "app/bridged_controller.hpp"
-#include "app/port_puppeteer.hpp"
+#include "app/simulated_body.hpp"
 #include "bridges/aseba/can_messages.hpp"
 #include "bridges/can/memory_bus.hpp"
 #include "bridges/footbot/driver.hpp"
@@ -40,7 +40,7 @@ class LockStepFootbot final : public core::ExternalRobots {
  public:
   LockStepFootbot(const core::World& world, core::RobotId robot, const hal::ControllerType& type, const void* params,
                   emulator::Protocol protocol)
-      : puppeteer_(world, robot, ports_), modules_({.protocol = protocol}, body_, {}), driver_(settings(), messages_) {
+      : body_link_(world, robot, ports_), modules_({.protocol = protocol}, body_, {}), driver_(settings(), messages_) {
     controller_.emplace(type, driver_.robot(), params, 10, hal::Log());
     modules_.power_on(0);
     while (now_ < kHandshake_ns) {
@@ -53,7 +53,7 @@ class LockStepFootbot final : public core::ExternalRobots {
   void latch(core::World&) override {}
 
   void after_sense(core::World& world) override {
-    puppeteer_.after_sense(world);
+    body_link_.after_sense(world);
     now_ = std::max(now_, kHandshake_ns + world.tick() * kTick_ns);
     driver_.commit(now_);  // asks for the readings of this instant; the commands are those of the last tick
     elapse(40 * hal::kNsPerMs);
@@ -64,7 +64,7 @@ class LockStepFootbot final : public core::ExternalRobots {
     elapse(40 * hal::kNsPerMs);
   }
 
-  void after_filter(core::World& world) override { puppeteer_.after_filter(world); }
+  void after_filter(core::World& world) override { body_link_.after_filter(world); }
 
   bridge::FootbotDriver& driver() { return driver_; }
 
@@ -101,7 +101,7 @@ class LockStepFootbot final : public core::ExternalRobots {
   std::unique_ptr<bridges::CanLink> robots_end_ = bus_.attach();
   bridges::SharedPorts ports_{emulator::body_ports()};
   emulator::PortBody body_{ports_};
-  app::PortPuppeteer puppeteer_;
+  app::SimulatedBody body_link_;
   emulator::Footbot modules_;
   bridges::aseba::CanMessages messages_{bus_.attach(), {}, [this] { return now_; }};
   bridge::FootbotDriver driver_;

@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "app/bridged_controller.hpp"
-#include "app/port_puppeteer.hpp"
+#include "app/simulated_body.hpp"
 #include "bridges/epuck/driver.hpp"
 #include "bridges/epuck_emulator/firmware.hpp"
 #include "bridges/epuck_emulator/port_body.hpp"
@@ -29,7 +29,7 @@ class LockStepRobot final : public core::ExternalRobots {
  public:
   LockStepRobot(const core::World& world, core::RobotId robot, const hal::ControllerType& type, const void* params,
                 emulator::Variant variant)
-      : puppeteer_(world, robot, ports_), firmware_(options_of(variant), body_, {}), driver_(settings()) {
+      : body_link_(world, robot, ports_), firmware_(options_of(variant), body_, {}), driver_(settings()) {
     auto [host, wire] = bridges::MemoryLink::make_pair([this] { return now_; });
     host_ = std::move(host);
     wire_ = std::move(wire);
@@ -45,7 +45,7 @@ class LockStepRobot final : public core::ExternalRobots {
   void latch(core::World&) override {}
 
   void after_sense(core::World& world) override {
-    puppeteer_.after_sense(world);
+    body_link_.after_sense(world);
     now_ = std::max(now_, kHandshake_ns + world.tick() * kTick_ns);
     driver_.commit(now_);  // asks for the readings of this instant; the commands are those of the last tick
     elapse(40 * hal::kNsPerMs);
@@ -56,7 +56,7 @@ class LockStepRobot final : public core::ExternalRobots {
     elapse(40 * hal::kNsPerMs);
   }
 
-  void after_filter(core::World& world) override { puppeteer_.after_filter(world); }
+  void after_filter(core::World& world) override { body_link_.after_filter(world); }
 
   const bridge::EpuckDriver& driver() const { return driver_; }
   bridge::EpuckRobot& robot() { return driver_.robot(); }
@@ -97,7 +97,7 @@ class LockStepRobot final : public core::ExternalRobots {
 
   bridges::SharedPorts ports_{emulator::body_ports()};
   emulator::PortBody body_{ports_};
-  app::PortPuppeteer puppeteer_;
+  app::SimulatedBody body_link_;
   emulator::Firmware firmware_;
   bridge::EpuckDriver driver_;
   std::unique_ptr<bridges::MemoryLink> host_, wire_;

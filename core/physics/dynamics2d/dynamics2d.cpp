@@ -8,8 +8,8 @@
 #include <new>
 #include <string>
 
+#include "core/physics/body_table.hpp"
 #include "core/physics/dynamics2d/params.hpp"
-#include "core/physics/roster.hpp"
 #include "core/physics/wheels.hpp"
 #include "core/physics/world_memory.hpp"
 #include "core/space/object_index.hpp"
@@ -40,7 +40,7 @@ constexpr double kHoldingStep_s = 0.025;  // with longer ones, Box2D's passes le
 constexpr float kLinearSlowing = 1.0F;    // correction factor of a drive: all of the error within one sub-step
 
 /// A body's double in Box2D.
-struct Twin {
+struct BodyProxy {
   b2Body* body = nullptr;
   b2Joint* hold = nullptr;  ///< to the ground: a movable object's friction, or a robot's drive while it pushes
   // The state in the stores that the double agrees with.
@@ -124,20 +124,20 @@ class Dynamics2d final : public Solver {
     const SpaceStores& s = context.stores;
     if (world_ == nullptr) make_world();
     if (version_ != s.immovables_version) place_immovables(context);
-    roster_.update(
-        context.region, s, [&](BodyKey key) { return make(s, key); }, [this](Twin& twin) { drop(twin); });
-    auto& entries = roster_.entries();
+    bodies_table_.update(
+        context.region, s, [&](BodyKey key) { return make(s, key); }, [this](BodyProxy& proxy) { drop(proxy); });
+    auto& entries = bodies_table_.entries();
     for (std::size_t i = 0; i < entries.size(); ++i) entries[i].body.body->GetUserData().pointer = i;
     hops_ = 0.0;
     for (auto& entry : entries) {
-      Twin& twin = entry.body;
-      const char* flaw = twin.unfit.empty() ? flaw_of(s, entry.key) : twin.unfit.c_str();
-      twin.flawed = flaw != nullptr;
-      if (twin.body->IsEnabled() == twin.flawed) twin.body->SetEnabled(!twin.flawed);
-      if (twin.flawed)
-        leave_out(twin, entry.key, entry.owned, flaw);
+      BodyProxy& proxy = entry.body;
+      const char* flaw = proxy.unfit.empty() ? flaw_of(s, entry.key) : proxy.unfit.c_str();
+      proxy.flawed = flaw != nullptr;
+      if (proxy.body->IsEnabled() == proxy.flawed) proxy.body->SetEnabled(!proxy.flawed);
+      if (proxy.flawed)
+        leave_out(proxy, entry.key, entry.owned, flaw);
       else
-        take_over(s, entry.key, entry.owned, twin, context.tick_s);
+        take_over(s, entry.key, entry.owned, proxy, context.tick_s);
     }
     if (!s.joints.empty() || !joints_.empty()) join(s);
   }
@@ -147,23 +147,23 @@ class Dynamics2d final : public Solver {
     SpaceStores& s = context.stores;
     const int steps = sub_steps(s, context.tick_s);
     const double dt = context.tick_s / steps;
-    headings_.resize(roster_.entries().size());
+    headings_.resize(bodies_table_.entries().size());
     braking_.resize(headings_.size());
     for (std::size_t i = 0; i < headings_.size(); ++i) {
-      const Twin& twin = roster_.entries()[i].body;
-      headings_[i] = {twin.cos_h, twin.sin_h};
+      const BodyProxy& proxy = bodies_table_.entries()[i].body;
+      headings_[i] = {proxy.cos_h, proxy.sin_h};
     }
     for (int step = 0; step < steps; ++step) {
       for (std::size_t i = 0; i < headings_.size(); ++i) steer(s, i, dt);
       for (std::size_t i = 0; i < headings_.size(); ++i) brake(i, static_cast<float>(dt));
       for (std::size_t i = 0; i < headings_.size(); ++i) {
-        b2Body* body = roster_.entries()[i].body.body;
+        b2Body* body = bodies_table_.entries()[i].body.body;
         if (braking_[i].LengthSquared() > 0.0F) body->SetLinearVelocity(body->GetLinearVelocity() - braking_[i]);
       }
       world_->Step(static_cast<float>(dt), static_cast<int>(params_.velocity_iterations),
                    static_cast<int>(params_.position_iterations));
       for (std::size_t i = 0; i < headings_.size(); ++i) {
-        const auto& entry = roster_.entries()[i];
+        const auto& entry = bodies_table_.entries()[i];
         if (entry.key.is_object()) continue;
         if (entry.body.hold == nullptr) {
           headings_[i] = turned(headings_[i], entry.body.turn_rad);
@@ -177,7 +177,7 @@ class Dynamics2d final : public Solver {
   }
 
   std::shared_ptr<const void> keep() override {
-    return std::make_shared<Kept>(Kept{memory_.copy(), world_, anchor_, immovable_, placed_, roster_, joints_});
+    return std::make_shared<Kept>(Kept{memory_.copy(), world_, anchor_, immovable_, placed_, bodies_table_, joints_});
   }
 
   void put_back(const void* kept) override {
@@ -188,7 +188,7 @@ class Dynamics2d final : public Solver {
     immovable_ = k.immovable;
     placed_ = k.placed;
     version_ = 0;  // looks whether they are those that stand there
-    roster_ = k.roster;
+    bodies_table_ = k.roster;
     joints_ = k.joints;
   }
 
@@ -211,7 +211,7 @@ class Dynamics2d final : public Solver {
     b2Body* anchor;
     b2Body* immovable;
     std::vector<Placed> placed;
-    Roster<Twin> roster;
+    BodyTable<BodyProxy> roster;
     std::vector<Held> joints;
   };
 
@@ -292,8 +292,8 @@ class Dynamics2d final : public Solver {
     return *s.groups[s.blocks[s.robots[s.bodies.entity[row]].block].group].kind;
   }
 
-  Twin make(const SpaceStores& s, BodyKey key) {
-    Twin twin;
+  BodyProxy make(const SpaceStores& s, BodyKey key) {
+    BodyProxy proxy;
     b2BodyDef def;
     def.allowSleep = false;
     def.type = b2_dynamicBody;
@@ -303,58 +303,58 @@ class Dynamics2d final : public Solver {
       const Object& o = s.objects[i];
       if (placed) def.position = at(o.x_m, o.y_m);
       if (placed) def.angle = static_cast<float>(std::atan2(o.sin_h, o.cos_h));
-      twin.body = world_->CreateBody(&def);
-      twin.unfit = unfit(o);
-      if (!twin.unfit.empty()) return twin;
+      proxy.body = world_->CreateBody(&def);
+      proxy.unfit = unfit(o);
+      if (!proxy.unfit.empty()) return proxy;
       const double area =
           o.kind == Object::Kind::Cylinder ? M_PI * o.radius_m * o.radius_m : 4 * o.half_x_m * o.half_y_m;
-      add_fixture(twin.body, o, false, static_cast<float>(o.mass_kg / (area * kUnits_m * kUnits_m)));
+      add_fixture(proxy.body, o, false, static_cast<float>(o.mass_kg / (area * kUnits_m * kUnits_m)));
       const bool round = o.kind == Object::Kind::Cylinder;
       const double force = round ? params_.cylinder_linear_friction : params_.box_linear_friction;  // per kg
       const double torque = round ? params_.cylinder_angular_friction : params_.box_angular_friction;
       b2FrictionJointDef rub;
       rub.bodyA = anchor_;
-      rub.bodyB = twin.body;
+      rub.bodyB = proxy.body;
       rub.collideConnected = true;
       rub.maxForce = static_cast<float>(o.mass_kg * force * kUnits_m);
       rub.maxTorque =
           static_cast<float>(o.mass_kg * (torque < 0.0 ? force * mean_radius_m(o) : torque) * kUnits_m * kUnits_m);
-      twin.hold = world_->CreateJoint(&rub);
+      proxy.hold = world_->CreateJoint(&rub);
     } else {
       const hal::RobotKind& kind = kind_of(s, i);
       if (placed) def.position = at(s.bodies.x_m[i], s.bodies.y_m[i]);
       if (placed) def.angle = static_cast<float>(std::atan2(s.bodies.sin_h[i], s.bodies.cos_h[i]));
-      twin.body = world_->CreateBody(&def);
+      proxy.body = world_->CreateBody(&def);
       b2CircleShape disc;
       disc.m_radius = s.bodies.radius_m[i] * kUnits;
       b2FixtureDef fixture;
       fixture.shape = &disc;
       fixture.friction = static_cast<float>(params_.friction);
       fixture.density = static_cast<float>(kind.body.mass_kg) / (b2_pi * disc.m_radius * disc.m_radius);
-      twin.body->CreateFixture(&fixture);
-      twin.body->SetFixedRotation(true);
+      proxy.body->CreateFixture(&fixture);
+      proxy.body->SetFixedRotation(true);
     }
-    return twin;
+    return proxy;
   }
 
-  void drop(Twin& twin) {
-    if (twin.body == nullptr) return;
+  void drop(BodyProxy& proxy) {
+    if (proxy.body == nullptr) return;
     // Joints between bodies go with either of them.
     std::erase_if(joints_, [&](const Held& held) {
-      return held.joint->GetBodyA() == twin.body || held.joint->GetBodyB() == twin.body;
+      return held.joint->GetBodyA() == proxy.body || held.joint->GetBodyB() == proxy.body;
     });
-    world_->DestroyBody(twin.body);
-    twin.body = nullptr;
+    world_->DestroyBody(proxy.body);
+    proxy.body = nullptr;
   }
 
   /// Box2D ends the process over what is no number.
-  void leave_out(Twin& twin, BodyKey key, bool owned, const char* flaw) {
-    twin.x_m = NAN;  // placed anew when it is sound again
-    twin.vx_m_s = NAN;
+  void leave_out(BodyProxy& proxy, BodyKey key, bool owned, const char* flaw) {
+    proxy.x_m = NAN;  // placed anew when it is sound again
+    proxy.vx_m_s = NAN;
     if (owned) trouble.push_back({key, flaw});
   }
 
-  void take_over(const SpaceStores& s, BodyKey key, bool owned, Twin& twin, double tick_s) {
+  void take_over(const SpaceStores& s, BodyKey key, bool owned, BodyProxy& proxy, double tick_s) {
     const std::size_t i = key.index();
     const bool object = key.is_object();
     const double x = object ? s.objects[i].x_m : s.bodies.x_m[i];
@@ -363,52 +363,52 @@ class Dynamics2d final : public Solver {
     const double h = object ? s.objects[i].sin_h : s.bodies.sin_h[i];
     const Motion& m = object ? s.object_motion[i] : s.bodies.motion[i];
     if (!object && (s.bodies.flags[i] & kExternal) != 0) {
-      lead(twin, x, y, c, h, tick_s);
+      lead(proxy, x, y, c, h, tick_s);
       return;
     }
-    if (twin.body->GetType() != b2_dynamicBody) twin.body->SetType(b2_dynamicBody);
-    if (x != twin.x_m || y != twin.y_m || c != twin.cos_h || h != twin.sin_h) {
-      const bool put_there = owned && std::isfinite(twin.x_m);  // by a hook: else it is new, or mirrored
-      twin.body->SetTransform(at(x, y), nearest_turn(std::atan2(h, c), twin.body->GetAngle()));
-      if (put_there) part_from_twins(twin, key);
-      twin.x_m = x;
-      twin.y_m = y;
-      twin.cos_h = c;
-      twin.sin_h = h;
+    if (proxy.body->GetType() != b2_dynamicBody) proxy.body->SetType(b2_dynamicBody);
+    if (x != proxy.x_m || y != proxy.y_m || c != proxy.cos_h || h != proxy.sin_h) {
+      const bool put_there = owned && std::isfinite(proxy.x_m);  // by a hook: else it is new, or mirrored
+      proxy.body->SetTransform(at(x, y), nearest_turn(std::atan2(h, c), proxy.body->GetAngle()));
+      if (put_there) part_from_proxies(proxy, key);
+      proxy.x_m = x;
+      proxy.y_m = y;
+      proxy.cos_h = c;
+      proxy.sin_h = h;
     }
-    if (m.v_m_s[0] != twin.vx_m_s || m.v_m_s[1] != twin.vy_m_s || m.w_rad_s[2] != twin.w_rad_s) {
-      twin.vx_m_s = m.v_m_s[0];
-      twin.vy_m_s = m.v_m_s[1];
-      twin.w_rad_s = m.w_rad_s[2];
-      twin.body->SetLinearVelocity(speed(twin.vx_m_s, twin.vy_m_s));
-      twin.body->SetAngularVelocity(static_cast<float>(twin.w_rad_s));
+    if (m.v_m_s[0] != proxy.vx_m_s || m.v_m_s[1] != proxy.vy_m_s || m.w_rad_s[2] != proxy.w_rad_s) {
+      proxy.vx_m_s = m.v_m_s[0];
+      proxy.vy_m_s = m.v_m_s[1];
+      proxy.w_rad_s = m.w_rad_s[2];
+      proxy.body->SetLinearVelocity(speed(proxy.vx_m_s, proxy.vy_m_s));
+      proxy.body->SetAngularVelocity(static_cast<float>(proxy.w_rad_s));
     }
     if (!object) return;
     const double reach_m = kLargestHop * std::max(inner_radius_m(s.objects[i]), kSmallest_m);
-    hops_ = std::max({hops_, std::hypot(twin.vx_m_s, twin.vy_m_s) * tick_s / reach_m,
-                      std::fabs(twin.w_rad_s) * tick_s / kLargestTurn_rad});
+    hops_ = std::max({hops_, std::hypot(proxy.vx_m_s, proxy.vy_m_s) * tick_s / reach_m,
+                      std::fabs(proxy.w_rad_s) * tick_s / kLargestTurn_rad});
   }
 
   /// A body whose pose comes from outside moves there within the tick, so that others are pushed and not jumped upon.
-  void lead(Twin& twin, double x_m, double y_m, double cos_h, double sin_h, double tick_s) {
-    if (twin.body->GetType() != b2_kinematicBody) twin.body->SetType(b2_kinematicBody);
+  void lead(BodyProxy& proxy, double x_m, double y_m, double cos_h, double sin_h, double tick_s) {
+    if (proxy.body->GetType() != b2_kinematicBody) proxy.body->SetType(b2_kinematicBody);
     const b2Vec2 there = at(x_m, y_m);
-    const b2Vec2 way = there - twin.body->GetPosition();
-    const bool jumps = !std::isfinite(twin.x_m) || way.Length() > kUnits * static_cast<float>(kLongestLead_m);
-    const float angle = nearest_turn(std::atan2(sin_h, cos_h), twin.body->GetAngle());
-    if (jumps) twin.body->SetTransform(there, angle);
+    const b2Vec2 way = there - proxy.body->GetPosition();
+    const bool jumps = !std::isfinite(proxy.x_m) || way.Length() > kUnits * static_cast<float>(kLongestLead_m);
+    const float angle = nearest_turn(std::atan2(sin_h, cos_h), proxy.body->GetAngle());
+    if (jumps) proxy.body->SetTransform(there, angle);
     const float per_s = 1.0F / static_cast<float>(tick_s);
-    twin.body->SetLinearVelocity(jumps ? b2Vec2(0.0F, 0.0F) : per_s * way);
-    twin.body->SetAngularVelocity(per_s * (angle - twin.body->GetAngle()));
-    twin.x_m = x_m;
-    twin.y_m = y_m;
-    twin.cos_h = cos_h;
-    twin.sin_h = sin_h;
+    proxy.body->SetLinearVelocity(jumps ? b2Vec2(0.0F, 0.0F) : per_s * way);
+    proxy.body->SetAngularVelocity(per_s * (angle - proxy.body->GetAngle()));
+    proxy.x_m = x_m;
+    proxy.y_m = y_m;
+    proxy.cos_h = cos_h;
+    proxy.sin_h = sin_h;
   }
 
   /// Box2D cannot tell in which direction two discs with one centre are to part: the one just put there gives way a
   /// little, in a direction of its own.
-  void part_from_twins(Twin& twin, BodyKey key) {
+  void part_from_proxies(BodyProxy& proxy, BodyKey key) {
     struct Finder final : b2QueryCallback {
       b2Body* self = nullptr;
       bool found = false;
@@ -419,17 +419,18 @@ class Dynamics2d final : public Solver {
         return !found;
       }
     } finder;
-    finder.self = twin.body;
-    const b2Vec2 p = twin.body->GetPosition();
+    finder.self = proxy.body;
+    const b2Vec2 p = proxy.body->GetPosition();
     world_->QueryAABB(&finder, {p, p});
     if (!finder.found) return;
     const auto direction = static_cast<float>(key.value);
     const auto step = static_cast<float>(kSamePlace_m * kUnits_m);
-    twin.body->SetTransform(p + b2Vec2(step * std::cos(direction), step * std::sin(direction)), twin.body->GetAngle());
+    proxy.body->SetTransform(p + b2Vec2(step * std::cos(direction), step * std::sin(direction)),
+                             proxy.body->GetAngle());
   }
 
-  Twin* find(BodyKey key) noexcept {
-    auto& entries = roster_.entries();
+  BodyProxy* find(BodyKey key) noexcept {
+    auto& entries = bodies_table_.entries();
     const auto found = std::lower_bound(entries.begin(), entries.end(), key,
                                         [](const auto& entry, BodyKey wanted) { return entry.key < wanted; });
     return found != entries.end() && found->key == key ? &found->body : nullptr;
@@ -446,12 +447,12 @@ class Dynamics2d final : public Solver {
       const Joint& joint = s.joints[i];
       const bool held = std::any_of(joints_.begin(), joints_.end(), [&](const Held& h) { return h.number == i; });
       if (!joint.alive || held) continue;
-      const Twin* a = find(joint.a);
-      const Twin* b = find(joint.b);
+      const BodyProxy* a = find(joint.a);
+      const BodyProxy* b = find(joint.b);
       if (a == nullptr || b == nullptr || a->flawed || b->flawed) continue;
-      for (const Twin* twin : {a, b})  // robots that push nothing turn in doubles alone
-        twin->body->SetTransform(twin->body->GetPosition(),
-                                 nearest_turn(std::atan2(twin->sin_h, twin->cos_h), twin->body->GetAngle()));
+      for (const BodyProxy* proxy : {a, b})  // robots that push nothing turn in doubles alone
+        proxy->body->SetTransform(proxy->body->GetPosition(),
+                                  nearest_turn(std::atan2(proxy->sin_h, proxy->cos_h), proxy->body->GetAngle()));
       joints_.push_back({i, joint.generation, make_joint(joint, a->body, b->body)});
     }
     for (const Held& held : joints_) {
@@ -519,8 +520,8 @@ class Dynamics2d final : public Solver {
   }
 
   /// Whether a robot pushes something that a drive must hold its own against: an object, or a robot that pushes.
-  static bool pushes(const Twin& twin) noexcept {
-    for (const b2ContactEdge* edge = twin.body->GetContactList(); edge != nullptr; edge = edge->next) {
+  static bool pushes(const BodyProxy& proxy) noexcept {
+    for (const b2ContactEdge* edge = proxy.body->GetContactList(); edge != nullptr; edge = edge->next) {
       if (!edge->contact->IsTouching() || edge->other->GetType() != b2_dynamicBody) continue;
       if (edge->other->GetJointList() != nullptr) return true;
     }
@@ -529,11 +530,11 @@ class Dynamics2d final : public Solver {
 
   /// Gives a robot the velocity that its wheels command, as far as their force goes.
   void steer(const SpaceStores& s, std::size_t index, double dt) {
-    auto& entry = roster_.entries()[index];
+    auto& entry = bodies_table_.entries()[index];
     if (entry.key.is_object() || entry.body.flawed) return;
     const std::size_t row = entry.key.index();
     if ((s.bodies.flags[row] & kExternal) != 0) return;
-    Twin& twin = entry.body;
+    BodyProxy& proxy = entry.body;
     const hal::RobotKind& kind = kind_of(s, row);
     const hal::DifferentialDrive& wheels = wheels_of(kind);
     const double turn = (s.bodies.right_m_s[row] - s.bodies.left_m_s[row]) / wheels.wheel_base_m * dt;
@@ -545,22 +546,22 @@ class Dynamics2d final : public Solver {
     const Heading middle = turned(headings_[index], half);
     const double dx = chord * middle.cos_h;
     const double dy = chord * middle.sin_h;
-    if (pushes(twin) || holds(twin)) {
-      drive(twin, wheels, dx, dy, turn, std::atan2(headings_[index].sin_h, headings_[index].cos_h));
+    if (pushes(proxy) || holds(proxy)) {
+      drive(proxy, wheels, dx, dy, turn, std::atan2(headings_[index].sin_h, headings_[index].cos_h));
       return;
     }
-    if (twin.hold != nullptr) {
-      world_->DestroyJoint(twin.hold);
-      twin.hold = nullptr;
-      twin.body->SetFixedRotation(true);
+    if (proxy.hold != nullptr) {
+      world_->DestroyJoint(proxy.hold);
+      proxy.hold = nullptr;
+      proxy.body->SetFixedRotation(true);
     }
     // The wheels hold the heading against whatever the disc rubs on.
-    twin.turn_rad = turn;
+    proxy.turn_rad = turn;
     const auto most = static_cast<float>(wheels.force_N / kind.body.mass_kg * dt * kUnits_m);
-    b2Vec2 change = speed(dx / dt, dy / dt) - twin.body->GetLinearVelocity();
+    b2Vec2 change = speed(dx / dt, dy / dt) - proxy.body->GetLinearVelocity();
     const float length = change.Length();
     if (length > most) change *= most / length;
-    twin.body->SetLinearVelocity(twin.body->GetLinearVelocity() + change);
+    proxy.body->SetLinearVelocity(proxy.body->GetLinearVelocity() + change);
   }
 
   /// How much velocity a robot must lose so as not to run into what it nears within the sub-step. Box2D sees a contact
@@ -568,7 +569,7 @@ class Dynamics2d final : public Solver {
   /// losing what it contributes to the approach. Movable objects are not braked for: they are to be pushed.
   void brake(std::size_t index, float dt_s) {
     braking_[index].SetZero();
-    const auto& entry = roster_.entries()[index];
+    const auto& entry = bodies_table_.entries()[index];
     b2Body* body = entry.body.body;
     if (entry.key.is_object() || entry.body.hold != nullptr || body->GetType() != b2_dynamicBody) return;
     const b2Vec2 v = body->GetLinearVelocity();
@@ -592,7 +593,7 @@ class Dynamics2d final : public Solver {
   }
 
   bool is_movable_object(b2Body* body) const {
-    return body->GetType() == b2_dynamicBody && roster_.entries()[body->GetUserData().pointer].key.is_object();
+    return body->GetType() == b2_dynamicBody && bodies_table_.entries()[body->GetUserData().pointer].key.is_object();
   }
 
   /// Between a disc and another shape; `normal` is the unit vector from the disc to it.
@@ -620,43 +621,43 @@ class Dynamics2d final : public Solver {
   }
 
   /// Whether a robot is joined to something.
-  static bool holds(const Twin& twin) noexcept {
-    for (const b2JointEdge* edge = twin.body->GetJointList(); edge != nullptr; edge = edge->next) {
-      if (edge->joint != twin.hold) return true;
+  static bool holds(const BodyProxy& proxy) noexcept {
+    for (const b2JointEdge* edge = proxy.body->GetJointList(); edge != nullptr; edge = edge->next) {
+      if (edge->joint != proxy.hold) return true;
     }
     return false;
   }
 
   /// The drive as a joint to the ground: its force is part of what Box2D solves, so pushing against a load is exact.
-  void drive(Twin& twin, const hal::DifferentialDrive& wheels, double dx_m, double dy_m, double turn_rad,
+  void drive(BodyProxy& proxy, const hal::DifferentialDrive& wheels, double dx_m, double dy_m, double turn_rad,
              double heading_rad) {
-    const b2Vec2 target = twin.body->GetPosition() + speed(dx_m, dy_m);
-    const float angle = twin.body->GetAngle() + static_cast<float>(turn_rad);
-    if (twin.hold == nullptr) {
+    const b2Vec2 target = proxy.body->GetPosition() + speed(dx_m, dy_m);
+    const float angle = proxy.body->GetAngle() + static_cast<float>(turn_rad);
+    if (proxy.hold == nullptr) {
       b2MotorJointDef def;
       def.bodyA = anchor_;
-      def.bodyB = twin.body;
+      def.bodyB = proxy.body;
       def.collideConnected = true;
       def.maxForce = static_cast<float>(wheels.force_N * kUnits_m);
       def.maxTorque = static_cast<float>(wheels.torque_Nm * kUnits_m * kUnits_m);
       def.correctionFactor = kLinearSlowing;
-      twin.hold = world_->CreateJoint(&def);
-      twin.body->SetFixedRotation(false);
-      twin.body->SetTransform(twin.body->GetPosition(), nearest_turn(heading_rad, twin.body->GetAngle()));
+      proxy.hold = world_->CreateJoint(&def);
+      proxy.body->SetFixedRotation(false);
+      proxy.body->SetTransform(proxy.body->GetPosition(), nearest_turn(heading_rad, proxy.body->GetAngle()));
     }
-    auto* motor = static_cast<b2MotorJoint*>(twin.hold);
+    auto* motor = static_cast<b2MotorJoint*>(proxy.hold);
     motor->SetLinearOffset(target);
     motor->SetAngularOffset(angle);
   }
 
   void write_back(SpaceStores& s, std::size_t index, double tick_s, double dt) {
-    auto& entry = roster_.entries()[index];
-    Twin& twin = entry.body;
-    if (twin.flawed) return;
-    const b2Vec2 p = twin.body->GetPosition();
-    const b2Vec2 v = twin.body->GetLinearVelocity();
-    const bool driven = !entry.key.is_object() && twin.hold == nullptr;
-    const auto w = driven ? static_cast<float>(twin.turn_rad / dt) : twin.body->GetAngularVelocity();
+    auto& entry = bodies_table_.entries()[index];
+    BodyProxy& proxy = entry.body;
+    if (proxy.flawed) return;
+    const b2Vec2 p = proxy.body->GetPosition();
+    const b2Vec2 v = proxy.body->GetLinearVelocity();
+    const bool driven = !entry.key.is_object() && proxy.hold == nullptr;
+    const auto w = driven ? static_cast<float>(proxy.turn_rad / dt) : proxy.body->GetAngularVelocity();
     const double vx = static_cast<double>(v.x) / kUnits_m;
     const double vy = static_cast<double>(v.y) / kUnits_m;
     const bool finite =
@@ -672,36 +673,36 @@ class Dynamics2d final : public Solver {
     const std::size_t i = entry.key.index();
     const bool object = entry.key.is_object();
     if (!object && (s.bodies.flags[i] & kExternal) != 0) return;
-    twin.x_m = origin_x_m_ + static_cast<double>(p.x) / kUnits_m;
-    twin.y_m = origin_y_m_ + static_cast<double>(p.y) / kUnits_m;
-    twin.vx_m_s = vx;
-    twin.vy_m_s = vy;
-    twin.w_rad_s = static_cast<double>(w);
+    proxy.x_m = origin_x_m_ + static_cast<double>(p.x) / kUnits_m;
+    proxy.y_m = origin_y_m_ + static_cast<double>(p.y) / kUnits_m;
+    proxy.vx_m_s = vx;
+    proxy.vy_m_s = vy;
+    proxy.w_rad_s = static_cast<double>(w);
     if (object) {
-      const auto angle = static_cast<double>(twin.body->GetAngle());
-      twin.cos_h = std::cos(angle);
-      twin.sin_h = std::sin(angle);
+      const auto angle = static_cast<double>(proxy.body->GetAngle());
+      proxy.cos_h = std::cos(angle);
+      proxy.sin_h = std::sin(angle);
     } else {
       const double k = 1.5 - 0.5 * (headings_[index].cos_h * headings_[index].cos_h +
                                     headings_[index].sin_h * headings_[index].sin_h);
-      twin.cos_h = headings_[index].cos_h * k;  // one Newton step keeps the heading a unit vector
-      twin.sin_h = headings_[index].sin_h * k;
+      proxy.cos_h = headings_[index].cos_h * k;  // one Newton step keeps the heading a unit vector
+      proxy.sin_h = headings_[index].sin_h * k;
     }
     if (!entry.owned) return;
     Motion& m = object ? s.object_motion[i] : s.bodies.motion[i];
-    m.v_m_s = {twin.vx_m_s, twin.vy_m_s, 0.0};
-    m.w_rad_s = {0.0, 0.0, twin.w_rad_s};
+    m.v_m_s = {proxy.vx_m_s, proxy.vy_m_s, 0.0};
+    m.w_rad_s = {0.0, 0.0, proxy.w_rad_s};
     if (object) {
       Object& o = s.objects[i];
-      o.x_m = twin.x_m;
-      o.y_m = twin.y_m;
-      o.cos_h = twin.cos_h;
-      o.sin_h = twin.sin_h;
+      o.x_m = proxy.x_m;
+      o.y_m = proxy.y_m;
+      o.cos_h = proxy.cos_h;
+      o.sin_h = proxy.sin_h;
     } else {
-      s.bodies.x_m[i] = twin.x_m;
-      s.bodies.y_m[i] = twin.y_m;
-      s.bodies.cos_h[i] = twin.cos_h;
-      s.bodies.sin_h[i] = twin.sin_h;
+      s.bodies.x_m[i] = proxy.x_m;
+      s.bodies.y_m[i] = proxy.y_m;
+      s.bodies.cos_h[i] = proxy.cos_h;
+      s.bodies.sin_h[i] = proxy.sin_h;
       s.bodies.left_m[i] += s.bodies.left_m_s[i] * tick_s;
       s.bodies.right_m[i] += s.bodies.right_m_s[i] * tick_s;
     }
@@ -716,7 +717,7 @@ class Dynamics2d final : public Solver {
   b2Body* immovable_ = nullptr;  // walls, boxes, cylinders
   std::uint64_t version_ = 0;    // of the immovable objects
   std::vector<Placed> placed_;   // of these, those near the region
-  Roster<Twin> roster_;
+  BodyTable<BodyProxy> bodies_table_;
   std::vector<Heading> headings_;  // parallel to the roster, within a tick
   std::vector<b2Vec2> braking_;
   double hops_ = 0.0;  // sub-steps of the tick that its objects' speeds ask for

@@ -1,4 +1,4 @@
-// What may be set in <dynamics2d>.
+// Parameters of <dynamics2d>.
 #pragma once
 #include <cstdint>
 #include <memory>

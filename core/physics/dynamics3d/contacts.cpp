@@ -44,42 +44,42 @@ Vector3 first_direction(const Vector3& normal, const Vector3& slip, bool level) 
   return {normal[2] / other, 0.0, -normal[0] / other};
 }
 
-bool on_floor(const Twin& twin) noexcept {
-  return twin.sort == Sort::Wheels || (twin.sort == Sort::Base && !twin.aloft);
+bool on_floor(const BodyProxy& proxy) noexcept {
+  return proxy.sort == Sort::Wheels || (proxy.sort == Sort::Base && !proxy.aloft);
 }
 
-bool moves(const Twin* twin) noexcept {
-  return twin != nullptr && !twin->external;
+bool moves(const BodyProxy* proxy) noexcept {
+  return proxy != nullptr && !proxy->external;
 }
 
 }  // namespace
 
-void Contacts::touch(Twin& a, Twin* b) {
-  const auto take = [&](Twin& twin, const Twin* other) {
-    if (!twin.light()) return;
-    give_body(twin, world_);
-    twin.touched = true;
-    twin.engaged = twin.engaged || (twin.sort == Sort::Base && !twin.external && moves(other));
+void Contacts::touch(BodyProxy& a, BodyProxy* b) {
+  const auto take = [&](BodyProxy& proxy, const BodyProxy* other) {
+    if (!proxy.light()) return;
+    give_body(proxy, world_);
+    proxy.touched = true;
+    proxy.engaged = proxy.engaged || (proxy.sort == Sort::Base && !proxy.external && moves(other));
   };
   take(a, b);
   if (b != nullptr) take(*b, &a);
 }
 
-void Contacts::note_support(Twin& a, Twin* b, const Touch& at, const Grip& grip) {
+void Contacts::note_support(BodyProxy& a, BodyProxy* b, const Touch& at, const Grip& grip) {
   if (a.robot() || (b != nullptr && b->robot())) {
     a.driven = true;
     if (b != nullptr) b->driven = true;
     return;
   }
   if (b != nullptr) {
-    Twin& top = top_of_heap(a);
-    Twin& other = top_of_heap(*b);
+    BodyProxy& top = top_of_heap(a);
+    BodyProxy& other = top_of_heap(*b);
     if (&top != &other) other.heap = &top;
   }
   if (at.depth_m > -kCarriesUpTo_m) supports_.push_back({&a, b, at.p_m, at.normal, std::min(grip.along, grip.across)});
 }
 
-void Contacts::add(Twin& a, Twin* b, const Touch& at, const Grip& grip) {
+void Contacts::add(BodyProxy& a, BodyProxy* b, const Touch& at, const Grip& grip) {
   touch(a, b);
   note_support(a, b, at, grip);
   if (at.normal[2] > kCarries) a.standing = true;
@@ -107,7 +107,7 @@ void Contacts::join(dBodyID a, dBodyID b, const Touch& at, const Grip& grip, con
   dJointAttach(dJointCreateContact(world_, group_.get(), &contact), a, b);
 }
 
-void Contacts::lean(Twin& a, Twin* b, dGeomID geom_b, const Prism& prism_b, const Grip& grip) {
+void Contacts::lean(BodyProxy& a, BodyProxy* b, dGeomID geom_b, const Prism& prism_b, const Grip& grip) {
   if (a.prism.low_m > prism_b.high_m + 2.0 * kSkin_m || prism_b.low_m > a.prism.high_m + 2.0 * kSkin_m) return;
   std::array<dContactGeom, kMostTouches> found{};
   const int count = dCollide(geom_of(a, kSkin_m), geom_b, kMostTouches, found.data(), sizeof(dContactGeom));
@@ -117,7 +117,7 @@ void Contacts::lean(Twin& a, Twin* b, dGeomID geom_b, const Prism& prism_b, cons
   }
 }
 
-void Contacts::between(Twin& a, Twin& b, const Surfaces& surfaces) {
+void Contacts::between(BodyProxy& a, BodyProxy& b, const Surfaces& surfaces) {
   const bool robot = a.robot() || b.robot();
   const Grip side{surfaces.robot_friction, 0.0, true};
   const Grip any{surfaces.object_friction, surfaces.object_friction, false};
@@ -132,7 +132,7 @@ void Contacts::between(Twin& a, Twin& b, const Surfaces& surfaces) {
   for (std::size_t i = 0; i < count; ++i) add(a, &b, touches[i], robot && touches[i].normal[2] == 0.0 ? side : any);
 }
 
-void Contacts::with_still(Twin& a, Still& still, const Surfaces& surfaces) {
+void Contacts::with_still(BodyProxy& a, Still& still, const Surfaces& surfaces) {
   const Grip side{surfaces.robot_friction, 0.0, true};
   const Grip any{surfaces.object_friction, surfaces.object_friction, false};
   if (!a.prism.upright || !(a.prism.round || still.prism.round)) {
@@ -157,7 +157,7 @@ void Contacts::with_still(Twin& a, Still& still, const Surfaces& surfaces) {
   }
 }
 
-void Contacts::with_ground(Twin& a, const Surfaces& surfaces) {
+void Contacts::with_ground(BodyProxy& a, const Surfaces& surfaces) {
   const double near_m = kNear_m + a.hop_m;
   if (a.sort == Sort::Wheels) wheels_on_floor(a, surfaces);
   const Grip grip{surfaces.floor_friction, surfaces.floor_friction, false};
@@ -168,7 +168,7 @@ void Contacts::with_ground(Twin& a, const Surfaces& surfaces) {
 
 /// Contacts of a box's corners, or of points on a cylinder's rims, with a level plane that lies below (`up` 1) or
 /// above (-1).
-void Contacts::support(Twin& a, double level_m, double up, const Grip& grip) {
+void Contacts::support(BodyProxy& a, double level_m, double up, const Grip& grip) {
   if (a.prism.round) {
     ends_of_cylinder(a, level_m, up, grip);
     return;
@@ -185,7 +185,7 @@ void Contacts::support(Twin& a, double level_m, double up, const Grip& grip) {
   }
 }
 
-void Contacts::ends_of_cylinder(Twin& a, double level_m, double up, const Grip& grip) {
+void Contacts::ends_of_cylinder(BodyProxy& a, double level_m, double up, const Grip& grip) {
   const dReal* p = dBodyGetPosition(a.body.get());
   const dReal* r = dBodyGetRotation(a.body.get());
   const double radius = a.prism.radius_m;
@@ -204,12 +204,12 @@ void Contacts::ends_of_cylinder(Twin& a, double level_m, double up, const Grip& 
   }
 }
 
-void Contacts::point_on_level(Twin& a, const Vector3& p_m, double level_m, double up, const Grip& grip) {
+void Contacts::point_on_level(BodyProxy& a, const Vector3& p_m, double level_m, double up, const Grip& grip) {
   const double gap_m = up * (p_m[2] - level_m);
   if (gap_m < kNear_m + a.hop_m) add(a, nullptr, {p_m, {0.0, 0.0, up}, -gap_m}, grip);
 }
 
-void Contacts::wheels_on_floor(Twin& a, const Surfaces& surfaces) {
+void Contacts::wheels_on_floor(BodyProxy& a, const Surfaces& surfaces) {
   const dReal* p = dBodyGetPosition(a.body.get());
   const dReal* r = dBodyGetRotation(a.body.get());
   for (const double side : {-kCasterPlace, kCasterPlace}) {

@@ -3,8 +3,8 @@
 #include <array>
 #include <vector>
 
+#include "core/physics/dynamics3d/body_proxy.hpp"
 #include "core/physics/dynamics3d/standing.hpp"
-#include "core/physics/dynamics3d/twin.hpp"
 
 namespace tandem::core {
 
@@ -26,8 +26,8 @@ struct Surfaces {
 };
 
 /// The one that stands for all objects of its heap: those that touch one another, directly or through others.
-inline Twin& top_of_heap(Twin& twin) noexcept {
-  Twin* top = &twin;
+inline BodyProxy& top_of_heap(BodyProxy& proxy) noexcept {
+  BodyProxy* top = &proxy;
   while (top->heap != nullptr) top = top->heap;
   return *top;
 }
@@ -45,10 +45,10 @@ class Contacts {
     dt_s_ = dt_s;
     supports_.clear();
   }
-  void between(Twin& a, Twin& b, const Surfaces& surfaces);
-  void with_still(Twin& a, Still& still, const Surfaces& surfaces);
+  void between(BodyProxy& a, BodyProxy& b, const Surfaces& surfaces);
+  void with_still(BodyProxy& a, Still& still, const Surfaces& surfaces);
   /// With floor and ceiling; of what lives in ODE.
-  void with_ground(Twin& a, const Surfaces& surfaces);
+  void with_ground(BodyProxy& a, const Surfaces& surfaces);
   /// Where objects touch one another and what does not move, in this sub-step.
   const std::vector<Support>& supports() const noexcept { return supports_; }
   /// Ends the sub-step.
@@ -60,15 +60,15 @@ class Contacts {
     double across = 0.0;
     bool level = false;  ///< the first direction is level, whichever way the bodies slide
   };
-  void touch(Twin& a, Twin* b);
-  void note_support(Twin& a, Twin* b, const Touch& at, const Grip& grip);
-  void add(Twin& a, Twin* b, const Touch& touch, const Grip& grip);
+  void touch(BodyProxy& a, BodyProxy* b);
+  void note_support(BodyProxy& a, BodyProxy* b, const Touch& at, const Grip& grip);
+  void add(BodyProxy& a, BodyProxy* b, const Touch& touch, const Grip& grip);
   void join(dBodyID a, dBodyID b, const Touch& touch, const Grip& grip, const Vector3& first);
-  void lean(Twin& a, Twin* b, dGeomID geom_b, const Prism& prism_b, const Grip& grip);
-  void support(Twin& a, double level_m, double up, const Grip& grip);
-  void ends_of_cylinder(Twin& a, double level_m, double up, const Grip& grip);
-  void point_on_level(Twin& a, const Vector3& p_m, double level_m, double up, const Grip& grip);
-  void wheels_on_floor(Twin& a, const Surfaces& surfaces);
+  void lean(BodyProxy& a, BodyProxy* b, dGeomID geom_b, const Prism& prism_b, const Grip& grip);
+  void support(BodyProxy& a, double level_m, double up, const Grip& grip);
+  void ends_of_cylinder(BodyProxy& a, double level_m, double up, const Grip& grip);
+  void point_on_level(BodyProxy& a, const Vector3& p_m, double level_m, double up, const Grip& grip);
+  void wheels_on_floor(BodyProxy& a, const Surfaces& surfaces);
 
   dWorldID world_ = nullptr;
   double dt_s_ = 0.0;

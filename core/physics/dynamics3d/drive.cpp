@@ -81,50 +81,50 @@ Vector3 lift_of(const FlightCommand& command, const hal::Quadrotor& flight, doub
 
 }  // namespace
 
-void drive_base(Twin& twin, double left_m_s, double right_m_s, double dt_s) noexcept {
-  const hal::DifferentialDrive& wheels = *twin.drive;
-  twin.turn_rad_s = (right_m_s - left_m_s) / wheels.wheel_base_m;
-  const double inertia = 0.5 * twin.mass_kg * twin.prism.radius_m * twin.prism.radius_m;
-  twin.next_w_rad_s = nearer(twin.w_rad_s, twin.turn_rad_s, wheels.torque_Nm / inertia * dt_s);
+void drive_base(BodyProxy& proxy, double left_m_s, double right_m_s, double dt_s) noexcept {
+  const hal::DifferentialDrive& wheels = *proxy.drive;
+  proxy.turn_rad_s = (right_m_s - left_m_s) / wheels.wheel_base_m;
+  const double inertia = 0.5 * proxy.mass_kg * proxy.prism.radius_m * proxy.prism.radius_m;
+  proxy.next_w_rad_s = nearer(proxy.w_rad_s, proxy.turn_rad_s, wheels.torque_Nm / inertia * dt_s);
   // The chord of the arc: its direction is the heading in the middle, its length a little less than the arc's.
-  const double half = 0.5 * twin.next_w_rad_s * dt_s;
+  const double half = 0.5 * proxy.next_w_rad_s * dt_s;
   const double half2 = half * half;
   const double chord_m_s =
       0.5 * (left_m_s + right_m_s) * (1.0 - half2 / 6.0 * (1.0 - half2 / 20.0 * (1.0 - half2 / 42.0)));
   const auto [c, s] = turned(1.0, 0.0, half);
-  twin.forward_m_s = chord_m_s * c;
-  twin.leftward_m_s = chord_m_s * s;
-  const Vector3 goal{twin.cos_h * twin.forward_m_s - twin.sin_h * twin.leftward_m_s,
-                     twin.sin_h * twin.forward_m_s + twin.cos_h * twin.leftward_m_s, twin.v_m_s[2]};
-  twin.next_v_m_s = twin.v_m_s;
-  approach(twin.next_v_m_s, goal, wheels.force_N / twin.mass_kg * dt_s);
+  proxy.forward_m_s = chord_m_s * c;
+  proxy.leftward_m_s = chord_m_s * s;
+  const Vector3 goal{proxy.cos_h * proxy.forward_m_s - proxy.sin_h * proxy.leftward_m_s,
+                     proxy.sin_h * proxy.forward_m_s + proxy.cos_h * proxy.leftward_m_s, proxy.v_m_s[2]};
+  proxy.next_v_m_s = proxy.v_m_s;
+  approach(proxy.next_v_m_s, goal, wheels.force_N / proxy.mass_kg * dt_s);
 }
 
-void drive_flyer(Twin& twin, const FlightCommand& command, double gravity_m_s2, double dt_s) noexcept {
+void drive_flyer(BodyProxy& proxy, const FlightCommand& command, double gravity_m_s2, double dt_s) noexcept {
   if (command.mode == FlightCommand::Mode::None) {
-    drop(twin, gravity_m_s2, dt_s);
+    drop(proxy, gravity_m_s2, dt_s);
     return;
   }
-  const hal::Quadrotor& flight = *twin.flight;
-  twin.next_v_m_s = twin.v_m_s;
-  twin.next_w_rad_s = wanted_turn(twin.cos_h, twin.sin_h, command, flight);
+  const hal::Quadrotor& flight = *proxy.flight;
+  proxy.next_v_m_s = proxy.v_m_s;
+  proxy.next_w_rad_s = wanted_turn(proxy.cos_h, proxy.sin_h, command, flight);
   if (command.mode == FlightCommand::Mode::Attitude) {
-    const Vector3 lift = lift_of(command, flight, twin.cos_h, twin.sin_h, gravity_m_s2);
-    for (std::size_t i = 0; i < 3; ++i) twin.next_v_m_s[i] += lift[i] * dt_s;
-    twin.next_v_m_s[2] -= gravity_m_s2 * dt_s;
-    const double speed = length(twin.next_v_m_s);
+    const Vector3 lift = lift_of(command, flight, proxy.cos_h, proxy.sin_h, gravity_m_s2);
+    for (std::size_t i = 0; i < 3; ++i) proxy.next_v_m_s[i] += lift[i] * dt_s;
+    proxy.next_v_m_s[2] -= gravity_m_s2 * dt_s;
+    const double speed = length(proxy.next_v_m_s);
     if (speed > flight.max_speed_m_s) {
-      for (double& v : twin.next_v_m_s) v *= flight.max_speed_m_s / speed;
+      for (double& v : proxy.next_v_m_s) v *= flight.max_speed_m_s / speed;
     }
     return;
   }
-  approach(twin.next_v_m_s, wanted_velocity(twin.p_m, command, flight, kApproach_1_s),
+  approach(proxy.next_v_m_s, wanted_velocity(proxy.p_m, command, flight, kApproach_1_s),
            flight.max_acceleration_m_s2 * dt_s);
 }
 
-void drive_rotors(Twin& twin, const FlightCommand& command, double gravity_m_s2, double dt_s) {
-  const hal::Quadrotor& flight = *twin.flight;
-  const dBodyID body = twin.body.get();
+void drive_rotors(BodyProxy& proxy, const FlightCommand& command, double gravity_m_s2, double dt_s) {
+  const hal::Quadrotor& flight = *proxy.flight;
+  const dBodyID body = proxy.body.get();
   const dReal* p = dBodyGetPosition(body);
   const dReal* r = dBodyGetRotation(body);
   const dReal* v = dBodyGetLinearVel(body);
@@ -134,9 +134,9 @@ void drive_rotors(Twin& twin, const FlightCommand& command, double gravity_m_s2,
     return Vector3{r[0] * a[0] + r[4] * a[1] + r[8] * a[2], r[1] * a[0] + r[5] * a[1] + r[9] * a[2],
                    r[2] * a[0] + r[6] * a[1] + r[10] * a[2]};
   };
-  if (!twin.rotors.spun) {
-    if (command.mode != FlightCommand::Mode::None) twin.rotors.thrust_N.fill(0.25 * twin.mass_kg * gravity_m_s2);
-    twin.rotors.spun = true;
+  if (!proxy.rotors.spun) {
+    if (command.mode != FlightCommand::Mode::None) proxy.rotors.thrust_N.fill(0.25 * proxy.mass_kg * gravity_m_s2);
+    proxy.rotors.spun = true;
   }
 
   // The force that is wanted, in W.
@@ -147,13 +147,13 @@ void drive_rotors(Twin& twin, const FlightCommand& command, double gravity_m_s2,
   if (command.mode == FlightCommand::Mode::Attitude) {
     force = lift_of(command, flight, cos_h, sin_h, gravity_m_s2);
   } else if (command.mode != FlightCommand::Mode::None) {
-    const Vector3 base{p[0], p[1], p[2] - twin.origin_m};
+    const Vector3 base{p[0], p[1], p[2] - proxy.origin_m};
     const Vector3 goal = wanted_velocity(base, command, flight, kPlace_1_s);
     Vector3 wanted{kSpeed_1_s * (goal[0] - v[0]), kSpeed_1_s * (goal[1] - v[1]), kSpeed_1_s * (goal[2] - v[2])};
     approach(force, wanted, flight.max_acceleration_m_s2);
     force[2] += gravity_m_s2;
   }
-  for (double& f : force) f *= twin.mass_kg;
+  for (double& f : force) f *= proxy.mass_kg;
 
   // What the rotors together are to do: thrust along the body's axis, and torque that brings the axis to the force.
   const double size = length(force);
@@ -175,14 +175,14 @@ void drive_rotors(Twin& twin, const FlightCommand& command, double gravity_m_s2,
   constexpr std::array<double, 4> kLeft = {1.0, 1.0, -1.0, -1.0};
   constexpr std::array<double, 4> kSpin = {1.0, -1.0, 1.0, -1.0};
   const double arm_m = flight.rotor_arm_m * std::sqrt(0.5);
-  const double most_N = 0.25 * flight.max_thrust * twin.mass_kg * kGravity_m_s2;
+  const double most_N = 0.25 * flight.max_thrust * proxy.mass_kg * kGravity_m_s2;
   const double share = 1.0 - std::exp(-dt_s / flight.rotor_lag_s);
   double all_N = 0.0;
   Vector3 done{};
   for (std::size_t i = 0; i < 4; ++i) {
     const double wanted_N = 0.25 * (thrust_N + (kLeft[i] * torque[0] - kAhead[i] * torque[1]) / arm_m +
                                     kSpin[i] * torque[2] / flight.rotor_torque_m);
-    double& f = twin.rotors.thrust_N[i];
+    double& f = proxy.rotors.thrust_N[i];
     f += share * (std::clamp(wanted_N, 0.0, most_N) - f);
     all_N += f;
     done[0] += kLeft[i] * arm_m * f;
@@ -193,53 +193,53 @@ void drive_rotors(Twin& twin, const FlightCommand& command, double gravity_m_s2,
   dBodyAddRelTorque(body, done[0], done[1], done[2]);
 }
 
-void drop(Twin& twin, double gravity_m_s2, double dt_s) noexcept {
-  twin.next_v_m_s = twin.v_m_s;
-  twin.next_v_m_s[2] -= gravity_m_s2 * dt_s;
-  twin.next_w_rad_s = twin.w_rad_s;
+void drop(BodyProxy& proxy, double gravity_m_s2, double dt_s) noexcept {
+  proxy.next_v_m_s = proxy.v_m_s;
+  proxy.next_v_m_s[2] -= gravity_m_s2 * dt_s;
+  proxy.next_w_rad_s = proxy.w_rad_s;
 }
 
-void engage(Twin& twin, dWorldID world) {
-  if (!twin.push) {
-    twin.push = OdeJoint(dJointCreateLMotor(world, nullptr));
-    dJointAttach(twin.push.get(), twin.body.get(), nullptr);
-    twin.turn = OdeJoint(dJointCreateAMotor(world, nullptr));
-    dJointAttach(twin.turn.get(), twin.body.get(), nullptr);
-    dJointSetAMotorMode(twin.turn.get(), dAMotorUser);
-    dJointSetAMotorNumAxes(twin.turn.get(), 1);
-    dJointSetAMotorAxis(twin.turn.get(), 0, 0, 0.0, 0.0, 1.0);
-    dJointSetAMotorParam(twin.turn.get(), dParamFMax, twin.drive->torque_Nm);
-    dJointSetLMotorParam(twin.push.get(), dParamFMax1, twin.drive->force_N);
-    dJointSetLMotorParam(twin.push.get(), dParamFMax2, twin.drive->force_N);
-    dJointSetLMotorParam(twin.push.get(), dParamFMax3, dInfinity);
-    dJointSetLMotorParam(twin.push.get(), dParamVel3, 0.0);
+void engage(BodyProxy& proxy, dWorldID world) {
+  if (!proxy.push) {
+    proxy.push = OdeJoint(dJointCreateLMotor(world, nullptr));
+    dJointAttach(proxy.push.get(), proxy.body.get(), nullptr);
+    proxy.turn = OdeJoint(dJointCreateAMotor(world, nullptr));
+    dJointAttach(proxy.turn.get(), proxy.body.get(), nullptr);
+    dJointSetAMotorMode(proxy.turn.get(), dAMotorUser);
+    dJointSetAMotorNumAxes(proxy.turn.get(), 1);
+    dJointSetAMotorAxis(proxy.turn.get(), 0, 0, 0.0, 0.0, 1.0);
+    dJointSetAMotorParam(proxy.turn.get(), dParamFMax, proxy.drive->torque_Nm);
+    dJointSetLMotorParam(proxy.push.get(), dParamFMax1, proxy.drive->force_N);
+    dJointSetLMotorParam(proxy.push.get(), dParamFMax2, proxy.drive->force_N);
+    dJointSetLMotorParam(proxy.push.get(), dParamFMax3, dInfinity);
+    dJointSetLMotorParam(proxy.push.get(), dParamVel3, 0.0);
   }
-  const dJointID push = twin.push.get();
+  const dJointID push = proxy.push.get();
   dJointEnable(push);
-  dJointEnable(twin.turn.get());
-  dJointSetLMotorNumAxes(push, twin.aloft ? 2 : 3);  // the floor holds its height
-  dJointSetLMotorAxis(push, 0, 0, twin.cos_h, twin.sin_h, 0.0);
-  dJointSetLMotorAxis(push, 1, 0, -twin.sin_h, twin.cos_h, 0.0);
-  if (!twin.aloft) dJointSetLMotorAxis(push, 2, 0, 0.0, 0.0, 1.0);
-  dJointSetLMotorParam(push, dParamVel1, twin.forward_m_s);
-  dJointSetLMotorParam(push, dParamVel2, twin.leftward_m_s);
-  dJointSetAMotorParam(twin.turn.get(), dParamVel, twin.turn_rad_s);
+  dJointEnable(proxy.turn.get());
+  dJointSetLMotorNumAxes(push, proxy.aloft ? 2 : 3);  // the floor holds its height
+  dJointSetLMotorAxis(push, 0, 0, proxy.cos_h, proxy.sin_h, 0.0);
+  dJointSetLMotorAxis(push, 1, 0, -proxy.sin_h, proxy.cos_h, 0.0);
+  if (!proxy.aloft) dJointSetLMotorAxis(push, 2, 0, 0.0, 0.0, 1.0);
+  dJointSetLMotorParam(push, dParamVel1, proxy.forward_m_s);
+  dJointSetLMotorParam(push, dParamVel2, proxy.leftward_m_s);
+  dJointSetAMotorParam(proxy.turn.get(), dParamVel, proxy.turn_rad_s);
 }
 
-void release(Twin& twin) noexcept {
-  if (!twin.push) return;
-  dJointDisable(twin.push.get());
-  dJointDisable(twin.turn.get());
+void release(BodyProxy& proxy) noexcept {
+  if (!proxy.push) return;
+  dJointDisable(proxy.push.get());
+  dJointDisable(proxy.turn.get());
 }
 
-void drive_wheels(Twin& twin, double left_m_s, double right_m_s) {
-  dJointSetHingeParam(twin.axles[0].get(), dParamVel, left_m_s / twin.drive->wheel_radius_m);
-  dJointSetHingeParam(twin.axles[1].get(), dParamVel, right_m_s / twin.drive->wheel_radius_m);
+void drive_wheels(BodyProxy& proxy, double left_m_s, double right_m_s) {
+  dJointSetHingeParam(proxy.axles[0].get(), dParamVel, left_m_s / proxy.drive->wheel_radius_m);
+  dJointSetHingeParam(proxy.axles[1].get(), dParamVel, right_m_s / proxy.drive->wheel_radius_m);
 }
 
-void count_wheels(Twin& twin, double dt_s) noexcept {
+void count_wheels(BodyProxy& proxy, double dt_s) noexcept {
   for (std::size_t side = 0; side < 2; ++side)
-    twin.rolled_m[side] += dJointGetHingeAngleRate(twin.axles[side].get()) * twin.drive->wheel_radius_m * dt_s;
+    proxy.rolled_m[side] += dJointGetHingeAngleRate(proxy.axles[side].get()) * proxy.drive->wheel_radius_m * dt_s;
 }
 
 }  // namespace tandem::core

@@ -1,4 +1,4 @@
-// Which bodies may touch within a tick: those whose bounds, seen from above, overlap.
+// Finds the bodies that may touch within a tick: those whose bounds, seen from above, overlap.
 #pragma once
 #include <cstddef>
 #include <cstdint>

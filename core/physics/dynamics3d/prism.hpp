@@ -1,4 +1,4 @@
-// Where upright things touch: discs and rectangles seen from above, between two heights.
+// Contact points of upright bodies: discs and rectangles seen from above, between two heights.
 #pragma once
 #include <array>
 #include <cstddef>

@@ -23,12 +23,13 @@ double dot(const Vector3& a, const Vector3& b) noexcept {
 
 }  // namespace
 
-bool Standing::stands(const std::vector<Twin*>& objects, const std::vector<Support>& supports, double gravity_m_s2) {
+bool Standing::stands(const std::vector<BodyProxy*>& objects, const std::vector<Support>& supports,
+                      double gravity_m_s2) {
   if (objects.size() > kMostObjects) return false;
   bodies_.clear();
   edges_.clear();
   weight_.assign(6 * objects.size(), 0.0);
-  for (const Twin* object : objects) {
+  for (const BodyProxy* object : objects) {
     Body& body = bodies_.emplace_back();
     dMass mass;
     dBodyGetMass(object->body.get(), &mass);
@@ -43,9 +44,9 @@ bool Standing::stands(const std::vector<Twin*>& objects, const std::vector<Suppo
     }
     weight_[6 * bodies_.size() - 4] = -gravity_m_s2 * body.mass_root;
   }
-  const auto first_of = [&](const Twin* twin) {
-    if (twin == nullptr) return kNobody;
-    return 6 * static_cast<std::size_t>(std::find(objects.begin(), objects.end(), twin) - objects.begin());
+  const auto first_of = [&](const BodyProxy* proxy) {
+    if (proxy == nullptr) return kNobody;
+    return 6 * static_cast<std::size_t>(std::find(objects.begin(), objects.end(), proxy) - objects.begin());
   };
   for (const Support& support : supports) add_edges(support, first_of(support.a), first_of(support.b));
 

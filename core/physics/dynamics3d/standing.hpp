@@ -4,16 +4,16 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/physics/dynamics3d/twin.hpp"
+#include "core/physics/dynamics3d/body_proxy.hpp"
 
 namespace tandem::core {
 
 /// A place where an object touches another, or something that does not move.
 struct Support {
-  Twin* a = nullptr;
-  Twin* b = nullptr;  ///< null: does not move
-  Vector3 p_m{};      ///< in W
-  Vector3 normal{};   ///< unit vector in W from b to a
+  BodyProxy* a = nullptr;
+  BodyProxy* b = nullptr;  ///< null: does not move
+  Vector3 p_m{};           ///< in W
+  Vector3 normal{};        ///< unit vector in W from b to a
   double friction = 0.0;
 };
 
@@ -29,7 +29,7 @@ class Standing {
   static constexpr std::size_t kMostObjects = 40;  ///< the time that it takes grows with their cube
 
   /// `objects`, where they were before the sub-step, are all those of `supports`. False for more than kMostObjects.
-  bool stands(const std::vector<Twin*>& objects, const std::vector<Support>& supports, double gravity_m_s2);
+  bool stands(const std::vector<BodyProxy*>& objects, const std::vector<Support>& supports, double gravity_m_s2);
 
  private:
   /// Momenta are in units in which every object's energy is half their square.

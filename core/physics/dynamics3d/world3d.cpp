@@ -39,23 +39,23 @@ Sort sort_of(const SpaceStores& stores, BodyKey key, const World3dSettings& sett
 }
 
 /// Of the fastest of its points, at most; of what lives in ODE.
-double speed_of(const Twin& twin) noexcept {
-  const dReal* v = dBodyGetLinearVel(twin.body.get());
-  const dReal* w = dBodyGetAngularVel(twin.body.get());
-  const double reach_m =
-      length({twin.prism.round ? twin.prism.radius_m : twin.prism.half_x_m,
-              twin.prism.round ? 0.0 : twin.prism.half_y_m, std::max(twin.origin_m, twin.height_m - twin.origin_m)});
+double speed_of(const BodyProxy& proxy) noexcept {
+  const dReal* v = dBodyGetLinearVel(proxy.body.get());
+  const dReal* w = dBodyGetAngularVel(proxy.body.get());
+  const double reach_m = length({proxy.prism.round ? proxy.prism.radius_m : proxy.prism.half_x_m,
+                                 proxy.prism.round ? 0.0 : proxy.prism.half_y_m,
+                                 std::max(proxy.origin_m, proxy.height_m - proxy.origin_m)});
   return length({v[0], v[1], v[2]}) + length({w[0], w[1], w[2]}) * reach_m;
 }
 
 /// Fingerprint of all that decides whether a heap stands.
-std::uint64_t mark_of(const std::vector<Twin*>& objects, const std::vector<Support>& supports) noexcept {
+std::uint64_t mark_of(const std::vector<BodyProxy*>& objects, const std::vector<Support>& supports) noexcept {
   std::uint64_t mark = 0xCBF29CE484222325ULL;
   const auto mix = [&mark](double value) {
     mark = (mark ^ std::bit_cast<std::uint64_t>(value)) * 0x9E3779B97F4A7C15ULL;
     mark ^= mark >> 29;
   };
-  for (const Twin* object : objects) {
+  for (const BodyProxy* object : objects) {
     mix(static_cast<double>(object->key.value));
     mix(object->mass_kg);
     for (const double x : object->before_m) mix(x);
@@ -71,9 +71,9 @@ std::uint64_t mark_of(const std::vector<Twin*>& objects, const std::vector<Suppo
 }
 
 /// The same as the store holds, for all that its double keeps.
-bool agrees(const Twin& twin, const BodyState& store) noexcept {
-  BodyState own = state_of(twin);
-  if (twin.light()) {  // turns about the vertical only: what else the store says of turning is not its concern
+bool agrees(const BodyProxy& proxy, const BodyState& store) noexcept {
+  BodyState own = state_of(proxy);
+  if (proxy.light()) {  // turns about the vertical only: what else the store says of turning is not its concern
     own.q_WB = store.q_WB;
     own.w_rad_s[0] = store.w_rad_s[0];
     own.w_rad_s[1] = store.w_rad_s[1];
@@ -107,7 +107,7 @@ void World3d::drop_world() noexcept {
   world_ = {};
   contacts_ = {};
   stills_.clear();
-  roster_.clear();
+  bodies_table_.clear();
   held_.clear();
   version_ = 0;
   memory_.clear();
@@ -120,8 +120,8 @@ std::shared_ptr<const void> World3d::keep() {
     dWorldCleanupWorkingMemory(world_.get());  // what a step needs for itself
   }
   auto kept = std::make_shared<Kept>(Kept{memory_.copy(), threading_, world_, contacts_, {}, held_});
-  for (const auto& entry : roster_.entries())
-    kept->twins.push_back({entry.key, entry.identity, entry.owned, *entry.body});
+  for (const auto& entry : bodies_table_.entries())
+    kept->proxies.push_back({entry.key, entry.identity, entry.owned, *entry.body});
   return kept;
 }
 
@@ -132,9 +132,10 @@ void World3d::put_back(const void* kept) {
   threading_ = k.threading;
   world_ = k.world;
   contacts_ = k.contacts;
-  for (const auto& entry : k.twins)
-    roster_.entries().push_back({entry.key, entry.identity, entry.owned, std::make_unique<Twin>(entry.body)});
-  for (auto& entry : roster_.entries()) entry.body->heap = nullptr;  // of the last sub-step
+  for (const auto& entry : k.proxies)
+    bodies_table_.entries().push_back(
+        {entry.key, entry.identity, entry.owned, std::make_unique<BodyProxy>(entry.body)});
+  for (auto& entry : bodies_table_.entries()) entry.body->heap = nullptr;  // of the last sub-step
   held_ = k.held;
   for (Held& held : held_) {
     held.twin_a = find(held.a);
@@ -142,8 +143,8 @@ void World3d::put_back(const void* kept) {
   }
 }
 
-void World3d::report(const Twin& twin, std::string what) {
-  if (twin.owned) trouble.push_back({twin.key, std::move(what)});
+void World3d::report(const BodyProxy& proxy, std::string what) {
+  if (proxy.owned) trouble.push_back({proxy.key, std::move(what)});
 }
 
 void World3d::make_world() {
@@ -232,9 +233,9 @@ void World3d::load(const SolverContext& context) {
     flight_ceiling_m_ = std::min(context.region.top_m, s.max_z_m);
     surfaces_in_air_ = surfaces_;
     surfaces_in_air_.ceiling_m = flight_ceiling_m_;
-    roster_.update(
-        context.region, s, [&](BodyKey key) { return make(s, key); }, [this](Double& twin) { drop_double(twin); });
-    for (auto& entry : roster_.entries()) {
+    bodies_table_.update(
+        context.region, s, [&](BodyKey key) { return make(s, key); }, [this](OwnedProxy& proxy) { drop_proxy(proxy); });
+    for (auto& entry : bodies_table_.entries()) {
       entry.body->owned = entry.owned;
       take_over(s, entry.body, context.tick_s);
     }
@@ -242,74 +243,74 @@ void World3d::load(const SolverContext& context) {
   });
 }
 
-World3d::Double World3d::make(const SpaceStores& stores, BodyKey key) {
-  auto twin = std::make_unique<Twin>();
+World3d::OwnedProxy World3d::make(const SpaceStores& stores, BodyKey key) {
+  auto proxy = std::make_unique<BodyProxy>();
   try {
-    make_twin(*twin, stores, key, sort_of(stores, key, settings_), world_.get());
-    twin->p_m[0] = NAN;  // nowhere yet
-    return twin;
+    make_proxy(*proxy, stores, key, sort_of(stores, key, settings_), world_.get());
+    proxy->p_m[0] = NAN;  // nowhere yet
+    return proxy;
   } catch (const OdeError& error) {
     trouble.push_back({key, "cannot be simulated: " + std::string(error.what())});
-    end_twin(*twin);
-    *twin = Twin();
-    twin->key = key;
-    twin->sort = Sort::Base;
-    twin->unfit = true;
-    return twin;
+    end_proxy(*proxy);
+    *proxy = BodyProxy();
+    proxy->key = key;
+    proxy->sort = Sort::Base;
+    proxy->unfit = true;
+    return proxy;
   }
 }
 
-void World3d::drop_double(Double& twin) {
+void World3d::drop_proxy(OwnedProxy& proxy) {
   std::erase_if(held_, [&](Held& held) {
-    if (held.a != twin->key && held.b != twin->key) return false;
+    if (held.a != proxy->key && held.b != proxy->key) return false;
     held.joint.destroy();
     return true;
   });
-  end_twin(*twin);
-  twin.reset();
+  end_proxy(*proxy);
+  proxy.reset();
 }
 
-void World3d::take_over(const SpaceStores& stores, Double& twin, double tick_s) {
-  const BodyKey key = twin->key;
-  twin->lost = twin->unfit;
-  if (twin->unfit) return;
+void World3d::take_over(const SpaceStores& stores, OwnedProxy& proxy, double tick_s) {
+  const BodyKey key = proxy->key;
+  proxy->lost = proxy->unfit;
+  if (proxy->unfit) return;
   const Sort sort = sort_of(stores, key, settings_);
-  if (sort != twin->sort) {
-    const bool owned = twin->owned;
-    drop_double(twin);
-    twin = make(stores, key);
-    twin->owned = owned;
+  if (sort != proxy->sort) {
+    const bool owned = proxy->owned;
+    drop_proxy(proxy);
+    proxy = make(stores, key);
+    proxy->owned = owned;
   }
   const BodyState store = stored_state(stores, key);
   if (!store.finite()) {
-    twin->lost = true;
-    report(*twin, "has a position or speed that is not a finite number");
+    proxy->lost = true;
+    report(*proxy, "has a position or speed that is not a finite number");
     return;
   }
-  if (sort == Sort::Rotors) twin->rotors = *stores.state_of(stores.rotors, key.index());
-  twin->external = external_in(stores, key);
-  if (twin->external)
-    lead(*twin, store, tick_s);
-  else if (!agrees(*twin, store))
-    put(*twin, store);
-  if (!twin->light()) dBodyEnable(twin->body.get());
+  if (sort == Sort::Rotors) proxy->rotors = *stores.state_of(stores.rotors, key.index());
+  proxy->external = external_in(stores, key);
+  if (proxy->external)
+    lead(*proxy, store, tick_s);
+  else if (!agrees(*proxy, store))
+    put(*proxy, store);
+  if (!proxy->light()) dBodyEnable(proxy->body.get());
 }
 
 /// A body whose pose comes from outside moves there within the tick, so that others are pushed and not jumped upon.
-void World3d::lead(Twin& twin, const BodyState& at, double tick_s) const {
+void World3d::lead(BodyProxy& proxy, const BodyState& at, double tick_s) const {
   const Vector3 there{at.x_m, at.y_m, at.z_m};
-  const Vector3 way{there[0] - twin.p_m[0], there[1] - twin.p_m[1], there[2] - twin.p_m[2]};
+  const Vector3 way{there[0] - proxy.p_m[0], there[1] - proxy.p_m[1], there[2] - proxy.p_m[2]};
   const double far_m = length(way);
-  if (!(far_m <= kLongestLead_m)) twin.p_m = there;
-  for (std::size_t i = 0; i < 3; ++i) twin.v_m_s[i] = far_m <= kLongestLead_m ? way[i] / tick_s : 0.0;
-  twin.led_to_m = there;
-  twin.cos_h = at.cos_h;
-  twin.sin_h = at.sin_h;
-  twin.w_rad_s = 0.0;
+  if (!(far_m <= kLongestLead_m)) proxy.p_m = there;
+  for (std::size_t i = 0; i < 3; ++i) proxy.v_m_s[i] = far_m <= kLongestLead_m ? way[i] / tick_s : 0.0;
+  proxy.led_to_m = there;
+  proxy.cos_h = at.cos_h;
+  proxy.sin_h = at.sin_h;
+  proxy.w_rad_s = 0.0;
 }
 
-Twin* World3d::find(BodyKey key) noexcept {
-  auto& entries = roster_.entries();
+BodyProxy* World3d::find(BodyKey key) noexcept {
+  auto& entries = bodies_table_.entries();
   const auto found = std::lower_bound(entries.begin(), entries.end(), key,
                                       [](const auto& entry, BodyKey wanted) { return entry.key < wanted; });
   return found != entries.end() && found->key == key ? found->body.get() : nullptr;
@@ -326,8 +327,8 @@ void World3d::join(const SpaceStores& stores) {
     const Joint& joint = stores.joints[i];
     const bool held = std::any_of(held_.begin(), held_.end(), [&](const Held& h) { return h.number == i; });
     if (!joint.alive || held) continue;
-    Twin* a = find(joint.a);
-    Twin* b = find(joint.b);
+    BodyProxy* a = find(joint.a);
+    BodyProxy* b = find(joint.b);
     if (a == nullptr || b == nullptr || a->lost || b->lost) continue;
     held_.push_back({i, joint.generation, joint.a, joint.b, a, b, make_joint(joint, *a, *b)});
   }
@@ -341,11 +342,11 @@ void World3d::join(const SpaceStores& stores) {
 }
 
 /// ODE takes a joint's geometry from where its bodies are; so for a moment they are where the joint wants them.
-OdeJoint World3d::make_joint(const Joint& joint, Twin& a, Twin& b) {
-  for (Twin* twin : {&a, &b}) {
-    if (!twin->light()) continue;
-    give_body(*twin, world_.get());
-    enter(*twin);
+OdeJoint World3d::make_joint(const Joint& joint, BodyProxy& a, BodyProxy& b) {
+  for (BodyProxy* proxy : {&a, &b}) {
+    if (!proxy->light()) continue;
+    give_body(*proxy, world_.get());
+    enter(*proxy);
   }
   const dBodyID body_a = a.body.get();
   const dBodyID body_b = b.body.get();
@@ -408,7 +409,7 @@ void World3d::advance(const SolverContext& context) {
   guarded(context, [&] {
     SpaceStores& s = context.stores;
     const double dt_s = context.tick_s / static_cast<double>(settings_.sub_steps);
-    auto& entries = roster_.entries();
+    auto& entries = bodies_table_.entries();
     for (auto& entry : entries) {
       if (entry.body->lost) continue;
       entry.body->rolled_m = {};
@@ -421,13 +422,13 @@ void World3d::advance(const SolverContext& context) {
                static_cast<std::uint64_t>(step));
       bool strayed = false;
       for (auto& entry : entries) {
-        Twin& twin = *entry.body;
-        if (twin.lost) continue;
-        if (step > 0) plan(s, twin, dt_s);
-        if (step > 0) update_prism(twin);
+        BodyProxy& proxy = *entry.body;
+        if (proxy.lost) continue;
+        if (step > 0) plan(s, proxy, dt_s);
+        if (step > 0) update_prism(proxy);
         const double moved_m =
-            std::max(std::fabs(twin.prism.x_m - twin.from_x_m), std::fabs(twin.prism.y_m - twin.from_y_m));
-        strayed = strayed || moved_m + twin.hop_m > twin.margin_m;
+            std::max(std::fabs(proxy.prism.x_m - proxy.from_x_m), std::fabs(proxy.prism.y_m - proxy.from_y_m));
+        strayed = strayed || moved_m + proxy.hop_m > proxy.margin_m;
       }
       if (strayed) find_candidates();
       contacts_.begin(world_.get(), dt_s);
@@ -452,60 +453,60 @@ void World3d::advance(const SolverContext& context) {
 }
 
 /// What a body does in this sub-step if nothing comes in its way.
-void World3d::plan(const SpaceStores& stores, Twin& twin, double dt_s) {
-  const std::size_t i = twin.key.index();
+void World3d::plan(const SpaceStores& stores, BodyProxy& proxy, double dt_s) {
+  const std::size_t i = proxy.key.index();
   const double fall_m_s = settings_.gravity_m_s2 * dt_s;
-  twin.touched = false;
-  twin.engaged = false;
-  twin.driven = false;
-  twin.heap = nullptr;
-  if (std::exchange(twin.resting, false)) dBodyEnable(twin.body.get());
-  if (!twin.light()) {
-    if (twin.sort == Sort::Wheels) drive_wheels(twin, stores.bodies.left_m_s[i], stores.bodies.right_m_s[i]);
-    if (twin.sort == Sort::Rotors) drive_rotors(twin, stores.command_of(i), settings_.gravity_m_s2, dt_s);
-    const dReal* p = dBodyGetPosition(twin.body.get());
-    const dReal* q = dBodyGetQuaternion(twin.body.get());
-    twin.before_m = {p[0], p[1], p[2]};
-    std::copy_n(q, 4, twin.turned_before);
-    twin.hop_m = (speed_of(twin) + fall_m_s) * dt_s;
+  proxy.touched = false;
+  proxy.engaged = false;
+  proxy.driven = false;
+  proxy.heap = nullptr;
+  if (std::exchange(proxy.resting, false)) dBodyEnable(proxy.body.get());
+  if (!proxy.light()) {
+    if (proxy.sort == Sort::Wheels) drive_wheels(proxy, stores.bodies.left_m_s[i], stores.bodies.right_m_s[i]);
+    if (proxy.sort == Sort::Rotors) drive_rotors(proxy, stores.command_of(i), settings_.gravity_m_s2, dt_s);
+    const dReal* p = dBodyGetPosition(proxy.body.get());
+    const dReal* q = dBodyGetQuaternion(proxy.body.get());
+    proxy.before_m = {p[0], p[1], p[2]};
+    std::copy_n(q, 4, proxy.turned_before);
+    proxy.hop_m = (speed_of(proxy) + fall_m_s) * dt_s;
     return;
   }
-  if (twin.external) {
-    twin.next_v_m_s = twin.v_m_s;
-    twin.next_w_rad_s = 0.0;
-    twin.hop_m = length(twin.v_m_s) * dt_s;
+  if (proxy.external) {
+    proxy.next_v_m_s = proxy.v_m_s;
+    proxy.next_w_rad_s = 0.0;
+    proxy.hop_m = length(proxy.v_m_s) * dt_s;
     return;
   }
-  twin.aloft = twin.sort == Sort::Flyer || twin.p_m[2] > surfaces_.floor_m + kFloats_m;
-  if (twin.sort == Sort::Flyer) {
-    drive_flyer(twin, stores.command_of(i), settings_.gravity_m_s2, dt_s);
+  proxy.aloft = proxy.sort == Sort::Flyer || proxy.p_m[2] > surfaces_.floor_m + kFloats_m;
+  if (proxy.sort == Sort::Flyer) {
+    drive_flyer(proxy, stores.command_of(i), settings_.gravity_m_s2, dt_s);
   } else {
-    if (!twin.aloft || twin.standing) drive_base(twin, stores.bodies.left_m_s[i], stores.bodies.right_m_s[i], dt_s);
-    if (twin.aloft) {
-      if (!twin.standing)
-        drop(twin, settings_.gravity_m_s2, dt_s);
+    if (!proxy.aloft || proxy.standing) drive_base(proxy, stores.bodies.left_m_s[i], stores.bodies.right_m_s[i], dt_s);
+    if (proxy.aloft) {
+      if (!proxy.standing)
+        drop(proxy, settings_.gravity_m_s2, dt_s);
       else
-        twin.next_v_m_s[2] -= fall_m_s;
+        proxy.next_v_m_s[2] -= fall_m_s;
     }
   }
-  twin.standing = false;
-  twin.hop_m = std::max(length(twin.v_m_s), length(twin.next_v_m_s)) * dt_s;
+  proxy.standing = false;
+  proxy.hop_m = std::max(length(proxy.v_m_s), length(proxy.next_v_m_s)) * dt_s;
 }
 
 void World3d::find_candidates() {
-  auto& entries = roster_.entries();
+  auto& entries = bodies_table_.entries();
   const auto bodies = static_cast<std::uint32_t>(entries.size());
   const double hops = kMoreWay * static_cast<double>(settings_.sub_steps);
   finder_.clear(bodies);
   for (std::uint32_t i = 0; i < bodies; ++i) {
-    Twin& twin = *entries[i].body;
-    if (twin.lost) continue;
-    const Prism& prism = twin.prism;
-    twin.margin_m = kSlack_m + hops * twin.hop_m;
-    twin.from_x_m = prism.x_m;
-    twin.from_y_m = prism.y_m;
-    const double x = prism.reach_x_m + twin.margin_m;
-    const double y = prism.reach_y_m + twin.margin_m;
+    BodyProxy& proxy = *entries[i].body;
+    if (proxy.lost) continue;
+    const Prism& prism = proxy.prism;
+    proxy.margin_m = kSlack_m + hops * proxy.hop_m;
+    proxy.from_x_m = prism.x_m;
+    proxy.from_y_m = prism.y_m;
+    const double x = prism.reach_x_m + proxy.margin_m;
+    const double y = prism.reach_y_m + proxy.margin_m;
     finder_.add(i, prism.x_m - x, prism.x_m + x, prism.y_m - y, prism.y_m + y);
   }
   for (std::uint32_t i = 0; i < stills_.size(); ++i) {
@@ -515,35 +516,35 @@ void World3d::find_candidates() {
   }
   candidates_.clear();
   for (const PairFinder::Pair& pair : finder_.find()) {
-    const Twin& a = *entries[pair.first].body;
+    const BodyProxy& a = *entries[pair.first].body;
     const bool possible =
         pair.second < bodies ? may_touch(a, *entries[pair.second].body) : may_touch(a, stills_[pair.second - bodies]);
     if (possible) candidates_.push_back(pair);
   }
 }
 
-bool World3d::may_touch(const Twin& a, const Twin& b) const noexcept {
+bool World3d::may_touch(const BodyProxy& a, const BodyProxy& b) const noexcept {
   if (a.external && b.external) return false;
   return std::none_of(held_.begin(), held_.end(), [&](const Held& held) {
     return (held.a == a.key && held.b == b.key) || (held.a == b.key && held.b == a.key);
   });
 }
 
-bool World3d::may_touch(const Twin& a, const Still& still) const noexcept {
+bool World3d::may_touch(const BodyProxy& a, const Still& still) const noexcept {
   return !a.external && (a.owned || !still.wall);
 }
 
 void World3d::find_contacts() {
-  auto& entries = roster_.entries();
+  auto& entries = bodies_table_.entries();
   for (Held& held : held_) {
-    for (Twin* twin : {held.twin_a, held.twin_b}) {
-      twin->driven = true;
-      twin->touched = twin->light();
-      twin->engaged = twin->sort == Sort::Base && !twin->external;
+    for (BodyProxy* proxy : {held.twin_a, held.twin_b}) {
+      proxy->driven = true;
+      proxy->touched = proxy->light();
+      proxy->engaged = proxy->sort == Sort::Base && !proxy->external;
     }
   }
   for (const PairFinder::Pair& pair : candidates_) {
-    Twin& a = *entries[pair.first].body;
+    BodyProxy& a = *entries[pair.first].body;
     if (a.lost) continue;
     if (pair.second >= entries.size()) {
       contacts_.with_still(a, stills_[pair.second - entries.size()], surfaces_);
@@ -558,37 +559,37 @@ void World3d::find_contacts() {
 }
 
 /// Puts a light body into ODE for this sub-step.
-void World3d::enter(Twin& twin) {
-  const dBodyID body = twin.body.get();
-  if (twin.external && dBodyIsKinematic(body) == 0) dBodySetKinematic(body);
-  if (!twin.external && dBodyIsKinematic(body) != 0) dBodySetDynamic(body);
+void World3d::enter(BodyProxy& proxy) {
+  const dBodyID body = proxy.body.get();
+  if (proxy.external && dBodyIsKinematic(body) == 0) dBodySetKinematic(body);
+  if (!proxy.external && dBodyIsKinematic(body) != 0) dBodySetDynamic(body);
   dBodyEnable(body);
-  dBodySetPosition(body, twin.p_m[0], twin.p_m[1], twin.p_m[2] + twin.origin_m);
-  dBodySetQuaternion(body, upright_turn(twin.cos_h, twin.sin_h).data());
-  const Vector3& v = twin.engaged && !twin.aloft ? twin.v_m_s : twin.next_v_m_s;
+  dBodySetPosition(body, proxy.p_m[0], proxy.p_m[1], proxy.p_m[2] + proxy.origin_m);
+  dBodySetQuaternion(body, upright_turn(proxy.cos_h, proxy.sin_h).data());
+  const Vector3& v = proxy.engaged && !proxy.aloft ? proxy.v_m_s : proxy.next_v_m_s;
   dBodySetLinearVel(body, v[0], v[1], v[2]);
-  dBodySetAngularVel(body, 0.0, 0.0, twin.engaged ? twin.w_rad_s : twin.next_w_rad_s);
-  if (twin.engaged)
-    engage(twin, world_.get());
+  dBodySetAngularVel(body, 0.0, 0.0, proxy.engaged ? proxy.w_rad_s : proxy.next_w_rad_s);
+  if (proxy.engaged)
+    engage(proxy, world_.get());
   else
-    release(twin);
+    release(proxy);
 }
 
 /// Heaps of objects that touch one another, directly or through others, and the ground, and no robot.
 void World3d::find_heaps() {
-  auto& entries = roster_.entries();
+  auto& entries = bodies_table_.entries();
   heaps_.clear();
   for (auto& entry : entries) {
-    Twin& twin = *entry.body;
-    if (twin.sort == Sort::Object && (twin.driven || twin.lost)) top_of_heap(twin).driven = true;
+    BodyProxy& proxy = *entry.body;
+    if (proxy.sort == Sort::Object && (proxy.driven || proxy.lost)) top_of_heap(proxy).driven = true;
   }
   for (auto& entry : entries) {
-    Twin& twin = *entry.body;
-    if (twin.sort != Sort::Object || top_of_heap(twin).driven) continue;
-    heaps_.push_back({&top_of_heap(twin), &twin});
+    BodyProxy& proxy = *entry.body;
+    if (proxy.sort != Sort::Object || top_of_heap(proxy).driven) continue;
+    heaps_.push_back({&top_of_heap(proxy), &proxy});
   }
   const auto by_key = [](const HeapMember& a, const HeapMember& b) {
-    return a.top != b.top ? a.top->key < b.top->key : a.twin->key < b.twin->key;
+    return a.top != b.top ? a.top->key < b.top->key : a.proxy->key < b.proxy->key;
   };
   std::sort(heaps_.begin(), heaps_.end(), by_key);
 }
@@ -608,7 +609,7 @@ void World3d::each_heap(Use&& use) {
 bool World3d::stands(std::size_t first, std::size_t past) {
   heap_.clear();
   supports_.clear();
-  for (std::size_t i = first; i < past; ++i) heap_.push_back(heaps_[i].twin);
+  for (std::size_t i = first; i < past; ++i) heap_.push_back(heaps_[i].proxy);
   for (const Support& support : contacts_.supports()) {
     if (&top_of_heap(*support.a) == heaps_[first].top) supports_.push_back(support);
   }
@@ -626,12 +627,12 @@ void World3d::rest_heaps() {
   std::sort(stood_.begin(), stood_.end());
   each_heap([&](std::size_t first, std::size_t past) {
     for (std::size_t i = first; i < past; ++i) {
-      if (speed_of(*heaps_[i].twin) != 0.0) return;
+      if (speed_of(*heaps_[i].proxy) != 0.0) return;
     }
     if (!stands(first, past)) return;
     for (std::size_t i = first; i < past; ++i) {
-      heaps_[i].twin->resting = true;
-      dBodyDisable(heaps_[i].twin->body.get());
+      heaps_[i].proxy->resting = true;
+      dBodyDisable(heaps_[i].proxy->body.get());
     }
   });
 }
@@ -642,84 +643,84 @@ void World3d::stop_heaps(double dt_s) {
   const double slow_m_s = 0.5 * std::min(1.0, friction) * settings_.gravity_m_s2 * dt_s;
   each_heap([&](std::size_t first, std::size_t past) {
     for (std::size_t i = first; i < past; ++i) {
-      if (heaps_[i].twin->resting || speed_of(*heaps_[i].twin) >= slow_m_s) return;
+      if (heaps_[i].proxy->resting || speed_of(*heaps_[i].proxy) >= slow_m_s) return;
     }
     if (!stands(first, past)) return;
     for (std::size_t i = first; i < past; ++i) {
-      const Twin& twin = *heaps_[i].twin;
-      dBodySetPosition(twin.body.get(), twin.before_m[0], twin.before_m[1], twin.before_m[2]);
-      dBodySetQuaternion(twin.body.get(), twin.turned_before);
-      dBodySetLinearVel(twin.body.get(), 0.0, 0.0, 0.0);
-      dBodySetAngularVel(twin.body.get(), 0.0, 0.0, 0.0);
+      const BodyProxy& proxy = *heaps_[i].proxy;
+      dBodySetPosition(proxy.body.get(), proxy.before_m[0], proxy.before_m[1], proxy.before_m[2]);
+      dBodySetQuaternion(proxy.body.get(), proxy.turned_before);
+      dBodySetLinearVel(proxy.body.get(), 0.0, 0.0, 0.0);
+      dBodySetAngularVel(proxy.body.get(), 0.0, 0.0, 0.0);
     }
   });
 }
 
 /// Takes it out again, and moves those that were not in.
-void World3d::leave(Twin& twin, double dt_s) {
-  if (!twin.light()) {
-    if (twin.sort == Sort::Wheels) count_wheels(twin, dt_s);
+void World3d::leave(BodyProxy& proxy, double dt_s) {
+  if (!proxy.light()) {
+    if (proxy.sort == Sort::Wheels) count_wheels(proxy, dt_s);
     return;
   }
-  if (twin.touched) {
-    const dBodyID body = twin.body.get();
+  if (proxy.touched) {
+    const dBodyID body = proxy.body.get();
     dBodyDisable(body);
     const dReal* p = dBodyGetPosition(body);
     const dReal* v = dBodyGetLinearVel(body);
-    if (!twin.external) {
-      twin.p_m = {p[0], p[1], p[2] - twin.origin_m};
-      twin.v_m_s = {v[0], v[1], v[2]};
+    if (!proxy.external) {
+      proxy.p_m = {p[0], p[1], p[2] - proxy.origin_m};
+      proxy.v_m_s = {v[0], v[1], v[2]};
       // Wheels that push nothing hold the heading against whatever the rim rubs on.
-      twin.w_rad_s = twin.engaged ? dBodyGetAngularVel(body)[2] : twin.next_w_rad_s;
+      proxy.w_rad_s = proxy.engaged ? dBodyGetAngularVel(body)[2] : proxy.next_w_rad_s;
     }
   }
-  if (!twin.touched || twin.external) {
-    twin.v_m_s = twin.next_v_m_s;
-    twin.w_rad_s = twin.next_w_rad_s;
-    for (std::size_t i = 0; i < 3; ++i) twin.p_m[i] += twin.v_m_s[i] * dt_s;
+  if (!proxy.touched || proxy.external) {
+    proxy.v_m_s = proxy.next_v_m_s;
+    proxy.w_rad_s = proxy.next_w_rad_s;
+    for (std::size_t i = 0; i < 3; ++i) proxy.p_m[i] += proxy.v_m_s[i] * dt_s;
   }
-  if (twin.external) return;
-  const auto [c, s] = turned(twin.cos_h, twin.sin_h, twin.w_rad_s * dt_s);
-  twin.cos_h = c;
-  twin.sin_h = s;
-  if (!twin.aloft || twin.p_m[2] <= surfaces_.floor_m) {
-    twin.p_m[2] = surfaces_.floor_m;
-    twin.v_m_s[2] = twin.aloft ? std::max(0.0, twin.v_m_s[2]) : 0.0;
+  if (proxy.external) return;
+  const auto [c, s] = turned(proxy.cos_h, proxy.sin_h, proxy.w_rad_s * dt_s);
+  proxy.cos_h = c;
+  proxy.sin_h = s;
+  if (!proxy.aloft || proxy.p_m[2] <= surfaces_.floor_m) {
+    proxy.p_m[2] = surfaces_.floor_m;
+    proxy.v_m_s[2] = proxy.aloft ? std::max(0.0, proxy.v_m_s[2]) : 0.0;
   }
-  const double ceiling_m = twin.sort == Sort::Flyer ? flight_ceiling_m_ : surfaces_.ceiling_m;
-  if (twin.p_m[2] + twin.height_m > ceiling_m && twin.aloft) {
-    twin.p_m[2] = std::max(surfaces_.floor_m, ceiling_m - twin.height_m);
-    twin.v_m_s[2] = std::min(0.0, twin.v_m_s[2]);
+  const double ceiling_m = proxy.sort == Sort::Flyer ? flight_ceiling_m_ : surfaces_.ceiling_m;
+  if (proxy.p_m[2] + proxy.height_m > ceiling_m && proxy.aloft) {
+    proxy.p_m[2] = std::max(surfaces_.floor_m, ceiling_m - proxy.height_m);
+    proxy.v_m_s[2] = std::min(0.0, proxy.v_m_s[2]);
   }
 }
 
 /// What has exploded is named, and left out from then on.
-void World3d::check(Twin& twin) {
-  const BodyState now = state_of(twin);
+void World3d::check(BodyProxy& proxy) {
+  const BodyState now = state_of(proxy);
   const bool finite = now.finite();
   const double v = length(now.v_m_s);
   if (finite && v <= kFastest_m_s && length(now.w_rad_s) <= kFastestTurn_rad_s) return;
-  twin.lost = true;
-  if (!twin.light()) dBodyDisable(twin.body.get());
-  report(twin, !finite ? std::string("has a position or speed that is not a finite number")
-               : v > kFastest_m_s
-                   ? "moves faster than its engine can follow (" + hal::format_number(v) + " m/s)"
-                   : "turns faster than its engine can follow (" + hal::format_number(length(now.w_rad_s)) + " rad/s)");
+  proxy.lost = true;
+  if (!proxy.light()) dBodyDisable(proxy.body.get());
+  report(proxy, !finite            ? std::string("has a position or speed that is not a finite number")
+                : v > kFastest_m_s ? "moves faster than its engine can follow (" + hal::format_number(v) + " m/s)"
+                                   : "turns faster than its engine can follow (" +
+                                         hal::format_number(length(now.w_rad_s)) + " rad/s)");
 }
 
-void World3d::write_back(SpaceStores& stores, const Twin& twin, double tick_s) const {
-  if (twin.lost || twin.external || !twin.owned) return;
-  const BodyState at = state_of(twin);
-  const std::size_t i = twin.key.index();
+void World3d::write_back(SpaceStores& stores, const BodyProxy& proxy, double tick_s) const {
+  if (proxy.lost || proxy.external || !proxy.owned) return;
+  const BodyState at = state_of(proxy);
+  const std::size_t i = proxy.key.index();
   const Motion motion{at.z_m, at.q_WB, at.v_m_s, at.w_rad_s};
-  if (twin.sort == Sort::Object) {
+  if (proxy.sort == Sort::Object) {
     Object& o = stores.objects[i];
     o.x_m = at.x_m;
     o.y_m = at.y_m;
     o.cos_h = at.cos_h;
     o.sin_h = at.sin_h;
     o.z_low_m = at.z_m;
-    o.z_high_m = at.z_m + twin.height_m;
+    o.z_high_m = at.z_m + proxy.height_m;
     stores.object_motion[i] = motion;
     return;
   }
@@ -729,9 +730,9 @@ void World3d::write_back(SpaceStores& stores, const Twin& twin, double tick_s) c
   b.cos_h[i] = at.cos_h;
   b.sin_h[i] = at.sin_h;
   b.motion[i] = motion;
-  if (twin.sort == Sort::Rotors) *stores.state_of(stores.rotors, i) = twin.rotors;
-  b.left_m[i] += twin.sort == Sort::Wheels ? twin.rolled_m[0] : b.left_m_s[i] * tick_s;
-  b.right_m[i] += twin.sort == Sort::Wheels ? twin.rolled_m[1] : b.right_m_s[i] * tick_s;
+  if (proxy.sort == Sort::Rotors) *stores.state_of(stores.rotors, i) = proxy.rotors;
+  b.left_m[i] += proxy.sort == Sort::Wheels ? proxy.rolled_m[0] : b.left_m_s[i] * tick_s;
+  b.right_m[i] += proxy.sort == Sort::Wheels ? proxy.rolled_m[1] : b.right_m_s[i] * tick_s;
 }
 
 }  // namespace tandem::core

@@ -1,15 +1,15 @@
-// One region's world in space: its bodies' doubles, what stands in it, and how a tick goes.
+// One region's world in space: its bodies, what stands in it, and how a tick goes.
 #pragma once
 #include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "core/physics/body_table.hpp"
+#include "core/physics/dynamics3d/body_proxy.hpp"
 #include "core/physics/dynamics3d/contacts.hpp"
 #include "core/physics/dynamics3d/drive.hpp"
 #include "core/physics/dynamics3d/pair_finder.hpp"
-#include "core/physics/dynamics3d/twin.hpp"
-#include "core/physics/roster.hpp"
 #include "core/physics/solver.hpp"
 
 namespace tandem::core {
@@ -26,8 +26,8 @@ struct World3dSettings {
   double cfm = 1e-10;
 };
 
-/// A solver with a world of ODE's. Light bodies (core/physics/dynamics3d/twin.hpp) take part in it only while they
-/// touch something: a robot that drives freely costs ODE nothing.
+/// A solver with a world of ODE's. Light bodies (core/physics/dynamics3d/body_proxy.hpp) take part in it only while
+/// they touch something: a robot that drives freely costs ODE nothing.
 class World3d final : public Solver {
  public:
   explicit World3d(const World3dSettings& settings) : settings_(settings) {}
@@ -38,13 +38,13 @@ class World3d final : public Solver {
   void put_back(const void* kept) override;
 
  private:
-  using Double = std::unique_ptr<Twin>;
+  using OwnedProxy = std::unique_ptr<BodyProxy>;
   struct Held {
     std::size_t number;
     std::uint32_t generation;
     BodyKey a, b;
-    Twin* twin_a;
-    Twin* twin_b;
+    BodyProxy* twin_a;
+    BodyProxy* twin_b;
     OdeJoint joint;
   };
   /// ODE's memory, and what points into it.
@@ -53,40 +53,40 @@ class World3d final : public Solver {
     OdeThreading threading;
     OdeWorld world;
     Contacts contacts;
-    std::vector<Roster<Twin>::Entry> twins;
+    std::vector<BodyTable<BodyProxy>::Entry> proxies;
     std::vector<Held> held;
   };
 
   template <class Work>
   void guarded(const SolverContext& context, Work&& work);
   void drop_world() noexcept;
-  void report(const Twin& twin, std::string what);
+  void report(const BodyProxy& proxy, std::string what);
 
   void make_world();
   void place_stills(const SolverContext& context);
-  Double make(const SpaceStores& stores, BodyKey key);
-  void drop_double(Double& twin);
-  void take_over(const SpaceStores& stores, Double& twin, double tick_s);
-  void lead(Twin& twin, const BodyState& at, double tick_s) const;
+  OwnedProxy make(const SpaceStores& stores, BodyKey key);
+  void drop_proxy(OwnedProxy& proxy);
+  void take_over(const SpaceStores& stores, OwnedProxy& proxy, double tick_s);
+  void lead(BodyProxy& proxy, const BodyState& at, double tick_s) const;
   void join(const SpaceStores& stores);
-  OdeJoint make_joint(const Joint& joint, Twin& a, Twin& b);
-  Twin* find(BodyKey key) noexcept;
+  OdeJoint make_joint(const Joint& joint, BodyProxy& a, BodyProxy& b);
+  BodyProxy* find(BodyKey key) noexcept;
 
-  void plan(const SpaceStores& stores, Twin& twin, double dt_s);
+  void plan(const SpaceStores& stores, BodyProxy& proxy, double dt_s);
   void find_candidates();
-  bool may_touch(const Twin& a, const Twin& b) const noexcept;
-  bool may_touch(const Twin& a, const Still& still) const noexcept;
+  bool may_touch(const BodyProxy& a, const BodyProxy& b) const noexcept;
+  bool may_touch(const BodyProxy& a, const Still& still) const noexcept;
   void find_contacts();
-  void enter(Twin& twin);
+  void enter(BodyProxy& proxy);
   void find_heaps();
   template <class Use>
   void each_heap(Use&& use);
   bool stands(std::size_t first, std::size_t past);
   void rest_heaps();
   void stop_heaps(double dt_s);
-  void leave(Twin& twin, double dt_s);
-  void check(Twin& twin);
-  void write_back(SpaceStores& stores, const Twin& twin, double tick_s) const;
+  void leave(BodyProxy& proxy, double dt_s);
+  void check(BodyProxy& proxy);
+  void write_back(SpaceStores& stores, const BodyProxy& proxy, double tick_s) const;
 
   World3dSettings settings_;
   bool broken_ = false;     // ODE gave up in this tick
@@ -98,17 +98,17 @@ class World3d final : public Solver {
   std::uint64_t version_ = 0;  // of the immovable objects
   Surfaces surfaces_, surfaces_in_air_;
   double flight_ceiling_m_ = 0.0;  // the arena's, too: what flies stays below; what stands may be as high as the arena
-  Roster<Double> roster_;
+  BodyTable<OwnedProxy> bodies_table_;
   std::vector<Held> held_;
   PairFinder finder_;
   std::vector<PairFinder::Pair> candidates_;
 
   struct HeapMember {
-    const Twin* top;
-    Twin* twin;
+    const BodyProxy* top;
+    BodyProxy* proxy;
   };
   std::vector<HeapMember> heaps_;  // of this sub-step, heap by heap
-  std::vector<Twin*> heap_;        // the one that is looked at
+  std::vector<BodyProxy*> heap_;   // the one that is looked at
   std::vector<Support> supports_;
   Standing standing_;
   std::vector<std::uint64_t> stood_, stands_now_;  // fingerprints of heaps that stood in the last sub-step, and in this

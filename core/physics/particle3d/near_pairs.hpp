@@ -1,4 +1,4 @@
-// Which bodies of a region may touch within a tick.
+// Pairs of bodies of a region that may touch within a tick.
 #pragma once
 #include <cstddef>
 #include <cstdint>

@@ -1,4 +1,4 @@
-// What does not give way: immovable objects, the walls of a region, ground and ceiling.
+// Solids that do not give way: immovable objects, the walls of a region, ground and ceiling.
 #pragma once
 #include "core/space/stores.hpp"
 

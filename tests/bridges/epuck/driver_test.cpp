@@ -319,7 +319,7 @@ TEST(EpuckDriver, LeavesTheRobotStoppedAtTheEnd) {
   rig.connect();
   wheels.set(0.05, 0.05);
   rig.tick();
-  rig.driver.farewell(rig.now);
+  rig.driver.shut_down(rig.now);
   rig.run(20 * kMs);
   EXPECT_EQ(rig.robot.left, 0);
   rig.run(200 * kMs);

@@ -834,7 +834,7 @@ TEST(EpuckSession, DoesNotTakeAStopForConfirmedWhileTheWheelsTurn) {
   EXPECT_TRUE(rig.session.at_rest());
 }
 
-TEST(EpuckSession, SaysFarewellInTheMiddleOfAHandshakeUntilItIsConfirmed) {
+TEST(EpuckSession, ShutsDownInTheMiddleOfAHandshakeUntilItIsConfirmed) {
   Rig rig;
   rig.robot.silent = true;
   rig.robot.left = 500;
@@ -842,7 +842,7 @@ TEST(EpuckSession, SaysFarewellInTheMiddleOfAHandshakeUntilItIsConfirmed) {
   rig.session.link_up(rig.now);
   rig.flush();
   rig.downstream = [](Bytes b) { return b; };
-  rig.session.farewell(rig.now);
+  rig.session.shut_down(rig.now);
   rig.run(50 * kMs);
   EXPECT_EQ(rig.robot.left, 0);
   EXPECT_EQ(rig.robot.right, 0);

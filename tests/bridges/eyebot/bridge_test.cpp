@@ -190,7 +190,7 @@ TEST(EyebotBridge, LeavesTheRobotHoveringWhereThatIsWanted) {
   LivingRobot robot(link.value());
   {
     BridgeSettings settings = settings_for("eb0");
-    settings.farewell.land = false;
+    settings.shutdown.land = false;
     EyebotBridge bridge(settings, [&] { return link; });
     bridge.robot().actuator<hal::FlightTask>().order = hal::FlightOrder::TakeOff;
     bridge.start();
@@ -267,7 +267,7 @@ TEST_F(OnLoopback, AStopperLandsARobotWhoseHubIsGone) {
   StopDetails words;
   {
     BridgeSettings settings = settings_for("eb3");
-    settings.farewell.land = false;  // as if it had been killed
+    settings.shutdown.land = false;  // as if it had been killed
     EyebotBridge bridge(settings, [] { return LcmLink::open(""); });
     bridge.robot().actuator<hal::FlightTask>().order = hal::FlightOrder::TakeOff;
     bridge.start();

@@ -250,12 +250,12 @@ TEST(EyebotLiveness, TheOneThatWasThereFirstStaysTheRobot) {
   Liveness alive;
   (void)alive.note(1, 0);
   for (int i = 1; i <= 3; ++i) {
-    EXPECT_FALSE(alive.twins(20 * i * kMs)) << i;
+    EXPECT_FALSE(alive.namesakes(20 * i * kMs)) << i;
     EXPECT_EQ(alive.note(2, (20 * i - 10) * kMs), Sender::Other);
     EXPECT_EQ(alive.note(1, 20 * i * kMs), Sender::Current);
   }
-  EXPECT_TRUE(alive.twins(61 * kMs));
-  EXPECT_FALSE(alive.twins(4 * kS));
+  EXPECT_TRUE(alive.namesakes(61 * kMs));
+  EXPECT_FALSE(alive.namesakes(4 * kS));
   EXPECT_EQ(alive.session(), 1);
   EXPECT_EQ(alive.restarts(), 0U);
   EXPECT_EQ(alive.others(), 3U);

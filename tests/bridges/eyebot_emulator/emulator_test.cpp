@@ -193,8 +193,8 @@ TEST(Emulator, RestartsWithAnotherSession) {
 }
 
 TEST(Emulator, MayHaveATwin) {
-  Running emulator(with({"twin@200ms+300ms"}));
-  ASSERT_TRUE(emulator.happened(R"("fault":"twin@200ms+300ms","phase":"end")"));
+  Running emulator(with({"namesake@200ms+300ms"}));
+  ASSERT_TRUE(emulator.happened(R"("fault":"namesake@200ms+300ms","phase":"end")"));
   ASSERT_TRUE(emulator.heard([](const auto& all) {
     std::set<std::int32_t> sessions;
     for (const auto& bytes : all.at("eyebot/eb0/status")) {

@@ -62,7 +62,7 @@ struct NoOptionsAtAll {
 };
 
 template <const char* kField>
-Recipe<Sensor> make_thermometers(const Element& element, Problems& problems, const DeviceSetup& setup) {
+BlockFactory<Sensor> make_thermometers(const Element& element, Problems& problems, const DeviceSetup& setup) {
   (void)read_options<NoOptionsAtAll>(element, problems);
   const Field* const field = setup.field(kField, element, problems);
   return [field](const BlockColumns&) {

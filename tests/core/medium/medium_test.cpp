@@ -93,22 +93,22 @@ bool anybody(const hal::RobotKind&) {
   return true;
 }
 
-Recipe<Actuator> make_whistling(const Element& element, Problems& problems, const DeviceSetup& setup) {
+BlockFactory<Actuator> make_whistling(const Element& element, Problems& problems, const DeviceSetup& setup) {
   (void)read_options<Named>(element, problems);
-  Recipe<Actuator> recipe([setup](const BlockColumns&) {
+  BlockFactory<Actuator> factory([setup](const BlockColumns&) {
     return std::make_unique<Whistling>(setup.medium_as<WhistleMedium>(), setup.channel);
   });
-  recipe.publishes = true;
-  return recipe;
+  factory.publishes = true;
+  return factory;
 }
 
-Recipe<Sensor> make_listening(const Element& element, Problems& problems, const DeviceSetup& setup) {
+BlockFactory<Sensor> make_listening(const Element& element, Problems& problems, const DeviceSetup& setup) {
   const auto options = read_options<Named>(element, problems);
-  Recipe<Sensor> recipe([setup, options](const BlockColumns&) {
+  BlockFactory<Sensor> factory([setup, options](const BlockColumns&) {
     return std::make_unique<Listening>(setup.medium_as<WhistleMedium>(), setup.channel, options.loudness);
   });
-  recipe.listens = true;
-  return recipe;
+  factory.listens = true;
+  return factory;
 }
 
 void register_whistling(hal::Registrar& registrar) {

@@ -129,7 +129,7 @@ TEST(BridgeTypes, AnEyebotsWorldLiesWhereTheFileSays) {
   EXPECT_EQ(settings.value().driver.name, "eb0");
   EXPECT_EQ(settings.value().driver.world.origin, (std::array<double, 3>{1.0, 2.0, 3.0}));
   EXPECT_NEAR(settings.value().driver.world.turn_rad, 1.5707963267948966, 1e-12);
-  EXPECT_TRUE(settings.value().farewell.land);
+  EXPECT_TRUE(settings.value().shutdown.land);
 }
 
 TEST(BridgeTypes, RefuseAnEyebotWithAReason) {

@@ -108,7 +108,7 @@ class TestedEpuck final : public TestedRobot {
   }
   bool at_rest() const override { return driver_.at_rest(); }
   void end(TimeNs now) override {
-    driver_.farewell(now);
+    driver_.shut_down(now);
     pump(now);
   }
   bool ended() const override { return driver_.idle(); }

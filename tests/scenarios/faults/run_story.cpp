@@ -18,7 +18,7 @@ constexpr TimeNs kFrozenAfter = 350 * kMs;   // the guardian's patience with a s
 constexpr TimeNs kGuardianWakes = 10 * kMs;  // after a death
 constexpr TimeNs kCommandTimeout = 500 * kMs;
 constexpr TimeNs kHubWaits = 2 * kSecond;  // an ending hub for its robots, before it leaves them to the guardian
-constexpr TimeNs kFarewell = 300 * kMs;    // and then for each to confirm its last word
+constexpr TimeNs kShutdown = 300 * kMs;    // and then for each to confirm its last word
 constexpr TimeNs kRamp = 600 * kMs;        // from 0 to the speed that is told
 constexpr TimeNs kHandBack = kSecond;      // a hub that was frozen gets its turn by then
 
@@ -243,7 +243,7 @@ class Run {
     const auto all_ended = [&] {
       return std::all_of(actors_.begin(), actors_.end(), [](const Actor& a) { return a.robot->ended(); });
     };
-    for (const TimeNs by = now_ + kFarewell; now_ < by && !all_ended() && well();) run_until(now_ + 1);
+    for (const TimeNs by = now_ + kShutdown; now_ < by && !all_ended() && well();) run_until(now_ + 1);
     for (Actor& a : actors_) {
       check_belief(a);
       a.confirmed = a.robot->at_rest();

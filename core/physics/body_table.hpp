@@ -1,4 +1,4 @@
-// Which bodies a solver holds, kept in step with what its region lists.
+// Table of the bodies that a solver holds, kept in step with what its region lists.
 #pragma once
 #include <cstdint>
 #include <utility>
@@ -8,19 +8,19 @@
 
 namespace tandem::core {
 
-/// A solver's bodies in the order of their keys. `Double` is whatever the solver keeps for one: cheap to move.
-template <class Double>
-class Roster {
+/// A solver's bodies in the order of their keys. `Kept` is whatever the solver keeps for one: cheap to move.
+template <class Kept>
+class BodyTable {
  public:
   struct Entry {
     BodyKey key;
     std::uint32_t identity = 0;  ///< tells a renewed row, or an object that changed, from what was there before
     bool owned = false;
-    Double body;
+    Kept body;
   };
 
   /// Makes the entries those of `region.owned` and `region.mirrored`. A body that passes from one list to the other
-  /// keeps its double. `create(key)` makes a double of a body that came, `destroy(Double&)` ends one that went; both
+  /// keeps its double. `create(key)` makes a proxy of a body that came, `destroy(Kept&)` ends one that went; both
   /// are called in rising order of keys.
   template <class Create, class Destroy>
   void update(const Region& region, const SpaceStores& stores, Create&& create, Destroy&& destroy) {

@@ -1,8 +1,8 @@
-#include "bridges/eyebot/farewell.hpp"
+#include "bridges/eyebot/shutdown_sequence.hpp"
 
 namespace tandem::bridges::eyebot {
 
-bool Farewell::step(EyebotDriver& driver, hal::TimeNs now) noexcept {
+bool ShutdownSequence::step(EyebotDriver& driver, hal::TimeNs now) noexcept {
   if (driver.settings().observe) return true;
   if (stage_ == Stage::Begin) {
     stage_ = Stage::Hover;

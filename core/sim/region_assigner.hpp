@@ -1,4 +1,4 @@
-// Which body is in whose region: at the start, when hooks put bodies elsewhere, and as bodies cross gates.
+// Assigns bodies to regions: at the start, when hooks put bodies elsewhere, and as bodies cross gates.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -11,7 +11,7 @@ namespace tandem::core {
 
 /// Keeps Bodies::region, SpaceStores::object_region and the lists of every Region true. Nothing here depends on the
 /// number of threads.
-class RegionKeeper {
+class RegionAssigner {
  public:
   /// Call when the regions, robots and objects of `stores` are made. `tick_s` bounds how far a body moves in a tick.
   void build(SpaceStores& stores, double tick_s);

@@ -1,4 +1,4 @@
-#include "mixed_reality/settings/patience.hpp"
+#include "mixed_reality/settings/timeouts.hpp"
 
 #include <gtest/gtest.h>
 

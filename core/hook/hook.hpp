@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "core/loop/measures.hpp"
+#include "core/hook/measures.hpp"
 #include "core/scenario/element.hpp"
 #include "core/space/ids.hpp"
 #include "core/space/sketch.hpp"

@@ -1,8 +1,7 @@
-#include "core/physics/dynamics3d/twin.hpp"
-
 #include <algorithm>
 #include <cmath>
 
+#include "core/physics/dynamics3d/body_proxy.hpp"
 #include "core/physics/wheels.hpp"
 
 namespace tandem::core {
@@ -40,48 +39,48 @@ OdeBody make_body(dWorldID world, const dMass& mass) {
   return body;
 }
 
-void give_wheels(Twin& twin, dWorldID world) {
-  const hal::RobotKind& kind = *twin.kind;
-  const hal::DifferentialDrive& wheels = *twin.drive;
+void give_wheels(BodyProxy& proxy, dWorldID world) {
+  const hal::RobotKind& kind = *proxy.kind;
+  const hal::DifferentialDrive& wheels = *proxy.drive;
   dMass mass;
-  dMassSetCylinderTotal(&mass, (1.0 - 2.0 * kWheelShare) * twin.mass_kg, 3, kind.body.radius_m, kind.body.height_m);
-  twin.body = make_body(world, mass);
+  dMassSetCylinderTotal(&mass, (1.0 - 2.0 * kWheelShare) * proxy.mass_kg, 3, kind.body.radius_m, kind.body.height_m);
+  proxy.body = make_body(world, mass);
   for (std::size_t side = 0; side < 2; ++side) {
-    dMassSetCylinderTotal(&mass, kWheelShare * twin.mass_kg, 2, wheels.wheel_radius_m, 0.1 * wheels.wheel_radius_m);
-    twin.wheels[side] = make_body(world, mass);
+    dMassSetCylinderTotal(&mass, kWheelShare * proxy.mass_kg, 2, wheels.wheel_radius_m, 0.1 * wheels.wheel_radius_m);
+    proxy.wheels[side] = make_body(world, mass);
     const double y = (side == 0 ? 0.5 : -0.5) * wheels.wheel_base_m;
-    dBodySetPosition(twin.body.get(), 0.0, 0.0, 0.0);
-    dBodySetPosition(twin.wheels[side].get(), 0.0, y, 0.0);
-    twin.axles[side] = OdeJoint(dJointCreateHinge(world, nullptr));
-    const dJointID axle = twin.axles[side].get();
-    dJointAttach(axle, twin.wheels[side].get(), twin.body.get());
+    dBodySetPosition(proxy.body.get(), 0.0, 0.0, 0.0);
+    dBodySetPosition(proxy.wheels[side].get(), 0.0, y, 0.0);
+    proxy.axles[side] = OdeJoint(dJointCreateHinge(world, nullptr));
+    const dJointID axle = proxy.axles[side].get();
+    dJointAttach(axle, proxy.wheels[side].get(), proxy.body.get());
     dJointSetHingeAnchor(axle, 0.0, y, 0.0);
     dJointSetHingeAxis(axle, 0.0, 1.0, 0.0);
     dJointSetHingeParam(axle, dParamFMax, 0.5 * wheels.force_N * wheels.wheel_radius_m);
   }
 }
 
-void put_in_ode(Twin& twin, const BodyState& at) {
+void put_in_ode(BodyProxy& proxy, const BodyState& at) {
   std::array<double, 4> q = at.q_WB;
   const auto [c, s] = heading_of(q);
   if (std::fabs(c - at.cos_h) > kSameHeading || std::fabs(s - at.sin_h) > kSameHeading)  // the heading alone was set
     q = product(upright_turn(c * at.cos_h + s * at.sin_h, c * at.sin_h - s * at.cos_h), q);
-  const dBodyID body = twin.body.get();
-  dBodySetPosition(body, at.x_m, at.y_m, at.z_m + twin.origin_m);
+  const dBodyID body = proxy.body.get();
+  dBodySetPosition(body, at.x_m, at.y_m, at.z_m + proxy.origin_m);
   dBodySetQuaternion(body, q.data());
   dBodySetLinearVel(body, at.v_m_s[0], at.v_m_s[1], at.v_m_s[2]);
   dBodySetAngularVel(body, at.w_rad_s[0], at.w_rad_s[1], at.w_rad_s[2]);
-  if (twin.sort != Sort::Wheels) return;
+  if (proxy.sort != Sort::Wheels) return;
   const dReal* r = dBodyGetRotation(body);
   for (std::size_t side = 0; side < 2; ++side) {
-    const double y = (side == 0 ? 0.5 : -0.5) * twin.drive->wheel_base_m;
+    const double y = (side == 0 ? 0.5 : -0.5) * proxy.drive->wheel_base_m;
     const Vector3 arm{r[1] * y, r[5] * y, r[9] * y};
     const dReal* w = dBodyGetAngularVel(body);
     const Vector3 v{at.v_m_s[0] + w[1] * arm[2] - w[2] * arm[1], at.v_m_s[1] + w[2] * arm[0] - w[0] * arm[2],
                     at.v_m_s[2] + w[0] * arm[1] - w[1] * arm[0]};
-    const double spin = (v[0] * r[0] + v[1] * r[4] + v[2] * r[8]) / twin.drive->wheel_radius_m;  // it rolls
-    const dBodyID wheel = twin.wheels[side].get();
-    dBodySetPosition(wheel, at.x_m + arm[0], at.y_m + arm[1], at.z_m + twin.origin_m + arm[2]);
+    const double spin = (v[0] * r[0] + v[1] * r[4] + v[2] * r[8]) / proxy.drive->wheel_radius_m;  // it rolls
+    const dBodyID wheel = proxy.wheels[side].get();
+    dBodySetPosition(wheel, at.x_m + arm[0], at.y_m + arm[1], at.z_m + proxy.origin_m + arm[2]);
     dBodySetQuaternion(wheel, dBodyGetQuaternion(body));
     dBodySetLinearVel(wheel, v[0], v[1], v[2]);
     dBodySetAngularVel(wheel, w[0] + spin * r[1], w[1] + spin * r[5], w[2] + spin * r[9]);
@@ -139,20 +138,20 @@ BodyState stored_state(const SpaceStores& stores, BodyKey key) noexcept {
   return at;
 }
 
-BodyState state_of(const Twin& twin) noexcept {
+BodyState state_of(const BodyProxy& proxy) noexcept {
   BodyState at;
-  if (twin.light()) {
-    return {twin.p_m[0], twin.p_m[1],
-            twin.p_m[2], twin.cos_h,
-            twin.sin_h,  upright_turn(twin.cos_h, twin.sin_h),
-            twin.v_m_s,  {0.0, 0.0, twin.w_rad_s}};
+  if (proxy.light()) {
+    return {proxy.p_m[0], proxy.p_m[1],
+            proxy.p_m[2], proxy.cos_h,
+            proxy.sin_h,  upright_turn(proxy.cos_h, proxy.sin_h),
+            proxy.v_m_s,  {0.0, 0.0, proxy.w_rad_s}};
   }
-  const dBodyID body = twin.body.get();
+  const dBodyID body = proxy.body.get();
   const dReal* p = dBodyGetPosition(body);
   const dReal* q = dBodyGetQuaternion(body);
   at.x_m = p[0];
   at.y_m = p[1];
-  at.z_m = p[2] - twin.origin_m;
+  at.z_m = p[2] - proxy.origin_m;
   at.q_WB = {q[0], q[1], q[2], q[3]};
   const auto [c, s] = heading_of(at.q_WB);
   at.cos_h = c;
@@ -162,87 +161,87 @@ BodyState state_of(const Twin& twin) noexcept {
   return at;
 }
 
-void make_twin(Twin& twin, const SpaceStores& stores, BodyKey key, Sort sort, dWorldID world) {
-  twin.key = key;
-  twin.sort = sort;
-  Prism& prism = twin.prism;
+void make_proxy(BodyProxy& proxy, const SpaceStores& stores, BodyKey key, Sort sort, dWorldID world) {
+  proxy.key = key;
+  proxy.sort = sort;
+  Prism& prism = proxy.prism;
   if (key.is_object()) {
     const Object& o = stores.objects[key.index()];
-    twin.mass_kg = o.mass_kg;
-    twin.height_m = o.z_high_m - o.z_low_m;
-    twin.origin_m = 0.5 * twin.height_m;
+    proxy.mass_kg = o.mass_kg;
+    proxy.height_m = o.z_high_m - o.z_low_m;
+    proxy.origin_m = 0.5 * proxy.height_m;
     prism.round = o.kind == Object::Kind::Cylinder;
     prism.radius_m = o.radius_m;
     prism.half_x_m = o.half_x_m;
     prism.half_y_m = o.half_y_m;
     dMass mass;
     if (prism.round)
-      dMassSetCylinderTotal(&mass, o.mass_kg, 3, o.radius_m, twin.height_m);
+      dMassSetCylinderTotal(&mass, o.mass_kg, 3, o.radius_m, proxy.height_m);
     else
-      dMassSetBoxTotal(&mass, o.mass_kg, 2.0 * o.half_x_m, 2.0 * o.half_y_m, twin.height_m);
-    twin.body = make_body(world, mass);
+      dMassSetBoxTotal(&mass, o.mass_kg, 2.0 * o.half_x_m, 2.0 * o.half_y_m, proxy.height_m);
+    proxy.body = make_body(world, mass);
     return;
   }
-  twin.kind = &stores.kind_of_row(key.index());
-  twin.flight = twin.kind->flight();
-  if (twin.flight == nullptr) twin.drive = &wheels_of(*twin.kind);
-  twin.mass_kg = twin.kind->body.mass_kg;
-  twin.height_m = twin.kind->body.height_m;
-  twin.origin_m = sort == Sort::Wheels ? twin.drive->wheel_radius_m : 0.5 * twin.height_m;
+  proxy.kind = &stores.kind_of_row(key.index());
+  proxy.flight = proxy.kind->flight();
+  if (proxy.flight == nullptr) proxy.drive = &wheels_of(*proxy.kind);
+  proxy.mass_kg = proxy.kind->body.mass_kg;
+  proxy.height_m = proxy.kind->body.height_m;
+  proxy.origin_m = sort == Sort::Wheels ? proxy.drive->wheel_radius_m : 0.5 * proxy.height_m;
   prism.radius_m = static_cast<double>(stores.bodies.radius_m[key.index()]);
-  if (sort == Sort::Wheels) give_wheels(twin, world);
+  if (sort == Sort::Wheels) give_wheels(proxy, world);
   if (sort == Sort::Rotors) {
-    const double inertia = twin.flight->inertia_kg_m2;
+    const double inertia = proxy.flight->inertia_kg_m2;
     dMass mass;
-    dMassSetParameters(&mass, twin.mass_kg, 0.0, 0.0, 0.0, inertia, inertia, inertia, 0.0, 0.0, 0.0);
-    twin.body = make_body(world, mass);
+    dMassSetParameters(&mass, proxy.mass_kg, 0.0, 0.0, 0.0, inertia, inertia, inertia, 0.0, 0.0, 0.0);
+    proxy.body = make_body(world, mass);
   }
 }
 
-void end_twin(Twin& twin) noexcept {
-  for (OdeJoint* joint : {&twin.axles[0], &twin.axles[1], &twin.push, &twin.turn}) joint->destroy();
-  for (OdeBody* body : {&twin.wheels[0], &twin.wheels[1], &twin.body}) body->destroy();
-  twin.geom = OdeGeom();
+void end_proxy(BodyProxy& proxy) noexcept {
+  for (OdeJoint* joint : {&proxy.axles[0], &proxy.axles[1], &proxy.push, &proxy.turn}) joint->destroy();
+  for (OdeBody* body : {&proxy.wheels[0], &proxy.wheels[1], &proxy.body}) body->destroy();
+  proxy.geom = OdeGeom();
 }
 
-void put(Twin& twin, const BodyState& at) {
-  if (!twin.light()) {
-    put_in_ode(twin, at);
+void put(BodyProxy& proxy, const BodyState& at) {
+  if (!proxy.light()) {
+    put_in_ode(proxy, at);
     return;
   }
-  twin.p_m = {at.x_m, at.y_m, at.z_m};
-  twin.v_m_s = at.v_m_s;
-  twin.w_rad_s = at.w_rad_s[2];
-  twin.cos_h = at.cos_h;
-  twin.sin_h = at.sin_h;
-  twin.standing = false;
+  proxy.p_m = {at.x_m, at.y_m, at.z_m};
+  proxy.v_m_s = at.v_m_s;
+  proxy.w_rad_s = at.w_rad_s[2];
+  proxy.cos_h = at.cos_h;
+  proxy.sin_h = at.sin_h;
+  proxy.standing = false;
 }
 
-void give_body(Twin& twin, dWorldID world) {
-  if (twin.body) return;
+void give_body(BodyProxy& proxy, dWorldID world) {
+  if (proxy.body) return;
   dMass mass;
-  const double r = twin.prism.radius_m;
-  dMassSetParameters(&mass, twin.mass_kg, 0.0, 0.0, 0.0, kStiff_kg_m2, kStiff_kg_m2, 0.5 * twin.mass_kg * r * r, 0.0,
+  const double r = proxy.prism.radius_m;
+  dMassSetParameters(&mass, proxy.mass_kg, 0.0, 0.0, 0.0, kStiff_kg_m2, kStiff_kg_m2, 0.5 * proxy.mass_kg * r * r, 0.0,
                      0.0, 0.0);
-  twin.body = make_body(world, mass);
-  dBodySetGravityMode(twin.body.get(), 0);
-  dBodySetGyroscopicMode(twin.body.get(), 0);
-  dBodyDisable(twin.body.get());
+  proxy.body = make_body(world, mass);
+  dBodySetGravityMode(proxy.body.get(), 0);
+  dBodySetGyroscopicMode(proxy.body.get(), 0);
+  dBodyDisable(proxy.body.get());
 }
 
-void update_prism(Twin& twin) {
-  Prism& prism = twin.prism;
-  if (twin.light()) {
-    prism.x_m = twin.p_m[0];
-    prism.y_m = twin.p_m[1];
-    prism.low_m = twin.p_m[2];
-    prism.high_m = twin.p_m[2] + twin.height_m;
+void update_prism(BodyProxy& proxy) {
+  Prism& prism = proxy.prism;
+  if (proxy.light()) {
+    prism.x_m = proxy.p_m[0];
+    prism.y_m = proxy.p_m[1];
+    prism.low_m = proxy.p_m[2];
+    prism.high_m = proxy.p_m[2] + proxy.height_m;
     prism.reach_x_m = prism.reach_y_m = prism.radius_m;
     return;
   }
-  const dReal* p = dBodyGetPosition(twin.body.get());
-  const dReal* r = dBodyGetRotation(twin.body.get());
-  const double up = 0.5 * twin.height_m - twin.origin_m;  // from ODE's origin to the middle
+  const dReal* p = dBodyGetPosition(proxy.body.get());
+  const dReal* r = dBodyGetRotation(proxy.body.get());
+  const double up = 0.5 * proxy.height_m - proxy.origin_m;  // from ODE's origin to the middle
   prism.x_m = p[0] + up * r[2];
   prism.y_m = p[1] + up * r[6];
   const double middle_m = p[2] + up * r[10];
@@ -250,13 +249,13 @@ void update_prism(Twin& twin) {
   Vector3 reach{};
   for (std::size_t i = 0; i < 3; ++i) {
     const dReal* row = r + 4 * i;
-    const double along = 0.5 * twin.height_m * std::fabs(row[2]);
+    const double along = 0.5 * proxy.height_m * std::fabs(row[2]);
     reach[i] = along + (prism.round ? prism.radius_m * std::sqrt(std::max(0.0, 1.0 - row[2] * row[2]))
                                     : prism.half_x_m * std::fabs(row[0]) + prism.half_y_m * std::fabs(row[1]));
   }
   prism.reach_x_m = reach[0];
   prism.reach_y_m = reach[1];
-  const double half_m = prism.upright ? 0.5 * twin.height_m : reach[2];
+  const double half_m = prism.upright ? 0.5 * proxy.height_m : reach[2];
   prism.low_m = middle_m - half_m;
   prism.high_m = middle_m + half_m;
   const double l = std::sqrt(r[0] * r[0] + r[4] * r[4]);
@@ -265,15 +264,15 @@ void update_prism(Twin& twin) {
   prism.sin_h = r[4] / l;
 }
 
-Vector3 velocity_at(const Twin& twin, const Vector3& p_m) noexcept {
-  if (twin.light()) {
-    const double w = twin.next_w_rad_s;
-    return {twin.next_v_m_s[0] - w * (p_m[1] - twin.p_m[1]), twin.next_v_m_s[1] + w * (p_m[0] - twin.p_m[0]),
-            twin.next_v_m_s[2]};
+Vector3 velocity_at(const BodyProxy& proxy, const Vector3& p_m) noexcept {
+  if (proxy.light()) {
+    const double w = proxy.next_w_rad_s;
+    return {proxy.next_v_m_s[0] - w * (p_m[1] - proxy.p_m[1]), proxy.next_v_m_s[1] + w * (p_m[0] - proxy.p_m[0]),
+            proxy.next_v_m_s[2]};
   }
-  const dReal* c = dBodyGetPosition(twin.body.get());
-  const dReal* v = dBodyGetLinearVel(twin.body.get());
-  const dReal* w = dBodyGetAngularVel(twin.body.get());
+  const dReal* c = dBodyGetPosition(proxy.body.get());
+  const dReal* v = dBodyGetLinearVel(proxy.body.get());
+  const dReal* w = dBodyGetAngularVel(proxy.body.get());
   const Vector3 arm{p_m[0] - c[0], p_m[1] - c[1], p_m[2] - c[2]};
   return {v[0] + w[1] * arm[2] - w[2] * arm[1], v[1] + w[2] * arm[0] - w[0] * arm[2],
           v[2] + w[0] * arm[1] - w[1] * arm[0]};
@@ -287,16 +286,16 @@ OdeGeom make_geom(const Prism& prism, double height_m, double skin_m) {
   });
 }
 
-dGeomID geom_of(Twin& twin, double skin_m) {
-  if (!twin.geom) twin.geom = make_geom(twin.prism, twin.height_m, skin_m);
-  const dGeomID geom = twin.geom.get();
-  if (twin.light()) {
-    dGeomSetPosition(geom, twin.p_m[0], twin.p_m[1], twin.p_m[2] + 0.5 * twin.height_m);
+dGeomID geom_of(BodyProxy& proxy, double skin_m) {
+  if (!proxy.geom) proxy.geom = make_geom(proxy.prism, proxy.height_m, skin_m);
+  const dGeomID geom = proxy.geom.get();
+  if (proxy.light()) {
+    dGeomSetPosition(geom, proxy.p_m[0], proxy.p_m[1], proxy.p_m[2] + 0.5 * proxy.height_m);
     return geom;
   }
-  const dReal* p = dBodyGetPosition(twin.body.get());
-  const dReal* r = dBodyGetRotation(twin.body.get());
-  const double up = 0.5 * twin.height_m - twin.origin_m;
+  const dReal* p = dBodyGetPosition(proxy.body.get());
+  const dReal* r = dBodyGetRotation(proxy.body.get());
+  const double up = 0.5 * proxy.height_m - proxy.origin_m;
   dGeomSetPosition(geom, p[0] + up * r[2], p[1] + up * r[6], p[2] + up * r[10]);
   dGeomSetRotation(geom, r);
   return geom;

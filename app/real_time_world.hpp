@@ -1,4 +1,4 @@
-// A simulated world that runs in real time beside an emulated firmware, to be its body.
+// A simulated world in real time that gives an emulated firmware its body.
 #pragma once
 #include <atomic>
 #include <cstdio>
@@ -6,24 +6,24 @@
 #include <memory>
 #include <thread>
 
-#include "app/port_puppeteer.hpp"
+#include "app/simulated_body.hpp"
 #include "core/sim/world.hpp"
 #include "mixed_reality/time/pacer.hpp"
 
 namespace tandem::app {
 
 /// Steps the world on its own thread until `stop`, or until its end; one of its robots is the body behind `ports`.
-class LivingArena {
+class RealTimeWorld {
  public:
-  LivingArena(std::unique_ptr<core::World> world, core::RobotId robot, bridges::SharedPorts& ports,
-              const std::atomic<bool>& stop)
-      : world_(std::move(world)), puppeteer_(*world_, robot, ports) {
-    world_->set_external(&puppeteer_);
+  RealTimeWorld(std::unique_ptr<core::World> world, core::RobotId robot, bridges::SharedPorts& ports,
+                const std::atomic<bool>& stop)
+      : world_(std::move(world)), body_link_(*world_, robot, ports) {
+    world_->set_external(&body_link_);
     thread_ = std::thread([this, &stop] { live(stop); });
   }
-  ~LivingArena() { thread_.join(); }
-  LivingArena(const LivingArena&) = delete;
-  LivingArena& operator=(const LivingArena&) = delete;
+  ~RealTimeWorld() { thread_.join(); }
+  RealTimeWorld(const RealTimeWorld&) = delete;
+  RealTimeWorld& operator=(const RealTimeWorld&) = delete;
 
  private:
   void live(const std::atomic<bool>& stop) {
@@ -42,7 +42,7 @@ class LivingArena {
   }
 
   std::unique_ptr<core::World> world_;
-  PortPuppeteer puppeteer_;
+  SimulatedBody body_link_;
   std::thread thread_;
 };
 

@@ -1,4 +1,4 @@
-// Gives an emulated firmware the body of a simulated robot: their ports are one.
+// Connects an emulated firmware to the body of a simulated robot: their ports are one.
 #pragma once
 #include <string>
 #include <vector>
@@ -13,7 +13,7 @@ namespace tandem::app {
 /// Between sensing and control of every tick, hands a robot's readings to the firmware; after control, writes what the
 /// firmware commands over what the robot's controller did. Devices that the controller did not take are left out. Set
 /// it with `World::set_external`.
-class PortPuppeteer final : public core::ExternalRobots {
+class SimulatedBody final : public core::ExternalRobots {
  public:
   /// The robot called `id`, or the first that can be the body of such an emulator when `id` is empty. Error: there is
   /// none, it is of another kind, or its controller does not take what the emulator needs.
@@ -21,7 +21,7 @@ class PortPuppeteer final : public core::ExternalRobots {
                                          const std::string& id);
 
   /// `ports` must outlive this.
-  PortPuppeteer(const core::World& world, core::RobotId robot, bridges::SharedPorts& ports);
+  SimulatedBody(const core::World& world, core::RobotId robot, bridges::SharedPorts& ports);
 
   void latch(core::World&) override {}
   void after_sense(core::World& world) override;

@@ -1,4 +1,4 @@
-#include "core/sim/region_keeper.hpp"
+#include "core/sim/region_assigner.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -53,7 +53,7 @@ std::size_t nearest_side(const Region& region, double x, double y, double& neare
 
 }  // namespace
 
-void RegionKeeper::build(SpaceStores& stores, double tick_s) {
+void RegionAssigner::build(SpaceStores& stores, double tick_s) {
   borders_ = false;
   lists_ = false;
   for (const Region& region : stores.regions) {
@@ -64,7 +64,7 @@ void RegionKeeper::build(SpaceStores& stores, double tick_s) {
   fit(stores, tick_s);
 }
 
-void RegionKeeper::fit(SpaceStores& stores, double tick_s) {
+void RegionAssigner::fit(SpaceStores& stores, double tick_s) {
   double largest_m = 0.0;
   double robot_m = 0.0;
   double hop_m = 0.0;
@@ -87,7 +87,7 @@ void RegionKeeper::fit(SpaceStores& stores, double tick_s) {
              largest_m + extra_reach_m_);
 }
 
-std::uint16_t RegionKeeper::find(const SpaceStores& stores, BodyKey body) const noexcept {
+std::uint16_t RegionAssigner::find(const SpaceStores& stores, BodyKey body) const noexcept {
   const Where at = where_is(stores, body);
   std::uint16_t second_best = kNoRegion;
   for (const std::uint16_t r : map_.near(at.x_m, at.y_m)) {
@@ -101,7 +101,7 @@ std::uint16_t RegionKeeper::find(const SpaceStores& stores, BodyKey body) const 
   return second_best;
 }
 
-void RegionKeeper::place(SpaceStores& stores, std::vector<BodyKey>& nowhere) {
+void RegionAssigner::place(SpaceStores& stores, std::vector<BodyKey>& nowhere) {
   Bodies& b = stores.bodies;
   for (std::size_t row = 0; row < b.size(); ++row) {
     if ((b.flags[row] & kMoved) == 0) continue;
@@ -120,14 +120,14 @@ void RegionKeeper::place(SpaceStores& stores, std::vector<BodyKey>& nowhere) {
   keep_joined_together(stores);
 }
 
-bool RegionKeeper::led_by_another(const SpaceStores& stores, BodyKey body) const noexcept {
+bool RegionAssigner::led_by_another(const SpaceStores& stores, BodyKey body) const noexcept {
   for (const Joint& joint : stores.joints) {
     if (joint.alive && (std::max(joint.a, joint.b) == body)) return true;
   }
   return false;
 }
 
-void RegionKeeper::keep_joined_together(SpaceStores& stores) {
+void RegionAssigner::keep_joined_together(SpaceStores& stores) {
   // Regions spread from the body that sorts first along the joints; as many rounds as the longest chain is long.
   bool changed = true;
   for (std::size_t round = 0; changed && round <= stores.joints.size(); ++round) {
@@ -142,8 +142,8 @@ void RegionKeeper::keep_joined_together(SpaceStores& stores) {
   }
 }
 
-std::uint16_t RegionKeeper::behind(const SpaceStores& stores, const Region& from, const RegionSide& side, double x_m,
-                                   double y_m, double z_m) const noexcept {
+std::uint16_t RegionAssigner::behind(const SpaceStores& stores, const Region& from, const RegionSide& side, double x_m,
+                                     double y_m, double z_m) const noexcept {
   const auto holds = [&](std::uint16_t r) {
     const Region& region = stores.regions[r];
     return region.contains(x_m, y_m) && (region.plane || region.contains_height(z_m));
@@ -155,7 +155,7 @@ std::uint16_t RegionKeeper::behind(const SpaceStores& stores, const Region& from
   return kNoRegion;
 }
 
-void RegionKeeper::put_back(SpaceStores& stores, BodyKey body) noexcept {
+void RegionAssigner::put_back(SpaceStores& stores, BodyKey body) noexcept {
   std::uint16_t& r = region_of(stores, body);
   const Where at = where_is(stores, body);
   if (r == kNoRegion) {
@@ -189,7 +189,7 @@ void RegionKeeper::put_back(SpaceStores& stores, BodyKey body) noexcept {
   }
 }
 
-void RegionKeeper::cross(SpaceStores& stores, BodyKey body, std::vector<BodyKey>& left) {
+void RegionAssigner::cross(SpaceStores& stores, BodyKey body, std::vector<BodyKey>& left) {
   std::uint16_t& region = region_of(stores, body);
   if (region == kNoRegion) return;
   const Region& from = stores.regions[region];
@@ -214,7 +214,7 @@ void RegionKeeper::cross(SpaceStores& stores, BodyKey body, std::vector<BodyKey>
   }
 }
 
-void RegionKeeper::find_border_rows(const SpaceStores& stores, ThreadPool& pool) {
+void RegionAssigner::find_border_rows(const SpaceStores& stores, ThreadPool& pool) {
   const Bodies& b = stores.bodies;
   near_border_.resize(b.size());
   pool.run(b.size(), kGrain, [&](std::size_t begin, std::size_t end) {
@@ -225,7 +225,7 @@ void RegionKeeper::find_border_rows(const SpaceStores& stores, ThreadPool& pool)
   });
 }
 
-void RegionKeeper::migrate(SpaceStores& stores, ThreadPool& pool, std::vector<BodyKey>& left) {
+void RegionAssigner::migrate(SpaceStores& stores, ThreadPool& pool, std::vector<BodyKey>& left) {
   if (!borders_) return;
   find_border_rows(stores, pool);
   for (std::size_t row = 0; row < near_border_.size(); ++row) {
@@ -237,7 +237,7 @@ void RegionKeeper::migrate(SpaceStores& stores, ThreadPool& pool, std::vector<Bo
   keep_joined_together(stores);
 }
 
-void RegionKeeper::list_body(SpaceStores& stores, BodyKey body) {
+void RegionAssigner::list_body(SpaceStores& stores, BodyKey body) {
   const std::uint16_t own = region_of(stores, body);
   if (own == kNoRegion) return;
   if (stores.regions[own].listed) stores.regions[own].owned.push_back(body);
@@ -252,7 +252,7 @@ void RegionKeeper::list_body(SpaceStores& stores, BodyKey body) {
   }
 }
 
-void RegionKeeper::list(SpaceStores& stores, ThreadPool& pool) {
+void RegionAssigner::list(SpaceStores& stores, ThreadPool& pool) {
   if (!lists_ || !(borders_ || stores.bodies_changed)) return;
   if (borders_) find_border_rows(stores, pool);
   for (Region& region : stores.regions) {

@@ -1,11 +1,11 @@
-// How a flight ends when its hub does: hover, then land. Shared by the hub that leaves and the guardian of one that was
+// Shutdown sequence of a flight: hover, then land. Shared by a hub that ends and by the guardian of one that was
 // killed.
 #pragma once
 #include "bridges/eyebot/driver.hpp"
 
 namespace tandem::bridges::eyebot {
 
-struct FarewellSettings {
+struct ShutdownSettings {
   bool land = true;                              ///< else it is left hovering, and lands by itself after 10 s
   hal::TimeNs find_ns = 0;                       ///< how long a robot is waited for that was not heard of yet
   hal::TimeNs hover_ns = 2 * hal::kNsPerSecond;  ///< how long it may take to say that it hovers
@@ -13,9 +13,9 @@ struct FarewellSettings {
 };
 
 /// One robot's. Not thread-safe.
-class Farewell {
+class ShutdownSequence {
  public:
-  explicit Farewell(const FarewellSettings& settings) : settings_(settings) {}
+  explicit ShutdownSequence(const ShutdownSettings& settings) : settings_(settings) {}
 
   /// Pumps the driver, and takes the next step when one is done. True when there is nothing left to do, or to wait for.
   bool step(EyebotDriver& driver, hal::TimeNs now) noexcept;
@@ -23,7 +23,7 @@ class Farewell {
  private:
   enum class Stage : std::uint8_t { Begin, Hover, Land, End };
 
-  FarewellSettings settings_;
+  ShutdownSettings settings_;
   Stage stage_ = Stage::Begin;
   hal::TimeNs begun_ns_ = 0;
   hal::TimeNs since_ns_ = 0;

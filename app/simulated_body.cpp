@@ -1,4 +1,4 @@
-#include "app/port_puppeteer.hpp"
+#include "app/simulated_body.hpp"
 
 #include <algorithm>
 #include <cstring>
@@ -14,7 +14,7 @@ bool fits(const core::Space& space, core::RobotId robot, const bridges::Emulator
 
 }  // namespace
 
-hal::Result<core::RobotId> PortPuppeteer::find(const core::World& world, const bridges::EmulatorType& emulator,
+hal::Result<core::RobotId> SimulatedBody::find(const core::World& world, const bridges::EmulatorType& emulator,
                                                const std::string& id) {
   const core::Space& space = world.space();
   const std::string advice = "give it the controller " + std::string(emulator.puppet);
@@ -32,14 +32,14 @@ hal::Result<core::RobotId> PortPuppeteer::find(const core::World& world, const b
                     " whose controller takes what the emulated firmware needs; " + advice};
 }
 
-PortPuppeteer::PortPuppeteer(const core::World& world, core::RobotId robot, bridges::SharedPorts& ports)
+SimulatedBody::SimulatedBody(const core::World& world, core::RobotId robot, bridges::SharedPorts& ports)
     : robot_(robot), ports_(ports) {
   for (const hal::PortType* type : world.space().ports(robot)) {
     if (ports.with([&](const bridges::PortBank& bank) { return bank.find(*type) != nullptr; })) types_.push_back(type);
   }
 }
 
-void PortPuppeteer::after_sense(core::World& world) {
+void SimulatedBody::after_sense(core::World& world) {
   const core::Space& space = world.space();
   if (!space.contains(robot_)) return;  // a hook took it away: its firmware goes on without a body
   ports_.tell([&](const bridges::PortBank& bank) {
@@ -49,7 +49,7 @@ void PortPuppeteer::after_sense(core::World& world) {
   });
 }
 
-void PortPuppeteer::after_filter(core::World& world) {
+void SimulatedBody::after_filter(core::World& world) {
   core::Space& space = world.space();
   if (!space.contains(robot_)) return;
   ports_.with([&](const bridges::PortBank& bank) {

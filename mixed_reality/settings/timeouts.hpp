@@ -1,4 +1,4 @@
-// How long a real robot may be silent, and how it gets under way again.
+// Time-outs of real robots, and how a robot drives again afterwards.
 #pragma once
 #include "core/scenario/scenario.hpp"
 #include "hal/time.hpp"

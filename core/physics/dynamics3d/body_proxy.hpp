@@ -1,4 +1,4 @@
-// A body's double: what this engine keeps for a robot or a movable object between and within ticks.
+// This engine's record of a robot or a movable object, between and within ticks.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -22,7 +22,7 @@ struct BodyState {
   friend bool operator==(const BodyState&, const BodyState&) = default;
 };
 
-/// How a double moves.
+/// How a proxy moves.
 enum class Sort : std::uint8_t {
   Base,    ///< upright on the floor, driven over it
   Wheels,  ///< a chassis on two wheels that turn
@@ -33,7 +33,7 @@ enum class Sort : std::uint8_t {
 
 /// Base and Flyer are *light*: their state is kept here, and they are in ODE only for sub-steps in which they touch
 /// something. The others live in ODE.
-struct Twin {
+struct BodyProxy {
   Sort sort = Sort::Object;
   bool owned = false;
   bool external = false;  ///< led to where the stores say; nothing stops it
@@ -46,7 +46,7 @@ struct Twin {
   // Of an object, in this sub-step:
   bool driven = false;                   ///< touched by a robot, or joined to something
   bool resting = false;                  ///< left out of ODE's step: it stands, and stays where it is
-  Twin* heap = nullptr;                  ///< one of those that it touches, and so on to one that stands for all of them
+  BodyProxy* heap = nullptr;             ///< one of those that it touches, and so on to one that stands for all of them
   Vector3 before_m{};                    ///< where ODE's body was when the sub-step began
   dQuaternion turned_before{};           ///< … and how it was turned
   const hal::RobotKind* kind = nullptr;  ///< of a robot
@@ -84,26 +84,26 @@ struct Twin {
 
 /// As `state`, of the stores.
 BodyState stored_state(const SpaceStores& stores, BodyKey key) noexcept;
-/// Of a double, exactly as it is written to the stores.
-BodyState state_of(const Twin& twin) noexcept;
+/// Of a proxy, exactly as it is written to the stores.
+BodyState state_of(const BodyProxy& proxy) noexcept;
 
-/// Makes a double without a place.
-void make_twin(Twin& twin, const SpaceStores& stores, BodyKey key, Sort sort, dWorldID world);
+/// Makes a proxy without a place.
+void make_proxy(BodyProxy& proxy, const SpaceStores& stores, BodyKey key, Sort sort, dWorldID world);
 /// Ends what it has in ODE.
-void end_twin(Twin& twin) noexcept;
-/// Puts a double where `at` says, with its velocities.
-void put(Twin& twin, const BodyState& at);
-/// Gives a light double its body in ODE.
-void give_body(Twin& twin, dWorldID world);
-/// Sets what contacts see of a double from its state.
-void update_prism(Twin& twin);
+void end_proxy(BodyProxy& proxy) noexcept;
+/// Puts a proxy where `at` says, with its velocities.
+void put(BodyProxy& proxy, const BodyState& at);
+/// Gives a light proxy its body in ODE.
+void give_body(BodyProxy& proxy, dWorldID world);
+/// Sets what contacts see of a proxy from its state.
+void update_prism(BodyProxy& proxy);
 /// The velocity of its point at `p_m` of W, before forces act.
-Vector3 velocity_at(const Twin& twin, const Vector3& p_m) noexcept;
+Vector3 velocity_at(const BodyProxy& proxy, const Vector3& p_m) noexcept;
 
 /// A box or cylinder for ODE's own contact finders, `skin_m` larger on every side.
 OdeGeom make_geom(const Prism& prism, double height_m, double skin_m);
-/// Its geom, made when there is none, where the double is now.
-dGeomID geom_of(Twin& twin, double skin_m);
+/// Its geom, made when there is none, where the proxy is now.
+dGeomID geom_of(BodyProxy& proxy, double skin_m);
 
 /// A heading turned by `angle_rad`.
 std::array<double, 2> turned(double cos_h, double sin_h, double angle_rad) noexcept;
