@@ -9,7 +9,7 @@ namespace tandem::hal {
 namespace {
 
 // Wide enough for every robot, and narrow enough that no square or quotient of them leaves the numbers.
-constexpr Range kExtent_m{1e-4, 100.0};
+constexpr Range kExtent_m{0.001, 100.0};
 constexpr Range kPlace_m{-100.0, 100.0};
 constexpr Range kTurns_rad{-4.0 * std::numbers::pi, 4.0 * std::numbers::pi};
 constexpr Range kAboveZero{1e-9, 1e6};

@@ -1,5 +1,7 @@
 // Folders of the checkout and of the build that is tested, for tests that read or run files.
 #pragma once
+#include <string>
+#include <vector>
 
 namespace tandem::test {
 
@@ -7,5 +9,8 @@ namespace tandem::test {
 // compiler cache serves all clones.
 extern const char* const kSourceDir;  ///< the checkout, without a trailing slash
 extern const char* const kBuildDir;   ///< CMake's binary folder of this preset
+
+/// Names of the experiments in configs/, sorted; other files there are parts of them.
+std::vector<std::string> experiments();
 
 }  // namespace tandem::test

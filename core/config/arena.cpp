@@ -325,7 +325,7 @@ class ArenaReader {
     reading_.once_or_default(e, "battery", [&](Element& c) { item.battery = battery(c); });
     reading_.once(e, "bridge", [&](Element& c) {
       std::shared_ptr<const void> own;
-      const auto* const options = reading_.catalog().find<hal::ElementOptions>("bridge of " + e.name);
+      const auto* const options = reading_.catalog().find<hal::ElementOptions>("bridge of " + bridged_as(out_, e.name));
       const auto b = reading_.read_with<schema::Bridge>(c, [&](hal::ParamVisitor& v) {
         if (options == nullptr) return;
         auto read = options->read(v);

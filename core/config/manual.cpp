@@ -28,11 +28,11 @@ std::vector<ElementManual> manuals_of() {
 
 std::vector<ElementManual> all_manuals() {
   using namespace schema;
-  return manuals_of<Root, Plugins, Framework, System, Experiment, Profiling, Time, Controllers, Configuration, Sensors,
-                    Actuators, Arena, FieldElement, Box, Cylinder, Leds, Led, Light, Sound, Robot, Body,
-                    RobotController, Battery, Bridge, Tracker, DistributeElement, PositionDraw, OrientationDraw, Entity,
-                    Engines, Engine, Boundaries, Top, Bottom, Sides, Vertex, Media, schema::Medium, Hook, Record,
-                    Trajectory, Visualization>();
+  return manuals_of<Root, Plugins, Kinds, Kind, Framework, System, Experiment, Profiling, Time, Controllers,
+                    Configuration, Sensors, Actuators, Arena, FieldElement, Box, Cylinder, Leds, Led, Light, Sound,
+                    Robot, Body, RobotController, Battery, Bridge, Tracker, DistributeElement, PositionDraw,
+                    OrientationDraw, Entity, Engines, Engine, Boundaries, Top, Bottom, Sides, Vertex, Media,
+                    schema::Medium, Hook, Record, Trajectory, Visualization>();
 }
 
 /// What a kind says of its own element.

@@ -39,6 +39,11 @@ std::vector<Part> split(std::string_view path) {
   return inside ? std::vector<Part>{} : parts;
 }
 
+/// What an element is chosen by: its id, or the name of a kind of robots.
+const std::string* label_of(const Element& e) {
+  return e.attribute(e.name == "kind" ? "name" : "id");
+}
+
 /// What stands in `parent`, for messages: "box [wall]", "distribute [0]", "floor".
 std::vector<std::string> contents(const Element& parent) {
   std::vector<std::string> names;
@@ -46,7 +51,7 @@ std::vector<std::string> contents(const Element& parent) {
     const auto same = [&](const Element& e) { return e.name == child.name; };
     const auto total = std::count_if(parent.children.begin(), parent.children.end(), same);
     const auto index = std::count_if(parent.children.data(), &child, same);
-    const std::string* id = child.attribute("id");
+    const std::string* id = label_of(child);
     names.push_back(child.name + (id != nullptr ? "[" + *id + "]"
                                   : total > 1   ? "[" + std::to_string(index) + "]"
                                                 : ""));
@@ -74,7 +79,7 @@ Element* select(Element& parent, const Part& part, const std::string& origin, st
     return nullptr;
   }
   for (std::size_t i = 0; i < same.size(); ++i) {
-    const std::string* id = same[i]->attribute("id");
+    const std::string* id = label_of(*same[i]);
     if ((id != nullptr && *id == part.selector) || std::to_string(i) == part.selector) return same[i];
   }
   const bool of_a_plugin =

@@ -2,7 +2,9 @@
 
 #include <filesystem>
 #include <map>
+#include <tuple>
 
+#include "core/config/kinds.hpp"
 #include "core/config/overrides.hpp"
 #include "core/config/reading.hpp"
 #include "core/config/upgrade.hpp"
@@ -113,13 +115,15 @@ Scenario read_parts(Reading& reading, Element& root) {
 
 ExperimentFile opened(Element root, const std::vector<std::string>& overrides, Problems found) {
   ExperimentFile file{std::move(root), std::move(found)};
+  include_kinds(file.root, file.problems);
   for (const std::string& assignment : overrides) apply_override(file.root, assignment, file.problems);
   return file;
 }
 
-/// Hands what was found on, in the order of the file.
-void report(Problems found, Problems& problems) {
-  std::stable_sort(found.begin(), found.end(), [](const Problem& a, const Problem& b) { return a.line < b.line; });
+/// Hands what was found on, in the order of the file; first what is in files that it includes.
+void report(Problems found, const std::string& file, Problems& problems) {
+  const auto place = [&](const Problem& p) { return std::tuple(p.line > 0, p.file == file, p.line); };
+  std::stable_sort(found.begin(), found.end(), [&](const Problem& a, const Problem& b) { return place(a) < place(b); });
   problems.insert(problems.end(), found.begin(), found.end());
 }
 
@@ -214,7 +218,7 @@ std::optional<ExperimentFile> open_experiment(const std::string& path, const std
   Problems found;
   auto root = hal::read_xml_file(path, found);
   if (root) return opened(std::move(*root), overrides, std::move(found));
-  report(std::move(found), problems);
+  report(std::move(found), path, problems);
   return std::nullopt;
 }
 
@@ -237,11 +241,15 @@ bool names_real_robots(const Element& root, const std::vector<std::string>& with
 
 std::optional<Scenario> read_experiment(ExperimentFile file, const hal::Catalog& catalog, Problems& problems) {
   Problems found = std::move(file.problems);
-  Reading reading(catalog, found);
+  std::vector<KindConfig> kinds = read_kinds(file.root, catalog, found);
+  const hal::Catalog with = with_kinds(catalog, kinds);
+  Reading reading(with, found);
+  reading.out().kinds = std::move(kinds);
   std::optional<Scenario> scenario = read_parts(reading, file.root);
+  const std::string path = file.root.file;
   scenario->effective = std::move(file.root);
   if (has_errors(found)) scenario.reset();
-  report(std::move(found), problems);
+  report(std::move(found), path, problems);
   return scenario;
 }
 
@@ -257,7 +265,7 @@ std::optional<Scenario> read_experiment_text(const std::string& text, const std:
   Problems found;
   auto root = hal::read_xml_text(text, name, found);
   if (root) return read_experiment(opened(std::move(*root), overrides, std::move(found)), catalog, problems);
-  report(std::move(found), problems);
+  report(std::move(found), name, problems);
   return std::nullopt;
 }
 
@@ -267,6 +275,7 @@ std::string effective_settings(const Scenario& scenario) {
 
 std::string device_name(std::string_view argos_name, hal::Role role, const hal::Catalog& catalog) {
   const bool sensor = role == hal::Role::Sensor;
+  if (catalog.find<hal::PortType>(hal::port_entry(argos_name, role)) != nullptr) return std::string(argos_name);
   if (argos_name == "differential_steering" && sensor) return "wheel_encoders";
   if (argos_name == "colored_blob_omnidirectional_camera") return "omnidirectional_camera";
   if (argos_name == "colored_blob_perspective_camera") return "perspective_camera";

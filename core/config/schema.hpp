@@ -37,7 +37,7 @@ struct ElementInfo {
 struct Root {
   static constexpr ElementInfo kElement{
       "tandem", "An experiment. The name <argos-configuration> means the same.", "",
-      "plugins framework controllers arena physics_engines media visualization loop_functions record"};
+      "plugins kinds framework controllers arena physics_engines media visualization loop_functions record"};
   std::int64_t version = 0;
   void describe(ParamVisitor& v) {
     v.integer("version", version, {0, 999'999'999},
@@ -52,6 +52,34 @@ struct Plugins {
   std::string library;
   void describe(ParamVisitor& v) {
     v.text("library", library, "Shared object; folder, prefix and extension may be left out.");
+  }
+};
+
+struct Kinds {
+  static constexpr ElementInfo kElement{
+      "kinds", "Kinds of robots that the file gives. Also the root of a file that holds nothing else.", "",
+      "kind kinds"};
+  std::string file;
+  std::int64_t version = 0;
+  void describe(ParamVisitor& v) {
+    v.text("file", file, "Takes all kinds of that file instead; looked for in the folder of this one.");
+    v.integer("version", version, {0, 999'999'999}, "Of the vocabulary, as that of an experiment.");
+  }
+};
+
+struct Kind {
+  static constexpr ElementInfo kElement{
+      "kind", "A kind of robot: a body, a drive, and the parts that it is built with; then <NAME> is such a robot.",
+      "name", kAnything};
+  std::string name, like, without, summary, bridge;
+  void describe(ParamVisitor& v) {
+    v.text("name", name, "Of the element of such robots.");
+    v.text("like", like, "The kind whose facts hold where this one says nothing.");
+    v.text("without", without, "Parts of that kind that it does not have, separated by spaces.");
+    v.text("summary", summary, "What it is, for people.");
+    v.text(
+        "bridge", bridge,
+        "The kind whose bridge drives real ones; left out: that of the kind that it is like, or one of its own name.");
   }
 };
 

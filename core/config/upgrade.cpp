@@ -176,11 +176,12 @@ hal::Result<Upgrade> upgraded(const std::string& text, const std::string& name, 
   Problems problems;
   const std::optional<Element> root = hal::read_xml_text(text, name, problems);
   if (!root) return hal::Error{to_text(problems.front())};
-  if (root->name != "tandem" && root->name != "argos-configuration")
+  const bool kinds = root->name == "kinds";
+  if (!kinds && root->name != "tandem" && root->name != "argos-configuration")
     return hal::Error{name + ": the root element is <" + root->name + ">: this is no experiment"};
   const std::int64_t version = version_of(*root);
   if (const std::string why = version_problem(version); !why.empty()) return hal::Error{name + ": " + why};
-  if (version >= 1) return Upgrade{text, {}};
+  if (kinds || version >= 1) return Upgrade{text, {}};
   return to_version_1(text, catalog);
 }
 

@@ -19,8 +19,8 @@ struct Upgrade {
   std::vector<std::string> changes;  ///< "line 12: …", in the order of the file; empty: it was up to date
 };
 
-/// `name` stands for the file in messages; `catalog` knows the robots and devices that it may name. Errors: not XML; a
-/// later version than this program knows.
+/// Files of kinds of robots need no steps yet. `name` stands for the file in messages; `catalog` knows the robots and
+/// devices that it may name. Errors: not XML; a later version than this program knows.
 hal::Result<Upgrade> upgraded(const std::string& text, const std::string& name, const hal::Catalog& catalog);
 
 /// Why a file of this version cannot be read; empty: it can.

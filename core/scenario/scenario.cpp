@@ -1,6 +1,45 @@
 #include "core/scenario/scenario.hpp"
 
+#include <algorithm>
+
+#include "hal/check.hpp"
+
 namespace tandem::core {
+namespace {
+
+const KindConfig* config_of(const Scenario& scenario, std::string_view kind) noexcept {
+  const auto found = std::find_if(scenario.kinds.begin(), scenario.kinds.end(),
+                                  [&](const KindConfig& config) { return config.kind->name == kind; });
+  return found == scenario.kinds.end() ? nullptr : &*found;
+}
+
+}  // namespace
+
+const hal::RobotKind* find_kind(const Scenario& scenario, const hal::Catalog& catalog, std::string_view name) noexcept {
+  const KindConfig* const config = config_of(scenario, name);
+  return config != nullptr ? config->kind.get() : catalog.find<hal::RobotKind>(name);
+}
+
+std::vector<std::string> kind_names(const Scenario& scenario, const hal::Catalog& catalog) {
+  std::vector<std::string> names = catalog.names(hal::RobotKind::kCategory);
+  for (const KindConfig& config : scenario.kinds) names.push_back(config.kind->name);
+  return names;
+}
+
+hal::Catalog with_kinds(const hal::Catalog& catalog, const std::vector<KindConfig>& kinds) {
+  hal::Catalog with = catalog;
+  for (const KindConfig& config : kinds) {
+    const hal::Status added = with.add_from(config.file + ":" + std::to_string(config.line),
+                                            [&](hal::Registrar& registrar) { registrar.add(*config.kind); });
+    TANDEM_CHECK(added.ok(), added.error().message.c_str());  // the reader of files has judged it
+  }
+  return with;
+}
+
+std::string bridged_as(const Scenario& scenario, const std::string& kind) {
+  const KindConfig* const config = config_of(scenario, kind);
+  return config == nullptr || config->bridge.empty() ? kind : config->bridge;
+}
 
 hal::Result<std::uint8_t> medium_number(const std::vector<MediumConfig>& media, std::string_view kind,
                                         const std::string& id) {

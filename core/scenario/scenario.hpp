@@ -7,9 +7,11 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/scenario/element.hpp"
+#include "hal/catalog.hpp"
 #include "hal/result.hpp"
 #include "hal/robot_kind.hpp"
 
@@ -119,6 +121,14 @@ struct RobotItem {
   /// The kind with what the robot's element says of its parts; null: as the catalog has it. Shared by those that say
   /// the same.
   std::shared_ptr<const hal::RobotKind> own_kind = {};
+};
+
+/// A kind of robot that the file gives, itself or by a file that it names.
+struct KindConfig {
+  std::shared_ptr<const hal::RobotKind> kind;
+  std::string bridge;  ///< the kind whose bridge drives real robots of this one; empty: a bridge of its own name
+  std::string file;    ///< in which it stands
+  int line = 0;
 };
 
 enum class ShapeKind { Box, Cylinder };
@@ -231,6 +241,7 @@ struct Scenario {
   std::vector<EngineConfig> engines;
   std::vector<MediumConfig> media;
   std::vector<ControllerConfig> controllers;
+  std::vector<KindConfig> kinds;
   std::vector<RobotItem> robots;
   std::vector<ObjectItem> objects;
   std::vector<LightItem> lights;
@@ -241,5 +252,14 @@ struct Scenario {
   Element camera;     ///< placements of ARGoS' view, kept for ours
   Element effective;  ///< the whole file with every default filled in
 };
+
+/// The kind of robot of that name: the file's, or the catalog's; null: there is none.
+const hal::RobotKind* find_kind(const Scenario& scenario, const hal::Catalog& catalog, std::string_view name) noexcept;
+/// The names of all kinds that robots of this scenario may have.
+std::vector<std::string> kind_names(const Scenario& scenario, const hal::Catalog& catalog);
+/// The catalog with these kinds, which must outlive it.
+hal::Catalog with_kinds(const hal::Catalog& catalog, const std::vector<KindConfig>& kinds);
+/// The kind whose bridge drives real robots of that one.
+std::string bridged_as(const Scenario& scenario, const std::string& kind);
 
 }  // namespace tandem::core

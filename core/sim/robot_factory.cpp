@@ -275,7 +275,7 @@ bool RobotFactory::prepare_group(std::size_t g, Problems& problems) {
   };
   RobotGroup& group = stores_.groups[g];
   group.config = item.controller;
-  group.kind = item.own_kind != nullptr ? item.own_kind.get() : robot_kind_of(loader_.catalog(), item.kind);
+  group.kind = item.own_kind != nullptr ? item.own_kind.get() : find_kind(scenario_, loader_.catalog(), item.kind);
   if (group.kind == nullptr) {
     problem(item.line, "unknown kind of robot '" + item.kind + "'");
     return false;

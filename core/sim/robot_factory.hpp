@@ -37,11 +37,6 @@ struct RobotDevices {
   std::vector<BlockDevices> blocks;  ///< parallel to SpaceStores::blocks
 };
 
-/// What is known of a kind of robot, by its name in the catalog; null: there is no such kind.
-inline const hal::RobotKind* robot_kind_of(const hal::Catalog& catalog, std::string_view name) {
-  return catalog.find<hal::RobotKind>(name);
-}
-
 /// Makes the robots of a file at the start, and others while the run goes on. Everything that it is handed must outlive
 /// it.
 class RobotFactory {

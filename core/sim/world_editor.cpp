@@ -182,8 +182,8 @@ hal::Result<RobotItem> WorldEditor::item_for(const NewRobot& wanted) const {
   RobotItem item;
   item.controller = static_cast<std::size_t>(config - ids.begin());
   item.kind = wanted.kind.empty() ? usual_kind(item.controller) : wanted.kind;
-  if (robot_kind_of(factory_.catalog(), item.kind) == nullptr) {
-    const std::vector<std::string> kinds = factory_.catalog().names(hal::RobotKind::kCategory);
+  if (find_kind(scenario_, factory_.catalog(), item.kind) == nullptr) {
+    const std::vector<std::string> kinds = kind_names(scenario_, factory_.catalog());
     return hal::Error{"robot '" + wanted.id + "': there is no kind '" + item.kind + "'; there are: " + listed(kinds) +
                       did_you_mean(item.kind, kinds)};
   }

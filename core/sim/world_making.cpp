@@ -46,8 +46,8 @@ Object object_of(const Scenario& scenario, const ObjectItem& item, const PlacedO
   return shape;
 }
 
-BodySize size_of_kind(const hal::Catalog& catalog, const std::string& name) {
-  const hal::RobotKind* kind = robot_kind_of(catalog, name);
+BodySize size_of_kind(const Scenario& scenario, const hal::Catalog& catalog, const std::string& name) {
+  const hal::RobotKind* kind = find_kind(scenario, catalog, name);
   return kind != nullptr ? BodySize{kind->body.radius_m, kind->body.height_m, kind->flies()} : BodySize{};
 }
 
@@ -272,7 +272,7 @@ void World::Impl::populate(Problems& problems) {
   const auto bad = [&] { return has_errors(problems, before); };
 
   const hal::Catalog& catalog = loader->catalog();
-  const auto size_of = [&catalog](const std::string& kind) { return size_of_kind(catalog, kind); };
+  const auto size_of = [&](const std::string& kind) { return size_of_kind(scenario, catalog, kind); };
   const Placements placements = place(scenario, seed, size_of, problems);
   engines = make_engines(scenario, catalog, placements.robots.size(), s, problems);
   if (bad()) return;

@@ -11,8 +11,7 @@ enum class RealSense : std::uint8_t {
   Scanner = 2,
   Messages = 4,  ///< its own range-and-bearing board: between two robots that both have one
   OmniCamera = 8,
-  LensCamera = 16,
-  TimeOfFlight = 32
+  LensCamera = 16
 };
 
 constexpr std::uint8_t bit(RealSense sense) noexcept {

@@ -110,6 +110,9 @@ struct BatteryPart {
     v.number("low", low_V, unit::V, kNotNegative, "Voltage at which it is stopped; 0: the charge counts.");
     v.text("source", source, "Where these figures come from.");
   }
+  std::string flaw() const {
+    return full_V > empty_V ? "" : "is as full when it is empty; give full more volts than empty";
+  }
 };
 
 /// The run's own time; the same in every world.

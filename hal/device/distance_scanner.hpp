@@ -43,7 +43,10 @@ struct ScannerPart {
     v.text("source", source, "Where these figures come from.");
   }
   std::string flaw() const {
-    return heads.size() == kHeads ? "" : "has " + std::to_string(heads.size()) + " heads; give it 4";
+    if (heads.size() != kHeads) return "has " + std::to_string(heads.size()) + " heads; give it 4";
+    const auto blind = [](const ScannerHead& head) { return !(head.min_m < head.max_m); };
+    const bool any = std::any_of(heads.begin(), heads.end(), blind);
+    return any ? "has a head that measures no distance; give each a min below its max" : "";
   }
 };
 

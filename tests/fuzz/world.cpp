@@ -82,7 +82,7 @@ struct Kind {
 constexpr std::array<Kind, 3> kKinds = {{{"e-puck", "everything"}, {"foot-bot", "puppet"}, {"eye-bot", "eye_puppet"}}};
 
 const hal::RobotKind& kind_of(const Kind& kind) {
-  return *robot_kind_of(test::catalog(), kind.name);
+  return *test::catalog().find<hal::RobotKind>(kind.name);
 }
 
 /// <sensors> or <actuators> with all devices of a kind of robot, some of them with an implementation and an option.

@@ -1,6 +1,5 @@
 // Promises that hold for every experiment of configs/, and so for every shipped controller, hook and engine.
 #include <filesystem>
-#include <fstream>
 #include <gtest/gtest.h>
 #include <set>
 
@@ -12,17 +11,6 @@ namespace tandem::test {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// Experiment files, without the maps of modules.
-std::vector<std::string> experiments() {
-  std::vector<std::string> names;
-  for (const auto& entry : fs::directory_iterator(std::string(kSourceDir) + "/configs")) {
-    if (entry.path().extension() == ".xml" && entry.path().filename() != "footbot_map.xml")
-      names.push_back(entry.path().filename().string());
-  }
-  std::sort(names.begin(), names.end());
-  return names;
-}
 
 /// Enough for robots to meet; fewer where there are many of them.
 int ticks_for(const core::World& world) {
