@@ -1,5 +1,6 @@
 #include "mixed_reality/settings/bridge_request.hpp"
 
+#include "mixed_reality/settings/kind_check.hpp"
 #include "mixed_reality/settings/timeouts.hpp"
 
 namespace tandem::mixed_reality {
@@ -19,11 +20,20 @@ hal::Result<const BridgeType*> type_for(const hal::Catalog& catalog, const std::
                     "'; there is: " + hal::listed(catalog.names(BridgeType::kCategory))};
 }
 
+hal::Status check_built(const hal::Catalog& catalog, const bridges::BridgeRequest& request) {
+  const auto* const real = catalog.find<hal::RobotKind>(request.kind);
+  return real == nullptr ? hal::Status{} : check_built_as(request.robot_kind, *real);
+}
+
 }  // namespace
 
 bridges::BridgeRequest bridge_request(const core::Scenario& scenario, const core::RobotItem& item, std::uint64_t seed) {
   bridges::BridgeRequest request;
-  request.kind = item.kind;
+  request.kind = core::bridged_as(scenario, item.kind);
+  request.robot_kind = item.own_kind.get();
+  for (const core::KindConfig& config : scenario.kinds) {
+    if (request.robot_kind == nullptr && config.kind->name == item.kind) request.robot_kind = config.kind.get();
+  }
   request.robot = item.id;
   request.link = item.bridge->link;
   request.file = scenario.file;
@@ -42,6 +52,7 @@ bridges::MadeBridge make_bridge(const hal::Catalog& catalog, const bridges::Brid
                                 const hal::Log& log) {
   const auto type = type_for(catalog, request.kind);
   if (!type.ok()) return type.error();
+  if (const hal::Status built = check_built(catalog, request); !built.ok()) return built.error();
   return type.value()->make(request, log);
 }
 
@@ -55,7 +66,9 @@ std::vector<bridges::InputFile> bridge_inputs(const hal::Catalog& catalog, const
 
 hal::Status check_bridge(const hal::Catalog& catalog, const bridges::BridgeRequest& request) {
   const auto type = type_for(catalog, request.kind);
-  return type.ok() ? type.value()->check(request) : hal::Status{type.error()};
+  if (!type.ok()) return type.error();
+  const hal::Status built = check_built(catalog, request);
+  return built.ok() ? type.value()->check(request) : built;
 }
 
 }  // namespace tandem::mixed_reality
