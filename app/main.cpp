@@ -161,20 +161,23 @@ int main(int argc, char** argv) {
   add_plugins(*upgrade_command, upgrade_options.plugins);
   upgrade_command->callback([&] { code = upgrade(upgrade_options); });
 
-  std::string kind;
+  ListOptions list_options;
   CLI::App* list_command =
       app.add_subcommand("list", "List what there is: controllers, hooks, devices, engines, robots, elements.");
-  list_command->add_option("kind", kind, "Only this kind");
-  Libraries plugins;
-  add_plugins(*list_command, plugins);
-  list_command->callback([&] { code = list(kind, plugins); });
+  list_command->add_option("kind", list_options.kind, "Only this kind");
+  list_command->add_option("--in", list_options.file, "Also what this file adds: its plug-ins, its kinds of robots");
+  add_plugins(*list_command, list_options.plugins);
+  list_command->callback([&] { code = list(list_options); });
 
-  std::string name;
+  DescribeOptions describe_options;
   CLI::App* describe_command =
-      app.add_subcommand("describe", "Print the manual of a controller, device, hook or element.");
-  describe_command->add_option("name", name, "Its name")->required();
-  add_plugins(*describe_command, plugins);
-  describe_command->callback([&] { code = describe(name, plugins); });
+      app.add_subcommand("describe", "Print the manual of a controller, device, robot, hook or element.");
+  describe_command->add_option("name", describe_options.name, "Its name")->required();
+  describe_command->add_option("--in", describe_options.file,
+                               "A file with plug-ins and kinds of robots that may be meant, too");
+  describe_command->add_flag("--xml", describe_options.xml, "A kind of robot as a file that gives it");
+  add_plugins(*describe_command, describe_options.plugins);
+  describe_command->callback([&] { code = describe(describe_options); });
 
   RobotCommandOptions robot_command_options;
   add_robot_commands(app, robot_command_options, code);

@@ -7,6 +7,7 @@
 #include "app/terminal.hpp"
 #include "bridges/bridge_type.hpp"
 #include "bridges/guardian/stopper.hpp"
+#include "core/config/kinds.hpp"
 #include "mixed_reality/settings/bridge_check.hpp"
 
 namespace tandem::app {
@@ -104,6 +105,25 @@ std::optional<core::Scenario> ExperimentReading::read() {
   print_problems(problems);
   if (core::has_errors(problems)) return std::nullopt;
   return scenario;
+}
+
+std::unique_ptr<KindsOfFile> kinds_of_file(hal::PluginLoader& loader, const std::string& path) {
+  core::Problems problems;
+  auto file = core::open_experiment(path, {}, problems);
+  auto found = std::make_unique<KindsOfFile>();
+  if (file) {
+    loader.look_beside(path);
+    for (const core::PluginConfig& plugin : core::plugins_of(file->root)) {
+      const hal::Status opened = loader.open(plugin.library);
+      if (!opened.ok()) file->problems.push_back({path, plugin.line, "<plugins>: " + opened.error().message});
+    }
+    problems = std::move(file->problems);
+    found->kinds = core::read_kinds(file->root, loader.catalog(), problems);
+  }
+  print_problems(problems);
+  if (core::has_errors(problems)) return nullptr;
+  found->catalog = core::with_kinds(loader.catalog(), found->kinds);
+  return found;
 }
 
 std::optional<core::Scenario> read_or_complain(hal::PluginLoader& loader, const std::vector<std::string>& plugins,

@@ -1,5 +1,6 @@
 // The plug-ins of one call of the program, opened in the order that docs/plugins.md states.
 #pragma once
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -14,6 +15,12 @@ hal::PluginLoader make_loader();
 
 /// Opens the libraries of `--plugin`, for commands that read no experiment. Complains where one cannot be.
 bool open_plugins(hal::PluginLoader& loader, const std::vector<std::string>& libraries);
+
+/// The loader's catalog with the kinds of a file, which it holds.
+struct KindsOfFile {
+  std::vector<core::KindConfig> kinds;
+  hal::Catalog catalog;
+};
 
 /// An experiment file on its way to a scenario, with its plug-ins and those of `--plugin`. What goes wrong is printed.
 class ExperimentReading {
@@ -44,6 +51,10 @@ class ExperimentReading {
   std::string path_;
   std::optional<core::ExperimentFile> file_;
 };
+
+/// The parts that a file adds to those of the loader: its plug-ins, which are opened, and its kinds of robots. The rest
+/// of the file is not judged; it may be a file of kinds alone. Null: complained.
+std::unique_ptr<KindsOfFile> kinds_of_file(hal::PluginLoader& loader, const std::string& path);
 
 /// All of it, for commands without real robots.
 std::optional<core::Scenario> read_or_complain(hal::PluginLoader& loader, const std::vector<std::string>& plugins,

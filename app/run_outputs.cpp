@@ -18,6 +18,7 @@ std::vector<NamedFile> inputs_of(const core::Scenario& scenario, const hal::Cata
     const std::string* path = field.attribute("path");
     if (path != nullptr && !path->empty()) inputs.push_back({"file of the " + field.name, *path});
   }
+  for (const core::KindConfig& kind : scenario.kinds) inputs.push_back({"file of the " + kind.kind->name, kind.file});
   for (const core::RobotItem& robot : scenario.robots) {
     if (!robot.bridge) continue;
     for (const auto& [what, path] :

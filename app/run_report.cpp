@@ -136,6 +136,11 @@ InputFiles input_files(const core::Scenario& scenario, const hal::PluginLoader& 
     const std::string* path = field.attribute("path");
     if (path != nullptr && !path->empty()) files.others.push_back(described("", "", *path));
   }
+  std::string last = scenario.file;
+  for (const core::KindConfig& kind : scenario.kinds) {
+    if (kind.file != last) files.others.push_back(described("", "", kind.file));
+    last = kind.file;
+  }
   for (const core::RobotItem& robot : scenario.robots) {
     if (!robot.bridge) continue;
     for (const auto& file :

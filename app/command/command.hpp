@@ -62,9 +62,20 @@ struct UpgradeOptions {
 };
 int upgrade(const UpgradeOptions& options);
 
-/// Kinds: bridges, controllers, couplings, devices, elements, emulators, engines, hooks, plugins, robots; empty: all.
-int list(const std::string& kind, const Libraries& plugins);
-int describe(const std::string& name, const Libraries& plugins);
+struct ListOptions {
+  Libraries plugins;
+  std::string file;  ///< whose plug-ins and kinds of robots are shown, too
+  std::string kind;  ///< bridges, controllers, couplings, devices, elements, … robots; empty: all
+};
+int list(const ListOptions& options);
+
+struct DescribeOptions {
+  Libraries plugins;
+  std::string file;  ///< as above
+  std::string name;
+  bool xml = false;  ///< a kind of robot as an element of a file
+};
+int describe(const DescribeOptions& options);
 
 /// Lists that are left empty: the usual values when measuring, every saved line with `from`.
 struct BenchOptions {
@@ -126,7 +137,7 @@ int inspect(const InspectOptions& options);
 std::int64_t steps_of(std::optional<std::int64_t> steps, std::optional<double> seconds, const core::Scenario& scenario);
 
 void print_problems(const core::Problems& problems);
-/// `check` for files of the catalog's other types; nothing when it is none.
+/// `check` for files of kinds of robots, and of the catalog's other types; nothing when it is none.
 std::optional<int> check_other_file(const std::string& path, const hal::Catalog& catalog);
 
 }  // namespace tandem::app

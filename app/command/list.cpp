@@ -3,6 +3,8 @@
 #include <filesystem>
 #include <fmt/format.h>
 #include <map>
+#include <memory>
+#include <optional>
 
 #include "app/catalog.hpp"
 #include "app/command/command.hpp"
@@ -10,6 +12,7 @@
 #include "app/terminal.hpp"
 #include "bridges/bridge_type.hpp"
 #include "bridges/emulation/emulator_type.hpp"
+#include "core/config/kinds.hpp"
 #include "core/config/reader.hpp"
 #include "core/device/coupling.hpp"
 #include "core/device/device.hpp"
@@ -33,7 +36,22 @@ std::unique_ptr<hal::PluginLoader> open_all(const Libraries& plugins) {
   return loader;
 }
 
-/// " (libx.so)" behind what a plug-in brought.
+/// What is listed and described: of the program, of plug-ins, and of a file.
+struct Known {
+  std::unique_ptr<hal::PluginLoader> loader;
+  std::unique_ptr<KindsOfFile> file;
+  const hal::Catalog& catalog() const { return file != nullptr ? file->catalog : loader->catalog(); }
+};
+
+/// Nothing, when something of it cannot be opened.
+std::optional<Known> all_known(const Libraries& plugins, const std::string& file) {
+  Known known{open_all(plugins), nullptr};
+  if (known.loader == nullptr) return std::nullopt;
+  if (!file.empty() && (known.file = kinds_of_file(*known.loader, file)) == nullptr) return std::nullopt;
+  return known;
+}
+
+/// " (libx.so)" behind what a plug-in brought, " (crab.xml:3)" behind a kind of robot from a file.
 std::string from(const hal::Catalog& catalog, const void* entry) {
   const std::string origin = catalog.origin_of(entry);
   return origin == hal::Catalog::kInside ? "" : " (" + std::filesystem::path(origin).filename().string() + ")";
@@ -105,6 +123,7 @@ const std::map<std::string, ListKind>& kinds() {
       {"emulators", [](const hal::Catalog& c) { list_plugins<bridges::EmulatorType>(c, "emulators"); }},
       {"engines", [](const hal::Catalog& c) { list_names(c, core::EngineType::kCategory, "physics engines"); }},
       {"plugins", &list_libraries},
+      {"parts", [](const hal::Catalog& c) { list_plugins<hal::PartType>(c, "parts of robots"); }},
       {"robots", [](const hal::Catalog& c) { list_plugins<hal::RobotKind>(c, "robots"); }},
       {"fields", [](const hal::Catalog& c) { list_plugins<core::FieldType>(c, "fields"); }},
       {"media", [](const hal::Catalog& c) { list_plugins<core::MediumType>(c, "media"); }},
@@ -193,6 +212,42 @@ std::string devices_of(const hal::Catalog& catalog, const hal::RobotKind& kind, 
   return all;
 }
 
+/// A kind of robot as a file that gives it.
+int print_xml(const hal::Catalog& catalog, const Known& known, const std::string& name) {
+  const auto* const kind = catalog.find<hal::RobotKind>(name);
+  if (kind == nullptr) {
+    const std::vector<std::string> kinds = catalog.names(hal::RobotKind::kCategory);
+    return complain(kBadInput, "tandem describe: --xml: there is no robot '" + name +
+                                   "'; there are: " + hal::listed(kinds) + hal::did_you_mean(name, kinds));
+  }
+  std::string bridge;
+  for (const core::KindConfig& config : known.file != nullptr ? known.file->kinds : std::vector<core::KindConfig>{}) {
+    if (config.kind->name == name) bridge = config.bridge;
+  }
+  fmt::print("{}", core::kinds_file({core::element_of(*kind, bridge)}));
+  return kDone;
+}
+
+/// A part, drive or body, as files give it to a kind of robot.
+bool describe_part(const hal::Catalog& catalog, const std::string& name) {
+  hal::ManualWriter manual;
+  const auto print = [&](std::string_view doc, const std::string& origin) {
+    fmt::print("<{}> in <kind>: {}{}\n{}", name, printable(doc), origin, manual.text());
+    return true;
+  };
+  const auto is = [&](auto part) {
+    if (name != part.kName) return false;
+    part.describe(manual);
+    return print(part.kDoc, "");
+  };
+  if (is(hal::Body{}) || is(hal::DifferentialDrive{}) || is(hal::Quadrotor{})) return true;
+  const auto* const type = catalog.find<hal::PartType>(name);
+  if (type == nullptr) return false;
+  hal::AnyPart part = type->make();
+  part.describe(manual);
+  return print(type->summary, from(catalog, type));
+}
+
 /// What a kind of robot is and has.
 bool describe_robot(const hal::Catalog& catalog, const std::string& name) {
   const auto* const kind = catalog.find<hal::RobotKind>(name);
@@ -247,7 +302,8 @@ bool describe_element(const hal::Catalog& catalog, const std::string& name) {
 
 }  // namespace
 
-int list(const std::string& kind, const Libraries& plugins) {
+int list(const ListOptions& options) {
+  const std::string& kind = options.kind;
   const auto found = kinds().find(kind);
   if (!kind.empty() && found == kinds().end()) {
     std::string all;
@@ -255,27 +311,30 @@ int list(const std::string& kind, const Libraries& plugins) {
     fmt::print(stderr, "tandem list: there is no kind '{}'; there are: {}\n", kind, all);
     return kWrongUsage;
   }
-  const auto loader = open_all(plugins);
-  if (loader == nullptr) return kBadInput;
+  const auto known = all_known(options.plugins, options.file);
+  if (!known) return kBadInput;
   for (const auto& [name, print] : kinds()) {
-    if (kind.empty() || name == kind) print(loader->catalog());
+    if (kind.empty() || name == kind) print(known->catalog());
   }
   return kDone;
 }
 
-int describe(const std::string& name, const Libraries& plugins) {
-  const auto loader = open_all(plugins);
-  if (loader == nullptr) return kBadInput;
-  const hal::Catalog& catalog = loader->catalog();
+int describe(const DescribeOptions& options) {
+  const std::string& name = options.name;
+  const auto known = all_known(options.plugins, options.file);
+  if (!known) return kBadInput;
+  const hal::Catalog& catalog = known->catalog();
+  if (options.xml) return print_xml(catalog, *known, name);
   const bool robot = describe_robot(catalog, name);
   const bool engine = describe_physics_engine(catalog, name);
   const bool element = describe_element(catalog, name);
+  const bool part = describe_part(catalog, name);
   const bool device = describe_device(catalog, name);
   const bool controller = describe_plugin<hal::ControllerType>(catalog, name);
   const bool hook = describe_plugin<core::HookType>(catalog, name);
   const bool emulator = describe_emulator(catalog, name);
   const bool coupling = describe_coupling(catalog, name);
-  if (robot || engine || coupling || element || device || controller || hook || emulator) return kDone;
+  if (robot || engine || coupling || element || part || device || controller || hook || emulator) return kDone;
   std::vector<std::string> all;
   for (const core::ElementManual& m : core::element_manuals(catalog)) all.emplace_back(m.name);
   for (const core::DeviceType* t : catalog.all<core::DeviceType>()) all.emplace_back(t->device);

@@ -4,6 +4,7 @@
 
 #include "app/command/command.hpp"
 #include "app/terminal.hpp"
+#include "core/config/kinds.hpp"
 #include "hal/file_type.hpp"
 #include "hal/xml/xml.hpp"
 
@@ -21,9 +22,25 @@ std::int64_t steps_of(std::optional<std::int64_t> steps, std::optional<double> s
   return length_s > 0.0 ? std::max<std::int64_t>(1, wanted) : 0;  // a duration below a tick is one tick, not endless
 }
 
+namespace {
+
+int check_kinds(const std::string& path, const hal::Catalog& catalog) {
+  core::Problems problems;
+  const auto kinds = core::read_kinds_file(path, catalog, problems);
+  print_problems(problems);
+  if (!kinds) return kBadInput;
+  std::string names;
+  for (const core::KindConfig& config : *kinds) names += (names.empty() ? ": " : ", ") + config.kind->name;
+  fmt::print("{}: good: {} {} of robots{}\n", path, kinds->size(), kinds->size() == 1 ? "kind" : "kinds", names);
+  return kDone;
+}
+
+}  // namespace
+
 std::optional<int> check_other_file(const std::string& path, const hal::Catalog& catalog) {
   core::Problems problems;
   const auto root = hal::read_xml_file(path, problems);
+  if (root && root->name == "kinds") return check_kinds(path, catalog);
   const auto* const type = root ? catalog.find<hal::FileType>(root->name) : nullptr;
   if (type == nullptr) return std::nullopt;
   problems.clear();

@@ -94,10 +94,11 @@ void stop_and_wait(bridges::RobotBridge& bridge, double within_s, mixed_reality:
   }
 }
 
-/// The files that the command reads: the experiment, and those that the bridge asks for.
+/// The files that the command reads: the experiment, those of its kinds, and those that the bridge asks for.
 std::vector<NamedFile> input_files(const hal::Catalog& catalog, const bridges::BridgeRequest& request,
-                                   const std::string& experiment) {
-  std::vector<NamedFile> files = {{"experiment", experiment}};
+                                   const core::Scenario& scenario) {
+  std::vector<NamedFile> files = {{"experiment", scenario.file}};
+  for (const core::KindConfig& kind : scenario.kinds) files.push_back({"file of the " + kind.kind->name, kind.file});
   for (const auto& [what, path] : mixed_reality::bridge_inputs(catalog, request)) files.push_back({what, path});
   return files;
 }
@@ -157,9 +158,9 @@ int robot(const RobotOptions& options) {
   if (!options.link.empty()) item.bridge->link = options.link;
   const core::ControllerConfig& config = scenario->controllers[item.controller];
   bridges::BridgeRequest request = mixed_reality::bridge_request(*scenario, item, scenario->seed.value_or(1));
-  request.robot_kind = loader.catalog().find<hal::RobotKind>(item.kind);
+  if (request.robot_kind == nullptr) request.robot_kind = core::find_kind(*scenario, loader.catalog(), item.kind);
   if (const hal::Status apart =
-          check_apart({{"report", options.report}}, input_files(loader.catalog(), request, options.file));
+          check_apart({{"report", options.report}}, input_files(loader.catalog(), request, *scenario));
       !apart.ok())
     return complain(kBadInput, apart.error().message);
   std::optional<hal::OutputFile> report;
