@@ -1,5 +1,6 @@
 // An eye-bot whose strings somebody else holds.
 #pragma once
+#include "controllers/puppet/take_listed.hpp"
 #include "hal/controller.hpp"
 #include "hal/device/body_sensors.hpp"
 #include "hal/device/cameras.hpp"
@@ -21,30 +22,13 @@ class EyebotPuppet final : public hal::Controller {
     robot.actuator<hal::QuadrotorSpeed>();
     robot.sensor<hal::FlightState>();
     robot.sensor<hal::Positioning>();
-    sensors<hal::Altimeter, hal::Proximity, hal::Light, hal::DistanceScanner, hal::PanTiltEncoder,
-            hal::PerspectiveCamera, hal::RangeAndBearing, hal::Battery>(robot);
-    actuators<hal::RingLeds, hal::UpperRingLeds, hal::CameraLed, hal::PanTiltDrive, hal::ScannerDrive,
-              hal::RangeAndBearingSend>(robot);
+    take_listed_sensors<hal::Altimeter, hal::Proximity, hal::Light, hal::DistanceScanner, hal::PanTiltEncoder,
+                        hal::PerspectiveCamera, hal::RangeAndBearing, hal::Battery>(robot);
+    take_listed_actuators<hal::RingLeds, hal::UpperRingLeds, hal::CameraLed, hal::PanTiltDrive, hal::ScannerDrive,
+                          hal::RangeAndBearingSend>(robot);
   }
 
   void step() noexcept override {}
-
- private:
-  template <class Take>
-  static void where_listed(Take take) {
-    try {
-      take();
-    } catch (const hal::DeviceError&) {  // it does without
-    }
-  }
-  template <class... Port>
-  static void sensors(hal::Robot& robot) {
-    (where_listed([&] { robot.sensor<Port>(); }), ...);
-  }
-  template <class... Port>
-  static void actuators(hal::Robot& robot) {
-    (where_listed([&] { robot.actuator<Port>(); }), ...);
-  }
 };
 
 }  // namespace tandem::controllers

@@ -1,5 +1,6 @@
 // A foot-bot whose strings somebody else holds.
 #pragma once
+#include "controllers/puppet/take_listed.hpp"
 #include "hal/controller.hpp"
 #include "hal/device/body_sensors.hpp"
 #include "hal/device/distance_scanner.hpp"
@@ -18,29 +19,14 @@ class FootbotPuppet final : public hal::Controller {
  public:
   explicit FootbotPuppet(hal::Robot& robot) {
     robot.actuator<hal::WheelSpeeds>();
-    sensors<hal::Proximity, hal::Light, hal::BaseGround, hal::MotorGround, hal::DistanceScanner, hal::TurretEncoder,
-            hal::Gripper, hal::RangeAndBearing, hal::Battery, hal::Accelerometer, hal::Gyroscope>(robot);
-    actuators<hal::RingLeds, hal::TurretDrive, hal::GripperDrive, hal::ScannerDrive, hal::RangeAndBearingSend>(robot);
+    take_listed_sensors<hal::Proximity, hal::Light, hal::BaseGround, hal::MotorGround, hal::DistanceScanner,
+                        hal::TurretEncoder, hal::Gripper, hal::RangeAndBearing, hal::Battery, hal::Accelerometer,
+                        hal::Gyroscope>(robot);
+    take_listed_actuators<hal::RingLeds, hal::TurretDrive, hal::GripperDrive, hal::ScannerDrive,
+                          hal::RangeAndBearingSend>(robot);
   }
 
   void step() noexcept override {}
-
- private:
-  template <class Take>
-  static void where_listed(Take take) {
-    try {
-      take();
-    } catch (const hal::DeviceError&) {  // it does without
-    }
-  }
-  template <class... Port>
-  static void sensors(hal::Robot& robot) {
-    (where_listed([&] { robot.sensor<Port>(); }), ...);
-  }
-  template <class... Port>
-  static void actuators(hal::Robot& robot) {
-    (where_listed([&] { robot.actuator<Port>(); }), ...);
-  }
 };
 
 }  // namespace tandem::controllers

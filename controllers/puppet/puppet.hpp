@@ -1,14 +1,18 @@
 // A robot whose strings somebody else holds: an emulated firmware, a viewer, a test.
 #pragma once
+#include "controllers/puppet/take_listed.hpp"
 #include "hal/controller.hpp"
 #include "hal/device/body_sensors.hpp"
+#include "hal/device/cliff.hpp"
 #include "hal/device/leds.hpp"
 #include "hal/device/ring_sensors.hpp"
+#include "hal/device/time_of_flight.hpp"
 #include "hal/device/wheels.hpp"
 
 namespace tandem::controllers {
 
-/// Takes every device of an e-puck and leaves its commands as whoever reaches its ports from outside writes them.
+/// Takes every device of an e-puck, and those of an e-puck2 that its configuration lists, and leaves the commands as
+/// whoever reaches the ports from outside writes them.
 class Puppet final : public hal::Controller {
  public:
   explicit Puppet(hal::Robot& robot) {
@@ -22,6 +26,7 @@ class Puppet final : public hal::Controller {
     robot.actuator<hal::RingLeds>();
     robot.actuator<hal::BodyLed>();
     robot.actuator<hal::FrontLed>();
+    take_listed_sensors<hal::Gyroscope, hal::TimeOfFlight, hal::Cliff>(robot);
   }
 
   void step() noexcept override {}

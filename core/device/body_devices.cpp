@@ -130,16 +130,20 @@ BlockFactory<Sensor> make_accelerometer(const Element& element, Problems& proble
 template <int kPerMille>
 struct RateNoise {
   double noise_level_rad_s = kPerMille * 1e-3;
+  double bias_rad_s = 0.0;
   void describe(hal::ParamVisitor& v) {
     v.number("noise_level", noise_level_rad_s, hal::unit::rad_s, hal::kNotNegative,
              "Standard deviation about each axis.");
+    v.number("bias", bias_rad_s, hal::unit::rad_s, hal::kNotNegative,
+             "Largest constant error about each axis; every robot has its own.");
   }
 };
 
 /// Turn rates as the body's engine knows them; one that has no forces turns bodies as their wheels say.
 class GyroscopeSensor final : public Sensor {
  public:
-  GyroscopeSensor(double wheel_base_m, double noise) : wheel_base_m_(wheel_base_m), noise_rad_s_(noise) {}
+  GyroscopeSensor(double wheel_base_m, double noise, double bias)
+      : wheel_base_m_(wheel_base_m), noise_rad_s_(noise), bias_rad_s_(bias) {}
 
   void sense(const DeviceContext& context, void* ports) noexcept override {
     auto* gyroscopes = static_cast<hal::Gyroscope*>(ports);
@@ -153,6 +157,10 @@ class GyroscopeSensor final : public Sensor {
         rate[0] += noise_rad_s_ * xy[0];
         rate[1] += noise_rad_s_ * xy[1];
         rate[2] += noise_rad_s_ * to_normal(bits[2], bits[3])[0];
+      }
+      if (bias_rad_s_ > 0.0) {
+        const auto bits = draw(context.seed, b.entity[row], Stream::GyroscopeBias, 0);
+        for (std::size_t k = 0; k < 3; ++k) rate[k] += bias_rad_s_ * to_symmetric(bits[k]);
       }
       stamp(context, gyroscopes[i]);
       for (std::size_t k = 0; k < 3; ++k) gyroscopes[i].rate_rad_s[k] = static_cast<float>(rate[k]);
@@ -174,15 +182,19 @@ class GyroscopeSensor final : public Sensor {
 
   double wheel_base_m_;
   double noise_rad_s_;
+  double bias_rad_s_;
 };
 
 template <class Options>
 BlockFactory<Sensor> make_gyroscope(const Element& element, Problems& problems, const DeviceSetup& setup) {
   const auto options = read_options<Options>(element, problems);
-  double noise = 0.0;
-  if constexpr (requires { options.noise_level_rad_s; }) noise = options.noise_level_rad_s;
-  return [base = wheel_base_m(setup.kind), noise](const BlockColumns&) {
-    return std::make_unique<GyroscopeSensor>(base, noise);
+  double noise = 0.0, bias = 0.0;
+  if constexpr (requires { options.noise_level_rad_s; }) {
+    noise = options.noise_level_rad_s;
+    bias = options.bias_rad_s;
+  }
+  return [base = wheel_base_m(setup.kind), noise, bias](const BlockColumns&) {
+    return std::make_unique<GyroscopeSensor>(base, noise, bias);
   };
 }
 
@@ -375,12 +387,12 @@ std::vector<DeviceType> body_device_types() {
       sensor_type("accelerometer", "noisy", "From the change of speed, with normal noise.",
                   &has<hal::AccelerometerPart>, &make_accelerometer<ForceNoise<200>>,
                   &describe_options<ForceNoise<200>>),
-      sensor_type("gyroscope", "default", "Turn rates of the body; noise where asked for.", &has<hal::GyroscopePart>,
-                  &make_gyroscope<RateNoise<0>>, &describe_options<RateNoise<0>>),
+      sensor_type("gyroscope", "default", "Turn rates of the body; noise and bias where asked for.",
+                  &has<hal::GyroscopePart>, &make_gyroscope<RateNoise<0>>, &describe_options<RateNoise<0>>),
       sensor_type("gyroscope", "ideal", "Turn rates of the body.", &has<hal::GyroscopePart>, &make_gyroscope<NoOptions>,
                   &describe_options<NoOptions>),
-      sensor_type("gyroscope", "noisy", "Turn rates of the body, with normal noise.", &has<hal::GyroscopePart>,
-                  &make_gyroscope<RateNoise<20>>, &describe_options<RateNoise<20>>),
+      sensor_type("gyroscope", "noisy", "Turn rates of the body, with normal noise; bias where asked for.",
+                  &has<hal::GyroscopePart>, &make_gyroscope<RateNoise<20>>, &describe_options<RateNoise<20>>),
       sensor_type("microphones", "default", "Sources around; noise where asked for.", &has<hal::MicrophonesPart>,
                   &make_microphones<SoundNoise<0>>, &describe_options<SoundNoise<0>>),
       sensor_type("microphones", "ideal", "Sources around.", &has<hal::MicrophonesPart>, &make_microphones<NoOptions>,

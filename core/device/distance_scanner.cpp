@@ -1,10 +1,10 @@
 // Distance scanners: the actuator that turns them, and what their heads measured during the tick.
 #include "hal/device/distance_scanner.hpp"
 
-#include "core/device/proximity.hpp"
-#include "core/device/ray_ring.hpp"
+#include "core/device/far_rays.hpp"
 #include "core/device/types.hpp"
 #include "core/space/mechanisms.hpp"
+#include "core/space/sight.hpp"
 #include "hal/angle.hpp"
 
 namespace tandem::core {
@@ -111,17 +111,11 @@ class ScannerSensor final : public Sensor {
         scanners_(columns.find<ScannerState>()),
         noise_m_(static_cast<float>(noise_m)),
         samples_(static_cast<std::uint32_t>(
-            std::clamp<double>(std::round(part_.rate_hz * setup.tick_s), 1.0, DistanceScanner::kSamples))),
-        ring_(std::array<hal::Mount, RayRing::kCapacity>{}, 0.0) {
-    for (const hal::ScannerHead& head : part_.heads) farthest_m_ = std::max(farthest_m_, head.max_m);
-    bodies_.reserve(256);
-    near_.reserve(256);
-  }
+            std::clamp<double>(std::round(part_.rate_hz * setup.tick_s), 1.0, DistanceScanner::kSamples))) {}
 
   void sense(const DeviceContext& context, void* ports) noexcept override {
     auto* scanners = static_cast<DistanceScanner*>(ports);
-    double widest_m = 0.0;
-    for (const RobotGroup& group : context.stores.groups) widest_m = std::max(widest_m, group.kind->body.radius_m);
+    const double widest_m = widest_body_m(context.stores);
     for (std::size_t i = 0; i < context.block.used; ++i) {
       const std::size_t row = context.block.first_row + i;
       DistanceScanner& port = scanners[i];
@@ -132,7 +126,7 @@ class ScannerSensor final : public Sensor {
       port.long_max_m = static_cast<float>(part_.heads[1].max_m);
       aim(scanners_[i], port);
       if (port.count == 0) continue;
-      look(context.stores, row, widest_m, port);
+      rays_.look(context.stores, row, widest_m, RealSense::Scanner);
       if (noise_m_ > 0.0F) add_noise(context, context.stores.bodies.entity[row], port);
       keep_in_range(port);
     }
@@ -143,115 +137,23 @@ class ScannerSensor final : public Sensor {
     port.turn_rad = static_cast<float>(scanner.angle_rad);
     port.samples = scanner.mode == ScannerMode::Off ? 0 : scanner.swept_rad == 0.0 ? 1 : samples_;
     port.count = port.samples * static_cast<std::uint32_t>(DistanceScanner::kHeads);
-    ring_.count = port.count;
-    ring_.registers = (ring_.count + RayRing::kLanes - 1) / RayRing::kLanes;
+    rays_.aim(port.count, part_.height_m);
     for (std::size_t head = 0; head < DistanceScanner::kHeads; ++head) {
       for (std::size_t k = 0; k < port.samples; ++k) {
         const double back = scanner.swept_rad * (1.0 - static_cast<double>(k + 1) / port.samples);
         const double angle = hal::wrapped(scanner.angle_rad - back + part_.heads[head].bearing_rad);
         const std::size_t ray = port.at(head, k);
         port.angle_rad[ray] = static_cast<float>(angle);
-        ring_.dx[ray] = static_cast<float>(std::cos(angle));
-        ring_.dy[ray] = static_cast<float>(std::sin(angle));
+        rays_.set(ray, angle, part_.heads[head].max_m);
       }
     }
-    best_.fill(1e9F);
-  }
-
-  double height_m(const SpaceStores& stores, std::size_t row) const noexcept {
-    return part_.height_m + stores.base_m(row);
-  }
-
-  /// Lists the discs and objects that the rays may meet, then tests all rays against each.
-  void look(const SpaceStores& stores, std::size_t row, double widest_m, const DistanceScanner& port) noexcept {
-    const Bodies& b = stores.bodies;
-    const double height = height_m(stores, row);
-    bodies_.clear();
-    stores.body_index.for_each_near(b.x_m[row], b.y_m[row], farthest_m_ + widest_m, [&](const IndexEntry& o) {
-      const double wx = o.x_m - b.x_m[row];
-      const double wy = o.y_m - b.y_m[row];
-      const double within = farthest_m_ + static_cast<double>(o.radius_m);
-      if (o.row() == row || wx * wx + wy * wy > within * within) return;
-      if (stores.senses_really(row, o.row(), RealSense::Scanner)) return;
-      const double low = stores.base_m(o.row());
-      if (height < low || height > low + stores.kind_of_row(o.row()).body.height_m) return;
-      bodies_.push_back({static_cast<float>(b.cos_h[row] * wx + b.sin_h[row] * wy),
-                         static_cast<float>(b.cos_h[row] * wy - b.sin_h[row] * wx), o.radius_m});
-    });
-    near_.clear();
-    if (!stores.objects.empty()) list_objects(stores, row, port);
-    if (vector_code() == VectorCode::Avx2)
-      meet_avx2(stores, row);
-    else
-      meet(stores, row);
-  }
-
-  [[gnu::always_inline]] inline void meet(const SpaceStores& stores, std::size_t row) noexcept {
-    for (const Disc& disc : bodies_) {
-      for (std::size_t g = 0; g < ring_.registers; ++g)
-        meet_disc(ring_, g, disc.x, disc.y, disc.radius, best_.data() + g * RayRing::kLanes);
-    }
-    const Bodies& b = stores.bodies;
-    const double height = height_m(stores, row);
-    const auto c = static_cast<float>(b.cos_h[row]);
-    const auto s = static_cast<float>(b.sin_h[row]);
-    for (const std::size_t number : near_) {
-      const Object& o = stores.objects[number];
-      if (height < o.z_low_m || height > o.z_high_m) continue;
-      const float wx = static_cast<float>(o.x_m - b.x_m[row]);
-      const float wy = static_cast<float>(o.y_m - b.y_m[row]);
-      const float qx = c * wx + s * wy;
-      const float qy = c * wy - s * wx;
-      const float ax = static_cast<float>(o.cos_h) * c + static_cast<float>(o.sin_h) * s;
-      const float ay = static_cast<float>(o.sin_h) * c - static_cast<float>(o.cos_h) * s;
-      for (std::size_t g = 0; g < ring_.registers; ++g) {
-        float* best = best_.data() + g * RayRing::kLanes;
-        if (o.kind == Object::Kind::Cylinder)
-          meet_disc(ring_, g, qx, qy, static_cast<float>(o.radius_m), best);
-        else
-          meet_box(ring_, g, qx, qy, ax, ay, static_cast<float>(o.half_x_m), static_cast<float>(o.half_y_m), best);
-      }
-    }
-  }
-#if defined(__x86_64__) || defined(__i386__)
-  // The same source for wider registers; the bits stay those of the baseline.
-  __attribute__((target("avx2"))) void meet_avx2(const SpaceStores& stores, std::size_t row) noexcept {
-    meet(stores, row);
-  }
-#else
-  void meet_avx2(const SpaceStores& stores, std::size_t row) noexcept {
-    meet(stores, row);
-  }
-#endif
-
-  /// Numbers of the objects that lie near any ray, each once, in rising order.
-  void list_objects(const SpaceStores& stores, std::size_t row, const DistanceScanner& port) noexcept {
-    const Bodies& b = stores.bodies;
-    near_.clear();
-    for (std::size_t head = 0; head < DistanceScanner::kHeads; ++head) {
-      const double length_m = part_.heads[head].max_m;
-      const int hops = 1 + static_cast<int>(length_m / (1.9 * stores.static_index.reach()));
-      for (std::size_t k = 0; k < port.samples; ++k) {
-        const auto dx = static_cast<double>(ring_.dx[port.at(head, k)]);
-        const auto dy = static_cast<double>(ring_.dy[port.at(head, k)]);
-        const double wx = b.cos_h[row] * dx - b.sin_h[row] * dy;
-        const double wy = b.sin_h[row] * dx + b.cos_h[row] * dy;
-        for (int hop = 0; hop < hops; ++hop) {
-          const double along = length_m * (hop + 0.5) / hops;
-          stores.for_each_object_near(b.x_m[row] + along * wx, b.y_m[row] + along * wy, [&](const Object& object) {
-            near_.push_back(static_cast<std::size_t>(&object - stores.objects.data()));
-          });
-        }
-      }
-    }
-    std::sort(near_.begin(), near_.end());
-    near_.erase(std::unique(near_.begin(), near_.end()), near_.end());
   }
 
   void add_noise(const DeviceContext& context, std::uint32_t entity, const DistanceScanner& port) noexcept {
     for (std::uint32_t k = 0; k < port.count; k += 4) {
       const auto bits = draw(context.seed, entity, Stream::ScannerNoise, context.tick, k);
-      for (std::uint32_t j = 0; j < 4; ++j) best_[k + j] += noise_m_ * (2.0F * to_unit_float(bits[j]) - 1.0F);
+      for (std::uint32_t j = 0; j < 4; ++j)
+        rays_.distance_m[k + j] += noise_m_ * (2.0F * to_unit_float(bits[j]) - 1.0F);
     }
   }
 
@@ -261,7 +163,7 @@ class ScannerSensor final : public Sensor {
       const auto most = static_cast<float>(part_.heads[head].max_m);
       for (std::size_t k = 0; k < port.samples; ++k) {
         const std::size_t ray = port.at(head, k);
-        port.distance_m[ray] = std::min(std::max(best_[ray], least), most);
+        port.distance_m[ray] = std::min(std::max(rays_.distance_m[ray], least), most);
       }
     }
   }
@@ -270,14 +172,7 @@ class ScannerSensor final : public Sensor {
   const ScannerState* scanners_;
   float noise_m_;
   std::uint32_t samples_;  // of each head, in a tick in which the scanner turns
-  double farthest_m_ = 0.0;
-  RayRing ring_;  // of the robot at hand
-  alignas(32) std::array<float, RayRing::kCapacity> best_{};
-  struct Disc {
-    float x, y, radius;  // in the body frame
-  };
-  std::vector<Disc> bodies_;
-  std::vector<std::size_t> near_;
+  FarRays rays_;           // of the robot at hand
 };
 
 static_assert(RayRing::kCapacity >= DistanceScanner::kHeads * DistanceScanner::kSamples);

@@ -19,6 +19,7 @@ class FieldRing {
   }
 
   std::size_t size() const noexcept { return spots_.size(); }
+  const FieldSpot& spot(std::size_t k) const noexcept { return spots_[k]; }
 
   /// Calls `use(i, values)` for every robot i of the block, with one value a sensor.
   template <class Use>

@@ -1,7 +1,8 @@
-// Ambient light and ground reflectance: one level a sensor of the ring.
+// Ambient light, ground reflectance, cliffs: one level a sensor of the ring.
 #include "core/device/field_ring.hpp"
 #include "core/device/types.hpp"
 #include "core/random/random.hpp"
+#include "hal/device/cliff.hpp"
 #include "hal/device/ring_sensors.hpp"
 
 namespace tandem::core {
@@ -45,6 +46,7 @@ class LevelSensor : public Sensor {
       port.count = static_cast<std::uint32_t>(ring_.size());
       float* const levels = levels_of(port);
       for (std::size_t k = 0; k < ring_.size(); ++k) levels[k] = static_cast<float>(values[k]);
+      if constexpr (std::is_same_v<Port, hal::Cliff>) drop_beyond_edge(context, i, levels);
       if (noise_ > 0.0F) add_noise(context, i, stream_, noise_, levels, ring_.size());
     });
   }
@@ -52,6 +54,20 @@ class LevelSensor : public Sensor {
  private:
   static float* levels_of(hal::Light& port) noexcept { return port.level.data(); }
   static float* levels_of(hal::Ground& port) noexcept { return port.reflectance.data(); }
+  static float* levels_of(hal::Cliff& port) noexcept { return port.reflectance.data(); }
+
+  /// The floor ends where the arena does: from beyond nothing comes back.
+  void drop_beyond_edge(const DeviceContext& context, std::size_t i, float* levels) const noexcept {
+    const SpaceStores& s = context.stores;
+    const std::size_t row = context.block.first_row + i;
+    const Bodies& b = s.bodies;
+    for (std::size_t k = 0; k < ring_.size(); ++k) {
+      const FieldSpot& spot = ring_.spot(k);
+      const double x_m = b.x_m[row] + b.cos_h[row] * spot.x_m - b.sin_h[row] * spot.y_m;
+      const double y_m = b.y_m[row] + b.sin_h[row] * spot.x_m + b.cos_h[row] * spot.y_m;
+      if (x_m < s.min_x_m || x_m > s.max_x_m || y_m < s.min_y_m || y_m > s.max_y_m) levels[k] = 0.0F;
+    }
+  }
 
   FieldRing ring_;
   Stream stream_;
@@ -91,6 +107,13 @@ class MotorGround final : public GroundSensor {
   MotorGround(const Field& field, const Part& part, double noise)
       : GroundSensor(field, part.mounts, Stream::MotorGroundNoise, noise) {}
 };
+class CliffSensor final : public LevelSensor<hal::Cliff> {
+ public:
+  static constexpr std::string_view kField = "floor";
+  using Part = hal::CliffPart;
+  CliffSensor(const Field& field, const Part& part, double noise)
+      : LevelSensor(field, part.mounts, Stream::CliffNoise, noise) {}
+};
 static_assert(sizeof(hal::BaseGround) == sizeof(hal::Ground) && sizeof(hal::MotorGround) == sizeof(hal::Ground));
 
 template <class Device, class Options>
@@ -125,6 +148,13 @@ std::vector<DeviceType> ring_level_types() {
       levels_type<LightSensor, LevelNoise<-1, true>>("light", "ideal", "Lamps in sight."),
       levels_type<LightSensor, LevelNoise<20, true>>("light", "noisy", "Lamps in sight, with noise."),
       levels_type<LightSensor, LevelNoise<0, true>>("light", "rot_z_only", "ARGoS' name for the default.")};
+  const std::string_view cliff = hal::Cliff::kName;
+  types.push_back(levels_type<CliffSensor, LevelNoise<0, false>>(
+      cliff, "default", "The floor's shade, 0 beyond the arena's edge; noise where asked for."));
+  types.push_back(
+      levels_type<CliffSensor, LevelNoise<-1, false>>(cliff, "ideal", "The floor's shade, 0 beyond the arena's edge."));
+  types.push_back(levels_type<CliffSensor, LevelNoise<20, false>>(
+      cliff, "noisy", "The floor's shade, 0 beyond the arena's edge, with noise."));
   add_grounds<PlainGround>(hal::Ground::kName, types);
   add_grounds<BaseGround>(hal::BaseGround::kName, types);
   add_grounds<MotorGround>(hal::MotorGround::kName, types);

@@ -17,5 +17,7 @@ std::vector<DeviceType> gripper_types();
 std::vector<DeviceType> scanner_types();
 std::vector<DeviceType> camera_types();
 std::vector<DeviceType> lamp_types();
+std::vector<DeviceType> time_of_flight_types();
+std::vector<DeviceType> selector_types();
 
 }  // namespace tandem::core

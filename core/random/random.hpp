@@ -49,6 +49,9 @@ enum class Stream : std::uint32_t {
   HeadNoise,
   HeadEncoderNoise,
   LampNoise,
+  GyroscopeBias,
+  TimeOfFlightNoise,
+  CliffNoise,
 };
 
 /// Four independent 32-bit numbers. `index` tells draws of one tick apart (0 to 2^24 - 1).

@@ -11,7 +11,8 @@ enum class RealSense : std::uint8_t {
   Scanner = 2,
   Messages = 4,  ///< its own range-and-bearing board: between two robots that both have one
   OmniCamera = 8,
-  LensCamera = 16
+  LensCamera = 16,
+  TimeOfFlight = 32
 };
 
 constexpr std::uint8_t bit(RealSense sense) noexcept {

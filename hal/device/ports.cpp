@@ -2,6 +2,7 @@
 
 #include "hal/device/body_sensors.hpp"
 #include "hal/device/cameras.hpp"
+#include "hal/device/cliff.hpp"
 #include "hal/device/distance_scanner.hpp"
 #include "hal/device/flight.hpp"
 #include "hal/device/gripper.hpp"
@@ -9,6 +10,8 @@
 #include "hal/device/pan_tilt.hpp"
 #include "hal/device/range_and_bearing.hpp"
 #include "hal/device/ring_sensors.hpp"
+#include "hal/device/selector.hpp"
+#include "hal/device/time_of_flight.hpp"
 #include "hal/device/turret.hpp"
 #include "hal/device/wheels.hpp"
 
@@ -33,11 +36,11 @@ void register_ports(Registrar& registrar) {
           BodyLed, FrontLed, RangeAndBearing, RangeAndBearingSend, QuadrotorPosition, QuadrotorSpeed, Positioning,
           Odometry, Gyroscope, BaseGround, MotorGround, TurretDrive, TurretEncoder, GripperDrive, Gripper, ScannerDrive,
           DistanceScanner, OmnidirectionalCamera, PerspectiveCamera, UpperRingLeds, QuadrotorAttitude, FlightTask,
-          FlightState, Altimeter, CameraLed, PanTiltDrive, PanTiltEncoder>(registrar);
+          FlightState, Altimeter, CameraLed, PanTiltDrive, PanTiltEncoder, TimeOfFlight, Cliff, Selector>(registrar);
   add_parts<ProximityPart, LightPart, GroundPart, BaseGroundPart, MotorGroundPart, AccelerometerPart, GyroscopePart,
             MicrophonesPart, BatteryPart, RangeAndBearingPart, LedsPart, UpperLedsPart, BodyLedPart, FrontLedPart,
-            CameraLedPart, TurretPart, GripperPart, ScannerPart, OmniCameraPart, CameraPart, HeadPart, AltimeterPart>(
-      registrar);
+            CameraLedPart, TurretPart, GripperPart, ScannerPart, OmniCameraPart, CameraPart, HeadPart, AltimeterPart,
+            TimeOfFlightPart, CliffPart, SelectorPart>(registrar);
 }
 
 }  // namespace tandem::hal

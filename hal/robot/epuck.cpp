@@ -59,7 +59,7 @@ std::vector<InfraredResponse> response() {
 RobotKind make() {
   RobotKind kind;
   kind.name = kName;
-  kind.summary = "A small robot on two wheels, versions 1 and 2.";
+  kind.summary = "A small robot on two wheels.";
   kind.body = {.radius_m = kRadius_m,
                .height_m = kHeight_m,
                .mass_kg = 0.15,

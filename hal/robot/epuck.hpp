@@ -1,4 +1,4 @@
-// The e-puck, versions 1 and 2.
+// The e-puck, and what an e-puck2 has in common with it.
 #pragma once
 #include "hal/robot_kind.hpp"
 

@@ -1,13 +1,14 @@
 #include "hal/robot/robots.hpp"
 
 #include "hal/robot/epuck.hpp"
+#include "hal/robot/epuck2.hpp"
 #include "hal/robot/eyebot.hpp"
 #include "hal/robot/footbot.hpp"
 
 namespace tandem::hal {
 
 void register_robots(Registrar& registrar) {
-  for (const RobotKind* kind : {&epuck::kind(), &eyebot::kind(), &footbot::kind()}) registrar.add(*kind);
+  for (const RobotKind* kind : {&epuck::kind(), &epuck2::kind(), &eyebot::kind(), &footbot::kind()}) registrar.add(*kind);
 }
 
 }  // namespace tandem::hal

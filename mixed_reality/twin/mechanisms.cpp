@@ -54,6 +54,7 @@ Mechanisms::Mechanisms(core::Space& space, core::RobotId robot, const RealReadin
   gripper_ = if_used<hal::Gripper>(real, gripper_drive_ != nullptr || takes<hal::Gripper>());
   scanner_ = if_used<hal::DistanceScanner>(real, takes<hal::DistanceScanner>());
   head_ = if_used<hal::PanTiltEncoder>(real, head_drive_ != nullptr || takes<hal::PanTiltEncoder>());
+  time_of_flight_ = if_used<hal::TimeOfFlight>(real, takes<hal::TimeOfFlight>());
   proximity_ = if_used<hal::Proximity>(real, takes<hal::Proximity>());
   messages_ = if_used<hal::RangeAndBearing>(real, takes<hal::RangeAndBearing>() || takes<hal::RangeAndBearingSend>());
   omni_camera_ = if_used<hal::OmnidirectionalCamera>(real, takes<hal::OmnidirectionalCamera>());
@@ -76,6 +77,7 @@ std::uint8_t Mechanisms::senses() const noexcept {
   };
   add(proximity_, RealSense::Proximity);
   add(scanner_, RealSense::Scanner);
+  add(time_of_flight_, RealSense::TimeOfFlight);
   add(messages_, RealSense::Messages);
   add(omni_camera_, RealSense::OmniCamera);
   add(lens_camera_, RealSense::LensCamera);

@@ -8,6 +8,7 @@
 #include "hal/device/pan_tilt.hpp"
 #include "hal/device/range_and_bearing.hpp"
 #include "hal/device/ring_sensors.hpp"
+#include "hal/device/time_of_flight.hpp"
 #include "hal/device/turret.hpp"
 #include "mixed_reality/fusion/port_fusion.hpp"
 
@@ -48,6 +49,7 @@ class Mechanisms {
   const hal::DistanceScanner* scanner_;
   const hal::PanTiltEncoder* head_;
   const hal::Proximity* proximity_;
+  const hal::TimeOfFlight* time_of_flight_;
   const hal::RangeAndBearing* messages_;
   const hal::OmnidirectionalCamera* omni_camera_;
   const hal::PerspectiveCamera* lens_camera_;

@@ -6,6 +6,7 @@
 
 #include "hal/device/body_sensors.hpp"
 #include "hal/device/cameras.hpp"
+#include "hal/device/cliff.hpp"
 #include "hal/device/distance_scanner.hpp"
 #include "hal/device/flight.hpp"
 #include "hal/device/gripper.hpp"
@@ -13,6 +14,8 @@
 #include "hal/device/pan_tilt.hpp"
 #include "hal/device/range_and_bearing.hpp"
 #include "hal/device/ring_sensors.hpp"
+#include "hal/device/selector.hpp"
+#include "hal/device/time_of_flight.hpp"
 #include "hal/device/turret.hpp"
 #include "hal/device/wheels.hpp"
 #include "hal/plugin.hpp"
@@ -308,6 +311,19 @@ class Puppet final : public Controller {
   void step() override {}
 };
 
+/// Takes what an e-puck2 has and an e-puck has not, and the wheels, and leaves the commands to the test.
+class Epuck2Puppet final : public Controller {
+ public:
+  explicit Epuck2Puppet(Robot& robot) {
+    robot.actuator<WheelSpeeds>();
+    robot.sensor<Gyroscope>();
+    robot.sensor<TimeOfFlight>();
+    robot.sensor<Cliff>();
+    robot.sensor<Selector>();
+  }
+  void step() override {}
+};
+
 /// Takes a foot-bot's wheels and ring of sensors alone, and leaves the commands to the test.
 class DrivenPuppet final : public Controller {
  public:
@@ -394,6 +410,7 @@ void register_all(Registrar& registrar) {
   registrar.add_controller<FlyBoth>("fly_both", "A place, a velocity, and what is no number.");
   registrar.add_controller<EyePuppet>("eye_puppet", "Takes every device of an eye-bot.");
   registrar.add_controller<Puppet>("puppet", "Takes every device of a foot-bot.");
+  registrar.add_controller<Epuck2Puppet>("epuck2_puppet", "Takes what an e-puck2 alone has.");
   registrar.add_controller<DrivenPuppet>("driven_puppet", "Takes a foot-bot's wheels and proximity sensors.");
   registrar.add_controller<Watcher>("watcher", "Takes cameras and lights.");
   registrar.add_controller<Owner>("owner", "Cannot be copied.");

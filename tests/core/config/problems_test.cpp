@@ -316,7 +316,13 @@ INSTANTIATE_TEST_SUITE_P(
                p.things =
                    R"(<e-puck id="ep" rab_data_size="11"><body position="0,0,0"/><controller config="w"/></e-puck>)";
              },
-             6, "<e-puck rab_data_size>: '11' is out of range"}),
+             6, "<e-puck rab_data_size>: '11' is out of range"},
+        Case{"no_such_selector_position",
+             [](Parts& p) {
+               p.things =
+                   R"(<e-puck2 id="ep" selector="16"><body position="0,0,0"/><controller config="w"/></e-puck2>)";
+             },
+             6, "<e-puck2 selector>: '16' is out of range"}),
     &name_of);
 
 INSTANTIATE_TEST_SUITE_P(

@@ -2,6 +2,7 @@
 #include <numbers>
 
 #include "hal/device/range_and_bearing.hpp"
+#include "hal/device/selector.hpp"
 #include "tests/core/config/reading.hpp"
 
 namespace tandem::core {
@@ -182,6 +183,14 @@ TEST(Reader, TakesUnitsEverywhere) {
   EXPECT_EQ(s.robots[0].distribute->position.distances, (Vec3{0.5, 1, 1}));
   EXPECT_EQ(s.robots[0].distribute->orientation.values[0], 1.0);
   EXPECT_EQ(s.robots[0].own_kind, nullptr) << "it says what all of its kind have";
+}
+
+TEST(Reader, SetsTheSelectorOfARobot) {
+  Parts parts;
+  parts.things = R"(<e-puck2 id="ep" selector="11"><body position="0,0,0"/><controller config="w"/></e-puck2>)";
+  const Scenario s = read(parts.text()).good();
+  ASSERT_NE(s.robots[0].own_kind, nullptr);
+  EXPECT_EQ(s.robots[0].own_kind->part<hal::SelectorPart>()->position, 11);
 }
 
 TEST(Reader, SaysWhereAPriorityHasNoEffect) {
