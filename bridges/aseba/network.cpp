@@ -355,7 +355,7 @@ void Network::accept(Row& row) {
   const bool as_before = node.generation > 0 && row.draft.description() == node.description;
   const std::vector<std::uint8_t> marks = as_before ? std::move(node.image.marks) : std::vector<std::uint8_t>();
   node.description = row.draft.description();
-  node.image.resize(node.description.named_words());
+  node.image.resize(std::min<std::size_t>(node.description.variable_words, DescriptionDraft::kMostMemory));
   for (std::size_t i = 0; i < marks.size(); ++i) node.image.marks[i] = marks[i] & Image::kWanted;
   node.state = NodeState::Ready;
   node.trouble.clear();

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "bridges/epuck/wire.hpp"
+#include "hal/device/infrared_response.hpp"
 
 namespace tandem::bridges::epuck {
 namespace {
@@ -36,25 +37,11 @@ StepsPerS Conversions::to_steps_per_s(double speed_m_s) const noexcept {
 }
 
 double Conversions::proximity_distance_m(double counts) const noexcept {
-  const auto& curve = infrared_.response;
-  if (!(counts > curve.back().counts)) return curve.back().distance_m;
-  if (counts >= curve.front().counts) return curve.front().distance_m;
-  const auto far =
-      std::find_if(curve.begin(), curve.end(), [&](const hal::InfraredResponse& k) { return k.counts <= counts; });
-  const auto near = far - 1;
-  const double share = (counts - far->counts) / (near->counts - far->counts);
-  return far->distance_m + share * (near->distance_m - far->distance_m);
+  return hal::distance_m_of(infrared_.response, counts);
 }
 
 double Conversions::proximity_counts(double distance_m) const noexcept {
-  const auto& curve = infrared_.response;
-  if (!(distance_m < curve.back().distance_m)) return curve.back().counts;
-  if (distance_m <= curve.front().distance_m) return curve.front().counts;
-  const auto far = std::find_if(curve.begin(), curve.end(),
-                                [&](const hal::InfraredResponse& k) { return k.distance_m >= distance_m; });
-  const auto near = far - 1;
-  const double share = (distance_m - near->distance_m) / (far->distance_m - near->distance_m);
-  return near->counts + share * (far->counts - near->counts);
+  return hal::counts_at(infrared_.response, distance_m);
 }
 
 double light_level(std::uint16_t ambient) noexcept {

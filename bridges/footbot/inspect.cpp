@@ -37,7 +37,7 @@ bool is_described(const aseba::Node& node) {
 void ask_all(aseba::Network& network) {
   for (const std::uint8_t id : network.known()) {
     const aseba::Node& node = network.node(id);
-    if (node.ready() && node.statistics.reads == 0) (void)network.want(id, 0, node.image.size());
+    if (node.ready() && node.statistics.reads == 0) (void)network.want(id, 0, node.description.named_words());
   }
 }
 

@@ -1,11 +1,11 @@
 #include "bridges/footbot/register.hpp"
 
 #include "bridges/aseba/message_link_text.hpp"
+#include "bridges/aseba/node_stopper.hpp"
 #include "bridges/bridge_type.hpp"
 #include "bridges/footbot/bridge.hpp"
 #include "bridges/footbot/inspect.hpp"
 #include "bridges/footbot/map_file.hpp"
-#include "bridges/footbot/stopper.hpp"
 #include "hal/element.hpp"
 #include "hal/element_options.hpp"
 #include "hal/file_type.hpp"
@@ -83,6 +83,8 @@ std::string check_map(const std::string& path, hal::Problems& problems) {
   return std::to_string(map->nodes.size()) + " nodes, " + std::to_string(variables) + " variables";
 }
 
+constexpr guardian::StopperType kStopper{hal::footbot::kName, &aseba::make_node_stopper};
+
 constexpr hal::FileType kMapType{"footbot_map", &check_map};
 
 }  // namespace
@@ -90,7 +92,7 @@ constexpr hal::FileType kMapType{"footbot_map", &check_map};
 void register_bridge(hal::Registrar& registrar) {
   registrar.add(kType);
   registrar.add(hal::element_options<Options>("bridge of " + std::string(kType.name)));
-  registrar.add(stopper_type());
+  registrar.add(kStopper);
   registrar.add(inspector_type());
   registrar.add(kMapType);
 }

@@ -13,7 +13,6 @@
 #include "hal/device/ring_sensors.hpp"
 #include "hal/device/turret.hpp"
 #include "hal/device/wheels.hpp"
-#include "hal/elementary.hpp"
 
 namespace tandem::bridges::footbot {
 namespace {
@@ -42,7 +41,7 @@ const std::vector<const hal::PortType*>& port_types() {
 
 FootbotRobot::FootbotRobot(RobotSettings settings, const FootbotMap& map)
     : BridgedRobot("foot-bot", hal::footbot::kind(), std::move(settings), port_types()),
-      wheel_base_m_(kind().drive() != nullptr ? kind().drive()->wheel_base_m : 0.0),
+      reckoning_(kind().drive() != nullptr ? kind().drive()->wheel_base_m : 0.0),
       heads_(kind().part<hal::ScannerPart>()) {
   const bool counts = feeds(map, hal::port_type<hal::WheelEncoders>());
   for (const hal::PortType* type : port_types()) {
@@ -73,31 +72,9 @@ bool FootbotRobot::uses(const hal::PortType& type) const noexcept {
   return reckons || BridgedRobot::uses(type);
 }
 
-void FootbotRobot::reckon() noexcept {
-  const auto& wheels = port<hal::WheelEncoders>();
-  auto& place = port<hal::Odometry>();
-  static_cast<hal::Reading&>(place) = wheels;
-  if (wheels.validity == hal::Validity::Absent) return;
-  const double left = wheels.left_m - left_m_;
-  const double right = wheels.right_m - right_m_;
-  left_m_ = wheels.left_m;
-  right_m_ = wheels.right_m;
-  if (!reckoning_) {
-    reckoning_ = true;
-    return;
-  }
-  // Along the arc's chord, whose direction is the mean of the headings before and after.
-  const double turn = wheel_base_m_ > 0.0 ? (right - left) / wheel_base_m_ : 0.0;
-  const double half = 0.5 * turn;
-  const double chord = 0.5 * (left + right) * (std::fabs(half) < 1e-9 ? 1.0 : hal::sin(half) / half);
-  place.x_m += chord * hal::cos(place.heading_rad + half);
-  place.y_m += chord * hal::sin(place.heading_rad + half);
-  place.heading_rad = hal::wrapped(place.heading_rad + turn);
-}
-
 void FootbotRobot::complete(hal::Tick tick) noexcept {
   tell_time(tick);
-  reckon();
+  reckoning_.follow(port<hal::WheelEncoders>(), port<hal::Odometry>());
   auto& scanner = port<hal::DistanceScanner>();
   scanner.samples = static_cast<std::uint32_t>(scanner.count / hal::DistanceScanner::kHeads);
   for (std::size_t head = 0; heads_ != nullptr && head < heads_->heads.size() && scanner.samples == 1; ++head) {

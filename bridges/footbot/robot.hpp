@@ -4,6 +4,7 @@
 
 #include "bridges/bridged_robot.hpp"
 #include "bridges/footbot/map.hpp"
+#include "bridges/reckoning.hpp"
 #include "hal/device/distance_scanner.hpp"
 #include "hal/robot/footbot.hpp"
 
@@ -25,13 +26,9 @@ class FootbotRobot final : public BridgedRobot {
   void complete(hal::Tick tick) noexcept;
 
  private:
-  void reckon() noexcept;
-
-  double wheel_base_m_;
+  Reckoning reckoning_;
   const hal::ScannerPart* heads_;  // null: it has no scanner
   bool tells_holding_ = false;     // the map does
-  bool reckoning_ = false;
-  double left_m_ = 0.0, right_m_ = 0.0;  // that the odometry has seen
 };
 
 }  // namespace tandem::bridges::footbot

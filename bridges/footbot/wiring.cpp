@@ -113,17 +113,17 @@ bool Wiring::look() noexcept {
   return true;
 }
 
-std::string_view Wiring::look_for_restarts() noexcept {
-  std::string_view who;
+std::string Wiring::look_for_restarts() noexcept {
+  std::string what;
   for (NodeRow& row : rows_) {
     if (row.map->need != Need::Always || !ready(row)) continue;
     bool restarted = false;
     for (VariableRow& v : row.variables) restarted = forgot(row, v) || restarted;
     if (!restarted) continue;
     ++statistics_.restarts;
-    who = row.node->description.name;
+    what = "its node '" + row.node->description.name + "' restarted";
   }
-  return who;
+  return what;
 }
 
 bool Wiring::forgot(const NodeRow& row, VariableRow& v) const noexcept {
@@ -234,6 +234,20 @@ std::vector<NodeStatus> Wiring::nodes() const {
   return all;
 }
 
+std::string Wiring::identity() const {
+  std::string names;
+  for (const NodeRow& row : rows_) {
+    if (row.node == nullptr || !row.node->ready()) continue;
+    names += (names.empty() ? "" : ", ") + row.node->description.name;
+  }
+  return names;
+}
+
+void WiringStatistics::describe(StatusVisitor& visitor) const {
+  visitor.count("counter_jumps", counter_jumps);
+  visitor.count("not_obeyed", not_obeyed);
+}
+
 hal::TimeNs Wiring::oldest_ns() const noexcept {
   hal::TimeNs oldest = std::numeric_limits<hal::TimeNs>::max();
   for (const NodeRow& row : rows_) {
@@ -248,7 +262,7 @@ hal::TimeNs Wiring::oldest_ns() const noexcept {
 
 // --- readings ---
 
-void Wiring::take_packets() noexcept {
+bool Wiring::serve(hal::TimeNs /*now*/) noexcept {
   while (network_.take_event(event_)) {
     for (const NodeRow& row : rows_) {
       if (!ready(row) || row.node->id != event_.source) continue;
@@ -273,6 +287,7 @@ void Wiring::take_packets() noexcept {
       }
     }
   }
+  return false;
 }
 
 void Wiring::fill_packets(hal::TimeNs now) noexcept {

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "bridges/aseba/network.hpp"
+#include "bridges/aseba/node_driver.hpp"
 #include "bridges/footbot/map.hpp"
 #include "bridges/footbot/memory_watch.hpp"
 #include "bridges/footbot/robot.hpp"
@@ -14,26 +14,8 @@
 
 namespace tandem::bridges::footbot {
 
-/// A node of the map as it is on the bus.
-struct NodeStatus {
-  std::string name;  ///< its own, or the map's first while it is not there
-  int id = -1;       ///< -1: not there
-  aseba::NodeState state = aseba::NodeState::Absent;
-  bool needed = false;            ///< without it the robot does not drive
-  std::string trouble;            ///< why it cannot be used; "" when it can
-  std::uint64_t times_wired = 0;  ///< more than once: it was lost, restarted, or another one took its place
-  aseba::NodeStatistics statistics;
-};
-
-/// A message that has variables of one node rest.
-struct RestMessage {
-  std::uint16_t type = 0;
-  std::vector<std::uint8_t> payload;
-  /// The robot rests only when these values are read back. Not where a module does not hold what was written, and not
-  /// of modules that the robot drives without.
-  bool confirm = false;
-  friend bool operator==(const RestMessage&, const RestMessage&) = default;
-};
+using aseba::NodeStatus;
+using aseba::RestMessage;
 
 struct WiringStatistics {
   std::uint64_t counter_jumps = 0;  ///< counters that changed faster than can be, or began anew
@@ -41,11 +23,15 @@ struct WiringStatistics {
   std::uint64_t not_obeyed = 0;     ///< written values that were not there when read back
   std::uint64_t packets_unfit = 0;  ///< range-and-bearing events of another length than the map says
   std::uint64_t packets = 0;        ///< range-and-bearing messages received
+
+  void describe(StatusVisitor& visitor) const;
 };
 
 /// Not thread-safe. Allocates when nodes come and go, else never.
 class Wiring {
  public:
+  using Statistics = WiringStatistics;
+
   /// All three must outlive this. `observe`: nothing is ever written.
   Wiring(const FootbotMap& map, aseba::Network& network, FootbotRobot& robot, bool observe = false);
 
@@ -53,11 +39,12 @@ class Wiring {
   void note_demand() noexcept;
   /// Looks who is there. True when something changed.
   bool look() noexcept;
-  /// Looks whether nodes that the robot never drives without have lost their memory. @returns the name of one that
-  /// has; "" when none has.
-  std::string_view look_for_restarts() noexcept;
-  /// Takes over the range-and-bearing messages that came.
-  void take_packets() noexcept;
+  /// Looks whether nodes that the robot never drives without have lost their memory. @returns what happened, for
+  /// people; "" when nothing did.
+  std::string look_for_restarts() noexcept;
+  /// Does what this kind of robot needs beside variables: takes over the range-and-bearing messages that came.
+  /// @returns whether there is something to send.
+  bool serve(hal::TimeNs now) noexcept;
 
   /// Fills the readings of the ports that were taken.
   void fill(hal::TimeNs now) noexcept;
@@ -85,6 +72,8 @@ class Wiring {
   std::string needed_trouble() const;
 
   std::vector<NodeStatus> nodes() const;
+  /// The names of the nodes that are there.
+  std::string identity() const;
   /// Messages that have everything rest, for whoever must stop the robot when this process cannot. They are right as
   /// long as the nodes that are there now keep their descriptions.
   std::vector<RestMessage> rest_messages() const;

@@ -3,10 +3,10 @@
 #include <gtest/gtest.h>
 
 #include "bridges/aseba/can_messages.hpp"
+#include "bridges/aseba/node_stopper.hpp"
 #include "bridges/can/memory_bus.hpp"
 #include "bridges/footbot/driver.hpp"
 #include "bridges/footbot/map_file.hpp"
-#include "bridges/footbot/stopper.hpp"
 #include "bridges/footbot_emulator/faults.hpp"
 #include "bridges/footbot_emulator/footbot.hpp"
 #include "hal/device/wheels.hpp"
@@ -211,7 +211,7 @@ class TestedFootbot final : public TestedRobot {
   bridge::FootbotDriver driver_;
   const hal::Light& light_;
   hal::WheelSpeeds& wheels_;
-  std::optional<bridge::FootbotStopper> stopper_;
+  std::optional<bridges::aseba::NodeStopper> stopper_;
 };
 
 TEST(Faults, LeaveNoFootbotMoving) {

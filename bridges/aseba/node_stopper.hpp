@@ -1,18 +1,18 @@
-// Stops a foot-bot whose hub is gone: writes the resting values to its modules, and reads them back.
+// Stops a robot of ASEBA nodes whose hub is gone: writes the resting values to its nodes, and reads them back.
 #pragma once
 #include <vector>
 
 #include "bridges/aseba/message_link.hpp"
-#include "bridges/footbot/wiring.hpp"
+#include "bridges/aseba/rest_message.hpp"
 #include "bridges/guardian/stopper.hpp"
 
-namespace tandem::bridges::footbot {
+namespace tandem::bridges::aseba {
 
 /// Says all messages again and again, over a link that is opened again whenever it is gone, until all that are to be
-/// confirmed were read back. A robot of which no module was ever wired has nothing to confirm.
-class FootbotStopper final : public guardian::Stopper {
+/// confirmed were read back. A robot of which no node was ever wired has nothing to confirm.
+class NodeStopper final : public guardian::Stopper {
  public:
-  FootbotStopper(aseba::MessageLinkOpener opener, const std::vector<RestMessage>& messages);
+  NodeStopper(MessageLinkOpener opener, const std::vector<RestMessage>& messages);
 
   guardian::StopState step(hal::TimeNs now) override;
   /// The same without waiting, in the caller's time: says what is due, takes in what has come.
@@ -28,19 +28,19 @@ class FootbotStopper final : public guardian::Stopper {
   };
   bool open();
   void say();
-  void hear(const aseba::MessageView& message);
+  void hear(const MessageView& message);
   bool all_confirmed() const;
 
-  aseba::MessageLinkOpener opener_;
+  MessageLinkOpener opener_;
   std::vector<Row> rows_;
-  std::unique_ptr<aseba::MessageLink> link_;
+  std::unique_ptr<MessageLink> link_;
   hal::TimeNs first_said_ns_ = 0;  // on this link
   hal::TimeNs say_due_ns_ = 0;
   bool heard_ = false;
   std::string trouble_;
 };
 
-/// Understands bodies as `to_stop_body` makes them.
-const guardian::StopperType& stopper_type() noexcept;
+/// For a `StopperType` of any kind of robot: understands bodies as `to_stop_body` makes them.
+std::unique_ptr<guardian::Stopper> make_node_stopper(const StopMessages& messages, guardian::StopCause cause);
 
-}  // namespace tandem::bridges::footbot
+}  // namespace tandem::bridges::aseba

@@ -1,8 +1,8 @@
-#include "bridges/footbot/stop_body.hpp"
+#include "bridges/aseba/rest_message.hpp"
 
 #include <gtest/gtest.h>
 
-namespace tandem::bridges::footbot {
+namespace tandem::bridges::aseba {
 namespace {
 
 TEST(FootbotStopBody, IsReadBackAsItWasWritten) {
@@ -19,4 +19,4 @@ TEST(FootbotStopBody, IsRefusedWhenItIsCutShortOrNoNumbers) {
 }
 
 }  // namespace
-}  // namespace tandem::bridges::footbot
+}  // namespace tandem::bridges::aseba

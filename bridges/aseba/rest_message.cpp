@@ -1,8 +1,8 @@
-#include "bridges/footbot/stop_body.hpp"
+#include "bridges/aseba/rest_message.hpp"
 
 #include <charconv>
 
-namespace tandem::bridges::footbot {
+namespace tandem::bridges::aseba {
 namespace {
 
 constexpr std::string_view kDigits = "0123456789abcdef";
@@ -63,4 +63,4 @@ std::optional<std::vector<RestMessage>> from_stop_body(std::string_view body) {
   return messages;
 }
 
-}  // namespace tandem::bridges::footbot
+}  // namespace tandem::bridges::aseba

@@ -1,8 +1,8 @@
-#include "bridges/footbot/stopper.hpp"
+#include "bridges/aseba/node_stopper.hpp"
 
 #include <gtest/gtest.h>
 
-#include "bridges/footbot/stop_body.hpp"
+#include "bridges/aseba/rest_message.hpp"
 #include "tests/bridges/footbot/footbot_on_tcp.hpp"
 
 namespace tandem::bridges::footbot {
@@ -15,13 +15,13 @@ class StoppedFootbot : public testing::Test {
   StoppedFootbot() {
     set_speeds(50);
     messages_.link = robot_.link;
-    messages_.body = to_stop_body({{0xA00C, {1, 0, 34, 0, 0, 0}, true}, {0xA00C, {2, 0, 34, 0, 0, 0}, true}});
+    messages_.body = aseba::to_stop_body({{0xA00C, {1, 0, 34, 0, 0, 0}, true}, {0xA00C, {2, 0, 34, 0, 0, 0}, true}});
   }
   void set_speeds(std::int16_t speed) {
     robot_.with([speed](FakeModules& m) { m.word("left motor", "speed") = m.word("right motor", "speed") = speed; });
   }
   std::unique_ptr<guardian::Stopper> make() const {
-    return stopper_type().make(messages_, guardian::StopCause::HubGone);
+    return aseba::make_node_stopper(messages_, guardian::StopCause::HubGone);
   }
   static StopState steps_until(guardian::Stopper& stopper, StopState wanted) {
     StopState state = StopState::Unreachable;
@@ -61,11 +61,11 @@ TEST_F(StoppedFootbot, HasNothingToConfirmWhereNoModuleWasEverWired) {
   EXPECT_TRUE(robot_.moves());
 }
 
-TEST(FootbotStopper, SaysWhyALinkCannotBe) {
+TEST(NodeStopper, SaysWhyALinkCannotBe) {
   StopMessages messages;
   messages.link = "tcp:127.0.0.1:1";
   messages.body = "40972 010022000000 read back\n";
-  const auto stopper = stopper_type().make(messages, guardian::StopCause::HubGone);
+  const auto stopper = aseba::make_node_stopper(messages, guardian::StopCause::HubGone);
   EXPECT_EQ(stopper->step(monotonic_ns()), StopState::Unreachable);
   EXPECT_NE(stopper->trouble().find("nobody listens there"), std::string::npos) << stopper->trouble();
 }

@@ -1,17 +1,14 @@
-#include "bridges/footbot/stopper.hpp"
+#include "bridges/aseba/node_stopper.hpp"
 
 #include <algorithm>
 
 #include "bridges/aseba/message.hpp"
 #include "bridges/aseba/message_link_text.hpp"
-#include "bridges/footbot/stop_body.hpp"
 #include "bridges/link/link.hpp"
-#include "hal/robot/footbot.hpp"
 
-namespace tandem::bridges::footbot {
+namespace tandem::bridges::aseba {
 namespace {
 
-using aseba::Carrier;
 using guardian::StopState;
 using hal::TimeNs;
 
@@ -26,25 +23,20 @@ std::uint16_t word_at(const std::vector<std::uint8_t>& bytes, std::size_t at) no
   return static_cast<std::uint16_t>(bytes[at] | static_cast<unsigned>(bytes[at + 1]) << 8U);
 }
 
-std::unique_ptr<guardian::Stopper> make(const StopMessages& messages, guardian::StopCause) {
-  const auto opener = [link = messages.link]() -> hal::Result<std::unique_ptr<aseba::MessageLink>> {
+}  // namespace
+
+std::unique_ptr<guardian::Stopper> make_node_stopper(const StopMessages& messages, guardian::StopCause) {
+  const auto opener = [link = messages.link]() -> hal::Result<std::unique_ptr<MessageLink>> {
     LinkTerms terms;
     terms.beside = true;
-    const auto open = aseba::message_link_opener(link, terms);
+    const auto open = message_link_opener(link, terms);
     if (!open.ok()) return open.error();
     return open.value()();
   };
-  return std::make_unique<FootbotStopper>(opener, from_stop_body(messages.body).value_or(std::vector<RestMessage>{}));
+  return std::make_unique<NodeStopper>(opener, from_stop_body(messages.body).value_or(std::vector<RestMessage>{}));
 }
 
-}  // namespace
-
-const guardian::StopperType& stopper_type() noexcept {
-  static const guardian::StopperType type{hal::footbot::kName, &make};
-  return type;
-}
-
-FootbotStopper::FootbotStopper(aseba::MessageLinkOpener opener, const std::vector<RestMessage>& messages)
+NodeStopper::NodeStopper(MessageLinkOpener opener, const std::vector<RestMessage>& messages)
     : opener_(std::move(opener)) {
   for (const RestMessage& message : messages) {
     Row row;
@@ -58,7 +50,7 @@ FootbotStopper::FootbotStopper(aseba::MessageLinkOpener opener, const std::vecto
   }
 }
 
-bool FootbotStopper::open() {
+bool NodeStopper::open() {
   auto opened = opener_();
   if (!opened.ok()) {
     trouble_ = opened.error().message;
@@ -70,20 +62,19 @@ bool FootbotStopper::open() {
   return true;
 }
 
-void FootbotStopper::say() {
+void NodeStopper::say() {
   for (const Row& row : rows_) (void)link_->send(row.message.type, row.message.payload);
-  aseba::Payload question;
+  Payload question;
   for (const Row& row : rows_) {
     if (!row.message.confirm) continue;
-    if (aseba::encode(aseba::GetVariables{row.node, row.start, static_cast<std::uint16_t>(row.words.size() / 2)},
-                      question)) {
-      (void)link_->send(static_cast<std::uint16_t>(aseba::Type::GetVariables), question.bytes());
+    if (encode(GetVariables{row.node, row.start, static_cast<std::uint16_t>(row.words.size() / 2)}, question)) {
+      (void)link_->send(static_cast<std::uint16_t>(Type::GetVariables), question.bytes());
     }
   }
 }
 
-void FootbotStopper::hear(const aseba::MessageView& message) {
-  if (message.type != static_cast<std::uint16_t>(aseba::Type::Variables) || message.payload.size() < 2) return;
+void NodeStopper::hear(const MessageView& message) {
+  if (message.type != static_cast<std::uint16_t>(Type::Variables) || message.payload.size() < 2) return;
   heard_ = true;
   const auto start = static_cast<std::uint16_t>(message.payload[0] | static_cast<unsigned>(message.payload[1]) << 8U);
   for (Row& row : rows_) {
@@ -93,11 +84,11 @@ void FootbotStopper::hear(const aseba::MessageView& message) {
   }
 }
 
-bool FootbotStopper::all_confirmed() const {
+bool NodeStopper::all_confirmed() const {
   return std::ranges::all_of(rows_, &Row::confirmed);
 }
 
-StopState FootbotStopper::poll(TimeNs now) {
+StopState NodeStopper::poll(TimeNs now) {
   if (rows_.empty()) return StopState::Confirmed;
   if (!link_ && !open()) return StopState::Unreachable;
   if (link_->state() == Carrier::Gone) {
@@ -110,15 +101,15 @@ StopState FootbotStopper::poll(TimeNs now) {
     say_due_ns_ = now + kSayAgain;
     say();
   }
-  aseba::MessageView message;
+  MessageView message;
   while (link_->receive(message)) hear(message);
   // Also what is not to be confirmed is said twice.
   if (all_confirmed() && first_said_ns_ != 0 && now - first_said_ns_ >= 2 * kSayAgain) return StopState::Confirmed;
-  trouble_ = heard_ ? "its modules do not hold the resting values" : "its modules do not answer";
+  trouble_ = heard_ ? "its nodes do not hold the resting values" : "its nodes do not answer";
   return heard_ ? StopState::Stopping : StopState::Unreachable;
 }
 
-StopState FootbotStopper::step(TimeNs now) {
+StopState NodeStopper::step(TimeNs now) {
   StopState state = poll(now);
   now = monotonic_ns();  // opening may have taken long
   for (const TimeNs end = now + kStep; state != StopState::Confirmed && link_ && now < end; now = monotonic_ns()) {
@@ -128,4 +119,4 @@ StopState FootbotStopper::step(TimeNs now) {
   return state;
 }
 
-}  // namespace tandem::bridges::footbot
+}  // namespace tandem::bridges::aseba
