@@ -4,11 +4,13 @@
 #include "hal/robot/epuck2.hpp"
 #include "hal/robot/eyebot.hpp"
 #include "hal/robot/footbot.hpp"
+#include "hal/robot/thymio.hpp"
 
 namespace tandem::hal {
 
 void register_robots(Registrar& registrar) {
-  for (const RobotKind* kind : {&epuck::kind(), &epuck2::kind(), &eyebot::kind(), &footbot::kind()}) registrar.add(*kind);
+  for (const RobotKind* kind : {&epuck::kind(), &epuck2::kind(), &eyebot::kind(), &footbot::kind(), &thymio::kind()})
+    registrar.add(*kind);
 }
 
 }  // namespace tandem::hal

@@ -2,12 +2,14 @@
 #include <gtest/gtest.h>
 
 #include "hal/device/distance_scanner.hpp"
+#include "hal/device/infrared_response.hpp"
 #include "hal/device/leds.hpp"
 #include "hal/device/ring_directions.hpp"
 #include "hal/device/ring_sensors.hpp"
 #include "hal/robot/epuck.hpp"
 #include "hal/robot/eyebot.hpp"
 #include "hal/robot/footbot.hpp"
+#include "hal/robot/thymio.hpp"
 
 namespace tandem::hal {
 namespace {
@@ -48,6 +50,42 @@ TEST(Epuck, HasAnInfraredCurveThatCanBeInverted) {
     EXPECT_GT(curve[i].distance_m, curve[i - 1].distance_m);
     EXPECT_LT(curve[i].counts, curve[i - 1].counts);
   }
+}
+
+TEST(Thymio, IsSymmetricLeftAndRightInFrontAndBehind) {
+  const auto& ring = thymio::kind().part<ProximityPart>()->mounts;
+  ASSERT_EQ(ring.size(), 7U);
+  for (const auto& [left, right] : {std::pair{0U, 4U}, std::pair{1U, 3U}, std::pair{2U, 2U}}) {
+    EXPECT_EQ(ring[left].bearing_rad, -ring[right].bearing_rad);
+    EXPECT_EQ(ring[left].y_m, -ring[right].y_m);
+    EXPECT_GE(ring[left].y_m, 0.0) << "the first looks to the left";
+  }
+  EXPECT_EQ(ring[5].y_m, -ring[6].y_m);
+  EXPECT_LT(ring[5].x_m, 0.0);
+  for (const Mount& m : ring) EXPECT_LE(std::hypot(m.x_m, m.y_m), thymio::kind().body.radius_m);
+}
+
+TEST(Thymio, HasAnInfraredCurveThatCanBeInverted) {
+  const auto& part = *thymio::kind().part<ProximityPart>();
+  EXPECT_EQ(part.response.front().counts, 4505.0);
+  EXPECT_EQ(part.response.back().distance_m, part.range_m);
+  EXPECT_EQ(part.response.back().counts, 0.0);
+  for (std::size_t i = 1; i < part.response.size(); ++i) {
+    EXPECT_GT(part.response[i].distance_m, part.response[i - 1].distance_m);
+    EXPECT_LT(part.response[i].counts, part.response[i - 1].counts);
+  }
+  for (const double distance_m : {0.0, 0.02, 0.055, 0.13}) {
+    EXPECT_NEAR(distance_m_of(part.response, counts_at(part.response, distance_m)), distance_m, 1e-12);
+  }
+}
+
+TEST(Thymio, ShowsItsCircleClockwiseFromTheFrontAndItsTopLedLast) {
+  const auto& leds = thymio::kind().part<LedsPart>()->mounts;
+  ASSERT_EQ(leds.size(), thymio::kTop + 1);
+  EXPECT_GT(leds[0].x_m, leds[4].x_m);
+  EXPECT_LT(leds[2].y_m, 0.0) << "the right one";
+  EXPECT_GT(leds[thymio::kBottomLeft].y_m, 0.0);
+  EXPECT_EQ(leds[thymio::kTop].z_m, thymio::kind().body.height_m);
 }
 
 TEST(Eyebot, PutsItsSensorsOnTheRimWhereTheyLook) {

@@ -1,0 +1,99 @@
+// Sources: [Enki] the model of the Thymio II in the simulator of ASEBA's playground, enki/robots/thymio2/Thymio2.cpp;
+// [API] the Thymio's programming interface, thymio.org; chosen: no figure is published, the reason stands beside. The
+// origin lies between the wheels, which sit behind the middle of the body. Sensors are numbered as in the robot's
+// variables.
+#include "hal/robot/thymio.hpp"
+
+#include <numbers>
+
+#include "hal/angle.hpp"
+#include "hal/device/body_sensors.hpp"
+#include "hal/device/leds.hpp"
+#include "hal/device/ring_sensors.hpp"
+#include "hal/robot/ring.hpp"
+
+namespace tandem::hal::thymio {
+namespace {
+
+constexpr double kWheelBase_m = 0.094;
+constexpr double kForce_N = 1.5;
+constexpr double kHeight_m = 0.051;
+constexpr double kRange_m = 0.14;
+constexpr double kButtons_m = 0.048;  // the middle of the buttons and the circle of LEDs, ahead of the axis
+
+/// Front, from left to right, then back left and back right.
+std::vector<Mount> infrared() {
+  constexpr double kPi = std::numbers::pi;
+  constexpr double kZ_m = 0.034;
+  return {{0.69813, 0.062, 0.0485, kZ_m},   {0.34906, 0.075, 0.0255, kZ_m},   {0.0, 0.0795, 0.0, kZ_m},
+          {-0.34906, 0.075, -0.0255, kZ_m}, {-0.69813, 0.062, -0.0485, kZ_m}, {kPi, -0.0295, 0.0295, kZ_m},
+          {kPi, -0.0295, -0.0295, kZ_m}};
+}
+
+/// m (c - x0^2) / (x^2 - 2 x0 x + c) with m = 4505, x0 = 0.03 cm, c = 73 cm^2, x in cm; beyond the range nothing.
+std::vector<InfraredResponse> response() {
+  std::vector<InfraredResponse> points;
+  const auto counts = [](double x_cm) { return 4505.0 * (73.0 - 0.03 * 0.03) / (x_cm * x_cm - 0.06 * x_cm + 73.0); };
+  points.push_back({0.0, 4505.0});
+  for (double x_cm : {0.5, 1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0, 10.0, 11.0, 12.0, 13.0, 13.99})
+    points.push_back({0.01 * x_cm, counts(x_cm)});
+  points.push_back({kRange_m, 0.0});
+  return points;
+}
+
+std::vector<Mount> leds() {
+  std::vector<Mount> all;
+  for (const Mount& m : ring_of(kCircleLeds, 0.0, 0.022, kHeight_m)) {
+    all.push_back({wrapped(-m.bearing_rad), kButtons_m + m.x_m, -m.y_m, m.z_m});  // clockwise
+  }
+  constexpr double kLeft = 0.5 * std::numbers::pi;
+  all.push_back({kLeft, 0.0, 0.055, 0.015});
+  all.push_back({-kLeft, 0.0, -0.055, 0.015});
+  all.push_back({0.0, 0.0, 0.0, kHeight_m});
+  return all;
+}
+
+RobotKind make() {
+  RobotKind kind;
+  kind.name = kName;
+  kind.summary = "The Thymio II, a robot for schools on two wheels.";
+  kind.body = {.radius_m = 0.08,
+               .height_m = kHeight_m,
+               .mass_kg = 0.2,
+               .source =
+                   "Enki: the front is an arc of this radius around the point between the wheels; behind, the real "
+                   "robot ends 3 cm and to the sides 5.5 cm from there, and this cylinder does not"};
+  kind.locomotion = DifferentialDrive{
+      .wheel_radius_m = 0.022,
+      .wheel_base_m = kWheelBase_m,
+      .max_speed_m_s = 0.2,
+      .force_N = kForce_N,
+      .torque_Nm = kForce_N * kWheelBase_m / 2,
+      .source =
+          "wheel base: Enki; speed: API, about 20 cm/s at 500 (Enki has 16.6); wheel radius: rounded, nothing "
+          "depends on it; force: chosen, the e-puck's"};
+  kind.add(ProximityPart{.range_m = kRange_m,
+                         .mounts = infrared(),
+                         .response = response(),
+                         .source = "Enki, places and response; the firmware says 0 where nothing is within range"});
+  kind.add(GroundPart{.mounts = {Mount{0, 0.072, 0.012, 0}, Mount{0, 0.072, -0.012, 0}},
+                      .source = "Enki: the first on the left"});
+  kind.add(AccelerometerPart{.source = "API: 16 Hz, 23 counts are 9.81 m/s2"});
+  kind.add(MicrophonesPart{.mounts = {Mount{0, kButtons_m, 0, kHeight_m}},
+                           .source = "API: one, its level; place: chosen, beside the buttons"});
+  kind.add(LedsPart{.beacon = true,
+                    .mounts = leds(),
+                    .source =
+                        "API: eight in a circle around the buttons (yellow alone), clockwise from the front; below "
+                        "left, below right, on top (all colours); places: Enki's pictures, rounded"});
+  return kind;
+}
+
+}  // namespace
+
+const RobotKind& kind() {
+  static const RobotKind made = make();
+  return made;
+}
+
+}  // namespace tandem::hal::thymio
