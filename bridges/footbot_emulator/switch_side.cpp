@@ -1,124 +1,46 @@
-#include <algorithm>
-#include <cerrno>
-#include <cstring>
-#include <map>
-#include <sys/socket.h>
-#include <unistd.h>
-
-#include "bridges/emulation/listener.hpp"
+#include "bridges/aseba_emulation/host_line.hpp"
 #include "bridges/footbot_emulator/assembler.hpp"
 #include "bridges/footbot_emulator/host_side.hpp"
-#include "bridges/footbot_emulator/stream.hpp"
 
 namespace tandem::bridges::footbot_emulator {
 namespace {
 
-constexpr std::size_t kMostUnsent = 256 * 1024;  // bytes; a host that does not read is then cut off
-constexpr std::size_t kMostAtOnce = 1024;        // bytes of one host in one turn: none talks the others down
-
 /// The translator between bus and serial line on the robot, and the switch that serves the line's messages to any
-/// number of hosts. What one host says goes to the bus and to the other hosts.
+/// number of hosts.
 class SwitchSide final : public HostSide {
  public:
-  SwitchSide(std::unique_ptr<Listener> listener, EventSink sink)
-      : listener_(std::move(listener)), sink_(std::move(sink)) {}
-  ~SwitchSide() override {
-    for (const auto& [descriptor, client] : clients_) ::close(descriptor);
-  }
-  SwitchSide(const SwitchSide&) = delete;
-  SwitchSide& operator=(const SwitchSide&) = delete;
+  explicit SwitchSide(std::unique_ptr<aseba_emulation::HostLine> line) : line_(std::move(line)) {}
 
-  void add_polls(std::vector<pollfd>& polls) const override {
-    polls.push_back({listener_->descriptor(), POLLIN, 0});
-    for (const auto& [descriptor, client] : clients_) {
-      const short room = client.unsent.empty() ? 0 : POLLOUT;
-      polls.push_back({descriptor, static_cast<short>(POLLIN | room), 0});
-    }
-  }
+  void add_polls(std::vector<pollfd>& polls) const override { line_->add_polls(polls); }
 
   hal::Status take(hal::TimeNs now, std::vector<Frame>& to_bus) override {
-    greet(now);
-    std::vector<int> all;
-    for (const auto& [descriptor, client] : clients_) all.push_back(descriptor);
-    for (const int descriptor : all) listen_to(descriptor, now, to_bus);
+    std::vector<Message> from_hosts;
+    if (const hal::Status taken = line_->take(now, from_hosts); !taken.ok()) return taken;
+    for (const Message& message : from_hosts) {
+      const auto frames = to_frames(message);
+      to_bus.insert(to_bus.end(), frames.begin(), frames.end());
+    }
     return {};
   }
 
   void show(const Frame& frame, hal::TimeNs now) override {
-    const auto message = assembler_.push(frame);
-    if (message) tell_all(*message, -1);
-    flush(now);
+    if (const auto message = assembler_.push(frame)) line_->tell(*message, now);
   }
 
-  void flush(hal::TimeNs now) override {
-    std::vector<int> lost;
-    for (auto& [descriptor, client] : clients_) {
-      if (client.unsent.empty()) continue;
-      const ssize_t n = ::send(descriptor, client.unsent.data(), client.unsent.size(), MSG_DONTWAIT | MSG_NOSIGNAL);
-      if (n > 0) client.unsent.erase(client.unsent.begin(), client.unsent.begin() + n);
-      const bool broken = n < 0 && errno != EAGAIN && errno != EINTR;
-      if (broken || client.unsent.size() > kMostUnsent) lost.push_back(descriptor);
-    }
-    for (const int descriptor : lost) cut_off(descriptor, now, "it does not read");
-  }
-
-  const std::string& path() const override { return listener_->path(); }
+  void flush(hal::TimeNs now) override { line_->flush(now); }
+  const std::string& path() const override { return line_->path(); }
 
  private:
-  struct Client {
-    StreamReader reader;
-    std::vector<std::uint8_t> unsent;
-  };
-
-  void greet(hal::TimeNs now) {
-    int descriptor = -1;
-    while ((descriptor = listener_->accept()) >= 0) {
-      clients_[descriptor];
-      sink_(now, "host", {{"connected", true}, {"hosts", clients_.size()}});
-    }
-  }
-
-  void listen_to(int descriptor, hal::TimeNs now, std::vector<Frame>& to_bus) {
-    Client& client = clients_[descriptor];
-    std::array<std::uint8_t, kMostAtOnce> buffer{};
-    const ssize_t n = ::recv(descriptor, buffer.data(), buffer.size(), MSG_DONTWAIT);
-    const int error = errno;
-    if (n > 0) client.reader.push(std::span(buffer).first(static_cast<std::size_t>(n)));
-    while (const auto message = client.reader.next()) {
-      tell_all(*message, descriptor);
-      const auto frames = to_frames(*message);
-      to_bus.insert(to_bus.end(), frames.begin(), frames.end());
-    }
-    if (client.reader.broken()) return cut_off(descriptor, now, "it announced a message that is too long");
-    if (n == 0) return cut_off(descriptor, now, "it hung up");
-    if (n < 0 && error != EAGAIN && error != EINTR) cut_off(descriptor, now, std::strerror(error));
-  }
-
-  void tell_all(const Message& message, int but) {
-    const std::vector<std::uint8_t> bytes = to_bytes(message);
-    for (auto& [descriptor, client] : clients_) {
-      if (descriptor != but) client.unsent.insert(client.unsent.end(), bytes.begin(), bytes.end());
-    }
-  }
-
-  void cut_off(int descriptor, hal::TimeNs now, std::string_view why) {
-    ::close(descriptor);
-    clients_.erase(descriptor);
-    sink_(now, "host", {{"connected", false}, {"hosts", clients_.size()}, {"why", why}});
-  }
-
-  std::unique_ptr<Listener> listener_;
-  EventSink sink_;
+  std::unique_ptr<aseba_emulation::HostLine> line_;
   Assembler assembler_;
-  std::map<int, Client> clients_;  // by descriptor
 };
 
 }  // namespace
 
 hal::Result<std::unique_ptr<HostSide>> open_switch(const std::string& endpoint, const EventSink& sink) {
-  auto listener = Listener::open("tcp-listen", "tcp", endpoint);
-  if (!listener.ok()) return listener.error();
-  return std::unique_ptr<HostSide>(std::make_unique<SwitchSide>(std::move(listener).value(), sink));
+  auto line = aseba_emulation::open_tcp_line(endpoint, sink);
+  if (!line.ok()) return line.error();
+  return std::unique_ptr<HostSide>(std::make_unique<SwitchSide>(std::move(line).value()));
 }
 
 }  // namespace tandem::bridges::footbot_emulator

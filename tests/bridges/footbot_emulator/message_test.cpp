@@ -1,11 +1,14 @@
 #include "bridges/footbot_emulator/message.hpp"
 
+#include "bridges/aseba_emulation/stream.hpp"
 #include "bridges/footbot_emulator/assembler.hpp"
-#include "bridges/footbot_emulator/stream.hpp"
 #include "tests/bridges/footbot_emulator/bench.hpp"
 
 namespace tandem::bridges::footbot_emulator {
 namespace {
+
+using aseba_emulation::StreamReader;
+using aseba_emulation::to_bytes;
 
 using testing::ElementsAre;
 

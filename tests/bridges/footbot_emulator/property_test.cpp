@@ -1,12 +1,15 @@
 // Whatever a host sends, the robot stays what it is.
 #include <rapidcheck.h>
 
+#include "bridges/aseba_emulation/stream.hpp"
 #include "bridges/footbot_emulator/slcan_adapter.hpp"
-#include "bridges/footbot_emulator/stream.hpp"
 #include "tests/bridges/footbot_emulator/bench.hpp"
 
 namespace tandem::bridges::footbot_emulator {
 namespace {
+
+using aseba_emulation::StreamReader;
+using aseba_emulation::to_bytes;
 
 /// Frames that are often nearly sensible.
 rc::Gen<Frame> any_frame() {

@@ -1,6 +1,6 @@
-#include "bridges/footbot_emulator/stream.hpp"
+#include "bridges/aseba_emulation/stream.hpp"
 
-namespace tandem::bridges::footbot_emulator {
+namespace tandem::bridges::aseba_emulation {
 namespace {
 
 constexpr std::size_t kHeader = 6;
@@ -27,4 +27,4 @@ std::optional<Message> StreamReader::next() {
   return message;
 }
 
-}  // namespace tandem::bridges::footbot_emulator
+}  // namespace tandem::bridges::aseba_emulation

@@ -1,12 +1,12 @@
-// Messages as bytes, as the switch on the robot's board serves them over TCP: length of the payload, source, type, each
-// 16 bits little-endian, then the payload [ASEBA, transport/dashel].
+// Messages as bytes, as switches serve them over TCP and robots on serial lines: length of the payload, source, type,
+// each 16 bits little-endian, then the payload [ASEBA, transport/dashel].
 #pragma once
 #include <optional>
 #include <span>
 
-#include "bridges/footbot_emulator/message.hpp"
+#include "bridges/aseba_emulation/message.hpp"
 
-namespace tandem::bridges::footbot_emulator {
+namespace tandem::bridges::aseba_emulation {
 
 std::vector<std::uint8_t> to_bytes(const Message& message);
 
@@ -24,4 +24,4 @@ class StreamReader {
   bool broken_ = false;
 };
 
-}  // namespace tandem::bridges::footbot_emulator
+}  // namespace tandem::bridges::aseba_emulation
