@@ -3,6 +3,7 @@
 #include "bridges/epuck/register.hpp"
 #include "bridges/eyebot/register.hpp"
 #include "bridges/footbot/register.hpp"
+#include "bridges/thymio/register.hpp"
 #include "hal/check.hpp"
 #include "hal/device/ports.hpp"
 #include "hal/robot/robots.hpp"
@@ -18,6 +19,7 @@ const hal::Catalog& catalog() {
       bridges::epuck::register_bridge(r);
       bridges::footbot::register_bridge(r);
       bridges::eyebot::register_bridge(r);
+      bridges::thymio::register_bridge(r);
     });
     TANDEM_CHECK(good.ok(), good.error().message.c_str());
     return made;

@@ -6,6 +6,8 @@
 #include "bridges/eyebot_emulator/register.hpp"
 #include "bridges/footbot/register.hpp"
 #include "bridges/footbot_emulator/register.hpp"
+#include "bridges/thymio/register.hpp"
+#include "bridges/thymio_emulator/register.hpp"
 #include "core/device/device.hpp"
 #include "core/field/floor/floor.hpp"
 #include "core/field/light/light.hpp"
@@ -45,9 +47,11 @@ const hal::Catalog& catalog() {
       bridges::epuck::register_bridge(r);
       bridges::footbot::register_bridge(r);
       bridges::eyebot::register_bridge(r);
+      bridges::thymio::register_bridge(r);
       bridges::epuck_emulator::register_emulator(r);
       bridges::footbot_emulator::register_emulator(r);
       bridges::eyebot_emulator::register_emulator(r);
+      bridges::thymio_emulator::register_emulator(r);
     });
     TANDEM_CHECK(good.ok(), good.error().message.c_str());
     return made;

@@ -55,7 +55,7 @@ std::string lines_that_name(const std::regex& what, const std::vector<std::strin
 }
 
 TEST(Architecture, OnlyItsOwnFoldersAndTheCatalogsPagesNameARobot) {
-  EXPECT_EQ(lines_that_name(std::regex("e-?puck|foot-?bot|eye-?bot", std::regex::icase),
+  EXPECT_EQ(lines_that_name(std::regex("e-?puck|foot-?bot|eye-?bot|thymio", std::regex::icase),
                             {"app", "core", "mixed_reality"}, std::regex("^app/.*catalog\\.cpp$")),
             "");
 }

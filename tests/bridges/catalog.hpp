@@ -3,6 +3,7 @@
 #include "bridges/epuck/register.hpp"
 #include "bridges/eyebot/register.hpp"
 #include "bridges/footbot/register.hpp"
+#include "bridges/thymio/register.hpp"
 #include "hal/catalog.hpp"
 #include "hal/check.hpp"
 
@@ -15,6 +16,7 @@ inline const hal::Catalog& bridges() {
       tandem::bridges::epuck::register_bridge(r);
       tandem::bridges::footbot::register_bridge(r);
       tandem::bridges::eyebot::register_bridge(r);
+      tandem::bridges::thymio::register_bridge(r);
     });
     TANDEM_CHECK(good.ok(), good.error().message.c_str());
     return made;

@@ -1,4 +1,4 @@
-// A foot-bot whose strings somebody else holds.
+// Controller of a robot on wheels whose commands come from outside.
 #pragma once
 #include "controllers/puppet/take_listed.hpp"
 #include "hal/controller.hpp"
@@ -13,15 +13,15 @@
 
 namespace tandem::controllers {
 
-/// Takes the wheels, and whatever else of a foot-bot's devices its configuration lists, and leaves the commands as
-/// whoever reaches the ports from outside writes them.
-class FootbotPuppet final : public hal::Controller {
+/// Takes the wheels, and whatever else of its devices its configuration lists, and leaves the commands as whoever
+/// reaches the ports from outside writes them.
+class WheeledPuppet final : public hal::Controller {
  public:
-  explicit FootbotPuppet(hal::Robot& robot) {
+  explicit WheeledPuppet(hal::Robot& robot) {
     robot.actuator<hal::WheelSpeeds>();
-    take_listed_sensors<hal::Proximity, hal::Light, hal::BaseGround, hal::MotorGround, hal::DistanceScanner,
-                        hal::TurretEncoder, hal::Gripper, hal::RangeAndBearing, hal::Battery, hal::Accelerometer,
-                        hal::Gyroscope>(robot);
+    take_listed_sensors<hal::Proximity, hal::Light, hal::Ground, hal::Microphones, hal::BaseGround, hal::MotorGround,
+                        hal::DistanceScanner, hal::TurretEncoder, hal::Gripper, hal::RangeAndBearing, hal::Battery,
+                        hal::Accelerometer, hal::Gyroscope>(robot);
     take_listed_actuators<hal::RingLeds, hal::TurretDrive, hal::GripperDrive, hal::ScannerDrive,
                           hal::RangeAndBearingSend>(robot);
   }

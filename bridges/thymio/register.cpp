@@ -1,0 +1,76 @@
+#include "bridges/thymio/register.hpp"
+
+#include "bridges/aseba/message_link_text.hpp"
+#include "bridges/aseba/node_stopper.hpp"
+#include "bridges/bridge_type.hpp"
+#include "bridges/link/link_text.hpp"
+#include "bridges/thymio/bridge.hpp"
+#include "hal/element_options.hpp"
+
+namespace tandem::bridges::thymio {
+namespace {
+
+struct Options {
+  std::int64_t node = 0;
+  double full_speed_m_s = 0.2;
+  double white = Calibration{}.white;
+  void describe(hal::ParamVisitor& v) {
+    v.integer("node", node, {0, 255}, "Its number where several Thymios are on one link; 0: the only one.");
+    v.number("full_speed", full_speed_m_s, hal::unit::cm_s, {0.01, 1.0},
+             "How fast this robot drives with the motors' target 500: measure it.");
+    v.number("ground_white", white, hal::unit::none, {1.0, 1023.0}, "What its ground sensors say of white ground.");
+  }
+};
+
+struct Parts {
+  BridgeSettings settings;
+  aseba::MessageLinkOpener opener;
+};
+
+hal::Result<Parts> parts_for(const BridgeRequest& request) {
+  auto opener = aseba::message_link_opener(request.link, {request.permit});
+  if (!opener.ok()) return opener.error();
+  const auto options = options_of<Options>(request);
+  Parts parts;
+  parts.opener = std::move(opener).value();
+  parts.settings.link = request.link;
+  parts.settings.driver.calibration = {
+      .node = static_cast<std::uint8_t>(options.node), .full_m_s = options.full_speed_m_s, .white = options.white};
+  apply(request, parts.settings);
+  return parts;
+}
+
+hal::Status check(const BridgeRequest& request) {
+  const auto parts = parts_for(request);
+  return parts.ok() ? hal::Status{} : hal::Status{parts.error()};
+}
+
+MadeBridge make(const BridgeRequest& request, const hal::Log& log) {
+  auto parts = parts_for(request);
+  if (!parts.ok()) return parts.error();
+  return std::unique_ptr<RobotBridge>(
+      std::make_unique<ThymioBridge>(std::move(parts->settings), std::move(parts->opener), log));
+}
+
+/// Several may share a switch, under numbers of their own.
+std::string reached_by(const BridgeRequest& request) {
+  return absolute_link(request.link) + " node " + std::to_string(options_of<Options>(request).node);
+}
+
+const BridgeType kType{.name = hal::thymio::kName,
+                       .summary = "tcp:HOST:PORT (asebaswitch), serial:DEVICE@115200",
+                       .make = &make,
+                       .check = &check,
+                       .reached_by = &reached_by};
+
+constexpr guardian::StopperType kStopper{hal::thymio::kName, &aseba::make_node_stopper};
+
+}  // namespace
+
+void register_bridge(hal::Registrar& registrar) {
+  registrar.add(kType);
+  registrar.add(hal::element_options<Options>("bridge of " + std::string(kType.name)));
+  registrar.add(kStopper);
+}
+
+}  // namespace tandem::bridges::thymio

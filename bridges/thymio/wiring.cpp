@@ -1,0 +1,493 @@
+#include "bridges/thymio/wiring.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "bridges/thymio/units.hpp"
+#include "hal/device/body_sensors.hpp"
+#include "hal/device/infrared_response.hpp"
+#include "hal/device/leds.hpp"
+#include "hal/device/wheels.hpp"
+
+namespace tandem::bridges::thymio {
+namespace {
+
+using aseba::Node;
+using hal::TimeNs;
+
+const std::string kNodeName = "thymio-II";
+constexpr std::int16_t kProduct = 8;  // of the Thymio II; source: aseba/common/productids.h
+
+constexpr TimeNs kBeatStands = 10 * kBeat_ns;         // from here on the program does not run
+constexpr TimeNs kLoadAgain = 400 * hal::kNsPerMs;    // for a program that was sent to begin
+constexpr TimeNs kLook = 2 * kBeat_ns;                // between looks whether it has begun
+constexpr TimeNs kSettle = 120 * hal::kNsPerMs;       // after a reset: the slowest sensor has 10 Hz
+constexpr TimeNs kShowAgain = 300 * hal::kNsPerMs;    // for LEDs that were told to show
+constexpr TimeNs kLongestRoll = 500 * hal::kNsPerMs;  // between two speeds that are added up
+constexpr std::size_t kMostBytecode = 250;            // words of a program in one message
+
+std::span<const std::int16_t> slice(const Node& node, std::size_t address, std::size_t count) noexcept {
+  return std::span<const std::int16_t>(node.image.values).subspan(address, count);
+}
+
+}  // namespace
+
+void WiringStatistics::describe(StatusVisitor& visitor) const {
+  visitor.count("programs_sent", programs);
+  visitor.count("stopped_without_word", lapses);
+  visitor.count("programs_gone", restarts);
+  visitor.count("leds_told_again", not_shown);
+}
+
+Wiring::Wiring(const Calibration& calibration, aseba::Network& network, ThymioRobot& robot, bool observe)
+    : calibration_(calibration), network_(network), robot_(robot), observe_(observe) {
+  if (const auto* const part = robot.kind().part<hal::ProximityPart>(); part != nullptr) response_ = part->response;
+  if (response_.empty()) response_ = hal::thymio::kind().part<hal::ProximityPart>()->response;
+  sources_ = {{.type = &hal::port_type<hal::Proximity>(), .name = "prox.horizontal", .words = 7},
+              {.type = &hal::port_type<hal::Ground>(), .name = "prox.ground.delta", .words = 2},
+              {.type = &hal::port_type<hal::Accelerometer>(), .name = "acc", .words = 3},
+              {.type = &hal::port_type<hal::Microphones>(), .name = "mic.intensity", .words = 1}};
+  if (calibration_.node != 0) network_.expect(calibration_.node);
+}
+
+// --- who is there ---
+
+void Wiring::note_demand() noexcept {}
+
+bool Wiring::ready() const noexcept {
+  return node_ != nullptr && node_->ready() && node_->generation == generation_ && trouble_.empty();
+}
+
+const Node* Wiring::find_node(std::string& trouble) const {
+  const Node* found = nullptr;
+  const auto is_thymio = [](const Node& node) { return node.ready() && node.description.name == kNodeName; };
+  for (const std::uint8_t id : network_.known()) {
+    const Node& node = network_.node(id);
+    if (calibration_.node != 0 ? id != calibration_.node : !is_thymio(node)) continue;
+    if (found != nullptr) {
+      trouble = "several Thymios answer, nodes " + std::to_string(found->id) + " and " + std::to_string(id) +
+                "; say which one in its <bridge>: node=\"" + std::to_string(found->id) + "\"";
+      return nullptr;
+    }
+    found = &node;
+  }
+  if (found == nullptr || is_thymio(*found)) return found;
+  if (!found->trouble.empty()) trouble = found->trouble;
+  if (found->ready())
+    trouble = "node " + std::to_string(found->id) + " is '" + found->description.name + "', no Thymio";
+  return found->state == aseba::NodeState::Lost ? found : nullptr;
+}
+
+bool Wiring::look() noexcept {
+  std::uint64_t print = 1;
+  for (const std::uint8_t id : network_.known()) {
+    const Node& node = network_.node(id);
+    print = print * 1099511628211ULL + (node.generation * 2 + (node.ready() ? 1 : 0)) * 256 + id;
+  }
+  if (print == seen_) return false;
+  seen_ = print;
+  ++rest_version_;
+  if (ready()) return true;
+  std::string trouble;
+  const Node* const node = find_node(trouble);
+  if (node != nullptr && node->ready()) {
+    bind(*node);
+  } else if (node_ == nullptr || !trouble.empty()) {
+    trouble_ = trouble;
+  }
+  return true;
+}
+
+void Wiring::bind(const Node& node) {
+  node_ = &node;
+  generation_ = node.generation;
+  ++times_wired_;
+  state_ = ProgramState::Unknown;
+  heard_ns_ = beat_ns_ = loaded_ns_ = 0;
+  beat_known_ = false;
+  told_ = {};
+  trouble_.clear();
+  const std::string who = "node " + std::to_string(node.id) + ": ";
+  for (Source& source : sources_) {
+    const aseba::Variable* const variable = node.description.variable(source.name);
+    source.bound = variable != nullptr && variable->words == source.words;
+    if (source.bound) {
+      source.address = variable->address;
+    } else if (robot_.uses(*source.type)) {
+      trouble_ = who + "its variable '" + std::string(source.name) + "' is missing, or of another size than " +
+                 std::to_string(source.words) + "; the controller's " + std::string(source.type->name) + " needs it";
+    }
+  }
+  auto program = make_program(node.description);
+  if (program.ok()) {
+    program_ = std::move(program).value();
+  } else {
+    trouble_ = who + program.error().message;
+  }
+}
+
+std::string Wiring::trouble_of_node() const {
+  if (!trouble_.empty()) return trouble_;
+  if (node_ == nullptr) {
+    return calibration_.node == 0 ? "no node '" + kNodeName + "' is there"
+                                  : "node " + std::to_string(calibration_.node) + " is not there";
+  }
+  if (!node_->ready() || node_->generation != generation_)
+    return "node " + std::to_string(node_->id) + " is " + aseba::node_state_name(node_->state);
+  return "";
+}
+
+std::string Wiring::needed_trouble() const {
+  const std::string trouble = trouble_of_node();
+  return trouble.empty() && !running() ? "its program does not run yet" : trouble;
+}
+
+bool Wiring::complete() const noexcept {
+  return running();
+}
+
+bool Wiring::lost_needed() const noexcept {
+  return node_ != nullptr && node_->state == aseba::NodeState::Lost;
+}
+
+std::vector<aseba::NodeStatus> Wiring::nodes() const {
+  aseba::NodeStatus status;
+  status.name = kNodeName;
+  status.needed = true;
+  status.trouble = needed_trouble();
+  status.times_wired = times_wired_;
+  if (node_ != nullptr) {
+    status.id = node_->id;
+    status.state = node_->state;
+    status.statistics = node_->statistics;
+  }
+  return {status};
+}
+
+std::string Wiring::identity() const {
+  if (!ready()) return "";
+  std::string text = kNodeName + " " + std::to_string(node_->id);
+  const aseba::Variable* const firmware = node_->description.variable("_fwversion");
+  if (firmware != nullptr && node_->taken_ns(firmware->address) != 0)
+    text += ", firmware " + std::to_string(node_->value(firmware->address));
+  return text;
+}
+
+// --- the program ---
+
+bool Wiring::serve(TimeNs now) noexcept {
+  if (!ready() || observe_) return false;
+  hear_program(now);
+  if (state_ == ProgramState::Running) return false;
+  if (state_ == ProgramState::Loading && now - loaded_ns_ >= kLoadAgain) return load_program(now);
+  if (now - looked_ns_ < kLook) return false;
+  looked_ns_ = now;
+  return network_.want(node_->id, program_.mailbox, mailbox::kTold);
+}
+
+/// Looks at a mailbox that was read since the last look.
+void Wiring::hear_program(TimeNs now) noexcept {
+  const TimeNs taken = mail_taken_ns();
+  // What was measured before the program was sent says nothing of it.
+  if (taken == 0 || taken <= std::max(heard_ns_, loaded_ns_)) return;
+  heard_ns_ = taken;
+  const aseba::Variable* const product = node_->description.variable("_productId");
+  if (product != nullptr && node_->taken_ns(product->address) != 0 && node_->value(product->address) != kProduct) {
+    trouble_ = "node " + std::to_string(node_->id) + ": its product number is " +
+               std::to_string(node_->value(product->address)) + ", a Thymio II has " + std::to_string(kProduct);
+    return;
+  }
+  const bool ours = mail(mailbox::kSignature) == program_.signature;
+  const std::int16_t beat = mail(mailbox::kBeat);
+  const bool beats = ours && beat_known_ && beat != beat_;
+  if (!beat_known_ || beat != beat_ || !ours) beat_ns_ = taken;
+  beat_ = beat;
+  beat_known_ = ours;
+  // The beat counts since the reset.
+  const bool settled = static_cast<std::uint16_t>(beat) * kBeat_ns >= kSettle;
+  if (beats && settled && state_ != ProgramState::Running) now_runs(now);
+  if (state_ == ProgramState::Running) {
+    if (ours) believed_until_ns_ = taken;
+    const std::int16_t lapses = mail(mailbox::kLapses);
+    if (ours && lapses != lapses_ && drives_) {
+      ++statistics_.lapses;
+      restarted_ =
+          "it heard nothing for " + std::to_string(calibration_.alive_ns / hal::kNsPerMs) + " ms and stopped by itself";
+    }
+    lapses_ = lapses;
+  }
+  const bool stands = ours && taken - beat_ns_ >= kBeatStands;
+  if (ours && !stands) return;
+  if (std::exchange(ran_, false)) {
+    ++statistics_.restarts;
+    restarted_ = "its program is gone: it restarted, or somebody else has loaded another";
+  }
+  if (state_ == ProgramState::Loading) return;  // it may yet begin
+  state_ = ProgramState::Unknown;
+  (void)load_program(now);
+}
+
+void Wiring::now_runs(TimeNs now) noexcept {
+  state_ = ProgramState::Running;
+  believed_from_ns_ = heard_ns_;
+  ran_ = true;
+  told_ = {};
+  told_.leds_number = mail(mailbox::kShown);
+  lapses_ = mail(mailbox::kLapses);
+  ++rest_version_;
+  ask(now);
+}
+
+/// It begins with a reset, which stops the robot.
+bool Wiring::load_program(TimeNs now) noexcept {
+  aseba::Payload words;
+  for (std::size_t at = 0; at < program_.words.size(); at += kMostBytecode) {
+    words.clear();
+    const std::size_t behind = std::min(at + kMostBytecode, program_.words.size());
+    for (std::size_t i = at; i < behind; ++i) words.append(program_.words[i]);
+    if (!network_.send(aseba::SetBytecode{node_->id, static_cast<std::uint16_t>(at), words.words()})) return true;
+  }
+  if (!network_.send(aseba::Run{node_->id})) return true;
+  state_ = ProgramState::Loading;
+  loaded_ns_ = now;
+  beat_known_ = false;
+  ++statistics_.programs;
+  ++rest_version_;
+  return true;
+}
+
+std::string Wiring::look_for_restarts() noexcept {
+  return std::exchange(restarted_, {});
+}
+
+// --- readings ---
+
+TimeNs Wiring::believed_ns(std::size_t address, std::size_t count) const noexcept {
+  if (!running()) return 0;
+  const TimeNs taken = node_->taken_ns(address, count);
+  return observe_ || (taken >= believed_from_ns_ && taken <= believed_until_ns_) ? taken : 0;
+}
+
+std::span<const std::int16_t> Wiring::words_of(const Source& source) const noexcept {
+  return slice(*node_, source.address, source.words);
+}
+
+template <class Port>
+TimeNs Wiring::taken_ns() const noexcept {
+  for (const Source& source : sources_) {
+    if (source.type == &hal::port_type<Port>() && source.bound) return believed_ns(source.address, source.words);
+  }
+  return 0;
+}
+
+template <class Port>
+std::span<const std::int16_t> Wiring::words_of() const noexcept {
+  for (const Source& source : sources_) {
+    if (source.type == &hal::port_type<Port>()) return words_of(source);
+  }
+  return {};
+}
+
+/// What was read stays, and grows old, while the robot is not there.
+template <class Port, class Fill>
+void Wiring::fill_port(TimeNs now, Fill&& fill) noexcept {
+  if (!robot_.uses<Port>()) return;
+  Port& port = robot_.port<Port>();
+  const TimeNs taken = taken_ns<Port>();
+  if (taken != 0) {
+    fill(port, words_of<Port>());
+    robot_.stamp(port, taken, 0, now);
+  } else if (port.validity != hal::Validity::Absent) {
+    robot_.stamp(port, port.taken_ns + robot_.settings().origin_ns, 0, now);
+  }
+}
+
+void Wiring::fill(TimeNs now) noexcept {
+  fill_wheels(now);
+  fill_port<hal::Proximity>(now, [this](hal::Proximity& port, std::span<const std::int16_t> words) {
+    port.count = static_cast<std::uint32_t>(words.size());
+    for (std::size_t i = 0; i < words.size(); ++i)
+      port.distance_m[i] = static_cast<float>(hal::distance_m_of(response_, words[i]));
+  });
+  fill_port<hal::Ground>(now, [this](hal::Ground& port, std::span<const std::int16_t> words) {
+    port.count = static_cast<std::uint32_t>(words.size());
+    for (std::size_t i = 0; i < words.size(); ++i)
+      port.reflectance[i] = static_cast<float>(reflectance(words[i], calibration_.white));
+  });
+  fill_port<hal::Accelerometer>(now, [](hal::Accelerometer& port, std::span<const std::int16_t> words) {
+    port.force_m_s2 = {static_cast<float>(acceleration_m_s2(words[1])),
+                       static_cast<float>(-acceleration_m_s2(words[0])),
+                       static_cast<float>(acceleration_m_s2(words[2]))};
+  });
+  fill_port<hal::Microphones>(now, [](hal::Microphones& port, std::span<const std::int16_t> words) {
+    port.count = 1;
+    port.level[0] = static_cast<float>(sound_level(words[0]));
+  });
+}
+
+void Wiring::fill_wheels(TimeNs now) noexcept {
+  if (!robot_.uses<hal::WheelEncoders>()) return;
+  auto& port = robot_.port<hal::WheelEncoders>();
+  const TimeNs taken = std::min(believed_ns(program_.motors.left_speed), believed_ns(program_.motors.right_speed));
+  if (taken == 0) {
+    if (!running()) wheels_ns_ = 0;
+    if (port.validity != hal::Validity::Absent) robot_.stamp(port, port.taken_ns + robot_.settings().origin_ns, 0, now);
+    return;
+  }
+  if (taken != wheels_ns_) {
+    const double left_m_s = motor_m_s(node_->value(program_.motors.left_speed), calibration_.full_m_s);
+    const double right_m_s = motor_m_s(node_->value(program_.motors.right_speed), calibration_.full_m_s);
+    const TimeNs since = taken - wheels_ns_;
+    if (wheels_ns_ != 0 && since > 0 && since <= kLongestRoll) {
+      port.left_m += 0.5 * (left_m_s_ + left_m_s) * hal::to_seconds(since);
+      port.right_m += 0.5 * (right_m_s_ + right_m_s) * hal::to_seconds(since);
+    }
+    wheels_ns_ = taken;
+    left_m_s_ = left_m_s;
+    right_m_s_ = right_m_s;
+    port.left_m_s = static_cast<float>(left_m_s);
+    port.right_m_s = static_cast<float>(right_m_s);
+  }
+  robot_.stamp(port, taken, 0, now);
+}
+
+void Wiring::ask(TimeNs /*now*/) noexcept {
+  if (!ready()) return;
+  const auto want = [this](std::size_t address, std::size_t count) { (void)network_.want(node_->id, address, count); };
+  for (const std::uint16_t address : {program_.motors.left_target, program_.motors.right_target,
+                                      program_.motors.left_speed, program_.motors.right_speed})
+    want(address, 1);
+  want(program_.mailbox, mailbox::kTold);
+  for (const Source& source : sources_) {
+    if (source.bound && robot_.uses(*source.type)) want(source.address, source.words);
+  }
+  for (const std::string_view once : {"_productId", "_fwversion"}) {
+    const aseba::Variable* const variable = node_->description.variable(once);
+    if (variable != nullptr && node_->taken_ns(variable->address) == 0) want(variable->address, 1);
+  }
+}
+
+TimeNs Wiring::oldest_ns() const noexcept {
+  if (!ready()) return 0;
+  TimeNs oldest = mail_taken_ns();
+  for (const std::uint16_t address : {program_.motors.left_target, program_.motors.right_target,
+                                      program_.motors.left_speed, program_.motors.right_speed})
+    oldest = std::min(oldest, node_->taken_ns(address));
+  for (const Source& source : sources_) {
+    if (source.bound && robot_.uses(*source.type))
+      oldest = std::min(oldest, node_->taken_ns(source.address, source.words));
+  }
+  return observe_ || oldest >= believed_from_ns_ ? oldest : 0;
+}
+
+// --- commands ---
+
+bool Wiring::write_mail(std::uint16_t word, std::span<const std::int16_t> values) noexcept {
+  return network_.write(node_->id, program_.mailbox + std::size_t{word}, values);
+}
+
+/// The motors rest, whatever program runs.
+bool Wiring::write_targets() noexcept {
+  constexpr std::array<std::int16_t, 1> kRest = {0};
+  const bool left = network_.write(node_->id, program_.motors.left_target, kRest);
+  return network_.write(node_->id, program_.motors.right_target, kRest) && left;
+}
+
+void Wiring::command(bool drive, TimeNs now) noexcept {
+  if (observe_) return;
+  drives_ = drive && running();
+  if (!running()) return;
+  write_drive(drive, now);
+  write_leds(drive, now);
+}
+
+/// While it drives, every commit says that the hub is there.
+void Wiring::write_drive(bool drive, TimeNs now) noexcept {
+  std::array<std::int16_t, 3> words{};
+  if (drive && robot_.uses<hal::WheelSpeeds>()) {
+    const auto& wheels = robot_.port<hal::WheelSpeeds>();
+    words = {static_cast<std::int16_t>(std::max<TimeNs>(1, calibration_.alive_ns / kBeat_ns)),
+             motor_target(wheels.left_m_s, calibration_.full_m_s),
+             motor_target(wheels.right_m_s, calibration_.full_m_s)};
+  }
+  const bool alive = words[0] != 0;
+  if (!alive && told_.drive_ns != 0 && words == told_.drive) return;
+  if (!write_mail(mailbox::kAlive, words)) return;
+  told_.drive = words;
+  told_.drive_ns = now;
+}
+
+void Wiring::write_leds(bool drive, TimeNs now) noexcept {
+  if (!program_.lights || !robot_.uses<hal::RingLeds>()) return;
+  std::array<std::int16_t, kLedWords> words{};
+  const auto& leds = robot_.port<hal::RingLeds>();
+  for (std::size_t i = 0; drive && i < hal::thymio::kCircleLeds; ++i) words[i] = yellow_lamp(leds.color(i));
+  std::size_t at = hal::thymio::kCircleLeds;
+  for (const std::size_t led : {hal::thymio::kBottomLeft, hal::thymio::kBottomRight, hal::thymio::kTop}) {
+    const hal::Rgb color = drive ? leds.color(led) : hal::kBlack;
+    for (const std::uint8_t channel : {color.r, color.g, color.b}) words[at++] = lamp(channel);
+  }
+  const bool changed = told_.leds_ns == 0 || words != told_.leds;
+  const bool lost = !changed && mail_taken_ns() > told_.leds_ns && now - told_.leds_ns >= kShowAgain &&
+                    mail(mailbox::kShown) != told_.leds_number;
+  if (!changed && !lost) return;
+  statistics_.not_shown += lost ? 1 : 0;
+  std::array<std::int16_t, 1 + kLedWords> block{};
+  block[0] = static_cast<std::int16_t>((told_.leds_number + 1) & 0x7FFF);
+  std::ranges::copy(words, block.begin() + 1);
+  if (!write_mail(mailbox::kLeds, block)) return;
+  told_.leds = words;
+  told_.leds_number = block[0];
+  told_.leds_ns = now;
+}
+
+void Wiring::rest(TimeNs now) noexcept {
+  network_.forget_writes();
+  rested_ns_ = now;
+  rest_again(now);
+}
+
+void Wiring::rest_again(TimeNs now) noexcept {
+  drives_ = false;
+  if (observe_ || !ready()) return;
+  told_.drive_ns = told_.leds_ns = 0;
+  command(false, now);
+  // A link that was lost and is back has perhaps not been heard of yet, and the program may go on.
+  if (!running() && ran_) (void)write_mail(mailbox::kAlive, std::array<std::int16_t, 3>{});
+  (void)write_targets();
+  (void)network_.want(node_->id, program_.mailbox, mailbox::kTold);
+  (void)network_.want(node_->id, program_.motors.left_target, 1);
+  (void)network_.want(node_->id, program_.motors.right_target, 1);
+}
+
+bool Wiring::rests() const noexcept {
+  if (observe_) return true;
+  if (!ready() || state_ == ProgramState::Unknown) return false;
+  for (const std::uint16_t target : {program_.motors.left_target, program_.motors.right_target}) {
+    if (node_->taken_ns(target) <= rested_ns_ || node_->value(target) != 0) return false;
+  }
+  // Where no program runs, none sets the targets.
+  if (state_ != ProgramState::Running) return true;
+  return mail_taken_ns() > rested_ns_ && mail(mailbox::kAlive) == 0 && mail(mailbox::kLeft) == 0 &&
+         mail(mailbox::kRight) == 0;
+}
+
+std::vector<aseba::RestMessage> Wiring::rest_messages() const {
+  std::vector<aseba::RestMessage> all;
+  if (node_ == nullptr || !trouble_.empty() || program_.words.empty()) return all;
+  const auto set = [&](std::size_t address, std::size_t count) {
+    aseba::Payload payload;
+    payload.append(node_->id);
+    payload.append(static_cast<std::uint16_t>(address));
+    for (std::size_t i = 0; i < count; ++i) payload.append(std::uint16_t{0});
+    all.push_back({static_cast<std::uint16_t>(aseba::Type::SetVariables),
+                   {payload.bytes().begin(), payload.bytes().end()},
+                   true});
+  };
+  if (state_ == ProgramState::Running || ran_) set(program_.mailbox + std::size_t{mailbox::kAlive}, 3);
+  set(program_.motors.left_target, 1);
+  set(program_.motors.right_target, 1);
+  return all;
+}
+
+}  // namespace tandem::bridges::thymio

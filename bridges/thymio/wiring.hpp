@@ -1,0 +1,155 @@
+// Ports on one side, the Thymio's node on the other: finds the robot on the bus, gives it its program, and carries
+// values both ways.
+//
+//   unknown --the signature is read, and the beat goes on--> running
+//   unknown, running --another signature, or the beat stands--> loading: the program is sent and started
+//   loading --the signature, and the beat goes on--> running, once every sensor has measured
+//
+// A reset clears the variables, and a robot may be reset at any time, by a loose battery or somebody else's program:
+// what sensors say is believed once the mailbox, read afterwards, shows that the program still runs.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "bridges/aseba/node_driver.hpp"
+#include "bridges/thymio/program.hpp"
+#include "bridges/thymio/robot.hpp"
+#include "hal/device/ring_sensors.hpp"
+
+namespace tandem::bridges::thymio {
+
+/// What the experiment says of one Thymio.
+struct Calibration {
+  std::uint8_t node = 0;                       ///< its number where several are on one link; 0: it is alone
+  double full_m_s = 0.2;                       ///< its speed with the motors' target 500
+  double white = 820.0;                        ///< what its ground sensors say of white ground
+  hal::TimeNs alive_ns = 500 * hal::kNsPerMs;  ///< the robot stops by itself when it heard nothing for so long
+};
+
+struct WiringStatistics {
+  std::uint64_t programs = 0;   ///< times that the program was sent
+  std::uint64_t lapses = 0;     ///< times that the robot stopped by itself, as it was told to drive and heard no more
+  std::uint64_t restarts = 0;   ///< times that its program was gone
+  std::uint64_t not_shown = 0;  ///< LEDs that had to be told again
+
+  void describe(StatusVisitor& visitor) const;
+};
+
+/// Not thread-safe. Allocates when nodes come and go, else never. Functions without a comment are as in
+/// bridges/footbot/wiring.hpp.
+class Wiring {
+ public:
+  using Statistics = WiringStatistics;
+
+  /// Both must outlive this. `observe`: nothing is ever written, and no program loaded.
+  Wiring(const Calibration& calibration, aseba::Network& network, ThymioRobot& robot, bool observe = false);
+
+  void note_demand() noexcept;
+  bool look() noexcept;
+  std::string look_for_restarts() noexcept;
+  /// Looks after the program.
+  bool serve(hal::TimeNs now) noexcept;
+
+  void fill(hal::TimeNs now) noexcept;
+  void ask(hal::TimeNs now) noexcept;
+  void command(bool drive, hal::TimeNs now) noexcept;
+  void rest(hal::TimeNs now) noexcept;
+  void rest_again(hal::TimeNs now) noexcept;
+  bool rests() const noexcept;
+
+  bool complete() const noexcept;
+  bool lost_needed() const noexcept;
+  hal::TimeNs oldest_ns() const noexcept;
+  std::string trouble() const { return needed_trouble(); }
+  std::string needed_trouble() const;
+
+  std::vector<aseba::NodeStatus> nodes() const;
+  /// "thymio-II 1, firmware 14".
+  std::string identity() const;
+  std::vector<aseba::RestMessage> rest_messages() const;
+  std::uint64_t rest_version() const noexcept { return rest_version_; }
+  const WiringStatistics& statistics() const noexcept { return statistics_; }
+
+ private:
+  enum class ProgramState : std::uint8_t { Unknown, Loading, Running };
+  /// A sensor's words; none where the robot has none, or nobody reads them.
+  struct Source {
+    const hal::PortType* type = nullptr;
+    std::string_view name;
+    std::uint16_t words = 0;
+    std::uint16_t address = 0;
+    bool bound = false;
+  };
+  /// What was written into the mailbox.
+  struct Told {
+    std::array<std::int16_t, 3> drive{};  // alive, left, right
+    hal::TimeNs drive_ns = 0;             // 0: not since the program runs
+    std::array<std::int16_t, kLedWords> leds{};
+    std::int16_t leds_number = 0;
+    hal::TimeNs leds_ns = 0;
+  };
+
+  bool ready() const noexcept;
+  bool running() const noexcept { return ready() && (observe_ || state_ == ProgramState::Running); }
+  void bind(const aseba::Node& node);
+  std::string trouble_of_node() const;
+  const aseba::Node* find_node(std::string& trouble) const;
+  void hear_program(hal::TimeNs now) noexcept;
+  void now_runs(hal::TimeNs now) noexcept;
+  bool load_program(hal::TimeNs now) noexcept;
+  std::int16_t mail(std::uint16_t word) const noexcept { return node_->value(program_.mailbox + std::size_t{word}); }
+  hal::TimeNs mail_taken_ns() const noexcept { return node_->taken_ns(program_.mailbox, mailbox::kTold); }
+  /// When words were taken that are believed; 0: never, or they are not.
+  hal::TimeNs believed_ns(std::size_t address, std::size_t count = 1) const noexcept;
+  bool write_mail(std::uint16_t word, std::span<const std::int16_t> values) noexcept;
+  bool write_targets() noexcept;
+  void write_drive(bool drive, hal::TimeNs now) noexcept;
+  void write_leds(bool drive, hal::TimeNs now) noexcept;
+  std::span<const std::int16_t> words_of(const Source& source) const noexcept;
+  /// When the port's words were taken; 0: never, or nobody reads them.
+  template <class Port>
+  hal::TimeNs taken_ns() const noexcept;
+  template <class Port>
+  std::span<const std::int16_t> words_of() const noexcept;
+  template <class Port, class Fill>
+  void fill_port(hal::TimeNs now, Fill&& fill) noexcept;
+  void fill_wheels(hal::TimeNs now) noexcept;
+
+  Calibration calibration_;
+  aseba::Network& network_;
+  ThymioRobot& robot_;
+  bool observe_;
+  std::vector<hal::InfraredResponse> response_;
+  std::vector<Source> sources_;
+
+  const aseba::Node* node_ = nullptr;  // null: not there
+  std::uint64_t generation_ = 0;
+  std::uint64_t seen_ = ~std::uint64_t{0};  // fingerprint of who is there
+  std::uint64_t times_wired_ = 0;
+  std::string trouble_;  // of the node as it describes itself
+  Program program_;
+  ProgramState state_ = ProgramState::Unknown;
+  bool ran_ = false;  // the program, at some time before
+  hal::TimeNs loaded_ns_ = 0, looked_ns_ = 0;
+  hal::TimeNs heard_ns_ = 0;                                  // when the mailbox was taken that was last looked at
+  hal::TimeNs believed_from_ns_ = 0, believed_until_ns_ = 0;  // readings of this time
+  hal::TimeNs beat_ns_ = 0;                                   // and when its beat last was another
+  std::int16_t beat_ = 0, lapses_ = 0;
+  bool beat_known_ = false;
+  std::string restarted_;  // for look_for_restarts
+
+  Told told_;
+  bool drives_ = false;
+  hal::TimeNs rested_ns_ = 0;
+  std::uint64_t rest_version_ = 0;
+
+  hal::TimeNs wheels_ns_ = 0;  // of the speeds that were last added up
+  double left_m_s_ = 0.0, right_m_s_ = 0.0;
+  WiringStatistics statistics_;
+};
+
+}  // namespace tandem::bridges::thymio

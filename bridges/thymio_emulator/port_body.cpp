@@ -1,0 +1,33 @@
+#include "bridges/thymio_emulator/port_body.hpp"
+
+#include "hal/device/body_sensors.hpp"
+#include "hal/device/leds.hpp"
+#include "hal/device/ring_sensors.hpp"
+#include "hal/device/wheels.hpp"
+
+namespace tandem::bridges::thymio_emulator {
+
+std::vector<const hal::PortType*> body_ports() {
+  return port_types_of<hal::Proximity, hal::Ground, hal::Accelerometer, hal::Microphones, hal::WheelSpeeds,
+                       hal::RingLeds>();
+}
+
+BodySenses PortBody::sense(hal::TimeNs /*now*/) {
+  BodySenses senses;
+  ports_.with([&](const PortBank& bank) {
+    bank.read<hal::Proximity>([&](const auto& p) { copy_values(p.distance_m, senses.distance_m); });
+    bank.read<hal::Ground>([&](const auto& p) { copy_values(p.reflectance, senses.ground); });
+    bank.read<hal::Accelerometer>([&](const auto& p) { copy_values(p.force_m_s2, senses.force_m_s2); });
+    bank.read<hal::Microphones>([&](const auto& p) { senses.sound = static_cast<double>(p.level[0]); });
+  });
+  return senses;
+}
+
+void PortBody::actuate(hal::TimeNs /*now*/, const BodyCommand& command) {
+  ports_.with([&](PortBank& bank) {
+    bank.port<hal::WheelSpeeds>().set(command.left_m_s, command.right_m_s);
+    copy_values(command.rgb, bank.port<hal::RingLeds>().rgb);
+  });
+}
+
+}  // namespace tandem::bridges::thymio_emulator
