@@ -74,6 +74,7 @@ hal::Result<std::unique_ptr<SerialPort>> SerialPort::open(const std::string& lin
                                                           unsigned long baud) {
   const std::string rate = std::to_string(baud);
   std::unique_ptr<SerialPort> port(new SerialPort(baud));
+  port->link_ = link;
   hal::Status status;
   if (link.starts_with(kPty) && link.size() > kPty.size()) {
     status = port->make_terminal(link.substr(kPty.size()));

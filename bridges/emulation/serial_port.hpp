@@ -5,12 +5,13 @@
 #include <span>
 #include <string>
 
+#include "bridges/emulation/host_line.hpp"
 #include "hal/result.hpp"
 
 namespace tandem::bridges {
 
 /// The robot's end of a serial line, raw, 8N1, no flow control. Nothing here blocks.
-class SerialPort {
+class SerialPort final : public HostLine {
  public:
   /// "pty:NAME" makes a pseudo-terminal and a symbolic link NAME to it, in the current folder unless NAME is a path; a
   /// link of that name is replaced. "serial:DEVICE" or "serial:DEVICE@BAUD" opens a device, for a robot at the end of
@@ -20,27 +21,28 @@ class SerialPort {
                                                        unsigned long baud);
 
   /// Takes the symbolic link away, if it is still ours.
-  ~SerialPort();
+  ~SerialPort() override;
   SerialPort(const SerialPort&) = delete;
   SerialPort& operator=(const SerialPort&) = delete;
 
   /// For poll().
-  int descriptor() const noexcept { return descriptor_; }
+  int descriptor() const noexcept override { return descriptor_; }
 
   /// What has come in, up to the size of `buffer`; 0 when nothing has. Errors: the device has gone.
-  hal::Result<std::size_t> read(std::span<std::uint8_t> buffer);
+  hal::Result<std::size_t> read(std::span<std::uint8_t> buffer) override;
 
   /// @returns how many bytes went out; the rest is lost, as on a wire that nobody listens at
-  std::size_t write(std::span<const std::uint8_t> bytes);
+  std::size_t write(std::span<const std::uint8_t> bytes) override;
 
   /// The baud rate that the host has set on its side of a pseudo-terminal, 0 for one that is not usual; the robot's own
   /// on a device.
-  unsigned long host_baud() const;
+  unsigned long host_baud() const override;
 
   /// The name that a host opens.
-  const std::string& path() const noexcept { return path_; }
+  const std::string& path() const noexcept override { return path_; }
   /// What `path` points at.
-  const std::string& device() const noexcept { return device_; }
+  const std::string& device() const noexcept override { return device_; }
+  const std::string& link() const noexcept override { return link_; }
 
  private:
   explicit SerialPort(unsigned long baud) : baud_(baud) {}
@@ -52,6 +54,7 @@ class SerialPort {
   int slave_ = -1;  // kept open: without any, the robot's end of a pseudo-terminal reports a hang-up
   std::string path_;
   std::string device_;
+  std::string link_;
   bool owns_link_ = false;
 };
 

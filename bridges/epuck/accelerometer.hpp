@@ -11,7 +11,7 @@
 
 namespace tandem::bridges::epuck {
 
-/// Counts without a force.
+/// Counts without a force, of those that answer the command `a`.
 int accelerometer_zero(Firmware firmware) noexcept;
 
 /// Specific force in the body frame (x ahead, y left, z up) from raw values whose zero is `zero`.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 
+#include "bridges/epuck/stop.hpp"
 #include "bridges/link/pending_link.hpp"
 #include "hal/check.hpp"
 #include "hal/robot/epuck.hpp"
@@ -20,21 +21,13 @@ LinkStatistics sum(const LinkStatistics& a, const LinkStatistics& b) noexcept {
 
 }  // namespace
 
-hal::Result<LinkOpener> epuck_link_opener(const LinkAddress& address, const LinkTerms& terms) {
-  constexpr std::uint32_t kBaud = 115200;  // of every stock firmware
-  if (address.scheme == LinkScheme::Serial && address.rate != kBaud) {
-    return hal::Error{"an e-puck's firmware talks with 115200 baud, not with " + std::to_string(address.rate) +
-                      ": write serial:" + address.target + "@115200"};
-  }
-  return byte_link_opener(address, terms);
-}
-
 SessionTiming timing_for(std::string_view link_name) noexcept {
   SessionTiming timing;
   const StopTiming stop = stop_timing_for(link_name);
   timing.answer_ns = stop.answer_ns;
   timing.quiet_ns = stop.quiet_ns;
   if (link_name.find("rfcomm") != std::string_view::npos) timing.gap_ns = 200 * hal::kNsPerMs;
+  if (in_network(link_name)) timing.gap_ns = 150 * hal::kNsPerMs;
   return timing;
 }
 
@@ -93,8 +86,13 @@ std::unique_ptr<ByteLink> EpuckBridge::open_link() {
   return nullptr;
 }
 
+bool EpuckBridge::wants_new_link() const noexcept {
+  const std::lock_guard lock(mutex_);
+  return driver_.wants_new_link();
+}
+
 void EpuckBridge::serve(ByteLink& link) {
-  while (!ending_ && link.state() == LinkState::Open) {
+  while (!ending_ && link.state() == LinkState::Open && !wants_new_link()) {
     const TimeNs now = monotonic_ns();
     TimeNs wait = kLongestWait;
     {
@@ -174,6 +172,8 @@ std::string EpuckBridge::trouble() const {
 }
 
 std::string EpuckBridge::advice() const {
+  if (settings_.driver.wire == WireForm::Wifi)
+    return "is it switched on, its selector at 15, and no other program connected?";
   return "is it switched on, its selector at 3 (Bluetooth) or 8 (USB, e-puck2), and the baud rate 115200?";
 }
 
@@ -241,7 +241,7 @@ Odometry EpuckBridge::odometry() const noexcept {
 
 BridgeStatus EpuckBridge::status() const {
   const std::lock_guard lock(mutex_);
-  const Session& session = driver_.session();
+  const Conversation& session = driver_.session();
   BridgeStatus status;
   status.state = session.state();
   status.trouble = link_error_.empty() ? session.trouble() : link_error_;

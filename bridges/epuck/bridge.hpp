@@ -15,6 +15,7 @@
 
 #include "bridges/driver_bridge.hpp"
 #include "bridges/epuck/driver.hpp"
+#include "bridges/epuck/link.hpp"
 #include "bridges/link/link_text.hpp"
 
 namespace tandem::bridges::epuck {
@@ -27,12 +28,8 @@ struct BridgeSettings {
   hal::TimeNs shutdown_ns = 600 * hal::kNsPerMs;  ///< how long the end waits for the robot to confirm its stop
 };
 
-/// Timing for a link of this name: Bluetooth (rfcomm) devices answer late.
+/// Timing for a link of this name: Bluetooth (rfcomm) devices and those in a network answer late.
 SessionTiming timing_for(std::string_view link_name) noexcept;
-
-/// How to open the link to an e-puck. Errors: those of `byte_link_opener`; a baud rate that no e-puck's firmware has:
-/// what is sent at a wrong rate arrives as other bytes, and these could move the robot.
-hal::Result<LinkOpener> epuck_link_opener(const LinkAddress& address, const LinkTerms& terms = {});
 
 /// A copy of everything that can be told about the bridge.
 struct BridgeStatus {
@@ -86,6 +83,7 @@ class EpuckBridge final : public DriverBridge<EpuckBridge, EpuckRobot> {
   void serve(ByteLink& link);
   void run_shutdown(ByteLink& link);
   void pump_now(hal::TimeNs now) noexcept;
+  bool wants_new_link() const noexcept;
 
   static constexpr std::uint64_t kStopVersion = 1;  // one robot, one device: nothing of it changes
 

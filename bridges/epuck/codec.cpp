@@ -14,8 +14,14 @@ constexpr std::uint8_t code(char letter) noexcept {
 constexpr std::uint8_t kRgbLeds = 0xF6;
 constexpr std::uint8_t kAllActuators = 0xF7;
 constexpr std::uint8_t kAllSensors = 0xF8;
+constexpr std::uint8_t kFourMicrophones = 0xF4;
+constexpr std::uint8_t kTimeOfFlight = 0xF3;
+constexpr std::uint8_t kWifiCommand = 0x80;
+constexpr std::uint8_t kWifiImage = 0x01, kWifiSensors = 0x02, kWifiEmpty = 0x03;
 
-constexpr std::array<char, kQuantityCount> kLetters = {'Q', 'N', 'O', 'a', 'u', 'g', 'b', 'M', 'E'};
+constexpr std::array<std::uint8_t, kQuantityCount> kQueries = {code('Q'),     code('N'),   code('O'), code('a'),
+                                                               code('u'),     code('g'),   code('b'), code('M'),
+                                                               kTimeOfFlight, kAllSensors, code('E')};
 
 std::uint8_t low(std::int16_t v) noexcept {
   return static_cast<std::uint8_t>(static_cast<std::uint16_t>(v) & 0xFF);
@@ -47,7 +53,11 @@ class Reader {
   void fill(std::array<std::int16_t, N>& values) noexcept {
     for (auto& v : values) v = i16();
   }
-  void skip(std::size_t n) noexcept { at_ += n; }
+  std::span<const std::uint8_t> take(std::size_t n) noexcept {
+    const auto part = bytes_.subspan(at_, std::min(n, bytes_.size() - at_));
+    at_ += part.size();
+    return part;
+  }
 
  private:
   std::span<const std::uint8_t> bytes_;
@@ -61,8 +71,14 @@ bool within_12_bits(std::span<const std::uint16_t> values) noexcept {
 void read_ground(Reader& in, std::size_t size, RawSensors& s) noexcept {
   if (size == 0) return;
   in.fill(s.ground);
-  if (size == 10) in.fill(s.cliff);
-  if (size == 8) in.skip(2);
+  s.cliffs = static_cast<std::uint8_t>(std::clamp<std::size_t>(size / 2, 3, 5) - s.ground.size());
+  for (std::size_t i = 0; i < s.cliffs; ++i) s.cliff[i] = in.u16();
+}
+
+/// Of all sensors: the others are asked for by themselves.
+void read_selector(Reader& in, RawSensors& s) noexcept {
+  AllSensors all;
+  if (decode_all_sensors(in.take(kAllSensorsSize), all) == Decoded::Ok) s.selector = all.common.selector;
 }
 
 void read_quantity(Reader& in, Quantity q, std::size_t size, RawSensors& s) noexcept {
@@ -80,7 +96,7 @@ void read_quantity(Reader& in, Quantity q, std::size_t size, RawSensors& s) noex
       in.fill(s.acceleration);
       break;
     case Quantity::Microphones:
-      in.fill(s.microphones);
+      for (std::size_t i = 0; i < size / 2; ++i) s.microphones[i] = in.u16();
       break;
     case Quantity::Gyro:
       if (size > 0) in.fill(s.gyro);
@@ -90,6 +106,12 @@ void read_quantity(Reader& in, Quantity q, std::size_t size, RawSensors& s) noex
       break;
     case Quantity::Ground:
       read_ground(in, size, s);
+      break;
+    case Quantity::TimeOfFlight:
+      if (size > 0) s.time_of_flight_mm = in.u16();
+      break;
+    case Quantity::Selector:
+      if (size > 0) read_selector(in, s);
       break;
     case Quantity::CommandedSpeeds:
       in.fill(s.commanded);
@@ -132,14 +154,15 @@ bool append_rgb_leds(Packet& packet, const std::array<std::uint8_t, 12>& percent
   return packet.append(bytes);
 }
 
-bool append_query(Packet& packet, Quantity quantity) noexcept {
-  return packet.append({code(kLetters[static_cast<std::size_t>(quantity)])});
+bool append_query(Packet& packet, Quantity quantity, const AnswerLayout& layout) noexcept {
+  if (quantity == Quantity::Microphones && layout.microphone_bytes == 8) return packet.append({kFourMicrophones});
+  return packet.append({kQueries[static_cast<std::size_t>(quantity)]});
 }
 
 bool append_queries(Packet& packet, QuantitySet quantities, const AnswerLayout& layout) noexcept {
   Packet queries;
   for_each(quantities, [&](Quantity q) {
-    if (answer_size(q, layout) > 0) append_query(queries, q);
+    if (answer_size(q, layout) > 0) append_query(queries, q, layout);
   });
   return packet.append(queries.bytes());
 }
@@ -154,8 +177,13 @@ std::size_t answer_size(Quantity quantity, const AnswerLayout& layout) noexcept 
     case Quantity::Ambient:
       return 16;
     case Quantity::Acceleration:
-    case Quantity::Microphones:
       return 6;
+    case Quantity::Microphones:
+      return layout.microphone_bytes;
+    case Quantity::TimeOfFlight:
+      return layout.time_of_flight_bytes;
+    case Quantity::Selector:
+      return layout.selector_bytes;
     case Quantity::Encoders:
     case Quantity::CommandedSpeeds:
       return 4;
@@ -186,22 +214,71 @@ Decoded decode_answer(std::span<const std::uint8_t> bytes, QuantitySet quantitie
   return Decoded::Ok;
 }
 
-bool append_all_actuators(Packet& packet, const AllActuators& a) noexcept {
-  std::array<std::uint8_t, 20> bytes{kAllActuators};
-  bytes[1] = static_cast<std::uint8_t>((a.calibrate ? 1U : 0U) | (a.avoid_obstacles ? 2U : 0U) |
+namespace {
+
+/// What follows the command byte, whichever it is.
+std::array<std::uint8_t, 19> payload_of(const AllActuators& a) noexcept {
+  std::array<std::uint8_t, 19> bytes{};
+  bytes[0] = static_cast<std::uint8_t>((a.calibrate ? 1U : 0U) | (a.avoid_obstacles ? 2U : 0U) |
                                        (a.steps_not_speeds ? 4U : 0U));
-  bytes[2] = low(a.left);
-  bytes[3] = high(a.left);
-  bytes[4] = low(a.right);
-  bytes[5] = high(a.right);
-  bytes[6] = a.leds;
-  std::copy(a.rgb_percent.begin(), a.rgb_percent.end(), bytes.begin() + 7);
-  bytes[19] = a.sound;
-  return packet.append(bytes);
+  bytes[1] = low(a.left);
+  bytes[2] = high(a.left);
+  bytes[3] = low(a.right);
+  bytes[4] = high(a.right);
+  bytes[5] = a.leds;
+  std::transform(a.rgb_percent.begin(), a.rgb_percent.end(), bytes.begin() + 6,
+                 [](std::uint8_t p) { return std::min<std::uint8_t>(p, 100); });
+  bytes[18] = a.sound;
+  return bytes;
+}
+
+bool append_with(Packet& packet, std::span<const std::uint8_t> head, const AllActuators& actuators) noexcept {
+  const auto payload = payload_of(actuators);
+  if (head.size() + payload.size() > Packet::kCapacity - packet.size()) return false;
+  return packet.append(head) && packet.append(payload);
+}
+
+}  // namespace
+
+bool append_all_actuators(Packet& packet, const AllActuators& actuators) noexcept {
+  return append_with(packet, std::array{kAllActuators}, actuators);
 }
 
 bool append_all_sensors_query(Packet& packet) noexcept {
   return packet.append({kAllSensors});
+}
+
+bool append_wifi_command(Packet& packet, const AllActuators& actuators) noexcept {
+  constexpr std::uint8_t kTellSensors = 2;  // 1: the camera's images
+  return append_with(packet, std::array{kWifiCommand, kTellSensors}, actuators);
+}
+
+WifiReader::Event WifiReader::push(std::uint8_t byte) noexcept {
+  if (lost_) return Event::OutOfStep;
+  if (skip_ > 0) {
+    --skip_;
+    return Event::None;
+  }
+  if (in_body_) {
+    body_[size_++] = byte;
+    if (size_ < body_.size()) return Event::None;
+    in_body_ = false;
+    return Event::Sensors;
+  }
+  switch (byte) {
+    case kWifiSensors:
+      in_body_ = true;
+      size_ = 0;
+      return Event::None;
+    case kWifiImage:
+      skip_ = kImage;
+      return Event::None;
+    case kWifiEmpty:
+      return Event::Empty;
+    default:
+      lost_ = true;
+      return Event::OutOfStep;
+  }
 }
 
 Decoded decode_all_sensors(std::span<const std::uint8_t> bytes, AllSensors& sensors) noexcept {
@@ -217,16 +294,16 @@ Decoded decode_all_sensors(std::span<const std::uint8_t> bytes, AllSensors& sens
   s.temperature_C = static_cast<std::int8_t>(in.u8());
   in.fill(s.common.proximity);
   in.fill(s.common.ambient);
-  s.time_of_flight_mm = in.u16();
-  in.fill(s.microphones);
+  s.common.time_of_flight_mm = in.u16();
+  in.fill(s.common.microphones);
   in.fill(s.common.encoders);
   s.common.battery = in.u16();
   s.sd_card = in.u8();
   for (std::uint8_t& v : s.remote_control) v = in.u8();
-  s.selector = in.u8();
+  s.common.selector = in.u8();
   in.fill(s.common.ground);
   in.fill(s.ground_ambient);
-  std::copy_n(s.microphones.begin(), 3, s.common.microphones.begin());
+  s.button = in.u8();
   if (!within_12_bits(s.common.proximity) || !within_12_bits(s.common.ambient)) return Decoded::Implausible;
   sensors = s;
   return Decoded::Ok;

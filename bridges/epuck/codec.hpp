@@ -44,13 +44,15 @@ enum class Quantity : std::uint8_t {
   Proximity,        ///< N: 8 values 0 to 4095, larger is nearer
   Ambient,          ///< O: 8 values 0 to 4095, larger is darker
   Acceleration,     ///< a: 3 x int16
-  Microphones,      ///< u: 3 values
+  Microphones,      ///< u: 3 values; F4, 4 values, on the e-puck2
   Gyro,             ///< g: 3 x int16; GCtronic firmware and e-puck2
   Battery,          ///< b: 1 value; GCtronic firmware and e-puck2
-  Ground,           ///< M: 3 values; 5 with cliff sensors; 3 and a spare one on the e-puck2
+  Ground,           ///< M: 3 values; 5 with cliff sensors; on the e-puck2 4, the last of the right cliff sensor
+  TimeOfFlight,     ///< F3: 1 value, mm; e-puck2
+  Selector,         ///< F8, all sensors: nothing shorter tells it in binary; e-puck2
   CommandedSpeeds,  ///< E: 2 x int16, the last speeds set
 };
-inline constexpr std::size_t kQuantityCount = 9;
+inline constexpr std::size_t kQuantityCount = 11;
 
 /// A set of quantities.
 class QuantitySet {
@@ -75,9 +77,12 @@ class QuantitySet {
 
 /// How many bytes a robot answers where firmwares differ. 0: it does not answer at all.
 struct AnswerLayout {
-  std::uint8_t ground_bytes = 6;   ///< 0, 6, 8 (e-puck2) or 10 (cliff sensors)
-  std::uint8_t battery_bytes = 2;  ///< 0 (EPFL's BTcom) or 2
-  std::uint8_t gyro_bytes = 6;     ///< 0 (EPFL's BTcom) or 6
+  std::uint8_t ground_bytes = 6;          ///< 0, 6, 8 (e-puck2) or 10 (cliff sensors)
+  std::uint8_t battery_bytes = 2;         ///< 0 (EPFL's BTcom) or 2
+  std::uint8_t gyro_bytes = 6;            ///< 0 (EPFL's BTcom) or 6
+  std::uint8_t microphone_bytes = 6;      ///< or 8 (e-puck2)
+  std::uint8_t time_of_flight_bytes = 0;  ///< or 2 (e-puck2)
+  std::uint8_t selector_bytes = 0;        ///< or 103 (e-puck2)
   friend bool operator==(const AnswerLayout&, const AnswerLayout&) = default;
 };
 
@@ -87,11 +92,14 @@ struct RawSensors {
   std::array<std::uint16_t, 8> proximity{};
   std::array<std::uint16_t, 8> ambient{};
   std::array<std::int16_t, 3> acceleration{};
-  std::array<std::uint16_t, 3> microphones{};
+  std::array<std::uint16_t, 4> microphones{};  ///< right, left, rear, front
   std::array<std::int16_t, 3> gyro{};
   std::uint16_t battery = 0;
   std::array<std::uint16_t, 3> ground{};
-  std::array<std::uint16_t, 2> cliff{};
+  std::array<std::uint16_t, 2> cliff{};  ///< right, left
+  std::uint8_t cliffs = 0;               ///< how many of them were told
+  std::uint16_t time_of_flight_mm = 0;   ///< 0: not yet measured
+  std::uint8_t selector = 0;
   std::array<std::int16_t, 2> commanded{};
   friend bool operator==(const RawSensors&, const RawSensors&) = default;
 };
@@ -108,7 +116,7 @@ bool append_led(Packet& packet, std::uint8_t index, LedAction action) noexcept;
 bool append_preset_encoders(Packet& packet, std::int16_t left, std::int16_t right) noexcept;
 /// e-puck2: colours of its RGB LEDs, r g b each of LED 2, 4, 6, 8 (ring 1, 3, 5, 7 counted from 0), 0 to 100.
 bool append_rgb_leds(Packet& packet, const std::array<std::uint8_t, 12>& percent) noexcept;
-bool append_query(Packet& packet, Quantity quantity) noexcept;
+bool append_query(Packet& packet, Quantity quantity, const AnswerLayout& layout = {}) noexcept;
 /// All of `quantities` that the robot answers, in the order of the enumeration.
 bool append_queries(Packet& packet, QuantitySet quantities, const AnswerLayout& layout) noexcept;
 bool append_end(Packet& packet) noexcept;
@@ -118,7 +126,7 @@ bool append_end(Packet& packet) noexcept;
 std::size_t answer_size(Quantity quantity, const AnswerLayout& layout) noexcept;
 std::size_t answer_size(QuantitySet quantities, const AnswerLayout& layout) noexcept;
 /// Of all quantities together.
-inline constexpr std::size_t kLongestAnswer = 4 + 16 + 16 + 6 + 6 + 6 + 2 + 10 + 4;
+inline constexpr std::size_t kLongestAnswer = 4 + 16 + 16 + 6 + 8 + 6 + 2 + 10 + 2 + 103 + 4;
 
 enum class Decoded : std::uint8_t {
   Ok,
@@ -146,19 +154,49 @@ bool append_all_sensors_query(Packet& packet) noexcept;
 
 inline constexpr std::size_t kAllSensorsSize = 103;
 struct AllSensors {
-  RawSensors common;               ///< acceleration, gyro, proximity, ambient, encoders, battery, ground
+  /// Acceleration (0 without a force, whatever the firmware answers to `a`), gyro, proximity, ambient, microphones,
+  /// time of flight, encoders, battery, selector, ground.
+  RawSensors common;
   float acceleration_norm = 0.0F;  ///< raw counts
   float orientation_deg = 0.0F;
   float inclination_deg = 0.0F;
   std::array<float, 3> magnetic_field_uT{};
   std::int8_t temperature_C = 0;
-  std::uint16_t time_of_flight_mm = 0;
-  std::array<std::uint16_t, 4> microphones{};
   std::uint8_t sd_card = 0;
   std::array<std::uint8_t, 3> remote_control{};  ///< check, address, data
-  std::uint8_t selector = 0;
   std::array<std::uint16_t, 3> ground_ambient{};
+  std::uint8_t button = 0;  ///< over WiFi; over a serial line always 0
 };
 Decoded decode_all_sensors(std::span<const std::uint8_t> bytes, AllSensors& sensors) noexcept;
+
+// --- the same over the e-puck2's own radio: commands of 21 bytes, answers with a header of one ---
+
+inline constexpr std::size_t kWifiCommandSize = 21;
+/// Sets everything, and has the robot tell its sensors.
+bool append_wifi_command(Packet& packet, const AllActuators& actuators) noexcept;
+
+/// Cuts the radio's stream into its packets. Pure; no input is undefined.
+class WifiReader {
+ public:
+  enum class Event : std::uint8_t {
+    None,
+    Sensors,   ///< `sensors()` is complete
+    Empty,     ///< the robot tells nothing: nothing was asked for
+    OutOfStep  ///< no packet begins so: what follows means nothing until the link is opened anew
+  };
+  Event push(std::uint8_t byte) noexcept;
+  /// As `decode_all_sensors` takes them.
+  std::span<const std::uint8_t> sensors() const noexcept { return std::span(body_).first(kAllSensorsSize); }
+  void clear() noexcept { *this = WifiReader{}; }
+
+ private:
+  static constexpr std::size_t kBody = kAllSensorsSize + 1;  // a spare byte at the end
+  static constexpr std::size_t kImage = 160 * 120 * 2;
+  std::array<std::uint8_t, kBody> body_{};
+  std::size_t size_ = 0;
+  std::size_t skip_ = 0;  // of an image that nobody asked for
+  bool in_body_ = false;
+  bool lost_ = false;
+};
 
 }  // namespace tandem::bridges::epuck

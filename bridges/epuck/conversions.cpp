@@ -25,6 +25,7 @@ Part part_of(const hal::RobotKind& kind) {
 Conversions::Conversions(const hal::RobotKind& kind)
     : metres_per_step_(2.0 * std::numbers::pi * part_of<hal::DifferentialDrive>(kind).wheel_radius_m /
                        wire::kStepsPerTurn),
+      most_steps_s_(std::round(part_of<hal::DifferentialDrive>(kind).max_speed_m_s / metres_per_step_)),
       infrared_(part_of<hal::ProximityPart>(kind)),
       battery_(part_of<hal::BatteryPart>(kind)) {
   if (infrared_.response.empty()) infrared_.response = {{0.0, 1.0}, {infrared_.range_m, 0.0}};
@@ -32,7 +33,7 @@ Conversions::Conversions(const hal::RobotKind& kind)
 
 StepsPerS Conversions::to_steps_per_s(double speed_m_s) const noexcept {
   if (!std::isfinite(speed_m_s)) return {};
-  const double steps = std::clamp(speed_m_s / metres_per_step_, -double{wire::kMaxSteps_s}, double{wire::kMaxSteps_s});
+  const double steps = std::clamp(speed_m_s / metres_per_step_, -most_steps_s_, most_steps_s_);
   return {static_cast<std::int16_t>(std::lround(steps))};
 }
 
@@ -54,6 +55,14 @@ double ground_reflectance(std::uint16_t counts) noexcept {
 
 double sound_level(std::uint16_t volume) noexcept {
   return clamp_unit(volume / double{wire::kMicrophoneMaxRaw});
+}
+
+std::array<double, 3> turn_rad_s(const std::array<std::int16_t, 3>& raw) noexcept {
+  return {raw[1] * wire::kGyroRad_s, -raw[0] * wire::kGyroRad_s, raw[2] * wire::kGyroRad_s};
+}
+
+double time_of_flight_m(std::uint16_t mm, double range_m) noexcept {
+  return std::min(mm * 1e-3, range_m);
 }
 
 double Conversions::charge_at(double supply_V) const noexcept {

@@ -24,6 +24,10 @@ double light_level(std::uint16_t ambient) noexcept;
 double ground_reflectance(std::uint16_t counts) noexcept;
 /// 0 silence to 1 full scale.
 double sound_level(std::uint16_t volume) noexcept;
+/// Turn rates about x ahead, y left, z up. The e-puck2's chip looks to the right, ahead and up.
+std::array<double, 3> turn_rad_s(const std::array<std::int16_t, 3>& raw) noexcept;
+/// The reading of the time-of-flight sensor; at most `range_m`, which also stands for nothing seen.
+double time_of_flight_m(std::uint16_t mm, double range_m) noexcept;
 
 struct BatteryState {
   double supply_V = 0.0;
@@ -35,7 +39,7 @@ class Conversions {
  public:
   explicit Conversions(const hal::RobotKind& kind);
 
-  /// Nearest whole number of steps a second, within +-`wire::kMaxSteps_s`. Not finite: 0.
+  /// Nearest whole number of steps a second, within what the kind drives at most. Not finite: 0.
   StepsPerS to_steps_per_s(double speed_m_s) const noexcept;
   double to_m_s(StepsPerS speed) const noexcept { return to_m_s(static_cast<double>(speed.value)); }
   double to_m_s(double steps_per_s) const noexcept { return steps_per_s * metres_per_step_; }
@@ -56,6 +60,7 @@ class Conversions {
   double charge_at(double supply_V) const noexcept;
 
   double metres_per_step_;
+  double most_steps_s_;
   hal::ProximityPart infrared_;
   hal::BatteryPart battery_;
 };

@@ -24,12 +24,12 @@ EpuckDriver::EpuckDriver(DriverSettings settings, hal::Log log)
       log_(std::move(log)),
       robot_(settings_.robot),
       wheels_(robot_.part<hal::DifferentialDrive>()),
-      session_(settings_.timing),
+      session_(make_conversation(settings_.wire, settings_.timing)),
       ask_due_ns_(kNever),
       margin_ns_(kLeastMargin) {}
 
 void EpuckDriver::latch(hal::Tick tick, hal::TimeNs now) noexcept {
-  robot_.fill(session_.samples(), session_.identity(), tick, now);
+  robot_.fill(session_->samples(), session_->identity(), tick, now);
   judge_margin();
   foresee_latch(now);
 }
@@ -46,10 +46,10 @@ void EpuckDriver::foresee_latch(hal::TimeNs now) noexcept {
 
 void EpuckDriver::judge_margin() noexcept {
   if (asked_ns_ == 0) return;
-  const hal::TimeNs taken = session_.samples().taken_ns[static_cast<std::size_t>(Quantity::Encoders)];
+  const hal::TimeNs taken = session_->samples().taken_ns[static_cast<std::size_t>(Quantity::Encoders)];
   if (taken >= asked_ns_) {
     margin_ns_ = std::max(kLeastMargin, margin_ns_ - margin_ns_ / 32);
-  } else if (session_.state() == SessionState::Active) {
+  } else if (session_->state() == SessionState::Active) {
     ++statistics_.late_answers;
     margin_ns_ = std::min(2 * margin_ns_, kLargestMargin);
   }
@@ -69,13 +69,13 @@ hal::WheelSpeeds EpuckDriver::filtered() noexcept {
       break;
   }
   const bool wanted = wheels.left_m_s != 0.0 || wheels.right_m_s != 0.0;
-  if (session_.state() != SessionState::Active) {
+  if (session_->state() != SessionState::Active) {
     interrupted_ = interrupted_ || wanted || armed_epoch_ != 0;
     return {};
   }
-  if (session_.epoch() != armed_epoch_) {
+  if (session_->epoch() != armed_epoch_) {
     interrupted_ = interrupted_ || armed_epoch_ != 0;
-    armed_epoch_ = session_.epoch();
+    armed_epoch_ = session_->epoch();
   }
   statistics_.rearmed += interrupted_ ? 1 : 0;
   interrupted_ = false;
@@ -93,20 +93,20 @@ void EpuckDriver::commit(hal::TimeNs now) noexcept {
     actuation.right = robot_.conversions().to_steps_per_s(wheels.right_m_s);
   }
   moving_ = actuation.left.value != 0 || actuation.right.value != 0;
-  const hal::TimeNs lead = session_.expected_round_trip(robot_.demand()) + margin_ns_;
+  const hal::TimeNs lead = session_->expected_round_trip(robot_.demand()) + margin_ns_;
   ask_due_ns_ = std::min(ask_due_ns_, next_latch_ns_ - lead);
   if (ask_due_ns_ > now) {
-    session_.command(actuation, now);
+    session_->command(actuation, now);
     return;
   }
-  session_.request(actuation, robot_.demand(), now);
+  session_->request(actuation, robot_.demand(), now);
   asked_ns_ = now;
   ask_due_ns_ = kNever;
 }
 
 void EpuckDriver::ask_when_due(hal::TimeNs now) noexcept {
   if (now < ask_due_ns_) return;
-  session_.ask(robot_.demand(), now);
+  session_->ask(robot_.demand(), now);
   asked_ns_ = now;
   ask_due_ns_ = kNever;
 }
@@ -116,45 +116,47 @@ void EpuckDriver::notice_stall(hal::TimeNs now) noexcept {
   const hal::TimeNs stall = stalls_.turn(now);
   if (stall > 0) {
     ++statistics_.stalls;
-    session_.stalled(stall);
+    session_->stalled(stall);
   }
-  session_.be_patient(stalls_.patience_ns(now));
+  session_->be_patient(stalls_.patience_ns(now));
 }
 
 void EpuckDriver::send(ByteLink& link) noexcept {
-  const auto bytes = session_.output().bytes();
+  const auto bytes = session_->output().bytes();
   if (bytes.empty()) return;
-  statistics_.refused_bytes += bytes.size() - link.write(bytes, kWriteBudget);
-  session_.clear_output();
+  const std::size_t refused = bytes.size() - link.write(bytes, kWriteBudget);
+  statistics_.refused_bytes += refused;
+  if (refused > 0) session_->sent_in_part();
+  session_->clear_output();
 }
 
 void EpuckDriver::pump(ByteLink& link, hal::TimeNs now) noexcept {
   std::array<std::uint8_t, 256> buffer;
   notice_stall(now);
-  if (link.state() == LinkState::Open) session_.link_up(now);
+  if (link.state() == LinkState::Open) session_->link_up(now);
   send(link);  // what commit or stop queued goes first
   for (Received r = link.read(buffer); r.size > 0; r = link.read(buffer)) {
-    session_.on_bytes(std::span(buffer.data(), r.size), r.at_ns);
+    session_->on_bytes(std::span(buffer.data(), r.size), r.at_ns);
     send(link);
   }
-  if (link.state() != LinkState::Open) session_.link_down(now);
-  session_.poll(now);
+  if (link.state() != LinkState::Open) session_->link_down(now);
+  session_->poll(now);
   ask_when_due(now);
   if (moving_ && now - last_commit_ns_ > settings_.command_timeout_ns) {
     ++statistics_.watchdog_stops;
     moving_ = false;
     interrupted_ = true;
-    session_.stop(now);
+    session_->stop(now);
   }
   send(link);
 }
 
 void EpuckDriver::link_gone(hal::TimeNs now) noexcept {
-  session_.link_down(now);
+  session_->link_down(now);
 }
 
 hal::TimeNs EpuckDriver::next_deadline() const noexcept {
-  const hal::TimeNs deadline = std::min(session_.next_deadline(), ask_due_ns_);
+  const hal::TimeNs deadline = std::min(session_->next_deadline(), ask_due_ns_);
   return moving_ ? std::min(deadline, last_commit_ns_ + settings_.command_timeout_ns + 1) : deadline;
 }
 
@@ -162,7 +164,7 @@ void EpuckDriver::stop(hal::TimeNs now) noexcept {
   halted_ = true;
   moving_ = false;
   interrupted_ = true;
-  session_.stop(now);
+  session_->stop(now);
 }
 
 void EpuckDriver::resume() noexcept {
@@ -172,41 +174,54 @@ void EpuckDriver::resume() noexcept {
 void EpuckDriver::shut_down(hal::TimeNs now) noexcept {
   halted_ = true;
   moving_ = false;
-  session_.shut_down(now);
+  session_->shut_down(now);
 }
 
 Odometry EpuckDriver::odometry() const noexcept {
-  const Samples& s = session_.samples();
+  const Samples& s = session_->samples();
   const Conversions& conversions = robot_.conversions();
   return {conversions.steps_to_m(s.left_steps), conversions.steps_to_m(s.right_steps),
-          s.taken_ns[static_cast<std::size_t>(Quantity::Encoders)], session_.statistics().encoder_rebased};
+          s.taken_ns[static_cast<std::size_t>(Quantity::Encoders)], session_->statistics().encoder_rebased};
 }
 
 void EpuckDriver::tell_accelerometer(const std::string& who) {
-  const AccelerometerCheck& accelerometer = session_.samples().accelerometer;
+  const AccelerometerCheck& accelerometer = session_->samples().accelerometer;
   if (accelerometer.verdict() == logged_accelerometer_) return;
   logged_accelerometer_ = accelerometer.verdict();
   if (logged_accelerometer_ != AccelerometerCheck::Verdict::Refused) return;
   log_.warning(who + "its accelerometer reads " + std::to_string(accelerometer.at_rest_m_s2()) +
                " m/s2 at rest instead of 9.8: its readings are not believed; is it another firmware than '" +
-               std::string(session_.identity().version_text()) + "'?");
+               std::string(session_->identity().version_text()) + "'?");
+}
+
+/// What the robot's kind has, its controller takes, and the firmware does not tell.
+void EpuckDriver::tell_untold(const std::string& who) {
+  if (session_->state() != SessionState::Active) return;
+  std::string untold = robot_.untold(session_->layout());
+  if (untold == logged_untold_) return;
+  logged_untold_ = std::move(untold);
+  if (logged_untold_.empty()) return;
+  const bool epuck2 = session_->identity().is_epuck2();
+  log_.warning(who + std::string(firmware_name(session_->identity().firmware)) + " does not tell " + logged_untold_ +
+               " over this link: such readings stay absent" + (epuck2 ? "" : "; is it an e-puck2, as the file says?"));
 }
 
 void EpuckDriver::tell() {
   const std::string who = "e-puck '" + settings_.robot.id + "': ";
   tell_accelerometer(who);
+  tell_untold(who);
   if (statistics_.watchdog_stops != told_watchdog_stops_) {
     told_watchdog_stops_ = statistics_.watchdog_stops;
     log_.warning(who + "stopped, no commands came for " + std::to_string(settings_.command_timeout_ns / hal::kNsPerMs) +
                  " ms");
   }
-  const SessionState state = session_.state();
+  const SessionState state = session_->state();
   if (state == logged_) return;
   if (state == SessionState::Active) {
-    log_.info(who + "active, " + std::string(firmware_name(session_.identity().firmware)) + ", " +
-              std::string(session_.identity().version_text()));
+    log_.info(who + "active, " + std::string(firmware_name(session_->identity().firmware)) + ", " +
+              std::string(session_->identity().version_text()));
   } else if (state == SessionState::Suspect || state == SessionState::Lost) {
-    log_.warning(who + state_name(state) + ": " + session_.trouble());
+    log_.warning(who + state_name(state) + ": " + session_->trouble());
   }
   logged_ = state;
 }

@@ -7,6 +7,7 @@
 // latch is foreseen from the last ones, a round trip is foreseen from the last ones and the bytes' own time, and a
 // margin grows when answers came too late. When a tick is too short for that, both leave in one packet.
 #pragma once
+#include <memory>
 #include <string>
 
 #include "bridges/epuck/robot.hpp"
@@ -20,6 +21,7 @@ namespace tandem::bridges::epuck {
 struct DriverSettings {
   RobotSettings robot = {};
   SessionTiming timing = {};
+  WireForm wire = WireForm::Serial;
   /// The robot is stopped when no commit came for so long: the loop hangs, or the controller does.
   hal::TimeNs command_timeout_ns = 500 * hal::kNsPerMs;
 };
@@ -77,19 +79,22 @@ class EpuckDriver {
   /// The end: stops the robot whatever it is doing. Then pump until `idle`, for a little while.
   void shut_down(hal::TimeNs now) noexcept;
 
-  SessionState state() const noexcept { return session_.state(); }
-  const Session& session() const noexcept { return session_; }
+  SessionState state() const noexcept { return session_->state(); }
+  const Conversation& session() const noexcept { return *session_; }
+  /// The link is of no more use, although it is open: close it, say `link_gone`, open it anew.
+  bool wants_new_link() const noexcept { return session_->wants_new_link(); }
   const DriverStatistics& statistics() const noexcept { return statistics_; }
   Odometry odometry() const noexcept;
   bool stopped() const noexcept { return halted_; }
   /// The robot itself has confirmed that it stands, and nothing that moves it was sent since.
-  bool at_rest() const noexcept { return session_.at_rest(); }
+  bool at_rest() const noexcept { return session_->at_rest(); }
   /// Nothing is awaited from the robot.
-  bool idle() const noexcept { return session_.idle(); }
+  bool idle() const noexcept { return session_->idle(); }
 
  private:
   void send(ByteLink& link) noexcept;
   void tell_accelerometer(const std::string& who);
+  void tell_untold(const std::string& who);
   hal::WheelSpeeds filtered() noexcept;
   void foresee_latch(hal::TimeNs now) noexcept;
   void judge_margin() noexcept;
@@ -100,7 +105,7 @@ class EpuckDriver {
   hal::Log log_;
   EpuckRobot robot_;
   const hal::DifferentialDrive& wheels_;
-  Session session_;
+  std::unique_ptr<Conversation> session_;
   DriverStatistics statistics_;
   SessionState logged_ = SessionState::Absent;
   bool halted_ = false;
@@ -114,6 +119,7 @@ class EpuckDriver {
   hal::TimeNs margin_ns_;
   StallMeter stalls_;
   std::uint64_t told_watchdog_stops_ = 0;
+  std::string logged_untold_;
   AccelerometerCheck::Verdict logged_accelerometer_ = AccelerometerCheck::Verdict::Unchecked;
 };
 

@@ -8,14 +8,16 @@
 #include "hal/device/ring_sensors.hpp"
 #include "hal/device/wheels.hpp"
 #include "hal/robot/epuck.hpp"
+#include "hal/robot/epuck2.hpp"
 
 namespace tandem::bridges::epuck {
 namespace {
 
 /// Everything that an e-puck senses.
 void take_all(EpuckRobot& robot) {
-  for (const hal::PortType* type : port_types_of<hal::Proximity, hal::Light, hal::Ground, hal::Accelerometer,
-                                                 hal::Microphones, hal::Battery, hal::WheelEncoders>())
+  for (const hal::PortType* type :
+       port_types_of<hal::Proximity, hal::Light, hal::Ground, hal::Accelerometer, hal::Microphones, hal::Battery,
+                     hal::WheelEncoders, hal::Gyroscope, hal::TimeOfFlight, hal::Cliff, hal::Selector>())
     (void)robot.require(*type);
 }
 
@@ -50,18 +52,18 @@ void print_status(const InspectRequest& request, const BridgeStatus& s) {
 }
 
 bool reads(const std::string& link) {
-  const auto address = parse_link(link);
-  return address.ok() && epuck_link_opener(address.value()).ok();
+  // Of those in a network only what nobody else speaks; other robots are reached by tcp: as well.
+  return !link.starts_with("tcp:") && epuck_link(link).ok();
 }
 
 hal::Status run(const InspectRequest& request) {
-  const auto address = parse_link(request.link);
-  if (!address.ok()) return address.error();
-  auto opener = epuck_link_opener(address.value());
-  if (!opener.ok()) return opener.error();
+  auto link = epuck_link(request.link);
+  if (!link.ok()) return link.error();
   BridgeSettings settings;
   settings.driver.timing = timing_for(request.link);
-  EpuckBridge bridge(settings, std::move(opener).value(), request.log);
+  settings.driver.wire = link.value().wire;
+  settings.driver.robot.kind = &hal::epuck2::kind();  // which has all that any has; what is not told stays absent
+  EpuckBridge bridge(settings, std::move(link).value().open, request.log);
   take_all(bridge.robot());
   bridge.start();
   if (hal::Status ready = wait_for(bridge, request.stop); !ready.ok()) return ready;
@@ -78,7 +80,7 @@ hal::Status run(const InspectRequest& request) {
 }  // namespace
 
 const InspectorType& inspector_type() noexcept {
-  static const InspectorType type{hal::epuck::kName, "serial:DEVICE@115200", &reads, &run};
+  static const InspectorType type{hal::epuck::kName, kLinks, &reads, &run};
   return type;
 }
 

@@ -6,6 +6,7 @@
 #include "bridges/epuck/stopper.hpp"
 #include "hal/element_options.hpp"
 #include "hal/robot/epuck.hpp"
+#include "hal/robot/epuck2.hpp"
 
 namespace tandem::bridges::epuck {
 namespace {
@@ -18,36 +19,36 @@ struct Options {
   }
 };
 
-hal::Result<LinkOpener> opener_for(const BridgeRequest& request) {
-  const auto address = parse_link(request.link);
-  if (!address.ok()) return address.error();
-  return epuck_link_opener(address.value(), {request.permit});
-}
+struct Epuck2Options : Options {};  // an element's options have a type of their own
 
 hal::Status check(const BridgeRequest& request) {
-  const auto opener = opener_for(request);
-  return opener.ok() ? hal::Status{} : hal::Status{opener.error()};
+  const auto link = epuck_link(request.link);
+  return link.ok() ? hal::Status{} : hal::Status{link.error()};
 }
 
 MadeBridge make(const BridgeRequest& request, const hal::Log& log) {
-  auto opener = opener_for(request);
-  if (!opener.ok()) return opener.error();
+  auto link = epuck_link(request.link, {request.permit});
+  if (!link.ok()) return link.error();
   BridgeSettings settings;
   apply(request, settings);
   settings.link = request.link;
   settings.firmware = options_of<Options>(request).firmware;
   settings.driver.timing = timing_for(request.link);
+  settings.driver.wire = link.value().wire;
   return std::unique_ptr<RobotBridge>(
-      std::make_unique<EpuckBridge>(std::move(settings), std::move(opener).value(), log));
+      std::make_unique<EpuckBridge>(std::move(settings), std::move(link).value().open, log));
 }
 
-const BridgeType kType{.name = hal::epuck::kName, .summary = "serial:DEVICE@115200", .make = &make, .check = &check};
+const BridgeType kType{.name = hal::epuck::kName, .summary = kLinks, .make = &make, .check = &check};
+const BridgeType kType2{.name = hal::epuck2::kName, .summary = kLinks, .make = &make, .check = &check};
 
 }  // namespace
 
 void register_bridge(hal::Registrar& registrar) {
   registrar.add(kType);
   registrar.add(hal::element_options<Options>("bridge of " + std::string(kType.name)));
+  registrar.add(kType2);
+  registrar.add(hal::element_options<Epuck2Options>("bridge of " + std::string(kType2.name)));
   registrar.add(stopper_type());
   registrar.add(inspector_type());
 }

@@ -1,7 +1,6 @@
 #include "bridges/epuck/session.hpp"
 
 #include <algorithm>
-#include <cstdlib>
 #include <limits>
 #include <utility>
 
@@ -21,13 +20,6 @@ constexpr std::size_t kBehindSpeeds = 8;
 constexpr std::size_t kBehindLamps = 2;
 constexpr std::size_t kVersionBytes = 100;  // of both lines
 constexpr TimeNs kMostAllowed = 500 * hal::kNsPerMs;
-
-// No e-puck turns its wheels faster [e-puck2, MOTOR_SPEED_LIMIT].
-constexpr double kFastestSteps_s = 1100.0;
-// Readings may be this much older or younger than their stamp says.
-constexpr double kStampDoubt_s = 0.25;
-// Beyond this the 16-bit counters may have gone round once.
-constexpr TimeNs kCountersAmbiguous = 25 * hal::kNsPerSecond;
 
 void append_zeros(Packet& packet, std::size_t n) noexcept {
   for (std::size_t i = 0; i < n; ++i) packet.append({0});
@@ -54,24 +46,6 @@ bool tells(std::span<const std::uint8_t> speeds, const std::array<StepsPerS, 2>&
 }
 
 }  // namespace
-
-const char* state_name(SessionState state) noexcept {
-  switch (state) {
-    case SessionState::Absent:
-      return "absent";
-    case SessionState::Handshake:
-      return "handshake";
-    case SessionState::Ready:
-      return "ready";
-    case SessionState::Active:
-      return "active";
-    case SessionState::Suspect:
-      return "suspect";
-    case SessionState::Lost:
-      return "lost";
-  }
-  return "";
-}
 
 Session::Session(const SessionTiming& timing) noexcept
     : timing_(timing), stop_(StopTiming{.quiet_ns = timing.quiet_ns, .answer_ns = timing.answer_ns}) {}
@@ -229,6 +203,9 @@ void Session::finish_probe(TimeNs now) noexcept {
   }
   layout_.ground_bytes = static_cast<std::uint8_t>(size);
   layout_.gyro_bytes = identity_.firmware == Firmware::GCtronic || identity_.is_epuck2() ? 6 : 0;
+  layout_.microphone_bytes = identity_.is_epuck2() ? 8 : 6;
+  layout_.time_of_flight_bytes = identity_.is_epuck2() ? 2 : 0;
+  layout_.selector_bytes = identity_.is_epuck2() ? kAllSensorsSize : 0;
   layout_known_ = true;
   finish_handshake();
 }
@@ -393,7 +370,7 @@ void Session::take_late_answer(TimeNs now) noexcept {
 }
 
 /// An answer that came in time was measured when the robot had read the question: before the answer travels.
-Session::Measured Session::measured(const Question& question, TimeNs at) noexcept {
+Conversation::Measured Session::measured(const Question& question, TimeNs at) noexcept {
   const TimeNs round_trip = at - question.asked_ns;
   const TimeNs travel = transfer_ns(question.question_size + question.answer_size);
   const TimeNs latency = std::max<TimeNs>(0, round_trip - travel) / 2;
@@ -458,45 +435,6 @@ bool Session::speeds_as_told(const std::array<std::int16_t, 2>& commanded, TimeN
   }
   lose_step("it has other wheel speeds than it was told", at);
   return false;
-}
-
-void Session::take_samples(QuantitySet asked, const RawSensors& raw, const Measured& when) noexcept {
-  const bool stands =
-      asked.has(Quantity::Encoders) && counters_known_ && at_rest_ && raw.encoders == samples_.raw.encoders;
-  if (stands && asked.has(Quantity::Acceleration)) samples_.accelerometer.at_rest(raw.acceleration);
-  if (asked.has(Quantity::Encoders)) take_encoders(raw.encoders, when);
-  samples_.raw = raw;
-  samples_.known.add(asked);
-  for (std::size_t i = 0; i < kQuantityCount; ++i) {
-    if (asked.has(static_cast<Quantity>(i))) samples_.taken_ns[i] = when.taken_ns;
-  }
-}
-
-// --- wheel counters ---
-
-bool Session::encoders_plausible(const std::array<std::int16_t, 2>& counters, TimeNs latest) const noexcept {
-  const TimeNs since = latest - samples_.taken_ns[static_cast<std::size_t>(Quantity::Encoders)];
-  if (since > kCountersAmbiguous) return false;
-  const double most = kFastestSteps_s * (hal::to_seconds(since) + kStampDoubt_s);
-  return std::abs(encoder_difference(counters[0], samples_.raw.encoders[0])) <= most &&
-         std::abs(encoder_difference(counters[1], samples_.raw.encoders[1])) <= most;
-}
-
-void Session::take_encoders(const std::array<std::int16_t, 2>& counters, const Measured& when) noexcept {
-  // Over the longest time that it may have been: where stamps are in doubt a wheel is not faster than it was.
-  const double since_s =
-      hal::to_seconds(when.latest_ns - samples_.taken_ns[static_cast<std::size_t>(Quantity::Encoders)]);
-  const bool continues = counters_known_ && !restarted_ && encoders_plausible(counters, when.latest_ns);
-  if (counters_known_ && !continues) ++statistics_.encoder_rebased;
-  const std::int32_t left = continues ? encoder_difference(counters[0], samples_.raw.encoders[0]) : 0;
-  const std::int32_t right = continues ? encoder_difference(counters[1], samples_.raw.encoders[1]) : 0;
-  samples_.left_steps += left;
-  samples_.right_steps += right;
-  samples_.left_steps_per_s = since_s > 0.0 ? left / since_s : 0.0;
-  samples_.right_steps_per_s = since_s > 0.0 ? right / since_s : 0.0;
-  counters_known_ = true;
-  counters_doubtful_ = false;
-  restarted_ = false;
 }
 
 // --- time-outs ---
@@ -644,6 +582,8 @@ void Session::append_question(TimeNs now) noexcept {
   if (layout_.battery_bytes == 0) question_.asked.remove(Quantity::Battery);
   if (layout_.ground_bytes == 0) question_.asked.remove(Quantity::Ground);
   if (layout_.gyro_bytes == 0) question_.asked.remove(Quantity::Gyro);
+  if (layout_.time_of_flight_bytes == 0) question_.asked.remove(Quantity::TimeOfFlight);
+  if (layout_.selector_bytes == 0) question_.asked.remove(Quantity::Selector);
   question_.question_size = output_.size();
   question_.told = {sent_.left, sent_.right};
   question_.asked_ns = now;

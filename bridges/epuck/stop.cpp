@@ -46,11 +46,18 @@ std::span<const std::uint8_t> rest_question() noexcept {
   return kRestQuestion;
 }
 
+bool in_network(std::string_view link_name) noexcept {
+  return link_name.starts_with("tcp:") || link_name.starts_with("epuck-tcp:");
+}
+
 StopTiming stop_timing_for(std::string_view link_name) noexcept {
   StopTiming timing;
   if (link_name.find("rfcomm") != std::string_view::npos) {
     timing.quiet_ns = 60 * hal::kNsPerMs;
     timing.answer_ns = 500 * hal::kNsPerMs;
+  } else if (in_network(link_name)) {
+    timing.quiet_ns = 40 * hal::kNsPerMs;
+    timing.answer_ns = 250 * hal::kNsPerMs;
   }
   return timing;
 }

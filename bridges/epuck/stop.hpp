@@ -41,7 +41,9 @@ struct StopTiming {
   hal::TimeNs apart_ns = 40 * hal::kNsPerMs;    ///< between the two readings
 };
 
-/// For a link of this name: Bluetooth (rfcomm) devices answer late.
+/// Whether the robot is reached through a network.
+bool in_network(std::string_view link_name) noexcept;
+/// For a link of this name: Bluetooth (rfcomm) devices and those in a network answer late.
 StopTiming stop_timing_for(std::string_view link_name) noexcept;
 
 /// The stop as a conversation, without I/O and without a clock. Begun once, it says stop, asks, and begins a new round

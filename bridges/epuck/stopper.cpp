@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <array>
 
-#include "bridges/link/link_text.hpp"
+#include "bridges/epuck/link.hpp"
+#include "bridges/epuck/wifi_session.hpp"
 #include "hal/robot/epuck.hpp"
 
 namespace tandem::bridges::epuck {
@@ -15,17 +16,58 @@ using hal::TimeNs;
 constexpr TimeNs kStep = 40 * hal::kNsPerMs;
 constexpr TimeNs kWriteWithin = 20 * hal::kNsPerMs;  // four times as long as the longest burst takes
 
+class SerialStop final : public StopTalk {
+ public:
+  explicit SerialStop(const StopTiming& timing) : procedure_(timing) {}
+  void begin(TimeNs now) override { procedure_.begin(now); }
+  void on_bytes(std::span<const std::uint8_t> bytes, TimeNs at) override {
+    for (const std::uint8_t byte : bytes) procedure_.on_byte(byte, at);
+  }
+  void poll(TimeNs now, Packet& out) override { procedure_.poll(now, out); }
+  TimeNs next_deadline() const override { return procedure_.next_deadline(); }
+  bool confirmed() const override { return procedure_.confirmed(); }
+  bool answered() const override { return procedure_.answered(); }
+
+ private:
+  StopProcedure procedure_;
+};
+
+class WifiStop final : public StopTalk {
+ public:
+  explicit WifiStop(const StopTiming& timing) : timing_{.answer_ns = timing.answer_ns} {
+    session_ = WifiSession(timing_);
+  }
+  void begin(TimeNs now) override {
+    session_ = WifiSession(timing_);
+    session_.link_up(now);
+    session_.shut_down(now);
+  }
+  void on_bytes(std::span<const std::uint8_t> bytes, TimeNs at) override { session_.on_bytes(bytes, at); }
+  void poll(TimeNs now, Packet& out) override {
+    session_.poll(now);
+    out.append(session_.output().bytes());
+    session_.clear_output();
+  }
+  TimeNs next_deadline() const override { return session_.next_deadline(); }
+  bool confirmed() const override { return session_.at_rest(); }
+  bool answered() const override { return session_.statistics().answers > 0; }
+  bool wants_new_link() const override { return session_.wants_new_link(); }
+  bool needs_whole_packets() const override { return true; }
+
+ private:
+  SessionTiming timing_;
+  WifiSession session_;
+};
+
 std::unique_ptr<guardian::Stopper> make(const StopMessages& messages, guardian::StopCause) {
-  const auto opener = [link = messages.link]() -> hal::Result<std::unique_ptr<ByteLink>> {
-    const auto address = parse_link(link);
-    if (!address.ok()) return address.error();
-    LinkTerms terms;
-    terms.beside = true;
-    const auto open = byte_link_opener(address.value(), terms);
-    if (!open.ok()) return open.error();
-    return open.value()();
-  };
-  return std::make_unique<EpuckStopper>(opener, stop_timing_for(messages.link));
+  LinkTerms terms;
+  terms.beside = true;
+  const auto link = epuck_link(messages.link, terms);
+  if (!link.ok()) {
+    const auto fails = [error = link.error()]() -> hal::Result<std::unique_ptr<ByteLink>> { return error; };
+    return std::make_unique<EpuckStopper>(fails, StopTiming{});
+  }
+  return std::make_unique<EpuckStopper>(link.value().open, stop_timing_for(messages.link), link.value().wire);
 }
 
 }  // namespace
@@ -35,6 +77,13 @@ const guardian::StopperType& stopper_type() noexcept {
   return type;
 }
 
+EpuckStopper::EpuckStopper(LinkOpener opener, const StopTiming& timing, WireForm wire) : opener_(std::move(opener)) {
+  if (wire == WireForm::Wifi)
+    talk_ = std::make_unique<WifiStop>(timing);
+  else
+    talk_ = std::make_unique<SerialStop>(timing);
+}
+
 bool EpuckStopper::open(TimeNs now) {
   auto opened = opener_();
   if (!opened.ok()) {
@@ -42,37 +91,41 @@ bool EpuckStopper::open(TimeNs now) {
     return false;
   }
   link_ = std::move(opened).value();
-  procedure_.begin(now);
+  talk_->begin(std::max(now, monotonic_ns()));  // opening may have taken long
   return true;
 }
 
-void EpuckStopper::hang_up() {
+void EpuckStopper::hang_up(const std::string& why) {
   link_.reset();
-  trouble_ = "the link hung up";
+  trouble_ = why;
 }
 
 StopState EpuckStopper::step(TimeNs now) {
   if (!link_) {
     if (!open(now)) return StopState::Unreachable;
-    now = monotonic_ns();  // opening may have taken long
+    now = monotonic_ns();
   }
   std::array<std::uint8_t, 256> buffer{};
-  for (const TimeNs end = now + kStep; now < end && !procedure_.confirmed(); now = monotonic_ns()) {
+  for (const TimeNs end = now + kStep; now < end && !talk_->confirmed(); now = monotonic_ns()) {
     Packet out;
-    procedure_.poll(now, out);
-    if (!out.empty()) link_->write(out.bytes(), kWriteWithin);
-    const TimeNs due = std::min(end, procedure_.next_deadline());
+    talk_->poll(now, out);
+    if (!out.empty() && link_->write(out.bytes(), kWriteWithin) < out.size() && link_->state() == LinkState::Open &&
+        talk_->needs_whole_packets()) {
+      hang_up("the link does not take what is sent");
+      return StopState::Unreachable;
+    }
+    const TimeNs due = std::min(end, talk_->next_deadline());
     link_->wait(std::max<TimeNs>(0, due - monotonic_ns()));
     const Received received = link_->read(buffer);
-    for (std::size_t i = 0; i < received.size; ++i) procedure_.on_byte(buffer[i], received.at_ns);
-    if (link_->state() == LinkState::HungUp) {
-      hang_up();
+    talk_->on_bytes(std::span(buffer).first(received.size), received.at_ns);
+    if (link_->state() == LinkState::HungUp || talk_->wants_new_link()) {
+      hang_up(link_->state() == LinkState::HungUp ? "the link hung up" : "nothing comes");
       return StopState::Unreachable;
     }
   }
-  if (procedure_.confirmed()) return StopState::Confirmed;
-  trouble_ = procedure_.answered() ? "it still moves, or its answers are damaged" : "it does not answer";
-  return procedure_.answered() ? StopState::Stopping : StopState::Unreachable;
+  if (talk_->confirmed()) return StopState::Confirmed;
+  trouble_ = talk_->answered() ? "it still moves, or its answers are damaged" : "it does not answer";
+  return talk_->answered() ? StopState::Stopping : StopState::Unreachable;
 }
 
 }  // namespace tandem::bridges::epuck

@@ -1,25 +1,44 @@
-// Stops an e-puck whose hub is gone: opens its serial line and repeats the stop until the robot confirms it.
+// Stops an e-puck whose hub is gone: opens its link and repeats the stop until the robot confirms it.
 #pragma once
+#include "bridges/epuck/conversation.hpp"
 #include "bridges/epuck/stop.hpp"
 #include "bridges/guardian/stopper.hpp"
 #include "bridges/link/link.hpp"
 
 namespace tandem::bridges::epuck {
 
-/// The stop procedure over a link that is opened again whenever it hangs up.
+/// The stop of one wire as a conversation without I/O.
+class StopTalk {
+ public:
+  virtual ~StopTalk() = default;
+  /// A link was opened.
+  virtual void begin(hal::TimeNs now) = 0;
+  virtual void on_bytes(std::span<const std::uint8_t> bytes, hal::TimeNs at) = 0;
+  /// Appends what is due to `out`.
+  virtual void poll(hal::TimeNs now, Packet& out) = 0;
+  virtual hal::TimeNs next_deadline() const = 0;
+  virtual bool confirmed() const = 0;
+  virtual bool answered() const = 0;
+  /// The link is of no more use, although it is open.
+  virtual bool wants_new_link() const { return false; }
+  /// A packet that was sent in part only spoils what follows on the same link.
+  virtual bool needs_whole_packets() const { return false; }
+};
+
+/// The stop over a link that is opened again whenever it hangs up.
 class EpuckStopper final : public guardian::Stopper {
  public:
-  EpuckStopper(LinkOpener opener, const StopTiming& timing) : opener_(std::move(opener)), procedure_(timing) {}
+  EpuckStopper(LinkOpener opener, const StopTiming& timing, WireForm wire = WireForm::Serial);
 
   guardian::StopState step(hal::TimeNs now) override;
   std::string trouble() const override { return trouble_; }
 
  private:
   bool open(hal::TimeNs now);
-  void hang_up();
+  void hang_up(const std::string& why);
 
   LinkOpener opener_;
-  StopProcedure procedure_;
+  std::unique_ptr<StopTalk> talk_;
   std::unique_ptr<ByteLink> link_;
   std::string trouble_;
 };

@@ -9,7 +9,9 @@
 #include <unistd.h>
 
 #include "bridges/emulation/serial_port.hpp"
+#include "bridges/emulation/tcp_port.hpp"
 #include "bridges/epuck_emulator/faults.hpp"
+#include "bridges/epuck_emulator/radio.hpp"
 
 namespace tandem::bridges::epuck_emulator {
 namespace {
@@ -23,6 +25,21 @@ constexpr TimeNs kNoiseNs = 5 * hal::kNsPerMs;  // a garbled line is not quiet e
 constexpr std::size_t kQueueBytes = 4096;       // the host's driver holds as much
 constexpr unsigned long kRobotBaud = 115200;
 constexpr const char* kName = "an emulated e-puck";
+constexpr std::string_view kTcp = "tcp-listen:", kRadio = "epuck-tcp-listen:";
+
+hal::Result<std::unique_ptr<HostLine>> open_line(const std::string& link) {
+  const auto tcp = [&link](std::string_view scheme, std::string_view host) -> hal::Result<std::unique_ptr<HostLine>> {
+    auto port = TcpPort::open(scheme.substr(0, scheme.size() - 1), host, link.substr(scheme.size()), kRobotBaud);
+    if (!port.ok()) return port.error();
+    return std::unique_ptr<HostLine>(std::move(port).value());
+  };
+  if (link.starts_with(kRadio)) return tcp(kRadio, "epuck-tcp");
+  if (link.starts_with(kTcp)) return tcp(kTcp, "tcp");
+  auto port = SerialPort::open(link, kName, kRobotBaud);
+  if (!port.ok())
+    return hal::Error{port.error().message + "; or " + std::string(kTcp) + "PORT, " + std::string(kRadio) + "PORT"};
+  return std::unique_ptr<HostLine>(std::move(port).value());
+}
 
 TimeNs monotonic_ns() {
   timespec t{};
@@ -65,13 +82,17 @@ std::optional<TimeNs> batch_at(const Wire& wire) {
 
 class Server {
  public:
-  Server(const Options& options, std::unique_ptr<SerialPort> port, std::unique_ptr<EventLog> log_file, FaultPlan faults,
+  Server(const Options& options, std::unique_ptr<HostLine> port, std::unique_ptr<EventLog> log_file, FaultPlan faults,
          EmulatedBody& body, Firmware::Options robot)
       : options_(options),
         port_(std::move(port)),
         log_file_(std::move(log_file)),
         faults_(std::move(faults)),
-        firmware_(robot, body, [this](TimeNs at, std::string_view name, const EventFields& f) { tell(at, name, f); }) {}
+        firmware_(robot, body, [this](TimeNs at, std::string_view name, const EventFields& f) { tell(at, name, f); }),
+        link_(port_->link()),
+        path_(port_->path()) {
+    if (options_.link.starts_with(kRadio)) radio_.emplace(firmware_);
+  }
 
   hal::Status serve(const std::atomic<bool>& stop);
 
@@ -80,6 +101,7 @@ class Server {
   hal::Status turn(TimeNs now);
   hal::Status apply_faults(TimeNs now);
   hal::Status take_in(TimeNs now);
+  void greet_host(TimeNs now);
   void run_robot(TimeNs now);
   void give_out(TimeNs now);
   void make_noise(TimeNs now);
@@ -88,10 +110,13 @@ class Server {
   hal::Status wait_until(TimeNs at) const;
 
   const Options& options_;
-  std::unique_ptr<SerialPort> port_;  // none while hung up
+  std::unique_ptr<HostLine> port_;  // none while hung up
   std::unique_ptr<EventLog> log_file_;
   FaultPlan faults_;
   Firmware firmware_;
+  std::string link_, path_;
+  std::optional<Radio> radio_;
+  std::uint64_t hosts_ = 0;  // of the radio
   AlarmClock alarm_;
   Wire to_robot_;
   Wire to_host_;
@@ -120,8 +145,8 @@ hal::Status Server::serve(const std::atomic<bool>& stop) {
         {"device", port_->device()},
         {"seed", options_.seed}});
   firmware_.power_on(start);
-  options_.log.info("e-puck (" + options_.firmware + ") on " + port_->path());
-  if (options_.ready) options_.ready(port_->path());
+  options_.log.info("e-puck (" + options_.firmware + ") on " + path_);
+  if (options_.ready) options_.ready(path_);
   while (!stop.load(std::memory_order_relaxed)) {
     const TimeNs now = monotonic_ns();
     hal::Status status = turn(now);
@@ -154,14 +179,14 @@ hal::Status Server::apply_faults(TimeNs now) {
     const Fault& fault = *change->fault;
     tell(change->at, "fault", {{"fault", fault.text}, {"phase", change->begins ? "begin" : "end"}});
     if (fault.kind == FaultKind::Reset) firmware_.reset(change->at, "fault");
-    if (fault.kind == FaultKind::Truncate) firmware_.cut_next_answer();
+    if (fault.kind == FaultKind::Truncate) radio_ ? radio_->cut_next_answer() : firmware_.cut_next_answer();
     if (fault.kind == FaultKind::Garbage && change->begins) next_noise_ = change->at;
     if (fault.kind != FaultKind::Hangup) continue;
     to_robot_.clear();
     to_host_.clear();
     port_.reset();
     if (change->begins) continue;
-    auto again = SerialPort::open(options_.link, kName, kRobotBaud);
+    auto again = open_line(link_);
     if (!again.ok()) return again.error();
     port_ = std::move(again).value();
   }
@@ -174,13 +199,24 @@ hal::Status Server::take_in(TimeNs now) {
   std::array<std::uint8_t, kQueueBytes> buffer{};
   const auto count = port_->read(std::span(buffer).first(kQueueBytes - to_robot_.size()));
   if (!count.ok()) return count.error();
+  greet_host(now);
   if (count.value() == 0) return {};
   const bool clear = same_baud(now);
   for (std::size_t i = 0; i < count.value(); ++i) {
-    line_free_at_ = std::max(line_free_at_, now) + kByteNs;
+    line_free_at_ = std::max(line_free_at_, now) + (radio_ ? 0 : kByteNs);
     to_robot_.push_back({clear ? buffer[i] : faults_.garble(buffer[i]), line_free_at_});
   }
   return {};
+}
+
+void Server::greet_host(TimeNs now) {
+  const auto* const tcp = dynamic_cast<const TcpPort*>(port_.get());
+  if (tcp == nullptr || tcp->hosts() == hosts_) return;
+  hosts_ = tcp->hosts();
+  to_robot_.clear();
+  to_host_.clear();
+  if (radio_) radio_->new_host();
+  tell(now, "host", {{"connected", true}, {"hosts", hosts_}});
 }
 
 void Server::run_robot(TimeNs now) {
@@ -189,12 +225,12 @@ void Server::run_robot(TimeNs now) {
     to_robot_.pop_front();
     const auto byte = faults_.to_robot(next.byte, next.at);
     if (!byte) continue;
-    firmware_.receive(*byte, next.at);
-    if (faults_.doubles(next.at)) firmware_.receive(*byte, next.at);
+    for (int times = faults_.doubles(next.at) ? 2 : 1; times > 0; --times)
+      radio_ ? radio_->receive(*byte, next.at) : firmware_.receive(*byte, next.at);
   }
-  firmware_.run_until(now);
+  radio_ ? radio_->run_until(now) : firmware_.run_until(now);
   sent_.clear();
-  firmware_.take_sent(now, sent_);
+  radio_ ? radio_->take_sent(now, sent_) : firmware_.take_sent(now, sent_);
   for (const SentByte& s : sent_) {
     const auto byte = faults_.to_host(s.byte, s.at);
     if (!byte || !port_) continue;
@@ -241,7 +277,7 @@ TimeNs Server::next_wake(TimeNs now) const {
   consider(batch_at(to_robot_));
   consider(batch_at(to_host_));
   consider(faults_.next_change_at());
-  consider(firmware_.next_event(kBatchNs));
+  consider(radio_ ? radio_->next_event(kBatchNs) : firmware_.next_event(kBatchNs));
   if (faults_.active(FaultKind::Garbage, now)) consider(next_noise_);
   return wake;
 }
@@ -251,7 +287,9 @@ hal::Status Server::wait_until(TimeNs at) const {
   std::array<pollfd, 2> waits{{{alarm_.descriptor(), POLLIN, 0}, {port_ ? port_->descriptor() : -1, POLLIN, 0}}};
   if (to_robot_.size() >= kQueueBytes) waits[1].fd = -1;
   const int woken = ::poll(waits.data(), waits.size(), -1);  // a signal wakes it too
-  const bool gone = woken > 0 && (waits[1].revents & (POLLHUP | POLLERR | POLLNVAL)) != 0;
+  // A host that hung up shows in reading; another one may come.
+  const bool network = dynamic_cast<const TcpPort*>(port_.get()) != nullptr;
+  const bool gone = !network && woken > 0 && (waits[1].revents & (POLLHUP | POLLERR | POLLNVAL)) != 0;
   if (gone) return hal::Error{"the serial line '" + port_->path() + "' has gone; was its cable pulled?"};
   return {};
 }
@@ -273,7 +311,10 @@ hal::Status run(const Options& options, const std::atomic<bool>& stop) {
     if (!opened.ok()) return opened.error();
     log_file = std::move(opened).value();
   }
-  auto port = SerialPort::open(options.link, kName, kRobotBaud);
+  if (options.link.starts_with(kRadio) && variant.value() != Variant::Epuck2)
+    return hal::Error{"only an e-puck2 has a radio of its own: write --firmware epuck2, or a link " +
+                      std::string(kTcp) + "PORT"};
+  auto port = open_line(options.link);
   if (!port.ok()) return port.error();
 
   KinematicBody own_body({}, options.arena);

@@ -1,4 +1,4 @@
-// An e-puck's stock firmware behind a serial line, in real time.
+// An e-puck's stock firmware in real time: behind a serial line, or an e-puck2's behind its radio.
 #pragma once
 #include <atomic>
 #include <functional>
@@ -14,7 +14,8 @@
 namespace tandem::bridges::epuck_emulator {
 
 struct Options {
-  std::string link = "pty:ep0";       ///< pty:NAME or serial:DEVICE@115200
+  std::string link = "pty:ep0";       ///< pty:NAME, serial:DEVICE@115200; tcp-listen:PORT, a serial server's;
+                                      ///< epuck-tcp-listen:PORT, an e-puck2's radio
   std::string firmware = "gctronic";  ///< btcom, gctronic, webots or epuck2
   std::string log_file{};             ///< one JSON object a line; empty: none
   std::vector<std::string> faults{};  ///< as `parse_fault` reads them

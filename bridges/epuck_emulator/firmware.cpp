@@ -280,6 +280,13 @@ std::array<int, 3> Firmware::acceleration(const BodySenses& senses, int zero) co
   return raw;
 }
 
+// The e-puck2's chip is told as it is mounted: its axes point right, forward, up. The older robots' is not there.
+std::array<int, 3> Firmware::gyro(const BodySenses& senses) const {
+  if (options_.variant != Variant::Epuck2) return {};
+  const std::array<double, 3>& turn = senses.turn_rad_s;
+  return {gyro_counts(-turn[1]), gyro_counts(turn[0]), gyro_counts(turn[2])};
+}
+
 // The board counts from left to right; the body as the kind does.
 std::array<double, 3> Firmware::ground(const BodySenses& senses) const {
   if (!options_.ground_board) return {};

@@ -119,6 +119,7 @@ class Firmware {
   std::array<int, 3> acceleration(const BodySenses& senses, int zero) const;
   std::array<double, 3> ground(const BodySenses& senses) const;
   std::array<int, 8> proximity(const BodySenses& senses, bool calibrated) const;
+  std::array<int, 3> gyro(const BodySenses& senses) const;
   int battery_raw(const BodySenses& senses) const;
   std::size_t image_bytes() const;
   void event(hal::TimeNs at, std::string_view name, const EventFields& fields) const;

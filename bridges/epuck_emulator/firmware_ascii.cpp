@@ -221,12 +221,7 @@ bool Firmware::obey_optional(char letter, std::string_view arguments, hal::TimeN
     return true;
   }
   if (letter == 'g' && facts_.small_b_g) {
-    std::array<int, 3> gyro{};
-    if (options_.variant == Variant::Epuck2) {
-      const BodySenses senses = body_.sense(at);
-      std::transform(senses.turn_rad_s.begin(), senses.turn_rad_s.end(), gyro.begin(), gyro_counts);
-    }
-    send_text(answer_of('g', gyro), at);
+    send_text(answer_of('g', gyro(body_.sense(at))), at);
     return true;
   }
   if (letter == 'G' && facts_.small_b_g) {

@@ -131,7 +131,7 @@ void Firmware::obey_binary_letter(char letter, hal::TimeNs at) {
       put16(m.speed_right);
       break;
     case 'g':
-      for (const double turn : senses.turn_rad_s) put16(options_.variant == Variant::Epuck2 ? gyro_counts(turn) : 0);
+      for (const int value : gyro(senses)) put16(value);
       break;
     case 'I':
       put_image();
@@ -202,11 +202,11 @@ void Firmware::put_float(float value) {
   put16(bits >> 16U);
 }
 
-// The e-puck2 runs its loop one round too far: 8 bytes, and the host that counts on 6 is out of step.
+// The e-puck2 tells the right cliff sensor behind the ground's three, and never the left one: 8 bytes.
 void Firmware::put_ground(const BodySenses& senses) {
   for (const double g : ground(senses)) put16(ground_counts(g));
   if (options_.variant == Variant::Epuck2) {
-    put16(0);
+    put16(options_.cliff_sensors ? ground_counts(senses.cliff[0]) : 0);
   } else if (options_.cliff_sensors && options_.variant == Variant::Gctronic) {
     for (const double g : senses.cliff) put16(ground_counts(g));
   }

@@ -114,11 +114,11 @@ void Firmware::set_all_actuators(hal::TimeNs at) {
 // 103 bytes, in the order of the table in e-puck2_cpp_remote_library.
 void Firmware::put_all_sensors(const BodySenses& senses) {
   const Tilt tilt = tilt_of(acceleration(senses, 0));
-  for (const int value : acceleration(senses, facts_.acceleration_zero)) put16(value);
+  for (const int value : acceleration(senses, 0)) put16(value);  // calibrated, unlike the answer to `a`
   put_float(tilt.acceleration_raw);
   put_float(tilt.orientation_deg);
   put_float(tilt.inclination_deg);
-  for (const double turn : senses.turn_rad_s) put16(gyro_counts(turn));
+  for (const int value : gyro(senses)) put16(value);
   for (const double field : senses.magnetic_uT) put_float(static_cast<float>(field));
   put8(std::clamp(static_cast<int>(senses.temperature_C), -128, 127));
   for (const int value : proximity(senses, true)) put16(value);

@@ -3,15 +3,18 @@
 #include <algorithm>
 
 #include "hal/device/body_sensors.hpp"
+#include "hal/device/cliff.hpp"
 #include "hal/device/leds.hpp"
 #include "hal/device/ring_sensors.hpp"
+#include "hal/device/time_of_flight.hpp"
 #include "hal/device/wheels.hpp"
 
 namespace tandem::bridges::epuck_emulator {
 
 std::vector<const hal::PortType*> body_ports() {
   return port_types_of<hal::Proximity, hal::Light, hal::Ground, hal::Accelerometer, hal::Microphones, hal::Battery,
-                       hal::WheelSpeeds, hal::RingLeds, hal::BodyLed, hal::FrontLed>();
+                       hal::Gyroscope, hal::TimeOfFlight, hal::Cliff, hal::WheelSpeeds, hal::RingLeds, hal::BodyLed,
+                       hal::FrontLed>();
 }
 
 BodySenses PortBody::sense(hal::TimeNs /*now*/) {
@@ -22,6 +25,9 @@ BodySenses PortBody::sense(hal::TimeNs /*now*/) {
     bank.read<hal::Ground>([&](const auto& p) { copy_values(p.reflectance, senses.ground); });
     bank.read<hal::Accelerometer>([&](const auto& p) { copy_values(p.force_m_s2, senses.force_m_s2); });
     bank.read<hal::Microphones>([&](const auto& p) { copy_values(p.level, senses.sound); });
+    bank.read<hal::Gyroscope>([&](const auto& p) { copy_values(p.rate_rad_s, senses.turn_rad_s); });
+    bank.read<hal::TimeOfFlight>([&](const auto& p) { senses.ahead_m = static_cast<double>(p.distance_m); });
+    bank.read<hal::Cliff>([&](const auto& p) { copy_values(p.reflectance, senses.cliff); });
     bank.read<hal::Battery>([&](const auto& p) { senses.battery_V = static_cast<double>(p.supply_V); });
   });
   return senses;

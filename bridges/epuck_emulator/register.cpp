@@ -7,22 +7,39 @@
 #include "bridges/epuck_emulator/port_body.hpp"
 #include "hal/device/body_sensors.hpp"
 #include "hal/device/leds.hpp"
+#include "hal/robot/epuck2.hpp"
 
 namespace tandem::bridges::epuck_emulator {
 namespace {
 
 struct Own {
   std::string firmware = "gctronic";
-  void describe(hal::ParamVisitor& v) { v.text("firmware", firmware, "btcom, gctronic, webots or epuck2."); }
+  std::int64_t selector = 3;
+  bool cliff_sensors = false;
+  void describe(hal::ParamVisitor& v) {
+    v.text("firmware", firmware, "btcom, gctronic, webots or epuck2.");
+    v.integer("selector", selector, {0, 15}, "Position of the rotary switch.");
+    v.flag("cliff_sensors", cliff_sensors, "The ground board has two cliff sensors.");
+  }
 };
 
+struct OwnOfEpuck2 : Own {
+  OwnOfEpuck2() { *static_cast<Own*>(this) = {"epuck2", 3, true}; }
+};
+
+template <class OwnOptions>
 hal::Status run_type(const EmulatorRequest& request, SharedPorts* ports, const std::atomic<bool>& stop) {
   Options options;
   apply(request, options);
-  if (request.options != nullptr) options.firmware = static_cast<const Own*>(request.options.get())->firmware;
+  const OwnOptions own =
+      request.options != nullptr ? *static_cast<const OwnOptions*>(request.options.get()) : OwnOptions{};
+  options.firmware = own.firmware;
+  options.robot.selector = static_cast<std::uint8_t>(own.selector);
+  options.robot.cliff_sensors = own.cliff_sensors;
   options.ready = [&request](const std::string& path) {
     if (request.ready)
-      request.ready("e-puck's firmware on " + path + ": connect with --link serial:" + path + "@115200");
+      request.ready("e-puck's firmware on " + path + ": connect with --link " +
+                    (path.starts_with("tcp:") || path.starts_with("epuck-tcp:") ? path : "serial:" + path + "@115200"));
   };
   std::optional<PortBody> body;
   if (ports != nullptr) options.body = &body.emplace(*ports);
@@ -31,17 +48,27 @@ hal::Status run_type(const EmulatorRequest& request, SharedPorts* ports, const s
 
 const EmulatorType kType{.name = "epuck",
                          .kind = hal::epuck::kName,
-                         .summary = "An e-puck's stock firmware behind a serial line: pty:NAME, serial:DEVICE@115200.",
+                         .summary = "An e-puck's stock firmware: pty:NAME, serial:DEVICE@115200, tcp-listen:PORT.",
                          .puppet = "<puppet library=\"puppet\" …>",
                          .needs = &port_types_of<hal::FrontLed, hal::Microphones>,
                          .ports = &body_ports,
                          .read = &read_options<Own>,
-                         .run = &run_type};
+                         .run = &run_type<Own>};
+
+const EmulatorType kType2{.name = "epuck2",
+                          .kind = hal::epuck2::kName,
+                          .summary = "An e-puck2: as an e-puck, or its radio with epuck-tcp-listen:PORT.",
+                          .puppet = "<puppet library=\"puppet\" …>",
+                          .needs = &port_types_of<hal::FrontLed, hal::Microphones>,
+                          .ports = &body_ports,
+                          .read = &read_options<OwnOfEpuck2>,
+                          .run = &run_type<OwnOfEpuck2>};
 
 }  // namespace
 
 void register_emulator(hal::Registrar& registrar) {
   registrar.add(kType);
+  registrar.add(kType2);
 }
 
 }  // namespace tandem::bridges::epuck_emulator

@@ -91,12 +91,14 @@ TEST(EpuckCodec, ReadsGroundSensorsOfEveryLength) {
   RawSensors s;
   ASSERT_EQ(decode_answer(answer, asked, {.ground_bytes = 10}, s), Decoded::Ok);
   EXPECT_THAT(s.ground, testing::ElementsAre(100, 200, 300));
-  EXPECT_THAT(s.cliff, testing::ElementsAre(400, 500));
+  EXPECT_THAT(s.cliff, testing::ElementsAre(400, 500)) << "right, left";
+  EXPECT_EQ(s.cliffs, 2);
   answer.resize(8);
   s = {};
   ASSERT_EQ(decode_answer(answer, asked, {.ground_bytes = 8}, s), Decoded::Ok);
   EXPECT_THAT(s.ground, testing::ElementsAre(100, 200, 300));
-  EXPECT_THAT(s.cliff, testing::ElementsAre(0, 0));
+  EXPECT_EQ(s.cliff[0], 400) << "the right one";
+  EXPECT_EQ(s.cliffs, 1);
 }
 
 TEST(EpuckCodec, LeavesTheSensorsAloneWhenTheAnswerIsWrong) {
@@ -155,7 +157,7 @@ TEST(EpuckCodec, DecodesAllSensorsOfTheEpuck2) {
   b.push_back(9);
   for (const int v : {900, 901, 902}) put16(b, v);
   for (const int v : {50, 51, 52}) put16(b, v);
-  b.push_back(0);
+  b.push_back(1);
   ASSERT_EQ(b.size(), kAllSensorsSize);
 
   AllSensors s;
@@ -168,14 +170,15 @@ TEST(EpuckCodec, DecodesAllSensorsOfTheEpuck2) {
   EXPECT_EQ(s.temperature_C, -5);
   EXPECT_EQ(s.common.proximity[7], 107);
   EXPECT_EQ(s.common.ambient[0], 4000);
-  EXPECT_EQ(s.time_of_flight_mm, 1234);
-  EXPECT_THAT(s.microphones, testing::ElementsAre(5, 6, 7, 8));
+  EXPECT_EQ(s.common.time_of_flight_mm, 1234);
+  EXPECT_THAT(s.common.microphones, testing::ElementsAre(5, 6, 7, 8));
   EXPECT_THAT(s.common.encoders, testing::ElementsAre(32767, -32768));
   EXPECT_EQ(s.common.battery, 2400);
   EXPECT_THAT(s.remote_control, testing::ElementsAre(1, 2, 3));
-  EXPECT_EQ(s.selector, 9);
+  EXPECT_EQ(s.common.selector, 9);
   EXPECT_THAT(s.common.ground, testing::ElementsAre(900, 901, 902));
   EXPECT_THAT(s.ground_ambient, testing::ElementsAre(50, 51, 52));
+  EXPECT_EQ(s.button, 1);
   b.pop_back();
   EXPECT_EQ(decode_all_sensors(b, s), Decoded::WrongLength);
 }

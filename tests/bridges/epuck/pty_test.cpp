@@ -38,11 +38,9 @@ std::vector<double> ages_ms(hal::TimeNs tick_ns, int ticks) {
   const Emulated robot(name);
   BridgeSettings settings;
   settings.driver.robot.tick_ns = tick_ns;
-  const auto address = parse_link("serial:" + name + "@115200");
-  if (!address.ok()) return {};
-  const auto opener = epuck_link_opener(address.value());
-  if (!opener.ok()) return {};
-  EpuckBridge bridge(settings, opener.value());
+  const auto link = epuck_link("serial:" + name + "@115200");
+  if (!link.ok()) return {};
+  EpuckBridge bridge(settings, link.value().open);
   const auto& proximity = bridge.robot().sensor<hal::Proximity>();
   bridge.robot().sensor<hal::Light>();
   bridge.robot().sensor<hal::Ground>();

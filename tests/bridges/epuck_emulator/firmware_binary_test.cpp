@@ -255,7 +255,7 @@ TEST(FirmwareEpuck2, DoesACycleOfTheRemoteLibrary) {
   ASSERT_EQ(all.size(), 103U);
   EXPECT_EQ(robot.count("\"event\":\"wheels\",\"left\":500,\"right\":-500,\"by\":\"F7\""), 1);
   EXPECT_EQ(robot.body.command().ring, 0x01);
-  EXPECT_EQ(int16_at(all, 4), 2848);
+  EXPECT_EQ(int16_at(all, 4), 800);
   EXPECT_FLOAT_EQ(float_at(all, 6), 800.0F);
   EXPECT_FLOAT_EQ(float_at(all, 14), 0.0F);
   EXPECT_EQ(int16_at(all, 22), -7510);  // 57.296 degrees a second of 250

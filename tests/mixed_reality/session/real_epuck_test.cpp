@@ -173,9 +173,9 @@ class FourRealEpucks : public testing::Test {
     bridges::apply(request, settings);
     settings.link = request.link;
     settings.driver.timing = bridges::epuck::timing_for(request.link);
-    const auto opener = bridges::epuck::epuck_link_opener(bridges::parse_link(request.link).value());
+    const auto opener = bridges::epuck::epuck_link(request.link);
     if (!opener.ok()) return opener.error();
-    const auto open = [inner_opener = opener.value()]() -> hal::Result<std::unique_ptr<bridges::ByteLink>> {
+    const auto open = [inner_opener = opener.value().open]() -> hal::Result<std::unique_ptr<bridges::ByteLink>> {
       auto inner = inner_opener();
       if (!inner.ok()) return inner.error();
       return std::unique_ptr<bridges::ByteLink>(std::make_unique<CutLink>(std::move(inner).value(), cut_));

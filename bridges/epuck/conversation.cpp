@@ -1,0 +1,83 @@
+#include "bridges/epuck/conversation.hpp"
+
+#include <cstdlib>
+
+#include "bridges/epuck/conversions.hpp"
+#include "bridges/epuck/session.hpp"
+#include "bridges/epuck/wifi_session.hpp"
+
+namespace tandem::bridges::epuck {
+namespace {
+
+using hal::TimeNs;
+
+// No e-puck turns its wheels faster [e-puck2, MOTOR_SPEED_LIMIT].
+constexpr double kFastestSteps_s = 1100.0;
+// Readings may be this much older or younger than their stamp says.
+constexpr double kStampDoubt_s = 0.25;
+// Beyond this the 16-bit counters may have gone round once.
+constexpr TimeNs kCountersAmbiguous = 25 * hal::kNsPerSecond;
+
+}  // namespace
+
+const char* state_name(SessionState state) noexcept {
+  switch (state) {
+    case SessionState::Absent:
+      return "absent";
+    case SessionState::Handshake:
+      return "handshake";
+    case SessionState::Ready:
+      return "ready";
+    case SessionState::Active:
+      return "active";
+    case SessionState::Suspect:
+      return "suspect";
+    case SessionState::Lost:
+      return "lost";
+  }
+  return "";
+}
+
+std::unique_ptr<Conversation> make_conversation(WireForm wire, const SessionTiming& timing) {
+  if (wire == WireForm::Wifi) return std::make_unique<WifiSession>(timing);
+  return std::make_unique<Session>(timing);
+}
+
+void Conversation::take_samples(QuantitySet asked, const RawSensors& raw, const Measured& when) noexcept {
+  const bool stands =
+      asked.has(Quantity::Encoders) && counters_known_ && at_rest_ && raw.encoders == samples_.raw.encoders;
+  if (stands && asked.has(Quantity::Acceleration)) samples_.accelerometer.at_rest(raw.acceleration);
+  if (asked.has(Quantity::Encoders)) take_encoders(raw.encoders, when);
+  samples_.raw = raw;
+  samples_.known.add(asked);
+  for (std::size_t i = 0; i < kQuantityCount; ++i) {
+    if (asked.has(static_cast<Quantity>(i))) samples_.taken_ns[i] = when.taken_ns;
+  }
+}
+
+bool Conversation::encoders_plausible(const std::array<std::int16_t, 2>& counters, TimeNs latest) const noexcept {
+  const TimeNs since = latest - samples_.taken_ns[static_cast<std::size_t>(Quantity::Encoders)];
+  if (since > kCountersAmbiguous) return false;
+  const double most = kFastestSteps_s * (hal::to_seconds(since) + kStampDoubt_s);
+  return std::abs(encoder_difference(counters[0], samples_.raw.encoders[0])) <= most &&
+         std::abs(encoder_difference(counters[1], samples_.raw.encoders[1])) <= most;
+}
+
+void Conversation::take_encoders(const std::array<std::int16_t, 2>& counters, const Measured& when) noexcept {
+  // Over the longest time that it may have been: where stamps are in doubt a wheel is not faster than it was.
+  const double since_s =
+      hal::to_seconds(when.latest_ns - samples_.taken_ns[static_cast<std::size_t>(Quantity::Encoders)]);
+  const bool continues = counters_known_ && !restarted_ && encoders_plausible(counters, when.latest_ns);
+  if (counters_known_ && !continues) ++statistics_.encoder_rebased;
+  const std::int32_t left = continues ? encoder_difference(counters[0], samples_.raw.encoders[0]) : 0;
+  const std::int32_t right = continues ? encoder_difference(counters[1], samples_.raw.encoders[1]) : 0;
+  samples_.left_steps += left;
+  samples_.right_steps += right;
+  samples_.left_steps_per_s = since_s > 0.0 ? left / since_s : 0.0;
+  samples_.right_steps_per_s = since_s > 0.0 ? right / since_s : 0.0;
+  counters_known_ = true;
+  counters_doubtful_ = false;
+  restarted_ = false;
+}
+
+}  // namespace tandem::bridges::epuck

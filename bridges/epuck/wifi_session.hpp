@@ -1,0 +1,93 @@
+// The conversation with an e-puck2 over its own radio (WiFi, TCP port 1000), without I/O and without a clock.
+//
+//   absent --link up--> handshake --stop confirmed--> ready --sensors--> active
+//   active --nothing comes twice, odd values, it moves although it was told to stand--> suspect --stop confirmed-->
+//   ready suspect, handshake --nothing comes--> lost, and the link is to be opened anew --sensors, stop confirmed-->
+//   ready
+//
+// Every command has 21 bytes, sets everything and asks for all sensors, which come as 105. The radio goes on telling
+// them as long as the link stands; so an answer belongs to no question, and readings are dated by their arrival. It
+// checks nothing: a command of which a byte is missing makes it read all that follow at the wrong place, and obey. TCP
+// loses none; where a command could be sent in part only, the link is given up, and a new one begins in step.
+//
+// The robot does not tell its commanded speeds. It rests when its wheel counters were the same for 200 ms after it was
+// told so: from 5 steps a second (0.6 mm/s) on every wheel counts meanwhile. The firmware has no watchdog: it drives on
+// when the link is gone.
+//
+// One host at a time: a second one is let in, and hears nothing until the first has hung up. When nothing comes for
+// 1.5 s the link is opened anew. That a robot was switched off shows in the same way.
+//
+// Source: e-puck2/e-puck2_esp32, socket_e-puck2.c; Webots' e-puck2_server.c.
+#pragma once
+#include "bridges/epuck/conversation.hpp"
+
+namespace tandem::bridges::epuck {
+
+class WifiSession final : public Conversation {
+ public:
+  explicit WifiSession(const SessionTiming& timing = {}) noexcept : timing_(timing) {}
+
+  void link_up(hal::TimeNs now) noexcept override;
+  void link_down(hal::TimeNs now) noexcept override;
+  void on_bytes(std::span<const std::uint8_t> bytes, hal::TimeNs at) noexcept override;
+  /// Takes in the newest sensors that came: of several that waited, the older ones tell nothing more.
+  void poll(hal::TimeNs now) noexcept override;
+  hal::TimeNs next_deadline() const noexcept override;
+  void stalled(hal::TimeNs duration) noexcept override;
+  void be_patient(hal::TimeNs duration) noexcept override { patience_ns_ = duration; }
+  void command(const Actuation& actuation, hal::TimeNs now) noexcept override;
+  void ask(QuantitySet quantities, hal::TimeNs now) noexcept override;
+  void request(const Actuation& actuation, QuantitySet quantities, hal::TimeNs now) noexcept override;
+  hal::TimeNs expected_round_trip(QuantitySet quantities) const noexcept override;
+  void stop(hal::TimeNs now) noexcept override;
+  void shut_down(hal::TimeNs now) noexcept override;
+  bool idle() const noexcept override {
+    return phase_ == Phase::Down || phase_ == Phase::Rest || (phase_ == Phase::Talk && waiting_ns_ == 0);
+  }
+  bool wants_new_link() const noexcept override { return wants_new_link_; }
+  void sent_in_part() noexcept override;
+
+ private:
+  enum class Phase : std::uint8_t { Down, Stop, Talk, Rest };
+  struct Arrived {
+    AllSensors sensors;
+    hal::TimeNs at_ns = 0;
+    bool any = false;
+  };
+
+  void begin_handshake(hal::TimeNs now) noexcept;
+  void begin_stop(hal::TimeNs now) noexcept;
+  void on_rest(hal::TimeNs now) noexcept;
+  void lose_step(const char* why, hal::TimeNs now) noexcept;
+  void give_up_link(const char* why) noexcept;
+  void take_sensors(const AllSensors& sensors, hal::TimeNs at, hal::TimeNs now) noexcept;
+  void judge_rest(const std::array<std::int16_t, 2>& counters, hal::TimeNs at) noexcept;
+  void judge_silence(hal::TimeNs now) noexcept;
+  void say(hal::TimeNs now) noexcept;
+  void keep(const Actuation& actuation) noexcept;
+  bool talking() const noexcept { return state_ == SessionState::Ready || state_ == SessionState::Active; }
+  hal::TimeNs answer_by() const noexcept;
+
+  SessionTiming timing_;
+  Phase phase_ = Phase::Down;
+  WifiReader reader_;
+  Arrived newest_;
+  Actuation wanted_, sent_;
+  hal::TimeNs said_ns_ = 0;     // the last command
+  hal::TimeNs waiting_ns_ = 0;  // since the first command after the last sensors; 0: nothing is awaited
+  hal::TimeNs silent_ns_ = 0;   // since when nothing came although it was asked for; 0: it comes
+  hal::TimeNs allowed_ns_ = 0;  // for stalls, of what is awaited
+  hal::TimeNs patience_ns_ = 0;
+  hal::TimeNs latency_ns_ = 0;  // from a command to the next sensors; follows its peaks
+  hal::TimeNs stop_ns_ = 0;     // the stop was begun
+  hal::TimeNs say_due_ns_ = 0;  // it is said again
+  hal::TimeNs same_ns_ = 0;     // since when the wheel counters are the same; 0: not yet read
+  std::array<std::int16_t, 2> same_{};
+  bool handshaking_ = false;
+  bool asked_again_ = false;
+  bool stop_asked_ = false;
+  bool ending_ = false;
+  bool wants_new_link_ = false;
+};
+
+}  // namespace tandem::bridges::epuck
