@@ -80,6 +80,7 @@ void add_bench(CLI::App& app, BenchOptions& o, int& code) {
       ->delimiter(',')
       ->check(CLI::Range(std::int64_t{1}, std::int64_t{100'000'000}));
   auto* robot = c->add_option("--robot", o.robot, "Kind of robot; default: the one of the benchmark's scene");
+  c->add_option("--in", o.file, "A file with kinds of robots that --robot may name, too");
   auto* with = c->add_option("--with", o.devices,
                              "Devices besides proximity sensors and wheels: range_and_bearing, omnidirectional_camera "
                              "(of robots that have one)")

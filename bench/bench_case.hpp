@@ -2,6 +2,7 @@
 #pragma once
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "core/scenario/scenario.hpp"
 
@@ -19,7 +20,8 @@ struct BenchCase {
   std::int64_t threads = 0;
   core::Assignment assignment = core::Assignment::Static;
   std::int64_t ticks = 600;
-  std::int64_t repeat = 0;  ///< how many runs of the same kind were before
+  std::int64_t repeat = 0;                   ///< how many runs of the same kind were before
+  std::vector<core::KindConfig> kinds = {};  ///< of a file, one of which `robot` may be
 };
 
 /// "static" or "dynamic", as the command line and the results spell it.

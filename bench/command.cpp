@@ -19,6 +19,7 @@
 #include "bench/partition.hpp"
 #include "bench/sense_to_act.hpp"
 #include "core/scenario/engine_traits.hpp"
+#include "hal/device/ring_sensors.hpp"
 #include "hal/output_file.hpp"
 
 namespace tandem::bench {
@@ -55,17 +56,25 @@ std::string usual_engine(const hal::Catalog& catalog, bool flying) {
   return std::string(engines.front()->kind);
 }
 
-std::vector<std::string> robots_of(const app::BenchOptions& o) {
+using Kinds = std::vector<core::KindConfig>;
+
+/// Of a file, those that drive and have proximity sensors can be measured, too.
+std::vector<std::string> robots_of(const app::BenchOptions& o, const Kinds& kinds) {
   if (o.name == "flocking") return {"eye-bot"};
-  return {"e-puck", "foot-bot"};
+  std::vector<std::string> robots{"e-puck", "foot-bot"};
+  for (const core::KindConfig& config : kinds) {
+    if (config.kind->drive() != nullptr && config.kind->part<hal::ProximityPart>() != nullptr)
+      robots.push_back(config.kind->name);
+  }
+  return robots;
 }
 std::string robot_of(const app::BenchOptions& o) {
-  return o.robot.empty() ? robots_of(o).front() : o.robot;
+  return o.robot.empty() ? robots_of(o, {}).front() : o.robot;
 }
 
-hal::Status check_words(const hal::Catalog& catalog, const app::BenchOptions& o) {
+hal::Status check_words(const hal::Catalog& catalog, const app::BenchOptions& o, const Kinds& kinds) {
   if (auto s = check_name("benchmark", o.name, {"diffusion", "flocking", "codec", "sense_to_act"}); !s.ok()) return s;
-  const std::vector<std::string> robots = robots_of(o);
+  const std::vector<std::string> robots = robots_of(o, kinds);
   if (auto s = check_name("robot", robot_of(o), robots); !s.ok()) return s;
   std::vector<std::string> devices{"range_and_bearing"};
   if (robot_of(o) == "foot-bot") devices.emplace_back("omnidirectional_camera");
@@ -90,8 +99,8 @@ hal::Status check_words(const hal::Catalog& catalog, const app::BenchOptions& o)
   return {};
 }
 
-hal::Result<Plan> plan_of(const hal::Catalog& catalog, const app::BenchOptions& o) {
-  if (auto s = check_words(catalog, o); !s.ok()) return s.error();
+hal::Result<Plan> plan_of(const hal::Catalog& catalog, const app::BenchOptions& o, const Kinds& kinds) {
+  if (auto s = check_words(catalog, o, kinds); !s.ok()) return s.error();
   Plan plan{o.engines, {}, o.robots, o.threads};
   for (const std::string& name : o.partitions) {
     auto partition = partition_named(name);
@@ -113,7 +122,7 @@ hal::Result<Plan> plan_of(const hal::Catalog& catalog, const app::BenchOptions& 
 
 /// Every case once a round, so that what the machine does besides meets all of them; those that differ in threads alone
 /// follow one another.
-std::vector<BenchCase> cases_of(const Plan& plan, const app::BenchOptions& o) {
+std::vector<BenchCase> cases_of(const Plan& plan, const app::BenchOptions& o, const Kinds& kinds) {
   std::vector<BenchCase> cases;
   std::string devices;
   for (const std::string& device : o.devices) devices += (devices.empty() ? "" : ",") + device;
@@ -125,7 +134,7 @@ std::vector<BenchCase> cases_of(const Plan& plan, const app::BenchOptions& o) {
             cases.push_back({o.name, robot_of(o), engine, partition.name, partition.regions, devices,
                              o.density.empty() && o.name == "diffusion" ? "40 m" : "equal", robots, threads,
                              o.assignment == "dynamic" ? core::Assignment::Dynamic : core::Assignment::Static, o.ticks,
-                             repeat});
+                             repeat, kinds});
           }
         }
       }
@@ -263,7 +272,13 @@ int sense_to_act(const app::BenchOptions& o) {
 int run(const app::BenchOptions& options) {
   hal::PluginLoader loader = app::make_loader();
   if (!app::open_plugins(loader, options.plugins)) return app::kBadInput;
-  const auto plan = plan_of(loader.catalog(), options);
+  Kinds kinds;
+  if (!options.file.empty()) {
+    const auto file = app::kinds_of_file(loader, options.file);
+    if (file == nullptr) return app::kBadInput;
+    kinds = file->kinds;
+  }
+  const auto plan = plan_of(loader.catalog(), options, kinds);
   if (!plan.ok()) return refuse(app::kWrongUsage, plan.error().message);
   if (options.name == "codec") {
     bench_codec(options.repeat);
@@ -280,7 +295,7 @@ int run(const app::BenchOptions& options) {
   }
   int code = app::kDone;
   const std::vector<ResultLine> lines = options.from.empty()
-                                            ? measure_all(cases_of(plan.value(), options), loader, code)
+                                            ? measure_all(cases_of(plan.value(), options, kinds), loader, code)
                                             : choose_saved(plan.value(), options, code);
   if (lines.empty()) return code;
   if (options.compare_threads) print_comparison(lines);

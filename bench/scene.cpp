@@ -83,6 +83,7 @@ core::Scenario diffusion_scene(const BenchCase& c) {
   scenario.arena_size = {kArena_m * scale + kWall_m, kArena_m * scale + kWall_m, 1.0};
   add_walls(scenario, scale);
 
+  scenario.kinds = c.kinds;
   scenario.controllers.push_back(diffusion_controller(c.robot, c.devices));
   scenario.robots.push_back(scattered_robots(c, scale));
   return scenario;

@@ -80,6 +80,7 @@ int describe(const DescribeOptions& options);
 /// Lists that are left empty: the usual values when measuring, every saved line with `from`.
 struct BenchOptions {
   Libraries plugins;
+  std::string file;  ///< with kinds of robots that may be measured, too
   std::string name = "diffusion";
   std::vector<std::int64_t> robots;
   std::string robot;                 ///< empty: the benchmark's own
