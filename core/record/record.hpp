@@ -1,0 +1,84 @@
+// Record of a run: poses, ports, published state, scene and incidents of chosen ticks in one append-only block file.
+//
+// The payloads of the blocks (core/record/block_file.hpp), by type:
+//
+//   1 Start        JSON: program, experiment, seed, ticks a second, …: whatever its writer says
+//   2 Stream       JSON {"stream": n, "of": "robot" | "object", "set": "pose" | "sensor" | "actuator" | "state",
+//   "name": …,
+//                  "fields": [{"name", "type": "f32" | "f64" | "u8" | "u16" | "u32" | "i32" | "i64" | "bool", "count",
+//                  "scale", "unit", "doc", "used_by", "per_entry", "texts"}, …]}: the form of rows that follow
+//   3 Members      JSON {"members": n, "ids": […], "kinds": […], "kind": [index into kinds, …], "real": [index into
+//   ids, …]}:
+//                  whose rows they are, in their order
+//   4 Rows         u32 stream, u32 members, u32 rows, u32 0; then field by field the values of all rows, row by row,
+//   without
+//                  gaps. The value is the number times `scale`. The smallest i32 stands for "no number". Of a field
+//                  with `used_by` a row has only as many values as that field of the row says, times `per_entry`; that
+//                  field comes before
+//   5 Scene        JSON: arena, boxes, cylinders, lamps, as they are from this tick on
+//   6 Event        JSON {"kind": "incident" | …, "text": …, …}
+//   7 Fingerprint  u64: of the world's state after this tick
+//   8 End          JSON: how the run ended. A record without it was cut
+//
+// Blocks of types that a reader does not know are to be passed over. Members and streams are declared before they are
+// used; numbers are not used twice. The tick of a block is the one whose end it shows; -1: before the first.
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/space/space.hpp"
+#include "hal/json/json.hpp"
+#include "hal/output_file.hpp"
+#include "hal/result.hpp"
+#include "hal/time.hpp"
+
+namespace tandem::core {
+
+enum class RecordBlock : std::uint16_t { Start = 1, Stream, Members, Rows, Scene, Event, Fingerprint, End };
+
+/// What is recorded, and how often.
+struct RecordConfig {
+  std::string path;
+  std::int64_t every = 1;                     ///< ticks between rows
+  std::vector<std::string> entities = {"*"};  ///< ids of robots, or patterns with '*'
+  std::vector<std::string> ports;             ///< names of ports; "*": all
+  bool state = true;                          ///< what controllers publish
+  std::int64_t fingerprint_every = 0;         ///< ticks; 0: none but the last
+};
+
+/// Writes a record while a run goes on. The thread that steps copies; one of the recorder's own encodes and writes, and
+/// is waited for before the next rows are copied: who is killed loses the tick at hand and the one before at most.
+class Recorder {
+ public:
+  /// Opens the file and writes `start`, and what there is before the first tick. Errors: the file cannot be written; a
+  /// pattern that fits no robot; a port that no chosen robot's controller took.
+  static hal::Result<std::unique_ptr<Recorder>> open(const RecordConfig& config, const Space& space,
+                                                     const hal::Json& start);
+  /// Without `close` the part of the file stays, readable.
+  ~Recorder();
+  Recorder(const Recorder&) = delete;
+  Recorder& operator=(const Recorder&) = delete;
+
+  /// To be called after every tick, with the number of the tick that was done. Error: the disk is full or gone; nothing
+  /// is written any more.
+  hal::Status tick_done(const Space& space, hal::Tick tick);
+  /// Whether a fingerprint is wanted after this tick.
+  bool wants_fingerprint(hal::Tick tick) const noexcept;
+  hal::Status fingerprint(hal::Tick tick, std::uint64_t fingerprint);
+  /// Something that happened; `event` has a "kind".
+  hal::Status event(hal::Tick tick, const hal::Json& event);
+  /// Writes the end and puts the file in its place. Error: as `tick_done`.
+  hal::Status close(hal::Tick tick, const hal::Json& end);
+  /// Bytes that the record has so far.
+  std::uint64_t bytes() const noexcept;
+
+ private:
+  struct Impl;
+  explicit Recorder(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace tandem::core
