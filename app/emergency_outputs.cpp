@@ -12,6 +12,8 @@ void EmergencyOutputs::save(std::string_view failure) const noexcept {
     if (!write_now(records.descriptor, {data, size}) || !put_in_place(outputs_.trajectory->file()))
       (void)write_now(STDERR_FILENO, "error: the end of the trajectory could not be saved; it is in its .part\n");
   }
+  if (outputs_.record != nullptr && !put_in_place(outputs_.record->file()))
+    (void)write_now(STDERR_FILENO, "error: the record could not be put in its place; it is in its .part\n");
   EmergencyReport::save(failure);
   if (outputs_.picture) {
     if (!outputs_.picture->part().empty()) unlink(outputs_.picture->part().c_str());

@@ -27,6 +27,7 @@ void add_run(CLI::App& app, RunOptions& o, int& code) {
   c->add_option("--report", o.report, "Write a JSON report to this file ('-': standard output)");
   c->add_option("--picture", o.picture, "Draw the space from above at the end: FILE.svg, .png or .pdf");
   c->add_option("--trajectory", o.trajectory, "Write poses as CSV");
+  c->add_option("--record", o.record, "Write a record: poses, state, and what <record> names; for `tandem export`");
   c->add_option("--log", o.log, "Write all messages of the run to this file: of controllers, too");
   auto* dump =
       c->add_option("--dump", o.dump, "Write every value of the state at the end as CSV, for `tandem compare`");
@@ -63,6 +64,21 @@ void add_compare(CLI::App& app, CompareOptions& o, int& code) {
   c->add_option("--set-b", o.overrides_b, "Change B alone; repeatable")->allow_extra_args(false);
   add_plugins(*c, o.plugins);
   c->callback([&] { code = compare(o); });
+}
+
+void add_export(CLI::App& app, ExportOptions& o, int& code) {
+  CLI::App* c =
+      app.add_subcommand("export", "Say what a record of `tandem run --record` holds, or make a table of it.");
+  c->add_option("record", o.record, "The record; that of a run that was killed is FILE.part")->required();
+  auto* csv = c->add_option("--csv", o.csv, "Write comma-separated values to this file ('-': standard output)");
+  c->add_option("--table", o.stream, "Which table, as the record names it")->capture_default_str()->needs(csv);
+  c->add_option("--entities", o.entities, "Only of these, separated by commas; '*' stands for any text")
+      ->delimiter(',')
+      ->needs(csv);
+  c->add_option("--from", o.from, "First tick")->needs(csv);
+  c->add_option("--until", o.until, "Last tick")->needs(csv);
+  c->add_option("--every", o.every, "Only every so manyth tick")->check(CLI::PositiveNumber)->needs(csv);
+  c->callback([&] { code = export_record(o); });
 }
 
 void add_bench(CLI::App& app, BenchOptions& o, int& code) {
@@ -161,6 +177,9 @@ int main(int argc, char** argv) {
   upgrade_command->add_flag("--dry-run", upgrade_options.dry_run, "Only say what would change");
   add_plugins(*upgrade_command, upgrade_options.plugins);
   upgrade_command->callback([&] { code = upgrade(upgrade_options); });
+
+  ExportOptions export_options;
+  add_export(app, export_options, code);
 
   ListOptions list_options;
   CLI::App* list_command =

@@ -12,6 +12,10 @@ std::string trajectory_path(const RunOptions& options, const core::Scenario& sce
   return scenario.trajectory ? scenario.trajectory->path : "";
 }
 
+std::string record_path(const RunOptions& options, const core::Scenario& scenario) {
+  return options.record.empty() ? scenario.record.path : options.record;
+}
+
 std::vector<NamedFile> inputs_of(const core::Scenario& scenario, const hal::Catalog& catalog) {
   std::vector<NamedFile> inputs{{"experiment", scenario.file}};
   for (const core::Element& field : scenario.fields) {
@@ -39,13 +43,14 @@ hal::Status check_output_paths(const RunOptions& options, const core::Scenario& 
   return check_apart({{"report", options.report},
                       {"picture", options.picture},
                       {"trajectory", trajectory_path(options, scenario)},
+                      {"record", record_path(options, scenario)},
                       {"dump", options.dump},
                       {"log", options.log}},
                      inputs_of(scenario, catalog));
 }
 
 hal::Result<RunOutputs> open_outputs(const RunOptions& options, const core::Scenario& scenario,
-                                     const core::World& world) {
+                                     const core::World& world, const hal::Json& record_start) {
   RunOutputs outputs;
   for (const auto& [what, path, file] : {std::tuple{"report", &options.report, &outputs.report},
                                          std::tuple{"picture", &options.picture, &outputs.picture}}) {
@@ -60,6 +65,13 @@ hal::Result<RunOutputs> open_outputs(const RunOptions& options, const core::Scen
     auto opened = core::TrajectoryRecorder::open(config, world.space(), world.ticks_per_second());
     if (!opened.ok()) return opened.error();
     outputs.trajectory = std::move(opened).value();
+  }
+  if (const std::string path = record_path(options, scenario); !path.empty()) {
+    core::RecordConfig config = scenario.record;
+    config.path = path;
+    auto opened = core::Recorder::open(config, world.space(), record_start);
+    if (!opened.ok()) return opened.error();
+    outputs.record = std::move(opened).value();
   }
   if (!options.dump.empty()) {
     auto opened = StateDump::open(options.dump, options.dump_every);

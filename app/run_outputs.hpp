@@ -5,6 +5,7 @@
 
 #include "app/command/command.hpp"
 #include "app/state_dump.hpp"
+#include "core/record/record.hpp"
 #include "core/record/trajectory.hpp"
 #include "core/sim/world.hpp"
 #include "hal/catalog.hpp"
@@ -17,6 +18,7 @@ struct RunOutputs {
   std::optional<hal::OutputFile> report;
   std::optional<hal::OutputFile> picture;
   std::unique_ptr<core::TrajectoryRecorder> trajectory;
+  std::unique_ptr<core::Recorder> record;
   std::optional<StateDump> dump;
 };
 
@@ -24,8 +26,9 @@ struct RunOutputs {
 /// output's; a picture of no known ending.
 hal::Status check_output_paths(const RunOptions& options, const core::Scenario& scenario, const hal::Catalog& catalog);
 
-/// Opens all of them. Error: one cannot be written, or its robots are not there.
+/// Opens all of them; `record_start` is what a record begins with. Error: one cannot be written, or its robots are not
+/// there.
 hal::Result<RunOutputs> open_outputs(const RunOptions& options, const core::Scenario& scenario,
-                                     const core::World& world);
+                                     const core::World& world, const hal::Json& record_start);
 
 }  // namespace tandem::app

@@ -78,18 +78,22 @@ hal::Json to_json(const InputFile& file) {
   return json;
 }
 
-void add_members(hal::Json& json, const RunResult& result, bool between_ticks) {
-  const core::World& world = result.world;
-  add_run_fields(json, world, result.figures, result.robots, between_ticks);
+void add_inputs(hal::Json& json, const InputFiles& inputs) {
   const auto add_files = [&json](const char* key, const std::vector<InputFile>& files) {
     hal::Json& list = json[key] = hal::Json::array();
     for (const InputFile& file : files) list.push_back(to_json(file));
   };
-  json["file"] = to_json(result.inputs.experiment);
-  if (!result.inputs.plugins.empty()) add_files("plugins", result.inputs.plugins);
-  add_files("controllers", result.inputs.controllers);
-  if (!result.inputs.hooks.empty()) add_files("hooks", result.inputs.hooks);
-  if (!result.inputs.others.empty()) add_files("other_files", result.inputs.others);
+  json["file"] = to_json(inputs.experiment);
+  if (!inputs.plugins.empty()) add_files("plugins", inputs.plugins);
+  add_files("controllers", inputs.controllers);
+  if (!inputs.hooks.empty()) add_files("hooks", inputs.hooks);
+  if (!inputs.others.empty()) add_files("other_files", inputs.others);
+}
+
+void add_members(hal::Json& json, const RunResult& result, bool between_ticks) {
+  const core::World& world = result.world;
+  add_run_fields(json, world, result.figures, result.robots, between_ticks);
+  add_inputs(json, result.inputs);
   const core::Incidents& incidents = world.incidents();
   json["incidents"] = {{"commands_clamped", incidents.commands_clamped},
                        {"commands_not_finite", incidents.commands_not_finite},
@@ -150,13 +154,28 @@ InputFiles input_files(const core::Scenario& scenario, const hal::PluginLoader& 
   return files;
 }
 
-std::string report_of(const RunResult& result) {
+hal::Json record_start(const core::World& world, const InputFiles& inputs) {
+  hal::Json json;
+  json["experiment"] = world.scenario().name;
+  json["seed"] = world.seed();
+  json["ticks_per_second"] = world.ticks_per_second();
+  add_inputs(json, inputs);
+  json["program"] = to_json(build_info());
+  json["settings"] = hal::to_xml(world.scenario().effective);
+  return json;
+}
+
+hal::Json record_end(const RunResult& result) {
   hal::Json json;
   json["finished"] = result.end.finished();
   json["ended"] = word_of(result.end.how);
   if (!result.end.failure.empty()) json["failure"] = result.end.failure;
   add_members(json, result, true);
-  return hal::to_text(json);
+  return json;
+}
+
+std::string report_of(const RunResult& result) {
+  return hal::to_text(record_end(result));
 }
 
 hal::Json report_members(const RunResult& result) {

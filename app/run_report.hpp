@@ -56,6 +56,11 @@ std::string report_of(const RunResult& result);
 /// Its members but those about the end, for a run that may have to be ended in the middle of a tick.
 hal::Json report_members(const RunResult& result);
 
+/// What a record of the run begins with: all that is known before the first tick.
+hal::Json record_start(const core::World& world, const InputFiles& inputs);
+/// What it ends with: the report.
+hal::Json record_end(const RunResult& result);
+
 void print_result(const RunResult& result);
 
 }  // namespace tandem::app

@@ -26,6 +26,7 @@ struct RunOptions {
   std::string report;                   ///< file, or "-"
   std::string picture;                  ///< .svg, .png or .pdf
   std::string trajectory;               ///< CSV file, of every robot unless the experiment says which
+  std::string record;                   ///< record file, as the experiment says or of every robot's pose and state
   std::string dump;                     ///< CSV file of every value of the state
   std::int64_t dump_every = 0;          ///< ticks; 0: at the end alone
   std::string log;                      ///< file for all messages
@@ -47,6 +48,16 @@ struct CompareOptions {
 };
 /// kDifferent: a value differs.
 int compare(const CompareOptions& options);
+
+struct ExportOptions {
+  std::string record;
+  std::string csv;                    ///< file, or "-"; empty: only say what the record holds
+  std::string stream = "pose";        ///< which of its tables
+  std::vector<std::string> entities;  ///< ids, or patterns with '*'; empty: all
+  std::optional<std::int64_t> from, until;  ///< ticks, both included
+  std::int64_t every = 1;             ///< of the ticks that are there
+};
+int export_record(const ExportOptions& options);
 
 struct CheckOptions {
   Libraries plugins;

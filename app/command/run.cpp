@@ -55,6 +55,7 @@ class Recording {
       prepare_report();
     }
     if (records && !recorded_.ok()) complain(kFailedRunning, recorded_.error().message + "; the run goes on");
+    record();
     if (!outputs_.dump) return;
     if (const hal::Status dumped = outputs_.dump->tick_done(now_.world); !dumped.ok())
       complain(kFailedRunning, dumped.error().message + "; the run goes on");
@@ -67,6 +68,18 @@ class Recording {
   }
 
  private:
+  void record() {
+    core::Recorder* const recorder = outputs_.record.get();
+    const hal::Tick done = now_.world.tick() - 1;
+    if (recorder == nullptr || !in_record_.ok() || done < 0) return;
+    in_record_ = recorder->tick_done(now_.world.space(), done);
+    const std::vector<std::string>& incidents = now_.world.incidents().first;
+    for (; incidents_told_ < incidents.size() && in_record_.ok(); ++incidents_told_)
+      in_record_ = recorder->event(done, {{"kind", "incident"}, {"text", incidents[incidents_told_]}});
+    if (in_record_.ok() && recorder->wants_fingerprint(done))
+      in_record_ = recorder->fingerprint(done, now_.world.state_hash());
+    if (!in_record_.ok()) complain(kFailedRunning, in_record_.error().message + "; the run goes on");
+  }
   void prepare_report() {
     if (!outputs_.report) return;
     if (mixed_ != nullptr) real_ = mixed_->report();
@@ -87,7 +100,8 @@ class Recording {
   EmergencyOutputs emergency_;
   double began_s_, began_cpu_s_;
   std::optional<mixed_reality::MixedReport> real_;
-  hal::Status recorded_;
+  hal::Status recorded_, in_record_;
+  std::size_t incidents_told_ = 0;
   SaveAtEnd save_;
 };
 
@@ -178,6 +192,7 @@ bool write_results(RunOutputs& outputs, const RunResult& result, bool table) {
     if (!status.ok()) good = complain(kFailedRunning, status.error().message) == kDone;
   };
   if (outputs.trajectory != nullptr) check(outputs.trajectory->close());
+  if (outputs.record != nullptr) check(outputs.record->close(result.world.tick() - 1, record_end(result)));
   if (outputs.dump) check(outputs.dump->close(result.world));
   if (outputs.picture) {
     core::PictureOptions picture;
@@ -233,7 +248,8 @@ int run(const RunOptions& options) {
   print_problems(problems);
   if (made == nullptr) return kBadInput;
   core::World* const world = made.get();  // a mixed session takes it over
-  auto opened = open_outputs(options, *scenario, *world);
+  const InputFiles inputs = input_files(*scenario, loader);
+  auto opened = open_outputs(options, *scenario, *world, record_start(*world, inputs));
   if (!opened.ok()) return complain(kBadInput, opened.error().message);
   RunOutputs& outputs = opened.value();
 
@@ -243,7 +259,6 @@ int run(const RunOptions& options) {
       join_real_robots(loader.catalog(), made, guarded, hub_faults.value(), clock, stop, world_options.log, code);
   if (code != kDone) return stop.load() ? interrupted_code() : code;
 
-  const InputFiles inputs = input_files(*scenario, loader);
   const std::int64_t steps = steps_of(options.steps, options.seconds, *scenario);
   RunResult result{*world, inputs, {}, world->space().robot_count(), {}, nullptr};
   result.figures.threads = world->threads();

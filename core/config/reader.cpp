@@ -185,22 +185,33 @@ void read_hook(Reading& reading, Element& e) {
   reading.out().hooks.push_back({attributes.library, attributes.label, e, e.line});
 }
 
+/// The words of a list with commas. Empty, and told: one of them is empty.
+std::vector<std::string> read_list(Reading& reading, Element& e, const char* attribute, const std::string& text,
+                                   const char* what) {
+  std::vector<std::string> words;
+  std::string word;
+  for (const char c : text + ",") {
+    if (c != ',') {
+      if (c != ' ') word += c;
+    } else if (word.empty()) {
+      reading.error(e, attribute, "'" + text + "' must be " + what + " separated by commas");
+      return {};
+    } else {
+      words.push_back(std::exchange(word, {}));
+    }
+  }
+  return words;
+}
+
 void read_record(Reading& reading, Element& record) {
-  reading.read<schema::Record>(record);
+  const auto r = reading.read<schema::Record>(record);
+  RecordConfig& config = reading.out().record;
+  config = {r.path, r.every, read_list(reading, record, "entities", r.entities, "ids"),
+            {},     r.state, r.fingerprint_every};
+  if (!r.ports.empty()) config.ports = read_list(reading, record, "ports", r.ports, "names of ports");
   reading.once(record, "trajectory", [&](Element& e) {
     const auto t = reading.read<schema::Trajectory>(e);
-    TrajectoryConfig config{t.path, {}, t.every};
-    std::string id;
-    for (const char c : t.entities + ",") {
-      if (c != ',') {
-        if (c != ' ') id += c;
-      } else if (id.empty()) {
-        return reading.error(e, "entities", "'" + t.entities + "' must be ids separated by commas");
-      } else {
-        config.entities.push_back(std::exchange(id, {}));
-      }
-    }
-    reading.out().trajectory = std::move(config);
+    reading.out().trajectory = TrajectoryConfig{t.path, read_list(reading, e, "entities", t.entities, "ids"), t.every};
   });
 }
 

@@ -510,8 +510,19 @@ struct Led {
 };
 
 struct Record {
-  static constexpr ElementInfo kElement{"record", "What is written down.", "", "trajectory"};
-  void describe(ParamVisitor&) {}
+  static constexpr ElementInfo kElement{
+      "record", "What is written down: a record for `tandem export`, a table of poses.", "", "trajectory"};
+  std::string path, entities = "*", ports;
+  std::int64_t every = 1, fingerprint_every = 0;
+  bool state = true;
+  void describe(ParamVisitor& v) {
+    v.text("path", path, "Record to write; none: no record.");
+    v.text("entities", entities, "Ids of its robots, separated by commas; '*' stands for any text.");
+    v.text("ports", ports, "Names of ports whose fields it holds, separated by commas; '*': all.");
+    v.integer("every", every, {1, 1e12}, "Ticks between rows.");
+    v.flag("state", state, "Whether it holds what controllers publish.");
+    v.integer("fingerprint_every", fingerprint_every, {0, 1e12}, "Ticks between fingerprints of the state; 0: none.");
+  }
 };
 
 struct Visualization {

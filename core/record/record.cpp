@@ -656,6 +656,10 @@ hal::Status Recorder::close(hal::Tick tick, const hal::Json& end) {
   return closed;
 }
 
+const hal::OutputFile& Recorder::file() const noexcept {
+  return *impl_->file;
+}
+
 std::uint64_t Recorder::bytes() const noexcept {
   const std::lock_guard lock(impl_->mutex);
   return impl_->written;

@@ -29,6 +29,7 @@
 #include <string>
 #include <vector>
 
+#include "core/scenario/scenario.hpp"
 #include "core/space/space.hpp"
 #include "hal/json/json.hpp"
 #include "hal/output_file.hpp"
@@ -38,16 +39,6 @@
 namespace tandem::core {
 
 enum class RecordBlock : std::uint16_t { Start = 1, Stream, Members, Rows, Scene, Event, Fingerprint, End };
-
-/// What is recorded, and how often.
-struct RecordConfig {
-  std::string path;
-  std::int64_t every = 1;                     ///< ticks between rows
-  std::vector<std::string> entities = {"*"};  ///< ids of robots, or patterns with '*'
-  std::vector<std::string> ports;             ///< names of ports; "*": all
-  bool state = true;                          ///< what controllers publish
-  std::int64_t fingerprint_every = 0;         ///< ticks; 0: none but the last
-};
 
 /// Writes a record while a run goes on. The thread that steps copies; one of the recorder's own encodes and writes, and
 /// is waited for before the next rows are copied: who is killed loses the tick at hand and the one before at most.
@@ -72,6 +63,8 @@ class Recorder {
   hal::Status event(hal::Tick tick, const hal::Json& event);
   /// Writes the end and puts the file in its place. Error: as `tick_done`.
   hal::Status close(hal::Tick tick, const hal::Json& end);
+  /// Until `close`.
+  const hal::OutputFile& file() const noexcept;
   /// Bytes that the record has so far.
   std::uint64_t bytes() const noexcept;
 

@@ -221,6 +221,16 @@ struct TrajectoryConfig {
   std::int64_t every = 1;             ///< ticks between rows
 };
 
+/// What a record of the run holds (core/record/record.hpp), and how often.
+struct RecordConfig {
+  std::string path;                           ///< empty: no record
+  std::int64_t every = 1;                     ///< ticks between rows
+  std::vector<std::string> entities = {"*"};  ///< ids of robots, or patterns with '*'
+  std::vector<std::string> ports;             ///< names of ports; "*": all
+  bool state = true;                          ///< what controllers publish
+  std::int64_t fingerprint_every = 0;         ///< ticks; 0: none
+};
+
 struct Scenario {
   std::string file;
   std::string name;  ///< file name without folder and extension
@@ -248,6 +258,7 @@ struct Scenario {
   std::vector<SoundItem> sounds;
   std::vector<PluginConfig> plugins;
   std::vector<HookConfig> hooks;
+  RecordConfig record;
   std::optional<TrajectoryConfig> trajectory;
   Element camera;     ///< placements of ARGoS' view, kept for ours
   Element effective;  ///< the whole file with every default filled in

@@ -1,0 +1,126 @@
+// Records as a user meets them: `tandem run --record`, <record>, `tandem export`.
+#include <gtest/gtest.h>
+#include <sstream>
+
+#include "core/record/record_reader.hpp"
+#include "tests/checkout.hpp"
+#include "tests/scenarios/process.hpp"
+
+namespace tandem {
+namespace {
+
+using scenarios::Folder;
+using scenarios::json_value;
+using scenarios::Tandem;
+using scenarios::text_of;
+
+const std::string kConfigs = std::string(test::kSourceDir) + "/configs/";
+
+/// Runs and gives what was printed; errors where the exit code is another.
+std::string output_of(const Folder& folder, const std::vector<std::string>& arguments, int code = 0) {
+  Tandem tandem(arguments, folder.path());
+  EXPECT_EQ(tandem.wait(), code) << tandem.errors();
+  return code == 0 ? tandem.output() : tandem.errors();
+}
+
+std::size_t lines_of(const std::string& text) {
+  return static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
+}
+
+TEST(Records, HoldPosesOfEveryTickAndBecomeTables) {
+  Folder folder;
+  output_of(folder, {"run", kConfigs + "epuck_diffusion.xml", "--seconds", "3", "--record", "run.record",
+                     "--trajectory", "poses.csv", "--set", "record.ports=proximity"});
+  const std::string contents = output_of(folder, {"export", "run.record"});
+  for (const char* part : {"epuck_diffusion, seed 124", "'pose': ticks 0 to 29, 30 of them, 50 rows each; x_m",
+                           "'sensor proximity'", "end         length"})
+    EXPECT_NE(contents.find(part), std::string::npos) << part << " in " << contents;
+
+  const std::string table = output_of(folder, {"export", "run.record", "--csv", "-"});
+  EXPECT_EQ(lines_of(table), 1U + 30U * 50U);
+  // Of ep7 the same places as in the table of poses, which the run wrote itself.
+  std::istringstream mine(table), theirs(text_of(folder.path() / "poses.csv"));
+  std::vector<std::string> a, b;
+  for (std::string line; std::getline(mine, line);) {
+    if (line.find(",ep7,") != std::string::npos) a.push_back(line.substr(0, line.find(",0.000000,")));
+  }
+  for (std::string line; std::getline(theirs, line);) {
+    if (line.find(",ep7,") != std::string::npos) b.push_back(line.substr(0, line.rfind(',')));
+  }
+  EXPECT_EQ(a, b);
+
+  const std::string some =
+      output_of(folder, {"export", "run.record", "--csv", "-", "--table", "sensor proximity", "--entities", "ep1,ep2*",
+                         "--from", "10", "--until", "20", "--every", "5"});
+  EXPECT_EQ(lines_of(some), 1U + 3U * 12U) << some;  // ep1, ep2, ep20 to ep29
+  EXPECT_NE(some.find("distance_m[7]"), std::string::npos);
+}
+
+TEST(Records, ChangeNoBitOfTheRun) {
+  Folder folder;
+  for (const char* file : {"epuck_diffusion.xml", "footbot_gripping.xml"}) {
+    const auto hash = [&](std::vector<std::string> more) {
+      std::vector<std::string> arguments = {"run", kConfigs + file, "--seconds", "5", "--threads",
+                                            "2",   "--report",      "-"};
+      arguments.insert(arguments.end(), more.begin(), more.end());
+      return json_value(output_of(folder, arguments), "state_hash");
+    };
+    EXPECT_EQ(hash({}),
+              hash({"--record", "run.record", "--set", "record.ports=*", "--set", "record.fingerprint_every=3"}));
+  }
+}
+
+TEST(Records, OfAKilledRunAreReadable) {
+  Folder folder;
+  Tandem run({"run", kConfigs + "epuck_diffusion.xml", "--set", "framework.experiment.length=0", "--set",
+              "framework.time.mode=realtime", "--record", "run.record"},
+             folder.path());
+  ASSERT_TRUE(scenarios::eventually([&] { return text_of(folder.path() / "run.record.part").size() > 10000; }, 20));
+  run.signal(SIGKILL);
+  EXPECT_EQ(run.wait(), -SIGKILL);
+  EXPECT_NE(output_of(folder, {"export", "run.record.part"}).find("the run was killed"), std::string::npos);
+  EXPECT_GT(lines_of(output_of(folder, {"export", "run.record.part", "--csv", "-"})), 50U);
+}
+
+TEST(Records, AreAskedForInTheFileToo) {
+  Folder folder;
+  std::string text = text_of(kConfigs + "epuck_diffusion.xml");
+  const std::size_t end = text.rfind("</tandem>") != std::string::npos ? text.rfind("</tandem>") : text.rfind("</");
+  text.insert(end, R"(<record path="mine.record" entities="ep1*" every="10" fingerprint_every="10"/>)");
+  folder.write("mine.xml", text);
+  output_of(folder, {"run", "mine.xml", "--seconds", "3"});
+  auto reader = core::RecordReader::open((folder.path() / "mine.record").string());
+  ASSERT_TRUE(reader.ok()) << reader.error().message;
+  std::size_t rows = 0, fingerprints = 0;
+  while (const auto entry = reader.value().next()) {
+    if (entry->type == core::RecordBlock::Fingerprint) ++fingerprints;
+    if (!entry->rows || entry->tick < 0) continue;
+    EXPECT_EQ(entry->rows->size(), 11U);  // ep1, ep10 to ep19
+    EXPECT_EQ(entry->tick % 10, 0);
+    ++rows;
+  }
+  EXPECT_EQ(rows, 3U);
+  EXPECT_EQ(fingerprints, 3U);
+}
+
+TEST(Records, ThatCannotBeMadeOrReadAreClearErrors) {
+  Folder folder;
+  const std::string experiment = kConfigs + "epuck_diffusion.xml";
+  const auto fails = [&](const std::vector<std::string>& arguments, int code, const char* part) {
+    const std::string errors = output_of(folder, arguments, code);
+    EXPECT_NE(errors.find(part), std::string::npos) << errors;
+  };
+  fails({"run", experiment, "--record", "/no/such/folder/r"}, 1, "/no/such/folder");
+  fails({"run", experiment, "--record", experiment}, 1, "the experiment");
+  fails({"run", experiment, "--record", "r", "--set", "record.ports=proximty"}, 1, "did you mean 'proximity'");
+  fails({"run", experiment, "--record", "r", "--set", "record.entities=ep1,,ep2"}, 1, "separated by commas");
+  fails({"run", experiment, "--seconds", "1", "--record", "/dev/full"}, 3, "it is lost from tick");
+  fails({"export", "nowhere"}, 1, "No such file");
+  fails({"export", experiment}, 1, "is no record");
+  output_of(folder, {"run", experiment, "--seconds", "1", "--record", "r"});
+  fails({"export", "r", "--csv", "-", "--table", "sensor proximit"}, 1, "it has 'pose'");
+  fails({"export", "r", "--every", "0"}, 2, "every");
+}
+
+}  // namespace
+}  // namespace tandem
