@@ -4,6 +4,7 @@
 #include <chrono>
 
 #include "bridges/epuck/stop.hpp"
+#include "bridges/epuck/stopper.hpp"
 #include "bridges/link/pending_link.hpp"
 #include "hal/check.hpp"
 #include "hal/robot/epuck.hpp"
@@ -188,11 +189,18 @@ std::string EpuckBridge::link() const {
 }
 
 StopMessages EpuckBridge::stop_messages() const {
+  const std::lock_guard lock(mutex_);
+  const bool connected = link_ != nullptr && in_network(settings_.link);
   return {.robot = settings_.driver.robot.id,
           .kind = std::string(hal::epuck::kName),
           .link = absolute_link(settings_.link),
-          .body = {},
-          .version = kStopVersion};
+          .body = connected ? stop_body(link_->descriptor()) : "",
+          .version = 1 + links_opened_};
+}
+
+std::uint64_t EpuckBridge::stop_version() const noexcept {
+  const std::lock_guard lock(mutex_);
+  return 1 + links_opened_;
 }
 
 LinkReport EpuckBridge::report() const {

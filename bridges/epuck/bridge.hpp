@@ -66,7 +66,7 @@ class EpuckBridge final : public DriverBridge<EpuckBridge, EpuckRobot> {
   std::string identity() const override;
   std::string link() const override;
   StopMessages stop_messages() const override;
-  std::uint64_t stop_version() const noexcept override { return kStopVersion; }
+  std::uint64_t stop_version() const noexcept override;
   LinkReport report() const override;
   void describe(StatusVisitor& visitor) const override;
 
@@ -84,8 +84,6 @@ class EpuckBridge final : public DriverBridge<EpuckBridge, EpuckRobot> {
   void run_shutdown(ByteLink& link);
   void pump_now(hal::TimeNs now) noexcept;
   bool wants_new_link() const noexcept;
-
-  static constexpr std::uint64_t kStopVersion = 1;  // one robot, one device: nothing of it changes
 
   BridgeSettings settings_;
   LinkOpener opener_;

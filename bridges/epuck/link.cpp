@@ -17,7 +17,7 @@ hal::Result<EpuckLink> wifi_link(std::string_view endpoint, const LinkTerms& ter
   const auto connect = [e = parsed.value()] {
     return TcpLink::connect(e, kWifiScheme, "is its selector at 15, and is it in this network?");
   };
-  return EpuckLink{WireForm::Wifi, permitted(connect, terms.permit)};
+  return EpuckLink{WireForm::Wifi, permitted(connect, terms.permit), parsed.value().port};
 }
 
 hal::Result<EpuckLink> tcp_link(const LinkAddress& address, const LinkTerms& terms) {
@@ -26,7 +26,7 @@ hal::Result<EpuckLink> tcp_link(const LinkAddress& address, const LinkTerms& ter
   const auto connect = [e = parsed.value()] {
     return TcpLink::connect(e, "tcp", "is ser2net, or what else serves the robot's serial line, running there?");
   };
-  return EpuckLink{WireForm::Serial, permitted(connect, terms.permit)};
+  return EpuckLink{WireForm::Serial, permitted(connect, terms.permit), parsed.value().port};
 }
 
 }  // namespace
@@ -46,7 +46,7 @@ hal::Result<EpuckLink> epuck_link(std::string_view text, const LinkTerms& terms)
   }
   auto open = byte_link_opener(address.value(), terms);
   if (!open.ok()) return open.error();
-  return EpuckLink{WireForm::Serial, std::move(open).value()};
+  return EpuckLink{WireForm::Serial, std::move(open).value(), 0};
 }
 
 }  // namespace tandem::bridges::epuck

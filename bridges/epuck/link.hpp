@@ -17,6 +17,7 @@ inline constexpr std::string_view kLinks = "serial:DEVICE@115200, tcp:HOST:PORT 
 struct EpuckLink {
   WireForm wire = WireForm::Serial;
   LinkOpener open;
+  std::uint16_t port = 0;  ///< that it connects to; 0: no network is between
 };
 
 /// How to open the link to an e-puck, and what is spoken there. Errors: not a link, one that carries no bytes, no host

@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
+#include <unistd.h>
 
 #include "bridges/epuck/link.hpp"
 #include "bridges/epuck/wifi_session.hpp"
+#include "bridges/link/tcp_link.hpp"
 #include "hal/robot/epuck.hpp"
 
 namespace tandem::bridges::epuck {
@@ -13,6 +16,7 @@ namespace {
 using guardian::StopState;
 using hal::TimeNs;
 
+constexpr std::string_view kSocket = "socket=";
 constexpr TimeNs kStep = 40 * hal::kNsPerMs;
 constexpr TimeNs kWriteWithin = 20 * hal::kNsPerMs;  // four times as long as the longest burst takes
 
@@ -59,7 +63,16 @@ class WifiStop final : public StopTalk {
   WifiSession session_;
 };
 
-std::unique_ptr<guardian::Stopper> make(const StopMessages& messages, guardian::StopCause) {
+/// -1: the body names none.
+int descriptor_in(std::string_view body) noexcept {
+  int descriptor = -1;
+  if (!body.starts_with(kSocket)) return -1;
+  body.remove_prefix(kSocket.size());
+  const auto [end, error] = std::from_chars(body.data(), body.data() + body.size(), descriptor);
+  return error == std::errc{} && end == body.data() + body.size() ? descriptor : -1;
+}
+
+std::unique_ptr<guardian::Stopper> make(const StopMessages& messages, guardian::StopCause cause) {
   LinkTerms terms;
   terms.beside = true;
   const auto link = epuck_link(messages.link, terms);
@@ -67,7 +80,15 @@ std::unique_ptr<guardian::Stopper> make(const StopMessages& messages, guardian::
     const auto fails = [error = link.error()]() -> hal::Result<std::unique_ptr<ByteLink>> { return error; };
     return std::make_unique<EpuckStopper>(fails, StopTiming{});
   }
-  return std::make_unique<EpuckStopper>(link.value().open, stop_timing_for(messages.link), link.value().wire);
+  LinkOpener open = link.value().open;
+  const int held = descriptor_in(messages.body);
+  if (cause == guardian::StopCause::HubFrozen && held >= 0 && link.value().port != 0) {
+    open = [connect = open, held, port = link.value().port] {
+      end_connection_of(::getppid(), held, port);
+      return connect();
+    };
+  }
+  return std::make_unique<EpuckStopper>(open, stop_timing_for(messages.link), link.value().wire);
 }
 
 }  // namespace
@@ -75,6 +96,10 @@ std::unique_ptr<guardian::Stopper> make(const StopMessages& messages, guardian::
 const guardian::StopperType& stopper_type() noexcept {
   static const guardian::StopperType type{hal::epuck::kName, &make};
   return type;
+}
+
+std::string stop_body(int descriptor) {
+  return descriptor >= 0 ? std::string(kSocket) + std::to_string(descriptor) : std::string();
 }
 
 EpuckStopper::EpuckStopper(LinkOpener opener, const StopTiming& timing, WireForm wire) : opener_(std::move(opener)) {

@@ -43,7 +43,12 @@ class EpuckStopper final : public guardian::Stopper {
   std::string trouble_;
 };
 
-/// Understands stop messages without a body: the link says all.
+/// The body of stop messages: which descriptor of the hub's is the connection, for robots in a network. Robots and
+/// serial servers hear one host at a time, and a frozen hub stays connected: before the stopper connects, it ends that
+/// connection.
+std::string stop_body(int descriptor);
+
+/// Understands stop messages with such a body or none: the link says the rest.
 const guardian::StopperType& stopper_type() noexcept;
 
 }  // namespace tandem::bridges::epuck

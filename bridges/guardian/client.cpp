@@ -15,6 +15,7 @@
 #include <new>
 #include <poll.h>
 #include <sys/mman.h>
+#include <sys/prctl.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
 #include <thread>
@@ -323,6 +324,7 @@ hal::Result<std::unique_ptr<GuardianClient>> GuardianClient::start(std::vector<S
     return failed();
   }
   if (child == 0) guard({types, page, ends[1], hub, options.limits});
+  ::prctl(PR_SET_PTRACER, child, 0, 0, 0);  // it may end our connections while we are frozen
   ::close(ends[1]);
   return std::unique_ptr<GuardianClient>(
       new GuardianClient(std::make_unique<Heart>(std::move(types), options, *page, ends[0], child)));

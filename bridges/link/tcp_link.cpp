@@ -9,6 +9,7 @@
 #include <netinet/tcp.h>
 #include <poll.h>
 #include <sys/socket.h>
+#include <sys/syscall.h>
 #include <unistd.h>
 
 namespace tandem::bridges {
@@ -59,6 +60,25 @@ void set_option(int socket, int level, int option, int value) noexcept {
 }
 
 }  // namespace
+
+bool end_connection_of(int process, int descriptor, std::uint16_t port) noexcept {
+  constexpr long kPidfdOpen = 434, kPidfdGetfd = 438;  // on every architecture; older headers do not name them
+  const auto pidfd = static_cast<int>(::syscall(kPidfdOpen, process, 0));
+  if (pidfd < 0) return false;
+  const auto fd = static_cast<int>(::syscall(kPidfdGetfd, pidfd, descriptor, 0));
+  ::close(pidfd);
+  if (fd < 0) return false;
+  sockaddr_storage peer{};
+  socklen_t size = sizeof peer;
+  bool meant = ::getpeername(fd, reinterpret_cast<sockaddr*>(&peer), &size) == 0;
+  if (peer.ss_family == AF_INET)
+    meant = meant && ntohs(reinterpret_cast<const sockaddr_in&>(peer).sin_port) == port;
+  else
+    meant = meant && peer.ss_family == AF_INET6 && ntohs(reinterpret_cast<const sockaddr_in6&>(peer).sin6_port) == port;
+  const bool ended = meant && ::shutdown(fd, SHUT_RDWR) == 0;
+  ::close(fd);
+  return ended;
+}
 
 hal::Result<Endpoint> parse_endpoint(std::string_view scheme, std::string_view text, std::uint16_t usual_port) {
   const std::string whole = "link '" + std::string(scheme) + ":" + std::string(text) + "': ";

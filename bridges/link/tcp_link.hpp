@@ -22,6 +22,11 @@ struct Endpoint {
 /// Errors: no host, not a port, no port where none is usual (`usual_port` 0).
 hal::Result<Endpoint> parse_endpoint(std::string_view scheme, std::string_view text, std::uint16_t usual_port = 0);
 
+/// Ends a TCP connection that another process holds open and cannot end, for it is frozen: who serves one host at a
+/// time then serves the next. `descriptor`: in that process. False: it is no connection to that port, or the system
+/// does not permit it (before Linux 5.6; a process that has not named us with PR_SET_PTRACER, where that counts).
+bool end_connection_of(int process, int descriptor, std::uint16_t port) noexcept;
+
 /// A connection made by this side, without delays for small packets, and with keep-alive so that a peer that lost its
 /// power is noticed: 3 to 4 s after its last sign of life the link has hung up.
 class TcpLink final : public ByteLink {
