@@ -24,18 +24,6 @@
 namespace tandem::app {
 namespace {
 
-/// All plug-ins of the plug-in folders, opened; those that do not load are named on standard error.
-/// Those of `--plugin` come first; null, when one of them cannot be opened.
-std::unique_ptr<hal::PluginLoader> open_all(const Libraries& plugins) {
-  auto loader = std::make_unique<hal::PluginLoader>(plugin_folders(), catalog());
-  if (!open_plugins(*loader, plugins)) return nullptr;
-  for (const auto& file : plugin_files()) {
-    const hal::Status opened = loader->open(file.string());
-    if (!opened.ok()) say("warning: " + opened.error().message);
-  }
-  return loader;
-}
-
 /// What is listed and described: of the program, of plug-ins, and of a file.
 struct Known {
   std::unique_ptr<hal::PluginLoader> loader;
@@ -43,11 +31,26 @@ struct Known {
   const hal::Catalog& catalog() const { return file != nullptr ? file->catalog : loader->catalog(); }
 };
 
-/// Nothing, when something of it cannot be opened.
+/// All plug-ins: of `--plugin`, of the file, and of the plug-in folders, of which those that do not load are named on
+/// standard error. Nothing, when one of the others cannot be opened, or the file's kinds cannot be read.
 std::optional<Known> all_known(const Libraries& plugins, const std::string& file) {
-  Known known{open_all(plugins), nullptr};
-  if (known.loader == nullptr) return std::nullopt;
+  Known known{std::make_unique<hal::PluginLoader>(plugin_folders(), catalog()), nullptr};
+  if (!open_plugins(*known.loader, plugins)) return std::nullopt;
   if (!file.empty() && (known.file = kinds_of_file(*known.loader, file)) == nullptr) return std::nullopt;
+  for (const auto& library : plugin_files()) {
+    const hal::Status opened = known.loader->open(library.string());
+    if (!opened.ok()) say("warning: " + opened.error().message);
+  }
+  if (known.file == nullptr) return known;
+  // A plug-in of the folders may have a robot that the file knows nothing of.
+  std::erase_if(known.file->kinds, [&](const core::KindConfig& config) {
+    const auto* const other = known.loader->catalog().find<hal::RobotKind>(config.kind->name);
+    if (other == nullptr) return false;
+    say(fmt::format("warning: {}:{}: the kind '{}' is left out: {} has a robot of that name", config.file, config.line,
+                    config.kind->name, known.loader->catalog().origin_of(other)));
+    return true;
+  });
+  known.file->catalog = core::with_kinds(known.loader->catalog(), known.file->kinds);
   return known;
 }
 

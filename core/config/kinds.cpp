@@ -250,9 +250,10 @@ class KindsReader {
                 "; give yours another name, and like=\"" + name + "\" to begin from that one");
       return false;
     }
-    const std::vector<ElementManual> manuals = element_manuals(catalog_);
-    if (std::none_of(manuals.begin(), manuals.end(), [&](const ElementManual& m) { return m.name == name; }))
-      return true;
+    if (elements_.empty()) {
+      for (const ElementManual& m : element_manuals(catalog_)) elements_.insert(m.name);
+    }
+    if (!elements_.contains(name)) return true;
     error(e, "name", "'" + name + "' is another element of experiment files; choose another name");
     return false;
   }
@@ -423,6 +424,7 @@ class KindsReader {
   const hal::Catalog& catalog_;
   Problems& problems_;
   std::vector<std::string> parts_;
+  std::set<std::string> elements_;  // of experiment files; looked up when there is a kind
   std::vector<Draft> drafts_;
   std::vector<std::string> strangers_;
 };

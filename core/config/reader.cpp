@@ -253,8 +253,8 @@ bool names_real_robots(const Element& root, const std::vector<std::string>& with
 std::optional<Scenario> read_experiment(ExperimentFile file, const hal::Catalog& catalog, Problems& problems) {
   Problems found = std::move(file.problems);
   std::vector<KindConfig> kinds = read_kinds(file.root, catalog, found);
-  const hal::Catalog with = with_kinds(catalog, kinds);
-  Reading reading(with, found);
+  const hal::Catalog with = kinds.empty() ? hal::Catalog() : with_kinds(catalog, kinds);
+  Reading reading(kinds.empty() ? catalog : with, found);
   reading.out().kinds = std::move(kinds);
   std::optional<Scenario> scenario = read_parts(reading, file.root);
   const std::string path = file.root.file;
