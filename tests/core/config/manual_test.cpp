@@ -51,7 +51,7 @@ TEST(Manual, NamesKindsOfRobotsAndEngines) {
   for (const char* name : {"e-puck", "foot-bot", "kinematics2d", "dynamics2d", "range_and_bearing"})
     EXPECT_NE(find(manuals, name), nullptr) << name;
   EXPECT_THAT(find(manuals, "arena")->children, testing::Contains("foot-bot"));
-  EXPECT_EQ(find(manuals, "battery")->parent, "e-puck or e-puck2 or eye-bot or foot-bot");
+  EXPECT_THAT(find(manuals, "battery")->parent, testing::StartsWith("e-puck or "));
   EXPECT_EQ(find(manuals, "dynamics2d")->parent, "physics_engines");
 }
 

@@ -7,6 +7,7 @@
 #include "bridges/epuck/register.hpp"
 #include "bridges/eyebot/register.hpp"
 #include "bridges/footbot/register.hpp"
+#include "bridges/thymio/register.hpp"
 #include "core/scenario/engine_traits.hpp"
 #include "core/scenario/field_type.hpp"
 #include "core/scenario/medium_type.hpp"
@@ -45,6 +46,7 @@ inline hal::Catalog catalog_with(const std::vector<std::string_view>& engines) {
     bridges::epuck::register_bridge(r);
     bridges::footbot::register_bridge(r);
     bridges::eyebot::register_bridge(r);
+    bridges::thymio::register_bridge(r);
     for (const KnownEngine& engine : kAll) {
       for (const std::string_view wanted : engines) {
         if (wanted == engine.kind) r.add(engine);

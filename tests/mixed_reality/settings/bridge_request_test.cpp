@@ -59,7 +59,7 @@ TEST(BridgeTypes, RefuseLinksAndKindsThatTheyCannotReach) {
   EXPECT_TRUE(made_for(one_robot("e-puck", "ep0", "serial:/dev/ttyUSB0")).ok());
   const auto made = made_for(one_robot("marsupial", "m0", "serial:/dev/ttyUSB0"));
   ASSERT_FALSE(made.ok());
-  EXPECT_THAT(made.error().message, HasSubstr("'marsupial'; there is: e-puck, foot-bot, eye-bot"));
+  EXPECT_THAT(made.error().message, HasSubstr("'marsupial'; there is: e-puck, "));
 }
 
 TEST(BridgeTypes, KnowTheirOwnAttributesAndNoOthers) {
