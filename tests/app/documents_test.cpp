@@ -121,6 +121,35 @@ TEST(Hooks, TheirExampleBuildsRunsAndDoesWhatItSays) {
   EXPECT_TRUE(fs::exists(folder.path() / "end.svg"));
 }
 
+TEST(RobotFiles, ItsRobotsRunAsPrinted) {
+  const std::string page = text_of(kTop / "docs/robot-files.md");
+  Folder folder;
+  const auto blocks = named_blocks(page);
+  for (const char* name : {"crabs.xml", "crabs_run.xml"}) {
+    ASSERT_TRUE(blocks.contains(name)) << name;
+    folder.write(name, blocks.at(name));
+  }
+  std::string commands = shell_block(page, "describe crab --in");
+  for (std::size_t at = 0; (at = commands.find("./tandem ", at)) != std::string::npos;)
+    commands.replace(at, 9, std::string(test::kBuildDir) + "/bin/tandem ");
+  folder.write("commands.sh", commands);
+  const std::string run = "cd '" + folder.path().string() + "' && sh -e commands.sh >log 2>&1 </dev/null";
+  ASSERT_EQ(std::system(run.c_str()), 0) << text_of(folder.path() / "log");
+  const std::string log = text_of(folder.path() / "log");
+  for (const char* part : {"good: 2 kinds of robots: crab, old-crab", "robot <crab>: An invented robot on two wheels.",
+                           "mount 11: bearing -30 deg", "(crabs.xml:17)"})
+    EXPECT_NE(log.find(part), std::string::npos) << part << "\n" << log;
+  EXPECT_NE(text_of(folder.path() / "crabs.svg").find("5 × old-crab"), std::string::npos);
+}
+
+TEST(RobotFiles, ShowsAKindAsTheProgramPrintsIt) {
+  Folder folder;
+  Tandem describe({"describe", "e-puck", "--xml"}, folder.path());
+  ASSERT_EQ(describe.wait(), 0);
+  EXPECT_NE(text_of(kTop / "docs/robot-files.md").find("```xml\n" + describe.output() + "```"), std::string::npos)
+      << "print it anew: ./tandem describe e-puck --xml";
+}
+
 TEST(Controllers, TheirExampleBuildsRunsAndDoesWhatItSays) {
   const std::string page = text_of(kTop / "docs/controllers.md");
   Folder folder;

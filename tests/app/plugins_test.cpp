@@ -63,6 +63,38 @@ TEST_F(Plugins, OfAFileAreFoundBesideItAndGiveTheSameBitsForAnyNumberOfThreads) 
   EXPECT_EQ(compare.wait(), 0) << compare.errors() << compare.output();
 }
 
+/// The experiment with crabs instead of e-pucks, whose thermometers are as `parts` say.
+std::string with_crabs(const std::string& plugins, const std::string& parts) {
+  std::string text =
+      experiment(plugins + "\n<kinds><kind name=\"crab\" like=\"e-puck\">" + parts + "</kind></kinds>", "libwarm");
+  for (std::size_t at = 0; (at = text.find("e-puck", at)) != std::string::npos; at += 4) {
+    if (text.compare(at - 6, 6, "like=\"") != 0) text.replace(at, 6, "crab");
+  }
+  return text;
+}
+
+TEST_F(Plugins, PartsOfTheirsAreBuiltIntoRobotsOfFiles) {
+  const std::string plugin = "<plugins library=\"libwarm\"/>";
+  folder_.write("there/crabs.xml", with_crabs(plugin, "<thermometer offset=\"400\" source=\"a guess\"/>"));
+  folder_.write("there/plain_crabs.xml", with_crabs(plugin, ""));
+  EXPECT_NE(state_of({"run", "there/crabs.xml"}), state_of({"run", "there/plain_crabs.xml"}));
+  EXPECT_EQ(state_of({"run", "there/plain_crabs.xml"}), state_of({"run", "there/named.xml"}));
+  Tandem describe({"describe", "crab", "--in", "there/crabs.xml"}, folder_.path());
+  ASSERT_EQ(describe.wait(), 0) << describe.errors();
+  EXPECT_THAT(describe.output(), AllOf(HasSubstr("thermometer: A thermometer in the body."), HasSubstr("offset: 400 K"),
+                                       HasSubstr("source: a guess")));
+
+  folder_.write("there/hot.xml", with_crabs(plugin, "<thermometer offset=\"900\"/>"));
+  Tandem hot({"check", "there/hot.xml"}, folder_.path());
+  EXPECT_EQ(hot.wait(), 1);
+  EXPECT_THAT(hot.errors(), HasSubstr("there/hot.xml:2: error: <thermometer> shows more than anybody believes"));
+  folder_.write("there/without.xml", with_crabs("", "<thermometer offset=\"4\"/>"));
+  Tandem without({"check", "there/without.xml"}, folder_.path());
+  EXPECT_EQ(without.wait(), 1);
+  EXPECT_THAT(without.errors(),
+              HasSubstr("there/without.xml:2: error: <kind> cannot hold <thermometer>: it is no body"));
+}
+
 TEST_F(Plugins, TheirStateIsRecordedAndTheirFileReported) {
   Tandem run({"run", "there/named.xml", "--report", "r.json", "--dump", "d.csv"}, folder_.path());
   ASSERT_EQ(run.wait(), 0) << run.errors();
@@ -88,7 +120,7 @@ TEST_F(Plugins, AreThereInCheckListAndDescribe) {
   ASSERT_EQ(list.wait(), 0) << list.errors();
   EXPECT_THAT(list.output(),
               AllOf(HasSubstr("default (libwarm.so)"), HasSubstr("Lamps warm robots with thermometers. (libwarm.so)"),
-                    HasSubstr("there/libwarm.so: 1 controller, 1 coupling, 1 device, 1 port")));
+                    HasSubstr("there/libwarm.so: 1 controller, 1 coupling, 1 device, 1 part, 1 port")));
   EXPECT_THAT(list.errors(), HasSubstr("registers the port 'sensor thermometer' a second time: the first is from"));
   Tandem describe({"describe", "thermometer", "--plugin", "there/libwarm.so"}, folder_.path());
   ASSERT_EQ(describe.wait(), 0) << describe.errors();

@@ -19,7 +19,7 @@ namespace {
 
 using namespace tandem::core;
 
-constexpr std::array<std::string_view, 6> kExperiments = {
+constexpr std::array<std::string_view, 9> kExperiments = {
     R"(<tandem><framework><system threads="2"/><experiment length="10" ticks_per_second="10" random_seed="1"/><time mode="fast"/></framework>
 <arena size="4,4,1"/></tandem>)",
     R"(<argos-configuration><framework><experiment/></framework><controllers><c id="c" library="l"><actuators><leds medium="l"/></actuators>
@@ -38,14 +38,28 @@ values="0,0,0"/><entity quantity="4"><box id="b" size="1,1,1"/></entity></distri
     R"(<tandem><framework><experiment/></framework><arena size="4,4,1"/><physics_engines><kinematics2d id="a" regions="2x2"><boundaries><top height="1"/>
 <bottom height="0"/><sides><vertex point="0,0" gate="b"/><vertex point="1,0"/><vertex point="1,1"/></sides></boundaries></kinematics2d><kinematics2d id="b"/>
 </physics_engines><loop_functions library="l" label="x"><y/></loop_functions><record><trajectory path="p" entities="a*,b"/></record>
-<visualization><qt-opengl><camera/></qt-opengl></visualization></tandem>)"};
+<visualization><qt-opengl><camera/></qt-opengl></visualization></tandem>)",
+    R"(<tandem><kinds><kind name="crab" summary="s"><body radius="0.1" height="0.1" mass="1"/><differential_drive wheel_radius="0.02" wheel_base="0.1"
+max_speed="0.3" force="1" torque="1"/><proximity range="0.1"><mount bearing="90" radius="0.1" count="8"/><mount x="1"/><response distance="0" counts="9"/>
+<response distance="1" counts="1"/></proximity><leds beacon="true"><spread sin_lowest="-1"/><mount count="3"/></leds><battery full="4" empty="3"/></kind></kinds>
+<framework><experiment/></framework><controllers><c id="c" library="l"/></controllers><arena size="4,4,1"><crab id="c0"><body position="0,0,0"/>
+<controller config="c"/></crab></arena></tandem>)",
+    R"(<tandem><kinds><kind name="a" like="b" without="leds"/><kind name="b" like="c"/><kind name="c" like="e-puck" bridge="e-puck"/><kind name="d" like="eye-bot"><body mass="2"/></kind>
+<kind name="e" like="foot-bot" without="turret gripper differential_drive"><distance_scanner><head min="0" max="1"/></distance_scanner></kind></kinds>
+<framework><experiment/></framework><controllers><c id="c" library="l"/></controllers><arena size="4,4,1"><a id="c0" rab_range="1"><body position="0,0,0"/>
+<controller config="c"/><bridge link="x"/></a></arena></tandem>)",
+    R"(<tandem><kinds file="fuzz.xml"/><kinds file="."/><kinds><kinds file="nowhere.xml"/><kinds version="1"><kind name="q"><quadrotor max_speed="1"/></kind></kinds></kinds>
+<framework><experiment/></framework><arena size="4,4,1"/></tandem>)"};
 
 constexpr std::array<std::string_view, 24> kNasty = {
     "",    "-1",      "0",         "nan",         "inf",       "1e308",    "-1e-320",      "99999999999999999999",
     "1,2", "1,2,3,4", ",,",        "1e9,1e9,1e9", "5 cm",      "5 parsec", "true",         "uniform",
     "c",   "e1",      "&lt;&amp;", "[0]",         "100000000", "4x4",      "\xC3\xA4\xFF", "0x10"};
 
-constexpr std::array<std::string_view, 12> kPieces = {"<box/>",
+constexpr std::array<std::string_view, 15> kPieces = {"<box/>",
+                                                      "<kind name=\"c\" like=\"a\"/>",
+                                                      "<light><mount count=\"30\"/></light>",
+                                                      "<quadrotor/>",
                                                       "<e-puck id=\"e1\"/>",
                                                       "<distribute>",
                                                       "</distribute>",
@@ -58,7 +72,9 @@ constexpr std::array<std::string_view, 12> kPieces = {"<box/>",
                                                       "/>",
                                                       "<body position=\"0,0,0\"/>"};
 
-constexpr std::array<std::string_view, 6> kPaths = {
+constexpr std::array<std::string_view, 7> kPaths = {
+    "kinds.kind[0].body.radius=",
+
     "framework.experiment.length=", "arena.distribute[0].entity.quantity=",
     "arena.box[b].size=",           "controllers.c[c].params.a=",
     "framework.system.threads=",    "arena."};

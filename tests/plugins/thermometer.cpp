@@ -88,6 +88,21 @@ constexpr core::CouplingType kWarming{
 
 // --- the device ---
 
+/// How well a kind's thermometer is made. Kinds without the part have one that shows what is.
+struct ThermometerPart {
+  static constexpr std::string_view kName = "thermometer";
+  static constexpr std::string_view kDoc = "A thermometer in the body.";
+  double offset_K = 0.0;
+  std::string source = {};
+  void describe(hal::ParamVisitor& v) {
+    v.number("offset", offset_K, Thermometer::kKelvin, {-1000.0, 1000.0}, "What it shows too much.");
+    v.text("source", source, "Where these figures come from.");
+  }
+  std::string flaw() const {
+    return offset_K > 500.0 ? "shows more than anybody believes; give it a smaller offset" : "";
+  }
+};
+
 struct Options {
   double offset_K = 0.0;
   void describe(hal::ParamVisitor& v) {
@@ -114,9 +129,11 @@ class ThermometerSensor final : public core::Sensor {
 };
 
 core::BlockFactory<core::Sensor> make_thermometer(const core::Element& element, core::Problems& problems,
-                                                  const core::DeviceSetup& /*setup*/) {
+                                                  const core::DeviceSetup& setup) {
   const auto options = core::read_options<Options>(element, problems);
-  const auto make = [offset_K = options.offset_K](const core::BlockColumns& columns) {
+  const auto* const part = setup.kind.part<ThermometerPart>();
+  const auto make = [offset_K = options.offset_K +
+                                (part != nullptr ? part->offset_K : 0.0)](const core::BlockColumns& columns) {
     return std::make_unique<ThermometerSensor>(offset_K, columns);
   };
   return {make, {core::keeps<Warmth>()}};
@@ -127,6 +144,7 @@ void register_all(hal::Registrar& registrar) {
       Thermometer::kName, "default", "The body's temperature, at once.", [](const auto& /*robot*/) { return true; },
       &make_thermometer, &core::describe_options<Options>);
   registrar.add(hal::port_type<Thermometer>());
+  registrar.add(hal::part_type<ThermometerPart>());
   registrar.add(device);
   registrar.add(kWarming);
   registrar.add_controller<Basker>("basker", "Drives, the slower the warmer it is.");

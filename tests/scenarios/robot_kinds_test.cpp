@@ -225,6 +225,18 @@ TEST_F(Commands, ShowAKindFromAFileWithItsPlace) {
   EXPECT_EQ(without.wait(), 1);
 }
 
+TEST_F(Commands, LeaveAKindOutThatAPluginOfTheFoldersHasToo) {
+  folder_.write("crawler.xml", R"(<kinds><kind name="crawler" like="e-puck"/></kinds>)");
+  Tandem check({"check", "crawler.xml"}, folder_.path());
+  EXPECT_EQ(check.wait(), 0) << "only who lists everything opens the plug-ins of the folders: " << check.errors();
+  Tandem list({"list", "robots", "--in", "crawler.xml", "--plugin", "libtest_crawler"}, folder_.path());
+  EXPECT_EQ(list.wait(), 1);
+  EXPECT_THAT(list.errors(), HasSubstr("crawler.xml:1: error: <kind name>: there is a robot 'crawler' already"));
+  Tandem all({"list", "robots", "--in", "crawler.xml"}, folder_.path());
+  EXPECT_EQ(all.wait(), 0);
+  EXPECT_THAT(all.errors(), HasSubstr("warning: crawler.xml:1: the kind 'crawler' is left out: "));
+}
+
 TEST_F(Commands, PrintAKindAsTheFileThatGivesIt) {
   Tandem xml({"describe", "crab", "--xml", "--in", "there/run.xml"}, folder_.path());
   ASSERT_EQ(xml.wait(), 0) << xml.errors();
