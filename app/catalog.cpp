@@ -20,6 +20,8 @@
 #include "core/physics/dynamics3d/dynamics3d.hpp"
 #include "core/physics/kinematics2d/kinematics2d.hpp"
 #include "core/physics/particle3d/particle3d.hpp"
+#include "core/scenario/observer_type.hpp"
+#include "core/space/stores.hpp"
 #include "hal/check.hpp"
 #include "hal/device/ports.hpp"
 #include "hal/robot/robots.hpp"
@@ -30,6 +32,8 @@ const hal::Catalog& catalog() {
   static const hal::Catalog all = [] {
     hal::Catalog made;
     made.know<core::HookType>();
+    made.know<core::ObserverType>();
+    made.know<core::StoresSurface>();
     const hal::Status good = made.add_from(std::string(hal::Catalog::kInside), [](hal::Registrar& r) {
       hal::register_ports(r);
       hal::register_robots(r);

@@ -40,13 +40,17 @@ hal::Status check_output_paths(const RunOptions& options, const core::Scenario& 
     if (!format.ok()) return hal::Error{"--picture: " + format.error().message};
     if (const hal::Status renderer = core::can_render(format.value()); !renderer.ok()) return renderer;
   }
-  return check_apart({{"report", options.report},
-                      {"picture", options.picture},
-                      {"trajectory", trajectory_path(options, scenario)},
-                      {"record", record_path(options, scenario)},
-                      {"dump", options.dump},
-                      {"log", options.log}},
-                     inputs_of(scenario, catalog));
+  std::vector<NamedFile> outputs = {{"report", options.report},
+                                    {"picture", options.picture},
+                                    {"trajectory", trajectory_path(options, scenario)},
+                                    {"record", record_path(options, scenario)},
+                                    {"dump", options.dump},
+                                    {"log", options.log}};
+  for (const core::Element& observer : scenario.observers) {
+    if (const std::string* path = observer.attribute("path"); path != nullptr)
+      outputs.push_back({"file of the observer <" + observer.name + ">", *path});
+  }
+  return check_apart(outputs, inputs_of(scenario, catalog));
 }
 
 hal::Result<RunOutputs> open_outputs(const RunOptions& options, const core::Scenario& scenario,

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "app/command/command.hpp"
+#include "app/observers.hpp"
 #include "app/state_dump.hpp"
 #include "core/record/record.hpp"
 #include "core/record/trajectory.hpp"
@@ -20,13 +21,14 @@ struct RunOutputs {
   std::unique_ptr<core::TrajectoryRecorder> trajectory;
   std::unique_ptr<core::Recorder> record;
   std::optional<StateDump> dump;
+  Observers observers;  ///< made by themselves, because what they complain of has a line
 };
 
 /// Whether the paths make sense together. Errors: one names a file that the experiment is read from, or another
 /// output's; a picture of no known ending.
 hal::Status check_output_paths(const RunOptions& options, const core::Scenario& scenario, const hal::Catalog& catalog);
 
-/// Opens all of them; `record_start` is what a record begins with. Error: one cannot be written, or its robots are not
+/// Opens all but the observers; `record_start` is what a record begins with. Error: one cannot be written, or its robots are not
 /// there.
 hal::Result<RunOutputs> open_outputs(const RunOptions& options, const core::Scenario& scenario,
                                      const core::World& world, const hal::Json& record_start);

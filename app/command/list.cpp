@@ -20,6 +20,7 @@
 #include "core/physics/solver.hpp"
 #include "core/scenario/field_type.hpp"
 #include "core/scenario/medium_type.hpp"
+#include "core/scenario/observer_type.hpp"
 
 namespace tandem::app {
 namespace {
@@ -129,6 +130,7 @@ const std::map<std::string, ListKind>& kinds() {
       {"parts", [](const hal::Catalog& c) { list_plugins<hal::PartType>(c, "parts of robots"); }},
       {"robots", [](const hal::Catalog& c) { list_plugins<hal::RobotKind>(c, "robots"); }},
       {"fields", [](const hal::Catalog& c) { list_plugins<core::FieldType>(c, "fields"); }},
+      {"observers", [](const hal::Catalog& c) { list_plugins<core::ObserverType>(c, "observers"); }},
       {"media", [](const hal::Catalog& c) { list_plugins<core::MediumType>(c, "media"); }},
       {"elements", &list_elements}};
   return all;

@@ -52,10 +52,12 @@ class Recording {
       recorded_ = trajectory->record(now_.world.space(), now_.world.tick() - 1);  // the tick that was just done
     if (emergency_.due()) {
       if (records && recorded_.ok()) recorded_ = trajectory->flush();
+      outputs_.observers.flush();
       prepare_report();
     }
     if (records && !recorded_.ok()) complain(kFailedRunning, recorded_.error().message + "; the run goes on");
     record();
+    outputs_.observers.tick_done(now_.world);
     if (!outputs_.dump) return;
     if (const hal::Status dumped = outputs_.dump->tick_done(now_.world); !dumped.ok())
       complain(kFailedRunning, dumped.error().message + "; the run goes on");
@@ -193,6 +195,7 @@ bool write_results(RunOutputs& outputs, const RunResult& result, bool table) {
   };
   if (outputs.trajectory != nullptr) check(outputs.trajectory->close());
   if (outputs.record != nullptr) check(outputs.record->close(result.world.tick() - 1, record_end(result)));
+  if (!outputs.observers.finish(result.world)) good = false;
   if (outputs.dump) check(outputs.dump->close(result.world));
   if (outputs.picture) {
     core::PictureOptions picture;
@@ -252,6 +255,10 @@ int run(const RunOptions& options) {
   auto opened = open_outputs(options, *scenario, *world, record_start(*world, inputs));
   if (!opened.ok()) return complain(kBadInput, opened.error().message);
   RunOutputs& outputs = opened.value();
+  problems.clear();
+  outputs.observers = Observers::make(*scenario, loader.catalog(), *world, problems);
+  print_problems(problems);
+  if (core::has_errors(problems)) return kBadInput;
 
   int code = kDone;
   mixed_reality::MonotonicTime clock;

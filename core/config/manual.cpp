@@ -32,7 +32,7 @@ std::vector<ElementManual> all_manuals() {
                     Configuration, Sensors, Actuators, Arena, FieldElement, Box, Cylinder, Leds, Led, Light, Sound,
                     Robot, Body, RobotController, Battery, Bridge, Tracker, DistributeElement, PositionDraw,
                     OrientationDraw, Entity, Engines, Engine, Boundaries, Top, Bottom, Sides, Vertex, Media,
-                    schema::Medium, Hook, Record, Trajectory, Visualization>();
+                    schema::Medium, Hook, Record, Trajectory, ObserverElement, Visualization>();
 }
 
 /// What a kind says of its own element.
@@ -60,6 +60,7 @@ std::vector<ElementManual> expanded(const ElementManual& m, const KnownNames& kn
   if (m.name == schema::Engine::kElement.name) names = known.engines;
   if (m.name == schema::Medium::kElement.name) names = known.media;
   if (m.name == schema::FieldElement::kElement.name) names = known.fields;
+  if (m.name == schema::ObserverElement::kElement.name) names = known.observers;
   std::vector<ElementManual> out;
   for (const std::string& name : names) {
     out.push_back(m);
@@ -68,6 +69,7 @@ std::vector<ElementManual> expanded(const ElementManual& m, const KnownNames& kn
     if (m.name == schema::Robot::kElement.name) add_attributes(*known.catalog.find<hal::RobotKind>(name), out.back());
     if (m.name == schema::Medium::kElement.name) add_own(*known.catalog.find<MediumType>(name), out.back());
     if (m.name == schema::FieldElement::kElement.name) add_own(*known.catalog.find<FieldType>(name), out.back());
+    if (m.name == schema::ObserverElement::kElement.name) add_own(*known.catalog.find<ObserverType>(name), out.back());
   }
   return out;
 }

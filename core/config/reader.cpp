@@ -213,6 +213,15 @@ void read_record(Reading& reading, Element& record) {
     const auto t = reading.read<schema::Trajectory>(e);
     reading.out().trajectory = TrajectoryConfig{t.path, read_list(reading, e, "entities", t.entities, "ids"), t.every};
   });
+  for (Element& e : record.children) {
+    const auto* const type = reading.catalog().find<ObserverType>(e.name);
+    if (type == nullptr) continue;  // told already, or the trajectory
+    if (type->describe == nullptr)
+      reading.read<schema::ObserverElement>(e);
+    else
+      reading.read_with<schema::ObserverElement>(e, type->describe);
+    reading.out().observers.push_back(e);
+  }
 }
 
 void read_visualization(Reading& reading, Element& visualization) {

@@ -16,6 +16,7 @@ KnownNames::KnownNames(const hal::Catalog& all)
     : robots(all.names(hal::RobotKind::kCategory)),
       engines(all.names(KnownEngine::kCategory)),
       media(all.names(MediumType::kCategory)),
+      observers(all.names(ObserverType::kCategory)),
       catalog(all) {
   for (const FieldType* field : all.all<FieldType>()) {
     if (field->describe != nullptr) fields.emplace_back(field->name);
@@ -25,8 +26,9 @@ KnownNames::KnownNames(const hal::Catalog& all)
 }
 
 std::vector<std::string> KnownNames::children_of(std::vector<std::string> names) const {
-  for (const auto& [stand_in, kinds] : {std::pair(schema::kRobotKind, &robots), std::pair(schema::kMediumKind, &media),
-                                        std::pair(schema::kFieldKind, &fields)}) {
+  for (const auto& [stand_in, kinds] :
+       {std::pair(schema::kRobotKind, &robots), std::pair(schema::kMediumKind, &media),
+        std::pair(schema::kFieldKind, &fields), std::pair(schema::kObserverKind, &observers)}) {
     const auto at = std::find(names.begin(), names.end(), stand_in);
     if (at != names.end()) names.insert(names.erase(at), kinds->begin(), kinds->end());
   }

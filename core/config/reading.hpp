@@ -11,6 +11,7 @@
 #include "core/scenario/engine_traits.hpp"
 #include "core/scenario/field_type.hpp"
 #include "core/scenario/medium_type.hpp"
+#include "core/scenario/observer_type.hpp"
 #include "hal/port.hpp"
 
 namespace tandem::core {
@@ -20,7 +21,7 @@ std::vector<std::string> words(std::string_view list);
 
 /// What the catalog has, so that the reader can judge names.
 struct KnownNames {
-  std::vector<std::string> robots, engines, media, fields, sensors, actuators;
+  std::vector<std::string> robots, engines, media, fields, observers, sensors, actuators;
   const hal::Catalog& catalog;
   explicit KnownNames(const hal::Catalog& catalog);
 

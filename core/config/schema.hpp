@@ -25,6 +25,7 @@ inline constexpr std::string_view kAnything = "*";         ///< as children: any
 inline constexpr std::string_view kRobotKind = "ROBOT";    ///< in children: every kind of robot that the program knows
 inline constexpr std::string_view kFieldKind = "FIELD";    ///< … every field of which files say something
 inline constexpr std::string_view kMediumKind = "MEDIUM";  ///< … and every kind of medium
+inline constexpr std::string_view kObserverKind = "OBSERVER";  ///< … and of observer
 
 /// What an element is and holds. Lists are names separated by spaces.
 struct ElementInfo {
@@ -511,7 +512,8 @@ struct Led {
 
 struct Record {
   static constexpr ElementInfo kElement{
-      "record", "What is written down: a record for `tandem export`, a table of poses.", "", "trajectory"};
+      "record", "What is written down: a record for `tandem export`, a table of poses, files of observers.", "",
+      "trajectory OBSERVER"};
   std::string path, entities = "*", ports;
   std::int64_t every = 1, fingerprint_every = 0;
   bool state = true;
@@ -523,6 +525,13 @@ struct Record {
     v.flag("state", state, "Whether it holds what controllers publish.");
     v.integer("fingerprint_every", fingerprint_every, {0, 1e12}, "Ticks between fingerprints of the state; 0: none.");
   }
+};
+
+/// What observers of every kind have: nothing; the attributes are the kind's own.
+struct ObserverElement {
+  static constexpr ElementInfo kElement{"observer", "What looks at the world after every tick, written with its name.",
+                                        "", kAnything};
+  void describe(ParamVisitor&) {}
 };
 
 struct Visualization {

@@ -18,6 +18,7 @@ namespace tandem::core {
 /// fingerprints need none of it.
 class Medium {
  public:
+  Medium() noexcept { hal::detail::note_surface<StoresSurface>(); }
   virtual ~Medium() = default;
   /// Robots or what their devices ask for have changed, or blocks have: makes room for those that publish.
   virtual void fit(const SpaceStores& stores) = 0;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 #include <numbers>
+#include <string_view>
 
 #include "hal/philox.hpp"
 
@@ -52,7 +53,15 @@ enum class Stream : std::uint32_t {
   GyroscopeBias,
   TimeOfFlightNoise,
   CliffNoise,
+  Plugin = 255,  ///< of parts from outside, with a seed of their own: `own_seed`
 };
+
+/// The seed for the draws of a part that has no stream here: different for every name, e.g. "thermometer noise".
+constexpr std::uint64_t own_seed(std::uint64_t seed, std::string_view name) noexcept {
+  std::uint64_t own = 14'695'981'039'346'656'037ULL;  // FNV-1a
+  for (const char c : name) own = (own ^ static_cast<unsigned char>(c)) * 1'099'511'628'211ULL;
+  return own ^ seed;
+}
 
 /// Four independent 32-bit numbers. `index` tells draws of one tick apart (0 to 2^24 - 1).
 inline std::array<std::uint32_t, 4> draw(std::uint64_t seed, std::uint32_t entity, Stream stream, std::int64_t tick,

@@ -260,6 +260,7 @@ struct Scenario {
   std::vector<HookConfig> hooks;
   RecordConfig record;
   std::optional<TrajectoryConfig> trajectory;
+  std::vector<Element> observers;  ///< each the element of an ObserverType
   Element camera;     ///< placements of ARGoS' view, kept for ours
   Element effective;  ///< the whole file with every default filled in
 };

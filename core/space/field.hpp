@@ -34,6 +34,7 @@ using Painter = std::function<double(double x_m, double y_m, double otherwise)>;
 /// changes it, between parallel phases.
 class Field {
  public:
+  Field() noexcept;  // in core/space/stores.hpp
   virtual ~Field() = default;
 
   /// The values at the spots of the first robot, then those of the next, … On any thread.

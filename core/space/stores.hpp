@@ -320,4 +320,15 @@ using StoreLayouts =
                  RobotEntity, Object, Joint, Region, LightSource, SoundSource, Field, Fields, FieldPlaces, FieldSpot,
                  hal::RowType, hal::RobotKind, hal::RobotKind::Crosses>;
 
+/// The stores as a surface of their own, for parts whose tables say nothing of them: fields, media, observers. Their
+/// base classes write it into the note of a plug-in that has such.
+struct StoresSurface {
+  static constexpr std::string_view kCategory = "stores";
+  using Crosses = StoreLayouts;
+};
+
+inline Field::Field() noexcept {
+  hal::detail::note_surface<StoresSurface>();
+}
+
 }  // namespace tandem::core
