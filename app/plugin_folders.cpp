@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstdlib>
 
+#include "hal/library_folder.hpp"
+
 namespace tandem::app {
 
 namespace fs = std::filesystem;
@@ -17,9 +19,7 @@ std::vector<fs::path> plugin_folders() {
       at = colon + 1;
     }
   }
-  std::error_code error;
-  const fs::path program = fs::read_symlink("/proc/self/exe", error);
-  if (!error) folders.push_back(program.parent_path().parent_path() / "lib");
+  if (fs::path own = hal::library_folder(); !own.empty()) folders.push_back(std::move(own));
   return folders;
 }
 

@@ -5,8 +5,8 @@
 
 namespace tandem::app {
 
-/// Where plug-ins are looked for: TANDEM_PLUGIN_PATH (folders separated by ':'), then the lib folder beside this
-/// program.
+/// Where plug-ins are looked for: TANDEM_PLUGIN_PATH (folders separated by ':'), then the folder of this
+/// program's own libraries.
 std::vector<std::filesystem::path> plugin_folders();
 
 /// Every plug-in file in those folders.

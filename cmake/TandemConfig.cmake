@@ -1,32 +1,70 @@
-# For plug-ins built outside of this checkout:
-#   find_package(Tandem REQUIRED)                       # cmake -DTandem_DIR=<checkout>/cmake
-#   tandem_controller(NAME seek_light SOURCES seek_light.cpp)
+# For plug-ins built outside of this checkout, or against an installed tree:
+#   find_package(Tandem REQUIRED)                       # cmake -DTandem_DIR=<checkout>/cmake, or <prefix>/lib/cmake/Tandem
+#   tandem_plugin(NAME greenhouse SOURCES greenhouse.cpp)      devices, fields, engines, bridges, …: any surface
+#   tandem_controller(NAME seek_light SOURCES seek_light.cpp)  controllers and hooks
+# Tandem_PROGRAM is the program, for tests.
 get_filename_component(Tandem_TOP "${CMAKE_CURRENT_LIST_DIR}/.." ABSOLUTE)
+if(EXISTS "${Tandem_TOP}/hal/plugin.hpp") # a checkout
+  set(Tandem_INCLUDE_DIR "${Tandem_TOP}")
+  set(Tandem_PROGRAM "${Tandem_TOP}/tandem" CACHE FILEPATH "The program that loads the plug-ins")
+else()
+  get_filename_component(Tandem_TOP "${CMAKE_CURRENT_LIST_DIR}/../../.." ABSOLUTE)
+  set(Tandem_INCLUDE_DIR "${Tandem_TOP}/include/tandem")
+  set(Tandem_PROGRAM "${Tandem_TOP}/bin/tandem" CACHE FILEPATH "The program that loads the plug-ins")
+endif()
 
 if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
   set(CMAKE_BUILD_TYPE Release CACHE STRING "" FORCE)
 endif()
 
-# The control interface, compiled with the plug-in: the same arithmetic as in Tandem itself, and nothing of any world.
-if(NOT TARGET Tandem::hal)
+# The headers of all surfaces, and the flags that make a plug-in's arithmetic and layouts those of the program.
+if(NOT TARGET Tandem::headers)
   find_package(Eigen3 REQUIRED NO_MODULE)
-  file(GLOB Tandem_HAL_SOURCES "${Tandem_TOP}/hal/*.cpp")
-  add_library(tandem_hal STATIC ${Tandem_HAL_SOURCES})
-  set_target_properties(tandem_hal PROPERTIES POSITION_INDEPENDENT_CODE ON)
-  target_compile_features(tandem_hal PUBLIC cxx_std_20)
-  target_compile_options(tandem_hal PUBLIC -ffp-contract=off -fno-math-errno)
-  target_compile_definitions(tandem_hal PUBLIC EIGEN_DONT_VECTORIZE)
-  target_include_directories(tandem_hal PUBLIC "${Tandem_TOP}")
-  target_link_libraries(tandem_hal PUBLIC Eigen3::Eigen)
-  add_library(Tandem::hal ALIAS tandem_hal)
+  add_library(Tandem::headers INTERFACE IMPORTED)
+  set_target_properties(Tandem::headers PROPERTIES
+    INTERFACE_INCLUDE_DIRECTORIES "${Tandem_INCLUDE_DIR}"
+    INTERFACE_COMPILE_FEATURES cxx_std_20
+    INTERFACE_COMPILE_OPTIONS "-ffp-contract=off;-fno-math-errno"
+    INTERFACE_COMPILE_DEFINITIONS EIGEN_DONT_VECTORIZE
+    INTERFACE_LINK_LIBRARIES Eigen3::Eigen)
 endif()
 
-# tandem_controller(NAME x SOURCES x.cpp …): the shared object libx.so in the build folder, for library="…/libx".
+# The control interface, for controllers: the same arithmetic as in Tandem itself, and nothing of any world.
+if(NOT TARGET Tandem::hal)
+  if(EXISTS "${Tandem_INCLUDE_DIR}/hal/catalog.cpp")
+    file(GLOB Tandem_HAL_SOURCES "${Tandem_INCLUDE_DIR}/hal/*.cpp")
+    add_library(tandem_hal STATIC EXCLUDE_FROM_ALL ${Tandem_HAL_SOURCES})
+    set_target_properties(tandem_hal PROPERTIES POSITION_INDEPENDENT_CODE ON)
+    target_link_libraries(tandem_hal PUBLIC Tandem::headers)
+    add_library(Tandem::hal ALIAS tandem_hal)
+  else()
+    add_library(Tandem::hal STATIC IMPORTED)
+    set_target_properties(Tandem::hal PROPERTIES
+      IMPORTED_LOCATION "${Tandem_TOP}/lib/tandem/libtandem_hal.a"
+      INTERFACE_LINK_LIBRARIES "Tandem::headers;${CMAKE_DL_LIBS}")
+  endif()
+endif()
+
+# The shared object lib<name>.so in the build folder, for <plugins library="…/lib<name>"/> or library="…/lib<name>".
+function(tandem_shared_object name)
+  add_library(${name} MODULE ${ARGN})
+  set_target_properties(${name} PROPERTIES PREFIX "lib" CXX_VISIBILITY_PRESET hidden
+    LIBRARY_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}")
+  target_compile_options(${name} PRIVATE -Wall -Wextra)
+endfunction()
+
+# tandem_controller(NAME x SOURCES x.cpp …): controllers and hooks. Holds the control interface itself, so that it can also be loaded by
+# programs of one's own, such as unit tests.
 function(tandem_controller)
   cmake_parse_arguments(arg "" "NAME" "SOURCES" ${ARGN})
-  add_library(${arg_NAME} MODULE ${arg_SOURCES})
-  set_target_properties(${arg_NAME} PROPERTIES PREFIX "lib" CXX_VISIBILITY_PRESET hidden
-    LIBRARY_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}")
-  target_compile_options(${arg_NAME} PRIVATE -Wall -Wextra)
+  tandem_shared_object(${arg_NAME} ${arg_SOURCES})
   target_link_libraries(${arg_NAME} PRIVATE Tandem::hal)
+endfunction()
+
+# tandem_plugin(NAME x SOURCES x.cpp …): parts of any kind. What they call of Tandem is the program's own and is found when it
+# loads them; so only the sources are compiled, and nothing of the program exists twice.
+function(tandem_plugin)
+  cmake_parse_arguments(arg "" "NAME" "SOURCES" ${ARGN})
+  tandem_shared_object(${arg_NAME} ${arg_SOURCES})
+  target_link_libraries(${arg_NAME} PRIVATE Tandem::headers)
 endfunction()

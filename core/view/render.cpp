@@ -3,20 +3,18 @@
 #include <dlfcn.h>
 #include <filesystem>
 
+#include "hal/library_folder.hpp"
+
 namespace tandem::core {
 namespace {
-
-namespace fs = std::filesystem;
 
 struct Renderer {
   bool (*call)(const std::string& svg, PictureFormat format, std::string& out);
 };
 
-/// The renderer, from the folder lib beside that of this program. It stays loaded.
+/// The renderer, from the folder of the program's own libraries. It stays loaded.
 hal::Result<Renderer> load_renderer() {
-  std::error_code error;
-  const fs::path program = fs::read_symlink("/proc/self/exe", error);
-  const fs::path file = program.parent_path().parent_path() / "lib" / "render" / "libtandem_render.so";
+  const std::filesystem::path file = hal::library_folder() / "render" / "libtandem_render.so";
   void* const library = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL | RTLD_NODELETE);
   void* const symbol = library != nullptr ? dlsym(library, "tandem_render") : nullptr;
   if (symbol != nullptr) return Renderer{reinterpret_cast<decltype(Renderer::call)>(symbol)};

@@ -1,0 +1,23 @@
+# `cmake --install`: the program, what it loads, and what plug-ins from outside are built with.
+#   <prefix>/bin/tandem                     lib/tandem: plug-ins, libtandem_hal.a; lib/tandem/render
+#   <prefix>/include/tandem/{hal,core,bridges}    lib/cmake/Tandem: find_package(Tandem)
+install(TARGETS tandem RUNTIME DESTINATION bin)
+install(TARGETS tandem_hal ARCHIVE DESTINATION lib/tandem)
+get_property(plugins GLOBAL PROPERTY TANDEM_PLUGINS)
+foreach(plugin ${plugins})
+  get_target_property(folder ${plugin} SOURCE_DIR)
+  if(folder MATCHES "/tests(/|$)")
+    continue()
+  endif()
+  set(destination lib/tandem)
+  if(plugin STREQUAL "tandem_render")
+    set(destination lib/tandem/render)
+  endif()
+  install(TARGETS ${plugin} LIBRARY DESTINATION ${destination})
+endforeach()
+foreach(folder hal core bridges)
+  install(DIRECTORY ${PROJECT_SOURCE_DIR}/${folder} DESTINATION include/tandem FILES_MATCHING PATTERN "*.hpp")
+endforeach()
+install(FILES ${PROJECT_SOURCE_DIR}/cmake/TandemConfig.cmake ${PROJECT_SOURCE_DIR}/cmake/TandemConfigVersion.cmake
+  DESTINATION lib/cmake/Tandem)
+install(FILES ${PROJECT_SOURCE_DIR}/LICENSE ${PROJECT_SOURCE_DIR}/THIRD_PARTY.md DESTINATION share/doc/tandem)

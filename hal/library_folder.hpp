@@ -1,0 +1,11 @@
+// Where the libraries are that come with this program.
+#pragma once
+#include <filesystem>
+
+namespace tandem::hal {
+
+/// Beside the program's own folder: lib/tandem where it is installed, else lib, as in a build folder. Empty: the system
+/// does not tell where the program is.
+std::filesystem::path library_folder();
+
+}  // namespace tandem::hal
