@@ -43,7 +43,7 @@ Result<double> parse_quantity(std::string_view text, const Unit& bare) {
     return Error{"'" + std::string(text) + "' is not a number"};
   }
   const std::string_view suffix = trimmed({end, static_cast<std::size_t>(digits.data() + digits.size() - end)});
-  if (suffix.empty()) return number * bare.to_si;
+  if (suffix.empty() || suffix == bare.symbol) return number * bare.to_si;  // a unit of somebody's own, perhaps
   for (const Unit& u : kUnits) {
     if (u.symbol == suffix && u.dim == bare.dim) return number * u.to_si;
   }

@@ -34,6 +34,13 @@ TEST(ParseQuantity, TakesSuffixesOfTheDimension) {
   EXPECT_DOUBLE_EQ(parsed("50 %", unit::none), 0.5);
 }
 
+TEST(ParseQuantity, TakesAUnitThatIsNoneOfOursWhereAPartHasItItself) {
+  constexpr Unit kNewton{Dim::None, "mN", 0.001};
+  EXPECT_DOUBLE_EQ(parse_quantity("18 mN", kNewton).value(), 0.018);
+  EXPECT_DOUBLE_EQ(parse_quantity(format_quantity(0.018, kNewton), kNewton).value(), 0.018);
+  EXPECT_FALSE(parse_quantity("18 mN", unit::m).ok());
+}
+
 TEST(ParseQuantity, TakesABareNumberInTheGivenUnit) {
   EXPECT_DOUBLE_EQ(parsed("4", unit::cm), 0.04);
   EXPECT_DOUBLE_EQ(parsed("+4e1", unit::m), 40.0);
