@@ -137,6 +137,24 @@ void add_bench(CLI::App& app, BenchOptions& o, int& code) {
   c->callback([&] { code = bench(o); });
 }
 
+void add_plugin_commands(CLI::App& app, PluginNewOptions& made, PluginCheckOptions& checked, int& code) {
+  CLI::App* c = app.add_subcommand("plugin", "Begin a plug-in, or check one: `plugin new NAME`, `plugin check FILE`.");
+  c->require_subcommand(1);
+  CLI::App* n = c->add_subcommand("new", "Make a folder with a plug-in that builds, an experiment and a test.");
+  n->add_option("name", made.name, "Of the folder and the library: a to z, 0 to 9 and _")->required();
+  n->add_option("--kind", made.kind, "What it begins with")
+      ->capture_default_str()
+      ->check(CLI::IsMember(plugin_kinds()));
+  n->callback([&] { code = plugin_new(made); });
+  CLI::App* k =
+      c->add_subcommand("check", "Judge what a plug-in registers, each part by its table and in small worlds.");
+  k->footer("Exit code: 0 no fault was found, 1 faults, or a library that cannot be loaded.");
+  k->add_option("file", checked.file, "The library")->required();
+  k->add_flag("--json", checked.json, "One JSON object instead of lines");
+  add_plugins(*k, checked.plugins);
+  k->callback([&] { code = plugin_check(checked); });
+}
+
 /// "--name value" and "--name=value", as the emulators' own options are written.
 std::vector<std::pair<std::string, std::string>> own_options(const std::vector<std::string>& words) {
   std::vector<std::pair<std::string, std::string>> own;
@@ -180,6 +198,9 @@ int main(int argc, char** argv) {
 
   ExportOptions export_options;
   add_export(app, export_options, code);
+  PluginNewOptions new_options;
+  PluginCheckOptions plugin_check_options;
+  add_plugin_commands(app, new_options, plugin_check_options, code);
 
   ListOptions list_options;
   CLI::App* list_command =

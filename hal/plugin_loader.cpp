@@ -179,6 +179,11 @@ Status PluginLoader::register_types(const std::string& path, const PluginInfo& i
 
 Result<const void*> PluginLoader::get(const std::string& library, std::string_view category, std::uint64_t layout,
                                       std::string_view name) {
+  for (const Catalog::Entry& e : catalog_.entries()) {  // the program's own
+    if (library == Catalog::kInside && e.origin == library && e.category == category && e.layout == layout &&
+        e.name == name)
+      return e.entry;
+  }
   if (const Status opened = load_once(library); !opened.ok()) return opened.error();
   const std::string path = find(library).value().string();
   std::string names;

@@ -38,7 +38,8 @@ class PluginLoader {
   Result<std::filesystem::path> find(const std::string& library) const;
 
   /// What the plug-in `library` registered under `name`, or under its only name when `name` is empty. Opens it if
-  /// needed. Errors: as `open`; no such name (lists those there are).
+  /// needed. The library `Catalog::kInside` is the program itself. Errors: as `open`; no such name (lists those there
+  /// are).
   template <class T>
   Result<const T*> get(const std::string& library, std::string_view name) {
     const auto found = get(library, T::kCategory, entry_layout<T>(), name);

@@ -113,6 +113,22 @@ struct BenchOptions {
 /// In the folder bench, which is above this one.
 int bench(const BenchOptions& options);
 
+struct PluginNewOptions {
+  std::string name;
+  std::string kind = "device";  ///< one of `plugin_kinds`
+};
+/// Makes a folder of that name here: a plug-in that builds, runs and is tested.
+int plugin_new(const PluginNewOptions& options);
+std::vector<std::string> plugin_kinds();
+
+struct PluginCheckOptions {
+  Libraries plugins;  ///< that the checked one needs
+  std::string file;
+  bool json = false;
+};
+/// Judges what a plug-in registers. kBadInput: a fault, or it cannot be loaded.
+int plugin_check(const PluginCheckOptions& options);
+
 struct RobotOptions {
   Libraries plugins;
   std::string file;

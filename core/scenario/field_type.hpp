@@ -29,4 +29,13 @@ struct FieldType {
   std::unique_ptr<Field> (*make)(const Element& element, const FieldArea& area, Problems& problems) = nullptr;
 };
 
+/// The table of field class `T`, constructed from `(const T::Params&, const FieldArea&)`.
+template <class T>
+constexpr FieldType field_type(std::string_view name, std::string_view summary) {
+  return {name, summary, [](hal::ParamVisitor& visitor) { typename T::Params{}.describe(visitor); },
+          [](const Element& element, const FieldArea& area, Problems& problems) -> std::unique_ptr<Field> {
+            return std::make_unique<T>(read_settings<typename T::Params>(element, problems), area);
+          }};
+}
+
 }  // namespace tandem::core

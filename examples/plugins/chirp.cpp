@@ -1,4 +1,5 @@
 // A medium: robots chirp, and hear how loud others are, the less the farther they are. Two devices work in it.
+#include <algorithm>
 #include <cmath>
 
 #include "core/device/describe.hpp"
@@ -19,8 +20,18 @@ constexpr double kNear_m = 0.1;   // at this distance half of it is left
 struct Chirper : hal::Command {
   static constexpr std::string_view kName = "chirper";
   static constexpr std::string_view kDoc = "How loud the robot chirps.";
-  static constexpr bool kAnyValueIsSafe = true;
   float loudness = 0.0F;
+
+  using LimitedBy = hal::RobotKind;  // no part of theirs: all robots chirp alike
+  hal::Limited limit(const hal::RobotKind&) noexcept {
+    if (loudness >= 0.0F && loudness <= 1.0F) return hal::kPassed;
+    if (!std::isfinite(loudness)) {
+      *this = {};
+      return hal::kNotFinite;
+    }
+    loudness = std::clamp(loudness, 0.0F, 1.0F);
+    return hal::kClamped;
+  }
   void describe(hal::FieldList& f) const {
     f.add("loudness", loudness, hal::unit::none, hal::Frame::None, hal::Fusion::Real, "0 silent; 1 loud");
   }
@@ -100,25 +111,25 @@ class ChirpListener final : public core::Sensor {
   const ChirpMedium& medium_;
 };
 
-core::Recipe<core::Actuator> make_chirper(const core::Element& element, core::Problems& problems,
+core::BlockFactory<core::Actuator> make_chirper(const core::Element& element, core::Problems& problems,
                                           const core::DeviceSetup& setup) {
   core::read_options<Options>(element, problems);
-  core::Recipe<core::Actuator> recipe = [&medium = setup.medium_as<ChirpMedium>()](const core::BlockColumns&) {
+  core::BlockFactory<core::Actuator> factory = [&medium = setup.medium_as<ChirpMedium>()](const core::BlockColumns&) {
     return std::make_unique<ChirpActuator>(medium);
   };
-  recipe.publishes = true;
-  return recipe;
+  factory.publishes = true;
+  return factory;
 }
 
-core::Recipe<core::Sensor> make_listener(const core::Element& element, core::Problems& problems,
+core::BlockFactory<core::Sensor> make_listener(const core::Element& element, core::Problems& problems,
                                          const core::DeviceSetup& setup) {
   core::read_options<Options>(element, problems);
-  core::Recipe<core::Sensor> recipe = [&medium = setup.medium_as<ChirpMedium>()](const core::BlockColumns&) {
+  core::BlockFactory<core::Sensor> factory = [&medium = setup.medium_as<ChirpMedium>()](const core::BlockColumns&) {
     return std::make_unique<ChirpListener>(medium);
   };
-  recipe.listens = true;
-  recipe.reach_m = kHeard_m;
-  return recipe;
+  factory.listens = true;
+  factory.reach_m = kHeard_m;
+  return factory;
 }
 
 // --- a controller: robots turn towards the loudest ---

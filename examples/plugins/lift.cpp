@@ -58,12 +58,12 @@ struct LiftState {
   static constexpr std::string_view kDoc = "What lifts were told, and what they hold.";
   static constexpr std::uint32_t kNothing = 0xFFFF'FFFFU;
   double target_m = 0.0;
-  std::uint32_t joint = kNothing, generation = 0;  // of SpaceStores::joints
-  double from_m = 0.0;                             // where the box's base was when it was taken
+  std::uint32_t joint = kNothing;  // of SpaceStores::joints
+  std::uint32_t generation = 0;    // of that joint: a name that differs from run to run, so it is no state
+  double from_m = 0.0;             // where the box's base was when it was taken
   void describe(hal::FieldList& f) const {
     f.add("target", target_m, hal::unit::m, "height that was commanded");
     f.add("joint", joint, hal::unit::none, "number of the joint to what is held");
-    f.add("generation", generation, hal::unit::none, "of that joint");
     f.add("from", from_m, hal::unit::m, "height of the box when it was taken");
   }
 };
@@ -201,7 +201,7 @@ void register_all(hal::Registrar& registrar) {
       void describe(hal::ParamVisitor&) {}
     };
     const auto make = [](const core::Element& element, core::Problems& problems,
-                         const core::DeviceSetup&) -> core::Recipe<core::Actuator> {
+                         const core::DeviceSetup&) -> core::BlockFactory<core::Actuator> {
       core::read_options<None>(element, problems);
       return {
           [](const core::BlockColumns& columns) { return std::make_unique<LiftActuator>(columns.find<LiftState>()); },
@@ -213,6 +213,7 @@ void register_all(hal::Registrar& registrar) {
     type.joints = core::bit(core::JointKind::Sliding);  // robots with a lift need an engine that has such
     return type;
   }();
+  registrar.add(hal::part_type<LiftPart>());
   registrar.add(hal::port_type<LiftDrive>());
   registrar.add(device);
   registrar.add(kLifting);

@@ -26,7 +26,8 @@ struct Stove {
 
 class TemperatureField final : public core::PointField<TemperatureField> {
  public:
-  explicit TemperatureField(const Stove& stove) : stove_(stove) {}
+  using Params = Stove;
+  TemperatureField(const Stove& stove, const core::FieldArea&) : stove_(stove) {}
   double at(const core::SpaceStores&, double x_m, double y_m, double) const noexcept override {
     const double dx = x_m - stove_.p_W[0], dy = y_m - stove_.p_W[1];
     return stove_.ambient_C + stove_.heat_C / (1.0 + dx * dx + dy * dy);
@@ -36,11 +37,8 @@ class TemperatureField final : public core::PointField<TemperatureField> {
   Stove stove_;
 };
 
-constexpr core::FieldType kField{
-    "temperature", "Temperature of the air: a stove warms it.", [](hal::ParamVisitor& v) { Stove{}.describe(v); },
-    [](const core::Element& element, const core::FieldArea&, core::Problems& problems) -> std::unique_ptr<core::Field> {
-      return std::make_unique<TemperatureField>(core::read_settings<Stove>(element, problems));
-    }};
+constexpr core::FieldType kField =
+    core::field_type<TemperatureField>("temperature", "Temperature of the air: a stove warms it.");
 
 // --- what the robot is built with, and what its controller reads ---
 
@@ -93,7 +91,7 @@ class ThermometerSensor final : public core::Sensor {
   double noise_C_;
 };
 
-core::Recipe<core::Sensor> make_thermometer(const core::Element& element, core::Problems& problems,
+core::BlockFactory<core::Sensor> make_thermometer(const core::Element& element, core::Problems& problems,
                                             const core::DeviceSetup& setup) {
   const auto options = core::read_options<Noise>(element, problems);
   const core::Field* const field = setup.field("temperature", element, problems);
@@ -139,6 +137,7 @@ void register_all(hal::Registrar& registrar) {
       core::sensor_type(Thermometer::kName, "default", "The temperature, with noise where asked for.",
                         &core::has<ThermometerPart>, &make_thermometer, &core::describe_options<Noise>);
   registrar.add(kField);
+  registrar.add(hal::part_type<ThermometerPart>());  // so that files can give it to other robots
   registrar.add(hal::port_type<Thermometer>());
   registrar.add(device);
   registrar.add(robot);
