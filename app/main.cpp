@@ -99,7 +99,7 @@ void add_bench(CLI::App& app, BenchOptions& o, int& code) {
   c->add_option("--in", o.file, "A file with kinds of robots that --robot may name, too");
   auto* with = c->add_option("--with", o.devices,
                              "Devices besides proximity sensors and wheels: range_and_bearing, omnidirectional_camera "
-                             "(of robots that have one)")
+                             "(of robots that have one); proximity:NAME: another implementation of those")
                    ->delimiter(',');
   c->add_option("--engine", o.engines,
                 "Physics engines; `tandem list engines` names them; default: its first, for flocking the first for "

@@ -18,6 +18,7 @@
 #include "bench/measurement.hpp"
 #include "bench/partition.hpp"
 #include "bench/sense_to_act.hpp"
+#include "core/device/device.hpp"
 #include "core/scenario/engine_traits.hpp"
 #include "hal/device/ring_sensors.hpp"
 #include "hal/output_file.hpp"
@@ -78,6 +79,9 @@ hal::Status check_words(const hal::Catalog& catalog, const app::BenchOptions& o,
   if (auto s = check_name("robot", robot_of(o), robots); !s.ok()) return s;
   std::vector<std::string> devices{"range_and_bearing"};
   if (robot_of(o) == "foot-bot") devices.emplace_back("omnidirectional_camera");
+  for (const core::DeviceType* type : catalog.all<core::DeviceType>()) {
+    if (type->device == hal::Proximity::kName) devices.push_back("proximity:" + std::string(type->implementation));
+  }
   if (o.name == "flocking") devices.clear();
   for (const std::string& device : o.devices) {
     if (auto s = check_name("device of the " + robot_of(o) + " to measure with", device, devices); !s.ok()) return s;

@@ -38,13 +38,21 @@ void add_walls(core::Scenario& scenario, double scale) {
   }
 }
 
+/// What follows "device:" in the list; "default" where the list does not name it so.
+std::string implementation_in(const std::string& devices, const std::string& device) {
+  const std::size_t at = devices.find(device + ":");
+  if (at == std::string::npos) return "default";
+  const std::size_t begin = at + device.size() + 1;
+  return devices.substr(begin, devices.find(',', begin) - begin);
+}
+
 /// Range-and-bearing and cameras are taken by controllers that are told to, and change nothing of what they do.
 core::ControllerConfig diffusion_controller(const std::string& robot, const std::string& devices) {
   core::ControllerConfig config;
   config.id = "diffusion";
   config.label = robot == "foot-bot" ? "footbot_diffusion" : "epuck_diffusion";
   config.library = config.label;
-  config.sensors.push_back({"proximity", "default", {}});
+  config.sensors.push_back({"proximity", implementation_in(devices, "proximity"), {}});
   config.actuators.push_back({"differential_steering", "default", {}});
   if (devices.find("range_and_bearing") != std::string::npos) {
     config.sensors.push_back({"range_and_bearing", "default", {}});
