@@ -42,7 +42,7 @@ class Conversation {
         "V " + std::to_string(std::lround(1e3 * left_m_s)) + " " + std::to_string(std::lround(1e3 * right_m_s)) + "\n";
     link_->write({reinterpret_cast<const std::uint8_t*>(line.data()), line.size()}, 10 * kNsPerMs);
   }
-  /// Waits up to `timeout_ns`. @returns whether a whole and plausible line came; `answer` is then the newest.
+  /// Waits at most so long. @returns whether a whole and plausible line came; the answer is then the newest.
   bool listen(TimeNs timeout_ns, Answer& answer) noexcept {
     bool any = false;
     link_->wait(timeout_ns);

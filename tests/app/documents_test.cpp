@@ -38,6 +38,12 @@ std::map<std::string, std::string> named_blocks(const std::string& markdown) {
   return blocks;
 }
 
+/// Without its code blocks.
+std::string prose(const std::string& markdown) {
+  static const std::regex kBlock("```[^`]*```");
+  return std::regex_replace(markdown, kBlock, "");
+}
+
 /// The shell block that contains `part`.
 std::string shell_block(const std::string& markdown, const std::string& part) {
   static const std::regex kBlock("```sh\n([^`]*)```");
@@ -178,6 +184,19 @@ TEST(Controllers, TheirExampleBuildsRunsAndDoesWhatItSays) {
   EXPECT_TRUE(picture.find(">walk</text>") != std::string::npos || picture.find(">turn</text>") != std::string::npos);
 }
 
+TEST(Plugins, TheirPagesShowTheVerySourcesOfTheExamples) {
+  std::map<std::string, std::string> shown = named_blocks(text_of(kTop / "docs/plugins.md"));
+  shown.merge(named_blocks(text_of(kTop / "docs/plugin-examples.md")));
+  int compared = 0;
+  for (const auto& file : fs::directory_iterator(kTop / "examples/plugins")) {
+    const std::string name = file.path().filename().string();
+    ASSERT_TRUE(shown.contains(name)) << name << " is on neither page";
+    EXPECT_EQ(shown.at(name), text_of(file.path())) << name;
+    ++compared;
+  }
+  EXPECT_GT(compared, 15);
+}
+
 /// The words that follow "Subcommands:" or the options of a command, from the program's own help.
 std::set<std::string> words_of_help(const std::vector<std::string>& arguments, const std::regex& pattern) {
   Folder folder;
@@ -206,7 +225,12 @@ TEST(Documents, NameOnlyCommandsAndOptionsThatExist) {
       if (of_launcher.contains(command)) continue;
       EXPECT_TRUE(commands.contains(command)) << file << ": " << use.str();
       if (!commands.contains(command)) continue;
-      if (!options.contains(command)) options[command] = words_of_help({command, "--help"}, kOption);
+      if (!options.contains(command)) {
+        options[command] = words_of_help({command, "--help"}, kOption);
+        for (const char* word : {"new", "check"}) {
+          if (command == "plugin") options[command].merge(words_of_help({command, word, "--help"}, kOption));
+        }
+      }
       const std::string rest = use[2];
       for (const std::smatch& option : matches(rest, kOption)) {
         EXPECT_TRUE(options[command].contains(option[1])) << file << ": " << use.str();
@@ -221,7 +245,7 @@ TEST(Documents, LinkOnlyToWhatExists) {
   static const std::regex kFolder(R"(\| `([a-z_]+/)` \|)");
   int links = 0;
   for (const fs::path& file : documents()) {
-    const std::string text = text_of(file);
+    const std::string text = prose(text_of(file));
     for (const std::smatch& link : matches(text, kLink)) {
       ++links;
       EXPECT_TRUE(fs::exists(file.parent_path() / link.str(1))) << file << ": " << link.str(1);
