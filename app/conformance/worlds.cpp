@@ -127,7 +127,7 @@ class Worlds {
     }
     if (absent > 0)
       return course.say(Verdict::Fault, "readings",
-                        fmt::format("of {} robots are never there: call core::stamp for each port", absent));
+                        fmt::format("those of {} robots are never there: call core::stamp for each port", absent));
     course.say(Verdict::Good, "readings", "all are there, and finite");
   }
 

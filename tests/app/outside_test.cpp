@@ -30,8 +30,9 @@ int shell(const std::string& command, const fs::path& folder) {
 
 /// Little optimisation: what an example calls is what takes the time, and that is the program's.
 std::string configure(const std::string& tandem_dir, const std::string& program) {
-  return "cmake -S . -B build -DCMAKE_BUILD_TYPE=Debug -DTandem_DIR='" + tandem_dir + "' -DTandem_PROGRAM='" + program +
-         "' -DCMAKE_CXX_COMPILER_LAUNCHER=$(command -v ccache)";
+  return "export CCACHE_BASEDIR=$PWD CCACHE_NOHASHDIR=1; "
+         "cmake -S . -B build -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG=-O0 -DTandem_DIR='" +
+         tandem_dir + "' -DTandem_PROGRAM='" + program + "' -DCMAKE_CXX_COMPILER_LAUNCHER=$(command -v ccache)";
 }
 
 class Examples : public testing::Test {
@@ -260,7 +261,7 @@ TEST_F(Examples, BuildAndRunAgainstAnInstalledTree) {
   fs::copy(kExamples, project, fs::copy_options::recursive);
   const std::string program = prefix + "/bin/tandem";
   ASSERT_EQ(
-      shell("cmake -S . -B build -DCMAKE_BUILD_TYPE=Debug -DCMAKE_PREFIX_PATH='" + prefix +
+      shell("cmake -S . -B build -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG=-O0 -DCMAKE_PREFIX_PATH='" + prefix +
                 "' -DCMAKE_CXX_COMPILER_LAUNCHER=$(command -v ccache) && cmake --build build --target spread && '" +
                 program + "' run spread.xml --quiet --picture spread.png",
             project),
