@@ -47,9 +47,9 @@ std::vector<std::string> Reading::check(const Element& element, const schema::El
     }
   }
   if (info.children == schema::kAnything) return missing;
-  // A program without a world knows neither media nor fields.
+  // A program without a world knows neither media nor fields nor observers.
   const auto may_hold = [&](std::string_view kind) { return info.children.find(kind) != std::string_view::npos; };
-  if ((may_hold(schema::kMediumKind) && known_.media.empty()) ||
+  if (((may_hold(schema::kMediumKind) || may_hold(schema::kObserverKind)) && known_.media.empty()) ||
       (may_hold(schema::kFieldKind) && known_.fields.empty()))
     return missing;
   const std::vector<std::string> allowed = known_.children_of(words(info.children));

@@ -26,6 +26,7 @@ struct Experiment {
   std::string params = {};
   std::string hook = {};
   int length_s = 2;
+  std::string record = {};
 };
 
 std::string text(const Experiment& e) {
@@ -51,6 +52,8 @@ std::string text(const Experiment& e) {
       <entity quantity="12" max_trials="1000"><e-puck id="ep"><controller config="who"/></e-puck></entity>
     </distribute>
   </arena>
+  )" + e.record +
+         R"(
 </tandem>
 )";
 }
@@ -129,6 +132,32 @@ TEST_F(Endings, AControllerThatThrewIsNoSuccess) {
   EXPECT_THAT(run->errors(),
               AllOf(HasSubstr("robot 'ep4' threw at tick 3"), HasSubstr("\\x1b[2J"), HasSubstr(" gone")));
   EXPECT_THAT(run->errors() + run->output(), Not(HasSubstr("\033")));
+}
+
+TEST_F(Endings, AnObserverThatFailsIsNamedOnceAndTheRunGoesOn) {
+  for (const std::string what : {"fail", "throw"}) {
+    auto run = start({.hook = "<plugins library=\"test_trouble\"/>",
+                      .record = "<record><onlooker what=\"" + what + "\"/></record>"});
+    EXPECT_EQ(run->wait(), 3);
+    EXPECT_EQ(value("finished"), "true");
+    EXPECT_EQ(whole_ticks(), 20);
+    const std::string errors = run->errors();
+    const std::string who = "error: observer 'onlooker' (library '";
+    ASSERT_THAT(errors, AllOf(HasSubstr(who), HasSubstr(what == "fail" ? "cannot bear to look" : "threw: "),
+                              HasSubstr("the run goes on without it")));
+    EXPECT_EQ(errors.find(who), errors.rfind(who)) << errors;
+  }
+  auto early = start({.hook = "<plugins library=\"test_trouble\"/>",
+                      .record = "<record><onlooker what=\"throw\" early=\"true\"/></record>"});
+  EXPECT_EQ(early->wait(), 1);
+  EXPECT_THAT(early->errors(), HasSubstr("e.xml:17: error:"));
+}
+
+TEST_F(Endings, ACrashOfAnObserverNamesIt) {
+  auto run =
+      start({.hook = "<plugins library=\"test_trouble\"/>", .record = "<record><onlooker what=\"memory\"/></record>"});
+  EXPECT_EQ(run->wait(), 3);
+  EXPECT_THAT(run->errors(), HasSubstr("observer 'onlooker' (library '"));
 }
 
 TEST_F(Endings, ASpeedThatIsHardlyMeantAsksForItsUnitOnce) {

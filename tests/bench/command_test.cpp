@@ -90,6 +90,25 @@ TEST(BenchLines, TellWhichDevicesTheRobotsHave) {
   EXPECT_NE(without.errors().find("device of the e-puck"), std::string::npos) << without.errors();
 }
 
+TEST(BenchLines, TellOfASensorFromOutsideWhatTheyTellOfTheSameInside) {
+  Folder folder;
+  const std::string plugin = std::string(test::kBuildDir) + "/tests/bench_plugins/libtest_outside_proximity.so";
+  const auto hash_with = [&](const std::string& implementation) {
+    Tandem bench({"bench", "diffusion", "--robots", "500", "--ticks", "50", "--with", "proximity:" + implementation,
+                  "--plugin", plugin},
+                 folder.path());
+    EXPECT_EQ(bench.wait(), 0) << bench.errors();
+    const auto lines = objects_in(bench.output());
+    EXPECT_EQ(lines.size(), 1U);
+    return lines.empty() ? "" : text(lines[0], "state_hash");
+  };
+  const std::string inside = hash_with("default");
+  EXPECT_FALSE(inside.empty());
+  EXPECT_EQ(hash_with("outside"), inside);
+  Tandem wrong({"bench", "diffusion", "--robots", "1", "--with", "proximity:nowhere"}, folder.path());
+  EXPECT_EQ(wrong.wait(), 2);
+}
+
 TEST(BenchLines, AreComplete) {
   Folder folder;
   Tandem bench({"bench", "diffusion", "--robots", "1,30", "--threads", "0,2", "--partition", "A1,A4", "--assignment",

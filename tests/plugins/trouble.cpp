@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/hook/hook.hpp"
+#include "core/record/observer.hpp"
 #include "hal/device/wheels.hpp"
 #include "hal/plugin.hpp"
 
@@ -98,9 +99,29 @@ class Trouble final : public core::Hook {
   Params params_;
 };
 
+/// An observer that fails, throws or makes trouble at its tick.
+class Onlooker final : public core::Observer {
+ public:
+  using Params = ::Params;
+  Onlooker(const Params& params, const core::Observation&) : params_(params) {
+    if (params_.early) make_trouble(params_.what);
+  }
+  hal::Status observe(const core::Observation& now) override {
+    if (now.tick < params_.at) return {};
+    if (params_.what == "fail") return hal::Error{"cannot bear to look"};
+    make_trouble(params_.what);
+    return {};
+  }
+
+ private:
+  Params params_;
+};
+
 void register_all(hal::Registrar& registrar) {
   registrar.add_controller<Troublemaker>("troublemaker", "Ends the program, or does not return.");
   registrar.add(core::hook_type<Trouble>("trouble", "Ends the program, or does not return."));
+  static const core::ObserverType onlooker = core::observer_type<Onlooker>("onlooker", "Fails.");
+  registrar.add(onlooker);
 }
 
 }  // namespace
