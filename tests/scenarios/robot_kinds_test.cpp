@@ -98,6 +98,26 @@ TEST_P(WrittenOut, KindRunsWithTheSameBits) {
   EXPECT_EQ(outside.world->space().kind(outside.world->space().robot(0)).name, "copy");
 }
 
+TEST(RobotKindsOfFiles, CanBeAddedWhileTheRunGoesOn) {
+  hal::RobotKind crab = hal::epuck::kind();
+  crab.name = "crab";
+  const Built built{&hal::epuck::kind, "epuck_diffusion", "epuck_diffusion", kDiffusion, "dynamics2d"};
+  const Trial trial(experiment(built, "e-puck", core::kinds_file({core::element_of(crab)})));
+  ASSERT_NE(trial.world, nullptr) << trial.text();
+  trial.world->start();
+  core::Space& space = trial.world->space();
+  const auto added =
+      space.add_robot({.kind = "crab", .id = "new", .controller = "c", .pose = {.x_m = 2.8, .y_m = 2.8}});
+  ASSERT_TRUE(added.ok()) << added.error().message;
+  EXPECT_EQ(space.kind(added.value()).name, "crab");
+  const auto nobody =
+      space.add_robot({.kind = "crap", .id = "no", .controller = "c", .pose = {.x_m = 2.5, .y_m = 2.8}});
+  ASSERT_FALSE(nobody.ok());
+  EXPECT_THAT(nobody.error().message, HasSubstr("Did you mean 'crab'?"));
+  for (int tick = 0; tick < 5; ++tick) trial.world->step();
+  EXPECT_EQ(trial.world->failure(), "");
+}
+
 // --- figures at the ends of their ranges ---
 
 /// Every attribute and child list of an element, one after the other, with something odd in its place.
@@ -289,6 +309,22 @@ TEST_F(Commands, RefuseARealRobotThatItsBridgeCannotDrive) {
     EXPECT_EQ(real.wait(), 1) << command;
     EXPECT_THAT(real.errors(), HasSubstr("real.xml:6: error: robot 'c0': the kind 'crab' has no drive"));
   }
+}
+
+TEST_F(Commands, DriveARealRobotOfAKindThatIsBuiltAsItsBridgeKnows) {
+  scenarios::EmulatedEpuck epuck(folder_);
+  ASSERT_TRUE(epuck.ready());
+  std::string text = with_crabs(
+      "<kinds><kind name=\"crab\" like=\"e-puck\"><differential_drive wheel_base=\"55 mm\" "
+      "source=\"measured\"/></kind></kinds>");
+  text.replace(text.find("<crab id=\"c1\">"), text.find("</arena>") - text.find("<crab id=\"c1\">"), "");
+  text.replace(text.find("<controller config=\"c\"/></crab>"), 0, "<bridge link=\"serial:ep0\" firmware=\"auto\"/>");
+  folder_.write("real.xml", text);
+  Tandem robot({"robot", "real.xml", "--seconds", "2"}, folder_.path());
+  EXPECT_EQ(robot.wait(), 0) << robot.errors();
+  EXPECT_TRUE(epuck.has_moved());
+  Tandem run({"run", "real.xml", "--seconds", "1"}, folder_.path());
+  EXPECT_EQ(run.wait(), 0) << run.errors();
 }
 
 }  // namespace

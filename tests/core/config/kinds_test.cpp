@@ -6,6 +6,7 @@
 #include <gmock/gmock.h>
 #include <unistd.h>
 
+#include "core/config/upgrade.hpp"
 #include "hal/device/body_sensors.hpp"
 #include "hal/device/leds.hpp"
 #include "hal/device/range_and_bearing.hpp"
@@ -222,6 +223,15 @@ TEST_F(Files, OfKindsAreJudgedByThemselves) {
   EXPECT_EQ(to_text(problems[0]), bad +
                                       ":2: error: the kind 'crab' has no body; give it a <body radius=\"…\" "
                                       "height=\"…\" mass=\"…\"/>");
+}
+
+TEST_F(Files, OfKindsNeedNoUpgradeYet) {
+  const std::string text = R"(<kinds><kind name="crab" like="e-puck"/></kinds>)";
+  const auto same = upgraded(text, "crab.xml", known_names());
+  ASSERT_TRUE(same.ok()) << same.error().message;
+  EXPECT_EQ(same.value().text, text);
+  EXPECT_TRUE(same.value().changes.empty());
+  EXPECT_FALSE(upgraded("<kinds version=\"99\"/>", "crab.xml", known_names()).ok());
 }
 
 TEST_F(Files, ThatIncludeThemselvesAreRefused) {
