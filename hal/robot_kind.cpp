@@ -1,7 +1,10 @@
 #include "hal/robot_kind.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
+#include <set>
 
 #include "hal/elementary.hpp"
 
@@ -19,6 +22,39 @@ constexpr double kLargestRing = 1000;
 struct Erased {
   AnyPart& part;
   void describe(ParamVisitor& v) { part.describe(v); }
+};
+
+/// Collects the names of what robots' elements may say, and finds what cannot be told apart.
+class AttributeNames final : public ParamVisitor {
+ public:
+  void number(std::string_view name, double&, const Unit&, Range, std::string_view) override { add(name); }
+  void integer(std::string_view name, std::int64_t&, Range, std::string_view) override { add(name); }
+  void flag(std::string_view name, bool&, std::string_view) override { add(name); }
+  void text(std::string_view name, std::string&, std::string_view) override { add(name); }
+  void choice(std::string_view name, std::string&, std::span<const std::string_view>, std::string_view) override {
+    add(name);
+  }
+  void vector(std::string_view name, std::array<double, 3>&, const Unit&, std::string_view) override { add(name); }
+
+  std::string flaw;
+
+ protected:
+  void visit_group(std::string_view name, void*, Describe, std::string_view) override { add(name); }
+  void visit_list(std::string_view name, ParamList&, std::string_view) override { add(name); }
+
+ private:
+  void add(std::string_view name) {
+    if (!flaw.empty()) return;
+    const auto letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; };
+    const auto fits = [&](char c) { return letter(c) || (c >= '0' && c <= '9') || c == '-' || c == '.'; };
+    if (name.empty() || !letter(name.front()) || !std::all_of(name.begin(), name.end(), fits))
+      flaw = "lets its robots say '" + std::string(name) + "', which is no name of an attribute; choose another";
+    else if (!names_.insert(std::string(name)).second)
+      flaw = "has two parts that let its robots say '" + std::string(name) +
+             "'; leave one of them out, or name it otherwise";
+  }
+
+  std::set<std::string> names_{"id"};
 };
 
 }  // namespace
@@ -121,7 +157,9 @@ std::string RobotKind::flaw() const {
     }
     if (const std::string flaw = parts_[i].flaw(); !flaw.empty()) return "has a " + part + " that " + flaw;
   }
-  return {};
+  AttributeNames names;
+  RobotKind(*this).attributes(names);
+  return names.flaw;
 }
 
 std::string mounts_flaw(const std::vector<Mount>& mounts, std::size_t capacity) {

@@ -5,6 +5,8 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <sstream>
+#include <string>
 
 #include "app/catalog.hpp"
 #include "app/command/command.hpp"
@@ -268,7 +270,8 @@ bool describe_robot(const hal::Catalog& catalog, const std::string& name) {
   hal::RobotKind shown = *kind;
   hal::FactWriter facts;
   shown.describe(facts);
-  fmt::print("{}", facts.text());
+  std::istringstream lines(facts.text());
+  for (std::string line; std::getline(lines, line);) fmt::print("{}\n", printable(line));
   return true;
 }
 

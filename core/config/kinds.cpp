@@ -1,9 +1,15 @@
 #include "core/config/kinds.hpp"
 
 #include <algorithm>
-#include <cctype>
+#include <array>
+#include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <set>
+#include <span>
+#include <string_view>
+#include <utility>
+#include <variant>
 
 #include "core/config/reader.hpp"
 #include "core/config/reading.hpp"
@@ -419,6 +425,12 @@ class KindsReader {
       if (!part.flaw().empty()) flawed.emplace_back(part.name());
     }
     for (const std::string& name : flawed) kind.remove(name);
+    if (kind.flaw().empty()) return;
+    hal::RobotKind bare;
+    bare.name = kind.name;
+    bare.summary = kind.summary;
+    bare.body = kind.body;
+    kind = std::move(bare);
   }
 
   const hal::Catalog& catalog_;

@@ -1,5 +1,8 @@
 #include "mixed_reality/settings/kind_check.hpp"
 
+#include <array>
+#include <cstddef>
+#include <cstdint>
 #include <map>
 #include <span>
 #include <string>

@@ -360,6 +360,12 @@ INSTANTIATE_TEST_SUITE_P(
                 "<kind without>: there is no 'turret' to leave out; there is: differential_drive, proximity"},
         Mistake{"BridgeOfNobody", crab(kCrab, "bridge=\"lobster\""),
                 "<kind bridge>: there is no robot 'lobster'; there are: e-puck, "},
+        Mistake{"AttributesThatCannotBeWritten",
+                crab("<perspective_camera attributes=\"my eye\"/>", "like=\"foot-bot\""),
+                "the kind 'crab' lets its robots say 'my eye_front', which is no name of an attribute"},
+        Mistake{"AttributesThatCannotBeToldApart",
+                crab("<perspective_camera attributes=\"rab\"/>", "like=\"foot-bot\""),
+                "the kind 'crab' has two parts that let its robots say 'rab_range'; leave one of them out"},
         Mistake{"AnotherElement", with("<kinds><crab/></kinds>"),
                 "<kinds> cannot hold <crab>; it may hold: kind, kinds"}),
     [](const auto& mistake) { return mistake.param.name; });
