@@ -155,6 +155,7 @@ int emulate(const EmulateOptions& options);
 struct InspectOptions {
   Libraries plugins;
   std::string link;
+  std::string kind;  ///< of the robot that is there; "": the link tells
   double seconds = 2.0;
 };
 int inspect(const InspectOptions& options);

@@ -21,9 +21,12 @@ int inspect(const InspectOptions& options) {
   const bridges::InspectorType* chosen = nullptr;
   std::string known;
   for (const auto* type : loader.catalog().all<bridges::InspectorType>()) {
-    if (chosen == nullptr && type->reads(options.link)) chosen = type;
+    const bool meant = options.kind.empty() ? type->reads(options.link) : type->name == options.kind;
+    if (chosen == nullptr && meant) chosen = type;
     known += "\n  " + std::string(type->name) + ": " + std::string(type->summary);
   }
+  if (chosen == nullptr && !options.kind.empty())
+    return complain(kBadInput, "nobody inspects a '" + options.kind + "'; robots are reached over" + known);
   if (chosen == nullptr) {
     const auto address = bridges::parse_link(options.link);
     return complain(kBadInput,

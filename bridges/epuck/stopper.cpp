@@ -20,49 +20,6 @@ constexpr std::string_view kSocket = "socket=";
 constexpr TimeNs kStep = 40 * hal::kNsPerMs;
 constexpr TimeNs kWriteWithin = 20 * hal::kNsPerMs;  // four times as long as the longest burst takes
 
-class SerialStop final : public StopTalk {
- public:
-  explicit SerialStop(const StopTiming& timing) : procedure_(timing) {}
-  void begin(TimeNs now) override { procedure_.begin(now); }
-  void on_bytes(std::span<const std::uint8_t> bytes, TimeNs at) override {
-    for (const std::uint8_t byte : bytes) procedure_.on_byte(byte, at);
-  }
-  void poll(TimeNs now, Packet& out) override { procedure_.poll(now, out); }
-  TimeNs next_deadline() const override { return procedure_.next_deadline(); }
-  bool confirmed() const override { return procedure_.confirmed(); }
-  bool answered() const override { return procedure_.answered(); }
-
- private:
-  StopProcedure procedure_;
-};
-
-class WifiStop final : public StopTalk {
- public:
-  explicit WifiStop(const StopTiming& timing) : timing_{.answer_ns = timing.answer_ns} {
-    session_ = WifiSession(timing_);
-  }
-  void begin(TimeNs now) override {
-    session_ = WifiSession(timing_);
-    session_.link_up(now);
-    session_.shut_down(now);
-  }
-  void on_bytes(std::span<const std::uint8_t> bytes, TimeNs at) override { session_.on_bytes(bytes, at); }
-  void poll(TimeNs now, Packet& out) override {
-    session_.poll(now);
-    out.append(session_.output().bytes());
-    session_.clear_output();
-  }
-  TimeNs next_deadline() const override { return session_.next_deadline(); }
-  bool confirmed() const override { return session_.at_rest(); }
-  bool answered() const override { return session_.statistics().answers > 0; }
-  bool wants_new_link() const override { return session_.wants_new_link(); }
-  bool needs_whole_packets() const override { return true; }
-
- private:
-  SessionTiming timing_;
-  WifiSession session_;
-};
-
 /// -1: the body names none.
 int descriptor_in(std::string_view body) noexcept {
   int descriptor = -1;

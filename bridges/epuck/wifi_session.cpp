@@ -16,6 +16,7 @@ constexpr TimeNs kSayStopAgain = 50 * hal::kNsPerMs;
 constexpr TimeNs kSettle = 100 * hal::kNsPerMs;    // what came sooner may have been measured before the stop
 constexpr TimeNs kSame = 200 * hal::kNsPerMs;      // that wheels which stand have the same counters
 constexpr TimeNs kSilence = 1500 * hal::kNsPerMs;  // then another link is tried
+constexpr TimeNs kPace = 5 * hal::kNsPerMs;        // the robot takes 11 ms or more for each
 constexpr TimeNs kMostAllowed = 500 * hal::kNsPerMs;
 constexpr TimeNs kUsualLatency = 40 * hal::kNsPerMs;  // before any was seen
 // Radio and robot talk over a serial line of 115200 baud: the sensors' 103 bytes are so old when the radio has them.
@@ -70,6 +71,7 @@ void WifiSession::link_up(TimeNs now) noexcept {
   reader_.clear();
   newest_.any = false;
   at_rest_ = false;
+  backlog_ = false;
   silent_ns_ = 0;
   begin_handshake(now);
 }
@@ -157,7 +159,7 @@ void WifiSession::on_bytes(std::span<const std::uint8_t> bytes, TimeNs at) noexc
       case WifiReader::Event::Empty:
         break;
       case WifiReader::Event::Sensors:
-        newest_.any = true;
+        newest_.any = !is_backlog(at);
         newest_.at_ns = at;
         if (decode_all_sensors(reader_.sensors(), newest_.sensors) == Decoded::Ok) break;
         [[fallthrough]];
@@ -168,6 +170,14 @@ void WifiSession::on_bytes(std::span<const std::uint8_t> bytes, TimeNs at) noexc
         return;
     }
   }
+}
+
+/// Whether sensors that came at `at` are older than their arrival says.
+bool WifiSession::is_backlog(TimeNs at) noexcept {
+  const bool at_pace = at - arrived_ns_ >= kPace;
+  arrived_ns_ = at;
+  if (backlog_) return backlog_ = !at_pace;
+  return backlog_ = silent_ns_ != 0;
 }
 
 void WifiSession::take_sensors(const AllSensors& sensors, TimeNs at, TimeNs now) noexcept {
@@ -206,7 +216,7 @@ void WifiSession::take_sensors(const AllSensors& sensors, TimeNs at, TimeNs now)
 // --- time-outs ---
 
 TimeNs WifiSession::answer_by() const noexcept {
-  return waiting_ns_ + allowed_ns_ + (asked_again_ ? 2 * timing_.answer_ns + patience_ns_ : timing_.answer_ns);
+  return waiting_ns_ + allowed_ns_ + timing_.answer_ns + (asked_again_ ? patience_ns_ : 0);
 }
 
 TimeNs WifiSession::next_deadline() const noexcept {
@@ -236,6 +246,8 @@ void WifiSession::judge_silence(TimeNs now) noexcept {
   if (!asked_again_) {
     asked_again_ = true;
     ++statistics_.asked_again;
+    waiting_ns_ = 0;  // anew, from the second command
+    allowed_ns_ = 0;
     return say(now);
   }
   lose_step("no answer", now);

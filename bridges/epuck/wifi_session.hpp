@@ -1,14 +1,15 @@
 // The conversation with an e-puck2 over its own radio (WiFi, TCP port 1000), without I/O and without a clock.
 //
 //   absent --link up--> handshake --stop confirmed--> ready --sensors--> active
-//   active --nothing comes twice, odd values, it moves although it was told to stand--> suspect --stop confirmed-->
-//   ready suspect, handshake --nothing comes--> lost, and the link is to be opened anew --sensors, stop confirmed-->
-//   ready
+//   active --silent twice, odd values, moves untold--> suspect --stop confirmed--> ready
+//   suspect, handshake --silent--> lost: the link is to be opened anew --stop confirmed--> ready
 //
 // Every command has 21 bytes, sets everything and asks for all sensors, which come as 105. The radio goes on telling
-// them as long as the link stands; so an answer belongs to no question, and readings are dated by their arrival. It
-// checks nothing: a command of which a byte is missing makes it read all that follow at the wrong place, and obey. TCP
-// loses none; where a command could be sent in part only, the link is given up, and a new one begins in step.
+// them as long as the link stands; so an answer belongs to no question, and readings are dated by their arrival. After
+// a silence the sensors that come at once one after the other have waited on the way, for nobody knows how long: the
+// first that come at the robot's own pace again are believed. It checks nothing: a command of which a byte is missing
+// makes it read all that follow at the wrong place, and obey. TCP loses none; where a command could be sent in part
+// only, the link is given up, and a new one begins in step.
 //
 // The robot does not tell its commanded speeds. It rests when its wheel counters were the same for 200 ms after it was
 // told so: from 5 steps a second (0.6 mm/s) on every wheel counts meanwhile. The firmware has no watchdog: it drives on
@@ -55,6 +56,7 @@ class WifiSession final : public Conversation {
     bool any = false;
   };
 
+  bool is_backlog(hal::TimeNs at) noexcept;
   void begin_handshake(hal::TimeNs now) noexcept;
   void begin_stop(hal::TimeNs now) noexcept;
   void on_rest(hal::TimeNs now) noexcept;
@@ -88,6 +90,8 @@ class WifiSession final : public Conversation {
   bool stop_asked_ = false;
   bool ending_ = false;
   bool wants_new_link_ = false;
+  bool backlog_ = false;        // what comes has waited
+  hal::TimeNs arrived_ns_ = 0;  // the last sensors, old or new
 };
 
 }  // namespace tandem::bridges::epuck

@@ -12,7 +12,7 @@ constexpr std::size_t kImage = std::size_t{160} * 120 * 2;
 
 void Radio::new_host() noexcept {
   arrived_ = 0;
-  commanded_ = false;  // it tells nothing before the first command of this host
+  commanded_ = cut_ = false;  // it tells nothing before the first command of this host
   to_host_.clear();
 }
 

@@ -4,13 +4,14 @@
 // could say arrives, time passes, a request or a stop is made, the link goes and comes). Mostly right answers take the
 // session deep; the rest tries to break it.
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <cstdlib>
 #include <span>
 #include <string_view>
 
+#include "bridges/epuck/conversation.hpp"
 #include "bridges/epuck/conversions.hpp"
-#include "bridges/epuck/session.hpp"
 #include "hal/robot/epuck.hpp"
 
 namespace {
@@ -59,7 +60,12 @@ void decode_alone(std::span<const std::uint8_t> bytes) {
   for (unsigned i = 0; i < kQuantityCount; ++i) {
     if (((bytes[0] | bytes[1] << 8) >> i & 1) != 0) asked.add(static_cast<Quantity>(i));
   }
-  const AnswerLayout layout{static_cast<std::uint8_t>(bytes[2] % 6 * 2), static_cast<std::uint8_t>(bytes[2] & 2U), 6};
+  const AnswerLayout layout{static_cast<std::uint8_t>(bytes[2] % 6 * 2),
+                            static_cast<std::uint8_t>(bytes[2] & 2U),
+                            6,
+                            static_cast<std::uint8_t>(bytes[2] & 4U ? 8 : 6),
+                            static_cast<std::uint8_t>(bytes[2] & 8U ? 2 : 0),
+                            static_cast<std::uint8_t>(bytes[2] & 16U ? 103 : 0)};
   RawSensors sensors;
   decode_answer(bytes.subspan(3), asked, layout, sensors);
   for (const std::uint16_t v : sensors.proximity) expect(kUnits.proximity_distance_m(v) >= 0.0);
@@ -75,11 +81,32 @@ void decode_alone(std::span<const std::uint8_t> bytes) {
   parse_hardware(text, hardware);
 }
 
-void act(Session& session, Script& script, tandem::hal::TimeNs& now) {
+/// However the stream is cut, the radio's packets are the same.
+void cut_alone(std::span<const std::uint8_t> bytes) {
+  WifiReader reader;
+  bool lost = false;
+  for (const std::uint8_t byte : bytes) {
+    const WifiReader::Event event = reader.push(byte);
+    expect(!lost || event == WifiReader::Event::OutOfStep);
+    lost = event == WifiReader::Event::OutOfStep;
+    AllSensors all;
+    if (event == WifiReader::Event::Sensors) expect(decode_all_sensors(reader.sensors(), all) != Decoded::WrongLength);
+  }
+}
+
+/// A packet of the radio's: plausible but for what `argument` says.
+void hear_radio(Conversation& session, std::uint8_t argument, tandem::hal::TimeNs now) {
+  std::array<std::uint8_t, 105> packet{2};
+  packet[1 + 79] = argument;                   // the left wheel's counter
+  packet[1 + 38] = argument > 250 ? 0xFF : 0;  // a proximity beyond 12 bits
+  session.on_bytes(std::span(packet).first(argument % 7 == 6 ? 60 : 105), now);
+}
+
+void act(Conversation& session, Script& script, tandem::hal::TimeNs& now) {
   static constexpr std::uint8_t kZeros[128] = {};
   const std::uint8_t op = script.next();
   const std::uint8_t argument = script.next();
-  switch (op % 13) {
+  switch (op % 15) {
     case 0:
       session.on_bytes(script.take(argument), now);
       break;
@@ -122,6 +149,12 @@ void act(Session& session, Script& script, tandem::hal::TimeNs& now) {
     case 11:
       session.ask({Quantity::Proximity, Quantity::Acceleration}, now);
       break;
+    case 13:
+      hear_radio(session, argument, now);
+      break;
+    case 14:
+      session.sent_in_part();
+      break;
     case 12:
       session.stalled(argument * tandem::hal::kNsPerMs);
       break;
@@ -138,8 +171,11 @@ void act(Session& session, Script& script, tandem::hal::TimeNs& now) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::span bytes(data, size);
   decode_alone(bytes);
+  cut_alone(bytes);
   Script script(bytes);
-  Session session;
+  const auto wire = script.next() % 3 == 0 ? WireForm::Wifi : WireForm::Serial;
+  const auto made = make_conversation(wire, {});
+  Conversation& session = *made;
   tandem::hal::TimeNs now = 0;
   session.link_up(now);
   while (!script.done()) {
@@ -149,6 +185,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     session.poll(now);
     expect(session.state() <= SessionState::Lost);
     expect(session.next_deadline() > now || session.state() == SessionState::Absent);
+    expect(wire == WireForm::Serial || session.output().size() % kWifiCommandSize == 0);
     for (const std::uint16_t v : session.samples().raw.proximity) expect(v <= 4095);
   }
   return 0;

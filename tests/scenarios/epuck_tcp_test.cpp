@@ -158,6 +158,18 @@ TEST(Inspect, ReadsAnEpuck2OverItsRadio) {
   EXPECT_FALSE(epuck.has_moved());
 }
 
+TEST(Inspect, ReadsAnEpuckBehindASerialServerWhenToldThatItIsOne) {
+  Folder folder;
+  EmulatedEpuckOnTcp epuck(folder, "epuck", "tcp-listen:0");
+  ASSERT_TRUE(epuck.ready());
+  Tandem inspect({"inspect", epuck.link(), "--as", "e-puck", "--seconds", "1"}, folder.path());
+  EXPECT_EQ(inspect.wait(), 0) << inspect.errors();
+  EXPECT_THAT(inspect.output(), HasSubstr("GCtronic"));
+  Tandem nobody({"inspect", epuck.link(), "--as", "e-pukc"}, folder.path());
+  EXPECT_EQ(nobody.wait(), 1);
+  EXPECT_THAT(nobody.errors(), HasSubstr("nobody inspects a 'e-pukc'"));
+}
+
 /// Drives an emulated e-puck on a pseudo-terminal through a program that serves it at `port`, kills the hub, and lets a
 /// second one drive: the program serves one host at a time.
 void drive_through(const std::vector<std::string>& server, int port, Folder& folder, const EmulatedEpuck& epuck) {

@@ -195,6 +195,49 @@ RC_GTEST_PROP(EpuckCodecProperty, DecodesWhatARobotWouldEncode, (const std::vect
                                        s.acceleration[2], s.commanded[0], s.commanded[1]}) == sent);
 }
 
+TEST(EpuckCodec, AsksAnEpuck2ForWhatItAloneTells) {
+  const AnswerLayout epuck2{.ground_bytes = 8, .microphone_bytes = 8, .time_of_flight_bytes = 2, .selector_bytes = 103};
+  const QuantitySet asked{Quantity::Microphones, Quantity::TimeOfFlight, Quantity::Selector};
+  Packet packet;
+  append_queries(packet, asked, epuck2);
+  EXPECT_EQ(bytes_of(packet), (Bytes{0xF4, 0xF3, 0xF8}));
+  Packet older;
+  append_queries(older, asked, {});
+  EXPECT_EQ(bytes_of(older), (Bytes{0x8B})) << "which an e-puck does not tell";
+  Bytes answer;
+  for (const int v : {10, 20, 30, 40, 1500}) put16(answer, v);
+  answer.resize(answer.size() + 103);
+  answer[10 + 89] = 12;
+  RawSensors s;
+  ASSERT_EQ(decode_answer(answer, asked, epuck2, s), Decoded::Ok);
+  EXPECT_THAT(s.microphones, testing::ElementsAre(10, 20, 30, 40));
+  EXPECT_EQ(s.time_of_flight_mm, 1500);
+  EXPECT_EQ(s.selector, 12);
+}
+
+RC_GTEST_PROP(EpuckCodecProperty, FindsEveryPacketOfTheRadioHoweverManyStandBetween,
+              (const std::vector<std::uint8_t>& kinds)) {
+  WifiReader reader;
+  std::size_t told = 0, wanted = 0;
+  std::uint8_t number = 0;
+  for (const std::uint8_t kind : kinds) {
+    ++number;
+    const bool sensors = kind % 2 == 0;
+    Bytes packet(sensors ? 105 : 1, number);
+    packet[0] = sensors ? 2 : 3;
+    wanted += sensors ? 1 : 0;
+    for (const std::uint8_t byte : packet) {
+      const auto event = reader.push(byte);
+      RC_ASSERT(event != WifiReader::Event::OutOfStep);
+      if (event != WifiReader::Event::Sensors) continue;
+      ++told;
+      RC_ASSERT(reader.sensors().front() == number);
+      RC_ASSERT(reader.sensors().back() == number);
+    }
+  }
+  RC_ASSERT(told == wanted);
+}
+
 RC_GTEST_PROP(EpuckCodecProperty, TakesAnyBytesForAnyQuestion,
               (const Bytes& bytes, std::uint16_t bits, std::uint8_t ground)) {
   QuantitySet asked;

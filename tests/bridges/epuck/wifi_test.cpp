@@ -65,6 +65,10 @@ class Rig {
     sent.clear();
     radio.take_sent(now, sent);
     if (silent) return;
+    held.insert(held.end(), sent.begin(), sent.end());
+    if (outage) return;
+    sent.swap(held);
+    held.clear();
     for (const emulator::SentByte& s : sent) (void)far->write(std::span(&s.byte, 1), 0);
   }
   void ticks(int count, double speed_m_s) {
@@ -91,9 +95,10 @@ class Rig {
   emulator::Firmware robot;
   emulator::Radio radio;
   std::unique_ptr<MemoryLink> near, far;
-  std::vector<emulator::SentByte> sent;
+  std::vector<emulator::SentByte> sent, held;
   Bytes heard;
   bool silent = false, deaf = false;
+  bool outage = false;  // what the robot says waits
   int new_links = 0;
 };
 
@@ -297,6 +302,30 @@ TEST(EpuckWifi, ABacklogIsOneReadingNotMany) {
   rig.ticks(2, 0.1);
   EXPECT_LT(encoders.left_m_s, 0.13F);
   EXPECT_GT(encoders.left_m_s, 0.05F);
+}
+
+TEST(EpuckWifi, WhatWaitedDuringAnOutageIsNotTakenForNew) {
+  Rig rig;
+  const auto& ahead = rig.driver.robot().sensor<hal::TimeOfFlight>();
+  rig.body.senses.ahead_m = 1.0;
+  rig.ticks(10, 0.0);
+  ASSERT_EQ(ahead.validity, hal::Validity::Fresh);
+  rig.outage = true;
+  rig.ticks(4, 0.0);
+  ASSERT_EQ(ahead.validity, hal::Validity::Stale);
+  rig.body.senses.ahead_m = 0.2;
+  rig.run(20 * kMs);  // what is just being told was measured before
+  rig.outage = false;
+  for (int i = 0; i < 90; ++i) {
+    rig.driver.latch(rig.tick++, rig.now);
+    rig.driver.commit(rig.now);
+    rig.run(kMs);
+    if (ahead.validity == hal::Validity::Fresh) {
+      ASSERT_NEAR(ahead.distance_m, 0.2, 1e-3) << i;
+    }
+  }
+  EXPECT_EQ(ahead.validity, hal::Validity::Fresh);
+  EXPECT_EQ(rig.driver.session().epoch(), 1U) << "it was not stopped";
 }
 
 TEST(EpuckWifi, EndsWithAStopThatIsConfirmed) {
