@@ -256,9 +256,7 @@ class KindsReader {
                 "; give yours another name, and like=\"" + name + "\" to begin from that one");
       return false;
     }
-    if (elements_.empty()) {
-      for (const ElementManual& m : element_manuals(catalog_)) elements_.insert(m.name);
-    }
+    if (elements_.empty()) elements_ = element_names(KnownNames(catalog_));
     if (!elements_.contains(name)) return true;
     error(e, "name", "'" + name + "' is another element of experiment files; choose another name");
     return false;

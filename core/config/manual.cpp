@@ -103,6 +103,18 @@ std::string options_of_parts(const std::string& element, const hal::Catalog& cat
 
 }  // namespace
 
+std::set<std::string> element_names(const KnownNames& known) {
+  static const std::set<std::string> always = [] {
+    std::set<std::string> names;
+    for (const ElementManual& m : all_manuals()) names.insert(m.name);
+    return names;
+  }();
+  std::set<std::string> all = always;
+  for (const std::vector<std::string>* names : {&known.robots, &known.engines, &known.media, &known.fields})
+    all.insert(names->begin(), names->end());
+  return all;
+}
+
 std::vector<ElementManual> element_manuals(const hal::Catalog& catalog) {
   const KnownNames known(catalog);
   std::vector<ElementManual> manuals;

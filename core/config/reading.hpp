@@ -2,6 +2,7 @@
 #pragma once
 #include <algorithm>
 #include <memory>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -30,6 +31,9 @@ struct KnownNames {
   /// An engine's traits; null: there is none of that name.
   const KnownEngine* engine(std::string_view kind) const noexcept { return catalog.find<KnownEngine>(kind); }
 };
+
+/// The names of all elements that an experiment file may hold.
+std::set<std::string> element_names(const KnownNames& known);
 
 /// One reading of one file: what is known, what was found, and the Scenario in the making.
 class Reading {

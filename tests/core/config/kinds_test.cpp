@@ -137,11 +137,12 @@ const hal::RobotKind& written_and_read(const hal::RobotKind& kind, Outcome& out)
 }
 
 class BuiltIn : public testing::TestWithParam<std::string> {};
-INSTANTIATE_TEST_SUITE_P(All, BuiltIn, testing::Values("e-puck", "foot-bot", "eye-bot"), [](const auto& name) {
-  std::string letters = name.param;
-  std::erase(letters, '-');
-  return letters;
-});
+INSTANTIATE_TEST_SUITE_P(All, BuiltIn, testing::ValuesIn(known_names().names(hal::RobotKind::kCategory)),
+                         [](const auto& name) {
+                           std::string letters = name.param;
+                           std::erase(letters, '-');
+                           return letters;
+                         });
 
 TEST_P(BuiltIn, KindCouldBeWrittenSoFactByFact) {
   const hal::RobotKind& kind = *known_names().find<hal::RobotKind>(GetParam());
