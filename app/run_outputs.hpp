@@ -14,7 +14,7 @@
 
 namespace tandem::app {
 
-/// What was asked for; the rest is empty.
+/// Open outputs of a run; those that were not asked for are empty.
 struct RunOutputs {
   std::optional<hal::OutputFile> report;
   std::optional<hal::OutputFile> picture;
@@ -28,8 +28,8 @@ struct RunOutputs {
 /// output's; a picture of no known ending.
 hal::Status check_output_paths(const RunOptions& options, const core::Scenario& scenario, const hal::Catalog& catalog);
 
-/// Opens all but the observers; `record_start` is what a record begins with. Error: one cannot be written, or its robots are not
-/// there.
+/// Opens all but the observers; `record_start` is what a record begins with. Error: one cannot be written, or its
+/// robots are not there.
 hal::Result<RunOutputs> open_outputs(const RunOptions& options, const core::Scenario& scenario,
                                      const core::World& world, const hal::Json& record_start);
 

@@ -41,7 +41,7 @@ struct InputFiles {
 };
 InputFiles input_files(const core::Scenario& scenario, const hal::PluginLoader& loader);
 
-/// What the report and the table are made of.
+/// Input of the report and the table.
 struct RunResult {
   const core::World& world;
   const InputFiles& inputs;
@@ -56,9 +56,9 @@ std::string report_of(const RunResult& result);
 /// Its members but those about the end, for a run that may have to be ended in the middle of a tick.
 hal::Json report_members(const RunResult& result);
 
-/// What a record of the run begins with: all that is known before the first tick.
+/// First block of a record: all that is known before the first tick.
 hal::Json record_start(const core::World& world, const InputFiles& inputs);
-/// What it ends with: the report.
+/// Last block of a record: the report.
 hal::Json record_end(const RunResult& result);
 
 void print_result(const RunResult& result);

@@ -11,7 +11,7 @@ const std::atomic<bool>& catch_signals();
 std::atomic<bool>& suspend_asked() noexcept;
 void catch_suspend();
 
-/// What the program's exit code is when a signal ended its run: 130 after SIGINT, 143 after SIGTERM; 0: none came.
+/// Exit code of a run that a signal ended: 130 after SIGINT, 143 after SIGTERM; 0: none came.
 int interrupted_code() noexcept;
 
 /// Set by SIGUSR1 from `catch_rearm` on: a person re-arms the real robots that wait for it.

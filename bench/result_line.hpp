@@ -9,7 +9,7 @@
 
 namespace tandem::bench {
 
-/// What figures and comparisons need of one run.
+/// One run as figures and comparisons need it.
 struct ResultLine {
   std::string bench, robot, engine, partition, regions, devices, density, assignment;
   std::int64_t robots = 0;

@@ -22,7 +22,7 @@ namespace tandem::bridges {
 /// (a restart, its own fail-safe), even if it has recovered. Lost: none came for longer than the time-out.
 enum class LinkHealth : std::uint8_t { Connecting, Active, Suspect, Lost };
 
-/// How the conversation with one robot went, in the same words for every kind.
+/// Statistics of the conversation with one robot, in the same words for every kind.
 struct LinkReport {
   std::uint64_t questions = 0;       ///< that want an answer
   std::uint64_t answers = 0;         ///< whole and plausible; never more than `questions`

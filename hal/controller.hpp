@@ -31,7 +31,7 @@ class Controller {
   virtual bool reset(Robot& /*robot*/) { return false; }
 };
 
-/// What happened while a row of controllers stepped: who threw, if anybody.
+/// Result of stepping a row of controllers: who threw, if anybody.
 struct StepFault {
   std::size_t index = 0;  ///< which of the row; while the row steps: who is stepping
   std::string message;

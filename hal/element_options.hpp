@@ -8,7 +8,7 @@
 
 namespace tandem::hal {
 
-/// What a part adds to an element that others describe, too.
+/// Attributes and children that a part adds to an element which others describe, too.
 struct ElementOptions {
   static constexpr std::string_view kCategory = "options";
   using Crosses = Layouts<ParamVisitor, ParamList>;

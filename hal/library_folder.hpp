@@ -1,4 +1,4 @@
-// Where the libraries are that come with this program.
+// Folder of the libraries that come with this program.
 #pragma once
 #include <filesystem>
 

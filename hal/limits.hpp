@@ -18,7 +18,7 @@ namespace tandem::hal {
 
 enum class LimitResult : std::uint8_t { Passed, Clamped, NotFinite };
 
-/// What became of a command.
+/// Result of limiting a command.
 struct Limited {
   LimitResult result = LimitResult::Passed;
   /// Of a speed that was clamped: what was asked for and the most that there is; 0: it is no such speed.

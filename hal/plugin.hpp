@@ -12,7 +12,7 @@
 
 namespace tandem::hal {
 
-/// What a plug-in exports under the name `tandem_plugin`. Begins with its size; members are only ever appended.
+/// Table that a plug-in exports under the name `tandem_plugin`. Begins with its size; members are only ever appended.
 struct PluginInfo {
   std::uint32_t size = sizeof(PluginInfo);
   void (*register_all)(Registrar&) = nullptr;

@@ -32,7 +32,7 @@ class FixedText {
 /// during the call.
 using NameCall = void (*)(const void* object, std::size_t part, std::size_t index, FixedText& out) noexcept;
 
-/// What one thread is doing. Lives as long as the process, so that it can be looked at whenever.
+/// Current plug-in call of one thread. Lives as long as the process, so that it can be looked at whenever.
 struct alignas(64) CallMark {
   std::atomic<NameCall> name{nullptr};  ///< null: no code of a plug-in
   std::atomic<const void*> object{nullptr};

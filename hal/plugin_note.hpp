@@ -12,7 +12,7 @@
 
 namespace tandem::hal {
 
-/// What the section .note.tandem of a shared object says.
+/// Contents of the section .note.tandem of a shared object.
 struct PluginNote {
   Release release;
   std::uint32_t standard_library = 0;  ///< as `detail::standard_library` gives it

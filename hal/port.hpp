@@ -43,7 +43,7 @@ enum class Scalar : std::uint8_t { F32, F64, U8, U16, U32, I32, I64, Bool };
 /// In which frame a field is expressed. Body: x forward, y left, z up.
 enum class Frame : std::uint8_t { None, Body, World, Sensor };
 
-/// How a real reading and a virtual one of the same device become one.
+/// Rule by which a real reading and a virtual one of the same device become one.
 enum class Fusion : std::uint8_t {
   Real,     ///< the real device's value
   Virtual,  ///< the simulated device's value
@@ -127,7 +127,7 @@ struct PortType : RowType {
   std::string catalog_name() const { return port_entry(name, role); }
 };
 
-/// What limits the commands of robots of a kind. A kind without such a part: one that allows nothing.
+/// Part that limits the commands of robots of a kind. A kind without such a part: one that allows nothing.
 template <class Part>
 const Part& limiting(const RobotKind& kind) noexcept {
   if constexpr (std::is_same_v<Part, RobotKind>) {
@@ -194,7 +194,7 @@ concept LimitsItself = requires {
   c.limit(by);
 };
 
-/// What keeps commands of class `T` safe.
+/// Fills in the limits of commands of class `T`.
 template <class T>
 void fill_limits(PortType& t) {
   constexpr bool limited = LimitsItself<T>;
@@ -330,14 +330,14 @@ const PortType& port_type() {
 double get_value(const void* row, const Field& field, std::size_t index) noexcept;
 void set_value(void* row, const Field& field, std::size_t index, double value) noexcept;
 
-/// Where it stands how many entries of a field are in use, and how many scalars each has. No field: all are in use.
+/// Field that counts the entries in use of another, and the number of scalars of each. No field: all are in use.
 struct UsedBy {
   const Field* field = nullptr;
   std::size_t per_entry = 1;
 };
 UsedBy used_by(const RowType& type, const Field& field) noexcept;
 
-/// How many elements of `field` are in use in this row.
+/// Number of elements of `field` that are in use in this row.
 std::size_t used_count(const RowType& type, const void* row, const Field& field) noexcept;
 std::size_t used_count(const UsedBy& used, const void* row, const Field& field) noexcept;
 

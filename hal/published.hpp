@@ -28,7 +28,7 @@ double value_of(const PublishedField& field, const void* controller, std::size_t
 /// The value for people: "search", "0.25 m", "[1 2 3]".
 std::string text_of(const PublishedField& field, const void* controller);
 
-/// How many bytes it takes in the controller.
+/// Size in the controller, in bytes.
 std::size_t size_of(const PublishedField& field) noexcept;
 
 }  // namespace tandem::hal

@@ -82,7 +82,7 @@ struct Quadrotor {
   void describe(ParamVisitor& v);
 };
 
-/// How a kind moves by itself; the first: not at all. The physics engines know these forms and no others.
+/// Locomotion of a kind; the first: none. The physics engines know these forms and no others.
 using Locomotion = std::variant<std::monostate, DifferentialDrive, Quadrotor>;
 
 /// Differs when a class of parts was compiled to another form: by size and alignment, those that it lists as `Crosses`
@@ -95,9 +95,9 @@ constexpr std::uint64_t part_layout() noexcept {
   return layout;
 }
 
-/// What a device needs to know of the robots that carry it. A part owns its data; it is found by name and layout, never
-/// by the language's own type information, which two libraries need not share. It may have `std::string flaw() const`:
-/// what makes it unusable, as in "has no mounts; give it at least one"; empty: nothing. And `void
+/// Part of a kind: facts that a device needs of the robots that carry it. A part owns its data; it is found by name and
+/// layout, never by the language's own type information, which two libraries need not share. It may have `std::string
+/// flaw() const`: what makes it unusable, as in "has no mounts; give it at least one"; empty: nothing. And `void
 /// attributes(ParamVisitor&)` : what of it the element of a robot may say otherwise for that robot alone.
 template <class P>
 concept RobotPart = Described<P> && requires(const P& part) {
@@ -107,7 +107,7 @@ concept RobotPart = Described<P> && requires(const P& part) {
 } && std::is_copy_constructible_v<P>;
 
 namespace detail {
-/// What is known of the parts of one class; in the library that was compiled with it.
+/// Functions of the parts of one class; in the library that was compiled with it.
 struct PartTable {
   std::string_view name, doc;
   std::uint64_t layout;
@@ -254,7 +254,7 @@ class RobotKind {
   std::vector<AnyPart> parts_;
 };
 
-/// What is wrong with a list of mounts that a port with `capacity` values tells of; empty: nothing.
+/// Flaw of a list of mounts for a port with `capacity` values; empty: none.
 std::string mounts_flaw(const std::vector<Mount>& mounts, std::size_t capacity);
 
 }  // namespace tandem::hal

@@ -106,7 +106,7 @@ constexpr std::uint32_t name_word() noexcept {
   return word;
 }
 
-/// Which standard library, and in which form.
+/// Name and form of the standard library.
 constexpr std::uint32_t standard_library() noexcept {
   std::uint32_t form = 0;
 #ifdef __GLIBCXX__

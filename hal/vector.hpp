@@ -37,7 +37,7 @@ inline Vector2 polar(double length, double bearing_rad) noexcept {
   return {length * cos(bearing_rad), length * sin(bearing_rad)};
 }
 
-/// Where it points, in [-pi, pi], counter-clockwise from x; 0 for no length.
+/// Direction of a vector, in [-pi, pi], counter-clockwise from x; 0 for no length.
 inline double bearing_of(const Vector2& v) noexcept {
   return atan2(v.y(), v.x());
 }

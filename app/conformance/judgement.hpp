@@ -1,4 +1,4 @@
-// What `tandem plugin check` found out about a plug-in.
+// Judgements of `tandem plugin check` about a plug-in.
 #pragma once
 #include <string>
 #include <vector>

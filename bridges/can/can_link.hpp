@@ -13,7 +13,7 @@
 
 namespace tandem::bridges {
 
-/// How the controller fares on its bus, best first.
+/// State of the controller on its bus, best first.
 enum class BusState : std::uint8_t {
   Active,
   Warning,  ///< 96 errors and more: cable, termination, bit rate?
@@ -28,7 +28,7 @@ constexpr bool can_pass(BusState state) noexcept {
   return state < BusState::BusOff;
 }
 
-/// What became of a frame that was to be sent.
+/// Outcome of sending a frame.
 enum class Sent : std::uint8_t {
   Taken,   ///< it is in the transmit queue of kernel or adapter
   Full,    ///< no room at present: try the same frame again later

@@ -8,9 +8,9 @@
 
 namespace tandem::bridges {
 
-/// What goes wrong. Chances are per frame and direction. What happens to frame n of a direction is a function of (seed,
-/// direction, n) alone; whether the bus is off at time t, of (seed, t): no generator, no order of calls, no clock
-/// matters.
+/// Faults to inject. Chances are per frame and direction. What happens to frame n of a direction is a function of
+/// (seed, direction, n) alone; whether the bus is off at time t, of (seed, t): no generator, no order of calls, no
+/// clock matters.
 struct CanFaults {
   std::uint64_t seed = 1;
   double loss = 0.0;        ///< chance that a frame vanishes

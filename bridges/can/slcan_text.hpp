@@ -27,7 +27,7 @@ SlcanLine slcan_line(const CanFrame& frame) noexcept;
 /// The digit of "Sn" for a bit rate, or empty when slcan has none for it.
 std::optional<char> slcan_rate_digit(std::uint32_t bits_per_s) noexcept;
 
-/// What an adapter said.
+/// An answer of an adapter.
 struct SlcanSaying {
   enum class What : std::uint8_t {
     Yes,        ///< CR: done

@@ -15,7 +15,7 @@
 
 namespace tandem::bridges {
 
-/// What every emulator is told.
+/// Options of every emulator.
 struct EmulatorRequest {
   std::string link;
   std::string log_file = {};                 ///< one JSON object a line; empty: none

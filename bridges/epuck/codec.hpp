@@ -38,7 +38,7 @@ class Packet {
   std::size_t size_ = 0;
 };
 
-/// What a binary packet can ask for, in the order in which this side asks.
+/// Quantities that a binary packet can ask for, in the order in which this side asks.
 enum class Quantity : std::uint8_t {
   Encoders,         ///< Q: 2 x int16, steps, wrapping
   Proximity,        ///< N: 8 values 0 to 4095, larger is nearer
@@ -75,7 +75,7 @@ class QuantitySet {
   std::uint16_t bits_ = 0;
 };
 
-/// How many bytes a robot answers where firmwares differ. 0: it does not answer at all.
+/// Length of a robot's answer in bytes where firmwares differ. 0: it does not answer at all.
 struct AnswerLayout {
   std::uint8_t ground_bytes = 6;          ///< 0, 6, 8 (e-puck2) or 10 (cliff sensors)
   std::uint8_t battery_bytes = 2;         ///< 0 (EPFL's BTcom) or 2

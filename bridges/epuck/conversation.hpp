@@ -40,7 +40,7 @@ struct SessionTiming {
   int tries = 3;
 };
 
-/// What the robot is to do.
+/// Command to the robot.
 struct Actuation {
   StepsPerS left, right;
   std::array<hal::Rgb, 8> ring{};

@@ -37,7 +37,7 @@ struct DriverStatistics {
   std::uint64_t stalls = 0;          ///< times that `pump` was called late (StallMeter)
 };
 
-/// What the wheels rolled, as their counters tell.
+/// Distance that the wheels rolled, by their counters.
 struct Odometry {
   double left_m = 0.0;
   double right_m = 0.0;

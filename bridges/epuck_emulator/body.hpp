@@ -9,7 +9,7 @@
 
 namespace tandem::bridges::epuck_emulator {
 
-/// What is known of the emulated robot as a body, which simulator and bridge know, too. What its modules say is their
+/// Facts of the emulated robot's body, which simulator and bridge have, too. What its modules say is their
 /// own business.
 template <class Part>
 const Part& robot_part() {
@@ -39,7 +39,7 @@ struct BodySenses {
   }
 };
 
-/// What the firmware makes the robot do.
+/// Command of the firmware to the robot's body.
 struct BodyCommand {
   double left_m_s = 0.0;  ///< rim speeds that the stepper motors really have, after clamping and rounding
   double right_m_s = 0.0;

@@ -44,7 +44,7 @@ namespace tandem::bridges::eyebot {
 enum class RobotState : std::uint8_t { Absent, Ready, Active, Suspect, Lost };
 const char* state_name(RobotState state) noexcept;
 
-/// Where commands go.
+/// Destination of commands.
 class Outbox {
  public:
   virtual ~Outbox() = default;
@@ -86,7 +86,7 @@ struct DriverStatistics {
   std::uint64_t refused_control = 0;  ///< orders refused because another hub controls the robot
 };
 
-/// What the robot said of itself last.
+/// The robot's last report of itself.
 struct FlightStatus {
   bool known = false;
   Mode mode = Mode::Off;

@@ -7,7 +7,7 @@
 
 namespace tandem::bridges::eyebot {
 
-/// What the robot says that it does. The numbers are those of the wire.
+/// The robot's mode as it reports it. The numbers are those of the wire.
 enum class Mode : std::int8_t {
   Off = 0,
   Idle = 1,
@@ -39,7 +39,7 @@ bool saves_itself(Mode mode, hal::FlightFailsafe failsafe) noexcept;
 /// Its motors carry it.
 bool in_the_air(Mode mode) noexcept;
 
-/// What the bridge is after.
+/// Goal of the bridge.
 enum class Goal : std::uint8_t {
   Obey,   ///< the controller's orders
   Hover,  ///< stay where it is, whatever the controller says

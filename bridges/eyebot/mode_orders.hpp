@@ -26,7 +26,7 @@ enum class Action : std::int8_t {
 inline constexpr std::size_t kActions = 10;
 const char* action_name(Action action) noexcept;
 
-/// How an order ended.
+/// Outcome of an order.
 enum class Outcome : std::uint8_t {
   Never,
   Done,

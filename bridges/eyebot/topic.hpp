@@ -12,7 +12,7 @@
 
 namespace tandem::bridges::eyebot {
 
-/// What a robot says and is listened to.
+/// Topics from a robot.
 enum class Topic : std::uint8_t {
   Heartbeat,
   Status,
@@ -29,13 +29,13 @@ enum class Topic : std::uint8_t {
 };
 inline constexpr std::size_t kTopics = 12;
 
-/// What a robot is told.
+/// Topics to a robot.
 enum class Told : std::uint8_t { Heartbeat, Mode, Position, Velocity, Leds, PanTilt, Scanner, Rab };
 inline constexpr std::size_t kTold = 8;
 
 /// The last part of the topic's channel, such as "state".
 std::string_view topic_name(Topic topic) noexcept;
-/// What a robot promises: the longest time from one message to the next.
+/// Longest time from one message of a robot to the next.
 hal::TimeNs topic_period_ns(Topic topic) noexcept;
 /// The number that stands before every message of this topic.
 std::uint64_t topic_fingerprint(Topic topic) noexcept;

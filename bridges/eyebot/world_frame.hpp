@@ -8,7 +8,7 @@ namespace tandem::bridges::eyebot {
 using Vector = std::array<double, 3>;
 using Quaternion = std::array<double, 4>;  // w, x, y, z
 
-/// Where the robot's world lies in the run's. Both have z up.
+/// Pose of the robot's world in the run's. Both have z up.
 struct WorldFrame {
   Vector origin{};        ///< of the robot's world, in the run's; m
   double turn_rad = 0.0;  ///< of the robot's x axis, counter-clockwise from the run's

@@ -31,7 +31,7 @@ struct Blob {
   friend bool operator==(const Blob&, const Blob&) = default;
 };
 
-/// What is known of the emulated robot as a body, which simulator and bridge know, too. What its modules say is their
+/// Facts of the emulated robot's body, which simulator and bridge have, too. What its modules say is their
 /// own business.
 template <class Part>
 const Part& robot_part() {
@@ -83,7 +83,7 @@ struct Lights {
   friend bool operator==(const Lights&, const Lights&) = default;
 };
 
-/// What the firmware makes the robot do.
+/// Command of the firmware to the robot's body.
 struct BodyCommand {
   bool motors = false;
   bool magnet = false;

@@ -35,7 +35,7 @@ std::string_view name_of(Verdict verdict);
 /// "none" for numbers that are no action.
 std::string_view name_of_action(std::int8_t action);
 
-/// What the supervisor goes by.
+/// Parameters of the supervisor.
 struct Conditions {
   bool hardware_fault = false;
   bool battery_critical = false;

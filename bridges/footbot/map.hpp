@@ -14,7 +14,7 @@
 
 namespace tandem::bridges::footbot {
 
-/// How numbers lie in a variable's words.
+/// Number format of a variable's words.
 enum class WordForm : std::uint8_t {
   Int16,
   Uint16,
@@ -81,7 +81,7 @@ struct PacketMap {
   int line = 0;
 };
 
-/// When the robot may not drive without a node.
+/// Condition under which the robot may not drive without a node.
 enum class Need : std::uint8_t {
   Always,
   Used,  ///< when a port was taken that it serves

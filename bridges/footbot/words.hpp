@@ -6,7 +6,7 @@
 
 namespace tandem::bridges::footbot {
 
-/// How many words a number takes; 1 also for bytes, of which a word holds two.
+/// Number of words that a number takes; 1 also for bytes, of which a word holds two.
 constexpr std::size_t words_of(WordForm form) noexcept {
   return form == WordForm::Int32LowFirst || form == WordForm::Int32HighFirst ? 2 : 1;
 }
@@ -26,7 +26,7 @@ WordRange words_of(const FieldMap& map) noexcept;
 std::int32_t raw_number(const FieldMap& map, std::span<const std::int16_t> variable, std::size_t i) noexcept;
 void set_raw_number(const FieldMap& map, std::span<std::int16_t> variable, std::size_t i, std::int32_t raw) noexcept;
 
-/// What a raw number means, SI.
+/// SI value of a raw number.
 double to_value(const FieldMap& map, std::int32_t raw) noexcept;
 /// The raw number nearest to a value, within `least` and `most` and what the form holds. Not finite: `rest`.
 std::int32_t to_raw(const FieldMap& map, double value) noexcept;

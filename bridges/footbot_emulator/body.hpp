@@ -21,7 +21,7 @@ struct Heard {
   friend bool operator==(const Heard&, const Heard&) = default;
 };
 
-/// What is known of the emulated robot as a body, which simulator and bridge know, too. What its modules say is their
+/// Facts of the emulated robot's body, which simulator and bridge have, too. What its modules say is their
 /// own business.
 template <class Part>
 const Part& robot_part() {
@@ -57,7 +57,7 @@ struct BodySenses {
 enum class TurretMode : std::uint8_t { Off = 0, Passive = 1, Speed = 2, Position = 3 };
 enum class ScannerMode : std::uint8_t { Off = 0, Speed = 1, Position = 2 };
 
-/// What the modules make the robot do.
+/// Command of the modules to the robot's body.
 struct BodyCommand {
   double left_m_s = 0.0;  ///< rim speeds
   double right_m_s = 0.0;

@@ -19,7 +19,7 @@
 
 namespace tandem::bridges::guardian {
 
-/// What the process is born with.
+/// Input of the guardian process at its start.
 struct Inheritance {
   std::span<const StopperType> types;
   SharedPage* page = nullptr;

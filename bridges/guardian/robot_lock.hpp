@@ -13,7 +13,7 @@
 
 namespace tandem::bridges::guardian {
 
-/// What a lock file says.
+/// Contents of a lock file.
 struct LockHolder {
   StopMessages robot;
   pid_t hub = 0;

@@ -14,7 +14,7 @@
 
 namespace tandem::bridges::guardian {
 
-/// What the threads share; all of it outlives them.
+/// State shared by the threads; it outlives them.
 struct GuardianContext {
   std::span<const StopperType> types;
   std::string folder;                             ///< of the locks

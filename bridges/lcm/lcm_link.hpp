@@ -33,7 +33,7 @@ struct LcmStatistics {
   std::uint64_t dropped = 0;  ///< whose handler threw, or that the system could not read
 };
 
-/// Where LCM goes when its URL is empty: multicast that does not leave this machine.
+/// Default URL of LCM: multicast that does not leave this machine.
 inline constexpr std::string_view kDefaultLcmUrl = "udpm://239.255.76.67:7667?ttl=0";
 
 /// Thread-safe. Owns its thread, which ends with it. Shared by all who talk over one `memq://`, which lives inside one

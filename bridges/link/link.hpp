@@ -59,7 +59,7 @@ class ByteLink {
 /// Opens a link, or opens it anew after a hang-up. May block for seconds (Bluetooth): call it from a worker thread.
 using LinkOpener = std::function<hal::Result<std::unique_ptr<ByteLink>>()>;
 
-/// Where a link that does not touch the outside world takes its time from; tests give a clock that they turn by hand.
+/// Source of time of a link that does not touch the outside world; tests give a clock that they turn by hand.
 using Clock = std::function<hal::TimeNs()>;
 
 /// CLOCK_MONOTONIC.

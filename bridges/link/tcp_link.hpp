@@ -11,7 +11,7 @@
 
 namespace tandem::bridges {
 
-/// Where somebody listens.
+/// Address of a listener.
 struct Endpoint {
   std::string host;
   std::uint16_t port = 0;

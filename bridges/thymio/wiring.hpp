@@ -22,7 +22,7 @@
 
 namespace tandem::bridges::thymio {
 
-/// What the experiment says of one Thymio.
+/// Options of one Thymio.
 struct Calibration {
   std::uint8_t node = 0;                       ///< its number where several are on one link; 0: it is alone
   double full_m_s = 0.2;                       ///< its speed with the motors' target 500

@@ -25,7 +25,7 @@ struct BodySenses {
 
 inline constexpr std::size_t kLeds = 11;  ///< circle, below left, below right, top
 
-/// What the node makes the robot do.
+/// Command of the node to the robot's body.
 struct BodyCommand {
   double left_m_s = 0.0;  ///< rim speeds
   double right_m_s = 0.0;

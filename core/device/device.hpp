@@ -13,7 +13,7 @@
 
 namespace tandem::core {
 
-/// What a device needs to know of the tick. The stores are those of the tick's end: bodies have moved.
+/// Context of a device in a tick. The stores are those of the tick's end: bodies have moved.
 struct DeviceContext {
   const SpaceStores& stores;
   const RobotGroup& group;
@@ -63,7 +63,7 @@ class Actuator {
   virtual void act(const DeviceContext& context, SpaceStores& stores, const void* ports) noexcept = 0;
 };
 
-/// What a device is made for.
+/// Input of a device's factory.
 struct DeviceSetup {
   const hal::RobotKind& kind;
   const RobotItem& item;

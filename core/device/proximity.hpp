@@ -7,7 +7,7 @@ namespace tandem::core {
 /// All implementations of the proximity sensor.
 std::vector<DeviceType> proximity_types();
 
-/// How the kernel's inner loops are compiled. Both give the same bits.
+/// Variants of the kernel's inner loops. Both give the same bits.
 enum class VectorCode { Baseline, Avx2 };
 
 /// The best that this processor has; `use_vector_code` overrides it, for tests.

@@ -33,7 +33,7 @@ class Checkpoints {
   virtual void reset(std::uint64_t seed) = 0;
 };
 
-/// What a hook is handed: the whole simulated state, to read and to change, and where the run is.
+/// Context of a hook: the whole simulated state, to read and to change, and the place in the run.
 struct HookContext {
   Space& space;
   hal::Tick tick = 0;  ///< the step about to run, or just run

@@ -6,7 +6,7 @@
 
 namespace tandem::core {
 
-/// What hooks measured, for the report and for views. In SI, or counts. Goes back with the run to a checkpoint.
+/// Measures of hooks, for the report and for views. In SI, or counts. Goes back with the run to a checkpoint.
 class Measures {
  public:
   void set(std::string_view name, double value) { of(name) = value; }

@@ -64,7 +64,7 @@ class Engine {
 
 class Solver;  // core/physics/solver.hpp
 
-/// What an engine is made of: its regions in this run, each with what its element says.
+/// Input of an engine's factory: its regions in this run, each with the options of its element.
 struct EngineOrder {
   struct Part {
     std::size_t region;                  ///< index into SpaceStores::regions

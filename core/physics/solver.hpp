@@ -13,7 +13,7 @@
 
 namespace tandem::core {
 
-/// What a solver is handed in each phase. `load` may run at the same time as other regions' `load`, `advance` as other
+/// Context of a solver in each phase. `load` may run at the same time as other regions' `load`, `advance` as other
 /// regions' `advance`; never one as the other. So `load` reads any part of the stores and writes none, and `advance`
 /// writes the rows of `region.owned` and nothing else, and reads no row of other regions.
 struct SolverContext {

@@ -10,7 +10,7 @@
 
 namespace tandem::core {
 
-/// Who draws. Two streams never share a number.
+/// Owner of a random stream. Two streams never share a number.
 enum class Stream : std::uint32_t {
   Placement = 1,
   Orientation,

@@ -49,7 +49,7 @@ struct ControllerConfig {
   int line = 0;
 };
 
-/// How one coordinate triple is drawn.
+/// Distribution of one coordinate triple.
 struct Distribution {
   enum class Method { Uniform, Gaussian, Constant, Grid };
   Method method = Method::Constant;
@@ -81,7 +81,7 @@ struct BatteryConfig {
   double orient_delta = 0.0;  ///< charge lost a radian (motion)
 };
 
-/// What becomes of a run when a real robot is not there at its start. Refuse: it does not begin. Simulate: it begins
+/// Policy for a real robot that is not there at the start. Refuse: it does not begin. Simulate: it begins
 /// with a simulated robot instead. Wait: it does not begin before the robot is there.
 enum class IfMissing : std::uint8_t { Refuse, Simulate, Wait };
 
@@ -221,7 +221,7 @@ struct TrajectoryConfig {
   std::int64_t every = 1;             ///< ticks between rows
 };
 
-/// What a record of the run holds (core/record/record.hpp), and how often.
+/// Contents of a record of the run (core/record/record.hpp).
 struct RecordConfig {
   std::string path;                           ///< empty: no record
   std::int64_t every = 1;                     ///< ticks between rows
@@ -261,8 +261,8 @@ struct Scenario {
   RecordConfig record;
   std::optional<TrajectoryConfig> trajectory;
   std::vector<Element> observers;  ///< each the element of an ObserverType
-  Element camera;     ///< placements of ARGoS' view, kept for ours
-  Element effective;  ///< the whole file with every default filled in
+  Element camera;                  ///< placements of ARGoS' view, kept for ours
+  Element effective;               ///< the whole file with every default filled in
 };
 
 /// The kind of robot of that name: the file's, or the catalog's; null: there is none.

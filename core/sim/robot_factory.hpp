@@ -32,7 +32,7 @@ struct BlockDevices {
   std::vector<std::shared_ptr<Actuator>> actuators;  ///< null where the port is a sensor
 };
 
-/// What the factory made beyond the stores.
+/// Products of the factory beyond the stores.
 struct RobotDevices {
   std::vector<BlockDevices> blocks;  ///< parallel to SpaceStores::blocks
 };

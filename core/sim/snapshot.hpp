@@ -16,8 +16,8 @@ namespace tandem::core {
 
 struct SavedWorld;  // core/sim/world.cpp: everything beside the space
 
-/// What World::snapshot gives and World::restore takes. Its copies share what was kept, which never changes. Must not
-/// outlive the plug-ins whose controllers it holds.
+/// State of a world, from World::snapshot for World::restore. Its copies share what was kept, which never changes. Must
+/// not outlive the plug-ins whose controllers it holds.
 class Snapshot {
  public:
   hal::Tick tick() const noexcept { return tick_; }

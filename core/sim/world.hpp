@@ -25,7 +25,7 @@ struct WorldOptions {
   hal::Log log;
 };
 
-/// How a run ended, or that it goes on.
+/// State of a run.
 enum class RunState { Running, Done, Failed };
 
 /// Counted misbehaviour of controllers and bodies, for the report.

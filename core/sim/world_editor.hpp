@@ -10,7 +10,7 @@
 
 namespace tandem::core {
 
-/// What Space asks for what it cannot do by itself. Everything that it is handed must outlive it.
+/// Carries out the changes that Space cannot make by itself. Everything that it is handed must outlive it.
 class WorldEditor final : public Editor {
  public:
   WorldEditor(const Scenario& scenario, SpaceStores& stores, RobotFactory& factory, const RegionAssigner& assigner)

@@ -20,7 +20,7 @@
 
 namespace tandem::core {
 
-/// What hooks asked for in this step, and the checkpoints that they keep.
+/// Requests of hooks in this step, and the checkpoints that they keep.
 class KeptCheckpoints final : public Checkpoints {
  public:
   struct Request {
@@ -61,7 +61,7 @@ class KeptCheckpoints final : public Checkpoints {
   std::set<std::string> names_;  // kept, or to be kept after this step
 };
 
-/// What a snapshot holds.
+/// Contents of a snapshot.
 struct SavedWorld {
   std::shared_ptr<const int> of;  ///< the world that it is of
   std::unique_ptr<SpaceCopy> space;
@@ -84,7 +84,7 @@ struct Excess {
   double most_m_s = 0.0;  ///< 0: none
 };
 
-/// What a controller said while it stepped.
+/// A message of a controller that stepped.
 struct Message {
   hal::Severity severity;
   std::string text;

@@ -14,20 +14,20 @@ namespace tandem::core {
 
 struct SpaceStores;  // core/space/stores.hpp
 
-/// Where a sensor sits in its robot's frame, and which way it looks: a direction along the ground, of length 1.
+/// Place of a sensor in its robot's frame, and its direction along the ground, of length 1.
 struct FieldSpot {
   double x_m = 0.0, y_m = 0.0, z_m = 0.0;
   double look_x = 1.0, look_y = 0.0;
 };
 
-/// Where a field is asked for: at the same spots of each robot in some rows.
+/// Places at which a field is sampled: the same spots of each robot in some rows.
 struct FieldPlaces {
   const SpaceStores& stores;
   std::size_t first_row = 0, rows = 0;
   std::span<const FieldSpot> spots;
 };
 
-/// What hooks answer for a place in W; `otherwise` where none does.
+/// Value that hooks give for a place in W; `otherwise` where none does.
 using Painter = std::function<double(double x_m, double y_m, double otherwise)>;
 
 /// A field may hold something itself, follow from what is in the space, or both. Only the thread that steps the world

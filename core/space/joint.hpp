@@ -8,8 +8,8 @@
 
 namespace tandem::core {
 
-/// How a joint holds, and what drives it. Angles of turning joints are headings of b relative to a; places of sliding
-/// ones are how far b's point lies from a's, along the axis.
+/// Form of a joint: its type, motor and limits. Angles of turning joints are headings of b relative to a; places of
+/// sliding ones are how far b's point lies from a's, along the axis.
 struct JointForm {
   JointKind kind = JointKind::Fixed;
   /// Sliding: unit vector along which b slides. In W for whoever makes a joint, in a's frame in the stores. Engines of

@@ -29,7 +29,7 @@ struct TurretState {
   }
 };
 
-/// What an engine must have for grippers to hold anything: loads are firm, or turn with the turret.
+/// Joints that an engine must have for grippers: loads are firm, or turn with the turret.
 inline constexpr JointKinds kJointsOfGrips = bit(JointKind::Fixed) | bit(JointKind::Turning);
 
 /// A gripper. What it holds is joined to the turret that it sits on.
@@ -88,7 +88,7 @@ struct HeadState {
   }
 };
 
-/// What a controller asks of its flying robot in this tick, through all the devices that it took.
+/// Commands of a controller to its flying robot in this tick, through all the devices that it took.
 struct FlightSetpoint {
   static constexpr std::string_view kName = "flight_setpoint";
   static constexpr std::string_view kDoc = "What controllers ask of flying robots, through all their devices.";
@@ -116,7 +116,7 @@ struct FlightSetpoint {
   }
 };
 
-/// How far a flying robot is with its task.
+/// Progress of a flying robot's task.
 struct PilotState {
   static constexpr std::string_view kName = "pilot";
   static constexpr std::string_view kDoc = "How far flying robots are with their tasks.";
@@ -160,7 +160,7 @@ struct ChargeState {
   void describe(hal::FieldList& f) const { f.add("charge", charge, hal::unit::none, "as the configuration counts it"); }
 };
 
-/// What the wheels rolled beyond what their encoders can see.
+/// Rolled distance that encoders cannot see.
 struct HiddenRoll {
   static constexpr std::string_view kName = "hidden_roll";
   static constexpr std::string_view kDoc = "What wheels rolled beyond what their encoders can see.";

@@ -4,8 +4,8 @@
 
 namespace tandem::core {
 
-/// What a real robot measures of other real robots by itself: its twin's sensors leave those out, so that nobody is
-/// seen or heard twice. Bits of `RobotEntity::real_senses`.
+/// Senses by which a real robot measures other real robots itself: its twin's sensors leave those out, so that nobody
+/// is seen or heard twice. Bits of `RobotEntity::real_senses`.
 enum class RealSense : std::uint8_t {
   Proximity = 1,
   Scanner = 2,

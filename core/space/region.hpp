@@ -21,7 +21,7 @@ struct RegionSide {
   std::uint16_t gate = kNoRegion;  ///< of a side that is no wall: where it leads; kNoRegion: to whatever lies behind
 };
 
-/// Where one engine's bodies live. Outlines are counter-clockwise; regions of engines for bodies of the same sort do
+/// Region of one engine. Outlines are counter-clockwise; regions of engines for bodies of the same sort do
 /// not overlap.
 struct Region {
   std::string name;               ///< the engine's id in the file; of a part, with its column and line: "dyn2d[2,3]"

@@ -11,7 +11,7 @@
 
 namespace tandem::core {
 
-/// What people see and robots do not. In metres, in W; it lasts until the next step begins.
+/// Drawings for people, which robots do not see. In metres, in W; they lasts until the next step begins.
 class Sketch {
  public:
   struct Point {

@@ -24,7 +24,7 @@ struct StateView {
 /// Whose value it is. Robots, objects, joints, lights and sounds have numbers: robots the index of their id.
 enum class ValueOwner : std::uint8_t { World, Robot, Object, Joint, Light, Sound };
 
-/// Where a value belongs: `name` is that of a port (of a sensor or an actuator), of a controller that publishes it, or
+/// Owner of a value: `name` is that of a port (of a sensor or an actuator), of a controller that publishes it, or
 /// of anything else that has fields.
 enum class ValueSet : std::uint8_t { Own, Sensor, Actuator, Published };
 
@@ -73,7 +73,7 @@ struct StateValue {
 /// All of them: those of the world, then by robot, object, joint, light and sound.
 std::vector<StateValue> state_values(const StateView& state);
 
-/// What two moments do not have in common, in the order of `a`; a value that is absent is empty.
+/// Values in which two states differ, in the order of `a`; a value that is absent is empty.
 struct StateDifference {
   std::string who, what, field;
   std::string a, b;

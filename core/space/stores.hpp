@@ -43,7 +43,7 @@ class Medium;           // core/medium/medium.hpp
 
 inline constexpr std::size_t kBlockRows = 256;
 
-/// What engines with forces or a third dimension know of a body beyond its place in the plane. In W.
+/// Height, attitude and velocities of a body, for engines with forces or a third dimension. In W.
 struct Motion {
   static constexpr std::string_view kName = "motion";
   static constexpr std::string_view kDoc = "Height, attitude and velocities.";
@@ -61,7 +61,7 @@ struct Motion {
   }
 };
 
-/// What a flying robot is told to do, by whatever flies it.
+/// Setpoint of a flying robot.
 struct FlightCommand {
   static constexpr std::string_view kName = "flight_command";
   static constexpr std::string_view kDoc = "What pilots tell flying robots to do.";
@@ -117,14 +117,14 @@ struct Slot {
   std::uint32_t slot = 0;
 };
 
-/// What the devices of a group do in a medium.
+/// Use of a medium by the devices of a group.
 struct MediumUse {
   const Medium* medium = nullptr;
   bool publishes = false, listens = false;
   double reach_m = 0.0;  ///< how far along the ground they look for signals; 0: as far as those reach
 };
 
-/// What the robots of a group have in common.
+/// A group of robots: what they have in common.
 struct RobotGroup {
   std::shared_ptr<const RobotItem> item;  ///< one of theirs: what it says of battery and radio holds for all
   const hal::RobotKind* kind = nullptr;
@@ -314,7 +314,7 @@ struct SpaceStores {
   }
 };
 
-/// What plug-ins that work on the stores must have been built against.
+/// Layouts that plug-ins which work on the stores must have been built against.
 using StoreLayouts =
     hal::Layouts<SpaceStores, Bodies, Motion, FlightCommand, Columns, ColumnArrays, KeptColumn, RobotGroup, RobotBlock,
                  RobotEntity, Object, Joint, Region, LightSource, SoundSource, Field, Fields, FieldPlaces, FieldSpot,

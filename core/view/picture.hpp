@@ -26,7 +26,7 @@ struct PictureOptions {
   std::vector<Trouble> trouble;  ///< real robots that are not named are well
 };
 
-/// What there is to see in `space`. Refers to `space` for the floor: draw it before that changes.
+/// Draws `space`. Refers to `space` for the floor: draw it before that changes.
 Drawing drawing_of(const Space& space, const PictureOptions& options);
 
 /// By the ending of `path`: .svg, .png or .pdf. Error: another one; names those that there are.

@@ -35,7 +35,7 @@ struct OmniCameraPart {
   }
 };
 
-/// What a camera that looks all around sees, nearest first; the farthest are dropped when there are more than
+/// Blobs seen by a camera that looks all around, nearest first; the farthest are dropped when there are more than
 /// `kCapacity`. A robot's own LEDs are not among them.
 struct OmnidirectionalCamera : Reading {
   static constexpr std::string_view kName = "omnidirectional_camera";
@@ -107,7 +107,7 @@ struct OmnidirectionalCamera : Reading {
   }
 };
 
-/// Where a camera with a lens sits and looks.
+/// Pose and optics of a camera with a lens.
 struct CameraMount {
   double x_m = 0.0;
   double z_m = 0.0;
@@ -156,8 +156,9 @@ struct CameraPart {
   }
 };
 
-/// What a camera with a lens sees, in pixels from the upper left corner of its image: x to the right, y downwards. The
-/// nearest first; the farthest are dropped when there are more than `kCapacity`. A robot's own LEDs are not among them.
+/// Blobs seen by a camera with a lens, in pixels from the upper left corner of its image: x to the right, y downwards.
+/// The nearest first; the farthest are dropped when there are more than `kCapacity`. A robot's own LEDs are not among
+/// them.
 struct PerspectiveCamera : Reading {
   static constexpr std::string_view kName = "perspective_camera";
   static constexpr std::string_view kDoc = "Coloured blobs in an image, in pixels.";

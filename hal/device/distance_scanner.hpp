@@ -50,14 +50,14 @@ struct ScannerPart {
   }
 };
 
-/// What moves a scanner. The numbers are part of the port.
+/// Drive mode of a scanner. The numbers are part of the port.
 enum class ScannerMode : std::uint8_t {
   Off = 0,      ///< it stays where it is and measures nothing
   Speed = 1,    ///< it turns with `speed_rad_s`
   Position = 2  ///< it goes to `angle_rad` by the shorter way
 };
 
-/// What the scanner is to do. Angles are relative to the body, counter-clockwise from forward. Safe value: off.
+/// Command of the scanner. Angles are relative to the body, counter-clockwise from forward. Safe value: off.
 struct ScannerDrive : Command {
   static constexpr std::string_view kName = "distance_scanner";
   static constexpr std::string_view kDoc = "How the distance scanner is to turn.";
@@ -86,7 +86,7 @@ struct ScannerDrive : Command {
   }
 };
 
-/// What each head measured during the last tick, oldest first. Heads 0 and 2 see short distances, 1 and 3 long ones;
+/// Measurements of each head during the last tick, oldest first. Heads 0 and 2 see short distances, 1 and 3 long ones;
 /// at angle 0 they look forward, left, back, right. Distances are from the robot's axis. Where a head sees nothing it
 /// reads the most that it can measure, where something is too near the least.
 struct DistanceScanner : Reading {

@@ -195,7 +195,7 @@ struct QuadrotorAttitude : Command {
   }
 };
 
-/// What a flying robot is to do as a whole. The numbers are part of the port.
+/// Task of a flying robot. The numbers are part of the port.
 enum class FlightOrder : std::uint8_t {
   Fly = 0,      ///< as the other commands say; on the ground or at the ceiling: stay there
   TakeOff = 1,  ///< rise to 1 m, then hover
@@ -230,7 +230,7 @@ struct FlightTask : Command {
   }
 };
 
-/// What a flying robot does. The numbers are part of the port.
+/// Mode of a flying robot. The numbers are part of the port.
 enum class FlightPhase : std::uint8_t {
   Off = 0,  ///< without power
   Landed = 1,
@@ -255,7 +255,7 @@ enum class FlightFailsafe : std::uint8_t {
   Hardware = 6
 };
 
-/// What the robot does at the moment, and how fast it moves.
+/// Mode and velocity of a flying robot.
 struct FlightState : Reading {
   static constexpr std::string_view kName = "flight_state";
   static constexpr std::string_view kDoc = "Phase of the flight, fail-safe, velocity.";
@@ -303,7 +303,7 @@ struct Altimeter : Reading {
   }
 };
 
-/// Where the robot is, as a positioning system tells it.
+/// Pose of the robot from a positioning system.
 struct Positioning : Reading {
   static constexpr std::string_view kName = "positioning";
   static constexpr std::string_view kDoc = "Place and orientation of the body in the world.";

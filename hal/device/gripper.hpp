@@ -23,7 +23,7 @@ struct GripperPart {
   }
 };
 
-/// How far the claws are to open. 0: they are together and hold nothing. Safe value: 0.
+/// Command of the claws: how far to open. 0: they are together and hold nothing. Safe value: 0.
 struct GripperDrive : Command {
   static constexpr std::string_view kName = "gripper";
   static constexpr std::string_view kDoc = "How far the gripper's claws are to open; open ones hold.";

@@ -21,7 +21,7 @@ struct HeadPart {
   }
 };
 
-/// Where the camera is to look, and whether its laser points there. Safe value: straight down, laser off.
+/// Command of the camera's head and its laser. Safe value: straight down, laser off.
 struct PanTiltDrive : Command {
   static constexpr std::string_view kName = "pan_tilt";
   static constexpr std::string_view kDoc = "Where the camera's head is to look.";
@@ -49,7 +49,7 @@ struct PanTiltDrive : Command {
   }
 };
 
-/// Where the camera looks.
+/// Direction of the camera's head.
 struct PanTiltEncoder : Reading {
   static constexpr std::string_view kName = "pan_tilt_encoder";
   static constexpr std::string_view kDoc = "Where the camera's head looks.";

@@ -37,7 +37,7 @@ struct RangeAndBearingPart {
   }
 };
 
-/// What the robot broadcasts in this tick. Safe value: nothing.
+/// Message to broadcast in this tick. Safe value: nothing.
 struct RangeAndBearingSend : Command {
   static constexpr std::string_view kName = "range_and_bearing";
   static constexpr std::string_view kDoc = "The message broadcast to robots in range.";

@@ -13,7 +13,8 @@
 
 namespace tandem::hal {
 
-/// Where each sensor of a ring looks, in the body frame (x forward, y left). Entries beyond the ring are 0.
+/// Unit vectors in which the sensors of a ring look, in the body frame (x forward, y left). Entries beyond the ring are
+/// 0.
 struct RingDirections {
   static constexpr std::size_t kCapacity = 24;
   std::array<float, kCapacity> x{};

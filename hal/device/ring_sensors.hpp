@@ -31,7 +31,7 @@ struct Proximity : Reading {
   }
 };
 
-/// What an infrared sensor reports of white paper at a distance from it.
+/// Response of an infrared sensor to white paper at a distance.
 struct InfraredResponse {
   double distance_m = 0.0;
   double counts = 0.0;

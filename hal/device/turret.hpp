@@ -21,7 +21,7 @@ struct TurretPart {
   }
 };
 
-/// What moves a turret. The numbers are part of the port.
+/// Drive mode of a turret. The numbers are part of the port.
 enum class TurretMode : std::uint8_t {
   Off = 0,      ///< nothing does: it stays where it is on the body
   Passive = 1,  ///< whatever the gripper holds: the body turns freely beneath it
@@ -29,7 +29,7 @@ enum class TurretMode : std::uint8_t {
   Position = 3  ///< its motor, to `angle_rad` by the shorter way
 };
 
-/// What the turret is to do. Angles are relative to the body, counter-clockwise from forward. Safe value: off.
+/// Command of the turret. Angles are relative to the body, counter-clockwise from forward. Safe value: off.
 struct TurretDrive : Command {
   static constexpr std::string_view kName = "turret";
   static constexpr std::string_view kDoc = "What the turret is to do: off, passive, turn, or go to an angle.";
@@ -59,7 +59,7 @@ struct TurretDrive : Command {
   }
 };
 
-/// Where the turret looks.
+/// Angle of the turret.
 struct TurretEncoder : Reading {
   static constexpr std::string_view kName = "turret_encoder";
   static constexpr std::string_view kDoc = "Angle of the turret on the body.";

@@ -91,7 +91,7 @@ struct WheelEncoders : Reading {
   }
 };
 
-/// Where the wheels' encoders say that the robot is, relative to where it was at the start: x forward, y left of how it
+/// Odometry: pose by the wheels' encoders, relative to that at the start: x forward, y left of how it
 /// stood then. Errors add up: it knows of no slip.
 struct Odometry : Reading {
   static constexpr std::string_view kName = "odometry";

@@ -9,11 +9,11 @@
 
 namespace tandem::mixed_reality {
 
-/// Who lets a robot go whose stop needs a re-arm. Operator: a person says so. Time: nobody, it goes by itself after
+/// Who re-arms a stopped robot. Operator: a person says so. Time: nobody, it goes by itself after
 /// all has been well for a time. Never: it stands until the end of the run.
 enum class RearmBy : std::uint8_t { Operator, Time, Never };
 
-/// What `<bridge rearm="operator|after 2 s|never">` says.
+/// Policy of `<bridge rearm="operator|after 2 s|never">`.
 struct RearmPolicy {
   RearmBy by = RearmBy::Time;
   double after_s = 2.0;  ///< with Time: for so long all must have been well
@@ -27,7 +27,7 @@ hal::Result<RearmPolicy> parse_rearm(std::string_view text);
 /// The text that `parse_rearm` reads back.
 std::string to_text(const RearmPolicy& policy);
 
-/// How a stopped robot gets under way again.
+/// Re-arming of a stopped robot.
 ///
 /// From a link that is back, to driving: `settle_s` after the first tick in which all is well, at once with the ramp.
 struct RearmParams {

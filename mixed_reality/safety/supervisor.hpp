@@ -36,7 +36,7 @@ struct Conditions {
   bool wheels_differ = false;  ///< since the last judgement: they roll, and the robot does not move as they say
 };
 
-/// Who holds a robot.
+/// Owner of a halt.
 enum class StopOwner : std::uint8_t {
   Nobody,
   Run,
@@ -55,7 +55,7 @@ inline constexpr std::size_t kStopOwners = 12;
 /// As in reports: "link".
 std::string_view name_of(StopOwner owner) noexcept;
 
-/// What the table says to some conditions.
+/// Answer of the safety table to some conditions.
 struct Verdict {
   bool may_drive = false;         ///< false: it gets safe commands, every tick
   bool controller_steps = false;  ///< false: it is held, so that it does not run away from a robot that does not follow
@@ -64,7 +64,7 @@ struct Verdict {
   std::string_view reason;  ///< why it may not drive, for people; "driving" when it may
 };
 
-/// What it takes to drive again when the condition is gone.
+/// Condition for driving again when the cause is gone.
 enum class Recovery : std::uint8_t {
   Settle,   ///< time to settle
   Rearm,    ///< a re-arm, as the robot's policy says

@@ -9,7 +9,7 @@
 
 namespace tandem::mixed_reality {
 
-/// What the bridge of one robot of the scenario is told; `item.bridge` is set. The caller adds the permit and the
+/// Request for the bridge of one robot of the scenario; `item.bridge` is set. The caller adds the permit and the
 /// clock.
 bridges::BridgeRequest bridge_request(const core::Scenario& scenario, const core::RobotItem& item, std::uint64_t seed);
 

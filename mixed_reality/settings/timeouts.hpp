@@ -6,11 +6,11 @@
 
 namespace tandem::mixed_reality {
 
-/// How long a robot with this bridge may be silent, or without commands, before it is stopped: the bridge's `timeout`,
-/// but two ticks at least, because it is asked once a tick.
+/// Time-out of a robot with this bridge, without readings or commands, after which it is stopped: the bridge's
+/// `timeout`, but two ticks at least, because it is asked once a tick.
 hal::TimeNs lost_after_ns(const core::RobotItem& item, std::int64_t ticks_per_second) noexcept;
 
-/// How a stopped robot with this bridge gets under way again. The text of `rearm` was checked.
+/// Re-arming of a robot with this bridge. The text of `rearm` was checked.
 RearmParams rearm_params(const core::BridgeConfig& bridge);
 
 }  // namespace tandem::mixed_reality

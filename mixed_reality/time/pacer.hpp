@@ -14,7 +14,7 @@
 
 namespace tandem::mixed_reality {
 
-/// How well a paced run kept its schedule.
+/// Ledger of a paced run's deadlines.
 struct PaceLedger {
   std::uint64_t ticks = 0;              ///< ended
   std::uint64_t deadline_misses = 0;    ///< ticks that ended after the next one should have begun

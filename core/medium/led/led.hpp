@@ -11,7 +11,7 @@
 
 namespace tandem::core {
 
-/// What a robot's LEDs and lamps show in a tick.
+/// Light of a robot's LEDs and lamps in a tick.
 struct ShownLeds {
   static constexpr std::size_t kBody = hal::RingLeds::kCapacity;             ///< after the ring: the body's lamp
   static constexpr std::size_t kFront = kBody + 1;                           ///< … and the one at the front

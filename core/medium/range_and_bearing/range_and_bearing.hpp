@@ -8,7 +8,7 @@
 
 namespace tandem::core {
 
-/// What a robot broadcasts in a tick.
+/// Broadcast of a robot in a tick.
 struct Broadcast {
   static constexpr std::uint8_t kSilent = 0xFF;  // as a size
 

@@ -11,7 +11,7 @@ namespace tandem::core {
 
 using Vector3 = std::array<double, 3>;
 
-/// Where a body is and how it moves, as the stores have it. In W; z is the base's.
+/// Pose and velocity of a body, as in the stores. In W; z is the base's.
 struct BodyState {
   double x_m = 0.0, y_m = 0.0, z_m = 0.0;
   double cos_h = 1.0, sin_h = 0.0;
@@ -22,7 +22,7 @@ struct BodyState {
   friend bool operator==(const BodyState&, const BodyState&) = default;
 };
 
-/// How a proxy moves.
+/// Form of motion of a proxy.
 enum class Sort : std::uint8_t {
   Base,    ///< upright on the floor, driven over it
   Wheels,  ///< a chassis on two wheels that turn

@@ -16,7 +16,7 @@ struct Still {
   OdeGeom geom;       ///< made when something that leans comes near
 };
 
-/// What surfaces do to one another.
+/// Contact parameters.
 struct Surfaces {
   double floor_m = 0.0;
   double ceiling_m = 0.0;        ///< infinite where there is none

@@ -27,7 +27,7 @@ struct Touch {
 inline constexpr std::size_t kMostTouches = 8;
 using Touches = std::array<Touch, kMostTouches>;
 
-/// How two upright things of which one is round are to be kept apart.
+/// Contact of two upright things of which one is round.
 struct TouchQuery {
   double near_m = 0.0;         ///< wider gaps are none
   bool beside = false;         ///< they stand on the same floor: neither is ever on top of the other

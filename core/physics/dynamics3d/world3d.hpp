@@ -14,7 +14,7 @@
 
 namespace tandem::core {
 
-/// What the world of a region is made with.
+/// Input of a region's world.
 struct World3dSettings {
   std::int64_t sub_steps = 5;
   bool wheels = false;  ///< robots on the ground get turning wheels
