@@ -60,7 +60,7 @@ void add_robot_commands(CLI::App& app, RobotCommandOptions& options, int& code) 
                    "e.g. serial:/dev/rfcomm0@115200, can:can0, tcp:ROBOT:33333, lcm:udpm://239.255.76.67:7667?ttl=1")
       ->required();
   inspect_command->add_option("--as", options.inspect.kind,
-                              "Kind of robot that is there, where several are reached over such links: e-puck");
+                              "Kind of robot that is there, where several are reached over such links");
   inspect_command->add_option("--seconds", options.inspect.seconds, "How long to listen")
       ->capture_default_str()
       ->check(CLI::Range(0.1, 3600.0));
