@@ -38,7 +38,7 @@ hal::Result<MessageLinkOpener> message_link_opener(std::string_view text, const 
   const auto opener = can_link_opener(address.value(), aseba_filters(), terms);
   if (!opener) {
     return hal::Error{"link '" + std::string(text) +
-                      "' does not carry a foot-bot's messages; use tcp:ROBOT:33333, serial:DEVICE@921600, "
+                      "' does not carry ASEBA's messages; use tcp:ROBOT:33333, serial:DEVICE@RATE, "
                       "can:INTERFACE or slcan:DEVICE@1000000"};
   }
   return MessageLinkOpener([open = opener.value()]() -> hal::Result<std::unique_ptr<MessageLink>> {

@@ -24,11 +24,12 @@ struct ThymioParts {
     const int node = settings.calibration.node;
     return node == 0 ? "" : "node " + std::to_string(node);
   }
+  static constexpr hal::TimeNs kGrace = 200 * hal::kNsPerMs;
   static Robot make_robot(const Settings& settings) { return Robot(settings.robot); }
-  /// The robot stops by itself when the driver would have stopped it, had it been able to.
+  /// The robot stops by itself a little after the driver would have stopped it, had it been able to.
   static Wiring make_wiring(const Settings& settings, aseba::Network& network, Robot& robot) {
     Calibration calibration = settings.calibration;
-    calibration.alive_ns = settings.command_timeout_ns;
+    calibration.alive_ns = settings.command_timeout_ns + kGrace;
     return Wiring(calibration, network, robot, settings.observe);
   }
 };

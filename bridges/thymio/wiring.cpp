@@ -209,8 +209,9 @@ void Wiring::hear_program(TimeNs now) noexcept {
   if (state_ == ProgramState::Running) {
     if (ours) believed_until_ns_ = taken;
     const std::int16_t lapses = mail(mailbox::kLapses);
-    if (ours && lapses != lapses_ && drives_) {
-      ++statistics_.lapses;
+    const bool lapsed = ours && lapses != lapses_;
+    statistics_.lapses += lapsed ? 1 : 0;
+    if (lapsed && drives_) {  // else the hub has stopped it already, and said so
       restarted_ =
           "it heard nothing for " + std::to_string(calibration_.alive_ns / hal::kNsPerMs) + " ms and stopped by itself";
     }

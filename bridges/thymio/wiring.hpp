@@ -27,7 +27,7 @@ struct Calibration {
   std::uint8_t node = 0;                       ///< its number where several are on one link; 0: it is alone
   double full_m_s = 0.2;                       ///< its speed with the motors' target 500
   double white = 820.0;                        ///< what its ground sensors say of white ground
-  hal::TimeNs alive_ns = 500 * hal::kNsPerMs;  ///< the robot stops by itself when it heard nothing for so long
+  hal::TimeNs alive_ns = 700 * hal::kNsPerMs;  ///< the robot stops by itself when it heard nothing for so long
 };
 
 struct WiringStatistics {
