@@ -6,8 +6,10 @@
 namespace tandem::app {
 namespace {
 
-bool fits(const core::Space& space, core::RobotId robot, const bridges::EmulatorType& emulator) {
-  if (space.kind(robot).name != emulator.kind) return false;
+/// Of a kind whose real robots are reached as those of the emulator's kind, with all ports that its firmware needs.
+bool fits(const core::World& world, core::RobotId robot, const bridges::EmulatorType& emulator) {
+  const core::Space& space = world.space();
+  if (core::bridged_as(world.scenario(), space.kind(robot).name) != emulator.kind) return false;
   const auto needed = emulator.needs();
   return std::ranges::all_of(needed, [&](const hal::PortType* type) { return space.port(robot, *type) != nullptr; });
 }
@@ -21,12 +23,12 @@ hal::Result<core::RobotId> SimulatedBody::find(const core::World& world, const b
   if (!id.empty()) {
     const core::RobotId robot = space.find_robot(id);
     if (!robot.valid()) return hal::Error{"the arena has no robot '" + id + "'"};
-    if (fits(space, robot, emulator)) return robot;
+    if (fits(world, robot, emulator)) return robot;
     return hal::Error{"robot '" + id + "' is no " + std::string(emulator.kind) +
                       ", or its controller does not take what the emulated firmware needs; " + advice};
   }
   for (std::size_t i = 0; i < space.robot_count(); ++i) {
-    if (fits(space, space.robot(i), emulator)) return space.robot(i);
+    if (fits(world, space.robot(i), emulator)) return space.robot(i);
   }
   return hal::Error{"the arena has no " + std::string(emulator.kind) +
                     " whose controller takes what the emulated firmware needs; " + advice};

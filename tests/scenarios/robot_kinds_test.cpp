@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 
 #include "app/catalog.hpp"
+#include "app/simulated_body.hpp"
+#include "bridges/emulation/emulator_type.hpp"
 #include "core/config/kinds.hpp"
 #include "core/config/reader.hpp"
 #include "core/sim/world.hpp"
@@ -116,6 +118,22 @@ TEST(RobotKindsOfFiles, CanBeAddedWhileTheRunGoesOn) {
   EXPECT_THAT(nobody.error().message, HasSubstr("Did you mean 'crab'?"));
   for (int tick = 0; tick < 5; ++tick) trial.world->step();
   EXPECT_EQ(trial.world->failure(), "");
+}
+
+TEST(RobotKindsOfFiles, AreBodiesOfTheEmulatorOfTheKindThatTheyAreLike) {
+  const std::string devices =
+      R"(<actuators><differential_steering/><leds/><body_led/><front_led/></actuators><sensors><proximity/><light/><ground/>
+<accelerometer/><microphones/><battery/></sensors>)";
+  const auto* const epuck = app::catalog().find<bridges::EmulatorType>("epuck");
+  ASSERT_NE(epuck, nullptr);
+  const auto body_among = [&](const std::string& kind) {
+    const Built built{&hal::epuck::kind, "puppet", "puppet", devices, "dynamics2d"};
+    const Trial trial(experiment(built, "crab", "<kinds><kind name=\"crab\" " + kind + "/></kinds>"));
+    EXPECT_NE(trial.world, nullptr) << trial.text();
+    return trial.world != nullptr && app::SimulatedBody::find(*trial.world, *epuck, "").ok();
+  };
+  EXPECT_TRUE(body_among("like=\"e-puck\""));
+  EXPECT_FALSE(body_among("like=\"e-puck\" bridge=\"foot-bot\""));
 }
 
 // --- figures at the ends of their ranges ---
