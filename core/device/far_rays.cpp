@@ -120,10 +120,15 @@ void FarRays::list_objects(const SpaceStores& stores, std::size_t row) noexcept 
     for (int hop = 0; hop < hops; ++hop) {
       const double along = length_m_[k] * (hop + 0.5) / hops;
       stores.for_each_object_near(x_m + along * wx, y_m + along * wy, [&](const Object& object) {
+        if (near_.size() == near_.capacity()) list_each_once();  // rather than grow: rays share most of theirs
         near_.push_back(static_cast<std::size_t>(&object - stores.objects.data()));
       });
     }
   }
+  list_each_once();
+}
+
+void FarRays::list_each_once() noexcept {
   std::sort(near_.begin(), near_.end());
   near_.erase(std::unique(near_.begin(), near_.end()), near_.end());
 }

@@ -35,6 +35,7 @@ class FarRays {
   void meet(const SpaceStores& stores, std::size_t row) noexcept;
   void meet_avx2(const SpaceStores& stores, std::size_t row) noexcept;
   void list_objects(const SpaceStores& stores, std::size_t row) noexcept;
+  void list_each_once() noexcept;
 
   RayRing ring_;
   std::array<double, kCapacity> length_m_{};
