@@ -81,6 +81,11 @@ void check_priority(Reading& reading, Element& root) {
 Scenario read_parts(Reading& reading, Element& root) {
   reading.out().file = root.file;
   reading.out().name = std::filesystem::path(root.file).stem().string();
+  if (root.name == schema::Kinds::kElement.name) {
+    reading.error(root, "this is a file of kinds of robots; an experiment takes it with <kinds file=\"" +
+                            std::filesystem::path(root.file).filename().string() + "\"/>");
+    return std::move(reading.out());
+  }
   if (root.name != "tandem" && root.name != "argos-configuration") {
     reading.error(
         root, "the root element is <" + root.name + ">; an experiment starts with <tandem> or <argos-configuration>");

@@ -235,6 +235,13 @@ TEST_F(Files, OfKindsNeedNoUpgradeYet) {
   EXPECT_FALSE(upgraded("<kinds version=\"99\"/>", "crab.xml", known_names()).ok());
 }
 
+TEST_F(Files, OfKindsAreNoExperiments) {
+  const Outcome out = read_file(write("crab.xml", R"(<kinds><kind name="crab" like="e-puck"/></kinds>)"));
+  EXPECT_FALSE(out.scenario);
+  EXPECT_THAT(out.text(), HasSubstr("crab.xml:1: error: this is a file of kinds of robots; an experiment takes it with "
+                                    "<kinds file=\"crab.xml\"/>"));
+}
+
 TEST_F(Files, ThatIncludeThemselvesAreRefused) {
   const std::string own = write("own.xml", "<kinds>\n<kinds file=\"own.xml\"/></kinds>");
   const Outcome directly = read_file(write("run.xml", with(R"(<kinds file="own.xml"/>)")));
