@@ -95,7 +95,7 @@ class Tables {
       type.reset(command);
       if (type.limit(command, 0, 1, *kind, what) != 1)
         return say(false, type, "limits", fmt::format("its default is not within the limits of '{}'", kind->name));
-      hal::Random random(kinds);
+      hal::Random random(static_cast<std::uint64_t>(kinds));
       for (int i = 0; i < 1000; ++i) {
         command_at_random(type, command, random);
         type.limit(command, 0, 1, *kind, what);

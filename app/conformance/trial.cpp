@@ -73,7 +73,7 @@ const core::EngineType* engine_for(const hal::Catalog& catalog, const Trial& tri
   return nullptr;
 }
 
-TrialMaker::TrialMaker(hal::PluginLoader& loader, const Trial& trial) : loader_(loader), trial_(trial) {
+TrialMaker::TrialMaker(hal::PluginLoader& loader, const Trial& trial) : loader_(loader) {
   const core::EngineType* const engine = engine_for(loader.catalog(), trial);
   if (engine == nullptr) {
     flaw_ = "there is no engine here that has what it needs";

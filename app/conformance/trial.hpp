@@ -25,7 +25,7 @@ struct Trial {
 /// The engine for the trial; null: there is none that has what kind and devices need.
 const core::EngineType* engine_for(const hal::Catalog& catalog, const Trial& trial);
 
-/// Makes worlds of one trial. `loader` and `trial` must outlive them.
+/// Makes worlds of one trial. `loader` must outlive them.
 class TrialMaker {
  public:
   static constexpr std::int64_t kTicks = 40;
@@ -38,7 +38,6 @@ class TrialMaker {
 
  private:
   hal::PluginLoader& loader_;
-  const Trial& trial_;
   std::vector<const hal::PortType*> ports_;
   std::string text_;
   std::string flaw_;
