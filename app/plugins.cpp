@@ -11,15 +11,11 @@
 #include "mixed_reality/settings/bridge_check.hpp"
 
 namespace tandem::app {
-namespace {
 
-/// Of this process.
 std::ptrdiff_t thread_count() {
   std::error_code ignored;
   return std::distance(std::filesystem::directory_iterator("/proc/self/task", ignored), {});
 }
-
-}  // namespace
 
 hal::PluginLoader make_loader() {
   return hal::PluginLoader(plugin_folders(), catalog());

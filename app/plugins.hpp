@@ -1,6 +1,7 @@
 // The plug-ins of one call of the program, opened in the order that docs/plugins.md states.
 #pragma once
 #include <memory>
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
@@ -21,6 +22,9 @@ struct KindsOfFile {
   std::vector<core::KindConfig> kinds;
   hal::Catalog catalog;
 };
+
+/// Of this process.
+std::ptrdiff_t thread_count();
 
 /// An experiment file on its way to a scenario, with its plug-ins and those of `--plugin`. What goes wrong is printed.
 class ExperimentReading {

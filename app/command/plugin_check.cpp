@@ -8,6 +8,7 @@
 #include "app/conformance/probe.hpp"
 #include "app/plugins.hpp"
 #include "app/terminal.hpp"
+#include "bridges/bridge_type.hpp"
 #include "hal/json/json.hpp"
 
 namespace tandem::app {
@@ -15,6 +16,12 @@ namespace {
 
 std::string_view word_of(Verdict verdict) noexcept {
   return verdict == Verdict::Good ? "good" : verdict == Verdict::Fault ? "fault" : "not judged";
+}
+
+bool brings_bridge(const hal::Catalog& catalog, const std::string& origin) {
+  return std::any_of(catalog.entries().begin(), catalog.entries().end(), [&](const hal::Catalog::Entry& e) {
+    return e.origin == origin && e.category == bridges::BridgeType::kCategory;
+  });
 }
 
 void print_lines(const Judgements& all) {
@@ -49,6 +56,7 @@ int plugin_check(const PluginCheckOptions& options) {
 
   Judgements all;
   std::string path = options.file;
+  const std::ptrdiff_t threads = thread_count();
   if (const hal::Status opened = loader.open(options.file); !opened.ok()) {
     all.push_back({Verdict::Fault, "library '" + options.file + "'", "loads", opened.error().message});
   } else {
@@ -57,6 +65,10 @@ int plugin_check(const PluginCheckOptions& options) {
     for (const hal::Catalog::Entry& e : loader.catalog().entries()) entries += e.origin == path ? 1 : 0;
     all.push_back({entries > 0 ? Verdict::Good : Verdict::Fault, "library '" + options.file + "'", "loads",
                    entries > 0 ? fmt::format("registers {} entries", entries) : "it registers nothing"});
+    if (brings_bridge(loader.catalog(), path) && thread_count() != threads)
+      all.push_back({Verdict::Fault, "library '" + options.file + "'", "guardian",
+                     "it starts a thread while it is loaded, and brings a bridge: the guardian process could not be "
+                     "forked safely. Start it when the bridge starts"});
     const Judgements judged = judge_plugin(loader, path);
     all.insert(all.end(), judged.begin(), judged.end());
   }

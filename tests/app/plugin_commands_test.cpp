@@ -67,7 +67,7 @@ TEST_F(PluginCheck, FindsStateThatNoCheckpointHolds) {
 }
 
 TEST_F(PluginCheck, FindsAllocationsInSteps) {
-  EXPECT_THAT(faults_of_sensor("allocation"), HasSubstr("memory: 1920 allocations by `new` in 20 ticks"))
+  EXPECT_THAT(faults_of_sensor("allocation"), HasSubstr("memory: 1440 allocations by `new` in 15 ticks"))
       << "96 robots, each in every tick";
 }
 
@@ -113,6 +113,14 @@ TEST_F(PluginCheck, FindsPartsThatTouchOtherRobots) {
   EXPECT_THAT(faults_of("coupling 'meddling'"), HasSubstr("bystanders: robots that have nothing to do with it"));
 }
 
+TEST_F(PluginCheck, FindsThreadsThatStartWhileABridgeIsLoaded) {
+  const Folder folder;
+  const std::string library = std::string(test::kBuildDir) + "/tests/broken_plugins/libtest_crawler_threaded.so";
+  Tandem check({"plugin", "check", library}, folder.path());
+  EXPECT_EQ(check.wait(60.0), 1);
+  EXPECT_THAT(check.output(), HasSubstr("guardian: it starts a thread while it is loaded"));
+}
+
 TEST_F(PluginCheck, IsReadByPrograms) {
   const Folder folder;
   Tandem check({"plugin", "check", kFaulty, "--json"}, folder.path());
@@ -143,6 +151,9 @@ TEST_F(PluginCheck, SaysWhyALibraryCannotBeLoadedAndNeverCrashes) {
   EXPECT_THAT(nowhere.output(), HasSubstr("is not there"));
   Tandem inside({"plugin", "check", std::string(test::kBuildDir) + "/lib/libepuck_diffusion.so"}, folder.path());
   EXPECT_EQ(inside.wait(60.0), 0) << inside.output();
+  Tandem flying({"plugin", "check", std::string(test::kBuildDir) + "/lib/libeyebot_circle.so"}, folder.path());
+  EXPECT_EQ(flying.wait(60.0), 0) << "lists of the engine that grow are no fault of the controller\n"
+                                  << flying.output();
 }
 
 TEST(PluginNew, MakesFoldersThatBuildRunAndAreWithoutFault) {
