@@ -4,6 +4,7 @@
 #include "hal/device/body_sensors.hpp"
 #include "hal/device/ring_sensors.hpp"
 #include "hal/device/wheels.hpp"
+#include "hal/robot/epuck2.hpp"
 #include "tests/bridges/epuck/wire_rig.hpp"
 
 namespace tandem::bridges::epuck {
@@ -261,6 +262,61 @@ TEST(EpuckWire, WrongSpeedsLastNoLongerThanTheBoundThatTheDocsName) {
   }
   EXPECT_GT(times, 20) << "the test must see some";
   EXPECT_LE(longest, 300 * kMs);
+}
+
+/// Takes what an e-puck2 alone has.
+struct Epuck2Ports {
+  explicit Epuck2Ports(EpuckRobot& robot)
+      : gyroscope(robot.sensor<hal::Gyroscope>()),
+        ahead(robot.sensor<hal::TimeOfFlight>()),
+        cliff(robot.sensor<hal::Cliff>()),
+        selector(robot.sensor<hal::Selector>()),
+        microphones(robot.sensor<hal::Microphones>()) {}
+  const hal::Gyroscope& gyroscope;
+  const hal::TimeOfFlight& ahead;
+  const hal::Cliff& cliff;
+  const hal::Selector& selector;
+  const hal::Microphones& microphones;
+};
+
+TEST(Epuck2OnASerialLine, TellsWhatItAloneHas) {
+  WireRig rig({.robot = {.kind = &hal::epuck2::kind(), .tick_ns = 100 * kMs}}, 1, epuck_emulator::Variant::Epuck2);
+  const Epuck2Ports ports(rig.driver.robot());
+  for (int i = 0; i < 20; ++i) rig.tick(100 * kMs);
+  ASSERT_EQ(rig.driver.state(), SessionState::Active) << rig.driver.session().trouble();
+  EXPECT_EQ(ports.gyroscope.validity, hal::Validity::Fresh);
+  EXPECT_EQ(ports.ahead.validity, hal::Validity::Fresh);
+  EXPECT_FLOAT_EQ(ports.ahead.distance_m, 2.0F);
+  EXPECT_EQ(ports.selector.validity, hal::Validity::Fresh);
+  EXPECT_EQ(ports.selector.position, 3U);
+  EXPECT_EQ(ports.cliff.validity, hal::Validity::Fresh);
+  EXPECT_EQ(ports.cliff.count, 1U) << "the right one";
+  EXPECT_EQ(ports.microphones.count, 4U);
+  EXPECT_EQ(rig.driver.robot().untold(rig.driver.session().layout()), "");
+  EXPECT_EQ(rig.driver.session().statistics().handshake_failures, 0U);
+}
+
+TEST(Epuck2OnASerialLine, IsToldFromAnEpuckThatTheFileCallsSo) {
+  WireRig rig({.robot = {.kind = &hal::epuck2::kind(), .tick_ns = 100 * kMs}}, 1, epuck_emulator::Variant::Btcom);
+  const Epuck2Ports ports(rig.driver.robot());
+  for (int i = 0; i < 20; ++i) rig.tick(100 * kMs);
+  ASSERT_EQ(rig.driver.state(), SessionState::Active) << rig.driver.session().trouble();
+  EXPECT_EQ(ports.gyroscope.validity, hal::Validity::Absent);
+  EXPECT_EQ(ports.ahead.validity, hal::Validity::Absent);
+  EXPECT_EQ(ports.selector.validity, hal::Validity::Absent);
+  EXPECT_EQ(ports.cliff.validity, hal::Validity::Absent);
+  EXPECT_EQ(ports.microphones.count, 3U);
+  EXPECT_EQ(rig.driver.robot().untold(rig.driver.session().layout()), "gyroscope, time_of_flight, cliff, selector");
+}
+
+TEST(Epuck, HasNothingOfAnEpuck2AndSaysWhoHas) {
+  EpuckRobot robot({.id = "ep0"});
+  try {
+    robot.sensor<hal::TimeOfFlight>();
+    FAIL() << "it has none";
+  } catch (const hal::DeviceError& e) {
+    EXPECT_STREQ(e.what(), "e-puck 'ep0' has no sensor 'time_of_flight'; an <e-puck2> has one");
+  }
 }
 
 }  // namespace
