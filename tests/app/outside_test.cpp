@@ -119,6 +119,17 @@ TEST_F(Examples, TheThermometersReadTheFieldThatTheFileDeclares) {
   EXPECT_THAT(wrong.errors(), AllOf(HasSubstr("changed_temperature.xml:11: error:"), HasSubstr("heat")));
 }
 
+TEST_F(Examples, ARobotFromAFileCarriesThePartOfAPlugin) {
+  const std::string kinds = R"(<kinds><kind name="beetle" like="e-puck" summary="An e-puck with a thermometer.">
+    <thermometer ahead="3 cm" source="chosen"/></kind></kinds>
+  <framework>)";
+  const std::string file =
+      changed("temperature.xml", {{"<framework>", kinds}, {"<gardener ", "<beetle "}, {"</gardener>", "</beetle>"}});
+  run({file, "--quiet"});
+  const auto from_stove = means("temperature.csv", [](double x, double y) { return std::hypot(x - 1.0, y - 1.0); });
+  EXPECT_LT(from_stove.rbegin()->second, 0.7 * from_stove.begin()->second);
+}
+
 /// The values of one field of the crate by tick, from a dump.
 std::map<long, double> of_crate(const std::string& dump, const std::string& field) {
   std::map<long, double> values;
