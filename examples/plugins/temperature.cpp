@@ -58,7 +58,7 @@ struct Thermometer : hal::Reading {
   static constexpr std::string_view kDoc = "Temperature of the air.";
   double temperature_C = 0.0;
   void describe(hal::FieldList& f) const {
-    f.add("temperature", temperature_C, kCelsius, hal::Frame::None, hal::Fusion::Real, "of the air at the sensor");
+    f.add("air", temperature_C, kCelsius, hal::Frame::None, hal::Fusion::Real, "its temperature at the sensor");
   }
 };
 
