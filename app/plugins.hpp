@@ -1,7 +1,7 @@
 // The plug-ins of one call of the program, opened in the order that docs/plugins.md states.
 #pragma once
-#include <memory>
 #include <cstddef>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>

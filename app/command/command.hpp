@@ -51,11 +51,11 @@ int compare(const CompareOptions& options);
 
 struct ExportOptions {
   std::string record;
-  std::string csv;                    ///< file, or "-"; empty: only say what the record holds
-  std::string stream = "pose";        ///< which of its tables
-  std::vector<std::string> entities;  ///< ids, or patterns with '*'; empty: all
+  std::string csv;                          ///< file, or "-"; empty: only say what the record holds
+  std::string stream = "pose";              ///< which of its tables
+  std::vector<std::string> entities;        ///< ids, or patterns with '*'; empty: all
   std::optional<std::int64_t> from, until;  ///< ticks, both included
-  std::int64_t every = 1;             ///< of the ticks that are there
+  std::int64_t every = 1;                   ///< of the ticks that are there
 };
 int export_record(const ExportOptions& options);
 

@@ -70,7 +70,8 @@ struct Kinds {
 
 struct Kind {
   static constexpr ElementInfo kElement{
-      "kind", "A kind of robot: <body>, a drive, and parts, which `tandem list parts` names. Then <NAME> is such a robot.",
+      "kind",
+      "A kind of robot: <body>, a drive, and parts, which `tandem list parts` names. Then <NAME> is such a robot.",
       "name", kAnything};
   std::string name, like, without, summary, bridge;
   void describe(ParamVisitor& v) {

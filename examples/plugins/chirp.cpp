@@ -112,7 +112,7 @@ class ChirpListener final : public core::Sensor {
 };
 
 core::BlockFactory<core::Actuator> make_chirper(const core::Element& element, core::Problems& problems,
-                                          const core::DeviceSetup& setup) {
+                                                const core::DeviceSetup& setup) {
   core::read_options<Options>(element, problems);
   core::BlockFactory<core::Actuator> factory = [&medium = setup.medium_as<ChirpMedium>()](const core::BlockColumns&) {
     return std::make_unique<ChirpActuator>(medium);
@@ -122,7 +122,7 @@ core::BlockFactory<core::Actuator> make_chirper(const core::Element& element, co
 }
 
 core::BlockFactory<core::Sensor> make_listener(const core::Element& element, core::Problems& problems,
-                                         const core::DeviceSetup& setup) {
+                                               const core::DeviceSetup& setup) {
   core::read_options<Options>(element, problems);
   core::BlockFactory<core::Sensor> factory = [&medium = setup.medium_as<ChirpMedium>()](const core::BlockColumns&) {
     return std::make_unique<ChirpListener>(medium);

@@ -92,7 +92,7 @@ class ThermometerSensor final : public core::Sensor {
 };
 
 core::BlockFactory<core::Sensor> make_thermometer(const core::Element& element, core::Problems& problems,
-                                            const core::DeviceSetup& setup) {
+                                                  const core::DeviceSetup& setup) {
   const auto options = core::read_options<Noise>(element, problems);
   const core::Field* const field = setup.field("temperature", element, problems);
   const hal::Mount mount{.x_m = setup.kind.part<ThermometerPart>()->ahead_m, .z_m = 0.05};

@@ -1,7 +1,6 @@
-// The proximity sensor of the program, compiled once more as a plug-in: `tandem bench --with proximity:outside` measures
-// what it costs that a device comes from outside.
+// The proximity sensor of the program, compiled once more as a plug-in: `tandem bench --with proximity:outside`
+// measures what it costs that a device comes from outside.
 #include "core/device/proximity.cpp"
-
 #include "hal/plugin.hpp"
 
 namespace {
