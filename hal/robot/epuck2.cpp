@@ -34,11 +34,10 @@ RobotKind make() {
   microphones.source = "GCtronic's firmware: right, left, rear, front; places as the e-puck's";
   kind.add(
       GyroscopePart{.source = "GCtronic's firmware: MPU-9250, or ICM-20948 on newer boards; 250 degrees a second"});
-  kind.add(TimeOfFlightPart{
-      .mount = {0.0, radius_m, 0.0, 0.033},
-      .range_m = 2.0,
-      .cone_rad = 25.0 * std::numbers::pi / 180.0,
-      .source = "range: GCtronic's wiki; cone: data sheet of ST's VL53L0X; height chosen"});
+  kind.add(TimeOfFlightPart{.mount = {0.0, radius_m, 0.0, 0.033},
+                            .range_m = 2.0,
+                            .cone_rad = 25.0 * std::numbers::pi / 180.0,
+                            .source = "range: GCtronic's wiki; cone: data sheet of ST's VL53L0X; height chosen"});
   kind.add(CliffPart{.mounts = {Mount{0, 0.025, -0.02, 0}, Mount{0, 0.025, 0.02, 0}},
                      .source =
                          "GCtronic's ground sensors with cliff sensors: the right one first; places chosen, for no "

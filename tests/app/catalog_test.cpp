@@ -12,7 +12,8 @@ namespace {
 
 TEST(TheCatalog, HasPortsRobotsDevicesAndEngines) {
   EXPECT_GT(catalog().all<hal::PortType>().size(), 30U);
-  EXPECT_THAT(catalog().names("robot"), testing::UnorderedElementsAre("e-puck", "e-puck2", "eye-bot", "foot-bot", "thymio"));
+  EXPECT_THAT(catalog().names("robot"),
+              testing::UnorderedElementsAre("e-puck", "e-puck2", "eye-bot", "foot-bot", "thymio"));
   EXPECT_THAT(catalog().names("engine"), testing::Contains("kinematics2d"));
   EXPECT_EQ(catalog().find<hal::PortType>("sensor proximity"), catalog().all<hal::PortType>().at(2));
   for (const hal::Catalog::Entry& e : catalog().entries()) EXPECT_EQ(e.origin, hal::Catalog::kInside);

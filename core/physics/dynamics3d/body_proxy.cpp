@@ -1,7 +1,8 @@
+#include "core/physics/dynamics3d/body_proxy.hpp"
+
 #include <algorithm>
 #include <cmath>
 
-#include "core/physics/dynamics3d/body_proxy.hpp"
 #include "core/physics/wheels.hpp"
 
 namespace tandem::core {
