@@ -13,6 +13,8 @@ namespace {
 
 using aseba::NodeDescription;
 
+constexpr std::string_view kTones = "sound.freq";
+
 hal::Result<std::uint16_t> address_of(const NodeDescription& node, std::string_view name, std::uint16_t words) {
   const aseba::Variable* const variable = node.variable(name);
   const std::string which = "its variable '" + std::string(name) + "'";
@@ -41,6 +43,7 @@ class Writer {
   std::vector<std::uint16_t> write(std::uint16_t timer_event, std::uint16_t timer_period) {
     code_.begin(kInitEvent);
     code_.push(static_cast<std::int16_t>(kBeat_ns / hal::kNsPerMs)).store(timer_period);
+    code_.push(-1).store(at(mailbox::kSilence));
     code_.begin(local_event(timer_event));
     code_.load(at(mailbox::kBeat)).push(1).apply(Op::Add).store(at(mailbox::kBeat));
     code_.push(program_.signature).store(at(mailbox::kSignature));
@@ -60,6 +63,8 @@ class Writer {
     code_.load(at(mailbox::kAlive)).push(1).apply(Op::Subtract).store(at(mailbox::kAlive));
     code_.push(1).load(at(mailbox::kAlive)).begin_if(Op::Greater);
     code_.load(at(mailbox::kLapses)).push(1).apply(Op::Add).store(at(mailbox::kLapses));
+    if (const auto function = number_of(node_.native_functions, kTones))
+      code_.call(*function, {at(mailbox::kTone_Hz), at(mailbox::kSilence)});
     code_.end_if();
     code_.otherwise();
     code_.push(0).store(program_.motors.left_target);
@@ -87,7 +92,7 @@ class Writer {
   }
 
   void sounds() {
-    const auto function = number_of(node_.native_functions, "sound.freq");
+    const auto function = number_of(node_.native_functions, kTones);
     program_.sounds = function.has_value();
     if (!function) return;
     code_.load(at(mailbox::kTone)).load(at(mailbox::kPlayed)).begin_if(Op::NotEqual);

@@ -5,7 +5,7 @@
 //
 //   every 20 ms                    -> beat + 1, the signature is written
 //   alive > 0                      -> alive - 1; the motors' targets are `left` and `right`
-//   alive has just become 0        -> lapses + 1
+//   alive has just become 0        -> lapses + 1, and silence
 //   alive is 0                     -> the motors' targets are 0
 //   leds differs from shown        -> the LEDs are set, shown = leds
 //   tone differs from played       -> a tone is played, played = tone
@@ -32,8 +32,9 @@ inline constexpr std::uint16_t kSignature = 0, kBeat = 1, kLapses = 2, kShown = 
 // By the hub.
 inline constexpr std::uint16_t kAlive = 5, kLeft = 6, kRight = 7;
 inline constexpr std::uint16_t kLeds = 8, kFirstLed = 9;
-inline constexpr std::uint16_t kTone = 26, kTone_Hz = 27, kToneLength = 28;
-inline constexpr std::uint16_t kWords = 29;
+inline constexpr std::uint16_t kTone = 26, kTone_Hz = 27, kToneLength = 28;  ///< 0: on and on, -1: silence
+inline constexpr std::uint16_t kSilence = 29;                                ///< -1, by the program, to be silent
+inline constexpr std::uint16_t kWords = 30;
 inline constexpr std::uint16_t kTold = 8;  ///< words that are read to know how it goes
 }  // namespace mailbox
 

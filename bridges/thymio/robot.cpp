@@ -1,8 +1,10 @@
 #include "bridges/thymio/robot.hpp"
 
 #include "hal/device/body_sensors.hpp"
+#include "hal/device/buttons.hpp"
 #include "hal/device/leds.hpp"
 #include "hal/device/ring_sensors.hpp"
+#include "hal/device/speaker.hpp"
 #include "hal/device/wheels.hpp"
 
 namespace tandem::bridges::thymio {
@@ -10,7 +12,7 @@ namespace tandem::bridges::thymio {
 const std::vector<const hal::PortType*>& port_types() {
   static const auto all =
       port_types_of<hal::WheelEncoders, hal::Odometry, hal::Proximity, hal::Ground, hal::Accelerometer,
-                    hal::Microphones, hal::Clock, hal::WheelSpeeds, hal::RingLeds>();
+                    hal::Microphones, hal::Buttons, hal::Clock, hal::WheelSpeeds, hal::RingLeds, hal::Speaker>();
   return all;
 }
 

@@ -38,6 +38,11 @@ std::int16_t lamp(std::uint8_t channel) noexcept {
   return static_cast<std::int16_t>((channel * 32 + 127) / 255);
 }
 
+std::int16_t whole_hz(float tone_Hz) noexcept {
+  constexpr float kMost_Hz = 20000.0F;
+  return tone_Hz > 0.0F ? static_cast<std::int16_t>(std::lround(std::min(tone_Hz, kMost_Hz))) : std::int16_t{0};
+}
+
 std::int16_t yellow_lamp(hal::Rgb color) noexcept {
   return lamp(std::max({color.r, color.g, color.b}));
 }

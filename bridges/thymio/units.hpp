@@ -27,6 +27,9 @@ double reflectance(std::int16_t delta, double white) noexcept;
 
 /// 0 to 32, from 0 to 255.
 std::int16_t lamp(std::uint8_t channel) noexcept;
+/// Frequency of a tone; what is none is silence, 0.
+std::int16_t whole_hz(float tone_Hz) noexcept;
+
 /// Lamps of one colour show the brightest channel.
 std::int16_t yellow_lamp(hal::Rgb color) noexcept;
 

@@ -1,12 +1,14 @@
 #include "bridges/thymio/wiring.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 #include "bridges/thymio/units.hpp"
 #include "hal/device/body_sensors.hpp"
 #include "hal/device/infrared_response.hpp"
 #include "hal/device/leds.hpp"
+#include "hal/device/speaker.hpp"
 #include "hal/device/wheels.hpp"
 
 namespace tandem::bridges::thymio {
@@ -36,7 +38,7 @@ void WiringStatistics::describe(StatusVisitor& visitor) const {
   visitor.count("programs_sent", programs);
   visitor.count("stopped_without_word", lapses);
   visitor.count("programs_gone", restarts);
-  visitor.count("leds_told_again", not_shown);
+  visitor.count("told_again", not_shown);
 }
 
 Wiring::Wiring(const Calibration& calibration, aseba::Network& network, ThymioRobot& robot, bool observe)
@@ -47,6 +49,9 @@ Wiring::Wiring(const Calibration& calibration, aseba::Network& network, ThymioRo
               {.type = &hal::port_type<hal::Ground>(), .name = "prox.ground.delta", .words = 2},
               {.type = &hal::port_type<hal::Accelerometer>(), .name = "acc", .words = 3},
               {.type = &hal::port_type<hal::Microphones>(), .name = "mic.intensity", .words = 1}};
+  for (const std::string_view button :
+       {"button.backward", "button.left", "button.center", "button.forward", "button.right"})
+    sources_.push_back({.type = &hal::port_type<hal::Buttons>(), .name = button, .words = 1});
   if (calibration_.node != 0) network_.expect(calibration_.node);
 }
 
@@ -233,7 +238,9 @@ void Wiring::now_runs(TimeNs now) noexcept {
   believed_from_ns_ = heard_ns_;
   ran_ = true;
   told_ = {};
-  told_.leds_number = mail(mailbox::kShown);
+  leds_.told_ns = tone_.told_ns = 0;
+  leds_.number = mail(mailbox::kShown);
+  tone_.number = mail(mailbox::kPlayed);
   lapses_ = mail(mailbox::kLapses);
   ++rest_version_;
   ask(now);
@@ -269,24 +276,27 @@ TimeNs Wiring::believed_ns(std::size_t address, std::size_t count) const noexcep
   return observe_ || (taken >= believed_from_ns_ && taken <= believed_until_ns_) ? taken : 0;
 }
 
-std::span<const std::int16_t> Wiring::words_of(const Source& source) const noexcept {
-  return slice(*node_, source.address, source.words);
-}
-
 template <class Port>
 TimeNs Wiring::taken_ns() const noexcept {
+  TimeNs oldest = std::numeric_limits<TimeNs>::max();
   for (const Source& source : sources_) {
-    if (source.type == &hal::port_type<Port>() && source.bound) return believed_ns(source.address, source.words);
+    if (source.type != &hal::port_type<Port>()) continue;
+    oldest = std::min(oldest, source.bound ? believed_ns(source.address, source.words) : 0);
   }
-  return 0;
+  return oldest;
 }
 
+/// Of all variables that feed the port, one after the other.
 template <class Port>
-std::span<const std::int16_t> Wiring::words_of() const noexcept {
+std::span<const std::int16_t> Wiring::words_of() noexcept {
+  std::size_t count = 0;
   for (const Source& source : sources_) {
-    if (source.type == &hal::port_type<Port>()) return words_of(source);
+    if (source.type != &hal::port_type<Port>()) continue;
+    std::ranges::copy(slice(*node_, source.address, source.words),
+                      gathered_.begin() + static_cast<std::ptrdiff_t>(count));
+    count += source.words;
   }
-  return {};
+  return std::span<const std::int16_t>(gathered_).first(count);
 }
 
 /// What was read stays, and grows old, while the robot is not there.
@@ -323,6 +333,10 @@ void Wiring::fill(TimeNs now) noexcept {
   fill_port<hal::Microphones>(now, [](hal::Microphones& port, std::span<const std::int16_t> words) {
     port.count = 1;
     port.level[0] = static_cast<float>(sound_level(words[0]));
+  });
+  fill_port<hal::Buttons>(now, [](hal::Buttons& port, std::span<const std::int16_t> words) {
+    port.count = static_cast<std::uint32_t>(words.size());
+    for (std::size_t i = 0; i < words.size(); ++i) port.pressed[i] = words[i] != 0;
   });
 }
 
@@ -400,6 +414,7 @@ void Wiring::command(bool drive, TimeNs now) noexcept {
   if (!running()) return;
   write_drive(drive, now);
   write_leds(drive, now);
+  write_tone(drive, now);
 }
 
 /// While it drives, every commit says that the hub is there.
@@ -428,18 +443,30 @@ void Wiring::write_leds(bool drive, TimeNs now) noexcept {
     const hal::Rgb color = drive ? leds.color(led) : hal::kBlack;
     for (const std::uint8_t channel : {color.r, color.g, color.b}) words[at++] = lamp(channel);
   }
-  const bool changed = told_.leds_ns == 0 || words != told_.leds;
-  const bool lost = !changed && mail_taken_ns() > told_.leds_ns && now - told_.leds_ns >= kShowAgain &&
-                    mail(mailbox::kShown) != told_.leds_number;
+  write_block(leds_, words, now);
+}
+
+void Wiring::write_tone(bool drive, TimeNs now) noexcept {
+  if (!program_.sounds || !robot_.uses<hal::Speaker>()) return;
+  const std::int16_t hz = drive ? whole_hz(robot_.port<hal::Speaker>().tone_Hz) : std::int16_t{0};
+  const std::array<std::int16_t, 2> words = {hz, static_cast<std::int16_t>(hz > 0 ? 0 : -1)};
+  write_block(tone_, words, now);
+}
+
+template <std::size_t n>
+void Wiring::write_block(Block<n>& block, const std::array<std::int16_t, n>& words, TimeNs now) noexcept {
+  const bool changed = block.told_ns == 0 || words != block.words;
+  const bool lost = !changed && mail_taken_ns() > block.told_ns && now - block.told_ns >= kShowAgain &&
+                    mail(block.done_word) != block.number;
   if (!changed && !lost) return;
   statistics_.not_shown += lost ? 1 : 0;
-  std::array<std::int16_t, 1 + kLedWords> block{};
-  block[0] = static_cast<std::int16_t>((told_.leds_number + 1) & 0x7FFF);
-  std::ranges::copy(words, block.begin() + 1);
-  if (!write_mail(mailbox::kLeds, block)) return;
-  told_.leds = words;
-  told_.leds_number = block[0];
-  told_.leds_ns = now;
+  std::array<std::int16_t, 1 + n> numbered{};
+  numbered[0] = static_cast<std::int16_t>((block.number + 1) & 0x7FFF);
+  std::ranges::copy(words, numbered.begin() + 1);
+  if (!write_mail(block.number_word, numbered)) return;
+  block.words = words;
+  block.number = numbered[0];
+  block.told_ns = now;
 }
 
 void Wiring::rest(TimeNs now) noexcept {
@@ -451,7 +478,7 @@ void Wiring::rest(TimeNs now) noexcept {
 void Wiring::rest_again(TimeNs now) noexcept {
   drives_ = false;
   if (observe_ || !ready()) return;
-  told_.drive_ns = told_.leds_ns = 0;
+  told_.drive_ns = leds_.told_ns = tone_.told_ns = 0;
   command(false, now);
   // A link that was lost and is back has perhaps not been heard of yet, and the program may go on.
   if (!running() && ran_) (void)write_mail(mailbox::kAlive, std::array<std::int16_t, 3>{});

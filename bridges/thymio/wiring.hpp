@@ -18,6 +18,7 @@
 #include "bridges/aseba/node_driver.hpp"
 #include "bridges/thymio/program.hpp"
 #include "bridges/thymio/robot.hpp"
+#include "hal/device/buttons.hpp"
 #include "hal/device/ring_sensors.hpp"
 
 namespace tandem::bridges::thymio {
@@ -34,7 +35,7 @@ struct WiringStatistics {
   std::uint64_t programs = 0;   ///< times that the program was sent
   std::uint64_t lapses = 0;     ///< times that the robot stopped by itself, as it was told to drive and heard no more
   std::uint64_t restarts = 0;   ///< times that its program was gone
-  std::uint64_t not_shown = 0;  ///< LEDs that had to be told again
+  std::uint64_t not_shown = 0;  ///< LEDs and tones that had to be told again
 
   void describe(StatusVisitor& visitor) const;
 };
@@ -88,9 +89,14 @@ class Wiring {
   struct Told {
     std::array<std::int16_t, 3> drive{};  // alive, left, right
     hal::TimeNs drive_ns = 0;             // 0: not since the program runs
-    std::array<std::int16_t, kLedWords> leds{};
-    std::int16_t leds_number = 0;
-    hal::TimeNs leds_ns = 0;
+  };
+  /// Words that the program takes over once their number has changed.
+  template <std::size_t n>
+  struct Block {
+    std::uint16_t number_word, done_word;
+    std::array<std::int16_t, n> words{};
+    std::int16_t number = 0;
+    hal::TimeNs told_ns = 0;  // 0: not since the program runs
   };
 
   bool ready() const noexcept;
@@ -109,12 +115,14 @@ class Wiring {
   bool write_targets() noexcept;
   void write_drive(bool drive, hal::TimeNs now) noexcept;
   void write_leds(bool drive, hal::TimeNs now) noexcept;
-  std::span<const std::int16_t> words_of(const Source& source) const noexcept;
+  void write_tone(bool drive, hal::TimeNs now) noexcept;
+  template <std::size_t n>
+  void write_block(Block<n>& block, const std::array<std::int16_t, n>& words, hal::TimeNs now) noexcept;
   /// When the port's words were taken; 0: never, or nobody reads them.
   template <class Port>
   hal::TimeNs taken_ns() const noexcept;
   template <class Port>
-  std::span<const std::int16_t> words_of() const noexcept;
+  std::span<const std::int16_t> words_of() noexcept;
   template <class Port, class Fill>
   void fill_port(hal::TimeNs now, Fill&& fill) noexcept;
   void fill_wheels(hal::TimeNs now) noexcept;
@@ -143,6 +151,9 @@ class Wiring {
   std::string restarted_;  // for look_for_restarts
 
   Told told_;
+  Block<kLedWords> leds_{mailbox::kLeds, mailbox::kShown};
+  Block<2> tone_{mailbox::kTone, mailbox::kPlayed};
+  std::array<std::int16_t, hal::Buttons::kCapacity> gathered_{};
   bool drives_ = false;
   hal::TimeNs rested_ns_ = 0;
   std::uint64_t rest_version_ = 0;

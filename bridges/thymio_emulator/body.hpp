@@ -14,6 +14,7 @@ struct BodySenses {
   std::array<double, 7> distance_m = nowhere();         ///< from each infrared sensor
   std::array<double, 2> ground = {1.0, 1.0};            ///< 0 black, 1 white
   std::array<double, 3> force_m_s2 = {0.0, 0.0, 9.81};  ///< specific force: x forward, y left, z up
+  std::array<bool, 5> buttons{};                        ///< backward, left, center, forward, right: pressed
   double sound = 0.0;                                   ///< 0 silence, 1 full scale
 
   static constexpr std::array<double, 7> nowhere() {
@@ -30,6 +31,7 @@ struct BodyCommand {
   double left_m_s = 0.0;  ///< rim speeds
   double right_m_s = 0.0;
   std::array<std::uint8_t, 3 * kLeds> rgb{};  ///< red, green, blue of LED 0, of LED 1, …
+  double tone_Hz = 0.0;                       ///< 0: silence
   friend bool operator==(const BodyCommand&, const BodyCommand&) = default;
 };
 

@@ -78,7 +78,12 @@ aseba_emulation::NodeSpec Thymio::spec() {
       rgb_[3 * i] = rgb_[3 * i + 1] = lamp_channel(v[i]);  // yellow
     }
   };
-  const auto tone = [this](std::span<const std::int16_t> v) { sink_(now_, "tone", {{"hz", v[0]}, {"length", v[1]}}); };
+  const auto tone = [this](std::span<const std::int16_t> v) {
+    sink_(now_, "tone", {{"hz", v[0]}, {"length", v[1]}});
+    tone_Hz_ = v[1] >= 0 ? std::max<double>(v[0], 0.0) : 0.0;
+    tone_ends_.reset();
+    if (v[1] > 0) tone_ends_ = now_ + v[1] * hal::kNsPerSecond / 60;
+  };
   const auto colors = words_named({"red", "green", "blue"});
   spec.functions = {{"math.copy", "copies src to dest element by element", {{-1, "dest"}, {-1, "src"}}},
                     {"math.fill", "fills dest with constant", {{-1, "dest"}, {1, "value"}}},
@@ -117,6 +122,7 @@ void Thymio::note_reset() {
   if (!node_.take_reset()) return;
   identify();
   rgb_.fill(0);
+  tone_Hz_ = 0.0;
   timers_ = {};
 }
 
@@ -184,6 +190,10 @@ void Thymio::loop(hal::TimeNs at) {
     sensors_to_variables(at, true);
   }
   ++loops_;
+  if (tone_ends_ && at >= *tone_ends_) {
+    tone_Hz_ = 0.0;
+    tone_ends_.reset();
+  }
   sensors_to_variables(at, false);
   happen("motor", at);
   if (loops_ % kButtonsEvery == 0) happen("buttons", at);
@@ -224,6 +234,9 @@ void Thymio::sensors_to_variables(hal::TimeNs at, bool all) {
     acc[1] = acceleration_raw(s.force_m_s2[0]);
     acc[2] = acceleration_raw(s.force_m_s2[2]);
   }
+  constexpr std::array<const char*, 5> kButtons = {"button.backward", "button.left", "button.center", "button.forward",
+                                                   "button.right"};
+  for (std::size_t i = 0; i < kButtons.size(); ++i) node_.words(kButtons[i])[0] = s.buttons[i] ? 1 : 0;
   node_.words("mic.intensity")[0] = sound_raw(s.sound);
   node_.words("temperature")[0] = 220;
   if (!proximity) return;
@@ -242,7 +255,7 @@ void Thymio::variables_to_actuators(hal::TimeNs at) {
     sink_(at, "wheels", {{"left", told_left_}, {"right", told_right_}});
   }
   const BodyCommand before = command_;
-  command_ = {wheel_m_s(left_target()), wheel_m_s(right_target()), rgb_};
+  command_ = {wheel_m_s(left_target()), wheel_m_s(right_target()), rgb_, tone_Hz_};
   if (command_ == before) return;
   if (command_.rgb != before.rgb)
     sink_(at, "leds", {{"rgb", std::vector<std::int64_t>(command_.rgb.begin(), command_.rgb.end())}});

@@ -94,6 +94,8 @@ class Thymio {
   EmulatedBody& body_;
   EventSink sink_;
   std::array<std::uint8_t, 3 * kLeds> rgb_{};  // as native functions have set it
+  double tone_Hz_ = 0.0;
+  std::optional<hal::TimeNs> tone_ends_;  // none: it goes on
   hal::TimeNs now_ = 0;
   aseba_emulation::Node node_;
   std::deque<TimedMessage> waiting_;

@@ -3,11 +3,13 @@
 #include "controllers/puppet/take_listed.hpp"
 #include "hal/controller.hpp"
 #include "hal/device/body_sensors.hpp"
+#include "hal/device/buttons.hpp"
 #include "hal/device/distance_scanner.hpp"
 #include "hal/device/gripper.hpp"
 #include "hal/device/leds.hpp"
 #include "hal/device/range_and_bearing.hpp"
 #include "hal/device/ring_sensors.hpp"
+#include "hal/device/speaker.hpp"
 #include "hal/device/turret.hpp"
 #include "hal/device/wheels.hpp"
 
@@ -21,9 +23,9 @@ class WheeledPuppet final : public hal::Controller {
     robot.actuator<hal::WheelSpeeds>();
     take_listed_sensors<hal::Proximity, hal::Light, hal::Ground, hal::Microphones, hal::BaseGround, hal::MotorGround,
                         hal::DistanceScanner, hal::TurretEncoder, hal::Gripper, hal::RangeAndBearing, hal::Battery,
-                        hal::Accelerometer, hal::Gyroscope>(robot);
+                        hal::Accelerometer, hal::Gyroscope, hal::Buttons>(robot);
     take_listed_actuators<hal::RingLeds, hal::TurretDrive, hal::GripperDrive, hal::ScannerDrive,
-                          hal::RangeAndBearingSend>(robot);
+                          hal::RangeAndBearingSend, hal::Speaker>(robot);
   }
 
   void step() noexcept override {}

@@ -19,5 +19,6 @@ std::vector<DeviceType> camera_types();
 std::vector<DeviceType> lamp_types();
 std::vector<DeviceType> time_of_flight_types();
 std::vector<DeviceType> selector_types();
+std::vector<DeviceType> button_types();
 
 }  // namespace tandem::core

@@ -1,6 +1,7 @@
 #include "hal/device/ports.hpp"
 
 #include "hal/device/body_sensors.hpp"
+#include "hal/device/buttons.hpp"
 #include "hal/device/cameras.hpp"
 #include "hal/device/cliff.hpp"
 #include "hal/device/distance_scanner.hpp"
@@ -11,6 +12,7 @@
 #include "hal/device/range_and_bearing.hpp"
 #include "hal/device/ring_sensors.hpp"
 #include "hal/device/selector.hpp"
+#include "hal/device/speaker.hpp"
 #include "hal/device/time_of_flight.hpp"
 #include "hal/device/turret.hpp"
 #include "hal/device/wheels.hpp"
@@ -36,11 +38,12 @@ void register_ports(Registrar& registrar) {
           BodyLed, FrontLed, RangeAndBearing, RangeAndBearingSend, QuadrotorPosition, QuadrotorSpeed, Positioning,
           Odometry, Gyroscope, BaseGround, MotorGround, TurretDrive, TurretEncoder, GripperDrive, Gripper, ScannerDrive,
           DistanceScanner, OmnidirectionalCamera, PerspectiveCamera, UpperRingLeds, QuadrotorAttitude, FlightTask,
-          FlightState, Altimeter, CameraLed, PanTiltDrive, PanTiltEncoder, TimeOfFlight, Cliff, Selector>(registrar);
+          FlightState, Altimeter, CameraLed, PanTiltDrive, PanTiltEncoder, TimeOfFlight, Cliff, Selector, Buttons,
+          Speaker>(registrar);
   add_parts<ProximityPart, LightPart, GroundPart, BaseGroundPart, MotorGroundPart, AccelerometerPart, GyroscopePart,
             MicrophonesPart, BatteryPart, RangeAndBearingPart, LedsPart, UpperLedsPart, BodyLedPart, FrontLedPart,
             CameraLedPart, TurretPart, GripperPart, ScannerPart, OmniCameraPart, CameraPart, HeadPart, AltimeterPart,
-            TimeOfFlightPart, CliffPart, SelectorPart>(registrar);
+            TimeOfFlightPart, CliffPart, SelectorPart, ButtonsPart, SpeakerPart>(registrar);
 }
 
 }  // namespace tandem::hal

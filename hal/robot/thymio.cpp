@@ -8,8 +8,10 @@
 
 #include "hal/angle.hpp"
 #include "hal/device/body_sensors.hpp"
+#include "hal/device/buttons.hpp"
 #include "hal/device/leds.hpp"
 #include "hal/device/ring_sensors.hpp"
+#include "hal/device/speaker.hpp"
 #include "hal/robot/ring.hpp"
 
 namespace tandem::hal::thymio {
@@ -81,6 +83,8 @@ RobotKind make() {
   kind.add(AccelerometerPart{.source = "API: 16 Hz, 23 counts are 9.81 m/s2"});
   kind.add(MicrophonesPart{.mounts = {Mount{0, kButtons_m, 0, kHeight_m}},
                            .source = "API: one, its level; place: chosen, beside the buttons"});
+  kind.add(ButtonsPart{.count = 5, .source = "API: backward, left, center, forward, right"});
+  kind.add(SpeakerPart{.source = "API: tones by their frequency"});
   kind.add(LedsPart{.beacon = true,
                     .mounts = leds(),
                     .source =

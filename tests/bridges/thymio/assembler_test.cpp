@@ -78,7 +78,7 @@ TEST(Program, SaysWhatANodeLacks) {
   node = thymio_node();
   node.variable_words = 20;
   EXPECT_THAT(make_program(node).error().message,
-              HasSubstr("room for 13 words of a program's variables; 29 are needed"));
+              HasSubstr("room for 13 words of a program's variables; 30 are needed"));
   node = thymio_node();
   node.bytecode_words = 20;
   EXPECT_THAT(make_program(node).error().message, HasSubstr("room for 20 words of a program"));

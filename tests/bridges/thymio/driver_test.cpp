@@ -4,8 +4,10 @@
 #include <gmock/gmock.h>
 
 #include "hal/device/body_sensors.hpp"
+#include "hal/device/buttons.hpp"
 #include "hal/device/leds.hpp"
 #include "hal/device/ring_sensors.hpp"
+#include "hal/device/speaker.hpp"
 #include "hal/device/wheels.hpp"
 #include "tests/bridges/thymio/thymio_line.hpp"
 
@@ -155,6 +157,39 @@ TEST(ThymioDriver, LightsItsLamps) {
   drive.pass(1500 * kMs);
   EXPECT_EQ(drive.robot.command().rgb[3 * hal::thymio::kTop], 255);
   EXPECT_EQ(drive.driver.statistics().restarts, 1U);
+}
+
+TEST(ThymioDriver, SoundsATone) {
+  Drive drive;
+  auto& speaker = drive.driver.robot().actuator<hal::Speaker>();
+  drive.pass(1500 * kMs);
+  EXPECT_EQ(drive.robot.command().tone_Hz, 0.0);
+  speaker.tone_Hz = 440.0F;
+  drive.pass(200 * kMs);
+  EXPECT_EQ(drive.robot.command().tone_Hz, 440.0);
+  drive.pass(3000 * kMs);
+  EXPECT_EQ(drive.robot.command().tone_Hz, 440.0) << "on and on";
+  speaker.tone_Hz = 0.0F;
+  drive.pass(200 * kMs);
+  EXPECT_EQ(drive.robot.command().tone_Hz, 0.0);
+  speaker.tone_Hz = 880.0F;
+  drive.pass(200 * kMs);
+  ASSERT_EQ(drive.robot.command().tone_Hz, 880.0);
+  drive.driver.stop(drive.now);
+  drive.pass(100 * kMs);
+  EXPECT_EQ(drive.robot.command().tone_Hz, 0.0);
+}
+
+TEST(ThymioDriver, FeelsItsButtons) {
+  Drive drive;
+  const auto& buttons = drive.driver.robot().sensor<hal::Buttons>();
+  drive.body.senses.buttons = {false, false, true, false, true};
+  drive.pass(1500 * kMs);
+  EXPECT_EQ(buttons.validity, hal::Validity::Fresh);
+  ASSERT_EQ(buttons.count, 5U);
+  EXPECT_FALSE(buttons.pressed[0]);
+  EXPECT_TRUE(buttons.pressed[2]);
+  EXPECT_TRUE(buttons.pressed[4]);
 }
 
 TEST(ThymioDriver, BelievesNoSensorOfARobotThatWasReset) {
