@@ -10,6 +10,30 @@ namespace {
 
 using namespace tandem::app;
 
+/// How pictures and films look.
+void add_looks(CLI::App& c, PictureRequest& o) {
+  c.add_option("--picture-size", o.size_px, "Pixels of the longer side of what is shown")
+      ->capture_default_str()
+      ->check(CLI::Range(64, 16'000));
+  c.add_option("--picture-region", o.region, "Only this part of the arena: X0,Y0,X1,Y1 in metres")
+      ->delimiter(',')
+      ->expected(4);
+  c.add_option("--picture-trails", o.trails_s, "Where robots were in so many seconds before")
+      ->check(CLI::NonNegativeNumber);
+  c.add_flag("--picture-axes", o.axes, "Coordinates along the frame");
+  c.add_flag("--picture-ids", o.ids, "The id beside every robot");
+}
+
+void add_film(CLI::App& c, CLI::Option& film, PictureRequest& o) {
+  c.add_option("--film-every", o.film_every, "A frame every so many ticks")
+      ->capture_default_str()
+      ->check(CLI::PositiveNumber)
+      ->needs(&film);
+  c.add_option("--film-rate", o.film_rate, "Frames a second; default: as fast as it was, 60 at most")
+      ->check(CLI::Range(0.1, 240.0))
+      ->needs(&film);
+}
+
 void add_run(CLI::App& app, RunOptions& o, int& code) {
   CLI::App* c = app.add_subcommand("run", "Run an experiment.");
   c->add_option("experiment", o.experiment, "The experiment file (.xml)")->required();
@@ -25,7 +49,16 @@ void add_run(CLI::App& app, RunOptions& o, int& code) {
                 "Change the experiment: path=value, e.g. framework.experiment.length=5; repeatable")
       ->allow_extra_args(false);
   c->add_option("--report", o.report, "Write a JSON report to this file ('-': standard output)");
-  c->add_option("--picture", o.picture, "Draw the space from above at the end: FILE.svg, .png or .pdf");
+  auto* picture =
+      c->add_option("--picture", o.pictures.picture, "Draw the space from above at the end: FILE.svg, .png or .pdf");
+  c->add_option("--picture-at", o.pictures.at, "… and after these numbers of ticks, as FILE-000100.svg: 0,100,200")
+      ->delimiter(',')
+      ->check(CLI::NonNegativeNumber)
+      ->needs(picture);
+  add_looks(*c, o.pictures);
+  auto* film = c->add_option("--film", o.pictures.film,
+                             "Make a film: FILE.mp4 or .mkv (ffmpeg), or pictures: FOLDER/ or FOLDER/%06d.png");
+  add_film(*c, *film, o.pictures);
   c->add_option("--trajectory", o.trajectory, "Write poses as CSV");
   c->add_option("--record", o.record, "Write a record: poses, state, and what <record> names; for `tandem export`");
   c->add_option("--log", o.log, "Write all messages of the run to this file: of controllers, too");

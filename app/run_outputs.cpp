@@ -35,17 +35,16 @@ std::vector<NamedFile> inputs_of(const core::Scenario& scenario, const hal::Cata
 }  // namespace
 
 hal::Status check_output_paths(const RunOptions& options, const core::Scenario& scenario, const hal::Catalog& catalog) {
-  if (!options.picture.empty()) {
-    const auto format = core::picture_format(options.picture);
-    if (!format.ok()) return hal::Error{"--picture: " + format.error().message};
-    if (const hal::Status renderer = core::can_render(format.value()); !renderer.ok()) return renderer;
-  }
+  if (const hal::Status pictures = check_pictures(options.pictures); !pictures.ok()) return pictures;
   std::vector<NamedFile> outputs = {{"report", options.report},
-                                    {"picture", options.picture},
+                                    {"picture", options.pictures.picture},
                                     {"trajectory", trajectory_path(options, scenario)},
                                     {"record", record_path(options, scenario)},
                                     {"dump", options.dump},
                                     {"log", options.log}};
+  if (!options.pictures.film.ends_with('/')) outputs.push_back({"film", options.pictures.film});
+  for (const std::int64_t tick : options.pictures.at)
+    outputs.push_back({"picture at tick " + std::to_string(tick), picture_at(options.pictures.picture, tick)});
   for (const core::Element& observer : scenario.observers) {
     if (const std::string* path = observer.attribute("path"); path != nullptr)
       outputs.push_back({"file of the observer <" + observer.name + ">", *path});
@@ -54,10 +53,22 @@ hal::Status check_output_paths(const RunOptions& options, const core::Scenario& 
 }
 
 hal::Result<RunOutputs> open_outputs(const RunOptions& options, const core::Scenario& scenario,
-                                     const core::World& world, const hal::Json& record_start) {
+                                     const core::World& world, const hal::Json& record_start, std::int64_t steps) {
   RunOutputs outputs;
+  const core::Space& space = world.space();
+  const core::PictureLook::Area arena{
+      space.arena_center_x_m() - 0.5 * space.arena_size_x_m(), space.arena_center_y_m() - 0.5 * space.arena_size_y_m(),
+      space.arena_center_x_m() + 0.5 * space.arena_size_x_m(), space.arena_center_y_m() + 0.5 * space.arena_size_y_m()};
+  auto look = look_of(options.pictures, arena);
+  if (!look.ok()) return look.error();
+  outputs.look = look.value();
+  if (Pictures::asked(options.pictures)) {
+    auto pictures = Pictures::open(options.pictures, look.value(), world.ticks_per_second(), steps);
+    if (!pictures.ok()) return pictures.error();
+    outputs.pictures = std::move(pictures).value();
+  }
   for (const auto& [what, path, file] : {std::tuple{"report", &options.report, &outputs.report},
-                                         std::tuple{"picture", &options.picture, &outputs.picture}}) {
+                                         std::tuple{"picture", &options.pictures.picture, &outputs.picture}}) {
     if (path->empty()) continue;
     auto opened = hal::OutputFile::open(*path, what);
     if (!opened.ok()) return opened.error();

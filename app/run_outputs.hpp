@@ -5,6 +5,7 @@
 
 #include "app/command/command.hpp"
 #include "app/observers.hpp"
+#include "app/pictures.hpp"
 #include "app/state_dump.hpp"
 #include "core/record/record.hpp"
 #include "core/record/trajectory.hpp"
@@ -18,6 +19,8 @@ namespace tandem::app {
 struct RunOutputs {
   std::optional<hal::OutputFile> report;
   std::optional<hal::OutputFile> picture;
+  std::unique_ptr<Pictures> pictures;  ///< on the way
+  core::PictureLook look;
   std::unique_ptr<core::TrajectoryRecorder> trajectory;
   std::unique_ptr<core::Recorder> record;
   std::optional<StateDump> dump;
@@ -25,12 +28,12 @@ struct RunOutputs {
 };
 
 /// Whether the paths make sense together. Errors: one names a file that the experiment is read from, or another
-/// output's; a picture of no known ending.
+/// output's; a picture or film of no known ending, or that cannot be made here.
 hal::Status check_output_paths(const RunOptions& options, const core::Scenario& scenario, const hal::Catalog& catalog);
 
-/// Opens all but the observers; `record_start` is what a record begins with. Error: one cannot be written, or its
-/// robots are not there.
+/// Opens all but the observers; `record_start` is what a record begins with, `steps` are to be done (0: nobody knows).
+/// Error: one cannot be written, or its robots are not there.
 hal::Result<RunOutputs> open_outputs(const RunOptions& options, const core::Scenario& scenario,
-                                     const core::World& world, const hal::Json& record_start);
+                                     const core::World& world, const hal::Json& record_start, std::int64_t steps);
 
 }  // namespace tandem::app

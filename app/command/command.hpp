@@ -15,6 +15,19 @@ enum ExitCode : int { kDone = 0, kBadInput = 1, kWrongUsage = 2, kFailedRunning 
 /// Of --plugin: libraries whose parts this call may name besides the program's own.
 using Libraries = std::vector<std::string>;
 
+/// Pictures and films of a run or of a record.
+struct PictureRequest {
+  std::string picture;           ///< .svg, .png or .pdf
+  std::vector<std::int64_t> at;  ///< numbers of ticks after which there are pictures, too
+  std::int64_t size_px = 1000;   ///< of the longer side
+  std::vector<double> region;    ///< x0, y0, x1, y1 in metres; empty: the whole arena
+  double trails_s = 0.0;
+  bool axes = false, ids = false;
+  std::string film;             ///< .mp4, .mkv, or pictures: "FOLDER/" or "FOLDER/%06d.png"
+  std::int64_t film_every = 1;  ///< ticks
+  double film_rate = 0.0;       ///< frames a second; 0: as fast as it was, 60 at most
+};
+
 struct RunOptions {
   Libraries plugins;
   std::string experiment;
@@ -23,8 +36,8 @@ struct RunOptions {
   std::optional<std::uint64_t> seed;
   std::optional<std::int64_t> threads;
   std::vector<std::string> overrides;
-  std::string report;                   ///< file, or "-"
-  std::string picture;                  ///< .svg, .png or .pdf
+  std::string report;  ///< file, or "-"
+  PictureRequest pictures;
   std::string trajectory;               ///< CSV file, of every robot unless the experiment says which
   std::string record;                   ///< record file, as the experiment says or of every robot's pose and state
   std::string dump;                     ///< CSV file of every value of the state

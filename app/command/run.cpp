@@ -24,6 +24,21 @@
 namespace tandem::app {
 namespace {
 
+/// What a picture of the world says besides where everything is.
+core::PictureOptions picture_options(const core::World& world, const mixed_reality::MixedReport* real,
+                                     const core::PictureLook& look) {
+  core::PictureOptions picture;
+  picture.experiment = world.scenario().name;
+  picture.seed = world.seed();
+  picture.time_ns = hal::time_of_tick(world.tick(), world.ticks_per_second());
+  picture.look = look;
+  picture.ticks_done = world.tick();
+  for (const auto& r : real != nullptr ? real->robots : std::vector<mixed_reality::RealRobotReport>{}) {
+    if (!r.driving) picture.trouble.push_back({r.robot, r.state});
+  }
+  return picture;
+}
+
 /// What is kept of a run while it goes on, so that little is lost however it ends: records, which the system gets twice
 /// a second, and a report for the emergency. Lives from the first tick to the last.
 class Recording {
@@ -42,6 +57,7 @@ class Recording {
           set_report();
         }) {
     prepare_report();
+    draw();
   }
 
   void tick_done() {
@@ -58,6 +74,7 @@ class Recording {
     if (records && !recorded_.ok()) complain(kFailedRunning, recorded_.error().message + "; the run goes on");
     record();
     outputs_.observers.tick_done(now_.world);
+    if (now_.world.tick() > 0) draw();
     if (!outputs_.dump) return;
     if (const hal::Status dumped = outputs_.dump->tick_done(now_.world); !dumped.ok())
       complain(kFailedRunning, dumped.error().message + "; the run goes on");
@@ -81,6 +98,18 @@ class Recording {
     if (in_record_.ok() && recorder->wants_fingerprint(done))
       in_record_ = recorder->fingerprint(done, now_.world.state_hash());
     if (!in_record_.ok()) complain(kFailedRunning, in_record_.error().message + "; the run goes on");
+  }
+  void draw() {
+    Pictures* const pictures = outputs_.pictures.get();
+    if (pictures == nullptr) return;
+    const hal::Tick done = now_.world.tick();
+    pictures->note(done, now_.world.space());
+    if (!pictures->wants(done)) return;
+    std::optional<mixed_reality::MixedReport> real;
+    if (mixed_ != nullptr) real = mixed_->report();
+    auto picture = picture_options(now_.world, real ? &*real : nullptr, outputs_.look);
+    picture.trails = &pictures->trails();
+    pictures->draw(done, core::drawing_of(now_.world.space(), picture));
   }
   void prepare_report() {
     if (!outputs_.report) return;
@@ -197,14 +226,10 @@ bool write_results(RunOutputs& outputs, const RunResult& result, bool table) {
   if (outputs.record != nullptr) check(outputs.record->close(result.world.tick() - 1, record_end(result)));
   if (!outputs.observers.finish(result.world)) good = false;
   if (outputs.dump) check(outputs.dump->close(result.world));
+  if (outputs.pictures != nullptr && !outputs.pictures->close()) good = false;
   if (outputs.picture) {
-    core::PictureOptions picture;
-    picture.experiment = result.world.scenario().name;
-    picture.seed = result.world.seed();
-    picture.time_ns = hal::time_of_tick(result.world.tick(), result.world.ticks_per_second());
-    for (const auto& r : result.real != nullptr ? result.real->robots : std::vector<mixed_reality::RealRobotReport>{}) {
-      if (!r.driving) picture.trouble.push_back({r.robot, r.state});
-    }
+    auto picture = picture_options(result.world, result.real, outputs.look);
+    if (outputs.pictures != nullptr) picture.trails = &outputs.pictures->trails();
     check(core::write_picture(result.world.space(), *outputs.picture, picture));
   }
   if (outputs.report) {
@@ -252,7 +277,8 @@ int run(const RunOptions& options) {
   if (made == nullptr) return kBadInput;
   core::World* const world = made.get();  // a mixed session takes it over
   const InputFiles inputs = input_files(*scenario, loader);
-  auto opened = open_outputs(options, *scenario, *world, record_start(*world, inputs));
+  const std::int64_t steps = steps_of(options.steps, options.seconds, *scenario);
+  auto opened = open_outputs(options, *scenario, *world, record_start(*world, inputs), steps);
   if (!opened.ok()) return complain(kBadInput, opened.error().message);
   RunOutputs& outputs = opened.value();
   problems.clear();
@@ -266,7 +292,6 @@ int run(const RunOptions& options) {
       join_real_robots(loader.catalog(), made, guarded, hub_faults.value(), clock, stop, world_options.log, code);
   if (code != kDone) return stop.load() ? interrupted_code() : code;
 
-  const std::int64_t steps = steps_of(options.steps, options.seconds, *scenario);
   RunResult result{*world, inputs, {}, world->space().robot_count(), {}, nullptr};
   result.figures.threads = world->threads();
   result.figures.init_s = wall_seconds() - began;

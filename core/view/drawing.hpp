@@ -3,13 +3,28 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/space/sketch.hpp"
 #include "hal/device/leds.hpp"
 
 namespace tandem::core {
+
+/// What a picture shows of a drawing, and how large.
+struct PictureLook {
+  struct Area {
+    double min_x_m = 0.0, min_y_m = 0.0, max_x_m = 0.0, max_y_m = 0.0;
+  };
+  int size_px = 1000;               ///< of the longer side of what is shown
+  std::optional<Area> region = {};  ///< only this part of the arena
+  double trails_s = 0.0;            ///< where robots were in so many seconds before; 0: no trails
+  bool axes = false;                ///< coordinates along the frame
+  bool ids = false;                 ///< beside every robot
+  int height_px = 0;                ///< of the page; 0: as high as its contents need
+};
 
 /// A space seen from above. Lengths in metres, in W (x east, y north, so up on the picture); headings in radians.
 struct Drawing {
@@ -19,10 +34,13 @@ struct Drawing {
     double radius_m = 0.0;
     struct Led {
       double x_m = 0.0, y_m = 0.0;  ///< body frame
+      double z_m = 0.0;
     };
     std::vector<Led> leds;
     bool leds_on_turret = false;   ///< they turn with it
     double gripper_reach_m = 0.0;  ///< beyond the body; 0: none. It looks where the turret does
+    double height_m = 0.0;
+    double rotor_arm_m = 0.0;  ///< from the axis to each of four rotors; 0: none
   };
   struct Robot {
     double x_m = 0.0, y_m = 0.0;
@@ -33,6 +51,15 @@ struct Drawing {
     bool halted = false;
     double turret_rad = 0.0;  ///< relative to the body, counter-clockwise
     bool holding = false;     ///< its gripper holds something
+    double z_m = 0.0;         ///< of its base above the ground
+  };
+  struct Point {
+    double x_m = 0.0, y_m = 0.0;
+  };
+  /// Where a robot was: `trail_points[first, first + count)`, the oldest first.
+  struct Trail {
+    std::size_t robot = 0;  ///< index into `robots`
+    std::size_t first = 0, count = 0;
   };
   struct LitLed {
     std::uint32_t led = 0;  ///< of its kind
@@ -49,11 +76,13 @@ struct Drawing {
     double heading_rad = 0.0;
     double half_x_m = 0.0, half_y_m = 0.0;
     bool movable = false;
+    double z_m = 0.0, height_m = 0.0;
   };
   struct Cylinder {
     double x_m = 0.0, y_m = 0.0;
     double radius_m = 0.0;
     bool movable = false;
+    double z_m = 0.0, height_m = 0.0;
   };
   /// One side of an engine's region.
   struct Border {
@@ -63,6 +92,7 @@ struct Drawing {
   struct Light {
     double x_m = 0.0, y_m = 0.0;
     hal::Rgb color;
+    double z_m = 0.0;
   };
 
   std::string title;
@@ -75,14 +105,30 @@ struct Drawing {
   std::vector<Robot> robots;
   std::vector<LitLed> lit;
   std::vector<RealRobot> real;
+  std::vector<std::string> ids;  ///< of the robots, in their order; empty: not asked for
+  std::vector<Trail> trails;
+  std::vector<Point> trail_points;
   std::vector<Sketch::Shape> shapes;  ///< that hooks drew
   /// Reflectance at (x, y), 0 black to 1 white; empty: a uniform floor, which is not drawn.
   std::function<double(double, double)> floor;
+  std::uint64_t floor_mark = 0;  ///< differs when the floor does
 };
 
-/// `drawing` as an SVG document whose longer side is about `size_px`. Up to 20,000 robots are drawn with heading and
-/// lit LEDs; more of them as dots, in the colour of the LED that is lit. Real robots are always drawn in full.
-std::string to_svg(const Drawing& drawing, int size_px = 1000);
+/// `drawing` as an SVG document. Up to 20,000 robots are drawn with heading and lit LEDs; more of them as dots, in the
+/// colour of the LED that is lit. Real robots are always drawn in full.
+std::string to_svg(const Drawing& drawing, const PictureLook& look = {});
+
+/// How high that document would be, in pixels.
+int svg_height_px(const Drawing& drawing, const PictureLook& look);
+
+/// Makes the floor a copy, which refers to nothing; as fine as `look` shows it.
+void keep_floor(Drawing& drawing, const PictureLook& look);
+
+/// Colours of the bodies of a kind, as "#rrggbb".
+struct BodyColors {
+  std::string_view fill, edge;
+};
+const BodyColors& body_colors(std::size_t kind);
 
 /// The longest of 1, 2, 5, 10, 20, … (or a decimal fraction of them) that is not above `limit_m`. `limit_m` is
 /// positive.

@@ -22,9 +22,11 @@ std::uint32_t kind_of(const hal::RobotKind& robot, Drawing& drawing) {
                      robot.body.radius_m,
                      {},
                      leds != nullptr && leds->on_turret,
-                     gripper != nullptr ? gripper->reach_m : 0.0};
+                     gripper != nullptr ? gripper->reach_m : 0.0,
+                     robot.body.height_m};
+  if (const auto* const rotors = std::get_if<hal::Quadrotor>(&robot.locomotion)) kind.rotor_arm_m = rotors->rotor_arm_m;
   if (leds != nullptr) {
-    for (const hal::Mount& led : leds->mounts) kind.leds.push_back({led.x_m, led.y_m});
+    for (const hal::Mount& led : leds->mounts) kind.leds.push_back({led.x_m, led.y_m, led.z_m});
   }
   drawing.kinds.push_back(std::move(kind));
   return static_cast<std::uint32_t>(drawing.kinds.size() - 1);
@@ -55,8 +57,10 @@ void add_robots(const Space& space, const PictureOptions& options, Drawing& draw
     robot.halted = space.halted(id);
     robot.turret_rad = space.turret_rad(id);
     robot.holding = space.holding(id);
+    robot.z_m = pose.z_m;
     add_lit_leds(space, id, robot, drawing);
     drawing.robots.push_back(robot);
+    if (options.look.ids) drawing.ids.push_back(space.robot_name(id));
     if (!space.external(id)) continue;
     drawing.real.push_back({i, space.robot_name(id), ""});
     for (const PictureOptions::Trouble& trouble : options.trouble) {
@@ -78,10 +82,11 @@ Drawing drawing_of(const Space& space, const PictureOptions& options) {
   for (const Object& s : space.objects()) {
     if (!s.alive) continue;
     if (s.kind == Object::Kind::Cylinder) {
-      drawing.cylinders.push_back({s.x_m, s.y_m, s.radius_m, s.movable});
+      drawing.cylinders.push_back({s.x_m, s.y_m, s.radius_m, s.movable, s.z_low_m, s.z_high_m - s.z_low_m});
     } else {
       const Pose pose{s.x_m, s.y_m, 0.0, s.cos_h, s.sin_h};
-      drawing.boxes.push_back({s.x_m, s.y_m, pose.heading_rad(), s.half_x_m, s.half_y_m, s.movable});
+      drawing.boxes.push_back(
+          {s.x_m, s.y_m, pose.heading_rad(), s.half_x_m, s.half_y_m, s.movable, s.z_low_m, s.z_high_m - s.z_low_m});
     }
   }
   for (const Region& region : space.stores().regions) {
@@ -92,12 +97,14 @@ Drawing drawing_of(const Space& space, const PictureOptions& options) {
     }
   }
   for (const LightSource& light : space.lights()) {
-    if (light.alive) drawing.lights.push_back({light.x_m, light.y_m, light.color});
+    if (light.alive) drawing.lights.push_back({light.x_m, light.y_m, light.color, light.z_m});
   }
   if (const Field* floor = space.stores().fields.find("floor"); floor != nullptr && floor->mark() != 0) {
+    drawing.floor_mark = floor->mark();
     drawing.floor = [&space](double x_m, double y_m) { return space.floor(x_m, y_m); };
   }
   add_robots(space, options, drawing);
+  if (options.trails != nullptr) options.trails->add_to(drawing, space, options.ticks_done);
   drawing.shapes = space.sketch().shapes();
   return drawing;
 }
@@ -114,7 +121,7 @@ hal::Result<PictureFormat> picture_format(const std::string& path) {
 hal::Status write_picture(const Space& space, hal::OutputFile& file, const PictureOptions& options) {
   const auto format = picture_format(file.path());
   if (!format.ok()) return format.error();
-  const auto rendered = render(to_svg(drawing_of(space, options), options.size_px), format.value());
+  const auto rendered = render(to_svg(drawing_of(space, options), options.look), format.value());
   if (!rendered.ok()) return rendered.error();
   const hal::Status written = file.write(rendered.value());
   return written.ok() ? file.commit() : written;

@@ -6,6 +6,7 @@
 #include "core/space/space.hpp"
 #include "core/view/drawing.hpp"
 #include "core/view/render.hpp"
+#include "core/view/trails.hpp"
 #include "hal/output_file.hpp"
 #include "hal/result.hpp"
 #include "hal/time.hpp"
@@ -21,9 +22,11 @@ struct PictureOptions {
 
   std::string experiment;  ///< its name, for the title
   std::uint64_t seed = 0;
-  hal::TimeNs time_ns = 0;       ///< of the run
-  int size_px = 1000;            ///< of the arena's longer side
-  std::vector<Trouble> trouble;  ///< real robots that are not named are well
+  hal::TimeNs time_ns = 0;            ///< of the run
+  std::vector<Trouble> trouble = {};  ///< real robots that are not named are well
+  PictureLook look = {};
+  const Trails* trails = nullptr;  ///< null: none
+  std::int64_t ticks_done = 0;     ///< for the trails
 };
 
 /// Draws `space`. Refers to `space` for the floor: draw it before that changes.

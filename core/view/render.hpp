@@ -6,7 +6,8 @@
 
 namespace tandem::core {
 
-enum class PictureFormat { Svg, Png, Pdf };
+/// Pixels: two u32, width and height, then the lines from the top, each pixel as blue, green, red and a spare byte.
+enum class PictureFormat { Svg, Png, Pdf, Pixels };
 
 /// Whether `render` will find its renderer: a shared object beside the program, loaded when it is needed. To be asked
 /// before a run.

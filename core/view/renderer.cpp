@@ -1,7 +1,9 @@
 // The renderer, a shared object of its own: it brings along more than the rest of the program, and most runs draw
 // nothing.
+#include <bit>
 #include <cairo-pdf.h>
 #include <cmath>
+#include <cstdint>
 #include <librsvg/rsvg.h>
 #include <memory>
 
@@ -39,6 +41,19 @@ cairo_status_t append(void* text, const unsigned char* data, unsigned int size) 
   return CAIRO_STATUS_SUCCESS;
 }
 
+void append_pixels(cairo_surface_t* surface, std::string& text) {
+  static_assert(std::endian::native == std::endian::little);
+  cairo_surface_flush(surface);
+  const auto width = static_cast<std::uint32_t>(cairo_image_surface_get_width(surface));
+  const auto height = static_cast<std::uint32_t>(cairo_image_surface_get_height(surface));
+  const auto stride = static_cast<std::size_t>(cairo_image_surface_get_stride(surface));
+  const auto* const data = reinterpret_cast<const char*>(cairo_image_surface_get_data(surface));
+  text.reserve(8 + std::size_t{4} * width * height);
+  text.append(reinterpret_cast<const char*>(&width), sizeof width);
+  text.append(reinterpret_cast<const char*>(&height), sizeof height);
+  for (std::uint32_t line = 0; line < height; ++line) text.append(data + line * stride, std::size_t{4} * width);
+}
+
 hal::Result<std::string> render_here(const std::string& svg, PictureFormat format) {
   GError* error = nullptr;
   const Stream stream(g_memory_input_stream_new_from_data(svg.data(), static_cast<gssize>(svg.size()), nullptr));
@@ -61,6 +76,10 @@ hal::Result<std::string> render_here(const std::string& svg, PictureFormat forma
   const RsvgRectangle page{0.0, 0.0, scale * width_px, scale * height_px};
   if (rsvg_handle_render_document(handle.get(), context.get(), &page, &error) == 0) return failed(error);
   cairo_status_t status = cairo_status(context.get());
+  if (status == CAIRO_STATUS_SUCCESS && format == PictureFormat::Pixels) {
+    append_pixels(surface.get(), text);
+    return text;
+  }
   if (status == CAIRO_STATUS_SUCCESS && !pdf) status = cairo_surface_write_to_png_stream(surface.get(), &append, &text);
   cairo_surface_finish(surface.get());
   if (status == CAIRO_STATUS_SUCCESS) status = cairo_surface_status(surface.get());

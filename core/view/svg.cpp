@@ -2,6 +2,7 @@
 #include <charconv>
 #include <cmath>
 #include <map>
+#include <memory>
 #include <numbers>
 
 #include "core/view/drawing.hpp"
@@ -20,9 +21,8 @@ constexpr double kHeader_px = 52.0;
 constexpr double kLine_px = 30.0;   // of the legend
 constexpr double kLetter_px = 7.4;  // mean width in the font used
 
-struct BodyColors {
-  std::string_view fill, edge;
-};
+constexpr double kAxisLine_px = 24.0;   // beneath the frame
+constexpr double kAxisWidth_px = 46.0;  // at its left
 constexpr std::array<BodyColors, 5> kBodyColors = {{{"#b9dcae", "#3c6e33"},
                                                     {"#aecbe8", "#2c5a8c"},
                                                     {"#d9c3e6", "#6b4587"},
@@ -100,9 +100,32 @@ std::string grouped(std::size_t n) {
 double degrees(double rad) {
   return rad * 180.0 / std::numbers::pi;
 }
-const BodyColors& body_colors(std::size_t kind) {
-  return kBodyColors[kind % kBodyColors.size()];
+
+using Area = PictureLook::Area;
+
+Area arena_of(const Drawing& d) {
+  return {d.min_x_m, d.min_y_m, d.max_x_m, d.max_y_m};
 }
+
+/// The squares that a floor is drawn by.
+struct FloorGrid {
+  FloorGrid(const Drawing& d, const PictureLook& look) {
+    const Area arena = arena_of(d);
+    const Area shown = look.region.value_or(arena);
+    x_m = std::max(arena.min_x_m, shown.min_x_m);
+    y_m = std::max(arena.min_y_m, shown.min_y_m);
+    const double width_m = std::min(arena.max_x_m, shown.max_x_m) - x_m;
+    const double depth_m = std::min(arena.max_y_m, shown.max_y_m) - y_m;
+    cell_m = std::max(width_m, depth_m) / kFloorCells;
+    columns = std::max(1, static_cast<int>(std::ceil(width_m / cell_m - 1e-9)));
+    lines = std::max(1, static_cast<int>(std::ceil(depth_m / cell_m - 1e-9)));
+  }
+  double middle_x_m(int column) const { return x_m + (column + 0.5) * cell_m; }
+  double middle_y_m(int line) const { return y_m + (line + 0.5) * cell_m; }
+
+  double x_m = 0.0, y_m = 0.0, cell_m = 1.0;
+  int columns = 1, lines = 1;
+};
 
 /// One entry of the legend: a symbol of at most 18 px around its place, and a text.
 struct LegendEntry {
@@ -113,27 +136,36 @@ struct LegendEntry {
 
 class Page {
  public:
-  Page(const Drawing& drawing, int size_px) : d_(drawing) {
-    const double width_m = d_.max_x_m - d_.min_x_m;
-    const double depth_m = d_.max_y_m - d_.min_y_m;
-    px_per_m_ = size_px / std::max(width_m, depth_m);
+  Page(const Drawing& drawing, const PictureLook& look)
+      : d_(drawing), look_(look), shown_(look.region.value_or(arena_of(drawing))) {
+    const double width_m = shown_.max_x_m - shown_.min_x_m;
+    const double depth_m = shown_.max_y_m - shown_.min_y_m;
+    px_per_m_ = look.size_px / std::max(width_m, depth_m);
     arena_w_px_ = width_m * px_per_m_;
     arena_h_px_ = depth_m * px_per_m_;
-    width_px_ = std::max(arena_w_px_, 420.0) + 2.0 * kMargin_px;
-    left_px_ = 0.5 * (width_px_ - arena_w_px_);
+    if (look.axes) axis_px_ = kAxisLine_px;
+    const double beside_px = look.axes ? kAxisWidth_px : 0.0;
+    width_px_ = std::max(arena_w_px_ + beside_px, 420.0) + 2.0 * kMargin_px;
+    left_px_ = beside_px + 0.5 * (width_px_ - beside_px - arena_w_px_);
+    lay_out_legend();
+  }
+
+  double height_px() const {
+    if (look_.height_px > 0) return look_.height_px;
+    return bottom_px() + 52.0 + kLine_px * static_cast<double>(legend_lines_) + 8.0;
   }
 
   std::string draw() {
-    lay_out_legend();
     header();
     definitions();
-    svg_ << "<g transform=\"translate(" << left_px_ - d_.min_x_m * px_per_m_ << " "
-         << kHeader_px + d_.max_y_m * px_per_m_ << ") scale(" << px_per_m_ << " " << -px_per_m_ << ")\">\n";
+    svg_ << "<g transform=\"translate(" << left_px_ - shown_.min_x_m * px_per_m_ << " "
+         << kHeader_px + shown_.max_y_m * px_per_m_ << ") scale(" << px_per_m_ << " " << -px_per_m_ << ")\">\n";
     svg_ << "<g clip-path=\"url(#arena)\">\n";
     arena();
     floor();
     borders();
     lights();
+    trails();
     objects();
     robots();
     sketch();
@@ -141,6 +173,8 @@ class Page {
     real_robots();
     svg_ << "</g>\n";
     frame();
+    axes();
+    ids();
     labels();
     sketch_texts();
     scale_bar();
@@ -152,8 +186,14 @@ class Page {
  private:
   bool full_detail() const { return d_.robots.size() <= kFullDetailRobots; }
   double px(double pixels) const { return pixels / px_per_m_; }  // as metres
-  double x_px(double x_m) const { return left_px_ + (x_m - d_.min_x_m) * px_per_m_; }
-  double y_px(double y_m) const { return kHeader_px + (d_.max_y_m - y_m) * px_per_m_; }
+  double x_px(double x_m) const { return left_px_ + (x_m - shown_.min_x_m) * px_per_m_; }
+  double y_px(double y_m) const { return kHeader_px + (shown_.max_y_m - y_m) * px_per_m_; }
+  double bottom_px() const { return kHeader_px + arena_h_px_ + axis_px_; }
+  bool shows(double x_m, double y_m, double around_m) const {
+    return !look_.region || (x_m + around_m >= shown_.min_x_m && x_m - around_m <= shown_.max_x_m &&
+                             y_m + around_m >= shown_.min_y_m && y_m - around_m <= shown_.max_y_m);
+  }
+  bool shows(const Drawing::Robot& r) const { return shows(r.x_m, r.y_m, d_.kinds[r.kind].radius_m); }
 
   void text(double x, double y, double size, std::string_view color, std::string_view more, std::string_view content) {
     svg_ << "<text x=\"" << x << "\" y=\"" << y << "\" font-size=\"" << size << "\" fill=\"" << color << "\"" << more
@@ -161,10 +201,9 @@ class Page {
   }
 
   void header() {
-    const double height_px = kHeader_px + arena_h_px_ + 52.0 + kLine_px * static_cast<double>(legend_lines_) + 8.0;
     svg_ << "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<svg xmlns=\"http://www.w3.org/2000/svg\" width=\""
-         << std::ceil(width_px_) << "\" height=\"" << std::ceil(height_px) << "\" viewBox=\"0 0 "
-         << std::ceil(width_px_) << " " << std::ceil(height_px)
+         << std::ceil(width_px_) << "\" height=\"" << std::ceil(height_px()) << "\" viewBox=\"0 0 "
+         << std::ceil(width_px_) << " " << std::ceil(height_px())
          << "\" font-family=\"DejaVu Sans, Helvetica, Arial, sans-serif\">\n";
     svg_ << "<title>" << escaped(d_.title) << "</title>\n";
     svg_ << "<rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n";
@@ -175,8 +214,9 @@ class Page {
   double left_text_px() const { return std::min(left_px_, kMargin_px); }
 
   void definitions() {
-    svg_ << "<defs>\n<clipPath id=\"arena\"><rect x=\"" << d_.min_x_m << "\" y=\"" << d_.min_y_m << "\" width=\""
-         << d_.max_x_m - d_.min_x_m << "\" height=\"" << d_.max_y_m - d_.min_y_m << "\"/></clipPath>\n";
+    svg_ << "<defs>\n<clipPath id=\"arena\"><rect x=\"" << shown_.min_x_m << "\" y=\"" << shown_.min_y_m
+         << "\" width=\"" << shown_.max_x_m - shown_.min_x_m << "\" height=\"" << shown_.max_y_m - shown_.min_y_m
+         << "\"/></clipPath>\n";
     for (std::size_t k = 0; k < d_.kinds.size(); ++k) {
       svg_ << "<g id=\"kind" << k << "\">" << robot_symbol(k, d_.kinds[k].radius_m, d_.kinds[k].radius_m * px_per_m_)
            << "</g>\n";
@@ -206,24 +246,21 @@ class Page {
   // The floor as runs of equal shade, one path a shade.
   void floor() {
     if (!d_.floor) return;
-    const double width_m = d_.max_x_m - d_.min_x_m;
-    const double depth_m = d_.max_y_m - d_.min_y_m;
-    const double cell_m = std::max(width_m, depth_m) / kFloorCells;
-    const int columns = std::max(1, static_cast<int>(std::ceil(width_m / cell_m - 1e-9)));
-    const int lines = std::max(1, static_cast<int>(std::ceil(depth_m / cell_m - 1e-9)));
+    const FloorGrid grid(d_, look_);
     std::map<int, Svg> paths;
-    for (int line = 0; line < lines; ++line) {
-      const double y_m = d_.min_y_m + line * cell_m;
+    for (int line = 0; line < grid.lines; ++line) {
+      const double y_m = grid.y_m + line * grid.cell_m;
       const auto shade = [&](int column) {
-        const double x_m = d_.min_x_m + (column + 0.5) * cell_m;
-        return static_cast<int>(std::lround(std::clamp(d_.floor(x_m, y_m + 0.5 * cell_m), 0.0, 1.0) * kFloorShades));
+        const double level = std::clamp(d_.floor(grid.middle_x_m(column), grid.middle_y_m(line)), 0.0, 1.0);
+        return static_cast<int>(std::lround(level * kFloorShades));
       };
-      for (int begin = 0; begin < columns;) {
+      for (int begin = 0; begin < grid.columns;) {
         const int level = shade(begin);
         int end = begin + 1;
-        while (end < columns && shade(end) == level) ++end;
-        paths[level] << "M" << d_.min_x_m + begin * cell_m << " " << y_m << "h" << (end - begin) * cell_m << "v"
-                     << cell_m << "h" << -(end - begin) * cell_m << "z";
+        while (end < grid.columns && shade(end) == level) ++end;
+        const double length_m = (end - begin) * grid.cell_m;
+        paths[level] << "M" << grid.x_m + begin * grid.cell_m << " " << y_m << "h" << length_m << "v" << grid.cell_m
+                     << "h" << -length_m << "z";
         begin = end;
       }
     }
@@ -231,6 +268,24 @@ class Page {
     for (auto& [level, path] : paths) {
       const auto grey = static_cast<std::uint8_t>(std::lround(255.0 * level / kFloorShades));
       svg_ << "<path fill=\"" << hex({grey, grey, grey}) << "\" d=\"" << path.take() << "\"/>\n";
+    }
+    svg_ << "</g>\n";
+  }
+
+  /// Where robots were, in the colours of their kinds.
+  void trails() {
+    if (d_.trails.empty()) return;
+    svg_ << "<g class=\"trails\" fill=\"none\" stroke-linejoin=\"round\" stroke-linecap=\"round\" stroke-width=\""
+         << px(1.4) << "\" stroke-opacity=\"0.55\">\n";
+    for (const Drawing::Trail& trail : d_.trails) {
+      if (trail.count == 0) continue;
+      const Drawing::Robot& r = d_.robots[trail.robot];
+      svg_ << "<polyline stroke=\"" << body_colors(r.kind).edge << "\" points=\"";
+      for (std::size_t i = 0; i < trail.count; ++i) {
+        const Drawing::Point& p = d_.trail_points[trail.first + i];
+        svg_ << p.x_m << "," << p.y_m << " ";
+      }
+      svg_ << r.x_m << "," << r.y_m << "\"/>\n";
     }
     svg_ << "</g>\n";
   }
@@ -291,7 +346,9 @@ class Page {
     if (d_.robots.empty()) return;
     if (!full_detail()) return dots();
     svg_ << "<g class=\"robots\">\n";
-    for (const Drawing::Robot& robot : d_.robots) body(robot);
+    for (const Drawing::Robot& robot : d_.robots) {
+      if (shows(robot)) body(robot);
+    }
     svg_ << "</g>\n";
   }
 
@@ -404,6 +461,7 @@ class Page {
   void sketch_texts() {
     for (const Sketch::Shape& shape : d_.shapes) {
       if (shape.kind != Sketch::Shape::Kind::Text) continue;
+      if (!shows(shape.points.front().x_m, shape.points.front().y_m, 0.0)) continue;
       text(x_px(shape.points.front().x_m), y_px(shape.points.front().y_m), 13.0, hex(shape.pen.color),
            " class=\"sketch\" stroke=\"#ffffff\" stroke-width=\"3\" paint-order=\"stroke\"", shape.text);
     }
@@ -412,6 +470,7 @@ class Page {
   void real_robots() {
     for (const Drawing::RealRobot& real : d_.real) {
       const Drawing::Robot& r = d_.robots[real.robot];
+      if (!shows(r)) continue;
       if (!full_detail()) body(r);
       const double ring_m = d_.kinds[r.kind].radius_m + px(4.0);
       svg_ << "<circle class=\"real\" cx=\"" << r.x_m << "\" cy=\"" << r.y_m << "\" r=\"" << ring_m
@@ -427,9 +486,51 @@ class Page {
          << arena_h_px_ << "\" fill=\"none\" stroke=\"" << kInk << "\" stroke-width=\"1\"/>\n";
   }
 
+  /// Round coordinates in metres, at the left of the frame and beneath it.
+  void axes() {
+    if (!look_.axes) return;
+    const double step_m =
+        round_length(0.25 * std::max(shown_.max_x_m - shown_.min_x_m, shown_.max_y_m - shown_.min_y_m));
+    const auto each = [step_m](double from_m, double to_m, const auto& mark) {
+      const double slack_m = 1e-9 * (to_m - from_m);
+      for (double i = std::ceil((from_m - slack_m) / step_m); i * step_m <= to_m + slack_m; ++i)
+        mark(i * step_m, hal::format_number(std::round(i * step_m * 1e9) / 1e9 + 0.0));
+    };
+    const double bottom = kHeader_px + arena_h_px_;
+    svg_ << "<g class=\"axes\" stroke-width=\"1\">\n";
+    each(shown_.min_x_m, shown_.max_x_m, [&](double x_m, const std::string& number) {
+      svg_ << "<path stroke=\"" << kInk << "\" d=\"M" << x_px(x_m) << " " << bottom << "v6\"/>\n";
+      text(x_px(x_m), bottom + 19.0, 12.0, kInk, " text-anchor=\"middle\"", number);
+    });
+    each(shown_.min_y_m, shown_.max_y_m, [&](double y_m, const std::string& number) {
+      svg_ << "<path stroke=\"" << kInk << "\" d=\"M" << left_px_ << " " << y_px(y_m) << "h-6\"/>\n";
+      text(left_px_ - 10.0, y_px(y_m) + 4.5, 12.0, kInk, " text-anchor=\"end\"", number);
+    });
+    const std::string halo = " stroke=\"#ffffff\" stroke-width=\"3\" paint-order=\"stroke\"";
+    text(left_px_ + arena_w_px_ - 6.0, bottom - 7.0, 12.0, kInk, " text-anchor=\"end\"" + halo, "x in m");
+    text(left_px_ + 6.0, kHeader_px + 16.0, 12.0, kInk, halo, "y in m");
+    svg_ << "</g>\n";
+  }
+
+  /// Of robots that have no other label.
+  void ids() {
+    if (d_.ids.size() != d_.robots.size()) return;
+    std::vector<bool> labelled(d_.robots.size(), false);
+    for (const Drawing::RealRobot& real : d_.real) labelled[real.robot] = true;
+    svg_ << "<g class=\"ids\">\n";
+    for (std::size_t i = 0; i < d_.robots.size(); ++i) {
+      const Drawing::Robot& r = d_.robots[i];
+      if (labelled[i] || !shows(r.x_m, r.y_m, 0.0)) continue;
+      text(x_px(r.x_m), y_px(r.y_m) - d_.kinds[r.kind].radius_m * px_per_m_ - 3.0, 10.0, kInk,
+           " text-anchor=\"middle\" stroke=\"#ffffff\" stroke-width=\"2\" paint-order=\"stroke\"", d_.ids[i]);
+    }
+    svg_ << "</g>\n";
+  }
+
   void labels() {
     for (const Drawing::RealRobot& real : d_.real) {
       const Drawing::Robot& r = d_.robots[real.robot];
+      if (!shows(r)) continue;
       const std::string label = real.state.empty() ? real.id : real.id + ": " + real.state;
       const double aside_px = d_.kinds[r.kind].radius_m * px_per_m_ + 9.0;
       const bool at_right = x_px(r.x_m) + aside_px + kLetter_px * static_cast<double>(label.size()) < width_px_;
@@ -442,13 +543,14 @@ class Page {
   }
 
   void scale_bar() {
-    const double length_m = round_length(0.25 * (d_.max_x_m - d_.min_x_m));
-    const double y = kHeader_px + arena_h_px_ + 26.0;
+    const double length_m = round_length(0.25 * (shown_.max_x_m - shown_.min_x_m));
+    const double y = bottom_px() + 26.0;
     const double x0 = left_text_px() + 0.5, x1 = x0 + length_m * px_per_m_;
     svg_ << "<path class=\"scale\" d=\"M" << x0 << " " << y - 5.0 << "v10M" << x0 << " " << y << "H" << x1 << "M" << x1
          << " " << y - 5.0 << "v10\" stroke=\"" << kInk << "\" stroke-width=\"1.6\" fill=\"none\"/>\n";
     text(x1 + 9.0, y + 4.5, 13.0, kInk, "", length_text(length_m));
-    const std::string arena = length_text(d_.max_x_m - d_.min_x_m) + " × " + length_text(d_.max_y_m - d_.min_y_m);
+    const std::string arena =
+        length_text(shown_.max_x_m - shown_.min_x_m) + " × " + length_text(shown_.max_y_m - shown_.min_y_m);
     text(width_px_ - left_text_px(), y + 4.5, 13.0, kFaintInk, " text-anchor=\"end\"", arena);
   }
 
@@ -456,6 +558,7 @@ class Page {
     std::vector<std::size_t> count(d_.kinds.size(), 0);
     std::size_t halted = 0;
     for (const Drawing::Robot& r : d_.robots) {
+      if (!shows(r)) continue;
       ++count[r.kind];
       halted += r.halted ? 1 : 0;
     }
@@ -506,7 +609,7 @@ class Page {
   void legend() {
     svg_ << "<g class=\"legend\">\n";
     for (std::size_t i = 0; i < entries_.size(); ++i) {
-      const double y = kHeader_px + arena_h_px_ + 62.0 + kLine_px * static_cast<double>(places_[i].line);
+      const double y = bottom_px() + 62.0 + kLine_px * static_cast<double>(places_[i].line);
       svg_ << "<g transform=\"translate(" << places_[i].x_px + 9.0 << " " << y << ")\">" << entries_[i].symbol
            << "</g>\n";
       text(places_[i].x_px + 25.0, y + 4.5, 13.0, kInk, "", entries_[i].text);
@@ -520,7 +623,10 @@ class Page {
   };
 
   const Drawing& d_;
+  const PictureLook& look_;
+  Area shown_;
   Svg svg_;
+  double axis_px_ = 0.0;
   double px_per_m_ = 1.0;
   double arena_w_px_ = 0.0, arena_h_px_ = 0.0;
   double width_px_ = 0.0, left_px_ = 0.0;
@@ -531,6 +637,10 @@ class Page {
 };
 
 }  // namespace
+
+const BodyColors& body_colors(std::size_t kind) {
+  return kBodyColors[kind % kBodyColors.size()];
+}
 
 double round_length(double limit_m) {
   const double power = std::pow(10.0, std::floor(std::log10(limit_m)));
@@ -549,8 +659,29 @@ std::string length_text(double length_m) {
   return length_m >= 0.009999 ? in(100.0, "cm") : in(1000.0, "mm");
 }
 
-std::string to_svg(const Drawing& drawing, int size_px) {
-  return Page(drawing, size_px).draw();
+std::string to_svg(const Drawing& drawing, const PictureLook& look) {
+  return Page(drawing, look).draw();
+}
+
+int svg_height_px(const Drawing& drawing, const PictureLook& look) {
+  return static_cast<int>(std::ceil(Page(drawing, look).height_px()));
+}
+
+void keep_floor(Drawing& drawing, const PictureLook& look) {
+  if (!drawing.floor) return;
+  const FloorGrid grid(drawing, look);
+  std::vector<float> levels;
+  for (int line = 0; line < grid.lines; ++line) {
+    for (int column = 0; column < grid.columns; ++column)
+      levels.push_back(static_cast<float>(drawing.floor(grid.middle_x_m(column), grid.middle_y_m(line))));
+  }
+  drawing.floor = [grid, levels = std::make_shared<const std::vector<float>>(std::move(levels))](double x_m,
+                                                                                                 double y_m) {
+    const auto place = [](double at, int most) { return std::clamp(static_cast<int>(std::floor(at)), 0, most - 1); };
+    const int column = place((x_m - grid.x_m) / grid.cell_m, grid.columns);
+    const int line = place((y_m - grid.y_m) / grid.cell_m, grid.lines);
+    return static_cast<double>((*levels)[static_cast<std::size_t>(line * grid.columns + column)]);
+  };
 }
 
 }  // namespace tandem::core

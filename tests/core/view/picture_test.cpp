@@ -31,7 +31,7 @@ TEST(Picture, TakesArenaRobotsAndTitleFromTheSpace) {
   Space space;
   set_up(space);
   space.port<hal::RingLeds>(space.robot(0))->set(5, hal::kGreen);
-  const Drawing d = drawing_of(space, {.experiment = "mixed", .seed = 42, .time_ns = 1'500'000'000, .trouble = {}});
+  const Drawing d = drawing_of(space, {.experiment = "mixed", .seed = 42, .time_ns = 1'500'000'000});
   EXPECT_EQ(d.title, "mixed, seed 42, t = 1.5 s");
   EXPECT_DOUBLE_EQ(d.min_x_m, -2.0);
   EXPECT_DOUBLE_EQ(d.max_y_m, 3.0);
@@ -105,6 +105,42 @@ TEST(Picture, ShowsStaticThingsLampsAndAPaintedFloor) {
   ASSERT_TRUE(d.floor);
   EXPECT_NEAR(d.floor(-1.0, 0.0), 0.0, 1e-6);
   EXPECT_NEAR(d.floor(1.0, 0.0), 1.0, 1e-6);
+}
+
+TEST(Trails, AreTheLastPlacesOfEveryRobotInWhateverOrderTheyCame) {
+  Trails trails(0.3, 10);
+  for (int tick = 0; tick < 10; ++tick) {
+    const double x = 0.1 * tick;
+    std::vector<Trails::Place> places = {{7, x, 0.0}, {8, x, 1.0}};
+    if (tick % 2 == 0) std::swap(places[0], places[1]);
+    if (tick >= 8) places.push_back({9, x, 2.0});  // came late
+    trails.note(tick, places);
+  }
+  Drawing d;
+  const std::vector<std::uint64_t> who = {9, 7, 8};
+  d.robots.resize(who.size());
+  trails.add_to(d, who, 9);
+  ASSERT_EQ(d.trails.size(), 3U);
+  EXPECT_EQ(d.trails[0].count, 1U);
+  ASSERT_EQ(d.trails[2].count, 3U) << "of three tenths of a second before this one";
+  EXPECT_NEAR(d.trail_points[d.trails[2].first].x_m, 0.6, 1e-12);
+  EXPECT_EQ(d.trail_points[d.trails[2].first].y_m, 1.0);
+  trails.note(1, {{7, 0.0, 0.0}});  // a hook went back to the start
+  Drawing anew;
+  trails.add_to(anew, who, 2);
+  ASSERT_EQ(anew.trails.size(), 1U);
+  EXPECT_EQ(anew.trails[0].count, 1U);
+}
+
+TEST(Trails, OfManyTicksKeepSomeOfThem) {
+  Trails trails(1000.0, 10);
+  Space space;
+  set_up(space);
+  for (std::int64_t tick = 0; tick <= 10'000; ++tick) trails.note(tick, space);
+  Drawing d;
+  trails.add_to(d, space, 10'000);
+  ASSERT_EQ(d.trails.size(), 2U);
+  EXPECT_EQ(d.trails[0].count, 200U);
 }
 
 std::string written(const Space& space, const std::string& name) {

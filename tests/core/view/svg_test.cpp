@@ -50,7 +50,7 @@ TEST(Svg, AnEmptyArenaIsWellFormedToo) {
 TEST(Svg, PutsARobotInItsPlaceWithNorthUpAndItsHeadingCounterClockwise) {
   Drawing d = small_arena();
   d.robots = {{0.25, -0.125, std::numbers::pi / 2.0, 0, 0, 0, false}};
-  const std::string svg = to_svg(d, 1000);
+  const std::string svg = to_svg(d, {.size_px = 1000});
   // 1000 px for 2 m; the group's y axis points up, its origin is half an arena below the top edge.
   EXPECT_NE(svg.find("translate(528 302) scale(500 -500)"), std::string::npos) << svg;
   EXPECT_NE(svg.find("<use href=\"#kind0\" transform=\"translate(0.25 -0.125) rotate(90)\"/>"), std::string::npos)
@@ -125,6 +125,52 @@ TEST(Svg, DrawsCrowdsAsDotsInTheColourOfTheirLeds) {
   EXPECT_LT(svg.size(), 3'000'000U);
 }
 
+TEST(Svg, ShowsIdsAxesAndTrailsWhenTheyAreAskedFor) {
+  Drawing d = small_arena();
+  d.robots = {{0.25, 0.0, 0.0, 0, 0, 0, false}, {-0.5, 0.25, 0.0, 0, 0, 0, false}};
+  d.ids = {"ep<0>", "ep1"};
+  d.trail_points = {{0.0, 0.0}, {0.125, 0.0}};
+  d.trails = {{0, 0, 2}};
+  const std::string svg = to_svg(d, {.size_px = 1000, .axes = true});
+  EXPECT_EQ(why_not_well_formed(svg), "");
+  EXPECT_NE(svg.find(">ep&lt;0&gt;<"), std::string::npos);
+  EXPECT_NE(svg.find("points=\"0,0 0.125,0 0.25,0\""), std::string::npos) << "the trail ends at the robot";
+  for (const char* number : {">-1<", ">-0.5<", ">0<", ">0.5<", ">1<"}) EXPECT_GE(count(svg, number), 1U) << number;
+  EXPECT_EQ(count(svg, ">0.5<"), 2U) << "at both axes";
+  EXPECT_EQ(count(to_svg(d), "class=\"axes\""), 0U);
+}
+
+TEST(Svg, ShowsAndCountsOnlyWhatLiesInTheChosenRegion) {
+  Drawing d = small_arena();
+  d.robots = {{0.25, 0.0, 0.0, 0, 0, 0, false}, {-0.5, 0.25, 0.0, 0, 0, 0, false}};
+  d.ids = {"ep0", "ep1"};
+  d.floor = [](double x, double) { return x < 0.25 ? 0.0 : 1.0; };
+  const std::string svg = to_svg(d, {.size_px = 1000, .region = PictureLook::Area{0.0, -0.25, 0.5, 0.25}});
+  EXPECT_EQ(why_not_well_formed(svg), "");
+  EXPECT_NE(svg.find(">1 × e-puck<"), std::string::npos);
+  EXPECT_NE(svg.find(">ep0<"), std::string::npos);
+  EXPECT_EQ(svg.find(">ep1<"), std::string::npos);
+  EXPECT_NE(svg.find(">50 cm × 50 cm<"), std::string::npos);
+  EXPECT_NE(svg.find("scale(2000 -2000)"), std::string::npos);
+  EXPECT_EQ(count(svg, "M0.25 "), 240U) << "the floor is drawn as finely as that of a whole arena";
+}
+
+TEST(Svg, OfAKeptFloorIsTheSame) {
+  Drawing d = small_arena();
+  d.floor = [](double x, double y) { return 0.5 + 0.5 * std::sin(7.0 * x) * std::cos(5.0 * y); };
+  for (const PictureLook& look : {PictureLook{}, PictureLook{.region = PictureLook::Area{-0.3, -0.3, 1.5, 0.1}}}) {
+    Drawing kept = d;
+    keep_floor(kept, look);
+    EXPECT_EQ(to_svg(kept, look), to_svg(d, look));
+  }
+}
+
+TEST(Svg, HasTheHeightThatIsAskedFor) {
+  Drawing d = small_arena();
+  EXPECT_NE(to_svg(d).find("height=\"" + std::to_string(svg_height_px(d, {})) + "\""), std::string::npos);
+  EXPECT_NE(to_svg(d, {.height_px = 777}).find("height=\"777\""), std::string::npos);
+}
+
 TEST(Svg, AScaleBarHasARoundLengthAndIsDrawnToScale) {
   EXPECT_DOUBLE_EQ(round_length(0.5), 0.5);
   EXPECT_DOUBLE_EQ(round_length(0.49), 0.2);
@@ -140,7 +186,7 @@ TEST(Svg, AScaleBarHasARoundLengthAndIsDrawnToScale) {
   EXPECT_EQ(length_text(1.0), "1 m");
   EXPECT_EQ(length_text(0.5), "50 cm");
   EXPECT_EQ(length_text(0.005), "5 mm");
-  const std::string svg = to_svg(small_arena(), 1000);  // 2 m: a quarter is 50 cm, 250 px
+  const std::string svg = to_svg(small_arena(), {.size_px = 1000});  // 2 m: a quarter is 50 cm, 250 px
   EXPECT_NE(svg.find("M28.5 578H278.5"), std::string::npos) << svg;
   EXPECT_NE(svg.find(">50 cm<"), std::string::npos);
   EXPECT_NE(svg.find(">2 m × 1 m<"), std::string::npos);

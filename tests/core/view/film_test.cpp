@@ -1,0 +1,142 @@
+#include "core/view/film.hpp"
+
+#include <csignal>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <gtest/gtest.h>
+#include <sstream>
+
+namespace tandem::core {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A folder, and programs in it that are found before those of the system.
+class Films : public testing::Test {
+ protected:
+  Films() {
+    std::signal(SIGPIPE, SIG_IGN);
+    std::string pattern = testing::TempDir() + "film_XXXXXX";
+    folder_ = mkdtemp(pattern.data());
+    setenv("PATH", (folder_ / "bin").string().append(":").append(path_).c_str(), 1);
+    fs::create_directory(folder_ / "bin");
+  }
+  ~Films() override {
+    setenv("PATH", path_.c_str(), 1);
+    fs::remove_all(folder_);
+  }
+  void ffmpeg_is(const std::string& script) const {
+    const fs::path file = folder_ / "bin" / "ffmpeg";
+    std::ofstream(file) << "#!/bin/sh\n" << script;
+    fs::permissions(file, fs::perms::owner_all);
+  }
+  std::string text_of(const std::string& name) const {
+    std::ostringstream text;
+    text << std::ifstream(folder_ / name, std::ios::binary).rdbuf();
+    return text.str();
+  }
+  std::unique_ptr<Film> open(const std::string& name) const {
+    auto film = Film::open({(folder_ / name).string(), 25.0, {.size_px = 100}});
+    EXPECT_TRUE(film.ok()) << (film.ok() ? "" : film.error().message);
+    return film.ok() ? std::move(film).value() : nullptr;
+  }
+
+  fs::path folder_;
+  std::string path_ = std::getenv("PATH");
+};
+
+Drawing of_robots(int number) {
+  Drawing d;
+  d.kinds.push_back({"e-puck", 0.035, {}});
+  for (int i = 0; i < number; ++i) d.robots.push_back({0.1 * i, 0.0, 0.0, 0, 0, 0, false});
+  return d;
+}
+
+// What the encoder is fed, and how it is called, is written where the film would be.
+constexpr const char* kKeeps =
+    "for last in \"$@\"; do :; done\necho \"$@\" > \"$(dirname \"$0\")/called\"\ncat > \"${last#file:}\"\n";
+
+TEST_F(Films, FeedFramesOfOneSizeToTheEncoderAndPutTheFilmInItsPlace) {
+  ffmpeg_is(kKeeps);
+  const auto film = open("a.mp4");
+  ASSERT_NE(film, nullptr);
+  for (int robots = 0; robots < 5; ++robots) ASSERT_TRUE(film->add(of_robots(robots)).ok());
+  EXPECT_FALSE(fs::exists(folder_ / "a.mp4"));
+  const hal::Status closed = film->close();
+  ASSERT_TRUE(closed.ok()) << closed.error().message;
+  EXPECT_EQ(film->frames(), 5);
+  EXPECT_FALSE(fs::exists(folder_ / "a.mp4.part"));
+  const std::string called = text_of("bin/called");
+  const std::size_t size = called.find("-s ");
+  ASSERT_NE(size, std::string::npos) << called;
+  int width = 0, height = 0;
+  ASSERT_EQ(std::sscanf(called.c_str() + size, "-s %dx%d", &width, &height), 2) << called;
+  EXPECT_EQ(text_of("a.mp4").size(), std::size_t{5} * 4 * static_cast<std::size_t>(width * height));
+  EXPECT_NE(called.find("-r 25 "), std::string::npos) << called;
+}
+
+TEST_F(Films, WhoseEncoderDiesSayWithWhichWordsAndLeaveNothing) {
+  ffmpeg_is("head -c 100000 > /dev/null\necho 'hello' >&2\necho 'No space left on device' >&2\nexit 1\n");
+  const auto film = open("a.mp4");
+  ASSERT_NE(film, nullptr);
+  hal::Status status;
+  for (int i = 0; i < 1000 && status.ok(); ++i) status = film->add(of_robots(3));
+  ASSERT_FALSE(status.ok());
+  EXPECT_NE(status.error().message.find("a.mp4', frame "), std::string::npos) << status.error().message;
+  EXPECT_NE(status.error().message.find("ffmpeg gave up: No space left on device"), std::string::npos)
+      << status.error().message;
+}
+
+TEST_F(Films, WhoseEncoderFailsAtTheEndAreNotPutInTheirPlace) {
+  ffmpeg_is("cat > /dev/null\necho 'no moov' >&2\nexit 3\n");
+  {
+    const auto film = open("a.mkv");
+    ASSERT_TRUE(film->add(of_robots(3)).ok());
+    const hal::Status closed = film->close();
+    ASSERT_FALSE(closed.ok());
+    EXPECT_NE(closed.error().message.find("ffmpeg gave up: no moov"), std::string::npos) << closed.error().message;
+  }
+  EXPECT_FALSE(fs::exists(folder_ / "a.mkv"));
+  EXPECT_FALSE(fs::exists(folder_ / "a.mkv.part"));
+}
+
+TEST_F(Films, WhoseEncoderIsKilledSayBySignal) {
+  ffmpeg_is("kill -KILL $$\n");
+  const auto film = open("a.mp4");
+  hal::Status status;
+  for (int i = 0; i < 1000 && status.ok(); ++i) status = film->add(of_robots(3));
+  ASSERT_FALSE(status.ok());
+  EXPECT_NE(status.error().message.find("Killed"), std::string::npos) << status.error().message;
+}
+
+TEST_F(Films, AreNumberedPicturesToo) {
+  const auto film = open("frames/");
+  ASSERT_NE(film, nullptr);
+  for (int robots = 0; robots < 3; ++robots) ASSERT_TRUE(film->add(of_robots(robots)).ok());
+  EXPECT_EQ(film->remark(), "");
+  ASSERT_TRUE(film->close().ok());
+  EXPECT_EQ(text_of("frames/000002.png").substr(1, 3), "PNG");
+  EXPECT_EQ(text_of("frames/000000.png").substr(16, 8), text_of("frames/000002.png").substr(16, 8)) << "sizes";
+  EXPECT_FALSE(fs::exists(folder_ / "frames/000003.png"));
+  const auto shorter = open("frames/%06d.png");
+  ASSERT_TRUE(shorter->add(of_robots(1)).ok());
+  EXPECT_NE(shorter->remark().find("000001.png' is of an older film"), std::string::npos) << shorter->remark();
+}
+
+TEST_F(Films, RefuseNamesThatTheyCannotMake) {
+  ffmpeg_is(kKeeps);
+  for (const char* name : {"a.avi", "a", "a.png", "a%s.png", "a%06d%06d.png", "a%d.png", "%6d.png"}) {
+    const hal::Status can = Film::can_make(name);
+    ASSERT_FALSE(can.ok()) << name;
+    EXPECT_NE(can.error().message.find(".mp4"), std::string::npos) << can.error().message;
+  }
+  setenv("PATH", "/nowhere", 1);
+  const hal::Status can = Film::can_make("a.mp4");
+  ASSERT_FALSE(can.ok());
+  EXPECT_NE(can.error().message.find("sudo apt-get install ffmpeg"), std::string::npos) << can.error().message;
+  EXPECT_TRUE(Film::can_make("frames/").ok());
+}
+
+}  // namespace
+}  // namespace tandem::core
