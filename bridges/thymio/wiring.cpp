@@ -28,10 +28,6 @@ constexpr TimeNs kShowAgain = 300 * hal::kNsPerMs;    // for LEDs that were told
 constexpr TimeNs kLongestRoll = 500 * hal::kNsPerMs;  // between two speeds that are added up
 constexpr std::size_t kMostBytecode = 250;            // words of a program in one message
 
-std::span<const std::int16_t> slice(const Node& node, std::size_t address, std::size_t count) noexcept {
-  return std::span<const std::int16_t>(node.image.values).subspan(address, count);
-}
-
 }  // namespace
 
 void WiringStatistics::describe(StatusVisitor& visitor) const {
@@ -111,6 +107,8 @@ void Wiring::bind(const Node& node) {
   heard_ns_ = beat_ns_ = loaded_ns_ = 0;
   beat_known_ = false;
   told_ = {};
+  held_.assign(node.description.named_words(), 0);
+  held_ns_.assign(held_.size(), 0);
   trouble_.clear();
   const std::string who = "node " + std::to_string(node.id) + ": ";
   for (Source& source : sources_) {
@@ -181,7 +179,11 @@ std::string Wiring::identity() const {
 // --- the program ---
 
 bool Wiring::serve(TimeNs now) noexcept {
-  if (!ready() || observe_) return false;
+  if (!ready()) return false;
+  if (observe_) {
+    hold(now);
+    return false;
+  }
   hear_program(now);
   if (state_ == ProgramState::Running) return false;
   if (state_ == ProgramState::Loading && now - loaded_ns_ >= kLoadAgain) return load_program(now);
@@ -212,7 +214,7 @@ void Wiring::hear_program(TimeNs now) noexcept {
   const bool settled = static_cast<std::uint16_t>(beat) * kBeat_ns >= kSettle;
   if (beats && settled && state_ != ProgramState::Running) now_runs(now);
   if (state_ == ProgramState::Running) {
-    if (ours) believed_until_ns_ = taken;
+    if (ours) hold(taken);
     const std::int16_t lapses = mail(mailbox::kLapses);
     const bool lapsed = ours && lapses != lapses_;
     statistics_.lapses += lapsed ? 1 : 0;
@@ -272,8 +274,19 @@ std::string Wiring::look_for_restarts() noexcept {
 
 TimeNs Wiring::believed_ns(std::size_t address, std::size_t count) const noexcept {
   if (!running()) return 0;
-  const TimeNs taken = node_->taken_ns(address, count);
-  return observe_ || (taken >= believed_from_ns_ && taken <= believed_until_ns_) ? taken : 0;
+  if (address + count > held_ns_.size()) return 0;
+  const auto first = held_ns_.begin() + static_cast<std::ptrdiff_t>(address);
+  const TimeNs oldest = *std::min_element(first, first + static_cast<std::ptrdiff_t>(count));
+  return oldest >= believed_from_ns_ ? oldest : 0;
+}
+
+/// Keeps what was read by then: newer words may be those of a robot that was reset meanwhile.
+void Wiring::hold(TimeNs until) noexcept {
+  for (std::size_t i = 0; i < held_.size(); ++i) {
+    if (node_->image.taken_ns[i] > until) continue;
+    held_[i] = node_->image.values[i];
+    held_ns_[i] = node_->image.taken_ns[i];
+  }
 }
 
 template <class Port>
@@ -292,7 +305,7 @@ std::span<const std::int16_t> Wiring::words_of() noexcept {
   std::size_t count = 0;
   for (const Source& source : sources_) {
     if (source.type != &hal::port_type<Port>()) continue;
-    std::ranges::copy(slice(*node_, source.address, source.words),
+    std::ranges::copy(std::span<const std::int16_t>(held_).subspan(source.address, source.words),
                       gathered_.begin() + static_cast<std::ptrdiff_t>(count));
     count += source.words;
   }
@@ -350,8 +363,8 @@ void Wiring::fill_wheels(TimeNs now) noexcept {
     return;
   }
   if (taken != wheels_ns_) {
-    const double left_m_s = motor_m_s(node_->value(program_.motors.left_speed), calibration_.full_m_s);
-    const double right_m_s = motor_m_s(node_->value(program_.motors.right_speed), calibration_.full_m_s);
+    const double left_m_s = motor_m_s(held_[program_.motors.left_speed], calibration_.full_m_s);
+    const double right_m_s = motor_m_s(held_[program_.motors.right_speed], calibration_.full_m_s);
     const TimeNs since = taken - wheels_ns_;
     if (wheels_ns_ != 0 && since > 0 && since <= kLongestRoll) {
       port.left_m += 0.5 * (left_m_s_ + left_m_s) * hal::to_seconds(since);

@@ -111,6 +111,7 @@ class Wiring {
   hal::TimeNs mail_taken_ns() const noexcept { return node_->taken_ns(program_.mailbox, mailbox::kTold); }
   /// When words were taken that are believed; 0: never, or they are not.
   hal::TimeNs believed_ns(std::size_t address, std::size_t count = 1) const noexcept;
+  void hold(hal::TimeNs until) noexcept;
   bool write_mail(std::uint16_t word, std::span<const std::int16_t> values) noexcept;
   bool write_targets() noexcept;
   void write_drive(bool drive, hal::TimeNs now) noexcept;
@@ -143,9 +144,11 @@ class Wiring {
   ProgramState state_ = ProgramState::Unknown;
   bool ran_ = false;  // the program, at some time before
   hal::TimeNs loaded_ns_ = 0, looked_ns_ = 0;
-  hal::TimeNs heard_ns_ = 0;                                  // when the mailbox was taken that was last looked at
-  hal::TimeNs believed_from_ns_ = 0, believed_until_ns_ = 0;  // readings of this time
-  hal::TimeNs beat_ns_ = 0;                                   // and when its beat last was another
+  hal::TimeNs heard_ns_ = 0;          // when the mailbox was taken that was last looked at
+  hal::TimeNs believed_from_ns_ = 0;  // readings from this time on
+  std::vector<std::int16_t> held_;    // named words, as they were when the program was last seen to run afterwards
+  std::vector<hal::TimeNs> held_ns_;  // when they were taken; 0: never
+  hal::TimeNs beat_ns_ = 0;           // and when its beat last was another
   std::int16_t beat_ = 0, lapses_ = 0;
   bool beat_known_ = false;
   std::string restarted_;  // for look_for_restarts
