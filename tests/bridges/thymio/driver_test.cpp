@@ -207,6 +207,26 @@ TEST(ThymioDriver, BelievesNoSensorOfARobotThatWasReset) {
   EXPECT_THAT(drive.log, HasSubstr("its program is gone"));
 }
 
+// As through ASEBA's switch: an answer is often still on its way when the loop latches.
+TEST(ThymioDriver, SeesOverASlowLine) {
+  for (const char* delay : {"delay=20ms", "delay=35ms", "delay=45ms"}) {
+    Drive drive;
+    const auto& proximity = drive.driver.robot().sensor<hal::Proximity>();
+    drive.driver.robot().actuator<hal::WheelSpeeds>().set(0.08, 0.08);
+    drive.body.senses.distance_m.fill(0.03);
+    drive.line.begin_faults({delay}, 1, 0);
+    drive.pass(4000 * kMs);
+    EXPECT_EQ(drive.driver.state(), RobotState::Active) << delay;
+    EXPECT_NEAR(proximity.distance_m[2], 0.03, 1e-4) << delay;
+    int fresh = 0;
+    for (int i = 0; i < 20; ++i) {
+      drive.pass(100 * kMs);
+      fresh += proximity.validity == hal::Validity::Fresh ? 1 : 0;
+    }
+    EXPECT_EQ(fresh, 20) << delay;
+  }
+}
+
 TEST(ThymioDriver, SaysWhichOneItIsNot) {
   DriverSettings settings;
   settings.calibration.node = 7;
