@@ -59,6 +59,8 @@ void add_run(CLI::App& app, RunOptions& o, int& code) {
   auto* film = c->add_option("--film", o.pictures.film,
                              "Make a film: FILE.mp4 or .mkv (ffmpeg), or pictures: FOLDER/ or FOLDER/%06d.png");
   add_film(*c, *film, o.pictures);
+  c->add_option("--povray", o.pictures.povray,
+                "Write the space at the end as a scene in perspective: FILE.pov, or FILE.png to render that, too");
   c->add_option("--trajectory", o.trajectory, "Write poses as CSV");
   c->add_option("--record", o.record, "Write a record: poses, state, and what <record> names; for `tandem export`");
   c->add_option("--log", o.log, "Write all messages of the run to this file: of controllers, too");

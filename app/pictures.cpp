@@ -16,6 +16,7 @@
 #include "app/terminal.hpp"
 #include "core/view/film.hpp"
 #include "core/view/picture.hpp"
+#include "core/view/povray.hpp"
 #include "hal/unit.hpp"
 
 namespace tandem::app {
@@ -49,6 +50,13 @@ hal::Status check_pictures(const PictureRequest& request) {
     if (!format.ok()) return hal::Error{"--picture: " + format.error().message};
     if (const hal::Status renderer = core::can_render(format.value()); !renderer.ok()) return renderer;
   }
+  if (!request.povray.empty()) {
+    const std::string ending = std::filesystem::path(request.povray).extension().string();
+    if (ending != ".pov" && ending != ".png")
+      return hal::Error{"--povray: the scene '" + request.povray + "' must end in .pov, or in .png to be rendered"};
+    const hal::Status can = ending == ".png" ? core::can_render_povray() : hal::Status{};
+    if (!can.ok()) return hal::Error{"--povray: " + can.error().message};
+  }
   if (request.film.empty()) return {};
   const hal::Status film = core::Film::can_make(request.film);
   return film.ok() ? film : hal::Status(hal::Error{"--film: " + film.error().message});
@@ -80,6 +88,18 @@ hal::Result<core::PictureLook> look_of(const PictureRequest& request, const core
 std::string picture_at(const std::string& picture, std::int64_t ticks_done) {
   const std::string ending = std::filesystem::path(picture).extension().string();
   return fmt::format("{}-{:06}{}", picture.substr(0, picture.size() - ending.size()), ticks_done, ending);
+}
+
+std::string scene_of(const std::string& povray) {
+  return std::filesystem::path(povray).replace_extension(".pov").string();
+}
+
+hal::Status write_scene(const core::Drawing& drawing, const core::PictureLook& look, hal::OutputFile& file,
+                        const std::string& povray) {
+  hal::Status done = file.write(core::to_povray(drawing, look));
+  if (done.ok()) done = file.commit();
+  if (!done.ok() || scene_of(povray) == povray) return done;
+  return core::render_povray(file.path(), povray, look.size_px);
 }
 
 struct Pictures::Impl {

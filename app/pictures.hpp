@@ -7,6 +7,7 @@
 #include "app/command/command.hpp"
 #include "core/view/drawing.hpp"
 #include "core/view/trails.hpp"
+#include "hal/output_file.hpp"
 #include "hal/result.hpp"
 
 namespace tandem::app {
@@ -20,6 +21,13 @@ hal::Result<core::PictureLook> look_of(const PictureRequest& request, const core
 
 /// "end.svg", 100: "end-000100.svg".
 std::string picture_at(const std::string& picture, std::int64_t ticks_done);
+
+/// "view.png": "view.pov"; a scene's own name stays.
+std::string scene_of(const std::string& povray);
+
+/// Writes the scene to `file`, commits it, and renders it where `povray` ends in .png.
+hal::Status write_scene(const core::Drawing& drawing, const core::PictureLook& look, hal::OutputFile& file,
+                        const std::string& povray);
 
 /// Draws on a thread of its own. Who hands over drawings waits when that is far behind: no frame is left out.
 class Pictures {

@@ -38,10 +38,12 @@ hal::Status check_output_paths(const RunOptions& options, const core::Scenario& 
   if (const hal::Status pictures = check_pictures(options.pictures); !pictures.ok()) return pictures;
   std::vector<NamedFile> outputs = {{"report", options.report},
                                     {"picture", options.pictures.picture},
+                                    {"picture by POV-Ray", options.pictures.povray},
                                     {"trajectory", trajectory_path(options, scenario)},
                                     {"record", record_path(options, scenario)},
                                     {"dump", options.dump},
                                     {"log", options.log}};
+  if (options.pictures.povray.ends_with(".png")) outputs.push_back({"scene", scene_of(options.pictures.povray)});
   if (!options.pictures.film.ends_with('/')) outputs.push_back({"film", options.pictures.film});
   for (const std::int64_t tick : options.pictures.at)
     outputs.push_back({"picture at tick " + std::to_string(tick), picture_at(options.pictures.picture, tick)});
@@ -67,8 +69,11 @@ hal::Result<RunOutputs> open_outputs(const RunOptions& options, const core::Scen
     if (!pictures.ok()) return pictures.error();
     outputs.pictures = std::move(pictures).value();
   }
+  outputs.povray = options.pictures.povray;
+  const std::string scene = outputs.povray.empty() ? std::string() : scene_of(outputs.povray);
   for (const auto& [what, path, file] : {std::tuple{"report", &options.report, &outputs.report},
-                                         std::tuple{"picture", &options.pictures.picture, &outputs.picture}}) {
+                                         std::tuple{"picture", &options.pictures.picture, &outputs.picture},
+                                         std::tuple{"scene", &scene, &outputs.scene}}) {
     if (path->empty()) continue;
     auto opened = hal::OutputFile::open(*path, what);
     if (!opened.ok()) return opened.error();

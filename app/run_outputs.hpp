@@ -18,7 +18,8 @@ namespace tandem::app {
 /// Open outputs of a run; those that were not asked for are empty.
 struct RunOutputs {
   std::optional<hal::OutputFile> report;
-  std::optional<hal::OutputFile> picture;
+  std::optional<hal::OutputFile> picture, scene;
+  std::string povray;                  ///< what the scene is for
   std::unique_ptr<Pictures> pictures;  ///< on the way
   core::PictureLook look;
   std::unique_ptr<core::TrajectoryRecorder> trajectory;

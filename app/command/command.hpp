@@ -25,6 +25,7 @@ struct PictureRequest {
   bool axes = false, ids = false;
   std::string film;             ///< .mp4, .mkv, or pictures: "FOLDER/" or "FOLDER/%06d.png"
   std::int64_t film_every = 1;  ///< ticks
+  std::string povray;           ///< .pov, or .png beside one: a scene for POV-Ray
   double film_rate = 0.0;       ///< frames a second; 0: as fast as it was, 60 at most
 };
 

@@ -227,10 +227,13 @@ bool write_results(RunOutputs& outputs, const RunResult& result, bool table) {
   if (!outputs.observers.finish(result.world)) good = false;
   if (outputs.dump) check(outputs.dump->close(result.world));
   if (outputs.pictures != nullptr && !outputs.pictures->close()) good = false;
+  auto picture = picture_options(result.world, result.real, outputs.look);
+  if (outputs.pictures != nullptr) picture.trails = &outputs.pictures->trails();
   if (outputs.picture) {
-    auto picture = picture_options(result.world, result.real, outputs.look);
-    if (outputs.pictures != nullptr) picture.trails = &outputs.pictures->trails();
     check(core::write_picture(result.world.space(), *outputs.picture, picture));
+  }
+  if (outputs.scene) {
+    check(write_scene(core::drawing_of(result.world.space(), picture), outputs.look, *outputs.scene, outputs.povray));
   }
   if (outputs.report) {
     const hal::Status written = outputs.report->write(report_of(result) + "\n");

@@ -108,6 +108,17 @@ TEST(Films, OfARunThatIsInterruptedAreWhole) {
   EXPECT_GE(std::atoi(frames.c_str()), 1) << frames;
 }
 
+TEST(Pictures, AreRayTracedToo) {
+  Folder folder;
+  output_of(folder, {"run", kConfigs + "footbot_foraging.xml", "--seconds", "5", "--povray", "view.pov", "--quiet"});
+  EXPECT_NE(text_of(folder.path() / "view.pov").find("camera {"), std::string::npos);
+  if (!has_program("povray")) GTEST_SKIP() << "povray is not installed";
+  output_of(folder, {"run", kConfigs + "footbot_foraging.xml", "--seconds", "5", "--povray", "small.png",
+                     "--picture-size", "160", "--quiet"});
+  EXPECT_EQ(text_of(folder.path() / "small.png").substr(1, 3), "PNG");
+  EXPECT_EQ(text_of(folder.path() / "small.pov"), text_of(folder.path() / "view.pov"));
+}
+
 TEST(Pictures, ThatCannotBeDrawnAreClearErrors) {
   Folder folder;
   const auto fails = [&](std::vector<std::string> more, int code, const char* part) {
@@ -121,6 +132,8 @@ TEST(Pictures, ThatCannotBeDrawnAreClearErrors) {
   fails({"--picture", "p.svg", "--picture-region", "5,5,6,6"}, 1, "lies outside of the arena, which is -2,-2,2,2");
   fails({"--picture", "p.svg", "--picture-region", "1,1,0,2"}, 1, "left of the second one");
   fails({"--picture", "p.svg", "--picture-region", "1,1,2"}, 2, "--picture-region");
+  fails({"--povray", "a.svg"}, 1, "must end in .pov");
+  fails({"--povray", "/no/such/folder/a.pov"}, 1, "/no/such/folder");
   fails({"--film", "a.avi"}, 1, ".mp4 or .mkv");
   fails({"--film", kExperiment + "/%06d.png"}, 1, "the folder");
   fails({"--film", "a/", "--film-every", "0"}, 2, "--film-every");

@@ -1,11 +1,14 @@
 #include "core/view/film.hpp"
 
+#include <algorithm>
 #include <csignal>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <gtest/gtest.h>
 #include <sstream>
+
+#include "core/view/povray.hpp"
 
 namespace tandem::core {
 namespace {
@@ -136,6 +139,42 @@ TEST_F(Films, RefuseNamesThatTheyCannotMake) {
   ASSERT_FALSE(can.ok());
   EXPECT_NE(can.error().message.find("sudo apt-get install ffmpeg"), std::string::npos) << can.error().message;
   EXPECT_TRUE(Film::can_make("frames/").ok());
+}
+
+TEST_F(Films, AndScenesSayWhatTheirProgramsSaid) {
+  const fs::path povray = folder_ / "bin" / "povray";
+  std::ofstream(povray) << "#!/bin/sh\necho 'Parse Error: no camera' >&2\nexit 2\n";
+  fs::permissions(povray, fs::perms::owner_all);
+  const hal::Status rendered = render_povray("a.pov", "a.png", 100);
+  ASSERT_FALSE(rendered.ok());
+  EXPECT_NE(rendered.error().message.find("'a.pov': povray gave up: Parse Error: no camera"), std::string::npos)
+      << rendered.error().message;
+  setenv("PATH", "/nowhere", 1);
+  const hal::Status can = can_render_povray();
+  ASSERT_FALSE(can.ok());
+  EXPECT_NE(can.error().message.find("sudo apt-get install povray"), std::string::npos) << can.error().message;
+}
+
+TEST(Povray, PutsBodiesThingsAndLampsInTheirPlacesWithHeightUpwards) {
+  Drawing d = of_robots(0);
+  d.title = "two\nlines";
+  d.kinds[0].height_m = 0.05;
+  d.kinds[0].leds = {{0.035, 0.0, 0.04}};
+  d.robots = {{0.25, -0.5, 1.5707963, 0, 0, 1, false}};
+  d.robots[0].z_m = 0.75;
+  d.lit = {{0, hal::kRed}};
+  d.boxes = {{0.5, 0.25, 0.0, 0.2, 0.1, false, 0.1, 0.3}};
+  d.cylinders = {{-0.5, 0.25, 0.05, true, 0.0, 0.2}};
+  d.lights = {{0.0, 0.9, {255, 255, 0}, 0.5}};
+  const std::string scene = to_povray(d);
+  for (const char* part :
+       {"// two lines\n", "rotate -y*90 translate <0.25, 0.75, -0.5>", "box { <-0.2, 0, -0.1>, <0.2, 0.3, 0.1>",
+        "translate <0.5, 0.1, 0.25>", "cylinder { <-0.5, 0, 0.25>, <-0.5, 0.2, 0.25>, 0.05",
+        "light_source { <0, 0.5, 0.9>, srgb <1, 1, 0>", "translate <0.035, 0.04, 0>"})
+    EXPECT_NE(scene.find(part), std::string::npos) << part << " in " << scene;
+  EXPECT_EQ(std::count(scene.begin(), scene.end(), '{'), std::count(scene.begin(), scene.end(), '}'));
+  const std::string part = to_povray(d, {.region = PictureLook::Area{0.0, 0.0, 1.0, 1.0}});
+  EXPECT_EQ(part.find("rotate -y*90"), std::string::npos) << "the robot lies outside";
 }
 
 }  // namespace

@@ -1,0 +1,280 @@
+#include "core/view/povray.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <numbers>
+
+#include "core/view/program.hpp"
+
+namespace tandem::core {
+namespace {
+
+constexpr double kLeastHeight_m = 0.02;  // of what has none in its data
+constexpr double kFloorCells = 320.0;    // along the longer side
+constexpr double kCameraAngle_deg = 40.0;
+constexpr double kTilt_rad = 0.78;          // of the view, below the horizon
+constexpr std::size_t kShiningRobots = 60;  // more light sources than that take long
+
+double degrees(double rad) {
+  return rad * 180.0 / std::numbers::pi;
+}
+
+/// Text of a scene. POV-Ray's y is up; a point (x, y, z) of W is <x, z, y> there.
+class Scene {
+ public:
+  Scene& operator<<(std::string_view text) {
+    out_ += text;
+    return *this;
+  }
+  Scene& operator<<(double value) {
+    const double rounded = std::round(value * 1e5) / 1e5;
+    char digits[40];
+    out_.append(digits, std::to_chars(digits, digits + sizeof digits, rounded == 0.0 ? 0.0 : rounded).ptr);
+    return *this;
+  }
+  Scene& point(double x_m, double y_m, double z_m) { return *this << "<" << x_m << ", " << z_m << ", " << y_m << ">"; }
+  Scene& color(hal::Rgb c) {
+    return *this << "srgb <" << c.r / 255.0 << ", " << c.g / 255.0 << ", " << c.b / 255.0 << ">";
+  }
+  /// "#rrggbb"
+  Scene& color(std::string_view hex) {
+    const auto part = [&](std::size_t at) {
+      std::uint8_t value = 0;
+      std::from_chars(hex.data() + at, hex.data() + at + 2, value, 16);
+      return value;
+    };
+    return color(hal::Rgb{part(1), part(3), part(5)});
+  }
+  std::string take() { return std::move(out_); }
+
+ private:
+  std::string out_;
+};
+
+class Writer {
+ public:
+  Writer(const Drawing& drawing, const PictureLook& look)
+      : d_(drawing),
+        shown_(look.region.value_or(
+            PictureLook::Area{drawing.min_x_m, drawing.min_y_m, drawing.max_x_m, drawing.max_y_m})) {}
+
+  std::string write() {
+    s_ << "// " << one_line(d_.title) << "\n// povray +I<this file> +W1200 +H900 +A0.3\n#version 3.7;\n"
+       << "global_settings { assumed_gamma 1.0 ambient_light srgb <1, 1, 1> max_trace_level 6 }\n"
+       << "background { srgb <0.93, 0.94, 0.96> }\n";
+    camera_and_sky();
+    textures();
+    ground();
+    things();
+    for (const Drawing::Light& light : d_.lights) lamp(light);
+    for (std::size_t k = 0; k < d_.kinds.size(); ++k) declare(k);
+    for (const Drawing::Robot& robot : d_.robots) {
+      if (shows(robot.x_m, robot.y_m)) this->robot(robot);
+    }
+    return s_.take();
+  }
+
+ private:
+  static std::string one_line(std::string text) {
+    std::replace_if(
+        text.begin(), text.end(), [](unsigned char c) { return c < 0x20; }, ' ');
+    return text;
+  }
+  double width_m() const { return shown_.max_x_m - shown_.min_x_m; }
+  double depth_m() const { return shown_.max_y_m - shown_.min_y_m; }
+  bool shows(double x_m, double y_m) const {
+    return x_m >= shown_.min_x_m && x_m <= shown_.max_x_m && y_m >= shown_.min_y_m && y_m <= shown_.max_y_m;
+  }
+
+  // As far away as it takes to see all of it.
+  void camera_and_sky() {
+    const double x_m = 0.5 * (shown_.min_x_m + shown_.max_x_m);
+    const double y_m = 0.5 * (shown_.min_y_m + shown_.max_y_m) - 0.04 * depth_m();
+    const double half_rad = 0.5 * kCameraAngle_deg * std::numbers::pi / 180.0;
+    const double near_m = 0.5 * depth_m() * std::cos(kTilt_rad);
+    const double for_width_m = 0.5 * width_m() / std::tan(half_rad) + near_m;
+    const double for_depth_m = 0.5 * depth_m() * std::sin(kTilt_rad) / std::tan(0.75 * half_rad) + near_m;
+    const double away_m = 1.04 * std::max(for_width_m, for_depth_m);
+    s_ << "camera {\n  location ";
+    s_.point(x_m, y_m - away_m * std::cos(kTilt_rad), away_m * std::sin(kTilt_rad));
+    s_ << "\n  right 4/3*x up y angle " << kCameraAngle_deg << "\n  look_at ";
+    s_.point(x_m, y_m, 0.0);
+    s_ << "\n}\nlight_source { ";
+    s_.point(x_m - 0.7 * away_m, y_m - 0.5 * away_m, 1.6 * away_m);
+    s_ << ", srgb <0.86, 0.85, 0.82> area_light ";
+    s_.point(0.2 * away_m, 0.0, 0.0) << ", ";
+    s_.point(0.0, 0.2 * away_m, 0.0) << ", 3, 3 adaptive 1 jitter }\nlight_source { ";
+    s_.point(x_m + away_m, y_m + 0.3 * away_m, 1.2 * away_m) << ", srgb <0.35, 0.37, 0.42> shadowless }\n";
+  }
+
+  void textures() {
+    s_ << "#declare Body = finish { diffuse 0.75 ambient 0.14 specular 0.25 roughness 0.03 }\n"
+       << "#declare Dull = finish { diffuse 0.75 ambient 0.16 }\n#declare Glow = finish { emission 1.4 diffuse 0.2 }\n";
+  }
+
+  // A painted floor as squares of one shade, in runs along x.
+  void ground() {
+    const double x0 = std::max(shown_.min_x_m, d_.min_x_m), x1 = std::min(shown_.max_x_m, d_.max_x_m);
+    const double y0 = std::max(shown_.min_y_m, d_.min_y_m), y1 = std::min(shown_.max_y_m, d_.max_y_m);
+    const auto slab = [&](double ax, double ay, double bx, double by, double low_m, double high_m, double grey) {
+      s_ << "box { ";
+      s_.point(ax, ay, low_m) << ", ";
+      s_.point(bx, by, high_m) << " pigment { srgb " << grey << " } finish { Dull } }\n";
+    };
+    slab(x0, y0, x1, y1, -0.02, 0.0, 0.95);
+    if (!d_.floor) return;
+    const double cell_m = std::max(x1 - x0, y1 - y0) / kFloorCells;
+    const auto shade = [&](double x_m, double y_m) {
+      return std::round(12.0 * std::clamp(d_.floor(x_m, y_m), 0.0, 1.0)) / 12.0;
+    };
+    for (double y_m = y0; y_m < y1 - 1e-9; y_m += cell_m) {
+      const double top_m = std::min(y_m + cell_m, y1);
+      const double middle_m = 0.5 * (y_m + top_m);
+      for (double x_m = x0; x_m < x1 - 1e-9;) {
+        const double level = shade(x_m + 0.5 * cell_m, middle_m);
+        double end_m = x_m + cell_m;
+        while (end_m < x1 - 1e-9 && shade(end_m + 0.5 * cell_m, middle_m) == level) end_m += cell_m;
+        slab(x_m, y_m, std::min(end_m, x1), top_m, 0.0, 1e-4, 0.06 + 0.9 * level);
+        x_m = end_m;
+      }
+    }
+  }
+
+  void things() {
+    for (const Drawing::Box& b : d_.boxes) {
+      if (!shows(b.x_m, b.y_m)) continue;
+      s_ << "box { ";
+      s_.point(-b.half_x_m, -b.half_y_m, 0.0) << ", ";
+      s_.point(b.half_x_m, b.half_y_m, std::max(b.height_m, kLeastHeight_m));
+      s_ << " pigment { " << (b.movable ? "srgb <0.85, 0.70, 0.52>" : "srgb <0.52, 0.56, 0.62>")
+         << " } finish { Dull } ";
+      place(b.x_m, b.y_m, b.z_m, b.heading_rad);
+      s_ << " }\n";
+    }
+    for (const Drawing::Cylinder& c : d_.cylinders) {
+      if (!shows(c.x_m, c.y_m)) continue;
+      s_ << "cylinder { ";
+      s_.point(c.x_m, c.y_m, c.z_m) << ", ";
+      s_.point(c.x_m, c.y_m, c.z_m + std::max(c.height_m, kLeastHeight_m)) << ", " << c.radius_m;
+      s_ << " pigment { " << (c.movable ? "srgb <0.85, 0.70, 0.52>" : "srgb <0.52, 0.56, 0.62>")
+         << " } finish { Dull } }\n";
+    }
+  }
+
+  /// Turns counter-clockwise, seen from above: the axes of W are right-handed, POV-Ray's are not.
+  void place(double x_m, double y_m, double z_m, double heading_rad) {
+    s_ << "rotate -y*" << degrees(heading_rad) << " translate ";
+    s_.point(x_m, y_m, z_m);
+  }
+
+  void lamp(const Drawing::Light& light) {
+    const double radius_m = 0.012 * std::max(width_m(), depth_m());
+    const double z_m = std::max(light.z_m, radius_m);
+    s_ << "light_source { ";
+    s_.point(light.x_m, light.y_m, z_m) << ", ";
+    s_.color(light.color) << "*0.6 fade_distance " << 0.15 * std::max(width_m(), depth_m())
+                          << " fade_power 2 looks_like { sphere { 0, " << radius_m << " pigment { ";
+    s_.color(light.color) << " } finish { Glow } } } }\n";
+  }
+
+  double body_height_m(const Drawing::Kind& kind) const { return std::max(kind.height_m, 0.4 * kind.radius_m); }
+
+  /// A body at the origin that looks along x: a drum on a dark foot, an arrow on its lid.
+  void declare(std::size_t number) {
+    const Drawing::Kind& kind = d_.kinds[number];
+    const double r = kind.radius_m, h = body_height_m(kind);
+    const BodyColors& colors = body_colors(number);
+    s_ << "#declare Kind" << static_cast<double>(number) << " = union {\n  cylinder { ";
+    s_.point(0.0, 0.0, 0.02 * h) << ", ";
+    s_.point(0.0, 0.0, 0.3 * h) << ", " << 0.96 * r << " pigment { ";
+    s_.color(colors.edge) << " } finish { Body } }\n  cylinder { ";
+    s_.point(0.0, 0.0, 0.3 * h) << ", ";
+    s_.point(0.0, 0.0, 0.96 * h) << ", " << 0.9 * r << " pigment { ";
+    s_.color(colors.fill) << " } finish { Body } }\n  prism { linear_spline " << 0.96 * h << ", " << h << ", 5, <"
+                          << 0.75 * r << ", 0>, <" << -0.4 * r << ", " << 0.45 * r << ">, <" << -0.15 * r << ", 0>, <"
+                          << -0.4 * r << ", " << -0.45 * r << ">, <" << 0.75 * r << ", 0> pigment { ";
+    s_.color(colors.edge) << " } finish { Body } }\n";
+    for (int rotor = 0; rotor < 4 && kind.rotor_arm_m > 0.0; ++rotor) {
+      const double bearing_rad = (0.25 + 0.5 * rotor) * std::numbers::pi;
+      const double x_m = kind.rotor_arm_m * std::cos(bearing_rad), y_m = kind.rotor_arm_m * std::sin(bearing_rad);
+      s_ << "  cylinder { ";
+      s_.point(0.0, 0.0, 0.8 * h) << ", ";
+      s_.point(x_m, y_m, 0.8 * h) << ", " << 0.05 * r << " pigment { srgb 0.25 } finish { Body } }\n  torus { "
+                                  << 0.6 * kind.rotor_arm_m << ", " << 0.04 * r << " translate ";
+      s_.point(x_m, y_m, 0.8 * h) << " pigment { srgb 0.3 } finish { Body } }\n";
+    }
+    s_ << "}\n";
+  }
+
+  void robot(const Drawing::Robot& r) {
+    const Drawing::Kind& kind = d_.kinds[r.kind];
+    const double h = body_height_m(kind);
+    s_ << "union { object { Kind" << static_cast<double>(r.kind) << " }\n";
+    const bool real = std::any_of(d_.real.begin(), d_.real.end(),
+                                  [&](const Drawing::RealRobot& other) { return &d_.robots[other.robot] == &r; });
+    if (real) {
+      s_ << "  torus { " << 1.25 * kind.radius_m << ", " << 0.08 * kind.radius_m
+         << " translate y*0.004 pigment { srgb <0.91, 0.35, 0.05> } finish { Glow } }\n";
+    }
+    if (kind.gripper_reach_m > 0.0) {
+      s_ << "  box { ";
+      s_.point(0.6 * kind.radius_m, -0.15 * kind.radius_m, 0.3 * h) << ", ";
+      s_.point(kind.radius_m + kind.gripper_reach_m, 0.15 * kind.radius_m, 0.45 * h);
+      s_ << " pigment { srgb " << (r.holding ? 0.15 : 0.6) << " } finish { Body } rotate -y*" << degrees(r.turret_rad)
+         << " }\n";
+    }
+    for (std::uint32_t i = 0; i < r.lights; ++i) led(r, kind, d_.lit[r.first_light + i]);
+    if (r.lights > 0 && shining_++ < kShiningRobots) {
+      s_ << "  light_source { ";
+      s_.point(0.0, 0.0, 1.6 * h) << ", ";
+      s_.color(d_.lit[r.first_light].color)
+          << "*0.9 fade_distance " << 1.2 * kind.radius_m << " fade_power 2 shadowless }\n";
+    }
+    s_ << "  ";
+    place(r.x_m, r.y_m, r.z_m, r.heading_rad);
+    s_ << " }\n";
+  }
+
+  void led(const Drawing::Robot& r, const Drawing::Kind& kind, const Drawing::LitLed& lit) {
+    const Drawing::Kind::Led& mount = kind.leds[lit.led];
+    const double size_m = 0.13 * kind.radius_m;
+    const double z_m = mount.z_m > 0.0 ? mount.z_m : 0.6 * body_height_m(kind);
+    s_ << "  union { sphere { 0, " << size_m << " pigment { ";
+    s_.color(lit.color) << " } finish { Glow } }";
+    s_ << " translate ";
+    s_.point(mount.x_m, mount.y_m, z_m);
+    if (kind.leds_on_turret) s_ << " rotate -y*" << degrees(r.turret_rad);
+    s_ << " }\n";
+  }
+
+  const Drawing& d_;
+  PictureLook::Area shown_;
+  Scene s_;
+  std::size_t shining_ = 0;
+};
+
+}  // namespace
+
+std::string to_povray(const Drawing& drawing, const PictureLook& look) {
+  return Writer(drawing, look).write();
+}
+
+hal::Status can_render_povray() {
+  if (!find_program("povray").empty()) return {};
+  return hal::Error{
+      "scenes are rendered by povray, which is not installed: sudo apt-get install povray; or write the scene alone, "
+      "'FILE.pov'"};
+}
+
+hal::Status render_povray(const std::string& scene, const std::string& png, int width_px) {
+  if (const hal::Status can = can_render_povray(); !can.ok()) return can;
+  auto povray =
+      Program::start(find_program("povray"), {"-D", "-V", "-GA", "+FN", "+A0.3", "+W" + std::to_string(width_px),
+                                              "+H" + std::to_string(width_px * 3 / 4), "+I" + scene, "+O" + png});
+  if (!povray.ok()) return povray.error();
+  const hal::Status ended = povray.value()->finish();
+  return ended.ok() ? ended : hal::Status(hal::Error{"scene '" + scene + "': " + ended.error().message});
+}
+
+}  // namespace tandem::core
