@@ -134,7 +134,8 @@ class Conversation {
   /// Of `output()`, only a part could be sent.
   virtual void sent_in_part() noexcept {}
 
-  /// The robot itself has confirmed that it stands, and nothing that moves it was sent since.
+  /// The robot itself has confirmed that it stands, and nothing that may move it was sent since; a new stop may, when
+  /// its bytes are damaged.
   bool at_rest() const noexcept { return at_rest_; }
   const Packet& output() const noexcept { return output_; }
   void clear_output() noexcept { output_.clear(); }

@@ -94,6 +94,7 @@ void Session::begin_handshake(TimeNs now) noexcept {
 }
 
 void Session::begin_stop(TimeNs now) noexcept {
+  at_rest_ = false;      // a doubled or flipped byte of it may move the robot, until its last words come
   lamps_known_ = false;  // S puts the ring out as well
   speeds_due_ = false;
   failed_rounds_ = 0;

@@ -13,6 +13,9 @@
 // speed, 53 must be lost, nearly all the zeros behind BC; or 40 of the lead-in when the hub's own "set speeds" was
 // half-received.
 //
+// A doubled or flipped byte of the zeros may be a speed until the words come 14 ms later: during a stop nobody may take
+// the robot for resting, although it was at rest before.
+//
 // Sending proves nothing. The stop is confirmed when the robot has answered twice that its commanded speeds are 0 and
 // its wheel counters were the same both times; until then all is repeated.
 #pragma once

@@ -820,6 +820,33 @@ TEST(EpuckSession, IsAtRestOnlyWhenWhatItWasToldSinceHasNotMovedIt) {
   EXPECT_FALSE(rig.session.at_rest());  // nothing has said so yet
 }
 
+TEST(EpuckSession, IsNotAtRestWhileAStopThatMayBeDamagedIsUnderWay) {
+  for (const bool ending : {false, true}) {
+    Rig rig;
+    rig.connect();
+    ASSERT_TRUE(rig.session.at_rest());
+    rig.downstream = [](Bytes b) {
+      if (b[0] == 0xBC) b.insert(b.begin(), 0xBC);  // doubled: the second one is a speed
+      return b;
+    };
+    if (ending)
+      rig.session.shut_down(rig.now);
+    else
+      rig.hear({0});  // nobody asked for it
+    bool moved = false;
+    for (int i = 0; i < 30; ++i) {
+      rig.run(kMs);
+      moved = moved || rig.robot.left == 0xBC;
+      EXPECT_FALSE(rig.session.at_rest());
+    }
+    EXPECT_TRUE(moved);
+    rig.downstream = [](Bytes b) { return b; };
+    rig.run(500 * kMs);
+    EXPECT_EQ(rig.robot.left, 0);
+    EXPECT_TRUE(rig.session.at_rest());
+  }
+}
+
 TEST(EpuckSession, DoesNotTakeAStopForConfirmedWhileTheWheelsTurn) {
   Rig rig;
   rig.connect();

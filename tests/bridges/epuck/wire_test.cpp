@@ -1,6 +1,7 @@
 // The driver against the emulated firmware over a line of 115200 baud: ages, stamps, stalls, outages, lost bytes.
 #include <gtest/gtest.h>
 
+#include "bridges/epuck/stop.hpp"
 #include "hal/device/body_sensors.hpp"
 #include "hal/device/ring_sensors.hpp"
 #include "hal/device/wheels.hpp"
@@ -231,6 +232,40 @@ TEST(EpuckWire, NeverEndsDrivingAfterAStopWithTenToThirtyPercentOfAllBytesLost) 
     EXPECT_FALSE(moved) << "seed " << seed;
   }
   EXPECT_GT(confirmed, 0);
+}
+
+// One damaged byte of a stop, said to a robot that stands: each of its bytes doubled, and with each of its bits
+// flipped.
+TEST(EpuckWire, MovesFor15MsAtMostAndIsNotBelievedToRestWhenAByteOfItsStopIsDamaged) {
+  hal::TimeNs longest = 0;
+  std::size_t in_all = 0;
+  for (std::size_t i = 0; i < kStopBursts; ++i) in_all += stop_burst(i).size();
+  for (std::size_t damaged = 0; damaged < in_all; ++damaged) {
+    for (unsigned bit = 0; bit <= 8; ++bit) {
+      WireRig rig;
+      rig.run(500 * kMs);
+      ASSERT_TRUE(rig.driver.at_rest());
+      std::size_t sent = 0;
+      rig.to_robot.fault = [&](std::uint8_t byte, hal::TimeNs) -> std::vector<std::uint8_t> {
+        if (sent++ != damaged) return {byte};
+        if (bit == 8) return {byte, byte};
+        return {static_cast<std::uint8_t>(byte ^ (1U << bit))};
+      };
+      hal::TimeNs moves_since = 0;
+      rig.each_step = [&] {
+        if (!rig.body.moves()) moves_since = 0;
+        if (!rig.body.moves()) return;
+        if (moves_since == 0) moves_since = rig.now;
+        longest = std::max(longest, rig.now - moves_since);
+        EXPECT_FALSE(rig.driver.at_rest()) << "byte " << damaged << ", bit " << bit;
+      };
+      rig.driver.shut_down(rig.now);
+      rig.run(400 * kMs);
+      EXPECT_TRUE(rig.driver.at_rest()) << "byte " << damaged << ", bit " << bit;
+    }
+  }
+  EXPECT_GT(longest, 10 * kMs);
+  EXPECT_LE(longest, 15 * kMs);
 }
 
 // Ordinary driving, bytes lost towards the robot: how long wheels may turn in a way that they were never told to.

@@ -283,14 +283,23 @@ class RadioLine {
   int connections_ = 0;
 };
 
-TEST(Faults, LeaveNoEpuckMoving) {
+Kind on_a_serial_line() {
   Kind kind;
   kind.choices = kChoices;
   kind.make = [](std::size_t number, std::uint64_t seed) {
     return std::make_unique<TestedEpuck<ByteLine, bridge::SerialStop>>(number, static_cast<emulator::Variant>(seed % 4),
                                                                        bridge::WireForm::Serial);
   };
-  EXPECT_EQ(play_all(kind, 100), "");
+  return kind;
+}
+
+TEST(Faults, LeaveNoEpuckMoving) {
+  EXPECT_EQ(play_all(on_a_serial_line(), 100), "");
+}
+
+// Stories with kChoices as they are: a robot at rest is told to stop anew, and a byte of it is doubled or flipped.
+TEST(Faults, DoNotLetAHubThatEndsTakeAnEpuckForRestingWhoseNewStopIsDamaged) {
+  for (const std::uint64_t seed : {2899U, 3918U, 4194U}) EXPECT_EQ(play_one(on_a_serial_line(), seed), "");
 }
 
 TEST(Faults, LeaveNoEpuck2MovingThatIsReachedOverItsRadio) {

@@ -328,7 +328,18 @@ std::uint64_t number_in(const char* variable, std::uint64_t otherwise) {
   return text == nullptr || *text == '\0' ? otherwise : std::strtoull(text, nullptr, 10);
 }
 
+std::string play(const Kind& kind, std::uint64_t seed, Figures& figures) {
+  const Story story = draw_story(seed, kind.choices);
+  const std::string wrong = Run(story, kind, figures).play();
+  return wrong.empty() ? "" : to_text(story) + "\n  " + wrong + "\n";
+}
+
 }  // namespace
+
+std::string play_one(const Kind& kind, std::uint64_t seed) {
+  Figures figures;
+  return play(kind, seed, figures);
+}
 
 std::string play_all(const Kind& kind, std::uint64_t short_runs) {
   constexpr int kMostTold = 20;
@@ -338,10 +349,9 @@ std::string play_all(const Kind& kind, std::uint64_t short_runs) {
   const std::uint64_t only = number_in("TANDEM_FAULT_SEED", 0);
   const std::uint64_t runs = only != 0 ? 1 : number_in("TANDEM_FAULT_RUNS", short_runs);
   for (std::uint64_t i = 1; i <= runs; ++i) {
-    const Story story = draw_story(only != 0 ? only : i, kind.choices);
-    const std::string wrong = Run(story, kind, figures).play();
+    const std::string wrong = play(kind, only != 0 ? only : i, figures);
     if (wrong.empty()) continue;
-    if (++failed <= kMostTold) text += to_text(story) + "\n  " + wrong + "\n";
+    if (++failed <= kMostTold) text += wrong;
   }
   std::printf("%llu runs, %d failed; driving within %s of the last fault, at rest within %s of being reachable\n",
               static_cast<unsigned long long>(runs), failed, seconds(figures.back_ns).c_str(),

@@ -33,4 +33,7 @@ struct Kind {
 /// @returns all that went wrong, with what it takes to repeat it; empty: nothing.
 std::string play_all(const Kind& kind, std::uint64_t short_runs);
 
+/// Plays the story of `seed`, whatever the environment says. @returns what went wrong, as above.
+std::string play_one(const Kind& kind, std::uint64_t seed);
+
 }  // namespace tandem::faults
