@@ -116,6 +116,29 @@ void add_export(CLI::App& app, ExportOptions& o, int& code) {
   c->callback([&] { code = export_record(o); });
 }
 
+void add_drawing(CLI::App& app, DrawOptions& picture, DrawOptions& film, int& code) {
+  CLI::App* p = app.add_subcommand("picture", "Draw a picture of a record of `tandem run --record`.");
+  p->add_option("record", picture.record, "The record; that of a run that was killed is FILE.part")->required();
+  p->add_option("--at", picture.at, "After so many ticks; default: the last that the record holds")
+      ->check(CLI::NonNegativeNumber);
+  auto* out = p->add_option_group("output", "Where to");
+  out->add_option("-o,--picture", picture.pictures.picture, "FILE.svg, .png or .pdf");
+  out->add_option("--povray", picture.pictures.povray,
+                  "A scene in perspective: FILE.pov, or FILE.png to render that, too");
+  out->require_option(1, 2);
+  add_looks(*p, picture.pictures);
+  p->callback([&] { code = draw_picture(picture); });
+
+  CLI::App* f = app.add_subcommand("film", "Make a film of a record of `tandem run --record`.");
+  f->add_option("record", film.record, "The record; that of a run that was killed is FILE.part")->required();
+  auto* to = f->add_option("-o,--film", film.pictures.film,
+                           "FILE.mp4 or .mkv (ffmpeg), or pictures: FOLDER/ or FOLDER/%06d.png")
+                 ->required();
+  add_film(*f, *to, film.pictures);
+  add_looks(*f, film.pictures);
+  f->callback([&] { code = draw_film(film); });
+}
+
 void add_bench(CLI::App& app, BenchOptions& o, int& code) {
   CLI::App* c = app.add_subcommand("bench", "Run a benchmark: one JSON object a line, and figures.");
   c->footer(
@@ -233,6 +256,8 @@ int main(int argc, char** argv) {
 
   ExportOptions export_options;
   add_export(app, export_options, code);
+  DrawOptions picture_options, film_options;
+  add_drawing(app, picture_options, film_options, code);
   PluginNewOptions new_options;
   PluginCheckOptions plugin_check_options;
   add_plugin_commands(app, new_options, plugin_check_options, code);

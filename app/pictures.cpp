@@ -110,6 +110,12 @@ struct Pictures::Impl {
   std::unique_ptr<core::Film> film;
   std::int64_t film_frames = 0;  // that were handed over
   bool film_full = false;
+  std::int64_t last_frame = -1;  // ticks that were done then
+
+  bool wants_frame(std::int64_t ticks_done) const noexcept {
+    return film != nullptr && !film_full &&
+           (last_frame < 0 || ticks_done < last_frame || ticks_done - last_frame >= request.film_every);
+  }
   std::uint64_t floor_mark = 0;
   std::function<double(double, double)> floor;  // kept, of that mark
 
@@ -148,7 +154,7 @@ void Pictures::Impl::add_frame(const core::Drawing& drawing) {
   film_status = film->add(drawing);
   film_s += wall_seconds() - began_s;
   if (!film_status.ok()) {
-    complain_once(hal::Error{film_status.error().message + "; the run goes on without the film"});
+    complain_once(hal::Error{film_status.error().message + "; it goes on without the film"});
     return;
   }
   const std::int64_t all = ticks / request.film_every + 1;
@@ -241,8 +247,7 @@ Pictures::~Pictures() {
 }
 
 bool Pictures::wants(std::int64_t ticks_done) const noexcept {
-  const bool frame = impl_->film != nullptr && !impl_->film_full && ticks_done % impl_->request.film_every == 0;
-  return frame || impl_->at.contains(ticks_done);
+  return impl_->wants_frame(ticks_done) || impl_->at.contains(ticks_done);
 }
 
 void Pictures::draw(std::int64_t ticks_done, core::Drawing drawing) {
@@ -256,7 +261,8 @@ void Pictures::draw(std::int64_t ticks_done, core::Drawing drawing) {
     drawing.floor = p.floor;
   }
   const std::size_t bytes = bytes_of(drawing);
-  const bool frame = p.film != nullptr && !p.film_full && ticks_done % p.request.film_every == 0;
+  const bool frame = p.wants_frame(ticks_done);
+  if (frame) p.last_frame = ticks_done;
   const bool picture = p.at.erase(ticks_done) > 0;
   if (frame && ++p.film_frames == kMostFrames) p.film_full = true;
   p.add(bytes, [&p, frame, picture, ticks_done, drawing = std::move(drawing)] {

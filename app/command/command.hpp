@@ -73,6 +73,15 @@ struct ExportOptions {
 };
 int export_record(const ExportOptions& options);
 
+struct DrawOptions {
+  std::string record;
+  PictureRequest pictures;
+  std::optional<std::int64_t> at;  ///< number of ticks; empty: the last that the record holds
+};
+/// A picture, or a scene, of a record.
+int draw_picture(const DrawOptions& options);
+int draw_film(const DrawOptions& options);
+
 struct CheckOptions {
   Libraries plugins;
   std::string experiment;

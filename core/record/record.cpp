@@ -15,6 +15,8 @@
 #include "core/record/trajectory.hpp"
 #include "core/scenario/element.hpp"
 #include "core/space/stores.hpp"
+#include "hal/device/gripper.hpp"
+#include "hal/device/leds.hpp"
 
 namespace tandem::core {
 namespace {
@@ -171,6 +173,19 @@ Json row_fields(const hal::RowType& type, std::vector<Layout>& layouts) {
   return fields;
 }
 
+/// What there is to draw of a kind.
+Json body_json(const hal::RobotKind& kind) {
+  Json body = {{"radius", kind.body.radius_m}, {"height", kind.body.height_m}};
+  if (const auto* const rotors = std::get_if<hal::Quadrotor>(&kind.locomotion)) body["rotor_arm"] = rotors->rotor_arm_m;
+  if (const auto* const gripper = kind.part<hal::GripperPart>(); gripper != nullptr)
+    body["gripper_reach"] = gripper->reach_m;
+  if (const auto* const leds = kind.part<hal::LedsPart>(); leds != nullptr) {
+    body["leds_on_turret"] = leds->on_turret;
+    for (const hal::Mount& led : leds->mounts) body["leds"].push_back({led.x_m, led.y_m, led.z_m});
+  }
+  return body;
+}
+
 Json object_json(const Object& o) {
   Json json = {{"id", o.id},           {"shape", o.kind == Object::Kind::Box ? "box" : "cylinder"},
                {"movable", o.movable}, {"x", o.x_m},
@@ -193,6 +208,13 @@ Json scene_json(const SpaceStores& s) {
                 {"lights", Json::array()}};
   for (const Object& o : s.objects) {
     if (o.alive) scene["objects"].push_back(object_json(o));
+  }
+  for (const Region& region : s.regions) {
+    for (std::size_t i = 0; i < region.sides.size(); ++i) {
+      const RegionSide& a = region.sides[i];
+      const RegionSide& b = region.sides[(i + 1) % region.sides.size()];
+      scene["borders"].push_back({a.x_m, a.y_m, b.x_m, b.y_m, a.wall});
+    }
   }
   for (const LightSource& light : s.lights) {
     if (!light.alive) continue;
@@ -347,19 +369,25 @@ void Recorder::Impl::declare(const Space& space, hal::Tick now, std::string& out
     rows.push_back(static_cast<std::uint32_t>(row));
   }
   const auto members_of = [&](const std::vector<std::uint32_t>& who) {
-    Json ids = Json::array(), kinds = Json::array(), kind = Json::array(), real = Json::array();
+    Json ids = Json::array(), kinds = Json::array(), kind = Json::array(), real = Json::array(), bodies = Json::array();
     std::map<std::string_view, std::size_t> known;
     for (std::size_t i = 0; i < who.size(); ++i) {
       const std::uint32_t entity = s.bodies.entity[who[i]];
       ids.push_back(space.robot_name({entity, s.robots[entity].generation}));
       const std::string_view name = s.kind_of_row(who[i]).name;
       const auto [entry, fresh] = known.emplace(name, known.size());
-      if (fresh) kinds.push_back(name);
+      if (fresh) {
+        kinds.push_back(name);
+        bodies.push_back(body_json(s.kind_of_row(who[i])));
+      }
       kind.push_back(entry->second);
       if ((s.bodies.flags[who[i]] & kExternal) != 0) real.push_back(i);
     }
-    return Json{
-        {"ids", std::move(ids)}, {"kinds", std::move(kinds)}, {"kind", std::move(kind)}, {"real", std::move(real)}};
+    return Json{{"ids", std::move(ids)},
+                {"kinds", std::move(kinds)},
+                {"kind", std::move(kind)},
+                {"real", std::move(real)},
+                {"bodies", std::move(bodies)}};
   };
 
   Stream poses;

@@ -8,14 +8,14 @@
 //                  "fields": [{"name", "type": "f32" | "f64" | "u8" | "u16" | "u32" | "i32" | "i64" | "bool", "count",
 //                  "scale", "unit", "doc", "used_by", "per_entry", "texts"}, …]}: the form of rows that follow
 //   3 Members      JSON {"members": n, "ids": […], "kinds": […], "kind": [index into kinds, …], "real": [index into
-//   ids, …]}:
+//   ids, …], "bodies": [what there is to draw of each of the kinds, …]}:
 //                  whose rows they are, in their order
 //   4 Rows         u32 stream, u32 members, u32 rows, u32 0; then field by field the values of all rows, row by row,
 //   without
 //                  gaps. The value is the number times `scale`. The smallest i32 stands for "no number". Of a field
 //                  with `used_by` a row has only as many values as that field of the row says, times `per_entry`; that
 //                  field comes before
-//   5 Scene        JSON: arena, boxes, cylinders, lamps, as they are from this tick on
+//   5 Scene        JSON: arena, boxes, cylinders, lamps, borders of regions, as they are from this tick on
 //   6 Event        JSON {"kind": "incident" | …, "text": …, …}
 //   7 Fingerprint  u64: of the world's state after this tick
 //   8 End          JSON: how the run ended. A record without it was cut

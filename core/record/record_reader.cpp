@@ -149,12 +149,15 @@ hal::Status RecordReader::declare_members(const Json& json) {
   members->ids = texts_of(json, "ids");
   members->kinds.resize(members->ids.size());
   members->real.resize(members->ids.size(), false);
+  members->kind.resize(members->ids.size(), 0);
+  if (const auto bodies = json.find("bodies"); bodies != json.end() && bodies->is_array()) members->bodies = *bodies;
   const std::vector<std::string> kinds = texts_of(json, "kinds");
   if (const auto kind = json.find("kind"); kind != json.end() && kind->is_array()) {
     for (std::size_t i = 0; i < std::min(kind->size(), members->kinds.size()); ++i) {
       const Json& k = (*kind)[i];
-      if (k.is_number_unsigned() && k.get<std::uint64_t>() < kinds.size())
-        members->kinds[i] = kinds[k.get<std::uint64_t>()];
+      if (!k.is_number_unsigned() || k.get<std::uint64_t>() >= kinds.size()) continue;
+      members->kind[i] = k.get<std::uint64_t>();
+      members->kinds[i] = kinds[members->kind[i]];
     }
   }
   if (const auto real = json.find("real"); real != json.end() && real->is_array()) {

@@ -41,6 +41,8 @@ struct RecordMembers {
   std::vector<std::string> ids;
   std::vector<std::string> kinds;  ///< of each
   std::vector<bool> real;          ///< of each: a real robot
+  std::vector<std::size_t> kind;   ///< of each: index into `bodies`, if that has so many
+  hal::Json bodies;                ///< of their kinds: what there is to draw; as it stands in the record
 };
 
 /// Rows of one stream at the end of one tick.

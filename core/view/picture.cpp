@@ -119,9 +119,13 @@ hal::Result<PictureFormat> picture_format(const std::string& path) {
 }
 
 hal::Status write_picture(const Space& space, hal::OutputFile& file, const PictureOptions& options) {
+  return write_picture(drawing_of(space, options), file, options.look);
+}
+
+hal::Status write_picture(const Drawing& drawing, hal::OutputFile& file, const PictureLook& look) {
   const auto format = picture_format(file.path());
   if (!format.ok()) return format.error();
-  const auto rendered = render(to_svg(drawing_of(space, options), options.look), format.value());
+  const auto rendered = render(to_svg(drawing, look), format.value());
   if (!rendered.ok()) return rendered.error();
   const hal::Status written = file.write(rendered.value());
   return written.ok() ? file.commit() : written;

@@ -35,6 +35,9 @@ Drawing drawing_of(const Space& space, const PictureOptions& options);
 /// By the ending of `path`: .svg, .png or .pdf. Error: another one; names those that there are.
 hal::Result<PictureFormat> picture_format(const std::string& path);
 
+/// Writes the drawing to `file` in the format of its ending, and commits it. Error: as below.
+hal::Status write_picture(const Drawing& drawing, hal::OutputFile& file, const PictureLook& look);
+
 /// Writes `space` to `file` in the format of its ending, and commits it. Error: the file cannot be written or rendered.
 hal::Status write_picture(const Space& space, hal::OutputFile& file, const PictureOptions& options);
 

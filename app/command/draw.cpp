@@ -1,0 +1,115 @@
+#include <algorithm>
+#include <csignal>
+#include <fmt/format.h>
+#include <optional>
+
+#include "app/command/command.hpp"
+#include "app/pictures.hpp"
+#include "app/report.hpp"
+#include "app/terminal.hpp"
+#include "core/view/picture.hpp"
+#include "core/view/record_drawing.hpp"
+#include "hal/output_file.hpp"
+
+namespace tandem::app {
+namespace {
+
+/// Opens a file that is asked for; none where not.
+hal::Result<std::optional<hal::OutputFile>> open_file(const std::string& path, std::string_view what) {
+  if (path.empty()) return std::optional<hal::OutputFile>();
+  auto file = hal::OutputFile::open(path, what);
+  if (!file.ok()) return file.error();
+  return std::optional<hal::OutputFile>(std::move(file).value());
+}
+
+void tell_damage(const DrawOptions& options, const core::RecordDrawings& drawings) {
+  for (const std::string& line : drawings.damage()) say("record '" + options.record + "': " + line);
+}
+
+/// Goes to the tick that was asked for, and keeps trails on the way. Error: the record does not hold it; those beside
+/// it.
+hal::Status go_to(const DrawOptions& options, core::RecordDrawings& drawings, core::Trails& trails) {
+  trails.note(drawings.ticks_done(), drawings.places());
+  std::optional<std::int64_t> before;
+  while (!options.at || drawings.ticks_done() != *options.at) {
+    const std::int64_t here = drawings.ticks_done();
+    const bool passed = options.at && here > *options.at;
+    if (!passed && drawings.next()) {
+      before = here;
+      if (trails.wants(drawings.ticks_done())) trails.note(drawings.ticks_done(), drawings.places());
+      continue;
+    }
+    if (!options.at) return {};
+    std::string near = fmt::format("{}", here);
+    if (passed && before) near = fmt::format("{} and {}", *before, here);
+    return hal::Error{fmt::format("record '{}' does not hold what was after {} ticks; near that it has {}",
+                                  options.record, *options.at, near)};
+  }
+  return {};
+}
+
+}  // namespace
+
+int draw_picture(const DrawOptions& options) {
+  const PictureRequest& request = options.pictures;
+  if (const hal::Status can = check_pictures(request); !can.ok()) return complain(kBadInput, can.error().message);
+  const std::string scene = request.povray.empty() ? std::string() : scene_of(request.povray);
+  const hal::Status apart = check_apart({{"picture", request.picture},
+                                         {"scene", scene},
+                                         {"picture by POV-Ray", request.povray == scene ? "" : request.povray}},
+                                        {{"record", options.record}});
+  if (!apart.ok()) return complain(kBadInput, apart.error().message);
+  auto opened = core::RecordDrawings::open(options.record);
+  if (!opened.ok()) return complain(kBadInput, opened.error().message);
+  core::RecordDrawings& drawings = opened.value();
+  const auto look = look_of(request, drawings.arena());
+  if (!look.ok()) return complain(kBadInput, look.error().message);
+  core::Trails trails(look.value().trails_s, drawings.ticks_per_second());
+  if (const hal::Status there = go_to(options, drawings, trails); !there.ok())
+    return complain(kBadInput, there.error().message);
+  auto picture = open_file(request.picture, "picture");
+  if (!picture.ok()) return complain(kBadInput, picture.error().message);
+  auto scene_file = open_file(scene, "scene");
+  if (!scene_file.ok()) return complain(kBadInput, scene_file.error().message);
+
+  const core::Drawing drawing = drawings.drawing(look.value(), &trails);
+  tell_damage(options, drawings);
+  hal::Status done;
+  if (picture.value()) done = core::write_picture(drawing, *picture.value(), look.value());
+  if (done.ok() && scene_file.value()) done = write_scene(drawing, look.value(), *scene_file.value(), request.povray);
+  return done.ok() ? kDone : complain(kFailedRunning, done.error().message);
+}
+
+int draw_film(const DrawOptions& options) {
+  std::signal(SIGPIPE, SIG_IGN);  // the encoder may end before us
+  if (const hal::Status can = check_pictures(options.pictures); !can.ok())
+    return complain(kBadInput, can.error().message);
+  const hal::Status apart = check_apart({{"film", options.pictures.film}}, {{"record", options.record}});
+  if (!apart.ok()) return complain(kBadInput, apart.error().message);
+
+  // Once through the record, for its length; then the frames.
+  auto first = core::RecordDrawings::open(options.record);
+  if (!first.ok()) return complain(kBadInput, first.error().message);
+  std::int64_t frames = 1, ticks = first.value().ticks_done();
+  for (; first.value().next(); ++frames) ticks = std::max(ticks, first.value().ticks_done());
+  PictureRequest request = options.pictures;
+  request.film_every = std::max(
+      request.film_every, (ticks + frames / 2) / std::max<std::int64_t>(1, frames - 1));  // of a record of some ticks
+  auto opened = core::RecordDrawings::open(options.record);
+  if (!opened.ok()) return complain(kBadInput, opened.error().message);
+  core::RecordDrawings& drawings = opened.value();
+  const auto look = look_of(request, drawings.arena());
+  if (!look.ok()) return complain(kBadInput, look.error().message);
+  auto made = Pictures::open(request, look.value(), drawings.ticks_per_second(), ticks);
+  if (!made.ok()) return complain(kBadInput, made.error().message);
+  Pictures& pictures = *made.value();
+  do {
+    pictures.note(drawings.ticks_done(), drawings.places());
+    if (pictures.wants(drawings.ticks_done()))
+      pictures.draw(drawings.ticks_done(), drawings.drawing(look.value(), &pictures.trails()));
+  } while (drawings.next());
+  tell_damage(options, drawings);
+  return pictures.close() ? kDone : kFailedRunning;
+}
+
+}  // namespace tandem::app
