@@ -1,6 +1,7 @@
 #include "app/pictures.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <condition_variable>
 #include <deque>
 #include <exception>
@@ -13,6 +14,7 @@
 #include <utility>
 
 #include "app/measure.hpp"
+#include "app/progress.hpp"
 #include "app/terminal.hpp"
 #include "core/view/film.hpp"
 #include "core/view/picture.hpp"
@@ -105,7 +107,7 @@ hal::Status write_scene(const core::Drawing& drawing, const core::PictureLook& l
 struct Pictures::Impl {
   PictureRequest request;
   core::PictureLook look;
-  std::int64_t ticks = 0;
+  std::int64_t ticks = 0, ticks_per_second = 10;
   std::set<std::int64_t> at;  // that are to come
   std::unique_ptr<core::Film> film;
   std::int64_t film_frames = 0;  // that were handed over
@@ -123,11 +125,13 @@ struct Pictures::Impl {
   std::mutex mutex;
   std::condition_variable changed;
   struct Job {
+    std::int64_t ticks_done = 0;
     std::size_t bytes = 0;
     std::function<void()> draw;
   };
   std::deque<Job> jobs;
-  std::size_t waiting_bytes = 0;
+  std::size_t waiting_bytes = 0;  // with those that are being drawn
+  std::int64_t drawn_until = 0;   // ticks that were done then
   bool over = false;
   std::thread artist;
 
@@ -143,9 +147,10 @@ struct Pictures::Impl {
   }
   void add_frame(const core::Drawing& drawing);
   void write_picture(const core::Drawing& drawing, const std::string& path);
-  void add(std::size_t bytes, std::function<void()> draw);
+  void add(std::int64_t ticks_done, std::size_t bytes, std::function<void()> draw);
   void work();
   void finish();
+  void show_progress();
 };
 
 void Pictures::Impl::add_frame(const core::Drawing& drawing) {
@@ -170,10 +175,10 @@ void Pictures::Impl::write_picture(const core::Drawing& drawing, const std::stri
   complain_once(rendered.ok() ? hal::write_whole_file(path, "picture", rendered.value()) : rendered.error());
 }
 
-void Pictures::Impl::add(std::size_t bytes, std::function<void()> draw) {
+void Pictures::Impl::add(std::int64_t ticks_done, std::size_t bytes, std::function<void()> draw) {
   std::unique_lock lock(mutex);
   changed.wait(lock, [&] { return waiting_bytes == 0 || waiting_bytes + bytes <= kMostWaiting_bytes; });
-  jobs.push_back({bytes, std::move(draw)});
+  jobs.push_back({ticks_done, bytes, std::move(draw)});
   waiting_bytes += bytes;
   changed.notify_all();
 }
@@ -194,6 +199,7 @@ void Pictures::Impl::work() {
     job.draw = nullptr;
     lock.lock();
     waiting_bytes -= job.bytes;
+    drawn_until = job.ticks_done;
     changed.notify_all();
   }
 }
@@ -207,6 +213,17 @@ void Pictures::Impl::finish() {
   if (artist.joinable()) artist.join();
 }
 
+/// Of the drawing that is left when the ticks are over, until it is done.
+void Pictures::Impl::show_progress() {
+  if (film == nullptr || ticks == 0) return;
+  Progress progress(ticks, ticks_per_second);
+  std::unique_lock lock(mutex);
+  while (waiting_bytes > 0) {
+    (void)changed.wait_for(lock, std::chrono::milliseconds(200));
+    progress.step(drawn_until);
+  }
+}
+
 bool Pictures::asked(const PictureRequest& request) noexcept {
   return !request.film.empty() || !request.at.empty() || (!request.picture.empty() && request.trails_s > 0.0);
 }
@@ -217,6 +234,7 @@ hal::Result<std::unique_ptr<Pictures>> Pictures::open(const PictureRequest& requ
   impl->request = request;
   impl->look = look;
   impl->ticks = ticks;
+  impl->ticks_per_second = ticks_per_second;
   impl->at.insert(request.at.begin(), request.at.end());
   if (ticks > 0 && !impl->at.empty() && *impl->at.rbegin() > ticks)
     return hal::Error{fmt::format("--picture-at {}: there are {} ticks", *impl->at.rbegin(), ticks)};
@@ -265,7 +283,7 @@ void Pictures::draw(std::int64_t ticks_done, core::Drawing drawing) {
   if (frame) p.last_frame = ticks_done;
   const bool picture = p.at.erase(ticks_done) > 0;
   if (frame && ++p.film_frames == kMostFrames) p.film_full = true;
-  p.add(bytes, [&p, frame, picture, ticks_done, drawing = std::move(drawing)] {
+  p.add(ticks_done, bytes, [&p, frame, picture, ticks_done, drawing = std::move(drawing)] {
     if (frame) p.add_frame(drawing);
     if (picture) p.write_picture(drawing, picture_at(p.request.picture, ticks_done));
   });
@@ -275,6 +293,7 @@ void Pictures::draw(std::int64_t ticks_done, core::Drawing drawing) {
 
 bool Pictures::close() {
   Impl& p = *impl_;
+  p.show_progress();
   p.finish();
   if (p.film != nullptr && p.film_status.ok()) p.complain_once(p.film->close());
   if (p.film != nullptr && !p.failed) {
