@@ -50,6 +50,11 @@ class Collector final : public Registrar {
         return problem(what + " a second time: the first is from " + e.origin + "; give one of them another name");
       }
     }
+    // A table has one name: the first entry would bear the second's.
+    for (const Catalog::Entry& e : added) {
+      if (e.entry == item.entry && e.category == item.category)
+        return problem(what + " with the class that it registers as '" + e.name + "': derive a class for each name");
+    }
     added.push_back(std::move(entry));
   }
 

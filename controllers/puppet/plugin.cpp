@@ -8,9 +8,9 @@ namespace {
 void register_all(tandem::hal::Registrar& registrar) {
   registrar.add_controller<tandem::controllers::Puppet>(
       "puppet", "Takes every device and does nothing: its ports are driven from outside.");
-  registrar.add_controller<tandem::controllers::WheeledPuppet>(
+  registrar.add_controller<tandem::controllers::FootbotPuppet>(
       "footbot_puppet", "Takes a foot-bot's devices and does nothing: its ports are driven from outside.");
-  registrar.add_controller<tandem::controllers::WheeledPuppet>(
+  registrar.add_controller<tandem::controllers::ThymioPuppet>(
       "thymio_puppet", "Takes a Thymio's devices and does nothing: its ports are driven from outside.");
   registrar.add_controller<tandem::controllers::EyebotPuppet>(
       "eyebot_puppet", "Takes an eye-bot's devices and does nothing: its ports are driven from outside.");

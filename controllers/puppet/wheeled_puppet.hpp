@@ -17,7 +17,7 @@ namespace tandem::controllers {
 
 /// Takes the wheels, and whatever else of its devices its configuration lists, and leaves the commands as whoever
 /// reaches the ports from outside writes them.
-class WheeledPuppet final : public hal::Controller {
+class WheeledPuppet : public hal::Controller {
  public:
   explicit WheeledPuppet(hal::Robot& robot) {
     robot.actuator<hal::WheelSpeeds>();
@@ -29,6 +29,16 @@ class WheeledPuppet final : public hal::Controller {
   }
 
   void step() noexcept override {}
+};
+
+// One class for each name: a class of controllers has one.
+class FootbotPuppet final : public WheeledPuppet {
+ public:
+  using WheeledPuppet::WheeledPuppet;
+};
+class ThymioPuppet final : public WheeledPuppet {
+ public:
+  using WheeledPuppet::WheeledPuppet;
 };
 
 }  // namespace tandem::controllers

@@ -325,7 +325,7 @@ hal::Status Recorder::Impl::hand_over(std::string blocks, bool with_rows, hal::T
   const std::lock_guard lock(mutex);
   (rows_ready ? after : ready) += blocks;
   rows_ready = rows_ready || with_rows;
-  tick = now;
+  if (with_rows || !rows_ready) tick = now;  // rows that still wait keep theirs
   changed.notify_all();
   return status();
 }

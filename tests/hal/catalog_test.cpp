@@ -71,6 +71,19 @@ TEST(Catalog, RefusesTwoOfOneNameAndNamesBothOrigins) {
   EXPECT_THAT(error_of(catalog, "libmine.so", kFloating, kFloating), HasSubstr("the first is from libmine.so"));
 }
 
+TEST(Catalog, RefusesOneTableUnderTwoNames) {
+  Catalog catalog;
+  Engine table{"rolling"};
+  const Status added = catalog.add_from("tandem", [&](Registrar& r) {
+    r.add(table);
+    table.name = "gliding";  // as a class of controllers that is registered twice does with its own
+    r.add(table);
+  });
+  ASSERT_FALSE(added.ok());
+  EXPECT_THAT(added.error().message,
+              AllOf(HasSubstr("'gliding'"), HasSubstr("as 'rolling'"), HasSubstr("derive a class")));
+}
+
 TEST(Catalog, ControllersAndHooksOfTwoLibrariesMayShareAName) {
   Catalog catalog;
   EXPECT_EQ(error_of(catalog, "libone.so", kPainter), "");

@@ -249,6 +249,20 @@ TEST_F(Record, LosesAtMostOneTickWhenItsProcessIsKilled) {
   EXPECT_TRUE(reader.value().cut());
 }
 
+TEST_F(Record, KeepsTheTickOfRowsThatSomethingHappenedAfter) {
+  for (int round = 0; round < 50; ++round) {
+    auto recorder = open(config());
+    ASSERT_TRUE(recorder->tick_done(space_, 0).ok());
+    ASSERT_TRUE(recorder->event(7, {{"kind", "incident"}, {"text", "before the rows were written, perhaps"}}).ok());
+    ASSERT_TRUE(recorder->close(9, {}).ok());
+    auto reader = RecordReader::open(path_);
+    ASSERT_TRUE(reader.ok());
+    const auto poses = rows_of(reader.value(), "pose");
+    ASSERT_EQ(poses.size(), 2U);
+    ASSERT_EQ(poses[1].tick, 0);
+  }
+}
+
 TEST_F(Record, KeepsEventsAndFingerprintsInTheirOrder) {
   auto recorder = open(config());
   ASSERT_TRUE(recorder->tick_done(space_, 0).ok());
