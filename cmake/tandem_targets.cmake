@@ -95,7 +95,7 @@ function(tandem_test_program)
 endfunction()
 
 # tandem_label_test(<ctest entry> <program's target> LABELS …): what chooses tests. For each label the target tests_<label> builds them.
-#   fast       runs side by side with others        whole     uses real processes and real time, runs alone
+#   fast       runs side by side with others        whole     uses real processes and real time
 #   threads    has threads at stake: what the thread sanitizer is for
 #   behaviour  of controllers, by results: nothing for sanitizers        memory   fast, but behaviour: for the address sanitizer
 #   board      what a robot's board needs, on an emulated processor
