@@ -28,7 +28,8 @@ namespace fs = std::filesystem;
 constexpr std::int64_t kTicks = 100'000;
 const fs::path kGolden = fs::path(test::kSourceDir) / "tests/controllers/decisions/decisions.txt";
 // They take devices and leave them to others, or obey somebody who is not there.
-const std::set<std::string> kDecideNothing = {"puppet", "footbot_puppet", "eyebot_puppet", "thymio_puppet", "footbot_manual"};
+const std::set<std::string> kDecideNothing = {"puppet", "footbot_puppet", "eyebot_puppet", "thymio_puppet",
+                                              "footbot_manual"};
 
 struct Decisions {
   std::uint64_t hash = 14695981039346656037U;
