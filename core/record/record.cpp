@@ -253,13 +253,11 @@ struct Recorder::Impl {
   RecordConfig config;
   std::optional<hal::OutputFile> file;
   std::vector<Stream> streams;
-  std::vector<std::string> attitudes;
   std::map<std::string, std::uint32_t> stream_numbers;   // by their declaration without the number
   std::map<std::string, std::uint32_t> members_numbers;  // by theirs
   std::uint32_t generations = 0;
   std::size_t living = 0, objects = 0;
   SceneVersion scene;
-  std::vector<float> quaternions;
 
   // Between the thread that steps and the one that writes.
   std::mutex mutex;
@@ -308,10 +306,8 @@ void Recorder::Impl::write() {
     }
     lock.lock();
     busy = false;
-    if (lost) {
-    } else if (status.ok()) {
-      written += blocks.size();
-    } else {
+    if (status.ok() && !lost) written += blocks.size();
+    if (!status.ok()) {
       failure = status.error().message + "; it is lost from tick " + std::to_string(now) + " on" +
                 (file->part().empty() ? "" : ", what came before is in '" + file->part() + "'");
     }
