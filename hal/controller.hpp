@@ -8,6 +8,7 @@
 #include <string_view>
 #include <type_traits>
 
+#include "hal/controls.hpp"
 #include "hal/params.hpp"
 #include "hal/robot.hpp"
 
@@ -29,6 +30,10 @@ class Controller {
   /// done, and what was not reset is kept (something learned, say). False: this object is destroyed and another
   /// constructed in its place.
   virtual bool reset(Robot& /*robot*/) { return false; }
+
+  /// Declares what people may change while the run goes on. Called between steps; the values are members, so that
+  /// copies have them.
+  virtual void controls(Controls& /*controls*/) {}
 };
 
 /// Result of stepping a row of controllers: who threw, if anybody.
@@ -41,8 +46,8 @@ struct StepFault {
 struct ControllerType {
   static constexpr std::string_view kCategory = "controller";
   static constexpr std::uint32_t kNumber = 2;
-  using Crosses = Layouts<Controller, Robot, StepFault, ParamVisitor, ParamList, PublishedField, RobotLog, Random,
-                          PortType, RowType, Field, RobotKind, RobotKind::Crosses>;
+  using Crosses = Layouts<Controller, Robot, StepFault, ParamVisitor, ParamList, Controls, PublishedField, RobotLog,
+                          Random, PortType, RowType, Field, RobotKind, RobotKind::Crosses>;
   std::string_view name;  ///< as written in experiment files
   std::string_view summary;
   std::string_view class_name;  ///< as the compiler spells it, for hooks that know the class
@@ -63,6 +68,8 @@ struct ControllerType {
   /// Constructs in `where` a copy of the controller at `from`, for snapshots. Null where the class has no copy
   /// constructor. @throws whatever its copy constructor throws
   void (*copy)(void* where, const void* from) = nullptr;
+  /// Calls Controller::controls. @throws whatever it throws
+  void (*controls)(void* controller, Controls& controls) = nullptr;
 };
 
 namespace detail {
@@ -136,6 +143,7 @@ const ControllerType& controller_type(std::string_view name, std::string_view su
   type.step_row = &detail::step_row<T>;
   type.destroy = [](void* controller) { static_cast<T*>(controller)->~T(); };
   type.reset = [](void* controller, Robot& robot) { return static_cast<T*>(controller)->T::reset(robot); };
+  type.controls = [](void* controller, Controls& controls) { static_cast<T*>(controller)->T::controls(controls); };
   if constexpr (std::is_copy_constructible_v<T>)
     type.copy = [](void* where, const void* from) { ::new (where) T(*static_cast<const T*>(from)); };
   return type;

@@ -7,6 +7,8 @@
 #include <numeric>
 #include <utility>
 
+#include "hal/open_params.hpp"
+
 namespace tandem::hal {
 namespace {
 
@@ -187,6 +189,20 @@ void ElementReader::flag(std::string_view name, bool& value, std::string_view) {
 }
 
 void ElementReader::text(std::string_view name, std::string& value, std::string_view) {
+  if (name == kPathParam) {
+    value = path_beside(value, element_.file);
+    return;
+  }
+  if (name == kOtherParams) {
+    for (const Element::Attribute& a : element_.attributes) {
+      if (std::find(known_.begin(), known_.end(), a.name) != known_.end()) continue;
+      std::string in_a_line = a.value;
+      std::replace(in_a_line.begin(), in_a_line.end(), '\n', ' ');
+      value += a.name + "\n" + in_a_line + "\n";
+      known_.push_back(a.name);
+    }
+    return;
+  }
   if (const std::string* text = find(name); text != nullptr) value = *text;
 }
 
@@ -278,6 +294,7 @@ void ElementWriter::flag(std::string_view name, bool& value, std::string_view) {
   add(name, value ? "true" : "false");
 }
 void ElementWriter::text(std::string_view name, std::string& value, std::string_view) {
+  if (name == kOtherParams || name == kPathParam) return;  // written already
   add(name, value);
 }
 void ElementWriter::choice(std::string_view name, std::string& value, std::span<const std::string_view>,
@@ -360,6 +377,8 @@ void ManualWriter::flag(std::string_view name, bool& value, std::string_view doc
   line(name, value ? "true" : "false", "true or false", doc);
 }
 void ManualWriter::text(std::string_view name, std::string& value, std::string_view doc) {
+  if (name == kPathParam) return;
+  if (name == kOtherParams) return line("NAME", "TEXT", "any other name", doc);
   line(name, value, "", doc);
 }
 void ManualWriter::choice(std::string_view name, std::string& value, std::span<const std::string_view> options,

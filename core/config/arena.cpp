@@ -301,7 +301,15 @@ class ArenaReader {
     const std::string usual = attributes_of(*own);
     item.id = reading_.read(e, schema::RobotOfKind{{}, *own}).id;
     const std::string said = attributes_of(*own);
-    if (said != usual) item.own_kind = own_kinds_.try_emplace(e.name + said, std::move(own)).first->second;
+    const auto* const fitted = reading_.fitted(e.name);
+    if (fitted != nullptr) {
+      for (const hal::AnyPart& part : *fitted) {
+        own->remove(part.name());
+        own->add(part);
+      }
+    }
+    if (said != usual || fitted != nullptr)
+      item.own_kind = own_kinds_.try_emplace(e.name + said, std::move(own)).first->second;
   }
 
   static std::string attributes_of(hal::RobotKind& kind) {
@@ -343,7 +351,14 @@ class ArenaReader {
       if (distribute != nullptr) reading_.error(c, "a <bridge> stands for one real robot; it cannot be distributed");
     });
     reading_.once(e, "tracker", [&](Element& c) {
-      item.tracker = TrackerConfig{reading_.read<schema::Tracker>(c).source, c, c.line};
+      const auto t = reading_.read<schema::Tracker>(c);
+      item.tracker = TrackerConfig{t.source, c, c.line, words(t.id), t.turn_rad, t.lost_m, t.offset, {}};
+      if (t.height_m >= 0.0) item.tracker->tag_m = t.height_m;
+    });
+    reading_.once(e, "peer", [&](Element& c) {
+      item.peer = PeerConfig{reading_.read<schema::Peer>(c).link, c.line};
+      if (distribute != nullptr && !item.peer->link.empty() && !item.peer->link.starts_with("emulated"))
+        reading_.error(c, "link", "'" + item.peer->link + "' leads to one peer; distributed robots leave it out");
     });
     out_.robots.push_back(std::move(item));
   }
@@ -400,6 +415,62 @@ class ArenaReader {
 
 void read_arena(Reading& reading, Element& arena) {
   ArenaReader(reading).arena(arena);
+}
+
+void read_trackers(Reading& reading, Element& trackers) {
+  reading.read<schema::Trackers>(trackers);
+  for (Element& e : trackers.children) {
+    const auto* const options = reading.catalog().find<hal::ElementOptions>("tracker of " + e.name);
+    std::shared_ptr<const void> own;
+    const auto t = reading.read_with<schema::TrackerElement>(e, [&](hal::ParamVisitor& v) {
+      if (options == nullptr) return;
+      auto read = options->read(v);
+      if (own == nullptr) own = std::move(read);
+    });
+    TrackerItem item{e.name,
+                     t.id.empty() ? e.name : t.id,
+                     t.clock,
+                     t.latency_s,
+                     t.sd_m,
+                     t.sd_rad,
+                     t.origin,
+                     t.turn_rad,
+                     e,
+                     e.line,
+                     std::move(own)};
+    for (const TrackerItem& other : reading.out().trackers) {
+      if (other.id == item.id)
+        reading.error(e, "id",
+                      "a second tracker '" + item.id + "'; the first is on line " + std::to_string(other.line));
+    }
+    reading.out().trackers.push_back(std::move(item));
+  }
+}
+
+void read_desk(Reading& reading, Element& desk) {
+  const auto d = reading.read<schema::Desk>(desk);
+  DeskConfig& out = reading.out().desk;
+  out = {d.lcm, d.channel, d.hold, {}};
+  constexpr std::size_t kLongestChannel = 57;  // LCM has 63 characters, and answers go to CHANNEL/reply
+  if (d.channel.empty() || d.channel.size() > kLongestChannel)
+    reading.error(desk, "channel", "a channel has 1 to 57 characters");
+  for (Element& e : desk.children) {
+    if (e.name != schema::Spare::kElement.name) continue;
+    const auto s = reading.read<schema::Spare>(e);
+    const auto taken = [&](const auto& other) { return other.id == s.id && !s.id.empty(); };
+    const auto& robots = reading.out().robots;
+    if (std::any_of(out.spares.begin(), out.spares.end(), taken) || std::any_of(robots.begin(), robots.end(), taken))
+      reading.error(e, "id", "'" + s.id + "' is the id of another robot already");
+    for (const SpareItem& other : out.spares) {
+      if (other.link == s.link)
+        reading.error(e, "link", "the spare '" + other.id + "' on line " + std::to_string(other.line) + " is there");
+    }
+    for (const RobotItem& robot : robots) {
+      if (robot.bridge && robot.bridge->link == s.link)
+        reading.error(e, "link", "the robot '" + robot.id + "' on line " + std::to_string(robot.line) + " is there");
+    }
+    out.spares.push_back({s.id, s.link, words(s.seen_as), e.line});
+  }
 }
 
 }  // namespace tandem::core

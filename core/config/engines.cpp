@@ -3,74 +3,37 @@
 #include <map>
 
 #include "core/config/reading.hpp"
+#include "core/scenario/polygon.hpp"
 #include "core/scenario/split.hpp"
 
 namespace tandem::core {
 namespace {
 
-constexpr std::size_t kMostVertices = 1000;
-
 bool good_regions(const std::string& text) {
   return text.empty() || text == "auto" || parse_split(text).has_value();
 }
 
-std::optional<std::array<double, 2>> point_of(const std::string& text) {
-  const std::size_t comma = text.find(',');
-  if (comma == std::string::npos) return std::nullopt;
-  const auto x = hal::parse_quantity(std::string_view(text).substr(0, comma), hal::unit::m);
-  const auto y = hal::parse_quantity(std::string_view(text).substr(comma + 1), hal::unit::m);
-  if (!x.ok() || !y.ok()) return std::nullopt;
-  return std::array<double, 2>{x.value(), y.value()};
-}
-
-/// Positive when c lies to the left of the line from a to b.
-double side_of(const BoundarySide& a, const BoundarySide& b, const BoundarySide& c) {
-  return (b.x_m - a.x_m) * (c.y_m - a.y_m) - (b.y_m - a.y_m) * (c.x_m - a.x_m);
-}
-
-bool cross(const BoundarySide& a, const BoundarySide& b, const BoundarySide& c, const BoundarySide& d) {
-  return side_of(a, b, c) * side_of(a, b, d) < 0.0 && side_of(c, d, a) * side_of(c, d, b) < 0.0;
-}
-
-/// Whether c lies on the side from a to b.
-bool lies_on(const BoundarySide& a, const BoundarySide& b, const BoundarySide& c) {
-  return side_of(a, b, c) == 0.0 && (c.x_m - a.x_m) * (c.x_m - b.x_m) <= 0.0 &&
-         (c.y_m - a.y_m) * (c.y_m - b.y_m) <= 0.0;
-}
-
-bool meet(const BoundarySide& a, const BoundarySide& b, const BoundarySide& c, const BoundarySide& d) {
-  return cross(a, b, c, d) || lies_on(a, b, c) || lies_on(a, b, d) || lies_on(c, d, a) || lies_on(c, d, b);
-}
-
-/// Whether the side from b to c goes back along the one from a to b.
-bool folds_back(const BoundarySide& a, const BoundarySide& b, const BoundarySide& c) {
-  return side_of(a, b, c) == 0.0 && (b.x_m - a.x_m) * (c.x_m - b.x_m) + (b.y_m - a.y_m) * (c.y_m - b.y_m) < 0.0;
-}
-
 /// What is wrong with an outline, or empty.
 std::string flaw_of(const std::vector<BoundarySide>& sides) {
-  if (sides.size() < 3) return "an outline needs at least three vertices";
-  if (sides.size() > kMostVertices) return "more than 1000 vertices";
-  for (std::size_t i = 0; i < sides.size(); ++i) {
-    const BoundarySide& a = sides[i];
-    const BoundarySide& b = sides[(i + 1) % sides.size()];
-    if (a.x_m == b.x_m && a.y_m == b.y_m)
-      return "the vertices on lines " + std::to_string(a.line) + " and " + std::to_string(b.line) + " are the same";
-  }
-  if (std::all_of(sides.begin() + 2, sides.end(),
-                  [&](const BoundarySide& c) { return side_of(sides[0], sides[1], c) == 0.0; }))
-    return "the outline has no area";
-  for (std::size_t i = 0; i < sides.size(); ++i) {
-    const BoundarySide& a = sides[i];
-    const BoundarySide& b = sides[(i + 1) % sides.size()];
-    if (folds_back(a, b, sides[(i + 2) % sides.size()]))
-      return "the side from line " + std::to_string(b.line) + " goes back along the one before it";
-    for (std::size_t k = i + 2; k < sides.size(); ++k) {
-      const BoundarySide& c = sides[k];
-      const std::size_t next = (k + 1) % sides.size();
-      if (next != i && meet(a, b, c, sides[next]))
-        return "the sides from lines " + std::to_string(a.line) + " and " + std::to_string(c.line) + " cross or touch";
-    }
+  std::vector<Point2> corners;
+  for (const BoundarySide& side : sides) corners.push_back({side.x_m, side.y_m});
+  const OutlineFlaw flaw = core::flaw_of(corners);
+  const auto line = [&](std::size_t corner) { return std::to_string(sides[corner].line); };
+  switch (flaw.kind) {
+    case OutlineFlaw::Kind::None:
+      break;
+    case OutlineFlaw::Kind::TooFew:
+      return "an outline needs at least three vertices";
+    case OutlineFlaw::Kind::TooMany:
+      return "more than 1000 vertices";
+    case OutlineFlaw::Kind::SameCorners:
+      return "the vertices on lines " + line(flaw.a) + " and " + line(flaw.b) + " are the same";
+    case OutlineFlaw::Kind::NoArea:
+      return "the outline has no area";
+    case OutlineFlaw::Kind::FoldsBack:
+      return "the side from line " + line(flaw.a) + " goes back along the one before it";
+    case OutlineFlaw::Kind::SidesMeet:
+      return "the sides from lines " + line(flaw.a) + " and " + line(flaw.b) + " cross or touch";
   }
   return "";
 }

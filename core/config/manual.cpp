@@ -1,5 +1,6 @@
 // The manual of experiment files, from their schema.
-#include "core/config/reading.hpp"
+#include "core/config/manual.hpp"
+
 #include "hal/element_options.hpp"
 
 namespace tandem::core {
@@ -11,16 +12,6 @@ std::string joined(const std::vector<std::string>& names, std::string_view betwe
   return text;
 }
 
-template <class T>
-ElementManual manual_of() {
-  T value{};
-  ManualWriter writer;
-  value.describe(writer);
-  const schema::ElementInfo& info = T::kElement;
-  const std::string required = info.required.empty() ? "" : "  must have: " + joined(words(info.required), ", ") + "\n";
-  return {std::string(info.name), {}, std::string(info.doc), required + writer.text(), words(info.children)};
-}
-
 template <class... T>
 std::vector<ElementManual> manuals_of() {
   return {manual_of<T>()...};
@@ -28,9 +19,10 @@ std::vector<ElementManual> manuals_of() {
 
 std::vector<ElementManual> all_manuals() {
   using namespace schema;
-  return manuals_of<Root, Plugins, Kinds, Kind, Framework, System, Experiment, Profiling, Time, Controllers,
-                    Configuration, Sensors, Actuators, Arena, FieldElement, Box, Cylinder, Leds, Led, Light, Sound,
-                    Robot, Body, RobotController, Battery, Bridge, Tracker, DistributeElement, PositionDraw,
+  return manuals_of<Root, Plugins, Kinds, Kind, Fitted, FittedModel, Framework, System, Experiment, Profiling, Time,
+                    Peers, Controllers, Configuration, Sensors, Actuators, Arena, FieldElement, Box, Cylinder, Leds,
+                    Led, Light, Sound, Robot, Body, RobotController, Battery, Bridge, Tracker, Peer, Trackers,
+                    TrackerElement, Desk, Spare, Safety, FenceElement, KeepOut, Zone, DistributeElement, PositionDraw,
                     OrientationDraw, Entity, Engines, Engine, Boundaries, Top, Bottom, Sides, Vertex, Media,
                     schema::Medium, Hook, Record, Trajectory, ObserverElement, Visualization>();
 }
@@ -53,6 +45,13 @@ void add_attributes(hal::RobotKind kind, ElementManual& manual) {
   manual.attributes += writer.text();
 }
 
+/// The attributes that a part of this name reads of its element.
+std::string options_of(const std::string& name, const hal::Catalog& catalog) {
+  ManualWriter writer;
+  if (const auto* const options = catalog.find<hal::ElementOptions>(name)) (void)options->read(writer);
+  return writer.text();
+}
+
 /// An element whose name stands for several kinds becomes one a kind.
 std::vector<ElementManual> expanded(const ElementManual& m, const KnownNames& known) {
   std::vector<std::string> names{m.name};
@@ -61,6 +60,7 @@ std::vector<ElementManual> expanded(const ElementManual& m, const KnownNames& kn
   if (m.name == schema::Medium::kElement.name) names = known.media;
   if (m.name == schema::FieldElement::kElement.name) names = known.fields;
   if (m.name == schema::ObserverElement::kElement.name) names = known.observers;
+  if (m.name == schema::TrackerElement::kElement.name) names = known.trackers;
   std::vector<ElementManual> out;
   for (const std::string& name : names) {
     out.push_back(m);
@@ -70,6 +70,8 @@ std::vector<ElementManual> expanded(const ElementManual& m, const KnownNames& kn
     if (m.name == schema::Medium::kElement.name) add_own(*known.catalog.find<MediumType>(name), out.back());
     if (m.name == schema::FieldElement::kElement.name) add_own(*known.catalog.find<FieldType>(name), out.back());
     if (m.name == schema::ObserverElement::kElement.name) add_own(*known.catalog.find<ObserverType>(name), out.back());
+    if (m.name == schema::TrackerElement::kElement.name)
+      out.back().attributes += options_of("tracker of " + name, known.catalog);
   }
   return out;
 }
@@ -123,7 +125,8 @@ std::vector<ElementManual> element_manuals(const hal::Catalog& catalog) {
   }
   for (ElementManual& m : manuals) {
     m.parent = parents_of(m, manuals, known);
-    m.attributes += options_of_parts(m.name, catalog);
+    if (m.name != schema::Tracker::kElement.name)  // whose kinds' options belong to the elements of <trackers>
+      m.attributes += options_of_parts(m.name, catalog);
   }
   return manuals;
 }

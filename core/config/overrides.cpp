@@ -7,9 +7,9 @@ namespace tandem::core {
 namespace {
 
 /// Elements that stand once in their parent and may be left out: an override may add them.
-constexpr std::array<std::string_view, 12> kMayBeAdded = {"system",     "time",   "floor",           "params",
-                                                          "battery",    "bridge", "tracker",         "record",
-                                                          "trajectory", "media",  "physics_engines", "visualization"};
+constexpr std::array<std::string_view, 14> kMayBeAdded = {
+    "fitted", "desk",    "system", "time",       "floor", "params",          "battery",
+    "bridge", "tracker", "record", "trajectory", "media", "physics_engines", "visualization"};
 
 struct Part {
   std::string name;

@@ -4,6 +4,7 @@
 #include <map>
 #include <tuple>
 
+#include "core/config/fitted.hpp"
 #include "core/config/kinds.hpp"
 #include "core/config/overrides.hpp"
 #include "core/config/reading.hpp"
@@ -52,7 +53,7 @@ void read_configuration(Reading& reading, Element& e) {
   const auto attributes = reading.read<schema::Configuration>(e);
   ControllerConfig config;
   config.id = attributes.id;
-  config.library = attributes.library;
+  config.library = attributes.library.empty() ? e.name : attributes.library;
   config.label = e.name;
   config.line = e.line;
   config.params.name = "params";
@@ -76,6 +77,37 @@ void check_priority(Reading& reading, Element& root) {
   if (reading.out().priority == 0 || std::any_of(robots.begin(), robots.end(), [](const auto& r) { return r.bridge; }))
     return;
   reading.warn(*root.child("framework")->child("time"), "'priority' has no effect: no robot has a <bridge>");
+}
+
+/// A run waits for peers in lock-step alone, and for nothing else there.
+void check_peers(Reading& reading, Element& root) {
+  Scenario& out = reading.out();
+  const Element* const framework = root.child("framework");
+  const Element* const time = framework == nullptr ? nullptr : framework->child("time");
+  if (time == nullptr) return;  // told already
+  const auto at = [&](int line) {
+    Element e = *time;
+    e.line = line;
+    return e;
+  };
+  const bool lockstep = out.time_mode == TimeMode::Lockstep;
+  bool any = false;
+  for (RobotItem& item : out.robots) {
+    any = any || item.peer.has_value();
+    if (item.peer && !lockstep) {
+      reading.warn(
+          at(item.peer->line),
+          "<peer> has no effect: only <time mode=\"lockstep\"/> waits for peers; robot '" + item.id + "' is simulated");
+      item.peer.reset();
+    } else if (lockstep && item.bridge) {
+      reading.error(at(item.bridge->line),
+                    "robot '" + item.id +
+                        "': a real robot's time goes on while others are waited for; in lock-step there are no "
+                        "<bridge>s: take <peer link=\"emulated:…\"/>, or <time mode=\"realtime\"/>");
+    }
+  }
+  if (lockstep && !any)
+    reading.error(*time, "mode", "'lockstep' has nobody to wait for: give a robot a <peer/>, or use fast");
 }
 
 Scenario read_parts(Reading& reading, Element& root) {
@@ -105,7 +137,11 @@ Scenario read_parts(Reading& reading, Element& root) {
   reading.once(root, "controllers", [&](Element& e) { read_controllers(reading, e); });
   reading.once_or_default(root, "physics_engines", [&](Element& e) { read_engines(reading, e); });
   reading.once(root, "media", [&](Element& e) { read_media(reading, e); });
+  reading.once(root, "fitted", [&](Element& e) { read_fitted(reading, e); });
   reading.once(root, "arena", [&](Element& e) { read_arena(reading, e); });
+  reading.once(root, "trackers", [&](Element& e) { read_trackers(reading, e); });
+  reading.once(root, "safety", [&](Element& e) { read_safety(reading, e); });
+  reading.once(root, "desk", [&](Element& e) { read_desk(reading, e); });
   for (Element& e : root.children) {
     if (e.name == "loop_functions") read_hook(reading, e);
     if (e.name == "plugins") reading.out().plugins.push_back({reading.read<schema::Plugins>(e).library, e.line});
@@ -115,6 +151,7 @@ Scenario read_parts(Reading& reading, Element& root) {
   connect_media(reading);
   check_ids(reading);
   check_priority(reading, root);
+  check_peers(reading, root);
   return std::move(reading.out());
 }
 
@@ -122,6 +159,7 @@ ExperimentFile opened(Element root, const std::vector<std::string>& overrides, P
   ExperimentFile file{std::move(root), std::move(found)};
   include_kinds(file.root, file.problems);
   for (const std::string& assignment : overrides) apply_override(file.root, assignment, file.problems);
+  include_fitted(file.root, file.problems);
   return file;
 }
 
@@ -159,9 +197,16 @@ void read_framework(Reading& reading, Element& e) {
     if (real_time) start.mode = "realtime";
     const schema::Time time = reading.read(c, start);
     const std::string& mode = time.mode;
-    out.time_mode = mode == "realtime" ? TimeMode::Realtime : TimeMode::Fast;
+    out.time_mode = mode == "realtime" ? TimeMode::Realtime : mode == "lockstep" ? TimeMode::Lockstep : TimeMode::Fast;
+    const auto peers = [&](Element& p) {
+      const auto read = reading.read<schema::Peers>(p);
+      out.lockstep = {read.listen, read.timeout_s, read.missing == "simulate", p.line};
+    };
+    if (out.time_mode == TimeMode::Lockstep)
+      reading.once_or_default(c, "peers", peers);
+    else
+      reading.once(c, "peers", peers);
     out.priority = static_cast<int>(time.priority);
-    if (mode == "lockstep") reading.error(c, "mode", "'lockstep' is not there yet; use realtime or fast");
     if (said && real_time && mode != "realtime")
       reading.error(c, "mode", "'" + mode + "' contradicts <experiment real_time=\"true\">; drop one of them");
   });
@@ -211,8 +256,13 @@ std::vector<std::string> read_list(Reading& reading, Element& e, const char* att
 void read_record(Reading& reading, Element& record) {
   const auto r = reading.read<schema::Record>(record);
   RecordConfig& config = reading.out().record;
-  config = {r.path, r.every, read_list(reading, record, "entities", r.entities, "ids"),
-            {},     r.state, r.fingerprint_every};
+  config.path = r.path;
+  config.every = r.every;
+  config.entities = read_list(reading, record, "entities", r.entities, "ids");
+  config.state = r.state;
+  config.look = r.look;
+  config.inputs = r.inputs;
+  config.fingerprint_every = r.fingerprint_every;
   if (!r.ports.empty()) config.ports = read_list(reading, record, "ports", r.ports, "names of ports");
   reading.once(record, "trajectory", [&](Element& e) {
     const auto t = reading.read<schema::Trajectory>(e);
@@ -244,6 +294,15 @@ std::optional<ExperimentFile> open_experiment(const std::string& path, const std
   auto root = hal::read_xml_file(path, found);
   if (root) return opened(std::move(*root), overrides, std::move(found));
   report(std::move(found), path, problems);
+  return std::nullopt;
+}
+
+std::optional<ExperimentFile> open_experiment_text(const std::string& text, const std::string& name,
+                                                   const std::vector<std::string>& overrides, Problems& problems) {
+  Problems found;
+  auto root = hal::read_xml_text(text, name, found);
+  if (root) return opened(std::move(*root), overrides, std::move(found));
+  report(std::move(found), name, problems);
   return std::nullopt;
 }
 
@@ -287,11 +346,8 @@ std::optional<Scenario> read_experiment(const std::string& path, const std::vect
 std::optional<Scenario> read_experiment_text(const std::string& text, const std::string& name,
                                              const std::vector<std::string>& overrides, const hal::Catalog& catalog,
                                              Problems& problems) {
-  Problems found;
-  auto root = hal::read_xml_text(text, name, found);
-  if (root) return read_experiment(opened(std::move(*root), overrides, std::move(found)), catalog, problems);
-  report(std::move(found), name, problems);
-  return std::nullopt;
+  auto file = open_experiment_text(text, name, overrides, problems);
+  return file ? read_experiment(std::move(*file), catalog, problems) : std::nullopt;
 }
 
 std::string effective_settings(const Scenario& scenario) {

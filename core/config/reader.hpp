@@ -20,6 +20,9 @@ struct ExperimentFile {
 /// Reads `path`, with `overrides` ("path=value") applied. Nothing, and `problems`, when it is no XML.
 std::optional<ExperimentFile> open_experiment(const std::string& path, const std::vector<std::string>& overrides,
                                               Problems& problems);
+/// The same from text; `name` stands for the file in messages, and paths are relative to its folder.
+std::optional<ExperimentFile> open_experiment_text(const std::string& text, const std::string& name,
+                                                   const std::vector<std::string>& overrides, Problems& problems);
 /// The libraries of its <plugins>, in their order.
 std::vector<PluginConfig> plugins_of(const Element& root);
 /// Whether a robot of the file has a <bridge>, leaving out those of the ids `without`. Other problems are for later.

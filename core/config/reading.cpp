@@ -12,11 +12,21 @@ std::vector<std::string> words(std::string_view list) {
   return out;
 }
 
+std::optional<Point2> point_of(const std::string& text) {
+  const std::size_t comma = text.find(',');
+  if (comma == std::string::npos) return std::nullopt;
+  const auto x = hal::parse_quantity(std::string_view(text).substr(0, comma), hal::unit::m);
+  const auto y = hal::parse_quantity(std::string_view(text).substr(comma + 1), hal::unit::m);
+  if (!x.ok() || !y.ok()) return std::nullopt;
+  return Point2{x.value(), y.value()};
+}
+
 KnownNames::KnownNames(const hal::Catalog& all)
     : robots(all.names(hal::RobotKind::kCategory)),
       engines(all.names(KnownEngine::kCategory)),
       media(all.names(MediumType::kCategory)),
       observers(all.names(ObserverType::kCategory)),
+      trackers(all.names("tracker")),  // whose type is above core
       catalog(all) {
   for (const FieldType* field : all.all<FieldType>()) {
     if (field->describe != nullptr) fields.emplace_back(field->name);
@@ -28,7 +38,8 @@ KnownNames::KnownNames(const hal::Catalog& all)
 std::vector<std::string> KnownNames::children_of(std::vector<std::string> names) const {
   for (const auto& [stand_in, kinds] :
        {std::pair(schema::kRobotKind, &robots), std::pair(schema::kMediumKind, &media),
-        std::pair(schema::kFieldKind, &fields), std::pair(schema::kObserverKind, &observers)}) {
+        std::pair(schema::kFieldKind, &fields), std::pair(schema::kObserverKind, &observers),
+        std::pair(schema::kTrackerKind, &trackers)}) {
     const auto at = std::find(names.begin(), names.end(), stand_in);
     if (at != names.end()) names.insert(names.erase(at), kinds->begin(), kinds->end());
   }
@@ -47,10 +58,11 @@ std::vector<std::string> Reading::check(const Element& element, const schema::El
     }
   }
   if (info.children == schema::kAnything) return missing;
-  // A program without a world knows neither media nor fields nor observers.
+  // A program without a world knows neither media nor fields nor observers, and no trackers.
   const auto may_hold = [&](std::string_view kind) { return info.children.find(kind) != std::string_view::npos; };
   if (((may_hold(schema::kMediumKind) || may_hold(schema::kObserverKind)) && known_.media.empty()) ||
-      (may_hold(schema::kFieldKind) && known_.fields.empty()))
+      (may_hold(schema::kFieldKind) && known_.fields.empty()) ||
+      (may_hold(schema::kTrackerKind) && known_.trackers.empty()))
     return missing;
   const std::vector<std::string> allowed = known_.children_of(words(info.children));
   for (const Element& child : element.children) {

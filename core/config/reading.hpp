@@ -1,7 +1,9 @@
 // Tools of all parts of the reader of experiment files: elements read by their schema, and problems noted.
 #pragma once
 #include <algorithm>
+#include <map>
 #include <memory>
+#include <optional>
 #include <set>
 #include <string>
 #include <string_view>
@@ -20,9 +22,12 @@ namespace tandem::core {
 /// The words of a list separated by spaces.
 std::vector<std::string> words(std::string_view list);
 
+/// "x,y", each a length; nothing: it is not that.
+std::optional<Point2> point_of(const std::string& text);
+
 /// What the catalog has, so that the reader can judge names.
 struct KnownNames {
-  std::vector<std::string> robots, engines, media, fields, observers, sensors, actuators;
+  std::vector<std::string> robots, engines, media, fields, observers, trackers, sensors, actuators;
   const hal::Catalog& catalog;
   explicit KnownNames(const hal::Catalog& catalog);
 
@@ -43,6 +48,14 @@ class Reading {
   const hal::Catalog& catalog() const noexcept { return catalog_; }
   const KnownNames& known() const noexcept { return known_; }
   Scenario& out() noexcept { return out_; }
+  /// Parts that the file's <fitted> gives robots of that kind; null: none.
+  const std::vector<hal::AnyPart>* fitted(const std::string& kind) const noexcept {
+    const auto found = fitted_.find(kind);
+    return found == fitted_.end() ? nullptr : &found->second;
+  }
+  void add_fitted(const std::string& kind, std::vector<hal::AnyPart> parts) {
+    fitted_.insert_or_assign(kind, std::move(parts));
+  }
 
   void error(const Element& e, std::string message) { problems_.push_back(problem_at(e, std::move(message))); }
   void error(const Element& e, std::string_view attribute, std::string message) {
@@ -52,6 +65,8 @@ class Reading {
     problems_.push_back(problem_at(e, std::move(message)));
     problems_.back().warning = true;
   }
+
+  void add_problems(Problems found) { problems_.insert(problems_.end(), found.begin(), found.end()); }
 
   /// Reads an element by the schema of `T`: required and unknown attributes, values, children. Attributes that were
   /// left out are then written into it, so that it shows the effective settings.
@@ -128,6 +143,7 @@ class Reading {
   KnownNames known_;
   Problems& problems_;
   Scenario out_;
+  std::map<std::string, std::vector<hal::AnyPart>> fitted_;  // by kind
 };
 
 // The parts of a file. Each reads one element into `reading.out()`.
@@ -135,6 +151,13 @@ void read_framework(Reading& reading, Element& framework);
 void read_controllers(Reading& reading, Element& controllers);
 void read_engines(Reading& reading, Element& engines);
 void read_media(Reading& reading, Element& media);
+void read_trackers(Reading& reading, Element& trackers);
+/// After the arena: robots are to start where they may be.
+void read_safety(Reading& reading, Element& safety);
+/// Before the arena.
+void read_fitted(Reading& reading, Element& fitted);
+/// After the arena, whose robots spares are compared with.
+void read_desk(Reading& reading, Element& desk);
 void read_arena(Reading& reading, Element& arena);
 void read_hook(Reading& reading, Element& loop_functions);
 void read_record(Reading& reading, Element& record);

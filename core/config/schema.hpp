@@ -26,6 +26,7 @@ inline constexpr std::string_view kRobotKind = "ROBOT";    ///< in children: eve
 inline constexpr std::string_view kFieldKind = "FIELD";    ///< … every field of which files say something
 inline constexpr std::string_view kMediumKind = "MEDIUM";  ///< … and every kind of medium
 inline constexpr std::string_view kObserverKind = "OBSERVER";  ///< … and of observer
+inline constexpr std::string_view kTrackerKind = "TRACKER";    ///< … and of tracker
 
 /// What an element is and holds. Lists are names separated by spaces.
 struct ElementInfo {
@@ -38,7 +39,8 @@ struct ElementInfo {
 struct Root {
   static constexpr ElementInfo kElement{
       "tandem", "An experiment. The name <argos-configuration> means the same.", "",
-      "plugins kinds framework controllers arena physics_engines media visualization loop_functions record"};
+      "plugins kinds fitted framework controllers arena trackers safety desk physics_engines "
+      "media visualization loop_functions record"};
   std::int64_t version = 0;
   void describe(ParamVisitor& v) {
     v.integer("version", version, {0, 999'999'999},
@@ -83,6 +85,30 @@ struct Kind {
         "bridge", bridge,
         "The kind whose bridge drives real ones; left out: that of the kind that it is like, or one of its own name.");
   }
+};
+
+struct Fitted {
+  static constexpr ElementInfo kElement{
+      "fitted",
+      "Parameters that were fitted to real robots, for simulated ones of their kinds. Also the root of a file that "
+      "`tandem fit` writes.",
+      "", "model"};
+  std::string file;
+  std::int64_t reality = 0;
+  std::int64_t version = 0;
+  void describe(ParamVisitor& v) {
+    v.text("file", file, "Takes what that file holds; looked for in the folder of this one.");
+    v.integer("reality", reality, {0, 999'999'999},
+              "Number of a pseudo-reality: robots are then drawn from what was measured. 0: as measured.");
+    v.integer("version", version, {0, 999'999'999}, "Of the vocabulary, as that of an experiment.");
+  }
+};
+
+struct FittedModel {
+  static constexpr ElementInfo kElement{
+      "model", "What was fitted to robots of one kind: <fitted_wheels>, <fitted_proximity>.", "kind", kAnything};
+  std::string kind;
+  void describe(ParamVisitor& v) { v.text("kind", kind, "Of the robots that it holds for."); }
 };
 
 struct Framework {
@@ -136,15 +162,30 @@ struct Profiling {
 };
 
 struct Time {
-  static constexpr ElementInfo kElement{"time", "How the run is paced."};
+  static constexpr ElementInfo kElement{"time", "How the run is paced.", "", "peers"};
   std::string mode = "fast";
   std::int64_t priority = 0;
   void describe(ParamVisitor& v) {
     static constexpr std::array<std::string_view, 3> kModes = {"fast", "realtime", "lockstep"};
     v.choice("mode", mode, kModes,
-             "fast: as fast as possible; realtime: paced by absolute time; lockstep: not there yet.");
+             "fast: as fast as possible; realtime: paced by absolute time; lockstep: as fast as the robots with a "
+             "<peer> answer.");
     v.integer("priority", priority, {0, 99},
               "Real-time priority (SCHED_FIFO, 1 to 99) of the thread that steps a run with real robots; 0: none.");
+  }
+};
+
+struct Peers {
+  static constexpr ElementInfo kElement{"peers", "How a run in lock-step waits for the robots that have a <peer>."};
+  std::string listen = "127.0.0.1:7654", missing = "fail";
+  double timeout_s = 30.0;
+  void describe(ParamVisitor& v) {
+    static constexpr std::array<std::string_view, 2> kMissing = {"fail", "simulate"};
+    v.text("listen", listen,
+           "Where peers connect: PORT, of this computer alone, or ADDRESS:PORT (0.0.0.0: of all its networks).");
+    v.number("timeout", timeout_s, unit::s, {0.1, 86400.0}, "How long a peer's answer is waited for.");
+    v.choice("missing", missing, kMissing,
+             "When it does not come: end the run, or step the robot's controller here from then on.");
   }
 };
 
@@ -155,12 +196,14 @@ struct Controllers {
 
 struct Configuration {
   static constexpr ElementInfo kElement{"configuration",
-                                        "One configuration, written with the registered name of its controller.",
-                                        "id library", "actuators sensors params"};
+                                        "One configuration, written with the registered name of its controller.", "id",
+                                        "actuators sensors params"};
   std::string id, library;
   void describe(ParamVisitor& v) {
     v.text("id", id, "How robots refer to this configuration.");
-    v.text("library", library, "Shared object with the controller; folder, prefix and extension may be left out.");
+    v.text("library", library,
+           "Shared object with the controller; folder, prefix and extension may be left out. Left out itself: "
+           "the one that is called as the controller.");
   }
 };
 
@@ -280,7 +323,7 @@ struct Body {
 
 struct Robot {
   static constexpr ElementInfo kElement{"robot", "A robot, written with the name of its kind.", "id",
-                                        "body controller battery bridge tracker"};
+                                        "body controller battery bridge tracker peer"};
   std::string id;
   void describe(ParamVisitor& v) { v.text("id", id, "Name; inside <distribute> the beginning of the names."); }
 };
@@ -344,13 +387,138 @@ struct Bridge {
   }
 };
 
+struct Peer {
+  static constexpr ElementInfo kElement{
+      "peer", "The robot's controller steps elsewhere, in lock-step: on a board, in another program, behind a wire."};
+  std::string link;
+  void describe(ParamVisitor& v) {
+    v.text("link", link,
+           "Left out: the peer connects to the port of <peers listen>. Else where it is, serial:/dev/ttyUSB0@115200 or "
+           "tcp:HOST:PORT; or emulated:FIRMWARE, a bridge and the emulated firmware in this program.");
+  }
+};
+
 struct Tracker {
   static constexpr ElementInfo kElement{"tracker", "Where a real robot's pose comes from."};
-  std::string source = "odometry";
+  std::string source = "auto", id;
+  double turn_rad = 0.0, lost_m = 0.1, height_m = -1.0;
+  Vec3 offset{};
   void describe(ParamVisitor& v) {
-    static constexpr std::array<std::string_view, 2> kSources = {"odometry", "positioning"};
+    static constexpr std::array<std::string_view, 4> kSources = {"auto", "odometry", "positioning", "fused"};
     v.choice("source", source, kSources,
-             "Where the real robot's pose comes from: its wheels, or what it says itself of where it is.");
+             "odometry: its wheels alone; positioning: what it says itself; fused: wheels, gyroscope and <trackers>; "
+             "auto: fused where the file has trackers and the robot wheels, else one of the others.");
+    v.text("id", id, "Names or tags by which trackers know it, separated by spaces; left out: its id.");
+    v.number("turn", turn_rad, unit::deg, kAny, "By which the tag on it is turned against its forward axis.");
+    v.vector("offset", offset, unit::m, "Where the tag's centre is on it: forward, to the left; the third is 0.");
+    v.number("height", height_m, unit::m, {-1.0, 10.0},
+             "Of the tag above the floor, for cameras; negative: that of the robot's body.");
+    v.number("lost_above", lost_m, unit::m, {0.001, 100.0},
+             "It stands while its fused pose is known no better: standard deviation.");
+  }
+};
+
+struct Trackers {
+  static constexpr ElementInfo kElement{"trackers", "What sees real robots from outside.", "", kTrackerKind};
+  void describe(ParamVisitor&) {}
+};
+
+/// What trackers of every kind have; the rest of the attributes are the kind's own.
+struct TrackerElement {
+  static constexpr ElementInfo kElement{
+      "tracker_kind", "A tracker, written with the name of its kind, e.g. <udp>; further attributes are the kind's.",
+      "", kAnything};
+  std::string id, clock = "own";
+  double latency_s = 0.0, sd_m = 0.003, sd_rad = 0.02, turn_rad = 0.0;
+  Vec3 origin{};
+  void describe(ParamVisitor& v) {
+    static constexpr std::array<std::string_view, 3> kClocks = {"own", "unix", "monotonic"};
+    v.text("id", id, "Name; left out: that of its kind.");
+    v.choice("clock", clock, kClocks,
+             "Of its stamps: own, whose offset is found out; unix, the date; monotonic, CLOCK_MONOTONIC of this "
+             "computer.");
+    v.number("latency", latency_s, unit::s, {0.0, 2.0},
+             "From exposure to arrival, at least: for a clock of its own, or where there are no stamps.");
+    v.number("sd", sd_m, unit::m, {1e-6, 10.0}, "Standard deviation of x and y, where sightings do not say.");
+    v.number("sd_heading", sd_rad, unit::rad, {1e-6, 3.0}, "Standard deviation of headings, likewise.");
+    v.vector("origin", origin, unit::m, "Where the origin of its frame lies in the arena.");
+    v.number("turn", turn_rad, unit::deg, kAny, "By which its frame is turned, counter-clockwise.");
+  }
+};
+
+struct Safety {
+  static constexpr ElementInfo kElement{
+      "safety", "Where real robots may go, how fast, and whom they keep from. Simulated robots are not held.", "",
+      "fence keep_out zone"};
+  std::string avoid = "real";
+  double apart_m = 0.01, latency_s = 0.05;
+  void describe(ParamVisitor& v) {
+    static constexpr std::array<std::string_view, 3> kAvoid = {"none", "real", "all"};
+    v.choice("avoid", avoid, kAvoid,
+             "Whom commands may not run a real robot into: nobody; other real robots; these and all that is virtual.");
+    v.number("apart", apart_m, unit::m, {0.0, 10.0}, "Left between bodies, and between a body and an area's edge.");
+    v.number("latency", latency_s, unit::s, {0.0, 10.0},
+             "Until a command moves the robot, at least; a link's measured round trip counts where it is longer.");
+  }
+};
+
+inline constexpr double kHighest_m = 1000.0;  ///< of an area that has no upper end
+
+struct FenceElement {
+  static constexpr ElementInfo kElement{"fence", "Real robots stay in it with their whole bodies.", "points"};
+  std::string id, points;
+  double height_m = kHighest_m;
+  void describe(ParamVisitor& v) {
+    v.text("id", id, "Name, for people.");
+    v.text("points", points, "Its corners in order, \"x,y x,y …\"; bare numbers are in m. It may be concave.");
+    v.number("height", height_m, unit::m, {kSmallest_m, kHighest_m}, "Nothing that flies rises above it.");
+  }
+};
+
+struct KeepOut {
+  static constexpr ElementInfo kElement{"keep_out", "Real robots stay out of it with their whole bodies.", "points"};
+  std::string id, points;
+  double from_m = 0.0, to_m = kHighest_m;
+  void describe(ParamVisitor& v) {
+    v.text("id", id, "Name, for people.");
+    v.text("points", points, "Its corners in order, \"x,y x,y …\"; bare numbers are in m. It may be concave.");
+    v.number("from", from_m, unit::m, {0.0, kHighest_m}, "Its lower end: what is below passes under it.");
+    v.number("to", to_m, unit::m, {0.0, kHighest_m}, "Its upper end: what flies higher passes over it.");
+  }
+};
+
+struct Zone {
+  static constexpr ElementInfo kElement{"zone", "Real robots are no faster in it.", "points max_speed"};
+  std::string id, points;
+  double from_m = 0.0, to_m = kHighest_m, max_speed_m_s = 0.0;
+  void describe(ParamVisitor& v) {
+    v.text("id", id, "Name, for people.");
+    v.text("points", points, "Its corners in order, \"x,y x,y …\"; bare numbers are in m. It may be concave.");
+    v.number("max_speed", max_speed_m_s, unit::m_s, {1e-3, 1000.0}, "Of a body any part of which is in it.");
+    v.number("from", from_m, unit::m, {0.0, kHighest_m}, "Its lower end.");
+    v.number("to", to_m, unit::m, {0.0, kHighest_m}, "Its upper end.");
+  }
+};
+
+struct Desk {
+  static constexpr ElementInfo kElement{
+      "desk", "Who commands real robots besides the terminal and the window, and robots that stand by.", "", "spare"};
+  std::string lcm, channel = "tandem/desk";
+  bool hold = false;
+  void describe(ParamVisitor& v) {
+    v.text("lcm", lcm, "Where commands come over LCM: udpm://GROUP:PORT?ttl=N; left out: nowhere.");
+    v.text("channel", channel, "Their channel; answers go to CHANNEL/reply.");
+    v.flag("hold", hold, "The robots are connected, stand, and wait for somebody to start the run.");
+  }
+};
+
+struct Spare {
+  static constexpr ElementInfo kElement{"spare", "A real robot that may take another one's place in a run.", "id link"};
+  std::string id, link, seen_as;
+  void describe(ParamVisitor& v) {
+    v.text("id", id, "How it is called.");
+    v.text("link", link, "Where it is, as in <bridge>.");
+    v.text("seen_as", seen_as, "Names or tags by which trackers know it, separated by spaces; left out: its id.");
   }
 };
 
@@ -516,14 +684,17 @@ struct Record {
       "record", "What is written down: a record for `tandem export`, a table of poses, files of observers.", "",
       "trajectory OBSERVER"};
   std::string path, entities = "*", ports;
-  std::int64_t every = 1, fingerprint_every = 0;
-  bool state = true;
+  std::int64_t every = 1, fingerprint_every = 1000;
+  bool state = true, look = true, inputs = true;
   void describe(ParamVisitor& v) {
     v.text("path", path, "Record to write; none: no record.");
     v.text("entities", entities, "Ids of its robots, separated by commas; '*' stands for any text.");
     v.text("ports", ports, "Names of ports whose fields it holds, separated by commas; '*': all.");
     v.integer("every", every, {1, 1e12}, "Ticks between rows.");
     v.flag("state", state, "Whether it holds what controllers publish.");
+    v.flag("look", look,
+           "Whether it holds LEDs, turrets, grippers, who is halted, floor and drawings, when they change.");
+    v.flag("inputs", inputs, "Whether it holds all that reaches controllers of real robots, in every tick.");
     v.integer("fingerprint_every", fingerprint_every, {0, 1e12}, "Ticks between fingerprints of the state; 0: none.");
   }
 };

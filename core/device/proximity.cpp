@@ -1,8 +1,10 @@
 #include "core/device/proximity.hpp"
 
 #include <atomic>
+#include <optional>
 
 #include "core/device/describe.hpp"
+#include "core/device/fitted_rays.hpp"
 #include "core/device/ray_ring.hpp"
 #include "core/random/random.hpp"
 #include "hal/device/ring_sensors.hpp"
@@ -181,8 +183,8 @@ void sense_block_avx2(const DeviceContext& context, const RayRing& ring, hal::Pr
 
 class ProximitySensor final : public Sensor {
  public:
-  ProximitySensor(const hal::ProximityPart& part, double noise_level)
-      : ring_(part.mounts, part.range_m), noise_(static_cast<float>(noise_level)) {}
+  ProximitySensor(const hal::ProximityPart& part, double noise_level, std::optional<FittedRays> fitted)
+      : ring_(part.mounts, part.range_m), noise_(static_cast<float>(noise_level)), fitted_(std::move(fitted)) {}
 
   void sense(const DeviceContext& context, void* ports) noexcept override {
     auto* proximity = static_cast<hal::Proximity*>(ports);
@@ -190,6 +192,7 @@ class ProximitySensor final : public Sensor {
       sense_block_avx2(context, ring_, proximity);
     else
       sense_block_baseline(context, ring_, proximity);
+    if (fitted_) fitted_->read(context, proximity);
     if (noise_ > 0.0F) add_noise(context, proximity);
   }
 
@@ -214,6 +217,7 @@ class ProximitySensor final : public Sensor {
 
   RayRing ring_;
   float noise_;
+  std::optional<FittedRays> fitted_;  // nothing: they are as their kind says
 };
 
 struct NoOptions {
@@ -238,9 +242,17 @@ BlockFactory<Sensor> make_proximity(const Element& element, Problems& problems, 
   const auto options = read_options<Options>(element, problems);
   double noise = 0.0;
   if constexpr (requires { options.noise_level; }) noise = options.noise_level;
-  return [&part = *setup.kind.part<hal::ProximityPart>(), noise](const BlockColumns&) {
-    return std::make_unique<ProximitySensor>(part, noise);
+  const auto& part = *setup.kind.part<hal::ProximityPart>();
+  const auto* const fitted = setup.kind.part<hal::FittedProximity>();
+  if (fitted == nullptr || std::is_same_v<Options, NoOptions>) {
+    return [&part, noise](const BlockColumns&) { return std::make_unique<ProximitySensor>(part, noise, std::nullopt); };
+  }
+  if (const std::string flaw = FittedRays::flaw(*fitted, setup.tick_s); !flaw.empty())
+    problems.push_back(problem_at(element, flaw));
+  const auto make = [&part, noise, fitted](const BlockColumns& columns) {
+    return std::make_unique<ProximitySensor>(part, noise, FittedRays(*fitted, columns));
   };
+  return {make, FittedRays::columns()};
 }
 
 template <class Options>

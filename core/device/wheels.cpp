@@ -1,6 +1,9 @@
 // Wheels: the actuator that drives the engine, the encoders that count what was rolled, and where that should have led.
 #include "hal/device/wheels.hpp"
 
+#include <optional>
+
+#include "core/device/fitted_drive.hpp"
 #include "core/device/types.hpp"
 #include "core/random/random.hpp"
 #include "core/space/mechanisms.hpp"
@@ -34,7 +37,8 @@ struct WheelErrors {
 
 class WheelActuator final : public Actuator {
  public:
-  explicit WheelActuator(const WheelErrors<0>& errors) : errors_(errors) {
+  WheelActuator(const WheelErrors<0>& errors, std::optional<FittedDrive> fitted)
+      : errors_(errors), fitted_(std::move(fitted)) {
     exact_ = errors.bias_left_m_s == 0.0 && errors.bias_right_m_s == 0.0 && errors.factor_left == 1.0 &&
              errors.factor_right == 1.0 && errors.noise_std_dev == 0.0;
   }
@@ -48,6 +52,15 @@ class WheelActuator final : public Actuator {
       double left = drives ? wheels[i].left_m_s : 0.0;
       double right = drives ? wheels[i].right_m_s : 0.0;
       if (!exact_ && drives) distort(context, b.entity[row], left, right);
+      if (fitted_) {
+        // A twin's commands are remembered, too: it may go on as a simulated robot.
+        const bool external = (b.flags[row] & kExternal) != 0;
+        fitted_->tell(context, i, external ? wheels[i].left_m_s : left, external ? wheels[i].right_m_s : right);
+        if (drives)
+          fitted_->drive(context, i, left, right);
+        else
+          fitted_->stand(i);
+      }
       b.left_m_s[row] = left;
       b.right_m_s[row] = right;
     }
@@ -64,6 +77,7 @@ class WheelActuator final : public Actuator {
   }
 
   WheelErrors<0> errors_;
+  std::optional<FittedDrive> fitted_;  // nothing: they are as their kind says
   bool exact_ = true;
 };
 
@@ -134,14 +148,22 @@ BlockFactory<Actuator> make_slanted(const Element& element, Problems& problems, 
 }
 
 template <class Options>
-BlockFactory<Actuator> make_wheels(const Element& element, Problems& problems, const DeviceSetup&) {
+BlockFactory<Actuator> make_wheels(const Element& element, Problems& problems, const DeviceSetup& setup) {
   const auto options = read_options<Options>(element, problems);
   WheelErrors<0> errors;
   if constexpr (requires { options.noise_std_dev; }) {
     errors = {options.bias_left_m_s, options.bias_right_m_s, options.factor_left, options.factor_right,
               options.noise_std_dev};
   }
-  return [errors](const BlockColumns&) { return std::make_unique<WheelActuator>(errors); };
+  const auto* const part = setup.kind.part<hal::FittedWheels>();
+  if (part == nullptr || std::is_same_v<Options, IdealWheels>)
+    return [errors](const BlockColumns&) { return std::make_unique<WheelActuator>(errors, std::nullopt); };
+  if (const std::string flaw = FittedDrive::flaw(*part, setup.tick_s); !flaw.empty())
+    problems.push_back(problem_at(element, flaw));
+  const auto make = [errors, part](const BlockColumns& columns) {
+    return std::make_unique<WheelActuator>(errors, FittedDrive(*part, columns));
+  };
+  return {make, FittedDrive::columns()};
 }
 
 template <class Options>

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/scenario/element.hpp"
+#include "core/scenario/polygon.hpp"
 #include "hal/catalog.hpp"
 #include "hal/result.hpp"
 #include "hal/robot_kind.hpp"
@@ -27,7 +28,7 @@ struct Placement {
   double roll_rad = 0.0;
 };
 
-enum class TimeMode { Fast, Realtime };
+enum class TimeMode { Fast, Realtime, Lockstep };
 enum class Assignment { Static, Dynamic };        ///< of work to threads
 enum class EscapePolicy { Error, Stop, Remove };  ///< what happens to a body that leaves the arena
 
@@ -100,10 +101,82 @@ struct BridgeConfig {
   double stop_s = 2.0;      ///< for it to confirm its stop, at the end
 };
 
+/// A simulated robot whose controller steps elsewhere, in lock-step with the run.
+struct PeerConfig {
+  std::string
+      link;  ///< "serial:/dev/ttyS0@115200", "tcp:HOST:PORT", "emulated:…"; empty: it connects to the run's port
+  int line = 0;
+};
+
+/// How a run in lock-step waits for its peers.
+struct LockstepConfig {
+  std::string listen = "127.0.0.1:7654";  ///< where peers connect: PORT or ADDRESS:PORT
+  double timeout_s = 30.0;                ///< of wall time, for an answer
+  bool simulate_missing = false;          ///< then its controller steps in the hub; else the run ends
+  int line = 0;
+};
+
+/// Where the pose of a robot that stands for a real one comes from.
 struct TrackerConfig {
-  std::string source = "odometry";
+  std::string source = "auto";  ///< odometry, positioning, fused, or auto: what suits the robot and the file
   Element options;
   int line = 0;
+  std::vector<std::string> names = {};  ///< by which trackers know it; empty: by its id
+  double turn_rad = 0.0;                ///< of what they see of it, against its forward axis
+  double lost_m = 0.1;                  ///< standard deviation from which its pose counts as stale
+  Vec3 p_BT{};                          ///< of that on the robot: x forward, y to the left
+  std::optional<double> tag_m = {};     ///< its height above the floor; nothing: that of the robot's body
+};
+
+/// What sees real robots from outside: an element of <trackers>. Its frame T stands in W.
+struct TrackerItem {
+  std::string kind;  ///< name of a tracker of the catalog
+  std::string id;
+  std::string clock = "own";  ///< of its stamps: own, unix, monotonic
+  double latency_s = 0.0;     ///< from exposure to arrival, at least; for clocks of its own, and without stamps
+  double sd_m = 0.003;        ///< of its coordinates and headings, where it does not say itself
+  double sd_rad = 0.02;
+  Vec3 p_WT{};
+  double turn_rad = 0.0;  ///< of T against W
+  Element options;
+  int line = 0;
+  std::shared_ptr<const void> own = {};  ///< the attributes of its kind, as it reads them; null: left out
+};
+
+/// An area of <safety>: an upright prism.
+struct SafetyArea {
+  std::string id;
+  std::vector<Point2> corners;      ///< in order, whichever way around
+  double from_m = 0.0, to_m = 0.0;  ///< heights between which it applies; of a fence: from the ground up to its height
+  double max_speed_m_s = 0.0;       ///< of a zone
+  int line = 0;
+};
+
+/// Whom real robots are kept from running into.
+enum class Avoid : std::uint8_t { Nobody, Real, All };
+
+/// Where real robots may go, and what they keep from.
+struct SafetyConfig {
+  Avoid avoid = Avoid::Real;
+  double apart_m = 0.01;    ///< left between bodies, and between a body and the edge of an area
+  double latency_s = 0.05;  ///< until a command moves the robot, at least
+  std::vector<SafetyArea> fences, keep_outs, zones;
+};
+
+/// A real robot that may take another one's place while a run goes on.
+struct SpareItem {
+  std::string id;
+  std::string link;
+  std::vector<std::string> names;  ///< by which trackers know it; empty: by its id
+  int line = 0;
+};
+
+/// Who commands the real robots of a run besides its own terminal and window, and how it begins.
+struct DeskConfig {
+  std::string lcm;                      ///< URL; empty: nobody commands over LCM
+  std::string channel = "tandem/desk";  ///< of commands; answers go to this and "/reply"
+  bool hold = false;                    ///< the run waits to be started
+  std::vector<SpareItem> spares;
 };
 
 /// A robot, or with `distribute` as many as it says: ids are then `id` + number.
@@ -121,6 +194,7 @@ struct RobotItem {
   /// The kind with what the robot's element says of its parts; null: as the catalog has it. Shared by those that say
   /// the same.
   std::shared_ptr<const hal::RobotKind> own_kind = {};
+  std::optional<PeerConfig> peer = {};
 };
 
 /// A kind of robot that the file gives, itself or by a file that it names.
@@ -228,7 +302,11 @@ struct RecordConfig {
   std::vector<std::string> entities = {"*"};  ///< ids of robots, or patterns with '*'
   std::vector<std::string> ports;             ///< names of ports; "*": all
   bool state = true;                          ///< what controllers publish
-  std::int64_t fingerprint_every = 0;         ///< ticks; 0: none
+  std::int64_t fingerprint_every = 1000;      ///< ticks; 0: none
+  bool look = true;                           ///< LEDs, turrets, grippers, who is halted, floor and hooks' drawings
+  bool inputs = true;                         ///< of real robots, in every tick
+  bool objects = true;                        ///< poses of movable ones
+  bool attitudes = true;                      ///< of robots in space
 };
 
 struct Scenario {
@@ -241,6 +319,7 @@ struct Scenario {
   std::int64_t threads = 0;
   Assignment assignment = Assignment::Static;
   TimeMode time_mode = TimeMode::Fast;
+  LockstepConfig lockstep;
   int priority = 0;  ///< SCHED_FIFO of the stepping thread of runs with real robots; 0: none is asked for
 
   Vec3 arena_size{};
@@ -253,6 +332,9 @@ struct Scenario {
   std::vector<ControllerConfig> controllers;
   std::vector<KindConfig> kinds;
   std::vector<RobotItem> robots;
+  std::vector<TrackerItem> trackers;
+  SafetyConfig safety;
+  DeskConfig desk;
   std::vector<ObjectItem> objects;
   std::vector<LightItem> lights;
   std::vector<SoundItem> sounds;

@@ -88,6 +88,12 @@ class BodyIndex {
     }
   }
 
+  /// Of its arrays.
+  std::size_t bytes() const noexcept {
+    return (start_.size() + cell_of_row_.size() + counted_.size()) * sizeof(std::uint32_t) +
+           entries_.size() * sizeof(IndexEntry);
+  }
+
   /// So many entries may be read from any one on, be they a body's or not.
   static constexpr std::size_t kReadAhead = 2;
 

@@ -51,6 +51,8 @@ class Editor {
   virtual hal::Result<RobotId> add_robot(const NewRobot& wanted) = 0;
   virtual hal::Result<ObjectId> add_object(const Object& wanted) = 0;
   virtual hal::Status set_object(ObjectId object, const Object& changed) = 0;
+  /// Of a body that is there, under its key.
+  virtual hal::Status room_for(BodyKey body, const Pose& pose) = 0;
   /// Bodies that are there, under their keys; the point in W.
   virtual hal::Result<JointId> join(BodyKey a, BodyKey b, const std::array<double, 3>& p_W, const JointForm& form) = 0;
 };

@@ -30,6 +30,11 @@ struct FieldPlaces {
 /// Value that hooks give for a place in W; `otherwise` where none does.
 using Painter = std::function<double(double x_m, double y_m, double otherwise)>;
 
+/// Pixels of equal size that a field is made of, over the whole arena.
+struct FieldGrid {
+  std::size_t columns = 0, lines = 0;
+};
+
 /// A field may hold something itself, follow from what is in the space, or both. Only the thread that steps the world
 /// changes it, between parallel phases.
 class Field {
@@ -55,6 +60,9 @@ class Field {
   /// What it holds, for snapshots, and going back to that; null: nothing.
   virtual std::shared_ptr<const void> keep() const { return nullptr; }
   virtual void put_back(const std::shared_ptr<const void>& /*kept*/) {}
+
+  /// What it is made of, for pictures that show it as it is; 0 x 0: nothing of that kind.
+  virtual FieldGrid grid() const noexcept { return {}; }
 };
 
 /// The fields of a space, by name.

@@ -34,6 +34,12 @@ void Slab::Free::operator()(std::byte* p) const noexcept {
   free_large(p, size, kPieceAlign);
 }
 
+std::size_t Slab::bytes() const noexcept {
+  std::size_t all = 0;
+  for (const auto& piece : pieces_) all += piece.get_deleter().size;
+  return all;
+}
+
 std::byte* Slab::take(std::size_t size, std::size_t align) {
   void* at = next_;
   if (next_ == nullptr || std::align(align, size, at, left_) == nullptr) {

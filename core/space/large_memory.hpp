@@ -37,6 +37,8 @@ class Slab {
  public:
   /// Zeroed. `align` is a power of two.
   std::byte* take(std::size_t size, std::size_t align);
+  /// That it holds, given out or not.
+  std::size_t bytes() const noexcept;
 
  private:
   struct Free {

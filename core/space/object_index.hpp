@@ -36,6 +36,11 @@ class ObjectIndex {
   double reach() const noexcept { return reach_m_; }
   double cell_size() const noexcept { return cell_m_; }
   bool empty() const noexcept { return list_.empty(); }
+  /// Of its arrays.
+  std::size_t bytes() const noexcept {
+    return (start_.size() + list_.size() + next_.size()) * sizeof(std::uint32_t) +
+           listed_.size() * sizeof(std::uint64_t) + clearances_.size() * sizeof(float);
+  }
 
  private:
   struct Area {

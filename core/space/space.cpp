@@ -409,6 +409,16 @@ hal::Status Space::set_object(ObjectId object, const Object& changed) {
   return editor_ == nullptr ? no_world() : editor_->set_object(object, changed);
 }
 
+hal::Status Space::room_for(RobotId robot, const Pose& pose) const {
+  if (!contains(robot)) return gone("robot");
+  return editor_ == nullptr ? no_world() : editor_->room_for(BodyKey::robot(stores_->row_of(robot)), pose);
+}
+
+hal::Status Space::room_for(ObjectId object, const Pose& pose) const {
+  if (!contains(object)) return gone("object");
+  return editor_ == nullptr ? no_world() : editor_->room_for(BodyKey::object(object.index), pose);
+}
+
 hal::Status Space::set_object_led(ObjectId object, std::size_t led, hal::Rgb color) {
   if (!contains(object)) return gone("object");
   SpaceStores& s = *stores_;

@@ -100,6 +100,9 @@ class Space {
   /// Moves a robot at once. Takes effect for physics and sensing from the next phase on. It may be put onto others:
   /// engines then part them.
   void set_pose(RobotId robot, const Pose& pose) noexcept;
+  /// Whether the robot could stand there without overlapping anything else. Errors: gone; what is in the way; outside
+  /// the arena, or in no region of an engine for it.
+  hal::Status room_for(RobotId robot, const Pose& pose) const;
   /// Of its centre, as its engine left it. Where the engine keeps none: what its wheels do.
   Velocity velocity(RobotId robot) const noexcept;
   /// Errors: the robot is gone; its engine keeps no velocities, the wheels' commands are all there is.
@@ -169,6 +172,8 @@ class Space {
   /// Gives an object another place, size, mass, and whether it is movable: all of `changed` but its id. It may be put
   /// onto others: engines then part them. A movable one keeps its velocity. Errors: gone; otherwise as `add_object`.
   hal::Status set_object(ObjectId object, const Object& changed);
+  /// As for a robot. What cannot move may overlap its like, and may lie outside the arena.
+  hal::Status room_for(ObjectId object, const Pose& pose) const;
   /// Lights an LED of an object in another colour; black is off. Errors: gone; no LED of that number.
   hal::Status set_object_led(ObjectId object, std::size_t led, hal::Rgb color);
   /// Its id is not used again; its joints are released.

@@ -317,8 +317,8 @@ struct SpaceStores {
 /// Layouts that plug-ins which work on the stores must have been built against.
 using StoreLayouts =
     hal::Layouts<SpaceStores, Bodies, Motion, FlightCommand, Columns, ColumnArrays, KeptColumn, RobotGroup, RobotBlock,
-                 RobotEntity, Object, Joint, Region, LightSource, SoundSource, Field, Fields, FieldPlaces, FieldSpot,
-                 hal::RowType, hal::RobotKind, hal::RobotKind::Crosses>;
+                 RobotEntity, Object, Joint, Region, LightSource, SoundSource, Field, FieldGrid, Fields, FieldPlaces,
+                 FieldSpot, hal::RowType, hal::RobotKind, hal::RobotKind::Crosses>;
 
 /// The stores as a surface of their own, for parts whose tables say nothing of them: fields, media, observers. Their
 /// base classes write it into the note of a plug-in that has such.

@@ -1,10 +1,12 @@
 #include "hal/device/ports.hpp"
 
 #include "hal/device/body_sensors.hpp"
+#include "hal/device/brakes.hpp"
 #include "hal/device/buttons.hpp"
 #include "hal/device/cameras.hpp"
 #include "hal/device/cliff.hpp"
 #include "hal/device/distance_scanner.hpp"
+#include "hal/device/fitted.hpp"
 #include "hal/device/flight.hpp"
 #include "hal/device/gripper.hpp"
 #include "hal/device/leds.hpp"
@@ -43,7 +45,8 @@ void register_ports(Registrar& registrar) {
   add_parts<ProximityPart, LightPart, GroundPart, BaseGroundPart, MotorGroundPart, AccelerometerPart, GyroscopePart,
             MicrophonesPart, BatteryPart, RangeAndBearingPart, LedsPart, UpperLedsPart, BodyLedPart, FrontLedPart,
             CameraLedPart, TurretPart, GripperPart, ScannerPart, OmniCameraPart, CameraPart, HeadPart, AltimeterPart,
-            TimeOfFlightPart, CliffPart, SelectorPart, ButtonsPart, SpeakerPart>(registrar);
+            TimeOfFlightPart, CliffPart, SelectorPart, ButtonsPart, SpeakerPart, BrakesPart, FittedWheels,
+            FittedProximity>(registrar);
 }
 
 }  // namespace tandem::hal

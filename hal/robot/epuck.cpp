@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "hal/device/body_sensors.hpp"
+#include "hal/device/brakes.hpp"
 #include "hal/device/leds.hpp"
 #include "hal/device/range_and_bearing.hpp"
 #include "hal/device/ring_sensors.hpp"
@@ -88,6 +89,8 @@ RobotKind make() {
       .mounts = {on_rim(-90, 0, -1, 0.032, 0.04), on_rim(90, 0, 1, 0.032, 0.04), on_rim(180, -1, 0, 0.032, 0.04)},
       .source = "Webots' E-puck.proto: right, left, rear"});
   kind.add(AccelerometerPart{.source = "GCtronic's library"});
+  kind.add(BrakesPart{.deceleration_m_s2 = 5.0,
+                      .source = "chosen: stepper motors without a ramp stop at once; within 26 ms, 2 mm, is safe"});
   kind.add(BatteryPart{.full_V = 4.2,
                        .empty_V = 3.4,
                        .low_charge = 0.0,

@@ -8,6 +8,7 @@
 
 #include "hal/angle.hpp"
 #include "hal/device/body_sensors.hpp"
+#include "hal/device/brakes.hpp"
 #include "hal/device/buttons.hpp"
 #include "hal/device/leds.hpp"
 #include "hal/device/ring_sensors.hpp"
@@ -81,6 +82,7 @@ RobotKind make() {
   kind.add(GroundPart{.mounts = {Mount{0, 0.072, 0.012, 0}, Mount{0, 0.072, -0.012, 0}},
                       .source = "Enki: the first on the left"});
   kind.add(AccelerometerPart{.source = "API: 16 Hz, 23 counts are 9.81 m/s2"});
+  kind.add(BrakesPart{.deceleration_m_s2 = 2.0, .source = "chosen: its control of speed stops it within 0.1 s, 1 cm"});
   kind.add(MicrophonesPart{.mounts = {Mount{0, kButtons_m, 0, kHeight_m}},
                            .source = "API: one, its level; place: chosen, beside the buttons"});
   kind.add(ButtonsPart{.count = 5, .source = "API: backward, left, center, forward, right"});

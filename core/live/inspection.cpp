@@ -1,0 +1,219 @@
+#include "core/live/inspection.hpp"
+
+#include <array>
+#include <cmath>
+#include <span>
+
+#include "core/live/controls.hpp"
+#include "core/space/stores.hpp"
+#include "hal/element.hpp"
+#include "hal/unit.hpp"
+
+namespace tandem::core {
+namespace {
+
+using hal::Json;
+
+Json pose_json(const Pose& pose) {
+  return {{"x", pose.x_m}, {"y", pose.y_m}, {"z", pose.z_m}, {"heading", pose.heading_rad()}};
+}
+
+Json halted_json(const Space& space, RobotId robot) {
+  Json owners = Json::array();
+  for (const auto& [owner, name] :
+       {std::pair{HaltOwner::Hook, "hook"}, std::pair{HaltOwner::Controller, "controller"},
+        std::pair{HaltOwner::Safety, "safety"}, std::pair{HaltOwner::Operator, "operator"}}) {
+    if (space.halted_by(robot, owner)) owners.push_back(name);
+  }
+  return owners;
+}
+
+const char* word_of(hal::Validity validity) noexcept {
+  switch (validity) {
+    case hal::Validity::Absent:
+      return "absent";
+    case hal::Validity::Stale:
+      return "stale";
+    case hal::Validity::Fresh:
+      return "fresh";
+  }
+  return "";
+}
+
+Json field_json(const hal::PortType& type, const hal::Field& field, const std::byte* row) {
+  Json json{{"name", field.name}, {"unit", field.unit.symbol}, {"doc", field.doc}};
+  Json values = Json::array();
+  const std::size_t used = hal::used_count(type, row, field);
+  for (std::size_t i = 0; i < used; ++i) {
+    const double value = hal::get_value(row, field, i);
+    if (field.scalar == hal::Scalar::Bool)
+      values.push_back(value != 0.0);
+    else if (field.scalar == hal::Scalar::F32 || field.scalar == hal::Scalar::F64)
+      values.push_back(std::isfinite(value) ? Json(value) : Json(nullptr));
+    else
+      values.push_back(static_cast<std::int64_t>(value));
+  }
+  json["values"] = std::move(values);
+  if (field.count > 1) json["count"] = field.count;
+  return json;
+}
+
+Json port_json(const hal::PortType& type, const std::byte* row, hal::TimeNs now_ns) {
+  const bool sensor = type.role == hal::Role::Sensor;
+  Json json{{"role", sensor ? "sensor" : "actuator"}, {"name", type.name}, {"doc", type.doc}};
+  if (sensor) {
+    const auto validity = static_cast<hal::Validity>(hal::get_value(row, *type.field("validity"), 0));
+    const double age_s = hal::to_seconds(now_ns) - 1e-9 * hal::get_value(row, *type.field("taken_ns"), 0);
+    json["validity"] = word_of(validity);
+    json["stamp_age_s"] = validity == hal::Validity::Absent ? Json(nullptr) : Json(std::max(0.0, age_s));
+  }
+  Json fields = Json::array();
+  for (const hal::Field& field : type.fields) {
+    if (sensor && (field.name == "taken_ns" || field.name == "validity")) continue;
+    fields.push_back(field_json(type, field, row));
+  }
+  json["fields"] = std::move(fields);
+  return json;
+}
+
+/// Lists parameters with the values that an element gives them.
+class ParamLister final : public hal::ParamVisitor {
+ public:
+  ParamLister(const Element& element, Json& to, std::string prefix = {})
+      : element_(element), to_(to), prefix_(std::move(prefix)) {}
+
+  void number(std::string_view name, double& value, const hal::Unit& bare, hal::Range, std::string_view doc) override {
+    const std::string* text = element_.attribute(name);
+    if (text != nullptr) {
+      if (const auto read = hal::parse_quantity(*text, bare); read.ok()) value = read.value();
+    }
+    add(name, value / bare.to_si, bare.symbol, doc);
+  }
+  void integer(std::string_view name, std::int64_t& value, hal::Range, std::string_view doc) override {
+    const std::string* text = element_.attribute(name);
+    add(name, text != nullptr ? Json(*text) : Json(value), "", doc);
+  }
+  void flag(std::string_view name, bool& value, std::string_view doc) override {
+    const std::string* text = element_.attribute(name);
+    add(name, text != nullptr ? Json(*text == "true" || *text == "1" || *text == "yes") : Json(value), "", doc);
+  }
+  void text(std::string_view name, std::string& value, std::string_view doc) override {
+    const std::string* text = element_.attribute(name);
+    add(name, text != nullptr ? Json(*text) : Json(value), "", doc);
+  }
+  void choice(std::string_view name, std::string& value, std::span<const std::string_view>,
+              std::string_view doc) override {
+    text(name, value, doc);
+  }
+  void vector(std::string_view name, std::array<double, 3>& value, const hal::Unit& bare,
+              std::string_view doc) override {
+    const std::string* text = element_.attribute(name);
+    std::string all;
+    for (const double v : value) all += (all.empty() ? "" : ",") + hal::format_number(v / bare.to_si);
+    add(name, text != nullptr ? *text : all, bare.symbol, doc);
+  }
+
+ protected:
+  void visit_group(std::string_view name, void* value, Describe describe, std::string_view) override {
+    static const Element nothing;
+    const Element* child = element_.child(name);
+    ParamLister inner(child != nullptr ? *child : nothing, to_, prefix_ + std::string(name) + ".");
+    describe(value, inner);
+  }
+  void visit_list(std::string_view name, hal::ParamList& list, std::string_view) override {
+    list.clear();
+    std::size_t count = 0;
+    for (const Element& child : element_.children) {
+      if (child.name != name) continue;
+      ParamLister inner(child, to_, prefix_ + std::string(name) + "[" + std::to_string(count++) + "].");
+      list.add(inner);
+    }
+  }
+
+ private:
+  void add(std::string_view name, Json value, std::string_view unit, std::string_view doc) {
+    to_.push_back({{"name", prefix_ + std::string(name)}, {"value", std::move(value)}, {"unit", unit}, {"doc", doc}});
+  }
+  const Element& element_;
+  Json& to_;
+  std::string prefix_;
+};
+
+/// A robot that was added shows its configuration's.
+Json params_json(const World& world, const RobotGroup& group, const RobotEntity& entity) {
+  const Scenario& scenario = world.scenario();
+  if (group.config >= scenario.controllers.size() || group.controller->read_params == nullptr) return Json::array();
+  const Element* params = &scenario.controllers[group.config].params;
+  if (entity.item < scenario.robots.size() && scenario.robots[entity.item].params)
+    params = &*scenario.robots[entity.item].params;
+  Json all = Json::array();
+  ParamLister lister(*params, all);
+  try {
+    (void)group.controller->read_params(lister);
+  } catch (...) {  // it was read before, so nothing depends on it
+  }
+  return all;
+}
+
+Json published_json(const hal::PublishedField& field, const void* controller) {
+  Json json{{"name", field.name}, {"unit", field.unit.symbol}, {"doc", field.doc}};
+  const auto one = [&](std::size_t i) {
+    const double value = hal::value_of(field, controller, i);
+    const auto number = static_cast<std::size_t>(value);
+    if (value >= 0.0 && number < field.texts.size()) return Json(field.texts[number]);
+    return std::isfinite(value) ? Json(value) : Json(nullptr);
+  };
+  if (field.count == 1) {
+    json["value"] = one(0);
+  } else {
+    json["value"] = Json::array();
+    for (std::size_t i = 0; i < field.count; ++i) json["value"].push_back(one(i));
+  }
+  return json;
+}
+
+Json robot_json(World& world, const std::string& id) {
+  const Space& space = world.space();
+  const SpaceStores& s = space.stores();
+  const RobotId robot = space.find_robot(id);
+  if (!robot.valid()) return {{"id", id}, {"alive", false}};
+  const RobotEntity& entity = s.robots[robot.index];
+  const RobotBlock& block = s.blocks[entity.block];
+  const RobotGroup& group = s.groups[block.group];
+  const Velocity velocity = space.velocity(robot);
+  Json json{{"id", id}, {"alive", true}, {"kind", group.kind->name}};
+  json["controller"] = world.scenario().controllers[group.config].id;
+  json["real"] = space.external(robot);
+  json["pose"] = pose_json(space.pose(robot));
+  json["velocity"] = {
+      {"x", velocity.v_m_s[0]}, {"y", velocity.v_m_s[1]}, {"z", velocity.v_m_s[2]}, {"turn", velocity.w_rad_s[2]}};
+  json["halted"] = halted_json(space, robot);
+  const hal::Tick done = std::max<hal::Tick>(0, world.tick() - 1);
+  const hal::TimeNs now_ns = hal::time_of_tick(done, world.ticks_per_second());
+  Json ports = Json::array();
+  for (std::size_t p = 0; p < group.ports.size(); ++p) {
+    const hal::PortType& type = *group.ports[p];
+    ports.push_back(port_json(type, block.ports[p] + entity.slot * type.size, now_ns));
+  }
+  json["ports"] = std::move(ports);
+  Json published = Json::array();
+  if (block.constructed[entity.slot] != 0) {
+    for (const hal::PublishedField& field : group.published)
+      published.push_back(published_json(field, block.controller(entity.slot)));
+  }
+  json["published"] = std::move(published);
+  json["params"] = params_json(world, group, entity);
+  json["controls"] = controls_json(world, robot);
+  return json;
+}
+
+}  // namespace
+
+Json inspection_of(World& world, const std::vector<std::string>& robots) {
+  Json all{{"tick", world.tick()}};
+  all["robots"] = Json::array();
+  for (const std::string& id : robots) all["robots"].push_back(robot_json(world, id));
+  return all;
+}
+
+}  // namespace tandem::core

@@ -1,0 +1,119 @@
+// The way that a simulated run has taken: checkpoints to go back to, and what was touched at which step.
+//
+//   step      0 . . . . | . . . . | . . . . | . . 14          | checkpoints, dropped where memory is wanted
+//   touches             ^a        ^b  ^c
+//
+//   go to 9:  restores the checkpoint at 5, touches with a, steps to 9. Going on from there is the same again: b and c
+//             come at their steps, and nothing of it is recorded twice. Whoever touches at 9 makes it another run: what
+//             was after 9 is dropped.
+//
+// Steps are counted from the start of the run. They are its ticks, until a hook goes back to a checkpoint of its own,
+// or anybody resets the run: ticks fall then, steps do not, and the way back ends there.
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "core/live/clock.hpp"
+#include "core/live/live_run.hpp"
+#include "core/sim/world.hpp"
+#include "hal/json/json.hpp"
+#include "hal/log.hpp"
+#include "hal/result.hpp"
+
+namespace tandem::core {
+
+class Timeline {
+ public:
+  /// The world and the clock must outlive this.
+  Timeline(World& world, LiveClock& clock, const LiveOptions& options);
+
+  /// After World::start: keeps the first checkpoint.
+  void start();
+  /// Why one cannot go back; empty: one can.
+  const std::string& no_way_back() const noexcept { return no_way_back_; }
+
+  hal::Tick first_tick() const noexcept { return checkpoints_.empty() ? world_.tick() : base_tick_; }
+  hal::Tick latest_tick() const noexcept { return base_tick_ + (latest_ - first_step_); }
+  /// Whether the next step was done before.
+  bool known() const noexcept { return step_ < latest_; }
+
+  /// Before World::step: does what is to be repeated now, and tells what is new. Error: it could not be done.
+  hal::Status before_step();
+  /// After World::step, which took `cost_ns`. @returns whether it was new.
+  bool after_step(hal::TimeNs cost_ns);
+
+  /// Carries out an action of a person (core/live/touch.hpp, or {"do": "reset", "seed"}), now. @returns members for the
+  /// answer; "dropped": how many later touches do not count any more. Error: nothing was done, or the run has failed.
+  hal::Result<hal::Json> act(hal::Json action);
+  /// Tells at once of an action that cannot be repeated.
+  void note(const hal::Json& action);
+  /// Errors: no way back; not between the first tick and the latest.
+  hal::Status go_to(hal::Tick tick);
+  /// To just before the last touch, which is dropped with all that came after it. @returns that touch.
+  hal::Result<hal::Json> undo();
+  /// Computes the ticks from `from` to `to` again, calls `look` at each, and comes back to where it was. Errors: as
+  /// `go_to`.
+  hal::Status look_back(hal::Tick from, hal::Tick to, const std::function<void(hal::Tick)>& look);
+  /// How many ticks are computed again to get from the nearest checkpoint to that tick.
+  hal::Tick ticks_to(hal::Tick tick) const noexcept;
+  /// What a tick costs, of late.
+  hal::TimeNs step_cost_ns() const noexcept { return step_cost_ns_; }
+
+  /// Tells what happened since the last call and is not told yet. `before_step` does so before a new step.
+  void tell();
+  std::function<void(hal::Tick tick, const hal::Json& event)> on_event;
+
+  std::size_t checkpoints() const noexcept { return checkpoints_.size(); }
+  std::size_t bytes() const noexcept { return bytes_; }
+
+ private:
+  struct Touch {
+    std::int64_t step = 0;
+    hal::Tick tick = 0;
+    hal::Json action;
+  };
+  struct Checkpoint {
+    std::int64_t step = 0;
+    std::uint64_t fingerprint = 0;
+    Snapshot snapshot;
+  };
+
+  bool keep();
+  void thin();
+  void begin_anew();
+  void drop_after(std::size_t touches, std::int64_t step);
+  hal::Result<hal::Json> perform(hal::Json& action);
+  hal::Status apply_due();
+  hal::Status way_to(std::int64_t step, bool from_checkpoint);
+  hal::Status again();
+  void compare();
+  const Checkpoint* nearest(std::int64_t step) const noexcept;
+  std::int64_t step_of(hal::Tick tick) const noexcept { return first_step_ + (tick - base_tick_); }
+
+  World& world_;
+  LiveClock& clock_;
+  bool wanted_;
+  std::size_t memory_bytes_;
+  hal::Log log_;
+  std::string no_way_back_;
+
+  std::int64_t step_ = 0, latest_ = 0;  // where the run is, and where it has been
+  std::int64_t first_step_ = 0;         // from where on ticks and steps go side by side
+  hal::Tick base_tick_ = 0;             // of that step
+  hal::Tick tick_before_ = 0;
+  std::vector<Checkpoint> checkpoints_;  // by step
+  std::size_t bytes_ = 0;
+  hal::TimeNs checkpoint_cost_ns_ = 0, since_checkpoint_ns_ = 0, step_cost_ns_ = 0;
+
+  std::vector<Touch> touches_;   // done, or to be done again
+  std::size_t applied_ = 0;      // of these, up to this moment
+  std::size_t first_touch_ = 0;  // that can be undone
+  std::size_t told_ = 0;
+  bool went_back_ = false;  // to be told
+  bool warned_ = false;
+};
+
+}  // namespace tandem::core

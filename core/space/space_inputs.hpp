@@ -1,0 +1,25 @@
+// What reached a space from outside in a tick: rows of plain data by robot, for whoever writes them down.
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "core/space/ids.hpp"
+#include "hal/port.hpp"
+
+namespace tandem::core {
+
+/// One row: it changes from tick to tick, and stays where it is.
+struct InputRow {
+  RobotId robot;
+  const hal::RowType* type = nullptr;
+  const void* row = nullptr;
+  bool sent = false;  ///< a command as it went to the real robot: of no effect in the space
+};
+
+/// All inputs of a run. Together with the seed, the settings and what operators did they determine every tick.
+struct SpaceInputs {
+  std::vector<InputRow> rows;
+  std::uint64_t version = 0;  ///< rises when rows come, go or move
+};
+
+}  // namespace tandem::core

@@ -1,0 +1,54 @@
+// Files that a controller runs, such as scripts, as whoever watches a run sees and changes them.
+//
+// They are the value of a text control (hal/controls.hpp) under a name that is shown to nobody. A controller that has
+// it begins anew, as if it were just made, when the value is changed; it throws where it cannot, and is as before then.
+#pragma once
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace tandem::hal {
+
+/// The control, which is not listed among those for people.
+inline constexpr std::string_view kSourceFilesControl = "*files";
+
+struct SourceFile {
+  std::string name;  ///< the same on every machine: as the experiment names it
+  std::string path;  ///< that it was read from
+  std::string text;
+};
+
+/// As one text: "12 19 1042\n" and the three, for each file.
+inline std::string packed(const std::vector<SourceFile>& files) {
+  std::string all;
+  for (const SourceFile& file : files) {
+    all += std::to_string(file.name.size()) + " " + std::to_string(file.path.size()) + " " +
+           std::to_string(file.text.size()) + "\n" + file.name + file.path + file.text;
+  }
+  return all;
+}
+
+/// Those of a text that `packed` made.
+inline std::vector<SourceFile> unpacked(std::string_view all) {
+  std::vector<SourceFile> files;
+  while (!all.empty()) {
+    std::size_t sizes[3] = {};
+    for (std::size_t& size : sizes) {
+      while (!all.empty() && all.front() >= '0' && all.front() <= '9') {
+        size = 10 * size + static_cast<std::size_t>(all.front() - '0');
+        all.remove_prefix(1);
+      }
+      if (!all.empty()) all.remove_prefix(1);
+    }
+    SourceFile& file = files.emplace_back();
+    std::string* const parts[3] = {&file.name, &file.path, &file.text};
+    for (std::size_t i = 0; i < 3; ++i) {
+      *parts[i] = all.substr(0, sizes[i]);
+      all.remove_prefix(parts[i]->size());
+    }
+  }
+  return files;
+}
+
+}  // namespace tandem::hal
