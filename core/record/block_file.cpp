@@ -5,10 +5,10 @@
 #include <bit>
 #include <cstring>
 #include <fcntl.h>
+#include <libdeflate.h>
 #include <sys/mman.h>
 #include <sys/stat.h>
 #include <unistd.h>
-#include <zlib.h>
 
 #include "hal/check.hpp"
 
@@ -29,7 +29,7 @@ struct Header {
 static_assert(sizeof(Header) == kBlockHeaderBytes);
 
 std::uint32_t crc_of(const void* data, std::size_t bytes) noexcept {
-  return static_cast<std::uint32_t>(crc32_z(0, static_cast<const Bytef*>(data), bytes));
+  return libdeflate_crc32(0, data, bytes);
 }
 
 std::uint32_t crc_of(const Header& header) noexcept {
@@ -42,7 +42,14 @@ bool sound(const Header& header) noexcept {
 
 }  // namespace
 
-void append_block(std::string& out, std::uint16_t type, hal::Tick tick, std::string_view payload) {
+std::size_t begin_block(std::string& out) {
+  const std::size_t begin = out.size();
+  out.append(kBlockHeaderBytes, '\0');
+  return begin;
+}
+
+void end_block(std::string& out, std::size_t begin, std::uint16_t type, hal::Tick tick) {
+  const std::string_view payload = std::string_view(out).substr(begin + kBlockHeaderBytes);
   TANDEM_CHECK(payload.size() <= kMostPayloadBytes, "a block is larger than its format allows");
   Header header;
   header.type = type;
@@ -50,8 +57,13 @@ void append_block(std::string& out, std::uint16_t type, hal::Tick tick, std::str
   header.bytes = static_cast<std::uint32_t>(payload.size());
   header.payload_crc = crc_of(payload.data(), payload.size());
   header.crc = crc_of(header);
-  out.append(reinterpret_cast<const char*>(&header), sizeof header);
+  std::memcpy(out.data() + begin, &header, sizeof header);
+}
+
+void append_block(std::string& out, std::uint16_t type, hal::Tick tick, std::string_view payload) {
+  const std::size_t begin = begin_block(out);
   out += payload;
+  end_block(out, begin, type, tick);
 }
 
 hal::Result<BlockFileReader> BlockFileReader::open(const std::string& path) {
@@ -82,21 +94,38 @@ hal::Result<BlockFileReader> BlockFileReader::open(const std::string& path) {
   if (start != kBlockFileStart)
     return failed(
         "is of a version of the format that this program does not know; read it with the release that wrote it");
-  reader.rewind();
+  reader.at_ = kBlockFileStart.size();
   return reader;
 }
 
-void BlockFileReader::rewind() noexcept {
-  at_ = kBlockFileStart.size();
+BlockFileReader BlockFileReader::of(std::string_view blocks) {
+  BlockFileReader reader;
+  reader.data_ = {blocks.data(), [](const char*) {}};
+  reader.size_ = blocks.size();
+  return reader;
 }
 
 void BlockFileReader::note(std::size_t at, std::string_view what) {
-  if (at < noted_until_) return;
-  damage_.push_back("at byte " + std::to_string(at) + ": " + std::string(what));
-  noted_until_ = at + 1;
+  damage_.emplace(at, "at byte " + std::to_string(at) + ": " + std::string(what));
+}
+
+std::vector<std::string> BlockFileReader::damage() const {
+  std::vector<std::string> lines;
+  for (const auto& [at, line] : damage_) lines.push_back(line);
+  return lines;
 }
 
 std::optional<Block> BlockFileReader::next() {
+  while (const std::optional<Block> block = next_unchecked()) {
+    Header header;
+    std::memcpy(&header, data_.get() + block->at, sizeof header);
+    if (crc_of(block->payload.data(), block->payload.size()) == header.payload_crc) return block;
+    note(block->at, "a block of tick " + std::to_string(block->tick) + " is damaged and left out");
+  }
+  return {};
+}
+
+std::optional<Block> BlockFileReader::next_unchecked() {
   const char* const data = data_.get();
   while (at_ < size_) {
     const std::size_t begin = at_;
@@ -132,11 +161,7 @@ std::optional<Block> BlockFileReader::next() {
     }
     const std::string_view payload(data + at_, header.bytes);
     at_ += header.bytes;
-    if (crc_of(payload.data(), payload.size()) != header.payload_crc) {
-      note(begin, "a block of tick " + std::to_string(header.tick) + " is damaged and left out");
-      continue;
-    }
-    return Block{header.type, header.tick, payload};
+    return Block{header.type, header.tick, payload, begin};
   }
   return {};
 }

@@ -15,6 +15,7 @@
 #pragma once
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <optional>
 #include <span>
@@ -34,11 +35,16 @@ inline constexpr std::size_t kMostPayloadBytes = std::size_t{1} << 30;
 /// Appends a block to `out`. At most kMostPayloadBytes of payload.
 void append_block(std::string& out, std::uint16_t type, hal::Tick tick, std::string_view payload);
 
+/// The same for a payload that is appended between the two calls. @returns `begin` of the second
+std::size_t begin_block(std::string& out);
+void end_block(std::string& out, std::size_t begin, std::uint16_t type, hal::Tick tick);
+
 /// One block. The payload is the reader's, and valid as long as that is.
 struct Block {
   std::uint16_t type = 0;
   hal::Tick tick = 0;
   std::string_view payload;
+  std::size_t at = 0;  ///< where it begins in the file
 };
 
 /// Reads a block file. No input is undefined: what is damaged is left out and told.
@@ -46,16 +52,22 @@ class BlockFileReader {
  public:
   /// Maps the file into memory; it must not shrink meanwhile. Errors: cannot be read; no block file; another version.
   static hal::Result<BlockFileReader> open(const std::string& path);
+  /// Blocks in memory, without the file's beginning; they must stay there.
+  static BlockFileReader of(std::string_view blocks);
   BlockFileReader(BlockFileReader&&) noexcept = default;
   BlockFileReader& operator=(BlockFileReader&&) noexcept = default;
 
   /// The next whole block; nothing at the end.
   std::optional<Block> next();
-  /// Begins with the first block again.
-  void rewind() noexcept;
+  /// The next, whose payload may be damaged: looks at its header alone.
+  std::optional<Block> next_unchecked();
+  /// Goes on with the block that begins there, as `Block::at` says.
+  void go_to(std::size_t at) noexcept { at_ = at; }
+  std::size_t at() const noexcept { return at_; }
+  std::size_t size() const noexcept { return size_; }
 
-  /// What `next` has met so far: one line each, "at byte 4711: …".
-  const std::vector<std::string>& damage() const noexcept { return damage_; }
+  /// What has been met so far, in the file's order: one line each, "at byte 4711: …".
+  std::vector<std::string> damage() const;
   /// Whether the file ended in the middle of a block: its writer was killed, or the disk was full.
   bool cut() const noexcept { return cut_; }
 
@@ -65,8 +77,7 @@ class BlockFileReader {
 
   std::shared_ptr<const char> data_;  // mapped
   std::size_t size_ = 0, at_ = 0;
-  std::vector<std::string> damage_;
-  std::size_t noted_until_ = 0;  // damage before this byte has been told
+  std::map<std::size_t, std::string> damage_;  // by where it is
   bool cut_ = false;
 };
 

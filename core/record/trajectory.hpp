@@ -1,4 +1,4 @@
-// Trajectories as CSV: where chosen robots were, every so many ticks, and what chosen ports held.
+// Trajectories as CSV: where chosen robots were, every so many ticks.
 #pragma once
 #include <atomic>
 #include <cstdint>
@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/record/pattern.hpp"
 #include "core/scenario/scenario.hpp"
 #include "core/space/space.hpp"
 #include "hal/output_file.hpp"
@@ -22,28 +23,23 @@ struct UnwrittenRecords {
   int descriptor = -1;
 };
 
-/// Writes lines "tick,time_s,id,x_m,y_m,heading_rad": the poses that the bodies had at the start of that tick, in W,
-/// with the heading in (-pi, pi]; metres and radians with 6 decimals, the time in full.
-/// Ids with a comma or a quote in them are quoted [RFC 4180].
-///
-/// With ports, each of their fields adds a column "port.field" or, for fields of several values, "port.field[0]", …: as
-/// many as were in use when the first line was written (for message lists: as many as there can be). Values that a
-/// robot does not have are empty. The header is written with the first line.
+/// Writes lines "tick,time_s,id,x_m,y_m,z_m,heading_rad": the table of poses of a record (core/record/record.hpp),
+/// written as text at once. The poses are those that the bodies had at the end of that tick, in W, with the heading in
+/// (-pi, pi]; metres and radians with 6 decimals, the time in full. Ids with a comma or a quote in them are quoted [RFC
+/// 4180].
 class TrajectoryRecorder {
  public:
-  /// Opens the file and finds the robots. `ports` are names of ports that at least one chosen robot's controller took.
-  /// Errors: the file cannot be written; a pattern that fits none of the robots there, or a port that no chosen robot
-  /// has (with what there is that is spelled alike).
+  /// Opens the file and finds the robots. Errors: the file cannot be written; a pattern that fits none of the robots
+  /// there (with what there is that is spelled alike).
   static hal::Result<std::unique_ptr<TrajectoryRecorder>> open(const TrajectoryConfig& config, const Space& space,
-                                                               std::int64_t ticks_per_second,
-                                                               const std::vector<std::string>& ports = {});
+                                                               std::int64_t ticks_per_second);
   /// Closes when anything was recorded; use `close` to learn whether that worked.
   ~TrajectoryRecorder();
   TrajectoryRecorder(const TrajectoryRecorder&) = delete;
   TrajectoryRecorder& operator=(const TrajectoryRecorder&) = delete;
 
   /// To be called after every tick; records each `every`th. Robots that were removed have no line any more; those that
-  /// came since `open` and fit have lines after the others, with values for the columns that there are.
+  /// came since `open` and fit have lines after the others.
   /// Error: the disk is full or gone. What was written until then stays in the part, whole lines of it, and no later
   /// call writes anything.
   hal::Status record(const Space& space, hal::Tick tick);
@@ -63,8 +59,5 @@ class TrajectoryRecorder {
   explicit TrajectoryRecorder(std::unique_ptr<Impl> impl);
   std::unique_ptr<Impl> impl_;
 };
-
-/// Whether `text` fits `pattern`, in which each '*' stands for any number of characters.
-bool fits_pattern(std::string_view text, std::string_view pattern) noexcept;
 
 }  // namespace tandem::core

@@ -55,6 +55,7 @@ struct Drawing {
   };
   struct Point {
     double x_m = 0.0, y_m = 0.0;
+    double z_m = 0.0;
   };
   /// Where a robot was: `trail_points[first, first + count)`, the oldest first.
   struct Trail {
@@ -94,6 +95,13 @@ struct Drawing {
     hal::Rgb color;
     double z_m = 0.0;
   };
+  /// Where real robots may go, and what they keep from.
+  struct Area {
+    enum class Kind : std::uint8_t { Fence, KeepOut, Zone };
+    Kind kind = Kind::Fence;
+    std::string label;
+    std::vector<Point> corners;
+  };
 
   std::string title;
   double min_x_m = -1.0, min_y_m = -1.0, max_x_m = 1.0, max_y_m = 1.0;  ///< the arena
@@ -101,6 +109,7 @@ struct Drawing {
   std::vector<Cylinder> cylinders;
   std::vector<Border> borders;
   std::vector<Light> lights;
+  std::vector<Area> areas;
   std::vector<Kind> kinds;
   std::vector<Robot> robots;
   std::vector<LitLed> lit;
@@ -108,7 +117,7 @@ struct Drawing {
   std::vector<std::string> ids;  ///< of the robots, in their order; empty: not asked for
   std::vector<Trail> trails;
   std::vector<Point> trail_points;
-  std::vector<Sketch::Shape> shapes;  ///< that hooks drew
+  std::vector<Sketch::Shape> shapes;  ///< that hooks and layers drew
   /// Reflectance at (x, y), 0 black to 1 white; empty: a uniform floor, which is not drawn.
   std::function<double(double, double)> floor;
   std::uint64_t floor_mark = 0;  ///< differs when the floor does

@@ -40,7 +40,7 @@ hal::Status Film::can_make(const std::string& path) {
   const auto name = name_of(path);
   if (!name.ok()) return name.error();
   if (const hal::Status renderer = can_render(PictureFormat::Png); !renderer.ok()) return renderer;
-  if (name.value().digits == 0 && find_program("ffmpeg").empty()) {
+  if (name.value().digits == 0 && hal::find_program("ffmpeg").empty()) {
     return hal::Error{"the film '" + path +
                       "' is encoded by ffmpeg, which is not installed: sudo apt-get install ffmpeg; or make pictures "
                       "alone: 'FOLDER/'"};
@@ -82,34 +82,35 @@ hal::Status Film::start_encoder(const std::string& pixels) {
   std::memcpy(size, pixels.data(), sizeof size);
   const bool mkv = fs::path(config_.path).extension() == ".mkv";
   // The usual players want pixels in fours, and so an even number of them along both sides.
-  auto encoder = Program::start(find_program("ffmpeg"), {"-hide_banner",
-                                                         "-loglevel",
-                                                         "error",
-                                                         "-nostats",
-                                                         "-y",
-                                                         "-f",
-                                                         "rawvideo",
-                                                         "-pix_fmt",
-                                                         "bgr0",
-                                                         "-s",
-                                                         std::to_string(size[0]) + "x" + std::to_string(size[1]),
-                                                         "-r",
-                                                         hal::format_number(config_.frames_per_second),
-                                                         "-i",
-                                                         "pipe:0",
-                                                         "-vf",
-                                                         "pad=ceil(iw/2)*2:ceil(ih/2)*2:color=white",
-                                                         "-c:v",
-                                                         "libx264",
-                                                         "-preset",
-                                                         "veryfast",
-                                                         "-crf",
-                                                         "18",
-                                                         "-pix_fmt",
-                                                         "yuv420p",
-                                                         "-f",
-                                                         mkv ? "matroska" : "mp4",
-                                                         "file:" + file_->part()});
+  auto encoder =
+      hal::Program::start(hal::find_program("ffmpeg"), {"-hide_banner",
+                                                        "-loglevel",
+                                                        "error",
+                                                        "-nostats",
+                                                        "-y",
+                                                        "-f",
+                                                        "rawvideo",
+                                                        "-pix_fmt",
+                                                        "bgr0",
+                                                        "-s",
+                                                        std::to_string(size[0]) + "x" + std::to_string(size[1]),
+                                                        "-r",
+                                                        hal::format_number(config_.frames_per_second),
+                                                        "-i",
+                                                        "pipe:0",
+                                                        "-vf",
+                                                        "pad=ceil(iw/2)*2:ceil(ih/2)*2:color=white",
+                                                        "-c:v",
+                                                        "libx264",
+                                                        "-preset",
+                                                        "veryfast",
+                                                        "-crf",
+                                                        "18",
+                                                        "-pix_fmt",
+                                                        "yuv420p",
+                                                        "-f",
+                                                        mkv ? "matroska" : "mp4",
+                                                        "file:" + file_->part()});
   if (!encoder.ok()) return encoder.error();
   encoder_ = std::move(encoder).value();
   frame_bytes_ = pixels.size();

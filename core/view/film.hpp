@@ -6,8 +6,8 @@
 #include <string>
 
 #include "core/view/drawing.hpp"
-#include "core/view/program.hpp"
 #include "hal/output_file.hpp"
+#include "hal/program.hpp"
 #include "hal/result.hpp"
 
 namespace tandem::core {
@@ -45,7 +45,7 @@ class Film {
   std::string before_, after_;  // of names of pictures, around the number
   int digits_ = 0;              // of the number; 0: a video
   std::optional<hal::OutputFile> file_;
-  std::unique_ptr<Program> encoder_;
+  std::unique_ptr<hal::Program> encoder_;
   std::size_t frame_bytes_ = 0;
   std::int64_t frames_ = 0;
 };

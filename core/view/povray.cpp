@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/view/program.hpp"
+#include "hal/program.hpp"
 
 namespace tandem::core {
 namespace {
@@ -261,7 +261,7 @@ std::string to_povray(const Drawing& drawing, const PictureLook& look) {
 }
 
 hal::Status can_render_povray() {
-  if (!find_program("povray").empty()) return {};
+  if (!hal::find_program("povray").empty()) return {};
   return hal::Error{
       "scenes are rendered by povray, which is not installed: sudo apt-get install povray; or write the scene alone, "
       "'FILE.pov'"};
@@ -269,9 +269,9 @@ hal::Status can_render_povray() {
 
 hal::Status render_povray(const std::string& scene, const std::string& png, int width_px) {
   if (const hal::Status can = can_render_povray(); !can.ok()) return can;
-  auto povray =
-      Program::start(find_program("povray"), {"-D", "-V", "-GA", "+FN", "+A0.3", "+W" + std::to_string(width_px),
-                                              "+H" + std::to_string(width_px * 3 / 4), "+I" + scene, "+O" + png});
+  auto povray = hal::Program::start(hal::find_program("povray"),
+                                    {"-D", "-V", "-GA", "+FN", "+A0.3", "+W" + std::to_string(width_px),
+                                     "+H" + std::to_string(width_px * 3 / 4), "+I" + scene, "+O" + png});
   if (!povray.ok()) return povray.error();
   const hal::Status ended = povray.value()->finish();
   return ended.ok() ? ended : hal::Status(hal::Error{"scene '" + scene + "': " + ended.error().message});

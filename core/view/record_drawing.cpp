@@ -3,9 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <memory>
 #include <unordered_map>
 #include <utility>
 
+#include "core/record/floor_image.hpp"
+#include "core/record/scene_json.hpp"
+#include "core/space/mechanisms.hpp"
 #include "hal/device/leds.hpp"
 #include "hal/time.hpp"
 #include "hal/unit.hpp"
@@ -58,58 +62,91 @@ Drawing::Kind kind_of(std::string name, const Json& body) {
   return kind;
 }
 
-std::optional<std::size_t> field_of(const RecordRows& rows, std::string_view name) {
-  const std::vector<RecordField>& fields = rows.stream().fields;
-  for (std::size_t f = 0; f < fields.size(); ++f) {
-    if (fields[f].name == name && !fields[f].used_by) return f;
-  }
-  return {};
-}
-
-/// The fields of a table of poses; nothing where one is missing.
-struct PoseFields {
-  explicit PoseFields(const RecordRows& rows) {
-    const char* const names[] = {"x", "y", "z", "heading"};
-    for (std::size_t i = 0; i < 4; ++i) {
-      const auto field = field_of(rows, names[i]);
-      whole = whole && field && rows.stream().fields[*field].count > 0;
-      if (field) at[i] = *field;
-    }
-  }
-  bool whole = true;
-  std::size_t at[4] = {};
-};
-
 double finite(double value) {
   return std::isfinite(value) ? value : 0.0;
 }
 
-/// Where the rows of other members are that have the same ids.
-std::unordered_map<std::string_view, std::size_t> rows_by_id(const std::optional<RecordRows>& rows) {
-  std::unordered_map<std::string_view, std::size_t> by_id;
-  for (std::size_t i = 0; rows && i < rows->size(); ++i) by_id.emplace(rows->members().ids[i], i);
-  return by_id;
+/// One field of a table, by the robots' ids; of tables that are not there, nothing.
+class ById {
+ public:
+  ById(const RecordRows* rows, const char* field) : rows_(rows) {
+    if (rows == nullptr) return;
+    field_ = field_of(*rows, field);
+    for (std::size_t i = 0; field_ && i < rows->size(); ++i) by_id_.emplace(rows->members().ids[i], i);
+  }
+  /// How many values a robot has; 0: it is not in the table.
+  std::size_t count(const std::string& id) const {
+    return by_id_.contains(id) ? rows_->stream().fields[*field_].count : 0;
+  }
+  double value(const std::string& id, std::size_t index = 0) const {
+    const auto row = by_id_.find(id);
+    return row == by_id_.end() ? 0.0 : finite(rows_->value(*field_, row->second, index));
+  }
+
+ private:
+  const RecordRows* rows_;
+  std::optional<std::size_t> field_;
+  std::unordered_map<std::string_view, std::size_t> by_id_;
+};
+
+const RecordRows* either(const RecordRows* first, const RecordRows* second) {
+  return first != nullptr ? first : second;
 }
+
+/// Values of a row of poses.
+struct Place {
+  Place(const RecordRows& rows, std::size_t row) {
+    double* const values[] = {&x_m, &y_m, &z_m, &heading_rad};
+    const char* const names[] = {"x", "y", "z", "heading"};
+    for (std::size_t i = 0; i < 4; ++i) *values[i] = finite(rows.value(*field_of(rows, names[i]), row));
+  }
+  double x_m = 0.0, y_m = 0.0, z_m = 0.0, heading_rad = 0.0;
+};
 
 }  // namespace
 
-RecordDrawings::RecordDrawings(RecordReader reader) : reader_(std::move(reader)) {
-  const Json& start = reader_.start();
+std::vector<Drawing::Area> areas_of_json(const Json& areas) {
+  std::vector<Drawing::Area> all;
+  if (!areas.is_array()) return all;
+  for (const Json& a : areas) {
+    Drawing::Area area;
+    const std::string kind = text(a, "kind", "");
+    area.kind = kind == "fence"      ? Drawing::Area::Kind::Fence
+                : kind == "keep_out" ? Drawing::Area::Kind::KeepOut
+                                     : Drawing::Area::Kind::Zone;
+    area.label = text(a, "id", "");
+    if (const double limit_m_s = number(a, "max_speed"); limit_m_s > 0.0)
+      area.label += ": " + hal::format_number(limit_m_s) + " m/s";
+    for (const Json& corner : list(a, "corners")) area.corners.push_back({item(corner, 0), item(corner, 1)});
+    if (area.corners.size() > 2) all.push_back(std::move(area));
+  }
+  return all;
+}
+
+RecordDrawings::RecordDrawings(RecordMoments moments) : moments_(std::move(moments)) {
+  const Json& start = moments_.start();
   const auto seed = start.find("seed");
   title_ = text(start, "experiment", "?") + ", seed " +
            (seed != start.end() && seed->is_number_unsigned() ? std::to_string(seed->get<std::uint64_t>()) : "?");
-  ticks_per_second_ = std::clamp<std::int64_t>(std::llround(number(start, "ticks_per_second", 10.0)), 1, 1'000'000);
 }
 
 hal::Result<RecordDrawings> RecordDrawings::open(const std::string& path) {
-  auto reader = RecordReader::open(path);
-  if (!reader.ok()) return reader.error();
-  RecordDrawings drawings(std::move(reader).value());
-  if (!drawings.next()) return hal::Error{"record '" + path + "' holds no poses of robots"};
-  return drawings;
+  auto moments = RecordMoments::open(path);
+  if (!moments.ok()) return moments.error();
+  return RecordDrawings(std::move(moments).value());
 }
 
-void RecordDrawings::take_scene(const Json& scene) {
+const PictureLook::Area& RecordDrawings::arena() {
+  take_scene();
+  return arena_;
+}
+
+/// Brings all but the robots up to date.
+void RecordDrawings::take_scene() {
+  if (scene_number_ == moments_.scene_number() && floor_number_ == moments_.floor_number()) return;
+  scene_number_ = moments_.scene_number();
+  floor_number_ = moments_.floor_number();
+  const Json& scene = moments_.scene();
   if (const auto arena = scene.find("arena"); arena != scene.end()) {
     const PictureLook::Area read{number(*arena, "min_x", -1.0), number(*arena, "min_y", -1.0),
                                  number(*arena, "max_x", 1.0), number(*arena, "max_y", 1.0)};
@@ -137,6 +174,7 @@ void RecordDrawings::take_scene(const Json& scene) {
     const bool wall = b.is_array() && b.size() > 4 && b[4].is_boolean() && b[4].get<bool>();
     scene_.borders.push_back({item(b, 0), item(b, 1), item(b, 2), item(b, 3), wall});
   }
+  scene_.areas = areas_of_json(list(moments_.start(), "areas"));
   for (const Json& light : list(scene, "lights")) {
     const Json& color = list(light, "color");
     scene_.lights.push_back({number(light, "x"),
@@ -144,119 +182,96 @@ void RecordDrawings::take_scene(const Json& scene) {
                              {channel(color, 0), channel(color, 1), channel(color, 2)},
                              number(light, "z")});
   }
-}
-
-void RecordDrawings::take(RecordEntry entry) {
-  if (entry.type == RecordBlock::Scene) take_scene(entry.json);
-  if (!entry.rows) return;
-  const RecordStream& stream = entry.rows->stream();
-  if (stream.name == "pose" && stream.set == "pose")
-    (stream.of == "robot" ? poses_ : objects_) = std::move(entry.rows);
-  else if (stream.name == hal::RingLeds::kName && stream.set == "actuator")
-    leds_ = std::move(entry.rows);
-  else if (stream.name == "turret_encoder" && stream.set == "sensor")
-    turrets_ = std::move(entry.rows);
-}
-
-// A tick is over when a block of another one comes.
-bool RecordDrawings::next() {
-  bool found = false;
-  for (;;) {
-    std::optional<RecordEntry> entry = std::exchange(ahead_, std::nullopt);
-    if (!entry) entry = reader_.next();
-    if (!entry) return found;
-    if (found && entry->tick != tick_) {
-      ahead_ = std::move(entry);
-      return true;
-    }
-    const bool poses = entry->rows && entry->rows->stream().title() == "pose" && PoseFields(*entry->rows).whole;
-    if (poses) {
-      tick_ = entry->tick;
-      objects_.reset();
-      leds_.reset();
-      turrets_.reset();
-      found = true;
-    } else if (entry->rows && entry->rows->stream().title() == "pose") {
-      continue;
-    }
-    take(std::move(*entry));
-  }
+  if (moments_.floor_png().empty()) return;
+  auto read = floor_of_png(moments_.floor_png());
+  if (!read.ok()) return;
+  scene_.floor_mark = floor_number_;
+  scene_.floor = [area = arena_, image = std::make_shared<const FloorImage>(std::move(read).value())](double x_m,
+                                                                                                      double y_m) {
+    return image->at((x_m - area.min_x_m) / (area.max_x_m - area.min_x_m),
+                     (y_m - area.min_y_m) / (area.max_y_m - area.min_y_m));
+  };
 }
 
 std::vector<Trails::Place> RecordDrawings::places() const {
-  const PoseFields fields(*poses_);
-  std::vector<Trails::Place> places(poses_->size());
-  for (std::size_t i = 0; i < places.size(); ++i) {
-    places[i] = {std::hash<std::string>()(poses_->members().ids[i]), finite(poses_->value(fields.at[0], i)),
-                 finite(poses_->value(fields.at[1], i))};
+  const RecordRows& poses = moments_.poses();
+  std::vector<Trails::Place> places;
+  places.reserve(poses.size());
+  for (const std::size_t row : poses.members().order) {
+    const Place place(poses, row);
+    places.push_back({std::hash<std::string>()(poses.members().ids[row]), place.x_m, place.y_m});
   }
   return places;
 }
 
-Drawing RecordDrawings::drawing(const PictureLook& look, const Trails* trails) const {
+Drawing RecordDrawings::drawing(const PictureLook& look, const Trails* trails) {
+  take_scene();
   Drawing d = scene_;
-  const hal::TimeNs time_ns = hal::time_of_tick(ticks_done(), ticks_per_second_);
+  const hal::TimeNs time_ns = hal::time_of_tick(ticks_done(), ticks_per_second());
   d.title = title_ + ", t = " + hal::format_number(hal::to_seconds(time_ns)) + " s";
 
-  const RecordMembers& members = poses_->members();
-  const PoseFields fields(*poses_);
+  const RecordRows& poses = moments_.poses();
+  const RecordMembers& members = poses.members();
   std::vector<std::optional<std::uint32_t>> kinds;  // by the record's
-  const auto leds_at = rows_by_id(leds_), turrets_at = rows_by_id(turrets_);
-  const auto rgb = leds_ ? field_of(*leds_, "rgb") : std::nullopt;
-  const auto angle = turrets_ ? field_of(*turrets_, "angle") : std::nullopt;
-  for (std::size_t i = 0; i < poses_->size(); ++i) {
+  const ById leds(either(moments_.rows("actuator leds"), moments_.rows("look leds")), "rgb");
+  const ById turrets(either(moments_.rows("look turret"), moments_.rows("sensor turret_encoder")), "angle");
+  const ById grippers(moments_.rows("look gripper"), "joint"), halts(moments_.rows("look halted"), "by");
+  for (const std::size_t i : members.order) {
+    const std::string& id = members.ids[i];
     const std::size_t kind = members.kind[i];
     if (kinds.size() <= kind) kinds.resize(kind + 1);
     if (!kinds[kind]) {
       kinds[kind] = static_cast<std::uint32_t>(d.kinds.size());
       d.kinds.push_back(kind_of(members.kinds[i], kind < members.bodies.size() ? members.bodies[kind] : Json()));
     }
+    const Place place(poses, i);
     Drawing::Robot robot;
-    robot.x_m = finite(poses_->value(fields.at[0], i));
-    robot.y_m = finite(poses_->value(fields.at[1], i));
-    robot.z_m = finite(poses_->value(fields.at[2], i));
-    robot.heading_rad = finite(poses_->value(fields.at[3], i));
+    robot.x_m = place.x_m;
+    robot.y_m = place.y_m;
+    robot.z_m = place.z_m;
+    robot.heading_rad = place.heading_rad;
     robot.kind = *kinds[kind];
     robot.first_light = static_cast<std::uint32_t>(d.lit.size());
-    if (const auto row = leds_at.find(members.ids[i]); rgb && row != leds_at.end()) {
-      const std::size_t mounted = std::min(d.kinds[robot.kind].leds.size(), leds_->stream().fields[*rgb].count / 3);
-      for (std::uint32_t led = 0; led < mounted; ++led) {
-        const auto part = [&](std::size_t c) {
-          return static_cast<std::uint8_t>(std::clamp(leds_->value(*rgb, row->second, 3 * led + c), 0.0, 255.0));
-        };
-        const hal::Rgb color{part(0), part(1), part(2)};
-        if (color == hal::kBlack) continue;
-        d.lit.push_back({led, color});
-        ++robot.lights;
-      }
+    robot.turret_rad = turrets.value(id);
+    robot.halted = halts.value(id) != 0.0;
+    robot.holding = grippers.count(id) > 0 && grippers.value(id) != static_cast<double>(GripState::kNothing);
+    const std::size_t mounted = std::min(d.kinds[robot.kind].leds.size(), leds.count(id) / 3);
+    for (std::uint32_t led = 0; led < mounted; ++led) {
+      const auto part = [&](std::size_t c) {
+        return static_cast<std::uint8_t>(std::clamp(leds.value(id, 3 * led + c), 0.0, 255.0));
+      };
+      const hal::Rgb color{part(0), part(1), part(2)};
+      if (color == hal::kBlack) continue;
+      d.lit.push_back({led, color});
+      ++robot.lights;
     }
-    if (const auto row = turrets_at.find(members.ids[i]); angle && row != turrets_at.end())
-      robot.turret_rad = finite(turrets_->value(*angle, row->second));
+    if (members.real[i]) d.real.push_back({d.robots.size(), id, ""});
     d.robots.push_back(robot);
-    if (look.ids) d.ids.push_back(members.ids[i]);
-    if (members.real[i]) d.real.push_back({i, members.ids[i], ""});
+    if (look.ids) d.ids.push_back(id);
   }
 
-  const auto objects_at = rows_by_id(objects_);
-  for (const Thing& thing : movables_) {
-    const auto row = objects_at.find(thing.id);
-    if (row == objects_at.end()) continue;
-    const PoseFields f(*objects_);
-    if (!f.whole) break;
-    const auto value = [&](std::size_t field) { return finite(objects_->value(f.at[field], row->second)); };
-    if (thing.box) {
-      Drawing::Box& box = d.boxes[thing.index];
-      box.x_m = value(0);
-      box.y_m = value(1);
-      box.z_m = value(2);
-      box.heading_rad = value(3);
-    } else {
-      Drawing::Cylinder& cylinder = d.cylinders[thing.index];
-      cylinder.x_m = value(0);
-      cylinder.y_m = value(1);
-      cylinder.z_m = value(2);
+  if (const RecordRows* const objects = moments_.rows("object pose")) {
+    std::unordered_map<std::string_view, std::size_t> at;
+    for (std::size_t i = 0; i < objects->size(); ++i) at.emplace(objects->members().ids[i], i);
+    for (const Thing& thing : movables_) {
+      const auto row = at.find(thing.id);
+      if (row == at.end()) continue;
+      const Place place(*objects, row->second);
+      if (thing.box) {
+        Drawing::Box& box = d.boxes[thing.index];
+        box.x_m = place.x_m;
+        box.y_m = place.y_m;
+        box.z_m = place.z_m;
+        box.heading_rad = place.heading_rad;
+      } else {
+        Drawing::Cylinder& cylinder = d.cylinders[thing.index];
+        cylinder.x_m = place.x_m;
+        cylinder.y_m = place.y_m;
+        cylinder.z_m = place.z_m;
+      }
     }
   }
+  d.shapes = sketch_of_json(moments_.sketch()).shapes();
   if (trails != nullptr) {
     std::vector<std::uint64_t> who;
     for (const Trails::Place& place : places()) who.push_back(place.who);

@@ -37,6 +37,7 @@ constexpr std::string_view kWallEdge = "#3f4751";
 constexpr std::string_view kMovableColor = "#d8b384";
 constexpr std::string_view kMovableEdge = "#7d5a2b";
 constexpr std::string_view kBorderColor = "#3b5bdb";
+constexpr std::array<std::string_view, 3> kAreaColors = {"#009e73", "#d55e00", "#e69f00"};  // by their kinds
 
 /// Text of an SVG document, appended to piece by piece. Numbers get at most four decimals.
 class Svg {
@@ -164,6 +165,7 @@ class Page {
     arena();
     floor();
     borders();
+    areas();
     lights();
     trails();
     objects();
@@ -175,6 +177,7 @@ class Page {
     frame();
     axes();
     ids();
+    area_labels();
     labels();
     sketch_texts();
     scale_bar();
@@ -302,6 +305,35 @@ class Page {
     svg_ << "</g>\n";
   }
 
+  static std::string_view color_of(const Drawing::Area& area) {
+    return kAreaColors[static_cast<std::size_t>(area.kind)];
+  }
+
+  void areas() {
+    if (d_.areas.empty()) return;
+    svg_ << "<g class=\"areas\" stroke-linejoin=\"round\" stroke-width=\"" << px(1.5) << "\">\n";
+    for (const Drawing::Area& area : d_.areas) {
+      svg_ << "<polygon points=\"";
+      for (const Drawing::Point& p : area.corners) svg_ << p.x_m << "," << p.y_m << " ";
+      svg_ << "\" stroke=\"" << color_of(area) << "\" fill=\"";
+      if (area.kind == Drawing::Area::Kind::Fence) {
+        svg_ << "none\"/>\n";
+      } else {
+        svg_ << color_of(area) << "\" fill-opacity=\"0.12\"/>\n";
+      }
+    }
+    svg_ << "</g>\n";
+  }
+
+  /// Beside the first corner.
+  void area_labels() {
+    for (const Drawing::Area& area : d_.areas) {
+      if (area.corners.empty() || !shows(area.corners.front().x_m, area.corners.front().y_m, 0.0)) continue;
+      text(x_px(area.corners.front().x_m) + 5.0, y_px(area.corners.front().y_m) - 6.0, 13.0, color_of(area),
+           " stroke=\"#ffffff\" stroke-width=\"3\" paint-order=\"stroke\"", area.label);
+    }
+  }
+
   void objects() {
     objects(false, "objects", kWallColor, kWallEdge);
     objects(true, "movables", kMovableColor, kMovableEdge);
@@ -421,7 +453,7 @@ class Page {
     svg_ << "</g>\n";
   }
 
-  /// What hooks drew, but its texts.
+  /// What hooks and layers drew, but its texts.
   void sketch() {
     if (d_.shapes.empty()) return;
     svg_ << "<g class=\"sketch\" fill=\"none\" stroke-linejoin=\"round\" stroke-linecap=\"round\">\n";
@@ -430,8 +462,10 @@ class Page {
       Svg look;
       look << "\" stroke=\"" << color << "\" stroke-width=\"" << (shape.pen.width_m > 0.0 ? shape.pen.width_m : px(1.5))
            << "\"";
+      const double opacity = std::clamp(shape.pen.opacity, 0.0, 1.0);
+      if (opacity < 1.0) look << " stroke-opacity=\"" << opacity << "\"";
       if (shape.pen.filled && shape.kind != Sketch::Shape::Kind::Line)
-        look << " fill=\"" << color << "\" fill-opacity=\"0.35\"";
+        look << " fill=\"" << color << "\" fill-opacity=\"" << 0.35 * opacity << "\"";
       look << "/>\n";
       switch (shape.kind) {
         case Sketch::Shape::Kind::Line:

@@ -10,10 +10,6 @@ namespace {
 
 constexpr std::int64_t kMostPlaces = 200;
 
-std::uint64_t number_of(RobotId id) noexcept {
-  return std::uint64_t{id.index} << 32U | id.generation;
-}
-
 }  // namespace
 
 Trails::Trails(double seconds, std::int64_t ticks_per_second)
@@ -37,7 +33,7 @@ void Trails::note(std::int64_t ticks_done, const Space& space) {
   for (std::size_t i = 0; i < places.size(); ++i) {
     const RobotId id = space.robot(i);
     const Pose pose = space.pose(id);
-    places[i] = {number_of(id), pose.x_m, pose.y_m};
+    places[i] = {number_of(id), pose.x_m, pose.y_m, pose.z_m};
   }
   note(ticks_done, std::move(places));
 }
@@ -57,7 +53,7 @@ void Trails::add_to(Drawing& drawing, std::span<const std::uint64_t> who, std::i
         if (found == at.end()) continue;
         place = found->second;
       }
-      points[i].push_back({kept.places[place].x_m, kept.places[place].y_m});
+      points[i].push_back({kept.places[place].x_m, kept.places[place].y_m, kept.places[place].z_m});
     }
   }
   for (std::size_t i = 0; i < points.size(); ++i) {

@@ -16,6 +16,7 @@ class Trails {
   struct Place {
     std::uint64_t who = 0;  ///< the same for the same robot, whatever the order
     double x_m = 0.0, y_m = 0.0;
+    double z_m = 0.0;
   };
 
   /// Trails of so many seconds; 0: none.
@@ -26,6 +27,10 @@ class Trails {
   /// In the order of the ticks; an earlier one than before: the run began anew, and so do the trails.
   void note(std::int64_t ticks_done, std::vector<Place> places);
   void note(std::int64_t ticks_done, const Space& space);
+  /// Of a robot, for `Place::who`.
+  static std::uint64_t number_of(RobotId robot) noexcept {
+    return std::uint64_t{robot.index} << 32U | robot.generation;
+  }
 
   /// Adds those of `who`, in the order of the drawing's robots, as they are after so many ticks.
   void add_to(Drawing& drawing, std::span<const std::uint64_t> who, std::int64_t ticks_done) const;

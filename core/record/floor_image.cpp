@@ -1,0 +1,133 @@
+#include "core/record/floor_image.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <libdeflate.h>
+#include <memory>
+
+#include "hal/check.hpp"
+
+namespace tandem::core {
+namespace {
+
+constexpr std::string_view kPngStart("\x89PNG\r\n\x1a\n", 8);
+constexpr std::size_t kHeaderBytes = 13;
+constexpr std::string_view kGrey8("\x08\x00\x00\x00\x00", 5);  // bits a pixel, grey, deflate, filters by line, one pass
+constexpr int kQuick = 1;                                      // of libdeflate's levels
+
+std::string be32(std::size_t value) {
+  std::string bytes;
+  for (int shift = 24; shift >= 0; shift -= 8) bytes += static_cast<char>((value >> shift) & 0xFFU);
+  return bytes;
+}
+std::size_t from_be32(std::string_view bytes) {
+  std::size_t value = 0;
+  for (const char c : bytes.substr(0, 4)) value = (value << 8) | static_cast<unsigned char>(c);
+  return value;
+}
+
+void append_chunk(std::string& png, std::string_view type, std::string_view data) {
+  const std::string body = std::string(type) + std::string(data);
+  png += be32(data.size()) + body + be32(libdeflate_crc32(0, body.data(), body.size()));
+}
+
+const Field* floor_of(const SpaceStores& stores) noexcept {
+  return stores.fields.find("floor");
+}
+
+}  // namespace
+
+double FloorImage::at(double east, double north) const noexcept {
+  const auto cell = [](double offset, std::size_t count) {
+    const auto last = static_cast<double>(count - 1);
+    return static_cast<std::size_t>(offset > 0.0 ? std::min(offset, last) : 0.0);
+  };
+  const std::size_t column = cell(east * static_cast<double>(columns), columns);
+  const std::size_t line = cell(north * static_cast<double>(lines), lines);
+  return static_cast<double>(static_cast<float>(pixels[(lines - 1 - line) * columns + column]) * (1.0F / 255.0F));
+}
+
+std::uint64_t floor_mark(const SpaceStores& stores) noexcept {
+  const Field* const floor = floor_of(stores);
+  return floor == nullptr ? 0 : floor->mark();
+}
+
+FloorImage floor_image(const SpaceStores& s) {
+  const Field* const floor = floor_of(s);
+  if (floor == nullptr || floor->mark() == 0) return {};
+  constexpr std::size_t kUnknown = 1000;  // along the longer side, where it does not say what it is made of
+  const double size_x_m = s.max_x_m - s.min_x_m, size_y_m = s.max_y_m - s.min_y_m;
+  FieldGrid grid = floor->grid();
+  if (grid.columns == 0 || grid.lines == 0) {
+    const double cell_m = std::max(size_x_m, size_y_m) / static_cast<double>(kUnknown);
+    grid = {static_cast<std::size_t>(std::ceil(size_x_m / cell_m)),
+            static_cast<std::size_t>(std::ceil(size_y_m / cell_m))};
+  }
+  const double pixels = static_cast<double>(grid.columns) * static_cast<double>(grid.lines);
+  if (pixels > static_cast<double>(FloorImage::kMostPixels)) {
+    const double coarser = std::sqrt(static_cast<double>(FloorImage::kMostPixels) / pixels);
+    const auto fewer = [coarser](std::size_t n) {
+      return std::max<std::size_t>(
+          1, std::min(FloorImage::kMostPixels, static_cast<std::size_t>(static_cast<double>(n) * coarser)));
+    };
+    grid = {fewer(grid.columns), fewer(grid.lines)};
+  }
+  FloorImage image{grid.columns, grid.lines, {}};
+  image.pixels.reserve(grid.columns * grid.lines);
+  for (std::size_t line = 0; line < grid.lines; ++line) {
+    const double y_m = s.max_y_m - (static_cast<double>(line) + 0.5) / static_cast<double>(grid.lines) * size_y_m;
+    for (std::size_t column = 0; column < grid.columns; ++column) {
+      const double x_m = s.min_x_m + (static_cast<double>(column) + 0.5) / static_cast<double>(grid.columns) * size_x_m;
+      const double level = std::clamp(floor->at(s, x_m, y_m, 0.0), 0.0, 1.0);
+      image.pixels.push_back(static_cast<std::uint8_t>(std::lround(255.0 * level)));
+    }
+  }
+  return image;
+}
+
+std::string png_of(const FloorImage& image) {
+  std::string lines;
+  lines.reserve((image.columns + 1) * image.lines);
+  for (std::size_t line = 0; line < image.lines; ++line) {
+    lines += '\0';  // as it is, without a filter
+    lines.append(reinterpret_cast<const char*>(image.pixels.data() + line * image.columns), image.columns);
+  }
+  const std::unique_ptr<libdeflate_compressor, decltype(&libdeflate_free_compressor)> compressor(
+      libdeflate_alloc_compressor(kQuick), &libdeflate_free_compressor);
+  TANDEM_CHECK(compressor != nullptr, "no memory to pack a floor");
+  std::string packed(libdeflate_zlib_compress_bound(compressor.get(), lines.size()), '\0');
+  packed.resize(libdeflate_zlib_compress(compressor.get(), lines.data(), lines.size(), packed.data(), packed.size()));
+  std::string png(kPngStart);
+  append_chunk(png, "IHDR", be32(image.columns) + be32(image.lines) + std::string(kGrey8));
+  append_chunk(png, "IDAT", packed);
+  append_chunk(png, "IEND", "");
+  return png;
+}
+
+hal::Result<FloorImage> floor_of_png(std::string_view png) {
+  const hal::Error refused{"the floor is no PNG picture as records hold them"};
+  const std::size_t body = kPngStart.size() + 8;  // of the header
+  const std::size_t data = body + kHeaderBytes + 4;
+  if (png.size() < data + 8 || !png.starts_with(kPngStart) || png.substr(body + 8, kGrey8.size()) != kGrey8)
+    return refused;
+  const std::size_t columns = from_be32(png.substr(body)), lines = from_be32(png.substr(body + 4));
+  const std::size_t packed = from_be32(png.substr(data));
+  if (columns == 0 || lines == 0 || columns > FloorImage::kMostPixels || lines > FloorImage::kMostPixels / columns ||
+      png.substr(data + 4, 4) != "IDAT" || packed > png.size() - data - 8)
+    return refused;
+  std::string raw((columns + 1) * lines, '\0');
+  const std::unique_ptr<libdeflate_decompressor, decltype(&libdeflate_free_decompressor)> decompressor(
+      libdeflate_alloc_decompressor(), &libdeflate_free_decompressor);
+  if (decompressor == nullptr || libdeflate_zlib_decompress(decompressor.get(), png.data() + data + 8, packed,
+                                                            raw.data(), raw.size(), nullptr) != LIBDEFLATE_SUCCESS)
+    return refused;
+  FloorImage image{columns, lines, std::vector<std::uint8_t>(columns * lines)};
+  for (std::size_t line = 0; line < lines; ++line) {
+    if (raw[line * (columns + 1)] != '\0') return refused;
+    std::copy_n(raw.data() + line * (columns + 1) + 1, columns, image.pixels.data() + line * columns);
+  }
+  return image;
+}
+
+}  // namespace tandem::core

@@ -1,0 +1,51 @@
+// Scene and members of a run as JSON: what records hold and views show of all that engines do not move.
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/space/sketch.hpp"
+#include "core/space/space.hpp"
+#include "core/space/stores.hpp"
+#include "hal/json/json.hpp"
+#include "hal/robot_kind.hpp"
+
+namespace tandem::core {
+
+/// {"arena": {min_x, min_y, max_x, max_y}, "objects": […], "lights": […], "borders": [[x0, y0, x1, y1, wall], …]}, in
+/// metres and radians. Movable objects stand where they are at the moment.
+hal::Json scene_json(const SpaceStores& stores);
+
+/// Two are equal when the scenes are, but for where movable objects stand.
+struct SceneVersion {
+  std::uint64_t immovables = 0, leds = 0, movables = 0, lights = 0;
+  bool operator==(const SceneVersion&) const = default;
+};
+/// Allocates nothing; to be asked for in every tick.
+SceneVersion scene_version(const SpaceStores& stores) noexcept;
+
+/// What there is to draw of a kind: {"radius", "height", "leds": [[x, y, z], …], "leds_on_turret", "gripper_reach",
+/// "rotor_arm"}, in metres in the body frame.
+hal::Json body_json(const hal::RobotKind& kind);
+
+/// Rows of the living robots' bodies, in the order in which they lie in memory.
+std::vector<std::uint32_t> living_rows(const SpaceStores& stores);
+
+/// Whether the robot in row `a` of bodies stands before the one in `b` in the file, or came earlier.
+bool came_earlier(const SpaceStores& stores, std::uint32_t a, std::uint32_t b) noexcept;
+
+/// {"ids": […], "kinds": […], "kind": [index into kinds, …], "real": [index into ids, …], "bodies": [of each kind],
+/// "order": [index into ids, …]} of the robots in these rows of bodies; "order" is that in which the file lists them
+/// and hooks added them, and missing where that is how they stand.
+hal::Json members_json(const Space& space, std::span<const std::uint32_t> rows);
+
+/// What hooks drew: {"shapes": [{"kind": "line" | "polygon" | "circle" | "text", "points": [[x, y, z], …], "radius",
+/// "text", "color": [r, g, b], "width", "filled", "opacity"}, …]}.
+hal::Json sketch_json(const Sketch& sketch);
+/// The shapes that it holds; what makes no sense is left out.
+Sketch sketch_of_json(const hal::Json& json);
+/// Differs when the drawing does.
+std::uint64_t sketch_mark(const Sketch& sketch) noexcept;
+
+}  // namespace tandem::core

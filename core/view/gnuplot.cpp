@@ -1,0 +1,51 @@
+#include "core/view/gnuplot.hpp"
+
+#include <filesystem>
+
+#include "hal/program.hpp"
+
+namespace tandem::core {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Runs gnuplot without the user's settings. @returns what it drew
+hal::Result<std::string> run_gnuplot(const std::string& script) {
+  const std::string program = hal::find_program("gnuplot");
+  if (program.empty())
+    return hal::Error{"figures are drawn by gnuplot, which is not installed: sudo apt-get install gnuplot-nox"};
+  auto end = hal::run_program(program, {"-d"}, script);
+  if (!end.ok()) return end.error();
+  if (end->code != 0) return hal::Error{"gnuplot gave up" + (end->errors.empty() ? std::string() : ": " + end->errors)};
+  return std::move(end).value().output;
+}
+
+}  // namespace
+
+hal::Result<FigureFormat> figure_format(const std::string& path) {
+  const std::string ending = fs::path(path).extension();
+  if (ending == ".svg") return FigureFormat::Svg;
+  if (ending == ".png") return FigureFormat::Png;
+  if (ending == ".pdf") return FigureFormat::Pdf;
+  return hal::Error{"'" + path + "' must end in .svg, .png or .pdf"};
+}
+
+hal::Status can_draw_figures() {
+  const auto drawn = run_gnuplot("exit\n");
+  return drawn.ok() ? hal::Status{} : drawn.error();
+}
+
+hal::Status draw_figure(const std::string& script, hal::OutputFile& file) {
+  auto picture = run_gnuplot(script);
+  if (!picture.ok()) return picture.error();
+  const hal::Status written = file.write(*picture);
+  return written.ok() ? file.commit() : written;
+}
+
+std::string gnuplot_text(const std::string& text) {
+  std::string out = "'";
+  for (const char c : text) out += c == '\'' || c == '`' || static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
+  return out + "'";
+}
+
+}  // namespace tandem::core
