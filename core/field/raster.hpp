@@ -31,6 +31,8 @@ class Raster {
   bool empty() const noexcept { return pixels_ == nullptr; }
   /// Where it has pixels: of the nearest.
   float at(double x_m, double y_m) const noexcept;
+  std::size_t columns() const noexcept { return columns_; }
+  std::size_t lines() const noexcept { return lines_; }
   /// Fingerprint of all pixels; 0: there are none.
   std::uint64_t mark() const noexcept { return mark_; }
 

@@ -10,6 +10,7 @@
 #include "core/space/ids.hpp"
 #include "core/space/sketch.hpp"
 #include "core/space/space.hpp"
+#include "hal/controls.hpp"
 #include "hal/plugin.hpp"
 #include "hal/result.hpp"
 #include "hal/time.hpp"
@@ -80,14 +81,18 @@ class Hook {
   /// needs neither. What `save` leaves out survives going back: a count of attempts, say.
   virtual std::any save() const { return {}; }
   virtual void restore(const std::any& /*saved*/) {}
+
+  /// Declares what people may change while the run goes on. Called between steps; snapshots keep the values.
+  virtual void controls(HookContext&, hal::Controls& /*controls*/) {}
 };
 
 /// A class of hooks: what a plug-in registers.
 struct HookType {
   static constexpr std::string_view kCategory = "hook";
-  static constexpr std::uint32_t kNumber = 3;
-  using Crosses = hal::Layouts<Hook, HookContext, Space, Checkpoints, Sketch, Measures, Element, Problem,
-                               hal::ParamVisitor, hal::RobotKind, hal::RobotKind::Crosses>;
+  static constexpr std::uint32_t kNumber = 4;
+  using Crosses =
+      hal::Layouts<Hook, HookContext, Space, Checkpoints, Sketch, Sketch::Shape, Sketch::Point, Measures, Element,
+                   Problem, hal::ParamVisitor, hal::Controls, hal::RobotKind, hal::RobotKind::Crosses>;
   std::string_view name;
   std::string_view summary;
   /// Reads its options from the file; problems are reported with their lines.

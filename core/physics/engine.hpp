@@ -60,6 +60,8 @@ class Engine {
   virtual std::shared_ptr<const void> keep() { return nullptr; }
   /// Goes on from what `keep` of this engine gave. The stores are as they were then.
   virtual void put_back(const std::shared_ptr<const void>& /*kept*/) {}
+  /// About how much memory what `keep` gave takes, in bytes.
+  virtual std::size_t bytes_of(const std::shared_ptr<const void>& /*kept*/) const { return 0; }
 };
 
 class Solver;  // core/physics/solver.hpp
@@ -81,7 +83,7 @@ struct EngineOrder {
 /// A kind of physics engine.
 struct EngineType : KnownEngine {
   static constexpr std::string_view kCategory = "engine";
-  static constexpr std::uint32_t kNumber = 2;
+  static constexpr std::uint32_t kNumber = 3;
   using Crosses = hal::Layouts<StoreLayouts, Engine, PhysicsContext, Trouble, EngineOrder, EngineOrder::Part, Element,
                                Problem, hal::ParamVisitor>;
   std::string_view summary;  ///< for the manual

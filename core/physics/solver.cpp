@@ -86,4 +86,13 @@ void SolverEngine::put_back(const std::shared_ptr<const void>& kept) {
   }
 }
 
+std::size_t SolverEngine::bytes_of(const std::shared_ptr<const void>& kept) const {
+  const auto& all = *static_cast<const std::vector<std::shared_ptr<const void>>*>(kept.get());
+  std::size_t bytes = 0;
+  for (std::size_t i = 0; i < parts_.size(); ++i) {
+    if (all[i] != nullptr) bytes += parts_[i].solver->bytes_of(all[i].get());
+  }
+  return bytes;
+}
+
 }  // namespace tandem::core

@@ -45,6 +45,8 @@ class Solver {
   virtual std::shared_ptr<const void> keep() { return nullptr; }
   /// Goes on from what its own `keep` gave. Never called for null.
   virtual void put_back(const void* /*kept*/) {}
+  /// About how much memory what its `keep` gave takes, in bytes. Never called for null.
+  virtual std::size_t bytes_of(const void* /*kept*/) const { return 0; }
 
   std::vector<Trouble> trouble;  ///< of the last tick; emptied by whoever collects it
 };
@@ -71,6 +73,7 @@ class SolverEngine final : public Engine {
   void collect(std::vector<Trouble>& all) override;
   std::shared_ptr<const void> keep() override;
   void put_back(const std::shared_ptr<const void>& kept) override;
+  std::size_t bytes_of(const std::shared_ptr<const void>& kept) const override;
 
  private:
   struct Part {

@@ -134,6 +134,14 @@ std::shared_ptr<const WorldMemory::Image> WorldMemory::copy() const {
   return image;
 }
 
+std::size_t WorldMemory::bytes_of(const Image& image) noexcept {
+  std::size_t bytes = sizeof image;
+  for (const auto* sizes : {&image.shared, &image.large}) {
+    for (const std::size_t size : *sizes) bytes += size + sizeof size;
+  }
+  return bytes;
+}
+
 void WorldMemory::put_back(const Image& image) noexcept {
   clear();
   const std::byte* from = image.bytes.get();

@@ -31,6 +31,7 @@ class WorldMemory {
   std::shared_ptr<const Image> copy() const;
   /// `image` is of this memory.
   void put_back(const Image& image) noexcept;
+  static std::size_t bytes_of(const Image& image) noexcept;
 
   /// While one lives, the libraries' allocations on this thread go to `memory`; null: to the heap.
   class Use {

@@ -14,6 +14,9 @@ class ExternalRobots {
   virtual void latch(World& world) = 0;
   /// After every port holds its virtual reading and before any controller steps: real readings are fused in.
   virtual void after_sense(World& world) = 0;
+  /// After the controllers stepped and before commands are limited: commands of robots whose controllers step elsewhere
+  /// (`World::set_steps_elsewhere`) are written. @returns false: the tick is given up, and the run with it
+  virtual bool after_control(World& /*world*/) { return true; }
   /// After commands were filtered: they are sent to real robots at once.
   virtual void after_filter(World& world) = 0;
 };

@@ -14,6 +14,7 @@
 #include "hal/device/gripper.hpp"
 #include "hal/device/pan_tilt.hpp"
 #include "hal/device/range_and_bearing.hpp"
+#include "hal/device_list.hpp"
 
 namespace tandem::core {
 namespace {
@@ -48,26 +49,37 @@ void reset_ports(const hal::PortType& type, RobotBlock& block, std::size_t port)
   for (std::size_t i = 0; i < block.capacity; ++i) type.reset(block.ports[port] + i * type.size);
 }
 
-/// Gives the block an array for each port of its group that it has none for yet.
-void add_port_arrays(const RobotGroup& group, RobotBlock& block, Slab* slab) {
+/// Gives the block an array for each port of its group that it has none for yet. At the start (`slab` given) the arrays
+/// of a group's blocks are parts of one, of `start_rows` rows: who looks at the whole group finds its robots in a row.
+void add_port_arrays(SpaceStores& stores, const RobotGroup& group, RobotBlock& block, Slab* slab,
+                     std::size_t start_rows) {
+  RobotBlock& first = stores.blocks[group.blocks.front()];
+  if (slab != nullptr && &block != &first) add_port_arrays(stores, group, first, slab, start_rows);
   for (std::size_t p = block.ports.size(); p < group.ports.size(); ++p) {
     const hal::PortType& type = *group.ports[p];
-    block.ports.push_back(make_array(block, slab, type.size * block.capacity, type.align));
+    if (slab != nullptr && &block != &first) {
+      block.ports.push_back(first.ports[p] + (block.first_row - first.first_row) * type.size);
+    } else {
+      const std::size_t rows = slab != nullptr ? start_rows : block.capacity;
+      block.ports.push_back(make_array(block, slab, type.size * rows, type.align));
+    }
     reset_ports(type, block, p);
   }
 }
 
 /// A controller constructor's view of the robot that it is to drive.
-class ConstructedRobot final : public hal::Robot {
+class ConstructedRobot final : public hal::Robot, public hal::DeviceList {
  public:
-  ConstructedRobot(const Scenario& scenario, const hal::Catalog& catalog, const SpaceStores& stores, RobotGroup& group,
-                   RobotBlock& block, Slab* slab, std::uint64_t run_seed, hal::RobotLog::Sink& messages)
+  ConstructedRobot(const Scenario& scenario, const hal::Catalog& catalog, SpaceStores& stores, RobotGroup& group,
+                   RobotBlock& block, Slab* slab, std::size_t start_rows, std::uint64_t run_seed,
+                   hal::RobotLog::Sink& messages)
       : scenario_(scenario),
         catalog_(catalog),
         stores_(stores),
         group_(group),
         block_(block),
         slab_(slab),
+        start_rows_(start_rows),
         run_seed_(run_seed),
         messages_(messages) {}
 
@@ -82,6 +94,20 @@ class ConstructedRobot final : public hal::Robot {
   std::string_view id() const noexcept override { return id_; }
   const hal::RobotKind& kind() const noexcept override { return *group_.kind; }
   std::uint64_t run_seed() const noexcept override { return run_seed_; }
+  std::vector<hal::ListedDevice> devices() const override {
+    std::vector<hal::ListedDevice> listed;
+    const ControllerConfig& config = scenario_.controllers[group_.config];
+    const auto add = [&](const std::vector<DeviceChoice>& choices, hal::Role role) {
+      for (const DeviceChoice& choice : choices) {
+        const auto* const port = catalog_.find<hal::PortType>(hal::port_entry(choice.device, role));
+        if (port != nullptr) listed.push_back({port, choice.options.name});
+      }
+    };
+    add(config.sensors, hal::Role::Sensor);
+    add(config.actuators, hal::Role::Actuator);
+    return listed;
+  }
+  void* port(const hal::PortType& type) override { return take(type); }
 
  protected:
   void* take(const hal::PortType& type) override {
@@ -98,7 +124,7 @@ class ConstructedRobot final : public hal::Robot {
                              "' has another layout in the controller's library than in "
                              "this program; rebuild the library");
     }
-    add_port_arrays(group_, block_, slab_);
+    add_port_arrays(stores_, group_, block_, slab_, start_rows_);
     return block_.ports[i] + slot_ * type.size;
   }
 
@@ -141,10 +167,11 @@ class ConstructedRobot final : public hal::Robot {
 
   const Scenario& scenario_;
   const hal::Catalog& catalog_;
-  const SpaceStores& stores_;
+  SpaceStores& stores_;
   RobotGroup& group_;
   RobotBlock& block_;
   Slab* slab_;
+  std::size_t start_rows_;
   std::uint64_t run_seed_;
   hal::RobotLog::Sink& messages_;
   std::size_t slot_ = 0;
@@ -193,6 +220,7 @@ void RobotFactory::make(const std::vector<RobotRequest>& requests, Problems& pro
   }
   media_.fit(stores_);
   slab_ = nullptr;
+  new_params_.clear();
   end_kept();
   if (!start_groups_.empty()) return;
   start_groups_ = stores_.groups;
@@ -236,6 +264,24 @@ void RobotFactory::begin_anew(std::uint64_t seed) noexcept {
   for (RobotGroup& group : stores_.groups) group.blocks.clear();
   for (const auto& column : stores_.columns.all()) column->of_block.clear();  // also those that came since
   for (const auto& [column, of_block] : start_columns_) column->of_block = of_block;
+}
+
+bool RobotFactory::change_params(const Scenario& changed, Problems& problems) {
+  std::vector<std::pair<std::shared_ptr<RobotItem>, std::shared_ptr<const void>>> wanted;
+  for (std::size_t g = 0; g < start_groups_.size(); ++g) {
+    auto item = std::make_shared<RobotItem>(*start_groups_[g].item);
+    const auto first = std::find(group_of_item_.begin(), group_of_item_.end(), g);
+    item->params = changed.robots[static_cast<std::size_t>(first - group_of_item_.begin())].params;
+    auto params = read_params(start_groups_[g], *item, changed, problems);
+    wanted.emplace_back(std::move(item), std::move(params));
+  }
+  if (has_errors(problems)) return false;
+  for (std::size_t g = 0; g < start_groups_.size(); ++g) {
+    start_groups_[g].item = wanted[g].first;
+    start_groups_[g].params = wanted[g].second;
+  }
+  new_params_.assign(start_groups_.size(), 1);
+  return true;
 }
 
 std::vector<std::vector<std::uint32_t>> RobotFactory::group(const std::vector<RobotRequest>& requests) {
@@ -292,7 +338,7 @@ bool RobotFactory::prepare_group(std::size_t g, Problems& problems) {
   }
   group.controller = type.value();
   Problems found;
-  group.params = read_params(group, item, found);
+  group.params = read_params(group, item, scenario_, found);
   // Listed devices must exist even when the controller does not take them.
   auto factories = std::make_shared<GroupFactories>();
   bool good = read_devices(group, hal::Role::Sensor, *factories, found);
@@ -309,8 +355,8 @@ bool RobotFactory::prepare_group(std::size_t g, Problems& problems) {
 
 /// The parameters of a robot's controller; null, with a problem, where the controller's own description of them throws.
 std::shared_ptr<const void> RobotFactory::read_params(const RobotGroup& group, const RobotItem& item,
-                                                      Problems& problems) const {
-  const ControllerConfig& config = scenario_.controllers[group.config];
+                                                      const Scenario& scenario, Problems& problems) const {
+  const ControllerConfig& config = scenario.controllers[group.config];
   const Element& params = item.params ? *item.params : config.params;
   std::string why = "controller '" + config.id + "' threw while it read its parameters";
   try {
@@ -404,6 +450,7 @@ std::uint32_t RobotFactory::add_block(std::size_t g, std::size_t capacity) {
 
 bool RobotFactory::make_blocks(std::size_t g, const std::vector<RobotRequest>& requests,
                                const std::vector<std::uint32_t>& members, Problems& problems) {
+  start_rows_ = members.size();
   for (std::size_t begin = 0; begin < members.size(); begin += kBlockRows) {
     const std::size_t count = std::min(kBlockRows, members.size() - begin);
     const std::uint32_t block = add_block(g, count);
@@ -466,13 +513,14 @@ std::string RobotFactory::construct(Slot at, const std::shared_ptr<const void>& 
   RobotBlock& block = stores_.blocks[at.block];
   RobotGroup& group = stores_.groups[block.group];
   const hal::ControllerType& type = *group.controller;
-  ConstructedRobot robot(scenario_, loader_.catalog(), stores_, group, block, slab_, seed_, messages_);
+  ConstructedRobot robot(scenario_, loader_.catalog(), stores_, group, block, slab_, start_rows_, seed_, messages_);
   robot.select(at.slot, stores_.bodies.entity[block.first_row + at.slot]);
   std::string why;
   const hal::PluginCall call(&name_constructor, this, at.block, at.slot);
   try {
     if (block.constructed[at.slot] != 0) {  // of the run before
-      if (type.reset(block.controller(at.slot), robot)) return {};
+      const bool same_params = new_params_.empty() || new_params_[block.group] == 0;
+      if (same_params && type.reset(block.controller(at.slot), robot)) return {};
       block.constructed[at.slot] = 0;
       type.destroy(block.controller(at.slot));
     }
@@ -535,7 +583,7 @@ void RobotFactory::complete(std::size_t g) {
   devices_.blocks.resize(stores_.blocks.size());
   note_needs(group);
   for (const std::size_t b : group.blocks) {
-    add_port_arrays(group, stores_.blocks[b], slab_);
+    add_port_arrays(stores_, group, stores_.blocks[b], slab_, start_rows_);
     add_rows(b);
     BlockDevices& devices = devices_.blocks[b];
     if (devices.sensors.size() == group.ports.size()) continue;
@@ -638,7 +686,7 @@ hal::Result<RobotId> RobotFactory::add(const RobotItem& item, const Pose& pose,
   const bool own_params = !same_params(stores_.groups[g].item->params, item.params);
   if (own_params) {
     Problems problems;
-    params = read_params(stores_.groups[g], item, problems);
+    params = read_params(stores_.groups[g], item, scenario_, problems);
     if (has_errors(problems)) return cannot_be_made(item, problems);
   }
   const Slot slot = free_slot(g);

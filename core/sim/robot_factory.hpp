@@ -64,6 +64,10 @@ class RobotFactory {
   /// `make` made, so that the next `make` fills it anew: groups, blocks, ports, and controllers that can be reset.
   void begin_anew(std::uint64_t seed) noexcept;
 
+  /// Takes over the parameters of controllers from `changed`, which otherwise is the scenario of this factory: the next
+  /// `make` after `begin_anew` constructs controllers with them. False, with problems: nothing has changed.
+  bool change_params(const Scenario& changed, Problems& problems);
+
   /// Adds one robot, in the first free row of its group or a new one. `accepts(row)` is asked once the body stands in
   /// its row, before its controller is made. Errors: what is wrong with the parameters; what `accepts` says; a
   /// controller that throws. Nobody can tell then that it was tried.
@@ -77,7 +81,8 @@ class RobotFactory {
   std::vector<std::vector<std::uint32_t>> group(const std::vector<RobotRequest>& requests);
   void sort_by_place(const std::vector<RobotRequest>& requests, std::vector<std::uint32_t>& members) const;
   bool prepare_group(std::size_t g, Problems& problems);
-  std::shared_ptr<const void> read_params(const RobotGroup& group, const RobotItem& item, Problems& problems) const;
+  std::shared_ptr<const void> read_params(const RobotGroup& group, const RobotItem& item, const Scenario& scenario,
+                                          Problems& problems) const;
   bool read_devices(const RobotGroup& group, hal::Role role, GroupFactories& factories, Problems& problems);
   bool make_blocks(std::size_t g, const std::vector<RobotRequest>& requests, const std::vector<std::uint32_t>& members,
                    Problems& problems);
@@ -110,9 +115,11 @@ class RobotFactory {
   std::vector<RobotBlock> start_blocks_;
   std::vector<std::pair<ColumnArrays*, std::vector<std::byte*>>> start_columns_;
   std::size_t start_robots_ = 0;
-  std::vector<RobotBlock> kept_;  // start_blocks_ with their controllers, to be filled anew
-  std::size_t filled_ = 0;        // how many of them are
-  Slab* slab_ = nullptr;          // where blocks get their memory; null: each on its own
+  std::vector<RobotBlock> kept_;          // start_blocks_ with their controllers, to be filled anew
+  std::size_t filled_ = 0;                // how many of them are
+  std::vector<std::uint8_t> new_params_;  // by group: 1 where controllers are to be constructed with others; or empty
+  Slab* slab_ = nullptr;                  // where blocks get their memory; null: each on its own
+  std::size_t start_rows_ = 0;            // of the group that is being made at the start
 };
 
 /// Ends the life of every controller. Before the loader closes its plug-ins.

@@ -6,9 +6,39 @@
 #include "core/device/device.hpp"
 #include "core/hook/hook.hpp"
 #include "core/physics/solver.hpp"
+#include "hal/open_params.hpp"
 
 namespace tandem::core {
 namespace {
+
+/// Makes the paths of an element such that whoever reads it elsewhere finds the same files.
+class PathResolver final : public hal::ParamVisitor {
+ public:
+  explicit PathResolver(Element& element) : element_(element) {}
+
+  void text(std::string_view name, std::string&, std::string_view) override {
+    if (name != hal::kPathParam) {
+      last_ = name;
+      return;
+    }
+    for (Element::Attribute& a : element_.attributes) {
+      if (a.name == last_) a.value = hal::path_beside(a.value, element_.file);
+    }
+  }
+  void number(std::string_view, double&, const hal::Unit&, hal::Range, std::string_view) override {}
+  void integer(std::string_view, std::int64_t&, hal::Range, std::string_view) override {}
+  void flag(std::string_view, bool&, std::string_view) override {}
+  void choice(std::string_view, std::string&, std::span<const std::string_view>, std::string_view) override {}
+  void vector(std::string_view, std::array<double, 3>&, const hal::Unit&, std::string_view) override {}
+
+ protected:
+  void visit_group(std::string_view, void*, Describe, std::string_view) override {}
+  void visit_list(std::string_view, hal::ParamList&, std::string_view) override {}
+
+ private:
+  Element& element_;
+  std::string last_;  // name of the text before
+};
 
 /// Adds to an element what is described and left out there. A description that throws leaves it as it is: it was read
 /// before, so nothing depends on it.
@@ -18,6 +48,8 @@ void complete(Element& element, Describe&& describe) {
   ElementWriter writer(completed);
   try {
     describe(writer);
+    PathResolver paths(completed);
+    describe(paths);
     element = std::move(completed);
   } catch (...) {
   }

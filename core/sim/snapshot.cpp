@@ -91,6 +91,22 @@ hal::Status SpaceCopy::copy_block(const Space& space, std::size_t b) {
   return {};
 }
 
+std::size_t SpaceCopy::bytes() const noexcept {
+  const auto of = [](const auto& array) { return array.size() * sizeof(array[0]); };
+  std::size_t all = sizeof *this + memory_.bytes() + of(groups_) + of(blocks_) + of(robots_) + of(living_) +
+                    of(names_) + of(objects_) + of(object_motion_) + of(object_region_) + of(joints_) + of(lights_) +
+                    of(sounds_) + body_index_.bytes() + static_index_.bytes() + movable_index_.bytes();
+  for (const auto* numbers : {&bodies_.x_m, &bodies_.y_m, &bodies_.cos_h, &bodies_.sin_h, &bodies_.left_m_s,
+                              &bodies_.right_m_s, &bodies_.left_m, &bodies_.right_m})
+    all += of(*numbers);
+  all += of(bodies_.radius_m) + of(bodies_.flags) + of(bodies_.entity) + of(bodies_.region) + of(bodies_.motion);
+  for (const Block& block : blocks_) {
+    for (const auto& port : block.ports) all += port.size();
+    for (const auto& column : block.columns) all += column.size();
+  }
+  return all;
+}
+
 SpaceCopy::~SpaceCopy() {
   for (const Block& block : blocks_) {
     for (std::size_t slot = 0; slot < block.copied; ++slot) {

@@ -21,11 +21,15 @@ struct SavedWorld;  // core/sim/world.cpp: everything beside the space
 class Snapshot {
  public:
   hal::Tick tick() const noexcept { return tick_; }
+  /// About how much memory it takes, but for what controllers and hooks hold outside of themselves.
+  std::size_t bytes() const noexcept { return bytes_; }
 
  private:
   friend class World;
-  Snapshot(hal::Tick tick, std::shared_ptr<const SavedWorld> state) : tick_(tick), state_(std::move(state)) {}
+  Snapshot(hal::Tick tick, std::size_t bytes, std::shared_ptr<const SavedWorld> state)
+      : tick_(tick), bytes_(bytes), state_(std::move(state)) {}
   hal::Tick tick_;
+  std::size_t bytes_;
   std::shared_ptr<const SavedWorld> state_;
 };
 
@@ -42,6 +46,7 @@ class SpaceCopy {
   /// an earlier one. `space` and `devices` are those that it was taken from: controllers and ports stand at the same
   /// addresses as then. Errors: a copy constructor that throws; the robot is then halted.
   hal::Status put_back(Space& space, RobotDevices& devices) const;
+  std::size_t bytes() const noexcept;
 
  private:
   SpaceCopy() = default;

@@ -14,9 +14,9 @@ namespace tandem::core {
 
 // --- the step ---
 
-void World::step() {
+bool World::step() {
   Impl& w = *impl_;
-  if (w.state != RunState::Running) return;
+  if (w.state != RunState::Running) return true;
   w.stores().sketch.clear();
   w.call_hooks("before_step", [](Hook& hook, HookContext& c) { hook.before_step(c); });
   w.paint_fields();
@@ -29,11 +29,15 @@ void World::step() {
   } else {
     w.each_block(w.sensing, [&w](std::size_t block) { w.sense(block); });
     w.external->after_sense(*this);
-    w.each_block(w.controlling, [&w](std::size_t block) {
-      w.control(block);
-      w.limit(block);
-    });
-    w.external->after_filter(*this);
+    w.each_block(w.controlling, [&w](std::size_t block) { w.control(block); });
+    const bool whole = w.external->after_control(*this);
+    w.each_block(w.controlling, [&w](std::size_t block) { w.limit(block); });
+    if (whole) w.external->after_filter(*this);
+    if (!whole) {
+      w.in_controllers = false;
+      w.report_messages();
+      return false;
+    }
   }
   w.in_controllers = false;
   w.report_messages();
@@ -44,6 +48,7 @@ void World::step() {
   w.call_hooks("is_done", [&done](Hook& hook, HookContext& c) { done = hook.is_done(c) || done; });
   if (done && w.state == RunState::Running) w.state = RunState::Done;
   do_requests(false);
+  return true;
 }
 
 void World::Impl::act() {
@@ -88,16 +93,37 @@ void World::Impl::control(std::size_t index) {
   RobotBlock& block = stores().blocks[index];
   const hal::ControllerType& type = *stores().groups[block.group].controller;
   hal::PluginCall call(&name_step, this, index);
+  std::array<std::uint8_t, kBlockRows> memory;
+  const std::uint8_t* const skipped = not_stepped(index, memory);
   std::size_t next = 0;
   while (next < block.used) {
-    next =
-        type.step_row(block.controllers, block.controller_stride, next, block.used, block.halted.data(), call.fault());
+    next = type.step_row(block.controllers, block.controller_stride, next, block.used, skipped, call.fault());
     if (next == block.used) break;
-    faults[index].message.swap(call.fault().message);
-    block.halted[next] = kThrewInThisTick;  // reported, and its actuators made safe, after the phase
-    block_trouble[index] = 1;
+    note_thrown(index, next, std::move(call.fault().message));
     ++next;
   }
+}
+
+/// By slot, not 0: halted, or its controller steps elsewhere. In `memory` where the two differ.
+const std::uint8_t* World::Impl::not_stepped(std::size_t index,
+                                             std::array<std::uint8_t, kBlockRows>& memory) const noexcept {
+  const SpaceStores& s = space.stores();
+  const RobotBlock& block = s.blocks[index];
+  const std::uint8_t* skipped = block.halted.data();
+  for (const RobotId robot : elsewhere) {
+    if (!s.contains(robot) || s.robots[robot.index].block != index) continue;
+    if (skipped != memory.data()) memory = block.halted;
+    skipped = memory.data();
+    memory[s.robots[robot.index].slot] = 1;
+  }
+  return skipped;
+}
+
+/// Reported, and its actuators made safe, after the phase.
+void World::Impl::note_thrown(std::size_t index, std::size_t slot, std::string what) {
+  faults[index].message = std::move(what);
+  stores().blocks[index].halted[slot] = kThrewInThisTick;
+  block_trouble[index] = 1;
 }
 
 void World::Impl::limit(std::size_t index) {
@@ -122,6 +148,13 @@ void World::Impl::note_limited(std::size_t index, std::size_t slot, const hal::L
     block_trouble[index] = 1;
     stores().bodies.flags[block.first_row + slot] |= kNotFinite;
   }
+}
+
+void World::limit_commands() {
+  Impl& w = *impl_;
+  w.fit_ledgers();  // robots may have come since the last step
+  for (std::size_t block = 0; block < w.stores().blocks.size(); ++block) w.limit(block);
+  w.report_trouble();
 }
 
 /// Remembers the first robot of the block whose speed is hardly meant, to be named after the phase; one of a group is
@@ -271,15 +304,102 @@ void World::finish() {
 
 // --- snapshots ---
 
+namespace {
+
+/// Takes down the values of all controls, in their order.
+class ControlReader final : public hal::Controls {
+ public:
+  bool number(std::string_view, double& value, const hal::Unit&, hal::Range, std::string_view) override {
+    return take(value);
+  }
+  bool integer(std::string_view, std::int64_t& value, hal::Range, std::string_view) override { return take(value); }
+  bool flag(std::string_view, bool& value, std::string_view) override { return take(value); }
+  bool choice(std::string_view, std::string& value, std::span<const std::string_view>, std::string_view) override {
+    return take(value);
+  }
+  bool text(std::string_view, std::string& value, std::string_view) override { return take(value); }
+  bool button(std::string_view, std::string_view) override { return take(std::monostate{}); }
+
+  std::vector<ControlValue> values;
+
+ private:
+  template <class T>
+  bool take(const T& value) {
+    values.emplace_back(value);
+    return false;
+  }
+};
+
+/// Gives all controls the values that were taken down.
+class ControlWriter final : public hal::Controls {
+ public:
+  explicit ControlWriter(const std::vector<ControlValue>& values) : values_(values) {}
+  bool number(std::string_view, double& value, const hal::Unit&, hal::Range, std::string_view) override {
+    return give(value);
+  }
+  bool integer(std::string_view, std::int64_t& value, hal::Range, std::string_view) override { return give(value); }
+  bool flag(std::string_view, bool& value, std::string_view) override { return give(value); }
+  bool choice(std::string_view, std::string& value, std::span<const std::string_view>, std::string_view) override {
+    return give(value);
+  }
+  bool text(std::string_view, std::string& value, std::string_view) override { return give(value); }
+  bool button(std::string_view, std::string_view) override {
+    ++next_;
+    return false;
+  }
+
+ private:
+  template <class T>
+  bool give(T& value) {
+    const T* const was = next_ < values_.size() ? std::get_if<T>(&values_[next_]) : nullptr;
+    ++next_;
+    if (was == nullptr || *was == value) return false;
+    value = *was;
+    return true;
+  }
+  const std::vector<ControlValue>& values_;
+  std::size_t next_ = 0;
+};
+
+}  // namespace
+
+/// @throws what the hook does
+std::vector<ControlValue> World::Impl::control_values(std::size_t hook) {
+  ControlReader reader;
+  HookContext context = hook_context();
+  hooks[hook]->controls(context, reader);
+  return std::move(reader.values);
+}
+
+hal::Status World::Impl::put_back_controls(const SavedWorld& saved) {
+  hal::Status all;
+  hook_phase = "controls";
+  for (std::size_t i = 0; i < hooks.size(); ++i) {
+    if (saved.hook_controls[i].empty()) continue;
+    const hal::PluginCall marked(&name_hook, this, i);
+    ControlWriter writer(saved.hook_controls[i]);
+    HookContext context = hook_context();
+    try {
+      hooks[i]->controls(context, writer);
+    } catch (const std::exception& e) {
+      all = hal::Error{"hook '" + hook_names[i] + "' threw in controls" + at_tick() + ": " + e.what()};
+    } catch (...) {
+      all = hal::Error{"hook '" + hook_names[i] + "' threw in controls" + at_tick()};
+    }
+  }
+  return all;
+}
+
 hal::Result<Snapshot> World::snapshot() {
   Impl& w = *impl_;
-  if (w.external != nullptr) return hal::Error{"no snapshot: real robots take part, which cannot be put back"};
+  if (w.external != nullptr) return hal::Error{"no snapshot: real robots or peers take part, which cannot be put back"};
   auto saved = std::make_shared<SavedWorld>();
   w.hook_phase = "save";
   for (std::size_t i = 0; i < w.hooks.size(); ++i) {
     const hal::PluginCall marked(&Impl::name_hook, &w, i);
     try {
       saved->hooks.push_back(w.hooks[i]->save());
+      saved->hook_controls.push_back(w.control_values(i));
     } catch (const std::exception& e) {
       return hal::Error{"no snapshot: hook '" + w.hook_names[i] + "' threw in save" + w.at_tick() + ": " + e.what()};
     } catch (...) {
@@ -300,15 +420,31 @@ hal::Result<Snapshot> World::snapshot() {
   saved->reach_m = w.reach_m;
   saved->indexed = w.indexed_version == w.stores().immovables_version;
   saved->measures = w.measures;
-  return Snapshot(w.tick, std::move(saved));
+  saved->excess_named = w.excess_named;
+  saved->sketch = w.stores().sketch;
+  std::size_t bytes = sizeof *saved + saved->space->bytes();
+  for (std::size_t i = 0; i < w.engines.size(); ++i) {
+    if (saved->engines[i] != nullptr) bytes += w.engines[i]->bytes_of(saved->engines[i]);
+  }
+  return Snapshot(w.tick, bytes, std::move(saved));
+}
+
+hal::Result<Snapshot> World::snapshot_of_all() {
+  hal::Result<Snapshot> taken = snapshot();
+  if (!taken.ok()) return taken;
+  auto saved = std::const_pointer_cast<SavedWorld>(taken.value().state_);  // nobody else has it yet
+  saved->checkpoints = impl_->kept_checkpoints;
+  return taken;
 }
 
 hal::Status World::restore(const Snapshot& snapshot) {
   Impl& w = *impl_;
   const SavedWorld& saved = *snapshot.state_;
   if (saved.of != w.identity) return hal::Error{"the snapshot is of another world"};
-  if (w.external != nullptr) return hal::Error{"no way back: real robots take part, which cannot be put back"};
+  if (w.external != nullptr) return hal::Error{"no way back: real robots or peers take part, which cannot be put back"};
+  const hal::Status controls = w.put_back_controls(saved);  // what hooks do about it to the space does not count
   hal::Status all = saved.space->put_back(w.space, w.devices);
+  if (all.ok()) all = controls;
   w.media.fit(w.stores());
   for (std::size_t i = 0; i < w.engines.size(); ++i) w.engines[i]->put_back(saved.engines[i]);
   w.reach_m = saved.reach_m;
@@ -324,6 +460,9 @@ hal::Status World::restore(const Snapshot& snapshot) {
   w.faults.assign(w.clamped.size(), {});
   w.said.assign(w.clamped.size(), {});
   w.excess.assign(w.clamped.size(), {});
+  w.excess_named = saved.excess_named;
+  w.stores().sketch = saved.sketch;
+  if (saved.checkpoints) w.kept_checkpoints = *saved.checkpoints;
   w.strays.clear();
   w.hook_phase = "restore";
   for (std::size_t i = 0; i < w.hooks.size(); ++i) {
@@ -366,8 +505,67 @@ void World::do_requests(bool before_first_step) {
   }
 }
 
+std::size_t World::hooks() const noexcept {
+  return impl_->hooks.size();
+}
+const std::string& World::hook_name(std::size_t hook) const noexcept {
+  return impl_->hook_names[hook];
+}
+
+hal::Status World::visit_controls(std::size_t hook, hal::Controls& controls) {
+  Impl& w = *impl_;
+  if (hook >= w.hooks.size()) return hal::Error{"there is no such hook"};
+  w.hook_phase = "controls";
+  const hal::PluginCall marked(&Impl::name_hook, &w, hook);
+  HookContext context = w.hook_context();
+  try {
+    w.hooks[hook]->controls(context, controls);
+    return {};
+  } catch (const std::exception& e) {
+    return hal::Error{"hook '" + w.hook_names[hook] + "' threw in controls: " + e.what()};
+  } catch (...) {
+    return hal::Error{"hook '" + w.hook_names[hook] + "' threw in controls"};
+  }
+}
+
+hal::Status World::visit_controls(RobotId robot, hal::Controls& controls) {
+  Impl& w = *impl_;
+  SpaceStores& s = w.stores();
+  if (!s.contains(robot)) return hal::Error{"there is no such robot any more"};
+  const RobotEntity& entity = s.robots[robot.index];
+  const RobotBlock& block = s.blocks[entity.block];
+  const hal::ControllerType& type = *s.groups[block.group].controller;
+  if (block.constructed[entity.slot] == 0 || type.controls == nullptr) return {};
+  const hal::PluginCall marked(&Impl::name_step, &w, entity.block, entity.slot);
+  const std::string who = "the controller of robot '" + w.space.robot_name(robot) + "' threw in controls";
+  try {
+    type.controls(block.controller(entity.slot), controls);
+    return {};
+  } catch (const std::exception& e) {
+    return hal::Error{who + ": " + e.what()};
+  } catch (...) {
+    return hal::Error{who};
+  }
+}
+
+void World::set_log(const hal::Log& log) {
+  impl_->options.log = log;
+}
 void World::set_external(ExternalRobots* external) noexcept {
   impl_->external = external;
+}
+void World::set_steps_elsewhere(RobotId robot, bool elsewhere) {
+  std::erase_if(impl_->elsewhere, [&](RobotId other) { return other == robot || !impl_->space.contains(other); });
+  if (elsewhere) impl_->elsewhere.push_back(robot);
+}
+void World::controller_threw(RobotId robot, std::string what) {
+  const SpaceStores& s = impl_->stores();
+  if (!s.contains(robot)) return;
+  const RobotEntity& entity = s.robots[robot.index];
+  impl_->note_thrown(entity.block, entity.slot, std::move(what));
+}
+void World::fail(std::string why) {
+  impl_->fail(std::move(why));
 }
 RunState World::state() const noexcept {
   return impl_->state;

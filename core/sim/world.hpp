@@ -50,8 +50,9 @@ class World {
 
   /// Calls the hooks' `before_run`. Once, before the first step.
   void start();
-  /// One tick: hooks, physics, sense + control, filter. Does nothing once `state()` is not Running.
-  void step();
+  /// One tick: hooks, physics, sense + control, filter. Does nothing once `state()` is not Running. @returns false when
+  /// the external robots gave the tick up half way: it is not done, and no other may follow
+  bool step();
   /// Calls the hooks' `after_run`. Once, after the last step.
   void finish();
 
@@ -64,6 +65,9 @@ class World {
   /// Errors: a controller whose class has no copy constructor, a copy constructor or `save` that throws; real robots
   /// take part: they cannot be put back.
   hal::Result<Snapshot> snapshot();
+  /// The same, and the checkpoints that hooks keep with it: for who goes back without the hooks' knowing, and has the
+  /// run take the same way again.
+  hal::Result<Snapshot> snapshot_of_all();
   /// Goes back to a snapshot of this world. Robots and objects that were added since vanish, those that were removed
   /// are back; controllers and ports keep their addresses. Errors: another world's snapshot; real robots take part;
   /// a copy constructor or a hook's `restore` that throws: the run has failed then.
@@ -75,9 +79,35 @@ class World {
   /// before are void. Calls `start`. Call between steps, or ask for it through HookContext::checkpoints. Errors: real
   /// robots take part; the places of this seed cannot be had; what is thrown: the run has failed then.
   hal::Status reset(std::uint64_t seed);
+  /// Takes over the parameters of controllers and the options of hooks from `changed`, which otherwise is the scenario
+  /// that the world was made of. They count from the next reset on: until then the run goes on as it does. Errors, with
+  /// lines: what is wrong with them; other robots, controllers or hooks. Nothing has changed then.
+  hal::Status change_parameters(const Scenario& changed);
+
+  /// Makes safe what was written into actuators from outside since the last step, as it is after the controllers' step;
+  /// counted among the incidents. Between steps.
+  void limit_commands();
+
+  // --- controls that hooks and controllers declare (hal/controls.hpp); between steps ---
+  std::size_t hooks() const noexcept;
+  const std::string& hook_name(std::size_t hook) const noexcept;
+  /// Hands `controls` to the hook, or to the robot's controller. Errors: gone; what it throws.
+  hal::Status visit_controls(std::size_t hook, hal::Controls& controls);
+  hal::Status visit_controls(RobotId robot, hal::Controls& controls);
+
+  /// Where messages go from now on.
+  void set_log(const hal::Log& log);
 
   /// Lets real robots take part; `external` must outlive the last step. Null: none.
   void set_external(ExternalRobots* external) noexcept;
+
+  /// The robot's controller does not step here: `ExternalRobots::after_control` writes its commands, and what the
+  /// controller publishes. Ends with the robot.
+  void set_steps_elsewhere(RobotId robot, bool elsewhere);
+  /// In `ExternalRobots::after_control`: the robot's controller, which steps elsewhere, threw in this tick.
+  void controller_threw(RobotId robot, std::string what);
+  /// Ends the run as failed; a first reason stays.
+  void fail(std::string why);
 
   RunState state() const noexcept;
   /// Why the run failed: what, who, which tick. Empty while it did not.

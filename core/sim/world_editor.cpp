@@ -326,6 +326,56 @@ hal::Status WorldEditor::set_object(ObjectId id, const Object& changed) {
   return {};
 }
 
+hal::Status WorldEditor::room_for(BodyKey body, const Pose& pose) {
+  const std::string who = name_of(body);
+  const bool fixed = body.is_object() && !stores_.objects[body.index()].movable;
+  if (fixed && !finite(pose)) return hal::Error{who + " needs a finite position and a heading as cosine and sine"};
+  if (!fixed) {
+    if (const hal::Status placed = check_place(who, pose); !placed.ok()) return placed;
+  }
+  Obstacle place = obstacle_of(body);
+  const double height_m = place.z_high_m - place.z_low_m;
+  place.x_m = pose.x_m;
+  place.y_m = pose.y_m;
+  place.z_low_m = pose.z_m;
+  place.z_high_m = pose.z_m + height_m;
+  if (place.is_box) {
+    place.cos_h = pose.cos_h;
+    place.sin_h = pose.sin_h;
+  }
+  if (const auto other = in_the_way(place, body, fixed))
+    return hal::Error{who + " would be at " + text_of(pose.x_m, pose.y_m) + ", where " + name_of(*other) + " is"};
+  if (fixed || region_at(body, pose) != kNoRegion) return {};
+  return hal::Error{who + " would be at " + text_of(pose.x_m, pose.y_m) +
+                    ", which lies in no region of an engine that can move it"};
+}
+
+/// Found for the body as it would stand there; it then stands where it did.
+std::uint16_t WorldEditor::region_at(BodyKey body, const Pose& pose) {
+  const std::size_t i = body.index();
+  Bodies& b = stores_.bodies;
+  const Pose was = pose_of(stores_, body);
+  const auto stand = [&](const Pose& at) {
+    if (body.is_object()) {
+      Object& object = stores_.objects[i];
+      object.z_high_m += at.z_m - object.z_low_m;
+      object.x_m = at.x_m;
+      object.y_m = at.y_m;
+      object.z_low_m = at.z_m;
+      return;
+    }
+    b.x_m[i] = at.x_m;
+    b.y_m[i] = at.y_m;
+    if (!b.motion.empty()) b.motion[i].z_m = at.z_m;
+  };
+  const double high_m = body.is_object() ? stores_.objects[i].z_high_m : 0.0;
+  stand(pose);
+  const std::uint16_t region = assigner_.find(stores_, body);
+  stand(was);
+  if (body.is_object()) stores_.objects[i].z_high_m = high_m;  // to the bit
+  return region;
+}
+
 // --- joints ---
 
 hal::Result<JointId> WorldEditor::join(BodyKey a, BodyKey b, const std::array<double, 3>& p_W, const JointForm& form) {

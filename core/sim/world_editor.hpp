@@ -19,6 +19,7 @@ class WorldEditor final : public Editor {
   hal::Result<RobotId> add_robot(const NewRobot& wanted) override;
   hal::Result<ObjectId> add_object(const Object& wanted) override;
   hal::Status set_object(ObjectId object, const Object& changed) override;
+  hal::Status room_for(BodyKey body, const Pose& pose) override;
   hal::Result<JointId> join(BodyKey a, BodyKey b, const std::array<double, 3>& p_W, const JointForm& form) override;
 
  private:
@@ -34,6 +35,7 @@ class WorldEditor final : public Editor {
   Obstacle obstacle_of(BodyKey body) const;
   bool alive(BodyKey body) const noexcept;
   std::uint16_t region_now(BodyKey body) const noexcept;
+  std::uint16_t region_at(BodyKey body, const Pose& pose);
 
   const Scenario& scenario_;
   SpaceStores& stores_;

@@ -4,8 +4,10 @@
 #include <atomic>
 #include <map>
 #include <memory>
+#include <optional>
 #include <set>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "core/device/coupling.hpp"
@@ -61,6 +63,9 @@ class KeptCheckpoints final : public Checkpoints {
   std::set<std::string> names_;  // kept, or to be kept after this step
 };
 
+/// The value of a control: that of a button is none.
+using ControlValue = std::variant<std::monostate, double, std::int64_t, bool, std::string>;
+
 /// Contents of a snapshot.
 struct SavedWorld {
   std::shared_ptr<const int> of;  ///< the world that it is of
@@ -75,6 +80,10 @@ struct SavedWorld {
   std::vector<std::shared_ptr<const void>> engines;
   Measures measures;
   std::vector<std::any> hooks;
+  std::vector<std::vector<ControlValue>> hook_controls;  ///< by hook
+  std::optional<KeptCheckpoints> checkpoints;            ///< of hooks, for who goes back without their knowing
+  std::vector<std::uint8_t> excess_named;
+  Sketch sketch;
 };
 
 /// A speed so far beyond what a robot can do that it was written in another unit.
@@ -120,8 +129,10 @@ struct World::Impl final : hal::RobotLog::Sink {
   std::vector<std::unique_ptr<Hook>> hooks;
   std::vector<std::string> hook_names;
   Measures measures;
-  const char* hook_phase = "";  // that is or was called last
+  const char* hook_phase = "";    // that is or was called last
+  bool new_hook_options = false;  // the next reset makes hooks anew
   ExternalRobots* external = nullptr;
+  std::vector<RobotId> elsewhere;  // robots whose controllers step there
 
   hal::Tick tick = 0;
   RunState state = RunState::Running;
@@ -169,6 +180,8 @@ struct World::Impl final : hal::RobotLog::Sink {
   void sense_and_control();
   void sense(std::size_t block);
   void control(std::size_t block);
+  const std::uint8_t* not_stepped(std::size_t block, std::array<std::uint8_t, kBlockRows>& memory) const noexcept;
+  void note_thrown(std::size_t block, std::size_t slot, std::string what);
   void limit(std::size_t block);
   void note_limited(std::size_t block, std::size_t slot, const hal::Limited& what);
   void note_excess(std::size_t block, std::size_t slot, const hal::Limited& what);
@@ -178,9 +191,12 @@ struct World::Impl final : hal::RobotLog::Sink {
   static void name_step(const void* impl, std::size_t block, std::size_t index, hal::FixedText& out) noexcept;
   static void name_hook(const void* impl, std::size_t hook, std::size_t index, hal::FixedText& out) noexcept;
   void fit_to_bodies();
+  void fit_ledgers();
 
   template <class Call>
   void call_hooks(const char* phase, Call&& call);
+  std::vector<ControlValue> control_values(std::size_t hook);
+  hal::Status put_back_controls(const SavedWorld& saved);
   HookContext hook_context() {
     return {space, tick, scenario.ticks_per_second, seed, kept_checkpoints, space.sketch(), measures};
   }

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <random>
 #include <system_error>
+#include <utility>
 
 #include "core/medium/led/led.hpp"
 #include "core/placement/placement.hpp"
@@ -377,7 +378,7 @@ void World::Impl::size_ledgers() {
 
 hal::Status World::reset(std::uint64_t seed) {
   Impl& w = *impl_;
-  if (w.external != nullptr) return hal::Error{"no reset: real robots take part, which cannot be put back"};
+  if (w.external != nullptr) return hal::Error{"no reset: real robots or peers take part, which cannot be put back"};
   SpaceStores& s = w.stores();
   w.factory->begin_anew(seed);
   w.engines.clear();
@@ -428,13 +429,52 @@ hal::Status World::reset(std::uint64_t seed) {
   return w.state == RunState::Failed ? hal::Status(hal::Error{w.failure}) : hal::Status{};
 }
 
+hal::Status World::change_parameters(const Scenario& changed) {
+  Impl& w = *impl_;
+  const Scenario& now = w.scenario;
+  bool same = changed.controllers.size() == now.controllers.size() && changed.robots.size() == now.robots.size() &&
+              changed.hooks.size() == now.hooks.size();
+  for (std::size_t i = 0; same && i < now.controllers.size(); ++i)
+    same = changed.controllers[i].label == now.controllers[i].label &&
+           changed.controllers[i].library == now.controllers[i].library;
+  for (std::size_t i = 0; same && i < now.robots.size(); ++i)
+    same = changed.robots[i].controller == now.robots[i].controller &&
+           changed.robots[i].params.has_value() == now.robots[i].params.has_value();
+  for (std::size_t i = 0; same && i < now.hooks.size(); ++i)
+    same = changed.hooks[i].label == now.hooks[i].label && changed.hooks[i].library == now.hooks[i].library;
+  if (!same) return hal::Error{"other robots, controllers or hooks than the world was made with: make another world"};
+  Problems problems;
+  for (const HookConfig& hook : changed.hooks) {
+    const auto type = w.loader->get<HookType>(hook.library, hook.label);
+    if (!type.ok() || type.value()->describe == nullptr) continue;
+    ElementReader reader(hook.options, problems, {"library", "label"});
+    type.value()->describe(reader);
+    reader.finish();
+  }
+  if (has_errors(problems) || !w.factory->change_params(changed, problems)) {
+    std::string why;
+    for (const Problem& problem : problems) {
+      if (!problem.warning) why += (why.empty() ? "" : "; ") + to_text(problem);
+    }
+    return hal::Error{why};
+  }
+  for (std::size_t i = 0; i < now.controllers.size(); ++i)
+    w.scenario.controllers[i].params = changed.controllers[i].params;
+  for (std::size_t i = 0; i < now.robots.size(); ++i) w.scenario.robots[i].params = changed.robots[i].params;
+  for (std::size_t i = 0; i < now.hooks.size(); ++i) w.scenario.hooks[i].options = changed.hooks[i].options;
+  w.scenario.effective = changed.effective;
+  w.new_hook_options = true;
+  return {};
+}
+
 void World::Impl::reset_hooks(Problems& problems) {
+  const bool keep = !std::exchange(new_hook_options, false);
   hook_phase = "reset";
   for (std::size_t i = 0; i < hooks.size(); ++i) {
     const hal::PluginCall marked(&name_hook, this, i);
     std::string why = "threw in reset";
     try {
-      if (hooks[i]->reset(seed)) continue;
+      if (keep && hooks[i]->reset(seed)) continue;
       why.clear();
     } catch (const std::exception& e) {
       why += std::string(": ") + e.what();

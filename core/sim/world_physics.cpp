@@ -84,7 +84,18 @@ void World::Impl::settle_changes() {
 /// Robots came or went, or other objects: arrays by block, and how far indices and regions look.
 void World::Impl::fit_to_bodies() {
   SpaceStores& s = stores();
-  const std::size_t blocks = s.blocks.size();
+  fit_ledgers();
+  const double needed_m = index_reach(s, tick_s());
+  if (needed_m != reach_m) {
+    reach_m = needed_m;
+    s.body_index.set_area(s.min_x_m, s.min_y_m, s.max_x_m, s.max_y_m, reach_m);
+    ++s.immovables_version;
+  }
+  assigner.fit(s, tick_s());
+}
+
+void World::Impl::fit_ledgers() {
+  const std::size_t blocks = stores().blocks.size();
   if (faults.size() < blocks) {
     block_trouble.resize(blocks, 0);
     faults.resize(blocks);
@@ -93,14 +104,7 @@ void World::Impl::fit_to_bodies() {
     excess.resize(blocks);
     said.resize(blocks);
   }
-  excess_named.resize(s.groups.size(), 0);
-  const double needed_m = index_reach(s, tick_s());
-  if (needed_m != reach_m) {
-    reach_m = needed_m;
-    s.body_index.set_area(s.min_x_m, s.min_y_m, s.max_x_m, s.max_y_m, reach_m);
-    ++s.immovables_version;
-  }
-  assigner.fit(s, tick_s());
+  excess_named.resize(stores().groups.size(), 0);
 }
 
 void World::Impl::stop_on_trouble() {

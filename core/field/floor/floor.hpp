@@ -25,6 +25,7 @@ class FloorField final : public PointField<FloorField> {
   std::uint64_t mark() const noexcept override { return raster_.mark(); }
   std::shared_ptr<const void> keep() const override;
   void put_back(const std::shared_ptr<const void>& kept) override;
+  FieldGrid grid() const noexcept override { return {raster_.columns(), raster_.lines()}; }
 
  private:
   struct Kept {

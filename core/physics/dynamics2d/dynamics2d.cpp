@@ -192,6 +192,12 @@ class Dynamics2d final : public Solver {
     joints_ = k.joints;
   }
 
+  std::size_t bytes_of(const void* kept) const override {
+    const Kept& k = *static_cast<const Kept*>(kept);
+    return WorldMemory::bytes_of(*k.memory) + k.placed.size() * sizeof(Placed) +
+           k.roster.entries().size() * sizeof(k.roster.entries()[0]) + k.joints.size() * sizeof(Held);
+  }
+
  private:
   struct Held {
     std::size_t number;

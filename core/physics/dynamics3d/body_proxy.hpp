@@ -11,6 +11,13 @@ namespace tandem::core {
 
 using Vector3 = std::array<double, 3>;
 
+inline Vector3 cross(const Vector3& a, const Vector3& b) noexcept {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+inline double dot(const Vector3& a, const Vector3& b) noexcept {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
 /// Pose and velocity of a body, as in the stores. In W; z is the base's.
 struct BodyState {
   double x_m = 0.0, y_m = 0.0, z_m = 0.0;

@@ -15,14 +15,6 @@ constexpr double kCasterLift_m = 1e-4;  // wheels, not casters, carry the weight
 constexpr double kCasterPlace = 0.8;    // of the radius, ahead of and behind the axle
 constexpr double kLeans = 0.99;         // cosine from which on a chassis may touch the floor by its rims
 
-Vector3 cross(const Vector3& a, const Vector3& b) noexcept {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-
-double dot(const Vector3& a, const Vector3& b) noexcept {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 /// A point of a body's frame in W.
 Vector3 in_world(const dReal* p, const dReal* r, double x, double y, double z) noexcept {
   return {p[0] + r[0] * x + r[1] * y + r[2] * z, p[1] + r[4] * x + r[5] * y + r[6] * z,

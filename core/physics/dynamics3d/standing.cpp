@@ -13,14 +13,6 @@ constexpr int kMostSteps = 60;       // of Newton's method; stacks take about te
 constexpr double kShortest = 1e-4;   // of a step, when halved
 constexpr double kConverged = 1e-9;  // change of what is sought, to its size
 
-Vector3 cross(const Vector3& a, const Vector3& b) noexcept {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-
-double dot(const Vector3& a, const Vector3& b) noexcept {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 }  // namespace
 
 bool Standing::stands(const std::vector<BodyProxy*>& objects, const std::vector<Support>& supports,

@@ -125,6 +125,12 @@ std::shared_ptr<const void> World3d::keep() {
   return kept;
 }
 
+std::size_t World3d::bytes_of(const void* kept) const {
+  const Kept& k = *static_cast<const Kept*>(kept);
+  return WorldMemory::bytes_of(*k.memory) + k.proxies.size() * (sizeof k.proxies[0] + sizeof(BodyProxy)) +
+         k.held.size() * sizeof(Held);
+}
+
 void World3d::put_back(const void* kept) {
   const Kept& k = *static_cast<const Kept*>(kept);
   drop_world();

@@ -36,6 +36,7 @@ class World3d final : public Solver {
   void advance(const SolverContext& context) override;
   std::shared_ptr<const void> keep() override;
   void put_back(const void* kept) override;
+  std::size_t bytes_of(const void* kept) const override;
 
  private:
   using OwnedProxy = std::unique_ptr<BodyProxy>;
