@@ -1,0 +1,144 @@
+// The picture: renders the 3D scene and the texts over it, only when something has changed.
+import * as THREE from './three.module.js';
+import { FlatRenderer } from './flat_renderer.js';
+import { Camera } from './camera.js';
+import { theme, onThemeChange } from './palette.js';
+
+/** Items have `update(camera)`, called before each picture, and `label(pen, camera)`, which writes over it; both may be missing. */
+export class View {
+  constructor(canvas, labels, pointer) {
+    this.canvas = canvas;
+    this.labels = labels;
+    this.pen = new Pen(labels.getContext('2d'));
+    this.items = [];
+    this.scene = new THREE.Scene();
+    this.pictures = 0;
+    this.drawing_ms = 0;  // of the newest picture, as far as this thread waits for it
+    this.asked = false;
+    this.afterPicture = [];
+    this.isFlat = new URLSearchParams(location.search).has('flat') || document.createElement('canvas').getContext('webgl') === null;
+    this.renderer = this.isFlat ? new FlatRenderer(canvas) : new THREE.WebGLRenderer({ canvas, antialias: !drawsInSoftware(), powerPreference: 'high-performance' });
+    this.camera = new Camera(canvas, { invalidate: () => this.invalidate(), ...pointer });
+    canvas.addEventListener('webglcontextlost', (event) => {
+      event.preventDefault();
+      this.lost = true;
+    });
+    canvas.addEventListener('webglcontextrestored', () => {
+      this.lost = false;
+      this.invalidate();
+    });
+    new ResizeObserver(() => this.resize()).observe(canvas.parentElement);
+    onThemeChange(() => {
+      for (const item of this.items) item.retint?.();
+      this.invalidate();
+    });
+    this.resize();
+  }
+
+  addItem(item) {
+    this.items.push(item);
+  }
+
+  resize() {
+    const box = this.canvas.parentElement.getBoundingClientRect();
+    const width = Math.max(1, Math.floor(box.width)), height = Math.max(1, Math.floor(box.height));
+    this.pixelRatio = Math.min(2, window.devicePixelRatio || 1);
+    this.renderer.setPixelRatio(this.pixelRatio);
+    this.renderer.setSize(width, height, false);
+    this.labels.width = width * this.pixelRatio;
+    this.labels.height = height * this.pixelRatio;
+    this.camera.resize(width, height);
+  }
+
+  /** Asks for a new picture. */
+  invalidate() {
+    if (this.asked) return;
+    this.asked = true;
+    requestAnimationFrame(() => {
+      this.asked = false;
+      this.render();
+    });
+  }
+
+  render() {
+    if (this.lost) return;
+    const start = performance.now();
+    this.beforePicture?.();
+    for (const item of this.items) item.update?.(this.camera);
+    this.renderer.setClearColor(theme().sky);
+    this.renderer.render(this.scene, this.camera.eye);
+    this.pen.begin(this.pixelRatio, this.camera.width_px, this.camera.height_px);
+    for (const item of this.items) item.label?.(this.pen, this.camera);
+    this.pictures++;
+    this.drawing_ms = performance.now() - start;
+    for (const call of this.afterPicture.splice(0)) call();
+    this.onPicture?.();
+  }
+
+  /** The next picture as a PNG blob. */
+  snapshot() {
+    return new Promise((resolve) => {
+      this.render();
+      const both = document.createElement('canvas');
+      both.width = this.canvas.width;
+      both.height = this.canvas.height;
+      const context = both.getContext('2d');
+      context.drawImage(this.canvas, 0, 0);
+      context.drawImage(this.labels, 0, 0);
+      both.toBlob(resolve, 'image/png');
+    });
+  }
+}
+
+/** Without a graphics processor each sample more costs as much as the picture itself. */
+function drawsInSoftware() {
+  const context = document.createElement('canvas').getContext('webgl');
+  if (context === null) return false;
+  const names = context.getExtension('WEBGL_debug_renderer_info');
+  const name = names === null ? '' : context.getParameter(names.UNMASKED_RENDERER_WEBGL);
+  context.getExtension('WEBGL_lose_context')?.loseContext();
+  return /swiftshader|llvmpipe|software|basic render/i.test(name);
+}
+
+/** Writes texts over the picture, legible on any ground. */
+class Pen {
+  constructor(context) {
+    this.context = context;
+  }
+
+  begin(ratio, width, height) {
+    const { context } = this;
+    this.width = width;
+    this.height = height;
+    context.setTransform(ratio, 0, 0, ratio, 0, 0);
+    context.clearRect(0, 0, width, height);
+    context.font = '12px system-ui, "DejaVu Sans", sans-serif';
+    context.textBaseline = 'middle';
+    context.textAlign = 'left';
+    context.lineJoin = 'round';
+  }
+
+  text(text, x, y, { color = theme().ink, align = 'left', halo = true } = {}) {
+    const { context } = this;
+    if (x < -200 || y < -20 || x > this.width + 200 || y > this.height + 20) return;
+    context.textAlign = align;
+    if (halo) {
+      context.strokeStyle = theme().halo;
+      context.globalAlpha = 0.8;
+      context.lineWidth = 3;
+      context.strokeText(text, x, y);
+      context.globalAlpha = 1;
+    }
+    context.fillStyle = color;
+    context.fillText(text, x, y);
+  }
+
+  line(points, color, width = 1.5) {
+    const { context } = this;
+    context.strokeStyle = color;
+    context.lineWidth = width;
+    context.beginPath();
+    points.forEach(([x, y], i) => (i === 0 ? context.moveTo(x, y) : context.lineTo(x, y)));
+    context.stroke();
+  }
+}
