@@ -5,6 +5,8 @@
 #include <cstdio>
 #include <ctime>
 
+#include "hal/monotonic.hpp"
+
 namespace tandem::bridges {
 
 std::string formatted(const char* format, ...) {
@@ -21,9 +23,7 @@ std::string formatted(const char* format, ...) {
 }
 
 hal::TimeNs inspector_now_ns() noexcept {
-  timespec t{};
-  clock_gettime(CLOCK_MONOTONIC, &t);
-  return static_cast<hal::TimeNs>(t.tv_sec) * hal::kNsPerSecond + t.tv_nsec;
+  return hal::monotonic_ns();
 }
 
 bool wait_until(hal::TimeNs at, const std::atomic<bool>& stop) {

@@ -4,9 +4,11 @@
 #include <cstddef>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <span>
 #include <vector>
 
+#include "bridges/body_pose.hpp"
 #include "hal/check.hpp"
 #include "hal/port.hpp"
 
@@ -102,7 +104,18 @@ class SharedPorts {
   /// How often readings were written; asked within `with`.
   std::uint64_t told() const noexcept { return told_; }
 
+  /// The body's true pose, of who has the world; nothing: it was not told yet.
+  void set_pose(const BodyPose& pose) {
+    const std::lock_guard lock(mutex_);
+    pose_ = pose;
+  }
+  std::optional<BodyPose> pose() {
+    const std::lock_guard lock(mutex_);
+    return pose_;
+  }
+
  private:
+  std::optional<BodyPose> pose_;
   std::mutex mutex_;
   PortBank bank_;
   std::uint64_t told_ = 0;

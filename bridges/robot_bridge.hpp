@@ -7,10 +7,13 @@
 //   shut_down                        stops the robot, waits a little for it to confirm, closes the link
 #pragma once
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "bridges/clock_estimator.hpp"
+#include "bridges/round_trips.hpp"
 #include "bridges/stop_messages.hpp"
 #include "hal/port.hpp"
 #include "hal/robot.hpp"
@@ -32,6 +35,18 @@ struct LinkReport {
   std::uint64_t links_lost = 0;
   hal::TimeNs mean_round_trip_ns = 0;
   hal::TimeNs max_round_trip_ns = 0;
+  hal::TimeNs median_round_trip_ns = 0;
+  hal::TimeNs p99_round_trip_ns = 0;
+  hal::TimeNs round_trip_jitter_ns = 0;  ///< mean change from one to the next
+  std::optional<ClockState> clock = {};  ///< of the robot; nothing: its messages carry no stamps
+
+  void set(const RoundTrips& trips) noexcept {
+    mean_round_trip_ns = trips.mean_ns();
+    max_round_trip_ns = trips.largest_ns();
+    median_round_trip_ns = trips.durations.quantile_ns(0.5);
+    p99_round_trip_ns = trips.durations.quantile_ns(0.99);
+    round_trip_jitter_ns = trips.jitter_ns();
+  }
 };
 
 /// Takes over what a bridge knows of itself, for reports: names in snake_case, values by type.

@@ -476,9 +476,7 @@ void Network::on_variables(Row& row, const Variables& variables, hal::TimeNs at)
     row.read.active = false;
     node.image.unmark(start, count, Image::kWanted);
     ++node.statistics.answers;
-    node.statistics.last_round_trip_ns = at - row.read.asked_ns;
-    node.statistics.sum_round_trip_ns += at - row.read.asked_ns;
-    node.statistics.max_round_trip_ns = std::max(node.statistics.max_round_trip_ns, at - row.read.asked_ns);
+    node.statistics.round_trips.add(at - row.read.asked_ns);
     row.given_up = {};
   } else {
     ++node.statistics.unasked;  // late, or another host's: nothing vouches for its length
@@ -497,7 +495,7 @@ void Network::on_variables(Row& row, const Variables& variables, hal::TimeNs at)
 hal::TimeNs Network::measured_ns(const Row& row, hal::TimeNs at) const noexcept {
   const NodeStatistics& s = row.node.statistics;
   if (row.read.asked_ns == 0) return at;
-  const bool quick = s.answers > 0 && 4 * s.sum_round_trip_ns < timing_.reply_ns * static_cast<hal::TimeNs>(s.answers);
+  const bool quick = s.answers > 0 && 4 * s.round_trips.mean_ns() < timing_.reply_ns;
   const hal::TimeNs asked_ns = quick ? row.read.asked_ns : row.read.first_ns;
   return at - std::max<hal::TimeNs>(at - asked_ns, 0) / 2;
 }

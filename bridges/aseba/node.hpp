@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "bridges/aseba/message.hpp"
+#include "bridges/round_trips.hpp"
 
 namespace tandem::bridges::aseba {
 
@@ -94,9 +95,7 @@ struct NodeStatistics {
   std::uint64_t times_lost = 0;
   std::uint64_t times_ready = 0;
   std::uint64_t doubled = 0;  ///< presented itself more than once in a round: two nodes with one id?
-  hal::TimeNs last_round_trip_ns = 0;
-  hal::TimeNs max_round_trip_ns = 0;
-  hal::TimeNs sum_round_trip_ns = 0;  ///< over `answers`
+  RoundTrips round_trips;     ///< of `answers`
 };
 
 /// Words of a node's memory, and what is to become of each.

@@ -227,16 +227,15 @@ template <class Parts>
 LinkReport NodeBridge<Parts>::report() const {
   const std::lock_guard lock(mutex_);
   LinkReport report;
-  hal::TimeNs sum_round_trip_ns = 0;
+  RoundTrips round_trips;
   for (const NodeStatus& node : driver_.wiring().nodes()) {
     report.questions += node.statistics.reads;
     report.answers += node.statistics.answers;
     report.time_outs += node.statistics.asked_again + node.statistics.unanswered;
     report.bad_answers += node.statistics.wrong_length + node.statistics.not_understood;
-    sum_round_trip_ns += node.statistics.sum_round_trip_ns;
-    report.max_round_trip_ns = std::max(report.max_round_trip_ns, node.statistics.max_round_trip_ns);
+    round_trips.add(node.statistics.round_trips);
   }
-  if (report.answers > 0) report.mean_round_trip_ns = sum_round_trip_ns / static_cast<hal::TimeNs>(report.answers);
+  report.set(round_trips);
   report.resynchronised = driver_.statistics().recovered;
   report.links_lost = driver_.statistics().lost;
   return report;

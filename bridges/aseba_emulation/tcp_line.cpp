@@ -7,7 +7,7 @@
 
 #include "bridges/aseba_emulation/host_line.hpp"
 #include "bridges/aseba_emulation/stream.hpp"
-#include "bridges/emulation/listener.hpp"
+#include "bridges/link/listener.hpp"
 
 namespace tandem::bridges::aseba_emulation {
 namespace {

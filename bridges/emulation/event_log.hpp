@@ -54,4 +54,11 @@ class EventLog {
   std::unique_ptr<std::FILE, Close> file_;
 };
 
+/// Writes to the log of this name, if it is not empty, and hands on to `listener`, if it is not. Errors: as
+/// EventLog::open.
+hal::Result<EventSink> open_event_sink(const std::string& log_file, EventSink listener);
+
+/// Stamps never go back, although a robot's are of the past by up to one turn of its server.
+EventSink in_order(EventSink sink);
+
 }  // namespace tandem::bridges

@@ -4,7 +4,7 @@
 #include <string_view>
 
 #include "bridges/emulation/host_line.hpp"
-#include "bridges/emulation/listener.hpp"
+#include "bridges/link/listener.hpp"
 
 namespace tandem::bridges {
 

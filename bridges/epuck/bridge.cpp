@@ -213,8 +213,7 @@ LinkReport EpuckBridge::report() const {
   report.bad_answers = s.implausible;
   report.resynchronised = s.resynchronised;
   report.links_lost = s.links_lost;
-  report.mean_round_trip_ns = s.answers > 0 ? s.sum_round_trip_ns / static_cast<TimeNs>(s.answers) : 0;
-  report.max_round_trip_ns = s.max_round_trip_ns;
+  report.set(s.round_trips);
   return report;
 }
 

@@ -9,6 +9,7 @@
 #include "bridges/epuck/accelerometer.hpp"
 #include "bridges/epuck/codec.hpp"
 #include "bridges/epuck/line.hpp"
+#include "bridges/round_trips.hpp"
 #include "hal/device/leds.hpp"
 #include "hal/time.hpp"
 
@@ -87,9 +88,7 @@ struct SessionStatistics {
   std::uint64_t links_lost = 0;
   std::uint64_t stops = 0;  ///< asked for with `stop`
   std::uint64_t stops_confirmed = 0;
-  hal::TimeNs last_round_trip_ns = 0;
-  hal::TimeNs max_round_trip_ns = 0;
-  hal::TimeNs sum_round_trip_ns = 0;  ///< over `answers`
+  RoundTrips round_trips;  ///< of `answers`
 };
 
 /// After every call the caller sends `output()` and clears it. Times never run backwards. Allocates nothing. Not

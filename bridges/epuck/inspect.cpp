@@ -34,17 +34,15 @@ hal::Status wait_for(EpuckBridge& bridge, const std::atomic<bool>& stop) {
 }
 
 void print_status(const InspectRequest& request, const BridgeStatus& s) {
-  const double mean_ms = s.session.answers > 0 ? static_cast<double>(s.session.sum_round_trip_ns) * 1e-6 /
-                                                     static_cast<double>(s.session.answers)
-                                               : 0.0;
+  const RoundTrips& trips = s.session.round_trips;
   request.print("e-puck on " + s.link);
   request.print_table(
       {{"firmware", std::string(s.identity.version_text())},
        {"hardware",
         s.identity.hardware != 0 ? formatted("%X", static_cast<unsigned>(s.identity.hardware)) : "not told"},
        {"state", state_name(s.state)},
-       {"round trip", formatted("%.1f ms on average, %.1f ms at most", mean_ms,
-                                static_cast<double>(s.session.max_round_trip_ns) * 1e-6)},
+       {"round trip", formatted("%.1f ms on average, %.1f ms at most", static_cast<double>(trips.mean_ns()) * 1e-6,
+                                static_cast<double>(trips.largest_ns()) * 1e-6)},
        {"link", std::to_string(s.bytes.bytes_in) + " bytes in, " + std::to_string(s.bytes.bytes_out) + " out; " +
                     std::to_string(s.session.answers) + " answers to " + std::to_string(s.session.packets) +
                     " packets, " + std::to_string(s.session.silent) + " silences, " +

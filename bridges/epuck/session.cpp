@@ -414,10 +414,7 @@ void Session::on_answer(const Question& question, std::span<const std::uint8_t> 
   state_ = SessionState::Active;
   trouble_ = "";
   ++statistics_.answers;
-  const TimeNs round_trip = at - question.asked_ns;
-  statistics_.last_round_trip_ns = round_trip;
-  statistics_.max_round_trip_ns = std::max(statistics_.max_round_trip_ns, round_trip);
-  statistics_.sum_round_trip_ns += round_trip;
+  statistics_.round_trips.add(at - question.asked_ns);
 }
 
 bool Session::speeds_as_told(const std::array<std::int16_t, 2>& commanded, TimeNs at) noexcept {

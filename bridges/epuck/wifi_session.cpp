@@ -184,9 +184,7 @@ void WifiSession::take_sensors(const AllSensors& sensors, TimeNs at, TimeNs now)
   if (waiting_ns_ != 0) {
     const TimeNs round_trip = std::max<TimeNs>(0, at - waiting_ns_);
     ++statistics_.answers;
-    statistics_.last_round_trip_ns = round_trip;
-    statistics_.max_round_trip_ns = std::max(statistics_.max_round_trip_ns, round_trip);
-    statistics_.sum_round_trip_ns += round_trip;
+    statistics_.round_trips.add(round_trip);
     latency_ns_ = std::max(round_trip, latency_ns_ - (latency_ns_ - round_trip) / 8);
   }
   waiting_ns_ = silent_ns_ = allowed_ns_ = 0;

@@ -5,10 +5,10 @@
 #include <cstring>
 #include <poll.h>
 #include <sys/timerfd.h>
-#include <time.h>
 #include <unistd.h>
 
 #include "bridges/emulation/serial_port.hpp"
+#include "bridges/emulation/serving.hpp"
 #include "bridges/emulation/tcp_port.hpp"
 #include "bridges/epuck_emulator/faults.hpp"
 #include "bridges/epuck_emulator/radio.hpp"
@@ -18,7 +18,6 @@ namespace {
 
 using hal::TimeNs;
 
-constexpr TimeNs kStopNs = 20 * hal::kNsPerMs;  // the stop flag is looked at this often
 constexpr TimeNs kLateNs = 20 * hal::kNsPerMs;  // a robot has its processor to itself: what is told of
 constexpr TimeNs kBatchNs = hal::kNsPerMs;  // bytes of one burst are handed over this often, as a serial adapter does
 constexpr TimeNs kNoiseNs = 5 * hal::kNsPerMs;  // a garbled line is not quiet either
@@ -39,12 +38,6 @@ hal::Result<std::unique_ptr<HostLine>> open_line(const std::string& link) {
   if (!port.ok())
     return hal::Error{port.error().message + "; or " + std::string(kTcp) + "PORT, " + std::string(kRadio) + "PORT"};
   return std::unique_ptr<HostLine>(std::move(port).value());
-}
-
-TimeNs monotonic_ns() {
-  timespec t{};
-  clock_gettime(CLOCK_MONOTONIC, &t);
-  return static_cast<TimeNs>(t.tv_sec) * hal::kNsPerSecond + t.tv_nsec;
 }
 
 /// Wakes poll() at an absolute time.
@@ -82,22 +75,23 @@ std::optional<TimeNs> batch_at(const Wire& wire) {
 
 class Server {
  public:
-  Server(const Options& options, std::unique_ptr<HostLine> port, std::unique_ptr<EventLog> log_file, FaultPlan faults,
-         EmulatedBody& body, Firmware::Options robot)
+  Server(const Options& options, std::unique_ptr<HostLine> port, const EventSink& events, FaultPlan faults,
+         EmulatedBody& body, KinematicBody* own_body, Firmware::Options robot)
       : options_(options),
         port_(std::move(port)),
-        log_file_(std::move(log_file)),
+        tell_(in_order(events)),
         faults_(std::move(faults)),
-        firmware_(robot, body, [this](TimeNs at, std::string_view name, const EventFields& f) { tell(at, name, f); }),
+        firmware_(robot, body, tell_),
         link_(port_->link()),
-        path_(port_->path()) {
+        path_(port_->path()),
+        own_body_(own_body),
+        poses_(options.poses.poses_hz) {
     if (options_.link.starts_with(kRadio)) radio_.emplace(firmware_);
   }
 
   hal::Status serve(const std::atomic<bool>& stop);
 
  private:
-  void tell(TimeNs at, std::string_view name, const EventFields& fields);
   hal::Status turn(TimeNs now);
   hal::Status apply_faults(TimeNs now);
   hal::Status take_in(TimeNs now);
@@ -105,13 +99,14 @@ class Server {
   void run_robot(TimeNs now);
   void give_out(TimeNs now);
   void make_noise(TimeNs now);
+  void tell_pose(TimeNs now);
   bool same_baud(TimeNs now);
   TimeNs next_wake(TimeNs now) const;
-  hal::Status wait_until(TimeNs at) const;
+  hal::Status wait_until(TimeNs due) const;
 
   const Options& options_;
   std::unique_ptr<HostLine> port_;  // none while hung up
-  std::unique_ptr<EventLog> log_file_;
+  EventSink tell_;
   FaultPlan faults_;
   Firmware firmware_;
   std::string link_, path_;
@@ -121,76 +116,60 @@ class Server {
   Wire to_robot_;
   Wire to_host_;
   TimeNs line_free_at_ = 0;  // when the last byte from the host is through
-  TimeNs last_told_ = 0;
   TimeNs next_noise_ = 0;
   unsigned long host_baud_ = kRobotBaud;
   std::vector<SentByte> sent_;
+  KinematicBody* own_body_;  // null: it lives in another
+  PoseTeller poses_;
 };
-
-// Stamps in the log never go back, although the robot's are of the past by up to one turn.
-void Server::tell(TimeNs at, std::string_view name, const EventFields& fields) {
-  last_told_ = std::max(last_told_, at);
-  if (log_file_) log_file_->write(last_told_, name, fields);
-  if (options_.events) options_.events(last_told_, name, fields);
-}
 
 hal::Status Server::serve(const std::atomic<bool>& stop) {
   if (!alarm_.works()) return hal::Error{std::string("cannot make a timer: ") + std::strerror(errno)};
   const TimeNs start = monotonic_ns();
   faults_.begin(start);
-  tell(start, "start",
-       {{"firmware", facts_of(firmware_.options().variant).name},
-        {"link", options_.link},
-        {"path", port_->path()},
-        {"device", port_->device()},
-        {"seed", options_.seed}});
+  tell_(start, "start",
+        {{"firmware", facts_of(firmware_.options().variant).name},
+         {"link", options_.link},
+         {"path", port_->path()},
+         {"device", port_->device()},
+         {"seed", options_.seed}});
   firmware_.power_on(start);
   options_.log.info("e-puck (" + options_.firmware + ") on " + path_);
   if (options_.ready) options_.ready(path_);
-  while (!stop.load(std::memory_order_relaxed)) {
-    const TimeNs now = monotonic_ns();
-    hal::Status status = turn(now);
-    const TimeNs due = next_wake(now);
-    if (status.ok()) status = wait_until(due);
-    if (const TimeNs woken = monotonic_ns(); woken - due >= kLateNs)
-      tell(woken, "late", {{"by_ms", (woken - due) / hal::kNsPerMs}});
-    if (!status.ok()) {
-      tell(monotonic_ns(), "end", {{"why", status.error().message}});
-      return status;
-    }
-  }
+  const hal::Status served = turn_until(
+      stop, [this](TimeNs now) { return turn(now); }, [this](TimeNs now) { return wait_until(next_wake(now)); });
   const TimeNs end = monotonic_ns();
-  firmware_.run_until(end);
-  tell(end, "end", {{"why", "stopped"}});
-  return {};
+  if (served.ok()) firmware_.run_until(end);
+  tell_(end, "end", {{"why", served.ok() ? "stopped" : served.error().message}});
+  return served;
 }
 
 hal::Status Server::turn(TimeNs now) {
   if (const hal::Status status = apply_faults(now); !status.ok()) return status;
   if (const hal::Status status = take_in(now); !status.ok()) return status;
   run_robot(now);
+  tell_pose(now);
   make_noise(now);
   give_out(now);
   return {};
 }
 
 hal::Status Server::apply_faults(TimeNs now) {
-  while (const auto change = faults_.next_change(now)) {
-    const Fault& fault = *change->fault;
-    tell(change->at, "fault", {{"fault", fault.text}, {"phase", change->begins ? "begin" : "end"}});
-    if (fault.kind == FaultKind::Reset) firmware_.reset(change->at, "fault");
-    if (fault.kind == FaultKind::Truncate) radio_ ? radio_->cut_next_answer() : firmware_.cut_next_answer();
-    if (fault.kind == FaultKind::Garbage && change->begins) next_noise_ = change->at;
-    if (fault.kind != FaultKind::Hangup) continue;
+  return apply_changes(faults_, now, tell_, [this](const FaultPlan::Change& change) -> hal::Status {
+    const FaultKind kind = change.fault->kind;
+    if (kind == FaultKind::Reset) firmware_.reset(change.at, "fault");
+    if (kind == FaultKind::Truncate) radio_ ? radio_->cut_next_answer() : firmware_.cut_next_answer();
+    if (kind == FaultKind::Garbage && change.begins) next_noise_ = change.at;
+    if (kind != FaultKind::Hangup) return {};
     to_robot_.clear();
     to_host_.clear();
     port_.reset();
-    if (change->begins) continue;
+    if (change.begins) return {};
     auto again = open_line(link_);
     if (!again.ok()) return again.error();
     port_ = std::move(again).value();
-  }
-  return {};
+    return {};
+  });
 }
 
 // Reads no more than the host's driver would let go: a byte each 87 microseconds gets through.
@@ -216,7 +195,7 @@ void Server::greet_host(TimeNs now) {
   to_robot_.clear();
   to_host_.clear();
   if (radio_) radio_->new_host();
-  tell(now, "host", {{"connected", true}, {"hosts", hosts_}});
+  tell_(now, "host", {{"connected", true}, {"hosts", hosts_}});
 }
 
 void Server::run_robot(TimeNs now) {
@@ -241,6 +220,17 @@ void Server::run_robot(TimeNs now) {
   }
 }
 
+void Server::tell_pose(TimeNs now) {
+  const auto pose_at = [this](TimeNs at) -> std::optional<BodyPose> {
+    if (own_body_ == nullptr) return options_.pose_elsewhere ? options_.pose_elsewhere() : std::nullopt;
+    own_body_->advance(at);
+    BodyPose pose = own_body_->pose();
+    pose.taken_ns = at;
+    return pose;
+  };
+  poses_.turn(now, pose_at, tell_);
+}
+
 void Server::make_noise(TimeNs now) {
   for (; next_noise_ <= now && faults_.active(FaultKind::Garbage, next_noise_); next_noise_ += kNoiseNs) {
     const auto byte = faults_.to_host(0, next_noise_);
@@ -259,12 +249,12 @@ void Server::give_out(TimeNs now) {
     for (std::uint8_t& byte : due) byte = faults_.garble(byte);
   }
   const std::size_t gone = port_->write(due);
-  if (gone < due.size()) tell(now, "overflow", {{"buffer", "host"}, {"bytes", due.size() - gone}});
+  if (gone < due.size()) tell_(now, "overflow", {{"buffer", "host"}, {"bytes", due.size() - gone}});
 }
 
 bool Server::same_baud(TimeNs now) {
   const unsigned long baud = port_->host_baud();
-  if (baud != host_baud_) tell(now, "baud", {{"host", baud}, {"robot", kRobotBaud}});
+  if (baud != host_baud_) tell_(now, "baud", {{"host", baud}, {"robot", kRobotBaud}});
   host_baud_ = baud;
   return baud == kRobotBaud;
 }
@@ -277,16 +267,19 @@ TimeNs Server::next_wake(TimeNs now) const {
   consider(batch_at(to_robot_));
   consider(batch_at(to_host_));
   consider(faults_.next_change_at());
+  consider(poses_.due());
   consider(radio_ ? radio_->next_event(kBatchNs) : firmware_.next_event(kBatchNs));
   if (faults_.active(FaultKind::Garbage, now)) consider(next_noise_);
   return wake;
 }
 
-hal::Status Server::wait_until(TimeNs at) const {
-  alarm_.set(at);
+hal::Status Server::wait_until(TimeNs due) const {
+  alarm_.set(due);
   std::array<pollfd, 2> waits{{{alarm_.descriptor(), POLLIN, 0}, {port_ ? port_->descriptor() : -1, POLLIN, 0}}};
   if (to_robot_.size() >= kQueueBytes) waits[1].fd = -1;
   const int woken = ::poll(waits.data(), waits.size(), -1);  // a signal wakes it too
+  if (const TimeNs now = monotonic_ns(); now - due >= kLateNs)
+    tell_(now, "late", {{"by_ms", (now - due) / hal::kNsPerMs}});
   // A host that hung up shows in reading; another one may come.
   const bool network = dynamic_cast<const TcpPort*>(port_.get()) != nullptr;
   const bool gone = !network && woken > 0 && (waits[1].revents & (POLLHUP | POLLERR | POLLNVAL)) != 0;
@@ -299,30 +292,22 @@ hal::Status Server::wait_until(TimeNs at) const {
 hal::Status run(const Options& options, const std::atomic<bool>& stop) {
   const auto variant = variant_from(options.firmware);
   if (!variant.ok()) return variant.error();
-  std::vector<Fault> faults;
-  for (const std::string& spec : options.faults) {
-    auto fault = parse_fault(spec);
-    if (!fault.ok()) return fault.error();
-    faults.push_back(std::move(fault).value());
-  }
-  std::unique_ptr<EventLog> log_file;
-  if (!options.log_file.empty()) {
-    auto opened = EventLog::open(options.log_file);
-    if (!opened.ok()) return opened.error();
-    log_file = std::move(opened).value();
-  }
+  auto faults = read_faults(options.faults, &parse_fault);
+  if (!faults.ok()) return faults.error();
+  auto events = open_event_sink(options.log_file, options.events);
+  if (!events.ok()) return events.error();
   if (options.link.starts_with(kRadio) && variant.value() != Variant::Epuck2)
     return hal::Error{"only an e-puck2 has a radio of its own: write --firmware epuck2, or a link " +
                       std::string(kTcp) + "PORT"};
   auto port = open_line(options.link);
   if (!port.ok()) return port.error();
 
-  KinematicBody own_body({}, options.arena);
+  KinematicBody own_body(options.poses.start, options.arena, options.wheels);
   EmulatedBody& body = options.body != nullptr ? *options.body : own_body;
   Firmware::Options robot = options.robot;
   robot.variant = variant.value();
-  Server server(options, std::move(port).value(), std::move(log_file), FaultPlan(std::move(faults), options.seed), body,
-                robot);
+  Server server(options, std::move(port).value(), events.value(), FaultPlan(std::move(faults).value(), options.seed),
+                body, options.body == nullptr ? &own_body : nullptr, robot);
   return server.serve(stop);
 }
 

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "bridges/emulation/true_pose.hpp"
 #include "bridges/epuck_emulator/firmware.hpp"
 #include "bridges/epuck_emulator/kinematic_body.hpp"
 #include "hal/log.hpp"
@@ -23,9 +24,12 @@ struct Options {
   Firmware::Options robot{};          ///< what is built in; its variant is taken from `firmware`
   EmulatedBody* body = nullptr;       ///< must outlive the run; none: a robot on open ground, or in `arena`
   std::optional<Arena> arena{};
-  EventSink events{};                                    ///< gets what the log gets, on the thread of `run`
-  hal::Log log{};                                        ///< for people
-  std::function<void(const std::string& path)> ready{};  ///< called once, when the line can be opened
+  PoseOptions poses{};
+  WheelErrors wheels{};                                       ///< how the wheels of a body of its own err
+  std::function<std::optional<BodyPose>()> pose_elsewhere{};  ///< of `body`, the newest; none: nobody knows
+  EventSink events{};                                         ///< gets what the log gets, on the thread of `run`
+  hal::Log log{};                                             ///< for people
+  std::function<void(const std::string& path)> ready{};       ///< called once, when the line can be opened
 };
 
 /// Emulates until `stop` becomes true, which is noticed within 20 ms. Bytes travel at 115200 baud in both directions; a

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "bridges/emulation/fault_spec.hpp"
+#include "bridges/emulation/fault_schedule.hpp"
 
 namespace tandem::bridges::epuck_emulator {
 
@@ -21,6 +21,8 @@ struct Fault {
   double probability = 0.0;  ///< Drop, Double, Corrupt: of each byte, in both directions
   hal::TimeNs delay_ns = 0;  ///< Delay: added to every byte towards the host
   std::string text;          ///< as written
+
+  bool is_moment() const noexcept { return kind == FaultKind::Reset || kind == FaultKind::Truncate; }
 };
 
 /// Reads NAME[=VALUE][@START[+DURATION]]: "silent@5s+2s", "reset@3s", "drop=0.01", "delay=20ms". A bare number is in
@@ -31,41 +33,20 @@ hal::Result<Fault> parse_fault(std::string_view text);
 std::string fault_manual();
 
 /// All faults of a run, and the chance in them.
-class FaultPlan {
+class FaultPlan : public FaultSchedule<Fault> {
  public:
-  FaultPlan(std::vector<Fault> faults, std::uint64_t seed) : faults_(std::move(faults)), chance_(seed) {}
+  using FaultSchedule::FaultSchedule;
 
-  /// Times from here on are on the clock of `start`.
-  void begin(hal::TimeNs start);
-
-  bool active(FaultKind kind, hal::TimeNs at) const;
   /// What arrives of `byte`, if anything.
   std::optional<std::uint8_t> to_robot(std::uint8_t byte, hal::TimeNs at);
   std::optional<std::uint8_t> to_host(std::uint8_t byte, hal::TimeNs at);
   /// Whether what arrived of a byte arrives twice.
-  bool doubles(hal::TimeNs at);
-  /// The longest of the delays at work.
-  hal::TimeNs delay_ns(hal::TimeNs at) const;
+  bool doubles(hal::TimeNs at) { return happens(FaultKind::Double, at); }
   /// Any other byte than `byte`.
   std::uint8_t garble(std::uint8_t byte);
 
-  struct Change {
-    hal::TimeNs at = 0;
-    bool begins = true;
-    const Fault* fault = nullptr;
-  };
-  /// The next fault to begin or end by `now`, in order of time; each is told once.
-  std::optional<Change> next_change(hal::TimeNs now);
-  /// When `next_change` will have something.
-  std::optional<hal::TimeNs> next_change_at() const;
-
  private:
   std::optional<std::uint8_t> through_the_air(std::uint8_t byte, hal::TimeNs at);
-
-  std::vector<Fault> faults_;
-  std::vector<Change> changes_;  // in order of time
-  std::size_t told_ = 0;
-  Chance chance_;
 };
 
 }  // namespace tandem::bridges::epuck_emulator

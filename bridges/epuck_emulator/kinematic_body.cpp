@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "bridges/emulation/true_pose.hpp"
 #include "hal/angle.hpp"
 #include "hal/device/ring_sensors.hpp"
 
@@ -21,29 +22,24 @@ double to_wall_m(double at_m, double per_m, double half_m) {
 
 }  // namespace
 
-KinematicBody::KinematicBody(const Pose& start, const std::optional<Arena>& arena) : pose_(start), arena_(arena) {}
+KinematicBody::KinematicBody(const Pose& start, const std::optional<Arena>& arena, const WheelErrors& errors)
+    : pose_(start), arena_(arena), wheels_(errors) {}
 
 void KinematicBody::advance(hal::TimeNs now) {
   if (!at_) at_ = now;
-  const bool still = command_.left_m_s == 0.0 && command_.right_m_s == 0.0;
-  if (still) at_ = std::max(*at_, now);
+  const bool by_steps = arena_ || wheels_.errors().any();
+  if (wheels_.still()) at_ = std::max(*at_, now);
   while (*at_ < now) {
-    const hal::TimeNs until = arena_ ? std::min(now, *at_ + kStepNs) : now;
-    roll(hal::to_seconds(until - *at_));
+    const hal::TimeNs until = by_steps ? std::min(now, *at_ + kStepNs) : now;
+    roll(until);
     at_ = until;
   }
 }
 
-void KinematicBody::roll(double dt_s) {
-  const double v_m_s = 0.5 * (command_.left_m_s + command_.right_m_s);
-  const double turn_rad =
-      (command_.right_m_s - command_.left_m_s) / robot_part<hal::DifferentialDrive>().wheel_base_m * dt_s;
-  // The chord of the arc that the centre drives.
-  const double half = 0.5 * turn_rad;
-  const double chord_m = v_m_s * dt_s * (std::fabs(half) < 1e-9 ? 1.0 : std::sin(half) / half);
-  pose_.x_m += chord_m * std::cos(pose_.heading_rad + half);
-  pose_.y_m += chord_m * std::sin(pose_.heading_rad + half);
-  pose_.heading_rad = hal::wrapped(pose_.heading_rad + turn_rad);
+void KinematicBody::roll(hal::TimeNs until) {
+  const ImperfectWheels::Ways ways = wheels_.roll(*at_, until, pose_.x_m, pose_.y_m);
+  pose_ = rolled(pose_, ways.left_m, ways.right_m,
+                 wheels_.errors().base * robot_part<hal::DifferentialDrive>().wheel_base_m);
   if (!arena_) return;
   const double free_x_m = std::max(0.0, 0.5 * arena_->length_x_m - robot_part<hal::Body>().radius_m);
   const double free_y_m = std::max(0.0, 0.5 * arena_->length_y_m - robot_part<hal::Body>().radius_m);
@@ -78,6 +74,7 @@ BodySenses KinematicBody::sense(hal::TimeNs now) {
 void KinematicBody::actuate(hal::TimeNs now, const BodyCommand& command) {
   advance(now);
   command_ = command;
+  wheels_.tell(now, command.left_m_s, command.right_m_s);
 }
 
 }  // namespace tandem::bridges::epuck_emulator

@@ -2,6 +2,8 @@
 #pragma once
 #include <optional>
 
+#include "bridges/body_pose.hpp"
+#include "bridges/emulation/imperfect_wheels.hpp"
 #include "bridges/epuck_emulator/body.hpp"
 
 namespace tandem::bridges::epuck_emulator {
@@ -12,18 +14,14 @@ struct Arena {
   double length_y_m = 1.0;
 };
 
-/// In the frame of the world: x east, y north, heading counter-clockwise from x.
-struct Pose {
-  double x_m = 0.0;
-  double y_m = 0.0;
-  double heading_rad = 0.0;
-};
+using Pose = BodyPose;
 
-/// Differential drive without slip [Siegwart 2011, section 3.2]; a wall stops the body, and it slides along. Moves only
-/// when a call tells it a later time. One thread at a time.
+/// Differential drive [Siegwart 2011, section 3.2] on wheels that may err; a wall stops the body, and it slides along.
+/// Moves only when a call tells it a later time. One thread at a time.
 class KinematicBody final : public EmulatedBody {
  public:
-  explicit KinematicBody(const Pose& start = {}, const std::optional<Arena>& arena = {});
+  explicit KinematicBody(const Pose& start = {}, const std::optional<Arena>& arena = {},
+                         const WheelErrors& errors = {});
 
   /// Rolls on to `now`.
   void advance(hal::TimeNs now);
@@ -36,11 +34,12 @@ class KinematicBody final : public EmulatedBody {
   BodySenses surroundings;
 
  private:
-  void roll(double dt_s);
+  void roll(hal::TimeNs until);
   double distance_to_wall_m(double x_m, double y_m, double direction_rad) const;
 
   Pose pose_;
   std::optional<Arena> arena_;
+  ImperfectWheels wheels_;
   BodyCommand command_;
   std::optional<hal::TimeNs> at_;
 };

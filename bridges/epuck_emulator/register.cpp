@@ -16,15 +16,19 @@ struct Own {
   std::string firmware = "gctronic";
   std::int64_t selector = 3;
   bool cliff_sensors = false;
+  PoseOptions poses{};
+  WheelErrors wheels{};
   void describe(hal::ParamVisitor& v) {
     v.text("firmware", firmware, "btcom, gctronic, webots or epuck2.");
     v.integer("selector", selector, {0, 15}, "Position of the rotary switch.");
     v.flag("cliff_sensors", cliff_sensors, "The ground board has two cliff sensors.");
+    poses.describe(v);
+    wheels.describe(v);
   }
 };
 
 struct OwnOfEpuck2 : Own {
-  OwnOfEpuck2() { *static_cast<Own*>(this) = {"epuck2", 3, true}; }
+  OwnOfEpuck2() { *static_cast<Own*>(this) = {"epuck2", 3, true, {}, {}}; }
 };
 
 template <class OwnOptions>
@@ -36,13 +40,18 @@ hal::Status run_type(const EmulatorRequest& request, SharedPorts* ports, const s
   options.firmware = own.firmware;
   options.robot.selector = static_cast<std::uint8_t>(own.selector);
   options.robot.cliff_sensors = own.cliff_sensors;
+  options.poses = own.poses;
+  options.wheels = own.wheels;
   options.ready = [&request](const std::string& path) {
     if (request.ready)
       request.ready("e-puck's firmware on " + path + ": connect with --link " +
                     (path.starts_with("tcp:") || path.starts_with("epuck-tcp:") ? path : "serial:" + path + "@115200"));
   };
   std::optional<PortBody> body;
-  if (ports != nullptr) options.body = &body.emplace(*ports);
+  if (ports != nullptr) {
+    options.body = &body.emplace(*ports);
+    options.pose_elsewhere = [ports] { return ports->pose(); };
+  }
   return run(options, stop);
 }
 

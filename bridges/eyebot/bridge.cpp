@@ -208,8 +208,8 @@ LinkReport EyebotBridge::report() const {
   report.bad_answers = mail_->inbox.statistics().refused + driver_.statistics().not_understood;
   report.resynchronised = driver_.statistics().recovered;
   report.links_lost = driver_.statistics().lost;
-  if (report.answers > 0) report.mean_round_trip_ns = orders.sum_round_trip_ns / static_cast<TimeNs>(report.answers);
-  report.max_round_trip_ns = orders.max_round_trip_ns;
+  report.set(orders.round_trips);
+  report.clock = driver_.clock().state(lcm_bus::monotonic_ns());
   return report;
 }
 

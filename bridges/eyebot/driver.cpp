@@ -30,6 +30,7 @@ constexpr TimeNs kSilence = 2 * hal::kNsPerSecond;      // then it is told who i
 constexpr TimeNs kOthersRobot = 2 * hal::kNsPerSecond;  // after another hub's last command
 constexpr TimeNs kOthersSpread = 100 * hal::kNsPerMs;   // two hubs do not try again at the same moment
 constexpr TimeNs kClocksAgree = 100 * hal::kNsPerMs;    // a robot takes stamps that are 250 ms off
+constexpr TimeNs kAskClock = 10 * hal::kNsPerSecond;    // its answer bounds the error of its clock
 constexpr TimeNs kOwnJump = 150 * hal::kNsPerMs;        // robots refuse what is stamped 250 ms off
 constexpr double kPushed = 1.5;                         // times as fast as it flies by itself a robot may be
 constexpr std::size_t kPayloadAt = messages::kHeaderEnd;
@@ -97,7 +98,7 @@ void EyebotDriver::take_in(Topic topic, Newest<Message>& newest, TimeNs now, Use
     }
     if (!accept(newest.next.hdr, letter_.received_ns)) continue;
     std::swap(newest.message, newest.next);
-    taken(topic) = clock_.local(newest.message.hdr.utime, letter_.received_ns);
+    taken(topic) = clock_.local(ClockEstimator::from_us(newest.message.hdr.utime), letter_.received_ns);
     use();
   }
 }
@@ -127,7 +128,7 @@ bool EyebotDriver::accept(const messages::Header& header, TimeNs received_ns) {
   const Sender sender = liveness_.note(header.session, received_ns);
   if (sender == Sender::Other) return false;
   if (sender == Sender::Restarted) begin_anew();
-  clock_.note(header.utime, received_ns);
+  clock_.note(ClockEstimator::from_us(header.utime), received_ns);
   watch_clock();
   return true;
 }
@@ -220,7 +221,8 @@ void EyebotDriver::use_ack(TimeNs received_ns) {
   if (m.channel != voice(Told::Mode).channel) return;
   const auto answered = orders_.take(m, settings_.session, received_ns);
   if (!answered) return;
-  clock_.note_answer(m.hdr.utime, orders_.answered_issue_ns(), received_ns);
+  clock_.note_answer(ClockEstimator::from_us(m.hdr.utime), orders_.answered_issue_ns(), received_ns);
+  exchanged_ns_ = received_ns;
   const Outcome outcome = orders_.last(*answered).outcome;
   if (outcome == Outcome::RejectedStale) robots_clock_ = !robots_clock_;  // then by the other clock
   watch_clock();
@@ -400,7 +402,9 @@ void EyebotDriver::guide(TimeNs now) noexcept {
   if (cut_) step = {status_.mode == Mode::Stopped ? Action::Nop : Action::Stop, false, false};
   const bool takes_speed =
       step.action == Action::TakeOff || step.action == Action::Land || step.action == Action::Attach;
-  if (step.action == Action::Nop && clock_.doubtful()) {
+  const TimeNs asked_ns = std::max(exchanged_ns_, orders_.last(Action::Nop).at_ns);
+  const bool asks_clock = controlled_ && state_ == RobotState::Active && now - asked_ns >= kAskClock;
+  if (step.action == Action::Nop && (asks_clock || clock_.doubtful())) {
     orders_.want(Action::Nop, 0.0F, now);  // its answer tells whether the clock was set
   } else if (step.action == Action::Nop) {
     orders_.withdraw();
@@ -448,7 +452,7 @@ void EyebotDriver::cut_motors(TimeNs now) noexcept {
 TimeNs EyebotDriver::stamp_ns(TimeNs now) const noexcept {
   const TimeNs own = settings_.unix_clock();
   if (!robots_clock_ || !clock_.known()) return own;
-  const TimeNs robots = now - clock_.offset_ns();
+  const TimeNs robots = now - clock_.offset_ns(now);
   return own - robots < kClocksAgree && robots - own < kClocksAgree ? own : robots;
 }
 

@@ -25,7 +25,7 @@
 #include <string>
 #include <vector>
 
-#include "bridges/eyebot/clock_offset.hpp"
+#include "bridges/clock_estimator.hpp"
 #include "bridges/eyebot/flight_plan.hpp"
 #include "bridges/eyebot/inbox.hpp"
 #include "bridges/eyebot/liveness.hpp"
@@ -140,7 +140,7 @@ class EyebotDriver {
   const DriverStatistics& statistics() const noexcept { return statistics_; }
   const FlightStatus& status() const noexcept { return status_; }
   const Liveness& liveness() const noexcept { return liveness_; }
-  const ClockOffset& clock() const noexcept { return clock_; }
+  const ClockEstimator& clock() const noexcept { return clock_; }
   const ModeOrders& orders() const noexcept { return orders_; }
   const PlaceGate& places() const noexcept { return place_gate_; }
   /// Goes on with numbers that are so much newer: somebody else has spoken in our name meanwhile. The order that is out
@@ -231,7 +231,7 @@ class EyebotDriver {
   hal::Log log_;
   EyebotRobot robot_;
   Liveness liveness_;
-  ClockOffset clock_;
+  ClockEstimator clock_;
   ModeOrders orders_;
   DriverStatistics statistics_;
   std::array<Voice, kTold> voices_;
@@ -243,6 +243,7 @@ class EyebotDriver {
   PlaceGate place_gate_;
   eyebot_messages::State place_{};  // the newest whose place was valid and is believed, taken at
   hal::TimeNs place_taken_ns_ = 0;
+  hal::TimeNs exchanged_ns_ = 0;             // when it last answered an order
   std::uint64_t clock_jumps_ = 0;            // that were noticed
   std::optional<hal::TimeNs> own_clock_ns_;  // how far this machine's clock is ahead of CLOCK_MONOTONIC
   bool robots_clock_ = false;                // commands are stamped by the robot's clock: it refuses those by ours

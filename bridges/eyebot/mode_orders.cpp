@@ -80,9 +80,7 @@ std::optional<Action> ModeOrders::take(const eyebot_messages::Ack& ack, std::int
   if (!out_ || times_ == 0 || ack.cmd_session != session || ack.cmd_seq != order_.seq) return {};
   const Outcome outcome = outcome_of(ack.result);
   ++(outcome == Outcome::Done ? statistics_.accepted : statistics_.refused);
-  const hal::TimeNs round_trip_ns = received_ns - order_.issued_ns;
-  statistics_.sum_round_trip_ns += round_trip_ns;
-  statistics_.max_round_trip_ns = std::max(statistics_.max_round_trip_ns, round_trip_ns);
+  statistics_.round_trips.add(received_ns - order_.issued_ns);
   answered_issue_ns_ = order_.issued_ns;
   end(outcome, received_ns);
   return order_.action;

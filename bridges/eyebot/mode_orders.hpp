@@ -6,6 +6,7 @@
 #include <string>
 
 #include "bridges/eyebot_messages/messages.hpp"
+#include "bridges/round_trips.hpp"
 #include "hal/time.hpp"
 
 namespace tandem::bridges::eyebot {
@@ -46,7 +47,7 @@ struct OrderStatistics {
   std::uint64_t accepted = 0;
   std::uint64_t refused = 0;
   std::uint64_t unanswered = 0;
-  hal::TimeNs sum_round_trip_ns = 0, max_round_trip_ns = 0;  ///< of accepted and refused ones, from the first saying
+  RoundTrips round_trips;  ///< of accepted and refused ones, from the first saying
 };
 
 /// At most one order is out; a new one replaces it. Not thread-safe.

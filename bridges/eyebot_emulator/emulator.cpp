@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <deque>
 #include <mutex>
-#include <poll.h>
 #include <random>
 #include <sys/eventfd.h>
 #include <time.h>
 #include <unistd.h>
 
+#include "bridges/emulation/serving.hpp"
 #include "bridges/eyebot_emulator/faults.hpp"
 
 namespace tandem::bridges::eyebot_emulator {
@@ -17,9 +17,7 @@ namespace {
 using hal::TimeNs;
 using lcm_bus::LcmLink;
 using lcm_bus::LcmMessage;
-using lcm_bus::monotonic_ns;
 
-constexpr TimeNs kStopNs = 20 * hal::kNsPerMs;  // the stop flag is looked at this often
 constexpr std::string_view kLcm = "lcm:";
 
 std::int64_t unix_us() {
@@ -91,25 +89,24 @@ struct SecondHub {
 
 class Server {
  public:
-  Server(const Options& options, std::unique_ptr<EventLog> log_file, const std::vector<Fault>& faults);
+  Server(const Options& options, EventSink tell, const std::vector<Fault>& faults);
   hal::Status serve(const std::atomic<bool>& stop);
 
  private:
-  void tell(TimeNs at, std::string_view name, const EventFields& fields);
   hal::Status connect();
-  void turn(TimeNs now);
+  hal::Status turn(TimeNs now);
   void distribute();
   void apply_faults(std::size_t i, TimeNs now);
   void fly(Flyer& flyer, TimeNs now);
   void publish(Flyer& flyer, TimeNs now);
   void speak(SecondHub& hub, const std::string& robot, TimeNs now);
   TimeNs next_wake(TimeNs now) const;
-  void wait_until(TimeNs at, TimeNs now) const;
+  hal::Status wait(TimeNs now) const;
   void tell_end(TimeNs at);
   std::unique_ptr<Flyer> make_flyer(const std::string& name, std::size_t i, std::vector<Fault> faults, EventSink sink);
 
   const Options& options_;
-  std::unique_ptr<EventLog> log_file_;
+  EventSink tell_;
   std::shared_ptr<LcmLink> link_;
   std::shared_ptr<Inbox> inbox_ = std::make_shared<Inbox>();
   std::vector<std::unique_ptr<Flyer>> flyers_;
@@ -117,13 +114,10 @@ class Server {
   std::vector<std::optional<SecondHub>> second_hubs_;  // likewise
 };
 
-Server::Server(const Options& options, std::unique_ptr<EventLog> log_file, const std::vector<Fault>& faults)
-    : options_(options), log_file_(std::move(log_file)) {
-  const EventSink sink = [this](TimeNs at, std::string_view name, const EventFields& fields) {
-    tell(at, name, fields);
-  };
+Server::Server(const Options& options, EventSink tell, const std::vector<Fault>& faults)
+    : options_(options), tell_(std::move(tell)) {
   const auto names = names_of(options.robot.name, options.count);
-  for (std::size_t i = 0; i < names.size(); ++i) flyers_.push_back(make_flyer(names[i], i, faults, sink));
+  for (std::size_t i = 0; i < names.size(); ++i) flyers_.push_back(make_flyer(names[i], i, faults, tell_));
   namesakes_.resize(flyers_.size());
   second_hubs_.resize(flyers_.size());
 }
@@ -137,11 +131,6 @@ std::unique_ptr<Flyer> Server::make_flyer(const std::string& name, std::size_t i
   const Start start{{2.0 * static_cast<double>(i % 5), 2.0 * static_cast<double>(i / 5), 0.0}, 0.0};
   return std::make_unique<Flyer>(robot, start, options_.room, options_.body,
                                  FaultPlan(std::move(faults), options_.seed + i), std::move(sink));
-}
-
-void Server::tell(TimeNs at, std::string_view name, const EventFields& fields) {
-  if (log_file_) log_file_->write(at, name, fields);
-  if (options_.events) options_.events(at, name, fields);
 }
 
 hal::Status Server::connect() {
@@ -166,12 +155,12 @@ hal::Status Server::connect() {
 hal::Status Server::serve(const std::atomic<bool>& stop) {
   if (const hal::Status connected = connect(); !connected.ok()) return connected;
   const TimeNs start = monotonic_ns();
-  tell(start, "start",
-       {{"link", link_->url()},
-        {"robots", flyers_.size()},
-        {"clock", options_.robot.clock_synced ? "synced" : "unsynced"},
-        {"utime", unix_us()},
-        {"seed", options_.seed}});
+  tell_(start, "start",
+        {{"link", link_->url()},
+         {"robots", flyers_.size()},
+         {"clock", options_.robot.clock_synced ? "synced" : "unsynced"},
+         {"utime", unix_us()},
+         {"seed", options_.seed}});
   // They do not all speak at the same moment.
   constexpr TimeNs kApartNs = hal::kNsPerMs;
   for (std::size_t i = 0; i < flyers_.size(); ++i) {
@@ -180,30 +169,27 @@ hal::Status Server::serve(const std::atomic<bool>& stop) {
                                unix_us() + static_cast<std::int64_t>(i) * kApartNs / 1000);
   }
   if (options_.ready) options_.ready(link_->url());
-  while (!stop.load(std::memory_order_relaxed)) {
-    const TimeNs now = monotonic_ns();
-    turn(now);
-    wait_until(next_wake(now), now);
-  }
+  const hal::Status served = turn_until(
+      stop, [this](TimeNs now) { return turn(now); }, [this](TimeNs now) { return wait(now); });
   tell_end(monotonic_ns());
-  return {};
+  return served;
 }
 
 void Server::tell_end(TimeNs at) {
-  turn(at);
+  (void)turn(at);
   for (const auto& flyer : flyers_) {
     flyer->robot.tell_sent(at);
     const Supervisor& s = flyer->robot.supervisor();
-    tell(at, "end",
-         {{"robot", flyer->robot.options().name},
-          {"why", "stopped"},
-          {"mode", name_of(s.mode())},
-          {"failsafe", name_of(s.failsafe())},
-          {"rejected", flyer->robot.rejected()}});
+    tell_(at, "end",
+          {{"robot", flyer->robot.options().name},
+           {"why", "stopped"},
+           {"mode", name_of(s.mode())},
+           {"failsafe", name_of(s.failsafe())},
+           {"rejected", flyer->robot.rejected()}});
   }
 }
 
-void Server::turn(TimeNs now) {
+hal::Status Server::turn(TimeNs now) {
   for (std::size_t i = 0; i < flyers_.size(); ++i) apply_faults(i, now);
   for (std::size_t i = 0; i < flyers_.size(); ++i) {
     if (second_hubs_[i]) speak(*second_hubs_[i], flyers_[i]->robot.options().name, now);
@@ -213,6 +199,7 @@ void Server::turn(TimeNs now) {
   for (const auto& namesake : namesakes_) {
     if (namesake) fly(*namesake, now);
   }
+  return {};
 }
 
 void Server::apply_faults(std::size_t i, TimeNs now) {
@@ -228,8 +215,8 @@ void Server::apply_faults(std::size_t i, TimeNs now) {
       second_hubs_[i].reset();
       if (change->begins) second_hubs_[i] = SecondHub{.begun_at = change->at, .next_at = change->at};
     }
-    tell(change->at, "fault",
-         {{"robot", flyer.robot.options().name}, {"fault", fault.text}, {"phase", change->begins ? "begin" : "end"}});
+    tell_(change->at, "fault",
+          {{"robot", flyer.robot.options().name}, {"fault", fault.text}, {"phase", change->begins ? "begin" : "end"}});
   }
 }
 
@@ -298,11 +285,10 @@ TimeNs Server::next_wake(TimeNs now) const {
   return wake;
 }
 
-void Server::wait_until(TimeNs at, TimeNs now) const {
-  const TimeNs left = std::max<TimeNs>(0, at - now);
-  const timespec t{static_cast<time_t>(left / hal::kNsPerSecond), static_cast<long>(left % hal::kNsPerSecond)};
-  pollfd inbox{inbox_->descriptor(), POLLIN, 0};
-  ::ppoll(&inbox, 1, &t, nullptr);  // a signal wakes it too
+hal::Status Server::wait(TimeNs now) const {
+  std::vector<pollfd> polls = {{inbox_->descriptor(), POLLIN, 0}};
+  wait_for(polls, next_wake(now), now);
+  return {};
 }
 
 bool is_robot_name(const std::string& name) {
@@ -338,19 +324,11 @@ hal::Status run(const Options& options, const std::atomic<bool>& stop) {
       return hal::Error{"'" + name + "' cannot be an eye-bot's name: 1 to 24 letters, digits, _ and -"};
     }
   }
-  std::vector<Fault> faults;
-  for (const std::string& text : options.faults) {
-    auto fault = parse_fault(text);
-    if (!fault.ok()) return fault.error();
-    faults.push_back(std::move(fault).value());
-  }
-  std::unique_ptr<EventLog> log_file;
-  if (!options.log_file.empty()) {
-    auto opened = EventLog::open(options.log_file);
-    if (!opened.ok()) return opened.error();
-    log_file = std::move(opened).value();
-  }
-  Server server(options, std::move(log_file), faults);
+  auto faults = read_faults(options.faults, &parse_fault);
+  if (!faults.ok()) return faults.error();
+  auto events = open_event_sink(options.log_file, options.events);
+  if (!events.ok()) return events.error();
+  Server server(options, std::move(events).value(), faults.value());
   return server.serve(stop);
 }
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "bridges/emulation/fault_spec.hpp"
+#include "bridges/emulation/fault_schedule.hpp"
 #include "bridges/eyebot_emulator/eyebot.hpp"
 
 namespace tandem::bridges::eyebot_emulator {
@@ -49,6 +49,10 @@ struct Fault {
   int rate_Hz = 0;          ///< Flood
   double length_m = 0.0;    ///< Place
   std::string text{};       ///< as written
+
+  bool is_moment() const noexcept {
+    return kind == FaultKind::Restart || kind == FaultKind::Clock || kind == FaultKind::Battery;
+  }
 };
 
 /// Reads NAME[=VALUE][@START[+DURATION]]: "silent=state@5s+2s", "drop=0.01", "clock=1h@3s" … A bare number is in
@@ -59,22 +63,9 @@ hal::Result<Fault> parse_fault(std::string_view text);
 std::string fault_manual();
 
 /// All faults of one robot's run, and the chance in them.
-class FaultPlan {
+class FaultPlan : public FaultSchedule<Fault> {
  public:
-  FaultPlan(std::vector<Fault> faults, std::uint64_t seed) : faults_(std::move(faults)), chance_(seed) {}
-
-  /// Times from here on are on the clock of `start`.
-  void begin(hal::TimeNs start);
-
-  struct Change {
-    hal::TimeNs at = 0;
-    bool begins = true;
-    const Fault* fault = nullptr;
-  };
-  /// The next fault to begin or end by `now`, in order of time; each is told once.
-  std::optional<Change> next_change(hal::TimeNs now);
-  /// When `next_change` will have something.
-  std::optional<hal::TimeNs> next_change_at() const;
+  using FaultSchedule::FaultSchedule;
 
   /// What a message becomes on its way: nothing, itself, something else, twice itself, or it waits for the next of its
   /// channel. Messages of one way leave in the order of their times.
@@ -89,14 +80,9 @@ class FaultPlan {
   };
   void pass(Way& way, Datagram message, std::vector<Datagram>& out);
   bool is_mute(FaultKind kind, const std::string& channel, hal::TimeNs at) const;
-  bool happens(FaultKind kind, hal::TimeNs at);
   hal::TimeNs longest_ns(FaultKind kind, hal::TimeNs at) const;
   void damage(const std::string& channel, Bytes& data, hal::TimeNs at);
 
-  std::vector<Fault> faults_;
-  std::vector<Change> changes_;  // in order of time
-  std::size_t told_ = 0;
-  Chance chance_;
   Way out_{FaultKind::Silent, FaultKind::Drop, FaultKind::Double, FaultKind::Swap, FaultKind::Delay};
   Way in_{FaultKind::Deaf, FaultKind::Lose, FaultKind::Repeat, FaultKind::Overtake, FaultKind::Lag};
 };

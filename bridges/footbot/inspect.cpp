@@ -67,7 +67,7 @@ void print_node(const InspectRequest& request, const aseba::Node& node) {
       who + " '" + node.description.name + "', " + aseba::node_state_name(node.state) + ", protocol " +
       std::to_string(node.version) + "; " + std::to_string(node.statistics.messages) + " messages, " +
       std::to_string(node.statistics.answers) + " reads answered of " + std::to_string(node.statistics.reads) +
-      formatted(", %.1f ms round trip at most", static_cast<double>(node.statistics.max_round_trip_ns) * 1e-6));
+      formatted(", %.1f ms round trip at most", static_cast<double>(node.statistics.round_trips.largest_ns()) * 1e-6));
   if (!node.trouble.empty()) request.print("  " + node.trouble);
   if (!node.ready()) return;
   std::size_t width = 0;

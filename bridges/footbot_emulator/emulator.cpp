@@ -3,9 +3,8 @@
 #include <algorithm>
 #include <cerrno>
 #include <deque>
-#include <poll.h>
-#include <time.h>
 
+#include "bridges/emulation/serving.hpp"
 #include "bridges/footbot_emulator/faults.hpp"
 #include "bridges/footbot_emulator/host_side.hpp"
 
@@ -15,13 +14,6 @@ namespace {
 using hal::TimeNs;
 
 constexpr TimeNs kMostBacklogNs = 20 * hal::kNsPerMs;  // on the bus; then the host waits
-constexpr TimeNs kStopNs = 20 * hal::kNsPerMs;         // the stop flag is looked at this often
-
-TimeNs monotonic_ns() {
-  timespec t{};
-  clock_gettime(CLOCK_MONOTONIC, &t);
-  return static_cast<TimeNs>(t.tv_sec) * hal::kNsPerSecond + t.tv_nsec;
-}
 
 hal::Result<Protocol> protocol_of(const std::string& firmware) {
   if (firmware == "v4") return Protocol::V4;
@@ -31,51 +23,45 @@ hal::Result<Protocol> protocol_of(const std::string& firmware) {
 
 class Server {
  public:
-  Server(const Options& options, std::unique_ptr<EventLog> log_file, FaultPlan faults, EmulatedBody& body,
+  Server(const Options& options, const EventSink& events, FaultPlan faults, EmulatedBody& body, KinematicBody* own_body,
          Protocol protocol)
       : options_(options),
-        log_file_(std::move(log_file)),
         faults_(std::move(faults)),
-        sink_([this](TimeNs at, std::string_view name, const EventFields& fields) { tell(at, name, fields); }),
-        robot_({.protocol = protocol}, body, sink_) {}
+        tell_(in_order(events)),
+        robot_({.protocol = protocol}, body, tell_),
+        own_body_(own_body),
+        poses_(options.poses.poses_hz) {}
 
   hal::Status serve(const std::atomic<bool>& stop);
 
  private:
-  void tell(TimeNs at, std::string_view name, const EventFields& fields);
   hal::Status open_side();
   hal::Status turn(TimeNs now);
   hal::Status apply_faults(TimeNs now);
   void put_on_bus(TimeNs now);
   void show_host(TimeNs now);
+  void tell_pose(TimeNs now);
   bool is_full(TimeNs now) const noexcept { return bus_free_at_ > now + kMostBacklogNs; }
   TimeNs next_wake(TimeNs now) const;
-  void wait_until(TimeNs at, TimeNs now) const;
+  hal::Status wait(TimeNs now) const;
   void tell_end(TimeNs at, const std::string& why);
 
   const Options& options_;
-  std::unique_ptr<EventLog> log_file_;
   FaultPlan faults_;
-  EventSink sink_;
+  EventSink tell_;
   Footbot robot_;
   std::unique_ptr<HostSide> side_;  // none while hung up
   std::string link_;                // what is opened again after a hang-up
   TimeNs bus_free_at_ = 0;          // when the last frame of the host has passed
   std::deque<TimedFrame> to_robot_;
   std::deque<TimedFrame> to_host_;
-  TimeNs last_told_ = 0;
+  KinematicBody* own_body_;  // null: it lives in another
+  PoseTeller poses_;
 };
-
-// Stamps in the log never go back, although the robot's are of the past by up to one turn.
-void Server::tell(TimeNs at, std::string_view name, const EventFields& fields) {
-  last_told_ = std::max(last_told_, at);
-  if (log_file_) log_file_->write(last_told_, name, fields);
-  if (options_.events) options_.events(last_told_, name, fields);
-}
 
 // A port that was chosen freely is kept: hosts come back to where they were.
 hal::Status Server::open_side() {
-  auto side = open_host_side(link_, sink_);
+  auto side = open_host_side(link_, tell_);
   if (!side.ok()) return side.error();
   side_ = std::move(side).value();
   if (link_.starts_with("tcp-listen:") && link_.ends_with(":0")) {
@@ -89,33 +75,27 @@ hal::Status Server::serve(const std::atomic<bool>& stop) {
   if (const hal::Status opened = open_side(); !opened.ok()) return opened;
   const TimeNs start = monotonic_ns();
   faults_.begin(start);
-  tell(start, "start",
-       {{"firmware", options_.firmware}, {"link", options_.link}, {"path", side_->path()}, {"seed", options_.seed}});
+  tell_(start, "start",
+        {{"firmware", options_.firmware}, {"link", options_.link}, {"path", side_->path()}, {"seed", options_.seed}});
   robot_.power_on(start);
   options_.log.info("foot-bot (" + options_.firmware + ") on " + side_->path());
   if (options_.ready) options_.ready(side_->path());
-  while (!stop.load(std::memory_order_relaxed)) {
-    const TimeNs now = monotonic_ns();
-    if (const hal::Status status = turn(now); !status.ok()) {
-      tell_end(monotonic_ns(), status.error().message);
-      return status;
-    }
-    wait_until(next_wake(now), now);
-  }
+  const hal::Status served = turn_until(
+      stop, [this](TimeNs now) { return turn(now); }, [this](TimeNs now) { return wait(now); });
   const TimeNs end = monotonic_ns();
-  robot_.run_until(end);
-  tell_end(end, "stopped");
-  return {};
+  if (served.ok()) robot_.run_until(end);
+  tell_end(end, served.ok() ? "stopped" : served.error().message);
+  return served;
 }
 
 void Server::tell_end(TimeNs at, const std::string& why) {
   const Module& left = robot_.module(Place::LeftMotor);
   const Module& right = robot_.module(Place::RightMotor);
-  tell(at, "end",
-       {{"why", why},
-        {"left", left.words("speed")[0]},
-        {"right", right.words("speed")[0]},
-        {"wheels_commanded_t_ns", robot_.wheels_commanded_at().value_or(0)}});
+  tell_(at, "end",
+        {{"why", why},
+         {"left", left.words("speed")[0]},
+         {"right", right.words("speed")[0]},
+         {"wheels_commanded_t_ns", robot_.wheels_commanded_at().value_or(0)}});
 }
 
 hal::Status Server::turn(TimeNs now) {
@@ -133,25 +113,19 @@ hal::Status Server::turn(TimeNs now) {
   return {};
 }
 
-// What the log says of a fault's end has come true.
 hal::Status Server::apply_faults(TimeNs now) {
-  while (const auto change = faults_.next_change(now)) {
-    const Fault& fault = *change->fault;
-    const auto note = [&](const char* phase) { tell(change->at, "fault", {{"fault", fault.text}, {"phase", phase}}); };
-    if (change->begins) note("begin");
-    apply(*change, robot_);
-    if (fault.kind == FaultKind::Hangup) {
-      to_robot_.clear();
-      to_host_.clear();
-      side_.reset();
-    }
-    if (change->begins) continue;
-    if (fault.kind == FaultKind::Hangup) {
-      if (const hal::Status opened = open_side(); !opened.ok()) return opened;
-    }
-    note("end");
-  }
-  return {};
+  return apply_changes(faults_, now, tell_, [this](const FaultPlan::Change& change) {
+    const Fault& fault = *change.fault;
+    apply(change, robot_);
+    if (own_body_ != nullptr && fault.kind == FaultKind::Carry)
+      own_body_->carry(change.at, fault.carried[0], fault.carried[1], fault.carried[2]);
+    if (own_body_ != nullptr && fault.kind == FaultKind::Held) own_body_->hold(change.at, change.begins);
+    if (fault.kind != FaultKind::Hangup) return hal::Status{};
+    to_robot_.clear();
+    to_host_.clear();
+    side_.reset();
+    return change.begins ? hal::Status{} : open_side();
+  });
 }
 
 void Server::put_on_bus(TimeNs now) {
@@ -160,6 +134,18 @@ void Server::put_on_bus(TimeNs now) {
     to_robot_.pop_front();
   }
   robot_.run_until(now);
+  tell_pose(now);
+}
+
+void Server::tell_pose(TimeNs now) {
+  const auto pose_at = [this](TimeNs at) -> std::optional<BodyPose> {
+    if (own_body_ == nullptr) return options_.pose_elsewhere ? options_.pose_elsewhere() : std::nullopt;
+    own_body_->advance(at);
+    BodyPose pose = own_body_->pose();
+    pose.taken_ns = at;
+    return pose;
+  };
+  poses_.turn(now, pose_at, tell_);
 }
 
 void Server::show_host(TimeNs now) {
@@ -180,17 +166,17 @@ TimeNs Server::next_wake(TimeNs now) const {
   TimeNs wake = std::min(now + kStopNs, robot_.next_event());
   if (!to_robot_.empty()) wake = std::min(wake, to_robot_.front().at);
   if (!to_host_.empty()) wake = std::min(wake, to_host_.front().at);
+  wake = std::min(wake, poses_.due());
   if (is_full(now)) wake = std::min(wake, bus_free_at_ - kMostBacklogNs);
   if (const auto change = faults_.next_change_at()) wake = std::min(wake, *change);
   return wake;
 }
 
-void Server::wait_until(TimeNs at, TimeNs now) const {
-  const TimeNs left = std::max<TimeNs>(0, at - now);
-  const timespec t{static_cast<time_t>(left / hal::kNsPerSecond), static_cast<long>(left % hal::kNsPerSecond)};
+hal::Status Server::wait(TimeNs now) const {
   std::vector<pollfd> polls;
   if (side_ && !is_full(now)) side_->add_polls(polls);
-  ::ppoll(polls.data(), polls.size(), &t, nullptr);  // a signal wakes it too
+  wait_for(polls, next_wake(now), now);
+  return {};
 }
 
 }  // namespace
@@ -198,21 +184,14 @@ void Server::wait_until(TimeNs at, TimeNs now) const {
 hal::Status run(const Options& options, const std::atomic<bool>& stop) {
   const auto protocol = protocol_of(options.firmware);
   if (!protocol.ok()) return protocol.error();
-  std::vector<Fault> faults;
-  for (const std::string& text : options.faults) {
-    auto fault = parse_fault(text);
-    if (!fault.ok()) return fault.error();
-    faults.push_back(std::move(fault).value());
-  }
-  std::unique_ptr<EventLog> log_file;
-  if (!options.log_file.empty()) {
-    auto opened = EventLog::open(options.log_file);
-    if (!opened.ok()) return opened.error();
-    log_file = std::move(opened).value();
-  }
-  KinematicBody own_body({}, options.arena);
+  auto faults = read_faults(options.faults, &parse_fault);
+  if (!faults.ok()) return faults.error();
+  auto events = open_event_sink(options.log_file, options.events);
+  if (!events.ok()) return events.error();
+  KinematicBody own_body(options.poses.start, options.arena, options.wheels);
   EmulatedBody& body = options.body != nullptr ? *options.body : own_body;
-  Server server(options, std::move(log_file), FaultPlan(std::move(faults), options.seed), body, protocol.value());
+  Server server(options, events.value(), FaultPlan(std::move(faults).value(), options.seed), body,
+                options.body == nullptr ? &own_body : nullptr, protocol.value());
   return server.serve(stop);
 }
 

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "bridges/emulation/true_pose.hpp"
 #include "bridges/footbot_emulator/footbot.hpp"
 #include "bridges/footbot_emulator/kinematic_body.hpp"
 #include "hal/log.hpp"
@@ -21,9 +22,12 @@ struct Options {
   std::uint64_t seed = 1;             ///< of the chance in the faults
   EmulatedBody* body = nullptr;       ///< must outlive the run; none: a robot on open ground, or in `arena`
   std::optional<Arena> arena{};
-  EventSink events{};                                    ///< gets what the log gets, on the thread of `run`
-  hal::Log log{};                                        ///< for people
-  std::function<void(const std::string& path)> ready{};  ///< called once, when a host can connect
+  WheelErrors wheels{};  ///< how the wheels of a body of its own err
+  PoseOptions poses{};
+  std::function<std::optional<BodyPose>()> pose_elsewhere{};  ///< of `body`, the newest; none: nobody knows
+  EventSink events{};                                         ///< gets what the log gets, on the thread of `run`
+  hal::Log log{};                                             ///< for people
+  std::function<void(const std::string& path)> ready{};       ///< called once, when a host can connect
 };
 
 /// Emulates until `stop` becomes true, which is noticed within 20 ms. Removes its pseudo-terminal at the end. The log

@@ -1,24 +1,18 @@
 #include "bridges/footbot_emulator/faults.hpp"
 
 #include <algorithm>
+#include <cstdio>
+#include <numbers>
 #include <utility>
 
 namespace tandem::bridges::footbot_emulator {
 namespace {
 
-enum class Value : std::uint8_t { None, Module, AnyModule, Lie, Probability, Time };
+enum class Value : std::uint8_t { None, Module, AnyModule, Lie, Probability, Time, Way };
 
-struct Entry {
-  FaultKind kind;
-  std::string_view name;
-  Value value;
-  bool needs_start;
-  hal::TimeNs lasts_ns;  // where no duration is given
-  std::string_view example;
-  std::string_view doc;
-};
+using Entry = FaultEntry<FaultKind, Value>;
 
-constexpr std::array<Entry, 11> kEntries = {{
+constexpr std::array<Entry, 13> kEntries = {{
     {FaultKind::Missing, "missing", Value::Module, false, kEndless, "missing=gripper@0s+3s",
      "the module is not on the bus"},
     {FaultKind::Restart, "restart", Value::AnyModule, true, 0, "restart=left-motor@3s",
@@ -38,11 +32,11 @@ constexpr std::array<Entry, 11> kEntries = {{
     {FaultKind::Delay, "delay", Value::Time, false, kEndless, "delay=20ms", "frames of modules arrive later"},
     {FaultKind::Hangup, "hangup", Value::None, true, hal::kNsPerSecond, "hangup@6s+1s",
      "the adapter, or the connection, disappears and comes back"},
+    {FaultKind::Carry, "carry", Value::Way, true, 0, "carry=0.5:-0.2:90@8s",
+     "somebody puts its body elsewhere: metres to the east and the north, degrees counter-clockwise"},
+    {FaultKind::Held, "held", Value::None, true, kEndless, "held@5s+2s",
+     "its body is held fast, and its wheels turn on"},
 }};
-
-hal::Error wrong(std::string_view text, const std::string& why) {
-  return hal::Error{"fault '" + std::string(text) + "': " + why + ". The faults are\n" + fault_manual()};
-}
 
 hal::Result<Place> parse_module(std::string_view text) {
   const auto place = place_of(text);
@@ -63,6 +57,14 @@ hal::Status read_value(const Entry& entry, std::string_view value, Fault& fault)
     fault.delay_ns = delay.value();
     return {};
   }
+  if (entry.value == Value::Way) {
+    std::array<double, 3>& way = fault.carried;
+    char rest = 0;
+    if (std::sscanf(std::string(value).c_str(), "%lf:%lf:%lf%c", &way[0], &way[1], &way[2], &rest) != 3)
+      return hal::Error{"say how far and by how many degrees, as in " + std::string(entry.example)};
+    way[2] *= std::numbers::pi / 180.0;
+    return {};
+  }
   const std::size_t colon = entry.value == Value::Lie ? value.find(':') : std::string_view::npos;
   const auto module = parse_module(value.substr(0, colon));
   if (!module.ok()) return module.error();
@@ -78,77 +80,11 @@ hal::Status read_value(const Entry& entry, std::string_view value, Fault& fault)
 }  // namespace
 
 std::string fault_manual() {
-  std::string text;
-  for (const Entry& e : kEntries) {
-    std::string example = "  " + std::string(e.example);
-    example.resize(std::max<std::size_t>(26, example.size() + 1), ' ');
-    text += example + std::string(e.doc) + "\n";
-  }
-  return text + "A fault may be given @START+DURATION; without, it lasts from the start to the end. The modules are " +
-         module_names() + ".";
+  return manual_of_faults(kEntries, 26) + " The modules are " + module_names() + ".";
 }
 
 hal::Result<Fault> parse_fault(std::string_view text) {
-  const auto split = split_fault(text);
-  if (!split.ok()) return wrong(text, split.error().message);
-  const FaultSpec& spec = split.value();
-  const auto entry = std::ranges::find(kEntries, spec.name, &Entry::name);
-  if (entry == kEntries.end()) return wrong(text, "there is no fault '" + std::string(spec.name) + "'");
-  if (spec.value && entry->value == Value::None) return wrong(text, "it takes no value");
-  if (!spec.value && entry->value != Value::None && entry->value != Value::AnyModule) {
-    return wrong(text, "it needs a value, as in " + std::string(entry->example));
-  }
-  if (!spec.start && entry->needs_start) return wrong(text, "say when, as in " + std::string(entry->example));
-  Fault fault;
-  fault.kind = entry->kind;
-  fault.text = text;
-  fault.from = spec.from();
-  fault.until = spec.until(entry->lasts_ns);
-  if (spec.value) {
-    if (const hal::Status read = read_value(*entry, *spec.value, fault); !read.ok()) {
-      return wrong(text, read.error().message);
-    }
-  }
-  return fault;
-}
-
-void FaultPlan::begin(hal::TimeNs start) {
-  changes_.clear();
-  told_ = 0;
-  for (Fault& f : faults_) {
-    const bool ends = f.until < kEndless && f.kind != FaultKind::Restart;
-    f.from += start;
-    f.until += start;
-    changes_.push_back({f.from, true, &f});
-    if (ends) changes_.push_back({f.until, false, &f});
-  }
-  std::ranges::stable_sort(changes_, {}, &Change::at);
-}
-
-std::optional<FaultPlan::Change> FaultPlan::next_change(hal::TimeNs now) {
-  if (told_ == changes_.size() || changes_[told_].at > now) return std::nullopt;
-  return changes_[told_++];
-}
-
-std::optional<hal::TimeNs> FaultPlan::next_change_at() const {
-  if (told_ == changes_.size()) return std::nullopt;
-  return changes_[told_].at;
-}
-
-bool FaultPlan::happens(FaultKind kind, hal::TimeNs at) {
-  bool any = false;
-  for (const Fault& f : faults_) {
-    if (f.kind == kind && f.from <= at && at < f.until) any = chance_.hits(f.probability) || any;
-  }
-  return any;
-}
-
-hal::TimeNs FaultPlan::delay_ns(hal::TimeNs at) const {
-  hal::TimeNs longest = 0;
-  for (const Fault& f : faults_) {
-    if (f.from <= at && at < f.until) longest = std::max(longest, f.delay_ns);
-  }
-  return longest;
+  return read_fault<Fault>(text, kEntries, fault_manual(), &read_value, Value::AnyModule);
 }
 
 bool FaultPlan::reaches_robot(hal::TimeNs at) {
@@ -192,6 +128,7 @@ void apply(const FaultPlan::Change& change, Footbot& robot) {
     }
   };
   robot.run_until(change.at);
+  if (fault.kind == FaultKind::Carry || fault.kind == FaultKind::Held) return;  // of the body
   if (fault.module) return to(*fault.module);
   for (std::size_t i = 0; i < kModules; ++i) to(Place{i});
 }

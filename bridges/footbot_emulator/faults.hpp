@@ -1,25 +1,43 @@
 // Faults on demand: what may go wrong in a foot-bot and on its bus, at given times and from a seed.
 #pragma once
+#include <array>
 #include <string>
 #include <vector>
 
-#include "bridges/emulation/fault_spec.hpp"
+#include "bridges/emulation/fault_schedule.hpp"
 #include "bridges/footbot_emulator/footbot.hpp"
 
 namespace tandem::bridges::footbot_emulator {
 
-enum class FaultKind : std::uint8_t { Missing, Restart, Silent, Deaf, Lie, Drop, Lose, Double, Swap, Delay, Hangup };
+enum class FaultKind : std::uint8_t {
+  Missing,
+  Restart,
+  Silent,
+  Deaf,
+  Lie,
+  Drop,
+  Lose,
+  Double,
+  Swap,
+  Delay,
+  Hangup,
+  Carry,
+  Held
+};
 
 /// Active in [from, until), counted from the start of the emulator. Restart happens at `from`.
 struct Fault {
   FaultKind kind = FaultKind::Silent;
   hal::TimeNs from = 0;
   hal::TimeNs until = kEndless;
-  std::optional<Place> module{};  ///< Missing, Restart, Silent, Deaf, Lie; none: all
-  Lie lie = Lie::None;            ///< Lie
-  double probability = 0.0;       ///< Drop, Lose, Double, Swap: of each frame
-  hal::TimeNs delay_ns = 0;       ///< Delay
-  std::string text{};             ///< as written
+  std::optional<Place> module{};    ///< Missing, Restart, Silent, Deaf, Lie; none: all
+  Lie lie = Lie::None;              ///< Lie
+  double probability = 0.0;         ///< Drop, Lose, Double, Swap: of each frame
+  hal::TimeNs delay_ns = 0;         ///< Delay
+  std::array<double, 3> carried{};  ///< Carry: by x, y in metres, turned by radians
+  std::string text{};               ///< as written
+
+  bool is_moment() const noexcept { return kind == FaultKind::Restart || kind == FaultKind::Carry; }
 };
 
 /// Reads NAME[=VALUE][@START[+DURATION]]: "missing=gripper@0s+3s", "drop=0.01". A bare number is in seconds. Errors
@@ -30,22 +48,9 @@ hal::Result<Fault> parse_fault(std::string_view text);
 std::string fault_manual();
 
 /// All faults of a run, and the chance in them.
-class FaultPlan {
+class FaultPlan : public FaultSchedule<Fault> {
  public:
-  FaultPlan(std::vector<Fault> faults, std::uint64_t seed) : faults_(std::move(faults)), chance_(seed) {}
-
-  /// Times from here on are on the clock of `start`.
-  void begin(hal::TimeNs start);
-
-  struct Change {
-    hal::TimeNs at = 0;
-    bool begins = true;
-    const Fault* fault = nullptr;
-  };
-  /// The next fault to begin or end by `now`, in order of time; each is told once.
-  std::optional<Change> next_change(hal::TimeNs now);
-  /// When `next_change` will have something.
-  std::optional<hal::TimeNs> next_change_at() const;
+  using FaultSchedule::FaultSchedule;
 
   /// Whether a frame of the host gets onto the bus.
   bool reaches_robot(hal::TimeNs at);
@@ -54,13 +59,6 @@ class FaultPlan {
   void to_host(const TimedFrame& frame, std::vector<TimedFrame>& out);
 
  private:
-  bool happens(FaultKind kind, hal::TimeNs at);
-  hal::TimeNs delay_ns(hal::TimeNs at) const;
-
-  std::vector<Fault> faults_;
-  std::vector<Change> changes_;  // in order of time
-  std::size_t told_ = 0;
-  Chance chance_;
   std::array<std::optional<TimedFrame>, 256> held_back_;  // by sender
   hal::TimeNs last_out_ = 0;
 };

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "bridges/emulation/true_pose.hpp"
 #include "hal/angle.hpp"
 #include "hal/device/distance_scanner.hpp"
 #include "hal/device/ring_sensors.hpp"
@@ -37,34 +38,40 @@ double turn_to(double angle_rad, double target_rad, double most_rad) {
 
 }  // namespace
 
-KinematicBody::KinematicBody(const Pose& start, const std::optional<Arena>& arena) : pose_(start), arena_(arena) {}
+KinematicBody::KinematicBody(const Pose& start, const std::optional<Arena>& arena, const WheelErrors& errors)
+    : pose_(start), arena_(arena), wheels_(errors) {}
 
 void KinematicBody::advance(hal::TimeNs now) {
   if (!at_) at_ = now;
   while (*at_ < now) {
     const hal::TimeNs until = std::min(now, *at_ + kStepNs);
     const double dt_s = hal::to_seconds(until - *at_);
-    roll(dt_s);
+    roll(until);
     turn_devices(until, dt_s);
     at_ = until;
   }
 }
 
-void KinematicBody::roll(double dt_s) {
-  const double v_m_s = 0.5 * (command_.left_m_s + command_.right_m_s);
-  const double turn_rad =
-      (command_.right_m_s - command_.left_m_s) / robot_part<hal::DifferentialDrive>().wheel_base_m * dt_s;
-  // The chord of the arc that the centre drives.
-  const double half = 0.5 * turn_rad;
-  const double chord_m = v_m_s * dt_s * (std::fabs(half) < 1e-9 ? 1.0 : std::sin(half) / half);
-  pose_.x_m += chord_m * std::cos(pose_.heading_rad + half);
-  pose_.y_m += chord_m * std::sin(pose_.heading_rad + half);
-  pose_.heading_rad = hal::wrapped(pose_.heading_rad + turn_rad);
+void KinematicBody::roll(hal::TimeNs until) {
+  const ImperfectWheels::Ways ways = wheels_.roll(*at_, until, pose_.x_m, pose_.y_m);
+  if (held_) return;
+  pose_ = rolled(pose_, ways.left_m, ways.right_m,
+                 wheels_.errors().base * robot_part<hal::DifferentialDrive>().wheel_base_m);
   if (!arena_) return;
   const double free_x_m = std::max(0.0, 0.5 * arena_->length_x_m - robot_part<hal::Body>().radius_m);
   const double free_y_m = std::max(0.0, 0.5 * arena_->length_y_m - robot_part<hal::Body>().radius_m);
   pose_.x_m = std::clamp(pose_.x_m, -free_x_m, free_x_m);
   pose_.y_m = std::clamp(pose_.y_m, -free_y_m, free_y_m);
+}
+
+void KinematicBody::carry(hal::TimeNs now, double x_m, double y_m, double turn_rad) {
+  advance(now);
+  pose_ = {pose_.x_m + x_m, pose_.y_m + y_m, hal::wrapped(pose_.heading_rad + turn_rad)};
+}
+
+void KinematicBody::hold(hal::TimeNs now, bool held) {
+  advance(now);
+  held_ = held;
 }
 
 void KinematicBody::turn_devices(hal::TimeNs until, double dt_s) {
@@ -122,6 +129,7 @@ void KinematicBody::actuate(hal::TimeNs now, const BodyCommand& command) {
     grip_tried_at_ = now + kTryNs;
   }
   command_ = command;
+  wheels_.tell(now, command.left_m_s, command.right_m_s);
 }
 
 }  // namespace tandem::bridges::footbot_emulator

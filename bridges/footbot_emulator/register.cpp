@@ -10,8 +10,12 @@ namespace {
 
 struct Own {
   std::string firmware = "v4";
+  PoseOptions poses;
+  WheelErrors wheels;
   void describe(hal::ParamVisitor& v) {
     v.text("firmware", firmware, "v4 (the robots') or v5: which version of the protocol its modules speak.");
+    poses.describe(v);
+    wheels.describe(v);
   }
 };
 
@@ -24,12 +28,20 @@ std::string host_link(const std::string& path) {
 hal::Status run_type(const EmulatorRequest& request, SharedPorts* ports, const std::atomic<bool>& stop) {
   Options options;
   apply(request, options);
-  if (request.options != nullptr) options.firmware = static_cast<const Own*>(request.options.get())->firmware;
+  if (request.options != nullptr) {
+    const Own& own = *static_cast<const Own*>(request.options.get());
+    options.firmware = own.firmware;
+    options.poses = own.poses;
+    options.wheels = own.wheels;
+  }
   options.ready = [&request](const std::string& path) {
     if (request.ready) request.ready("foot-bot's modules on " + path + ": connect with --link " + host_link(path));
   };
   std::optional<PortBody> body;
-  if (ports != nullptr) options.body = &body.emplace(*ports);
+  if (ports != nullptr) {
+    options.body = &body.emplace(*ports);
+    options.pose_elsewhere = [ports] { return ports->pose(); };
+  }
   return run(options, stop);
 }
 

@@ -8,7 +8,6 @@
 #include <csignal>
 #include <cstdio>
 #include <cstring>
-#include <ctime>
 #include <deque>
 #include <map>
 #include <mutex>
@@ -24,6 +23,7 @@
 #include "bridges/guardian/packet.hpp"
 #include "bridges/guardian/process.hpp"
 #include "bridges/guardian/shared_page.hpp"
+#include "hal/monotonic.hpp"
 
 namespace tandem::bridges::guardian {
 namespace {
@@ -34,11 +34,7 @@ constexpr TimeNs kHandBackWithin = hal::kNsPerSecond;  // after a freeze, whethe
 constexpr TimeNs kSleepWithin = 300 * hal::kNsPerMs;   // Ctrl-Z
 constexpr auto kClaimWithin = std::chrono::seconds(10);
 
-TimeNs monotonic_ns() noexcept {
-  timespec t{};
-  ::clock_gettime(CLOCK_MONOTONIC, &t);
-  return static_cast<TimeNs>(t.tv_sec) * hal::kNsPerSecond + t.tv_nsec;
-}
+using hal::monotonic_ns;
 
 }  // namespace
 

@@ -63,7 +63,8 @@ class GuardianClient {
   /// From now on this robot, which was claimed, is stopped in this way when the hub dies or freezes. Does nothing where
   /// that is what the guardian knows already.
   void watch(const StopMessages& robot);
-  /// The robot rests, or was never driven: nothing to do for it. A later `watch` has it guarded again.
+  /// The robot rests, or was never driven: nothing to do for it. A later `watch` has it guarded again; its id and its
+  /// link may be claimed anew.
   void release(const std::string& robot);
 
   /// For links and bridges. Refers to memory that is never freed.

@@ -5,7 +5,6 @@
 #include <cerrno>
 #include <csignal>
 #include <cstring>
-#include <ctime>
 #include <fcntl.h>
 #include <malloc.h>
 #include <map>
@@ -26,6 +25,7 @@
 #include <vector>
 
 #include "bridges/guardian/watched_robot.hpp"
+#include "hal/monotonic.hpp"
 
 namespace tandem::bridges::guardian {
 namespace {
@@ -40,11 +40,7 @@ constexpr std::size_t kStack = 8 * 1024 * 1024;  // its own variables lie on a t
 constexpr std::size_t kStack = 512 * 1024;
 #endif
 
-TimeNs monotonic_ns() noexcept {
-  timespec t{};
-  ::clock_gettime(CLOCK_MONOTONIC, &t);
-  return static_cast<TimeNs>(t.tv_sec) * hal::kNsPerSecond + t.tv_nsec;
-}
+using hal::monotonic_ns;
 
 /// -1 where the kernel has none (before Linux 5.3): then the parent's number alone tells of the death, a little later.
 int open_pidfd(pid_t process) noexcept {
@@ -281,10 +277,18 @@ void Process::obey(const Packet& packet) {
 void Process::claim(const StopMessages& robot) {
   if (robots_.empty()) open_takeover_socket();
   const std::string key = lock_key(robot);
+  std::erase_if(robots_, [&](const auto& one) {  // nobody drives it, so its lock and its name are free again
+    const auto& [id, before] = one;
+    const WatchedRobot::View view = before->view();
+    return (id == robot.robot || before->key() == key) && view.given_up && view.idle;
+  });
+  told_hub_.erase(robot.robot);
   for (const auto& [id, other] : robots_) {
-    if (other->key() != key) continue;
-    context_.say_to_hub(
-        {Word::Claimed, robot, "robots '" + id + "' and '" + robot.robot + "' have the same link, " + robot.link});
+    if (id != robot.robot && other->key() != key) continue;
+    context_.say_to_hub({Word::Claimed, robot,
+                         id == robot.robot
+                             ? "robot '" + id + "' is claimed already"
+                             : "robots '" + id + "' and '" + robot.robot + "' have the same link, " + robot.link});
     return;
   }
   auto watched = std::make_unique<WatchedRobot>(context_, robot);

@@ -8,6 +8,8 @@
 #include <sys/un.h>
 #include <unistd.h>
 
+#include "hal/monotonic.hpp"
+
 namespace tandem::bridges::guardian {
 namespace {
 
@@ -19,11 +21,7 @@ constexpr TimeNs kHubMayBeDying = 500 * hal::kNsPerMs;  // its guardian has not 
 constexpr TimeNs kLetGoWithin = 3 * hal::kNsPerSecond;  // a guardian that is asked to
 constexpr TimeNs kTryLockEvery = 10 * hal::kNsPerMs;
 
-TimeNs monotonic_ns() noexcept {
-  timespec t{};
-  ::clock_gettime(CLOCK_MONOTONIC, &t);
-  return static_cast<TimeNs>(t.tv_sec) * hal::kNsPerSecond + t.tv_nsec;
-}
+using hal::monotonic_ns;
 
 void sleep_for(TimeNs ns) noexcept {
   const timespec t{static_cast<time_t>(ns / hal::kNsPerSecond), static_cast<long>(ns % hal::kNsPerSecond)};
@@ -113,7 +111,8 @@ void WatchedRobot::let_go() {
 
 WatchedRobot::View WatchedRobot::view() const {
   const std::lock_guard lock(mutex_);
-  return {watched_ && !released_ && !quit_, !busy_, confirmed_, state_, trouble_, robot_.robot, robot_.link};
+  const bool given_up = released_ || claim_ == Claim::Refused;
+  return {watched_ && !released_ && !quit_, !busy_, given_up, confirmed_, state_, trouble_, robot_.robot, robot_.link};
 }
 
 void WatchedRobot::write_lock_file() const {

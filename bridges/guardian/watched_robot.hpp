@@ -49,6 +49,7 @@ class WatchedRobot {
   struct View {
     bool to_be_stopped = false;  ///< watched, not released, not let go
     bool idle = true;            ///< no stopper has a link open
+    bool given_up = false;       ///< released, or its claim was refused: nobody drives it
     bool confirmed = false;      ///< the stop that was begun last
     StopState state = StopState::Unreachable;
     std::string trouble;

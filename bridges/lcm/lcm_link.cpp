@@ -45,12 +45,6 @@ hal::Status check_url(const std::string& url) {
 
 }  // namespace
 
-hal::TimeNs monotonic_ns() noexcept {
-  timespec t{};
-  ::clock_gettime(CLOCK_MONOTONIC, &t);
-  return static_cast<hal::TimeNs>(t.tv_sec) * hal::kNsPerSecond + t.tv_nsec;
-}
-
 struct LcmLink::Engine {
   struct Subscription {
     Engine* engine;

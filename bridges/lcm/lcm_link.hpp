@@ -12,8 +12,8 @@
 #include <string>
 #include <string_view>
 
+#include "hal/monotonic.hpp"
 #include "hal/result.hpp"
-#include "hal/time.hpp"
 
 namespace tandem::bridges::lcm_bus {
 
@@ -72,7 +72,6 @@ class LcmLink {
   std::unique_ptr<Engine> engine_;
 };
 
-/// CLOCK_MONOTONIC.
-hal::TimeNs monotonic_ns() noexcept;
+using hal::monotonic_ns;
 
 }  // namespace tandem::bridges::lcm_bus

@@ -127,16 +127,19 @@ hal::Result<std::unique_ptr<ByteLink>> TcpLink::connect(const Endpoint& endpoint
   int error = EHOSTUNREACH;
   for (const addrinfo* a = found; a != nullptr; a = a->ai_next) {
     const int fd = connect_to(*a, deadline, error);
-    if (fd < 0) continue;
-    set_option(fd, IPPROTO_TCP, TCP_NODELAY, 1);
-    set_option(fd, SOL_SOCKET, SO_KEEPALIVE, 1);
-    set_option(fd, IPPROTO_TCP, TCP_KEEPIDLE, 1);
-    set_option(fd, IPPROTO_TCP, TCP_KEEPINTVL, 1);
-    set_option(fd, IPPROTO_TCP, TCP_KEEPCNT, 3);
-    set_option(fd, IPPROTO_TCP, TCP_USER_TIMEOUT, 3000);  // ms
-    return std::unique_ptr<ByteLink>(new TcpLink(name, fd));
+    if (fd >= 0) return take_over(name, fd);
   }
   return hal::Error{"cannot open " + name + ": " + advice(error, who_listens)};
+}
+
+std::unique_ptr<ByteLink> TcpLink::take_over(std::string name, int socket) {
+  set_option(socket, IPPROTO_TCP, TCP_NODELAY, 1);
+  set_option(socket, SOL_SOCKET, SO_KEEPALIVE, 1);
+  set_option(socket, IPPROTO_TCP, TCP_KEEPIDLE, 1);
+  set_option(socket, IPPROTO_TCP, TCP_KEEPINTVL, 1);
+  set_option(socket, IPPROTO_TCP, TCP_KEEPCNT, 3);
+  set_option(socket, IPPROTO_TCP, TCP_USER_TIMEOUT, 3000);  // ms
+  return std::unique_ptr<ByteLink>(new TcpLink(std::move(name), socket));
 }
 
 TcpLink::~TcpLink() {

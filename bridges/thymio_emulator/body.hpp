@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <limits>
 
+#include "bridges/body_pose.hpp"
 #include "hal/time.hpp"
 
 namespace tandem::bridges::thymio_emulator {
@@ -44,17 +45,25 @@ class EmulatedBody {
   virtual void actuate(hal::TimeNs now, const BodyCommand& command) = 0;
 };
 
-/// Open ground, where nothing is to be sensed.
+/// Open ground, where nothing is to be sensed; it rolls there without slip.
 class OpenGround final : public EmulatedBody {
  public:
+  explicit OpenGround(const BodyPose& start = {}) : pose_(start) {}
   BodySenses sense(hal::TimeNs /*now*/) override { return senses; }
-  void actuate(hal::TimeNs /*now*/, const BodyCommand& command) override { command_ = command; }
+  void actuate(hal::TimeNs now, const BodyCommand& command) override {
+    advance(now);
+    command_ = command;
+  }
+  /// Rolls on to `now`.
+  void advance(hal::TimeNs now);
   const BodyCommand& command() const noexcept { return command_; }
+  const BodyPose& pose() const noexcept { return pose_; }
 
   BodySenses senses;
 
  private:
   BodyCommand command_;
+  BodyPose pose_;  // taken when it last rolled
 };
 
 }  // namespace tandem::bridges::thymio_emulator

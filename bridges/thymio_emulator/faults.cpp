@@ -8,15 +8,7 @@ namespace {
 
 enum class Value : std::uint8_t { None, Lie, Probability, Time };
 
-struct Entry {
-  FaultKind kind;
-  std::string_view name;
-  Value value;
-  bool needs_start;
-  hal::TimeNs lasts_ns;  // where no duration is given
-  std::string_view example;
-  std::string_view doc;
-};
+using Entry = FaultEntry<FaultKind, Value>;
 
 constexpr std::array<Entry, 10> kEntries = {{
     {FaultKind::Restart, "restart", Value::None, true, 0, "restart@3s",
@@ -37,10 +29,6 @@ constexpr std::array<Entry, 10> kEntries = {{
     {FaultKind::Hangup, "hangup", Value::None, true, hal::kNsPerSecond, "hangup@6s+1s",
      "the line disappears and comes back"},
 }};
-
-hal::Error wrong(std::string_view text, const std::string& why) {
-  return hal::Error{"fault '" + std::string(text) + "': " + why + ". The faults are\n" + fault_manual()};
-}
 
 hal::Status read_value(const Entry& entry, std::string_view value, Fault& fault) {
   switch (entry.value) {
@@ -70,75 +58,16 @@ hal::Status read_value(const Entry& entry, std::string_view value, Fault& fault)
 }  // namespace
 
 std::string fault_manual() {
-  std::string text;
-  for (const Entry& e : kEntries) {
-    std::string example = "  " + std::string(e.example);
-    example.resize(std::max<std::size_t>(18, example.size() + 1), ' ');
-    text += example + std::string(e.doc) + "\n";
-  }
-  return text + "A fault may be given @START+DURATION; without, it lasts from the start to the end.";
+  return manual_of_faults(kEntries, 18);
 }
 
 hal::Result<Fault> parse_fault(std::string_view text) {
-  const auto split = split_fault(text);
-  if (!split.ok()) return wrong(text, split.error().message);
-  const FaultSpec& spec = split.value();
-  const auto entry = std::ranges::find(kEntries, spec.name, &Entry::name);
-  if (entry == kEntries.end()) return wrong(text, "there is no fault '" + std::string(spec.name) + "'");
-  if (spec.value && entry->value == Value::None) return wrong(text, "it takes no value");
-  if (!spec.value && entry->value != Value::None)
-    return wrong(text, "it needs a value, as in " + std::string(entry->example));
-  if (!spec.start && entry->needs_start) return wrong(text, "say when, as in " + std::string(entry->example));
-  Fault fault;
-  fault.kind = entry->kind;
-  fault.text = text;
-  fault.from = spec.from();
-  fault.until = spec.until(entry->lasts_ns);
-  if (spec.value) {
-    if (const hal::Status read = read_value(*entry, *spec.value, fault); !read.ok())
-      return wrong(text, read.error().message);
-  }
-  return fault;
-}
-
-void FaultPlan::begin(hal::TimeNs start) {
-  changes_.clear();
-  told_ = 0;
-  for (Fault& f : faults_) {
-    const bool ends = f.until < kEndless && f.until > f.from;
-    f.from += start;
-    f.until += start;
-    changes_.push_back({f.from, true, &f});
-    if (ends) changes_.push_back({f.until, false, &f});
-  }
-  std::ranges::stable_sort(changes_, {}, &Change::at);
-}
-
-std::optional<FaultPlan::Change> FaultPlan::next_change(hal::TimeNs now) {
-  if (told_ == changes_.size() || changes_[told_].at > now) return std::nullopt;
-  return changes_[told_++];
-}
-
-std::optional<hal::TimeNs> FaultPlan::next_change_at() const {
-  if (told_ == changes_.size()) return std::nullopt;
-  return changes_[told_].at;
-}
-
-bool FaultPlan::happens(FaultKind kind, hal::TimeNs at) {
-  bool any = false;
-  for (const Fault& f : faults_) {
-    if (f.kind == kind && f.from <= at && at < f.until) any = chance_.hits(f.probability) || any;
-  }
-  return any;
+  return read_fault<Fault>(text, kEntries, fault_manual(), &read_value);
 }
 
 void FaultPlan::to_host(const TimedMessage& message, std::vector<TimedMessage>& out) {
   if (happens(FaultKind::Drop, message.at)) return;
-  hal::TimeNs delay_ns = 0;
-  for (const Fault& f : faults_) {
-    if (f.from <= message.at && message.at < f.until) delay_ns = std::max(delay_ns, f.delay_ns);
-  }
-  last_out_ = std::max(last_out_, message.at + delay_ns);
+  last_out_ = std::max(last_out_, message.at + delay_ns(message.at));
   out.push_back({message.message, last_out_});
   if (happens(FaultKind::Double, message.at)) out.push_back({message.message, last_out_});
 }

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "bridges/emulation/fault_spec.hpp"
+#include "bridges/emulation/fault_schedule.hpp"
 #include "bridges/thymio_emulator/thymio.hpp"
 
 namespace tandem::bridges::thymio_emulator {
@@ -20,6 +20,8 @@ struct Fault {
   double probability = 0.0;  ///< Drop, Lose, Double: of each message
   hal::TimeNs delay_ns = 0;  ///< Delay
   std::string text{};        ///< as written
+
+  bool is_moment() const noexcept { return kind == FaultKind::Restart || kind == FaultKind::Program; }
 };
 
 /// Reads NAME[=VALUE][@START[+DURATION]]: "silent@5s+2s", "drop=0.01". A bare number is in seconds. Errors name what is
@@ -30,22 +32,9 @@ hal::Result<Fault> parse_fault(std::string_view text);
 std::string fault_manual();
 
 /// All faults of a run, and the chance in them.
-class FaultPlan {
+class FaultPlan : public FaultSchedule<Fault> {
  public:
-  FaultPlan(std::vector<Fault> faults, std::uint64_t seed) : faults_(std::move(faults)), chance_(seed) {}
-
-  /// Times from here on are on the clock of `start`.
-  void begin(hal::TimeNs start);
-
-  struct Change {
-    hal::TimeNs at = 0;
-    bool begins = true;
-    const Fault* fault = nullptr;
-  };
-  /// The next fault to begin or end by `now`, in order of time; each is told once.
-  std::optional<Change> next_change(hal::TimeNs now);
-  /// When `next_change` will have something.
-  std::optional<hal::TimeNs> next_change_at() const;
+  using FaultSchedule::FaultSchedule;
 
   /// Whether a message of a host gets to the robot.
   bool reaches_robot(hal::TimeNs at) { return !happens(FaultKind::Lose, at); }
@@ -53,12 +42,6 @@ class FaultPlan {
   void to_host(const TimedMessage& message, std::vector<TimedMessage>& out);
 
  private:
-  bool happens(FaultKind kind, hal::TimeNs at);
-
-  std::vector<Fault> faults_;
-  std::vector<Change> changes_;  // in order of time
-  std::size_t told_ = 0;
-  Chance chance_;
   hal::TimeNs last_out_ = 0;
 };
 

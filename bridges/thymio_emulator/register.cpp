@@ -13,8 +13,10 @@ namespace {
 
 struct Own {
   std::int64_t node = 1;
+  PoseOptions poses{};
   void describe(hal::ParamVisitor& v) {
     v.integer("node", node, {1, 255}, "Its number, where several share a switch.");
+    poses.describe(v);
   }
 };
 
@@ -26,12 +28,19 @@ std::string host_link(const std::string& path) {
 hal::Status run_type(const EmulatorRequest& request, SharedPorts* ports, const std::atomic<bool>& stop) {
   Options options;
   apply(request, options);
-  if (request.options != nullptr) options.node = static_cast<const Own*>(request.options.get())->node;
+  if (request.options != nullptr) {
+    const Own& own = *static_cast<const Own*>(request.options.get());
+    options.node = own.node;
+    options.poses = own.poses;
+  }
   options.ready = [&request](const std::string& path) {
     if (request.ready) request.ready("Thymio on " + path + ": connect with --link " + host_link(path));
   };
   std::optional<PortBody> body;
-  if (ports != nullptr) options.body = &body.emplace(*ports);
+  if (ports != nullptr) {
+    options.body = &body.emplace(*ports);
+    options.pose_elsewhere = [ports] { return ports->pose(); };
+  }
   return run(options, stop);
 }
 

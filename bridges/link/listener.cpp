@@ -1,4 +1,4 @@
-#include "bridges/emulation/listener.hpp"
+#include "bridges/link/listener.hpp"
 
 #include <cerrno>
 #include <charconv>
@@ -26,7 +26,7 @@ int listen_at(const addrinfo& address) {
   if (descriptor < 0) return -1;
   const int reuse = 1;
   ::setsockopt(descriptor, SOL_SOCKET, SO_REUSEADDR, &reuse, sizeof reuse);
-  if (::bind(descriptor, address.ai_addr, address.ai_addrlen) == 0 && ::listen(descriptor, 8) == 0) return descriptor;
+  if (::bind(descriptor, address.ai_addr, address.ai_addrlen) == 0 && ::listen(descriptor, 64) == 0) return descriptor;
   const int error = errno;
   ::close(descriptor);
   errno = error;

@@ -1,4 +1,4 @@
-// TCP listener of an emulated robot, to which hosts connect.
+// TCP port to which others connect: hosts of an emulated robot, peers of a run in lock-step.
 #pragma once
 #include <memory>
 #include <string>

@@ -1,0 +1,62 @@
+// Commands to a run over LCM, and its answers (desk.lcm): one side listens, the other asks.
+#pragma once
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "bridges/lcm/lcm_link.hpp"
+#include "hal/result.hpp"
+
+namespace tandem::bridges::desk {
+
+/// A command or an answer.
+struct DeskMessage {
+  std::int64_t number = 0;
+  std::string who;
+  std::string text;  ///< JSON
+};
+
+inline constexpr std::size_t kLongestWho = 64;
+inline constexpr std::size_t kLongestCommand = std::size_t{64} << 10;
+
+/// Nothing: it is none, or longer than allowed. Anybody may have sent it.
+std::optional<DeskMessage> decode_command(std::span<const std::byte> data);
+std::optional<DeskMessage> decode_reply(std::span<const std::byte> data);
+std::vector<std::byte> encode_command(const DeskMessage& message);
+std::vector<std::byte> encode_reply(const DeskMessage& message);
+
+/// Listens for commands on a channel, and answers on CHANNEL/reply.
+class LcmDesk {
+ public:
+  using Reply = std::function<void(std::string answer)>;
+  /// `take` is called by the link's thread, and must not wait; `reply` may be called on any thread, once, also when
+  /// the desk is gone. Errors: as LcmLink's.
+  static hal::Result<std::unique_ptr<LcmDesk>> open(const std::string& url, const std::string& channel,
+                                                    std::function<void(DeskMessage, Reply)> take);
+  /// The same on a link that is there.
+  static hal::Result<std::unique_ptr<LcmDesk>> open(std::shared_ptr<lcm_bus::LcmLink> link, const std::string& channel,
+                                                    std::function<void(DeskMessage, Reply)> take);
+  /// No call of `take` begins any more.
+  ~LcmDesk();
+  LcmDesk(const LcmDesk&) = delete;
+  LcmDesk& operator=(const LcmDesk&) = delete;
+
+  std::uint64_t malformed() const noexcept;
+
+ private:
+  struct State;
+  explicit LcmDesk(std::shared_ptr<State> state) : state_(std::move(state)) {}
+  std::shared_ptr<State> state_;
+};
+
+/// Says one command, and waits for its answer. Errors: as LcmLink's; nobody answered in time.
+hal::Result<std::string> ask(const std::string& url, const std::string& channel, const DeskMessage& command,
+                             std::chrono::milliseconds patience);
+
+}  // namespace tandem::bridges::desk

@@ -1,0 +1,85 @@
+// When the faults of an emulated robot begin and end, and the chance in them.
+#pragma once
+#include <algorithm>
+#include <cstddef>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "bridges/emulation/fault_spec.hpp"
+
+namespace tandem::bridges {
+
+/// Base of emulators' fault plans. A `Fault` has kind, from, until and probability, and says by `is_moment()` that it
+/// has no end.
+template <class Fault>
+class FaultSchedule {
+ public:
+  using Kind = decltype(Fault::kind);
+
+  FaultSchedule(std::vector<Fault> faults, std::uint64_t seed) : faults_(std::move(faults)), chance_(seed) {}
+
+  /// Times from here on are on the clock of `start`. The plan must stay where it is from then on.
+  void begin(hal::TimeNs start) {
+    changes_.clear();
+    told_ = 0;
+    for (Fault& fault : faults_) {
+      const bool ends = fault.until < kEndless && !fault.is_moment();
+      fault.from += start;
+      fault.until += start;
+      changes_.push_back({fault.from, true, &fault});
+      if (ends) changes_.push_back({fault.until, false, &fault});
+    }
+    std::stable_sort(changes_.begin(), changes_.end(), [](const Change& a, const Change& b) { return a.at < b.at; });
+  }
+
+  struct Change {
+    hal::TimeNs at = 0;
+    bool begins = true;
+    const Fault* fault = nullptr;
+  };
+  /// The next fault to begin or end by `now`, in order of time; each is told once.
+  std::optional<Change> next_change(hal::TimeNs now) {
+    if (told_ == changes_.size() || changes_[told_].at > now) return std::nullopt;
+    return changes_[told_++];
+  }
+  /// When `next_change` will have something.
+  std::optional<hal::TimeNs> next_change_at() const {
+    if (told_ == changes_.size()) return std::nullopt;
+    return changes_[told_].at;
+  }
+
+  bool active(Kind kind, hal::TimeNs at) const {
+    return std::any_of(faults_.begin(), faults_.end(),
+                       [&](const Fault& f) { return f.kind == kind && is_at_work(f, at); });
+  }
+  /// Whether it happens now, where it does so with a probability; each call draws anew.
+  bool happens(Kind kind, hal::TimeNs at) {
+    bool any = false;
+    for (const Fault& f : faults_) {
+      if (f.kind == kind && is_at_work(f, at)) any = chance_.hits(f.probability) || any;
+    }
+    return any;
+  }
+  /// The longest of the delays at work; for faults that have a `delay_ns`.
+  hal::TimeNs delay_ns(hal::TimeNs at) const {
+    hal::TimeNs longest = 0;
+    for (const Fault& f : faults_) {
+      if (is_at_work(f, at)) longest = std::max(longest, f.delay_ns);
+    }
+    return longest;
+  }
+
+ protected:
+  static bool is_at_work(const Fault& fault, hal::TimeNs at) noexcept { return fault.from <= at && at < fault.until; }
+  const std::vector<Fault>& faults() const noexcept { return faults_; }
+  Chance& chance() noexcept { return chance_; }
+
+ private:
+  std::vector<Fault> faults_;
+  std::vector<Change> changes_;  // in order of time
+  std::size_t told_ = 0;
+  Chance chance_;
+};
+
+}  // namespace tandem::bridges
