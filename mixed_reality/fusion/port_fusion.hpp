@@ -22,9 +22,20 @@ class PortFusion {
   /// Finds the ports that the controller of `robot` took, and the real devices behind them. The space's ports and what
   /// `real` returns must outlive this.
   PortFusion(core::Space& space, core::RobotId robot, const RealReadings& real);
+  /// From now on other devices are behind the ports: another robot took over.
+  void take_from(const RealReadings& real);
 
-  /// To be called when the space's ports hold the virtual readings: they then hold the fused ones. Allocates nothing.
+  /// Copies what the real devices say now. Entries of lists that are not in use are as in a fresh port.
+  void latch() noexcept;
+  /// To be called when the space's ports hold the virtual readings: they then hold those fused with the latched ones.
+  /// Allocates nothing.
   void fuse() noexcept;
+
+  /// The latched readings, by number; one without a device is absent. They stay where they are.
+  std::size_t size() const noexcept { return pairs_.size(); }
+  const hal::PortType& type(std::size_t i) const noexcept { return *pairs_[i].type; }
+  void* reading(std::size_t i) noexcept { return readings_.get() + pairs_[i].at; }
+  const void* reading(std::size_t i) const noexcept { return readings_.get() + pairs_[i].at; }
   /// A reading that the controller asked for, that the real robot has a device for, and that never came; null: all did.
   /// Not meant are devices that the virtual ones may stand in for, and a scanner: it measures only when told to.
   const hal::PortType* missing() const noexcept;
@@ -35,9 +46,17 @@ class PortFusion {
     void* port;        // in the space
     const void* real;  // null: no such device
     bool needed;
+    std::size_t at;  // its reading in `readings_`
+  };
+  struct List {  // a field of which only so many entries are in use
+    std::size_t pair;
+    const hal::Field* field;
+    hal::UsedBy used;
   };
   std::vector<Pair> pairs_;
-  std::unique_ptr<std::max_align_t[]> scratch_;  // one port, the largest
+  std::vector<List> lists_;
+  std::unique_ptr<std::max_align_t[]> readings_;  // as latched
+  std::unique_ptr<std::max_align_t[]> scratch_;   // one port, the largest
 };
 
 }  // namespace tandem::mixed_reality

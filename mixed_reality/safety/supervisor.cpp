@@ -14,13 +14,17 @@ using O = StopOwner;
 
 // First row that applies decides. Everything that is not known to be well stops the robot.
 // clang-format off
-constexpr std::array<SafetyRule, 18> kTable = {{
+constexpr std::array<SafetyRule, 24> kTable = {{
     {[](const C& c) noexcept { return c.run == RunPhase::Stopping; },     held(O::Run, "the run is stopping")},
     {[](const C& c) noexcept { return c.run == RunPhase::Waiting; },      held(O::Run, "waiting for the start")},
+    {[](const C& c) noexcept { return c.emergency_stop; },                landing(O::Operator, "emergency stop; waits to be armed")},
+    {[](const C& c) noexcept { return c.being_replaced; },                held(O::Operator, "being replaced")},
+    {[](const C& c) noexcept { return c.replaced; },                      held(O::Operator, "waits to be armed")},
     {[](const C& c) noexcept { return c.controller_failed; },             held(O::Controller, "controller failed")},
     {[](const C& c) noexcept { return c.operator_holds; },                held(O::Operator, "held by the operator")},
     {[](const C& c) noexcept { return c.hook_holds; },                    held(O::Hook, "held by a hook")},
     {[](const C& c) noexcept { return c.guardian_gone; },                 landing(O::Guardian, "guardian gone")},
+    {[](const C& c) noexcept { return c.run == RunPhase::Paused; },       held(O::Operator, "paused")},
     {[](const C& c) noexcept { return c.hub_was_frozen; },                held(O::Hub, "hub was frozen"),
      Recovery::Rearm, "hub was frozen; waits to be re-armed"},
     {[](const C& c) noexcept { return c.robot_stopped_itself; },          held(O::Robot, "robot stopped by itself"),
@@ -33,6 +37,9 @@ constexpr std::array<SafetyRule, 18> kTable = {{
     {[](const C& c) noexcept { return c.readings_missing; },              held(O::Readings, "a reading never came")},
     {[](const C& c) noexcept { return c.pose == hal::Validity::Absent; }, held(O::Pose, "pose unknown")},
     {[](const C& c) noexcept { return c.pose == hal::Validity::Stale; },  held(O::Pose, "pose stale")},
+    {[](const C& c) noexcept { return c.pose_disputed; },                 held(O::Pose, "trackers disagree")},
+    {[](const C& c) noexcept { return c.pose_contradicted; },             held(O::Pose, "trackers see another robot"),
+     Recovery::Operator, "trackers saw another robot; waits to be re-armed"},
     {[](const C& c) noexcept { return c.pose_jumped; },                   held(O::Pose, "pose jumped"),
      Recovery::Rearm, "pose jumped; waits to be re-armed"},
     {[](const C& c) noexcept { return c.wheels_differ; },                 held(O::Pose, "wheels and pose differ"),
@@ -76,8 +83,9 @@ Verdict judge(const Conditions& conditions) noexcept {
 const Verdict& Supervisor::judge(const Conditions& conditions, hal::TimeNs now_ns) noexcept {
   const Verdict said = mixed_reality::judge(conditions);
   const bool was_driving = verdict_.may_drive;
-  if (operator_held_ && !conditions.operator_holds) rearm();  // letting go of it is to say that all is well
-  operator_held_ = conditions.operator_holds;
+  const bool operator_holds = conditions.operator_holds || conditions.emergency_stop || conditions.replaced;
+  if (operator_held_ && !operator_holds) rearm();  // letting go of it is to say that all is well
+  operator_held_ = operator_holds;
   if (conditions.run == RunPhase::Waiting) {
     latched_ = nullptr;
   } else if (const SafetyRule* rule = needs_rearm(conditions); rule != nullptr) {

@@ -16,12 +16,14 @@ namespace tandem::mixed_reality {
 
 using bridges::LinkHealth;
 
-enum class RunPhase : std::uint8_t { Waiting, Running, Stopping };
+/// Paused: between two ticks of a run, for as long as a person wants.
+enum class RunPhase : std::uint8_t { Waiting, Running, Stopping, Paused };
 
 /// All that decides whether a real robot may move. What happened "since the last judgement" is told once and
 /// remembered by the supervisor; the rest is told as it is in every tick.
 struct Conditions {
   RunPhase run = RunPhase::Running;
+  bool emergency_stop = false;        ///< a person stopped all robots, and has not armed this one since
   bool operator_holds = false;        ///< a person holds it
   bool hook_holds = false;            ///< a hook does
   bool controller_failed = false;     ///< it threw
@@ -32,8 +34,13 @@ struct Conditions {
   LinkHealth link = LinkHealth::Connecting;
   bool readings_missing = false;  ///< one that the controller asked for never came
   hal::Validity pose = hal::Validity::Absent;
-  bool pose_jumped = false;    ///< since the last judgement: farther than the robot can have moved
-  bool wheels_differ = false;  ///< since the last judgement: they roll, and the robot does not move as they say
+  bool pose_disputed = false;      ///< sources of the pose say different places
+  bool pose_contradicted = false;  ///< since the last judgement: wheels and trackers cannot be of one robot
+  bool pose_jumped = false;        ///< since the last judgement: farther than the robot can have moved
+  bool wheels_differ = false;      ///< since the last judgement: they roll, and the robot does not move as they say
+  bool being_replaced = false;     ///< another robot is to take its place
+  bool replaced = false;           ///< it took another one's place, or was to be replaced by one that never came, and a
+                                   ///< person has not armed it since
 };
 
 /// Owner of a halt.

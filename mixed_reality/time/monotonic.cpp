@@ -6,12 +6,12 @@
 #include <sched.h>
 #include <time.h>
 
+#include "hal/monotonic.hpp"
+
 namespace tandem::mixed_reality {
 
 hal::TimeNs MonotonicTime::now_ns() const noexcept {
-  timespec t{};
-  clock_gettime(CLOCK_MONOTONIC, &t);
-  return static_cast<hal::TimeNs>(t.tv_sec) * hal::kNsPerSecond + t.tv_nsec;
+  return hal::monotonic_ns();
 }
 
 void MonotonicTime::sleep_until(hal::TimeNs until_ns, const std::atomic<bool>& stop) noexcept {

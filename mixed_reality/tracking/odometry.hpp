@@ -25,6 +25,7 @@ class Odometry final : public PoseSource {
   Odometry(const core::Pose& start, const hal::DifferentialDrive& drive, const hal::WheelEncoders& encoders);
 
   /// As old as the encoders' reading.
+  std::string_view name() const noexcept override { return "odometry"; }
   TrackedPose latch(const Moment& now) noexcept override;
 
   std::uint64_t rejected() const noexcept override { return rejected_; }

@@ -1,6 +1,8 @@
 // Interface of a tracker: the pose of a real robot.
 #pragma once
 #include <cstdint>
+#include <optional>
+#include <string_view>
 
 #include "core/space/pose.hpp"
 #include "hal/time.hpp"
@@ -13,12 +15,28 @@ struct TrackedPose {
   core::Pose pose;
   hal::TimeNs taken_ns = 0;  ///< CLOCK_MONOTONIC
   bool known = false;        ///< false: there never was one; `pose` is where the robot was said to start
+  std::optional<double> sd_m = {}, sd_rad = {};  ///< of each coordinate, of the heading; nothing: not known
+  bool vague = false;                            ///< known no better than nothing to act on
+};
+
+/// Why measurements of a pose were not used, and how many were.
+struct PoseCounts {
+  std::uint64_t used = 0;
+  std::uint64_t gated = 0;       ///< farther from what was expected than noise explains
+  std::uint64_t late = 0;        ///< older than all that is kept
+  std::uint64_t doubled = 0;     ///< that had come already
+  std::uint64_t impossible = 0;  ///< no numbers, or outside of the arena
+  std::uint64_t disputed = 0;    ///< that another tracker spoke against
+  std::uint64_t jumps = 0;       ///< the robot was carried, or has slipped
 };
 
 /// A source of poses of one robot: odometry, a camera, a motion-capture system.
 class PoseSource {
  public:
   virtual ~PoseSource() = default;
+
+  /// As in `<tracker source="…">`.
+  virtual std::string_view name() const noexcept = 0;
 
   /// The newest pose with a stamp of at most `now`. Called once a tick, after the robot's readings
   /// were latched; neither blocks nor allocates.
@@ -27,6 +45,10 @@ class PoseSource {
   virtual std::uint64_t rejected() const noexcept = 0;
   /// How often it believed in the end that the robot is farther from where it was than it can have moved.
   virtual std::uint64_t jumps() const noexcept { return 0; }
+  /// Whether sources of it say different places now, and nobody knows which is right.
+  virtual bool disputed() const noexcept { return false; }
+  /// How often wheels and trackers were found not to be of one robot: it jumped again and again.
+  virtual std::uint64_t contradictions() const noexcept { return 0; }
   /// Whether it knows of nothing but the wheels: what they slip it cannot tell.
   virtual bool by_wheels() const noexcept { return false; }
 };

@@ -19,6 +19,7 @@ class Positioned final : public PoseSource {
   Positioned(const core::Pose& start, const hal::Positioning& places, const hal::RobotKind& kind);
 
   /// As old as the reading.
+  std::string_view name() const noexcept override { return "positioning"; }
   TrackedPose latch(const Moment& now) noexcept override;
   std::uint64_t rejected() const noexcept override { return rejected_; }
   std::uint64_t jumps() const noexcept override { return jumps_; }

@@ -28,11 +28,6 @@ double step_to(double target_rad, double from_rad, double most_rad) noexcept {
 
 }  // namespace
 
-template <class State>
-State* Mechanisms::state() noexcept {
-  return space_.external(robot_) ? space_.state<State>(robot_) : nullptr;
-}
-
 template <class Port>
 bool Mechanisms::takes() const noexcept {
   return space_.port<Port>(robot_) != nullptr;
@@ -43,7 +38,7 @@ const Sensor* Mechanisms::if_used(const RealReadings& real, bool used) const {
   return used ? static_cast<const Sensor*>(real(hal::port_type<Sensor>())) : nullptr;
 }
 
-Mechanisms::Mechanisms(core::Space& space, core::RobotId robot, const RealReadings& real)
+Mechanisms::Mechanisms(const core::Space& space, core::RobotId robot, const RealReadings& real)
     : space_(space),
       robot_(robot),
       turret_drive_(space.port<hal::TurretDrive>(robot)),
@@ -61,12 +56,12 @@ Mechanisms::Mechanisms(core::Space& space, core::RobotId robot, const RealReadin
   lens_camera_ = if_used<hal::PerspectiveCamera>(real, takes<hal::PerspectiveCamera>());
 }
 
-void Mechanisms::follow(double tick_s) noexcept {
-  space_.set_real_senses(robot_, senses());
-  follow_turret(tick_s);
-  follow_scanner(tick_s);
-  follow_head(tick_s);
-  follow_gripper();
+void Mechanisms::follow(double tick_s, TwinState& state) noexcept {
+  state.senses = senses();
+  follow_turret(tick_s, state);
+  follow_scanner(tick_s, state);
+  follow_head(tick_s, state);
+  follow_gripper(state);
 }
 
 std::uint8_t Mechanisms::senses() const noexcept {
@@ -84,16 +79,15 @@ std::uint8_t Mechanisms::senses() const noexcept {
   return static_cast<std::uint8_t>(senses);
 }
 
-void Mechanisms::follow_gripper() noexcept {
-  auto* const grip = state<core::GripState>();
-  if (grip == nullptr) return;
+void Mechanisms::follow_gripper(TwinState& state) noexcept {
+  state.has_aperture = there(gripper_) || gripper_drive_ != nullptr;
   if (there(gripper_))
-    grip->aperture_rad = static_cast<double>(gripper_->aperture_rad);
+    state.aperture_rad = static_cast<double>(gripper_->aperture_rad);
   else if (gripper_drive_ != nullptr)
-    grip->aperture_rad = gripper_drive_->aperture_rad;
+    state.aperture_rad = gripper_drive_->aperture_rad;
 }
 
-void Mechanisms::follow_turret(double tick_s) noexcept {
+void Mechanisms::follow_turret(double tick_s, TwinState& state) noexcept {
   double step_rad = 0.0;
   if (there(turret_)) {
     step_rad = hal::wrapped(turret_->angle_rad - turret_rad_);
@@ -104,16 +98,15 @@ void Mechanisms::follow_turret(double tick_s) noexcept {
         step_to(turret_drive_->angle_rad, turret_rad_, turn_rad_s<hal::TurretPart>(space_.kind(robot_)) * tick_s);
   }
   turret_rad_ = hal::wrapped(turret_rad_ + step_rad);
-  const double speed_rad_s = there(turret_) ? static_cast<double>(turret_->speed_rad_s)
-                             : tick_s > 0.0 ? step_rad / tick_s
-                                            : 0.0;
-  if (auto* const turret = state<core::TurretState>(); turret != nullptr)
-    *turret = {hal::TurretMode::Off, 0.0, turret_rad_, speed_rad_s};
+  state.turret_rad = turret_rad_;
+  state.turret_rad_s = there(turret_) ? static_cast<double>(turret_->speed_rad_s)
+                       : tick_s > 0.0 ? step_rad / tick_s
+                                      : 0.0;
 }
 
 /// The virtual heads measure where the real ones do: they sweep what was commanded, and end where the robot says. One
 /// that measures without having been told to stands still.
-void Mechanisms::follow_scanner(double tick_s) noexcept {
+void Mechanisms::follow_scanner(double tick_s, TwinState& state) noexcept {
   hal::ScannerMode mode = scanner_drive_ == nullptr ? hal::ScannerMode::Off : scanner_drive_->mode;
   double swept_rad = 0.0;
   if (mode == hal::ScannerMode::Speed) swept_rad = scanner_drive_->speed_rad_s * tick_s;
@@ -128,11 +121,12 @@ void Mechanisms::follow_scanner(double tick_s) noexcept {
     }
     scanner_rad_ = hal::wrapped(scanner_rad_ + swept_rad);
   }
-  if (auto* const scanner = state<core::ScannerState>(); scanner != nullptr)
-    *scanner = {mode, hal::wrapped(scanner_rad_), swept_rad};
+  state.scanner = mode;
+  state.scanner_rad = hal::wrapped(scanner_rad_);
+  state.scanner_swept_rad = swept_rad;
 }
 
-void Mechanisms::follow_head(double tick_s) noexcept {
+void Mechanisms::follow_head(double tick_s, TwinState& state) noexcept {
   if (there(head_)) {
     pan_rad_ = head_->pan_rad;
     tilt_rad_ = head_->tilt_rad;
@@ -141,8 +135,9 @@ void Mechanisms::follow_head(double tick_s) noexcept {
     pan_rad_ = hal::wrapped(pan_rad_ + step_to(head_drive_->pan_rad, pan_rad_, most_rad));
     tilt_rad_ += std::clamp(head_drive_->tilt_rad - tilt_rad_, -most_rad, most_rad);
   }
-  if (auto* const head = state<core::HeadState>(); head != nullptr)
-    *head = {hal::wrapped(pan_rad_), tilt_rad_, head_drive_ != nullptr && head_drive_->laser};
+  state.pan_rad = hal::wrapped(pan_rad_);
+  state.tilt_rad = tilt_rad_;
+  state.laser = head_drive_ != nullptr && head_drive_->laser;
 }
 
 }  // namespace tandem::mixed_reality

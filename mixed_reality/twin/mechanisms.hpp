@@ -1,5 +1,5 @@
-// Makes the mechanisms of a twin follow those of its robot: turret, gripper, distance scanner, camera's head; and tells
-// the space what the robot senses by itself.
+// Says where the mechanisms of a twin are, following those of its robot: turret, gripper, distance scanner, camera's
+// head; and what the robot senses by itself.
 #pragma once
 #include "core/space/space.hpp"
 #include "hal/device/cameras.hpp"
@@ -11,6 +11,7 @@
 #include "hal/device/time_of_flight.hpp"
 #include "hal/device/turret.hpp"
 #include "mixed_reality/fusion/port_fusion.hpp"
+#include "mixed_reality/twin/twin_state.hpp"
 
 namespace tandem::mixed_reality {
 
@@ -20,25 +21,23 @@ class Mechanisms {
  public:
   /// Asks `real` only for what the robot's controller reads or commands. What it returns and the space must outlive
   /// this.
-  Mechanisms(core::Space& space, core::RobotId robot, const RealReadings& real);
+  Mechanisms(const core::Space& space, core::RobotId robot, const RealReadings& real);
 
-  /// To be called once a tick, after the robot's readings were latched and before the space's sensors look.
-  void follow(double tick_s) noexcept;
+  /// To be called once a tick, after the robot's readings were latched; writes its part of `state`.
+  void follow(double tick_s, TwinState& state) noexcept;
 
  private:
   template <class Port>
   bool takes() const noexcept;
   template <class Sensor>
   const Sensor* if_used(const RealReadings& real, bool used) const;
-  template <class State>
-  State* state() noexcept;  // null: nothing to keep it for, or the robot is not led from outside
-  void follow_gripper() noexcept;
-  void follow_turret(double tick_s) noexcept;
-  void follow_scanner(double tick_s) noexcept;
-  void follow_head(double tick_s) noexcept;
+  void follow_gripper(TwinState& state) noexcept;
+  void follow_turret(double tick_s, TwinState& state) noexcept;
+  void follow_scanner(double tick_s, TwinState& state) noexcept;
+  void follow_head(double tick_s, TwinState& state) noexcept;
   std::uint8_t senses() const noexcept;
 
-  core::Space& space_;
+  const core::Space& space_;
   core::RobotId robot_;
   const hal::TurretDrive* turret_drive_;  // null, as the rest: its controller took none, or the robot has none
   const hal::GripperDrive* gripper_drive_;

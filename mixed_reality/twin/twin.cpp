@@ -13,6 +13,7 @@ namespace tandem::mixed_reality {
 namespace {
 
 constexpr std::size_t kIncidentsKept = 50;
+constexpr std::uint64_t kManyAnswers = 200;
 
 hal::Fence arena_of(const core::Space& space) {
   const double half_x_m = 0.5 * space.arena_size_x_m();
@@ -27,6 +28,12 @@ bool is(const hal::PortType& type) {
 }
 bool is_wheels(const hal::PortType& type) {
   return is<hal::WheelSpeeds>(type);
+}
+
+/// " at x, y", in m.
+std::string place_text(const core::Pose& pose) {
+  const auto rounded = [](double m) { return hal::format_number(std::round(m * 1e3) * 1e-3); };
+  return " at " + rounded(pose.x_m) + ", " + rounded(pose.y_m);
 }
 
 /// The clock of a twin is the run's.
@@ -47,70 +54,92 @@ Twin::Twin(core::Space& space, core::RobotId robot, std::unique_ptr<bridges::Rob
       log_(log),
       fence_(arena_of(space)),
       inner_fence_(fence_.for_body(space.kind(robot).body.radius_m, space.kind(robot).body.height_m)),
-      fusion_(space, robot, [this](const hal::PortType& type) { return reading_of(*real_, type); }),
+      entity_(space, robot, [this](const hal::PortType& type) { return reading_of(*real_, type); }),
       mechanisms_(space, robot, [this](const hal::PortType& type) { return reading_of(*real_, type); }),
-      positioning_(space.port<hal::Positioning>(robot)),
+      told_place_(space.port<hal::Positioning>(robot) != nullptr),
       real_wheels_(real_->port(hal::port_type<hal::WheelSpeeds>())),
       real_task_(space.kind(robot).flies() ? real_->port(hal::port_type<hal::FlightTask>()) : nullptr),
       supervisor_(params.rearm),
       battery_watch_(space.kind(robot)),
       pose_(space.pose(robot)),
       smooth_(pose_) {
-  std::size_t largest = 1;
+  const auto units = [](const hal::PortType& type) {
+    return (type.size + sizeof(std::max_align_t) - 1) / sizeof(std::max_align_t);
+  };
+  std::size_t all = 0;
   for (const hal::PortType* type : space.ports(robot)) {
     if (type->role != hal::Role::Actuator) continue;
-    outputs_.push_back({type, space.port(robot, *type), real_->port(*type)});
-    largest = std::max(largest, type->size);
+    outputs_.push_back({type, space.port(robot, *type), real_->port(*type), nullptr});
+    all += units(*type);
   }
-  told_ = std::make_unique<std::max_align_t[]>((largest + sizeof(std::max_align_t) - 1) / sizeof(std::max_align_t));
+  told_ = std::make_unique<std::max_align_t[]>(all);
+  std::max_align_t* next = told_.get();
+  for (Output& output : outputs_) {
+    output.sent = next;
+    output.type->reset(next);
+    next += units(*output.type);
+  }
   incidents_.reserve(kIncidentsKept);
-  space_.set_external(robot_, true);
   const hal::RobotKind& kind = space.kind(robot);
   if (!poses_->by_wheels() && kind.drive() != nullptr) {
     const auto* encoders = static_cast<const hal::WheelEncoders*>(real_->port(hal::port_type<hal::WheelEncoders>()));
     if (encoders != nullptr) slip_ = std::make_unique<SlipWatch>(*encoders, kind.drive()->wheel_base_m);
   }
   // On a slow line only what its controller reads anyway is asked for.
-  const bool asks_battery =
-      kind.flies() || kind.part<hal::TurretPart>() != nullptr || space.port<hal::Battery>(robot) != nullptr;
+  const bool asks_battery = params.ask_battery || kind.flies() || kind.part<hal::TurretPart>() != nullptr ||
+                            space.port<hal::Battery>(robot) != nullptr;
   if (kind.flies()) flight_ = static_cast<const hal::FlightState*>(real_->port(hal::port_type<hal::FlightState>()));
   if (asks_battery) battery_ = static_cast<const hal::Battery*>(real_->port(hal::port_type<hal::Battery>()));
+  for (const bridges::PortView& port : real_->taken()) {
+    if (port.type->role == hal::Role::Sensor && port.type->name != hal::Clock::kName)
+      readings_.push_back(static_cast<const hal::Reading*>(port.data));
+  }
 }
 
 void Twin::latch(const Moment& now, RunPhase phase) {
   running_ = phase == RunPhase::Running;
+  begun_ = running_ || phase == RunPhase::Paused;
   real_->set_origin(now.monotonic_ns - now.run_ns);
   real_->latch(0, now.monotonic_ns);
   Conditions conditions;
   conditions.run = phase;
+  conditions.emergency_stop = emergency_stop_;
   conditions.operator_holds = space_.halted_by(robot_, core::HaltOwner::Operator);
   conditions.hook_holds =
       space_.halted_by(robot_, core::HaltOwner::Hook) || space_.halted_by(robot_, core::HaltOwner::Removed);
+  conditions.being_replaced = being_replaced_;
+  conditions.replaced = replaced_;
   conditions.controller_failed = space_.halted_by(robot_, core::HaltOwner::Controller);
   conditions.hub_was_frozen = hub_was_frozen_ || (running_ && last_latch_ns_ != 0 &&
                                                   now.monotonic_ns - last_latch_ns_ > params_.frozen_after_ns);
   hub_was_frozen_ = false;
   conditions.guardian_gone = !guarded_;
-  mechanisms_.follow(last_latch_ns_ == 0 ? 0.0 : hal::to_seconds(now.monotonic_ns - last_latch_ns_));
+  mechanisms_.follow(last_latch_ns_ == 0 ? 0.0 : hal::to_seconds(now.monotonic_ns - last_latch_ns_), entity_.state());
   conditions.robot_stopped_itself = real_->stopped_itself();
   conditions.link = real_->health();
-  conditions.readings_missing = fusion_.missing() != nullptr;
+  entity_.fusion().latch();
+  conditions.readings_missing = entity_.fusion().missing() != nullptr;
   conditions.battery_low = battery_ != nullptr && battery_watch_.low(*battery_, now.monotonic_ns);
   track(now, conditions);
   pose_validity_ = conditions.pose;
   last_latch_ns_ = now.monotonic_ns;
-  hold(!supervisor_.judge(conditions, now.run_ns).controller_steps);
+  entity_.state().held = !supervisor_.judge(conditions, now.run_ns).controller_steps;
+  if (told_place_) tell_place();
+  entity_.latch();
   note(now);
 }
 
 void Twin::track(const Moment& now, Conditions& conditions) noexcept {
-  const TrackedPose tracked = poses_->latch(now);
+  const TrackedPose tracked = tracked_ = poses_->latch(now);
   pose_taken_ns_ = now.to_run(tracked.taken_ns);
   const hal::TimeNs age_ns = now.monotonic_ns - tracked.taken_ns;
-  const bool fresh = tracked.known && age_ns <= params_.pose_timeout_ns;
+  const bool fresh = tracked.known && !tracked.vague && age_ns <= params_.pose_timeout_ns;
   conditions.pose = !tracked.known ? hal::Validity::Absent : fresh ? hal::Validity::Fresh : hal::Validity::Stale;
   conditions.pose_jumped = poses_->jumps() != jumps_;
   jumps_ = poses_->jumps();
+  conditions.pose_disputed = poses_->disputed();
+  conditions.pose_contradicted = poses_->contradictions() != contradictions_;
+  contradictions_ = poses_->contradictions();
   conditions.wheels_differ = slip_ != nullptr && slip_->differs(tracked);
 
   // A pose is about a tick old when it is used, and the robot has driven on by what it was last told; in an outage much
@@ -120,7 +149,7 @@ void Twin::track(const Moment& now, Conditions& conditions) noexcept {
   const core::Pose expected = carried_on(pose_, std::min(tick_s, params_.coast_s - (age_s - tick_s)));
   pose_ = tracked.known ? carried_on(tracked.pose, std::min(age_s, params_.coast_s)) : tracked.pose;
   // A twin beyond the edge would end the run as an escaped body; the fence brings the real robot back.
-  space_.set_pose(robot_, fence_.clamped(running_ ? smooth_.follow(pose_, expected, tick_s) : smooth_.set(pose_)));
+  entity_.state().set_pose(fence_.clamped(running_ ? smooth_.follow(pose_, expected, tick_s) : smooth_.set(pose_)));
 }
 
 /// `pose` after so much more time of what the robot was last told while it could hear.
@@ -130,31 +159,122 @@ core::Pose Twin::carried_on(const core::Pose& pose, double for_s) const noexcept
   return rolled(pose, driven_.left_m_s * for_s, driven_.right_m_s * for_s, drive->wheel_base_m);
 }
 
-void Twin::after_sense() noexcept {
-  fusion_.fuse();
-  tell_place();
+void Twin::emergency_stop(hal::TimeNs monotonic_ns) noexcept {
+  if (emergency_stop_) return;
+  emergency_stop_ = true;
+  real_->land(monotonic_ns);
 }
 
-/// A robot that does not measure its place itself is told the one of its twin.
+void Twin::arm() noexcept {
+  replaced_ = false;
+  if (!emergency_stop_) return;
+  emergency_stop_ = false;
+  if (!being_replaced_) real_->resume();
+}
+
+void Twin::retire(hal::TimeNs monotonic_ns) noexcept {
+  being_replaced_ = true;
+  real_->land(monotonic_ns);
+}
+
+void Twin::stay() noexcept {
+  being_replaced_ = false;
+  replaced_ = true;
+  if (!emergency_stop_) real_->resume();
+}
+
+const hal::Reading* Twin::newest_reading() const noexcept {
+  const hal::Reading* newest = nullptr;
+  for (const hal::Reading* reading : readings_) {
+    if (reading->validity == hal::Validity::Absent) continue;
+    if (newest == nullptr || reading->taken_ns > newest->taken_ns) newest = reading;
+  }
+  return newest;
+}
+
+void Twin::after_sense() noexcept {
+  entity_.after_sense();
+}
+
+/// What a controller is told whose robot does not measure its place itself.
 void Twin::tell_place() noexcept {
-  if (positioning_ == nullptr || positioning_->validity != hal::Validity::Absent) return;
+  TwinState& state = entity_.state();
+  state.place_validity = pose_validity_;
   if (pose_validity_ == hal::Validity::Absent) return;
-  positioning_->p_WB = {pose_.x_m, pose_.y_m, pose_.z_m};
   const double half_rad = 0.5 * pose_.heading_rad();
-  positioning_->q_WB = {std::cos(half_rad), 0.0, 0.0, std::sin(half_rad)};
-  positioning_->taken_ns = pose_taken_ns_;
-  positioning_->validity = pose_validity_;
+  state.place_x_m = pose_.x_m;
+  state.place_y_m = pose_.y_m;
+  state.place_z_m = pose_.z_m;
+  state.place_qw = std::cos(half_rad);
+  state.place_qz = std::sin(half_rad);
+  state.place_taken_ns = pose_taken_ns_;
+}
+
+bool Twin::may_move(const Moment& now) const noexcept {
+  // The verdict and the command are of the latch: a loop that was kept from running since must not send them.
+  const bool of_late = now.monotonic_ns - last_latch_ns_ <= params_.pose_timeout_ns;
+  return supervisor_.verdict().may_drive && !emergency_stop_ && !space_.halted(robot_) && of_late;
+}
+
+template <class Port, class Use>
+void Twin::each_confined(const Moment& now, Use&& use) const {
+  for (const Output& output : outputs_) {
+    if (!is<Port>(*output.type)) continue;
+    Port command = *static_cast<const Port*>(output.port);
+    if constexpr (std::is_same_v<Port, hal::WheelSpeeds>) {
+      if (steered_) command = *steered_;
+    }
+    confine(*output.type, &command, now);
+    use(command);
+  }
+}
+
+void Twin::offer(const Moment& now) {
+  if (barrier_ == nullptr) return;
+  const LinkHealth health = real_->health();
+  const bool hears = health == LinkHealth::Active || health == LinkHealth::Connecting;
+  const bridges::LinkReport link = real_->report();
+  const bool many = link.answers >= kManyAnswers;  // else the slowest of the first few would be the 99th
+  barrier_->begin(tracked_, now.monotonic_ns, hal::to_seconds(many ? link.p99_round_trip_ns : link.mean_round_trip_ns),
+                  hears);
+  barrier_->look_around(space_, robot_, pose_);
+  if (running_) look_for_intrusions(now);
+  if (!hears && hal::to_seconds(now.monotonic_ns - heard_ns_) < params_.coast_s) barrier_->want(driven_);
+  if (!hears || !may_move(now)) return;
+  each_confined<hal::WheelSpeeds>(now, [this](const auto& c) { barrier_->want(c); });
+  each_confined<hal::FlightTask>(now, [this](const auto& c) { barrier_->want(c); });
+  each_confined<hal::QuadrotorAttitude>(now, [this](const auto& c) { barrier_->want(c, flight_); });
+  each_confined<hal::QuadrotorPosition>(now, [this](const auto& c) { barrier_->want(c, pose_); });
+  each_confined<hal::QuadrotorSpeed>(now, [this](const auto& c) { barrier_->want(c); });
 }
 
 void Twin::after_filter(const Moment& now) {
-  // The verdict and the command are of the latch: a loop that was kept from running since must not send them.
-  const bool of_late = now.monotonic_ns - last_latch_ns_ <= params_.pose_timeout_ns;
-  const bool alive = supervisor_.verdict().may_drive && !space_.halted(robot_) && of_late;
+  const bool alive = may_move(now);
   if (running_) alive ? ++counts_.ticks_driving : ++counts_.ticks_held;
-  if (running_) look_for_intrusions(now);
+  if (running_ && barrier_ == nullptr) look_for_intrusions(now);
+  if (running_ && barrier_ != nullptr) note_trespass(now);
   send_commands(alive, now);
-  if (real_->health() == LinkHealth::Active) driven_ = sent_;
+  const bool hears = real_->health() == LinkHealth::Active;
+  if (hears) driven_ = sent_;
+  if (hears) heard_ns_ = now.monotonic_ns;
+  if (barrier_ != nullptr) {
+    const bool drives_on = !hears && hal::to_seconds(now.monotonic_ns - heard_ns_) < params_.coast_s;
+    barrier_->sent(now.monotonic_ns, drives_on ? driven_ : sent_, alive);
+  }
   real_->commit(now.monotonic_ns);
+}
+
+void Twin::note_trespass(const Moment& now) {
+  barrier_->count();
+  if (!barrier_->notes_trespass()) return;
+  const Trespass& trespass = barrier_->trespass();
+  const std::string depth = hal::format_number(std::round(trespass.depth_m * 1e3)) + " mm";
+  const std::string area = "'" + trespass.area->id + "'";
+  note_incident(now,
+                (trespass.out_of_fence ? "it is " + depth + " out of the fence " + area
+                                       : "it is " + depth + " deep in the keep-out " + area) +
+                    place_text(tracked_.pose),
+                true);
 }
 
 /// After engines have parted what they can part.
@@ -163,7 +283,10 @@ void Twin::look_for_intrusions(const Moment& now) {
   if (smooth_.blending() && intrusion_.robot.valid()) intrusion_ = {};  // engines part them from where it is shown
   if (intrusion_.deep() && !intruding_) {
     ++counts_.intrusions;
-    note_incident(now, "its twin stands in '" + name_of(space_, intrusion_) + "'", true);
+    note_incident(now,
+                  "its twin stands in '" + name_of(space_, intrusion_) + "', " +
+                      hal::format_number(std::round(intrusion_.depth_m * 1e3)) + " mm deep" + place_text(pose_),
+                  true);
   }
   intruding_ = intruding_ ? intrusion_.depth_m > 0.0 : intrusion_.deep();
 }
@@ -172,24 +295,32 @@ void Twin::send_commands(bool alive, const Moment& now) {
   sent_ = {};
   bool wheels_sent = false;
   for (const Output& output : outputs_) {
-    void* const told = told_.get();
+    void* const told = output.sent;
     std::memcpy(told, output.port, output.type->size);
     if (is<hal::FlightTask>(*output.type)) {
       auto& task = *static_cast<hal::FlightTask*>(told);
       task = orders_.pass(task, alive, says_on_ground(flight_));
+      if (barrier_ != nullptr && barrier_->begun()) barrier_->apply(task);
     } else if (!alive) {
       output.type->reset(told);
     } else {
-      confine(*output.type, told, now);
+      if (steered_ && is_wheels(*output.type)) std::memcpy(told, &*steered_, sizeof *steered_);
+      if (confine(*output.type, told, now)) ++counts_.fenced_ticks;
+      hold_back(*output.type, told);
     }
     if (is_wheels(*output.type)) sent_ = *static_cast<const hal::WheelSpeeds*>(told);
     if (output.real == nullptr) continue;
     std::memcpy(output.real, told, output.type->size);
     wheels_sent = wheels_sent || is_wheels(*output.type);
   }
+  if (!wheels_sent && steered_ && alive && real_wheels_ != nullptr) {
+    sent_ = *steered_;
+    (void)confine(hal::port_type<hal::WheelSpeeds>(), &sent_, now);
+    hold_back(hal::port_type<hal::WheelSpeeds>(), &sent_);
+  }
   // A controller without wheels leaves them where they are safe.
   if (!wheels_sent && real_wheels_ != nullptr) std::memcpy(real_wheels_, &sent_, sizeof sent_);
-  if (real_task_ != nullptr && supervisor_.verdict().land && running_) {
+  if (real_task_ != nullptr && supervisor_.verdict().land && begun_) {
     hal::FlightTask landing;
     landing.order = hal::FlightOrder::Land;
     std::memcpy(real_task_, &landing, sizeof landing);
@@ -201,22 +332,33 @@ void Twin::send_commands(bool alive, const Moment& now) {
 }
 
 /// Leaves of a command what the safety table, the arena's edge and virtual things leave.
-void Twin::confine(const hal::PortType& type, void* command, const Moment& now) noexcept {
+/// @returns whether it led out of the arena.
+bool Twin::confine(const hal::PortType& type, void* command, const Moment& now) const noexcept {
   supervisor_.allow(type, command, &pose_, now.run_ns);
-  if (type.keep_inside == nullptr) return;
+  if (type.keep_inside == nullptr) return false;
   if (intrusion_.deep()) type.keep_out(command, pose_, intrusion_.out_x, intrusion_.out_y);
-  if (type.keep_inside(command, inner_fence_, pose_, params_.fence_ahead_s)) ++counts_.fenced_ticks;
+  return type.keep_inside(command, inner_fence_, pose_, params_.fence_ahead_s);
+}
+
+/// … and what keeps all real robots apart. It may turn the velocity of what flies: where that leads out of the arena,
+/// it hovers.
+void Twin::hold_back(const hal::PortType& type, void* command) const noexcept {
+  if (barrier_ == nullptr || !barrier_->begun() || !barrier_->changed()) return;
+  if (is_wheels(type)) return barrier_->apply(*static_cast<hal::WheelSpeeds*>(command));
+  if (is<hal::QuadrotorPosition>(type)) barrier_->apply(*static_cast<hal::QuadrotorPosition*>(command), pose_);
+  if (is<hal::QuadrotorSpeed>(type)) barrier_->apply(*static_cast<hal::QuadrotorSpeed*>(command));
+  if (type.keep_inside != nullptr && type.keep_inside(command, inner_fence_, pose_, params_.fence_ahead_s))
+    type.reset(command);
+}
+
+void Twin::list(core::SpaceInputs& inputs) const {
+  entity_.list(inputs);
+  for (const Output& output : outputs_) inputs.rows.push_back({robot_, output.type, output.sent, true});
 }
 
 void Twin::let_go() {
-  hold(false);
-  space_.set_external(robot_, false);
-}
-
-void Twin::hold(bool held) {
-  if (held == held_) return;
-  held_ = held;
-  space_.set_halted(robot_, held, core::HaltOwner::Safety);
+  entity_.state().takes_part = false;
+  entity_.latch();
 }
 
 void Twin::note(const Moment& now) {
@@ -224,7 +366,7 @@ void Twin::note(const Moment& now) {
   if (!running_ || verdict.reason == noted_) return;
   noted_ = verdict.reason;
   std::string what(verdict.reason);
-  const hal::PortType* missing = verdict.owner == StopOwner::Readings ? fusion_.missing() : nullptr;
+  const hal::PortType* missing = verdict.owner == StopOwner::Readings ? entity_.fusion().missing() : nullptr;
   std::string trouble = missing != nullptr ? std::string(missing->name) : "";
   if (const std::string more = real_->trouble(); !more.empty()) trouble += (trouble.empty() ? "" : "; ") + more;
   if (!verdict.may_drive && !trouble.empty()) what += " (" + trouble + ")";
@@ -241,6 +383,7 @@ TwinCounts Twin::counts() const noexcept {
   TwinCounts counts = counts_;
   counts.stops = supervisor_.stops();
   counts.rearms = supervisor_.rearms();
+  if (barrier_ != nullptr) counts.barrier = barrier_->counts();
   return counts;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -13,7 +14,6 @@
 #include "hal/device/wheels.hpp"
 #include "hal/log.hpp"
 #include "mixed_reality/fence/intrusion.hpp"
-#include "mixed_reality/fusion/port_fusion.hpp"
 #include "mixed_reality/safety/battery_watch.hpp"
 #include "mixed_reality/safety/flight_order_gate.hpp"
 #include "mixed_reality/safety/supervisor.hpp"
@@ -22,6 +22,8 @@
 #include "mixed_reality/tracking/slip_watch.hpp"
 #include "mixed_reality/twin/mechanisms.hpp"
 #include "mixed_reality/twin/smooth_pose.hpp"
+#include "mixed_reality/twin/twin_barrier.hpp"
+#include "mixed_reality/twin/twin_entity.hpp"
 
 namespace tandem::mixed_reality {
 
@@ -30,7 +32,8 @@ struct TwinParams {
   hal::TimeNs pose_timeout_ns = 500 * hal::kNsPerMs;  ///< age from which a pose is stale
   hal::TimeNs frozen_after_ns = hal::kNsPerSecond;    ///< two ticks that lie farther apart: the hub was frozen
   double fence_ahead_s = 0.5;                         ///< how far ahead the arena's edge is looked for
-  double coast_s = 2.0;  ///< in an outage the twin drives on as last commanded, at most for so long
+  bool ask_battery = false;  ///< also where its controller does not read it, and its line is slow
+  double coast_s = 2.0;      ///< in an outage the twin drives on as last commanded, at most for so long
 };
 
 /// Counted in the ticks of the run.
@@ -41,9 +44,10 @@ struct TwinCounts {
   std::uint64_t rearms = 0;
   std::uint64_t fenced_ticks = 0;  ///< commands cut because they led out of the arena
   std::uint64_t intrusions = 0;    ///< times its twin came to stand in something virtual
+  BarrierCounts barrier;
 };
 
-/// Keeps the entity `robot` of a space and a real robot one. Three calls a tick, in this order; none waits or
+/// Keeps the entity `robot` of a space and a real robot one. Four calls a tick, in this order; none waits or
 /// allocates, but that messages are logged when the verdict changes.
 class Twin {
  public:
@@ -57,15 +61,40 @@ class Twin {
   void set_guarded(bool guarded) noexcept { guarded_ = guarded; }
   /// A person re-arms the robot.
   void rearm() noexcept { supervisor_.rearm(); }
+  bool awaits_rearm() const noexcept { return supervisor_.awaits_rearm(); }
+  /// Stops the robot now, without waiting for a tick (one that flies lands), and keeps it so until `arm`.
+  void emergency_stop(hal::TimeNs monotonic_ns) noexcept;
+  /// Ends an emergency stop: the robot settles, and drives by and by if all else is well.
+  void arm() noexcept;
+  bool emergency_stopped() const noexcept { return emergency_stop_; }
+  /// Stops the robot now, for good: another one is to take its place.
+  void retire(hal::TimeNs monotonic_ns) noexcept;
+  /// Ends `retire`, because the other one never came. The robot stands until `arm`.
+  void stay() noexcept;
+  /// It took another one's place, and stands until `arm`.
+  void wait_for_arming() noexcept { replaced_ = true; }
+  bool awaits_arming() const noexcept { return emergency_stop_ || replaced_; }
+  /// Before the run, with the phase Running for this robot alone: it drives so, whatever its controller says, as far as
+  /// the safety table lets it; nothing: as its controller says.
+  void steer(const std::optional<hal::WheelSpeeds>& wheels) noexcept { steered_ = wheels; }
   /// Takes over the newest readings and pose, and decides whether the robot may move; its controller is held if not.
   void latch(const Moment& now, RunPhase phase);
   /// The space's ports, which hold the twin's virtual readings, get the fused ones.
   void after_sense() noexcept;
+  /// From now on commands go through this filter, which must outlive the twin.
+  void join(BarrierFilter& filter) { barrier_ = std::make_unique<TwinBarrier>(filter, space_.kind(robot_)); }
+  void leave() noexcept { barrier_.reset(); }
+  /// Tells that filter what the controller commanded; then all robots' commands are decided upon at once.
+  void offer(const Moment& now);
   /// Sends what the controller commanded, as far as it may be.
   void after_filter(const Moment& now);
   /// The real robot takes no part any more: the entity becomes one of the simulated ones. No other call follows.
   void let_go();
 
+  /// What the robot did to the space in this tick: state and readings.
+  const TwinEntity& entity() const noexcept { return entity_; }
+  /// Their rows, and those of the commands that the robot was sent. They stay where they are as long as this does.
+  void list(core::SpaceInputs& inputs) const;
   const std::string& id() const noexcept { return id_; }
   core::RobotId robot() const noexcept { return robot_; }
   bridges::RobotBridge& real() noexcept { return *real_; }
@@ -74,9 +103,17 @@ class Twin {
   /// was taken. Its entity comes there without jumps.
   const core::Pose& pose() const noexcept { return pose_; }
   const PoseSource& poses() const noexcept { return *poses_; }
+  hal::TimeNs pose_taken_ns() const noexcept { return pose_taken_ns_; }  ///< on the run's clock
+  /// As its source said in the last `latch`.
+  const TrackedPose& tracked() const noexcept { return tracked_; }
+  /// The newest reading of all that the robot is asked for; null: none came yet.
+  const hal::Reading* newest_reading() const noexcept;
+  const hal::Battery* battery() const noexcept { return battery_; }  ///< null: it tells nothing
   const Verdict& verdict() const noexcept { return supervisor_.verdict(); }
   /// The wheel speeds last handed to the robot.
   const hal::WheelSpeeds& sent() const noexcept { return sent_; }
+  /// By how much the filter changed the last command; 0: not at all.
+  double changed_m_s() const noexcept { return barrier_ != nullptr ? barrier_->changed_m_s() : 0.0; }
   TwinCounts counts() const noexcept;
   /// Why the robot did not drive, in the order in which that came up: "12.3 s: link lost". The first few.
   const std::vector<std::string>& incidents() const noexcept { return incidents_; }
@@ -86,6 +123,7 @@ class Twin {
     const hal::PortType* type;
     const void* port;  // in the space
     void* real;        // null: the robot has none such
+    void* sent;        // as it last went to the robot
   };
 
   void track(const Moment& now, Conditions& conditions) noexcept;
@@ -93,10 +131,14 @@ class Twin {
   core::Pose carried_on(const core::Pose& pose, double for_s) const noexcept;
   void look_for_intrusions(const Moment& now);
   void note_incident(const Moment& now, const std::string& what, bool serious);
-  void hold(bool held);
   void note(const Moment& now);
+  void note_trespass(const Moment& now);
+  bool may_move(const Moment& now) const noexcept;
   void send_commands(bool alive, const Moment& now);
-  void confine(const hal::PortType& type, void* command, const Moment& now) noexcept;
+  bool confine(const hal::PortType& type, void* command, const Moment& now) const noexcept;
+  template <class Port, class Use>
+  void each_confined(const Moment& now, Use&& use) const;
+  void hold_back(const hal::PortType& type, void* command) const noexcept;
 
   core::Space& space_;
   core::RobotId robot_;
@@ -107,22 +149,26 @@ class Twin {
   const hal::Log& log_;
   hal::Fence fence_;        // for poses of the twin
   hal::Fence inner_fence_;  // for where its middle may go
-  PortFusion fusion_;
+  TwinEntity entity_;
   Mechanisms mechanisms_;
-  hal::Positioning* positioning_;  // the controller's; null: it took none
+  bool told_place_;  // its controller took a positioning
   std::vector<Output> outputs_;
-  void* real_wheels_;                         // null, as the next one: it has none
-  void* real_task_;                           // of flight
-  std::unique_ptr<std::max_align_t[]> told_;  // a command as it goes to the robot; room for the largest
+  std::vector<const hal::Reading*> readings_;  // that the robot is asked for
+  void* real_wheels_;                          // null, as the next one: it has none
+  void* real_task_;                            // of flight
+  std::unique_ptr<std::max_align_t[]> told_;   // commands as they go to the robot
   Supervisor supervisor_;
   std::unique_ptr<SlipWatch> slip_;        // null: there is nothing to compare the wheels with
   const hal::Battery* battery_ = nullptr;  // null: it tells nothing
   BatteryWatch battery_watch_;
   const hal::FlightState* flight_ = nullptr;  // null: it does not fly
   FlightOrderGate orders_;
-  std::uint64_t jumps_ = 0;  // of the pose, as far as they were judged
+  std::uint64_t jumps_ = 0, contradictions_ = 0;  // of the pose, as far as they were judged
+  TrackedPose tracked_;
   core::Pose pose_;
   SmoothPose smooth_;
+  std::unique_ptr<TwinBarrier> barrier_;  // null: nothing keeps it from collisions
+  hal::TimeNs heard_ns_ = 0;              // when it was last told something while it could hear
   Intrusion intrusion_;
   bool intruding_ = false;
   bool landing_ = false;  // it was told to, by us
@@ -131,7 +177,10 @@ class Twin {
   bool running_ = false;
   bool hub_was_frozen_ = false;
   bool guarded_ = true;
-  bool held_ = false;  // by the safety table
+  bool emergency_stop_ = false;
+  bool being_replaced_ = false, replaced_ = false;
+  bool begun_ = false;  // the run has, and is not stopping
+  std::optional<hal::WheelSpeeds> steered_;
   hal::TimeNs last_latch_ns_ = 0;
   hal::TimeNs pose_taken_ns_ = 0;  // on the run's clock
   hal::Validity pose_validity_ = hal::Validity::Absent;

@@ -1,0 +1,198 @@
+#include "mixed_reality/tracking/fused_pose.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace tandem::mixed_reality {
+namespace {
+
+constexpr double kSpeedMargin = 1.25;   // firmwares clamp above the kind's speed, and stamps jitter
+constexpr double kStepMargin_m = 0.01;  // what jitter of the stamps may add in a short step
+constexpr double kAgree_m = 0.03, kAgree_rad = 0.15;
+constexpr double kUnknown_m = 1.0, kUnknown_rad = 1.0;  // standard deviations before it was found
+constexpr double kGuess_rad = 0.2;                      // of the heading that the file says
+constexpr hal::TimeNs kGyroscopeFits_ns = 20 * hal::kNsPerMs;
+
+double wrapped(double rad) noexcept {
+  return std::remainder(rad, 2.0 * std::numbers::pi);
+}
+
+}  // namespace
+
+FusedPose::FusedPose(const core::Pose& start, const hal::DifferentialDrive& drive, const hal::WheelEncoders& encoders,
+                     const hal::Gyroscope* gyroscope, const FusedPoseParams& params)
+    : encoders_(encoders),
+      gyroscope_(gyroscope),
+      params_(params),
+      max_speed_m_s_(drive.max_speed_m_s),
+      filter_(start, 0, kUnknown_m, kUnknown_rad, drive.wheel_base_m, params.filter),
+      start_(start),
+      start_heading_rad_(start.heading_rad()) {}
+
+void FusedPose::see(const PoseMeasurement& pose, std::optional<std::int64_t> stamp) noexcept {
+  if (pose.tracker >= PoseFilter::kTrackers) return;
+  if (stamp) {
+    Stamps& stamps = stamps_[pose.tracker];
+    const auto end = stamps.last.begin() + static_cast<std::ptrdiff_t>(std::min(stamps.count, stamps.last.size()));
+    if (std::find(stamps.last.begin(), end, *stamp) != end) {
+      ++doubled_;
+      return;
+    }
+    stamps.last[stamps.count++ % stamps.last.size()] = *stamp;
+  }
+  by_true_clock_[pose.tracker] = pose.by_true_clock;
+  auto& newest = seen_[pose.tracker];
+  if (!newest || newest->taken_ns < pose.taken_ns) newest = pose;
+  if (pending_count_ == pending_.size()) {  // nobody latches: the newest ones count
+    std::move(pending_.begin() + 1, pending_.end(), pending_.begin());
+    --pending_count_;
+    ++overrun_;
+  }
+  pending_[pending_count_++] = pose;
+}
+
+TrackedPose FusedPose::latch(const Moment& now) noexcept {
+  read_wheels(now);
+  for (std::size_t i = 0; i < pending_count_; ++i) take(pending_[i], now.monotonic_ns);
+  pending_count_ = 0;
+  judge(now.monotonic_ns);
+  if (!found_) return {start_, 0, false};
+  const PoseEstimate estimate = filter_.now();
+  const auto late_ns = static_cast<hal::TimeNs>(learnt().link_delay_s * 1e9);
+  TrackedPose tracked{estimate.pose, filter_.time_ns() - late_ns, true};
+  tracked.sd_m = std::sqrt(std::max(estimate.covariance(0, 0), estimate.covariance(1, 1)));
+  tracked.sd_rad = std::sqrt(estimate.covariance(2, 2));
+  tracked.vague = !(*tracked.sd_m <= params_.lost_m);
+  return tracked;
+}
+
+void FusedPose::read_wheels(const Moment& now) noexcept {
+  if (encoders_.validity == hal::Validity::Absent) return;
+  const hal::TimeNs taken_ns = now.to_monotonic(encoders_.taken_ns);
+  if (taken_ns > now.monotonic_ns) {
+    if (encoders_.taken_ns != future_ns_) ++wheels_rejected_;
+    future_ns_ = encoders_.taken_ns;
+    return;
+  }
+  if (wheels_known_ && taken_ns <= wheels_at_ns_) return;
+  double left_m = encoders_.left_m - left_m_, right_m = encoders_.right_m - right_m_;
+  if (!std::isfinite(left_m) || !std::isfinite(right_m)) {
+    ++wheels_rejected_;
+    return;
+  }
+  if (!wheels_known_) {
+    filter_.put(start_, taken_ns, kUnknown_m, kUnknown_rad);
+    left_m = right_m = 0.0;
+  }
+  const double most_m = kSpeedMargin * max_speed_m_s_ * hal::to_seconds(taken_ns - wheels_at_ns_) + kStepMargin_m;
+  const bool reset = wheels_known_ && (std::fabs(left_m) > most_m || std::fabs(right_m) > most_m);
+  if (reset) ++wheels_rejected_;
+  double gyroscope_sd_rad = 0.0;
+  const std::optional<double> turn_rad = turned_rad(taken_ns - wheels_at_ns_, gyroscope_sd_rad);
+  if (reset || way_lost_)
+    filter_.roll(taken_ns, 0.0, 0.0);
+  else
+    filter_.roll(taken_ns, left_m, right_m, turn_rad, gyroscope_sd_rad);
+  way_lost_ = false;
+  left_m_ = encoders_.left_m;
+  right_m_ = encoders_.right_m;
+  wheels_at_ns_ = taken_ns;
+  wheels_known_ = true;
+}
+
+/// By the gyroscope, since the last reading of the wheels: the mean of the rates at both ends, which is wrong by up to
+/// half of their difference.
+std::optional<double> FusedPose::turned_rad(hal::TimeNs span_ns, double& sd_rad) noexcept {
+  const std::optional<double> before = rate_rad_s_;
+  rate_rad_s_.reset();
+  if (gyroscope_ == nullptr || gyroscope_->validity != hal::Validity::Fresh) return {};
+  const hal::TimeNs apart_ns = gyroscope_->taken_ns - encoders_.taken_ns;
+  if (apart_ns > kGyroscopeFits_ns || apart_ns < -kGyroscopeFits_ns || !std::isfinite(gyroscope_->rate_rad_s[2]))
+    return {};
+  rate_rad_s_ = static_cast<double>(gyroscope_->rate_rad_s[2]);
+  if (!before || !wheels_known_) return {};
+  const double span_s = hal::to_seconds(span_ns);
+  sd_rad = 0.5 * std::fabs(*rate_rad_s_ - *before) * span_s;
+  return 0.5 * (*rate_rad_s_ + *before) * span_s;
+}
+
+/// Whether `pose` and those before it are of one place, kFound in a row.
+bool FusedPose::agree(const PoseMeasurement& pose) noexcept {
+  const bool fits = candidate_ &&
+                    std::hypot(pose.x_m - candidate_->x_m, pose.y_m - candidate_->y_m) <=
+                        kAgree_m + 3.0 * (pose.sd_m + candidate_->sd_m) &&
+                    (!pose.heading_rad || !candidate_->heading_rad ||
+                     std::fabs(wrapped(*pose.heading_rad - *candidate_->heading_rad)) <=
+                         kAgree_rad + 3.0 * (pose.sd_rad + candidate_->sd_rad));
+  agreed_ = fits ? agreed_ + 1 : 1;
+  const bool tells_more = !candidate_ || pose.heading_rad || !candidate_->heading_rad;
+  if (!fits || tells_more) candidate_ = pose;
+  return agreed_ >= kFound;
+}
+
+void FusedPose::put(const PoseMeasurement& pose) noexcept {
+  const core::Pose before = filter_.now().pose;
+  const double guess_rad = found_ ? before.heading_rad() : start_heading_rad_;
+  filter_.put(core::Pose::at(pose.x_m, pose.y_m, pose.heading_rad.value_or(guess_rad), start_.z_m), pose.taken_ns,
+              0.01 + pose.sd_m, pose.heading_rad ? 0.05 + pose.sd_rad : kGuess_rad);
+  candidate_.reset();
+  agreed_ = 0;
+}
+
+void FusedPose::take(const PoseMeasurement& pose, hal::TimeNs now_ns) noexcept {
+  if (!wheels_known_) return;
+  if (!found_) {
+    if (!agree(pose)) return;
+    put(*candidate_);
+    found_ = true;
+    return;
+  }
+  if (now_ns - wheels_at_ns_ <= kBlind_ns) {
+    if (filter_.correct(pose) == PoseFilter::Taken::Nonsense) ++impossible_;
+    return;
+  }
+  // The wheels are silent: what trackers agree on is where it is.
+  if (pose.taken_ns <= filter_.time_ns() || !agree(pose)) return;
+  const core::Pose before = filter_.now().pose;
+  const double most_m = kSpeedMargin * max_speed_m_s_ * hal::to_seconds(pose.taken_ns - wheels_at_ns_) + kAgree_m;
+  if (std::hypot(pose.x_m - before.x_m, pose.y_m - before.y_m) > most_m) ++found_elsewhere_;
+  put(*candidate_);
+  way_lost_ = true;
+}
+
+/// Disputes last a while; jumps that are too many are no jumps.
+void FusedPose::judge(hal::TimeNs now_ns) noexcept {
+  if (filter_.disputed() != disputes_) {
+    disputes_ = filter_.disputed();
+    disputed_at_ns_ = now_ns;
+    disputed_ = true;
+  }
+  if (disputed_ && now_ns - disputed_at_ns_ > kDisputed_ns) disputed_ = false;
+  for (; jumps_judged_ < jumps(); ++jumps_judged_) {
+    hal::TimeNs& oldest = jumped_at_ns_[jumps_judged_ % kJumpsBelieved];
+    if (jumps_judged_ >= kJumpsBelieved && now_ns - oldest <= kJumps_ns) ++contradictions_;
+    oldest = now_ns;
+  }
+}
+
+PoseFilter::Learnt FusedPose::learnt() const noexcept {
+  PoseFilter::Learnt learnt = filter_.learnt();
+  for (std::size_t i = 0; i < PoseFilter::kTrackers; ++i) {
+    if (by_true_clock_[i] && learnt.sd[4 + i] < kDelayKnown_s && -learnt.delay_s[i] > 2.0 * learnt.sd[4 + i])
+      learnt.link_delay_s = std::max(learnt.link_delay_s, -learnt.delay_s[i]);
+  }
+  return learnt;
+}
+
+std::uint64_t FusedPose::rejected() const noexcept {
+  const PoseCounts c = counts();
+  return c.gated + c.late + c.doubled + c.impossible + wheels_rejected_;
+}
+
+PoseCounts FusedPose::counts() const noexcept {
+  return {filter_.used(),     filter_.gated(), filter_.too_late() + overrun_, doubled_, impossible_,
+          filter_.disputed(), jumps()};
+}
+
+}  // namespace tandem::mixed_reality
