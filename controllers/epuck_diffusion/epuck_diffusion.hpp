@@ -34,6 +34,9 @@ class EpuckDiffusion final : public hal::Controller {
   EpuckDiffusion(hal::Robot& robot, const Params& params);
 
   void step() noexcept override;
+  void controls(hal::Controls& c) override {
+    c.number("velocity", velocity_m_s_, hal::unit::cm_s, {0.0, 0.1}, "Wheel speed.");
+  }
 
  private:
   const hal::Proximity& proximity_;

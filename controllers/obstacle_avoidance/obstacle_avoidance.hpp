@@ -27,6 +27,10 @@ class ObstacleAvoidance final : public hal::Controller {
   ObstacleAvoidance(hal::Robot& robot, const Params& params);
 
   void step() noexcept override;
+  void controls(hal::Controls& c) override {
+    c.number("cruise", params_.cruise_m_s, hal::unit::cm_s, {0.0, 0.3}, "Speed on free ground.");
+    c.number("gain", params_.gain, hal::unit::none, {0.0, 20.0}, "How strongly it turns away from obstacles.");
+  }
 
  private:
   const hal::Proximity& proximity_;
