@@ -1,0 +1,42 @@
+// A world with all that it needs to live: what Python's worlds, arrays and snapshots hold together.
+#pragma once
+#include <atomic>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "core/sim/world.hpp"
+#include "hal/plugin_loader.hpp"
+
+namespace tandem::python {
+
+class World;
+
+/// Every array handed out holds its session, so that no memory goes while somebody looks at it. Destroyed with Python's
+/// lock held.
+struct Session {
+  explicit Session(std::vector<std::filesystem::path> folders, hal::Catalog catalog)
+      : loader(std::move(folders), std::move(catalog)) {}
+  ~Session();
+
+  hal::PluginLoader loader;
+  std::unique_ptr<core::World> world;
+  World* owner = nullptr;                     ///< null once that is closed
+  core::HookContext* hook_context = nullptr;  ///< while a hook of Python is called
+  bool writes = false;                        ///< somebody may write commands between steps
+  std::vector<std::string> keys;              ///< of its guests (guests.hpp)
+
+  /// Messages of the world; may be called from any thread.
+  void note(hal::Severity severity, std::string_view text);
+  std::vector<std::pair<std::string, std::string>> messages();
+
+ private:
+  static constexpr std::size_t kMostMessages = 1000;
+  std::mutex lock_;
+  std::vector<std::pair<std::string, std::string>> messages_;
+};
+
+}  // namespace tandem::python

@@ -1,0 +1,713 @@
+#include "python/world.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <pybind11/stl.h>
+
+#include "app/plugin_folders.hpp"
+#include "core/config/reader.hpp"
+#include "core/hook/hook.hpp"
+#include "core/schedule/thread_pool.hpp"
+#include "core/space/stores.hpp"
+#include "core/view/picture.hpp"
+#include "core/view/render.hpp"
+#include "hal/output_file.hpp"
+#include "library/open_world.hpp"
+#include "python/guests.hpp"
+
+namespace tandem::python {
+namespace {
+
+std::string text_of(const core::Problems& problems, bool warnings) {
+  std::string text;
+  for (const core::Problem& problem : problems) {
+    if (problem.warning == warnings) text += (text.empty() ? "" : "\n") + core::to_text(problem);
+  }
+  return text;
+}
+
+void warn(const std::string& text) {
+  if (!text.empty() && PyErr_WarnEx(PyExc_UserWarning, text.c_str(), 2) != 0) throw py::error_already_set();
+}
+
+/// Calls at times that Python asks for: now and then, not every tick.
+class Interrupts {
+ public:
+  /// With Python's lock held. @throws py::error_already_set for Ctrl-C
+  static void look() {
+    if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+  }
+  bool due() {
+    const auto now = std::chrono::steady_clock::now();
+    if (now < next_) return false;
+    next_ = now + std::chrono::milliseconds(50);
+    return true;
+  }
+
+ private:
+  std::chrono::steady_clock::time_point next_ = std::chrono::steady_clock::now() + std::chrono::milliseconds(50);
+};
+
+}  // namespace
+
+bool changes_at_reset(const std::string& parameter) {
+  const std::string path = parameter.substr(0, parameter.find('='));
+  return path.find(".params.") != std::string::npos || path.starts_with("loop_functions") ||
+         path == "framework.experiment.length";
+}
+
+// --- use ---
+
+Use::Use(World& world, How how) : world_(world) {
+  if (world.closed()) throw std::runtime_error("this world was closed; make another one");
+  const std::thread::id me = std::this_thread::get_id();
+  if (world.uses_ > 0 && world.user_.load() != me) {
+    throw std::runtime_error(
+        "another thread is using this world: a world is for one thread at a time. Make one world a thread, "
+        "or wait until its step returns");
+  }
+  if (world.uses_ > 0 && how == How::Alone)
+    throw std::runtime_error("this cannot be called by a controller, hook or policy while the same world steps");
+  world.user_ = me;
+  ++world.uses_;
+}
+
+Use::~Use() {
+  --world_.uses_;
+}
+
+// --- making ---
+
+core::Scenario World::read(const std::vector<std::string>& parameters, std::string& warnings) const {
+  core::Problems problems;
+  auto scenario = library::read_scenario(
+      session_->loader,
+      {.file = request_.file, .text = request_.text, .parameters = parameters, .plugins = request_.plugins}, problems);
+  warnings = text_of(problems, true);
+  if (!scenario) throw ExperimentError(text_of(problems, false));
+  invite(*scenario);
+  return std::move(*scenario);
+}
+
+/// Gives Python's controllers and hooks their places.
+void World::invite(core::Scenario& scenario) const {
+  const auto take = [&](core::ControllerConfig& config, const std::string& label, const std::string& key) {
+    const auto add_key = [&](core::Element& params) {
+      if (!key.empty()) params.attributes.push_back({kKey, key, 0});
+    };
+    const auto at = static_cast<std::size_t>(&config - scenario.controllers.data());
+    config.library = std::string(hal::Catalog::kInside);
+    config.label = label;
+    if (key.empty()) config.params.attributes.clear();
+    add_key(config.params);
+    for (core::RobotItem& robot : scenario.robots) {
+      if (robot.controller != at || !robot.params) continue;
+      if (key.empty())
+        robot.params.reset();
+      else
+        add_key(*robot.params);
+    }
+  };
+  const auto find = [&](const std::string& id) -> core::ControllerConfig& {
+    std::vector<std::string> known;
+    for (core::ControllerConfig& config : scenario.controllers) {
+      if (config.id == id) return config;
+      known.push_back(config.id);
+    }
+    throw ExperimentError(request_.file + ": there is no controller '" + id + "'; there are: " + core::listed(known) +
+                          core::did_you_mean(id, known));
+  };
+  for (const std::string& id : request_.driven) {
+    if (id == "*") {
+      for (core::ControllerConfig& config : scenario.controllers) take(config, kDriven, "");
+    } else {
+      take(find(id), kDriven, "");
+    }
+  }
+  for (const auto& [id, key] : controller_keys_) take(find(id), kPythonController, key);
+  if (!controller_keys_.empty()) scenario.threads = 0;  // Python's lock lets one step at a time
+  for (const std::string& key : hook_keys_) {
+    core::HookConfig hook;
+    hook.library = std::string(hal::Catalog::kInside);
+    hook.label = kPythonHook;
+    hook.options.name = "loop_functions";
+    hook.options.file = request_.file;
+    hook.options.attributes = {{"library", hook.library, 0}, {"label", hook.label, 0}, {kKey, key, 0}};
+    scenario.hooks.push_back(std::move(hook));
+  }
+}
+
+World::World(WorldRequest request)
+    : session_(std::make_shared<Session>(app::plugin_folders(), catalog())),
+      request_(std::move(request)),
+      parameters_(request_.parameters) {
+  session_->owner = this;
+  for (const auto& [id, guest] : request_.controllers)
+    controller_keys_.emplace_back(id.cast<std::string>(),
+                                  keep_guest(session_, py::reinterpret_borrow<py::object>(guest)));
+  for (const py::handle hook : request_.hooks)
+    hook_keys_.push_back(keep_guest(session_, py::reinterpret_borrow<py::object>(hook)));
+  request_.controllers = py::dict();
+  request_.hooks = py::list();
+  std::string warnings;
+  const core::Scenario scenario = read(parameters_, warnings);
+  length_s_ = scenario.length_s;
+  core::WorldOptions options;
+  options.seed = request_.seed;
+  options.threads = request_.threads;
+  if (!controller_keys_.empty()) options.threads = 0;
+  options.log = hal::Log(
+      [session = session_.get()](hal::Severity severity, std::string_view text) { session->note(severity, text); });
+  core::Problems problems;
+  {
+    const py::gil_scoped_release unlocked;
+    session_->world = core::World::make(scenario, session_->loader, options, problems);
+  }
+  if (session_->world == nullptr) {
+    session_->owner = nullptr;
+    throw ExperimentError(text_of(problems, false));
+  }
+  if (std::string more = text_of(problems, true); !more.empty()) warnings += (warnings.empty() ? "" : "\n") + more;
+  warn(warnings);
+}
+
+World::~World() {
+  if (session_ != nullptr) close();
+}
+
+void World::close() {
+  if (session_ == nullptr) return;
+  if (uses_ > 0) throw std::runtime_error("this world is in use: it cannot be closed now");
+  session_->owner = nullptr;
+  // Python's controllers may hold arrays, which hold the session: they go first.
+  core::destroy_controllers(session_->world->space().stores());
+  policies_.clear();
+  session_.reset();
+}
+
+void World::start() {
+  const Use use(*this);
+  if (std::exchange(started_, true)) return;
+  {
+    const py::gil_scoped_release unlocked;
+    session_->world->start();
+  }
+  raise_failure();
+}
+
+void World::raise_failure() {
+  if (session_->world->state() == core::RunState::Failed) throw RunFailed(session_->world->failure());
+}
+
+// --- stepping ---
+
+/// One tick, with or without Python's lock. False: the run has ended.
+bool World::tick_unlocked() {
+  core::World& world = *session_->world;
+  if (world.state() != core::RunState::Running) return false;
+  if (session_->writes) world.limit_commands();
+  world.step();
+  return world.state() == core::RunState::Running;
+}
+
+void World::step_unlocked() noexcept {
+  user_ = std::this_thread::get_id();
+  tick_unlocked();
+}
+
+void World::call_policies() {
+  if (policies_.empty() || session_->world->state() == core::RunState::Failed) return;
+  session_->writes = true;
+  const auto all = swarms();
+  for (const auto& [controller, policy] : policies_) {
+    for (const auto& swarm : all) {
+      if (swarm->controller() == controller) policy(swarm);
+    }
+  }
+}
+
+std::int64_t World::step(std::int64_t ticks) {
+  const Use use(*this, Use::How::Alone);
+  if (ticks < 0) throw py::value_error("a world cannot make " + std::to_string(ticks) + " steps");
+  if (finished_) throw std::runtime_error("this run is finished; reset() begins it anew");
+  const hal::Tick before = session_->world->tick();
+  std::int64_t done = 0;
+  bool goes_on = true;
+  Interrupts interrupts;
+  while (goes_on && done < ticks) {
+    {
+      const py::gil_scoped_release unlocked;
+      do {
+        goes_on = tick_unlocked();
+        ++done;
+      } while (goes_on && done < ticks && policies_.empty() && !interrupts.due());
+    }
+    call_policies();
+    Interrupts::look();
+  }
+  raise_failure();
+  return session_->world->tick() - before;
+}
+
+std::int64_t World::steps_left(std::optional<double> until_s) {
+  core::World& world = *session_->world;
+  if (!until_s && !(length_s_ > 0.0)) return -1;
+  const double end_s = until_s.value_or(length_s_);
+  const double end = end_s * static_cast<double>(world.ticks_per_second());
+  if (!(std::abs(end) < 1e15)) throw py::value_error("the end of a run is a time in s; this is none, or too far away");
+  const auto ticks = static_cast<std::int64_t>(end + 0.5);
+  return std::max<std::int64_t>(0, ticks - world.tick());
+}
+
+std::int64_t World::run(std::optional<double> until_s) {
+  std::int64_t left = 0;
+  {
+    const Use use(*this);
+    left = steps_left(until_s);
+    if (left < 0 && session_->world->hooks() == 0)
+      throw py::value_error("this experiment has no length, and no hook that could end it: say run(until=seconds)");
+  }
+  std::int64_t done = 0;
+  if (left >= 0) {
+    done = step(left);
+  } else {
+    while (session_->world->state() == core::RunState::Running) done += step(1000);
+  }
+  if (!until_s) finish();
+  return done;
+}
+
+void World::finish() {
+  const Use use(*this, Use::How::Alone);
+  if (std::exchange(finished_, true)) return;
+  {
+    const py::gil_scoped_release unlocked;
+    session_->world->finish();
+  }
+  raise_failure();
+}
+
+void World::reset(std::optional<std::uint64_t> seed, const std::optional<std::vector<std::string>>& parameters) {
+  const Use use(*this, Use::How::Alone);
+  core::World& world = *session_->world;
+  if (parameters) {
+    std::vector<std::string> all = request_.parameters;
+    for (const std::string& one : *parameters) {
+      if (!changes_at_reset(one)) {
+        throw py::value_error(
+            "'" + one.substr(0, one.find('=')) +
+            "' cannot change without building the world anew: a reset takes over parameters of controllers "
+            "(…params.…), those of hooks (loop_functions.…) and framework.experiment.length. Make another "
+            "tandem.World with it");
+      }
+      all.push_back(one);
+    }
+    if (all != parameters_) {
+      std::string warnings;
+      const core::Scenario changed = read(all, warnings);
+      if (const hal::Status taken = world.change_parameters(changed); !taken.ok())
+        throw ExperimentError(taken.error().message);
+      parameters_ = std::move(all);
+      length_s_ = changed.length_s;
+      warn(warnings);
+    }
+  }
+  hal::Status begun;
+  {
+    const py::gil_scoped_release unlocked;
+    begun = world.reset(seed.value_or(world.seed()));
+  }
+  finished_ = false;
+  started_ = true;
+  if (!begun.ok()) throw RunFailed(begun.error().message);
+  for (const auto& [controller, policy] : policies_) {
+    if (py::hasattr(policy, "reset")) policy.attr("reset")(world.seed());
+  }
+}
+
+std::shared_ptr<Snapshot> World::snapshot() {
+  const Use use(*this, Use::How::Alone);
+  hal::Result<core::Snapshot> taken = [&] {
+    const py::gil_scoped_release unlocked;
+    return session_->world->snapshot_of_all();
+  }();
+  if (!taken.ok()) throw std::runtime_error(taken.error().message);
+  return std::make_shared<Snapshot>(Snapshot{session_, std::move(taken).value()});
+}
+
+void World::restore(const Snapshot& snapshot) {
+  const Use use(*this, Use::How::Alone);
+  hal::Status back;
+  {
+    const py::gil_scoped_release unlocked;
+    back = session_->world->restore(snapshot.moment);
+  }
+  if (!back.ok()) throw std::runtime_error(back.error().message);
+  finished_ = false;
+}
+
+void World::add_policy(const std::string& controller, py::object policy) {
+  const Use use(*this);
+  const auto& configs = session_->world->scenario().controllers;
+  if (std::none_of(configs.begin(), configs.end(), [&](const core::ControllerConfig& c) { return c.id == controller; }))
+    throw py::key_error("there is no controller '" + controller + "'");
+  if (PyCallable_Check(policy.ptr()) == 0)
+    throw py::type_error("a policy is called with a swarm after every step, and this is not callable");
+  policies_.emplace_back(controller, std::move(policy));
+}
+
+// --- looking ---
+
+std::vector<std::shared_ptr<Swarm>> World::swarms() {
+  const Use use(*this);
+  return Swarm::all(session_);
+}
+
+std::vector<std::string> World::ids() {
+  const Use use(*this);
+  const core::Space& space = session_->world->space();
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < space.robot_count(); ++i) names.push_back(space.robot_name(space.robot(i)));
+  return names;
+}
+
+py::array World::poses() {
+  const Use use(*this);
+  const core::Space& space = session_->world->space();
+  py::array_t<double> made({static_cast<py::ssize_t>(space.robot_count()), py::ssize_t{3}});
+  double* at = made.mutable_data();
+  for (std::size_t i = 0; i < space.robot_count(); ++i) {
+    const core::Pose pose = space.pose(space.robot(i));
+    *at++ = pose.x_m;
+    *at++ = pose.y_m;
+    *at++ = pose.heading_rad();
+  }
+  return made;
+}
+
+core::RobotId World::robot_of(const std::string& id) {
+  const core::RobotId robot = session_->world->space().find_robot(id);
+  if (!session_->world->space().contains(robot)) throw py::key_error("there is no robot '" + id + "'");
+  return robot;
+}
+
+py::tuple World::pose(const std::string& robot) {
+  const Use use(*this);
+  const core::Pose pose = session_->world->space().pose(robot_of(robot));
+  return py::make_tuple(pose.x_m, pose.y_m, pose.heading_rad());
+}
+
+void World::set_pose(const std::string& robot, double x_m, double y_m, double heading_rad) {
+  const Use use(*this);
+  if (!std::isfinite(x_m) || !std::isfinite(y_m) || !std::isfinite(heading_rad))
+    throw py::value_error("a pose is three finite numbers");
+  core::Space& space = session_->world->space();
+  const core::RobotId id = robot_of(robot);
+  core::Pose pose = space.pose(id);
+  pose.x_m = x_m;
+  pose.y_m = y_m;
+  pose.cos_h = std::cos(heading_rad);
+  pose.sin_h = std::sin(heading_rad);
+  if (const hal::Status room = space.room_for(id, pose); !room.ok()) throw py::value_error(room.error().message);
+  space.set_pose(id, pose);
+}
+
+void World::add_robot(const std::string& id, const std::string& controller, double x_m, double y_m, double heading_rad,
+                      const std::string& kind) {
+  const Use use(*this);
+  core::NewRobot wanted;
+  wanted.kind = kind;
+  wanted.id = id;
+  wanted.controller = controller;
+  wanted.pose.x_m = x_m;
+  wanted.pose.y_m = y_m;
+  wanted.pose.cos_h = std::cos(heading_rad);
+  wanted.pose.sin_h = std::sin(heading_rad);
+  const auto added = session_->world->space().add_robot(wanted);
+  if (!added.ok()) throw py::value_error(added.error().message);
+}
+
+void World::remove_robot(const std::string& robot) {
+  const Use use(*this);
+  session_->world->space().remove_robot(robot_of(robot));
+}
+
+void World::move_object(const std::string& object, double x_m, double y_m, double heading_rad) {
+  const Use use(*this);
+  core::Space& space = session_->world->space();
+  const core::ObjectId id = space.find_object(object);
+  if (!space.contains(id)) throw py::key_error("there is no object '" + object + "'");
+  core::Object changed = space.objects()[id.index];
+  changed.x_m = x_m;
+  changed.y_m = y_m;
+  changed.cos_h = std::cos(heading_rad);
+  changed.sin_h = std::sin(heading_rad);
+  if (const hal::Status moved = space.set_object(id, changed); !moved.ok())
+    throw py::value_error(moved.error().message);
+}
+
+py::dict World::objects() {
+  const Use use(*this);
+  py::dict all;
+  for (const core::Object& object : session_->world->space().objects()) {
+    if (!object.alive) continue;
+    all[py::str(object.id)] = py::make_tuple(object.x_m, object.y_m, std::atan2(object.sin_h, object.cos_h));
+  }
+  return all;
+}
+
+py::dict World::measures() {
+  const Use use(*this);
+  py::dict all;
+  for (const auto& [name, value] : session_->world->measures().all()) all[py::str(name)] = value;
+  return all;
+}
+
+void World::set_measure(const std::string& name, double value) {
+  const Use use(*this);
+  if (session_->hook_context == nullptr) throw std::runtime_error("measures are set by hooks, while these are called");
+  session_->hook_context->measures.set(name, value);
+}
+
+py::dict World::incidents() {
+  const Use use(*this);
+  const core::Incidents& all = session_->world->incidents();
+  py::dict made;
+  made["commands_clamped"] = all.commands_clamped;
+  made["commands_not_finite"] = all.commands_not_finite;
+  made["controllers_thrown"] = all.controllers_thrown;
+  made["bodies_escaped"] = all.bodies_escaped;
+  made["first"] = all.first;
+  return made;
+}
+
+std::vector<std::pair<std::string, std::string>> World::messages() {
+  const Use use(*this);
+  return session_->messages();
+}
+
+std::int64_t World::tick() {
+  const Use use(*this);
+  return session_->world->tick();
+}
+double World::time_s() {
+  const Use use(*this);
+  return static_cast<double>(session_->world->tick()) / static_cast<double>(session_->world->ticks_per_second());
+}
+std::int64_t World::ticks_per_second() {
+  const Use use(*this);
+  return session_->world->ticks_per_second();
+}
+std::uint64_t World::seed() {
+  const Use use(*this);
+  return session_->world->seed();
+}
+std::uint64_t World::fingerprint() {
+  const Use use(*this);
+  return session_->world->state_hash();
+}
+std::string World::state() {
+  if (closed()) return "closed";
+  const Use use(*this);
+  switch (session_->world->state()) {
+    case core::RunState::Running:
+      return finished_ ? "finished" : "running";
+    case core::RunState::Done:
+      return "done";
+    case core::RunState::Failed:
+      break;
+  }
+  return "failed";
+}
+std::string World::settings() {
+  const Use use(*this);
+  return core::effective_settings(session_->world->scenario());
+}
+std::string World::name() {
+  const Use use(*this);
+  return session_->world->scenario().name;
+}
+double World::length_s() {
+  const Use use(*this);
+  return length_s_;
+}
+double World::floor(double x_m, double y_m) {
+  const Use use(*this);
+  return session_->world->space().floor(x_m, y_m);
+}
+bool World::has_guests() const noexcept {
+  return !controller_keys_.empty() || !hook_keys_.empty() || !request_.driven.empty() || !policies_.empty();
+}
+std::string World::text() {
+  if (closed()) return "<tandem.World, closed>";
+  const Use use(*this);
+  return "<tandem.World '" + session_->world->scenario().name + "' of " +
+         std::to_string(session_->world->space().robot_count()) + " robots, tick " +
+         std::to_string(session_->world->tick()) + ", seed " + std::to_string(session_->world->seed()) + ">";
+}
+
+Picture World::picture(int size_px, bool ids, bool axes) {
+  const Use use(*this);
+  if (size_px < 50 || size_px > 20'000) throw py::value_error("the size of a picture is 50 to 20000 pixels");
+  core::World& world = *session_->world;
+  core::PictureOptions options;
+  options.experiment = world.scenario().name;
+  options.seed = world.seed();
+  options.time_ns = hal::time_of_tick(world.tick(), world.ticks_per_second());
+  options.ticks_done = world.tick();
+  options.look.size_px = size_px;
+  options.look.ids = ids;
+  options.look.axes = axes;
+  return {core::to_svg(core::drawing_of(world.space(), options), options.look)};
+}
+
+py::bytes Picture::png() const {
+  const auto made = core::render(svg, core::PictureFormat::Png);
+  if (!made.ok()) throw std::runtime_error(made.error().message);
+  return py::bytes(made.value());
+}
+
+py::object Picture::shown_png() const {
+  const auto made = core::render(svg, core::PictureFormat::Png);
+  if (!made.ok()) return py::none();  // notebooks have the SVG
+  return py::bytes(made.value());
+}
+
+void Picture::save(const std::string& path) const {
+  const auto format = core::picture_format(path);
+  if (!format.ok()) throw py::value_error(format.error().message);
+  const auto made =
+      format.value() == core::PictureFormat::Svg ? hal::Result<std::string>(svg) : core::render(svg, format.value());
+  if (!made.ok()) throw std::runtime_error(made.error().message);
+  const hal::Status written = hal::write_whole_file(path, "picture", made.value());
+  if (!written.ok()) throw std::runtime_error(written.error().message);
+}
+
+// --- many worlds ---
+
+/// Worlds that are stepped side by side.
+class Group {
+ public:
+  Group(std::vector<std::shared_ptr<World>> worlds, std::size_t threads)
+      : worlds_(std::move(worlds)), pool_(threads, core::Assignment::Dynamic) {
+    for (std::size_t i = 0; i < worlds_.size(); ++i) {
+      if (std::find(worlds_.begin(), worlds_.begin() + static_cast<std::ptrdiff_t>(i), worlds_[i]) !=
+          worlds_.begin() + static_cast<std::ptrdiff_t>(i))
+        throw py::value_error("a world stands twice in the group");
+    }
+  }
+
+  /// Each world makes so many ticks, or fewer where its run ends.
+  void step(std::int64_t ticks) {
+    std::vector<std::unique_ptr<Use>> uses;
+    for (const auto& world : worlds_) uses.push_back(std::make_unique<Use>(*world, Use::How::Alone));
+    bool policies = false;
+    for (const auto& world : worlds_) {
+      if (world->finished_) throw std::runtime_error("a run of the group is finished; reset() begins it anew");
+      policies = policies || world->has_policies();
+    }
+    Interrupts interrupts;
+    for (std::int64_t done = 0; done < ticks;) {
+      const std::int64_t now = policies ? 1 : std::min<std::int64_t>(ticks - done, 100);
+      {
+        const py::gil_scoped_release unlocked;
+        pool_.run(worlds_.size(), 1, [&](std::size_t begin, std::size_t end) {
+          for (std::size_t i = begin; i < end; ++i) {
+            for (std::int64_t t = 0; t < now; ++t) worlds_[i]->step_unlocked();
+          }
+        });
+      }
+      for (const auto& world : worlds_) world->user_ = std::this_thread::get_id();
+      for (const auto& world : worlds_) world->call_policies();
+      done += now;
+      if (interrupts.due()) Interrupts::look();
+    }
+    for (const auto& world : worlds_) world->raise_failure();
+  }
+  const std::vector<std::shared_ptr<World>>& worlds() const noexcept { return worlds_; }
+
+ private:
+  std::vector<std::shared_ptr<World>> worlds_;
+  core::ThreadPool pool_;
+};
+
+void bind_world(py::module_& m) {
+  py::register_exception<ExperimentError>(m, "ExperimentError", PyExc_ValueError);
+  py::register_exception<RunFailed>(m, "RunFailed", PyExc_RuntimeError);
+  py::class_<Snapshot, std::shared_ptr<Snapshot>>(m, "Snapshot", "A moment of a world, to go back to.")
+      .def_property_readonly("tick", [](const Snapshot& s) { return s.moment.tick(); })
+      .def_property_readonly(
+          "bytes", [](const Snapshot& s) { return s.moment.bytes(); }, "About how much memory it takes.");
+  py::class_<Picture>(m, "Picture", "A picture of a world from above. Notebooks show it.")
+      .def_readonly("svg", &Picture::svg)
+      .def("_repr_svg_", [](const Picture& p) { return p.svg; })
+      .def("_repr_png_", &Picture::shown_png)
+      .def("png", &Picture::png, "The picture as the bytes of a PNG file.")
+      .def("save", &Picture::save, py::arg("path"), "Writes a file: .svg, .png or .pdf.");
+  py::class_<World, std::shared_ptr<World>>(m, "World", py::dynamic_attr())
+      .def(py::init([](std::string file, std::string text, std::optional<std::uint64_t> seed,
+                       std::optional<std::int64_t> threads, std::vector<std::string> parameters, py::dict controllers,
+                       std::vector<std::string> driven, py::list hooks, std::vector<std::string> plugins) {
+             return std::make_shared<World>(WorldRequest{std::move(file), std::move(text), seed, threads,
+                                                         std::move(parameters), std::move(controllers),
+                                                         std::move(driven), std::move(hooks), std::move(plugins)});
+           }),
+           py::arg("file"), py::arg("text"), py::arg("seed"), py::arg("threads"), py::arg("parameters"),
+           py::arg("controllers"), py::arg("driven"), py::arg("hooks"), py::arg("plugins"))
+      .def("_start", &World::start)
+      .def("step", &World::step, py::arg("ticks") = 1,
+           "Makes so many ticks, fewer where the run ends; returns how many.")
+      .def("run", &World::run, py::arg("until") = py::none(),
+           "Goes on to this time in s, or to the end that the experiment says; returns how many ticks were made.")
+      .def("finish", &World::finish, "Calls the hooks' after_run; run() to the end does it, too.")
+      .def("_reset", &World::reset, py::arg("seed"), py::arg("parameters"))
+      .def("snapshot", &World::snapshot, "Keeps this moment.")
+      .def("restore", &World::restore, py::arg("snapshot"), "Goes back to a moment of this world.")
+      .def("close", &World::close, "Ends the world. Arrays that were taken from it stay readable.")
+      .def_property_readonly("closed", &World::closed)
+      .def("add_policy", &World::add_policy, py::arg("controller"), py::arg("policy"),
+           "Has policy(swarm) called after every step, for the robots under that configuration.")
+      .def_property_readonly("swarms", &World::swarms, "All robots, by kind and controller.")
+      .def_property_readonly("ids", &World::ids, "Ids of all robots, in the order of the file.")
+      .def_property_readonly("poses", &World::poses,
+                             "x and y in m and heading in rad of all robots, in the order of ids; a copy.")
+      .def("pose", &World::pose, py::arg("robot"), "(x, y, heading) of a robot, in m and rad.")
+      .def("set_pose", &World::set_pose, py::arg("robot"), py::arg("x"), py::arg("y"), py::arg("heading") = 0.0,
+           "Puts a robot somewhere else; an error where there is no room.")
+      .def("add_robot", &World::add_robot, py::arg("id"), py::arg("controller"), py::arg("x"), py::arg("y"),
+           py::arg("heading") = 0.0, py::arg("kind") = "",
+           "Adds a robot under a configuration of the file. kind: where absent, that of the first robot there.")
+      .def("remove_robot", &World::remove_robot, py::arg("robot"), "Takes a robot out; its row stays, not alive.")
+      .def("move_object", &World::move_object, py::arg("object"), py::arg("x"), py::arg("y"), py::arg("heading") = 0.0,
+           "Puts a box or a cylinder somewhere else.")
+      .def_property_readonly("objects", &World::objects, "(x, y, heading) of every box and cylinder, by id.")
+      .def_property_readonly("measures", &World::measures, "What hooks measure, by name.")
+      .def("set_measure", &World::set_measure, py::arg("name"), py::arg("value"), "For hooks: publishes a number.")
+      .def_property_readonly("incidents", &World::incidents,
+                             "What went wrong with commands, controllers and bodies so far.")
+      .def_property_readonly("messages", &World::messages,
+                             "(severity, text) of what the world and its controllers told.")
+      .def_property_readonly("tick", &World::tick, "Ticks done.")
+      .def_property_readonly("time", &World::time_s, "Time of the run in s.")
+      .def_property_readonly("ticks_per_second", &World::ticks_per_second)
+      .def_property_readonly("seed", &World::seed)
+      .def_property_readonly("fingerprint", &World::fingerprint, "A number that is equal for equal states.")
+      .def_property_readonly("state", &World::state, "'running', 'done', 'finished', 'failed' or 'closed'.")
+      .def_property_readonly("settings", &World::settings, "The experiment as XML, with every default written out.")
+      .def_property_readonly("name", &World::name)
+      .def_property_readonly("length", &World::length_s, "Length of the run in s; 0: it has none.")
+      .def_property_readonly("parameters", &World::parameters,
+                             "What was set on top of the experiment, as 'path=value'.")
+      .def_property_readonly("has_guests", &World::has_guests, "Whether something of Python takes part.")
+      .def("floor", &World::floor, py::arg("x"), py::arg("y"), "Reflectance of the floor, 0 black to 1 white.")
+      .def("picture", &World::picture, py::arg("size") = 600, py::arg("ids") = false, py::arg("axes") = false,
+           "The world from above, as notebooks show it.")
+      .def("__repr__", &World::text);
+  py::class_<Group>(m, "Group", "Worlds that are stepped side by side on threads of their own.")
+      .def(py::init<std::vector<std::shared_ptr<World>>, std::size_t>(), py::arg("worlds"), py::arg("threads"))
+      .def("step", &Group::step, py::arg("ticks") = 1, "Each world makes so many ticks, fewer where its run ends.")
+      .def_property_readonly("worlds", &Group::worlds);
+}
+
+}  // namespace tandem::python

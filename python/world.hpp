@@ -1,0 +1,152 @@
+// Worlds of Python: made, stepped, looked into, put back.
+#pragma once
+#include <atomic>
+#include <memory>
+#include <optional>
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "core/scenario/scenario.hpp"
+#include "core/sim/snapshot.hpp"
+#include "python/arrays.hpp"
+#include "python/session.hpp"
+
+namespace tandem::python {
+
+namespace py = pybind11;
+
+/// An experiment that is none, or cannot be made: "file:line: error: …", all of them.
+class ExperimentError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+/// A run that failed.
+class RunFailed : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// Whether a reset can take over "path=value".
+bool changes_at_reset(const std::string& parameter);
+
+struct Snapshot {
+  std::shared_ptr<Session> session;
+  core::Snapshot moment;
+};
+
+/// A picture as SVG, which notebooks show.
+struct Picture {
+  std::string svg;
+  py::bytes png() const;
+  py::object shown_png() const;  ///< as notebooks ask for it: None where it cannot be made
+  void save(const std::string& path) const;
+};
+
+/// What a world is made of.
+struct WorldRequest {
+  std::string file;  ///< or the name under which `text` is spoken of
+  std::string text;  ///< XML; empty: the file's
+  std::optional<std::uint64_t> seed;
+  std::optional<std::int64_t> threads;
+  std::vector<std::string> parameters;  ///< "path=value"
+  py::dict controllers;                 ///< id of a configuration: a class of Python
+  std::vector<std::string> driven;      ///< ids of configurations whose ports are written from outside; "*": all
+  py::list hooks;
+  std::vector<std::string> plugins;
+};
+
+/// Used by one thread at a time; while it steps, by the hooks, controllers and policies that are called, too. All else
+/// is an error of Python, never a crash.
+class World {
+ public:
+  explicit World(WorldRequest request);
+  ~World();
+  World(const World&) = delete;
+  World& operator=(const World&) = delete;
+
+  void start();
+  std::int64_t step(std::int64_t ticks);
+  std::int64_t run(std::optional<double> until_s);
+  void finish();
+  void reset(std::optional<std::uint64_t> seed, const std::optional<std::vector<std::string>>& parameters);
+  std::shared_ptr<Snapshot> snapshot();
+  void restore(const Snapshot& snapshot);
+  void close();
+  bool closed() const noexcept { return session_ == nullptr; }
+
+  /// For groups: steps without Python's lock, on a thread that the group says.
+  void step_unlocked() noexcept;
+  void add_policy(const std::string& controller, py::object policy);
+  bool has_policies() const noexcept { return !policies_.empty(); }
+  void call_policies();
+  void raise_failure();
+  std::int64_t steps_left(std::optional<double> until_s);
+
+  std::vector<std::shared_ptr<Swarm>> swarms();
+  std::vector<std::string> ids();
+  py::array poses();
+  py::tuple pose(const std::string& robot);
+  void set_pose(const std::string& robot, double x_m, double y_m, double heading_rad);
+  void add_robot(const std::string& id, const std::string& controller, double x_m, double y_m, double heading_rad,
+                 const std::string& kind);
+  void remove_robot(const std::string& robot);
+  py::dict objects();
+  void move_object(const std::string& object, double x_m, double y_m, double heading_rad);
+  py::dict measures();
+  void set_measure(const std::string& name, double value);
+  py::dict incidents();
+  std::vector<std::pair<std::string, std::string>> messages();
+  std::int64_t tick();
+  double time_s();
+  std::int64_t ticks_per_second();
+  std::uint64_t seed();
+  std::uint64_t fingerprint();
+  std::string state();
+  std::string settings();
+  std::string name();
+  double length_s();
+  double floor(double x_m, double y_m);
+  Picture picture(int size_px, bool ids, bool axes);
+  const std::vector<std::string>& parameters() const noexcept { return parameters_; }
+  bool has_guests() const noexcept;
+  std::string text();
+
+ private:
+  friend class Use;
+  friend class Group;
+  core::Scenario read(const std::vector<std::string>& parameters, std::string& warnings) const;
+  void invite(core::Scenario& scenario) const;
+  bool tick_unlocked();
+  core::RobotId robot_of(const std::string& id);
+
+  std::shared_ptr<Session> session_;
+  WorldRequest request_;
+  std::vector<std::string> parameters_;  // of the run
+  double length_s_ = 0.0;
+  bool started_ = false, finished_ = false;
+  std::vector<std::pair<std::string, std::string>> controller_keys_;  // configuration, key
+  std::vector<std::string> hook_keys_;
+  std::vector<std::pair<std::string, py::object>> policies_;
+  std::atomic<std::thread::id> user_{};
+  int uses_ = 0;  // under Python's lock
+};
+
+/// Marks that this thread uses a world; @throws std::runtime_error when it is closed or another thread does.
+class Use {
+ public:
+  enum class How { Look, Alone };  ///< Alone: not from within its own step
+  explicit Use(World& world, How how = How::Look);
+  ~Use();
+  Use(const Use&) = delete;
+  Use& operator=(const Use&) = delete;
+
+ private:
+  World& world_;
+};
+
+void bind_world(py::module_& m);
+
+}  // namespace tandem::python
