@@ -6,8 +6,13 @@
 #include "bridges/eyebot_emulator/register.hpp"
 #include "bridges/footbot/register.hpp"
 #include "bridges/footbot_emulator/register.hpp"
+#include "bridges/tag_tracker/register.hpp"
 #include "bridges/thymio/register.hpp"
 #include "bridges/thymio_emulator/register.hpp"
+#include "bridges/tracker_emulator/register.hpp"
+#include "bridges/tracker_type.hpp"
+#include "bridges/trackers/register.hpp"
+#include "bridges/wired/register.hpp"
 #include "core/device/device.hpp"
 #include "core/field/floor/floor.hpp"
 #include "core/field/light/light.hpp"
@@ -22,9 +27,11 @@
 #include "core/physics/particle3d/particle3d.hpp"
 #include "core/scenario/observer_type.hpp"
 #include "core/space/stores.hpp"
+#include "core/view/layers/layers.hpp"
 #include "hal/check.hpp"
 #include "hal/device/ports.hpp"
 #include "hal/robot/robots.hpp"
+#include "mixed_reality/record_tracker/record_tracker.hpp"
 
 namespace tandem::app {
 
@@ -34,6 +41,7 @@ const hal::Catalog& catalog() {
     made.know<core::HookType>();
     made.know<core::ObserverType>();
     made.know<core::StoresSurface>();
+    made.know<bridges::TrackerType>();
     const hal::Status good = made.add_from(std::string(hal::Catalog::kInside), [](hal::Registrar& r) {
       hal::register_ports(r);
       hal::register_robots(r);
@@ -48,6 +56,7 @@ const hal::Catalog& catalog() {
       core::register_dynamics2d(r);
       core::register_dynamics3d(r);
       core::register_particle3d(r);
+      core::register_layers(r);
       bridges::epuck::register_bridge(r);
       bridges::footbot::register_bridge(r);
       bridges::eyebot::register_bridge(r);
@@ -56,6 +65,11 @@ const hal::Catalog& catalog() {
       bridges::footbot_emulator::register_emulator(r);
       bridges::eyebot_emulator::register_emulator(r);
       bridges::thymio_emulator::register_emulator(r);
+      bridges::wired::register_wired_robots(r);
+      bridges::trackers::register_trackers(r);
+      bridges::tag_tracker::register_tracker(r);
+      mixed_reality::register_record_tracker(r);
+      bridges::tracker_emulator::register_emulator(r);
     });
     TANDEM_CHECK(good.ok(), good.error().message.c_str());
     return made;

@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include "app/command/command.hpp"
+#include "app/terminal.hpp"
 #include "hal/plugin_call.hpp"
 
 namespace tandem::app {
@@ -112,6 +113,7 @@ void end_now(std::string_view message) noexcept {
     if (nobody == gettid()) _exit(kFailedRunning);  // it went wrong while it saved
     for (;;) pause();                               // another thread is at it
   }
+  leave_screen_now();
   hal::FixedText text;
   for (const char c : message)
     text << (static_cast<unsigned char>(c) < 0x20 || c == 0x7F ? "?" : std::string_view(&c, 1));

@@ -42,6 +42,12 @@ hal::Status GuardedRobots::claim() {
   return guardian_->claim(all);
 }
 
+hal::Status GuardedRobots::claim(const bridges::RobotBridge& bridge) {
+  if (!guardian_) return {};
+  const bridges::StopMessages one = bridge.stop_messages();
+  return guardian_->claim({&one, 1});
+}
+
 void GuardedRobots::remove(const bridges::RobotBridge& bridge) {
   if (guardian_) guardian_->release(bridge.stop_messages().robot);
   std::erase_if(robots_, [&bridge](const Row& row) { return row.bridge == &bridge; });

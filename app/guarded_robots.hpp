@@ -33,6 +33,8 @@ class GuardedRobots {
   void remove(const bridges::RobotBridge& bridge);
   /// Before the first link is opened: nobody else drives these robots from now on. Error: somebody does.
   hal::Status claim();
+  /// The same for one that was added since: before its link is opened.
+  hal::Status claim(const bridges::RobotBridge& bridge);
   /// Tells what has changed since it was told last, and people what there is to tell. Cheap where there is nothing:
   /// call it before commands leave.
   void update();

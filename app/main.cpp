@@ -1,8 +1,10 @@
 // The `tandem` command: its words and its exit codes.
 #include <CLI/CLI.hpp>
+#include <algorithm>
 
 #include "app/build_info.hpp"
 #include "app/command/command.hpp"
+#include "app/command_groups.hpp"
 #include "app/emergency.hpp"
 #include "app/robot_commands.hpp"
 
@@ -34,9 +36,26 @@ void add_film(CLI::App& c, CLI::Option& film, PictureRequest& o) {
       ->needs(&film);
 }
 
-void add_run(CLI::App& app, RunOptions& o, int& code) {
-  CLI::App* c = app.add_subcommand("run", "Run an experiment.");
-  c->add_option("experiment", o.experiment, "The experiment file (.xml)")->required();
+/// Who may look where, and how the run is held for those who do.
+void add_window(CLI::App& c, RunOptions& o) {
+  c.add_option("--view-address", o.view.address,
+               "Where the window listens; 0.0.0.0: on all networks of this machine, for all who know its token")
+      ->capture_default_str();
+  c.add_option("--view-origin", o.view.origins,
+               "An address besides its own by which browsers reach the window, http://host:port, as through a proxy; "
+               "repeatable")
+      ->allow_extra_args(false);
+  c.add_flag("--projector", o.view.projector, "Tell the address of the page for a projector over the arena, too");
+  c.add_flag("--paused,--hold", o.hold.paused,
+             "Wait at the start until somebody lets the run go; real robots are connected, and stand");
+  c.add_option("--speed", o.hold.speed, "At the start: times real time")->check(CLI::Range(0.001, 1e6));
+  c.add_option("--view-memory", o.hold.memory_MB, "MB for checkpoints, by which one can go back")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 1'000'000));
+}
+
+/// What `run` and `view` have in common.
+void add_run_options(CLI::App* c, RunOptions& o) {
   auto* seconds =
       c->add_option("--seconds", o.seconds, "Virtual duration, instead of the file's")->check(CLI::PositiveNumber);
   c->add_option("--steps", o.steps, "Number of control steps, instead of the file's length")
@@ -56,6 +75,8 @@ void add_run(CLI::App& app, RunOptions& o, int& code) {
       ->check(CLI::NonNegativeNumber)
       ->needs(picture);
   add_looks(*c, o.pictures);
+  c->add_option("--picture-layers", o.pictures.layers, "Layers over pictures and films: `tandem list layers`")
+      ->delimiter(',');
   auto* film = c->add_option("--film", o.pictures.film,
                              "Make a film: FILE.mp4 or .mkv (ffmpeg), or pictures: FOLDER/ or FOLDER/%06d.png");
   add_film(*c, *film, o.pictures);
@@ -63,6 +84,9 @@ void add_run(CLI::App& app, RunOptions& o, int& code) {
                 "Write the space at the end as a scene in perspective: FILE.pov, or FILE.png to render that, too");
   c->add_option("--trajectory", o.trajectory, "Write poses as CSV");
   c->add_option("--record", o.record, "Write a record: poses, state, and what <record> names; for `tandem export`");
+  c->add_option(
+      "--repeat", o.repeat,
+      "Do what was done by hand in the run of this record (--record) again, at the same ticks, with its seed");
   c->add_option("--log", o.log, "Write all messages of the run to this file: of controllers, too");
   auto* dump =
       c->add_option("--dump", o.dump, "Write every value of the state at the end as CSV, for `tandem compare`");
@@ -73,12 +97,80 @@ void add_run(CLI::App& app, RunOptions& o, int& code) {
   c->add_option("--without", o.without, "Simulate this robot instead of driving the real one; repeatable")
       ->allow_extra_args(false);
   c->add_flag("--quiet", o.quiet, "No table at the end");
+  auto* watch =
+      c->add_flag("--watch", o.watch.watch, "A live table of the run on the terminal; keys pause it and more");
+  c->add_option("--watch-robots", o.watch.robots, "Only these, separated by commas; '*' stands for any text")
+      ->delimiter(',')
+      ->needs(watch);
+  c->add_option("--watch-port", o.watch.port, "The fields of this port, instead of what controllers publish")
+      ->needs(watch);
   c->add_option("--hub-fault", o.hub_faults,
                 "With real robots: a fault of this program, e.g. stall@5s+0.4s, freeze@5s+2s, kill@5s, clock=1h@5s; "
                 "repeatable")
       ->allow_extra_args(false);
   add_plugins(*c, o.plugins);
+  add_window(*c, o);
+}
+
+void add_run(CLI::App& app, RunOptions& o, int& code) {
+  CLI::App* c = app.add_subcommand("run", "Run an experiment.");
+  c->add_option("experiment", o.experiment, "The experiment file (.xml)")->required();
+  const auto want_view = [&o](std::int64_t port) {  // CLI11 makes -1 of 0
+    o.view.on = o.view.no_browser = true;
+    o.view.port = std::max<std::int64_t>(0, port);
+  };
+  c->add_flag_function("--view{0}", want_view,
+                       "Serve a page that shows the run, on port --view=PORT or any that is free");
+  c->add_flag("--view-stay", o.hold.stay, "… until somebody ends the program");
+  add_run_options(c, o);
   c->callback([&] { code = run(o); });
+}
+
+void add_view(CLI::App& app, RunOptions& o, int& code) {
+  CLI::App* c = app.add_subcommand(
+      "view",
+      "Run an experiment, or play a record, behind a page in the browser, until Ctrl-C: watch, stop, go back, "
+      "click, drag, plot.");
+  c->footer(
+      "It begins in real time. All options but those of the window are those of `tandem run`; a record takes the "
+      "window's alone.");
+  c->add_option("experiment", o.experiment, "The experiment file (.xml), or a record of `tandem run --record`")
+      ->required();
+  c->add_option("--port", o.view.port, "Where the page is served; 0: any port that is free")
+      ->capture_default_str()
+      ->check(CLI::Range(0, 65535));
+  c->add_flag("--no-browser", o.view.no_browser, "Only tell the address");
+  add_run_options(c, o);
+  c->callback([&] { code = view(o); });
+}
+
+void add_replay(CLI::App& app, RunOptions& o, int& code) {
+  CLI::App* c = app.add_subcommand(
+      "replay", "Compute a run with real robots again out of its record, without them, and compare every tick.");
+  c->footer(
+      "With --from the robots are simulated from that tick on, and it is told how far they go astray from the real "
+      "ones. What --set and --controller change holds from the start; until --from the robots do as they did.");
+  c->add_option("record", o.replay.record, "The record of `tandem run --record`; of one that was killed FILE.part")
+      ->required();
+  c->add_option("--from", o.replay.from, "What if: from this tick on the robots are simulated")
+      ->check(CLI::NonNegativeNumber);
+  c->add_option("--until", o.replay.until, "So many ticks are done; default: all that are recorded")
+      ->check(CLI::PositiveNumber);
+  c->add_option("--controller", o.replay.controllers,
+                "Another controller: ROBOT=ID or KIND=ID, an id of the experiment's <controllers>; repeatable")
+      ->allow_extra_args(false);
+  c->add_flag("--accept-changes", o.replay.accept_changes,
+              "Also with plug-ins and files that are not those of the run");
+  const auto want_view = [&o](std::int64_t port) {
+    o.view.on = o.view.no_browser = true;
+    o.view.port = std::max<std::int64_t>(0, port);
+  };
+  c->add_flag_function("--view{0}", want_view, "Serve a page that shows it, on port --view=PORT or any that is free");
+  c->add_flag("--view-stay", o.hold.stay, "… until somebody ends the program");
+  add_run_options(c, o);
+  for (const char* other : {"--seconds", "--steps", "--seed", "--repeat", "--without", "--hub-fault"})
+    c->remove_option(c->get_option(other));
+  c->callback([&] { code = replay(o); });
 }
 
 void add_compare(CLI::App& app, CompareOptions& o, int& code) {
@@ -105,14 +197,15 @@ void add_export(CLI::App& app, ExportOptions& o, int& code) {
   CLI::App* c =
       app.add_subcommand("export", "Say what a record of `tandem run --record` holds, or make a table of it.");
   c->add_option("record", o.record, "The record; that of a run that was killed is FILE.part")->required();
-  auto* csv = c->add_option("--csv", o.csv, "Write comma-separated values to this file ('-': standard output)");
-  c->add_option("--table", o.stream, "Which table, as the record names it")->capture_default_str()->needs(csv);
+  c->add_option("--csv", o.csv, "Write comma-separated values of one table to this file ('-': standard output)");
+  c->add_option("--hdf5", o.hdf5, "Write the tables as data sets to this file, for h5py, Matlab, …");
+  c->add_option("--table", o.stream, "Which table, as the record names it; default: in CSV 'pose', in HDF5 all");
+  c->add_option("--fields", o.fields, "Of HDF5: only these fields, separated by commas")->delimiter(',');
   c->add_option("--entities", o.entities, "Only of these, separated by commas; '*' stands for any text")
-      ->delimiter(',')
-      ->needs(csv);
-  c->add_option("--from", o.from, "First tick")->needs(csv);
-  c->add_option("--until", o.until, "Last tick")->needs(csv);
-  c->add_option("--every", o.every, "Only every so manyth tick")->check(CLI::PositiveNumber)->needs(csv);
+      ->delimiter(',');
+  c->add_option("--from", o.from, "First tick");
+  c->add_option("--until", o.until, "Last tick");
+  c->add_option("--every", o.every, "Only every so manyth tick")->check(CLI::PositiveNumber);
   c->callback([&] { code = export_record(o); });
 }
 
@@ -147,8 +240,14 @@ void add_bench(CLI::App& app, BenchOptions& o, int& code) {
   c->add_option(
        "name", o.name,
        "diffusion: the standard scene; flocking: robots that fly, in space; codec: messages of a bridge, only with "
-       "--repeat; sense_to_act: how soon robots are answered over LCM, with --robots, --seconds, --real-time, "
-       "--repeat")
+       "--repeat; record: what a record of all poses costs, with --robots, --threads, --ticks; sense_to_act: how soon "
+       "robots are answered over LCM, with --robots, --seconds, --real-time, "
+       "--repeat; back: the way back to an earlier tick, e.g. after --ticks 6000; view: what a window costs, in "
+       "--repeat "
+       "pairs of --ticks; sweep: what a sweep costs besides its runs, with --robots, --ticks, --repeat: how many runs "
+       "(10000); gap: hidden parameters of --robots (50) found again, and controllers ranked in --repeat (200) "
+       "pseudo-realities; lockstep: a hub and --robots peers, each a process, with --ticks, --repeat; "
+       "python: steps over arrays of --robots (10000), and --repeat (600) whole runs, by the module for Python")
       ->capture_default_str();
   c->add_option("--robots", o.robots, "Numbers of robots, e.g. 1000,10000; default: 1 to 100000")
       ->delimiter(',')
@@ -213,6 +312,46 @@ void add_plugin_commands(CLI::App& app, PluginNewOptions& made, PluginCheckOptio
   k->callback([&] { code = plugin_check(checked); });
 }
 
+void add_desk(CLI::App& app, PreflightOptions& p, DeskOptions& d, int& code) {
+  CLI::App* c = app.add_subcommand(
+      "preflight", "Look for everything that would stop a run with real robots, before anything moves.");
+  c->footer("Exit code: 0 nothing is in the way, 1 bad input, 3 something is.");
+  c->add_option("experiment", p.experiment, "The experiment file (.xml)")->required();
+  auto* move = c->add_flag("--move", p.move, "First motion: each robot turns a little, one after the other");
+  c->add_flag("--yes", p.yes, "… without asking on the terminal")->needs(move);
+  c->add_option("--wait", p.wait_s, "Seconds for robots to answer; default: as long as the run would wait")
+      ->check(CLI::Range(0.0, 3600.0));
+  c->add_option("--listen", p.listen_s, "Seconds to listen to robots and trackers after that")
+      ->capture_default_str()
+      ->check(CLI::Range(0.1, 3600.0));
+  c->add_option("--without", p.without, "Leave this robot out; repeatable")->allow_extra_args(false);
+  c->add_option("--set", p.overrides, "Change the experiment first: path=value; repeatable")->allow_extra_args(false);
+  c->add_flag("--json", p.json, "One JSON object instead of a table");
+  c->add_option("--report", p.report, "Write the JSON object to this file, too");
+  add_plugins(*c, p.plugins);
+  c->callback([&] { code = preflight(p); });
+
+  CLI::App* k = app.add_subcommand("desk", "Command the real robots of a run that goes on.");
+  k->footer("Exit code: 0 done, 1 the run refuses, 3 it cannot be reached.");
+  k->add_option("where", d.where, "The address that the run printed (http://…), or lcm:URL, lcm:URL#CHANNEL")
+      ->required();
+  k->add_option("command", d.command, "What to do")
+      ->required()
+      ->check(CLI::IsMember(
+          {"status", "preflight", "start", "pause", "go", "estop", "arm", "rearm", "halt", "release", "replace"}));
+  k->add_option("robot", d.robot, "Which robot; default: all");
+  auto* spare = k->add_option("--spare", d.spare, "Of replace: a <spare> of the file comes instead");
+  k->add_option("--link", d.link, "Of replace: the robot on this link comes instead")->excludes(spare);
+  k->add_option("--as", d.as, "… and is called so")->excludes(spare);
+  k->add_option("--seen-as", d.seen_as, "… and trackers know it by this name or tag")->excludes(spare);
+  k->add_option("--at", d.at, "… and stands at X,Y or X,Y,HEADING (m, rad), where wheels alone tell its place")
+      ->delimiter(',')
+      ->expected(2, 3);
+  k->add_option("--who", d.who, "Who says it; default: user@machine");
+  k->add_flag("--json", d.json, "The run's answer as it is");
+  k->callback([&] { code = desk(d); });
+}
+
 /// "--name value" and "--name=value", as the emulators' own options are written.
 std::vector<std::pair<std::string, std::string>> own_options(const std::vector<std::string>& words) {
   std::vector<std::pair<std::string, std::string>> own;
@@ -226,6 +365,9 @@ std::vector<std::pair<std::string, std::string>> own_options(const std::vector<s
       if (i + 1 == words.size()) throw CLI::ArgumentMismatch(word + " needs a value");
       own.emplace_back(word.substr(2), words[++i]);
     }
+    const std::string& name = own.back().first;
+    if (std::ranges::count(own, name, &std::pair<std::string, std::string>::first) > 1)
+      throw CLI::ArgumentMismatch("--" + name + " stands twice; several values go into one, separated by spaces");
   }
   return own;
 }
@@ -243,7 +385,14 @@ int main(int argc, char** argv) {
 
   RunOptions run_options;
   add_run(app, run_options, code);
+  RunOptions view_options;
+  add_view(app, view_options, code);
 
+  RunOptions replay_options;
+  add_replay(app, replay_options, code);
+
+  add_study_commands(app, code);
+  add_gap_commands(app, code);
   CompareOptions compare_options;
   add_compare(app, compare_options, code);
   UpgradeOptions upgrade_options;
@@ -254,6 +403,9 @@ int main(int argc, char** argv) {
   add_plugins(*upgrade_command, upgrade_options.plugins);
   upgrade_command->callback([&] { code = upgrade(upgrade_options); });
 
+  PreflightOptions preflight_options;
+  DeskOptions desk_options;
+  add_desk(app, preflight_options, desk_options, code);
   ExportOptions export_options;
   add_export(app, export_options, code);
   DrawOptions picture_options, film_options;
@@ -282,6 +434,8 @@ int main(int argc, char** argv) {
 
   RobotCommandOptions robot_command_options;
   add_robot_commands(app, robot_command_options, code);
+
+  add_calibrate_commands(app, code);
 
   BenchOptions bench_options;
   add_bench(app, bench_options, code);

@@ -13,10 +13,6 @@ void name_observer(const void* name, std::size_t /*part*/, std::size_t /*index*/
   out << *static_cast<const std::string*>(name);
 }
 
-core::Observation observation_of(const core::World& world, hal::Tick tick) {
-  return {world.space(), world.measures(), tick, world.ticks_per_second(), world.seed()};
-}
-
 /// What the call says of itself, or throws.
 template <class Call>
 hal::Status asked(const std::string& name, Call&& call) {
@@ -31,6 +27,10 @@ hal::Status asked(const std::string& name, Call&& call) {
 }
 
 }  // namespace
+
+core::Observation observation_of(const core::World& world, hal::Tick tick) {
+  return {world.space(), world.measures(), tick, world.ticks_per_second(), world.seed()};
+}
 
 Observers Observers::make(const core::Scenario& scenario, const hal::Catalog& catalog, const core::World& world,
                           core::Problems& problems) {

@@ -10,6 +10,9 @@
 
 namespace tandem::app {
 
+/// What they see of `world` when `tick` is the one that was just done.
+core::Observation observation_of(const core::World& world, hal::Tick tick);
+
 /// Those that the file lists, called in its order. One that fails is named on the terminal and rests from then on.
 class Observers {
  public:

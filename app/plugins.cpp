@@ -9,6 +9,8 @@
 #include "bridges/guardian/stopper.hpp"
 #include "core/config/kinds.hpp"
 #include "mixed_reality/settings/bridge_check.hpp"
+#include "mixed_reality/settings/peer_check.hpp"
+#include "mixed_reality/settings/tracker_check.hpp"
 
 namespace tandem::app {
 
@@ -44,9 +46,22 @@ void ExperimentReading::complain_about(const Library& library, const std::string
 }
 
 bool ExperimentReading::open(const std::string& path, const std::vector<std::string>& overrides) {
-  path_ = path;
   core::Problems problems;
-  file_ = core::open_experiment(path, overrides, problems);
+  auto file = core::open_experiment(path, overrides, problems);
+  return take(std::move(file), problems, path);
+}
+
+bool ExperimentReading::open_text(const std::string& text, const std::string& name,
+                                  const std::vector<std::string>& overrides) {
+  core::Problems problems;
+  auto file = core::open_experiment_text(text, name, overrides, problems);
+  return take(std::move(file), problems, name);
+}
+
+bool ExperimentReading::take(std::optional<core::ExperimentFile> file, const core::Problems& problems,
+                             const std::string& path) {
+  path_ = path;
+  file_ = std::move(file);
   print_problems(problems);
   if (!file_) return false;
   loader_.look_beside(path);
@@ -97,7 +112,11 @@ std::optional<core::Scenario> ExperimentReading::read() {
   core::Problems problems;
   auto scenario = core::read_experiment(std::move(*file_), loader_.catalog(), problems);
   file_.reset();
-  if (scenario) mixed_reality::check_bridges(*scenario, loader_.catalog(), problems);
+  if (scenario) {
+    mixed_reality::check_peers(*scenario, problems);
+    mixed_reality::check_bridges(*scenario, loader_.catalog(), problems);
+    mixed_reality::check_trackers(*scenario, loader_.catalog(), problems);
+  }
   print_problems(problems);
   if (core::has_errors(problems)) return std::nullopt;
   return scenario;
@@ -126,6 +145,13 @@ std::optional<core::Scenario> read_or_complain(hal::PluginLoader& loader, const 
                                                const std::string& path, const std::vector<std::string>& overrides) {
   ExperimentReading reading(loader, plugins);
   return reading.open(path, overrides) ? reading.read() : std::nullopt;
+}
+
+std::optional<core::Scenario> settings_or_complain(hal::PluginLoader& loader, const std::vector<std::string>& plugins,
+                                                   const std::string& text, const std::string& name,
+                                                   const std::vector<std::string>& overrides) {
+  ExperimentReading reading(loader, plugins);
+  return reading.open_text(text, name, overrides) ? reading.read() : std::nullopt;
 }
 
 }  // namespace tandem::app

@@ -35,6 +35,8 @@ class ExperimentReading {
   /// Reads the file, judges all plug-ins, and opens those with what stops real robots: what a guardian needs. Starts no
   /// thread. False: complained.
   bool open(const std::string& path, const std::vector<std::string>& overrides);
+  /// The same of settings that a record or a report kept; `name` stands for their file.
+  bool open_text(const std::string& text, const std::string& name, const std::vector<std::string>& overrides);
   /// Whether a robot of the file has a <bridge>, leaving out those of the ids `without`.
   bool has_real_robots(const std::vector<std::string>& without) const;
   /// Opens the other plug-ins, and judges the file by the catalog that is then complete.
@@ -46,6 +48,7 @@ class ExperimentReading {
     int line = 0;  ///< of the file; 0: --plugin
     bool stops_robots = false;
   };
+  bool take(std::optional<core::ExperimentFile> file, const core::Problems& problems, const std::string& path);
   bool judge();
   bool open_those(bool that_stop_robots);
   void complain_about(const Library& library, const std::string& message) const;
@@ -63,5 +66,10 @@ std::unique_ptr<KindsOfFile> kinds_of_file(hal::PluginLoader& loader, const std:
 /// All of it, for commands without real robots.
 std::optional<core::Scenario> read_or_complain(hal::PluginLoader& loader, const std::vector<std::string>& plugins,
                                                const std::string& path, const std::vector<std::string>& overrides);
+
+/// The same of settings that a record or a report kept.
+std::optional<core::Scenario> settings_or_complain(hal::PluginLoader& loader, const std::vector<std::string>& plugins,
+                                                   const std::string& text, const std::string& name,
+                                                   const std::vector<std::string>& overrides);
 
 }  // namespace tandem::app

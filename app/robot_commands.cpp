@@ -38,9 +38,12 @@ void add_robot_commands(CLI::App& app, RobotCommandOptions& options, int& code) 
   CLI::App* robot_command = app.add_subcommand("robot", "Run one real robot's controller here.");
   robot_command->add_option("file", options.robot.file, "Experiment file with one robot that has a <bridge>")
       ->required();
-  robot_command->add_option("--link", options.robot.link,
-                            "Where the robot is, instead of the file's, e.g. serial:/dev/rfcomm0@115200, can:can0, "
-                            "tcp:ROBOT:33333");
+  robot_command->add_option(
+      "--link", options.robot.link,
+      "Where the robot is, instead of the file's, e.g. serial:/dev/rfcomm0@115200, can:can0, "
+      "tcp:ROBOT:33333; peer:tcp:HOST:PORT or peer:serial:…: in lock-step with the simulation there");
+  robot_command->add_option("--robot", options.robot.robot,
+                            "With peer:…: which robot of that simulation; '*': any that waits; default: the file's");
   robot_command->add_option("--seconds", options.robot.seconds, "How long, instead of the file's length")
       ->check(CLI::PositiveNumber);
   robot_command->add_option("--report", options.robot.report,
@@ -51,7 +54,9 @@ void add_robot_commands(CLI::App& app, RobotCommandOptions& options, int& code) 
                    "A fault of this program, e.g. stall@5s+0.4s, freeze@5s+2s, kill@5s, clock=1h@5s; repeatable")
       ->allow_extra_args(false);
   add_plugins(*robot_command, options.robot.plugins);
-  robot_command->callback([&options, &code] { code = robot(options.robot); });
+  robot_command->callback([&options, &code] {
+    code = options.robot.link.starts_with(kPeerScheme) ? robot_peer(options.robot) : robot(options.robot);
+  });
 
   CLI::App* inspect_command =
       app.add_subcommand("inspect", "Say which robot is on a link and what it reads. Moves nothing.");
@@ -68,6 +73,25 @@ void add_robot_commands(CLI::App& app, RobotCommandOptions& options, int& code) 
   inspect_command->callback([&options, &code] { code = inspect(options.inspect); });
 }
 
+namespace {
+
+/// What is wrong with the command line, and where its words are told.
+std::string wrong_usage(const CLI::App& app, const CLI::ParseError& e) {
+  std::string command = app.get_name();
+  for (const CLI::App* at = &app; !at->get_subcommands().empty();) {
+    at = at->get_subcommands().front();
+    command += " " + at->get_name();
+  }
+  std::string what = e.what();
+  if (const std::size_t at = what.find(" not in range 0.000000 to 1797"); at != std::string::npos)
+    what = what.substr(0, at) + " is too small";  // instead of the 309 digits of the largest number
+  if (app.get_subcommands().empty() && !app.remaining().empty())
+    what = "there is no command '" + app.remaining().front() + "'";
+  return what + "; '" + command + " --help' tells what there is";
+}
+
+}  // namespace
+
 int parse_and_run(CLI::App& app, int argc, char** argv, int& code) {
   std::signal(SIGXFSZ, SIG_IGN);  // a file that grows too large is an error as any other
   try {
@@ -77,7 +101,8 @@ int parse_and_run(CLI::App& app, int argc, char** argv, int& code) {
   } catch (const CLI::Success& e) {
     return app.exit(e);
   } catch (const CLI::ParseError& e) {
-    app.exit(e);
+    if (argc > 1) return complain(kWrongUsage, wrong_usage(app, e));
+    app.exit(e);  // a name alone: all that there is
     return kWrongUsage;
   } catch (const std::bad_alloc&) {
     return complain(kFailedRunning, "out of memory");

@@ -1,6 +1,7 @@
 #include "app/run_log.hpp"
 
 #include <fmt/format.h>
+#include <utility>
 
 #include "app/terminal.hpp"
 
@@ -29,9 +30,15 @@ hal::Log RunLog::log() {
   return hal::Log([this](hal::Severity severity, std::string_view text) { write(severity, text); });
 }
 
+void RunLog::tell_also(std::function<void(std::string_view)> listener) {
+  const std::lock_guard hold(lock_);
+  listener_ = std::move(listener);
+}
+
 void RunLog::write(hal::Severity severity, std::string_view text) {
   const std::lock_guard hold(lock_);
-  if (++count_ <= kShown) say(text);
+  if (++count_ <= kShown || says_elsewhere()) say(text);  // a screen shows the newest ones, however many
+  if (listener_) listener_(text);
   if (!file_ || !written_.ok()) return;
   written_ = file_->write(fmt::format("{}: {}\n", word_of(severity), text));
 }

@@ -1,9 +1,11 @@
 // Messages of a run: the first few on the terminal, all of them in a file that was asked for.
 #pragma once
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "hal/log.hpp"
 #include "hal/output_file.hpp"
@@ -18,6 +20,8 @@ class RunLog {
 
   /// Must not outlive this.
   hal::Log log();
+  /// Who gets every message as well; empty: nobody. Is called on the thread that has the message.
+  void tell_also(std::function<void(std::string_view)> listener);
   /// Puts the file in its place and tells how many messages the terminal did not get. Error: the disk is full or gone.
   hal::Status close();
 
@@ -25,6 +29,7 @@ class RunLog {
   void write(hal::Severity severity, std::string_view text);
 
   std::mutex lock_;
+  std::function<void(std::string_view)> listener_;
   std::optional<hal::OutputFile> file_;
   hal::Status written_;
   int count_ = 0;

@@ -1,6 +1,7 @@
 #include "app/run_outputs.hpp"
 
 #include "app/report.hpp"
+#include "app/terminal.hpp"
 #include "core/view/picture.hpp"
 #include "mixed_reality/settings/bridge_request.hpp"
 
@@ -32,6 +33,22 @@ std::vector<NamedFile> inputs_of(const core::Scenario& scenario, const hal::Cata
   return inputs;
 }
 
+/// The layers over pictures. Error: there is none of a name, or it draws nothing.
+hal::Result<std::unique_ptr<core::LayerSet>> layers_of(const PictureRequest& request, const hal::Catalog& catalog) {
+  if (request.picture.empty() && request.film.empty())
+    return hal::Error{"--picture-layers needs --picture or --film: what the layers are drawn over"};
+  auto layers = std::make_unique<core::LayerSet>(
+      catalog, hal::Log([](hal::Severity, std::string_view text) { complain(kFailedRunning, std::string(text)); }));
+  if (const hal::Status on = layers->switch_on(request.layers); !on.ok())
+    return hal::Error{"--picture-layers: " + on.error().message};
+  for (const std::size_t i : layers->on()) {
+    if (!layers->types()[i]->draws)
+      return hal::Error{"--picture-layers: the layer '" + std::string(layers->types()[i]->name) +
+                        "' has a panel alone; pictures show what layers draw"};
+  }
+  return layers;
+}
+
 }  // namespace
 
 hal::Status check_output_paths(const RunOptions& options, const core::Scenario& scenario, const hal::Catalog& catalog) {
@@ -55,7 +72,8 @@ hal::Status check_output_paths(const RunOptions& options, const core::Scenario& 
 }
 
 hal::Result<RunOutputs> open_outputs(const RunOptions& options, const core::Scenario& scenario,
-                                     const core::World& world, const hal::Json& record_start, std::int64_t steps) {
+                                     const core::World& world, const hal::Catalog& catalog,
+                                     const hal::Json& record_start, std::int64_t steps) {
   RunOutputs outputs;
   const core::Space& space = world.space();
   const core::PictureLook::Area arena{
@@ -68,6 +86,11 @@ hal::Result<RunOutputs> open_outputs(const RunOptions& options, const core::Scen
     auto pictures = Pictures::open(options.pictures, look.value(), world.ticks_per_second(), steps);
     if (!pictures.ok()) return pictures.error();
     outputs.pictures = std::move(pictures).value();
+  }
+  if (!options.pictures.layers.empty()) {
+    auto layers = layers_of(options.pictures, catalog);
+    if (!layers.ok()) return layers.error();
+    outputs.layers = std::move(layers).value();
   }
   outputs.povray = options.pictures.povray;
   const std::string scene = outputs.povray.empty() ? std::string() : scene_of(outputs.povray);

@@ -10,6 +10,7 @@
 #include "core/record/record.hpp"
 #include "core/record/trajectory.hpp"
 #include "core/sim/world.hpp"
+#include "core/view/layers/layer_set.hpp"
 #include "hal/catalog.hpp"
 #include "hal/output_file.hpp"
 
@@ -22,6 +23,7 @@ struct RunOutputs {
   std::string povray;                  ///< what the scene is for
   std::unique_ptr<Pictures> pictures;  ///< on the way
   core::PictureLook look;
+  std::unique_ptr<core::LayerSet> layers;  ///< over pictures
   std::unique_ptr<core::TrajectoryRecorder> trajectory;
   std::unique_ptr<core::Recorder> record;
   std::optional<StateDump> dump;
@@ -32,9 +34,10 @@ struct RunOutputs {
 /// output's; a picture or film of no known ending, or that cannot be made here.
 hal::Status check_output_paths(const RunOptions& options, const core::Scenario& scenario, const hal::Catalog& catalog);
 
-/// Opens all but the observers; `record_start` is what a record begins with, `steps` are to be done (0: nobody knows).
-/// Error: one cannot be written, or its robots are not there.
+/// Opens all but the observers; `catalog` must outlive them, `record_start` is what a record begins with, `steps` are
+/// to be done (0: nobody knows). Error: one cannot be written, or its robots or layers are not there.
 hal::Result<RunOutputs> open_outputs(const RunOptions& options, const core::Scenario& scenario,
-                                     const core::World& world, const hal::Json& record_start, std::int64_t steps);
+                                     const core::World& world, const hal::Catalog& catalog,
+                                     const hal::Json& record_start, std::int64_t steps);
 
 }  // namespace tandem::app

@@ -1,10 +1,14 @@
 #include "app/run_report.hpp"
 
+#include <algorithm>
 #include <fmt/format.h>
 
 #include "app/bridge_status.hpp"
 #include "app/build_info.hpp"
+#include "app/ledger_json.hpp"
+#include "app/lockstep_peers.hpp"
 #include "app/measure.hpp"
+#include "app/real_robots.hpp"
 #include "app/report.hpp"
 #include "app/sha256.hpp"
 #include "hal/json/json.hpp"
@@ -29,6 +33,20 @@ std::string_view word_of(Ended how) {
   return "failed";
 }
 
+std::string ledger_text(const mixed_reality::RobotLedger& l) {
+  std::string text = fmt::format(
+      "readings {:.0f} ms old, {:.0f} ms at most (99 %); answers in {:.1f} ms, {:.1f} ms (99 %), jitter {:.1f} ms; {} "
+      "late "
+      "readings, {} late commands",
+      to_ms(l.age_median_ns), to_ms(l.age_p99_ns), to_ms(l.round_trip_median_ns), to_ms(l.round_trip_p99_ns),
+      to_ms(l.jitter_ns), l.late_readings, l.late_commands);
+  if (l.clock)
+    text += fmt::format("; its clock {:+.1f} ppm, {}, {} jumps", l.clock->drift_ppm,
+                        l.clock->bound_ns ? fmt::format("within {:.1f} ms", to_ms(*l.clock->bound_ns)) : "one way",
+                        l.clock->jumps);
+  return text;
+}
+
 /// "interrupted at tick 4006 of 200000, not finished"; empty where there is nothing to tell.
 std::string end_text(const RunEnd& end, hal::Tick tick) {
   if (end.how == Ended::Length) return {};
@@ -36,6 +54,48 @@ std::string end_text(const RunEnd& end, hal::Tick tick) {
       fmt::format("at tick {}{}", tick, end.steps_wanted > 0 ? fmt::format(" of {}", end.steps_wanted) : "");
   if (end.how == Ended::Hook) return "by a hook " + at;
   return fmt::format("{} {}, not finished", word_of(end.how), at);
+}
+
+/// What trackers saw of a robot, and what was made of it.
+void add_pose(hal::Json& robot, const mixed_reality::RealRobotReport& r) {
+  robot["pose_source"] = r.pose_source;
+  robot["poses_rejected"] = r.poses_rejected;
+  if (r.sightings) {
+    robot["sightings"] = {
+        {"used", r.sightings->used},       {"gated", r.sightings->gated},           {"late", r.sightings->late},
+        {"doubled", r.sightings->doubled}, {"impossible", r.sightings->impossible}, {"disputed", r.sightings->disputed},
+        {"jumps", r.sightings->jumps}};
+  }
+  if (r.learnt) {
+    robot["learnt"] = {{"left_wheel", r.learnt->left},          {"right_wheel", r.learnt->right},
+                       {"wheel_base", r.learnt->base},          {"gyroscope_bias_rad_s", r.learnt->bias_rad_s},
+                       {"tracker_delays_s", r.learnt->delay_s}, {"link_delay_s", r.learnt->link_delay_s},
+                       {"standard_deviations", r.learnt->sd}};
+  }
+}
+
+void add_trackers(hal::Json& json, const std::vector<mixed_reality::TrackerStatus>& trackers) {
+  hal::Json& all = json["trackers"] = hal::Json::array();
+  for (const mixed_reality::TrackerStatus& t : trackers) {
+    hal::Json tracker{{"id", t.id},
+                      {"kind", t.kind},
+                      {"messages", t.heard.messages},
+                      {"malformed", t.heard.malformed},
+                      {"sightings", t.heard.sightings},
+                      {"dropped", t.heard.dropped},
+                      {"unknown", t.unknown},
+                      {"from_future", t.from_future},
+                      {"old", t.old},
+                      {"outside", t.outside},
+                      {"clock_jumps", t.clock_jumps},
+                      {"by_former_date", t.by_former_date}};
+    if (t.clock) tracker["clock"] = clock_json(*t.clock);
+    if (t.shortest_way_s) tracker["shortest_way_ms"] = 1e3 * *t.shortest_way_s;
+    if (!t.unknown_names.empty()) tracker["unknown_names"] = t.unknown_names;
+    if (!t.heard.trouble.empty()) tracker["trouble"] = t.heard.trouble;
+    for (const auto& [name, count] : t.heard.counts) tracker[name] = count;
+    all.push_back(std::move(tracker));
+  }
 }
 
 void add_real_robots(hal::Json& json, const mixed_reality::MixedReport& report) {
@@ -56,17 +116,42 @@ void add_real_robots(hal::Json& json, const mixed_reality::MixedReport& report) 
     robot["rearms"] = r.counts.rearms;
     robot["fenced_ticks"] = r.counts.fenced_ticks;
     robot["intrusions"] = r.counts.intrusions;
+    robot["trespasses"] = r.counts.barrier.trespasses;
+    robot["held_back_ticks"] = r.counts.barrier.changed_ticks;
+    robot["held_back_most_m_s"] = r.counts.barrier.most_m_s;
+    add_pose(robot, r);
     add_link_report(robot, r.conversation);
+    robot["ledger"] = ledger_json(r.ledger);
     robot["incidents"] = r.incidents;
     robots.push_back(std::move(robot));
   }
+  if (!report.replacements.empty()) {
+    hal::Json& replacements = json["replacements"] = hal::Json::array();
+    for (const mixed_reality::ReplacementReport& r : report.replacements)
+      replacements.push_back(
+          {{"robot", r.robot}, {"before", r.before}, {"after", r.after}, {"link", r.link}, {"tick", r.tick}});
+  }
+  if (!report.trackers.empty()) add_trackers(json, report.trackers);
   hal::Json& pace = json["pace"];
   pace["ticks"] = report.pace.ticks;
   pace["deadline_misses"] = report.pace.deadline_misses;
+  pace["misses_by_machine"] = report.pace.misses_by_machine;
+  for (std::size_t i = 0; i < std::min<std::size_t>(report.pace.deadline_misses, mixed_reality::PaceLedger::kKept);
+       ++i) {
+    const mixed_reality::MissedDeadline& m = report.pace.first_misses[i];
+    pace["first_misses"].push_back({{"tick", m.tick},
+                                    {"late_ms", to_ms(m.lateness_ns)},
+                                    {"ran_ms", to_ms(m.ran_ns)},
+                                    {"waited_ms", to_ms(m.waited_ns)},
+                                    {"stalled_ms", to_ms(m.stalled_ns)},
+                                    {"woke_late_ms", to_ms(m.woke_late_ns)},
+                                    {"by_machine", m.by_machine}});
+  }
   pace["skipped_slots"] = report.pace.skipped_slots;
   pace["largest_lateness_ms"] = static_cast<double>(report.pace.largest_lateness_ns) * 1e-6;
   pace["wake_up_p99_ms"] = static_cast<double>(report.pace.wake_up.quantile_ns(0.99)) * 1e-6;
   pace["step_p99_ms"] = static_cast<double>(report.pace.step.quantile_ns(0.99)) * 1e-6;
+  json["system_clock"] = system_clock_json(report.clock);
 }
 
 hal::Json to_json(const InputFile& file) {
@@ -102,6 +187,8 @@ void add_members(hal::Json& json, const RunResult& result, bool between_ticks) {
                        {"first", incidents.first}};
   if (!world.measures().all().empty()) json["measures"] = world.measures().all();
   if (result.real != nullptr) add_real_robots(json, *result.real);
+  if (!result.replay.is_null()) json["replay"] = result.replay;
+  if (result.peers != nullptr) json["lockstep"] = lockstep_json(*result.peers);
   json["program"] = to_json(build_info());
   json["settings"] = hal::to_xml(world.scenario().effective);
 }
@@ -162,6 +249,7 @@ hal::Json record_start(const core::World& world, const InputFiles& inputs) {
   add_inputs(json, inputs);
   json["program"] = to_json(build_info());
   json["settings"] = hal::to_xml(world.scenario().effective);
+  if (hal::Json areas = areas_json(world.scenario().safety); !areas.empty()) json["areas"] = std::move(areas);
   return json;
 }
 
@@ -203,7 +291,10 @@ void print_result(const RunResult& result) {
       {"state", hash_text(world.state_hash())}};
   if (const std::string text = end_text(result.end, world.tick()); !text.empty()) rows.emplace_back("ended", text);
   if (world.scenario().time_mode == core::TimeMode::Realtime)
-    rows.emplace_back("missed deadlines", fmt::format("{}", figures.deadline_misses));
+    rows.emplace_back("missed deadlines", real != nullptr && figures.deadline_misses > 0
+                                              ? fmt::format("{}, {} of them because this computer gave no processor",
+                                                            figures.deadline_misses, real->pace.misses_by_machine)
+                                              : fmt::format("{}", figures.deadline_misses));
   const std::uint64_t odd = incidents.commands_clamped + incidents.commands_not_finite + incidents.controllers_thrown +
                             incidents.bodies_escaped;
   if (odd > 0) {
@@ -213,6 +304,16 @@ void print_result(const RunResult& result) {
                                   incidents.controllers_thrown, incidents.bodies_escaped));
   }
   for (const auto& [name, value] : world.measures().all()) rows.emplace_back(name, hal::format_number(value));
+  if (result.peers != nullptr) {
+    std::uint64_t asked_again = 0, odd_answers = 0;
+    for (const mixed_reality::PartnerReport& p : result.peers->peers) {
+      asked_again += p.asked_again;
+      odd_answers += p.doubled + p.wrong_tick + p.not_understood + p.garbled;
+    }
+    rows.emplace_back("peers", fmt::format("{}, waited for {:.2f} s in all; {} times asked again, {} odd answers",
+                                           result.peers->peers.size(), hal::to_seconds(result.peers->waited_ns),
+                                           asked_again, odd_answers));
+  }
   if (real != nullptr) {
     for (const mixed_reality::RealRobotReport& r : real->robots) {
       rows.emplace_back(
@@ -220,8 +321,30 @@ void print_result(const RunResult& result) {
           fmt::format("{} on {}: {}; {} ticks driving, {} held, {} of {} questions answered, {}", r.id, r.link, r.state,
                       r.counts.ticks_driving, r.counts.ticks_held, r.conversation.answers, r.conversation.questions,
                       r.stop_confirmed ? "stop confirmed" : "STOP NOT CONFIRMED"));
+      const mixed_reality::BarrierCounts& barrier = r.counts.barrier;
+      if (barrier.changed_ticks + barrier.trespasses + r.counts.intrusions > 0) {
+        rows.emplace_back("safety of " + r.id,
+                          fmt::format("held back in {} ticks, by {} m/s at most; {} times where it should not be",
+                                      barrier.changed_ticks, hal::format_number(barrier.most_m_s),
+                                      barrier.trespasses + r.counts.intrusions));
+      }
+      rows.emplace_back("ledger of " + r.id, ledger_text(r.ledger));
+      if (r.sightings) {
+        rows.emplace_back("sightings of " + r.id,
+                          fmt::format("{} used, {} gated, {} late, {} doubled, {} impossible, {} disputed, {} jumps",
+                                      r.sightings->used, r.sightings->gated, r.sightings->late, r.sightings->doubled,
+                                      r.sightings->impossible, r.sightings->disputed, r.sightings->jumps));
+      }
+    }
+    for (const mixed_reality::TrackerStatus& t : real->trackers) {
+      rows.emplace_back(
+          "tracker", fmt::format("{}: {} messages, {} malformed, {} sightings, {} of nobody here, {} from "
+                                 "the future, {} old, {} outside, {} jumps of its clock",
+                                 t.id, t.heard.messages, t.heard.malformed, t.heard.sightings, t.unknown, t.from_future,
+                                 t.old, t.outside, t.clock_jumps));
     }
   }
+  rows.insert(rows.end(), result.more_rows.begin(), result.more_rows.end());
   print_table(rows);
 }
 

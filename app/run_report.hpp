@@ -1,11 +1,13 @@
 // Makes the report and the table of a finished run.
 #pragma once
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "app/run_figures.hpp"
 #include "core/sim/world.hpp"
 #include "hal/json/json.hpp"
+#include "mixed_reality/lockstep/lockstep.hpp"
 #include "mixed_reality/session/report.hpp"
 
 namespace tandem::app {
@@ -48,7 +50,10 @@ struct RunResult {
   RunFigures figures;
   std::size_t robots = 0;
   RunEnd end;
-  const mixed_reality::MixedReport* real = nullptr;  ///< null: no real robots
+  const mixed_reality::MixedReport* real = nullptr;                 ///< null: no real robots
+  hal::Json replay = {};                                            ///< of a replay; null: this is none
+  std::vector<std::pair<std::string, std::string>> more_rows = {};  ///< of the table
+  const mixed_reality::LockstepReport* peers = nullptr;             ///< null: not in lock-step
 };
 
 /// One JSON object.

@@ -1,12 +1,16 @@
 #include "app/signals.hpp"
 
+#include <cerrno>
 #include <csignal>
+
+#include "app/terminal.hpp"
 
 namespace tandem::app {
 namespace {
 
 std::atomic<bool> stop_asked{false};
 std::atomic<bool> suspension_asked{false};
+std::atomic<bool> has_continued{false};
 std::atomic<int> stop_signal{0};  // the first one
 std::atomic<bool> rearming_asked{false};
 #if !defined(__ARM_ARCH) || __ARM_ARCH > 5  // ARMv5 stores a bool with one instruction, but promises nothing wider
@@ -20,7 +24,19 @@ void note(int signal) {
 }
 
 void note_suspension(int) {
+  leave_screen_now();
   suspension_asked.store(true, std::memory_order_relaxed);
+}
+
+void suspend_now(int) {
+  const int error = errno;
+  leave_screen_now();
+  raise(SIGSTOP);  // all threads
+  errno = error;
+}
+
+void note_continuation(int) {
+  has_continued.store(true, std::memory_order_relaxed);
 }
 
 void note_rearm(int) {
@@ -46,6 +62,22 @@ void catch_suspend() {
   action.sa_handler = &note_suspension;
   action.sa_flags = SA_RESTART;
   sigaction(SIGTSTP, &action, nullptr);
+}
+
+void catch_suspend_of_screen() {
+  struct sigaction action {};
+  action.sa_flags = SA_RESTART;
+  action.sa_handler = &note_continuation;
+  sigaction(SIGCONT, &action, nullptr);
+  struct sigaction before {};
+  sigaction(SIGTSTP, nullptr, &before);
+  if (before.sa_handler != SIG_DFL) return;
+  action.sa_handler = &suspend_now;
+  sigaction(SIGTSTP, &action, nullptr);
+}
+
+std::atomic<bool>& continued() noexcept {
+  return has_continued;
 }
 
 int interrupted_code() noexcept {

@@ -11,6 +11,11 @@ const std::atomic<bool>& catch_signals();
 std::atomic<bool>& suspend_asked() noexcept;
 void catch_suspend();
 
+/// Has Ctrl-Z take the screen away before it suspends the process, where nobody else catches it.
+void catch_suspend_of_screen();
+/// Set when the process goes on after a suspension, from that call on.
+std::atomic<bool>& continued() noexcept;
+
 /// Exit code of a run that a signal ended: 130 after SIGINT, 143 after SIGTERM; 0: none came.
 int interrupted_code() noexcept;
 

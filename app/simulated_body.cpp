@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstring>
 
+#include "mixed_reality/time/monotonic.hpp"
+
 namespace tandem::app {
 namespace {
 
@@ -44,6 +46,8 @@ SimulatedBody::SimulatedBody(const core::World& world, core::RobotId robot, brid
 void SimulatedBody::after_sense(core::World& world) {
   const core::Space& space = world.space();
   if (!space.contains(robot_)) return;  // a hook took it away: its firmware goes on without a body
+  const core::Pose pose = space.pose(robot_);
+  ports_.set_pose({pose.x_m, pose.y_m, pose.heading_rad(), mixed_reality::MonotonicTime().now_ns()});
   ports_.tell([&](const bridges::PortBank& bank) {
     for (const hal::PortType* type : types_) {
       if (type->role == hal::Role::Sensor) std::memcpy(bank.find(*type), space.port(robot_, *type), type->size);

@@ -21,6 +21,7 @@ struct BenchCase {
   core::Assignment assignment = core::Assignment::Static;
   std::int64_t ticks = 600;
   std::int64_t repeat = 0;                   ///< how many runs of the same kind were before
+  std::string script = {};                   ///< of "lua": the file
   std::vector<core::KindConfig> kinds = {};  ///< of a file, one of which `robot` may be
 };
 

@@ -12,12 +12,20 @@
 #include "app/plugins.hpp"
 #include "app/signals.hpp"
 #include "app/terminal.hpp"
+#include "bench/back.hpp"
 #include "bench/codec.hpp"
 #include "bench/comparison.hpp"
+#include "bench/gap.hpp"
 #include "bench/gnuplot.hpp"
+#include "bench/lockstep.hpp"
 #include "bench/measurement.hpp"
 #include "bench/partition.hpp"
+#include "bench/python.hpp"
+#include "bench/record.hpp"
+#include "bench/script_file.hpp"
 #include "bench/sense_to_act.hpp"
+#include "bench/sweep.hpp"
+#include "bench/view.hpp"
 #include "core/device/device.hpp"
 #include "core/scenario/engine_traits.hpp"
 #include "hal/device/ring_sensors.hpp"
@@ -74,7 +82,11 @@ std::string robot_of(const app::BenchOptions& o) {
 }
 
 hal::Status check_words(const hal::Catalog& catalog, const app::BenchOptions& o, const Kinds& kinds) {
-  if (auto s = check_name("benchmark", o.name, {"diffusion", "flocking", "codec", "sense_to_act"}); !s.ok()) return s;
+  if (auto s = check_name("benchmark", o.name,
+                          {"diffusion", "flocking", "lua", "codec", "record", "sense_to_act", "back", "view", "sweep",
+                           "gap", "lockstep", "python"});
+      !s.ok())
+    return s;
   const std::vector<std::string> robots = robots_of(o, kinds);
   if (auto s = check_name("robot", robot_of(o), robots); !s.ok()) return s;
   std::vector<std::string> devices{"range_and_bearing"};
@@ -94,7 +106,7 @@ hal::Status check_words(const hal::Catalog& catalog, const app::BenchOptions& o,
   if (!o.assignment.empty() && o.assignment != "static" && o.assignment != "dynamic")
     return hal::Error{"--assignment takes static or dynamic, not '" + o.assignment + "'"};
   if (!o.plot.empty()) {
-    if (const auto kind = picture_kind(o.plot); !kind.ok()) return hal::Error{"--plot: " + kind.error().message};
+    if (const auto kind = core::figure_format(o.plot); !kind.ok()) return hal::Error{"--plot: " + kind.error().message};
   }
   if (!o.from.empty() && o.plot.empty() && !o.compare_threads)
     return hal::Error{"--from needs --plot FILE or --compare-threads: what to do with the saved lines"};
@@ -126,7 +138,8 @@ hal::Result<Plan> plan_of(const hal::Catalog& catalog, const app::BenchOptions& 
 
 /// Every case once a round, so that what the machine does besides meets all of them; those that differ in threads alone
 /// follow one another.
-std::vector<BenchCase> cases_of(const Plan& plan, const app::BenchOptions& o, const Kinds& kinds) {
+std::vector<BenchCase> cases_of(const Plan& plan, const app::BenchOptions& o, const Kinds& kinds,
+                                const std::string& script = {}) {
   std::vector<BenchCase> cases;
   std::string devices;
   for (const std::string& device : o.devices) devices += (devices.empty() ? "" : ",") + device;
@@ -136,9 +149,9 @@ std::vector<BenchCase> cases_of(const Plan& plan, const app::BenchOptions& o, co
         for (const std::int64_t robots : plan.robots) {
           for (const std::int64_t threads : plan.threads) {
             cases.push_back({o.name, robot_of(o), engine, partition.name, partition.regions, devices,
-                             o.density.empty() && o.name == "diffusion" ? "40 m" : "equal", robots, threads,
+                             o.density.empty() && o.name != "flocking" ? "40 m" : "equal", robots, threads,
                              o.assignment == "dynamic" ? core::Assignment::Dynamic : core::Assignment::Static, o.ticks,
-                             repeat, kinds});
+                             repeat, script, kinds});
           }
         }
       }
@@ -254,9 +267,29 @@ std::vector<ResultLine> choose_saved(const Plan& plan, const app::BenchOptions& 
   return {};
 }
 
+hal::Status draw(const std::vector<ResultLine>& lines, hal::OutputFile& file) {
+  const auto format = core::figure_format(file.path());
+  if (!format.ok()) return format.error();
+  return core::draw_figure(gnuplot_script(figure_of(lines), format.value()), file);
+}
+
 /// To standard error: standard output is for the lines.
 void print_comparison(const std::vector<ResultLine>& lines) {
   for (const auto& [group, ratios] : compare_threads(lines)) fmt::print(stderr, "{}: {}\n", group, ratios);
+}
+
+/// Each case apart from the others only by its place in the line: worlds of one process follow one another.
+int record(const std::vector<BenchCase>& cases, hal::PluginLoader& loader) {
+  const std::atomic<bool>& stop = app::catch_signals();
+  for (BenchCase c : cases) {
+    c.bench = "diffusion";
+    const auto line = bench_record(c, loader, stop);
+    if (!line.ok()) return refuse(app::kFailedRunning, line.error().message);
+    if (line.value().empty()) return app::kDone;
+    fmt::print("{}\n", line.value());
+    std::fflush(stdout);
+  }
+  return app::kDone;
 }
 
 int sense_to_act(const app::BenchOptions& o) {
@@ -266,6 +299,83 @@ int sense_to_act(const app::BenchOptions& o) {
     if (n > kMostRobots) return refuse(app::kWrongUsage, fmt::format("at most {} eye-bots", kMostRobots));
     const hal::Status measured = bench_sense_to_act({n, o.seconds, o.real_time}, o.repeat);
     if (!measured.ok()) return refuse(app::kFailedRunning, measured.error().message);
+  }
+  return app::kDone;
+}
+
+int back(const Plan& plan, const app::BenchOptions& o, const Kinds& kinds, hal::PluginLoader& loader) {
+  for (const std::string& engine : plan.engines) {
+    for (const std::int64_t robots : o.robots.empty() ? std::vector<std::int64_t>{1000} : plan.robots) {
+      for (const std::int64_t threads : plan.threads) {
+        BenchCase c;
+        c.bench = "diffusion";
+        c.robot = robot_of(o);
+        c.engine = engine;
+        c.partition = c.regions = plan.partitions.front().regions;
+        c.density = o.density.empty() ? "40 m" : o.density;
+        c.robots = robots;
+        c.threads = threads;
+        c.ticks = o.ticks;
+        c.kinds = kinds;
+        if (const int code = bench_back(c, o.repeat, loader); code != app::kDone) return code;
+      }
+    }
+  }
+  return app::kDone;
+}
+
+/// What a window costs; and how soon a thousand robots are seen.
+int view(const Plan& plan, const app::BenchOptions& o, hal::PluginLoader& loader) {
+  constexpr std::int64_t kMany = 20'000, kSoonShown = 1000;
+  for (const std::string& engine : plan.engines) {
+    for (const std::int64_t robots : o.robots.empty() ? std::vector<std::int64_t>{10'000, 100'000} : plan.robots) {
+      for (const std::int64_t threads : plan.threads) {
+        const double rate_per_s = robots > kMany ? 10.0 : 20.0;
+        const hal::Status measured =
+            bench_view({robots, robot_of(o), engine, threads, o.ticks, o.repeat, rate_per_s}, loader);
+        if (!measured.ok()) return refuse(app::kFailedRunning, measured.error().message);
+      }
+    }
+  }
+  const hal::Status seen = bench_first_frame(kSoonShown, o.repeat);
+  return seen.ok() ? app::kDone : refuse(app::kFailedRunning, seen.error().message);
+}
+
+int gap(const app::BenchOptions& o, hal::PluginLoader& loader) {
+  GapCase c;
+  if (!o.robots.empty()) c.robots = o.robots.front();
+  if (o.repeat > 1) c.realities = o.repeat;
+  const hal::Status measured = bench_gap(c, loader, app::catch_signals());
+  return measured.ok() ? app::kDone : refuse(app::kFailedRunning, measured.error().message);
+}
+
+int sweep(const app::BenchOptions& o, hal::PluginLoader& loader) {
+  SweepCase c;
+  c.ticks = o.ticks;
+  if (o.repeat > 1) c.runs = o.repeat;
+  for (const std::int64_t robots : o.robots.empty() ? std::vector<std::int64_t>{c.robots} : o.robots) {
+    c.robots = robots;
+    const hal::Status measured = bench_sweep(c, loader);
+    if (!measured.ok()) return refuse(app::kFailedRunning, measured.error().message);
+  }
+  return app::kDone;
+}
+
+int python(const app::BenchOptions& o) {
+  PythonCase c;
+  c.robots = o.robots;
+  c.ticks = o.ticks;
+  if (o.repeat > 1) c.runs = o.repeat;
+  return refuse(app::kFailedRunning, bench_python(c).error().message);
+}
+
+int lockstep(const app::BenchOptions& o, hal::PluginLoader& loader) {
+  for (const std::int64_t peers : o.robots.empty() ? std::vector<std::int64_t>{20} : o.robots) {
+    if (peers > 1000) return refuse(app::kWrongUsage, "at most 1000 peers, each a process");
+    for (std::int64_t i = 0; i < o.repeat; ++i) {
+      const hal::Status measured = bench_lockstep({peers, o.ticks}, loader);
+      if (!measured.ok()) return refuse(app::kFailedRunning, measured.error().message);
+    }
   }
   return app::kDone;
 }
@@ -289,22 +399,40 @@ int run(const app::BenchOptions& options) {
     return app::kDone;
   }
   if (options.name == "sense_to_act") return sense_to_act(options);
+  if (options.name == "back") return back(plan.value(), options, kinds, loader);
+  if (options.name == "view") return view(plan.value(), options, loader);
+  if (options.name == "record") {
+    Plan measured = plan.value();
+    if (options.robots.empty()) measured.robots = {10'000};
+    return record(cases_of(measured, options, kinds), loader);
+  }
+  if (options.name == "sweep") return sweep(options, loader);
+  if (options.name == "gap") return gap(options, loader);
+  if (options.name == "lockstep") return lockstep(options, loader);
+  if (options.name == "python") return python(options);
   std::optional<hal::OutputFile> plot;
   if (!options.plot.empty()) {
-    const hal::Status drawable = can_draw();
+    const hal::Status drawable = core::can_draw_figures();
     if (!drawable.ok()) return refuse(app::kFailedRunning, drawable.error().message);
     auto opened = hal::OutputFile::open(options.plot, "figure");
     if (!opened.ok()) return refuse(app::kBadInput, opened.error().message);
     plot = std::move(opened).value();
   }
+  std::optional<ScriptFile> script;
+  if (options.name == "lua" && options.from.empty()) {
+    script.emplace();
+    if (script->path().empty())
+      return refuse(app::kFailedRunning, "the script could not be written to a temporary file");
+  }
   int code = app::kDone;
+  const std::string path = script ? script->path() : "";
   const std::vector<ResultLine> lines = options.from.empty()
-                                            ? measure_all(cases_of(plan.value(), options, kinds), loader, code)
+                                            ? measure_all(cases_of(plan.value(), options, kinds, path), loader, code)
                                             : choose_saved(plan.value(), options, code);
   if (lines.empty()) return code;
   if (options.compare_threads) print_comparison(lines);
   if (!plot) return app::kDone;
-  const hal::Status drawn = draw(figure_of(lines), *plot);
+  const hal::Status drawn = draw(lines, *plot);
   return drawn.ok() ? app::kDone : refuse(app::kFailedRunning, drawn.error().message);
 }
 

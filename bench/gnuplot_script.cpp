@@ -19,6 +19,7 @@ constexpr double kUpperShare = 0.62;
 constexpr double kFontSize = 16.0;
 constexpr std::size_t kFirstNote = 2;  // labels' numbers; 1 marks real time
 constexpr double kPngScale = 2.0;
+constexpr double kPointsPerInch = 96.0;
 constexpr double kPngPoint = 0.75;  // font sizes there are of 1/72 inch at 96 pixels an inch
 
 // Colours that people with any colour vision tell apart [Okabe and Ito 2008], and shapes for print without colours.
@@ -54,21 +55,14 @@ Axes axes_of(const Figure& figure) {
   return a;
 }
 
-/// In single quotes, as gnuplot reads it: what could end the text or the line is left out.
-std::string quoted(const std::string& text) {
-  std::string out = "'";
-  for (const char c : text) out += c == '\'' || c == '`' || static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
-  return out + "'";
-}
-
 class Script {
  public:
-  explicit Script(const Figure& figure, PictureKind kind)
+  explicit Script(const Figure& figure, core::FigureFormat format)
       : figure_(figure),
         axes_(axes_of(figure)),
         width_(static_cast<double>(figure.columns) * kPanelWidth + kLegendWidth),
         height_(static_cast<double>(figure.lines) * kPanelHeight + kNoteHeight) {
-    begin(kind);
+    begin(format);
     for (std::size_t i = 0; i < figure.panels.size(); ++i) add_panel(i);
     add("unset multiplot\n");
   }
@@ -80,9 +74,12 @@ class Script {
     fmt::format_to(std::back_inserter(text_), format, std::forward<Args>(args)...);
   }
 
-  void begin(PictureKind kind) {
-    if (kind == PictureKind::Svg)
+  void begin(core::FigureFormat format) {
+    if (format == core::FigureFormat::Svg)
       add("set terminal svg size {},{} enhanced font 'Arial,{}' background 'white'\n", width_, height_, kFontSize);
+    else if (format == core::FigureFormat::Pdf)
+      add("set terminal pdfcairo size {}in,{}in enhanced font 'Arial,{}' background 'white'\n", width_ / kPointsPerInch,
+          height_ / kPointsPerInch, kFontSize * kPngPoint);
     else
       add("set terminal pngcairo size {},{} enhanced font 'Arial,{}' fontscale {} linewidth {} pointscale {} "
           "background 'white'\n",
@@ -95,11 +92,11 @@ class Script {
           3.0 - 0.3 * above, 1.15 - 0.1 * above, kColours[i % std::size(kColours)], kShapes[i % std::size(kShapes)]);
     }
     add("set logscale x\nset xrange [{}:{}]\n", axes_.robots.low, axes_.robots.high);
-    const double note_size = 0.8 * kFontSize * (kind == PictureKind::Png ? kPngPoint : 1.0);
+    const double note_size = 0.8 * kFontSize * (format == core::FigureFormat::Png ? kPngPoint : 1.0);
     for (std::size_t i = 0; i < figure_.notes.size(); ++i) {
       add("set label {} {} at screen {},{} left noenhanced font ',{}' textcolor '#606060'\n", kFirstNote + i,
-          quoted(figure_.notes[i]), kLeft / width_, (kNoteHeight - 12.0 - 20.0 * static_cast<double>(i)) / height_,
-          note_size);
+          core::gnuplot_text(figure_.notes[i]), kLeft / width_,
+          (kNoteHeight - 12.0 - 20.0 * static_cast<double>(i)) / height_, note_size);
     }
     add("set multiplot\n");
   }
@@ -115,16 +112,16 @@ class Script {
     add("set lmargin at screen {}\nset rmargin at screen {}\n", left / width_, right / width_);
 
     add("set tmargin at screen {}\nset bmargin at screen {}\n", top / height_, (top - upper) / height_);
-    add("set title {} noenhanced offset 0,-0.4\n", quoted(panel.title));
+    add("set title {} noenhanced offset 0,-0.4\n", core::gnuplot_text(panel.title));
     add("set logscale y\nset yrange [{}:{}]\nset ytics auto format '10^{{%L}}'\n", axes_.wall.low, axes_.wall.high);
-    add("set ylabel {} offset 0.5,0\nunset xlabel\nset format x ''\n", quoted(figure_.wall_axis));
+    add("set ylabel {} offset 0.5,0\nunset xlabel\nset format x ''\n", core::gnuplot_text(figure_.wall_axis));
     add("set arrow 1 from graph 0,first {0} to graph 1,first {0} nohead dashtype 2 linewidth 1.5 linecolor '#404040'\n",
         figure_.real_time);
     add("set label 1 {} at graph 0.02,first {} offset 0,-0.7 left noenhanced textcolor '#404040'\n",
-        quoted(figure_.real_time_mark), figure_.real_time);
+        core::gnuplot_text(figure_.real_time_mark), figure_.real_time);
     if (number == 0)
       add("set key at screen {},{} left top Left reverse samplen 2 spacing 1.2 title {} noenhanced\n",
-          (width_ - kLegendWidth + 5.0) / width_, (height_ - kTop) / height_, quoted(figure_.legend));
+          (width_ - kLegendWidth + 5.0) / width_, (height_ - kTop) / height_, core::gnuplot_text(figure_.legend));
     plot(number, 2, number == 0);
 
     add("unset key\nunset arrow 1\nunset label\nunset title\n");
@@ -165,7 +162,7 @@ class Script {
     std::size_t drawn = 0;
     const auto& curves = figure_.panels[number].curves;
     for (std::size_t label = 0; label < figure_.labels.size(); ++label) {
-      const std::string title = quoted(figure_.labels[label]);
+      const std::string title = core::gnuplot_text(figure_.labels[label]);
       if (drawn < curves.size() && curves[drawn].label == label) {
         next();
         add("$d{}_{} using 1:{} with linespoints linestyle {} title {}", number, label, column, label + 1, title);
@@ -186,8 +183,8 @@ class Script {
 
 }  // namespace
 
-std::string gnuplot_script(const Figure& figure, PictureKind kind) {
-  return Script(figure, kind).text();
+std::string gnuplot_script(const Figure& figure, core::FigureFormat format) {
+  return Script(figure, format).text();
 }
 
 }  // namespace tandem::bench

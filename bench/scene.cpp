@@ -67,6 +67,20 @@ core::ControllerConfig diffusion_controller(const std::string& robot, const std:
   return config;
 }
 
+/// The same robots under a script, which the caller has written to the file.
+core::ControllerConfig scripted_controller(const std::string& robot, const std::string& script) {
+  core::ControllerConfig config;
+  config.id = "diffusion";
+  config.label = config.library = "lua_controller";
+  core::Element written;
+  written.name = robot == "foot-bot" ? "footbot_proximity" : "epuck_proximity";
+  config.sensors.push_back({"proximity", "default", written});
+  config.actuators.push_back({"differential_steering", "default", {}});
+  config.params.name = "params";
+  config.params.attributes.push_back({"script", script, 0});
+  return config;
+}
+
 core::RobotItem scattered_robots(const BenchCase& c, double scale) {
   core::RobotItem item;
   item.kind = c.robot;
@@ -92,7 +106,8 @@ core::Scenario diffusion_scene(const BenchCase& c) {
   add_walls(scenario, scale);
 
   scenario.kinds = c.kinds;
-  scenario.controllers.push_back(diffusion_controller(c.robot, c.devices));
+  scenario.controllers.push_back(c.bench == "lua" ? scripted_controller(c.robot, c.script)
+                                                  : diffusion_controller(c.robot, c.devices));
   scenario.robots.push_back(scattered_robots(c, scale));
   return scenario;
 }

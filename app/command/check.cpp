@@ -1,12 +1,18 @@
 #include <fmt/format.h>
 
 #include "app/command/command.hpp"
+#include "app/command/study.hpp"
 #include "app/plugins.hpp"
 #include "core/sim/world.hpp"
+#include "hal/xml/xml.hpp"
+#include "mixed_reality/settings/tracker_check.hpp"
 
 namespace tandem::app {
 
 int check(const CheckOptions& options) {
+  core::Problems unread;  // told below
+  if (const auto root = hal::read_xml_file(options.experiment, unread); root && root->name == "study")
+    return check_study(options.experiment, options.plugins);
   hal::PluginLoader loader = make_loader();
   if (!open_plugins(loader, options.plugins)) return kBadInput;
   if (const auto other = check_other_file(options.experiment, loader.catalog())) return *other;
@@ -19,6 +25,7 @@ int check(const CheckOptions& options) {
   const auto world = core::World::make(*scenario, loader, world_options, problems);
   print_problems(problems);
   if (world == nullptr) return kBadInput;
+  for (const std::string& outlook : mixed_reality::outlooks(*scenario, loader.catalog())) fmt::print("{}\n", outlook);
   fmt::print("{}: good: {} robots, {} objects, {} controller configurations, {} ticks a second\n", options.experiment,
              world->space().robot_count(), world->space().objects().size(), scenario->controllers.size(),
              scenario->ticks_per_second);

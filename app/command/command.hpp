@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/scenario/scenario.hpp"
@@ -23,10 +24,46 @@ struct PictureRequest {
   std::vector<double> region;    ///< x0, y0, x1, y1 in metres; empty: the whole arena
   double trails_s = 0.0;
   bool axes = false, ids = false;
-  std::string film;             ///< .mp4, .mkv, or pictures: "FOLDER/" or "FOLDER/%06d.png"
-  std::int64_t film_every = 1;  ///< ticks
-  std::string povray;           ///< .pov, or .png beside one: a scene for POV-Ray
-  double film_rate = 0.0;       ///< frames a second; 0: as fast as it was, 60 at most
+  std::vector<std::string> layers;  ///< of a run alone
+  std::string film;                 ///< .mp4, .mkv, or pictures: "FOLDER/" or "FOLDER/%06d.png"
+  std::int64_t film_every = 1;      ///< ticks
+  std::string povray;               ///< .pov, or .png beside one: a scene for POV-Ray
+  double film_rate = 0.0;           ///< frames a second; 0: as fast as it was, 60 at most
+};
+
+/// Holding a run while it goes on (core/live/live_run.hpp).
+struct HoldOptions {
+  bool wanted = false;          ///< somebody watches it
+  bool paused = false;          ///< at the start
+  bool stay = false;            ///< at the end
+  std::optional<double> speed;  ///< times real time; none: as the experiment says
+  std::size_t memory_MB = 500;  ///< of checkpoints
+};
+
+/// A window in browsers, for a run or a record.
+struct ViewRequest {
+  bool on = false;
+  std::int64_t port = 0;  ///< 0: any that is free
+  std::string address = "127.0.0.1";
+  std::vector<std::string> origins;  ///< of pages that may use it besides its own
+  bool no_browser = false;           ///< else one is opened, where there is one
+  bool projector = false;            ///< … and what a projector shows is told, and opened, too
+};
+
+/// The table of a run on a terminal.
+struct WatchRequest {
+  bool watch = false;
+  std::vector<std::string> robots;  ///< ids, or patterns with '*'; empty: all
+  std::string port;                 ///< whose fields are shown; empty: what controllers publish
+};
+
+/// A run out of the record of one with real robots.
+struct ReplayRequest {
+  std::string record;                         ///< empty: this is none
+  std::optional<std::int64_t> from;           ///< tick from which the robots are simulated
+  std::optional<std::int64_t> until;          ///< ticks that are done
+  std::vector<std::string> controllers = {};  ///< "ROBOT=ID" or "KIND=ID"
+  bool accept_changes = false;                ///< of files and plug-ins
 };
 
 struct RunOptions {
@@ -39,17 +76,26 @@ struct RunOptions {
   std::vector<std::string> overrides;
   std::string report;  ///< file, or "-"
   PictureRequest pictures;
-  std::string trajectory;               ///< CSV file, of every robot unless the experiment says which
-  std::string record;                   ///< record file, as the experiment says or of every robot's pose and state
+  std::string trajectory;  ///< CSV file, of every robot unless the experiment says which
+  std::string record;      ///< record file, as the experiment says or of every robot's pose and state
+  std::string repeat;      ///< record whose actions are done again
+  HoldOptions hold;
+  ViewRequest view;
   std::string dump;                     ///< CSV file of every value of the state
   std::int64_t dump_every = 0;          ///< ticks; 0: at the end alone
   std::string log;                      ///< file for all messages
   std::vector<std::string> without;     ///< real robots that are simulated instead, by id
   std::vector<std::string> hub_faults;  ///< as `parse_hub_fault` reads them
-  bool quiet = false;                   ///< no table
-  double step_timeout_s = 5.0;          ///< after which a controller or hook that does not return is named; 0: never
+  WatchRequest watch;
+  ReplayRequest replay = {};
+  bool quiet = false;           ///< no table
+  double step_timeout_s = 5.0;  ///< after which a controller or hook that does not return is named; 0: never
 };
 int run(const RunOptions& options);
+/// `run` behind a window until somebody ends it; or the same of a record of one.
+int view(RunOptions options);
+/// A run with real robots, computed again out of its record: `options.replay` says which, and what is to be different.
+int replay(RunOptions options);
 
 struct CompareOptions {
   Libraries plugins;
@@ -66,11 +112,18 @@ int compare(const CompareOptions& options);
 struct ExportOptions {
   std::string record;
   std::string csv;                          ///< file, or "-"; empty: only say what the record holds
-  std::string stream = "pose";              ///< which of its tables
+  std::string hdf5;                         ///< file; empty: none
+  std::string stream;                       ///< which of its tables; empty: in CSV "pose", in HDF5 all
+  std::vector<std::string> fields;          ///< of HDF5: only these; empty: all
   std::vector<std::string> entities;        ///< ids, or patterns with '*'; empty: all
   std::optional<std::int64_t> from, until;  ///< ticks, both included
   std::int64_t every = 1;                   ///< of the ticks that are there
+
+  bool wants(std::int64_t tick) const;
+  bool wants(const std::string& id) const;
 };
+/// All tables that are asked for, as an HDF5 file.
+hal::Status write_hdf5(const ExportOptions& options);
 int export_record(const ExportOptions& options);
 
 struct DrawOptions {
@@ -160,8 +213,39 @@ struct RobotOptions {
   std::string report;
   std::vector<std::string> hub_faults;  ///< as `parse_hub_fault` reads them
   double step_timeout_s = 5.0;          ///< as for `run`
+  std::string robot;                    ///< of a hub, whose peer this is; empty: the file's; "*": any that waits
 };
 int robot(const RobotOptions& options);
+/// The same for a robot of a run in lock-step, where the link is "peer:tcp:HOST:PORT" or "peer:serial:…".
+int robot_peer(const RobotOptions& options);
+inline constexpr std::string_view kPeerScheme = "peer:";
+
+struct PreflightOptions {
+  Libraries plugins;
+  std::string experiment;
+  std::vector<std::string> overrides;
+  std::vector<std::string> without;  ///< real robots that are simulated instead, by id
+  std::optional<double> wait_s;      ///< for robots to answer; none: as long as the run would
+  double listen_s = 2.0;             ///< to robots and trackers, after that
+  bool move = false;                 ///< the first motion test
+  bool yes = false;                  ///< … without asking
+  bool json = false;
+  std::string report;
+};
+/// kFailedRunning: something would stop the run.
+int preflight(const PreflightOptions& options);
+
+struct DeskOptions {
+  std::string where;    ///< "http://…?token=…" of the window, or "lcm:URL#CHANNEL"
+  std::string command;  ///< status, preflight, start, pause, estop, arm, rearm, replace, halt, release
+  std::string robot;
+  std::string spare, link, as, seen_as;  ///< of replace
+  std::vector<double> at;                ///< of replace: x, y, heading
+  std::string who;
+  bool json = false;
+};
+/// One command to a run. kBadInput: the run refuses it; kFailedRunning: it cannot be reached.
+int desk(const DeskOptions& options);
 
 struct EmulateOptions {
   Libraries plugins;

@@ -1,4 +1,5 @@
 // `tandem emulate`: behaves as a robot's firmware on a link.
+#include <csignal>
 #include <cstdio>
 #include <fmt/format.h>
 
@@ -62,8 +63,11 @@ int emulate(const EmulateOptions& options) {
                hal::listed(loader.catalog().names(EmulatorType::kCategory)));
     return kWrongUsage;
   }
+  if (!options.arena.empty() && emulator->kind.empty())
+    return complain("--arena is for emulated robots, and '" + options.robot + "' is none: leave it out");
   auto own = read_own(options, *emulator);
   if (!own.ok()) return complain(own.error().message);
+  std::signal(SIGPIPE, SIG_IGN);  // who reads our frames may end before us
   const std::atomic<bool>& stop = catch_signals();
   bridges::EmulatorRequest request;
   request.link = options.link;

@@ -14,6 +14,8 @@
 #include "app/terminal.hpp"
 #include "bridges/bridge_type.hpp"
 #include "bridges/emulation/emulator_type.hpp"
+#include "bridges/tracker_type.hpp"
+#include "controllers/lua_controller/api/manual.hpp"
 #include "core/config/kinds.hpp"
 #include "core/config/reader.hpp"
 #include "core/device/coupling.hpp"
@@ -23,6 +25,8 @@
 #include "core/scenario/field_type.hpp"
 #include "core/scenario/medium_type.hpp"
 #include "core/scenario/observer_type.hpp"
+#include "core/view/layers/layer.hpp"
+#include "study/study.hpp"
 
 namespace tandem::app {
 namespace {
@@ -99,6 +103,8 @@ void list_names(const hal::Catalog& catalog, std::string_view category, std::str
 void list_elements(const hal::Catalog& catalog) {
   fmt::print("elements of experiment files:\n");
   for (const core::ElementManual& m : core::element_manuals(catalog)) fmt::print("  {:<22} {}\n", m.name, m.doc);
+  fmt::print("elements of studies:\n");
+  for (const core::ElementManual& m : study::study_manuals()) fmt::print("  {:<22} {}\n", m.name, m.doc);
 }
 
 /// The plug-ins, each with what it brings: "libx.so  2 controllers, 1 device".
@@ -133,6 +139,8 @@ const std::map<std::string, ListKind>& kinds() {
       {"robots", [](const hal::Catalog& c) { list_plugins<hal::RobotKind>(c, "robots"); }},
       {"fields", [](const hal::Catalog& c) { list_plugins<core::FieldType>(c, "fields"); }},
       {"observers", [](const hal::Catalog& c) { list_plugins<core::ObserverType>(c, "observers"); }},
+      {"layers", [](const hal::Catalog& c) { list_plugins<core::LayerType>(c, "layers"); }},
+      {"trackers", [](const hal::Catalog& c) { list_plugins<bridges::TrackerType>(c, "trackers of real robots"); }},
       {"media", [](const hal::Catalog& c) { list_plugins<core::MediumType>(c, "media"); }},
       {"elements", &list_elements}};
   return all;
@@ -279,8 +287,8 @@ bool describe_robot(const hal::Catalog& catalog, const std::string& name) {
 bool describe_emulator(const hal::Catalog& catalog, const std::string& name) {
   const auto* const type = catalog.find<bridges::EmulatorType>(name);
   if (type == nullptr) return false;
-  fmt::print("emulator {}: {}{}\n  its body in an --arena: an {} under {}\n", name, type->summary, from(catalog, type),
-             type->kind, type->puppet);
+  fmt::print("emulator {}: {}{}\n", name, type->summary, from(catalog, type));
+  if (!type->kind.empty()) fmt::print("  its body in an --arena: an {} under {}\n", type->kind, type->puppet);
   core::ManualWriter manual;
   (void)type->read(manual);
   fmt::print("options, written --name value:\n{}", manual.text().empty() ? "  none\n" : manual.text());
@@ -293,9 +301,32 @@ bool describe_coupling(const hal::Catalog& catalog, const std::string& name) {
   return type != nullptr;
 }
 
+/// A layer, and what of it there is to see.
+bool describe_layer(const hal::Catalog& catalog, const std::string& name) {
+  const auto* const type = catalog.find<core::LayerType>(name);
+  if (type == nullptr) return false;
+  const std::string_view shows = type->draws ? (type->panels ? "a drawing and a panel" : "a drawing") : "a panel";
+  fmt::print("layer {}: {}{}\n  shows {}{}\n", name, printable(type->summary), from(catalog, type), shows,
+             type->draws ? "; in pictures: --picture-layers " + name : "");
+  return true;
+}
+
+/// The manuals of all elements, of studies too.
+std::vector<core::ElementManual> all_manuals(const hal::Catalog& catalog) {
+  std::vector<core::ElementManual> all = core::element_manuals(catalog);
+  for (core::ElementManual& m : study::study_manuals()) all.push_back(std::move(m));
+  return all;
+}
+
+/// What scripts have.
+bool describe_scripts(const hal::Catalog& catalog, const std::string& name) {
+  if (name == "lua") fmt::print("{}", controllers::lua::manual(catalog));
+  return name == "lua";
+}
+
 bool describe_element(const hal::Catalog& catalog, const std::string& name) {
   bool found = false;
-  for (const core::ElementManual& m : core::element_manuals(catalog)) {
+  for (const core::ElementManual& m : all_manuals(catalog)) {
     if (m.name != name) continue;
     found = true;
     fmt::print("<{}>{}: {}\n{}", m.name, m.parent.empty() ? "" : fmt::format(" in <{}>", m.parent), m.doc,
@@ -342,9 +373,12 @@ int describe(const DescribeOptions& options) {
   const bool hook = describe_plugin<core::HookType>(catalog, name);
   const bool emulator = describe_emulator(catalog, name);
   const bool coupling = describe_coupling(catalog, name);
-  if (robot || engine || coupling || element || part || device || controller || hook || emulator) return kDone;
+  const bool layer = describe_layer(catalog, name);
+  const bool scripts = describe_scripts(catalog, name);
+  if (scripts || layer || robot || engine || coupling || element || part || device || controller || hook || emulator)
+    return kDone;
   std::vector<std::string> all;
-  for (const core::ElementManual& m : core::element_manuals(catalog)) all.emplace_back(m.name);
+  for (const core::ElementManual& m : all_manuals(catalog)) all.emplace_back(m.name);
   for (const core::DeviceType* t : catalog.all<core::DeviceType>()) all.emplace_back(t->device);
   for (const hal::Catalog::Entry& e : catalog.entries()) all.push_back(e.name);
   const std::string near = core::closest(name, all);

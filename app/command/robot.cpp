@@ -8,15 +8,17 @@
 
 #include "app/bridge_status.hpp"
 #include "app/bridged_controller.hpp"
-#include "app/build_info.hpp"
 #include "app/command/command.hpp"
 #include "app/emergency_report.hpp"
+#include "app/file_controller.hpp"
 #include "app/guarded_robots.hpp"
 #include "app/hub_faults.hpp"
+#include "app/listed_robot.hpp"
 #include "app/measure.hpp"
 #include "app/plugins.hpp"
 #include "app/progress.hpp"
 #include "app/report.hpp"
+#include "app/robot_end.hpp"
 #include "app/sha256.hpp"
 #include "app/signals.hpp"
 #include "app/terminal.hpp"
@@ -139,9 +141,26 @@ std::vector<std::pair<std::string, std::string>> result_table(const core::RobotI
   return rows;
 }
 
+/// Which files decided, each with its SHA-256.
+void add_files(hal::Json& json, const std::string& experiment, hal::PluginLoader& loader,
+               const core::ControllerConfig& config) {
+  if (const auto digest = sha256_of_file(experiment); digest.ok())
+    json["file"] = {{"file", experiment}, {"sha256", digest.value()}};
+  const std::string library = loader.find(config.library).value().string();
+  if (const auto digest = sha256_of_file(library); digest.ok()) {
+    json["controller"] = library;
+    json["sha256"] = digest.value();
+  }
+  for (const std::string& plugin : loader.plugins()) {
+    const auto digest = sha256_of_file(plugin);
+    json["plugins"].push_back({{"file", plugin}, {"sha256", digest.ok() ? digest.value() : ""}});
+  }
+}
+
 }  // namespace
 
 int robot(const RobotOptions& options) {
+  if (!options.robot.empty()) return complain(kWrongUsage, "--robot goes with --link peer:…");
   auto hub_faults = HubFaults::make(options.hub_faults);
   if (!hub_faults.ok()) return complain(kBadInput, hub_faults.error().message);
   hal::PluginLoader loader = make_loader();
@@ -156,19 +175,15 @@ int robot(const RobotOptions& options) {
   core::RobotItem item = *found;
   if (!item.bridge) item.bridge = core::BridgeConfig{};
   if (!options.link.empty()) item.bridge->link = options.link;
-  const core::ControllerConfig& config = scenario->controllers[item.controller];
   bridges::BridgeRequest request = mixed_reality::bridge_request(*scenario, item, scenario->seed.value_or(1));
   if (request.robot_kind == nullptr) request.robot_kind = core::find_kind(*scenario, loader.catalog(), item.kind);
   if (const hal::Status apart =
           check_apart({{"report", options.report}}, input_files(loader.catalog(), request, *scenario));
       !apart.ok())
     return complain(kBadInput, apart.error().message);
-  std::optional<hal::OutputFile> report;
-  if (!options.report.empty()) {
-    auto opened = hal::OutputFile::open(options.report, "report");
-    if (!opened.ok()) return complain(kBadInput, opened.error().message);
-    report = std::move(opened).value();
-  }
+  auto report_file = open_report(options.report);
+  if (!report_file.ok()) return complain(kBadInput, report_file.error().message);
+  std::optional<hal::OutputFile>& report = report_file.value();
 
   if (!guarded.started().ok()) return complain(kFailedRunning, guarded.started().error().message);
   const std::atomic<bool>& stop = catch_signals();
@@ -179,23 +194,20 @@ int robot(const RobotOptions& options) {
   auto made = mixed_reality::make_bridge(loader.catalog(), request, log);
   if (!made.ok()) return complain(kBadInput, made.error().message);
   bridges::RobotBridge& bridge = **made;
-  const auto type = loader.controller(config.library, config.label);
-  if (!type.ok()) return complain(kBadInput, "controller '" + config.id + "': " + type.error().message);
-  core::Problems problems;
-  core::ElementReader reader(item.params ? *item.params : config.params, problems);
-  const auto params = type.value()->read_params(reader);
-  reader.finish();
-  print_problems(problems);
-  if (core::has_errors(problems)) return kBadInput;
-
-  const std::string who =
-      "controller '" + config.id + "' (library '" + config.library + "') of robot '" + item.id + "'";
+  const core::SafetyConfig& safety = scenario->safety;
+  if (!safety.fences.empty() || !safety.keep_outs.empty() || !safety.zones.empty())
+    log.warning(
+        "<safety> is not heeded here, for nobody knows where the robot is: no fence, keep-out or zone holds it");
+  const auto read = read_file_controller(*scenario, item, item.id, loader);
+  if (!read.ok()) return complain(kBadInput, read.error().message);
+  const FileController& file = read.value();
   std::unique_ptr<BridgedController> controller;
   try {
-    controller = std::make_unique<BridgedController>(*type.value(), bridge.robot(), params.get(),
-                                                     scenario->ticks_per_second, log, who);
+    ListedRobot listed(bridge.robot(), *file.config, loader.catalog());
+    controller = std::make_unique<BridgedController>(*file.type, listed, file.params.get(), scenario->ticks_per_second,
+                                                     log, file.who);
   } catch (const std::exception& e) {
-    return complain(kBadInput, who + " " + e.what());
+    return complain(kBadInput, file.who + " " + e.what());
   }
 
   mixed_reality::MonotonicTime clock;
@@ -241,7 +253,7 @@ int robot(const RobotOptions& options) {
         supervised.hub_was_frozen();
       }
       if (supervised.latch(tick, clock.now_ns()) && !controller->step(failure, tick)) {
-        failure = who + " threw at tick " + std::to_string(tick) + ": " + failure + "; the robot is stopped";
+        failure = file.who + " threw at tick " + std::to_string(tick) + ": " + failure + "; the robot is stopped";
         break;
       }
       const std::lock_guard hold(watchdog.lock());  // from here on, what is saved changes
@@ -273,28 +285,9 @@ int robot(const RobotOptions& options) {
   }
   if (report) {
     json["stop_confirmed"] = confirmed;
-    json["program"] = to_json(build_info());
-    if (const auto digest = sha256_of_file(options.file); digest.ok())
-      json["file"] = {{"file", options.file}, {"sha256", digest.value()}};
-    const std::string library = loader.find(config.library).value().string();
-    if (const auto digest = sha256_of_file(library); digest.ok()) {
-      json["controller"] = library;
-      json["sha256"] = digest.value();
-    }
-    for (const std::string& plugin : loader.plugins()) {
-      const auto digest = sha256_of_file(plugin);
-      json["plugins"].push_back({{"file", plugin}, {"sha256", digest.ok() ? digest.value() : ""}});
-    }
-    json["finished"] = failure.empty() && !interrupted;
-    json["ended"] = !failure.empty() ? "failed" : interrupted ? "interrupted" : "length";
-    if (!failure.empty()) json["failure"] = failure;
-    std::fflush(stdout);
-    hal::Status written = report->write(hal::to_text(json) + "\n");
-    if (written.ok()) written = report->commit();
-    if (!written.ok()) return complain(kFailedRunning, written.error().message);
+    add_files(json, options.file, loader, *file.config);
   }
-  if (!failure.empty()) return complain(kFailedRunning, failure);
-  return interrupted ? interrupted_code() : kDone;
+  return end_robot(report, std::move(json), {.failure = failure, .interrupted = interrupted});
 }
 
 }  // namespace tandem::app

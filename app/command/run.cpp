@@ -2,22 +2,35 @@
 #include <csignal>
 #include <cstdio>
 #include <fmt/format.h>
+#include <iterator>
 
 #include "app/command/command.hpp"
+#include "app/desks.hpp"
 #include "app/emergency_outputs.hpp"
 #include "app/guarded_robots.hpp"
 #include "app/hub_faults.hpp"
+#include "app/lockstep_peers.hpp"
 #include "app/measure.hpp"
+#include "app/mixed_run.hpp"
 #include "app/plugins.hpp"
 #include "app/progress.hpp"
+#include "app/real_robots.hpp"
+#include "app/replay_run.hpp"
 #include "app/run_log.hpp"
 #include "app/run_outputs.hpp"
 #include "app/run_report.hpp"
+#include "app/script_watch.hpp"
 #include "app/signals.hpp"
 #include "app/terminal.hpp"
+#include "app/view_run.hpp"
+#include "app/watch.hpp"
 #include "app/watchdog.hpp"
+#include "core/live/live_run.hpp"
+#include "core/live/repeat.hpp"
+#include "core/live/source_files.hpp"
 #include "core/sim/world.hpp"
 #include "core/view/picture.hpp"
+#include "core/view/record_drawing.hpp"
 #include "mixed_reality/session/mixed_session.hpp"
 #include "mixed_reality/time/pacer.hpp"
 
@@ -37,6 +50,17 @@ core::PictureOptions picture_options(const core::World& world, const mixed_reali
     if (!r.driving) picture.trouble.push_back({r.robot, r.state});
   }
   return picture;
+}
+
+/// A drawing of the world, with the layers that were asked for.
+core::Drawing drawing_of(const core::World& world, const RunOutputs& outputs, const core::PictureOptions& options) {
+  core::Drawing drawing = core::drawing_of(world.space(), options);
+  drawing.areas = core::areas_of_json(areas_json(world.scenario().safety));
+  if (outputs.layers == nullptr) return drawing;
+  const hal::Tick last = world.tick() == 0 ? 0 : world.tick() - 1;
+  for (const core::LayerPicture& layer : outputs.layers->show(observation_of(world, last)))
+    drawing.shapes.insert(drawing.shapes.end(), layer.sketch.shapes().begin(), layer.sketch.shapes().end());
+  return drawing;
 }
 
 /// What is kept of a run while it goes on, so that little is lost however it ends: records, which the system gets twice
@@ -74,10 +98,30 @@ class Recording {
     if (records && !recorded_.ok()) complain(kFailedRunning, recorded_.error().message + "; the run goes on");
     record();
     outputs_.observers.tick_done(now_.world);
+    if (outputs_.layers != nullptr && now_.world.tick() > 0)
+      outputs_.layers->note(observation_of(now_.world, now_.world.tick() - 1));
     if (now_.world.tick() > 0) draw();
     if (!outputs_.dump) return;
     if (const hal::Status dumped = outputs_.dump->tick_done(now_.world); !dumped.ok())
       complain(kFailedRunning, dumped.error().message + "; the run goes on");
+  }
+
+  /// Of somebody who holds the run.
+  void event(hal::Tick tick, const hal::Json& event) {
+    const std::lock_guard hold(watchdog_.lock());
+    if (outputs_.record == nullptr || !in_record_.ok()) return;
+    if (event["kind"] == "back") in_record_ = outputs_.record->went_back(tick);
+    if (in_record_.ok()) in_record_ = outputs_.record->event(tick, event);
+    if (!in_record_.ok()) complain(kFailedRunning, in_record_.error().message + "; the run goes on");
+  }
+
+  /// The picture as it is now.
+  core::Drawing drawing() const {
+    std::optional<mixed_reality::MixedReport> real;
+    if (mixed_ != nullptr) real = mixed_->report();
+    auto picture = picture_options(now_.world, real ? &*real : nullptr, outputs_.look);
+    if (outputs_.pictures != nullptr) picture.trails = &outputs_.pictures->trails();
+    return drawing_of(now_.world, outputs_, picture);
   }
 
   void measure() {
@@ -93,10 +137,18 @@ class Recording {
     if (recorder == nullptr || !in_record_.ok() || done < 0) return;
     in_record_ = recorder->tick_done(now_.world.space(), done);
     const std::vector<std::string>& incidents = now_.world.incidents().first;
+    incidents_told_ = std::min(incidents_told_, incidents.size());  // fewer, where the run went back
     for (; incidents_told_ < incidents.size() && in_record_.ok(); ++incidents_told_)
       in_record_ = recorder->event(done, {{"kind", "incident"}, {"text", incidents[incidents_told_]}});
-    if (in_record_.ok() && recorder->wants_fingerprint(done))
-      in_record_ = recorder->fingerprint(done, now_.world.state_hash());
+    if (in_record_.ok() && recorder->wants_fingerprint(done)) {
+      if (recorder->wants_checks()) {
+        const core::StateChecks checks = core::checks_of(now_.world.state_view());
+        in_record_ = recorder->fingerprint(done, checks.fingerprint);
+        if (in_record_.ok()) in_record_ = recorder->checks(done, checks);
+      } else {
+        in_record_ = recorder->fingerprint(done, now_.world.state_hash());
+      }
+    }
     if (!in_record_.ok()) complain(kFailedRunning, in_record_.error().message + "; the run goes on");
   }
   void draw() {
@@ -105,11 +157,7 @@ class Recording {
     const hal::Tick done = now_.world.tick();
     pictures->note(done, now_.world.space());
     if (!pictures->wants(done)) return;
-    std::optional<mixed_reality::MixedReport> real;
-    if (mixed_ != nullptr) real = mixed_->report();
-    auto picture = picture_options(now_.world, real ? &*real : nullptr, outputs_.look);
-    picture.trails = &pictures->trails();
-    pictures->draw(done, core::drawing_of(now_.world.space(), picture));
+    pictures->draw(done, drawing());
   }
   void prepare_report() {
     if (!outputs_.report) return;
@@ -136,7 +184,93 @@ class Recording {
   SaveAtEnd save_;
 };
 
-/// Steps a purely simulated world, paced when its file says so. @returns deadlines that were missed.
+/// What is to be done again; nothing where no record was named.
+hal::Result<core::Repeatable> read_repeated(const RunOptions& options, const core::Scenario& scenario) {
+  if (options.repeat.empty()) return core::Repeatable{};
+  if (has_real_robots(scenario)) {
+    return hal::Error{
+        "--repeat: real robots take part, and never do the same twice; simulate them instead (--without)"};
+  }
+  auto repeated = core::read_repeatable(options.repeat);
+  if (repeated.ok() && repeated.value().real_robots && options.replay.record.empty())
+    return hal::Error{"record '" + options.repeat +
+                      "': real robots took part in this run; `tandem replay` computes it again"};
+  if (repeated.ok() && repeated.value().experiment != scenario.name)
+    say("the record is of the experiment '" + repeated.value().experiment + "'");
+  return repeated;
+}
+
+/// The repeated run begins with the scripts of the record, whatever stands in their files now.
+void run_recorded_scripts(core::World& world, core::Repeatable& repeated) {
+  std::vector<core::RepeatedAction> reloads = core::reloads_to(repeated.scripts, world);
+  for (const core::RepeatedAction& reload : reloads) {
+    say(fmt::format("controller '{}' begins with its script as the record has it; the file is another one now",
+                    reload.action["controller"].get<std::string>()));
+  }
+  repeated.actions.insert(repeated.actions.begin(), std::make_move_iterator(reloads.begin()),
+                          std::make_move_iterator(reloads.end()));
+}
+
+/// What a record says at its start, with the scripts of controllers.
+hal::Json start_of(core::World& world, const InputFiles& inputs) {
+  hal::Json start = record_start(world, inputs);
+  hal::Json scripts = core::source_files(world);
+  for (hal::Json& files : scripts) {
+    for (hal::Json& file : files) file.erase("path");
+  }
+  if (!scripts.empty()) start["scripts"] = std::move(scripts);
+  return start;
+}
+
+/// Whether the tick that was just done is as it was in the run that is repeated; true where nobody knows.
+bool as_recorded(const core::Repeatable& repeated, const core::World& world) {
+  const auto known = repeated.fingerprints.find(world.tick() - 1);
+  return known == repeated.fingerprints.end() || known->second == world.state_hash();
+}
+
+/// A run that is held, or repeats what was done to another; null: it goes its way alone.
+std::unique_ptr<core::LiveRun> hold_run(const RunOptions& options, core::World& world, std::int64_t steps,
+                                        const core::Repeatable& repeated, bool in_lockstep,
+                                        const std::atomic<bool>& stop, mixed_reality::MixedSession* mixed,
+                                        const hal::Log& log) {
+  const bool held = options.hold.wanted || options.view.on;
+  if (!held && !options.watch.watch && options.repeat.empty() && mixed == nullptr) return nullptr;
+  core::LiveOptions live;
+  live.ticks = steps;
+  live.paused = mixed != nullptr ? mixed->paused() : options.hold.paused;
+  if (mixed != nullptr) {
+    live.pause_real = [mixed](bool paused) {
+      if (!paused) return mixed->go_on();
+      mixed->pause();
+      return hal::Status();
+    };
+  }
+  live.speed = options.hold.speed;
+  if (!live.speed && world.scenario().time_mode == core::TimeMode::Realtime) live.speed = 1.0;
+  live.real_robots = has_real_robots(world.scenario());
+  live.stay = options.hold.stay;
+  live.can_go_back = held && !in_lockstep;  // peers cannot be put back
+  live.memory_bytes = options.hold.memory_MB * 1'000'000;
+  live.repeat = repeated.actions;
+  live.log = log;
+  live.stop = &stop;
+  return std::make_unique<core::LiveRun>(world, std::move(live));
+}
+
+/// Steps a purely simulated world that somebody holds. @returns deadlines that were missed.
+template <class AfterTick>
+std::uint64_t run_held(core::World& world, core::LiveRun& live, const AfterTick& after_tick) {
+  world.start();
+  live.start();
+  while (live.before_step()) {
+    if (!world.step()) break;
+    if (live.after_step()) after_tick(world);
+  }
+  world.finish();
+  return live.deadline_misses();
+}
+
+/// The same for one that nobody holds, paced when its file says so.
 template <class AfterTick>
 std::uint64_t run_alone(core::World& world, std::int64_t steps, const std::atomic<bool>& stop,
                         mixed_reality::TimeSource& clock, const AfterTick& after_tick) {
@@ -146,7 +280,7 @@ std::uint64_t run_alone(core::World& world, std::int64_t steps, const std::atomi
   if (paced) pacer.start();
   while (world.state() == core::RunState::Running && (steps == 0 || world.tick() < steps) &&
          !stop.load(std::memory_order_relaxed)) {
-    world.step();
+    if (!world.step()) break;
     after_tick(world);
     if (paced && !pacer.wait_for_next(stop)) break;
   }
@@ -154,57 +288,17 @@ std::uint64_t run_alone(core::World& world, std::int64_t steps, const std::atomi
   return pacer.ledger().deadline_misses;
 }
 
-/// Makes robots that are real in the file ordinary ones. Error: there is no such real robot.
-hal::Status leave_out(core::Scenario& scenario, const std::vector<std::string>& ids) {
-  for (const std::string& id : ids) {
-    std::string real;
-    bool found = false;
-    for (core::RobotItem& item : scenario.robots) {
-      if (!item.bridge) continue;
-      real += (real.empty() ? "" : ", ") + item.id;
-      if (item.id != id) continue;
-      item.bridge.reset();
-      found = true;
-    }
-    if (!found)
-      return hal::Error{"--without " + id +
-                        ": there is no real robot of this name; there are: " + (real.empty() ? "none" : real)};
-  }
-  return {};
-}
-
-bool has_real_robots(const core::Scenario& scenario) {
-  for (const core::RobotItem& item : scenario.robots) {
-    if (item.bridge) return true;
-  }
-  return false;
-}
-
 /// Where a world's real robots take part; null when it has none. `code` is not kDone when they cannot.
 std::unique_ptr<mixed_reality::MixedSession> join_real_robots(
     const hal::Catalog& catalog, std::unique_ptr<core::World>& world, GuardedRobots& guarded, HubFaults& hub_faults,
-    mixed_reality::TimeSource& clock, const std::atomic<bool>& stop, const hal::Log& log, int& code) {
+    mixed_reality::TimeSource& clock, const std::atomic<bool>& stop, mixed_reality::MixedOptions options, int& code) {
   if (!has_real_robots(world->scenario())) return nullptr;
-  mixed_reality::MixedOptions options;
-  options.log = log;
-  options.freezes = [&guarded] { return guarded.freezes(); };
-  options.guarded = [&guarded] { return guarded.guarded(); };
-  catch_rearm();
-  options.rearm_asked = &rearm_asked();
-  options.on_left_out = [&guarded](const bridges::RobotBridge& bridge) { guarded.remove(bridge); };
+  options.scheduling = [] { return std::make_unique<mixed_reality::SystemScheduling>(); };
   options.before_commands = [&] {
     guarded.update();
     hub_faults.apply(clock.now_ns());
   };
-  const auto maker = [&](const bridges::BridgeRequest& request) {
-    bridges::BridgeRequest permitted = request;
-    permitted.permit = guarded.permit();
-    permitted.unix_clock = &hub_unix_ns;
-    auto bridge = mixed_reality::make_bridge(catalog, permitted, log);
-    if (bridge.ok()) guarded.add(**bridge);
-    return bridge;
-  };
-  auto made = mixed_reality::MixedSession::make(std::move(world), maker, clock, options);
+  auto made = make_session(catalog, world, guarded, clock, std::move(options));
   if (!made.ok()) {
     code = complain(kBadInput, made.error().message);
     return nullptr;
@@ -230,7 +324,7 @@ bool write_results(RunOutputs& outputs, const RunResult& result, bool table) {
   auto picture = picture_options(result.world, result.real, outputs.look);
   if (outputs.pictures != nullptr) picture.trails = &outputs.pictures->trails();
   if (outputs.picture) {
-    check(core::write_picture(result.world.space(), *outputs.picture, picture));
+    check(core::write_picture(drawing_of(result.world, outputs, picture), *outputs.picture, outputs.look));
   }
   if (outputs.scene) {
     check(write_scene(core::drawing_of(result.world.space(), picture), outputs.look, *outputs.scene, outputs.povray));
@@ -251,13 +345,17 @@ int run(const RunOptions& options) {
   if (!hub_faults.ok()) return complain(kBadInput, hub_faults.error().message);
   hal::PluginLoader loader = make_loader();
   ExperimentReading reading(loader, options.plugins);
-  if (!reading.open(options.experiment, options.overrides)) return kBadInput;
-  GuardedRobots guarded(reading.has_real_robots(options.without), loader.catalog(),
+  ReplayRun replay(options);
+  if (!(replay.wanted() ? replay.open(reading) : reading.open(options.experiment, options.overrides))) return kBadInput;
+  GuardedRobots guarded(!replay.wanted() && reading.has_real_robots(options.without), loader.catalog(),
                         hal::Log([](hal::Severity, std::string_view text) { say(text); }));  // before any thread
   auto scenario = reading.read();
   if (!scenario) return kBadInput;
   if (const hal::Status left_out = leave_out(*scenario, options.without); !left_out.ok())
     return complain(kBadInput, left_out.error().message);
+  if (const hal::Status ready = replay.wanted() ? replay.prepare(*scenario, loader.catalog()) : hal::Status{};
+      !ready.ok())
+    return complain(kBadInput, ready.error().message);
   if (!options.hub_faults.empty() && !has_real_robots(*scenario))
     return complain(kBadInput, "--hub-fault needs a real robot: no robot of this experiment has a <bridge>");
   if (const hal::Status paths = check_output_paths(options, *scenario, loader.catalog()); !paths.ok())
@@ -270,8 +368,10 @@ int run(const RunOptions& options) {
   auto opened_log = RunLog::open(options.log);
   if (!opened_log.ok()) return complain(kBadInput, opened_log.error().message);
   RunLog& run_log = *opened_log.value();
+  auto repeated = read_repeated(options, *scenario);
+  if (!repeated.ok()) return complain(kBadInput, repeated.error().message);
   core::WorldOptions world_options;
-  world_options.seed = options.seed;
+  world_options.seed = options.seed ? options.seed : repeated.value().seed;
   world_options.threads = options.threads;
   world_options.log = run_log.log();
   core::Problems problems;
@@ -279,9 +379,16 @@ int run(const RunOptions& options) {
   print_problems(problems);
   if (made == nullptr) return kBadInput;
   core::World* const world = made.get();  // a mixed session takes it over
+  const bool other_scripts = options.replay.accept_changes || (replay.wanted() && !options.overrides.empty());
+  if (!other_scripts) run_recorded_scripts(*world, repeated.value());
   const InputFiles inputs = input_files(*scenario, loader);
-  const std::int64_t steps = steps_of(options.steps, options.seconds, *scenario);
-  auto opened = open_outputs(options, *scenario, *world, record_start(*world, inputs), steps);
+  if (replay.wanted()) {
+    hal::Status joined = replay.check_files(inputs);
+    if (joined.ok()) joined = replay.join(*world, world_options.log);
+    if (!joined.ok()) return complain(kBadInput, joined.error().message);
+  }
+  const std::int64_t steps = replay.wanted() ? replay.steps() : steps_of(options.steps, options.seconds, *scenario);
+  auto opened = open_outputs(options, *scenario, *world, loader.catalog(), start_of(*world, inputs), steps);
   if (!opened.ok()) return complain(kBadInput, opened.error().message);
   RunOutputs& outputs = opened.value();
   problems.clear();
@@ -289,30 +396,119 @@ int run(const RunOptions& options) {
   print_problems(problems);
   if (core::has_errors(problems)) return kBadInput;
 
+  if (const hal::Status watched = Watch::check(options.watch, world->space()); !watched.ok())
+    return complain(kBadInput, watched.error().message);
+
   int code = kDone;
   mixed_reality::MonotonicTime clock;
+  std::function<void()> look;  // while real robots stand, because somebody paused the run
+  mixed_reality::MixedOptions mixed_options;
+  mixed_options.log = world_options.log;
+  mixed_options.hold = options.hold.paused || scenario->desk.hold;
+  mixed_options.while_paused = [&look] {
+    if (look) look();
+  };
+  if (mixed_options.hold && has_real_robots(*scenario) && !options.view.on && !options.watch.watch &&
+      scenario->desk.lcm.empty())
+    return complain(kBadInput,
+                    "nobody could start this run, which is to wait for that: add --view or --watch, or "
+                    "<desk lcm=…> in the file");
   const auto mixed =
-      join_real_robots(loader.catalog(), made, guarded, hub_faults.value(), clock, stop, world_options.log, code);
+      join_real_robots(loader.catalog(), made, guarded, hub_faults.value(), clock, stop, mixed_options, code);
+  if (code != kDone) return stop.load() ? interrupted_code() : code;
+  if (mixed != nullptr && outputs.record != nullptr) {
+    if (const hal::Status added = record_ledgers(*outputs.record, *mixed); !added.ok())
+      return complain(kFailedRunning, added.error().message);
+  }
+  const core::SpaceInputs* const from_outside = mixed != nullptr  ? &mixed->inputs()
+                                                : replay.wanted() ? replay.inputs()
+                                                                  : nullptr;
+  if (outputs.record != nullptr && from_outside != nullptr) {
+    if (const hal::Status written = outputs.record->set_inputs(world->space(), *from_outside); !written.ok())
+      return complain(kFailedRunning, written.error().message);
+  }
+
+  const auto lockstep = join_peers(*world, loader.catalog(), stop, world_options.log, code);
   if (code != kDone) return stop.load() ? interrupted_code() : code;
 
   RunResult result{*world, inputs, {}, world->space().robot_count(), {}, nullptr};
   result.figures.threads = world->threads();
   result.figures.init_s = wall_seconds() - began;
+  const auto live =
+      hold_run(options, *world, steps, repeated.value(), lockstep != nullptr, stop, mixed.get(), world_options.log);
+  bool as_before = true;  // as in the run that is repeated
   std::optional<mixed_reality::MixedReport> real;
   std::vector<std::string> left;  // robots whose stop nobody has confirmed
   {
-    Progress progress(steps, scenario->ticks_per_second);
+    std::optional<Progress> progress;
+    std::optional<Watch> watch;
+    if (options.watch.watch) {
+      Watch::Run watched{*live, *world, steps, {}, &request_stop};
+      if (mixed != nullptr) watched.real = [&mixed] { return mixed->status(); };
+      watch.emplace(options.watch, watched);
+    } else {
+      progress.emplace(steps, scenario->ticks_per_second);
+    }
     Recording recording(outputs, result, mixed.get(), watchdog);
+    std::optional<Desks> desks;
+    std::unique_ptr<RunView> view;
+    std::optional<ScriptWatch> scripts;
+    if (mixed != nullptr) {
+      desks.emplace(*live, *mixed);
+      desks->on_done([&](const hal::Json& action) {  // of real robots: nobody can do it again
+        const hal::Json event = {{"kind", "action"}, {"action", action}, {"repeatable", false}};
+        recording.event(world->tick(), event);
+        if (view != nullptr) view->event(world->tick(), event);
+      });
+      if (const hal::Status listens = desks->listen(scenario->desk); !listens.ok())
+        return complain(kFailedRunning, listens.error().message);
+    }
+    if (options.view.on) {
+      ViewedRun viewed{
+          *world, *live, loader.catalog(), mixed.get(), [&] { return recording.drawing(); }, desks ? &*desks : nullptr};
+      auto made_view = RunView::open(options.view, viewed);
+      if (!made_view.ok()) return complain(kBadInput, made_view.error().message);
+      view = std::move(made_view).value();
+      live->on_show([&] { view->show(); });
+      run_log.tell_also([&](std::string_view text) { view->log(text); });
+      if (!replay.wanted()) scripts.emplace(*live, *world, world_options.log);
+    }
+    if (live != nullptr) {
+      live->on_event([&](hal::Tick tick, const hal::Json& event) {
+        recording.event(tick, event);
+        if (view != nullptr) view->event(tick, event);
+      });
+    }
     const auto after_tick = [&](core::World& w) {
       recording.tick_done();
-      progress.step(w.tick());
+      if (progress) progress->step(w.tick());
+      if (replay.wanted()) {
+        as_before = replay.tick_done(repeated.value(), w) && as_before;
+      } else if (as_before && !as_recorded(repeated.value(), w)) {
+        as_before = false;
+        complain(kFailedRunning, fmt::format("tick {} is not as in {}: another experiment, program or plug-in, or the "
+                                             "run was not a repeatable one",
+                                             w.tick() - 1, options.repeat));
+      }
+      if (live != nullptr && mixed != nullptr) (void)live->after_step();
+      if (view != nullptr) view->tick_done();
+    };
+    look = [&] {
+      live->look();
+      if (view != nullptr) view->stand();
     };
     if (mixed != nullptr) {
       (void)mixed->run(steps, stop, after_tick);  // a failure is the world's, and told below
+    } else if (live != nullptr) {
+      result.figures.deadline_misses = run_held(*world, *live, after_tick);
     } else {
       result.figures.deadline_misses = run_alone(*world, steps, stop, clock, after_tick);
     }
+    look = {};
+    scripts.reset();
     recording.measure();
+    if (live != nullptr) live->close();
+    run_log.tell_also({});
   }
   const bool was_guarded = guarded.guarded();
   if (mixed != nullptr) {
@@ -322,16 +518,30 @@ int run(const RunOptions& options) {
     result.figures.deadline_misses = real->pace.deadline_misses;
     left = guarded.release_rested();
   }
+  if (replay.wanted()) {
+    as_before = replay.finish(*world) && as_before;
+    result.replay = replay.json();
+    result.more_rows = replay.rows();
+  }
   result.end = end_of(*world, steps, stop.load(std::memory_order_relaxed));
+  std::optional<mixed_reality::LockstepReport> peers;
+  if (lockstep != nullptr) {
+    peers = lockstep->report();
+    result.peers = &*peers;
+    lockstep->finish(!result.end.finished(), result.end.finished() ? "the run is over" : "the run ended early");
+  }
   if (result.end.how == Ended::Failed) complain(kFailedRunning, result.end.failure);
   if (result.end.how == Ended::Interrupted) say(fmt::format("interrupted at tick {}", world->tick()));
   const bool table = !options.quiet && options.report != "-";
   bool written = write_results(outputs, result, table);
   if (const hal::Status logged = run_log.close(); !logged.ok())
     written = complain(kFailedRunning, logged.error().message) == kDone;
-  const bool failed = result.end.how == Ended::Failed || world->incidents().controllers_thrown > 0;
+  if (live != nullptr && !live->failure().empty()) complain(kFailedRunning, live->failure());
+  const bool failed = result.end.how == Ended::Failed || world->incidents().controllers_thrown > 0 || !as_before ||
+                      (live != nullptr && !live->failure().empty());
   if (failed || !was_guarded || !written || !left.empty()) return kFailedRunning;
-  return result.end.how == Ended::Interrupted ? interrupted_code() : kDone;
+  const bool until_interrupted = options.view.on && options.hold.stay;  // that is how such a run ends
+  return result.end.how == Ended::Interrupted && !until_interrupted ? interrupted_code() : kDone;
 }
 
 }  // namespace tandem::app

@@ -7,12 +7,14 @@
 #include "bridges/bridge_type.hpp"
 #include "bridges/emulation/emulator_type.hpp"
 #include "bridges/guardian/stopper.hpp"
+#include "bridges/tracker_type.hpp"
 #include "core/device/coupling.hpp"
 #include "core/hook/hook.hpp"
 #include "core/physics/engine.hpp"
 #include "core/scenario/field_type.hpp"
 #include "core/scenario/medium_type.hpp"
 #include "core/scenario/observer_type.hpp"
+#include "core/view/layers/layer.hpp"
 
 namespace tandem::app {
 namespace {
@@ -38,9 +40,13 @@ class Tables {
           : bridge             ? "stops robots of the bridge of that name"
                                : fmt::format("there is no bridge '{}' whose robots it could stop", type.kind));
     });
+    each<core::LayerType>([this](const core::LayerType& type) {
+      if (type.make == nullptr || !(type.draws || type.panels))
+        say(false, type, "table", "it shows nothing: it has neither `draw` nor `panel`, or no function that makes one");
+    });
     judge_summaries<core::DeviceType, core::CouplingType, core::EngineType, core::FieldType, core::MediumType,
-                    core::ObserverType, core::HookType, hal::ControllerType, bridges::BridgeType, bridges::EmulatorType,
-                    hal::RobotKind>();
+                    core::ObserverType, core::LayerType, core::HookType, hal::ControllerType, bridges::BridgeType,
+                    bridges::TrackerType, bridges::EmulatorType, hal::RobotKind>();
   }
 
  private:
@@ -168,7 +174,7 @@ class Tables {
   void judge_emulator(const bridges::EmulatorType& type) {
     if (type.run == nullptr || type.read == nullptr || type.needs == nullptr || type.ports == nullptr)
       return say(false, type, "table", "its table lacks one of run, read, needs and ports");
-    const bool kind = catalog_.find<hal::RobotKind>(type.kind) != nullptr;
+    const bool kind = type.kind.empty() || catalog_.find<hal::RobotKind>(type.kind) != nullptr;
     say(kind, type, "table", kind ? "complete" : fmt::format("there is no kind of robots '{}'", type.kind));
   }
 

@@ -15,6 +15,7 @@
 #include "core/device/coupling.hpp"
 #include "core/scenario/field_type.hpp"
 #include "core/scenario/medium_type.hpp"
+#include "core/view/layers/layer_set.hpp"
 #include "hal/device/flight.hpp"
 #include "hal/device/wheels.hpp"
 
@@ -35,6 +36,7 @@ class Worlds {
     each<core::FieldType>([this](const core::FieldType& type) { judge_field(type); });
     each<core::MediumType>([this](const core::MediumType& type) { judge_medium(type); });
     each<core::ObserverType>([this](const core::ObserverType& type) { judge_observer(type); });
+    each<core::LayerType>([this](const core::LayerType& type) { judge_layer(type); });
     judge_bystanders();
   }
 
@@ -281,6 +283,29 @@ class Worlds {
     std::filesystem::remove(file, ignored);
     (void)step_to(*alone, TrialMaker::kTicks);
     if (!good) return course.say(Verdict::Fault, "runs", "it failed; see above");
+    if (watched->state_hash() != alone->state_hash())
+      return course.say(Verdict::Fault, "worlds", "a run that it sees goes on otherwise than one that it does not see");
+    course.say(Verdict::Good, "worlds", "a run that it sees is the same run");
+  }
+
+  void judge_layer(const core::LayerType& type) {
+    const TrialMaker maker(loader_, plain(*kinds().front()));
+    Course course(name_of(type), maker, all_);
+    std::string why;
+    const auto watched = maker.make(0, why);
+    const auto alone = maker.make(0, why);
+    if (watched == nullptr || alone == nullptr) return course.say(Verdict::NotJudged, "worlds", why);
+    core::LayerSet layers(catalog_, hal::Log([&why](hal::Severity, std::string_view text) { why = text; }));
+    if (const hal::Status on = layers.switch_on({std::string(type.name)}); !on.ok())
+      return course.say(Verdict::Fault, "runs", why.empty() ? on.error().message : why);
+    while (watched->tick() < TrialMaker::kTicks && watched->state() == core::RunState::Running) {
+      watched->step();
+      const core::Observation now = observation_of(*watched, watched->tick() - 1);
+      layers.note(now);
+      (void)layers.show(now);
+    }
+    (void)step_to(*alone, TrialMaker::kTicks);
+    if (!layers.any_on()) return course.say(Verdict::Fault, "runs", why);
     if (watched->state_hash() != alone->state_hash())
       return course.say(Verdict::Fault, "worlds", "a run that it sees goes on otherwise than one that it does not see");
     course.say(Verdict::Good, "worlds", "a run that it sees is the same run");

@@ -1,0 +1,132 @@
+// `tandem desk`: a person's word to a run that goes on, over its window or over LCM.
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include "app/command/command.hpp"
+#include "app/report.hpp"
+#include "app/terminal.hpp"
+#include "bridges/desk/lcm_desk.hpp"
+#include "hal/json/json.hpp"
+#include "window/client.hpp"
+
+namespace tandem::app {
+namespace {
+
+using hal::Json;
+using namespace std::chrono_literals;
+constexpr auto kPatience = 10s;
+constexpr std::string_view kLcm = "lcm:";
+
+hal::Result<Json> parsed(const std::string& text) {
+  auto answer = hal::parse_json_object(text);
+  if (!answer.ok()) return hal::Error{"the answer is none: " + answer.error().message};
+  return answer;
+}
+
+hal::Result<Json> ask_window(const std::string& address, Json command) {
+  auto joined = window::Client::connect(address);
+  if (!joined.ok()) return joined.error();
+  window::Client client = std::move(joined).value();
+  command["id"] = 1;
+  if (const hal::Status sent = client.send(hal::to_text(command)); !sent.ok()) return sent.error();
+  const auto until = std::chrono::steady_clock::now() + kPatience;
+  while (std::chrono::steady_clock::now() < until) {
+    const auto received = client.receive(200ms);
+    if (!received) continue;
+    if (received->kind == window::Client::Received::Kind::Close) return hal::Error{"the run has ended"};
+    if (received->kind != window::Client::Received::Kind::Text) continue;
+    auto message = parsed(received->bytes);
+    if (message.ok() && message.value().value("type", "") == "answer") return message;
+  }
+  return hal::Error{"the run did not answer within 10 s"};
+}
+
+hal::Result<Json> ask_lcm(const std::string& where, const Json& command, const std::string& who) {
+  const std::size_t mark = where.find('#');  // lcm:udpm://…#channel
+  const std::string url = where.substr(0, mark);
+  const std::string channel = mark == std::string::npos ? "tandem/desk" : where.substr(mark + 1);
+  const std::int64_t number = std::chrono::steady_clock::now().time_since_epoch().count();
+  auto answer = bridges::desk::ask(url, channel, {number, who, hal::to_text(command)}, kPatience);
+  if (!answer.ok()) return answer.error();
+  return parsed(answer.value());
+}
+
+std::string own_name() {
+  const char* const user = std::getenv("USER");
+  char host[64] = {};
+  if (::gethostname(host, sizeof host - 1) != 0) host[0] = 0;
+  return (user != nullptr ? std::string(user) : std::string("somebody")) + "@" + host;
+}
+
+Json command_of(const DeskOptions& o) {
+  Json command = {{"do", o.command == "start" || o.command == "go" ? "play" : o.command}};
+  if (!o.robot.empty()) command["robot"] = o.robot;
+  if (!o.spare.empty()) command["spare"] = o.spare;
+  if (!o.link.empty()) command["link"] = o.link;
+  if (!o.as.empty()) command["as"] = o.as;
+  if (!o.seen_as.empty()) command["seen_as"] = o.seen_as;
+  if (o.at.size() >= 2) {
+    command["x"] = o.at[0];
+    command["y"] = o.at[1];
+    if (o.at.size() > 2) command["heading"] = o.at[2];
+  }
+  return command;
+}
+
+std::string text_of(const Json& object, const char* name) {
+  const auto found = object.find(name);
+  return found != object.end() && found->is_string() ? printable(found->get<std::string>()) : std::string();
+}
+
+std::string number_of(const Json& object, const char* name, double scale, const char* unit) {
+  const auto found = object.find(name);
+  return found != object.end() && found->is_number() ? fmt::format("{:.0f} {}", found->get<double>() * scale, unit)
+                                                     : std::string();
+}
+
+void print_answer(const Json& answer) {
+  if (const auto rows = answer.find("preflight"); rows != answer.end() && rows->is_array()) {
+    for (const Json& row : *rows)
+      fmt::print("{:<4}  {:<18} {:<12} {}{}\n", text_of(row, "finding"), text_of(row, "about"), text_of(row, "check"),
+                 text_of(row, "found"), text_of(row, "advice").empty() ? "" : "\n      -> " + text_of(row, "advice"));
+    return;
+  }
+  if (const auto robots = answer.find("robots"); robots != answer.end() && robots->is_array()) {
+    std::vector<std::pair<std::string, std::string>> table;
+    for (const Json& robot : *robots) {
+      std::string text = text_of(robot, "state");
+      const std::string device = text_of(robot, "device");
+      if (!device.empty() && device != text_of(robot, "id")) text += "; is '" + device + "'";
+      for (const std::string& more :
+           {number_of(robot, "age_s", 1e3, "ms old"), number_of(robot, "round_trip_s", 1e3, "ms there and back"),
+            number_of(robot, "battery", 100.0, "% battery")})
+        if (!more.empty()) text += ", " + more;
+      table.emplace_back(text_of(robot, "id"), text);
+    }
+    if (answer.value("paused", false)) table.emplace_back("the run", "is paused");
+    print_table(table);
+  }
+  if (const std::string note = text_of(answer, "note"); !note.empty()) fmt::print("{}\n", note);
+}
+
+}  // namespace
+
+int desk(const DeskOptions& options) {
+  const std::string who = options.who.empty() ? own_name() : options.who;
+  Json command = command_of(options);
+  command["who"] = who;
+  std::string where = options.where;
+  const auto answer =
+      where.starts_with(kLcm) ? ask_lcm(where.substr(kLcm.size()), command, who) : ask_window(where, command);
+  if (!answer.ok()) return complain(kFailedRunning, "desk: " + answer.error().message);
+  if (options.json) fmt::print("{}\n", hal::to_text(answer.value()));
+  if (!answer.value().value("ok", false))
+    return complain(kBadInput, "the run refuses: " + text_of(answer.value(), "error"));
+  if (!options.json) print_answer(answer.value());
+  return kDone;
+}
+
+}  // namespace tandem::app

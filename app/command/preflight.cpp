@@ -1,0 +1,193 @@
+// `tandem preflight`: everything that would stop a run with real robots, before anything moves.
+#include "mixed_reality/desk/preflight.hpp"
+
+#include <algorithm>
+#include <csignal>
+#include <cstdio>
+#include <fmt/format.h>
+#include <iostream>
+#include <unistd.h>
+
+#include "app/command/command.hpp"
+#include "app/desks.hpp"
+#include "app/guarded_robots.hpp"
+#include "app/mixed_run.hpp"
+#include "app/plugins.hpp"
+#include "app/run_report.hpp"
+#include "app/signals.hpp"
+#include "app/terminal.hpp"
+#include "core/sim/world.hpp"
+#include "hal/output_file.hpp"
+#include "mixed_reality/settings/tracker_check.hpp"
+
+namespace tandem::app {
+namespace {
+
+using mixed_reality::Finding;
+using mixed_reality::PreflightRow;
+using mixed_reality::PreflightRows;
+
+void add_file(const char* what, const InputFile& file, PreflightRows& rows) {
+  const std::string about = file.id.empty() ? file.label : file.id;
+  const bool there = !file.sha256.empty();
+  rows.push_back({what + (about.empty() ? std::string() : " " + about), "file", there ? Finding::Ok : Finding::Fail,
+                  file.file + (there ? ", sha256 " + file.sha256.substr(0, 16) : ": it cannot be read"),
+                  there ? "" : "see whether it is there, and may be read"});
+}
+
+PreflightRows rows_of_files(const InputFiles& files) {
+  PreflightRows rows;
+  add_file("experiment", files.experiment, rows);
+  for (const InputFile& file : files.plugins) add_file("plug-in", file, rows);
+  for (const InputFile& file : files.controllers) add_file("controller", file, rows);
+  for (const InputFile& file : files.hooks) add_file("hook", file, rows);
+  return rows;
+}
+
+/// Waits for the robots as a run would, and then listens for a while.
+hal::Status listen(mixed_reality::MixedSession& session, const PreflightOptions& options,
+                   const std::atomic<bool>& stop) {
+  double wait_s = 0.0;
+  for (const core::RobotItem& item : session.world().scenario().robots) {
+    if (item.bridge) wait_s = std::max(wait_s, item.bridge->connect_s);
+  }
+  wait_s = options.wait_s.value_or(wait_s);
+  mixed_reality::MonotonicTime clock;
+  const hal::TimeNs began_ns = clock.now_ns();
+  hal::TimeNs answered_ns = 0;
+  return session.stand_by(
+      [&] {
+        const hal::TimeNs now_ns = clock.now_ns();
+        if (answered_ns == 0 && (session.all_answer() || hal::to_seconds(now_ns - began_ns) >= wait_s))
+          answered_ns = now_ns;
+        return answered_ns != 0 && hal::to_seconds(now_ns - answered_ns) >= options.listen_s;
+      },
+      stop);
+}
+
+/// What a person on the terminal says to "turn it?": y, n, a (all), q (no more). Ctrl-C counts as q.
+char asked(const std::string& robot, const std::atomic<bool>& stop) {
+  fmt::print(stderr, "turn '{}' a little? [y]es, [n]o, [a]ll, [q]uit: ", robot);
+  std::string line;
+  if (stop.load() || !std::getline(std::cin, line) || stop.load()) return 'q';
+  return line.empty() ? 'n' : line.front();
+}
+
+PreflightRows move_all(mixed_reality::MixedSession& session, const PreflightOptions& options,
+                       const std::atomic<bool>& stop) {
+  PreflightRows rows;
+  bool ask = !options.yes && ::isatty(STDIN_FILENO) == 1;
+  for (const auto& robot : session.status()) {
+    const auto skip = [&](const char* why) {
+      rows.push_back({"robot " + robot.id, "motion", Finding::Warn, why, "try it alone, before it is among others"});
+    };
+    if (session.world().space().kind(robot.robot).drive() == nullptr) {
+      skip("not tried: it has no wheels to turn on");
+      continue;
+    }
+    if (robot.health != bridges::LinkHealth::Active) continue;  // that was told
+    if (ask) {
+      const char said = asked(robot.id, stop);
+      if (said == 'q') break;
+      if (said == 'a') ask = false;
+      if (said != 'a' && said != 'y') {
+        skip("not tried");
+        continue;
+      }
+    }
+    say("turning '" + robot.id + "' to the left and back; Ctrl-C stops it");
+    const PreflightRows moved = mixed_reality::try_motion(session, robot.id, stop);
+    rows.insert(rows.end(), moved.begin(), moved.end());
+    if (stop.load()) break;
+  }
+  return rows;
+}
+
+void print_rows(const PreflightRows& rows) {
+  std::size_t about = 0, check = 0;
+  for (const PreflightRow& row : rows) {
+    about = std::max(about, row.about.size());
+    check = std::max(check, row.check.size());
+  }
+  for (const PreflightRow& row : rows) {
+    fmt::print("{:<4}  {:<{}}  {:<{}}  {}\n", name_of(row.finding), printable(row.about), about, printable(row.check),
+               check, printable(row.found));
+    if (!row.advice.empty()) fmt::print("{:<{}}-> {}\n", "", about + check + 10, printable(row.advice));
+  }
+  const auto count = [&](Finding finding) {
+    return std::count_if(rows.begin(), rows.end(), [&](const PreflightRow& row) { return row.finding == finding; });
+  };
+  fmt::print("{} ok, {} to look at, {} in the way: {}\n", count(Finding::Ok), count(Finding::Warn),
+             count(Finding::Fail), count(Finding::Fail) == 0 ? "the run can begin" : "the run would not go well");
+}
+
+}  // namespace
+
+int preflight(const PreflightOptions& options) {
+  hal::PluginLoader loader = make_loader();
+  ExperimentReading reading(loader, options.plugins);
+  if (!reading.open(options.experiment, options.overrides)) return kBadInput;
+  GuardedRobots guarded(reading.has_real_robots(options.without), loader.catalog(),
+                        hal::Log([](hal::Severity, std::string_view text) { say(text); }));  // before any thread
+  auto scenario = reading.read();
+  if (!scenario) return kBadInput;
+  if (const hal::Status left_out = leave_out(*scenario, options.without); !left_out.ok())
+    return complain(kBadInput, left_out.error().message);
+  if (!has_real_robots(*scenario))
+    return complain(kBadInput, "no robot of this experiment has a <bridge>: `tandem check` is all that it needs");
+  if (!guarded.started().ok()) return complain(kFailedRunning, guarded.started().error().message);
+  const std::atomic<bool>& stop = catch_signals();
+  std::signal(SIGPIPE, SIG_IGN);
+  core::WorldOptions world_options;
+  core::Problems problems;
+  auto world = core::World::make(*scenario, loader, world_options, problems);
+  print_problems(problems);
+  if (world == nullptr) return kBadInput;
+  PreflightRows rows = rows_of_files(input_files(*scenario, loader));
+
+  mixed_reality::MonotonicTime clock;
+  mixed_reality::MixedOptions mixed;
+  mixed.ask_batteries = true;
+  mixed.before_commands = [&guarded] { guarded.update(); };
+  auto made = make_session(loader.catalog(), world, guarded, clock, std::move(mixed));
+  if (!made.ok()) return complain(kBadInput, made.error().message);
+  const auto session = std::move(made).value();
+  const hal::Status claimed = guarded.claim();
+  rows.push_back({"guardian", "robots", claimed.ok() ? Finding::Ok : Finding::Fail,
+                  claimed.ok() ? "nobody else drives them" : claimed.error().message,
+                  claimed.ok() ? "" : "end the other program"});
+  for (const std::string& outlook : mixed_reality::outlooks(*scenario, loader.catalog()))
+    rows.push_back({"trackers", "outlook", Finding::Ok, outlook, ""});
+  const auto append = [&rows](const PreflightRows& more) { rows.insert(rows.end(), more.begin(), more.end()); };
+  if (claimed.ok()) {
+    if (const hal::Status listened = listen(*session, options, stop); !listened.ok() && !stop.load())
+      rows.push_back({"trackers", "listen", Finding::Fail, listened.error().message, "see the tracker's address"});
+    append(mixed_reality::look_over(*session));
+    append(mixed_reality::look_over_machine(*scenario, session->woke_late()));
+    if (options.move && !stop.load() && worst_of(rows) == Finding::Fail)
+      rows.push_back({"motion", "test", Finding::Warn, "not tried, as something is in the way", "mend that first"});
+    else if (options.move && !stop.load())
+      append(move_all(*session, options, stop));
+    session->stop_robots();
+    session->shut_down();
+  }
+  (void)guarded.release_rested();
+  if (stop.load()) return interrupted_code();
+
+  const hal::Json json = {{"experiment", scenario->file},
+                          {"worst", name_of(worst_of(rows))},
+                          {"moved", options.move},
+                          {"preflight", to_json(rows)}};
+  if (options.json) {
+    fmt::print("{}\n", hal::to_text(json));
+  } else {
+    print_rows(rows);
+  }
+  if (!options.report.empty()) {
+    const hal::Status written = hal::write_whole_file(options.report, "report", hal::to_text(json) + "\n");
+    if (!written.ok()) return complain(kFailedRunning, written.error().message);
+  }
+  return worst_of(rows) == Finding::Fail ? kFailedRunning : kDone;
+}
+
+}  // namespace tandem::app

@@ -1,0 +1,19 @@
+// Real robots of a run as viewers see them.
+#pragma once
+#include "core/record/record.hpp"
+#include "hal/json/json.hpp"
+#include "mixed_reality/session/mixed_session.hpp"
+
+namespace tandem::app {
+
+/// Message "real" of the view protocol: every real robot's link, ages, places and why it does not drive. Called by the
+/// thread that steps.
+hal::Json real_message(const mixed_reality::MixedSession& session);
+
+/// The areas of an experiment as that message has them.
+hal::Json areas_json(const core::SafetyConfig& safety);
+
+/// The ledgers of real robots are written into the record, of set "time". The session must outlive it.
+hal::Status record_ledgers(core::Recorder& recorder, const mixed_reality::MixedSession& session);
+
+}  // namespace tandem::app
