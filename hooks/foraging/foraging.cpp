@@ -33,6 +33,16 @@ void Foraging::appear(Item& item) {
   item.y_m = between(state_.chance, params_.food_min_m[1], params_.food_max_m[1]);
 }
 
+void Foraging::controls(core::HookContext& context, hal::Controls& controls) {
+  if (controls.number("radius", params_.radius_m, hal::unit::cm, {0.01, 0.5}, "Of an item on the floor."))
+    context.space.repaint_floor();
+  if (!controls.button("scatter", "Puts all items that lie on the floor elsewhere.")) return;
+  for (Item& item : state_.items) {
+    if (!item.taken) appear(item);
+  }
+  context.space.repaint_floor();
+}
+
 Foraging::Item* Foraging::item_of(core::RobotId robot) noexcept {
   for (Item& item : state_.items) {
     if (item.taken && item.bearer == robot) return &item;
@@ -75,14 +85,18 @@ void Foraging::after_step(core::HookContext& context) {
     ++(space.pose(space.robot(i)).x_m < params_.nest_x_m ? line.inside : line.outside);
   }
   const double rate_hz = static_cast<double>(context.ticks_per_second);
+  const double energy_J = params_.energy_per_item_J * static_cast<double>(state_.collected) -
+                          params_.power_outside_W * static_cast<double>(state_.robot_ticks_outside) / rate_hz;
+  context.measures.set("collected", static_cast<double>(state_.collected));
+  context.measures.set("energy_J", energy_J);
+  context.measures.set("outside", static_cast<double>(line.outside));
   const hal::Tick done = context.tick + 1;
   if (done % std::max<hal::Tick>(1, std::llround(params_.every_s * rate_hz)) != 0) return;
   line.time_s = static_cast<double>(done) / rate_hz;
   line.bringing = static_cast<std::size_t>(
       std::count_if(state_.items.begin(), state_.items.end(), [](const Item& item) { return item.taken; }));
   line.collected = state_.collected;
-  line.energy_J = params_.energy_per_item_J * static_cast<double>(state_.collected) -
-                  params_.power_outside_W * static_cast<double>(state_.robot_ticks_outside) / rate_hz;
+  line.energy_J = energy_J;
   state_.lines.push_back(line);
 }
 

@@ -51,6 +51,8 @@ class Foraging final : public core::Hook {
   /// @throws std::runtime_error when the file cannot be written
   void after_run(core::HookContext& context) override;
   std::optional<double> floor(double x_m, double y_m) override;
+  /// The size of food items, and a button that puts those on the floor elsewhere.
+  void controls(core::HookContext& context, hal::Controls& controls) override;
   std::any save() const override { return state_; }
   void restore(const std::any& saved) override { state_ = std::any_cast<State>(saved); }
 

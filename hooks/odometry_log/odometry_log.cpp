@@ -41,17 +41,28 @@ void OdometryLog::before_run(core::HookContext& context) {
 }
 
 void OdometryLog::after_step(core::HookContext& context) {
-  if (!out_.is_open() || (context.tick + 1) % params_.every != 0) return;
+  if ((context.tick + 1) % params_.every != 0) return;
   const double time_s = static_cast<double>(context.tick + 1) / static_cast<double>(context.ticks_per_second);
   const core::Space& space = context.space;
+  double robots = 0.0, x_m = 0.0, y_m = 0.0, error_m = 0.0;
   for (std::size_t i = 0; i < space.robot_count(); ++i) {
     const core::RobotId robot = space.robot(i);
     const auto* odometry = space.port<hal::Odometry>(robot);
     const auto start = starts_.find(space.robot_name(robot));
     if (odometry == nullptr || odometry->validity != hal::Validity::Fresh || start == starts_.end()) continue;
-    out_ << hal::format_number(time_s) << ',' << start->first << ',' << space.pose(robot) << ','
-         << in_world(start->second, *odometry) << '\n';
+    const core::Pose pose = space.pose(robot);
+    const core::Pose believed = in_world(start->second, *odometry);
+    robots += 1.0;
+    x_m += pose.x_m;
+    y_m += pose.y_m;
+    error_m += std::hypot(pose.x_m - believed.x_m, pose.y_m - believed.y_m);
+    if (out_.is_open())
+      out_ << hal::format_number(time_s) << ',' << start->first << ',' << pose << ',' << believed << '\n';
   }
+  if (robots == 0.0) return;
+  context.measures.set("x_m", x_m / robots);
+  context.measures.set("y_m", y_m / robots);
+  context.measures.set("odometry_error_m", error_m / robots);
 }
 
 void OdometryLog::after_run(core::HookContext&) {

@@ -21,7 +21,7 @@ class OdometryLog final : public core::Hook {
     std::int64_t every = 1;
     void describe(hal::ParamVisitor& v) {
       v.text("output", output, "CSV file to write; empty: none.");
-      v.integer("every", every, {1, 1e12}, "Ticks between lines of a robot.");
+      v.integer("every", every, {1, 1e12}, "Ticks between lines of a robot, and between measures.");
     }
   };
 

@@ -61,6 +61,8 @@ void Throughput::after_step(core::HookContext& context) {
   const hal::Tick done = context.tick + 1;
   while (!state_.recent.empty() && state_.recent.front() < done - ticks_of(params_.window_s, context))
     state_.recent.pop_front();
+  context.measures.set("throughput", static_cast<double>(state_.recent.size()));
+  context.measures.set("brought", static_cast<double>(state_.brought));
   const hal::Tick every = std::max<hal::Tick>(1, ticks_of(params_.every_s, context));
   if (done % every != 0) return;
   state_.samples.push_back({static_cast<double>(done) / static_cast<double>(context.ticks_per_second),

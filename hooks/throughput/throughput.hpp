@@ -15,9 +15,9 @@ namespace tandem::hooks {
 /// exhausted. The nest is the western end of the arena; with `<floor source="loop_functions"/>` its floor is black and
 /// the rest white.
 ///
-/// Throughput is the number of objects brought during the last `window`, written to a CSV file every `every`:
-/// `time_s,throughput,brought`, as Pinciroli et al. (2012), section 4.2.2, measure it. The first full window ends at
-/// `window`; earlier samples count since the start.
+/// Throughput is the number of objects brought during the last `window`: the measure "throughput", beside "brought"
+/// since the start; also written to a CSV file every `every`: `time_s,throughput,brought`, as Pinciroli et al. (2012),
+/// section 4.2.2, measure it. The first full window ends at `window`; earlier samples count since the start.
 class Throughput final : public core::Hook {
  public:
   struct Params {
