@@ -139,9 +139,9 @@ int whole_ticks(const scenarios::fs::path& file) {
   std::map<std::string, int> lines;
   std::string line;
   std::getline(in, line);
-  EXPECT_EQ(line, "tick,time_s,id,x_m,y_m,heading_rad") << file;
+  EXPECT_EQ(line, "tick,time_s,id,x_m,y_m,z_m,heading_rad") << file;
   while (std::getline(in, line)) {
-    EXPECT_EQ(std::count(line.begin(), line.end(), ','), 5) << line;
+    EXPECT_EQ(std::count(line.begin(), line.end(), ','), 6) << line;
     ++lines[line.substr(0, line.find(','))];
   }
   int whole = 0;
@@ -224,9 +224,10 @@ TEST_F(BadInput, IsAllToldAtOnce) {
 
 TEST_F(BadInput, WrongUsageHasItsOwnCode) {
   fails({}, 2, {"subcommand"});
-  fails({"rnu"}, 2, {});
-  fails({"run"}, 2, {"experiment"});
-  fails({"run", kConfigs + "epuck_diffusion.xml", "--seconds", "-3"}, 2, {"seconds"});
+  fails({"rnu"}, 2, {"rnu", "--help"});
+  fails({"run"}, 2, {"experiment", "tandem run --help"});
+  fails({"run", kConfigs + "epuck_diffusion.xml", "--seconds", "-3"}, 2, {"seconds", "too small"});
+  fails({"emulate", "tracker", "--link", "udp:127.0.0.1:9", "--sees", "a=b", "--sees", "c=d"}, 2, {"--sees", "twice"});
   fails({"bench", "walking"}, 2, {"diffusion"});
   fails({"emulate", "r2d2", "--link", "pty:x"}, 2, {"epuck"});
   fails({"emulate", "epuck", "--link", "pty:x", "--fault", "explode@3s"}, 1, {"explode"});

@@ -76,9 +76,9 @@ class Endings : public testing::Test {
     std::map<int, int> lines;
     std::string line;
     std::getline(in, line);
-    EXPECT_EQ(line, "tick,time_s,id,x_m,y_m,heading_rad");
+    EXPECT_EQ(line, "tick,time_s,id,x_m,y_m,z_m,heading_rad");
     while (std::getline(in, line)) {
-      EXPECT_EQ(std::count(line.begin(), line.end(), ','), 5) << line;
+      EXPECT_EQ(std::count(line.begin(), line.end(), ','), 6) << line;
       ++lines[std::stoi(line)];
     }
     for (const auto& [tick, count] : lines) EXPECT_EQ(count, kRobots) << "tick " << tick;

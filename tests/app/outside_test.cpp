@@ -200,8 +200,20 @@ TEST_F(Examples, TheObserverWritesWhatItSees) {
   EXPECT_THAT(unknown.errors(), AllOf(HasSubstr("sprawl"), HasSubstr("spread")));
 }
 
+TEST_F(Examples, TheLayerDrawsOverPictures) {
+  run({"crowd.xml", "--quiet", "--picture", "crowd.svg", "--picture-at", "1", "--picture-layers", "crowd,proximity"});
+  const std::string svg = text_of(path() / "crowd-000001.svg");
+  const std::size_t sketch = svg.find("<g class=\"sketch\"");
+  ASSERT_NE(sketch, std::string::npos);
+  EXPECT_NE(svg.find("r=\"0.05\" stroke=\"#d55e00\"", sketch), std::string::npos) << "robots that are close";
+  EXPECT_NE(svg.find("<polyline", sketch), std::string::npos) << "rays";
+  run({"crowd.xml", "--quiet", "--picture", "plain.svg"});
+  EXPECT_EQ(text_of(path() / "plain.svg").find("<g class=\"sketch\""), std::string::npos);
+}
+
 TEST_F(Examples, GiveTheSameBitsForAnyNumberOfThreads) {
-  for (const std::string name : {"temperature", "lift", "waltz", "doorman", "river", "chirp", "spread", "buggy"}) {
+  for (const std::string name :
+       {"temperature", "lift", "waltz", "doorman", "river", "chirp", "spread", "crowd", "buggy"}) {
     const std::string first = hash_of(name + ".xml", "0");
     EXPECT_FALSE(first.empty()) << name;
     EXPECT_EQ(hash_of(name + ".xml", "2"), first) << name;
@@ -210,13 +222,15 @@ TEST_F(Examples, GiveTheSameBitsForAnyNumberOfThreads) {
 
 TEST_F(Examples, AreListedAndDescribedWithWhereTheyComeFrom) {
   std::vector<std::string> list = {"list"};
-  for (const std::string name : {"temperature", "lift", "waltz", "doorman", "river", "chirp", "spread", "buggy"})
+  for (const std::string name :
+       {"temperature", "lift", "waltz", "doorman", "river", "chirp", "spread", "crowd", "buggy"})
     list.insert(list.end(), {"--plugin", "build/lib" + name + ".so"});
   Tandem listed(list, path());
   ASSERT_EQ(listed.wait(), 0) << listed.errors();
   EXPECT_THAT(listed.output(),
               AllOf(HasSubstr("libtemperature.so: 1 controller, 1 device, 1 field, 1 part, 1 port, 1 robot"),
                     HasSubstr("libriver.so: 1 engine"), HasSubstr("libspread.so: 1 observer"),
+                    HasSubstr("libcrowd.so: 1 layer"),
                     HasSubstr("libbuggy.so: 1 bridge, 2 controllers, 1 emulator, 1 robot, 1 stopper")));
   EXPECT_THAT(listed.output(), HasSubstr("How far robots are spread, as CSV. (libspread.so)"));
   Tandem described({"describe", "spread", "--plugin", "build/libspread.so"}, path());
@@ -225,7 +239,8 @@ TEST_F(Examples, AreListedAndDescribedWithWhereTheyComeFrom) {
 }
 
 TEST_F(Examples, AreWithoutFault) {
-  for (const std::string name : {"temperature", "lift", "waltz", "doorman", "river", "chirp", "spread", "buggy"}) {
+  for (const std::string name :
+       {"temperature", "lift", "waltz", "doorman", "river", "chirp", "spread", "crowd", "buggy"}) {
     Tandem check({"plugin", "check", "build/lib" + name + ".so"}, path());
     EXPECT_EQ(check.wait(60.0), 0) << check.output() << check.errors();
     EXPECT_THAT(check.output(), HasSubstr(", 0 faults"));

@@ -62,19 +62,47 @@ TEST(Pictures, AndFilmsChangeNoBitOfTheRun) {
       return json_value(output_of(folder, arguments), "state_hash");
     };
     EXPECT_EQ(hash({}), hash({"--film", "frames/", "--film-every", "5", "--picture", "p.svg", "--picture-at", "3,7",
-                              "--picture-trails", "1", "--picture-size", "200"}));
+                              "--picture-trails", "1", "--picture-layers", "proximity,trails,range_and_bearing,cameras",
+                              "--picture-size", "200"}));
   }
   EXPECT_TRUE(std::filesystem::exists(folder.path() / "frames/000004.png"));
 }
 
+TEST(Pictures, ShowTheLayersThatAreAskedFor) {
+  Folder folder;
+  const auto lines = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> run = {"run", kExperiment, "--seconds", "2", "--quiet", "--picture", "p.svg"};
+    run.insert(run.end(), more.begin(), more.end());
+    output_of(folder, run);
+    const std::string svg = text_of(folder.path() / "p.svg");
+    std::size_t n = 0;
+    for (std::size_t at = svg.find("<polyline"); at != std::string::npos; at = svg.find("<polyline", at + 1)) ++n;
+    return n;
+  };
+  EXPECT_EQ(lines({}), 0U);
+  EXPECT_EQ(lines({"--picture-layers", "proximity"}), 50U * 8U) << "a ray a sensor";
+  EXPECT_EQ(lines({"--picture-layers", "trails,proximity"}), 50U * 9U);
+  const auto fails = [&](const std::vector<std::string>& more, const char* part) {
+    std::vector<std::string> run = {"run", kExperiment, "--seconds", "1"};
+    run.insert(run.end(), more.begin(), more.end());
+    const std::string errors = output_of(folder, run, 1);
+    EXPECT_NE(errors.find(part), std::string::npos) << errors;
+  };
+  fails({"--picture", "p.svg", "--picture-layers", "proximty"}, "Did you mean 'proximity'?");
+  fails({"--picture", "p.svg", "--picture-layers", "measures"}, "has a panel alone");
+  fails({"--picture-layers", "proximity"}, "needs --picture or --film");
+}
+
 TEST(Pictures, OfARecordAreThoseOfTheRun) {
   Folder folder;
-  for (const char* file : {"epuck_diffusion.xml", "footbot_synchronization.xml"}) {
+  for (const char* file : {"epuck_diffusion.xml", "footbot_synchronization.xml", "footbot_safety.xml"}) {
     const std::vector<std::string> look = {"--picture-ids", "--picture-axes", "--picture-trails", "1"};
     std::vector<std::string> run = {"run",       kConfigs + file, "--seconds",     "3",  "--quiet",
                                     "--picture", "end.svg",       "--picture-at",  "17", "--record",
                                     "r",         "--set",         "record.ports=*"};
     run.insert(run.end(), look.begin(), look.end());
+    const bool areas = std::string_view(file) == "footbot_safety.xml";
+    if (areas) run.insert(run.end(), {"--without", "fb0", "--without", "fb1", "--set", "framework.time.mode=fast"});
     output_of(folder, run);
     std::vector<std::string> draw = {"picture", "r", "--at", "17", "-o", "again.svg"};
     draw.insert(draw.end(), look.begin(), look.end());
@@ -86,9 +114,11 @@ TEST(Pictures, OfARecordAreThoseOfTheRun) {
       for (std::size_t at = svg.find(part); at != std::string::npos; at = svg.find(part, at + 1)) ++n;
       return n;
     };
-    for (const char* part : {"<use ", "class=\"led\"", "<polyline", "<text", "<rect", "t = 1.7 s", "class=\"turret\""})
+    for (const char* part : {"<use ", "class=\"led\"", "<polyline", "<text", "<rect", "t = 1.7 s", "class=\"turret\"",
+                             "<polygon", "dock: 0.05 m/s"})
       EXPECT_EQ(parts("again.svg", part), parts("end-000017.svg", part)) << part << " of " << file;
-    EXPECT_GT(parts("again.svg", "<use "), 20U);
+    EXPECT_EQ(parts("again.svg", "<polygon"), areas ? 3U : 0U);
+    EXPECT_GT(parts("again.svg", "<use "), areas ? 1U : 20U);
   }
 }
 
@@ -111,7 +141,7 @@ TEST(Films, AreMadeOfRecordsToo) {
   fails({"picture", "r", "--at", "400", "-o", "p.svg"}, 1, "near that it has 31");
   fails({"picture", "nowhere", "-o", "p.svg"}, 1, "No such file");
   fails({"picture", kExperiment, "-o", "p.svg"}, 1, "is no record");
-  fails({"picture", "r"}, 2, "output");
+  fails({"picture", "r"}, 2, "--picture");
   fails({"picture", "r", "-o", "r"}, 1, ".svg");
   fails({"film", "r"}, 2, "--film");
   fails({"film", "nowhere", "-o", "a/"}, 1, "No such file");

@@ -1,4 +1,5 @@
 // Records as a user meets them: `tandem run --record`, <record>, `tandem export`.
+#include <cstdlib>
 #include <gtest/gtest.h>
 #include <sstream>
 
@@ -33,7 +34,7 @@ TEST(Records, HoldPosesOfEveryTickAndBecomeTables) {
                      "--trajectory", "poses.csv", "--set", "record.ports=proximity"});
   const std::string contents = output_of(folder, {"export", "run.record"});
   for (const char* part : {"epuck_diffusion, seed 124", "'pose': ticks 0 to 29, 30 of them, 50 rows each; x_m",
-                           "'sensor proximity'", "end         length"})
+                           "'sensor proximity'", "end           length"})
     EXPECT_NE(contents.find(part), std::string::npos) << part << " in " << contents;
 
   const std::string table = output_of(folder, {"export", "run.record", "--csv", "-"});
@@ -41,12 +42,14 @@ TEST(Records, HoldPosesOfEveryTickAndBecomeTables) {
   // Of ep7 the same places as in the table of poses, which the run wrote itself.
   std::istringstream mine(table), theirs(text_of(folder.path() / "poses.csv"));
   std::vector<std::string> a, b;
-  for (std::string line; std::getline(mine, line);) {
-    if (line.find(",ep7,") != std::string::npos) a.push_back(line.substr(0, line.find(",0.000000,")));
-  }
-  for (std::string line; std::getline(theirs, line);) {
-    if (line.find(",ep7,") != std::string::npos) b.push_back(line.substr(0, line.rfind(',')));
-  }
+  const auto keep = [](std::istream& text, std::vector<std::string>& lines) {
+    for (std::string line; std::getline(text, line);) {
+      if (line.find(",ep7,") != std::string::npos) lines.push_back(line.substr(0, line.rfind(',')));
+    }
+  };
+  keep(mine, a);
+  keep(theirs, b);
+  EXPECT_EQ(a.size(), 30U);
   EXPECT_EQ(a, b);
 
   const std::string some =
@@ -54,6 +57,63 @@ TEST(Records, HoldPosesOfEveryTickAndBecomeTables) {
                          "--from", "10", "--until", "20", "--every", "5"});
   EXPECT_EQ(lines_of(some), 1U + 3U * 12U) << some;  // ep1, ep2, ep20 to ep29
   EXPECT_NE(some.find("distance_m[7]"), std::string::npos);
+}
+
+/// What Debian's Python says; h5py is a reader of HDF5 that is none of ours.
+std::string python(const Folder& folder, const std::string& program) {
+  folder.write("look.py", program);
+  const std::string out = (folder.path() / "look.txt").string();
+  const std::string command = "cd " + folder.path().string() + " && /usr/bin/python3 look.py > " + out + " 2>&1";
+  EXPECT_EQ(std::system(command.c_str()), 0) << text_of(out);
+  return text_of(out);
+}
+
+TEST(Records, BecomeDataSetsThatH5pyReads) {
+  if (std::system("/usr/bin/python3 -c 'import h5py' > /dev/null 2>&1") != 0) GTEST_SKIP() << "no python3-h5py here";
+  Folder folder;
+  output_of(folder, {"run", kConfigs + "epuck_diffusion.xml", "--seconds", "3", "--record", "run.record", "--set",
+                     "record.ports=proximity,differential_steering"});
+  output_of(folder, {"export", "run.record", "--hdf5", "all.h5"});
+  output_of(folder, {"export", "run.record", "--hdf5", "some.h5", "--table", "pose", "--fields", "x,heading",
+                     "--entities", "ep1,ep2*", "--from", "10", "--until", "20", "--every", "5"});
+  output_of(folder, {"export", "run.record", "--csv", "poses.csv"});
+  const std::string said = python(folder, R"(
+import csv, h5py, numpy
+f = h5py.File("all.h5")
+print(f["pose/x"].shape, f["pose/x"].attrs["unit"], f.attrs["experiment"], f.attrs["seed"])
+print(f["sensor/proximity/distance"].shape, f["actuator/differential_steering/left"].shape)
+ids = list(f["pose/ids"].asstr()[:])
+rows = list(csv.DictReader(open("poses.csv")))
+worst = 0.0
+for row in rows:
+    t, i = int(row["tick"]), ids.index(row["id"])
+    for name, column in ("x", "x_m"), ("y", "y_m"), ("z", "z_m"), ("heading", "heading_rad"):
+        worst = max(worst, abs(f["pose"][name][t, i] - float(row[column]))) if t % 10 == 0 else worst
+print(len(rows), worst < 1e-8, numpy.all(f["pose/tick"][:] == numpy.arange(30)), numpy.isclose(f["pose/time"][29], 2.9))
+g = h5py.File("some.h5")
+print(sorted(g), sorted(g["pose"]), list(g["pose/tick"][:]), g["pose/x"].shape, numpy.isnan(g["pose/x"][:]).any())
+)");
+  EXPECT_EQ(said,
+            "(30, 50) m epuck_diffusion 124\n"
+            "(30, 50, 8) (30, 50)\n"
+            "1500 True True True\n"
+            "['events', 'pose'] ['heading', 'ids', 'tick', 'time', 'x'] [10, 15, 20] (3, 12) False\n");
+}
+
+TEST(Records, ThatCannotBecomeHdf5AreClearErrorsAndLeaveTheOldFile) {
+  Folder folder;
+  output_of(folder, {"run", kConfigs + "epuck_diffusion.xml", "--seconds", "1", "--record", "r"});
+  folder.write("old.h5", "old");
+  const auto fails = [&](const std::vector<std::string>& arguments, const char* part) {
+    const std::string errors = output_of(folder, arguments, 1);
+    EXPECT_NE(errors.find(part), std::string::npos) << errors;
+  };
+  fails({"export", "r", "--hdf5", "old.h5", "--table", "poses"}, "Did you mean 'pose'");
+  fails({"export", "r", "--hdf5", "old.h5", "--fields", "headin"}, "Did you mean 'heading'");
+  fails({"export", "r", "--hdf5", "/dev/full"}, "must be a file");
+  fails({"export", "r", "--hdf5", "/no/such/folder/x.h5"}, "No such file");
+  fails({"export", "r", "--hdf5", "r"}, "record");
+  EXPECT_EQ(text_of(folder.path() / "old.h5"), "old");
 }
 
 TEST(Records, ChangeNoBitOfTheRun) {

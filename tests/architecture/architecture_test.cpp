@@ -13,18 +13,25 @@ namespace fs = std::filesystem;
 
 const LibraryOwners kOwners = {{"tinyxml2", "hal/xml"},
                                {"nlohmann/", "hal/json"},
-                               {"png.h", "core/field"},
+                               {"png.h", "core/field bridges/frames"},
+                               {"apriltag/", "bridges/apriltag"},
                                {"librsvg/", "core/view"},
                                {"cairo", "core/view"},
                                {"Random123/", "hal"},
-                               {"Eigen/", "hal"},
+                               {"Eigen/", "hal mixed_reality/tracking mixed_reality/gap bridges/calibration"},
                                {"libserial/", "bridges/link"},
                                {"lcm/", "bridges/lcm"},
                                {"eyebot/", "bridges/eyebot_messages"},
                                {"eyebot_c/", "bridges/eyebot_emulator"},
                                {"CLI/", "app"},
                                {"fmt/", "app bench"},
+                               {"boost/", "window"},
+                               {"hdf5.h", "core/record/hdf5"},
+                               {"libdeflate.h", "core/record"},
+                               {"sqlite3", "study/table"},
                                {"box2d/", "core/physics/dynamics2d"},
+                               {"pybind11/", "python"},
+                               {"Python.h", "python"},
                                {"ode/", "core/physics/dynamics3d"}};
 
 TEST(Architecture, HoldsInThisTree) {

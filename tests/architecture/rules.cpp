@@ -17,8 +17,12 @@ const std::map<std::string, std::set<std::string>> kLayers = {
     {"core", {"core", "hal"}},
     {"hooks", {"hooks", "core", "hal"}},
     {"mixed_reality", {"mixed_reality", "core", "bridges", "controllers", "hal"}},
-    {"app", {"app", "mixed_reality", "core", "bridges", "controllers", "hal"}},
-    {"bench", {"bench", "app", "mixed_reality", "core", "bridges", "controllers", "hal"}}};
+    {"window", {"window", "core", "hal"}},
+    {"study", {"study", "core", "hal"}},
+    {"app", {"app", "window", "study", "mixed_reality", "core", "bridges", "controllers", "hal"}},
+    {"library", {"library", "app", "core", "hal"}},
+    {"python", {"python", "library", "app", "core", "hal"}},
+    {"bench", {"bench", "app", "window", "study", "mixed_reality", "core", "bridges", "controllers", "hal"}}};
 
 std::string layer_of(const std::string& folder) {
   return folder.substr(0, folder.find('/'));

@@ -49,6 +49,29 @@ std::size_t count(const std::string& text, const std::string& part) {
   return n;
 }
 
+TEST(BenchCommand, TellsTheWayBackToEarlierTicks) {
+  Folder folder;
+  Tandem bench({"bench", "back", "--robots", "30", "--ticks", "200"}, folder.path());
+  EXPECT_EQ(bench.wait(), 0) << bench.errors();
+  const auto lines = objects_in(bench.output());
+  ASSERT_EQ(lines.size(), 1U);
+  EXPECT_EQ(lines[0]["same_bits"], true);
+  EXPECT_GE(number(lines[0], "checkpoints"), 1.0);
+  EXPECT_GT(number(lines[0], "checkpoints_MB"), 0.0);
+  EXPECT_LT(number(lines[0], "back_longest_s"), 5.0);
+}
+
+TEST(BenchLines, TellWhatAWindowCosts) {
+  Folder folder;
+  Tandem bench({"bench", "view", "--robots", "50", "--ticks", "200", "--repeat", "2"}, folder.path());
+  ASSERT_EQ(bench.wait(60.0), 0) << bench.errors();
+  const auto lines = objects_in(bench.output());
+  ASSERT_EQ(lines.size(), 2U);
+  EXPECT_GT(number(lines[0], "wall_quotient"), 0.0);
+  EXPECT_GT(number(lines[1], "first_frame_s"), 0.0);
+  EXPECT_GE(number(lines[1], "first_frame_s"), number(lines[1], "address_s"));
+}
+
 TEST(BenchLines, TellHowManyMessagesTheCodecTakes) {
   Folder folder;
   Tandem bench({"bench", "codec"}, folder.path());
@@ -198,7 +221,7 @@ TEST_F(BenchRefuses, WordsThatItDoesNotKnowAndNamesTheChoices) {
   refuses({"--robot", "r2d2"}, 2, {"there is no robot 'r2d2'; there are: e-puck, foot-bot"});
   refuses({"--assignment", "random"}, 2, {"static or dynamic"});
   refuses({"--density", "high"}, 2, {"equal"});
-  refuses({"--plot", "figure.gif"}, 2, {"figure.gif", ".svg or .png"});
+  refuses({"--plot", "figure.gif"}, 2, {"figure.gif", ".svg, .png or .pdf"});
   refuses({"--compare-threads"}, 2, {"--threads 0,2"});
 }
 

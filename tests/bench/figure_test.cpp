@@ -101,19 +101,19 @@ TEST(FigureScript, LetsNoTextOutOfItsQuotes) {
   ResultLine line = line_of(10, 0, 1.0);
   line.engine = "x'\nsystem('touch owned')\n`touch owned`";
   line.cpu_model = "it's";
-  const std::string script = gnuplot_script(figure_of({line}), PictureKind::Svg);
+  const std::string script = gnuplot_script(figure_of({line}), core::FigureFormat::Svg);
   EXPECT_EQ(script.find('`'), std::string::npos);
   EXPECT_EQ(script.find("\nsystem"), std::string::npos);
   EXPECT_NE(script.find("'it s, 4 cores'"), std::string::npos);
   EXPECT_NE(script.find("'x  system( touch owned )  touch owned , A1'"), std::string::npos) << script;
 }
 
-TEST(PictureKind, IsChosenByTheEnding) {
-  EXPECT_EQ(picture_kind("a/b.svg").value(), PictureKind::Svg);
-  EXPECT_EQ(picture_kind("b.c.png").value(), PictureKind::Png);
-  for (const char* path : {"a.pdf", "svg", "a.svg/b", "", ".png"}) {
-    ASSERT_FALSE(picture_kind(path).ok()) << path;
-    EXPECT_NE(picture_kind(path).error().message.find(".svg or .png"), std::string::npos);
+TEST(FigureFormat, IsChosenByTheEnding) {
+  EXPECT_EQ(core::figure_format("a/b.svg").value(), core::FigureFormat::Svg);
+  EXPECT_EQ(core::figure_format("b.c.png").value(), core::FigureFormat::Png);
+  for (const char* path : {"a.jpg", "svg", "a.svg/b", "", ".png"}) {
+    ASSERT_FALSE(core::figure_format(path).ok()) << path;
+    EXPECT_NE(core::figure_format(path).error().message.find(".svg, .png or .pdf"), std::string::npos);
   }
 }
 

@@ -3,6 +3,8 @@
 #include <array>
 #include <gmock/gmock.h>
 
+#include "hal/open_params.hpp"
+
 namespace tandem::hal {
 namespace {
 
@@ -328,6 +330,34 @@ TEST(ManualWriter, ShowsGroupsAndListsWithWhatTheyHold) {
   EXPECT_THAT(manual.text(), HasSubstr("  <gains>  (an element inside)\n      Of the loop.\n      p="));
   EXPECT_THAT(manual.text(), HasSubstr("          most=\"9\""));
   EXPECT_THAT(manual.text(), HasSubstr("  <point>  (any number of elements inside"));
+}
+
+/// Takes whatever its file says.
+struct Open {
+  std::string script;
+  std::vector<NamedText> others;
+  void describe(ParamVisitor& v) {
+    describe_file(v, "script", script, "What it does.");
+    describe_others(v, others, "For the script.");
+  }
+};
+
+TEST(Element, HandsWhatNobodyKnowsToThoseWhoTakeIt) {
+  Element element{
+      "params", "/there/file.xml", 3, {{"script", "walk.lua", 3}, {"speed", "5 cm/s", 3}, {"none", "", 3}}, {}};
+  Problems problems;
+  const Open open = read_settings<Open>(element, problems);
+  EXPECT_TRUE(problems.empty());
+  EXPECT_EQ(open.script, "/there/walk.lua");
+  ASSERT_EQ(open.others.size(), 2U);
+  EXPECT_EQ(open.others[0].name + "=" + open.others[0].value, "speed=5 cm/s");
+  EXPECT_EQ(open.others[1].name + "=" + open.others[1].value, "none=");
+  ManualWriter manual;
+  Open().describe(manual);
+  EXPECT_THAT(manual.text(), HasSubstr("NAME=\"TEXT\"  (any other name)"));
+  ElementWriter writer(element);
+  Open().describe(writer);
+  EXPECT_EQ(element.attributes.size(), 3U);
 }
 
 }  // namespace

@@ -14,6 +14,7 @@
 #include "hal/device/ring_sensors.hpp"
 #include "hal/device/turret.hpp"
 #include "hal/device/wheels.hpp"
+#include "hal/scalar_name.hpp"
 
 namespace tandem::hal {
 namespace {
@@ -457,6 +458,17 @@ TYPED_TEST(EveryPort, IsSafeAndFiniteByDefault) {
       for (std::size_t i = 0; i < f.count; ++i) EXPECT_EQ(get_value(&port, f, i), 0.0) << f.name;
     }
   }
+}
+
+TEST(ScalarNames, SayTheSizesAndLeadBack) {
+  for (const auto& [name, scalar] :
+       {std::pair{"f32", Scalar::F32}, std::pair{"f64", Scalar::F64}, std::pair{"u8", Scalar::U8},
+        std::pair{"u16", Scalar::U16}, std::pair{"u32", Scalar::U32}, std::pair{"i32", Scalar::I32},
+        std::pair{"i64", Scalar::I64}, std::pair{"bool", Scalar::Bool}}) {
+    EXPECT_EQ(name_of(scalar), name);
+    EXPECT_EQ(scalar_from(name), scalar);
+  }
+  EXPECT_FALSE(scalar_from("f16"));
 }
 
 }  // namespace

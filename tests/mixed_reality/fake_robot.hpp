@@ -1,5 +1,6 @@
 // A real robot for tests: a body that drives as it was last told, behind a link that the test cuts and mends.
 #pragma once
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <string>
@@ -58,6 +59,12 @@ class FakeRobot final : public bridges::RobotBridge, private hal::Robot {
 
   hal::Robot& robot() noexcept override { return *this; }
   void* port(const hal::PortType& type) noexcept override {
+    void* const data = memory(type);
+    if (data != nullptr && std::none_of(taken_.begin(), taken_.end(), [&](const auto& p) { return p.data == data; }))
+      taken_.push_back({&type, data});
+    return data;
+  }
+  void* memory(const hal::PortType& type) noexcept {
     if (type.layout == hal::port_type<hal::WheelEncoders>().layout) return &encoders_;
     if (type.layout == hal::port_type<hal::Proximity>().layout) return &proximity_;
     if (type.layout == hal::port_type<hal::WheelSpeeds>().layout) return &wheels_;
@@ -78,7 +85,7 @@ class FakeRobot final : public bridges::RobotBridge, private hal::Robot {
     if (!sampled_) return;
     encoders_ = sample_;
     encoders_.taken_ns = sampled_at_ns_ - origin_ns_;
-    encoders_.validity = hal::Validity::Fresh;
+    encoders_.validity = body_.link_up ? hal::Validity::Fresh : hal::Validity::Stale;
     proximity_.distance_m.fill(static_cast<float>(body_.real_proximity_m));
     proximity_.taken_ns = encoders_.taken_ns;
     proximity_.validity = body_.link_up ? hal::Validity::Fresh : hal::Validity::Stale;
@@ -100,9 +107,10 @@ class FakeRobot final : public bridges::RobotBridge, private hal::Robot {
   void commit(hal::TimeNs now) noexcept override {
     if (!body_.link_up) return;
     body_.move_to(now);
-    body_.wheels = wheels_;
+    const hal::WheelSpeeds obeyed = stopped_ ? hal::WheelSpeeds{} : wheels_;
+    body_.wheels = obeyed;
     body_.leds = leds_;
-    body_.received.push_back({now, wheels_});
+    body_.received.push_back({now, obeyed});
     sample_.left_m = body_.left_m;
     sample_.right_m = body_.right_m;
     const double half_rad = 0.5 * body_.pose.heading_rad();
@@ -113,10 +121,11 @@ class FakeRobot final : public bridges::RobotBridge, private hal::Robot {
   }
   void stop(hal::TimeNs now) noexcept override {
     ++stops;
+    stopped_ = true;
     wheels_ = {};
     commit(now);
   }
-  void resume() noexcept override {}
+  void resume() noexcept override { stopped_ = false; }
   bool at_rest() const noexcept override { return stops > 0 && body_.link_up && body_.confirms_stops; }
   bridges::LinkReport report() const override { return {.questions = body_.received.size()}; }
   void describe(bridges::StatusVisitor& visitor) const override { visitor.text("state", "fake"); }
@@ -132,7 +141,6 @@ class FakeRobot final : public bridges::RobotBridge, private hal::Robot {
   void* take(const hal::PortType& type) override {
     void* data = port(type);
     if (data == nullptr) throw hal::DeviceError("a fake robot has no '" + std::string(type.name) + "'");
-    taken_.push_back({&type, data});
     return data;
   }
 
@@ -148,6 +156,7 @@ class FakeRobot final : public bridges::RobotBridge, private hal::Robot {
   hal::Positioning place_, place_sample_;
   hal::WheelSpeeds wheels_;
   hal::RingLeds leds_;
+  bool stopped_ = false;
 };
 
 }  // namespace tandem::mixed_reality

@@ -1,4 +1,5 @@
 // Hooks that tests need.
+#include <array>
 #include <cmath>
 #include <fstream>
 #include <stdexcept>
@@ -200,10 +201,70 @@ class Teacher final : public core::Hook {
   std::int64_t done_ = 0;
 };
 
+/// Has one control of each kind, keeps nothing by itself, and puts boxes into the arena with the values as they are.
+class Knobs final : public core::Hook {
+ public:
+  struct Params {
+    void describe(hal::ParamVisitor&) {}
+  };
+  explicit Knobs(const Params&) {}
+
+  void controls(core::HookContext& context, hal::Controls& c) override {
+    static constexpr std::array<std::string_view, 2> kShapes{"box", "cylinder"};
+    c.number("size", size_m_, hal::unit::cm, {0.02, 0.2}, "Of what is put down.");
+    c.integer("count", count_, {1, 5}, "How many at once.");
+    c.flag("movable", movable_, "They can be pushed.");
+    c.choice("shape", shape_, kShapes, "Of what is put down.");
+    if (c.text("prefix", prefix_, "Of their ids.") && prefix_ == "bad") throw std::runtime_error("a bad prefix");
+    if (c.button("drop", "Puts them down.")) drop(context);
+  }
+  void after_step(core::HookContext& c) override {
+    c.measures.set("size", size_m_);
+    c.measures.set("count", static_cast<double>(count_));
+  }
+
+ private:
+  void drop(core::HookContext& c) {
+    for (std::int64_t i = 0; i < count_; ++i) {
+      core::Object object;
+      object.kind = shape_ == "box" ? core::Object::Kind::Box : core::Object::Kind::Cylinder;
+      object.id = prefix_ + std::to_string(c.space.objects().size());
+      object.x_m = 0.25 * static_cast<double>(c.space.objects().size() % 5);
+      object.y_m = 1.2;
+      object.half_x_m = object.half_y_m = object.radius_m = 0.5 * size_m_;
+      object.z_high_m = 0.1;
+      object.movable = movable_;
+      (void)c.space.add_object(object);
+    }
+  }
+  double size_m_ = 0.1;
+  std::int64_t count_ = 1;
+  bool movable_ = false;
+  std::string shape_ = "box", prefix_ = "dropped";
+};
+
+/// Turns a robot by how often it was called, which it does not save.
+class Forgetful final : public core::Hook {
+ public:
+  struct Params {
+    void describe(hal::ParamVisitor&) {}
+  };
+  explicit Forgetful(const Params&) {}
+  void before_step(core::HookContext& c) override {
+    const core::Pose pose = c.space.pose(c.space.robot(0));
+    c.space.set_pose(c.space.robot(0), core::Pose::at(pose.x_m, pose.y_m, 0.01 * ++calls_, pose.z_m));
+  }
+
+ private:
+  int calls_ = 0;
+};
+
 void register_all(hal::Registrar& registrar) {
   registrar.add(core::hook_type<Teacher>("teacher", "Knows controllers by their class."));
   registrar.add(core::hook_type<Painter>("painter", "Paints a disc."));
   registrar.add(core::hook_type<Shepherd>("shepherd", "Robots and boxes come and go."));
+  registrar.add(core::hook_type<Forgetful>("forgetful", "Does not save what it depends on."));
+  registrar.add(core::hook_type<Knobs>("knobs", "One control of each kind."));
   registrar.add(core::hook_type<Diary>("diary", "Writes its calls down."));
 }
 

@@ -54,6 +54,11 @@ class Shown final : public hal::Controller {
     return true;
   }
 
+  void controls(hal::Controls& c) override {
+    c.number("pace", pace, hal::unit::percent, {0.0, 2.0}, "Of the speeds that it draws.");
+    if (c.button("rest", "Rests in the next step.")) steps_ = 3;
+  }
+
   double pace = 1.0;      ///< for hooks
   std::int32_t runs = 1;  ///< that this object has seen
 

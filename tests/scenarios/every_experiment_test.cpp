@@ -5,6 +5,7 @@
 
 #include "app/catalog.hpp"
 #include "core/config/reader.hpp"
+#include "core/live/timeline.hpp"
 #include "tests/controllers/experiment.hpp"
 
 namespace tandem::test {
@@ -72,6 +73,35 @@ TEST_P(EveryExperiment, GivesTheSameBitsWhenItBeginsAnew) {
   const hal::Status again = experiment->reset(seed);
   ASSERT_TRUE(again.ok()) << again.error().message;
   EXPECT_EQ(hash_after(*experiment.world, ticks), hash);
+}
+
+TEST_P(EveryExperiment, GivesEveryTickTheSameBitsAgain) {
+  fs::current_path(kSourceDir);
+  const Experiment experiment(GetParam(), on_own_ports(GetParam()), {}, "", app::catalog());
+  core::World& world = *experiment.world;
+  const int ticks = ticks_for(world);
+  world.start();
+  core::LiveClock clock;
+  core::Timeline timeline(world, clock, {});
+  timeline.start();
+  if (!timeline.no_way_back().empty()) GTEST_SKIP() << timeline.no_way_back();
+  std::vector<std::uint64_t> hashes{world.state_hash()};
+  for (int i = 0; i < ticks; ++i) {
+    if (i == ticks / 3) {  // somebody touches it on the way
+      const std::string first = world.space().robot_name(world.space().robot(0));
+      EXPECT_TRUE(timeline.act({{"do", "halt"}, {"robot", first}}).ok());
+      hashes.back() = world.state_hash();
+    }
+    ASSERT_TRUE(timeline.before_step().ok());
+    world.step();
+    timeline.after_step(1000);
+    hashes.push_back(world.state_hash());
+  }
+  for (const int tick : {ticks / 2, 1, ticks / 3, ticks, 0, ticks - 1}) {
+    const hal::Status there = timeline.go_to(tick);
+    ASSERT_TRUE(there.ok()) << there.error().message;
+    EXPECT_EQ(world.state_hash(), hashes[static_cast<std::size_t>(tick)]) << tick;
+  }
 }
 
 TEST_P(EveryExperiment, GoesOnAlikeFromACheckpoint) {

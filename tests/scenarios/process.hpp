@@ -191,7 +191,12 @@ class EmulatedRobot {
   bool ready() const { return ready_; }
   void signal(int number) const { process_->signal(number); }
   bool suspended() const { return process_->suspended(); }
-  std::string log() const { return text_of(folder_.path() / "witness.jsonl"); }
+  /// Its whole lines: it may be writing another.
+  std::string log() const {
+    std::string text = text_of(folder_.path() / "witness.jsonl");
+    text.resize(text.rfind('\n') + 1);
+    return text;
+  }
   /// Ends it as a user does, so that its log is whole.
   int end() {
     process_->signal(SIGINT);

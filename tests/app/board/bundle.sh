@@ -10,6 +10,6 @@ TANDEM_BUILD=$build TANDEM_SYSROOT=$sysroot "$source/scripts/bundle" "$arch" "$w
 # The start script names the loader; an emulated processor has to be told to run it.
 loader=$(sed -n 's|^exec "$here/libraries/\([^"]*\)".*|\1|p' "$work/tandem/tandem")
 cd "$work/tandem"
-for file in epuck_robot footbot_robot footbot_map; do
+for file in epuck_robot epuck_robot_lua footbot_robot footbot_map; do
   env -i PATH="$PATH" TANDEM_PLUGIN_PATH="$work/tandem/lib" "$@" "libraries/$loader" --library-path libraries bin/tandem check "configs/$file.xml"
 done

@@ -54,9 +54,9 @@ bool whole_trajectory(const std::string& text) {
   std::istringstream in(text);
   std::string line;
   std::getline(in, line);
-  if (line != "tick,time_s,id,x_m,y_m,heading_rad" || !text.ends_with('\n')) return false;
+  if (line != "tick,time_s,id,x_m,y_m,z_m,heading_rad" || !text.ends_with('\n')) return false;
   while (std::getline(in, line)) {
-    if (std::count(line.begin(), line.end(), ',') != 5) return false;
+    if (std::count(line.begin(), line.end(), ',') != 6) return false;
   }
   return true;
 }

@@ -42,5 +42,15 @@ TEST(EventLog, SaysWhereItCannotBeWritten) {
   EXPECT_NE(log.error().message.find("/nowhere/at/all"), std::string::npos);
 }
 
+TEST(EventSinks, InOrderNeverGoBack) {
+  std::vector<hal::TimeNs> stamps;
+  const auto sink =
+      open_event_sink("", [&](hal::TimeNs at, std::string_view, const EventFields&) { stamps.push_back(at); });
+  ASSERT_TRUE(sink.ok());
+  const EventSink tell = in_order(sink.value());
+  for (const hal::TimeNs at : {3, 1, 4}) tell(at, "x", {});
+  EXPECT_EQ(stamps, (std::vector<hal::TimeNs>{3, 3, 4}));
+}
+
 }  // namespace
 }  // namespace tandem::bridges

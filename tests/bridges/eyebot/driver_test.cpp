@@ -491,6 +491,21 @@ TEST(EyebotDriver, CommandsAreYoungEnoughWithinASecondAfterAClockWasSet) {
   }
 }
 
+TEST(EyebotDriver, AsksNowAndThenSuchThatTheErrorOfTheRobotsClockIsBounded) {
+  Scene s(synchronised());
+  g_now = &s.now;
+  s.actuator<hal::QuadrotorSpeed>().set(0.0, 0.0, 0.0, 0.0);
+  s.fly();
+  s.run(45'000);
+  const ClockState clock = s.driver.clock().state(s.now);
+  EXPECT_GE(clock.exchanges, 5U) << "orders, and one every ten seconds";
+  EXPECT_LE(clock.exchanges, 12U);
+  ASSERT_TRUE(clock.bound_ns);
+  EXPECT_LE(*clock.bound_ns, 20 * kMs);
+  EXPECT_EQ(s.driver.statistics().link_stops, 0U);
+  EXPECT_EQ(s.driver.orders().statistics().unanswered, 0U);
+}
+
 hal::TimeNs g_set_by = 0;
 hal::TimeNs clock_that_is_set() noexcept {
   return clock_of_scene() + g_set_by;

@@ -1,7 +1,6 @@
 // The parts that have no ports: inbox, clock, liveness, orders, names.
 #include <gtest/gtest.h>
 
-#include "bridges/eyebot/clock_offset.hpp"
 #include "bridges/eyebot/inbox.hpp"
 #include "bridges/eyebot/liveness.hpp"
 #include "bridges/eyebot/mode_orders.hpp"
@@ -151,83 +150,6 @@ TEST(EyebotInbox, KeepsARowOfAcknowledgements) {
   EXPECT_FALSE(inbox.take(Topic::Ack, letter));
 }
 
-// --- the clock ---
-
-constexpr std::int64_t kEpoch = 1'700'000'000'000'000;  // what the robot's clock shows at our 0, microseconds
-
-TEST(EyebotClock, TakesTheQuickestMessageForTheOffset) {
-  ClockOffset clock;
-  EXPECT_EQ(clock.local(kEpoch, 5 * kMs), 5 * kMs);  // nothing known: as it came
-  for (int i = 0; i < 100; ++i) {
-    const hal::TimeNs sent = i * 20 * kMs;
-    const hal::TimeNs delay = (1 + i % 7) * kMs;
-    clock.note(kEpoch + sent / 1000, sent + delay);
-  }
-  EXPECT_EQ(clock.local(kEpoch + 3'000'000, 4 * kS), 3 * kS + kMs);
-  EXPECT_EQ(clock.local(kEpoch + 9'000'000, 4 * kS), 4 * kS);  // nothing comes from the future
-  EXPECT_EQ(clock.jumps(), 0U);
-}
-
-TEST(EyebotClock, HalvesARoundTrip) {
-  ClockOffset clock;
-  clock.note(kEpoch + 10'000, 14 * kMs);                      // 4 ms on its way here
-  clock.note_answer(kEpoch + 104'000, 100 * kMs, 108 * kMs);  // 4 ms there, 4 ms back
-  EXPECT_EQ(clock.local(kEpoch + 1'000'000, 2 * kS), kS);
-}
-
-TEST(EyebotClock, FollowsADrift) {
-  ClockOffset clock;
-  for (int i = 0; i < 3000; ++i) {  // a minute, 100 parts in a million too slow
-    const hal::TimeNs sent = i * 20 * kMs;
-    clock.note(kEpoch + (sent - sent / 10000) / 1000, sent + kMs);
-  }
-  const hal::TimeNs sent = 60 * kS;
-  EXPECT_NEAR(static_cast<double>(clock.local(kEpoch + (sent - sent / 10000) / 1000, sent + kMs)),
-              static_cast<double>(sent), 2e6);
-}
-
-TEST(EyebotClock, NoticesThatItWasSetBackAfterFiveMessages) {
-  ClockOffset clock;
-  for (int i = 0; i < 10; ++i) clock.note(kEpoch + i * 20'000, i * 20 * kMs);
-  const std::int64_t hour = 3'600'000'000;
-  for (int i = 10; i < 14; ++i) clock.note(kEpoch - hour + i * 20'000, i * 20 * kMs);
-  EXPECT_EQ(clock.jumps(), 0U);
-  EXPECT_LT(clock.local(kEpoch - hour + 260'000, 260 * kMs), -3000 * kS);
-  clock.note(kEpoch - hour + 14 * 20'000, 280 * kMs);
-  EXPECT_EQ(clock.jumps(), 1U);
-  EXPECT_EQ(clock.local(kEpoch - hour + 280'000, 280 * kMs), 280 * kMs);
-}
-
-TEST(EyebotClock, OneStampOfTheFutureChangesNothing) {
-  for (const std::int64_t ahead_us : {std::int64_t{200'000}, std::int64_t{3'600'000'000}}) {
-    ClockOffset clock;
-    clock.note_answer(kEpoch, 0, 2 * kMs);
-    for (int i = 1; i < 10; ++i) clock.note(kEpoch + i * 20'000, i * 20 * kMs);
-    const hal::TimeNs before = clock.offset_ns();
-    clock.note(kEpoch + 200'000 + ahead_us, 200 * kMs);
-    EXPECT_EQ(clock.local(kEpoch + 200'000 + ahead_us, 200 * kMs), 200 * kMs);
-    EXPECT_EQ(clock.offset_ns(), before);
-    EXPECT_EQ(clock.jumps(), 0U);
-  }
-}
-
-TEST(EyebotClock, AnAnswerStampedBeforeItsQuestionProvesThatItWasSetBack) {
-  ClockOffset clock;
-  for (int i = 0; i < 10; ++i) clock.note(kEpoch + i * 20'000, i * 20 * kMs);
-  clock.note_answer(kEpoch + 200'000 - 400'000, 199 * kMs, 201 * kMs);
-  EXPECT_EQ(clock.jumps(), 1U);
-  EXPECT_NEAR(static_cast<double>(clock.local(kEpoch + 300'000 - 400'000, 301 * kMs)), 300e6, 2e6);
-}
-
-TEST(EyebotClock, LeavesOutWhatNoClockShows) {
-  ClockOffset clock;
-  clock.note(std::numeric_limits<std::int64_t>::min(), kS);
-  clock.note(std::numeric_limits<std::int64_t>::max(), kS);
-  EXPECT_FALSE(clock.known());
-  EXPECT_EQ(clock.implausible(), 2U);
-  EXPECT_EQ(clock.local(std::numeric_limits<std::int64_t>::max(), kS), kS);
-}
-
 // --- liveness ---
 
 TEST(EyebotLiveness, ANewSessionIsARestartOnceTheOldOneIsSilent) {
@@ -304,7 +226,7 @@ TEST(EyebotOrders, TakeOnlyTheAnswerToWhatTheySaid) {
   EXPECT_EQ(orders.take(answer(5, 0), 5, 3 * kMs), Action::Arm);
   EXPECT_FALSE(orders.take(answer(5, 0), 5, 4 * kMs));  // doubled
   EXPECT_EQ(orders.last(Action::Arm).outcome, Outcome::Done);
-  EXPECT_EQ(orders.statistics().max_round_trip_ns, 3 * kMs);
+  EXPECT_EQ(orders.statistics().round_trips.largest_ns(), 3 * kMs);
 }
 
 TEST(EyebotOrders, ANewOneReplacesTheOneThatIsOut) {

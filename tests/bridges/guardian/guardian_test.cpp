@@ -206,7 +206,8 @@ class Guarded : public testing::Test {
   }
 
   /// Drives these robots, and does as it is told: 'r' releases the first, 'e' ends, 'f' forks a child that keeps all
-  /// descriptors, 'n' tells the news, 'v' renews the stop messages of the first.
+  /// descriptors, 'n' tells the news, 'v' renews the stop messages of the first, 'c' claims that anew, 'o' on another
+  /// link.
   Hub::Story drives(std::vector<StopMessages> robots, std::atomic<bool>* suspend = nullptr) const {
     return [robots, suspend](Hub& hub) mutable {
       auto started = GuardianClient::start(kTypes, {suspend, limits()});
@@ -245,6 +246,17 @@ class Guarded : public testing::Test {
           case 'n':
             for (const std::string& line : guardian.take_news()) hub.say("news " + line);
             hub.say("freezes " + std::to_string(guardian.freezes().count));
+            break;
+          case 'o':
+            robots.front().link += "-other";
+            [[fallthrough]];
+          case 'c':
+            if (const auto claimed = guardian.claim({robots.data(), 1}); claimed.ok()) {
+              guardian.watch(robots.front());
+              hub.say("claimed " + robots.front().link);
+            } else {
+              hub.say("refused " + claimed.error().message);
+            }
             break;
           case 'e': {
             const auto unstopped = guardian.end(hal::kNsPerSecond);
@@ -409,6 +421,26 @@ TEST_F(Guarded, RobotThatWasReleasedIsLeftAlone) {
   hub.signal(SIGKILL);
   hub.wait();
   ASSERT_TRUE(was("s", "rests"));
+  EXPECT_TRUE(gone(guardian));
+  EXPECT_EQ(text_of(runtime_.path() / "r"), "");
+}
+
+TEST_F(Guarded, RobotThatWasReleasedMayBeClaimedAnewAlsoOnAnotherLink) {
+  Hub hub(runtime_.path(), drives({robot("r"), robot("s")}));
+  ASSERT_TRUE(hub.said("drives"));
+  const pid_t guardian = hub.guardian();
+  hub.tell('c');
+  ASSERT_TRUE(hub.said("refused robot 'r' is claimed already")) << "it is driven";
+  hub.tell('r');
+  hub.tell('c');
+  ASSERT_TRUE(hub.said("claimed " + robot("r").link + "\n"));
+  hub.tell('r');
+  hub.tell('o');
+  ASSERT_TRUE(hub.said("claimed " + robot("r").link + "-other"));
+  hub.signal(SIGKILL);
+  hub.wait();
+  EXPECT_TRUE(was("r-other", "rests"));
+  EXPECT_TRUE(was("s", "rests"));
   EXPECT_TRUE(gone(guardian));
   EXPECT_EQ(text_of(runtime_.path() / "r"), "");
 }

@@ -41,8 +41,8 @@ TEST(EmulatedThymio, KnowsItsFaults) {
     EXPECT_TRUE(parse_fault(text).ok()) << text;
   const std::vector<std::pair<std::string, std::string>> wrong = {{"fire", "there is no fault 'fire'"},
                                                                   {"restart", "say when"},
-                                                                  {"drop", "it needs a value"},
-                                                                  {"deaf=1", "it takes no value"},
+                                                                  {"drop", "'drop' needs a value"},
+                                                                  {"deaf=1", "'deaf' takes no value"},
                                                                   {"lie=colour", "a lie is about size, count or name"},
                                                                   {"drop=2", "from 0 to 1"}};
   for (const auto& [text, why] : wrong) {

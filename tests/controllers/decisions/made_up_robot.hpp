@@ -6,8 +6,10 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
+#include "hal/device_list.hpp"
 #include "hal/robot.hpp"
 
 namespace tandem::decisions {
@@ -15,13 +17,18 @@ namespace tandem::decisions {
 /// Has every device that is asked for. What its sensors read is a function of (device, field, element, tick) alone,
 /// made from the device's own description: within what its unit, or the robot's kind, allows. Each value stays
 /// for a few ticks; a few readings in a hundred are stale or absent.
-class MadeUpRobot final : public hal::Robot {
+class MadeUpRobot final : public hal::Robot, public hal::DeviceList {
  public:
-  explicit MadeUpRobot(const hal::RobotKind& kind) : kind_(kind) {}
+  /// `listed`: what its configuration lists, for controllers that take all of that.
+  explicit MadeUpRobot(const hal::RobotKind& kind, std::vector<hal::ListedDevice> listed = {})
+      : kind_(kind), listed_(std::move(listed)) {}
 
   std::string_view id() const noexcept override { return "robot"; }
   const hal::RobotKind& kind() const noexcept override { return kind_; }
   std::uint64_t run_seed() const noexcept override { return 1; }
+
+  std::vector<hal::ListedDevice> devices() const override { return listed_; }
+  void* port(const hal::PortType& type) override { return take(type); }
 
   /// Fills every sensor that was taken.
   void sense(std::int64_t tick);
@@ -46,6 +53,7 @@ class MadeUpRobot final : public hal::Robot {
   double entries(const hal::PortType& type, const hal::Field& field, std::uint64_t bits) const;
 
   const hal::RobotKind& kind_;
+  std::vector<hal::ListedDevice> listed_;
   std::map<std::string, Device> sensors_, actuators_;  // nodes stay where they are
 };
 

@@ -141,6 +141,13 @@ TEST(Reader, TakesEverythingThatAnArgosFileSays) {
   EXPECT_TRUE(out.problems[1].warning);
 }
 
+TEST(Reader, LooksForAControllerWithoutLibraryInTheOneOfItsName) {
+  const Outcome out = read(R"(<tandem>
+<framework><experiment length="1" ticks_per_second="10"/></framework>
+<controllers><lua_controller id="l"/></controllers><arena size="4,4,1"/></tandem>)");
+  EXPECT_EQ(out.good().controllers.at(0).library, "lua_controller");
+}
+
 TEST(Reader, FillsInWhatIsLeftOut) {
   Parts parts;
   parts.framework = "<framework><experiment/></framework>";
@@ -242,6 +249,21 @@ TEST(Reader, KnowsHowARealEyeBotIsReached) {
   ASSERT_TRUE(s.robots[0].bridge.has_value());
   EXPECT_NE(s.robots[0].bridge->own, nullptr);
   EXPECT_EQ(s.robots[0].tracker->source, "positioning");
+}
+
+TEST(Reader, KnowsByWhichNamesTrackersKnowARobot) {
+  Parts parts;
+  parts.things =
+      R"(<e-puck id="ep"><body position="0,0,0"/><controller config="w"/><bridge link="serial:/dev/ttyUSB0@115200"/>
+<tracker id="12 red" turn="90" lost_above="5 cm" offset="0.02,-0.01,0" height="12 cm"/></e-puck>)";
+  const Scenario s = read(parts.text()).good();
+  ASSERT_TRUE(s.robots[0].tracker.has_value());
+  EXPECT_EQ(s.robots[0].tracker->source, "auto");
+  EXPECT_EQ(s.robots[0].tracker->names, (std::vector<std::string>{"12", "red"}));
+  EXPECT_NEAR(s.robots[0].tracker->turn_rad, std::numbers::pi / 2, 1e-12);
+  EXPECT_DOUBLE_EQ(s.robots[0].tracker->lost_m, 0.05);
+  EXPECT_EQ(s.robots[0].tracker->p_BT, (Vec3{0.02, -0.01, 0.0}));
+  EXPECT_DOUBLE_EQ(s.robots[0].tracker->tag_m.value_or(0.0), 0.12);
 }
 
 TEST(Reader, PacesByRealTimeWhenArgosFilesAskForIt) {

@@ -7,9 +7,7 @@
 #include <numbers>
 #include <sstream>
 
-#include "hal/device/range_and_bearing.hpp"
-#include "hal/device/ring_sensors.hpp"
-#include "hal/device/wheels.hpp"
+#include "core/record/record_streams.hpp"
 #include "hal/robot/epuck.hpp"
 #include "tests/core/space_by_hand.hpp"
 
@@ -19,10 +17,7 @@ namespace {
 class Trajectory : public testing::Test {
  protected:
   void SetUp() override {
-    using hal::port_type;
-    ep0_ =
-        add_robot(space_, hal::epuck::kind(), "ep0", 1.0, -2.5, std::numbers::pi,
-                  {&port_type<hal::Proximity>(), &port_type<hal::WheelSpeeds>(), &port_type<hal::RangeAndBearing>()});
+    ep0_ = add_robot(space_, hal::epuck::kind(), "ep0", 1.0, -2.5, std::numbers::pi);
     ep1_ = add_robot(space_, hal::epuck::kind(), "ep1", 0.1234567, 1e-9, -0.5);
     add_robot(space_, hal::epuck::kind(), "scout", 0.0, 0.0, 0.0);
     path_ = testing::TempDir() + "trajectory_test_" + testing::UnitTest::GetInstance()->current_test_info()->name() +
@@ -30,14 +25,13 @@ class Trajectory : public testing::Test {
   }
   void TearDown() override { std::remove(path_.c_str()); }
 
-  std::unique_ptr<TrajectoryRecorder> open(const std::vector<std::string>& entities, std::int64_t every = 1,
-                                           const std::vector<std::string>& ports = {}) {
-    auto opened = TrajectoryRecorder::open({path_, entities, every}, space_, 10, ports);
+  std::unique_ptr<TrajectoryRecorder> open(const std::vector<std::string>& entities, std::int64_t every = 1) {
+    auto opened = TrajectoryRecorder::open({path_, entities, every}, space_, 10);
     EXPECT_TRUE(opened.ok()) << (opened.ok() ? "" : opened.error().message);
     return opened.ok() ? std::move(opened).value() : nullptr;
   }
-  std::string open_error(const std::vector<std::string>& entities, const std::vector<std::string>& ports = {}) {
-    const auto opened = TrajectoryRecorder::open({path_, entities, 1}, space_, 10, ports);
+  std::string open_error(const std::vector<std::string>& entities) {
+    const auto opened = TrajectoryRecorder::open({path_, entities, 1}, space_, 10);
     return opened.ok() ? "" : opened.error().message;
   }
   std::string written() const {
@@ -64,11 +58,11 @@ TEST_F(Trajectory, WritesAHeaderAndALineForEachRobotAndTick) {
   ASSERT_TRUE(recorder->record(space_, 3).ok());
   ASSERT_TRUE(recorder->close().ok());
   EXPECT_EQ(written(),
-            "tick,time_s,id,x_m,y_m,heading_rad\n"
-            "0,0,ep0,1.000000,-2.500000,3.141593\n"
-            "0,0,ep1,0.123457,0.000000,-0.500000\n"
-            "3,0.3,ep0,1.000000,-2.500000,3.141593\n"
-            "3,0.3,ep1,0.500000,0.250000,0.000000\n");
+            "tick,time_s,id,x_m,y_m,z_m,heading_rad\n"
+            "0,0,ep0,1.000000,-2.500000,0.000000,3.141593\n"
+            "0,0,ep1,0.123457,0.000000,0.000000,-0.500000\n"
+            "3,0.3,ep0,1.000000,-2.500000,0.000000,3.141593\n"
+            "3,0.3,ep1,0.500000,0.250000,0.000000,0.000000\n");
 }
 
 TEST_F(Trajectory, RecordsEveryNthTickAlone) {
@@ -88,36 +82,6 @@ TEST_F(Trajectory, RecordsEveryRobotOnceWhenNoneOrOverlappingPatternsAreGiven) {
   ASSERT_TRUE(twice->record(space_, 0).ok());
   ASSERT_TRUE(twice->close().ok());
   EXPECT_EQ(lines().size(), 3U);
-}
-
-TEST_F(Trajectory, AddsAColumnForEachValueOfAPortThatIsInUse) {
-  auto* proximity = space_.port<hal::Proximity>(ep0_);
-  proximity->count = 2;
-  proximity->range_m = 0.1F;
-  proximity->distance_m[1] = 0.05F;
-  space_.port<hal::WheelSpeeds>(ep0_)->set(0.1, -0.05);
-  auto recorder = open({"ep*"}, 1, {"proximity", "differential_steering"});
-  ASSERT_TRUE(recorder->record(space_, 0).ok());
-  ASSERT_TRUE(recorder->close().ok());
-  EXPECT_EQ(
-      lines()[0],
-      "tick,time_s,id,x_m,y_m,heading_rad,proximity.count,proximity.range,proximity.distance[0],proximity.distance[1],"
-      "differential_steering.left,differential_steering.right");
-  EXPECT_EQ(lines()[1], "0,0,ep0,1.000000,-2.500000,3.141593,2,0.1,0,0.05,0.1,-0.05");
-  EXPECT_EQ(lines()[2], "0,0,ep1,0.123457,0.000000,-0.500000,,,,,,");
-}
-
-TEST_F(Trajectory, MessageListsKeepTheirColumnsHoweverManyArrive) {
-  auto recorder = open({"ep0"}, 1, {"range_and_bearing"});
-  ASSERT_TRUE(recorder->record(space_, 0).ok());
-  const std::uint8_t payload[2] = {7, 9};
-  space_.port<hal::RangeAndBearing>(ep0_)->insert(0.5F, 0.25F, 0.0F, payload, 2);
-  ASSERT_TRUE(recorder->record(space_, 1).ok());
-  ASSERT_TRUE(recorder->close().ok());
-  const auto commas = [](const std::string& line) { return std::count(line.begin(), line.end(), ','); };
-  EXPECT_EQ(commas(lines()[0]), commas(lines()[1]));
-  EXPECT_EQ(commas(lines()[0]), commas(lines()[2]));
-  EXPECT_NE(lines()[2].find(",0.5,,"), std::string::npos) << lines()[2];
 }
 
 TEST_F(Trajectory, ARemovedRobotHasNoLineAnyMore) {
@@ -156,7 +120,7 @@ TEST_F(Trajectory, OfASpaceThatIsEmptyAtFirstHasThoseWhoCome) {
   space_.stores().robots.back().generation = ++space_.stores().generations;
   ASSERT_TRUE(recorder->record(space_, 1).ok());
   ASSERT_TRUE(recorder->close().ok());
-  EXPECT_EQ(written(), "tick,time_s,id,x_m,y_m,heading_rad\n1,0.1,late1,2.000000,0.500000,0.000000\n");
+  EXPECT_EQ(written(), "tick,time_s,id,x_m,y_m,z_m,heading_rad\n1,0.1,late1,2.000000,0.500000,0.000000,0.000000\n");
 }
 
 TEST_F(Trajectory, IsThereInFullWhenTheRecorderIsDestroyedUnclosed) {
@@ -205,7 +169,7 @@ TEST_F(Trajectory, TheOldFileStaysUntilTheRunIsOver) {
 TEST_F(Trajectory, ARunWithoutATickHasTheHeaderAlone) {
   auto recorder = open({"scout"});
   ASSERT_TRUE(recorder->close().ok());
-  EXPECT_EQ(written(), "tick,time_s,id,x_m,y_m,heading_rad\n");
+  EXPECT_EQ(written(), "tick,time_s,id,x_m,y_m,z_m,heading_rad\n");
 }
 
 TEST_F(Trajectory, QuotesIdsThatWouldBreakTheTable) {
@@ -221,12 +185,6 @@ TEST_F(Trajectory, NamesWhatIsSpelledAlikeWhenNoRobotFits) {
   EXPECT_NE(message.find("no robot fits 'skout'"), std::string::npos) << message;
   EXPECT_NE(message.find("did you mean 'scout'?"), std::string::npos) << message;
   EXPECT_NE(message.find("ep0, ep1, scout"), std::string::npos) << message;
-}
-
-TEST_F(Trajectory, NamesThePortsThatThereAre) {
-  const std::string message = open_error({"ep*"}, {"proximitty"});
-  EXPECT_NE(message.find("no port 'proximitty'; did you mean 'proximity'?"), std::string::npos) << message;
-  EXPECT_NE(open_error({"scout"}, {"proximity"}).find("they use none"), std::string::npos);
 }
 
 TEST_F(Trajectory, SaysWhenTheFileCannotBeMade) {

@@ -56,6 +56,7 @@ class FusedPorts : public testing::Test {
       if (type.layout == port_type<hal::WheelEncoders>().layout) return &real_encoders_;
       return nullptr;
     });
+    fusion.latch();
     fusion.fuse();
   }
 

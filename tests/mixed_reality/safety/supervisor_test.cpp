@@ -27,12 +27,13 @@ constexpr Conditions kRestarted = with([](Conditions& c) { c.robot_stopped_itsel
 /// Every combination.
 template <class Visit>
 void for_all_conditions(Visit&& visit) {
-  for (const RunPhase run : {RunPhase::Waiting, RunPhase::Running, RunPhase::Stopping}) {
+  for (const RunPhase run : {RunPhase::Waiting, RunPhase::Running, RunPhase::Stopping, RunPhase::Paused}) {
     for (const LinkHealth link : {LinkHealth::Connecting, LinkHealth::Active, LinkHealth::Suspect, LinkHealth::Lost}) {
       for (const Validity pose : {Validity::Absent, Validity::Stale, Validity::Fresh}) {
-        for (unsigned bits = 0; bits < 1024; ++bits) {
+        for (unsigned bits = 0; bits < 32768; ++bits) {
           const auto is = [bits](unsigned i) { return (bits >> i & 1U) != 0; };
-          visit(Conditions{run, is(0), is(1), is(2), is(3), is(4), is(5), is(6), link, is(7), pose, is(8), is(9)});
+          visit(Conditions{run, is(10), is(0), is(1), is(2), is(3), is(4), is(5), is(6), link, is(7), pose, is(11),
+                           is(12), is(8), is(9), is(13), is(14)});
         }
       }
     }
@@ -43,9 +44,10 @@ TEST(SafetyTable, OneConditionAloneLetsARobotDrive) {
   int driving = 0;
   for_all_conditions([&](const Conditions& c) {
     const bool well = c.run == RunPhase::Running && c.link == LinkHealth::Active && c.pose == Validity::Fresh &&
-                      !c.controller_failed && !c.operator_holds && !c.hook_holds && !c.hub_was_frozen &&
-                      !c.guardian_gone && !c.robot_stopped_itself && !c.battery_low && !c.readings_missing &&
-                      !c.pose_jumped && !c.wheels_differ;
+                      !c.controller_failed && !c.emergency_stop && !c.operator_holds && !c.hook_holds &&
+                      !c.hub_was_frozen && !c.guardian_gone && !c.robot_stopped_itself && !c.battery_low &&
+                      !c.readings_missing && !c.pose_disputed && !c.pose_contradicted && !c.pose_jumped &&
+                      !c.wheels_differ && !c.being_replaced && !c.replaced;
     EXPECT_EQ(judge(c).may_drive, well) << judge(c).reason;
     EXPECT_EQ(judge(c).controller_steps, well);
     EXPECT_EQ(judge(c).owner == StopOwner::Nobody, well);

@@ -107,6 +107,26 @@ TEST_F(MixedRun, StepsInRealTimeOnAnAbsoluteScheduleAndStopsTheRobotAtTheEnd) {
   expect_all_stand();
 }
 
+TEST_F(MixedRun, TheLedgerTellsHowOldReadingsWereAndWhichCameTooLate) {
+  core::Scene scene = drive(0.05, 0.05);
+  scene.robot("ep0", -1.0, 0.0);
+  open(real(scene, "ep0"));
+  run(100, [&](core::World& world) {
+    bodies_["ep0"].link_up = world.tick() < 40 || world.tick() >= 60;
+    if (world.tick() == 80) time_.pass(130 * kMs);  // longer than a tick: the next one begins late
+  });
+  const RobotLedger ledger = session_->report().robots.at(0).ledger;
+  EXPECT_EQ(ledger.ticks, 100U);
+  EXPECT_GE(ledger.late_readings, 19U);
+  EXPECT_LE(ledger.late_readings, 22U);
+  EXPECT_NEAR(static_cast<double>(ledger.age_median_ns), 100e6, 7e6) << "sampled when it was told something";
+  EXPECT_GE(ledger.age_largest_ns, 2000 * kMs);
+  EXPECT_EQ(ledger.late_commands, 0U) << "each tick's command leaves at its begin";
+  EXPECT_GE(ledger.command_largest_ns, 29 * kMs);
+  ASSERT_TRUE(ledger.newest_age_ns);
+  EXPECT_EQ(session_->status().at(0).ledger.late_readings, ledger.late_readings);
+}
+
 TEST_F(MixedRun, TheTwinIsWhereTheRealRobotIsInEveryTick) {
   core::Scene scene = drive(0.06, 0.03);
   scene.robot("ep0", -0.5, 0.3, 1.0);
@@ -377,6 +397,70 @@ TEST_F(MixedRun, ARobotThatRestartedWaitsForThePersonWhoReArmsIt) {
   EXPECT_EQ(session_->report().robots[0].counts.stops, 1U);
 }
 
+TEST_F(MixedRun, AnEmergencyStopBetweenTwoTicksStandsTheRobotsWithin20MsUntilTheyAreArmed) {
+  core::Scene scene = drive(0.05, 0.05);
+  scene.robot("ep0", -1.0, 0.0).robot("ep1", -1.0, 0.5).robot("ep2", -1.0, -0.5);
+  real(scene, "ep0");
+  open(real(scene, "ep1"));
+  connect();
+  hal::TimeNs asked_ns = 0;
+  time_.on_sleep = [&](hal::TimeNs now_ns) {
+    if (asked_ns != 0 || session_->world().tick() != 50) return;
+    asked_ns = now_ns;
+    session_->emergency_stop();
+  };
+  double driven_by_simulated_m = 0.0;
+  const hal::Status done = session_->run(150, kGoOn, [&](core::World& world) {
+    if (world.tick() > 50 && world.tick() <= 100) {
+      for (const RealRobotStatus& robot : session_->status()) {
+        EXPECT_EQ(robot.state, "emergency stop; waits to be armed") << world.tick();
+        EXPECT_TRUE(robot.emergency_stopped);
+        EXPECT_FALSE(robot.driving);
+      }
+    }
+    if (world.tick() == 50) driven_by_simulated_m = pose("ep2").x_m;
+    if (world.tick() == 90) driven_by_simulated_m = pose("ep2").x_m - driven_by_simulated_m;
+    if (world.tick() != 100) return;
+    EXPECT_FALSE(session_->arm("ep2").ok());
+    EXPECT_FALSE(session_->rearm("ep0").ok());
+    EXPECT_TRUE(session_->arm("ep0").ok());
+    EXPECT_FALSE(session_->arm("ep0").ok());
+  });
+  ASSERT_TRUE(done.ok()) << done.error().message;
+  ASSERT_NE(asked_ns, 0);
+  for (const std::string id : {"ep0", "ep1"}) {
+    hal::TimeNs stopped_ns = 0, drives_again_ns = 0;
+    for (const FakeBody::Received& command : bodies_[id].received) {
+      if (command.at_ns < asked_ns) continue;
+      if (stopped_ns == 0 && command.wheels.left_m_s == 0.0) stopped_ns = command.at_ns;
+      if (stopped_ns != 0 && drives_again_ns == 0 && command.wheels.left_m_s != 0.0) drives_again_ns = command.at_ns;
+    }
+    EXPECT_LE(stopped_ns - asked_ns, 20 * kMs) << id;
+    if (id == "ep0")
+      EXPECT_GT(drives_again_ns - asked_ns, 5 * hal::kNsPerSecond) << "armed at tick 100";
+    else
+      EXPECT_EQ(drives_again_ns, 0) << "nobody armed it";
+  }
+  EXPECT_NEAR(driven_by_simulated_m, 0.2, 0.01) << "simulated robots go on";
+}
+
+TEST_F(MixedRun, TellsWhereARealRobotIsByEachSourceAndHowOldItsReadingsAre) {
+  core::Scene scene = drive(0.05, 0.05);
+  scene.robot("ep0", -1.0, 0.0);
+  open(real(scene, "ep0"));
+  run(20, [&](core::World& world) {
+    if (world.tick() != 10) return;
+    const std::vector<RealRobotStatus> all = session_->status();
+    ASSERT_EQ(all.size(), 1U);
+    EXPECT_EQ(all[0].id, "ep0");
+    EXPECT_TRUE(all[0].driving) << all[0].state;
+    ASSERT_EQ(all[0].places.size(), 2U);
+    EXPECT_EQ(all[0].places[0].source, "odometry");
+    EXPECT_NEAR(all[0].places[0].age_s, 0.1, 0.001) << "of the tick before";
+    EXPECT_NEAR(all[0].places[1].pose.x_m - all[0].places[0].pose.x_m, 0.005, 0.001) << "carried on for a tick";
+  });
+}
+
 TEST_F(MixedRun, AStallOfTheHubIsCountedAndDoesNotMoveTheTwinFromTheRobot) {
   core::Scene scene = drive(0.05, 0.05);
   scene.robot("ep0", -1.0, 0.0);
@@ -453,6 +537,74 @@ TEST_F(MixedRun, NoRobotDrivesOnceNobodyGuardsThem) {
   const MixedReport report = session_->report();
   EXPECT_EQ(report.robots[0].state, "guardian gone");
   EXPECT_EQ(report.robots[0].counts.stops, 1U);
+}
+
+TEST_F(MixedRun, RobotsThatAreDrivenAtOneAnotherStopApartAndAreCounted) {
+  core::Scene scene = drive(0.1, 0.1);
+  scene.robot("ep0", -0.3, 0.0);
+  scene.robot("ep1", 0.3, 0.0, std::numbers::pi);
+  real(scene, "ep0");
+  open(real(scene, "ep1"));
+  run(100, [&](core::World&) {
+    for (auto& [id, body] : bodies_) body.move_to(time_.now_ns());
+    ASSERT_GE(distance(bodies_["ep0"].pose, bodies_["ep1"].pose), kDiameter_m);
+  });
+  EXPECT_LT(distance(bodies_["ep0"].pose, bodies_["ep1"].pose), kDiameter_m + 0.03);
+  for (const RealRobotReport& robot : session_->report().robots) {
+    EXPECT_GT(robot.counts.barrier.changed_ticks, 10U);
+    EXPECT_NEAR(robot.counts.barrier.most_m_s, 0.1, 0.02);
+    EXPECT_EQ(robot.counts.stops, 0U);
+  }
+  EXPECT_GT(session_->status()[0].held_back_m_s, 0.05);
+}
+
+TEST_F(MixedRun, NobodyIsAvoidedWhereTheFileSaysSo) {
+  core::Scene scene = drive(0.1, 0.1);
+  scene.robot("ep0", -0.2, 0.0);
+  scene.robot("ep1", 0.2, 0.0, std::numbers::pi);
+  scene.scenario.safety.avoid = core::Avoid::Nobody;
+  real(scene, "ep0");
+  open(real(scene, "ep1"));
+  double nearest_m = 1.0;
+  run(50, [&](core::World&) { nearest_m = std::min(nearest_m, distance(bodies_["ep0"].pose, bodies_["ep1"].pose)); });
+  EXPECT_LT(nearest_m, kDiameter_m);
+}
+
+TEST_F(MixedRun, ARealRobotAvoidsWhatIsVirtualIfAsked) {
+  core::Scene scene = drive(0.1, 0.1);
+  scene.robot("ep0", -0.3, 0.0);
+  scene.robot("sim", 0.3, 0.0, std::numbers::pi);
+  scene.scenario.safety.avoid = core::Avoid::All;
+  open(real(scene, "ep0"));
+  run(60, [&](core::World&) {
+    if (has_driven("ep0") && distance(pose("ep0"), pose("sim")) < kDiameter_m + 0.03) {
+      EXPECT_LT(bodies_["ep0"].wheels.left_m_s, 0.1);
+    }
+  });
+  EXPECT_LT(bodies_["ep0"].pose.x_m, 0.0) << "it did not drive through it";
+}
+
+TEST_F(MixedRun, ARobotThatIsPushedIntoAKeepOutIsAnIncidentAndLeavesItOnly) {
+  core::Scene scene = drive(0.1, 0.1);
+  scene.robot("ep0", 0.0, 0.0);
+  scene.scenario.safety.keep_outs.push_back(
+      {"pillar", {{0.3, -0.2}, {0.6, -0.2}, {0.6, 0.2}, {0.3, 0.2}}, 0.0, 1.0, 0.0, 0});
+  open(real(scene, "ep0"));
+  FakeBody& body = bodies_["ep0"];
+  run(150, [&](core::World& world) {
+    body.move_to(time_.now_ns());
+    if (world.tick() == 60) {
+      EXPECT_LE(body.pose.x_m, 0.3 - 0.5 * kDiameter_m);
+      EXPECT_GT(body.pose.x_m, 0.3 - 0.5 * kDiameter_m - 0.03);
+    }
+    if (world.tick() <= 60 || world.tick() > 66) return;
+    body.left_m += 0.01;  // its wheels roll with it
+    body.right_m += 0.01;
+    body.pose.x_m += 0.01;
+  });
+  EXPECT_NE(log_.find("deep in the keep-out 'pillar' at 0.2"), std::string::npos) << log_;
+  EXPECT_EQ(session_->report().robots[0].counts.barrier.trespasses, 1U);
+  EXPECT_LT(body.pose.x_m, 0.34) << "it drives no deeper";
 }
 
 TEST_F(MixedRun, RefusesARobotThatCannotBeMadeOrFollowed) {

@@ -34,6 +34,10 @@ class FootbotMechanisms : public testing::Test {
   void has(Port& reading) {
     readings_[port_type<Port>().layout] = &reading;
   }
+  void follow(Mechanisms& mechanisms) {
+    mechanisms.follow(kTick_s, state_);
+    apply_mechanisms(space_, robot_, state_);
+  }
   Mechanisms made() {
     return {space_, robot_, [this](const hal::PortType& type) -> const void* {
               const auto found = readings_.find(type.layout);
@@ -41,10 +45,11 @@ class FootbotMechanisms : public testing::Test {
             }};
   }
   const core::ScannerState& scanner() { return *space_.state<core::ScannerState>(robot_); }
-  std::uint8_t senses() { return space_.stores().robots[robot_.index].real_senses; }
+  std::uint8_t senses() const { return state_.senses; }
 
   core::Space space_;
   core::RobotId robot_;
+  TwinState state_;
   std::map<std::uint64_t, const void*> readings_;
 };
 
@@ -58,7 +63,7 @@ TEST_F(FootbotMechanisms, StandWhereTheRobotSaysThatTheyAre) {
   turret.validity = gripper.validity = hal::Validity::Fresh;
   gripper.aperture_rad = 0.5F;
   space_.port<hal::TurretDrive>(robot_)->go_to(-2.0);  // it is not there yet
-  mechanisms.follow(kTick_s);
+  follow(mechanisms);
   EXPECT_NEAR(space_.turret_rad(robot_), 0.8, 1e-12);
   EXPECT_NEAR(space_.state<core::GripState>(robot_)->aperture_rad, 0.5, 1e-6);
 }
@@ -67,13 +72,13 @@ TEST_F(FootbotMechanisms, GoWhereTheyWereToldWhereNothingMeasuresThem) {
   Mechanisms mechanisms = made();
   space_.port<hal::TurretDrive>(robot_)->go_to(0.3);
   space_.port<hal::GripperDrive>(robot_)->lock();
-  mechanisms.follow(kTick_s);
+  follow(mechanisms);
   EXPECT_NEAR(space_.turret_rad(robot_),
               std::min(0.3, hal::footbot::kind().part<hal::TurretPart>()->turn_rad_s * kTick_s), 1e-12);
-  for (int i = 0; i < 20; ++i) mechanisms.follow(kTick_s);
+  for (int i = 0; i < 20; ++i) follow(mechanisms);
   EXPECT_NEAR(space_.turret_rad(robot_), 0.3, 1e-12);
   space_.port<hal::TurretDrive>(robot_)->turn(-0.5);
-  mechanisms.follow(kTick_s);
+  follow(mechanisms);
   EXPECT_NEAR(space_.turret_rad(robot_), 0.25, 1e-12);
   EXPECT_EQ(space_.state<core::GripState>(robot_)->aperture_rad, hal::GripperDrive::kMost_rad);
 }
@@ -86,16 +91,16 @@ TEST_F(FootbotMechanisms, TheVirtualScannerMeasuresWhereTheRealOneDoes) {
   scan.count = 4;
   scan.turn_rad = 1.5F;
   space_.port<hal::ScannerDrive>(robot_)->turn(2.0);
-  mechanisms.follow(kTick_s);
+  follow(mechanisms);
   EXPECT_EQ(scanner().mode, hal::ScannerMode::Speed);
   EXPECT_NEAR(scanner().angle_rad, 1.5, 1e-6);
   EXPECT_NEAR(scanner().swept_rad, 0.2, 1e-12);
   space_.port<hal::ScannerDrive>(robot_)->turn_off();  // it measures on
-  mechanisms.follow(kTick_s);
+  follow(mechanisms);
   EXPECT_EQ(scanner().mode, hal::ScannerMode::Position);
   EXPECT_EQ(scanner().swept_rad, 0.0);
   scan.count = 0;
-  mechanisms.follow(kTick_s);
+  follow(mechanisms);
   EXPECT_EQ(scanner().mode, hal::ScannerMode::Off);
 }
 
@@ -105,13 +110,13 @@ TEST_F(FootbotMechanisms, SensesOfItsOwnAreThoseThatEverMeasured) {
   has(proximity);
   has(messages);
   Mechanisms mechanisms = made();
-  mechanisms.follow(kTick_s);
+  follow(mechanisms);
   EXPECT_EQ(senses(), 0);  // an e-puck's port of messages never measures anything: it has no board
   proximity.validity = hal::Validity::Stale;
-  mechanisms.follow(kTick_s);
+  follow(mechanisms);
   EXPECT_EQ(senses(), core::bit(core::RealSense::Proximity));
   messages.validity = hal::Validity::Fresh;
-  mechanisms.follow(kTick_s);
+  follow(mechanisms);
   EXPECT_EQ(senses(), core::bit(core::RealSense::Proximity) | core::bit(core::RealSense::Messages));
 }
 
@@ -122,18 +127,21 @@ TEST(EyebotMechanisms, TheHeadFollowsItsEncoderAndTheLaserItsCommand) {
   const core::HeadState& head = core::add_state<core::HeadState>(space, robot);
   space.set_external(robot, true);
   hal::PanTiltEncoder encoder;
+  TwinState state;
   Mechanisms mechanisms(space, robot, [&](const hal::PortType& type) -> const void* {
     return type.layout == port_type<hal::PanTiltEncoder>().layout ? &encoder : nullptr;
   });
   space.port<hal::PanTiltDrive>(robot)->laser = true;
   space.port<hal::PanTiltDrive>(robot)->pan_rad = 1.0;
-  mechanisms.follow(kTick_s);
+  mechanisms.follow(kTick_s, state);
+  apply_mechanisms(space, robot, state);
   EXPECT_NEAR(head.pan_rad, std::min(1.0, hal::eyebot::kind().part<hal::HeadPart>()->turn_rad_s * kTick_s), 1e-12);
   encoder = {};
   encoder.validity = hal::Validity::Fresh;
   encoder.pan_rad = -0.4;
   encoder.tilt_rad = 0.9;
-  mechanisms.follow(kTick_s);
+  mechanisms.follow(kTick_s, state);
+  apply_mechanisms(space, robot, state);
   EXPECT_EQ(head.pan_rad, -0.4);
   EXPECT_EQ(head.tilt_rad, 0.9);
   EXPECT_TRUE(head.laser);

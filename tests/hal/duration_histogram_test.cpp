@@ -1,4 +1,4 @@
-#include "mixed_reality/time/histogram.hpp"
+#include "hal/duration_histogram.hpp"
 
 #include <algorithm>
 #include <gtest/gtest.h>
@@ -6,7 +6,7 @@
 #include <random>
 #include <vector>
 
-namespace tandem::mixed_reality {
+namespace tandem::hal {
 namespace {
 
 TEST(DurationHistogram, IsExactForSmallDurations) {
@@ -21,9 +21,9 @@ TEST(DurationHistogram, QuantilesAreAtMostOneSixteenthTooLarge) {
   std::mt19937_64 random(7);
   std::lognormal_distribution<double> durations(12.0, 3.0);
   DurationHistogram h;
-  std::vector<hal::TimeNs> all;
+  std::vector<TimeNs> all;
   for (int i = 0; i < 20'000; ++i) {
-    all.push_back(static_cast<hal::TimeNs>(durations(random)));
+    all.push_back(static_cast<TimeNs>(durations(random)));
     h.add(all.back());
   }
   std::sort(all.begin(), all.end());
@@ -41,9 +41,19 @@ TEST(DurationHistogram, HoldsTheLargestDurationThereIsAndCountsNegativeOnesAsNot
   DurationHistogram h;
   h.add(-5);
   EXPECT_EQ(h.quantile_ns(1.0), 0);
-  h.add(std::numeric_limits<hal::TimeNs>::max());
+  h.add(std::numeric_limits<TimeNs>::max());
   EXPECT_EQ(h.count(), 2U);
-  EXPECT_EQ(h.quantile_ns(1.0), std::numeric_limits<hal::TimeNs>::max());
+  EXPECT_EQ(h.quantile_ns(1.0), std::numeric_limits<TimeNs>::max());
+}
+
+TEST(DurationHistogram, TakesInWhatAnotherHasCounted) {
+  DurationHistogram a, b;
+  for (int i = 0; i < 10; ++i) a.add(i);
+  for (int i = 10; i < 20; ++i) b.add(i);
+  a.add(b);
+  EXPECT_EQ(a.count(), 20U);
+  EXPECT_EQ(a.quantile_ns(0.5), 9);
+  EXPECT_EQ(a.largest_ns(), 19);
 }
 
 TEST(DurationHistogram, AnEmptyOneSaysZero) {
@@ -51,4 +61,4 @@ TEST(DurationHistogram, AnEmptyOneSaysZero) {
 }
 
 }  // namespace
-}  // namespace tandem::mixed_reality
+}  // namespace tandem::hal

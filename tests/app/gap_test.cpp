@@ -1,0 +1,70 @@
+// The reality gap as a user meets it: `tandem fit`, <fitted>, `tandem gap`.
+#include <gtest/gtest.h>
+
+#include "hal/json/json.hpp"
+#include "tests/checkout.hpp"
+#include "tests/scenarios/process.hpp"
+
+namespace tandem {
+namespace {
+
+using scenarios::Folder;
+using scenarios::Tandem;
+using scenarios::text_of;
+
+const std::string kExperiment = std::string(test::kSourceDir) + "/configs/epuck_diffusion.xml";
+
+std::string output_of(const Folder& folder, const std::vector<std::string>& arguments, int code = 0) {
+  Tandem tandem(arguments, folder.path());
+  EXPECT_EQ(tandem.wait(60), code) << tandem.errors();
+  return code == 0 ? tandem.output() : tandem.errors();
+}
+
+constexpr const char* kHidden = R"(<fitted version="1"><model kind="e-puck">
+<fitted_wheels><mean left="0.97" right="1.02" base="1.03" noise="0.002" delay="130 ms"/></fitted_wheels>
+<fitted_proximity><mean gain="0.9" exponent="1.2" offset="2 mm" delay="120 ms"/></fitted_proximity>
+</model></fitted>)";
+
+TEST(RealityGap, IsClosedByWhatARecordTells) {
+  Folder folder;
+  folder.write("hidden.xml", kHidden);
+  output_of(folder, {"run", kExperiment, "--quiet", "--set", "fitted.file=hidden.xml", "--set",
+                     "record.ports=differential_steering,proximity", "--record", "r.record"});
+  const std::string told =
+      output_of(folder, {"fit", "r.record", "--robots", "ep1,ep2", "-o", "fitted.xml", "--report", "fit.json"});
+  EXPECT_NE(told.find("left wheel"), std::string::npos) << told;
+  EXPECT_NE(told.find("not observable"), std::string::npos) << "it has no encoders";
+  const hal::Json fit = hal::Json::parse(text_of(folder.path() / "fit.json"));
+  for (const hal::Json& robot : fit["robots"]) {
+    const hal::Json& wheels = robot["wheels"];
+    EXPECT_NEAR(wheels["left"]["value"].get<double>(), 0.97, 0.01);
+    EXPECT_NEAR(wheels["right"]["value"].get<double>(), 1.02, 0.01);
+    EXPECT_NEAR(wheels["base"]["value"].get<double>(), 1.03, 0.002);
+    EXPECT_NEAR(wheels["delay_s"]["value"].get<double>(), 0.13, 0.003);
+    EXPECT_NEAR(robot["proximity"]["delay_s"]["value"].get<double>(), 0.12, 0.02);
+  }
+
+  // The same settings give the same run; plain robots another one; the fitted file is taken.
+  const auto apart = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = {"gap", "r.record", "--robots", "ep1,ep2", "--report", "-"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return hal::Json::parse(output_of(folder, arguments))["median"]["apart_m"].get<double>();
+  };
+  EXPECT_EQ(apart({}), 0.0);
+  folder.write("plain.xml", "<fitted version=\"1\"/>");
+  EXPECT_GT(apart({"--fitted", "plain.xml"}), 0.05);
+  EXPECT_GT(apart({"--fitted", "fitted.xml"}), 0.0);
+}
+
+TEST(RealityGap, SaysWhatIsMissing) {
+  Folder folder;
+  output_of(folder, {"run", kExperiment, "--quiet", "--seconds", "5", "--record", "r.record"});
+  EXPECT_NE(output_of(folder, {"fit", "r.record", "--robots", "ep1"}, 1).find("nothing was found"), std::string::npos);
+  EXPECT_NE(output_of(folder, {"fit", "r.record", "--robots", "nobody"}, 1).find("there are: ep0"), std::string::npos);
+  EXPECT_NE(output_of(folder, {"fit", kExperiment}, 1).find("error"), std::string::npos);
+  EXPECT_NE(output_of(folder, {"gap", "r.record", "r.record", "--seed", "3"}, 2).find("two records"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace tandem

@@ -1,0 +1,70 @@
+// Scripts in Lua, from the command line: on a robot, in the manual, in the benchmark.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "controllers/lua_controller/api/manual.hpp"
+#include "tests/scenarios/process.hpp"
+
+namespace tandem::app {
+namespace {
+
+using scenarios::eventually;
+using scenarios::Folder;
+using scenarios::Tandem;
+using ::testing::HasSubstr;
+
+class Scripts : public testing::Test {
+ protected:
+  void SetUp() override { ::setenv("XDG_RUNTIME_DIR", folder_.path().c_str(), 1); }
+  void write(const std::string& script) const {
+    folder_.write("walk.lua", script);
+    folder_.write("e.xml", R"(<tandem><framework><experiment length="0" ticks_per_second="10"/></framework><controllers>
+<lua_controller id="walk"><actuators><differential_steering/></actuators><sensors><epuck_proximity/></sensors>
+<params script="walk.lua" speed="5"/></lua_controller></controllers><arena size="4,4,1"><e-puck id="ep0">
+<body position="0,0,0"/><controller config="walk"/><bridge link="serial:ep0"/></e-puck></arena></tandem>)");
+  }
+  Folder folder_;
+};
+
+TEST_F(Scripts, DriveARobotThatIsNotSimulated) {
+  scenarios::EmulatedEpuck epuck(folder_);
+  write(R"(
+    function init() log("drives ", robot.id) speed = tonumber(robot.params.speed) end
+    function step() assert(#robot.proximity == 8) robot.wheels.set_velocity(speed, speed) end)");
+  Tandem run({"robot", "e.xml", "--seconds", "2"}, folder_.path());
+  EXPECT_EQ(run.wait(60), 0) << run.errors();
+  EXPECT_THAT(run.errors(), HasSubstr("drives ep0"));
+  EXPECT_TRUE(epuck.has_moved());
+  EXPECT_TRUE(eventually([&] { return !epuck.moves(); }, 20)) << epuck.log();
+}
+
+TEST_F(Scripts, StopARobotThatIsNotSimulatedByAnError) {
+  scenarios::EmulatedEpuck epuck(folder_);
+  write(R"(
+    n = 0
+    function step() n = n + 1 robot.wheels.set_velocity(5, 5)
+      if n == 10 then error("enough") end end)");
+  Tandem run({"robot", "e.xml"}, folder_.path());
+  EXPECT_EQ(run.wait(60), 3);
+  EXPECT_THAT(run.errors(), HasSubstr("of robot 'ep0' threw at tick 9"));
+  EXPECT_THAT(run.errors(), HasSubstr("walk.lua:4: enough"));
+  EXPECT_TRUE(eventually([&] { return !epuck.moves(); }, 20)) << epuck.log();
+}
+
+TEST_F(Scripts, AreDescribedNameByName) {
+  Tandem manual({"describe", "lua"}, folder_.path());
+  ASSERT_EQ(manual.wait(), 0) << manual.errors();
+  for (const controllers::lua::ApiName& name : controllers::lua::api_names())
+    EXPECT_THAT(manual.output(), HasSubstr(std::string(name.name)));
+  EXPECT_THAT(manual.output(), HasSubstr("robot.sensors.accelerometer"));
+  EXPECT_THAT(manual.output(), HasSubstr("robot.actuators.speaker"));
+}
+
+TEST_F(Scripts, AreMeasured) {
+  Tandem bench({"bench", "lua", "--robots", "300", "--ticks", "5"}, folder_.path());
+  ASSERT_EQ(bench.wait(60), 0) << bench.errors();
+  EXPECT_THAT(bench.output(), HasSubstr("\"lua\""));
+}
+
+}  // namespace
+}  // namespace tandem::app

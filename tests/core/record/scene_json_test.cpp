@@ -1,0 +1,89 @@
+#include "core/record/scene_json.hpp"
+
+#include <gtest/gtest.h>
+
+#include "core/record/floor_image.hpp"
+#include "hal/robot/epuck.hpp"
+#include "tests/core/space_by_hand.hpp"
+
+namespace tandem::core {
+namespace {
+
+TEST(SceneVersion, ChangesWithEverythingThatTheSceneShows) {
+  Space space;
+  SpaceStores& s = space.stores();
+  s.lights.push_back({"lamp", 1.0, 2.0, 0.5});
+  Object crate;
+  crate.id = "crate";
+  crate.movable = true;
+  s.objects.push_back(crate);
+  SceneVersion before = scene_version(s);
+  EXPECT_EQ(before, scene_version(s));
+  const auto changed = [&] {
+    const SceneVersion now = scene_version(s);
+    const bool different = now != before;
+    before = now;
+    return different;
+  };
+  s.lights[0].intensity = 0.0;
+  EXPECT_TRUE(changed());
+  s.lights[0].color = hal::Rgb{0, 0, 255};
+  EXPECT_TRUE(changed());
+  s.lights[0].alive = false;
+  EXPECT_TRUE(changed());
+  ++s.objects[0].version;
+  EXPECT_TRUE(changed());
+  s.objects[0].alive = false;
+  EXPECT_TRUE(changed());
+  ++s.immovables_version;
+  EXPECT_TRUE(changed());
+  ++s.object_leds_version;
+  EXPECT_TRUE(changed());
+  s.objects[0].x_m = 3.0;  // engines move it: its poses are told by themselves
+  EXPECT_FALSE(changed());
+}
+
+TEST(MembersJson, SaysWhoIsInTheRowsAndWhatTheyLookLike) {
+  Space space;
+  add_robot(space, hal::epuck::kind(), "ep0", 0.0, 0.0, 0.0);
+  const RobotId twin = add_robot(space, hal::epuck::kind(), "ep1", 1.0, 0.0, 0.0);
+  space.set_external(twin, true);
+  const hal::Json members = members_json(space, living_rows(space.stores()));
+  EXPECT_EQ(members["ids"], (hal::Json{"ep0", "ep1"}));
+  EXPECT_EQ(members["kinds"], (hal::Json{"e-puck"}));
+  EXPECT_EQ(members["kind"], (hal::Json{0, 0}));
+  EXPECT_EQ(members["real"], (hal::Json{1}));
+  EXPECT_EQ(members["bodies"][0]["radius"], hal::epuck::kind().body.radius_m);
+}
+
+FloorImage image_of(std::size_t columns, std::size_t lines) {
+  FloorImage image{columns, lines, {}};
+  for (std::size_t i = 0; i < columns * lines; ++i) image.pixels.push_back(static_cast<std::uint8_t>(i * 37));
+  return image;
+}
+
+TEST(FloorImage, ComesBackFromItsPngAsItWas) {
+  const FloorImage image = image_of(31, 17);
+  const auto read = floor_of_png(png_of(image));
+  ASSERT_TRUE(read.ok());
+  EXPECT_EQ(read.value().columns, 31U);
+  EXPECT_EQ(read.value().lines, 17U);
+  EXPECT_EQ(read.value().pixels, image.pixels);
+}
+
+TEST(FloorImage, HasItsFirstLineInTheNorth) {
+  const FloorImage image{2, 2, {0, 255, 51, 102}};
+  EXPECT_EQ(image.at(0.1, 0.9), 0.0);
+  EXPECT_EQ(image.at(0.9, 0.9), 1.0);
+  EXPECT_NEAR(image.at(0.1, 0.1), 0.2, 1e-6);
+  EXPECT_NEAR(image.at(1.0, -7.0), 0.4, 1e-6);
+}
+
+TEST(FloorImage, IsRefusedWhereThePictureIsDamaged) {
+  const std::string png = png_of(image_of(20, 20));
+  for (std::size_t size = 0; size < png.size() - 16; ++size) EXPECT_FALSE(floor_of_png(png.substr(0, size)).ok());
+  EXPECT_FALSE(floor_of_png("something else altogether, and long enough to be looked into").ok());
+}
+
+}  // namespace
+}  // namespace tandem::core

@@ -1,0 +1,217 @@
+#include "mixed_reality/replay/replay.hpp"
+
+#include <cstdlib>
+
+#include "tests/mixed_reality/replay/story.hpp"
+
+namespace tandem::mixed_reality {
+namespace {
+
+using testing::HasSubstr;
+
+std::uint64_t from_environment(const char* name, std::uint64_t otherwise) {
+  const char* const text = std::getenv(name);
+  return text == nullptr ? otherwise : std::strtoull(text, nullptr, 10);
+}
+
+/// A run of one to four real robots among simulated ones, in which something goes wrong every other second.
+class Faults {
+ public:
+  explicit Faults(std::uint64_t seed)
+      : dice_(seed), count_(1 + dice_() % 4), story_(scene(), "replay_" + std::to_string(seed)) {
+    for (std::size_t i = 0; i < count_; ++i) {
+      FakeBody& body = story_.body(id(i));
+      body.tells_place = dice_() % 2 == 0;
+      body.link_up = i == 0 || dice_() % 8 != 0;  // the others may be missing, and are simulated
+    }
+    story_.options().freezes = [this] { return freezes_; };
+    story_.options().guarded = [this] { return guarded_; };
+    story_.options().rearm_asked = &rearm_;
+  }
+
+  RecordedStory& story() { return story_; }
+
+  void after_tick(core::World& world) {
+    story_.time().oversleep_ns = static_cast<hal::TimeNs>(dice_() % 3'000'000);
+    FakeBody& body = story_.body(id(dice_() % count_));
+    switch (dice_() % 60) {
+      case 0:
+      case 1:
+        body.link_up = false;
+        break;
+      case 2:
+      case 3:
+      case 4:
+        body.link_up = true;
+        break;
+      case 5:
+        body.held_fast = !body.held_fast;
+        break;
+      case 6:  // carried away
+        body.pose = core::Pose::at(0.8 * unit() - 0.4, 0.8 * unit() - 0.4, 6.0 * unit() - 3.0);
+        break;
+      case 7:
+        body.stopped_itself = !body.stopped_itself;
+        break;
+      case 8:
+        story_.session().emergency_stop();
+        break;
+      case 9:
+      case 10:
+        (void)story_.session().arm("*");
+        break;
+      case 11:
+        ++freezes_;
+        break;
+      case 12:
+        story_.time().pass(700 * hal::kNsPerMs);
+        break;
+      case 13:
+        rearm_ = true;
+        break;
+      case 14:
+        guarded_ = dice_() % 4 != 0;
+        break;
+      case 15:
+      case 16:
+        body.real_proximity_m = 0.1 * unit();
+        break;
+      case 17:
+        story_.ask({{"do", dice_() % 2 == 0 ? "halt" : "release"}, {"robot", "*"}});
+        break;
+      case 18:
+        story_.ask({{"do", "release"}, {"robot", "*"}});
+        break;
+      case 19:
+        story_.ask({{"do", "move"}, {"robot", "ep" + std::to_string(dice_() % 6)}, {"x", unit()}, {"y", unit()}});
+        break;
+      case 20:
+        story_.ask({{"do", "add"}, {"robot", {{"controller", "c"}, {"x", -unit()}, {"y", unit()}}}});
+        break;
+      case 21:
+        story_.ask({{"do", "remove"}, {"robot", "ep" + std::to_string(dice_() % 6)}});
+        break;
+      case 22:
+        story_.ask(
+            {{"do", "add"},
+             {"object",
+              {{"shape", "box"}, {"x", unit()}, {"y", -unit()}, {"size_x", 0.1}, {"size_y", 0.1}, {"height", 0.2}}}});
+        break;
+      case 23:
+        if (world.tick() > 60) story_.ask({{"do", "remove"}, {"robot", id(dice_() % count_)}});  // a twin
+        break;
+      default:
+        break;
+    }
+  }
+
+ private:
+  static std::string id(std::uint64_t i) { return "real" + std::to_string(i); }
+  double unit() { return static_cast<double>(dice_() % 1000) * 1e-3; }
+
+  core::Scene scene() {
+    const std::string kind = dice_() % 3 == 0 ? "dynamics2d" : "kinematics2d";
+    const bool everything = dice_() % 2 == 0;
+    core::Scene scene(4.0, everything ? "everything" : "obstacle_avoidance",
+                      everything ? "test_controllers" : "obstacle_avoidance");
+    if (everything) scene.param("left", "0.06").param("right", "0.05").implementations("noisy");
+    scene.engine(kind).walls().split("2x2");
+    scene.scenario.seed = dice_();
+    scene.scenario.escape = core::EscapePolicy::Stop;
+    for (std::size_t i = 0; i < count_; ++i) {
+      scene.robot(id(i), -0.6 + 0.4 * static_cast<double>(i), 0.3, 0.5);
+      made_real(scene, id(i));
+      core::RobotItem& item = scene.scenario.robots.back();
+      item.bridge->if_missing = core::IfMissing::Simulate;
+      item.bridge->connect_s = 1.0;
+      if (dice_() % 4 == 0) item.bridge->rearm = "operator";
+    }
+    scene.robots(6, 1.0);
+    if (kind == "dynamics2d") scene.box(1.2, 0.0, 0.1, 0.2, 0.0, 0.06).movable(0.2);
+    return scene;
+  }
+
+  std::mt19937_64 dice_;
+  std::size_t count_;
+  std::uint64_t freezes_ = 0;
+  bool guarded_ = true;
+  std::atomic<bool> rearm_{false};
+  RecordedStory story_;
+};
+
+TEST(Replay, RunsWithFaultsHaveTheSameBitsAgainInEveryTick) {
+  constexpr hal::Tick kTicks = 200;
+  const std::uint64_t count = from_environment("TANDEM_REPLAYS", 20);
+  const std::uint64_t first = from_environment("TANDEM_REPLAY_SEED", 1);
+  std::uint64_t stops = 0;
+  for (std::uint64_t seed = first; seed < first + count; ++seed) {
+    Faults faults(seed);
+    ASSERT_NO_FATAL_FAILURE(faults.story().run(kTicks, [&](core::World& w) { faults.after_tick(w); }));
+    for (const RealRobotReport& robot : faults.story().session().report().robots) stops += robot.counts.stops;
+    const hal::Tick done = faults.story().session().world().tick();
+    const auto again = faults.story().again(seed % 2 == 0 ? 2 : 0);
+    EXPECT_EQ(again.failure, "") << "seed " << seed;
+    EXPECT_EQ(again.end, "the run ended") << "seed " << seed;
+    EXPECT_EQ(again.equal, done) << "seed " << seed << ": " << again.difference;
+  }
+  EXPECT_GT(stops, count);
+}
+
+core::Scene two() {
+  core::Scene scene(4.0, "drive");
+  scene.param("left", "0.06").param("right", "0.05").robot("ep0", -1.0, 0.0).robot("sim", 0.5, 0.5);
+  return std::move(made_real(scene, "ep0"));
+}
+
+TEST(Replay, NamesTickRobotAndFieldOfTheFirstDifference) {
+  RecordedStory story(two(), "differs");
+  ASSERT_NO_FATAL_FAILURE(story.run(40));
+  const auto moved = story.again(0, [](core::World& world) {
+    if (world.tick() != 20) return;
+    core::Space& space = world.space();
+    core::Pose pose = space.pose(space.find_robot("sim"));
+    pose.x_m += 1e-9;
+    space.set_pose(space.find_robot("sim"), pose);
+  });
+  EXPECT_EQ(moved.equal, 20);
+  EXPECT_EQ(moved.difference, "robot 'sim' in body: x");
+  const auto painted = story.again(0, [](core::World& world) {
+    if (world.tick() == 30) world.space().port<hal::WheelSpeeds>(world.space().find_robot("ep0"))->left_m_s = 0.01;
+  });
+  EXPECT_EQ(painted.equal, 40) << "its controller writes them anew: " << painted.difference;
+}
+
+TEST(Replay, AWhatIfIsTheReplayUntilItsTickAndStaysNearTheRealRobotAfterwards) {
+  RecordedStory story(two(), "what_if");
+  ASSERT_NO_FATAL_FAILURE(story.run(150));
+  const auto what_if = story.again(0, {}, 50);
+  EXPECT_EQ(what_if.equal, 50);
+  ASSERT_EQ(what_if.deviations.size(), 1U);
+  const Deviation& of = what_if.deviations[0];
+  EXPECT_EQ(of.robot(), "ep0");
+  EXPECT_EQ(of.ticks(), 100U);
+  // The real robot drives as an ideal one that hears a command at once: the twin is carried on by what it was told.
+  EXPECT_LT(of.max_within_m(10), 0.006);
+  EXPECT_LT(of.rms_m(), 0.02);
+  EXPECT_LT(of.max_m(), 0.04);
+  EXPECT_EQ(of.json(10)["every_second_m"].size(), 10U);
+}
+
+TEST(Replay, WhatPeopleDidIsDoneAgainAndRealRobotsThatWereMissingAreSimulatedAgain) {
+  core::Scene scene = two();
+  scene.robot("ep1", 0.0, -0.5);
+  made_real(scene, "ep1");
+  scene.scenario.robots.back().bridge->if_missing = core::IfMissing::Simulate;
+  RecordedStory story(scene, "people");
+  story.body("ep1").link_up = false;
+  ASSERT_NO_FATAL_FAILURE(story.run(60, [&](core::World& world) {
+    if (world.tick() == 20) story.ask({{"do", "halt"}, {"robot", "sim"}});
+    if (world.tick() == 30) story.ask({{"do", "halt"}, {"robot", "ep0"}});
+    if (world.tick() == 40) story.ask({{"do", "release"}, {"robot", "*"}});
+  }));
+  const auto again = story.again();
+  EXPECT_EQ(again.equal, 60) << again.difference << again.failure;
+}
+
+}  // namespace
+}  // namespace tandem::mixed_reality

@@ -1,0 +1,176 @@
+"""Worlds: made, stepped, looked into as arrays, put back, begun anew."""
+
+import json
+import subprocess
+import os
+import unittest
+
+import numpy as np
+
+import tandem
+from rooms import CONFIGS, DIFFUSION, FOOTBOTS, room
+
+VELOCITY = "controllers.epuck_diffusion[d].params.velocity"
+
+
+class Worlds(unittest.TestCase):
+    def test_are_those_of_the_command(self):
+        report = subprocess.run([os.environ["TANDEM_PROGRAM"], "run", DIFFUSION, "--seed", "7", "--set",
+                                 "framework.experiment.length=10", "--quiet", "--report", "-"], capture_output=True, text=True)
+        world = tandem.World(DIFFUSION, seed=7)
+        world.run(until=10)
+        self.assertEqual(report.returncode, 0, report.stderr)
+        self.assertIn(f"{world.fingerprint:#018x}", report.stdout)
+
+    def test_may_be_made_of_a_dictionary_or_a_text(self):
+        one = tandem.World(room())
+        other = tandem.World(tandem.to_xml(room()))
+        one.run()
+        other.run()
+        self.assertEqual(one.fingerprint, other.fingerprint)
+        self.assertEqual((one.tick, one.time, one.state), (200, 20.0, "finished"))
+        self.assertEqual(one.ids, [f"ep{i}" for i in range(6)])
+
+    def test_show_ports_without_a_copy(self):
+        world = tandem.World(room(robots=600, side=8.0))  # three blocks
+        swarm = world.swarm
+        self.assertEqual(len(swarm), 600)
+        distance = swarm.sensor("proximity").distance
+        self.assertEqual((distance.shape, distance.dtype, distance.flags.writeable, distance.flags.owndata),
+                         ((600, 24), np.float32, False, False))
+        before = distance.copy()
+        world.step()
+        self.assertFalse(np.array_equal(distance, before))
+        self.assertTrue((swarm.sensor("proximity").validity == 2).all())
+        self.assertIs(swarm.sensor("proximity").distance, distance)
+
+    def test_name_the_robots_of_rows(self):
+        world = tandem.World(room(robots=300, side=6.0))
+        swarm = world.swarm
+        world.step(5)
+        self.assertEqual([swarm.ids[i] for i in swarm.order], world.ids)
+        np.testing.assert_array_equal(swarm.poses[swarm.order], world.poses)
+        self.assertEqual(world.pose("ep17"), tuple(world.poses[17]))
+
+    def test_take_commands_from_arrays(self):
+        world = tandem.World(room(robots=300, side=8.0), driven=True)
+        wheels = world.swarm.actuator("differential_steering")
+        wheels.left = 0.05
+        wheels.right[:] = 0.05
+        before = world.swarm.poses
+        world.step(1)
+        moved = np.hypot(*(world.swarm.poses - before)[:, :2].T)
+        self.assertAlmostEqual(np.median(moved), 0.005, places=6)
+
+    def test_limit_commands_as_controllers_are_limited(self):
+        world = tandem.World(room(robots=4), driven="d")
+        wheels = world.swarm.actuator("differential_steering")
+        wheels.left = [50.0, np.nan, 0.0, 0.0]
+        world.step()
+        self.assertLess(wheels.left[0], 0.2)
+        self.assertEqual(wheels.left[1], 0.0)
+        self.assertEqual((world.incidents["commands_clamped"], world.incidents["commands_not_finite"]), (1, 1))
+
+    def test_go_back_to_snapshots(self):
+        world = tandem.World(FOOTBOTS)
+        world.step(30)
+        moment = world.snapshot()
+        world.step(40)
+        then = world.fingerprint
+        world.restore(moment)
+        self.assertEqual((world.tick, moment.tick), (30, 30))
+        world.step(40)
+        self.assertEqual(world.fingerprint, then)
+
+    def test_begin_anew_as_new_worlds_would(self):
+        world = tandem.World(FOOTBOTS, seed=1)
+        distance = world.swarm.sensor("proximity").distance
+        world.step(20)
+        world.reset(5)
+        new = tandem.World(FOOTBOTS, seed=5)
+        world.step(30)
+        new.step(30)
+        self.assertEqual(world.fingerprint, new.fingerprint)
+        np.testing.assert_array_equal(distance, new.swarm.sensor("proximity").distance)  # the same memory as ever
+
+    def test_begin_anew_with_other_parameters(self):
+        world = tandem.World(room(), seed=1)
+        world.step(20)
+        world.reset(2, {VELOCITY: "2 cm/s", "framework.experiment.length": 3})
+        new = tandem.World(room(), seed=2, parameters={VELOCITY: "2 cm/s"})
+        self.assertEqual(world.run(), 30)
+        new.step(30)
+        self.assertEqual(world.fingerprint, new.fingerprint)
+        world.reset(2, {})  # as it was made
+        world.step(30)
+        self.assertNotEqual(world.fingerprint, new.fingerprint)
+
+    def test_are_independent_of_each_other(self):
+        worlds = [tandem.World(room(), seed=i) for i in range(5)]
+        group = tandem.Group(worlds, threads=2)
+        group.step(50)
+        for seed, world in enumerate(worlds):
+            alone = tandem.World(room(), seed=seed)
+            alone.step(50)
+            self.assertEqual(world.fingerprint, alone.fingerprint)
+
+    def test_are_the_same_for_any_number_of_threads(self):
+        one, two = (tandem.World(room(robots=600, side=8.0), threads=n) for n in (0, 3))
+        one.step(30)
+        two.step(30)
+        self.assertEqual(one.fingerprint, two.fingerprint)
+
+    def test_show_robots_that_come_and_go(self):
+        world = tandem.World(room(robots=300, side=6.0), driven=True)
+        swarm = world.swarm
+        start = world.snapshot()
+        left = swarm.actuator("differential_steering").left
+        world.remove_robot("ep3")
+        world.set_pose("ep4", *world.pose("ep4"))
+        row = swarm.ids.index("ep5")
+        x, y, _ = world.pose("ep5")
+        world.remove_robot("ep5")
+        world.step()
+        world.add_robot("new", "d", x, y)
+        world.add_robot("newer", "d", *next(p[:2] for p in np.mgrid[-2.8:2.8:0.2, -2.8:2.8:0.2].reshape(2, -1).T
+                                            if np.hypot(*(world.poses[:, :2] - p).T).min() > 0.15))
+        self.assertEqual((len(world.ids), world.swarms[0].alive.sum(), len(swarm), len(left)), (300, 300, 300, 300))
+        far = [p for p in np.mgrid[-2.8:2.8:0.2, -2.8:2.8:0.2].reshape(2, -1).T if np.hypot(*(world.poses[:, :2] - p).T).min() > 0.15]
+        world.add_robot("newest", "d", *far[0])  # there is no row left
+        self.assertEqual([len(one) for one in world.swarms], [300, 1])
+        late = world.swarms[1].actuator("differential_steering")
+        late.left = late.right = 0.05
+        left[row] = 0.01
+        world.step()
+        self.assertAlmostEqual(world.pose("newest")[0], far[0][0] + 0.005)
+        gone = world.swarms[1]
+        world.restore(start)
+        late.left = 0.02  # memory of nobody, still there
+        with self.assertRaisesRegex(RuntimeError, "are gone"):
+            gone.poses
+        self.assertEqual(len(world.swarms), 1)
+
+    def test_show_themselves(self):
+        world = tandem.World(room())
+        self.assertIn("<svg", world._repr_svg_())
+        self.assertEqual(world.picture(size=200).png()[:4], b"\x89PNG")
+        self.assertIn("<experiment", world.settings)
+        self.assertIn("6 robots", repr(world))
+
+    def test_show_what_controllers_publish(self):
+        world = tandem.World(os.path.join(CONFIGS, "footbot_foraging.xml"))
+        world.step(3)
+        swarm = world.swarms[0]
+        for name in swarm.published_names:
+            self.assertEqual(len(swarm.published(name)), len(swarm))
+
+    def test_give_up_with_all_problems_of_a_file(self):
+        wrong = room()
+        wrong["arena"]["distribute"]["entity"]["quantty"] = 3
+        wrong["controllers"]["epuck_diffusion"]["params"]["velocty"] = 3
+        with self.assertRaisesRegex(tandem.ExperimentError, "Did you mean 'quantity'"):
+            tandem.World(wrong)
+
+
+if __name__ == "__main__":
+    unittest.main()

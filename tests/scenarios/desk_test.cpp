@@ -1,0 +1,104 @@
+// A run with real robots and its desk: preflight, hold, pause, replacement; verdicts come from the robots' own logs.
+#include <csignal>
+#include <gtest/gtest.h>
+#include <string>
+
+#include "tests/checkout.hpp"
+#include "tests/scenarios/process.hpp"
+
+namespace tandem::scenarios {
+namespace {
+
+constexpr double kPatience_s = 30.0;
+const std::string kExperiment = std::string(test::kSourceDir) + "/configs/epuck_mixed.xml";
+
+TEST(Preflight, MovesNothingUnlessToldAndSaysWhatIsInTheWay) {
+  const Folder folder;
+  Tandem alone({"preflight", kExperiment, "--wait", "1"}, folder.path());
+  EXPECT_EQ(alone.wait(), 3) << alone.output() << alone.errors();
+  EXPECT_NE(alone.output().find("fail  robot ep0"), std::string::npos) << alone.output();
+  EXPECT_NE(alone.output().find("the run would not go well"), std::string::npos) << alone.output();
+
+  EmulatedEpuck epuck(folder);
+  ASSERT_TRUE(epuck.ready());
+  Tandem good({"preflight", kExperiment, "--report", "preflight.json"}, folder.path());
+  EXPECT_EQ(good.wait(), 0) << good.output() << good.errors();
+  EXPECT_NE(good.output().find("the run can begin"), std::string::npos) << good.output();
+  EXPECT_NE(text_of(folder.path() / "preflight.json").find("\"check\":\"battery\""), std::string::npos);
+  EXPECT_FALSE(epuck.has_moved());
+
+  // On a busy machine the robot may answer too late to be moved; a person tries again then.
+  std::string told;
+  const auto moved = [&] {
+    Tandem moving({"preflight", kExperiment, "--move", "--yes"}, folder.path());
+    const int code = moving.wait();
+    told = moving.output() + moving.errors();
+    return code == 0;
+  };
+  EXPECT_TRUE(moved() || moved() || moved()) << told;
+  EXPECT_NE(told.find("by its wheels"), std::string::npos) << told;
+  EXPECT_TRUE(epuck.has_moved());
+  EXPECT_FALSE(epuck.moves());
+  for (const auto& wheels : epuck.wheels()) EXPECT_EQ(wheels.left, -wheels.right) << "it turns on the spot";
+}
+
+/// The address that a run has printed, for `tandem desk`.
+std::string address_of(const Tandem& run) {
+  EXPECT_TRUE(eventually([&] { return run.errors().find("?token=") != std::string::npos; }, kPatience_s));
+  const std::string text = run.errors();
+  const std::size_t at = text.find("http://");
+  return at == std::string::npos ? "" : text.substr(at, text.find('\n', at) - at);
+}
+
+TEST(Desk, StartsPausesAndReplacesARobotFromATerminal) {
+  const Folder folder, other;
+  EmulatedEpuck epuck(folder), spare(other);
+  ASSERT_TRUE(epuck.ready());
+  ASSERT_TRUE(spare.ready());
+  Tandem run({"run", kExperiment, "--view", "--hold", "--set", "framework.experiment.length=0", "--quiet", "--record",
+              "run.record", "--report", "report.json"},
+             folder.path());
+  const std::string address = address_of(run);
+  const auto desk = [&](std::vector<std::string> words) {
+    words.insert(words.begin(), {"desk", address});
+    words.insert(words.end(), {"--who", "anna"});
+    Tandem said(words, folder.path());
+    const int code = said.wait();
+    return std::to_string(code) + " " + said.output() + said.errors();
+  };
+  EXPECT_NE(desk({"status"}).find("waiting for the start"), std::string::npos);
+  EXPECT_EQ(desk({"preflight"}).substr(0, 1), "0");
+  EXPECT_FALSE(epuck.has_moved());
+  EXPECT_EQ(desk({"start"}).substr(0, 1), "0");
+  ASSERT_TRUE(eventually([&] { return epuck.moves(); }, kPatience_s)) << run.errors();
+
+  EXPECT_EQ(desk({"pause"}).substr(0, 1), "0");
+  EXPECT_TRUE(eventually([&] { return !epuck.moves(); }, 5.0));
+  EXPECT_NE(desk({"status"}).find("paused"), std::string::npos);
+  EXPECT_EQ(desk({"go"}).substr(0, 1), "0");
+  ASSERT_TRUE(eventually([&] { return epuck.moves(); }, kPatience_s));
+
+  EXPECT_EQ(desk({"replace", "nobody", "--link", "serial:x"}).substr(0, 1), "1");
+  const std::string link = "serial:" + (other.path() / "ep0").string();
+  EXPECT_EQ(desk({"replace", "ep0", "--link", link, "--as", "ep7"}).substr(0, 1), "0");
+  EXPECT_TRUE(eventually([&] { return !epuck.moves(); }, 5.0));
+  EXPECT_TRUE(eventually([&] { return desk({"status"}).find("waits to be armed; is 'ep7'") != std::string::npos; },
+                         kPatience_s))
+      << desk({"status"});
+  EXPECT_FALSE(spare.has_moved());
+  EXPECT_EQ(desk({"arm", "ep0"}).substr(0, 1), "0");
+  EXPECT_TRUE(eventually([&] { return spare.moves(); }, kPatience_s)) << run.errors();
+  EXPECT_FALSE(epuck.moves());
+  EXPECT_EQ(desk({"estop"}).substr(0, 1), "0");
+  EXPECT_TRUE(eventually([&] { return !spare.moves(); }, 5.0));
+
+  run.signal(SIGINT);
+  EXPECT_EQ(run.wait(), 130) << run.errors();
+  EXPECT_FALSE(epuck.moves());
+  EXPECT_FALSE(spare.moves());
+  Tandem events({"export", "run.record"}, folder.path());
+  EXPECT_EQ(events.wait(), 0);
+}
+
+}  // namespace
+}  // namespace tandem::scenarios
