@@ -2,6 +2,8 @@
 #   find_package(Tandem REQUIRED)                       # cmake -DTandem_DIR=<checkout>/cmake, or <prefix>/lib/cmake/Tandem
 #   tandem_plugin(NAME greenhouse SOURCES greenhouse.cpp)      devices, fields, engines, bridges, …: any surface
 #   tandem_controller(NAME seek_light SOURCES seek_light.cpp)  controllers and hooks
+#   find_package(Tandem REQUIRED COMPONENTS core)       # for programs of one's own that hold worlds: <library/open_world.hpp>
+#   target_link_libraries(lab PRIVATE Tandem::core)     # of a checkout: that of its release build
 # Tandem_PROGRAM is the program, for tests.
 get_filename_component(Tandem_TOP "${CMAKE_CURRENT_LIST_DIR}/.." ABSOLUTE)
 if(EXISTS "${Tandem_TOP}/hal/plugin.hpp") # a checkout
@@ -68,3 +70,32 @@ function(tandem_plugin)
   tandem_shared_object(${arg_NAME} ${arg_SOURCES})
   target_link_libraries(${arg_NAME} PRIVATE Tandem::headers)
 endfunction()
+
+# Worlds for programs of one's own.
+if("core" IN_LIST Tandem_FIND_COMPONENTS)
+  find_library(Tandem_LIBRARY tandem NO_DEFAULT_PATH
+    PATHS "${Tandem_TOP}/lib" "${Tandem_TOP}/build/release" PATH_SUFFIXES "${CMAKE_LIBRARY_ARCHITECTURE}")
+  find_package(nlohmann_json QUIET)
+  set(Tandem_core_FOUND FALSE)
+  if(NOT Tandem_LIBRARY)
+    set(Tandem_FOUND FALSE)
+    set(Tandem_NOT_FOUND_MESSAGE "There is no libtandem.so: in a checkout, `./tandem build` makes it")
+  elseif(NOT nlohmann_json_FOUND)
+    set(Tandem_FOUND FALSE)
+    set(Tandem_NOT_FOUND_MESSAGE "Its headers need those of nlohmann_json; Debian: nlohmann-json3-dev")
+  else()
+    set(Tandem_core_FOUND TRUE)
+    if(NOT TARGET Tandem::core)
+      add_library(Tandem::core SHARED IMPORTED)
+      set_target_properties(Tandem::core PROPERTIES
+        IMPORTED_LOCATION "${Tandem_LIBRARY}"
+        INTERFACE_LINK_LIBRARIES "Tandem::headers;nlohmann_json::nlohmann_json")
+    endif()
+  endif()
+endif()
+foreach(component ${Tandem_FIND_COMPONENTS})
+  if(Tandem_FIND_REQUIRED_${component} AND NOT component STREQUAL "core" AND NOT component STREQUAL "hal")
+    set(Tandem_FOUND FALSE)
+    set(Tandem_NOT_FOUND_MESSAGE "There is no component '${component}'; there are: core, hal")
+  endif()
+endforeach()

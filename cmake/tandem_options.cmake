@@ -66,10 +66,10 @@ endfunction()
 file(CONFIGURE OUTPUT ${CMAKE_BINARY_DIR}/headers.cpp CONTENT "// Carries the precompiled header of all libraries.\n")
 add_library(tandem_headers OBJECT ${CMAKE_BINARY_DIR}/headers.cpp)
 target_link_libraries(tandem_headers PRIVATE tandem_flags)
-set(headers <algorithm> <array> <atomic> <cmath> <condition_variable> <cstdint> <cstring> <fstream> <functional> <map> <memory> <mutex>
+set(tandem_shared_headers <algorithm> <array> <atomic> <cmath> <condition_variable> <cstdint> <cstring> <fstream> <functional> <map> <memory> <mutex>
   <numeric> <optional> <span> <sstream> <string> <string_view> <thread> <vector>)
-target_precompile_headers(tandem_headers PRIVATE ${headers})
-tandem_describe_pch(tandem_headers ${headers})
+target_precompile_headers(tandem_headers PRIVATE ${tandem_shared_headers})
+tandem_describe_pch(tandem_headers ${tandem_shared_headers})
 
 # The tests' own code, on top of tandem_flags: what it calls is what is tested, so it is built for little compile time.
 # Under the thread sanitizer it is instrumented as everything is: an atomic that it does not see would be a false alarm.

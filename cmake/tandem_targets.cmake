@@ -1,6 +1,7 @@
 # The three kinds of target. What a folder may include is written once, in DEPS; tests/architecture reads the same lists.
 include(GNUInstallDirs)
 set_property(GLOBAL PROPERTY TANDEM_ARCHITECTURE "")
+set_property(GLOBAL PROPERTY TANDEM_TESTS 0)
 
 # tandem_folder_of(<out>): the folder of the calling CMakeLists, relative to the top, e.g. "core/space".
 function(tandem_folder_of out)
@@ -23,9 +24,10 @@ endfunction()
 # tandem_library(SOURCES a.cpp … DEPS hal core/space … EXTERNAL fmt::fmt … INCLUDES fmt …)
 # One folder = one static library. DEPS are folders, and the only ones whose headers may be included.
 # EXTERNAL are third-party CMake targets or link names. A folder that no tick waits for sets TANDEM_OUTSIDE_THE_TICK for itself
-# and those in it, to tandem_quick_build: it is optimised less, and built in two thirds of the time.
+# and those in it, to tandem_quick_build: it is optimised less, and built in two thirds of the time. HEADERS: what most of its
+# files include and takes long to parse; parsed once for the folder, on top of what all folders share.
 function(tandem_library)
-  cmake_parse_arguments(arg "" "" "SOURCES;DEPS;EXTERNAL" ${ARGN})
+  cmake_parse_arguments(arg "" "" "SOURCES;DEPS;EXTERNAL;HEADERS" ${ARGN})
   tandem_folder_of(folder)
   tandem_target_of(target ${folder})
   if(arg_SOURCES)
@@ -33,7 +35,12 @@ function(tandem_library)
     set(scope PUBLIC)
     target_link_libraries(${target} PRIVATE tandem_flags)
     target_compile_options(${target} PRIVATE ${TANDEM_OUTSIDE_THE_TICK})
-    target_precompile_headers(${target} REUSE_FROM tandem_headers)
+    if(arg_HEADERS)
+      target_precompile_headers(${target} PRIVATE ${tandem_shared_headers} ${arg_HEADERS})
+      tandem_describe_pch(${target} ${tandem_shared_headers} ${arg_HEADERS})
+    else()
+      target_precompile_headers(${target} REUSE_FROM tandem_headers)
+    endif()
   else()
     add_library(${target} INTERFACE)
     set(scope INTERFACE)
@@ -117,18 +124,34 @@ function(tandem_label_test entry target)
 endfunction()
 
 # tandem_test(NAME hal_params SOURCES … DEPS hal LABELS fast): one GoogleTest program, one ctest entry.
+# WAITS: it mostly waits for real time to pass (label `waits`): many run side by side, but beside none that computes.
 function(tandem_test)
-  cmake_parse_arguments(arg "" "NAME;TIMEOUT" "SOURCES;DEPS;EXTERNAL;LABELS" ${ARGN})
+  cmake_parse_arguments(arg "WAITS" "NAME;TIMEOUT" "SOURCES;DEPS;EXTERNAL;LABELS" ${ARGN})
   if(NOT arg_TIMEOUT)
     set(arg_TIMEOUT 120)
   endif()
   if(CMAKE_CROSSCOMPILING)
     math(EXPR arg_TIMEOUT "${arg_TIMEOUT} * 10") # an emulated processor is slow
+  elseif(TANDEM_SANITIZE)
+    math(EXPR arg_TIMEOUT "${arg_TIMEOUT} * 4") # so are checked programs
   endif()
   tandem_test_program(NAME ${arg_NAME} SOURCES ${arg_SOURCES} DEPS ${arg_DEPS} EXTERNAL ${arg_EXTERNAL})
   add_test(NAME ${arg_NAME} COMMAND test_${arg_NAME})
   set_tests_properties(${arg_NAME} PROPERTIES TIMEOUT ${arg_TIMEOUT})
+  if("whole" IN_LIST arg_LABELS)
+    set_tests_properties(${arg_NAME} PROPERTIES COST ${arg_TIMEOUT}) # long ones are begun first
+  endif()
+  if(arg_WAITS)
+    list(APPEND arg_LABELS waits)
+  endif()
   tandem_label_test(${arg_NAME} test_${arg_NAME} ${arg_LABELS})
+  # Locks of robots in a folder of its own: the system gives the pseudo-terminal of a test's lost robot to another test's. A
+  # number, because sockets have short names.
+  get_property(number GLOBAL PROPERTY TANDEM_TESTS)
+  math(EXPR number "${number} + 1")
+  set_property(GLOBAL PROPERTY TANDEM_TESTS ${number})
+  file(MAKE_DIRECTORY ${CMAKE_BINARY_DIR}/run/${number})
+  set_property(TEST ${arg_NAME} APPEND PROPERTY ENVIRONMENT "XDG_RUNTIME_DIR=${CMAKE_BINARY_DIR}/run/${number}")
   if(TANDEM_SANITIZE MATCHES "address") # a hook plug-in and its test program both hold core: the program's is used
     set_property(TEST ${arg_NAME} APPEND PROPERTY ENVIRONMENT
       "ASAN_OPTIONS=detect_odr_violation=0" "LSAN_OPTIONS=suppressions=${PROJECT_SOURCE_DIR}/tests/sanitizers/lsan.supp")

@@ -1,0 +1,37 @@
+# Debian packages of what is installed, one for each component: `./tandem package`.
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_NAME tandem)
+set(CPACK_PACKAGE_VENDOR Tandem)
+set(CPACK_PACKAGE_CONTACT "The Tandem developers <tandem@localhost>")
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "Swarm experiments with simulated and real robots")
+set(CPACK_RESOURCE_FILE_LICENSE ${PROJECT_SOURCE_DIR}/LICENSE)
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_COMPONENTS_ALL program dev)
+set(CPACK_DEB_COMPONENT_INSTALL ON)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_ENABLE_COMPONENT_DEPENDS ON)
+set(CPACK_COMPONENT_DEV_DEPENDS program)
+set(CPACK_DEBIAN_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS ON)
+set(CPACK_DEBIAN_COMPRESSION_TYPE zstd)
+
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_NAME tandem)
+set(CPACK_COMPONENT_PROGRAM_DESCRIPTION "The command tandem, the controllers, engines and devices that come with it, and the library
+libtandem.so. Experiments to begin with are in /usr/share/tandem/configs.")
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS "gnuplot-nox, ffmpeg, povray")
+
+set(CPACK_DEBIAN_DEV_PACKAGE_NAME libtandem-dev)
+set(CPACK_COMPONENT_DEV_DESCRIPTION "Headers and CMake files for controllers, hooks, plug-ins, and programs that hold worlds of their own:
+find_package(Tandem), find_package(Tandem COMPONENTS core).")
+set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS "cmake, libeigen3-dev, librandom123-dev, nlohmann-json3-dev")
+
+if(TARGET tandem_python)
+  list(APPEND CPACK_COMPONENTS_ALL python)
+  set(CPACK_COMPONENT_PYTHON_DEPENDS program)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-tandem)
+  set(CPACK_COMPONENT_PYTHON_DESCRIPTION "import tandem: swarms of robots as arrays.")
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "python3 (>= 3.11), python3 (<< 3.12), python3-numpy")
+endif()
+include(CPack)

@@ -1,0 +1,36 @@
+# Writes the table of the page's files, each with its packed copy: "a.js;a.js.gz;b.js;b.js.gz".
+set(text "// Written by CMake: the files of the page.\n#include \"window/page_files.hpp\"\n\n#include <array>\n\n")
+set(rows)
+set(number 0)
+macro(carry label file)
+  string(APPEND text "asm(\".section .rodata\\n\"\n    \".globl tandem_page_${label}, tandem_page_${label}_end\\n\"\n"
+    "    \"tandem_page_${label}:\\n.incbin \\\"${file}\\\"\\n\"\n    \"tandem_page_${label}_end:\\n.byte 0\\n.previous\\n\");\n"
+    "extern \"C\" const char tandem_page_${label}[], tandem_page_${label}_end[];\n")
+endmacro()
+list(LENGTH FILES left)
+while(left GREATER 0)
+  list(POP_FRONT FILES plain packed)
+  list(LENGTH FILES left)
+  carry(${number}_packed ${packed})
+  carry(${number} ${plain})
+  get_filename_component(name ${plain} NAME)
+  get_filename_component(ending ${plain} LAST_EXT)
+  file(SHA256 ${plain} sum)
+  string(SUBSTRING ${sum} 0 16 sum)
+  if(ending STREQUAL ".html")
+    set(type "text/html; charset=utf-8")
+  elseif(ending STREQUAL ".js")
+    set(type "text/javascript; charset=utf-8")
+  elseif(ending STREQUAL ".css")
+    set(type "text/css; charset=utf-8")
+  else()
+    set(type "image/svg+xml")
+  endif()
+  string(APPEND rows "      {\"/${name}\", \"${type}\", carried(tandem_page_${number}, tandem_page_${number}_end),\n"
+    "       carried(tandem_page_${number}_packed, tandem_page_${number}_packed_end), \"\\\"${sum}\\\"\"},\n")
+  math(EXPR number "${number} + 1")
+endwhile()
+string(APPEND text "\nnamespace tandem::window {\n\nstd::span<const PageFile> page_files() noexcept {\n"
+  "  const auto carried = [](const char* first, const char* end) {\n    return std::string_view(first, static_cast<std::size_t>(end - first));\n  };\n"
+  "  static const std::array<PageFile, ${number}> kFiles = {{\n${rows}  }};\n  return kFiles;\n}\n\n}  // namespace tandem::window\n")
+file(WRITE ${OUT} "${text}")
