@@ -10,6 +10,7 @@
 #include "core/device/types.hpp"
 #include "core/random/random.hpp"
 #include "core/sim/engine_factory.hpp"
+#include "core/sim/settings.hpp"
 #include "hal/device/flight.hpp"
 #include "hal/device/gripper.hpp"
 #include "hal/device/pan_tilt.hpp"
@@ -193,17 +194,8 @@ bool same_group(const RobotItem& a, const RobotItem& b) {
   return same_kit(a, b) && !a.params && !b.params;
 }
 
-bool same_element(const Element& a, const Element& b) {
-  const auto same = [](const Element::Attribute& x, const Element::Attribute& y) {
-    return x.name == y.name && x.value == y.value;
-  };
-  return a.name == b.name &&
-         std::equal(a.attributes.begin(), a.attributes.end(), b.attributes.begin(), b.attributes.end(), same) &&
-         std::equal(a.children.begin(), a.children.end(), b.children.begin(), b.children.end(), &same_element);
-}
-
 bool same_params(const std::optional<Element>& a, const std::optional<Element>& b) {
-  return a && b ? same_element(*a, *b) : !a && !b;
+  return a && b ? same_settings(*a, *b) : !a && !b;
 }
 
 }  // namespace
@@ -600,16 +592,20 @@ void RobotFactory::complete(std::size_t g) {
 
 // --- while the run goes on ---
 
-namespace {
-
-hal::Error cannot_be_made(const RobotItem& item, const Problems& problems) {
+hal::Error RobotFactory::cannot_be_made(const RobotItem& item, const Problems& problems) {
   std::string message = "robot '" + item.id + "' cannot be made:";
   for (const Problem& problem : problems) message += " " + problem.message + ";";
   message.pop_back();
   return hal::Error{message};
 }
 
-}  // namespace
+/// Its ports, as they are before anything was read or commanded.
+void RobotFactory::reset_row(const RobotGroup& group, RobotBlock& block, std::size_t slot) {
+  for (std::size_t p = 0; p < block.ports.size(); ++p) {
+    const hal::PortType& type = *group.ports[p];
+    type.reset(block.ports[p] + slot * type.size);
+  }
+}
 
 /// The first group of that kit: parameters are each robot's own.
 hal::Result<std::size_t> RobotFactory::group_for(const RobotItem& item) {
@@ -677,50 +673,76 @@ void RobotFactory::give_back(std::size_t g, Slot slot, const Taken& before, std:
   stores_.names.pop_back();
 }
 
-hal::Result<RobotId> RobotFactory::add(const RobotItem& item, const Pose& pose,
-                                       const std::function<hal::Status(std::size_t row)>& accepts) {
+/// A slot for a robot of that kit, and the parameters of its controller.
+hal::Result<RobotFactory::Room> RobotFactory::room_for(const RobotItem& item) {
   const hal::Result<std::size_t> found = group_for(item);
   if (!found.ok()) return found.error();
   const std::size_t g = found.value();
-  std::shared_ptr<const void> params = stores_.groups[g].params;
-  const bool own_params = !same_params(stores_.groups[g].item->params, item.params);
-  if (own_params) {
+  Room room{g, {}, stores_.groups[g].params, !same_params(stores_.groups[g].item->params, item.params), {}};
+  if (room.own_params) {
     Problems problems;
-    params = read_params(stores_.groups[g], item, scenario_, problems);
+    room.params = read_params(stores_.groups[g], item, scenario_, problems);
     if (has_errors(problems)) return cannot_be_made(item, problems);
   }
-  const Slot slot = free_slot(g);
+  room.slot = free_slot(g);
   if (devices_.blocks.size() < stores_.blocks.size()) {
     complete(g);
     media_.fit(stores_);
   }
-  const Taken before{stores_.groups[g].ports.size(), stores_.groups[g].published.size()};
+  room.before = {stores_.groups[g].ports.size(), stores_.groups[g].published.size()};
+  return room;
+}
+
+/// The row as a new one would be.
+void RobotFactory::begin_row(const Room& room) {
+  const Slot slot = room.slot;
+  RobotBlock& block = stores_.blocks[slot.block];
+  Bodies& b = stores_.bodies;
+  const std::size_t row = block.first_row + slot.slot;
+  for (auto* array : {&b.left_m_s, &b.right_m_s, &b.left_m, &b.right_m}) (*array)[row] = 0.0;
+  if (!b.motion.empty()) b.motion[row] = {};
+  for (const KeptColumn& column : stores_.groups[room.group].columns) column.start(slot.block, slot.slot);
+  reset_row(stores_.groups[room.group], block, slot.slot);
+  block.halted[slot.slot] = 0;
+}
+
+/// Once its controller is there.
+void RobotFactory::end_row(Room& room) {
+  RobotBlock& home = stores_.blocks[room.slot.block];
+  const std::size_t slot = room.slot.slot;
+  if (room.own_params && home.params.size() <= slot) home.params.resize(slot + 1U);
+  if (slot < home.params.size()) home.params[slot] = room.own_params ? std::move(room.params) : nullptr;
+  if (stores_.groups[room.group].ports.size() > room.before.ports) {  // it took ports that no other has
+    complete(room.group);
+    media_.fit(stores_);
+  }
+}
+
+hal::Result<RobotId> RobotFactory::add(const RobotItem& item, const Pose& pose,
+                                       const std::function<hal::Status(std::size_t row)>& accepts) {
+  hal::Result<Room> found = room_for(item);
+  if (!found.ok()) return found.error();
+  Room& room = found.value();
+  const std::size_t g = room.group;
+  const Slot slot = room.slot;
   const auto entity = static_cast<std::uint32_t>(stores_.robots.size());
   stores_.names.push_back({item.id, -1, entity, 1});
   RobotEntity made;
   made.item = static_cast<std::uint32_t>(stores_.names.size() - 1);
   stores_.robots.push_back(made);
 
-  // The row as a new one would be.
   RobotBlock& block = stores_.blocks[slot.block];
   Bodies& b = stores_.bodies;
   const std::size_t row = block.first_row + slot.slot;
   const std::uint32_t entity_before = b.entity[row];
-  for (auto* array : {&b.left_m_s, &b.right_m_s, &b.left_m, &b.right_m}) (*array)[row] = 0.0;
-  if (!b.motion.empty()) b.motion[row] = {};
-  for (const KeptColumn& column : stores_.groups[g].columns) column.start(slot.block, slot.slot);
-  for (std::size_t p = 0; p < block.ports.size(); ++p) {
-    const hal::PortType& type = *stores_.groups[g].ports[p];
-    type.reset(block.ports[p] + slot.slot * type.size);
-  }
-  block.halted[slot.slot] = 0;
+  begin_row(room);
   place({made.item, entity, pose.x_m, pose.y_m, pose.z_m, pose.heading_rad()}, slot);
   b.cos_h[row] = pose.cos_h;
   b.sin_h[row] = pose.sin_h;
 
   hal::Status fits = accepts(row);
   if (fits.ok()) {
-    const std::string why = construct(slot, params);
+    const std::string why = construct(slot, room.params);
     if (!why.empty()) fits = hal::Error{why};
   }
   if (fits.ok() && !(fits = can_hold(slot)).ok()) {
@@ -728,16 +750,10 @@ hal::Result<RobotId> RobotFactory::add(const RobotItem& item, const Pose& pose,
     block.constructed[slot.slot] = 0;
   }
   if (!fits.ok()) {
-    give_back(g, slot, before, entity_before);
+    give_back(g, slot, room.before, entity_before);
     return fits.error();
   }
-  RobotBlock& home = stores_.blocks[slot.block];
-  if (own_params && home.params.size() <= slot.slot) home.params.resize(slot.slot + 1U);
-  if (slot.slot < home.params.size()) home.params[slot.slot] = own_params ? std::move(params) : nullptr;
-  if (stores_.groups[g].ports.size() > before.ports) {  // its controller took ports that no other has
-    complete(g);
-    media_.fit(stores_);
-  }
+  end_row(room);
   stores_.robots[entity].generation = ++stores_.generations;
   stores_.living.push_back(entity);
   stores_.added_robots.emplace(item.id, entity);

@@ -74,6 +74,10 @@ class RobotFactory {
   hal::Result<RobotId> add(const RobotItem& item, const Pose& pose,
                            const std::function<hal::Status(std::size_t row)>& accepts);
 
+  /// The scenario has changed from `before` while the run goes on, in what World::continue_with takes over: does that
+  /// for all robots. Error: a controller that cannot be made; some are changed then and others not.
+  hal::Status go_on_from(const Scenario& before);
+
   /// "controller 'c' (library 'x') of robot 'ep3'": who has this slot of a block. For hal::PluginCall.
   void name_controller(std::size_t block, std::size_t slot, hal::FixedText& out) const noexcept;
 
@@ -100,6 +104,21 @@ class RobotFactory {
   struct Taken {  // by the controllers of a group
     std::size_t ports, published;
   };
+  struct Room {  // for a robot that comes while the run goes on
+    std::size_t group = 0;
+    Slot slot;
+    std::shared_ptr<const void> params;
+    bool own_params = false;
+    Taken before{};
+  };
+  hal::Result<Room> room_for(const RobotItem& item);
+  void begin_row(const Room& room);
+  void end_row(Room& room);
+  static void reset_row(const RobotGroup& group, RobotBlock& block, std::size_t slot);
+  static hal::Error cannot_be_made(const RobotItem& item, const Problems& problems);
+  hal::Status change_group(std::size_t g, const Scenario& before);
+  hal::Status make_anew(std::size_t g);
+  hal::Status move(std::uint32_t entity, const RobotItem& item);
   void give_back(std::size_t g, Slot slot, const Taken& before, std::uint32_t entity_before);
   hal::Status can_hold(Slot at) const;
 
@@ -118,8 +137,9 @@ class RobotFactory {
   std::vector<RobotBlock> kept_;          // start_blocks_ with their controllers, to be filled anew
   std::size_t filled_ = 0;                // how many of them are
   std::vector<std::uint8_t> new_params_;  // by group: 1 where controllers are to be constructed with others; or empty
-  Slab* slab_ = nullptr;                  // where blocks get their memory; null: each on its own
-  std::size_t start_rows_ = 0;            // of the group that is being made at the start
+  std::vector<std::shared_ptr<const void>> former_params_;  // controllers may know theirs
+  Slab* slab_ = nullptr;                                    // where blocks get their memory; null: each on its own
+  std::size_t start_rows_ = 0;                              // of the group that is being made at the start
 };
 
 /// Ends the life of every controller. Before the loader closes its plug-ins.

@@ -84,6 +84,18 @@ class World {
   /// lines: what is wrong with them; other robots, controllers or hooks. Nothing has changed then.
   hal::Status change_parameters(const Scenario& changed);
 
+  /// Goes on with the settings of `changed`, which otherwise is the scenario that the world was made of, from the next
+  /// step on. Bodies, mechanisms, chance and time stay, and so does all that nothing says otherwise of. Robots that
+  /// have another configuration or other parameters get a new controller and safe commands, like robots that are added;
+  /// devices that are listed with other options, and fitted parameters, count at once; a hook with other options is
+  /// made anew, called (`before_run`), and gets back what it gave to `Hook::save`. Snapshots from before are void, and
+  /// there is no reset. Call between steps. Errors: `can_continue_with`, then nothing has changed; a controller or hook
+  /// that cannot be made in this world: the run has failed then.
+  hal::Status continue_with(const Scenario& changed);
+  /// Whether it can. Error: names what differs and cannot change while a run goes on. `changed` is one of which a world
+  /// can be made: that is not checked here.
+  hal::Status can_continue_with(const Scenario& changed) const;
+
   /// Makes safe what was written into actuators from outside since the last step, as it is after the controllers' step;
   /// counted among the incidents. Between steps.
   void limit_commands();

@@ -129,8 +129,9 @@ struct World::Impl final : hal::RobotLog::Sink {
   std::vector<std::unique_ptr<Hook>> hooks;
   std::vector<std::string> hook_names;
   Measures measures;
-  const char* hook_phase = "";    // that is or was called last
-  bool new_hook_options = false;  // the next reset makes hooks anew
+  const char* hook_phase = "";                          // that is or was called last
+  bool new_hook_options = false;                        // the next reset makes hooks anew
+  std::vector<std::unique_ptr<const Scenario>> former;  // that the run went on from: controllers may know their kinds
   ExternalRobots* external = nullptr;
   std::vector<RobotId> elsewhere;  // robots whose controllers step there
 
@@ -156,6 +157,9 @@ struct World::Impl final : hal::RobotLog::Sink {
   void make_fields(Problems& problems);
   void make_hooks(Problems& problems);
   void reset_hooks(Problems& problems);
+  std::string remake_hook(std::size_t hook, Problems& problems);
+  Scenario completed(const Scenario& changed) const;
+  void change_hook(std::size_t hook);
   void size_ledgers();
 
   // --- messages of controllers ---

@@ -379,6 +379,7 @@ void World::Impl::size_ledgers() {
 hal::Status World::reset(std::uint64_t seed) {
   Impl& w = *impl_;
   if (w.external != nullptr) return hal::Error{"no reset: real robots or peers take part, which cannot be put back"};
+  if (!w.former.empty()) return hal::Error{"no reset: the run went on with other settings; make another world"};
   SpaceStores& s = w.stores();
   w.factory->begin_anew(seed);
   w.engines.clear();
@@ -467,6 +468,16 @@ hal::Status World::change_parameters(const Scenario& changed) {
   return {};
 }
 
+/// Says what went wrong, or nothing.
+std::string World::Impl::remake_hook(std::size_t i, Problems& problems) {
+  const auto type = loader->get<HookType>(scenario.hooks[i].library, scenario.hooks[i].label);
+  hooks[i].reset();  // closes its files before the next opens them
+  std::string why;
+  std::unique_ptr<Hook> made = make_hook(*type.value(), scenario.hooks[i], problems, why);
+  hooks[i] = made != nullptr ? std::move(made) : std::make_unique<Hook>();  // which does nothing, in its place
+  return why;
+}
+
 void World::Impl::reset_hooks(Problems& problems) {
   const bool keep = !std::exchange(new_hook_options, false);
   hook_phase = "reset";
@@ -480,12 +491,7 @@ void World::Impl::reset_hooks(Problems& problems) {
       why += std::string(": ") + e.what();
     } catch (...) {
     }
-    if (why.empty()) {
-      const auto type = loader->get<HookType>(scenario.hooks[i].library, scenario.hooks[i].label);
-      hooks[i].reset();  // closes its files before the next opens them
-      std::unique_ptr<Hook> made = make_hook(*type.value(), scenario.hooks[i], problems, why);
-      hooks[i] = made != nullptr ? std::move(made) : std::make_unique<Hook>();  // which does nothing, in its place
-    }
+    if (why.empty()) why = remake_hook(i, problems);
     if (!why.empty())
       problems.push_back({scenario.file, scenario.hooks[i].line, "hook '" + hook_names[i] + "' " + why, false});
   }

@@ -1,0 +1,393 @@
+// Goes on with other settings while a world runs: what can change and what cannot, and how robots and hooks follow.
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cstring>
+#include <exception>
+#include <utility>
+
+#include "core/sim/device_media.hpp"
+#include "core/sim/settings.hpp"
+#include "core/sim/world_impl.hpp"
+
+namespace tandem::core {
+namespace {
+
+constexpr std::size_t kNamed = 10;
+
+bool same_value(const std::string& a, const std::string& b) {
+  if (a == b) return true;
+  const auto number = [](const std::string& text, double& value) {
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    return error == std::errc() && end == text.data() + text.size();
+  };
+  double x = 0.0, y = 0.0;
+  return number(a, x) && number(b, y) && x == y;
+}
+
+// --- what cannot change ---
+
+/// Walks two experiments side by side.
+class Differences {
+ public:
+  /// Leaves out those of elements for which `taken(parent, element)`.
+  using Taken = bool (*)(const Element& parent, const Element& element);
+
+  void compare(const Element& a, const Element& b, const std::string& path, Taken taken) {
+    attributes(a, b, path, {});
+    children(a, b, path, taken);
+  }
+  void attributes(const Element& a, const Element& b, const std::string& path, const std::vector<std::string>& only) {
+    const auto wanted = [&](const std::string& name) {
+      return only.empty() || std::find(only.begin(), only.end(), name) != only.end();
+    };
+    for (const Element::Attribute& x : a.attributes) {
+      const std::string* const y = b.attribute(x.name);
+      if (wanted(x.name) && (y == nullptr || !same_value(x.value, *y))) add(path + "." + x.name);
+    }
+    for (const Element::Attribute& y : b.attributes) {
+      if (wanted(y.name) && a.attribute(y.name) == nullptr) add(path + "." + y.name);
+    }
+  }
+  void children(const Element& a, const Element& b, const std::string& path, Taken taken) {
+    const std::vector<const Element*> of_a = left(a, taken), of_b = left(b, taken);
+    bool alike = of_a.size() == of_b.size();
+    for (std::size_t i = 0; alike && i < of_a.size(); ++i) alike = of_a[i]->name == of_b[i]->name;
+    if (!alike) return add(path.empty() ? a.name : path);
+    for (std::size_t i = 0; i < of_a.size(); ++i)
+      compare(*of_a[i], *of_b[i], (path.empty() ? "" : path + ".") + part(a, *of_a[i]), taken);
+  }
+  void add(std::string path) {
+    if (all.size() < kNamed && std::find(all.begin(), all.end(), path) == all.end()) all.push_back(std::move(path));
+  }
+  /// As --set names a child.
+  static std::string part(const Element& parent, const Element& child) {
+    if (const std::string* const id = child.attribute("id"); id != nullptr) return child.name + "[" + *id + "]";
+    std::size_t number = 0, before = 0;
+    for (const Element& other : parent.children) {
+      if (&other == &child) before = number;
+      if (other.name == child.name) ++number;
+    }
+    return number > 1 ? child.name + "[" + std::to_string(before) + "]" : child.name;
+  }
+
+  std::vector<std::string> all;
+
+ private:
+  static std::vector<const Element*> left(const Element& parent, Taken taken) {
+    std::vector<const Element*> all;
+    for (const Element& child : parent.children) {
+      if (!taken(parent, child)) all.push_back(&child);
+    }
+    return all;
+  }
+};
+
+bool is_one_of(const std::string& name, std::initializer_list<std::string_view> names) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+/// What is taken over, or does nothing to a simulated robot.
+bool taken_over(const Element& parent, const Element& element) {
+  if (is_one_of(element.name, {"controllers", "loop_functions"})) return true;  // compared apart
+  if (is_one_of(element.name, {"fitted", "trackers", "safety", "desk", "record", "visualization", "system"})) return true;
+  return parent.attribute("id") != nullptr && is_one_of(element.name, {"controller", "bridge", "tracker", "peer"});
+}
+
+std::vector<const Element*> named(const Element& parent, std::string_view name) {
+  std::vector<const Element*> all;
+  for (const Element& child : parent.children) {
+    if (child.name == name) all.push_back(&child);
+  }
+  return all;
+}
+
+bool same_devices(const std::vector<DeviceChoice>& a, const std::vector<DeviceChoice>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const DeviceChoice& x, const DeviceChoice& y) {
+    return x.device == y.device && x.implementation == y.implementation && x.medium == y.medium &&
+           same_settings(x.options, y.options);
+  });
+}
+
+const Element& params_of(const RobotItem& item, const Scenario& scenario) {
+  return item.params ? *item.params : scenario.controllers[item.controller].params;
+}
+
+bool same_fits(const Scenario& a, const Scenario& b) {
+  const Element* const x = a.effective.child("fitted");
+  const Element* const y = b.effective.child("fitted");
+  return x == nullptr || y == nullptr ? x == y : same_settings(*x, *y);
+}
+
+/// What the experiments' texts do not show: worlds are also made from scenarios that no file holds.
+void compare_scenarios(const Scenario& a, const Scenario& b, Differences& found) {
+  if (a.ticks_per_second != b.ticks_per_second) found.add("framework.experiment.ticks_per_second");
+  if (a.seed != b.seed) found.add("framework.experiment.random_seed");
+  if (a.arena_size != b.arena_size || a.arena_center != b.arena_center) found.add("arena.size");
+  const auto same_engine = [](const EngineConfig& x, const EngineConfig& y) {
+    return x.kind == y.kind && x.id == y.id && same_settings(x.options, y.options);
+  };
+  if (!std::equal(a.engines.begin(), a.engines.end(), b.engines.begin(), b.engines.end(), same_engine))
+    found.add("physics_engines");
+  const auto same_robot = [](const RobotItem& x, const RobotItem& y) {
+    const std::int64_t count = x.distribute ? x.distribute->quantity : -1;
+    return x.kind == y.kind && x.id == y.id && count == (y.distribute ? y.distribute->quantity : -1);
+  };
+  if (!std::equal(a.robots.begin(), a.robots.end(), b.robots.begin(), b.robots.end(), same_robot))
+    found.add("arena: its robots");
+  if (a.objects.size() != b.objects.size() || a.lights.size() != b.lights.size() || a.sounds.size() != b.sounds.size())
+    found.add("arena: its objects");
+  if (a.media.size() != b.media.size() || a.fields.size() != b.fields.size()) found.add("media");
+  const auto same_controller = [](const ControllerConfig& x, const ControllerConfig& y) {
+    return x.id == y.id && x.label == y.label && x.library == y.library;
+  };
+  if (!std::equal(a.controllers.begin(), a.controllers.end(), b.controllers.begin(), b.controllers.end(),
+                  same_controller))
+    found.add("controllers: their ids or libraries");
+  const auto same_hook = [](const HookConfig& x, const HookConfig& y) {
+    return x.label == y.label && x.library == y.library;
+  };
+  if (!std::equal(a.hooks.begin(), a.hooks.end(), b.hooks.begin(), b.hooks.end(), same_hook))
+    found.add("loop_functions: their libraries");
+}
+
+/// The robots of a group share a kit: it stays one of them.
+bool parts_differ(const RobotItem& a, const RobotItem& b) {
+  return a.controller != b.controller || (b.params.has_value() && !a.params.has_value());
+}
+
+}  // namespace
+
+bool same_settings(const Element& a, const Element& b) {
+  const auto has = [](const Element& element, const Element::Attribute& wanted) {
+    const std::string* const value = element.attribute(wanted.name);
+    return value != nullptr && same_value(*value, wanted.value);
+  };
+  return a.name == b.name && a.attributes.size() == b.attributes.size() &&
+         std::all_of(a.attributes.begin(), a.attributes.end(), [&](const auto& x) { return has(b, x); }) &&
+         std::equal(a.children.begin(), a.children.end(), b.children.begin(), b.children.end(), &same_settings);
+}
+
+std::vector<std::string> fixed_differences(const Scenario& before, const Scenario& changed) {
+  Differences found;
+  const Element &a = before.effective, &b = changed.effective;
+  found.children(a, b, "", &taken_over);
+  const auto hooks_a = named(a, "loop_functions"), hooks_b = named(b, "loop_functions");
+  for (std::size_t i = 0; i < std::min(hooks_a.size(), hooks_b.size()); ++i)
+    found.attributes(*hooks_a[i], *hooks_b[i], Differences::part(a, *hooks_a[i]), {"library", "label"});
+  const Element *all_a = a.child("controllers"), *all_b = b.child("controllers");
+  if (all_a != nullptr && all_b != nullptr && all_a->children.size() == all_b->children.size()) {
+    for (std::size_t i = 0; i < all_a->children.size(); ++i)
+      found.attributes(all_a->children[i], all_b->children[i],
+                       "controllers." + Differences::part(*all_a, all_a->children[i]), {});
+  }
+  if (found.all.empty()) compare_scenarios(before, changed, found);
+  return std::move(found.all);
+}
+
+// --- the world ---
+
+/// With all defaults of those parts that either scenario uses.
+Scenario World::Impl::completed(const Scenario& changed) const {
+  Scenario next = changed;
+  Problems ignored;
+  name_media(next, loader->catalog(), ignored);
+  for (const bool as_before : {true, false}) {
+    for (std::size_t i = 0; i < std::min(next.robots.size(), scenario.robots.size()); ++i)
+      next.robots[i].controller = as_before ? scenario.robots[i].controller : changed.robots[i].controller;
+    complete_settings(next, *loader, seed);
+  }
+  return next;
+}
+
+hal::Status World::can_continue_with(const Scenario& changed) const {
+  const std::vector<std::string> fixed = fixed_differences(impl_->scenario, impl_->completed(changed));
+  if (fixed.empty()) return {};
+  return hal::Error{"cannot change while the run goes on: " + listed(fixed) +
+                    ". What can: parameters and devices of controllers, which robot has which, options of hooks, and "
+                    "<fitted>"};
+}
+
+hal::Status World::continue_with(const Scenario& changed) {
+  if (const hal::Status can = can_continue_with(changed); !can.ok()) return can;
+  Impl& w = *impl_;
+  Scenario next = w.completed(changed);
+  w.former.push_back(std::make_unique<const Scenario>(std::exchange(w.scenario, std::move(next))));
+  const Scenario& before = *w.former.back();
+  w.identity = std::make_shared<int>(0);
+  w.kept_checkpoints.forget_all();
+  const hal::Status robots = w.factory->go_on_from(before);
+  if (!robots.ok()) w.fail("with the changed settings" + w.at_tick() + ": " + robots.error().message);
+  w.fit_ledgers();
+  bool any_hook = false;
+  for (std::size_t i = 0; i < w.hooks.size() && w.state != RunState::Failed; ++i) {
+    if (same_settings(before.hooks[i].options, w.scenario.hooks[i].options)) continue;
+    w.change_hook(i);
+    any_hook = true;
+  }
+  for (const Fields::Entry& entry : w.stores().fields.all()) {
+    if (any_hook && entry.field->painted_by_hooks()) entry.field->repaint();
+  }
+  if (w.state == RunState::Failed) return hal::Error{w.failure};
+  return {};
+}
+
+/// The hook is another one from now on, which remembers what the former did as far as that says.
+void World::Impl::change_hook(std::size_t i) {
+  hook_phase = "before_run";
+  const hal::PluginCall marked(&name_hook, this, i);
+  Problems problems;
+  std::string why;
+  try {
+    const std::any kept = hooks[i]->save();
+    why = remake_hook(i, problems);
+    for (const Problem& problem : problems) {
+      if (!problem.warning) why += (why.empty() ? "" : "; ") + problem.message;
+    }
+    if (why.empty()) {
+      HookContext context = hook_context();
+      hooks[i]->before_run(context);
+      if (kept.has_value()) hooks[i]->restore(kept);
+    }
+  } catch (const std::exception& e) {
+    why = std::string("threw: ") + e.what();
+  } catch (...) {
+    why = "threw";
+  }
+  if (!why.empty()) fail("hook '" + hook_names[i] + "' with the changed options" + at_tick() + " " + why);
+}
+
+// --- robots ---
+
+hal::Status RobotFactory::go_on_from(const Scenario& before) {
+  slab_ = nullptr;
+  const std::size_t groups = stores_.groups.size();
+  for (std::size_t g = 0; g < groups; ++g) {
+    if (hal::Status done = change_group(g, before); !done.ok()) return done;
+  }
+  for (std::uint32_t entity = 0; entity < stores_.robots.size(); ++entity) {
+    const RobotEntity& e = stores_.robots[entity];
+    if (!e.alive || e.item >= scenario_.robots.size()) continue;
+    const RobotItem& item = scenario_.robots[e.item];
+    if (!parts_differ(before.robots[e.item], item)) continue;
+    if (hal::Status done = move(entity, item); !done.ok()) return done;
+  }
+  media_.fit(stores_);
+  return {};
+}
+
+/// Of the robots that stay in their group: other parameters make their controllers anew, other devices do not.
+hal::Status RobotFactory::change_group(std::size_t g, const Scenario& before) {
+  RobotGroup& group = stores_.groups[g];
+  const RobotItem was = *group.item;
+  RobotItem now = was;
+  for (std::size_t i = 0; i < before.robots.size(); ++i) {  // also of groups of robots that were added
+    if (before.robots[i].kind == was.kind && before.robots[i].own_kind == was.own_kind)
+      now.own_kind = scenario_.robots[i].own_kind;
+  }
+  for (std::size_t i = 0; i < group_of_item_.size(); ++i) {
+    if (group_of_item_[i] != g || parts_differ(before.robots[i], scenario_.robots[i])) continue;
+    now = scenario_.robots[i];
+    break;
+  }
+  const ControllerConfig &config_was = before.controllers[group.config], &config = scenario_.controllers[group.config];
+  const bool other_params = !same_settings(params_of(was, before), params_of(now, scenario_));
+  const bool other_devices = !same_devices(config_was.sensors, config.sensors) ||
+                             !same_devices(config_was.actuators, config.actuators) || !same_fits(before, scenario_);
+  group.item = std::make_shared<RobotItem>(std::move(now));
+  if (!other_params && !other_devices) return {};
+  former_params_.push_back(group.params);
+  Problems problems;
+  if (!prepare_group(g, problems)) return cannot_be_made(*group.item, problems);
+  for (const hal::PortType* port : group.ports) {
+    if (group.factories->find(port->name, port->role) != nullptr) continue;
+    return hal::Error{"the controller '" + config.id + "' has taken the device '" + std::string(port->name) +
+                      "', which its configuration no longer lists"};
+  }
+  group.media.clear();
+  for (const std::size_t b : group.blocks) devices_.blocks[b] = {};
+  if (other_params) {
+    if (hal::Status made = make_anew(g); !made.ok()) return made;
+  }
+  complete(g);
+  stores_.bodies_changed = true;  // how far devices reach may have changed
+  return {};
+}
+
+/// The controllers of a group, with its parameters of now. Those of robots with parameters of their own stay.
+hal::Status RobotFactory::make_anew(std::size_t g) {
+  for (const std::size_t b : stores_.groups[g].blocks) {
+    for (std::uint32_t slot = 0; slot < stores_.blocks[b].used; ++slot) {
+      RobotBlock& block = stores_.blocks[b];
+      if (block.constructed[slot] == 0 || (slot < block.params.size() && block.params[slot] != nullptr)) continue;
+      block.constructed[slot] = 0;
+      stores_.groups[g].controller->destroy(block.controller(slot));
+      reset_row(stores_.groups[g], block, slot);
+      block.halted[slot] = static_cast<std::uint8_t>(block.halted[slot] & ~bit(HaltOwner::Controller));
+      const std::string why = construct({static_cast<std::uint32_t>(b), slot}, stores_.groups[g].params);
+      if (!why.empty()) return hal::Error{why};
+    }
+  }
+  return {};
+}
+
+/// Gives a robot another controller: its body, and its state as far as the other's devices keep such, go to a slot of
+/// that one's group. What it holds, or is held by, is let go.
+hal::Status RobotFactory::move(std::uint32_t entity, const RobotItem& item) {
+  RobotEntity& e = stores_.robots[entity];
+  const Slot from{e.block, e.slot};
+  hal::Result<Room> found = room_for(item);
+  if (!found.ok()) return found.error();
+  Room& room = found.value();
+  begin_row(room);
+  RobotBlock &was = stores_.blocks[from.block], &block = stores_.blocks[room.slot.block];
+  RobotGroup& former = stores_.groups[was.group];
+  const std::size_t old_row = was.first_row + from.slot, row = block.first_row + room.slot.slot;
+  Bodies& b = stores_.bodies;
+  const auto carry = [&](auto& array) { array[row] = array[old_row]; };
+  for (auto* array : {&b.x_m, &b.y_m, &b.cos_h, &b.sin_h, &b.left_m, &b.right_m}) carry(*array);
+  carry(b.radius_m);
+  carry(b.flags);
+  carry(b.entity);
+  carry(b.region);
+  if (!b.motion.empty()) carry(b.motion);
+  block.halted[room.slot.slot] = static_cast<std::uint8_t>(was.halted[from.slot] & ~bit(HaltOwner::Controller));
+
+  // The slot that it leaves, as that of a robot that is removed; one that was led from outside: pointers into it are
+  // kept, so nobody else ever gets it.
+  const bool led = (b.flags[old_row] & kExternal) != 0;
+  was.halted[from.slot] = bit(HaltOwner::Removed);
+  if (was.constructed[from.slot] != 0) former.controller->destroy(was.controller(from.slot));
+  was.constructed[from.slot] = 0;
+  if (from.slot < was.params.size()) {
+    former_params_.push_back(was.params[from.slot]);
+    was.params[from.slot].reset();
+  }
+  if (!led) former.free_slots.push_back(from);
+  b.flags[old_row] = 0;
+  b.left_m_s[old_row] = b.right_m_s[old_row] = 0.0;
+  for (Joint& joint : stores_.joints) {
+    if (joint.a == BodyKey::robot(old_row) || joint.b == BodyKey::robot(old_row)) joint.alive = false;
+  }
+  e.block = room.slot.block;
+  e.slot = room.slot.slot;
+  group_of_item_[e.item] = room.group;
+
+  const std::string why = construct(room.slot, room.params);
+  if (!why.empty()) return hal::Error{why};
+  if (hal::Status holds = can_hold(room.slot); !holds.ok()) return holds;
+  end_row(room);
+  // Only now has the group all columns that its devices need.
+  for (const KeptColumn& column : stores_.groups[room.group].columns) {
+    const std::byte* const state = column.arrays->array(from.block);
+    if (state == nullptr) continue;
+    const std::size_t size = column.type->size;
+    std::memcpy(column.arrays->array(room.slot.block) + room.slot.slot * size, state + from.slot * size, size);
+  }
+  stores_.altered = true;
+  ++stores_.generations;  // who knows where robots lie looks anew
+  stores_.touch(BodyKey::robot(row));
+  return {};
+}
+
+}  // namespace tandem::core
