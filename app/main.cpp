@@ -149,10 +149,12 @@ void add_replay(CLI::App& app, RunOptions& o, int& code) {
       "replay", "Compute a run with real robots again out of its record, without them, and compare every tick.");
   c->footer(
       "With --from the robots are simulated from that tick on, and it is told how far they go astray from the real "
-      "ones. What --set and --controller change holds from the start; until --from the robots do as they did.");
+      "ones. What --set and --controller change holds from that tick on too; without --from it holds from the start.");
   c->add_option("record", o.replay.record, "The record of `tandem run --record`; of one that was killed FILE.part")
       ->required();
-  c->add_option("--from", o.replay.from, "What if: from this tick on the robots are simulated")
+  c->add_option(
+       "--from", o.replay.from,
+       "What if: until this tick all is as recorded; from it on the robots are simulated, with what is changed")
       ->check(CLI::NonNegativeNumber);
   c->add_option("--until", o.replay.until, "So many ticks are done; default: all that are recorded")
       ->check(CLI::PositiveNumber);

@@ -76,21 +76,25 @@ bool ReplayRun::open(ExperimentReading& reading) {
   auto record = core::RecordReader::open(asked_.record);
   if (!record.ok()) return complain(kBadInput, record.error().message) == kDone;
   start_ = record.value().start();
-  const std::string settings = text_of(start_, "settings");
+  settings_ = text_of(start_, "settings");
   const auto file = start_.find("file");
-  const std::string name = file != start_.end() && file->is_object() ? text_of(*file, "file") : std::string();
-  if (settings.empty() || name.empty()) {
+  name_ = file != start_.end() && file->is_object() ? text_of(*file, "file") : std::string();
+  if (settings_.empty() || name_.empty()) {
     return complain(kBadInput, "record '" + asked_.record +
                                    "' does not hold the experiment of its run, so it cannot be computed again") ==
            kDone;
   }
-  return reading.open_text(settings, name, options_.overrides);
+  return reading.open_text(settings_, name_, changes_later() ? std::vector<std::string>() : options_.overrides);
 }
 
-hal::Status ReplayRun::prepare(core::Scenario& scenario, const hal::Catalog&) const {
+hal::Status ReplayRun::check_record_path() const {
   if (!options_.record.empty() && std::filesystem::exists(options_.record) &&
       std::filesystem::equivalent(options_.record, asked_.record))
     return hal::Error{"--record would overwrite the record that is replayed"};
+  return {};
+}
+
+void ReplayRun::leave_robots_out(core::Scenario& scenario) const {
   for (core::RobotItem& item : scenario.robots) {
     item.bridge.reset();
     item.peer.reset();
@@ -102,10 +106,32 @@ hal::Status ReplayRun::prepare(core::Scenario& scenario, const hal::Catalog&) co
   scenario.priority = 0;
   const bool paced = options_.view.on && scenario.time_mode == core::TimeMode::Realtime;
   if (!paced) scenario.time_mode = core::TimeMode::Fast;
-  for (const std::string& asked : asked_.controllers) {
-    if (const hal::Status chosen = choose_controller(scenario, asked); !chosen.ok()) return chosen;
+}
+
+bool ReplayRun::prepare(core::Scenario& scenario, hal::PluginLoader& loader) {
+  if (const hal::Status path = check_record_path(); !path.ok())
+    return complain(kBadInput, path.error().message) == kDone;
+  leave_robots_out(scenario);
+  if (changes_later()) {
+    ExperimentReading other(loader, options_.plugins);
+    if (!other.open_text(settings_, name_, options_.overrides)) return false;
+    changed_ = other.read();
+    if (!changed_) return false;
+    leave_robots_out(*changed_);
   }
-  return {};
+  core::Scenario& to_change = changed_ ? *changed_ : scenario;
+  for (const std::string& asked : asked_.controllers) {
+    if (const hal::Status chosen = choose_controller(to_change, asked); !chosen.ok())
+      return complain(kBadInput, chosen.error().message) == kDone;
+  }
+  if (!changed_) return true;
+  // What no world can be made of is told now, not at the tick: devices that a controller lacks, values out of range.
+  core::WorldOptions options;
+  options.threads = 0;
+  core::Problems problems;
+  if (core::World::make(*changed_, loader, options, problems) != nullptr) return true;
+  print_problems(problems);
+  return false;
 }
 
 hal::Status ReplayRun::check_files(const InputFiles& now) const {
@@ -121,7 +147,7 @@ hal::Status ReplayRun::check_files(const InputFiles& now) const {
       const InputFile* const file = named != present.end() ? &*named : by_place ? &present[i] : nullptr;
       const std::string sha256 = file != nullptr ? file->sha256 : std::string();
       if (sha256 == then.sha256) continue;
-      if (file != nullptr && changed() && !same_name(file->file, then.file)) continue;  // as was asked for
+      if (file != nullptr && changed_from_start() && !same_name(file->file, then.file)) continue;  // as was asked for
       changed_files +=
           fmt::format("\n  {}{} '{}': in the run {}, now {}", what, then.id.empty() ? "" : " " + then.id,
                       file != nullptr ? file->file : then.file, digest_text(then.sha256), digest_text(sha256));
@@ -153,6 +179,12 @@ hal::Status ReplayRun::join(core::World& world, const hal::Log& log) {
     return hal::Error{fmt::format("--from {}: the record '{}' has {} ticks, 0 to {}", *asked_.from, asked_.record,
                                   replay_->recorded_ticks(), replay_->recorded_ticks() - 1)};
   }
+  if (!changed_) return {};
+  if (const hal::Status can = world.can_continue_with(*changed_); !can.ok()) {
+    return hal::Error{
+        fmt::format("--from {}: what --set changes there {}. Leave out --from: then it holds from the start",
+                    *asked_.from, can.error().message)};
+  }
   return {};
 }
 
@@ -176,7 +208,7 @@ bool ReplayRun::tick_done(const core::Repeatable& recorded, const core::World& w
   first_difference_ = tick;
   difference_ = replay_->difference();
   const std::string where = difference_.empty() ? "" : ": " + difference_;
-  if (changed()) {
+  if (changed_from_start()) {
     say(fmt::format("tick {} is the first that is not as recorded, with what was changed{}", tick, where));
     return true;
   }
@@ -194,6 +226,11 @@ bool ReplayRun::tick_done(const core::Repeatable& recorded, const core::World& w
                                                    : std::string("unknown")) +
                              ")"));
   return false;
+}
+
+void ReplayRun::next_tick(core::World& world) {
+  if (changed_ && world.tick() == *asked_.from && world.state() == core::RunState::Running)
+    (void)world.continue_with(*changed_);
 }
 
 bool ReplayRun::finish(const core::World& world) {
@@ -215,6 +252,11 @@ hal::Json ReplayRun::json() const {
                     {"recorded_end", replay_->recorded_end()},
                     {"ticks_compared", compared_},
                     {"simulated_from", replay_->ticks()}};
+  if (changed()) {
+    json["changed_from"] = changes_later() ? *asked_.from : 0;
+    json["set"] = options_.overrides;
+    json["controllers"] = asked_.controllers;
+  }
   if (first_difference_) {
     json["first_difference"] = *first_difference_;
     json["difference"] = difference_;
@@ -231,6 +273,13 @@ std::vector<std::pair<std::string, std::string>> ReplayRun::rows() const {
   rows.emplace_back(
       "replay", fmt::format("{} of {} recorded ticks are as they were{}", compared_, replay_->recorded_ticks(),
                             first_difference_ ? fmt::format("; tick {} is not", *first_difference_) : std::string()));
+  if (changed_) {
+    std::string what;
+    for (const auto* all : {&options_.overrides, &asked_.controllers}) {
+      for (const std::string& one : *all) what += (what.empty() ? "" : ", ") + one;
+    }
+    rows.emplace_back("what if", fmt::format("from tick {} on {}", *asked_.from, what));
+  }
   for (const mixed_reality::Deviation& d : replay_->deviations()) {
     if (d.ticks() < 2) continue;
     rows.emplace_back(

@@ -353,9 +353,7 @@ int run(const RunOptions& options) {
   if (!scenario) return kBadInput;
   if (const hal::Status left_out = leave_out(*scenario, options.without); !left_out.ok())
     return complain(kBadInput, left_out.error().message);
-  if (const hal::Status ready = replay.wanted() ? replay.prepare(*scenario, loader.catalog()) : hal::Status{};
-      !ready.ok())
-    return complain(kBadInput, ready.error().message);
+  if (replay.wanted() && !replay.prepare(*scenario, loader)) return kBadInput;
   if (!options.hub_faults.empty() && !has_real_robots(*scenario))
     return complain(kBadInput, "--hub-fault needs a real robot: no robot of this experiment has a <bridge>");
   if (const hal::Status paths = check_output_paths(options, *scenario, loader.catalog()); !paths.ok())
@@ -379,7 +377,7 @@ int run(const RunOptions& options) {
   print_problems(problems);
   if (made == nullptr) return kBadInput;
   core::World* const world = made.get();  // a mixed session takes it over
-  const bool other_scripts = options.replay.accept_changes || (replay.wanted() && !options.overrides.empty());
+  const bool other_scripts = options.replay.accept_changes || (replay.wanted() && replay.changed_from_start());
   if (!other_scripts) run_recorded_scripts(*world, repeated.value());
   const InputFiles inputs = input_files(*scenario, loader);
   if (replay.wanted()) {
@@ -484,6 +482,7 @@ int run(const RunOptions& options) {
       if (progress) progress->step(w.tick());
       if (replay.wanted()) {
         as_before = replay.tick_done(repeated.value(), w) && as_before;
+        replay.next_tick(w);
       } else if (as_before && !as_recorded(repeated.value(), w)) {
         as_before = false;
         complain(kFailedRunning, fmt::format("tick {} is not as in {}: another experiment, program or plug-in, or the "

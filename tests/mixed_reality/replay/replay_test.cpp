@@ -197,6 +197,81 @@ TEST(Replay, AWhatIfIsTheReplayUntilItsTickAndStaysNearTheRealRobotAfterwards) {
   EXPECT_EQ(of.json(10)["every_second_m"].size(), 10U);
 }
 
+/// Two simulated robots and a real one, and another configuration.
+core::Scene three() {
+  core::Scene scene(4.0, "everything");
+  scene.param("left", "0.06").param("right", "0.05").robot("ep0", -1.0, 0.0).robot("sim", 0.5, 0.5);
+  made_real(scene, "ep0").robot("other", 0.5, -0.5);
+  core::ControllerConfig config = scene.scenario.controllers.front();
+  config.id = "d";
+  config.label = "drive";
+  config.params.attributes = {{"left", "-0.03", 0}, {"right", "-0.03", 0}};
+  scene.scenario.controllers.push_back(config);
+  return scene;
+}
+
+/// A what-if from tick 50 on, with the settings of this scene from then on; equal until then.
+RecordedStory::Again from_50(RecordedStory& story, const core::Scene* changed, std::int64_t threads = 0,
+                             const std::function<void(core::World&)>& look = {}) {
+  auto again = story.again(
+      threads,
+      [&](core::World& world) {
+        if (world.tick() == 50 && changed != nullptr) {
+          const hal::Status went_on = world.continue_with(changed->scenario);
+          EXPECT_TRUE(went_on.ok()) << went_on.error().message;
+        }
+        if (look) look(world);
+      },
+      50);
+  EXPECT_EQ(again.equal, 50) << again.difference << again.failure;
+  EXPECT_EQ(again.hashes.size(), 100U);
+  return again;
+}
+
+TEST(Replay, WithOtherSettingsIsTheRecordedRunUntilTheTickOfTheWhatIf) {
+  RecordedStory story(three(), "what_if_settings");
+  ASSERT_NO_FATAL_FAILURE(story.run(100));
+  const auto plain = from_50(story, nullptr);
+  const core::Scene equal = three();
+  EXPECT_EQ(from_50(story, &equal).hashes, plain.hashes);
+
+  core::Scene real = three(), simulated = three(), params = three();
+  real.scenario.robots[0].controller = 1;
+  simulated.scenario.robots[1].controller = 1;
+  params.scenario.controllers[0].params.attributes = {{"left", "0.02", 0}, {"right", "0.05", 0}};
+  for (const core::Scene* changed : {&real, &simulated, &params}) {
+    const auto what_if = from_50(story, changed);
+    EXPECT_NE(what_if.hashes[50], plain.hashes[50]);
+    EXPECT_TRUE(std::equal(plain.hashes.begin(), plain.hashes.begin() + 50, what_if.hashes.begin()));
+    EXPECT_EQ(from_50(story, changed, 2).hashes, what_if.hashes);
+  }
+}
+
+TEST(Replay, ARealRobotsOtherControllerDrivesItsSimulatedOneFromTheTickOfTheWhatIf) {
+  RecordedStory story(three(), "what_if_controller");
+  ASSERT_NO_FATAL_FAILURE(story.run(100));
+  core::Scene changed = three();
+  changed.scenario.robots[0].controller = 1;
+  core::Pose at;
+  double left_m = 0.0;
+  from_50(story, &changed, 0, [&](core::World& world) {
+    const core::Space& space = world.space();
+    const core::RobotId robot = space.find_robot("ep0");
+    const double rolled_m = space.stores().bodies.left_m[space.stores().row_of(robot)];
+    if (world.tick() == 51) {
+      at = space.pose(robot);
+      left_m = rolled_m;
+      EXPECT_GT(left_m, 0.2) << "it goes on with the wheel counts of the real one";
+      EXPECT_FALSE(space.halted(robot));
+    }
+    if (world.tick() < 52) return;
+    const double back_m = 0.03 * 0.1 * static_cast<double>(world.tick() - 51);
+    EXPECT_NEAR(space.pose(robot).x_m, at.x_m - back_m * at.cos_h, 1e-9);
+    EXPECT_NEAR(space.pose(robot).y_m, at.y_m - back_m * at.sin_h, 1e-9);
+    EXPECT_NEAR(rolled_m, left_m - back_m, 1e-9);
+  });
+}
+
 TEST(Replay, WhatPeopleDidIsDoneAgainAndRealRobotsThatWereMissingAreSimulatedAgain) {
   core::Scene scene = two();
   scene.robot("ep1", 0.0, -0.5);

@@ -106,6 +106,7 @@ class RecordedStory {
     std::vector<Deviation> deviations;
     hal::Tick recorded = 0;
     std::string end;
+    std::vector<std::uint64_t> hashes;  ///< after each tick
   };
   Again again(std::int64_t threads = 0, const std::function<void(core::World&)>& before_step = {},
               std::optional<hal::Tick> from = {}) {
@@ -136,6 +137,7 @@ class RecordedStory {
       if (before_step) before_step(*made.world);
       made.world->step();
       (void)live.after_step();
+      result.hashes.push_back(made.world->state_hash());
       const hal::Tick done = made.world->tick() - 1;
       if (done >= replay.value()->ticks()) continue;
       const auto known = repeated.value().fingerprints.find(done);
