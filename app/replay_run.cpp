@@ -228,9 +228,17 @@ bool ReplayRun::tick_done(const core::Repeatable& recorded, const core::World& w
   return false;
 }
 
-void ReplayRun::next_tick(core::World& world) {
-  if (changed_ && world.tick() == *asked_.from && world.state() == core::RunState::Running)
-    (void)world.continue_with(*changed_);
+std::string ReplayRun::changes() const {
+  std::string what;
+  for (const auto* all : {&options_.overrides, &asked_.controllers}) {
+    for (const std::string& one : *all) what += (what.empty() ? "" : ", ") + one;
+  }
+  return what;
+}
+
+std::string ReplayRun::next_tick(core::World& world) {
+  if (!changed_ || world.tick() != *asked_.from || world.state() != core::RunState::Running) return {};
+  return world.continue_with(*changed_).ok() ? changes() : std::string();
 }
 
 bool ReplayRun::finish(const core::World& world) {
@@ -273,13 +281,7 @@ std::vector<std::pair<std::string, std::string>> ReplayRun::rows() const {
   rows.emplace_back(
       "replay", fmt::format("{} of {} recorded ticks are as they were{}", compared_, replay_->recorded_ticks(),
                             first_difference_ ? fmt::format("; tick {} is not", *first_difference_) : std::string()));
-  if (changed_) {
-    std::string what;
-    for (const auto* all : {&options_.overrides, &asked_.controllers}) {
-      for (const std::string& one : *all) what += (what.empty() ? "" : ", ") + one;
-    }
-    rows.emplace_back("what if", fmt::format("from tick {} on {}", *asked_.from, what));
-  }
+  if (changed_) rows.emplace_back("what if", fmt::format("from tick {} on {}", *asked_.from, changes()));
   for (const mixed_reality::Deviation& d : replay_->deviations()) {
     if (d.ticks() < 2) continue;
     rows.emplace_back(

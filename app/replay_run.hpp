@@ -45,8 +45,8 @@ class ReplayRun {
   /// After every tick: compares it with the record. False: it is not as it was, and was not meant to differ; told.
   bool tick_done(const core::Repeatable& recorded, const core::World& world);
   /// Between two ticks: where the robots are simulated from the next on, what is to change does. A failure is the
-  /// world's.
-  void next_tick(core::World& world);
+  /// world's. @returns what has changed now, for people; empty: nothing.
+  std::string next_tick(core::World& world);
   /// After the last tick: says what ended the inputs. @returns whether all was there that was asked for.
   bool finish(const core::World& world);
   hal::Json json() const;
@@ -55,6 +55,7 @@ class ReplayRun {
  private:
   bool changed() const noexcept { return !options_.overrides.empty() || !asked_.controllers.empty(); }
   bool changes_later() const noexcept { return changed() && asked_.from.value_or(0) > 0; }
+  std::string changes() const;
   hal::Status check_record_path() const;
   void leave_robots_out(core::Scenario& scenario) const;
 

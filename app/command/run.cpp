@@ -482,7 +482,8 @@ int run(const RunOptions& options) {
       if (progress) progress->step(w.tick());
       if (replay.wanted()) {
         as_before = replay.tick_done(repeated.value(), w) && as_before;
-        replay.next_tick(w);
+        if (const std::string changes = replay.next_tick(w); !changes.empty())
+          recording.event(w.tick(), {{"kind", "what if"}, {"text", changes}});
       } else if (as_before && !as_recorded(repeated.value(), w)) {
         as_before = false;
         complain(kFailedRunning, fmt::format("tick {} is not as in {}: another experiment, program or plug-in, or the "

@@ -90,7 +90,8 @@ bool is_one_of(const std::string& name, std::initializer_list<std::string_view> 
 /// What is taken over, or does nothing to a simulated robot.
 bool taken_over(const Element& parent, const Element& element) {
   if (is_one_of(element.name, {"controllers", "loop_functions"})) return true;  // compared apart
-  if (is_one_of(element.name, {"fitted", "trackers", "safety", "desk", "record", "visualization", "system"})) return true;
+  if (is_one_of(element.name, {"fitted", "trackers", "safety", "desk", "record", "visualization", "system"}))
+    return true;
   return parent.attribute("id") != nullptr && is_one_of(element.name, {"controller", "bridge", "tracker", "peer"});
 }
 

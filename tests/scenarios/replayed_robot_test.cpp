@@ -2,6 +2,7 @@
 #include <fstream>
 #include <gmock/gmock.h>
 
+#include "core/record/record_reader.hpp"
 #include "tests/checkout.hpp"
 #include "tests/scenarios/process.hpp"
 
@@ -62,7 +63,15 @@ TEST(ReplayedRobot, ARunIsComputedAgainWithoutTheRobotAndChangedPlugInsAreTold) 
   EXPECT_EQ(slower.substr(0, slower.find(behind)), plain.substr(0, plain.find(behind)));
   EXPECT_EQ(what_if_with({"--set", "controllers.obstacle_avoidance[avoid].params.cruise=2", "--threads", "2"}, "two"),
             slower);
-  EXPECT_NE(what_if_with({"--controller", "ep0=slow"}, "real"), plain);
+  EXPECT_NE(what_if_with({"--controller", "ep0=slow", "--record", "real.record"}, "real"), plain);
+  auto told = core::RecordReader::open((folder.path() / "real.record").string());
+  ASSERT_TRUE(told.ok()) << told.error().message;
+  std::string changes;
+  while (const auto entry = told.value().next()) {
+    if (entry->type == core::RecordBlock::Event && entry->tick == 30 && entry->json.value("kind", "") == "what if")
+      changes = entry->json.value("text", "");
+  }
+  EXPECT_EQ(changes, "ep0=slow");
   EXPECT_NE(what_if_with({"--controller", "sim=slow"}, "simulated"), plain);
   EXPECT_EQ(json_value(text_of(folder.path() / "changed.json"), "changed_from"), "30");
   folder.write("fitted.xml",

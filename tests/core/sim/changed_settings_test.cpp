@@ -92,7 +92,7 @@ INSTANTIATE_TEST_SUITE_P(Engines, Continued, testing::ValuesIn(test::engine_kind
 TEST_P(Continued, WithEqualSettingsIsTheSameRunInEveryTick) {
   const Scene scene = crowd(GetParam());
   const auto expected = hashes(scene, nullptr);
-  Scene equal = crowd(GetParam(), "0.060");  // the same number
+  Scene equal = crowd(GetParam(), "0.060");                              // the same number
   equal.scenario.controllers[1].params.attributes = {{"left", "0", 0}};  // the default, written out
   EXPECT_EQ(hashes(scene, &equal), expected);
   EXPECT_EQ(hashes(scene, &equal, 2), expected);
@@ -177,9 +177,7 @@ TEST(Continued, OtherParametersMakeAControllerAnewAndOtherDevicesDoNot) {
     if (choice.device == "differential_steering") choice.implementation = "noisy";
   }
   const auto before = hashes(two(), nullptr);
-  const auto after = hashes(two(), &devices, 0, [](World& world) {
-    EXPECT_EQ(steps_of(world, "a"), world.tick());
-  });
+  const auto after = hashes(two(), &devices, 0, [](World& world) { EXPECT_EQ(steps_of(world, "a"), world.tick()); });
   EXPECT_EQ(first_difference(before, after), kChange);
 }
 
