@@ -9,6 +9,7 @@
 #include "core/sim/device_media.hpp"
 #include "core/sim/settings.hpp"
 #include "core/sim/world_impl.hpp"
+#include "hal/unit.hpp"
 
 namespace tandem::core {
 namespace {
@@ -23,6 +24,76 @@ bool same_value(const std::string& a, const std::string& b) {
   };
   double x = 0.0, y = 0.0;
   return number(a, x) && number(b, y) && x == y;
+}
+
+/// Writes the described numbers of an element in SI, so that "5 cm" and "0.05" are the same text.
+class InSi final : public hal::ParamVisitor {
+ public:
+  explicit InSi(Element& element) : element_(element) {}
+
+  void number(std::string_view name, double&, const hal::Unit& bare, hal::Range, std::string_view) override {
+    if (std::string* const text = value(name); text != nullptr) *text = in_si(*text, bare);
+  }
+  void vector(std::string_view name, std::array<double, 3>&, const hal::Unit& bare, std::string_view) override {
+    std::string* const text = value(name);
+    if (text == nullptr) return;
+    std::string all;
+    for (std::size_t at = 0; at <= text->size();) {
+      const std::size_t comma = std::min(text->find(',', at), text->size());
+      all += (at == 0 ? "" : ",") + in_si(text->substr(at, comma - at), bare);
+      at = comma + 1;
+    }
+    *text = all;
+  }
+  void integer(std::string_view, std::int64_t&, hal::Range, std::string_view) override {}
+  void flag(std::string_view, bool&, std::string_view) override {}
+  void text(std::string_view, std::string&, std::string_view) override {}
+  void choice(std::string_view, std::string&, std::span<const std::string_view>, std::string_view) override {}
+
+ protected:
+  void visit_group(std::string_view name, void* value, Describe describe, std::string_view) override {
+    for (Element& child : element_.children) {
+      InSi inner(child);
+      if (child.name == name) describe(value, inner);
+    }
+  }
+  void visit_list(std::string_view name, hal::ParamList& list, std::string_view) override {
+    for (Element& child : element_.children) {
+      InSi inner(child);
+      if (child.name == name) list.describe_default(inner);
+    }
+  }
+
+ private:
+  std::string* value(std::string_view name) {
+    for (Element::Attribute& a : element_.attributes) {
+      if (a.name == name) return &a.value;
+    }
+    return nullptr;
+  }
+  static std::string in_si(const std::string& text, const hal::Unit& bare) {
+    const auto si = hal::parse_quantity(text, bare);
+    return si.ok() ? hal::format_number(si.value()) : text;
+  }
+
+  Element& element_;
+};
+
+/// The same of settings that are described: quantities by value, whatever their units. A description that throws
+/// leaves them as they are written.
+template <class Describe>
+bool same_quantities(const Element& a, const Element& b, const Describe& describe) {
+  if (same_settings(a, b)) return true;
+  Element x = a, y = b;
+  try {
+    for (Element* const element : {&x, &y}) {
+      InSi in_si(*element);
+      describe(in_si);
+    }
+  } catch (...) {
+    return false;
+  }
+  return same_settings(x, y);
 }
 
 // --- what cannot change ---
@@ -103,10 +174,14 @@ std::vector<const Element*> named(const Element& parent, std::string_view name) 
   return all;
 }
 
-bool same_devices(const std::vector<DeviceChoice>& a, const std::vector<DeviceChoice>& b) {
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const DeviceChoice& x, const DeviceChoice& y) {
-    return x.device == y.device && x.implementation == y.implementation && x.medium == y.medium &&
-           same_settings(x.options, y.options);
+bool same_devices(const hal::Catalog& catalog, hal::Role role, const std::vector<DeviceChoice>& a,
+                  const std::vector<DeviceChoice>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [&](const DeviceChoice& x, const DeviceChoice& y) {
+    if (x.device != y.device || x.implementation != y.implementation || x.medium != y.medium) return false;
+    const DeviceType* const type = find_device(catalog, x.device, role, x.implementation);
+    return same_quantities(x.options, y.options, [&](hal::ParamVisitor& v) {
+      if (type != nullptr && type->describe != nullptr) type->describe(v);
+    });
   });
 }
 
@@ -222,7 +297,11 @@ hal::Status World::continue_with(const Scenario& changed) {
   w.fit_ledgers();
   bool any_hook = false;
   for (std::size_t i = 0; i < w.hooks.size() && w.state != RunState::Failed; ++i) {
-    if (same_settings(before.hooks[i].options, w.scenario.hooks[i].options)) continue;
+    const auto type = w.loader->get<HookType>(w.scenario.hooks[i].library, w.scenario.hooks[i].label);
+    if (same_quantities(before.hooks[i].options, w.scenario.hooks[i].options, [&](hal::ParamVisitor& v) {
+          if (type.ok() && type.value()->describe != nullptr) type.value()->describe(v);
+        }))
+      continue;
     w.change_hook(i);
     any_hook = true;
   }
@@ -292,9 +371,14 @@ hal::Status RobotFactory::change_group(std::size_t g, const Scenario& before) {
     break;
   }
   const ControllerConfig &config_was = before.controllers[group.config], &config = scenario_.controllers[group.config];
-  const bool other_params = !same_settings(params_of(was, before), params_of(now, scenario_));
-  const bool other_devices = !same_devices(config_was.sensors, config.sensors) ||
-                             !same_devices(config_was.actuators, config.actuators) || !same_fits(before, scenario_);
+  const bool other_params =
+      !same_quantities(params_of(was, before), params_of(now, scenario_), [&](hal::ParamVisitor& v) {
+        const hal::PluginCall call(&name_params, this, group.config);
+        (void)group.controller->read_params(v);
+      });
+  const bool other_devices = !same_devices(catalog(), hal::Role::Sensor, config_was.sensors, config.sensors) ||
+                             !same_devices(catalog(), hal::Role::Actuator, config_was.actuators, config.actuators) ||
+                             !same_fits(before, scenario_);
   group.item = std::make_shared<RobotItem>(std::move(now));
   if (!other_params && !other_devices) return {};
   former_params_.push_back(group.params);

@@ -96,6 +96,8 @@ TEST_P(Continued, WithEqualSettingsIsTheSameRunInEveryTick) {
   equal.scenario.controllers[1].params.attributes = {{"left", "0", 0}};  // the default, written out
   EXPECT_EQ(hashes(scene, &equal), expected);
   EXPECT_EQ(hashes(scene, &equal, 2), expected);
+  const Scene in_cm = crowd(GetParam(), "6 cm/s");
+  EXPECT_EQ(hashes(scene, &in_cm), expected);
 }
 
 TEST_P(Continued, WithOtherControllersParametersAndDevicesIsTheSameRunUntilThenForAnyThreads) {
