@@ -1,7 +1,7 @@
 // The `tandem` command on a robot's board: what the board's own robot needs, and no simulation.
 #include "app/build_info.hpp"
-#include "app/emergency.hpp"
-#include "app/robot_commands.hpp"
+#include "app/command/robot_commands.hpp"
+#include "app/process/emergency.hpp"
 
 int main(int argc, char** argv) {
   tandem::app::catch_crashes();

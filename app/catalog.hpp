@@ -1,9 +1,7 @@
 // Contents of this program: the catalog. There are two such pages, catalog.cpp for the whole program and
 // board_catalog.cpp for the one on a robot's board; a build has one of them.
 #pragma once
-#include "app/plugin_folders.hpp"
 #include "hal/catalog.hpp"
-#include "hal/plugin_loader.hpp"
 
 namespace tandem::app {
 

@@ -4,9 +4,9 @@
 
 #include "app/build_info.hpp"
 #include "app/command/command.hpp"
-#include "app/command_groups.hpp"
-#include "app/emergency.hpp"
-#include "app/robot_commands.hpp"
+#include "app/command/command_groups.hpp"
+#include "app/command/robot_commands.hpp"
+#include "app/process/emergency.hpp"
 
 namespace {
 

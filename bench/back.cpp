@@ -5,9 +5,10 @@
 #include <memory>
 #include <vector>
 
-#include "app/command/command.hpp"
-#include "app/measure.hpp"
-#include "app/terminal.hpp"
+#include "app/experiment/reading.hpp"
+#include "app/options.hpp"
+#include "app/process/measure.hpp"
+#include "app/process/terminal.hpp"
 #include "bench/scene.hpp"
 #include "core/live/timeline.hpp"
 #include "hal/json/json.hpp"

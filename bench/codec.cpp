@@ -4,7 +4,7 @@
 #include <array>
 #include <fmt/format.h>
 
-#include "app/measure.hpp"
+#include "app/process/measure.hpp"
 #include "bridges/aseba/fragments.hpp"
 #include "bridges/aseba/message.hpp"
 #include "bridges/aseba/stream_messages.hpp"

@@ -8,10 +8,10 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include "app/measure.hpp"
-#include "app/plugins.hpp"
-#include "app/signals.hpp"
-#include "app/terminal.hpp"
+#include "app/experiment/plugins.hpp"
+#include "app/process/measure.hpp"
+#include "app/process/signals.hpp"
+#include "app/process/terminal.hpp"
 #include "bench/back.hpp"
 #include "bench/codec.hpp"
 #include "bench/comparison.hpp"

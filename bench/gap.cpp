@@ -7,8 +7,9 @@
 #include <set>
 #include <vector>
 
-#include "app/command/command.hpp"
-#include "app/measure.hpp"
+#include "app/experiment/reading.hpp"
+#include "app/options.hpp"
+#include "app/process/measure.hpp"
 #include "bridges/epuck_emulator/kinematic_body.hpp"
 #include "core/config/reader.hpp"
 #include "core/sim/world.hpp"

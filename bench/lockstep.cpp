@@ -12,9 +12,9 @@
 #include <vector>
 
 #include "app/build_info.hpp"
-#include "app/lockstep_peers.hpp"
-#include "app/measure.hpp"
-#include "app/signals.hpp"
+#include "app/process/measure.hpp"
+#include "app/process/signals.hpp"
+#include "app/robots/lockstep_peers.hpp"
 #include "core/config/reader.hpp"
 #include "core/sim/world.hpp"
 #include "hal/json/json.hpp"

@@ -10,10 +10,11 @@
 #include <unistd.h>
 
 #include "app/build_info.hpp"
-#include "app/command/command.hpp"
-#include "app/measure.hpp"
-#include "app/report.hpp"
-#include "app/run_figures.hpp"
+#include "app/experiment/reading.hpp"
+#include "app/options.hpp"
+#include "app/outputs/report.hpp"
+#include "app/outputs/run_figures.hpp"
+#include "app/process/measure.hpp"
 #include "bench/scene.hpp"
 #include "core/sim/world.hpp"
 

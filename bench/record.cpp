@@ -8,9 +8,10 @@
 #include <unistd.h>
 #include <vector>
 
-#include "app/command/command.hpp"
-#include "app/measure.hpp"
-#include "app/report.hpp"
+#include "app/experiment/reading.hpp"
+#include "app/options.hpp"
+#include "app/outputs/report.hpp"
+#include "app/process/measure.hpp"
 #include "bench/scene.hpp"
 #include "core/record/record.hpp"
 #include "core/sim/world.hpp"

@@ -7,8 +7,8 @@
 #include <thread>
 
 #include "app/build_info.hpp"
-#include "app/measure.hpp"
-#include "app/signals.hpp"
+#include "app/process/measure.hpp"
+#include "app/process/signals.hpp"
 #include "bench/scene.hpp"
 #include "hal/json/json.hpp"
 #include "study/sweep/sweep.hpp"

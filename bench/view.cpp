@@ -19,9 +19,10 @@
 #include <unistd.h>
 
 #include "app/build_info.hpp"
-#include "app/command/command.hpp"
-#include "app/measure.hpp"
-#include "app/view_run.hpp"
+#include "app/experiment/reading.hpp"
+#include "app/options.hpp"
+#include "app/process/measure.hpp"
+#include "app/view/view_run.hpp"
 #include "bench/scene.hpp"
 #include "bench/spread.hpp"
 #include "core/live/live_run.hpp"

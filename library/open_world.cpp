@@ -1,7 +1,7 @@
 #include "library/open_world.hpp"
 
 #include "app/catalog.hpp"
-#include "app/plugin_folders.hpp"
+#include "app/experiment/plugin_folders.hpp"
 #include "core/config/reader.hpp"
 #include "hal/xml/xml.hpp"
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <pybind11/stl.h>
 
-#include "app/plugin_folders.hpp"
+#include "app/experiment/plugin_folders.hpp"
 #include "core/config/reader.hpp"
 #include "core/hook/hook.hpp"
 #include "core/schedule/thread_pool.hpp"

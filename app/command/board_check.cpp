@@ -2,7 +2,8 @@
 #include <fmt/format.h>
 
 #include "app/command/command.hpp"
-#include "app/plugins.hpp"
+#include "app/experiment/plugins.hpp"
+#include "app/experiment/reading.hpp"
 #include "hal/plugin_loader.hpp"
 
 namespace tandem::app {

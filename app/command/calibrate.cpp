@@ -11,8 +11,8 @@
 #include <numbers>
 
 #include "app/command/command.hpp"
-#include "app/report.hpp"
-#include "app/signals.hpp"
+#include "app/outputs/report.hpp"
+#include "app/process/signals.hpp"
 #include "bridges/calibration/lens_fit.hpp"
 #include "bridges/calibration/place_fit.hpp"
 #include "bridges/camera/camera_file.hpp"

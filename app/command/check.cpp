@@ -2,7 +2,8 @@
 
 #include "app/command/command.hpp"
 #include "app/command/study.hpp"
-#include "app/plugins.hpp"
+#include "app/experiment/plugins.hpp"
+#include "app/experiment/reading.hpp"
 #include "core/sim/world.hpp"
 #include "hal/xml/xml.hpp"
 #include "mixed_reality/settings/tracker_check.hpp"

@@ -3,11 +3,14 @@
 
 #include "app/catalog.hpp"
 #include "app/command/command.hpp"
-#include "app/plugins.hpp"
-#include "app/signals.hpp"
-#include "app/state_dump.hpp"
-#include "app/terminal.hpp"
+#include "app/experiment/plugin_folders.hpp"
+#include "app/experiment/plugins.hpp"
+#include "app/experiment/reading.hpp"
+#include "app/outputs/state_dump.hpp"
+#include "app/process/signals.hpp"
+#include "app/process/terminal.hpp"
 #include "core/sim/world.hpp"
+#include "hal/plugin_loader.hpp"
 
 namespace tandem::app {
 namespace {

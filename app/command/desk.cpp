@@ -6,8 +6,8 @@
 #include <unistd.h>
 
 #include "app/command/command.hpp"
-#include "app/report.hpp"
-#include "app/terminal.hpp"
+#include "app/outputs/report.hpp"
+#include "app/process/terminal.hpp"
 #include "bridges/desk/lcm_desk.hpp"
 #include "hal/json/json.hpp"
 #include "window/client.hpp"

@@ -4,9 +4,9 @@
 #include <optional>
 
 #include "app/command/command.hpp"
-#include "app/pictures.hpp"
-#include "app/report.hpp"
-#include "app/terminal.hpp"
+#include "app/outputs/pictures.hpp"
+#include "app/outputs/report.hpp"
+#include "app/process/terminal.hpp"
 #include "core/view/picture.hpp"
 #include "core/view/record_drawing.hpp"
 #include "hal/output_file.hpp"

@@ -4,9 +4,10 @@
 #include <fmt/format.h>
 
 #include "app/command/command.hpp"
-#include "app/plugins.hpp"
-#include "app/real_time_world.hpp"
-#include "app/signals.hpp"
+#include "app/experiment/plugins.hpp"
+#include "app/experiment/reading.hpp"
+#include "app/process/signals.hpp"
+#include "app/robots/real_time_world.hpp"
 
 namespace tandem::app {
 namespace {

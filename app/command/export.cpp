@@ -5,8 +5,8 @@
 #include <map>
 
 #include "app/command/command.hpp"
-#include "app/report.hpp"
-#include "app/terminal.hpp"
+#include "app/outputs/report.hpp"
+#include "app/process/terminal.hpp"
 #include "core/record/csv_table.hpp"
 #include "core/record/pattern.hpp"
 #include "core/record/record_reader.hpp"

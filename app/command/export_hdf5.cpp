@@ -5,7 +5,7 @@
 #include <map>
 
 #include "app/command/command.hpp"
-#include "app/terminal.hpp"
+#include "app/process/terminal.hpp"
 #include "core/record/hdf5/hdf5_file.hpp"
 #include "core/record/record_reader.hpp"
 #include "hal/element.hpp"

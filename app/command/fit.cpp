@@ -5,9 +5,9 @@
 #include <map>
 
 #include "app/command/gap.hpp"
-#include "app/recorded.hpp"
-#include "app/report.hpp"
-#include "app/terminal.hpp"
+#include "app/outputs/report.hpp"
+#include "app/process/terminal.hpp"
+#include "app/replay/recorded.hpp"
 #include "core/config/fitted.hpp"
 #include "hal/device/fitted.hpp"
 #include "hal/json/json.hpp"

@@ -6,10 +6,11 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include "app/recorded.hpp"
-#include "app/report.hpp"
-#include "app/signals.hpp"
-#include "app/terminal.hpp"
+#include "app/experiment/reading.hpp"
+#include "app/outputs/report.hpp"
+#include "app/process/signals.hpp"
+#include "app/process/terminal.hpp"
+#include "app/replay/recorded.hpp"
 #include "core/record/record.hpp"
 #include "core/sim/world.hpp"
 #include "mixed_reality/gap/measures.hpp"

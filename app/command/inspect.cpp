@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include "app/command/command.hpp"
-#include "app/plugins.hpp"
-#include "app/report.hpp"
-#include "app/signals.hpp"
+#include "app/experiment/plugins.hpp"
+#include "app/outputs/report.hpp"
+#include "app/process/signals.hpp"
 #include "bridges/inspector_type.hpp"
 #include "bridges/link/link_text.hpp"
 

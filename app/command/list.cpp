@@ -10,8 +10,9 @@
 
 #include "app/catalog.hpp"
 #include "app/command/command.hpp"
-#include "app/plugins.hpp"
-#include "app/terminal.hpp"
+#include "app/experiment/plugin_folders.hpp"
+#include "app/experiment/plugins.hpp"
+#include "app/process/terminal.hpp"
 #include "bridges/bridge_type.hpp"
 #include "bridges/emulation/emulator_type.hpp"
 #include "bridges/tracker_type.hpp"
@@ -26,6 +27,7 @@
 #include "core/scenario/medium_type.hpp"
 #include "core/scenario/observer_type.hpp"
 #include "core/view/layers/layer.hpp"
+#include "hal/plugin_loader.hpp"
 #include "study/study.hpp"
 
 namespace tandem::app {

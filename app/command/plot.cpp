@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include "app/command/study.hpp"
-#include "app/report.hpp"
-#include "app/terminal.hpp"
+#include "app/outputs/report.hpp"
+#include "app/process/terminal.hpp"
 #include "study/plot/chart.hpp"
 
 namespace tandem::app {

@@ -6,10 +6,12 @@
 #include "app/command/command.hpp"
 #include "app/conformance/judge.hpp"
 #include "app/conformance/probe.hpp"
-#include "app/plugins.hpp"
-#include "app/terminal.hpp"
+#include "app/experiment/plugin_folders.hpp"
+#include "app/experiment/plugins.hpp"
+#include "app/process/terminal.hpp"
 #include "bridges/bridge_type.hpp"
 #include "hal/json/json.hpp"
+#include "hal/plugin_loader.hpp"
 
 namespace tandem::app {
 namespace {

@@ -5,8 +5,8 @@
 #include <fmt/format.h>
 
 #include "app/command/command.hpp"
-#include "app/plugin_templates.hpp"
-#include "app/terminal.hpp"
+#include "app/command/plugin_templates.hpp"
+#include "app/process/terminal.hpp"
 #include "hal/output_file.hpp"
 
 namespace tandem::app {

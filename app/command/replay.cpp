@@ -1,6 +1,6 @@
 // `tandem replay`: a run with real robots, computed again out of its record.
 #include "app/command/command.hpp"
-#include "app/terminal.hpp"
+#include "app/process/terminal.hpp"
 
 namespace tandem::app {
 

@@ -9,14 +9,15 @@
 #include <sstream>
 #include <unistd.h>
 
-#include "app/cluster_sweep.hpp"
 #include "app/command/study.hpp"
-#include "app/measure.hpp"
-#include "app/plugins.hpp"
-#include "app/signals.hpp"
-#include "app/slurm.hpp"
-#include "app/sweep_plan.hpp"
-#include "app/terminal.hpp"
+#include "app/experiment/plugins.hpp"
+#include "app/experiment/reading.hpp"
+#include "app/process/measure.hpp"
+#include "app/process/signals.hpp"
+#include "app/process/terminal.hpp"
+#include "app/study/cluster_sweep.hpp"
+#include "app/study/slurm.hpp"
+#include "app/study/sweep_plan.hpp"
 #include "core/record/pattern.hpp"
 #include "hal/unit.hpp"
 #include "study/batches/results.hpp"

@@ -8,8 +8,9 @@
 #include <iterator>
 
 #include "app/command/command.hpp"
-#include "app/plugins.hpp"
-#include "app/terminal.hpp"
+#include "app/experiment/plugins.hpp"
+#include "app/experiment/reading.hpp"
+#include "app/process/terminal.hpp"
 #include "hal/output_file.hpp"
 #include "hal/xml/xml.hpp"
 

@@ -1,6 +1,6 @@
 #include "app/command/command.hpp"
-#include "app/signals.hpp"
-#include "app/view_record.hpp"
+#include "app/process/signals.hpp"
+#include "app/view/view_record.hpp"
 
 namespace tandem::app {
 

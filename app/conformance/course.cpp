@@ -4,7 +4,7 @@
 #include <cstring>
 #include <fmt/format.h>
 
-#include "app/allocations.hpp"
+#include "app/process/allocations.hpp"
 #include "core/space/columns.hpp"
 
 namespace tandem::app {

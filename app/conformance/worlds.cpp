@@ -10,7 +10,8 @@
 #include "app/conformance/course.hpp"
 #include "app/conformance/judge.hpp"
 #include "app/conformance/probe.hpp"
-#include "app/observers.hpp"
+#include "app/experiment/plugin_folders.hpp"
+#include "app/outputs/observers.hpp"
 #include "bridges/bridge_type.hpp"
 #include "core/device/coupling.hpp"
 #include "core/scenario/field_type.hpp"
@@ -18,6 +19,7 @@
 #include "core/view/layers/layer_set.hpp"
 #include "hal/device/flight.hpp"
 #include "hal/device/wheels.hpp"
+#include "hal/plugin_loader.hpp"
 
 namespace tandem::app {
 namespace {

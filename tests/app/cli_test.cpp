@@ -4,8 +4,8 @@
 #include <map>
 #include <sstream>
 
-#include "app/sha256.hpp"
-#include "app/terminal.hpp"
+#include "app/process/sha256.hpp"
+#include "app/process/terminal.hpp"
 #include "tests/checkout.hpp"
 #include "tests/scenarios/process.hpp"
 

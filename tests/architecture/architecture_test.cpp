@@ -128,5 +128,14 @@ TEST_F(CheatingTree, IncludesByAShortName) {
   EXPECT_NE(broken().find("is not named from the top"), std::string::npos);
 }
 
+TEST_F(CheatingTree, HasSubFoldersInACircle) {
+  write("hal/a/a.hpp", "#include \"hal/b/b.hpp\"\n#include \"hal/port.hpp\"\n");
+  write("hal/b/b.hpp", "");
+  EXPECT_EQ(broken(), "");
+  write("hal/b/b.cpp", "#include \"hal/c/c.hpp\"\n");
+  write("hal/c/c.hpp", "#include \"hal/a/a.hpp\"\n");
+  EXPECT_NE(broken().find("hal/a and hal/b include one another, in a circle"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace tandem::architecture

@@ -1,5 +1,6 @@
 #include "tests/architecture/rules.hpp"
 
+#include <algorithm>
 #include <fstream>
 #include <regex>
 #include <sstream>
@@ -44,6 +45,28 @@ std::string folder_of(const std::string& path, const Dependencies& dependencies)
   return best;
 }
 
+/// The part of a declared folder that `path` lies in, a sub-folder without a list of its own; "" for files beside them.
+std::string room_of(const std::string& path, const std::string& folder) {
+  const std::string rest = path.substr(folder.size() + 1);
+  const std::size_t slash = rest.find('/');
+  return slash == std::string::npos ? "" : folder + "/" + rest.substr(0, slash);
+}
+
+/// Takes away, as long as there is one, a room that includes no other that is left. What remains includes in a circle.
+Dependencies circles_of(Dependencies rooms) {
+  for (bool taken = true; taken;) {
+    taken = false;
+    for (auto room = rooms.begin(); room != rooms.end(); ++room) {
+      const auto& others = room->second;
+      if (std::ranges::any_of(others, [&](const std::string& other) { return rooms.contains(other); })) continue;
+      rooms.erase(room);
+      taken = true;
+      break;  // the iterator is gone
+    }
+  }
+  return rooms;
+}
+
 }  // namespace
 
 Dependencies read_dependencies(const fs::path& file) {
@@ -62,6 +85,7 @@ Dependencies read_dependencies(const fs::path& file) {
 std::vector<std::string> broken_rules(const fs::path& top, const Dependencies& dependencies,
                                       const LibraryOwners& owners) {
   std::vector<std::string> broken;
+  Dependencies rooms;
   for (const auto& [folder, deps] : dependencies) {
     const auto layer = kLayers.find(layer_of(folder));
     if (layer == kLayers.end()) continue;
@@ -101,6 +125,10 @@ std::vector<std::string> broken_rules(const fs::path& top, const Dependencies& d
             broken.push_back(where + "\"" + header + "\" is not named from the top of the tree");
           else if (included != folder && !dependencies.at(folder).contains(included))
             broken.push_back(where + folder + " does not declare " + included);
+          else if (included == folder) {
+            const std::string room = room_of(path, folder), other = room_of(header, folder);
+            if (!room.empty() && !other.empty() && room != other) rooms[room].insert(other);
+          }
         }
         for (const auto& [prefix, owner] : owners) {
           if (header.starts_with(prefix) && !words(owner).contains(folder))
@@ -108,6 +136,10 @@ std::vector<std::string> broken_rules(const fs::path& top, const Dependencies& d
         }
       }
     }
+  }
+  for (const auto& [room, others] : circles_of(rooms)) {
+    for (const std::string& other : others)
+      broken.push_back(room + " and " + other + " include one another, in a circle");
   }
   return broken;
 }

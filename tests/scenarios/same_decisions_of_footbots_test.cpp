@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 #include <optional>
 
-#include "app/bridged_controller.hpp"
-#include "app/simulated_body.hpp"
+#include "app/robots/bridged_controller.hpp"
+#include "app/robots/simulated_body.hpp"
 #include "bridges/aseba/can_messages.hpp"
 #include "bridges/can/memory_bus.hpp"
 #include "bridges/footbot/driver.hpp"

@@ -2,10 +2,10 @@
 #include <cmath>
 #include <gtest/gtest.h>
 
-#include "app/bridged_controller.hpp"
+#include "app/robots/bridged_controller.hpp"
 #include "app/catalog.hpp"
-#include "app/simulated_body.hpp"
-#include "app/wired_peer.hpp"
+#include "app/robots/simulated_body.hpp"
+#include "app/robots/wired_peer.hpp"
 #include "bridges/wired/wired_epuck.hpp"
 #include "hal/device/ring_sensors.hpp"
 #include "hal/device/wheels.hpp"

@@ -10,7 +10,7 @@
 #include <numbers>
 #include <sys/socket.h>
 
-#include "app/plugins.hpp"
+#include "app/experiment/plugins.hpp"
 #include "bridges/footbot_emulator/emulator.hpp"
 #include "bridges/lcm/lcm_link.hpp"
 #include "bridges/tracker_emulator/emulator.hpp"

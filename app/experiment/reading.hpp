@@ -1,0 +1,20 @@
+// What the commands make of an experiment file before they begin.
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "core/scenario/scenario.hpp"
+#include "hal/catalog.hpp"
+
+namespace tandem::app {
+
+/// Steps to do; 0: until interrupted or a hook ends the run.
+std::int64_t steps_of(std::optional<std::int64_t> steps, std::optional<double> seconds, const core::Scenario& scenario);
+
+void print_problems(const core::Problems& problems);
+
+/// `check` for files of kinds of robots, and of the catalog's other types; nothing when it is none.
+std::optional<int> check_other_file(const std::string& path, const hal::Catalog& catalog);
+
+}  // namespace tandem::app

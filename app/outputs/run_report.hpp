@@ -1,0 +1,71 @@
+// Makes the report and the table of a finished run.
+#pragma once
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "app/outputs/run_figures.hpp"
+#include "core/sim/world.hpp"
+#include "hal/json/json.hpp"
+#include "mixed_reality/lockstep/lockstep.hpp"
+#include "mixed_reality/session/report.hpp"
+
+namespace tandem::app {
+
+/// How a run ended: its length was done, a hook ended it, somebody interrupted it, or it failed.
+enum class Ended { Length, Hook, Interrupted, Failed };
+
+/// A run that is over.
+struct RunEnd {
+  Ended how = Ended::Length;
+  std::string failure;            ///< what, who, which tick; empty while it did not fail
+  std::int64_t steps_wanted = 0;  ///< 0: endless
+
+  /// Whether it came to the end that it was to have.
+  bool finished() const noexcept { return how == Ended::Length || how == Ended::Hook; }
+};
+
+/// Of a world that is stepped no more; `stopped`: by a signal.
+RunEnd end_of(const core::World& world, std::int64_t steps_wanted, bool stopped);
+
+/// A file that decides what a run does.
+struct InputFile {
+  std::string id;     ///< of the configuration; empty: none
+  std::string label;  ///< registered name; empty: the file has none
+  std::string file;
+  std::string sha256;  ///< empty: it cannot be read
+};
+/// The files of a run, as they are now: to be asked before it.
+struct InputFiles {
+  InputFile experiment;
+  std::vector<InputFile> plugins, controllers, hooks;
+  std::vector<InputFile> others;  ///< images of floors, maps of robots
+};
+InputFiles input_files(const core::Scenario& scenario, const hal::PluginLoader& loader);
+
+/// Input of the report and the table.
+struct RunResult {
+  const core::World& world;
+  const InputFiles& inputs;
+  RunFigures figures;
+  std::size_t robots = 0;
+  RunEnd end;
+  const mixed_reality::MixedReport* real = nullptr;                 ///< null: no real robots
+  hal::Json replay = {};                                            ///< of a replay; null: this is none
+  std::vector<std::pair<std::string, std::string>> more_rows = {};  ///< of the table
+  const mixed_reality::LockstepReport* peers = nullptr;             ///< null: not in lock-step
+};
+
+/// One JSON object.
+std::string report_of(const RunResult& result);
+/// Its members but those about the end, for a run that may have to be ended in the middle of a tick.
+hal::Json report_members(const RunResult& result);
+
+/// First block of a record: all that is known before the first tick.
+hal::Json record_start(const core::World& world, const InputFiles& inputs);
+/// Last block of a record: the report.
+hal::Json record_end(const RunResult& result);
+
+void print_result(const RunResult& result);
+
+}  // namespace tandem::app

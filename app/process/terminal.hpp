@@ -1,0 +1,43 @@
+// Messages on a terminal.
+#pragma once
+#include <functional>
+#include <string>
+#include <string_view>
+
+namespace tandem::app {
+
+/// `text` as a terminal may get it, whoever wrote it: control characters but tabs and line ends become \x1b and the
+/// like, and so do bytes that are no UTF-8.
+std::string printable(std::string_view text);
+
+/// `text` as one word of a shell, for commands that people may type.
+std::string shell_word(const std::string& text);
+
+/// Prints a line on standard error, over a progress bar that may stand there. Escapes as `printable`.
+void say(std::string_view text);
+
+/// While one lives, `say` hands its lines to `take` instead of printing them. `take` may be called on any thread.
+class SayElsewhere {
+ public:
+  explicit SayElsewhere(std::function<void(std::string_view)> take);
+  ~SayElsewhere();
+  SayElsewhere(const SayElsewhere&) = delete;
+  SayElsewhere& operator=(const SayElsewhere&) = delete;
+};
+
+/// Whether one lives.
+bool says_elsewhere();
+
+/// Puts the terminal back as it was before `note_screen`, once: what was on it is there again, keys are shown. For
+/// signal handlers, too.
+void leave_screen_now() noexcept;
+/// Whether a screen stands (app/process/screen.hpp).
+bool screen_stands() noexcept;
+/// For app/process/screen.cpp alone: a screen stands from now on. `keys`: the terminal of standard input is to be put
+/// back, too, as it is now.
+void note_screen(bool keys) noexcept;
+
+/// Says "error: …". @returns `code`, for the caller to return.
+int complain(int code, std::string_view message);
+
+}  // namespace tandem::app

@@ -1,0 +1,211 @@
+#include "app/robots/desks.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "app/process/terminal.hpp"
+#include "app/robots/real_robots.hpp"
+#include "mixed_reality/time/monotonic.hpp"
+
+namespace tandem::app {
+namespace {
+
+using hal::Json;
+using mixed_reality::DeskWord;
+
+constexpr const char* kSaidAt = "said_at_ns";  // of commands whose time decides
+
+hal::TimeNs now_ns() {
+  return mixed_reality::MonotonicTime().now_ns();
+}
+
+std::string text_or(const Json& object, const char* name, std::string otherwise) {
+  const auto found = object.find(name);
+  return found != object.end() && found->is_string() ? found->get<std::string>() : std::move(otherwise);
+}
+
+DeskWord word_of(const Json& command) {
+  DeskWord word;
+  word.command = text_or(command, "do", "");
+  word.robot = text_or(command, "robot", "*");
+  word.who = text_or(command, "who", "");
+  const auto said = command.find(kSaidAt);
+  word.at_ns = said != command.end() && said->is_number_integer() ? said->get<hal::TimeNs>() : now_ns();
+  return word;
+}
+
+/// A name as people may be shown it.
+std::string name_of(const Json& command, std::string_view from) {
+  std::string who = printable(text_or(command, "who", std::string(from)));
+  if (who.size() > bridges::desk::kLongestWho) who.resize(bridges::desk::kLongestWho);
+  return who.empty() ? std::string(from) : who;
+}
+
+bool is_one_of(const std::string& name, std::initializer_list<std::string_view> names) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+Json json_of(const DeskWord& word, hal::TimeNs at_ns) {
+  return {{"do", word.command},
+          {"robot", word.robot},
+          {"who", word.who},
+          {"age_s", std::max(0.0, hal::to_seconds(at_ns - word.at_ns))}};
+}
+
+}  // namespace
+
+Json to_json(const mixed_reality::PreflightRows& rows) {
+  Json all = Json::array();
+  for (const mixed_reality::PreflightRow& row : rows) {
+    all.push_back({{"about", row.about},
+                   {"check", row.check},
+                   {"finding", mixed_reality::name_of(row.finding)},
+                   {"found", row.found},
+                   {"advice", row.advice}});
+  }
+  return all;
+}
+
+Desks::Desks(core::LiveRun& live, mixed_reality::MixedSession& session) : live_(live), session_(session) {
+  for (const char* name : {"arm", "rearm", "replace"})
+    live.add_command(name, [this](const Json& command) { return carry_out(command); });
+  live.add_command("preflight", [this](const Json&) -> hal::Result<Json> {
+    auto rows = mixed_reality::look_over(session_);
+    const auto machine = mixed_reality::look_over_machine(session_.world().scenario(), session_.woke_late());
+    rows.insert(rows.end(), machine.begin(), machine.end());
+    return Json{{"preflight", to_json(rows)}, {"worst", mixed_reality::name_of(worst_of(rows))}};
+  });
+  live.add_command("note_estop", [this](const Json& command) -> hal::Result<Json> {
+    if (note_) note_({{"do", "estop"}, {"who", text_or(command, "who", "")}});
+    return Json::object();
+  });
+  live.add_command("status", [this](const Json&) -> hal::Result<Json> {
+    Json answer = real_message();
+    answer.erase("type");
+    answer.update(core::to_json(live_.state()));
+    return answer;
+  });
+}
+
+Desks::~Desks() {
+  lcm_.reset();  // its thread posts
+}
+
+hal::Status Desks::listen(const core::DeskConfig& config) {
+  if (config.lcm.empty()) return {};
+  auto opened = bridges::desk::LcmDesk::open(
+      config.lcm, config.channel,
+      [this](const bridges::desk::DeskMessage& message, bridges::desk::LcmDesk::Reply reply) {
+        auto command = hal::parse_json_object(message.text);
+        if (!command.ok())
+          return reply(hal::to_text({{"ok", false}, {"error", "no command: " + command.error().message}}));
+        command.value()["who"] = message.who;
+        post(
+            std::move(command).value(), [reply](const Json& answer) { reply(hal::to_text(answer)); }, "lcm");
+      });
+  if (!opened.ok()) return hal::Error{"<desk lcm=…>: " + opened.error().message};
+  lcm_ = std::move(opened).value();
+  return {};
+}
+
+void Desks::post(Json command, core::LiveReply reply, std::string_view from) {
+  const std::string name = text_or(command, "do", "");
+  command["who"] = name_of(command, from);
+  if (name == "estop") {
+    session_.emergency_stop();
+    desk_.note_stop(word_of(command));
+    if (reply) reply({{"ok", true}});
+    return live_.post({{"do", "note_estop"}, {"who", command["who"]}}, {});
+  }
+  if (is_one_of(name, {"arm", "rearm", "replace"})) {
+    command[kSaidAt] = now_ns();
+  } else if (is_one_of(name, {"play", "pause", "halt", "release"})) {
+    const auto admitted = desk_.admit(word_of(command), now_ns());
+    if (admitted.ok() && !admitted.value().empty()) {
+      reply = [reply, note = admitted.value()](const Json& answer) {
+        Json with_note = answer;
+        with_note["note"] = note;
+        if (reply) reply(with_note);
+      };
+    }
+  }
+  live_.post(std::move(command), std::move(reply));
+}
+
+// On the thread that steps.
+hal::Result<Json> Desks::carry_out(const Json& command) {
+  const auto robot = command.find("robot");
+  if (robot != command.end() && !robot->is_string())
+    return hal::Error{"\"robot\" is the id of a real robot, or \"*\" for all"};
+  const auto admitted = desk_.admit(word_of(command), now_ns());
+  if (!admitted.ok()) return admitted.error();
+  if (const hal::Status done = obey(command, text_or(command, "robot", "*")); !done.ok()) return done.error();
+  if (note_) {
+    Json action = command;
+    action.erase(kSaidAt);
+    action.erase("id");
+    note_(action);
+  }
+  Json answer = real_message();
+  answer.erase("type");  // the answer has one of its own
+  if (!admitted.value().empty()) answer["note"] = admitted.value();
+  return answer;
+}
+
+hal::Status Desks::obey(const Json& command, const std::string& robot) {
+  const std::string name = text_or(command, "do", "");
+  if (name == "arm") return session_.arm(robot);
+  if (name == "rearm") return session_.rearm(robot);
+  return replace(command, robot);
+}
+
+hal::Status Desks::replace(const Json& command, const std::string& robot) {
+  const auto& spares = session_.world().scenario().desk.spares;
+  const std::string spare = text_or(command, "spare", ""), link = text_or(command, "link", "");
+  mixed_reality::Replacement by;
+  if (!spare.empty()) {
+    const auto found = std::find_if(spares.begin(), spares.end(), [&](const auto& s) { return s.id == spare; });
+    if (found == spares.end()) {
+      std::string ids;
+      for (const core::SpareItem& s : spares) ids += (ids.empty() ? "" : ", ") + s.id;
+      return hal::Error{"there is no <spare id=\"" + spare + "\">; there are: " + (ids.empty() ? "none" : ids)};
+    }
+    by = {found->id, found->link, found->names, {}};
+  } else if (!link.empty()) {
+    by = {text_or(command, "as", link), link, {}, {}};
+    if (const std::string seen = text_or(command, "seen_as", ""); !seen.empty()) by.names = {seen};
+  } else {
+    return hal::Error{"say which robot comes instead: \"spare\", an id of the file's, or \"link\""};
+  }
+  const auto number = [&](const char* key) -> std::optional<double> {
+    const auto found = command.find(key);
+    if (found == command.end() || !found->is_number() || !std::isfinite(found->get<double>())) return {};
+    return found->get<double>();
+  };
+  if (const auto x = number("x"), y = number("y"); x && y)
+    by.pose = core::Pose::at(*x, *y, number("heading").value_or(0.0));
+  return session_.replace(robot, by);
+}
+
+Json Desks::real_message() const {
+  Json message = app::real_message(session_);
+  Json spares = Json::array();
+  std::set<std::string> in_use;
+  for (const Json& robot : message["robots"]) in_use.insert({robot.value("device", ""), robot.value("coming", "")});
+  for (const core::SpareItem& spare : session_.world().scenario().desk.spares)
+    spares.push_back({{"id", spare.id}, {"link", spare.link}, {"used", in_use.contains(spare.id)}});
+  message["spares"] = std::move(spares);
+  const mixed_reality::DeskStatus status = desk_.status();
+  const hal::TimeNs at_ns = now_ns();
+  message["desk"] = {{"said", Json::object()},
+                     {"turned_back", status.turned_back},
+                     {"refused", status.refused},
+                     {"last", status.last ? json_of(*status.last, at_ns) : Json(nullptr)},
+                     {"stop", status.stop ? json_of(*status.stop, at_ns) : Json(nullptr)}};
+  for (const auto& [who, count] : status.said) message["desk"]["said"][who] = count;
+  message["paused"] = session_.paused();
+  return message;
+}
+
+}  // namespace tandem::app

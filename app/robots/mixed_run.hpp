@@ -1,0 +1,28 @@
+// Runs in which real robots take part, as commands make them: guardian, bridges, trackers, signals.
+#pragma once
+#include <atomic>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "app/robots/guarded_robots.hpp"
+#include "core/sim/world.hpp"
+#include "hal/catalog.hpp"
+#include "hal/log.hpp"
+#include "mixed_reality/session/mixed_session.hpp"
+
+namespace tandem::app {
+
+bool has_real_robots(const core::Scenario& scenario);
+/// Makes robots that are real in the file ordinary ones. Error: there is no such real robot.
+hal::Status leave_out(core::Scenario& scenario, const std::vector<std::string>& ids);
+
+/// Completes `options` (trackers, clock, guardian) and makes the session; takes `world` over. The references must
+/// outlive it. Error: as MixedSession::make.
+hal::Result<std::unique_ptr<mixed_reality::MixedSession>> make_session(const hal::Catalog& catalog,
+                                                                       std::unique_ptr<core::World>& world,
+                                                                       GuardedRobots& guarded,
+                                                                       mixed_reality::TimeSource& clock,
+                                                                       mixed_reality::MixedOptions options);
+
+}  // namespace tandem::app

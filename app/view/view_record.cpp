@@ -1,0 +1,444 @@
+#include "app/view/view_record.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <condition_variable>
+#include <deque>
+#include <fstream>
+#include <mutex>
+#include <optional>
+#include <utility>
+
+#include "app/process/terminal.hpp"
+#include "app/view/view_messages.hpp"
+#include "core/record/block_file.hpp"
+#include "core/record/record_moments.hpp"
+#include "core/view/record_drawing.hpp"
+#include "window/record_frame.hpp"
+
+namespace tandem::app {
+namespace {
+
+using core::RecordField;
+using core::RecordMoments;
+using core::RecordRows;
+using core::RecordStream;
+using hal::Json;
+using Clock = std::chrono::steady_clock;
+using namespace std::chrono_literals;
+
+constexpr std::size_t kMostPosted = 1000;
+constexpr auto kLook = 50ms;  // for a stop that nobody notifies of
+constexpr auto kStateEvery = 250ms;
+constexpr auto kInspectionEvery = 100ms;
+constexpr auto kHistoryPatience = 2s;
+constexpr std::size_t kMostSamples = 10'000;
+constexpr double kSlowest = 0.001, kFastest = 1e6;
+
+Json refusal(const std::string& why) {
+  return {{"ok", false}, {"error", why}};
+}
+
+Json number_or_null(double value) {
+  return std::isfinite(value) ? Json(value) : Json();
+}
+
+std::string text_of(const Json& json, const char* key) {
+  const auto found = json.find(key);
+  return found != json.end() && found->is_string() ? found->get<std::string>() : std::string();
+}
+
+std::int64_t whole_of(const Json& json, const char* key, std::int64_t otherwise) {
+  const auto found = json.find(key);
+  return found != json.end() && found->is_number_integer() ? found->get<std::int64_t>() : otherwise;
+}
+
+std::optional<std::size_t> row_of(const RecordRows& rows, const std::string& id) {
+  const std::vector<std::string>& ids = rows.members().ids;
+  const auto found = std::find(ids.begin(), ids.end(), id);
+  if (found == ids.end()) return {};
+  return static_cast<std::size_t>(found - ids.begin());
+}
+
+/// A value for people: a number, or one of an enumeration's names.
+Json value_json(const RecordRows& rows, std::size_t field, std::size_t row, std::size_t index) {
+  const RecordField& f = rows.stream().fields[field];
+  const double value = rows.value(field, row, index);
+  if (!f.texts.empty() && value >= 0.0 && value < static_cast<double>(f.texts.size()))
+    return f.texts[static_cast<std::size_t>(value)];
+  return number_or_null(value);
+}
+
+Json fields_json(const RecordRows& rows, std::size_t row) {
+  Json fields = Json::array();
+  for (std::size_t f = 0; f < rows.stream().fields.size(); ++f) {
+    const RecordField& field = rows.stream().fields[f];
+    Json values = Json::array();
+    for (std::size_t i = 0; i < rows.used(f, row); ++i) values.push_back(value_json(rows, f, row, i));
+    fields.push_back({{"name", field.name}, {"unit", field.unit}, {"doc", field.doc}, {"values", std::move(values)}});
+  }
+  return fields;
+}
+
+/// Plays a record on one thread; others post commands.
+class RecordPlayer {
+ public:
+  RecordPlayer(const std::string& path, RecordMoments moments, window::Window& window, const HoldOptions& hold)
+      : path_(path),
+        moments_(std::move(moments)),
+        window_(window),
+        paused_(hold.paused),
+        speed_(hold.speed.value_or(1.0)) {}
+
+  void run(const std::atomic<bool>& stop);
+
+ private:
+  struct Posted {
+    Json command;
+    window::WindowReply reply;
+  };
+  void greet();
+  void post(Json command, window::WindowReply reply);
+  void carry_out_posted();
+  Json carry_out(const Json& command);
+  Json play(const Json& command);
+  Json set_speed(const Json& speed);
+  Json go_to(const Json& command);
+  Json history(const Json& command);
+  Json picture();
+  Json here() const { return {{"ok", true}, {"tick", moments_.tick() + 1}}; }
+  void begin_schedule();
+  Clock::time_point due() const;
+  void show(bool settled);
+  void tell_state();
+  void tell_inspection();
+  std::optional<hal::Tick> next_tick() const;
+
+  std::string path_;
+  RecordMoments moments_;
+  std::optional<RecordMoments> past_;  // for histories, which go elsewhere
+  window::Window& window_;
+  window::RecordFrames frames_;
+  bool paused_ = false;
+  std::optional<double> speed_;
+  std::int64_t steps_wanted_ = 0;
+  Clock::time_point anchor_, state_told_, inspection_told_;
+  hal::Tick anchor_tick_ = 0;
+  std::uint64_t wishes_ = 0;
+  bool drawings_ = false;
+  std::vector<std::string> inspected_;
+  std::mutex lock_;
+  std::condition_variable changed_;
+  std::deque<Posted> posted_;
+};
+
+void RecordPlayer::greet() {
+  const Json& start = moments_.start();
+  const auto seed = start.find("seed");
+  Json hello = hello_message(text_of(start, "experiment"), "record",
+                             seed != start.end() && seed->is_number_unsigned() ? seed->get<std::uint64_t>() : 0,
+                             moments_.ticks_per_second(), {"pause", "back"});
+  hello["layers"].push_back({{"name", "hooks"}, {"summary", "What hooks drew."}, {"on", false}, {"panel", false}});
+  window_.tell(std::move(hello));
+  LogMessages log;
+  for (const core::RecordEvent& event : moments_.events()) {
+    std::string text = text_of(event.json, "text");
+    if (const auto action = event.json.find("action"); action != event.json.end()) text = action_text(*action);
+    if (text.empty()) text = hal::to_text(event.json);
+    window_.tell(log.entry(event.tick + 1, text_of(event.json, "kind"), text));
+  }
+  for (const std::string& line : moments_.damage()) window_.tell(log.entry(0, "incident", "record: " + line));
+  window_.set_commands([this](Json command, window::WindowReply reply) { post(std::move(command), std::move(reply)); });
+  window_.set_pictures([this](const std::string& name, window::WindowFileReply reply) {
+    post({{"do", "picture"}}, [name, reply](const Json& answer) {
+      const std::string svg = text_of(answer, "svg");
+      reply(svg.empty() ? window::WindowFile{"", "", text_of(answer, "error")} : picture_file(name, svg));
+    });
+  });
+  window_.on_wish([this] { post({{"do", "show"}}, {}); });
+}
+
+void RecordPlayer::post(Json command, window::WindowReply reply) {
+  {
+    const std::lock_guard hold(lock_);
+    if (posted_.size() < kMostPosted) {
+      posted_.push_back({std::move(command), std::move(reply)});
+      reply = nullptr;
+    }
+  }
+  if (reply) reply(refusal("too many commands wait to be carried out: send fewer"));
+  changed_.notify_one();
+}
+
+void RecordPlayer::carry_out_posted() {
+  for (;;) {
+    Posted next;
+    {
+      const std::lock_guard hold(lock_);
+      if (posted_.empty()) return;
+      next = std::move(posted_.front());
+      posted_.pop_front();
+    }
+    const Json answer = carry_out(next.command);
+    show(true);
+    if (next.reply) next.reply(answer);
+  }
+}
+
+Json RecordPlayer::carry_out(const Json& command) {
+  const std::string name = text_of(command, "do");
+  if (name == "show") return here();
+  if (name == "play") return play(command);
+  if (name == "speed") {
+    const auto times = command.find("times");
+    return times == command.end() ? refusal("\"times\" is missing") : set_speed(*times);
+  }
+  if (name == "go_to") return go_to(command);
+  if (name == "history") return history(command);
+  if (name == "picture") return picture();
+  if (name == "pause") {
+    paused_ = true;
+    steps_wanted_ = 0;
+    return here();
+  }
+  if (name == "step") {
+    paused_ = true;
+    steps_wanted_ = std::clamp<std::int64_t>(whole_of(command, "ticks", 1), 1, 1'000'000);
+    return here();
+  }
+  return refusal("'" + name + "' cannot be done: this is a record of a run that is over");
+}
+
+Json RecordPlayer::play(const Json& command) {
+  if (const auto speed = command.find("speed"); speed != command.end()) {
+    if (Json answer = set_speed(*speed); answer["ok"] == false) return answer;
+  }
+  if (!next_tick()) moments_.go_to(moments_.ticks().front());
+  paused_ = false;
+  steps_wanted_ = 0;
+  begin_schedule();
+  return here();
+}
+
+Json RecordPlayer::set_speed(const Json& speed) {
+  if (!speed.is_null() && !(speed.is_number() && speed.get<double>() >= kSlowest && speed.get<double>() <= kFastest))
+    return refusal("a speed is a number from 0.001 to 1000000, times real time, or null: as fast as possible");
+  speed_ = speed.is_null() ? std::optional<double>() : speed.get<double>();
+  begin_schedule();
+  return here();
+}
+
+Json RecordPlayer::go_to(const Json& command) {
+  const std::int64_t tick = whole_of(command, "tick", -1);
+  if (tick < 0) return refusal("\"tick\" is a whole number from 0 on");
+  moments_.go_to(tick - 1);
+  paused_ = true;
+  steps_wanted_ = 0;
+  return here();
+}
+
+Json RecordPlayer::picture() {
+  auto drawings = core::RecordDrawings::open(path_);
+  if (!drawings.ok()) return refusal(drawings.error().message);
+  drawings.value().go_to(moments_.tick() + 1);
+  return {{"ok", true}, {"svg", core::to_svg(drawings.value().drawing({}, nullptr))}};
+}
+
+Json RecordPlayer::history(const Json& command) {
+  const std::string robot = text_of(command, "robot"), role = text_of(command, "role");
+  const std::string field = text_of(command, "field");
+  const auto index = static_cast<std::size_t>(std::max<std::int64_t>(0, whole_of(command, "index", 0)));
+  const std::string title = role == "pose" ? "pose" : role == "published" ? "" : role + " " + text_of(command, "port");
+  const std::vector<hal::Tick>& ticks = moments_.ticks();
+  const hal::Tick from = std::max(whole_of(command, "from", 0) - 1, ticks.front());
+  const hal::Tick to = std::min(whole_of(command, "to", moments_.tick() + 1) - 1, ticks.back());
+  const auto first = std::lower_bound(ticks.begin(), ticks.end(), from);
+  const auto end = std::upper_bound(ticks.begin(), ticks.end(), to);
+  if (first >= end) return refusal("the record has no ticks there");
+  const auto there = static_cast<std::size_t>(end - first);
+  const std::size_t stride =
+      std::max<std::size_t>({1, static_cast<std::size_t>(std::max<std::int64_t>(1, whole_of(command, "every", 1))),
+                             (there + kMostSamples - 1) / kMostSamples});
+  if (!past_) {
+    auto opened = RecordMoments::open(path_);
+    if (!opened.ok()) return refusal(opened.error().message);
+    past_ = std::move(opened).value();
+  }
+  Json answer = {{"ok", true}}, at = Json::array(), values = Json::array();
+  const Clock::time_point until = Clock::now() + kHistoryPatience;
+  bool found = false;
+  for (auto tick = first; tick < end;
+       tick += std::min<std::ptrdiff_t>(static_cast<std::ptrdiff_t>(stride), end - tick)) {
+    if (Clock::now() > until) {
+      answer["bounded"] =
+          "the first " + std::to_string(at.size()) + " values: to read more takes longer than two seconds";
+      break;
+    }
+    if (stride > 1 || tick == first || !past_->next()) past_->go_to(*tick);
+    Json value;
+    past_->each([&](const std::string& name, const RecordRows& rows) {
+      if (role == "published" ? rows.stream().set != "state" : name != title) return;
+      const auto f = core::field_of(rows, field);
+      const auto row = row_of(rows, robot);
+      if (!f || !row) return;
+      found = true;
+      if (index < rows.used(*f, *row)) value = number_or_null(rows.value(*f, *row, index));
+    });
+    at.push_back(*tick + 1);
+    values.push_back(std::move(value));
+  }
+  if (!found)
+    return refusal("the record holds no '" + field + "' of " + (title.empty() ? role : title) + " of robot '" + robot +
+                   "' there");
+  answer["ticks"] = std::move(at);
+  answer["values"] = std::move(values);
+  return answer;
+}
+
+std::optional<hal::Tick> RecordPlayer::next_tick() const {
+  const auto next = std::upper_bound(moments_.ticks().begin(), moments_.ticks().end(), moments_.tick());
+  if (next == moments_.ticks().end()) return {};
+  return *next;
+}
+
+void RecordPlayer::begin_schedule() {
+  anchor_ = Clock::now();
+  anchor_tick_ = moments_.tick();
+}
+
+Clock::time_point RecordPlayer::due() const {
+  const double s = static_cast<double>(next_tick().value_or(moments_.tick()) - anchor_tick_) /
+                   (static_cast<double>(moments_.ticks_per_second()) * *speed_);
+  return anchor_ + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(s));
+}
+
+void RecordPlayer::run(const std::atomic<bool>& stop) {
+  greet();
+  begin_schedule();
+  tell_state();
+  while (!stop.load(std::memory_order_relaxed)) {
+    carry_out_posted();
+    if (!paused_ && !next_tick()) {
+      paused_ = true;
+      show(true);
+    }
+    Clock::time_point until = Clock::now() + kLook;
+    bool go = steps_wanted_ > 0;
+    if (!paused_ && !go) {
+      go = !speed_ || due() <= Clock::now();
+      if (!go) until = std::min(until, due());
+    }
+    if (go) {
+      const bool there_was = moments_.next();
+      if (steps_wanted_ > 0 && (--steps_wanted_ == 0 || !there_was)) {
+        steps_wanted_ = 0;
+        show(true);
+      } else if (window_.wants_frame()) {
+        show(false);
+      } else if (!speed_ && window_.watched()) {
+        // As fast as somebody can see it, no faster.
+        std::unique_lock hold(lock_);
+        changed_.wait_for(hold, 1ms, [this] { return !posted_.empty(); });
+      }
+      continue;
+    }
+    std::unique_lock hold(lock_);
+    changed_.wait_until(hold, until, [this] { return !posted_.empty(); });
+  }
+}
+
+void RecordPlayer::show(bool settled) {
+  if (!window_.watched()) return;
+  if (const std::uint64_t version = window_.wishes_version(); version != wishes_) {
+    wishes_ = version;
+    const window::Wishes wishes = window_.wishes();
+    drawings_ = !wishes.layers.empty();
+    inspected_ = wishes.inspected;
+    inspection_told_ = {};
+  }
+  window::Frame frame = window_.spare_frame();
+  frames_.fill(moments_, drawings_, frame);
+  window_.show(std::move(frame));
+  if (settled || Clock::now() - state_told_ >= kStateEvery) tell_state();
+  if (!inspected_.empty() && (settled || Clock::now() - inspection_told_ >= kInspectionEvery)) tell_inspection();
+}
+
+void RecordPlayer::tell_state() {
+  state_told_ = Clock::now();
+  const auto seed = moments_.start().find("seed");
+  window_.tell({{"type", "state"},
+                {"tick", moments_.tick() + 1},
+                {"latest", moments_.ticks().back() + 1},
+                {"first", moments_.ticks().front() + 1},
+                {"paused", paused_ && steps_wanted_ == 0},
+                {"speed", speed_ ? Json(*speed_) : Json()},
+                {"reached", paused_ ? 0.0 : speed_.value_or(0.0)},
+                {"ended", Json()},
+                {"stopped_by", Json()},
+                {"no_way_back", Json()},
+                {"seed", seed != moments_.start().end() ? *seed : Json()}});
+}
+
+void RecordPlayer::tell_inspection() {
+  inspection_told_ = Clock::now();
+  Json robots = Json::array();
+  for (const std::string& id : inspected_) {
+    Json robot = {{"id", id},
+                  {"alive", false},
+                  {"ports", Json::array()},
+                  {"published", Json::array()},
+                  {"params", Json::array()}};
+    moments_.each([&](const std::string&, const RecordRows& rows) {
+      const RecordStream& stream = rows.stream();
+      const auto row = stream.of == "robot" ? row_of(rows, id) : std::nullopt;
+      if (!row) return;
+      if (stream.set == "pose" && stream.name == "pose") {
+        robot["alive"] = true;
+        robot["kind"] = rows.members().kinds[*row];
+        for (const char* name : {"x", "y", "z", "heading"}) {
+          if (const auto field = core::field_of(rows, name))
+            robot["pose"][name] = number_or_null(rows.value(*field, *row));
+        }
+      } else if (stream.set == "sensor" || stream.set == "actuator") {
+        robot["ports"].push_back(
+            {{"role", stream.set}, {"name", stream.name}, {"doc", ""}, {"fields", fields_json(rows, *row)}});
+      } else if (stream.set == "state") {
+        robot["controller"] = stream.name;
+        for (std::size_t f = 0; f < stream.fields.size(); ++f) {
+          robot["published"].push_back({{"name", stream.fields[f].name},
+                                        {"unit", stream.fields[f].unit},
+                                        {"value", value_json(rows, f, *row, 0)}});
+        }
+      }
+    });
+    robots.push_back(std::move(robot));
+  }
+  window_.tell({{"type", "inspection"}, {"tick", moments_.tick() + 1}, {"robots", std::move(robots)}});
+}
+
+}  // namespace
+
+bool is_record(const std::string& path) {
+  std::string start(core::kBlockFileStart.size(), '\0');
+  std::ifstream in(path, std::ios::binary);
+  in.read(start.data(), static_cast<std::streamsize>(start.size()));
+  constexpr std::size_t kName = 14;  // "TANDEM RECORD ": other versions are told by who reads it
+  return in.gcount() >= static_cast<std::streamsize>(kName) &&
+         start.substr(0, kName) == core::kBlockFileStart.substr(0, kName);
+}
+
+int view_record(const std::string& path, const ViewRequest& request, const HoldOptions& hold,
+                const std::atomic<bool>& stop) {
+  auto moments = RecordMoments::open(path);
+  if (!moments.ok()) return complain(kBadInput, moments.error().message);
+  if (moments.value().cut()) say("record '" + path + "': it was cut; shown is what is there");
+  auto window = open_window(request);
+  if (!window.ok()) return complain(kBadInput, window.error().message);
+  RecordPlayer player(path, std::move(moments).value(), *window.value(), hold);
+  player.run(stop);
+  window.value().reset();  // its thread uses the player
+  return kDone;
+}
+
+}  // namespace tandem::app
