@@ -450,7 +450,10 @@ int main(int argc, char** argv) {
                    "Where; pty:NAME makes a pseudo-terminal of that name; `tandem describe NAME` tells an emulator's")
       ->required();
   emulate_command->add_option("--log", emulate_options.log, "File for one JSON object an event; default: none");
-  emulate_command->add_option("--fault", emulate_options.faults, "A fault to show, e.g. silent@5s+2s; repeatable")
+  emulate_command
+      ->add_option("--fault", emulate_options.faults,
+                   "A fault to show, e.g. silent@5s+2s, or silent@drive+5s+2s after the robot was first told to move; "
+                   "repeatable")
       ->allow_extra_args(false);
   auto* arena = emulate_command->add_option(
       "--arena", emulate_options.arena,

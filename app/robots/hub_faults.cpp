@@ -104,6 +104,7 @@ hal::Result<HubFault> parse_hub_fault(const std::string& text) {
   if (spec.value.has_value() != entry->has_value)
     return wrong(text, "'" + name + (spec.value ? "' takes no value" : "' needs a value" + example));
   if (!spec.start) return wrong(text, "say when" + example);
+  if (spec.since_drive) return wrong(text, "a hub knows no @drive" + example);
   if (spec.duration.has_value() != entry->lasts)
     return wrong(text, spec.duration ? "'" + name + "' takes no duration" : "say for how long" + example);
 

@@ -10,27 +10,40 @@
 
 namespace tandem::bridges {
 
-/// Base of emulators' fault plans. A `Fault` has kind, from, until and probability, and says by `is_moment()` that it
+/// Base of emulators' fault plans. A `Fault` is FaultTimes with kind and probability, and says by `is_moment()` that it
 /// has no end.
 template <class Fault>
 class FaultSchedule {
  public:
   using Kind = decltype(Fault::kind);
 
-  FaultSchedule(std::vector<Fault> faults, std::uint64_t seed) : faults_(std::move(faults)), chance_(seed) {}
+  FaultSchedule(std::vector<Fault> faults, std::uint64_t seed) : faults_(std::move(faults)), chance_(seed) {
+    for (std::size_t i = 0; i < faults_.size(); ++i) {
+      if (!faults_[i].since_drive) continue;
+      waiting_.push_back({i, faults_[i]});
+      faults_[i].from = faults_[i].until = kEndless;
+    }
+  }
 
   /// Times from here on are on the clock of `start`. The plan must stay where it is from then on.
   void begin(hal::TimeNs start) {
     changes_.clear();
     told_ = 0;
     for (Fault& fault : faults_) {
-      const bool ends = fault.until < kEndless && !fault.is_moment();
-      fault.from += start;
-      fault.until += start;
-      changes_.push_back({fault.from, true, &fault});
-      if (ends) changes_.push_back({fault.until, false, &fault});
+      if (!fault.since_drive) place(fault, fault, start);
     }
-    std::stable_sort(changes_.begin(), changes_.end(), [](const Change& a, const Change& b) { return a.at < b.at; });
+    sort_changes();
+  }
+  /// Whether there are faults that wait to be told since when the robot is driven: they are not active, and there is no
+  /// time at which they will be.
+  bool awaits_drive() const noexcept { return !waiting_.empty(); }
+  /// The robot was first told to move at `at`, which is known at `now`. A fault that should have begun before `now`
+  /// begins at `now`, and lasts as long. Does nothing from the second call on.
+  void driven(hal::TimeNs at, hal::TimeNs now) {
+    if (!awaits_drive()) return;
+    for (const Waiting& w : std::exchange(waiting_, {}))
+      place(faults_[w.fault], w.times, std::max(at, now - w.times.from));
+    sort_changes();
   }
 
   struct Change {
@@ -71,13 +84,32 @@ class FaultSchedule {
   }
 
  protected:
-  static bool is_at_work(const Fault& fault, hal::TimeNs at) noexcept { return fault.from <= at && at < fault.until; }
+  static bool is_at_work(const FaultTimes& fault, hal::TimeNs at) noexcept {
+    return fault.from <= at && at < fault.until;
+  }
   const std::vector<Fault>& faults() const noexcept { return faults_; }
   Chance& chance() noexcept { return chance_; }
 
  private:
+  struct Waiting {
+    std::size_t fault;
+    FaultTimes times;
+  };
+
+  void place(Fault& fault, const FaultTimes times, hal::TimeNs base) {
+    fault.from = base + times.from;
+    fault.until = base + times.until;
+    changes_.push_back({fault.from, true, &fault});
+    if (times.until < kEndless && !fault.is_moment()) changes_.push_back({fault.until, false, &fault});
+  }
+  void sort_changes() {
+    std::stable_sort(changes_.begin() + static_cast<std::ptrdiff_t>(told_), changes_.end(),
+                     [](const Change& a, const Change& b) { return a.at < b.at; });
+  }
+
   std::vector<Fault> faults_;
-  std::vector<Change> changes_;  // in order of time
+  std::vector<Waiting> waiting_;  // for `driven`
+  std::vector<Change> changes_;   // in order of time
   std::size_t told_ = 0;
   Chance chance_;
 };

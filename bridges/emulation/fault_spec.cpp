@@ -46,10 +46,17 @@ hal::Result<FaultSpec> split_fault(std::string_view text) {
   spec.name = head.substr(0, head.find('='));
   if (head.size() > spec.name.size()) spec.value = head.substr(spec.name.size() + 1);
   if (head.size() == text.size()) return spec;
-  const std::string_view when = text.substr(head.size() + 1);
+  constexpr std::string_view kDrive = "drive";
+  std::string_view when = text.substr(head.size() + 1);
+  spec.since_drive = when == kDrive || when.starts_with("drive+");
+  if (when == kDrive) {
+    spec.start = 0;
+    return spec;
+  }
+  if (spec.since_drive) when.remove_prefix(kDrive.size() + 1);
   const std::size_t plus = when.find('+');
   const auto start = parse_time(when.substr(0, plus));
-  if (!start.ok()) return start.error();
+  if (!start.ok()) return hal::Error{start.error().message + "; a fault begins at a time, as @5s, or @drive+5s"};
   spec.start = start.value();
   if (plus == std::string_view::npos) return spec;
   const auto duration = parse_time(when.substr(plus + 1));

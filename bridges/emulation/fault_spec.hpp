@@ -1,4 +1,4 @@
-// Faults of emulated robots as they are written: NAME[=VALUE][@START[+DURATION]].
+// Faults of emulated robots as they are written: NAME[=VALUE][@[drive+]START[+DURATION]].
 #pragma once
 #include <algorithm>
 #include <array>
@@ -24,13 +24,24 @@ struct FaultSpec {
   std::optional<std::string_view> value{};
   std::optional<hal::TimeNs> start{};
   std::optional<hal::TimeNs> duration{};
+  bool since_drive = false;
 
-  /// From the start of the emulator; `otherwise` where no duration was given.
+  /// From the start of the emulator, or as `since_drive` of FaultTimes; `otherwise` where no duration was given.
   hal::TimeNs from() const noexcept { return start.value_or(0); }
   hal::TimeNs until(hal::TimeNs otherwise = kEndless) const noexcept;
 };
 
-/// "silent@5s+2s". A bare number is in seconds. Errors: a time that cannot be read, or is before the start.
+/// When a fault is active: in [from, until).
+struct FaultTimes {
+  hal::TimeNs from = 0;
+  hal::TimeNs until = kEndless;
+  /// They count from when the robot is first told to move: wheels a speed that is not 0, an eye-bot a setpoint. A
+  /// tracker's from when a robot that it sees first moves. Else from the start of the emulator.
+  bool since_drive = false;
+};
+
+/// "silent@5s+2s", "silent@drive+5s+2s"; "silent@drive" is "silent@drive+0s". A bare number is in seconds. Errors: a
+/// time that cannot be read, or is before the start.
 hal::Result<FaultSpec> split_fault(std::string_view text);
 
 /// Any time that is not negative; at most `kEndless`.
@@ -50,7 +61,10 @@ std::string manual_of_faults(const Entries& entries, std::size_t columns) {
     example.resize(std::max(columns, example.size() + 1), ' ');
     text += example + std::string(e.doc) + "\n";
   }
-  return text + "A fault may be given @START+DURATION; without, it lasts from the start to the end.";
+  return text +
+         "A fault may be given @START+DURATION; without, it lasts from the start to the end. START counts from the "
+         "emulator's start; @drive+START+DURATION counts from when the robot is first told to move (an eye-bot: a "
+         "setpoint; a tracker: when a robot that it sees first moves).";
 }
 
 /// What is wrong with a fault as it was written, and the faults that there are.
@@ -68,8 +82,9 @@ struct FaultEntry {
   std::string_view doc;
 };
 
-/// Reads a fault that one of the entries allows; `read_value(entry, text, fault)`, a hal::Status, reads its value.
-/// Values of the kind `may_lack` may be left out. Errors name what is wrong, and end with `manual`.
+/// Reads a fault (FaultTimes with `kind` and `text`) that one of the entries allows; `read_value(entry, text, fault)`,
+/// a hal::Status, reads its value. Values of the kind `may_lack` may be left out. Errors name what is wrong, and end
+/// with `manual`.
 template <class Fault, class Kind, class Value, std::size_t kCount, class ReadValue>
 hal::Result<Fault> read_fault(std::string_view text, const std::array<FaultEntry<Kind, Value>, kCount>& entries,
                               const std::string& manual, const ReadValue& read_value, Value may_lack = Value::None) {
@@ -90,6 +105,7 @@ hal::Result<Fault> read_fault(std::string_view text, const std::array<FaultEntry
   fault.text = text;
   fault.from = spec.from();
   fault.until = spec.until(entry->lasts_ns);
+  fault.since_drive = spec.since_drive;
   if (spec.value) {
     if (const hal::Status read = read_value(*entry, *spec.value, fault); !read.ok()) return wrong(read.error().message);
   }

@@ -1,5 +1,6 @@
-// What the servers of emulated robots do alike: turn, wait, and tell of faults.
+// Loop of the servers of emulated robots and trackers: turns, waits, tells of faults and of how late it was itself.
 #pragma once
+#include <algorithm>
 #include <atomic>
 #include <optional>
 #include <poll.h>
@@ -13,16 +14,31 @@ namespace tandem::bridges {
 
 inline constexpr hal::TimeNs kStopNs = 20 * hal::kNsPerMs;  ///< the stop flag is looked at this often
 
-/// Calls `turn(now)` and then `wait(now)`, both a hal::Status, until `stop` is set or one fails, which is then the
-/// result. Times are CLOCK_MONOTONIC.
-template <class Turn, class Wait>
-hal::Status turn_until(const std::atomic<bool>& stop, const Turn& turn, const Wait& wait) {
+/// A turn that begins so much later than it should have is told of: a real robot has its processor to itself.
+inline constexpr hal::TimeNs kLateNs = 20 * hal::kNsPerMs;
+
+/// Tells the event `late` with `by_ms`, if a turn that was due at `due` began only at `now`.
+void tell_late(hal::TimeNs due, hal::TimeNs now, const EventSink& tell);
+
+/// Calls `turn(now)`, `next_wake(now)` and then `wait(wake, now)` until `stop` is set or one of the statuses is an
+/// error, which is then the result. Times are CLOCK_MONOTONIC. A turn that begins `kLateNs` or more after its wake
+/// time, because the machine was busy or the turn before was long, is told of first (`tell_late`). Wake times are at
+/// most `kStopNs` apart.
+template <class Turn, class NextWake, class Wait>
+hal::Status turn_until(const std::atomic<bool>& stop, const EventSink& tell, const Turn& turn,
+                       const NextWake& next_wake, const Wait& wait) {
+  hal::TimeNs due = monotonic_ns();
   while (!stop.load(std::memory_order_relaxed)) {
     const hal::TimeNs now = monotonic_ns();
+    tell_late(due, now, tell);
     hal::Status status = turn(now);
-    if (status.ok()) status = wait(now);
+    if (status.ok()) {
+      due = std::max(now, next_wake(now));
+      status = wait(due, now);
+    }
     if (!status.ok()) return status;
   }
+  tell_late(due, monotonic_ns(), tell);
   return {};
 }
 

@@ -18,7 +18,6 @@ namespace {
 
 using hal::TimeNs;
 
-constexpr TimeNs kLateNs = 20 * hal::kNsPerMs;  // a robot has its processor to itself: what is told of
 constexpr TimeNs kBatchNs = hal::kNsPerMs;  // bytes of one burst are handed over this often, as a serial adapter does
 constexpr TimeNs kNoiseNs = 5 * hal::kNsPerMs;  // a garbled line is not quiet either
 constexpr std::size_t kQueueBytes = 4096;       // the host's driver holds as much
@@ -137,7 +136,8 @@ hal::Status Server::serve(const std::atomic<bool>& stop) {
   options_.log.info("e-puck (" + options_.firmware + ") on " + path_);
   if (options_.ready) options_.ready(path_);
   const hal::Status served = turn_until(
-      stop, [this](TimeNs now) { return turn(now); }, [this](TimeNs now) { return wait_until(next_wake(now)); });
+      stop, tell_, [this](TimeNs now) { return turn(now); }, [this](TimeNs now) { return next_wake(now); },
+      [this](TimeNs wake, TimeNs) { return wait_until(wake); });
   const TimeNs end = monotonic_ns();
   if (served.ok()) firmware_.run_until(end);
   tell_(end, "end", {{"why", served.ok() ? "stopped" : served.error().message}});
@@ -208,6 +208,7 @@ void Server::run_robot(TimeNs now) {
       radio_ ? radio_->receive(*byte, next.at) : firmware_.receive(*byte, next.at);
   }
   radio_ ? radio_->run_until(now) : firmware_.run_until(now);
+  if (const auto at = firmware_.first_driven_at()) faults_.driven(*at, now);
   sent_.clear();
   radio_ ? radio_->take_sent(now, sent_) : firmware_.take_sent(now, sent_);
   for (const SentByte& s : sent_) {
@@ -278,8 +279,6 @@ hal::Status Server::wait_until(TimeNs due) const {
   std::array<pollfd, 2> waits{{{alarm_.descriptor(), POLLIN, 0}, {port_ ? port_->descriptor() : -1, POLLIN, 0}}};
   if (to_robot_.size() >= kQueueBytes) waits[1].fd = -1;
   const int woken = ::poll(waits.data(), waits.size(), -1);  // a signal wakes it too
-  if (const TimeNs now = monotonic_ns(); now - due >= kLateNs)
-    tell_(now, "late", {{"by_ms", (now - due) / hal::kNsPerMs}});
   // A host that hung up shows in reading; another one may come.
   const bool network = dynamic_cast<const TcpPort*>(port_.get()) != nullptr;
   const bool gone = !network && woken > 0 && (waits[1].revents & (POLLHUP | POLLERR | POLLNVAL)) != 0;

@@ -32,6 +32,8 @@ struct Options {
   std::function<void(const std::string& path)> ready{};       ///< called once, when the line can be opened
 };
 
+/// Events for the log beside the robot's own: `fault` (fault, phase: begin or end) and `late` (by_ms: see turn_until).
+///
 /// Emulates until `stop` becomes true, which is noticed within 20 ms. Bytes travel at 115200 baud in both directions; a
 /// host whose baud rate differs exchanges garbage with it. Removes its pseudo-terminal at the end. Errors: a firmware
 /// or fault that there is not, a link or log that cannot be opened, a serial device that goes away.

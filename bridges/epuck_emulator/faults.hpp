@@ -13,11 +13,9 @@ namespace tandem::bridges::epuck_emulator {
 
 enum class FaultKind : std::uint8_t { Silent, Deaf, Garbage, Drop, Double, Corrupt, Delay, Reset, Truncate, Hangup };
 
-/// Active in [from, until), counted from the start of the emulator. Reset and Truncate happen at `from`.
-struct Fault {
+/// Reset and Truncate happen at `from`.
+struct Fault : FaultTimes {
   FaultKind kind = FaultKind::Silent;
-  hal::TimeNs from = 0;
-  hal::TimeNs until = kEndless;
   double probability = 0.0;  ///< Drop, Double, Corrupt: of each byte, in both directions
   hal::TimeNs delay_ns = 0;  ///< Delay: added to every byte towards the host
   std::string text;          ///< as written
@@ -25,8 +23,8 @@ struct Fault {
   bool is_moment() const noexcept { return kind == FaultKind::Reset || kind == FaultKind::Truncate; }
 };
 
-/// Reads NAME[=VALUE][@START[+DURATION]]: "silent@5s+2s", "reset@3s", "drop=0.01", "delay=20ms". A bare number is in
-/// seconds. Errors name what is wrong and list the faults that there are.
+/// Reads NAME[=VALUE][@[drive+]START[+DURATION]]: "silent@5s+2s", "reset@3s", "drop=0.01", "delay=20ms". A bare number
+/// is in seconds. Errors name what is wrong and list the faults that there are.
 hal::Result<Fault> parse_fault(std::string_view text);
 
 /// One line a fault: how it is written and what it does.

@@ -214,6 +214,7 @@ void Firmware::count_steps(hal::TimeNs at) {
 // `left` and `right` as they came; the motors take 16 bits of them.
 void Firmware::set_speeds(std::int32_t left, std::int32_t right, std::string_view by, hal::TimeNs at) {
   event(at, "wheels", {{"left", left}, {"right", right}, {"by", by}});
+  if (!first_driven_at_ && (left != 0 || right != 0)) first_driven_at_ = at;
   turn_wheels(left, right, at);
 }
 

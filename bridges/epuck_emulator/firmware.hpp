@@ -65,6 +65,8 @@ class Firmware {
   void cut_next_answer() { cut_next_answer_ = true; }
 
   const Options& options() const noexcept { return options_; }
+  /// When a wheel was first told a speed that is not 0.
+  std::optional<hal::TimeNs> first_driven_at() const noexcept { return first_driven_at_; }
 
  private:
   static constexpr std::size_t kReceiveBytes = 64;
@@ -166,6 +168,7 @@ class Firmware {
   bool greeted_ = false;
   hal::TimeNs errand_until_ = 0;
   bool cut_next_answer_ = false;
+  std::optional<hal::TimeNs> first_driven_at_;
 
   Memory memory_;
   Stepper left_;

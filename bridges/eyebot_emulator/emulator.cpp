@@ -101,7 +101,7 @@ class Server {
   void publish(Flyer& flyer, TimeNs now);
   void speak(SecondHub& hub, const std::string& robot, TimeNs now);
   TimeNs next_wake(TimeNs now) const;
-  hal::Status wait(TimeNs now) const;
+  hal::Status wait(TimeNs wake, TimeNs now) const;
   void tell_end(TimeNs at);
   std::unique_ptr<Flyer> make_flyer(const std::string& name, std::size_t i, std::vector<Fault> faults, EventSink sink);
 
@@ -170,7 +170,8 @@ hal::Status Server::serve(const std::atomic<bool>& stop) {
   }
   if (options_.ready) options_.ready(link_->url());
   const hal::Status served = turn_until(
-      stop, [this](TimeNs now) { return turn(now); }, [this](TimeNs now) { return wait(now); });
+      stop, tell_, [this](TimeNs now) { return turn(now); }, [this](TimeNs now) { return next_wake(now); },
+      [this](TimeNs wake, TimeNs now) { return wait(wake, now); });
   tell_end(monotonic_ns());
   return served;
 }
@@ -245,6 +246,7 @@ void Server::fly(Flyer& flyer, TimeNs now) {
     flyer.to_robot.pop_front();
   }
   flyer.robot.run_until(now);
+  if (const auto at = flyer.robot.first_driven_at()) flyer.faults.driven(*at, now);
   publish(flyer, now);
 }
 
@@ -285,9 +287,9 @@ TimeNs Server::next_wake(TimeNs now) const {
   return wake;
 }
 
-hal::Status Server::wait(TimeNs now) const {
+hal::Status Server::wait(TimeNs wake, TimeNs now) const {
   std::vector<pollfd> polls = {{inbox_->descriptor(), POLLIN, 0}};
-  wait_for(polls, next_wake(now), now);
+  wait_for(polls, wake, now);
   return {};
 }
 

@@ -30,6 +30,8 @@ struct Options {
   std::function<void(const std::string& path)> ready{};  ///< called once, when hubs are heard
 };
 
+/// Events for the log beside the robot's own: `fault` (fault, phase: begin or end) and `late` (by_ms: see turn_until).
+///
 /// Emulates until `stop` becomes true, which is noticed within 20 ms. Stamps in the log are exact, which puts lines out
 /// of order by up to some milliseconds: a message's is when the link's thread took it, CLOCK_MONOTONIC. Errors: a fault
 /// that there is not, a name that cannot be part of a channel's, a link or log that cannot be opened.

@@ -520,6 +520,7 @@ void Eyebot::tell_changes(TimeNs at) {
     tell(at, "failsafe", {{"from", name_of(told_failsafe_)}, {"to", name_of(s.failsafe())}});
   }
   if (told_mode_ != s.mode()) tell(at, "mode", {{"from", name_of(told_mode_)}, {"to", name_of(s.mode())}});
+  if (!first_driven_at_ && (s.mode() == Mode::Position || s.mode() == Mode::Velocity)) first_driven_at_ = at;
   if (s.mode() == Mode::Hover && told_mode_ != Mode::Hover) pilot_.stay(senses_);
   told_mode_ = s.mode();
   told_failsafe_ = s.failsafe();

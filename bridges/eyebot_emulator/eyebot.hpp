@@ -82,6 +82,8 @@ class Eyebot {
   static constexpr int kStateRate_Hz = 50;
 
   const Options& options() const noexcept { return options_; }
+  /// When it first obeyed a setpoint: its mode became `position` or `velocity`.
+  std::optional<hal::TimeNs> first_driven_at() const noexcept { return first_driven_at_; }
   const Supervisor& supervisor() const noexcept { return supervisor_; }
   const BodySenses& senses() const noexcept { return senses_; }
   std::int32_t rejected() const noexcept { return rejected_; }
@@ -155,6 +157,7 @@ class Eyebot {
   std::optional<hal::TimeNs> last_obeyed_at_{};
   std::int32_t rejected_ = 0;
   std::string text_;
+  std::optional<hal::TimeNs> first_driven_at_{};
   std::int32_t state_seq_ = -1;
   hal::TimeNs state_sent_at_ = 0;
   std::int32_t answered_seq_ = -1;      // the last state after which a command has come

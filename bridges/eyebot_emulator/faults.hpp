@@ -36,11 +36,9 @@ enum class FaultKind : std::uint8_t {
   SecondHub
 };
 
-/// Active in [from, until), counted from the start of the emulator. Restart, Clock and Battery happen at `from`.
-struct Fault {
+/// Restart, Clock and Battery happen at `from`.
+struct Fault : FaultTimes {
   FaultKind kind = FaultKind::Silent;
-  hal::TimeNs from = 0;
-  hal::TimeNs until = kEndless;
   std::string channel{};  ///< Silent, Deaf, Damage: the end of the channel's name; empty: all
   double probability =
       0.0;  ///< Drop, Double, Swap, Lose, Repeat, Overtake, Fingerprint, Truncate, Future: of each message
@@ -55,8 +53,8 @@ struct Fault {
   }
 };
 
-/// Reads NAME[=VALUE][@START[+DURATION]]: "silent=state@5s+2s", "drop=0.01", "clock=1h@3s" … A bare number is in
-/// seconds. Errors name what is wrong and list the faults that there are.
+/// Reads NAME[=VALUE][@[drive+]START[+DURATION]]: "silent=state@5s+2s", "drop=0.01", "clock=1h@3s" … A bare number is
+/// in seconds. Errors name what is wrong and list the faults that there are.
 hal::Result<Fault> parse_fault(std::string_view text);
 
 /// One line a fault: how it is written and what it does.

@@ -43,7 +43,7 @@ class Server {
   void tell_pose(TimeNs now);
   bool is_full(TimeNs now) const noexcept { return bus_free_at_ > now + kMostBacklogNs; }
   TimeNs next_wake(TimeNs now) const;
-  hal::Status wait(TimeNs now) const;
+  hal::Status wait(TimeNs wake, TimeNs now) const;
   void tell_end(TimeNs at, const std::string& why);
 
   const Options& options_;
@@ -81,7 +81,8 @@ hal::Status Server::serve(const std::atomic<bool>& stop) {
   options_.log.info("foot-bot (" + options_.firmware + ") on " + side_->path());
   if (options_.ready) options_.ready(side_->path());
   const hal::Status served = turn_until(
-      stop, [this](TimeNs now) { return turn(now); }, [this](TimeNs now) { return wait(now); });
+      stop, tell_, [this](TimeNs now) { return turn(now); }, [this](TimeNs now) { return next_wake(now); },
+      [this](TimeNs wake, TimeNs now) { return wait(wake, now); });
   const TimeNs end = monotonic_ns();
   if (served.ok()) robot_.run_until(end);
   tell_end(end, served.ok() ? "stopped" : served.error().message);
@@ -134,6 +135,7 @@ void Server::put_on_bus(TimeNs now) {
     to_robot_.pop_front();
   }
   robot_.run_until(now);
+  if (const auto at = robot_.first_driven_at()) faults_.driven(*at, now);
   tell_pose(now);
 }
 
@@ -172,10 +174,10 @@ TimeNs Server::next_wake(TimeNs now) const {
   return wake;
 }
 
-hal::Status Server::wait(TimeNs now) const {
+hal::Status Server::wait(TimeNs wake, TimeNs now) const {
   std::vector<pollfd> polls;
   if (side_ && !is_full(now)) side_->add_polls(polls);
-  wait_for(polls, next_wake(now), now);
+  wait_for(polls, wake, now);
   return {};
 }
 

@@ -25,11 +25,9 @@ enum class FaultKind : std::uint8_t {
   Held
 };
 
-/// Active in [from, until), counted from the start of the emulator. Restart happens at `from`.
-struct Fault {
+/// Restart happens at `from`.
+struct Fault : FaultTimes {
   FaultKind kind = FaultKind::Silent;
-  hal::TimeNs from = 0;
-  hal::TimeNs until = kEndless;
   std::optional<Place> module{};    ///< Missing, Restart, Silent, Deaf, Lie; none: all
   Lie lie = Lie::None;              ///< Lie
   double probability = 0.0;         ///< Drop, Lose, Double, Swap: of each frame
@@ -40,8 +38,8 @@ struct Fault {
   bool is_moment() const noexcept { return kind == FaultKind::Restart || kind == FaultKind::Carry; }
 };
 
-/// Reads NAME[=VALUE][@START[+DURATION]]: "missing=gripper@0s+3s", "drop=0.01". A bare number is in seconds. Errors
-/// name what is wrong and list the faults that there are.
+/// Reads NAME[=VALUE][@[drive+]START[+DURATION]]: "missing=gripper@0s+3s", "drop=0.01". A bare number is in seconds.
+/// Errors name what is wrong and list the faults that there are.
 hal::Result<Fault> parse_fault(std::string_view text);
 
 /// One line a fault: how it is written and what it does.

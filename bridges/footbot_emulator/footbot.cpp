@@ -262,6 +262,7 @@ void Footbot::note_wheels(hal::TimeNs at, std::string_view by) {
   const bool changed = left != told_left_ || right != told_right_;
   told_left_ = left;
   told_right_ = right;
+  if (!first_driven_at_ && (left != 0 || right != 0)) first_driven_at_ = at;
   sink_(at, "wheels", {{"left", left}, {"right", right}, {"by", by}, {"changed", changed}});
 }
 

@@ -56,6 +56,8 @@ class Footbot {
   const BodyCommand& command() const noexcept { return command_; }
   /// When a motor was last told a speed.
   std::optional<hal::TimeNs> wheels_commanded_at() const noexcept { return wheels_commanded_at_; }
+  /// When a motor was first told a speed that is not 0.
+  std::optional<hal::TimeNs> first_driven_at() const noexcept { return first_driven_at_; }
 
  private:
   struct Conduct {
@@ -101,7 +103,7 @@ class Footbot {
   hal::TimeNs encoders_at_ = 0;
   BodyCommand command_;
   int told_left_ = 0, told_right_ = 0;
-  std::optional<hal::TimeNs> wheels_commanded_at_;
+  std::optional<hal::TimeNs> wheels_commanded_at_, first_driven_at_;
 };
 
 }  // namespace tandem::bridges::footbot_emulator

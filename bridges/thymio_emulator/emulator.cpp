@@ -32,7 +32,7 @@ class Server {
   void show_hosts(TimeNs now);
   void tell_pose(TimeNs now);
   TimeNs next_wake(TimeNs now) const;
-  hal::Status wait(TimeNs now) const;
+  hal::Status wait(TimeNs wake, TimeNs now) const;
   void tell_end(TimeNs at, const std::string& why);
 
   const Options& options_;
@@ -65,7 +65,8 @@ hal::Status Server::serve(const std::atomic<bool>& stop) {
   options_.log.info("Thymio on " + line_->path());
   if (options_.ready) options_.ready(line_->path());
   const hal::Status served = turn_until(
-      stop, [this](TimeNs now) { return turn(now); }, [this](TimeNs now) { return wait(now); });
+      stop, tell_, [this](TimeNs now) { return turn(now); }, [this](TimeNs now) { return next_wake(now); },
+      [this](TimeNs wake, TimeNs now) { return wait(wake, now); });
   const TimeNs end = monotonic_ns();
   if (served.ok()) robot_.run_until(end);
   tell_end(end, served.ok() ? "stopped" : served.error().message);
@@ -90,6 +91,7 @@ hal::Status Server::turn(TimeNs now) {
     if (faults_.reaches_robot(now)) robot_.receive(message, now);
   }
   robot_.run_until(now);
+  if (const auto at = robot_.first_driven_at()) faults_.driven(*at, now);
   tell_pose(now);
   show_hosts(now);
   return {};
@@ -135,10 +137,10 @@ TimeNs Server::next_wake(TimeNs now) const {
   return wake;
 }
 
-hal::Status Server::wait(TimeNs now) const {
+hal::Status Server::wait(TimeNs wake, TimeNs now) const {
   std::vector<pollfd> polls;
   if (line_) line_->add_polls(polls);
-  wait_for(polls, next_wake(now), now);
+  wait_for(polls, wake, now);
   return {};
 }
 

@@ -29,6 +29,8 @@ struct Options {
   std::function<void(const std::string& path)> ready{};       ///< called once, when a host can connect
 };
 
+/// Events for the log beside the robot's own: `fault` (fault, phase: begin or end) and `late` (by_ms: see turn_until).
+///
 /// Emulates until `stop` becomes true, which is noticed within 20 ms. Removes its pseudo-terminal at the end. The log
 /// ends with when the wheels were last commanded. Errors: a node number or fault that there is not, a link or log that
 /// cannot be opened, a line that goes away.

@@ -11,11 +11,9 @@ namespace tandem::bridges::thymio_emulator {
 
 enum class FaultKind : std::uint8_t { Restart, Program, Silent, Deaf, Lie, Drop, Lose, Double, Delay, Hangup };
 
-/// Active in [from, until), counted from the start of the emulator. Restart and Program happen at `from`.
-struct Fault {
+/// Restart and Program happen at `from`.
+struct Fault : FaultTimes {
   FaultKind kind = FaultKind::Silent;
-  hal::TimeNs from = 0;
-  hal::TimeNs until = kEndless;
   Lie lie = Lie::None;       ///< Lie
   double probability = 0.0;  ///< Drop, Lose, Double: of each message
   hal::TimeNs delay_ns = 0;  ///< Delay
@@ -24,8 +22,8 @@ struct Fault {
   bool is_moment() const noexcept { return kind == FaultKind::Restart || kind == FaultKind::Program; }
 };
 
-/// Reads NAME[=VALUE][@START[+DURATION]]: "silent@5s+2s", "drop=0.01". A bare number is in seconds. Errors name what is
-/// wrong and list the faults that there are.
+/// Reads NAME[=VALUE][@[drive+]START[+DURATION]]: "silent@5s+2s", "drop=0.01". A bare number is in seconds. Errors name
+/// what is wrong and list the faults that there are.
 hal::Result<Fault> parse_fault(std::string_view text);
 
 /// One line a fault: how it is written and what it does.

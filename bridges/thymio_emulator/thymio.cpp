@@ -252,6 +252,7 @@ void Thymio::variables_to_actuators(hal::TimeNs at) {
     told_left_ = left_target();
     told_right_ = right_target();
     wheels_commanded_at_ = at;
+    if (!first_driven_at_ && (told_left_ != 0 || told_right_ != 0)) first_driven_at_ = at;
     sink_(at, "wheels", {{"left", told_left_}, {"right", told_right_}});
   }
   const BodyCommand before = command_;

@@ -72,6 +72,8 @@ class Thymio {
   std::int16_t right_target() const { return node_.words("motor.right.target")[0]; }
   /// When the motors' targets last changed.
   std::optional<hal::TimeNs> wheels_commanded_at() const noexcept { return wheels_commanded_at_; }
+  /// When a motor was first told a speed that is not 0.
+  std::optional<hal::TimeNs> first_driven_at() const noexcept { return first_driven_at_; }
 
  private:
   struct Timer {
@@ -108,7 +110,7 @@ class Thymio {
   std::array<Timer, 2> timers_;
   BodyCommand command_;
   std::int16_t told_left_ = 0, told_right_ = 0;
-  std::optional<hal::TimeNs> wheels_commanded_at_;
+  std::optional<hal::TimeNs> wheels_commanded_at_, first_driven_at_;
 };
 
 }  // namespace tandem::bridges::thymio_emulator

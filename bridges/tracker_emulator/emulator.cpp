@@ -26,7 +26,7 @@ namespace {
 using hal::TimeNs;
 
 constexpr TimeNs kTurnNs = 5 * hal::kNsPerMs;
-constexpr TimeNs kLateNs = 500 * hal::kNsPerMs;
+constexpr TimeNs kHeldBackNs = 500 * hal::kNsPerMs;        // by the fault `late`
 constexpr TimeNs kOwnEpochNs = 1'234'567 * hal::kNsPerMs;  // a clock of its own shows this much more
 
 TimeNs unix_ns() {
@@ -120,7 +120,7 @@ class Server {
       : options_(options),
         sender_(std::move(sender)),
         tell_(std::move(tell)),
-        faults_(std::move(faults)),
+        faults_(std::move(faults), options.seed + 1),
         camera_(std::move(camera)),
         chance_(options.seed) {
     for (const auto& [name, path] : options.sees) things_.push_back({name, PoseLog(path)});
@@ -138,11 +138,8 @@ class Server {
     std::vector<std::byte> message;
   };
 
-  bool is(FaultKind kind, TimeNs at, double* value = nullptr) const;
-  bool happens(FaultKind kind, TimeNs at) {
-    double probability = 0.0;
-    return is(kind, at, &probability) && chance_.hits(probability);
-  }
+  hal::Status turn(TimeNs now);
+  void note_drive(TimeNs now);
   double normal(double sd);
   void expose(TimeNs at);
   void photograph(TimeNs at);
@@ -153,47 +150,54 @@ class Server {
   const Options& options_;
   std::unique_ptr<Sender> sender_;
   EventSink tell_;
-  std::vector<Fault> faults_;
+  FaultPlan faults_;
   std::unique_ptr<Camera> camera_;
-  Chance chance_;
+  Chance chance_;  // of the noise
   std::vector<Thing> things_;
   std::vector<Outgoing> outgoing_;
-  TimeNs start_ = 0;
+  TimeNs exposure_ns_ = 0;  // the next
   std::int64_t sightings_ = 0, messages_ = 0;
 };
 
 void Server::serve(const std::atomic<bool>& stop) {
-  start_ = monotonic_ns();
-  tell_(start_, "start", {{"link", options_.link}, {"clock", options_.clock}, {"seed", options_.seed}});
-  const auto period_ns = static_cast<TimeNs>(1e9 / options_.rate_hz);
-  const auto delay_ns = static_cast<TimeNs>(options_.delay_s * 1e9);
+  const TimeNs start = exposure_ns_ = monotonic_ns();
+  faults_.begin(start);
+  tell_(start, "start", {{"link", options_.link}, {"clock", options_.clock}, {"seed", options_.seed}});
   if (options_.ready) options_.ready("tracker sends to " + options_.link);
-  TimeNs exposure_ns = start_;
-  while (!stop.load(std::memory_order_relaxed)) {
-    const TimeNs now = monotonic_ns();
-    for (Thing& thing : things_) thing.log.follow();
-    // A camera that is behind leaves frames out.
-    while (camera_ && exposure_ns + delay_ns + period_ns <= now) exposure_ns += period_ns;
-    for (; exposure_ns + delay_ns <= now; exposure_ns += period_ns)
-      camera_ ? photograph(exposure_ns) : expose(exposure_ns);
-    for (const Outgoing& out : outgoing_) {
-      if (out.at <= now) sender_->send(out.message);
-    }
-    std::erase_if(outgoing_, [&](const Outgoing& out) { return out.at <= now; });
-    const timespec pause{0, static_cast<long>(kTurnNs)};
-    ::nanosleep(&pause, nullptr);
-  }
+  (void)turn_until(
+      stop, tell_, [this](TimeNs now) { return turn(now); }, [](TimeNs now) { return now + kTurnNs; },
+      [](TimeNs wake, TimeNs now) {
+        std::vector<pollfd> nothing;
+        wait_for(nothing, wake, now);
+        return hal::Status{};
+      });
   tell_(monotonic_ns(), "end", {{"messages", messages_}, {"sightings", sightings_}});
 }
 
-bool Server::is(FaultKind kind, TimeNs at, double* value) const {
-  bool any = false;
-  for (const Fault& fault : faults_) {
-    if (fault.kind != kind || !fault.active(at - start_)) continue;
-    any = true;
-    if (value != nullptr) *value = kind == FaultKind::Shift ? fault.shift_m : fault.probability;
+hal::Status Server::turn(TimeNs now) {
+  const auto period_ns = static_cast<TimeNs>(1e9 / options_.rate_hz);
+  const auto delay_ns = static_cast<TimeNs>(options_.delay_s * 1e9);
+  for (Thing& thing : things_) thing.log.follow();
+  note_drive(now);
+  (void)apply_changes(faults_, now, tell_, [](const FaultPlan::Change&) { return hal::Status{}; });
+  // A camera that is behind leaves frames out.
+  while (camera_ && exposure_ns_ + delay_ns + period_ns <= now) exposure_ns_ += period_ns;
+  for (; exposure_ns_ + delay_ns <= now; exposure_ns_ += period_ns)
+    camera_ ? photograph(exposure_ns_) : expose(exposure_ns_);
+  for (const Outgoing& out : outgoing_) {
+    if (out.at <= now) sender_->send(out.message);
   }
-  return any;
+  std::erase_if(outgoing_, [&](const Outgoing& out) { return out.at <= now; });
+  return {};
+}
+
+void Server::note_drive(TimeNs now) {
+  std::optional<TimeNs> first;
+  for (const Thing& thing : things_) {
+    const auto moved = thing.log.first_moved_ns();
+    if (moved) first = std::min(first.value_or(*moved), *moved);
+  }
+  if (first) faults_.driven(*first, now);
 }
 
 /// Box and Muller's way.
@@ -210,13 +214,12 @@ void Server::expose(TimeNs at) {
     exposure.sd_m = options_.noise_m;
     exposure.sd_rad = options_.noise_rad;
   }
-  if (is(FaultKind::Gap, at)) return;
-  double shift_m = 0.0;
-  (void)is(FaultKind::Shift, at, &shift_m);
-  const double side = is(FaultKind::Mirror, at) ? -1.0 : 1.0;
+  if (faults_.active(FaultKind::Gap, at)) return;
+  const double shift_m = faults_.shift_m(at);
+  const double side = faults_.active(FaultKind::Mirror, at) ? -1.0 : 1.0;
   for (const Thing& thing : things_) {
     const auto pose = thing.log.at(at);
-    if (!pose || happens(FaultKind::Lose, at)) continue;
+    if (!pose || faults_.happens(FaultKind::Lose, at)) continue;
     Seen seen{
         thing.name, pose->x_m + shift_m + normal(options_.noise_m), side * (pose->y_m + normal(options_.noise_m)), {}};
     const double heading_rad = side * (pose->heading_rad + normal(options_.noise_rad));
@@ -224,7 +227,8 @@ void Server::expose(TimeNs at) {
     exposure.seen.push_back(seen);
   }
   if (exposure.seen.empty()) return;
-  if (exposure.seen.size() > 1 && happens(FaultKind::Swap, at)) std::swap(exposure.seen[0].name, exposure.seen[1].name);
+  if (exposure.seen.size() > 1 && faults_.happens(FaultKind::Swap, at))
+    std::swap(exposure.seen[0].name, exposure.seen[1].name);
   sightings_ += static_cast<std::int64_t>(exposure.seen.size());
   ++messages_;
   hand_out(at, message_of(exposure));
@@ -232,13 +236,12 @@ void Server::expose(TimeNs at) {
 
 /// Everything that it sees, as a picture, whatever goes wrong with it.
 void Server::photograph(TimeNs at) {
-  if (is(FaultKind::Gap, at)) return;
-  double shift_m = 0.0;
-  (void)is(FaultKind::Shift, at, &shift_m);
+  if (faults_.active(FaultKind::Gap, at)) return;
+  const double shift_m = faults_.shift_m(at);
   std::vector<PlacedTag> tags;
   for (std::size_t i = 0; i < things_.size(); ++i) {
     const auto pose = things_[i].log.at(at);
-    if (!pose || happens(FaultKind::Lose, at)) continue;
+    if (!pose || faults_.happens(FaultKind::Lose, at)) continue;
     PlacedTag tag{
         camera_->patterns[i], options_.tag_size_m, {pose->x_m + shift_m, pose->y_m, options_.tag_height_m}, {}};
     // The upper edge points forward.
@@ -246,17 +249,18 @@ void Server::photograph(TimeNs at) {
     tag.axes_W << s, c, 0.0, -c, s, 0.0, 0.0, 0.0, 1.0;
     tags.push_back(std::move(tag));
   }
-  if (tags.size() > 1 && happens(FaultKind::Swap, at)) std::swap(tags[0].pattern, tags[1].pattern);
-  camera_->artist.set_mirrored(is(FaultKind::Mirror, at));
+  if (tags.size() > 1 && faults_.happens(FaultKind::Swap, at)) std::swap(tags[0].pattern, tags[1].pattern);
+  camera_->artist.set_mirrored(faults_.active(FaultKind::Mirror, at));
   sightings_ += static_cast<std::int64_t>(tags.size());
   ++messages_;
   hand_out(at, frame_message(camera_->lens.width, camera_->lens.height, stamp(at), camera_->artist.draw(tags)));
 }
 
 void Server::hand_out(TimeNs at, std::vector<std::byte> message) {
-  if (happens(FaultKind::Garbage, at)) message.resize(message.size() / 2);
-  const TimeNs leaves = at + static_cast<TimeNs>(options_.delay_s * 1e9) + (happens(FaultKind::Late, at) ? kLateNs : 0);
-  if (happens(FaultKind::Double, at)) outgoing_.push_back({leaves, message});
+  if (faults_.happens(FaultKind::Garbage, at)) message.resize(message.size() / 2);
+  const TimeNs leaves =
+      at + static_cast<TimeNs>(options_.delay_s * 1e9) + (faults_.happens(FaultKind::Late, at) ? kHeldBackNs : 0);
+  if (faults_.happens(FaultKind::Double, at)) outgoing_.push_back({leaves, message});
   outgoing_.push_back({leaves, std::move(message)});
 }
 
@@ -264,10 +268,7 @@ std::int64_t Server::stamp(TimeNs at) const {
   std::int64_t shown = at;
   if (options_.clock == "unix") shown += unix_ns() - monotonic_ns();
   if (options_.clock == "own") shown += kOwnEpochNs;
-  for (const Fault& fault : faults_) {
-    if (fault.kind == FaultKind::Clock && fault.active(at - start_)) shown += fault.jump_ns;
-  }
-  return shown;
+  return shown + faults_.jump_ns(at);
 }
 
 std::vector<std::byte> Server::message_of(const Exposure& exposure) const {

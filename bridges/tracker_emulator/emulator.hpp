@@ -38,6 +38,9 @@ struct Options {
   std::function<void(const std::string& text)> ready{};
 };
 
+/// Events for the log: `start`, `end` (messages, sightings), `fault` (fault, phase: begin or end) and `late` (by_ms:
+/// see turn_until; drawing a frame may be what took so long).
+///
 /// Emulates until `stop` becomes true, which is noticed within 20 ms. Errors: a link, log or fault that there is not.
 hal::Status run(const Options& options, const std::atomic<bool>& stop);
 

@@ -58,4 +58,20 @@ hal::Result<Fault> parse_fault(std::string_view text) {
   return read_fault<Fault>(text, kEntries, fault_manual(), &read_value);
 }
 
+double FaultPlan::shift_m(hal::TimeNs at) const {
+  double last_m = 0.0;
+  for (const Fault& fault : faults()) {
+    if (fault.kind == FaultKind::Shift && is_at_work(fault, at)) last_m = fault.shift_m;
+  }
+  return last_m;
+}
+
+hal::TimeNs FaultPlan::jump_ns(hal::TimeNs at) const {
+  hal::TimeNs sum_ns = 0;
+  for (const Fault& fault : faults()) {
+    if (fault.kind == FaultKind::Clock && is_at_work(fault, at)) sum_ns += fault.jump_ns;
+  }
+  return sum_ns;
+}
+
 }  // namespace tandem::bridges::tracker_emulator

@@ -46,6 +46,9 @@ void PoseLog::take(const std::string& line) {
   const TruePose pose{json[when].is_number_integer() ? json[when].get<hal::TimeNs>() : 0, number("x_m"), number("y_m"),
                       number("heading_rad")};
   if (!poses_.empty() && pose.at_ns <= poses_.back().at_ns) return;
+  if (!first_) first_ = pose;
+  const bool rests = pose.x_m == first_->x_m && pose.y_m == first_->y_m && pose.heading_rad == first_->heading_rad;
+  if (!rests && !first_moved_ns_) first_moved_ns_ = pose.at_ns;
   poses_.push_back(pose);
   while (poses_.front().at_ns < pose.at_ns - kKept_ns) poses_.pop_front();
 }

@@ -23,6 +23,8 @@ class PoseLog {
   void follow();
   /// The pose at that time, between two that were told; before the first: nothing; after the last: that one.
   std::optional<TruePose> at(hal::TimeNs time_ns) const;
+  /// When the pose was first told that is not the first one.
+  std::optional<hal::TimeNs> first_moved_ns() const noexcept { return first_moved_ns_; }
 
  private:
   void take(const std::string& line);
@@ -31,6 +33,8 @@ class PoseLog {
   std::ifstream file_;
   std::string line_;  // as far as it has been written
   std::deque<TruePose> poses_;
+  std::optional<TruePose> first_;
+  std::optional<hal::TimeNs> first_moved_ns_;
 };
 
 }  // namespace tandem::bridges::tracker_emulator

@@ -232,6 +232,7 @@ TEST_F(BadInput, WrongUsageHasItsOwnCode) {
   fails({"emulate", "r2d2", "--link", "pty:x"}, 2, {"epuck"});
   fails({"emulate", "epuck", "--link", "pty:x", "--fault", "explode@3s"}, 1, {"explode"});
   fails({"emulate", "footbot", "--link", "pty:x", "--fault", "missing=wings"}, 1, {"wings", "left-motor"});
+  fails({"emulate", "footbot", "--link", "pty:x", "--fault", "deaf@drvie+2s"}, 1, {"'drvie'", "@drive+5s"});
   fails({"emulate", "footbot", "--link", "pty:x", "--firmware", "v6"}, 1, {"v6", "v5"});
   fails({"emulate", "eyebot", "--link", "pty:x"}, 1, {"pty:x", "lcm:udpm://"});
   fails({"emulate", "eyebot", "--link", "lcm:memq://", "--fault", "explode@3s"}, 1, {"explode", "no-position@5s+3s"});

@@ -36,6 +36,7 @@ TEST(HubFaults, AreRefusedWithAListOfThoseThatThereAre) {
   EXPECT_THAT(refusal("kill=2@5s"), HasSubstr("'kill' takes no value"));
   EXPECT_THAT(refusal("clock@5s"), HasSubstr("'clock' needs a value, as in clock=1h@5s"));
   EXPECT_THAT(refusal("clock=x@5s"), HasSubstr("hub fault 'clock=x@5s'"));
+  EXPECT_THAT(refusal("kill@drive+5s"), HasSubstr("a hub knows no @drive, as in kill@5s"));
   EXPECT_FALSE(HubFaults::make({"kill@5s", "nonsense"}).ok());
 }
 

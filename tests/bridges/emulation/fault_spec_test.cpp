@@ -29,10 +29,31 @@ TEST(FaultSpec, LastsAsLongAsItsKindUsuallyDoes) {
   EXPECT_EQ(split_fault("reset@6s").value().until(0), 6 * kSecond);
 }
 
+TEST(FaultSpec, MayCountFromWhenTheRobotIsDriven) {
+  const auto whole = split_fault("restart=left-motor@drive+2s+500ms");
+  ASSERT_TRUE(whole.ok());
+  EXPECT_TRUE(whole.value().since_drive);
+  EXPECT_EQ(whole.value().value, "left-motor");
+  EXPECT_EQ(whole.value().from(), 2 * kSecond);
+  EXPECT_EQ(whole.value().until(), 5 * kSecond / 2);
+  const auto at_once = split_fault("silent@drive");
+  ASSERT_TRUE(at_once.ok());
+  EXPECT_TRUE(at_once.value().since_drive);
+  EXPECT_EQ(at_once.value().start, 0);
+  EXPECT_EQ(at_once.value().until(), kEndless);
+  EXPECT_FALSE(split_fault("silent@2s").value().since_drive);
+  EXPECT_FALSE(split_fault("drive").value().since_drive) << "a name";
+}
+
 TEST(FaultSpec, RefusesTimesThatAreNone) {
-  for (const char* text : {"silent@", "silent@soon", "silent@-1s", "silent@1s+", "silent@1s+2m/s"}) {
+  for (const char* text : {"silent@", "silent@soon", "silent@-1s", "silent@1s+", "silent@1s+2m/s", "silent@drive+",
+                           "silent@drive+-1s", "silent@drive-1s", "silent@drives", "silent@drive 2s",
+                           "silent@drive+1s+", "silent@drive+drive+1s", "silent@Drive+1s", "silent@1s+drive"}) {
     EXPECT_FALSE(split_fault(text).ok()) << text;
   }
+  const std::string why = split_fault("silent@drvie+2s").error().message;
+  EXPECT_NE(why.find("'drvie'"), std::string::npos) << why;
+  EXPECT_NE(why.find("@drive+5s"), std::string::npos) << why;
 }
 
 TEST(FaultSpec, ReadsProbabilities) {

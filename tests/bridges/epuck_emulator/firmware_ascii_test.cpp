@@ -12,10 +12,16 @@ TEST(FirmwareAscii, GreetsOnceWhenSwitchedOn) {
 
 TEST(FirmwareAscii, SetsSpeedsAndAcknowledges) {
   Bench robot;
+  robot.say("D,0,0\r");
+  EXPECT_FALSE(robot.firmware.first_driven_at());
   EXPECT_EQ(robot.say(bytes("44 2C 35 30 30 2C 2D 35 30 30 0D")), bytes("64 0D 0A"));
+  const auto driven_at = robot.firmware.first_driven_at();
+  ASSERT_TRUE(driven_at);
   EXPECT_NEAR(robot.body.command().left_m_s, 500 * kStep_m, 1e-9);
   EXPECT_NEAR(robot.body.command().right_m_s, -500 * kStep_m, 1e-9);
   EXPECT_EQ(robot.say("E\r"), "e,500,-500\r\n");
+  robot.say("D,100,100\r");
+  EXPECT_EQ(robot.firmware.first_driven_at(), driven_at);
   EXPECT_EQ(robot.count("\"event\":\"wheels\",\"left\":500,\"right\":-500"), 1);
 }
 

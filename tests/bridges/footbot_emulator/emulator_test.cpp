@@ -190,6 +190,25 @@ TEST(EmulatedAdapter, CarriesAConversation) {
   EXPECT_FALSE(fs::exists(emulator.path())) << "the pseudo-terminal is taken away";
 }
 
+TEST(EmulatedAdapter, HasFaultsWhenItIsDrivenAndNoneWhenItNeverIs) {
+  const std::string fault = R"("event":"fault","fault":"silent=left-motor@drive","phase":"begin")";
+  Running emulator(with("pty:fb0", {"silent=left-motor@drive", "restart=base@drive+1000s"}));
+  Running never(with("pty:fb0", {"silent=left-motor@drive", "hangup@drive+0s"}));
+  Peer host(open_terminal(emulator.path()));
+  host.write("S8\rO\rt30080BA0010022000100\r");
+  EXPECT_TRUE(host.hears("t3016059022000000\r")) << host.heard;
+  EXPECT_EQ(emulator.log_text().find(fault), std::string::npos);
+  host.write("t30080CA0010022001E00\r");
+  EXPECT_TRUE(emulator.happened(fault));
+  host.heard.clear();
+  host.write("t30080BA0010022000100\rt30080BA0090000000600\r");
+  EXPECT_TRUE(host.hears("t209")) << "the base is heard: " << host.heard;
+  ASSERT_TRUE(emulator.end().ok());
+  ASSERT_TRUE(never.end().ok());
+  EXPECT_EQ(host.heard.find("t301605902200"), std::string::npos) << host.heard;
+  EXPECT_EQ(never.log_text().find("\"event\":\"fault\""), std::string::npos);
+}
+
 TEST(EmulatedAdapter, DescribesAModuleFrameByFrame) {
   Running emulator(with("pty:fb0", {}, "v4"));
   Peer host(open_terminal(emulator.path()));

@@ -55,8 +55,13 @@ TEST(Footbot, AnswersAfterAWhile) {
 
 TEST(Footbot, DrivesUntilItIsToldOtherwise) {
   Bench bench;
+  bench.say("300#0CA0010022000000");
+  EXPECT_FALSE(bench.robot.first_driven_at());
   bench.say("300#0CA0010022000A00");
+  const auto driven_at = bench.robot.first_driven_at();
+  EXPECT_EQ(driven_at, bench.now);
   bench.say("300#0CA0020022000A00");
+  EXPECT_EQ(bench.robot.first_driven_at(), driven_at);
   EXPECT_EQ(bench.logged(R"("event":"wheels","left":10,"right":10,"by":"host","changed":true)"), 1);
   EXPECT_EQ(bench.robot.wheels_commanded_at(), bench.now);
   bench.pass(60'000 * kMs);  // nothing stops it

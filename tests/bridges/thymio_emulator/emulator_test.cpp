@@ -28,11 +28,14 @@ TEST(EmulatedThymio, KeepsItsTargetsForEverWithoutAProgram) {
   OpenGround body;
   Thymio robot({}, body, {});
   robot.power_on(0);
+  EXPECT_FALSE(robot.first_driven_at());
   Message set{0, aseba_emulation::type::kSetVariables, {}};
   robot.receive(set.add(1).add(57).add(100), 0);
   EXPECT_EQ(robot.left_target(), 100);
   robot.run_until(60 * hal::kNsPerSecond);
   EXPECT_EQ(robot.left_target(), 100);
+  ASSERT_TRUE(robot.first_driven_at());
+  EXPECT_LT(*robot.first_driven_at(), hal::kNsPerSecond);
 }
 
 TEST(EmulatedThymio, KnowsItsFaults) {
