@@ -124,11 +124,16 @@ function(tandem_label_test entry target)
 endfunction()
 
 # tandem_test(NAME hal_params SOURCES … DEPS hal LABELS fast): one GoogleTest program, one ctest entry.
-# WAITS: it mostly waits for real time to pass (label `waits`): many run side by side, but beside none that computes.
+# WAITS: it mostly waits for real time to pass (label `waits`): many run side by side, but beside none that computes. Each test has
+# fair trials (tests/scenarios/fair_trials.cpp), as many as that may need.
 function(tandem_test)
   cmake_parse_arguments(arg "WAITS" "NAME;TIMEOUT" "SOURCES;DEPS;EXTERNAL;LABELS" ${ARGN})
   if(NOT arg_TIMEOUT)
     set(arg_TIMEOUT 120)
+  endif()
+  if(arg_WAITS)
+    math(EXPR arg_TIMEOUT "${arg_TIMEOUT} * 3")
+    list(APPEND arg_SOURCES ${PROJECT_SOURCE_DIR}/tests/scenarios/fair_trials.cpp)
   endif()
   if(CMAKE_CROSSCOMPILING)
     math(EXPR arg_TIMEOUT "${arg_TIMEOUT} * 10") # an emulated processor is slow
@@ -142,6 +147,7 @@ function(tandem_test)
     set_tests_properties(${arg_NAME} PROPERTIES COST ${arg_TIMEOUT}) # long ones are begun first
   endif()
   if(arg_WAITS)
+    set_tests_properties(${arg_NAME} PROPERTIES SKIP_RETURN_CODE 77)
     list(APPEND arg_LABELS waits)
   endif()
   tandem_label_test(${arg_NAME} test_${arg_NAME} ${arg_LABELS})

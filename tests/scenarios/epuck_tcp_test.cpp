@@ -1,11 +1,9 @@
 // E-pucks in a network, as a user drives them: through a serial server, and an e-puck2's own radio. Verdicts come from
 // the robot's own log.
-#include <arpa/inet.h>
 #include <gmock/gmock.h>
-#include <netinet/in.h>
-#include <sys/socket.h>
 
 #include "tests/checkout.hpp"
+#include "tests/scenarios/free_port.hpp"
 #include "tests/scenarios/process.hpp"
 
 namespace tandem::scenarios {
@@ -50,19 +48,6 @@ class Program {
   pid_t pid_ = -1;
 };
 
-/// That nobody listens at.
-int free_port() {
-  const int fd = ::socket(AF_INET, SOCK_STREAM, 0);
-  sockaddr_in address{};
-  address.sin_family = AF_INET;
-  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  socklen_t size = sizeof address;
-  const bool bound = ::bind(fd, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0 &&
-                     ::getsockname(fd, reinterpret_cast<sockaddr*>(&address), &size) == 0;
-  ::close(fd);
-  return bound ? ntohs(address.sin_port) : -1;
-}
-
 bool installed(const std::string& program) {
   for (const char* folder : {"/usr/bin/", "/usr/sbin/", "/bin/", "/sbin/"}) {
     if (fs::exists(folder + program)) return true;
@@ -95,7 +80,7 @@ TEST_P(OverTcp, IsDrivenAndEndsStopped) {
 TEST_P(OverTcp, IsStoppedWhenTheHubIsKilled) {
   const auto epuck = emulated();
   Tandem hub({"robot", kRobot, "--link", epuck->link()}, hub_folder.path());
-  ASSERT_TRUE(eventually([&] { return epuck->moves(); }, 15.0)) << hub.errors();
+  ASSERT_TRUE(eventually([&] { return epuck->moves(); }, 30.0)) << hub.errors();
   hub.signal(SIGKILL);
   EXPECT_EQ(hub.wait(), -SIGKILL);
   EXPECT_TRUE(eventually([&] { return !epuck->moves(); }, 5.0));
@@ -107,13 +92,13 @@ TEST_P(OverTcp, IsStoppedWhenTheHubIsKilled) {
 TEST_P(OverTcp, IsStoppedWhileTheHubIsFrozenAndFoundAgain) {
   const auto epuck = emulated();
   Tandem hub({"robot", kRobot, "--link", epuck->link()}, hub_folder.path());
-  ASSERT_TRUE(eventually([&] { return epuck->moves(); }, 15.0)) << hub.errors();
+  ASSERT_TRUE(eventually([&] { return epuck->moves(); }, 30.0)) << hub.errors();
   hub.signal(SIGSTOP);
   EXPECT_TRUE(eventually([&] { return !epuck->moves(); }, 5.0));
   std::this_thread::sleep_for(std::chrono::seconds(1));
   EXPECT_FALSE(epuck->moves());
   hub.signal(SIGCONT);
-  EXPECT_TRUE(eventually([&] { return epuck->moves(); }, 15.0)) << hub.errors();
+  EXPECT_TRUE(eventually([&] { return epuck->moves(); }, 30.0)) << hub.errors();
   EXPECT_THAT(hub.errors(), HasSubstr("was frozen"));
   hub.signal(SIGINT);
   EXPECT_EQ(hub.wait(), 128 + SIGINT) << hub.errors();
@@ -121,12 +106,12 @@ TEST_P(OverTcp, IsStoppedWhileTheHubIsFrozenAndFoundAgain) {
 }
 
 TEST_P(OverTcp, ComesBackAfterTheConnectionIsLost) {
-  const auto epuck = emulated({"--fault", "hangup@5s+1s"});
+  const auto epuck = emulated({"--fault", "hangup@drive+2s+1s"});
   Tandem hub({"robot", kRobot, "--link", epuck->link()}, hub_folder.path());
-  ASSERT_TRUE(eventually([&] { return epuck->moves(); }, 15.0)) << hub.errors();
+  ASSERT_TRUE(eventually([&] { return epuck->moves(); }, 30.0)) << hub.errors();
   ASSERT_TRUE(eventually([&] { return hub.errors().find("hung up") != std::string::npos; }, 15.0)) << hub.errors();
-  EXPECT_TRUE(eventually([&] { return !epuck->moves(); }, 15.0));
-  EXPECT_TRUE(eventually([&] { return epuck->moves(); }, 15.0)) << hub.errors();
+  EXPECT_TRUE(eventually([&] { return !epuck->moves(); }, 30.0));
+  EXPECT_TRUE(eventually([&] { return epuck->moves(); }, 30.0)) << hub.errors();
   hub.signal(SIGINT);
   EXPECT_EQ(hub.wait(), 128 + SIGINT) << hub.errors();
   EXPECT_FALSE(epuck->moves());
@@ -134,7 +119,7 @@ TEST_P(OverTcp, ComesBackAfterTheConnectionIsLost) {
 
 TEST_P(OverTcp, SaysWhatIsWrongWhereNobodyListens) {
   const std::string link = GetParam().name == "radio" ? "epuck-tcp:127.0.0.1:" : "tcp:127.0.0.1:";
-  Tandem hub({"robot", kRobot, "--link", link + std::to_string(free_port())}, hub_folder.path());
+  Tandem hub({"robot", kRobot, "--link", link + std::to_string(free_port(SOCK_STREAM))}, hub_folder.path());
   ASSERT_TRUE(eventually([&] { return hub.errors().find("nobody listens there") != std::string::npos; }, 15.0))
       << hub.errors();
   hub.signal(SIGINT);
@@ -193,7 +178,7 @@ TEST(SerialServer, Ser2netCarriesAnEpucksBytes) {
   Folder folder, robot_folder;
   EmulatedEpuck epuck(robot_folder);
   ASSERT_TRUE(epuck.ready());
-  const int port = free_port();
+  const int port = free_port(SOCK_STREAM);
   const fs::path config =
       folder.write("ser2net.yaml", "connection: &epuck\n  accepter: tcp,127.0.0.1," + std::to_string(port) +
                                        "\n  connector: serialdev," +
@@ -206,7 +191,7 @@ TEST(SerialServer, SocatCarriesAnEpucksBytes) {
   Folder folder, robot_folder;
   EmulatedEpuck epuck(robot_folder);
   ASSERT_TRUE(epuck.ready());
-  const int port = free_port();
+  const int port = free_port(SOCK_STREAM);
   drive_through({"socat", "TCP-LISTEN:" + std::to_string(port) + ",bind=127.0.0.1,reuseaddr,fork,max-children=1",
                  "FILE:" + fs::canonical(robot_folder.path() / "ep0").string() + ",raw,echo=0,b115200"},
                 port, folder, epuck);

@@ -1,5 +1,6 @@
 // Programs as a user starts them: arguments, a folder, what they print, how they end.
 #pragma once
+#include <algorithm>
 #include <chrono>
 #include <fcntl.h>
 #include <filesystem>
@@ -13,6 +14,7 @@
 #include <string>
 #include <sys/wait.h>
 #include <thread>
+#include <time.h>
 #include <unistd.h>
 #include <vector>
 
@@ -27,6 +29,13 @@ inline std::string text_of(const fs::path& file) {
   std::ostringstream text;
   text << in.rdbuf();
   return text.str();
+}
+
+/// On the clock of the robots' logs.
+inline long long monotonic_ns() {
+  timespec t{};
+  clock_gettime(CLOCK_MONOTONIC, &t);
+  return static_cast<long long>(t.tv_sec) * 1'000'000'000 + t.tv_nsec;
 }
 
 /// Looks at `condition` every few milliseconds until it holds or `seconds` are over.
@@ -191,11 +200,17 @@ class EmulatedRobot {
   bool ready() const { return ready_; }
   void signal(int number) const { process_->signal(number); }
   bool suspended() const { return process_->suspended(); }
-  /// Its whole lines: it may be writing another.
-  std::string log() const {
-    std::string text = text_of(folder_.path() / "witness.jsonl");
-    text.resize(text.rfind('\n') + 1);
-    return text;
+  /// Its whole lines so far: it may be writing another.
+  const std::string& log() const {
+    if (!file_.is_open()) file_.open(folder_.path() / "witness.jsonl");
+    file_.clear();
+    std::ostringstream more;
+    more << file_.rdbuf();
+    unfinished_ += more.str();
+    const std::size_t whole = unfinished_.rfind('\n') + 1;
+    log_.append(unfinished_, 0, whole);
+    unfinished_.erase(0, whole);
+    return log_;
   }
   /// Ends it as a user does, so that its log is whole.
   int end() {
@@ -209,21 +224,55 @@ class EmulatedRobot {
   };
   /// Every wheel command that the firmware obeyed, as it received it.
   std::vector<Wheels> wheels() const {
-    std::vector<Wheels> all;
-    std::istringstream in(log());
-    for (std::string line; std::getline(in, line);) {
-      if (line.find("\"event\":\"wheels\"") == std::string::npos) continue;
-      all.push_back({std::stoll(json_value(line, "t_ns")), std::stoi(json_value(line, "left")),
-                     std::stoi(json_value(line, "right"))});
+    read_events();
+    return wheels_;
+  }
+  /// Since when its wheels have been commanded to stand, by the last such command; -1: they are not.
+  long long stands_since() const {
+    long long since = -1;
+    for (const Wheels& w : wheels()) {
+      if (w.left != 0 || w.right != 0)
+        since = -1;
+      else if (since < 0)
+        since = w.t_ns;
     }
-    return all;
+    return since;
+  }
+
+  /// A turn of its program that began too late, and by how much.
+  struct Late {
+    long long t_ns;
+    double by_ms;
+  };
+  std::vector<Late> lates() const {
+    read_events();
+    return lates_;
+  }
+  /// How long its program was kept from running between these times, by its own log; and what it does not tell of (20
+  /// ms). A verdict on what the robot should have done by then adds it to what is promised.
+  long long late_ns(long long from_ns, long long until_ns) const {
+    long long sum_ns = kUntold_ns;
+    for (const Late& late : lates()) {
+      const auto by_ns = static_cast<long long>(late.by_ms * 1e6);
+      sum_ns += std::max(0LL, std::min(late.t_ns, until_ns) - std::max(late.t_ns - by_ns, from_ns));
+    }
+    return sum_ns;
+  }
+
+  /// When a fault, as written, began or ended ("begin", "end"), for the last time; -1: it has not.
+  long long fault_ns(const std::string& fault, const std::string& phase) const {
+    const std::string mark = "\"fault\":\"" + fault + "\",\"phase\":\"" + phase + "\"";
+    const std::string& all = log();
+    const std::size_t at = all.rfind(mark);
+    return at == std::string::npos ? -1 : std::stoll(json_value(all, "t_ns", all.rfind('\n', at) + 1));
   }
   bool moves() const {
-    const auto all = wheels();
-    return !all.empty() && (all.back().left != 0 || all.back().right != 0);
+    read_events();
+    return !wheels_.empty() && (wheels_.back().left != 0 || wheels_.back().right != 0);
   }
   bool has_moved() const {
-    for (const Wheels& w : wheels()) {
+    read_events();
+    for (const Wheels& w : wheels_) {
       if (w.left != 0 || w.right != 0) return true;
     }
     return false;
@@ -241,10 +290,51 @@ class EmulatedRobot {
   std::string errors() const { return process_->errors(); }
 
  private:
+  static constexpr long long kUntold_ns = 20'000'000;
+
+  /// Takes over what the log tells since the last time.
+  void read_events() const {
+    const std::string& all = log();
+    while (read_ < all.size()) {
+      const std::size_t end = all.find('\n', read_);
+      const std::string line = all.substr(read_, end - read_);
+      read_ = end + 1;
+      if (line.find("\"event\":\"wheels\"") != std::string::npos)
+        wheels_.push_back({std::stoll(json_value(line, "t_ns")), std::stoi(json_value(line, "left")),
+                           std::stoi(json_value(line, "right"))});
+      if (line.find("\"event\":\"late\"") != std::string::npos)
+        lates_.push_back({std::stoll(json_value(line, "t_ns")), std::stod(json_value(line, "by_ms"))});
+    }
+  }
+
   const Folder& folder_;
+  // The log, and what was taken from it: it is long, and asked for every few milliseconds.
+  mutable std::ifstream file_;
+  mutable std::string log_, unfinished_;
+  mutable std::size_t read_ = 0;  // of `log_`
+  mutable std::vector<Wheels> wheels_;
+  mutable std::vector<Late> lates_;
   std::unique_ptr<Tandem> process_;
   bool ready_ = false;
 };
+
+/// Whether the robot stood within what is promised after `from_ns`; its program's own lateness does not count.
+inline testing::AssertionResult stood_within(long long promised_ns, const EmulatedRobot& robot, long long from_ns,
+                                             long long stood_ns) {
+  const long long late_ns = robot.late_ns(from_ns, stood_ns);
+  if (stood_ns >= from_ns && stood_ns - from_ns <= promised_ns + late_ns) return testing::AssertionSuccess();
+  return testing::AssertionFailure() << "after " << (stood_ns - from_ns) / 1'000'000
+                                     << " ms, of which its program was late " << late_ns / 1'000'000
+                                     << " ms; promised are " << promised_ns / 1'000'000 << " ms";
+}
+
+/// Whether a robot is told to stand by now, or within 250 ms: a person's stop has just been answered.
+inline testing::AssertionResult stands_at_once(const EmulatedRobot& robot) {
+  const long long answered_ns = monotonic_ns();
+  if (!eventually([&] { return robot.stands_since() > 0; }, 20.0)) return testing::AssertionFailure() << "it moves";
+  const long long stood_ns = std::max(answered_ns, robot.stands_since());
+  return stood_within(250'000'000, robot, answered_ns, stood_ns);
+}
 
 /// On a pseudo-terminal "ep0" in `folder`.
 class EmulatedEpuck : public EmulatedRobot {

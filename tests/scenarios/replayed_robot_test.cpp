@@ -29,7 +29,7 @@ TEST(ReplayedRobot, ARunIsComputedAgainWithoutTheRobotAndChangedPlugInsAreTold) 
   Folder folder;
   write_experiment(folder);
   {
-    EmulatedEpuck epuck(folder, {"--fault", "silent@2s+700ms"});
+    EmulatedEpuck epuck(folder, {"--fault", "silent@drive+1s+700ms"});
     ASSERT_TRUE(epuck.ready());
     Tandem run({"run", "mixed.xml", "--seconds", "5", "--record", "run.record"}, folder.path());
     ASSERT_EQ(run.wait(), 0) << run.errors();

@@ -23,21 +23,7 @@ struct Stops {
   int by_hub = 0;     ///< of the others, when the hub could not have commanded
 };
 
-/// A turn of a robot's program, and by how much it came too late.
-struct Late {
-  long long t_ns;
-  double by_ms;
-};
-
-std::vector<Late> lates_of(const EmulatedRobot& robot) {
-  std::vector<Late> all;
-  std::istringstream in(robot.log());
-  for (std::string line; std::getline(in, line);) {
-    if (json_value(line, "event") == "late")
-      all.push_back({std::stoll(json_value(line, "t_ns")), std::stod(json_value(line, "by_ms"))});
-  }
-  return all;
-}
+using Late = EmulatedRobot::Late;
 
 /// How long this robot's program was kept from running in the last half second, short delays left out.
 double late_ms(const std::vector<Late>& lates, long long t_ns) {
@@ -72,7 +58,7 @@ int hub_stalls_of(const std::string& report, const std::string& id, int robots) 
 
 Stops stops_of(const EmulatedRobot& robot, int hub_stalls) {
   constexpr double kMayBeSilent_ms = 200.0;  // two questions of 100 ms each
-  const std::vector<Late> lates = lates_of(robot);
+  const std::vector<Late> lates = robot.lates();
   std::vector<long long> stopped;
   bool drives = false;
   for (const auto& w : robot.wheels()) {
@@ -114,7 +100,7 @@ TEST(SteadyHub, IsToldByTheRobotHowLongItWasKeptFromRunning) {
   robot.signal(SIGCONT);
   EXPECT_EQ(robot.end(), 0);
   double longest_ms = 0.0;
-  for (const Late& late : lates_of(robot)) longest_ms = std::max(longest_ms, late.by_ms);
+  for (const Late& late : robot.lates()) longest_ms = std::max(longest_ms, late.by_ms);
   EXPECT_GE(longest_ms, 280.0) << robot.log();
 }
 

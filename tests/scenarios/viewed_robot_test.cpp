@@ -70,14 +70,14 @@ TEST(ViewedRobot, IsPausedAndStoppedFromThePageAndStandsUntilItIsArmed) {
   EXPECT_NE(faster["error"].get<std::string>().find("real robots take part"), std::string::npos) << faster;
   const hal::Json paused = viewer.ask(R"({"id":2,"do":"pause"})");
   EXPECT_EQ(paused["ok"], true) << paused;
-  EXPECT_TRUE(eventually([&] { return !epuck.moves(); }, 5.0));
+  EXPECT_TRUE(stands_at_once(epuck));
   EXPECT_TRUE(viewer.sees("paused"));
   const hal::Json on = viewer.ask(R"({"id":3,"do":"play"})");
   EXPECT_EQ(on["tick"], paused["tick"]) << "time stood still";
   ASSERT_TRUE(eventually([&] { return epuck.moves(); }, kPatience_s));
 
   EXPECT_EQ(viewer.ask(R"({"id":2,"do":"estop"})")["ok"], true);
-  EXPECT_TRUE(eventually([&] { return !epuck.moves(); }, 5.0));
+  EXPECT_TRUE(stands_at_once(epuck));
   EXPECT_TRUE(viewer.sees("emergency stop; waits to be armed"));
   for (int i = 0; i < 4; ++i) {  // two seconds of the run
     (void)viewer.next("real");
@@ -92,7 +92,7 @@ TEST(ViewedRobot, IsPausedAndStoppedFromThePageAndStandsUntilItIsArmed) {
   EXPECT_EQ(viewer.ask(R"({"id":6,"do":"arm","robot":"ep0"})")["ok"], true);
   EXPECT_TRUE(eventually([&] { return epuck.moves(); }, kPatience_s));
   EXPECT_EQ(viewer.ask(R"({"id":7,"do":"halt","robot":"ep0"})")["ok"], true);
-  EXPECT_TRUE(eventually([&] { return !epuck.moves(); }, 5.0));
+  EXPECT_TRUE(stands_at_once(epuck));
   EXPECT_TRUE(viewer.sees("held by the operator"));
   view.signal(SIGINT);
   EXPECT_EQ(view.wait(), 0) << view.errors();
