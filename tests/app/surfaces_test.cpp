@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include "app/catalog.hpp"
+#include "hal/plugin_loader.hpp"
 #include "tests/checkout.hpp"
 #include "tests/hal/plugin_file.hpp"
 
