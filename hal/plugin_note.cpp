@@ -262,6 +262,10 @@ std::string text_of(const Surface& surface) {
 
 }  // namespace
 
+std::string this_processor() {
+  return processor(kMachine, kClass, kByteOrder);
+}
+
 bool PluginNote::uses(std::string_view surface) const noexcept {
   return std::any_of(surfaces.begin(), surfaces.end(), [&](const Surface& s) { return s.name == surface; });
 }

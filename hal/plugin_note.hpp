@@ -32,6 +32,9 @@ Result<PluginNote> parse_plugin_note(std::span<const std::byte> file);
 /// the library has and what there is here. Empty: it can.
 std::string misfit(const PluginNote& note, std::span<const Surface> here);
 
+/// The processor that this program was compiled for: "x86-64 with 64 bits".
+std::string this_processor();
+
 /// "0.1.0"
 std::string to_text(const Release& release);
 

@@ -4,9 +4,13 @@
 // it begins anew, as if it were just made, when the value is changed; it throws where it cannot, and is as before then.
 #pragma once
 #include <cstddef>
+#include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "hal/controls.hpp"
 
 namespace tandem::hal {
 
@@ -50,5 +54,27 @@ inline std::vector<SourceFile> unpacked(std::string_view all) {
   }
   return files;
 }
+
+/// Takes the files from whoever shows its controls.
+class SourceFilesTaker : public Controls {
+ public:
+  /// None: nobody has shown any.
+  const std::optional<std::vector<SourceFile>>& files() const noexcept { return files_; }
+
+  bool text(std::string_view name, std::string& value, std::string_view) override {
+    if (name == kSourceFilesControl) files_ = unpacked(value);
+    return false;
+  }
+  bool number(std::string_view, double&, const Unit&, Range, std::string_view) override { return false; }
+  bool integer(std::string_view, std::int64_t&, Range, std::string_view) override { return false; }
+  bool flag(std::string_view, bool&, std::string_view) override { return false; }
+  bool choice(std::string_view, std::string&, std::span<const std::string_view>, std::string_view) override {
+    return false;
+  }
+  bool button(std::string_view, std::string_view) override { return false; }
+
+ private:
+  std::optional<std::vector<SourceFile>> files_;
+};
 
 }  // namespace tandem::hal

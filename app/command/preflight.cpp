@@ -16,6 +16,7 @@
 #include "app/process/terminal.hpp"
 #include "app/robots/desks.hpp"
 #include "app/robots/guarded_robots.hpp"
+#include "app/robots/lockstep_peers.hpp"
 #include "app/robots/mixed_run.hpp"
 #include "core/sim/world.hpp"
 #include "hal/output_file.hpp"
@@ -42,6 +43,41 @@ PreflightRows rows_of_files(const InputFiles& files) {
   for (const InputFile& file : files.plugins) add_file("plug-in", file, rows);
   for (const InputFile& file : files.controllers) add_file("controller", file, rows);
   for (const InputFile& file : files.hooks) add_file("hook", file, rows);
+  return rows;
+}
+
+/// A run in lock-step: whether its peers come, and run what the hub's file names.
+PreflightRows look_over_peers(core::World& world, const hal::PluginLoader& loader, const std::atomic<bool>& stop) {
+  PreflightRows rows;
+  const hal::Log log([](hal::Severity, std::string_view text) { say(text); });
+  auto made = make_lockstep(world, loader, stop, log);
+  if (!made.ok()) {
+    rows.push_back({"peers", "port", Finding::Fail, made.error().message, "see <peers listen> and <peer link>"});
+    return rows;
+  }
+  mixed_reality::LockstepRun& run = *made.value();
+  if (!run.address().empty()) log.info("peers connect to " + run.address());
+  (void)run.connect();  // who is missing, the rows tell
+  for (const mixed_reality::PartnerReport& peer : run.report().peers) {
+    const std::string about = "peer " + peer.robot;
+    const auto add = [&](const char* check, Finding finding, std::string found, std::string advice) {
+      rows.push_back({about, check, finding, std::move(found), std::move(advice)});
+    };
+    if (peer.ready)
+      add("link", Finding::Ok, peer.link, "");
+    else
+      add("link", Finding::Fail, (peer.link.empty() ? "" : peer.link + ": ") + peer.state,
+          "see what its own terminal says");
+    if (!peer.controller) continue;
+    const bridges::peer::CopyComparison& c = *peer.controller;
+    if (!c.differs.empty())
+      add("controller", world.scenario().lockstep.any_controller ? Finding::Warn : Finding::Fail, c.differs,
+          "bring both to one version, or accept that with <peers controllers=\"any\">");
+    if (!c.same.empty()) add("controller", Finding::Ok, "the same here and there: " + c.same, "");
+    if (!c.not_compared.empty())
+      add("controller", Finding::Warn, "not compared: " + c.not_compared, "make sure by hand that it is the right one");
+  }
+  run.let_go();
   return rows;
 }
 
@@ -104,6 +140,40 @@ PreflightRows move_all(mixed_reality::MixedSession& session, const PreflightOpti
   return rows;
 }
 
+/// Real robots, their trackers and this computer. @returns kDone, or why nothing could be looked at, which was told
+int look_over_robots(const PreflightOptions& options, const core::Scenario& scenario, hal::PluginLoader& loader,
+                     std::unique_ptr<core::World>& world, GuardedRobots& guarded, const std::atomic<bool>& stop,
+                     PreflightRows& rows) {
+  mixed_reality::MonotonicTime clock;
+  mixed_reality::MixedOptions mixed;
+  mixed.ask_batteries = true;
+  mixed.before_commands = [&guarded] { guarded.update(); };
+  auto made = make_session(loader.catalog(), world, guarded, clock, std::move(mixed));
+  if (!made.ok()) return complain(kBadInput, made.error().message);
+  const auto session = std::move(made).value();
+  const hal::Status claimed = guarded.claim();
+  rows.push_back({"guardian", "robots", claimed.ok() ? Finding::Ok : Finding::Fail,
+                  claimed.ok() ? "nobody else drives them" : claimed.error().message,
+                  claimed.ok() ? "" : "end the other program"});
+  for (const std::string& outlook : mixed_reality::outlooks(scenario, loader.catalog()))
+    rows.push_back({"trackers", "outlook", Finding::Ok, outlook, ""});
+  const auto append = [&rows](const PreflightRows& more) { rows.insert(rows.end(), more.begin(), more.end()); };
+  if (claimed.ok()) {
+    if (const hal::Status listened = listen(*session, options, stop); !listened.ok() && !stop.load())
+      rows.push_back({"trackers", "listen", Finding::Fail, listened.error().message, "see the tracker's address"});
+    append(mixed_reality::look_over(*session));
+    append(mixed_reality::look_over_machine(scenario, session->woke_late()));
+    if (options.move && !stop.load() && worst_of(rows) == Finding::Fail)
+      rows.push_back({"motion", "test", Finding::Warn, "not tried, as something is in the way", "mend that first"});
+    else if (options.move && !stop.load())
+      append(move_all(*session, options, stop));
+    session->stop_robots();
+    session->shut_down();
+  }
+  (void)guarded.release_rested();
+  return kDone;
+}
+
 void print_rows(const PreflightRows& rows) {
   std::size_t about = 0, check = 0;
   for (const PreflightRow& row : rows) {
@@ -134,8 +204,14 @@ int preflight(const PreflightOptions& options) {
   if (!scenario) return kBadInput;
   if (const hal::Status left_out = leave_out(*scenario, options.without); !left_out.ok())
     return complain(kBadInput, left_out.error().message);
-  if (!has_real_robots(*scenario))
-    return complain(kBadInput, "no robot of this experiment has a <bridge>: `tandem check` is all that it needs");
+  const bool peers = has_peers(*scenario);  // then nobody has a bridge
+  if (!has_real_robots(*scenario) && !peers)
+    return complain(kBadInput,
+                    "no robot of this experiment has a <bridge> or a <peer>: `tandem check` is all that it needs");
+  if (peers && options.move)
+    return complain(kBadInput, "--move is for real robots; those of a run in lock-step are simulated");
+  if (peers) scenario->lockstep.simulate_missing = false;  // who is missing is told
+  if (peers && options.wait_s) scenario->lockstep.timeout_s = *options.wait_s;
   if (!guarded.started().ok()) return complain(kFailedRunning, guarded.started().error().message);
   const std::atomic<bool>& stop = catch_signals();
   std::signal(SIGPIPE, SIG_IGN);
@@ -146,33 +222,12 @@ int preflight(const PreflightOptions& options) {
   if (world == nullptr) return kBadInput;
   PreflightRows rows = rows_of_files(input_files(*scenario, loader));
 
-  mixed_reality::MonotonicTime clock;
-  mixed_reality::MixedOptions mixed;
-  mixed.ask_batteries = true;
-  mixed.before_commands = [&guarded] { guarded.update(); };
-  auto made = make_session(loader.catalog(), world, guarded, clock, std::move(mixed));
-  if (!made.ok()) return complain(kBadInput, made.error().message);
-  const auto session = std::move(made).value();
-  const hal::Status claimed = guarded.claim();
-  rows.push_back({"guardian", "robots", claimed.ok() ? Finding::Ok : Finding::Fail,
-                  claimed.ok() ? "nobody else drives them" : claimed.error().message,
-                  claimed.ok() ? "" : "end the other program"});
-  for (const std::string& outlook : mixed_reality::outlooks(*scenario, loader.catalog()))
-    rows.push_back({"trackers", "outlook", Finding::Ok, outlook, ""});
-  const auto append = [&rows](const PreflightRows& more) { rows.insert(rows.end(), more.begin(), more.end()); };
-  if (claimed.ok()) {
-    if (const hal::Status listened = listen(*session, options, stop); !listened.ok() && !stop.load())
-      rows.push_back({"trackers", "listen", Finding::Fail, listened.error().message, "see the tracker's address"});
-    append(mixed_reality::look_over(*session));
-    append(mixed_reality::look_over_machine(*scenario, session->woke_late()));
-    if (options.move && !stop.load() && worst_of(rows) == Finding::Fail)
-      rows.push_back({"motion", "test", Finding::Warn, "not tried, as something is in the way", "mend that first"});
-    else if (options.move && !stop.load())
-      append(move_all(*session, options, stop));
-    session->stop_robots();
-    session->shut_down();
+  if (peers) {
+    const PreflightRows more = look_over_peers(*world, loader, stop);
+    rows.insert(rows.end(), more.begin(), more.end());
+  } else if (const int code = look_over_robots(options, *scenario, loader, world, guarded, stop, rows); code != kDone) {
+    return code;
   }
-  (void)guarded.release_rested();
   if (stop.load()) return interrupted_code();
 
   const hal::Json json = {{"experiment", scenario->file},

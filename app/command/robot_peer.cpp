@@ -11,6 +11,7 @@
 #include "app/process/terminal.hpp"
 #include "app/process/watchdog.hpp"
 #include "app/robots/bridged_controller.hpp"
+#include "app/robots/controller_copy.hpp"
 #include "app/robots/file_controller.hpp"
 #include "app/robots/listed_robot.hpp"
 #include "app/robots/robot_end.hpp"
@@ -32,12 +33,17 @@ class FilesController final : public peer::PeerController {
  public:
   FilesController(const peer::RobotMessage& robot, const hal::RobotKind& kind,
                   const std::vector<const hal::PortType*>& types, const FileController& file,
-                  const hal::Catalog& catalog, const hal::Log& log)
+                  const hal::PluginLoader& loader, const hal::Log& log)
       : robot_(robot, kind, types),
-        listed_(robot_, *file.config, catalog),
+        listed_(robot_, *file.config, loader.catalog()),
         params_(file.params),
-        controller_(*file.type, listed_, params_.get(), robot.ticks_per_second, log, file.who) {}
+        controller_(*file.type, listed_, params_.get(), robot.ticks_per_second, log, file.who) {
+    hal::SourceFilesTaker scripts;
+    controller_.controls(scripts);
+    copy_ = controller_copy(loader, *file.config, *file.type, scripts.files().value_or(std::vector<hal::SourceFile>()));
+  }
   peer::PeerRobot& robot() noexcept override { return robot_; }
+  std::optional<peer::ControllerCopy> copy() const override { return copy_; }
   bool step(hal::Tick tick, std::string& why) override { return controller_.step(why, tick); }
 
  private:
@@ -45,6 +51,7 @@ class FilesController final : public peer::PeerController {
   ListedRobot listed_;
   std::shared_ptr<const void> params_;
   BridgedController controller_;
+  peer::ControllerCopy copy_;
 };
 
 bool is_one_of(const core::RobotItem& item, const std::string& name) {
@@ -90,7 +97,7 @@ hal::Result<std::unique_ptr<peer::PeerController>> make_controller(const core::S
   if (!read.ok()) return read.error();
   try {
     return std::unique_ptr<peer::PeerController>(
-        std::make_unique<FilesController>(robot, *kind, catalog.all<hal::PortType>(), read.value(), catalog, log));
+        std::make_unique<FilesController>(robot, *kind, catalog.all<hal::PortType>(), read.value(), loader, log));
   } catch (const std::exception& e) {
     return hal::Error{read.value().who + " " + e.what()};
   }

@@ -427,7 +427,7 @@ int run(const RunOptions& options) {
       return complain(kFailedRunning, written.error().message);
   }
 
-  const auto lockstep = join_peers(*world, loader.catalog(), stop, world_options.log, code);
+  const auto lockstep = join_peers(*world, loader, stop, world_options.log, code);
   if (code != kDone) return stop.load() ? interrupted_code() : code;
 
   RunResult result{*world, inputs, {}, world->space().robot_count(), {}, nullptr};

@@ -42,6 +42,10 @@ class BridgedController final : hal::RobotLog::Sink {
   BridgedController(const BridgedController&) = delete;
   BridgedController& operator=(const BridgedController&) = delete;
 
+  /// Shows what people may change. @throws whatever the controller throws
+  void controls(hal::Controls& controls) {
+    if (type_.controls != nullptr) type_.controls(memory_, controls);
+  }
   /// False when it threw; `why` then says what.
   bool step(std::string& why, hal::Tick tick = 0) {
     tick_ = tick;

@@ -4,16 +4,26 @@
 #include <memory>
 
 #include "core/sim/world.hpp"
-#include "hal/catalog.hpp"
 #include "hal/json/json.hpp"
 #include "hal/log.hpp"
+#include "hal/plugin_loader.hpp"
 #include "mixed_reality/lockstep/lockstep.hpp"
 
 namespace tandem::app {
 
-/// Where a world's peers take part, all of them there; null when it has none, or nobody waits for them. `code` is not
-/// kDone when they cannot, which was told. The world and the catalog must outlive the result.
-std::unique_ptr<mixed_reality::LockstepRun> join_peers(core::World& world, const hal::Catalog& catalog,
+/// Robots of the file whose controllers step elsewhere.
+bool has_peers(const core::Scenario& scenario) noexcept;
+
+/// Where a world's peers take part, not waited for yet. Errors: as LockstepRun::make. The world, the loader and `stop`
+/// must outlive the result.
+hal::Result<std::unique_ptr<mixed_reality::LockstepRun>> make_lockstep(core::World& world,
+                                                                       const hal::PluginLoader& loader,
+                                                                       const std::atomic<bool>& stop,
+                                                                       const hal::Log& log);
+
+/// The same, with all of them there; null when the world has none, or nobody waits for them. `code` is not kDone when
+/// they cannot, which was told.
+std::unique_ptr<mixed_reality::LockstepRun> join_peers(core::World& world, const hal::PluginLoader& loader,
                                                        const std::atomic<bool>& stop, const hal::Log& log, int& code);
 
 hal::Json lockstep_json(const mixed_reality::LockstepReport& report);

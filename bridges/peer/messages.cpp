@@ -126,6 +126,7 @@ hal::Result<RobotMessage> read_robot(std::span<const std::uint8_t> payload) {
 std::vector<std::uint8_t> bytes_of(const Ready& m) {
   Json json = {{"session", m.session}, {"takes", Json::array()}, {"publishes", to_json(m.publishes)}};
   for (const PortName& port : m.takes) json["takes"].push_back(to_json(port));
+  if (m.controller) json["controller"] = to_json(*m.controller);
   return bytes_of(json);
 }
 
@@ -135,6 +136,8 @@ hal::Result<Ready> read_ready(std::span<const std::uint8_t> payload) {
     m.session = json.at("session").get<std::string>();
     for (const Json& port : json.at("takes")) m.takes.push_back(port_from(port));
     m.publishes = publishes_from(json);
+    if (const auto controller = json.find("controller"); controller != json.end())
+      m.controller = controller_copy_from(*controller);
     return m;
   });
 }

@@ -1,11 +1,13 @@
 // Messages of the lock-step protocol that agree on who steps what; those of every tick are in the two sides.
 #pragma once
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "bridges/peer/controller_copy.hpp"
 #include "bridges/peer/row_form.hpp"
 #include "hal/json/json.hpp"
 #include "hal/port.hpp"
@@ -66,6 +68,7 @@ struct Ready {
   std::string session;
   std::vector<PortName> takes;
   std::vector<PublishedForm> publishes;
+  std::optional<ControllerCopy> controller = {};  ///< nothing: the peer does not tell which one it runs
 };
 
 /// Of both sides: why nothing more will come.

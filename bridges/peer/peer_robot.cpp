@@ -34,7 +34,7 @@ void PeerRobot::show(hal::PublishedField field, const void* member) {
 }
 
 Ready PeerRobot::ready() const {
-  Ready ready{robot_.session, {}, {}};
+  Ready ready{robot_.session, {}, {}, {}};
   for (const Taken& t : taken_) ready.takes.push_back(t.name);
   for (const Shown& s : shown_) ready.publishes.push_back(s.form);
   return ready;

@@ -58,9 +58,10 @@ void PeerSide::take_robot(std::span<const std::uint8_t> payload, ByteLink& link)
   } else if (robot.value().version != kVersion) {
     why = "the hub speaks version " + std::to_string(robot.value().version) + " of the protocol, this program " +
           std::to_string(kVersion);
-  } else if (controller_ != nullptr && robot.value().session != told_->session) {
+  } else if (controller_ != nullptr && robot.value().session != told_->session && answered_ >= 0) {
     why = "the hub began another run; this controller is in the middle of one";
-  } else if (controller_ == nullptr) {
+  } else if (controller_ == nullptr || robot.value().session != told_->session) {
+    controller_.reset();  // one that has not stepped may begin in any run
     auto made = make_(robot.value());
     if (made.ok()) {
       told_ = robot.value();
@@ -74,7 +75,9 @@ void PeerSide::take_robot(std::span<const std::uint8_t> payload, ByteLink& link)
     return leave(link, why);
   }
   greeted_ = true;
-  send(link, MessageType::Ready, bytes_of(controller_->robot().ready()));
+  Ready ready = controller_->robot().ready();
+  ready.controller = controller_->copy();
+  send(link, MessageType::Ready, bytes_of(ready));
 }
 
 void PeerSide::take_tick(std::span<const std::uint8_t> payload, ByteLink& link) {

@@ -19,6 +19,8 @@ class PeerController {
  public:
   virtual ~PeerController() = default;
   virtual PeerRobot& robot() noexcept = 0;
+  /// What the hub is told of it, which compares it with its own; nothing: it is not told.
+  virtual std::optional<ControllerCopy> copy() const { return {}; }
   /// False when it threw; `why` then says what.
   virtual bool step(hal::Tick tick, std::string& why) = 0;
 };

@@ -200,7 +200,7 @@ void read_framework(Reading& reading, Element& e) {
     out.time_mode = mode == "realtime" ? TimeMode::Realtime : mode == "lockstep" ? TimeMode::Lockstep : TimeMode::Fast;
     const auto peers = [&](Element& p) {
       const auto read = reading.read<schema::Peers>(p);
-      out.lockstep = {read.listen, read.timeout_s, read.missing == "simulate", p.line};
+      out.lockstep = {read.listen, read.timeout_s, read.missing == "simulate", read.controllers == "any", p.line};
     };
     if (out.time_mode == TimeMode::Lockstep)
       reading.once_or_default(c, "peers", peers);

@@ -177,15 +177,19 @@ struct Time {
 
 struct Peers {
   static constexpr ElementInfo kElement{"peers", "How a run in lock-step waits for the robots that have a <peer>."};
-  std::string listen = "127.0.0.1:7654", missing = "fail";
+  std::string listen = "127.0.0.1:7654", missing = "fail", controllers = "same";
   double timeout_s = 30.0;
   void describe(ParamVisitor& v) {
     static constexpr std::array<std::string_view, 2> kMissing = {"fail", "simulate"};
+    static constexpr std::array<std::string_view, 2> kControllers = {"same", "any"};
     v.text("listen", listen,
            "Where peers connect: PORT, of this computer alone, or ADDRESS:PORT (0.0.0.0: of all its networks).");
     v.number("timeout", timeout_s, unit::s, {0.1, 86400.0}, "How long a peer's answer is waited for.");
     v.choice("missing", missing, kMissing,
              "When it does not come: end the run, or step the robot's controller here from then on.");
+    v.choice("controllers", controllers, kControllers,
+             "same: a peer whose controller is known to be another than this computer's copy is refused; any: it is "
+             "taken, and the difference told.");
   }
 };
 

@@ -16,17 +16,16 @@ namespace {
 
 using hal::Json;
 
-/// Takes the files of a controller, or gives it others.
-class Files final : public hal::Controls {
+/// Takes the files of a controller, and gives it others.
+class Files final : public hal::SourceFilesTaker {
  public:
-  explicit Files(const std::map<std::string, std::string>* others = nullptr) : others_(others) {}
+  explicit Files(const std::map<std::string, std::string>& others) : others_(others) {}
 
-  bool text(std::string_view name, std::string& value, std::string_view) override {
-    if (name != hal::kSourceFilesControl) return false;
-    files_ = hal::unpacked(value);
-    if (others_ == nullptr || files_->empty()) return false;
-    std::vector<hal::SourceFile> wanted = *files_;
-    for (const auto& other : *others_) {
+  bool text(std::string_view name, std::string& value, std::string_view help) override {
+    (void)SourceFilesTaker::text(name, value, help);
+    if (name != hal::kSourceFilesControl || files()->empty()) return false;
+    std::vector<hal::SourceFile> wanted = *files();
+    for (const auto& other : others_) {
       const auto same = [&](const hal::SourceFile& file) { return file.name == other.first; };
       const auto found = std::find_if(wanted.begin(), wanted.end(), same);
       if (found == wanted.end())
@@ -40,21 +39,10 @@ class Files final : public hal::Controls {
     asked_ = true;
     return true;
   }
-  bool number(std::string_view, double&, const hal::Unit&, hal::Range, std::string_view) override { return false; }
-  bool integer(std::string_view, std::int64_t&, hal::Range, std::string_view) override { return false; }
-  bool flag(std::string_view, bool&, std::string_view) override { return false; }
-  bool choice(std::string_view, std::string&, std::span<const std::string_view>, std::string_view) override {
-    return false;
-  }
-  bool button(std::string_view, std::string_view) override { return false; }
-
-  /// None: the controller runs no files.
-  const std::optional<std::vector<hal::SourceFile>>& files() const noexcept { return files_; }
   bool asked() const noexcept { return asked_; }
 
  private:
-  const std::map<std::string, std::string>* others_;
-  std::optional<std::vector<hal::SourceFile>> files_;
+  const std::map<std::string, std::string>& others_;
   bool asked_ = false;
 };
 
@@ -82,24 +70,24 @@ hal::Status check_text(const std::string& name, const Json& text) {
   }
 }
 
-std::vector<hal::SourceFile> files_of(World& world, RobotId robot) {
-  Files files;
+}  // namespace
+
+std::vector<hal::SourceFile> source_files(World& world, RobotId robot) {
+  hal::SourceFilesTaker files;
   (void)world.visit_controls(robot, files);
   return files.files().value_or(std::vector<hal::SourceFile>());
 }
-
-}  // namespace
 
 Json source_files(World& world) {
   Json all = Json::object();
   const auto& configs = world.scenario().controllers;
   for (std::size_t c = 0; c < configs.size(); ++c) {
     const std::vector<RobotId> robots = in_order(world, c);
-    if (robots.empty() || files_of(world, robots.front()).empty()) continue;
+    if (robots.empty() || source_files(world, robots.front()).empty()) continue;
     Json& list = all[configs[c].id] = Json::array();
     std::map<std::string, std::string> known;
     for (const RobotId robot : robots) {  // each may have a script of its own
-      for (hal::SourceFile& file : files_of(world, robot)) {
+      for (hal::SourceFile& file : source_files(world, robot)) {
         if (known.emplace(file.name, file.path).second)
           list.push_back({{"name", file.name}, {"path", file.path}, {"text", std::move(file.text)}});
       }
@@ -134,7 +122,7 @@ hal::Result<Json> reload(World& world, Json& command) {
   bool any_files = false;
   std::string first_error;
   for (const RobotId robot : robots) {
-    Files change(&texts);
+    Files change(texts);
     const hal::Status done = world.visit_controls(robot, change);
     any_files = any_files || change.files();
     if (!change.asked() && done.ok()) continue;
@@ -149,7 +137,7 @@ hal::Result<Json> reload(World& world, Json& command) {
   }
   if (!any_files) return hal::Error{"the controller '" + id + "' runs no files that could be read anew"};
   for (const RobotId robot : robots) {
-    for (hal::SourceFile& file : files_of(world, robot)) {
+    for (hal::SourceFile& file : source_files(world, robot)) {
       if (const hal::Status good = check_text(file.name, Json(file.text)); good.ok())
         (*files)[file.name] = std::move(file.text);
     }

@@ -6,8 +6,12 @@
 #include "core/sim/world.hpp"
 #include "hal/json/json.hpp"
 #include "hal/result.hpp"
+#include "hal/source_files.hpp"
 
 namespace tandem::core {
+
+/// Those that a robot's controller runs now; empty: none.
+std::vector<hal::SourceFile> source_files(World& world, RobotId robot);
 
 /// {"<id of a configuration>": [{"name", "path", "text"}, …]}, of configurations whose robots run files now.
 hal::Json source_files(World& world);

@@ -113,6 +113,7 @@ struct LockstepConfig {
   std::string listen = "127.0.0.1:7654";  ///< where peers connect: PORT or ADDRESS:PORT
   double timeout_s = 30.0;                ///< of wall time, for an answer
   bool simulate_missing = false;          ///< then its controller steps in the hub; else the run ends
+  bool any_controller = false;            ///< a peer may run another controller than the hub's copy; else it is refused
   int line = 0;
 };
 

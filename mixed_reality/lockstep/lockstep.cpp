@@ -96,6 +96,7 @@ hal::Status LockstepRun::add(const core::RobotItem& item, core::RobotId robot, c
       open = std::move(opener).value();
     }
     auto remote = std::make_unique<RemotePeer>(world_, robot, session, std::move(open), options_.log);
+    if (options_.copy_of) remote->compare_with(options_.copy_of(world_, robot));
     row.remote = remote.get();
     row.partner = std::move(remote);
   }
@@ -317,6 +318,7 @@ LockstepReport LockstepRun::report() const {
   LockstepReport report{{}, strangers_, waits_, waited_ns_};
   for (const Row& row : rows_) {
     report.peers.push_back(row.partner->report());
+    report.peers.back().ready = row.partner->ready() && !row.simulated && !row.gone;
     if (row.simulated) report.peers.back().state = "simulated";
     if (row.gone) report.peers.back().state = "removed";
   }

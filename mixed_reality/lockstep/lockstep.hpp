@@ -29,6 +29,8 @@ struct LockstepOptions {
   /// Makes the partner behind `<peer link="emulated:…">`; empty: there are none here.
   std::function<hal::Result<std::unique_ptr<Partner>>(core::World&, core::RobotId, const std::string& what)>
       make_emulated = {};
+  /// The hub's copy of a robot's controller, to compare the peer's with; empty: nobody compares.
+  std::function<std::optional<bridges::peer::ControllerCopy>(core::World&, core::RobotId)> copy_of = {};
 };
 
 struct LockstepReport {
@@ -56,6 +58,8 @@ class LockstepRun final : public core::ExternalRobots {
   hal::Status connect();
   /// Tells the peers that the run is over.
   void finish(bool failed, const std::string& why);
+  /// Before a first tick: leaves without a word, so that the peers look for the next run.
+  void let_go() noexcept { over_ = true; }
   LockstepReport report() const;
 
   void latch(core::World& world) override;

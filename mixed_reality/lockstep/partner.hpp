@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "bridges/peer/controller_copy.hpp"
 #include "core/sim/world.hpp"
 #include "hal/time.hpp"
 
@@ -14,6 +15,7 @@ struct PartnerReport {
   std::string robot;
   std::string link;                  ///< as it is or was open
   std::string state;                 ///< "in step", "waiting", "simulated", …
+  bool ready = false;                ///< it may be asked for the next tick
   std::uint64_t ticks = 0;           ///< that it answered
   std::uint64_t doubled = 0;         ///< answers that came once more
   std::uint64_t wrong_tick = 0;      ///< answers to ticks that it was not asked for
@@ -23,6 +25,8 @@ struct PartnerReport {
   std::uint64_t links = 0;           ///< times that a link was open
   std::uint64_t bytes_in = 0, bytes_out = 0;
   hal::TimeNs longest_wait_ns = 0;  ///< of wall time, for one answer
+  /// Its controller and the hub's copy; nothing: it has not said, or nobody compares.
+  std::optional<bridges::peer::CopyComparison> controller = {};
 };
 
 /// All calls come from the thread that steps. Ticks: `ask`, then `pump` until `answered`, then `write_commands`.

@@ -26,7 +26,7 @@ std::string list_of(const std::vector<peer::PortName>& ports) {
 
 RemotePeer::RemotePeer(core::World& world, core::RobotId robot, std::string session, bridges::LinkOpener open,
                        const hal::Log& log)
-    : robot_(robot), open_(std::move(open)), log_(log) {
+    : robot_(robot), open_(std::move(open)), log_(log), any_controller_(world.scenario().lockstep.any_controller) {
   core::Space& space = world.space();
   const core::SpaceStores& stores = space.stores();
   const core::RobotGroup& group = stores.groups[stores.blocks[stores.robots[robot.index].block].group];
@@ -83,7 +83,8 @@ hal::Status RemotePeer::judge(const peer::Hello& hello) const {
   if (!hello.robot.empty() && hello.robot != told_.robot)
     return hal::Error{"the peer is for robot '" + hello.robot + "', and this link is that of " + who};
   const bool same = hello.session == told_.session;
-  if (!hello.session.empty() && !same) return hal::Error{who + ": the peer is in the middle of another run"};
+  if (!hello.session.empty() && !same && hello.answered >= 0)
+    return hal::Error{who + ": the peer is in the middle of another run"};
   if (!begun_) return {};
   if (!same)
     return hal::Error{who + " is at tick " + std::to_string(asked_) +
@@ -167,6 +168,17 @@ hal::Status RemotePeer::agree(const peer::Ready& ready) {
                         "', which the robot's controller in the hub does not; name the same controller in both files"};
     shows_.push_back(static_cast<std::size_t>(known - told_.publishes.begin()));
   }
+  return agree_on_controller(ready);
+}
+
+hal::Status RemotePeer::agree_on_controller(const peer::Ready& ready) {
+  if (!hubs_copy_) return {};
+  const peer::CopyComparison& compared = counts_.controller.emplace(peer::compare(*hubs_copy_, ready.controller));
+  if (compared.differs.empty()) return {};
+  if (!any_controller_)
+    return hal::Error{"another controller: " + compared.differs +
+                      "; bring both to one version, or accept that with <peers controllers=\"any\">"};
+  log_.warning("peer of robot '" + told_.robot + "' runs another controller: " + compared.differs);
   return {};
 }
 

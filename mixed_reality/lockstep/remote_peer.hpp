@@ -2,6 +2,7 @@
 #pragma once
 #include <functional>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "bridges/link/link.hpp"
@@ -22,6 +23,8 @@ class RemotePeer final : public Partner {
   RemotePeer(core::World& world, core::RobotId robot, std::string session, bridges::LinkOpener open,
              const hal::Log& log);
 
+  /// The peer's controller is compared with this copy, the hub's own; nothing: it is not.
+  void compare_with(std::optional<bridges::peer::ControllerCopy> hubs) { hubs_copy_ = std::move(hubs); }
   /// Whether somebody who says so can be this robot's peer. Error: why not.
   hal::Status judge(const bridges::peer::Hello& hello) const;
   /// A peer that has said Hello for this robot, and was found good.
@@ -61,6 +64,7 @@ class RemotePeer final : public Partner {
   void take_ready(std::span<const std::uint8_t> payload);
   void take_commands(std::span<const std::uint8_t> payload);
   hal::Status agree(const bridges::peer::Ready& ready);
+  hal::Status agree_on_controller(const bridges::peer::Ready& ready);
   void refuse(const std::string& why);
   void send(bridges::peer::MessageType type, std::span<const std::uint8_t> payload);
   void say_robot(hal::TimeNs now);
@@ -69,6 +73,8 @@ class RemotePeer final : public Partner {
   bridges::peer::RobotMessage told_;
   bridges::LinkOpener open_;
   hal::Log log_;
+  bool any_controller_;
+  std::optional<bridges::peer::ControllerCopy> hubs_copy_;
   std::vector<Port> ports_;
   std::vector<hal::PublishedField> shown_;  // of the robot's controller in the hub, in the order of `told_`
   std::byte* controller_;                   // there

@@ -1,6 +1,8 @@
 // Runs in lock-step as a user starts them: a hub, and peers in processes of their own.
 #include <fstream>
 #include <gmock/gmock.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
 
 #include "tests/checkout.hpp"
 #include "tests/scenarios/process.hpp"
@@ -132,6 +134,58 @@ TEST(LockstepRun, TakesAPeerThatWasWrittenFromTheDocumentAlone) {
   EXPECT_EQ(std::string(line.data()), "200 the run is over\n");
   EXPECT_EQ(pclose(first), 0);
   EXPECT_EQ(pclose(second), 0);
+}
+
+TEST(LockstepRun, PreflightNamesThePeerWhoseScriptIsAnother) {
+  const Folder folder, board;
+  std::string text = experiment(2, 2.0);
+  const std::size_t begin = text.find("<epuck_diffusion"), end = text.find("</controllers>");
+  text.replace(begin, end - begin,
+               R"(<lua_controller id="diffusion"><actuators><differential_steering/></actuators>
+      <sensors><proximity/></sensors><params script="drive.lua"/></lua_controller>)");
+  const std::string script = "function init() end\nfunction step() robot.wheels.set_velocity(5, 5) end\n";
+  folder.write("drive.lua", script);
+  board.write("drive.lua", script + "-- of yesterday\n");
+  const auto with_port = [&text](const std::string& port) {
+    std::string other = text;
+    return other.replace(other.find("127.0.0.1:0"), 11, "127.0.0.1:" + port);
+  };
+  // A port that is free, which the run is to have after the preflight.
+  const int found = socket(AF_INET, SOCK_STREAM, 0);
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  socklen_t size = sizeof address;
+  ASSERT_EQ(bind(found, reinterpret_cast<const sockaddr*>(&address), size), 0);
+  ASSERT_EQ(getsockname(found, reinterpret_cast<sockaddr*>(&address), &size), 0);
+  const std::string port = std::to_string(ntohs(address.sin_port));
+  close(found);
+  folder.write("hub.xml", with_port(port));
+  board.write("hub.xml", with_port(port));
+  const std::string link = "peer:tcp:127.0.0.1:" + port;
+  Tandem same({"robot", "hub.xml", "--link", link, "--robot", "ep0"}, folder.path());
+  Tandem other({"robot", "hub.xml", "--link", link, "--robot", "ep1"}, board.path());
+
+  Tandem preflight({"preflight", "hub.xml", "--wait", "10"}, folder.path());
+  EXPECT_EQ(preflight.wait(60.0), 3) << preflight.errors();
+  const std::string table = preflight.output();
+  EXPECT_THAT(table, testing::ContainsRegex("ok    peer ep0 +link"));
+  EXPECT_THAT(table,
+              testing::ContainsRegex("ok    peer ep0 +controller +the same here and there: drive.lua with sha256"));
+  EXPECT_THAT(table,
+              testing::ContainsRegex("fail  peer ep1 +controller +the peer runs the script drive.lua with sha256"));
+  EXPECT_EQ(other.wait(10.0), 3) << "the hub refused it";
+  EXPECT_THAT(other.errors(), HasSubstr("another controller: the peer runs the script drive.lua"));
+
+  // The one that was good waits for the run; the other is accepted when the file says so.
+  Tandem again({"robot", "hub.xml", "--link", link, "--robot", "ep1"}, board.path());
+  Tandem run({"run", "hub.xml", "--set", "framework.time.peers.controllers=any", "--report", "hub.json"},
+             folder.path());
+  EXPECT_EQ(run.wait(60.0), 0) << run.errors();
+  EXPECT_THAT(run.errors(), HasSubstr("peer of robot 'ep1' runs another controller"));
+  EXPECT_THAT(json_value(text_of(folder.path() / "hub.json"), "differs"), testing::Not(HasSubstr("ep0")));
+  EXPECT_EQ(same.wait(10.0), 0) << same.errors();
+  EXPECT_EQ(again.wait(10.0), 0) << again.errors();
 }
 
 TEST(LockstepRun, EndsOnCtrlCWhileItWaits) {

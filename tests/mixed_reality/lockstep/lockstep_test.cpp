@@ -75,7 +75,10 @@ class Peer {
           while (!side.ended() && !stop_) {
             if (link == nullptr) {
               auto opened = TcpLink::connect(at);
-              if (!opened.ok()) return;
+              if (!opened.ok()) {  // the hub is gone; another may come
+                std::this_thread::sleep_for(std::chrono::milliseconds(20));
+                continue;
+              }
               link = std::move(opened).value();
               side.link_opened();
             }
@@ -171,6 +174,7 @@ class LockstepOfTests : public testing::Test {
     ASSERT_TRUE(made_.world) << made_.all_problems();
     LockstepOptions options;
     options.stop = &stop_;
+    options.copy_of = copy_of_;
     options.log = hal::Log([this](hal::Severity, std::string_view text) { log_ += std::string(text) + "\n"; });
     auto run = LockstepRun::make(*made_.world, options);
     ASSERT_TRUE(run.ok()) << run.error().message;
@@ -183,6 +187,7 @@ class LockstepOfTests : public testing::Test {
   core::World& world() { return *made_.world; }
 
   core::MadeWorld made_;
+  std::function<std::optional<peer::ControllerCopy>(core::World&, core::RobotId)> copy_of_;
   std::atomic<bool> stop_{false};
   std::string log_;
   std::unique_ptr<LockstepRun> run_;
@@ -229,6 +234,78 @@ INSTANTIATE_TEST_SUITE_P(Lockstep, EqualToSimulation,
                          [](const auto& p) { return p.param.controller + std::to_string(p.param.peers); });
 
 class Lockstep : public LockstepOfTests {};
+
+/// A peer that says which controller it runs, or does not.
+void agree_as(ScriptedPeer& scripted, const std::optional<peer::ControllerCopy>& copy) {
+  const auto robot = peer::read_robot(*scripted.hear(peer::MessageType::Robot));
+  scripted.say(peer::MessageType::Ready, peer::bytes_of(peer::Ready{robot.value().session, {}, {}, copy}));
+}
+
+TEST_F(Lockstep, RefusesAPeerWithAnotherController) {
+  core::Scene scene = scene_of("shown", 1);
+  with_peers(scene).scenario.lockstep.timeout_s = 1.0;
+  peer::ControllerCopy hubs, peers;
+  hubs.label = peers.label = "shown";
+  hubs.library = {"libshown.so", "11"};
+  peers.library = {"libshown.so", "22"};
+  copy_of_ = [&](core::World&, core::RobotId) { return hubs; };
+  open(scene);
+  ScriptedPeer other(run_->address(), "ep0");
+  std::string said;
+  std::thread agree([&] {
+    agree_as(other, peers);
+    if (const auto end = other.hear(peer::MessageType::End)) said = peer::read_farewell(*end).value().text;
+  });
+  EXPECT_FALSE(run_->connect().ok());
+  agree.join();
+  EXPECT_THAT(said, HasSubstr("another controller: the peer runs libshown.so with sha256 22, the hub has"));
+  EXPECT_THAT(said, HasSubstr("<peers controllers=\"any\">"));
+  EXPECT_THAT(run_->report().peers[0].controller->differs, HasSubstr("sha256 22"));
+  EXPECT_FALSE(run_->report().peers[0].ready);
+}
+
+TEST_F(Lockstep, TakesAnotherControllerWhereTheFileSaysSoAndOneThatTellsNothing) {
+  core::Scene scene = scene_of("shown", 2);
+  with_peers(scene).scenario.lockstep.any_controller = true;
+  peer::ControllerCopy hubs, peers;
+  hubs.library = {"libshown.so", "11"};
+  peers.library = {"libshown.so", "22"};
+  copy_of_ = [&](core::World&, core::RobotId) { return hubs; };
+  open(scene);
+  ScriptedPeer other(run_->address(), "ep0"), silent(run_->address(), "ep1");
+  std::thread agree([&] {
+    agree_as(other, peers);
+    agree_as(silent, std::nullopt);
+  });
+  EXPECT_TRUE(run_->connect().ok());
+  agree.join();
+  EXPECT_THAT(log_, HasSubstr("peer of robot 'ep0' runs another controller: the peer runs libshown.so with sha256 22"));
+  const LockstepReport report = run_->report();
+  EXPECT_TRUE(report.peers[0].ready && report.peers[1].ready);
+  EXPECT_THAT(report.peers[1].controller->not_compared, HasSubstr("does not tell"));
+}
+
+TEST_F(Lockstep, LetsPeersThatHaveNotBegunGoToAnotherRun) {
+  core::Scene scene = scene_of("shown", 1);
+  const auto pure = core::make(scene);
+  with_peers(scene);
+  open(scene);
+  Peer& moved = join(scene);
+  ASSERT_TRUE(run_->connect().ok());
+  // The next hub listens where the first one did, as after `tandem preflight`.
+  scene.scenario.lockstep.listen = run_->address().substr(4);
+  run_->let_go();
+  run_.reset();
+  const core::MadeWorld before = std::move(made_);  // its libraries are the peer's, too
+  open(scene);
+  ASSERT_TRUE(run_->connect().ok());
+  core::run(*pure.world, 20);
+  core::run(world(), 20);
+  EXPECT_EQ(world().state_hash(), pure.world->state_hash()) << world().failure();
+  run_->finish(false, "done");
+  EXPECT_EQ(moved.ended(), "done");
+  EXPECT_EQ(moved.counts().ticks, 20);
+}
 
 TEST_F(Lockstep, GoesOnWhereALinkWasLost) {
   core::Scene scene = scene_of("shown", 2);
