@@ -339,8 +339,8 @@ void add_desk(CLI::App& app, PreflightOptions& p, DeskOptions& d, int& code) {
       ->required();
   k->add_option("command", d.command, "What to do")
       ->required()
-      ->check(CLI::IsMember(
-          {"status", "preflight", "start", "pause", "go", "estop", "arm", "rearm", "halt", "release", "replace"}));
+      ->check(CLI::IsMember({"status", "preflight", "start", "pause", "go", "estop", "arm", "rearm", "move", "halt",
+                             "release", "replace"}));
   k->add_option("robot", d.robot, "Which robot; default: all");
   auto* spare = k->add_option("--spare", d.spare, "Of replace: a <spare> of the file comes instead");
   k->add_option("--link", d.link, "Of replace: the robot on this link comes instead")->excludes(spare);

@@ -205,7 +205,7 @@ struct PreflightOptions {
 
 struct DeskOptions {
   std::string where;    ///< "http://…?token=…" of the window, or "lcm:URL#CHANNEL"
-  std::string command;  ///< status, preflight, start, pause, estop, arm, rearm, replace, halt, release
+  std::string command;  ///< status, preflight, start, pause, estop, arm, rearm, move, replace, halt, release
   std::string robot;
   std::string spare, link, as, seen_as;  ///< of replace
   std::vector<double> at;                ///< of replace: x, y, heading

@@ -17,7 +17,10 @@ namespace {
 
 using hal::Json;
 using namespace std::chrono_literals;
-constexpr auto kPatience = 10s;
+/// How long an answer may take; a first motion takes its time.
+std::chrono::seconds patience_for(const Json& command) {
+  return command["do"] == "first_motion" ? 30s : 10s;
+}
 constexpr std::string_view kLcm = "lcm:";
 
 hal::Result<Json> parsed(const std::string& text) {
@@ -32,7 +35,7 @@ hal::Result<Json> ask_window(const std::string& address, Json command) {
   window::Client client = std::move(joined).value();
   command["id"] = 1;
   if (const hal::Status sent = client.send(hal::to_text(command)); !sent.ok()) return sent.error();
-  const auto until = std::chrono::steady_clock::now() + kPatience;
+  const auto until = std::chrono::steady_clock::now() + patience_for(command);
   while (std::chrono::steady_clock::now() < until) {
     const auto received = client.receive(200ms);
     if (!received) continue;
@@ -41,7 +44,7 @@ hal::Result<Json> ask_window(const std::string& address, Json command) {
     auto message = parsed(received->bytes);
     if (message.ok() && message.value().value("type", "") == "answer") return message;
   }
-  return hal::Error{"the run did not answer within 10 s"};
+  return hal::Error{"the run did not answer within " + std::to_string(patience_for(command).count()) + " s"};
 }
 
 hal::Result<Json> ask_lcm(const std::string& where, const Json& command, const std::string& who) {
@@ -49,7 +52,7 @@ hal::Result<Json> ask_lcm(const std::string& where, const Json& command, const s
   const std::string url = where.substr(0, mark);
   const std::string channel = mark == std::string::npos ? "tandem/desk" : where.substr(mark + 1);
   const std::int64_t number = std::chrono::steady_clock::now().time_since_epoch().count();
-  auto answer = bridges::desk::ask(url, channel, {number, who, hal::to_text(command)}, kPatience);
+  auto answer = bridges::desk::ask(url, channel, {number, who, hal::to_text(command)}, patience_for(command));
   if (!answer.ok()) return answer.error();
   return parsed(answer.value());
 }
@@ -62,7 +65,9 @@ std::string own_name() {
 }
 
 Json command_of(const DeskOptions& o) {
-  Json command = {{"do", o.command == "start" || o.command == "go" ? "play" : o.command}};
+  Json command = {{"do", o.command == "start" || o.command == "go" ? "play"
+                         : o.command == "move"                     ? "first_motion"
+                                                                   : o.command}};
   if (!o.robot.empty()) command["robot"] = o.robot;
   if (!o.spare.empty()) command["spare"] = o.spare;
   if (!o.link.empty()) command["link"] = o.link;

@@ -453,7 +453,7 @@ int run(const RunOptions& options) {
     std::unique_ptr<RunView> view;
     std::optional<ScriptWatch> scripts;
     if (mixed != nullptr) {
-      desks.emplace(*live, *mixed);
+      desks.emplace(*live, *mixed, stop);
       desks->on_done([&](const hal::Json& action) {  // of real robots: nobody can do it again
         const hal::Json event = {{"kind", "action"}, {"action", action}, {"repeatable", false}};
         recording.event(world->tick(), event);

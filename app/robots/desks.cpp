@@ -53,6 +53,10 @@ Json json_of(const DeskWord& word, hal::TimeNs at_ns) {
           {"age_s", std::max(0.0, hal::to_seconds(at_ns - word.at_ns))}};
 }
 
+Json answer_of(const mixed_reality::PreflightRows& rows) {
+  return {{"preflight", to_json(rows)}, {"worst", mixed_reality::name_of(worst_of(rows))}};
+}
+
 }  // namespace
 
 Json to_json(const mixed_reality::PreflightRows& rows) {
@@ -67,14 +71,15 @@ Json to_json(const mixed_reality::PreflightRows& rows) {
   return all;
 }
 
-Desks::Desks(core::LiveRun& live, mixed_reality::MixedSession& session) : live_(live), session_(session) {
-  for (const char* name : {"arm", "rearm", "replace"})
+Desks::Desks(core::LiveRun& live, mixed_reality::MixedSession& session, const std::atomic<bool>& stop)
+    : live_(live), session_(session), stop_(stop) {
+  for (const char* name : {"arm", "rearm", "replace", "first_motion"})
     live.add_command(name, [this](const Json& command) { return carry_out(command); });
   live.add_command("preflight", [this](const Json&) -> hal::Result<Json> {
     auto rows = mixed_reality::look_over(session_);
     const auto machine = mixed_reality::look_over_machine(session_.world().scenario(), session_.woke_late());
     rows.insert(rows.end(), machine.begin(), machine.end());
-    return Json{{"preflight", to_json(rows)}, {"worst", mixed_reality::name_of(worst_of(rows))}};
+    return answer_of(rows);
   });
   live.add_command("note_estop", [this](const Json& command) -> hal::Result<Json> {
     if (note_) note_({{"do", "estop"}, {"who", text_or(command, "who", "")}});
@@ -118,7 +123,7 @@ void Desks::post(Json command, core::LiveReply reply, std::string_view from) {
     if (reply) reply({{"ok", true}});
     return live_.post({{"do", "note_estop"}, {"who", command["who"]}}, {});
   }
-  if (is_one_of(name, {"arm", "rearm", "replace"})) {
+  if (is_one_of(name, {"arm", "rearm", "replace", "first_motion"})) {
     command[kSaidAt] = now_ns();
   } else if (is_one_of(name, {"play", "pause", "halt", "release"})) {
     const auto admitted = desk_.admit(word_of(command), now_ns());
@@ -140,7 +145,15 @@ hal::Result<Json> Desks::carry_out(const Json& command) {
     return hal::Error{"\"robot\" is the id of a real robot, or \"*\" for all"};
   const auto admitted = desk_.admit(word_of(command), now_ns());
   if (!admitted.ok()) return admitted.error();
-  if (const hal::Status done = obey(command, text_or(command, "robot", "*")); !done.ok()) return done.error();
+  const std::string name = text_or(command, "do", ""), whom = text_or(command, "robot", "*");
+  Json motion;
+  if (name == "first_motion") {
+    auto moved = first_motion(whom);
+    if (!moved.ok()) return moved.error();
+    motion = std::move(moved).value();
+  } else if (const hal::Status done = obey(command, whom); !done.ok()) {
+    return done.error();
+  }
   if (note_) {
     Json action = command;
     action.erase(kSaidAt);
@@ -149,6 +162,7 @@ hal::Result<Json> Desks::carry_out(const Json& command) {
   }
   Json answer = real_message();
   answer.erase("type");  // the answer has one of its own
+  if (!motion.is_null()) answer.update(motion);
   if (!admitted.value().empty()) answer["note"] = admitted.value();
   return answer;
 }
@@ -158,6 +172,18 @@ hal::Status Desks::obey(const Json& command, const std::string& robot) {
   if (name == "arm") return session_.arm(robot);
   if (name == "rearm") return session_.rearm(robot);
   return replace(command, robot);
+}
+
+/// The verdict, as preflight has it.
+hal::Result<Json> Desks::first_motion(const std::string& robot) {
+  const auto all = session_.status();
+  const auto found = std::ranges::find(all, robot, &mixed_reality::RealRobotStatus::id);
+  if (found == all.end()) return hal::Error{"first motion is of one real robot at a time: name it"};
+  if (!session_.paused() || session_.world().tick() > 0)
+    return hal::Error{"the run has begun: first motion is tried before, while it is held (--hold)"};
+  if (session_.world().space().kind(found->robot).drive() == nullptr)
+    return hal::Error{"robot '" + robot + "' has no wheels to turn on"};
+  return answer_of(mixed_reality::try_motion(session_, robot, stop_));
 }
 
 hal::Status Desks::replace(const Json& command, const std::string& robot) {

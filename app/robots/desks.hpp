@@ -1,5 +1,6 @@
 // Commands of all desks to a run with real robots: the window's, the terminal's, those over LCM.
 #pragma once
+#include <atomic>
 #include <functional>
 #include <memory>
 #include <string>
@@ -21,8 +22,9 @@ hal::Json to_json(const mixed_reality::PreflightRows& rows);
 
 class Desks {
  public:
-  /// Adds arm, rearm, replace and preflight to the commands of `live`. Both must outlive this.
-  Desks(core::LiveRun& live, mixed_reality::MixedSession& session);
+  /// Adds arm, rearm, replace, preflight and first_motion to the commands of `live`. All must outlive this; `stop` ends
+  /// a first motion.
+  Desks(core::LiveRun& live, mixed_reality::MixedSession& session, const std::atomic<bool>& stop);
   ~Desks();
   Desks(const Desks&) = delete;
   Desks& operator=(const Desks&) = delete;
@@ -42,10 +44,12 @@ class Desks {
  private:
   hal::Result<hal::Json> carry_out(const hal::Json& command);
   hal::Status obey(const hal::Json& command, const std::string& robot);
+  hal::Result<hal::Json> first_motion(const std::string& robot);
   hal::Status replace(const hal::Json& command, const std::string& robot);
 
   core::LiveRun& live_;
   mixed_reality::MixedSession& session_;
+  const std::atomic<bool>& stop_;
   mixed_reality::Desk desk_;
   std::function<void(const hal::Json&)> note_;
   std::unique_ptr<bridges::desk::LcmDesk> lcm_;

@@ -22,7 +22,7 @@ bool turns_back(const DeskWord& word, const DeskWord& before) {
 }
 
 bool arms(const DeskWord& word) {
-  return word.command == "arm" || word.command == "rearm";
+  return word.command == "arm" || word.command == "rearm" || word.command == "first_motion";
 }
 
 std::string ago(hal::TimeNs span_ns) {

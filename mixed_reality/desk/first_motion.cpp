@@ -72,12 +72,20 @@ PreflightRows try_motion(MixedSession& session, const std::string& robot, const 
     if (*angle < kRight * kTurn_rad || *angle > 2.0 * kTurn_rad) missed += (missed.empty() ? "" : ", ") + source;
   }
   std::string others;
+  PreflightRows of_others;
   for (const auto& [id, headings] : after) {
     if (id == robot) continue;
+    std::string by;
     for (const auto& [source, heading] : headings) {
       const auto angle = turned(id, source);
-      if (angle && std::abs(*angle) > kSeen_rad) others += (others.empty() ? "" : ", ") + ("'" + id + "' by " + source);
+      if (!angle || std::abs(*angle) <= kSeen_rad) continue;
+      others += (others.empty() ? "" : ", ") + ("'" + id + "' by " + source);
+      by += (by.empty() ? "" : ", ") + degrees(*angle) + " by " + source;
     }
+    if (!by.empty())
+      of_others.push_back({"robot " + id, "motion", Finding::Fail,
+                           "turned " + by + ", while '" + robot + "' was told to",
+                           "keep away from both until that is mended"});
   }
   if (found.empty()) {
     add(Finding::Warn, "nobody can see whether it turned", "look for yourself: it was told to turn left and back");
@@ -90,6 +98,7 @@ PreflightRows try_motion(MixedSession& session, const std::string& robot, const 
   } else {
     add(Finding::Ok, found);
   }
+  rows.insert(rows.end(), of_others.begin(), of_others.end());
   return rows;
 }
 

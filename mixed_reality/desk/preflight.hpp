@@ -33,7 +33,8 @@ PreflightRows look_over(const MixedSession& session);
 PreflightRows look_over_machine(const core::Scenario& scenario, const hal::DurationHistogram& late);
 
 /// First motion: the robot turns to the left and back by about 30 degrees, and its wheels and trackers are to have seen
-/// that, of this robot and no other. Robots that cannot turn on the spot are left out with a warning.
+/// that, of this robot and no other. Its row comes first, then one for each other robot that turned. Before a run, or
+/// while one is held.
 PreflightRows try_motion(MixedSession& session, const std::string& robot, const std::atomic<bool>& stop);
 
 }  // namespace tandem::mixed_reality

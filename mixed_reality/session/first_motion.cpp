@@ -7,8 +7,9 @@
 namespace tandem::mixed_reality {
 namespace {
 
-constexpr double kWheel_m_s = 0.03;     // slow enough for anybody who stands beside it
-constexpr double kGetUnderWay_s = 2.0;  // to settle, as the safety table asks
+constexpr double kWheel_m_s = 0.03;                        // slow enough for anybody who stands beside it
+constexpr double kGetUnderWay_s = 2.0;                     // to settle, as the safety table asks
+constexpr hal::TimeNs kLookEvery_ns = 10 * hal::kNsPerMs;  // for an emergency stop
 
 }  // namespace
 
@@ -16,6 +17,8 @@ hal::Status MixedSession::turn(std::string_view robot, double turn_rad, const st
   const auto chosen = real_robots(robot);
   if (!chosen.ok()) return chosen.error();
   if (robot == "*") return hal::Error{"one robot at a time is turned: name it"};
+  if (phase_ != RunPhase::Waiting)
+    return hal::Error{"the run has begun: first motion is tried before, while it is held (--hold)"};
   Twin& turned = *twins_[chosen.value().front()];
   const hal::DifferentialDrive* const drive = world_->space().kind(turned.robot()).drive();
   if (drive == nullptr) return hal::Error{"robot '" + turned.id() + "' has no wheels"};
@@ -50,7 +53,11 @@ hal::Status MixedSession::turn(std::string_view robot, double turn_rad, const st
                           (trouble.empty() ? "" : " (" + trouble + ")")};
     }
     if (!result.ok()) break;
-    time_.sleep_until(now_.monotonic_ns + tick_ns, stop);
+    const hal::TimeNs next_ns = now_.monotonic_ns + tick_ns;
+    while (time_.now_ns() < next_ns && !stop.load(std::memory_order_relaxed)) {
+      time_.sleep_until(std::min(next_ns, time_.now_ns() + kLookEvery_ns), stop);
+      obey_emergency_stop();
+    }
   }
   turned.steer(std::nullopt);
   now_ = {time_.now_ns() - began_ns, time_.now_ns()};

@@ -89,9 +89,9 @@ class MixedSession final : private core::ExternalRobots {
   const hal::DurationHistogram& woke_late() const noexcept { return woke_late_; }
   /// Whether all real robots answer.
   bool all_answer() const noexcept;
-  /// First motion, instead of a run: the robot turns on the spot by about `turn_rad` (positive: left), as far as the
-  /// safety table lets it, while the others stand. Errors: no real robot has this name; it has no wheels; it may not
-  /// drive, and why; `stop`.
+  /// First motion, instead of a run, or before one that is held: the robot turns on the spot by about `turn_rad`
+  /// (positive: left), as far as the safety table lets it, while the others stand. Errors: no real robot has this name;
+  /// it has no wheels; it may not drive, and why; the run has begun; `stop`.
   hal::Status turn(std::string_view robot, double turn_rad, const std::atomic<bool>& stop);
 
   /// Steps the world in real time until `ticks` are done (0: no end of its own), the world is done, or `stop` becomes

@@ -75,12 +75,24 @@ TEST(Desk, StartsPausesAndReplacesARobotFromATerminal) {
   EXPECT_NE(desk({"status"}).find("waiting for the start"), std::string::npos);
   EXPECT_EQ(desk({"preflight"}).substr(0, 1), "0");
   EXPECT_FALSE(epuck.has_moved());
+  EXPECT_NE(desk({"move"}).find("name it"), std::string::npos);
+  EXPECT_NE(desk({"move", "nobody"}).find("name it"), std::string::npos);
+  EXPECT_FALSE(epuck.has_moved());
+  // On a busy machine the robot may answer too late to be moved; a person tries again then.
+  std::string told;
+  const auto turned = [&] { return (told = desk({"move", "ep0"})).find("ok    robot ep0") != std::string::npos; };
+  EXPECT_TRUE(turned() || turned() || turned()) << told;
+  EXPECT_NE(told.find("by its wheels"), std::string::npos) << told;
+  EXPECT_TRUE(epuck.has_moved());
+  EXPECT_FALSE(epuck.moves());
+  for (const auto& wheels : epuck.wheels()) EXPECT_EQ(wheels.left, -wheels.right) << "it turns on the spot";
   EXPECT_EQ(desk({"start"}).substr(0, 1), "0");
   ASSERT_TRUE(eventually([&] { return epuck.moves(); }, kPatience_s)) << run.errors();
 
   EXPECT_EQ(desk({"pause"}).substr(0, 1), "0");
   EXPECT_TRUE(stands_at_once(epuck));
   EXPECT_NE(desk({"status"}).find("paused"), std::string::npos);
+  EXPECT_NE(desk({"move", "ep0"}).find("the run has begun"), std::string::npos);
   EXPECT_EQ(desk({"go"}).substr(0, 1), "0");
   ASSERT_TRUE(eventually([&] { return epuck.moves(); }, kPatience_s));
 

@@ -7,6 +7,7 @@ export class Real {
     Object.assign(this, { view, world, connection, selection });
     this.states = new Map();  // by id
     this.areas = [];          // fences, keep-outs, zones
+    this.motions = new Map();  // verdicts of first motions, by id; null while one goes on
     this.stop = h('button', { class: 'estop', title: 'Stops all real robots (e)', onclick: () => this.emergencyStop() }, 'EMERGENCY STOP');
     this.stop.hidden = true;
     alarm.append(this.stop);
@@ -52,11 +53,16 @@ export class Real {
     this.stop.classList.toggle('on', message.estop === true);
     this.stop.textContent = message.estop ? 'STOPPED' : 'EMERGENCY STOP';
     this.states = new Map(message.robots.map((robot) => [robot.id, robot]));
+    this.held = message.paused === true && this.world.state.tick === 0;
+    this.showCards();
     this.areas = message.areas ?? [];
-    const focused = document.activeElement?.dataset?.key;
-    this.list.replaceChildren(...message.robots.map((robot) => this.card(robot)));
-    if (focused) this.list.querySelector(`[data-key="${CSS.escape(focused)}"]`)?.focus();
     this.view.invalidate();
+  }
+
+  showCards() {
+    const focused = document.activeElement?.dataset?.key;
+    this.list.replaceChildren(...[...this.states.values()].map((robot) => this.card(robot)));
+    if (focused) this.list.querySelector(`[data-key="${CSS.escape(focused)}"]`)?.focus();
   }
 
   card(robot) {
@@ -73,7 +79,9 @@ export class Real {
         h('span', { class: `badge ${robot.driving ? 'good' : 'bad'}` }, robot.driving ? 'driving' : robot.state), h('span', { class: 'spacer' }),
         robot.armed ? null : h('button', { 'data-key': `${robot.id} arm`, onclick: () => this.command({ do: 'arm', robot: robot.id }) }, 'Arm'),
         robot.awaits_rearm === false ? null : h('button', { 'data-key': `${robot.id} rearm`, onclick: () => this.command({ do: 'rearm', robot: robot.id }) }, 'Re-arm'),
+        this.held ? h('button', { class: 'quiet', 'data-key': `${robot.id} move`, title: 'First motion: it turns a little', disabled: [...this.motions.values()].includes(null), onclick: () => this.openMove(robot.id) }, 'Move…') : null,
         robot.coming ? h('span', { class: 'minor' }, `'${robot.coming}' comes`) : h('button', { class: 'quiet', 'data-key': `${robot.id} replace`, title: 'Another robot takes its place', onclick: () => this.openReplace(robot.id) }, 'Replace…')),
+      this.motionText(robot.id),
       h('table', {}, facts.map(([name, value]) => h('tr', {}, h('th', { scope: 'row' }, name), h('td', {}, value))), sources));
   }
 
@@ -110,6 +118,35 @@ export class Real {
         h('td', {}, row.found, row.advice ? h('div', { class: 'minor' }, row.advice) : null)))),
       h('button', { class: 'main', onclick: () => this.dialog.close() }, 'Close'));
     this.dialog.showModal();
+  }
+
+  /** Says what will move, and moves it when told so. The dialog is closed before: nothing may cover the emergency stop. */
+  openMove(id) {
+    this.dialog.replaceChildren(h('form', { onsubmit: (event) => {
+      event.preventDefault();
+      this.dialog.close();
+      this.move(id);
+    } }, h('h2', {}, `Move '${id}'?`), h('p', {}, `'${id}' turns on the spot by about 30° to the left and back, slowly. All other robots are to stand; whether they do is watched.`),
+    h('p', { class: 'minor' }, 'EMERGENCY STOP (key e) stops it.'),
+    h('div', { class: 'row' }, h('span', { class: 'spacer' }), h('button', { type: 'button', onclick: () => this.dialog.close() }, 'Cancel'), h('button', { class: 'main' }, `Move '${id}'`))));
+    this.dialog.showModal();
+  }
+
+  async move(id) {
+    this.motions.set(id, null);
+    this.showCards();
+    const answer = await this.connection.ask({ do: 'first_motion', robot: id });
+    if (answer.ok) this.motions.set(id, { ...answer.preflight[0], others: answer.preflight.length > 1 });
+    else this.motions.set(id, { finding: 'fail', found: answer.error, advice: '' });
+    this.showCards();
+  }
+
+  motionText(id) {
+    if (!this.motions.has(id)) return null;
+    const row = this.motions.get(id);
+    if (row === null) return h('p', { class: 'motion', role: 'status' }, 'It turns to the left and back…');
+    const words = { ok: 'moved as told', warn: 'nobody saw it move', fail: row.others ? 'another robot moved' : 'did not move as told' };
+    return h('p', { class: `motion ${row.finding}`, role: 'status' }, `${words[row.finding]}: ${row.found}`, row.advice ? h('span', { class: 'minor' }, ` ${row.advice}`) : null);
   }
 
   openReplace(id) {

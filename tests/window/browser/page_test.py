@@ -4,6 +4,7 @@
 
 TANDEM_SCREENSHOTS=FOLDER writes the pictures of the documentation there; TANDEM_RENEW_PICTURES=1 renews those that are compared with.
 """
+import json
 import math
 import os
 import subprocess
@@ -366,6 +367,53 @@ class TestReal(WithBrowser):
         page.until("the stop", f"{state}.driving === false && tandem.real.stop.classList.contains('on')")
         page.find("#real .row button:nth-child(2)").click()
         page.until("it drives again", f"{state}.driving === true")
+        self.assertEqual(page.errors(), [])
+
+
+class TestFirstMotion(WithBrowser):
+    def test_one_robot_of_a_held_run_turns_when_told_and_the_panel_says_how(self):
+        page = self.page
+        folder = tempfile.mkdtemp(prefix="tandem-window-")
+        log = os.path.join(folder, "robot.log")
+        robot = subprocess.Popen([PROGRAM, "emulate", "epuck", "--link", "pty:ep0", "--log", log], cwd=folder, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
+                                 stderr=subprocess.DEVNULL)
+        self.addCleanup(robot.wait)
+        self.addCleanup(robot.terminate)
+        eventually("the emulated robot", lambda: os.path.lexists(os.path.join(folder, "ep0")))
+        run = view(os.path.join(ROOT, "configs", "epuck_mixed.xml"), "--paused", "--set", "framework.experiment.length=0", folder=folder)
+        self.addCleanup(run.stop)
+        page.open(run.address)
+        page.until("its button", "document.querySelector('[data-key=\"ep0 move\"]')")
+
+        def wheels():
+            with open(log) as lines:
+                return [(event["left"], event["right"]) for event in map(json.loads, lines) if event.get("event") == "wheels"]
+
+        def ask():
+            page.js("document.querySelector('[data-key=\"ep0 move\"]').click()")
+            page.until("what will move", "(document.querySelector('dialog[open]') || {textContent: ''}).textContent.includes(\"'ep0' turns on the spot\")")
+
+        ask()
+        page.find("dialog[open] button[type=button]").click()
+        page.until("no dialog", "document.querySelector('dialog[open]') === null")
+        self.assertEqual([w for w in wheels() if w != (0, 0)], [], "nobody said yes")
+        for attempt in range(3):  # on a busy machine the robot may answer too late to be moved; a person tries again then
+            ask()
+            page.find("dialog[open] button.main").click()
+            page.until("the emergency stop is not covered", "document.querySelector('dialog[open]') === null")
+            page.until("a verdict", "document.querySelector('.motion.ok, .motion.fail, .motion.warn')")
+            if page.js("document.querySelector('.motion.ok') !== null"):
+                break
+        self.assertRegex(page.js("document.querySelector('.motion').textContent"), r"moved as told: turned \d.* deg by .*wheels")
+        page.screenshot("window_first_motion.png")
+        moved = [w for w in wheels() if w != (0, 0)]
+        self.assertTrue(moved)
+        self.assertEqual([w for w in moved if w[0] != -w[1]], [], "it turns on the spot")
+        self.assertEqual(wheels()[-1], (0, 0), "and stands")
+        self.assertEqual(page.js("tandem.world.state.tick"), 0)
+        self.assertTrue(page.ask({"do": "play"})["ok"])
+        page.until("the run", "tandem.world.state.tick > 3 && document.querySelector('[data-key=\"ep0 move\"]') === null")
+        self.assertIn("the run has begun", page.ask({"do": "first_motion", "robot": "ep0"})["error"])
         self.assertEqual(page.errors(), [])
 
 
