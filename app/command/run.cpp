@@ -56,7 +56,7 @@ core::PictureOptions picture_options(const core::World& world, const mixed_reali
 /// A drawing of the world, with the layers that were asked for.
 core::Drawing drawing_of(const core::World& world, const RunOutputs& outputs, const core::PictureOptions& options) {
   core::Drawing drawing = core::drawing_of(world.space(), options);
-  drawing.areas = core::areas_of_json(areas_json(world.scenario().safety));
+  drawing.areas = areas_of(world.scenario().safety);
   if (outputs.layers == nullptr) return drawing;
   const hal::Tick last = world.tick() == 0 ? 0 : world.tick() - 1;
   for (const core::LayerPicture& layer : outputs.layers->show(observation_of(world, last)))

@@ -11,6 +11,7 @@
 #include "app/robots/ledger_json.hpp"
 #include "app/robots/lockstep_peers.hpp"
 #include "app/robots/real_robots.hpp"
+#include "core/view/record_drawing.hpp"
 #include "hal/json/json.hpp"
 #include "hal/unit.hpp"
 #include "hal/xml/xml.hpp"
@@ -249,7 +250,7 @@ hal::Json record_start(const core::World& world, const InputFiles& inputs) {
   add_inputs(json, inputs);
   json["program"] = to_json(build_info());
   json["settings"] = hal::to_xml(world.scenario().effective);
-  if (hal::Json areas = areas_json(world.scenario().safety); !areas.empty()) json["areas"] = std::move(areas);
+  if (const auto areas = areas_of(world.scenario().safety); !areas.empty()) json["areas"] = core::to_json(areas);
   return json;
 }
 

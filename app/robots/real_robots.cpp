@@ -68,11 +68,12 @@ Json status_json(const mixed_reality::RealRobotStatus& robot) {
   return json;
 }
 
-void add_areas(Json& list, const char* kind, const std::vector<core::SafetyArea>& areas) {
+void add_areas(std::vector<core::Drawing::Area>& list, core::Drawing::Area::Kind kind,
+               const std::vector<core::SafetyArea>& areas) {
   for (const core::SafetyArea& area : areas) {
-    Json json = {{"kind", kind}, {"id", area.id}, {"from", area.from_m}, {"to", area.to_m}, {"corners", area.corners}};
-    if (area.max_speed_m_s > 0.0) json["max_speed"] = area.max_speed_m_s;
-    list.push_back(std::move(json));
+    core::Drawing::Area drawn{kind, area.id, {}, area.from_m, area.to_m, area.max_speed_m_s};
+    for (const core::Point2& p : area.corners) drawn.corners.push_back({p[0], p[1]});
+    list.push_back(std::move(drawn));
   }
 }
 
@@ -86,15 +87,15 @@ Json real_message(const mixed_reality::MixedSession& session) {
     message["robots"].push_back(status_json(robot));
   }
   message["estop"] = stopped;
-  message["areas"] = areas_json(session.world().scenario().safety);
   return message;
 }
 
-Json areas_json(const core::SafetyConfig& safety) {
-  Json areas = Json::array();
-  add_areas(areas, "fence", safety.fences);
-  add_areas(areas, "keep_out", safety.keep_outs);
-  add_areas(areas, "zone", safety.zones);
+std::vector<core::Drawing::Area> areas_of(const core::SafetyConfig& safety) {
+  using Kind = core::Drawing::Area::Kind;
+  std::vector<core::Drawing::Area> areas;
+  add_areas(areas, Kind::Fence, safety.fences);
+  add_areas(areas, Kind::KeepOut, safety.keep_outs);
+  add_areas(areas, Kind::Zone, safety.zones);
   return areas;
 }
 

@@ -1,6 +1,9 @@
 // Real robots of a run as viewers see them.
 #pragma once
+#include <vector>
+
 #include "core/record/record.hpp"
+#include "core/view/drawing.hpp"
 #include "hal/json/json.hpp"
 #include "mixed_reality/session/mixed_session.hpp"
 
@@ -10,8 +13,8 @@ namespace tandem::app {
 /// thread that steps.
 hal::Json real_message(const mixed_reality::MixedSession& session);
 
-/// The areas of an experiment as that message has them.
-hal::Json areas_json(const core::SafetyConfig& safety);
+/// The areas of an experiment, for pictures, records and viewers.
+std::vector<core::Drawing::Area> areas_of(const core::SafetyConfig& safety);
 
 /// The ledgers of real robots are written into the record, of set "time". The session must outlive it.
 hal::Status record_ledgers(core::Recorder& recorder, const mixed_reality::MixedSession& session);

@@ -6,6 +6,7 @@
 #include "app/options.hpp"
 #include "app/process/browser.hpp"
 #include "app/process/terminal.hpp"
+#include "core/view/record_drawing.hpp"
 #include "core/view/render.hpp"
 
 namespace tandem::app {
@@ -43,7 +44,8 @@ std::string action_text(const hal::Json& action) {
 }
 
 hal::Json hello_message(std::string_view experiment, std::string_view mode, std::uint64_t seed,
-                        std::int64_t ticks_per_second, const std::vector<std::string>& can) {
+                        std::int64_t ticks_per_second, const std::vector<std::string>& can,
+                        const std::vector<core::Drawing::Area>& areas) {
   return {{"type", "hello"},
           {"protocol", 1},
           {"program", "tandem " + version_text()},
@@ -52,6 +54,7 @@ hal::Json hello_message(std::string_view experiment, std::string_view mode, std:
           {"seed", seed},
           {"ticks_per_second", ticks_per_second},
           {"can", can},
+          {"areas", core::to_json(areas)},
           {"layers", hal::Json::array()},
           {"controls", hal::Json::array()},
           {"kinds", hal::Json::array()},

@@ -20,7 +20,8 @@ hal::Result<std::unique_ptr<window::Window>> open_window(const ViewRequest& requ
 
 /// {"type": "hello", …} without layers, controls, kinds and controllers.
 hal::Json hello_message(std::string_view experiment, std::string_view mode, std::uint64_t seed,
-                        std::int64_t ticks_per_second, const std::vector<std::string>& can);
+                        std::int64_t ticks_per_second, const std::vector<std::string>& can,
+                        const std::vector<core::Drawing::Area>& areas);
 
 /// An action for people to read: files by their names alone.
 std::string action_text(const hal::Json& action);

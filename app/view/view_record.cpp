@@ -138,7 +138,8 @@ void RecordPlayer::greet() {
   const auto seed = start.find("seed");
   Json hello = hello_message(text_of(start, "experiment"), "record",
                              seed != start.end() && seed->is_number_unsigned() ? seed->get<std::uint64_t>() : 0,
-                             moments_.ticks_per_second(), {"pause", "back"});
+                             moments_.ticks_per_second(), {"pause", "back"},
+                             core::areas_of_json(start.value("areas", Json::array())));
   hello["layers"].push_back({{"name", "hooks"}, {"summary", "What hooks drew."}, {"on", false}, {"panel", false}});
   window_.tell(std::move(hello));
   LogMessages log;

@@ -6,6 +6,7 @@
 #include "app/options.hpp"
 #include "app/outputs/observers.hpp"
 #include "app/process/terminal.hpp"
+#include "app/robots/real_robots.hpp"
 #include "core/live/controls.hpp"
 #include "core/live/inspection.hpp"
 #include "hal/robot_kind.hpp"
@@ -68,7 +69,7 @@ void RunView::greet() {
   }
   const core::World& world = run_.world;
   Json hello = hello_message(world.scenario().name, run_.mixed != nullptr ? "mixed" : "run", world.seed(),
-                             world.ticks_per_second(), can);
+                             world.ticks_per_second(), can, areas_of(world.scenario().safety));
   for (const core::LayerType* layer : layers_.types()) {
     hello["layers"].push_back(
         {{"name", layer->name}, {"summary", layer->summary}, {"on", false}, {"panel", layer->panels}});

@@ -99,8 +99,13 @@ struct Drawing {
   struct Area {
     enum class Kind : std::uint8_t { Fence, KeepOut, Zone };
     Kind kind = Kind::Fence;
-    std::string label;
+    std::string id;
     std::vector<Point> corners;
+    double from_m = 0.0, to_m = 0.0;  ///< heights
+    double max_speed_m_s = 0.0;       ///< of a zone; 0: it has none
+
+    std::string label() const;       ///< "dock: 0.05 m/s"
+    std::string_view color() const;  ///< "#rrggbb"
   };
 
   std::string title;

@@ -66,6 +66,7 @@ class Writer {
     camera_and_sky();
     textures();
     ground();
+    for (const Drawing::Area& area : d_.areas) this->area(area);
     things();
     for (const Drawing::Light& light : d_.lights) lamp(light);
     for (std::size_t k = 0; k < d_.kinds.size(); ++k) declare(k);
@@ -160,6 +161,31 @@ class Writer {
       s_ << " pigment { " << (c.movable ? "srgb <0.85, 0.70, 0.52>" : "srgb <0.52, 0.56, 0.62>")
          << " } finish { Dull } }\n";
     }
+  }
+
+  /// A line along its edge, at the height from which it applies; what is to be kept out of, or crossed slowly, is
+  /// tinted.
+  void area(const Drawing::Area& area) {
+    const double line_m = 0.0025 * std::max(width_m(), depth_m());
+    const double z_m = area.from_m + line_m;
+    const std::size_t count = area.corners.size();
+    s_ << "union { // " << one_line(area.label()) << "\n";
+    for (std::size_t i = 0; i < count; ++i) {
+      const Drawing::Point &a = area.corners[i], &b = area.corners[(i + 1) % count];
+      s_ << "  sphere { ";
+      s_.point(a.x_m, a.y_m, z_m) << ", " << line_m << " }\n  cylinder { ";
+      s_.point(a.x_m, a.y_m, z_m) << ", ";
+      s_.point(b.x_m, b.y_m, z_m) << ", " << line_m << " }\n";
+    }
+    s_ << "  pigment { ";
+    s_.color(area.color()) << " } finish { Dull } no_shadow }\n";
+    if (area.kind == Drawing::Area::Kind::Fence) return;
+    s_ << "prism { linear_spline " << area.from_m + 1e-3 << ", " << area.from_m + 2e-3 << ", "
+       << static_cast<double>(count + 1);
+    for (std::size_t i = 0; i <= count; ++i)
+      s_ << ", <" << area.corners[i % count].x_m << ", " << area.corners[i % count].y_m << ">";
+    s_ << " pigment { ";
+    s_.color(area.color()) << " transmit 0.8 } finish { Dull } no_shadow }\n";
   }
 
   /// Turns counter-clockwise, seen from above: the axes of W are right-handed, POV-Ray's are not.

@@ -114,11 +114,26 @@ std::vector<Drawing::Area> areas_of_json(const Json& areas) {
     area.kind = kind == "fence"      ? Drawing::Area::Kind::Fence
                 : kind == "keep_out" ? Drawing::Area::Kind::KeepOut
                                      : Drawing::Area::Kind::Zone;
-    area.label = text(a, "id", "");
-    if (const double limit_m_s = number(a, "max_speed"); limit_m_s > 0.0)
-      area.label += ": " + hal::format_number(limit_m_s) + " m/s";
+    area.id = text(a, "id", "");
+    area.from_m = number(a, "from");
+    area.to_m = number(a, "to");
+    area.max_speed_m_s = number(a, "max_speed");
     for (const Json& corner : list(a, "corners")) area.corners.push_back({item(corner, 0), item(corner, 1)});
     if (area.corners.size() > 2) all.push_back(std::move(area));
+  }
+  return all;
+}
+
+Json to_json(const std::vector<Drawing::Area>& areas) {
+  Json all = Json::array();
+  for (const Drawing::Area& area : areas) {
+    const char* const kind = area.kind == Drawing::Area::Kind::Fence     ? "fence"
+                             : area.kind == Drawing::Area::Kind::KeepOut ? "keep_out"
+                                                                         : "zone";
+    Json json = {{"kind", kind}, {"id", area.id}, {"from", area.from_m}, {"to", area.to_m}, {"corners", Json::array()}};
+    for (const Drawing::Point& p : area.corners) json["corners"].push_back({p.x_m, p.y_m});
+    if (area.max_speed_m_s > 0.0) json["max_speed"] = area.max_speed_m_s;
+    all.push_back(std::move(json));
   }
   return all;
 }

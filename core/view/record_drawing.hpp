@@ -14,8 +14,9 @@
 namespace tandem::core {
 
 /// Areas as records and the view protocol have them: [{`kind` ("fence", "keep_out", "zone"), `id`, `corners` [[x, y]],
-/// `max_speed`}]. What is none is left out.
+/// `from`, `to`, `max_speed`}]. What is none is left out.
 std::vector<Drawing::Area> areas_of_json(const hal::Json& areas);
+hal::Json to_json(const std::vector<Drawing::Area>& areas);
 
 /// Goes through the ticks of a record that have poses. They are what the run would have drawn, but for what is wrong
 /// with real robots.

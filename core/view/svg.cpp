@@ -37,7 +37,6 @@ constexpr std::string_view kWallEdge = "#3f4751";
 constexpr std::string_view kMovableColor = "#d8b384";
 constexpr std::string_view kMovableEdge = "#7d5a2b";
 constexpr std::string_view kBorderColor = "#3b5bdb";
-constexpr std::array<std::string_view, 3> kAreaColors = {"#009e73", "#d55e00", "#e69f00"};  // by their kinds
 
 /// Text of an SVG document, appended to piece by piece. Numbers get at most four decimals.
 class Svg {
@@ -305,21 +304,17 @@ class Page {
     svg_ << "</g>\n";
   }
 
-  static std::string_view color_of(const Drawing::Area& area) {
-    return kAreaColors[static_cast<std::size_t>(area.kind)];
-  }
-
   void areas() {
     if (d_.areas.empty()) return;
     svg_ << "<g class=\"areas\" stroke-linejoin=\"round\" stroke-width=\"" << px(1.5) << "\">\n";
     for (const Drawing::Area& area : d_.areas) {
       svg_ << "<polygon points=\"";
       for (const Drawing::Point& p : area.corners) svg_ << p.x_m << "," << p.y_m << " ";
-      svg_ << "\" stroke=\"" << color_of(area) << "\" fill=\"";
+      svg_ << "\" stroke=\"" << area.color() << "\" fill=\"";
       if (area.kind == Drawing::Area::Kind::Fence) {
         svg_ << "none\"/>\n";
       } else {
-        svg_ << color_of(area) << "\" fill-opacity=\"0.12\"/>\n";
+        svg_ << area.color() << "\" fill-opacity=\"0.12\"/>\n";
       }
     }
     svg_ << "</g>\n";
@@ -329,8 +324,8 @@ class Page {
   void area_labels() {
     for (const Drawing::Area& area : d_.areas) {
       if (area.corners.empty() || !shows(area.corners.front().x_m, area.corners.front().y_m, 0.0)) continue;
-      text(x_px(area.corners.front().x_m) + 5.0, y_px(area.corners.front().y_m) - 6.0, 13.0, color_of(area),
-           " stroke=\"#ffffff\" stroke-width=\"3\" paint-order=\"stroke\"", area.label);
+      text(x_px(area.corners.front().x_m) + 5.0, y_px(area.corners.front().y_m) - 6.0, 13.0, area.color(),
+           " stroke=\"#ffffff\" stroke-width=\"3\" paint-order=\"stroke\"", area.label());
     }
   }
 
@@ -671,6 +666,15 @@ class Page {
 };
 
 }  // namespace
+
+std::string Drawing::Area::label() const {
+  return max_speed_m_s > 0.0 ? id + ": " + hal::format_number(max_speed_m_s) + " m/s" : id;
+}
+
+std::string_view Drawing::Area::color() const {
+  constexpr std::array<std::string_view, 3> kByKind = {"#009e73", "#d55e00", "#e69f00"};
+  return kByKind[static_cast<std::size_t>(kind)];
+}
 
 const BodyColors& body_colors(std::size_t kind) {
   return kBodyColors[kind % kBodyColors.size()];

@@ -118,6 +118,10 @@ TEST(Pictures, OfARecordAreThoseOfTheRun) {
                              "<polygon", "dock: 0.05 m/s"})
       EXPECT_EQ(parts("again.svg", part), parts("end-000017.svg", part)) << part << " of " << file;
     EXPECT_EQ(parts("again.svg", "<polygon"), areas ? 3U : 0U);
+    output_of(folder, {"picture", "r", "--at", "17", "--povray", "scene.pov"});
+    EXPECT_EQ(parts("scene.pov", "dock: 0.05 m/s"), areas ? 1U : 0U);
+    EXPECT_EQ(parts("scene.pov", "transmit 0.8"), areas ? 2U : 0U) << "the keep-out and the zone are tinted";
+    EXPECT_EQ(parts("scene.pov", "no_shadow"), areas ? 5U : 0U) << "three edges";
     EXPECT_GT(parts("again.svg", "<use "), areas ? 1U : 20U);
   }
 }

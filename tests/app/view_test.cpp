@@ -276,6 +276,35 @@ TEST(View, PicturesOfTheMomentAreServed) {
   EXPECT_EQ(view.wait(kPatience_s), 0);
 }
 
+TEST(View, AreasOfARecordAreThoseOfItsRun) {
+  const Folder folder;
+  const std::vector<std::string> simulated = {"--without", "fb0",   "--without",
+                                              "fb1",       "--set", "framework.time.mode=fast"};
+  std::vector<std::string> words = {"run",  config("footbot_safety.xml"), "--steps", "5", "--quiet", "--record",
+                                    "x.rec"};
+  words.insert(words.end(), simulated.begin(), simulated.end());
+  Tandem run(words, folder.path());
+  ASSERT_EQ(run.wait(kPatience_s), 0) << run.errors();
+  const auto areas_of = [&](std::vector<std::string> view_words) {
+    view_words.insert(view_words.end(), {"--no-browser", "--paused"});
+    Tandem view(view_words, folder.path());
+    Watching viewer(address_of(view));
+    return viewer.until([](const Json& json) { return json["type"] == "hello"; })["areas"];
+  };
+  const Json recorded = areas_of({"view", "x.rec"});
+  ASSERT_EQ(recorded.size(), 3U) << recorded;
+  EXPECT_EQ(recorded[0]["kind"], "fence");
+  EXPECT_EQ(recorded[1]["kind"], "keep_out");
+  EXPECT_EQ(recorded[2]["kind"], "zone");
+  EXPECT_EQ(recorded[2]["id"], "dock");
+  EXPECT_EQ(recorded[2]["max_speed"], 0.05);
+  EXPECT_GT(recorded[0]["corners"].size(), 2U);
+  EXPECT_GT(recorded[1]["to"], recorded[1]["from"]);
+  std::vector<std::string> live = {"view", config("footbot_safety.xml")};
+  live.insert(live.end(), simulated.begin(), simulated.end());
+  EXPECT_EQ(areas_of(live), recorded);
+}
+
 TEST(View, ARecordIsPlayedAndLookedInto) {
   const Folder folder;
   Tandem run({"run", config("footbot_foraging.xml"), "--steps", "50", "--quiet", "--record", "x.rec"}, folder.path());

@@ -12,6 +12,7 @@ import { Inspector } from './inspector.js';
 import { Log } from './log.js';
 import { Touch } from './touch.js';
 import { Controls } from './controls.js';
+import { Areas } from './areas.js';
 import { Real } from './real.js';
 import { Keyboard } from './keyboard.js';
 import { pick } from './pick.js';
@@ -38,6 +39,7 @@ function start() {
     const pose = world.poseOf(id);
     if (pose !== null) camera.lookAt(pose, 40 * bodySize(world.body(world.members.index.get(id))).radius);
   });
+  page.areas = new Areas(view, world);
   page.real = new Real(view, world, connection, selection, robots, element('alarm'), left);
   page.controls = new Controls(world, connection, left);
   page.layers = new Layers(view, world, connection, selection, left);

@@ -6,7 +6,6 @@ export class Real {
   constructor(view, world, connection, selection, robots, alarm, host) {
     Object.assign(this, { view, world, connection, selection });
     this.states = new Map();  // by id
-    this.areas = [];          // fences, keep-outs, zones
     this.motions = new Map();  // verdicts of first motions, by id; null while one goes on
     this.stop = h('button', { class: 'estop', title: 'Stops all real robots (e)', onclick: () => this.emergencyStop() }, 'EMERGENCY STOP');
     this.stop.hidden = true;
@@ -55,7 +54,6 @@ export class Real {
     this.states = new Map(message.robots.map((robot) => [robot.id, robot]));
     this.held = message.paused === true && this.world.state.tick === 0;
     this.showCards();
-    this.areas = message.areas ?? [];
     this.view.invalidate();
   }
 
@@ -85,20 +83,8 @@ export class Real {
       h('table', {}, facts.map(([name, value]) => h('tr', {}, h('th', { scope: 'row' }, name), h('td', {}, value))), sources));
   }
 
-  /** Edges of fences, keep-outs and zones, on the floor and at their upper and lower ends; who is held back from them. */
-  drawSafety(pen, camera) {
-    const colors = { fence: okabeIto.green, keep_out: okabeIto.vermilion, zone: okabeIto.orange };
-    for (const area of this.areas) {
-      const heights = [...new Set([area.from, area.to < 100 ? area.to : area.from])];
-      for (const z of heights) {
-        const points = area.corners.map(([x, y]) => camera.project(x, y, z));
-        if (points.every((p) => p.inFront)) pen.line([...points, points[0]].map((p) => [p.x, p.y]), colors[area.kind], 2);
-      }
-      const [x, y] = area.corners[0];
-      const at = camera.project(x, y, area.from);
-      const text = area.max_speed ? `${area.id}: ${numberText(area.max_speed)} m/s` : area.id;
-      if (at.inFront) pen.text(text, at.x + 6, at.y - 8, { color: colors[area.kind] });
-    }
+  /** Who is held back from somebody, or from an area. */
+  drawHeldBack(pen, camera) {
     for (const [id, robot] of this.states) {
       const pose = robot.held_back_m_s > 0 ? this.world.poseOf(id) : null;
       const at = pose === null ? null : camera.project(pose.x, pose.y, pose.z);
@@ -167,7 +153,7 @@ export class Real {
 
   /** Where each source says that a chosen real robot is. */
   label(pen, camera) {
-    this.drawSafety(pen, camera);
+    this.drawHeldBack(pen, camera);
     for (const id of this.selection.ids) {
       const pose = this.world.poseOf(id);
       if (pose === null) continue;
