@@ -2,8 +2,8 @@
 #include <cmath>
 #include <gtest/gtest.h>
 
-#include "app/robots/bridged_controller.hpp"
 #include "app/catalog.hpp"
+#include "app/robots/bridged_controller.hpp"
 #include "app/robots/simulated_body.hpp"
 #include "app/robots/wired_peer.hpp"
 #include "bridges/wired/wired_epuck.hpp"
