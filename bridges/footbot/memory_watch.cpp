@@ -29,10 +29,14 @@ bool ModuleCounter::began_anew(std::int32_t raw, hal::TimeNs taken_ns) noexcept 
   if (taken_ns == 0 || taken_ns == taken_ns_) return false;
   const bool first = taken_ns_ == 0;
   const auto since_ns = static_cast<double>(taken_ns - taken_ns_);
-  const double way = std::fabs(static_cast<double>(raw_));  // back to 0
-  const bool anew = !first && raw == 0 && way > kLeast && way > kMostTimes * std::fabs(counts_per_ns_) * since_ns;
+  const double now = raw, before = raw_;
+  const double reach = kMostTimes * std::fabs(counts_per_ns_) * since_ns;  // of counting, from before or from 0
+  const bool silent = since_ns > kSilentTimes * interval_ns_;
+  const bool from_start = raw == 0 || (silent && std::fabs(now) <= reach);
+  const bool anew = !first && from_start && std::fabs(now - before) > std::max(kLeast, reach);
   const bool went_on = !first && !anew && since_ns > 0.0;
-  counts_per_ns_ = went_on ? (static_cast<double>(raw) - static_cast<double>(raw_)) / since_ns : 0.0;
+  counts_per_ns_ = went_on ? (now - before) / since_ns : 0.0;
+  interval_ns_ = first ? 0.0 : since_ns;
   raw_ = raw;
   taken_ns_ = taken_ns;
   return anew;

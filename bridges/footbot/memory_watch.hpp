@@ -23,11 +23,13 @@ class ToldWords {
   hal::TimeNs zeros_sent_ns_ = -kOldAnswers_ns;
 };
 
-/// A counter that a module counts from 0 since its start: it is 0 again, and cannot have come there by counting.
+/// A counter that a module counts from 0 since its start: it is 0 again, or near 0 after a silence in which it may have
+/// started and begun to count, and cannot have come there by counting.
 class ModuleCounter {
  public:
-  static constexpr double kLeast = 100.0;    ///< counts: nearer to 0 it may have come there
-  static constexpr double kMostTimes = 3.0;  ///< as fast as before it may count
+  static constexpr double kLeast = 100.0;      ///< counts: a shorter way it may have gone
+  static constexpr double kMostTimes = 3.0;    ///< as fast as before it may count
+  static constexpr double kSilentTimes = 1.5;  ///< as long as between the two readings before: one has not come
 
   /// @returns whether it began anew; once for each time.
   bool began_anew(std::int32_t raw, hal::TimeNs taken_ns) noexcept;
@@ -35,6 +37,7 @@ class ModuleCounter {
  private:
   std::int32_t raw_ = 0;
   hal::TimeNs taken_ns_ = 0;  // 0: never
+  double interval_ns_ = 0.0;  // between the last two readings
   double counts_per_ns_ = 0.0;
 };
 

@@ -243,6 +243,19 @@ TEST(FootbotFaults, AModuleThatRestartsIsToldAnew) {
   EXPECT_TRUE(d.comes_to_rest(kSecond));
 }
 
+TEST(FootbotFaults, AModuleThatRestartsIsFoundOutWheneverInATickThatIs) {
+  for (const int rate : {10, 50}) {
+    for (int ms = 0; ms < 200; ms += 5) {
+      const std::string fault = "restart=left-motor@" + std::to_string(5000 + ms) + "ms";
+      Drive d({fault}, rate);
+      d.drive_until(8.0);
+      EXPECT_EQ(d.driver.statistics().restarts, 1U) << fault << " at " << rate << " Hz " << d.logged;
+      EXPECT_EQ(d.driver.state(), RobotState::Active);
+      EXPECT_TRUE(d.moves());
+    }
+  }
+}
+
 /// Three faults at once, drawn from a seed, on a bus that loses and doubles; and a hub that stalls.
 TEST(FootbotFaults, OfAllKindsTogetherLeaveNoRobotMoving) {
   static constexpr std::array<const char*, 12> kFaults = {"hangup@5s+2s",

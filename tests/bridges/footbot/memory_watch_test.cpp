@@ -47,6 +47,23 @@ TEST(ModuleCounter, BeginsAnewAtZero) {
   EXPECT_FALSE(counter.began_anew(480, 700 * kMs));
 }
 
+TEST(ModuleCounter, BeginsAnewInASilenceAndMayCountBeforeItIsRead) {
+  ModuleCounter counter;
+  for (int i = 1; i <= 20; ++i) EXPECT_FALSE(counter.began_anew(240 * i, i * 100 * kMs));
+  EXPECT_TRUE(counter.began_anew(96, 2300 * kMs));
+  for (int i = 0; i < 5; ++i) EXPECT_FALSE(counter.began_anew(96, (2400 + i * 100) * kMs));
+  EXPECT_FALSE(counter.began_anew(336, 2900 * kMs));
+}
+
+TEST(ModuleCounter, NearZeroAfterASilenceMayHaveCountedOn) {
+  ModuleCounter counter;
+  for (int i = 1; i <= 5; ++i) EXPECT_FALSE(counter.began_anew(1200 - 100 * i, i * 100 * kMs));
+  EXPECT_FALSE(counter.began_anew(100, 1100 * kMs));  // as fast as before
+  ModuleCounter still;
+  for (int i = 1; i <= 5; ++i) EXPECT_FALSE(still.began_anew(700, i * 100 * kMs));
+  EXPECT_FALSE(still.began_anew(40, 1100 * kMs));  // it was not counting: it has begun to
+}
+
 TEST(ModuleCounter, MayCountThroughZero) {
   ModuleCounter counter;
   std::int32_t raw = 960;
