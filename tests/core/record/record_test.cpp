@@ -1,11 +1,13 @@
 #include "core/record/record.hpp"
 
+#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <fstream>
 #include <gmock/gmock.h>
 #include <sstream>
 #include <sys/wait.h>
+#include <thread>
 #include <unistd.h>
 
 #include "core/record/record_moments.hpp"
@@ -236,23 +238,47 @@ TEST_F(Record, IsRefusedWhereItIsOfAnotherVersionOrNone) {
 }
 
 TEST_F(Record, LosesAtMostOneTickWhenItsProcessIsKilled) {
-  const pid_t child = ::fork();
-  ASSERT_GE(child, 0);
-  if (child == 0) {
-    auto recorder = Recorder::open(config(), space_, {{"program", "test"}});
-    if (!recorder.ok()) ::_exit(1);
-    for (hal::Tick tick = 0; tick < 100; ++tick) (void)recorder.value()->tick_done(space_, tick);
-    ::kill(::getpid(), SIGKILL);
+  for (const int pause_ms : {0, 3, 30}) {
+    const pid_t child = ::fork();
+    ASSERT_GE(child, 0);
+    if (child == 0) {
+      auto recorder = Recorder::open(config(), space_, {{"program", "test"}});
+      if (!recorder.ok()) ::_exit(1);
+      auto when = std::chrono::steady_clock::now();
+      for (hal::Tick tick = 0; tick < 20; ++tick) {
+        std::this_thread::sleep_until(when += std::chrono::milliseconds(pause_ms));
+        (void)recorder.value()->tick_done(space_, tick);
+      }
+      ::kill(::getpid(), SIGKILL);
+    }
+    int status = 0;
+    ASSERT_EQ(::waitpid(child, &status, 0), child);
+    ASSERT_TRUE(WIFSIGNALED(status));
+    auto reader = RecordReader::open(path_ + ".part");
+    ASSERT_TRUE(reader.ok());
+    const auto poses = rows_of(reader.value(), "pose");
+    ASSERT_FALSE(poses.empty());
+    EXPECT_GE(poses.back().tick, 18) << pause_ms;
+    EXPECT_TRUE(reader.value().cut());
   }
-  int status = 0;
-  ASSERT_EQ(::waitpid(child, &status, 0), child);
-  ASSERT_TRUE(WIFSIGNALED(status));
-  auto reader = RecordReader::open(path_ + ".part");
+}
+
+TEST_F(Record, PutsEveryTickInItsPlaceWhateverTheirPace) {
+  auto recorder = open(config());
+  auto when = std::chrono::steady_clock::now();
+  hal::Tick tick = 0;
+  for (const int pause_us : {0, 1500, 0, 3000, 100, 25000, 2000, 0}) {
+    for (int i = 0; i < 10; ++i) {
+      std::this_thread::sleep_until(when += std::chrono::microseconds(pause_us));
+      ASSERT_TRUE(recorder->tick_done(space_, tick++).ok());
+    }
+  }
+  ASSERT_TRUE(recorder->close(tick, {}).ok());
+  auto reader = RecordReader::open(path_);
   ASSERT_TRUE(reader.ok());
   const auto poses = rows_of(reader.value(), "pose");
-  ASSERT_FALSE(poses.empty());
-  EXPECT_GE(poses.back().tick, 98);
-  EXPECT_TRUE(reader.value().cut());
+  ASSERT_EQ(poses.size(), static_cast<std::size_t>(tick) + 1);
+  for (std::size_t i = 0; i < poses.size(); ++i) ASSERT_EQ(poses[i].tick, static_cast<hal::Tick>(i) - 1);
 }
 
 TEST_F(Record, KeepsTheTickOfRowsThatSomethingHappenedAfter) {
