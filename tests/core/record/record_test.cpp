@@ -238,14 +238,14 @@ TEST_F(Record, IsRefusedWhereItIsOfAnotherVersionOrNone) {
 }
 
 TEST_F(Record, LosesAtMostOneTickWhenItsProcessIsKilled) {
-  for (const int pause_ms : {0, 3, 30}) {
+  for (const int pause_ms : {0, 3}) {
     const pid_t child = ::fork();
     ASSERT_GE(child, 0);
     if (child == 0) {
       auto recorder = Recorder::open(config(), space_, {{"program", "test"}});
       if (!recorder.ok()) ::_exit(1);
       auto when = std::chrono::steady_clock::now();
-      for (hal::Tick tick = 0; tick < 20; ++tick) {
+      for (hal::Tick tick = 0; tick < 100; ++tick) {
         std::this_thread::sleep_until(when += std::chrono::milliseconds(pause_ms));
         (void)recorder.value()->tick_done(space_, tick);
       }
@@ -258,7 +258,7 @@ TEST_F(Record, LosesAtMostOneTickWhenItsProcessIsKilled) {
     ASSERT_TRUE(reader.ok());
     const auto poses = rows_of(reader.value(), "pose");
     ASSERT_FALSE(poses.empty());
-    EXPECT_GE(poses.back().tick, 18) << pause_ms;
+    EXPECT_GE(poses.back().tick, 98) << pause_ms;
     EXPECT_TRUE(reader.value().cut());
   }
 }
