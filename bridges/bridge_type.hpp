@@ -48,9 +48,10 @@ using InputFile = std::pair<std::string, std::string>;
 
 struct BridgeType {
   static constexpr std::string_view kCategory = "bridge";
-  static constexpr std::uint32_t kNumber = 2;
-  using Crosses = hal::Layouts<RobotBridge, BridgeRequest, MadeBridge, InputFile, hal::RobotKind,
-                               hal::RobotKind::Crosses, SendPermit, StopMessages, LinkReport, PortView, hal::Log>;
+  static constexpr std::uint32_t kNumber = 3;
+  using Crosses =
+      hal::Layouts<RobotBridge, BridgeRequest, MadeBridge, InputFile, hal::RobotKind, hal::RobotKind::Crosses,
+                   SendPermit, StopMessages, RobotIdentity, LinkReport, PortView, hal::Log>;
   std::string_view name;     ///< the kind of robot, as the element in experiment files
   std::string_view summary;  ///< over which links, for people
   /// Does not wait for the robot. Errors: a link that does not suit it, options that make no sense, files that it

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "bridges/clock_estimator.hpp"
+#include "bridges/robot_identity.hpp"
 #include "bridges/round_trips.hpp"
 #include "bridges/stop_messages.hpp"
 #include "hal/port.hpp"
@@ -112,12 +113,13 @@ class RobotBridge {
   virtual std::string trouble() const = 0;
   /// What people can look at when it does not answer: "is it switched on, …?"
   virtual std::string advice() const = 0;
-  /// Who answers: firmware, version; empty before it answered.
-  virtual std::string identity() const = 0;
-  /// The link as it is open now; "" while there is none.
-  virtual std::string link() const = 0;
-  /// How a guardian stops it as it is now. `stop_version` is cheap and tells when to ask again.
+  /// Who answers over which device. Words of the robot are absent until it has told them on the device as it is open
+  /// now; while there is none, the device is the last one. `stop_version` tells when to ask again.
+  virtual RobotIdentity identity() const = 0;
+  /// How a guardian stops it as it is now, and who it is.
   virtual StopMessages stop_messages() const = 0;
+  /// Cheap; grows whenever `identity` or `stop_messages` would answer otherwise. With a robot that becomes Active, at
+  /// the latest.
   virtual std::uint64_t stop_version() const noexcept = 0;
 
   virtual LinkReport report() const = 0;

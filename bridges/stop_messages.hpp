@@ -3,6 +3,8 @@
 #include <cstdint>
 #include <string>
 
+#include "bridges/robot_identity.hpp"
+
 namespace tandem::bridges {
 
 /// Everything that it takes to stop one real robot. `version` grows whenever any other field changes (a module came, a
@@ -13,7 +15,8 @@ struct StopMessages {
   std::string link;   ///< LINK text with absolute paths: the guardian has no other folder to start from
   std::string body;   ///< the kind's own; any bytes
   std::uint64_t version = 0;
-  std::string name = {};  ///< which robot, where several share the link (an eye-bot's name); else ""
+  std::string name = {};        ///< which robot, where several share the link (an eye-bot's name); else ""
+  RobotIdentity identity = {};  ///< who it is, as far as is known by now
 
   friend bool operator==(const StopMessages&, const StopMessages&) = default;
 };

@@ -75,7 +75,7 @@ hal::Status connect(mixed_reality::SupervisedRobot& robot, bridges::RobotBridge&
     }
     const std::string trouble = bridge.trouble();
     if (bridge.mismatched()) return hal::Error{trouble};
-    const bool shut = now - began_ns >= kOpenWithin_ns && bridge.link().empty() && !trouble.empty();
+    const bool shut = now - began_ns >= kOpenWithin_ns && bridge.identity().session == 0 && !trouble.empty();
     const bool late = shut || hal::to_seconds(now - began_ns) >= config.connect_s;
     if (late && config.if_missing != core::IfMissing::Wait) {
       if (bridge.health() == bridges::LinkHealth::Active) return hal::Error{"it cannot be driven: " + robot.reason()};
@@ -111,7 +111,7 @@ void begin_report(hal::Json& json, const core::Scenario& scenario, const core::R
                   const mixed_reality::PaceLedger& pace) {
   json["experiment"] = scenario.name;
   json["robot"] = item.id;
-  json["link"] = bridge.link();
+  json["link"] = bridge.identity().link;
   json["steps"] = pace.ticks;
   json["deadline_misses"] = pace.deadline_misses;
   json["wake_up_p99_ms"] = static_cast<double>(pace.wake_up.quantile_ns(0.99)) * 1e-6;
@@ -126,9 +126,9 @@ std::vector<std::pair<std::string, std::string>> result_table(const core::RobotI
                                                               const bridges::RobotBridge& bridge,
                                                               const mixed_reality::PaceLedger& pace) {
   const bridges::LinkReport link = bridge.report();
-  const std::string open = bridge.link(), identity = bridge.identity(), trouble = bridge.trouble();
+  const std::string identity = bridges::to_text(bridge.identity()), trouble = bridge.trouble();
   std::vector<std::pair<std::string, std::string>> rows = {
-      {"robot", fmt::format("{} on {}", item.id, open.empty() ? item.bridge->link : open)},
+      {"robot", fmt::format("{} on {}", item.id, bridge.identity().link)},
       {"ticks", fmt::format("{}, {} missed their deadline, {:.2f} ms late at most", pace.ticks, pace.deadline_misses,
                             static_cast<double>(pace.largest_lateness_ns) * 1e-6)}};
   if (!identity.empty()) rows.emplace_back("it says it is", identity);

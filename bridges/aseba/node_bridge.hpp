@@ -14,7 +14,7 @@
 //   kKind      name of the kind of robot, for its `StopperType`
 //   kAdvice    what people can look at when it does not answer
 //   name_on_link(const Settings&)    which robot, where several share the link; else ""
-// and its wiring `identity()`, who answers, for people, and `describe(StatusVisitor&)`.
+// and its wiring `identify(RobotIdentity&)`, which fills in the robot's words, and `describe(StatusVisitor&)`.
 #pragma once
 #include <algorithm>
 #include <atomic>
@@ -26,6 +26,7 @@
 #include "bridges/aseba/node_driver.hpp"
 #include "bridges/aseba/reopening_messages.hpp"
 #include "bridges/driver_bridge.hpp"
+#include "bridges/link/device.hpp"
 #include "bridges/link/link_text.hpp"
 
 namespace tandem::bridges::aseba {
@@ -75,8 +76,7 @@ class NodeBridge final : public DriverBridge<NodeBridge<Parts>, typename Parts::
   bool at_rest() const noexcept override;
   std::string trouble() const override;
   std::string advice() const override;
-  std::string identity() const override;
-  std::string link() const override;
+  RobotIdentity identity() const override;
   /// The body is that of rest_message.hpp.
   StopMessages stop_messages() const override;
   std::uint64_t stop_version() const noexcept override { return stop_version_; }
@@ -94,12 +94,15 @@ class NodeBridge final : public DriverBridge<NodeBridge<Parts>, typename Parts::
   void before_start();
   void run();
   Interruptions interruptions() const noexcept;
-  void after_command(hal::TimeNs) noexcept { stop_version_ = driver_.wiring().rest_version(); }
+  void after_command(hal::TimeNs) noexcept { note_link(); }
+  void note_link() noexcept;
+  RobotIdentity who() const;
   void run_shutdown();
 
   Settings settings_;
   ReopeningMessages link_;
   NodeDriver<Parts> driver_;
+  RobotIdentity reached_;  // by the last link that was opened, without the robot's own words
   std::atomic<std::uint64_t> stop_version_{0};
 };
 
@@ -113,7 +116,9 @@ void wait_for_input(hal::TimeNs timeout_ns, int descriptor);
 
 template <class Parts>
 NodeBridge<Parts>::NodeBridge(Settings settings, MessageLinkOpener opener, hal::Log log)
-    : settings_(std::move(settings)), link_(std::move(opener)), driver_(settings_.driver, link_, std::move(log)) {}
+    : settings_(std::move(settings)), link_(std::move(opener)), driver_(settings_.driver, link_, std::move(log)) {
+  reached_.link = absolute_link(settings_.link);
+}
 
 template <class Parts>
 NodeBridge<Parts>::~NodeBridge() {
@@ -123,7 +128,16 @@ NodeBridge<Parts>::~NodeBridge() {
 template <class Parts>
 void NodeBridge<Parts>::before_start() {
   driver_.note_ports();
-  stop_version_ = driver_.wiring().rest_version();
+  note_link();
+}
+
+template <class Parts>
+void NodeBridge<Parts>::note_link() noexcept {
+  if (link_.openings() != reached_.session) {
+    reached_.session = link_.openings();
+    reached_.device = device_of(link_.descriptor());
+  }
+  stop_version_ = driver_.wiring().rest_version() + reached_.session;
 }
 
 template <class Parts>
@@ -145,7 +159,7 @@ void NodeBridge<Parts>::run() {
       const std::lock_guard lock(mutex_);
       const RobotState before = driver_.state();
       driver_.pump(now);
-      stop_version_ = driver_.wiring().rest_version();
+      note_link();
       if (driver_.state() != before) changed_.notify_all();
       wait = std::clamp<hal::TimeNs>(driver_.next_deadline() - now, 0, detail::kLongestWait);
       descriptor = link_.descriptor();
@@ -201,15 +215,16 @@ std::string NodeBridge<Parts>::advice() const {
 }
 
 template <class Parts>
-std::string NodeBridge<Parts>::identity() const {
-  const std::lock_guard lock(mutex_);
-  return driver_.wiring().identity();
+RobotIdentity NodeBridge<Parts>::who() const {
+  RobotIdentity all = reached_;
+  driver_.wiring().identify(all);
+  return all;
 }
 
 template <class Parts>
-std::string NodeBridge<Parts>::link() const {
+RobotIdentity NodeBridge<Parts>::identity() const {
   const std::lock_guard lock(mutex_);
-  return link_.name();
+  return who();
 }
 
 template <class Parts>
@@ -217,10 +232,11 @@ StopMessages NodeBridge<Parts>::stop_messages() const {
   const std::lock_guard lock(mutex_);
   return {.robot = settings_.driver.robot.id,
           .kind = std::string(Parts::kKind),
-          .link = absolute_link(settings_.link),
+          .link = reached_.link,
           .body = to_stop_body(driver_.wiring().rest_messages()),
-          .version = driver_.wiring().rest_version(),
-          .name = Parts::name_on_link(settings_.driver)};
+          .version = stop_version_,
+          .name = Parts::name_on_link(settings_.driver),
+          .identity = who()};
 }
 
 template <class Parts>

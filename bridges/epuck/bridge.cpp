@@ -1,10 +1,13 @@
 #include "bridges/epuck/bridge.hpp"
 
 #include <algorithm>
+#include <array>
+#include <charconv>
 #include <chrono>
 
 #include "bridges/epuck/stop.hpp"
 #include "bridges/epuck/stopper.hpp"
+#include "bridges/link/device.hpp"
 #include "bridges/link/pending_link.hpp"
 #include "hal/check.hpp"
 #include "hal/robot/epuck.hpp"
@@ -33,10 +36,9 @@ SessionTiming timing_for(std::string_view link_name) noexcept {
 }
 
 EpuckBridge::EpuckBridge(BridgeSettings settings, LinkOpener opener, hal::Log log)
-    : settings_(std::move(settings)),
-      opener_(std::move(opener)),
-      log_(log),
-      driver_(settings_.driver, std::move(log)) {}
+    : settings_(std::move(settings)), opener_(std::move(opener)), log_(log), driver_(settings_.driver, std::move(log)) {
+  reached_.link = absolute_link(settings_.link);
+}
 
 EpuckBridge::~EpuckBridge() {
   shut_down();
@@ -50,8 +52,7 @@ void EpuckBridge::run() {
     if (!link) continue;
     {
       const std::lock_guard lock(mutex_);
-      link_ = link.get();
-      ++links_opened_;
+      note_link(*link);
     }
     serve(*link);
     if (ending_) run_shutdown(*link);
@@ -62,6 +63,13 @@ void EpuckBridge::run() {
     driver_.tell();
     changed_.notify_all();
   }
+}
+
+void EpuckBridge::note_link(ByteLink& link) {
+  link_ = &link;
+  ++reached_.session;
+  reached_.device = device_of(link.descriptor());
+  reached_.address = serial_number_of(link.descriptor());
 }
 
 /// Tries until the link opens; null at the end.
@@ -178,14 +186,28 @@ std::string EpuckBridge::advice() const {
   return "is it switched on, its selector at 3 (Bluetooth) or 8 (USB, e-puck2), and the baud rate 115200?";
 }
 
-std::string EpuckBridge::identity() const {
-  const std::lock_guard lock(mutex_);
-  return std::string(driver_.session().identity().version_text());
+/// With the lock held.
+RobotIdentity EpuckBridge::who() const {
+  RobotIdentity all = reached_;
+  const Identity& told = driver_.session().identity();
+  const SessionState state = driver_.state();
+  const bool introduced =
+      state == SessionState::Ready || state == SessionState::Active || state == SessionState::Suspect;
+  if (!introduced) return all;
+  // A radio speaks as an e-puck2's, and tells no version.
+  const bool tells = settings_.driver.wire != WireForm::Wifi && !told.version_text().empty();
+  if (tells) all.firmware = std::string(told.version_text());
+  if (told.hardware != 0) {
+    std::array<char, 9> digits{};
+    const auto [end, error] = std::to_chars(digits.data(), digits.data() + digits.size(), told.hardware, 16);
+    if (error == std::errc{}) all.hardware = std::string(digits.data(), end);
+  }
+  return all;
 }
 
-std::string EpuckBridge::link() const {
+RobotIdentity EpuckBridge::identity() const {
   const std::lock_guard lock(mutex_);
-  return link_ != nullptr ? link_->name() : "";
+  return who();
 }
 
 StopMessages EpuckBridge::stop_messages() const {
@@ -193,14 +215,15 @@ StopMessages EpuckBridge::stop_messages() const {
   const bool connected = link_ != nullptr && in_network(settings_.link);
   return {.robot = settings_.driver.robot.id,
           .kind = std::string(hal::epuck::kName),
-          .link = absolute_link(settings_.link),
+          .link = reached_.link,
           .body = connected ? stop_body(link_->descriptor()) : "",
-          .version = 1 + links_opened_};
+          .version = 1 + reached_.session + driver_.session().epoch(),
+          .identity = who()};
 }
 
 std::uint64_t EpuckBridge::stop_version() const noexcept {
   const std::lock_guard lock(mutex_);
-  return 1 + links_opened_;
+  return 1 + reached_.session + driver_.session().epoch();
 }
 
 LinkReport EpuckBridge::report() const {
@@ -261,7 +284,7 @@ BridgeStatus EpuckBridge::status() const {
   status.session = session.statistics();
   status.driver = driver_.statistics();
   status.bytes = link_ != nullptr ? sum(bytes_before_, link_->statistics()) : bytes_before_;
-  status.links_opened = links_opened_;
+  status.links_opened = reached_.session;
   return status;
 }
 

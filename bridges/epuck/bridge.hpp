@@ -63,8 +63,7 @@ class EpuckBridge final : public DriverBridge<EpuckBridge, EpuckRobot> {
   bool at_rest() const noexcept override;
   std::string trouble() const override;
   std::string advice() const override;
-  std::string identity() const override;
-  std::string link() const override;
+  RobotIdentity identity() const override;
   StopMessages stop_messages() const override;
   std::uint64_t stop_version() const noexcept override;
   LinkReport report() const override;
@@ -84,6 +83,8 @@ class EpuckBridge final : public DriverBridge<EpuckBridge, EpuckRobot> {
   void run_shutdown(ByteLink& link);
   void pump_now(hal::TimeNs now) noexcept;
   bool wants_new_link() const noexcept;
+  void note_link(ByteLink& link);
+  RobotIdentity who() const;
 
   BridgeSettings settings_;
   LinkOpener opener_;
@@ -91,8 +92,8 @@ class EpuckBridge final : public DriverBridge<EpuckBridge, EpuckRobot> {
   EpuckDriver driver_;
   ByteLink* link_ = nullptr;  // while served
   std::string link_error_;
+  RobotIdentity reached_;        // by the last link that was opened, without the robot's own words
   LinkStatistics bytes_before_;  // of links that are gone
-  std::uint64_t links_opened_ = 0;
 };
 
 }  // namespace tandem::bridges::epuck

@@ -177,24 +177,36 @@ std::string EyebotBridge::advice() const {
   return "is it switched on, in the same network, and called so?";
 }
 
-std::string EyebotBridge::identity() const {
-  const std::lock_guard lock(mutex_);
-  if (driver_.liveness().pulse(lcm_bus::monotonic_ns()) == Pulse::Never) return {};
-  return driver_.settings().name + ", session " + std::to_string(driver_.liveness().session());
+/// With the lock held. What a robot draws at its start is no word: the same robot draws another one at the next.
+RobotIdentity EyebotBridge::who() const {
+  RobotIdentity all;
+  all.link = "lcm:" + settings_.url;
+  all.session = links_opened_;
+  if (links_opened_ > 0) all.device = all.link;
+  if (driver_.liveness().pulse(lcm_bus::monotonic_ns()) != Pulse::Never) all.name = driver_.settings().name;
+  return all;
 }
 
-std::string EyebotBridge::link() const {
+RobotIdentity EyebotBridge::identity() const {
   const std::lock_guard lock(mutex_);
-  return link_ ? "lcm:" + link_->url() : "";
+  return who();
 }
 
 StopMessages EyebotBridge::stop_messages() const {
-  return {.robot = settings_.driver.robot.id,
-          .kind = std::string(hal::eyebot::kName),
-          .link = "lcm:" + settings_.url,
-          .body = to_stop_body(stop_details()),
-          .version = stop_version(),
-          .name = driver_.settings().name};
+  StopMessages messages{.robot = settings_.driver.robot.id,
+                        .kind = std::string(hal::eyebot::kName),
+                        .link = "lcm:" + settings_.url,
+                        .body = to_stop_body(stop_details()),
+                        .version = stop_version(),
+                        .name = driver_.settings().name};
+  messages.identity = identity();
+  return messages;
+}
+
+std::uint64_t EyebotBridge::stop_version() const noexcept {
+  const std::lock_guard lock(mutex_);
+  const bool heard = driver_.liveness().pulse(lcm_bus::monotonic_ns()) != Pulse::Never;
+  return 1 + withdrawals_.load(std::memory_order_relaxed) + links_opened_ + (heard ? 1U : 0U);
 }
 
 /// Orders alone are answered; the rest of what is said and heard is in `describe`.

@@ -82,11 +82,10 @@ class EyebotBridge final : public DriverBridge<EyebotBridge, EyebotRobot>, priva
   bool at_rest() const noexcept override;
   std::string trouble() const override;
   std::string advice() const override;
-  std::string identity() const override;
-  std::string link() const override;
+  RobotIdentity identity() const override;
   /// The body is that of stop_body.hpp.
   StopMessages stop_messages() const override;
-  std::uint64_t stop_version() const noexcept override { return 1 + withdrawals_.load(std::memory_order_relaxed); }
+  std::uint64_t stop_version() const noexcept override;
   LinkReport report() const override;
   void describe(StatusVisitor& visitor) const override;
 
@@ -110,6 +109,7 @@ class EyebotBridge final : public DriverBridge<EyebotBridge, EyebotRobot>, priva
   void keep_link();
   hal::Result<std::shared_ptr<lcm_bus::LcmLink>> open();
   void run_shutdown();
+  RobotIdentity who() const;
 
   BridgeSettings settings_;
   LcmOpener opener_;

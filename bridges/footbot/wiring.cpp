@@ -1,6 +1,8 @@
 #include "bridges/footbot/wiring.hpp"
 
 #include <algorithm>
+#include <array>
+#include <charconv>
 #include <limits>
 
 namespace tandem::bridges::footbot {
@@ -234,13 +236,30 @@ std::vector<NodeStatus> Wiring::nodes() const {
   return all;
 }
 
-std::string Wiring::identity() const {
-  std::string names;
+/// Of those modules without which it does not drive: others come and go. Their addresses, names and descriptions are
+/// what they can be told by: they have no serial numbers.
+void Wiring::identify(RobotIdentity& identity) const {
+  std::string names, ids;
+  std::uint32_t print = 2166136261U;  // FNV-1a
+  const auto add = [&print](std::string_view text) {
+    for (const char c : text) print = (print ^ static_cast<unsigned char>(c)) * 16777619U;
+    print = (print ^ 0xFFU) * 16777619U;
+  };
   for (const NodeRow& row : rows_) {
-    if (row.node == nullptr || !row.node->ready()) continue;
-    names += (names.empty() ? "" : ", ") + row.node->description.name;
+    if (row.map->need != Need::Always || !ready(row)) continue;
+    const aseba::NodeDescription& description = row.node->description;
+    names += (names.empty() ? "" : ", ") + description.name;
+    ids += (ids.empty() ? "node " : ", ") + std::to_string(row.node->id);
+    add(description.name);
+    add(std::to_string(description.bytecode_words) + " " + std::to_string(description.variable_words));
+    for (const aseba::Variable& v : description.variables) add(v.name + " " + std::to_string(v.words));
   }
-  return names;
+  if (names.empty()) return;
+  identity.name = std::move(names);
+  identity.address = std::move(ids);
+  std::array<char, 9> digits{};
+  const auto [end, error] = std::to_chars(digits.data(), digits.data() + digits.size(), print, 16);
+  if (error == std::errc{}) identity.firmware = "variables " + std::string(digits.data(), end);
 }
 
 void WiringStatistics::describe(StatusVisitor& visitor) const {

@@ -73,7 +73,7 @@ class Wiring {
 
   std::vector<NodeStatus> nodes() const;
   /// The names of the nodes that are there.
-  std::string identity() const;
+  void identify(bridges::RobotIdentity& identity) const;
   /// Messages that have everything rest, for whoever must stop the robot when this process cannot. They are right as
   /// long as the nodes that are there now keep their descriptions.
   std::vector<RestMessage> rest_messages() const;

@@ -31,6 +31,7 @@ std::string encode(const Packet& packet) {
   const StopMessages& r = packet.robot;
   for (const std::string* field : {&r.robot, &r.kind, &r.link, &r.name, &r.body}) put(out, *field);
   put(out, std::to_string(r.version));
+  put(out, encode(r.identity));
   put(out, packet.text);
   return out.size() <= kLongestPacket ? out : std::string();
 }
@@ -41,10 +42,13 @@ std::optional<Packet> decode(std::string_view bytes) {
   packet.word = static_cast<Word>(bytes.front());
   bytes.remove_prefix(1);
   StopMessages& r = packet.robot;
-  std::string version;
-  for (std::string* field : {&r.robot, &r.kind, &r.link, &r.name, &r.body, &version, &packet.text}) {
+  std::string version, who;
+  for (std::string* field : {&r.robot, &r.kind, &r.link, &r.name, &r.body, &version, &who, &packet.text}) {
     if (!take(bytes, *field)) return std::nullopt;
   }
+  auto identity = decode_identity(who);
+  if (!identity) return std::nullopt;
+  r.identity = std::move(*identity);
   const auto [end, error] = std::from_chars(version.data(), version.data() + version.size(), r.version);
   if (error != std::errc{} || end != version.data() + version.size() || !bytes.empty()) return std::nullopt;
   return packet;

@@ -18,6 +18,7 @@ using aseba::Node;
 using hal::TimeNs;
 
 const std::string kNodeName = "thymio-II";
+constexpr std::string_view kFirmware = "_fwversion";
 constexpr std::int16_t kProduct = 8;  // of the Thymio II; source: aseba/common/productids.h
 
 constexpr TimeNs kBeatStands = 10 * kBeat_ns;         // from here on the program does not run
@@ -103,6 +104,7 @@ void Wiring::bind(const Node& node) {
   node_ = &node;
   generation_ = node.generation;
   ++times_wired_;
+  firmware_told_ = false;
   state_ = ProgramState::Unknown;
   heard_ns_ = beat_ns_ = loaded_ns_ = 0;
   beat_known_ = false;
@@ -167,13 +169,16 @@ std::vector<aseba::NodeStatus> Wiring::nodes() const {
   return {status};
 }
 
-std::string Wiring::identity() const {
-  if (!ready()) return "";
-  std::string text = kNodeName + " " + std::to_string(node_->id);
-  const aseba::Variable* const firmware = node_->description.variable("_fwversion");
-  if (firmware != nullptr && node_->taken_ns(firmware->address) != 0)
-    text += ", firmware " + std::to_string(node_->value(firmware->address));
-  return text;
+void Wiring::identify(RobotIdentity& identity) const {
+  if (!ready()) return;
+  identity.name = node_->description.name;
+  identity.address = "node " + std::to_string(node_->id);
+  const auto told = [this](std::string_view name) -> std::optional<std::string> {
+    const aseba::Variable* const variable = node_->description.variable(name);
+    if (variable == nullptr || node_->taken_ns(variable->address) == 0) return std::nullopt;
+    return std::to_string(node_->value(variable->address));
+  };
+  if (const auto version = told(kFirmware)) identity.firmware = "firmware " + *version;
 }
 
 // --- the program ---
@@ -327,6 +332,7 @@ void Wiring::fill_port(TimeNs now, Fill&& fill) noexcept {
 }
 
 void Wiring::fill(TimeNs now) noexcept {
+  note_firmware();
   fill_wheels(now);
   fill_port<hal::Proximity>(now, [this](hal::Proximity& port, std::span<const std::int16_t> words) {
     port.count = static_cast<std::uint32_t>(words.size());
@@ -389,10 +395,18 @@ void Wiring::ask(TimeNs /*now*/) noexcept {
   for (const Source& source : sources_) {
     if (source.bound && robot_.uses(*source.type)) want(source.address, source.words);
   }
-  for (const std::string_view once : {"_productId", "_fwversion"}) {
+  for (const std::string_view once : {std::string_view("_productId"), kFirmware}) {
     const aseba::Variable* const variable = node_->description.variable(once);
     if (variable != nullptr && node_->taken_ns(variable->address) == 0) want(variable->address, 1);
   }
+}
+
+/// The version comes once, some time after the rest.
+void Wiring::note_firmware() noexcept {
+  if (firmware_told_ || !ready()) return;
+  const aseba::Variable* const version = node_->description.variable(kFirmware);
+  firmware_told_ = version != nullptr && node_->taken_ns(version->address) != 0;
+  rest_version_ += firmware_told_ ? 1 : 0;
 }
 
 TimeNs Wiring::oldest_ns() const noexcept {

@@ -70,7 +70,7 @@ class Wiring {
 
   std::vector<aseba::NodeStatus> nodes() const;
   /// "thymio-II 1, firmware 14".
-  std::string identity() const;
+  void identify(bridges::RobotIdentity& identity) const;
   std::vector<aseba::RestMessage> rest_messages() const;
   std::uint64_t rest_version() const noexcept { return rest_version_; }
   const WiringStatistics& statistics() const noexcept { return statistics_; }
@@ -127,6 +127,7 @@ class Wiring {
   template <class Port, class Fill>
   void fill_port(hal::TimeNs now, Fill&& fill) noexcept;
   void fill_wheels(hal::TimeNs now) noexcept;
+  void note_firmware() noexcept;
 
   Calibration calibration_;
   aseba::Network& network_;
@@ -160,6 +161,7 @@ class Wiring {
   bool drives_ = false;
   hal::TimeNs rested_ns_ = 0;
   std::uint64_t rest_version_ = 0;
+  bool firmware_told_ = false;
 
   hal::TimeNs wheels_ns_ = 0;  // of the speeds that were last added up
   double left_m_s_ = 0.0, right_m_s_ = 0.0;

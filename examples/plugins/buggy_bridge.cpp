@@ -10,6 +10,7 @@
 #include "bridges/bridge_type.hpp"
 #include "bridges/bridged_robot.hpp"
 #include "bridges/guardian/stopper.hpp"
+#include "bridges/link/device.hpp"
 #include "bridges/link/link_text.hpp"
 #include "buggy.hpp"
 #include "hal/device/wheels.hpp"
@@ -158,16 +159,22 @@ class BuggyBridge final : public bridges::RobotBridge {
     return trouble_;
   }
   std::string advice() const override { return "is it switched on, and its cable in?"; }
-  std::string identity() const override { return ""; }
-  std::string link() const override { return request_.link; }
+  bridges::RobotIdentity identity() const override {
+    const std::lock_guard lock(mutex_);
+    return reached_;  // a buggy tells nothing of itself
+  }
   bridges::StopMessages stop_messages() const override {
     return {.robot = request_.robot,
             .kind = std::string(kName),
             .link = bridges::absolute_link(request_.link),
             .body = "",
-            .version = 1};
+            .version = stop_version(),
+            .identity = identity()};
   }
-  std::uint64_t stop_version() const noexcept override { return 1; }
+  std::uint64_t stop_version() const noexcept override {
+    const std::lock_guard lock(mutex_);
+    return 1 + reached_.session;
+  }
   bridges::LinkReport report() const override {
     const std::lock_guard lock(mutex_);
     return report_;
@@ -203,6 +210,9 @@ class BuggyBridge final : public bridges::RobotBridge {
         changed_.wait_for(lock, std::chrono::milliseconds(500), [this] { return ending_; });
         continue;
       }
+      reached_.link = bridges::absolute_link(request_.link);
+      reached_.device = bridges::device_at(request_.link);
+      ++reached_.session;
       lock.unlock();
       Conversation robot(std::move(opened).value());
       while (!ending() && robot.open()) talk(robot);
@@ -251,6 +261,7 @@ class BuggyBridge final : public bridges::RobotBridge {
   TimeNs answered_ns_ = 0, committed_ns_ = 0;
   bridges::LinkHealth health_ = bridges::LinkHealth::Connecting;
   bridges::LinkReport report_;
+  bridges::RobotIdentity reached_;
   std::string trouble_;
   bool stopped_ = false, at_rest_ = false, ending_ = false;
   std::thread thread_;

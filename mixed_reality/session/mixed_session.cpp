@@ -449,7 +449,7 @@ std::vector<RealRobotStatus> MixedSession::status() const {
     status.id = twin.id();
     status.device = last_[i].device;
     status.link = bridges_[i].link;
-    status.identity = twin.real().identity();
+    status.identity = bridges::to_text(twin.real().identity());
     for (const Candidate& candidate : candidates_) {
       if (candidate.robot == status.id) status.coming = candidate.by.id;
     }

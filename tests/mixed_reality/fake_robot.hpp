@@ -97,8 +97,7 @@ class FakeRobot final : public bridges::RobotBridge, private hal::Robot {
   bool stopped_itself() const noexcept override { return body_.stopped_itself; }
   std::string trouble() const override { return body_.link_up ? "" : "cable out"; }
   std::string advice() const override { return "is it switched on?"; }
-  std::string identity() const override { return "fake"; }
-  std::string link() const override { return body_.link_up ? "fake" : ""; }
+  bridges::RobotIdentity identity() const override { return {.link = "fake", .device = "fake", .session = 1}; }
   bridges::StopMessages stop_messages() const override {
     return {.robot = "fake", .kind = "fake", .link = "fake", .body = "", .version = 1};
   }

@@ -93,10 +93,16 @@ class CrawlerBridge final : public bridges::RobotBridge {
   bool at_rest() const noexcept override { return stopped_; }
   std::string trouble() const override { return ""; }
   std::string advice() const override { return "is the disk full?"; }
-  std::string identity() const override { return "a file"; }
-  std::string link() const override { return request_.link; }
+  bridges::RobotIdentity identity() const override {
+    return {.link = request_.link, .device = path_of(request_.link), .session = 1};
+  }
   bridges::StopMessages stop_messages() const override {
-    return {.robot = request_.robot, .kind = std::string(kKind), .link = request_.link, .body = "stand", .version = 1};
+    return {.robot = request_.robot,
+            .kind = std::string(kKind),
+            .link = request_.link,
+            .body = "stand",
+            .version = 1,
+            .identity = identity()};
   }
   std::uint64_t stop_version() const noexcept override { return 1; }
   bridges::LinkReport report() const override { return {}; }

@@ -65,7 +65,9 @@ TEST(ThymioDriver, LoadsItsProgramAndDrives) {
   EXPECT_EQ(drive.word("motor.left.target"), 200);
   EXPECT_EQ(drive.word("motor.right.target"), -100);
   EXPECT_EQ(drive.driver.wiring().statistics().programs, 1U);
-  EXPECT_EQ(drive.driver.wiring().identity(), "thymio-II 1, firmware 14");
+  RobotIdentity who;
+  drive.driver.wiring().identify(who);
+  EXPECT_EQ(to_text(who), "thymio-II, firmware 14, node 1");
 }
 
 TEST(ThymioDriver, TheRobotStopsByItselfWhenTheHubFallsSilent) {

@@ -39,8 +39,7 @@ class ScriptedBridge final : public bridges::RobotBridge, private hal::Robot {
   bool at_rest() const noexcept override { return true; }
   std::string trouble() const override { return {}; }
   std::string advice() const override { return {}; }
-  std::string identity() const override { return {}; }
-  std::string link() const override { return {}; }
+  bridges::RobotIdentity identity() const override { return {.link = "fake", .device = "fake", .session = 1}; }
   bridges::StopMessages stop_messages() const override { return {}; }
   std::uint64_t stop_version() const noexcept override { return 0; }
   bridges::LinkReport report() const override { return {}; }
