@@ -55,8 +55,8 @@ class TestedEpuck final : public TestedRobot {
  public:
   TestedEpuck(std::size_t number, emulator::Variant variant, bridge::WireForm wire)
       : firmware_({.variant = variant}, body_,
-                  [number](TimeNs at, std::string_view event, const bridges::EventFields& fields) {
-                    if (traced()) trace("ep" + std::to_string(number), at, bridges::to_json(at, event, fields));
+                  [this, number](TimeNs at, std::string_view event, const bridges::EventFields& fields) {
+                    log("ep" + std::to_string(number), at, bridges::to_json(at, event, fields));
                   }),
         driver_(settings(number, wire)),
         light_(driver_.robot().sensor<hal::Light>()),
@@ -285,6 +285,7 @@ class RadioLine {
 
 Kind on_a_serial_line() {
   Kind kind;
+  kind.name = "epuck_serial";
   kind.choices = kChoices;
   kind.make = [](std::size_t number, std::uint64_t seed) {
     return std::make_unique<TestedEpuck<ByteLine, bridge::SerialStop>>(number, static_cast<emulator::Variant>(seed % 4),
@@ -304,6 +305,7 @@ TEST(Faults, DoNotLetAHubThatEndsTakeAnEpuckForRestingWhoseNewStopIsDamaged) {
 
 TEST(Faults, LeaveNoEpuck2MovingThatIsReachedOverItsRadio) {
   Kind kind;
+  kind.name = "epuck_radio";
   kind.choices = kRadioChoices;
   kind.make = [](std::size_t number, std::uint64_t) {
     return std::make_unique<TestedEpuck<RadioLine, bridge::WifiStop>>(number, emulator::Variant::Epuck2,

@@ -83,7 +83,7 @@ class TestedEyebot final : public TestedRobot {
       : name_("eb" + std::to_string(number)),
         robot_({.name = name_}, body_,
                [this](TimeNs at, std::string_view event, const bridges::EventFields& fields) {
-                 if (traced()) trace(name_, at, bridges::to_json(at, event, fields));
+                 log(name_, at, bridges::to_json(at, event, fields));
                }),
         driver_(settings(), inbox_, mouth_),
         light_(driver_.robot().sensor<hal::Light>()),
@@ -249,6 +249,7 @@ class TestedEyebot final : public TestedRobot {
 
 TEST(Faults, LeaveNoEyebotMoving) {
   Kind kind;
+  kind.name = "eyebot";
   kind.choices = kChoices;
   kind.land_ns = 6 * kSecond;
   kind.make = [](std::size_t number, std::uint64_t seed) { return std::make_unique<TestedEyebot>(number, seed); };

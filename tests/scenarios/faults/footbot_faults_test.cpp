@@ -96,8 +96,8 @@ class TestedFootbot final : public TestedRobot {
  public:
   TestedFootbot(std::size_t number, std::uint64_t seed)
       : robot_({.protocol = seed % 2 == 0 ? emulator::Protocol::V4 : emulator::Protocol::V5}, body_,
-               [number](TimeNs at, std::string_view event, const bridges::EventFields& fields) {
-                 if (traced()) trace("fb" + std::to_string(number), at, bridges::to_json(at, event, fields));
+               [this, number](TimeNs at, std::string_view event, const bridges::EventFields& fields) {
+                 log("fb" + std::to_string(number), at, bridges::to_json(at, event, fields));
                }),
         driver_(settings(number), messages_),
         light_(driver_.robot().sensor<hal::Light>()),
@@ -217,6 +217,7 @@ class TestedFootbot final : public TestedRobot {
 TEST(Faults, LeaveNoFootbotMoving) {
   ASSERT_FALSE(default_map().nodes.empty());
   Kind kind;
+  kind.name = "footbot";
   kind.choices = kChoices;
   kind.make = [](std::size_t number, std::uint64_t seed) { return std::make_unique<TestedFootbot>(number, seed); };
   EXPECT_EQ(play_all(kind, 100), "");

@@ -58,12 +58,14 @@ class Run {
     }
   }
 
-  std::string play() {
+  /// `logs`: takes over what the emulators logged.
+  std::string play(golden::Digest& logs) {
     begin();
     if (well()) begin_faults();
     if (well()) hub_fault();
     if (well() && !story_.hub_goes()) check_back();
     if (well() && !story_.hub_goes()) end();
+    for (const Actor& a : actors_) logs.add(a.robot->logged().text());
     return wrong_;
   }
 
@@ -328,9 +330,9 @@ std::uint64_t number_in(const char* variable, std::uint64_t otherwise) {
   return text == nullptr || *text == '\0' ? otherwise : std::strtoull(text, nullptr, 10);
 }
 
-std::string play(const Kind& kind, std::uint64_t seed, Figures& figures) {
+std::string play(const Kind& kind, std::uint64_t seed, Figures& figures, golden::Digest& logs) {
   const Story story = draw_story(seed, kind.choices);
-  const std::string wrong = Run(story, kind, figures).play();
+  const std::string wrong = Run(story, kind, figures).play(logs);
   return wrong.empty() ? "" : to_text(story) + "\n  " + wrong + "\n";
 }
 
@@ -338,24 +340,27 @@ std::string play(const Kind& kind, std::uint64_t seed, Figures& figures) {
 
 std::string play_one(const Kind& kind, std::uint64_t seed) {
   Figures figures;
-  return play(kind, seed, figures);
+  golden::Digest logs;
+  return play(kind, seed, figures, logs);
 }
 
 std::string play_all(const Kind& kind, std::uint64_t short_runs) {
   constexpr int kMostTold = 20;
   Figures figures;
+  golden::Digest logs;
   std::string text;
   int failed = 0;
   const std::uint64_t only = number_in("TANDEM_FAULT_SEED", 0);
   const std::uint64_t runs = only != 0 ? 1 : number_in("TANDEM_FAULT_RUNS", short_runs);
   for (std::uint64_t i = 1; i <= runs; ++i) {
-    const std::string wrong = play(kind, only != 0 ? only : i, figures);
+    const std::string wrong = play(kind, only != 0 ? only : i, figures, logs);
     if (wrong.empty()) continue;
     if (++failed <= kMostTold) text += wrong;
   }
   std::printf("%llu runs, %d failed; driving within %s of the last fault, at rest within %s of being reachable\n",
               static_cast<unsigned long long>(runs), failed, seconds(figures.back_ns).c_str(),
               seconds(figures.rest_ns).c_str());
+  if (only == 0 && runs == short_runs) golden::expect("fault_stories.txt", kind.name, logs.text());
   return text;
 }
 

@@ -18,6 +18,7 @@ namespace tandem::faults {
 
 /// What a kind of robot needs.
 struct Kind {
+  std::string name;  ///< of its line among the golden logs
   std::span<const FaultChoice> choices;
   /// `seed` may choose the firmware, or what else there is.
   std::function<std::unique_ptr<TestedRobot>(std::size_t number, std::uint64_t seed)> make;
@@ -30,6 +31,7 @@ struct Kind {
 };
 
 /// Plays stories 1 to `short_runs`, or as many as TANDEM_FAULT_RUNS says; or the one that TANDEM_FAULT_SEED names.
+/// What the emulators logged in stories 1 to `short_runs` is compared with the golden digest of the kind.
 /// @returns all that went wrong, with what it takes to repeat it; empty: nothing.
 std::string play_all(const Kind& kind, std::uint64_t short_runs);
 

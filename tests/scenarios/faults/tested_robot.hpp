@@ -8,6 +8,7 @@
 #include "bridges/robot_bridge.hpp"
 #include "hal/device/ring_sensors.hpp"
 #include "hal/time.hpp"
+#include "tests/golden/golden.hpp"
 
 namespace tandem::faults {
 
@@ -43,6 +44,9 @@ inline void trace(const std::string& who, TimeNs now, const std::string& what) {
 class TestedRobot {
  public:
   virtual ~TestedRobot() = default;
+
+  /// Of all that the emulator logged, in this order.
+  const golden::Digest& logged() const noexcept { return logged_; }
 
   // --- the robot and its line ---
   /// Faults count from `now` on.
@@ -84,6 +88,16 @@ class TestedRobot {
   /// @returns whether the robot has confirmed its stop.
   virtual bool guard(TimeNs now) = 0;
   virtual void end_guarding(TimeNs now) = 0;
+
+ protected:
+  /// Takes over an event of the emulator.
+  void log(const std::string& who, TimeNs at, const std::string& event) {
+    if (traced()) trace(who, at, event);
+    logged_.add(who + ' ' + std::to_string(at) + ' ' + event + '\n');
+  }
+
+ private:
+  golden::Digest logged_;
 };
 
 }  // namespace tandem::faults

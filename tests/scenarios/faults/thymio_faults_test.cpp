@@ -47,8 +47,8 @@ class TestedThymio final : public TestedRobot {
  public:
   explicit TestedThymio(std::size_t number)
       : robot_({}, body_,
-               [number](TimeNs at, std::string_view event, const bridges::EventFields& fields) {
-                 if (traced()) trace("th" + std::to_string(number), at, bridges::to_json(at, event, fields));
+               [this, number](TimeNs at, std::string_view event, const bridges::EventFields& fields) {
+                 log("th" + std::to_string(number), at, bridges::to_json(at, event, fields));
                }),
         driver_(settings(number), hub_),
         ground_(driver_.robot().sensor<hal::Ground>()),
@@ -130,6 +130,7 @@ class TestedThymio final : public TestedRobot {
 
 TEST(Faults, LeaveNoThymioMoving) {
   Kind kind;
+  kind.name = "thymio";
   kind.choices = kChoices;
   kind.make = [](std::size_t number, std::uint64_t) { return std::make_unique<TestedThymio>(number); };
   kind.fresh_ns = 300 * kMs;  // its own measurements are up to 0.1 s old
