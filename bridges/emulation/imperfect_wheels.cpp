@@ -17,7 +17,7 @@ void WheelErrors::describe(hal::ParamVisitor& v) {
   v.number("left_wheel", left, hal::unit::none, {0.1, 10.0}, "What it rolls, as a part of what it should.");
   v.number("right_wheel", right, hal::unit::none, {0.1, 10.0}, "The same.");
   v.number("wheel_base", base, hal::unit::none, {0.1, 10.0}, "The wheel base that it turns by, of that it should.");
-  v.number("wheel_delay", delay_s, hal::unit::s, {0.0, 10.0}, "Until its wheels obey.");
+  v.number("wheel_delay", delay_s, hal::unit::s, {0.0, 10.0}, "By which its body is later than its motors.");
   v.number("wheel_noise", noise_sqrt_m, hal::unit::none, {0.0, 1.0},
            "Standard deviation of each wheel's way after 1 m, in m; it grows with the root of the way.");
   v.number("backlash", backlash_m, hal::unit::m, {0.0, 0.1}, "What a wheel loses whenever it turns round.");
@@ -43,6 +43,14 @@ void ImperfectWheels::tell(hal::TimeNs now, double left_m_s, double right_m_s) {
 
 bool ImperfectWheels::still() const noexcept {
   return std::all_of(told_.begin(), told_.end(), [](const Told& t) { return t.left_m_s == 0.0 && t.right_m_s == 0.0; });
+}
+
+ImperfectWheels::Ways ImperfectWheels::speeds_m_s(hal::TimeNs at) const noexcept {
+  const Told* now = &told_.front();
+  for (const Told& told : told_) {
+    if (told.from <= at) now = &told;
+  }
+  return {now->left_m_s * errors_.left, now->right_m_s * errors_.right};
 }
 
 double ImperfectWheels::rolled(double way_m, double scale, double floor, double& play_m) {

@@ -13,7 +13,7 @@ namespace tandem::bridges {
 struct WheelErrors {
   double left = 1.0, right = 1.0;  ///< what a wheel rolls, of what it should
   double base = 1.0;               ///< the wheel base that the body turns by, of that in the data sheet
-  double delay_s = 0.0;            ///< until the wheels obey
+  double delay_s = 0.0;            ///< by which the wheels are later than the motors, whose counters know nothing of it
   double noise_sqrt_m = 0.0;       ///< standard deviation of each wheel's way after 1 m; grows with the way's root
   double backlash_m = 0.0;         ///< that a wheel loses at its rim whenever it turns round
   double bumps = 0.0;              ///< by what part the floor changes what wheels roll, from place to place
@@ -37,6 +37,8 @@ class ImperfectWheels {
   void tell(hal::TimeNs now, double left_m_s, double right_m_s);
   /// What they roll on the floor in that time, in which the robot is about (x, y). Times never go back.
   Ways roll(hal::TimeNs from, hal::TimeNs until, double x_m, double y_m);
+  /// Speeds on the floor at `at`, which is not before the last `roll`: as they obey, without noise and play.
+  Ways speeds_m_s(hal::TimeNs at) const noexcept;
   /// Whether they stand, and will until they are told otherwise.
   bool still() const noexcept;
 

@@ -81,6 +81,8 @@ class Server {
         tell_(in_order(events)),
         faults_(std::move(faults)),
         firmware_(robot, body, tell_),
+        to_robot_delay_ns_(delay_ns(robot.delays.to_robot_s)),
+        to_host_delay_ns_(delay_ns(robot.delays.to_host_s)),
         link_(port_->link()),
         path_(port_->path()),
         own_body_(own_body),
@@ -108,6 +110,7 @@ class Server {
   EventSink tell_;
   FaultPlan faults_;
   Firmware firmware_;
+  TimeNs to_robot_delay_ns_, to_host_delay_ns_;
   std::string link_, path_;
   std::optional<Radio> radio_;
   std::uint64_t hosts_ = 0;  // of the radio
@@ -183,7 +186,7 @@ hal::Status Server::take_in(TimeNs now) {
   const bool clear = same_baud(now);
   for (std::size_t i = 0; i < count.value(); ++i) {
     line_free_at_ = std::max(line_free_at_, now) + (radio_ ? 0 : kByteNs);
-    to_robot_.push_back({clear ? buffer[i] : faults_.garble(buffer[i]), line_free_at_});
+    to_robot_.push_back({clear ? buffer[i] : faults_.garble(buffer[i]), line_free_at_ + to_robot_delay_ns_});
   }
   return {};
 }
@@ -214,7 +217,7 @@ void Server::run_robot(TimeNs now) {
   for (const SentByte& s : sent_) {
     const auto byte = faults_.to_host(s.byte, s.at);
     if (!byte || !port_) continue;
-    const TimeNs at = s.at + faults_.delay_ns(s.at);
+    const TimeNs at = s.at + to_host_delay_ns_ + faults_.delay_ns(s.at);
     const SentByte sent{*byte, to_host_.empty() ? at : std::max(at, to_host_.back().at)};
     to_host_.push_back(sent);
     if (faults_.doubles(s.at)) to_host_.push_back(sent);

@@ -27,8 +27,12 @@ Firmware::Firmware(const Options& options, EmulatedBody& body, EventSink sink)
       facts_(facts_of(options.variant)),
       body_(body),
       sink_(std::move(sink)),
+      to_motors_(options.delays.command_s + options.delays.body_s),
+      to_counters_(options.delays.command_s + options.delays.counters_s),
       left_(facts_.speed_limit_steps_s, facts_.whole_ticks ? kMotorTickNs : 0),
-      right_(left_) {}
+      right_(left_),
+      left_motor_(left_),
+      right_motor_(left_) {}
 
 void Firmware::event(hal::TimeNs at, std::string_view name, const EventFields& fields) const {
   if (sink_) sink_(at, name, fields);
@@ -58,18 +62,21 @@ void Firmware::run_until(hal::TimeNs now) {
   now_ = std::max(now_, now);
   for (;;) {
     if (errand_ != Errand::None) {
-      if (errand_until_ > now_) return;
+      if (errand_until_ > now_) break;
+      turn_motors(errand_until_);
       finish_errand();
       continue;
     }
-    if (received_.empty()) return;
+    if (received_.empty()) break;
     const Arrived next = received_.front();
     const hal::TimeNs start = std::max(free_at_, next.at);
-    if (start > now_) return;
+    if (start > now_) break;
     received_.pop_front();
     overflowing_ = false;
+    turn_motors(start);
     consume(next.byte, start);
   }
+  turn_motors(now_);
 }
 
 void Firmware::take_sent(hal::TimeNs now, std::vector<SentByte>& out) {
@@ -90,6 +97,7 @@ std::optional<hal::TimeNs> Firmware::next_event(hal::TimeNs patience_ns) const {
     consider(errand_until_);
   else if (!received_.empty())
     consider(std::max(free_at_, received_.front().at));
+  if (const auto at = to_motors_.next_at()) consider(*at);
   return next;
 }
 
@@ -104,7 +112,8 @@ void Firmware::reset(hal::TimeNs at, std::string_view why) {
   left_.set_count(0);
   right_.set_count(0);
   event(at, "reset", {{"why", why}});
-  set_speeds(0, 0, "reset", at);
+  event(at, "wheels", {{"left", 0}, {"right", 0}, {"by", "reset"}});
+  stop_wheels(at);
   free_at_ = at;
   start_errand(Errand::Boot, at + options_.boot_ns);
 }
@@ -207,6 +216,10 @@ void Firmware::calibrate(const BodySenses& senses) {
 }
 
 void Firmware::count_steps(hal::TimeNs at) {
+  to_counters_.take(at, [this](hal::TimeNs from, const Speeds& speeds) {
+    left_.set_speed(speeds.left, from);
+    right_.set_speed(speeds.right, from);
+  });
   left_.advance(at);
   right_.advance(at);
 }
@@ -219,15 +232,33 @@ void Firmware::set_speeds(std::int32_t left, std::int32_t right, std::string_vie
 }
 
 void Firmware::turn_wheels(std::int32_t left, std::int32_t right, hal::TimeNs at) {
-  left_.set_speed(static_cast<std::int16_t>(left), at);
-  right_.set_speed(static_cast<std::int16_t>(right), at);
+  const Speeds speeds{static_cast<std::int16_t>(left), static_cast<std::int16_t>(right)};
+  to_motors_.put(at, speeds);
+  to_counters_.put(at, speeds);
+  turn_motors(at);
+}
+
+/// At once: there is no power.
+void Firmware::stop_wheels(hal::TimeNs at) {
+  to_motors_.clear();
+  to_counters_.clear();
+  for (Stepper* stepper : {&left_, &right_, &left_motor_, &right_motor_}) stepper->set_speed(0, at);
   actuate(at);
+}
+
+/// What was told reaches the motors in its time.
+void Firmware::turn_motors(hal::TimeNs now) {
+  to_motors_.take(now, [this](hal::TimeNs at, const Speeds& speeds) {
+    left_motor_.set_speed(speeds.left, at);
+    right_motor_.set_speed(speeds.right, at);
+    actuate(at);
+  });
 }
 
 void Firmware::actuate(hal::TimeNs at) {
   BodyCommand command = memory_.lights;
-  command.left_m_s = left_.real_steps_s() * step_m();
-  command.right_m_s = right_.real_steps_s() * step_m();
+  command.left_m_s = left_motor_.real_steps_s() * step_m();
+  command.right_m_s = right_motor_.real_steps_s() * step_m();
   body_.actuate(at, command);
 }
 

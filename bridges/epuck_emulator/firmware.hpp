@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "bridges/emulation/delays.hpp"
 #include "bridges/emulation/event_log.hpp"
 #include "bridges/epuck_emulator/body.hpp"
 #include "bridges/epuck_emulator/stepper.hpp"
@@ -37,6 +38,7 @@ class Firmware {
     std::uint8_t selector = 3;   ///< position of the rotary switch, 0 to 15
     hal::TimeNs boot_ns = 200 * hal::kNsPerMs;       ///< from a reset to the greeting; deaf meanwhile
     hal::TimeNs calibration_ns = hal::kNsPerSecond;  ///< between the two lines that answer K
+    Delays delays{};                                 ///< those of the link are its server's
   };
 
   /// `body` must outlive the firmware. Nothing happens before `power_on`.
@@ -113,6 +115,8 @@ class Firmware {
   void calibrate(const BodySenses& senses);
   void set_speeds(std::int32_t left, std::int32_t right, std::string_view by, hal::TimeNs at);
   void turn_wheels(std::int32_t left, std::int32_t right, hal::TimeNs at);
+  void stop_wheels(hal::TimeNs at);
+  void turn_motors(hal::TimeNs now);
   void set_led(bool any_device, std::int32_t index, std::int32_t action, hal::TimeNs at);
   void show_lights(const BodyCommand& lights, hal::TimeNs at);
   void actuate(hal::TimeNs at);
@@ -171,8 +175,12 @@ class Firmware {
   std::optional<hal::TimeNs> first_driven_at_;
 
   Memory memory_;
-  Stepper left_;
-  Stepper right_;
+  struct Speeds {
+    std::int16_t left = 0, right = 0;
+  };
+  DelayLine<Speeds> to_motors_, to_counters_;
+  Stepper left_, right_;                       // as the counters know them
+  Stepper left_motor_, right_motor_;           // as the body does
   std::map<std::uint16_t, std::uint8_t> bus_;  // I2C: module and register to value
 };
 

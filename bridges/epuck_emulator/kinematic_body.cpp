@@ -55,7 +55,9 @@ double KinematicBody::distance_to_wall_m(double x_m, double y_m, double directio
 BodySenses KinematicBody::sense(hal::TimeNs now) {
   advance(now);
   BodySenses senses = surroundings;
-  senses.turn_rad_s[2] = (command_.right_m_s - command_.left_m_s) / robot_part<hal::DifferentialDrive>().wheel_base_m;
+  const ImperfectWheels::Ways rolls = wheels_.speeds_m_s(now);  // a second's
+  senses.turn_rad_s[2] =
+      (rolls.right_m - rolls.left_m) / (wheels_.errors().base * robot_part<hal::DifferentialDrive>().wheel_base_m);
   if (!arena_) return senses;
   const double c = std::cos(pose_.heading_rad);
   const double s = std::sin(pose_.heading_rad);

@@ -18,17 +18,19 @@ struct Own {
   bool cliff_sensors = false;
   PoseOptions poses{};
   WheelErrors wheels{};
+  Delays delays{};
   void describe(hal::ParamVisitor& v) {
     v.text("firmware", firmware, "btcom, gctronic, webots or epuck2.");
     v.integer("selector", selector, {0, 15}, "Position of the rotary switch.");
     v.flag("cliff_sensors", cliff_sensors, "The ground board has two cliff sensors.");
     poses.describe(v);
     wheels.describe(v);
+    delays.describe(v);
   }
 };
 
 struct OwnOfEpuck2 : Own {
-  OwnOfEpuck2() { *static_cast<Own*>(this) = {"epuck2", 3, true, {}, {}}; }
+  OwnOfEpuck2() { *static_cast<Own*>(this) = {"epuck2", 3, true, {}, {}, {}}; }
 };
 
 template <class OwnOptions>
@@ -42,6 +44,7 @@ hal::Status run_type(const EmulatorRequest& request, SharedPorts* ports, const s
   options.robot.cliff_sensors = own.cliff_sensors;
   options.poses = own.poses;
   options.wheels = own.wheels;
+  options.robot.delays = own.delays;
   options.ready = [&request](const std::string& path) {
     if (request.ready)
       request.ready("e-puck's firmware on " + path + ": connect with --link " +
@@ -50,6 +53,7 @@ hal::Status run_type(const EmulatorRequest& request, SharedPorts* ports, const s
   std::optional<PortBody> body;
   if (ports != nullptr) {
     options.body = &body.emplace(*ports);
+    options.robot.delays.body_s = own.wheels.delay_s;
     options.pose_elsewhere = [ports] { return ports->pose(); };
   }
   return run(options, stop);

@@ -230,7 +230,10 @@ void Server::distribute() {
       if (!concerns) return;
       std::vector<Datagram> arriving;
       flyer.faults.to_robot(message, arriving);
-      for (Datagram& d : arriving) flyer.to_robot.push_back(std::move(d));
+      for (Datagram& d : arriving) {
+        d.at += delay_ns(options_.robot.delays.to_robot_s);
+        flyer.to_robot.push_back(std::move(d));
+      }
     };
     for (const auto& flyer : flyers_) give(*flyer);
     for (const auto& namesake : namesakes_) {
@@ -255,7 +258,10 @@ void Server::publish(Flyer& flyer, TimeNs now) {
   flyer.robot.take_sent(sent);
   std::vector<Datagram> leaving;
   for (const Datagram& message : sent) flyer.faults.to_hub(message, leaving);
-  for (Datagram& d : leaving) flyer.to_hub.push_back(std::move(d));
+  for (Datagram& d : leaving) {
+    d.at += delay_ns(options_.robot.delays.to_host_s);
+    flyer.to_hub.push_back(std::move(d));
+  }
   while (!flyer.to_hub.empty() && flyer.to_hub.front().at <= now) {
     const Datagram& message = flyer.to_hub.front();
     if (message.channel.ends_with("/state")) flyer.robot.state_left(monotonic_ns());

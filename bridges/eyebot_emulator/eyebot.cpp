@@ -103,7 +103,9 @@ Eyebot::Eyebot(const Options& options, EmulatedBody& body, EventSink sink)
       prefix_("eyebot/" + options.name + "/"),
       session_(options.session),
       pilot_(options.fence),
-      battery_(options.flight_s) {}
+      battery_(options.flight_s),
+      to_body_(options.delays.command_s + options.delays.body_s),
+      from_body_(options.delays.counters_s) {}
 
 void Eyebot::tell(TimeNs at, std::string_view event, EventFields fields) const {
   fields.insert(fields.begin(), EventField("robot", options_.name));
@@ -135,6 +137,7 @@ void Eyebot::restart(std::int32_t session, TimeNs at) {
   loops_ = flooded_ = 0;
   booted_at_ = next_loop_ = at + options_.boot_ns;
   command_ = {};
+  to_body_.clear();  // at once: there is no power
   body_.actuate(at, command_);
   tell_changes(at);
 }
@@ -169,7 +172,11 @@ void Eyebot::look(TimeNs at) {
   const double sinking_m_s = -senses_.v_WB[2];
   battery_.run(at - looked_at_, supervisor_.motors());
   looked_at_ = at;
-  senses_ = body_.sense(at);
+  to_body_.take(at, [this](TimeNs from, const BodyCommand& command) { body_.actuate(from, command); });
+  const BodySenses now = body_.sense(at);
+  if (loops_ == 0) senses_ = now;  // older ones there are not
+  from_body_.put(at, now);
+  from_body_.take(at, [this](TimeNs, const BodySenses& senses) { senses_ = senses; });
   if (senses_.charge && !charge_is_set_) battery_.set(*senses_.charge);
   for (Heard& heard : body_.take_heard()) heard_.push_back(std::move(heard));
   if (heard_.size() > kMostHeard) {
@@ -200,7 +207,8 @@ void Eyebot::act(TimeNs at) {
   command_.manoeuvre_m_s = supervisor_.speed_m_s();
   command_.velocity_m_s = guidance.velocity_m_s;
   command_.yaw_rad_s = guidance.yaw_rad_s;
-  body_.actuate(at, command_);
+  to_body_.put(at, command_);
+  to_body_.take(at, [this](TimeNs from, const BodyCommand& command) { body_.actuate(from, command); });
 }
 
 void Eyebot::sample_scan(TimeNs at) {

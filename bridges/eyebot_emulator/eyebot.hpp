@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "bridges/emulation/delays.hpp"
 #include "bridges/emulation/event_log.hpp"
 #include "bridges/eyebot_emulator/battery.hpp"
 #include "bridges/eyebot_emulator/body.hpp"
@@ -49,6 +50,7 @@ class Eyebot {
     double image_hz = 0.0;     ///< 0 to 2
     Fence fence{};
     hal::TimeNs boot_ns = 100 * hal::kNsPerMs;  ///< from power to the first sign of life; deaf meanwhile
+    Delays delays{};                            ///< those of the link are its server's
   };
 
   /// `body` must outlive the robot. Nothing happens before `power_on`.
@@ -141,6 +143,8 @@ class Eyebot {
 
   BodySenses senses_;
   BodyCommand command_;
+  DelayLine<BodyCommand> to_body_;
+  DelayLine<BodySenses> from_body_;
   std::vector<Heard> heard_;
   std::vector<ScanSample> scan_;
   hal::TimeNs booted_at_ = 0;

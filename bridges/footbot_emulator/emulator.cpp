@@ -28,7 +28,9 @@ class Server {
       : options_(options),
         faults_(std::move(faults)),
         tell_(in_order(events)),
-        robot_({.protocol = protocol}, body, tell_),
+        robot_({.protocol = protocol, .delays = options.delays}, body, tell_),
+        to_robot_delay_ns_(delay_ns(options.delays.to_robot_s)),
+        to_host_delay_ns_(delay_ns(options.delays.to_host_s)),
         own_body_(own_body),
         poses_(options.poses.poses_hz) {}
 
@@ -50,6 +52,7 @@ class Server {
   FaultPlan faults_;
   EventSink tell_;
   Footbot robot_;
+  TimeNs to_robot_delay_ns_, to_host_delay_ns_;
   std::unique_ptr<HostSide> side_;  // none while hung up
   std::string link_;                // what is opened again after a hang-up
   TimeNs bus_free_at_ = 0;          // when the last frame of the host has passed
@@ -107,7 +110,7 @@ hal::Status Server::turn(TimeNs now) {
   }
   for (const Frame& frame : from_host) {
     bus_free_at_ = std::max(bus_free_at_, now) + duration_ns(frame);
-    if (faults_.reaches_robot(bus_free_at_)) to_robot_.push_back({frame, bus_free_at_});
+    if (faults_.reaches_robot(bus_free_at_)) to_robot_.push_back({frame, bus_free_at_ + to_robot_delay_ns_});
   }
   put_on_bus(now);
   show_host(now);
@@ -156,7 +159,7 @@ void Server::show_host(TimeNs now) {
   std::vector<TimedFrame> arriving;
   for (const TimedFrame& frame : sent) faults_.to_host(frame, arriving);
   if (!side_) return;
-  to_host_.insert(to_host_.end(), arriving.begin(), arriving.end());
+  for (const TimedFrame& f : arriving) to_host_.push_back({f.frame, f.at + to_host_delay_ns_});
   while (!to_host_.empty() && to_host_.front().at <= now) {
     side_->show(to_host_.front().frame, to_host_.front().at);
     to_host_.pop_front();

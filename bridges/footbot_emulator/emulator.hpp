@@ -23,6 +23,7 @@ struct Options {
   EmulatedBody* body = nullptr;       ///< must outlive the run; none: a robot on open ground, or in `arena`
   std::optional<Arena> arena{};
   WheelErrors wheels{};  ///< how the wheels of a body of its own err
+  Delays delays{};
   PoseOptions poses{};
   std::function<std::optional<BodyPose>()> pose_elsewhere{};  ///< of `body`, the newest; none: nobody knows
   EventSink events{};                                         ///< gets what the log gets, on the thread of `run`

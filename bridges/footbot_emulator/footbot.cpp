@@ -50,7 +50,9 @@ Footbot::Footbot(const Options& options, EmulatedBody& body, EventSink sink)
       body_(body),
       sink_(sink ? std::move(sink) : [](hal::TimeNs, std::string_view, const EventFields&) {}),
       modules_(make_modules(options.protocol)),
-      bus_(kModules) {}
+      bus_(kModules),
+      to_motors_(options.delays.command_s + options.delays.body_s),
+      to_counters_(options.delays.command_s + options.delays.counters_s) {}
 
 void Footbot::power_on(hal::TimeNs at) {
   now_ = next_loop_ = encoders_at_ = at;
@@ -73,6 +75,10 @@ void Footbot::lose_power(Place place, hal::TimeNs at, std::string_view why) {
   if (place == Place::LeftMotor || place == Place::RightMotor) {
     encoders_[place == Place::LeftMotor ? 0 : 1] = {};
     note_wheels(at, why);
+    // At once: there is no power.
+    to_motors_.clear();
+    to_counters_.clear();
+    told_speeds_ = motors_ = counted_ = {word(Place::LeftMotor, "speed"), word(Place::RightMotor, "speed")};
   }
   variables_to_actuators(at);
 }
@@ -121,11 +127,13 @@ void Footbot::hear(const Message& message, hal::TimeNs at) {
 
 void Footbot::run_until(hal::TimeNs now) {
   for (; next_loop_ <= now; next_loop_ += kLoopNs) loop(next_loop_);
+  turn_motors(now);
   pass_frames(now);
   now_ = std::max(now_, now);
 }
 
 void Footbot::loop(hal::TimeNs at) {
+  turn_motors(at);
   pass_frames(at);
   turn_encoders(at);
   for (std::size_t i = 0; i < kModules; ++i) {
@@ -150,7 +158,7 @@ void Footbot::take_sent(std::vector<TimedFrame>& out) {
 }
 
 hal::TimeNs Footbot::next_event() const {
-  return std::min(next_loop_, bus_.next_at().value_or(next_loop_));
+  return std::min({next_loop_, bus_.next_at().value_or(next_loop_), to_motors_.next_at().value_or(next_loop_)});
 }
 
 /// What the radio heard is told to everyone on the bus.
@@ -168,16 +176,40 @@ void Footbot::note_heard(hal::TimeNs at) {
 }
 
 void Footbot::turn_encoders(hal::TimeNs at) {
-  if (at <= encoders_at_) return;
-  const hal::TimeNs duration_ns = at - encoders_at_;
-  encoders_at_ = at;
+  to_counters_.take(at, [this](hal::TimeNs from, const Speeds& speeds) {
+    count_pulses(from);
+    counted_ = speeds;
+  });
+  count_pulses(at);
   for (const Place motor : {Place::LeftMotor, Place::RightMotor}) {
-    Encoder& encoder = encoders_[motor == Place::LeftMotor ? 0 : 1];
-    encoder.turn(word(motor, "speed"), duration_ns);
+    const Encoder& encoder = encoders_[motor == Place::LeftMotor ? 0 : 1];
     const auto odo = module(motor).words("odo");
     odo[0] = static_cast<std::int16_t>(encoder.count());
     odo[1] = static_cast<std::int16_t>(encoder.count() >> 16U);
   }
+}
+
+void Footbot::count_pulses(hal::TimeNs until) {
+  const hal::TimeNs duration_ns = until - encoders_at_;
+  if (duration_ns <= 0) return;
+  encoders_at_ = until;
+  for (std::size_t i = 0; i < encoders_.size(); ++i) encoders_[i].turn(counted_[i], duration_ns);
+}
+
+/// What the modules have been told reaches motors and encoders in its time.
+void Footbot::put_speeds(hal::TimeNs at) {
+  const Speeds speeds{word(Place::LeftMotor, "speed"), word(Place::RightMotor, "speed")};
+  if (speeds == told_speeds_) return;
+  told_speeds_ = speeds;
+  to_motors_.put(at, speeds);
+  to_counters_.put(at, speeds);
+}
+
+void Footbot::turn_motors(hal::TimeNs now) {
+  to_motors_.take(now, [this](hal::TimeNs at, const Speeds& speeds) {
+    motors_ = speeds;
+    actuate(at);
+  });
 }
 
 void Footbot::sensors_to_variables(hal::TimeNs at) {
@@ -205,8 +237,8 @@ void Footbot::sensors_to_variables(hal::TimeNs at) {
 
 BodyCommand Footbot::commanded(bool gripper_busy) const {
   BodyCommand c;
-  c.left_m_s = wheel_m_s(word(Place::LeftMotor, "speed"));
-  c.right_m_s = wheel_m_s(word(Place::RightMotor, "speed"));
+  c.left_m_s = wheel_m_s(motors_[0]);
+  c.right_m_s = wheel_m_s(motors_[1]);
   // While the robot tries its grip with the turret it obeys nobody else.
   const BodyCommand& last = command_;
   const auto turret_mode = static_cast<TurretMode>(std::clamp<int>(word(Place::Turret, "turret.mode"), 0, 3));
@@ -232,6 +264,12 @@ BodyCommand Footbot::commanded(bool gripper_busy) const {
 }
 
 void Footbot::variables_to_actuators(hal::TimeNs at) {
+  put_speeds(at);
+  turn_motors(at);
+  actuate(at);
+}
+
+void Footbot::actuate(hal::TimeNs at) {
   const BodyCommand before = command_;
   command_ = commanded(body_.sense(at).gripper_busy);
   if (command_ == before) return;

@@ -1,5 +1,6 @@
 // A foot-bot as its CAN bus shows it: frames and times in, frames and times out.
 #pragma once
+#include "bridges/emulation/delays.hpp"
 #include "bridges/footbot_emulator/assembler.hpp"
 #include "bridges/footbot_emulator/body.hpp"
 #include "bridges/footbot_emulator/bus.hpp"
@@ -25,6 +26,7 @@ class Footbot {
     Protocol protocol = Protocol::V4;
     hal::TimeNs boot_ns = 200 * hal::kNsPerMs;  ///< from power to the first answer; deaf meanwhile
     hal::TimeNs answer_ns = hal::kNsPerMs / 2;  ///< from a question to the answer
+    Delays delays{};                            ///< those of the link are its server's
   };
 
   /// `body` must outlive the robot. Nothing happens before `power_on`.
@@ -83,6 +85,10 @@ class Footbot {
   void note_heard(hal::TimeNs at);
   void note_wheels(hal::TimeNs at, std::string_view by);
   void turn_encoders(hal::TimeNs at);
+  void count_pulses(hal::TimeNs until);
+  void turn_motors(hal::TimeNs now);
+  void put_speeds(hal::TimeNs at);
+  void actuate(hal::TimeNs at);
   void sensors_to_variables(hal::TimeNs at);
   void variables_to_actuators(hal::TimeNs at);
   BodyCommand commanded(bool gripper_busy) const;
@@ -97,6 +103,10 @@ class Footbot {
   Bus bus_;
   Assembler assembler_;
   std::vector<TimedFrame> sent_;
+  /// Raw, of the left motor and the right one.
+  using Speeds = std::array<std::int16_t, 2>;
+  Speeds told_speeds_{}, motors_{}, counted_{};  // as the modules have them, as they turn, as the encoders turn
+  DelayLine<Speeds> to_motors_, to_counters_;
   std::array<Encoder, 2> encoders_;
   hal::TimeNs now_ = 0;
   hal::TimeNs next_loop_ = 0;

@@ -98,7 +98,10 @@ double KinematicBody::distance_to_wall_m(double x_m, double y_m, double directio
 BodySenses KinematicBody::sense(hal::TimeNs now) {
   advance(now);
   BodySenses senses = surroundings;
-  senses.turn_rad_s = (command_.right_m_s - command_.left_m_s) / robot_part<hal::DifferentialDrive>().wheel_base_m;
+  const ImperfectWheels::Ways rolls = wheels_.speeds_m_s(now);  // a second's
+  senses.turn_rad_s = held_ ? 0.0
+                            : (rolls.right_m - rolls.left_m) /
+                                  (wheels_.errors().base * robot_part<hal::DifferentialDrive>().wheel_base_m);
   senses.scanner_rad = scanner_rad_;
   senses.turret_rad = turret_rad_;
   senses.gripper_rad = gripper_rad_;

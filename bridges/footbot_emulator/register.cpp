@@ -12,10 +12,12 @@ struct Own {
   std::string firmware = "v4";
   PoseOptions poses;
   WheelErrors wheels;
+  Delays delays;
   void describe(hal::ParamVisitor& v) {
     v.text("firmware", firmware, "v4 (the robots') or v5: which version of the protocol its modules speak.");
     poses.describe(v);
     wheels.describe(v);
+    delays.describe(v);
   }
 };
 
@@ -33,6 +35,7 @@ hal::Status run_type(const EmulatorRequest& request, SharedPorts* ports, const s
     options.firmware = own.firmware;
     options.poses = own.poses;
     options.wheels = own.wheels;
+    options.delays = own.delays;
   }
   options.ready = [&request](const std::string& path) {
     if (request.ready) request.ready("foot-bot's modules on " + path + ": connect with --link " + host_link(path));
@@ -40,6 +43,7 @@ hal::Status run_type(const EmulatorRequest& request, SharedPorts* ports, const s
   std::optional<PortBody> body;
   if (ports != nullptr) {
     options.body = &body.emplace(*ports);
+    options.delays.body_s = options.wheels.delay_s;
     options.pose_elsewhere = [ports] { return ports->pose(); };
   }
   return run(options, stop);

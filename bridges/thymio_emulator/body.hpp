@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "bridges/body_pose.hpp"
+#include "bridges/emulation/imperfect_wheels.hpp"
 #include "hal/time.hpp"
 
 namespace tandem::bridges::thymio_emulator {
@@ -45,14 +46,15 @@ class EmulatedBody {
   virtual void actuate(hal::TimeNs now, const BodyCommand& command) = 0;
 };
 
-/// Open ground, where nothing is to be sensed; it rolls there without slip.
+/// Open ground, where nothing is to be sensed; it rolls there without slip, on wheels that may err.
 class OpenGround final : public EmulatedBody {
  public:
-  explicit OpenGround(const BodyPose& start = {}) : pose_(start) {}
+  explicit OpenGround(const BodyPose& start = {}, const WheelErrors& errors = {}) : pose_(start), wheels_(errors) {}
   BodySenses sense(hal::TimeNs /*now*/) override { return senses; }
   void actuate(hal::TimeNs now, const BodyCommand& command) override {
     advance(now);
     command_ = command;
+    wheels_.tell(now, command.left_m_s, command.right_m_s);
   }
   /// Rolls on to `now`.
   void advance(hal::TimeNs now);
@@ -64,6 +66,7 @@ class OpenGround final : public EmulatedBody {
  private:
   BodyCommand command_;
   BodyPose pose_;  // taken when it last rolled
+  ImperfectWheels wheels_;
 };
 
 }  // namespace tandem::bridges::thymio_emulator

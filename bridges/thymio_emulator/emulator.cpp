@@ -19,7 +19,9 @@ class Server {
       : options_(options),
         faults_(std::move(faults)),
         tell_(in_order(events)),
-        robot_({.node = static_cast<std::uint8_t>(options.node)}, body, tell_),
+        robot_({.node = static_cast<std::uint8_t>(options.node), .delays = options.delays}, body, tell_),
+        to_hosts_delay_ns_(delay_ns(options.delays.to_host_s)),
+        to_robot_(options.delays.to_robot_s),
         ground_(ground),
         poses_(options.poses.poses_hz) {}
 
@@ -39,6 +41,8 @@ class Server {
   FaultPlan faults_;
   EventSink tell_;
   Thymio robot_;
+  TimeNs to_hosts_delay_ns_;
+  DelayLine<Message> to_robot_;
   std::unique_ptr<aseba_emulation::HostLine> line_;  // none while hung up
   std::string link_;                                 // what is opened again after a hang-up
   std::deque<TimedMessage> to_hosts_;
@@ -88,8 +92,9 @@ hal::Status Server::turn(TimeNs now) {
     if (const hal::Status status = line_->take(now, from_hosts); !status.ok()) return status;
   }
   for (const Message& message : from_hosts) {
-    if (faults_.reaches_robot(now)) robot_.receive(message, now);
+    if (faults_.reaches_robot(now)) to_robot_.put(now, message);
   }
+  to_robot_.take(now, [this](TimeNs at, const Message& message) { robot_.receive(message, at); });
   robot_.run_until(now);
   if (const auto at = robot_.first_driven_at()) faults_.driven(*at, now);
   tell_pose(now);
@@ -112,6 +117,7 @@ hal::Status Server::apply_faults(TimeNs now) {
     apply(change, robot_);
     if (fault.kind != FaultKind::Hangup) return hal::Status{};
     to_hosts_.clear();
+    to_robot_.clear();
     line_.reset();
     return change.begins ? hal::Status{} : open_line();
   });
@@ -122,7 +128,7 @@ void Server::show_hosts(TimeNs now) {
   robot_.take_sent(sent);
   for (const TimedMessage& message : sent) faults_.to_host(message, arriving);
   if (!line_) return;
-  to_hosts_.insert(to_hosts_.end(), arriving.begin(), arriving.end());
+  for (TimedMessage& m : arriving) to_hosts_.push_back({std::move(m.message), m.at + to_hosts_delay_ns_});
   for (; !to_hosts_.empty() && to_hosts_.front().at <= now; to_hosts_.pop_front()) {
     line_->tell(to_hosts_.front().message, now);
   }
@@ -132,6 +138,7 @@ void Server::show_hosts(TimeNs now) {
 TimeNs Server::next_wake(TimeNs now) const {
   TimeNs wake = std::min(now + kStopNs, robot_.next_event());
   if (!to_hosts_.empty()) wake = std::min(wake, to_hosts_.front().at);
+  if (const auto at = to_robot_.next_at()) wake = std::min(wake, *at);
   if (const auto change = faults_.next_change_at()) wake = std::min(wake, *change);
   wake = std::min(wake, poses_.due());
   return wake;
@@ -154,7 +161,7 @@ hal::Status run(const Options& options, const std::atomic<bool>& stop) {
   if (!faults.ok()) return faults.error();
   auto events = open_event_sink(options.log_file, options.events);
   if (!events.ok()) return events.error();
-  OpenGround ground(options.poses.start);
+  OpenGround ground(options.poses.start, options.wheels);
   EmulatedBody& body = options.body != nullptr ? *options.body : ground;
   Server server(options, events.value(), FaultPlan(std::move(faults).value(), options.seed), body,
                 options.body == nullptr ? &ground : nullptr);

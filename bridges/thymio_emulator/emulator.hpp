@@ -23,6 +23,8 @@ struct Options {
   std::uint64_t seed = 1;             ///< of the chance in the faults
   EmulatedBody* body = nullptr;       ///< must outlive the run; none: open ground
   PoseOptions poses{};
+  WheelErrors wheels{};  ///< how the wheels of a body of its own err
+  Delays delays{};
   std::function<std::optional<BodyPose>()> pose_elsewhere{};  ///< of `body`, the newest; none: nobody knows
   EventSink events{};                                         ///< gets what the log gets, on the thread of `run`
   hal::Log log{};                                             ///< for people

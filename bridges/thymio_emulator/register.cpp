@@ -14,9 +14,13 @@ namespace {
 struct Own {
   std::int64_t node = 1;
   PoseOptions poses{};
+  WheelErrors wheels{};
+  Delays delays{};
   void describe(hal::ParamVisitor& v) {
     v.integer("node", node, {1, 255}, "Its number, where several share a switch.");
     poses.describe(v);
+    wheels.describe(v);
+    delays.describe(v);
   }
 };
 
@@ -32,6 +36,8 @@ hal::Status run_type(const EmulatorRequest& request, SharedPorts* ports, const s
     const Own& own = *static_cast<const Own*>(request.options.get());
     options.node = own.node;
     options.poses = own.poses;
+    options.wheels = own.wheels;
+    options.delays = own.delays;
   }
   options.ready = [&request](const std::string& path) {
     if (request.ready) request.ready("Thymio on " + path + ": connect with --link " + host_link(path));
@@ -39,6 +45,7 @@ hal::Status run_type(const EmulatorRequest& request, SharedPorts* ports, const s
   std::optional<PortBody> body;
   if (ports != nullptr) {
     options.body = &body.emplace(*ports);
+    options.delays.body_s = options.wheels.delay_s;
     options.pose_elsewhere = [ports] { return ports->pose(); };
   }
   return run(options, stop);

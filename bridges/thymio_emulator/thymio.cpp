@@ -28,7 +28,9 @@ Thymio::Thymio(const Options& options, EmulatedBody& body, EventSink sink)
     : options_(options),
       body_(body),
       sink_(sink ? std::move(sink) : [](hal::TimeNs, std::string_view, const EventFields&) {}),
-      node_(spec()) {}
+      node_(spec()),
+      to_motors_(options.delays.command_s + options.delays.body_s),
+      to_counters_(options.delays.command_s + options.delays.counters_s) {}
 
 aseba_emulation::NodeSpec Thymio::spec() {
   aseba_emulation::NodeSpec spec;
@@ -134,6 +136,10 @@ void Thymio::restart(hal::TimeNs at, std::string_view why) {
   waiting_.clear();
   told_ = false;
   ready_at_ = at + options_.boot_ns;
+  // At once: there is no power.
+  to_motors_.clear();
+  to_counters_.clear();
+  motors_ = shown_ = {};
   variables_to_actuators(at);
 }
 
@@ -167,6 +173,7 @@ void Thymio::say(std::vector<Message> answers, hal::TimeNs at) {
 
 void Thymio::run_until(hal::TimeNs now) {
   for (; next_loop_ <= now; next_loop_ += kLoopNs) loop(next_loop_);
+  turn_motors(now);
   now_ = std::max(now_, now);
   for (; !waiting_.empty() && waiting_.front().at <= now; waiting_.pop_front()) {
     sent_.push_back(std::move(waiting_.front()));
@@ -179,10 +186,12 @@ void Thymio::take_sent(std::vector<TimedMessage>& out) {
 }
 
 hal::TimeNs Thymio::next_event() const {
-  return waiting_.empty() ? next_loop_ : std::min(next_loop_, waiting_.front().at);
+  const hal::TimeNs next = std::min(next_loop_, to_motors_.next_at().value_or(next_loop_));
+  return waiting_.empty() ? next : std::min(next, waiting_.front().at);
 }
 
 void Thymio::loop(hal::TimeNs at) {
+  turn_motors(at);
   now_ = std::max(now_, at);
   if (!works(at)) return;
   if (!std::exchange(told_, true)) {
@@ -221,8 +230,9 @@ void Thymio::run_timer(std::size_t i, hal::TimeNs at) {
 
 /// Each device has a rate of its own; `all`: it was just switched on.
 void Thymio::sensors_to_variables(hal::TimeNs at, bool all) {
-  node_.words("motor.left.speed")[0] = std::clamp<std::int16_t>(left_target(), -kMostMotorRaw, kMostMotorRaw);
-  node_.words("motor.right.speed")[0] = std::clamp<std::int16_t>(right_target(), -kMostMotorRaw, kMostMotorRaw);
+  to_counters_.take(at, [this](hal::TimeNs, const Targets& targets) { shown_ = targets; });
+  node_.words("motor.left.speed")[0] = std::clamp<std::int16_t>(shown_[0], -kMostMotorRaw, kMostMotorRaw);
+  node_.words("motor.right.speed")[0] = std::clamp<std::int16_t>(shown_[1], -kMostMotorRaw, kMostMotorRaw);
   const bool proximity = all || loops_ % kProximityEvery == 0;
   const bool acceleration = all || loops_ % kAccelerometerEvery == 0;
   if (!proximity && !acceleration) return;
@@ -254,9 +264,24 @@ void Thymio::variables_to_actuators(hal::TimeNs at) {
     wheels_commanded_at_ = at;
     if (!first_driven_at_ && (told_left_ != 0 || told_right_ != 0)) first_driven_at_ = at;
     sink_(at, "wheels", {{"left", told_left_}, {"right", told_right_}});
+    to_motors_.put(at, {told_left_, told_right_});
+    to_counters_.put(at, {told_left_, told_right_});
   }
+  turn_motors(at);
+  actuate(at);
+}
+
+/// What the node has been told reaches the motors in its time.
+void Thymio::turn_motors(hal::TimeNs now) {
+  to_motors_.take(now, [this](hal::TimeNs at, const Targets& targets) {
+    motors_ = targets;
+    actuate(at);
+  });
+}
+
+void Thymio::actuate(hal::TimeNs at) {
   const BodyCommand before = command_;
-  command_ = {wheel_m_s(left_target()), wheel_m_s(right_target()), rgb_, tone_Hz_};
+  command_ = {wheel_m_s(motors_[0]), wheel_m_s(motors_[1]), rgb_, tone_Hz_};
   if (command_ == before) return;
   if (command_.rgb != before.rgb)
     sink_(at, "leds", {{"rgb", std::vector<std::int64_t>(command_.rgb.begin(), command_.rgb.end())}});

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "bridges/aseba_emulation/node.hpp"
+#include "bridges/emulation/delays.hpp"
 #include "bridges/thymio_emulator/body.hpp"
 
 namespace tandem::bridges::thymio_emulator {
@@ -39,6 +40,7 @@ class Thymio {
     std::int16_t firmware = 14;
     hal::TimeNs boot_ns = 400 * hal::kNsPerMs;  ///< from power to the first answer; deaf meanwhile
     hal::TimeNs answer_ns = 2 * hal::kNsPerMs;  ///< from a question to the answer
+    Delays delays{};                            ///< those of the link are its server's
   };
 
   /// `body` must outlive the robot. Nothing happens before `power_on`.
@@ -90,6 +92,8 @@ class Thymio {
   void identify();
   void sensors_to_variables(hal::TimeNs at, bool all);
   void variables_to_actuators(hal::TimeNs at);
+  void turn_motors(hal::TimeNs now);
+  void actuate(hal::TimeNs at);
   void note_reset();
 
   Options options_;
@@ -110,6 +114,10 @@ class Thymio {
   std::array<Timer, 2> timers_;
   BodyCommand command_;
   std::int16_t told_left_ = 0, told_right_ = 0;
+  /// Targets of the left motor and the right one.
+  using Targets = std::array<std::int16_t, 2>;
+  Targets motors_{}, shown_{};  // as they turn, as their measured speeds tell
+  DelayLine<Targets> to_motors_, to_counters_;
   std::optional<hal::TimeNs> wheels_commanded_at_, first_driven_at_;
 };
 

@@ -347,6 +347,23 @@ TEST(Emulator, DelaysItsAnswers) {
   EXPECT_GE(Clock::now() - asked, std::chrono::milliseconds(40));
 }
 
+TEST(Emulator, HasALinkThatIsLateBothWays) {
+  Options options;
+  options.robot.delays = {.to_robot_s = 0.06, .to_host_s = 0.04};
+  Running robot(options);
+  Host host(robot.path());
+  host.skip_greeting();
+  const auto now_ns = [] { return Clock::now().time_since_epoch() / std::chrono::nanoseconds(1); };
+  const std::int64_t asked_ns = now_ns();
+  host.write("D,100,100\r");
+  EXPECT_EQ(host.read_through("d\r\n"), "d\r\n");
+  EXPECT_GE(now_ns() - asked_ns, 100 * hal::kNsPerMs);
+  ASSERT_TRUE(robot.happened("\"event\":\"wheels\",\"left\":100"));
+  const std::string log = robot.log_text();
+  const std::size_t line = log.rfind('\n', log.find("\"event\":\"wheels\",\"left\":100")) + 1;
+  EXPECT_GE(std::stoll(log.substr(log.find(':', line) + 1)) - asked_ns, 60 * hal::kNsPerMs);
+}
+
 TEST(Emulator, HangsUpAndComesBackUnderTheSameName) {
   Running robot({.faults = {"hangup@0.3s+0.1s"}});
   {

@@ -646,6 +646,26 @@ TEST(Log, TellsHowLongACommandTook) {
   EXPECT_THAT(*again, HasSubstr("\"first\":false"));
 }
 
+TEST(Delays, TheBodyFliesLateAndItsPlaceIsToldLater) {
+  const auto flown = [](const Delays& delays) {
+    Eyebot::Options options;
+    options.delays = delays;
+    Bench bench(options);
+    bench.take_off();
+    const double from_m = bench.body.sense(bench.now).p_WB[0];
+    bench.velocity(0.2, 0.0, 0.0);
+    bench.pass(400 * kMs);
+    const double body_m = bench.body.sense(bench.now).p_WB[0];
+    return std::pair(body_m - from_m, body_m - bench.robot.senses().p_WB[0]);
+  };
+  const auto at_once = flown({});
+  const auto late = flown({.command_s = 0.1});
+  EXPECT_NEAR(at_once.first - late.first, 0.1 * 0.2, 0.004);
+  const auto told_late = flown({.counters_s = 0.1});
+  EXPECT_NEAR(at_once.first, told_late.first, 0.004);
+  EXPECT_NEAR(told_late.second - at_once.second, 0.1 * 0.2, 0.004);
+}
+
 TEST(Log, TellsOfDamageAtMostEveryTenSeconds) {
   Bench bench;
   for (int i = 0; i < 100; ++i) {

@@ -38,6 +38,33 @@ TEST(EmulatedThymio, KeepsItsTargetsForEverWithoutAProgram) {
   EXPECT_LT(*robot.first_driven_at(), hal::kNsPerSecond);
 }
 
+TEST(EmulatedThymio, ObeysAndTellsItsSpeedInItsTime) {
+  OpenGround body;
+  Thymio robot({.delays = {.command_s = 0.04, .counters_s = 0.03, .body_s = 0.02}}, body, {});
+  robot.power_on(0);
+  Message set{0, aseba_emulation::type::kSetVariables, {}};
+  robot.receive(set.add(1).add(57).add(100), 0);
+  constexpr hal::TimeNs kMs = hal::kNsPerMs;
+  robot.run_until(59 * kMs);
+  EXPECT_EQ(body.command().left_m_s, 0.0);
+  EXPECT_EQ(robot.node().words("motor.left.speed")[0], 0);
+  robot.run_until(60 * kMs);
+  EXPECT_DOUBLE_EQ(body.command().left_m_s, wheel_m_s(100));
+  robot.run_until(80 * kMs);
+  EXPECT_EQ(robot.node().words("motor.left.speed")[0], 100);  // of 70 ms, looked at every 10
+  robot.run_until(560 * kMs);
+  body.advance(560 * kMs);
+  EXPECT_NEAR(body.pose().x_m, 0.5 * 0.5 * wheel_m_s(100), 2e-3);
+}
+
+TEST(EmulatedThymio, RollsOnWheelsThatErr) {
+  OpenGround body({}, {.left = 0.9, .right = 0.9, .delay_s = 0.1});
+  body.advance(1);
+  body.actuate(1, {.left_m_s = 0.1, .right_m_s = 0.1});
+  body.advance(1'100'000'001);
+  EXPECT_NEAR(body.pose().x_m, 0.9 * 0.1, 1e-9);
+}
+
 TEST(EmulatedThymio, KnowsItsFaults) {
   for (const char* text : {"restart@3s", "program@3s", "silent@5s+2s", "deaf", "lie=name", "drop=0.1", "lose=0.1",
                            "double=0.1@1s", "delay=20ms", "hangup@6s+1s"})
