@@ -598,6 +598,15 @@ void World3d::find_heaps() {
     return a.top != b.top ? a.top->key < b.top->key : a.proxy->key < b.proxy->key;
   };
   std::sort(heaps_.begin(), heaps_.end(), by_key);
+  heap_supports_.clear();
+  const std::vector<Support>& supports = contacts_.supports();
+  for (std::uint32_t i = 0; i < supports.size(); ++i) {
+    const BodyProxy& top = top_of_heap(*supports[i].a);
+    if (!top.driven) heap_supports_.push_back({top.key, i});
+  }
+  std::sort(heap_supports_.begin(), heap_supports_.end(), [](const HeapSupport& a, const HeapSupport& b) {
+    return a.top != b.top ? a.top < b.top : a.number < b.number;
+  });
 }
 
 /// Calls `use(first, past)` for every heap of `heaps_`.
@@ -616,9 +625,11 @@ bool World3d::stands(std::size_t first, std::size_t past) {
   heap_.clear();
   supports_.clear();
   for (std::size_t i = first; i < past; ++i) heap_.push_back(heaps_[i].proxy);
-  for (const Support& support : contacts_.supports()) {
-    if (&top_of_heap(*support.a) == heaps_[first].top) supports_.push_back(support);
-  }
+  const BodyKey top = heaps_[first].top->key;
+  for (auto own = std::lower_bound(heap_supports_.begin(), heap_supports_.end(), top,
+                                   [](const HeapSupport&support, BodyKey key) { return support.top < key; });
+       own != heap_supports_.end() && own->top == top; ++own)
+    supports_.push_back(contacts_.supports()[own->number]);
   const std::uint64_t mark = mark_of(heap_, supports_);
   const bool known = std::binary_search(stood_.begin(), stood_.end(), mark);
   if (!known && !standing_.stands(heap_, supports_, settings_.gravity_m_s2)) return false;

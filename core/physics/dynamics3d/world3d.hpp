@@ -108,8 +108,13 @@ class World3d final : public Solver {
     const BodyProxy* top;
     BodyProxy* proxy;
   };
-  std::vector<HeapMember> heaps_;  // of this sub-step, heap by heap
-  std::vector<BodyProxy*> heap_;   // the one that is looked at
+  struct HeapSupport {
+    BodyKey top;           // of the heap's top
+    std::uint32_t number;  // of the contacts' supports
+  };
+  std::vector<HeapMember> heaps_;           // of this sub-step, heap by heap
+  std::vector<HeapSupport> heap_supports_;  // of these, heap by heap
+  std::vector<BodyProxy*> heap_;            // the one that is looked at
   std::vector<Support> supports_;
   Standing standing_;
   std::vector<std::uint64_t> stood_, stands_now_;  // fingerprints of heaps that stood in the last sub-step, and in this

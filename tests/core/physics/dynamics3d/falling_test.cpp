@@ -1,4 +1,7 @@
 // Gravity, the floor, and what stands, slides and topples on it.
+#include <algorithm>
+#include <ctime>
+
 #include "tests/core/physics/dynamics3d/by_hand.hpp"
 
 namespace tandem::core {
@@ -149,6 +152,29 @@ TEST(Dynamics3dResting, NeitherCreepsNorSinksInAMinute) {
     EXPECT_NEAR(hand.object(i).sin_h, before[i].sin_h, 5e-3) << i;
     EXPECT_NEAR(hand.upright(i), 1.0, 1e-4) << i;
   }
+}
+
+/// Processor time of one tick with so many boxes that stand side by side, the least of three.
+double seconds_with_boxes(int boxes) {
+  ByHand hand({}, {}, 100.0);
+  for (int i = 0; i < boxes; ++i) hand.block(0.3 * (i % 90) - 13.5, 0.3 * (i / 90) - 13.5, 0.0, 0.1, 0.1, 0.1, 0.5);
+  hand.ticks(2);
+  double least_s = 1e9;
+  for (int i = 0; i < 3; ++i) {
+    timespec from{}, to{};
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &from);
+    hand.tick();
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &to);
+    least_s = std::min(
+        least_s, static_cast<double>(to.tv_sec - from.tv_sec) + 1e-9 * static_cast<double>(to.tv_nsec - from.tv_nsec));
+  }
+  return least_s;
+}
+
+/// Four times as many heaps cost four times as much, and what caches lack; compared with one another they would cost
+/// sixteen times as much or more.
+TEST(Dynamics3dResting, CostsEveryBoxTheSameHoweverManyThereAre) {
+  EXPECT_LT(seconds_with_boxes(8000), 10.0 * seconds_with_boxes(2000));
 }
 
 TEST(Dynamics3dSliding, IsBrakedByCoulombsFriction) {
