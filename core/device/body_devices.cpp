@@ -1,4 +1,4 @@
-// Sensors of a robot's own state and of the air: acceleration, turn rates, sound, battery, clock.
+// Sensors of a robot's own state and of the air: turn rates, sound, battery, clock.
 #include "core/device/field_ring.hpp"
 #include "core/device/types.hpp"
 #include "core/random/random.hpp"
@@ -14,115 +14,14 @@ struct NoOptions {
   void describe(hal::ParamVisitor&) {}
 };
 
-// --- accelerometer ---
-
-constexpr double kGravity_m_s2 = 9.81;
-
-template <int kPerMille>
-struct ForceNoise {
-  double noise_level_m_s2 = kPerMille * 1e-3;
-  void describe(hal::ParamVisitor& v) {
-    v.number("noise_level", noise_level_m_s2, hal::unit::m_s2, hal::kNotNegative, "Standard deviation on each axis.");
-  }
-};
-
 /// From W to the body.
 std::array<double, 3> to_body(const std::array<double, 4>& q_WB, const std::array<double, 3>& v_W) noexcept {
   return hal::array_of(hal::quaternion_of(q_WB).conjugate() * hal::vector_of(v_W));
 }
 
-/// What accelerometers of robots that drive measured against.
-struct DrivenSpeed {
-  static constexpr std::string_view kName = "driven_speed";
-  static constexpr std::string_view kDoc = "Speed of robots that drive, a tick ago.";
-
-  double speed_m_s = 0.0;
-
-  void describe(hal::FieldList& f) const { f.add("speed", speed_m_s, hal::unit::m_s, "forward"); }
-};
-
-/// … and those of robots that fly.
-struct FlownVelocity {
-  static constexpr std::string_view kName = "flown_velocity";
-  static constexpr std::string_view kDoc = "Velocity of robots that fly, a tick ago.";
-
-  std::array<double, 3> velocity_m_s{};
-
-  void describe(hal::FieldList& f) const { f.add("velocity", velocity_m_s, hal::unit::m_s, "in W"); }
-};
-
 /// 0: robots of this kind have no wheels.
 double wheel_base_m(const hal::RobotKind& kind) noexcept {
   return kind.drive() != nullptr ? kind.drive()->wheel_base_m : 0.0;
-}
-
-/// From the wheels' speeds: forward their mean's change, sideways speed times turn rate, upwards gravity. Of robots
-/// that fly: the change of their velocity and gravity, in the body's frame.
-class AccelerometerSensor final : public Sensor {
- public:
-  AccelerometerSensor(const hal::RobotKind& kind, double noise, const BlockColumns& columns)
-      : wheel_base_m_(wheel_base_m(kind)),
-        flies_(kind.flies()),
-        noise_m_s2_(noise),
-        driven_(columns.find<DrivenSpeed>()),
-        flown_(columns.find<FlownVelocity>()) {}
-
-  void sense(const DeviceContext& context, void* ports) noexcept override {
-    auto* meters = static_cast<hal::Accelerometer*>(ports);
-    const Bodies& b = context.stores.bodies;
-    for (std::size_t i = 0; i < context.block.used; ++i) {
-      const std::size_t row = context.block.first_row + i;
-      std::array<double, 3> force = flies_ ? flown(context, row, i) : driven(context, row, i);
-      if (noise_m_s2_ > 0.0) {
-        const auto bits = draw(context.seed, b.entity[row], Stream::AccelerometerNoise, context.tick);
-        const auto xy = to_normal(bits[0], bits[1]);
-        force[0] += noise_m_s2_ * xy[0];
-        force[1] += noise_m_s2_ * xy[1];
-        force[2] += noise_m_s2_ * to_normal(bits[2], bits[3])[0];
-      }
-      hal::Accelerometer& port = meters[i];
-      port.taken_ns = context.now_ns;
-      port.validity = hal::Validity::Fresh;
-      for (std::size_t k = 0; k < 3; ++k) port.force_m_s2[k] = static_cast<float>(force[k]);
-    }
-  }
-
- private:
-  std::array<double, 3> driven(const DeviceContext& context, std::size_t row, std::size_t i) noexcept {
-    const Bodies& b = context.stores.bodies;
-    const double speed = 0.5 * (b.left_m_s[row] + b.right_m_s[row]);
-    const double turn = wheel_base_m_ > 0.0 ? (b.right_m_s[row] - b.left_m_s[row]) / wheel_base_m_ : 0.0;
-    const std::array<double, 3> force{(speed - driven_[i].speed_m_s) / context.tick_s, speed * turn, kGravity_m_s2};
-    driven_[i].speed_m_s = speed;
-    return force;
-  }
-  std::array<double, 3> flown(const DeviceContext& context, std::size_t row, std::size_t i) noexcept {
-    const Motion& m = context.stores.bodies.motion[row];
-    std::array<double, 3> force{};
-    for (std::size_t k = 0; k < 3; ++k) {
-      double& last = flown_[i].velocity_m_s[k];
-      force[k] = (m.v_m_s[k] - last) / context.tick_s + (k == 2 ? kGravity_m_s2 : 0.0);
-      last = m.v_m_s[k];
-    }
-    return to_body(m.q_WB, force);
-  }
-
-  double wheel_base_m_;
-  bool flies_;
-  double noise_m_s2_;
-  DrivenSpeed* driven_;   // of robots that drive
-  FlownVelocity* flown_;  // of robots that fly
-};
-
-template <class Options>
-BlockFactory<Sensor> make_accelerometer(const Element& element, Problems& problems, const DeviceSetup& setup) {
-  const auto options = read_options<Options>(element, problems);
-  double noise = 0.0;
-  if constexpr (requires { options.noise_level_m_s2; }) noise = options.noise_level_m_s2;
-  const auto make = [&kind = setup.kind, noise](const BlockColumns& columns) {
-    return std::make_unique<AccelerometerSensor>(kind, noise, columns);
-  };
-  return {make, {setup.kind.flies() ? keeps<FlownVelocity>() : keeps<DrivenSpeed>()}};
 }
 
 // --- gyroscope ---
@@ -380,13 +279,6 @@ BlockFactory<Sensor> make_clock(const Element& element, Problems& problems, cons
 
 std::vector<DeviceType> body_device_types() {
   return {
-      sensor_type("accelerometer", "default", "From the change of speed; noise where asked for.",
-                  &has<hal::AccelerometerPart>, &make_accelerometer<ForceNoise<0>>, &describe_options<ForceNoise<0>>),
-      sensor_type("accelerometer", "ideal", "From the change of speed.", &has<hal::AccelerometerPart>,
-                  &make_accelerometer<NoOptions>, &describe_options<NoOptions>),
-      sensor_type("accelerometer", "noisy", "From the change of speed, with normal noise.",
-                  &has<hal::AccelerometerPart>, &make_accelerometer<ForceNoise<200>>,
-                  &describe_options<ForceNoise<200>>),
       sensor_type("gyroscope", "default", "Turn rates of the body; noise and bias where asked for.",
                   &has<hal::GyroscopePart>, &make_gyroscope<RateNoise<0>>, &describe_options<RateNoise<0>>),
       sensor_type("gyroscope", "ideal", "Turn rates of the body.", &has<hal::GyroscopePart>, &make_gyroscope<NoOptions>,

@@ -8,10 +8,10 @@ namespace tandem::core {
 void register_devices(hal::Registrar& registrar) {
   static const std::vector<DeviceType> all = [] {
     std::vector<DeviceType> types;
-    for (auto& part :
-         {wheel_types(), flight_types(), flight_sensor_types(), pan_tilt_types(), proximity_types(), ring_level_types(),
-          body_device_types(), lamp_types(), time_of_flight_types(), selector_types(), button_types(),
-          range_and_bearing_types(), turret_types(), gripper_types(), scanner_types(), camera_types()}) {
+    for (auto& part : {wheel_types(), flight_types(), flight_sensor_types(), pan_tilt_types(), proximity_types(),
+                       ring_level_types(), accelerometer_types(), body_device_types(), lamp_types(),
+                       time_of_flight_types(), selector_types(), button_types(), range_and_bearing_types(),
+                       turret_types(), gripper_types(), scanner_types(), camera_types()}) {
       types.insert(types.end(), part.begin(), part.end());
     }
     return types;

@@ -7,6 +7,7 @@ namespace tandem::core {
 
 std::vector<DeviceType> wheel_types();
 std::vector<DeviceType> ring_level_types();
+std::vector<DeviceType> accelerometer_types();
 std::vector<DeviceType> body_device_types();
 std::vector<DeviceType> range_and_bearing_types();
 std::vector<DeviceType> flight_types();

@@ -179,13 +179,13 @@ TEST(BodySensors, ReadAccelerationSoundBatteryAndTime) {
   ASSERT_TRUE(world.world) << world.all_problems();
   world->start();
   world->step();
-  EXPECT_EQ(read<hal::Accelerometer>(world).force_m_s2[0], 0.0F);
+  EXPECT_NEAR(read<hal::Accelerometer>(world).force_m_s2[0], 0.0F, 1e-6F);
   world->step();
   EXPECT_NEAR(static_cast<double>(read<hal::Accelerometer>(world).force_m_s2[0]), 0.5,
               1e-6);  // 5 cm/s within a tenth of a second
   EXPECT_NEAR(static_cast<double>(read<hal::Accelerometer>(world).force_m_s2[2]), 9.81, 1e-6);
   world->step();
-  EXPECT_EQ(read<hal::Accelerometer>(world).force_m_s2[0], 0.0F);
+  EXPECT_NEAR(read<hal::Accelerometer>(world).force_m_s2[0], 0.0F, 1e-6F);
   const auto microphones = read<hal::Microphones>(world);
   EXPECT_GT(microphones.level[1], microphones.level[0]);  // the left one is nearer
   EXPECT_NEAR(static_cast<double>(read<hal::Battery>(world).charge), 0.97, 1e-6);

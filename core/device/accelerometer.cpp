@@ -1,0 +1,164 @@
+// Accelerometers: the specific force on a body, from how its velocity changed within the tick.
+#include <cmath>
+
+#include "core/device/types.hpp"
+#include "core/random/random.hpp"
+#include "hal/device/body_sensors.hpp"
+#include "hal/elementary.hpp"
+#include "hal/vector.hpp"
+
+namespace tandem::core {
+namespace {
+
+constexpr double kGravity_m_s2 = 9.81;
+constexpr double kLongestWay_m = 0.2;  // in a tick: farther away a body was put, and did not move
+constexpr double kNoTurn = 1e-9;       // sine of half an angle below which nothing turned
+
+struct NoNoise {
+  void describe(hal::ParamVisitor&) {}
+};
+
+template <int kPerMille>
+struct ForceNoise {
+  double noise_level_m_s2 = kPerMille * 1e-3;
+  void describe(hal::ParamVisitor& v) {
+    v.number("noise_level", noise_level_m_s2, hal::unit::m_s2, hal::kNotNegative, "Standard deviation on each axis.");
+  }
+};
+
+/// A body's velocity, and its attitude at the same moment.
+struct MotionBefore {
+  static constexpr std::string_view kName = "motion_before";
+  static constexpr std::string_view kDoc = "Motion of robots with accelerometers, a tick ago.";
+
+  bool seen = false;  ///< the rest is known
+  double x_m = 0.0, y_m = 0.0, z_m = 0.0, heading_rad = 0.0;
+  std::array<double, 3> v_m_s{};
+  std::array<double, 4> q_WB{1.0, 0.0, 0.0, 0.0};
+
+  void describe(hal::FieldList& f) const {
+    f.add("seen", seen, hal::unit::none, "the rest is known");
+    f.add("x", x_m, hal::unit::m, "in W");
+    f.add("y", y_m, hal::unit::m, "in W");
+    f.add("z", z_m, hal::unit::m, "in W");
+    f.add("heading", heading_rad, hal::unit::rad, "in W");
+    f.add("v", v_m_s, hal::unit::m_s, "in W");
+    f.add("q_WB", q_WB, hal::unit::none, "w, x, y, z; when the body had this velocity");
+  }
+};
+
+/// sin(a) / a.
+double sinc(double a) noexcept {
+  return std::fabs(a) < 1e-4 ? 1.0 - a * a / 6.0 : hal::sin(a) / a;
+}
+
+/// The constant force in the body's frame that changes its velocity from one moment to another, gravity apart, while it
+/// turns evenly between both attitudes. Exact on arcs, in free fall and at rest, at any length of tick.
+hal::Vector3 specific_force(const MotionBefore& from, const MotionBefore& to, double tick_s) noexcept {
+  const hal::Vector3 mean_W =
+      (hal::vector_of(to.v_m_s) - hal::vector_of(from.v_m_s)) / tick_s + hal::Vector3(0.0, 0.0, kGravity_m_s2);
+  const hal::Quaternion q_from = hal::quaternion_of(from.q_WB);
+  hal::Quaternion turn = q_from.conjugate() * hal::quaternion_of(to.q_WB);
+  if (turn.w() < 0.0) turn.coeffs() = -turn.coeffs();
+  const hal::Vector3 along = turn.vec();
+  const double sine = std::sqrt(along.dot(along));
+  if (sine < kNoTurn) return q_from.conjugate() * mean_W;
+  hal::Quaternion half(1.0 + turn.w(), turn.x(), turn.y(), turn.z());
+  half.coeffs() /= std::sqrt(half.coeffs().squaredNorm());
+  const hal::Vector3 mean_B = (q_from * half).conjugate() * mean_W;
+  // A force that turns with the body adds up to less than one that does not, but for its part along the axis.
+  const hal::Vector3 axis = along / sine;
+  const hal::Vector3 on_axis = axis * axis.dot(mean_B);
+  return on_axis + (mean_B - on_axis) / sinc(hal::atan2(sine, turn.w()));
+}
+
+/// Reads at the middle of the body, averaged over the tick. Engines with forces know velocities; of other bodies, and
+/// of those that are led from outside, the way within the tick is one.
+class AccelerometerSensor final : public Sensor {
+ public:
+  AccelerometerSensor(const hal::RobotKind& kind, double noise_m_s2, const BlockColumns& columns)
+      : fastest_m_s_(kind.drive() != nullptr ? kind.drive()->max_speed_m_s : 0.0),
+        noise_m_s2_(noise_m_s2),
+        before_(columns.find<MotionBefore>()) {}
+
+  void sense(const DeviceContext& context, void* ports) noexcept override {
+    auto* meters = static_cast<hal::Accelerometer*>(ports);
+    for (std::size_t i = 0; i < context.block.used; ++i) {
+      const std::size_t row = context.block.first_row + i;
+      const MotionBefore now = motion_of(context, row, before_[i]);
+      hal::Vector3 force = specific_force(before_[i].seen ? before_[i] : at_rest(now), now, context.tick_s);
+      before_[i] = now;
+      if (noise_m_s2_ > 0.0) {
+        const auto bits =
+            draw(context.seed, context.stores.bodies.entity[row], Stream::AccelerometerNoise, context.tick);
+        const auto xy = to_normal(bits[0], bits[1]);
+        force += noise_m_s2_ * hal::Vector3(xy[0], xy[1], to_normal(bits[2], bits[3])[0]);
+      }
+      stamp(context, meters[i]);
+      for (int k = 0; k < 3; ++k) meters[i].force_m_s2[static_cast<std::size_t>(k)] = static_cast<float>(force[k]);
+    }
+  }
+
+ private:
+  static MotionBefore at_rest(MotionBefore motion) noexcept {
+    motion.v_m_s = {};
+    return motion;
+  }
+
+  MotionBefore motion_of(const DeviceContext& context, std::size_t row, const MotionBefore& last) const noexcept {
+    const SpaceStores& s = context.stores;
+    const Bodies& b = s.bodies;
+    MotionBefore now{true, b.x_m[row], b.y_m[row], s.base_m(row), hal::atan2(b.sin_h[row], b.cos_h[row])};
+    const std::uint16_t region = b.region[row];
+    const bool known = !b.motion.empty() && region != kNoRegion && s.regions[region].listed;
+    if (known && (b.flags[row] & kExternal) == 0) {
+      now.v_m_s = b.motion[row].v_m_s;
+      now.q_WB = s.regions[region].plane ? hal::array_of(hal::about_z(now.heading_rad)) : b.motion[row].q_WB;
+      return now;
+    }
+    const std::array<double, 3> way_m{now.x_m - last.x_m, now.y_m - last.y_m, now.z_m - last.z_m};
+    const double longest_m = std::max(kLongestWay_m, 2.0 * fastest_m_s_ * context.tick_s);
+    if (!last.seen || way_m[0] * way_m[0] + way_m[1] * way_m[1] + way_m[2] * way_m[2] > longest_m * longest_m) {
+      now.v_m_s = last.v_m_s;
+      now.q_WB = last.seen ? last.q_WB : hal::array_of(hal::about_z(now.heading_rad));
+      return now;
+    }
+    // In the middle of the arc it went the way of the chord, and as much faster as the arc is longer.
+    const double half_rad = 0.5 * std::remainder(now.heading_rad - last.heading_rad, 2.0 * M_PI);
+    const double per_s = 1.0 / (context.tick_s * sinc(half_rad));
+    now.v_m_s = {way_m[0] * per_s, way_m[1] * per_s, way_m[2] / context.tick_s};
+    now.q_WB = hal::array_of(hal::about_z(last.heading_rad + half_rad));
+    return now;
+  }
+
+  double fastest_m_s_;
+  double noise_m_s2_;
+  MotionBefore* before_;
+};
+
+template <class Options>
+BlockFactory<Sensor> make_accelerometer(const Element& element, Problems& problems, const DeviceSetup& setup) {
+  const auto options = read_options<Options>(element, problems);
+  double noise_m_s2 = 0.0;
+  if constexpr (requires { options.noise_level_m_s2; }) noise_m_s2 = options.noise_level_m_s2;
+  const auto make = [&kind = setup.kind, noise_m_s2](const BlockColumns& columns) {
+    return std::make_unique<AccelerometerSensor>(kind, noise_m_s2, columns);
+  };
+  return {make, {keeps<MotionBefore>()}};
+}
+
+template <class Options>
+DeviceType accelerometer_type(std::string_view implementation, std::string_view summary) {
+  return sensor_type(hal::Accelerometer::kName, implementation, summary, &has<hal::AccelerometerPart>,
+                     &make_accelerometer<Options>, &describe_options<Options>);
+}
+
+}  // namespace
+
+std::vector<DeviceType> accelerometer_types() {
+  return {accelerometer_type<ForceNoise<0>>("default", "From the body's motion; noise where asked for."),
+          accelerometer_type<NoNoise>("ideal", "From the body's motion."),
+          accelerometer_type<ForceNoise<200>>("noisy", "From the body's motion, with normal noise.")};
+}
+
+}  // namespace tandem::core
