@@ -62,10 +62,14 @@ void add_pose(hal::Json& robot, const mixed_reality::RealRobotReport& r) {
   robot["pose_source"] = r.pose_source;
   robot["poses_rejected"] = r.poses_rejected;
   if (r.sightings) {
-    robot["sightings"] = {
-        {"used", r.sightings->used},       {"gated", r.sightings->gated},           {"late", r.sightings->late},
-        {"doubled", r.sightings->doubled}, {"impossible", r.sightings->impossible}, {"disputed", r.sightings->disputed},
-        {"jumps", r.sightings->jumps}};
+    robot["sightings"] = {{"used", r.sightings->used},
+                          {"gated", r.sightings->gated},
+                          {"late", r.sightings->late},
+                          {"doubled", r.sightings->doubled},
+                          {"impossible", r.sightings->impossible},
+                          {"disputed", r.sightings->disputed},
+                          {"jumps", r.sightings->jumps},
+                          {"slips", r.sightings->slips}};
   }
   if (r.learnt) {
     robot["learnt"] = {{"left_wheel", r.learnt->left},          {"right_wheel", r.learnt->right},
@@ -120,6 +124,7 @@ void add_real_robots(hal::Json& json, const mixed_reality::MixedReport& report) 
     robot["trespasses"] = r.counts.barrier.trespasses;
     robot["held_back_ticks"] = r.counts.barrier.changed_ticks;
     robot["held_back_most_m_s"] = r.counts.barrier.most_m_s;
+    if (r.counts.barrier.delay_s > 0.0) robot["measured_delay_s"] = r.counts.barrier.delay_s;
     add_pose(robot, r);
     add_link_report(robot, r.conversation);
     robot["ledger"] = ledger_json(r.ledger);
@@ -331,10 +336,11 @@ void print_result(const RunResult& result) {
       }
       rows.emplace_back("ledger of " + r.id, ledger_text(r.ledger));
       if (r.sightings) {
-        rows.emplace_back("sightings of " + r.id,
-                          fmt::format("{} used, {} gated, {} late, {} doubled, {} impossible, {} disputed, {} jumps",
-                                      r.sightings->used, r.sightings->gated, r.sightings->late, r.sightings->doubled,
-                                      r.sightings->impossible, r.sightings->disputed, r.sightings->jumps));
+        rows.emplace_back(
+            "sightings of " + r.id,
+            fmt::format("{} used, {} gated, {} late, {} doubled, {} impossible, {} disputed, {} jumps, {} slips",
+                        r.sightings->used, r.sightings->gated, r.sightings->late, r.sightings->doubled,
+                        r.sightings->impossible, r.sightings->disputed, r.sightings->jumps, r.sightings->slips));
       }
     }
     for (const mixed_reality::TrackerStatus& t : real->trackers) {

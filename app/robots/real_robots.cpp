@@ -61,9 +61,14 @@ Json status_json(const mixed_reality::RealRobotStatus& robot) {
   }
   if (robot.sightings) {
     const mixed_reality::PoseCounts& c = *robot.sightings;
-    json["sightings"] = {{"used", c.used},       {"gated", c.gated},           {"late", c.late},
-                         {"doubled", c.doubled}, {"impossible", c.impossible}, {"disputed", c.disputed},
-                         {"jumps", c.jumps}};
+    json["sightings"] = {{"used", c.used},
+                         {"gated", c.gated},
+                         {"late", c.late},
+                         {"doubled", c.doubled},
+                         {"impossible", c.impossible},
+                         {"disputed", c.disputed},
+                         {"jumps", c.jumps},
+                         {"slips", c.slips}};
   }
   return json;
 }

@@ -38,10 +38,10 @@ constexpr std::array<SafetyRule, 24> kTable = {{
     {[](const C& c) noexcept { return c.pose == hal::Validity::Absent; }, held(O::Pose, "pose unknown")},
     {[](const C& c) noexcept { return c.pose == hal::Validity::Stale; },  held(O::Pose, "pose stale")},
     {[](const C& c) noexcept { return c.pose_disputed; },                 held(O::Pose, "trackers disagree")},
-    {[](const C& c) noexcept { return c.pose_contradicted; },             held(O::Pose, "trackers see another robot"),
-     Recovery::Operator, "trackers saw another robot; waits to be re-armed"},
-    {[](const C& c) noexcept { return c.pose_jumped; },                   held(O::Pose, "pose jumped"),
-     Recovery::Rearm, "pose jumped; waits to be re-armed"},
+    {[](const C& c) noexcept { return c.links_swapped; },                 held(O::Link, "links seem to be swapped"),
+     Recovery::Operator, "links seem to be swapped; waits to be re-armed"},
+    {[](const C& c) noexcept { return c.pose_jumped; },                   held(O::Pose, "moved by something else"),
+     Recovery::Operator, "moved by something else; waits to be re-armed"},
     {[](const C& c) noexcept { return c.wheels_differ; },                 held(O::Pose, "wheels and pose differ"),
      Recovery::Rearm, "wheels and pose differed; waits to be re-armed"},
     {[](const C&) noexcept { return true; }, Verdict{true, true, false, O::Nobody, "driving"}},
@@ -89,7 +89,8 @@ const Verdict& Supervisor::judge(const Conditions& conditions, hal::TimeNs now_n
   if (conditions.run == RunPhase::Waiting) {
     latched_ = nullptr;
   } else if (const SafetyRule* rule = needs_rearm(conditions); rule != nullptr) {
-    if (latched_ == nullptr || latched_->recovery != Recovery::Operator) latched_ = rule;
+    const bool asks_more = latched_ == nullptr || latched_->recovery != Recovery::Operator;
+    if (asks_more || (rule->recovery == Recovery::Operator && rule < latched_)) latched_ = rule;  // an earlier row's
   }
   if (said.may_drive && !well_) well_since_ns_ = now_ns;
   well_ = said.may_drive;

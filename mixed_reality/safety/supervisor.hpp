@@ -34,13 +34,13 @@ struct Conditions {
   LinkHealth link = LinkHealth::Connecting;
   bool readings_missing = false;  ///< one that the controller asked for never came
   hal::Validity pose = hal::Validity::Absent;
-  bool pose_disputed = false;      ///< sources of the pose say different places
-  bool pose_contradicted = false;  ///< since the last judgement: wheels and trackers cannot be of one robot
-  bool pose_jumped = false;        ///< since the last judgement: farther than the robot can have moved
-  bool wheels_differ = false;      ///< since the last judgement: they roll, and the robot does not move as they say
-  bool being_replaced = false;     ///< another robot is to take its place
-  bool replaced = false;           ///< it took another one's place, or was to be replaced by one that never came, and a
-                                   ///< person has not armed it since
+  bool pose_disputed = false;   ///< sources of the pose say different places
+  bool links_swapped = false;   ///< since the last judgement: its wheels roll as another robot is seen to move
+  bool pose_jumped = false;     ///< since the last judgement: farther than its wheels can have brought the robot
+  bool wheels_differ = false;   ///< since the last judgement: they roll, and the robot does not move as they say
+  bool being_replaced = false;  ///< another robot is to take its place
+  bool replaced = false;        ///< it took another one's place, or was to be replaced by one that never came, and a
+                                ///< person has not armed it since
 };
 
 /// Owner of a halt.

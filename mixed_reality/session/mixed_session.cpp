@@ -328,6 +328,7 @@ void MixedSession::take_inputs() {
   const bool rearmed = options_.rearm_asked != nullptr && options_.rearm_asked->exchange(false);
   if (!candidates_.empty() || !retired_.empty() || !given_up_.empty()) follow_candidates();
   trackers_.latch(now_);
+  compare_links();
   for (std::size_t i = 0; i < twins_.size(); ++i) {
     Twin& twin = *twins_[i];
     if (rearmed) twin.rearm();

@@ -22,6 +22,7 @@
 #include "mixed_reality/time/monotonic.hpp"
 #include "mixed_reality/time/pacer.hpp"
 #include "mixed_reality/time/scheduling.hpp"
+#include "mixed_reality/tracking/swapped_links.hpp"
 #include "mixed_reality/twin/twin.hpp"
 
 namespace tandem::mixed_reality {
@@ -164,6 +165,7 @@ class MixedSession final : private core::ExternalRobots {
   };
   static Trackers::Tag tag_of(const core::RobotItem& item);
   void take_inputs();
+  void compare_links();
   void send_commands();
   void note_states();
   bool stand_paused(const std::atomic<bool>& stop);
@@ -216,6 +218,7 @@ class MixedSession final : private core::ExternalRobots {
   BarrierFilter barrier_;  // outlives the twins
   std::vector<std::unique_ptr<Twin>> twins_;
   std::vector<FusedPose*> fused_;            // parallel to `twins_`; null: another source
+  SwappedLinks links_;                       // as many as twins
   std::vector<core::BridgeConfig> bridges_;  // parallel to `twins_`, as the next three
   std::vector<LastState> last_;
   std::vector<std::uint8_t> confirmed_;

@@ -126,6 +126,7 @@ void MixedSession::take_place(std::size_t index, MadeTwin other, const Replaceme
   FusedPose* const seen = std::exchange(fused_[index], other.fused);
   Twin& twin = *twins_[index];
   if (seen != nullptr) trackers_.remove_robot(*seen);
+  if (index < links_.size()) links_.forget(index);
   if (other.fused != nullptr) {
     const core::RobotItem& item = *item_of(world_->scenario(), twin.id());
     trackers_.add_robot(names_of(by), tag_of(item), *other.fused);

@@ -44,6 +44,7 @@ void FusedPose::see(const PoseMeasurement& pose, std::optional<std::int64_t> sta
   by_true_clock_[pose.tracker] = pose.by_true_clock;
   auto& newest = seen_[pose.tracker];
   if (!newest || newest->taken_ns < pose.taken_ns) newest = pose;
+  if (!newest_ || newest_->taken_ns < pose.taken_ns) newest_ = pose;
   if (pending_count_ == pending_.size()) {  // nobody latches: the newest ones count
     std::move(pending_.begin() + 1, pending_.end(), pending_.begin());
     --pending_count_;
@@ -161,7 +162,7 @@ void FusedPose::take(const PoseMeasurement& pose, hal::TimeNs now_ns) noexcept {
   way_lost_ = true;
 }
 
-/// Disputes last a while; jumps that are too many are no jumps.
+/// Disputes last a while.
 void FusedPose::judge(hal::TimeNs now_ns) noexcept {
   if (filter_.disputed() != disputes_) {
     disputes_ = filter_.disputed();
@@ -169,11 +170,6 @@ void FusedPose::judge(hal::TimeNs now_ns) noexcept {
     disputed_ = true;
   }
   if (disputed_ && now_ns - disputed_at_ns_ > kDisputed_ns) disputed_ = false;
-  for (; jumps_judged_ < jumps(); ++jumps_judged_) {
-    hal::TimeNs& oldest = jumped_at_ns_[jumps_judged_ % kJumpsBelieved];
-    if (jumps_judged_ >= kJumpsBelieved && now_ns - oldest <= kJumps_ns) ++contradictions_;
-    oldest = now_ns;
-  }
 }
 
 PoseFilter::Learnt FusedPose::learnt() const noexcept {
@@ -191,8 +187,8 @@ std::uint64_t FusedPose::rejected() const noexcept {
 }
 
 PoseCounts FusedPose::counts() const noexcept {
-  return {filter_.used(),     filter_.gated(), filter_.too_late() + overrun_, doubled_, impossible_,
-          filter_.disputed(), jumps()};
+  return {filter_.used(), filter_.gated(), filter_.too_late() + overrun_, doubled_, impossible_, filter_.disputed(),
+          jumps(),        slips()};
 }
 
 }  // namespace tandem::mixed_reality

@@ -32,8 +32,6 @@ class FusedPose final : public PoseSource {
   static constexpr int kFound = 3;
   static constexpr hal::TimeNs kBlind_ns = 500 * hal::kNsPerMs;
   static constexpr hal::TimeNs kDisputed_ns = 2 * hal::kNsPerSecond;  ///< for so long after the last sign of it
-  static constexpr int kJumpsBelieved = 2;                            ///< … in kJumps_ns; the next is a contradiction
-  static constexpr hal::TimeNs kJumps_ns = 30 * hal::kNsPerSecond;
   static constexpr double kDelayKnown_s = 0.01;  ///< standard deviation from which a link's delay is believed
 
   /// `encoders` and `gyroscope` (null: it has none) must outlive this; their stamps are on the run's clock.
@@ -51,7 +49,8 @@ class FusedPose final : public PoseSource {
   std::uint64_t rejected() const noexcept override;
   std::uint64_t jumps() const noexcept override { return filter_.moved() + found_elsewhere_; }
   bool disputed() const noexcept override { return disputed_; }
-  std::uint64_t contradictions() const noexcept override { return contradictions_; }
+  std::uint64_t slips() const noexcept override { return filter_.slipped(); }
+  const PoseMeasurement* newest_sighting() const noexcept override { return newest_ ? &*newest_ : nullptr; }
 
   PoseCounts counts() const noexcept;
   PoseFilter::Learnt learnt() const noexcept;
@@ -89,15 +88,13 @@ class FusedPose final : public PoseSource {
   };
   std::array<Stamps, PoseFilter::kTrackers> stamps_;
   std::array<std::optional<PoseMeasurement>, PoseFilter::kTrackers> seen_;
+  std::optional<PoseMeasurement> newest_;
 
   std::array<bool, PoseFilter::kTrackers> by_true_clock_{};
   bool disputed_ = false;
   hal::TimeNs disputed_at_ns_ = 0;
   std::uint64_t disputes_ = 0;
-  std::array<hal::TimeNs, kJumpsBelieved> jumped_at_ns_{};
-  std::uint64_t jumps_judged_ = 0;
-  std::uint64_t contradictions_ = 0, found_elsewhere_ = 0, doubled_ = 0, impossible_ = 0, overrun_ = 0,
-                wheels_rejected_ = 0;
+  std::uint64_t found_elsewhere_ = 0, doubled_ = 0, impossible_ = 0, overrun_ = 0, wheels_rejected_ = 0;
 };
 
 }  // namespace tandem::mixed_reality

@@ -10,10 +10,11 @@
 namespace tandem::mixed_reality {
 namespace {
 
-constexpr double kGate2 = 13.816, kGate3 = 16.266;  // chi-squared of 2 and 3 degrees, 0.999
-constexpr double kAgree_m = 0.05;                   // gated poses agree when they differ by this and their noise
-constexpr double kScaleWander = 1e-5;               // of the scales, after one metre: tyres and floors differ
-constexpr double kMostLearnt = 5.0;                 // standard deviations of what was assumed
+constexpr double kGate2 = 13.816, kGate3 = 16.266;    // chi-squared of 2 and 3 degrees, 0.999
+constexpr double kAgree_m = 0.05;                     // gated poses agree when they differ by this and their noise
+constexpr double kReach_m = 0.03, kReach_rad = 0.15;  // beyond what wheels rolled, and noise: it was moved
+constexpr double kScaleWander = 1e-5;                 // of the scales, after one metre: tyres and floors differ
+constexpr double kMostLearnt = 5.0;                   // standard deviations of what was assumed
 
 hal::TimeNs to_ns(double seconds) noexcept {
   return static_cast<hal::TimeNs>(std::llround(seconds * 1e9));
@@ -164,6 +165,8 @@ void PoseFilter::roll(hal::TimeNs taken_ns, double left_m, double right_m, std::
                       double gyroscope_sd_rad) noexcept {
   const Event& last = event(count_ - 1);
   if (taken_ns <= last.time_ns || !std::isfinite(left_m) || !std::isfinite(right_m)) return;
+  rolled_left_m_ += std::fabs(left_m);
+  rolled_right_m_ += std::fabs(right_m);
   Event e;
   e.time_ns = taken_ns;
   e.left_m = left_m;
@@ -270,6 +273,7 @@ PoseFilter::Taken PoseFilter::take(const PoseMeasurement& m) noexcept {
   step(e.after, e, part * stretch_s);
   if (!update(e.after, m, e.delay_s, whole.left_m * per_s, whole.right_m * per_s, true)) return gate_out(m);
   odd_[m.tracker].count = 0;
+  believed_[m.tracker] = {m, rolled_left_m_, rolled_right_m_};
   used_at_ns_[m.tracker] = any_used_[m.tracker] ? std::max(used_at_ns_[m.tracker], at_ns) : at_ns;
   any_used_[m.tracker] = true;
   Event rest = whole;
@@ -303,6 +307,8 @@ PoseFilter::Taken PoseFilter::gate_out(const PoseMeasurement& m) noexcept {
     agrees = std::fabs(apart_m - rolled_m) <= kAgree_m + 4.0 * (m.sd_m + odd.last.sd_m);
   }
   if (!agrees) odd.since_ns = m.taken_ns;
+  odd.alike =
+      !agrees || (odd.alike && m.x_m == odd.last.x_m && m.y_m == odd.last.y_m && m.heading_rad == odd.last.heading_rad);
   odd.count = agrees ? std::min(odd.count + 1, kInsists) : 1;
   odd.last = m;
   odd.at = at;
@@ -313,9 +319,24 @@ PoseFilter::Taken PoseFilter::gate_out(const PoseMeasurement& m) noexcept {
     ++disputed_;
     return Taken::Disputed;
   }
+  // A picture that stands still to the last bit shows no robot that is held fast: it shows nothing.
+  const bool slipped = within_reach(m) && !odd.alike;
   carry_to(m);
-  ++moved_;
-  return Taken::Moved;
+  believed_[m.tracker] = {m, rolled_left_m_, rolled_right_m_};
+  slipped ? ++slipped_ : ++moved_;
+  return slipped ? Taken::Slipped : Taken::Moved;
+}
+
+/// Whether the wheels can have brought it there, since its tracker was last believed: however they slipped.
+bool PoseFilter::within_reach(const PoseMeasurement& m) const noexcept {
+  const Believed& from = believed_[m.tracker];
+  if (!any_used_[m.tracker]) return false;
+  const double left_m = rolled_left_m_ - from.left_m, right_m = rolled_right_m_ - from.right_m;
+  const double came_m = std::hypot(m.x_m - from.pose.x_m, m.y_m - from.pose.y_m);
+  if (came_m > std::max(left_m, right_m) + kReach_m + 4.0 * (m.sd_m + from.pose.sd_m)) return false;
+  if (!m.heading_rad || !from.pose.heading_rad) return true;
+  const double turned_rad = std::fabs(wrapped(*m.heading_rad - *from.pose.heading_rad));
+  return turned_rad <= (left_m + right_m) / wheel_base_m_ + kReach_rad + 4.0 * (m.sd_rad + from.pose.sd_rad);
 }
 
 /// Begins anew with `m`, carried on to the newest event by what was rolled since it was taken.

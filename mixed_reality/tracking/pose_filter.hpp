@@ -13,6 +13,7 @@
 #include "core/space/pose.hpp"
 #include "hal/params.hpp"
 #include "hal/time.hpp"
+#include "mixed_reality/tracking/pose_measurement.hpp"
 
 namespace tandem::mixed_reality {
 
@@ -34,17 +35,6 @@ struct PoseFilterParams {
     v.number("base_scale", base, hal::unit::none, {0.0, 0.5}, "Of the distance of the wheels, as a part.");
     v.number("delay", delay_s, hal::unit::s, {0.0, 1.0}, "By which a tracker's stamps may be late.");
   }
-};
-
-/// One pose of a robot by a tracker.
-struct PoseMeasurement {
-  std::uint8_t tracker = 0;  ///< whose, below PoseFilter::kTrackers
-  hal::TimeNs taken_ns = 0;  ///< when light, or whatever it was, left the robot; CLOCK_MONOTONIC
-  double x_m = 0.0, y_m = 0.0;
-  std::optional<double> heading_rad;  ///< nothing: the tracker sees a point
-  double sd_m = 0.002;                ///< of each coordinate
-  double sd_rad = 0.01;
-  bool by_true_clock = false;  ///< its stamp is no estimate: the date, or CLOCK_MONOTONIC
 };
 
 /// A pose and how well it is known.
@@ -70,7 +60,9 @@ class PoseFilter {
     Waits,     ///< is newer than the wheels; used when they have come there
     TooLate,   ///< older than all that is kept
     Gated,     ///< farther from what was expected than noise explains (one of 1,000 true ones is)
-    Moved,     ///< kInsists gated ones of a tracker in a row agree: it was carried; the filter goes on from there
+    Moved,     ///< kInsists gated ones of a tracker in a row agree: the filter goes on from there. It was carried, or
+               ///< is another robot: its wheels cannot have brought it there
+    Slipped,   ///< the same, and they can: they rolled farther than it came
     Disputed,  ///< they agree, and another tracker says that it was not
     Nonsense,  ///< no numbers
   };
@@ -105,6 +97,7 @@ class PoseFilter {
   std::uint64_t gated() const noexcept { return gated_; }
   std::uint64_t too_late() const noexcept { return too_late_; }
   std::uint64_t moved() const noexcept { return moved_; }
+  std::uint64_t slipped() const noexcept { return slipped_; }
   std::uint64_t disputed() const noexcept { return disputed_; }
   hal::TimeNs time_ns() const noexcept { return event(count_ - 1).time_ns; }  ///< of the last `roll` or `put`
   /// Normalised innovation squared of the last measurement, and its degrees of freedom: for tests of consistency.
@@ -143,6 +136,7 @@ class PoseFilter {
               bool gate) noexcept;
   hal::TimeNs time_of(const PoseMeasurement& m) const noexcept;
   Taken gate_out(const PoseMeasurement& m) noexcept;
+  bool within_reach(const PoseMeasurement& m) const noexcept;
   void carry_to(const PoseMeasurement& m) noexcept;
   Taken take(const PoseMeasurement& m) noexcept;
   void take_waiting() noexcept;
@@ -159,12 +153,20 @@ class PoseFilter {
     core::Pose at;         // where the filter was then
     hal::TimeNs since_ns = 0;
     int count = 0;
+    bool alike = true;  // they are the same to the last bit
+  };
+  /// The newest of one tracker that was believed, and how far the wheels had rolled then.
+  struct Believed {
+    PoseMeasurement pose;
+    double left_m = 0.0, right_m = 0.0;
   };
   std::array<Odd, kTrackers> odd_;
-  std::array<hal::TimeNs, kTrackers> used_at_ns_{};  // the newest that was used of each
+  std::array<Believed, kTrackers> believed_;
+  double rolled_left_m_ = 0.0, rolled_right_m_ = 0.0;  // in all, either way
+  std::array<hal::TimeNs, kTrackers> used_at_ns_{};    // the newest that was used of each
   std::array<bool, kTrackers> any_used_{};
   double innovation_ = 0.0;
-  std::uint64_t used_ = 0, gated_ = 0, too_late_ = 0, moved_ = 0, disputed_ = 0;
+  std::uint64_t used_ = 0, gated_ = 0, too_late_ = 0, moved_ = 0, slipped_ = 0, disputed_ = 0;
 };
 
 }  // namespace tandem::mixed_reality

@@ -7,6 +7,7 @@
 #include "core/space/pose.hpp"
 #include "hal/time.hpp"
 #include "mixed_reality/time/moment.hpp"
+#include "mixed_reality/tracking/pose_measurement.hpp"
 
 namespace tandem::mixed_reality {
 
@@ -27,7 +28,8 @@ struct PoseCounts {
   std::uint64_t doubled = 0;     ///< that had come already
   std::uint64_t impossible = 0;  ///< no numbers, or outside of the arena
   std::uint64_t disputed = 0;    ///< that another tracker spoke against
-  std::uint64_t jumps = 0;       ///< the robot was carried, or has slipped
+  std::uint64_t jumps = 0;       ///< it is elsewhere than its wheels can have brought it
+  std::uint64_t slips = 0;       ///< its wheels rolled farther than it came
 };
 
 /// A source of poses of one robot: odometry, a camera, a motion-capture system.
@@ -43,12 +45,15 @@ class PoseSource {
   virtual TrackedPose latch(const Moment& now) noexcept = 0;
   /// How many measurements it did not believe.
   virtual std::uint64_t rejected() const noexcept = 0;
-  /// How often it believed in the end that the robot is farther from where it was than it can have moved.
+  /// How often it believed in the end that the robot is farther from where it was than it can have moved: it was
+  /// carried, or it is another one.
   virtual std::uint64_t jumps() const noexcept { return 0; }
+  /// How often it believed in the end that the robot came less far than its wheels rolled.
+  virtual std::uint64_t slips() const noexcept { return 0; }
   /// Whether sources of it say different places now, and nobody knows which is right.
   virtual bool disputed() const noexcept { return false; }
-  /// How often wheels and trackers were found not to be of one robot: it jumped again and again.
-  virtual std::uint64_t contradictions() const noexcept { return 0; }
+  /// What a tracker saw of it last, as it came; null: there is none that has seen it.
+  virtual const PoseMeasurement* newest_sighting() const noexcept { return nullptr; }
   /// Whether it knows of nothing but the wheels: what they slip it cannot tell.
   virtual bool by_wheels() const noexcept { return false; }
 };

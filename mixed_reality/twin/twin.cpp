@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <utility>
 
 #include "core/space/stores.hpp"
 #include "hal/device/turret.hpp"
@@ -85,6 +86,12 @@ Twin::Twin(core::Space& space, core::RobotId robot, std::unique_ptr<bridges::Rob
     const auto* encoders = static_cast<const hal::WheelEncoders*>(real_->port(hal::port_type<hal::WheelEncoders>()));
     if (encoders != nullptr) slip_ = std::make_unique<SlipWatch>(*encoders, kind.drive()->wheel_base_m);
   }
+  // Encoders that nobody takes are not asked for: slow lines have no room for them.
+  for (const bridges::PortView& port : real_->taken()) {
+    if (kind.drive() == nullptr || port.type->layout != hal::port_type<hal::WheelEncoders>().layout) continue;
+    encoders_ = static_cast<const hal::WheelEncoders*>(port.data);
+    delay_ = std::make_unique<DelayWatch>(kind.drive()->wheel_base_m, motion_limits(kind).settle_s);
+  }
   // On a slow line only what its controller reads anyway is asked for.
   const bool asks_battery = params.ask_battery || kind.flies() || kind.part<hal::TurretPart>() != nullptr ||
                             space.port<hal::Battery>(robot) != nullptr;
@@ -97,6 +104,7 @@ Twin::Twin(core::Space& space, core::RobotId robot, std::unique_ptr<bridges::Rob
 }
 
 void Twin::latch(const Moment& now, RunPhase phase) {
+  now_ = now;
   running_ = phase == RunPhase::Running;
   begun_ = running_ || phase == RunPhase::Paused;
   real_->set_origin(now.monotonic_ns - now.run_ns);
@@ -120,7 +128,9 @@ void Twin::latch(const Moment& now, RunPhase phase) {
   entity_.fusion().latch();
   conditions.readings_missing = entity_.fusion().missing() != nullptr;
   conditions.battery_low = battery_ != nullptr && battery_watch_.low(*battery_, now.monotonic_ns);
+  conditions.links_swapped = std::exchange(swapped_, false);
   track(now, conditions);
+  if (delay_ != nullptr) measure_delay(now);
   pose_validity_ = conditions.pose;
   last_latch_ns_ = now.monotonic_ns;
   entity_.state().held = !supervisor_.judge(conditions, now.run_ns).controller_steps;
@@ -138,9 +148,10 @@ void Twin::track(const Moment& now, Conditions& conditions) noexcept {
   conditions.pose_jumped = poses_->jumps() != jumps_;
   jumps_ = poses_->jumps();
   conditions.pose_disputed = poses_->disputed();
-  conditions.pose_contradicted = poses_->contradictions() != contradictions_;
-  contradictions_ = poses_->contradictions();
-  conditions.wheels_differ = slip_ != nullptr && slip_->differs(tracked);
+  const SlipWatch::Found found = slip_ != nullptr ? slip_->judge(tracked) : SlipWatch::Found::Nothing;
+  conditions.pose_jumped = conditions.pose_jumped || found == SlipWatch::Found::Moved;
+  conditions.wheels_differ = found == SlipWatch::Found::Slip || poses_->slips() != slips_;
+  slips_ = poses_->slips();
 
   // A pose is about a tick old when it is used, and the robot has driven on by what it was last told; in an outage much
   // longer, until something else stops it.
@@ -157,6 +168,21 @@ core::Pose Twin::carried_on(const core::Pose& pose, double for_s) const noexcept
   const hal::DifferentialDrive* const drive = space_.kind(robot_).drive();
   if (drive == nullptr || for_s <= 0.0) return pose;
   return rolled(pose, driven_.left_m_s * for_s, driven_.right_m_s * for_s, drive->wheel_base_m);
+}
+
+/// A robot that obeys later than the barrier counts on is named, and counted on from now on.
+void Twin::measure_delay(const Moment& now) {
+  if (real_->health() != LinkHealth::Active || encoders_->validity != hal::Validity::Fresh) return delay_->forget();
+  delay_->rolled(now.to_monotonic(encoders_->taken_ns), encoders_->left_m, encoders_->right_m);
+  if (const PoseMeasurement* const seen = poses_->newest_sighting(); seen != nullptr) delay_->seen(*seen);
+  if (barrier_ == nullptr || !running_) return;
+  const double counted_s = barrier_->latency_s();
+  if (!delay_->judge(now.monotonic_ns, counted_s)) return;
+  const auto ms = [](double s) { return hal::format_number(std::round(s * 1e3)) + " ms"; };
+  note_incident(now,
+                "it moves " + ms(delay_->delay_s()) + " after it is told to, by " + std::string(delay_->told_by()) +
+                    ", not within " + ms(counted_s) + " as was counted on: others keep so much farther away",
+                true);
 }
 
 void Twin::emergency_stop(hal::TimeNs monotonic_ns) noexcept {
@@ -235,8 +261,8 @@ void Twin::offer(const Moment& now) {
   const bool hears = health == LinkHealth::Active || health == LinkHealth::Connecting;
   const bridges::LinkReport link = real_->report();
   const bool many = link.answers >= kManyAnswers;  // else the slowest of the first few would be the 99th
-  barrier_->begin(tracked_, now.monotonic_ns, hal::to_seconds(many ? link.p99_round_trip_ns : link.mean_round_trip_ns),
-                  hears);
+  const double round_trip_s = hal::to_seconds(many ? link.p99_round_trip_ns : link.mean_round_trip_ns);
+  barrier_->begin(tracked_, now.monotonic_ns, round_trip_s, delay_ != nullptr ? delay_->delay_s() : 0.0, hears);
   barrier_->look_around(space_, robot_, pose_);
   if (running_) look_for_intrusions(now);
   if (!hears && hal::to_seconds(now.monotonic_ns - heard_ns_) < params_.coast_s) barrier_->want(driven_);
@@ -257,6 +283,7 @@ void Twin::after_filter(const Moment& now) {
   const bool hears = real_->health() == LinkHealth::Active;
   if (hears) driven_ = sent_;
   if (hears) heard_ns_ = now.monotonic_ns;
+  if (hears && delay_ != nullptr) delay_->told(now.monotonic_ns, sent_);
   if (barrier_ != nullptr) {
     const bool drives_on = !hears && hal::to_seconds(now.monotonic_ns - heard_ns_) < params_.coast_s;
     barrier_->sent(now.monotonic_ns, drives_on ? driven_ : sent_, alive);

@@ -18,6 +18,7 @@
 #include "mixed_reality/safety/flight_order_gate.hpp"
 #include "mixed_reality/safety/supervisor.hpp"
 #include "mixed_reality/time/moment.hpp"
+#include "mixed_reality/tracking/delay_watch.hpp"
 #include "mixed_reality/tracking/pose_source.hpp"
 #include "mixed_reality/tracking/slip_watch.hpp"
 #include "mixed_reality/twin/mechanisms.hpp"
@@ -59,6 +60,11 @@ class Twin {
   void hub_was_frozen() noexcept { hub_was_frozen_ = true; }
   /// Whether somebody would stop the robot if this program died; heeded by the next `latch`.
   void set_guarded(bool guarded) noexcept { guarded_ = guarded; }
+  /// Its wheels roll as another robot is seen to move: heeded by the next `latch`. `what` for people.
+  void links_seem_swapped(const std::string& what) {
+    swapped_ = true;
+    note_incident(now_, what, true);
+  }
   /// A person re-arms the robot.
   void rearm() noexcept { supervisor_.rearm(); }
   bool awaits_rearm() const noexcept { return supervisor_.awaits_rearm(); }
@@ -108,7 +114,8 @@ class Twin {
   const TrackedPose& tracked() const noexcept { return tracked_; }
   /// The newest reading of all that the robot is asked for; null: none came yet.
   const hal::Reading* newest_reading() const noexcept;
-  const hal::Battery* battery() const noexcept { return battery_; }  ///< null: it tells nothing
+  const hal::WheelEncoders* encoders() const noexcept { return encoders_; }  ///< null: nobody asks for them
+  const hal::Battery* battery() const noexcept { return battery_; }          ///< null: it tells nothing
   const Verdict& verdict() const noexcept { return supervisor_.verdict(); }
   /// The wheel speeds last handed to the robot.
   const hal::WheelSpeeds& sent() const noexcept { return sent_; }
@@ -133,6 +140,7 @@ class Twin {
   void note_incident(const Moment& now, const std::string& what, bool serious);
   void note(const Moment& now);
   void note_trespass(const Moment& now);
+  void measure_delay(const Moment& now);
   bool may_move(const Moment& now) const noexcept;
   void send_commands(bool alive, const Moment& now);
   bool confine(const hal::PortType& type, void* command, const Moment& now) const noexcept;
@@ -163,7 +171,10 @@ class Twin {
   BatteryWatch battery_watch_;
   const hal::FlightState* flight_ = nullptr;  // null: it does not fly
   FlightOrderGate orders_;
-  std::uint64_t jumps_ = 0, contradictions_ = 0;  // of the pose, as far as they were judged
+  std::unique_ptr<DelayWatch> delay_;             // null: it has no wheels, or does not tell what they roll
+  const hal::WheelEncoders* encoders_ = nullptr;  // null: the same
+  std::uint64_t jumps_ = 0, slips_ = 0;           // of the pose, as far as they were judged
+  bool swapped_ = false;
   TrackedPose tracked_;
   core::Pose pose_;
   SmoothPose smooth_;
@@ -181,6 +192,7 @@ class Twin {
   bool being_replaced_ = false, replaced_ = false;
   bool begun_ = false;  // the run has, and is not stopping
   std::optional<hal::WheelSpeeds> steered_;
+  Moment now_;  // of the last `latch`
   hal::TimeNs last_latch_ns_ = 0;
   hal::TimeNs pose_taken_ns_ = 0;  // on the run's clock
   hal::Validity pose_validity_ = hal::Validity::Absent;

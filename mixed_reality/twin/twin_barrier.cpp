@@ -7,7 +7,8 @@
 
 namespace tandem::mixed_reality {
 
-void TwinBarrier::begin(const TrackedPose& tracked, hal::TimeNs now_ns, double round_trip_s, bool hears) noexcept {
+void TwinBarrier::begin(const TrackedPose& tracked, hal::TimeNs now_ns, double round_trip_s, double delay_s,
+                        bool hears) noexcept {
   begun_ = true;
   rules_ = Rules::Nothing;
   robot_.placed = true;  // where it is said to start, if nobody knows better: it stands there
@@ -15,7 +16,8 @@ void TwinBarrier::begin(const TrackedPose& tracked, hal::TimeNs now_ns, double r
   robot_.pose_ns = tracked.known ? tracked.taken_ns : now_ns;
   robot_.error_m = kSigmas * tracked.sd_m.value_or(0.0);
   robot_.error_rad = tracked.sd_rad ? kSigmas * *tracked.sd_rad : kError_rad;
-  robot_.latency_s = std::max(filter_.settings().latency_s, round_trip_s);
+  robot_.latency_s = std::max({filter_.settings().latency_s, round_trip_s, delay_s});
+  counts_.delay_s = delay_s;
   robot_.hears = hears;
   robot_.wanted = {};
 }

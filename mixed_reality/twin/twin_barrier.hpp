@@ -14,6 +14,7 @@ struct BarrierCounts {
   std::uint64_t changed_ticks = 0;
   double most_m_s = 0.0;         ///< largest change of a speed
   std::uint64_t trespasses = 0;  ///< times it came to be out of a fence or in a keep-out
+  double delay_s = 0.0;          ///< measured, from a command to its motion; 0: none beyond what was counted on
 };
 
 /// Commands of one robot as the filter wants and answers them. Each tick: `begin`, `want` for each command in the order
@@ -31,8 +32,8 @@ class TwinBarrier {
   TwinBarrier(const TwinBarrier&) = delete;
   TwinBarrier& operator=(const TwinBarrier&) = delete;
 
-  /// Where the robot is, and whether it hears. `driven`: what it goes on with if not.
-  void begin(const TrackedPose& tracked, hal::TimeNs now_ns, double round_trip_s, bool hears) noexcept;
+  /// Where the robot is, and whether it hears. `delay_s`: measured from a command to its motion; 0: not known.
+  void begin(const TrackedPose& tracked, hal::TimeNs now_ns, double round_trip_s, double delay_s, bool hears) noexcept;
   /// Fills in what is virtual around it, if that is to be avoided.
   void look_around(const core::Space& space, core::RobotId robot, const core::Pose& pose) noexcept;
   void want(const hal::WheelSpeeds& wheels) noexcept;
@@ -54,6 +55,8 @@ class TwinBarrier {
   double changed_m_s() const noexcept { return robot_.changed_m_s; }
   const Trespass& trespass() const noexcept { return robot_.trespass; }
   const BarrierCounts& counts() const noexcept { return counts_; }
+  /// The delay that is counted on; 0 before the first `begin`.
+  double latency_s() const noexcept { return robot_.latency_s; }
   /// Once for each time that it comes to be where it should not.
   bool notes_trespass() noexcept;
   void count() noexcept;

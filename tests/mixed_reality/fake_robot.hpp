@@ -2,6 +2,7 @@
 #pragma once
 #include <algorithm>
 #include <cmath>
+#include <deque>
 #include <map>
 #include <string>
 #include <vector>
@@ -35,10 +36,25 @@ struct FakeBody {
   bool stopped_itself = false;
   bool tells_place = false;  ///< it measures where it is
   bool held_fast = false;    ///< its wheels turn, and it does not move
+  hal::TimeNs delay_ns = 0;  ///< from a command to its wheels
   LinkHealth health_when_up = LinkHealth::Active;
   hal::TimeNs moved_to_ns = 0;
 
+  void obey(hal::TimeNs now_ns, const hal::WheelSpeeds& told) {
+    if (delay_ns == 0)
+      wheels = told;
+    else
+      delayed_.push_back({now_ns + delay_ns, told});
+  }
   void move_to(hal::TimeNs now_ns) {
+    while (!delayed_.empty() && delayed_.front().at_ns <= now_ns) {
+      roll_to(delayed_.front().at_ns);
+      wheels = delayed_.front().wheels;
+      delayed_.pop_front();
+    }
+    roll_to(now_ns);
+  }
+  void roll_to(hal::TimeNs now_ns) {
     const double dt_s = hal::to_seconds(now_ns - moved_to_ns);
     moved_to_ns = now_ns;
     left_m += wheels.left_m_s * dt_s;
@@ -47,6 +63,9 @@ struct FakeBody {
       pose = rolled(pose, wheels.left_m_s * dt_s, wheels.right_m_s * dt_s, hal::epuck::kind().drive()->wheel_base_m);
   }
   bool stands() const { return wheels.left_m_s == 0.0 && wheels.right_m_s == 0.0; }
+
+ private:
+  std::deque<Received> delayed_;  // by when they are obeyed
 };
 
 /// What a commit asks for is there at the next latch, stamped with the time of the commit.
@@ -107,7 +126,7 @@ class FakeRobot final : public bridges::RobotBridge, private hal::Robot {
     if (!body_.link_up) return;
     body_.move_to(now);
     const hal::WheelSpeeds obeyed = stopped_ ? hal::WheelSpeeds{} : wheels_;
-    body_.wheels = obeyed;
+    body_.obey(now, obeyed);
     body_.leds = leds_;
     body_.received.push_back({now, obeyed});
     sample_.left_m = body_.left_m;

@@ -46,7 +46,7 @@ TEST(SafetyTable, OneConditionAloneLetsARobotDrive) {
     const bool well = c.run == RunPhase::Running && c.link == LinkHealth::Active && c.pose == Validity::Fresh &&
                       !c.controller_failed && !c.emergency_stop && !c.operator_holds && !c.hook_holds &&
                       !c.hub_was_frozen && !c.guardian_gone && !c.robot_stopped_itself && !c.battery_low &&
-                      !c.readings_missing && !c.pose_disputed && !c.pose_contradicted && !c.pose_jumped &&
+                      !c.readings_missing && !c.pose_disputed && !c.links_swapped && !c.pose_jumped &&
                       !c.wheels_differ && !c.being_replaced && !c.replaced;
     EXPECT_EQ(judge(c).may_drive, well) << judge(c).reason;
     EXPECT_EQ(judge(c).controller_steps, well);

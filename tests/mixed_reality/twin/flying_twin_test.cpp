@@ -170,7 +170,7 @@ TEST_F(FlyingTwin, APlaceThatItCannotHaveReachedIsAStopThatNeedsARearm) {
   ticks(10);
   EXPECT_NEAR(twin_->pose().x_m, -1.9, 1e-9);
   EXPECT_FALSE(twin_->verdict().may_drive);
-  EXPECT_EQ(twin_->verdict().reason, "pose jumped; waits to be re-armed");
+  EXPECT_EQ(twin_->verdict().reason, "moved by something else; waits to be re-armed");
 }
 
 }  // namespace

@@ -22,7 +22,7 @@ class BarrierOfATwin : public testing::Test {
   void tick(TwinBarrier& barrier, bool hears, const Commands&... commands) {
     now_ns_ += kTick;
     tracked_.taken_ns = now_ns_;
-    barrier.begin(tracked_, now_ns_, 0.0, hears);
+    barrier.begin(tracked_, now_ns_, 0.0, 0.0, hears);
     (want(barrier, commands), ...);
     filter_.solve(now_ns_);
   }
@@ -105,7 +105,7 @@ TEST_F(BarrierOfATwin, WheelsKeepTheirTurn) {
   TrackedPose there = tracked_;
   there.pose = core::Pose::at(0.09, 0.0, 0.0, 0.6);
   there.taken_ns = now_ns_ + kTick;
-  other.begin(there, now_ns_ + kTick, 0.0, true);
+  other.begin(there, now_ns_ + kTick, 0.0, 0.0, true);
   hal::WheelSpeeds wheels;
   wheels.set(0.08, 0.12);
   tick(one, true, wheels);
