@@ -6,6 +6,7 @@
 #include "app/command/command.hpp"
 #include "app/command/command_groups.hpp"
 #include "app/command/robot_commands.hpp"
+#include "app/command/validate.hpp"
 #include "app/process/emergency.hpp"
 
 namespace {
@@ -438,6 +439,7 @@ int main(int argc, char** argv) {
   add_robot_commands(app, robot_command_options, code);
 
   add_calibrate_commands(app, code);
+  add_validate_command(app, validate, code);
 
   BenchOptions bench_options;
   add_bench(app, bench_options, code);

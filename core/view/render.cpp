@@ -9,7 +9,7 @@ namespace tandem::core {
 namespace {
 
 struct Renderer {
-  bool (*call)(const std::string& svg, PictureFormat format, std::string& out);
+  bool (*call)(const std::vector<std::string>& svgs, PictureFormat format, std::string& out);
 };
 
 /// The renderer, from the folder of the program's own libraries. It stays loaded.
@@ -23,6 +23,14 @@ hal::Result<Renderer> load_renderer() {
                     std::string(why != nullptr ? why : "unknown reason") + "; .svg needs none"};
 }
 
+hal::Result<std::string> render_by_library(const std::vector<std::string>& svgs, PictureFormat format) {
+  const auto renderer = load_renderer();
+  if (!renderer.ok()) return renderer.error();
+  std::string out;
+  if (!renderer.value().call(svgs, format, out)) return hal::Error{out};
+  return out;
+}
+
 }  // namespace
 
 hal::Status can_render(PictureFormat format) {
@@ -32,12 +40,11 @@ hal::Status can_render(PictureFormat format) {
 }
 
 hal::Result<std::string> render(const std::string& svg, PictureFormat format) {
-  if (format == PictureFormat::Svg) return svg;
-  const auto renderer = load_renderer();
-  if (!renderer.ok()) return renderer.error();
-  std::string out;
-  if (!renderer.value().call(svg, format, out)) return hal::Error{out};
-  return out;
+  return format == PictureFormat::Svg ? hal::Result<std::string>{svg} : render_by_library({svg}, format);
+}
+
+hal::Result<std::string> render_pages(const std::vector<std::string>& svgs) {
+  return render_by_library(svgs, PictureFormat::Pdf);
 }
 
 }  // namespace tandem::core

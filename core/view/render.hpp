@@ -1,6 +1,7 @@
 // Renders SVG documents as PNG or PDF.
 #pragma once
 #include <string>
+#include <vector>
 
 #include "hal/result.hpp"
 
@@ -16,5 +17,7 @@ hal::Status can_render(PictureFormat format);
 /// `svg` as a file of this format; pixels of a PNG are the document's. Error: it cannot be rendered, with the
 /// renderer's words.
 hal::Result<std::string> render(const std::string& svg, PictureFormat format);
+/// Documents as the pages of one PDF, at least one, each as large as it says. Error: as above.
+hal::Result<std::string> render_pages(const std::vector<std::string>& svgs);
 
 }  // namespace tandem::core

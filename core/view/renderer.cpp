@@ -54,49 +54,84 @@ void append_pixels(cairo_surface_t* surface, std::string& text) {
   for (std::uint32_t line = 0; line < height; ++line) text.append(data + line * stride, std::size_t{4} * width);
 }
 
-hal::Result<std::string> render_here(const std::string& svg, PictureFormat format) {
+struct Document {
+  Handle handle;
+  double width_px = 0.0, height_px = 0.0;
+};
+
+hal::Result<Document> read_document(const std::string& svg) {
   GError* error = nullptr;
   const Stream stream(g_memory_input_stream_new_from_data(svg.data(), static_cast<gssize>(svg.size()), nullptr));
   // Large swarms have more elements than librsvg takes from strangers.
-  const Handle handle(
-      rsvg_handle_new_from_stream_sync(stream.get(), nullptr, RSVG_HANDLE_FLAG_UNLIMITED, nullptr, &error));
-  if (handle == nullptr) return failed(error);
-  double width_px = 0.0;
-  double height_px = 0.0;
-  if (rsvg_handle_get_intrinsic_size_in_pixels(handle.get(), &width_px, &height_px) == 0)
+  Document read{
+      Handle(rsvg_handle_new_from_stream_sync(stream.get(), nullptr, RSVG_HANDLE_FLAG_UNLIMITED, nullptr, &error))};
+  if (read.handle == nullptr) return failed(error);
+  if (rsvg_handle_get_intrinsic_size_in_pixels(read.handle.get(), &read.width_px, &read.height_px) == 0)
     return failed("it has no size");
+  return read;
+}
 
+hal::Status draw(const Document& document, cairo_t* context, double scale) {
+  GError* error = nullptr;
+  const RsvgRectangle page{0.0, 0.0, scale * document.width_px, scale * document.height_px};
+  if (rsvg_handle_render_document(document.handle.get(), context, &page, &error) == 0) return failed(error);
+  return {};
+}
+
+hal::Result<std::string> render_pdf(const std::vector<Document>& documents) {
   std::string text;
-  const bool pdf = format == PictureFormat::Pdf;
-  const double scale = pdf ? kPoints_per_px : 1.0;
-  const Surface surface(pdf ? cairo_pdf_surface_create_for_stream(&append, &text, scale * width_px, scale * height_px)
-                            : cairo_image_surface_create(CAIRO_FORMAT_RGB24, static_cast<int>(std::ceil(width_px)),
-                                                         static_cast<int>(std::ceil(height_px))));
+  const Surface surface(cairo_pdf_surface_create_for_stream(&append, &text, 1.0, 1.0));
   const Context context(cairo_create(surface.get()));
-  const RsvgRectangle page{0.0, 0.0, scale * width_px, scale * height_px};
-  if (rsvg_handle_render_document(handle.get(), context.get(), &page, &error) == 0) return failed(error);
+  for (const Document& document : documents) {
+    cairo_pdf_surface_set_size(surface.get(), kPoints_per_px * document.width_px, kPoints_per_px * document.height_px);
+    if (const hal::Status drawn = draw(document, context.get(), kPoints_per_px); !drawn.ok()) return drawn.error();
+    cairo_show_page(context.get());
+  }
+  cairo_surface_finish(surface.get());
+  cairo_status_t status = cairo_status(context.get());
+  if (status == CAIRO_STATUS_SUCCESS) status = cairo_surface_status(surface.get());
+  if (status != CAIRO_STATUS_SUCCESS) return failed(cairo_status_to_string(status));
+  return text;
+}
+
+hal::Result<std::string> render_image(const Document& document, PictureFormat format) {
+  std::string text;
+  const Surface surface(cairo_image_surface_create(CAIRO_FORMAT_RGB24, static_cast<int>(std::ceil(document.width_px)),
+                                                   static_cast<int>(std::ceil(document.height_px))));
+  const Context context(cairo_create(surface.get()));
+  if (const hal::Status drawn = draw(document, context.get(), 1.0); !drawn.ok()) return drawn.error();
   cairo_status_t status = cairo_status(context.get());
   if (status == CAIRO_STATUS_SUCCESS && format == PictureFormat::Pixels) {
     append_pixels(surface.get(), text);
     return text;
   }
-  if (status == CAIRO_STATUS_SUCCESS && !pdf) status = cairo_surface_write_to_png_stream(surface.get(), &append, &text);
+  if (status == CAIRO_STATUS_SUCCESS) status = cairo_surface_write_to_png_stream(surface.get(), &append, &text);
   cairo_surface_finish(surface.get());
   if (status == CAIRO_STATUS_SUCCESS) status = cairo_surface_status(surface.get());
   if (status != CAIRO_STATUS_SUCCESS) return failed(cairo_status_to_string(status));
   return text;
 }
 
+hal::Result<std::string> render_here(const std::vector<std::string>& svgs, PictureFormat format) {
+  std::vector<Document> documents;
+  for (const std::string& svg : svgs) {
+    auto document = read_document(svg);
+    if (!document.ok()) return document.error();
+    documents.push_back(std::move(document).value());
+  }
+  return format == PictureFormat::Pdf ? render_pdf(documents) : render_image(documents.front(), format);
+}
+
 }  // namespace
 }  // namespace tandem::core
 
-extern "C" __attribute__((visibility("default"))) bool tandem_render(const std::string& svg,
+extern "C" __attribute__((visibility("default"))) bool tandem_render(const std::vector<std::string>& svgs,
                                                                      tandem::core::PictureFormat format,
                                                                      std::string& out);
 
 /// `out` is the picture; or, when false is returned, what is wrong.
-bool tandem_render(const std::string& svg, tandem::core::PictureFormat format, std::string& out) {
-  auto rendered = tandem::core::render_here(svg, format);
+bool tandem_render(const std::vector<std::string>& svgs, tandem::core::PictureFormat format, std::string& out) {
+  auto rendered = tandem::core::render_here(svgs, format);
   out = rendered.ok() ? std::move(rendered).value() : rendered.error().message;
   return rendered.ok();
 }

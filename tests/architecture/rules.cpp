@@ -23,6 +23,7 @@ const std::map<std::string, std::set<std::string>> kLayers = {
     {"app", {"app", "window", "study", "mixed_reality", "core", "bridges", "controllers", "hal"}},
     {"library", {"library", "app", "core", "hal"}},
     {"python", {"python", "library", "app", "core", "hal"}},
+    {"validate", {"validate", "library", "app", "study", "core", "hal"}},
     {"bench", {"bench", "app", "window", "study", "mixed_reality", "core", "bridges", "controllers", "hal"}}};
 
 std::string layer_of(const std::string& folder) {
