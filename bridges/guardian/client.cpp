@@ -23,6 +23,8 @@
 #include "bridges/guardian/packet.hpp"
 #include "bridges/guardian/process.hpp"
 #include "bridges/guardian/shared_page.hpp"
+#include "bridges/guardian/stopped_process.hpp"
+#include "hal/boottime.hpp"
 #include "hal/monotonic.hpp"
 
 namespace tandem::bridges::guardian {
@@ -41,7 +43,13 @@ using hal::monotonic_ns;
 class GuardianClient::Heart {
  public:
   Heart(std::vector<StopperType> types, const GuardianOptions& options, SharedPage& page, int socket, pid_t process)
-      : types_(std::move(types)), options_(options), page_(page), socket_(socket), process_(process) {
+      : types_(std::move(types)),
+        options_(options),
+        page_(page),
+        socket_(socket),
+        process_(process),
+        guardian_pulse_(options.limits),
+        own_(options.limits) {
     // Signals are for the other threads: their waits are to be interrupted.
     sigset_t all, before;
     ::sigfillset(&all);
@@ -60,9 +68,12 @@ class GuardianClient::Heart {
     return std::exchange(news_, {});
   }
 
-  SendPermit permit() const noexcept { return SendPermit(page_.turn); }
+  SendPermit permit() const noexcept {
+    const TimeNs oldest_ns = options_.limits.beat_ns + options_.limits.asleep_ns;
+    return SendPermit(page_.turn, {&page_.hub_beat_ms, static_cast<std::uint32_t>(oldest_ns / hal::kNsPerMs)});
+  }
   Freezes freezes() const noexcept { return {freezes_.load(), last_freeze_ns_.load()}; }
-  bool guards() const noexcept { return guards_.load(); }
+  bool guards() const noexcept { return lives_.load() && !guardian_frozen_.load(); }
   pid_t process() const noexcept { return process_; }
 
  private:
@@ -76,7 +87,10 @@ class GuardianClient::Heart {
 
   void run();
   void beat();
+  void woke_up(TimeNs slept_ns);
+  void look_at_guardian();
   void look_at_turn();
+  void count_freeze(TimeNs lasted_ns, const std::string& what);
   void sleep_as_asked();
   void take_from_guardian(bool readable);
   void obey(const Packet& packet);
@@ -102,7 +116,10 @@ class GuardianClient::Heart {
   bool taking_back_ = false;
   std::atomic<std::uint64_t> freezes_{0};
   std::atomic<TimeNs> last_freeze_ns_{0};
-  std::atomic<bool> guards_{true};
+  std::atomic<bool> lives_{true};  // the guardian
+  std::atomic<bool> guardian_frozen_{false};
+  Pulse guardian_pulse_;
+  OwnPulse own_;
   std::vector<char> buffer_ = std::vector<char>(kLongestPacket);
   std::thread thread_;
 };
@@ -113,7 +130,7 @@ void GuardianClient::Heart::run() {
   beat_ns_ = monotonic_ns();
   for (;;) {
     page_.beats.fetch_add(1, std::memory_order_relaxed);
-    pollfd p{guards_.load() ? socket_ : -1, POLLIN, 0};
+    pollfd p{lives_.load() ? socket_ : -1, POLLIN, 0};
     ::poll(&p, 1, static_cast<int>(options_.limits.beat_ns / hal::kNsPerMs));
     const std::lock_guard lock(mutex_);
     if (quit_) return;
@@ -124,7 +141,10 @@ void GuardianClient::Heart::run() {
 }
 
 void GuardianClient::Heart::beat() {
+  const TimeNs slept_ns = own_.slept(hal::boottime_ns());
+  look_at_guardian();
   look_at_turn();
+  if (slept_ns > 0) woke_up(slept_ns);
   beat_ns_ = monotonic_ns();
   if (options_.suspend_asked != nullptr && options_.suspend_asked->exchange(false)) {
     asleep_since_ns_ = beat_ns_;
@@ -132,9 +152,44 @@ void GuardianClient::Heart::beat() {
     for (auto& [id, robot] : robots_) robot.rests = false;
   }
   if (asleep_since_ns_ != 0) sleep_as_asked();
+  page_.hub_beat_ms.store(hal::boottime_ms(), std::memory_order_release);  // last: until here nothing was written
 }
 
-/// Whether we were declared dead, and what then.
+void GuardianClient::Heart::count_freeze(TimeNs lasted_ns, const std::string& what) {
+  last_freeze_ns_ = lasted_ns;
+  ++freezes_;
+  std::array<char, 64> text{};
+  std::snprintf(text.data(), text.size(), "this program was frozen for %.1f s", hal::to_seconds(lasted_ns));
+  news_.emplace_back(text.data() + what);
+}
+
+/// We were frozen, and our guardian has not noticed: so was it, or it is gone.
+void GuardianClient::Heart::woke_up(TimeNs slept_ns) {
+  guardian_pulse_.forget();
+  if (declared_) return;
+  page_.withdraw_links();
+  count_freeze(slept_ns,
+               ", and its guardian process did not notice: real robots may have gone on with their last command; they "
+               "are stopped now");
+}
+
+/// A guardian that is frozen guards nobody; what it was doing is for us to go on with.
+void GuardianClient::Heart::look_at_guardian() {
+  const std::uint32_t beats = page_.guardian_beats.load(std::memory_order_relaxed);
+  const bool frozen = lives_ && guardian_pulse_.frozen(beats, monotonic_ns(), [this] { return is_stopped(process_); });
+  if (frozen && !guardian_frozen_.exchange(true)) {
+    news_.emplace_back(
+        "the guardian process is frozen, and nobody would stop real robots if this program were killed: they are "
+        "stopped");
+  } else if (!frozen && guardian_frozen_.exchange(false)) {
+    news_.emplace_back("the guardian process is awake again");
+  }
+  if (lives_ && !frozen) return;
+  page_.give_turn();
+  declared_ = false;
+}
+
+/// Whether it is the guardian's turn, and what then.
 void GuardianClient::Heart::look_at_turn() {
   const bool theirs = page_.turn.load(std::memory_order_acquire) % 2 == 1;
   const TimeNs now = monotonic_ns();
@@ -142,13 +197,11 @@ void GuardianClient::Heart::look_at_turn() {
     declared_ = true;
     back_ns_ = now;
     taking_back_ = false;
-    last_freeze_ns_ = now - beat_ns_;
-    ++freezes_;
-    std::array<char, 160> text{};
-    std::snprintf(text.data(), text.size(),
-                  "this program was frozen for %.1f s: its guardian process has stopped all real robots",
-                  hal::to_seconds(last_freeze_ns_));
-    news_.emplace_back(text.data());
+    if (now - beat_ns_ >= options_.limits.stopped_ns) {
+      count_freeze(now - beat_ns_, ": its guardian process has stopped all real robots");
+    } else {
+      ++freezes_;  // the guardian's own, of which it tells itself
+    }
     say({Word::Back, {}, ""});
   } else if (declared_ && !taking_back_ && now - back_ns_ >= kHandBackWithin) {
     taking_back_ = true;
@@ -159,12 +212,13 @@ void GuardianClient::Heart::look_at_turn() {
 /// Ctrl-Z: waits for the guardian to have stopped all robots, or as long as a person may have to, and then sleeps.
 void GuardianClient::Heart::sleep_as_asked() {
   const bool theirs = page_.turn.load(std::memory_order_acquire) % 2 == 1;
-  if (!(theirs && all_rest()) && monotonic_ns() - asleep_since_ns_ < kSleepWithin && guards_) return;
+  if (!(theirs && all_rest()) && monotonic_ns() - asleep_since_ns_ < kSleepWithin) return;
   flush();
   beat_ns_ = asleep_since_ns_;
   asleep_since_ns_ = 0;
   ::pthread_kill(::pthread_self(), SIGSTOP);  // to this thread: nothing is done before it works
   if (!theirs) return;                        // there is no guardian to hand back
+  (void)own_.slept(hal::boottime_ns());       // that is known
   look_at_turn();
 }
 
@@ -173,7 +227,7 @@ bool GuardianClient::Heart::all_rest() const {
 }
 
 void GuardianClient::Heart::take_from_guardian(bool readable) {
-  while (readable && guards_) {
+  while (readable && lives_) {
     const ssize_t n = ::recv(socket_, buffer_.data(), buffer_.size(), MSG_DONTWAIT);
     if (n > 0) {
       if (const auto packet = decode({buffer_.data(), static_cast<std::size_t>(n)})) obey(*packet);
@@ -181,7 +235,9 @@ void GuardianClient::Heart::take_from_guardian(bool readable) {
     }
     if (n < 0 && errno == EINTR) continue;
     if (n < 0 && errno == EAGAIN) return;
-    guards_ = false;
+    lives_ = false;
+    page_.give_turn();
+    declared_ = false;
     if (!ended_) {
       news_.emplace_back(
           "the guardian process is gone, and nobody would stop real robots if this program were killed: they are "
@@ -226,7 +282,7 @@ void GuardianClient::Heart::say(const Packet& packet) {
 
 /// What the socket does not take now is sent with a later beat: a guardian that is busy must not hold up the loop.
 void GuardianClient::Heart::flush() {
-  for (; !unsent_.empty() && guards_; unsent_.pop_front()) {
+  for (; !unsent_.empty() && lives_; unsent_.pop_front()) {
     const std::string& bytes = unsent_.front();
     if (::send(socket_, bytes.data(), bytes.size(), MSG_NOSIGNAL | MSG_DONTWAIT) < 0 && errno == EAGAIN) return;
   }
@@ -243,7 +299,7 @@ hal::Status GuardianClient::Heart::claim(std::span<const StopMessages> robots) {
     say({Word::Claim, messages, ""});
   }
   const auto answered = [&] {
-    return !guards_ || std::ranges::all_of(robots, [&](const auto& m) { return robots_[m.robot].answered; });
+    return !lives_ || std::ranges::all_of(robots, [&](const auto& m) { return robots_[m.robot].answered; });
   };
   if (!changed_.wait_for(lock, kClaimWithin, answered)) return hal::Error{"the guardian process does not answer"};
   for (const StopMessages& messages : robots) {
@@ -284,18 +340,19 @@ std::vector<UnstoppedRobot> GuardianClient::Heart::end(TimeNs timeout_ns) {
     for (auto& [id, robot] : robots_) robot.rests = false;
     say({Word::End, {}, ""});
     ended_ = true;
-    const auto done = [this] { return !guards_ || all_rest(); };
+    page_.hub_beat_ms = 0;
+    const auto done = [this] { return !lives_ || all_rest(); };
     changed_.wait_for(lock, std::chrono::nanoseconds(timeout_ns), done);
     for (const auto& [id, robot] : robots_) {
       if (robot.watched && !robot.rests) unstopped.push_back({id, robot.messages.link, robot.answer});
     }
     const bool leaves = unstopped.empty();
-    if (leaves) changed_.wait_for(lock, std::chrono::seconds(1), [this] { return !guards_; });
+    if (leaves) changed_.wait_for(lock, std::chrono::seconds(1), [this] { return !lives_; });
     quit_ = true;
   }
   thread_.join();
   ::close(socket_);
-  ::waitpid(process_, nullptr, guards_ ? WNOHANG : 0);
+  ::waitpid(process_, nullptr, lives_ ? WNOHANG : 0);
   return unstopped;
 }
 

@@ -7,7 +7,8 @@
 //   guardian->release(id);                                its stop was confirmed
 //   guardian->end(2 s);                                   what was not released is stopped by the guardian, or named
 //
-// After a freeze no link may be written to until the guardian has seen every robot confirm its stop, or a second after
+// Hub and guardian watch one another, and each itself (bridges/guardian/pulse.hpp). After a freeze of either, or of
+// both at once, no link may be written to until the guardian has seen every robot confirm its stop, or a second after
 // the hub is back. Links that were open report that they hung up, so bridges open them anew and begin as after any
 // outage: stopped, and driving only after the ordinary way back.
 #pragma once
@@ -31,7 +32,8 @@ struct GuardianOptions {
   PulseLimits limits = {};
 };
 
-/// How often this program was declared dead and ran on, and for how long the last time.
+/// How often this program was declared dead or found itself frozen, and ran on, and for how long the last time. Also
+/// counted is a guardian that was frozen itself and has stopped all robots since: nothing may move until re-armed.
 struct Freezes {
   std::uint64_t count = 0;
   hal::TimeNs last_ns = 0;
@@ -70,7 +72,7 @@ class GuardianClient {
   /// For links and bridges. Refers to memory that is never freed.
   SendPermit permit() const noexcept;
   Freezes freezes() const noexcept;
-  /// The guardian process lives. Where it does not, nobody would stop robots of a killed hub.
+  /// The guardian process lives, and is not frozen. Else nobody would stop robots of a killed hub: they must not move.
   bool guards() const noexcept;
   pid_t process() const noexcept;
   /// What is to be told to people since the last call.

@@ -24,7 +24,9 @@
 #include <unistd.h>
 #include <vector>
 
+#include "bridges/guardian/stopped_process.hpp"
 #include "bridges/guardian/watched_robot.hpp"
+#include "hal/boottime.hpp"
 #include "hal/monotonic.hpp"
 
 namespace tandem::bridges::guardian {
@@ -63,20 +65,6 @@ void close_others(int kept) noexcept {
   close_from_to(std::max(k + 1, 3U), ~0U);
 }
 
-/// Whether the system has stopped the process: SIGSTOP, a debugger.
-bool is_stopped(pid_t process) noexcept {
-  std::array<char, 32> path{};
-  std::snprintf(path.data(), path.size(), "/proc/%d/stat", static_cast<int>(process));
-  const int fd = ::open(path.data(), O_RDONLY | O_CLOEXEC);
-  if (fd < 0) return false;
-  std::array<char, 512> text{};
-  const ssize_t n = ::read(fd, text.data(), text.size() - 1);
-  ::close(fd);
-  if (n <= 0) return false;
-  const char* end = std::strrchr(text.data(), ')');  // the name may hold anything
-  return end != nullptr && end[1] == ' ' && (end[2] == 'T' || end[2] == 't');
-}
-
 /// What there is now, and what will be used later; the latter not where it is limited, since then threads and memory
 /// for them would be refused when robots are to be stopped.
 bool lock_memory() noexcept {
@@ -96,7 +84,8 @@ bool lock_memory() noexcept {
 
 class Process {
  public:
-  explicit Process(const Inheritance& inheritance) : in_(inheritance), pulse_(inheritance.limits) {}
+  explicit Process(const Inheritance& inheritance)
+      : in_(inheritance), pulse_(inheritance.limits), own_(inheritance.limits) {}
 
   [[noreturn]] void run();
 
@@ -105,6 +94,8 @@ class Process {
 
   void settle_in();
   void open_takeover_socket();
+  void beat();
+  void woke_up(TimeNs slept_ns);
   void look_at_hub();
   void look_at_robots();
   void take_from_hub();
@@ -113,7 +104,6 @@ class Process {
   void take_signals();
   void take_takeovers();
   void stop_all(StopCause cause);
-  void our_turn();
   void hand_back();
   void hub_is_gone();
   void tell(const std::string& line) const;
@@ -121,7 +111,8 @@ class Process {
   [[noreturn]] void leave();
 
   Inheritance in_;
-  Pulse pulse_;
+  Pulse pulse_;  // the hub's
+  OwnPulse own_;
   GuardianContext context_;
   std::map<std::string, std::unique_ptr<WatchedRobot>> robots_;
   std::mutex say_mutex_;
@@ -174,6 +165,7 @@ void Process::settle_in() {
 [[noreturn]] void Process::run() {
   settle_in();
   for (;;) {
+    beat();
     std::array<pollfd, 5> fds = {{{in_.socket, POLLIN, 0},
                                   {hub_ == Hub::Gone ? -1 : pidfd_, POLLIN, 0},
                                   {signals_, POLLIN, 0},
@@ -196,13 +188,29 @@ void Process::settle_in() {
 
 // --- the hub ---
 
-void Process::our_turn() {
-  const std::uint32_t turn = in_.page->turn.load(std::memory_order_relaxed);
-  if (turn % 2 == 0) in_.page->turn.store(turn + 1, std::memory_order_release);
+void Process::beat() {
+  in_.page->guardian_beats.fetch_add(1, std::memory_order_relaxed);
+  if (const TimeNs slept_ns = own_.slept(hal::boottime_ns()); slept_ns > 0) woke_up(slept_ns);
+}
+
+/// The hub may have been frozen as well, and have gone on before us; or it has stopped the robots for our sake. Either
+/// way nothing is known of the time in between.
+void Process::woke_up(TimeNs slept_ns) {
+  pulse_.forget();
+  if (hub_ != Hub::Alive && hub_ != Hub::Back) return;  // they are being stopped
+  std::array<char, 160> text{};
+  std::snprintf(text.data(), text.size(),
+                "the guardian process was frozen for %.1f s; awake again it stops all real robots once more",
+                hal::to_seconds(slept_ns));
+  context_.say_to_hub({Word::Warning, {}, text.data()});
+  const bool handing_back = handing_back_;
+  if (hub_ == Hub::Alive) hub_ = Hub::Frozen;  // as far as we know
+  stop_all(StopCause::HubFrozen);
+  handing_back_ = handing_back;
 }
 
 void Process::stop_all(StopCause cause) {
-  our_turn();
+  in_.page->take_turn();
   for (const auto& [id, robot] : robots_) robot->stop(cause);
   told_hub_.clear();
   stopped_ns_ = monotonic_ns();
@@ -304,8 +312,7 @@ void Process::hand_back() {
   hub_ = Hub::Alive;
   for (const auto& [id, robot] : robots_) robot->hold();  // nothing begins to stop them anew
   pulse_.forget();
-  const std::uint32_t turn = in_.page->turn.load(std::memory_order_relaxed);
-  in_.page->turn.store(turn + 1, std::memory_order_release);
+  in_.page->give_turn();
   context_.say_to_hub({Word::HandedBack, {}, ""});
 }
 

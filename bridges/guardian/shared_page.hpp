@@ -1,4 +1,4 @@
-// Memory that hub and guardian share: the heartbeat of the one, the verdict of the other.
+// Memory that hub and guardian share: the heartbeat of each, and whose turn it is to speak to robots.
 #pragma once
 #include <atomic>
 #include <cstdint>
@@ -7,8 +7,24 @@ namespace tandem::bridges::guardian {
 
 /// 32 bits each: those are atomic between processes on every processor that Tandem runs on.
 struct SharedPage {
-  std::atomic<std::uint32_t> beats{0};  ///< written by the hub
-  std::atomic<std::uint32_t> turn{0};   ///< see `SendPermit`; written by the guardian
+  std::atomic<std::uint32_t> beats{0};           ///< written by the hub
+  std::atomic<std::uint32_t> guardian_beats{0};  ///< written by the guardian
+  std::atomic<std::uint32_t> hub_beat_ms{0};     ///< when the hub's heart beat last (`hal::boottime_ms`); 0: never
+  std::atomic<std::uint32_t> turn{0};            ///< see `SendPermit`; written by both
+
+  /// The guardian's turn from now on.
+  void take_turn() noexcept { change_turn(0, 1); }
+  /// The hub's turn again.
+  void give_turn() noexcept { change_turn(1, 1); }
+  /// It stays the hub's turn, but no link that was opened before may be written to.
+  void withdraw_links() noexcept { change_turn(0, 2); }
+
+ private:
+  void change_turn(std::uint32_t only_from, std::uint32_t by) noexcept {
+    std::uint32_t now = turn.load(std::memory_order_relaxed);
+    while (now % 2 == only_from && !turn.compare_exchange_weak(now, now + by, std::memory_order_acq_rel)) {
+    }
+  }
 };
 
 }  // namespace tandem::bridges::guardian

@@ -92,7 +92,7 @@ std::unique_ptr<Stopper> make_file_stopper(const StopMessages& messages, StopCau
 PulseLimits limits() {
   PulseLimits limits;
 #ifdef __SANITIZE_THREAD__
-  limits.silent_ns = 20 * hal::kNsPerSecond;
+  limits.silent_ns = limits.asleep_ns = 20 * hal::kNsPerSecond;
 #endif
   return limits;
 }
@@ -181,6 +181,26 @@ class Hub {
   int status_ = 0;
 };
 
+/// Asks for the permit that was granted at first, as a link does before each write, for 3 s of being awake. @returns
+/// how often it was granted after a sleep of a second.
+int grants_after_freezes(const SendPermit& permit) {
+  const std::uint32_t turn = permit.turn();
+  int grants = 0;
+  bool slept = false;
+  TimeNs before = now_ns();
+  for (TimeNs awake = 0; awake < 3 * hal::kNsPerSecond;) {
+    const TimeNs begin = now_ns();
+    slept = slept || begin - before >= hal::kNsPerSecond;
+    const bool granted = permit.granted_since(turn);
+    before = now_ns();
+    const bool asked_awake = before - begin < hal::kNsPerSecond;  // else it may have been granted before the sleep
+    grants += slept && granted && asked_awake ? 1 : 0;
+    slept = slept || !asked_awake;
+    awake += std::min(before - begin, 10 * kNsPerMs);
+  }
+  return grants;
+}
+
 class Guarded : public testing::Test {
  protected:
   StopMessages robot(const std::string& id, const std::string& body = "obeys") const {
@@ -238,6 +258,14 @@ class Guarded : public testing::Test {
             freezes = guardian.freezes().count;
             hub.say("back " + std::to_string(guardian.freezes().last_ns / kNsPerMs) + " " +
                     std::to_string(guardian.permit().turn()));
+            break;
+          case 'u':  // waits for being unguarded, and guarded again
+            hub.say(eventually([&] { return !guardian.guards(); }) ? "unguarded" : "guarded");
+            hub.say(eventually([&] { return guardian.guards(); }) ? "guarded again" : "unguarded for long");
+            break;
+          case 'p':
+            hub.say("speaks");
+            hub.say("after freezes " + std::to_string(grants_after_freezes(guardian.permit())));
             break;
           case 'v':  // a module came
             robots.front().version++;
@@ -396,19 +424,61 @@ TEST_F(Guarded, RobotsAreStoppedBeforeTheHubSleepsWhenThatIsAsked) {
   EXPECT_EQ(hub.wait(), 0);
 }
 
-TEST_F(Guarded, NoRobotIsStoppedBecauseTheGuardianItselfWasNotAwake) {
+TEST_F(Guarded, HubKnowsThatItsGuardianIsFrozenAndTheGuardianStopsAllWhenItIsBack) {
   Hub hub(runtime_.path(), drives({robot("r")}));
   ASSERT_TRUE(hub.said("drives"));
-  for (int i = 0; i < 3; ++i) {
-    hub.signal_guardian(SIGSTOP);
-    std::this_thread::sleep_for(std::chrono::milliseconds(600));
-    hub.signal_guardian(SIGCONT);
-    std::this_thread::sleep_for(std::chrono::milliseconds(100));
-  }
+  hub.tell('u');
+  hub.signal_guardian(SIGSTOP);
+  ASSERT_TRUE(hub.said("unguarded"));
+  EXPECT_TRUE(times("r", "frozen").empty());
+  std::this_thread::sleep_for(std::chrono::milliseconds(600));  // longer than what is excused
+  hub.signal_guardian(SIGCONT);
+  ASSERT_TRUE(hub.said("guarded again"));
+  ASSERT_TRUE(was("r", "rests"));
+  hub.tell('w');
+  ASSERT_TRUE(hub.said("back "));
   hub.tell('n');
   ASSERT_TRUE(hub.said("freezes "));
-  EXPECT_EQ(hub.line("freezes "), "0");
-  EXPECT_TRUE(times("r", "frozen").empty());
+  EXPECT_GE(std::atoi(hub.line("freezes ").c_str()), 1) << "nothing may move until it is re-armed";
+  EXPECT_THAT(hub.line("news the guardian process is frozen"), HasSubstr("nobody would stop real robots"));
+  EXPECT_THAT(hub.line("news the guardian process was frozen for"), HasSubstr("stops all real robots once more"));
+}
+
+class FrozenTogether : public Guarded, public testing::WithParamInterface<bool> {};
+INSTANTIATE_TEST_SUITE_P(GuardianWakesFirst, FrozenTogether, testing::Bool());
+
+TEST_P(FrozenTogether, AHubWritesToNoLinkThatWasOpenWhoeverWakesFirst) {
+  Hub hub(runtime_.path(), drives({robot("r")}));
+  ASSERT_TRUE(hub.said("drives"));
+  hub.tell('p');
+  ASSERT_TRUE(hub.said("speaks"));
+  const auto signal = [&](int number, bool guardian) { guardian ? hub.signal_guardian(number) : hub.signal(number); };
+  // Both within a few milliseconds: neither has noticed that the other one is frozen.
+  signal(SIGSTOP, GetParam());
+  signal(SIGSTOP, !GetParam());
+  std::this_thread::sleep_for(std::chrono::milliseconds(1500));
+  signal(SIGCONT, GetParam());
+  std::this_thread::sleep_for(std::chrono::milliseconds(200));
+  signal(SIGCONT, !GetParam());
+  ASSERT_TRUE(hub.said("after freezes "));
+  EXPECT_EQ(hub.line("after freezes "), "0");
+  EXPECT_TRUE(was("r", "rests"));
+  hub.tell('n');
+  ASSERT_TRUE(hub.said("freezes "));
+  EXPECT_GE(std::atoi(hub.line("freezes ").c_str()), 1);
+}
+
+TEST_F(Guarded, HubStopsItsRobotsItselfWhenItsGuardianDiesInItsTurn) {
+  Hub hub(runtime_.path(), drives({robot("r", "deaf")}));
+  ASSERT_TRUE(hub.said("drives"));
+  hub.signal(SIGSTOP);
+  ASSERT_TRUE(was("r", "frozen"));
+  hub.signal_guardian(SIGKILL);
+  hub.tell('w');
+  hub.signal(SIGCONT);
+  ASSERT_TRUE(hub.said("back "));
+  const std::string back = hub.line("back ");
+  EXPECT_EQ(std::atoi(back.substr(back.find(' ')).c_str()) % 2, 0) << "nobody else can stop them: it may write again";
 }
 
 TEST_F(Guarded, RobotThatWasReleasedIsLeftAlone) {

@@ -65,5 +65,15 @@ TEST(Pulse, GoesOnWhereTheNumberOfBeatsWraps) {
   EXPECT_FALSE(pulse.frozen(0, 680 * kNsPerMs, kRuns));
 }
 
+TEST(OwnPulse, TellsAFreezeOfMoreThan400MsAndExcusesWhatIsShorter) {
+  OwnPulse own;
+  TimeNs now = 7 * hal::kNsPerSecond;
+  EXPECT_EQ(own.slept(now), 0) << "the first beat";
+  for (const TimeNs ms : {20, 0, 399, 419, 420}) EXPECT_EQ(own.slept(now += ms * kNsPerMs), 0) << ms;
+  EXPECT_EQ(own.slept(now += 421 * kNsPerMs), 421 * kNsPerMs);
+  EXPECT_EQ(own.slept(now += 20 * kNsPerMs), 0) << "it is told once";
+  EXPECT_EQ(own.slept(now += 3600 * hal::kNsPerSecond), 3600 * hal::kNsPerSecond) << "a laptop that was closed";
+}
+
 }  // namespace
 }  // namespace tandem::bridges::guardian

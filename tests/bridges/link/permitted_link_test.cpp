@@ -79,6 +79,20 @@ TEST_F(Permitted, LinkThatWasBeingOpenedWhenTheTurnWasTakenIsOfNoUse) {
   EXPECT_EQ(link->write(kBytes, 0), 0U);
 }
 
+TEST(SendPermit, IsNotGrantedToAThreadThatWakesUpBeforeTheHeartOfItsHub) {
+  const std::atomic<std::uint32_t> turn{4};
+  std::atomic<std::uint32_t> beat_ms{0};
+  const SendPermit permit(turn, {&beat_ms, 400});
+  EXPECT_TRUE(permit.granted_since(4)) << "no heart has begun to beat";
+  beat_ms = hal::boottime_ms();
+  EXPECT_TRUE(permit.granted_since(4));
+  beat_ms = hal::boottime_ms() - 60'000;
+  EXPECT_FALSE(permit.granted());
+  EXPECT_FALSE(permit.granted_since(4));
+  beat_ms = hal::boottime_ms() + 60'000;  // the clock's words wrap: a little ahead is fresh
+  EXPECT_TRUE(permit.granted_since(4));
+}
+
 TEST(SendPermit, IsAlwaysGrantedWhereThereIsNoGuardian) {
   const SendPermit permit;
   EXPECT_FALSE(permit.real());
