@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <charconv>
 #include <csignal>
 #include <cstring>
 #include <fcntl.h>
@@ -12,6 +13,8 @@
 #include <mutex>
 #include <poll.h>
 #include <pthread.h>
+#include <set>
+#include <sstream>
 #include <sys/eventfd.h>
 #include <sys/mman.h>
 #include <sys/prctl.h>
@@ -122,6 +125,8 @@ class Process {
   TimeNs stopped_ns_ = 0;  // when the stop was begun
   bool told_ = false;
   std::map<std::string, std::string> told_hub_;  // of each robot
+  std::set<std::string> handed_over_;            // of which it was told
+  std::map<std::string, std::string> lost_;      // of which it was told that somebody else has their lines, and who
   std::vector<char> buffer_ = std::vector<char>(kLongestPacket);
 };
 
@@ -284,15 +289,18 @@ void Process::obey(const Packet& packet) {
 
 void Process::claim(const StopMessages& robot) {
   if (robots_.empty()) open_takeover_socket();
-  const std::string key = lock_key(robot);
-  std::erase_if(robots_, [&](const auto& one) {  // nobody drives it, so its lock and its name are free again
+  const std::string key = written_key(robot);
+  const auto has_link = [&](const WatchedRobot& one) {
+    return written_key(one.claimed()) == key || one.has_one_of({key});
+  };
+  std::erase_if(robots_, [&](const auto& one) {  // nobody drives it, so its locks and its name are free again
     const auto& [id, before] = one;
     const WatchedRobot::View view = before->view();
-    return (id == robot.robot || before->key() == key) && view.given_up && view.idle;
+    return (id == robot.robot || has_link(*before)) && view.given_up && view.idle;
   });
   told_hub_.erase(robot.robot);
   for (const auto& [id, other] : robots_) {
-    if (id != robot.robot && other->key() != key) continue;
+    if (id != robot.robot && !has_link(*other)) continue;
     context_.say_to_hub({Word::Claimed, robot,
                          id == robot.robot
                              ? "robot '" + id + "' is claimed already"
@@ -324,7 +332,12 @@ void Process::look_at_robots() {
   for (const auto& [id, robot] : robots_) {
     const WatchedRobot::View view = robot->view();
     idle = idle && view.idle;
+    if (!view.handed_over.empty() && handed_over_.insert(id).second)
+      tell("'" + id + "' on " + view.link + " was handed over to " + view.handed_over);
     if (!view.to_be_stopped) continue;
+    if (!view.line_lost) lost_.erase(id);
+    if (view.line_lost && std::exchange(lost_[id], view.trouble) != view.trouble)
+      tell("'" + id + "' on " + view.link + " has not confirmed its stop: " + view.trouble);
     all = all && view.confirmed;
     StopMessages about;
     about.robot = id;
@@ -367,7 +380,9 @@ void Process::tell_of_unstopped() {
 }
 
 void Process::leave() {
-  if (told_) tell("all robots have confirmed their stop");
+  if (told_ && handed_over_.empty()) tell("all robots have confirmed their stop");
+  if (told_ && !handed_over_.empty() && handed_over_.size() < robots_.size())
+    tell("all others have confirmed their stop");
   for (const auto& [id, robot] : robots_) robot->let_go();
   if (takeover_ >= 0) ::unlink(takeover_socket(context_.folder, ::getpid()).c_str());
   ::_exit(0);
@@ -404,15 +419,19 @@ void Process::open_takeover_socket() {
   if (takeover_ >= 0) ::bind(takeover_, reinterpret_cast<const sockaddr*>(&address), sizeof address);
 }
 
-/// Another hub's guardian asks for one robot, by its key.
+/// Another hub's guardian asks for a line: its number, and the locks that it needs, a line each.
 void Process::take_takeovers() {
   for (;;) {
     const ssize_t n = ::recv(takeover_, buffer_.data(), buffer_.size(), MSG_DONTWAIT);
     if (n < 0) return;
     if (hub_ != Hub::Gone && hub_ != Hub::Ended) continue;
-    const std::string_view key(buffer_.data(), static_cast<std::size_t>(n));
+    std::istringstream in(std::string(buffer_.data(), static_cast<std::size_t>(n)));
+    pid_t guardian = 0;
+    std::vector<std::string> keys;
+    in >> guardian;
+    for (std::string key; in >> key;) keys.push_back(key);
     for (const auto& [id, robot] : robots_) {
-      if (robot->key() == key) robot->let_go();
+      if (guardian > 0 && robot->has_one_of(keys)) robot->lend(keys, guardian);
     }
   }
 }

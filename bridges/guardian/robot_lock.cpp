@@ -1,5 +1,6 @@
 #include "bridges/guardian/robot_lock.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstdlib>
@@ -9,8 +10,11 @@
 #include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
+#include <utility>
 
 #include "bridges/guardian/packet.hpp"
+#include "bridges/guardian/same_robot.hpp"
+#include "bridges/link/device.hpp"
 
 namespace tandem::bridges::guardian {
 namespace {
@@ -19,10 +23,16 @@ hal::Error failed(const std::string& what, const std::string& path) {
   return hal::Error{what + " '" + path + "': " + std::strerror(errno)};
 }
 
+constexpr std::array<std::pair<LockState, const char*>, 4> kStates = {{{LockState::Claimed, "claimed"},
+                                                                       {LockState::Driven, "driven"},
+                                                                       {LockState::Rests, "rests"},
+                                                                       {LockState::Left, "left"}}};
+
 /// First lines for people, then the same as a packet for programs.
 std::string to_text(const LockHolder& h) {
+  const auto state = std::ranges::find(kStates, h.state, &decltype(kStates)::value_type::first);
   std::string text = "robot " + h.robot.robot + "\nlink " + h.robot.link + "\nhub " + std::to_string(h.hub) +
-                     "\nguardian " + std::to_string(h.guardian) + "\nstate " + (h.left ? "left" : "driven") + "\n";
+                     "\nguardian " + std::to_string(h.guardian) + "\nstate " + state->second + "\n";
   return text + "stop " + encode({Word::Watch, h.robot, ""}) + "\n";
 }
 
@@ -44,7 +54,9 @@ std::optional<LockHolder> from_text(const std::string& text) {
   const std::string head = text.substr(0, stop + 1);
   holder.hub = static_cast<pid_t>(std::strtol(line_after(head, "hub").c_str(), nullptr, 10));
   holder.guardian = static_cast<pid_t>(std::strtol(line_after(head, "guardian").c_str(), nullptr, 10));
-  holder.left = line_after(head, "state") == "left";
+  for (const auto& [state, name] : kStates) {
+    if (line_after(head, "state") == name) holder.state = state;
+  }
   return holder;
 }
 
@@ -66,6 +78,43 @@ bool removed(int descriptor, const std::string& path) {
   return open.st_ino != named.st_ino || open.st_dev != named.st_dev;
 }
 
+bool is_terminal(const std::string& link) {
+  return link.starts_with("serial:") || link.starts_with("slcan:");
+}
+
+/// The same address in another network is another robot.
+std::string network() {
+  std::array<char, 64> network{};
+  const ssize_t n = ::readlink("/proc/self/ns/net", network.data(), network.size());
+  return n > 0 ? " " + std::string(network.data(), static_cast<std::size_t>(n)) : "";
+}
+
+/// All of this computer's own addresses by which it calls itself are one.
+std::string one_loopback(const std::string& device) {
+  const bool loopback = device.starts_with("127.") || device.starts_with("[::1]") || device.starts_with("[::ffff:127.");
+  return loopback ? "127.0.0.1" + device.substr(device.rfind(':')) : device;
+}
+
+/// Text for a file's name.
+std::string key_of(const std::string& what, const std::string& name) {
+  std::string key;
+  for (const char c : what + (name.empty() ? "" : " " + name)) {
+    const bool plain =
+        (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '.' || c == '-';
+    if (plain) {
+      key += c;
+    } else {
+      constexpr std::string_view kHex = "0123456789abcdef";
+      key += '_';
+      if (c == '/' || c == ' ') continue;
+      key += kHex[static_cast<unsigned char>(c) >> 4U];
+      key += kHex[static_cast<unsigned char>(c) & 15U];
+    }
+  }
+  if (key.size() > 200) key = key.substr(0, 180) + "-" + std::to_string(std::hash<std::string>{}(key));
+  return key;
+}
+
 }  // namespace
 
 hal::Result<std::string> lock_folder() {
@@ -82,38 +131,31 @@ hal::Result<std::string> lock_folder() {
   return folder;
 }
 
-std::string lock_key(const StopMessages& robot) {
+std::string written_key(const StopMessages& robot) {
   std::string link = robot.link;
-  if (link.starts_with("serial:") || link.starts_with("slcan:")) {
-    // One device may have several names; the rate behind the @ does not make it another one.
-    const std::size_t path = link.find(':') + 1;
-    const std::size_t rate = link.rfind('@');
-    const std::string device = link.substr(path, rate == std::string::npos ? rate : rate - path);
-    std::error_code error;
-    const auto real = std::filesystem::weakly_canonical(device, error);
-    link = "device " + (error ? device : real.string());
+  if (is_terminal(link)) {
+    link = link.substr(0, link.rfind('@'));  // the rate behind the @ does not make it another device
   } else {
-    // The same address in another network is another robot.
-    std::array<char, 64> network{};
-    const ssize_t n = ::readlink("/proc/self/ns/net", network.data(), network.size());
-    if (n > 0) link += " " + std::string(network.data(), static_cast<std::size_t>(n));
+    if (link.starts_with("lcm:")) link = link.substr(0, link.find('?'));
+    link += network();
   }
-  std::string key;
-  for (const char c : link + (robot.name.empty() ? "" : " " + robot.name)) {
-    const bool plain =
-        (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '.' || c == '-';
-    if (plain) {
-      key += c;
-    } else {
-      constexpr std::string_view kHex = "0123456789abcdef";
-      key += '_';
-      if (c == '/' || c == ' ') continue;
-      key += kHex[static_cast<unsigned char>(c) >> 4U];
-      key += kHex[static_cast<unsigned char>(c) & 15U];
-    }
+  return key_of("link " + link, robot.name);
+}
+
+std::vector<std::string> lock_keys(const StopMessages& robot) {
+  std::vector<std::string> keys = {written_key(robot)};
+  if (const auto device = device_at(robot.link); device && *device != robot.link) {
+    const bool terminal = is_terminal(robot.link);
+    keys.push_back(key_of(
+        "device " + (terminal ? device->substr(0, device->find(' ')) : one_loopback(*device) + network()), robot.name));
   }
-  if (key.size() > 200) key = key.substr(0, 180) + "-" + std::to_string(std::hash<std::string>{}(key));
-  return key;
+  const std::string address = own_address(robot.identity);
+  if (!address.empty()) keys.push_back(key_of("robot " + address, ""));
+  return keys;
+}
+
+std::string left_key(const StopMessages& robot, pid_t guardian) {
+  return key_of("left by " + std::to_string(guardian), robot.robot);
 }
 
 hal::Result<std::optional<RobotLock>> RobotLock::take(const std::string& folder, const std::string& key,
@@ -154,6 +196,86 @@ void RobotLock::write(const LockHolder& holder) const {
   const std::string text = to_text(holder);
   (void)!::ftruncate(descriptor_, 0);
   (void)!::pwrite(descriptor_, text.data(), text.size(), 0);
+}
+
+// --- all locks of a robot ---
+
+hal::Result<bool> RobotLocks::change_to(const std::string& folder, const std::vector<std::string>& keys,
+                                        std::optional<LockHolder>& holder) {
+  std::erase_if(held_, [&](const auto& one) { return std::ranges::find(keys, one.first) == keys.end(); });
+  bool all = true;
+  for (const std::string& key : keys) {
+    if (held_.contains(key)) continue;
+    std::optional<LockHolder> seen;
+    auto taken = RobotLock::take(folder, key, seen);
+    if (!taken.ok()) return taken.error();
+    if (taken.value()) {
+      held_.emplace(key, std::move(*taken.value()));
+      if (all && !holder) holder = seen;
+    } else {
+      all = false;
+      if (seen) holder = seen;  // of several, any will do: all are in the way
+    }
+  }
+  return all;
+}
+
+void RobotLocks::free(const std::vector<std::string>& keys) {
+  for (const std::string& key : keys) held_.erase(key);
+}
+
+bool RobotLocks::has_all(const std::vector<std::string>& keys) const {
+  return std::ranges::all_of(keys, [this](const std::string& key) { return has(key); });
+}
+
+void RobotLocks::write(const LockHolder& holder) const {
+  for (const auto& [key, lock] : held_) lock.write(holder);
+}
+
+// --- what dead ones left behind ---
+
+namespace {
+
+/// Calls `look(path, holder, last written)` for each lock file that nobody holds, while it is held for that.
+template <class Look>
+void for_all_free(const std::string& folder, const Look& look) {
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
+    const std::string path = entry.path().string();
+    if (!path.ends_with(".lock")) continue;
+    const int fd = ::open(path.c_str(), O_RDWR | O_CLOEXEC | O_NOFOLLOW);
+    if (fd < 0) continue;
+    struct stat info {};
+    if (::flock(fd, LOCK_EX | LOCK_NB) == 0 && !removed(fd, path) && ::fstat(fd, &info) == 0)
+      look(path, read_holder(fd), std::int64_t{info.st_mtim.tv_sec});
+    ::close(fd);
+  }
+}
+
+}  // namespace
+
+std::vector<AbandonedRobot> find_abandoned(const std::string& folder) {
+  std::vector<AbandonedRobot> all;
+  for_all_free(folder, [&all](const std::string& path, const std::optional<LockHolder>& holder, std::int64_t written) {
+    if (!holder || (holder->state != LockState::Driven && holder->state != LockState::Left)) {
+      ::unlink(path.c_str());
+      return;
+    }
+    const auto known = std::ranges::find(all, *holder, &AbandonedRobot::holder);  // it has several locks
+    if (known == all.end()) {
+      all.push_back({*holder, written});
+    } else {
+      known->seen_unix_s = std::max(known->seen_unix_s, written);
+    }
+  });
+  std::ranges::sort(all, {}, [](const AbandonedRobot& robot) { return robot.holder.robot.robot; });
+  return all;
+}
+
+void forget_abandoned(const std::string& folder, const LockHolder& dead) {
+  for_all_free(folder, [&dead](const std::string& path, const std::optional<LockHolder>& holder, std::int64_t) {
+    if (holder && holder->guardian == dead.guardian && holder->robot.robot == dead.robot.robot) ::unlink(path.c_str());
+  });
 }
 
 std::string takeover_socket(const std::string& folder, pid_t guardian) {

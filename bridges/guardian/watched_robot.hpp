@@ -1,4 +1,4 @@
-// One robot in the guardian process: its lock, its stop messages, and the thread that stops it.
+// One robot in the guardian process: its locks, its stop messages, and the thread that stops it.
 #pragma once
 #include <condition_variable>
 #include <functional>
@@ -10,6 +10,7 @@
 
 #include "bridges/guardian/packet.hpp"
 #include "bridges/guardian/robot_lock.hpp"
+#include "bridges/guardian/same_robot.hpp"
 #include "bridges/guardian/stopper.hpp"
 
 namespace tandem::bridges::guardian {
@@ -43,39 +44,56 @@ class WatchedRobot {
   void stop(StopCause cause);
   /// Ends stopping: the link is closed soon.
   void hold();
-  /// The robot belongs to somebody else now: stops nothing any more, frees the lock.
+  /// Nobody of us has to do with it any more: stops nothing, frees all locks.
   void let_go();
+  /// Another hub's guardian asks for these locks, to find out who is there: its hub speaks with whoever answers, and we
+  /// do not. The robot stays ours until that hub has found the very same one.
+  void lend(const std::vector<std::string>& keys, pid_t guardian);
 
   struct View {
     bool to_be_stopped = false;  ///< watched, not released, not let go
     bool idle = true;            ///< no stopper has a link open
     bool given_up = false;       ///< released, or its claim was refused: nobody drives it
-    bool confirmed = false;      ///< the stop that was begun last
+    bool confirmed = false;      ///< the stop that was begun last, by this very robot
+    bool line_lost = false;      ///< its link leads to somebody else now, as `trouble` says
+    std::string handed_over;     ///< to whom, for people; "": it is ours
     StopState state = StopState::Unreachable;
     std::string trouble;
     std::string robot, link;
   };
   View view() const;
-  const std::string& key() const noexcept { return key_; }
+  const StopMessages& claimed() const noexcept { return claimed_; }
+  bool has_one_of(const std::vector<std::string>& keys) const;
 
  private:
   enum class Claim : std::uint8_t { Due, Held, Refused };
 
   void run();
-  void take_lock();
+  void take_locks();
   std::string try_to_lock();
+  std::string refusal(const LockHolder* holder, bool asked) const;
+  bool line_is_ours();
+  bool lent(hal::TimeNs now);
+  bool give_up_line(const std::string& why);
   void stop_robot(std::unique_lock<std::mutex>& lock);
   std::unique_ptr<Stopper> make_stopper() const;
-  void write_lock_file() const;
+  void write_lock_files() const;
 
   const GuardianContext& context_;
-  std::string key_;
+  const StopMessages claimed_;
   mutable std::mutex mutex_;  // guards everything below
   std::condition_variable wake_;
   StopMessages robot_;
-  std::optional<RobotLock> file_;
+  RobotLocks locks_;
+  RobotLocks left_;  // of our own: what we owe, whoever has the line
+  std::vector<std::string> lent_keys_;
+  pid_t lent_to_ = 0;  // 0: nobody
+  hal::TimeNs lent_until_ns_ = 0;
+  RobotTrace trace_;
+  bool line_lost_ = false;
+  std::string handed_over_;
   Claim claim_ = Claim::Due;
-  bool watched_ = false, released_ = false, quit_ = false, ended_ = false;
+  bool watched_ = false, released_ = false, quit_ = false;
   bool stopping_ = false;     // wanted
   std::uint64_t order_ = 0;   // grows with each stop, hold, and new message
   std::uint64_t obeyed_ = 0;  // the order that the thread has finished

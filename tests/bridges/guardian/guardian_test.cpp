@@ -4,11 +4,13 @@
 #include <csignal>
 #include <ctime>
 #include <fcntl.h>
+#include <filesystem>
 #include <fstream>
 #include <functional>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <map>
+#include <memory>
 #include <sstream>
 #include <sys/wait.h>
 #include <thread>
@@ -27,6 +29,7 @@ extern "C" const char* __tsan_default_options() {
 namespace tandem::bridges::guardian {
 namespace {
 
+namespace fs = std::filesystem;
 using hal::kNsPerMs;
 using hal::TimeNs;
 using testing::HasSubstr;
@@ -88,6 +91,29 @@ std::unique_ptr<Stopper> make_file_stopper(const StopMessages& messages, StopCau
   return std::make_unique<FileStopper>(messages, cause);
 }
 
+/// A robot on a plug: a file that is there as long as it is plugged in; beside it, in PLUG.told, is a line for all that
+/// was told to whoever was there. It rests at once. "serial:PLUG", by whatever name; its body "deaf": it does not
+/// answer.
+class PlugStopper final : public Stopper {
+ public:
+  PlugStopper(const StopMessages& messages, StopCause) : messages_(messages) {}
+  StopState step(TimeNs) override {
+    std::error_code error;
+    const auto plug = std::filesystem::canonical(messages_.link.substr(messages_.link.find(':') + 1), error);
+    if (error) return StopState::Unreachable;
+    std::ofstream(plug.string() + ".told", std::ios::app) << "stop" << std::endl;
+    return messages_.body == "deaf" ? StopState::Unreachable : StopState::Confirmed;
+  }
+  std::string trouble() const override { return "it is not there"; }
+
+ private:
+  StopMessages messages_;
+};
+
+std::unique_ptr<Stopper> make_plug_stopper(const StopMessages& messages, StopCause cause) {
+  return std::make_unique<PlugStopper>(messages, cause);
+}
+
 /// Instrumented, a hub beside other work may be silent for long; one that the system has stopped is noticed at once.
 PulseLimits limits() {
   PulseLimits limits;
@@ -97,7 +123,7 @@ PulseLimits limits() {
   return limits;
 }
 
-const std::vector<StopperType> kTypes = {{"file", &make_file_stopper}};
+const std::vector<StopperType> kTypes = {{"file", &make_file_stopper}, {"plug", &make_plug_stopper}};
 
 /// A hub in a process of its own, which writes lines for the test, and does what it is told in letters.
 class Hub {
@@ -600,6 +626,110 @@ TEST_F(Guarded, RobotIsTakenOverFromTheGuardianOfAHubThatIsGone) {
   let_hear("s");
   EXPECT_TRUE(was("s", "rests"));
   EXPECT_TRUE(gone(left));
+}
+
+/// Plugs in a folder, and robots that are in them.
+class Plugs : public Guarded {
+ protected:
+  void SetUp() override { ::setenv("XDG_RUNTIME_DIR", runtime_.path().c_str(), 1); }
+  fs::path plug(const std::string& number) const { return runtime_.path() / ("plug" + number); }
+  void plug_in(const std::string& number) const {
+    fs::remove(plug(number));
+    std::ofstream(plug(number)) << "";
+  }
+  std::size_t told(const std::string& number) const { return text_of(plug(number).string() + ".told").size(); }
+  void name(const std::string& alias, const std::string& number) const {
+    fs::remove(runtime_.path() / alias);
+    fs::create_symlink(plug(number), runtime_.path() / alias);
+  }
+  /// A robot that its hub has found at a plug, by the plug's own name or another one.
+  StopMessages found(const std::string& id, const std::string& path, const std::string& number,
+                     const std::string& firmware = "Version 1", const std::string& body = "") const {
+    StopMessages robot{id, "plug", "serial:" + (runtime_.path() / path).string(), body, 1};
+    robot.identity.link = robot.link;
+    robot.identity.device = plug(number).string();
+    robot.identity.firmware = firmware;
+    robot.identity.session = 1;
+    return robot;
+  }
+  bool said(const std::string& text) const {
+    return eventually([&] { return errors().find(text) != std::string::npos; });
+  }
+  /// Another hub, of another person, in the same folder of locks; its own lines go elsewhere.
+  std::unique_ptr<Hub> other_hub(const StopMessages& robot) const {
+    return std::make_unique<Hub>(elsewhere_.path(), drives({robot}));
+  }
+  const RuntimeFolder elsewhere_;
+};
+
+TEST_F(Plugs, RobotIsNotLetGoWhenAnotherOneGetsItsPlugAndIsStoppedWhereItsNameLeadsLater) {
+  plug_in("4");
+  name("a", "4");
+  Hub first(runtime_.path(), drives({found("A", "a", "4")}));
+  ASSERT_TRUE(first.said("drives"));
+  const pid_t left = first.guardian();
+  fs::remove(plug("4"));  // pulled out while it drives
+  first.signal(SIGKILL);
+  first.wait();
+  ASSERT_TRUE(said("not stopped yet: 'A'"));
+  // Another robot, of the same firmware, gets that plug; the old name leads to it. A living hub drives it.
+  std::ofstream(runtime_.path() / "b") << "";
+  const auto second = [&] {
+    fs::rename(runtime_.path() / "b", plug("4"));  // at once a robot that a hub will claim
+    auto hub = other_hub(found("B", "plug4", "4"));
+    EXPECT_TRUE(hub->said("drives")) << hub->line("refused ");
+    return hub;
+  }();
+  ASSERT_TRUE(said("'A' on serial:" + (runtime_.path() / "a").string() +
+                   " has not confirmed its stop: its link leads to another robot now"));
+  const std::size_t told_b = told("4");
+  std::this_thread::sleep_for(std::chrono::milliseconds(500));
+  EXPECT_EQ(told("4"), told_b) << "what is meant for A is not told to B, which a hub drives";
+  // B's hub ends; whoever is at the plug may be told to rest, but does not confirm for A.
+  second->tell('r');
+  second->tell('e');
+  EXPECT_EQ(second->wait(), 0);
+  EXPECT_TRUE(eventually([&] { return told("4") > told_b; }));
+  std::this_thread::sleep_for(std::chrono::milliseconds(500));
+  EXPECT_THAT(errors(), testing::Not(HasSubstr("confirmed their stop")));
+  EXPECT_EQ(::kill(left, 0), 0);
+  // A comes back elsewhere, under its name.
+  plug_in("9");
+  name("a", "9");
+  EXPECT_TRUE(eventually([&] { return told("9") > 0; }));
+  EXPECT_TRUE(gone(left));
+  EXPECT_THAT(errors(), HasSubstr("all robots have confirmed their stop"));
+}
+
+TEST_F(Plugs, RobotIsHandedOverByNameToAHubThatFindsTheVerySame) {
+  plug_in("4");
+  name("a", "4");
+  Hub first(runtime_.path(), drives({found("A", "a", "4", "Version 1", "deaf")}));
+  ASSERT_TRUE(first.said("drives"));
+  const pid_t left = first.guardian();
+  first.signal(SIGKILL);
+  first.wait();
+  ASSERT_TRUE(said("not stopped yet: 'A'"));
+  const auto second = other_hub(found("a1", "plug4", "4"));
+  ASSERT_TRUE(second->said("drives")) << second->line("refused ");
+  EXPECT_TRUE(gone(left));
+  EXPECT_THAT(errors(), HasSubstr("'A' on serial:" + (runtime_.path() / "a").string() + " was handed over to process " +
+                                  std::to_string(second->pid()) + ", which drives it as 'a1'"));
+  EXPECT_THAT(errors(), testing::Not(HasSubstr("confirmed their stop")));
+}
+
+TEST_F(Plugs, RobotOfOtherFirmwareIsNotTheOneThatWasLeft) {
+  plug_in("4");
+  Hub first(runtime_.path(), drives({found("A", "plug4", "4", "Version 1", "deaf")}));
+  ASSERT_TRUE(first.said("drives"));
+  const pid_t left = first.guardian();
+  first.signal(SIGKILL);
+  first.wait();
+  ASSERT_TRUE(said("not stopped yet: 'A'"));
+  const auto second = other_hub(found("A", "plug4", "4", "Version 2"));
+  ASSERT_TRUE(second->said("drives")) << second->line("refused ");
+  EXPECT_TRUE(said("its link leads to another robot now, of process " + std::to_string(second->pid())));
+  EXPECT_EQ(::kill(left, 0), 0);
 }
 
 TEST_F(Guarded, HubKnowsWhenItsGuardianIsGone) {
