@@ -1,4 +1,5 @@
-// `tandem inspect`: who is there, and what it reads. Moves nothing.
+// `tandem inspect`: who is there, and what it reads. Moves nothing, and first stops what dead programs have left
+// moving.
 #include <cstdio>
 #include <fmt/format.h>
 
@@ -6,6 +7,7 @@
 #include "app/experiment/plugins.hpp"
 #include "app/outputs/report.hpp"
 #include "app/process/signals.hpp"
+#include "app/robots/guarded_robots.hpp"
 #include "bridges/inspector_type.hpp"
 #include "bridges/link/link_text.hpp"
 
@@ -36,6 +38,7 @@ int inspect(const InspectOptions& options) {
   const hal::Log log([](hal::Severity severity, std::string_view text) {
     if (severity != hal::Severity::Info) fmt::print(stderr, "{}\n", text);
   });
+  (void)stop_abandoned_robots(loader.catalog(), log);  // before any thread
   const bridges::InspectRequest request{.link = options.link,
                                         .seconds = options.seconds,
                                         .log = log,

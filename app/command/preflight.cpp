@@ -151,6 +151,9 @@ int look_over_robots(const PreflightOptions& options, const core::Scenario& scen
   auto made = make_session(loader.catalog(), world, guarded, clock, std::move(mixed));
   if (!made.ok()) return complain(kBadInput, made.error().message);
   const auto session = std::move(made).value();
+  for (const auto& robot : guarded.abandoned())
+    rows.push_back({robot.abandoned.holder.robot.robot, "left behind", robot.confirmed ? Finding::Warn : Finding::Fail,
+                    robot.to_text(), robot.confirmed ? "" : "see to it by hand"});
   const hal::Status claimed = guarded.claim();
   rows.push_back({"guardian", "robots", claimed.ok() ? Finding::Ok : Finding::Fail,
                   claimed.ok() ? "nobody else drives them" : claimed.error().message,

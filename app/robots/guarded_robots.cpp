@@ -9,16 +9,28 @@ namespace {
 using bridges::guardian::GuardianClient;
 
 constexpr hal::TimeNs kConfirmWithin = 2 * hal::kNsPerSecond;  // to the guardian, after the bridges have ended
+constexpr hal::TimeNs kStopWithin = 3 * hal::kNsPerSecond;     // robots that dead programs have left
+
+std::vector<bridges::guardian::StopperType> stoppers_of(const hal::Catalog& catalog) {
+  std::vector<bridges::guardian::StopperType> stoppers;
+  for (const auto* type : catalog.all<bridges::guardian::StopperType>()) stoppers.push_back(*type);
+  return stoppers;
+}
 
 }  // namespace
 
+std::vector<bridges::guardian::StoppedRobot> stop_abandoned_robots(const hal::Catalog& catalog, const hal::Log& log) {
+  auto robots = bridges::guardian::stop_abandoned(stoppers_of(catalog), kStopWithin);
+  for (const auto& robot : robots) log.warning(robot.to_text());
+  return robots;
+}
+
 GuardedRobots::GuardedRobots(bool real_robots, const hal::Catalog& catalog, hal::Log log) : log_(std::move(log)) {
   if (!real_robots) return;
+  abandoned_ = stop_abandoned_robots(catalog, log_);
   bridges::guardian::GuardianOptions options;
   options.suspend_asked = &suspend_asked();
-  std::vector<bridges::guardian::StopperType> stoppers;
-  for (const auto* type : catalog.all<bridges::guardian::StopperType>()) stoppers.push_back(*type);
-  auto started = GuardianClient::start(std::move(stoppers), options);
+  auto started = GuardianClient::start(stoppers_of(catalog), options);
   if (!started.ok()) {
     started_ = started.error();
     return;

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "bridges/guardian/abandoned.hpp"
 #include "bridges/guardian/client.hpp"
 #include "bridges/robot_bridge.hpp"
 #include "hal/catalog.hpp"
@@ -12,18 +13,26 @@
 
 namespace tandem::app {
 
+/// Robots whose hub and guardian were killed together are stopped before anything else is done, and told of as
+/// warnings: all that have left a lock in this computer's folder, whether they are wanted now or not. Call it before
+/// any other thread exists.
+std::vector<bridges::guardian::StoppedRobot> stop_abandoned_robots(const hal::Catalog& catalog, const hal::Log& log);
+
 /// Make it before any other thread exists. Destroyed, it leaves robots that were not released to the guardian.
 class GuardedRobots {
  public:
-  /// A guardian, where there are real robots, which stops them with what `catalog` has by now; from here on Ctrl-Z
-  /// stops the robots first. Where no process can be made, `started` says so.
+  /// Where there are real robots: `stop_abandoned_robots`; then a guardian, which stops them with what `catalog` has by
+  /// now; from here on Ctrl-Z stops the robots first. Where no process can be made, `started` says so.
   GuardedRobots(bool real_robots, const hal::Catalog& catalog, hal::Log log);
 
   /// For bridges: without it they would write to robots that the guardian is stopping.
   bridges::SendPermit permit() const noexcept;
   /// Error: there is no guardian process, and no robot may be driven.
   const hal::Status& started() const noexcept { return started_; }
-  /// The guardian process lives, or no robot needs one. It is not made anew: without it no robot may be driven.
+  /// Robots that dead programs had left, and what has become of them.
+  const std::vector<bridges::guardian::StoppedRobot>& abandoned() const noexcept { return abandoned_; }
+  /// The guardian process lives and is awake, or no robot needs one. It is not made anew: without it no robot may be
+  /// driven.
   bool guarded() const noexcept { return !guardian_ || guardian_->guards(); }
   /// Times that this program was frozen, and its robots stopped.
   std::uint64_t freezes() const noexcept;
@@ -51,6 +60,7 @@ class GuardedRobots {
 
   hal::Log log_;
   hal::Status started_;
+  std::vector<bridges::guardian::StoppedRobot> abandoned_;
   std::vector<Row> robots_;
   std::unique_ptr<bridges::guardian::GuardianClient> guardian_;
 };

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <csignal>
 #include <cstdlib>
 #include <cstring>
 #include <fcntl.h>
@@ -273,6 +274,7 @@ std::vector<AbandonedRobot> find_abandoned(const std::string& folder) {
 }
 
 void forget_abandoned(const std::string& folder, const LockHolder& dead) {
+  if (::kill(dead.guardian, 0) != 0) ::unlink(takeover_socket(folder, dead.guardian).c_str());
   for_all_free(folder, [&dead](const std::string& path, const std::optional<LockHolder>& holder, std::int64_t) {
     if (holder && holder->guardian == dead.guardian && holder->robot.robot == dead.robot.robot) ::unlink(path.c_str());
   });

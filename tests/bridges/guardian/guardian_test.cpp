@@ -16,6 +16,7 @@
 #include <thread>
 #include <unistd.h>
 
+#include "bridges/guardian/abandoned.hpp"
 #include "bridges/guardian/client.hpp"
 #include "tests/bridges/guardian/runtime_folder.hpp"
 
@@ -626,6 +627,45 @@ TEST_F(Guarded, RobotIsTakenOverFromTheGuardianOfAHubThatIsGone) {
   let_hear("s");
   EXPECT_TRUE(was("s", "rests"));
   EXPECT_TRUE(gone(left));
+}
+
+TEST_F(Guarded, RobotsOfAHubThatWasKilledWithItsGuardianAreToldOfAndStoppedByWhoeverComesNext) {
+  {
+    Hub hub(runtime_.path(), drives({robot("r"), robot("deaf", "deaf"), robot("s")}));
+    ASSERT_TRUE(hub.said("drives"));
+    hub.tell('n');
+    ASSERT_TRUE(hub.said("freezes "));  // the guardian has heard of all
+    hub.signal_guardian(SIGSTOP);       // so that it stops nobody
+    hub.signal(SIGKILL);
+    hub.signal_guardian(SIGKILL);
+    hub.wait();
+    EXPECT_TRUE(gone(hub.guardian()));
+  }
+  EXPECT_TRUE(times("r", "gone").empty());
+  Hub next(runtime_.path(), [](Hub& h) {
+    for (const StoppedRobot& robot : stop_abandoned(kTypes, hal::kNsPerSecond)) {
+      h.say((robot.confirmed ? "confirmed " : "moves ") + robot.abandoned.holder.robot.robot);
+      h.say("text " + robot.abandoned.holder.robot.robot + " " + robot.to_text());
+    }
+    h.say("done");
+    return static_cast<int>(h.order());
+  });
+  ASSERT_TRUE(next.said("done"));
+  EXPECT_TRUE(was("r", "rests") && was("s", "rests"));
+  EXPECT_TRUE(next.said("confirmed r") && next.said("confirmed s") && next.said("moves deaf"));
+  EXPECT_THAT(next.line("text r "), HasSubstr("may have driven on with its last command since 20"));
+  EXPECT_THAT(next.line("text r "), HasSubstr("was stopped now, and has confirmed that"));
+  EXPECT_THAT(next.line("text deaf "), HasSubstr("has NOT confirmed that: it does not listen; process "));
+  // Its guardian goes on with the one that has not confirmed; nobody is told of again.
+  Hub third(runtime_.path(), [](Hub& h) {
+    h.say("found " + std::to_string(stop_abandoned(kTypes, hal::kNsPerSecond).size()));
+    return static_cast<int>(h.order());
+  });
+  ASSERT_TRUE(third.said("found 0"));
+  EXPECT_TRUE(times("deaf", "rests").empty());
+  let_hear("deaf");
+  EXPECT_TRUE(was("deaf", "rests"));
+  EXPECT_TRUE(eventually([&] { return std::filesystem::is_empty(runtime_.path() / "tandem"); }));
 }
 
 /// Plugs in a folder, and robots that are in them.
