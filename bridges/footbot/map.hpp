@@ -88,12 +88,21 @@ enum class Need : std::uint8_t {
   Never
 };
 
+/// A program that puts the node's written variables to rest when the hub has fallen silent
+/// (bridges/aseba/dead_man.hpp).
+struct DeadManMap {
+  std::string event;          ///< the node's own event that comes again and again; "": no such program
+  hal::TimeNs period_ns = 0;  ///< between two of them
+  hal::TimeNs after_ns = 0;   ///< of silence
+};
+
 struct NodeMap {
   std::vector<std::string> names;
   std::uint8_t id = 0;  ///< asked for from the start, which finds old, silent nodes sooner; 0: not known
   Need need = Need::Used;
   std::vector<VariableMap> variables;
   std::vector<PacketMap> packets;
+  DeadManMap dead_man;
   int line = 0;
 };
 

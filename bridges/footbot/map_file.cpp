@@ -104,8 +104,12 @@ class MapReader {
     claim(e, node.names, nodes_, "node");
     std::map<std::string, int> variables;
     std::map<int, int> numbers;
-    for (const Element& child : children(e, {"variable", "event"})) {
-      if (child.name == "variable") {
+    int dead_men = 0;
+    for (const Element& child : children(e, {"variable", "event", "dead_man"})) {
+      if (child.name == "dead_man") {
+        if (dead_men++ > 0) error(child, "", "a node has one");
+        node.dead_man = dead_man(child);
+      } else if (child.name == "variable") {
         node.variables.push_back(variable(child));
         claim(child, node.variables.back().names, variables, "variable");
       } else {
@@ -115,6 +119,8 @@ class MapReader {
       }
     }
     if (node.variables.empty() && node.packets.empty()) error(e, "has neither a <variable> nor an <event>");
+    const bool commanded = std::ranges::any_of(node.variables, [](const VariableMap& v) { return !v.writes.empty(); });
+    if (dead_men > 0 && !commanded) error(e, "has a <dead_man>, and nothing is written to it");
     return node;
   }
 
@@ -125,6 +131,21 @@ class MapReader {
       if (!fresh && name != "?")
         error(e, "names", "'" + name + "' is the name of the " + what + " on line " + std::to_string(first->second));
     }
+  }
+
+  DeadManMap dead_man(const Element& e) {
+    DeadManMap map;
+    double period_s = 0.02, after_s = 0.5;
+    ElementReader reader(e, problems_);
+    reader.text("event", map.event, "");
+    reader.number("period", period_s, hal::unit::s, {0.001, 1.0}, "");
+    reader.number("after", after_s, hal::unit::s, {0.1, 60.0}, "");
+    reader.finish_attributes();
+    if (map.event.empty()) error(e, "event", "missing; write which of the node's own events comes again and again");
+    if (after_s < 3.0 * period_s) error(e, "after", "is less than three periods");
+    map.period_ns = to_ns(period_s);
+    map.after_ns = to_ns(after_s);
+    return map;
   }
 
   VariableMap variable(const Element& e) {

@@ -4,9 +4,14 @@
 #include <array>
 #include <charconv>
 #include <limits>
+#include <utility>
 
 namespace tandem::bridges::footbot {
 namespace {
+
+constexpr std::uint64_t kMostLoads = 3;  // of a program that does not begin: then the robot drives without
+constexpr hal::TimeNs kReadMail = 100 * hal::kNsPerMs;
+constexpr hal::TimeNs kOneRestart = hal::kNsPerSecond;  // within which memory and program may show it
 
 constexpr double kJumpSlack_s = 0.05;  // between what the stamps say and when a module counted
 
@@ -94,8 +99,13 @@ bool Wiring::ready(const NodeRow& row) noexcept {
   return row.node != nullptr && row.node->ready() && row.node->generation == row.generation;
 }
 
-bool Wiring::complete(const NodeRow& row) noexcept {
-  return ready(row) && row.trouble.empty();
+bool Wiring::complete(const NodeRow& row) const noexcept {
+  return ready(row) && row.trouble.empty() && !awaits_dead_man(row);
+}
+
+/// A node that was just found drives once its program runs, or has turned out not to.
+bool Wiring::awaits_dead_man(const NodeRow& row) const noexcept {
+  return row.has_dead_man && !observe_ && !row.dead_man.running() && row.dead_man.loads() < kMostLoads;
 }
 
 bool Wiring::look() noexcept {
@@ -121,9 +131,12 @@ std::string Wiring::look_for_restarts() noexcept {
     if (row.map->need != Need::Always || !ready(row)) continue;
     bool restarted = false;
     for (VariableRow& v : row.variables) restarted = forgot(row, v) || restarted;
-    if (!restarted) continue;
-    ++statistics_.restarts;
-    what = "its node '" + row.node->description.name + "' restarted";
+    const std::string itself = std::exchange(row.stopped_itself, {});
+    const bool known = row.restart_told_ns != 0 && served_ns_ - row.restart_told_ns < kOneRestart;
+    if ((!restarted && itself.empty()) || known) continue;
+    row.restart_told_ns = served_ns_;
+    statistics_.restarts += restarted ? 1 : 0;
+    what = "its node '" + row.node->description.name + "' " + (restarted ? "restarted" : itself);
   }
   return what;
 }
@@ -149,6 +162,26 @@ void Wiring::bind(NodeRow& row, const aseba::Node* node) {
   row.trouble.clear();
   ++row.times_wired;
   for (VariableRow& v : row.variables) bind(row, v);
+  bind_dead_man(row);
+}
+
+void Wiring::bind_dead_man(NodeRow& row) {
+  const DeadManMap& map = row.map->dead_man;
+  row.has_dead_man = false;
+  row.alive = -1;
+  row.alive_ns = row.mail_asked_ns = 0;
+  if (map.event.empty() || !row.trouble.empty()) return;
+  std::vector<aseba::RestWord> words;
+  for (const VariableRow& v : row.variables) {
+    if (!v.bound || v.map->writes.empty()) continue;
+    std::vector<std::int16_t> rest(v.map->words, 0);
+    make_target(*v.map, false, rest);
+    for (std::size_t i = 0; i < rest.size(); ++i) words.push_back({static_cast<std::uint16_t>(v.address + i), rest[i]});
+  }
+  auto program = aseba::make_dead_man(row.node->description, map.event, words);
+  row.has_dead_man = program.ok();
+  row.dead_man_trouble = program.ok() ? "" : program.error().message;
+  if (program.ok()) row.dead_man.begin(std::move(program).value(), {.beat_ns = map.period_ns});
 }
 
 void Wiring::bind(NodeRow& row, VariableRow& v) {
@@ -182,7 +215,7 @@ void Wiring::bind(NodeRow& row, VariableRow& v) {
 }
 
 bool Wiring::complete() const noexcept {
-  return std::ranges::all_of(rows_, [](const NodeRow& row) { return !needed(row) || complete(row); });
+  return std::ranges::all_of(rows_, [this](const NodeRow& row) { return !needed(row) || complete(row); });
 }
 
 bool Wiring::lost_needed() const noexcept {
@@ -199,7 +232,10 @@ std::string Wiring::trouble_of(const NodeRow& row) const {
     }
     return "node " + one_of(row.map->names) + " is not there";
   }
-  if (ready(row)) return row.trouble;
+  if (ready(row) && !row.trouble.empty()) return row.trouble;
+  if (ready(row)) {
+    return awaits_dead_man(row) ? "node '" + row.node->description.name + "': its program does not run yet" : "";
+  }
   return "node '" + row.node->description.name + "' is " + aseba::node_state_name(row.node->state);
 }
 
@@ -225,6 +261,8 @@ std::vector<NodeStatus> Wiring::nodes() const {
     status.needed = needed(row);
     status.times_wired = row.times_wired;
     status.trouble = trouble_of(row);
+    if (status.trouble.empty() && !row.dead_man_trouble.empty())
+      status.trouble = "does not stop by itself when it hears nothing: " + row.dead_man_trouble;
     if (row.node != nullptr) {
       status.name = row.node->description.name;
       status.id = row.node->id;
@@ -265,6 +303,9 @@ void Wiring::identify(RobotIdentity& identity) const {
 void WiringStatistics::describe(StatusVisitor& visitor) const {
   visitor.count("counter_jumps", counter_jumps);
   visitor.count("not_obeyed", not_obeyed);
+  visitor.count("dead_man_programs", dead_men);
+  visitor.count("stopped_without_word", lapses);
+  visitor.count("programs_gone", programs_gone);
 }
 
 hal::TimeNs Wiring::oldest_ns() const noexcept {
@@ -281,7 +322,54 @@ hal::TimeNs Wiring::oldest_ns() const noexcept {
 
 // --- readings ---
 
-bool Wiring::serve(hal::TimeNs /*now*/) noexcept {
+bool Wiring::serve(hal::TimeNs now) noexcept {
+  served_ns_ = now;
+  serve_packets();
+  bool due = false;
+  statistics_.dead_men = 0;
+  for (NodeRow& row : rows_) {
+    if (ready(row) && row.has_dead_man && !observe_) due = serve_dead_man(row, now) || due;
+    statistics_.dead_men += ready(row) && row.has_dead_man && row.dead_man.running() ? 1 : 0;
+  }
+  return due;
+}
+
+bool Wiring::serve_dead_man(NodeRow& row, hal::TimeNs now) noexcept {
+  const aseba::ResidentProgram::Heard heard = row.dead_man.hear(*row.node);
+  statistics_.lapses += heard.lapsed ? 1 : 0;
+  // One that began before we drove was the end of what was told before, such as before an outage.
+  if (heard.lapsed && row.alive > 0 && heard.taken_ns - row.driven_since_ns >= row.map->dead_man.after_ns) {
+    row.stopped_itself =
+        "heard nothing for " + std::to_string(row.map->dead_man.after_ns / hal::kNsPerMs) + " ms and stopped by itself";
+  }
+  if (heard.gone) {
+    ++statistics_.programs_gone;
+    row.stopped_itself = "lost its program: it restarted, or somebody else has loaded another";
+  }
+  if (heard.began) row.alive = -1;
+  if (!row.dead_man.running() && row.dead_man.loads() >= kMostLoads) {
+    row.dead_man_trouble = "its program does not run";
+    return false;
+  }
+  if (heard.absent) row.dead_man.load(network_, *row.node, now);
+  return row.dead_man.pursue(network_, *row.node, now) || heard.absent;
+}
+
+/// Whoever drives says so well before the time is over, and says once when it rests.
+void Wiring::tell_alive(NodeRow& row, bool drive, hal::TimeNs now) noexcept {
+  if (!row.has_dead_man || !row.dead_man.running()) return;
+  const DeadManMap& map = row.map->dead_man;
+  const auto alive = static_cast<std::int16_t>(drive ? (map.after_ns + map.period_ns - 1) / map.period_ns : 0);
+  if (alive == row.alive && (!drive || now - row.alive_ns < map.after_ns / 5)) return;
+  const std::array<std::int16_t, 1> words = {alive};
+  const std::size_t address = row.dead_man.program().mailbox + std::size_t{aseba::dead_man_mail::kAlive};
+  if (!network_.write(row.node->id, address, words)) return;
+  if (row.alive <= 0) row.driven_since_ns = now;
+  row.alive = alive;
+  row.alive_ns = now;
+}
+
+void Wiring::serve_packets() noexcept {
   while (network_.take_event(event_)) {
     for (const NodeRow& row : rows_) {
       if (!ready(row) || row.node->id != event_.source) continue;
@@ -306,7 +394,6 @@ bool Wiring::serve(hal::TimeNs /*now*/) noexcept {
       }
     }
   }
-  return false;
 }
 
 void Wiring::fill_packets(hal::TimeNs now) noexcept {
@@ -401,6 +488,8 @@ void Wiring::ask(hal::TimeNs now) noexcept {
       if (v.asked_ns != 0 && now - v.asked_ns + slack < v.map->period_ns) continue;
       if (network_.want(row.node->id, v.address + v.read_first, v.read_behind - v.read_first)) v.asked_ns = now;
     }
+    if (!row.has_dead_man || !row.dead_man.running() || now - row.mail_asked_ns + slack < kReadMail) continue;
+    if (network_.want(row.node->id, row.dead_man.program().mailbox, 3)) row.mail_asked_ns = now;
   }
 }
 
@@ -460,6 +549,7 @@ void Wiring::command(bool drive, hal::TimeNs now) noexcept {
     for (VariableRow& v : row.variables) {
       if (v.bound && v.controlled) write(row, v, drive, now);
     }
+    if (!observe_) tell_alive(row, drive, now);
   }
 }
 
@@ -471,6 +561,7 @@ void Wiring::rest(hal::TimeNs now) noexcept {
 
 void Wiring::rest_again(hal::TimeNs now) noexcept {
   for (NodeRow& row : rows_) {
+    row.alive = -1;
     for (VariableRow& v : row.variables) v.sent_known = false;
   }
   command(false, now);

@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "bridges/aseba/dead_man.hpp"
 #include "bridges/aseba/node_driver.hpp"
 #include "bridges/footbot/map.hpp"
 #include "bridges/footbot/memory_watch.hpp"
@@ -23,6 +24,9 @@ struct WiringStatistics {
   std::uint64_t not_obeyed = 0;     ///< written values that were not there when read back
   std::uint64_t packets_unfit = 0;  ///< range-and-bearing events of another length than the map says
   std::uint64_t packets = 0;        ///< range-and-bearing messages received
+  std::uint64_t dead_men = 0;       ///< nodes that stop by themselves when they hear nothing, by now
+  std::uint64_t lapses = 0;         ///< times that one did
+  std::uint64_t programs_gone = 0;  ///< times that its program was
 
   void describe(StatusVisitor& visitor) const;
 };
@@ -114,14 +118,26 @@ class Wiring {
     std::string trouble;
     std::uint64_t times_wired = 0;
     std::vector<VariableRow> variables;
+    aseba::ResidentProgram dead_man;
+    bool has_dead_man = false;     // it can have one
+    std::string dead_man_trouble;  // why not
+    std::int16_t alive = -1;       // as it was last told; -1: not yet
+    hal::TimeNs alive_ns = 0, driven_since_ns = 0, mail_asked_ns = 0;
+    std::string stopped_itself;       // for look_for_restarts
+    hal::TimeNs restart_told_ns = 0;  // by its memory or by its program, whichever showed it first
   };
 
   static bool needed(const NodeRow& row) noexcept;
   static bool ready(const NodeRow& row) noexcept;
-  static bool complete(const NodeRow& row) noexcept;
+  bool complete(const NodeRow& row) const noexcept;
+  bool awaits_dead_man(const NodeRow& row) const noexcept;
   std::string trouble_of(const NodeRow& row) const;
   void bind(NodeRow& row, const aseba::Node* node);
   void bind(NodeRow& row, VariableRow& variable);
+  void bind_dead_man(NodeRow& row);
+  void serve_packets() noexcept;
+  bool serve_dead_man(NodeRow& row, hal::TimeNs now) noexcept;
+  void tell_alive(NodeRow& row, bool drive, hal::TimeNs now) noexcept;
   void fill_port(const hal::PortType& type, hal::TimeNs now) noexcept;
   void fill_field(const aseba::Node& node, const VariableRow& variable, FieldRow& field, hal::TimeNs taken) noexcept;
   double counted(FieldRow& field, std::size_t i, std::int32_t raw, double since_s) noexcept;
@@ -137,6 +153,7 @@ class Wiring {
   bool observe_;
   std::vector<NodeRow> rows_;
   std::uint64_t seen_ = ~std::uint64_t{0};  // fingerprint of who is there
+  hal::TimeNs served_ns_ = 0;
   std::uint64_t rest_version_ = 0;
   hal::TimeNs rested_ns_ = 0;
   hal::RangeAndBearing heard_;  // since the last `fill`

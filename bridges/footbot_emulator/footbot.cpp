@@ -11,6 +11,7 @@ namespace tandem::bridges::footbot_emulator {
 namespace {
 
 constexpr hal::TimeNs kLoopNs = 10 * hal::kNsPerMs;  // modules look at their devices at least so often
+constexpr int kTimerEvery = 2;                       // loops: the modules' event "timer" has 50 Hz
 constexpr auto kPulsePeriodNs = static_cast<std::int64_t>(kPulsePeriod_s * 1e9);
 constexpr std::size_t kBeacon = 12;       // behind the ring
 constexpr std::uint16_t kHeardEvent = 0;  // number of the radio's user event
@@ -141,8 +142,23 @@ void Footbot::loop(hal::TimeNs at) {
     conducts_[i].told = true;
     sink_(at, "boot", {{"module", modules_[i].name()}, {"id", modules_[i].id()}});
   }
+  if (++loops_ % kTimerEvery == 0) run_timers(at);
   variables_to_actuators(at);
   note_heard(at);
+}
+
+/// The modules' own programs, where there are any.
+void Footbot::run_timers(hal::TimeNs at) {
+  const auto speeds = [this] { return std::pair(word(Place::LeftMotor, "speed"), word(Place::RightMotor, "speed")); };
+  const auto before = speeds();
+  for (std::size_t i = 0; i < kModules; ++i) {
+    if (!works(i, at)) continue;
+    std::vector<Message> said;
+    modules_[i].happen("timer", at, said, sink_);
+    if (conducts_[i].silent) continue;
+    for (const Message& message : said) bus_.send(i, to_frames(message), at);
+  }
+  if (speeds() != before) note_wheels(at, "program");
 }
 
 void Footbot::pass_frames(hal::TimeNs now) {

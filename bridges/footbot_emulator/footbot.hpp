@@ -80,6 +80,7 @@ class Footbot {
   bool works(std::size_t i, hal::TimeNs at) const;
   void lose_power(Place place, hal::TimeNs at, std::string_view why);
   void loop(hal::TimeNs at);
+  void run_timers(hal::TimeNs at);
   void hear(const Message& message, hal::TimeNs at);
   void pass_frames(hal::TimeNs now);
   void note_heard(hal::TimeNs at);
@@ -110,6 +111,7 @@ class Footbot {
   std::array<Encoder, 2> encoders_;
   hal::TimeNs now_ = 0;
   hal::TimeNs next_loop_ = 0;
+  std::int64_t loops_ = 0;
   hal::TimeNs encoders_at_ = 0;
   BodyCommand command_;
   int told_left_ = 0, told_right_ = 0;

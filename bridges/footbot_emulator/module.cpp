@@ -17,6 +17,7 @@ aseba_emulation::NodeSpec spec_of(std::uint8_t id, std::string name, const std::
   spec.bytecode_words = 1024;
   spec.stack_words = 32;
   spec.variable_words = 256;
+  spec.runs_programs = true;
   return spec;
 }
 

@@ -1,4 +1,4 @@
-// One module of the foot-bot, a node of its bus. Programs are stored here, and never run: no module comes with one.
+// One module of the foot-bot, a node of its bus. It comes without a program, and runs one that is sent to it.
 #pragma once
 #include <string>
 #include <vector>

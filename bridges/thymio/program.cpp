@@ -1,17 +1,20 @@
 #include "bridges/thymio/program.hpp"
 
-#include <algorithm>
 #include <initializer_list>
-#include <optional>
 #include <string>
 #include <string_view>
 
-#include "bridges/thymio/assembler.hpp"
+#include "bridges/aseba/assembler.hpp"
 
 namespace tandem::bridges::thymio {
 namespace {
 
+using aseba::Assembler;
+using aseba::kInitEvent;
+using aseba::local_event;
 using aseba::NodeDescription;
+using aseba::number_of;
+using aseba::Op;
 
 constexpr std::string_view kTones = "sound.freq";
 
@@ -21,12 +24,6 @@ hal::Result<std::uint16_t> address_of(const NodeDescription& node, std::string_v
   if (variable == nullptr) return hal::Error{which + " is missing: is it a Thymio II, with its firmware up to date?"};
   if (variable->words == words) return variable->address;
   return hal::Error{which + " has " + std::to_string(variable->words) + " words, not " + std::to_string(words)};
-}
-
-std::optional<std::uint16_t> number_of(const std::vector<std::string>& names, std::string_view name) {
-  const auto found = std::ranges::find(names, name);
-  if (found == names.end()) return std::nullopt;
-  return static_cast<std::uint16_t>(found - names.begin());
 }
 
 /// `count` addresses from `first` on.
@@ -63,8 +60,8 @@ class Writer {
     code_.load(at(mailbox::kAlive)).push(1).apply(Op::Subtract).store(at(mailbox::kAlive));
     code_.push(1).load(at(mailbox::kAlive)).begin_if(Op::Greater);
     code_.load(at(mailbox::kLapses)).push(1).apply(Op::Add).store(at(mailbox::kLapses));
-    if (const auto function = number_of(node_.native_functions, kTones))
-      code_.call(*function, {at(mailbox::kTone_Hz), at(mailbox::kSilence)});
+    if (const int function = number_of(node_.native_functions, kTones); function >= 0)
+      code_.call(static_cast<std::uint16_t>(function), {at(mailbox::kTone_Hz), at(mailbox::kSilence)});
     code_.end_if();
     code_.otherwise();
     code_.push(0).store(program_.motors.left_target);
@@ -82,8 +79,8 @@ class Writer {
     };
     for (const Group& group : std::initializer_list<Group>{
              {"leds.circle", 8}, {"leds.bottom.left", 3}, {"leds.bottom.right", 3}, {"leds.top", 3}}) {
-      if (const auto function = number_of(node_.native_functions, group.function)) {
-        code_.call(*function, row(word, group.words));
+      if (const int function = number_of(node_.native_functions, group.function); function >= 0) {
+        code_.call(static_cast<std::uint16_t>(function), row(word, group.words));
         program_.lights = true;
       }
       word = static_cast<std::uint16_t>(word + group.words);
@@ -92,12 +89,12 @@ class Writer {
   }
 
   void sounds() {
-    const auto function = number_of(node_.native_functions, kTones);
-    program_.sounds = function.has_value();
-    if (!function) return;
+    const int function = number_of(node_.native_functions, kTones);
+    program_.sounds = function >= 0;
+    if (!program_.sounds) return;
     code_.load(at(mailbox::kTone)).load(at(mailbox::kPlayed)).begin_if(Op::NotEqual);
     code_.load(at(mailbox::kTone)).store(at(mailbox::kPlayed));
-    code_.call(*function, {at(mailbox::kTone_Hz), at(mailbox::kToneLength)});
+    code_.call(static_cast<std::uint16_t>(function), {at(mailbox::kTone_Hz), at(mailbox::kToneLength)});
     code_.end_if();
   }
 
@@ -105,13 +102,6 @@ class Writer {
   Program& program_;
   Assembler code_;
 };
-
-/// 15 bits of FNV-1a [Fowler, Noll, Vo], never 0.
-std::int16_t signature_of(const std::vector<std::uint16_t>& words) {
-  std::uint32_t hash = 2166136261U;
-  for (const std::uint16_t word : words) hash = (hash ^ word) * 16777619U;
-  return static_cast<std::int16_t>(((hash ^ hash >> 16U) & 0x3FFFU) | 0x4000U);
-}
 
 }  // namespace
 
@@ -131,18 +121,18 @@ hal::Result<Program> make_program(const NodeDescription& node) {
   }
   const auto period = address_of(node, "timer.period", 2);
   if (!period.ok()) return period.error();
-  const auto timer = number_of(node.local_events, "timer0");
-  if (!timer) return hal::Error{"its event 'timer0' is missing: is it a Thymio II, with its firmware up to date?"};
+  const int timer = number_of(node.local_events, "timer0");
+  if (timer < 0) return hal::Error{"its event 'timer0' is missing: is it a Thymio II, with its firmware up to date?"};
   program.mailbox = static_cast<std::uint16_t>(node.named_words());
   if (node.named_words() + mailbox::kWords > node.variable_words) {
     return hal::Error{"it has room for " + std::to_string(node.variable_words - node.named_words()) +
                       " words of a program's variables; " + std::to_string(mailbox::kWords) + " are needed"};
   }
   // The signature is that of the program with another one in the same form.
-  program.signature = 0x4000;
-  program.words = Writer(node, program).write(*timer, period.value());
-  program.signature = signature_of(program.words);
-  program.words = Writer(node, program).write(*timer, period.value());
+  program.signature = aseba::kSignatureToCome;
+  program.words = Writer(node, program).write(static_cast<std::uint16_t>(timer), period.value());
+  program.signature = aseba::signature_of(program.words);
+  program.words = Writer(node, program).write(static_cast<std::uint16_t>(timer), period.value());
   if (program.words.size() > node.bytecode_words) {
     return hal::Error{"it has room for " + std::to_string(node.bytecode_words) + " words of a program; " +
                       std::to_string(program.words.size()) + " are needed"};

@@ -17,7 +17,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "bridges/aseba/node.hpp"
+#include "bridges/aseba/resident_program.hpp"
 #include "hal/result.hpp"
 #include "hal/time.hpp"
 
@@ -28,7 +28,10 @@ inline constexpr hal::TimeNs kBeat_ns = 20 * hal::kNsPerMs;
 /// Words of the mailbox.
 namespace mailbox {
 // By the program.
-inline constexpr std::uint16_t kSignature = 0, kBeat = 1, kLapses = 2, kShown = 3, kPlayed = 4;
+using aseba::mail_head::kBeat;
+using aseba::mail_head::kLapses;
+using aseba::mail_head::kSignature;
+inline constexpr std::uint16_t kShown = 3, kPlayed = 4;
 // By the hub.
 inline constexpr std::uint16_t kAlive = 5, kLeft = 6, kRight = 7;
 inline constexpr std::uint16_t kLeds = 8, kFirstLed = 9;
@@ -47,10 +50,7 @@ struct MotorAddresses {
   std::uint16_t left_speed = 0, right_speed = 0;
 };
 
-struct Program {
-  std::vector<std::uint16_t> words;
-  std::uint16_t mailbox = 0;   ///< address of its first word
-  std::int16_t signature = 0;  ///< of these words; never 0
+struct Program : aseba::NodeProgram {
   MotorAddresses motors = {};
   bool lights = false;  ///< it sets LEDs
   bool sounds = false;  ///< it plays tones

@@ -21,13 +21,9 @@ const std::string kNodeName = "thymio-II";
 constexpr std::string_view kFirmware = "_fwversion";
 constexpr std::int16_t kProduct = 8;  // of the Thymio II; source: aseba/common/productids.h
 
-constexpr TimeNs kBeatStands = 10 * kBeat_ns;         // from here on the program does not run
-constexpr TimeNs kLoadAgain = 400 * hal::kNsPerMs;    // for a program that was sent to begin
-constexpr TimeNs kLook = 2 * kBeat_ns;                // between looks whether it has begun
 constexpr TimeNs kSettle = 120 * hal::kNsPerMs;       // after a reset: the slowest sensor has 10 Hz
 constexpr TimeNs kShowAgain = 300 * hal::kNsPerMs;    // for LEDs that were told to show
 constexpr TimeNs kLongestRoll = 500 * hal::kNsPerMs;  // between two speeds that are added up
-constexpr std::size_t kMostBytecode = 250;            // words of a program in one message
 
 }  // namespace
 
@@ -105,9 +101,6 @@ void Wiring::bind(const Node& node) {
   generation_ = node.generation;
   ++times_wired_;
   firmware_told_ = false;
-  state_ = ProgramState::Unknown;
-  heard_ns_ = beat_ns_ = loaded_ns_ = 0;
-  beat_known_ = false;
   told_ = {};
   held_.assign(node.description.named_words(), 0);
   held_ns_.assign(held_.size(), 0);
@@ -126,6 +119,7 @@ void Wiring::bind(const Node& node) {
   auto program = make_program(node.description);
   if (program.ok()) {
     program_ = std::move(program).value();
+    resident_.begin(program_, {.beat_ns = kBeat_ns, .settle_ns = kSettle, .told = mailbox::kTold});
   } else {
     trouble_ = who + program.error().message;
   }
@@ -190,85 +184,57 @@ bool Wiring::serve(TimeNs now) noexcept {
     return false;
   }
   hear_program(now);
-  if (state_ == ProgramState::Running) return false;
-  if (state_ == ProgramState::Loading && now - loaded_ns_ >= kLoadAgain) return load_program(now);
-  if (now - looked_ns_ < kLook) return false;
-  looked_ns_ = now;
-  return network_.want(node_->id, program_.mailbox, mailbox::kTold);
+  const std::uint64_t loads = resident_.loads();
+  const bool due = resident_.pursue(network_, *node_, now);
+  note_loads(loads);
+  return due;
 }
 
 /// Looks at a mailbox that was read since the last look.
 void Wiring::hear_program(TimeNs now) noexcept {
-  const TimeNs taken = mail_taken_ns();
-  // What was measured before the program was sent says nothing of it.
-  if (taken == 0 || taken <= std::max(heard_ns_, loaded_ns_)) return;
-  heard_ns_ = taken;
   const aseba::Variable* const product = node_->description.variable("_productId");
   if (product != nullptr && node_->taken_ns(product->address) != 0 && node_->value(product->address) != kProduct) {
     trouble_ = "node " + std::to_string(node_->id) + ": its product number is " +
                std::to_string(node_->value(product->address)) + ", a Thymio II has " + std::to_string(kProduct);
     return;
   }
-  const bool ours = mail(mailbox::kSignature) == program_.signature;
-  const std::int16_t beat = mail(mailbox::kBeat);
-  const bool beats = ours && beat_known_ && beat != beat_;
-  if (!beat_known_ || beat != beat_ || !ours) beat_ns_ = taken;
-  beat_ = beat;
-  beat_known_ = ours;
-  // The beat counts since the reset.
-  const bool settled = static_cast<std::uint16_t>(beat) * kBeat_ns >= kSettle;
-  if (beats && settled && state_ != ProgramState::Running) now_runs(now);
-  if (state_ == ProgramState::Running) {
-    if (ours) hold(taken);
-    const std::int16_t lapses = mail(mailbox::kLapses);
-    const bool lapsed = ours && lapses != lapses_;
-    statistics_.lapses += lapsed ? 1 : 0;
-    if (lapsed && drives_) {  // else the hub has stopped it already, and said so
-      restarted_ =
-          "it heard nothing for " + std::to_string(calibration_.alive_ns / hal::kNsPerMs) + " ms and stopped by itself";
-    }
-    lapses_ = lapses;
+  const aseba::ResidentProgram::Heard heard = resident_.hear(*node_);
+  if (heard.taken_ns == 0) return;
+  if (heard.began) now_runs(now);
+  if (resident_.running() && heard.ours) hold(heard.taken_ns);
+  statistics_.lapses += heard.lapsed ? 1 : 0;
+  if (heard.lapsed && drives_) {  // else the hub has stopped it already, and said so
+    restarted_ =
+        "it heard nothing for " + std::to_string(calibration_.alive_ns / hal::kNsPerMs) + " ms and stopped by itself";
   }
-  const bool stands = ours && taken - beat_ns_ >= kBeatStands;
-  if (ours && !stands) return;
-  if (std::exchange(ran_, false)) {
+  if (heard.gone) {
     ++statistics_.restarts;
     restarted_ = "its program is gone: it restarted, or somebody else has loaded another";
   }
-  if (state_ == ProgramState::Loading) return;  // it may yet begin
-  state_ = ProgramState::Unknown;
-  (void)load_program(now);
+  if (heard.absent) load_program(now);
 }
 
 void Wiring::now_runs(TimeNs now) noexcept {
-  state_ = ProgramState::Running;
-  believed_from_ns_ = heard_ns_;
-  ran_ = true;
+  believed_from_ns_ = resident_.heard_ns();
   told_ = {};
   leds_.told_ns = tone_.told_ns = 0;
   leds_.number = mail(mailbox::kShown);
   tone_.number = mail(mailbox::kPlayed);
-  lapses_ = mail(mailbox::kLapses);
   ++rest_version_;
   ask(now);
 }
 
 /// It begins with a reset, which stops the robot.
-bool Wiring::load_program(TimeNs now) noexcept {
-  aseba::Payload words;
-  for (std::size_t at = 0; at < program_.words.size(); at += kMostBytecode) {
-    words.clear();
-    const std::size_t behind = std::min(at + kMostBytecode, program_.words.size());
-    for (std::size_t i = at; i < behind; ++i) words.append(program_.words[i]);
-    if (!network_.send(aseba::SetBytecode{node_->id, static_cast<std::uint16_t>(at), words.words()})) return true;
-  }
-  if (!network_.send(aseba::Run{node_->id})) return true;
-  state_ = ProgramState::Loading;
-  loaded_ns_ = now;
-  beat_known_ = false;
+void Wiring::load_program(TimeNs now) noexcept {
+  const std::uint64_t loads = resident_.loads();
+  resident_.load(network_, *node_, now);
+  note_loads(loads);
+}
+
+void Wiring::note_loads(std::uint64_t before) noexcept {
+  if (resident_.loads() == before) return;
   ++statistics_.programs;
   ++rest_version_;
-  return true;
 }
 
 std::string Wiring::look_for_restarts() noexcept {
@@ -508,7 +474,7 @@ void Wiring::rest_again(TimeNs now) noexcept {
   told_.drive_ns = leds_.told_ns = tone_.told_ns = 0;
   command(false, now);
   // A link that was lost and is back has perhaps not been heard of yet, and the program may go on.
-  if (!running() && ran_) (void)write_mail(mailbox::kAlive, std::array<std::int16_t, 3>{});
+  if (!running() && resident_.ran()) (void)write_mail(mailbox::kAlive, std::array<std::int16_t, 3>{});
   (void)write_targets();
   (void)network_.want(node_->id, program_.mailbox, mailbox::kTold);
   (void)network_.want(node_->id, program_.motors.left_target, 1);
@@ -517,12 +483,12 @@ void Wiring::rest_again(TimeNs now) noexcept {
 
 bool Wiring::rests() const noexcept {
   if (observe_) return true;
-  if (!ready() || state_ == ProgramState::Unknown) return false;
+  if (!ready() || resident_.state() == aseba::ResidentProgram::State::Unknown) return false;
   for (const std::uint16_t target : {program_.motors.left_target, program_.motors.right_target}) {
     if (node_->taken_ns(target) <= rested_ns_ || node_->value(target) != 0) return false;
   }
   // Where no program runs, none sets the targets.
-  if (state_ != ProgramState::Running) return true;
+  if (!resident_.running()) return true;
   return mail_taken_ns() > rested_ns_ && mail(mailbox::kAlive) == 0 && mail(mailbox::kLeft) == 0 &&
          mail(mailbox::kRight) == 0;
 }
@@ -539,7 +505,7 @@ std::vector<aseba::RestMessage> Wiring::rest_messages() const {
                    {payload.bytes().begin(), payload.bytes().end()},
                    true});
   };
-  if (state_ == ProgramState::Running || ran_) set(program_.mailbox + std::size_t{mailbox::kAlive}, 3);
+  if (resident_.running() || resident_.ran()) set(program_.mailbox + std::size_t{mailbox::kAlive}, 3);
   set(program_.motors.left_target, 1);
   set(program_.motors.right_target, 1);
   return all;

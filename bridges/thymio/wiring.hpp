@@ -1,9 +1,6 @@
 // Ports on one side, the Thymio's node on the other: finds the robot on the bus, gives it its program, and carries
-// values both ways.
-//
-//   unknown --the signature is read, and the beat goes on--> running
-//   unknown, running --another signature, or the beat stands--> loading: the program is sent and started
-//   loading --the signature, and the beat goes on--> running, once every sensor has measured
+// values both ways. The program is looked after as any of the hub's own (bridges/aseba/resident_program.hpp); it is
+// used once every sensor has measured since its start.
 //
 // A reset clears the variables, and a robot may be reset at any time, by a loose battery or somebody else's program:
 // what sensors say is believed once the mailbox, read afterwards, shows that the program still runs.
@@ -16,6 +13,7 @@
 #include <vector>
 
 #include "bridges/aseba/node_driver.hpp"
+#include "bridges/aseba/resident_program.hpp"
 #include "bridges/thymio/program.hpp"
 #include "bridges/thymio/robot.hpp"
 #include "hal/device/buttons.hpp"
@@ -76,7 +74,6 @@ class Wiring {
   const WiringStatistics& statistics() const noexcept { return statistics_; }
 
  private:
-  enum class ProgramState : std::uint8_t { Unknown, Loading, Running };
   /// A sensor's words; none where the robot has none, or nobody reads them.
   struct Source {
     const hal::PortType* type = nullptr;
@@ -100,13 +97,14 @@ class Wiring {
   };
 
   bool ready() const noexcept;
-  bool running() const noexcept { return ready() && (observe_ || state_ == ProgramState::Running); }
+  bool running() const noexcept { return ready() && (observe_ || resident_.running()); }
   void bind(const aseba::Node& node);
   std::string trouble_of_node() const;
   const aseba::Node* find_node(std::string& trouble) const;
   void hear_program(hal::TimeNs now) noexcept;
   void now_runs(hal::TimeNs now) noexcept;
-  bool load_program(hal::TimeNs now) noexcept;
+  void load_program(hal::TimeNs now) noexcept;
+  void note_loads(std::uint64_t before) noexcept;
   std::int16_t mail(std::uint16_t word) const noexcept { return node_->value(program_.mailbox + std::size_t{word}); }
   hal::TimeNs mail_taken_ns() const noexcept { return node_->taken_ns(program_.mailbox, mailbox::kTold); }
   /// When words were taken that are believed; 0: never, or they are not.
@@ -142,17 +140,11 @@ class Wiring {
   std::uint64_t times_wired_ = 0;
   std::string trouble_;  // of the node as it describes itself
   Program program_;
-  ProgramState state_ = ProgramState::Unknown;
-  bool ran_ = false;  // the program, at some time before
-  hal::TimeNs loaded_ns_ = 0, looked_ns_ = 0;
-  hal::TimeNs heard_ns_ = 0;          // when the mailbox was taken that was last looked at
+  aseba::ResidentProgram resident_;
   hal::TimeNs believed_from_ns_ = 0;  // readings from this time on
   std::vector<std::int16_t> held_;    // named words, as they were when the program was last seen to run afterwards
   std::vector<hal::TimeNs> held_ns_;  // when they were taken; 0: never
-  hal::TimeNs beat_ns_ = 0;           // and when its beat last was another
-  std::int16_t beat_ = 0, lapses_ = 0;
-  bool beat_known_ = false;
-  std::string restarted_;  // for look_for_restarts
+  std::string restarted_;             // for look_for_restarts
 
   Told told_;
   Block<kLedWords> leds_{mailbox::kLeds, mailbox::kShown};

@@ -1,8 +1,8 @@
-#include "bridges/thymio/assembler.hpp"
+#include "bridges/aseba/assembler.hpp"
 
 #include "hal/check.hpp"
 
-namespace tandem::bridges::thymio {
+namespace tandem::bridges::aseba {
 namespace {
 
 constexpr unsigned kStop = 0x0, kSmall = 0x1, kLarge = 0x2, kLoad = 0x3, kStore = 0x4, kBinary = 0x8, kJump = 0x9,
@@ -93,4 +93,4 @@ std::vector<std::uint16_t> Assembler::finish() {
   return words;
 }
 
-}  // namespace tandem::bridges::thymio
+}  // namespace tandem::bridges::aseba

@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-namespace tandem::bridges::thymio {
+namespace tandem::bridges::aseba {
 
 /// Binary operators that are used here.
 enum class Op : std::uint16_t { Add = 2, Subtract = 3, NotEqual = 11, Greater = 12 };
@@ -54,4 +54,4 @@ class Assembler {
   std::vector<std::size_t> open_;  // branches and jumps whose end is not known yet
 };
 
-}  // namespace tandem::bridges::thymio
+}  // namespace tandem::bridges::aseba
