@@ -1,5 +1,6 @@
 // One foot-bot without threads (bridges/aseba/node_driver.hpp): its map, and the wiring of its ports by it. Its modules
-// have no watchdog of their own: they keep their last command for ever.
+// have no watchdog of their own: those that the map gives a dead-man stop by the program that the hub has sent them,
+// all others keep their last command for ever.
 #pragma once
 #include "bridges/aseba/node_driver.hpp"
 #include "bridges/footbot/wiring.hpp"

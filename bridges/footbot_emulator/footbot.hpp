@@ -10,7 +10,8 @@ namespace tandem::bridges::footbot_emulator {
 
 /// All modules, the bus between them and the body that they move. A state machine in explicit time, without a clock,
 /// thread or file: what it does depends on its inputs alone. It has the robot's manners, good and bad: no answer to
-/// what was not understood, no checks of addresses, no watchdog: wheels keep their last speed for ever.
+/// what was not understood, no checks of addresses, no watchdog but a program's: wheels keep their last
+/// speed for ever.
 ///
 /// Events for the sink:
 ///   frame     way (in: from the host, out), frame
