@@ -137,6 +137,7 @@ class Recording {
     const hal::Tick done = now_.world.tick() - 1;
     if (recorder == nullptr || !in_record_.ok() || done < 0) return;
     in_record_ = recorder->tick_done(now_.world.space(), done);
+    if (mixed_ != nullptr && in_record_.ok()) note_skipped(done);
     const std::vector<std::string>& incidents = now_.world.incidents().first;
     incidents_told_ = std::min(incidents_told_, incidents.size());  // fewer, where the run went back
     for (; incidents_told_ < incidents.size() && in_record_.ok(); ++incidents_told_)
@@ -151,6 +152,11 @@ class Recording {
       }
     }
     if (!in_record_.ok()) complain(kFailedRunning, in_record_.error().message + "; the run goes on");
+  }
+  /// Slots of the schedule in which no tick could begin, right before this one.
+  void note_skipped(hal::Tick done) {
+    if (const auto skipped = skipped_event(mixed_->clock(), skipped_told_))
+      in_record_ = outputs_.record->event(done, *skipped);
   }
   void draw() {
     Pictures* const pictures = outputs_.pictures.get();
@@ -182,6 +188,7 @@ class Recording {
   std::optional<mixed_reality::MixedReport> real_;
   hal::Status recorded_, in_record_;
   std::size_t incidents_told_ = 0;
+  std::uint32_t skipped_told_ = 0;
   SaveAtEnd save_;
 };
 

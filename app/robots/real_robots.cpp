@@ -1,6 +1,7 @@
 #include "app/robots/real_robots.hpp"
 
 #include <string>
+#include <utility>
 
 #include "app/robots/ledger_json.hpp"
 #include "core/record/record_streams.hpp"
@@ -111,6 +112,12 @@ hal::Status record_ledgers(core::Recorder& recorder, const mixed_reality::MixedS
   table.robots = session.ledger_robots();
   table.first = session.ledger_rows().data();
   return recorder.add(table);
+}
+
+std::optional<Json> skipped_event(const mixed_reality::ClockRow& now, std::uint32_t& told) {
+  const std::uint32_t slots = now.skipped_slots - std::exchange(told, now.skipped_slots);
+  if (slots == 0) return std::nullopt;
+  return Json{{"kind", "skipped"}, {"slots", slots}, {"monotonic_ns", now.monotonic_ns}, {"unix_ns", now.unix_ns}};
 }
 
 }  // namespace tandem::app

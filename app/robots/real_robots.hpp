@@ -1,5 +1,7 @@
 // Real robots of a run as viewers see them.
 #pragma once
+#include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "core/record/record.hpp"
@@ -18,5 +20,9 @@ std::vector<core::Drawing::Area> areas_of(const core::SafetyConfig& safety);
 
 /// The ledgers of real robots are written into the record, of set "time". The session must outlive it.
 hal::Status record_ledgers(core::Recorder& recorder, const mixed_reality::MixedSession& session);
+
+/// What a record says of slots of the schedule that were left out before this tick: {"kind": "skipped", "slots", and
+/// the clocks of the tick that came then}. Nothing: none were since `told`, which becomes the number of the run so far.
+std::optional<hal::Json> skipped_event(const mixed_reality::ClockRow& now, std::uint32_t& told);
 
 }  // namespace tandem::app

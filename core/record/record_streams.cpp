@@ -390,7 +390,8 @@ void RecordStreams::declare_inputs(const Space& space, hal::Tick now, std::strin
   input_streams_.clear();
   input_encoder_.forget();
   const auto alike = [](const InputRow& a, const InputRow& b) {
-    return a.sent == b.sent && a.type->layout == b.type->layout && a.type->name == b.type->name;
+    return a.set == b.set && a.robot.valid() == b.robot.valid() && a.type->layout == b.type->layout &&
+           a.type->name == b.type->name;
   };
   std::vector<const InputRow*> first;  // of each form
   for (const InputRow& row : inputs_->rows) {
@@ -402,21 +403,22 @@ void RecordStreams::declare_inputs(const Space& space, hal::Tick now, std::strin
     Stream stream;
     stream.sort = Sort::Rows;
     stream.row_bytes = type->size;
+    const bool of_run = !form->robot.valid();
     std::vector<std::uint32_t> who;
     for (const InputRow& row : inputs_->rows) {
-      if (!alike(row, *form) || !space.contains(row.robot)) continue;
+      if (!alike(row, *form) || !(of_run || space.contains(row.robot))) continue;
       stream.runs.push_back({static_cast<const std::byte*>(row.row), 1, type->size});
-      who.push_back(static_cast<std::uint32_t>(s.row_of(row.robot)));
+      if (!of_run) who.push_back(static_cast<std::uint32_t>(s.row_of(row.robot)));
     }
-    stream.rows = who.size();
+    stream.rows = stream.runs.size();
     add_layouts(*type, stream.layouts);
     declare_stream(std::move(stream),
-                   {{"of", "robot"},
-                    {"set", form->sent ? "sent" : "input"},
+                   {{"of", of_run ? "run" : "robot"},
+                    {"set", form->set},
                     {"name", type->name},
                     {"doc", type->doc},
                     {"fields", row_fields(*type)}},
-                   members_json(space, who), now, out, input_streams_);
+                   of_run ? Json{{"ids", {"run"}}} : members_json(space, who), now, out, input_streams_);
   }
 }
 

@@ -56,6 +56,7 @@ hal::Result<std::unique_ptr<MixedSession>> MixedSession::make(std::unique_ptr<co
     session->last_.back().device = session->twins_[i]->id();
   }
   session->confirmed_.assign(count, 0);
+  session->inputs_.rows.push_back({{}, &hal::row_type<ClockRow>(), &session->clock_, "time"});
   for (const auto& twin : session->twins_) twin->list(session->inputs_);
   session->times_.resize(count);
   session->ledger_rows_.resize(count);
@@ -320,6 +321,8 @@ void MixedSession::latch(core::World&) {
 
 void MixedSession::take_inputs() {
   now_ = moment();
+  clock_ = {now_.monotonic_ns, options_.unix_clock != nullptr ? options_.unix_clock() : unix_now_ns(), now_.run_ns,
+            static_cast<std::uint32_t>(pacer_.ledger().skipped_slots)};
   if (const std::uint64_t freezes = options_.freezes ? options_.freezes() : 0; freezes != freezes_) {
     freezes_ = freezes;
     for (const auto& twin : twins_) twin->hub_was_frozen();

@@ -138,6 +138,8 @@ class MixedSession final : private core::ExternalRobots {
   const core::SpaceInputs& inputs() const noexcept { return inputs_; }
   /// When the inputs of the last tick were taken.
   Moment now() const noexcept { return now_; }
+  /// Its clocks.
+  const ClockRow& clock() const noexcept { return clock_; }
 
   core::World& world() noexcept { return *world_; }
   const core::World& world() const noexcept { return *world_; }
@@ -227,6 +229,7 @@ class MixedSession final : private core::ExternalRobots {
   std::vector<core::RobotId> ledger_robots_;
   std::vector<std::unique_ptr<Twin>> left_out_;
   core::SpaceInputs inputs_;
+  ClockRow clock_;  // of the running tick
   std::vector<Candidate> candidates_;
   std::vector<Retired> retired_;
   std::vector<GivenUp> given_up_;

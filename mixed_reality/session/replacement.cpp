@@ -132,7 +132,7 @@ void MixedSession::take_place(std::size_t index, MadeTwin other, const Replaceme
     trackers_.add_robot(names_of(by), tag_of(item), *other.fused);
   }
   core::SpaceInputs rows;
-  twin.entity().list(rows);
+  twin.list(rows);
   auto next = rows.rows.begin();
   for (core::InputRow& row : inputs_.rows) {  // as many as the old one's: they are the controller's
     if (row.robot == twin.robot() && next != rows.rows.end()) row = *next++;

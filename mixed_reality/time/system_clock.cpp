@@ -1,6 +1,7 @@
 #include "mixed_reality/time/system_clock.hpp"
 
 #include <sys/timex.h>
+#include <time.h>
 
 #include "hal/unit.hpp"
 
@@ -17,6 +18,12 @@ SystemClock system_clock() noexcept {
   clock.most_error_ns = static_cast<hal::TimeNs>(t.maxerror) * 1000;
   clock.frequency_ppm = static_cast<double>(t.freq) / 65536.0;
   return clock;
+}
+
+hal::TimeNs unix_now_ns() noexcept {
+  timespec t{};
+  ::clock_gettime(CLOCK_REALTIME, &t);
+  return static_cast<hal::TimeNs>(t.tv_sec) * hal::kNsPerSecond + t.tv_nsec;
 }
 
 std::string SystemClock::text() const {

@@ -20,4 +20,7 @@ struct SystemClock {
 
 SystemClock system_clock() noexcept;
 
+/// CLOCK_REALTIME: nanoseconds since 1970, UTC.
+hal::TimeNs unix_now_ns() noexcept;
+
 }  // namespace tandem::mixed_reality

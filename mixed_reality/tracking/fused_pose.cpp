@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 namespace tandem::mixed_reality {
@@ -55,6 +56,7 @@ void FusedPose::see(const PoseMeasurement& pose, std::optional<std::int64_t> sta
 
 TrackedPose FusedPose::latch(const Moment& now) noexcept {
   read_wheels(now);
+  note_sightings(now);
   for (std::size_t i = 0; i < pending_count_; ++i) take(pending_[i], now.monotonic_ns);
   pending_count_ = 0;
   judge(now.monotonic_ns);
@@ -66,6 +68,38 @@ TrackedPose FusedPose::latch(const Moment& now) noexcept {
   tracked.sd_rad = std::sqrt(estimate.covariance(2, 2));
   tracked.vague = !(*tracked.sd_m <= params_.lost_m);
   return tracked;
+}
+
+void FusedPose::note_sightings(const Moment& now) noexcept {
+  sightings_.count = 0;
+  for (std::size_t i = 0; i < pending_count_; ++i) {
+    if (sightings_.count == SightingsRow::kCapacity) {
+      sightings_.lost += static_cast<std::uint32_t>(pending_count_ - i);
+      return;
+    }
+    const PoseMeasurement& pose = pending_[i];
+    const std::size_t at = sightings_.count++;
+    sightings_.taken_ns[at] = now.to_run(pose.taken_ns);
+    sightings_.x_m[at] = pose.x_m;
+    sightings_.y_m[at] = pose.y_m;
+    sightings_.heading_rad[at] = pose.heading_rad.value_or(std::numeric_limits<double>::quiet_NaN());
+    sightings_.sd_m[at] = static_cast<float>(pose.sd_m);
+    sightings_.sd_rad[at] = static_cast<float>(pose.sd_rad);
+    sightings_.tracker[at] = pose.tracker;
+    sightings_.true_clock[at] = pose.by_true_clock ? 1 : 0;
+  }
+}
+
+void FusedPose::note_learnt(TrackRow& row) const noexcept {
+  if (!found_) return;
+  const PoseFilter::Learnt l = learnt();
+  const auto set = [](float& value, float& sd, double found, double found_sd) {
+    value = static_cast<float>(found);
+    sd = static_cast<float>(found_sd);
+  };
+  set(row.left, row.left_sd, l.left, l.sd[0]);
+  set(row.right, row.right_sd, l.right, l.sd[1]);
+  set(row.base, row.base_sd, l.base, l.sd[2]);
 }
 
 void FusedPose::read_wheels(const Moment& now) noexcept {

@@ -51,6 +51,8 @@ class FusedPose final : public PoseSource {
   bool disputed() const noexcept override { return disputed_; }
   std::uint64_t slips() const noexcept override { return filter_.slipped(); }
   const PoseMeasurement* newest_sighting() const noexcept override { return newest_ ? &*newest_ : nullptr; }
+  const SightingsRow* sightings() const noexcept override { return &sightings_; }
+  void note_learnt(TrackRow& row) const noexcept override;
 
   PoseCounts counts() const noexcept;
   PoseFilter::Learnt learnt() const noexcept;
@@ -59,6 +61,7 @@ class FusedPose final : public PoseSource {
 
  private:
   void read_wheels(const Moment& now) noexcept;
+  void note_sightings(const Moment& now) noexcept;
   std::optional<double> turned_rad(hal::TimeNs span_ns, double& sd_rad) noexcept;
   bool agree(const PoseMeasurement& pose) noexcept;
   void take(const PoseMeasurement& pose, hal::TimeNs now_ns) noexcept;
@@ -82,6 +85,7 @@ class FusedPose final : public PoseSource {
 
   std::array<PoseMeasurement, 256> pending_;
   std::size_t pending_count_ = 0;
+  SightingsRow sightings_;  // that were pending at the last latch
   struct Stamps {
     std::array<std::int64_t, 64> last{};
     std::size_t count = 0;

@@ -1,5 +1,6 @@
 // Interface of a tracker: the pose of a real robot.
 #pragma once
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string_view>
@@ -8,6 +9,7 @@
 #include "hal/time.hpp"
 #include "mixed_reality/time/moment.hpp"
 #include "mixed_reality/tracking/pose_measurement.hpp"
+#include "mixed_reality/tracking/track_rows.hpp"
 
 namespace tandem::mixed_reality {
 
@@ -16,8 +18,9 @@ struct TrackedPose {
   core::Pose pose;
   hal::TimeNs taken_ns = 0;  ///< CLOCK_MONOTONIC
   bool known = false;        ///< false: there never was one; `pose` is where the robot was said to start
-  std::optional<double> sd_m = {}, sd_rad = {};  ///< of each coordinate, of the heading; nothing: not known
-  bool vague = false;                            ///< known no better than nothing to act on
+  std::optional<double> sd_m = {}, sd_rad = {};    ///< of each coordinate, of the heading; nothing: not known
+  bool vague = false;                              ///< known no better than nothing to act on
+  std::optional<std::array<double, 4>> q_WB = {};  ///< attitude: w, x, y, z; nothing: level, as far as is known
 };
 
 /// Why measurements of a pose were not used, and how many were.
@@ -56,6 +59,10 @@ class PoseSource {
   virtual const PoseMeasurement* newest_sighting() const noexcept { return nullptr; }
   /// Whether it knows of nothing but the wheels: what they slip it cannot tell.
   virtual bool by_wheels() const noexcept { return false; }
+  /// What trackers saw since the `latch` before the last one, brought up to date by every `latch`; null: it asks none.
+  virtual const SightingsRow* sightings() const noexcept { return nullptr; }
+  /// Writes what was learnt of the robot's wheels, as of the last `latch`.
+  virtual void note_learnt(TrackRow& /*row*/) const noexcept {}
 };
 
 }  // namespace tandem::mixed_reality

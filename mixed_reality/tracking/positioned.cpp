@@ -30,7 +30,9 @@ TrackedPose Positioned::latch(const Moment& now) noexcept {
   }
   seen_ns_ = taken_ns;
   if (tracked_.known && taken_ns <= tracked_.taken_ns) return tracked_;
-  const TrackedPose said{core::Pose::at(p[0], p[1], heading, p[2]), taken_ns, true};
+  TrackedPose said{core::Pose::at(p[0], p[1], heading, p[2]), taken_ns, true};
+  said.q_WB.emplace();
+  std::copy(q.begin(), q.end(), said.q_WB->begin());
   if (tracked_.known && !reachable(tracked_, said.pose, taken_ns)) {
     ++rejected_;
     insisted_ = insisted_ > 0 && reachable(other_, said.pose, taken_ns) ? insisted_ + 1 : 1;

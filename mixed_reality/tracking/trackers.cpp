@@ -3,21 +3,15 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <time.h>
 
 #include "hal/check.hpp"
+#include "mixed_reality/time/system_clock.hpp"
 
 namespace tandem::mixed_reality {
 namespace {
 
 constexpr std::size_t kTakenAtOnce = 256;
 constexpr hal::TimeNs kLongAgo_ns = std::numeric_limits<hal::TimeNs>::min() / 2;  // what has no time that is believed
-
-hal::TimeNs system_unix_ns() noexcept {
-  timespec t{};
-  ::clock_gettime(CLOCK_REALTIME, &t);
-  return static_cast<hal::TimeNs>(t.tv_sec) * hal::kNsPerSecond + t.tv_nsec;
-}
 
 hal::TimeNs to_ns(double seconds) noexcept {
   return static_cast<hal::TimeNs>(std::llround(seconds * 1e9));
@@ -26,7 +20,7 @@ hal::TimeNs to_ns(double seconds) noexcept {
 }  // namespace
 
 Trackers::Trackers(const Arena& arena, hal::TimeNs (*unix_clock)() noexcept)
-    : arena_(arena), unix_clock_(unix_clock != nullptr ? unix_clock : &system_unix_ns), taken_(kTakenAtOnce) {}
+    : arena_(arena), unix_clock_(unix_clock != nullptr ? unix_clock : &unix_now_ns), taken_(kTakenAtOnce) {}
 
 void Trackers::add(const core::TrackerItem& item, std::unique_ptr<bridges::Tracker> tracker) {
   TANDEM_CHECK(all_.size() < PoseFilter::kTrackers, "more trackers than a filter knows");

@@ -142,6 +142,7 @@ void Twin::latch(const Moment& now, RunPhase phase) {
 void Twin::track(const Moment& now, Conditions& conditions) noexcept {
   const TrackedPose tracked = tracked_ = poses_->latch(now);
   pose_taken_ns_ = now.to_run(tracked.taken_ns);
+  note_track();
   const hal::TimeNs age_ns = now.monotonic_ns - tracked.taken_ns;
   const bool fresh = tracked.known && !tracked.vague && age_ns <= params_.pose_timeout_ns;
   conditions.pose = !tracked.known ? hal::Validity::Absent : fresh ? hal::Validity::Fresh : hal::Validity::Stale;
@@ -183,6 +184,23 @@ void Twin::measure_delay(const Moment& now) {
                 "it moves " + ms(delay_->delay_s()) + " after it is told to, by " + std::string(delay_->told_by()) +
                     ", not within " + ms(counted_s) + " as was counted on: others keep so much farther away",
                 true);
+}
+
+void Twin::note_track() noexcept {
+  track_.known = tracked_.known;
+  track_.taken_ns = pose_taken_ns_;
+  track_.x_m = tracked_.pose.x_m;
+  track_.y_m = tracked_.pose.y_m;
+  track_.z_m = tracked_.pose.z_m;
+  track_.heading_rad = tracked_.pose.heading_rad();
+  const double half_rad = 0.5 * track_.heading_rad;
+  const std::array<double, 4> level = {std::cos(half_rad), 0.0, 0.0, std::sin(half_rad)};
+  const std::array<double, 4>& q = tracked_.q_WB ? *tracked_.q_WB : level;
+  for (std::size_t i = 0; i < q.size(); ++i) track_.q_WB[i] = static_cast<float>(q[i]);
+  track_.sd_m = tracked_.sd_m ? static_cast<float>(*tracked_.sd_m) : TrackRow::kUnknown;
+  track_.sd_rad = tracked_.sd_rad ? static_cast<float>(*tracked_.sd_rad) : TrackRow::kUnknown;
+  track_.sent_ns = -1;
+  poses_->note_learnt(track_);
 }
 
 void Twin::emergency_stop(hal::TimeNs monotonic_ns) noexcept {
@@ -288,6 +306,7 @@ void Twin::after_filter(const Moment& now) {
     const bool drives_on = !hears && hal::to_seconds(now.monotonic_ns - heard_ns_) < params_.coast_s;
     barrier_->sent(now.monotonic_ns, drives_on ? driven_ : sent_, alive);
   }
+  track_.sent_ns = now.run_ns + (now.monotonic_ns - last_latch_ns_);
   real_->commit(now.monotonic_ns);
 }
 
@@ -380,7 +399,10 @@ void Twin::hold_back(const hal::PortType& type, void* command) const noexcept {
 
 void Twin::list(core::SpaceInputs& inputs) const {
   entity_.list(inputs);
-  for (const Output& output : outputs_) inputs.rows.push_back({robot_, output.type, output.sent, true});
+  for (const Output& output : outputs_) inputs.rows.push_back({robot_, output.type, output.sent, "sent"});
+  inputs.rows.push_back({robot_, &hal::row_type<TrackRow>(), &track_, "seen"});
+  if (poses_->sightings() != nullptr)
+    inputs.rows.push_back({robot_, &hal::row_type<SightingsRow>(), poses_->sightings(), "seen"});
 }
 
 void Twin::let_go() {

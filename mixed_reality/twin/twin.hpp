@@ -134,6 +134,7 @@ class Twin {
   };
 
   void track(const Moment& now, Conditions& conditions) noexcept;
+  void note_track() noexcept;
   void tell_place() noexcept;
   core::Pose carried_on(const core::Pose& pose, double for_s) const noexcept;
   void look_for_intrusions(const Moment& now);
@@ -176,6 +177,7 @@ class Twin {
   std::uint64_t jumps_ = 0, slips_ = 0;           // of the pose, as far as they were judged
   bool swapped_ = false;
   TrackedPose tracked_;
+  TrackRow track_;  // the same, for a record
   core::Pose pose_;
   SmoothPose smooth_;
   std::unique_ptr<TwinBarrier> barrier_;  // null: nothing keeps it from collisions

@@ -163,6 +163,58 @@ core::Scene two() {
   return std::move(made_real(scene, "ep0"));
 }
 
+/// Values of one row of a stream, by tick.
+std::map<hal::Tick, std::map<std::string, double>> rows_of(const std::string& path, const std::string& title,
+                                                           const std::string& id) {
+  std::map<hal::Tick, std::map<std::string, double>> all;
+  auto reader = core::RecordReader::open(path);
+  EXPECT_TRUE(reader.ok());
+  while (const auto entry = reader.value().next()) {
+    if (!entry->rows || entry->rows->stream().title() != title) continue;
+    const auto& ids = entry->rows->members().ids;
+    const auto member = static_cast<std::size_t>(std::find(ids.begin(), ids.end(), id) - ids.begin());
+    EXPECT_LT(member, ids.size());
+    const auto& fields = entry->rows->stream().fields;
+    for (std::size_t f = 0; f < fields.size(); ++f) all[entry->tick][fields[f].name] = entry->rows->value(f, member);
+  }
+  return all;
+}
+
+TEST(Record, SaysByTwoClocksWhenEveryTickWasAndWhereRealRobotsWere) {
+  core::Scene scene(4.0, "obstacle_avoidance", "obstacle_avoidance");
+  scene.walls().robot("ep0", 0.0, 0.0);
+  RecordedStory story(made_real(scene, "ep0"), "clocks");
+  // A wall clock that is a year off, and goes as the monotonic one does.
+  static FakeTime* time = nullptr;
+  constexpr hal::TimeNs kApart_ns = 31'536'000 * hal::kNsPerSecond;
+  time = &story.time();
+  story.options().unix_clock = []() noexcept { return time->now_ns() + kApart_ns; };
+  constexpr hal::Tick kStalled = 20;
+  ASSERT_NO_FATAL_FAILURE(story.run(60, [&](core::World& world) {
+    if (world.tick() == kStalled) story.time().pass(350 * hal::kNsPerMs);
+  }));
+  const auto clocks = rows_of(story.path(), "run time clock", "run");
+  const auto track = rows_of(story.path(), "seen track", "ep0");
+  ASSERT_EQ(clocks.count(0), 1U);
+  const double began_ns = clocks.at(0).at("monotonic_ns");
+  for (hal::Tick t = 0; t < 60; ++t) {
+    ASSERT_EQ(clocks.count(t), 1U) << t;
+    const auto& now = clocks.at(t);
+    // By the schedule, less the slots that a stall of 350 ms leaves out of 100 ms each.
+    const double skipped = t < kStalled ? 0.0 : 2.0;
+    EXPECT_EQ(now.at("skipped_slots"), skipped) << t;
+    EXPECT_EQ(now.at("run_ns"), static_cast<double>(t) * 1e8) << t;
+    const double late_ns = now.at("monotonic_ns") - began_ns - (static_cast<double>(t) + skipped) * 1e8;
+    EXPECT_GE(late_ns, 0.0) << t;
+    EXPECT_LE(late_ns, t == kStalled ? 1e8 : 1e6) << t;
+    EXPECT_NEAR(now.at("unix_ns") - now.at("monotonic_ns"), static_cast<double>(kApart_ns), 1e3) << t;
+    ASSERT_EQ(track.count(t), 1U) << t;
+    EXPECT_GE(track.at(t).at("sent_ns"), now.at("run_ns")) << t;
+  }
+  EXPECT_EQ(track.at(59).at("known"), 1.0);
+  EXPECT_NEAR(track.at(59).at("x"), story.body("ep0").pose.x_m, 0.02);
+}
+
 TEST(Replay, NamesTickRobotAndFieldOfTheFirstDifference) {
   RecordedStory story(two(), "differs");
   ASSERT_NO_FATAL_FAILURE(story.run(40));
