@@ -21,6 +21,7 @@
 namespace tandem::app {
 namespace {
 
+using mixed_reality::DelayEstimate;
 using mixed_reality::Estimate;
 using mixed_reality::ProximityFit;
 using mixed_reality::RecordedRobot;
@@ -44,52 +45,40 @@ bool by_wheels(const core::Scenario& scenario, const RecordedRobot& robot) {
   return source == "odometry" || (source == "auto" && scenario.trackers.empty());
 }
 
-/// By how much trackers see a twin later than its wheels tell, as the run's report says; nothing: no tracker saw it, or
-/// the run has no report. A twin's pose follows its wheels' encoders, so its series does not show that part of the
-/// delay.
-std::optional<Estimate> seen_later(const RecordedRun& run, const std::string& id) {
-  if (!run.end.is_object()) return std::nullopt;
-  const hal::Json robots = run.end.value("real_robots", hal::Json::array());
-  for (const hal::Json& robot : robots) {
-    if (!robot.is_object() || robot.value("id", "") != id) continue;
-    const hal::Json learnt = robot.value("learnt", hal::Json::object());
-    const hal::Json delays = learnt.value("tracker_delays_s", hal::Json::array());
-    const hal::Json errors = learnt.value("standard_deviations", hal::Json::array());
-    constexpr std::size_t kFirst = 4;  // left, right, base and gyroscope come before
-    std::optional<Estimate> best;
-    for (std::size_t i = 0; i < delays.size() && kFirst + i < errors.size(); ++i) {
-      if (!delays[i].is_number() || !errors[kFirst + i].is_number()) continue;
-      const Estimate found{delays[i].get<double>(), errors[kFirst + i].get<double>(), true};
-      if (found.error < 0.01 && (!best || found.error < best->error)) best = found;
-    }
-    return best;
-  }
-  return std::nullopt;
-}
-
-/// Whether a real robot's twin is where its filter of trackers and wheels says.
-bool is_fused(const core::Scenario& scenario, const RecordedRobot& robot) {
-  return robot.real && !scenario.trackers.empty() && !by_wheels(scenario, robot);
-}
-
-void add_what_trackers_saw(const RecordedRun& run, const RecordedRobot& robot, WheelFit& fit) {
-  const auto later = seen_later(run, robot.id);
-  Estimate& delay = fit.delay_s;
-  if (!later || !delay.observable) {
-    delay = {0.0, delay.error, false};
-    return;
-  }
-  delay.value = std::max(0.0, delay.value + later->value);
-  delay.error = std::hypot(delay.error, later->error);
+mixed_reality::WheelFitOptions options_for(const core::Scenario& scenario, const RecordedRobot& robot,
+                                           const hal::RobotKind& kind) {
+  mixed_reality::WheelFitOptions options;
+  options.wheel_base_m = kind.drive()->wheel_base_m;
+  options.poses_by_wheels = robot.sightings.empty() && by_wheels(scenario, robot);
+  options.poses_drawn = robot.real && robot.sightings.empty();
+  if (std::isfinite(robot.round_trip_s)) options.round_trip_s = robot.round_trip_s;
+  options.round_trip_jitter_s = robot.round_trip_jitter_s;
+  return options;
 }
 
 std::string shown(const Estimate& e, double scale = 1.0, int digits = 4) {
-  if (!e.observable) return "not observable";
+  if (!e.observable) return "cannot be told";
   return fmt::format("{:.{}f} +- {:.{}f}", e.value * scale, digits, e.bound() * scale, digits);
 }
 
+std::string shown(const DelayEstimate& e) {
+  if (!e.told) return "cannot be told";
+  return fmt::format("{:.1f} +- {:.1f} ms", e.value_s * 1e3, e.bound_s * 1e3);
+}
+
+std::string shown_ms(const Estimate& e) {
+  return shown(e, 1e3, 1) + (e.observable ? " ms" : "");
+}
+
+/// What cannot be told has no bounds.
 hal::Json to_json(const Estimate& e) {
-  return {{"value", e.value}, {"bound_95", e.bound()}, {"observable", e.observable}};
+  if (!e.observable) return {{"value", e.value}, {"observable", false}};
+  return {
+      {"value", e.value}, {"bound_95", e.bound()}, {"low_95", e.low()}, {"high_95", e.high()}, {"observable", true}};
+}
+
+hal::Json to_json(const DelayEstimate& e) {
+  return to_json(e.told ? Estimate{e.value_s, e.bound_s / 1.96, true} : Estimate{});
 }
 
 void print(const RobotFit& robot) {
@@ -102,13 +91,20 @@ void print(const RobotFit& robot) {
     print_table({{"left wheel", shown(w.left)},
                  {"right wheel", shown(w.right)},
                  {"wheel base", shown(w.base)},
-                 {"delay", shown(w.delay_s, 1e3, 1) + (w.delay_s.observable ? " ms" : "")},
+                 {"delay", shown_ms(w.delay_s)},
+                 {"to counters", shown_ms(w.counter_delay_s)},
+                 {"lag", shown_ms(w.lag_s)},
+                 {"link both ways", shown_ms(w.round_trip_s)},
+                 {"link to robot", shown(w.parts.link_in)},
+                 {"command", shown(w.parts.command)},
+                 {"body", shown(w.parts.body)},
+                 {"counters", shown(w.parts.counters)},
                  {"noise", shown(w.noise_sqrt_m, 1e3, 2) + (w.noise_sqrt_m.observable ? " mm after 1 m" : "")},
                  {"play", shown(w.play_m, 1e3, 2) + (w.play_m.observable ? " mm" : "")},
                  {"counted", shown(w.counted_left) + " | " + shown(w.counted_right)},
                  {"slip", shown(w.slip_left) + " | " + shown(w.slip_right)},
-                 {"poses", fmt::format("{:.2f} mm, {:.2f} deg; {} ticks, {} left out", w.pose_noise_m * 1e3,
-                                       w.pose_noise_rad * 57.29578, w.ticks, w.left_out)}});
+                 {"places", shown(w.place_noise_m, 1e3, 2) + " mm, " + shown(w.place_noise_rad, 57.29578, 2) + " deg"},
+                 {"used", fmt::format("{} places, {} left out", w.ticks, w.left_out)}});
   }
   if (!p.flaw.empty()) {
     fmt::print("  proximity: nothing found: {}\n", p.flaw);
@@ -128,6 +124,13 @@ hal::Json to_json(const WheelFit& w) {
           {"right", to_json(w.right)},
           {"base", to_json(w.base)},
           {"delay_s", to_json(w.delay_s)},
+          {"counter_delay_s", to_json(w.counter_delay_s)},
+          {"lag_s", to_json(w.lag_s)},
+          {"round_trip_s", to_json(w.round_trip_s)},
+          {"link_in_s", to_json(w.parts.link_in)},
+          {"command_s", to_json(w.parts.command)},
+          {"body_s", to_json(w.parts.body)},
+          {"counters_s", to_json(w.parts.counters)},
           {"noise_sqrt_m", to_json(w.noise_sqrt_m)},
           {"counted_left", to_json(w.counted_left)},
           {"counted_right", to_json(w.counted_right)},
@@ -135,9 +138,9 @@ hal::Json to_json(const WheelFit& w) {
           {"slip_right", to_json(w.slip_right)},
           {"mount_rad", to_json(w.mount_rad)},
           {"play_m", to_json(w.play_m)},
-          {"pose_noise_m", w.pose_noise_m},
-          {"pose_noise_rad", w.pose_noise_rad},
-          {"ticks", w.ticks},
+          {"place_noise_m", to_json(w.place_noise_m)},
+          {"place_noise_rad", to_json(w.place_noise_rad)},
+          {"places", w.ticks},
           {"left_out", w.left_out}};
 }
 
@@ -245,8 +248,7 @@ bool fit_record(const std::string& path, const FitOptions& options, std::vector<
     if (kind == nullptr || kind->drive() == nullptr)
       fit.wheels.flaw = "robots of this kind have no two wheels";
     else
-      fit.wheels = fit_wheels(robot, run.tick_s(), {kind->drive()->wheel_base_m, by_wheels(recorded->scenario, robot)});
-    if (fit.wheels.flaw.empty() && is_fused(recorded->scenario, robot)) add_what_trackers_saw(run, robot, fit.wheels);
+      fit.wheels = fit_wheels(wheel_series(run, robot), options_for(recorded->scenario, robot, *kind));
     const auto* const rays = kind != nullptr ? kind->part<hal::ProximityPart>() : nullptr;
     if (rays == nullptr)
       fit.proximity.flaw = "robots of this kind have none";

@@ -31,7 +31,9 @@ class RunReader {
   void take(const core::RecordEntry& entry) {
     if (entry.type == core::RecordBlock::End) run_.end = entry.json;
     if (entry.type == core::RecordBlock::Scene && run_.scene.is_null()) run_.scene = entry.json;
-    if (!entry.rows || entry.rows->stream().of != "robot" || entry.tick < 0) return;
+    if (!entry.rows || entry.tick < 0) return;
+    if (entry.rows->stream().of == "run" && entry.rows->stream().name == "clock") clock(entry);
+    if (entry.rows->stream().of != "robot") return;
     const core::RecordStream& stream = entry.rows->stream();
     const bool input = stream.set == "input";
     if (stream.name == "pose" && (stream.set == "pose" || input)) poses(entry, input);
@@ -40,6 +42,9 @@ class RunReader {
     if (stream.name == "wheel_encoders" && (stream.set == "sensor" || input)) encoders(entry, input);
     if (stream.name == "proximity" && (stream.set == "sensor" || input)) proximity(entry, input);
     if (stream.name == "halted") halted(entry);
+    if (stream.set == "seen" && stream.name == "sightings") sightings(entry);
+    if (stream.set == "seen" && stream.name == "track") track(entry);
+    if (stream.set == "time" && stream.name == "ledger") ledger(entry);
     if (input && stream.on_change) {
       for (std::size_t row = 0; row < entry.rows->size(); ++row)
         holding_[robot(*entry.rows, row).id].insert(stream.name);
@@ -111,12 +116,68 @@ class RunReader {
 
   void encoders(const core::RecordEntry& entry, bool input) {
     const auto left = field(*entry.rows, "left"), right = field(*entry.rows, "right");
+    const auto taken = field(*entry.rows, "taken_ns"), validity = field(*entry.rows, "validity");
     if (!left || !right) return;
     each(entry, [&](RecordedRobot&, RecordedTick& tick, std::size_t row) {
       if (tick.counted && !input) return;
       tick.counted_left_m = entry.rows->value(*left, row);
       tick.counted_right_m = entry.rows->value(*right, row);
-      tick.counted = std::isfinite(tick.counted_left_m) && std::isfinite(tick.counted_right_m);
+      tick.counted = std::isfinite(tick.counted_left_m) && std::isfinite(tick.counted_right_m) &&
+                     (!validity || entry.rows->value(*validity, row) != 0.0);
+      tick.counted_ns = taken && input ? whole(entry.rows->value(*taken, row)) : -1;
+    });
+  }
+
+  static std::int64_t whole(double value) { return std::isfinite(value) ? std::llround(value) : -1; }
+
+  void clock(const core::RecordEntry& entry) {
+    const auto monotonic = field(*entry.rows, "monotonic_ns"), run = field(*entry.rows, "run_ns");
+    if (!monotonic || !run || entry.rows->size() == 0) return;
+    if (!begun_) run_.first = entry.tick;
+    begun_ = true;
+    if (entry.tick < run_.first || static_cast<std::size_t>(entry.tick - run_.first) >= kMostTicks) return;
+    const auto i = static_cast<std::size_t>(entry.tick - run_.first);
+    if (run_.clocks.size() <= i) run_.clocks.resize(i + 1);
+    run_.clocks[i] = {true, whole(entry.rows->value(*monotonic, 0)), whole(entry.rows->value(*run, 0))};
+  }
+
+  void sightings(const core::RecordEntry& entry) {
+    const RecordRows& rows = *entry.rows;
+    const auto count = field(rows, "count"), taken = field(rows, "taken_ns"), x = field(rows, "x"),
+               y = field(rows, "y"), heading = field(rows, "heading"), right = field(rows, "true_clock");
+    if (!count || !taken || !x || !y) return;
+    each(entry, [&](RecordedRobot& its, RecordedTick& tick, std::size_t row) {
+      const std::size_t n = std::min({rows.used(*taken, row), rows.used(*x, row), rows.used(*y, row)});
+      for (std::size_t k = 0; k < n; ++k) {
+        RecordedSighting seen;
+        seen.tick = static_cast<std::size_t>(&tick - its.ticks.data());
+        seen.taken_ns = whole(rows.value(*taken, row, k));
+        seen.x_m = rows.value(*x, row, k);
+        seen.y_m = rows.value(*y, row, k);
+        if (heading && k < rows.used(*heading, row)) seen.heading_rad = rows.value(*heading, row, k);
+        seen.true_clock = right && k < rows.used(*right, row) && rows.value(*right, row, k) != 0.0;
+        if (std::isfinite(seen.x_m) && std::isfinite(seen.y_m)) its.sightings.push_back(seen);
+      }
+    });
+  }
+
+  void track(const core::RecordEntry& entry) {
+    const auto sent = field(*entry.rows, "sent_ns");
+    if (!sent) return;
+    each(entry, [&](RecordedRobot&, RecordedTick& tick, std::size_t row) {
+      tick.sent_ns = whole(entry.rows->value(*sent, row));
+    });
+  }
+
+  /// The last one counts: it is of the whole run.
+  void ledger(const core::RecordEntry& entry) {
+    const auto trip = field(*entry.rows, "round_trip_median_ms"), jitter = field(*entry.rows, "jitter_ms");
+    if (!trip) return;
+    each(entry, [&](RecordedRobot& its, RecordedTick&, std::size_t row) {
+      const double trip_s = 1e-3 * entry.rows->value(*trip, row);
+      if (!(trip_s > 0.0)) return;
+      its.round_trip_s = trip_s;
+      its.round_trip_jitter_s = jitter ? 1e-3 * entry.rows->value(*jitter, row) : 0.0;
     });
   }
 
@@ -170,6 +231,7 @@ class RunReader {
         now.counted = true;
         now.counted_left_m = before.counted_left_m;
         now.counted_right_m = before.counted_right_m;
+        now.counted_ns = before.counted_ns;
       }
       if (!streams.contains("proximity") || robot.rays == 0 || !std::isnan(robot.near_m[i * robot.rays])) continue;
       const auto row = robot.near_m.begin() + static_cast<std::ptrdiff_t>(i * robot.rays);
@@ -186,6 +248,19 @@ class RunReader {
 };
 
 }  // namespace
+
+double RecordedRun::time_s(std::size_t tick) const noexcept {
+  if (tick < clocks.size() && clocks[tick].there && clocks.front().there)
+    return hal::to_seconds(clocks[tick].monotonic_ns - clocks.front().monotonic_ns);
+  return static_cast<double>(tick) * tick_s();
+}
+
+double RecordedRun::time_s(std::size_t tick, std::int64_t stamp_ns) const noexcept {
+  const bool there = tick < clocks.size() && clocks[tick].there;
+  const hal::TimeNs run_ns =
+      there ? clocks[tick].run_ns : hal::time_of_tick(first + static_cast<hal::Tick>(tick), ticks_per_second);
+  return time_s(tick) + hal::to_seconds(stamp_ns - run_ns);
+}
 
 const RecordedRobot* RecordedRun::find(const std::string& id) const noexcept {
   const auto found = std::find_if(robots.begin(), robots.end(), [&](const auto& r) { return r.id == id; });

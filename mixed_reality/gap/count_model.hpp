@@ -1,0 +1,36 @@
+// How a robot's counters follow from its wheel commands: the likelihood of what its encoders said.
+#pragma once
+#include <vector>
+
+#include "mixed_reality/gap/likelihood.hpp"
+#include "mixed_reality/gap/wheel_series.hpp"
+
+namespace tandem::mixed_reality {
+
+/// Each counter says `counted` times the way commanded, `delay` late; its error has a part that adds up (variance
+/// walk^2 * |way|) and one that does not (rounding, stamps).
+class CountModel {
+ public:
+  enum Param : int { kLeft, kRight, kDelay, kWalk, kNoise, kParams };
+  using Likelihood = MaximumLikelihood<kParams, 2>;
+  using Params = Likelihood::Params;
+
+  /// `series` must outlive it.
+  explicit CountModel(const WheelSeries& series);
+
+  static Likelihood::Setup setup();
+  /// Innovations of all counts; the two last parameters are logarithms (m after 1 m; m).
+  void run(const Params& v, Likelihood::Innovations& out) const;
+
+ private:
+  struct Way {
+    double left_m, right_m;
+    std::size_t command;  // which holds then; 0: none yet
+  };
+  Way way_until(double t_s) const;
+
+  const WheelSeries& series_;
+  std::vector<Way> until_;  // each command's begin
+};
+
+}  // namespace tandem::mixed_reality
