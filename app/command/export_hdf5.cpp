@@ -218,7 +218,7 @@ hal::Status write_hdf5(const ExportOptions& options) {
     if (next && table.ticks.size() * std::max<std::size_t>(1, table.tick_values) >= kBufferValues) {
       if (const hal::Status flushed = flush(file, table); !flushed.ok()) return flushed;
     }
-    take(table, entry->tick, static_cast<double>(entry->tick) / per_second, *entry->rows);
+    take(table, entry->tick, static_cast<double>(entry->tick + 1) / per_second, *entry->rows);  // at the tick's end
   }
   for (auto& [title, table] : tables) {
     if (const hal::Status flushed = flush(file, table); !flushed.ok()) return flushed;

@@ -76,7 +76,7 @@ void CsvTable::append(hal::Tick tick, const RecordRows& rows, const std::functio
     fields.push_back(static_cast<std::size_t>(found - there.begin()));
   }
   std::string begin = std::to_string(tick) + ',';
-  append_number(begin, hal::to_seconds(hal::time_of_tick(tick, ticks_per_second_)), -1);
+  append_number(begin, hal::to_seconds(hal::time_of_tick(tick + 1, ticks_per_second_)), -1);  // the tick's end
   begin += ',';
   for (std::size_t row = 0; row < rows.size(); ++row) {
     const std::string& id = rows.members().ids[row];

@@ -14,8 +14,8 @@ namespace tandem::core {
 /// Name and unit of a field: "x_m", "speed_m_s", "charge".
 std::string column_title(const RecordField& field);
 
-/// Lines "tick,time_s,id,…", with a column for each value of each field: as many as the rows that were noted have. What
-/// a row does not have, or is no number, is empty.
+/// Lines "tick,time_s,id,…", with a column for each value of each field: as many as the rows that were noted have. The
+/// time is that of the tick's end, which the row shows. What a row does not have, or is no number, is empty.
 class CsvTable {
  public:
   /// Fixed-point fields have as many decimals as their scale asks for, but not more than `most_decimals`.

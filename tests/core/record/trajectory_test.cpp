@@ -59,10 +59,10 @@ TEST_F(Trajectory, WritesAHeaderAndALineForEachRobotAndTick) {
   ASSERT_TRUE(recorder->close().ok());
   EXPECT_EQ(written(),
             "tick,time_s,id,x_m,y_m,z_m,heading_rad\n"
-            "0,0,ep0,1.000000,-2.500000,0.000000,3.141593\n"
-            "0,0,ep1,0.123457,0.000000,0.000000,-0.500000\n"
-            "3,0.3,ep0,1.000000,-2.500000,0.000000,3.141593\n"
-            "3,0.3,ep1,0.500000,0.250000,0.000000,0.000000\n");
+            "0,0.1,ep0,1.000000,-2.500000,0.000000,3.141593\n"
+            "0,0.1,ep1,0.123457,0.000000,0.000000,-0.500000\n"
+            "3,0.4,ep0,1.000000,-2.500000,0.000000,3.141593\n"
+            "3,0.4,ep1,0.500000,0.250000,0.000000,0.000000\n");
 }
 
 TEST_F(Trajectory, RecordsEveryNthTickAlone) {
@@ -70,7 +70,7 @@ TEST_F(Trajectory, RecordsEveryNthTickAlone) {
   for (hal::Tick tick = 0; tick < 11; ++tick) ASSERT_TRUE(recorder->record(space_, tick).ok());
   ASSERT_TRUE(recorder->close().ok());
   ASSERT_EQ(lines().size(), 4U);
-  EXPECT_EQ(lines()[3].substr(0, 5), "10,1,");
+  EXPECT_EQ(lines()[3].substr(0, 7), "10,1.1,");
 }
 
 TEST_F(Trajectory, RecordsEveryRobotOnceWhenNoneOrOverlappingPatternsAreGiven) {
@@ -91,7 +91,7 @@ TEST_F(Trajectory, ARemovedRobotHasNoLineAnyMore) {
   ASSERT_TRUE(recorder->record(space_, 1).ok());
   ASSERT_TRUE(recorder->close().ok());
   ASSERT_EQ(lines().size(), 4U);
-  EXPECT_EQ(lines()[3].substr(0, 9), "1,0.1,ep1");
+  EXPECT_EQ(lines()[3].substr(0, 9), "1,0.2,ep1");
 }
 
 TEST_F(Trajectory, ARobotThatComesHasLinesFromThenOn) {
@@ -108,7 +108,7 @@ TEST_F(Trajectory, ARobotThatComesHasLinesFromThenOn) {
   ASSERT_TRUE(recorder->close().ok());
   std::string ids;
   for (std::size_t i = 1; i < lines().size(); ++i) ids += lines()[i].substr(0, lines()[i].find(",", 6)) + " ";
-  EXPECT_EQ(ids, "0,0,ep0 0,0,ep1 1,0.1,ep0 1,0.1,ep1 1,0.1,epa 2,0.2,ep1 2,0.2,epa ");
+  EXPECT_EQ(ids, "0,0.1,ep0 0,0.1,ep1 1,0.2,ep0 1,0.2,ep1 1,0.2,epa 2,0.3,ep1 2,0.3,epa ");
 }
 
 TEST_F(Trajectory, OfASpaceThatIsEmptyAtFirstHasThoseWhoCome) {
@@ -120,7 +120,7 @@ TEST_F(Trajectory, OfASpaceThatIsEmptyAtFirstHasThoseWhoCome) {
   space_.stores().robots.back().generation = ++space_.stores().generations;
   ASSERT_TRUE(recorder->record(space_, 1).ok());
   ASSERT_TRUE(recorder->close().ok());
-  EXPECT_EQ(written(), "tick,time_s,id,x_m,y_m,z_m,heading_rad\n1,0.1,late1,2.000000,0.500000,0.000000,0.000000\n");
+  EXPECT_EQ(written(), "tick,time_s,id,x_m,y_m,z_m,heading_rad\n1,0.2,late1,2.000000,0.500000,0.000000,0.000000\n");
 }
 
 TEST_F(Trajectory, IsThereInFullWhenTheRecorderIsDestroyedUnclosed) {
@@ -177,7 +177,7 @@ TEST_F(Trajectory, QuotesIdsThatWouldBreakTheTable) {
   auto recorder = open({"a*"});
   ASSERT_TRUE(recorder->record(space_, 0).ok());
   ASSERT_TRUE(recorder->close().ok());
-  EXPECT_NE(written().find("0,0,\"a,\"\"b\"\"\",0.000000"), std::string::npos) << written();
+  EXPECT_NE(written().find("0,0.1,\"a,\"\"b\"\"\",0.000000"), std::string::npos) << written();
 }
 
 TEST_F(Trajectory, NamesWhatIsSpelledAlikeWhenNoRobotFits) {
