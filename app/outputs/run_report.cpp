@@ -191,6 +191,10 @@ void add_members(hal::Json& json, const RunResult& result, bool between_ticks) {
                        {"controllers_thrown", incidents.controllers_thrown},
                        {"bodies_escaped", incidents.bodies_escaped},
                        {"first", incidents.first}};
+  const core::PhysicsAccuracy accuracy = world.accuracy();
+  json["physics"] = {{"largest_constraint_error_m_s", accuracy.constraint_error_m_s},
+                     {"unsolved_sub_steps", accuracy.unsolved_sub_steps},
+                     {"largest_overlap", accuracy.overlap}};
   if (!world.measures().all().empty()) json["measures"] = world.measures().all();
   if (result.real != nullptr) add_real_robots(json, *result.real);
   if (!result.replay.is_null()) json["replay"] = result.replay;
@@ -308,6 +312,11 @@ void print_result(const RunResult& result) {
                       fmt::format("{} commands clamped, {} not finite, {} controllers threw, {} bodies escaped",
                                   incidents.commands_clamped, incidents.commands_not_finite,
                                   incidents.controllers_thrown, incidents.bodies_escaped));
+  }
+  if (const core::PhysicsAccuracy accuracy = world.accuracy(); accuracy.unsolved_sub_steps > 0) {
+    rows.emplace_back("warning", fmt::format("contacts or joints of {} sub-steps are not solved: velocities are up to "
+                                             "{:.3g} m/s off; give the engine shorter sub-steps (iterations)",
+                                             accuracy.unsolved_sub_steps, accuracy.constraint_error_m_s));
   }
   for (const auto& [name, value] : world.measures().all()) rows.emplace_back(name, hal::format_number(value));
   if (result.peers != nullptr) {

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/physics/accuracy.hpp"
 #include "core/scenario/element.hpp"
 #include "core/scenario/engine_traits.hpp"
 #include "core/schedule/thread_pool.hpp"
@@ -55,6 +56,9 @@ class Engine {
 
   /// Adds what went wrong in the last tick, in the order of regions and bodies.
   virtual void collect(std::vector<Trouble>& /*all*/) {}
+
+  /// Of this engine, in this process: going back in a run takes nothing back of it.
+  virtual PhysicsAccuracy accuracy() const { return {}; }
 
   /// What the engine holds beyond the stores, as it is between two ticks; null: nothing. Changes nothing of the run.
   virtual std::shared_ptr<const void> keep() { return nullptr; }

@@ -73,6 +73,12 @@ void SolverEngine::collect(std::vector<Trouble>& all) {
   }
 }
 
+PhysicsAccuracy SolverEngine::accuracy() const {
+  PhysicsAccuracy all;
+  for (const Part& part : parts_) all.add(part.solver->accuracy);
+  return all;
+}
+
 std::shared_ptr<const void> SolverEngine::keep() {
   auto all = std::make_shared<std::vector<std::shared_ptr<const void>>>();
   for (Part& part : parts_) all->push_back(part.solver->keep());

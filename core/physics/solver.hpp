@@ -48,6 +48,7 @@ class Solver {
   /// About how much memory what its `keep` gave takes, in bytes. Never called for null.
   virtual std::size_t bytes_of(const void* /*kept*/) const { return 0; }
 
+  PhysicsAccuracy accuracy;      ///< since it was made
   std::vector<Trouble> trouble;  ///< of the last tick; emptied by whoever collects it
 };
 
@@ -71,6 +72,7 @@ class SolverEngine final : public Engine {
   void load(const PhysicsContext& context) override;
   void advance(const PhysicsContext& context) override;
   void collect(std::vector<Trouble>& all) override;
+  PhysicsAccuracy accuracy() const override;
   std::shared_ptr<const void> keep() override;
   void put_back(const std::shared_ptr<const void>& kept) override;
   std::size_t bytes_of(const std::shared_ptr<const void>& kept) const override;

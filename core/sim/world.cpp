@@ -608,6 +608,12 @@ const Measures& World::measures() const noexcept {
   return impl_->measures;
 }
 
+PhysicsAccuracy World::accuracy() const {
+  PhysicsAccuracy all;
+  for (const auto& engine : impl_->engines) all.add(engine->accuracy());
+  return all;
+}
+
 std::uint64_t World::state_hash() const noexcept {
   return fingerprint(state_view());
 }

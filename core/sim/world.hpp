@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/hook/hook.hpp"
+#include "core/physics/accuracy.hpp"
 #include "core/scenario/scenario.hpp"
 #include "core/sim/external.hpp"
 #include "core/sim/snapshot.hpp"
@@ -133,6 +134,8 @@ class World {
   Space& space() noexcept;
   const Space& space() const noexcept;
   const Incidents& incidents() const noexcept;
+  /// How exact its engines were so far.
+  PhysicsAccuracy accuracy() const;
   /// What the hooks published.
   const Measures& measures() const noexcept;
 

@@ -96,7 +96,9 @@ void Contacts::join(dBodyID a, dBodyID b, const Touch& at, const Grip& grip, con
     contact.geom.normal[i] = at.normal[i];
     contact.fdir1[i] = first[i];
   }
-  dJointAttach(dJointCreateContact(world_, group_.get(), &contact), a, b);
+  const dJointID joint = dJointCreateContact(world_, group_.get(), &contact);
+  dJointAttach(joint, a, b);
+  residual_->add_contact(joint, a, b, contact);
 }
 
 void Contacts::lean(BodyProxy& a, BodyProxy* b, dGeomID geom_b, const Prism& prism_b, const Grip& grip) {

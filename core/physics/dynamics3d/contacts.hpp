@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/physics/dynamics3d/body_proxy.hpp"
+#include "core/physics/dynamics3d/residual.hpp"
 #include "core/physics/dynamics3d/standing.hpp"
 
 namespace tandem::core {
@@ -44,9 +45,11 @@ class Contacts {
   /// Call once a world is made.
   void make_group() { group_ = OdeJointGroup(dJointGroupCreate(0)); }
 
-  void begin(dWorldID world, double dt_s) noexcept {
+  /// `residual` gets to know every contact.
+  void begin(dWorldID world, double dt_s, Residual& residual) noexcept {
     world_ = world;
     dt_s_ = dt_s;
+    residual_ = &residual;
     supports_.clear();
   }
   void between(BodyProxy& a, BodyProxy& b, const Surfaces& surfaces);
@@ -76,6 +79,7 @@ class Contacts {
 
   dWorldID world_ = nullptr;
   double dt_s_ = 0.0;
+  Residual* residual_ = nullptr;  // of the sub-step
   OdeJointGroup group_;
   std::vector<Support> supports_;
 };

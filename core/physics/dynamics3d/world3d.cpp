@@ -16,9 +16,11 @@ constexpr double kLongestLead_m = 0.2;      // in a tick, of a body that is led;
 constexpr double kFastest_m_s = 100.0;      // what is faster has exploded
 constexpr double kFastestTurn_rad_s = 1e4;  // …
 constexpr double kPartingSpeed_m_s = 0.3;   // with which bodies that were put into one another part
-constexpr double kSlack_m = 0.01;   // a body may stray so far from its planned way before candidates are renewed
-constexpr double kMoreWay = 1.5;    // … of what its speed gives
-constexpr double kFloats_m = 1e-6;  // above the floor
+constexpr double kSlack_m = 0.01;        // a body may stray so far from its planned way before candidates are renewed
+constexpr double kMoreWay = 1.5;         // … of what its speed gives
+constexpr double kFloats_m = 1e-6;       // above the floor
+constexpr std::int64_t kMorePasses = 3;  // times as many when they were too few
+constexpr std::int64_t kMostPasses = 2500;  // unless the file asks for more
 constexpr double kWallThickness_m = 0.2;
 constexpr double kWallHeight_m = 2000.0;
 
@@ -337,6 +339,13 @@ void World3d::join(const SpaceStores& stores) {
     BodyProxy* b = find(joint.b);
     if (a == nullptr || b == nullptr || a->lost || b->lost) continue;
     held_.push_back({i, joint.generation, joint.a, joint.b, a, b, make_joint(joint, *a, *b)});
+    Held& held_now = held_.back();
+    held_now.at_a_m = {joint.ax_m, joint.ay_m, joint.az_m - a->origin_m};
+    held_now.at_b_m = {joint.bx_m, joint.by_m, joint.bz_m - b->origin_m};
+    if (joint.form.kind == JointKind::Sliding) {
+      const double axis = length(joint.form.axis);
+      for (std::size_t k = 0; k < 3; ++k) held_now.free[k] = joint.form.axis[k] / axis;
+    }
   }
   for (const Held& held : held_) {
     const JointForm& form = stores.joints[held.number].form;
@@ -424,8 +433,6 @@ void World3d::advance(const SolverContext& context) {
     }
     find_candidates();
     for (std::int64_t step = 0; step < settings_.sub_steps; ++step) {
-      seed_ode(static_cast<std::uint64_t>(context.tick) * static_cast<std::uint64_t>(settings_.sub_steps) +
-               static_cast<std::uint64_t>(step));
       bool strayed = false;
       for (auto& entry : entries) {
         BodyProxy& proxy = *entry.body;
@@ -437,14 +444,16 @@ void World3d::advance(const SolverContext& context) {
         strayed = strayed || moved_m + proxy.hop_m > proxy.margin_m;
       }
       if (strayed) find_candidates();
-      contacts_.begin(world_.get(), dt_s);
+      residual_.begin({dt_s, settings_.erp, settings_.cfm, kPartingSpeed_m_s});
+      contacts_.begin(world_.get(), dt_s, residual_);
       find_contacts();
       for (auto& entry : entries) {
         if (entry.body->touched) enter(*entry.body);
       }
       find_heaps();
       rest_heaps();
-      dWorldQuickStep(world_.get(), dt_s);
+      solve(dt_s, static_cast<std::uint64_t>(context.tick) * static_cast<std::uint64_t>(settings_.sub_steps) +
+                      static_cast<std::uint64_t>(step));
       stop_heaps(dt_s);
       contacts_.clear();
       for (auto& entry : entries) {
@@ -652,6 +661,53 @@ void World3d::rest_heaps() {
       dBodyDisable(heaps_[i].proxy->body.get());
     }
   });
+}
+
+/// ODE's step, with as many passes as bring the velocities of each island to what its constraints ask for.
+void World3d::solve(double dt_s, std::uint64_t seed) {
+  for (const auto& entry : bodies_table_.entries()) add_to_residual(*entry.body);
+  for (const Held& held : held_) add_to_residual(held);
+  residual_.prepare();
+  double error_m_s = 0.0;
+  for (std::int64_t passes = settings_.solver_iterations;; passes *= kMorePasses) {
+    seed_ode(seed);
+    dWorldSetQuickStepNumIterations(world_.get(), static_cast<int>(passes));
+    dWorldQuickStep(world_.get(), dt_s);
+    error_m_s = residual_.measure();
+    if (!(error_m_s > settings_.solver_error_m_s) || passes * kMorePasses > kMostPasses) break;
+    residual_.begin_again(settings_.solver_error_m_s);
+  }
+  residual_.end();
+  accuracy.constraint_error_m_s = std::max(accuracy.constraint_error_m_s, error_m_s);
+  if (error_m_s > settings_.solver_error_m_s) ++accuracy.unsolved_sub_steps;
+}
+
+/// What of a body takes part in ODE's step.
+void World3d::add_to_residual(const BodyProxy& proxy) {
+  if (proxy.lost || proxy.resting || (proxy.light() && !proxy.touched)) return;
+  const dBodyID body = proxy.body.get();
+  residual_.add_body(body);
+  if (proxy.sort == Sort::Wheels) {
+    const double radius_m = proxy.drive->wheel_radius_m;
+    for (std::size_t side = 0; side < 2; ++side) {
+      const dBodyID wheel = proxy.wheels[side].get();
+      const dJointID axle = proxy.axles[side].get();
+      residual_.add_body(wheel);
+      residual_.add_axle(axle, wheel, body, radius_m, dJointGetHingeParam(axle, dParamVel) * radius_m,
+                         dJointGetHingeParam(axle, dParamFMax));
+    }
+  }
+  if (!proxy.touched || !proxy.engaged) return;
+  residual_.add_push(proxy.push.get(), body, {proxy.cos_h, proxy.sin_h, 0.0}, proxy.forward_m_s, proxy.leftward_m_s,
+                     proxy.drive->force_N);
+  residual_.add_turn(proxy.turn.get(), body, proxy.turn_rad_s, proxy.prism.radius_m, proxy.drive->torque_Nm);
+}
+
+void World3d::add_to_residual(const Held& held) {
+  const BodyProxy& a = *held.twin_a;
+  const BodyProxy& b = *held.twin_b;
+  if (a.lost || b.lost) return;
+  residual_.add_hold(a.body.get(), b.body.get(), held.at_a_m, held.at_b_m, held.free);
 }
 
 /// Heaps that stand, and are so slow that friction stops them within half a sub-step, come to rest.

@@ -10,6 +10,7 @@
 #include "core/physics/dynamics3d/contacts.hpp"
 #include "core/physics/dynamics3d/drive.hpp"
 #include "core/physics/dynamics3d/pair_finder.hpp"
+#include "core/physics/dynamics3d/residual.hpp"
 #include "core/physics/solver.hpp"
 
 namespace tandem::core {
@@ -21,7 +22,8 @@ struct World3dSettings {
   bool rotors = false;  ///< robots that fly get four rotors, and lean
   double gravity_m_s2 = 9.81;
   Surfaces surfaces;
-  std::int64_t solver_iterations = 30;
+  std::int64_t solver_iterations = 30;  ///< to begin with
+  double solver_error_m_s = 0.01;       ///< that passes are to come to
   double erp = 0.2;
   double cfm = 1e-10;
 };
@@ -47,6 +49,8 @@ class World3d final : public Solver {
     BodyProxy* twin_a;
     BodyProxy* twin_b;
     OdeJoint joint;
+    Vector3 at_a_m{}, at_b_m{};  // in the frames of ODE's bodies
+    Vector3 free{};              // of a sliding one: where it slides, in a's frame; else 0
   };
   /// ODE's memory, and what points into it.
   struct Kept {
@@ -85,6 +89,9 @@ class World3d final : public Solver {
   bool stands(std::size_t first, std::size_t past);
   void rest_heaps();
   void stop_heaps(double dt_s);
+  void solve(double dt_s, std::uint64_t seed);
+  void add_to_residual(const BodyProxy& proxy);
+  void add_to_residual(const Held& held);
   void leave(BodyProxy& proxy, double dt_s);
   void check(BodyProxy& proxy);
   void write_back(SpaceStores& stores, const BodyProxy& proxy, double tick_s) const;
@@ -101,6 +108,7 @@ class World3d final : public Solver {
   double flight_ceiling_m_ = 0.0;  // the arena's, too: what flies stays below; what stands may be as high as the arena
   BodyTable<OwnedProxy> bodies_table_;
   std::vector<Held> held_;
+  Residual residual_;
   PairFinder finder_;
   std::vector<PairFinder::Pair> candidates_;
 

@@ -110,6 +110,11 @@ class SolversByHand {
   void ticks(int count) {
     for (int i = 0; i < count; ++i) tick();
   }
+  PhysicsAccuracy accuracy() const {
+    PhysicsAccuracy all;
+    for (const auto& solver : solvers_) all.add(solver->accuracy);
+    return all;
+  }
   /// The next tick has this number.
   void start_at(hal::Tick tick) noexcept { tick_ = tick; }
 

@@ -32,7 +32,7 @@ TEST(Dynamics3dOptions, RefuseWhatTheyDoNotKnow) {
                                                                                     {"robot_friction", "nan"},
                                                                                     {"erp", "1.5"},
                                                                                     {"cfm", "-1"},
-                                                                                    {"solver_iterations", "0"},
+                                                                                    {"solver_iterations", "-1"},
                                                                                     {"drive", "wings"}})
     EXPECT_NE(problems_of({{name, value, 3}}).find("f:3: error"), std::string::npos) << name;
   EXPECT_NE(problems_of({{"drive", "wings", 3}}).find("wheels"), std::string::npos);
