@@ -74,8 +74,11 @@ void add_pose(hal::Json& robot, const mixed_reality::RealRobotReport& r) {
   if (r.learnt) {
     robot["learnt"] = {{"left_wheel", r.learnt->left},          {"right_wheel", r.learnt->right},
                        {"wheel_base", r.learnt->base},          {"gyroscope_bias_rad_s", r.learnt->bias_rad_s},
-                       {"tracker_delays_s", r.learnt->delay_s}, {"link_delay_s", r.learnt->link_delay_s},
-                       {"standard_deviations", r.learnt->sd}};
+                       {"tracker_delays_s", r.learnt->delay_s}, {"standard_deviations", r.learnt->sd}};
+    if (r.learnt->lag_s) {
+      robot["learnt"]["lag_s"] = *r.learnt->lag_s;
+      robot["learnt"]["lag_sd_s"] = r.learnt->lag_sd_s;
+    }
   }
 }
 

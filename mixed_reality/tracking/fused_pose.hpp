@@ -25,8 +25,8 @@ struct FusedPoseParams {
 /// what the wheels rolled meanwhile is not counted.
 ///
 /// The filter learns by how much the stamps of each tracker and those of the wheels are apart. Where a tracker stamps
-/// by a clock that is right, and seems to see the robot before it is there, the robot's link is later than it says: the
-/// pose is then as much older, and is carried on for as much longer.
+/// by a clock that is right it is the robot whose stamps do not fit its body (mixed_reality/delay/delays.hpp): what the
+/// encoders say is then of a body that much later, or earlier, than their stamps.
 class FusedPose final : public PoseSource {
  public:
   static constexpr int kFound = 3;
@@ -44,7 +44,7 @@ class FusedPose final : public PoseSource {
   void note_impossible() noexcept { ++impossible_; }
 
   std::string_view name() const noexcept override { return "fused"; }
-  /// As of the newest reading of the encoders, less the link's delay.
+  /// As of when the body was where the newest reading of the encoders says, and not later than now.
   TrackedPose latch(const Moment& now) noexcept override;
   std::uint64_t rejected() const noexcept override;
   std::uint64_t jumps() const noexcept override { return filter_.moved() + found_elsewhere_; }
@@ -53,16 +53,22 @@ class FusedPose final : public PoseSource {
   const PoseMeasurement* newest_sighting() const noexcept override { return newest_ ? &*newest_ : nullptr; }
   const SightingsRow* sightings() const noexcept override { return &sightings_; }
   void note_learnt(TrackRow& row) const noexcept override;
+  void drives_by(const CommandedMotion& motion) noexcept override { motion_ = &motion; }
+  double lag_s() const noexcept override { return learnt().lag_s.value_or(0.0); }
 
   PoseCounts counts() const noexcept;
   PoseFilter::Learnt learnt() const noexcept;
+  Eigen::Matrix3d wheels_covariance() const noexcept { return filter_.wheels_covariance(); }
   /// The newest sighting of each tracker, as it came, whether it was used or not; nothing: none yet.
   const std::array<std::optional<PoseMeasurement>, PoseFilter::kTrackers>& seen() const noexcept { return seen_; }
 
  private:
   void read_wheels(const Moment& now) noexcept;
   void note_sightings(const Moment& now) noexcept;
+  std::optional<std::size_t> honest_tracker() const noexcept;
   std::optional<double> turned_rad(hal::TimeNs span_ns, double& sd_rad) noexcept;
+  void roll(hal::TimeNs until_ns, double left_m, double right_m, std::optional<double> turn_rad,
+            double sd_rad) noexcept;
   bool agree(const PoseMeasurement& pose) noexcept;
   void take(const PoseMeasurement& pose, hal::TimeNs now_ns) noexcept;
   void judge(hal::TimeNs now_ns) noexcept;
@@ -70,6 +76,10 @@ class FusedPose final : public PoseSource {
 
   const hal::WheelEncoders& encoders_;
   const hal::Gyroscope* gyroscope_;
+  double wheel_base_m_;
+  const CommandedMotion* motion_ = nullptr;              // null: nobody says what it is told
+  double left_m_s_ = 0.0, right_m_s_ = 0.0;              // before the last reading of the wheels
+  double unsteady_rad_s_ = 0.0, unsteady_before_ = 0.0;  // by which the wheels' turn rate changed at the last two
   FusedPoseParams params_;
   double max_speed_m_s_;
   PoseFilter filter_;

@@ -162,7 +162,7 @@ void PoseFilter::step(State& s, const Event& e, double dt_s) const noexcept {
 }
 
 void PoseFilter::roll(hal::TimeNs taken_ns, double left_m, double right_m, std::optional<double> gyroscope_rad,
-                      double gyroscope_sd_rad) noexcept {
+                      double gyroscope_sd_rad, const UnevenWay& uneven) noexcept {
   const Event& last = event(count_ - 1);
   if (taken_ns <= last.time_ns || !std::isfinite(left_m) || !std::isfinite(right_m)) return;
   rolled_left_m_ += std::fabs(left_m);
@@ -173,6 +173,7 @@ void PoseFilter::roll(hal::TimeNs taken_ns, double left_m, double right_m, std::
   e.right_m = right_m;
   if (gyroscope_rad && std::isfinite(*gyroscope_rad)) e.gyroscope_rad = gyroscope_rad;
   e.gyroscope_var = gyroscope_sd_rad * gyroscope_sd_rad;
+  e.uneven = uneven;
   append(e);
   repeat(count_ - 1);
   take_waiting();
@@ -267,11 +268,13 @@ PoseFilter::Taken PoseFilter::take(const PoseMeasurement& m) noexcept {
   if (whole.gyroscope_rad) e.gyroscope_rad = part * *whole.gyroscope_rad;
   e.gyroscope_var = part * whole.gyroscope_var;
   e.measured = m;
+  e.measured->sd_m = std::hypot(m.sd_m, whole.uneven.way_m * part);
+  e.measured->sd_rad = std::hypot(m.sd_rad, whole.uneven.turn_rad * part);
   e.delay_s = event(count_ - 1).after.delay_s[m.tracker];
   e.after = event(next - 1).after;
   const double per_s = stretch_s > 0.0 ? 1.0 / stretch_s : 0.0;
   step(e.after, e, part * stretch_s);
-  if (!update(e.after, m, e.delay_s, whole.left_m * per_s, whole.right_m * per_s, true)) return gate_out(m);
+  if (!update(e.after, *e.measured, e.delay_s, whole.left_m * per_s, whole.right_m * per_s, true)) return gate_out(m);
   odd_[m.tracker].count = 0;
   believed_[m.tracker] = {m, rolled_left_m_, rolled_right_m_};
   used_at_ns_[m.tracker] = any_used_[m.tracker] ? std::max(used_at_ns_[m.tracker], at_ns) : at_ns;
@@ -381,26 +384,53 @@ PoseEstimate PoseFilter::now() const noexcept {
   return {s.pose, s.p.topLeftCorner<3, 3>()};
 }
 
-PoseEstimate PoseFilter::at(hal::TimeNs time_ns) const noexcept {
-  const Event& last = event(count_ - 1);
-  if (count_ < 2 || time_ns <= last.time_ns) return now();
-  // The speed of the last whole stretch, whatever parted it.
+/// The state then, by the stretch that holds it or, later than the newest, by the last whole one; and its speeds as the
+/// encoders tell them.
+PoseFilter::State PoseFilter::state_at(hal::TimeNs time_ns, double& left_m_s, double& right_m_s) const noexcept {
+  std::size_t base = count_ - 1;  // the last event that is not later
+  while (base > 0 && event(base).time_ns > time_ns) --base;
+  // The whole stretch behind it, whatever poses part it.
+  std::size_t end = std::min(base + 1, count_ - 1);
+  while (end + 1 < count_ && event(end).measured) ++end;
+  std::size_t begin = end;
   double left_m = 0.0, right_m = 0.0;
-  std::size_t i = count_ - 1;
   do {
-    left_m += event(i).left_m;
-    right_m += event(i).right_m;
-    --i;
-  } while (i > 0 && event(i).measured);
-  const double stretch_s = hal::to_seconds(last.time_ns - event(i).time_ns);
-  if (stretch_s <= 0.0) return now();
-  const double ahead = hal::to_seconds(time_ns - last.time_ns) / stretch_s;
+    left_m += event(begin).left_m;
+    right_m += event(begin).right_m;
+    if (begin == 0) break;
+    --begin;
+  } while (begin > 0 && event(begin).measured);
+  const double stretch_s = hal::to_seconds(event(end).time_ns - event(begin).time_ns);
+  left_m_s = stretch_s > 0.0 ? left_m / stretch_s : 0.0;
+  right_m_s = stretch_s > 0.0 ? right_m / stretch_s : 0.0;
+  State s = event(base).after;
+  const double for_s = hal::to_seconds(time_ns - event(base).time_ns);
+  if (count_ < 2 || for_s <= 0.0 || stretch_s <= 0.0) return s;
   Event on;
-  on.left_m = left_m * ahead;
-  on.right_m = right_m * ahead;
-  State s = last.after;
-  step(s, on, hal::to_seconds(time_ns - last.time_ns));
+  on.left_m = left_m_s * for_s;
+  on.right_m = right_m_s * for_s;
+  step(s, on, for_s);
+  return s;
+}
+
+PoseEstimate PoseFilter::at(hal::TimeNs time_ns) const noexcept {
+  double left_m_s = 0.0, right_m_s = 0.0;
+  const State s = state_at(time_ns, left_m_s, right_m_s);
   return {s.pose, s.p.topLeftCorner<3, 3>()};
+}
+
+PoseEstimate PoseFilter::seen_by(std::size_t tracker, hal::TimeNs time_ns) const noexcept {
+  double left_m_s = 0.0, right_m_s = 0.0;
+  const State s = state_at(time_ns - to_ns(event(count_ - 1).after.delay_s[tracker]), left_m_s, right_m_s);
+  // A delay that is longer by d puts the pose as it is stamped d of driving back.
+  Eigen::Matrix<double, 3, kErrors> h = Eigen::Matrix<double, 3, kErrors>::Zero();
+  h.leftCols<3>().setIdentity();
+  const double way_m_s = 0.5 * (left_m_s * s.left + right_m_s * s.right);
+  const int delay = kDelay + static_cast<int>(tracker);
+  h(0, delay) = -way_m_s * s.pose.cos_h;
+  h(1, delay) = -way_m_s * s.pose.sin_h;
+  h(2, delay) = -(right_m_s * s.right - left_m_s * s.left) / (wheel_base_m_ * s.base);
+  return {s.pose, h * s.p * h.transpose()};
 }
 
 PoseFilter::Learnt PoseFilter::learnt() const noexcept {

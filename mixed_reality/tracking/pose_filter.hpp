@@ -37,6 +37,11 @@ struct PoseFilterParams {
   }
 };
 
+/// By what way and turn until somewhere within a stretch of rolling may differ from those of even rolling.
+struct UnevenWay {
+  double way_m = 0.0, turn_rad = 0.0;
+};
+
 /// A pose and how well it is known.
 struct PoseEstimate {
   core::Pose pose;
@@ -73,23 +78,31 @@ class PoseFilter {
 
   /// What the wheels rolled and the gyroscope turned since the last call, until `taken_ns`, which only grows.
   /// `gyroscope_sd_rad`: of that turn, beside the gyroscope's own noise, such as of a rate that was sampled seldom.
+  /// `uneven`: by what it may have rolled otherwise than evenly meanwhile.
   void roll(hal::TimeNs taken_ns, double left_m, double right_m, std::optional<double> gyroscope_rad = {},
-            double gyroscope_sd_rad = 0.0) noexcept;
+            double gyroscope_sd_rad = 0.0, const UnevenWay& uneven = {}) noexcept;
   Taken correct(const PoseMeasurement& pose) noexcept;
   /// The robot was put somewhere: begins anew there, keeps what was learnt of its wheels.
   void put(const core::Pose& pose, hal::TimeNs at_ns, double sd_m, double sd_rad) noexcept;
 
   /// As of the last `roll`.
   PoseEstimate now() const noexcept;
-  /// Carried on by the speed of the last step.
+  /// Carried on by the speed of the last step; before that, as it was then.
   PoseEstimate at(hal::TimeNs time_ns) const noexcept;
+  /// What this tracker would stamp so, if it had no noise: what it is late by, and how well that is known, is in it.
+  PoseEstimate seen_by(std::size_t tracker, hal::TimeNs time_ns) const noexcept;
+  /// Of the factors of the left wheel, the right one, and their distance.
+  Eigen::Matrix3d wheels_covariance() const noexcept { return event(count_ - 1).after.p.block<3, 3>(3, 3); }
 
   /// What was learnt: factors of the wheels' ways and of their distance, rad/s, s; and how well they are known.
   struct Learnt {
     double left = 1.0, right = 1.0, base = 1.0, bias_rad_s = 0.0;
     std::array<double, kTrackers> delay_s{};
     std::array<double, 4 + kTrackers> sd{};
-    double link_delay_s = 0.0;  ///< by which the wheels are later than their stamps (FusedPose)
+    /// By which the body is later than the stamps of its encoders, and how well that is known (FusedPose); nothing: no
+    /// tracker whose stamps are right has told it. It is then not in `delay_s` of these.
+    std::optional<double> lag_s = {};
+    double lag_sd_s = 0.0;
   };
   Learnt learnt() const noexcept;
 
@@ -121,6 +134,7 @@ class PoseFilter {
     double left_m = 0.0, right_m = 0.0;
     std::optional<double> gyroscope_rad;
     double gyroscope_var = 0.0;  // beside its own noise
+    UnevenWay uneven;
     std::optional<PoseMeasurement> measured;
     double delay_s = 0.0;  // by which it was put before its stamp
     State after;
@@ -128,6 +142,7 @@ class PoseFilter {
 
   Event& event(std::size_t i) noexcept { return events_[(first_ + i) % kKept]; }
   const Event& event(std::size_t i) const noexcept { return events_[(first_ + i) % kKept]; }
+  State state_at(hal::TimeNs time_ns, double& left_m_s, double& right_m_s) const noexcept;
   void append(const Event& e) noexcept;
   bool insert(std::size_t at, const Event& e) noexcept;
   void repeat(std::size_t from) noexcept;

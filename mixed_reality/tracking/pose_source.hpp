@@ -1,5 +1,6 @@
 // Interface of a tracker: the pose of a real robot.
 #pragma once
+#include <Eigen/Core>
 #include <array>
 #include <cstdint>
 #include <optional>
@@ -13,14 +14,17 @@
 
 namespace tandem::mixed_reality {
 
+class CommandedMotion;
+
 /// A pose of a real robot in W, and when it had it. How old a pose may be to act on is for its user to say.
 struct TrackedPose {
   core::Pose pose;
   hal::TimeNs taken_ns = 0;  ///< CLOCK_MONOTONIC
   bool known = false;        ///< false: there never was one; `pose` is where the robot was said to start
-  std::optional<double> sd_m = {}, sd_rad = {};    ///< of each coordinate, of the heading; nothing: not known
-  bool vague = false;                              ///< known no better than nothing to act on
-  std::optional<std::array<double, 4>> q_WB = {};  ///< attitude: w, x, y, z; nothing: level, as far as is known
+  std::optional<double> sd_m = {}, sd_rad = {};          ///< of each coordinate, of the heading; nothing: not known
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< of x, y, heading, where sd_m is known
+  bool vague = false;                                    ///< known no better than nothing to act on
+  std::optional<std::array<double, 4>> q_WB = {};        ///< attitude: w, x, y, z; nothing: level, as far as is known
 };
 
 /// Why measurements of a pose were not used, and how many were.
@@ -61,6 +65,11 @@ class PoseSource {
   virtual bool by_wheels() const noexcept { return false; }
   /// What trackers saw since the `latch` before the last one, brought up to date by every `latch`; null: it asks none.
   virtual const SightingsRow* sightings() const noexcept { return nullptr; }
+  /// What the robot is told from now on, which must outlive this: it shapes what the wheels rolled between two
+  /// readings.
+  virtual void drives_by(const CommandedMotion& /*motion*/) noexcept {}
+  /// By which the body is later than the stamps of its encoders, as far as is known; may be negative.
+  virtual double lag_s() const noexcept { return 0.0; }
   /// Writes what was learnt of the robot's wheels, as of the last `latch`.
   virtual void note_learnt(TrackRow& /*row*/) const noexcept {}
 };

@@ -87,6 +87,10 @@ Twin::Twin(core::Space& space, core::RobotId robot, std::unique_ptr<bridges::Rob
     if (encoders != nullptr) slip_ = std::make_unique<SlipWatch>(*encoders, kind.drive()->wheel_base_m);
   }
   // Encoders that nobody takes are not asked for: slow lines have no room for them.
+  if (kind.drive() != nullptr) {
+    motion_ = std::make_unique<CommandedMotion>(kind.drive()->wheel_base_m);
+    poses_->drives_by(*motion_);
+  }
   for (const bridges::PortView& port : real_->taken()) {
     if (kind.drive() == nullptr || port.type->layout != hal::port_type<hal::WheelEncoders>().layout) continue;
     encoders_ = static_cast<const hal::WheelEncoders*>(port.data);
@@ -158,22 +162,27 @@ void Twin::track(const Moment& now, Conditions& conditions) noexcept {
   // longer, until something else stops it.
   const double age_s = hal::to_seconds(age_ns);
   const double tick_s = last_latch_ns_ == 0 ? 0.0 : hal::to_seconds(now.monotonic_ns - last_latch_ns_);
-  const core::Pose expected = carried_on(pose_, std::min(tick_s, params_.coast_s - (age_s - tick_s)));
-  pose_ = tracked.known ? carried_on(tracked.pose, std::min(age_s, params_.coast_s)) : tracked.pose;
+  const core::Pose expected = carried_on(pose_, last_latch_ns_, std::min(tick_s, params_.coast_s - (age_s - tick_s)));
+  pose_ = tracked.known ? carried_on(tracked.pose, tracked.taken_ns, std::min(age_s, params_.coast_s)) : tracked.pose;
   // A twin beyond the edge would end the run as an escaped body; the fence brings the real robot back.
   entity_.state().set_pose(fence_.clamped(running_ ? smooth_.follow(pose_, expected, tick_s) : smooth_.set(pose_)));
 }
 
-/// `pose` after so much more time of what the robot was last told while it could hear.
-core::Pose Twin::carried_on(const core::Pose& pose, double for_s) const noexcept {
-  const hal::DifferentialDrive* const drive = space_.kind(robot_).drive();
-  if (drive == nullptr || for_s <= 0.0) return pose;
-  return rolled(pose, driven_.left_m_s * for_s, driven_.right_m_s * for_s, drive->wheel_base_m);
+/// `pose`, which it had at `from_ns`, after so much more time of what the robot was told while it could hear, and obeys
+/// as late as was found.
+core::Pose Twin::carried_on(const core::Pose& pose, hal::TimeNs from_ns, double for_s) const noexcept {
+  if (motion_ == nullptr || for_s <= 0.0) return pose;
+  const auto until_ns = from_ns + static_cast<hal::TimeNs>(for_s * 1e9);
+  return motion_->carried_on(pose, from_ns, until_ns, motion_->to_way_s(poses_->lag_s()));
 }
 
 /// A robot that obeys later than the barrier counts on is named, and counted on from now on.
 void Twin::measure_delay(const Moment& now) {
-  if (real_->health() != LinkHealth::Active || encoders_->validity != hal::Validity::Fresh) return delay_->forget();
+  if (real_->health() != LinkHealth::Active || encoders_->validity != hal::Validity::Fresh) {
+    motion_->forget();
+    return delay_->forget();
+  }
+  motion_->counted(now.to_monotonic(encoders_->taken_ns), encoders_->left_m, encoders_->right_m);
   delay_->rolled(now.to_monotonic(encoders_->taken_ns), encoders_->left_m, encoders_->right_m);
   if (const PoseMeasurement* const seen = poses_->newest_sighting(); seen != nullptr) delay_->seen(*seen);
   if (barrier_ == nullptr || !running_) return;
@@ -201,6 +210,9 @@ void Twin::note_track() noexcept {
   track_.sd_rad = tracked_.sd_rad ? static_cast<float>(*tracked_.sd_rad) : TrackRow::kUnknown;
   track_.sent_ns = -1;
   poses_->note_learnt(track_);
+  const DelayEstimate to_counters = motion_ != nullptr ? motion_->to_counters() : DelayEstimate{};
+  track_.command_s = to_counters.told ? static_cast<float>(to_counters.value_s) : TrackRow::kUnknown;
+  track_.command_sd_s = to_counters.told ? static_cast<float>(to_counters.bound_s / 1.96) : TrackRow::kUnknown;
 }
 
 void Twin::emergency_stop(hal::TimeNs monotonic_ns) noexcept {
@@ -301,6 +313,7 @@ void Twin::after_filter(const Moment& now) {
   const bool hears = real_->health() == LinkHealth::Active;
   if (hears) driven_ = sent_;
   if (hears) heard_ns_ = now.monotonic_ns;
+  if (hears && motion_ != nullptr) motion_->told(now.monotonic_ns, sent_);
   if (hears && delay_ != nullptr) delay_->told(now.monotonic_ns, sent_);
   if (barrier_ != nullptr) {
     const bool drives_on = !hears && hal::to_seconds(now.monotonic_ns - heard_ns_) < params_.coast_s;

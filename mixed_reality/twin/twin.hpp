@@ -18,6 +18,7 @@
 #include "mixed_reality/safety/flight_order_gate.hpp"
 #include "mixed_reality/safety/supervisor.hpp"
 #include "mixed_reality/time/moment.hpp"
+#include "mixed_reality/tracking/commanded_motion.hpp"
 #include "mixed_reality/tracking/delay_watch.hpp"
 #include "mixed_reality/tracking/pose_source.hpp"
 #include "mixed_reality/tracking/slip_watch.hpp"
@@ -136,7 +137,7 @@ class Twin {
   void track(const Moment& now, Conditions& conditions) noexcept;
   void note_track() noexcept;
   void tell_place() noexcept;
-  core::Pose carried_on(const core::Pose& pose, double for_s) const noexcept;
+  core::Pose carried_on(const core::Pose& pose, hal::TimeNs from_ns, double for_s) const noexcept;
   void look_for_intrusions(const Moment& now);
   void note_incident(const Moment& now, const std::string& what, bool serious);
   void note(const Moment& now);
@@ -174,6 +175,7 @@ class Twin {
   FlightOrderGate orders_;
   std::unique_ptr<DelayWatch> delay_;             // null: it has no wheels, or does not tell what they roll
   const hal::WheelEncoders* encoders_ = nullptr;  // null: the same
+  std::unique_ptr<CommandedMotion> motion_;       // null: it has no wheels
   std::uint64_t jumps_ = 0, slips_ = 0;           // of the pose, as far as they were judged
   bool swapped_ = false;
   TrackedPose tracked_;

@@ -1,0 +1,202 @@
+// Robots that obey late, and whose body lags their encoders, before a tracker whose stamps are right: where the filter
+// and the commands put them, against an integrator of the test's own, and how well that is known.
+#include <Eigen/LU>
+#include <cmath>
+#include <deque>
+#include <gtest/gtest.h>
+#include <numbers>
+#include <random>
+#include <vector>
+
+#include "hal/robot/footbot.hpp"
+#include "mixed_reality/tracking/commanded_motion.hpp"
+#include "mixed_reality/tracking/fused_pose.hpp"
+
+namespace tandem::mixed_reality {
+namespace {
+
+constexpr hal::TimeNs kMs = hal::kNsPerMs;
+constexpr hal::TimeNs kTick_ns = 100 * kMs;
+
+/// A foot-bot in steps of a millisecond.
+class Delayed {
+ public:
+  Delayed(double lag_s, double actuation_s, unsigned seed, bool gyroscope = false)
+      : lag_ms_(std::lround(1e3 * lag_s)),
+        actuation_ms_(std::lround(1e3 * actuation_s)),
+        dice_(seed),
+        base_m_(hal::footbot::kind().drive()->wheel_base_m),
+        source_(core::Pose::at(0.0, 0.0, 0.0), *hal::footbot::kind().drive(), encoders_,
+                gyroscope ? &gyroscope_ : nullptr, {}),
+        motion_(base_m_) {
+    const PoseFilterParams assumed;
+    left_ = 1.0 + assumed.scale * normal();
+    right_ = 1.0 + assumed.scale * normal();
+    base_ = 1.0 + assumed.base * normal();
+    truth_.push_back({});
+    source_.drives_by(motion_);
+  }
+
+  /// A tick: commands change now and then; @returns the heading's error in degrees, as a twin would show it.
+  double tick() {
+    if (even() < 0.15) {
+      const double way = 0.1 + 0.1 * even(), turn = 0.12 * (2.0 * even() - 1.0);
+      told_ = {way - turn, way + turn};
+    }
+    // Given a little after the tick began, and obeyed later.
+    commands_.push_back({ms_ + 2, told_[0], told_[1]});
+    hal::WheelSpeeds wheels;
+    wheels.set(told_[0], told_[1]);
+    motion_.told(ns(ms_ + 2), wheels);
+    for (int i = 0; i < 100; ++i) step();
+    encoders_.left_m = counted_[0];
+    encoders_.right_m = counted_[1];
+    encoders_.taken_ns = ns(ms_);
+    encoders_.validity = hal::Validity::Fresh;
+    gyroscope_.taken_ns = encoders_.taken_ns;
+    gyroscope_.validity = hal::Validity::Fresh;
+    gyroscope_.rate_rad_s[2] = static_cast<float>(rate_rad_s_ + 0.01 + 0.002 * normal());
+    while (!arriving_.empty() && arriving_.front().taken_ns + 60 * kMs <= ns(ms_)) {
+      source_.see(arriving_.front(), arriving_.front().taken_ns);
+      arriving_.pop_front();
+    }
+    const Moment now{ns(ms_), ns(ms_)};
+    tracked_ = source_.latch(now);
+    motion_.counted(encoders_.taken_ns, encoders_.left_m, encoders_.right_m);
+    const core::Pose shown =
+        motion_.carried_on(tracked_.pose, tracked_.taken_ns, now.monotonic_ns, motion_.to_way_s(source_.lag_s()));
+    return std::fabs(apart(shown.heading_rad(), truth_.back().heading)) * 180.0 / std::numbers::pi;
+  }
+
+  /// Of the pose at its own stamp; of three numbers 3 where the filter is as wrong as it says.
+  double pose_nees() const {
+    const auto at = static_cast<std::size_t>(tracked_.taken_ns / kMs - kFirst_ms);
+    const double part = 1e-6 * static_cast<double>(tracked_.taken_ns % kMs);
+    const Place &a = truth_[at], &b = truth_[std::min(at + 1, truth_.size() - 1)];
+    const Eigen::Vector3d e(tracked_.pose.x_m - (a.x + part * (b.x - a.x)),
+                            tracked_.pose.y_m - (a.y + part * (b.y - a.y)),
+                            apart(tracked_.pose.heading_rad(), a.heading + part * apart(b.heading, a.heading)));
+    return e.dot(tracked_.covariance.inverse() * e);
+  }
+  double wheels_nees() const {
+    const PoseFilter::Learnt found = source_.learnt();
+    const Eigen::Vector3d e(found.left - left_, found.right - right_, found.base - base_);
+    return e.dot(source_.wheels_covariance().inverse() * e);
+  }
+  const FusedPose& source() const { return source_; }
+  const CommandedMotion& motion() const { return motion_; }
+
+ private:
+  static constexpr std::int64_t kFirst_ms = 1000;
+  struct Place {
+    double x = 0.3, y = -0.2, heading = 0.7;
+  };
+  struct Command {
+    std::int64_t at_ms;
+    double left, right;
+  };
+  static hal::TimeNs ns(std::int64_t ms) { return ms * kMs; }
+  static double apart(double a, double b) { return std::remainder(a - b, 2.0 * std::numbers::pi); }
+  double normal() { return gauss_(dice_); }
+  double even() { return std::uniform_real_distribution<double>()(dice_); }
+
+  Command at(std::int64_t ms) const {
+    for (auto c = commands_.rbegin(); c != commands_.rend(); ++c) {
+      if (c->at_ms <= ms) return *c;
+    }
+    return {0, 0.0, 0.0};
+  }
+
+  void step() {
+    const Command motor = at(ms_ - actuation_ms_), floor = at(ms_ - actuation_ms_ - lag_ms_);
+    counted_[0] += 1e-3 * motor.left;
+    counted_[1] += 1e-3 * motor.right;
+    const double noise = PoseFilterParams{}.wheel_noise_m;
+    const auto rolled = [&](double way) { return way + noise * std::sqrt(std::fabs(way)) * normal(); };
+    const double l = rolled(1e-3 * left_ * floor.left), r = rolled(1e-3 * right_ * floor.right);
+    Place next = truth_.back();
+    const double turn = (r - l) / (base_m_ * base_);
+    next.x += 0.5 * (l + r) * std::cos(next.heading + 0.5 * turn);
+    next.y += 0.5 * (l + r) * std::sin(next.heading + 0.5 * turn);
+    next.heading += turn;
+    rate_rad_s_ = (right_ * floor.right - left_ * floor.left) / (base_m_ * base_);
+    truth_.push_back(next);
+    ++ms_;
+    if (ms_ % 33 != 0) return;
+    PoseMeasurement seen{
+        0, ns(ms_), next.x + 0.002 * normal(), next.y + 0.002 * normal(), next.heading + 0.01 * normal(), 0.002, 0.01};
+    seen.by_true_clock = true;
+    arriving_.push_back(seen);
+  }
+
+  std::int64_t lag_ms_, actuation_ms_;
+  std::mt19937_64 dice_;
+  std::normal_distribution<double> gauss_;
+  double base_m_, left_ = 1.0, right_ = 1.0, base_ = 1.0, rate_rad_s_ = 0.0;
+  std::int64_t ms_ = kFirst_ms;
+  std::vector<Command> commands_;
+  std::array<double, 2> told_{}, counted_{};
+  std::vector<Place> truth_;
+  std::deque<PoseMeasurement> arriving_;
+  hal::WheelEncoders encoders_;
+  hal::Gyroscope gyroscope_;
+  FusedPose source_;
+  CommandedMotion motion_;
+  TrackedPose tracked_;
+};
+
+struct Setting {
+  double lag_s, actuation_s;
+};
+std::vector<Setting> eight_settings() {
+  std::vector<Setting> all;
+  for (const double lag_s : {0.0, 0.06}) {
+    for (const double actuation_s : {0.0, 0.03, 0.06, 0.11}) all.push_back({lag_s, actuation_s});
+  }
+  return all;
+}
+
+TEST(DelayedRobot, ItsHeadingIsWithinADegreeHoweverLateItObeys) {
+  for (const Setting& s : eight_settings()) {
+    Delayed robot(s.lag_s, s.actuation_s, 7);
+    double squares = 0.0;
+    int count = 0;
+    for (int i = 0; i < 600; ++i) {
+      const double error = robot.tick();
+      if (i < 150) continue;
+      squares += error * error;
+      ++count;
+    }
+    EXPECT_LT(std::sqrt(squares / count), 1.0) << s.lag_s << " " << s.actuation_s;
+    ASSERT_TRUE(robot.source().learnt().lag_s);
+    EXPECT_NEAR(*robot.source().learnt().lag_s, s.lag_s, 0.005) << s.actuation_s;
+    EXPECT_EQ(robot.source().learnt().delay_s[0], 0.0) << "the tracker is declared right";
+    ASSERT_TRUE(robot.motion().to_counters().told);
+    EXPECT_NEAR(robot.motion().to_counters().value_s, s.actuation_s, 0.004) << s.lag_s;
+  }
+}
+
+TEST(DelayedRobot, PosesAndWheelsAreAsWellKnownAsTheFilterSays) {
+  for (const bool gyroscope : {false, true}) {
+    double poses = 0.0, wheels = 0.0;
+    int pose_count = 0, wheel_count = 0;
+    for (const Setting& s : eight_settings()) {
+      for (unsigned run = 0; run < 12; ++run) {
+        Delayed robot(s.lag_s, s.actuation_s, 100 + run, gyroscope);
+        for (int i = 0; i < 400; ++i) {
+          (void)robot.tick();
+          if (i < 100) continue;
+          poses += robot.pose_nees() / 3.0;
+          ++pose_count;
+        }
+        wheels += robot.wheels_nees() / 3.0;
+        ++wheel_count;
+      }
+    }
+    EXPECT_NEAR(poses / pose_count, 1.0, 0.2) << "gyroscope " << gyroscope;
+    EXPECT_NEAR(wheels / wheel_count, 1.0, 0.2) << "gyroscope " << gyroscope;
+  }
+}
+
+}  // namespace
+}  // namespace tandem::mixed_reality
