@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "controllers/lua_controller/own_tables.hpp"
 #include "hal/device/body_sensors.hpp"
 #include "hal/device/cameras.hpp"
 #include "hal/device/distance_scanner.hpp"
@@ -142,7 +143,7 @@ void open_ring(lua_State* L, Interpreter& in, std::size_t device, std::span<cons
   if (!bare) {
     for (int i = 0; i < count; ++i) {
       lua_createtable(L, 0, 2);
-      in.make_shared(L);
+      make_readings(L);
       lua_pushvalue(L, -1);
       lua_rawseti(L, table, i + 1);
     }
@@ -669,9 +670,9 @@ void fill_battery(lua_State* L, Interpreter& in, std::size_t device, const void*
 
 template <class Port>
 DeviceApi api(const char* table, void (*open)(lua_State*, Interpreter&, std::size_t),
-              void (*fill)(lua_State*, Interpreter&, std::size_t, const void*) = nullptr) {
+              void (*fill)(lua_State*, Interpreter&, std::size_t, const void*) = nullptr, bool ring = false) {
   const hal::PortType& type = hal::port_type<Port>();
-  return {type.role, Port::kName, table, type.layout, open, fill};
+  return {type.role, Port::kName, table, type.layout, open, fill, ring};
 }
 
 }  // namespace
@@ -680,8 +681,8 @@ std::span<const DeviceApi> device_apis() {
   static const std::array all = {
       api<hal::WheelSpeeds>("wheels", &open_wheels),
       api<hal::WheelEncoders>("wheels", nullptr, &fill_wheels),
-      api<hal::Proximity>("proximity", &open_proximity, &fill_proximity),
-      api<hal::Light>("light", &open_light, &fill_light),
+      api<hal::Proximity>("proximity", &open_proximity, &fill_proximity, true),
+      api<hal::Light>("light", &open_light, &fill_light, true),
       api<hal::Ground>("ground", nullptr, &fill_ground),
       api<hal::BaseGround>("base_ground", nullptr, &fill_ground_ring<hal::BaseGroundPart>),
       api<hal::MotorGround>("motor_ground", nullptr, &fill_ground_ring<hal::MotorGroundPart>),

@@ -20,6 +20,7 @@ struct DeviceApi {
   void (*open)(lua_State* state, Interpreter& in, std::size_t device) = nullptr;
   /// Writes the readings into it; null for actuators.
   void (*fill)(lua_State* state, Interpreter& in, std::size_t device, const void* port) = nullptr;
+  bool ring = false;  ///< `open` gets the table of readings, which scripts get as it is; else that of functions
 };
 
 std::span<const DeviceApi> device_apis();
@@ -32,6 +33,10 @@ void open_ports(lua_State* state, Interpreter& in);
 void open_libraries(lua_State* state, Interpreter& in);
 /// `robot.random`, on the table `robot` at the top of the stack.
 void open_random(lua_State* state);
+
+/// Pushes a text for the value: as tostring, but tables and functions are told by the number in which this robot first
+/// asked for one.
+void push_text(lua_State* state, int index);
 
 /// Raises an error unless the script gave so many arguments; `call` is how it is written.
 void expect_arguments(lua_State* state, int count, const char* call);

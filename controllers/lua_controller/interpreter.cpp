@@ -1,213 +1,21 @@
 #include "controllers/lua_controller/interpreter.hpp"
 
 #include <algorithm>
-#include <cctype>
-#include <csignal>
-#include <cstring>
-#include <pthread.h>
 #include <stdexcept>
 
+#include "controllers/lua_controller/copies.hpp"
 #include "controllers/lua_controller/devices.hpp"
+#include "controllers/lua_controller/own_tables.hpp"
 #include "controllers/lua_controller/sources.hpp"
-#include "controllers/lua_controller/vectors.hpp"
-#include "controllers/lua_controller/watchdog.hpp"
 #include "hal/element.hpp"
 
 namespace tandem::controllers::lua {
 namespace {
 
-constexpr int kCountedAtOnce = 10'000;  // instructions
+constexpr std::ptrdiff_t kMostHot = 2048;
 
-thread_local Interpreter* stepping = nullptr;
-
-/// A text with `_ENV` as its argument, on its first line: line numbers stay.
-struct Source {
-  static constexpr std::string_view kHead = "local _ENV = ...; ";
-  std::string_view text;
-  int part = 0;
-
-  static const char* read(lua_State*, void* self, std::size_t* size) {
-    Source& s = *static_cast<Source*>(self);
-    const std::string_view part = s.part == 0 ? kHead : s.part == 1 ? s.text : std::string_view();
-    ++s.part;
-    *size = part.size();
-    return part.data();
-  }
-};
-
-std::string_view without_marks(std::string_view text) noexcept {
-  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
-  if (text.starts_with('#')) text.remove_prefix(std::min(text.find('\n'), text.size()));  // "#!/usr/bin/lua"
-  return text;
-}
-
-/// Whether `word` stands in the text as a word.
-bool mentions(std::string_view text, std::string_view word) noexcept {
-  const auto in_word = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; };
-  for (std::size_t at = text.find(word); at != std::string_view::npos; at = text.find(word, at + 1)) {
-    const std::size_t end = at + word.size();
-    if ((at == 0 || !in_word(text[at - 1])) && (end == text.size() || !in_word(text[end]))) return true;
-  }
-  return false;
-}
-
-// --- fields of shared tables that are each robot's own ---
-
-/// Pushes the fields that the present robot has added to the table at `index`, or nil.
-void push_added(lua_State* L, int index, bool make) {
-  Interpreter::of(L).push_own(L);
-  lua_getfield(L, -1, "added");
-  lua_pushvalue(L, index);
-  lua_rawget(L, -2);
-  if (make && lua_isnil(L, -1)) {
-    lua_pop(L, 1);
-    lua_newtable(L);
-    lua_pushvalue(L, index);
-    lua_pushvalue(L, -2);
-    lua_rawset(L, -4);
-  }
-}
-
-int shared_index(lua_State* L) {  // (table, key)
-  push_added(L, 1, false);
-  if (!lua_istable(L, -1)) return 0;
-  lua_pushvalue(L, 2);
-  lua_rawget(L, -2);
-  return 1;
-}
-
-int shared_newindex(lua_State* L) {  // (table, key, value)
-  if (Interpreter::of(L).filling()) {
-    lua_rawset(L, 1);
-    return 0;
-  }
-  if (lua_type(L, 2) != LUA_TSTRING)
-    return luaL_error(L,
-                      "this table is filled anew for every step: what is to stay in it goes into a table of the "
-                      "script's own");
-  push_added(L, 1, true);
-  lua_pushvalue(L, 2);
-  lua_pushvalue(L, 3);
-  lua_rawset(L, -3);
-  return 0;
-}
-
-int robot_index(lua_State* L) {  // robot.id, robot.params, and what the script added
-  if (lua_type(L, 2) == LUA_TSTRING) {
-    const char* const key = lua_tostring(L, 2);
-    Interpreter& in = Interpreter::of(L);
-    if (std::strcmp(key, "id") == 0) {
-      lua_pushlstring(L, in.actor().id.data(), in.actor().id.size());
-      return 1;
-    }
-    if (std::strcmp(key, "params") == 0) {
-      in.push_own(L);
-      lua_getfield(L, -1, "params");
-      return 1;
-    }
-  }
-  return shared_index(L);
-}
-
-int unknown_global(lua_State* L) {
-  return luaL_error(L, "nothing has been assigned to the global '%s'; the parameter strict forbids to read it",
-                    luaL_tolstring(L, 2, nullptr));
-}
-
-// --- what a robot's functions can change ---
-
-char no_value;  // stands for nil in what was kept
-
-/// Walks over everything that can be reached. Stack: 1 argument, 2 record or nil, 3 seen, 4 shared, 5 to do.
-class Walk {
- public:
-  explicit Walk(lua_State* state) : L(state) {}
-
-  void visit(int index) {
-    index = lua_absindex(L, index);
-    const int type = lua_type(L, index);
-    if (type == LUA_TTHREAD) return check_thread(index);
-    if (type != LUA_TTABLE && type != LUA_TFUNCTION) return;
-    for (const int set : {3, 4}) {
-      lua_pushvalue(L, index);
-      const bool known = lua_rawget(L, set) != LUA_TNIL;
-      lua_pop(L, 1);
-      if (known) return;
-    }
-    lua_pushvalue(L, index);
-    lua_pushboolean(L, 1);
-    lua_rawset(L, 3);
-    lua_pushvalue(L, index);
-    lua_rawseti(L, 5, ++left_);
-  }
-
-  void run() {
-    luaL_checkstack(L, 16, nullptr);
-    while (left_ > 0) {
-      lua_rawgeti(L, 5, left_);
-      lua_pushnil(L);
-      lua_rawseti(L, 5, left_--);
-      lua_newtable(L);
-      if (lua_istable(L, 6))
-        table();
-      else
-        function();
-      if (!lua_isnil(L, 2)) {
-        lua_rawseti(L, 2, kept_ + 2);
-        lua_rawseti(L, 2, kept_ + 1);
-        kept_ += 2;
-      }
-      lua_settop(L, 5);
-    }
-  }
-
- private:
-  void table() {
-    lua_Integer n = 0;
-    if (lua_getmetatable(L, 6) != 0)
-      visit(-1);
-    else
-      lua_pushboolean(L, 0);
-    lua_rawseti(L, 7, ++n);
-    lua_pushnil(L);
-    while (lua_next(L, 6) != 0) {
-      visit(-2);
-      visit(-1);
-      lua_pushvalue(L, -2);
-      lua_rawseti(L, 7, ++n);
-      lua_rawseti(L, 7, ++n);
-    }
-  }
-  void function() {
-    for (int i = 1; lua_getupvalue(L, 6, i) != nullptr; ++i) {
-      visit(-1);
-      if (lua_isnil(L, -1)) {
-        lua_pop(L, 1);
-        lua_pushlightuserdata(L, &no_value);
-      }
-      lua_rawseti(L, 7, i);
-    }
-  }
-  void check_thread(int index) {
-    lua_State* const thread = lua_tothread(L, index);
-    if (lua_status(thread) == LUA_OK && lua_gettop(thread) == 0) return;  // it has ended
-    luaL_error(L, "it holds a coroutine that has not come to its end, which cannot be copied");
-  }
-
-  lua_State* L;
-  lua_Integer left_ = 0;
-  lua_Integer kept_ = 0;
-};
-
-struct Setup {
-  const std::vector<hal::ListedDevice>* devices;
-};
 struct Begin {
   Variables made;
-};
-struct Keep {
-  const Variables* variables;
-  int kept;
 };
 struct Stepping {
   Interpreter::Turn (*next)(void*);
@@ -233,71 +41,150 @@ bool Script::read(const std::string& name, std::string& found_path, std::string&
 
 // --- calls, and their end ---
 
-class Interpreter::Call {
- public:
-  explicit Call(Interpreter& in) : in_(in) {
-    in.running_ = in.state_;
-    in.disarm();
-    in.turns_.fetch_add(1, std::memory_order_relaxed);
-    stepping = &in;
-    const std::lock_guard hold(in.busy_lock_);
-    in.thread_ = pthread_self();
-    in.busy_ = true;
-  }
-  ~Call() {
-    {
-      const std::lock_guard hold(in_.busy_lock_);
-      in_.busy_ = false;
-    }
-    stepping = nullptr;
-    lua_sethook(in_.state_, nullptr, 0, 0);
-    in_.actor_ = nullptr;
-    in_.variables_ = nullptr;
-    in_.filling_ = false;
-    lua_settop(in_.state_, 0);
-  }
-  Call(const Call&) = delete;
-  Call& operator=(const Call&) = delete;
-
- private:
-  Interpreter& in_;
-};
-
-void Interpreter::look() noexcept {
-  const std::lock_guard hold(busy_lock_);
-  const std::uint64_t turns = turns_.load(std::memory_order_relaxed);
-  if (busy_ && turns == turns_seen_) pthread_kill(thread_, watchdog_signal());
-  turns_seen_ = turns;
+void Interpreter::leave() noexcept {
+  memory_.charge_to(nullptr, 0);
+  steps_.begin(Steps::kUnlimited);
+  if (memory_.collection_due()) collect(state_);
+  actor_ = nullptr;
+  variables_ = nullptr;
+  filling_ = false;
+  memory_.set_filling(false);
+  lua_settop(state_, 0);
 }
 
-void Interpreter::on_signal(int) noexcept {
-  Interpreter* const in = stepping;
-  if (in == nullptr) return;
-  in->armed_.store(true, std::memory_order_relaxed);
-  lua_sethook(in->running_, &count, LUA_MASKCOUNT, in->overtime_ ? 1 : kCountedAtOnce);
+/// The readings of the present robot. What is made for it is charged; the lists that it stands in are everybody's.
+void Interpreter::fill(lua_State* L) {
+  memory_.charge_to(&variables_->account, script_->most_memory * Script::kMemoryOfCall);
+  memory_.set_filling(true);
+  filling_ = true;
+  for (const std::size_t i : filled_) devices_[i].api->fill(L, *this, i, actor_->ports[i]);
+  filling_ = false;
+  memory_.set_filling(false);
 }
 
-void Interpreter::count(lua_State* L, lua_Debug*) {
+/// Calls the function below its arguments, on the top, as the present robot's.
+void Interpreter::run(lua_State* L, int arguments) {
+  if (variables_->strings != strings_now_) select_strings(L, variables_->strings);
+  memory_.charge_to(&variables_->account, script_->most_memory * Script::kMemoryOfCall);
+  steps_.begin(script_->most_instructions);
+  lua_call(L, arguments, 0);
+  if (steps_.left < 0) steps_.go_on();
+  const Steps::Over over = steps_.over;
+  memory_.charge_to(nullptr, 0);
+  steps_.begin(Steps::kUnlimited);
+  if (over != Steps::Over::No) {
+    steps_.over = over;
+    lua_pushliteral(L, "");
+    stop(L);
+  }
+  if (variables_->account.charged >= variables_->account.measure_at) check_kept(L);
+  if (memory_.collection_due()) collect(L);
+}
+
+void Interpreter::look(lua_State* L, lua_Debug*) {
   Interpreter& in = of(L);
-  if (!in.armed_.load(std::memory_order_relaxed)) return lua_sethook(L, nullptr, 0, 0);  // a coroutine of another turn
-  if (!in.overtime_) {
-    in.counted_ += kCountedAtOnce;
-    if (in.counted_ < in.script_->most_instructions) return;
-    in.overtime_ = true;
-  }
-  lua_sethook(L, &count, LUA_MASKCOUNT, 1);  // so that no pcall of the script goes on
+  if (in.memory_.collection_due()) in.collect(L);
+  in.steps_.go_on();
+  if (in.steps_.over == Steps::Over::No) return;
   luaL_where(L, 0);
-  in.no_end(L);
+  in.stop(L);
 }
 
-/// Raises the error with the place that is on the top.
-int Interpreter::no_end(lua_State* L) {
-  lua_pushfstring(L,
-                  "it does not come to an end: %I instructions were not enough; the parameter most_instructions "
-                  "allows more",
-                  static_cast<LUAI_UACINT>(script_->most_instructions));
+void Interpreter::exhausted(lua_State* L) {
+  steps_.go_on();
+  if (steps_.over == Steps::Over::No) return;
+  luaL_where(L, 1);
+  stop(L);
+}
+
+int Interpreter::stop(lua_State* L) {
+  if (steps_.over == Steps::Over::Memory)
+    lua_pushfstring(L,
+                    "it takes more memory than a robot has: %I MiB that stay, and %I in one call; the parameter "
+                    "most_memory allows more",
+                    static_cast<LUAI_UACINT>(script_->most_memory >> 20U),
+                    static_cast<LUAI_UACINT>(script_->most_memory * Script::kMemoryOfCall >> 20U));
+  else
+    lua_pushfstring(L,
+                    "it does not come to an end: %I instructions were not enough; the parameter most_instructions "
+                    "allows more",
+                    static_cast<LUAI_UACINT>(script_->most_instructions));
   lua_concat(L, 2);
   return lua_error(L);
+}
+
+void Interpreter::collect(lua_State* L) noexcept {
+  lua_gc(L, LUA_GCCOLLECT, 0);
+  memory_.collected();
+}
+
+/// What the present robot keeps from call to call; too much is an error.
+void Interpreter::check_kept(lua_State* L) {
+  Account& account = variables_->account;
+  const std::uint64_t kept = measured(L);
+  const std::uint64_t most = script_->most_memory;
+  account.charged = 0;
+  account.measure_at = std::max(most - std::min(kept, most), most / 8);
+  if (kept <= most) return;
+  steps_.over = Steps::Over::Memory;
+  lua_pushliteral(L, "");
+  stop(L);
+}
+
+/// "x":name() looks in the library of texts that is referred to, or in everybody's.
+void Interpreter::select_strings(lua_State* L, int strings) {
+  lua_pushliteral(L, "");
+  lua_getmetatable(L, -1);
+  lua_rawgeti(L, LUA_REGISTRYINDEX, strings == LUA_NOREF ? strings_ : strings);
+  lua_setfield(L, -2, "__index");
+  lua_pop(L, 2);
+  strings_now_ = strings;
+}
+
+/// Whether the robot's library of texts is a late copy or one in full; on the top is what is its own besides.
+void Interpreter::find_strings(lua_State* L, Variables& variables) {
+  luaL_unref(L, LUA_REGISTRYINDEX, variables.strings);
+  variables.strings = LUA_NOREF;
+  if (lua_getfield(L, -1, "string") == LUA_TTABLE && !is_late(L, -1)) {
+    variables.strings = luaL_ref(L, LUA_REGISTRYINDEX);
+  } else {
+    lua_pop(L, 1);
+  }
+  select_strings(L, variables.strings);
+}
+
+void Interpreter::became_own(lua_State* L) {
+  push_own(L);
+  lua_getfield(L, -1, "string");
+  const bool strings = lua_rawequal(L, -1, 1) != 0;
+  lua_pop(L, 1);
+  if (strings) find_strings(L, *variables_);
+  lua_pop(L, 1);
+}
+
+bool Interpreter::push_library(lua_State* L, const char* name) {
+  lua_rawgeti(L, LUA_REGISTRYINDEX, libraries_);
+  if (lua_getfield(L, -1, name) != LUA_TTABLE) {
+    lua_pop(L, 2);
+    return false;
+  }
+  push_late_copy(L, -1);
+  push_globals(L);
+  lua_pushstring(L, name);
+  lua_pushvalue(L, -3);
+  lua_rawset(L, -3);
+  lua_pop(L, 1);
+  if (std::string_view(name) == LUA_STRLIBNAME) {
+    push_own(L);
+    if (lua_getfield(L, -1, "string") == LUA_TNIL) {  // the first: what texts look in, whatever becomes of the name
+      lua_pushvalue(L, -3);
+      lua_setfield(L, -3, "string");
+    }
+    lua_pop(L, 2);
+  }
+  lua_replace(L, -3);
+  lua_pop(L, 1);
+  return true;
 }
 
 std::string Interpreter::taken_message() {
@@ -310,6 +197,12 @@ std::string Interpreter::taken_message() {
     text = std::string("an error that is no text but a ") + luaL_typename(state_, -1);
   }
   lua_settop(state_, 0);
+  if (text == "not enough memory") {
+    if (steps_.over != Steps::Over::Memory) return text + ": the machine has no more";
+    text = "it takes more memory than a robot has: " +
+           std::to_string(script_->most_memory * Script::kMemoryOfCall >> 20U) +
+           " MiB in one call; the parameter most_memory allows more";
+  }
   for (const DeviceApi& api : device_apis()) {
     const bool open = std::any_of(devices_.begin(), devices_.end(), [&](const Device& d) {
       return d.api != nullptr && std::string_view(d.api->table) == api.table;
@@ -324,8 +217,6 @@ std::string Interpreter::taken_message() {
     const std::string near = hal::closest(text.substr(begin, text.find('\'', begin) - begin), shared_names());
     if (!near.empty()) text += "; there is '" + near + "'";
   }
-  if (text == "not enough memory")
-    text += ": all scripts of an interpreter share " + std::to_string(Memory::kMost >> 20U) + " MiB";
   return text;
 }
 
@@ -339,22 +230,19 @@ std::vector<std::string> Interpreter::shared_names() {
       if (lua_type(state_, -1) == LUA_TSTRING) names.emplace_back(lua_tostring(state_, -1));
     }
   };
-  lua_rawgeti(state_, LUA_REGISTRYINDEX, pristine_);
-  for (lua_Integer i = 1; lua_rawgeti(state_, 1, i) == LUA_TTABLE; ++i) {
-    take();
-    lua_settop(state_, 1);
-  }
-  lua_settop(state_, 0);
-  lua_rawgeti(state_, LUA_REGISTRYINDEX, common_);
-  lua_pushliteral(state_, "robot");
-  if (lua_rawget(state_, 1) == LUA_TTABLE) {
-    for (const char* const table : {"sensors", "actuators"}) {
-      lua_pushstring(state_, table);
-      if (lua_rawget(state_, 2) == LUA_TTABLE) take();
+  for (const int tables : {libraries_, parts_}) {
+    lua_rawgeti(state_, LUA_REGISTRYINDEX, tables);
+    lua_pushnil(state_);
+    while (lua_next(state_, 1) != 0) {
+      if (is_original(state_, -1)) {
+        push_late_copy(state_, -1);
+        push_whole(state_, -1);
+        take();
+      }
       lua_settop(state_, 2);
     }
+    lua_settop(state_, 0);
   }
-  lua_settop(state_, 0);
   return names;
 }
 
@@ -365,285 +253,90 @@ void Interpreter::protect(lua_CFunction function, void* argument) {
   if (lua_pcall(state_, 1, 0, 0) != LUA_OK) throw std::runtime_error(taken_message());
 }
 
-// --- making ---
-
-Interpreter::Interpreter(std::shared_ptr<const Script> script, const hal::RobotKind& kind,
-                         const std::vector<hal::ListedDevice>& devices)
-    : script_(std::move(script)), kind_(kind) {
-  static std::once_flag once;
-  std::call_once(once, [] {
-    struct sigaction action {};
-    action.sa_handler = &on_signal;
-    action.sa_flags = SA_RESTART | SA_ONSTACK;
-    sigemptyset(&action.sa_mask);
-    sigaction(watchdog_signal(), &action, nullptr);
-  });
-  if (devices.size() > Actor::kMostDevices)
-    throw std::runtime_error("has more devices than " + std::to_string(Actor::kMostDevices) + " in its configuration");
-  for (const hal::ListedDevice& listed : devices) {
-    Device device;
-    device.type = listed.port;
-    device.written = listed.written;
-    for (const DeviceApi& api : device_apis()) {
-      if (api.role == listed.port->role && api.port == listed.port->name && api.layout == listed.port->layout)
-        device.api = &api;
-    }
-    if (device.api != nullptr && device.api->fill != nullptr) filled_.push_back(devices_.size());
-    devices_.push_back(std::move(device));
-  }
-  state_ = lua_newstate(&Memory::allocate, &memory_);
-  if (state_ == nullptr) throw std::runtime_error("has no memory for an interpreter");
-  *static_cast<Interpreter**>(lua_getextraspace(state_)) = this;
-  try {
-    const Call call(*this);
-    protect(&protected_setup, nullptr);
-  } catch (...) {
-    lua_close(state_);
-    throw;
-  }
-  watch(*this);
-}
-
-Interpreter::~Interpreter() {
-  unwatch(*this);
-  lua_close(state_);
-}
-
-int Interpreter::protected_setup(lua_State* L) {
-  lua_settop(L, 0);
-  of(L).filling_ = true;  // shared tables take what is put into them
-  of(L).setup(L);
-  return 0;
-}
-
-bool Interpreter::compile(lua_State* L, std::string_view text, const char* name) noexcept {
-  Source source{without_marks(text)};
-  return lua_load(L, &Source::read, &source, name, "t") == LUA_OK;
-}
-
-void Interpreter::make_shared(lua_State* L) noexcept {
-  lua_rawgeti(L, LUA_REGISTRYINDEX, shared_meta_);
-  lua_setmetatable(L, -2);
-}
-
-void Interpreter::setup(lua_State* L) {
-  const auto meta = [L](lua_CFunction index, lua_CFunction newindex) {
-    lua_newtable(L);
-    lua_pushcfunction(L, index);
-    lua_setfield(L, -2, "__index");
-    lua_pushcfunction(L, newindex);
-    lua_setfield(L, -2, "__newindex");
-    lua_pushboolean(L, 0);
-    lua_setfield(L, -2, "__metatable");
-  };
-  meta(&shared_index, &shared_newindex);
-  shared_meta_ = luaL_ref(L, LUA_REGISTRYINDEX);
-
-  lua_newtable(L);  // 1: what all robots have
-  open_libraries(L, *this);
-  lua_newtable(L);  // 2: robot
-  open_random(L);
-  for (std::size_t i = 0; i < devices_.size(); ++i) {
-    const DeviceApi* const api = devices_[i].api;
-    if (api == nullptr) continue;
-    lua_getfield(L, 2, api->table);
-    if (!lua_istable(L, -1)) {
-      lua_pop(L, 1);
-      lua_newtable(L);
-      lua_pushvalue(L, -1);
-      lua_setfield(L, 2, api->table);
-    }
-    lua_pushvalue(L, -1);
-    devices_[i].table = luaL_ref(L, LUA_REGISTRYINDEX);
-    if (api->open != nullptr) api->open(L, *this, i);
-    lua_settop(L, 3);
-    make_shared(L);
-    lua_settop(L, 2);
-  }
-  open_ports(L, *this);
-  meta(&robot_index, &shared_newindex);
-  lua_setmetatable(L, 2);
-  lua_setfield(L, 1, "robot");
-
-  if (!compile(L, kVectors, "=vectors")) lua_error(L);
-  lua_pushvalue(L, 1);
-  lua_call(L, 1, 0);
-  for (const char* const maker : {"vector2", "vector3", "orientation"}) {  // what devices call
-    const char* const name = lua_pushfstring(L, "_tandem_%s", maker);
-    const char* const kept = lua_pushfstring(L, "tandem.%s", maker);
-    lua_getfield(L, 1, name);
-    lua_setfield(L, LUA_REGISTRYINDEX, kept);
-    lua_pushnil(L);
-    lua_setfield(L, 1, name);
-    lua_settop(L, 1);
-  }
-
-  if (script_->strict) {
-    lua_newtable(L);
-    lua_pushcfunction(L, &unknown_global);
-    lua_setfield(L, -2, "__index");
-    lua_setmetatable(L, 1);
-  }
-  // Names that the script uses are put into each robot's globals: found there, they cost the least.
-  lua_newtable(L);
-  lua_pushnil(L);
-  while (lua_next(L, 1) != 0) {
-    if (lua_type(L, -2) == LUA_TSTRING && mentions(script_->text(), lua_tostring(L, -2))) {
-      lua_pushvalue(L, -2);
-      lua_insert(L, -2);
-      lua_rawset(L, 2);
-    } else {
-      lua_pop(L, 1);
-    }
-  }
-  direct_ = luaL_ref(L, LUA_REGISTRYINDEX);
-
-  lua_newtable(L);
-  lua_pushvalue(L, 1);
-  lua_setfield(L, -2, "__index");
-  lua_pushboolean(L, 0);
-  lua_setfield(L, -2, "__metatable");
-  globals_meta_ = luaL_ref(L, LUA_REGISTRYINDEX);
-
-  if (!compile(L, script_->text(), ("@" + script_->path).c_str())) lua_error(L);
-  chunk_ = luaL_ref(L, LUA_REGISTRYINDEX);
-
-  // Functions of shared tables, to notice when one is replaced.
-  lua_newtable(L);                                                   // 2
-  const auto remember = [L](const char* prefix, const char* name) {  // the table on the top, which stays there
-    lua_newtable(L);
-    lua_pushnil(L);
-    while (lua_next(L, -3) != 0) {
-      if (lua_isfunction(L, -1)) {
-        lua_pushvalue(L, -2);
-        lua_insert(L, -2);
-        lua_rawset(L, -4);
-      } else {
-        lua_pop(L, 1);
-      }
-    }
-    lua_pushvalue(L, -2);
-    lua_rawseti(L, -2, 0);  // the table itself
-    lua_pushfstring(L, "%s%s", prefix, name);
-    lua_rawseti(L, -2, 1);
-    lua_rawseti(L, 2, static_cast<lua_Integer>(lua_rawlen(L, 2)) + 1);
-  };
-  for (const char* const library : {"math", "string", "table", "coroutine", "utf8", "os", "debug"}) {
-    lua_getfield(L, 1, library);
-    remember("", library);
-    make_shared(L);
-    lua_settop(L, 2);
-  }
-  lua_getfield(L, 1, "robot");
-  lua_pushnil(L);
-  while (lua_next(L, 3) != 0) {
-    if (lua_istable(L, -1)) remember("robot.", lua_tostring(L, -2));
-    lua_settop(L, 4);
-  }
-  lua_settop(L, 2);
-  pristine_ = luaL_ref(L, LUA_REGISTRYINDEX);
-
-  common_ = luaL_ref(L, LUA_REGISTRYINDEX);
-  // All that there is now is shared: no robot's state.
-  lua_settop(L, 0);
-  lua_pushnil(L);
-  lua_pushnil(L);
-  lua_newtable(L);
-  lua_newtable(L);
-  lua_newtable(L);
-  Walk walk(L);
-  for (const int root : {common_, direct_, globals_meta_, shared_meta_, pristine_, chunk_}) {
-    lua_rawgeti(L, LUA_REGISTRYINDEX, root);
-    walk.visit(-1);
-    lua_settop(L, 5);
-  }
-  lua_pushliteral(L, "");
-  if (lua_getmetatable(L, -1) != 0) walk.visit(-1);
-  lua_settop(L, 5);
-  walk.run();
-  lua_settop(L, 3);
-  shared_ = luaL_ref(L, LUA_REGISTRYINDEX);
-}
-
-void Interpreter::check_shared(lua_State* L) {
-  const int top = lua_gettop(L);
-  lua_rawgeti(L, LUA_REGISTRYINDEX, pristine_);
-  const auto count = static_cast<lua_Integer>(lua_rawlen(L, -1));
-  for (lua_Integer i = 1; i <= count; ++i) {
-    lua_rawgeti(L, top + 1, i);
-    lua_rawgeti(L, -1, 0);
-    lua_pushnil(L);
-    while (lua_next(L, top + 2) != 0) {
-      if (lua_type(L, -2) == LUA_TSTRING) {
-        lua_pushvalue(L, -2);
-        lua_rawget(L, top + 3);
-        if (lua_rawequal(L, -1, -2) == 0) {
-          lua_pushvalue(L, -3);  // for the robots that follow
-          lua_pushvalue(L, -3);
-          lua_rawset(L, top + 3);
-          lua_rawgeti(L, top + 2, 1);
-          luaL_error(L, "the script replaces %s.%s, which all robots share; give its function a name of its own",
-                     lua_tostring(L, -1), lua_tostring(L, -4));
-        }
-        lua_pop(L, 1);
-      }
-      lua_pop(L, 1);
-    }
-    lua_settop(L, top + 1);
-  }
-  lua_settop(L, top);
-}
-
 // --- robots ---
 
 int Interpreter::protected_begin(lua_State* L) {
   Interpreter& in = of(L);
   Begin& begin = *static_cast<Begin*>(lua_touserdata(L, 1));
-  lua_newtable(L);  // 2: globals
+  in.variables_ = &begin.made;
+  begin.made.account.measure_at = in.script_->most_memory;
+  lua_createtable(L, 0, 4);  // 2: what is its own besides
   lua_pushvalue(L, 2);
+  begin.made.own = luaL_ref(L, LUA_REGISTRYINDEX);
+  lua_newtable(L);
+  lua_setfield(L, 2, "added");
+  lua_newtable(L);
+  lua_setfield(L, 2, "loaded");
+
+  // What a step uses is made at once, so that it lies together.
+  const std::byte* const first = in.memory_.next();
+  lua_createtable(L, 0, in.globals_of_one_);  // 3: globals
+  lua_pushvalue(L, 3);
   begin.made.globals = luaL_ref(L, LUA_REGISTRYINDEX);
-  lua_rawgeti(L, LUA_REGISTRYINDEX, in.direct_);
+  lua_rawgeti(L, LUA_REGISTRYINDEX, in.direct_);  // 4
   lua_pushnil(L);
-  while (lua_next(L, 3) != 0) {
+  while (lua_next(L, 4) != 0) {
+    if (is_original(L, -1)) {
+      lua_pop(L, 1);
+      in.push_library(L, lua_tostring(L, -1));
+    } else {
+      lua_pushvalue(L, -2);
+      lua_pushvalue(L, -2);
+      lua_rawset(L, 3);
+    }
+    lua_pop(L, 1);
+  }
+  lua_settop(L, 3);
+  lua_pushvalue(L, 3);
+  lua_setfield(L, 3, "_G");
+  in.push_robot(L);
+  lua_setfield(L, 3, "robot");
+  lua_rawgeti(L, LUA_REGISTRYINDEX, in.globals_meta_);
+  lua_setmetatable(L, 3);
+
+  in.fill(L);
+  lua_rawgeti(L, LUA_REGISTRYINDEX, in.chunk_);
+  lua_pushvalue(L, 3);
+  in.run(L, 1);
+  if (in.memory_.next() > first && in.memory_.next() - first < kMostHot) {
+    begin.made.hot = first;
+    begin.made.hot_bytes = static_cast<std::size_t>(in.memory_.next() - first);
+  }
+  lua_pushliteral(L, "step");
+  if (lua_rawget(L, 3) != LUA_TFUNCTION)
+    luaL_error(L, "%s has no function step(), which is called in every step", in.script_->path.c_str());
+  lua_pushliteral(L, "init");
+  if (lua_rawget(L, 3) == LUA_TFUNCTION) in.run(L, 0);
+  lua_settop(L, 3);
+  in.globals_of_one_ = 0;
+  for (lua_pushnil(L); lua_next(L, 3) != 0; lua_pop(L, 1)) ++in.globals_of_one_;
+  return 0;
+}
+
+/// Pushes the table `robot` of the present robot.
+void Interpreter::push_robot(lua_State* L) {
+  lua_createtable(L, 0, 8);
+  const int robot = lua_gettop(L);
+  lua_rawgeti(L, LUA_REGISTRYINDEX, parts_);
+  lua_pushnil(L);
+  while (lua_next(L, robot + 1) != 0) {
+    if (is_original(L, -1)) {
+      push_late_copy(L, -1);
+      lua_replace(L, -2);
+    }
     lua_pushvalue(L, -2);
     lua_insert(L, -2);
-    lua_rawset(L, 2);
+    lua_rawset(L, robot);
   }
-  lua_settop(L, 2);
-  lua_pushvalue(L, 2);
-  lua_setfield(L, 2, "_G");
-  lua_rawgeti(L, LUA_REGISTRYINDEX, in.globals_meta_);
-  lua_setmetatable(L, 2);
-
-  lua_createtable(L, 0, 4);  // 3: what is its own besides
+  lua_pushlstring(L, actor_->id.data(), actor_->id.size());
+  lua_setfield(L, robot, "id");
   lua_newtable(L);
-  lua_setfield(L, 3, "added");
-  lua_newtable(L);
-  lua_setfield(L, 3, "loaded");
-  lua_newtable(L);
-  for (const hal::NamedText& param : in.script_->params) {
+  for (const hal::NamedText& param : script_->params) {
     lua_pushlstring(L, param.value.data(), param.value.size());
     lua_setfield(L, -2, param.name.c_str());
   }
-  lua_setfield(L, 3, "params");
-  begin.made.own = luaL_ref(L, LUA_REGISTRYINDEX);
-
-  in.variables_ = &begin.made;
-  in.fill(L);
-  lua_rawgeti(L, LUA_REGISTRYINDEX, in.chunk_);
-  lua_pushvalue(L, 2);
-  lua_call(L, 1, 0);
-  in.check_shared(L);
-  lua_settop(L, 2);
-  lua_pushliteral(L, "step");
-  if (lua_rawget(L, 2) != LUA_TFUNCTION)
-    luaL_error(L, "%s has no function step(), which is called in every step", in.script_->path.c_str());
-  lua_pushliteral(L, "init");
-  if (lua_rawget(L, 2) == LUA_TFUNCTION) {
-    lua_call(L, 0, 0);
-    in.check_shared(L);
-  }
-  return 0;
+  lua_setfield(L, robot, "params");
+  lua_settop(L, robot);
 }
 
 Variables Interpreter::begin(Actor& actor) {
@@ -659,12 +352,14 @@ Variables Interpreter::begin(Actor& actor) {
   return begin.made;
 }
 
-void Interpreter::end(const Variables& variables) noexcept {
+void Interpreter::end(Variables& variables) noexcept {
+  if (strings_now_ == variables.strings) strings_now_ = kUnknown;  // another robot's can get its number
+  luaL_unref(state_, LUA_REGISTRYINDEX, variables.strings);
   luaL_unref(state_, LUA_REGISTRYINDEX, variables.globals);
   luaL_unref(state_, LUA_REGISTRYINDEX, variables.own);
 }
 
-bool Interpreter::has(const Variables& variables, const char* function) {
+bool Interpreter::has(Variables& variables, const char* function) {
   const Call call(*this);
   variables_ = &variables;
   Function asked{function, false};
@@ -680,7 +375,7 @@ bool Interpreter::has(const Variables& variables, const char* function) {
   return asked.found;
 }
 
-bool Interpreter::call(Actor& actor, const Variables& variables, const char* function) {
+bool Interpreter::call(Actor& actor, Variables& variables, const char* function) {
   const Call call(*this);
   actor_ = &actor;
   variables_ = &variables;
@@ -692,25 +387,11 @@ bool Interpreter::call(Actor& actor, const Variables& variables, const char* fun
         of(L).push_globals(L);
         lua_pushstring(L, f.name);
         f.found = lua_rawget(L, -2) == LUA_TFUNCTION;
-        if (f.found) lua_call(L, 0, 0);
+        if (f.found) of(L).run(L, 0);
         return 0;
       },
       &asked);
   return asked.found;
-}
-
-/// Another robot's turn begins: it has all its instructions.
-void Interpreter::disarm() noexcept {
-  lua_sethook(state_, nullptr, 0, 0);
-  armed_.store(false, std::memory_order_relaxed);
-  overtime_ = false;
-  counted_ = 0;
-}
-
-void Interpreter::fill(lua_State* L) {
-  filling_ = true;
-  for (const std::size_t i : filled_) devices_[i].api->fill(L, *this, i, actor_->ports[i]);
-  filling_ = false;
 }
 
 int Interpreter::protected_step(lua_State* L) {
@@ -722,13 +403,11 @@ int Interpreter::protected_step(lua_State* L) {
     if (turn.actor == nullptr) return 0;
     in.actor_ = turn.actor;
     in.variables_ = turn.variables;
-    in.turns_.store(in.turns_.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
-    if (in.armed_.load(std::memory_order_relaxed)) in.disarm();
     in.fill(L);
     lua_rawgeti(L, LUA_REGISTRYINDEX, turn.variables->globals);
     lua_pushvalue(L, 2);
     lua_rawget(L, -2);
-    lua_call(L, 0, 0);
+    in.run(L, 0);
     lua_settop(L, 2);
   }
 }
@@ -740,78 +419,58 @@ std::string Interpreter::step(Turn (*next)(void*), void* job) noexcept {
   lua_pushcfunction(state_, &protected_step);
   lua_pushlightuserdata(state_, &todo);
   if (lua_pcall(state_, 1, 0, 0) == LUA_OK) return {};
+  if (steps_.over == Steps::Over::Memory && variables_ != nullptr) empty(*variables_);
   return taken_message();
+}
+
+/// What the robot had, which is at its end, is garbage from now on.
+void Interpreter::empty(const Variables& variables) noexcept {
+  for (const int table : {variables.globals, variables.own}) {
+    lua_rawgeti(state_, LUA_REGISTRYINDEX, table);
+    lua_pushnil(state_);
+    while (lua_next(state_, -2) != 0) {
+      lua_pop(state_, 1);
+      lua_pushvalue(state_, -1);
+      lua_pushnil(state_);
+      lua_rawset(state_, -4);
+    }
+    lua_pop(state_, 1);
+  }
 }
 
 // --- copies ---
 
+std::uint64_t Interpreter::measured(lua_State* L) {
+  return measure_reached(L, {variables_->globals, variables_->own}, shared_);
+}
+
 int Interpreter::protected_keep(lua_State* L) {
   Interpreter& in = of(L);
-  Keep& keep = *static_cast<Keep*>(lua_touserdata(L, 1));
-  lua_newtable(L);  // 2: what is kept
-  lua_newtable(L);  // 3: what was seen
-  lua_rawgeti(L, LUA_REGISTRYINDEX, in.shared_);
-  lua_newtable(L);  // 5: what is to be looked at
-  Walk walk(L);
-  for (const int root : {keep.variables->globals, keep.variables->own}) {
-    lua_rawgeti(L, LUA_REGISTRYINDEX, root);
-    walk.visit(-1);
-    lua_settop(L, 5);
-  }
-  walk.run();
-  lua_settop(L, 2);
-  keep.kept = luaL_ref(L, LUA_REGISTRYINDEX);
+  push_record(L, {in.variables_->globals, in.variables_->own}, in.shared_);
+  *static_cast<int*>(lua_touserdata(L, 1)) = luaL_ref(L, LUA_REGISTRYINDEX);
   return 0;
 }
 
-int Interpreter::keep(const Variables& variables) {
+int Interpreter::keep(Variables& variables) {
   const Call call(*this);
-  Keep keep{&variables, LUA_NOREF};
-  protect(&protected_keep, &keep);
-  return keep.kept;
+  variables_ = &variables;
+  int kept = LUA_NOREF;
+  protect(&protected_keep, &kept);
+  return kept;
 }
 
 int Interpreter::protected_put_back(lua_State* L) {
+  Interpreter& in = of(L);
   lua_rawgeti(L, LUA_REGISTRYINDEX, *static_cast<const int*>(lua_touserdata(L, 1)));
-  const auto count = static_cast<lua_Integer>(lua_rawlen(L, 2));
-  for (lua_Integer i = 1; i < count; i += 2) {
-    lua_rawgeti(L, 2, i);      // 3: table or function
-    lua_rawgeti(L, 2, i + 1);  // 4: what it held
-    const auto held = static_cast<lua_Integer>(lua_rawlen(L, 4));
-    if (lua_istable(L, 3)) {
-      lua_pushnil(L);
-      while (lua_next(L, 3) != 0) {
-        lua_pop(L, 1);
-        lua_pushvalue(L, -1);
-        lua_pushnil(L);
-        lua_rawset(L, 3);
-      }
-      lua_rawgeti(L, 4, 1);
-      if (!lua_istable(L, -1)) lua_pushnil(L);
-      lua_setmetatable(L, 3);
-      lua_settop(L, 4);
-      for (lua_Integer k = 2; k < held; k += 2) {
-        lua_rawgeti(L, 4, k);
-        lua_rawgeti(L, 4, k + 1);
-        lua_rawset(L, 3);
-      }
-    } else {
-      for (lua_Integer k = 1; k <= held; ++k) {
-        lua_rawgeti(L, 4, k);
-        if (lua_touserdata(L, -1) == &no_value) {
-          lua_pop(L, 1);
-          lua_pushnil(L);
-        }
-        lua_setupvalue(L, 3, static_cast<int>(k));
-      }
-    }
-    lua_settop(L, 2);
-  }
+  put_back_record(L);
+  in.push_own(L);
+  in.find_strings(L, *in.variables_);
   return 0;
 }
 
-void Interpreter::put_back(int kept) {
+void Interpreter::put_back(Variables& variables, int kept) {
   const Call call(*this);
+  variables_ = &variables;
   protect(&protected_put_back, &kept);
 }
 

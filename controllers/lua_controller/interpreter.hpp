@@ -1,21 +1,20 @@
 // A Lua interpreter that the robots of one block share, each with variables of its own.
 //
 // The script is compiled once. It is run once a robot, with an environment of that robot's, so that globals, and the
-// locals of the file, are each robot's own, while the code, the libraries and the table `robot` are there once: they
-// stay in the cache from one robot's step to the next. The tables below `robot` are filled with a robot's readings just
-// before its turn. Assigning a new field to a shared table keeps it for that robot alone.
+// locals of the file, are each robot's own, while the code, the libraries and the readings of sensors are there once:
+// they stay in the cache from one robot's step to the next. What a robot writes into a table that others have too is
+// its own from then on (own_tables.hpp). What a call may take is counted by the robot (limits.hpp, memory.hpp).
 #pragma once
 #include <array>
-#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <mutex>
-#include <pthread.h>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "controllers/lua_controller/limits.hpp"
 #include "controllers/lua_controller/lua.hpp"
 #include "controllers/lua_controller/memory.hpp"
 #include "hal/device_list.hpp"
@@ -35,8 +34,12 @@ struct Script {
   std::string path;
   std::vector<hal::SourceFile> files;  ///< itself, and modules that it names
   bool strict = false;
-  std::int64_t most_instructions = 0;  ///< of one call
+  std::int64_t most_instructions = 0;  ///< of one call: Steps
+  std::uint64_t most_memory =
+      0;  ///< bytes that a robot keeps from call to call; a call may take kMemoryOfCall times as much
   std::vector<hal::NamedText> params;  ///< robot.params
+
+  static constexpr std::uint64_t kMemoryOfCall = 16;
 
   const std::string& text() const { return files.front().text; }
   /// A file by its name beneath the folder: of `files`, or of the disk. False: there is none.
@@ -70,6 +73,15 @@ struct Actor {
 struct Variables {
   int globals = LUA_NOREF;  ///< the environment of its functions
   int own = LUA_NOREF;      ///< what belongs to it besides: fields in shared tables, modules, params
+  int strings = LUA_NOREF;  ///< the library of texts, where it has changed it: what "x":name() looks in
+  Account account = {};
+  const std::byte* hot = nullptr;  ///< where what its step uses lies together
+  std::size_t hot_bytes = 0;
+
+  /// Called a turn before: then it is in the cache.
+  [[gnu::always_inline]] void prefetch() const noexcept {  // not inline, GCC leaves it out: it returns nothing
+    for (std::size_t at = 0; at < hot_bytes; at += 64) __builtin_prefetch(hot + at);
+  }
 };
 
 class Interpreter {
@@ -92,23 +104,23 @@ class Interpreter {
   /// Runs the script for a new robot, and its `init`. @throws std::runtime_error
   Variables begin(Actor& actor);
   /// Calls a function of the script without arguments; false where it has none. @throws std::runtime_error
-  bool call(Actor& actor, const Variables& variables, const char* function);
-  bool has(const Variables& variables, const char* function);
-  void end(const Variables& variables) noexcept;
+  bool call(Actor& actor, Variables& variables, const char* function);
+  bool has(Variables& variables, const char* function);
+  void end(Variables& variables) noexcept;
 
   /// One after the other, `next(job, …)` names a robot and its variables, until it says null; their `step` is called.
   /// Empty: all were; else what went wrong with the last that was named.
   struct Turn {
     Actor* actor = nullptr;
-    const Variables* variables = nullptr;
+    Variables* variables = nullptr;
   };
   std::string step(Turn (*next)(void* job), void* job) noexcept;
 
   /// Everything that a robot's functions can change, as it is now; to be given back with `forget`.
   /// @throws std::runtime_error: something cannot be kept
-  int keep(const Variables& variables);
+  int keep(Variables& variables);
   /// Puts that back. @throws std::runtime_error
-  void put_back(int kept);
+  void put_back(Variables& variables, int kept);
   int share(int kept);
   void forget(int kept) noexcept;
 
@@ -122,33 +134,66 @@ class Interpreter {
   void push_globals(lua_State* state) noexcept { lua_rawgeti(state, LUA_REGISTRYINDEX, variables_->globals); }
   /// Pushes the compiled chunk of a text, which takes its environment as its only argument, or an error message.
   bool compile(lua_State* state, std::string_view text, const char* name) noexcept;
-  /// Makes the table on the top one that robots share (see above).
-  void make_shared(lua_State* state) noexcept;
-  /// Which thread of the script runs: the watchdog sets its hook there.
-  lua_State* running() const noexcept { return running_; }
-  void set_running(lua_State* state) noexcept { running_ = state; }
-  /// Whether the present call has had all its instructions.
-  bool overtime() const noexcept { return overtime_; }
-  int no_end(lua_State* state);  // raises the error of that, at the place whose text is on the top
+  /// The same for a file that all robots of the interpreter have: nobody is charged for it.
+  bool compile_for_all(lua_State* state, std::string_view text, const char* name) noexcept;
+  /// Pushes the present robot's own instance of a library, which its globals hold from then on; false where there is
+  /// none of that name.
+  bool push_library(lua_State* state, const char* name);
+  /// A late copy of the present robot's has become a copy in full.
+  void became_own(lua_State* state);
 
-  /// The watchdog's, on its own thread: makes the call count its instructions that has lasted since the last look.
-  void look() noexcept;
+  Steps& steps() noexcept { return steps_; }
+  /// Counts what a library function does; raises an error when the call has had all its steps.
+  void spend(lua_State* state, std::int64_t count) {
+    steps_.left -= count;
+    if (steps_.left < 0) exhausted(state);
+  }
+  /// Raises the error of a call that is over, at the place whose text is on the top.
+  int stop(lua_State* state);
+  /// While `on` is false a coroutine runs.
+  bool set_on_main(bool on) noexcept {
+    const bool before = on_main_;
+    on_main_ = on;
+    memory_.set_on_main(on);
+    return before;
+  }
+  /// Lua's hook, which is called when the steps that were granted are done.
+  static void look(lua_State* state, lua_Debug* where);
 
  private:
-  class Call;  // marks that a script runs
-  static void count(lua_State* state, lua_Debug* where);
-  static void on_signal(int) noexcept;
+  /// Marks that the interpreter is used.
+  class Call {
+   public:
+    explicit Call(Interpreter& in) : in_(in) { in.set_on_main(true); }
+    ~Call() { in_.leave(); }
+    Call(const Call&) = delete;
+    Call& operator=(const Call&) = delete;
+
+   private:
+    Interpreter& in_;
+  };
   static int protected_step(lua_State* state);
   static int protected_setup(lua_State* state);
   static int protected_begin(lua_State* state);
   static int protected_keep(lua_State* state);
   static int protected_put_back(lua_State* state);
-  static int message(lua_State* state);
+  static int unknown_global(lua_State* state);
 
+  void leave() noexcept;
   void setup(lua_State* state);
-  void check_shared(lua_State* state);
-  void disarm() noexcept;
+  void setup_robot(lua_State* state);
+  void setup_globals(lua_State* state);
+  void note_shared(lua_State* state);
+  void push_robot(lua_State* state);
   void fill(lua_State* state);
+  void run(lua_State* state, int arguments);
+  void exhausted(lua_State* state);
+  void collect(lua_State* state) noexcept;
+  std::uint64_t measured(lua_State* state);
+  void check_kept(lua_State* state);
+  void select_strings(lua_State* state, int strings);
+  void find_strings(lua_State* state, Variables& variables);
+  void empty(const Variables& variables) noexcept;
   std::string taken_message();
   std::vector<std::string> shared_names();
   void protect(lua_CFunction function, void* argument);
@@ -157,26 +202,20 @@ class Interpreter {
   const hal::RobotKind& kind_;
   std::vector<Device> devices_;
   std::vector<std::size_t> filled_;  // numbers of the devices that have readings
-  Memory memory_;
+  Steps steps_;
+  Memory memory_{steps_};
   lua_State* state_ = nullptr;
   std::mutex lock_;
 
   Actor* actor_ = nullptr;
-  const Variables* variables_ = nullptr;
-  bool filling_ = false;
-  int chunk_ = LUA_NOREF, globals_meta_ = LUA_NOREF, shared_meta_ = LUA_NOREF, shared_ = LUA_NOREF,
-      pristine_ = LUA_NOREF, direct_ = LUA_NOREF, common_ = LUA_NOREF;
-
-  // The watchdog's.
-  lua_State* running_ = nullptr;
-  std::atomic<bool> armed_{false};  // instructions are counted
-  bool overtime_ = false;
-  std::int64_t counted_ = 0;
-  std::atomic<std::uint64_t> turns_{0};
-  std::uint64_t turns_seen_ = 0;
-  std::mutex busy_lock_;
-  bool busy_ = false;
-  pthread_t thread_{};
+  Variables* variables_ = nullptr;
+  bool filling_ = false, on_main_ = true;
+  // Tables of originals and of what all have: libraries, parts of `robot`, functions; what else is no robot's state.
+  int chunk_ = LUA_NOREF, globals_meta_ = LUA_NOREF, libraries_ = LUA_NOREF, parts_ = LUA_NOREF, shared_ = LUA_NOREF,
+      direct_ = LUA_NOREF, common_ = LUA_NOREF, strings_ = LUA_NOREF;
+  static constexpr int kUnknown = -100;
+  int globals_of_one_ = 16;      // how many globals robots have
+  int strings_now_ = LUA_NOREF;  // whose library of texts "x":name() looks in
 };
 
 }  // namespace tandem::controllers::lua

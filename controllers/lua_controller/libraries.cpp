@@ -1,5 +1,5 @@
 // The libraries that scripts have. What would differ between runs or machines is replaced or left out: the order of
-// pairs, elementary functions, random numbers, clocks, addresses in texts, files.
+// pairs, elementary functions, random numbers, clocks, addresses in texts, files. What can take long counts its steps.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -10,6 +10,8 @@
 #include <vector>
 
 #include "controllers/lua_controller/devices.hpp"
+#include "controllers/lua_controller/own_tables.hpp"
+#include "controllers/lua_controller/patterns.hpp"
 #include "hal/device/body_sensors.hpp"
 #include "hal/elementary.hpp"
 
@@ -178,6 +180,7 @@ int poisson(lua_State* L) {
   expect_arguments(L, 1, "robot.random.poisson(mean)");
   double mean = luaL_checknumber(L, 1);
   luaL_argcheck(L, mean >= 0.0 && mean <= 1e6, 1, "a mean is from 0 to 1e6");
+  Interpreter::of(L).spend(L, static_cast<std::int64_t>(mean));
   lua_Integer events = 0;
   while (mean > 0.0) {
     const double part = std::min(mean, 30.0);
@@ -251,6 +254,7 @@ void push_keys(lua_State* L, int table) {
     ++count;
     lua_pop(L, 1);
   }
+  Interpreter::of(L).spend(L, count);
   auto* const keys = static_cast<Key*>(lua_newuserdatauv(L, sizeof(Key) * static_cast<std::size_t>(count) + 1, 0));
   const int memory = lua_gettop(L);
   lua_createtable(L, static_cast<int>(count), 0);
@@ -296,6 +300,13 @@ int next_of_pairs(lua_State* L) {  // (table, key before): upvalues keys, number
   return 2;
 }
 
+/// A late copy at 1 is replaced by a table of all that it shows.
+void show_whole(lua_State* L) {
+  if (!is_late(L, 1)) return;
+  push_whole(L, 1);
+  lua_replace(L, 1);
+}
+
 int pairs(lua_State* L) {
   luaL_checkany(L, 1);
   if (luaL_getmetafield(L, 1, "__pairs") != LUA_TNIL) {
@@ -305,6 +316,7 @@ int pairs(lua_State* L) {
   }
   luaL_checktype(L, 1, LUA_TTABLE);
   lua_settop(L, 1);
+  show_whole(L);
   push_keys(L, 1);
   lua_pushinteger(L, 0);
   lua_pushcclosure(L, &next_of_pairs, 2);
@@ -316,6 +328,7 @@ int pairs(lua_State* L) {
 int next(lua_State* L) {
   luaL_checktype(L, 1, LUA_TTABLE);
   lua_settop(L, 2);
+  show_whole(L);
   const bool first = lua_isnil(L, 2);
   const Key before = first ? Key{} : key_at(L, 2);
   if (before.rank == 3) return 0;  // the last
@@ -324,8 +337,10 @@ int next(lua_State* L) {
   int objects = 0;
   lua_pushnil(L);  // 3: the least so far
   lua_pushnil(L);
+  std::int64_t looked_at = 0;
   while (lua_next(L, 1) != 0) {
     lua_pop(L, 1);
+    ++looked_at;
     const Key key = key_at(L, -1);
     if (key.rank == 3 && ++objects > 1) no_order(L);
     if ((first || before < key) && (!found || key < least)) {
@@ -335,6 +350,7 @@ int next(lua_State* L) {
       lua_replace(L, 3);
     }
   }
+  Interpreter::of(L).spend(L, looked_at);
   lua_settop(L, 3);
   if (!found) return 1;
   lua_pushvalue(L, 3);
@@ -360,6 +376,7 @@ int sort(lua_State* L) {
   lua_settop(L, 2);
   const lua_Integer n = luaL_len(L, 1);
   luaL_argcheck(L, n < std::numeric_limits<int>::max(), 1, "array too big");
+  for (lua_Integer width = 1; width < n; width *= 2) Interpreter::of(L).spend(L, n);
   lua_createtable(L, static_cast<int>(std::max<lua_Integer>(n, 0)), 0);  // 3
   lua_createtable(L, static_cast<int>(std::max<lua_Integer>(n, 0)), 0);  // 4
   for (lua_Integer i = 1; i <= n; ++i) {
@@ -397,43 +414,6 @@ int sort(lua_State* L) {
 }
 
 // --- texts ---
-
-/// As tostring, but tables and functions are told by the number in which this robot first asked for one.
-void push_text(lua_State* L, int index) {
-  index = lua_absindex(L, index);
-  const int type = lua_type(L, index);
-  const bool object = type == LUA_TTABLE || type == LUA_TFUNCTION || type == LUA_TTHREAD || type == LUA_TUSERDATA;
-  if (!object || luaL_getmetafield(L, index, "__tostring") != LUA_TNIL) {
-    if (object) lua_pop(L, 1);
-    luaL_tolstring(L, index, nullptr);
-    return;
-  }
-  Interpreter::of(L).push_own(L);
-  if (lua_getfield(L, -1, "numbers") != LUA_TTABLE) {
-    lua_pop(L, 1);
-    lua_newtable(L);
-    lua_pushinteger(L, 0);
-    lua_rawseti(L, -2, 0);
-    lua_pushvalue(L, -1);
-    lua_setfield(L, -3, "numbers");
-  }
-  lua_pushvalue(L, index);
-  if (lua_rawget(L, -2) != LUA_TNUMBER) {
-    lua_pop(L, 1);
-    lua_rawgeti(L, -1, 0);
-    const lua_Integer number = lua_tointeger(L, -1) + 1;
-    lua_pop(L, 1);
-    lua_pushinteger(L, number);
-    lua_rawseti(L, -2, 0);
-    lua_pushvalue(L, index);
-    lua_pushinteger(L, number);
-    lua_rawset(L, -3);
-    lua_pushinteger(L, number);
-  }
-  lua_pushfstring(L, "%s: %I", luaL_typename(L, index), static_cast<LUAI_UACINT>(lua_tointeger(L, -1)));
-  lua_insert(L, -4);
-  lua_pop(L, 3);
-}
 
 int tostring(lua_State* L) {
   luaL_checkany(L, 1);
@@ -547,16 +527,35 @@ int raw_set(lua_State* L) {
   luaL_checktype(L, 1, LUA_TTABLE);
   luaL_checkany(L, 2);
   luaL_checkany(L, 3);
-  if (luaL_getmetafield(L, 1, "__metatable") != LUA_TNIL)
-    return luaL_error(L, "rawset: this table is shared by all robots");
   lua_settop(L, 3);
-  lua_rawset(L, 1);
+  if (is_late(L, 1)) {
+    set_late(L);
+  } else {
+    if (luaL_getmetafield(L, 1, "__metatable") != LUA_TNIL)
+      return luaL_error(L, "rawset: this table is shared by all robots");
+    lua_rawset(L, 1);
+  }
+  lua_settop(L, 1);
+  return 1;
+}
+
+int raw_get(lua_State* L) {
+  luaL_checktype(L, 1, LUA_TTABLE);
+  luaL_checkany(L, 2);
+  lua_settop(L, 2);
+  return get_late(L);
+}
+
+int raw_length(lua_State* L) {
+  luaL_argexpected(L, lua_istable(L, 1) || lua_type(L, 1) == LUA_TSTRING, 1, "table or string");
+  lua_pushinteger(L, is_late(L, 1) ? luaL_len(L, 1) : static_cast<lua_Integer>(lua_rawlen(L, 1)));
   return 1;
 }
 
 int left_out(lua_State* L) {  // upvalue: the library's name
+  push_text(L, 2);
   return luaL_error(L, "%s.%s is not there: what a robot does depends on its sensors and on its random numbers alone",
-                    lua_tostring(L, lua_upvalueindex(1)), luaL_tolstring(L, 2, nullptr));
+                    lua_tostring(L, lua_upvalueindex(1)), lua_tostring(L, -1));
 }
 
 // --- code ---
@@ -582,7 +581,7 @@ Loaded push_file(lua_State* L, const char* name) {
     } catch (const std::exception&) {
       found = false;
     }
-    if (found) compiled = Interpreter::of(L).compile(L, text, path.c_str());
+    if (found) compiled = Interpreter::of(L).compile_for_all(L, text, path.c_str());
   }
   if (!found) {
     lua_pop(L, 1);
@@ -664,7 +663,36 @@ int load(lua_State* L) {
   return 1;
 }
 
-// --- coroutines, which the watchdog has to know of ---
+// --- calls in calls ---
+
+/// How errors reach the handler of xpcall: not when the call is over, which no handler may put off.
+int handle(lua_State* L) {  // upvalue: the handler
+  if (Interpreter::of(L).steps().over != Steps::Over::No) return 1;
+  lua_pushvalue(L, lua_upvalueindex(1));
+  lua_insert(L, 1);
+  lua_call(L, 1, 1);
+  return 1;
+}
+
+/// Stack: the handler, true, results.
+int end_of_xpcall(lua_State* L, int status, lua_KContext) {
+  if (status == LUA_OK || status == LUA_YIELD) return lua_gettop(L) - 1;
+  lua_pushboolean(L, 0);
+  lua_pushvalue(L, -2);
+  return 2;
+}
+
+int xpcall(lua_State* L) {  // (function, handler, arguments)
+  luaL_checktype(L, 2, LUA_TFUNCTION);
+  lua_pushvalue(L, 2);
+  lua_pushcclosure(L, &handle, 1);
+  lua_replace(L, 2);
+  lua_pushboolean(L, 1);
+  lua_pushvalue(L, 1);
+  lua_rotate(L, 3, 2);  // function, handler, true, function, arguments
+  lua_remove(L, 1);     // handler, true, function, arguments
+  return end_of_xpcall(L, lua_pcallk(L, lua_gettop(L) - 3, LUA_MULTRET, 1, 0, &end_of_xpcall), 0);
+}
 
 /// Resumes with the arguments on the top. @returns the number of results on the top, or -1 with the error there
 int resume(lua_State* L, lua_State* thread, int arguments) {
@@ -679,12 +707,12 @@ int resume(lua_State* L, lua_State* thread, int arguments) {
   }
   lua_xmove(L, thread, arguments);
   int results = 0;
-  in.set_running(thread);
+  const bool on_main = in.set_on_main(false);
   const int status = lua_resume(thread, L, arguments, &results);
-  in.set_running(L);
-  if (in.overtime()) {
+  in.set_on_main(on_main);
+  if (in.steps().over != Steps::Over::No) {
     luaL_where(L, 1);
-    in.no_end(L);
+    in.stop(L);
   }
   if (status != LUA_OK && status != LUA_YIELD) {
     lua_xmove(thread, L, 1);
@@ -721,6 +749,47 @@ int coroutine_wrap(lua_State* L) {
   return 1;
 }
 
+/// A function of Lua's library that takes as many steps as `count(L)` tells. Upvalue: the function.
+template <std::int64_t (*count)(lua_State*)>
+int counted(lua_State* L) {
+  const std::int64_t steps = count(L);
+  if (steps > 0) Interpreter::of(L).spend(L, steps);
+  const int arguments = lua_gettop(L);
+  lua_pushvalue(L, lua_upvalueindex(1));
+  lua_insert(L, 1);
+  lua_call(L, arguments, LUA_MULTRET);
+  return lua_gettop(L);
+}
+
+std::int64_t length_of_first(lua_State* L) {
+  return lua_istable(L, 1) ? luaL_len(L, 1) : 0;
+}
+std::int64_t moved(lua_State* L) {
+  const lua_Integer from = luaL_optinteger(L, 2, 1);
+  const lua_Integer to = luaL_optinteger(L, 3, 0);
+  return from > 0 || to < std::numeric_limits<lua_Integer>::max() + from ? to - from : to;
+}
+std::int64_t concatenated(lua_State* L) {
+  const lua_Integer from = luaL_optinteger(L, 3, 1);
+  const lua_Integer to = lua_isnoneornil(L, 4) ? length_of_first(L) : luaL_checkinteger(L, 4);
+  return from > 0 || to < std::numeric_limits<lua_Integer>::max() + from ? to - from : to;
+}
+std::int64_t repeated(lua_State* L) {  // of what is there, memory counts
+  const bool nothing = lua_rawlen(L, 1) == 0 && (lua_type(L, 3) != LUA_TSTRING || lua_rawlen(L, 3) == 0);
+  return nothing ? luaL_checkinteger(L, 2) : 0;
+}
+std::int64_t length_of_text(lua_State* L) {
+  return lua_type(L, 1) == LUA_TSTRING ? static_cast<std::int64_t>(lua_rawlen(L, 1) / 16) : 0;
+}
+
+/// The function `name` of the library on the top counts from now on.
+template <std::int64_t (*count)(lua_State*)>
+void count_steps(lua_State* L, const char* name) {
+  lua_getfield(L, -1, name);
+  lua_pushcclosure(L, &counted<count>, 1);
+  lua_setfield(L, -2, name);
+}
+
 template <std::size_t kCount>
 void take_away(lua_State* L, const char* const (&names)[kCount]) {
   for (const char* const name : names) {
@@ -743,6 +812,42 @@ void open(lua_State* L, int all, const char* name, lua_CFunction library) {
 
 }  // namespace
 
+void push_text(lua_State* L, int index) {
+  index = lua_absindex(L, index);
+  const int type = lua_type(L, index);
+  const bool object = type == LUA_TTABLE || type == LUA_TFUNCTION || type == LUA_TTHREAD || type == LUA_TUSERDATA;
+  if (!object || luaL_getmetafield(L, index, "__tostring") != LUA_TNIL) {
+    if (object) lua_pop(L, 1);
+    luaL_tolstring(L, index, nullptr);
+    return;
+  }
+  Interpreter::of(L).push_own(L);
+  if (lua_getfield(L, -1, "numbers") != LUA_TTABLE) {
+    lua_pop(L, 1);
+    lua_newtable(L);
+    lua_pushinteger(L, 0);
+    lua_rawseti(L, -2, 0);
+    lua_pushvalue(L, -1);
+    lua_setfield(L, -3, "numbers");
+  }
+  lua_pushvalue(L, index);
+  if (lua_rawget(L, -2) != LUA_TNUMBER) {
+    lua_pop(L, 1);
+    lua_rawgeti(L, -1, 0);
+    const lua_Integer number = lua_tointeger(L, -1) + 1;
+    lua_pop(L, 1);
+    lua_pushinteger(L, number);
+    lua_rawseti(L, -2, 0);
+    lua_pushvalue(L, index);
+    lua_pushinteger(L, number);
+    lua_rawset(L, -3);
+    lua_pushinteger(L, number);
+  }
+  lua_pushfstring(L, "%s: %I", luaL_typename(L, index), static_cast<LUAI_UACINT>(lua_tointeger(L, -1)));
+  lua_insert(L, -4);
+  lua_pop(L, 3);
+}
+
 void expect_arguments(lua_State* L, int count, const char* call) {
   const int given = lua_gettop(L);
   if (given == count) return;
@@ -759,7 +864,6 @@ void open_random(lua_State* L) {
   set(L, "gaussian", &gaussian);
   set(L, "exponential", &exponential);
   set(L, "poisson", &poisson);
-  Interpreter::of(L).make_shared(L);
   lua_setfield(L, -2, "random");
 }
 
@@ -769,8 +873,8 @@ void open_libraries(lua_State* L, Interpreter&) {
   lua_setfield(L, LUA_REGISTRYINDEX, "tandem.files");
 
   luaL_requiref(L, "_G", luaopen_base, 0);
-  for (const char* const name : {"assert", "error", "getmetatable", "ipairs", "pcall", "rawequal", "rawget", "rawlen",
-                                 "select", "tonumber", "type", "xpcall", "_VERSION"}) {
+  for (const char* const name :
+       {"assert", "error", "getmetatable", "ipairs", "pcall", "rawequal", "select", "tonumber", "type", "_VERSION"}) {
     lua_getfield(L, -1, name);
     lua_setfield(L, all, name);
   }
@@ -779,6 +883,9 @@ void open_libraries(lua_State* L, Interpreter&) {
   set(L, "next", &next);
   set(L, "tostring", &tostring);
   set(L, "rawset", &raw_set);
+  set(L, "rawget", &raw_get);
+  set(L, "rawlen", &raw_length);
+  set(L, "xpcall", &xpcall);
   set(L, "setmetatable", &set_metatable);
   set(L, "collectgarbage", &collect_garbage);
   set(L, "require", &require);
@@ -811,6 +918,9 @@ void open_libraries(lua_State* L, Interpreter&) {
   lua_pushcclosure(L, &format, 1);
   lua_setfield(L, -2, "format");
   take_away(L, {"dump"});
+  open_patterns(L);
+  count_steps<repeated>(L, "rep");
+  for (const char* const name : {"reverse", "lower", "upper", "byte"}) count_steps<length_of_text>(L, name);
   lua_pushliteral(L, "");
   lua_getmetatable(L, -1);
   lua_pushboolean(L, 0);
@@ -819,6 +929,9 @@ void open_libraries(lua_State* L, Interpreter&) {
 
   open(L, all, LUA_TABLIBNAME, luaopen_table);
   set(L, "sort", &sort);
+  for (const char* const name : {"insert", "remove"}) count_steps<length_of_first>(L, name);
+  count_steps<moved>(L, "move");
+  count_steps<concatenated>(L, "concat");
   lua_getfield(L, -1, "unpack");
   lua_setfield(L, all, "unpack");
   lua_settop(L, all);
@@ -828,6 +941,7 @@ void open_libraries(lua_State* L, Interpreter&) {
   set(L, "wrap", &coroutine_wrap);
   lua_settop(L, all);
   open(L, all, LUA_UTF8LIBNAME, luaopen_utf8);
+  for (const char* const name : {"len", "codepoint", "offset"}) count_steps<length_of_text>(L, name);
   lua_settop(L, all);
 
   lua_newtable(L);
@@ -841,7 +955,7 @@ void open_libraries(lua_State* L, Interpreter&) {
     }
     lua_setfield(L, all, library);
   }
-  // What they lack says why. The table `os` gets the metatable of shared tables later on, `io` keeps this one.
+  // What it lacks says why.
   lua_getfield(L, all, "io");
   lua_newtable(L);
   lua_pushliteral(L, "io");

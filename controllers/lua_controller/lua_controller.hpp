@@ -23,6 +23,7 @@ class LuaController final : public hal::Controller {
     std::string written;  ///< the same, as it stands in the file
     bool strict = false;
     std::int64_t most_instructions = 100'000'000;
+    std::int64_t most_memory_MiB = 16;
     std::vector<hal::NamedText> others;
     std::shared_ptr<Interpreters> interpreters;  ///< of all robots that are made with these
     void describe(hal::ParamVisitor& v);

@@ -140,9 +140,10 @@ int push_member(lua_State* L, const Reference& at) {
   }
   luaL_pushresult(&names);
   const char* const all = lua_tostring(L, -1);
+  push_text(L, 2);
   return luaL_error(L, "the %s %s has no field '%s'; it has: %s",
                     device.type->role == hal::Role::Sensor ? "sensor" : "actuator", device.type->name.data(),
-                    luaL_tolstring(L, 2, nullptr), all);
+                    lua_tostring(L, -1), all);
 }
 
 int port_index(lua_State* L) {
@@ -157,9 +158,11 @@ int port_newindex(lua_State* L) {
   const auto& at = *static_cast<const Reference*>(luaL_checkudata(L, 1, kPort));
   const int type = push_member(L, at);
   const Device& device = Interpreter::of(L).device(at.device);
-  if (device.type->role == hal::Role::Sensor)
+  if (device.type->role == hal::Role::Sensor) {
+    push_text(L, 2);
     return luaL_error(L, "robot.sensors.%s.%s is a reading: it cannot be set", device.type->name.data(),
-                      luaL_tolstring(L, 2, nullptr));
+                      lua_tostring(L, -1));
+  }
   if (type == LUA_TNUMBER)
     return set_scalar(L, at, device.type->fields[static_cast<std::size_t>(lua_tointeger(L, -1))], 0, 3);
   const Reference list = *static_cast<const Reference*>(lua_touserdata(L, -1));  // a whole list at once
@@ -221,7 +224,6 @@ void open_ports(lua_State* L, Interpreter& in) {
       lua_setiuservalue(L, -2, 1);
       lua_setfield(L, -2, type.name.data());
     }
-    in.make_shared(L);
     lua_setfield(L, -2, role == hal::Role::Sensor ? "sensors" : "actuators");
   }
 }

@@ -1,16 +1,19 @@
-// vector2, vector3 and quaternion as ARGoS' scripts have them, written in Lua.
+// vector2, vector3 and quaternion as ARGoS' scripts have them, written in Lua. Robots share the functions; the tables
+// of methods and the metatables are reached by no script.
 #pragma once
 #include <string_view>
 
 namespace tandem::controllers::lua {
 
 inline constexpr std::string_view kVectors = R"lua(
-local setmetatable, getmetatable, type, error, select = setmetatable, getmetatable, type, error, select
+local setmetatable, getmetatable, type, error, select = setmetatable, _tandem_metatable, type, error, select
 local sqrt, sin, cos, atan = math.sqrt, math.sin, math.cos, math.atan
 local format = string.format
 
-local v2, v3, q = {}, {}, {}
-v2.__index, v3.__index, q.__index = v2, v3, q
+local m2, m3, mq = {}, {}, {}  -- methods
+local v2 = {__index = m2, __metatable = false}
+local v3 = {__index = m3, __metatable = false}
+local q = {__index = mq, __metatable = false}
 
 local function is_number(x) return type(x) == "number" end
 local function check(x, meta, name)
@@ -41,17 +44,17 @@ function v2.__div(a, b)
 end
 function v2.__eq(a, b) return getmetatable(a) == getmetatable(b) and a.x == b.x and a.y == b.y end
 function v2.__tostring(a) return format("%g,%g", a.x, a.y) end
-function v2.length(a) check(a, v2, "vector2") return sqrt(a.x * a.x + a.y * a.y) end
-function v2.square_length(a) check(a, v2, "vector2") return a.x * a.x + a.y * a.y end
-function v2.angle(a) check(a, v2, "vector2") return atan(a.y, a.x) end
-function v2.dot(a, b) check(a, v2, "vector2") check(b, v2, "vector2") return a.x * b.x + a.y * b.y end
-function v2.cross(a, b) check(a, v2, "vector2") check(b, v2, "vector2") return a.x * b.y - a.y * b.x end
-function v2.normalize(a)
-  local length = v2.length(a)
+function m2.length(a) check(a, v2, "vector2") return sqrt(a.x * a.x + a.y * a.y) end
+function m2.square_length(a) check(a, v2, "vector2") return a.x * a.x + a.y * a.y end
+function m2.angle(a) check(a, v2, "vector2") return atan(a.y, a.x) end
+function m2.dot(a, b) check(a, v2, "vector2") check(b, v2, "vector2") return a.x * b.x + a.y * b.y end
+function m2.cross(a, b) check(a, v2, "vector2") check(b, v2, "vector2") return a.x * b.y - a.y * b.x end
+function m2.normalize(a)
+  local length = m2.length(a)
   a.x, a.y = a.x / length, a.y / length
   return a
 end
-function v2.rotate(a, angle)
+function m2.rotate(a, angle)
   check(a, v2, "vector2")
   if not is_number(angle) then error("a vector2 is rotated by an angle, a number", 2) end
   local c, s = cos(angle), sin(angle)
@@ -82,20 +85,20 @@ function v3.__div(a, b)
 end
 function v3.__eq(a, b) return getmetatable(a) == getmetatable(b) and a.x == b.x and a.y == b.y and a.z == b.z end
 function v3.__tostring(a) return format("%g,%g,%g", a.x, a.y, a.z) end
-function v3.length(a) check(a, v3, "vector3") return sqrt(a.x * a.x + a.y * a.y + a.z * a.z) end
-function v3.square_length(a) check(a, v3, "vector3") return a.x * a.x + a.y * a.y + a.z * a.z end
-function v3.dot(a, b) check(a, v3, "vector3") check(b, v3, "vector3") return a.x * b.x + a.y * b.y + a.z * b.z end
-function v3.cross(a, b)
+function m3.length(a) check(a, v3, "vector3") return sqrt(a.x * a.x + a.y * a.y + a.z * a.z) end
+function m3.square_length(a) check(a, v3, "vector3") return a.x * a.x + a.y * a.y + a.z * a.z end
+function m3.dot(a, b) check(a, v3, "vector3") check(b, v3, "vector3") return a.x * b.x + a.y * b.y + a.z * b.z end
+function m3.cross(a, b)
   check(a, v3, "vector3") check(b, v3, "vector3")
   a.x, a.y, a.z = a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x
   return a
 end
-function v3.normalize(a)
-  local length = v3.length(a)
+function m3.normalize(a)
+  local length = m3.length(a)
   a.x, a.y, a.z = a.x / length, a.y / length, a.z / length
   return a
 end
-function v3.rotate(a, by)
+function m3.rotate(a, by)
   check(a, v3, "vector3") check(by, q, "quaternion")
   local w, x, y, z = by.w, by.x, by.y, by.z
   local tx, ty, tz = 2 * (y * a.z - z * a.y), 2 * (z * a.x - x * a.z), 2 * (x * a.y - y * a.x)
@@ -126,20 +129,20 @@ function q.__eq(a, b)
   return getmetatable(a) == getmetatable(b) and a.w == b.w and a.x == b.x and a.y == b.y and a.z == b.z
 end
 function q.__tostring(a) return format("%g,%g,%g,%g", a.w, a.x, a.y, a.z) end
-function q.normalize(a)
+function mq.normalize(a)
   check(a, q, "quaternion")
   local length = sqrt(a.w * a.w + a.x * a.x + a.y * a.y + a.z * a.z)
   a.w, a.x, a.y, a.z = a.w / length, a.x / length, a.y / length, a.z / length
   return a
 end
-function q.inverse(a) check(a, q, "quaternion") return makeq(a.w, -a.x, -a.y, -a.z) end
-function q.toangleaxis(a)
+function mq.inverse(a) check(a, q, "quaternion") return makeq(a.w, -a.x, -a.y, -a.z) end
+function mq.toangleaxis(a)
   check(a, q, "quaternion")
   local s = sqrt(a.x * a.x + a.y * a.y + a.z * a.z)
   if s == 0 then return 0.0, make3(0.0, 0.0, 1.0) end
   return 2 * atan(s, a.w), make3(a.x / s, a.y / s, a.z / s)
 end
-function q.toeulerangles(a)  -- about z, then y, then x
+function mq.toeulerangles(a)  -- about z, then y, then x
   check(a, q, "quaternion")
   local w, x, y, z = a.w, a.x, a.y, a.z
   local s = 2 * (w * y - x * z)
@@ -151,7 +154,7 @@ end
 -- What robot.positioning.orientation is: a quaternion that also tells its angle and axis.
 local function from_positioning(w, x, y, z)
   local all = makeq(w, x, y, z)
-  all.angle, all.axis = q.toangleaxis(all)
+  all.angle, all.axis = mq.toangleaxis(all)
   return all
 end
 _tandem_vector2, _tandem_vector3, _tandem_orientation = make2, make3, from_positioning

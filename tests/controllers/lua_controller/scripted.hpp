@@ -89,6 +89,16 @@ class Scripted {
     for (int i = 0; i < steps; ++i) world->step();
     return world->incidents().first.empty() ? "none" : world->incidents().first.front();
   }
+  /// All incidents that are kept, without the folder, which is another one in every world.
+  std::string incidents() const {
+    std::string all;
+    for (std::string one : world->incidents().first) {
+      for (std::size_t at = 0; (at = one.find(folder_.string() + "/")) != std::string::npos;)
+        one.erase(at, folder_.string().size() + 1);
+      all += one + "\n";
+    }
+    return all;
+  }
   std::string log() const {
     std::string all;
     for (const std::string& one : said) all += one + "\n";
