@@ -307,9 +307,6 @@ int Interpreter::protected_begin(lua_State* L) {
     luaL_error(L, "%s has no function step(), which is called in every step", in.script_->path.c_str());
   lua_pushliteral(L, "init");
   if (lua_rawget(L, 3) == LUA_TFUNCTION) in.run(L, 0);
-  lua_settop(L, 3);
-  in.globals_of_one_ = 0;
-  for (lua_pushnil(L); lua_next(L, 3) != 0; lua_pop(L, 1)) ++in.globals_of_one_;
   return 0;
 }
 

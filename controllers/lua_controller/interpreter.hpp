@@ -134,8 +134,9 @@ class Interpreter {
   void push_globals(lua_State* state) noexcept { lua_rawgeti(state, LUA_REGISTRYINDEX, variables_->globals); }
   /// Pushes the compiled chunk of a text, which takes its environment as its only argument, or an error message.
   bool compile(lua_State* state, std::string_view text, const char* name) noexcept;
-  /// The same for a file that all robots of the interpreter have: nobody is charged for it.
-  bool compile_for_all(lua_State* state, std::string_view text, const char* name) noexcept;
+  /// The same for a file that all robots of the interpreter have, in the table "tandem.files" under `file`: who asks
+  /// first is not charged for it.
+  bool compile_for_all(lua_State* state, std::string_view text, const char* name, const char* file) noexcept;
   /// Pushes the present robot's own instance of a library, which its globals hold from then on; false where there is
   /// none of that name.
   bool push_library(lua_State* state, const char* name);
@@ -214,7 +215,7 @@ class Interpreter {
   int chunk_ = LUA_NOREF, globals_meta_ = LUA_NOREF, libraries_ = LUA_NOREF, parts_ = LUA_NOREF, shared_ = LUA_NOREF,
       direct_ = LUA_NOREF, common_ = LUA_NOREF, strings_ = LUA_NOREF;
   static constexpr int kUnknown = -100;
-  int globals_of_one_ = 16;      // how many globals robots have
+  int globals_of_one_ = 0;       // room for so many, in every interpreter of the script alike
   int strings_now_ = LUA_NOREF;  // whose library of texts "x":name() looks in
 };
 

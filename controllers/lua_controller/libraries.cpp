@@ -581,15 +581,11 @@ Loaded push_file(lua_State* L, const char* name) {
     } catch (const std::exception&) {
       found = false;
     }
-    if (found) compiled = Interpreter::of(L).compile_for_all(L, text, path.c_str());
+    if (found) compiled = Interpreter::of(L).compile_for_all(L, text, path.c_str(), name);
   }
   if (!found) {
     lua_pop(L, 1);
     return Loaded::Missing;
-  }
-  if (compiled) {
-    lua_pushvalue(L, -1);
-    lua_setfield(L, -3, name);
   }
   lua_remove(L, -2);
   return compiled ? Loaded::Yes : Loaded::Wrong;

@@ -151,7 +151,9 @@ LuaController::LuaController(const LuaController& other)
   interpreters_->set_present(shared_->interpreter->shared_script());
   const std::lock_guard hold(shared_->interpreter->lock());
   Interpreter& in = *shared_->interpreter;
-  kept_ = shared_->active == &other ? in.keep(shared_->variables) : in.share(other.kept_);
+  const bool active = shared_->active == &other;
+  kept_ = active ? in.keep(shared_->variables) : in.share(other.kept_);
+  account_ = active ? shared_->variables.account : other.account_;
   ++shared_->copies;
 }
 
@@ -223,9 +225,13 @@ void LuaController::begin_anew(const std::vector<hal::SourceFile>& files) {
 void LuaController::activate() {
   if (shared_->active == this) return;
   Interpreter& in = *shared_->interpreter;
-  if (shared_->active != nullptr) shared_->active->kept_ = in.keep(shared_->variables);
+  if (shared_->active != nullptr) {
+    shared_->active->kept_ = in.keep(shared_->variables);
+    shared_->active->account_ = shared_->variables.account;
+  }
   shared_->active = nullptr;
   in.put_back(shared_->variables, kept_);
+  shared_->variables.account = account_;
   in.forget(kept_);
   kept_ = LUA_NOREF;
   shared_->active = this;

@@ -63,6 +63,7 @@ class LuaController final : public hal::Controller {
   std::shared_ptr<Interpreters> interpreters_;
   std::shared_ptr<Shared> shared_;
   int kept_ = LUA_NOREF;  // the variables' values, while it is not active
+  Account account_;       // the same
   Actor actor_;
   hal::Random first_random_{0};  // as it was before the script took any
 };

@@ -99,10 +99,16 @@ bool Interpreter::compile(lua_State* L, std::string_view text, const char* name)
   return lua_load(L, &Source::read, &source, name, "t") == LUA_OK;
 }
 
-bool Interpreter::compile_for_all(lua_State* L, std::string_view text, const char* name) noexcept {
+bool Interpreter::compile_for_all(lua_State* L, std::string_view text, const char* name, const char* file) noexcept {
   const Steps before = steps_;
   Account* const account = memory_.suspend_account();
   const bool compiled = compile(L, text, name);
+  if (compiled) {
+    lua_getfield(L, LUA_REGISTRYINDEX, "tandem.files");
+    lua_pushvalue(L, -2);
+    lua_setfield(L, -2, file);
+    lua_pop(L, 1);
+  }
   memory_.resume_account(account);
   steps_ = before;
   return compiled;
@@ -218,6 +224,9 @@ void Interpreter::setup_globals(lua_State* L) {
       lua_pop(L, 1);
     }
   }
+  constexpr int kOfAScript = 10;  // with _G and robot
+  globals_of_one_ = kOfAScript;
+  for (lua_pushnil(L); lua_next(L, 3) != 0; lua_pop(L, 1)) ++globals_of_one_;
   direct_ = luaL_ref(L, LUA_REGISTRYINDEX);
   libraries_ = luaL_ref(L, LUA_REGISTRYINDEX);
 
