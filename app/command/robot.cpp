@@ -24,7 +24,7 @@
 #include "app/robots/listed_robot.hpp"
 #include "app/robots/robot_end.hpp"
 #include "hal/output_file.hpp"
-#include "mixed_reality/safety/supervised_robot.hpp"
+#include "mixed_reality/safety/lone_robot.hpp"
 #include "mixed_reality/settings/bridge_request.hpp"
 #include "mixed_reality/settings/timeouts.hpp"
 #include "mixed_reality/time/pacer.hpp"
@@ -61,14 +61,14 @@ const std::atomic<bool> kNever{false};
 
 /// Waits until the robot answers, has told all that its controller asked for, and stands armed; or it is clear that it
 /// will not. Error: it does not; says what is known.
-hal::Status connect(mixed_reality::SupervisedRobot& robot, bridges::RobotBridge& bridge,
-                    const core::BridgeConfig& config, hal::TimeNs tick_ns, mixed_reality::TimeSource& clock,
-                    const std::atomic<bool>& stop) {
+hal::Status connect(mixed_reality::LoneRobot& robot, const core::BridgeConfig& config, hal::TimeNs tick_ns,
+                    mixed_reality::TimeSource& clock, const std::atomic<bool>& stop) {
+  const bridges::RobotBridge& bridge = robot.real().bridge();
   const hal::TimeNs began_ns = clock.now_ns();
   hal::TimeNs commit_ns = began_ns;  // the next; bridges learn from it when to ask
   for (hal::TimeNs now = began_ns; !stop.load(); now = clock.now_ns()) {
-    (void)robot.latch(0, now);
-    if (robot.verdict().may_drive) return {};
+    (void)robot.latch(0, now, mixed_reality::RunPhase::Joining);
+    if (robot.real().verdict().may_drive) return {};
     if (now >= commit_ns) {
       commit_ns = now + tick_ns;
       robot.commit(now);
@@ -201,6 +201,7 @@ int robot(const RobotOptions& options) {
   const auto read = read_file_controller(*scenario, item, item.id, loader);
   if (!read.ok()) return complain(kBadInput, read.error().message);
   const FileController& file = read.value();
+  std::optional<mixed_reality::LoneRobot> lone;  // outlives the controller
   std::unique_ptr<BridgedController> controller;
   try {
     ListedRobot listed(bridge.robot(), *file.config, loader.catalog());
@@ -215,13 +216,14 @@ int robot(const RobotOptions& options) {
   if (const hal::Status claimed = guarded.claim(); !claimed.ok())
     return complain(kFailedRunning, claimed.error().message);
   catch_rearm();
-  mixed_reality::SupervisedParams supervision;
-  supervision.rearm = mixed_reality::rearm_params(*item.bridge);
-  supervision.tick_ns = hal::time_of_tick(1, scenario->ticks_per_second);
-  supervision.frozen_after_ns = supervision.tick_ns + kFrozenAfter_ns;
-  mixed_reality::SupervisedRobot supervised(item.id, bridge, supervision, log);
+  const hal::TimeNs tick_ns = hal::time_of_tick(1, scenario->ticks_per_second);
+  lone.emplace(item.id, std::move(made).value(),
+               mixed_reality::RealRobotParams{.rearm = mixed_reality::rearm_params(*item.bridge),
+                                              .frozen_after_ns = tick_ns + kFrozenAfter_ns},
+               tick_ns, log);
+  mixed_reality::RealRobot& real = lone->real();
   bridge.start();
-  const hal::Status ready = connect(supervised, bridge, *item.bridge, supervision.tick_ns, clock, stop);
+  const hal::Status ready = connect(*lone, *item.bridge, tick_ns, clock, stop);
   if (stop.load()) return interrupted_code();
   if (!ready.ok()) return complain(kFailedRunning, "robot '" + item.id + "': " + ready.error().message);
 
@@ -239,27 +241,27 @@ int robot(const RobotOptions& options) {
     EmergencyReport emergency(report);
     const auto prepare = [&] {
       hal::Json json;
-      begin_report(json, *scenario, item, bridge, supervised.supervisor(), pacer.ledger());
+      begin_report(json, *scenario, item, bridge, real.supervisor(), pacer.ledger());
       if (report) emergency.set_report(json);
     };
     const SaveAtEnd save(watchdog, prepare);
     prepare();
     pacer.start();
     for (hal::Tick tick = 0; (steps == 0 || tick < steps) && !stop.load(std::memory_order_relaxed); ++tick) {
-      if (rearm_asked().exchange(false)) supervised.rearm();
-      supervised.set_guarded(guarded.guarded());
+      if (rearm_asked().exchange(false)) real.rearm();
+      real.set_guarded(guarded.guarded());
       if (const std::uint64_t count = guarded.freezes(); count != freezes) {
         freezes = count;
-        supervised.hub_was_frozen();
+        real.hub_was_frozen();
       }
-      if (supervised.latch(tick, clock.now_ns()) && !controller->step(failure, tick)) {
+      if (lone->latch(tick, clock.now_ns(), mixed_reality::RunPhase::Running) && !controller->step(failure, tick)) {
         failure = file.who + " threw at tick " + std::to_string(tick) + ": " + failure + "; the robot is stopped";
         break;
       }
       const std::lock_guard hold(watchdog.lock());  // from here on, what is saved changes
       guarded.update();
       hub_faults.value().apply(clock.now_ns());
-      supervised.commit(clock.now_ns());  // at once, not after the wait
+      lone->commit(clock.now_ns());  // at once, not after the wait
       progress.step(tick + 1);
       if (emergency.due()) prepare();
       if (!pacer.wait_for_next(stop)) break;
@@ -272,7 +274,7 @@ int robot(const RobotOptions& options) {
   if (failure.empty() && !guarded.guarded()) failure = "robot '" + item.id + "' stood: the guardian process was gone";
   stop_and_wait(bridge, item.bridge->stop_s, clock);
   hal::Json json;
-  begin_report(json, *scenario, item, bridge, supervised.supervisor(), pacer.ledger());
+  begin_report(json, *scenario, item, bridge, real.supervisor(), pacer.ledger());
   const auto table = result_table(item, bridge, pacer.ledger());
   bridge.shut_down();
   const bool confirmed = guarded.release_rested().empty();

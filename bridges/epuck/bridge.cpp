@@ -1,8 +1,6 @@
 #include "bridges/epuck/bridge.hpp"
 
 #include <algorithm>
-#include <array>
-#include <charconv>
 #include <chrono>
 
 #include "bridges/epuck/stop.hpp"
@@ -189,19 +187,7 @@ std::string EpuckBridge::advice() const {
 /// With the lock held.
 RobotIdentity EpuckBridge::who() const {
   RobotIdentity all = reached_;
-  const Identity& told = driver_.session().identity();
-  const SessionState state = driver_.state();
-  const bool introduced =
-      state == SessionState::Ready || state == SessionState::Active || state == SessionState::Suspect;
-  if (!introduced) return all;
-  // A radio speaks as an e-puck2's, and tells no version.
-  const bool tells = settings_.driver.wire != WireForm::Wifi && !told.version_text().empty();
-  if (tells) all.firmware = std::string(told.version_text());
-  if (told.hardware != 0) {
-    std::array<char, 9> digits{};
-    const auto [end, error] = std::to_chars(digits.data(), digits.data() + digits.size(), told.hardware, 16);
-    if (error == std::errc{}) all.hardware = std::string(digits.data(), end);
-  }
+  driver_.identify(all);
   return all;
 }
 

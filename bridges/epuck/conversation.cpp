@@ -1,5 +1,6 @@
 #include "bridges/epuck/conversation.hpp"
 
+#include <algorithm>
 #include <cstdlib>
 
 #include "bridges/epuck/conversions.hpp"
@@ -48,6 +49,9 @@ void Conversation::take_samples(QuantitySet asked, const RawSensors& raw, const 
       asked.has(Quantity::Encoders) && counters_known_ && at_rest_ && raw.encoders == samples_.raw.encoders;
   if (stands && asked.has(Quantity::Acceleration)) samples_.accelerometer.at_rest(raw.acceleration);
   if (asked.has(Quantity::Encoders)) take_encoders(raw.encoders, when);
+  const auto zero = [](const auto& values) { return std::ranges::all_of(values, [](auto v) { return v == 0; }); };
+  if (asked.has(Quantity::Ground)) samples_.ground.note(zero(raw.ground) && zero(raw.cliff));
+  if (asked.has(Quantity::Gyro)) samples_.gyro.note(zero(raw.gyro) && !identity_.is_epuck2());
   samples_.raw = raw;
   samples_.known.add(asked);
   for (std::size_t i = 0; i < kQuantityCount; ++i) {
@@ -69,6 +73,9 @@ void Conversation::take_encoders(const std::array<std::int16_t, 2>& counters, co
       hal::to_seconds(when.latest_ns - samples_.taken_ns[static_cast<std::size_t>(Quantity::Encoders)]);
   const bool continues = counters_known_ && !restarted_ && encoders_plausible(counters, when.latest_ns);
   if (counters_known_ && !continues) ++statistics_.encoder_rebased;
+  // A greeting may be lost: counters that begin anew at 0 tell the restart as well.
+  const bool anew = counters == std::array<std::int16_t, 2>{};
+  if (counters_known_ && !continues && !restarted_ && anew) ++statistics_.restarts;
   const std::int32_t left = continues ? encoder_difference(counters[0], samples_.raw.encoders[0]) : 0;
   const std::int32_t right = continues ? encoder_difference(counters[1], samples_.raw.encoders[1]) : 0;
   samples_.left_steps += left;

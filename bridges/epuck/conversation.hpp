@@ -50,6 +50,20 @@ struct Actuation {
   friend bool operator==(const Actuation&, const Actuation&) = default;
 };
 
+/// Whether there is a device behind readings that firmwares answer with zeros where it is missing. What measures never
+/// reads exactly 0 on all its channels for long: ground sensors have an offset in the dark, gyroscopes noise.
+struct Presence {
+  static constexpr std::uint32_t kMissing = 20;  ///< so many answers of nothing but zeros, and people are told
+
+  bool measured = false;    ///< something other than 0 came: it is there
+  std::uint32_t zeros = 0;  ///< answers before that
+  void note(bool all_zero) noexcept {
+    measured = measured || !all_zero;
+    if (!measured) ++zeros;
+  }
+  bool missing() const noexcept { return !measured && zeros >= kMissing; }
+};
+
 /// The newest value of each quantity.
 struct Samples {
   RawSensors raw;
@@ -60,6 +74,8 @@ struct Samples {
   double left_steps_per_s = 0.0;  ///< mean between the last two readings
   double right_steps_per_s = 0.0;
   AccelerometerCheck accelerometer;
+  Presence ground;  ///< the board under the body, cliff sensors included
+  Presence gyro;    ///< of firmwares whose robots may lack it: hardware before 1.3
 };
 
 /// Every kind of trouble has its counter.

@@ -1,6 +1,8 @@
 #include "bridges/epuck/driver.hpp"
 
 #include <algorithm>
+#include <array>
+#include <charconv>
 #include <limits>
 
 #include "bridges/epuck/conversions.hpp"
@@ -184,6 +186,20 @@ Odometry EpuckDriver::odometry() const noexcept {
           s.taken_ns[static_cast<std::size_t>(Quantity::Encoders)], session_->statistics().encoder_rebased};
 }
 
+void EpuckDriver::identify(RobotIdentity& identity) const {
+  const Identity& told = session_->identity();
+  const bool introduced =
+      state() == SessionState::Ready || state() == SessionState::Active || state() == SessionState::Suspect;
+  if (!introduced) return;
+  // A radio speaks as an e-puck2's, and tells no version.
+  const bool tells = settings_.wire != WireForm::Wifi && !told.version_text().empty();
+  if (tells) identity.firmware = std::string(told.version_text());
+  if (told.hardware == 0) return;
+  std::array<char, 9> digits{};
+  const auto [end, error] = std::to_chars(digits.data(), digits.data() + digits.size(), told.hardware, 16);
+  if (error == std::errc{}) identity.hardware = std::string(digits.data(), end);
+}
+
 void EpuckDriver::tell_accelerometer(const std::string& who) {
   const AccelerometerCheck& accelerometer = session_->samples().accelerometer;
   if (accelerometer.verdict() == logged_accelerometer_) return;
@@ -197,13 +213,14 @@ void EpuckDriver::tell_accelerometer(const std::string& who) {
 /// What the robot's kind has, its controller takes, and the firmware does not tell.
 void EpuckDriver::tell_untold(const std::string& who) {
   if (session_->state() != SessionState::Active) return;
-  std::string untold = robot_.untold(session_->layout());
+  std::string untold = robot_.untold(session_->layout(), session_->samples());
   if (untold == logged_untold_) return;
   logged_untold_ = std::move(untold);
   if (logged_untold_.empty()) return;
   const bool epuck2 = session_->identity().is_epuck2();
   log_.warning(who + std::string(firmware_name(session_->identity().firmware)) + " does not tell " + logged_untold_ +
-               " over this link: such readings stay absent" + (epuck2 ? "" : "; is it an e-puck2, as the file says?"));
+               " over this link, or tells nothing but zeros: such readings stay absent; has the robot such a device" +
+               (epuck2 ? "?" : ", and is it of the kind that the file says?"));
 }
 
 void EpuckDriver::tell() {

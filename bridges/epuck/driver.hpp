@@ -81,6 +81,8 @@ class EpuckDriver {
 
   SessionState state() const noexcept { return session_->state(); }
   const Conversation& session() const noexcept { return *session_; }
+  /// Fills in what the robot has told of itself since the link was opened.
+  void identify(RobotIdentity& identity) const;
   /// The link is of no more use, although it is open: close it, say `link_gone`, open it anew.
   bool wants_new_link() const noexcept { return session_->wants_new_link(); }
   const DriverStatistics& statistics() const noexcept { return statistics_; }

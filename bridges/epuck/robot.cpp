@@ -73,16 +73,16 @@ QuantitySet EpuckRobot::demand() const noexcept {
   return all;
 }
 
-std::string EpuckRobot::untold(const AnswerLayout& layout) const {
+std::string EpuckRobot::untold(const AnswerLayout& layout, const Samples& samples) const {
   std::string names;
   const auto add = [&]<class Port>(bool told) {
     if (uses<Port>() && !told) names += (names.empty() ? "" : ", ") + std::string(Port::kName);
   };
-  add.operator()<hal::Ground>(layout.ground_bytes > 0);
+  add.operator()<hal::Ground>(layout.ground_bytes > 0 && !samples.ground.missing());
   add.operator()<hal::Battery>(layout.battery_bytes > 0);
-  add.operator()<hal::Gyroscope>(layout.gyro_bytes > 0);
+  add.operator()<hal::Gyroscope>(layout.gyro_bytes > 0 && !samples.gyro.missing());
   add.operator()<hal::TimeOfFlight>(layout.time_of_flight_bytes > 0);
-  add.operator()<hal::Cliff>(layout.ground_bytes > 6);
+  add.operator()<hal::Cliff>(layout.ground_bytes > 6 && !samples.ground.missing());
   add.operator()<hal::Selector>(layout.selector_bytes > 0);
   return names;
 }
@@ -103,7 +103,7 @@ void EpuckRobot::fill(const Samples& samples, const Identity& identity, hal::Tic
   auto& microphones = stamped.operator()<hal::Microphones>(Quantity::Microphones);
   auto& battery = stamped.operator()<hal::Battery>(Quantity::Battery);
   auto& encoders = stamped.operator()<hal::WheelEncoders>(Quantity::Encoders);
-  stamped.operator()<hal::Gyroscope>(Quantity::Gyro);
+  auto& gyroscope = stamped.operator()<hal::Gyroscope>(Quantity::Gyro);
   stamped.operator()<hal::Selector>(Quantity::Selector);
 
   proximity.range_m = static_cast<float>(conversions_.proximity_range_m());
@@ -126,8 +126,12 @@ void EpuckRobot::fill(const Samples& samples, const Identity& identity, hal::Tic
     std::transform(turn.begin(), turn.end(), port<hal::Gyroscope>().rate_rad_s.begin(),
                    [](double v) { return static_cast<float>(v); });
   }
+  // Zeros alone are no measurement: without a floor board black ground would be seen, without a gyroscope no turning.
+  if (!samples.ground.measured) ground.validity = hal::Validity::Absent;
+  if (!samples.gyro.measured) gyroscope.validity = hal::Validity::Absent;
   fill_time_of_flight(raw, stamped.operator()<hal::TimeOfFlight>(Quantity::TimeOfFlight));
   fill_cliff(raw, stamped.operator()<hal::Cliff>(Quantity::Ground));
+  if (!samples.ground.measured) port<hal::Cliff>().validity = hal::Validity::Absent;
   port<hal::Selector>().position = raw.selector;
   if (samples.accelerometer.verdict() != AccelerometerCheck::Verdict::Believed) {
     accelerometer.validity = hal::Validity::Absent;

@@ -20,7 +20,7 @@ class EpuckRobot final : public BridgedRobot {
   /// Fills every reading for tick `tick` at `now` (link's clock): values, stamps, and validity by age.
   void fill(const Samples& samples, const Identity& identity, hal::Tick tick, hal::TimeNs now) noexcept;
   /// Names of the sensors that were taken and that such answers never fill; "": there are none.
-  std::string untold(const AnswerLayout& layout) const;
+  std::string untold(const AnswerLayout& layout, const Samples& samples) const;
   /// LEDs as commanded; speeds 0.
   Actuation lamps() const noexcept;
   const Conversions& conversions() const noexcept { return conversions_; }

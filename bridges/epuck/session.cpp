@@ -56,6 +56,7 @@ void Session::link_up(TimeNs now) noexcept {
   if (phase_ != Phase::Down) return;
   if (state_ == SessionState::Absent) state_ = SessionState::Handshake;
   identity_known_ = layout_known_ = false;  // another robot may be at this port now
+  samples_.ground = samples_.gyro = {};
   at_rest_ = false;
   attempts_ = 0;
   begin_handshake(now);
@@ -117,6 +118,7 @@ void Session::go_on_stopping(TimeNs now) noexcept {
     }
     if (++attempts_ < timing_.tries) continue;
     state_ = SessionState::Lost;
+    identity_known_ = layout_known_ = false;  // whoever answers next is asked who it is
     if (*trouble_ == '\0') trouble_ = "no e-puck answers";
   }
 }
@@ -145,6 +147,7 @@ void Session::attempt_failed(TimeNs now) noexcept {
   ++statistics_.handshake_failures;
   if (++attempts_ >= timing_.tries) {
     state_ = SessionState::Lost;
+    identity_known_ = layout_known_ = false;
     if (*trouble_ == '\0') trouble_ = "no e-puck answers";
   }
   begin_handshake(now);

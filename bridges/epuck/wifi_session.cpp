@@ -67,6 +67,7 @@ void WifiSession::link_up(TimeNs now) noexcept {
   if (state_ == SessionState::Absent) state_ = SessionState::Handshake;
   identity_ = radio();
   layout_ = {.ground_bytes = 6, .microphone_bytes = 8, .time_of_flight_bytes = 2, .selector_bytes = kAllSensorsSize};
+  samples_.ground = samples_.gyro = {};
   samples_.accelerometer.reset(Firmware::Unknown);  // its zero here is another than that of the command `a`
   reader_.clear();
   newest_.any = false;

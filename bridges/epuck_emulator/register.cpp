@@ -16,6 +16,7 @@ struct Own {
   std::string firmware = "gctronic";
   std::int64_t selector = 3;
   bool cliff_sensors = false;
+  bool ground_board = true;
   PoseOptions poses{};
   WheelErrors wheels{};
   Delays delays{};
@@ -23,6 +24,7 @@ struct Own {
     v.text("firmware", firmware, "btcom, gctronic, webots or epuck2.");
     v.integer("selector", selector, {0, 15}, "Position of the rotary switch.");
     v.flag("cliff_sensors", cliff_sensors, "The ground board has two cliff sensors.");
+    v.flag("ground_board", ground_board, "It has ground sensors; else the firmware answers zeros.");
     poses.describe(v);
     wheels.describe(v);
     delays.describe(v);
@@ -30,7 +32,7 @@ struct Own {
 };
 
 struct OwnOfEpuck2 : Own {
-  OwnOfEpuck2() { *static_cast<Own*>(this) = {"epuck2", 3, true, {}, {}, {}}; }
+  OwnOfEpuck2() { *static_cast<Own*>(this) = {"epuck2", 3, true, true, {}, {}, {}}; }
 };
 
 template <class OwnOptions>
@@ -42,6 +44,7 @@ hal::Status run_type(const EmulatorRequest& request, SharedPorts* ports, const s
   options.firmware = own.firmware;
   options.robot.selector = static_cast<std::uint8_t>(own.selector);
   options.robot.cliff_sensors = own.cliff_sensors;
+  options.robot.ground_board = own.ground_board;
   options.poses = own.poses;
   options.wheels = own.wheels;
   options.robot.delays = own.delays;

@@ -371,17 +371,18 @@ struct Bridge {
   static constexpr ElementInfo kElement{
       "bridge", "Makes the robot stand for a real one on this link. Further attributes are those of its kind.", "link",
       kAnything};
-  std::string link, rearm = "after 0.5 s", missing = "refuse";
+  std::string link, rearm = "proved", missing = "refuse";
   double timeout_s = 0.5, settle_s = 0.3, ramp_m_s2 = 0.25, connect_s = 15.0, stop_s = 2.0;
   void describe(ParamVisitor& v) {
     v.text("link", link, "Where the real robot is, e.g. serial:/dev/ttyUSB0@115200.");
     v.number("timeout", timeout_s, unit::s, {0.05, 60.0},
              "Age of the last answer from which the robot counts as lost and is stopped.");
     v.text("rearm", rearm,
-           "What lets the robot drive again when it stopped by itself (a restart, its own fail-safe, a frozen hub): "
-           "operator (SIGUSR1 to tandem), after a time in which all was well, never.");
+           "What lets the robot drive again after a stop: proved (a short outage ends by itself, all else waits for a "
+           "person), operator (every stop waits for a person), after a time in which all was well, never. Whatever it "
+           "says: a robot that is not proved to be the one that was armed waits for a person, who names it.");
     v.number("settle_after", settle_s, unit::s, {0.0, 60.0},
-             "After any other stop, such as a lost link, all must have been well for this long.");
+             "Before it drives, all must have been well for this long.");
     v.number("rearm_ramp", ramp_m_s2, unit::m_s2, {0.001, 100.0}, "Its largest speed then grows from 0 by this.");
     static constexpr std::array<std::string_view, 3> kMissing = {"refuse", "simulate", "wait"};
     v.choice("missing", missing, kMissing,

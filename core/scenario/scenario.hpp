@@ -93,8 +93,8 @@ struct BridgeConfig {
   Element options;
   int line = 0;
   std::shared_ptr<const void> own = {};  ///< the attributes of its kind, as its bridge reads them; null: left out
-  std::string rearm = "after 0.5 s";     ///< who lets it go after a stop by itself: operator, after a time, never
-  double settle_s = 0.3;                 ///< after any other stop, all must have been well for so long
+  std::string rearm = "proved";          ///< who lets it go after a stop: proved, operator, after a time, never
+  double settle_s = 0.3;                 ///< then all must have been well for so long
   double ramp_m_s2 = 0.25;               ///< then its largest speed grows from 0 by this
   IfMissing if_missing = IfMissing::Refuse;
   double connect_s = 15.0;  ///< from which it counts as missing, before the run

@@ -6,9 +6,11 @@ namespace tandem::mixed_reality {
 
 hal::Result<RearmPolicy> parse_rearm(std::string_view text) {
   constexpr std::string_view kAfter = "after ";
+  if (text == "proved") return RearmPolicy{RearmBy::Proved, 0.0};
   if (text == "operator") return RearmPolicy{RearmBy::Operator, 0.0};
   if (text == "never") return RearmPolicy{RearmBy::Never, 0.0};
-  const std::string wrong = "'" + std::string(text) + "' is no way to re-arm; there are: operator, after 2 s, never";
+  const std::string wrong =
+      "'" + std::string(text) + "' is no way to re-arm; there are: proved, operator, after 2 s, never";
   if (!text.starts_with(kAfter)) return hal::Error{wrong};
   const hal::Result<double> after_s = hal::parse_quantity(text.substr(kAfter.size()), hal::unit::s);
   if (!after_s.ok()) return hal::Error{wrong + " (" + after_s.error().message + ")"};
@@ -17,6 +19,7 @@ hal::Result<RearmPolicy> parse_rearm(std::string_view text) {
 }
 
 std::string to_text(const RearmPolicy& policy) {
+  if (policy.by == RearmBy::Proved) return "proved";
   if (policy.by == RearmBy::Operator) return "operator";
   if (policy.by == RearmBy::Never) return "never";
   return "after " + hal::format_quantity(policy.after_s, hal::unit::s);

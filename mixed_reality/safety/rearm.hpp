@@ -9,20 +9,25 @@
 
 namespace tandem::mixed_reality {
 
-/// Who re-arms a stopped robot. Operator: a person says so. Time: nobody, it goes by itself after
-/// all has been well for a time. Never: it stands until the end of the run.
-enum class RearmBy : std::uint8_t { Operator, Time, Never };
+/// Who re-arms a stopped robot. Whatever it says: a robot that is not proved to be the one that was armed (proof.hpp)
+/// waits for a person.
+enum class RearmBy : std::uint8_t {
+  Proved,    ///< a short outage ends by itself; every other stop waits for a person
+  Operator,  ///< every stop waits for a person
+  Time,      ///< every stop ends by itself when all has been well for a time
+  Never      ///< a short outage ends by itself; after every other stop it stands until the end of the run
+};
 
-/// Policy of `<bridge rearm="operator|after 2 s|never">`.
+/// Policy of `<bridge rearm="proved|operator|after 2 s|never">`.
 struct RearmPolicy {
-  RearmBy by = RearmBy::Time;
-  double after_s = 2.0;  ///< with Time: for so long all must have been well
+  RearmBy by = RearmBy::Proved;
+  double after_s = 0.0;  ///< with Time: for so long all must have been well
 
   friend bool operator==(const RearmPolicy&, const RearmPolicy&) = default;
 };
 
-/// Reads "operator", "never" or "after <time>", a bare number being seconds. Error: what was written, and what would
-/// do.
+/// Reads "proved", "operator", "never" or "after <time>", a bare number being seconds. Error: what was written, and
+/// what would do.
 hal::Result<RearmPolicy> parse_rearm(std::string_view text);
 /// The text that `parse_rearm` reads back.
 std::string to_text(const RearmPolicy& policy);

@@ -14,7 +14,7 @@ using O = StopOwner;
 
 // First row that applies decides. Everything that is not known to be well stops the robot.
 // clang-format off
-constexpr std::array<SafetyRule, 24> kTable = {{
+constexpr std::array<SafetyRule, 28> kTable = {{
     {[](const C& c) noexcept { return c.run == RunPhase::Stopping; },     held(O::Run, "the run is stopping")},
     {[](const C& c) noexcept { return c.run == RunPhase::Waiting; },      held(O::Run, "waiting for the start")},
     {[](const C& c) noexcept { return c.emergency_stop; },                landing(O::Operator, "emergency stop; waits to be armed")},
@@ -23,23 +23,39 @@ constexpr std::array<SafetyRule, 24> kTable = {{
     {[](const C& c) noexcept { return c.controller_failed; },             held(O::Controller, "controller failed")},
     {[](const C& c) noexcept { return c.operator_holds; },                held(O::Operator, "held by the operator")},
     {[](const C& c) noexcept { return c.hook_holds; },                    held(O::Hook, "held by a hook")},
-    {[](const C& c) noexcept { return c.guardian_gone; },                 landing(O::Guardian, "guardian gone")},
+    {[](const C& c) noexcept { return c.guardian_gone; },                 landing(O::Guardian, "guardian gone"),
+     Recovery::Rearm, "guardian was gone; waits to be re-armed"},
     {[](const C& c) noexcept { return c.run == RunPhase::Paused; },       held(O::Operator, "paused")},
     {[](const C& c) noexcept { return c.hub_was_frozen; },                held(O::Hub, "hub was frozen"),
      Recovery::Rearm, "hub was frozen; waits to be re-armed"},
     {[](const C& c) noexcept { return c.robot_stopped_itself; },          held(O::Robot, "robot stopped by itself"),
-     Recovery::Rearm, "robot stopped by itself; waits to be re-armed"},
+     Recovery::Proof, "robot stopped by itself; waits to be re-armed"},
+    {[](const C& c) noexcept { return c.doubt == Doubt::Another; },       held(O::Robot, "another robot answers; waits to be re-armed"),
+     Recovery::Proof, "another robot answers; waits to be re-armed"},
+    {[](const C& c) noexcept { return c.doubt == Doubt::OpenedAnew; },    held(O::Robot, "link was opened anew; waits to be re-armed"),
+     Recovery::Proof, "link was opened anew; waits to be re-armed"},
+    {[](const C& c) noexcept { return c.doubt == Doubt::Away; },          held(O::Robot, "was away for long; waits to be re-armed"),
+     Recovery::Proof, "was away for long; waits to be re-armed"},
+    {[](const C& c) noexcept { return c.doubt == Doubt::Late; },          held(O::Robot, "not armed by the start; waits to be re-armed"),
+     Recovery::Proof, "not armed by the start; waits to be re-armed"},
     {[](const C& c) noexcept { return c.battery_low; },                   landing(O::Battery, "battery low"),
      Recovery::Operator, "battery was low; waits to be re-armed"},
-    {[](const C& c) noexcept { return c.link == LinkHealth::Connecting; },held(O::Link, "connecting")},
-    {[](const C& c) noexcept { return c.link == LinkHealth::Lost; },      held(O::Link, "link lost")},
-    {[](const C& c) noexcept { return c.link == LinkHealth::Suspect; },   held(O::Link, "link suspect")},
-    {[](const C& c) noexcept { return c.readings_missing; },              held(O::Readings, "a reading never came")},
-    {[](const C& c) noexcept { return c.pose == hal::Validity::Absent; }, held(O::Pose, "pose unknown")},
-    {[](const C& c) noexcept { return c.pose == hal::Validity::Stale; },  held(O::Pose, "pose stale")},
-    {[](const C& c) noexcept { return c.pose_disputed; },                 held(O::Pose, "trackers disagree")},
+    {[](const C& c) noexcept { return c.link == LinkHealth::Connecting; },held(O::Link, "connecting"),
+     Recovery::Settle, "was not connected; waits to be re-armed"},
+    {[](const C& c) noexcept { return c.link == LinkHealth::Lost; },      held(O::Link, "link lost"),
+     Recovery::Settle, "link was lost; waits to be re-armed"},
+    {[](const C& c) noexcept { return c.link == LinkHealth::Suspect; },   held(O::Link, "link suspect"),
+     Recovery::Settle, "link was suspect; waits to be re-armed"},
+    {[](const C& c) noexcept { return c.readings_missing; },              held(O::Readings, "a reading never came"),
+     Recovery::Settle, "a reading was missing; waits to be re-armed"},
+    {[](const C& c) noexcept { return c.pose == hal::Validity::Absent; }, held(O::Pose, "pose unknown"),
+     Recovery::Settle, "pose was unknown; waits to be re-armed"},
+    {[](const C& c) noexcept { return c.pose == hal::Validity::Stale; },  held(O::Pose, "pose stale"),
+     Recovery::Settle, "pose was stale; waits to be re-armed"},
+    {[](const C& c) noexcept { return c.pose_disputed; },                 held(O::Pose, "trackers disagree"),
+     Recovery::Settle, "trackers disagreed; waits to be re-armed"},
     {[](const C& c) noexcept { return c.links_swapped; },                 held(O::Link, "links seem to be swapped"),
-     Recovery::Operator, "links seem to be swapped; waits to be re-armed"},
+     Recovery::Proof, "links seem to be swapped; waits to be re-armed"},
     {[](const C& c) noexcept { return c.pose_jumped; },                   held(O::Pose, "moved by something else"),
      Recovery::Operator, "moved by something else; waits to be re-armed"},
     {[](const C& c) noexcept { return c.wheels_differ; },                 held(O::Pose, "wheels and pose differ"),
@@ -55,12 +71,14 @@ const SafetyRule& rule_for(const Conditions& conditions) noexcept {
   return kTable.back();
 }
 
-/// The row for which a re-arm is needed after `conditions`, also where another one decides; null: none.
-const SafetyRule* needs_rearm(const Conditions& conditions) noexcept {
+/// The row that asks for most, of those that ask for at least `least`, also where another one decides; null: none.
+const SafetyRule* asks_for_most(const Conditions& conditions, Recovery least) noexcept {
+  const SafetyRule* most = nullptr;
   for (const SafetyRule& rule : kTable) {
-    if (rule.recovery != Recovery::Settle && rule.applies(conditions)) return &rule;
+    if (rule.recovery < least || !rule.applies(conditions)) continue;
+    if (most == nullptr || rule.recovery > most->recovery) most = &rule;
   }
-  return nullptr;
+  return most;
 }
 
 }  // namespace
@@ -83,15 +101,7 @@ Verdict judge(const Conditions& conditions) noexcept {
 const Verdict& Supervisor::judge(const Conditions& conditions, hal::TimeNs now_ns) noexcept {
   const Verdict said = mixed_reality::judge(conditions);
   const bool was_driving = verdict_.may_drive;
-  const bool operator_holds = conditions.operator_holds || conditions.emergency_stop || conditions.replaced;
-  if (operator_held_ && !operator_holds) rearm();  // letting go of it is to say that all is well
-  operator_held_ = operator_holds;
-  if (conditions.run == RunPhase::Waiting) {
-    latched_ = nullptr;
-  } else if (const SafetyRule* rule = needs_rearm(conditions); rule != nullptr) {
-    const bool asks_more = latched_ == nullptr || latched_->recovery != Recovery::Operator;
-    if (asks_more || (rule->recovery == Recovery::Operator && rule < latched_)) latched_ = rule;  // an earlier row's
-  }
+  latch(conditions);
   if (said.may_drive && !well_) well_since_ns_ = now_ns;
   well_ = said.may_drive;
   if (well_ && rearmed(now_ns)) latched_ = nullptr;
@@ -109,7 +119,30 @@ const Verdict& Supervisor::judge(const Conditions& conditions, hal::TimeNs now_n
     ++rearms_;
     armed_at_ns_ = now_ns;
   }
+  has_driven_ = has_driven_ || verdict_.may_drive;
   return verdict_;
+}
+
+void Supervisor::latch(const Conditions& conditions) noexcept {
+  answers_ = conditions.link == LinkHealth::Active;
+  const bool disarmed = conditions.emergency_stop || conditions.replaced;
+  // Letting go of a robot is to say that all is well, but not which robot it is.
+  const bool lets_go = (disarmed_ && !disarmed) || (operator_held_ && !conditions.operator_holds);
+  if (lets_go && !unproved()) rearm();
+  disarmed_ = disarmed;
+  operator_held_ = conditions.operator_holds;
+  if (conditions.run == RunPhase::Waiting || conditions.run == RunPhase::Joining) {
+    latched_ = nullptr;
+    has_driven_ = false;
+    return;
+  }
+  const bool any_stop = params_.policy.by == RearmBy::Operator && has_driven_;
+  const SafetyRule* const rule = asks_for_most(conditions, any_stop ? Recovery::Settle : Recovery::Rearm);
+  if (rule == nullptr) return;
+  const bool outweighs = latched_ == nullptr || rule->recovery > latched_->recovery;
+  const bool as_much = !outweighs && rule->recovery == latched_->recovery;
+  const bool newest = as_much && (rule->recovery != Recovery::Operator || rule < latched_);  // or an earlier row's
+  if (outweighs || newest) latched_ = rule;
 }
 
 /// Whether the stop that needs a re-arm has got it by the time that passed.
@@ -119,7 +152,7 @@ bool Supervisor::rearmed(hal::TimeNs now_ns) const noexcept {
 }
 
 void Supervisor::rearm() noexcept {
-  if (latched_ == nullptr || params_.policy.by == RearmBy::Never) return;
+  if (latched_ == nullptr || params_.policy.by == RearmBy::Never || !answers_) return;
   latched_ = nullptr;
   well_ = false;  // it settles from now on
 }

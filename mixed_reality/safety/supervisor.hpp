@@ -10,14 +10,12 @@
 #include "bridges/robot_bridge.hpp"
 #include "hal/port.hpp"
 #include "hal/time.hpp"
+#include "mixed_reality/safety/proof.hpp"
 #include "mixed_reality/safety/rearm.hpp"
 
 namespace tandem::mixed_reality {
 
 using bridges::LinkHealth;
-
-/// Paused: between two ticks of a run, for as long as a person wants.
-enum class RunPhase : std::uint8_t { Waiting, Running, Stopping, Paused };
 
 /// All that decides whether a real robot may move. What happened "since the last judgement" is told once and
 /// remembered by the supervisor; the rest is told as it is in every tick.
@@ -30,6 +28,7 @@ struct Conditions {
   bool hub_was_frozen = false;        ///< since the last judgement: it did not run for so long that it counted as dead
   bool guardian_gone = false;         ///< nobody would stop it if this program died
   bool robot_stopped_itself = false;  ///< since the last judgement: it restarted, or its own fail-safe took over
+  Doubt doubt = Doubt::None;          ///< since the last judgement: it is perhaps not the robot that was armed
   bool battery_low = false;
   LinkHealth link = LinkHealth::Connecting;
   bool readings_missing = false;  ///< one that the controller asked for never came
@@ -71,18 +70,21 @@ struct Verdict {
   std::string_view reason;  ///< why it may not drive, for people; "driving" when it may
 };
 
-/// Condition for driving again when the cause is gone.
+/// Condition for driving again when the cause is gone; each asks for more than the one before it. With the policy
+/// Never, those from Rearm on last until the end of the run.
 enum class Recovery : std::uint8_t {
-  Settle,   ///< time to settle
-  Rearm,    ///< a re-arm, as the robot's policy says
-  Operator  ///< a person's re-arm; none with the policy Never
+  Ends,      ///< time to settle: whoever held it lets go
+  Settle,    ///< time to settle; a person's re-arm with the policy Operator
+  Rearm,     ///< a person's re-arm; with the policy Time, that time
+  Operator,  ///< a person's re-arm
+  Proof      ///< a person's re-arm that names the robot: it is not proved to be the one that was armed
 };
 
 /// A row of the table: applies where `applies` is true; the first that does decides.
 struct SafetyRule {
   bool (*applies)(const Conditions&) noexcept;
   Verdict verdict;
-  Recovery recovery = Recovery::Settle;
+  Recovery recovery = Recovery::Ends;
   std::string_view waiting = {};  ///< the reason while the condition is gone and the re-arm is waited for
 };
 std::span<const SafetyRule> safety_table() noexcept;
@@ -93,7 +95,7 @@ Verdict judge(const Conditions& conditions) noexcept;
 /// Applies the table tick by tick. Stops at once; lets go only after a while, and then by and by.
 ///
 /// A stop that needs a re-arm is remembered, whatever else holds the robot meanwhile. Before the run nothing is: its
-/// start arms all robots.
+/// start arms the robots that are there.
 class Supervisor {
  public:
   explicit Supervisor(const RearmParams& params) : params_(params) {}
@@ -101,10 +103,12 @@ class Supervisor {
   /// Once a tick, before the controllers step. `now_ns` on the run's clock.
   const Verdict& judge(const Conditions& conditions, hal::TimeNs now_ns) noexcept;
   /// A person re-arms the robot: what needed that is forgotten. It then settles, if all is well. Nothing with the
-  /// policy Never.
+  /// policy Never, and where no robot answers.
   void rearm() noexcept;
   /// Whether it stands only because nobody re-armed it.
   bool awaits_rearm() const noexcept { return well_ && latched_ != nullptr; }
+  /// Whether it is perhaps not the robot that was armed, or has lost its memory, and nobody has re-armed it since.
+  bool unproved() const noexcept { return latched_ != nullptr && latched_->recovery == Recovery::Proof; }
 
   /// Leaves of a command what goes to the robot in this tick: the safe one while it may not drive; then, of those that
   /// move it, what is no faster than a limit that grows evenly from 0. `at`: where the robot is; null: nobody knows.
@@ -123,12 +127,15 @@ class Supervisor {
 
  private:
   bool rearmed(hal::TimeNs now_ns) const noexcept;
+  void latch(const Conditions& conditions) noexcept;
 
   RearmParams params_;
   Verdict verdict_;
   bool well_ = false;                    // as the table says, without the time to settle
   const SafetyRule* latched_ = nullptr;  // the stop that needs a re-arm
-  bool operator_held_ = false;
+  bool operator_held_ = false, disarmed_ = false;
+  bool answers_ = false;
+  bool has_driven_ = false;  // since the start
   hal::TimeNs well_since_ns_ = 0;
   hal::TimeNs armed_at_ns_ = 0;
   std::uint64_t stops_ = 0, rearms_ = 0;

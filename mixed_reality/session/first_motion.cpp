@@ -39,7 +39,7 @@ hal::Status MixedSession::turn(std::string_view robot, double turn_rad, const st
     trackers_.latch(now_);
     for (const auto& twin : twins_) {
       const bool this_one = twin.get() == &turned;
-      twin->set_guarded(!options_.guarded || options_.guarded());
+      twin->real_robot().set_guarded(!options_.guarded || options_.guarded());
       twin->latch(now_, this_one ? RunPhase::Running : RunPhase::Waiting);
       if (this_one) twin->steer(on_the_spot);
     }
@@ -48,9 +48,7 @@ hal::Status MixedSession::turn(std::string_view robot, double turn_rad, const st
     if (turned.verdict().may_drive) {
       turned_s += hal::to_seconds(tick_ns);
     } else if (turned_s > 0.0 || hal::to_seconds(now_.run_ns) > kGetUnderWay_s) {
-      const std::string trouble = turned.real().trouble();
-      result = hal::Error{"it may not drive: " + std::string(turned.verdict().reason) +
-                          (trouble.empty() ? "" : " (" + trouble + ")")};
+      result = hal::Error{"it may not drive: " + turned.real_robot().reason()};
     }
     if (!result.ok()) break;
     const hal::TimeNs next_ns = now_.monotonic_ns + tick_ns;

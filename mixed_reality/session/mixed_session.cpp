@@ -325,7 +325,7 @@ void MixedSession::take_inputs() {
             static_cast<std::uint32_t>(pacer_.ledger().skipped_slots)};
   if (const std::uint64_t freezes = options_.freezes ? options_.freezes() : 0; freezes != freezes_) {
     freezes_ = freezes;
-    for (const auto& twin : twins_) twin->hub_was_frozen();
+    for (const auto& twin : twins_) twin->real_robot().hub_was_frozen();
   }
   const bool guarded = !options_.guarded || options_.guarded();
   const bool rearmed = options_.rearm_asked != nullptr && options_.rearm_asked->exchange(false);
@@ -334,8 +334,9 @@ void MixedSession::take_inputs() {
   compare_links();
   for (std::size_t i = 0; i < twins_.size(); ++i) {
     Twin& twin = *twins_[i];
-    if (rearmed) twin.rearm();
-    twin.set_guarded(guarded);
+    RealRobot& real = twin.real_robot();
+    if (rearmed) twins_.size() == 1 ? real.rearm() : real.rearm_if_proved();
+    real.set_guarded(guarded);
     twin.latch(now_, phase_);
     if (phase_ == RunPhase::Running) times_[i].note_reading(twin.newest_reading(), now_.run_ns);
   }
@@ -394,7 +395,7 @@ bool MixedSession::stand_paused(const std::atomic<bool>& stop) {
 
 void MixedSession::obey_emergency_stop() noexcept {
   if (!emergency_asked_.exchange(false, std::memory_order_relaxed)) return;
-  for (const auto& twin : twins_) twin->emergency_stop(time_.now_ns());
+  for (const auto& twin : twins_) twin->real_robot().emergency_stop(time_.now_ns());
 }
 
 /// Error: no real robot has this name.
@@ -415,8 +416,9 @@ hal::Status MixedSession::arm(std::string_view robot) {
   if (!chosen.ok()) return chosen.error();
   bool any = false;
   for (const std::size_t i : chosen.value()) {
-    any = any || twins_[i]->awaits_arming();
-    twins_[i]->arm();
+    RealRobot& real = twins_[i]->real_robot();
+    any = any || real.awaits_arming();
+    real.arm(robot != "*");
   }
   if (any) return {};
   return hal::Error{robot == "*"
@@ -428,10 +430,20 @@ hal::Status MixedSession::rearm(std::string_view robot) {
   auto chosen = real_robots(robot);
   if (!chosen.ok()) return chosen.error();
   bool any = false;
+  std::string unproved;
   for (const std::size_t i : chosen.value()) {
-    if (!twins_[i]->awaits_rearm()) continue;
-    twins_[i]->rearm();
-    any = any || !twins_[i]->awaits_rearm();
+    RealRobot& real = twins_[i]->real_robot();
+    if (!real.awaits_rearm()) continue;
+    robot == "*" ? real.rearm_if_proved() : real.rearm();
+    any = any || !real.awaits_rearm();
+    if (robot == "*" && real.unproved())
+      unproved += (unproved.empty() ? "" : "; ") + ("'" + twins_[i]->id() + "': ") + real.reason();
+  }
+  if (!unproved.empty()) {
+    const std::string which =
+        "not proved to be the robots that were armed, so each is re-armed by its name: " + unproved;
+    if (!any) return hal::Error{which};
+    options_.log.warning(which);
   }
   if (any) return {};
   const std::string whose = robot == "*" ? "no real robot waits" : "robot '" + std::string(robot) + "' does not wait";
@@ -460,7 +472,7 @@ std::vector<RealRobotStatus> MixedSession::status() const {
     status.robot = twin.robot();
     status.health = last_[i].health;
     status.trouble = twin.real().trouble();
-    status.driving = last_[i].driving && !twin.awaits_arming();
+    status.driving = last_[i].driving && !twin.real_robot().awaits_arming();
     status.state = last_[i].state;
     if (last_[i].health != LinkHealth::Active) status.advice = twin.real().advice();
     if (const auto* const drive = world_->space().kind(twin.robot()).drive(); drive != nullptr) {
@@ -468,9 +480,9 @@ std::vector<RealRobotStatus> MixedSession::status() const {
       if (encoders != nullptr && encoders->validity != hal::Validity::Absent)
         status.wheels_turned_rad = (encoders->right_m - encoders->left_m) / drive->wheel_base_m;
     }
-    status.emergency_stopped = twin.emergency_stopped();
-    status.awaits_arming = twin.awaits_arming();
-    status.awaits_rearm = twin.awaits_rearm();
+    status.emergency_stopped = twin.real_robot().emergency_stopped();
+    status.awaits_arming = twin.real_robot().awaits_arming();
+    status.awaits_rearm = twin.real_robot().awaits_rearm();
     status.held_back_m_s = twin.changed_m_s();
     status.held_back_ticks = twin.counts().barrier.changed_ticks;
     const auto age_s = [&](hal::TimeNs taken_ns) { return std::max(0.0, hal::to_seconds(now_.run_ns - taken_ns)); };
@@ -478,9 +490,9 @@ std::vector<RealRobotStatus> MixedSession::status() const {
     const bridges::LinkReport link = twin.real().report();
     status.round_trip_s = hal::to_seconds(link.mean_round_trip_ns);
     status.ledger = times_[i].ledger(link);
-    if (twin.battery() != nullptr && twin.battery()->validity != hal::Validity::Absent)
-      status.battery = twin.battery()->charge;
-    if (status.battery && twin.battery()->supply_V > 0.0F) status.supply_V = twin.battery()->supply_V;
+    const hal::Battery* const battery = twin.real_robot().battery();
+    if (battery != nullptr && battery->validity != hal::Validity::Absent) status.battery = battery->charge;
+    if (status.battery && battery->supply_V > 0.0F) status.supply_V = battery->supply_V;
     const TrackedPose& tracked = twin.tracked();
     if (tracked.known)
       status.places.push_back(

@@ -124,11 +124,12 @@ class MixedSession final : private core::ExternalRobots {
   /// A person's emergency stop, from any thread: every real robot is stopped within 20 ms, also between two ticks
   /// (those that fly land), and stays so until `arm`. Robots that are simulated go on.
   void emergency_stop() noexcept { emergency_asked_.store(true, std::memory_order_relaxed); }
-  /// Ends the emergency stop of the real robot of this name, or of all ("*"): it settles, and drives by and by. Errors:
-  /// no real robot has this name; there was no emergency stop.
+  /// Ends the emergency stop of the real robot of this name, or of all ("*"): it settles, and drives by and by. Not
+  /// with all: one that took another one's place, or is not proved to be the robot that was armed. Errors: no real
+  /// robot has this name; there was no emergency stop.
   hal::Status arm(std::string_view robot);
-  /// A person re-arms a robot that waits for it, or all that do ("*"). Errors: no real robot has this name; it does not
-  /// wait for it; its policy is never.
+  /// A person re-arms a robot that waits for it, or all that do and are proved to be the robots that were armed ("*").
+  /// Errors: no real robot has this name; it does not wait for it; its policy is never; with all, none is proved.
   hal::Status rearm(std::string_view robot);
   /// As of the last tick.
   std::vector<RealRobotStatus> status() const;

@@ -59,7 +59,7 @@ hal::Status MixedSession::replace(std::string_view robot, const Replacement& by)
       return may;
     }
   }
-  old.retire(time_.now_ns());
+  old.real_robot().retire(time_.now_ns());
   real.stop(time_.now_ns());
   real.start();
   candidates_.push_back(std::move(candidate));
@@ -90,7 +90,7 @@ void MixedSession::follow_candidates() {
       options_.log.warning("robot '" + candidate.robot + "' is not replaced: '" + candidate.by.id + "' on " +
                            candidate.by.link + " did not answer: " + (trouble.empty() ? "" : trouble + "; ") +
                            real.advice());
-      twins_[index]->stay();
+      twins_[index]->real_robot().stay();
       give_up(std::move(candidate));
     } else {
       ++c;
@@ -147,7 +147,7 @@ void MixedSession::take_place(std::size_t index, MadeTwin other, const Replaceme
   bridges_[index].link = by.link;
   retired_.back().twin->leave();
   twin.join(barrier_);
-  twin.wait_for_arming();
+  twin.real_robot().join_late();
   twin.real().resume();
 }
 

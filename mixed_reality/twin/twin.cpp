@@ -37,6 +37,21 @@ std::string place_text(const core::Pose& pose) {
   return " at " + rounded(pose.x_m) + ", " + rounded(pose.y_m);
 }
 
+/// What its controller writes, in the space.
+std::vector<WantedCommand> commands_in(core::Space& space, core::RobotId robot) {
+  std::vector<WantedCommand> all;
+  for (const hal::PortType* type : space.ports(robot)) {
+    if (type->role == hal::Role::Actuator) all.push_back({type, space.port(robot, *type)});
+  }
+  return all;
+}
+
+RealRobotParams real_params(const core::Space& space, core::RobotId robot, const TwinParams& params) {
+  return {.rearm = params.rearm,
+          .frozen_after_ns = params.frozen_after_ns,
+          .ask_battery = params.ask_battery || space.port<hal::Battery>(robot) != nullptr};
+}
+
 /// The clock of a twin is the run's.
 const void* reading_of(bridges::RobotBridge& real, const hal::PortType& type) {
   return type.name == hal::Clock::kName ? nullptr : real.port(type);
@@ -49,41 +64,22 @@ Twin::Twin(core::Space& space, core::RobotId robot, std::unique_ptr<bridges::Rob
     : space_(space),
       robot_(robot),
       id_(space.robot_name(robot)),
-      real_(std::move(real)),
+      robot_now_(std::move(real), commands_in(space, robot), real_params(space, robot, params)),
       poses_(std::move(poses)),
       params_(params),
       log_(log),
       fence_(arena_of(space)),
       inner_fence_(fence_.for_body(space.kind(robot).body.radius_m, space.kind(robot).body.height_m)),
-      entity_(space, robot, [this](const hal::PortType& type) { return reading_of(*real_, type); }),
-      mechanisms_(space, robot, [this](const hal::PortType& type) { return reading_of(*real_, type); }),
+      entity_(space, robot, [this](const hal::PortType& type) { return reading_of(robot_now_.bridge(), type); }),
+      mechanisms_(space, robot, [this](const hal::PortType& type) { return reading_of(robot_now_.bridge(), type); }),
       told_place_(space.port<hal::Positioning>(robot) != nullptr),
-      real_wheels_(real_->port(hal::port_type<hal::WheelSpeeds>())),
-      real_task_(space.kind(robot).flies() ? real_->port(hal::port_type<hal::FlightTask>()) : nullptr),
-      supervisor_(params.rearm),
-      battery_watch_(space.kind(robot)),
       pose_(space.pose(robot)),
       smooth_(pose_) {
-  const auto units = [](const hal::PortType& type) {
-    return (type.size + sizeof(std::max_align_t) - 1) / sizeof(std::max_align_t);
-  };
-  std::size_t all = 0;
-  for (const hal::PortType* type : space.ports(robot)) {
-    if (type->role != hal::Role::Actuator) continue;
-    outputs_.push_back({type, space.port(robot, *type), real_->port(*type), nullptr});
-    all += units(*type);
-  }
-  told_ = std::make_unique<std::max_align_t[]>(all);
-  std::max_align_t* next = told_.get();
-  for (Output& output : outputs_) {
-    output.sent = next;
-    output.type->reset(next);
-    next += units(*output.type);
-  }
   incidents_.reserve(kIncidentsKept);
   const hal::RobotKind& kind = space.kind(robot);
   if (!poses_->by_wheels() && kind.drive() != nullptr) {
-    const auto* encoders = static_cast<const hal::WheelEncoders*>(real_->port(hal::port_type<hal::WheelEncoders>()));
+    const auto* encoders =
+        static_cast<const hal::WheelEncoders*>(robot_now_.bridge().port(hal::port_type<hal::WheelEncoders>()));
     if (encoders != nullptr) slip_ = std::make_unique<SlipWatch>(*encoders, kind.drive()->wheel_base_m);
   }
   // Encoders that nobody takes are not asked for: slow lines have no room for them.
@@ -91,17 +87,12 @@ Twin::Twin(core::Space& space, core::RobotId robot, std::unique_ptr<bridges::Rob
     motion_ = std::make_unique<CommandedMotion>(kind.drive()->wheel_base_m);
     poses_->drives_by(*motion_);
   }
-  for (const bridges::PortView& port : real_->taken()) {
+  for (const bridges::PortView& port : robot_now_.bridge().taken()) {
     if (kind.drive() == nullptr || port.type->layout != hal::port_type<hal::WheelEncoders>().layout) continue;
     encoders_ = static_cast<const hal::WheelEncoders*>(port.data);
     delay_ = std::make_unique<DelayWatch>(kind.drive()->wheel_base_m, motion_limits(kind).settle_s);
   }
-  // On a slow line only what its controller reads anyway is asked for.
-  const bool asks_battery = params.ask_battery || kind.flies() || kind.part<hal::TurretPart>() != nullptr ||
-                            space.port<hal::Battery>(robot) != nullptr;
-  if (kind.flies()) flight_ = static_cast<const hal::FlightState*>(real_->port(hal::port_type<hal::FlightState>()));
-  if (asks_battery) battery_ = static_cast<const hal::Battery*>(real_->port(hal::port_type<hal::Battery>()));
-  for (const bridges::PortView& port : real_->taken()) {
+  for (const bridges::PortView& port : robot_now_.bridge().taken()) {
     if (port.type->role == hal::Role::Sensor && port.type->name != hal::Clock::kName)
       readings_.push_back(static_cast<const hal::Reading*>(port.data));
   }
@@ -110,34 +101,23 @@ Twin::Twin(core::Space& space, core::RobotId robot, std::unique_ptr<bridges::Rob
 void Twin::latch(const Moment& now, RunPhase phase) {
   now_ = now;
   running_ = phase == RunPhase::Running;
-  begun_ = running_ || phase == RunPhase::Paused;
-  real_->set_origin(now.monotonic_ns - now.run_ns);
-  real_->latch(0, now.monotonic_ns);
+  prepared_ = false;
+  const hal::TimeNs before_ns = robot_now_.judged_ns();
+  robot_now_.read(0, now.monotonic_ns - now.run_ns, now.monotonic_ns);
   Conditions conditions;
   conditions.run = phase;
-  conditions.emergency_stop = emergency_stop_;
   conditions.operator_holds = space_.halted_by(robot_, core::HaltOwner::Operator);
   conditions.hook_holds =
       space_.halted_by(robot_, core::HaltOwner::Hook) || space_.halted_by(robot_, core::HaltOwner::Removed);
-  conditions.being_replaced = being_replaced_;
-  conditions.replaced = replaced_;
   conditions.controller_failed = space_.halted_by(robot_, core::HaltOwner::Controller);
-  conditions.hub_was_frozen = hub_was_frozen_ || (running_ && last_latch_ns_ != 0 &&
-                                                  now.monotonic_ns - last_latch_ns_ > params_.frozen_after_ns);
-  hub_was_frozen_ = false;
-  conditions.guardian_gone = !guarded_;
-  mechanisms_.follow(last_latch_ns_ == 0 ? 0.0 : hal::to_seconds(now.monotonic_ns - last_latch_ns_), entity_.state());
-  conditions.robot_stopped_itself = real_->stopped_itself();
-  conditions.link = real_->health();
+  mechanisms_.follow(before_ns == 0 ? 0.0 : hal::to_seconds(now.monotonic_ns - before_ns), entity_.state());
   entity_.fusion().latch();
   conditions.readings_missing = entity_.fusion().missing() != nullptr;
-  conditions.battery_low = battery_ != nullptr && battery_watch_.low(*battery_, now.monotonic_ns);
   conditions.links_swapped = std::exchange(swapped_, false);
   track(now, conditions);
   if (delay_ != nullptr) measure_delay(now);
   pose_validity_ = conditions.pose;
-  last_latch_ns_ = now.monotonic_ns;
-  entity_.state().held = !supervisor_.judge(conditions, now.run_ns).controller_steps;
+  entity_.state().held = !robot_now_.judge(conditions, now).controller_steps;
   if (told_place_) tell_place();
   entity_.latch();
   note(now);
@@ -161,8 +141,9 @@ void Twin::track(const Moment& now, Conditions& conditions) noexcept {
   // A pose is about a tick old when it is used, and the robot has driven on by what it was last told; in an outage much
   // longer, until something else stops it.
   const double age_s = hal::to_seconds(age_ns);
-  const double tick_s = last_latch_ns_ == 0 ? 0.0 : hal::to_seconds(now.monotonic_ns - last_latch_ns_);
-  const core::Pose expected = carried_on(pose_, last_latch_ns_, std::min(tick_s, params_.coast_s - (age_s - tick_s)));
+  const hal::TimeNs before_ns = robot_now_.judged_ns();
+  const double tick_s = before_ns == 0 ? 0.0 : hal::to_seconds(now.monotonic_ns - before_ns);
+  const core::Pose expected = carried_on(pose_, before_ns, std::min(tick_s, params_.coast_s - (age_s - tick_s)));
   pose_ = tracked.known ? carried_on(tracked.pose, tracked.taken_ns, std::min(age_s, params_.coast_s)) : tracked.pose;
   // A twin beyond the edge would end the run as an escaped body; the fence brings the real robot back.
   entity_.state().set_pose(fence_.clamped(running_ ? smooth_.follow(pose_, expected, tick_s) : smooth_.set(pose_)));
@@ -178,7 +159,7 @@ core::Pose Twin::carried_on(const core::Pose& pose, hal::TimeNs from_ns, double 
 
 /// A robot that obeys later than the barrier counts on is named, and counted on from now on.
 void Twin::measure_delay(const Moment& now) {
-  if (real_->health() != LinkHealth::Active || encoders_->validity != hal::Validity::Fresh) {
+  if (real().health() != LinkHealth::Active || encoders_->validity != hal::Validity::Fresh) {
     motion_->forget();
     return delay_->forget();
   }
@@ -215,30 +196,6 @@ void Twin::note_track() noexcept {
   track_.command_sd_s = to_counters.told ? static_cast<float>(to_counters.bound_s / 1.96) : TrackRow::kUnknown;
 }
 
-void Twin::emergency_stop(hal::TimeNs monotonic_ns) noexcept {
-  if (emergency_stop_) return;
-  emergency_stop_ = true;
-  real_->land(monotonic_ns);
-}
-
-void Twin::arm() noexcept {
-  replaced_ = false;
-  if (!emergency_stop_) return;
-  emergency_stop_ = false;
-  if (!being_replaced_) real_->resume();
-}
-
-void Twin::retire(hal::TimeNs monotonic_ns) noexcept {
-  being_replaced_ = true;
-  real_->land(monotonic_ns);
-}
-
-void Twin::stay() noexcept {
-  being_replaced_ = false;
-  replaced_ = true;
-  if (!emergency_stop_) real_->resume();
-}
-
 const hal::Reading* Twin::newest_reading() const noexcept {
   const hal::Reading* newest = nullptr;
   for (const hal::Reading* reading : readings_) {
@@ -267,50 +224,48 @@ void Twin::tell_place() noexcept {
 }
 
 bool Twin::may_move(const Moment& now) const noexcept {
-  // The verdict and the command are of the latch: a loop that was kept from running since must not send them.
-  const bool of_late = now.monotonic_ns - last_latch_ns_ <= params_.pose_timeout_ns;
-  return supervisor_.verdict().may_drive && !emergency_stop_ && !space_.halted(robot_) && of_late;
+  return robot_now_.may_move(now.monotonic_ns, params_.pose_timeout_ns) && !space_.halted(robot_);
 }
 
-template <class Port, class Use>
-void Twin::each_confined(const Moment& now, Use&& use) const {
-  for (const Output& output : outputs_) {
-    if (!is<Port>(*output.type)) continue;
-    Port command = *static_cast<const Port*>(output.port);
-    if constexpr (std::is_same_v<Port, hal::WheelSpeeds>) {
-      if (steered_) command = *steered_;
-    }
-    confine(*output.type, &command, now);
-    use(command);
-  }
+/// Once a tick, in `offer` or where nobody is offered anything.
+void Twin::prepare(const Moment& now) {
+  if (prepared_) return;
+  prepared_ = true;
+  if (running_) look_for_intrusions(now);
+  robot_now_.gate().prepare(robot_now_.supervisor(), may_move(now), &pose_, now.run_ns,
+                            [this](const hal::PortType& type, void* command) { return confine(type, command); });
 }
 
 void Twin::offer(const Moment& now) {
   if (barrier_ == nullptr) return;
-  const LinkHealth health = real_->health();
+  const LinkHealth health = real().health();
   const bool hears = health == LinkHealth::Active || health == LinkHealth::Connecting;
-  const bridges::LinkReport link = real_->report();
+  const bridges::LinkReport link = real().report();
   const bool many = link.answers >= kManyAnswers;  // else the slowest of the first few would be the 99th
   const double round_trip_s = hal::to_seconds(many ? link.p99_round_trip_ns : link.mean_round_trip_ns);
   barrier_->begin(tracked_, now.monotonic_ns, round_trip_s, delay_ != nullptr ? delay_->delay_s() : 0.0, hears);
   barrier_->look_around(space_, robot_, pose_);
-  if (running_) look_for_intrusions(now);
+  prepare(now);
   if (!hears && hal::to_seconds(now.monotonic_ns - heard_ns_) < params_.coast_s) barrier_->want(driven_);
   if (!hears || !may_move(now)) return;
-  each_confined<hal::WheelSpeeds>(now, [this](const auto& c) { barrier_->want(c); });
-  each_confined<hal::FlightTask>(now, [this](const auto& c) { barrier_->want(c); });
-  each_confined<hal::QuadrotorAttitude>(now, [this](const auto& c) { barrier_->want(c, flight_); });
-  each_confined<hal::QuadrotorPosition>(now, [this](const auto& c) { barrier_->want(c, pose_); });
-  each_confined<hal::QuadrotorSpeed>(now, [this](const auto& c) { barrier_->want(c); });
+  const CommandGate& gate = robot_now_.gate();
+  gate.each<hal::WheelSpeeds>([this](const auto& c) { barrier_->want(c); });
+  gate.each<hal::FlightTask>([this](const auto& c) { barrier_->want(c); });
+  gate.each<hal::QuadrotorAttitude>([this](const auto& c) { barrier_->want(c, robot_now_.flight()); });
+  gate.each<hal::QuadrotorPosition>([this](const auto& c) { barrier_->want(c, pose_); });
+  gate.each<hal::QuadrotorSpeed>([this](const auto& c) { barrier_->want(c); });
 }
 
 void Twin::after_filter(const Moment& now) {
   const bool alive = may_move(now);
   if (running_) alive ? ++counts_.ticks_driving : ++counts_.ticks_held;
-  if (running_ && barrier_ == nullptr) look_for_intrusions(now);
+  prepare(now);
   if (running_ && barrier_ != nullptr) note_trespass(now);
-  send_commands(alive, now);
-  const bool hears = real_->health() == LinkHealth::Active;
+  if (alive) counts_.fenced_ticks += robot_now_.gate().confined();
+  robot_now_.send(alive, now.monotonic_ns,
+                  [this](const hal::PortType& type, void* command) { hold_back(type, command); });
+  sent_ = robot_now_.gate().wheels();
+  const bool hears = real().health() == LinkHealth::Active;
   if (hears) driven_ = sent_;
   if (hears) heard_ns_ = now.monotonic_ns;
   if (hears && motion_ != nullptr) motion_->told(now.monotonic_ns, sent_);
@@ -319,8 +274,7 @@ void Twin::after_filter(const Moment& now) {
     const bool drives_on = !hears && hal::to_seconds(now.monotonic_ns - heard_ns_) < params_.coast_s;
     barrier_->sent(now.monotonic_ns, drives_on ? driven_ : sent_, alive);
   }
-  track_.sent_ns = now.run_ns + (now.monotonic_ns - last_latch_ns_);
-  real_->commit(now.monotonic_ns);
+  track_.sent_ns = now.run_ns + (now.monotonic_ns - robot_now_.judged_ns());
 }
 
 void Twin::note_trespass(const Moment& now) {
@@ -350,50 +304,8 @@ void Twin::look_for_intrusions(const Moment& now) {
   intruding_ = intruding_ ? intrusion_.depth_m > 0.0 : intrusion_.deep();
 }
 
-void Twin::send_commands(bool alive, const Moment& now) {
-  sent_ = {};
-  bool wheels_sent = false;
-  for (const Output& output : outputs_) {
-    void* const told = output.sent;
-    std::memcpy(told, output.port, output.type->size);
-    if (is<hal::FlightTask>(*output.type)) {
-      auto& task = *static_cast<hal::FlightTask*>(told);
-      task = orders_.pass(task, alive, says_on_ground(flight_));
-      if (barrier_ != nullptr && barrier_->begun()) barrier_->apply(task);
-    } else if (!alive) {
-      output.type->reset(told);
-    } else {
-      if (steered_ && is_wheels(*output.type)) std::memcpy(told, &*steered_, sizeof *steered_);
-      if (confine(*output.type, told, now)) ++counts_.fenced_ticks;
-      hold_back(*output.type, told);
-    }
-    if (is_wheels(*output.type)) sent_ = *static_cast<const hal::WheelSpeeds*>(told);
-    if (output.real == nullptr) continue;
-    std::memcpy(output.real, told, output.type->size);
-    wheels_sent = wheels_sent || is_wheels(*output.type);
-  }
-  if (!wheels_sent && steered_ && alive && real_wheels_ != nullptr) {
-    sent_ = *steered_;
-    (void)confine(hal::port_type<hal::WheelSpeeds>(), &sent_, now);
-    hold_back(hal::port_type<hal::WheelSpeeds>(), &sent_);
-  }
-  // A controller without wheels leaves them where they are safe.
-  if (!wheels_sent && real_wheels_ != nullptr) std::memcpy(real_wheels_, &sent_, sizeof sent_);
-  if (real_task_ != nullptr && supervisor_.verdict().land && begun_) {
-    hal::FlightTask landing;
-    landing.order = hal::FlightOrder::Land;
-    std::memcpy(real_task_, &landing, sizeof landing);
-    landing_ = true;
-  } else if (landing_) {
-    landing_ = false;
-    hal::port_type<hal::FlightTask>().reset(real_task_);  // its controller may not have taken the device
-  }
-}
-
-/// Leaves of a command what the safety table, the arena's edge and virtual things leave.
-/// @returns whether it led out of the arena.
-bool Twin::confine(const hal::PortType& type, void* command, const Moment& now) const noexcept {
-  supervisor_.allow(type, command, &pose_, now.run_ns);
+/// What the arena's edge and virtual things leave of a command. @returns whether it led out of the arena.
+bool Twin::confine(const hal::PortType& type, void* command) const noexcept {
   if (type.keep_inside == nullptr) return false;
   if (intrusion_.deep()) type.keep_out(command, pose_, intrusion_.out_x, intrusion_.out_y);
   return type.keep_inside(command, inner_fence_, pose_, params_.fence_ahead_s);
@@ -402,7 +314,9 @@ bool Twin::confine(const hal::PortType& type, void* command, const Moment& now) 
 /// … and what keeps all real robots apart. It may turn the velocity of what flies: where that leads out of the arena,
 /// it hovers.
 void Twin::hold_back(const hal::PortType& type, void* command) const noexcept {
-  if (barrier_ == nullptr || !barrier_->begun() || !barrier_->changed()) return;
+  if (barrier_ == nullptr || !barrier_->begun()) return;
+  if (is<hal::FlightTask>(type)) return barrier_->apply(*static_cast<hal::FlightTask*>(command));
+  if (!barrier_->changed()) return;
   if (is_wheels(type)) return barrier_->apply(*static_cast<hal::WheelSpeeds*>(command));
   if (is<hal::QuadrotorPosition>(type)) barrier_->apply(*static_cast<hal::QuadrotorPosition*>(command), pose_);
   if (is<hal::QuadrotorSpeed>(type)) barrier_->apply(*static_cast<hal::QuadrotorSpeed*>(command));
@@ -412,7 +326,9 @@ void Twin::hold_back(const hal::PortType& type, void* command) const noexcept {
 
 void Twin::list(core::SpaceInputs& inputs) const {
   entity_.list(inputs);
-  for (const Output& output : outputs_) inputs.rows.push_back({robot_, output.type, output.sent, "sent"});
+  robot_now_.gate().for_each_sent([&](const hal::PortType& type, const void* sent) {
+    inputs.rows.push_back({robot_, &type, sent, "sent"});
+  });
   inputs.rows.push_back({robot_, &hal::row_type<TrackRow>(), &track_, "seen"});
   if (poses_->sightings() != nullptr)
     inputs.rows.push_back({robot_, &hal::row_type<SightingsRow>(), poses_->sightings(), "seen"});
@@ -424,15 +340,11 @@ void Twin::let_go() {
 }
 
 void Twin::note(const Moment& now) {
-  const Verdict& verdict = supervisor_.verdict();
+  const Verdict& verdict = robot_now_.verdict();
   if (!running_ || verdict.reason == noted_) return;
   noted_ = verdict.reason;
-  std::string what(verdict.reason);
   const hal::PortType* missing = verdict.owner == StopOwner::Readings ? entity_.fusion().missing() : nullptr;
-  std::string trouble = missing != nullptr ? std::string(missing->name) : "";
-  if (const std::string more = real_->trouble(); !more.empty()) trouble += (trouble.empty() ? "" : "; ") + more;
-  if (!verdict.may_drive && !trouble.empty()) what += " (" + trouble + ")";
-  note_incident(now, what, !verdict.may_drive);
+  note_incident(now, robot_now_.reason(missing != nullptr ? missing->name : std::string_view()), !verdict.may_drive);
 }
 
 void Twin::note_incident(const Moment& now, const std::string& what, bool serious) {
@@ -443,8 +355,8 @@ void Twin::note_incident(const Moment& now, const std::string& what, bool seriou
 
 TwinCounts Twin::counts() const noexcept {
   TwinCounts counts = counts_;
-  counts.stops = supervisor_.stops();
-  counts.rearms = supervisor_.rearms();
+  counts.stops = robot_now_.supervisor().stops();
+  counts.rearms = robot_now_.supervisor().rearms();
   if (barrier_ != nullptr) counts.barrier = barrier_->counts();
   return counts;
 }

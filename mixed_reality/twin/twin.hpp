@@ -14,9 +14,7 @@
 #include "hal/device/wheels.hpp"
 #include "hal/log.hpp"
 #include "mixed_reality/fence/intrusion.hpp"
-#include "mixed_reality/safety/battery_watch.hpp"
-#include "mixed_reality/safety/flight_order_gate.hpp"
-#include "mixed_reality/safety/supervisor.hpp"
+#include "mixed_reality/safety/real_robot.hpp"
 #include "mixed_reality/time/moment.hpp"
 #include "mixed_reality/tracking/commanded_motion.hpp"
 #include "mixed_reality/tracking/delay_watch.hpp"
@@ -57,33 +55,14 @@ class Twin {
   Twin(core::Space& space, core::RobotId robot, std::unique_ptr<bridges::RobotBridge> real,
        std::unique_ptr<PoseSource> poses, const TwinParams& params, const hal::Log& log);
 
-  /// The robots were stopped by others because this program did not run; to be told before the next `latch`.
-  void hub_was_frozen() noexcept { hub_was_frozen_ = true; }
-  /// Whether somebody would stop the robot if this program died; heeded by the next `latch`.
-  void set_guarded(bool guarded) noexcept { guarded_ = guarded; }
   /// Its wheels roll as another robot is seen to move: heeded by the next `latch`. `what` for people.
   void links_seem_swapped(const std::string& what) {
     swapped_ = true;
     note_incident(now_, what, true);
   }
-  /// A person re-arms the robot.
-  void rearm() noexcept { supervisor_.rearm(); }
-  bool awaits_rearm() const noexcept { return supervisor_.awaits_rearm(); }
-  /// Stops the robot now, without waiting for a tick (one that flies lands), and keeps it so until `arm`.
-  void emergency_stop(hal::TimeNs monotonic_ns) noexcept;
-  /// Ends an emergency stop: the robot settles, and drives by and by if all else is well.
-  void arm() noexcept;
-  bool emergency_stopped() const noexcept { return emergency_stop_; }
-  /// Stops the robot now, for good: another one is to take its place.
-  void retire(hal::TimeNs monotonic_ns) noexcept;
-  /// Ends `retire`, because the other one never came. The robot stands until `arm`.
-  void stay() noexcept;
-  /// It took another one's place, and stands until `arm`.
-  void wait_for_arming() noexcept { replaced_ = true; }
-  bool awaits_arming() const noexcept { return emergency_stop_ || replaced_; }
   /// Before the run, with the phase Running for this robot alone: it drives so, whatever its controller says, as far as
   /// the safety table lets it; nothing: as its controller says.
-  void steer(const std::optional<hal::WheelSpeeds>& wheels) noexcept { steered_ = wheels; }
+  void steer(const std::optional<hal::WheelSpeeds>& wheels) noexcept { robot_now_.gate().steer(wheels); }
   /// Takes over the newest readings and pose, and decides whether the robot may move; its controller is held if not.
   void latch(const Moment& now, RunPhase phase);
   /// The space's ports, which hold the twin's virtual readings, get the fused ones.
@@ -104,8 +83,11 @@ class Twin {
   void list(core::SpaceInputs& inputs) const;
   const std::string& id() const noexcept { return id_; }
   core::RobotId robot() const noexcept { return robot_; }
-  bridges::RobotBridge& real() noexcept { return *real_; }
-  const bridges::RobotBridge& real() const noexcept { return *real_; }
+  /// What a person, and who guards it, tell the robot.
+  RealRobot& real_robot() noexcept { return robot_now_; }
+  const RealRobot& real_robot() const noexcept { return robot_now_; }
+  bridges::RobotBridge& real() noexcept { return robot_now_.bridge(); }
+  const bridges::RobotBridge& real() const noexcept { return robot_now_.bridge(); }
   /// Where the robot is in this tick, as well as is known: the tracked pose, carried on by what was commanded since it
   /// was taken. Its entity comes there without jumps.
   const core::Pose& pose() const noexcept { return pose_; }
@@ -116,8 +98,7 @@ class Twin {
   /// The newest reading of all that the robot is asked for; null: none came yet.
   const hal::Reading* newest_reading() const noexcept;
   const hal::WheelEncoders* encoders() const noexcept { return encoders_; }  ///< null: nobody asks for them
-  const hal::Battery* battery() const noexcept { return battery_; }          ///< null: it tells nothing
-  const Verdict& verdict() const noexcept { return supervisor_.verdict(); }
+  const Verdict& verdict() const noexcept { return robot_now_.verdict(); }
   /// The wheel speeds last handed to the robot.
   const hal::WheelSpeeds& sent() const noexcept { return sent_; }
   /// By how much the filter changed the last command; 0: not at all.
@@ -127,13 +108,6 @@ class Twin {
   const std::vector<std::string>& incidents() const noexcept { return incidents_; }
 
  private:
-  struct Output {
-    const hal::PortType* type;
-    const void* port;  // in the space
-    void* real;        // null: the robot has none such
-    void* sent;        // as it last went to the robot
-  };
-
   void track(const Moment& now, Conditions& conditions) noexcept;
   void note_track() noexcept;
   void tell_place() noexcept;
@@ -144,16 +118,14 @@ class Twin {
   void note_trespass(const Moment& now);
   void measure_delay(const Moment& now);
   bool may_move(const Moment& now) const noexcept;
-  void send_commands(bool alive, const Moment& now);
-  bool confine(const hal::PortType& type, void* command, const Moment& now) const noexcept;
-  template <class Port, class Use>
-  void each_confined(const Moment& now, Use&& use) const;
+  void prepare(const Moment& now);
+  bool confine(const hal::PortType& type, void* command) const noexcept;
   void hold_back(const hal::PortType& type, void* command) const noexcept;
 
   core::Space& space_;
   core::RobotId robot_;
   std::string id_;
-  std::unique_ptr<bridges::RobotBridge> real_;
+  RealRobot robot_now_;
   std::unique_ptr<PoseSource> poses_;
   TwinParams params_;
   const hal::Log& log_;
@@ -161,18 +133,9 @@ class Twin {
   hal::Fence inner_fence_;  // for where its middle may go
   TwinEntity entity_;
   Mechanisms mechanisms_;
-  bool told_place_;  // its controller took a positioning
-  std::vector<Output> outputs_;
-  std::vector<const hal::Reading*> readings_;  // that the robot is asked for
-  void* real_wheels_;                          // null, as the next one: it has none
-  void* real_task_;                            // of flight
-  std::unique_ptr<std::max_align_t[]> told_;   // commands as they go to the robot
-  Supervisor supervisor_;
-  std::unique_ptr<SlipWatch> slip_;        // null: there is nothing to compare the wheels with
-  const hal::Battery* battery_ = nullptr;  // null: it tells nothing
-  BatteryWatch battery_watch_;
-  const hal::FlightState* flight_ = nullptr;  // null: it does not fly
-  FlightOrderGate orders_;
+  bool told_place_;                               // its controller took a positioning
+  std::vector<const hal::Reading*> readings_;     // that the robot is asked for
+  std::unique_ptr<SlipWatch> slip_;               // null: there is nothing to compare the wheels with
   std::unique_ptr<DelayWatch> delay_;             // null: it has no wheels, or does not tell what they roll
   const hal::WheelEncoders* encoders_ = nullptr;  // null: the same
   std::unique_ptr<CommandedMotion> motion_;       // null: it has no wheels
@@ -186,18 +149,11 @@ class Twin {
   hal::TimeNs heard_ns_ = 0;              // when it was last told something while it could hear
   Intrusion intrusion_;
   bool intruding_ = false;
-  bool landing_ = false;  // it was told to, by us
   hal::WheelSpeeds sent_;
   hal::WheelSpeeds driven_;  // what it was last told while it could hear
   bool running_ = false;
-  bool hub_was_frozen_ = false;
-  bool guarded_ = true;
-  bool emergency_stop_ = false;
-  bool being_replaced_ = false, replaced_ = false;
-  bool begun_ = false;  // the run has, and is not stopping
-  std::optional<hal::WheelSpeeds> steered_;
-  Moment now_;  // of the last `latch`
-  hal::TimeNs last_latch_ns_ = 0;
+  bool prepared_ = false;          // the commands of this tick
+  Moment now_;                     // of the last `latch`
   hal::TimeNs pose_taken_ns_ = 0;  // on the run's clock
   hal::Validity pose_validity_ = hal::Validity::Absent;
   std::string_view noted_;

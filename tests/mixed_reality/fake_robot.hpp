@@ -38,6 +38,8 @@ struct FakeBody {
   bool held_fast = false;    ///< its wheels turn, and it does not move
   hal::TimeNs delay_ns = 0;  ///< from a command to its wheels
   LinkHealth health_when_up = LinkHealth::Active;
+  std::string name = "fake";  ///< as it calls itself
+  std::uint64_t session = 1;  ///< grows when its device is opened anew
   hal::TimeNs moved_to_ns = 0;
 
   void obey(hal::TimeNs now_ns, const hal::WheelSpeeds& told) {
@@ -116,11 +118,13 @@ class FakeRobot final : public bridges::RobotBridge, private hal::Robot {
   bool stopped_itself() const noexcept override { return body_.stopped_itself; }
   std::string trouble() const override { return body_.link_up ? "" : "cable out"; }
   std::string advice() const override { return "is it switched on?"; }
-  bridges::RobotIdentity identity() const override { return {.link = "fake", .device = "fake", .session = 1}; }
+  bridges::RobotIdentity identity() const override {
+    return {.link = "fake", .device = "fake", .name = body_.name, .session = body_.session};
+  }
   bridges::StopMessages stop_messages() const override {
     return {.robot = "fake", .kind = "fake", .link = "fake", .body = "", .version = 1};
   }
-  std::uint64_t stop_version() const noexcept override { return 1; }
+  std::uint64_t stop_version() const noexcept override { return body_.session; }
 
   void commit(hal::TimeNs now) noexcept override {
     if (!body_.link_up) return;

@@ -124,7 +124,7 @@ TEST(EmulatedFootbot, IsStoppedAfterALinkLossBeforeItDrivesOn) {
   const auto all = since();
   const long long stood_ns = std::find_if(all.begin(), all.end(), rests)->t_ns;
   EXPECT_LE(stood_ns - back_ns, 1'000'000'000 + footbot.late_ns(back_ns, stood_ns)) << footbot.log();
-  EXPECT_TRUE(eventually([&] { return footbot.moves(); }, 20.0)) << robot.errors();
+  EXPECT_TRUE(waits_for_a_person(robot, [&] { return footbot.moves(); })) << footbot.log();
   robot.signal(SIGINT);
   EXPECT_EQ(robot.wait(), 130) << robot.errors();
   EXPECT_FALSE(footbot.moves());
@@ -142,13 +142,10 @@ TEST(EmulatedFootbot, IsFoundAgainWhenAMotorsModuleRestarts) {
   // It may be told to drive once more before the hub has seen that it restarted.
   EXPECT_TRUE(says(robot, "its node 'left motor' restarted")) << robot.errors() << footbot.log();
   EXPECT_TRUE(says(robot, "robot stopped by itself")) << robot.errors();
-  EXPECT_TRUE(eventually(
-      [&] {
-        const auto all = footbot.wheels();
-        return !all.empty() && all.back().t_ns > at_ns && all.back().left == kCruise && all.back().right == kCruise;
-      },
-      20.0))
-      << robot.errors() << footbot.log();
+  EXPECT_TRUE(waits_for_a_person(robot, [&] {
+    const auto all = footbot.wheels();
+    return !all.empty() && all.back().t_ns > at_ns && all.back().left == kCruise && all.back().right == kCruise;
+  })) << footbot.log();
   robot.signal(SIGTERM);
   EXPECT_EQ(robot.wait(), 143) << robot.errors();
   EXPECT_FALSE(footbot.moves());

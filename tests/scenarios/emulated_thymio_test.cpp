@@ -107,7 +107,7 @@ TEST(EmulatedThymio, IsStoppedAfterALinkLossBeforeItDrivesOn) {
   };
   ASSERT_TRUE(eventually([&] { return stopped_since(thymio.fault_ns(fault, "begin")); }, 20.0)) << thymio.log();
   ASSERT_TRUE(eventually([&] { return thymio.fault_ns(fault, "end") > 0; }, 20.0));
-  EXPECT_TRUE(eventually([&] { return thymio.moves(); }, 20.0)) << robot.errors();
+  EXPECT_TRUE(waits_for_a_person(robot, [&] { return thymio.moves(); }));
   robot.signal(SIGINT);
   EXPECT_EQ(robot.wait(), 130) << robot.errors();
   EXPECT_FALSE(thymio.moves());
@@ -128,7 +128,7 @@ TEST_P(ItsProgramIsGone, AndIsLoadedAgain) {
     EXPECT_TRUE(eventually([&] { return robot.errors().find(text) != std::string::npos; }, 20.0)) << robot.errors();
   }
   const auto cruises_again = [&] { return thymio.cruises() && thymio.wheels().back().t_ns > gone_ns; };
-  EXPECT_TRUE(eventually(cruises_again, 20.0)) << robot.errors() << thymio.log();
+  EXPECT_TRUE(waits_for_a_person(robot, cruises_again)) << thymio.log();
   robot.signal(SIGTERM);
   EXPECT_EQ(robot.wait(), 143) << robot.errors();
   EXPECT_FALSE(thymio.moves());

@@ -98,7 +98,7 @@ TEST_P(OverTcp, IsStoppedWhileTheHubIsFrozenAndFoundAgain) {
   std::this_thread::sleep_for(std::chrono::seconds(1));
   EXPECT_FALSE(epuck->moves());
   hub.signal(SIGCONT);
-  EXPECT_TRUE(eventually([&] { return epuck->moves(); }, 30.0)) << hub.errors();
+  EXPECT_TRUE(waits_for_a_person(hub, [&] { return epuck->moves(); }));
   EXPECT_THAT(hub.errors(), HasSubstr("was frozen"));
   hub.signal(SIGINT);
   EXPECT_EQ(hub.wait(), 128 + SIGINT) << hub.errors();
@@ -111,7 +111,7 @@ TEST_P(OverTcp, ComesBackAfterTheConnectionIsLost) {
   ASSERT_TRUE(eventually([&] { return epuck->moves(); }, 30.0)) << hub.errors();
   ASSERT_TRUE(eventually([&] { return hub.errors().find("hung up") != std::string::npos; }, 15.0)) << hub.errors();
   EXPECT_TRUE(eventually([&] { return !epuck->moves(); }, 30.0));
-  EXPECT_TRUE(eventually([&] { return epuck->moves(); }, 30.0)) << hub.errors();
+  EXPECT_TRUE(waits_for_a_person(hub, [&] { return epuck->moves(); }));
   hub.signal(SIGINT);
   EXPECT_EQ(hub.wait(), 128 + SIGINT) << hub.errors();
   EXPECT_FALSE(epuck->moves());

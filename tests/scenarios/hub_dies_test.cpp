@@ -102,7 +102,7 @@ TEST_F(RobotsOfAllKinds, AreStoppedAtOnceWhenTheirHubIsKilledAndTheUnreachableOn
       << hub.errors();
 }
 
-TEST_F(RobotsOfAllKinds, AreStoppedWhileTheirHubIsFrozenAndDriveOnAfterwards) {
+TEST_F(RobotsOfAllKinds, AreStoppedWhileTheirHubIsFrozenAndWaitForAPersonWhoNamesEach) {
   Tandem hub({"run", "run.xml", "--report", "r.json"}, hub_folder.path());
   ASSERT_TRUE(start(hub)) << hub.errors();
   const long long frozen = monotonic_ns();
@@ -114,8 +114,16 @@ TEST_F(RobotsOfAllKinds, AreStoppedWhileTheirHubIsFrozenAndDriveOnAfterwards) {
   EXPECT_TRUE(stood_within(kAfterFreeze_ns, *eyebot, frozen, hovers_since()));
   const long long thawed = monotonic_ns();
   hub.signal(SIGCONT);
-  EXPECT_TRUE(eventually([&] { return all_move(); }, 30.0)) << hub.errors() << eyebot->modes();
-  EXPECT_GT(epuck->wheels().back().t_ns, thawed);
+  const auto says = [&](const std::string& what) {
+    return eventually([&] { return hub.errors().find(what) != std::string::npos; }, 30.0);
+  };
+  for (const char* id : {"ep0", "fb0", "eb0"}) EXPECT_TRUE(says("robot '" + std::string(id) + "' at")) << hub.errors();
+  for (int i = 0; i < 10; ++i) {
+    hub.signal(SIGUSR1);  // names nobody: their links were opened anew
+    EXPECT_FALSE(eventually([&] { return epuck->moves() || footbot->moves(); }, 0.3)) << hub.errors();
+  }
+  for (const auto& w : epuck->wheels()) EXPECT_TRUE(w.t_ns < thawed || (w.left == 0 && w.right == 0)) << epuck->log();
+  EXPECT_THAT(hub.errors(), HasSubstr("link was opened anew; waits to be re-armed"));
   EXPECT_THAT(hub.errors(), HasSubstr("this program was frozen for"));
   hub.signal(SIGINT);
   EXPECT_EQ(hub.wait(60.0), 130) << hub.errors();
@@ -134,7 +142,9 @@ TEST_F(RobotsOfAllKinds, AreStoppedBeforeTheirHubIsSuspended) {
   EXPECT_TRUE(eventually([&] { return hub.suspended(); }, 10.0));
   EXPECT_TRUE(eventually([&] { return eyebot->mode() == "hover"; }, 10.0)) << "its log may be later than its hub";
   hub.signal(SIGCONT);
-  EXPECT_TRUE(eventually([&] { return all_move(); }, 30.0)) << hub.errors() << eyebot->modes();
+  EXPECT_TRUE(eventually([&] { return hub.errors().find("waits to be re-armed") != std::string::npos; }, 30.0))
+      << hub.errors();
+  EXPECT_FALSE(eventually([&] { return epuck->moves() || footbot->moves(); }, 1.5)) << hub.errors();
 }
 
 TEST_F(RobotsOfAllKinds, HaveOneHub) {

@@ -336,6 +336,19 @@ inline testing::AssertionResult stands_at_once(const EmulatedRobot& robot) {
   return stood_within(250'000'000, robot, answered_ns, stood_ns);
 }
 
+/// Whether the one robot of this hub stands until a person re-arms it, and goes on then. `moves`: by its own log.
+inline testing::AssertionResult waits_for_a_person(const Tandem& hub, const std::function<bool()>& moves) {
+  if (!eventually([&] { return hub.errors().find("waits to be re-armed") != std::string::npos; }, 30.0))
+    return testing::AssertionFailure() << "it waits for nobody: " << hub.errors();
+  if (eventually(moves, 1.5)) return testing::AssertionFailure() << "it goes on by itself: " << hub.errors();
+  const auto goes_on = [&] {
+    hub.signal(SIGUSR1);
+    return eventually(moves, 0.5);
+  };
+  if (!eventually(goes_on, 20.0)) return testing::AssertionFailure() << "re-armed, it stands: " << hub.errors();
+  return testing::AssertionSuccess();
+}
+
 /// On a pseudo-terminal "ep0" in `folder`.
 class EmulatedEpuck : public EmulatedRobot {
  public:

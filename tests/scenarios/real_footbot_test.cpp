@@ -55,7 +55,7 @@ TEST(RealFootbot, IsFoundAgainWhenTheConnectionBreaks) {
   ASSERT_TRUE(eventually([&] { return footbot.moves(); }, 20.0)) << robot.errors();
   footbot.hang_up();
   ASSERT_TRUE(eventually([&] { return !footbot.moves(); }, 10.0)) << "before it drives on it is stopped";
-  EXPECT_TRUE(eventually([&] { return footbot.moves(); }, 10.0)) << robot.errors();
+  EXPECT_TRUE(waits_for_a_person(robot, [&] { return footbot.moves(); }));
   robot.signal(SIGINT);
   EXPECT_EQ(robot.wait(), 130);
   EXPECT_FALSE(footbot.moves());

@@ -121,7 +121,7 @@ TEST(SteadyHub, StopsNoRobotWithoutAReason) {
     ASSERT_TRUE(robots.back()->ready());
     elements += "<e-puck id=\"real" + std::to_string(i) + "\"><body position=\"12," + std::to_string(0.8 * i - 8.0) +
                 ",0\"/><controller config=\"d\"/><bridge link=\"serial:" + (folders.back()->path() / "ep0").string() +
-                "\"/></e-puck>";
+                "\" rearm=\"after 0.5 s\"/></e-puck>";
   }
   folder.write(
       "run.xml",

@@ -65,15 +65,13 @@ class Hubs : public testing::TestWithParam<const char*> {
 INSTANTIATE_TEST_SUITE_P(Both, Hubs, testing::Values("run", "robot"));
 
 TEST_P(Hubs, LetARobotStandUntilAPersonReArmsIt) {
-  auto hub = start({.bridge = "rearm=\"operator\""});
+  auto hub = start();
   ASSERT_TRUE(drives(*hub)) << hub->errors();
   hub->signal(SIGSTOP);
   ASSERT_TRUE(stands()) << epuck_.log();
   hub->signal(SIGCONT);
-  ASSERT_TRUE(says(*hub, "hub was frozen; waits to be re-armed")) << hub->errors();
-  EXPECT_FALSE(epuck_.moves());
-  hub->signal(SIGUSR1);
-  EXPECT_TRUE(drives(*hub)) << hub->errors();
+  EXPECT_TRUE(waits_for_a_person(*hub, [&] { return epuck_.moves(); })) << epuck_.log();
+  EXPECT_THAT(hub->errors(), HasSubstr("hub was frozen"));
   hub->signal(SIGINT);
   EXPECT_EQ(hub->wait(), 130) << hub->errors();
   EXPECT_FALSE(epuck_.moves());

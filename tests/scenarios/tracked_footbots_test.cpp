@@ -270,8 +270,8 @@ class Stage {
       text += "<foot-bot id=\"" + robot->id + "\"><body position=\"" + std::to_string(start.x_m) + "," +
               std::to_string(start.y_m) + ",0\" orientation=\"" +
               std::to_string(start.heading_rad * 180.0 / std::numbers::pi) +
-              R"(,0,0"/><controller config="d"/><bridge link=")" + robot->emulated->text() + "\" map=\"" +
-              test::kSourceDir + "/configs/footbot_map.xml\"/></foot-bot>";
+              R"(,0,0"/><controller config="d"/><bridge rearm="after 0.5 s" link=")" + robot->emulated->text() +
+              "\" map=\"" + test::kSourceDir + "/configs/footbot_map.xml\"/></foot-bot>";
     }
     return text + "</arena><trackers>" + elements_ +
            "</trackers><physics_engines><kinematics2d id=\"k\"/></physics_engines></tandem>";

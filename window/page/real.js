@@ -18,7 +18,7 @@ export class Real {
     this.dialog = h('dialog', { 'aria-label': 'Real robots' });
     document.body.append(this.dialog);
     this.buttons = h('div', { class: 'row' }, h('button', { title: 'Looks for what is in the way of the run; moves nothing', onclick: () => this.preflight() }, 'Preflight'), h('button', { title: 'Ends the emergency stop', onclick: () => this.command({ do: 'arm', robot: '*' }) }, 'Arm all'),
-      h('button', { onclick: () => this.command({ do: 'rearm', robot: '*' }), title: 'After a stop that waits for a person' }, 'Re-arm all'));
+      h('button', { onclick: () => this.command({ do: 'rearm', robot: '*' }), title: 'After a stop: those that are proved to be the robots that were armed; each other one by its own button' }, 'Re-arm all'));
     body.append(this.buttons, this.said, this.list);
     element.hidden = true;
     host.append(element);

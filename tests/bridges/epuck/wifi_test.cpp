@@ -179,7 +179,7 @@ TEST(EpuckWifi, TellsEverySensorInSi) {
   EXPECT_NEAR(battery.supply_V, 3.9, 0.01);
   EXPECT_EQ(ground.count, 3U);
   EXPECT_EQ(cliff.validity, hal::Validity::Absent) << "the radio does not tell it";
-  EXPECT_THAT(robot.untold(rig.driver.session().layout()), testing::StrEq("cliff"));
+  EXPECT_THAT(robot.untold(rig.driver.session().layout(), rig.driver.session().samples()), testing::StrEq("cliff"));
 }
 
 TEST(EpuckWifi, SetsAllLamps) {

@@ -49,7 +49,9 @@ class WireRig {
  public:
   explicit WireRig(DriverSettings settings = {}, std::uint64_t seed = 1,
                    epuck_emulator::Variant variant = epuck_emulator::Variant::Gctronic)
-      : driver(settings), firmware(options_of(variant), body, {}), chance_(seed) {
+      : WireRig(std::move(settings), seed, options_of(variant)) {}
+  WireRig(DriverSettings settings, std::uint64_t seed, const epuck_emulator::Firmware::Options& options)
+      : driver(std::move(settings)), firmware(options, body, {}), chance_(seed) {
     plug_in();
     firmware.power_on(0);
   }

@@ -327,7 +327,7 @@ TEST(Epuck2OnASerialLine, TellsWhatItAloneHas) {
   EXPECT_EQ(ports.cliff.validity, hal::Validity::Fresh);
   EXPECT_EQ(ports.cliff.count, 1U) << "the right one";
   EXPECT_EQ(ports.microphones.count, 4U);
-  EXPECT_EQ(rig.driver.robot().untold(rig.driver.session().layout()), "");
+  EXPECT_EQ(rig.driver.robot().untold(rig.driver.session().layout(), rig.driver.session().samples()), "");
   EXPECT_EQ(rig.driver.session().statistics().handshake_failures, 0U);
 }
 
@@ -341,7 +341,39 @@ TEST(Epuck2OnASerialLine, IsToldFromAnEpuckThatTheFileCallsSo) {
   EXPECT_EQ(ports.selector.validity, hal::Validity::Absent);
   EXPECT_EQ(ports.cliff.validity, hal::Validity::Absent);
   EXPECT_EQ(ports.microphones.count, 3U);
-  EXPECT_EQ(rig.driver.robot().untold(rig.driver.session().layout()), "gyroscope, time_of_flight, cliff, selector");
+  EXPECT_EQ(rig.driver.robot().untold(rig.driver.session().layout(), rig.driver.session().samples()),
+            "gyroscope, time_of_flight, cliff, selector");
+}
+
+// The firmwares answer zeros where the board or the chip is missing: no black floor, and no robot that does not turn.
+TEST(EpuckOnASerialLine, WithoutAFloorBoardHasNoGroundReadings) {
+  for (const auto variant :
+       {epuck_emulator::Variant::Btcom, epuck_emulator::Variant::Gctronic, epuck_emulator::Variant::Epuck2}) {
+    WireRig bare({.robot = {.tick_ns = 100 * kMs}}, 1, {.variant = variant, .ground_board = false});
+    WireRig fitted({.robot = {.tick_ns = 100 * kMs}}, 1, {.variant = variant});
+    const auto& none = bare.driver.robot().sensor<hal::Ground>();
+    const auto& some = fitted.driver.robot().sensor<hal::Ground>();
+    for (int i = 0; i < 50; ++i) {
+      bare.tick(100 * kMs);
+      fitted.tick(100 * kMs);
+      ASSERT_EQ(none.validity, hal::Validity::Absent) << i;
+    }
+    ASSERT_EQ(bare.driver.state(), SessionState::Active) << bare.driver.session().trouble();
+    EXPECT_EQ(some.validity, hal::Validity::Fresh);
+    EXPECT_FLOAT_EQ(some.reflectance[1], 1.0F);
+    EXPECT_EQ(bare.driver.robot().untold(bare.driver.session().layout(), bare.driver.session().samples()), "ground");
+  }
+}
+
+TEST(EpuckOnASerialLine, OfHardwareBefore13HasNoGyroscopeWhateverTheFileCallsIt) {
+  WireRig rig({.robot = {.kind = &hal::epuck2::kind(), .tick_ns = 100 * kMs}}, 1, epuck_emulator::Variant::Gctronic);
+  const auto& gyroscope = rig.driver.robot().sensor<hal::Gyroscope>();
+  for (int i = 0; i < 50; ++i) {
+    rig.tick(100 * kMs);
+    ASSERT_EQ(gyroscope.validity, hal::Validity::Absent) << i;
+  }
+  ASSERT_EQ(rig.driver.state(), SessionState::Active) << rig.driver.session().trouble();
+  EXPECT_EQ(rig.driver.robot().untold(rig.driver.session().layout(), rig.driver.session().samples()), "gyroscope");
 }
 
 TEST(Epuck, HasNothingOfAnEpuck2AndSaysWhoHas) {

@@ -6,12 +6,13 @@ namespace tandem::mixed_reality {
 namespace {
 
 TEST(RearmPolicy, IsReadAsItIsWritten) {
+  EXPECT_EQ(parse_rearm("proved").value(), RearmPolicy{});
   EXPECT_EQ(parse_rearm("operator").value().by, RearmBy::Operator);
   EXPECT_EQ(parse_rearm("never").value().by, RearmBy::Never);
   EXPECT_EQ(parse_rearm("after 2 s").value(), (RearmPolicy{RearmBy::Time, 2.0}));
   EXPECT_EQ(parse_rearm("after 500ms").value(), (RearmPolicy{RearmBy::Time, 0.5}));
   EXPECT_EQ(parse_rearm("after 3").value(), (RearmPolicy{RearmBy::Time, 3.0}));
-  for (const char* text : {"operator", "never", "after 2 s", "after 0.5 s"})
+  for (const char* text : {"proved", "operator", "never", "after 2 s", "after 0.5 s"})
     EXPECT_EQ(to_text(parse_rearm(text).value()), text);
 }
 

@@ -1,5 +1,6 @@
 #include "mixed_reality/safety/supervisor.hpp"
 
+#include <bit>
 #include <gtest/gtest.h>
 #include <set>
 
@@ -27,13 +28,21 @@ constexpr Conditions kRestarted = with([](Conditions& c) { c.robot_stopped_itsel
 /// Every combination.
 template <class Visit>
 void for_all_conditions(Visit&& visit) {
-  for (const RunPhase run : {RunPhase::Waiting, RunPhase::Running, RunPhase::Stopping, RunPhase::Paused}) {
+  for (const RunPhase run :
+       {RunPhase::Waiting, RunPhase::Running, RunPhase::Stopping, RunPhase::Paused, RunPhase::Joining}) {
     for (const LinkHealth link : {LinkHealth::Connecting, LinkHealth::Active, LinkHealth::Suspect, LinkHealth::Lost}) {
       for (const Validity pose : {Validity::Absent, Validity::Stale, Validity::Fresh}) {
         for (unsigned bits = 0; bits < 32768; ++bits) {
           const auto is = [bits](unsigned i) { return (bits >> i & 1U) != 0; };
-          visit(Conditions{run, is(10), is(0), is(1), is(2), is(3), is(4), is(5), is(6), link, is(7), pose, is(11),
-                           is(12), is(8), is(9), is(13), is(14)});
+          Conditions c{run,  is(10), is(0), is(1),  is(2),  is(3), is(4), is(5),  Doubt::None, is(6),
+                       link, is(7),  pose,  is(11), is(12), is(8), is(9), is(13), is(14)};
+          visit(c);
+          // A doubt with every one and every two of the others.
+          if (std::popcount(bits) > 2) continue;
+          for (const Doubt doubt : {Doubt::Late, Doubt::Away, Doubt::OpenedAnew, Doubt::Another}) {
+            c.doubt = doubt;
+            visit(c);
+          }
         }
       }
     }
@@ -43,7 +52,8 @@ void for_all_conditions(Visit&& visit) {
 TEST(SafetyTable, OneConditionAloneLetsARobotDrive) {
   int driving = 0;
   for_all_conditions([&](const Conditions& c) {
-    const bool well = c.run == RunPhase::Running && c.link == LinkHealth::Active && c.pose == Validity::Fresh &&
+    const bool goes = c.run == RunPhase::Running || c.run == RunPhase::Joining;
+    const bool well = goes && c.doubt == Doubt::None && c.link == LinkHealth::Active && c.pose == Validity::Fresh &&
                       !c.controller_failed && !c.emergency_stop && !c.operator_holds && !c.hook_holds &&
                       !c.hub_was_frozen && !c.guardian_gone && !c.robot_stopped_itself && !c.battery_low &&
                       !c.readings_missing && !c.pose_disputed && !c.links_swapped && !c.pose_jumped &&
@@ -53,7 +63,7 @@ TEST(SafetyTable, OneConditionAloneLetsARobotDrive) {
     EXPECT_EQ(judge(c).owner == StopOwner::Nobody, well);
     driving += judge(c).may_drive ? 1 : 0;
   });
-  EXPECT_EQ(driving, 1);
+  EXPECT_EQ(driving, 2);
 }
 
 TEST(SafetyTable, EveryRowIsReachedAndSaysWhyInWordsOfItsOwn) {
@@ -79,7 +89,7 @@ TEST(SafetyTable, TheMostSeriousReasonIsTold) {
 }
 
 TEST(SafetyTable, WhatNeedsARearmSaysWhatItWaitsFor) {
-  for (const SafetyRule& rule : safety_table()) EXPECT_EQ(rule.waiting.empty(), rule.recovery == Recovery::Settle);
+  for (const SafetyRule& rule : safety_table()) EXPECT_EQ(rule.waiting.empty(), rule.recovery == Recovery::Ends);
 }
 
 class ArmedSupervisor : public testing::Test {
@@ -195,18 +205,81 @@ TEST_F(ArmedSupervisor, DrivesWithinASecondOfTheLinkThatIsBack) {
 }
 
 TEST_F(ArmedSupervisor, ARobotThatStoppedByItselfWaitsForItsRearm) {
+  for (const RearmPolicy& policy : {RearmPolicy{}, RearmPolicy{RearmBy::Time, 2.0}, RearmPolicy{RearmBy::Operator}}) {
+    use(policy);
+    tick(kRestarted);
+    EXPECT_EQ(supervisor_.verdict().reason, "robot stopped by itself");
+    EXPECT_EQ(supervisor_.stops_by(StopOwner::Robot), 1U);
+    tick(kWell);
+    EXPECT_EQ(supervisor_.verdict().reason, "robot stopped by itself; waits to be re-armed");
+    EXPECT_TRUE(supervisor_.awaits_rearm());
+    EXPECT_TRUE(supervisor_.unproved());
+    EXPECT_EQ(well_until_driving(), 100.0);
+    supervisor_.rearm();
+    EXPECT_NEAR(well_until_driving(), 0.3, 1e-9);
+  }
+}
+
+TEST_F(ArmedSupervisor, WhoeverIsNotProvedToBeTheArmedRobotWaitsForAPersonWhateverThePolicy) {
+  for (const RearmPolicy& policy : {RearmPolicy{}, RearmPolicy{RearmBy::Time, 0.1}, RearmPolicy{RearmBy::Operator}}) {
+    for (const Doubt doubt : {Doubt::Late, Doubt::Away, Doubt::OpenedAnew, Doubt::Another}) {
+      use(policy);
+      tick(kLost);
+      Conditions back = kWell;
+      back.doubt = doubt;
+      tick(back);
+      EXPECT_FALSE(supervisor_.verdict().may_drive);
+      EXPECT_EQ(well_until_driving(), 100.0);
+      EXPECT_TRUE(supervisor_.unproved());
+      tick(kLost);
+      supervisor_.rearm();  // of nobody: it does not answer
+      EXPECT_EQ(well_until_driving(), 100.0);
+      supervisor_.rearm();
+      EXPECT_NEAR(well_until_driving(), 0.3, 1e-9);
+      EXPECT_FALSE(supervisor_.unproved());
+    }
+  }
+}
+
+TEST_F(ArmedSupervisor, ByDefaultAShortOutageEndsByItselfAndEveryOtherStopWaits) {
+  use({});
+  tick(kLost);
+  EXPECT_NEAR(well_until_driving(), 0.3, 1e-9);
+  tick(with([](Conditions& c) { c.pose_jumped = true; }));
+  EXPECT_EQ(well_until_driving(), 100.0);
+  EXPECT_FALSE(supervisor_.unproved());
+  supervisor_.rearm();
+  EXPECT_NEAR(well_until_driving(), 0.3, 1e-9);
+}
+
+TEST_F(ArmedSupervisor, AfterATimeAProvedRobotGoesOnAlone) {
   use({RearmBy::Time, 2.0});
-  tick(kRestarted);
-  EXPECT_EQ(supervisor_.verdict().reason, "robot stopped by itself");
-  EXPECT_EQ(supervisor_.stops_by(StopOwner::Robot), 1U);
-  tick(kWell);
-  EXPECT_EQ(supervisor_.verdict().reason, "robot stopped by itself; waits to be re-armed");
-  EXPECT_TRUE(supervisor_.awaits_rearm());
-  EXPECT_NEAR(well_until_driving(), 1.9, 1e-9);
+  tick(with([](Conditions& c) { c.hub_was_frozen = true; }));
+  EXPECT_NEAR(well_until_driving(), 2.0, 1e-9);
+}
+
+TEST_F(ArmedSupervisor, WithTheOperatorEveryStopWaitsForAPersonButNoneBeforeItFirstDrove) {
+  use({RearmBy::Operator});
+  tick(with([](Conditions& c) { c.link = LinkHealth::Suspect; }));
+  EXPECT_EQ(well_until_driving(), 100.0);
+  EXPECT_EQ(supervisor_.verdict().reason, "link was suspect; waits to be re-armed");
+  supervisor_.rearm();
+  EXPECT_NEAR(well_until_driving(), 0.3, 1e-9);
+  supervisor_ = Supervisor({.policy = {RearmBy::Operator}, .settle_s = 0.3});
+  tick(with([](Conditions& c) { c.pose = Validity::Absent; }));
+  EXPECT_NEAR(well_until_driving(), 0.3, 1e-9);
+}
+
+TEST_F(ArmedSupervisor, LettingGoOfARobotDoesNotProveWhichOneItIs) {
+  tick(with([](Conditions& c) { c.doubt = Doubt::Another; }));
+  tick(with([](Conditions& c) { c.operator_holds = true; }));
+  EXPECT_EQ(well_until_driving(), 100.0);
+  tick(with([](Conditions& c) { c.emergency_stop = true; }));
+  EXPECT_EQ(well_until_driving(), 100.0);
 }
 
 TEST_F(ArmedSupervisor, AnOutageOnTheWayDoesNotReplaceTheRearm) {
-  use({RearmBy::Operator, 0.0});
+  use({RearmBy::Operator});
   tick(kRestarted);
   tick(kLost);
   EXPECT_EQ(supervisor_.verdict().reason, "link lost");
@@ -217,7 +290,7 @@ TEST_F(ArmedSupervisor, AnOutageOnTheWayDoesNotReplaceTheRearm) {
 }
 
 TEST_F(ArmedSupervisor, WhereARearmIsLeftToAnOperatorHoldingAndLettingGoIsOne) {
-  use({RearmBy::Operator, 0.0});
+  use({RearmBy::Operator});
   tick(with([](Conditions& c) { c.hub_was_frozen = true; }));
   EXPECT_EQ(well_until_driving(), 100.0);
   tick(with([](Conditions& c) { c.operator_holds = true; }));
@@ -226,7 +299,7 @@ TEST_F(ArmedSupervisor, WhereARearmIsLeftToAnOperatorHoldingAndLettingGoIsOne) {
 }
 
 TEST_F(ArmedSupervisor, NeverIsNever) {
-  use({RearmBy::Never, 0.0});
+  use({RearmBy::Never});
   tick(kLost);
   EXPECT_NEAR(well_until_driving(), 0.3, 1e-9);  // an outage is no stop that needs a re-arm
   tick(kRestarted);
@@ -249,7 +322,7 @@ TEST_F(ArmedSupervisor, ALowBatteryLandsAndOnlyAPersonLetsItGo) {
 }
 
 TEST_F(ArmedSupervisor, TheStartOfARunArmsAll) {
-  use({RearmBy::Never, 0.0});
+  use({RearmBy::Never});
   Conditions before = kRestarted;
   before.run = RunPhase::Waiting;
   tick(before);

@@ -225,7 +225,7 @@ TEST_F(MixedRun, ALinkThatIsCutHoldsTheRobotAndTheRestGoesOn) {
       bodies_["ep0"].link_up = false;
       heard_before_cut = bodies_["ep0"].received.size();
     }
-    if (tick == 60) bodies_["ep0"].link_up = true;
+    if (tick == 48) bodies_["ep0"].link_up = true;
     if (tick == 45) {
       EXPECT_TRUE(world.space().halted(world.space().find_robot("ep0")));
       EXPECT_FALSE(world.space().halted(world.space().find_robot("ep1")));
@@ -376,6 +376,51 @@ TEST_F(MixedRun, ARobotThatIsNotThereIsWaitedForWhereItsBridgeSaysSo) {
   };
   EXPECT_TRUE(session_->connect(stop).ok());
   EXPECT_GT(time_.now_ns(), 60'000 * kMs);
+}
+
+TEST_F(MixedRun, OneActionReArmsAllThatAreProvedAndOthersAreReArmedByTheirNames) {
+  core::Scene scene = drive(0.05, 0.05);
+  for (int i = 0; i < 4; ++i) {
+    const std::string id = "ep" + std::to_string(i);
+    scene.robot(id, -1.0, 0.5 * i - 0.75);
+    real(scene, id);
+  }
+  std::uint64_t freezes = 0;
+  options_.freezes = [&freezes] { return freezes; };
+  open(scene);
+  int wrong = 0;
+  run(160, [&](core::World& world) {
+    const hal::Tick tick = world.tick();
+    bodies_["ep1"].link_up = tick < 10 || tick >= 32;  // 2.2 s
+    if (tick == 20) ++bodies_["ep2"].session;
+    if (tick == 20) bodies_["ep3"].name = "another one";
+    if (tick == 20) ++bodies_["ep3"].session;
+    if (tick == 36) freezes = 1;
+    if (tick > 40 && tick <= 60) wrong += bodies_["ep0"].stands() ? 0 : 1;
+    if (tick == 60) {
+      EXPECT_TRUE(session_->rearm("*").ok());
+    }
+    if (tick > 70) wrong += bodies_["ep0"].stands() ? 1 : 0;
+    if (tick > 40 && tick <= 100) {
+      for (const char* id : {"ep1", "ep2", "ep3"}) wrong += bodies_[id].stands() ? 0 : 1;
+    }
+    if (tick == 90) {
+      const hal::Status all = session_->rearm("*");
+      EXPECT_FALSE(all.ok());
+      if (!all.ok()) {
+        EXPECT_NE(all.error().message.find("'ep1': was away for long"), std::string::npos) << all.error().message;
+        EXPECT_NE(all.error().message.find("name: 'fake' was armed, 'another one' answers"), std::string::npos)
+            << all.error().message;
+      }
+    }
+    if (tick == 100) {
+      for (const char* id : {"ep1", "ep2", "ep3"}) EXPECT_TRUE(session_->rearm(id).ok()) << id;
+    }
+    if (tick > 115) {
+      for (const char* id : {"ep1", "ep2", "ep3"}) wrong += bodies_[id].stands() ? 1 : 0;
+    }
+  });
+  EXPECT_EQ(wrong, 0);
 }
 
 TEST_F(MixedRun, ARobotThatRestartedWaitsForThePersonWhoReArmsIt) {

@@ -121,6 +121,7 @@ TEST_F(SeenRobots, WhoSlipAgainAndAgainDriveOnByTheirPolicy) {
   core::Scene scene = drive(0.1, 0.1);
   scene.robot("ep0", -2.5, 0.0);
   watch(scene);
+  scene.scenario.robots[0].bridge->rearm = "after 0.5 s";
   open(scene);
   int held_times = 0;
   bool held = false;

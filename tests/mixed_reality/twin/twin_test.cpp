@@ -96,7 +96,7 @@ TEST_F(TwinTest, HoldsTheControllerWhileTheLinkIsLostAndRampsUpWhenItIsBack) {
   EXPECT_TRUE(space_.halted(robot_));
   EXPECT_EQ(space_.port<hal::WheelSpeeds>(robot_)->left_m_s, 0.0);
   EXPECT_EQ(twin_->sent().left_m_s, 0.0);
-  for (int i = 0; i < 20; ++i) tick(0.1, 0.1);
+  for (int i = 0; i < 18; ++i) tick(0.1, 0.1);
   body_.link_up = true;
   const std::size_t before = body_.received.size();
   for (int i = 0; i < 15; ++i) tick(0.1, 0.1);
@@ -182,10 +182,26 @@ TEST_F(TwinTest, AHookThatLetsGoDoesNotWakeAControllerThatThrew) {
   EXPECT_TRUE(body_.stands());
 }
 
+TEST_F(TwinTest, ALongOutageWaitsForAPersonWhoArmsThisRobot) {
+  get_under_way(0.1, 0.1);
+  body_.link_up = false;
+  for (int i = 0; i < 21; ++i) tick(0.1, 0.1);
+  body_.link_up = true;
+  for (int i = 0; i < 100; ++i) tick(0.1, 0.1);
+  EXPECT_TRUE(body_.stands());
+  EXPECT_TRUE(twin_->real_robot().awaits_rearm());
+  EXPECT_EQ(twin_->real_robot().state(), RobotState::Held);
+  twin_->real_robot().rearm_if_proved();
+  for (int i = 0; i < 100; ++i) tick(0.1, 0.1);
+  EXPECT_TRUE(body_.stands());
+  twin_->real_robot().rearm();
+  get_under_way(0.1, 0.1);
+}
+
 TEST_F(TwinTest, AFrozenHubIsAStopThatNeedsARearm) {
   get_under_way(0.05, 0.05);
   now_.run_ns += kTick;
-  now_.monotonic_ns += 3 * hal::kNsPerSecond;
+  now_.monotonic_ns += 3 * hal::kNsPerSecond / 2;
   twin_->latch(now_, RunPhase::Running);
   EXPECT_EQ(twin_->verdict().reason, "hub was frozen");
   twin_->after_filter(now_);
@@ -193,6 +209,7 @@ TEST_F(TwinTest, AFrozenHubIsAStopThatNeedsARearm) {
   for (int i = 0; i < 18; ++i) tick(0.05, 0.05);
   EXPECT_TRUE(body_.stands());
   EXPECT_EQ(twin_->verdict().reason, "hub was frozen; waits to be re-armed");
+  twin_->real_robot().rearm_if_proved();
   get_under_way(0.05, 0.05);
 }
 

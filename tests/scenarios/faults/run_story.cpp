@@ -28,17 +28,10 @@ struct Figures {
   TimeNs rest_ns = 0;  ///< from the death of the hub, or being reachable, to rest
 };
 
-RearmParams rearm_by_itself() {
-  RearmParams params;
-  params.policy.by = mixed_reality::RearmBy::Time;
-  params.policy.after_s = 0.3;
-  return params;
-}
-
 /// One robot of a story.
 struct Actor {
   std::unique_ptr<TestedRobot> robot;
-  Supervisor supervisor{rearm_by_itself()};
+  Supervisor supervisor{RearmParams{}};
   std::uint64_t interruptions = 0;
   bool faultless = true;
   TimeNs end = 0;            // of its faults
@@ -127,6 +120,7 @@ class Run {
     a.interruptions = interruptions;
     c.hub_was_frozen = hub_froze_;
     a.supervisor.judge(c, now_);
+    if (a.supervisor.awaits_rearm()) a.supervisor.rearm();  // a person who is quick
     hal::WheelSpeeds wheels;
     wheels.set(told, told);
     return a.supervisor.allowed(wheels, now_).left_m_s;
