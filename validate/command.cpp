@@ -28,7 +28,8 @@ struct PartMaker {
   const char* name;  ///< as --only has it
   Part (*make)(Depth);
 };
-constexpr PartMaker kParts[] = {{"engines", engine_part}, {"sensors", sensor_part}, {"noise", noise_part}};
+constexpr PartMaker kParts[] = {{"engines", engine_part}, {"sensors", sensor_part},  {"noise", noise_part},
+                                {"mixed", mixed_part},    {"barrier", barrier_part}, {"case_study", case_study_part}};
 
 int refuse(int code, const std::string& why) {
   std::fprintf(stderr, "tandem validate: %s\n", why.c_str());

@@ -172,13 +172,13 @@ void add_places(Table& table, int worlds) {
       headings.push_back(pose.heading_rad());
       across.push_back(pose.x_m);
       const auto cell = [](double at) {
-        return std::min(kCells - 1, static_cast<std::size_t>((at + 40.0) / 80.0 * kCells));
+        return std::min(kCells - 1, static_cast<std::size_t>((at + 400.0) / 800.0 * kCells));
       };
       ++cells[cell(pose.y_m) * kCells + cell(pose.x_m)];
     }
   }
-  table.rows.push_back(ks_row("places of robots, x", "uniform, ±40 m", across,
-                              [](double x) { return uniform_cumulative(x, -40.0, 40.0); }));
+  table.rows.push_back(ks_row("places of robots, x", "uniform, ±400 m", across,
+                              [](double x) { return uniform_cumulative(x, -400.0, 400.0); }));
   table.rows.push_back(ks_row("headings of robots", "uniform, ±180°", headings,
                               [](double x) { return uniform_cumulative(x, -M_PI, M_PI); }));
   table.rows.push_back(row_of("places of robots, 8 × 8 cells", "uniform", "chi-square", chi_square(cells)));

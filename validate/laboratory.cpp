@@ -1,0 +1,211 @@
+#include "validate/laboratory.hpp"
+
+#include <algorithm>
+#include <arpa/inet.h>
+#include <cmath>
+#include <csignal>
+#include <cstdlib>
+#include <fmt/format.h>
+#include <fstream>
+#include <memory>
+#include <sstream>
+#include <stdexcept>
+#include <sys/socket.h>
+#include <thread>
+#include <unistd.h>
+
+#include "hal/program.hpp"
+#include "validate/scene.hpp"
+
+namespace tandem::validate {
+namespace {
+
+std::string own_program() {
+  return std::filesystem::read_symlink("/proc/self/exe").string();
+}
+
+/// A UDP port that nobody uses now; 0: none.
+int free_port() {
+  const int fd = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  socklen_t size = sizeof address;
+  int port = 0;
+  if (::bind(fd, reinterpret_cast<const sockaddr*>(&address), size) == 0 &&
+      ::getsockname(fd, reinterpret_cast<sockaddr*>(&address), &size) == 0)
+    port = ntohs(address.sin_port);
+  ::close(fd);
+  return port;
+}
+
+std::string experiment_of(const MixedRun& run, const std::filesystem::path& folder, int port) {
+  std::string robots;
+  for (const EmulatedRobot& r : run.robots)
+    robots += fmt::format(
+        "<foot-bot id=\"{0}\"><body position=\"{1},{2},0\" orientation=\"{3},0,0\"/><controller config=\"c\"/>"
+        "<bridge link=\"slcan:{4}/{0}@1000000\" map=\"{4}/map.xml\"/><tracker/></foot-bot>\n",
+        r.id, r.x_m, r.y_m, r.heading_deg, folder.string());
+  return fmt::format(
+      "<tandem><framework><experiment length=\"{}\" ticks_per_second=\"10\" random_seed=\"1\"/><time "
+      "mode=\"realtime\"/></framework>\n"
+      "<controllers><lua_controller id=\"c\" library=\"lua_controller\"><actuators><differential_steering/></actuators>"
+      "<sensors><wheel_encoders/></sensors><params script=\"{}/drive.lua\"/></lua_controller></controllers>\n"
+      "<arena size=\"60,60,2\" center=\"0,0,1\">\n{}</arena>\n<trackers><udp port=\"{}\" clock=\"monotonic\" sd=\"2 "
+      "mm\"/></trackers>\n"
+      "{}<physics_engines><kinematics2d id=\"k\"/></physics_engines></tandem>\n",
+      run.seconds, folder.string(), robots, port, run.safety);
+}
+
+using Programs = std::vector<std::unique_ptr<hal::Program>>;
+
+hal::Status start(Programs& running, const std::vector<std::string>& arguments) {
+  auto started = hal::Program::start(own_program(), arguments);
+  if (!started.ok()) return started.error();
+  running.push_back(std::move(started).value());
+  return {};
+}
+
+/// Until a file is there, for at most 20 s.
+bool appears(const std::filesystem::path& file) {
+  for (int i = 0; i < 400; ++i) {
+    if (std::filesystem::exists(file)) return true;
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  }
+  return false;
+}
+
+hal::Status start_robots(Programs& running, const MixedRun& run, const std::filesystem::path& folder, int port) {
+  std::string sees;
+  for (const EmulatedRobot& r : run.robots) {
+    const std::string link = (folder / r.id).string();
+    std::vector<std::string> arguments = {"emulate",   "footbot",
+                                          "--link",    "pty:" + link,
+                                          "--log",     link + ".log",
+                                          "--poses",   "100",
+                                          "--x",       fmt::format("{}", r.x_m),
+                                          "--y",       fmt::format("{}", r.y_m),
+                                          "--heading", fmt::format("{} deg", r.heading_deg)};
+    arguments.insert(arguments.end(), r.options.begin(), r.options.end());
+    if (const hal::Status started = start(running, arguments); !started.ok()) return started;
+    if (!appears(link)) return hal::Error{"the emulated robot " + r.id + " does not come up"};
+    sees += (sees.empty() ? "" : " ") + r.id + "=" + link + ".log";
+  }
+  return start(running, {"emulate", "tracker", "--link", fmt::format("udp:127.0.0.1:{}", port), "--sees", sees,
+                         "--rate", "30", "--delay", "0.06", "--noise", "0.002", "--clock", "monotonic"});
+}
+
+hal::Result<std::string> output_of(const std::vector<std::string>& arguments) {
+  const auto ended = hal::run_program(own_program(), arguments);
+  if (!ended.ok()) return ended.error();
+  if (ended.value().code != 0)
+    return hal::Error{
+        fmt::format("tandem {} ended with {}: {}", arguments.front(), ended.value().code, ended.value().errors)};
+  return ended.value().output;
+}
+
+std::vector<std::string> split(const std::string& line) {
+  std::vector<std::string> cells;
+  std::istringstream in(line);
+  for (std::string cell; std::getline(in, cell, ',');) cells.push_back(cell);
+  return cells;
+}
+
+}  // namespace
+
+TruePlace place_at(const TrueTrack& track, double t_ns) {
+  const auto after =
+      std::lower_bound(track.begin(), track.end(), t_ns, [](const TruePlace& p, double t) { return p.t_ns < t; });
+  if (after == track.begin()) return track.front();
+  if (after == track.end()) return track.back();
+  const TruePlace &a = *(after - 1), &b = *after;
+  const double part = (t_ns - a.t_ns) / (b.t_ns - a.t_ns);
+  return {t_ns, a.x_m + part * (b.x_m - a.x_m), a.y_m + part * (b.y_m - a.y_m),
+          a.heading_rad + part * std::remainder(b.heading_rad - a.heading_rad, 2.0 * M_PI)};
+}
+
+std::size_t RecordTable::column(const std::string& name) const {
+  const auto found = std::find(columns.begin(), columns.end(), name);
+  if (found == columns.end()) throw std::out_of_range("the record has no column " + name);
+  return static_cast<std::size_t>(found - columns.begin());
+}
+
+hal::Result<std::unique_ptr<Laboratory>> Laboratory::run(const MixedRun& run) {
+  std::signal(SIGPIPE, SIG_IGN);
+  std::string name = (std::filesystem::temp_directory_path() / "tandem_validate_XXXXXX").string();
+  if (::mkdtemp(name.data()) == nullptr) return hal::Error{"no folder can be made at " + name};
+  std::unique_ptr<Laboratory> made(new Laboratory(name));
+  const std::filesystem::path& folder = made->folder_;
+  std::ofstream(folder / "drive.lua") << run.script;
+  std::ofstream(folder / "map.xml") << scene_text("../configs/footbot_map.xml");
+  const int port = free_port();
+  std::ofstream(folder / "run.xml") << experiment_of(run, folder, port);
+  Programs running;
+  if (const hal::Status started = start_robots(running, run, folder, port); !started.ok()) return started.error();
+  const auto done =
+      output_of({"run", (folder / "run.xml").string(), "--record", (folder / "run.record").string(), "--quiet"});
+  if (!done.ok()) return done.error();
+  return made;
+}
+
+Laboratory::~Laboratory() {
+  std::error_code ignored;
+  std::filesystem::remove_all(folder_, ignored);
+}
+
+hal::Result<TrueTrack> Laboratory::log_of(const std::string& id) const {
+  std::ifstream in(folder_ / (id + ".log"));
+  TrueTrack track;
+  for (std::string line; std::getline(in, line);) {
+    if (line.find("\"pose\"") == std::string::npos) continue;
+    const hal::Json json = hal::Json::parse(line, nullptr, false);
+    if (!json.is_object() || json.value("event", "") != "pose") continue;
+    track.push_back({json.value("taken_t_ns", 0.0), json.value("x_m", 0.0), json.value("y_m", 0.0),
+                     json.value("heading_rad", 0.0)});
+  }
+  std::sort(track.begin(), track.end(), [](const TruePlace& a, const TruePlace& b) { return a.t_ns < b.t_ns; });
+  if (track.size() < 2) return hal::Error{"the log of " + id + " tells no places"};
+  return track;
+}
+
+std::vector<double> Laboratory::told_of(const std::string& id) const {
+  std::ifstream in(folder_ / (id + ".log"));
+  std::vector<double> times;
+  for (std::string line; std::getline(in, line);) {
+    if (line.find("\"wheels\"") == std::string::npos) continue;
+    const hal::Json json = hal::Json::parse(line, nullptr, false);
+    if (json.is_object() && json.value("event", "") == "wheels" && json.value("changed", false))
+      times.push_back(json.value("t_ns", 0.0));
+  }
+  return times;
+}
+
+hal::Result<RecordTable> Laboratory::table(const std::string& name) const {
+  const auto text = output_of({"export", (folder_ / "run.record").string(), "--csv", "-", "--table", name});
+  if (!text.ok()) return text.error();
+  RecordTable table;
+  std::istringstream in(text.value());
+  std::string line;
+  std::getline(in, line);
+  table.columns = split(line);
+  while (std::getline(in, line)) {
+    const std::vector<std::string> cells = split(line);
+    std::vector<double> numbers;
+    for (std::size_t i = 0; i < table.columns.size(); ++i)
+      numbers.push_back(i >= cells.size() || cells[i].empty() || i == 2 ? NAN : std::strtod(cells[i].c_str(), nullptr));
+    if (cells.size() > 2) table.rows[cells[2]].push_back(std::move(numbers));
+  }
+  return table;
+}
+
+hal::Result<hal::Json> Laboratory::fit() const {
+  const std::filesystem::path report = folder_ / "fit.json";
+  const auto done = output_of({"fit", (folder_ / "run.record").string(), "--report", report.string()});
+  if (!done.ok()) return done.error();
+  std::ifstream in(report);
+  hal::Json json = hal::Json::parse(in, nullptr, false);
+  if (!json.is_object()) return hal::Error{"tandem fit wrote no report"};
+  return json;
+}
+
+}  // namespace tandem::validate

@@ -1,0 +1,67 @@
+// Mixed runs with emulated robots, each a process, in real time: started, driven by a script, and looked into by their
+// logs and the run's record. All by the program's own commands.
+#pragma once
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "hal/json/json.hpp"
+#include "hal/result.hpp"
+
+namespace tandem::validate {
+
+struct EmulatedRobot {
+  std::string id;
+  double x_m = 0.0, y_m = 0.0, heading_deg = 0.0;
+  std::vector<std::string> options;  ///< further ones of `tandem emulate footbot`
+};
+
+/// A run of foot-bots under one tracker with 30 exposures a second, 2 mm of noise, 60 ms late, whose clock is right.
+struct MixedRun {
+  std::vector<EmulatedRobot> robots;
+  std::string script;       ///< Lua, of every robot
+  std::string safety = {};  ///< `<safety …/>`; empty: none
+  double seconds = 60.0;
+};
+
+/// Where a robot was, by its own log.
+struct TruePlace {
+  double t_ns = 0.0;  ///< CLOCK_MONOTONIC
+  double x_m = 0.0, y_m = 0.0, heading_rad = 0.0;
+};
+using TrueTrack = std::vector<TruePlace>;
+/// Between two lines of the log; before and after them the nearest.
+TruePlace place_at(const TrueTrack& track, double t_ns);
+
+/// A table of a record: numbers by robot and column, a row a tick.
+struct RecordTable {
+  std::vector<std::string> columns;
+  std::map<std::string, std::vector<std::vector<double>>> rows;  ///< by id
+  std::size_t column(const std::string& name) const;             ///< @throws std::out_of_range when there is none
+};
+
+/// What became of a run. Its files are removed with it.
+class Laboratory {
+ public:
+  /// Runs it to its end. Error: what could not be started, with its own words.
+  static hal::Result<std::unique_ptr<Laboratory>> run(const MixedRun& run);
+  ~Laboratory();
+  Laboratory(const Laboratory&) = delete;
+  Laboratory& operator=(const Laboratory&) = delete;
+
+  hal::Result<TrueTrack> log_of(const std::string& id) const;
+  /// When the robot's wheels were told another speed (CLOCK_MONOTONIC, ns), by its own log.
+  std::vector<double> told_of(const std::string& id) const;
+  hal::Result<RecordTable> table(const std::string& name) const;
+  /// What `tandem fit` finds in the record.
+  hal::Result<hal::Json> fit() const;
+
+ private:
+  explicit Laboratory(std::filesystem::path folder) : folder_(std::move(folder)) {}
+  std::filesystem::path folder_;
+};
+
+}  // namespace tandem::validate
