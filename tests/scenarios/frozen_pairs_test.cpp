@@ -151,7 +151,8 @@ class FrozenPairs : public testing::TestWithParam<Story> {
            "</actuators><sensors><positioning/><flight_state/><clock/></sensors><params height=\"1.5 m\" "
            "offset=\"1,0,0\" duration=\"600 s\"/></eyebot_hover></controllers><arena size=\"80,80,4\" "
            "center=\"0,0,2\">" +
-           robots + "</arena><physics_engines><dynamics3d id=\"k\"/></physics_engines></tandem>";
+           robots + "</arena><physics_engines><dynamics3d id=\"k\"/></physics_engines><desk lcm=\"" +
+           std::string(EmulatedEyebot::kLink).substr(4) + "\"/></tandem>";
   }
 
   std::string mode_of(int flyer) const {
@@ -251,8 +252,19 @@ TEST_P(FrozenPairs, LeaveNoRobotMovingUntilAPersonArmsIt) {
   std::this_thread::sleep_for(kTemptation);
   expect_nobody_moves_since(rested);
   if (!story.may_rearm) return;
-  hub.signal(SIGUSR1);
-  EXPECT_TRUE(come_to_move(hub)) << "a person has armed them: " << hub.errors();
+  hub.signal(SIGUSR1);  // re-arms all that are proved: their links were opened anew
+  std::this_thread::sleep_for(kTemptation);
+  expect_nobody_moves_since(rested);
+  for (int i = 0; i < flyers; ++i) {
+    for (const char* kind : {"ep", "fb", "th", "eb"}) {
+      const auto armed = [&] {
+        Tandem desk({"desk", EmulatedEyebot::kLink, "rearm", kind + std::to_string(i)}, hub_folder.path());
+        return desk.wait() == 0;
+      };
+      EXPECT_TRUE(eventually(armed, 20.0)) << kind << i << ": " << hub.errors();
+    }
+  }
+  EXPECT_TRUE(come_to_move(hub)) << "a person has armed each of them: " << hub.errors();
 }
 
 }  // namespace
