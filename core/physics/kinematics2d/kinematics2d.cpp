@@ -16,7 +16,12 @@ constexpr std::size_t kChunksWorthThreads = 2;
 constexpr double kLargestTurn_rad = 0.5;  // of one sub-step: where the series below are exact to 1e-13
 constexpr double kLargestHop = 0.5;       // before contacts are resolved, in body radii: nothing is jumped over
 constexpr double kFastest_m_s = 100.0;    // what is faster is an error of somebody's
-constexpr double kSlack_m = 0.02;         // bodies nearer than this may come to touch within the passes of one tick
+constexpr std::int64_t kFirstPasses = 4;
+constexpr std::int64_t kMostPasses = 400;
+constexpr double kDeep = 0.01;  // overlap, in parts of the narrower one's diameter, that makes a place dense
+constexpr double kShallow = 0.25 * kDeep;
+constexpr double kNear_m = 0.005;  // bodies so near to one of a dense place belong to it
+constexpr double kSlack_m = 0.02;  // bodies nearer than this may come to touch within the passes of one tick
 
 /// Rolls rows [begin, end) of one block along their arcs.
 void roll(Bodies& b, std::size_t begin, std::size_t end, double wheel_base_m, double dt_s) noexcept {
@@ -172,19 +177,27 @@ bool anything_near(const Contacts& contacts, const IndexEntry& e) noexcept {
   return near > 1 || object_near || contacts.in_walls(e);
 }
 
+struct Push {
+  double x_m = 0.0, y_m = 0.0;
+  double overlap = 0.0;  ///< the deepest with another robot, in parts of the narrower one's diameter
+};
+
 /// Where a body is pushed to by what it overlaps.
-std::pair<double, double> push_of(const Contacts& contacts, const IndexEntry& e) noexcept {
+Push push_of(const Contacts& contacts, const IndexEntry& e) noexcept {
   double px = 0.0;
   double py = 0.0;
+  double overlap = 0.0;
   const double own = static_cast<double>(e.radius_m);
   contacts.index.for_each_near(e.x_m, e.y_m, contacts.reach(e), [&](const IndexEntry& o) {
     const double dx = e.x_m - o.x_m;
     const double dy = e.y_m - o.y_m;
-    const double touch = own + static_cast<double>(o.radius_m);
+    const double other = static_cast<double>(o.radius_m);
+    const double touch = own + other;
     const double d2 = dx * dx + dy * dy;
     if (d2 >= touch * touch || &o == &e) return;
     if (contacts.heights && o.fixed() && !contacts.stores.side_by_side(e.row(), o.row())) return;  // flies above
     const double d = std::sqrt(d2);
+    overlap = std::max(overlap, (touch - d) / (2.0 * std::min(own, other)));
     const double share = (touch - d) * (o.fixed() ? 1.0 : 0.5);
     if (d > 0.0) {
       px += dx / d * share;
@@ -208,7 +221,20 @@ std::pair<double, double> push_of(const Contacts& contacts, const IndexEntry& e)
     px += wx;
     py += wy;
   }
-  return {px, py};
+  return {px, py, overlap};
+}
+
+/// Marks a body and those that it touches.
+void mark_dense(const Contacts& contacts, std::uint32_t entry, std::vector<std::uint8_t>& marks) noexcept {
+  const IndexEntry* const entries = contacts.index.entries();
+  const IndexEntry& e = entries[entry];
+  contacts.index.for_each_near(e.x_m, e.y_m, contacts.reach(e), [&](const IndexEntry& o) {
+    const double dx = e.x_m - o.x_m;
+    const double dy = e.y_m - o.y_m;
+    const double near = static_cast<double>(e.radius_m) + static_cast<double>(o.radius_m) + kNear_m;
+    if (dx * dx + dy * dy < near * near)
+      std::atomic_ref<std::uint8_t>(marks[static_cast<std::size_t>(&o - entries)]).store(1, std::memory_order_relaxed);
+  });
 }
 
 }  // namespace
@@ -288,9 +314,18 @@ void Kinematics2d::settle(const PhysicsContext& context) {
   };
 
   double displacement = 0.0;
-  for (std::int64_t pass = 0; pass < params_.iterations; ++pass) {
+  double overlap = 0.0;  // when the last pass began
+  const bool adapts = params_.iterations == 0;
+  if (adapts && dense_.size() < n) {
+    dense_.resize(n);
+    dense_next_.resize(n);
+  }
+  const std::int64_t passes = adapts ? kFirstPasses : params_.iterations;
+  bool known = false;  // who is near anything
+  const auto find_pushes = [&](bool dense_alone, bool marks) {
+    std::atomic<double> deepest{0.0};
     each_chunk([&](std::size_t chunk, Active* active) {
-      if (pass == 0) {
+      if (!known) {
         std::uint32_t count = 0;
         for (std::size_t i = chunk * kChunk; i < std::min(n, (chunk + 1) * kChunk); ++i) {
           active[count].entry = static_cast<std::uint32_t>(i);
@@ -298,9 +333,22 @@ void Kinematics2d::settle(const PhysicsContext& context) {
         }
         counts_[chunk] = count;
       }
-      for (Active* a = active; a != active + counts_[chunk]; ++a)
-        std::tie(a->push_x_m, a->push_y_m) = push_of(contacts, entries[a->entry]);
+      double deepest_here = 0.0;
+      for (Active* a = active; a != active + counts_[chunk]; ++a) {
+        a->push_x_m = a->push_y_m = 0.0;
+        if (dense_alone && dense_[a->entry] == 0) continue;
+        const Push push = push_of(contacts, entries[a->entry]);
+        a->push_x_m = push.x_m;
+        a->push_y_m = push.y_m;
+        deepest_here = std::max(deepest_here, push.overlap);
+        if (marks && push.overlap > kShallow) mark_dense(contacts, a->entry, dense_next_);
+      }
+      raise_to(deepest, deepest_here);
     });
+    known = true;
+    return deepest.load();
+  };
+  const auto push_apart = [&] {
     std::atomic<double> longest{0.0};
     each_chunk([&](std::size_t chunk, Active* active) {
       double longest_here = 0.0;
@@ -316,10 +364,31 @@ void Kinematics2d::settle(const PhysicsContext& context) {
       }
       raise_to(longest, longest_here);  // a maximum: the same in any order
     });
-    if (longest.load() == 0.0) break;
     displacement += longest.load();
-    index.set_displacement(displacement);
+    if (longest.load() > 0.0) index.set_displacement(displacement);
+    return longest.load() > 0.0;
+  };
+  std::int64_t pass = 0;
+  bool pushed = true;
+  for (; pass < passes && pushed; ++pass) {
+    overlap = find_pushes(false, adapts && pass + 1 == passes);
+    pushed = push_apart();
   }
+  if (adapts && overlap > kShallow) {  // the last pass pushed them, perhaps into others
+    for (; pass < kMostPasses; ++pass) {
+      dense_.swap(dense_next_);
+      std::fill(dense_next_.begin(), dense_next_.end(), std::uint8_t{0});
+      overlap = find_pushes(true, true);
+      if (overlap <= kDeep) {  // what was pushed out of there may be in others, which were not near then
+        known = false;
+        overlap = find_pushes(false, true);
+      }
+      if (overlap <= kDeep) break;
+      push_apart();
+    }
+    std::fill(dense_next_.begin(), dense_next_.end(), std::uint8_t{0});
+  }
+  accuracy_.overlap = std::max(accuracy_.overlap, overlap);
 }
 
 namespace {

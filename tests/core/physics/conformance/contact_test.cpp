@@ -52,6 +52,35 @@ TEST_P(Contact, ACylinderAndATiltedBoxStopARobotToo) {
   EXPECT_GT(std::hypot(edge.x_m - 0.5, edge.y_m - 1.0), 0.1 + kRobotRadius_m - 2e-3);
 }
 
+/// A quarter of the floor is robots, all at full speed, ten ticks a second, with the engine's own settings.
+TEST_P(Contact, ACrowdAtFullSpeedOverlapsByTwoPercentOfABodyAtMost) {
+  if (GetParam() == "dynamics2d" || GetParam() == "particle3d") GTEST_SKIP() << "makes no more passes in crowds yet";
+  std::vector<std::uint64_t> ends;
+  for (const std::int64_t threads : {0, 4}) {
+    Scene s(1.02);
+    s.engine(GetParam()).param("left", "0.1288").param("right", "0.115").walls().robots(40, 0.36);
+    WorldOptions options;
+    options.threads = threads;
+    auto world = make(s, options);
+    ASSERT_TRUE(world.world) << world.all_problems();
+    double deepest_m = 0.0;
+    std::size_t pairs = 0;
+    for (int i = 0; i < 300; ++i) {
+      world->step();
+      const Crowd crowd = crowd_of(world->space(), 1e-3);
+      deepest_m = std::max(deepest_m, crowd.deepest_m);
+      pairs += crowd.pairs;
+    }
+    EXPECT_EQ(world->state(), RunState::Running) << world->failure();
+    EXPECT_GT(pairs, 3000U) << "it is a crowd";
+    const double overlap = deepest_m / (2.0 * kRobotRadius_m);
+    EXPECT_LE(overlap, 0.02);
+    EXPECT_NEAR(world->accuracy().overlap, overlap, 0.01) << "and the report says so";
+    ends.push_back(world->state_hash());
+  }
+  EXPECT_EQ(ends[0], ends[1]);
+}
+
 TEST_P(Contact, ARobotSlidesAlongAWall) {
   for (const double angle_rad : {0.35, 0.7, 1.05}) {  // between heading and wall
     auto world = make(scene(6.0).box(0, 0.5, 5.8, 0.2).robot("a", -2, 0.3, angle_rad).wheels(0.1, 0.1));
