@@ -11,7 +11,7 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-constexpr double kSideways = 1e-8;  // variance in m^2 after 1 m: 0.1 mm, of what is not perfectly flat
+constexpr double kSideways = 2.5e-7;  // variance in m^2 after 1 m: 0.5 mm, of what is not perfectly flat
 constexpr double kUnseen_rad = 3.0;
 
 /// What remains of a way when the gear has turned through its play.

@@ -33,7 +33,7 @@ TEST(RealityGap, IsClosedByWhatARecordTells) {
   const std::string told =
       output_of(folder, {"fit", "r.record", "--robots", "ep1,ep2", "-o", "fitted.xml", "--report", "fit.json"});
   EXPECT_NE(told.find("left wheel"), std::string::npos) << told;
-  EXPECT_NE(told.find("not observable"), std::string::npos) << "it has no encoders";
+  EXPECT_NE(told.find("cannot be told"), std::string::npos) << "it has no encoders";
   const hal::Json fit = hal::Json::parse(text_of(folder.path() / "fit.json"));
   for (const hal::Json& robot : fit["robots"]) {
     const hal::Json& wheels = robot["wheels"];
