@@ -95,6 +95,8 @@ void add_run_options(CLI::App* c, RunOptions& o) {
       ->check(CLI::PositiveNumber)
       ->needs(dump);
   add_step_timeout(*c, o.step_timeout_s);
+  c->add_option("--desk-keys", o.hold.desk_keys,
+                "Who commands over LCM (<desk lcm=…>): a file of lines NAME ROLE SECRET; default: this user's");
   c->add_option("--without", o.without, "Simulate this robot instead of driving the real one; repeatable")
       ->allow_extra_args(false);
   c->add_flag("--quiet", o.quiet, "No table at the end");
@@ -171,7 +173,7 @@ void add_replay(CLI::App& app, RunOptions& o, int& code) {
   c->add_flag_function("--view{0}", want_view, "Serve a page that shows it, on port --view=PORT or any that is free");
   c->add_flag("--view-stay", o.hold.stay, "… until somebody ends the program");
   add_run_options(c, o);
-  for (const char* other : {"--seconds", "--steps", "--seed", "--repeat", "--without", "--hub-fault"})
+  for (const char* other : {"--seconds", "--steps", "--seed", "--repeat", "--without", "--hub-fault", "--desk-keys"})
     c->remove_option(c->get_option(other));
   c->callback([&] { code = replay(o); });
 }
@@ -351,6 +353,7 @@ void add_desk(CLI::App& app, PreflightOptions& p, DeskOptions& d, int& code) {
       ->delimiter(',')
       ->expected(2, 3);
   k->add_option("--who", d.who, "Who says it; default: user@machine");
+  k->add_option("--keys", d.keys, "Over LCM: the file with the keys; default: this user's");
   k->add_flag("--json", d.json, "The run's answer as it is");
   k->callback([&] { code = desk(d); });
 }

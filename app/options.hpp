@@ -36,6 +36,7 @@ struct HoldOptions {
   bool stay = false;            ///< at the end
   std::optional<double> speed;  ///< times real time; none: as the experiment says
   std::size_t memory_MB = 500;  ///< of checkpoints
+  std::string desk_keys;        ///< file with the keys of who commands over LCM; empty: this user's
 };
 
 /// A window in browsers, for a run or a record.
@@ -210,6 +211,7 @@ struct DeskOptions {
   std::string spare, link, as, seen_as;  ///< of replace
   std::vector<double> at;                ///< of replace: x, y, heading
   std::string who;
+  std::string keys;  ///< file; empty: this user's
   bool json = false;
 };
 

@@ -8,9 +8,12 @@
 #include <utility>
 
 #include "hal/open_params.hpp"
+#include "hal/printable.hpp"
 
 namespace tandem::hal {
 namespace {
+
+constexpr double kFarthest = 1e6;  // SI, of each number of a vector: beyond it a step of physics is lost in rounding
 
 /// Levenshtein's distance.
 std::size_t edit_distance(std::string_view a, std::string_view b) {
@@ -60,7 +63,7 @@ Problem problem_of(const Element& element, const Element::Attribute* attribute, 
 std::string to_text(const Problem& problem) {
   std::string text = problem.file;
   if (problem.line > 0) text += ":" + std::to_string(problem.line);
-  return text + (problem.warning ? ": warning: " : ": error: ") + problem.message;
+  return text + (problem.warning ? ": warning: " : ": error: ") + shortened(problem.message);
 }
 
 bool has_errors(const Problems& problems, std::size_t first) noexcept {
@@ -229,6 +232,9 @@ void ElementReader::vector(std::string_view name, std::array<double, 3>& value_s
       return problem(name, "'" + *text + "' must be three numbers, \"x,y,z\"");
     const auto part = parse_quantity(rest.substr(0, comma), bare);
     if (!part.ok()) return problem(name, part.error().message);
+    if (std::fabs(part.value()) > kFarthest)
+      return problem(name, "'" + *text + "': every number must be within " +
+                               (bare.dim == Dim::Length ? "1000 km" : "a million") + " of 0");
     parsed[i] = part.value();
     if (i < 2) rest.remove_prefix(comma + 1);
   }

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "hal/printable.hpp"
+
 namespace tandem::hal {
 
 void RobotLog::write(Severity severity, std::string_view text) noexcept {
@@ -14,7 +16,11 @@ void RobotLog::write(Severity severity, std::string_view text) noexcept {
     return;
   }
   free_ns_ = std::max(free_ns_, now_ns) + kRefill_ns;
-  sink_->write(robot_, severity, text, left_out_);
+  if (text.size() > kLongestMessage) {
+    sink_->write(robot_, severity, shortened(text), left_out_);
+  } else {
+    sink_->write(robot_, severity, text, left_out_);
+  }
   left_out_ = 0;
 }
 

@@ -4,11 +4,10 @@
 #include <cctype>
 #include <charconv>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <map>
 
 #include "core/config/manual.hpp"
+#include "hal/input_file.hpp"
 #include "hal/xml/xml.hpp"
 #include "study/schema.hpp"
 #include "study/values.hpp"
@@ -266,9 +265,10 @@ std::vector<const Parameter*> Study::parameters() const {
 std::optional<Study> read_study(const std::string& path, core::Problems& problems) {
   auto root = hal::read_xml_file(path, problems);
   if (!root) return std::nullopt;
-  std::ifstream in(path, std::ios::binary);
-  const std::string text{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
-  return read_root(std::move(*root), text, path, problems);
+  const auto text = hal::read_whole_file(path, "");
+  if (text.ok()) return read_root(std::move(*root), text.value(), path, problems);
+  problems.push_back({path, 0, text.error().message, false});
+  return std::nullopt;
 }
 
 std::optional<Study> read_study_text(const std::string& text, const std::string& path, core::Problems& problems) {

@@ -12,7 +12,7 @@
 #include "app/build_info.hpp"
 #include "app/command/validate.hpp"
 #include "app/options.hpp"
-#include "app/process/sha256.hpp"
+#include "hal/sha256.hpp"
 #include "core/view/gnuplot.hpp"
 #include "core/view/render.hpp"
 #include "hal/output_file.hpp"
@@ -45,7 +45,7 @@ std::string fingerprint_of(const Report& report) {
         for (const std::string& cell : row.cells) text += cell + '\t';
         text += '\n';
       }
-  return app::sha256(text);
+  return hal::sha256(text);
 }
 
 std::vector<std::pair<std::string, std::string>> about(const app::ValidateOptions& options, double seconds) {

@@ -4,15 +4,7 @@
 #include <string_view>
 #include <vector>
 
-#include "hal/result.hpp"
-
 namespace tandem::window {
-
-/// 128 random bits of the system, as 32 digits. Error: it has none.
-hal::Result<std::string> make_token();
-
-/// In a time that does not depend on where they differ.
-bool same_token(std::string_view a, std::string_view b) noexcept;
 
 /// The value of a name in the query of a request's target, decoded; empty: it is not there, or no text.
 std::string query_value(std::string_view target, std::string_view name);

@@ -26,7 +26,8 @@ using Clock = std::chrono::steady_clock;
 using Request = http::request<http::empty_body>;
 using ErrorCode = beast::error_code;
 
-constexpr auto kHttpPatience = std::chrono::seconds(15);
+constexpr auto kRequestPatience = std::chrono::seconds(5);    // for a whole request, from the first byte waited for
+constexpr auto kResponsePatience = std::chrono::seconds(15);  // for one answer to be taken
 
 inline std::shared_ptr<const std::string> shared(std::string text) {
   return std::make_shared<const std::string>(std::move(text));

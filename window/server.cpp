@@ -7,6 +7,7 @@
 #include <pthread.h>
 #include <unistd.h>
 
+#include "hal/token.hpp"
 #include "window/viewer.hpp"
 #include "window/visitor.hpp"
 
@@ -16,8 +17,10 @@ namespace {
 constexpr auto kHousekeeping = std::chrono::milliseconds(250);
 constexpr auto kStateEvery = std::chrono::milliseconds(500);
 constexpr auto kFarewell = std::chrono::milliseconds(500);
-constexpr int kSendBuffer = 128 << 10;  // little, so that a slow viewer is not shown what was long ago
-constexpr std::size_t kFurtherConnections = 64;
+constexpr int kSendBuffer = 128 << 10;          // little, so that a slow viewer is not shown what was long ago
+constexpr std::size_t kMostVisitors = 128;      // that have not shown the token of an operator
+constexpr std::size_t kMostOfAnAddress = 64;    // of these
+constexpr std::size_t kPlacesOfOperators = 16;  // of those of viewers
 
 }  // namespace
 
@@ -48,7 +51,9 @@ hal::Status Server::open() {
   doorway.origins = options.origins;
   std::string host = where.is_v6() ? "[" + where.to_string() + "]" : where.to_string();
   if (where.is_unspecified() && !doorway.machine.empty()) host = doorway.machine;
-  address = "http://" + host + ":" + std::to_string(port) + "/?token=" + token;
+  const std::string page = "http://" + host + ":" + std::to_string(port) + "/?token=";
+  address = page + token;
+  viewers_address = page + viewers_token;
   return {};
 }
 
@@ -90,22 +95,59 @@ void Server::stop() {
 void Server::accept() {
   acceptor.async_accept([this](ErrorCode error, tcp::socket socket) {
     if (over) return;
-    if (error) {  // no more file descriptors: others may come free
+    if (error) {  // no more file descriptors: others come free
+      if (!visitors.empty()) visitors.front()->drop();
       retry.expires_after(kHousekeeping);
       retry.async_wait([this](ErrorCode) {
         if (!over) accept();
       });
       return;
     }
-    if (connections < options.most_viewers + kFurtherConnections) {
-      ErrorCode ignored;
-      (void)::fcntl(socket.native_handle(), F_SETFD, FD_CLOEXEC);
-      socket.set_option(tcp::no_delay(true), ignored);
-      socket.set_option(net::socket_base::send_buffer_size(kSendBuffer), ignored);
-      std::make_shared<Visitor>(std::move(socket), *this, Counted(connections))->read();
+    ErrorCode ignored, gone;
+    (void)::fcntl(socket.native_handle(), F_SETFD, FD_CLOEXEC);
+    socket.set_option(tcp::no_delay(true), ignored);
+    socket.set_option(net::socket_base::send_buffer_size(kSendBuffer), ignored);
+    const std::string from = socket.remote_endpoint(gone).address().to_string();
+    if (!gone) {
+      const auto visitor = std::make_shared<Visitor>(std::move(socket), *this, from);
+      enter(*visitor);
+      visitor->read();
     }
     accept();
   });
+}
+
+// Where places are short, who comes takes that of who has waited longest, of the address that holds most: whoever sends
+// a request at once is heard, however many others open connections and say nothing.
+void Server::enter(Visitor& visitor) {
+  std::map<std::string_view, std::size_t> held;
+  for (const Visitor* const other : visitors) ++held[other->address()];
+  std::string_view most = visitor.address();
+  if (held[most] < kMostOfAnAddress && visitors.size() >= kMostVisitors)
+    most = std::max_element(held.begin(), held.end(), [](const auto& a, const auto& b) {
+             return a.second < b.second;
+           })->first;
+  if (held[most] >= kMostOfAnAddress || visitors.size() >= kMostVisitors) {
+    const auto longest = std::find_if(visitors.begin(), visitors.end(),
+                                      [most](const Visitor* other) { return other->address() == most; });
+    (*longest)->drop();
+  }
+  visitors.push_back(&visitor);
+}
+
+void Server::leave(const Visitor& visitor) noexcept {
+  std::erase(visitors, &visitor);
+}
+
+std::optional<UserRole> Server::role_of(std::string_view given) const noexcept {
+  if (hal::same_token(given, token)) return UserRole::Operator;
+  if (hal::same_token(given, viewers_token)) return UserRole::Viewer;
+  return {};
+}
+
+bool Server::has_place(UserRole role) const noexcept {
+  const std::size_t kept = role == UserRole::Operator ? 0 : std::min(kPlacesOfOperators, options.most_viewers / 2);
+  return viewer_places + kept < options.most_viewers;
 }
 
 void Server::come(std::shared_ptr<Viewer> viewer) {

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <deque>
 #include <functional>
+#include <list>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -30,8 +31,12 @@ class Visitor;
 
 class Server : public std::enable_shared_from_this<Server> {
  public:
-  Server(WindowOptions options_given, std::string token_given)
-      : options(std::move(options_given)), token(std::move(token_given)), encoder("&token=" + token) {}
+  /// Frames name the floor's address with the token of viewers: everybody gets them.
+  Server(WindowOptions options_given, std::string operators, std::string viewers_given)
+      : options(std::move(options_given)),
+        token(std::move(operators)),
+        viewers_token(std::move(viewers_given)),
+        encoder("&token=" + viewers_token) {}
 
   hal::Status open();  ///< takes the port
   void start();        ///< the thread
@@ -43,6 +48,12 @@ class Server : public std::enable_shared_from_this<Server> {
 
   // The window's thread: connections and frames (server.cpp).
   void accept();
+  /// Of a request's token; none: it is neither.
+  std::optional<UserRole> role_of(std::string_view given) const noexcept;
+  /// Whether there is a place for one more viewer. The last ones are kept for operators.
+  bool has_place(UserRole role) const noexcept;
+  void enter(Visitor& visitor);
+  void leave(const Visitor& visitor) noexcept;
   void come(std::shared_ptr<Viewer> viewer);
   void go(const Viewer& viewer);
   void plan();
@@ -58,22 +69,25 @@ class Server : public std::enable_shared_from_this<Server> {
   void set_wishes();
   void wished();
   void carry_out(Viewer& viewer, const ViewerCommand& command);
+  /// Why who has this role may not say this command now; empty: it may.
+  std::string why_not(UserRole role, const std::string& command);
   std::shared_ptr<const std::string> floor_png(const FrameScene& scene);
   /// False: nobody makes pictures here.
   bool make_picture(const std::string& name, const std::shared_ptr<Visitor>& visitor);
 
   WindowOptions options;
-  std::string token, address;
+  std::string token, viewers_token, address, viewers_address;
   std::uint16_t port = 0;
   Doorway doorway;
 
-  net::io_context io{1};
+  std::list<Visitor*> visitors;   // without an operator's token, the one that waits longest first
+  std::size_t viewer_places = 0;  // taken
+  net::io_context io{1};          // its handlers hold visitors and viewers, which use what stands above
   tcp::acceptor acceptor{io};
   net::steady_timer frame_due{io}, housekeeping{io}, retry{io};
   std::thread thread;
 
   // Of the window's thread.
-  std::size_t connections = 0;
   FrameEncoder encoder;
   std::shared_ptr<const core::FloorImage> floor;  // that was packed last
   std::shared_ptr<const std::string> packed_floor;
@@ -83,7 +97,8 @@ class Server : public std::enable_shared_from_this<Server> {
   bool over = false;
   std::map<std::string, std::shared_ptr<const std::string>> last;  // texts by type
   Json state;
-  Clock::time_point state_sent;
+  Clock::time_point state_sent, viewers_second;
+  int viewers_said = 0, viewers_stopped = 0;  // commands of those who have that role, in this second
   std::deque<Json> log;
   std::vector<std::string> layer_names;
 

@@ -11,6 +11,7 @@ namespace tandem::window {
 namespace {
 
 constexpr std::size_t kLogEntries = 1000;
+constexpr int kMostOfViewers = 10, kMostStops = 20;  // a second, of all who have that role
 
 std::string text_of(const Json& object, const char* name) {
   const auto found = object.find(name);
@@ -60,6 +61,7 @@ void Server::greet(Viewer& viewer) {
     if (const auto found = last.find(type); found != last.end()) viewer.send({found->second, false}, type);
   };
   send("hello");
+  viewer.send({shared(hal::to_text({{"type", "role"}, {"role", name_of(viewer.role())}})), false});
   for (const auto& [type, text] : last) {
     if (type != "hello") send(type);
   }
@@ -94,6 +96,21 @@ void Server::send_inspection(const Json& message) {
   }
 }
 
+std::string Server::why_not(UserRole role, const std::string& command) {
+  if (role == UserRole::Operator) return {};
+  if (!may_say(role, command))
+    return "this address is a viewer's, which sees, and may stop all real robots (estop): '" + command +
+           "' needs the address of an operator";
+  const Clock::time_point now = Clock::now();
+  if (now - viewers_second >= std::chrono::seconds(1)) {
+    viewers_second = now;
+    viewers_said = viewers_stopped = 0;
+  }
+  // Two budgets, so that nobody can keep others from a stop by asking.
+  const bool within = command == "estop" ? ++viewers_stopped <= kMostStops : ++viewers_said <= kMostOfViewers;
+  return within ? "" : "viewers have said too much in this second; say it again";
+}
+
 void Server::carry_out(Viewer& viewer, const ViewerCommand& command) {
   WindowReply reply = [weak = weak_from_this(), serial = viewer.serial(), id = command.id](const Json& answer) {
     const auto server = weak.lock();
@@ -106,13 +123,16 @@ void Server::carry_out(Viewer& viewer, const ViewerCommand& command) {
       }
     });
   };
+  if (const std::string why = why_not(viewer.role(), command.name); !why.empty()) return reply(refusal(why));
   std::function<void(Json, WindowReply)> take;
   {
     const std::lock_guard lock(mutex);
     take = take_command;
   }
   if (!take) return reply(refusal("nobody takes commands here"));
-  take(command.whole, std::move(reply));
+  Json whole = command.whole;
+  whole["by"] = {{"role", name_of(viewer.role())}, {"address", viewer.address()}};
+  take(std::move(whole), std::move(reply));
 }
 
 std::shared_ptr<const std::string> Server::floor_png(const FrameScene& scene) {

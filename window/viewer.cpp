@@ -22,7 +22,7 @@ void Viewer::accept(Request request) {
   request_ = std::move(request);
   beast::get_lowest_layer(socket_).expires_never();
   websocket::stream_base::timeout patience = websocket::stream_base::timeout::suggested(beast::role_type::server);
-  patience.handshake_timeout = kHttpPatience;
+  patience.handshake_timeout = kRequestPatience;
   patience.idle_timeout = std::chrono::seconds(60);
   patience.keep_alive_pings = true;
   socket_.set_option(patience);

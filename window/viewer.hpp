@@ -15,11 +15,21 @@ namespace tandem::window {
 
 class Server;
 
+/// Who speaks to the window: its role, and where its connection comes from, in numbers.
+struct Speaker {
+  UserRole role = UserRole::Viewer;
+  std::string address;
+};
+
 /// One browser that watches. Used by the window's thread alone.
 class Viewer : public std::enable_shared_from_this<Viewer> {
  public:
-  Viewer(tcp::socket&& socket, Server& server, std::uint64_t serial, Counted counted)
-      : socket_(std::move(socket)), server_(server), serial_(serial), counted_(std::move(counted)) {}
+  Viewer(tcp::socket&& socket, Server& server, std::uint64_t serial, Speaker speaker, Counted counted)
+      : socket_(std::move(socket)),
+        server_(server),
+        serial_(serial),
+        speaker_(std::move(speaker)),
+        counted_(std::move(counted)) {}
 
   void accept(Request request);
   /// `kind`, when not empty: replaces one of the same kind that still waits.
@@ -32,6 +42,8 @@ class Viewer : public std::enable_shared_from_this<Viewer> {
   void drop();
 
   std::uint64_t serial() const noexcept { return serial_; }
+  UserRole role() const noexcept { return speaker_.role; }
+  const std::string& address() const noexcept { return speaker_.address; }
   bool open() const noexcept { return open_ && !closing_; }
   bool stuck(Clock::time_point now) const noexcept;
   /// Whether it could take a frame now, and when it wants the next.
@@ -61,6 +73,7 @@ class Viewer : public std::enable_shared_from_this<Viewer> {
   websocket::stream<beast::tcp_stream> socket_;
   Server& server_;
   std::uint64_t serial_;
+  Speaker speaker_;
   Counted counted_;
   Request request_;
   beast::flat_buffer in_;

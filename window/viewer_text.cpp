@@ -47,6 +47,10 @@ hal::Result<ViewerCommand> read_viewer_text(std::string_view text) {
   return command;
 }
 
+bool may_say(UserRole role, std::string_view command) noexcept {
+  return role == UserRole::Operator || command == "estop" || command == "status";
+}
+
 hal::Result<std::vector<std::string>> text_list(const hal::Json& object, const char* name) {
   std::vector<std::string> texts;
   const auto found = object.find(name);

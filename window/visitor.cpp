@@ -11,11 +11,20 @@ constexpr std::size_t kHeaderBytes = std::size_t{8} << 10;
 
 }  // namespace
 
+Visitor::~Visitor() {
+  server_.leave(*this);
+}
+
+void Visitor::drop() {
+  server_.leave(*this);
+  stream_.close();
+}
+
 void Visitor::read() {
   parser_.emplace();
   parser_->header_limit(kHeaderBytes);
   parser_->body_limit(0);
-  stream_.expires_after(kHttpPatience);
+  stream_.expires_after(kRequestPatience);
   http::async_read(stream_, in_, *parser_, [self = shared_from_this()](ErrorCode error, std::size_t) {
     if (error) return self->end();
     self->handle();
@@ -35,6 +44,8 @@ void Visitor::handle() {
   };
   if (request.method() != http::verb::get && request.method() != http::verb::head)
     return refuse(http::status::method_not_allowed, "GET and HEAD are understood.");
+  if (request.count(http::field::host) > 1 || request.count(http::field::origin) > 1)
+    return refuse(http::status::bad_request, "There is more than one Host or Origin in this request.");
   if (!server_.doorway.host_is_ours(host))
     return refuse(http::status::forbidden, "This window does not answer to the name '" + host +
                                                "'. Where it is reached by another name or through a proxy, start "
@@ -42,23 +53,24 @@ void Visitor::handle() {
                                                host + ".");
   if (!server_.doorway.origin_is_ours(origin, host))
     return refuse(http::status::forbidden, "Pages of " + origin + " may not use this window (--view-origin).");
+  const std::optional<UserRole> role = server_.role_of(query_value(target, "token"));
+  known_ = known_ || role == UserRole::Operator;
+  server_.leave(*this);
+  if (!known_) server_.visitors.push_back(this);  // it waits anew; nobody takes the place of an operator
   if (path == "/favicon.ico") return respond(http::status::no_content, "", nullptr);
   const PageFile* const file = find_page_file(path == "/"            ? "/index.html"
                                               : path == "/projector" ? "/projector.html"
                                                                      : path);
   if (file != nullptr) return respond_page(*file);  // nothing of the run; it says when the token is wrong
-  if (!same_token(query_value(target, "token"), server_.token)) {
+  if (!role) {
     return refuse(http::status::forbidden,
                   "The token is missing or wrong: open the whole address that tandem printed, with what stands behind "
                   "'?'.");
   }
   if (path == "/ws") {
     if (!websocket::is_upgrade(request)) return refuse(http::status::upgrade_required, "This is for WebSockets.");
-    if (server_.viewers.size() >= server_.options.most_viewers)
-      return refuse(http::status::service_unavailable, "Too many viewers watch already.");
-    const auto viewer =
-        std::make_shared<Viewer>(stream_.release_socket(), server_, ++server_.serials, std::move(counted_));
-    return viewer->accept(parser_->release());
+    if (!server_.has_place(*role)) return refuse(http::status::service_unavailable, "Too many viewers watch already.");
+    return watch(*role);
   }
   if (path == "/floor.png") {
     const auto& scene = server_.encoder.frame().scene;
@@ -69,6 +81,13 @@ void Visitor::handle() {
       server_.make_picture(std::string(path.substr(1)), shared_from_this()))
     return;
   refuse(http::status::not_found, "There is no '" + std::string(path) + "' here.");
+}
+
+void Visitor::watch(UserRole role) {
+  server_.leave(*this);
+  const auto viewer = std::make_shared<Viewer>(stream_.release_socket(), server_, ++server_.serials,
+                                               Speaker{role, address_}, Counted(server_.viewer_places));
+  viewer->accept(parser_->release());
 }
 
 Response Visitor::head(http::status status) const {
@@ -119,7 +138,7 @@ void Visitor::send(http::status status, std::string_view type, std::string_view 
 
 void Visitor::write() {
   serializer_.emplace(*response_);
-  stream_.expires_after(kHttpPatience);
+  stream_.expires_after(kResponsePatience);
   http::async_write(stream_, *serializer_, [self = shared_from_this()](ErrorCode error, std::size_t) {
     if (error || !self->keep_alive_) return self->end();
     self->content_.reset();

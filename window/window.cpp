@@ -1,5 +1,6 @@
 #include "window/window.hpp"
 
+#include "hal/token.hpp"
 #include "window/server.hpp"
 
 namespace tandem::window {
@@ -11,10 +12,11 @@ Window::~Window() {
 }
 
 hal::Result<std::unique_ptr<Window>> Window::open(const WindowOptions& options) {
-  auto token = make_token();
+  auto token = hal::make_token(), viewers_token = hal::make_token();
   if (!token.ok()) return token.error();
+  if (!viewers_token.ok()) return viewers_token.error();
   try {
-    auto server = std::make_shared<Server>(options, std::move(token).value());
+    auto server = std::make_shared<Server>(options, std::move(token).value(), std::move(viewers_token).value());
     if (const hal::Status opened = server->open(); !opened.ok()) return opened.error();
     server->start();
     return std::unique_ptr<Window>(new Window(std::move(server)));
@@ -25,6 +27,9 @@ hal::Result<std::unique_ptr<Window>> Window::open(const WindowOptions& options) 
 
 const std::string& Window::address() const noexcept {
   return server_->address;
+}
+const std::string& Window::viewers_address() const noexcept {
+  return server_->viewers_address;
 }
 std::uint16_t Window::port() const noexcept {
   return server_->port;

@@ -50,12 +50,15 @@ class Window {
   Window(const Window&) = delete;
   Window& operator=(const Window&) = delete;
 
-  /// "http://127.0.0.1:8123/?token=…"
+  /// "http://127.0.0.1:8123/?token=…": whoever opens it is an operator.
   const std::string& address() const noexcept;
+  /// The same with the token of viewers: whoever opens it sees, and commands nothing but an emergency stop.
+  const std::string& viewers_address() const noexcept;
   std::uint16_t port() const noexcept;
 
   /// Who carries out commands that are not the window's own (rate, layers, inspect): called on the window's thread,
-  /// must not wait; `reply` may be called on any thread, once, also when the viewer or the window is gone.
+  /// must not wait; `reply` may be called on any thread, once, also when the viewer or the window is gone. "by" in the
+  /// command is the window's word: {"role": "operator" or "viewer", "address": numbers}.
   void set_commands(std::function<void(hal::Json command, WindowReply reply)> take);
   /// Who makes "picture.svg" and "picture.png": as `set_commands`.
   void set_pictures(std::function<void(const std::string& name, WindowFileReply reply)> make);

@@ -8,6 +8,7 @@
 #include "app/command/command.hpp"
 #include "app/outputs/report.hpp"
 #include "app/process/terminal.hpp"
+#include "app/robots/desk_keys.hpp"
 #include "bridges/desk/lcm_desk.hpp"
 #include "hal/json/json.hpp"
 #include "window/client.hpp"
@@ -47,12 +48,16 @@ hal::Result<Json> ask_window(const std::string& address, Json command) {
   return hal::Error{"the run did not answer within " + std::to_string(patience_for(command).count()) + " s"};
 }
 
-hal::Result<Json> ask_lcm(const std::string& where, const Json& command, const std::string& who) {
+hal::Result<Json> ask_lcm(const std::string& where, const Json& command, const std::string& who,
+                          const std::string& keys) {
   const std::size_t mark = where.find('#');  // lcm:udpm://…#channel
   const std::string url = where.substr(0, mark);
   const std::string channel = mark == std::string::npos ? "tandem/desk" : where.substr(mark + 1);
   const std::int64_t number = std::chrono::steady_clock::now().time_since_epoch().count();
-  auto answer = bridges::desk::ask(url, channel, {number, who, hal::to_text(command)}, patience_for(command));
+  const auto key = key_to_ask(keys, url, channel, who);
+  if (!key.ok()) return key.error();
+  auto answer = bridges::desk::ask(url, channel, key.value(), {number, who, hal::to_text(command), {}, {}},
+                                   patience_for(command));
   if (!answer.ok()) return answer.error();
   return parsed(answer.value());
 }
@@ -124,8 +129,8 @@ int desk(const DeskOptions& options) {
   Json command = command_of(options);
   command["who"] = who;
   std::string where = options.where;
-  const auto answer =
-      where.starts_with(kLcm) ? ask_lcm(where.substr(kLcm.size()), command, who) : ask_window(where, command);
+  const auto answer = where.starts_with(kLcm) ? ask_lcm(where.substr(kLcm.size()), command, who, options.keys)
+                                              : ask_window(where, command);
   if (!answer.ok()) return complain(kFailedRunning, "desk: " + answer.error().message);
   if (options.json) fmt::print("{}\n", hal::to_text(answer.value()));
   if (!answer.value().value("ok", false))

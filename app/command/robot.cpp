@@ -12,7 +12,6 @@
 #include "app/outputs/report.hpp"
 #include "app/process/measure.hpp"
 #include "app/process/progress.hpp"
-#include "app/process/sha256.hpp"
 #include "app/process/signals.hpp"
 #include "app/process/terminal.hpp"
 #include "app/process/watchdog.hpp"
@@ -24,6 +23,7 @@
 #include "app/robots/listed_robot.hpp"
 #include "app/robots/robot_end.hpp"
 #include "hal/output_file.hpp"
+#include "hal/sha256.hpp"
 #include "mixed_reality/safety/lone_robot.hpp"
 #include "mixed_reality/settings/bridge_request.hpp"
 #include "mixed_reality/settings/timeouts.hpp"
@@ -144,15 +144,15 @@ std::vector<std::pair<std::string, std::string>> result_table(const core::RobotI
 /// Which files decided, each with its SHA-256.
 void add_files(hal::Json& json, const std::string& experiment, hal::PluginLoader& loader,
                const core::ControllerConfig& config) {
-  if (const auto digest = sha256_of_file(experiment); digest.ok())
+  if (const auto digest = hal::sha256_of_file(experiment); digest.ok())
     json["file"] = {{"file", experiment}, {"sha256", digest.value()}};
   const std::string library = loader.find(config.library).value().string();
-  if (const auto digest = sha256_of_file(library); digest.ok()) {
+  if (const auto digest = hal::sha256_of_file(library); digest.ok()) {
     json["controller"] = library;
     json["sha256"] = digest.value();
   }
   for (const std::string& plugin : loader.plugins()) {
-    const auto digest = sha256_of_file(plugin);
+    const auto digest = hal::sha256_of_file(plugin);
     json["plugins"].push_back({{"file", plugin}, {"sha256", digest.ok() ? digest.value() : ""}});
   }
 }

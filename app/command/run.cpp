@@ -345,9 +345,8 @@ bool write_results(RunOutputs& outputs, const RunResult& result, bool table) {
   return good;
 }
 
-}  // namespace
-
-int run(const RunOptions& options) {
+/// All but the end of the log, which outlives the world.
+int run_with(const RunOptions& options, std::unique_ptr<RunLog>& log) {
   const double began = wall_seconds();
   auto hub_faults = HubFaults::make(options.hub_faults);
   if (!hub_faults.ok()) return complain(kBadInput, hub_faults.error().message);
@@ -373,7 +372,8 @@ int run(const RunOptions& options) {
   Watchdog watchdog(options.step_timeout_s, stop);
   auto opened_log = RunLog::open(options.log);
   if (!opened_log.ok()) return complain(kBadInput, opened_log.error().message);
-  RunLog& run_log = *opened_log.value();
+  log = std::move(opened_log).value();
+  RunLog& run_log = *log;
   auto repeated = read_repeated(options, *scenario);
   if (!repeated.ok()) return complain(kBadInput, repeated.error().message);
   core::WorldOptions world_options;
@@ -456,22 +456,29 @@ int run(const RunOptions& options) {
       progress.emplace(steps, scenario->ticks_per_second);
     }
     Recording recording(outputs, result, mixed.get(), watchdog);
+    std::optional<CommandLog> commands;
+    if (live != nullptr) commands.emplace([&run_log](std::string_view text) { run_log.keep(text); }, *live);
     std::optional<Desks> desks;
     std::unique_ptr<RunView> view;
     std::optional<ScriptWatch> scripts;
     if (mixed != nullptr) {
-      desks.emplace(*live, *mixed, stop);
+      desks.emplace(*live, *mixed, *commands, stop);
       desks->on_done([&](const hal::Json& action) {  // of real robots: nobody can do it again
         const hal::Json event = {{"kind", "action"}, {"action", action}, {"repeatable", false}};
         recording.event(world->tick(), event);
         if (view != nullptr) view->event(world->tick(), event);
       });
-      if (const hal::Status listens = desks->listen(scenario->desk); !listens.ok())
+      if (const hal::Status listens = desks->listen(scenario->desk, options.hold.desk_keys); !listens.ok())
         return complain(kFailedRunning, listens.error().message);
     }
     if (options.view.on) {
-      ViewedRun viewed{
-          *world, *live, loader.catalog(), mixed.get(), [&] { return recording.drawing(); }, desks ? &*desks : nullptr};
+      ViewedRun viewed{*world,
+                       *live,
+                       loader.catalog(),
+                       mixed.get(),
+                       [&] { return recording.drawing(); },
+                       desks ? &*desks : nullptr,
+                       commands ? &*commands : nullptr};
       auto made_view = RunView::open(options.view, viewed);
       if (!made_view.ok()) return complain(kBadInput, made_view.error().message);
       view = std::move(made_view).value();
@@ -541,15 +548,26 @@ int run(const RunOptions& options) {
   if (result.end.how == Ended::Failed) complain(kFailedRunning, result.end.failure);
   if (result.end.how == Ended::Interrupted) say(fmt::format("interrupted at tick {}", world->tick()));
   const bool table = !options.quiet && options.report != "-";
-  bool written = write_results(outputs, result, table);
-  if (const hal::Status logged = run_log.close(); !logged.ok())
-    written = complain(kFailedRunning, logged.error().message) == kDone;
+  const bool written = write_results(outputs, result, table);
+  run_log.results_done();
   if (live != nullptr && !live->failure().empty()) complain(kFailedRunning, live->failure());
   const bool failed = result.end.how == Ended::Failed || world->incidents().controllers_thrown > 0 || !as_before ||
                       (live != nullptr && !live->failure().empty());
   if (failed || !was_guarded || !written || !left.empty()) return kFailedRunning;
   const bool until_interrupted = options.view.on && options.hold.stay;  // that is how such a run ends
   return result.end.how == Ended::Interrupted && !until_interrupted ? interrupted_code() : kDone;
+}
+
+}  // namespace
+
+int run(const RunOptions& options) {
+  std::unique_ptr<RunLog> log;
+  int code = run_with(options, log);
+  if (log == nullptr || !log->over()) return code;
+  if (const hal::Status logged = log->close(); !logged.ok()) code = complain(kFailedRunning, logged.error().message);
+  if (code == kDone && log->late_errors() > 0)
+    code = complain(kFailedRunning, "a controller or hook failed at its end, as told above; the results stand");
+  return code;
 }
 
 }  // namespace tandem::app

@@ -4,13 +4,12 @@
 #include <cerrno>
 #include <cstring>
 #include <fmt/format.h>
-#include <fstream>
-#include <iterator>
 
 #include "app/command/command.hpp"
 #include "app/experiment/plugins.hpp"
 #include "app/experiment/reading.hpp"
 #include "app/process/terminal.hpp"
+#include "hal/input_file.hpp"
 #include "hal/output_file.hpp"
 #include "hal/xml/xml.hpp"
 
@@ -31,10 +30,9 @@ int upgrade(const UpgradeOptions& options) {
     const hal::Status opened = loader.open(plugin.library);
     if (!opened.ok()) print_problems({{path, plugin.line, "<plugins>: " + opened.error().message, true}});
   }
-  std::ifstream in(path, std::ios::binary);
-  const std::string text{std::istreambuf_iterator<char>(in), {}};
-  if (!in) return complain(kBadInput, path + ": the file cannot be read: " + std::strerror(errno));
-  const auto made = core::upgraded(text, path, loader.catalog());
+  const auto text = hal::read_whole_file(path, "the experiment");
+  if (!text.ok()) return complain(kBadInput, text.error().message);
+  const auto made = core::upgraded(text.value(), path, loader.catalog());
   if (!made.ok()) return complain(kBadInput, made.error().message);
   if (made.value().changes.empty()) {
     fmt::print("{}: up to date\n", path);

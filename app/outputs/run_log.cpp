@@ -36,11 +36,39 @@ void RunLog::tell_also(std::function<void(std::string_view)> listener) {
 }
 
 void RunLog::write(hal::Severity severity, std::string_view text) {
+  const std::string entry = hal::printable_entry(hal::shortened(text));
   const std::lock_guard hold(lock_);
-  if (++count_ <= kShown || says_elsewhere()) say(text);  // a screen shows the newest ones, however many
-  if (listener_) listener_(text);
+  if (++count_ <= kShown || says_elsewhere()) say(entry);  // a screen shows the newest ones, however many
+  if (listener_) listener_(entry);
+  write_file(severity, entry);
+  if (over_ && severity == hal::Severity::Error) ++late_errors_;
+}
+
+void RunLog::results_done() {
+  const std::lock_guard hold(lock_);
+  over_ = true;
+}
+
+bool RunLog::over() const {
+  const std::lock_guard hold(lock_);
+  return over_;
+}
+
+int RunLog::late_errors() const {
+  const std::lock_guard hold(lock_);
+  return late_errors_;
+}
+
+void RunLog::keep(std::string_view text) {
+  const std::string entry = hal::printable_entry(hal::shortened(text));
+  const std::lock_guard hold(lock_);
+  write_file(hal::Severity::Info, entry);
+}
+
+/// With the lock.
+void RunLog::write_file(hal::Severity severity, std::string_view entry) {
   if (!file_ || !written_.ok()) return;
-  written_ = file_->write(fmt::format("{}: {}\n", word_of(severity), text));
+  written_ = file_->write(fmt::format("{}: {}\n", word_of(severity), entry));
 }
 
 hal::Status RunLog::close() {

@@ -6,13 +6,13 @@
 #include "app/build_info.hpp"
 #include "app/outputs/report.hpp"
 #include "app/process/measure.hpp"
-#include "app/process/sha256.hpp"
 #include "app/robots/bridge_status.hpp"
 #include "app/robots/ledger_json.hpp"
 #include "app/robots/lockstep_peers.hpp"
 #include "app/robots/real_robots.hpp"
 #include "core/view/record_drawing.hpp"
 #include "hal/json/json.hpp"
+#include "hal/sha256.hpp"
 #include "hal/unit.hpp"
 #include "hal/xml/xml.hpp"
 #include "mixed_reality/settings/bridge_request.hpp"
@@ -222,7 +222,7 @@ RunEnd end_of(const core::World& world, std::int64_t steps_wanted, bool stopped)
 
 InputFiles input_files(const core::Scenario& scenario, const hal::PluginLoader& loader) {
   const auto described = [](std::string id, std::string label, std::string path) {
-    const auto digest = sha256_of_file(path);
+    const auto digest = hal::sha256_of_file(path);
     return InputFile{std::move(id), std::move(label), std::move(path), digest.ok() ? digest.value() : ""};
   };
   InputFiles files;

@@ -3,6 +3,7 @@
 #include <charconv>
 
 #include "core/record/csv.hpp"
+#include "hal/input_file.hpp"
 
 namespace tandem::app {
 namespace {
@@ -63,6 +64,7 @@ hal::Status StateDump::close(const core::World& world) {
 }
 
 bool StateDumpReader::is_dump(const std::string& path) {
+  if (!hal::check_input_file(path, "").ok()) return false;
   std::ifstream in(path);
   std::string line;
   return std::getline(in, line) && line == kHeader;

@@ -1,16 +1,21 @@
 #include "app/process/emergency.hpp"
 
+#include <array>
 #include <atomic>
 #include <cerrno>
 #include <csignal>
 #include <cstdlib>
+#include <dlfcn.h>
 #include <exception>
+#include <execinfo.h>
 #include <new>
+#include <string>
 #include <unistd.h>
 
 #include "app/options.hpp"
 #include "app/process/terminal.hpp"
 #include "hal/plugin_call.hpp"
+#include "hal/printable.hpp"
 
 namespace tandem::app {
 namespace {
@@ -22,6 +27,36 @@ std::atomic<pid_t> ending{0};  // the thread that ends the process
 void begin_message(hal::FixedText& text) noexcept {
   const hal::CallMark* mark = hal::known_thread_mark();
   if (mark == nullptr || !hal::name_call(*mark, text)) text << "tandem, in no code of a plug-in,";
+}
+
+/// The plug-in that a frame of the stack is in; empty: none. Not for signal handlers.
+std::string plugin_of(void* frame) {
+  Dl_info where{};
+  if (::dladdr(frame, &where) == 0 || where.dli_fname == nullptr) return {};
+  void* const library = ::dlopen(where.dli_fname, RTLD_LAZY | RTLD_NOLOAD);
+  if (library == nullptr) return {};  // the program itself
+  const bool exports = ::dlsym(library, "tandem_plugin") != nullptr;
+  Dl_info definer{};
+  const bool its_own = exports && ::dladdr(::dlsym(library, "tandem_plugin"), &definer) != 0 &&
+                       definer.dli_fbase == where.dli_fbase;  // not one of the libraries that it uses
+  ::dlclose(library);
+  const std::string_view path = where.dli_fname;
+  return its_own ? std::string(path.substr(path.rfind('/') + 1)) : std::string();
+}
+
+/// As `begin_message`, and names the plug-in whose code is on the stack of a thread that it has started itself.
+void begin_message_by_stack(hal::FixedText& text) {
+  const hal::CallMark* mark = hal::known_thread_mark();
+  if (mark != nullptr && hal::name_call(*mark, text)) return;
+  std::array<void*, 64> frames{};
+  const int count = ::backtrace(frames.data(), static_cast<int>(frames.size()));
+  for (int i = 0; i < count; ++i) {
+    if (const std::string plugin = plugin_of(frames[static_cast<std::size_t>(i)]); !plugin.empty()) {
+      text << "plug-in '" << plugin << "', on a thread of its own,";
+      return;
+    }
+  }
+  begin_message(text);
 }
 
 std::string_view meaning_of(int signal) noexcept {
@@ -62,7 +97,7 @@ void on_quick_exit() noexcept {
 
 [[noreturn]] void on_terminate() noexcept {
   hal::FixedText text;
-  begin_message(text);
+  begin_message_by_stack(text);
   const std::exception_ptr thrown = std::current_exception();
   try {
     if (thrown != nullptr) std::rethrow_exception(thrown);
@@ -70,7 +105,7 @@ void on_quick_exit() noexcept {
   } catch (const std::bad_alloc&) {
     text << " ran out of memory";
   } catch (const std::exception& e) {
-    text << " threw where nobody catches: " << e.what();
+    text << " threw where nobody catches: " << hal::printable(hal::shortened(e.what()));
   } catch (...) {
     text << " threw where nobody catches";
   }

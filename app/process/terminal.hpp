@@ -4,11 +4,11 @@
 #include <string>
 #include <string_view>
 
+#include "hal/printable.hpp"
+
 namespace tandem::app {
 
-/// `text` as a terminal may get it, whoever wrote it: control characters but tabs and line ends become \x1b and the
-/// like, and so do bytes that are no UTF-8.
-std::string printable(std::string_view text);
+using hal::printable;
 
 /// `text` as one word of a shell, for commands that people may type.
 std::string shell_word(const std::string& text);

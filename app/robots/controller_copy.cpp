@@ -1,8 +1,8 @@
 #include "app/robots/controller_copy.hpp"
 
 #include "app/build_info.hpp"
-#include "app/process/sha256.hpp"
 #include "hal/plugin_note.hpp"
+#include "hal/sha256.hpp"
 
 namespace tandem::app {
 
@@ -15,14 +15,14 @@ bridges::peer::ControllerCopy controller_copy(const hal::PluginLoader& loader, c
   copy.release = hal::to_text(hal::kRelease);
   copy.commit = build_info().commit;
   if (const auto file = loader.find(config.library); file.ok()) {
-    const auto digest = sha256_of_file(file.value().string());
+    const auto digest = hal::sha256_of_file(file.value().string());
     copy.library = {file.value().filename().string(), digest.ok() ? digest.value() : ""};
     if (const auto note = hal::read_plugin_note(file.value()); note.ok()) {
       copy.release = hal::to_text(note.value().release);
       for (const hal::Surface& surface : note.value().surfaces) copy.surfaces[surface.name] = surface.number;
     }
   }
-  for (const hal::SourceFile& script : scripts) copy.scripts.push_back({script.name, sha256(script.text)});
+  for (const hal::SourceFile& script : scripts) copy.scripts.push_back({script.name, hal::sha256(script.text)});
   return copy;
 }
 

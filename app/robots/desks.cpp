@@ -5,8 +5,10 @@
 #include <set>
 
 #include "app/process/terminal.hpp"
+#include "app/robots/desk_keys.hpp"
 #include "app/robots/real_robots.hpp"
 #include "mixed_reality/time/monotonic.hpp"
+#include "window/viewer_text.hpp"
 
 namespace tandem::app {
 namespace {
@@ -71,8 +73,9 @@ Json to_json(const mixed_reality::PreflightRows& rows) {
   return all;
 }
 
-Desks::Desks(core::LiveRun& live, mixed_reality::MixedSession& session, const std::atomic<bool>& stop)
-    : live_(live), session_(session), stop_(stop) {
+Desks::Desks(core::LiveRun& live, mixed_reality::MixedSession& session, const CommandLog& commands,
+             const std::atomic<bool>& stop)
+    : live_(live), session_(session), commands_(commands), stop_(stop) {
   for (const char* name : {"arm", "rearm", "replace", "first_motion"})
     live.add_command(name, [this](const Json& command) { return carry_out(command); });
   live.add_command("preflight", [this](const Json&) -> hal::Result<Json> {
@@ -80,10 +83,6 @@ Desks::Desks(core::LiveRun& live, mixed_reality::MixedSession& session, const st
     const auto machine = mixed_reality::look_over_machine(session_.world().scenario(), session_.woke_late());
     rows.insert(rows.end(), machine.begin(), machine.end());
     return answer_of(rows);
-  });
-  live.add_command("note_estop", [this](const Json& command) -> hal::Result<Json> {
-    if (note_) note_({{"do", "estop"}, {"who", text_or(command, "who", "")}});
-    return Json::object();
   });
   live.add_command("status", [this](const Json&) -> hal::Result<Json> {
     Json answer = real_message();
@@ -97,17 +96,24 @@ Desks::~Desks() {
   lcm_.reset();  // its thread posts
 }
 
-hal::Status Desks::listen(const core::DeskConfig& config) {
+hal::Status Desks::listen(const core::DeskConfig& config, const std::string& keys_file) {
   if (config.lcm.empty()) return {};
+  auto keys = keys_to_listen(keys_file, config.lcm, config.channel);
+  if (!keys.ok()) return hal::Error{"<desk lcm=…>: " + keys.error().message};
   auto opened = bridges::desk::LcmDesk::open(
-      config.lcm, config.channel,
-      [this](const bridges::desk::DeskMessage& message, bridges::desk::LcmDesk::Reply reply) {
-        auto command = hal::parse_json_object(message.text);
-        if (!command.ok())
-          return reply(hal::to_text({{"ok", false}, {"error", "no command: " + command.error().message}}));
-        command.value()["who"] = message.who;
+      config.lcm, config.channel, std::move(keys).value(),
+      [this](const bridges::desk::DeskMessage& message, hal::UserRole role, bridges::desk::LcmDesk::Reply reply) {
+        const auto refuse = [&reply](const std::string& why) { reply(hal::to_text({{"ok", false}, {"error", why}})); };
+        auto command = window::read_viewer_text(message.text);
+        if (!command.ok()) return refuse("no command: " + command.error().message);
+        if (!window::may_say(role, command.value().name))
+          return refuse("'" + message.who + "' is a viewer, who may stop all real robots (estop); '" +
+                        command.value().name + "' needs an operator");
+        Json whole = std::move(command.value().whole);
+        whole["who"] = message.who;
+        whole["by"] = {{"role", name_of(role)}, {"address", "lcm"}};
         post(
-            std::move(command).value(), [reply](const Json& answer) { reply(hal::to_text(answer)); }, "lcm");
+            std::move(whole), [reply](const Json& answer) { reply(hal::to_text(answer)); }, "lcm");
       });
   if (!opened.ok()) return hal::Error{"<desk lcm=…>: " + opened.error().message};
   lcm_ = std::move(opened).value();
@@ -117,11 +123,16 @@ hal::Status Desks::listen(const core::DeskConfig& config) {
 void Desks::post(Json command, core::LiveReply reply, std::string_view from) {
   const std::string name = text_or(command, "do", "");
   command["who"] = name_of(command, from);
+  command.erase(kSaidAt);
+  reply = commands_.noting(command, std::move(reply));
   if (name == "estop") {
     session_.emergency_stop();
     desk_.note_stop(word_of(command));
     if (reply) reply({{"ok", true}});
-    return live_.post({{"do", "note_estop"}, {"who", command["who"]}}, {});
+    return live_.post_own(
+        [weak = std::weak_ptr(note_), action = Json{{"do", "estop"}, {"who", command["who"]}, {"by", command["by"]}}] {
+          if (const auto note = weak.lock()) (*note)(action);
+        });
   }
   if (is_one_of(name, {"arm", "rearm", "replace", "first_motion"})) {
     command[kSaidAt] = now_ns();
@@ -158,7 +169,7 @@ hal::Result<Json> Desks::carry_out(const Json& command) {
     Json action = command;
     action.erase(kSaidAt);
     action.erase("id");
-    note_(action);
+    (*note_)(action);
   }
   Json answer = real_message();
   answer.erase("type");  // the answer has one of its own

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "app/outputs/command_log.hpp"
 #include "bridges/desk/lcm_desk.hpp"
 #include "core/live/live_run.hpp"
 #include "core/scenario/scenario.hpp"
@@ -24,18 +25,22 @@ class Desks {
  public:
   /// Adds arm, rearm, replace, preflight and first_motion to the commands of `live`. All must outlive this; `stop` ends
   /// a first motion.
-  Desks(core::LiveRun& live, mixed_reality::MixedSession& session, const std::atomic<bool>& stop);
+  Desks(core::LiveRun& live, mixed_reality::MixedSession& session, const CommandLog& commands,
+        const std::atomic<bool>& stop);
   ~Desks();
   Desks(const Desks&) = delete;
   Desks& operator=(const Desks&) = delete;
 
-  /// Listens for commands over LCM, where the experiment says so. Error: it cannot.
-  hal::Status listen(const core::DeskConfig& config);
+  /// Listens for commands over LCM, where the experiment says so, by those who have a key (app/robots/desk_keys.hpp).
+  /// Error: it cannot.
+  hal::Status listen(const core::DeskConfig& config, const std::string& keys);
   /// Called by the thread that steps for what has been done and belongs into a record.
-  void on_done(std::function<void(const hal::Json& action)> note) { note_ = std::move(note); }
+  void on_done(std::function<void(const hal::Json& action)> note) {
+    note_ = std::make_shared<const Note>(std::move(note));
+  }
 
   /// Any command of the window's protocol; on any thread. An emergency stop waits for no tick. `from`: who says it,
-  /// unless the command does in "who".
+  /// unless the command does in "who"; "by" in it is the word of whoever let it in: {"role", "address"}.
   void post(hal::Json command, core::LiveReply reply, std::string_view from);
 
   /// Message "real" of the view protocol: every real robot, the spares, whose word counted. By the thread that steps.
@@ -49,9 +54,11 @@ class Desks {
 
   core::LiveRun& live_;
   mixed_reality::MixedSession& session_;
+  const CommandLog& commands_;
   const std::atomic<bool>& stop_;
   mixed_reality::Desk desk_;
-  std::function<void(const hal::Json&)> note_;
+  using Note = std::function<void(const hal::Json&)>;
+  std::shared_ptr<const Note> note_;  // what is posted and not yet carried out does not outlive it
   std::unique_ptr<bridges::desk::LcmDesk> lcm_;
 };
 

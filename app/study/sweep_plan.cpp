@@ -13,11 +13,11 @@
 #include "app/experiment/reading.hpp"
 #include "app/options.hpp"
 #include "app/outputs/run_report.hpp"
-#include "app/process/sha256.hpp"
 #include "app/process/terminal.hpp"
 #include "core/config/reader.hpp"
 #include "core/hook/hook.hpp"
 #include "core/sim/world.hpp"
+#include "hal/sha256.hpp"
 
 namespace tandem::app {
 namespace {
@@ -187,7 +187,7 @@ study::Version version_of(const std::vector<core::Scenario>& experiments, const 
   const auto add = [&](const InputFile& file) {
     if (seen.insert(file.file).second) version.files.emplace_back(file.file, file.sha256);
   };
-  const auto program = sha256_of_file("/proc/self/exe");
+  const auto program = hal::sha256_of_file("/proc/self/exe");
   version.files.emplace_back("tandem", program.ok() ? program.value() : "");
   for (const core::Scenario& scenario : experiments) {
     const InputFiles files = input_files(scenario, loader);

@@ -3,17 +3,16 @@
 #include <chrono>
 #include <condition_variable>
 #include <fmt/format.h>
-#include <fstream>
 #include <map>
 #include <mutex>
 #include <optional>
-#include <sstream>
 #include <string>
 #include <thread>
 #include <utility>
 #include <vector>
 
 #include "core/live/source_files.hpp"
+#include "hal/input_file.hpp"
 
 namespace tandem::app {
 namespace {
@@ -25,11 +24,8 @@ constexpr auto kEvery = 200ms;
 
 /// None: it cannot be read now; editors replace files by others.
 std::optional<std::string> text_of_file(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  std::ostringstream text;
-  if (!in) return {};
-  text << in.rdbuf();
-  return in ? std::optional(text.str()) : std::nullopt;
+  auto text = hal::read_whole_file(path, "the script");
+  return text.ok() ? std::optional(std::move(text).value()) : std::nullopt;
 }
 
 }  // namespace

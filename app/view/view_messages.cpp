@@ -24,6 +24,7 @@ hal::Result<std::unique_ptr<window::Window>> open_window(const ViewRequest& requ
   auto window = window::Window::open(options);
   if (!window.ok()) return window.error();
   say("view: " + window.value()->address());
+  say("view, to look on and to stop real robots alone: " + window.value()->viewers_address());
   if (request.projector) {
     std::string projector = window.value()->address();
     projector.replace(projector.find("/?"), 2, "/projector?");

@@ -15,6 +15,7 @@
 #include "core/record/block_file.hpp"
 #include "core/record/record_moments.hpp"
 #include "core/view/record_drawing.hpp"
+#include "hal/input_file.hpp"
 #include "window/record_frame.hpp"
 
 namespace tandem::app {
@@ -421,6 +422,7 @@ void RecordPlayer::tell_inspection() {
 }  // namespace
 
 bool is_record(const std::string& path) {
+  if (!hal::check_input_file(path, "").ok()) return false;
   std::string start(core::kBlockFileStart.size(), '\0');
   std::ifstream in(path, std::ios::binary);
   in.read(start.data(), static_cast<std::streamsize>(start.size()));

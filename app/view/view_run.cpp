@@ -103,6 +103,7 @@ void RunView::take(Json command, window::WindowReply reply) {
   for (const char* of_real : {"arm", "rearm", "estop", "replace", "preflight"}) {
     if (name == of_real) return reply(refusal("no real robots take part in this run"));
   }
+  if (run_.commands != nullptr) reply = run_.commands->noting(command, std::move(reply));
   run_.live.post(std::move(command), std::move(reply));
 }
 

@@ -32,6 +32,7 @@ struct ViewedRun {
   mixed_reality::MixedSession* mixed = nullptr;  ///< null: no real robots take part
   std::function<core::Drawing()> draw;           ///< the picture as it would be written now
   Desks* desks = nullptr;                        ///< of real robots; null where none take part
+  const CommandLog* commands = nullptr;          ///< keeps what is commanded; null: nobody does
 };
 
 /// Made, used and destroyed by the thread that steps, but for `log`. While nobody watches, a tick costs two atomic

@@ -1,10 +1,9 @@
 #include "bridges/calibration/board.hpp"
 
 #include <cmath>
-#include <fstream>
-#include <iterator>
 
 #include "bridges/apriltag/family.hpp"
+#include "hal/input_file.hpp"
 #include "hal/json/json.hpp"
 #include "hal/output_file.hpp"
 #include "hal/unit.hpp"
@@ -106,11 +105,9 @@ hal::Result<std::string> board_svg(const Board& board) {
 }
 
 hal::Result<Board> read_board(const std::string& path) {
-  std::ifstream in(path);
-  const std::string text{std::istreambuf_iterator<char>(in), {}};
-  if (!in.is_open() || text.empty())
-    return hal::Error{"the board's file '" + path + "' cannot be read; `tandem calibrate board` makes it"};
-  const auto parsed = hal::parse_json_object(text);
+  const auto text = hal::read_whole_file(path, "the board's file");
+  if (!text.ok()) return hal::Error{text.error().message + "; `tandem calibrate board` makes it"};
+  const auto parsed = hal::parse_json_object(text.value());
   if (!parsed.ok()) return hal::Error{"the board's file '" + path + "': " + parsed.error().message};
   Board board;
   try {

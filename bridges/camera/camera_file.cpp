@@ -1,9 +1,8 @@
 #include "bridges/camera/camera_file.hpp"
 
 #include <cmath>
-#include <fstream>
-#include <iterator>
 
+#include "hal/input_file.hpp"
 #include "hal/json/json.hpp"
 #include "hal/output_file.hpp"
 
@@ -48,12 +47,9 @@ bool read_lens(const hal::Json& json, Lens& lens) {
 }  // namespace
 
 hal::Result<CameraFile> read_camera_file(const std::string& path) {
-  std::ifstream in(path);
-  const std::string text{std::istreambuf_iterator<char>(in), {}};
-  if (!in.is_open() || text.empty())
-    return hal::Error{"the camera's file '" + path + "' cannot be read; `tandem calibrate camera -o " + path +
-                      "` makes it"};
-  const auto parsed = hal::parse_json_object(text);
+  const auto text = hal::read_whole_file(path, "the camera's file");
+  if (!text.ok()) return hal::Error{text.error().message + "; `tandem calibrate camera -o " + path + "` makes it"};
+  const auto parsed = hal::parse_json_object(text.value());
   if (!parsed.ok()) return hal::Error{"the camera's file '" + path + "': " + parsed.error().message};
   const hal::Json& json = parsed.value();
   const hal::Error wrong{"'" + path + "' is no file of a camera, or a number in it makes no sense"};

@@ -1,10 +1,9 @@
 #include "bridges/frames/picture_file.hpp"
 
-#include <fstream>
-#include <iterator>
 #include <png.h>
 
 #include "bridges/frames/frame_parser.hpp"
+#include "hal/input_file.hpp"
 
 namespace tandem::bridges::frames {
 namespace {
@@ -32,9 +31,9 @@ hal::Result<Frame> read_png(const std::string& path, const std::string& bytes) {
 }  // namespace
 
 hal::Result<Frame> read_picture(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  const std::string bytes{std::istreambuf_iterator<char>(in), {}};
-  if (!in.is_open() || bytes.empty()) return hal::Error{"picture '" + path + "' cannot be read"};
+  const auto read = hal::read_whole_file(path, "picture");
+  if (!read.ok()) return read.error();
+  const std::string& bytes = read.value();
   if (bytes.starts_with("\x89PNG")) return read_png(path, bytes);
   FrameParser parser;
   parser.add(std::as_bytes(std::span(bytes)));

@@ -1,9 +1,8 @@
 #include "bridges/tracker_emulator/lens.hpp"
 
 #include <cmath>
-#include <fstream>
-#include <iterator>
 
+#include "hal/input_file.hpp"
 #include "hal/json/json.hpp"
 
 namespace tandem::bridges::tracker_emulator {
@@ -29,9 +28,9 @@ std::optional<hal::Vector2> Lens::shows(const hal::Vector3& point_W) const noexc
 }
 
 hal::Result<Lens> read_lens(const std::string& path) {
-  std::ifstream in(path);
-  const std::string text{std::istreambuf_iterator<char>(in), {}};
-  const auto parsed = hal::parse_json_object(text);
+  const auto text = hal::read_whole_file(path, "--camera: the file");
+  if (!text.ok()) return text.error();
+  const auto parsed = hal::parse_json_object(text.value());
   if (!parsed.ok()) return hal::Error{"--camera: '" + path + "': " + parsed.error().message};
   Lens lens;
   try {

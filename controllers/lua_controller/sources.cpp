@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
-#include <fstream>
-#include <sstream>
 #include <stdexcept>
+
+#include "hal/input_file.hpp"
 
 namespace tandem::controllers::lua {
 namespace {
+
+constexpr std::size_t kLargestScript = std::size_t{64} << 20;
 
 bool in_word(char c) noexcept {
   return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_';
@@ -47,13 +49,11 @@ bool read_beneath(const std::string& script, const std::string& name, std::strin
   const fs::path folder = fs::weakly_canonical(fs::absolute(script, bad).parent_path(), bad);
   const fs::path file = fs::weakly_canonical(folder / name, bad);
   const auto [end, unused] = std::mismatch(folder.begin(), folder.end(), file.begin(), file.end());
-  if (bad || end != folder.end() || !fs::is_regular_file(file, bad)) return false;
-  std::ifstream in(file, std::ios::binary);
-  std::ostringstream all;
-  all << in.rdbuf();
-  if (!in) return false;
+  if (bad || end != folder.end()) return false;
+  auto all = hal::read_whole_file(file, "the script", kLargestScript);
+  if (!all.ok()) return false;
   path = name_beneath(script, file.lexically_relative(folder).string());
-  text = all.str();
+  text = std::move(all).value();
   return true;
 }
 
@@ -72,11 +72,9 @@ std::vector<hal::SourceFile> read_sources(const std::string& path, const std::st
   if (const auto there = find_in(given, written); there != given.end()) {
     files[0] = {written, path, there->text};
   } else {
-    std::ifstream in(path, std::ios::binary);
-    std::ostringstream text;
-    if (in) text << in.rdbuf();
-    if (!in) throw std::runtime_error("cannot read its script '" + path + "'");
-    files[0] = {written, path, text.str()};
+    auto text = hal::read_whole_file(path, "cannot read its script", kLargestScript);
+    if (!text.ok()) throw std::runtime_error(text.error().message);
+    files[0] = {written, path, std::move(text).value()};
   }
   for (std::size_t i = 0; i < files.size(); ++i) {
     for (const std::vector<std::string>& names : named_in(files[i].text)) {

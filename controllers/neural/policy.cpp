@@ -3,12 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <fstream>
 #include <initializer_list>
-#include <sstream>
 #include <utility>
 
 #include "hal/elementary.hpp"
+#include "hal/input_file.hpp"
 #include "hal/json/json.hpp"
 
 namespace tandem::controllers {
@@ -181,11 +180,9 @@ hal::Result<Policy> parse_policy(std::string_view text) {
 }
 
 hal::Result<Policy> read_policy(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  std::ostringstream text;
-  if (in) text << in.rdbuf();
-  if (!in) return hal::Error{"cannot read the policy '" + path + "'"};
-  auto policy = parse_policy(text.str());
+  const auto text = hal::read_whole_file(path, "cannot read the policy");
+  if (!text.ok()) return text.error();
+  auto policy = parse_policy(text.value());
   if (!policy.ok()) return hal::Error{"policy '" + path + "': " + policy.error().message};
   return policy;
 }

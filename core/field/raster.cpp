@@ -5,6 +5,8 @@
 #include <cstring>
 #include <png.h>
 
+#include "hal/input_file.hpp"
+
 namespace tandem::core {
 namespace {
 
@@ -38,7 +40,9 @@ void Raster::take(std::vector<std::uint8_t> pixels) {
 hal::Result<Raster> Raster::from_png(const std::string& path, const RasterArea& area) {
   png_image image{};
   image.version = PNG_IMAGE_VERSION;
-  if (png_image_begin_read_from_file(&image, path.c_str()) == 0)
+  const auto bytes = hal::read_whole_file(path, "image");
+  if (!bytes.ok()) return hal::Error{bytes.error().message + ". Give the path of a PNG file."};
+  if (png_image_begin_read_from_memory(&image, bytes.value().data(), bytes.value().size()) == 0)
     return hal::Error{"image '" + path + "' cannot be read: " + image.message + ". Give the path of a PNG file."};
   if (static_cast<double>(image.width) * image.height > kMostPixels) {
     const hal::Error too_large{"image '" + path + "' has " + std::to_string(image.width) + " x " +

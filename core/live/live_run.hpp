@@ -86,6 +86,8 @@ class LiveRun {
   /// Has a command {"do": name, …} carried out between two ticks. `reply` is called exactly once: by the thread that
   /// steps, or at once where the queue is full or the run is over.
   void post(hal::Json command, LiveReply reply);
+  /// Has a function of this program called as a command is, at the latest by `close`; no command can name it.
+  void post_own(std::function<void()> call);
   /// Ends the run before its next step, and any waiting.
   void stop();
   LiveState state() const;

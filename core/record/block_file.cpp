@@ -4,13 +4,13 @@
 #include <array>
 #include <bit>
 #include <cstring>
-#include <fcntl.h>
 #include <libdeflate.h>
 #include <sys/mman.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include "hal/check.hpp"
+#include "hal/input_file.hpp"
 
 namespace tandem::core {
 namespace {
@@ -68,13 +68,14 @@ void append_block(std::string& out, std::uint16_t type, hal::Tick tick, std::str
 
 hal::Result<BlockFileReader> BlockFileReader::open(const std::string& path) {
   const auto failed = [&path](const std::string& why) { return hal::Error{"record '" + path + "': " + why}; };
-  const int fd = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
-  if (fd < 0) return failed(std::strerror(errno));
+  const auto opened = hal::open_input_file(path, "record");
+  if (!opened.ok()) return opened.error();
+  const int fd = opened.value();
   struct stat info {};
-  const bool asked = ::fstat(fd, &info) == 0;
-  if (!asked || !S_ISREG(info.st_mode)) {
+  if (::fstat(fd, &info) != 0) {
+    const int error = errno;
     ::close(fd);
-    return failed("is no file");
+    return failed(std::strerror(error));
   }
   BlockFileReader reader;
   reader.size_ = static_cast<std::size_t>(info.st_size);

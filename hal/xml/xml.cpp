@@ -1,12 +1,9 @@
 #include "hal/xml/xml.hpp"
 
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <tinyxml2.h>
+
+#include "hal/input_file.hpp"
 
 namespace tandem::hal {
 namespace {
@@ -87,23 +84,10 @@ int line_of_zero_byte(const std::string& text) {
 }  // namespace
 
 std::optional<Element> read_xml_file(const std::string& path, Problems& problems) {
-  namespace fs = std::filesystem;
-  std::error_code error;
-  const auto refuse = [&](std::string why) {
-    problems.push_back({path, 0, std::move(why), false});
-    return std::nullopt;
-  };
-  const fs::file_status status = fs::status(path, error);
-  if (status.type() == fs::file_type::not_found) return refuse("there is no such file");
-  if (status.type() == fs::file_type::directory)
-    return refuse("this is a folder; give the path of an experiment file (.xml)");
-  if (status.type() != fs::file_type::regular) return refuse("this is not a regular file that can be read");
-  if (fs::file_size(path, error) > kLargestFile) return refuse("the file is larger than 64 MiB; that is no experiment");
-  std::ifstream in(path, std::ios::binary);
-  if (!in) return refuse(std::string("the file cannot be read: ") + std::strerror(errno));
-  std::string text{std::istreambuf_iterator<char>(in), {}};
-  if (in.bad()) return refuse("the file cannot be read to its end");
-  return read_xml_text(text, path, problems);
+  const auto text = read_whole_file(path, "", kLargestFile);
+  if (text.ok()) return read_xml_text(text.value(), path, problems);
+  problems.push_back({path, 0, text.error().message, false});
+  return std::nullopt;
 }
 
 std::optional<Element> read_xml_text(const std::string& text, const std::string& name, Problems& problems) {

@@ -2,9 +2,8 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 
+#include "hal/input_file.hpp"
 #include "hal/json/json.hpp"
 #include "hal/output_file.hpp"
 
@@ -47,10 +46,9 @@ hal::Status write_plan(const std::string& folder, const BatchPlan& plan) {
 
 hal::Result<BatchPlan> read_plan(const std::string& folder) {
   const std::string path = file_in(folder);
-  std::ifstream in(path, std::ios::binary);
-  if (!in) return hal::Error{"'" + path + "' cannot be read: it is written by `tandem sweep … --slurm`"};
-  const std::string text((std::istreambuf_iterator<char>(in)), {});
-  auto json = hal::parse_json_object(text);
+  const auto text = hal::read_whole_file(path, "plan");
+  if (!text.ok()) return hal::Error{text.error().message + "; it is written by `tandem sweep … --slurm`"};
+  auto json = hal::parse_json_object(text.value());
   if (!json.ok()) return hal::Error{"'" + path + "': " + json.error().message};
   try {
     if (json->at("format").get<int>() != kFormat)

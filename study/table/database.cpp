@@ -7,6 +7,7 @@
 #include <sqlite3.h>
 #include <utility>
 
+#include "hal/input_file.hpp"
 #include "hal/unit.hpp"
 
 namespace tandem::study {
@@ -108,7 +109,9 @@ std::string Statement::name(int column) const {
 
 hal::Result<std::unique_ptr<Database>> Database::open(const std::string& path, Use use) {
   std::unique_ptr<Database> database(new Database(path));
-  if (use == Use::Read && !std::filesystem::exists(path)) return hal::Error{"there is no file '" + path + "'"};
+  if (use == Use::Read || std::filesystem::exists(path)) {
+    if (const hal::Status file = hal::check_input_file(path, "table"); !file.ok()) return file.error();
+  }
   const int flags = use == Use::Read ? SQLITE_OPEN_READONLY : SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE;
   const int code = sqlite3_open_v2(path.c_str(), &database->database_, flags, nullptr);
   if (code != SQLITE_OK) {

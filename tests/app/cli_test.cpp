@@ -3,9 +3,10 @@
 #include <gtest/gtest.h>
 #include <map>
 #include <sstream>
+#include <sys/stat.h>
 
-#include "app/process/sha256.hpp"
 #include "app/process/terminal.hpp"
+#include "hal/sha256.hpp"
 #include "tests/checkout.hpp"
 #include "tests/scenarios/process.hpp"
 
@@ -51,7 +52,7 @@ TEST(Run, ReportsWhatRan) {
   for (const char* key : {"compiler", "build", "processor", "system", "Eigen3", "libtinyxml2", "libode"})
     EXPECT_FALSE(json_value(report, key).empty()) << key << " in " << report;
   EXPECT_NE(report.find("\"commit\""), std::string::npos);
-  const auto digest = app::sha256_of_file(experiment);
+  const auto digest = hal::sha256_of_file(experiment);
   ASSERT_TRUE(digest.ok());
   EXPECT_NE(report.find(digest.value()), std::string::npos) << "of the experiment";
   if (const std::string commit = json_value(report, "commit"); !commit.empty()) {
@@ -182,6 +183,34 @@ class BadInput : public testing::Test {
   }
   Folder folder_;
 };
+
+// A pipe that nobody writes into and /dev/zero would keep their reader for ever.
+TEST_F(BadInput, OfFilesThatNeverEndIsRefusedAtOnce) {
+  const std::string pipe = (folder_.path() / "pipe").string();
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  for (const std::string& path : {pipe, std::string("/dev/zero")}) {
+    const std::string what = path == pipe ? "this is a pipe" : "this is a device";
+    fails({"run", path}, 1, {what});
+    fails({"check", path}, 1, {what});
+    fails({"view", path, "--no-browser"}, 1, {what});
+    fails({"replay", path}, 1, {what});
+    fails({"upgrade", path}, 1, {what});
+    fails({"picture", path, "-o", "p.svg"}, 1, {what});
+    fails({"run", kConfigs + "epuck_diffusion.xml", "--repeat", path}, 1, {what});
+    fails({"sweep", path}, 1, {what});
+    fails({"check", changed("<arena size=\"4,4,1\" center=\"0,0,0.5\">",
+                            "<arena size=\"4,4,1\" center=\"0,0,0.5\"><floor id=\"f\" source=\"image\" path=\"" + path +
+                                "\"/>")},
+          1, {"e.xml:", what});
+    folder_.write("lua.xml",
+                  R"(<tandem><framework><experiment length="1" ticks_per_second="10"/></framework><controllers>
+<lua_controller id="walk"><actuators><differential_steering/></actuators><params script=")" +
+                      path +
+                      R"("/></lua_controller></controllers><arena size="4,4,1"><e-puck id="ep0">
+<body position="0,0,0"/><controller config="walk"/></e-puck></arena></tandem>)");
+    fails({"run", "lua.xml"}, 1, {"script", what});
+  }
+}
 
 TEST_F(BadInput, IsNamedWithItsLineAndWhatToDo) {
   fails({"run", "nosuch.xml"}, 1, {"nosuch.xml: error: there is no such file"});
@@ -411,14 +440,6 @@ TEST(Bench, EndsWhenInterrupted) {
   EXPECT_EQ(bench.wait(20), 0) << bench.errors();
   const std::string lines = bench.output();
   EXPECT_EQ(std::count(lines.begin(), lines.end(), '\n'), 1) << lines;  // a part of a benchmark is none
-}
-
-TEST(Sha256, GivesThePublishedDigests) {
-  // FIPS 180-4 examples.
-  EXPECT_EQ(app::sha256("abc"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
-  EXPECT_EQ(app::sha256(""), "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
-  EXPECT_EQ(app::sha256(std::string(1'000'000, 'a')),
-            "cdc76e5c9914fb9281a1c7e284d73e67f1809a48a497200e046d39ccc7112cd0");
 }
 
 }  // namespace

@@ -134,6 +134,26 @@ TEST_F(Endings, AControllerThatThrewIsNoSuccess) {
   EXPECT_THAT(run->errors() + run->output(), Not(HasSubstr("\033")));
 }
 
+TEST_F(Endings, AMessageOfAnyLengthIsCut) {
+  auto run = start({.params = R"(what="long" robot="ep4")"}, {"--log", "run.log"});
+  EXPECT_EQ(run->wait(), 3);
+  EXPECT_LT(run->errors().size(), 20'000U);
+  EXPECT_LT(report().size(), 50'000U);
+  EXPECT_LT(text_of(folder_.path() / "run.log").size(), 20'000U);
+  EXPECT_THAT(report(), HasSubstr("20000003 bytes in all"));
+}
+
+TEST_F(Endings, NoMessageForgesALineOfTheLogOrTurnsTheTerminal) {
+  auto run = start({.params = R"(what="forge" robot="ep4")"}, {"--log", "run.log"});
+  EXPECT_EQ(run->wait(), 3);
+  for (const std::string& text : {run->errors(), text_of(folder_.path() / "run.log")}) {
+    EXPECT_THAT(text, HasSubstr("    error: the arena burns"));
+    EXPECT_EQ(text.find("\nerror: the arena burns"), std::string::npos) << text;
+    EXPECT_EQ(text.find("\u202E"), std::string::npos);
+    EXPECT_THAT(text, HasSubstr("\\u202eback"));
+  }
+}
+
 TEST_F(Endings, AnObserverThatFailsIsNamedOnceAndTheRunGoesOn) {
   for (const std::string what : {"fail", "throw"}) {
     auto run = start({.hook = "<plugins library=\"test_trouble\"/>",
@@ -169,12 +189,22 @@ TEST_F(Endings, ASpeedThatIsHardlyMeantAsksForItsUnitOnce) {
   EXPECT_THAT(report(), HasSubstr("did you mean cm/s?"));
 }
 
+TEST_F(Endings, ASpeedThatARobotCannotDriveIsNamedWithWhatItCanOnce) {
+  auto run = start({.library = "test_controllers", .label = "drive", .params = R"(left="0.2" right="0.2")"});
+  EXPECT_EQ(run->wait(), 0);
+  const std::string said = run->errors();
+  EXPECT_THAT(said,
+              AllOf(HasSubstr("commanded 0.2 m/s at tick 0, where 0.1"), HasSubstr("a parameter without a unit")));
+  EXPECT_EQ(said.find("commanded"), said.rfind("commanded")) << said;
+  EXPECT_EQ(said.find("did you mean cm/s?"), std::string::npos) << said;
+}
+
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // they have handlers of their own
 TEST_F(Endings, ACrashNamesControllerRobotAndTickAndKeepsTheRecords) {
   const std::map<std::string, std::string> kinds = {{"memory", "SIGSEGV"},         {"divide", "SIGFPE"},
                                                     {"abort", "SIGABRT"},          {"instruction", "SIGILL"},
                                                     {"stack", "SIGSEGV"},          {"exit", "called exit(0)"},
-                                                    {"quick_exit", "called exit"}, {"noexcept", "lost in ?[2Jspace"}};
+                                                    {"quick_exit", "called exit"}, {"noexcept", "lost in \\x1b[2Jspace"}};
   for (const auto& [what, word] : kinds) {
     auto run = start({.params = "what=\"" + what + "\" robot=\"ep4\""});
     EXPECT_EQ(run->wait(), 3) << what;
@@ -194,6 +224,15 @@ TEST_F(Endings, ACrashOnAnotherThreadIsNamedToo) {
   EXPECT_EQ(run.wait(), 3);
   EXPECT_THAT(run.errors(), AllOf(HasSubstr("of robot 'ep4100' at tick 3"), HasSubstr("SIGSEGV")));
   EXPECT_EQ(value("finished"), "false");
+}
+
+TEST_F(Endings, AThreadOfAPluginThatThrowsIsNoFaultOfTheProgram) {
+  auto run = start({.params = R"(what="thread" robot="ep4")"});
+  EXPECT_EQ(run->wait(), 3);
+  EXPECT_THAT(run->errors(),
+              AllOf(HasSubstr("error: plug-in 'libtest_trouble.so', on a thread of its own, threw where"),
+                    HasSubstr("lost in \\x1b[2Jspace")));
+  EXPECT_EQ(value("ended"), "failed");
 }
 
 TEST_F(Endings, ACrashOfAHookNamesItAndItsMoment) {

@@ -51,6 +51,19 @@ TEST_F(Scripts, StopARobotThatIsNotSimulatedByAnError) {
   EXPECT_TRUE(eventually([&] { return !epuck.moves(); }, 20)) << epuck.log();
 }
 
+TEST_F(Scripts, AnErrorAtTheEndIsAFailure) {
+  folder_.write("end.lua", "function step() end\nfunction destroy() error('cannot end') end");
+  folder_.write("e.xml", R"(<tandem><framework><experiment length="1" ticks_per_second="10"/></framework><controllers>
+<lua_controller id="walk"><actuators><differential_steering/></actuators>
+<params script="end.lua"/></lua_controller></controllers><arena size="4,4,1"><e-puck id="ep0">
+<body position="0,0,0"/><controller config="walk"/></e-puck></arena></tandem>)");
+  Tandem run({"run", "e.xml", "--log", "run.log"}, folder_.path());
+  EXPECT_EQ(run.wait(60), 3);
+  EXPECT_THAT(run.errors(), HasSubstr("in destroy(): end.lua:2: cannot end"));
+  EXPECT_THAT(run.errors(), HasSubstr("failed at its end"));
+  EXPECT_THAT(scenarios::text_of(folder_.path() / "run.log"), HasSubstr("in destroy()"));
+}
+
 TEST_F(Scripts, AreDescribedNameByName) {
   Tandem manual({"describe", "lua"}, folder_.path());
   ASSERT_EQ(manual.wait(), 0) << manual.errors();

@@ -143,12 +143,12 @@ TEST(Films, AreMadeOfRecordsToo) {
   };
   fails({"picture", "r", "--at", "15", "-o", "p.svg"}, 1, "near that it has 11 and 21");
   fails({"picture", "r", "--at", "400", "-o", "p.svg"}, 1, "near that it has 31");
-  fails({"picture", "nowhere", "-o", "p.svg"}, 1, "No such file");
+  fails({"picture", "nowhere", "-o", "p.svg"}, 1, "there is no such file");
   fails({"picture", kExperiment, "-o", "p.svg"}, 1, "is no record");
   fails({"picture", "r"}, 2, "--picture");
   fails({"picture", "r", "-o", "r"}, 1, ".svg");
   fails({"film", "r"}, 2, "--film");
-  fails({"film", "nowhere", "-o", "a/"}, 1, "No such file");
+  fails({"film", "nowhere", "-o", "a/"}, 1, "there is no such file");
 }
 
 TEST(Films, HaveAFrameForEveryTickThatWasAskedFor) {

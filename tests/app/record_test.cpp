@@ -207,7 +207,7 @@ TEST(Records, ThatCannotBeMadeOrReadAreClearErrors) {
   fails({"run", experiment, "--record", "r", "--set", "record.ports=proximty"}, 1, "did you mean 'proximity'");
   fails({"run", experiment, "--record", "r", "--set", "record.entities=ep1,,ep2"}, 1, "separated by commas");
   fails({"run", experiment, "--seconds", "1", "--record", "/dev/full"}, 3, "it is lost from tick");
-  fails({"export", "nowhere"}, 1, "No such file");
+  fails({"export", "nowhere"}, 1, "there is no such file");
   fails({"export", experiment}, 1, "is no record");
   output_of(folder, {"run", experiment, "--seconds", "1", "--record", "r"});
   fails({"export", "r", "--csv", "-", "--table", "sensor proximit"}, 1, "it has 'pose'");

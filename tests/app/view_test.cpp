@@ -43,6 +43,13 @@ std::string address_of(const Tandem& program) {
   return address;
 }
 
+/// What it prints besides, for those who look on alone.
+std::string viewers_address_of(const Tandem& program) {
+  const std::string text = program.errors();
+  const std::size_t at = text.find("http://", text.find("to look on"));
+  return at == std::string::npos ? "" : text.substr(at, text.find('\n', at) - at);
+}
+
 /// A viewer, and the tick of the newest frame that it has.
 class Watching {
  public:
@@ -338,7 +345,8 @@ TEST(View, RealRobotsAreShownStoppedAndArmed) {
   const Folder folder;
   const scenarios::EmulatedEpuck epuck(folder);
   ASSERT_TRUE(epuck.ready());
-  Tandem run({"run", config("epuck_mixed.xml"), "--seconds", "120", "--view", "--quiet", "--record", "x.rec"},
+  Tandem run({"run", config("epuck_mixed.xml"), "--seconds", "120", "--view", "--quiet", "--record", "x.rec", "--log",
+              "x.log"},
              folder.path());
   Watching viewer(address_of(run));
   const Json hello = viewer.until([](const Json& json) { return json["type"] == "hello"; });
@@ -352,14 +360,48 @@ TEST(View, RealRobotsAreShownStoppedAndArmed) {
   EXPECT_TRUE(eventually([&] { return !epuck.moves(); }, kPatience_s));
   EXPECT_EQ(viewer.ask(R"({"do":"play"})")["ok"], true);
   EXPECT_TRUE(eventually([&] { return epuck.moves(); }, kPatience_s));
-  EXPECT_EQ(viewer.ask(R"({"do":"estop"})")["ok"], true);
+  Watching looking_on(viewers_address_of(run));
+  EXPECT_EQ(looking_on.ask(R"({"do":"arm","robot":"ep0","who":"ben"})")["ok"], false);
+  EXPECT_EQ(looking_on.ask(R"({"do":"estop","who":"ben"})")["ok"], true);
   EXPECT_TRUE(eventually([&] { return !epuck.moves(); }, kPatience_s));
   EXPECT_TRUE(real([](const Json& json) { return json["estop"] == true && json["robots"][0]["driving"] == false; }));
-  EXPECT_EQ(viewer.ask(R"({"do":"arm","robot":"ep0"})")["ok"], true);
+  EXPECT_TRUE(eventually([&] { return viewer.ask(R"({"do":"arm","robot":"ep0"})")["ok"] == true; }, kPatience_s))
+      << "nobody else arms within a second of a stop";
   EXPECT_TRUE(real([](const Json& json) { return json["robots"][0]["driving"] == true; }));
   run.signal(SIGINT);
   EXPECT_EQ(run.wait(kPatience_s), 130) << run.errors();
-  EXPECT_NE(scenarios::text_of(folder.path() / "x.rec").find(R"({"do":"estop")"), std::string::npos);
+  const std::string record = scenarios::text_of(folder.path() / "x.rec");
+  const std::string log = scenarios::text_of(folder.path() / "x.log");
+  EXPECT_NE(record.find(R"({"do":"estop","who":"ben","by":{"role":"viewer","address":"127.0.0.1"}})"),
+            std::string::npos);
+  EXPECT_NE(log.find("'ben' (viewer, 127.0.0.1): estop"), std::string::npos) << log;
+  EXPECT_NE(log.find("'window' (operator, 127.0.0.1): arm ep0"), std::string::npos) << log;
+}
+
+TEST(View, WhereAProjectorShowsTheArenaIsKeptWithTheUserNotBesideTheExperiment) {
+  const Folder folder, state;
+  const scenarios::fs::path experiment = folder.path() / "e.xml";
+  scenarios::fs::copy_file(config("epuck_diffusion.xml"), experiment);
+  ::setenv("XDG_STATE_HOME", state.path().c_str(), 1);
+  const std::string corners = "[[0.1,0.1],[0.9,0.1],[0.9,0.9],[0.1,0.9]]";
+  for (const bool first : {true, false}) {
+    Tandem view({"view", "e.xml", "--projector", "--no-browser", "--paused"}, folder.path());
+    Watching viewer(address_of(view));
+    const Json told = viewer.until([](const Json& json) { return json["type"] == "projector"; });
+    EXPECT_EQ(told["corners"], first ? Json(nullptr) : Json::parse(corners));
+    if (first) {
+      EXPECT_EQ(viewer.ask(R"({"do":"projector","corners":)" + corners + "}")["ok"], true);
+    }
+    view.signal(SIGINT);
+    EXPECT_EQ(view.wait(kPatience_s), 0) << view.errors();
+  }
+  ::unsetenv("XDG_STATE_HOME");
+  std::vector<std::string> beside;
+  for (const auto& entry : scenarios::fs::directory_iterator(folder.path())) {
+    const std::string name = entry.path().filename();
+    if (name.find("projector") != std::string::npos) beside.push_back(name);
+  }
+  EXPECT_TRUE(beside.empty()) << beside.front();
 }
 
 TEST(View, WhatCannotBeServedIsSaid) {

@@ -1,5 +1,8 @@
 // A run with real robots and its desk: preflight, hold, pause, replacement; verdicts come from the robots' own logs.
 #include <csignal>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
 #include <gtest/gtest.h>
 #include <string>
 
@@ -116,6 +119,93 @@ TEST(Desk, StartsPausesAndReplacesARobotFromATerminal) {
   EXPECT_FALSE(spare.moves());
   Tandem events({"export", "run.record"}, folder.path());
   EXPECT_EQ(events.wait(), 0);
+}
+
+/// The experiment with a desk over LCM, in this folder.
+std::string with_lcm(const Folder& folder, const std::string& url) {
+  std::string text = text_of(kExperiment);
+  text.insert(text.rfind("</tandem>"), "<desk lcm=\"" + url + "\" hold=\"true\"/>\n");
+  const fs::path file = folder.path() / "lcm.xml";
+  std::ofstream(file) << text;
+  return file.string();
+}
+
+std::string keys_file(const Folder& folder, const std::string& text) {
+  const fs::path file = folder.path() / "desk.keys";
+  std::ofstream(file) << text;
+  fs::permissions(file, fs::perms::owner_read | fs::perms::owner_write);
+  return file.string();
+}
+
+TEST(Desk, OverLcmIsForThoseWhoHaveAKeyByTheirRole) {
+  const Folder folder;
+  EmulatedEpuck epuck(folder);
+  ASSERT_TRUE(epuck.ready());
+  const std::string url = "udpm://239.255.76.69:7669?ttl=0";
+  const std::string keys = keys_file(folder, "anna operator 1c5d0c1b2ad64ec09d1b\nben viewer 77ab1b6f6b3c4f5e8d21\n");
+  Tandem run({"run", with_lcm(folder, url), "--set", "framework.experiment.length=0", "--quiet", "--record",
+              "run.record", "--log", "run.log", "--desk-keys", keys},
+             folder.path());
+  const auto desk = [&](std::vector<std::string> words, const std::string& with) {
+    words.insert(words.begin(), {"desk", "lcm:" + url});
+    words.insert(words.end(), {"--keys", with});
+    Tandem said(words, folder.path());
+    const int code = said.wait();
+    return std::to_string(code) + " " + said.output() + said.errors();
+  };
+  std::string told;
+  ASSERT_TRUE(eventually(
+      [&] {
+        return (told = desk({"status", "--who", "anna"}, keys)).find("waiting for the start") != std::string::npos;
+      },
+      kPatience_s))
+      << told << run.errors();
+  const Folder other;
+  const std::string wrong = keys_file(other, "anna operator ffffffffffffffffffff\n");
+  EXPECT_EQ(desk({"start", "--who", "anna"}, wrong).substr(0, 1), "3");
+  told = desk({"start", "--who", "ben"}, keys);
+  EXPECT_EQ(told.substr(0, 1), "1");
+  EXPECT_NE(told.find("needs an operator"), std::string::npos) << told;
+  EXPECT_FALSE(epuck.has_moved());
+  EXPECT_EQ(desk({"start", "--who", "anna"}, keys).substr(0, 1), "0");
+  ASSERT_TRUE(eventually([&] { return epuck.moves(); }, kPatience_s)) << run.errors();
+  EXPECT_EQ(desk({"estop", "--who", "ben"}, keys).substr(0, 1), "0");
+  EXPECT_TRUE(stands_at_once(epuck));
+
+  run.signal(SIGINT);
+  EXPECT_EQ(run.wait(), 130) << run.errors();
+  const std::string record = text_of(folder.path() / "run.record"), log = text_of(folder.path() / "run.log");
+  EXPECT_NE(record.find(R"("do":"estop","who":"ben","by":{"role":"viewer","address":"lcm"})"), std::string::npos);
+  EXPECT_NE(log.find("'ben' (viewer, lcm): estop"), std::string::npos) << log;
+  EXPECT_NE(log.find("'anna' (operator, lcm): play"), std::string::npos) << log;
+  EXPECT_EQ(log.find("ffffffff"), std::string::npos);
+}
+
+TEST(Desk, OverLcmWithoutKeysIsForThisUserOnThisMachine) {
+  const Folder folder, elsewhere;
+  EmulatedEpuck epuck(folder);
+  ASSERT_TRUE(epuck.ready());
+  const std::string url = "udpm://239.255.76.70:7670?ttl=0";
+  const std::string before = std::getenv("XDG_RUNTIME_DIR") != nullptr ? std::getenv("XDG_RUNTIME_DIR") : "";
+  ::setenv("XDG_RUNTIME_DIR", folder.path().c_str(), 1);
+  ::setenv("XDG_CONFIG_HOME", folder.path().c_str(), 1);
+  Tandem run({"run", with_lcm(folder, url), "--set", "framework.experiment.length=0", "--quiet"}, folder.path());
+  const auto status = [&] {
+    Tandem said({"desk", "lcm:" + url, "status"}, folder.path());
+    const int code = said.wait();
+    return std::to_string(code) + " " + said.output() + said.errors();
+  };
+  std::string told;
+  EXPECT_TRUE(eventually([&] { return (told = status()).substr(0, 1) == "0"; }, kPatience_s)) << told << run.errors();
+  ::setenv("XDG_RUNTIME_DIR", elsewhere.path().c_str(), 1);
+  told = status();
+  EXPECT_EQ(told.substr(0, 1), "3");
+  EXPECT_NE(told.find("--keys FILE"), std::string::npos) << told;
+  before.empty() ? ::unsetenv("XDG_RUNTIME_DIR") : ::setenv("XDG_RUNTIME_DIR", before.c_str(), 1);
+  ::unsetenv("XDG_CONFIG_HOME");
+  run.signal(SIGINT);
+  EXPECT_EQ(run.wait(), 130) << run.errors();
+  EXPECT_FALSE(epuck.has_moved());
 }
 
 }  // namespace

@@ -294,7 +294,7 @@ TEST_F(Sweep, IsDrawnAndJudged) {
   EXPECT_EQ(tandem({"plot", "s.sqlite", "--measure", "items", "--where", "gain=3"}), 1);
   EXPECT_THAT(errors_, HasSubstr("no run has '3' in the column 'gain'; it has: 1, 2"));
   EXPECT_EQ(tandem({"plot", "none.sqlite"}), 1);
-  EXPECT_THAT(errors_, HasSubstr("there is no file 'none.sqlite'"));
+  EXPECT_THAT(errors_, HasSubstr("table 'none.sqlite': there is no such file"));
   EXPECT_EQ(tandem({"plot", "s.xml", "--measure", "items"}), 1);
   EXPECT_THAT(errors_, HasSubstr("no table of a study"));
 }

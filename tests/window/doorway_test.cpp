@@ -1,31 +1,11 @@
 #include "window/doorway.hpp"
 
 #include <gtest/gtest.h>
-#include <set>
 
 #include "window/page_files.hpp"
 
 namespace tandem::window {
 namespace {
-
-TEST(Doorway, TokensAre128RandomBits) {
-  std::set<std::string> seen;
-  for (int i = 0; i < 100; ++i) {
-    const auto token = make_token();
-    ASSERT_TRUE(token.ok());
-    EXPECT_EQ(token.value().size(), 32U);
-    EXPECT_EQ(token.value().find_first_not_of("0123456789abcdef"), std::string::npos);
-    seen.insert(token.value());
-  }
-  EXPECT_EQ(seen.size(), 100U);
-}
-
-TEST(Doorway, OnlyTheWholeTokenIsTheToken) {
-  EXPECT_TRUE(same_token("abc", "abc"));
-  EXPECT_FALSE(same_token("abd", "abc"));
-  EXPECT_FALSE(same_token("ab", "abc"));
-  EXPECT_FALSE(same_token("", "abc"));
-}
 
 TEST(Doorway, ReadsQueries) {
   EXPECT_EQ(query_value("/ws?token=abc&v=3", "token"), "abc");

@@ -1,7 +1,11 @@
+#include <arpa/inet.h>
 #include <atomic>
 #include <chrono>
 #include <gtest/gtest.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
 #include <thread>
+#include <unistd.h>
 
 #include "tests/scenarios/process.hpp"
 #include "window/client.hpp"
@@ -379,6 +383,176 @@ TEST(Window, MoreViewersThanAllowedAreTurnedAway) {
   const auto third = Client::connect(window->address());
   ASSERT_FALSE(third.ok());
   EXPECT_NE(third.error().message.find("503"), std::string::npos);
+}
+
+/// Connections that send what begins a request, and never end it: whatever is closed comes again.
+class HalfOpen {
+ public:
+  /// From 127.0.0.1 to 127.0.0.`addresses`, in turn.
+  HalfOpen(std::uint16_t port, int count, int addresses) : port_(port), addresses_(addresses) {
+    sockets_.resize(static_cast<std::size_t>(count), -1);
+    renew();
+  }
+  ~HalfOpen() {
+    for (const int socket : sockets_) ::close(socket);
+  }
+  HalfOpen(const HalfOpen&) = delete;
+  HalfOpen& operator=(const HalfOpen&) = delete;
+
+  void renew() {
+    for (std::size_t i = 0; i < sockets_.size(); ++i) {
+      char byte = 0;
+      if (sockets_[i] >= 0 && ::recv(sockets_[i], &byte, 1, MSG_DONTWAIT) < 0 && errno == EAGAIN) continue;
+      if (sockets_[i] >= 0) ::close(sockets_[i]);
+      sockets_[i] = open(static_cast<int>(i) % addresses_ + 1);
+    }
+  }
+
+ private:
+  int open(int host) const {
+    const int socket = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+    sockaddr_in from{}, to{};
+    from.sin_family = to.sin_family = AF_INET;
+    from.sin_addr.s_addr = htonl(0x7F000000U + static_cast<std::uint32_t>(host));
+    to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    to.sin_port = htons(port_);
+    EXPECT_EQ(::bind(socket, reinterpret_cast<const sockaddr*>(&from), sizeof from), 0);
+    EXPECT_EQ(::connect(socket, reinterpret_cast<const sockaddr*>(&to), sizeof to), 0);
+    EXPECT_EQ(::send(socket, "GET / HTTP/1.1\r\nHo", 18, MSG_NOSIGNAL), 18);
+    return socket;
+  }
+
+  std::uint16_t port_;
+  int addresses_;
+  std::vector<int> sockets_;
+};
+
+void expect_the_operator_gets_in(int addresses) {
+  const auto window = open_window();
+  std::atomic<int> stops{0};
+  window->set_commands([&](const Json& command, const WindowReply& reply) {
+    stops += command["do"] == "estop" ? 1 : 0;
+    reply({{"ok", true}});
+  });
+  HalfOpen crowd(window->port(), 400, addresses);
+  constexpr int kTries = 30;
+  for (int i = 0; i < kTries; ++i) {
+    crowd.renew();
+    auto client = Client::connect(window->address());
+    ASSERT_TRUE(client.ok()) << "try " << i << ": " << client.error().message;
+    ASSERT_TRUE(client.value().send(R"({"id":1,"do":"estop"})").ok());
+    ASSERT_EQ(next_text(client.value(), "answer")["ok"], true);
+    EXPECT_EQ(get(*window, "/?token=" + token_of(*window)).status, 200);
+  }
+  EXPECT_EQ(stops, kTries);
+}
+
+TEST(Window, HalfOpenConnectionsOfOneAddressKeepNobodyFromTheEmergencyStop) {
+  expect_the_operator_gets_in(1);
+}
+
+TEST(Window, HalfOpenConnectionsOfManyAddressesKeepNobodyFromTheEmergencyStop) {
+  expect_the_operator_gets_in(200);
+}
+
+TEST(Window, AConnectionThatNeverEndsItsRequestIsLetGo) {
+  const auto window = open_window();
+  const auto answer = ask("127.0.0.1", window->port(), "GET / HTTP/1.1\r\nHo");
+  EXPECT_FALSE(answer.ok()) << "it was closed by the window, well before the 30 s that a client waits";
+  EXPECT_NE(answer.error().message.find("no answer of HTTP"), std::string::npos) << answer.error().message;
+}
+
+Client join_as_viewer(const Window& window) {
+  auto client = Client::connect(window.viewers_address());
+  EXPECT_TRUE(client.ok()) << (client.ok() ? "" : client.error().message);
+  return std::move(client).value();
+}
+
+TEST(Window, AViewerSeesAndMayStopAndCommandsNothingElse) {
+  const auto window = open_window();
+  EXPECT_NE(window->address(), window->viewers_address());
+  std::vector<Json> taken;
+  window->set_commands([&](const Json& command, const WindowReply& reply) {
+    taken.push_back(command);
+    reply({{"ok", true}});
+  });
+  window->tell({{"type", "hello"}, {"layers", {{{"name", "rays"}}}}});
+  window->show(frame_of(3));
+  Client viewer = join_as_viewer(*window), operating = join(*window);
+  EXPECT_EQ(next_text(viewer, "role")["role"], "viewer");
+  EXPECT_EQ(next_text(operating, "role")["role"], "operator");
+  int id = 0;
+  const auto say = [&](Client& who, Json command) {
+    command["id"] = ++id;
+    EXPECT_TRUE(who.send(hal::to_text(command)).ok());
+    return next_text(who, "answer");
+  };
+  for (const char* name : {"pause", "play", "arm", "rearm", "replace", "first_motion", "move", "set", "projector",
+                           "history", "nonsense", "reload"}) {
+    const Json answer = say(viewer, {{"do", name}});
+    EXPECT_EQ(answer["ok"], false) << name;
+    EXPECT_NE(answer["error"].get<std::string>().find("needs the address of an operator"), std::string::npos) << name;
+  }
+  EXPECT_TRUE(taken.empty());
+  EXPECT_EQ(say(viewer, {{"do", "layers"}, {"on", {"rays"}}})["ok"], true);
+  EXPECT_EQ(say(viewer, {{"do", "rate"}, {"frames_per_s", 5}})["ok"], true);
+  EXPECT_EQ(say(viewer, {{"do", "estop"}, {"who", "ben"}, {"by", {{"role", "operator"}}}})["ok"], true);
+  EXPECT_EQ(say(operating, {{"do", "arm"}, {"by", "nobody"}})["ok"], true);
+  ASSERT_EQ(taken.size(), 2U);
+  EXPECT_EQ(taken[0]["by"], (Json{{"role", "viewer"}, {"address", "127.0.0.1"}})) << "the window's word, not theirs";
+  EXPECT_EQ(taken[0]["who"], "ben");
+  EXPECT_EQ(taken[1]["by"], (Json{{"role", "operator"}, {"address", "127.0.0.1"}}));
+}
+
+TEST(Window, NothingThatAViewerIsSentHoldsTheTokenOfAnOperator) {
+  const auto window = open_window();
+  Frame frame = frame_of(3);
+  auto scene = std::make_shared<FrameScene>();
+  scene->number = 1;
+  scene->json = Json::object();
+  scene->floor = std::make_shared<const core::FloorImage>(core::FloorImage{2, 2, {0, 1, 2, 3}});
+  frame.scene = scene;
+  window->show(std::move(frame));
+  Client viewer = join_as_viewer(*window);
+  const Json told = next_text(viewer, "scene");
+  const auto floor = told["floor"].get<std::string>();
+  EXPECT_EQ(floor.find(token_of(*window)), std::string::npos);
+  EXPECT_EQ(get(*window, floor).status, 200) << floor;
+}
+
+TEST(Window, ViewersLeavePlacesForOperators) {
+  WindowOptions options;
+  options.most_viewers = 8;
+  const auto window = open_window(options);
+  std::vector<Client> viewers;
+  for (int i = 0; i < 4; ++i) viewers.push_back(join_as_viewer(*window));
+  EXPECT_FALSE(Client::connect(window->viewers_address()).ok());
+  for (int i = 0; i < 4; ++i) viewers.push_back(join(*window));
+  EXPECT_FALSE(Client::connect(window->address()).ok());
+}
+
+TEST(Window, ViewersWhoAskAllTheTimeKeepNobodyFromAStop) {
+  const auto window = open_window();
+  std::atomic<int> asked{0}, stops{0};
+  window->set_commands([&](const Json& command, const WindowReply& reply) {
+    (command["do"] == "estop" ? stops : asked) += 1;
+    reply({{"ok", true}});
+  });
+  Client loud = join_as_viewer(*window), other = join_as_viewer(*window);
+  for (int i = 0; i < 100; ++i) ASSERT_TRUE(loud.send(R"({"id":1,"do":"status"})").ok());
+  ASSERT_TRUE(eventually([&] { return next_text(loud, "answer")["ok"] == false; }, kPatience_s));
+  ASSERT_TRUE(other.send(R"({"id":1,"do":"estop"})").ok());
+  EXPECT_EQ(next_text(other, "answer")["ok"], true);
+  EXPECT_EQ(stops, 1);
+  EXPECT_LT(asked, 100);
+}
+
+TEST(Window, TwoNamesInARequestAreRefused) {
+  const auto window = open_window();
+  const std::string target = "/?token=" + token_of(*window);
+  EXPECT_EQ(get(*window, target, "Host: evil.example\r\n").status, 400);
+  EXPECT_EQ(get(*window, target, "Host: localhost\r\n").status, 400);
+  EXPECT_EQ(get(*window, target, "Origin: http://localhost\r\nOrigin: http://evil.example\r\n").status, 400);
 }
 
 TEST(Window, SaysFarewellToItsViewers) {

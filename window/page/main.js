@@ -155,6 +155,7 @@ function start() {
     if (hello.protocol !== 1) banner(`This page speaks protocol 1, the server ${hello.protocol}: reload the page.`);
     showTools();
   });
+  connection.on('role', ({ role }) => { element('role').hidden = role !== 'viewer'; });
   page.log.on('go', (entry) => {
     if (world.can.has('back')) page.timeline.goTo(entry.tick);
     if (entry.robot && world.members.index.has(entry.robot)) page.finder.choose(entry.robot, false);

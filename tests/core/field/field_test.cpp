@@ -213,7 +213,7 @@ TEST(Floor, NeedsItsPicture) {
   for (const auto& [attributes, problem] : std::vector<std::pair<std::vector<Element::Attribute>, std::string>>{
            {{{"source", "image", 5}}, "scene:5: error: <floor> with source=\"image\" needs the attribute 'path'"},
            {{{"source", "image", 5}, {"path", "/no/such.png", 5}},
-            "scene:5: error: <floor> image '/no/such.png' cannot be read"},
+            "scene:5: error: <floor> image '/no/such.png': there is no such file"},
            {{{"source", "loop_functions", 5}},
             "scene:5: error: the floor is to be painted by loop functions, but there are none"}}) {
     Scene scene;

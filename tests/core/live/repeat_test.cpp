@@ -147,7 +147,7 @@ TEST_F(Repeating, GoesThroughResetsToo) {
 }
 
 TEST_F(Repeating, SaysWhatCannotBeRepeated) {
-  EXPECT_THAT(read_repeatable(file("none")).error().message, HasSubstr("No such file"));
+  EXPECT_THAT(read_repeatable(file("none")).error().message, HasSubstr("there is no such file"));
   const auto with_event = [&](const Json& event) {
     auto made = make(crowd());
     RecordConfig config;

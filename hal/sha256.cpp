@@ -1,14 +1,15 @@
-#include "app/process/sha256.hpp"
+#include "hal/sha256.hpp"
 
 #include <array>
 #include <bit>
 #include <cstdint>
-#include <fstream>
-#include <sstream>
 
-namespace tandem::app {
+#include "hal/input_file.hpp"
+
+namespace tandem::hal {
 namespace {
 
+constexpr std::size_t kBlockBytes = 64;
 constexpr std::array<std::uint32_t, 64> kRound = {
     0x428a2f98, 0x71374491, 0xb5c0fbcf, 0xe9b5dba5, 0x3956c25b, 0x59f111f1, 0x923f82a4, 0xab1c5ed5,
     0xd807aa98, 0x12835b01, 0x243185be, 0x550c7dc3, 0x72be5d74, 0x80deb1fe, 0x9bdc06a7, 0xc19bf174,
@@ -49,31 +50,56 @@ void add_block(std::array<std::uint32_t, 8>& state, const unsigned char* block) 
   for (std::size_t i = 0; i < 8; ++i) state[i] += add[i];
 }
 
-}  // namespace
+using Words = std::array<std::uint32_t, 8>;
 
-std::string sha256(const std::string& bytes) {
-  std::array<std::uint32_t, 8> state = {0x6a09e667, 0xbb67ae85, 0x3c6ef372, 0xa54ff53a,
-                                        0x510e527f, 0x9b05688c, 0x1f83d9ab, 0x5be0cd19};
-  std::string padded = bytes;
+Words digest_of(std::string_view bytes) {
+  Words state = {0x6a09e667, 0xbb67ae85, 0x3c6ef372, 0xa54ff53a, 0x510e527f, 0x9b05688c, 0x1f83d9ab, 0x5be0cd19};
+  std::string padded(bytes);
   padded += static_cast<char>(0x80);
-  while (padded.size() % 64 != 56) padded += '\0';
+  while (padded.size() % kBlockBytes != 56) padded += '\0';
   const std::uint64_t bits = std::uint64_t{bytes.size()} * 8;
   for (int shift = 56; shift >= 0; shift -= 8) padded += static_cast<char>((bits >> shift) & 0xFF);
-  for (std::size_t at = 0; at < padded.size(); at += 64)
+  for (std::size_t at = 0; at < padded.size(); at += kBlockBytes)
     add_block(state, reinterpret_cast<const unsigned char*>(padded.data()) + at);
+  return state;
+}
+
+std::string bytes_of(const Words& words) {
+  std::string bytes;
+  for (const std::uint32_t word : words) {
+    for (int shift = 24; shift >= 0; shift -= 8) bytes += static_cast<char>((word >> shift) & 0xFF);
+  }
+  return bytes;
+}
+
+std::string hex_of(const Words& words) {
   static constexpr char kHex[] = "0123456789abcdef";
   std::string hex;
-  for (const std::uint32_t word : state) {
+  for (const std::uint32_t word : words) {
     for (int shift = 28; shift >= 0; shift -= 4) hex += kHex[(word >> shift) & 15];
   }
   return hex;
 }
 
-hal::Result<std::string> sha256_of_file(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  std::ostringstream bytes;
-  if (!in || !(bytes << in.rdbuf())) return hal::Error{"'" + path + "' cannot be read"};
-  return sha256(bytes.str());
+}  // namespace
+
+std::string sha256(std::string_view bytes) {
+  return hex_of(digest_of(bytes));
 }
 
-}  // namespace tandem::app
+Result<std::string> sha256_of_file(const std::string& path) {
+  const auto bytes = read_whole_file(path, "the file");
+  if (!bytes.ok()) return bytes.error();
+  return sha256(bytes.value());
+}
+
+std::string hmac_sha256(std::string_view key, std::string_view message) {
+  std::string padded = key.size() > kBlockBytes ? bytes_of(digest_of(key)) : std::string(key);
+  padded.resize(kBlockBytes, '\0');
+  std::string inner = padded, outer = padded;
+  for (char& c : inner) c = static_cast<char>(c ^ 0x36);
+  for (char& c : outer) c = static_cast<char>(c ^ 0x5c);
+  return hex_of(digest_of(outer + bytes_of(digest_of(inner + std::string(message)))));
+}
+
+}  // namespace tandem::hal

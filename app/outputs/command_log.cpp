@@ -1,0 +1,59 @@
+#include "app/outputs/command_log.hpp"
+
+#include <algorithm>
+#include <array>
+#include <fmt/format.h>
+#include <utility>
+
+namespace tandem::app {
+namespace {
+
+using hal::Json;
+
+/// What changes nothing.
+constexpr std::array<std::string_view, 6> kQuestions = {"status",  "preflight", "history",
+                                                        "inspect", "controls",  "source_files"};
+
+std::string text_of(const Json& object, const char* name) {
+  const auto found = object.find(name);
+  return found != object.end() && found->is_string() ? found->get<std::string>() : std::string();
+}
+
+/// The arguments, as they were said; files by their names alone.
+std::string arguments_of(const Json& command) {
+  std::string text;
+  for (const auto& [name, value] : command.items()) {
+    if (name == "do" || name == "who" || name == "by" || name == "id") continue;
+    if (name == "robot" && value.is_string()) {
+      text = " " + value.get<std::string>() + text;
+      continue;
+    }
+    text += " " + name + "=" + (name == "files" ? std::string("…") : hal::to_text(value));
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string command_text(hal::Tick tick, const Json& command, const Json& answer) {
+  const auto by = command.find("by");
+  const Json from = by != command.end() && by->is_object() ? *by : Json::object();
+  const std::string who = text_of(command, "who");
+  std::string text =
+      fmt::format("tick {}: '{}' ({}, {}): {}{}", tick, who.empty() ? "somebody" : who, text_of(from, "role"),
+                  text_of(from, "address"), text_of(command, "do"), arguments_of(command));
+  const auto ok = answer.find("ok");
+  if (ok != answer.end() && *ok == false) text += ": refused: " + text_of(answer, "error");
+  return text;
+}
+
+core::LiveReply CommandLog::noting(const Json& command, core::LiveReply reply) const {
+  const std::string name = text_of(command, "do");
+  if (std::find(kQuestions.begin(), kQuestions.end(), name) != kQuestions.end()) return reply;
+  return [keep = keep_, live = &live_, command, reply = std::move(reply)](const Json& answer) {
+    keep("command at " + command_text(live->state().tick, command, answer));
+    if (reply) reply(answer);
+  };
+}
+
+}  // namespace tandem::app
