@@ -121,7 +121,7 @@ const std::uint8_t* World::Impl::not_stepped(std::size_t index,
 
 /// Reported, and its actuators made safe, after the phase.
 void World::Impl::note_thrown(std::size_t index, std::size_t slot, std::string what) {
-  faults[index].message = std::move(what);
+  faults[index].message = hal::shortened(what, hal::kLongestMessage / 2);  // more is said of it
   stores().blocks[index].halted[slot] = kThrewInThisTick;
   block_trouble[index] = 1;
 }
@@ -157,23 +157,35 @@ void World::limit_commands() {
   w.report_trouble();
 }
 
-/// Remembers the first robot of the block whose speed is hardly meant, to be named after the phase; one of a group is
-/// named.
+/// Remembers the first robot of the block that asks for much more than it can do, to be named after the phase; one of a
+/// group is named.
 void World::Impl::note_excess(std::size_t index, std::size_t slot, const hal::Limited& what) {
   const RobotBlock& block = stores().blocks[index];
-  if (what.asked_m_s <= kUnlikely * what.most_m_s || excess_named[block.group] != 0 || excess[index].most_m_s > 0.0)
+  if (what.asked_m_s <= kBeyond * what.most_m_s || excess_named[block.group] != 0 || excess[index].most_m_s > 0.0)
     return;
   excess[index] = {slot, what.asked_m_s, what.most_m_s};
   block_trouble[index] = 1;
 }
+
+namespace {
+
+/// Metres, rounded to millimetres: for people.
+std::string in_mm(double metres) {
+  return hal::format_number(std::round(metres * 1e3) / 1e3);
+}
+
+}  // namespace
 
 void World::Impl::report_excess(std::size_t index) {
   const Excess found = std::exchange(excess[index], {});
   const RobotBlock& block = stores().blocks[index];
   if (found.most_m_s == 0.0 || std::exchange(excess_named[block.group], std::uint8_t{1}) != 0) return;
   incident("controller of robot '" + name_of_row(block.first_row + found.slot) + "' commanded " +
-           hal::format_number(found.asked_m_s) + " m/s" + at_tick() + ", where " + hal::format_number(found.most_m_s) +
-           " m/s is the most that it can do; did you mean cm/s? Speeds are in m/s");
+           in_mm(found.asked_m_s) + " m/s" + at_tick() + ", where " + in_mm(found.most_m_s) +
+           " m/s is the most that it can do" +
+           (found.asked_m_s > kUnlikely * found.most_m_s
+                ? "; did you mean cm/s? Speeds are in m/s"
+                : ": that is what it drives; a parameter without a unit has that of its class (`tandem describe`)"));
 }
 
 void World::Impl::report_trouble() {

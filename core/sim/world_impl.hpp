@@ -19,6 +19,7 @@
 #include "core/sim/world_editor.hpp"
 #include "core/space/stores.hpp"
 #include "hal/plugin_call.hpp"
+#include "hal/printable.hpp"
 
 namespace tandem::core {
 
@@ -101,6 +102,7 @@ struct Message {
 
 struct World::Impl final : hal::RobotLog::Sink {
   static constexpr std::size_t kIncidentsNamed = 20;
+  static constexpr double kBeyond = 1.5;     // times what a robot can do: less is usual for a moment
   static constexpr double kUnlikely = 10.0;  // times what a robot can do: hardly meant
 
   Scenario scenario;
@@ -218,9 +220,10 @@ struct World::Impl final : hal::RobotLog::Sink {
   void fail(std::string why) {
     if (state == RunState::Failed) return;
     state = RunState::Failed;
-    failure = std::move(why);
+    failure = hal::printable(hal::shortened(why));
   }
   void incident(std::string what) {
+    what = hal::printable(hal::shortened(what));
     options.log.warning(what);
     if (incidents.first.size() < kIncidentsNamed) incidents.first.push_back(std::move(what));
   }

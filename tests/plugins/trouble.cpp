@@ -3,6 +3,7 @@
 #include <cstdlib>
 #include <stdexcept>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "core/hook/hook.hpp"
@@ -47,6 +48,12 @@ void make_trouble(const std::string& what) {
     []() noexcept { make_trouble("throw in noexcept"); }();
   } else if (what == "throw in noexcept") {
     throw std::runtime_error("lost in \033[2Jspace");
+  } else if (what == "thread") {
+    std::thread([] { make_trouble("throw in noexcept"); }).join();
+  } else if (what == "long") {
+    throw std::runtime_error(std::string(20'000'000, 'x') + "end");
+  } else if (what == "forge") {
+    throw std::runtime_error("no\nerror: the arena burns\n\u202Eback");
   } else if (what == "throw") {
     throw std::runtime_error("\033[2J\033]0;owned\007 gone");
   }
