@@ -1,7 +1,9 @@
 #include "core/record/trajectory.hpp"
 
 #include <algorithm>
+#include <charconv>
 #include <optional>
+#include <sys/stat.h>
 #include <utility>
 
 #include "core/record/block_file.hpp"
@@ -24,6 +26,12 @@ RecordConfig poses_of(const TrajectoryConfig& config) {
   if (!config.entities.empty()) record.entities = config.entities;
   record.state = record.look = record.inputs = record.objects = record.attitudes = false;
   return record;
+}
+
+/// Bytes that stand in a file; of what has no size: 0.
+std::int64_t size_of(const hal::OutputFile& file) {
+  struct stat info {};
+  return ::fstat(file.descriptor(), &info) == 0 ? info.st_size : 0;
 }
 
 }  // namespace
@@ -49,6 +57,7 @@ struct TrajectoryRecorder::Impl {
 
   void write_lines(const Space& space, hal::Tick tick);
   hal::Status flush();
+  hal::Tick first_tick_after(std::size_t kept) const;
   void show_buffer() noexcept {
     unwritten.data.store(buffer.data(), std::memory_order_relaxed);
     unwritten.size.store(buffer.size(), std::memory_order_release);
@@ -78,12 +87,25 @@ void TrajectoryRecorder::Impl::write_lines(const Space& space, hal::Tick tick) {
 hal::Status TrajectoryRecorder::Impl::flush() {
   if (!failure.empty()) return hal::Error{failure};
   unwritten.size.store(0, std::memory_order_release);  // what is written here is not to be written by another
+  const std::int64_t before = size_of(*file);
   const hal::Status written = file->write(buffer);
-  buffer.clear();
-  if (written.ok()) return {};
-  failure = written.error().message + "; it is lost from tick " + std::to_string(flushed_until) + " on" +
+  if (written.ok()) {
+    buffer.clear();
+    return {};
+  }
+  const auto kept = static_cast<std::size_t>(std::max<std::int64_t>(0, size_of(*file) - before));
+  failure = written.error().message + "; it is lost from tick " + std::to_string(first_tick_after(kept)) + " on" +
             (file->part().empty() ? "" : ", what came before is in '" + file->part() + "'");
+  buffer.clear();
   return hal::Error{failure};
+}
+
+/// Of the first line of the buffer behind `kept` bytes, which are whole lines.
+hal::Tick TrajectoryRecorder::Impl::first_tick_after(std::size_t kept) const {
+  hal::Tick tick = flushed_until;
+  const std::string_view lost = std::string_view(buffer).substr(std::min(kept, buffer.size()));
+  (void)std::from_chars(lost.data(), lost.data() + lost.size(), tick);  // the header begins with no number
+  return tick;
 }
 
 hal::Result<std::unique_ptr<TrajectoryRecorder>> TrajectoryRecorder::open(const TrajectoryConfig& config,

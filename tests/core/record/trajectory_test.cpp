@@ -1,11 +1,13 @@
 #include "core/record/trajectory.hpp"
 
 #include <algorithm>
+#include <csignal>
 #include <cstdio>
 #include <fstream>
 #include <gtest/gtest.h>
 #include <numbers>
 #include <sstream>
+#include <sys/resource.h>
 
 #include "core/record/record_streams.hpp"
 #include "hal/robot/epuck.hpp"
@@ -205,6 +207,35 @@ TEST_F(Trajectory, AFullDiskIsToldAndEndsTheRecording) {
   EXPECT_FALSE(recorder->record(space_, 1).ok());
   EXPECT_FALSE(recorder->close().ok());
   path_.clear();
+}
+
+TEST_F(Trajectory, ADiskThatFillsUpLosesTheTicksThatAreNotInItsPart) {
+  rlimit before{};
+  ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &before), 0);
+  const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+  auto recorder = open({});
+  for (hal::Tick tick = 0; tick < 40; ++tick) ASSERT_TRUE(recorder->record(space_, tick).ok());
+  const rlimit small{3000, before.rlim_max};
+  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &small), 0);
+  const hal::Status flushed = recorder->flush();
+  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &before), 0);
+  std::signal(SIGXFSZ, handler);
+  ASSERT_FALSE(flushed.ok());
+  std::ifstream part(path_ + ".part");
+  std::string line, last;
+  int lines_of_last = 0;
+  for (std::getline(part, line); std::getline(part, line);) {
+    const std::string tick = line.substr(0, line.find(','));
+    lines_of_last = tick == last ? lines_of_last + 1 : 1;
+    last = tick;
+  }
+  ASSERT_FALSE(last.empty());
+  constexpr int kRobots = 3;
+  const int lost = std::stoi(last) + (lines_of_last == kRobots ? 1 : 0);
+  EXPECT_GT(lost, 0);
+  EXPECT_NE(flushed.error().message.find("lost from tick " + std::to_string(lost) + " on"), std::string::npos)
+      << flushed.error().message;
+  (void)recorder->close();
 }
 
 TEST(FitsPattern, AStarStandsForAnyNumberOfCharacters) {
