@@ -251,7 +251,16 @@ class PythonHook final : public core::Hook {
       if (PyType_Check(object.ptr()) != 0) object = object();
       for (std::size_t i = 0; i < kMethods.size(); ++i) has_[i] = py::hasattr(object, kMethods[i]);
       object_ = Held(std::move(object));
+      if (const auto session = session_.lock()) session->held.push_back(object_.get().ptr());
     });
+  }
+  ~PythonHook() override {
+    if (Py_IsInitialized() == 0) return;
+    const py::gil_scoped_acquire lock;
+    const auto session = session_.lock();
+    if (session == nullptr) return;
+    const auto found = std::find(session->held.begin(), session->held.end(), object_.get().ptr());
+    if (found != session->held.end()) session->held.erase(found);
   }
 
   void before_run(core::HookContext& c) override { call(0, c); }
@@ -338,6 +347,7 @@ const hal::Catalog& catalog() {
 std::string keep_guest(const std::shared_ptr<Session>& session, py::object guest) {
   static std::uint64_t number = 0;
   std::string key = std::to_string(++number);
+  session->held.push_back(guest.ptr());
   guests().emplace(key, Guest{session, std::move(guest)});
   session->keys.push_back(key);
   return key;
@@ -346,6 +356,7 @@ std::string keep_guest(const std::shared_ptr<Session>& session, py::object guest
 void forget_guests(Session& session) {
   for (const std::string& key : session.keys) guests().erase(key);
   session.keys.clear();
+  session.held.clear();
 }
 
 Session::~Session() {

@@ -1,5 +1,6 @@
 // A world with all that it needs to live: what Python's worlds, arrays and snapshots hold together.
 #pragma once
+#include <Python.h>
 #include <atomic>
 #include <map>
 #include <memory>
@@ -28,6 +29,9 @@ struct Session {
   core::HookContext* hook_context = nullptr;  ///< while a hook of Python is called
   bool writes = false;                        ///< somebody may write commands between steps
   std::vector<std::string> keys;              ///< of its guests (guests.hpp)
+  /// The references that it holds to guests and hooks, one each, so that Python's collector finds a hook that keeps its
+  /// world. With Python's lock.
+  std::vector<PyObject*> held;
 
   /// Messages of the world; may be called from any thread.
   void note(hal::Severity severity, std::string_view text);

@@ -186,6 +186,18 @@ void World::close() {
   session_.reset();
 }
 
+int World::visit(visitproc visit, void* argument) const {
+  if (session_ == nullptr) return 0;
+  for (PyObject* const object : session_->held) {
+    if (const int done = visit(object, argument); done != 0) return done;
+  }
+  return 0;
+}
+
+void World::collect() noexcept {
+  if (session_ != nullptr && uses_ == 0) close();
+}
+
 void World::start() {
   const Use use(*this);
   if (std::exchange(started_, true)) return;
@@ -632,6 +644,28 @@ class Group {
   core::ThreadPool pool_;
 };
 
+namespace {
+
+/// Null: it is not made yet.
+World* world_in(PyObject* self) {
+  const auto held = reinterpret_cast<py::detail::instance*>(self)->get_value_and_holder();
+  return held.holder_constructed() ? held.value_ptr<World>() : nullptr;
+}
+
+int traverse_world(PyObject* self, visitproc visit, void* argument) {
+  if (const World* const world = world_in(self); world != nullptr) {
+    if (const int done = world->visit(visit, argument); done != 0) return done;
+  }
+  return py::detail::pybind11_traverse(self, visit, argument);
+}
+
+int clear_world(PyObject* self) {
+  if (World* const world = world_in(self); world != nullptr) world->collect();
+  return py::detail::pybind11_clear(self);
+}
+
+}  // namespace
+
 void bind_world(py::module_& m) {
   py::register_exception<ExperimentError>(m, "ExperimentError", PyExc_ValueError);
   py::register_exception<RunFailed>(m, "RunFailed", PyExc_RuntimeError);
@@ -645,7 +679,11 @@ void bind_world(py::module_& m) {
       .def("_repr_png_", &Picture::shown_png)
       .def("png", &Picture::png, "The picture as the bytes of a PNG file.")
       .def("save", &Picture::save, py::arg("path"), "Writes a file: .svg, .png or .pdf.");
-  py::class_<World, std::shared_ptr<World>>(m, "World", py::dynamic_attr())
+  py::class_<World, std::shared_ptr<World>>(m, "World", py::dynamic_attr(),
+                                            py::custom_type_setup([](PyHeapTypeObject* heap) {
+                                              heap->as_type.tp_traverse = &traverse_world;
+                                              heap->as_type.tp_clear = &clear_world;
+                                            }))
       .def(py::init([](std::string file, std::string text, std::optional<std::uint64_t> seed,
                        std::optional<std::int64_t> threads, std::vector<std::string> parameters, py::dict controllers,
                        std::vector<std::string> driven, py::list hooks, std::vector<std::string> plugins) {

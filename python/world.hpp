@@ -76,6 +76,10 @@ class World {
   void restore(const Snapshot& snapshot);
   void close();
   bool closed() const noexcept { return session_ == nullptr; }
+  /// For Python's collector: visits the guests and hooks that this holds. @returns what `visit` did.
+  int visit(visitproc visit, void* argument) const;
+  /// Closes unless it is in use: nothing but what it holds itself refers to it.
+  void collect() noexcept;
 
   /// For groups: steps without Python's lock, on a thread that the group says.
   void step_unlocked() noexcept;

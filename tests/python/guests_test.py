@@ -157,6 +157,43 @@ class Guests(unittest.TestCase):
         gc.collect()
         self.assertEqual([one() for one in alive], [None] * 6)
 
+    def test_a_hook_that_keeps_its_world_goes_with_it(self):
+        import gc
+        import weakref
+
+        class Keeper:
+            def before_step(self, world):
+                self.world = world
+
+        for as_class in (True, False):
+            seen = []
+
+            class Kept(Keeper):
+                def __init__(self):
+                    seen.append(weakref.ref(self))
+
+            world = tandem.World(room(), hooks=[Kept if as_class else Kept()])
+            world.step(3)
+            self.assertIsNotNone(seen[0]())
+            self.assertIs(seen[0]().world, world)
+            del world
+            gc.collect()
+            self.assertIsNone(seen[0]())
+
+    def test_a_hook_that_keeps_its_world_keeps_it_while_somebody_has_the_hook(self):
+        import gc
+
+        class Keeper:
+            def before_step(self, world):
+                self.world = world
+
+        hook = Keeper()
+        tandem.World(room(), hooks=[hook]).step(3)
+        gc.collect()
+        self.assertEqual(hook.world.tick, 3)
+        hook.world.step(2)
+        self.assertEqual(hook.world.tick, 5)
+
 
 if __name__ == "__main__":
     unittest.main()
