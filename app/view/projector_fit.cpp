@@ -2,11 +2,12 @@
 
 #include <array>
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
-#include <fstream>
-#include <sstream>
 
+#include "hal/input_file.hpp"
 #include "hal/output_file.hpp"
+#include "hal/sha256.hpp"
 
 namespace tandem::app {
 namespace {
@@ -38,12 +39,29 @@ bool is_sound(const Json& corners) {
 
 }  // namespace
 
-ProjectorFit::ProjectorFit(const std::string& experiment)
-    : file_(std::filesystem::path(experiment).replace_extension(".projector.json").string()) {
-  std::ifstream in(file_);
-  std::ostringstream text;
-  text << in.rdbuf();
-  const auto kept = hal::parse_json_object(text.str());
+std::string projector_file(const std::string& experiment) {
+  namespace fs = std::filesystem;
+  const char* const state = std::getenv("XDG_STATE_HOME");
+  const char* const home = std::getenv("HOME");
+  fs::path folder;
+  if (state != nullptr && *state != 0)
+    folder = state;
+  else if (home != nullptr && *home != 0)
+    folder = fs::path(home) / ".local" / "state";
+  else
+    return {};
+  std::error_code error;
+  const fs::path path = fs::weakly_canonical(experiment, error);
+  constexpr std::size_t kDigits = 12;
+  const std::string digits = hal::sha256((error ? fs::path(experiment) : path).string()).substr(0, kDigits);
+  return folder / "tandem" / "projector" / (path.stem().string() + "-" + digits + ".json");
+}
+
+ProjectorFit::ProjectorFit(const std::string& experiment) : file_(projector_file(experiment)) {
+  constexpr std::size_t kMostBytes = std::size_t{64} << 10;
+  const auto text = hal::read_whole_file(file_, "the corners", kMostBytes);
+  if (!text.ok()) return;
+  const auto kept = hal::parse_json_object(text.value());
   if (!kept.ok()) return;
   const auto corners = kept.value().find("corners");
   if (corners != kept.value().end() && is_sound(*corners)) corners_ = *corners;
@@ -60,6 +78,9 @@ hal::Status ProjectorFit::take(const Json& command) {
         "\"corners\" are four pairs of numbers, once around the arena: north-west, north-east, "
         "south-east, south-west"};
   corners_ = *corners;
+  if (file_.empty()) return hal::Error{"the corners count, and are not kept: neither XDG_STATE_HOME nor HOME is set"};
+  std::error_code error;  // told by who writes
+  std::filesystem::create_directories(std::filesystem::path(file_).parent_path(), error);
   return hal::write_whole_file(file_, "where the projector shows the arena",
                                hal::to_text({{"corners", corners_}}) + "\n");
 }
