@@ -97,6 +97,7 @@ void add_run_options(CLI::App* c, RunOptions& o) {
   add_step_timeout(*c, o.step_timeout_s);
   c->add_option("--desk-keys", o.hold.desk_keys,
                 "Who commands over LCM (<desk lcm=…>): a file of lines NAME ROLE SECRET; default: this user's");
+  c->add_flag("--anyway", o.anyway, "Drive real robots although their last first motion (preflight --move) failed");
   c->add_option("--without", o.without, "Simulate this robot instead of driving the real one; repeatable")
       ->allow_extra_args(false);
   c->add_flag("--quiet", o.quiet, "No table at the end");
@@ -173,7 +174,8 @@ void add_replay(CLI::App& app, RunOptions& o, int& code) {
   c->add_flag_function("--view{0}", want_view, "Serve a page that shows it, on port --view=PORT or any that is free");
   c->add_flag("--view-stay", o.hold.stay, "… until somebody ends the program");
   add_run_options(c, o);
-  for (const char* other : {"--seconds", "--steps", "--seed", "--repeat", "--without", "--hub-fault", "--desk-keys"})
+  for (const char* other :
+       {"--seconds", "--steps", "--seed", "--repeat", "--without", "--anyway", "--hub-fault", "--desk-keys"})
     c->remove_option(c->get_option(other));
   c->callback([&] { code = replay(o); });
 }

@@ -84,6 +84,7 @@ struct RunOptions {
   std::int64_t dump_every = 0;          ///< ticks; 0: at the end alone
   std::string log;                      ///< file for all messages
   std::vector<std::string> without;     ///< real robots that are simulated instead, by id
+  bool anyway = false;                  ///< drive real robots although their last first motion failed
   std::vector<std::string> hub_faults;  ///< as `parse_hub_fault` reads them
   WatchRequest watch;
   ReplayRequest replay = {};

@@ -104,6 +104,9 @@ void print_answer(const Json& answer) {
                  text_of(row, "found"), text_of(row, "advice").empty() ? "" : "\n      -> " + text_of(row, "advice"));
     return;
   }
+  if (const auto roll = answer.find("roll"); roll != answer.end() && roll->is_array()) {
+    for (const Json& group : *roll) fmt::print("{}\n", text_of(group, "text"));
+  }
   if (const auto robots = answer.find("robots"); robots != answer.end() && robots->is_array()) {
     std::vector<std::pair<std::string, std::string>> table;
     for (const Json& robot : *robots) {

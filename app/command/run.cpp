@@ -22,6 +22,7 @@
 #include "app/robots/hub_faults.hpp"
 #include "app/robots/lockstep_peers.hpp"
 #include "app/robots/mixed_run.hpp"
+#include "app/robots/motion_memory.hpp"
 #include "app/robots/real_robots.hpp"
 #include "app/view/script_watch.hpp"
 #include "app/view/view_run.hpp"
@@ -297,9 +298,12 @@ std::uint64_t run_alone(core::World& world, std::int64_t steps, const std::atomi
 }
 
 /// Where a world's real robots take part; null when it has none. `code` is not kDone when they cannot.
-std::unique_ptr<mixed_reality::MixedSession> join_real_robots(
-    const hal::Catalog& catalog, std::unique_ptr<core::World>& world, GuardedRobots& guarded, HubFaults& hub_faults,
-    mixed_reality::TimeSource& clock, const std::atomic<bool>& stop, mixed_reality::MixedOptions options, int& code) {
+std::unique_ptr<mixed_reality::MixedSession> join_real_robots(const hal::Catalog& catalog,
+                                                              std::unique_ptr<core::World>& world,
+                                                              GuardedRobots& guarded, HubFaults& hub_faults,
+                                                              mixed_reality::TimeSource& clock,
+                                                              const std::atomic<bool>& stop, bool anyway,
+                                                              mixed_reality::MixedOptions options, int& code) {
   if (!has_real_robots(world->scenario())) return nullptr;
   options.scheduling = [] { return std::make_unique<mixed_reality::SystemScheduling>(); };
   options.before_commands = [&] {
@@ -312,7 +316,8 @@ std::unique_ptr<mixed_reality::MixedSession> join_real_robots(
     return nullptr;
   }
   auto session = std::move(made).value();
-  const hal::Status claimed = guarded.claim();
+  const hal::Status moved = anyway ? hal::Status{} : check_motions(guarded.robots());
+  const hal::Status claimed = moved.ok() ? guarded.claim() : moved;
   const hal::Status connected = claimed.ok() ? session->connect(stop) : claimed;
   if (!connected.ok()) code = complain(kFailedRunning, connected.error().message);
   return session;
@@ -409,7 +414,12 @@ int run_with(const RunOptions& options, std::unique_ptr<RunLog>& log) {
   mixed_reality::MonotonicTime clock;
   std::function<void()> look;  // while real robots stand, because somebody paused the run
   mixed_reality::MixedOptions mixed_options;
-  mixed_options.log = world_options.log;
+  mixed_options.log = run_log.robots();
+  mixed_options.on_roll = [&run_log, shown_s = 0.0](const mixed_reality::MixedSession& session) mutable {
+    if (wall_seconds() - shown_s < 0.1) return;
+    shown_s = wall_seconds();
+    run_log.show_robots(session.roll_call());
+  };
   mixed_options.hold = options.hold.paused || scenario->desk.hold;
   mixed_options.while_paused = [&look] {
     if (look) look();
@@ -419,8 +429,8 @@ int run_with(const RunOptions& options, std::unique_ptr<RunLog>& log) {
     return complain(kBadInput,
                     "nobody could start this run, which is to wait for that: add --view or --watch, or "
                     "<desk lcm=…> in the file");
-  const auto mixed =
-      join_real_robots(loader.catalog(), made, guarded, hub_faults.value(), clock, stop, mixed_options, code);
+  const auto mixed = join_real_robots(loader.catalog(), made, guarded, hub_faults.value(), clock, stop, options.anyway,
+                                      mixed_options, code);
   if (code != kDone) return stop.load() ? interrupted_code() : code;
   if (mixed != nullptr && outputs.record != nullptr) {
     if (const hal::Status added = record_ledgers(*outputs.record, *mixed); !added.ok())
@@ -450,7 +460,10 @@ int run_with(const RunOptions& options, std::unique_ptr<RunLog>& log) {
     std::optional<Watch> watch;
     if (options.watch.watch) {
       Watch::Run watched{*live, *world, steps, {}, &request_stop};
-      if (mixed != nullptr) watched.real = [&mixed] { return mixed->status(); };
+      if (mixed != nullptr) {
+        watched.real = [&mixed] { return mixed->status(); };
+        watched.roll = [&mixed] { return mixed->roll_call(); };
+      }
       watch.emplace(options.watch, watched);
     } else {
       progress.emplace(steps, scenario->ticks_per_second);
@@ -528,6 +541,7 @@ int run_with(const RunOptions& options, std::unique_ptr<RunLog>& log) {
   const bool was_guarded = guarded.guarded();
   if (mixed != nullptr) {
     mixed->shut_down();
+    run_log.end_robots();
     real = mixed->report();
     result.real = &*real;
     result.figures.deadline_misses = real->pace.deadline_misses;

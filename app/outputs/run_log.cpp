@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <utility>
 
+#include "app/process/measure.hpp"
 #include "app/process/terminal.hpp"
 
 namespace tandem::app {
@@ -27,7 +28,11 @@ hal::Result<std::unique_ptr<RunLog>> RunLog::open(const std::string& path) {
 }
 
 hal::Log RunLog::log() {
-  return hal::Log([this](hal::Severity severity, std::string_view text) { write(severity, text); });
+  return hal::Log([this](hal::Severity severity, std::string_view text) { write(severity, text, false); });
+}
+
+hal::Log RunLog::robots() {
+  return hal::Log([this](hal::Severity severity, std::string_view text) { write(severity, text, true); });
 }
 
 void RunLog::tell_also(std::function<void(std::string_view)> listener) {
@@ -35,10 +40,15 @@ void RunLog::tell_also(std::function<void(std::string_view)> listener) {
   listener_ = std::move(listener);
 }
 
-void RunLog::write(hal::Severity severity, std::string_view text) {
+void RunLog::write(hal::Severity severity, std::string_view text, bool about_robots) {
   const std::string entry = hal::printable_entry(hal::shortened(text));
   const std::lock_guard hold(lock_);
-  if (++count_ <= kShown || says_elsewhere()) say(entry);  // a screen shows the newest ones, however many
+  if (about_robots && !says_elsewhere()) {
+    robot_lines_.take(severity, entry, wall_seconds());
+    tell_robots(false);
+  } else if ((!about_robots && ++count_ <= kShown) || says_elsewhere()) {
+    say(entry);  // a screen shows the newest ones, however many
+  }
   if (listener_) listener_(entry);
   write_file(severity, entry);
   if (over_ && severity == hal::Severity::Error) ++late_errors_;
@@ -71,12 +81,31 @@ void RunLog::write_file(hal::Severity severity, std::string_view entry) {
   written_ = file_->write(fmt::format("{}: {}\n", word_of(severity), entry));
 }
 
-hal::Status RunLog::close() {
+void RunLog::tell_robots(bool all) {
+  for (const std::string& line : robot_lines_.due(wall_seconds(), all)) say(line);
+}
+
+void RunLog::show_robots(const std::vector<mixed_reality::RollRow>& roll) {
   const std::lock_guard hold(lock_);
-  if (count_ > kShown) {
-    say(fmt::format("{} more messages{}", count_ - kShown,
-                    file_ ? " are in " + file_->path() : "; --log FILE keeps all"));
-  }
+  tell_robots(false);
+  if (says_elsewhere()) return;
+  if (const std::size_t columns = terminal_columns(); columns > 0) return stand_below(roll_lines(roll, columns));
+  for (const std::string& line : roll_teller_.look(roll, wall_seconds())) say(line);
+}
+
+void RunLog::end_robots() {
+  const std::lock_guard hold(lock_);
+  tell_robots(true);
+  stand_below({});
+}
+
+hal::Status RunLog::close() {
+  end_robots();
+  const std::lock_guard hold(lock_);
+  const std::size_t left_out =
+      robot_lines_.left_out() + (count_ > kShown ? static_cast<std::size_t>(count_ - kShown) : 0);
+  if (left_out > 0)
+    say(fmt::format("{} more messages{}", left_out, file_ ? " are in " + file_->path() : "; --log FILE keeps all"));
   if (!file_ || !written_.ok()) return written_;
   return written_ = file_->commit();
 }

@@ -1,4 +1,5 @@
-// Messages of a run: the first few on the terminal, all of them in a file that was asked for.
+// Messages of a run: the first few on the terminal, those about real robots by a budget of their own, and all of them
+// in a file that was asked for.
 #pragma once
 #include <functional>
 #include <memory>
@@ -6,7 +7,10 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
+#include "app/outputs/robot_lines.hpp"
+#include "app/outputs/roll_lines.hpp"
 #include "hal/log.hpp"
 #include "hal/output_file.hpp"
 
@@ -18,10 +22,21 @@ class RunLog {
   /// `path` empty: no file. Error: it cannot be written.
   static hal::Result<std::unique_ptr<RunLog>> open(const std::string& path);
 
-  /// Must not outlive this.
+  /// Must not outlive this, as the next.
   hal::Log log();
   /// Takes an entry into the file alone.
   void keep(std::string_view text);
+  /// For what is about real robots: never silent on the terminal, whatever else was said.
+  hal::Log robots();
+  /// The real robots as they are now: to be called often. On a terminal the list stands under everything else, without
+  /// one it is told as it changes.
+  void show_robots(const std::vector<mixed_reality::RollRow>& roll);
+  /// Tells what is still to be told of them, and takes their list away.
+  void end_robots();
+  ~RunLog() { end_robots(); }
+  RunLog() = default;
+  RunLog(const RunLog&) = delete;
+  RunLog& operator=(const RunLog&) = delete;
   /// Who gets every message as well; empty: nobody. Is called on the thread that has the message.
   void tell_also(std::function<void(std::string_view)> listener);
   /// The results are written: an error from here on is of a controller or hook that is destroyed.
@@ -33,8 +48,9 @@ class RunLog {
   hal::Status close();
 
  private:
-  void write(hal::Severity severity, std::string_view text);
+  void write(hal::Severity severity, std::string_view text, bool about_robots);
   void write_file(hal::Severity severity, std::string_view entry);
+  void tell_robots(bool all);
 
   mutable std::mutex lock_;
   std::function<void(std::string_view)> listener_;
@@ -42,6 +58,8 @@ class RunLog {
   hal::Status written_;
   int count_ = 0, late_errors_ = 0;
   bool over_ = false;
+  RobotLines robot_lines_;
+  RollTeller roll_teller_;
 };
 
 }  // namespace tandem::app

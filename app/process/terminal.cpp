@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <mutex>
+#include <sys/ioctl.h>
 #include <termios.h>
 #include <unistd.h>
 #include <utility>
@@ -15,6 +16,26 @@ namespace {
 std::mutex say_lock;
 std::function<void(std::string_view)> say_to;  // empty: printed
 
+/// What stands below all that is said. Guarded by `say_lock`.
+struct Below {
+  std::vector<std::string> lines;
+  std::string last;
+  std::size_t drawn = 0;  // lines
+
+  void erase() {
+    if (drawn > 0) std::fputs("\r\033[K", stderr);
+    for (std::size_t i = 1; i < drawn; ++i) std::fputs("\033[A\033[K", stderr);
+    drawn = 0;
+  }
+  void draw() {
+    for (const std::string& line : lines)
+      std::fprintf(stderr, "%s%s", drawn++ > 0 ? "\n" : "", printable(line).c_str());
+    if (!last.empty()) std::fprintf(stderr, "%s%s", drawn++ > 0 ? "\n" : "", last.c_str());
+    std::fflush(stderr);
+  }
+};
+Below below;
+
 std::atomic<bool> screen_up{false};
 bool screen_has_keys = false;
 termios keys_before;
@@ -23,6 +44,8 @@ termios keys_before;
 
 SayElsewhere::SayElsewhere(std::function<void(std::string_view)> take) {
   const std::lock_guard hold(say_lock);
+  below.erase();
+  below = {};
   say_to = std::move(take);
 }
 
@@ -63,11 +86,33 @@ std::string shell_word(const std::string& text) {
 }
 
 void say(std::string_view text) {
-  {
-    const std::lock_guard hold(say_lock);
-    if (say_to) return say_to(text);
-  }
+  const std::lock_guard hold(say_lock);
+  if (say_to) return say_to(text);
+  below.erase();
   std::fprintf(stderr, "%s%s\n", isatty(STDERR_FILENO) != 0 ? "\r\033[K" : "", printable(text).c_str());
+  below.draw();
+}
+
+std::size_t terminal_columns() noexcept {
+  winsize size{};
+  if (isatty(STDERR_FILENO) == 0) return 0;
+  return ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
+}
+
+void stand_below(const std::vector<std::string>& lines) {
+  const std::lock_guard hold(say_lock);
+  if (say_to || lines == below.lines || isatty(STDERR_FILENO) == 0) return;
+  below.erase();
+  below.lines = lines;
+  below.draw();
+}
+
+void stand_last(const std::string& line) {
+  const std::lock_guard hold(say_lock);
+  if (say_to || isatty(STDERR_FILENO) == 0) return;
+  below.erase();
+  below.last = line;
+  below.draw();
 }
 
 int complain(int code, std::string_view message) {

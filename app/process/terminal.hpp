@@ -3,6 +3,7 @@
 #include <functional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "hal/printable.hpp"
 
@@ -13,8 +14,15 @@ using hal::printable;
 /// `text` as one word of a shell, for commands that people may type.
 std::string shell_word(const std::string& text);
 
-/// Prints a line on standard error, over a progress bar that may stand there. Escapes as `printable`.
+/// Prints a line on standard error, above what stands below. Escapes as `printable`.
 void say(std::string_view text);
+
+/// Columns of the terminal that standard error is; 0: it is none.
+std::size_t terminal_columns() noexcept;
+/// Lines that stay below all that is said, on a terminal only: a progress bar, and above it others. Each replaces its
+/// own; empty: they are taken away. None may be longer than the terminal is wide.
+void stand_below(const std::vector<std::string>& lines);
+void stand_last(const std::string& line);
 
 /// While one lives, `say` hands its lines to `take` instead of printing them. `take` may be called on any thread.
 class SayElsewhere {

@@ -49,9 +49,13 @@ std::uint64_t GuardedRobots::freezes() const noexcept {
 
 hal::Status GuardedRobots::claim() {
   if (!guardian_) return {};
+  return guardian_->claim(robots());
+}
+
+std::vector<bridges::StopMessages> GuardedRobots::robots() const {
   std::vector<bridges::StopMessages> all;
   for (const Row& row : robots_) all.push_back(row.bridge->stop_messages());
-  return guardian_->claim(all);
+  return all;
 }
 
 hal::Status GuardedRobots::claim(const bridges::RobotBridge& bridge) {

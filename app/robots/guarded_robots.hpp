@@ -40,6 +40,8 @@ class GuardedRobots {
   void add(const bridges::RobotBridge& bridge) { robots_.push_back({&bridge}); }
   /// It takes no part any more, and was never driven.
   void remove(const bridges::RobotBridge& bridge);
+  /// As they are now, in the order in which they were added.
+  std::vector<bridges::StopMessages> robots() const;
   /// Before the first link is opened: nobody else drives these robots from now on. Error: somebody does.
   hal::Status claim();
   /// The same for one that was added since: before its link is opened.

@@ -93,6 +93,14 @@ Json real_message(const mixed_reality::MixedSession& session) {
     message["robots"].push_back(status_json(robot));
   }
   message["estop"] = stopped;
+  message["roll"] = Json::array();
+  for (const mixed_reality::RollGroup& group : grouped(session.roll_call())) {
+    message["roll"].push_back({{"presence", name_of(group.presence)},
+                               {"urgent", is_urgent(group.presence)},
+                               {"why", group.why},
+                               {"robots", group.ids},
+                               {"text", text_of(group)}});
+  }
   return message;
 }
 

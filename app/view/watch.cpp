@@ -314,7 +314,7 @@ hal::Status Watch::check(const WatchRequest& request, const core::Space& space) 
 
 Watch::Watch(const WatchRequest& request, const Run& run) : impl_(std::make_unique<Impl>(request, run)) {
   run.live.add_command("watch",
-                       [shared = impl_->shared, &world = run.world, real = run.real,
+                       [shared = impl_->shared, &world = run.world, real = run.real, roll = run.roll,
                         eye = std::make_shared<WatchEye>()](const hal::Json&) -> hal::Result<hal::Json> {
                          WatchWish wish;
                          {
@@ -323,6 +323,7 @@ Watch::Watch(const WatchRequest& request, const Run& run) : impl_(std::make_uniq
                          }
                          WatchMoment moment = eye->look(world, wish);
                          if (real) moment.real = real();
+                         if (roll) moment.roll = roll();
                          const std::lock_guard hold(shared->lock);
                          shared->moment = std::move(moment);
                          return hal::Json::object();

@@ -10,6 +10,7 @@
 #include "core/sim/world.hpp"
 #include "hal/result.hpp"
 #include "mixed_reality/session/report.hpp"
+#include "mixed_reality/session/roll_call.hpp"
 
 namespace tandem::app {
 
@@ -23,6 +24,7 @@ class Watch {
     std::int64_t ticks = 0;                                                  ///< 0: no end of its own
     std::function<std::vector<mixed_reality::RealRobotStatus>()> real = {};  ///< called by the thread that steps
     std::function<void()> end = {};                                          ///< ends the run in order; on any thread
+    std::function<std::vector<mixed_reality::RollRow>()> roll = {};          ///< called by the thread that steps
   };
   /// Errors: no robot fits; none of those that do has the port.
   static hal::Status check(const WatchRequest& request, const core::Space& space);

@@ -6,6 +6,7 @@
 #include <map>
 #include <numbers>
 
+#include "app/outputs/roll_lines.hpp"
 #include "app/process/terminal.hpp"
 #include "core/record/trajectory.hpp"
 #include "hal/unit.hpp"
@@ -107,12 +108,26 @@ ScreenLine line_of(const WatchMoment::Robot& robot, std::size_t id_columns, bool
 
 struct Layout {
   std::size_t real = 0, robots = 0, messages = 0;
+  std::vector<ScreenLine> roll;  // real robots in groups: all of them, before anything else gets a line
 };
+
+std::vector<ScreenLine> lines_of_roll(const WatchPage& page, Screen::Size size) {
+  std::vector<ScreenLine> lines;
+  for (const mixed_reality::RollGroup& group : grouped(page.moment.roll)) {
+    std::vector<mixed_reality::RollRow> rows;
+    for (const std::string& id : group.ids) rows.push_back({id, group.presence, group.why});
+    for (const std::string& line : roll_lines(rows, size.columns))
+      lines.push_back({printable(line), is_urgent(group.presence) ? LineLook::Bad : LineLook::Plain});
+  }
+  return lines;
+}
 
 /// How many lines each part gets. Four are always there: headline, counts, head of the table, keys.
 Layout layout_of(const WatchPage& page, Screen::Size size) {
   Layout layout;
-  std::size_t left = size.lines > 4 ? size.lines - 4 : 0;
+  layout.roll = lines_of_roll(page, size);
+  const std::size_t fixed = 4 + layout.roll.size();
+  std::size_t left = size.lines > fixed ? size.lines - fixed : 0;
   layout.messages =
       std::min({page.messages.size(), left, size.lines < kLinesWithMessages ? std::size_t{1} : kMostMessages});
   left -= layout.messages;
@@ -217,8 +232,7 @@ std::string headline(const WatchPage& page) {
 
 std::string summary(const WatchPage& page) {
   std::string text = headline(page) + "; " + robots_text(page.moment) + "; " + incidents_text(page.moment.incidents);
-  for (const mixed_reality::RealRobotStatus& real : page.moment.real)
-    text += fmt::format("; {} {}", printable(real.id), real.driving ? "drives" : "stands: " + printable(real.state));
+  for (const std::string& line : roll_lines(page.moment.roll, 0)) text += "; " + printable(line);
   return text;
 }
 
@@ -233,6 +247,7 @@ std::vector<ScreenLine> lay_out(const WatchPage& page, Screen::Size size) {
   lines.push_back({headline(page), LineLook::Title});
   lines.push_back({robots_text(m) + "; " + incidents_text(m.incidents),
                    incidents_of(m.incidents) > 0 ? LineLook::Bad : LineLook::Plain});
+  lines.insert(lines.end(), layout.roll.begin(), layout.roll.end());
   for (std::size_t i = 0; i < layout.real; ++i) lines.push_back(line_of(m.real[i]));
   const std::size_t columns = id_width(m);
   std::string head = fmt::format("{} {} {:>8} {:>8} {:>6} {:>6} {:>7}  {}", column("robot", columns), column("kind", 8),

@@ -11,6 +11,7 @@
 #include "core/sim/world.hpp"
 #include "hal/port.hpp"
 #include "mixed_reality/session/report.hpp"
+#include "mixed_reality/session/roll_call.hpp"
 
 namespace tandem::app {
 
@@ -39,6 +40,7 @@ struct WatchMoment {
   std::vector<Robot> robots;
   std::vector<std::string> ports;  ///< that the first of them has, as wishes name them
   std::vector<mixed_reality::RealRobotStatus> real;
+  std::vector<mixed_reality::RollRow> roll;  ///< of the same robots
 };
 
 /// Finds what a wish asks for. Used by the thread that steps.

@@ -21,10 +21,12 @@ void take_all(EpuckRobot& robot) {
     (void)robot.require(*type);
 }
 
+constexpr hal::TimeNs kFirst_ns = 10 * hal::kNsPerSecond, kAgain_ns = 3 * hal::kNsPerSecond;
+
 /// Error: nobody answers in time.
-hal::Status wait_for(EpuckBridge& bridge, const std::atomic<bool>& stop) {
+hal::Status wait_for(EpuckBridge& bridge, hal::TimeNs most_ns, const std::atomic<bool>& stop) {
   hal::Status ready;
-  for (hal::TimeNs waited = 0; waited < 10 * hal::kNsPerSecond && !stop.load(); waited += 200 * hal::kNsPerMs) {
+  for (hal::TimeNs waited = 0; waited < most_ns && !stop.load(); waited += 200 * hal::kNsPerMs) {
     ready = bridge.wait_active(200 * hal::kNsPerMs);
     if (ready.ok()) return ready;
     if (waited >= hal::kNsPerSecond && bridge.status().links_opened == 0 && !bridge.status().trouble.empty())
@@ -64,9 +66,11 @@ hal::Status run(const InspectRequest& request) {
   EpuckBridge bridge(settings, std::move(link).value().open, request.log);
   take_all(bridge.robot());
   bridge.start();
-  if (hal::Status ready = wait_for(bridge, request.stop); !ready.ok()) return ready;
+  if (hal::Status ready = wait_for(bridge, kFirst_ns, request.stop); !ready.ok()) return ready;
   // The commands are untouched: wheels 0, lamps off.
   latch_for(request, std::array{&bridge}, [](EpuckBridge& b) { b.commit(inspector_now_ns()); });
+  // Bytes that nobody asked for, or a moment without answers, say nothing of whether it is there.
+  if (bridge.status().state != SessionState::Active) (void)wait_for(bridge, kAgain_ns, request.stop);
   const BridgeStatus status = bridge.status();
   print_status(request, status);
   print_readings(request, bridge.taken());

@@ -317,7 +317,13 @@ hal::Result<Json> halt(World& world, Json& command, bool halted) {
   if (!robot.valid()) return none("robot", target.value().id);
   space.set_halted(robot, halted, HaltOwner::Operator);
   Json answer{{"robots", 1}};
-  if (!halted && space.halted(robot)) answer["note"] = "somebody else holds the robot still";
+  if (halted || !space.halted(robot)) return answer;
+  if (space.halted_by(robot, HaltOwner::Controller))
+    answer["note"] = "its controller failed: it stands until the run is over";
+  else if (space.halted_by(robot, HaltOwner::Hook))
+    answer["note"] = "a hook holds the robot, too: it stands until that lets go";
+  else  // the safety table, which held it because the person did
+    answer["note"] = "it drives when its safety table lets it: see its state";
   return answer;
 }
 

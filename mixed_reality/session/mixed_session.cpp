@@ -270,6 +270,7 @@ void MixedSession::leave_out_missing(hal::TimeNs waited_ns) {
     last_.erase(last_.begin() + at);
     confirmed_.erase(confirmed_.begin() + at);
     times_.erase(times_.begin() + at);
+    if (i < rests_.size()) rests_.erase(rests_.begin() + at);
   }
 }
 
@@ -371,6 +372,7 @@ void MixedSession::note_states() {
     last_[i].health = twin.real().health();
     last_[i].state = twin.verdict().reason;
   }
+  note_rest();
 }
 
 /// @returns whether to go on: else the run ends.
@@ -541,6 +543,7 @@ bool MixedSession::stop_robots() {
     };
     for (std::size_t i = 0; i < twins_.size(); ++i) confirmed_[i] = look(twins_[i]->real(), bridges_[i].stop_s) ? 1 : 0;
     for (Retired& retired : retired_) retired.confirmed = look(retired.twin->real(), retired.stop_s);
+    note_rest();
     if (!waits) break;
     time_.sleep_until(time_.now_ns() + kPollEvery_ns, kNever);
     for_each_bridge([this](bridges::RobotBridge& real) { real.latch(0, time_.now_ns()); });
@@ -570,6 +573,7 @@ void MixedSession::shut_down() {
     }
   });
   ends.clear();
+  for (std::size_t i = 0; i < twins_.size(); ++i) confirmed_[i] = twins_[i]->real().at_rest() ? 1 : 0;
   for (GivenUp& one : given_up_) {
     if (one.closing.valid()) one.closing.wait();
   }

@@ -18,6 +18,8 @@
 #include "hal/result.hpp"
 #include "mixed_reality/barrier/barrier_filter.hpp"
 #include "mixed_reality/session/report.hpp"
+#include "mixed_reality/session/rest_watch.hpp"
+#include "mixed_reality/session/roll_call.hpp"
 #include "mixed_reality/settings/bridge_request.hpp"
 #include "mixed_reality/time/monotonic.hpp"
 #include "mixed_reality/time/pacer.hpp"
@@ -30,6 +32,8 @@ namespace tandem::mixed_reality {
 /// Makes the real robot behind one `<bridge>`. Does not wait for it to answer. Error: no such link, or no bridge for
 /// that kind of robot.
 using BridgeMaker = std::function<bridges::MadeBridge(const bridges::BridgeRequest&)>;
+
+class MixedSession;
 
 struct MixedOptions {
   /// Makes the tracker of one element of `<trackers>`; empty: there is none.
@@ -50,6 +54,9 @@ struct MixedOptions {
   std::function<void()> before_commands = {};
   /// Called 100 times a second while the run is held or paused: what people ask for is done then.
   std::function<void()> while_paused = {};
+  /// Called after every look at the robots, also while they connect, stand, and are stopped: for whoever shows people
+  /// who may move.
+  std::function<void(const MixedSession&)> on_roll = {};
   /// A robot takes part that did not when the run began; before its link is opened. Error: it may not be driven.
   std::function<hal::Status(const bridges::RobotBridge&)> on_joined = {};
   bool hold = false;           ///< the run waits for `go_on` before its first tick
@@ -133,6 +140,8 @@ class MixedSession final : private core::ExternalRobots {
   hal::Status rearm(std::string_view robot);
   /// As of the last tick.
   std::vector<RealRobotStatus> status() const;
+  /// Who drives, stands, waits, cannot be reached: as of now.
+  std::vector<RollRow> roll_call() const;
   std::vector<TrackerStatus> trackers() const { return trackers_.status(now_.monotonic_ns); }
 
   /// All that the real robots did to the world in the last tick, for a record; also of those that are left out.
@@ -171,6 +180,7 @@ class MixedSession final : private core::ExternalRobots {
   void compare_links();
   void send_commands();
   void note_states();
+  void note_rest();
   bool stand_paused(const std::atomic<bool>& stop);
   void follow_candidates();
   void leave_out_closed();
@@ -225,6 +235,7 @@ class MixedSession final : private core::ExternalRobots {
   std::vector<core::BridgeConfig> bridges_;  // parallel to `twins_`, as the next three
   std::vector<LastState> last_;
   std::vector<std::uint8_t> confirmed_;
+  std::vector<RestWatch> rests_;
   std::vector<RobotTimes> times_;
   std::vector<LedgerRow> ledger_rows_;  // of all that had a twin at the begin, as the next
   std::vector<core::RobotId> ledger_robots_;

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "tests/checkout.hpp"
+#include "tests/scenarios/free_port.hpp"
 #include "tests/scenarios/process.hpp"
 
 namespace tandem::scenarios {
@@ -49,6 +50,60 @@ TEST(Preflight, MovesNothingUnlessToldAndSaysWhatIsInTheWay) {
   EXPECT_TRUE(epuck.has_moved());
   EXPECT_FALSE(epuck.moves());
   for (const auto& wheels : epuck.wheels()) EXPECT_EQ(wheels.left, -wheels.right) << "it turns on the spot";
+}
+
+/// Sees the robot of one emulator's log under the name ep0, from its start to its end.
+class Camera {
+ public:
+  Camera(const Folder& folder, const std::string& port, const std::string& log)
+      : process_({"emulate", "tracker", "--link", "udp:127.0.0.1:" + port, "--sees", "ep0=" + log, "--rate", "20"},
+                 folder.path()) {}
+
+ private:
+  Tandem process_;
+};
+
+TEST(Preflight, AFailedFirstMotionKeepsRunsFromDrivingTheRobotUntilOneIsRight) {
+  const Folder folder, other;
+  EmulatedEpuck epuck(folder, {"--poses", "50"}), wrong(other, {"--poses", "50"});
+  ASSERT_TRUE(epuck.ready() && wrong.ready());
+  const std::string port = std::to_string(free_port(SOCK_DGRAM));
+  std::string text = text_of(kExperiment);
+  text.replace(text.find("<tracker source=\"odometry\"/>"), 29, "<tracker source=\"fused\"/>");
+  text.replace(text.find("  <physics_engines>"), 0,
+               "  <trackers><udp id=\"cam\" port=\"" + port + "\" clock=\"monotonic\"/></trackers>\n");
+  const std::string file = folder.write("seen.xml", text).string();
+  const auto preflight = [&] {
+    Tandem moving({"preflight", file, "--move", "--yes"}, folder.path());
+    const int code = moving.wait(60.0);
+    return std::to_string(code) + " " + moving.output() + moving.errors();
+  };
+  const auto run = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), {"run", file, "--set", "framework.experiment.length=2", "--quiet"});
+    Tandem driving(more, folder.path());
+    const int code = driving.wait(60.0);
+    return std::to_string(code) + " " + driving.errors();
+  };
+  {
+    const Camera camera(folder, port, (other.path() / "witness.jsonl").string());  // its tag is on another robot
+    const std::string said = preflight();
+    EXPECT_EQ(said[0], '3') << said;
+  }
+  const Camera camera(folder, port, (folder.path() / "witness.jsonl").string());
+  const std::size_t before = epuck.wheels().size();
+  const std::string refused = run({});
+  EXPECT_EQ(refused[0], '3') << refused;
+  EXPECT_NE(refused.find("robot 'ep0'"), std::string::npos) << refused;
+  EXPECT_NE(refused.find("motion: turned"), std::string::npos) << refused;
+  EXPECT_NE(refused.find("--anyway"), std::string::npos) << refused;
+  for (std::size_t i = before; i < epuck.wheels().size(); ++i)
+    EXPECT_TRUE(epuck.wheels()[i].left == 0 && epuck.wheels()[i].right == 0) << "it was not driven";
+  EXPECT_EQ(run({"--anyway"})[0], '0');
+  EXPECT_EQ(run({})[0], '3') << "still";
+  std::string good;
+  for (int i = 0; i < 10 && good[0] != '0'; ++i) good = preflight();  // one that answers too late is not moved
+  EXPECT_EQ(good[0], '0') << good;
+  EXPECT_EQ(run({})[0], '0');
 }
 
 /// The address that a run has printed, for `tandem desk`.

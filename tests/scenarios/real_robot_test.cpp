@@ -246,6 +246,16 @@ TEST(Inspect, ReadsEverythingAndMovesNothing) {
   EXPECT_FALSE(epuck.has_moved());
 }
 
+TEST(Inspect, WaitsForARobotThatIsSilentWhileItIsLookedAtAndAnswersAgain) {
+  Folder folder;
+  EmulatedEpuck epuck(folder, {"--fault", "silent@4s+2s"});
+  ASSERT_TRUE(epuck.ready());
+  Tandem inspect({"inspect", "serial:ep0", "--seconds", "4"}, folder.path());  // its end lies in the silence
+  EXPECT_EQ(inspect.wait(60.0), 0) << inspect.output() << inspect.errors();
+  EXPECT_NE(inspect.output().find("active"), std::string::npos) << inspect.output();
+  EXPECT_FALSE(epuck.has_moved());
+}
+
 TEST(Emulator, MayLiveInASimulatedArena) {
   Folder folder;
   folder.write(

@@ -13,13 +13,14 @@ export class Real {
     const { element, body } = section('Real robots', true, 'real');
     this.element = element;
     this.list = h('div', {});
+    this.roll = h('ul', { class: 'roll', 'aria-label': 'Real robots, by what they do', 'aria-live': 'polite' });
     this.said = h('p', { class: 'minor', role: 'status' });
     this.spares = [];
     this.dialog = h('dialog', { 'aria-label': 'Real robots' });
     document.body.append(this.dialog);
     this.buttons = h('div', { class: 'row' }, h('button', { title: 'Looks for what is in the way of the run; moves nothing', onclick: () => this.preflight() }, 'Preflight'), h('button', { title: 'Ends the emergency stop', onclick: () => this.command({ do: 'arm', robot: '*' }) }, 'Arm all'),
       h('button', { onclick: () => this.command({ do: 'rearm', robot: '*' }), title: 'After a stop: those that are proved to be the robots that were armed; each other one by its own button' }, 'Re-arm all'));
-    body.append(this.buttons, this.said, this.list);
+    body.append(this.buttons, this.said, this.roll, this.list);
     element.hidden = true;
     host.append(element);
     world.on('hello', (hello) => {
@@ -52,9 +53,18 @@ export class Real {
     this.stop.classList.toggle('on', message.estop === true);
     this.stop.textContent = message.estop ? 'STOPPED' : 'EMERGENCY STOP';
     this.states = new Map(message.robots.map((robot) => [robot.id, robot]));
+    this.showRoll(message.roll ?? []);
     this.held = message.paused === true && this.world.state.tick === 0;
     this.showCards();
     this.view.invalidate();
+  }
+
+  /** Who may move, waits for a person, cannot be reached: all of them, however many. */
+  showRoll(groups) {
+    const text = JSON.stringify(groups);
+    if (text === this.shownRoll) return;
+    this.shownRoll = text;
+    this.roll.replaceChildren(...groups.map((group) => h('li', { class: group.urgent ? 'urgent' : '' }, group.text)));
   }
 
   showCards() {

@@ -106,7 +106,7 @@ TEST_F(Touches, SwitchLampsAndHoldRobots) {
   Json release{{"do", "release"}, {"robot", "a"}};
   const auto released = touch(world(), release);
   ASSERT_TRUE(released.ok());
-  EXPECT_EQ(released.value()["note"], "somebody else holds the robot still");
+  EXPECT_EQ(released.value()["note"], "a hook holds the robot, too: it stands until that lets go");
   EXPECT_FALSE(world().space().halted_by(a, HaltOwner::Operator));
 }
 

@@ -156,6 +156,26 @@ TEST_F(SeenRobots, WhoIsPutSomewhereElseWaitsForAPersonAtOnce) {
   EXPECT_EQ(report_of("ep0").state, "moved by something else; waits to be re-armed");
 }
 
+TEST_F(SeenRobots, WhoDrivesWhenItsLinkBreaksIsNotKnownToRestUntilItStandsAndAnswers) {
+  core::Scene scene = drive(0.05, 0.05);
+  scene.robot("ep0", -2.0, 0.0).robot("ep1", -2.0, 1.0).robot("ep2", -2.0, -1.0);
+  open(scene);
+  std::map<std::string, std::vector<Presence>> seen;
+  run(150, [&](core::World& world) {
+    if (world.tick() == 40) bodies_["ep0"].link_up = false;  // deaf while it drives: it goes on
+    if (world.tick() == 90) bodies_["ep0"].link_up = true;
+    if (world.tick() == 60) session_->emergency_stop();
+    if (world.tick() == 70) (void)session_->arm("ep2");
+    for (const RollRow& row : session_->roll_call()) seen[row.id].push_back(row.presence);
+  });
+  EXPECT_EQ(seen["ep0"][30], Presence::Drives);
+  EXPECT_EQ(seen["ep0"][50], Presence::MayMove);
+  EXPECT_EQ(seen["ep0"][85], Presence::MayMove) << "an emergency stop that nobody hears changes nothing";
+  EXPECT_NE(seen["ep0"][110], Presence::MayMove);
+  EXPECT_EQ(seen["ep1"][69], Presence::WaitsForPerson);
+  EXPECT_EQ(seen["ep2"][100], Presence::Drives);
+}
+
 class LateRobots : public SeenRobots, public testing::WithParamInterface<int> {};
 
 /// Two robots, head-on; the bodies' own poses tell whether they touch.
