@@ -150,9 +150,13 @@ std::vector<std::string> lock_keys(const StopMessages& robot) {
     keys.push_back(key_of(
         "device " + (terminal ? device->substr(0, device->find(' ')) : one_loopback(*device) + network()), robot.name));
   }
-  const std::string address = own_address(robot.identity);
-  if (!address.empty()) keys.push_back(key_of("robot " + address, ""));
+  if (std::string key = address_key(robot); !key.empty()) keys.push_back(std::move(key));
   return keys;
+}
+
+std::string address_key(const StopMessages& robot) {
+  const std::string address = own_address(robot.identity);
+  return address.empty() ? "" : key_of("robot " + address, "");
 }
 
 std::string left_key(const StopMessages& robot, pid_t guardian) {
@@ -206,19 +210,23 @@ hal::Result<bool> RobotLocks::change_to(const std::string& folder, const std::ve
   std::erase_if(held_, [&](const auto& one) { return std::ranges::find(keys, one.first) == keys.end(); });
   bool all = true;
   for (const std::string& key : keys) {
-    if (held_.contains(key)) continue;
-    std::optional<LockHolder> seen;
-    auto taken = RobotLock::take(folder, key, seen);
+    const auto taken = add(folder, key, holder);  // of several holders any will do: all are in the way
     if (!taken.ok()) return taken.error();
-    if (taken.value()) {
-      held_.emplace(key, std::move(*taken.value()));
-      if (all && !holder) holder = seen;
-    } else {
-      all = false;
-      if (seen) holder = seen;  // of several, any will do: all are in the way
-    }
+    all = all && taken.value();
   }
   return all;
+}
+
+hal::Result<bool> RobotLocks::add(const std::string& folder, const std::string& key,
+                                  std::optional<LockHolder>& holder) {
+  if (held_.contains(key)) return true;
+  std::optional<LockHolder> seen;
+  auto taken = RobotLock::take(folder, key, seen);
+  if (!taken.ok()) return taken.error();
+  const bool ours = taken.value().has_value();
+  if (ours) held_.emplace(key, std::move(*taken.value()));
+  if (seen && (!ours || !holder)) holder = seen;
+  return ours;
 }
 
 void RobotLocks::free(const std::vector<std::string>& keys) {

@@ -43,6 +43,8 @@ std::string written_key(const StopMessages& robot);
 /// All locks of a robot by what is known now, `written_key` first. Asks for hosts' addresses, and so may take seconds.
 /// "localhost", 127.0.0.1 and ::1 are one device.
 std::vector<std::string> lock_keys(const StopMessages& robot);
+/// The lock of a robot that has an address of its own; "": it has none, or nobody knows it yet.
+std::string address_key(const StopMessages& robot);
 /// The lock of one robot in the care of one guardian alone: nobody else asks for it.
 std::string left_key(const StopMessages& robot, pid_t guardian);
 
@@ -75,6 +77,8 @@ class RobotLocks {
   /// it has all; else `holder` is who has one of them. Error: a file cannot be made.
   hal::Result<bool> change_to(const std::string& folder, const std::vector<std::string>& keys,
                               std::optional<LockHolder>& holder);
+  /// Takes one more, unless somebody else holds it: that is `holder` then. Error: as above.
+  hal::Result<bool> add(const std::string& folder, const std::string& key, std::optional<LockHolder>& holder);
   void free(const std::vector<std::string>& keys);
   void free_all() { held_.clear(); }
   bool has(const std::string& key) const { return held_.contains(key); }

@@ -8,6 +8,7 @@
 #include <sys/socket.h>
 #include <sys/un.h>
 #include <unistd.h>
+#include <utility>
 
 #include "hal/monotonic.hpp"
 
@@ -75,6 +76,8 @@ void WatchedRobot::watch(const StopMessages& robot) {
   trace_.begin(robot);
   confirmed_ = false;
   ++order_;
+  const std::string address = address_key(robot);
+  address_due_ = !address.empty() && !locks_.has(address);
   write_lock_files();
   wake_.notify_all();
 }
@@ -158,6 +161,8 @@ void WatchedRobot::run() {
       lock.unlock();
       take_locks();
       lock.lock();
+    } else if (std::exchange(address_due_, false)) {
+      take_address_lock();
     } else if (stopping_ && obeyed_ != order_) {
       stop_robot(lock);
     } else {
@@ -177,6 +182,19 @@ void WatchedRobot::take_locks() {
     write_lock_files();
   }
   context_.say_to_hub({Word::Claimed, claimed_, refused});
+}
+
+/// That a robot is reached over two links shows only now, when two hubs drive it already.
+void WatchedRobot::take_address_lock() {
+  std::optional<LockHolder> holder;
+  const auto taken = locks_.add(context_.folder, address_key(robot_), holder);
+  write_lock_files();
+  if (!taken.ok() || taken.value() || !holder || holder->state == LockState::Left) return;
+  context_.say_to_hub({Word::Warning,
+                       {},
+                       "robot '" + robot_.robot + "' on " + robot_.link + " has the address of '" +
+                           holder->robot.robot + "' on " + holder->robot.link + ", which process " +
+                           std::to_string(holder->hub) + " drives: is it one robot with two hubs? End one of them"});
 }
 
 /// @returns why it was refused; "" when it was not.

@@ -70,6 +70,7 @@ class WatchedRobot {
 
   void run();
   void take_locks();
+  void take_address_lock();
   std::string try_to_lock();
   std::string refusal(const LockHolder* holder, bool asked) const;
   bool line_is_ours();
@@ -89,6 +90,7 @@ class WatchedRobot {
   std::vector<std::string> lent_keys_;
   pid_t lent_to_ = 0;  // 0: nobody
   hal::TimeNs lent_until_ns_ = 0;
+  bool address_due_ = false;  // it was found out, and has no lock yet
   RobotTrace trace_;
   bool line_lost_ = false;
   std::string handed_over_;

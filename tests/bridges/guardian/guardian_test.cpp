@@ -758,6 +758,36 @@ TEST_F(Plugs, RobotIsHandedOverByNameToAHubThatFindsTheVerySame) {
   EXPECT_THAT(errors(), testing::Not(HasSubstr("confirmed their stop")));
 }
 
+TEST_F(Plugs, TwoHubsOfOneRobotOverTwoPlugsAreToldOfOneAnother) {
+  plug_in("4");
+  plug_in("5");
+  StopMessages one = found("A", "plug4", "4"), other = found("B", "plug5", "5");
+  one.identity.address = other.identity.address = "Bluetooth 10:00:E8:12:34:56";
+  Hub first(runtime_.path(), drives({one}));
+  ASSERT_TRUE(first.said("drives"));
+  const auto second = other_hub(other);
+  ASSERT_TRUE(second->said("refused "));
+  EXPECT_THAT(second->line("refused "),
+              HasSubstr("is driven by process " + std::to_string(first.pid()) + ", as 'A'; end that one first"));
+  // Where the address is found out later, both drive already.
+  Hub third(elsewhere_.path(), [other](Hub& h) {
+    auto guardian = GuardianClient::start(kTypes, {nullptr, limits()});
+    StopMessages unknown = other;
+    unknown.identity = {};
+    if (const auto claimed = (*guardian)->claim({&unknown, 1}); !claimed.ok()) h.say(claimed.error().message);
+    (*guardian)->watch(other);
+    eventually([&] {
+      const auto news = (*guardian)->take_news();
+      for (const std::string& line : news) h.say("news " + line);
+      return !news.empty();
+    });
+    return 0;
+  });
+  EXPECT_EQ(third.wait(), 0);
+  EXPECT_THAT(third.line("news robot 'B' on "), HasSubstr("has the address of 'A' on " + one.link + ", which process " +
+                                                          std::to_string(first.pid()) + " drives"));
+}
+
 TEST_F(Plugs, RobotOfOtherFirmwareIsNotTheOneThatWasLeft) {
   plug_in("4");
   Hub first(runtime_.path(), drives({found("A", "plug4", "4", "Version 1", "deaf")}));
