@@ -64,7 +64,7 @@ std::string StoppedRobot::to_text() const {
   return "robot '" + holder.robot.robot + "' on " + holder.robot.link +
          " may have driven on with its last command since " + when.data() + ": its hub (process " +
          std::to_string(holder.hub) + ") and its guardian (process " + std::to_string(holder.guardian) +
-         ") were killed together. " +
+         ") are both gone, and it had confirmed no stop. " +
          (confirmed ? "It was stopped now, and has confirmed that"
                     : "It was told to stop now, and has NOT confirmed that: " + trouble);
 }

@@ -79,10 +79,6 @@ bool removed(int descriptor, const std::string& path) {
   return open.st_ino != named.st_ino || open.st_dev != named.st_dev;
 }
 
-bool is_terminal(const std::string& link) {
-  return link.starts_with("serial:") || link.starts_with("slcan:");
-}
-
 /// The same address in another network is another robot.
 std::string network() {
   std::array<char, 64> network{};

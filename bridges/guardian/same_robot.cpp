@@ -11,10 +11,6 @@ namespace {
 
 constexpr hal::TimeNs kLongestAbsence = 2 * hal::kNsPerSecond;
 
-bool is_terminal(const std::string& link) {
-  return link.starts_with("serial:") || link.starts_with("slcan:");
-}
-
 bool is_connection(const std::string& link) {
   return link.starts_with("tcp:") || link.starts_with("epuck-tcp:");
 }
@@ -49,6 +45,10 @@ bool words_contradict(RobotIdentity a, RobotIdentity b) {
 }
 
 }  // namespace
+
+bool is_terminal(const std::string& link) {
+  return link.starts_with("serial:") || link.starts_with("slcan:");
+}
 
 std::string own_address(const RobotIdentity& identity) {
   const std::string address = identity.address.value_or("");

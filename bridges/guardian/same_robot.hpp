@@ -8,6 +8,8 @@
 
 namespace tandem::bridges::guardian {
 
+/// Whether this LINK text leads to a device in the file system.
+bool is_terminal(const std::string& link);
 /// The address by which this computer knows a robot from all others: of its Bluetooth radio, or the serial number of
 /// its USB plug; "": it knows none.
 std::string own_address(const RobotIdentity& identity);

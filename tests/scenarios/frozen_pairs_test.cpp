@@ -244,7 +244,8 @@ TEST_P(FrozenPairs, LeaveNoRobotMovingUntilAPersonArmsIt) {
     Tandem next({"preflight", "run.xml", "--wait", "1"}, hub_folder.path());
     EXPECT_TRUE(eventually([&] { return all_rest(); }, 20.0)) << next.errors();
     next.wait(60.0);
-    EXPECT_THAT(next.errors(), HasSubstr("were killed together. It was stopped now, and has confirmed that"));
+    EXPECT_THAT(next.errors(),
+                HasSubstr("are both gone, and it had confirmed no stop. It was stopped now, and has confirmed that"));
     EXPECT_THAT(next.output(), HasSubstr("left behind"));
   }
   ASSERT_TRUE(eventually([&] { return all_rest(); }, 20.0));

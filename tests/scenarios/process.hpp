@@ -72,6 +72,13 @@ class Folder {
   fs::path path_;
 };
 
+/// Locks of robots are made in a folder of this test program's own, unless it says where: what its programs leave
+/// behind when they are killed is nobody else's to stop.
+inline void use_own_lock_folder() {
+  static const Folder folder;
+  ::setenv("XDG_RUNTIME_DIR", folder.path().c_str(), 0);
+}
+
 /// The words that start `tandem`: built for another architecture, it needs an emulator, and so does this test itself.
 inline std::vector<std::string> tandem_words() {
   std::vector<std::string> words;
@@ -102,6 +109,7 @@ inline std::vector<pid_t> processes_marked(const std::string& mark) {
 class Tandem {
  public:
   Tandem(std::vector<std::string> arguments, const fs::path& folder) : folder_(folder) {
+    use_own_lock_folder();
     static int count = 0;
     output_ = folder / ("out" + std::to_string(++count));
     errors_ = folder / ("err" + std::to_string(count));
