@@ -186,10 +186,10 @@ void World::close() {
   session_.reset();
 }
 
-int World::visit(visitproc visit, void* argument) const {
+int World::visit(visitproc take, void* argument) const {
   if (session_ == nullptr) return 0;
   for (PyObject* const object : session_->held) {
-    if (const int done = visit(object, argument); done != 0) return done;
+    if (const int done = take(object, argument); done != 0) return done;
   }
   return 0;
 }

@@ -76,8 +76,8 @@ class World {
   void restore(const Snapshot& snapshot);
   void close();
   bool closed() const noexcept { return session_ == nullptr; }
-  /// For Python's collector: visits the guests and hooks that this holds. @returns what `visit` did.
-  int visit(visitproc visit, void* argument) const;
+  /// For Python's collector: visits the guests and hooks that this holds. @returns what `take` did.
+  int visit(visitproc take, void* argument) const;
   /// Closes unless it is in use: nothing but what it holds itself refers to it.
   void collect() noexcept;
 

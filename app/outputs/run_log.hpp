@@ -24,10 +24,10 @@ class RunLog {
 
   /// Must not outlive this, as the next.
   hal::Log log();
-  /// Takes an entry into the file alone.
-  void keep(std::string_view text);
   /// For what is about real robots: never silent on the terminal, whatever else was said.
   hal::Log robots();
+  /// Takes an entry into the file alone.
+  void keep(std::string_view text);
   /// The real robots as they are now: to be called often. On a terminal the list stands under everything else, without
   /// one it is told as it changes.
   void show_robots(const std::vector<mixed_reality::RollRow>& roll);
