@@ -214,8 +214,13 @@ std::string Interpreter::taken_message() {
   constexpr std::string_view kMissing = "a nil value (field '";
   if (const std::size_t at = text.find(kMissing); at != std::string::npos) {
     const std::size_t begin = at + kMissing.size();
-    const std::string near = hal::closest(text.substr(begin, text.find('\'', begin) - begin), shared_names());
-    if (!near.empty()) text += "; there is '" + near + "'";
+    const std::string name = text.substr(begin, text.find('\'', begin) - begin);
+    const std::string near = hal::closest(name, shared_names());
+    if (near == name && !name.empty()) {
+      text += "; there is such a name, but in another table";
+    } else if (!near.empty()) {
+      text += "; there is '" + near + "'";
+    }
   }
   return text;
 }

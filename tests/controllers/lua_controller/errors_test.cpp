@@ -8,6 +8,7 @@ namespace {
 
 using ::testing::AllOf;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 TEST(LuaErrors, NameTheLineOfASyntaxError) {
   Scripted world({.text = "function step()\n  x = = 1\nend"});
@@ -57,6 +58,9 @@ TEST(LuaErrors, NameWhatAMisspeltNameIsLike) {
   EXPECT_THAT(Scripted({.text = "function step() robot.sensors.proximty.count = 1 end"}).incident(),
               HasSubstr("there is 'proximity'"));
   EXPECT_THAT(Scripted({.text = "function step() math.sqroot(2) end"}).incident(), HasSubstr("there is 'sqrt'"));
+  EXPECT_THAT(
+      Scripted({.text = "function step() math.rep('a', 2) end"}).incident(),
+      AllOf(HasSubstr("(field 'rep'); there is such a name, but in another table"), Not(HasSubstr("there is 'rep'"))));
 }
 
 TEST(LuaErrors, SayWhichDeviceIsNotListed) {
