@@ -21,12 +21,15 @@ struct Root {
   std::string table;
   bool isolate = false;
   double time_limit_s = 0.0;
+  double step_limit_s = 60.0;
   void describe(ParamVisitor& v) {
     v.text("table", table, "Table to write (SQLite); left out: named as the study, ending in .sqlite, in this folder.");
     v.flag("isolate", isolate,
            "Every run in a process and a world of its own: for plug-ins that remember things from run to run.");
     v.number("time_limit", time_limit_s, unit::s, {0.0, 1e9},
              "Real time after which a run is ended and has failed; 0: none.");
+    v.number("step_limit", step_limit_s, unit::s, {0.0, 1e6},
+             "Real time that one step may take, in whole seconds; a run with a longer one has failed; 0: any.");
   }
 };
 

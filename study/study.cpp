@@ -231,6 +231,7 @@ std::optional<Study> read_root(Element root, const std::string& text, const std:
   study.table = said.table.empty() ? study.name + ".sqlite" : said.table;
   study.isolate = said.isolate;
   study.time_limit_s = said.time_limit_s;
+  study.step_limit_s = said.step_limit_s;
   for (Element& e : root.children) {
     if (e.name == schema::Experiment::kElement.name) read_experiment(reading, e, study);
     if (e.name == schema::Parameter::kElement.name) read_alone(reading, e, study);

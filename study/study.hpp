@@ -49,7 +49,8 @@ struct Study {
   std::string text;  ///< of the whole file
   std::string table;
   bool isolate = false;
-  double time_limit_s = 0.0;  ///< 0: none
+  double time_limit_s = 0.0;   ///< 0: none
+  double step_limit_s = 60.0;  ///< of one step; 0: none
   std::vector<ExperimentChoice> experiments;
   std::vector<Axis> axes;
   std::vector<Constant> constants;

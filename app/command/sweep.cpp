@@ -198,6 +198,7 @@ study::SweepOptions how_to_sweep(const SweepOptions& options, const study::Study
   how.isolate = study.isolate;
   how.keeps_worlds = !design.names_runs();
   how.time_limit_s = study.time_limit_s;
+  how.step_limit_s = study.step_limit_s;
   how.measuring = {study.measures, study.published, study.sample_every_s};
   return how;
 }

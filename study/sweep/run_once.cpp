@@ -57,9 +57,11 @@ RunOutcome Runner::run(const RunPlan& plan) {
     return outcome;
   }
   core::World& world = *world_;
+  const HangLimit::Watched watched(hang_);
   const std::int64_t steps = steps_of(world.scenario());
   Sampler sampler(measuring_, world.ticks_per_second());
   while (world.state() == core::RunState::Running && (steps == 0 || world.tick() < steps)) {
+    HangLimit::step();
     world.step();
     sampler.tick_done(world);
   }
@@ -78,6 +80,7 @@ RunOutcome Runner::run(const RunPlan& plan) {
     if (incidents.controllers_thrown > 0)
       outcome.failure = incidents.first.empty() ? "a controller threw" : incidents.first.front();
     outcome.done = outcome.failure.empty();
+    if (!outcome.done) outcome.ended = "failed";
   }
   outcome.wall_s = seconds_of(CLOCK_MONOTONIC) - wall_s;
   outcome.cpu_s = seconds_of(CLOCK_PROCESS_CPUTIME_ID) - cpu_s;

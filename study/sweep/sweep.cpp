@@ -125,7 +125,7 @@ hal::Status sweep(const Design& design, const std::vector<std::int64_t>& runs, c
                   hal::PluginLoader& loader, const SweepOptions& options,
                   const std::function<hal::Status(std::span<const FinishedRun>)>& take,
                   const std::function<void()>& tick, const std::atomic<bool>& stop) {
-  Runner runner(scenario_of, loader, options.measuring, options.keeps_worlds && !options.isolate);
+  Runner runner(scenario_of, loader, options.measuring, options.keeps_worlds && !options.isolate, options.step_limit_s);
   const Worker::Make make = [&](std::int64_t run) { return runner.run(design.run(run)); };
   Pool pool(design, runs, options, make);
   double told_s = now_s();

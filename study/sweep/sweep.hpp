@@ -22,6 +22,7 @@ struct SweepOptions {
   bool isolate = false;       ///< every run in a process of its own
   bool keeps_worlds = true;   ///< false: every run in a world of its own
   double time_limit_s = 0.0;  ///< real time after which a run has failed; 0: none
+  double step_limit_s = 0.0;  ///< the same of one step
   Measuring measuring;
   std::function<void()> in_worker;  ///< called first in every process
 };

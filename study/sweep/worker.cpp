@@ -83,8 +83,8 @@ hal::Result<std::unique_ptr<Worker>> Worker::start(const Make& make, const std::
   if (worker->pid_ == 0) {
     prctl(PR_SET_PDEATHSIG, SIGKILL);
     if (getppid() != parent) _exit(0);
-    std::signal(SIGINT, SIG_IGN);  // Ctrl-C is for the parent
-    std::signal(SIGTERM, SIG_DFL);
+    for (const int signal : {SIGINT, SIGHUP, SIGQUIT}) std::signal(signal, SIG_IGN);  // for the parent
+    for (const int signal : {SIGTERM, SIGXCPU, SIGALRM}) std::signal(signal, SIG_DFL);
     if (in_child) in_child();
     const int nothing = ::open("/dev/null", O_RDWR);
     if (nothing >= 0) {

@@ -192,18 +192,18 @@ TEST(LockstepRun, EndsOnCtrlCWhileItWaits) {
   Folder folder;
   Hub hub(folder, experiment(1, 30.0));
   EXPECT_TRUE(eventually(
-      [&] { return hub.process().errors().find("robot 'ep0' (nobody has connected)") != std::string::npos; }, 5.0));
+      [&] { return hub.process().errors().find("robot 'ep0' (nobody has connected)") != std::string::npos; }, 60.0));
   hub.process().signal(SIGINT);
-  EXPECT_EQ(hub.process().wait(5.0), 130);
+  EXPECT_EQ(hub.process().wait(60.0), 130);
   Hub second(folder, experiment(2, 30.0));
   Tandem peer({"robot", "hub.xml", "--link", second.link(), "--robot", "ep1"}, folder.path());
   EXPECT_TRUE(eventually(
-      [&] { return second.process().errors().find("robot 'ep0' (nobody has connected)") != std::string::npos; }, 5.0))
+      [&] { return second.process().errors().find("robot 'ep0' (nobody has connected)") != std::string::npos; }, 60.0))
       << second.process().errors();
   peer.signal(SIGTERM);
-  EXPECT_EQ(peer.wait(5.0), 143);
+  EXPECT_EQ(peer.wait(60.0), 143);
   second.process().signal(SIGTERM);
-  EXPECT_EQ(second.process().wait(5.0), 143);
+  EXPECT_EQ(second.process().wait(60.0), 143);
 }
 
 TEST(LockstepRun, EndsWithThreeWhenAPeerFreezes) {

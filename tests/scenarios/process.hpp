@@ -155,9 +155,9 @@ class Tandem {
 
   /// Exit code, or -signal; -1000 when it did not end within `seconds`.
   int wait(double seconds = 30.0) {
+    if (ended_) return code_;
     int status = 0;
-    const bool done = eventually([&] { return ended_ || (ended_ = waitpid(pid_, &status, WNOHANG) == pid_); }, seconds);
-    if (!done) return -1000;
+    if (!eventually([&] { return ended_ = waitpid(pid_, &status, WNOHANG) == pid_; }, seconds)) return -1000;
     if (WIFEXITED(status))
       code_ = WEXITSTATUS(status);
     else if (WIFSIGNALED(status))
