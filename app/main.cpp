@@ -98,6 +98,10 @@ void add_run_options(CLI::App* c, RunOptions& o) {
   c->add_option("--desk-keys", o.hold.desk_keys,
                 "Who commands over LCM (<desk lcm=…>): a file of lines NAME ROLE SECRET; default: this user's");
   c->add_flag("--anyway", o.anyway, "Drive real robots although their last first motion (preflight --move) failed");
+  c->add_option("--step-limit", o.step_limit_s,
+                "End the run, as a failure, when a controller or hook has not returned after so many seconds; 0: never")
+      ->check(CLI::Range(0.0, 1e9))
+      ->capture_default_str();
   c->add_option("--without", o.without, "Simulate this robot instead of driving the real one; repeatable")
       ->allow_extra_args(false);
   c->add_flag("--quiet", o.quiet, "No table at the end");

@@ -90,6 +90,7 @@ struct RunOptions {
   ReplayRequest replay = {};
   bool quiet = false;           ///< no table
   double step_timeout_s = 5.0;  ///< after which a controller or hook that does not return is named; 0: never
+  double step_limit_s = 0.0;    ///< after which it ends the run, as a failure; 0: never
 };
 
 struct CompareOptions {

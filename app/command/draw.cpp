@@ -6,6 +6,7 @@
 #include "app/command/command.hpp"
 #include "app/outputs/pictures.hpp"
 #include "app/outputs/report.hpp"
+#include "app/process/signals.hpp"
 #include "app/process/terminal.hpp"
 #include "core/view/picture.hpp"
 #include "core/view/record_drawing.hpp"
@@ -82,6 +83,7 @@ int draw_picture(const DrawOptions& options) {
 
 int draw_film(const DrawOptions& options) {
   std::signal(SIGPIPE, SIG_IGN);  // the encoder may end before us
+  const std::atomic<bool>& stop = catch_signals();
   if (const hal::Status can = check_pictures(options.pictures); !can.ok())
     return complain(kBadInput, can.error().message);
   const hal::Status apart = check_apart({{"film", options.pictures.film}}, {{"record", options.record}});
@@ -91,7 +93,7 @@ int draw_film(const DrawOptions& options) {
   auto first = core::RecordDrawings::open(options.record);
   if (!first.ok()) return complain(kBadInput, first.error().message);
   std::int64_t frames = 1, ticks = first.value().ticks_done();
-  for (; first.value().next(); ++frames) ticks = std::max(ticks, first.value().ticks_done());
+  for (; !stop.load() && first.value().next(); ++frames) ticks = std::max(ticks, first.value().ticks_done());
   PictureRequest request = options.pictures;
   request.film_every = std::max(
       request.film_every, (ticks + frames / 2) / std::max<std::int64_t>(1, frames - 1));  // of a record of some ticks
@@ -100,16 +102,18 @@ int draw_film(const DrawOptions& options) {
   core::RecordDrawings& drawings = opened.value();
   const auto look = look_of(request, drawings.arena());
   if (!look.ok()) return complain(kBadInput, look.error().message);
-  auto made = Pictures::open(request, look.value(), drawings.ticks_per_second(), ticks);
+  auto made = Pictures::open(request, look.value(), drawings.ticks_per_second(), ticks, stop);
   if (!made.ok()) return complain(kBadInput, made.error().message);
   Pictures& pictures = *made.value();
   do {
     pictures.note(drawings.ticks_done(), drawings.places());
     if (pictures.wants(drawings.ticks_done()))
       pictures.draw(drawings.ticks_done(), drawings.drawing(look.value(), &pictures.trails()));
-  } while (drawings.next());
+  } while (!stop.load() && drawings.next());
   tell_damage(options, drawings);
-  return pictures.close() ? kDone : kFailedRunning;
+  const bool good = pictures.close();
+  if (stop.load()) return interrupted_code();
+  return good ? kDone : kFailedRunning;
 }
 
 }  // namespace tandem::app

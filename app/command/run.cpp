@@ -2,6 +2,7 @@
 #include <csignal>
 #include <cstdio>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <iterator>
 
 #include "app/command/command.hpp"
@@ -323,6 +324,23 @@ std::unique_ptr<mixed_reality::MixedSession> join_real_robots(const hal::Catalog
   return session;
 }
 
+/// Why a run has failed whose world has not; empty: it has not.
+std::string failure_besides(const core::World& world, bool as_before, const core::LiveRun* live, bool was_guarded,
+                            const std::vector<std::string>& left) {
+  if (const core::Incidents& incidents = world.incidents(); incidents.controllers_thrown > 0) {
+    return fmt::format("{} threw, and the run went on without {}; the first incident: {}",
+                       incidents.controllers_thrown == 1 ? "a controller"
+                                                         : fmt::format("{} controllers", incidents.controllers_thrown),
+                       incidents.controllers_thrown == 1 ? "its robot" : "their robots",
+                       incidents.first.empty() ? "not known" : incidents.first.front());
+  }
+  if (!as_before) return "it was not as in the run that it repeats";
+  if (live != nullptr && !live->failure().empty()) return live->failure();
+  if (!left.empty()) return fmt::format("the stop of {} is not confirmed", fmt::join(left, ", "));
+  if (!was_guarded) return "no guardian looked after its robots at the end";
+  return {};
+}
+
 /// Writes what was asked for at the end of a run. @returns whether all of it could be written.
 bool write_results(RunOutputs& outputs, const RunResult& result, bool table) {
   bool good = true;
@@ -374,7 +392,7 @@ int run_with(const RunOptions& options, std::unique_ptr<RunLog>& log) {
   if (!guarded.started().ok()) return complain(kFailedRunning, guarded.started().error().message);
   const std::atomic<bool>& stop = catch_signals();
   std::signal(SIGPIPE, SIG_IGN);  // who reads our output may end before us
-  Watchdog watchdog(options.step_timeout_s, stop);
+  Watchdog watchdog(options.step_timeout_s, stop, options.step_limit_s);
   auto opened_log = RunLog::open(options.log);
   if (!opened_log.ok()) return complain(kBadInput, opened_log.error().message);
   log = std::move(opened_log).value();
@@ -553,21 +571,24 @@ int run_with(const RunOptions& options, std::unique_ptr<RunLog>& log) {
     result.more_rows = replay.rows();
   }
   result.end = end_of(*world, steps, stop.load(std::memory_order_relaxed));
+  const RunEnd reached = result.end;
+  if (reached.how != Ended::Failed) {
+    result.end.failure = failure_besides(*world, as_before, live.get(), was_guarded, left);
+    if (!result.end.failure.empty()) result.end.how = Ended::Failed;
+  }
   std::optional<mixed_reality::LockstepReport> peers;
   if (lockstep != nullptr) {
     peers = lockstep->report();
     result.peers = &*peers;
-    lockstep->finish(!result.end.finished(), result.end.finished() ? "the run is over" : "the run ended early");
+    lockstep->finish(!reached.finished(), reached.finished() ? "the run is over" : "the run ended early");
   }
-  if (result.end.how == Ended::Failed) complain(kFailedRunning, result.end.failure);
-  if (result.end.how == Ended::Interrupted) say(fmt::format("interrupted at tick {}", world->tick()));
+  if (reached.how == Ended::Failed) complain(kFailedRunning, reached.failure);
+  if (reached.how == Ended::Interrupted) say(fmt::format("interrupted at tick {}", world->tick()));
   const bool table = !options.quiet && options.report != "-";
   const bool written = write_results(outputs, result, table);
   run_log.results_done();
   if (live != nullptr && !live->failure().empty()) complain(kFailedRunning, live->failure());
-  const bool failed = result.end.how == Ended::Failed || world->incidents().controllers_thrown > 0 || !as_before ||
-                      (live != nullptr && !live->failure().empty());
-  if (failed || !was_guarded || !written || !left.empty()) return kFailedRunning;
+  if (result.end.how == Ended::Failed || !written) return kFailedRunning;
   const bool until_interrupted = options.view.on && options.hold.stay;  // that is how such a run ends
   return result.end.how == Ended::Interrupted && !until_interrupted ? interrupted_code() : kDone;
 }

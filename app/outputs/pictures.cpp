@@ -105,6 +105,7 @@ hal::Status write_scene(const core::Drawing& drawing, const core::PictureLook& l
 }
 
 struct Pictures::Impl {
+  const std::atomic<bool>* stop = nullptr;
   PictureRequest request;
   core::PictureLook look;
   std::int64_t ticks = 0, ticks_per_second = 10;
@@ -133,6 +134,8 @@ struct Pictures::Impl {
   std::size_t waiting_bytes = 0;  // with those that are being drawn
   std::int64_t drawn_until = 0;   // ticks that were done then
   bool over = false;
+  bool begun = false;  // to draw
+  bool cut = false;    // something was left out
   std::thread artist;
 
   // Of the thread that draws.
@@ -148,6 +151,7 @@ struct Pictures::Impl {
   void add_frame(const core::Drawing& drawing);
   void write_picture(const core::Drawing& drawing, const std::string& path);
   void add(std::int64_t ticks_done, std::size_t bytes, std::function<void()> draw);
+  void wait_for_change(std::unique_lock<std::mutex>& lock);
   void work();
   void finish();
   void show_progress();
@@ -175,9 +179,20 @@ void Pictures::Impl::write_picture(const core::Drawing& drawing, const std::stri
   complain_once(rendered.ok() ? hal::write_whole_file(path, "picture", rendered.value()) : rendered.error());
 }
 
+/// Until something was drawn, or for a moment. After a stop what waits is left out.
+void Pictures::Impl::wait_for_change(std::unique_lock<std::mutex>& lock) {
+  (void)changed.wait_for(lock, std::chrono::milliseconds(200));
+  if (!stop->load(std::memory_order_relaxed)) return;
+  while (jobs.size() > (begun ? 0U : 1U)) {  // a film has one frame at least
+    waiting_bytes -= jobs.back().bytes;
+    jobs.pop_back();
+    cut = true;
+  }
+}
+
 void Pictures::Impl::add(std::int64_t ticks_done, std::size_t bytes, std::function<void()> draw) {
   std::unique_lock lock(mutex);
-  changed.wait(lock, [&] { return waiting_bytes == 0 || waiting_bytes + bytes <= kMostWaiting_bytes; });
+  while (waiting_bytes > 0 && waiting_bytes + bytes > kMostWaiting_bytes) wait_for_change(lock);
   jobs.push_back({ticks_done, bytes, std::move(draw)});
   waiting_bytes += bytes;
   changed.notify_all();
@@ -190,6 +205,7 @@ void Pictures::Impl::work() {
     if (jobs.empty()) return;
     Job job = std::move(jobs.front());
     jobs.pop_front();
+    begun = true;
     lock.unlock();
     try {
       job.draw();
@@ -206,7 +222,8 @@ void Pictures::Impl::work() {
 
 void Pictures::Impl::finish() {
   {
-    const std::lock_guard lock(mutex);
+    std::unique_lock lock(mutex);
+    while (waiting_bytes > 0) wait_for_change(lock);
     over = true;
     changed.notify_all();
   }
@@ -219,7 +236,7 @@ void Pictures::Impl::show_progress() {
   Progress progress(ticks, ticks_per_second);
   std::unique_lock lock(mutex);
   while (waiting_bytes > 0) {
-    (void)changed.wait_for(lock, std::chrono::milliseconds(200));
+    wait_for_change(lock);
     progress.step(drawn_until);
   }
 }
@@ -229,8 +246,10 @@ bool Pictures::asked(const PictureRequest& request) noexcept {
 }
 
 hal::Result<std::unique_ptr<Pictures>> Pictures::open(const PictureRequest& request, const core::PictureLook& look,
-                                                      std::int64_t ticks_per_second, std::int64_t ticks) {
+                                                      std::int64_t ticks_per_second, std::int64_t ticks,
+                                                      const std::atomic<bool>& stop) {
   auto impl = std::make_unique<Impl>();
+  impl->stop = &stop;
   impl->request = request;
   impl->look = look;
   impl->ticks = ticks;
@@ -295,6 +314,7 @@ bool Pictures::close() {
   Impl& p = *impl_;
   p.show_progress();
   p.finish();
+  if (p.cut) say(fmt::format("interrupted: pictures and film end after tick {}", p.drawn_until));
   if (p.film != nullptr && p.film_status.ok()) p.complain_once(p.film->close());
   if (p.film != nullptr && !p.failed) {
     if (const std::string remark = p.film->remark(); !remark.empty()) say(remark);

@@ -1,5 +1,6 @@
 // Pictures on the way and films, of a run or of a record.
 #pragma once
+#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -29,15 +30,17 @@ std::string scene_of(const std::string& povray);
 hal::Status write_scene(const core::Drawing& drawing, const core::PictureLook& look, hal::OutputFile& file,
                         const std::string& povray);
 
-/// Draws on a thread of its own. Who hands over drawings waits when that is far behind: no frame is left out.
+/// Draws on a thread of its own. Who hands over drawings waits when that is far behind: no frame is left out, until
+/// `stop` is set: then what is not drawn yet is left out, and the film ends there.
 class Pictures {
  public:
   /// Whether there is anything to be drawn before the end.
   static bool asked(const PictureRequest& request) noexcept;
   /// `ticks` are to come; 0: nobody knows. Error: a film of too many frames, a tick that does not come, or a file that
-  /// cannot be written.
+  /// cannot be written. `stop` must outlive this.
   static hal::Result<std::unique_ptr<Pictures>> open(const PictureRequest& request, const core::PictureLook& look,
-                                                     std::int64_t ticks_per_second, std::int64_t ticks);
+                                                     std::int64_t ticks_per_second, std::int64_t ticks,
+                                                     const std::atomic<bool>& stop);
   ~Pictures();
 
   /// After every tick, for the trails; also before the first one, with 0.

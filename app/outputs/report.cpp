@@ -48,7 +48,8 @@ hal::Status check_apart(const std::vector<NamedFile>& outputs, const std::vector
 void print_table(const std::vector<std::pair<std::string, std::string>>& rows) {
   std::size_t width = 0;
   for (const auto& [name, value] : rows) width = std::max(width, name.size());
-  for (const auto& [name, value] : rows) fmt::print("  {:<{}}  {}\n", name, width, printable(value));
+  for (const auto& [name, value] : rows)  // fmt::print would throw where the terminal is gone
+    std::fputs(fmt::format("  {:<{}}  {}\n", name, width, printable(value)).c_str(), stdout);
 }
 
 }  // namespace tandem::app

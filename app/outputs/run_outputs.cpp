@@ -1,6 +1,7 @@
 #include "app/outputs/run_outputs.hpp"
 
 #include "app/outputs/report.hpp"
+#include "app/process/signals.hpp"
 #include "app/process/terminal.hpp"
 #include "core/view/picture.hpp"
 #include "mixed_reality/settings/bridge_request.hpp"
@@ -83,7 +84,7 @@ hal::Result<RunOutputs> open_outputs(const RunOptions& options, const core::Scen
   if (!look.ok()) return look.error();
   outputs.look = look.value();
   if (Pictures::asked(options.pictures)) {
-    auto pictures = Pictures::open(options.pictures, look.value(), world.ticks_per_second(), steps);
+    auto pictures = Pictures::open(options.pictures, look.value(), world.ticks_per_second(), steps, catch_signals());
     if (!pictures.ok()) return pictures.error();
     outputs.pictures = std::move(pictures).value();
   }

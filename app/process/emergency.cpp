@@ -10,6 +10,7 @@
 #include <execinfo.h>
 #include <new>
 #include <string>
+#include <sys/syscall.h>
 #include <unistd.h>
 
 #include "app/options.hpp"
@@ -22,6 +23,11 @@ namespace {
 
 std::atomic<const EmergencySaver*> saver{nullptr};
 std::atomic<pid_t> ending{0};  // the thread that ends the process
+pid_t looked_after = 0;        // the process whose end is to be told of
+
+[[noreturn]] void leave(int code) noexcept {
+  for (;;) syscall(SYS_exit_group, code);
+}
 
 /// "error: controller … of robot … at tick 17", or "error: tandem" when no plug-in is known to run on this thread.
 void begin_message(hal::FixedText& text) noexcept {
@@ -112,9 +118,21 @@ void on_quick_exit() noexcept {
   end_now(text.view());
 }
 
+/// What plug-ins, and libraries that they bring, call instead of the C library's `_exit`, which would end the run
+/// without a word.
+[[noreturn]] void on_immediate_exit(int status) noexcept {
+  if (getpid() != looked_after) leave(status);
+  hal::FixedText text;
+  const hal::CallMark* mark = hal::known_thread_mark();
+  if (mark == nullptr || !hal::name_call(*mark, text)) text << "a thread that tandem does not know";
+  text << " called _exit(" << std::int64_t{status} << ")";
+  end_now(text.view());
+}
+
 }  // namespace
 
 void catch_crashes() noexcept {
+  looked_after = getpid();
   (void)hal::this_thread_mark();  // a stack for the handlers
   on_exit(&on_exit_call, nullptr);
   std::at_quick_exit(&on_quick_exit);
@@ -145,7 +163,7 @@ bool write_now(int descriptor, std::string_view text) noexcept {
 void end_now(std::string_view message) noexcept {
   pid_t nobody = 0;
   if (!ending.compare_exchange_strong(nobody, gettid())) {
-    if (nobody == gettid()) _exit(kFailedRunning);  // it went wrong while it saved
+    if (nobody == gettid()) leave(kFailedRunning);  // it went wrong while it saved
     for (;;) pause();                               // another thread is at it
   }
   leave_screen_now();
@@ -156,7 +174,17 @@ void end_now(std::string_view message) noexcept {
   (void)write_now(STDERR_FILENO, text.view());
   (void)write_now(STDERR_FILENO, "\n");
   if (const EmergencySaver* last = saver.load(std::memory_order_acquire); last != nullptr) last->save(text.view());
-  _exit(kFailedRunning);
+  leave(kFailedRunning);
 }
 
 }  // namespace tandem::app
+
+// The program's own, found before the C library's by all that is loaded.
+extern "C" {
+[[noreturn, gnu::visibility("default")]] void _exit(int status) {
+  tandem::app::on_immediate_exit(status);
+}
+[[noreturn, gnu::visibility("default")]] void _Exit(int status) noexcept {
+  tandem::app::on_immediate_exit(status);
+}
+}

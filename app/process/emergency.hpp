@@ -5,8 +5,8 @@
 namespace tandem::app {
 
 /// From here on a crash (SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGTRAP, SIGABRT), an exception that nobody catches and a
-/// plug-in that calls `exit` end the process with exit code 3 and a message that names the plug-in whose code it was,
-/// its robot and the tick. Once, at the start of the program.
+/// plug-in that calls `exit` or `_exit` end the process with exit code 3 and a message that names the plug-in whose
+/// code it was, its robot and the tick. Not in processes that are forked off it. Once, at the start of the program.
 void catch_crashes() noexcept;
 
 /// Saves what there is when the process must end at once.

@@ -48,8 +48,12 @@ void note_rearm(int) {
 const std::atomic<bool>& catch_signals() {
   struct sigaction action {};
   action.sa_handler = &note;  // no SA_RESTART: sleeps wake up
-  sigaction(SIGINT, &action, nullptr);
-  sigaction(SIGTERM, &action, nullptr);
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGXCPU, SIGALRM}) {
+    struct sigaction before {};
+    sigaction(signal, nullptr, &before);
+    if (signal == SIGHUP && before.sa_handler == SIG_IGN) continue;  // nohup
+    sigaction(signal, &action, nullptr);
+  }
   return stop_asked;
 }
 

@@ -44,7 +44,8 @@ std::string name_of(const hal::CallMark& mark) {
 
 }  // namespace
 
-Watchdog::Watchdog(double limit_s, const std::atomic<bool>& stop) : limit_s_(limit_s), stop_(stop) {
+Watchdog::Watchdog(double limit_s, const std::atomic<bool>& stop, double end_s)
+    : limit_s_(limit_s), end_s_(end_s), stop_(stop) {
   // Signals are for the threads that sleep in loops that look at `stop`.
   sigset_t all, before;
   sigfillset(&all);
@@ -74,7 +75,8 @@ void Watchdog::set_save(std::function<void()> save) {
 
 void Watchdog::watch() {
   const double patience_s = limit_s_ > 0.0 ? limit_s_ : kPatience_s;
-  const std::chrono::duration<double> pause(std::clamp(patience_s / 20.0, 0.002, 0.1));
+  const double shortest_s = end_s_ > 0.0 ? std::min(patience_s, end_s_) : patience_s;
+  const std::chrono::duration<double> pause(std::clamp(shortest_s / 20.0, 0.002, 0.1));
   auto& marks = hal::call_marks();
   std::vector<Seen> seen(marks.size());
   double last_s = wall_seconds();
@@ -93,18 +95,21 @@ void Watchdog::watch() {
         continue;
       }
       const double took_s = now_s - seen[i].since_s;
-      if (took_s < patience_s) continue;
+      const bool over = end_s_ > 0.0 && took_s >= end_s_;
+      if (took_s < patience_s && !over) continue;
       if (limit_s_ > 0.0 && seen[i].told.empty()) {
         seen[i].told = name_of(marks[i]);
         say(fmt::format("{} has not returned for {:.1f} s; Ctrl-C ends the run, and keeps all whole ticks",
                         seen[i].told, took_s));
       }
-      if (!stop_.load(std::memory_order_relaxed)) continue;
+      const bool stopped = stop_.load(std::memory_order_relaxed);
+      if (!stopped && !over) continue;
       const std::lock_guard hold(lock_);
       if (!Seen::of(marks[i], now_s).same(seen[i])) continue;
       const std::string who = name_of(marks[i]);
       if (save_) save_();
-      end_now(fmt::format("{} did not return within {:.1f} s, and the run was interrupted", who, took_s));
+      end_now(fmt::format("{} did not return within {:.1f} s, {}", who, took_s,
+                          stopped ? "and the run was interrupted" : "the --step-limit"));
     }
   }
 }

@@ -10,11 +10,13 @@
 namespace tandem::app {
 
 /// Names a controller or hook that does not return within a time, and ends the process when it has not returned and a
-/// stop was asked for. Has a thread of its own; where none can be made, it says so and does nothing.
+/// stop was asked for, or within a longer time. Has a thread of its own; where none can be made, it says so and does
+/// nothing.
 class Watchdog {
  public:
-  /// `limit_s` 0: nobody is named, and a stop waits 5 s. `stop` must outlive this.
-  Watchdog(double limit_s, const std::atomic<bool>& stop);
+  /// `limit_s` 0: nobody is named, and a stop waits 5 s. `end_s` 0: it ends the process only after a stop. `stop` must
+  /// outlive this.
+  Watchdog(double limit_s, const std::atomic<bool>& stop, double end_s = 0.0);
   ~Watchdog();
   Watchdog(const Watchdog&) = delete;
   Watchdog& operator=(const Watchdog&) = delete;
@@ -28,7 +30,7 @@ class Watchdog {
   friend class SaveAtEnd;
   void set_save(std::function<void()> save);
 
-  const double limit_s_;
+  const double limit_s_, end_s_;
   const std::atomic<bool>& stop_;
   std::mutex lock_;
   std::function<void()> save_;

@@ -84,6 +84,11 @@ class Endings : public testing::Test {
     for (const auto& [tick, count] : lines) EXPECT_EQ(count, kRobots) << "tick " << tick;
     return static_cast<int>(lines.size());
   }
+  /// Lines of the trajectory while it grows.
+  int whole_ticks_so_far() const {
+    const std::string all = text_of(folder_.path() / "t.csv.part");
+    return static_cast<int>(std::count(all.begin(), all.end(), '\n')) / kRobots;
+  }
   /// Of a run that a plug-in ended before the records of tick `tick`.
   void expect_saved(int tick, const std::string& failure) const {
     EXPECT_EQ(value("finished"), "false") << report();
@@ -123,10 +128,25 @@ TEST_F(Endings, AHookThatThrowsEndsTheRunAsFailed) {
   EXPECT_THAT(run->output(), HasSubstr("not finished"));
 }
 
+TEST_F(Endings, EverySignalThatAsksForTheEndEndsItInOrder) {
+  for (const int signal : {SIGHUP, SIGQUIT, SIGXCPU, SIGALRM, SIGTERM, SIGINT}) {
+    auto run = start({.length_s = 100000});
+    ASSERT_TRUE(eventually([&] { return whole_ticks_so_far() > 3; }, 60)) << run->errors();
+    run->signal(signal);
+    EXPECT_EQ(run->wait(60), 128 + signal) << run->errors();
+    EXPECT_EQ(value("ended"), "interrupted") << signal;
+    EXPECT_GT(whole_ticks(), 3);
+    EXPECT_FALSE(scenarios::fs::exists(folder_.path() / "r.json.part"));
+  }
+}
+
 TEST_F(Endings, AControllerThatThrewIsNoSuccess) {
   auto run = start({.params = R"(what="throw" robot="ep4")"});
   EXPECT_EQ(run->wait(), 3);
-  EXPECT_EQ(value("finished"), "true");
+  EXPECT_EQ(value("finished"), "false");
+  EXPECT_EQ(value("ended"), "failed");
+  EXPECT_THAT(report(), HasSubstr("a controller threw, and the run went on without its robot; the first incident: "
+                                  "controller of robot 'ep4' threw at tick 3"));
   EXPECT_EQ(value("controllers_thrown"), "1");
   EXPECT_EQ(whole_ticks(), 20);
   EXPECT_THAT(run->errors(),
@@ -204,7 +224,8 @@ TEST_F(Endings, ACrashNamesControllerRobotAndTickAndKeepsTheRecords) {
   const std::map<std::string, std::string> kinds = {{"memory", "SIGSEGV"},         {"divide", "SIGFPE"},
                                                     {"abort", "SIGABRT"},          {"instruction", "SIGILL"},
                                                     {"stack", "SIGSEGV"},          {"exit", "called exit(0)"},
-                                                    {"quick_exit", "called exit"}, {"noexcept", "lost in \\x1b[2Jspace"}};
+                                                    {"quick_exit", "called exit"}, {"noexcept", "lost in \\x1b[2Jspace"},
+                                                    {"_exit", "called _exit(0)"},  {"_Exit", "called _exit(0)"}};
   for (const auto& [what, word] : kinds) {
     auto run = start({.params = "what=\"" + what + "\" robot=\"ep4\""});
     EXPECT_EQ(run->wait(), 3) << what;
@@ -212,6 +233,19 @@ TEST_F(Endings, ACrashNamesControllerRobotAndTickAndKeepsTheRecords) {
                                      HasSubstr("at tick 3"), HasSubstr(word)));
     expect_saved(3, "of robot 'ep4' at tick 3");
   }
+}
+
+TEST_F(Endings, AnImmediateExitOnAThreadOfAPluginsOwnIsNoEndWithoutAWord) {
+  auto run = start({.params = R"(what="_exit on a thread" robot="ep4")"});
+  EXPECT_EQ(run->wait(), 3);
+  EXPECT_THAT(run->errors(), HasSubstr("called _exit(0)"));
+  expect_saved(3, "called _exit(0)");
+}
+
+TEST_F(Endings, AChildOfAPluginMayExitAsItLikes) {
+  auto run = start({.params = R"(what="child" robot="ep4")"});
+  EXPECT_EQ(run->wait(), 0) << run->errors();
+  EXPECT_EQ(value("finished"), "true");
 }
 
 TEST_F(Endings, ACrashOnAnotherThreadIsNamedToo) {
@@ -255,6 +289,14 @@ TEST_F(Endings, ACrashBeforeTheFirstTickIsNamed) {
   EXPECT_EQ(check.wait(), 3);
 }
 #endif
+
+TEST_F(Endings, AControllerThatDoesNotReturnWithinTheLimitEndsTheRun) {
+  auto run = start({.params = R"(what="loop" robot="ep4")"}, {"--step-timeout", "0", "--step-limit", "0.3"});
+  EXPECT_EQ(run->wait(60), 3);
+  EXPECT_THAT(run->errors(), AllOf(HasSubstr("controller 'who' (library 'test_trouble') of robot 'ep4' at tick 3"),
+                                   HasSubstr("the --step-limit")));
+  expect_saved(3, "did not return within");
+}
 
 TEST_F(Endings, AControllerThatDoesNotReturnIsNamedAndTheFirstCtrlCEndsTheRun) {
   for (const char* threads : {"0", "2"}) {

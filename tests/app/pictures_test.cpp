@@ -192,6 +192,31 @@ TEST(Films, OfARunThatIsInterruptedAreWhole) {
   EXPECT_GE(std::atoi(frames.c_str()), 1) << frames;
 }
 
+TEST(Films, EndSoonAfterCtrlCHoweverMuchIsLeftToDraw) {
+  if (!has_program("ffmpeg")) GTEST_SKIP() << "ffmpeg is not installed";
+  Folder folder;
+  const auto frames_of = [&](const std::string& film) {
+    return std::atoi(answer_of("ffprobe -v error -count_frames -show_entries stream=nb_read_frames -of csv=p=0 '" +
+                               (folder.path() / film).string() + "'")
+                         .c_str());
+  };
+  Tandem run({"run", kExperiment, "--set", "framework.experiment.length=0", "--film", "film.mkv", "--picture-size",
+              "1200", "--record", "run.record"},
+             folder.path());  // its ticks are done much faster than its frames are drawn: thousands wait
+  ASSERT_TRUE(eventually([&] { return text_of(folder.path() / "run.record.part").size() > 1'000'000; }, 120));
+  run.signal(SIGINT);
+  run.signal(SIGINT);
+  EXPECT_EQ(run.wait(30), 130) << run.errors();
+  EXPECT_NE(run.errors().find("interrupted: pictures and film end after tick"), std::string::npos) << run.errors();
+  EXPECT_GE(frames_of("film.mkv"), 1);
+
+  Tandem film({"film", "run.record", "-o", "again.mkv", "--picture-size", "1200"}, folder.path());
+  ASSERT_TRUE(eventually([&] { return std::filesystem::exists(folder.path() / "again.mkv.part"); }, 60));
+  film.signal(SIGINT);
+  EXPECT_EQ(film.wait(30), 130) << film.errors();
+  EXPECT_GE(frames_of("again.mkv"), 1);
+}
+
 TEST(Pictures, AreRayTracedToo) {
   Folder folder;
   output_of(folder, {"run", kConfigs + "footbot_foraging.xml", "--seconds", "5", "--povray", "view.pov", "--quiet"});

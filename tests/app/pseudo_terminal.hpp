@@ -9,6 +9,7 @@
 #include <sys/wait.h>
 #include <termios.h>
 #include <unistd.h>
+#include <utility>
 #include <vector>
 
 #include "tests/scenarios/process.hpp"
@@ -145,6 +146,10 @@ class OnTerminal {
   OnTerminal(const OnTerminal&) = delete;
   OnTerminal& operator=(const OnTerminal&) = delete;
 
+  /// The terminal is gone, as when ssh is closed.
+  void hang_up() {
+    for (int* const end : {&slave_, &master_}) close(std::exchange(*end, -1));
+  }
   void type(std::string_view keys) { (void)!write(master_, keys.data(), keys.size()); }
   void signal(int number) const { kill(pid_, number); }
   pid_t pid() const { return pid_; }

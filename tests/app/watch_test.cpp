@@ -135,6 +135,25 @@ TEST(Watch, LeavesTheTerminalAsItWasHoweverTheRunEnds) {
   }
 }
 
+TEST(Watch, ATerminalThatIsClosedEndsTheRunInOrder) {
+  for (const bool watched : {true, false}) {
+    Folder folder;
+    std::vector<std::string> words = endless({"--report", "r.json", "--trajectory", "t.csv"});
+    if (!watched) std::erase(words, "--watch");
+    OnTerminal run(words, folder.path());
+    ASSERT_TRUE(eventually(
+        [&] {
+          run.read_all();
+          return text_of(folder.path() / "t.csv.part").size() > 10000;
+        },
+        60));
+    run.hang_up();
+    EXPECT_EQ(run.wait(60), 128 + SIGHUP);
+    EXPECT_EQ(json_value(text_of(folder.path() / "r.json"), "ended"), "interrupted");
+    EXPECT_FALSE(std::filesystem::exists(folder.path() / "t.csv.part"));
+  }
+}
+
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // they have handlers of their own
 TEST(Watch, ACrashLeavesTheTerminalAsItWasAndIsTold) {
   Folder folder;

@@ -3,7 +3,9 @@
 #include <cstdlib>
 #include <stdexcept>
 #include <string>
+#include <sys/wait.h>
 #include <thread>
+#include <unistd.h>
 #include <vector>
 
 #include "core/hook/hook.hpp"
@@ -42,6 +44,18 @@ void make_trouble(const std::string& what) {
     std::raise(SIGILL);
   } else if (what == "exit") {
     std::exit(0);
+  } else if (what == "_exit") {
+    _exit(0);
+  } else if (what == "_Exit") {
+    std::_Exit(0);
+  } else if (what == "_exit on a thread") {
+    std::thread([] { _exit(0); }).join();
+  } else if (what == "child") {  // which is none of the run's
+    const pid_t child = fork();
+    if (child == 0) _exit(7);
+    int status = 0;
+    (void)waitpid(child, &status, 0);
+    if (!WIFEXITED(status) || WEXITSTATUS(status) != 7) throw std::runtime_error("its child did not end as it should");
   } else if (what == "quick_exit") {
     std::quick_exit(0);
   } else if (what == "noexcept") {
