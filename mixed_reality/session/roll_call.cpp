@@ -87,14 +87,15 @@ std::vector<RollRow> MixedSession::roll_call() const {
     const Twin& twin = *twins_[i];
     const LinkHealth health = twin.real().health();
     const bool reached = health == LinkHealth::Active, rests = rests_[i].rests();
-    const bool drives = reached && last_[i].driving && !twin.awaits_arming() && phase_ != RunPhase::Stopping;
+    const bool drives =
+        reached && last_[i].driving && !twin.real_robot().awaits_arming() && phase_ != RunPhase::Stopping;
     RollRow row{twin.id(), Presence::Stands, {}};
-    row.presence = !reached && !rests                            ? Presence::MayMove
-                   : twin.awaits_arming() || twin.awaits_rearm() ? Presence::WaitsForPerson
-                   : !reached                                    ? Presence::Unreachable
-                   : drives                                      ? Presence::Drives
-                   : !rests                                      ? Presence::Stops
-                                                                 : Presence::Stands;
+    row.presence = !reached && !rests                                                      ? Presence::MayMove
+                   : twin.real_robot().awaits_arming() || twin.real_robot().awaits_rearm() ? Presence::WaitsForPerson
+                   : !reached                                                              ? Presence::Unreachable
+                   : drives                                                                ? Presence::Drives
+                   : !rests                                                                ? Presence::Stops
+                                                                                           : Presence::Stands;
     if (row.presence != Presence::Drives) row.why = phase_ == RunPhase::Stopping ? "" : last_[i].state;
     if (const std::string trouble = twin.real().trouble(); !reached && !trouble.empty())
       row.why += (row.why.empty() ? "" : ": ") + trouble;
