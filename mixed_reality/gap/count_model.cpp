@@ -25,11 +25,11 @@ CountModel::CountModel(const WheelSeries& series) : series_(series) {
 
 CountModel::Likelihood::Setup CountModel::setup() {
   Likelihood::Setup s;
-  s.first << 1.0, 1.0, 0.0, std::log(0.001), std::log(0.0005);
-  s.prior << 0.3, 0.3, 0.25, 3.0, 3.0;
-  s.step << 1e-5, 1e-5, 1e-4, 1e-3, 1e-3;
-  s.least << 0.1, 0.1, -0.3, -12.0, -12.0;
-  s.most << 10.0, 10.0, 1.0, 0.0, 0.0;
+  s.first << 1.0, 1.0, 0.0, std::log(0.001), std::log(0.0005), std::log(0.001);
+  s.prior << 0.3, 0.3, 0.25, 3.0, 3.0, 3.0;
+  s.step << 1e-5, 1e-5, 1e-5, 1e-3, 1e-3, 1e-3;
+  s.least << 0.1, 0.1, -0.3, -12.0, -12.0, -12.0;
+  s.most << 10.0, 10.0, 1.0, 0.0, 0.0, -1.0;
   return s;
 }
 
@@ -46,6 +46,7 @@ CountModel::Way CountModel::way_until(double t_s) const {
 
 void CountModel::run(const Params& v, Likelihood::Innovations& out) const {
   const double walk2 = std::exp(2.0 * v[kWalk]), noise2 = std::exp(2.0 * v[kNoise]);
+  const double jitter2 = std::exp(2.0 * v[kJitter]);
   out.assign(series_.counts.size(), {});
   double left_m = 0.0, right_m = 0.0, left_var = 0.0, right_var = 0.0;  // what the counters should say
   bool known = false;
@@ -53,8 +54,15 @@ void CountModel::run(const Params& v, Likelihood::Innovations& out) const {
   for (std::size_t i = 0; i < series_.counts.size(); ++i) {
     const WheelSeries::Count& count = series_.counts[i];
     const Way way = way_until(count.at_s - v[kDelay]);
-    for (std::size_t c = std::max<std::size_t>(1, before.command); c <= way.command; ++c)
-      known = known && series_.commands[c - 1].known;
+    for (std::size_t c = std::max<std::size_t>(1, before.command); c <= way.command; ++c) {
+      const WheelSeries::Command& now = series_.commands[c - 1];
+      known = known && now.known;
+      if (c == before.command) continue;
+      const double last_left = c > 1 ? series_.commands[c - 2].left_m_s : 0.0;
+      const double last_right = c > 1 ? series_.commands[c - 2].right_m_s : 0.0;
+      left_var += jitter2 * (now.left_m_s - last_left) * (now.left_m_s - last_left);
+      right_var += jitter2 * (now.right_m_s - last_right) * (now.right_m_s - last_right);
+    }
     const double left = way.left_m - before.left_m, right = way.right_m - before.right_m;
     before = way;
     left_m += v[kLeft] * left;

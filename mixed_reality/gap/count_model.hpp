@@ -8,10 +8,11 @@
 namespace tandem::mixed_reality {
 
 /// Each counter says `counted` times the way commanded, `delay` late; its error has a part that adds up (variance
-/// walk^2 * |way|) and one that does not (rounding, stamps).
+/// walk^2 * |way|) and one that does not (rounding, stamps); and commands act a little sooner or later than in the
+/// mean, which adds up, too (variance jitter^2 * change of speed^2).
 class CountModel {
  public:
-  enum Param : int { kLeft, kRight, kDelay, kWalk, kNoise, kParams };
+  enum Param : int { kLeft, kRight, kDelay, kWalk, kNoise, kJitter, kParams };
   using Likelihood = MaximumLikelihood<kParams, 2>;
   using Params = Likelihood::Params;
 
@@ -19,7 +20,7 @@ class CountModel {
   explicit CountModel(const WheelSeries& series);
 
   static Likelihood::Setup setup();
-  /// Innovations of all counts; the two last parameters are logarithms (m after 1 m; m).
+  /// Innovations of all counts; the last three parameters are logarithms (m after 1 m; m; s).
   void run(const Params& v, Likelihood::Innovations& out) const;
 
  private:

@@ -15,6 +15,7 @@ constexpr double kLongestDelay_s = 0.6;  // that is looked for
 constexpr double kShortestDelay_s = -0.1;
 constexpr double kDelayStep_s = 0.02;
 constexpr double kPlayGain = 6.0;    // by which the logarithm of the likelihood must rise for play to be believed
+constexpr double kStamps_s = 1e-4;   // standard error of any delay at least: steps of time that no scatter shows
 constexpr std::size_t kFewest = 30;  // places or counts
 constexpr double kStanding_m_s = 1e-4;
 
@@ -73,6 +74,7 @@ bool fit_way(const WheelSeries& series, double wheel_base_m, WheelFit& fit) {
   fit.right = plain(WayModel::kRight);
   fit.base = plain(WayModel::kBase);
   fit.delay_s = plain(WayModel::kDelay);
+  fit.delay_s.error = std::hypot(fit.delay_s.error, kStamps_s);
   fit.mount_rad = plain(WayModel::kMount);
   fit.play_m = plays ? plain(WayModel::kPlay) : Estimate{};
   fit.noise_sqrt_m = by_factor(WayModel::kNoise);
@@ -94,6 +96,7 @@ void fit_counts(const WheelSeries& series, WheelFit& fit) {
   fit.counted_left = plain(CountModel::kLeft);
   fit.counted_right = plain(CountModel::kRight);
   fit.counter_delay_s = plain(CountModel::kDelay);
+  fit.counter_delay_s.error = std::hypot(fit.counter_delay_s.error, kStamps_s);
 }
 
 Estimate slip_of(const Estimate& rolled, const Estimate& counted) {
