@@ -681,8 +681,8 @@ void bind_world(py::module_& m) {
       .def("save", &Picture::save, py::arg("path"), "Writes a file: .svg, .png or .pdf.");
   py::class_<World, std::shared_ptr<World>>(m, "World", py::dynamic_attr(),
                                             py::custom_type_setup([](PyHeapTypeObject* heap) {
-                                              heap->as_type.tp_traverse = &traverse_world;
-                                              heap->as_type.tp_clear = &clear_world;
+                                              heap->ht_type.tp_traverse = &traverse_world;
+                                              heap->ht_type.tp_clear = &clear_world;
                                             }))
       .def(py::init([](std::string file, std::string text, std::optional<std::uint64_t> seed,
                        std::optional<std::int64_t> threads, std::vector<std::string> parameters, py::dict controllers,
