@@ -9,7 +9,7 @@
 
 namespace tandem::app {
 
-/// Lines that begin with whom they are about ("robot 'ep0' at 0.3 s: driving", "e-puck 'ep0': active") are held for
+/// Lines that begin with whom they are about ("robot 'ep0' at 0.3 s: driving", "KIND 'ep0': active") are held for
 /// kHeld_s and then told as one where they differ in robot and time alone. Information has a budget of its own, and
 /// what exceeds it is only counted. Warnings and errors have another one, which fills up again by kRefill_s a line:
 /// while it is empty they wait, and those that say the same are drawn together. Nothing of them is dropped.

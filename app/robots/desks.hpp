@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "app/outputs/command_log.hpp"
+#include "app/robots/command_log.hpp"
 #include "bridges/desk/lcm_desk.hpp"
 #include "core/live/live_run.hpp"
 #include "core/scenario/scenario.hpp"

@@ -43,6 +43,7 @@ class SeenRobots : public testing::Test {
   void open(core::Scene& scene, std::map<std::string, std::string> behind = {}) {
     for (core::RobotItem& item : scene.scenario.robots) {
       item.bridge = core::BridgeConfig{"fake:" + item.id, 0.5, {}, 7};
+      if (!rearm_.empty()) item.bridge->rearm = rearm_;
       const double heading_rad = item.placement.yaw_rad;
       bodies_[item.id].pose = {item.placement.p_W[0], item.placement.p_W[1], 0.0, std::cos(heading_rad),
                                std::sin(heading_rad)};
@@ -78,6 +79,7 @@ class SeenRobots : public testing::Test {
   FakeTime time_{7'000'000'000};
   std::map<std::string, FakeBody> bodies_;
   MixedOptions options_;
+  std::string rearm_;  ///< of all; empty: the default
   std::string log_;
   core::MadeWorld made_;
   std::unique_ptr<MixedSession> session_;
@@ -121,7 +123,7 @@ TEST_F(SeenRobots, WhoSlipAgainAndAgainDriveOnByTheirPolicy) {
   core::Scene scene = drive(0.1, 0.1);
   scene.robot("ep0", -2.5, 0.0);
   watch(scene);
-  scene.scenario.robots[0].bridge->rearm = "after 0.5 s";
+  rearm_ = "after 0.5 s";
   open(scene);
   int held_times = 0;
   bool held = false;

@@ -64,7 +64,7 @@ TEST(BridgeCheck, SaysWhatCannotBeReadWithItsLine) {
   item.bridge->rearm = "soon";
   const std::string text =
       problems_of({item, robot("e-puck", "ep1", "cereal:x", 3), robot("marsupial", "m0", "can:can0", 5)});
-  EXPECT_THAT(text, HasSubstr("e.xml:2: error: robot 'ep0': 'soon' is no way to re-arm; there are: operator"));
+  EXPECT_THAT(text, HasSubstr("e.xml:2: error: robot 'ep0': 'soon' is no way to re-arm; there are: proved, operator"));
   EXPECT_THAT(text,
               HasSubstr("e.xml:2: error: robot 'ep0': an e-puck's firmware talks with 115200 baud, not with 57600"));
   EXPECT_THAT(text, HasSubstr("e.xml:4: error: robot 'ep1': link 'cereal:x': unknown scheme"));

@@ -1,4 +1,4 @@
-#include "app/outputs/command_log.hpp"
+#include "app/robots/command_log.hpp"
 
 #include <algorithm>
 #include <array>
