@@ -354,11 +354,14 @@ TEST(WatchPage, ShowsRealRobotsAndWhyTheyStand) {
   bert.reading_age_s = 0.02;
   bert.battery = 0.5;
   page.moment.real = {gina, bert};
+  page.moment.roll = {{"gina", mixed_reality::Presence::Unreachable, "link lost"},
+                      {"bert", mixed_reality::Presence::Drives, ""}};
   std::string text;
   for (const auto& line : app::lay_out(page, {120, 24})) text += line.text + "\n";
   EXPECT_THAT(text, AllOf(HasSubstr("gina         stands    age   1500 ms  round trip  12.3 ms  link lost; no answer"),
                           HasSubstr("bert         drives    age     20 ms"), HasSubstr("battery  50 %")));
-  EXPECT_THAT(app::summary(page), AllOf(HasSubstr("gina stands: link lost"), HasSubstr("bert drives")));
+  EXPECT_THAT(app::summary(page),
+              AllOf(HasSubstr("not reached, at rest before: gina (link lost)"), HasSubstr("drives: bert")));
 }
 
 TEST(WatchPage, CutsTextsByCharacters) {
