@@ -130,7 +130,7 @@ TEST_F(Endings, AHookThatThrowsEndsTheRunAsFailed) {
 
 TEST_F(Endings, EverySignalThatAsksForTheEndEndsItInOrder) {
   for (const int signal : {SIGHUP, SIGQUIT, SIGXCPU, SIGALRM, SIGTERM, SIGINT}) {
-    auto run = start({.length_s = 100000});
+    auto run = start({.length_s = 100000}, {"--set", "framework.time.mode=realtime"});  // faster, robots would get away
     ASSERT_TRUE(eventually([&] { return whole_ticks_so_far() > 3; }, 60)) << run->errors();
     run->signal(signal);
     EXPECT_EQ(run->wait(60), 128 + signal) << run->errors();
@@ -221,11 +221,12 @@ TEST_F(Endings, ASpeedThatARobotCannotDriveIsNamedWithWhatItCanOnce) {
 
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // they have handlers of their own
 TEST_F(Endings, ACrashNamesControllerRobotAndTickAndKeepsTheRecords) {
-  const std::map<std::string, std::string> kinds = {{"memory", "SIGSEGV"},         {"divide", "SIGFPE"},
-                                                    {"abort", "SIGABRT"},          {"instruction", "SIGILL"},
-                                                    {"stack", "SIGSEGV"},          {"exit", "called exit(0)"},
-                                                    {"quick_exit", "called exit"}, {"noexcept", "lost in \\x1b[2Jspace"},
-                                                    {"_exit", "called _exit(0)"},  {"_Exit", "called _exit(0)"}};
+  const std::map<std::string, std::string> kinds = {
+      {"memory", "SIGSEGV"},         {"divide", "SIGFPE"},
+      {"abort", "SIGABRT"},          {"instruction", "SIGILL"},
+      {"stack", "SIGSEGV"},          {"exit", "called exit(0)"},
+      {"quick_exit", "called exit"}, {"noexcept", "lost in \\x1b[2Jspace"},
+      {"_exit", "called _exit(0)"},  {"_Exit", "called _exit(0)"}};
   for (const auto& [what, word] : kinds) {
     auto run = start({.params = "what=\"" + what + "\" robot=\"ep4\""});
     EXPECT_EQ(run->wait(), 3) << what;

@@ -4,6 +4,7 @@
 
 TANDEM_SCREENSHOTS=FOLDER writes the pictures of the documentation there; TANDEM_RENEW_PICTURES=1 renews those that are compared with.
 """
+import glob
 import json
 import math
 import os
@@ -11,6 +12,7 @@ import subprocess
 import sys
 import tempfile
 import unittest
+import unittest.mock
 
 from page import HERE, Keys, Page, Run, difference, eventually, read_ppm, write_ppm
 
@@ -441,6 +443,9 @@ class TestProjector(WithBrowser):
         experiment = os.path.join(folder, "arena.xml")
         with open(ARENA, encoding="utf-8") as file, open(experiment, "w", encoding="utf-8") as copy:
             copy.write(file.read())
+        state = unittest.mock.patch.dict(os.environ, {"XDG_STATE_HOME": os.path.join(folder, "state")})
+        state.start()
+        self.addCleanup(state.stop)
         run = view(experiment, "--paused", "--projector", folder=folder)
         self.addCleanup(run.stop)
         self.show(run)
@@ -449,7 +454,7 @@ class TestProjector(WithBrowser):
             page.click_at(x, y)
         page.press(Keys.ENTER)
         page.until("it is kept", "!tandem.fitting && document.getElementById('help').textContent === ''")
-        eventually("the file", lambda: os.path.exists(os.path.join(folder, "arena.projector.json")))
+        eventually("the file", lambda: glob.glob(os.path.join(folder, "state/tandem/projector/arena-*.json")))
         picture = page.window_pixels()
         poses = page.js("tandem.world.members.ids.map((id) => tandem.world.poseOf(id))")
         self.assertEqual(len(poses), 2)
