@@ -66,7 +66,6 @@ class KilledHub : public testing::TestWithParam<const char*> {};
 TEST_P(KilledHub, LeavesAFootbotStoppedWhereItsModulesKeepTheirVariablesNow) {
   Folder folder;
   FootbotOnTcp footbot;
-  footbot.with([](auto& m) { m.word("base", "battery") = 3777; });
   folder.write("e.xml",
                R"(<tandem><framework><experiment length="0" ticks_per_second="10"/><time mode="realtime"/></framework>
 <controllers><drive id="d" library="test_controllers"><actuators><differential_steering/></actuators>
@@ -92,6 +91,7 @@ TEST_P(KilledHub, LeavesAFootbotStoppedWhereItsModulesKeepTheirVariablesNow) {
     node.memory.assign(static_cast<std::size_t>(node.words()), 0);
     node.on = true;
   });
+  ASSERT_TRUE(waits_for_a_person(hub, [&] { return footbot.moves(); })) << "its motor is not the one that was armed";
   ASSERT_TRUE(eventually(drives, 20.0)) << hub.errors();
   hub.signal(SIGKILL);
   EXPECT_TRUE(eventually([&] { return speed("left motor") == 0 && speed("right motor") == 0; }, 10.0));
@@ -131,10 +131,7 @@ TEST(RealFootbot, SaysThatNobodyListens) {
 TEST(RealFootbot, IsInspectedAndNothingMoves) {
   Folder folder;
   FootbotOnTcp footbot;
-  footbot.with([](auto& m) {
-    m.word("left motor", "speed") = 33;
-    m.word("base", "battery") = 3777;
-  });
+  footbot.with([](auto& m) { m.word("left motor", "speed") = 33; });
   Tandem inspect({"inspect", footbot.link}, folder.path());
   EXPECT_EQ(inspect.wait(), 0) << inspect.errors();
   EXPECT_THAT(inspect.output(), HasSubstr("'proximity sensors', ready, protocol 5"));

@@ -18,6 +18,7 @@ class FootbotOnTcp {
  public:
   FootbotOnTcp() : listener_(::socket(AF_INET, SOCK_STREAM, 0)), modules_(bus_), ear_(bus_.attach()) {
     modules_.add_all();
+    modules_.word("base", "battery") = 3777;  // mV: with an empty one it is stopped after 2 s
     sockaddr_in address{};
     address.sin_family = AF_INET;
     address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
