@@ -182,6 +182,7 @@ TEST(Robot, SurvivesSilenceGarbageAndRestarts) {
                                "--fault", drop});
   ASSERT_TRUE(epuck.ready());
   Tandem robot({"robot", kConfigs + "epuck_robot.xml", "--report", "r.json"}, folder.path());
+  ASSERT_TRUE(eventually([&] { return epuck.moves(); }, 30.0)) << robot.errors();  // from now on it takes the signal
   const auto drives_on = [&] {
     robot.signal(SIGUSR1);  // a person who re-arms it whenever it waits
     const long long over_ns = epuck.fault_ns(drop, "end");
