@@ -56,7 +56,8 @@ TEST(Preflight, MovesNothingUnlessToldAndSaysWhatIsInTheWay) {
 class Camera {
  public:
   Camera(const Folder& folder, const std::string& port, const std::string& log)
-      : process_({"emulate", "tracker", "--link", "udp:127.0.0.1:" + port, "--sees", "ep0=" + log, "--rate", "20"},
+      : process_({"emulate", "tracker", "--link", "udp:127.0.0.1:" + port, "--sees", "ep0=" + log, "--rate", "20",
+                  "--clock", "monotonic"},
                  folder.path()) {}
 
  private:
@@ -86,7 +87,8 @@ TEST(Preflight, AFailedFirstMotionKeepsRunsFromDrivingTheRobotUntilOneIsRight) {
   };
   {
     const Camera camera(folder, port, (other.path() / "witness.jsonl").string());  // its tag is on another robot
-    const std::string said = preflight();
+    std::string said;
+    for (int i = 0; i < 10 && said.find("turned ") == std::string::npos; ++i) said = preflight();  // as below
     EXPECT_EQ(said[0], '3') << said;
   }
   const Camera camera(folder, port, (folder.path() / "witness.jsonl").string());
