@@ -74,13 +74,35 @@ TEST_F(EmulatedEyebotFlies, AndLandsWhenItsHubEnds) {
   EXPECT_EQ(eyebot.end(), 0);
 }
 
-TEST_F(EmulatedEyebotFlies, OnWhenItsLinkIsBackAndAPersonReArmsIt) {
+TEST_F(EmulatedEyebotFlies, OnWhenItHearsItsHubAgain) {
+  // It is heard all the time, so that it is known who it is.
   const std::string fault = "deaf@drive+3s+4s";
   EmulatedEyebot eyebot(folder, {"--fault", fault});
   ASSERT_TRUE(eyebot.ready());
   Tandem robot(drive(), folder.path());
   ASSERT_TRUE(eventually([&] { return eyebot.fault_ns(fault, "end") > 0; }, 60.0)) << robot.errors();
   const long long cut_ns = eyebot.fault_ns(fault, "begin");
+  const long long back_ns = eyebot.fault_ns(fault, "end");
+  EXPECT_FALSE(eyebot.lines("failsafe", {R"("to":"link_lost")"}).empty()) << eyebot.log();
+  EXPECT_THAT(eyebot.modes(cut_ns), testing::StartsWith("hover ")) << eyebot.log();
+  ASSERT_TRUE(eventually([&] { return eyebot.mode() == "position"; }, 20.0)) << eyebot.log() << robot.errors();
+  const long long again_ns = time_of(eyebot.lines("mode", {R"("to":"position")"}).back());
+  // An order that nobody answered is given again after a second at most, and the place half a second later at most.
+  EXPECT_LT(again_ns - back_ns, 2 * kSecond_ns + eyebot.late_ns(back_ns, again_ns)) << eyebot.log();
+  EXPECT_THAT(robot.errors(), testing::Not(HasSubstr("waits to be re-armed")));
+  robot.signal(SIGINT);
+  EXPECT_EQ(robot.wait(60), 130) << robot.errors();
+  EXPECT_TRUE(eventually([&] { return eyebot.mode() == "idle"; }, 20.0)) << eyebot.modes();
+}
+
+TEST_F(EmulatedEyebotFlies, OnWhenItsLinkIsBackAndAPersonReArmsIt) {
+  const std::string deaf = "deaf@drive+3s+5s", silent = "silent@drive+3s+5s";
+  EmulatedEyebot eyebot(folder, {"--fault", deaf, "--fault", silent});
+  ASSERT_TRUE(eyebot.ready());
+  Tandem robot(drive(), folder.path());
+  const auto is_back = [&] { return std::min(eyebot.fault_ns(deaf, "end"), eyebot.fault_ns(silent, "end")) > 0; };
+  ASSERT_TRUE(eventually(is_back, 60.0)) << robot.errors();
+  const long long cut_ns = eyebot.fault_ns(deaf, "begin");
   EXPECT_FALSE(eyebot.lines("failsafe", {R"("to":"link_lost")"}).empty()) << eyebot.log();
   EXPECT_THAT(eyebot.modes(cut_ns), testing::StartsWith("hover ")) << eyebot.log();
   EXPECT_TRUE(waits_for_a_person(robot, [&] { return eyebot.mode() == "position"; })) << eyebot.log();
