@@ -181,10 +181,10 @@ void end_now(std::string_view message) noexcept {
 
 // The program's own, found before the C library's by all that is loaded.
 extern "C" {
-[[noreturn, gnu::visibility("default")]] void _exit(int status) {
+[[gnu::noreturn, gnu::visibility("default")]] void _exit(int status) {
   tandem::app::on_immediate_exit(status);
 }
-[[noreturn, gnu::visibility("default")]] void _Exit(int status) noexcept {
+[[gnu::noreturn, gnu::visibility("default")]] void _Exit(int status) noexcept {
   tandem::app::on_immediate_exit(status);
 }
 }
