@@ -12,10 +12,10 @@
 #include "app/build_info.hpp"
 #include "app/command/validate.hpp"
 #include "app/options.hpp"
-#include "hal/sha256.hpp"
 #include "core/view/gnuplot.hpp"
 #include "core/view/render.hpp"
 #include "hal/output_file.hpp"
+#include "hal/sha256.hpp"
 #include "validate/page.hpp"
 #include "validate/parts.hpp"
 

@@ -9,8 +9,8 @@
 namespace tandem::mixed_reality {
 namespace {
 
-using testing::HasSubstr;
 using bridges::LinkHealth;
+using testing::HasSubstr;
 constexpr hal::TimeNs kTick = 100 * hal::kNsPerMs;
 
 class ProofTest : public testing::Test {
