@@ -61,6 +61,13 @@ TEST(EyebotFlocking, ComesHome) {
   EXPECT_NEAR(mean_x_m(poses_of(experiment)), 3.0, 2.5);
 }
 
+TEST(EyebotFlocking, StaysInItsArenaHoweverLongItFlies) {
+  const test::Experiment experiment("eyebot_flocking.xml");
+  experiment.run(400.0);
+  EXPECT_EQ(experiment->state(), core::RunState::Running) << experiment->failure();
+  EXPECT_EQ(experiment->incidents().bodies_escaped, 0U);
+}
+
 TEST(EyebotFlocking, TheSameForAnyNumberOfThreads) {
   const std::uint64_t alone = test::fingerprint("eyebot_flocking.xml", 15.0, test::seeded(3, 0));
   EXPECT_EQ(test::fingerprint("eyebot_flocking.xml", 15.0, test::seeded(3, 2)), alone);
