@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstdio>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string_view>
@@ -288,7 +289,13 @@ std::string chart_table(const Chart& chart) {
 }
 
 std::vector<std::string> chart_differences(const Chart& chart) {
-  std::vector<std::string> all;
+  // What is read together is judged together: each sentence waits until the tests of the chart are known.
+  std::vector<double> p;
+  std::vector<std::function<std::string(const AmongTests&)>> sentences;
+  const auto add = [&](const std::string& where, const auto& found, const std::string& one, const std::string& other) {
+    p.push_back(found.p);
+    sentences.emplace_back([=](const AmongTests& among) { return where + in_words(found, one, other, among); });
+  };
   for (const ChartPanel& panel : chart.panels) {
     if (chart.over_measure) {
       for (const ChartGroup& group : panel.groups) {
@@ -299,7 +306,7 @@ std::vector<std::string> chart_differences(const Chart& chart) {
         }
         const std::string title =
             (panel.title.empty() ? "" : panel.title + ", ") + (group.name.empty() ? "" : group.name);
-        all.push_back((title.empty() ? "" : title + ": ") + in_words(spearman(x, y), chart.x_name, panel.measure));
+        add(title.empty() ? "" : title + ": ", spearman(x, y), chart.x_name, panel.measure);
       }
       continue;
     }
@@ -309,18 +316,20 @@ std::vector<std::string> chart_differences(const Chart& chart) {
       const std::string where = place_in_words(chart, panel, label);
       for (const ChartGroup& group : panel.differences) {
         if (const ChartPoint* point = point_at(group, label))
-          all.push_back(where + ": " + in_words(signed_rank(point->values), group.name, chart.base));
+          add(where + ": ", signed_rank(point->values), group.name, chart.base);
       }
       for (std::size_t i = 0; i < n && chart.base.empty(); ++i) {
         for (std::size_t k = i + 1; k < n; ++k) {
           const ChartPoint *a = point_at(panel.groups[i], label), *b = point_at(panel.groups[k], label);
           if (a == nullptr || b == nullptr) continue;
-          all.push_back(where + ": " +
-                        in_words(mann_whitney(a->values, b->values), panel.groups[i].name, panel.groups[k].name));
+          add(where + ": ", mann_whitney(a->values, b->values), panel.groups[i].name, panel.groups[k].name);
         }
       }
     }
   }
+  std::vector<std::string> all;
+  const std::vector<AmongTests> among = holm(p);
+  for (std::size_t i = 0; i < sentences.size(); ++i) all.push_back(sentences[i](among[i]));
   return all;
 }
 

@@ -243,7 +243,35 @@ Difference mann_whitney(const std::vector<double>& a, const std::vector<double>&
   return d;
 }
 
-std::string in_words(const Difference& d, const std::string& a, const std::string& b) {
+std::vector<AmongTests> holm(const std::vector<double>& p) {
+  std::vector<std::size_t> order(p.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return p[a] < p[b]; });
+  std::vector<AmongTests> all(p.size());
+  double least = 0.0;
+  for (std::size_t rank = 0; rank < order.size(); ++rank) {
+    least = std::max(least, std::min(1.0, static_cast<double>(p.size() - rank) * p[order[rank]]));
+    all[order[rank]] = {p.size(), least};
+  }
+  return all;
+}
+
+namespace {
+
+/// That a test is judged by, which alone has `p`.
+double judged_by(const AmongTests& among, double p) {
+  return among.count < 2 ? p : among.p;
+}
+
+/// Nothing of a test that is read alone.
+std::string text_of(const AmongTests& among) {
+  if (among.count < 2) return "";
+  return ", among " + std::to_string(among.count) + " tests " + p_text(among.p, false) + " (Holm)";
+}
+
+}  // namespace
+
+std::string in_words(const Difference& d, const std::string& a, const std::string& b, const AmongTests& among) {
   const std::string samples = a + " (median " + number(d.median_a, 4) + ", n = " + std::to_string(d.n_a) + ") and " +
                               b + " (median " + number(d.median_b, 4) + ", n = " + std::to_string(d.n_b) + ")";
   const double effect = std::fabs(d.a_larger - 0.5);  // thresholds of Vargha and Delaney [2000]
@@ -252,8 +280,8 @@ std::string in_words(const Difference& d, const std::string& a, const std::strin
                            : effect >= 0.06 ? "small"
                                             : "negligible";
   const std::string test = "Mann-Whitney U = " + number(d.u, 6) + ", " + p_text(d.p, d.exact) +
-                           ", effect size A = " + number(d.a_larger, 2) + " (" + size + ")";
-  if (d.p >= 0.05) return "no difference shows between " + samples + ": " + test;
+                           ", effect size A = " + number(d.a_larger, 2) + " (" + size + ")" + text_of(among);
+  if (judged_by(among, d.p) >= 0.05) return "no difference shows between " + samples + ": " + test;
   const bool more = d.a_larger > 0.5;
   return samples + " differ, " + (more ? a : b) + " is larger in " +
          number(100.0 * std::max(d.a_larger, 1.0 - d.a_larger), 3) + " % of pairs of runs: " + test;
@@ -297,13 +325,15 @@ PairedDifference signed_rank(const std::vector<double>& differences) {
   return d;
 }
 
-std::string in_words(const PairedDifference& d, const std::string& a, const std::string& b) {
+std::string in_words(const PairedDifference& d, const std::string& a, const std::string& b, const AmongTests& among) {
   const std::string pairs = std::to_string(d.n) + (d.n == 1 ? " matched pair" : " matched pairs");
   const std::string found = a + " - " + b + " is " + number(d.shift.centre, 4) + " (" + (d.n < 6 ? "from " : "95 %: ") +
                             number(d.shift.low, 4) + " to " + number(d.shift.high, 4) + "), " + a + " is larger in " +
                             std::to_string(d.a_larger) + " and smaller in " + std::to_string(d.b_larger) +
-                            ": Wilcoxon signed-rank V = " + number(d.v, 6) + ", " + p_text(d.p, d.exact);
-  if (d.p >= 0.05) return "no difference shows between " + a + " and " + b + " in " + pairs + ", " + found;
+                            ": Wilcoxon signed-rank V = " + number(d.v, 6) + ", " + p_text(d.p, d.exact) +
+                            text_of(among);
+  if (judged_by(among, d.p) >= 0.05)
+    return "no difference shows between " + a + " and " + b + " in " + pairs + ", " + found;
   return a + " and " + b + " differ in " + pairs + ", " + found;
 }
 
@@ -327,11 +357,13 @@ Correlation spearman(const std::vector<double>& x, const std::vector<double>& y)
   return c;
 }
 
-std::string in_words(const Correlation& c, const std::string& x, const std::string& y) {
+std::string in_words(const Correlation& c, const std::string& x, const std::string& y, const AmongTests& among) {
   const std::string what = y + " and " + x + " in " + std::to_string(c.n) + " runs";
   if (std::isnan(c.rho)) return what + ": one of them is the same in all";
-  return what + (c.p < 0.05 ? (c.rho > 0.0 ? " rise together" : " go against each other") : " show no connection") +
-         ": Spearman rho = " + number(c.rho, 2) + ", " + p_text(c.p, false);
+  return what +
+         (judged_by(among, c.p) < 0.05 ? (c.rho > 0.0 ? " rise together" : " go against each other")
+                                       : " show no connection") +
+         ": Spearman rho = " + number(c.rho, 2) + ", " + p_text(c.p, false) + text_of(among);
 }
 
 }  // namespace tandem::study

@@ -32,6 +32,16 @@ Box box_of(std::vector<double> values);
 /// Quantile of Student's t with `degrees` of freedom, 1 at least; `part` in (0, 1).
 double student_quantile(double part, double degrees);
 
+/// What a test says among several that are read together: `p` is how probable a result as clear as this is anywhere
+/// among them when there is nothing to find.
+struct AmongTests {
+  std::size_t count = 1;  ///< of the tests; 1: it is read alone
+  double p = 1.0;
+};
+
+/// For tests with these p, by the step-down method of Holm [1979], in the same order.
+std::vector<AmongTests> holm(const std::vector<double>& p);
+
 /// Whether two samples differ: the test of Mann and Whitney.
 struct Difference {
   std::size_t n_a = 0, n_b = 0;
@@ -44,8 +54,8 @@ struct Difference {
 /// Both have one value at least.
 Difference mann_whitney(const std::vector<double>& a, const std::vector<double>& b);
 
-/// The difference in a sentence.
-std::string in_words(const Difference& d, const std::string& a, const std::string& b);
+/// The difference in a sentence; whether there is one is judged among all tests that it is read with.
+std::string in_words(const Difference& d, const std::string& a, const std::string& b, const AmongTests& among = {});
 
 /// How much larger the one of a pair is: the estimate of Hodges and Lehmann, the median of the means of any two
 /// differences (each with itself, too), with the 95 % confidence interval that Wilcoxon's signed ranks give it
@@ -64,7 +74,8 @@ struct PairedDifference {
   bool exact = false;  ///< p of all 2^n signs; else by the normal approximation with ties and continuity corrected
 };
 PairedDifference signed_rank(const std::vector<double>& differences);
-std::string in_words(const PairedDifference& d, const std::string& a, const std::string& b);
+std::string in_words(const PairedDifference& d, const std::string& a, const std::string& b,
+                     const AmongTests& among = {});
 
 /// Whether two measures of the same runs rise and fall together: Spearman's rank correlation.
 struct Correlation {
@@ -73,6 +84,6 @@ struct Correlation {
   double p = 1.0;    ///< two-sided, by Student's t with n - 2 degrees of freedom
 };
 Correlation spearman(const std::vector<double>& x, const std::vector<double>& y);
-std::string in_words(const Correlation& c, const std::string& x, const std::string& y);
+std::string in_words(const Correlation& c, const std::string& x, const std::string& y, const AmongTests& among = {});
 
 }  // namespace tandem::study

@@ -207,7 +207,8 @@ TEST(Chart, ComparesRunsInPairs) {
       chart_differences(chart),
       testing::ElementsAre(
           "items, carry 1 m: no difference shows between ideal and slanted in 7 matched pairs, ideal - slanted is "
-          "0 (95 %: 0 to 0), ideal is larger in 0 and smaller in 0: Wilcoxon signed-rank V = 0, p = 1",
+          "0 (95 %: 0 to 0), ideal is larger in 0 and smaller in 0: Wilcoxon signed-rank V = 0, p = 1, among 2 tests p "
+          "= 1 (Holm)",
           HasSubstr("carry 2 m: ideal and slanted differ in 7 matched pairs, ideal - slanted is 4")));
   const std::string script = chart_script(chart, core::FigureFormat::Svg);
   EXPECT_THAT(script, HasSubstr("ideal − slanted"));
@@ -263,6 +264,18 @@ TEST(Chart, DrawsEveryRunByItself) {
   EXPECT_THAT(chart_table(chart), HasSubstr("y_m      -      a      -  3  5       3.5       6         2      7"));
 }
 
+/// R: p.adjust(c(0.01, 0.04, 0.03, 0.005), "holm").
+TEST(Statistics, JudgesTestsThatAreReadTogether) {
+  const std::vector<AmongTests> all = holm({0.01, 0.04, 0.03, 0.005});
+  ASSERT_EQ(all.size(), 4U);
+  const double wanted[] = {0.03, 0.06, 0.06, 0.02};
+  for (std::size_t i = 0; i < 4; ++i) {
+    EXPECT_NEAR(all[i].p, wanted[i], 1e-12) << i;
+    EXPECT_EQ(all[i].count, 4U);
+  }
+  EXPECT_TRUE(holm({}).empty());
+}
+
 TEST(Chart, OrdersNumbersBySizeAndComparesGroupsAtEach) {
   Chart chart;
   chart.x_name = "carry";
@@ -275,7 +288,10 @@ TEST(Chart, OrdersNumbersBySizeAndComparesGroupsAtEach) {
   const auto words = chart_differences(chart);
   ASSERT_EQ(words.size(), 3U);
   EXPECT_THAT(words[1],
-              testing::StartsWith("items, carry 2 m: ideal (median 11.5, n = 4) and noise (median 1.5, n = 4) differ"));
+              testing::StartsWith("items, carry 2 m: no difference shows between ideal (median 11.5, n = 4) and noise "
+                                  "(median 1.5, n = 4)"));
+  EXPECT_THAT(words[1], HasSubstr("p = 0.029 (exact)")) << "which would do, were it the only test of the chart";
+  EXPECT_THAT(words[1], HasSubstr("among 3 tests p = 0.086 (Holm)"));
   EXPECT_THAT(chart_table(chart), HasSubstr("items    -      noise  10 m   4  1.5"));
   const std::string script = chart_script(chart, core::FigureFormat::Svg);
   EXPECT_THAT(script, HasSubstr("2 11.5 10.75 12.25\n"));
