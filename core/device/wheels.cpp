@@ -1,6 +1,9 @@
 // Wheels: the actuator that drives the engine, the encoders that count what was rolled, and where that should have led.
 #include "hal/device/wheels.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <numbers>
 #include <optional>
 
 #include "core/device/fitted_drive.hpp"
@@ -145,6 +148,53 @@ BlockFactory<Actuator> make_slanted(const Element& element, Problems& problems, 
     return std::make_unique<SlantedActuator>(sigma, columns);
   };
   return {make, {keeps<HiddenRoll>()}};
+}
+
+/// Stepper motors whose steps last a whole number of a timer's periods, cut off: trunc(10000 / v) of 0.1 ms at v steps
+/// a second, so that 900 are 909 and 600 are 625 [GCtronic's library, advance_one_timer/e_motors.c]. The encoders count
+/// what was stepped.
+struct Steppers {
+  std::int64_t steps_per_turn = 1000;
+  double timer_Hz = 10000.0;
+  void describe(hal::ParamVisitor& v) {
+    v.integer("steps_per_turn", steps_per_turn, {1, 1e6}, "Steps in which a wheel turns once.");
+    v.number("timer", timer_Hz, hal::unit::hz, {1.0, 1e9}, "A step lasts a whole number of its periods.");
+  }
+};
+
+class SteppedActuator final : public Actuator {
+ public:
+  SteppedActuator(const Steppers& steppers, double wheel_radius_m)
+      : step_m_(2.0 * std::numbers::pi * wheel_radius_m / static_cast<double>(steppers.steps_per_turn)),
+        timer_Hz_(steppers.timer_Hz) {}
+
+  void act(const DeviceContext& context, SpaceStores& stores, const void* ports) noexcept override {
+    const auto* wheels = static_cast<const hal::WheelSpeeds*>(ports);
+    for (std::size_t i = 0; i < context.block.used; ++i) {
+      const std::size_t row = context.block.first_row + i;
+      const hal::WheelSpeeds told = obeys(context, i) ? wheels[i] : hal::WheelSpeeds{};
+      stores.bodies.left_m_s[row] = stepped(told.left_m_s);
+      stores.bodies.right_m_s[row] = stepped(told.right_m_s);
+    }
+  }
+
+ private:
+  double stepped(double told_m_s) const noexcept {
+    const double steps_s = std::round(told_m_s / step_m_);  // commands are whole numbers
+    if (steps_s == 0.0) return 0.0;
+    const double periods = std::max(1.0, std::trunc(timer_Hz_ / std::fabs(steps_s)));
+    return std::copysign(timer_Hz_ / periods * step_m_, steps_s);
+  }
+
+  double step_m_;
+  double timer_Hz_;
+};
+
+BlockFactory<Actuator> make_stepped(const Element& element, Problems& problems, const DeviceSetup& setup) {
+  const auto options = read_options<Steppers>(element, problems);
+  return [options, radius_m = setup.kind.drive()->wheel_radius_m](const BlockColumns&) {
+    return std::make_unique<SteppedActuator>(options, radius_m);
+  };
 }
 
 template <class Options>
@@ -378,6 +428,9 @@ std::vector<DeviceType> wheel_types() {
           actuator_type(hal::WheelSpeeds::kName, "slanted",
                         "Draws to one side by an error that the encoders do not see and every grip changes.",
                         &has<hal::DifferentialDrive>, &make_slanted, &describe_options<Slant>),
+          actuator_type(hal::WheelSpeeds::kName, "stepped",
+                        "Stepper motors: speeds are those that whole periods of a timer make.",
+                        &has<hal::DifferentialDrive>, &make_stepped, &describe_options<Steppers>),
           encoder_type<EncoderErrors<0>>("default", "What the wheels rolled, with noise where asked for."),
           encoder_type<IdealEncoders>("ideal", "What the wheels rolled."),
           encoder_type<EncoderErrors<100>>("noisy", "What the wheels rolled, with noise that adds up."),

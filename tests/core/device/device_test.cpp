@@ -141,6 +141,23 @@ TEST(WheelDevices, NoisyWheelsScatterAroundTheCommand) {
   EXPECT_NEAR(std::sqrt(squares / 1000), 0.05, 0.005);
 }
 
+/// Speeds in steps a second, as measured with the firmware of an e-puck: told, and turned.
+TEST(Wheels, SteppersTurnInWholePeriodsOfTheirTimer) {
+  for (const auto& [told, turned] :
+       {std::pair{900.0, 10000.0 / 11}, std::pair{700.0, 10000.0 / 14}, std::pair{600.0, 625.0},
+        std::pair{1000.0, 1000.0}, std::pair{-388.0, -400.0}, std::pair{0.2, 0.0}}) {
+    const double step_m = 2.0 * M_PI * hal::epuck::kind().drive()->wheel_radius_m / 1000.0;
+    Scene scene(4, "everything");
+    scene.param("left", hal::format_number(told * step_m)).param("right", hal::format_number(told * step_m));
+    for (DeviceChoice& choice : scene.scenario.controllers[0].actuators) {
+      if (choice.device == "differential_steering") choice.implementation = "stepped";
+    }
+    auto world = stepped(scene.robot("a", 0, 0), 11);
+    EXPECT_NEAR(world->space().pose(world->space().robot(0)).x_m, turned * step_m, 1e-9) << told << " for 1 s";
+    EXPECT_NEAR(read<hal::WheelEncoders>(world).left_m, turned * step_m, 1e-9) << told;
+  }
+}
+
 TEST(LightSensor, FollowsTheSquareOfTheDistanceTheAngleAndTheShadow) {
   Scene scene(8, "everything");
   scene.robot("near", 0, 0).robot("shaded", 0, -2.0, M_PI / 2);
