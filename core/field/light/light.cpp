@@ -10,7 +10,12 @@
 namespace tandem::core {
 namespace {
 
-/// Calls `see(wx, wy, strength)` for every lamp in sight of a point of W, with the way to it.
+/// Of a lamp that is faced at this distance.
+double strength_at(const LightSource& lamp, double distance2_m2) noexcept {
+  return std::min(lamp.intensity * lamp.intensity / std::max(distance2_m2, 1e-6), 1.0);
+}
+
+/// Calls `see(lamp, strength)` for every lamp in sight of a point of W.
 template <class See>
 void each_lamp(const SpaceStores& stores, double x_m, double y_m, double z_m, See&& see) noexcept {
   for (const LightSource& lamp : stores.lights) {
@@ -18,10 +23,9 @@ void each_lamp(const SpaceStores& stores, double x_m, double y_m, double z_m, Se
     const double wx = lamp.x_m - x_m;
     const double wy = lamp.y_m - y_m;
     const double wz = lamp.z_m - z_m;
-    const double d2 = std::max(wx * wx + wy * wy + wz * wz, 1e-6);
-    const double strength = std::min(lamp.intensity * lamp.intensity / d2, 1.0);
+    const double strength = strength_at(lamp, wx * wx + wy * wy + wz * wz);
     if (strength < 1e-4) continue;  // below a twelve-bit converter's resolution
-    if (in_sight(stores, x_m, y_m, z_m, lamp.x_m, lamp.y_m, lamp.z_m)) see(wx, wy, strength);
+    if (in_sight(stores, x_m, y_m, z_m, lamp.x_m, lamp.y_m, lamp.z_m)) see(lamp, strength);
   }
 }
 
@@ -37,14 +41,22 @@ void LightField::sample(const FieldPlaces& places, double* values) const noexcep
   const std::size_t count = places.spots.size();
   for (std::size_t row = places.first_row; row < places.first_row + places.rows; ++row, values += count) {
     std::fill(values, values + count, 0.0);
-    const double height_m = places.spots.front().z_m + places.stores.base_m(row);
-    each_lamp(places.stores, b.x_m[row], b.y_m[row], height_m, [&](double wx, double wy, double strength) {
+    const double base_m = places.stores.base_m(row);
+    // Whether a lamp is hidden is asked once a robot, from its axis; how bright it is, at every sensor.
+    const double height_m = places.spots.front().z_m + base_m;
+    each_lamp(places.stores, b.x_m[row], b.y_m[row], height_m, [&](const LightSource& lamp, double) {
+      const double wx = lamp.x_m - b.x_m[row];
+      const double wy = lamp.y_m - b.y_m[row];
       const double bx = b.cos_h[row] * wx + b.sin_h[row] * wy;
       const double by = b.cos_h[row] * wy - b.sin_h[row] * wx;
-      const double flat = std::sqrt(std::max(wx * wx + wy * wy, 1e-12));
       for (std::size_t k = 0; k < count; ++k) {
-        const double facing = (bx * places.spots[k].look_x + by * places.spots[k].look_y) / flat;
-        if (facing > 0.0) values[k] = added(values[k], strength * facing);
+        const FieldSpot& spot = places.spots[k];
+        const double ahead = bx - spot.x_m;
+        const double aside = by - spot.y_m;
+        const double above = lamp.z_m - base_m - spot.z_m;
+        const double flat2 = ahead * ahead + aside * aside;
+        const double facing = (ahead * spot.look_x + aside * spot.look_y) / std::sqrt(std::max(flat2, 1e-12));
+        if (facing > 0.0) values[k] = added(values[k], strength_at(lamp, flat2 + above * above) * facing);
       }
     });
   }
@@ -52,7 +64,7 @@ void LightField::sample(const FieldPlaces& places, double* values) const noexcep
 
 double LightField::at(const SpaceStores& stores, double x_m, double y_m, double z_m) const noexcept {
   double level = 0.0;
-  each_lamp(stores, x_m, y_m, z_m, [&](double, double, double strength) { level = added(level, strength); });
+  each_lamp(stores, x_m, y_m, z_m, [&](const LightSource&, double strength) { level = added(level, strength); });
   return level;
 }
 

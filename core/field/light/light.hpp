@@ -6,8 +6,8 @@
 namespace tandem::core {
 
 /// A sensor that faces a lamp of intensity I at distance d reads (I / d)^2, at most 1; less by the cosine of the angle
-/// to it. Levels of several lamps add up, at most to 1. Boxes and cylinders cast shadows. All sensors of a robot count
-/// as in its middle, as high as the first of them.
+/// to it, seen from above. Levels of several lamps add up, at most to 1. Boxes and cylinders cast shadows: on a whole
+/// robot, by whether they hide its axis, as high as the first of its sensors is.
 class LightField final : public Field {
  public:
   void sample(const FieldPlaces& places, double* values) const noexcept override;

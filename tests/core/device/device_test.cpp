@@ -166,10 +166,33 @@ TEST(LightSensor, FollowsTheSquareOfTheDistanceTheAngleAndTheShadow) {
   scene.box(1.0, -1.0, 0.3, 0.3);
   auto world = stepped(scene);
   const auto light = read<hal::Light>(world);
-  EXPECT_NEAR(static_cast<double>(light.level[0]), 0.25 * std::cos(17 * M_PI / 180),
-              1e-6);                                                                  // faces it but for 17 degrees
+  const hal::Mount mount = hal::epuck::kind().part<hal::LightPart>()->mounts[0];
+  const double ahead_m = 2.0 - mount.x_m;
+  const double off_rad = std::atan2(-mount.y_m, ahead_m) - mount.bearing_rad;
+  EXPECT_NEAR(static_cast<double>(light.level[0]),
+              1.0 / (ahead_m * ahead_m + mount.y_m * mount.y_m) * std::cos(off_rad), 1e-6);
   EXPECT_EQ(light.level[3], 0.0F);                                                    // looks away
   for (const float level : read<hal::Light>(world, 1).level) EXPECT_EQ(level, 0.0F);  // behind the box
+}
+
+TEST(LightSensor, MeasuresFromWhereItSits) {
+  // At the distance of the lamp's intensity a sensor that faces it reads 1, be it ahead or behind.
+  for (const std::size_t sensor : {std::size_t{0}, std::size_t{3}, std::size_t{5}}) {
+    const hal::Mount mount = hal::epuck::kind().part<hal::LightPart>()->mounts[sensor];
+    constexpr double kIntensity_m = 0.4;
+    const double far_m = kIntensity_m * 1.0001;
+    Scene scene(8, "everything");
+    scene.robot("a", 0, 0);
+    scene.scenario.lights.push_back(
+        {"lamp",
+         {mount.x_m + far_m * std::cos(mount.bearing_rad), mount.y_m + far_m * std::sin(mount.bearing_rad), mount.z_m},
+         {255, 255, 255},
+         kIntensity_m,
+         {},
+         0});
+    auto world = stepped(scene, 1);
+    EXPECT_NEAR(read<hal::Light>(world).level[sensor], 1.0F, 5e-4F) << sensor;
+  }
 }
 
 TEST(GroundSensor, ReadsTheFloorThatAHookPaints) {

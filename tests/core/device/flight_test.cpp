@@ -254,21 +254,24 @@ TEST(FlightSensing, RobotsOnTheGroundAndInTheAirHearOneAnother) {
   EXPECT_NEAR(static_cast<double>(below.elevation_rad[0]), -std::atan2(0.4, 0.3), 1e-6);
 }
 
-TEST(FlightSensing, LampsAreSeenFromWhereTheRobotIs) {
+TEST(FlightSensing, LampsAreSeenFromWhereTheSensorIs) {
   Scene s = air();
   LightItem lamp;
   lamp.id = "lamp";
   lamp.p_W = {2.0, 0.0, 3.0};
   lamp.intensity = 1.0;
   s.scenario.lights.push_back(lamp);
-  s.pilot("fly")
-      .flyer("near", 0, 0, 3.0 - hal::eyebot::kind().part<hal::RangeAndBearingPart>()->height_m)
-      .flyer("far", 0, 0, 1.0 - hal::eyebot::kind().part<hal::RangeAndBearingPart>()->height_m);
+  constexpr double kSensor_m = 0.1635;  // above the base; 25.5 cm from the axis, at 7.5 degrees [ARGoS 3]
+  s.pilot("fly").flyer("near", 0, 0, 3.0 - kSensor_m).flyer("far", 0, 0, 1.0 - kSensor_m);
   auto world = made(s);
   steps(world, 2);
-  const double facing = std::cos(7.5 / 180.0 * std::numbers::pi);
-  EXPECT_NEAR(static_cast<double>(port<hal::Light>(world, "near").level[0]), facing / 4.0, 1e-5);
-  EXPECT_NEAR(static_cast<double>(port<hal::Light>(world, "far").level[0]), facing / 8.0, 1e-5);
+  const double bearing_rad = 7.5 / 180.0 * std::numbers::pi;
+  const double ahead_m = 2.0 - 0.255 * std::cos(bearing_rad);
+  const double aside_m = 0.255 * std::sin(bearing_rad);
+  const double flat2_m2 = ahead_m * ahead_m + aside_m * aside_m;
+  const double facing = std::cos(bearing_rad + std::atan(aside_m / ahead_m));
+  EXPECT_NEAR(static_cast<double>(port<hal::Light>(world, "near").level[0]), facing / flat2_m2, 1e-5);
+  EXPECT_NEAR(static_cast<double>(port<hal::Light>(world, "far").level[0]), facing / (flat2_m2 + 4.0), 1e-5);
 }
 
 TEST(FlightSensing, BatteriesRunDownWithTheWayFlown) {
