@@ -17,6 +17,12 @@ bool covers(const Object& o, double x_m, double y_m) noexcept {
   return std::fabs(o.cos_h * dx + o.sin_h * dy) <= o.half_x_m && std::fabs(o.cos_h * dy - o.sin_h * dx) <= o.half_y_m;
 }
 
+/// From a point straight up (1) or down (-1) to an object that leans; infinite: it is not there.
+double straight_to(const SpaceStores& stores, const Object& o, const std::array<double, 3>& from_m,
+                   double up) noexcept {
+  return meets_at(o, attitude_of(o, turn_of(stores, o)), from_m, {0.0, 0.0, up});
+}
+
 /// Calls `see(low_m, high_m)` for every other body over or under the middle of this one.
 template <class See>
 void each_body_in_line(const SpaceStores& stores, std::size_t row, See&& see) noexcept {
@@ -48,9 +54,14 @@ double room_below_m(const SpaceStores& stores, std::size_t row, bool bodies) noe
   const auto consider = [&](double top_m) {
     if (top_m <= base_m + kWithin_m) highest_m = std::max(highest_m, top_m);
   };
+  const bool lean = anything_may_lean(stores);
   if (!stores.objects.empty()) {
     stores.for_each_object_near(b.x_m[row], b.y_m[row], [&](const Object& o) {
-      if (o.alive && covers(o, b.x_m[row], b.y_m[row])) consider(o.z_high_m);
+      if (!o.alive) return;
+      if (lean && leans(turn_of(stores, o)))
+        consider(base_m + kWithin_m - straight_to(stores, o, {b.x_m[row], b.y_m[row], base_m + kWithin_m}, -1.0));
+      else if (covers(o, b.x_m[row], b.y_m[row]))
+        consider(o.z_high_m);
     });
   }
   if (bodies) each_body_in_line(stores, row, [&](double, double high_m) { consider(high_m); });
@@ -64,9 +75,14 @@ double room_above_m(const SpaceStores& stores, std::size_t row) noexcept {
   const auto consider = [&](double low_m) {
     if (low_m >= top_m - kWithin_m) lowest_m = std::min(lowest_m, low_m);
   };
+  const bool lean = anything_may_lean(stores);
   if (!stores.objects.empty()) {
     stores.for_each_object_near(b.x_m[row], b.y_m[row], [&](const Object& o) {
-      if (o.alive && covers(o, b.x_m[row], b.y_m[row])) consider(o.z_low_m);
+      if (!o.alive) return;
+      if (lean && leans(turn_of(stores, o)))
+        consider(top_m - kWithin_m + straight_to(stores, o, {b.x_m[row], b.y_m[row], top_m - kWithin_m}, 1.0));
+      else if (covers(o, b.x_m[row], b.y_m[row]))
+        consider(o.z_low_m);
     });
   }
   each_body_in_line(stores, row, [&](double low_m, double) { consider(low_m); });

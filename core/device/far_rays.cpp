@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/device/leaning_rays.hpp"
 #include "core/device/proximity.hpp"
 
 namespace tandem::core {
@@ -34,8 +35,14 @@ template <class Discs>
       meet_disc(ring, g, disc.x, disc.y, disc.radius, distances + g * RayRing::kLanes);
   }
   const Bodies& b = stores.bodies;
+  const bool lean = anything_may_lean(stores);
   for (const std::size_t number : near) {
     const Object& o = stores.objects[number];
+    if (lean && leans(stores.object_motion[number].q_WB)) {
+      meet_leaning(ring, o, stores.object_motion[number].q_WB, height_m, b.x_m[row], b.y_m[row], b.cos_h[row],
+                   b.sin_h[row], distances);
+      continue;
+    }
     if (height_m < o.z_low_m || height_m > o.z_high_m) continue;
     meet_object(ring, o, b.x_m[row], b.y_m[row], static_cast<float>(b.cos_h[row]), static_cast<float>(b.sin_h[row]),
                 distances);

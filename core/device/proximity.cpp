@@ -5,6 +5,7 @@
 
 #include "core/device/describe.hpp"
 #include "core/device/fitted_rays.hpp"
+#include "core/device/leaning_rays.hpp"
 #include "core/device/ray_ring.hpp"
 #include "core/random/random.hpp"
 #include "hal/device/ring_sensors.hpp"
@@ -114,7 +115,8 @@ struct Waiting {
 
 /// Notes who may be near the robot in `slot`, and shortens its distances where its rays meet objects.
 [[gnu::always_inline]] inline void look_around(const SpaceStores& stores, const RayRing& ring, std::size_t first_row,
-                                               std::uint32_t slot, hal::Proximity* ports, Waiting& waiting) noexcept {
+                                               std::uint32_t slot, bool lean, hal::Proximity* ports,
+                                               Waiting& waiting) noexcept {
   const std::size_t row = first_row + slot;
   const Bodies& b = stores.bodies;
   const double x = b.x_m[row];
@@ -136,6 +138,11 @@ struct Waiting {
       });
   stores.for_each_object_near(
       x, y, [&](const Object& shape) __attribute__((always_inline)) {
+        if (lean && leans(turn_of(stores, shape))) [[unlikely]] {
+          meet_leaning(ring, shape, turn_of(stores, shape), ray_height_m(stores, ring, row), x, y, b.cos_h[row],
+                       b.sin_h[row], ports[slot].distance_m.data());
+          return;
+        }
         meet_object(ring, shape, ray_height_m(stores, ring, row), x, y, static_cast<float>(b.cos_h[row]),
                     static_cast<float>(b.sin_h[row]), ports[slot].distance_m.data());
       });
@@ -145,6 +152,7 @@ struct Waiting {
                                                hal::Proximity* ports) noexcept {
   const auto used = static_cast<std::uint32_t>(context.block.used);
   const std::size_t first_row = context.block.first_row;
+  const bool lean = anything_may_lean(context.stores);
   Waiting waiting;
   for (std::uint32_t begin = 0; begin < used; begin += kTeam) {
     const std::uint32_t end = std::min(used, begin + static_cast<std::uint32_t>(kTeam));
@@ -160,7 +168,7 @@ struct Waiting {
       }
     }
     for (std::uint32_t slot = begin; slot < end; ++slot)
-      look_around(context.stores, ring, first_row, slot, ports, waiting);
+      look_around(context.stores, ring, first_row, slot, lean, ports, waiting);
     meet(context.stores, ring, first_row, ports, waiting);
   }
 }

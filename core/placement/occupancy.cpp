@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace tandem::core {
 namespace {
@@ -39,9 +40,90 @@ bool boxes_overlap(const Obstacle& a, const Obstacle& b) {
   return !(apart(a.cos_h, a.sin_h) || apart(-a.sin_h, a.cos_h) || apart(b.cos_h, b.sin_h) || apart(-b.sin_h, b.cos_h));
 }
 
+// --- tilted bodies ---
+
+using Vector = Solid::Vector;
+
+double dot(const Vector& a, const Vector& b) noexcept {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+Vector cross(const Vector& a, const Vector& b) noexcept {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+
+Solid solid_of(const Obstacle& o) noexcept {
+  if (o.leans != nullptr) return *o.leans;
+  const double half_height_m = 0.5 * (o.z_high_m - o.z_low_m);
+  Solid s;
+  s.axes = {{{o.cos_h, o.sin_h, 0.0}, {-o.sin_h, o.cos_h, 0.0}, {0.0, 0.0, 1.0}}};
+  s.middle_m = {o.x_m, o.y_m, o.z_low_m + half_height_m};
+  s.half_m = {o.is_box ? o.half_x_m : o.radius_m, o.is_box ? o.half_y_m : o.radius_m, half_height_m};
+  s.round = !o.is_box;
+  return s;
+}
+
+/// Separating-axis test: complete for two boxes. For a cylinder the ways from its axis to the corners and to the
+/// middle of the other are tried, too.
+bool solids_overlap(const Solid& a, const Solid& b) noexcept {
+  constexpr double kTouching_m = 1e-9;
+  const Vector way{b.middle_m[0] - a.middle_m[0], b.middle_m[1] - a.middle_m[1], b.middle_m[2] - a.middle_m[2]};
+  const auto apart = [&](Vector u) {
+    const double size = std::sqrt(dot(u, u));
+    if (size < 1e-9) return false;
+    for (double& x : u) x /= size;
+    return std::fabs(dot(way, u)) >= half_extent(a, u) + half_extent(b, u) - kTouching_m;
+  };
+  for (const Vector& u : a.axes) {
+    if (apart(u)) return false;
+  }
+  for (const Vector& v : b.axes) {
+    if (apart(v)) return false;
+    for (const Vector& u : a.axes) {
+      if (apart(cross(u, v))) return false;
+    }
+  }
+  for (const auto& [round, other] : {std::pair{&a, &b}, std::pair{&b, &a}}) {
+    if (!round->round) continue;
+    const Vector& axis = round->axes[2];
+    for (const double sx : {-1.0, 0.0, 1.0}) {
+      for (const double sy : {-1.0, 0.0, 1.0}) {
+        for (const double sz : {-1.0, 0.0, 1.0}) {
+          Vector to{};
+          for (std::size_t i = 0; i < 3; ++i)
+            to[i] = other->middle_m[i] - round->middle_m[i] + sx * other->half_m[0] * other->axes[0][i] +
+                    sy * other->half_m[1] * other->axes[1][i] + sz * other->half_m[2] * other->axes[2][i];
+          const double along = dot(to, axis);
+          for (std::size_t i = 0; i < 3; ++i) to[i] -= along * axis[i];
+          if (apart(to)) return false;
+        }
+      }
+    }
+  }
+  return true;
+}
+
 }  // namespace
 
+double half_extent(const Solid& s, const Solid::Vector& along) noexcept {
+  const double up = dot(s.axes[2], along);
+  const double end_m = s.half_m[2] * std::fabs(up);
+  if (s.round) return end_m + s.half_m[0] * std::sqrt(std::max(0.0, 1.0 - up * up));
+  return end_m + s.half_m[0] * std::fabs(dot(s.axes[0], along)) + s.half_m[1] * std::fabs(dot(s.axes[1], along));
+}
+
+Obstacle bounds_of(const Solid& leans) noexcept {
+  const double half_z_m = half_extent(leans, {0.0, 0.0, 1.0});
+  Obstacle o = box_at(leans.middle_m[0], leans.middle_m[1], 2.0 * half_extent(leans, {1.0, 0.0, 0.0}),
+                      2.0 * half_extent(leans, {0.0, 1.0, 0.0}), 0.0);
+  o.z_low_m = leans.middle_m[2] - half_z_m;
+  o.z_high_m = leans.middle_m[2] + half_z_m;
+  o.leans = &leans;
+  return o;
+}
+
 bool overlap(const Obstacle& a, const Obstacle& b) noexcept {
+  if (a.leans != nullptr || b.leans != nullptr) return solids_overlap(solid_of(a), solid_of(b));
   const bool on_ground = (a.is_robot && !a.flies && !b.is_robot) || (b.is_robot && !b.flies && !a.is_robot);
   if (!on_ground && (a.z_high_m <= b.z_low_m || b.z_high_m <= a.z_low_m) && a.z_high_m > a.z_low_m &&
       b.z_high_m > b.z_low_m)

@@ -8,6 +8,18 @@
 
 namespace tandem::core {
 
+/// A box or cylinder anywhere in space.
+struct Solid {
+  using Vector = std::array<double, 3>;
+  std::array<Vector, 3> axes{{{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}}};  ///< its own, in W
+  Vector middle_m{};
+  Vector half_m{};     ///< of a cylinder: radius, radius, half the height
+  bool round = false;  ///< a cylinder about its third axis
+};
+
+/// Half the extent along a unit vector of W.
+double half_extent(const Solid& s, const Solid::Vector& along) noexcept;
+
 /// A disc, or a rectangle with a heading.
 struct Obstacle {
   double x_m = 0.0, y_m = 0.0;
@@ -18,14 +30,19 @@ struct Obstacle {
   double z_low_m = 0.0, z_high_m = 0.0;
   bool is_robot = false;
   bool flies = false;
-  std::uint32_t item = 0;  ///< of Scenario::robots or objects
+  const Solid* leans = nullptr;  ///< not null: a tilted body, of which the rest holds the bounds; outlives this
+  std::uint32_t item = 0;        ///< of Scenario::robots or objects
 };
 
 Obstacle disc_at(double x_m, double y_m, double radius_m) noexcept;
 Obstacle box_at(double x_m, double y_m, double size_x_m, double size_y_m, double yaw_rad) noexcept;
 
+/// The bounds of a tilted body.
+Obstacle bounds_of(const Solid& leans) noexcept;
+
 /// Whether the two share space; touching is not overlapping. Robots that do not fly are kept out of everything above
-/// and below objects: engines of the plane know no heights.
+/// and below upright objects: engines of the plane know no heights. Where tilted bodies are involved, shapes are
+/// compared in space; next to edges of cylinders this may find an overlap where a small gap is.
 bool overlap(const Obstacle& a, const Obstacle& b) noexcept;
 
 /// Obstacles by cell of grids of doubling cell size: each is listed in the finest grid that needs few cells for it, so

@@ -2,13 +2,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
 
 #include "core/placement/occupancy.hpp"
 #include "core/random/random.hpp"
 #include "hal/angle.hpp"
+#include "hal/vector.hpp"
 
 namespace tandem::core {
 namespace {
+
+constexpr double kUpright = 1e-6;  // |x| + |y| of a quaternion up to which a body counts as upright
 
 /// The same angle in (-pi, pi].
 Obstacle obstacle_of(const ObjectItem& item, std::uint32_t index, const Vec3& p, double yaw_rad) noexcept {
@@ -18,6 +22,27 @@ Obstacle obstacle_of(const ObjectItem& item, std::uint32_t index, const Vec3& p,
   o.z_high_m = p[2] + item.size[2];
   o.item = index;
   return o;
+}
+
+/// The rotations about z, then y, then x.
+hal::Quaternion turn_of(const Placement& at, double yaw_rad) noexcept {
+  hal::Quaternion q = hal::about_z(yaw_rad);
+  if (at.pitch_rad != 0.0)
+    q = q * hal::Quaternion(hal::cos(0.5 * at.pitch_rad), 0.0, hal::sin(0.5 * at.pitch_rad), 0.0);
+  if (at.roll_rad != 0.0) q = q * hal::Quaternion(hal::cos(0.5 * at.roll_rad), hal::sin(0.5 * at.roll_rad), 0.0, 0.0);
+  return q;
+}
+
+/// Of something tilted: it turns about the middle of its base, as in ARGoS.
+Solid solid_of(const ObjectItem& item, const hal::Quaternion& q_WB) noexcept {
+  const hal::Matrix3 axes = q_WB.toRotationMatrix();
+  const bool round = item.shape == ShapeKind::Cylinder;
+  Solid s;
+  for (int i = 0; i < 3; ++i) s.axes[static_cast<std::size_t>(i)] = hal::array_of(hal::Vector3(axes.col(i)));
+  s.middle_m = hal::array_of(hal::Vector3(hal::vector_of(item.placement.p_W) + 0.5 * item.size[2] * axes.col(2)));
+  s.half_m = {round ? item.size[0] : 0.5 * item.size[0], round ? item.size[0] : 0.5 * item.size[1], 0.5 * item.size[2]};
+  s.round = round;
+  return s;
 }
 
 /// Draws the `trial`-th triple for entity `index` of the item that starts on `line`.
@@ -146,13 +171,18 @@ class Placer {
 
   void place_fixed_object(std::uint32_t i, const ObjectItem& item) {
     const double yaw = hal::wrapped(item.placement.yaw_rad);
-    const Obstacle o = obstacle_of(item, i, item.placement.p_W, yaw);
+    const hal::Quaternion q_WB = turn_of(item.placement, yaw);
+    Obstacle o = obstacle_of(item, i, item.placement.p_W, yaw);
+    if (std::fabs(q_WB.x()) + std::fabs(q_WB.y()) > kUpright) {
+      o = bounds_of(leaning_.emplace_back(solid_of(item, q_WB)));
+      o.item = i;
+    }
     if (item.movable && !inside(item.placement.p_W))
       return problem(item.line, name_of(o) + " is at " + text_of(item.placement.p_W) + ", outside the arena");
     const Obstacle* other = item.movable ? occupancy_.hit(o) : nullptr;
     if (other != nullptr) problem(item.line, name_of(o) + " overlaps " + name_of(*other) + "; move one of them");
     occupancy_.add(o);
-    objects_.push_back({item.placement.p_W, yaw, i, -1});
+    objects_.push_back({item.placement.p_W, yaw, q_WB, i, -1});
   }
 
   Obstacle robot_at(const Vec3& p, std::uint32_t i) const {
@@ -212,7 +242,7 @@ class Placer {
         distribute(task, key, item.shape == ShapeKind::Box ? "box" : "cylinder", item.id,
                    [&](std::int64_t number, const Vec3& p, double yaw) {
                      const Attempt attempt = occupy(p, obstacle_of(item, i, p, yaw));
-                     if (attempt.placed) objects_.push_back({p, yaw, i, number});
+                     if (attempt.placed) objects_.push_back({p, yaw, hal::about_z(yaw), i, number});
                      return attempt;
                    });
       } else if (size_[i].radius_m >= 0.0) {
@@ -279,6 +309,7 @@ class Placer {
   std::uint64_t seed_;
   Problems& problems_;
   std::vector<BodySize> size_;  // by item of Scenario::robots
+  std::deque<Solid> leaning_;   // what is tilted; the occupancy points to them
   Occupancy occupancy_;
   std::vector<std::vector<PlacedRobot>> robots_by_item_;
   std::vector<PlacedObject> objects_;

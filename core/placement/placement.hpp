@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/scenario/scenario.hpp"
+#include "hal/vector.hpp"
 
 namespace tandem::core {
 
@@ -20,7 +21,8 @@ struct PlacedRobot {
 struct PlacedObject {
   Vec3 p_W{};
   double yaw_rad = 0.0;
-  std::uint32_t item = 0;  ///< of Scenario::objects
+  hal::Quaternion q_WB{1.0, 0.0, 0.0, 0.0};  ///< what is distributed stands upright
+  std::uint32_t item = 0;                    ///< of Scenario::objects
   std::int64_t number = -1;
 };
 

@@ -10,6 +10,7 @@
 #include "core/record/record.hpp"
 #include "core/record/scene_json.hpp"
 #include "core/scenario/element.hpp"
+#include "core/space/attitude.hpp"
 #include "core/space/mechanisms.hpp"
 #include "core/space/stores.hpp"
 #include "hal/device/leds.hpp"
@@ -191,16 +192,21 @@ void RecordStreams::declare_poses(const Space& space, const Chosen& chosen, hal:
   attitudes.sort = Sort::Attitudes;
   attitudes.indices = chosen.rows;
   attitudes.rows = chosen.rows.size();
+  declare_attitudes(std::move(attitudes), "robot", everyone, now, out);
+}
+
+void RecordStreams::declare_attitudes(Stream attitudes, const char* of, const Json& members, hal::Tick now,
+                                      std::string& out) {
   attitudes.row_bytes = 4 * sizeof(float);
   attitudes.layouts = {{0, sizeof(float), 4, nullptr, 1}};
   declare_stream(
       std::move(attitudes),
-      {{"of", "robot"},
+      {{"of", of},
        {"set", "pose"},
        {"name", "attitude"},
        {"fields",
         Json::array({field_json("q_WB", "f32", 4, 1.0, "", "w, x, y, z; in engines of the plane: 1, 0, 0, 0")})}},
-      everyone, now, out);
+      members, now, out);
 }
 
 namespace {
@@ -458,8 +464,14 @@ void RecordStreams::declare_objects(const Space& space, hal::Tick now, std::stri
     ids.push_back(s.objects[i].id);
   }
   things.rows = things.indices.size();
+  const Json members = {{"ids", std::move(ids)}};
+  Stream attitudes;
+  attitudes.sort = Sort::ObjectAttitudes;
+  attitudes.indices = things.indices;
+  attitudes.rows = things.rows;
   declare_stream(std::move(things), {{"of", "object"}, {"set", "pose"}, {"name", "pose"}, {"fields", pose_fields()}},
-                 {{"ids", std::move(ids)}}, now, out);
+                 members, now, out);
+  if (config_.attitudes && anything_may_lean(s)) declare_attitudes(std::move(attitudes), "object", members, now, out);
 }
 
 // --- copying, on the thread that steps ---
@@ -497,6 +509,13 @@ void RecordStreams::copy_rows(const Space& space, Stream& stream) const {
         if (!b.motion.empty()) {
           for (std::size_t k = 0; k < 4; ++k) q[k] = static_cast<float>(b.motion[stream.indices[i]].q_WB[k]);
         }
+        std::memcpy(out, q.data(), sizeof q);
+      }
+      return;
+    case Sort::ObjectAttitudes:
+      for (std::size_t i = 0; i < stream.rows; ++i, out += stream.row_bytes) {
+        std::array<float, 4> q{};
+        for (std::size_t k = 0; k < 4; ++k) q[k] = static_cast<float>(s.object_motion[stream.indices[i]].q_WB[k]);
         std::memcpy(out, q.data(), sizeof q);
       }
       return;

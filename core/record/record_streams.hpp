@@ -69,7 +69,7 @@ class RecordStreams {
     const std::byte* first = nullptr;
     std::size_t rows = 0, stride = 0;
   };
-  enum class Sort : std::uint8_t { RobotPoses, ObjectPoses, Attitudes, Rows, State };
+  enum class Sort : std::uint8_t { RobotPoses, ObjectPoses, Attitudes, ObjectAttitudes, Rows, State };
   enum class When : std::uint8_t {
     Due,     ///< every so many ticks
     Changed  ///< in those of them in which they differ from the last ones
@@ -101,6 +101,7 @@ class RecordStreams {
     declare_stream(std::move(stream), std::move(declaration), members, now, out, streams_);
   }
   void declare_poses(const Space& space, const Chosen& chosen, hal::Tick now, std::string& out);
+  void declare_attitudes(Stream attitudes, const char* of, const hal::Json& members, hal::Tick now, std::string& out);
   void declare_ports(const Space& space, const Chosen& chosen, hal::Tick now, std::string& out);
   void declare_state(const Space& space, const Chosen& chosen, hal::Tick now, std::string& out);
   void declare_look(const Space& space, const Chosen& chosen, hal::Tick now, std::string& out);

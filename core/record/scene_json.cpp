@@ -9,6 +9,7 @@
 #include <string_view>
 #include <utility>
 
+#include "core/space/attitude.hpp"
 #include "hal/device/gripper.hpp"
 #include "hal/device/leds.hpp"
 
@@ -17,7 +18,7 @@ namespace {
 
 using hal::Json;
 
-Json object_json(const Object& o) {
+Json object_json(const SpaceStores& s, const Object& o) {
   Json json = {{"id", o.id},           {"shape", o.kind == Object::Kind::Box ? "box" : "cylinder"},
                {"movable", o.movable}, {"x", o.x_m},
                {"y", o.y_m},           {"heading", std::atan2(o.sin_h, o.cos_h)},
@@ -28,6 +29,7 @@ Json object_json(const Object& o) {
   } else {
     json["radius"] = o.radius_m;
   }
+  if (const auto& q = turn_of(s, o); leans(q)) json["q_WB"] = q;
   for (const ObjectLed& led : o.leds)
     json["leds"].push_back({led.x_m, led.y_m, led.z_m, led.color.r, led.color.g, led.color.b});
   return json;
@@ -59,7 +61,7 @@ Json scene_json(const SpaceStores& s) {
                 {"lights", Json::array()},
                 {"borders", Json::array()}};
   for (const Object& o : s.objects) {
-    if (o.alive) scene["objects"].push_back(object_json(o));
+    if (o.alive) scene["objects"].push_back(object_json(s, o));
   }
   for (const Region& region : s.regions) {
     for (std::size_t i = 0; i < region.sides.size(); ++i) {

@@ -243,6 +243,9 @@ struct World::Impl final : hal::RobotLog::Sink {
   }
 };
 
+/// Builds the index of the immovable or of the movable objects.
+void index_objects(SpaceStores& stores, bool movable, double reach_m);
+
 /// How far from a point the indices must look for what a robot there could touch or see, in m.
 double index_reach(const SpaceStores& stores, double tick_s) noexcept;
 

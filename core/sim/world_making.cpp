@@ -12,6 +12,8 @@
 #include "core/sim/engine_factory.hpp"
 #include "core/sim/settings.hpp"
 #include "core/sim/world_impl.hpp"
+#include "core/space/attitude.hpp"
+#include "hal/vector.hpp"
 
 namespace tandem::core {
 namespace {
@@ -39,6 +41,18 @@ Object object_of(const Scenario& scenario, const ObjectItem& item, const PlacedO
   shape.radius_m = item.size[0];
   shape.z_low_m = placed.p_W[2];
   shape.z_high_m = placed.p_W[2] + item.size[2];
+  if (const hal::Quaternion& q = placed.q_WB; leans(hal::array_of(q))) {
+    // It turns about the middle of its base, as in ARGoS; its place is that of its middle.
+    const hal::Vector3 up = q * hal::Vector3(0.0, 0.0, 0.5 * item.size[2]);
+    const hal::Vector3 ahead = q * hal::Vector3(1.0, 0.0, 0.0);
+    shape.x_m += up.x();
+    shape.y_m += up.y();
+    shape.z_low_m += up.z() - 0.5 * item.size[2];
+    shape.z_high_m = shape.z_low_m + item.size[2];
+    const double level = std::hypot(ahead.x(), ahead.y());
+    shape.cos_h = level > 1e-9 ? ahead.x() / level : 1.0;
+    shape.sin_h = level > 1e-9 ? ahead.y() / level : 0.0;
+  }
   shape.movable = item.movable;
   shape.mass_kg = item.mass_kg;
   const std::uint16_t medium = led_medium(scenario, item.led_medium);
@@ -74,7 +88,7 @@ void check_joints(const Scenario& scenario, const hal::Catalog& catalog, const S
 
 /// What engines of the plane leave out of a place: its height, and tilts.
 void warn_of_upright(const Scenario& scenario, const Region& region, int line, const std::string& who,
-                     const Placement& placement, Problems& problems) {
+                     const Placement& placement, bool tilts, Problems& problems) {
   const auto warn = [&](const std::string& what) {
     problems.push_back({scenario.file, line,
                         who + " " + what + ", but its engine '" + region.name +
@@ -82,7 +96,25 @@ void warn_of_upright(const Scenario& scenario, const Region& region, int line, c
                         true});
   };
   if (placement.p_W[2] > 0.0) warn("is " + hal::format_number(placement.p_W[2]) + " m above the ground");
-  if (placement.pitch_rad != 0.0 || placement.roll_rad != 0.0) warn("is tilted");
+  if (tilts && (placement.pitch_rad != 0.0 || placement.roll_rad != 0.0)) warn("is tilted");
+}
+
+/// Bodies that turn in space need an engine that knows it, wherever they are.
+void refuse_to_lean(const Scenario& scenario, const SpaceStores& s, std::size_t number, const ObjectItem& item,
+                    Problems& problems) {
+  const Object& o = s.objects[number];
+  for (std::size_t i = 0; i < s.regions.size(); ++i) {
+    const Region& region = s.regions[i];
+    const bool there = o.movable ? s.object_region[number] == i : region.touches(o, s.border_reach_m);
+    if (!there || (region.forces && !region.plane)) continue;
+    problems.push_back(
+        {scenario.file, item.line,
+         "'" + item.id + "' is tilted, but its engine '" + region.name +
+             "' knows upright boxes and cylinders alone; use one of space and forces there, or an orientation of "
+             "the form \"angle,0,0\"",
+         false});
+    return;
+  }
 }
 
 /// One warning an item.
@@ -93,13 +125,14 @@ void check_upright(const Scenario& scenario, const Placements& placements, const
     const RobotItem& item = scenario.robots[e.item];
     if (e.item == told || item.distribute || region == kNoRegion || !s.regions[region].plane) continue;
     told = e.item;
-    warn_of_upright(scenario, s.regions[region], item.line, "robot '" + item.id + "'", item.placement, problems);
+    warn_of_upright(scenario, s.regions[region], item.line, "robot '" + item.id + "'", item.placement, true, problems);
   }
   for (std::size_t i = 0; i < s.objects.size(); ++i) {
     const ObjectItem& item = scenario.objects[placements.objects[i].item];
     const std::uint16_t region = s.object_region[i];
+    if (leans(s.object_motion[i].q_WB)) refuse_to_lean(scenario, s, i, item, problems);
     if (!s.objects[i].movable || item.distribute || region == kNoRegion || !s.regions[region].plane) continue;
-    warn_of_upright(scenario, s.regions[region], item.line, "'" + item.id + "'", item.placement, problems);
+    warn_of_upright(scenario, s.regions[region], item.line, "'" + item.id + "'", item.placement, false, problems);
   }
 }
 
@@ -326,19 +359,20 @@ void World::Impl::populate(Problems& problems) {
 
   reach_m = index_reach(s, tick_s());
   s.body_index.set_area(s.min_x_m, s.min_y_m, s.max_x_m, s.max_y_m, reach_m);
-  s.static_index.build(s.objects, false, s.min_x_m, s.min_y_m, s.max_x_m, s.max_y_m, reach_m);
-  indexed_version = s.immovables_version;
   s.object_motion.resize(s.objects.size());
   s.object_region.resize(s.objects.size(), kNoRegion);
   for (std::size_t i = 0; i < s.objects.size(); ++i) {
     s.object_numbers.emplace(s.objects[i].id, static_cast<std::uint32_t>(i));
-    const double half_rad = 0.5 * placements.objects[i].yaw_rad;
     s.object_motion[i].z_m = s.objects[i].z_low_m;
-    s.object_motion[i].q_WB = {std::cos(half_rad), 0.0, 0.0, std::sin(half_rad)};
+    s.object_motion[i].q_WB = hal::array_of(placements.objects[i].q_WB);
   }
+  index_objects(s, false, reach_m);
+  indexed_version = s.immovables_version;
   index_movables();
   if (!bad()) {
     assigner.build(s, tick_s());
+    index_objects(s, false, reach_m);  // anew: now it is known what may lean
+    index_movables();
     assign_regions(scenario, catalog, placements, assigner, s, problems);
   }
 }

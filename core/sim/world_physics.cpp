@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "core/sim/world_impl.hpp"
+#include "core/space/attitude.hpp"
 #include "hal/device/ring_sensors.hpp"
 
 namespace tandem::core {
@@ -11,6 +12,31 @@ namespace {
 constexpr double kContactReach_m = 0.03;  // beyond the bodies' rims: what contact resolution looks at
 
 }  // namespace
+
+/// What leans is listed wherever its shadow at noon is.
+void index_objects(SpaceStores& s, bool movable, double reach_m) {
+  ObjectIndex& index = movable ? s.movable_index : s.static_index;
+  const auto build = [&](const std::vector<Object>& objects) {
+    index.build(objects, movable, s.min_x_m, s.min_y_m, s.max_x_m, s.max_y_m, reach_m);
+  };
+  const auto any_leans = [&] {
+    return std::any_of(s.objects.begin(), s.objects.end(),
+                       [&](const Object& o) { return o.alive && o.movable == movable && leans(turn_of(s, o)); });
+  };
+  if (!anything_may_lean(s) || !any_leans()) return build(s.objects);
+  std::vector<Object> shadows = s.objects;
+  for (std::size_t i = 0; i < shadows.size(); ++i) {
+    const Object& o = s.objects[i];
+    if (!o.alive || !leans(turn_of(s, o))) continue;
+    const std::array<double, 3> half_m = half_extents(o, attitude_of(o, turn_of(s, o)));
+    shadows[i].kind = Object::Kind::Box;
+    shadows[i].cos_h = 1.0;
+    shadows[i].sin_h = 0.0;
+    shadows[i].half_x_m = half_m[0];
+    shadows[i].half_y_m = half_m[1];
+  }
+  build(shadows);
+}
 
 double index_reach(const SpaceStores& stores, double tick_s) noexcept {
   double reach_m = 2.0 * kContactReach_m;
@@ -75,7 +101,7 @@ void World::Impl::settle_changes() {
   }
   if (s.bodies_changed) fit_to_bodies();
   if (indexed_version != s.immovables_version) {
-    s.static_index.build(s.objects, false, s.min_x_m, s.min_y_m, s.max_x_m, s.max_y_m, reach_m);
+    index_objects(s, false, reach_m);
     indexed_version = s.immovables_version;
   }
   if (s.bodies_changed) assigner.place(s, strays);
@@ -117,8 +143,7 @@ void World::Impl::index_movables() {
   SpaceStores& s = stores();
   const bool any =
       std::any_of(s.objects.begin(), s.objects.end(), [](const Object& o) { return o.alive && o.movable; });
-  if (any || !s.movable_index.empty())
-    s.movable_index.build(s.objects, true, s.min_x_m, s.min_y_m, s.max_x_m, s.max_y_m, reach_m);
+  if (any || !s.movable_index.empty()) index_objects(s, true, reach_m);
 }
 
 void World::Impl::rebuild_index() {

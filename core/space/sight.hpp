@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "core/space/attitude.hpp"
 #include "core/space/stores.hpp"
 
 namespace tandem::core {
@@ -17,11 +18,18 @@ inline bool in_sight(const SpaceStores& stores, double ax, double ay, double az,
   const double length = std::sqrt((bx - ax) * (bx - ax) + (by - ay) * (by - ay));
   if (length < stores.static_index.clearance_m(ax, ay) && stores.movable_index.empty()) return true;
   const int hops = 1 + static_cast<int>(length / (1.9 * stores.static_index.reach()));
+  const bool lean = anything_may_lean(stores);
   for (int i = 0; i < hops; ++i) {
     const double t = (i + 0.5) / hops;
     bool blocked = false;
     stores.for_each_object_near(ax + t * (bx - ax), ay + t * (by - ay), [&](const Object& object) {
-      blocked = blocked || blocks(object, ax, ay, az, bx, by, bz);
+      if (blocked) return;
+      if (!lean || !leans(turn_of(stores, object))) {
+        blocked = blocks(object, ax, ay, az, bx, by, bz);
+        return;
+      }
+      const Attitude attitude = attitude_of(object, turn_of(stores, object));
+      blocked = meets_at(object, attitude, {ax, ay, az}, {bx - ax, by - ay, bz - az}) <= 1.0;
     });
     if (blocked) return false;
   }

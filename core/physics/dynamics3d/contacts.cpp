@@ -68,7 +68,8 @@ void Contacts::note_support(BodyProxy& a, BodyProxy* b, const Touch& at, const G
     BodyProxy& other = top_of_heap(*b);
     if (&top != &other) other.heap = &top;
   }
-  if (at.depth_m > -kCarriesUpTo_m) supports_.push_back({&a, b, at.p_m, at.normal, std::min(grip.along, grip.across)});
+  if (at.depth_m > -kCarriesUpTo_m)
+    supports_.push_back({&a, b, at.p_m, at.normal, std::min(grip.along, grip.across), at.depth_m});
 }
 
 void Contacts::add(BodyProxy& a, BodyProxy* b, const Touch& at, const Grip& grip) {
@@ -123,17 +124,24 @@ void Contacts::between(BodyProxy& a, BodyProxy& b, const Surfaces& surfaces) {
   const TouchQuery query{kNear_m + a.hop_m + b.hop_m, on_floor(a) && on_floor(b), !robot,
                          static_cast<double>(a.key.value)};
   const std::size_t count = find_touches(a.prism, b.prism, query, touches);
-  for (std::size_t i = 0; i < count; ++i) add(a, &b, touches[i], robot && touches[i].normal[2] == 0.0 ? side : any);
+  for (std::size_t i = 0; i < count; ++i) {
+    if (a.robot() && b.robot())
+      overlap_ = std::max(overlap_, touches[i].depth_m / (2.0 * std::min(a.prism.radius_m, b.prism.radius_m)));
+    add(a, &b, touches[i], robot && touches[i].normal[2] == 0.0 ? side : any);
+  }
 }
 
 void Contacts::with_still(BodyProxy& a, Still& still, const Surfaces& surfaces) {
   const Grip side{surfaces.robot_friction, 0.0, true};
   const Grip any{surfaces.object_friction, surfaces.object_friction, false};
-  if (!a.prism.upright || !(a.prism.round || still.prism.round)) {
+  if (!a.prism.upright || !still.prism.upright || !(a.prism.round || still.prism.round)) {
     if (!still.geom) {
       still.geom = make_geom(still.prism, still.height_m, kSkin_m);
       dMatrix3 r;
-      dRFromAxisAndAngle(r, 0.0, 0.0, 1.0, std::atan2(still.prism.sin_h, still.prism.cos_h));
+      if (still.prism.upright)
+        dRFromAxisAndAngle(r, 0.0, 0.0, 1.0, std::atan2(still.prism.sin_h, still.prism.cos_h));
+      else
+        dRfromQ(r, still.q_W.data());
       dGeomSetRotation(still.geom.get(), r);
       dGeomSetPosition(still.geom.get(), still.prism.x_m, still.prism.y_m,
                        0.5 * (still.prism.low_m + still.prism.high_m));
@@ -225,7 +233,7 @@ void Contacts::wheels_on_floor(BodyProxy& a, const Surfaces& surfaces) {
     at.normal = {0.0, 0.0, 1.0};
     at.depth_m = surfaces.floor_m - at.p_m[2];
     if (at.depth_m < -kNear_m - a.hop_m) continue;
-    const Grip grip{surfaces.floor_friction, surfaces.floor_friction, true};
+    const Grip grip{surfaces.wheel_friction, surfaces.wheel_friction, true};
     join(wheel.get(), nullptr, at, grip, ahead);
   }
 }

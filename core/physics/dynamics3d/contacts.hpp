@@ -13,15 +13,17 @@ namespace tandem::core {
 struct Still {
   Prism prism;
   double height_m = 0.0;
-  bool wall = false;  ///< of the region: holds the region's own bodies only
-  OdeGeom geom;       ///< made when something that leans comes near
+  bool wall = false;                              ///< of the region: holds the region's own bodies only
+  std::array<double, 4> q_W{1.0, 0.0, 0.0, 0.0};  ///< of one that leans: as it stands in W
+  OdeGeom geom;                                   ///< made when something that leans comes near
 };
 
 /// Contact parameters.
 struct Surfaces {
   double floor_m = 0.0;
   double ceiling_m = 0.0;        ///< infinite where there is none
-  double floor_friction = 1.0;   ///< Coulomb's coefficients: objects on the floor, wheels on the floor
+  double floor_friction = 1.0;   ///< Coulomb's coefficients: objects on the floor
+  double wheel_friction = 1.0;   ///< wheels on the floor
   double object_friction = 1.0;  ///< objects on one another and on what does not move
   double robot_friction = 0.1;   ///< the rims of robots on whatever they touch
 };
@@ -47,6 +49,7 @@ class Contacts {
 
   /// `residual` gets to know every contact.
   void begin(dWorldID world, double dt_s, Residual& residual) noexcept {
+    overlap_ = 0.0;
     world_ = world;
     dt_s_ = dt_s;
     residual_ = &residual;
@@ -58,6 +61,8 @@ class Contacts {
   void with_ground(BodyProxy& a, const Surfaces& surfaces);
   /// Where objects touch one another and what does not move, in this sub-step.
   const std::vector<Support>& supports() const noexcept { return supports_; }
+  /// How deep two robots are in one another, at most, in parts of the narrower one's diameter.
+  double overlap() const noexcept { return overlap_; }
   /// Ends the sub-step.
   void clear() { dJointGroupEmpty(group_.get()); }
 
@@ -82,6 +87,7 @@ class Contacts {
   Residual* residual_ = nullptr;  // of the sub-step
   OdeJointGroup group_;
   std::vector<Support> supports_;
+  double overlap_ = 0.0;
 };
 
 }  // namespace tandem::core

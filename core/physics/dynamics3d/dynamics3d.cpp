@@ -12,6 +12,8 @@ namespace {
 
 constexpr double kSubStep_s = 0.02;        // at most, unless the file says otherwise
 constexpr double kRotorSubStep_s = 0.005;  // … of robots with rotors: a sixth of their lag
+constexpr double kGround = 1.49 / 9.81;    // friction of the ground: what dynamics2d's grips a kg with [ARGoS 3]
+constexpr double kAmongObjects = 1.0;      // … of objects on one another
 constexpr std::array<std::string_view, 2> kDrives = {"base", "wheels"};
 constexpr std::array<std::string_view, 2> kFlights = {"thrust", "rotors"};
 
@@ -27,15 +29,16 @@ struct FloorParams {
   double height_m = 0.0;
   void describe(hal::ParamVisitor& v) {
     v.number("friction", friction, hal::unit::none, {-1.0, 100.0},
-             "Coulomb's coefficient of the floor. Negative: default_friction.");
+             "Coulomb's coefficient of objects on the floor. Negative: default_friction.");
     v.number("height", height_m, hal::unit::m, {-1e6, 1e6}, "Where the floor is.");
   }
 };
 
 struct Params {
   std::int64_t iterations = 0;
-  double default_friction = 1.0;
+  double default_friction = -1.0;
   double robot_friction = 0.1;
+  double wheel_friction = 1.0;
   std::string drive = "base";
   std::string flight = "thrust";
   std::int64_t solver_iterations = 0;
@@ -48,10 +51,14 @@ struct Params {
   void describe(hal::ParamVisitor& v) {
     v.integer("iterations", iterations, {0, 1000},
               "Sub-steps a tick. 0: as few as last 20 ms at most; 5 ms with flight=\"rotors\".");
-    v.number("default_friction", default_friction, hal::unit::none, {0.0, 100.0},
-             "Coulomb's coefficient between objects that touch, and of the floor unless <floor> says otherwise.");
+    v.number("default_friction", default_friction, hal::unit::none, {-1.0, 100.0},
+             "Coulomb's coefficient between objects that touch, and of objects on the floor unless <floor> says "
+             "otherwise. Negative: 1 between objects, and on the floor what the ground of dynamics2d has: 1.49 N a kg, "
+             "which is a coefficient of 0.152.");
     v.number("robot_friction", robot_friction, hal::unit::none, {0.0, 100.0},
              "Coulomb's coefficient between a robot's side and whatever it touches.");
+    v.number("wheel_friction", wheel_friction, hal::unit::none, {0.0, 100.0},
+             "Coulomb's coefficient of wheels that turn on the floor.");
     v.choice("drive", drive, kDrives,
              "base: a robot on the ground is an upright cylinder, driven over the floor with the force of its wheels. "
              "wheels: it stands on two wheels that turn, and slips and tips as these let it; some 20 times slower.");
@@ -84,8 +91,10 @@ World3dSettings settings_for(const Params& params, double tick_s) {
                            : std::max<std::int64_t>(1, static_cast<std::int64_t>(std::ceil(tick_s / longest_s - 1e-6)));
   settings.gravity_m_s2 = params.gravity.g_m_s2;
   settings.surfaces.floor_m = params.floor.height_m;
-  settings.surfaces.floor_friction = params.floor.friction < 0.0 ? params.default_friction : params.floor.friction;
-  settings.surfaces.object_friction = params.default_friction;
+  const auto given = [](double coefficient, double otherwise) { return coefficient < 0.0 ? otherwise : coefficient; };
+  settings.surfaces.floor_friction = given(params.floor.friction, given(params.default_friction, kGround));
+  settings.surfaces.object_friction = given(params.default_friction, kAmongObjects);
+  settings.surfaces.wheel_friction = params.wheel_friction;
   settings.surfaces.robot_friction = params.robot_friction;
   settings.solver_iterations = params.solver_iterations > 0 ? params.solver_iterations : settings.wheels ? 240 : 30;
   settings.solver_error_m_s = params.solver_error_m_s > 0.0 ? params.solver_error_m_s : settings.wheels ? 1e-3 : 1e-2;

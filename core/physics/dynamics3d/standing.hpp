@@ -15,6 +15,7 @@ struct Support {
   Vector3 p_m{};           ///< in W
   Vector3 normal{};        ///< unit vector in W from b to a
   double friction = 0.0;
+  double depth_m = 0.0;  ///< negative: the gap
 };
 
 /// Whether forces at the contacts, pushing and within the friction's pyramid, can carry the objects against gravity.

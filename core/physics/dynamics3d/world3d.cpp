@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/physics/wheels.hpp"
+#include "core/space/attitude.hpp"
 #include "hal/unit.hpp"
 
 namespace tandem::core {
@@ -21,6 +22,7 @@ constexpr double kMoreWay = 1.5;         // … of what its speed gives
 constexpr double kFloats_m = 1e-6;       // above the floor
 constexpr std::int64_t kMorePasses = 3;  // times as many when they were too few
 constexpr std::int64_t kMostPasses = 2500;  // unless the file asks for more
+constexpr double kRestsUpTo_m = 5e-4;       // so deep in one another things may come to rest
 constexpr double kWallThickness_m = 0.2;
 constexpr double kWallHeight_m = 2000.0;
 
@@ -193,6 +195,16 @@ void World3d::place_stills(const SolverContext& context) {
              o.z_high_m,
              0.0,
              0.0};
+    if (leans(turn_of(s, o))) {
+      still.q_W = turn_of(s, o);
+      const Attitude attitude = attitude_of(o, still.q_W);
+      const std::array<double, 3> half_m = half_extents(o, attitude);
+      prism.upright = false;
+      prism.reach_x_m = half_m[0];
+      prism.reach_y_m = half_m[1];
+      prism.low_m = attitude.middle_m[2] - half_m[2];
+      prism.high_m = attitude.middle_m[2] + half_m[2];
+    }
     stills_.push_back(std::move(still));
   }
   const auto& sides = context.region.sides;
@@ -220,6 +232,7 @@ void World3d::place_stills(const SolverContext& context) {
   }
   for (Still& still : stills_) {
     Prism& prism = still.prism;
+    if (!prism.upright) continue;
     const double c = std::fabs(prism.cos_h);
     const double n = std::fabs(prism.sin_h);
     prism.reach_x_m = prism.round ? prism.radius_m : c * prism.half_x_m + n * prism.half_y_m;
@@ -447,6 +460,7 @@ void World3d::advance(const SolverContext& context) {
       residual_.begin({dt_s, settings_.erp, settings_.cfm, kPartingSpeed_m_s});
       contacts_.begin(world_.get(), dt_s, residual_);
       find_contacts();
+      accuracy.overlap = std::max(accuracy.overlap, contacts_.overlap());
       for (auto& entry : entries) {
         if (entry.body->touched) enter(*entry.body);
       }
@@ -639,6 +653,8 @@ bool World3d::stands(std::size_t first, std::size_t past) {
                                    [](const HeapSupport&support, BodyKey key) { return support.top < key; });
        own != heap_supports_.end() && own->top == top; ++own)
     supports_.push_back(contacts_.supports()[own->number]);
+  if (std::any_of(supports_.begin(), supports_.end(), [](const Support& s) { return s.depth_m > kRestsUpTo_m; }))
+    return false;  // what fell into something is pushed out before it rests
   const std::uint64_t mark = mark_of(heap_, supports_);
   const bool known = std::binary_search(stood_.begin(), stood_.end(), mark);
   if (!known && !standing_.stands(heap_, supports_, settings_.gravity_m_s2)) return false;

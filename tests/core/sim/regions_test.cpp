@@ -579,7 +579,8 @@ TEST_P(Regions, ACrowdTouchesAsOftenAndAsDeepAcrossBordersAsWithinOneRegion) {
   EXPECT_GT(whole.pairs / 3, 20.0);  // it is a crowd
   EXPECT_NEAR(parts.pairs, whole.pairs, 0.05 * whole.pairs);
   EXPECT_NEAR(parts.overlap_m, whole.overlap_m, 0.25 * whole.overlap_m + 3 * 2e-5);
-  EXPECT_LE(parts.deepest_m, 1.25 * whole.deepest_m + 3 * 5e-5);
+  // The solver of dynamics3d stops at errors of 1 cm/s: 0.2 mm in a sub-step of 20 ms.
+  EXPECT_LE(parts.deepest_m, 1.25 * whole.deepest_m + 3 * (GetParam() == "dynamics3d" ? 2e-4 : 5e-5));
 }
 
 INSTANTIATE_TEST_SUITE_P(Physics, Regions, testing::ValuesIn(test::engine_kinds()), name_of_kind);
@@ -668,7 +669,7 @@ TEST_P(MovableAcrossBorders, AnObjectStopsAtAGateBehindWhichNobodyCouldMoveIt) {
 
 TEST_P(MovableAcrossBorders, AnEngineWithoutForcesTakesAnObjectOnTheBorderAsItStands) {
   Scene s = west_of_kinematics(GetParam());
-  s.box(-0.03, 0, 0.1, 0.2, 0.0, 0.5).movable(0.5).robot("a", 0.3, 0, std::numbers::pi).wheels(0.1, 0.1);
+  s.box(-0.03, 0, 0.1, 0.2, 0.0, 0.5).movable(2.0).robot("a", 0.3, 0, std::numbers::pi).wheels(0.1, 0.1);
   auto world = make(s);
   ASSERT_TRUE(world.world) << world.all_problems();
   steps(world, 80);

@@ -113,6 +113,33 @@ TEST_P(Pushing, ABoxTooHeavyForTheDriveStays) {
   EXPECT_GT(pose_of(world, "a").x_m, -0.05 - kRobotRadius_m - 2 * depth_m());
 }
 
+/// One file, one friction: with an engine's own settings a robot moves what the ground grips with less than the force
+/// of its drive, 1.49 N a kg, and nothing heavier.
+TEST_P(Pushing, WhatARobotCanPushIsTheSameInEveryEngine) {
+  const double most_kg = hal::epuck::kind().drive()->force_N / 1.49;
+  const bool turning_wheels = GetParam() == "dynamics3d";
+  for (const bool wheels : {false, true}) {
+    if (wheels && !turning_wheels) continue;
+    for (const double part : {0.93, 1.07}) {
+      Scene s(4.0);
+      s.engine(GetParam(), "",
+               wheels ? std::vector<Element::Attribute>{{"drive", "wheels", 1}} : std::vector<Element::Attribute>{});
+      s.box(0, 0, 0.1, 0.3, 0.0, 0.02).movable(part * most_kg).robot("a", -0.1, 0).wheels(0.1, 0.1);
+      s.scenario.ticks_per_second = 50;
+      s.parts([](hal::RobotKind& kind) { kind.body.mass_kg = 1.6; });  // heavy enough that its wheels do not slip
+      auto world = make(s);
+      ASSERT_TRUE(world.world) << world.all_problems();
+      steps(world, 300);  // long after the first impact
+      const double from_m = object(world).x_m;
+      steps(world, 100);
+      if (part < 1.0)
+        EXPECT_NEAR(object(world).x_m - from_m, 0.2, 0.01) << part << (wheels ? " on wheels" : "");
+      else
+        EXPECT_LT(object(world).x_m - from_m, 1e-3) << part << (wheels ? " on wheels" : "");
+    }
+  }
+}
+
 TEST_P(Pushing, TwoRobotsMoveWhatOneCannot) {
   const double mass_kg = 1.4 * hal::epuck::kind().drive()->force_N / grip();
   for (const bool both : {false, true}) {

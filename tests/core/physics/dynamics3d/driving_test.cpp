@@ -79,8 +79,8 @@ TEST(Dynamics3dWheels, RollAsTheyAreToldAndStandUpright) {
   EXPECT_TRUE(hand.trouble.empty());
 }
 
-TEST(Dynamics3dWheels, SlipOnAFloorWithoutFriction) {
-  ByHand hand({{"drive", "wheels", 3}}, {child("floor", {{"friction", "0", 4}})});
+TEST(Dynamics3dWheels, SlipWithoutFriction) {
+  ByHand hand({{"drive", "wheels", 3}, {"wheel_friction", "0", 3}});
   hand.robot(0, 0, 0, 0.08, 0.08);
   hand.ticks(50);
   EXPECT_NEAR(hand.bodies().x_m[0], 0.0, 0.01);

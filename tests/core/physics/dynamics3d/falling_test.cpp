@@ -114,6 +114,20 @@ TEST(Dynamics3dFalling, WhatWasDroppedComesToRest) {
   }
 }
 
+TEST(Dynamics3dFalling, ABoxThatFallsOnABoxComesToLieOnIt) {
+  for (const double turned_rad : {0.0, 0.2}) {
+    for (const double drop_m : {0.05, 0.3, 0.5}) {
+      ByHand hand;
+      hand.block(0.0, 0.0, 0.0, 0.2, 0.2, 0.1, 0.5);
+      hand.block(0.03, 0.02, 0.1 + drop_m, 0.1, 0.1, 0.1, 0.3, turned_rad);
+      hand.ticks(80);
+      EXPECT_NEAR(hand.z_m(1), 0.1, 1e-3) << drop_m << " " << turned_rad;
+      EXPECT_NEAR(hand.upright(1), 1.0, 1e-4) << drop_m << " " << turned_rad;
+      EXPECT_NEAR(hand.z_m(0), 0.0, 1e-3) << drop_m << " " << turned_rad;
+    }
+  }
+}
+
 TEST(Dynamics3dFalling, AStackFallsWhenItsFootGoes) {
   ByHand hand;
   for (int i = 0; i < 3; ++i) hand.block(0.0, 0.0, 0.1 * i, 0.1, 0.1, 0.1, 0.5);

@@ -28,8 +28,9 @@ TEST(Dynamics3dOptions, TakeWhatTheyKnow) {
 TEST(Dynamics3dOptions, RefuseWhatTheyDoNotKnow) {
   EXPECT_NE(problems_of({{"iteration", "1", 3}}).find("iterations"), std::string::npos);
   for (const auto& [name, value] : std::vector<std::pair<std::string, std::string>>{{"iterations", "-1"},
-                                                                                    {"default_friction", "-0.1"},
+                                                                                    {"default_friction", "-1.5"},
                                                                                     {"robot_friction", "nan"},
+                                                                                    {"wheel_friction", "-0.1"},
                                                                                     {"erp", "1.5"},
                                                                                     {"cfm", "-1"},
                                                                                     {"solver_iterations", "-1"},
