@@ -56,7 +56,7 @@ void stop(std::vector<StoppedRobot*> robots, const std::string& folder, const st
 
 std::string StoppedRobot::to_text() const {
   const LockHolder& holder = abandoned.holder;
-  const std::time_t seen = abandoned.seen_unix_s;
+  const auto seen = static_cast<std::time_t>(abandoned.seen_unix_s);
   std::tm local{};
   ::localtime_r(&seen, &local);
   std::array<char, 32> when{};

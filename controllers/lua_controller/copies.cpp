@@ -102,7 +102,7 @@ class Walk {
   }
 
   void text(int index) {
-    const std::size_t size = lua_rawlen(L, index);
+    const auto size = static_cast<std::size_t>(lua_rawlen(L, index));
     if (size <= kShortText || !first_time(index)) return;
     bytes_ += kObject + size;
   }
