@@ -105,7 +105,7 @@ TEST_F(PlaygroundThymio, DrivesTurnsAwayFromTheWallAndStops) {
   const std::string report = text_of(folder_.path() / "r.json");
   EXPECT_EQ(json_value(report, "programs_sent"), "1") << report;
   EXPECT_EQ(json_value(report, "not_understood"), "0") << report;
-  EXPECT_THAT(robot.errors() + robot.output(), HasSubstr("thymio-II 1, firmware 11"));
+  EXPECT_THAT(robot.errors() + robot.output(), HasSubstr("thymio-II, firmware 11, node 1"));
 }
 
 TEST_F(PlaygroundThymio, IsStoppedWhenTheHubIsKilled) {
