@@ -16,7 +16,6 @@ namespace tandem::mixed_reality {
 namespace {
 
 constexpr hal::TimeNs kMs = hal::kNsPerMs;
-constexpr hal::TimeNs kTick_ns = 100 * kMs;
 
 /// A foot-bot in steps of a millisecond.
 class Delayed {
