@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "hal/markup.hpp"
+
 namespace tandem::validate {
 namespace {
 
@@ -24,23 +26,6 @@ const char* class_of(Verdict verdict) {
   return verdict == Verdict::Told ? "" : "bad";
 }
 
-std::string escaped(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    if (c == '&')
-      out += "&amp;";
-    else if (c == '<')
-      out += "&lt;";
-    else if (c == '>')
-      out += "&gt;";
-    else if (c == '"')
-      out += "&quot;";
-    else
-      out += c;
-  }
-  return out;
-}
-
 constexpr const char* kStyle =
     "body{font:15px/1.45 system-ui,sans-serif;max-width:70em;margin:2em auto;padding:0 1em;color:#1a1a1a}"
     "table{border-collapse:collapse;margin:.6em 0 1.6em;width:100%}th,td{text-align:left;vertical-align:top;"
@@ -49,16 +34,16 @@ constexpr const char* kStyle =
     "32em}img{width:100%}figcaption{font-size:.9em;color:#444}";
 
 std::string table_html(const Table& table) {
-  std::string out = fmt::format("<h3>{}</h3>\n", escaped(table.title));
-  if (!table.text.empty()) out += fmt::format("<p>{}</p>\n", escaped(table.text));
+  std::string out = fmt::format("<h3>{}</h3>\n", hal::escaped_markup(table.title));
+  if (!table.text.empty()) out += fmt::format("<p>{}</p>\n", hal::escaped_markup(table.text));
   out += "<table><tr>";
-  for (const std::string& column : table.columns) out += fmt::format("<th>{}</th>", escaped(column));
+  for (const std::string& column : table.columns) out += fmt::format("<th>{}</th>", hal::escaped_markup(column));
   out += "<th>contract</th><th></th></tr>\n";
   for (const Row& row : table.rows) {
     out += "<tr>";
-    for (const std::string& cell : row.cells) out += fmt::format("<td>{}</td>", escaped(cell));
-    out += fmt::format("<td>{}</td><td class=\"{}\">{}</td></tr>\n", escaped(row.contract), class_of(row.verdict),
-                       word_of(row.verdict));
+    for (const std::string& cell : row.cells) out += fmt::format("<td>{}</td>", hal::escaped_markup(cell));
+    out += fmt::format("<td>{}</td><td class=\"{}\">{}</td></tr>\n", hal::escaped_markup(row.contract),
+                       class_of(row.verdict), word_of(row.verdict));
   }
   return out + "</table>\n";
 }
@@ -91,15 +76,15 @@ std::string page_of(const Report& report) {
       "<p><b>{}</b></p>\n<table>",
       kStyle, summary_of(report));
   for (const auto& [name, value] : report.about)
-    out += fmt::format("<tr><td>{}</td><td>{}</td></tr>\n", escaped(name), escaped(value));
+    out += fmt::format("<tr><td>{}</td><td>{}</td></tr>\n", hal::escaped_markup(name), hal::escaped_markup(value));
   out += "</table>\n";
   for (const Part& part : report.parts) {
-    out += fmt::format("<h2>{}</h2>\n<p>{} It took {:.0f} s.</p>\n", escaped(part.title), escaped(part.text),
-                       part.seconds);
+    out += fmt::format("<h2>{}</h2>\n<p>{} It took {:.0f} s.</p>\n", hal::escaped_markup(part.title),
+                       hal::escaped_markup(part.text), part.seconds);
     for (const Table& table : part.tables) out += table_html(table);
     for (const Figure& figure : part.figures)
       out += fmt::format("<figure><img src=\"figures/{0}.svg\" alt=\"{1}\"><figcaption>{1}</figcaption></figure>\n",
-                         escaped(figure.name), escaped(figure.caption));
+                         hal::escaped_markup(figure.name), hal::escaped_markup(figure.caption));
   }
   return out + "</html>\n";
 }
@@ -208,7 +193,7 @@ class Sheets {
   }
   void put(double x, const std::string& words, double size_px, bool bold, const char* color) {
     body_ += fmt::format("<text x=\"{}\" y=\"{}\" font-size=\"{}\"{} fill=\"{}\">{}</text>\n", x, y_ + size_px, size_px,
-                         bold ? " font-weight=\"bold\"" : "", color, escaped(words));
+                         bold ? " font-weight=\"bold\"" : "", color, hal::escaped_markup(words));
   }
 
   /// Characters of each column: all that it needs, or its share of what there is.

@@ -3,6 +3,7 @@
 #include <boost/asio/post.hpp>
 #include <set>
 
+#include "hal/json/text_of.hpp"
 #include "window/server.hpp"
 #include "window/viewer.hpp"
 #include "window/visitor.hpp"
@@ -13,10 +14,7 @@ namespace {
 constexpr std::size_t kLogEntries = 1000;
 constexpr int kMostOfViewers = 10, kMostStops = 20;  // a second, of all who have that role
 
-std::string text_of(const Json& object, const char* name) {
-  const auto found = object.find(name);
-  return found != object.end() && found->is_string() ? found->get<std::string>() : std::string();
-}
+using hal::text_of;
 
 }  // namespace
 

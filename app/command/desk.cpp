@@ -11,6 +11,7 @@
 #include "app/robots/desk_keys.hpp"
 #include "bridges/desk/lcm_desk.hpp"
 #include "hal/json/json.hpp"
+#include "hal/json/text_of.hpp"
 #include "window/client.hpp"
 
 namespace tandem::app {
@@ -87,8 +88,7 @@ Json command_of(const DeskOptions& o) {
 }
 
 std::string text_of(const Json& object, const char* name) {
-  const auto found = object.find(name);
-  return found != object.end() && found->is_string() ? printable(found->get<std::string>()) : std::string();
+  return printable(hal::text_of(object, name));
 }
 
 std::string number_of(const Json& object, const char* name, double scale, const char* unit) {

@@ -11,6 +11,7 @@
 #include "core/record/pattern.hpp"
 #include "core/record/record_reader.hpp"
 #include "hal/element.hpp"
+#include "hal/json/text_of.hpp"
 #include "hal/output_file.hpp"
 
 namespace tandem::app {
@@ -24,8 +25,7 @@ double number_of(const hal::Json& json, const char* key, double otherwise) {
   return found != json.end() && found->is_number() ? found->get<double>() : otherwise;
 }
 std::string text_of(const hal::Json& json, const char* key) {
-  const auto found = json.find(key);
-  return found != json.end() && found->is_string() ? found->get<std::string>() : "?";
+  return hal::text_of(json, key, "?");
 }
 
 std::int64_t ticks_per_second(const hal::Json& start) {

@@ -5,6 +5,7 @@
 
 #include "app/conformance/probe.hpp"
 #include "core/config/reader.hpp"
+#include "hal/markup.hpp"
 
 namespace tandem::app {
 namespace {
@@ -13,26 +14,11 @@ constexpr int kGroups = 24;  // from 16 blocks on a world's threads share the wo
 constexpr int kRobotsAGroup = 4;
 constexpr int kColumns = 12;
 
-std::string escaped(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    if (c == '&')
-      out += "&amp;";
-    else if (c == '"')
-      out += "&quot;";
-    else if (c == '<')
-      out += "&lt;";
-    else
-      out += c;
-  }
-  return out;
-}
-
 std::string devices_of(const Trial& trial, hal::Role role) {
   std::string text;
   for (const core::DeviceType* type : trial.devices) {
     if (type->role == role)
-      text += fmt::format("<{} implementation=\"{}\"/>", type->device, escaped(std::string(type->implementation)));
+      text += fmt::format("<{} implementation=\"{}\"/>", type->device, hal::escaped_markup(type->implementation));
   }
   return text;
 }
@@ -93,9 +79,9 @@ TrialMaker::TrialMaker(hal::PluginLoader& loader, const Trial& trial) : loader_(
       "<tandem version=\"1\"><framework><experiment length=\"0\" ticks_per_second=\"10\" random_seed=\"7\"/>"
       "</framework><controllers>";
   for (int i = 0; i < kGroups; ++i)
-    text_ +=
-        fmt::format("<{0} id=\"c{1}\" library=\"{2}\"><sensors>{3}</sensors><actuators>{4}</actuators></{0}>", label, i,
-                    escaped(library), devices_of(trial, hal::Role::Sensor), devices_of(trial, hal::Role::Actuator));
+    text_ += fmt::format("<{0} id=\"c{1}\" library=\"{2}\"><sensors>{3}</sensors><actuators>{4}</actuators></{0}>",
+                         label, i, hal::escaped_markup(library), devices_of(trial, hal::Role::Sensor),
+                         devices_of(trial, hal::Role::Actuator));
   text_ += fmt::format("</controllers><physics_engines><{} id=\"engine\" {}/></physics_engines>", engine->kind,
                        trial.engine_options);
   text_ += arena_of(trial, *engine) + trial.more + "</tandem>";

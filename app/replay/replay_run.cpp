@@ -9,16 +9,14 @@
 #include "app/process/terminal.hpp"
 #include "core/record/record_reader.hpp"
 #include "hal/element.hpp"
+#include "hal/json/text_of.hpp"
 
 namespace tandem::app {
 namespace {
 
 constexpr std::size_t kDigitsShown = 12;
 
-std::string text_of(const hal::Json& json, const char* key) {
-  const auto found = json.find(key);
-  return found != json.end() && found->is_string() ? found->get<std::string>() : std::string();
-}
+using hal::text_of;
 
 /// Files of a list of the record's beginning; what makes no sense is empty.
 std::vector<InputFile> files_of(const hal::Json& start, const char* key) {

@@ -5,6 +5,8 @@
 #include <fmt/format.h>
 #include <utility>
 
+#include "hal/json/text_of.hpp"
+
 namespace tandem::app {
 namespace {
 
@@ -14,10 +16,7 @@ using hal::Json;
 constexpr std::array<std::string_view, 6> kQuestions = {"status",  "preflight", "history",
                                                         "inspect", "controls",  "source_files"};
 
-std::string text_of(const Json& object, const char* name) {
-  const auto found = object.find(name);
-  return found != object.end() && found->is_string() ? found->get<std::string>() : std::string();
-}
+using hal::text_of;
 
 /// The arguments, as they were said; files by their names alone.
 std::string arguments_of(const Json& command) {

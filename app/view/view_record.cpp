@@ -16,6 +16,7 @@
 #include "core/record/record_moments.hpp"
 #include "core/view/record_drawing.hpp"
 #include "hal/input_file.hpp"
+#include "hal/json/text_of.hpp"
 #include "window/record_frame.hpp"
 
 namespace tandem::app {
@@ -45,10 +46,7 @@ Json number_or_null(double value) {
   return std::isfinite(value) ? Json(value) : Json();
 }
 
-std::string text_of(const Json& json, const char* key) {
-  const auto found = json.find(key);
-  return found != json.end() && found->is_string() ? found->get<std::string>() : std::string();
-}
+using hal::text_of;
 
 std::int64_t whole_of(const Json& json, const char* key, std::int64_t otherwise) {
   const auto found = json.find(key);

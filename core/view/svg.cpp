@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "core/view/drawing.hpp"
+#include "hal/markup.hpp"
 #include "hal/unit.hpp"
 
 namespace tandem::core {
@@ -62,21 +63,11 @@ class Svg {
   std::string out_;
 };
 
+/// Without control characters.
 std::string escaped(std::string_view text) {
-  std::string out;
-  for (const char c : text) {
-    if (c == '&')
-      out += "&amp;";
-    else if (c == '<')
-      out += "&lt;";
-    else if (c == '>')
-      out += "&gt;";
-    else if (c == '"')
-      out += "&quot;";
-    else if (static_cast<unsigned char>(c) >= 0x20)
-      out += c;
-  }
-  return out;
+  std::string kept(text);
+  std::erase_if(kept, [](char c) { return static_cast<unsigned char>(c) < 0x20; });
+  return hal::escaped_markup(kept);
 }
 
 std::string hex(hal::Rgb c) {
