@@ -1,6 +1,6 @@
 #include "bridges/aseba/dead_man.hpp"
 
-#include "bridges/aseba/assembler.hpp"
+#include "bridges/aseba/bytecode_writer.hpp"
 
 namespace tandem::bridges::aseba {
 namespace {
@@ -9,7 +9,7 @@ std::vector<std::uint16_t> written(const NodeProgram& program, std::uint16_t tim
                                    const std::vector<RestWord>& motors) {
   const auto at = [&](std::uint16_t word) { return static_cast<std::uint16_t>(program.mailbox + word); };
   const auto alive = at(dead_man_mail::kAlive), beat = at(mail_head::kBeat), lapses = at(mail_head::kLapses);
-  Assembler code;
+  BytecodeWriter code;
   code.begin(local_event(timer));
   code.load(beat).push(1).apply(Op::Add).store(beat);
   code.push(program.signature).store(at(mail_head::kSignature));

@@ -4,12 +4,12 @@
 #include <string>
 #include <string_view>
 
-#include "bridges/aseba/assembler.hpp"
+#include "bridges/aseba/bytecode_writer.hpp"
 
 namespace tandem::bridges::thymio {
 namespace {
 
-using aseba::Assembler;
+using aseba::BytecodeWriter;
 using aseba::kInitEvent;
 using aseba::local_event;
 using aseba::NodeDescription;
@@ -100,7 +100,7 @@ class Writer {
 
   const NodeDescription& node_;
   Program& program_;
-  Assembler code_;
+  BytecodeWriter code_;
 };
 
 }  // namespace

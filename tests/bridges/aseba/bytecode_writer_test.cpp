@@ -1,4 +1,4 @@
-#include "bridges/aseba/assembler.hpp"
+#include "bridges/aseba/bytecode_writer.hpp"
 
 #include <gmock/gmock.h>
 
@@ -6,8 +6,8 @@ namespace tandem::bridges::aseba {
 namespace {
 
 // The program of tests/bridges/aseba_emulation/machine_test.cpp: ASEBA's own compiler makes these words of it.
-TEST(Assembler, MakesTheWordsOfAsebasCompiler) {
-  Assembler code;
+TEST(BytecodeWriter, MakesTheWordsOfAsebasCompiler) {
+  BytecodeWriter code;
   code.begin(local_event(1));
   code.load(38).push(0).begin_if(Op::Greater);
   code.load(38).push(1).apply(Op::Subtract).store(38);
@@ -22,8 +22,8 @@ TEST(Assembler, MakesTheWordsOfAsebasCompiler) {
                                    0xa00b, 0x0006, 0x102b, 0x102a, 0x1029, 0xc001, 0x0000, 0x1014, 0x4024, 0x0000));
 }
 
-TEST(Assembler, PushesNumbersOfAnySize) {
-  Assembler code;
+TEST(BytecodeWriter, PushesNumbersOfAnySize) {
+  BytecodeWriter code;
   code.begin(kInitEvent);
   code.push(-1).push(2047).push(-2048).push(2048).push(-30000);
   EXPECT_THAT(code.finish(),

@@ -1,4 +1,4 @@
-#include "bridges/aseba/assembler.hpp"
+#include "bridges/aseba/bytecode_writer.hpp"
 
 #include "hal/check.hpp"
 
@@ -11,13 +11,13 @@ constexpr unsigned kLow = 0xFFF;  // what fits beside an operation
 
 }  // namespace
 
-void Assembler::begin(std::uint16_t event) {
+void BytecodeWriter::begin(std::uint16_t event) {
   TANDEM_CHECK(open_.empty(), "a condition ends in its handler");
   if (!handlers_.empty()) emit(kStop, 0);
   handlers_.push_back({event, code_.size()});
 }
 
-Assembler& Assembler::push(std::int16_t value) {
+BytecodeWriter& BytecodeWriter::push(std::int16_t value) {
   if (value >= -2048 && value < 2048) {
     emit(kSmall, static_cast<unsigned>(value) & kLow);
   } else {
@@ -27,38 +27,38 @@ Assembler& Assembler::push(std::int16_t value) {
   return *this;
 }
 
-Assembler& Assembler::load(std::uint16_t address) {
+BytecodeWriter& BytecodeWriter::load(std::uint16_t address) {
   TANDEM_CHECK(address <= kLow, "a node's memory is smaller");
   emit(kLoad, address);
   return *this;
 }
 
-Assembler& Assembler::store(std::uint16_t address) {
+BytecodeWriter& BytecodeWriter::store(std::uint16_t address) {
   TANDEM_CHECK(address <= kLow, "a node's memory is smaller");
   emit(kStore, address);
   return *this;
 }
 
-Assembler& Assembler::apply(Op op) {
+BytecodeWriter& BytecodeWriter::apply(Op op) {
   emit(kBinary, static_cast<unsigned>(op));
   return *this;
 }
 
-Assembler& Assembler::call(std::uint16_t function, const std::vector<std::uint16_t>& addresses) {
+BytecodeWriter& BytecodeWriter::call(std::uint16_t function, const std::vector<std::uint16_t>& addresses) {
   TANDEM_CHECK(function <= kLow, "a node has fewer functions");
   for (auto a = addresses.rbegin(); a != addresses.rend(); ++a) push(static_cast<std::int16_t>(*a));
   emit(kCall, function);
   return *this;
 }
 
-Assembler& Assembler::begin_if(Op op) {
+BytecodeWriter& BytecodeWriter::begin_if(Op op) {
   open_.push_back(code_.size());
   emit(kBranch, static_cast<unsigned>(op));
   code_.push_back(0);  // how far to go when it is false
   return *this;
 }
 
-Assembler& Assembler::otherwise() {
+BytecodeWriter& BytecodeWriter::otherwise() {
   TANDEM_CHECK(!open_.empty(), "there is a condition");
   const std::size_t branch = open_.back();
   open_.back() = code_.size();
@@ -67,7 +67,7 @@ Assembler& Assembler::otherwise() {
   return *this;
 }
 
-Assembler& Assembler::end_if() {
+BytecodeWriter& BytecodeWriter::end_if() {
   TANDEM_CHECK(!open_.empty(), "there is a condition");
   const std::size_t from = open_.back();
   open_.pop_back();
@@ -80,7 +80,7 @@ Assembler& Assembler::end_if() {
   return *this;
 }
 
-std::vector<std::uint16_t> Assembler::finish() {
+std::vector<std::uint16_t> BytecodeWriter::finish() {
   TANDEM_CHECK(open_.empty(), "a condition ends in its handler");
   emit(kStop, 0);
   const std::size_t table = 1 + 2 * handlers_.size();

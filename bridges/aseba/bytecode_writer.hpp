@@ -22,22 +22,23 @@ constexpr std::uint16_t local_event(std::size_t i) noexcept {
   return static_cast<std::uint16_t>(0xFFFE - i);
 }
 
-class Assembler {
+/// Writes the words of one program, instruction after instruction.
+class BytecodeWriter {
  public:
   /// Begins the handler of an event; the one before ends.
   void begin(std::uint16_t event);
 
-  Assembler& push(std::int16_t value);
-  Assembler& load(std::uint16_t address);   ///< pushes a variable
-  Assembler& store(std::uint16_t address);  ///< pops into a variable
-  Assembler& apply(Op op);                  ///< pops two values, the second on top, and pushes what they give
+  BytecodeWriter& push(std::int16_t value);
+  BytecodeWriter& load(std::uint16_t address);   ///< pushes a variable
+  BytecodeWriter& store(std::uint16_t address);  ///< pops into a variable
+  BytecodeWriter& apply(Op op);                  ///< pops two values, the second on top, and pushes what they give
   /// Calls a native function with variables of one word, which it gets by their addresses.
-  Assembler& call(std::uint16_t function, const std::vector<std::uint16_t>& addresses);
+  BytecodeWriter& call(std::uint16_t function, const std::vector<std::uint16_t>& addresses);
 
   /// Pops two values; what follows, up to `end_if` or `otherwise`, happens only when `op` says so.
-  Assembler& begin_if(Op op);
-  Assembler& otherwise();
-  Assembler& end_if();
+  BytecodeWriter& begin_if(Op op);
+  BytecodeWriter& otherwise();
+  BytecodeWriter& end_if();
 
   /// The whole program.
   std::vector<std::uint16_t> finish();
