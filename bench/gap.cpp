@@ -67,7 +67,7 @@ mixed_reality::RecordedRobot driven(const bridges::WheelErrors& errors, double s
       left = kFastest_m_s * random.uniform(-0.2, 1.0);
       right = kFastest_m_s * random.uniform(-0.2, 1.0);
     }
-    mixed_reality::RecordedTick tick;
+    mixed_reality::RobotTick tick;
     tick.posed = tick.told = true;
     tick.x_m = body.pose().x_m + random.normal(0.0, kPoseNoise_m);
     tick.y_m = body.pose().y_m + random.normal(0.0, kPoseNoise_m);

@@ -27,7 +27,7 @@ double median(std::vector<double> values) {
 
 /// The ticks that both runs have of a robot, by number.
 struct Pairs {
-  std::vector<const RecordedTick*> a, b;
+  std::vector<const RobotTick*> a, b;
 };
 
 Pairs pairs_of(const RecordedRun& run_a, const RecordedRobot& a, const RecordedRun& run_b, const RecordedRobot& b) {
@@ -35,7 +35,7 @@ Pairs pairs_of(const RecordedRun& run_a, const RecordedRobot& a, const RecordedR
   for (std::size_t i = 0; i < a.ticks.size(); ++i) {
     const hal::Tick in_b = run_a.first + static_cast<hal::Tick>(i) - run_b.first;
     if (in_b < 0 || static_cast<std::size_t>(in_b) >= b.ticks.size()) continue;
-    const RecordedTick& other = b.ticks[static_cast<std::size_t>(in_b)];
+    const RobotTick& other = b.ticks[static_cast<std::size_t>(in_b)];
     if (!a.ticks[i].posed || !other.posed) continue;
     pairs.a.push_back(&a.ticks[i]);
     pairs.b.push_back(&other);
@@ -70,7 +70,7 @@ double aligned_m(const Pairs& p) {
 }
 
 /// What it went in the ticks from i to j, seen from where it was.
-std::array<double, 2> went(const std::vector<const RecordedTick*>& t, std::size_t i, std::size_t j) {
+std::array<double, 2> went(const std::vector<const RobotTick*>& t, std::size_t i, std::size_t j) {
   const double dx = t[j]->x_m - t[i]->x_m, dy = t[j]->y_m - t[i]->y_m;
   const double c = std::cos(t[i]->heading_rad), s = std::sin(t[i]->heading_rad);
   return {c * dx + s * dy, c * dy - s * dx};
@@ -117,7 +117,7 @@ Numbers numbers_of(const RecordedRun& run, const Chosen& robots, const Chosen& a
   Numbers n;
   for (const RecordedRobot* robot : robots) {
     for (std::size_t i = 1; i < robot->ticks.size(); ++i) {
-      const RecordedTick &now = robot->ticks[i], &before = robot->ticks[i - 1];
+      const RobotTick &now = robot->ticks[i], &before = robot->ticks[i - 1];
       if (!now.posed || !before.posed) continue;
       n.speed_m_s.push_back(std::hypot(now.x_m - before.x_m, now.y_m - before.y_m) / run.tick_s());
       n.turn_rad_s.push_back(hal::wrapped(now.heading_rad - before.heading_rad) / run.tick_s());
@@ -127,20 +127,20 @@ Numbers numbers_of(const RecordedRun& run, const Chosen& robots, const Chosen& a
     }
   }
   for (std::size_t i = 0; i < run.ticks; ++i) {
-    std::vector<const RecordedTick*> at;
+    std::vector<const RobotTick*> at;
     for (const RecordedRobot* robot : all) {
       if (i < robot->ticks.size() && robot->ticks[i].posed) at.push_back(&robot->ticks[i]);
     }
     if (at.size() < 2) continue;
     double x = 0, y = 0, sum = 0, nearest_sum = 0;
-    for (const RecordedTick* t : at) {
+    for (const RobotTick* t : at) {
       x += t->x_m / static_cast<double>(at.size());
       y += t->y_m / static_cast<double>(at.size());
     }
-    for (const RecordedTick* t : at) {
+    for (const RobotTick* t : at) {
       sum += std::hypot(t->x_m - x, t->y_m - y);
       double nearest = std::numeric_limits<double>::infinity();
-      for (const RecordedTick* o : at) {
+      for (const RobotTick* o : at) {
         if (o != t) nearest = std::min(nearest, std::hypot(t->x_m - o->x_m, t->y_m - o->y_m));
       }
       nearest_sum += nearest;
@@ -182,7 +182,7 @@ std::vector<double> places(const Chosen& robots, const Area& area) {
     return std::min(kGrid - 1, static_cast<std::size_t>(std::max(0.0, part) * static_cast<double>(kGrid)));
   };
   for (const RecordedRobot* robot : robots) {
-    for (const RecordedTick& t : robot->ticks) {
+    for (const RobotTick& t : robot->ticks) {
       if (!t.posed) continue;
       cells[cell((t.y_m - area.y) / area.size_y) * kGrid + cell((t.x_m - area.x) / area.size_x)] += 1.0;
       all += 1.0;

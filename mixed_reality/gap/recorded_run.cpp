@@ -65,7 +65,7 @@ class RunReader {
     return found;
   }
 
-  RecordedTick* at(RecordedRobot& robot, hal::Tick tick) {
+  RobotTick* at(RecordedRobot& robot, hal::Tick tick) {
     if (!begun_) run_.first = tick;
     begun_ = true;
     if (tick < run_.first || static_cast<std::size_t>(tick - run_.first) >= kMostTicks) return nullptr;
@@ -80,7 +80,7 @@ class RunReader {
   void each(const core::RecordEntry& entry, Use&& use) {
     for (std::size_t row = 0; row < entry.rows->size(); ++row) {
       RecordedRobot& its = robot(*entry.rows, row);
-      if (RecordedTick* const tick = at(its, entry.tick); tick != nullptr) use(its, *tick, row);
+      if (RobotTick* const tick = at(its, entry.tick); tick != nullptr) use(its, *tick, row);
     }
   }
 
@@ -89,7 +89,7 @@ class RunReader {
     const auto x = field(rows, "x"), y = field(rows, "y");
     const auto c = field(rows, "cos"), s = field(rows, "sin"), h = field(rows, "heading"), held = field(rows, "halted");
     if (!x || !y || !((c && s) || h)) return;
-    each(entry, [&](RecordedRobot& its, RecordedTick& tick, std::size_t row) {
+    each(entry, [&](RecordedRobot& its, RobotTick& tick, std::size_t row) {
       if (tick.posed && latched_[its.id] == entry.tick && !input) return;
       tick.x_m = rows.value(*x, row);
       tick.y_m = rows.value(*y, row);
@@ -105,7 +105,7 @@ class RunReader {
   void commands(const core::RecordEntry& entry, bool sent) {
     const auto left = field(*entry.rows, "left"), right = field(*entry.rows, "right");
     if (!left || !right) return;
-    each(entry, [&](RecordedRobot&, RecordedTick& tick, std::size_t row) {
+    each(entry, [&](RecordedRobot&, RobotTick& tick, std::size_t row) {
       if (tick.sent && !sent) return;
       tick.sent = sent;
       tick.told_left_m_s = entry.rows->value(*left, row);
@@ -118,7 +118,7 @@ class RunReader {
     const auto left = field(*entry.rows, "left"), right = field(*entry.rows, "right");
     const auto taken = field(*entry.rows, "taken_ns"), validity = field(*entry.rows, "validity");
     if (!left || !right) return;
-    each(entry, [&](RecordedRobot&, RecordedTick& tick, std::size_t row) {
+    each(entry, [&](RecordedRobot&, RobotTick& tick, std::size_t row) {
       if (tick.counted && !input) return;
       tick.counted_left_m = entry.rows->value(*left, row);
       tick.counted_right_m = entry.rows->value(*right, row);
@@ -146,7 +146,7 @@ class RunReader {
     const auto count = field(rows, "count"), taken = field(rows, "taken_ns"), x = field(rows, "x"),
                y = field(rows, "y"), heading = field(rows, "heading"), right = field(rows, "true_clock");
     if (!count || !taken || !x || !y) return;
-    each(entry, [&](RecordedRobot& its, RecordedTick& tick, std::size_t row) {
+    each(entry, [&](RecordedRobot& its, RobotTick& tick, std::size_t row) {
       const std::size_t n = std::min({rows.used(*taken, row), rows.used(*x, row), rows.used(*y, row)});
       for (std::size_t k = 0; k < n; ++k) {
         RecordedSighting seen;
@@ -164,7 +164,7 @@ class RunReader {
   void track(const core::RecordEntry& entry) {
     const auto sent = field(*entry.rows, "sent_ns");
     if (!sent) return;
-    each(entry, [&](RecordedRobot&, RecordedTick& tick, std::size_t row) {
+    each(entry, [&](RecordedRobot&, RobotTick& tick, std::size_t row) {
       tick.sent_ns = whole(entry.rows->value(*sent, row));
     });
   }
@@ -173,7 +173,7 @@ class RunReader {
   void ledger(const core::RecordEntry& entry) {
     const auto trip = field(*entry.rows, "round_trip_median_ms"), jitter = field(*entry.rows, "jitter_ms");
     if (!trip) return;
-    each(entry, [&](RecordedRobot& its, RecordedTick&, std::size_t row) {
+    each(entry, [&](RecordedRobot& its, RobotTick&, std::size_t row) {
       const double trip_s = 1e-3 * entry.rows->value(*trip, row);
       if (!(trip_s > 0.0)) return;
       its.round_trip_s = trip_s;
@@ -184,7 +184,7 @@ class RunReader {
   void proximity(const core::RecordEntry& entry, bool input) {
     const auto distance = field(*entry.rows, "distance");
     if (!distance) return;
-    each(entry, [&](RecordedRobot& its, RecordedTick& tick, std::size_t row) {
+    each(entry, [&](RecordedRobot& its, RobotTick& tick, std::size_t row) {
       if (its.rays == 0) its.rays = entry.rows->used(*distance, row);
       if (its.rays == 0) return;
       const auto i = static_cast<std::size_t>(&tick - its.ticks.data());
@@ -225,8 +225,8 @@ class RunReader {
   /// Rows of streams that are written when they change hold until the next.
   static void hold(RecordedRobot& robot, const std::set<std::string>& streams) {
     for (std::size_t i = 1; i < robot.ticks.size(); ++i) {
-      const RecordedTick& before = robot.ticks[i - 1];
-      RecordedTick& now = robot.ticks[i];
+      const RobotTick& before = robot.ticks[i - 1];
+      RobotTick& now = robot.ticks[i];
       if (streams.contains("wheel_encoders") && before.counted && !now.counted) {
         now.counted = true;
         now.counted_left_m = before.counted_left_m;

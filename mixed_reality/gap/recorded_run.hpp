@@ -11,7 +11,7 @@
 
 namespace tandem::mixed_reality {
 
-struct RecordedTick {
+struct RobotTick {
   bool posed = false;    ///< the next three were recorded
   bool told = false;     ///< so were the commands
   bool sent = false;     ///< … as they were sent to a real robot, whoever gave them
@@ -36,9 +36,9 @@ struct RecordedSighting {
 struct RecordedRobot {
   std::string id, kind;
   bool real = false;
-  std::vector<RecordedTick> ticks;  ///< from RecordedRun::first on
-  std::size_t rays = 0;             ///< proximity sensors; 0: not recorded
-  std::vector<float> near_m;        ///< of each tick, `rays` each; NaN: not recorded
+  std::vector<RobotTick> ticks;  ///< from RecordedRun::first on
+  std::size_t rays = 0;          ///< proximity sensors; 0: not recorded
+  std::vector<float> near_m;     ///< of each tick, `rays` each; NaN: not recorded
   std::vector<RecordedSighting> sightings;
   double round_trip_s = std::numeric_limits<double>::quiet_NaN();  ///< of its link; NaN: not known
   double round_trip_jitter_s = 0.0;

@@ -36,7 +36,7 @@ std::vector<double> Surroundings::distances(std::size_t robot, std::size_t tick,
   const core::RayRing ring(mounts, range_m);
   alignas(32) std::array<float, core::RayRing::kCapacity> best{};
   best.fill(ring.range_m);
-  const RecordedTick& at = run_.robots[robot].ticks[tick];
+  const RobotTick& at = run_.robots[robot].ticks[tick];
   const double c = std::cos(at.heading_rad + turn_rad), s = std::sin(at.heading_rad + turn_rad);
   const auto in_body = [&](double x_m, double y_m, float& qx, float& qy) {
     const double wx = x_m - at.x_m, wy = y_m - at.y_m;

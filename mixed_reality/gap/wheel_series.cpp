@@ -8,7 +8,7 @@ namespace {
 
 void add_commands(const RecordedRun& run, const RecordedRobot& robot, WheelSeries& series) {
   for (std::size_t t = 0; t < robot.ticks.size(); ++t) {
-    const RecordedTick& tick = robot.ticks[t];
+    const RobotTick& tick = robot.ticks[t];
     WheelSeries::Command command{tick.sent_ns >= 0 ? run.time_s(t, tick.sent_ns) : run.time_s(t), tick.told_left_m_s,
                                  tick.told_right_m_s, tick.told && !tick.held};
     if (!command.known) command.left_m_s = command.right_m_s = 0.0;
@@ -25,7 +25,7 @@ void add_commands(const RecordedRun& run, const RecordedRobot& robot, WheelSerie
 void add_counts(const RecordedRun& run, const RecordedRobot& robot, WheelSeries& series) {
   std::int64_t last_ns = -1;
   for (std::size_t t = 0; t < robot.ticks.size(); ++t) {
-    const RecordedTick& tick = robot.ticks[t];
+    const RobotTick& tick = robot.ticks[t];
     if (!tick.counted || (tick.counted_ns >= 0 && tick.counted_ns == last_ns)) continue;
     last_ns = tick.counted_ns;
     const double at_s = tick.counted_ns >= 0 ? run.time_s(t, tick.counted_ns) : run.time_s(t);
@@ -40,7 +40,7 @@ void add_places(const RecordedRun& run, const RecordedRobot& robot, WheelSeries&
     series.stamps_are_right = series.stamps_are_right && seen.true_clock;
   }
   for (std::size_t t = 0; t < robot.ticks.size() && robot.sightings.empty(); ++t) {
-    const RecordedTick& tick = robot.ticks[t];
+    const RobotTick& tick = robot.ticks[t];
     if (tick.posed) series.places.push_back({run.time_s(t), tick.x_m, tick.y_m, tick.heading_rad});
   }
   std::stable_sort(series.places.begin(), series.places.end(),

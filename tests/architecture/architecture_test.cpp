@@ -137,5 +137,13 @@ TEST_F(CheatingTree, HasSubFoldersInACircle) {
   EXPECT_NE(broken().find("hal/a and hal/b include one another, in a circle"), std::string::npos);
 }
 
+TEST_F(CheatingTree, HasTwoTypesOfOneName) {
+  write("hal/device.hpp", "namespace tandem::hal {\nstruct Frame {\n};\n}\n");
+  write("core/device/device.hpp", "namespace tandem::core {\nclass Frame final : Base {\n};\n}\n");
+  EXPECT_EQ(broken(), "");
+  write("core/space/frame.hpp", "namespace tandem::core {\nclass Other;\nstruct Frame {\n};\n}\n");
+  EXPECT_NE(broken().find("tandem::core::Frame is defined by core/"), std::string::npos) << broken();
+}
+
 }  // namespace
 }  // namespace tandem::architecture

@@ -53,6 +53,22 @@ std::string room_of(const std::string& path, const std::string& folder) {
   return slash == std::string::npos ? "" : folder + "/" + rest.substr(0, slash);
 }
 
+/// Headers that define types of one name in one namespace: a program that links both has the functions of one of them.
+/// `space` is the namespace that the lines before opened.
+void defined_twice(const std::string& line, const std::string& path, std::string& space,
+                   std::map<std::string, std::string>& types, std::vector<std::string>& broken) {
+  static const std::regex kNamespace(R"(^namespace ([A-Za-z0-9_:]+) \{)");
+  static const std::regex kType(
+      R"(^(?:class|struct|union|enum class|enum) (?:alignas\([^)]*\) )?([A-Za-z0-9_]+)[^;<]*\{)");
+  std::smatch match;
+  if (std::regex_search(line, match, kNamespace)) space = match[1];
+  if (!std::regex_search(line, match, kType)) return;
+  const std::string name = space + "::" + match[1].str();
+  const auto [first, added] = types.emplace(name, path);
+  if (!added && first->second != path)
+    broken.push_back(path + ": " + name + " is defined by " + first->second + ", too");
+}
+
 /// Takes away, as long as there is one, a room that includes no other that is left. What remains includes in a circle.
 Dependencies circles_of(Dependencies rooms) {
   for (bool taken = true; taken;) {
@@ -95,6 +111,7 @@ std::vector<std::string> broken_rules(const fs::path& top, const Dependencies& d
         broken.push_back(folder + "/CMakeLists.txt: " + folder + " may not depend on " + dep);
     }
   }
+  std::map<std::string, std::string> types;  // and the header that defines each
   static const std::regex kInclude(R"(^\s*#\s*include\s*([<"])([^>"]+)[>"])");
   for (const auto& [layer, allowed] : kLayers) {
     if (!fs::exists(top / layer)) continue;
@@ -114,9 +131,11 @@ std::vector<std::string> broken_rules(const fs::path& top, const Dependencies& d
       }
       std::ifstream in(entry.path());
       int number = 0;
+      std::string space;
       for (std::string line; std::getline(in, line);) {
         ++number;
         std::smatch match;
+        if (path.ends_with(".hpp")) defined_twice(line, path, space, types, broken);
         if (!std::regex_search(line, match, kInclude)) continue;
         const std::string header = match[2];
         const std::string where = path + ":" + std::to_string(number) + ": ";

@@ -19,7 +19,7 @@ using LibraryOwners = std::map<std::string, std::string>;
 
 /// Every broken rule as "file:line: why": an include of a folder that is not declared, a library's header outside of
 /// its folder, a dependency against the layers, a circle among the sub-folders of one, a folder with a name that says
-/// nothing.
+/// nothing, two headers that define types of one name.
 std::vector<std::string> broken_rules(const std::filesystem::path& top, const Dependencies& dependencies,
                                       const LibraryOwners& owners);
 

@@ -42,7 +42,7 @@ struct Driven {
                                      .seed = seed});
     double left = 0.0, right = 0.0;
     for (std::size_t t = 0; static_cast<double>(t) * tick_s < seconds; ++t) {
-      RecordedTick tick;
+      RobotTick tick;
       tick.posed = tick.told = tick.counted = true;
       tick.x_m = x + pose_noise_m * normal(random);
       tick.y_m = y + pose_noise_m * normal(random);

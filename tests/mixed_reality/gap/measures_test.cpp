@@ -17,7 +17,7 @@ RecordedRun curve(double turn_rad, double x_m, double scale, double heading_off 
     robot.id = "r" + std::to_string(k);
     for (std::size_t i = 0; i < run.ticks; ++i) {
       const double s = 0.01 * static_cast<double>(i) * scale, y = 0.2 * s * s + k;
-      RecordedTick tick;
+      RobotTick tick;
       tick.posed = true;
       tick.x_m = std::cos(turn_rad) * s - std::sin(turn_rad) * y + x_m;
       tick.y_m = std::sin(turn_rad) * s + std::cos(turn_rad) * y;

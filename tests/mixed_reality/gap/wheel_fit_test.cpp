@@ -198,7 +198,7 @@ TEST(WheelFit, SaysWhatTheDataDoesNotTell) {
   driven.seconds = 30.0;
   RecordedRobot straight = driven.record();
   double x = 0.0;
-  for (RecordedTick& tick : straight.ticks) {
+  for (RobotTick& tick : straight.ticks) {
     tick.told_left_m_s = tick.told_right_m_s = 0.08;
     tick.x_m = x;
     tick.y_m = tick.heading_rad = 0.0;
@@ -212,7 +212,7 @@ TEST(WheelFit, SaysWhatTheDataDoesNotTell) {
   EXPECT_FALSE(by_wheels.slip_left.observable);
 
   RecordedRobot silent = driven.record();
-  for (RecordedTick& tick : silent.ticks) tick.told = false;
+  for (RobotTick& tick : silent.ticks) tick.told = false;
   EXPECT_NE(fit_wheels(silent, driven.tick_s, {driven.wheel_base_m, false}).flaw, "");
 }
 

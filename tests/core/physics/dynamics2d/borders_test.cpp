@@ -4,16 +4,16 @@
 namespace tandem::core {
 namespace {
 
-void two_halves(ByHand& hand) {
+void two_halves(FlatByHand& hand) {
   hand.region(west_half());
   hand.region(east_half());
 }
 
 TEST(Dynamics2dBorders, ARobotDrivesAcrossAsIfThereWereNone) {
-  ByHand split;
-  ByHand whole;
+  FlatByHand split;
+  FlatByHand whole;
   two_halves(split);
-  for (ByHand* hand : {&split, &whole}) hand->robot(-0.3, -0.1, 0.3, 0.1, 0.098);
+  for (FlatByHand* hand : {&split, &whole}) hand->robot(-0.3, -0.1, 0.3, 0.1, 0.098);
   for (int i = 0; i < 80; ++i) {
     split.tick();
     whole.tick();
@@ -24,10 +24,10 @@ TEST(Dynamics2dBorders, ARobotDrivesAcrossAsIfThereWereNone) {
 }
 
 TEST(Dynamics2dBorders, AnObjectGlidesAcrossWithItsSpeedAndSpin) {
-  ByHand split({{"box_linear_friction", "0.1", 0}, {"box_angular_friction", "0.001", 0}});
-  ByHand whole({{"box_linear_friction", "0.1", 0}, {"box_angular_friction", "0.001", 0}});
+  FlatByHand split({{"box_linear_friction", "0.1", 0}, {"box_angular_friction", "0.001", 0}});
+  FlatByHand whole({{"box_linear_friction", "0.1", 0}, {"box_angular_friction", "0.001", 0}});
   two_halves(split);
-  for (ByHand* hand : {&split, &whole}) {
+  for (FlatByHand* hand : {&split, &whole}) {
     hand->box(-0.25, 0.02, 0.1, 0.06, 0.3, 0.2);
     hand->object_motion().v_m_s = {0.4, 0.05, 0};
     hand->object_motion().w_rad_s = {0, 0, 1.5};
@@ -45,10 +45,10 @@ TEST(Dynamics2dBorders, AnObjectGlidesAcrossWithItsSpeedAndSpin) {
 }
 
 TEST(Dynamics2dBorders, TwoThatMeetHeadOnOverTheBorderOverlapNoMoreThanInOneRegion) {
-  ByHand split;
-  ByHand whole;
+  FlatByHand split;
+  FlatByHand whole;
   two_halves(split);
-  for (ByHand* hand : {&split, &whole}) {
+  for (FlatByHand* hand : {&split, &whole}) {
     hand->robot(-0.2, 0, 0, 0.1288, 0.1288);
     hand->robot(0.2, 0, M_PI, 0.1288, 0.1288);
   }
@@ -62,10 +62,10 @@ TEST(Dynamics2dBorders, TwoThatMeetHeadOnOverTheBorderOverlapNoMoreThanInOneRegi
 }
 
 TEST(Dynamics2dBorders, ABoxIsPushedAcrossByARobotThatFollows) {
-  ByHand split;
-  ByHand whole;
+  FlatByHand split;
+  FlatByHand whole;
   two_halves(split);
-  for (ByHand* hand : {&split, &whole}) {
+  for (FlatByHand* hand : {&split, &whole}) {
     hand->robot(-0.4, 0, 0, 0.1, 0.1);
     hand->box(-0.25, 0, 0.1, 0.2, 0.2);
   }
@@ -84,7 +84,7 @@ TEST(Dynamics2dBorders, ABoxIsPushedAcrossByARobotThatFollows) {
 
 TEST(Dynamics2dBorders, ABoxOnTheBorderIsPushedFromBothSides) {
   // Owned by the east, pushed eastwards by a robot of the west.
-  ByHand hand;
+  FlatByHand hand;
   two_halves(hand);
   hand.box(0.051, 0, 0.1, 0.2, 0.2);
   hand.robot(-0.2, 0, 0, 0.1, 0.1);

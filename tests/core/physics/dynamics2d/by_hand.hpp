@@ -5,8 +5,8 @@
 
 namespace tandem::core {
 
-struct ByHand : SolversByHand {
-  explicit ByHand(const std::vector<Element::Attribute>& options = {}, double half_m = 20.0)
+struct FlatByHand : SolversByHand {
+  explicit FlatByHand(const std::vector<Element::Attribute>& options = {}, double half_m = 20.0)
       : SolversByHand(dynamics2d_type(), options, half_m) {}
 };
 

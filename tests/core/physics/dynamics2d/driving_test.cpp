@@ -21,7 +21,7 @@ Point arc(double x_m, double y_m, double heading_rad, double left_m_s, double ri
 TEST(Dynamics2dDriving, FreeRobotsFollowTheirArcsAsFarAsFloatsCanTell) {
   constexpr int kTicks = 200;
   for (const double far_m : {0.0, 19.0, 900.0}) {
-    ByHand hand({}, 1000.0);
+    FlatByHand hand({}, 1000.0);
     const std::vector<Point> wheels = {{0.1, 0.1},    {0.005, 0.005}, {0.1288, 0.12},
                                        {-0.05, 0.05}, {0.02, -0.09},  {-0.1, -0.1}};
     for (std::size_t i = 0; i < wheels.size(); ++i)
@@ -42,7 +42,7 @@ TEST(Dynamics2dDriving, FreeRobotsFollowTheirArcsAsFarAsFloatsCanTell) {
 TEST(Dynamics2dDriving, AWeakDriveAcceleratesWithItsForceOverItsMass) {
   hal::RobotKind weak = hal::epuck::kind();
   weak.part<hal::DifferentialDrive>()->force_N = 0.015;  // 0.1 m/s^2
-  ByHand hand;
+  FlatByHand hand;
   hand.robot(0, 0, 0.4, 0.1, 0.1, weak);
   for (int i = 1; i <= 15; ++i) {
     hand.tick();
@@ -56,7 +56,7 @@ TEST(Dynamics2dDriving, AWeakDriveAcceleratesWithItsForceOverItsMass) {
 }
 
 TEST(Dynamics2dDriving, ARobotInAWedgeOfTwoOthersRests) {
-  ByHand hand;
+  FlatByHand hand;
   hand.robot(0, 0, 0, 0.1288, 0.1288);
   hand.robot(0.2, 0.037, 0, 0, 0);
   hand.robot(0.2, -0.037, 0, 0, 0);
@@ -76,7 +76,7 @@ TEST(Dynamics2dDriving, ARobotInAWedgeOfTwoOthersRests) {
 }
 
 TEST(Dynamics2dDriving, TwoThatMeetHeadOnMirrorOneAnotherToTheLastBit) {
-  ByHand hand;
+  FlatByHand hand;
   hand.robot(-0.2, 0, 0, 0.1, 0.1);
   hand.robot(0.2, 0, M_PI, 0.1, 0.1);
   hand.bodies().cos_h[1] = -1.0;
@@ -90,7 +90,7 @@ TEST(Dynamics2dDriving, TwoThatMeetHeadOnMirrorOneAnotherToTheLastBit) {
 }
 
 TEST(Dynamics2dDriving, ABodyThatIsLedTurnsAndMovesWhatTouchesIt) {
-  ByHand hand;
+  FlatByHand hand;
   hand.robot(-0.2, 0, 0, 0, 0);
   hand.bodies().flags[0] |= kExternal;
   hand.box(0, 0, 0.1, 0.3, 0.1);

@@ -11,8 +11,8 @@ double left_of(double speed, double per_s2, int ticks) {
 
 TEST(Dynamics2dGround, SlidingIsBrakedByTheForcePerKilogram) {
   for (const double per_kg_N : {0.2, 1.49}) {
-    ByHand hand({{"box_linear_friction", hal::format_number(per_kg_N), 0},
-                 {"cylinder_linear_friction", hal::format_number(2 * per_kg_N), 0}});
+    FlatByHand hand({{"box_linear_friction", hal::format_number(per_kg_N), 0},
+                     {"cylinder_linear_friction", hal::format_number(2 * per_kg_N), 0}});
     hand.box(0, 0, 0.1, 0.2, 0.7, 0.3);
     hand.cylinder(0, 1, 0.1, 0.4);
     hand.object_motion(0).v_m_s = {0.3, 0.4, 0.0};
@@ -30,7 +30,7 @@ TEST(Dynamics2dGround, SlidingIsBrakedByTheForcePerKilogram) {
 
 TEST(Dynamics2dGround, TurningIsBrakedByTheTorquePerKilogram) {
   // Moment of inertia per kg: (a^2 + b^2) / 12 of a box, r^2 / 2 of a cylinder.
-  ByHand hand({{"box_angular_friction", "0.01", 0}, {"cylinder_angular_friction", "0.02", 0}});
+  FlatByHand hand({{"box_angular_friction", "0.01", 0}, {"cylinder_angular_friction", "0.02", 0}});
   hand.box(0, 0, 0.3, 0.4, 0.7);
   hand.cylinder(0, 1, 0.2, 0.4);
   hand.object_motion(0).w_rad_s = {0, 0, 2.0};
@@ -44,7 +44,7 @@ TEST(Dynamics2dGround, TurningIsBrakedByTheTorquePerKilogram) {
 
 TEST(Dynamics2dGround, WithoutATorqueTheWeightSpreadEvenlyBrakesTurning) {
   // Mean distance from the centre: 2/3 r of a disc; (sqrt(2) + asinh(1)) / 3 of half its side of a square.
-  ByHand hand;
+  FlatByHand hand;
   hand.box(0, 0, 0.2, 0.2, 0.7);
   hand.cylinder(0, 1, 0.1, 0.4);
   hand.object_motion(0).w_rad_s = {0, 0, 9.0};
@@ -57,10 +57,10 @@ TEST(Dynamics2dGround, WithoutATorqueTheWeightSpreadEvenlyBrakesTurning) {
 }
 
 TEST(Dynamics2dGround, CollidingObjectsKeepTheirMomentumAndGainNoEnergy) {
-  ByHand hand({{"box_linear_friction", "0", 0},
-               {"box_angular_friction", "0", 0},
-               {"cylinder_linear_friction", "0", 0},
-               {"cylinder_angular_friction", "0", 0}});
+  FlatByHand hand({{"box_linear_friction", "0", 0},
+                   {"box_angular_friction", "0", 0},
+                   {"cylinder_linear_friction", "0", 0},
+                   {"cylinder_angular_friction", "0", 0}});
   hand.box(0, 0, 0.1, 0.1, 0.5, 0.3);
   hand.box(0.4, 0.05, 0.1, 0.1, 0.2);
   hand.cylinder(0.2, 0.3, 0.06, 0.3);
@@ -100,7 +100,7 @@ TEST(Dynamics2dGround, CollidingObjectsKeepTheirMomentumAndGainNoEnergy) {
 }
 
 TEST(Dynamics2dGround, WallsOfTheRegionHoldRobotsAndObjectsAndOpenSidesLetThemPass) {
-  ByHand hand;
+  FlatByHand hand;
   hand.region({{-1, -1, true}, {1, -1, true}, {1, 1, false}, {-1, 1, true}});  // open to the north
   hand.robot(0.8, 0, 0, 0.1, 0.1);
   hand.robot(0, 0.8, 0.5 * M_PI, 0.1, 0.1);
@@ -115,7 +115,7 @@ TEST(Dynamics2dGround, WallsOfTheRegionHoldRobotsAndObjectsAndOpenSidesLetThemPa
 }
 
 TEST(Dynamics2dGround, ImmovableObjectsAppearAndGoWithTheirVersion) {
-  ByHand hand;
+  FlatByHand hand;
   hand.robot(0, 0, 0, 0.1, 0.1);
   hand.box(0.5, 0, 0.2, 0.5, 0.0);
   hand.ticks(60);
@@ -131,7 +131,7 @@ TEST(Dynamics2dGround, ImmovableObjectsAppearAndGoWithTheirVersion) {
 
 TEST(Dynamics2dGround, AFastObjectIsNotCarriedThroughAThinWall) {
   for (const double speed_m_s : {0.5, 1.5, 5.0, 20.0}) {
-    ByHand hand({{"box_linear_friction", "0", 0}});
+    FlatByHand hand({{"box_linear_friction", "0", 0}});
     hand.box(0, 0, 0.1, 0.1, 0.2);
     hand.box(1.0, 0, 0.01, 2.0, 0.0);
     hand.object_motion().v_m_s = {speed_m_s, 0, 0};
@@ -143,7 +143,7 @@ TEST(Dynamics2dGround, AFastObjectIsNotCarriedThroughAThinWall) {
 }
 
 TEST(Dynamics2dGround, TinyAndHugeMasses) {
-  ByHand hand;
+  FlatByHand hand;
   hand.box(0, 0, 1e-4, 1e-4, 1e-6);
   hand.box(1, 0, 3.0, 0.001, 0.001, 1.57);
   hand.cylinder(-3, 0, 2.0, 1e4);

@@ -5,7 +5,7 @@ namespace tandem::core {
 namespace {
 
 /// Distance between a joint's point as its two bodies have it.
-double apart_m(ByHand& hand, std::size_t number = 0) {
+double apart_m(FlatByHand& hand, std::size_t number = 0) {
   const Joint& j = hand.stores().joints[number];
   const auto point = [&](BodyKey key, double x, double y) {
     const std::size_t i = key.index();
@@ -23,7 +23,7 @@ double apart_m(ByHand& hand, std::size_t number = 0) {
 TEST(Dynamics2dJoints, HoldWhateverTheTwoHeadings) {
   for (const double robot_rad : {-3.1, -2.0, 0.1, 2.5, 3.1}) {
     for (const double box_rad : {-3.0, -1.0, 0.7, 3.1}) {
-      ByHand hand;
+      FlatByHand hand;
       hand.robot(0, 0, robot_rad, -0.05, -0.05);
       const double reach_m = kRadius_m + 0.03;
       hand.cylinder(reach_m * std::cos(robot_rad), reach_m * std::sin(robot_rad), 0.03, 0.05);
@@ -46,7 +46,7 @@ TEST(Dynamics2dJoints, HoldWhateverTheTwoHeadings) {
 }
 
 TEST(Dynamics2dJoints, HoldThroughManyTurns) {
-  ByHand hand;
+  FlatByHand hand;
   hand.robot(0, 0, 0, -0.06, 0.06);
   hand.cylinder(kRadius_m + 0.02, 0, 0.02, 0.01);
   hand.hold(BodyKey::robot(0), BodyKey::object(0), kRadius_m, 0);
@@ -66,7 +66,7 @@ TEST(Dynamics2dJoints, HoldThroughManyTurns) {
 }
 
 TEST(Dynamics2dJoints, AnObjectThatMayTurnDoes) {
-  ByHand hand({{"box_angular_friction", "0", 0}});
+  FlatByHand hand({{"box_angular_friction", "0", 0}});
   hand.robot(0, 0, 0, -0.03, 0.03);
   hand.box(kRadius_m + 0.03, 0, 0.06, 0.06, 0.02);
   hand.hold(BodyKey::robot(0), BodyKey::object(0), kRadius_m, 0, {.kind = JointKind::Turning});
@@ -80,7 +80,7 @@ TEST(Dynamics2dJoints, AnObjectThatMayTurnDoes) {
 }
 
 TEST(Dynamics2dJoints, WhatARealRobotHoldsGoesAndTurnsWithIt) {
-  ByHand hand;
+  FlatByHand hand;
   hand.robot(0, 0, 0, 0, 0);
   hand.cylinder(kRadius_m + 0.02, 0, 0.02, 0.05);
   hand.bodies().flags[0] |= kExternal;
@@ -99,7 +99,7 @@ TEST(Dynamics2dJoints, WhatARealRobotHoldsGoesAndTurnsWithIt) {
 
 TEST(Dynamics2dJoints, EndWhenTheyDoAndWithEitherBody) {
   for (const bool by_hand : {true, false}) {
-    ByHand hand;
+    FlatByHand hand;
     hand.robot(0, 0, 0, -0.1, -0.1);
     hand.box(kRadius_m + 0.05, 0, 0.1, 0.1, 0.1);
     hand.hold(BodyKey::robot(0), BodyKey::object(0), kRadius_m, 0);
@@ -120,7 +120,7 @@ TEST(Dynamics2dJoints, EndWhenTheyDoAndWithEitherBody) {
 
 TEST(Dynamics2dJoints, HoldAcrossABorder) {
   // Both stay with the west, which owns the robot; the east has the two as mirrored ones.
-  ByHand hand;
+  FlatByHand hand;
   hand.region(west_half());
   hand.region(east_half());
   hand.robot(-0.2, 0, 0, 0.1, 0.1);
@@ -135,7 +135,7 @@ TEST(Dynamics2dJoints, HoldAcrossABorder) {
 }
 
 TEST(Dynamics2dJoints, AChainOfManyKeepsTogether) {
-  ByHand hand;
+  FlatByHand hand;
   constexpr std::size_t kMany = 12;
   for (std::size_t i = 0; i < kMany; ++i) hand.robot(-0.075 * static_cast<double>(i), 0, 0, 0.1, 0.1);
   for (std::size_t i = 1; i < kMany; ++i)

@@ -60,7 +60,7 @@ TEST(Dynamics2dOptions, AskedForSubStepsAreTaken) {
   // With a sub-step a tick the ground brakes before the body moves, so it glides less far than with many.
   double way_m[2] = {0.0, 0.0};
   for (const int k : {0, 1}) {
-    ByHand hand({{"iterations", k == 0 ? "1" : "50", 0}});
+    FlatByHand hand({{"iterations", k == 0 ? "1" : "50", 0}});
     hand.box(0, 0, 0.1, 0.1, 0.2);
     hand.object_motion().v_m_s = {0.5, 0, 0};
     hand.ticks(20);

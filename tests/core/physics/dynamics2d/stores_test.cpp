@@ -7,7 +7,7 @@ namespace tandem::core {
 namespace {
 
 /// Robots and things that meet, push and slide within a few seconds.
-void crowd(ByHand& hand) {
+void crowd(FlatByHand& hand) {
   for (int i = 0; i < 24; ++i) {
     const double angle = 0.7 * i;
     const double far = 0.12 + 0.018 * i;
@@ -19,8 +19,8 @@ void crowd(ByHand& hand) {
 }
 
 TEST(Dynamics2dStores, TheSameBitsTwice) {
-  ByHand one;
-  ByHand two;
+  FlatByHand one;
+  FlatByHand two;
   crowd(one);
   crowd(two);
   for (int i = 0; i < 100; ++i) {
@@ -31,7 +31,7 @@ TEST(Dynamics2dStores, TheSameBitsTwice) {
 }
 
 TEST(Dynamics2dStores, BodiesAreWhereAHookPutsThem) {
-  ByHand hand;
+  FlatByHand hand;
   hand.robot(0, 0, 0, 0.1, 0.1);
   hand.box(1, 1, 0.1, 0.1, 0.2);
   hand.ticks(10);
@@ -47,7 +47,7 @@ TEST(Dynamics2dStores, BodiesAreWhereAHookPutsThem) {
 }
 
 TEST(Dynamics2dStores, ARenewedRowIsAnotherRobot) {
-  ByHand hand;
+  FlatByHand hand;
   hal::RobotKind weak = hal::epuck::kind();
   weak.part<hal::DifferentialDrive>()->force_N = 0.0015;  // 0.01 m/s^2
   hand.robot(0, 0, 0, 0.1, 0.1);
@@ -65,7 +65,7 @@ TEST(Dynamics2dStores, ARenewedRowIsAnotherRobot) {
 }
 
 TEST(Dynamics2dStores, RobotsThatGoLeaveTheirPlaceFree) {
-  ByHand hand;
+  FlatByHand hand;
   hand.robot(0, 0, 0, 0.1, 0.1);
   hand.robot(0.2, 0, 0, 0, 0);
   hand.bodies().flags[1] |= kExternal;
@@ -82,7 +82,7 @@ TEST(Dynamics2dStores, WhatIsNoNumberIsNamedAndLeavesOthersAlone) {
   for (const bool at_once : {true, false}) {
     for (const double bad : {nan, infinite, -infinite, 1e300}) {
       for (int what = 0; what < 6; ++what) {
-        ByHand hand;
+        FlatByHand hand;
         hand.robot(0.3, 0, 0, 0.05, 0.05);
         hand.robot(0, 0, 0, 0.05, 0.05);
         hand.box(0.5, 0.5, 0.1, 0.1, 0.2);
@@ -108,7 +108,7 @@ TEST(Dynamics2dStores, WhatIsNoNumberIsNamedAndLeavesOthersAlone) {
 }
 
 TEST(Dynamics2dStores, WhatIsTooFastIsNamedAndNotWritten) {
-  ByHand hand;
+  FlatByHand hand;
   hand.box(0, 0, 0.1, 0.1, 0.2);
   hand.object_motion().v_m_s = {1e5, 0, 0};
   hand.tick();
