@@ -13,8 +13,9 @@ constexpr TimeNs kStart = 6 * kSecond;    // within which it drives at first
 constexpr TimeNs kSettled = 5 * kSecond;  // within which it is found again after its return
 constexpr TimeNs kWatched = 4 * kSecond;  // for which it must not move by itself
 
-/// Switched off and on; another robot in its place; the same on another device; a radio that does not pass for a while.
-enum class What : std::uint8_t { SwitchedOff, Exchanged, Renumbered, Silent };
+/// Switched off and on; another robot in its place; the same on another device; a radio that does not pass for a while;
+/// a part of the robot off and on, while the rest of it goes on.
+enum class What : std::uint8_t { SwitchedOff, Exchanged, Renumbered, Silent, PartOff };
 
 struct Event {
   What what;
@@ -26,12 +27,12 @@ struct Event {
 
 class Story {
  public:
-  Story(const MakeRig& make, std::uint64_t seed, TimeNs least_off_ns)
-      : chance_(seed), least_off_ns_(least_off_ns), rig_(make(seed)), hub_(*rig_.hub) {
+  Story(const MakeRig& make, std::uint64_t seed) : chance_(seed), rig_(make(seed)), hub_(*rig_.hub) {
     wheels_ = &rig_.bridge->robot().actuator<hal::WheelSpeeds>();
     constexpr std::array<RearmPolicy, 3> kPolicies = {
         {{RearmBy::Proved, 0.0}, {RearmBy::Time, 0.5}, {RearmBy::Operator, 0.0}}};
     policy_ = kPolicies[chance_() % kPolicies.size()];
+    steady_ = chance_() % 2 == 0;
     mixed_reality::RealRobotParams params;
     params.rearm.policy = policy_;
     robot_ = std::make_unique<mixed_reality::LoneRobot>("r", std::move(rig_.bridge), params, kTick, hal::Log());
@@ -50,20 +51,21 @@ class Story {
 
  private:
   Event draw() {
-    constexpr std::array<TimeNs, 5> kAway = {300 * kMs, 1200 * kMs, 3 * kSecond, 15 * kSecond, 60 * kSecond};
-    Event event{static_cast<What>(chance_() % 4), kAway[chance_() % kAway.size()], chance_() % 2 == 0};
+    const auto shortly = static_cast<TimeNs>(5 + chance_() % 1895) * kMs;
+    const std::array<TimeNs, 6> away = {shortly, 300 * kMs, 1200 * kMs, 3 * kSecond, 15 * kSecond, 60 * kSecond};
+    const std::uint64_t kinds = rig_.bodies[here_]->parts() > 0 ? 5 : 4;
+    Event event{static_cast<What>(chance_() % kinds), away[chance_() % away.size()], chance_() % 2 == 0};
     // Nobody exchanges robots within 2 s; where no link hangs up and both are of one firmware, nothing would tell it.
     if (event.what == What::Exchanged) event.away_ns = std::max(event.away_ns, 3 * kSecond);
-    if (event.what == What::SwitchedOff) event.away_ns = std::max(event.away_ns, least_off_ns_);
+    if (event.what == What::PartOff) event.hangs_up = false;  // the line is the robot's
     return event;
   }
 
   void happen(const Event& event) {
-    told_ += std::string(event.what == What::SwitchedOff  ? "off"
-                         : event.what == What::Exchanged  ? "exchanged"
-                         : event.what == What::Renumbered ? "renumbered"
-                                                          : "silent") +
-             (event.hangs_up ? ", hangs up " : " ") + std::to_string(event.away_ns / kMs) + " ms; ";
+    constexpr std::array<const char*, 5> kTold = {"off", "exchanged", "renumbered", "silent", "part off"};
+    told_ += std::string(kTold[static_cast<std::size_t>(event.what)]) + (event.hangs_up ? ", hangs up " : " ") +
+             std::to_string(event.away_ns / kMs) + " ms; ";
+    if (event.what == What::PartOff) return fail_part(event);
     const bool gone = event.hangs_up || event.what == What::Renumbered;
     gone ? hub_.hang_up(now_) : hub_.lead_to(-1, now_);
     if (event.what == What::SwitchedOff) on_[here_] = false;
@@ -77,6 +79,15 @@ class Story {
     // It drives on as it was told last until it is told otherwise; from its first rest on it stands.
     until(kSettled, [this] { return !moves(); });
     if (!event.needs_a_person()) return goes_on(event);
+    stands_until_a_person();
+  }
+
+  void fail_part(const Event& event) {
+    Body& body = *rig_.bodies[here_];
+    part_off_ = static_cast<int>(chance_() % static_cast<std::uint64_t>(body.parts()));
+    run(event.away_ns);
+    part_off_ = kNoPart;
+    until(kSettled, [this] { return !moves(); });
     stands_until_a_person();
   }
 
@@ -112,7 +123,7 @@ class Story {
   bool until(TimeNs duration, Done&& done) {
     for (const TimeNs end = now_ + duration; now_ < end && wrong_.empty();) {
       now_ += kMs;
-      for (std::size_t i = 0; i < 2; ++i) rig_.bodies[i]->live(now_, on_[i]);
+      for (std::size_t i = 0; i < 2; ++i) rig_.bodies[i]->live(now_, on_[i], i == here_ ? part_off_ : kNoPart);
       hub_.pump(now_);
       if (now_ >= next_tick_) tick();
       if (done()) return true;
@@ -123,20 +134,23 @@ class Story {
   void tick() {
     next_tick_ = now_ + kTick;
     (void)robot_->latch(++tick_, now_, phase_);
-    wheels_->set(0.05, 0.05);
+    wheels_->set(speed_m_s(), 0.05);
     robot_->commit(now_);
   }
 
+  double speed_m_s() const { return steady_ ? 0.05 : 0.04 + 0.001 * static_cast<double>(tick_ % 20); }
+
   std::mt19937_64 chance_;
-  TimeNs least_off_ns_;
   Rig rig_;
   HubSide& hub_;
   hal::WheelSpeeds* wheels_ = nullptr;
   RearmPolicy policy_;
+  bool steady_ = true;  // what its controller asks for
   std::unique_ptr<mixed_reality::LoneRobot> robot_;
   mixed_reality::RunPhase phase_ = mixed_reality::RunPhase::Joining;
   std::array<bool, 2> on_ = {true, true};
   std::size_t here_ = 0;  // the robot at the hub's link
+  int part_off_ = kNoPart;
   int device_ = 0;
   TimeNs now_ = kSecond, next_tick_ = 0;
   hal::Tick tick_ = 0;
@@ -145,13 +159,13 @@ class Story {
 
 }  // namespace
 
-std::string play_all(const MakeRig& make, std::uint64_t usual, TimeNs least_off_ns) {
+std::string play_all(const MakeRig& make, std::uint64_t usual) {
   const char* const wanted = std::getenv("TANDEM_IDENTITY_RUNS");
   const std::uint64_t runs = wanted != nullptr ? std::strtoull(wanted, nullptr, 10) : usual;
   std::string all;
   int told = 0;
   for (std::uint64_t seed = 1; seed <= runs && told < 10; ++seed) {
-    const std::string wrong = Story(make, seed, least_off_ns).play();
+    const std::string wrong = Story(make, seed).play();
     if (wrong.empty()) continue;
     ++told;
     all += "seed " + std::to_string(seed) + ": " + wrong + "\n";

@@ -18,13 +18,16 @@ using hal::TimeNs;
 inline constexpr TimeNs kMs = hal::kNsPerMs;
 inline constexpr TimeNs kSecond = hal::kNsPerSecond;
 inline constexpr TimeNs kTick = 100 * kMs;
+inline constexpr int kNoPart = -1;
 
 /// A robot and its firmware: an emulator without its server.
 class Body {
  public:
   virtual ~Body() = default;
-  /// Goes on to `now`; one that is off is kept from starting.
-  virtual void live(TimeNs now, bool on) = 0;
+  /// Goes on to `now`; one that is off is kept from starting, as is its part `part_off`.
+  virtual void live(TimeNs now, bool on, int part_off) = 0;
+  /// How many parts it does not drive without may be off alone.
+  virtual int parts() const { return 0; }
   /// Whether a wheel is told a speed that is not 0, by the emulator's log.
   virtual bool moves() const = 0;
 };
@@ -72,8 +75,8 @@ class DriverSide : public bridges::DriverBridge<Self, Robot>, public HubSide {
   bridges::RobotIdentity reached_;
 };
 
-/// Plays stories 1 to `usual`, or as many as TANDEM_IDENTITY_RUNS says. A robot is off for `least_off_ns` and more.
+/// Plays stories 1 to `usual`, or as many as TANDEM_IDENTITY_RUNS says.
 /// @returns the first few that went wrong; empty: nothing.
-std::string play_all(const MakeRig& make, std::uint64_t usual, TimeNs least_off_ns = 0);
+std::string play_all(const MakeRig& make, std::uint64_t usual);
 
 }  // namespace tandem::identities
