@@ -124,9 +124,11 @@ Answer Supervisor::order(std::int32_t session, const ModeCommand& command, hal::
 Answer Supervisor::arm(std::int32_t session, hal::TimeNs at) {
   if (mode_ == Mode::Estop) return wrong_mode(mode_);
   const bool on_ground = mode_ == Mode::Idle;
-  if (on_ground && !armed_ && failsafe() != Failsafe::None) {
+  const bool only_late = failsafe() == Failsafe::None || failsafe() == Failsafe::CommandTimeout;
+  if (on_ground && !armed_ && !only_late) {
     return rejected(Verdict::RejectedMode, "fail-safe " + std::string(name_of(failsafe())));
   }
+  if (on_ground) set(Failsafe::CommandTimeout, false);  // it ends with the next valid command
   if (session != controller_) heard_ = at;
   controller_ = session;
   armed_ = true;

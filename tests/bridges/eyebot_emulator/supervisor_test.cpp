@@ -447,6 +447,20 @@ TEST(CommandTimeout, EndsWithAnyFlightOrder) {
   }
 }
 
+TEST(CommandTimeout, EndsWithTheNextArmingOnTheGround) {
+  Robot r = in(Mode::Hover);
+  (void)r.s.setpoint(kHub, Mode::Velocity, r.now + 1, r.now);
+  r.now += 1;
+  r.see(kInAir);
+  ASSERT_EQ(r.s.failsafe(), Failsafe::CommandTimeout);
+  r.see_for(kInAir, 12, false);  // its hub is gone: it lands
+  r.see_for(kOnGround, 1, false);
+  ASSERT_EQ(r.s.mode(), Mode::Idle);
+  ASSERT_EQ(r.order(Action::ClearFailsafe), Verdict::Ok);
+  EXPECT_EQ(r.order(Action::Arm), Verdict::Ok);
+  EXPECT_EQ(r.s.failsafe(), Failsafe::None);
+}
+
 TEST(LinkLost, OnTheGroundDisarms) {
   Robot r = in(Mode::Idle);
   r.see_for(kOnGround, 10, false);
