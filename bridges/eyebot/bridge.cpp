@@ -83,6 +83,7 @@ void EyebotBridge::keep_link() {
       link_trouble_ = "what is said at '" + link_->url() + "' does not come back: the network is gone";
       dead = std::move(link_);
     }
+    if (dead) driver_.link_gone();
     if (link_ || (tried_ns_ != 0 && now - tried_ns_ < kOpenAgain)) return;
     tried_ns_ = now;
   }

@@ -206,10 +206,8 @@ void EyebotDriver::use_status() {
                      (status_.mode == Mode::Land || status_.mode == Mode::Idle || status_.mode == Mode::Off ||
                       status_.mode == Mode::Stopped);
   if (!before.known || !was_active_ || settings_.observe || !((begins && !late) || sinks)) return;
-  // What an outage makes it do is the link's stop, and over with it.
-  const bool by_link =
-      status_.failsafe == hal::FlightFailsafe::CommandTimeout || status_.failsafe == hal::FlightFailsafe::LinkLost;
-  statistics_.saved_itself += by_link ? 0 : 1;
+  // A command that came late is the link's stop, and over with it. One that has heard nothing for 2 s was absent.
+  statistics_.saved_itself += status_.failsafe == hal::FlightFailsafe::CommandTimeout ? 0 : 1;
   log_.warning(
       "eye-bot '" + settings_.robot.id + "': it goes to safety by itself, " + mode_name(status_.mode) +
       (status_.failsafe == hal::FlightFailsafe::None ? "" : std::string(": ") + failsafe_name(status_.failsafe)));

@@ -79,7 +79,7 @@ struct DriverStatistics {
   std::uint64_t rearmed = 0;          ///< times that flying began anew after an interruption
   std::uint64_t watchdog_stops = 0;   ///< for want of commits
   std::uint64_t link_stops = 0;       ///< because the robot was not active any more, or had begun anew by itself
-  std::uint64_t saved_itself = 0;     ///< times that it went to safety, and not for want of us
+  std::uint64_t saved_itself = 0;     ///< times that it went to safety: not for a command that came late
   std::uint64_t recovered = 0;        ///< times it became Active again
   std::uint64_t lost = 0;             ///< times it became Lost
   std::uint64_t stalls = 0;           ///< times that our own thread came too late
@@ -115,6 +115,8 @@ class EyebotDriver {
   /// Takes in what has arrived, applies time-outs, says what is due. Never waits.
   void pump(hal::TimeNs now) noexcept;
   hal::TimeNs next_deadline() const noexcept;
+  /// The link is dead: whoever is at the end of the next one is told nothing to fly by before the next commit.
+  void link_gone() noexcept { interrupt(); }
 
   /// Hovers now, and until `resume`.
   void stop(hal::TimeNs now) noexcept;

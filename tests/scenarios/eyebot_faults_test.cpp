@@ -258,13 +258,23 @@ TEST(EyebotFaults, ARobotThatSavesItselfIsHeldWithItsReason) {
   }
 }
 
-TEST(EyebotFaults, AnOutageIsNoStopOfTheRobotsOwnAndIsOverWithinASecond) {
+TEST(EyebotFaults, AShortDeafnessIsNoStopOfTheRobotsOwn) {
+  Flight f({"deaf@8s+1500ms"});
+  f.fly_until(9.4);
+  EXPECT_NE(f.mode(), Mode::Velocity);
+  f.fly_until(10.5);
+  EXPECT_EQ(f.mode(), Mode::Velocity) << f.logged;
+  EXPECT_EQ(f.driver.statistics().saved_itself, 0U);
+  EXPECT_GE(f.driver.statistics().link_stops, 1U);
+}
+
+TEST(EyebotFaults, ALongDeafnessIsAStopOfTheRobotsOwnAndIsOverWithinASecond) {
   Flight f({"deaf@8s+4s"});
   f.fly_until(12.0);
   EXPECT_NE(f.mode(), Mode::Velocity);
+  EXPECT_EQ(f.driver.statistics().saved_itself, 1U) << "nothing reached it: it was absent, and says so";
   f.fly_until(13.0);
   EXPECT_EQ(f.mode(), Mode::Velocity) << f.logged;
-  EXPECT_EQ(f.driver.statistics().saved_itself, 0U);
   EXPECT_GE(f.driver.statistics().link_stops, 1U);
 }
 

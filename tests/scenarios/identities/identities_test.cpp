@@ -1,15 +1,20 @@
-// Who is that robot? E-pucks, Thymios and foot-bots that are switched off, exchanged, renumbered, in virtual time.
+// Who is that robot? E-pucks, Thymios, foot-bots and eye-bots that are switched off, exchanged, renumbered, in virtual
+// time.
 #include <deque>
 #include <gtest/gtest.h>
 
 #include "bridges/aseba/can_messages.hpp"
 #include "bridges/can/memory_bus.hpp"
 #include "bridges/epuck/driver.hpp"
+#include "bridges/eyebot/driver.hpp"
+#include "bridges/eyebot_emulator/eyebot.hpp"
+#include "bridges/eyebot_emulator/point_body.hpp"
 #include "bridges/footbot/driver.hpp"
 #include "bridges/footbot/map_file.hpp"
 #include "bridges/footbot_emulator/bus.hpp"
 #include "bridges/footbot_emulator/footbot.hpp"
 #include "bridges/thymio/driver.hpp"
+#include "hal/device/flight.hpp"
 #include "tests/bridges/thymio/thymio_line.hpp"
 #include "tests/checkout.hpp"
 #include "tests/scenarios/faults/byte_line.hpp"
@@ -17,6 +22,10 @@
 
 namespace tandem::identities {
 namespace {
+
+std::function<void(double)> by_wheels(bridges::RobotBridge& bridge) {
+  return [wheels = &bridge.robot().actuator<hal::WheelSpeeds>()](double speed_m_s) { wheels->set(speed_m_s, 0.05); };
+}
 
 /// Open ground.
 template <class Interface, class Senses, class Command>
@@ -129,6 +138,7 @@ TEST(Identities, NoEpuckMovesThatIsNotProvedToBeTheArmedOne) {
     auto side = std::make_unique<EpuckSide>(bodies);
     rig.hub = side.get();
     rig.bridge = std::move(side);
+    rig.drive = by_wheels(*rig.bridge);
     return rig;
   };
   EXPECT_EQ(play_all(make, 30), "");
@@ -229,6 +239,7 @@ Rig node_rig(const typename Parts::Settings& settings) {
   auto side = std::make_unique<NodeSide<Parts, NodeBody>>(settings, bodies);
   rig.hub = side.get();
   rig.bridge = std::move(side);
+  rig.drive = by_wheels(*rig.bridge);
   return rig;
 }
 
@@ -293,6 +304,155 @@ TEST(Identities, NoFootbotMovesThatIsNotProvedToBeTheArmedOne) {
   ASSERT_TRUE(map);
   settings.map = std::move(*map);
   const auto make = [&](std::uint64_t) { return node_rig<footbot::FootbotParts, FootbotBody>(settings); };
+  EXPECT_EQ(play_all(make, 30), "");
+}
+
+// --- eye-bots ---
+
+namespace eyebot = bridges::eyebot;
+namespace eyebot_emulator = bridges::eyebot_emulator;
+
+constexpr TimeNs kUnix = 1'700'000'000 * kSecond;
+TimeNs g_unix_ns = kUnix;
+TimeNs unix_clock() noexcept {
+  return g_unix_ns;
+}
+
+class EyebotBody final : public Body {
+ public:
+  explicit EyebotBody(std::int32_t session)
+      : session_(session),
+        robot_({.session = session}, body_,
+               [this](TimeNs, std::string_view event, const bridges::EventFields& fields) { note(event, fields); }) {
+    robot_.power_on(0, kUnix / 1000);
+  }
+  void live(TimeNs now, bool on, int /*part_off*/) override {
+    if (!on && now >= next_reset_) {
+      robot_.restart(++session_, now);  // it never gets as far as its first word
+      next_reset_ = now + 50 * kMs;
+    }
+    robot_.run_until(now);
+    sent_.clear();
+    robot_.take_sent(sent_);
+  }
+  bool moves() const override {
+    using enum eyebot_emulator::Mode;
+    const eyebot_emulator::Mode mode = robot_.supervisor().mode();
+    return mode == TakeOff || mode == Position || mode == Attaching || mode == Detaching ||
+           (mode == Velocity && told_m_s_ != 0.0);
+  }
+  eyebot_emulator::Eyebot& robot() { return robot_; }
+  /// What it has said since it lived last.
+  const std::vector<eyebot_emulator::Datagram>& said() const { return sent_; }
+
+ private:
+  void note(std::string_view event, const bridges::EventFields& fields) {
+    if (event != "command") return;
+    bool accepted = false;
+    for (const bridges::EventField& field : fields) {
+      if (field.name == "verdict") accepted = std::get<std::string>(field.value) == "ok";
+      if (field.name == "x" && accepted) told_m_s_ = std::get<double>(field.value);
+    }
+  }
+
+  std::int32_t session_;
+  eyebot_emulator::PointBody body_;
+  double told_m_s_ = 0.0;  // by the last velocity that it accepted
+  eyebot_emulator::Eyebot robot_;
+  std::vector<eyebot_emulator::Datagram> sent_;
+  TimeNs next_reset_ = 0;
+};
+
+class EyebotSide final : public DriverSide<EyebotSide, eyebot::EyebotRobot>, private eyebot::Outbox {
+ public:
+  explicit EyebotSide(std::array<EyebotBody*, 2> bodies) : driver_(settings(), inbox_, *this), bodies_(bodies) {}
+
+  void lead_to(int robot, TimeNs) override { robot_ = robot; }
+  void hang_up(TimeNs) override {
+    open_ = false;
+    driver_.link_gone();
+  }
+  void open(const std::string& device, TimeNs) override {
+    open_ = true;
+    note_open(device);
+  }
+  bool deafen(bool deaf) override {
+    deaf_ = deaf;
+    return true;
+  }
+  void pump(TimeNs now) override {
+    now_ = now;
+    g_unix_ns = kUnix + now;
+    if (EyebotBody* const body = reached(); body != nullptr) {
+      for (const eyebot_emulator::Datagram& d : body->said()) {
+        if (const auto topic = eyebot::topic_of("eb0", d.channel)) inbox_.deliver(*topic, d.data, now);
+      }
+    }
+    driver_.pump(now);
+  }
+  bridges::RobotIdentity identity() const override {
+    bridges::RobotIdentity all = reached_;
+    if (driver_.liveness().pulse(now_) != eyebot::Pulse::Never) all.name = driver_.settings().name;
+    return all;
+  }
+  std::uint64_t stop_version() const noexcept override {
+    return reached_.session + (driver_.liveness().pulse(now_) != eyebot::Pulse::Never ? 1 : 0);
+  }
+
+ private:
+  friend bridges::DriverBridge<EyebotSide, eyebot::EyebotRobot>;
+  static eyebot::DriverSettings settings() {
+    eyebot::DriverSettings s;
+    s.robot.id = s.name = "eb0";
+    s.hub = "lab";
+    s.session = 4711;
+    s.unix_clock = &unix_clock;
+    return s;
+  }
+  EyebotBody* reached() const { return open_ && robot_ >= 0 ? bodies_[static_cast<std::size_t>(robot_)] : nullptr; }
+  bool publish(const std::string& channel, std::span<const std::byte> data) noexcept override {
+    EyebotBody* const body = reached();
+    if (body != nullptr && !deaf_) body->robot().receive(channel, data, now_);
+    return open_;
+  }
+  void run() {}
+  void before_latch(TimeNs now) { driver_.pump(now); }
+  bridges::Interruptions interruptions() const noexcept {
+    const eyebot::DriverStatistics& s = driver_.statistics();
+    return {s.link_stops + s.watchdog_stops, driver_.liveness().restarts() + s.saved_itself};
+  }
+
+  eyebot::Inbox inbox_;
+  eyebot::EyebotDriver driver_;
+  std::array<EyebotBody*, 2> bodies_;
+  int robot_ = -1;
+  bool open_ = false, deaf_ = false;
+  TimeNs now_ = 0;
+};
+
+TEST(Identities, NoEyebotMovesThatIsNotProvedToBeTheArmedOne) {
+  const auto make = [](std::uint64_t) {
+    Rig rig;
+    std::array<EyebotBody*, 2> bodies{};
+    for (std::size_t i = 0; i < 2; ++i) {
+      auto body = std::make_unique<EyebotBody>(static_cast<std::int32_t>(1000 + 1'000'000 * i));
+      bodies[i] = body.get();
+      rig.bodies[i] = std::move(body);
+    }
+    auto side = std::make_unique<EyebotSide>(bodies);
+    rig.hub = side.get();
+    bridges::RobotBridge& bridge = *side;
+    rig.bridge = std::move(side);
+    rig.drive = [&task = bridge.robot().actuator<hal::FlightTask>(),
+                 &speed = bridge.robot().actuator<hal::QuadrotorSpeed>(),
+                 &flight = bridge.robot().sensor<hal::FlightState>(), ticks = 0](double speed_m_s) mutable {
+      // An order counts when it is new: after a restart it is to be given again.
+      const bool grounded = flight.phase == hal::FlightPhase::Landed || flight.phase == hal::FlightPhase::Off;
+      task.order = grounded && ++ticks % 5 != 0 ? hal::FlightOrder::TakeOff : hal::FlightOrder::Fly;
+      speed.set(speed_m_s, 0.0, 0.0, 0.0);
+    };
+    return rig;
+  };
   EXPECT_EQ(play_all(make, 30), "");
 }
 

@@ -28,7 +28,7 @@ class Body {
   virtual void live(TimeNs now, bool on, int part_off) = 0;
   /// How many parts it does not drive without may be off alone.
   virtual int parts() const { return 0; }
-  /// Whether a wheel is told a speed that is not 0, by the emulator's log.
+  /// Whether a wheel is told a speed that is not 0, or a flight, by the emulator's log.
   virtual bool moves() const = 0;
 };
 
@@ -43,12 +43,15 @@ class HubSide {
   virtual void open(const std::string& device, TimeNs now) = 0;
   /// What its thread does.
   virtual void pump(TimeNs now) = 0;
+  /// What the hub says does not arrive, what the robot says does. False: this line has no such fault.
+  virtual bool deafen(bool /*deaf*/) { return false; }
 };
 
 struct Rig {
   std::array<std::unique_ptr<Body>, 2> bodies;
   std::unique_ptr<bridges::RobotBridge> bridge;
-  HubSide* hub = nullptr;  // the same
+  HubSide* hub = nullptr;                       // the same
+  std::function<void(double speed_m_s)> drive;  // what its controller does in every tick
 };
 
 /// One kind: makes two robots and the hub's side; `seed` may choose firmwares.
