@@ -2,8 +2,10 @@
 #include "app/build_info.hpp"
 #include "app/command/robot_commands.hpp"
 #include "app/process/emergency.hpp"
+#include "app/process/signals.hpp"
 
 int main(int argc, char** argv) {
+  tandem::app::catch_rearm();
   tandem::app::catch_crashes();
   using namespace tandem::app;
   CLI::App app{"Tandem on a robot's board: runs the robot's controller here.", "tandem"};

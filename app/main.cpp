@@ -8,6 +8,7 @@
 #include "app/command/robot_commands.hpp"
 #include "app/command/validate.hpp"
 #include "app/process/emergency.hpp"
+#include "app/process/signals.hpp"
 
 namespace {
 
@@ -387,6 +388,7 @@ std::vector<std::pair<std::string, std::string>> own_options(const std::vector<s
 }  // namespace
 
 int main(int argc, char** argv) {
+  tandem::app::catch_rearm();
   tandem::app::catch_crashes();
   CLI::App app{"Tandem: one controller drives simulated robots, real ones, and both together.", "tandem"};
   app.footer("The launcher at the top of the checkout has further commands: test, build and format.");

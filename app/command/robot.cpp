@@ -215,7 +215,6 @@ int robot(const RobotOptions& options) {
   guarded.add(bridge);
   if (const hal::Status claimed = guarded.claim(); !claimed.ok())
     return complain(kFailedRunning, claimed.error().message);
-  catch_rearm();
   const hal::TimeNs tick_ns = hal::time_of_tick(1, scenario->ticks_per_second);
   lone.emplace(item.id, std::move(made).value(),
                mixed_reality::RealRobotParams{.rearm = mixed_reality::rearm_params(*item.bridge),
@@ -226,6 +225,7 @@ int robot(const RobotOptions& options) {
   const hal::Status ready = connect(*lone, *item.bridge, tick_ns, clock, stop);
   if (stop.load()) return interrupted_code();
   if (!ready.ok()) return complain(kFailedRunning, "robot '" + item.id + "': " + ready.error().message);
+  rearm_asked() = false;  // the start arms it
 
   mixed_reality::Pacer pacer(clock, scenario->ticks_per_second);
   const double seconds = options.seconds.value_or(scenario->length_s);

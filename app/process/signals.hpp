@@ -23,6 +23,7 @@ int interrupted_code() noexcept;
 
 /// Set by SIGUSR1 from `catch_rearm` on: a person re-arms the real robots that wait for it.
 std::atomic<bool>& rearm_asked() noexcept;
+/// The first thing that a program does: without it the signal ends the process, however early it comes.
 void catch_rearm();
 
 /// Sets the flag as a signal would.

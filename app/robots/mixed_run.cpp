@@ -43,7 +43,6 @@ hal::Result<std::unique_ptr<mixed_reality::MixedSession>> make_session(const hal
   options.unix_clock = &hub_unix_ns;
   options.freezes = [&guarded] { return guarded.freezes(); };
   options.guarded = [&guarded] { return guarded.guarded(); };
-  catch_rearm();
   options.rearm_asked = &rearm_asked();
   options.on_left_out = [&guarded](const bridges::RobotBridge& bridge) { guarded.remove(bridge); };
   options.on_joined = [&guarded](const bridges::RobotBridge& bridge) { return guarded.claim(bridge); };

@@ -146,6 +146,14 @@ class Tandem {
     if (pid_ > 0 && !ended_) kill(pid_, number);
   }
 
+  /// Whether it has a handler for this signal by now.
+  bool catches(int number) const {
+    const std::string status = text_of("/proc/" + std::to_string(pid_) + "/status");
+    const std::size_t at = status.find("SigCgt:");
+    if (at == std::string::npos) return false;
+    return (std::strtoull(status.c_str() + at + 7, nullptr, 16) >> (number - 1) & 1U) != 0;
+  }
+
   /// Whether the system has suspended it.
   bool suspended() const {
     const std::string stat = text_of("/proc/" + std::to_string(pid_) + "/stat");

@@ -128,6 +128,16 @@ TEST_P(Hubs, StopRobotsWhoseGuardianIsGone) {
   for (std::size_t i = before; i < wheels.size(); ++i) EXPECT_TRUE(wheels[i].left == 0 && wheels[i].right == 0);
 }
 
+TEST_P(Hubs, AreNotEndedByARearmThatComesTooEarly) {
+  auto hub = start();
+  // As soon as the program has taken anything in hand: crashes first, or Ctrl-C where a sanitizer has them.
+  ASSERT_TRUE(eventually([&] { return hub->catches(SIGTRAP) || hub->catches(SIGINT); }, 30.0));
+  hub->signal(SIGUSR1);
+  EXPECT_TRUE(drives(*hub)) << hub->errors();
+  hub->signal(SIGINT);
+  EXPECT_EQ(hub->wait(), 130) << hub->errors();
+}
+
 TEST_P(Hubs, DriveNoRobotWithoutAGuardian) {
   for (int fd = 3; fd < 256; ++fd) ::fcntl(fd, F_SETFD, FD_CLOEXEC);  // what this test was begun with
   rlimit before{};
