@@ -68,7 +68,7 @@ Figure figure_of(const std::vector<Encounters>& all) {
       (i == 0 ? first : later) += fmt::format("{} {}\n", e.delay_ms, 1e3 * e.gaps_m[i]);
   return {"barrier", "Smallest gap between two robots that are driven at one another, over the hidden delay.",
           fmt::format("$first << END\n{}END\n$later << END\n{}END\n"
-                      "set xlabel 'hidden delay (ms)'\nset ylabel 'smallest gap (mm)'\nset key outside below\n"
+                      "set xlabel 'hidden delay (ms)'\nset ylabel 'smallest gap (mm)'\n"
                       "set arrow 1 from {} , graph 0 to {} , graph 1 nohead dashtype 2\nset label 1 'latency counted "
                       "on' at {} , graph 0.95 offset 0.5,0\n"
                       "plot 0 with lines linewidth 2 linecolor '#D55E00' title 'contact', {} with lines dashtype 3 "

@@ -175,7 +175,7 @@ void add_positions(Part& part) {
     errors.push_back(std::hypot(all[i].ahead_m - kWay_m, all[i].left_m));
     if (i < 61) points += fmt::format("{} {}\n", all[i].ahead_m, all[i].left_m);
   }
-  for (double slant = 0.0; slant <= 0.05; slant += 0.0005)
+  for (double slant = 0.0; slant <= 0.06; slant += 0.0005)
     curve += fmt::format("{} {}\n", modelled(slant).x_m, modelled(slant).y_m);
   std::sort(errors.begin(), errors.end());
   const Goodness g = kolmogorov_smirnov(slants, [](double x) { return rayleigh_cumulative(x, kSigma); });
@@ -204,8 +204,8 @@ void add_positions(Part& part) {
        "Where 61 foot-bots end that should end at the cross, 4 m from their start, and where the paper's model leads.",
        fmt::format("$points << END\n{}END\n$curve << END\n{}END\nset size ratio -1\nset xlabel 'ahead (m)'\nset ylabel "
                    "'to the left (m)'\n"
-                   "set key outside below\nset xrange [0:4.3]\nplot $curve with lines linewidth 2 linecolor '#0072B2' "
-                   "title 'model, slants of 0 to 5 %', "
+                   "set xrange [0:4.3]\nplot $curve with lines linewidth 2 linecolor '#0072B2' "
+                   "title 'model, slants of 0 to 6 %', "
                    "$points with points pointtype 6 linecolor '#D55E00' title 'simulated', '+' using (4):(0):(0) every "
                    "::0::0 with points pointtype 2 "
                    "pointsize 2 linecolor '#000000' title 'target'\n",

@@ -18,14 +18,23 @@ struct Made {
   std::vector<double> errors;  ///< in the scene's unit; NaN: not made
   std::string failure;
   double expected = 0.0;
+
+  /// Whether an error is none but of rounding.
+  bool none(std::size_t i) const { return std::abs(errors[i]) <= 1e-9 * std::max(1.0, std::abs(expected)); }
+  bool exact() const {
+    for (std::size_t i = 0; i < errors.size(); ++i)
+      if (!none(i)) return false;
+    return true;
+  }
 };
 
-/// Of the error as a power of the tick, by least squares over the logarithms; NaN where errors are none to speak of.
-double order_of(const Series& series, const Made& made, double scale) {
+/// Of the error as a power of the tick, by least squares over the logarithms; NaN where it does not fall with each
+/// shorter tick.
+double order_of(const Series& series, const Made& made) {
   double n = 0.0, sx = 0.0, sy = 0.0, sxx = 0.0, sxy = 0.0;
   for (std::size_t i = 0; i < made.errors.size(); ++i) {
     const double error = std::abs(made.errors[i]);
-    if (!(error > 1e-9 * scale)) return NAN;
+    if (made.none(i) || !(i == 0 || error < std::abs(made.errors[i - 1]))) return NAN;
     const double x = -std::log(series.values[i]), y = std::log(error);
     n += 1.0, sx += x, sy += y, sxx += x * x, sxy += x * y;
   }
@@ -86,36 +95,45 @@ std::string first_line(const std::string& text) {
 }
 
 Row row_of(const Scene& scene, const Series& s, const Made& made) {
-  const double order = s.over == "ticks" ? order_of(s, made, std::max(1.0, std::abs(made.expected))) : NAN;
+  const double order = s.over == "ticks" ? order_of(s, made) : NAN;
   std::vector<std::string> errors;
   for (std::size_t i = 0; i < s.values.size(); ++i)
     errors.push_back(fmt::format("{:g}: {}", s.values[i],
-                                 std::isnan(made.errors[i]) ? "–" : fmt::format("{:+.3g}", made.errors[i])));
+                                 std::isnan(made.errors[i]) ? "–"
+                                 : made.none(i)             ? "0"
+                                                            : fmt::format("{:+.3g}", made.errors[i])));
   Row row;
   row.cells = {setting_of(s), s.over == "ticks" ? "Hz" : s.over, fmt::format("{:.4g} {}", made.expected, scene.unit),
-               made.failure.empty() ? fmt::format("{}", fmt::join(errors, "   ")) : first_line(made.failure),
+               made.failure.empty() ? fmt::format("{}", fmt::join(errors, ", ")) : first_line(made.failure),
                std::isnan(order) ? "" : fmt::format("{:.2f}", order)};
   row.contract = contract_of(s, scene.unit);
   row.verdict = judge(s, made, order);
   return row;
 }
 
-/// Errors over the tick's length, all series of a scene that vary it.
+/// Errors over the tick's length, all series of a scene that vary it and are not exact.
 std::optional<Figure> figure_of(const Scene& scene, const std::vector<Made>& made) {
-  std::string data, plot;
+  std::string data, plot, exact;
   for (std::size_t i = 0; i < made.size(); ++i) {
     if (scene.series[i].over != "ticks" || !made[i].failure.empty()) continue;
+    if (made[i].exact()) {
+      exact += (exact.empty() ? "" : "; ") + setting_of(scene.series[i]);
+      continue;
+    }
     data += fmt::format("$s{} << END\n", i);
     for (std::size_t k = 0; k < made[i].errors.size(); ++k)
-      data += fmt::format("{} {}\n", 1.0 / scene.series[i].values[k], std::max(1e-6, std::abs(made[i].errors[k])));
+      if (!made[i].none(k))
+        data += fmt::format("{} {}\n", 1.0 / scene.series[i].values[k], std::abs(made[i].errors[k]));
     data += "END\n";
     plot += fmt::format("{}$s{} using 1:2 with linespoints pointtype 7 title {}", plot.empty() ? "plot " : ", ", i,
                         core::gnuplot_text(setting_of(scene.series[i])));
   }
   if (plot.empty() || scene.form == "zero") return std::nullopt;
-  return Figure{scene.name, fmt::format("{}: error over the length of a tick.", scene.title),
+  return Figure{scene.name,
+                fmt::format("{}: error over the length of a tick.{}", scene.title,
+                            exact.empty() ? "" : " Without error, and so not drawn: " + exact + "."),
                 data + fmt::format("set logscale xy\nset xlabel 'tick (s)'\nset ylabel {}\nset format y '%g'\n"
-                                   "set key outside below noenhanced\n{}\n",
+                                   "set key noenhanced\n{}\n",
                                    core::gnuplot_text("error (" + scene.unit + ")"), plot)};
 }
 
@@ -126,7 +144,9 @@ Part engine_part(Depth) {
   Part part{
       "Engines against closed forms",
       "Each scene is run with each engine, over tick lengths or iterations. The error is what was measured less what "
-      "the closed form says; the order is that of the error as a power of the tick."};
+      "the closed form says, 0 where it is one of rounding (1e-9); the order is that of the error as a power of the "
+      "tick, where it falls with "
+      "each shorter tick."};
   for (const SceneFile& file : scene_files()) {
     if (!file.name.starts_with("scenes/")) continue;
     auto scene = read_scene(file.name, std::string(file.text));

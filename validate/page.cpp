@@ -5,7 +5,6 @@
 #include "hal/markup.hpp"
 
 namespace tandem::validate {
-namespace {
 
 const char* word_of(Verdict verdict) {
   switch (verdict) {
@@ -20,6 +19,8 @@ const char* word_of(Verdict verdict) {
   }
   return "";
 }
+
+namespace {
 
 const char* class_of(Verdict verdict) {
   if (verdict == Verdict::Met) return "met";
@@ -106,168 +107,6 @@ hal::Json json_of(const Report& report) {
     json["parts"].push_back({{"title", part.title}, {"seconds", part.seconds}, {"tables", tables}});
   }
   return json;
-}
-
-namespace {
-
-// A sheet is A4 at 96 pixels an inch.
-constexpr double kWidth_px = 794.0, kHeight_px = 1123.0, kMargin_px = 48.0;
-constexpr double kLine_px = 12.5, kFont_px = 9.0;
-constexpr double kCharacter_px = 4.9;  // of the font, in the mean
-constexpr double kFigure_px = 340.0;   // width of a figure, two a line
-
-/// Lines of at most `most` characters, broken at blanks where there are any.
-std::vector<std::string> wrapped(const std::string& text, std::size_t most) {
-  std::vector<std::string> lines;
-  std::string rest = text;
-  while (rest.size() > most) {
-    std::size_t at = rest.rfind(' ', most);
-    if (at == std::string::npos || at == 0) at = most;
-    while (at < rest.size() && (static_cast<unsigned char>(rest[at]) & 0xC0U) == 0x80U) ++at;  // not within a letter
-    lines.push_back(rest.substr(0, at));
-    rest.erase(0, rest[at] == ' ' ? at + 1 : at);
-  }
-  lines.push_back(rest);
-  return lines;
-}
-
-/// Fills sheets from the top, and begins another where one is full.
-class Sheets {
- public:
-  void text(const std::string& words, double size_px, bool bold = false) {
-    const auto most = static_cast<std::size_t>((kWidth_px - 2 * kMargin_px) / (kCharacter_px * size_px / kFont_px));
-    for (const std::string& line : wrapped(words, most)) {
-      room(size_px * 1.4);
-      put(kMargin_px, line, size_px, bold, "#1a1a1a");
-      y_ += size_px * 1.4;
-    }
-    y_ += 3.0;
-  }
-
-  void table(const Table& table) {
-    std::vector<std::vector<std::string>> cells = {table.columns};
-    cells.front().insert(cells.front().end(), {"contract", ""});
-    for (const Row& row : table.rows) {
-      cells.push_back(row.cells);
-      cells.back().insert(cells.back().end(), {row.contract, word_of(row.verdict)});
-    }
-    const std::vector<std::size_t> widths = widths_of(cells);
-    for (std::size_t i = 0; i < cells.size(); ++i) {
-      const bool bad = i > 0 && std::string(class_of(table.rows[i - 1].verdict)) == "bad";
-      line(cells[i], widths, i == 0, bad ? "#a40000" : "#1a1a1a");
-    }
-    y_ += 8.0;
-  }
-
-  void figures(const std::vector<std::string>& svgs, const std::vector<Figure>& about) {
-    constexpr double kRoom_px = kFigure_px * 0.75 + 24.0;
-    for (std::size_t i = 0; i < svgs.size(); ++i) {
-      if (i % 2 == 0) room(kRoom_px);
-      const double x = kMargin_px + static_cast<double>(i % 2) * (kFigure_px + 16.0);
-      body_ +=
-          fmt::format("<image x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" href=\"data:image/svg+xml;base64,{}\"/>\n",
-                      x, y_, kFigure_px, kFigure_px * 0.75, base64(svgs[i]));
-      const double top = y_;
-      y_ += kFigure_px * 0.75 + 10.0;
-      put(x, about[i].caption, kFont_px, false, "#444");
-      y_ = i % 2 == 1 || i + 1 == svgs.size() ? top + kRoom_px : top;
-    }
-  }
-
-  std::vector<std::string> all() {
-    end();
-    return std::move(sheets_);
-  }
-
- private:
-  void room(double height_px) {
-    if (y_ + height_px > kHeight_px - kMargin_px) end();
-  }
-  void end() {
-    sheets_.push_back(
-        fmt::format("<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0}\" height=\"{1}\" viewBox=\"0 0 {0} {1}\" "
-                    "font-family=\"DejaVu Sans,Arial,sans-serif\">{2}</svg>",
-                    kWidth_px, kHeight_px, body_));
-    body_.clear();
-    y_ = kMargin_px;
-  }
-  void put(double x, const std::string& words, double size_px, bool bold, const char* color) {
-    body_ += fmt::format("<text x=\"{}\" y=\"{}\" font-size=\"{}\"{} fill=\"{}\">{}</text>\n", x, y_ + size_px, size_px,
-                         bold ? " font-weight=\"bold\"" : "", color, hal::escaped_markup(words));
-  }
-
-  /// Characters of each column: all that it needs, or its share of what there is.
-  static std::vector<std::size_t> widths_of(const std::vector<std::vector<std::string>>& cells) {
-    std::vector<std::size_t> widths(cells.front().size(), 4);
-    for (const auto& row : cells)
-      for (std::size_t i = 0; i < std::min(row.size(), widths.size()); ++i)
-        widths[i] = std::max(widths[i], row[i].size() + 2);
-    const auto most = static_cast<std::size_t>((kWidth_px - 2 * kMargin_px) / kCharacter_px);
-    std::size_t sum = 0;
-    for (const std::size_t w : widths) sum += w;
-    while (sum > most) {
-      std::size_t& widest = *std::max_element(widths.begin(), widths.end());
-      --widest, --sum;
-    }
-    return widths;
-  }
-
-  void line(const std::vector<std::string>& cells, const std::vector<std::size_t>& widths, bool bold,
-            const char* color) {
-    std::vector<std::vector<std::string>> columns;
-    std::size_t lines = 1;
-    for (std::size_t i = 0; i < std::min(cells.size(), widths.size()); ++i) {
-      columns.push_back(wrapped(cells[i], widths[i] > 2 ? widths[i] - 2 : 1));
-      lines = std::max(lines, columns.back().size());
-    }
-    room(kLine_px * static_cast<double>(lines));
-    for (std::size_t n = 0; n < lines; ++n) {
-      double x = kMargin_px;
-      for (std::size_t i = 0; i < columns.size(); ++i) {
-        if (n < columns[i].size()) put(x, columns[i][n], kFont_px * 0.92, bold, color);
-        x += kCharacter_px * static_cast<double>(widths[i]);
-      }
-      y_ += kLine_px;
-    }
-  }
-
-  static std::string base64(const std::string& bytes) {
-    constexpr const char* kLetters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    std::string out;
-    for (std::size_t i = 0; i < bytes.size(); i += 3) {
-      std::uint32_t three = 0;
-      for (std::size_t k = 0; k < 3; ++k)
-        three = (three << 8U) | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0U);
-      for (std::size_t k = 0; k < 4; ++k)
-        out += i + k > bytes.size() ? '=' : kLetters[(three >> (18U - 6U * static_cast<unsigned>(k))) & 63U];
-    }
-    return out;
-  }
-
-  std::vector<std::string> sheets_;
-  std::string body_;
-  double y_ = kMargin_px;
-};
-
-}  // namespace
-
-std::vector<std::string> sheets_of(const Report& report, const std::vector<std::vector<std::string>>& figures) {
-  Sheets sheets;
-  sheets.text("Validation of Tandem", 22.0, true);
-  sheets.text(summary_of(report), 11.0, true);
-  for (const auto& [name, value] : report.about) sheets.text(name + ": " + value, kFont_px);
-  for (std::size_t i = 0; i < report.parts.size(); ++i) {
-    const Part& part = report.parts[i];
-    sheets.text(part.title, 15.0, true);
-    sheets.text(part.text, 10.0);
-    for (const Table& table : part.tables) {
-      sheets.text(table.title, 11.0, true);
-      if (!table.text.empty()) sheets.text(table.text, kFont_px);
-      sheets.table(table);
-    }
-    sheets.figures(figures[i], part.figures);
-  }
-  return sheets.all();
 }
 
 }  // namespace tandem::validate

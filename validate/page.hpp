@@ -9,6 +9,9 @@
 
 namespace tandem::validate {
 
+/// What a row's last column says; "" without a contract.
+const char* word_of(Verdict verdict);
+
 /// The whole report.
 struct Report {
   std::vector<std::pair<std::string, std::string>> about;  ///< machine, release, commit, date, fingerprint
