@@ -50,6 +50,38 @@ double turn(const Given& f) {
   return (f("right") - f("left")) / f("base") * f("t");
 }
 
+/// Way in t from rest at a steady acceleration, against a drag that takes k of the speed a second.
+double accelerated(double a, double k, double t) {
+  return k > 0.0 ? a / k * (t + std::expm1(-k * t) / k) : 0.5 * a * t * t;
+}
+
+/// Way in t of what accelerates with all it has against the drag until it has its speed, and then keeps that.
+double flight(const Given& f) {
+  const double k = f("drag"), a = f("a");
+  const double until = k > 0.0 ? -std::log1p(-k * f("v") / a) / k : f("v") / a;
+  return accelerated(a, k, until) + f("v") * (f("t") - until);
+}
+
+/// Way in t of what hovered, from when its thrust is to be other than its weight, and comes to that with a lag.
+double thrust(const Given& f) {
+  const double a = (f("thrust") - 1.0) * f("g"), lag = f("lag");
+  if (lag <= 0.0) return accelerated(a, f("drag"), f("t"));
+  return a * (0.5 * f("t") * f("t") - lag * f("t") - lag * lag * std::expm1(-f("t") / lag));
+}
+
+/// Way in t of what leans from rest with as much thrust as keeps its height.
+double lean(const Given& f) {
+  return accelerated(f("g") * std::tan(f("pitch")), f("drag"), f("t"));
+}
+
+double spin(const Given& f) {
+  return f("rate") * f("t");
+}
+
+double distance(const Given& f) {
+  return f("distance");
+}
+
 double zero(const Given&) {
   return 0.0;
 }
@@ -58,8 +90,10 @@ double zero(const Given&) {
 
 hal::Result<double> closed_form(const std::string& name, const Given& given) {
   static const std::map<std::string, double (*)(const Given&)> all = {
-      {"fall", fall},   {"slide", slide}, {"slope", slope}, {"collision", collision}, {"push", push}, {"start", start},
-      {"brake", brake}, {"turn", turn},   {"zero", zero}};
+      {"fall", fall},         {"slide", slide},   {"slope", slope}, {"collision", collision},
+      {"push", push},         {"start", start},   {"brake", brake}, {"turn", turn},
+      {"flight", flight},     {"thrust", thrust}, {"lean", lean},   {"spin", spin},
+      {"distance", distance}, {"zero", zero}};
   const auto form = all.find(name);
   if (form == all.end()) return hal::Error{"there is no closed form '" + name + "'"};
   try {

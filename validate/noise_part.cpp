@@ -4,11 +4,13 @@
 #include <stdexcept>
 
 #include "core/sim/world.hpp"
+#include "hal/device/flight.hpp"
 #include "hal/device/range_and_bearing.hpp"
 #include "hal/device/ring_sensors.hpp"
 #include "hal/device/wheels.hpp"
 #include "validate/goodness.hpp"
 #include "validate/parts.hpp"
+#include "validate/sensor_tables.hpp"
 #include "validate/standing.hpp"
 
 namespace tandem::validate {
@@ -102,6 +104,90 @@ void add_messages(Table& table, int ticks) {
                               {sent, static_cast<double>(lost), binomial_p(lost, sent, 0.01)}));
 }
 
+void add_floor(Table& table, int ticks) {
+  std::vector<double> errors;
+  for (const Shade& s : shades("noisy", 3, ticks))
+    if (!s.edge) errors.push_back(s.read - s.is);
+  table.rows.push_back(
+      ks_row("ground sensors", "uniform, ±0.02", errors, [](double x) { return uniform_cumulative(x, -0.02, 0.02); }));
+  table.rows.push_back(neighbours_row("ground sensors, one and the next", errors));
+}
+
+void add_scanner(Table& table, int ticks) {
+  std::vector<double> errors;
+  for (const Echo& echo : echoes("noisy", 4, ticks))
+    if (!echo.edge && echo.inside) errors.push_back(echo.read_m - echo.is_m);
+  table.rows.push_back(ks_row("distance scanner", "uniform, ±10 mm", errors,
+                              [](double x) { return uniform_cumulative(x, -0.01, 0.01); }));
+  table.rows.push_back(neighbours_row("distance scanner, one measurement and the next", errors));
+}
+
+void add_cameras(Table& table, int ticks) {
+  std::size_t strangers = 0;
+  std::vector<double> mirror, lens;
+  std::uint64_t in_sight = 0, missed = 0;
+  for (const Sighting& s : sightings("noisy", 5, ticks, strangers)) {
+    if (s.should.value_or(false)) ++in_sight, missed += s.found ? 0 : 1;
+    if (!s.found || !s.inside) continue;
+    auto& errors = s.camera == Sighting::Camera::AllAround ? mirror : lens;
+    errors.insert(errors.end(), s.error.begin(), s.error.end());
+  }
+  table.rows.push_back(ks_row("camera all around, apparent place", "normal, 10 mm", mirror,
+                              [](double x) { return normal_cumulative(x, 0.01); }));
+  table.rows.push_back(ks_row("cameras with a lens, apparent place", "normal, 1 pixel", lens,
+                              [](double x) { return normal_cumulative(x, 1.0); }));
+  table.rows.push_back(row_of("cameras, missed lights", "one in 100", "binomial",
+                              {in_sight, static_cast<double>(missed), binomial_p(missed, in_sight, 0.01)}));
+}
+
+void add_positioning(Table& table, int ticks) {
+  const auto opened = open_experiment("positioned.xml", 1);
+  core::World& world = opened->world();
+  core::Space& space = world.space();
+  std::vector<double> places, angles;
+  for (int tick = 0; tick < ticks; ++tick) {
+    world.step();
+    for (std::size_t i = 0; i < space.robot_count(); ++i) {
+      const auto& read = *space.port<hal::Positioning>(space.robot(i));
+      const core::Pose is = space.pose(space.robot(i));
+      places.insert(places.end(), {read.p_WB[0] - is.x_m, read.p_WB[1] - is.y_m, read.p_WB[2] - is.z_m});
+      const double heading_rad = 2.0 * std::atan2(read.q_WB[3], read.q_WB[0]);
+      angles.push_back(std::remainder(heading_rad - is.heading_rad(), 2.0 * M_PI));
+    }
+  }
+  const auto uniform = [](double x) { return uniform_cumulative(x, -0.01, 0.01); };
+  table.rows.push_back(ks_row("positioning, places", "uniform, ±10 mm", places, uniform));
+  table.rows.push_back(neighbours_row("positioning, one coordinate and the next", places));
+  table.rows.push_back(ks_row("positioning, angles", "uniform, ±10 mrad", angles, uniform));
+}
+
+void add_encoders(Table& table, int ticks) {
+  constexpr double kSpeed_m_s = 0.1, kTick_s = 0.1;
+  const auto opened = open_experiment("rolling.xml", 6, {{"{wheels}", "ideal"}});
+  core::World& world = opened->world();
+  core::Space& space = world.space();
+  std::vector<double> speeds, ways;
+  std::vector<hal::WheelEncoders> was(space.robot_count());
+  for (int tick = -2; tick < ticks; ++tick) {
+    for (std::size_t i = 0; i < was.size(); ++i) {
+      was[i] = *space.port<hal::WheelEncoders>(space.robot(i));
+      space.port<hal::WheelSpeeds>(space.robot(i))->set(kSpeed_m_s, kSpeed_m_s);
+    }
+    world.step();
+    for (std::size_t i = 0; tick >= 0 && i < was.size(); ++i) {
+      const auto& is = *space.port<hal::WheelEncoders>(space.robot(i));
+      for (const float speed : {is.left_m_s, is.right_m_s}) speeds.push_back(static_cast<double>(speed) - kSpeed_m_s);
+      for (const double way : {is.left_m - was[i].left_m, is.right_m - was[i].right_m})
+        ways.push_back(way - kSpeed_m_s * kTick_s);
+    }
+  }
+  table.rows.push_back(ks_row("wheel encoders, speeds", "uniform, ±1 mm/s", speeds,
+                              [](double x) { return uniform_cumulative(x, -1e-3, 1e-3); }));
+  table.rows.push_back(ks_row("wheel encoders, way of a tick", "uniform, ±0.1 mm", ways,
+                              [](double x) { return uniform_cumulative(x, -1e-4, 1e-4); }));
+  table.rows.push_back(neighbours_row("wheel encoders, left and right", ways));
+}
+
 /// What the wheels rolled in a step, by where the robot was and is.
 std::pair<double, double> rolled(const core::Pose& was, const core::Pose& is, double base_m) {
   const double turn = std::remainder(is.heading_rad() - was.heading_rad(), 2.0 * M_PI);
@@ -188,14 +274,19 @@ void add_places(Table& table, int worlds) {
 
 Part noise_part(Depth depth) {
   const bool brief = depth == Depth::Short;
-  Part part{"Noise against its distributions",
-            "Seeds are fixed, so p is the same in every run of a release. Of twenty tests of right distributions one "
-            "in fifty "
-            "reports has a p below 0.001."};
+  Part part{
+      "Noise against its distributions",
+      "Seeds are fixed, so p is the same in every run of a release. Of thirty tests of right distributions one has a p "
+      "below 0.001 in one report of thirty-three."};
   Table table{"Tests", "", {"noise", "should be", "test", "n", "statistic", "p"}, {}};
   try {
     add_proximity(table, brief ? 20 : 400);
     add_messages(table, brief ? 10 : 200);
+    add_floor(table, brief ? 1 : 20);
+    add_scanner(table, brief ? 2 : 20);
+    add_cameras(table, brief ? 2 : 20);
+    add_positioning(table, brief ? 20 : 400);
+    add_encoders(table, brief ? 3 : 50);
     add_wheels(table, brief ? 5 : 100);
     add_slanted(table);
     add_places(table, brief ? 2 : 20);

@@ -35,6 +35,33 @@ double to_circle(Point from, Point along, Point middle, double radius) {
   return far >= 0.0 ? 0.0 : INFINITY;  // begins inside
 }
 
+/// A stretch of a line, from 0 at its begin to 1 at its end; none where it is empty.
+struct Stretch {
+  double first = 0.0, last = 1.0;
+  bool none() const { return first >= last; }
+  /// Where p + t d lies between two values.
+  void between(double p, double d, double low, double high) {
+    if (d == 0.0) {
+      if (p <= low || p >= high) last = first;
+      return;
+    }
+    const double t1 = (low - p) / d, t2 = (high - p) / d;
+    first = std::max(first, std::min(t1, t2));
+    last = std::min(last, std::max(t1, t2));
+  }
+  /// Where p + t d is nearer to the origin than the radius.
+  void within(Point p, Point d, double radius) {
+    const double a = std::norm(d), b = p.real() * d.real() + p.imag() * d.imag(), c = std::norm(p) - radius * radius;
+    if (a == 0.0 || b * b <= a * c) {
+      if (a != 0.0 || c >= 0.0) last = first;
+      return;
+    }
+    const double root = std::sqrt(b * b - a * c);
+    first = std::max(first, (-b - root) / a);
+    last = std::min(last, (-b + root) / a);
+  }
+};
+
 }  // namespace
 
 double cast(const Solids& solids, double x_m, double y_m, double z_m, double direction_rad, double range_m,
@@ -56,6 +83,29 @@ double cast(const Solids& solids, double x_m, double y_m, double z_m, double dir
     nearest = std::min(nearest, to_circle(from, along, {c.x_m, c.y_m}, c.radius_m));
   }
   return nearest;
+}
+
+bool blocked(const Solids& solids, const std::array<double, 3>& from, const std::array<double, 3>& to, std::size_t a,
+             std::size_t b) {
+  const Point begin{from[0], from[1]}, way{to[0] - from[0], to[1] - from[1]};
+  const double rise = to[2] - from[2];
+  for (const SolidBox& box : solids.boxes) {
+    const Point back = std::polar(1.0, -box.angle_rad);
+    const Point p = (begin - Point{box.x_m, box.y_m}) * back, d = way * back;
+    Stretch inside;
+    inside.between(from[2], rise, box.low_m, box.high_m);
+    inside.between(p.real(), d.real(), -0.5 * box.size_x_m, 0.5 * box.size_x_m);
+    inside.between(p.imag(), d.imag(), -0.5 * box.size_y_m, 0.5 * box.size_y_m);
+    if (!inside.none()) return true;
+  }
+  for (const SolidCylinder& c : solids.cylinders) {
+    if (c.owner != 0 && (c.owner == a || c.owner == b)) continue;
+    Stretch inside;
+    inside.between(from[2], rise, c.low_m, c.high_m);
+    inside.within(begin - Point{c.x_m, c.y_m}, way, c.radius_m);
+    if (!inside.none()) return true;
+  }
+  return false;
 }
 
 }  // namespace tandem::validate

@@ -1,5 +1,7 @@
-// A ray caster of its own for comparisons: solids on a floor, and level rays. Nothing of the simulator's is in it.
+// A ray caster of its own for comparisons: solids on a floor, level rays, and lines of sight in space. Nothing of the
+// simulator's is in it.
 #pragma once
+#include <array>
 #include <vector>
 
 namespace tandem::validate {
@@ -27,5 +29,10 @@ struct Solids {
 /// and `b` are passed through.
 double cast(const Solids& solids, double x_m, double y_m, double z_m, double direction_rad, double range_m,
             std::size_t a = 0, std::size_t b = 0);
+
+/// Whether a solid is on the line from one point to another. Bodies of the robots `a` and `b` are passed
+/// through.
+bool blocked(const Solids& solids, const std::array<double, 3>& from, const std::array<double, 3>& to,
+             std::size_t a = 0, std::size_t b = 0);
 
 }  // namespace tandem::validate

@@ -54,21 +54,33 @@ Series series_of(const hal::Element& e) {
   return s;
 }
 
-Push push_of(const hal::Element& e) {
-  Push push{text_of(e, "id"), {}};
-  const auto words = words_of(text_of(e, "velocity"));
-  for (std::size_t i = 0; i < 3; ++i) push.velocity_m_s[i] = std::stod(words.at(i));
-  return push;
+std::array<double, 3> vector_of(const std::string& text) {
+  std::array<double, 3> v{};
+  const auto words = words_of(text);
+  for (std::size_t i = 0; i < 3; ++i) v[i] = std::stod(words.at(i));
+  return v;
+}
+
+Flight flight_of(const hal::Element& e) {
+  Flight flight{text_of(e, "id"), {}, number_of(e, "thrust")};
+  if (const std::string to = text_of(e, "to"); !to.empty()) flight.to_m = vector_of(to);
+  if (const std::string velocity = text_of(e, "velocity"); !velocity.empty()) flight.velocity_m_s = vector_of(velocity);
+  flight.pitch_rad = number_of(e, "pitch").value_or(0.0);
+  flight.turn_rad_s = number_of(e, "turn").value_or(0.0);
+  flight.until_s = number_of(e, "until").value_or(1e9);
+  return flight;
 }
 
 void read_child(Scene& scene, const hal::Element& e) {
   if (e.name == "given") {
     for (const auto& a : e.attributes) scene.given.set(a.name, std::stod(a.value));
   } else if (e.name == "push") {
-    scene.pushes.push_back(push_of(e));
+    scene.pushes.push_back({text_of(e, "id"), vector_of(text_of(e, "velocity"))});
   } else if (e.name == "drive") {
     scene.drives.push_back({text_of(e, "id"), number_of(e, "left").value(), number_of(e, "right").value(),
                             number_of(e, "until").value_or(1e9)});
+  } else if (e.name == "fly") {
+    scene.flights.push_back(flight_of(e));
   } else if (e.name == "gather") {
     scene.gather_m_s = number_of(e, "speed").value();
   } else if (e.name == "bisect") {

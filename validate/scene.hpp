@@ -39,6 +39,18 @@ struct Drive {
   double until_s = 1e9;
 };
 
+/// What a robot that flies is told, from the start on: a place, a thrust along its axis (in parts of its weight,
+/// leaning forward by `pitch_rad`), or a velocity.
+struct Flight {
+  std::string id;
+  std::optional<std::array<double, 3>> to_m;
+  std::optional<double> thrust;
+  double pitch_rad = 0.0;
+  std::array<double, 3> velocity_m_s{};
+  double turn_rad_s = 0.0;
+  double until_s = 1e9;  ///< from when on it is to have no velocity
+};
+
 /// One varied setting, all others fixed; a run for each value.
 struct Series {
   std::string engine;
@@ -58,6 +70,7 @@ struct Scene {
   Given given;
   std::vector<Push> pushes;
   std::vector<Drive> drives;
+  std::vector<Flight> flights;
   double gather_m_s = 0.0;  ///< with more than 0: all robots drive to the middle, turning towards it
   struct Bisect {
     std::string path;  ///< that `--set` takes

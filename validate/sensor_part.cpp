@@ -9,7 +9,9 @@
 #include "hal/device/range_and_bearing.hpp"
 #include "hal/device/ring_sensors.hpp"
 #include "hal/device/wheels.hpp"
+#include "validate/compared.hpp"
 #include "validate/parts.hpp"
+#include "validate/sensor_tables.hpp"
 #include "validate/standing.hpp"
 
 namespace tandem::validate {
@@ -17,24 +19,6 @@ namespace {
 
 constexpr double kGrown_m = 1e-7;  // rays that a solid so much larger or smaller would change pass by an edge
 constexpr double kSame_m = 1e-6;   // largest difference of a distance
-
-/// Readings that were compared.
-struct Compared {
-  std::size_t n = 0, edges = 0, wrong = 0;
-  double largest = 0.0;
-  void add(double difference, double most) {
-    ++n;
-    largest = std::max(largest, difference);
-    if (!(difference <= most)) ++wrong;
-  }
-};
-
-/// The things of a world, and those that are a little smaller and larger.
-struct Things {
-  explicit Things(const core::Space& space)
-      : exact(solids_of(space)), smaller(solids_of(space, -kGrown_m)), larger(solids_of(space, kGrown_m)) {}
-  Solids exact, smaller, larger;
-};
 
 void compare_proximity(const core::Space& space, const Things& things, std::size_t i, Compared& all) {
   const core::RobotId robot = space.robot(i);
@@ -101,17 +85,6 @@ void compare_messages(const core::Space& space, const Things& things, const std:
   }
 }
 
-std::string told(const Compared& c) {
-  return fmt::format("{} compared, {} at edges left out, {} differ", c.n, c.edges, c.wrong);
-}
-
-Row row_of(const std::string& what, const Compared& c, double scale, const std::string& unit,
-           const std::string& contract) {
-  return {{what, told(c), fmt::format("{:.3g} {}", scale * c.largest, unit)},
-          contract,
-          verdict_of(c.wrong == 0 && c.n > 0)};
-}
-
 Table rays(Depth depth) {
   Compared footbots, epucks;
   Messages messages;
@@ -128,22 +101,25 @@ Table rays(Depth depth) {
         space.port<hal::RangeAndBearingSend>(space.robot(i))->say(static_cast<std::uint8_t>(i));
       world.step();
     }
-    const Things things(space);
+    const Things things(space, kGrown_m);
     for (std::size_t i = 0; i < space.robot_count(); ++i)
       compare_proximity(space, things, i,
                         space.port<hal::RangeAndBearing>(space.robot(i)) != nullptr ? footbots : epucks);
     for (const std::size_t i : boards) compare_messages(space, things, boards, i, messages);
   }
+  std::vector<Row> rows = {compared_row("proximity, foot-bot", footbots, 1e6, "µm", "at most 1 µm"),
+                           compared_row("proximity, e-puck", epucks, 1e6, "µm", "at most 1 µm")};
+  for (Row& row : scanner_rows(depth)) rows.push_back(std::move(row));
+  rows.push_back(compared_row("range and bearing: number of messages", messages.numbers, 1.0, "messages", "equal"));
+  rows.push_back(compared_row("range and bearing: place of the sender", messages.places, 1e6, "µm", "at most 3 µm"));
+  rows.push_back(floor_row(depth));
   return {"Rays",
           fmt::format(
               "{} worlds of 40 foot-bots and 80 e-pucks at rest among boxes, cylinders and walls; each reading against "
               "the ray caster. Rays that change when solids grow by 0.1 µm pass by an edge and are left out.",
               worlds),
           {"sensor", "readings", "largest difference"},
-          {row_of("proximity, foot-bot", footbots, 1e6, "µm", "at most 1 µm"),
-           row_of("proximity, e-puck", epucks, 1e6, "µm", "at most 1 µm"),
-           row_of("range and bearing: number of messages", messages.numbers, 1.0, "messages", "equal"),
-           row_of("range and bearing: place of the sender", messages.places, 1e6, "µm", "at most 3 µm")}};
+          std::move(rows)};
 }
 
 /// A reading and what it should be.
@@ -215,6 +191,7 @@ Part sensor_part(Depth depth) {
   Table single{"Single readings", "", {"reading", "reference", "read"}, {}};
   try {
     part.tables.push_back(rays(depth));
+    part.tables.push_back(camera_table(depth));
     single.rows.push_back(lamp_row());
     for (const char* engine : {"dynamics2d", "dynamics3d"}) add_felt(single, engine);
   } catch (const std::runtime_error& wrong) {

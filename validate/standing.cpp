@@ -27,15 +27,15 @@ Solids solids_of(const core::Space& space, double grown_m) {
   for (const core::Object& o : space.objects()) {
     if (o.kind == core::Object::Kind::Box)
       solids.boxes.push_back({o.x_m, o.y_m, std::atan2(o.sin_h, o.cos_h), 2.0 * (o.half_x_m + grown_m),
-                              2.0 * (o.half_y_m + grown_m), o.z_low_m, o.z_high_m});
+                              2.0 * (o.half_y_m + grown_m), o.z_low_m - grown_m, o.z_high_m + grown_m});
     else
-      solids.cylinders.push_back({o.x_m, o.y_m, o.radius_m + grown_m, o.z_low_m, o.z_high_m, 0});
+      solids.cylinders.push_back({o.x_m, o.y_m, o.radius_m + grown_m, o.z_low_m - grown_m, o.z_high_m + grown_m, 0});
   }
   for (std::size_t i = 0; i < space.robot_count(); ++i) {
     const core::Pose pose = space.pose(space.robot(i));
     const hal::Body& body = space.kind(space.robot(i)).body;
     solids.cylinders.push_back(
-        {pose.x_m, pose.y_m, body.radius_m + grown_m, pose.z_m, pose.z_m + body.height_m, i + 1});
+        {pose.x_m, pose.y_m, body.radius_m + grown_m, pose.z_m - grown_m, pose.z_m + body.height_m + grown_m, i + 1});
   }
   return solids;
 }

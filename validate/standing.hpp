@@ -16,8 +16,8 @@ std::unique_ptr<library::OpenWorld> open_experiment(
     const std::string& name, std::uint64_t seed, const std::vector<std::pair<std::string, std::string>>& replace = {},
     const std::vector<std::string>& parameters = {});
 
-/// All objects, and robots' bodies: that of the i-th robot has the owner i + 1. `grown_m` is added to every half width
-/// and radius.
+/// All objects, and robots' bodies: that of the i-th robot has the owner i + 1. `grown_m` is added on every
+/// side.
 Solids solids_of(const core::Space& space, double grown_m = 0.0);
 
 }  // namespace tandem::validate

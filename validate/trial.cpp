@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "core/sim/world.hpp"
+#include "hal/device/flight.hpp"
 #include "hal/device/wheels.hpp"
 #include "library/open_world.hpp"
 
@@ -73,8 +74,22 @@ class Trial {
       else
         wheels->set(0.0, 0.0);
     }
+    for (const Flight& flight : scene_.flights) fly(flight, time_s);
     if (scene_.gather_m_s <= 0.0) return;
     for (std::size_t i = 0; i < space_.robot_count(); ++i) gather(space_.robot(i));
+  }
+
+  void fly(const Flight& flight, double time_s) {
+    const core::RobotId robot = space_.find_robot(flight.id);
+    const auto& v = flight.velocity_m_s;
+    if (flight.to_m)
+      space_.port<hal::QuadrotorPosition>(robot)->set((*flight.to_m)[0], (*flight.to_m)[1], (*flight.to_m)[2], 0.0);
+    else if (flight.thrust)
+      space_.port<hal::QuadrotorAttitude>(robot)->set(0.0, flight.pitch_rad, 0.0, *flight.thrust);
+    else if (time_s < flight.until_s - 1e-9)
+      space_.port<hal::QuadrotorSpeed>(robot)->set(v[0], v[1], v[2], flight.turn_rad_s);
+    else
+      *space_.port<hal::QuadrotorSpeed>(robot) = {};
   }
 
   void gather(core::RobotId robot) {
@@ -103,6 +118,8 @@ class Trial {
   hal::Result<double> measured() const {
     const std::string& m = scene_.measure;
     if (m == "z") return last_.z_m;
+    if (m == "risen") return last_.z_m - begin_.z_m;
+    if (m == "ahead") return last_.x_m - begin_.x_m;
     if (m == "way" || m == "threshold") return between(last_, begin_);
     if (m == "way_since") return between(last_, since_);
     if (m == "turned") return last_.heading_rad - begin_.heading_rad;

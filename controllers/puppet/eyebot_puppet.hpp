@@ -25,7 +25,7 @@ class EyebotPuppet final : public hal::Controller {
     take_listed_sensors<hal::Altimeter, hal::Proximity, hal::Light, hal::DistanceScanner, hal::PanTiltEncoder,
                         hal::PerspectiveCamera, hal::RangeAndBearing, hal::Battery>(robot);
     take_listed_actuators<hal::RingLeds, hal::UpperRingLeds, hal::CameraLed, hal::PanTiltDrive, hal::ScannerDrive,
-                          hal::RangeAndBearingSend>(robot);
+                          hal::RangeAndBearingSend, hal::QuadrotorPosition, hal::QuadrotorAttitude>(robot);
   }
 
   void step() noexcept override {}

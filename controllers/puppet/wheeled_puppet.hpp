@@ -4,6 +4,7 @@
 #include "hal/controller.hpp"
 #include "hal/device/body_sensors.hpp"
 #include "hal/device/buttons.hpp"
+#include "hal/device/cameras.hpp"
 #include "hal/device/distance_scanner.hpp"
 #include "hal/device/gripper.hpp"
 #include "hal/device/leds.hpp"
@@ -23,7 +24,8 @@ class WheeledPuppet : public hal::Controller {
     robot.actuator<hal::WheelSpeeds>();
     take_listed_sensors<hal::Proximity, hal::Light, hal::Ground, hal::Microphones, hal::BaseGround, hal::MotorGround,
                         hal::DistanceScanner, hal::TurretEncoder, hal::Gripper, hal::RangeAndBearing, hal::Battery,
-                        hal::Accelerometer, hal::Gyroscope, hal::Buttons>(robot);
+                        hal::Accelerometer, hal::Gyroscope, hal::Buttons, hal::WheelEncoders,
+                        hal::OmnidirectionalCamera, hal::PerspectiveCamera>(robot);
     take_listed_actuators<hal::RingLeds, hal::TurretDrive, hal::GripperDrive, hal::ScannerDrive,
                           hal::RangeAndBearingSend, hal::Speaker>(robot);
   }

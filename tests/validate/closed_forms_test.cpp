@@ -40,6 +40,25 @@ TEST(ClosedForms, AreWhatSmallStepsLeadTo) {
   EXPECT_NEAR(form("start", {{"v", 0.3}, {"m", 1.6}, {"force", 1.5}, {"t", 2.0}}), starting.way, 1e-4);
 }
 
+TEST(ClosedForms, OfFlightAreWhatSmallStepsLeadTo) {
+  constexpr double kDrag = 0.4, kG = 9.81, kLag_s = 0.05;
+  Stepped gathering;
+  gathering.go(2.0, [&](double v) { return v < 1.0 ? 3.0 - kDrag * v : 0.0; });
+  EXPECT_NEAR(form("flight", {{"v", 1.0}, {"a", 3.0}, {"drag", kDrag}, {"t", 2.0}}), gathering.way, 1e-4);
+  Stepped rising;
+  rising.go(1.0, [&](double v) { return 0.2 * kG - kDrag * v; });
+  EXPECT_NEAR(form("thrust", {{"thrust", 1.2}, {"g", kG}, {"drag", kDrag}, {"lag", 0.0}, {"t", 1.0}}), rising.way,
+              1e-4);
+  Stepped late;
+  double thrust = 1.0;
+  late.go(1.0, [&](double) {
+    thrust += (1.2 - thrust) / kLag_s * 1e-5;
+    return (thrust - 1.0) * kG;
+  });
+  EXPECT_NEAR(form("thrust", {{"thrust", 1.2}, {"g", kG}, {"drag", 0.0}, {"lag", kLag_s}, {"t", 1.0}}), late.way, 1e-4);
+  EXPECT_NEAR(form("lean", {{"pitch", M_PI / 4}, {"g", kG}, {"drag", 0.0}, {"t", 2.0}}), 2.0 * kG, 1e-9);
+}
+
 TEST(ClosedForms, HoldASlopeUpToTheAngleOfFriction) {
   const double angle = std::atan(0.5);
   EXPECT_EQ(form("slope", {{"angle", angle - 1e-6}, {"mu", 0.5}, {"g", 9.81}, {"t", 1.0}}), 0.0);
