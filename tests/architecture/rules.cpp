@@ -58,8 +58,7 @@ std::string room_of(const std::string& path, const std::string& folder) {
 void defined_twice(const std::string& line, const std::string& path, std::string& space,
                    std::map<std::string, std::string>& types, std::vector<std::string>& broken) {
   static const std::regex kNamespace(R"(^namespace ([A-Za-z0-9_:]+) \{)");
-  static const std::regex kType(
-      R"(^(?:class|struct|union|enum class|enum) (?:alignas\([^)]*\) )?([A-Za-z0-9_]+)[^;<]*\{)");
+  static const std::regex kType(R"(^(?:class|struct|union|enum class|enum) (\w+)(?: final)?(?: : [^;]*)?(?: \{.*)?$)");
   std::smatch match;
   if (std::regex_search(line, match, kNamespace)) space = match[1];
   if (!std::regex_search(line, match, kType)) return;
