@@ -42,7 +42,7 @@ std::string report_digest(const std::string& text) {
   hal::Json json = report.value();
   for (const char* of_the_machine : {"threads", "wall_s", "cpu_s", "init_s", "ns_per_robot_step", "realtime_factor",
                                      "peak_rss_mb", "deadline_misses", "file", "controllers", "hooks", "plugins",
-                                     "others", "inputs", "program", "settings", "peers"})
+                                     "other_files", "inputs", "program", "settings", "peers"})
     json.erase(of_the_machine);
   Digest digest;
   digest.add(hal::to_text(json));
