@@ -89,7 +89,8 @@ void SwappedLinks::compare(const MotionSpan& span) noexcept {
   for (std::size_t i = 0; i < robots_.size(); ++i) {
     Robot& robot = robots_[i];
     const bool enough = robot.rolled_m >= (robot.points ? kFirstPoints_m : kFirst_m);
-    const std::size_t as = robot.differs && enough && robot.found_ns < span.from_ns ? who_moves_as(i, span) : kNobody;
+    std::size_t as = robot.differs && enough && robot.found_ns < span.from_ns ? who_moves_as(i, span) : kNobody;
+    if (as != kNobody && robot.rolled_m < kAlone_m && !somebody_moves_as(i, span)) as = kNobody;
     if (as != kNobody && as == robot.moves_as) {
       found_.push_back({i, as});
       robot.found_ns = span.to_ns;
@@ -116,10 +117,22 @@ std::size_t SwappedLinks::who_moves_as(std::size_t index, const MotionSpan& span
     }
   }
   if (best == kNobody) return kNobody;
-  const Robot& other = robots_[best];
-  const bool alike = best_m < kAlike_m + kAlikeSigmas * other.sd_m + kAlikePart * robot.rolled_m &&
-                     best_m < kClearly * std::min(robot.own_m, other.own_m);
-  return alike && second_m > kOnly * best_m ? best : kNobody;
+  return alike(robot, robots_[best], best_m) && second_m > kOnly * best_m ? best : kNobody;
+}
+
+bool SwappedLinks::alike(const Robot& rolls, const Robot& seen, double apart_m) noexcept {
+  return apart_m < kAlike_m + kAlikeSigmas * seen.sd_m + kAlikePart * rolls.rolled_m &&
+         apart_m < kClearly * std::min(rolls.own_m, seen.own_m);
+}
+
+/// Whoever is swapped has left its own tag to another one.
+bool SwappedLinks::somebody_moves_as(std::size_t index, const MotionSpan& span) const noexcept {
+  const Robot& robot = robots_[index];
+  return std::ranges::any_of(robots_, [&](const Robot& other) {
+    if (&other == &robot || !other.differs) return false;
+    const auto apart = best_delay(other.wheels.trail(), robot.seen, span, kEarly_ns, kLate_ns, kStep_ns);
+    return apart && alike(other, robot, apart->apart_m);
+  });
 }
 
 }  // namespace tandem::mixed_reality

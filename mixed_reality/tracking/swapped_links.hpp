@@ -14,13 +14,16 @@ namespace tandem::mixed_reality {
 /// Compares the motion of each robot's wheels with what trackers see of it; where both differ, with what they see of
 /// the other robots for which both differ. Judged over the last kLast_m of the robot whose wheels rolled farthest, as
 /// soon as its own did for kFirst_m (kFirstPoints_m where trackers tell no headings); believed when two judgements are
-/// the same. Any permutation is found pair by pair, a robot that stands in it included. Slipping wheels, robots that
-/// are carried, and trackers that err are no swap: nobody moves as they say.
+/// the same, and another robot's wheels roll as it is seen to move itself: short ways look alike by chance, and a held
+/// robot's way is short. Over kAlone_m and more the first alone is believed, for the other one may be held. Any
+/// permutation is found pair by pair, a robot that stands in it included. Slipping wheels, robots that are carried, and
+/// trackers that err are no swap: nobody moves as they say.
 ///
 /// Robots that move alike cannot be told apart; they are found when they do not.
 class SwappedLinks {
  public:
-  static constexpr double kFirst_m = 0.05, kFirstPoints_m = 0.15, kLast_m = 0.27, kEvery_m = 0.015;
+  static constexpr double kFirst_m = 0.05, kFirstPoints_m = 0.15, kAlone_m = 0.2, kLast_m = 0.27;
+  static constexpr double kEvery_m = 0.015;
   /// By which a tracker may be later than the wheels, or (negative) earlier, beside what their stamps say.
   static constexpr hal::TimeNs kLate_ns = 150 * hal::kNsPerMs, kEarly_ns = -100 * hal::kNsPerMs;
 
@@ -58,6 +61,8 @@ class SwappedLinks {
   double farthest_m(const MotionSpan& span) noexcept;
   void compare(const MotionSpan& span) noexcept;
   std::size_t who_moves_as(std::size_t robot, const MotionSpan& span) const noexcept;
+  bool somebody_moves_as(std::size_t robot, const MotionSpan& span) const noexcept;
+  static bool alike(const Robot& rolls, const Robot& seen, double apart_m) noexcept;
 
   std::vector<Robot> robots_;
   std::vector<Found> found_;

@@ -1,7 +1,9 @@
 #include "mixed_reality/tracking/swapped_links.hpp"
 
 #include <cmath>
+#include <cstdlib>
 #include <gtest/gtest.h>
+#include <numeric>
 #include <random>
 #include <set>
 
@@ -148,8 +150,29 @@ TEST(SwappedLinks, RobotsThatTurnOnTheSpotAreFoundByTheirHeadings) {
   EXPECT_LE(robots.farthest_m_, 0.3);
 }
 
+TEST(SwappedLinks, ThePairIsFoundAlthoughOneOfItIsHeld) {
+  Robots robots(3);
+  robots.behind_ = {1, 0, 2};
+  robots.all_[0].held = true;
+  (void)robots.drive({{0, 0}, {0, 0}, {0, 0}}, 10);
+  const auto found = robots.drive({{0.10, 0.12}, {0.08, 0.05}, {0.0, 0.0}}, 200);
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(found[0].robot, 0U);
+  EXPECT_EQ(found[0].moves_as, 1U);
+  EXPECT_LE(robots.farthest_m_, 0.3 + 1e-9);
+}
+
+/// TANDEM_SWAP_WORLDS=400 for the long run. In 116 and 274 a held robot's few centimetres look like another one's.
+std::vector<std::uint64_t> worlds() {
+  const char* const wanted = std::getenv("TANDEM_SWAP_WORLDS");
+  std::vector<std::uint64_t> seeds(wanted != nullptr ? std::strtoull(wanted, nullptr, 10) : 40);
+  std::iota(seeds.begin(), seeds.end(), 1);
+  if (wanted == nullptr) seeds.insert(seeds.end(), {116, 274});
+  return seeds;
+}
+
 TEST(SwappedLinks, NobodyIsAccusedWhateverSlipsIsHeldOrIsSeenBadly) {
-  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+  for (const std::uint64_t seed : worlds()) {
     Robots robots(5, seed);
     std::uniform_real_distribution<double> speed(-0.2, 0.3), share(0.0, 1.0);
     robots.late_ns_ = static_cast<hal::TimeNs>(share(robots.chance_) * 200.0) * kMs;
