@@ -11,12 +11,11 @@ struct Word {
   std::optional<std::string> RobotIdentity::*value;
 };
 // In the order in which people are told of a difference, and in which they are encoded.
-constexpr std::array<Word, 6> kWords = {{{"device", &RobotIdentity::device},
+constexpr std::array<Word, 5> kWords = {{{"device", &RobotIdentity::device},
                                          {"name", &RobotIdentity::name},
                                          {"address", &RobotIdentity::address},
                                          {"hardware", &RobotIdentity::hardware},
-                                         {"firmware", &RobotIdentity::firmware},
-                                         {"tag", &RobotIdentity::tag}}};
+                                         {"firmware", &RobotIdentity::firmware}}};
 
 std::string told(const std::optional<std::string>& word) {
   return word ? "'" + *word + "'" : "none";
@@ -98,9 +97,9 @@ std::string to_text(const RobotIdentity& identity) {
   return text;
 }
 
-// "1;" session ';' link ';' then of each word '=' and its text, or nothing, and ';'.
+// "2;" session ';' link ';' then of each word '=' and its text, or nothing, and ';'.
 std::string encode(const RobotIdentity& identity) {
-  std::string out = "1;" + std::to_string(identity.session) + ";";
+  std::string out = "2;" + std::to_string(identity.session) + ";";
   put(out, identity.link);
   out += ';';
   for (const Word& word : kWords) {
@@ -116,7 +115,7 @@ std::string encode(const RobotIdentity& identity) {
 std::optional<RobotIdentity> decode_identity(std::string_view text) {
   RobotIdentity identity;
   std::string_view version, session, link;
-  if (!take(text, version) || version != "1" || !take(text, session) || !take(text, link)) return std::nullopt;
+  if (!take(text, version) || version != "2" || !take(text, session) || !take(text, link)) return std::nullopt;
   const auto [end, error] = std::from_chars(session.data(), session.data() + session.size(), identity.session);
   if (error != std::errc{} || end != session.data() + session.size()) return std::nullopt;
   const auto written = unescaped(link);

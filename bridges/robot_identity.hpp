@@ -15,7 +15,6 @@ struct RobotIdentity {
   std::optional<std::string> hardware = {};  ///< its version, or a serial number
   std::optional<std::string> address = {};   ///< on a bus or radio that several share: "node 34"
   std::optional<std::string> name = {};      ///< as it calls itself
-  std::optional<std::string> tag = {};       ///< by which trackers know it
   std::uint64_t session = 0;                 ///< how often the device was opened; 0: never
 
   friend bool operator==(const RobotIdentity&, const RobotIdentity&) = default;

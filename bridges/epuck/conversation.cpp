@@ -69,12 +69,12 @@ bool Conversation::encoders_plausible(const std::array<std::int16_t, 2>& counter
 
 void Conversation::take_encoders(const std::array<std::int16_t, 2>& counters, const Measured& when) noexcept {
   // Over the longest time that it may have been: where stamps are in doubt a wheel is not faster than it was.
-  const double since_s =
-      hal::to_seconds(when.latest_ns - samples_.taken_ns[static_cast<std::size_t>(Quantity::Encoders)]);
+  const TimeNs since = when.latest_ns - samples_.taken_ns[static_cast<std::size_t>(Quantity::Encoders)];
+  const double since_s = hal::to_seconds(since);
   const bool continues = counters_known_ && !restarted_ && encoders_plausible(counters, when.latest_ns);
   if (counters_known_ && !continues) ++statistics_.encoder_rebased;
-  // A greeting may be lost: counters that begin anew at 0 tell the restart as well.
-  const bool anew = counters == std::array<std::int16_t, 2>{};
+  // A greeting may be lost: counters tell the restart as well, or that another robot answers.
+  const bool anew = counters == std::array<std::int16_t, 2>{} || since <= kCountersAmbiguous;
   if (counters_known_ && !continues && !restarted_ && anew) ++statistics_.restarts;
   const std::int32_t left = continues ? encoder_difference(counters[0], samples_.raw.encoders[0]) : 0;
   const std::int32_t right = continues ? encoder_difference(counters[1], samples_.raw.encoders[1]) : 0;

@@ -84,7 +84,6 @@ void Proof::fill_in_words() {
   keep(armed_->hardware, before.hardware);
   keep(armed_->address, before.address);
   keep(armed_->name, before.name);
-  keep(armed_->tag, before.tag);
 }
 
 void Proof::arm() {

@@ -50,7 +50,7 @@ TEST(RobotIdentity, AnEmptyWordIsNoAbsentOne) {
 TEST(RobotIdentity, TravelsAsOneLineOfPrintableText) {
   RobotIdentity all = epuck();
   all.name = std::string("näme\n;=%\0 x", 12);
-  all.tag = "";
+  all.hardware = "";
   const std::string line = encode(all);
   for (const char c : line) EXPECT_TRUE(c > ' ' && c <= '~') << line;
   const auto back = decode_identity(line);
@@ -62,8 +62,7 @@ TEST(RobotIdentity, TravelsAsOneLineOfPrintableText) {
 TEST(RobotIdentity, AnythingElseIsNoIdentity) {
   const std::string line = encode(epuck());
   for (std::size_t n = 0; n < line.size(); ++n) EXPECT_FALSE(decode_identity(line.substr(0, n))) << n;
-  for (const std::string_view text :
-       {"", "2;0;;;;;;;;", "1;x;;;;;;;;", "1;0;;a;;;;;;", "1;0;%g0;;;;;;;", "1;0;;;;;;;;;"})
+  for (const std::string_view text : {"", "1;0;;;;;;;", "2;x;;;;;;;", "2;0;;a;;;;;", "2;0;%g0;;;;;;", "2;0;;;;;;;;"})
     EXPECT_FALSE(decode_identity(text)) << text;
 }
 

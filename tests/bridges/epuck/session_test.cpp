@@ -732,7 +732,23 @@ TEST(EpuckSession, TakesTheCountersUpAnewAfterALongLoss) {
   EXPECT_EQ(rig.session.state(), SessionState::Active);
   EXPECT_EQ(rig.session.samples().left_steps, 0);
   EXPECT_EQ(rig.session.statistics().encoder_rebased, 1U);
+  EXPECT_EQ(rig.session.statistics().restarts, 0U) << "it may have rolled so far, or on and on";
   EXPECT_EQ(rig.session.statistics().links_lost, 1U);
+}
+
+TEST(EpuckSession, CountersThatNoWheelCanHaveReachedTellThatItRestartedOrIsAnotherRobot) {
+  for (const auto counter : std::initializer_list<std::int16_t>{0, 6000, -9000}) {
+    Rig rig;
+    rig.robot.encoders = {20000, 20000};
+    rig.connect();
+    rig.request(driving(500, 500));
+    rig.session.link_down(rig.now);
+    rig.run(1000 * kMs);
+    rig.robot.encoders = {counter, counter};
+    rig.connect();
+    EXPECT_EQ(rig.session.statistics().restarts, 1U) << counter;
+    EXPECT_EQ(rig.session.statistics().encoder_rebased, 1U);
+  }
 }
 
 TEST(EpuckSession, KeepsWhatWasRolledDuringAShortLoss) {

@@ -77,6 +77,15 @@ TEST_F(ProofTest, AnotherWordIsAnotherRobot) {
   EXPECT_THAT(proof_.detail(), HasSubstr("firmware: 'asercom 1' was armed, 'asercom 2' answers"));
 }
 
+TEST_F(ProofTest, OneOfTheSameNameAndFirmwareAtAnotherPortIsAnotherRobot) {
+  bridge_.who.name = "marvin";
+  start();
+  away(2 * kTick);
+  become([](bridges::RobotIdentity& who) { who.device = "/dev/rfcomm1 216:1"; });
+  EXPECT_EQ(look(), Doubt::Another);
+  EXPECT_THAT(proof_.detail(), HasSubstr("device: '/dev/rfcomm0 216:0' was armed, '/dev/rfcomm1 216:1' answers"));
+}
+
 TEST_F(ProofTest, OneThatTellsLessAfterAnOutageIsAnotherRobot) {
   start();
   away(2 * kTick);

@@ -16,13 +16,16 @@ const std::atomic<bool> kGoOn{false};
 /// A camera without noise, which sees each body under the name of its tag whenever it is asked.
 class Camera final : public bridges::Tracker {
  public:
-  Camera(const std::map<std::string, FakeBody>& bodies, FakeTime& time) : bodies_(bodies), time_(time) {}
+  /// `tags`: of bodies that wear another one than their own.
+  Camera(const std::map<std::string, FakeBody>& bodies, const std::map<std::string, std::string>& tags, FakeTime& time)
+      : bodies_(bodies), tags_(tags), time_(time) {}
   hal::Status start() override { return {}; }
   std::size_t take(std::span<bridges::Sighting> into) noexcept override {
     std::size_t count = 0;
-    for (const auto& [tag, body] : bodies_) {
+    for (const auto& [name, body] : bodies_) {
+      const auto other = tags_.find(name);
       bridges::Sighting seen;
-      (void)seen.set_name(tag);
+      (void)seen.set_name(other == tags_.end() ? name : other->second);
       seen.received_ns = time_.now_ns();
       seen.p_m = {body.pose.x_m, body.pose.y_m, 0.0};
       seen.heading_rad = body.pose.heading_rad();
@@ -34,6 +37,7 @@ class Camera final : public bridges::Tracker {
 
  private:
   const std::map<std::string, FakeBody>& bodies_;
+  const std::map<std::string, std::string>& tags_;
   FakeTime& time_;
 };
 
@@ -52,7 +56,7 @@ class SeenRobots : public testing::Test {
     ASSERT_TRUE(made_.world) << made_.all_problems();
     options_.log = hal::Log([this](hal::Severity, std::string_view text) { log_ += std::string(text) + "\n"; });
     options_.make_tracker = [this](const core::TrackerItem&) -> bridges::MadeTracker {
-      return std::unique_ptr<bridges::Tracker>(std::make_unique<Camera>(bodies_, time_));
+      return std::unique_ptr<bridges::Tracker>(std::make_unique<Camera>(bodies_, tags_, time_));
     };
     auto session = MixedSession::make(
         std::move(made_.world),
@@ -78,6 +82,7 @@ class SeenRobots : public testing::Test {
 
   FakeTime time_{7'000'000'000};
   std::map<std::string, FakeBody> bodies_;
+  std::map<std::string, std::string> tags_;  ///< of bodies that wear another one than their own
   MixedOptions options_;
   std::string rearm_;  ///< of all; empty: the default
   std::string log_;
@@ -117,6 +122,31 @@ TEST_F(SeenRobots, WhoseLinksAreSwappedAreStoppedAndNamedBeforeEitherHasDrivenTh
   EXPECT_EQ(report_of("ep1").state, "links seem to be swapped; waits to be re-armed");
   EXPECT_EQ(report_of("ep2").state, "driving") << "it has nothing to do with that";
   EXPECT_GT(bodies_["ep2"].left_m, 1.0);
+}
+
+TEST_F(SeenRobots, WhoTellOneNameAndAreExchangedAtTheirPortsForASecondAreFoundByTheirMotion) {
+  core::Scene scene = drive(0.1, 0.1);
+  scene.robot("ep0", -2.0, 0.0).robot("ep1", 0.0, 1.0);
+  watch(scene);
+  open(scene);
+  FakeBody &a = bodies_["ep0"], &b = bodies_["ep1"];
+  double back_at_m = 0.0;
+  run(250, [&](core::World& world) {
+    // ep0 alone is driven when both are back.
+    world.space().set_halted(world.space().find_robot("ep1"), world.tick() >= 60, core::HaltOwner::Operator);
+    if (world.tick() == 60) a.link_up = b.link_up = false;
+    if (world.tick() == 70) {  // each with its tag; their wheels' counters go on, as if they told nothing
+      std::swap(a.pose, b.pose);
+      a.wheels = b.wheels = {};
+      tags_ = {{"ep0", "ep1"}, {"ep1", "ep0"}};
+      a.link_up = b.link_up = true;
+      back_at_m = a.left_m;
+    }
+  });
+  EXPECT_GT(a.left_m, back_at_m) << "nothing else told them apart";
+  EXPECT_LE(a.left_m, back_at_m + 0.3);
+  EXPECT_TRUE(a.stands());
+  EXPECT_NE(report_of("ep0").state, "driving") << log_;
 }
 
 TEST_F(SeenRobots, WhoSlipAgainAndAgainDriveOnByTheirPolicy) {
