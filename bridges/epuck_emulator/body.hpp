@@ -43,6 +43,8 @@ struct BodySenses {
 struct BodyCommand {
   double left_m_s = 0.0;  ///< rim speeds that the stepper motors really have, after clamping and rounding
   double right_m_s = 0.0;
+  double told_left_m_s = 0.0;  ///< before rounding, for a body that has motors of its own
+  double told_right_m_s = 0.0;
   std::uint8_t ring = 0;  ///< bit i: ring LED i is lit
   bool body_led = false;
   bool front_led = false;

@@ -259,6 +259,8 @@ void Firmware::actuate(hal::TimeNs at) {
   BodyCommand command = memory_.lights;
   command.left_m_s = left_motor_.real_steps_s() * step_m();
   command.right_m_s = right_motor_.real_steps_s() * step_m();
+  command.told_left_m_s = left_motor_.told_steps_s() * step_m();
+  command.told_right_m_s = right_motor_.told_steps_s() * step_m();
   body_.actuate(at, command);
 }
 

@@ -35,7 +35,7 @@ BodySenses PortBody::sense(hal::TimeNs /*now*/) {
 
 void PortBody::actuate(hal::TimeNs /*now*/, const BodyCommand& command) {
   ports_.with([&](PortBank& bank) {
-    bank.port<hal::WheelSpeeds>().set(command.left_m_s, command.right_m_s);
+    bank.port<hal::WheelSpeeds>().set(command.told_left_m_s, command.told_right_m_s);
     auto& ring = bank.port<hal::RingLeds>();
     for (std::size_t i = 0; i < 8; ++i) ring.set(i, ((command.ring >> i) & 1) != 0 ? hal::kRed : hal::kBlack);
     bank.port<hal::BodyLed>().on = command.body_led;

@@ -7,6 +7,7 @@ namespace tandem::bridges::epuck_emulator {
 void Stepper::set_speed(std::int32_t steps_s, hal::TimeNs now) {
   advance(now);
   const std::int32_t clamped = std::clamp(steps_s, -limit_steps_s_, limit_steps_s_);
+  told_steps_s_ = clamped;
   direction_ = clamped > 0 ? 1 : clamped < 0 ? -1 : 0;
   if (direction_ == 0) {
     period_ns_ = 0;

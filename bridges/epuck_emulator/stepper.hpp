@@ -22,11 +22,13 @@ class Stepper {
   void set_count(std::int32_t count) noexcept { count_ = count; }
   /// The speed that the motor has: signed steps a second, after clamping and rounding of the period.
   double real_steps_s() const noexcept;
+  /// The speed that it was told, after clamping.
+  std::int32_t told_steps_s() const noexcept { return told_steps_s_; }
 
  private:
   std::int32_t limit_steps_s_;
   hal::TimeNs tick_ns_;
-  std::int32_t direction_ = 0;
+  std::int32_t told_steps_s_ = 0, direction_ = 0;
   hal::TimeNs period_ns_ = 0;      // of one step; 0: at rest
   hal::TimeNs since_step_ns_ = 0;  // part of a period that has passed
   hal::TimeNs at_ns_ = 0;

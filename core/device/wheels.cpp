@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <optional>
 
 #include "core/device/fitted_drive.hpp"
@@ -11,6 +10,7 @@
 #include "core/random/random.hpp"
 #include "core/space/mechanisms.hpp"
 #include "hal/angle.hpp"
+#include "hal/device/steppers.hpp"
 
 namespace tandem::core {
 namespace {
@@ -38,38 +38,88 @@ struct WheelErrors {
   }
 };
 
+/// Speeds of wheels that stepper motors turn. The last result is kept: most robots of a block are told the same.
+class SteppedSpeeds {
+ public:
+  SteppedSpeeds(const hal::SteppersPart& steppers, double wheel_radius_m)
+      : steppers_(&steppers), step_m_(steppers.step_m(wheel_radius_m)) {}
+
+  double turned_m_s(double told_m_s) noexcept {
+    const double told = std::fabs(told_m_s);
+    if (told == told_m_s_) return std::copysign(turned_m_s_, told_m_s);
+    if (told == 0.0) return 0.0;
+    told_m_s_ = told;
+    turned_m_s_ = look_up(*steppers_, step_m_, told);
+    return std::copysign(turned_m_s_, told_m_s);
+  }
+
+ private:
+  /// Out of line, and by value: the rest stays in registers.
+  [[gnu::noinline]] static double look_up(const hal::SteppersPart& steppers, double step_m, double told_m_s) noexcept {
+    return steppers.turned_steps_s(told_m_s / step_m) * step_m;
+  }
+
+  const hal::SteppersPart* steppers_;  // of the kind, which lives as long as the world
+  double step_m_;
+  double told_m_s_ = 0.0, turned_m_s_ = 0.0;
+};
+
 class WheelActuator final : public Actuator {
  public:
-  WheelActuator(const WheelErrors<0>& errors, std::optional<FittedDrive> fitted)
-      : errors_(errors), fitted_(std::move(fitted)) {
+  WheelActuator(const WheelErrors<0>& errors, std::optional<SteppedSpeeds> stepped, std::optional<FittedDrive> fitted)
+      : errors_(errors), stepped_(stepped), fitted_(std::move(fitted)) {
     exact_ = errors.bias_left_m_s == 0.0 && errors.bias_right_m_s == 0.0 && errors.factor_left == 1.0 &&
              errors.factor_right == 1.0 && errors.noise_std_dev == 0.0;
   }
 
   void act(const DeviceContext& context, SpaceStores& stores, const void* ports) noexcept override {
-    const auto* wheels = static_cast<const hal::WheelSpeeds*>(ports);
-    Bodies& b = stores.bodies;
-    for (std::size_t i = 0; i < context.block.used; ++i) {
-      const std::size_t row = context.block.first_row + i;
-      const bool drives = (b.flags[row] & (kAlive | kExternal)) == kAlive && context.block.halted[i] == 0;
-      double left = drives ? wheels[i].left_m_s : 0.0;
-      double right = drives ? wheels[i].right_m_s : 0.0;
-      if (!exact_ && drives) distort(context, b.entity[row], left, right);
-      if (fitted_) {
-        // A twin's commands are remembered, too: it may go on as a simulated robot.
-        const bool external = (b.flags[row] & kExternal) != 0;
-        fitted_->tell(context, i, external ? wheels[i].left_m_s : left, external ? wheels[i].right_m_s : right);
-        if (drives)
-          fitted_->drive(context, i, left, right);
-        else
-          fitted_->stand(i);
-      }
-      b.left_m_s[row] = left;
-      b.right_m_s[row] = right;
-    }
+    const auto* const wheels = static_cast<const hal::WheelSpeeds*>(ports);
+    if (!exact_ || fitted_)
+      roll(context, stores, wheels, [&](std::size_t i, bool drives, hal::WheelSpeeds& speeds) {
+        if (stepped_) speeds.set(stepped_->turned_m_s(speeds.left_m_s), stepped_->turned_m_s(speeds.right_m_s));
+        err(context, i, drives, wheels[i], speeds);
+      });
+    else if (stepped_)
+      roll(context, stores, wheels, [stepped = *stepped_](std::size_t, bool, hal::WheelSpeeds& speeds) mutable {
+        speeds.set(stepped.turned_m_s(speeds.left_m_s), stepped.turned_m_s(speeds.right_m_s));
+      });
+    else
+      roll(context, stores, wheels, [](std::size_t, bool, hal::WheelSpeeds&) {});
   }
 
  private:
+  /// Every robot's wheels, as `change(i, drives, speeds)` makes them of what it was told.
+  template <class Change>
+  static void roll(const DeviceContext& context, SpaceStores& stores, const hal::WheelSpeeds* wheels, Change change) {
+    const std::size_t first = context.block.first_row, used = context.block.used;
+    const std::uint8_t* const halted = context.block.halted.data();
+    const std::uint8_t* const flags = stores.bodies.flags.data() + first;
+    double* const left_m_s = stores.bodies.left_m_s.data() + first;
+    double* const right_m_s = stores.bodies.right_m_s.data() + first;
+    for (std::size_t i = 0; i < used; ++i) {
+      const bool drives = (flags[i] & (kAlive | kExternal)) == kAlive && halted[i] == 0;
+      hal::WheelSpeeds speeds;
+      if (drives) speeds = wheels[i];
+      change(i, drives, speeds);
+      left_m_s[i] = speeds.left_m_s;
+      right_m_s[i] = speeds.right_m_s;
+    }
+  }
+
+  void err(const DeviceContext& context, std::size_t i, bool drives, const hal::WheelSpeeds& told,
+           hal::WheelSpeeds& speeds) noexcept {
+    const Bodies& b = context.stores.bodies;
+    const std::size_t row = context.block.first_row + i;
+    if (!exact_ && drives) distort(context, b.entity[row], speeds.left_m_s, speeds.right_m_s);
+    if (!fitted_) return;
+    // A twin's commands are remembered, too: it may go on as a simulated robot.
+    const hal::WheelSpeeds& heard = (b.flags[row] & kExternal) != 0 ? told : speeds;
+    fitted_->tell(context, i, heard.left_m_s, heard.right_m_s);
+    if (drives)
+      fitted_->drive(context, i, speeds.left_m_s, speeds.right_m_s);
+    else
+      fitted_->stand(i);
+  }
   void distort(const DeviceContext& context, std::uint32_t entity, double& left, double& right) const noexcept {
     const auto bits = draw(context.seed, entity, Stream::WheelNoise, context.tick);
     const auto noise = to_normal(bits[0], bits[1]);
@@ -80,7 +130,8 @@ class WheelActuator final : public Actuator {
   }
 
   WheelErrors<0> errors_;
-  std::optional<FittedDrive> fitted_;  // nothing: they are as their kind says
+  std::optional<SteppedSpeeds> stepped_;  // nothing: they turn as told
+  std::optional<FittedDrive> fitted_;     // nothing: they are as their kind says
   bool exact_ = true;
 };
 
@@ -150,53 +201,6 @@ BlockFactory<Actuator> make_slanted(const Element& element, Problems& problems, 
   return {make, {keeps<HiddenRoll>()}};
 }
 
-/// Stepper motors whose steps last a whole number of a timer's periods, cut off: trunc(10000 / v) of 0.1 ms at v steps
-/// a second, so that 900 are 909 and 600 are 625 [GCtronic's library, advance_one_timer/e_motors.c]. The encoders count
-/// what was stepped.
-struct Steppers {
-  std::int64_t steps_per_turn = 1000;
-  double timer_Hz = 10000.0;
-  void describe(hal::ParamVisitor& v) {
-    v.integer("steps_per_turn", steps_per_turn, {1, 1e6}, "Steps in which a wheel turns once.");
-    v.number("timer", timer_Hz, hal::unit::hz, {1.0, 1e9}, "A step lasts a whole number of its periods.");
-  }
-};
-
-class SteppedActuator final : public Actuator {
- public:
-  SteppedActuator(const Steppers& steppers, double wheel_radius_m)
-      : step_m_(2.0 * std::numbers::pi * wheel_radius_m / static_cast<double>(steppers.steps_per_turn)),
-        timer_Hz_(steppers.timer_Hz) {}
-
-  void act(const DeviceContext& context, SpaceStores& stores, const void* ports) noexcept override {
-    const auto* wheels = static_cast<const hal::WheelSpeeds*>(ports);
-    for (std::size_t i = 0; i < context.block.used; ++i) {
-      const std::size_t row = context.block.first_row + i;
-      const hal::WheelSpeeds told = obeys(context, i) ? wheels[i] : hal::WheelSpeeds{};
-      stores.bodies.left_m_s[row] = stepped(told.left_m_s);
-      stores.bodies.right_m_s[row] = stepped(told.right_m_s);
-    }
-  }
-
- private:
-  double stepped(double told_m_s) const noexcept {
-    const double steps_s = std::round(told_m_s / step_m_);  // commands are whole numbers
-    if (steps_s == 0.0) return 0.0;
-    const double periods = std::max(1.0, std::trunc(timer_Hz_ / std::fabs(steps_s)));
-    return std::copysign(timer_Hz_ / periods * step_m_, steps_s);
-  }
-
-  double step_m_;
-  double timer_Hz_;
-};
-
-BlockFactory<Actuator> make_stepped(const Element& element, Problems& problems, const DeviceSetup& setup) {
-  const auto options = read_options<Steppers>(element, problems);
-  return [options, radius_m = setup.kind.drive()->wheel_radius_m](const BlockColumns&) {
-    return std::make_unique<SteppedActuator>(options, radius_m);
-  };
-}
-
 template <class Options>
 BlockFactory<Actuator> make_wheels(const Element& element, Problems& problems, const DeviceSetup& setup) {
   const auto options = read_options<Options>(element, problems);
@@ -205,13 +209,23 @@ BlockFactory<Actuator> make_wheels(const Element& element, Problems& problems, c
     errors = {options.bias_left_m_s, options.bias_right_m_s, options.factor_left, options.factor_right,
               options.noise_std_dev};
   }
+  if constexpr (std::is_same_v<Options, IdealWheels>)
+    return [](const BlockColumns&) {
+      return std::make_unique<WheelActuator>(WheelErrors<0>{}, std::nullopt, std::nullopt);
+    };
   const auto* const part = setup.kind.part<hal::FittedWheels>();
-  if (part == nullptr || std::is_same_v<Options, IdealWheels>)
-    return [errors](const BlockColumns&) { return std::make_unique<WheelActuator>(errors, std::nullopt); };
+  if (part == nullptr) {
+    std::optional<SteppedSpeeds> stepped;
+    if (const auto* const steppers = setup.kind.part<hal::SteppersPart>(); steppers != nullptr)
+      stepped.emplace(*steppers, setup.kind.drive()->wheel_radius_m);
+    return [errors, stepped](const BlockColumns&) {
+      return std::make_unique<WheelActuator>(errors, stepped, std::nullopt);
+    };
+  }
   if (const std::string flaw = FittedDrive::flaw(*part, setup.tick_s); !flaw.empty())
     problems.push_back(problem_at(element, flaw));
   const auto make = [errors, part](const BlockColumns& columns) {
-    return std::make_unique<WheelActuator>(errors, FittedDrive(*part, columns));
+    return std::make_unique<WheelActuator>(errors, std::nullopt, FittedDrive(*part, columns));
   };
   return {make, FittedDrive::columns()};
 }
@@ -422,21 +436,20 @@ DeviceType odometry_type(std::string_view implementation, std::string_view summa
 }  // namespace
 
 std::vector<DeviceType> wheel_types() {
-  return {wheels_type<WheelErrors<0>>("default", "The commanded speeds, with bias, factor and noise where asked for."),
-          wheels_type<IdealWheels>("ideal", "The commanded speeds, exactly."),
-          wheels_type<WheelErrors<50>>("noisy", "Each wheel with a relative error of its own every tick."),
-          actuator_type(hal::WheelSpeeds::kName, "slanted",
-                        "Draws to one side by an error that the encoders do not see and every grip changes.",
-                        &has<hal::DifferentialDrive>, &make_slanted, &describe_options<Slant>),
-          actuator_type(hal::WheelSpeeds::kName, "stepped",
-                        "Stepper motors: speeds are those that whole periods of a timer make.",
-                        &has<hal::DifferentialDrive>, &make_stepped, &describe_options<Steppers>),
-          encoder_type<EncoderErrors<0>>("default", "What the wheels rolled, with noise where asked for."),
-          encoder_type<IdealEncoders>("ideal", "What the wheels rolled."),
-          encoder_type<EncoderErrors<100>>("noisy", "What the wheels rolled, with noise that adds up."),
-          odometry_type<OdometryErrors<0>>("default", "Reckoned from the encoders; noise where asked for."),
-          odometry_type<IdealEncoders>("ideal", "Reckoned from the encoders."),
-          odometry_type<OdometryErrors<100>>("noisy", "Reckoned from encoders with noise that adds up.")};
+  return {
+      wheels_type<WheelErrors<0>>(
+          "default", "The commanded speeds as the kind's motors turn, with bias, factor and noise where asked for."),
+      wheels_type<IdealWheels>("ideal", "The commanded speeds, exactly."),
+      wheels_type<WheelErrors<50>>("noisy", "Each wheel with a relative error of its own every tick."),
+      actuator_type(hal::WheelSpeeds::kName, "slanted",
+                    "Draws to one side by an error that the encoders do not see and every grip changes.",
+                    &has<hal::DifferentialDrive>, &make_slanted, &describe_options<Slant>),
+      encoder_type<EncoderErrors<0>>("default", "What the wheels rolled, with noise where asked for."),
+      encoder_type<IdealEncoders>("ideal", "What the wheels rolled."),
+      encoder_type<EncoderErrors<100>>("noisy", "What the wheels rolled, with noise that adds up."),
+      odometry_type<OdometryErrors<0>>("default", "Reckoned from the encoders; noise where asked for."),
+      odometry_type<IdealEncoders>("ideal", "Reckoned from the encoders."),
+      odometry_type<OdometryErrors<100>>("noisy", "Reckoned from encoders with noise that adds up.")};
 }
 
 }  // namespace tandem::core

@@ -15,6 +15,7 @@
 #include "hal/device/ring_sensors.hpp"
 #include "hal/device/selector.hpp"
 #include "hal/device/speaker.hpp"
+#include "hal/device/steppers.hpp"
 #include "hal/device/time_of_flight.hpp"
 #include "hal/device/turret.hpp"
 #include "hal/device/wheels.hpp"
@@ -45,7 +46,7 @@ void register_ports(Registrar& registrar) {
   add_parts<ProximityPart, LightPart, GroundPart, BaseGroundPart, MotorGroundPart, AccelerometerPart, GyroscopePart,
             MicrophonesPart, BatteryPart, RangeAndBearingPart, LedsPart, UpperLedsPart, BodyLedPart, FrontLedPart,
             CameraLedPart, TurretPart, GripperPart, ScannerPart, OmniCameraPart, CameraPart, HeadPart, AltimeterPart,
-            TimeOfFlightPart, CliffPart, SelectorPart, ButtonsPart, SpeakerPart, BrakesPart, FittedWheels,
+            TimeOfFlightPart, CliffPart, SelectorPart, ButtonsPart, SpeakerPart, BrakesPart, SteppersPart, FittedWheels,
             FittedProximity>(registrar);
 }
 

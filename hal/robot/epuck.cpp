@@ -9,6 +9,7 @@
 #include "hal/device/leds.hpp"
 #include "hal/device/range_and_bearing.hpp"
 #include "hal/device/ring_sensors.hpp"
+#include "hal/device/steppers.hpp"
 
 namespace tandem::hal::epuck {
 namespace {
@@ -91,6 +92,9 @@ RobotKind make() {
   kind.add(AccelerometerPart{.source = "GCtronic's library"});
   kind.add(BrakesPart{.deceleration_m_s2 = 5.0,
                       .source = "chosen: stepper motors without a ramp stop at once; within 26 ms, 2 mm, is safe"});
+  kind.add(SteppersPart{.steps_per_turn = 1000,
+                        .timer_Hz = 10000.0,
+                        .source = "GCtronic's library (e_motors.c): a step lasts trunc(10000 / v) periods of 0.1 ms"});
   kind.add(BatteryPart{.full_V = 4.2,
                        .empty_V = 3.4,
                        .low_charge = 0.0,

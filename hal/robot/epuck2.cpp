@@ -7,6 +7,7 @@
 #include "hal/device/body_sensors.hpp"
 #include "hal/device/cliff.hpp"
 #include "hal/device/selector.hpp"
+#include "hal/device/steppers.hpp"
 #include "hal/device/time_of_flight.hpp"
 #include "hal/robot/epuck.hpp"
 
@@ -28,6 +29,7 @@ RobotKind make() {
   drive.source =
       "wheels as the e-puck's; speed: 1100 steps of 0.1288 mm a second, where the firmware clamps; force: as the "
       "e-puck's";
+  kind.remove(SteppersPart::kName);  // its timer is finer
   kind.part<AccelerometerPart>()->source = "GCtronic's firmware: MPU-9250, or ICM-20948 on newer boards";
   MicrophonesPart& microphones = *kind.part<MicrophonesPart>();
   microphones.mounts.push_back({0.0, 0.032, 0.0, 0.04});

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/space/stores.hpp"
+#include "hal/device/steppers.hpp"
 #include "hal/device/turret.hpp"
 #include "hal/unit.hpp"
 #include "mixed_reality/tracking/odometry.hpp"
@@ -55,6 +56,17 @@ RealRobotParams real_params(const core::Space& space, core::RobotId robot, const
 /// The clock of a twin is the run's.
 const void* reading_of(bridges::RobotBridge& real, const hal::PortType& type) {
   return type.name == hal::Clock::kName ? nullptr : real.port(type);
+}
+
+/// Speeds that the robot's wheels have when it is told these.
+hal::WheelSpeeds turned(const hal::RobotKind& kind, const hal::WheelSpeeds& told) {
+  const auto* const steppers = kind.part<hal::SteppersPart>();
+  if (steppers == nullptr || kind.drive() == nullptr) return told;
+  const double step_m = steppers->step_m(kind.drive()->wheel_radius_m);
+  hal::WheelSpeeds speeds = told;
+  speeds.set(steppers->turned_steps_s(told.left_m_s / step_m) * step_m,
+             steppers->turned_steps_s(told.right_m_s / step_m) * step_m);
+  return speeds;
 }
 
 }  // namespace
@@ -268,11 +280,12 @@ void Twin::after_filter(const Moment& now) {
   const bool hears = real().health() == LinkHealth::Active;
   if (hears) driven_ = sent_;
   if (hears) heard_ns_ = now.monotonic_ns;
-  if (hears && motion_ != nullptr) motion_->told(now.monotonic_ns, sent_);
-  if (hears && delay_ != nullptr) delay_->told(now.monotonic_ns, sent_);
+  const hal::RobotKind& kind = space_.kind(robot_);
+  if (hears && motion_ != nullptr) motion_->told(now.monotonic_ns, turned(kind, sent_));
+  if (hears && delay_ != nullptr) delay_->told(now.monotonic_ns, turned(kind, sent_));
   if (barrier_ != nullptr) {
     const bool drives_on = !hears && hal::to_seconds(now.monotonic_ns - heard_ns_) < params_.coast_s;
-    barrier_->sent(now.monotonic_ns, drives_on ? driven_ : sent_, alive);
+    barrier_->sent(now.monotonic_ns, turned(kind, drives_on ? driven_ : sent_), alive);
   }
   track_.sent_ns = now.run_ns + (now.monotonic_ns - robot_now_.judged_ns());
 }

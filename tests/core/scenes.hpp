@@ -34,6 +34,7 @@ struct Scene {
     for (const char* name : {"differential_steering", "leds", "body_led", "front_led", "range_and_bearing"}) {
       config.actuators.push_back({name, "default", {}});
     }
+    config.actuators.front().implementation = "ideal";  // wheels that turn exactly as told, not as stepper motors do
     scenario.controllers.push_back(config);
   }
 

@@ -59,10 +59,17 @@ struct FakeBody {
   void roll_to(hal::TimeNs now_ns) {
     const double dt_s = hal::to_seconds(now_ns - moved_to_ns);
     moved_to_ns = now_ns;
-    left_m += wheels.left_m_s * dt_s;
-    right_m += wheels.right_m_s * dt_s;
-    if (!held_fast)
-      pose = rolled(pose, wheels.left_m_s * dt_s, wheels.right_m_s * dt_s, hal::epuck::kind().drive()->wheel_base_m);
+    const double left = turned_m_s(wheels.left_m_s) * dt_s, right = turned_m_s(wheels.right_m_s) * dt_s;
+    left_m += left;
+    right_m += right;
+    if (!held_fast) pose = rolled(pose, left, right, hal::epuck::kind().drive()->wheel_base_m);
+  }
+  /// As an e-puck's stepper motors turn [GCtronic's library, e_motors.c].
+  static double turned_m_s(double told_m_s) {
+    const double step_m = M_PI * 0.041 / 1000.0;
+    const long steps_s = std::lround(told_m_s / step_m);
+    return steps_s == 0 ? 0.0
+                        : std::copysign(10000.0 / static_cast<double>(10000 / std::labs(steps_s)) * step_m, told_m_s);
   }
   bool stands() const { return wheels.left_m_s == 0.0 && wheels.right_m_s == 0.0; }
 

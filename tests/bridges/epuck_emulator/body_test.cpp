@@ -96,7 +96,7 @@ TEST(PortBody, PassesBothWaysBetweenThreads) {
   std::thread robot([&ports] {
     PortBody body(ports);
     for (int i = 1; i <= 1000; ++i) {
-      body.actuate(i, {.left_m_s = i * 0.001, .right_m_s = i * 0.001});
+      body.actuate(i, {.told_left_m_s = i * 0.001, .told_right_m_s = i * 0.001});
       const BodySenses s = body.sense(i);
       EXPECT_EQ(s.distance_m[0], s.distance_m[7]) << "torn";
     }

@@ -20,7 +20,7 @@ struct Script {
   std::string text;
   std::string robot = "e-puck";
   std::string sensors = "<epuck_proximity/><clock/>";
-  std::string actuators = "<differential_steering/>";
+  std::string actuators = "<differential_steering implementation=\"ideal\"/>";
   std::string params = "";
   std::string file = "script.lua";  ///< that the experiment names
   std::string attributes = "";      ///< of the robot

@@ -104,6 +104,9 @@ TEST(ProximitySensor, NoiseIsBoundedAndCentred) {
   EXPECT_NEAR(sum / 2000, 0.0, 0.0004);
 }
 
+/// Of an e-puck's motor; 0.05 m/s are 388.2 a second, at which it makes 400.
+const double kStep_m = 2.0 * M_PI * hal::epuck::kind().drive()->wheel_radius_m / 1000.0;
+
 TEST(WheelDevices, EncodersCountWhatTheWheelsRolled) {
   auto world = stepped(Scene(4, "everything").param("left", "0.02").param("right", "-0.03").robot("a", 0, 0), 11);
   const auto encoders = read<hal::WheelEncoders>(world);
@@ -115,10 +118,12 @@ TEST(WheelDevices, EncodersCountWhatTheWheelsRolled) {
 TEST(WheelDevices, BiasAndFactorChangeTheDrivenSpeed) {
   Scene scene(4, "drive");
   scene.param("left", "0.05").param("right", "0.05").robot("a", 0, 0);
-  scene.scenario.controllers[0].actuators[0].options.attributes = {
+  DeviceChoice& wheels = scene.scenario.controllers[0].actuators[0];
+  wheels.implementation = "default";
+  wheels.options.attributes = {
       {"factor_left", "1.2", 0}, {"factor_right", "1.2", 0}, {"bias_left", "1", 0}, {"bias_right", "1", 0}};
   auto world = stepped(scene, 11);
-  EXPECT_NEAR(world->space().pose(world->space().robot(0)).x_m, 1.2 * 0.06, 1e-12);
+  EXPECT_NEAR(world->space().pose(world->space().robot(0)).x_m, 1.2 * (400 * kStep_m + 0.01), 1e-12);
 }
 
 TEST(WheelDevices, NoisyWheelsScatterAroundTheCommand) {
@@ -133,7 +138,7 @@ TEST(WheelDevices, NoisyWheelsScatterAroundTheCommand) {
   for (std::size_t i = 0; i < 1000; ++i) {
     // One tick of motion, from the rolled distances.
     const SpaceStores& s = world->space().stores();
-    const double relative = s.bodies.left_m[i] / 0.005 - 1.0;
+    const double relative = s.bodies.left_m[i] / (40 * kStep_m) - 1.0;
     sum += relative;
     squares += relative * relative;
   }
@@ -141,20 +146,26 @@ TEST(WheelDevices, NoisyWheelsScatterAroundTheCommand) {
   EXPECT_NEAR(std::sqrt(squares / 1000), 0.05, 0.005);
 }
 
+/// How far a robot comes in a second.
+double way_m(const std::string& kind, const std::string& implementation, double told_m_s) {
+  Scene scene(4, "everything");
+  scene.param("left", hal::format_number(told_m_s)).param("right", hal::format_number(told_m_s)).robot("a", 0, 0);
+  scene.scenario.controllers[0].actuators.front().implementation = implementation;
+  scene.scenario.robots[0].kind = kind;
+  auto world = stepped(scene, 11);
+  const double x_m = world->space().pose(world->space().robot(0)).x_m;
+  EXPECT_NEAR(read<hal::WheelEncoders>(world).left_m, x_m, 1e-9) << told_m_s;
+  return x_m;
+}
+
 /// Speeds in steps a second, as measured with the firmware of an e-puck: told, and turned.
-TEST(Wheels, SteppersTurnInWholePeriodsOfTheirTimer) {
+TEST(Wheels, OfEpucksTurnInWholePeriodsOfTheirTimerAsRealOnesDo) {
   for (const auto& [told, turned] :
        {std::pair{900.0, 10000.0 / 11}, std::pair{700.0, 10000.0 / 14}, std::pair{600.0, 625.0},
-        std::pair{1000.0, 1000.0}, std::pair{-388.0, -400.0}, std::pair{0.2, 0.0}}) {
-    const double step_m = 2.0 * M_PI * hal::epuck::kind().drive()->wheel_radius_m / 1000.0;
-    Scene scene(4, "everything");
-    scene.param("left", hal::format_number(told * step_m)).param("right", hal::format_number(told * step_m));
-    for (DeviceChoice& choice : scene.scenario.controllers[0].actuators) {
-      if (choice.device == "differential_steering") choice.implementation = "stepped";
-    }
-    auto world = stepped(scene.robot("a", 0, 0), 11);
-    EXPECT_NEAR(world->space().pose(world->space().robot(0)).x_m, turned * step_m, 1e-9) << told << " for 1 s";
-    EXPECT_NEAR(read<hal::WheelEncoders>(world).left_m, turned * step_m, 1e-9) << told;
+        std::pair{667.0, 10000.0 / 14}, std::pair{1000.0, 1000.0}, std::pair{-388.0, -400.0}, std::pair{0.2, 0.0}}) {
+    EXPECT_NEAR(way_m("e-puck", "default", told * kStep_m), turned * kStep_m, 1e-9) << told << " for 1 s";
+    EXPECT_NEAR(way_m("e-puck", "ideal", told * kStep_m), told * kStep_m, 1e-9) << told;
+    EXPECT_NEAR(way_m("e-puck2", "default", told * kStep_m), told * kStep_m, 1e-9) << told;
   }
 }
 

@@ -13,6 +13,8 @@ namespace {
 
 template <class Part>
 Scene fitted(const Part& part, Scene scene) {
+  if constexpr (std::is_same_v<Part, hal::FittedWheels>)
+    scene.scenario.controllers[0].actuators.front().implementation = "default";  // ideal ones are not as measured
   return scene.parts([&](hal::RobotKind& kind) { kind.add(part); });
 }
 

@@ -160,6 +160,7 @@ TEST(Replay, RunsWithFaultsHaveTheSameBitsAgainInEveryTick) {
 core::Scene two() {
   core::Scene scene(4.0, "drive");
   scene.param("left", "0.06").param("right", "0.05").robot("ep0", -1.0, 0.0).robot("sim", 0.5, 0.5);
+  scene.scenario.controllers[0].actuators.front().implementation = "default";  // turns as the real one
   return std::move(made_real(scene, "ep0"));
 }
 

@@ -292,7 +292,7 @@ TEST_F(TwinTest, GoesOnSmoothlyThroughAnOutageAndComesBackWithoutAJump) {
     EXPECT_NEAR(space_.pose(robot_).x_m, body_.pose.x_m, 1e-9) << i;  // nobody stopped it, and the twin knows that
     EXPECT_EQ(twin_->verdict().may_drive, false);
   }
-  EXPECT_NEAR(farthest_m, 0.01, 1e-9);
+  EXPECT_NEAR(farthest_m, FakeBody::turned_m_s(0.1) * 0.1, 1e-9);
   for (int i = 0; i < 30; ++i) {
     tick(0.1, 0.1);
     watch();
