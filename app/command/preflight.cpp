@@ -142,25 +142,6 @@ PreflightRows move_all(mixed_reality::MixedSession& session, const PreflightOpti
   return rows;
 }
 
-/// Keeps what first motions found wrong, for the next run to refuse; and forgets it where all is right now.
-void keep_motions(const std::vector<bridges::StopMessages>& robots, const PreflightRows& rows) {
-  const auto memory = MotionMemory::open();
-  if (!memory.ok()) return;
-  for (const bridges::StopMessages& robot : robots) {
-    FailedMotion failed{robot.robot, static_cast<std::int64_t>(std::time(nullptr)), {}};
-    bool right = false;
-    for (const PreflightRow& row : rows) {
-      if (row.about != "robot " + robot.robot) continue;
-      if (row.finding == Finding::Fail) failed.found.push_back(row.check + ": " + row.found);
-      right = right || (row.check == "motion" && row.finding == Finding::Ok);
-    }
-    if (failed.found.empty() && right) memory.value().forget(robot);
-    if (failed.found.empty()) continue;
-    const hal::Status kept = memory.value().keep(robot, failed);
-    if (!kept.ok()) complain(kFailedRunning, kept.error().message);
-  }
-}
-
 /// Real robots, their trackers and this computer. @returns kDone, or why nothing could be looked at, which was told
 int look_over_robots(const PreflightOptions& options, const core::Scenario& scenario, hal::PluginLoader& loader,
                      std::unique_ptr<core::World>& world, GuardedRobots& guarded, const std::atomic<bool>& stop,
@@ -191,7 +172,10 @@ int look_over_robots(const PreflightOptions& options, const core::Scenario& scen
       rows.push_back({"motion", "test", Finding::Warn, "not tried, as something is in the way", "mend that first"});
     else if (options.move && !stop.load())
       append(move_all(*session, options, stop));
-    if (options.move && !stop.load()) keep_motions(guarded.robots(), rows);
+    if (options.move && !stop.load()) {
+      if (const hal::Status kept = keep_motions(guarded.robots(), rows); !kept.ok())
+        complain(kFailedRunning, kept.error().message);
+    }
     session->stop_robots();
     session->shut_down();
   }

@@ -499,6 +499,9 @@ int run_with(const RunOptions& options, std::unique_ptr<RunLog>& log) {
         recording.event(world->tick(), event);
         if (view != nullptr) view->event(world->tick(), event);
       });
+      desks->on_first_motion([&guarded](const mixed_reality::PreflightRows& rows) {
+        if (const hal::Status kept = keep_motions(guarded.robots(), rows); !kept.ok()) say(kept.error().message);
+      });
       if (const hal::Status listens = desks->listen(scenario->desk, options.hold.desk_keys); !listens.ok())
         return complain(kFailedRunning, listens.error().message);
     }

@@ -194,7 +194,9 @@ hal::Result<Json> Desks::first_motion(const std::string& robot) {
     return hal::Error{"the run has begun: first motion is tried before, while it is held (--hold)"};
   if (session_.world().space().kind(found->robot).drive() == nullptr)
     return hal::Error{"robot '" + robot + "' has no wheels to turn on"};
-  return answer_of(mixed_reality::try_motion(session_, robot, stop_));
+  const mixed_reality::PreflightRows rows = mixed_reality::try_motion(session_, robot, stop_);
+  if (keep_motion_ && !stop_.load()) keep_motion_(rows);
+  return answer_of(rows);
 }
 
 hal::Status Desks::replace(const Json& command, const std::string& robot) {

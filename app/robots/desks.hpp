@@ -38,6 +38,10 @@ class Desks {
   void on_done(std::function<void(const hal::Json& action)> note) {
     note_ = std::make_shared<const Note>(std::move(note));
   }
+  /// Called by the same thread for what a first motion has found.
+  void on_first_motion(std::function<void(const mixed_reality::PreflightRows&)> keep) {
+    keep_motion_ = std::move(keep);
+  }
 
   /// Any command of the window's protocol; on any thread. An emergency stop waits for no tick. `from`: who says it,
   /// unless the command does in "who"; "by" in it is the word of whoever let it in: {"role", "address"}.
@@ -59,6 +63,7 @@ class Desks {
   mixed_reality::Desk desk_;
   using Note = std::function<void(const hal::Json&)>;
   std::shared_ptr<const Note> note_;  // what is posted and not yet carried out does not outlive it
+  std::function<void(const mixed_reality::PreflightRows&)> keep_motion_;
   std::unique_ptr<bridges::desk::LcmDesk> lcm_;
 };
 

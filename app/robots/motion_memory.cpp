@@ -59,6 +59,26 @@ std::optional<FailedMotion> MotionMemory::recall(const bridges::StopMessages& ro
   return failed;
 }
 
+hal::Status keep_motions(std::span<const bridges::StopMessages> robots, const mixed_reality::PreflightRows& rows) {
+  using mixed_reality::Finding;
+  const auto memory = MotionMemory::open();
+  if (!memory.ok()) return {};  // whoever needs the locks says so
+  hal::Status all;
+  for (const bridges::StopMessages& robot : robots) {
+    FailedMotion failed{robot.robot, static_cast<std::int64_t>(std::time(nullptr)), {}};
+    bool right = false;
+    for (const mixed_reality::PreflightRow& row : rows) {
+      if (row.about != "robot " + robot.robot) continue;
+      if (row.finding == Finding::Fail) failed.found.push_back(row.check + ": " + row.found);
+      right = right || (row.check == "motion" && row.finding == Finding::Ok);
+    }
+    if (failed.found.empty() && right) memory.value().forget(robot);
+    if (failed.found.empty()) continue;
+    if (const hal::Status kept = memory.value().keep(robot, failed); !kept.ok()) all = kept;
+  }
+  return all;
+}
+
 hal::Status check_motions(std::span<const bridges::StopMessages> robots) {
   const auto memory = MotionMemory::open();
   if (!memory.ok()) return {};  // whoever needs the locks says so

@@ -8,6 +8,7 @@
 
 #include "bridges/stop_messages.hpp"
 #include "hal/result.hpp"
+#include "mixed_reality/desk/preflight.hpp"
 
 namespace tandem::app {
 
@@ -33,6 +34,10 @@ class MotionMemory {
   std::string file_of(const bridges::StopMessages& robot) const;
   std::string folder_;
 };
+
+/// Keeps what first motions found wrong with these robots, and forgets it where all is right now. Error: it could not
+/// be written.
+hal::Status keep_motions(std::span<const bridges::StopMessages> robots, const mixed_reality::PreflightRows& rows);
 
 /// Error: a first motion of one of them failed, and none was right since; says what was found, when, and what to do.
 hal::Status check_motions(std::span<const bridges::StopMessages> robots);

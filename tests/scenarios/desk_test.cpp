@@ -64,42 +64,76 @@ class Camera {
   Tandem process_;
 };
 
-TEST(Preflight, AFailedFirstMotionKeepsRunsFromDrivingTheRobotUntilOneIsRight) {
-  const Folder folder, other;
-  EmulatedEpuck epuck(folder, {"--poses", "50"}), wrong(other, {"--poses", "50"});
-  ASSERT_TRUE(epuck.ready() && wrong.ready());
-  const std::string port = std::to_string(free_port(SOCK_DGRAM));
-  std::string text = text_of(kExperiment);
-  text.replace(text.find("<tracker source=\"odometry\"/>"), 29, "<tracker source=\"fused\"/>");
-  text.replace(text.find("  <physics_engines>"), 0,
-               "  <trackers><udp id=\"cam\" port=\"" + port + "\" clock=\"monotonic\"/></trackers>\n");
-  const std::string file = folder.write("seen.xml", text).string();
-  const auto preflight = [&] {
-    Tandem moving({"preflight", file, "--move", "--yes"}, folder.path());
+/// The address that a run has printed, for `tandem desk`.
+std::string address_of(const Tandem& run) {
+  EXPECT_TRUE(eventually([&] { return run.errors().find("?token=") != std::string::npos; }, kPatience_s));
+  const std::string text = run.errors();
+  const std::size_t at = text.find("http://");
+  return at == std::string::npos ? "" : text.substr(at, text.find('\n', at) - at);
+}
+
+/// An experiment with one e-puck and a camera, and another e-puck that may wear its tag.
+class FirstMotion : public testing::Test {
+ protected:
+  void SetUp() override {
+    ASSERT_TRUE(epuck_.ready() && wrong_.ready());
+    std::string text = text_of(kExperiment);
+    text.replace(text.find("<tracker source=\"odometry\"/>"), 29, "<tracker source=\"fused\"/>");
+    text.replace(text.find("  <physics_engines>"), 0,
+                 "  <trackers><udp id=\"cam\" port=\"" + port_ + "\" clock=\"monotonic\"/></trackers>\n");
+    file_ = folder_.write("seen.xml", text).string();
+  }
+  std::string preflight() const {
+    Tandem moving({"preflight", file_, "--move", "--yes"}, folder_.path());
     const int code = moving.wait(60.0);
     return std::to_string(code) + " " + moving.output() + moving.errors();
-  };
-  const auto run = [&](std::vector<std::string> more) {
-    more.insert(more.begin(), {"run", file, "--set", "framework.experiment.length=2", "--quiet"});
-    Tandem driving(more, folder.path());
+  }
+  /// A run that is held before its start, where the desk has it moved until it has turned: one that answers too late is
+  /// not moved.
+  std::string move_in_held_run() const {
+    Tandem held({"run", file_, "--view", "--hold", "--anyway", "--quiet"}, folder_.path());
+    const std::string address = address_of(held);
+    std::string said;
+    for (int i = 0; i < 10 && said.find("turned ") == std::string::npos; ++i) {
+      Tandem desk({"desk", address, "move", "ep0"}, folder_.path());
+      (void)desk.wait(60.0);
+      said = desk.output() + desk.errors();
+    }
+    held.signal(SIGINT);
+    (void)held.wait(60.0);
+    return said;
+  }
+  std::string run(std::vector<std::string> more) const {
+    more.insert(more.begin(), {"run", file_, "--set", "framework.experiment.length=2", "--quiet"});
+    Tandem driving(more, folder_.path());
     const int code = driving.wait(60.0);
     return std::to_string(code) + " " + driving.errors();
-  };
+  }
+  /// Its tag is on the robot of this folder.
+  Camera camera(const Folder& on) const { return {folder_, port_, (on.path() / "witness.jsonl").string()}; }
+
+  const Folder folder_, other_;
+  EmulatedEpuck epuck_{folder_, {"--poses", "50"}}, wrong_{other_, {"--poses", "50"}};
+  const std::string port_ = std::to_string(free_port(SOCK_DGRAM));
+  std::string file_;
+};
+
+TEST_F(FirstMotion, ThatFailsKeepsRunsFromDrivingTheRobotUntilOneIsRight) {
   {
-    const Camera camera(folder, port, (other.path() / "witness.jsonl").string());  // its tag is on another robot
+    const Camera wrong = camera(other_);
     std::string said;
-    for (int i = 0; i < 10 && said.find("turned ") == std::string::npos; ++i) said = preflight();  // as below
+    for (int i = 0; i < 10 && said.find("turned ") == std::string::npos; ++i) said = preflight();
     EXPECT_EQ(said[0], '3') << said;
   }
-  const Camera camera(folder, port, (folder.path() / "witness.jsonl").string());
-  const std::size_t before = epuck.wheels().size();
+  const Camera right = camera(folder_);
+  const std::size_t before = epuck_.wheels().size();
   const std::string refused = run({});
   EXPECT_EQ(refused[0], '3') << refused;
   EXPECT_NE(refused.find("robot 'ep0'"), std::string::npos) << refused;
   EXPECT_NE(refused.find("motion: turned"), std::string::npos) << refused;
   EXPECT_NE(refused.find("--anyway"), std::string::npos) << refused;
-  for (std::size_t i = before; i < epuck.wheels().size(); ++i)
-    EXPECT_TRUE(epuck.wheels()[i].left == 0 && epuck.wheels()[i].right == 0) << "it was not driven";
+  for (std::size_t i = before; i < epuck_.wheels().size(); ++i)
+    EXPECT_TRUE(epuck_.wheels()[i].left == 0 && epuck_.wheels()[i].right == 0) << "it was not driven";
   EXPECT_EQ(run({"--anyway"})[0], '0');
   EXPECT_EQ(run({})[0], '3') << "still";
   std::string good;
@@ -108,12 +142,15 @@ TEST(Preflight, AFailedFirstMotionKeepsRunsFromDrivingTheRobotUntilOneIsRight) {
   EXPECT_EQ(run({})[0], '0');
 }
 
-/// The address that a run has printed, for `tandem desk`.
-std::string address_of(const Tandem& run) {
-  EXPECT_TRUE(eventually([&] { return run.errors().find("?token=") != std::string::npos; }, kPatience_s));
-  const std::string text = run.errors();
-  const std::size_t at = text.find("http://");
-  return at == std::string::npos ? "" : text.substr(at, text.find('\n', at) - at);
+TEST_F(FirstMotion, InAHeldRunIsKeptAsThatOfPreflight) {
+  {
+    const Camera wrong = camera(other_);
+    EXPECT_NE(move_in_held_run().find("fail  robot ep0"), std::string::npos);
+  }
+  const Camera right = camera(folder_);
+  EXPECT_EQ(run({})[0], '3');
+  EXPECT_NE(move_in_held_run().find("ok    robot ep0"), std::string::npos);
+  EXPECT_EQ(run({})[0], '0');
 }
 
 TEST(Desk, StartsPausesAndReplacesARobotFromATerminal) {
