@@ -27,7 +27,7 @@ TEST(RayCaster, SeesOverAndPastSolidsButNotThroughThem) {
   const Solids things{.boxes = {{2.0, 0.0, M_PI / 4, 1.0, 1.0, 0.0, 0.5}}, .cylinders = {{0.0, 3.0, 0.5, 0.2, 1.0, 3}}};
   EXPECT_TRUE(blocked(things, {0.0, 0.0, 0.4}, {4.0, 0.0, 0.4}));
   EXPECT_TRUE(blocked(things, {0.0, 0.0, 0.9}, {4.0, 0.0, 0.0}));     // 0.45 high in its middle
-  EXPECT_FALSE(blocked(things, {0.0, 0.0, 1.4}, {4.0, 0.0, 0.0}));    // 0.54 high where it leaves the box
+  EXPECT_FALSE(blocked(things, {0.0, 0.0, 1.7}, {4.0, 0.0, 0.0}));    // 0.55 high where it leaves the box
   EXPECT_FALSE(blocked(things, {0.0, 0.0, 0.4}, {1.2, 0.0, 0.4}));    // ends before it
   EXPECT_FALSE(blocked(things, {0.0, 0.72, 0.4}, {4.0, 0.72, 0.4}));  // its corner is at 0.707
   EXPECT_TRUE(blocked(things, {0.0, 3.0, 1.5}, {0.0, 3.0, 0.5}));     // from above
