@@ -5,7 +5,8 @@
 #include <cmath>
 #include <string>
 
-#include "core/physics/particle3d/near_pairs.hpp"
+#include "core/physics/crowd.hpp"
+#include "core/physics/near_pairs.hpp"
 #include "core/physics/particle3d/solid.hpp"
 #include "core/physics/wheels.hpp"
 #include "hal/angle.hpp"
@@ -14,7 +15,6 @@ namespace tandem::core {
 namespace {
 
 using particle3d::Mover;
-using particle3d::NearPairs;
 using particle3d::Solid;
 
 constexpr double kHop = 0.5;         // of one sub-step at full speed, in body radii
@@ -67,7 +67,7 @@ struct SubStep {
 struct Particles {
   std::vector<std::uint32_t> row;
   std::vector<double> x, y, z, vx, vy, vz, c, s;
-  std::vector<double> from_x, from_y;              // at the tick's start
+  std::vector<double> from_x, from_y, from_z;      // at the tick's start
   std::vector<double> step_x, step_y, step_z;      // at the sub-step's start, of those that may meet something
   std::vector<double> push_x, push_y, push_z;      // away from others, in this sub-step
   std::vector<double> goal_x, goal_y, goal_z;      // place or velocity
@@ -83,9 +83,9 @@ struct Particles {
   void resize(std::size_t n) {
     row.resize(n);
     for (auto* a :
-         {&x,      &y,      &z,      &vx,     &vy,     &vz,     &c,      &s,        &from_x, &from_y, &step_x, &step_y,
-          &step_z, &push_x, &push_y, &push_z, &goal_x, &goal_y, &goal_z, &to_place, &thrust, &low,    &high,   &free_x,
-          &free_y, &free_z, &turn,   &ahead,  &aside,  &cos_d,  &sin_d,  &radius,   &height, &hop})
+         {&x,      &y,      &z,      &vx,     &vy,     &vz,     &c,      &s,      &from_x,   &from_y, &from_z, &step_x,
+          &step_y, &step_z, &push_x, &push_y, &push_z, &goal_x, &goal_y, &goal_z, &to_place, &thrust, &low,    &high,
+          &free_x, &free_y, &free_z, &turn,   &ahead,  &aside,  &cos_d,  &sin_d,  &radius,   &height, &hop})
       a->resize(n);
     for (auto* a : {&owned, &fixed, &flies, &falls}) a->resize(n);
   }
@@ -116,9 +116,10 @@ class Particle3d final : public Solver {
   void fly_exactly(const Run& run, double h_s) noexcept;
   void roll(const Run& run) noexcept;
   void fall(const SubStep& step) noexcept;
-  void part(std::size_t i) noexcept;
   void apart(std::size_t i, std::size_t k) noexcept;
-  void meet(const Solid& solid) noexcept;
+  void push(const std::vector<std::uint32_t>& who) noexcept;
+  double move(const Solid& solid, const std::vector<std::uint32_t>& who) noexcept;
+  void settle(const Solid& solid);
   void write_back(SpaceStores& stores, double tick_s);
   void write(SpaceStores& stores, std::size_t i, double tick_s) noexcept;
 
@@ -131,6 +132,9 @@ class Particle3d final : public Solver {
   std::vector<std::uint32_t> active_;   // those that may meet others or solid things in this tick
   std::vector<std::uint8_t> solid_near_;
   NearPairs pairs_;
+  Crowd crowd_;
+  bool crowded_ = false;  // some are deep in one another: the crowd is told how deep
+  double deepest_ = 0.0;  // overlap that was found when pushes were computed last
 };
 
 /// Enough that no robot jumps over another at full speed. From all kinds in the run: who is near changes nothing.
@@ -212,7 +216,7 @@ void Particle3d::load_body(const SolverContext& context, std::size_t i, std::uin
   p_.height[i] = kind.body.height_m;
   p_.x[i] = p_.from_x[i] = b.x_m[row];
   p_.y[i] = p_.from_y[i] = b.y_m[row];
-  p_.z[i] = m.z_m;
+  p_.z[i] = p_.from_z[i] = m.z_m;
   p_.c[i] = b.cos_h[row];
   p_.s[i] = b.sin_h[row];
   p_.vx[i] = fixed ? 0.0 : m.v_m_s[0];
@@ -253,7 +257,7 @@ void Particle3d::load_body(const SolverContext& context, std::size_t i, std::uin
       falling_.push_back(static_cast<std::uint32_t>(i));
       fastest = speed + params_.gravity_m_s2 * context.tick_s;
     } else {
-      p_.z[i] = std::max(p_.z[i], p_.low[i]);
+      p_.z[i] = p_.from_z[i] = std::max(p_.z[i], p_.low[i]);
       plan_wheels(i, b.left_m_s[row], b.right_m_s[row], wheels_of(kind).wheel_base_m, context.tick_s / steps_);
       fastest = std::max(std::fabs(b.left_m_s[row]), std::fabs(b.right_m_s[row]));
     }
@@ -347,8 +351,12 @@ void Particle3d::advance(const SolverContext& context) {
         roll(run);
     }
     fall(step);
-    meet(solid);
+    push(active_);
+    move(solid, active_);
   }
+  if (deepest_ > 0.0) push(active_);  // how deep they are now
+  if (deepest_ > Crowd::kDeep) settle(solid);
+  accuracy.overlap = std::max(accuracy.overlap, deepest_);
   write_back(context.stores, context.tick_s);
 }
 
@@ -357,6 +365,7 @@ void Particle3d::find_meetings(const Solid& solid) {
   active_.clear();
   active_.reserve(p_.row.capacity());  // doubles with the arrays of bodies
   solid_near_.reserve(p_.row.capacity());
+  crowd_.reserve(p_.row.capacity());
   solid_near_.assign(p_.size(), 0);
   for (std::size_t i = 0; i < p_.size(); ++i) {
     if (p_.fixed[i] != 0) continue;
@@ -510,8 +519,13 @@ void Particle3d::apart(std::size_t i, std::size_t k) noexcept {
   if (above <= 0.0 || below <= 0.0) return;
   const double d = std::sqrt(d2);
   const double depth = touch - d;
+  const double high = std::min(above, below);
   const bool both_drive = p_.flies[i] == 0 && p_.flies[k] == 0;
-  if (both_drive || depth <= std::min(above, below)) {
+  const bool beside = both_drive || depth <= high;
+  const double overlap = Crowd::overlap(beside ? depth : high, p_.radius[i], p_.radius[k]);
+  deepest_ = std::max(deepest_, overlap);
+  if (crowded_) crowd_.note(static_cast<std::uint32_t>(i), overlap);
+  if (beside) {
     const double share = depth * (p_.fixed[k] != 0 ? 1.0 : 0.5);
     p_.push_x[i] += d > 0.0 ? dx / d * share : (i < k ? -share : share);  // two on one spot part along x
     p_.push_y[i] += d > 0.0 ? dy / d * share : 0.0;
@@ -523,14 +537,50 @@ void Particle3d::apart(std::size_t i, std::size_t k) noexcept {
   p_.push_z[i] += up ? above * share : -below * share;
 }
 
-void Particle3d::part(std::size_t i) noexcept {
-  p_.push_x[i] = p_.push_y[i] = p_.push_z[i] = 0.0;
-  for (const std::uint32_t k : pairs_.of(i)) apart(i, k);
+/// Crowds, for which a pass a sub-step is not enough.
+void Particle3d::settle(const Solid& solid) {
+  for (std::size_t i = 0; i < p_.size(); ++i) {
+    if (!std::isfinite(p_.x[i] + p_.y[i] + p_.z[i])) return;  // told of after the tick
+  }
+  crowded_ = true;
+  deepest_ = crowd_.settle(
+      p_.size(),
+      [&](bool back) -> const std::vector<std::uint32_t>& {
+        for (std::size_t i = 0; i < p_.size(); ++i)
+          p_.hop[i] = Crowd::kSlack_m +
+                      (back ? std::hypot(p_.x[i] - p_.from_x[i], p_.y[i] - p_.from_y[i], p_.z[i] - p_.from_z[i]) : 0.0);
+        find_meetings(solid);
+        for (const std::uint32_t i : active_) {
+          p_.step_x[i] = p_.x[i];
+          p_.step_y[i] = p_.y[i];
+          p_.step_z[i] = p_.z[i];
+        }
+        return active_;
+      },
+      [&](const std::vector<std::uint32_t>& who) { push(who); },
+      [&](const std::vector<std::uint32_t>& who) { return move(solid, who); },
+      [&](std::uint32_t i, double share) {
+        p_.x[i] = p_.from_x[i] + share * (p_.x[i] - p_.from_x[i]);
+        p_.y[i] = p_.from_y[i] + share * (p_.y[i] - p_.from_y[i]);
+        p_.z[i] = p_.from_z[i] + share * (p_.z[i] - p_.from_z[i]);
+      },
+      [&](std::uint32_t i) { return pairs_.of(i); });
+  crowded_ = false;
 }
 
-void Particle3d::meet(const Solid& solid) noexcept {
-  for (const std::uint32_t i : active_) part(i);
-  for (const std::uint32_t i : active_) {
+/// Computes what these are pushed by, from where all are.
+void Particle3d::push(const std::vector<std::uint32_t>& who) noexcept {
+  deepest_ = 0.0;
+  for (const std::uint32_t i : who) {
+    p_.push_x[i] = p_.push_y[i] = p_.push_z[i] = 0.0;
+    for (const std::uint32_t k : pairs_.of(i)) apart(i, k);
+  }
+}
+
+/// Moves these by their pushes and out of what is solid. @returns the longest way.
+double Particle3d::move(const Solid& solid, const std::vector<std::uint32_t>& who) noexcept {
+  double longest2 = 0.0;
+  for (const std::uint32_t i : who) {
     const double px = p_.push_x[i];
     const double py = p_.push_y[i];
     const double pz = p_.push_z[i];
@@ -547,6 +597,10 @@ void Particle3d::meet(const Solid& solid) noexcept {
       }
     }
     solid.stop(body, p_.step_x[i], p_.step_y[i], p_.step_z[i]);
+    const double dx = body.x_m - p_.x[i];
+    const double dy = body.y_m - p_.y[i];
+    const double dz = body.z_m - p_.z[i];
+    longest2 = std::max(longest2, dx * dx + dy * dy + dz * dz);
     p_.x[i] = body.x_m;
     p_.y[i] = body.y_m;
     p_.z[i] = body.z_m;
@@ -555,6 +609,7 @@ void Particle3d::meet(const Solid& solid) noexcept {
     p_.vy[i] = lies ? 0.0 : body.vy_m_s;
     p_.vz[i] = lies ? 0.0 : body.vz_m_s;
   }
+  return std::sqrt(longest2);
 }
 
 // --- after the tick ---

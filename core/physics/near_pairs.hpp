@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-namespace tandem::core::particle3d {
+namespace tandem::core {
 
 /// Upright cylinders and how far each may move in the tick.
 struct Cylinders {
@@ -18,6 +18,8 @@ struct Cylinders {
 /// nothing.
 class NearPairs {
  public:
+  /// For so many bodies, in a crowd.
+  void reserve(std::size_t bodies);
   void find(const Cylinders& bodies);
   /// Those that may touch body `i` before all have moved by their hops, in rising order.
   std::span<const std::uint32_t> of(std::size_t i) const noexcept {
@@ -33,4 +35,4 @@ class NearPairs {
   std::vector<std::uint32_t> start_{0}, list_;
 };
 
-}  // namespace tandem::core::particle3d
+}  // namespace tandem::core

@@ -1,10 +1,10 @@
-#include "core/physics/particle3d/near_pairs.hpp"
+#include "core/physics/near_pairs.hpp"
 
 #include <cmath>
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
-namespace tandem::core::particle3d {
+namespace tandem::core {
 namespace {
 
 struct Bodies {
@@ -67,4 +67,4 @@ TEST(NearPairs, AreFewWhereBodiesAreFarApart) {
 }
 
 }  // namespace
-}  // namespace tandem::core::particle3d
+}  // namespace tandem::core

@@ -1,9 +1,9 @@
-#include "core/physics/particle3d/near_pairs.hpp"
+#include "core/physics/near_pairs.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-namespace tandem::core::particle3d {
+namespace tandem::core {
 namespace {
 
 constexpr std::size_t kNeighbours = 12;  // of a body in a packed crowd
@@ -15,6 +15,14 @@ void make_room(std::vector<std::uint32_t>& list, std::size_t count) {
 }
 
 }  // namespace
+
+void NearPairs::reserve(std::size_t bodies) {
+  cell_of_.reserve(bodies);
+  sorted_.reserve(bodies);
+  start_.reserve(bodies + 1);
+  make_room(list_, kNeighbours * bodies);
+  make_room(cell_start_, static_cast<std::size_t>(kCellsPerBody * static_cast<double>(bodies)) + 18);
+}
 
 void NearPairs::sort_into_cells(const Cylinders& bodies) {
   const std::size_t n = bodies.x_m.size();
@@ -81,4 +89,4 @@ void NearPairs::find(const Cylinders& bodies) {
   }
 }
 
-}  // namespace tandem::core::particle3d
+}  // namespace tandem::core
