@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/sim/engine_factory.hpp"
+#include "core/space/attitude.hpp"
 #include "hal/angle.hpp"
 
 namespace tandem::core {
@@ -58,6 +59,28 @@ Pose pose_of(const SpaceStores& s, BodyKey body) noexcept {
   return {b.x_m[i], b.y_m[i], b.motion.empty() ? 0.0 : b.motion[i].z_m, b.cos_h[i], b.sin_h[i]};
 }
 
+/// An object as it stands upright.
+Obstacle upright(const Object& object) noexcept {
+  Obstacle o = disc_at(object.x_m, object.y_m, object.reach_m());
+  o.is_box = object.kind == Object::Kind::Box;
+  o.half_x_m = object.half_x_m;
+  o.half_y_m = object.half_y_m;
+  o.cos_h = object.cos_h;
+  o.sin_h = object.sin_h;
+  o.z_low_m = object.z_low_m;
+  o.z_high_m = object.z_high_m;
+  return o;
+}
+
+Solid solid_of(const Object& object, const Attitude& attitude) noexcept {
+  const bool round = object.kind == Object::Kind::Cylinder;
+  return {attitude.axes,
+          attitude.middle_m,
+          {round ? object.radius_m : object.half_x_m, round ? object.radius_m : object.half_y_m,
+           0.5 * (object.z_high_m - object.z_low_m)},
+          round};
+}
+
 /// A motion at rest where the object stands.
 Motion at_rest(const Object& object) noexcept {
   const double half_rad = 0.5 * std::atan2(object.sin_h, object.cos_h);
@@ -92,19 +115,18 @@ std::string WorldEditor::name_of(BodyKey body) const {
   return "robot '" + stores_.names[e.item].prefix + (e.number < 0 ? "" : std::to_string(e.number)) + "'";
 }
 
-Obstacle WorldEditor::obstacle_of(BodyKey body) const {
+Obstacle WorldEditor::obstacle_of(BodyKey body) {
   const std::size_t i = body.index();
   Obstacle o;
   if (body.is_object()) {
     const Object& object = stores_.objects[i];
-    o = disc_at(object.x_m, object.y_m, object.reach_m());
-    o.is_box = object.kind == Object::Kind::Box;
-    o.half_x_m = object.half_x_m;
-    o.half_y_m = object.half_y_m;
-    o.cos_h = object.cos_h;
-    o.sin_h = object.sin_h;
-    o.z_low_m = object.z_low_m;
-    o.z_high_m = object.z_high_m;
+    if (const auto& q_WB = turn_of(stores_, object); leans(q_WB)) {
+      if (leaning_.size() <= i) leaning_.resize(i + 1);
+      leaning_[i] = solid_of(object, attitude_of(object, q_WB));
+      o = bounds_of(leaning_[i]);
+    } else {
+      o = upright(object);
+    }
   } else {
     const Bodies& b = stores_.bodies;
     const hal::RobotKind& kind = *stores_.groups[stores_.blocks[stores_.robots[b.entity[i]].block].group].kind;
@@ -333,7 +355,8 @@ hal::Status WorldEditor::room_for(BodyKey body, const Pose& pose) {
   if (!fixed) {
     if (const hal::Status placed = check_place(who, pose); !placed.ok()) return placed;
   }
-  Obstacle place = obstacle_of(body);
+  // An object that is put somewhere stands upright there.
+  Obstacle place = body.is_object() ? upright(stores_.objects[body.index()]) : obstacle_of(body);
   const double height_m = place.z_high_m - place.z_low_m;
   place.x_m = pose.x_m;
   place.y_m = pose.y_m;

@@ -1,6 +1,7 @@
 // Brings robots, objects and joints into a running world.
 #pragma once
 #include <cstdint>
+#include <deque>
 #include <optional>
 
 #include "core/placement/occupancy.hpp"
@@ -32,7 +33,7 @@ class WorldEditor final : public Editor {
   std::string name_of(BodyKey body) const;
   /// What `o` would overlap, if anything; `of_immovable`: what cannot move may overlap its like.
   std::optional<BodyKey> in_the_way(const Obstacle& o, BodyKey self, bool of_immovable);
-  Obstacle obstacle_of(BodyKey body) const;
+  Obstacle obstacle_of(BodyKey body);
   bool alive(BodyKey body) const noexcept;
   std::uint16_t region_now(BodyKey body) const noexcept;
   std::uint16_t region_at(BodyKey body, const Pose& pose);
@@ -45,6 +46,7 @@ class WorldEditor final : public Editor {
   std::optional<Occupancy> occupancy_;
   std::uint64_t entered_version_ = 0;  // of the poses
   std::size_t entered_ = 0;            // how many of the touched bodies
+  std::deque<Solid> leaning_;          // by object: those that lean, when they were last looked at
 };
 
 }  // namespace tandem::core

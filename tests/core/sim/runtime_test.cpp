@@ -464,6 +464,39 @@ TEST_P(Runtime, ANewBoxStopsRobots) {
   EXPECT_GT(world->space().pose(world->space().robot(0)).x_m, 0.5);
 }
 
+// A board of 2 m by 0.4 m by 0.1 m whose base's middle is 1 m high, and which falls by 30 degrees towards x: its low
+// end lies from 0.5 m up at x = 0.87 m, its high end about 1.5 m up at x = -0.87 m.
+TEST(Objects, MayStandUnderAndOverABoardThatLeansButNotInIt) {
+  Scene scene(8.0, "stop");
+  scene.engine("dynamics3d").box(0, 0, 2.0, 0.4, 0.0, 0.1);
+  scene.scenario.objects.back().placement.p_W[2] = 1.0;
+  scene.scenario.objects.back().placement.pitch_rad = M_PI / 6;
+  scene.cylinder(3, 3, 0.1).movable(0.1);
+  auto world = make(scene);
+  ASSERT_TRUE(world.world) << world.all_problems();
+  world->start();
+  Space& space = world->space();
+  const auto crate = [](double x_m, double low_m) {
+    Object o = box("crate", x_m, 0, 0.2, 0.2);
+    o.movable = true;
+    o.mass_kg = 1.0;
+    o.z_low_m = low_m;
+    o.z_high_m = low_m + 0.2;
+    return o;
+  };
+  EXPECT_THAT(error_of(space.add_object(crate(0.7, 0.5))), HasSubstr("where box 'box0' is"));
+  EXPECT_THAT(error_of(space.add_object(crate(-0.7, 1.3))), HasSubstr("where box 'box0' is"));
+  const auto id = space.add_object(crate(0.7, 0.0));
+  ASSERT_TRUE(id.ok()) << id.error().message;
+  EXPECT_TRUE(space.room_for(id.value(), {0.7, 0.0, 1.0, 1.0, 0.0}).ok()) << "over the low end";
+  EXPECT_TRUE(space.room_for(id.value(), {-0.7, 0.0, 1.0, 1.0, 0.0}).ok()) << "under the high end";
+  EXPECT_FALSE(space.room_for(id.value(), {-0.7, 0.0, 1.4, 1.0, 0.0}).ok());
+  EXPECT_FALSE(space.room_for(id.value(), {0.0, 0.0, 1.0, 1.0, 0.0}).ok());
+  const ObjectId cylinder = space.find_object("cylinder1");
+  EXPECT_FALSE(space.room_for(cylinder, {0.7, 0.0, 0.2, 1.0, 0.0}).ok()) << "0.5 m high: the board's end is 0.6 m up";
+  EXPECT_TRUE(space.room_for(cylinder, {-0.7, 0.0, 0.2, 1.0, 0.0}).ok());
+}
+
 TEST_P(Runtime, SaysWhyAnObjectCannotBe) {
   auto world = make(scene("drive").robot("a", 0, 0).box(1, 0, 0.2, 0.2));
   world->start();
