@@ -10,9 +10,9 @@
 namespace tandem::core {
 namespace {
 
-constexpr double kGravity_m_s2 = 9.81;
-constexpr double kLongestWay_m = 0.2;  // in a tick: farther away a body was put, and did not move
-constexpr double kNoTurn = 1e-9;       // sine of half an angle below which nothing turned
+constexpr double kGravity_m_s2 = 9.81;  // of bodies in no engine's region
+constexpr double kLongestWay_m = 0.2;   // in a tick: farther away a body was put, and did not move
+constexpr double kNoTurn = 1e-9;        // sine of half an angle below which nothing turned
 
 struct NoNoise {
   void describe(hal::ParamVisitor&) {}
@@ -54,9 +54,10 @@ double sinc(double a) noexcept {
 
 /// The constant force in the body's frame that changes its velocity from one moment to another, gravity apart, while it
 /// turns evenly between both attitudes. Exact on arcs, in free fall and at rest, at any length of tick.
-hal::Vector3 specific_force(const MotionBefore& from, const MotionBefore& to, double tick_s) noexcept {
+hal::Vector3 specific_force(const MotionBefore& from, const MotionBefore& to, double gravity_m_s2,
+                            double tick_s) noexcept {
   const hal::Vector3 mean_W =
-      (hal::vector_of(to.v_m_s) - hal::vector_of(from.v_m_s)) / tick_s + hal::Vector3(0.0, 0.0, kGravity_m_s2);
+      (hal::vector_of(to.v_m_s) - hal::vector_of(from.v_m_s)) / tick_s + hal::Vector3(0.0, 0.0, gravity_m_s2);
   const hal::Quaternion q_from = hal::quaternion_of(from.q_WB);
   hal::Quaternion turn = q_from.conjugate() * hal::quaternion_of(to.q_WB);
   if (turn.w() < 0.0) turn.coeffs() = -turn.coeffs();
@@ -86,7 +87,8 @@ class AccelerometerSensor final : public Sensor {
     for (std::size_t i = 0; i < context.block.used; ++i) {
       const std::size_t row = context.block.first_row + i;
       const MotionBefore now = motion_of(context, row, before_[i]);
-      hal::Vector3 force = specific_force(before_[i].seen ? before_[i] : at_rest(now), now, context.tick_s);
+      hal::Vector3 force = specific_force(before_[i].seen ? before_[i] : at_rest(now), now,
+                                          gravity(context.stores, row), context.tick_s);
       before_[i] = now;
       if (noise_m_s2_ > 0.0) {
         const auto bits =
@@ -100,6 +102,10 @@ class AccelerometerSensor final : public Sensor {
   }
 
  private:
+  static double gravity(const SpaceStores& stores, std::size_t row) noexcept {
+    const std::uint16_t region = stores.bodies.region[row];
+    return region == kNoRegion ? kGravity_m_s2 : stores.regions[region].gravity_m_s2;
+  }
   static MotionBefore at_rest(MotionBefore motion) noexcept {
     motion.v_m_s = {};
     return motion;

@@ -96,6 +96,8 @@ struct EngineType : KnownEngine {
   /// checks them; problems are reported with their lines.
   std::shared_ptr<const void> (*read)(const Element& options, Problems& problems) = nullptr;
   void (*describe)(hal::ParamVisitor& visitor) = nullptr;
+  /// What it pulls bodies down with, in m/s2, by what `read` gave. Null: 9.81.
+  double (*gravity)(const void* params) = nullptr;
   /// Why it cannot move an object of this size and mass; empty: it can. Null: it moves none or all.
   std::string (*unfit)(const Object& object) = nullptr;
   /// All of this kind in a run. Problems: parts that cannot work together.

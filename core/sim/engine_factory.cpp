@@ -142,6 +142,7 @@ class Maker {
     region.joints = type->traits.joints;
     region.listed = !type->whole;
     params_[number] = type->read(config.options, problems_);
+    if (type->gravity != nullptr) region.gravity_m_s2 = type->gravity(params_[number].get());
     add_regions(config, number, region, !type->whole);
   }
 

@@ -30,6 +30,7 @@ struct Region {
   bool plane = true;              ///< bodies in it stay on the ground
   bool forces = false;            ///< its engine knows masses: it can hold movable objects
   JointKinds joints = 0;          ///< that its engine has
+  double gravity_m_s2 = 9.81;     ///< that its engine pulls bodies down with
   bool listed = false;            ///< its engine wants `owned` and `mirrored`
   int line = 0;                   ///< of its engine in the file
   std::vector<RegionSide> sides;  ///< empty: the whole plane

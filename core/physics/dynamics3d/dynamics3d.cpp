@@ -127,6 +127,7 @@ const EngineType& dynamics3d_type() {
     t.traits = {.plane = false, .forces = true, .joints = kEveryJoint};
     t.read = &read;
     t.describe = [](hal::ParamVisitor& visitor) { Params{}.describe(visitor); };
+    t.gravity = [](const void* params) { return static_cast<const Params*>(params)->gravity.g_m_s2; };
     t.unfit = &unfit;
     t.make = &make_solvers;
     t.make_solver = [](const std::shared_ptr<const void>& params, const SpaceStores&, const Region&,

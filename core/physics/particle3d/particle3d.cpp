@@ -681,6 +681,7 @@ const EngineType& particle3d_type() {
     t.traits = {.plane = false, .air = true};
     t.read = &read;
     t.describe = [](hal::ParamVisitor& visitor) { Params{}.describe(visitor); };
+    t.gravity = [](const void* params) { return static_cast<const Params*>(params)->gravity_m_s2; };
     t.make = &make_solvers;
     t.make_solver = [](const std::shared_ptr<const void>& params, const SpaceStores&, const Region&,
                        double) -> std::unique_ptr<Solver> {

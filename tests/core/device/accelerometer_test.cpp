@@ -151,6 +151,28 @@ TEST(Accelerometer, ReadsNothingInFreeFall) {
   }
 }
 
+/// On the Moon: what it falls with is what it feels at rest.
+TEST(Accelerometer, ReadsTheGravityOfItsEngine) {
+  constexpr double kMoon_m_s2 = 1.62;
+  Scene falling = Scene(4.0, "everything").engine("dynamics3d");
+  Element gravity;
+  gravity.name = "gravity";
+  gravity.attributes = {{"g", "1.62", 0}};
+  falling.scenario.engines.back().options.children.push_back(gravity);
+  const Scene standing = Scene(4.0, "everything").engine("particle3d", "", {{"gravity", "1.62", 0}});
+  for (Scene scene : {falling, standing}) {
+    scene.robot("fb", 0.0, 0.0).wheels(0.0, 0.0);
+    scene.scenario.robots.back().placement.p_W[2] = 1.0;
+    auto world = make(scene);
+    ASSERT_TRUE(world.world) << world.all_problems();
+    steps(world, 5);
+    EXPECT_NEAR(pose_of(world, "fb").z_m, 1.0 - 0.5 * kMoon_m_s2 * 0.25, 0.05) << "after half a second";
+    for (const double axis : force_on(world)) EXPECT_NEAR(axis, 0.0, 1e-4) << "falling";
+    steps(world, 30);
+    EXPECT_NEAR(force_on(world)[2], kMoon_m_s2, 1e-4) << "on the floor";
+  }
+}
+
 /// Rotors push along the body's axis alone, however it leans and speeds up.
 TEST(Accelerometer, OfALeaningFlyerReadsItsThrustAlone) {
   Scene scene = eyebot_scene("dynamics3d_rotors");
