@@ -134,6 +134,8 @@ function(tandem_test)
   if(arg_WAITS)
     math(EXPR arg_TIMEOUT "${arg_TIMEOUT} * 3")
     list(APPEND arg_SOURCES ${PROJECT_SOURCE_DIR}/tests/scenarios/fair_trials.cpp)
+    list(APPEND arg_DEPS hal)
+    list(REMOVE_DUPLICATES arg_DEPS)
   endif()
   if(CMAKE_CROSSCOMPILING)
     math(EXPR arg_TIMEOUT "${arg_TIMEOUT} * 10") # an emulated processor is slow

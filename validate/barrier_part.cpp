@@ -79,6 +79,24 @@ Figure figure_of(const std::vector<Encounters>& all) {
                       first, later, kLatency_ms, kLatency_ms, kLatency_ms, 1e3 * kApart_m)};
 }
 
+/// Of a run of pairs, each with its hidden delay.
+void judge(Part& part, const Laboratory& lab, const MixedRun& run, const std::vector<double>& delays_ms) {
+  Table table{"Encounters", "", {"hidden delay", "encounters", "contacts", "smallest gap of each (mm)"}, {}};
+  const auto clocks = lab.table("run time clock");
+  if (!clocks.ok()) throw std::runtime_error(clocks.error().message);
+  const auto& ticks = clocks.value().rows.at("run");
+  const std::size_t monotonic = clocks.value().column("monotonic_ns");
+  std::vector<Encounters> all;
+  for (std::size_t i = 0; i < delays_ms.size(); ++i) {
+    const auto a = lab.log_of(run.robots[2 * i].id), b = lab.log_of(run.robots[2 * i + 1].id);
+    if (!a.ok() || !b.ok()) throw std::runtime_error("a robot's log tells no places");
+    all.push_back(encounters_of(delays_ms[i], a.value(), b.value(), ticks.front()[monotonic], ticks.back()[monotonic]));
+    table.rows.push_back(row_of(all.back()));
+  }
+  part.tables.push_back(std::move(table));
+  part.figures.push_back(figure_of(all));
+}
+
 }  // namespace
 
 Part barrier_part(Depth depth) {
@@ -99,28 +117,11 @@ Part barrier_part(Depth depth) {
                             3.0 * static_cast<double>(i) - 9.0,
                             side == 0 ? 0.0 : 180.0,
                             {"--command_delay", fmt::format("{} s", delays_ms[i] / 1e3)}});
-  Table table{"Encounters", "", {"hidden delay", "encounters", "contacts", "smallest gap of each (mm)"}, {}};
   try {
-    auto made = Laboratory::run(run);
-    if (!made.ok()) throw std::runtime_error(made.error().message);
-    const auto& lab = *made.value();
-    const auto clocks = lab.table("run time clock");
-    if (!clocks.ok()) throw std::runtime_error(clocks.error().message);
-    const auto& ticks = clocks.value().rows.at("run");
-    const std::size_t monotonic = clocks.value().column("monotonic_ns");
-    std::vector<Encounters> all;
-    for (std::size_t i = 0; i < delays_ms.size(); ++i) {
-      const auto a = lab.log_of(run.robots[2 * i].id), b = lab.log_of(run.robots[2 * i + 1].id);
-      if (!a.ok() || !b.ok()) throw std::runtime_error("a robot's log tells no places");
-      all.push_back(
-          encounters_of(delays_ms[i], a.value(), b.value(), ticks.front()[monotonic], ticks.back()[monotonic]));
-      table.rows.push_back(row_of(all.back()));
-    }
-    part.figures.push_back(figure_of(all));
+    in_fair_trials(part, run, [&](Part& judged, const Laboratory& lab) { judge(judged, lab, run, delays_ms); });
   } catch (const std::exception& wrong) {
-    table.rows.push_back({{wrong.what(), "", "", ""}, "", Verdict::NotMade});
+    part.tables.push_back({"Encounters", "", {"error"}, {{{wrong.what()}, "", Verdict::NotMade}}});
   }
-  part.tables.push_back(std::move(table));
   return part;
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <memory>
 #include <string>
@@ -10,6 +11,8 @@
 
 #include "hal/json/json.hpp"
 #include "hal/result.hpp"
+#include "hal/time.hpp"
+#include "validate/row.hpp"
 
 namespace tandem::validate {
 
@@ -58,10 +61,18 @@ class Laboratory {
   hal::Result<RecordTable> table(const std::string& name) const;
   /// What `tandem fit` finds in the record.
   hal::Result<hal::Json> fit() const;
+  /// The longest that a thread of hub, robots or tracker waited for a processor between two looks, 0.2 s apart.
+  hal::TimeNs longest_wait_ns() const { return longest_wait_ns_; }
 
  private:
   explicit Laboratory(std::filesystem::path folder) : folder_(std::move(folder)) {}
   std::filesystem::path folder_;
+  hal::TimeNs longest_wait_ns_ = 0;
 };
+
+/// Runs and lets `judge` fill a part with tables and figures, up to three times: what is not met while a thread had to
+/// wait 60 ms and more for a processor is not the program's doing, so that trial is void. Rows of a last one that is
+/// void are not made. All trials are told in a table. @throws std::runtime_error when nothing can be run
+void in_fair_trials(Part& part, const MixedRun& run, const std::function<void(Part&, const Laboratory&)>& judge);
 
 }  // namespace tandem::validate

@@ -40,8 +40,7 @@ void compare(const core::Space& space, const Things& things, std::size_t i, doub
       all.push_back(
           {static_cast<double>(read.distance_m[n]), is,
            n < read.count ? std::abs(std::remainder(static_cast<double>(read.angle_rad[n]) - at, 2.0 * M_PI)) : NAN,
-           std::abs(far(things.smaller) - far(things.larger)) > kSame_m,
-           is > h.min_m + 0.02 && is < h.max_m - 0.02});
+           std::abs(far(things.smaller) - far(things.larger)) > kSame_m, is > h.min_m + 0.02 && is < h.max_m - 0.02});
     }
 }
 

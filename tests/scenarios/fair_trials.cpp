@@ -9,13 +9,14 @@
 #include <cstdlib>
 #include <cstring>
 #include <gmock/gmock.h>
-#include <map>
 
+#include "hal/processor_waits.hpp"
 #include "tests/scenarios/process.hpp"
 
 namespace {
 
 using namespace tandem::scenarios;
+namespace hal = tandem::hal;
 
 constexpr int kMostTrials = 6;
 constexpr int kNoVerdict = 77;
@@ -24,36 +25,6 @@ constexpr auto kSample = std::chrono::milliseconds(200);
 /// What a thread that wants to run may wait between two samples: robots are asked every 100 ms, and may be silent
 /// once.
 constexpr long long kMostWaiting_ns = 60'000'000;
-
-/// The threads of a trial's programs, and how long each had waited for a processor when it was last looked at.
-class Watch {
- public:
-  explicit Watch(std::string mark) : mark_(std::move(mark)) {}
-
-  void sample() {
-    for (const pid_t process : processes_marked(mark_)) {
-      std::error_code error;
-      for (const auto& thread : fs::directory_iterator("/proc/" + std::to_string(process) + "/task", error))
-        look_at(thread.path());
-    }
-  }
-  /// The longest between two samples.
-  long long longest_ns() const { return longest_ns_; }
-
- private:
-  void look_at(const fs::path& thread) {
-    long long ran_ns = 0, waited_ns = 0;
-    std::istringstream in(text_of(thread / "schedstat"));
-    if (!(in >> ran_ns >> waited_ns)) return;  // it has ended, or this system keeps no account
-    const auto [known, is_new] = waited_ns_.try_emplace(thread.string(), waited_ns);
-    longest_ns_ = std::max(longest_ns_, is_new ? waited_ns : waited_ns - known->second);
-    known->second = waited_ns;
-  }
-
-  std::string mark_;
-  std::map<std::string, long long> waited_ns_;
-  long long longest_ns_ = 0;
-};
 
 /// This program, with these arguments more; -1: it cannot be started.
 pid_t start(std::vector<std::string> words, const std::vector<std::string>& more, const std::string& mark, int output) {
@@ -107,18 +78,18 @@ Verdict try_fairly(const std::vector<std::string>& words, const std::string& tes
   static int trials = 0;
   for (int i = 1; i <= kMostTrials; ++i) {
     const std::string mark = mark_of(++trials);
-    Watch watch(mark);
+    hal::ProcessorWaits waits;
     const pid_t process = start(words, {"--gtest_filter=" + test}, mark, -1);
     if (process < 0) return Verdict::Failed;
     int status = 0;
     while (waitpid(process, &status, WNOHANG) == 0) {
-      watch.sample();
+      for (const pid_t one : processes_marked(mark)) waits.look(one);
       std::this_thread::sleep_for(kSample);
     }
     for (const pid_t left : processes_marked(mark)) kill(left, SIGKILL);  // of a test that has crashed
     if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return Verdict::Passed;
-    const long long waited_ms = watch.longest_ns() / 1'000'000;
-    if (watch.longest_ns() < kMostWaiting_ns) {
+    const long long waited_ms = waits.longest_ns() / 1'000'000;
+    if (waits.longest_ns() < kMostWaiting_ns) {
       std::printf("%s failed in a fair trial: no thread waited for a processor for more than %lld ms of %lld\n",
                   test.c_str(), waited_ms, static_cast<long long>(kSample.count()));
       return Verdict::Failed;
