@@ -31,7 +31,8 @@ constexpr const char* kStyle =
     "body{font:15px/1.45 system-ui,sans-serif;max-width:70em;margin:2em auto;padding:0 1em;color:#1a1a1a}"
     "table{border-collapse:collapse;margin:.6em 0 1.6em;width:100%}th,td{text-align:left;vertical-align:top;"
     "padding:.25em .6em;border-bottom:1px solid #ddd;white-space:pre-wrap}th{font-weight:600;border-bottom:2px solid "
-    "#888}td.met{color:#00622c}td.bad{color:#a40000;font-weight:600}figure{display:inline-block;margin:.5em;max-width:"
+    "#888}td.met,td.bad{white-space:nowrap}td.met{color:#00622c}td.bad{color:#a40000;font-weight:600}figure{display:"
+    "inline-block;margin:.5em;max-width:"
     "32em}img{width:100%}figcaption{font-size:.9em;color:#444}";
 
 std::string table_html(const Table& table) {

@@ -116,7 +116,8 @@ Table rays(Depth depth) {
   return {"Rays",
           fmt::format(
               "{} worlds of 40 foot-bots and 80 e-pucks at rest among boxes, cylinders and walls; each reading against "
-              "the ray caster. Rays that change when solids grow by 0.1 µm pass by an edge and are left out.",
+              "the ray caster; distance scanners and ground sensors in worlds of their own. Rays that change when "
+              "solids grow by 0.1 µm pass by an edge and are left out.",
               worlds),
           {"sensor", "readings", "largest difference"},
           std::move(rows)};
