@@ -12,6 +12,10 @@ from rooms import CONFIGS, DIFFUSION, FOOTBOTS, room
 
 VELOCITY = "controllers.epuck_diffusion[d].params.velocity"
 
+# An e-puck's way in 0.1 s when told 5 cm/s: 388 steps a second, each of them trunc(10000 / 388) = 25 periods of 0.1 ms, and
+# 1,000 steps to the turn of a wheel of 20.5 mm.
+STEPPED_M = 0.1 * 10000 / (10000 // 388) / 1000 * 2 * np.pi * 0.0205
+
 
 class Worlds(unittest.TestCase):
     def test_are_those_of_the_command(self):
@@ -60,7 +64,7 @@ class Worlds(unittest.TestCase):
         before = world.swarm.poses
         world.step(1)
         moved = np.hypot(*(world.swarm.poses - before)[:, :2].T)
-        self.assertAlmostEqual(np.median(moved), 0.005, places=6)
+        self.assertAlmostEqual(np.median(moved), STEPPED_M, places=6)
 
     def test_limit_commands_as_controllers_are_limited(self):
         world = tandem.World(room(robots=4), driven="d")
@@ -142,7 +146,7 @@ class Worlds(unittest.TestCase):
         late.left = late.right = 0.05
         left[row] = 0.01
         world.step()
-        self.assertAlmostEqual(world.pose("newest")[0], far[0][0] + 0.005)
+        self.assertAlmostEqual(world.pose("newest")[0], far[0][0] + STEPPED_M)
         gone = world.swarms[1]
         world.restore(start)
         late.left = 0.02  # memory of nobody, still there
