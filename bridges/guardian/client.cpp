@@ -175,7 +175,9 @@ void GuardianClient::Heart::woke_up(TimeNs slept_ns) {
 
 /// A guardian that is frozen guards nobody; what it was doing is for us to go on with.
 void GuardianClient::Heart::look_at_guardian() {
-  const std::uint32_t beats = page_.guardian_beats.load(std::memory_order_relaxed);
+  // Before its beats: one that wakes up right now takes a new turn after its beat, and keeps that.
+  const std::uint32_t turn = page_.turn.load(std::memory_order_acquire);
+  const std::uint32_t beats = page_.guardian_beats.load(std::memory_order_acquire);
   const bool frozen = lives_ && guardian_pulse_.frozen(beats, monotonic_ns(), [this] { return is_stopped(process_); });
   if (frozen && !guardian_frozen_.exchange(true)) {
     news_.emplace_back(
@@ -185,7 +187,7 @@ void GuardianClient::Heart::look_at_guardian() {
     news_.emplace_back("the guardian process is awake again");
   }
   if (lives_ && !frozen) return;
-  page_.give_turn();
+  page_.give_turn(turn);
   declared_ = false;
 }
 
@@ -236,7 +238,7 @@ void GuardianClient::Heart::take_from_guardian(bool readable) {
     if (n < 0 && errno == EINTR) continue;
     if (n < 0 && errno == EAGAIN) return;
     lives_ = false;
-    page_.give_turn();
+    page_.give_turn(page_.turn.load(std::memory_order_acquire));
     declared_ = false;
     if (!ended_) {
       news_.emplace_back(

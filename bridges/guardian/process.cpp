@@ -194,7 +194,7 @@ void Process::settle_in() {
 // --- the hub ---
 
 void Process::beat() {
-  in_.page->guardian_beats.fetch_add(1, std::memory_order_relaxed);
+  in_.page->guardian_beats.fetch_add(1, std::memory_order_release);
   if (const TimeNs slept_ns = own_.slept(hal::boottime_ns()); slept_ns > 0) woke_up(slept_ns);
 }
 
@@ -261,7 +261,9 @@ void Process::obey(const Packet& packet) {
       claim(packet.robot);
       break;
     case Word::Watch:
-      if (found != robots_.end()) found->second->watch(packet.robot);
+      if (found == robots_.end()) break;
+      found->second->watch(packet.robot);
+      if (hub_ == Hub::Frozen || hub_ == Hub::Back) found->second->stop(StopCause::HubFrozen);  // as all others are
       break;
     case Word::Release:
       if (found != robots_.end()) found->second->release();
@@ -320,7 +322,7 @@ void Process::hand_back() {
   hub_ = Hub::Alive;
   for (const auto& [id, robot] : robots_) robot->hold();  // nothing begins to stop them anew
   pulse_.forget();
-  in_.page->give_turn();
+  in_.page->give_turn(in_.page->turn.load(std::memory_order_relaxed));
   context_.say_to_hub({Word::HandedBack, {}, ""});
 }
 

@@ -461,7 +461,7 @@ TEST_F(Guarded, HubKnowsThatItsGuardianIsFrozenAndTheGuardianStopsAllWhenItIsBac
   std::this_thread::sleep_for(std::chrono::milliseconds(600));  // longer than what is excused
   hub.signal_guardian(SIGCONT);
   ASSERT_TRUE(hub.said("guarded again"));
-  ASSERT_TRUE(was("r", "rests"));
+  ASSERT_TRUE(was("r", "rests")) << text_of(runtime_.path() / "r") << text_of(runtime_.path() / "hub") << errors();
   hub.tell('w');
   ASSERT_TRUE(hub.said("back "));
   hub.tell('n');
