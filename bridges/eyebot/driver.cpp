@@ -431,6 +431,8 @@ void EyebotDriver::stop(TimeNs now) noexcept {
 }
 
 void EyebotDriver::land(TimeNs now) noexcept {
+  if (goal_ != Goal::Land && status_.known && status_.mode != Mode::Idle && status_.mode != Mode::Off)
+    log_.info("eye-bot '" + settings_.robot.id + "' lands; nothing but its landing ends that");
   set_goal(Goal::Land, now);
   pump(now);
 }
