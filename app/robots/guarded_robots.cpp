@@ -8,8 +8,8 @@ namespace {
 
 using bridges::guardian::GuardianClient;
 
-constexpr hal::TimeNs kConfirmWithin = 2 * hal::kNsPerSecond;  // to the guardian, after the bridges have ended
-constexpr hal::TimeNs kStopWithin = 3 * hal::kNsPerSecond;     // robots that dead programs have left
+constexpr hal::TimeNs kConfirmWithin = 500 * hal::kNsPerMs;  // to the guardian, after the bridges have ended
+constexpr hal::TimeNs kStopWithin = 3 * hal::kNsPerSecond;   // robots that dead programs have left
 
 std::vector<bridges::guardian::StopperType> stoppers_of(const hal::Catalog& catalog) {
   std::vector<bridges::guardian::StopperType> stoppers;

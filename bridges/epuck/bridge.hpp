@@ -25,7 +25,7 @@ struct BridgeSettings {
   std::string link = {};                          ///< as the experiment says it, for whoever stops the robot without us
   std::string firmware = "auto";                  ///< which one it must run; with another one it never becomes Active
   hal::TimeNs reopen_ns = 100 * hal::kNsPerMs;    ///< between tries to open the link
-  hal::TimeNs shutdown_ns = 600 * hal::kNsPerMs;  ///< how long the end waits for the robot to confirm its stop
+  hal::TimeNs shutdown_ns = 300 * hal::kNsPerMs;  ///< how long the end waits for the robot to confirm its stop
 };
 
 /// Timing for a link of this name: Bluetooth (rfcomm) devices and those in a network answer late.

@@ -372,7 +372,7 @@ struct Bridge {
       "bridge", "Makes the robot stand for a real one on this link. Further attributes are those of its kind.", "link",
       kAnything};
   std::string link, rearm = "proved", missing = "refuse";
-  double timeout_s = 0.5, settle_s = 0.3, ramp_m_s2 = 0.25, connect_s = 15.0, stop_s = 2.0;
+  double timeout_s = 0.5, settle_s = 0.3, ramp_m_s2 = 0.25, connect_s = 15.0, stop_s = 1.0;
   void describe(ParamVisitor& v) {
     v.text("link", link, "Where the real robot is, e.g. serial:/dev/ttyUSB0@115200.");
     v.number("timeout", timeout_s, unit::s, {0.05, 60.0},

@@ -98,7 +98,7 @@ struct BridgeConfig {
   double ramp_m_s2 = 0.25;               ///< then its largest speed grows from 0 by this
   IfMissing if_missing = IfMissing::Refuse;
   double connect_s = 15.0;  ///< from which it counts as missing, before the run
-  double stop_s = 2.0;      ///< for it to confirm its stop, at the end
+  double stop_s = 1.0;      ///< for it to confirm its stop, at the end
 };
 
 /// A simulated robot whose controller steps elsewhere, in lock-step with the run.
