@@ -159,7 +159,7 @@ TEST(Accelerometer, ReadsTheGravityOfItsEngine) {
   gravity.name = "gravity";
   gravity.attributes = {{"g", "1.62", 0}};
   falling.scenario.engines.back().options.children.push_back(gravity);
-  const Scene standing = Scene(4.0, "everything").engine("particle3d", "", {{"gravity", "1.62", 0}});
+  const Scene standing = Scene(4.0, "everything").engine("particle3d", "", {{"gravity", "1.62", 0}, {"drag", "0", 0}});
   for (Scene scene : {falling, standing}) {
     scene.robot("fb", 0.0, 0.0).wheels(0.0, 0.0);
     scene.scenario.robots.back().placement.p_W[2] = 1.0;
