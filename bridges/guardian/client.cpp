@@ -237,6 +237,7 @@ void GuardianClient::Heart::take_from_guardian(bool readable) {
     }
     if (n < 0 && errno == EINTR) continue;
     if (n < 0 && errno == EAGAIN) return;
+    if (!ended_) look_at_turn();  // it may have stopped robots before it died
     lives_ = false;
     page_.give_turn(page_.turn.load(std::memory_order_acquire));
     declared_ = false;

@@ -248,6 +248,13 @@ class Guarded : public testing::Test {
   }
   void let_hear(const std::string& id) const { std::ofstream(runtime_.path() / (id + ".hears")) << ""; }
   std::string errors() const { return text_of(runtime_.path() / "errors"); }
+  /// Also one for which its parent has not waited yet: what it had open is closed.
+  bool ended(pid_t process) const {
+    return eventually([&] {
+      const std::string stat = text_of("/proc/" + std::to_string(process) + "/stat");
+      return stat.empty() || stat.find(") Z ") != std::string::npos;
+    });
+  }
   bool gone(pid_t process) const {
     return eventually([&] { return ::kill(process, 0) != 0; });
   }
@@ -410,7 +417,8 @@ TEST_F(Guarded, RobotIsStoppedWhenItsHubIsFrozenAndTheHubKnowsWhenItIsBack) {
   back >> lasted_ms >> turn;
   EXPECT_GE(lasted_ms, 80);
   EXPECT_LE(lasted_ms, (now_ns() - frozen) / kNsPerMs);
-  EXPECT_EQ(turn, 2);
+  EXPECT_EQ(turn % 2, 0) << "the hub's again";
+  EXPECT_GT(turn, 0);
   hub.tell('v');  // nothing of the hub's turn has the guardian stop anybody
   hub.tell('n');
   ASSERT_TRUE(hub.said("freezes 1"));
@@ -495,12 +503,17 @@ TEST_P(FrozenTogether, AHubWritesToNoLinkThatWasOpenWhoeverWakesFirst) {
   EXPECT_GE(std::atoi(hub.line("freezes ").c_str()), 1);
 }
 
-TEST_F(Guarded, HubStopsItsRobotsItselfWhenItsGuardianDiesInItsTurn) {
+class DeadInItsTurn : public Guarded, public testing::WithParamInterface<bool> {};
+INSTANTIATE_TEST_SUITE_P(BeforeTheHubWakes, DeadInItsTurn, testing::Bool());
+
+TEST_P(DeadInItsTurn, AHubStopsItsRobotsItself) {
   Hub hub(runtime_.path(), drives({robot("r", "deaf")}));
   ASSERT_TRUE(hub.said("drives"));
   hub.signal(SIGSTOP);
   ASSERT_TRUE(was("r", "frozen"));
   hub.signal_guardian(SIGKILL);
+  // Its end has been seen to, or not yet, when the hub looks.
+  if (GetParam()) EXPECT_TRUE(ended(hub.guardian()));
   hub.tell('w');
   hub.signal(SIGCONT);
   ASSERT_TRUE(hub.said("back "));
