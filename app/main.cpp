@@ -14,6 +14,11 @@ namespace {
 
 using namespace tandem::app;
 
+void add_desk_keys(CLI::App& c, std::string& keys) {
+  c.add_option("--desk-keys", keys,
+               "Who commands over LCM (<desk lcm=…>): a file of lines NAME ROLE SECRET; default: this user's");
+}
+
 /// How pictures and films look.
 void add_looks(CLI::App& c, PictureRequest& o) {
   c.add_option("--picture-size", o.size_px, "Pixels of the longer side of what is shown")
@@ -96,8 +101,7 @@ void add_run_options(CLI::App* c, RunOptions& o) {
       ->check(CLI::PositiveNumber)
       ->needs(dump);
   add_step_timeout(*c, o.step_timeout_s);
-  c->add_option("--desk-keys", o.hold.desk_keys,
-                "Who commands over LCM (<desk lcm=…>): a file of lines NAME ROLE SECRET; default: this user's");
+  add_desk_keys(*c, o.hold.desk_keys);
   c->add_flag("--anyway", o.anyway, "Drive real robots although their last first motion (preflight --move) failed");
   c->add_option("--step-limit", o.step_limit_s,
                 "End the run, as a failure, when a controller or hook has not returned after so many seconds; 0: never")
@@ -336,6 +340,7 @@ void add_desk(CLI::App& app, PreflightOptions& p, DeskOptions& d, int& code) {
   c->add_option("--listen", p.listen_s, "Seconds to listen to robots and trackers after that")
       ->capture_default_str()
       ->check(CLI::Range(0.1, 3600.0));
+  add_desk_keys(*c, p.desk_keys);
   c->add_option("--without", p.without, "Leave this robot out; repeatable")->allow_extra_args(false);
   c->add_option("--set", p.overrides, "Change the experiment first: path=value; repeatable")->allow_extra_args(false);
   c->add_flag("--json", p.json, "One JSON object instead of a table");

@@ -204,6 +204,7 @@ struct PreflightOptions {
   bool yes = false;                  ///< … without asking
   bool json = false;
   std::string report;
+  std::string desk_keys;  ///< as of `run`
 };
 
 struct DeskOptions {

@@ -69,8 +69,8 @@ class Server : public std::enable_shared_from_this<Server> {
   void set_wishes();
   void wished();
   void carry_out(Viewer& viewer, const ViewerCommand& command);
-  /// Why who has this role may not say this command now; empty: it may.
-  std::string why_not(UserRole role, const std::string& command);
+  /// Why whoever has this role may not say anything like this command now; empty: nothing is in the way.
+  std::string too_much(UserRole role, const std::string& command);
   std::shared_ptr<const std::string> floor_png(const FrameScene& scene);
   /// False: nobody makes pictures here.
   bool make_picture(const std::string& name, const std::shared_ptr<Visitor>& visitor);
@@ -109,6 +109,7 @@ class Server : public std::enable_shared_from_this<Server> {
   mutable std::mutex mutex;  // guards the rest
   Wishes wishes;
   std::function<void(Json, WindowReply)> take_command;
+  std::function<void(const Json&, const Json&)> tell_refused;
   std::function<void(const std::string&, WindowFileReply)> picture_maker;
   std::function<void()> on_wish;
   std::optional<Frame> shown;  // waits to be encoded

@@ -94,11 +94,8 @@ void Server::send_inspection(const Json& message) {
   }
 }
 
-std::string Server::why_not(UserRole role, const std::string& command) {
+std::string Server::too_much(UserRole role, const std::string& command) {
   if (role == UserRole::Operator) return {};
-  if (!may_say(role, command))
-    return "this address is a viewer's, which sees, and may stop all real robots (estop): '" + command +
-           "' needs the address of an operator";
   const Clock::time_point now = Clock::now();
   if (now - viewers_second >= std::chrono::seconds(1)) {
     viewers_second = now;
@@ -121,15 +118,24 @@ void Server::carry_out(Viewer& viewer, const ViewerCommand& command) {
       }
     });
   };
-  if (const std::string why = why_not(viewer.role(), command.name); !why.empty()) return reply(refusal(why));
+  const std::string why = too_much(viewer.role(), command.name);
   std::function<void(Json, WindowReply)> take;
+  std::function<void(const Json&, const Json&)> refused;
   {
     const std::lock_guard lock(mutex);
     take = take_command;
+    refused = tell_refused;
   }
-  if (!take) return reply(refusal("nobody takes commands here"));
   Json whole = command.whole;
   whole["by"] = {{"role", name_of(viewer.role())}, {"address", viewer.address()}};
+  if (!may_say(viewer.role(), command.name)) {
+    const Json answer = refusal("this address is a viewer's, which sees, and may stop all real robots (estop): '" +
+                                command.name + "' needs the address of an operator");
+    if (refused && why.empty()) refused(whole, answer);
+    return reply(answer);
+  }
+  if (!why.empty()) return reply(refusal(why));
+  if (!take) return reply(refusal("nobody takes commands here"));
   take(std::move(whole), std::move(reply));
 }
 

@@ -38,6 +38,10 @@ void Window::set_commands(std::function<void(hal::Json, WindowReply)> take) {
   const std::lock_guard lock(server_->mutex);
   server_->take_command = std::move(take);
 }
+void Window::on_refused(std::function<void(const hal::Json&, const hal::Json&)> tell) {
+  const std::lock_guard lock(server_->mutex);
+  server_->tell_refused = std::move(tell);
+}
 void Window::set_pictures(std::function<void(const std::string&, WindowFileReply)> make) {
   const std::lock_guard lock(server_->mutex);
   server_->picture_maker = std::move(make);

@@ -60,6 +60,8 @@ class Window {
   /// must not wait; `reply` may be called on any thread, once, also when the viewer or the window is gone. "by" in the
   /// command is the window's word: {"role": "operator" or "viewer", "address": numbers}.
   void set_commands(std::function<void(hal::Json command, WindowReply reply)> take);
+  /// Told of commands that were refused because a viewer may not say them: on the window's thread, must not wait.
+  void on_refused(std::function<void(const hal::Json& command, const hal::Json& answer)> tell);
   /// Who makes "picture.svg" and "picture.png": as `set_commands`.
   void set_pictures(std::function<void(const std::string& name, WindowFileReply reply)> make);
   /// Called on the window's thread when a viewer came or wishes changed: a frame is to be shown although nothing moved.

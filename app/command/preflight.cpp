@@ -14,6 +14,7 @@
 #include "app/outputs/run_report.hpp"
 #include "app/process/signals.hpp"
 #include "app/process/terminal.hpp"
+#include "app/robots/desk_keys.hpp"
 #include "app/robots/desks.hpp"
 #include "app/robots/guarded_robots.hpp"
 #include "app/robots/lockstep_peers.hpp"
@@ -45,6 +46,19 @@ PreflightRows rows_of_files(const InputFiles& files) {
   for (const InputFile& file : files.controllers) add_file("controller", file, rows);
   for (const InputFile& file : files.hooks) add_file("hook", file, rows);
   return rows;
+}
+
+/// Who may command the run over LCM.
+PreflightRow row_of_desk(const core::DeskConfig& desk, const std::string& keys_file) {
+  const std::string about = "desk " + desk.lcm;
+  const auto keys = keys_to_listen(keys_file, desk.lcm, desk.channel);
+  if (!keys.ok()) return {about, "keys", Finding::Fail, keys.error().message, "see --desk-keys"};
+  std::string people;
+  for (const bridges::desk::DeskKey& key : keys.value()) {
+    people += people.empty() ? "" : ", ";
+    people += (key.who == "*" ? "anybody who has the key" : key.who) + " (" + std::string(name_of(key.role)) + ")";
+  }
+  return {about, "keys", Finding::Ok, people, ""};
 }
 
 /// A run in lock-step: whether its peers come, and run what the hub's file names.
@@ -229,7 +243,7 @@ int preflight(const PreflightOptions& options) {
   print_problems(problems);
   if (world == nullptr) return kBadInput;
   PreflightRows rows = rows_of_files(input_files(*scenario, loader));
-
+  if (!scenario->desk.lcm.empty()) rows.push_back(row_of_desk(scenario->desk, options.desk_keys));
   if (peers) {
     const PreflightRows more = look_over_peers(*world, loader, stop);
     rows.insert(rows.end(), more.begin(), more.end());

@@ -48,7 +48,8 @@ std::string command_text(hal::Tick tick, const Json& command, const Json& answer
 
 core::LiveReply CommandLog::noting(const Json& command, core::LiveReply reply) const {
   const std::string name = text_of(command, "do");
-  if (std::find(kQuestions.begin(), kQuestions.end(), name) != kQuestions.end()) return reply;
+  if (std::find(kQuestions.begin(), kQuestions.end(), name) != kQuestions.end())
+    return reply ? reply : [](const Json&) {};
   return [keep = keep_, live = &live_, command, reply = std::move(reply)](const Json& answer) {
     keep("command at " + command_text(live->state().tick, command, answer));
     if (reply) reply(answer);

@@ -103,17 +103,17 @@ hal::Status Desks::listen(const core::DeskConfig& config, const std::string& key
   auto opened = bridges::desk::LcmDesk::open(
       config.lcm, config.channel, std::move(keys).value(),
       [this](const bridges::desk::DeskMessage& message, hal::UserRole role, bridges::desk::LcmDesk::Reply reply) {
-        const auto refuse = [&reply](const std::string& why) { reply(hal::to_text({{"ok", false}, {"error", why}})); };
+        const core::LiveReply answer = [reply](const Json& json) { reply(hal::to_text(json)); };
         auto command = window::read_viewer_text(message.text);
-        if (!command.ok()) return refuse("no command: " + command.error().message);
-        if (!window::may_say(role, command.value().name))
-          return refuse("'" + message.who + "' is a viewer, who may stop all real robots (estop); '" +
-                        command.value().name + "' needs an operator");
+        if (!command.ok()) return answer({{"ok", false}, {"error", "no command: " + command.error().message}});
         Json whole = std::move(command.value().whole);
         whole["who"] = message.who;
         whole["by"] = {{"role", name_of(role)}, {"address", "lcm"}};
-        post(
-            std::move(whole), [reply](const Json& answer) { reply(hal::to_text(answer)); }, "lcm");
+        if (window::may_say(role, command.value().name)) return post(std::move(whole), answer, "lcm");
+        commands_.noting(
+            whole, answer)({{"ok", false},
+                            {"error", "'" + message.who + "' is a viewer, who may stop all real robots (estop); '" +
+                                          command.value().name + "' needs an operator"}});
       });
   if (!opened.ok()) return hal::Error{"<desk lcm=…>: " + opened.error().message};
   lcm_ = std::move(opened).value();

@@ -3,6 +3,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <string>
 
@@ -224,6 +225,8 @@ std::string with_lcm(const Folder& folder, const std::string& url) {
   return file.string();
 }
 
+constexpr const char* kTwoKeys = "anna operator 1c5d0c1b2ad64ec09d1b\nben viewer 77ab1b6f6b3c4f5e8d21\n";
+
 std::string keys_file(const Folder& folder, const std::string& text) {
   const fs::path file = folder.path() / "desk.keys";
   std::ofstream(file) << text;
@@ -236,7 +239,7 @@ TEST(Desk, OverLcmIsForThoseWhoHaveAKeyByTheirRole) {
   EmulatedEpuck epuck(folder);
   ASSERT_TRUE(epuck.ready());
   const std::string url = "udpm://239.255.76.69:7669?ttl=0";
-  const std::string keys = keys_file(folder, "anna operator 1c5d0c1b2ad64ec09d1b\nben viewer 77ab1b6f6b3c4f5e8d21\n");
+  const std::string keys = keys_file(folder, kTwoKeys);
   Tandem run({"run", with_lcm(folder, url), "--set", "framework.experiment.length=0", "--quiet", "--record",
               "run.record", "--log", "run.log", "--desk-keys", keys},
              folder.path());
@@ -272,7 +275,22 @@ TEST(Desk, OverLcmIsForThoseWhoHaveAKeyByTheirRole) {
   EXPECT_NE(record.find(R"("do":"estop","who":"ben","by":{"role":"viewer","address":"lcm"})"), std::string::npos);
   EXPECT_NE(log.find("'ben' (viewer, lcm): estop"), std::string::npos) << log;
   EXPECT_NE(log.find("'anna' (operator, lcm): play"), std::string::npos) << log;
+  EXPECT_NE(log.find("'ben' (viewer, lcm): play: refused: 'ben' is a viewer"), std::string::npos) << log;
   EXPECT_EQ(log.find("ffffffff"), std::string::npos);
+}
+
+TEST(Desk, TellsInPreflightWhoMayCommandOverLcm) {
+  const Folder folder;
+  const std::string file = with_lcm(folder, "udpm://239.255.76.72:7672?ttl=0"), keys = keys_file(folder, kTwoKeys);
+  const auto preflight = [&] {
+    Tandem said({"preflight", file, "--wait", "0", "--listen", "0.1", "--desk-keys", keys}, folder.path());
+    EXPECT_EQ(said.wait(), 3) << "its robot is not there";
+    return said.output() + said.errors();
+  };
+  EXPECT_THAT(preflight(),
+              testing::ContainsRegex("ok +desk udpm://[^ ]+ +keys +anna \\(operator\\), ben \\(viewer\\)"));
+  fs::permissions(keys, fs::perms::others_read, fs::perm_options::add);
+  EXPECT_THAT(preflight(), testing::ContainsRegex("fail +desk udpm://[^ ]+ +keys +.*desk.keys"));
 }
 
 TEST(Desk, OverLcmWithoutKeysIsForThisUserOnThisMachine) {
