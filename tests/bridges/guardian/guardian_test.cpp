@@ -513,7 +513,9 @@ TEST_P(DeadInItsTurn, AHubStopsItsRobotsItself) {
   ASSERT_TRUE(was("r", "frozen"));
   hub.signal_guardian(SIGKILL);
   // Its end has been seen to, or not yet, when the hub looks.
-  if (GetParam()) EXPECT_TRUE(ended(hub.guardian()));
+  if (GetParam()) {
+    EXPECT_TRUE(ended(hub.guardian()));
+  }
   hub.tell('w');
   hub.signal(SIGCONT);
   ASSERT_TRUE(hub.said("back "));
