@@ -56,9 +56,23 @@ class Switch : public testing::Test {
     can_ = open_link("can:vcan0");
     ASSERT_NE(tcp_, nullptr) << switch_.output();
     ASSERT_NE(can_, nullptr);
-    // The switch accepts a connection before it serves it.
-    ::usleep(300'000);
+    EXPECT_TRUE(passes_on(*tcp_, *can_)) << switch_.output();
+    EXPECT_TRUE(passes_on(*can_, *tcp_)) << switch_.output();
   }
+  /// The switch accepts a connection before it serves it: what is sent first may be lost. All that was sent has come.
+  static bool passes_on(MessageLink& from, MessageLink& to) {
+    for (std::uint8_t i = 0; i < 100; ++i) {
+      EXPECT_TRUE(from.send(kProbe, Bytes{i, 0}));
+      MessageView view;
+      for (const hal::TimeNs end = monotonic_ns() + 300 * hal::kNsPerMs; monotonic_ns() < end;) {
+        if (to.receive(view) && view.type == kProbe && view.payload[0] == i) return true;
+        from.wait(0);
+        to.wait(5 * hal::kNsPerMs);
+      }
+    }
+    return false;
+  }
+  static constexpr std::uint16_t kProbe = 7;  // a user message
   Background switch_;
   std::unique_ptr<MessageLink> tcp_;
   std::unique_ptr<MessageLink> can_;
@@ -87,9 +101,9 @@ TEST_F(Switch, PassesMessagesOfEveryLengthBothWays) {
 
 TEST_F(Switch, HasItsOwnDumpUnderstandWhatWeSend) {
   Background dump("stdbuf -oL asebadump \"tcp:host=127.0.0.1;port=33333\"");
-  ::usleep(1'000'000);
-  EXPECT_TRUE(can_->send(0xA00C, Bytes{3, 0, 35, 0, 0xD4, 0xFE, 77, 0, 9, 0}));
-  EXPECT_TRUE(dump.says("set variables from 0 : dest 3 start 35, variables vector of size 3")) << dump.output();
+  const auto send = [&] { EXPECT_TRUE(can_->send(0xA00C, Bytes{3, 0, 35, 0, 0xD4, 0xFE, 77, 0, 9, 0})); };
+  EXPECT_TRUE(dump.says_after(send, "set variables from 0 : dest 3 start 35, variables vector of size 3"))
+      << dump.output();
   EXPECT_TRUE(can_->send(5, Bytes{0xD4, 0xFE, 77, 0, 9, 0, 0xFF, 0x7F}));
   EXPECT_TRUE(dump.says("user message from 0 : user message of size 4 : -300   77    9 32767")) << dump.output();
 }

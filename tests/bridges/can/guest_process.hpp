@@ -58,6 +58,15 @@ class Background {
     }
     return false;
   }
+  /// Does `act` again and again until the output holds `text`: nobody knows when a command begins to listen.
+  template <class Act>
+  bool says_after(Act act, const std::string& text) const {
+    for (int i = 0; i < 60; ++i) {
+      act();
+      if (says(text, 1)) return true;
+    }
+    return false;
+  }
 
  private:
   static std::string next() {

@@ -60,12 +60,13 @@ TEST(SocketCanLink, ReceivesWhatCansendSends) {
 TEST(SocketCanLink, SendsWhatCandumpSees) {
   const auto link = open_link("vcan0");
   Background candump("stdbuf -oL candump -L vcan0");
-  ::usleep(300'000);
-  EXPECT_EQ(link->send(make_frame(0x300, std::array<std::uint8_t, 4>{0x11, 0xA0, 5, 0})), Sent::Taken);
+  const auto send = [&] {
+    EXPECT_EQ(link->send(make_frame(0x300, std::array<std::uint8_t, 4>{0x11, 0xA0, 5, 0})), Sent::Taken);
+  };
+  EXPECT_TRUE(candump.says_after(send, "vcan0 300#11A00500")) << candump.output();
   CanFrame extended = make_frame(0x12ABCDEF, std::array<std::uint8_t, 1>{7});
   extended.extended = true;
   EXPECT_EQ(link->send(extended), Sent::Taken);
-  EXPECT_TRUE(candump.says("vcan0 300#11A00500")) << candump.output();
   EXPECT_TRUE(candump.says("vcan0 12ABCDEF#07")) << candump.output();
   CanFrame own;
   EXPECT_FALSE(link->receive(own));
