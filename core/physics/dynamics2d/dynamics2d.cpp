@@ -659,6 +659,7 @@ class Dynamics2d final : public Solver {
   /// Box2D moves a robot along the chord of its last sub-step; at the end of the arc it goes another way, and faster.
   static void end_of_arc(BodyProxy& proxy, double dt) noexcept {
     const double half = 0.5 * proxy.w_rad_s * dt;
+    if (half == 0.0) return;
     const double half2 = half * half;
     const double shorter = 1.0 - half2 / 6.0 * (1.0 - half2 / 20.0 * (1.0 - half2 / 42.0));
     const Heading v = turned({proxy.vx_m_s / shorter, proxy.vy_m_s / shorter}, half);

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <tuple>
 
-#include "core/physics/crowd.hpp"
+#include "core/physics/crowd_passes.hpp"
 #include "core/physics/wheels.hpp"
 #include "hal/unit.hpp"
 
@@ -195,7 +195,7 @@ Push push_of(const Contacts& contacts, const IndexEntry& e) noexcept {
     if (d2 >= touch * touch || &o == &e) return;
     if (contacts.heights && o.fixed() && !contacts.stores.side_by_side(e.row(), o.row())) return;  // flies above
     const double d = std::sqrt(d2);
-    overlap = std::max(overlap, Crowd::overlap(touch - d, own, other));
+    overlap = std::max(overlap, CrowdPasses::overlap(touch - d, own, other));
     const double share = (touch - d) * (o.fixed() ? 1.0 : 0.5);
     if (d > 0.0) {
       px += dx / d * share;
@@ -339,7 +339,7 @@ void Kinematics2d::settle(const PhysicsContext& context) {
         a->push_x_m = push.x_m;
         a->push_y_m = push.y_m;
         deepest_here = std::max(deepest_here, push.overlap);
-        if (marks && push.overlap > Crowd::kShallow) mark_dense(contacts, a->entry, dense_next_);
+        if (marks && push.overlap > CrowdPasses::kShallow) mark_dense(contacts, a->entry, dense_next_);
       }
       raise_to(deepest, deepest_here);
     });
@@ -372,16 +372,16 @@ void Kinematics2d::settle(const PhysicsContext& context) {
     overlap = find_pushes(false, adapts && pass + 1 == passes);
     pushed = push_apart();
   }
-  if (adapts && overlap > Crowd::kShallow) {  // the last pass pushed them, perhaps into others
-    for (; pass < Crowd::kMostPasses; ++pass) {
+  if (adapts && overlap > CrowdPasses::kShallow) {  // the last pass pushed them, perhaps into others
+    for (; pass < CrowdPasses::kMostPasses; ++pass) {
       dense_.swap(dense_next_);
       std::fill(dense_next_.begin(), dense_next_.end(), std::uint8_t{0});
       overlap = find_pushes(true, true);
-      if (overlap <= Crowd::kDeep) {  // what was pushed out of there may be in others, which were not near then
+      if (overlap <= CrowdPasses::kDeep) {  // what was pushed out of there may be in others, which were not near then
         known = false;
         overlap = find_pushes(false, true);
       }
-      if (overlap <= Crowd::kDeep) break;
+      if (overlap <= CrowdPasses::kDeep) break;
       push_apart();
     }
     std::fill(dense_next_.begin(), dense_next_.end(), std::uint8_t{0});

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <string>
 
-#include "core/physics/crowd.hpp"
+#include "core/physics/crowd_passes.hpp"
 #include "core/physics/near_pairs.hpp"
 #include "core/physics/particle3d/solid.hpp"
 #include "core/physics/wheels.hpp"
@@ -132,7 +132,7 @@ class Particle3d final : public Solver {
   std::vector<std::uint32_t> active_;   // those that may meet others or solid things in this tick
   std::vector<std::uint8_t> solid_near_;
   NearPairs pairs_;
-  Crowd crowd_;
+  CrowdPasses crowd_;
   bool crowded_ = false;  // some are deep in one another: the crowd is told how deep
   double deepest_ = 0.0;  // overlap that was found when pushes were computed last
 };
@@ -355,7 +355,7 @@ void Particle3d::advance(const SolverContext& context) {
     move(solid, active_);
   }
   if (deepest_ > 0.0) push(active_);  // how deep they are now
-  if (deepest_ > Crowd::kDeep) settle(solid);
+  if (deepest_ > CrowdPasses::kDeep) settle(solid);
   accuracy.overlap = std::max(accuracy.overlap, deepest_);
   write_back(context.stores, context.tick_s);
 }
@@ -522,7 +522,7 @@ void Particle3d::apart(std::size_t i, std::size_t k) noexcept {
   const double high = std::min(above, below);
   const bool both_drive = p_.flies[i] == 0 && p_.flies[k] == 0;
   const bool beside = both_drive || depth <= high;
-  const double overlap = Crowd::overlap(beside ? depth : high, p_.radius[i], p_.radius[k]);
+  const double overlap = CrowdPasses::overlap(beside ? depth : high, p_.radius[i], p_.radius[k]);
   deepest_ = std::max(deepest_, overlap);
   if (crowded_) crowd_.note(static_cast<std::uint32_t>(i), overlap);
   if (beside) {
@@ -547,7 +547,7 @@ void Particle3d::settle(const Solid& solid) {
       p_.size(),
       [&](bool back) -> const std::vector<std::uint32_t>& {
         for (std::size_t i = 0; i < p_.size(); ++i)
-          p_.hop[i] = Crowd::kSlack_m +
+          p_.hop[i] = CrowdPasses::kSlack_m +
                       (back ? std::hypot(p_.x[i] - p_.from_x[i], p_.y[i] - p_.from_y[i], p_.z[i] - p_.from_z[i]) : 0.0);
         find_meetings(solid);
         for (const std::uint32_t i : active_) {

@@ -12,7 +12,7 @@ namespace tandem::core {
 /// in another even then goes back to where it was before the tick. So robots that press on one another stand, and those
 /// that have room slide. It begins where two are in one another by more than `kDeep`, and works on those alone that are
 /// near such a place. Bodies have numbers; the same on every machine, in whatever order pushes are computed.
-class Crowd {
+class CrowdPasses {
  public:
   static constexpr double kDeep = 0.01;             ///< overlap, in parts of the narrower one's diameter
   static constexpr double kShallow = 0.25 * kDeep;  ///< deeper ones, and those near them, go on
