@@ -32,6 +32,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using hal::kNsPerMs;
+using namespace std::chrono_literals;
 using hal::TimeNs;
 using testing::HasSubstr;
 
@@ -119,9 +120,15 @@ std::unique_ptr<Stopper> make_plug_stopper(const StopMessages& messages, StopCau
 PulseLimits limits() {
   PulseLimits limits;
 #ifdef __SANITIZE_THREAD__
-  limits.silent_ns = limits.asleep_ns = 20 * hal::kNsPerSecond;
+  limits.silent_ns = 20 * hal::kNsPerSecond;
+  limits.asleep_ns = 3 * hal::kNsPerSecond;
 #endif
   return limits;
+}
+
+/// Longer by this than what is excused.
+void sleep_through(std::chrono::milliseconds longer) {
+  std::this_thread::sleep_for(std::chrono::nanoseconds(limits().beat_ns + limits().asleep_ns) + longer);
 }
 
 const std::vector<StopperType> kTypes = {{"file", &make_file_stopper}, {"plug", &make_plug_stopper}};
@@ -466,7 +473,7 @@ TEST_F(Guarded, HubKnowsThatItsGuardianIsFrozenAndTheGuardianStopsAllWhenItIsBac
   hub.signal_guardian(SIGSTOP);
   ASSERT_TRUE(hub.said("unguarded"));
   EXPECT_TRUE(times("r", "frozen").empty());
-  std::this_thread::sleep_for(std::chrono::milliseconds(600));  // longer than what is excused
+  sleep_through(200ms);
   hub.signal_guardian(SIGCONT);
   ASSERT_TRUE(hub.said("guarded again"));
   ASSERT_TRUE(was("r", "rests")) << text_of(runtime_.path() / "r") << text_of(runtime_.path() / "hub") << errors();
@@ -491,7 +498,7 @@ TEST_P(FrozenTogether, AHubWritesToNoLinkThatWasOpenWhoeverWakesFirst) {
   // Both within a few milliseconds: neither has noticed that the other one is frozen.
   signal(SIGSTOP, GetParam());
   signal(SIGSTOP, !GetParam());
-  std::this_thread::sleep_for(std::chrono::milliseconds(1500));
+  sleep_through(1s);
   signal(SIGCONT, GetParam());
   std::this_thread::sleep_for(std::chrono::milliseconds(200));
   signal(SIGCONT, !GetParam());
