@@ -14,10 +14,11 @@ namespace {
 constexpr double kSettled_s = 20.0;  // in which the filter learns: not judged
 
 /// Wanders about its place: each stretch is driven back as it was driven there. Speeds are whole numbers of the steps
-/// that the foot-bot's motors know, 2.4 a cm/s: what they round would pass for slip.
+/// that the foot-bot's motors know, 0.41398 cm/s: what they round would pass for slip.
 constexpr const char* kWander = R"(
 local state, left, right, ticks, back, length = 1, 0, 0, 0, true, 0
 local function chance() state = (state * 1103515245 + 12345) % 2147483648; return state / 2147483648 end
+local function whole(speed) return 0.41398 * math.floor(speed / 0.41398 + 0.5) end
 function init() state = 17 + 131 * tonumber(string.match(robot.id, "%d+")) end
 function step()
   if ticks == 0 then
@@ -25,7 +26,7 @@ function step()
     if back then left, right, ticks = -left, -right, length
     else
       local speed, turn = 3 + 15 * chance(), 10 * (chance() - 0.5)
-      left, right = math.floor(2.4 * (speed - turn) + 0.5) / 2.4, math.floor(2.4 * (speed + turn) + 0.5) / 2.4
+      left, right = whole(speed - turn), whole(speed + turn)
       length = 4 + math.floor(12 * chance()); ticks = length
     end
   end
