@@ -18,6 +18,10 @@ constexpr std::array<std::string_view, 6> kQuestions = {"status",  "preflight", 
 
 using hal::text_of;
 
+bool is_question(const Json& command) {
+  return std::find(kQuestions.begin(), kQuestions.end(), text_of(command, "do")) != kQuestions.end();
+}
+
 /// The arguments, as they were said; files by their names alone.
 std::string arguments_of(const Json& command) {
   std::string text;
@@ -46,12 +50,14 @@ std::string command_text(hal::Tick tick, const Json& command, const Json& answer
   return text;
 }
 
+void CommandLog::note(const Json& command, const Json& answer) const {
+  if (!is_question(command)) keep_("command at " + command_text(live_.state().tick, command, answer));
+}
+
 core::LiveReply CommandLog::noting(const Json& command, core::LiveReply reply) const {
-  const std::string name = text_of(command, "do");
-  if (std::find(kQuestions.begin(), kQuestions.end(), name) != kQuestions.end())
-    return reply ? reply : [](const Json&) {};
-  return [keep = keep_, live = &live_, command, reply = std::move(reply)](const Json& answer) {
-    keep("command at " + command_text(live->state().tick, command, answer));
+  if (is_question(command)) return reply;
+  return [log = *this, command, reply = std::move(reply)](const Json& answer) {
+    log.note(command, answer);
     if (reply) reply(answer);
   };
 }

@@ -19,6 +19,8 @@ class CommandLog {
   CommandLog(std::function<void(std::string_view)> keep, const core::LiveRun& live)
       : keep_(std::move(keep)), live_(live) {}
 
+  /// Keeps a command that was answered.
+  void note(const hal::Json& command, const hal::Json& answer) const;
   /// A reply that keeps the command with its answer, and then does as `reply`, which may be empty.
   core::LiveReply noting(const hal::Json& command, core::LiveReply reply) const;
 

@@ -110,10 +110,11 @@ hal::Status Desks::listen(const core::DeskConfig& config, const std::string& key
         whole["who"] = message.who;
         whole["by"] = {{"role", name_of(role)}, {"address", "lcm"}};
         if (window::may_say(role, command.value().name)) return post(std::move(whole), answer, "lcm");
-        commands_.noting(
-            whole, answer)({{"ok", false},
-                            {"error", "'" + message.who + "' is a viewer, who may stop all real robots (estop); '" +
-                                          command.value().name + "' needs an operator"}});
+        const Json refused = {{"ok", false},
+                              {"error", "'" + message.who + "' is a viewer, who may stop all real robots (estop); '" +
+                                            command.value().name + "' needs an operator"}};
+        commands_.note(whole, refused);
+        answer(refused);
       });
   if (!opened.ok()) return hal::Error{"<desk lcm=…>: " + opened.error().message};
   lcm_ = std::move(opened).value();

@@ -86,7 +86,7 @@ void RunView::greet() {
       [self](Json command, window::WindowReply reply) { self->take(std::move(command), std::move(reply)); });
   if (run_.commands != nullptr)
     window_->on_refused(
-        [commands = run_.commands](const Json& command, const Json& answer) { commands->noting(command, {})(answer); });
+        [commands = run_.commands](const Json& command, const Json& answer) { commands->note(command, answer); });
   window_->set_pictures(
       [self](const std::string& name, window::WindowFileReply reply) { self->make_picture(name, std::move(reply)); });
   window_->on_wish([self] {
