@@ -54,13 +54,18 @@ using Words = std::array<std::uint32_t, 8>;
 
 Words digest_of(std::string_view bytes) {
   Words state = {0x6a09e667, 0xbb67ae85, 0x3c6ef372, 0xa54ff53a, 0x510e527f, 0x9b05688c, 0x1f83d9ab, 0x5be0cd19};
-  std::string padded(bytes);
-  padded += static_cast<char>(0x80);
-  while (padded.size() % kBlockBytes != 56) padded += '\0';
+  const auto add_blocks = [&state](std::string_view blocks) {
+    for (std::size_t at = 0; at < blocks.size(); at += kBlockBytes)
+      add_block(state, reinterpret_cast<const unsigned char*>(blocks.data()) + at);
+  };
+  const std::size_t whole = bytes.size() - bytes.size() % kBlockBytes;
+  add_blocks(bytes.substr(0, whole));
+  std::string last(bytes.substr(whole));
+  last += static_cast<char>(0x80);
+  while (last.size() % kBlockBytes != 56) last += '\0';
   const std::uint64_t bits = std::uint64_t{bytes.size()} * 8;
-  for (int shift = 56; shift >= 0; shift -= 8) padded += static_cast<char>((bits >> shift) & 0xFF);
-  for (std::size_t at = 0; at < padded.size(); at += kBlockBytes)
-    add_block(state, reinterpret_cast<const unsigned char*>(padded.data()) + at);
+  for (int shift = 56; shift >= 0; shift -= 8) last += static_cast<char>((bits >> shift) & 0xFF);
+  add_blocks(last);
   return state;
 }
 

@@ -410,14 +410,16 @@ int run_with(const RunOptions& options, std::unique_ptr<RunLog>& log) {
   core::World* const world = made.get();  // a mixed session takes it over
   const bool other_scripts = options.replay.accept_changes || (replay.wanted() && replay.changed_from_start());
   if (!other_scripts) run_recorded_scripts(*world, repeated.value());
-  const InputFiles inputs = input_files(*scenario, loader);
+  const InputFiles inputs =
+      replay.wanted() || tells_files(options, *scenario) ? input_files(*scenario, loader) : InputFiles{};
   if (replay.wanted()) {
     hal::Status joined = replay.check_files(inputs);
     if (joined.ok()) joined = replay.join(*world, world_options.log);
     if (!joined.ok()) return complain(kBadInput, joined.error().message);
   }
   const std::int64_t steps = replay.wanted() ? replay.steps() : steps_of(options.steps, options.seconds, *scenario);
-  auto opened = open_outputs(options, *scenario, *world, loader.catalog(), start_of(*world, inputs), steps);
+  auto opened = open_outputs(
+      options, *scenario, *world, loader.catalog(), [&] { return start_of(*world, inputs); }, steps);
   if (!opened.ok()) return complain(kBadInput, opened.error().message);
   RunOutputs& outputs = opened.value();
   problems.clear();

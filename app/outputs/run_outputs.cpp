@@ -72,9 +72,13 @@ hal::Status check_output_paths(const RunOptions& options, const core::Scenario& 
   return check_apart(outputs, inputs_of(scenario, catalog));
 }
 
+bool tells_files(const RunOptions& options, const core::Scenario& scenario) {
+  return !options.report.empty() || !record_path(options, scenario).empty();
+}
+
 hal::Result<RunOutputs> open_outputs(const RunOptions& options, const core::Scenario& scenario,
                                      const core::World& world, const hal::Catalog& catalog,
-                                     const hal::Json& record_start, std::int64_t steps) {
+                                     const std::function<hal::Json()>& record_start, std::int64_t steps) {
   RunOutputs outputs;
   const core::Space& space = world.space();
   const core::PictureLook::Area arena{
@@ -113,7 +117,7 @@ hal::Result<RunOutputs> open_outputs(const RunOptions& options, const core::Scen
   if (const std::string path = record_path(options, scenario); !path.empty()) {
     core::RecordConfig config = scenario.record;
     config.path = path;
-    auto opened = core::Recorder::open(config, world.space(), record_start);
+    auto opened = core::Recorder::open(config, world.space(), record_start());
     if (!opened.ok()) return opened.error();
     outputs.record = std::move(opened).value();
   }

@@ -1,5 +1,6 @@
 // The files that a run writes: opened before it, in their places after it.
 #pragma once
+#include <functional>
 #include <memory>
 #include <optional>
 
@@ -34,10 +35,13 @@ struct RunOutputs {
 /// output's; a picture or film of no known ending, or that cannot be made here.
 hal::Status check_output_paths(const RunOptions& options, const core::Scenario& scenario, const hal::Catalog& catalog);
 
-/// Opens all but the observers; `catalog` must outlive them, `record_start` is what a record begins with, `steps` are
-/// to be done (0: nobody knows). Error: one cannot be written, or its robots or layers are not there.
+/// Whether a report or a record of the run is to name the files that decide it, with their digests.
+bool tells_files(const RunOptions& options, const core::Scenario& scenario);
+
+/// Opens all but the observers; `catalog` must outlive them, `record_start` makes what a record begins with, `steps`
+/// are to be done (0: nobody knows). Error: one cannot be written, or its robots or layers are not there.
 hal::Result<RunOutputs> open_outputs(const RunOptions& options, const core::Scenario& scenario,
                                      const core::World& world, const hal::Catalog& catalog,
-                                     const hal::Json& record_start, std::int64_t steps);
+                                     const std::function<hal::Json()>& record_start, std::int64_t steps);
 
 }  // namespace tandem::app

@@ -40,6 +40,32 @@ TEST(Run, WritesReportPictureAndTrajectory) {
   EXPECT_EQ(run.errors(), "");  // no progress bar where there is no terminal
 }
 
+/// The peak of resident memory in the table of a run of `arguments`, in MB; 0: there is none.
+double table_MB(const Folder& folder, const std::vector<std::string>& arguments) {
+  Tandem run(arguments, folder.path());
+  EXPECT_EQ(run.wait(), 0) << run.errors();
+  const std::string table = run.output();
+  const std::size_t end = table.find(" MB"), begin = table.rfind(' ', end - 1);
+  return end == std::string::npos ? 0.0 : std::strtod(table.c_str() + begin, nullptr);
+}
+
+TEST(Run, ReadsWholePluginsForReportsAndRecordsAlone) {
+  constexpr double kPlugin_MB = 96;
+  Folder folder;
+  const std::filesystem::path plugin = folder.path() / "libepuck_diffusion.so";
+  std::filesystem::copy_file(std::string(test::kBuildDir) + "/lib/libepuck_diffusion.so", plugin);
+  std::filesystem::resize_file(plugin, static_cast<std::uintmax_t>(kPlugin_MB * 1e6));
+  std::string experiment = text_of(kConfigs + "epuck_diffusion.xml");
+  const std::string library = "library=\"epuck_diffusion\"";
+  experiment.replace(experiment.find(library), library.size(), "library=\"" + plugin.string() + "\"");
+  folder.write("big.xml", experiment);
+  const double small_MB = table_MB(folder, {"run", kConfigs + "epuck_diffusion.xml", "--steps", "1"});
+  EXPECT_GT(small_MB, 0.0);
+  EXPECT_LT(table_MB(folder, {"run", "big.xml", "--steps", "1"}), small_MB + 0.5 * kPlugin_MB);
+  EXPECT_GT(table_MB(folder, {"run", "big.xml", "--steps", "1", "--report", "r.json"}), small_MB + 0.5 * kPlugin_MB);
+  EXPECT_GT(table_MB(folder, {"run", "big.xml", "--steps", "1", "--record", "r.tdm"}), small_MB + 0.5 * kPlugin_MB);
+}
+
 TEST(Run, ReportsWhatRan) {
   Folder folder;
   const std::string experiment = kConfigs + "epuck_diffusion.xml";
