@@ -58,5 +58,47 @@ TEST_F(Launcher, DoesNotWaitForOtherErrorsOfApt) {
   EXPECT_EQ(text_of(folder_.path() / "calls"), "update\n");
 }
 
+/// A launcher whose program was built after its sources, and says how it was started.
+class BuiltLauncher : public Launcher {
+ protected:
+  void SetUp() override {
+    Launcher::SetUp();
+    fs::create_directories(folder_.path() / "build/release/bin");
+    const fs::path program = folder_.write("build/release/bin/tandem", "#!/bin/bash\necho \"$0\" \"$@\"\n");
+    fs::permissions(program, fs::perms::owner_all);
+    fs::create_directory(folder_.path() / "none");
+    fs::create_directory(folder_.path() / "find");
+    fs::create_symlink("/usr/bin/find", folder_.path() / "find/find");
+    folder_.write("build/release/.tandem-built", "");
+    const fs::file_time_type built = fs::last_write_time(folder_.path() / "build/release/.tandem-built");
+    fs::last_write_time(folder_.path() / "tandem", built - std::chrono::seconds(1));
+  }
+  /// What `line` prints, begun in the launcher's folder.
+  std::string printed(const std::string& line) {
+    EXPECT_EQ(std::system(("cd '" + folder_.path().string() + "' && " + line + " >out 2>&1 </dev/null").c_str()), 0)
+        << text_of(folder_.path() / "out");
+    return text_of(folder_.path() / "out");
+  }
+  std::string started() const { return fs::canonical(folder_.path()).string() + "/build/release/bin/tandem run a\n"; }
+};
+
+TEST_F(BuiltLauncher, CallsNoCommandButFindWhereNothingIsToBeBuilt) {
+  EXPECT_EQ(printed("PATH=\"$PWD/find\" /bin/bash ./tandem run a"), started());
+  std::system(
+      ("cd '" + folder_.path().string() + "' && PATH=\"$PWD/none\" /bin/bash ./tandem run a >out 2>&1").c_str());
+  EXPECT_THAT(text_of(folder_.path() / "out"), HasSubstr("find: "))
+      << "the measure: a command that is not there is noticed";
+}
+
+TEST_F(BuiltLauncher, FindsItsCheckoutByAnyName) {
+  fs::create_directory(folder_.path() / "elsewhere");
+  fs::create_symlink("../tandem", folder_.path() / "elsewhere/linked");
+  fs::create_symlink(".", folder_.path() / "itself");
+  EXPECT_EQ(printed("bash tandem run a"), started());
+  EXPECT_EQ(printed("(cd elsewhere && CDPATH=/tmp:.. ../tandem run a)"), started());
+  EXPECT_EQ(printed("itself/itself/tandem run a"), started());
+  EXPECT_EQ(printed("(cd / && \"$OLDPWD/elsewhere/linked\" run a)"), started());
+}
+
 }  // namespace
 }  // namespace tandem
