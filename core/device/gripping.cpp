@@ -5,6 +5,7 @@
 
 #include "core/device/coupling.hpp"
 #include "core/space/mechanisms.hpp"
+#include "core/space/sight.hpp"
 #include "hal/angle.hpp"
 #include "hal/device/gripper.hpp"
 #include "hal/device/turret.hpp"
@@ -101,9 +102,7 @@ struct Search {
     can_hold = holdable;
   }
   void robots() noexcept {
-    double widest_m = 0.0;
-    for (const RobotGroup& group : s.groups) widest_m = std::max(widest_m, group.kind->body.radius_m);
-    s.body_index.for_each_near(at.x_m, at.y_m, nearest_m + widest_m, [&](const IndexEntry& o) {
+    s.body_index.for_each_near(at.x_m, at.y_m, nearest_m + widest_body_m(s), [&](const IndexEntry& o) {
       const std::size_t other = o.row();
       const std::uint8_t flags = s.bodies.flags[other];
       if (other == row || (flags & kAlive) == 0) return;

@@ -8,6 +8,7 @@
 #include "core/device/leaning_rays.hpp"
 #include "core/device/ray_ring.hpp"
 #include "core/random/random.hpp"
+#include "core/space/sight.hpp"
 #include "hal/device/ring_sensors.hpp"
 
 namespace tandem::core {
@@ -113,17 +114,17 @@ struct Waiting {
   }
 }
 
-/// Notes who may be near the robot in `slot`, and shortens its distances where its rays meet objects.
+/// Notes who may be near the robot in `slot`, and shortens its distances where its rays meet objects. `within_m`: where
+/// centres of bodies lie that rays may meet.
 [[gnu::always_inline]] inline void look_around(const SpaceStores& stores, const RayRing& ring, std::size_t first_row,
-                                               std::uint32_t slot, bool lean, hal::Proximity* ports,
+                                               std::uint32_t slot, double within_m, bool lean, hal::Proximity* ports,
                                                Waiting& waiting) noexcept {
   const std::size_t row = first_row + slot;
   const Bodies& b = stores.bodies;
   const double x = b.x_m[row];
   const double y = b.y_m[row];
-  const double reach = static_cast<double>(ring.reach_m) + static_cast<double>(b.radius_m[row]);
   stores.body_index.for_each_run_near(
-      x, y, reach, [&](std::uint32_t first, std::uint32_t past) __attribute__((always_inline)) {
+      x, y, within_m, [&](std::uint32_t first, std::uint32_t past) __attribute__((always_inline)) {
         // Most runs are of two at most.
         if (waiting.count + 2 > kWaiting) [[unlikely]]
           meet(stores, ring, first_row, ports, waiting);
@@ -153,6 +154,7 @@ struct Waiting {
   const auto used = static_cast<std::uint32_t>(context.block.used);
   const std::size_t first_row = context.block.first_row;
   const bool lean = anything_may_lean(context.stores);
+  const double within_m = static_cast<double>(ring.reach_m) + widest_body_m(context.stores);
   Waiting waiting;
   for (std::uint32_t begin = 0; begin < used; begin += kTeam) {
     const std::uint32_t end = std::min(used, begin + static_cast<std::uint32_t>(kTeam));
@@ -168,7 +170,7 @@ struct Waiting {
       }
     }
     for (std::uint32_t slot = begin; slot < end; ++slot)
-      look_around(context.stores, ring, first_row, slot, lean, ports, waiting);
+      look_around(context.stores, ring, first_row, slot, within_m, lean, ports, waiting);
     meet(context.stores, ring, first_row, ports, waiting);
   }
 }

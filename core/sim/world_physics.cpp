@@ -11,6 +11,15 @@ namespace {
 
 constexpr double kContactReach_m = 0.03;  // beyond the bodies' rims: what contact resolution looks at
 
+/// How far from a robot's axis its proximity sensors see, at most.
+double seen_from_axis_m(const hal::RobotKind& kind) noexcept {
+  const auto* const proximity = kind.part<hal::ProximityPart>();
+  if (proximity == nullptr) return 0.0;
+  double mount_m = 2.0 * kind.body.radius_m;
+  for (const hal::Mount& mount : proximity->mounts) mount_m = std::max(mount_m, std::hypot(mount.x_m, mount.y_m));
+  return mount_m + proximity->range_m;
+}
+
 }  // namespace
 
 /// What leans is listed wherever its shadow at noon is.
@@ -42,9 +51,8 @@ double index_reach(const SpaceStores& stores, double tick_s) noexcept {
   double reach_m = 2.0 * kContactReach_m;
   for (const RobotGroup& group : stores.groups) {
     if (group.kind == nullptr) continue;
-    const auto* const proximity = group.kind->part<hal::ProximityPart>();
-    const double sees_m = proximity != nullptr ? proximity->range_m : 0.0;
-    reach_m = std::max(reach_m, 2.0 * group.kind->body.radius_m + std::max(sees_m, kContactReach_m) + 0.01);
+    const double touches_m = 2.0 * group.kind->body.radius_m + kContactReach_m;
+    reach_m = std::max(reach_m, std::max(seen_from_axis_m(*group.kind), touches_m) + 0.01);
     if (group.kind->flies())  // where it may be at the end of the tick
       reach_m = std::max(reach_m, 2.0 * group.kind->body.radius_m + tick_s * group.kind->flight()->max_speed_m_s);
   }

@@ -9,6 +9,7 @@
 #include "hal/device/ring_sensors.hpp"
 #include "hal/device/wheels.hpp"
 #include "hal/robot/epuck.hpp"
+#include "hal/robot/footbot.hpp"
 #include "tests/core/scenes.hpp"
 
 namespace tandem::core {
@@ -75,6 +76,52 @@ TEST(ProximitySensor, ReadsTheDistanceToTheNearestThingOnEveryRay) {
     }
   }
   EXPECT_GT(seen, 60);
+}
+
+/// Pairs of an e-puck and a foot-bot, whose rim is 90 mm before one of the e-puck's sensors: the centre of a body may
+/// be farther away than anything as wide as the e-puck would be. They stand anyhow in the cells of the index.
+TEST(ProximitySensor, SeesRobotsThatAreWiderThanItself) {
+  constexpr std::size_t kLine = 12, kPairs = kLine * kLine;
+  constexpr double kGap_m = 0.09, kApart_m = 0.613;
+  const std::vector<hal::Mount>& mounts = hal::epuck::kind().part<hal::ProximityPart>()->mounts;
+  Scene scene(8.0, "everything");
+  scene.scenario.controllers.push_back({});
+  scene.scenario.controllers.back().id = "idle";
+  scene.scenario.controllers.back().label = "drive";
+  scene.scenario.controllers.back().library = "test_controllers";
+  scene.scenario.controllers.back().actuators = {{"differential_steering", "default", {}}};
+  for (std::size_t i = 0; i < kPairs; ++i) {
+    const double x_m = kApart_m * (static_cast<double>(i % kLine) - 5.5);
+    const double y_m = kApart_m * (static_cast<double>(i / kLine) - 5.5);
+    const double towards_rad = 2.4 * static_cast<double>(i);
+    const double apart_m = kR + kGap_m + hal::footbot::kind().body.radius_m;
+    scene.robot("ep" + std::to_string(i), x_m, y_m, towards_rad - mounts[i % mounts.size()].bearing_rad);
+    scene.robot("fb" + std::to_string(i), x_m + apart_m * std::cos(towards_rad), y_m + apart_m * std::sin(towards_rad));
+    scene.scenario.robots.back().kind = "foot-bot";
+    scene.scenario.robots.back().controller = 1;
+    scene.wheels(0.0, 0.0);
+  }
+  const auto world = stepped(scene);
+  for (std::size_t i = 0; i < kPairs; ++i)
+    EXPECT_NEAR(static_cast<double>(read<hal::Proximity>(world, 2 * i).distance_m[i % mounts.size()]), kGap_m, 1e-5)
+        << "pair " << i;
+}
+
+/// The wall is no farther from the sensors than they see, and farther from the robot than a sensor at its rim would
+/// see.
+TEST(ProximitySensor, SeesFromWhereItSitsAlsoOnABoom) {
+  constexpr double kBoom_m = 0.5, kGap_m = 0.08;
+  Scene scene(8.0, "everything");
+  for (std::size_t i = 0; i < 20; ++i) {
+    const double x_m = -3.0 + 0.313 * static_cast<double>(i), y_m = -0.117 * static_cast<double>(i);
+    scene.robot("ep" + std::to_string(i), x_m, y_m, M_PI / 2.0).cylinder(x_m, y_m + kBoom_m + kGap_m + 0.03, 0.03);
+  }
+  scene.parts([&](hal::RobotKind& kind) {
+    for (hal::Mount& mount : kind.part<hal::ProximityPart>()->mounts) mount = {0.0, kBoom_m, 0.0, mount.z_m};
+  });
+  const auto world = stepped(scene);
+  for (std::size_t i = 0; i < 20; ++i)
+    EXPECT_NEAR(static_cast<double>(read<hal::Proximity>(world, i).distance_m[0]), kGap_m, 1e-5) << "robot " << i;
 }
 
 TEST(ProximitySensor, DoesNotSeeWhatIsLowerThanItself) {
