@@ -31,20 +31,33 @@ if(NOT TARGET Tandem::headers)
     INTERFACE_LINK_LIBRARIES Eigen3::Eigen)
 endif()
 
-# The control interface, for controllers: the same arithmetic as in Tandem itself, and nothing of any world.
-if(NOT TARGET Tandem::hal)
+# The control interface, for controllers: the same arithmetic as in Tandem itself, and nothing of any world. It is linked as it was
+# built: of a checkout that is what the launcher makes, when there is none yet or a source of it is newer. For other machines,
+# whose compiler the project names, it is compiled.
+if(NOT TARGET Tandem::hal AND CMAKE_CROSSCOMPILING AND EXISTS "${Tandem_INCLUDE_DIR}/hal/catalog.cpp")
+  file(GLOB Tandem_HAL_SOURCES "${Tandem_INCLUDE_DIR}/hal/*.cpp")
+  add_library(tandem_hal STATIC EXCLUDE_FROM_ALL ${Tandem_HAL_SOURCES})
+  set_target_properties(tandem_hal PROPERTIES POSITION_INDEPENDENT_CODE ON)
+  target_link_libraries(tandem_hal PUBLIC Tandem::headers)
+  add_library(Tandem::hal ALIAS tandem_hal)
+elseif(NOT TARGET Tandem::hal)
+  add_library(Tandem::hal STATIC IMPORTED)
   if(EXISTS "${Tandem_INCLUDE_DIR}/hal/catalog.cpp")
-    file(GLOB Tandem_HAL_SOURCES "${Tandem_INCLUDE_DIR}/hal/*.cpp")
-    add_library(tandem_hal STATIC EXCLUDE_FROM_ALL ${Tandem_HAL_SOURCES})
-    set_target_properties(tandem_hal PROPERTIES POSITION_INDEPENDENT_CODE ON)
-    target_link_libraries(tandem_hal PUBLIC Tandem::headers)
-    add_library(Tandem::hal ALIAS tandem_hal)
+    set(hal "${Tandem_TOP}/build/release/hal/libtandem_hal.a")
+    if(NOT TARGET tandem_hal_built)
+      file(GLOB sources CONFIGURE_DEPENDS "${Tandem_TOP}/hal/*.?pp" "${Tandem_TOP}/hal/device/*.?pp" "${Tandem_TOP}/hal/robot/*.?pp")
+      set(built "${CMAKE_BINARY_DIR}/CMakeFiles/tandem_hal.stamp")
+      add_custom_command(OUTPUT "${built}" BYPRODUCTS "${hal}" DEPENDS ${sources} VERBATIM COMMENT "Looking for the control interface of ${Tandem_TOP}"
+        COMMAND sh -c "test -e \"$1\" && test -z \"$(find \"$0/hal\" -name '*.?pp' -newer \"$1\")\" || exec \"$0/tandem\" build tandem_hal"
+          "${Tandem_TOP}" "${hal}"
+        COMMAND ${CMAKE_COMMAND} -E touch "${built}")
+      add_custom_target(tandem_hal_built DEPENDS "${built}")
+    endif()
+    add_dependencies(Tandem::hal tandem_hal_built)
   else()
-    add_library(Tandem::hal STATIC IMPORTED)
-    set_target_properties(Tandem::hal PROPERTIES
-      IMPORTED_LOCATION "${Tandem_TOP}/lib/tandem/libtandem_hal.a"
-      INTERFACE_LINK_LIBRARIES "Tandem::headers;${CMAKE_DL_LIBS}")
+    set(hal "${Tandem_TOP}/lib/tandem/libtandem_hal.a")
   endif()
+  set_target_properties(Tandem::hal PROPERTIES IMPORTED_LOCATION "${hal}" INTERFACE_LINK_LIBRARIES "Tandem::headers;${CMAKE_DL_LIBS}")
 endif()
 
 # The shared object lib<name>.so in the build folder, for <plugins library="…/lib<name>"/> or library="…/lib<name>".
@@ -61,6 +74,7 @@ function(tandem_controller)
   cmake_parse_arguments(arg "" "NAME" "SOURCES" ${ARGN})
   tandem_shared_object(${arg_NAME} ${arg_SOURCES})
   target_link_libraries(${arg_NAME} PRIVATE Tandem::hal)
+  target_link_options(${arg_NAME} PRIVATE LINKER:--exclude-libs,libtandem_hal.a) # it shows nothing of the interface that it holds
 endfunction()
 
 # tandem_plugin(NAME x SOURCES x.cpp …): parts of any kind. What they call of Tandem is the program's own and is found when it

@@ -95,6 +95,15 @@ TEST(Readme, ItsFirstControllerBuildsRunsAndDoesWhatItSays) {
   const std::string run = "cd '" + folder.path().string() + "' && sh -e commands.sh >log 2>&1 </dev/null";
   ASSERT_EQ(std::system(run.c_str()), 0) << text_of(folder.path() / "log");
 
+  // The control interface is linked as it was built, and is neither shown nor looked for elsewhere.
+  const std::string log = text_of(folder.path() / "log");
+  EXPECT_EQ(matches(log, std::regex("Building CXX object")).size(), 1U) << log;
+  const std::string module = "'" + (folder.path() / "build/libseek_light.so").string() + "'";
+  for (const char* const symbols : {"nm -DC --defined-only ", "nm -DCu "}) {
+    ASSERT_EQ(std::system((symbols + module + " >'" + (folder.path() / "symbols").string() + "'").c_str()), 0);
+    EXPECT_EQ(text_of(folder.path() / "symbols").find("tandem::"), std::string::npos) << symbols;
+  }
+
   EXPECT_NE(text_of(folder.path() / "end.svg").find("20 × e-puck"), std::string::npos);
   const auto distances = mean_distances(folder.path() / "poses.csv");
   ASSERT_EQ(distances.rbegin()->first, 399);

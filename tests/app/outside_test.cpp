@@ -278,6 +278,36 @@ TEST_F(Examples, TheGuardianStopsTheRealRobotWhenItsHubDies) {
   EXPECT_THAT(robot.log(), testing::Not(HasSubstr("stopped by itself"))) << "told to, before its own time-out";
 }
 
+TEST(FreshCheckout, ItsLauncherBuildsTheControlInterfaceThatAControllerLinks) {
+  Folder folder;
+  const fs::path checkout = folder.path() / "checkout", project = folder.path() / "project";
+  const fs::path built = checkout / "build/release/hal/libtandem_hal.a";
+  fs::create_directories(built.parent_path());
+  for (const char* const part : {"cmake", "hal"})
+    fs::copy(fs::path(test::kSourceDir) / part, checkout / part, fs::copy_options::recursive);
+  folder.write("checkout/tandem", "#!/bin/sh\necho \"$@\" >>'" + (folder.path() / "calls").string() + "'; cp '" +
+                                      std::string(test::kBuildDir) + "/hal/libtandem_hal.a' '" + built.string() +
+                                      "'\n");
+  fs::permissions(checkout / "tandem", fs::perms::owner_all);
+  fs::create_directory(project);
+  fs::copy_file(kExamples / "waltz.cpp", project / "waltz.cpp");
+  folder.write("project/CMakeLists.txt",
+               "cmake_minimum_required(VERSION 3.25)\nproject(dances CXX)\nfind_package(Tandem REQUIRED)\n"
+               "tandem_controller(NAME waltz SOURCES waltz.cpp)\n");
+  const auto calls = [&] { return text_of(folder.path() / "calls"); };
+  ASSERT_EQ(shell(configure((checkout / "cmake").string(), kProgram) + " && cmake --build build", project), 0)
+      << text_of(project / "log");
+  EXPECT_EQ(calls(), "build tandem_hal\n");
+  EXPECT_TRUE(fs::exists(project / "build/libwaltz.so"));
+
+  EXPECT_EQ(shell("touch waltz.cpp && cmake --build build", project), 0) << text_of(project / "log");
+  EXPECT_EQ(calls(), "build tandem_hal\n") << "what is there is linked";
+
+  fs::last_write_time(checkout / "hal/unit.hpp", fs::last_write_time(built) + std::chrono::seconds(2));
+  EXPECT_EQ(shell("cmake --build build", project), 0) << text_of(project / "log");
+  EXPECT_EQ(calls(), "build tandem_hal\nbuild tandem_hal\n") << "a header is newer";
+}
+
 TEST_F(Examples, BuildAndRunAgainstAnInstalledTree) {
   Folder folder;
   const std::string prefix = (folder.path() / "installed").string();
