@@ -17,14 +17,13 @@ std::string_view word_of(hal::Severity severity) {
 
 }  // namespace
 
-hal::Result<std::unique_ptr<RunLog>> RunLog::open(const std::string& path) {
-  auto log = std::make_unique<RunLog>();
-  if (path.empty()) return log;
+hal::Status RunLog::open(const std::string& path) {
+  if (path.empty()) return {};
   auto file = hal::OutputFile::open(path, "log");
   if (!file.ok()) return file.error();
-  log->file_ = std::move(file).value();
-  log->file_->keep_part();
-  return log;
+  file_ = std::move(file).value();
+  file_->keep_part();
+  return {};
 }
 
 hal::Log RunLog::log() {

@@ -19,8 +19,8 @@ namespace tandem::app {
 /// May be used from any thread.
 class RunLog {
  public:
-  /// `path` empty: no file. Error: it cannot be written.
-  static hal::Result<std::unique_ptr<RunLog>> open(const std::string& path);
+  /// Has the file besides; `path` empty: none. Before any message. Error: it cannot be written.
+  hal::Status open(const std::string& path);
 
   /// Must not outlive this, as the next.
   hal::Log log();

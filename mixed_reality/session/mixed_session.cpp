@@ -276,8 +276,7 @@ void MixedSession::leave_out_missing(hal::TimeNs waited_ns) {
 
 // --- the run ---
 
-hal::Status MixedSession::run(hal::Tick ticks, const std::atomic<bool>& stop,
-                              const std::function<void(core::World&)>& after_tick) {
+hal::Status MixedSession::begin() {
   if (const int priority = world_->scenario().priority; priority > 0) {
     const hal::Status granted = ask_for_realtime_priority(priority);
     if (!granted.ok()) options_.log.warning(granted.error().message + "; going on without");
@@ -285,25 +284,38 @@ hal::Status MixedSession::run(hal::Tick ticks, const std::atomic<bool>& stop,
   if (const hal::Status started = start_bridges(); !started.ok()) return started;
   stopped_ = false;
   phase_ = RunPhase::Running;
-  world_->start();
-  const Pacer::Lookout lookout{kLookEvery_ns, [this] { obey_emergency_stop(); }};
   if (options_.scheduling) scheduling_ = options_.scheduling();
   if (scheduling_) pacer_.judge_by(*scheduling_);
-  pacer_.start();
-  while (world_->state() == core::RunState::Running && !stop.load(std::memory_order_relaxed)) {
-    if (paused_) {
-      if (!stand_paused(stop)) break;
-      pacer_.start();
-    }
+  return {};
+}
+
+bool MixedSession::before_tick(const std::atomic<bool>& stop) {
+  if (paused_ && !stand_paused(stop)) return false;
+  if (!pacing_) pacer_.start();
+  pacing_ = true;
+  return true;
+}
+
+void MixedSession::after_tick(bool over, const std::atomic<bool>& stop) {
+  if (over || paused_) {
+    pacer_.finish();
+    pacing_ = false;
+  } else {
+    (void)pacer_.wait_for_next(stop, {kLookEvery_ns, [this] { obey_emergency_stop(); }});
+  }
+}
+
+hal::Status MixedSession::run(hal::Tick ticks, const std::atomic<bool>& stop,
+                              const std::function<void(core::World&)>& after_tick_done) {
+  if (const hal::Status begun = begin(); !begun.ok()) return begun;
+  world_->start();
+  bool over = false;
+  while (!over && world_->state() == core::RunState::Running && !stop.load(std::memory_order_relaxed) &&
+         before_tick(stop)) {
     world_->step();
-    if (after_tick) after_tick(*world_);
-    const bool over = (ticks > 0 && world_->tick() >= ticks) || world_->state() != core::RunState::Running;
-    if (over || paused_) {
-      pacer_.finish();
-      if (over) break;
-      continue;
-    }
-    if (!pacer_.wait_for_next(stop, lookout)) break;
+    if (after_tick_done) after_tick_done(*world_);
+    over = (ticks > 0 && world_->tick() >= ticks) || world_->state() != core::RunState::Running;
+    after_tick(over, stop);
   }
   stop_robots();
   world_->finish();

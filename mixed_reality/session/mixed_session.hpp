@@ -102,9 +102,16 @@ class MixedSession final : private core::ExternalRobots {
   /// it has no wheels; it may not drive, and why; the run has begun; `stop`.
   hal::Status turn(std::string_view robot, double turn_rad, const std::atomic<bool>& stop);
 
-  /// Steps the world in real time until `ticks` are done (0: no end of its own), the world is done, or `stop` becomes
-  /// true; then stops the robots. `after_tick` is called after every step, within the tick's time. Error: the world
-  /// failed. Once.
+  /// A run that somebody else steps: before the world starts. Error: a link or a tracker cannot be opened.
+  hal::Status begin();
+  /// Before every tick; waits while the run is paused. False: `stop`, and no further tick.
+  bool before_tick(const std::atomic<bool>& stop);
+  /// After every tick, when all is done that belongs into its time: waits for the next one's; `over`: there is none.
+  void after_tick(bool over, const std::atomic<bool>& stop);
+
+  /// All of it: steps the world in real time until `ticks` are done (0: no end of its own), the world is done, or
+  /// `stop` becomes true; then stops the robots. `after_tick` is called after every step, within the tick's time.
+  /// Error: the world failed. Once.
   hal::Status run(hal::Tick ticks, const std::atomic<bool>& stop,
                   const std::function<void(core::World&)>& after_tick = {});
 
@@ -248,6 +255,7 @@ class MixedSession final : private core::ExternalRobots {
   std::vector<ReplacementReport> replaced_;
   bool started_ = false;
   bool paused_ = false;
+  bool pacing_ = false;
   SystemClock system_clock_;  // when it started
   hal::DurationHistogram woke_late_;
   RunPhase phase_ = RunPhase::Waiting;
