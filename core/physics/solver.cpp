@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <utility>
 
 #include "hal/unit.hpp"
 
@@ -9,6 +10,9 @@ namespace tandem::core {
 namespace {
 
 constexpr std::size_t kFewBodies = 100;  // whose solving takes less than waking threads is worth
+
+constexpr double kCrowded =
+    1.5 * CrowdPasses::kDeep;  // deeper than solvers leave two robots in one another that press head-on
 
 }  // namespace
 
@@ -45,7 +49,13 @@ void SolverEngine::each_busy_part(ThreadPool& pool, Work&& work) {
   });
 }
 
+void SolverEngine::add(std::size_t region, std::unique_ptr<Solver> solver) {
+  crowds_.moves(region);
+  parts_.push_back({region, std::move(solver)});
+}
+
 void SolverEngine::load(const PhysicsContext& context) {
+  crowds_.start(context.stores);
   busy_.clear();
   bodies_ = 0;
   for (std::size_t i = 0; i < parts_.size(); ++i) {
@@ -64,6 +74,17 @@ void SolverEngine::advance(const PhysicsContext& context) {
   each_busy_part(context.pool, [&](Part& part) {
     part.solver->advance({context.stores, context.stores.regions[part.region], context.tick_s, context.tick});
   });
+  part_crowds(context.stores);
+}
+
+void SolverEngine::part_crowds(SpaceStores& stores) {
+  double overlap = crowds_.overlap_at_borders(stores);
+  for (const std::size_t i : busy_) overlap = std::max(overlap, parts_[i].solver->overlap);
+  if (overlap > kCrowded) {
+    overlap = crowds_.settle(stores);
+    for (Part& part : parts_) part.solver->crowds_moved = true;
+  }
+  accuracy_.overlap = std::max(accuracy_.overlap, overlap);
 }
 
 void SolverEngine::collect(std::vector<Trouble>& all) {
@@ -74,7 +95,7 @@ void SolverEngine::collect(std::vector<Trouble>& all) {
 }
 
 PhysicsAccuracy SolverEngine::accuracy() const {
-  PhysicsAccuracy all;
+  PhysicsAccuracy all = accuracy_;
   for (const Part& part : parts_) all.add(part.solver->accuracy);
   return all;
 }

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/physics/engine.hpp"
+#include "core/physics/ground_crowd.hpp"
 #include "hal/catalog.hpp"
 
 namespace tandem::core {
@@ -49,6 +50,8 @@ class Solver {
   virtual std::size_t bytes_of(const void* /*kept*/) const { return 0; }
 
   PhysicsAccuracy accuracy;      ///< since it was made
+  double overlap = 0.0;          ///< of two own robots after the last tick, if its engine is to look after crowds
+  bool crowds_moved = false;     ///< since then, by its engine; whoever loads resets it
   std::vector<Trouble> trouble;  ///< of the last tick; emptied by whoever collects it
 };
 
@@ -66,7 +69,7 @@ class SolverEngine final : public Engine {
  public:
   explicit SolverEngine(std::string_view kind) : kind_(kind) {}
   /// `region` is an index into SpaceStores::regions.
-  void add(std::size_t region, std::unique_ptr<Solver> solver) { parts_.push_back({region, std::move(solver)}); }
+  void add(std::size_t region, std::unique_ptr<Solver> solver);
 
   std::string_view kind() const noexcept override { return kind_; }
   void load(const PhysicsContext& context) override;
@@ -85,10 +88,13 @@ class SolverEngine final : public Engine {
   std::string_view kind_;
   template <class Work>
   void each_busy_part(ThreadPool& pool, Work&& work);
+  void part_crowds(SpaceStores& stores);
 
   std::vector<Part> parts_;
   std::vector<std::size_t> busy_;  // parts that hold bodies in this tick
   std::size_t bodies_ = 0;         // of these
+  GroundCrowd crowds_;
+  PhysicsAccuracy accuracy_;  // of what it does itself
 };
 
 }  // namespace tandem::core

@@ -7,8 +7,10 @@
 #include <cmath>
 #include <new>
 #include <string>
+#include <utility>
 
 #include "core/physics/body_table.hpp"
+#include "core/physics/crowd_passes.hpp"
 #include "core/physics/dynamics2d/params.hpp"
 #include "core/physics/wheels.hpp"
 #include "core/physics/world_memory.hpp"
@@ -36,7 +38,7 @@ constexpr double kThinnest_m = 1e-4;      // of a movable object: smaller areas 
 constexpr double kSmallest_m = 0.005;     // radius below which hops are not made smaller
 constexpr double kLargestTurn_rad = 1.0;  // of an object in one sub-step
 constexpr double kMostHops = 200.0;       // sub-steps a tick for the sake of fast objects
-constexpr double kHoldingStep_s = 0.025;  // with longer ones, Box2D's passes leave joints under load centimetres apart
+constexpr double kHoldingStep_s = 0.025;  // with longer ones, Box2D's passes leave joints and what is squeezed cm apart
 constexpr float kLinearSlowing = 1.0F;    // correction factor of a drive: all of the error within one sub-step
 
 /// A body's double in Box2D.
@@ -139,6 +141,7 @@ class Dynamics2d final : public Solver {
       else
         take_over(s, entry.key, entry.owned, proxy, context.tick_s);
     }
+    if (std::exchange(crowds_moved, false)) world_->Step(0.0F, 1, 1);  // moves nothing: what touches what, now
     if (!s.joints.empty() || !joints_.empty()) join(s);
   }
 
@@ -173,11 +176,13 @@ class Dynamics2d final : public Solver {
         }
       }
     }
+    overlap = deepest_overlap();
     for (std::size_t i = 0; i < headings_.size(); ++i) write_back(s, i, context.tick_s, dt);
   }
 
   std::shared_ptr<const void> keep() override {
-    return std::make_shared<Kept>(Kept{memory_.copy(), world_, anchor_, immovable_, placed_, bodies_table_, joints_});
+    return std::make_shared<Kept>(
+        Kept{memory_.copy(), world_, anchor_, immovable_, placed_, bodies_table_, joints_, crowds_moved});
   }
 
   void put_back(const void* kept) override {
@@ -190,6 +195,7 @@ class Dynamics2d final : public Solver {
     version_ = 0;  // looks whether they are those that stand there
     bodies_table_ = k.roster;
     joints_ = k.joints;
+    crowds_moved = k.crowds_moved;
   }
 
   std::size_t bytes_of(const void* kept) const override {
@@ -219,6 +225,7 @@ class Dynamics2d final : public Solver {
     std::vector<Placed> placed;
     BodyTable<BodyProxy> roster;
     std::vector<Held> joints;
+    bool crowds_moved;
   };
 
   b2Vec2 at(double x_m, double y_m) const noexcept {
@@ -517,12 +524,26 @@ class Dynamics2d final : public Solver {
   int sub_steps(const SpaceStores& s, double tick_s) const noexcept {
     if (params_.iterations > 0) return static_cast<int>(params_.iterations);
     double hop = std::min(hops_, kMostHops);
-    if (!joints_.empty()) hop = std::max(hop, tick_s / kHoldingStep_s);
+    if (!joints_.empty() || any_squeezed()) hop = std::max(hop, tick_s / kHoldingStep_s);
     for (const RobotGroup& group : s.groups) {
       if (group.kind != nullptr)
         hop = std::max(hop, wheels_of(*group.kind).max_speed_m_s * tick_s / (kLargestHop * group.kind->body.radius_m));
     }
     return static_cast<int>(std::clamp(std::ceil(hop), 1.0, static_cast<double>(box2d::kMostSubSteps)));
+  }
+
+  /// Whether an object has a robot and something else near it, which may squeeze it.
+  bool any_squeezed() const {
+    const auto& entries = bodies_table_.entries();
+    for (auto entry = entries.rbegin(); entry != entries.rend() && entry->key.is_object(); ++entry) {  // after robots
+      if (entry->body.flawed) continue;
+      const b2ContactEdge* const first = entry->body.body->GetContactList();
+      if (first == nullptr || first->next == nullptr) continue;
+      for (const b2ContactEdge* edge = first; edge != nullptr; edge = edge->next) {
+        if (is_robot(edge->other)) return true;
+      }
+    }
+    return false;
   }
 
   /// Whether a robot pushes something that a drive must hold its own against: an object, or a robot that pushes.
@@ -624,6 +645,34 @@ class Dynamics2d final : public Solver {
     normal = output.pointB - output.pointA;
     normal.Normalize();
     return output.distance - disc.m_radius - other.m_radius;
+  }
+
+  // --- crowds ---
+
+  const auto& entry_of(const b2Body* body) const {
+    return bodies_table_.entries()[const_cast<b2Body*>(body)->GetUserData().pointer];
+  }
+  /// Else it is an object's, or that of all immovable ones.
+  bool is_robot(const b2Body* body) const {
+    return body != immovable_ && body != anchor_ && !entry_of(body).key.is_object();
+  }
+
+  /// Of two own robots, at the end of the last sub-step.
+  double deepest_overlap() const {
+    double deepest = 0.0;
+    for (const b2Contact* c = world_->GetContactList(); c != nullptr; c = c->GetNext()) {
+      const b2Fixture* const one = c->GetFixtureA();
+      const b2Fixture* const other = c->GetFixtureB();
+      if (one->GetType() != b2Shape::e_circle || other->GetType() != b2Shape::e_circle) continue;
+      const float touch = one->GetShape()->m_radius + other->GetShape()->m_radius;
+      const b2Vec2 way = one->GetBody()->GetPosition() - other->GetBody()->GetPosition();
+      if (way.LengthSquared() >= touch * touch || !is_robot(one->GetBody()) || !is_robot(other->GetBody())) continue;
+      if (!entry_of(one->GetBody()).owned || !entry_of(other->GetBody()).owned) continue;
+      const auto depth = static_cast<double>(touch - way.Length());
+      deepest = std::max(deepest, CrowdPasses::overlap(depth, static_cast<double>(one->GetShape()->m_radius),
+                                                       static_cast<double>(other->GetShape()->m_radius)));
+    }
+    return deepest;
   }
 
   /// Whether a robot is joined to something.

@@ -6,6 +6,7 @@
 #include <tuple>
 
 #include "core/physics/crowd_passes.hpp"
+#include "core/physics/walls.hpp"
 #include "core/physics/wheels.hpp"
 #include "hal/unit.hpp"
 
@@ -88,36 +89,6 @@ bool any_too_fast(const Bodies& b, const RobotBlock& block) noexcept {
 /// Whether this engine moves the bodies of a region.
 bool mine(const SpaceStores& stores, std::uint16_t region) noexcept {
   return region != kNoRegion && !stores.regions[region].listed;
-}
-
-/// How far a disc at (x, y) must go to be clear of its region's walls.
-std::pair<double, double> out_of_walls(const Region& region, double x, double y, double radius_m) noexcept {
-  double px = 0.0;
-  double py = 0.0;
-  for (std::size_t i = 0; i < region.sides.size(); ++i) {
-    const RegionSide& a = region.sides[i];
-    if (!a.wall) continue;
-    const RegionSide& b = region.sides[(i + 1) % region.sides.size()];
-    const double length = std::hypot(b.x_m - a.x_m, b.y_m - a.y_m);
-    const double inward_x = -(b.y_m - a.y_m) / length;
-    const double inward_y = (b.x_m - a.x_m) / length;
-    double nx = 0.0;
-    double ny = 0.0;
-    const double d = distance_to_segment(x + px, y + py, a.x_m, a.y_m, b.x_m, b.y_m, nx, ny);
-    if (d >= radius_m) continue;
-    const double along_x = x + px - nx;
-    const double along_y = y + py - ny;
-    const double inside = along_x * inward_x + along_y * inward_y;
-    const bool at_end = std::fabs(std::fabs(inside) - d) > 1e-9 * radius_m;
-    if (at_end && d > 0.0) {  // round the wall's end
-      px += along_x / d * (radius_m - d);
-      py += along_y / d * (radius_m - d);
-    } else {
-      px += inward_x * (radius_m - inside);
-      py += inward_y * (radius_m - inside);
-    }
-  }
-  return {px, py};
 }
 
 void raise_to(std::atomic<double>& largest, double value) noexcept {

@@ -522,9 +522,9 @@ void Particle3d::apart(std::size_t i, std::size_t k) noexcept {
   const double high = std::min(above, below);
   const bool both_drive = p_.flies[i] == 0 && p_.flies[k] == 0;
   const bool beside = both_drive || depth <= high;
-  const double overlap = CrowdPasses::overlap(beside ? depth : high, p_.radius[i], p_.radius[k]);
-  deepest_ = std::max(deepest_, overlap);
-  if (crowded_) crowd_.note(static_cast<std::uint32_t>(i), overlap);
+  const double deep = CrowdPasses::overlap(beside ? depth : high, p_.radius[i], p_.radius[k]);
+  deepest_ = std::max(deepest_, deep);
+  if (crowded_) crowd_.note(static_cast<std::uint32_t>(i), deep);
   if (beside) {
     const double share = depth * (p_.fixed[k] != 0 ? 1.0 : 0.5);
     p_.push_x[i] += d > 0.0 ? dx / d * share : (i < k ? -share : share);  // two on one spot part along x

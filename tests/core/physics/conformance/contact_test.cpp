@@ -52,76 +52,92 @@ TEST_P(Contact, ACylinderAndATiltedBoxStopARobotToo) {
   EXPECT_GT(std::hypot(edge.x_m - 0.5, edge.y_m - 1.0), 0.1 + kRobotRadius_m - 2e-3);
 }
 
+/// In how many regions crowds are tried: where regions meet, each engine of a region knows but the nearest of the
+/// other.
+std::vector<std::string> splits_of(const std::string& kind) {
+  if (kind == "dynamics2d") return {"1x1", "2x2", "3x3"};
+  return {"1x1"};
+}
+
+Scene crowd_scene(const std::string& kind, const std::string& split, double size_m) {
+  Scene s(size_m);
+  s.engine(kind);
+  if (split != "1x1") s.split(split);
+  return s;
+}
+
 /// A quarter of the floor is robots, all at full speed, ten ticks a second, with the engine's own settings.
 TEST_P(Contact, ACrowdAtFullSpeedOverlapsByTwoPercentOfABodyAtMost) {
-  if (GetParam() == "dynamics2d") GTEST_SKIP() << "makes no more passes in crowds yet";
-  std::vector<std::uint64_t> ends;
-  for (const std::int64_t threads : {0, 4}) {
-    Scene s(1.02);
-    s.engine(GetParam()).param("left", "0.1288").param("right", "0.115").walls().robots(40, 0.36);
-    WorldOptions options;
-    options.threads = threads;
-    auto world = make(s, options);
-    ASSERT_TRUE(world.world) << world.all_problems();
-    double deepest_m = 0.0;
-    std::size_t pairs = 0;
-    for (int i = 0; i < 300; ++i) {
-      world->step();
-      const Crowd crowd = crowd_of(world->space(), 1e-3);
-      deepest_m = std::max(deepest_m, crowd.deepest_m);
-      pairs += crowd.pairs;
+  for (const std::string& split : splits_of(GetParam())) {
+    std::vector<std::uint64_t> ends;
+    for (const std::int64_t threads : {0, 4}) {
+      Scene s = crowd_scene(GetParam(), split, 1.02);
+      s.param("left", "0.1288").param("right", "0.115").walls().robots(40, 0.36);
+      WorldOptions options;
+      options.threads = threads;
+      auto world = make(s, options);
+      ASSERT_TRUE(world.world) << world.all_problems();
+      double deepest_m = 0.0;
+      std::size_t pairs = 0;
+      for (int i = 0; i < 300; ++i) {
+        world->step();
+        const Crowd crowd = crowd_of(world->space(), 1e-3);
+        deepest_m = std::max(deepest_m, crowd.deepest_m);
+        pairs += crowd.pairs;
+      }
+      EXPECT_EQ(world->state(), RunState::Running) << world->failure();
+      EXPECT_GT(pairs, 3000U) << "it is a crowd";
+      const double overlap = deepest_m / (2.0 * kRobotRadius_m);
+      EXPECT_LE(overlap, 0.02) << split;
+      EXPECT_NEAR(world->accuracy().overlap, overlap, 0.01) << "and the report says so, " << split;
+      ends.push_back(world->state_hash());
     }
-    EXPECT_EQ(world->state(), RunState::Running) << world->failure();
-    EXPECT_GT(pairs, 3000U) << "it is a crowd";
-    const double overlap = deepest_m / (2.0 * kRobotRadius_m);
-    EXPECT_LE(overlap, 0.02);
-    EXPECT_NEAR(world->accuracy().overlap, overlap, 0.01) << "and the report says so";
-    ends.push_back(world->state_hash());
+    EXPECT_EQ(ends[0], ends[1]) << split;
   }
-  EXPECT_EQ(ends[0], ends[1]);
 }
 
 /// All drive straight at one corner, where they heap up and press on. In the closest heap, 2 sqrt(3) r^2 of a quarter
 /// of a disc are each one's, and their mean distance from the corner is two thirds of its radius.
 TEST_P(Contact, RobotsThatPressIntoACornerHeapUpAndOverlapByTwoPercentOfABodyAtMost) {
-  if (GetParam() == "dynamics2d") GTEST_SKIP() << "makes no more passes in crowds yet";
   const std::size_t robots = GetParam() == "dynamics3d" ? 60 : GetParam() == "kinematics2d" ? 120 : 200;
   constexpr double kCorner_m = 0.9;
   const double closest_m =
       2.0 / 3.0 * std::sqrt(static_cast<double>(robots) * 8.0 * std::sqrt(3.0) / std::numbers::pi) * kRobotRadius_m;
-  std::vector<std::uint64_t> ends;
-  for (const std::int64_t threads : {0, 4}) {
-    Scene s(2.0);
-    s.engine(GetParam()).walls();
-    for (std::size_t i = 0; i < robots; ++i) {
-      const double x_m = -0.8 + 0.085 * static_cast<double>(i % 19);
-      const double y_m = -0.8 + 0.1 * static_cast<double>(i / 19);
-      s.robot("r" + std::to_string(i), x_m, y_m, std::atan2(kCorner_m - y_m, kCorner_m - x_m)).wheels(0.1288, 0.1288);
-    }
-    WorldOptions options;
-    options.threads = threads;
-    auto world = make(s, options);
-    ASSERT_TRUE(world.world) << world.all_problems();
-    double deepest_m = 0.0;
-    double mean_m = 0.0;
-    for (int tick = 0; tick < 200; ++tick) {
-      world->step();
-      deepest_m = std::max(deepest_m, crowd_of(world->space(), 0.0).deepest_m);
-      mean_m = 0.0;
+  for (const std::string& split : splits_of(GetParam())) {
+    std::vector<std::uint64_t> ends;
+    for (const std::int64_t threads : {0, 4}) {
+      Scene s = crowd_scene(GetParam(), split, 2.0);
+      s.walls();
       for (std::size_t i = 0; i < robots; ++i) {
-        const Pose pose = world->space().pose(world->space().robot(i));
-        ASSERT_LT(std::max(pose.x_m, pose.y_m), kCorner_m - kRobotRadius_m + 0.013) << "robot " << i << ", " << tick;
-        mean_m += std::hypot(kCorner_m - pose.x_m, kCorner_m - pose.y_m) / static_cast<double>(robots);
+        const double x_m = -0.8 + 0.085 * static_cast<double>(i % 19);
+        const double y_m = -0.8 + 0.1 * static_cast<double>(i / 19);
+        s.robot("r" + std::to_string(i), x_m, y_m, std::atan2(kCorner_m - y_m, kCorner_m - x_m)).wheels(0.1288, 0.1288);
       }
+      WorldOptions options;
+      options.threads = threads;
+      auto world = make(s, options);
+      ASSERT_TRUE(world.world) << world.all_problems();
+      double deepest_m = 0.0;
+      double mean_m = 0.0;
+      for (int tick = 0; tick < 200; ++tick) {
+        world->step();
+        deepest_m = std::max(deepest_m, crowd_of(world->space(), 0.0).deepest_m);
+        mean_m = 0.0;
+        for (std::size_t i = 0; i < robots; ++i) {
+          const Pose pose = world->space().pose(world->space().robot(i));
+          ASSERT_LT(std::max(pose.x_m, pose.y_m), kCorner_m - kRobotRadius_m + 0.013) << "robot " << i << ", " << tick;
+          mean_m += std::hypot(kCorner_m - pose.x_m, kCorner_m - pose.y_m) / static_cast<double>(robots);
+        }
+      }
+      EXPECT_EQ(world->state(), RunState::Running) << world->failure();
+      EXPECT_LT(mean_m, 1.25 * closest_m) << split;
+      const double overlap = deepest_m / (2.0 * kRobotRadius_m);
+      EXPECT_LE(overlap, 0.02) << split;
+      EXPECT_NEAR(world->accuracy().overlap, overlap, 0.002) << "and the report says so, " << split;
+      ends.push_back(world->state_hash());
     }
-    EXPECT_EQ(world->state(), RunState::Running) << world->failure();
-    EXPECT_LT(mean_m, 1.25 * closest_m);
-    const double overlap = deepest_m / (2.0 * kRobotRadius_m);
-    EXPECT_LE(overlap, 0.02);
-    EXPECT_NEAR(world->accuracy().overlap, overlap, 0.002) << "and the report says so";
-    ends.push_back(world->state_hash());
+    EXPECT_EQ(ends[0], ends[1]) << split;
   }
-  EXPECT_EQ(ends[0], ends[1]);
 }
 
 TEST_P(Contact, ARobotSlidesAlongAWall) {
