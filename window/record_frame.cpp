@@ -9,6 +9,7 @@
 #include "core/record/scene_json.hpp"
 #include "core/space/mechanisms.hpp"
 #include "core/view/layers/segments.hpp"
+#include "hal/json/json_access.hpp"
 
 namespace tandem::window {
 namespace {
@@ -48,9 +49,7 @@ class Values {
 };
 
 std::size_t leds_of_kind(const Json& bodies, std::size_t kind) {
-  if (!bodies.is_array() || kind >= bodies.size() || !bodies[kind].is_object()) return 0;
-  const auto leds = bodies[kind].find("leds");
-  return leds != bodies[kind].end() && leds->is_array() ? leds->size() : 0;
+  return bodies.is_array() && kind < bodies.size() ? hal::list_of(bodies[kind], "leds").size() : 0;
 }
 
 }  // namespace
@@ -110,12 +109,11 @@ void RecordFrames::look_at_scene(const core::RecordMoments& moments) {
   scene_number_ = moments.scene_number();
   floor_number_ = moments.floor_number();
   movables_.clear();
-  if (const auto objects = scene->json.find("objects"); objects != scene->json.end() && objects->is_array()) {
-    for (std::uint32_t i = 0; i < objects->size(); ++i) {
-      const Json& object = (*objects)[i];
-      const auto id = object.is_object() ? object.find("id") : object.end();
-      if (object.is_object() && id != object.end() && id->is_string()) movables_[id->get<std::string>()] = i;
-    }
+  std::uint32_t number = 0;
+  for (const Json& object : hal::list_of(scene->json, "objects")) {
+    if (const Json* const id = hal::member_of(object, "id"); id != nullptr && id->is_string())
+      movables_[id->get<std::string>()] = number;
+    ++number;
   }
   scene_ = std::move(scene);
 }

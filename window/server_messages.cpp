@@ -3,7 +3,7 @@
 #include <boost/asio/post.hpp>
 #include <set>
 
-#include "hal/json/text_of.hpp"
+#include "hal/json/json_access.hpp"
 #include "window/server.hpp"
 #include "window/viewer.hpp"
 #include "window/visitor.hpp"

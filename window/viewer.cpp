@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "hal/json/json_access.hpp"
 #include "window/server.hpp"
 
 namespace tandem::window {
@@ -84,8 +85,7 @@ void Viewer::note_got(const Json& command) {
 }
 
 Json Viewer::set_rate(const Json& command) {
-  const auto rate = command.find("frames_per_s");
-  const double wanted = rate != command.end() && rate->is_number() ? rate->get<double>() : 0.0;
+  const double wanted = hal::number_of(command, "frames_per_s");
   if (!(wanted >= kSlowest_per_s && wanted <= kFastest_per_s))
     return refusal("\"frames_per_s\" must be a number from 0.1 to 60");
   rate_per_s_ = wanted;

@@ -1,5 +1,6 @@
 // `tandem desk`: a person's word to a run that goes on, over its window or over LCM.
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <fmt/format.h>
@@ -11,7 +12,7 @@
 #include "app/robots/desk_keys.hpp"
 #include "bridges/desk/lcm_desk.hpp"
 #include "hal/json/json.hpp"
-#include "hal/json/text_of.hpp"
+#include "hal/json/json_access.hpp"
 #include "window/client.hpp"
 
 namespace tandem::app {
@@ -87,42 +88,41 @@ Json command_of(const DeskOptions& o) {
   return command;
 }
 
-std::string text_of(const Json& object, const char* name) {
+std::string shown(const Json& object, const char* name) {
   return printable(hal::text_of(object, name));
 }
 
-std::string number_of(const Json& object, const char* name, double scale, const char* unit) {
-  const auto found = object.find(name);
-  return found != object.end() && found->is_number() ? fmt::format("{:.0f} {}", found->get<double>() * scale, unit)
-                                                     : std::string();
+std::string quantity(const Json& object, const char* name, double scale, const char* unit) {
+  const double value = hal::number_of(object, name, NAN);
+  return std::isfinite(value) ? fmt::format("{:.0f} {}", value * scale, unit) : std::string();
 }
 
 void print_answer(const Json& answer) {
   if (const auto rows = answer.find("preflight"); rows != answer.end() && rows->is_array()) {
     for (const Json& row : *rows)
-      fmt::print("{:<4}  {:<18} {:<12} {}{}\n", text_of(row, "finding"), text_of(row, "about"), text_of(row, "check"),
-                 text_of(row, "found"), text_of(row, "advice").empty() ? "" : "\n      -> " + text_of(row, "advice"));
+      fmt::print("{:<4}  {:<18} {:<12} {}{}\n", shown(row, "finding"), shown(row, "about"), shown(row, "check"),
+                 shown(row, "found"), shown(row, "advice").empty() ? "" : "\n      -> " + shown(row, "advice"));
     return;
   }
   if (const auto roll = answer.find("roll"); roll != answer.end() && roll->is_array()) {
-    for (const Json& group : *roll) fmt::print("{}\n", text_of(group, "text"));
+    for (const Json& group : *roll) fmt::print("{}\n", shown(group, "text"));
   }
   if (const auto robots = answer.find("robots"); robots != answer.end() && robots->is_array()) {
     std::vector<std::pair<std::string, std::string>> table;
     for (const Json& robot : *robots) {
-      std::string text = text_of(robot, "state");
-      const std::string device = text_of(robot, "device");
-      if (!device.empty() && device != text_of(robot, "id")) text += "; is '" + device + "'";
+      std::string text = shown(robot, "state");
+      const std::string device = shown(robot, "device");
+      if (!device.empty() && device != shown(robot, "id")) text += "; is '" + device + "'";
       for (const std::string& more :
-           {number_of(robot, "age_s", 1e3, "ms old"), number_of(robot, "round_trip_s", 1e3, "ms there and back"),
-            number_of(robot, "battery", 100.0, "% battery")})
+           {quantity(robot, "age_s", 1e3, "ms old"), quantity(robot, "round_trip_s", 1e3, "ms there and back"),
+            quantity(robot, "battery", 100.0, "% battery")})
         if (!more.empty()) text += ", " + more;
-      table.emplace_back(text_of(robot, "id"), text);
+      table.emplace_back(shown(robot, "id"), text);
     }
     if (answer.value("paused", false)) table.emplace_back("the run", "is paused");
     print_table(table);
   }
-  if (const std::string note = text_of(answer, "note"); !note.empty()) fmt::print("{}\n", note);
+  if (const std::string note = shown(answer, "note"); !note.empty()) fmt::print("{}\n", note);
 }
 
 }  // namespace
@@ -137,7 +137,7 @@ int desk(const DeskOptions& options) {
   if (!answer.ok()) return complain(kFailedRunning, "desk: " + answer.error().message);
   if (options.json) fmt::print("{}\n", hal::to_text(answer.value()));
   if (!answer.value().value("ok", false))
-    return complain(kBadInput, "the run refuses: " + text_of(answer.value(), "error"));
+    return complain(kBadInput, "the run refuses: " + shown(answer.value(), "error"));
   if (!options.json) print_answer(answer.value());
   return kDone;
 }

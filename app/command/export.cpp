@@ -11,7 +11,7 @@
 #include "core/record/pattern.hpp"
 #include "core/record/record_reader.hpp"
 #include "hal/element.hpp"
-#include "hal/json/text_of.hpp"
+#include "hal/json/json_access.hpp"
 #include "hal/output_file.hpp"
 
 namespace tandem::app {
@@ -19,17 +19,8 @@ namespace {
 
 constexpr std::size_t kBufferBytes = std::size_t{1} << 18;
 
-/// A member of a record's JSON, which anybody may have written.
-double number_of(const hal::Json& json, const char* key, double otherwise) {
-  const auto found = json.find(key);
-  return found != json.end() && found->is_number() ? found->get<double>() : otherwise;
-}
-std::string text_of(const hal::Json& json, const char* key) {
-  return hal::text_of(json, key, "?");
-}
-
 std::int64_t ticks_per_second(const hal::Json& start) {
-  return std::llround(std::clamp(number_of(start, "ticks_per_second", 10.0), 1.0, 1e6));
+  return std::llround(std::clamp(hal::number_of(start, "ticks_per_second", 10.0), 1.0, 1e6));
 }
 
 hal::Error no_such_table(const ExportOptions& options, const std::string& title,
@@ -95,7 +86,7 @@ hal::Status print_contents(const ExportOptions& options) {
   while (const auto entry = reader.next()) {
     events += entry->type == core::RecordBlock::Event ? 1 : 0;
     fingerprints += entry->type == core::RecordBlock::Fingerprint ? 1 : 0;
-    if (entry->type == core::RecordBlock::End) end = text_of(entry->json, "ended");
+    if (entry->type == core::RecordBlock::End) end = hal::text_of(entry->json, "ended", "?");
     if (!entry->rows || entry->tick < 0) continue;
     Table& table = tables[entry->rows->stream().title()];
     if (table.ticks == 0) {
@@ -109,7 +100,8 @@ hal::Status print_contents(const ExportOptions& options) {
   }
   const hal::Json& start = reader.start();
   std::vector<std::pair<std::string, std::string>> rows = {
-      {"experiment", fmt::format("{}, seed {:.0f}", text_of(start, "experiment"), number_of(start, "seed", 0.0))}};
+      {"experiment",
+       fmt::format("{}, seed {:.0f}", hal::text_of(start, "experiment", "?"), hal::number_of(start, "seed"))}};
   for (const auto& [title, table] : tables) {
     rows.emplace_back("table", fmt::format("'{}': ticks {} to {}, {} of them, {} rows each; {}", title, table.first,
                                            table.last, table.ticks, table.members, table.fields));

@@ -9,6 +9,7 @@
 #include "core/record/hdf5/hdf5_file.hpp"
 #include "core/record/record_reader.hpp"
 #include "hal/element.hpp"
+#include "hal/json/json_access.hpp"
 #include "hal/output_file.hpp"
 
 namespace tandem::app {
@@ -169,11 +170,9 @@ hal::Status write_events(core::Hdf5File& file, const std::vector<core::RecordEve
   std::vector<double> ticks;
   std::vector<std::string> kinds, texts;
   for (const core::RecordEvent& event : events) {
-    const auto kind = event.json.find("kind"), text = event.json.find("text");
     ticks.push_back(static_cast<double>(event.tick));
-    kinds.push_back(kind != event.json.end() && kind->is_string() ? kind->get<std::string>() : "");
-    texts.push_back(text != event.json.end() && text->is_string() ? text->get<std::string>()
-                                                                  : hal::to_text(event.json));
+    kinds.push_back(hal::text_of(event.json, "kind"));
+    texts.push_back(hal::text_of(event.json, "text", hal::to_text(event.json)));
   }
   hal::Status done = file.add("/events/tick", core::Hdf5Type::I64, {});
   if (done.ok()) done = file.append("/events/tick", ticks.data(), ticks.size());
@@ -203,8 +202,7 @@ hal::Status write_hdf5(const ExportOptions& options) {
   if (const hal::Status sets = make_sets(file, tables); !sets.ok()) return sets;
 
   const hal::Json& start = reader.start();
-  const auto rate = start.find("ticks_per_second");
-  const double per_second = rate != start.end() && rate->is_number() ? rate->get<double>() : 10.0;
+  const double per_second = hal::number_of(start, "ticks_per_second", 10.0);
   for (const auto& [key, value] : start.items()) {
     if (const hal::Status told =
             file.describe("/", key, value.is_string() ? value.get<std::string>() : hal::to_text(value));

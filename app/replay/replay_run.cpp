@@ -9,7 +9,7 @@
 #include "app/process/terminal.hpp"
 #include "core/record/record_reader.hpp"
 #include "hal/element.hpp"
-#include "hal/json/text_of.hpp"
+#include "hal/json/json_access.hpp"
 
 namespace tandem::app {
 namespace {
@@ -21,9 +21,7 @@ using hal::text_of;
 /// Files of a list of the record's beginning; what makes no sense is empty.
 std::vector<InputFile> files_of(const hal::Json& start, const char* key) {
   std::vector<InputFile> files;
-  const auto found = start.find(key);
-  if (found == start.end() || !found->is_array()) return files;
-  for (const hal::Json& file : *found) {
+  for (const hal::Json& file : hal::list_of(start, key)) {
     if (file.is_object())
       files.push_back({text_of(file, "id"), text_of(file, "label"), text_of(file, "file"), text_of(file, "sha256")});
   }
@@ -76,8 +74,7 @@ bool ReplayRun::open(ExperimentReading& reading) {
   if (!record.ok()) return complain(kBadInput, record.error().message) == kDone;
   start_ = record.value().start();
   settings_ = text_of(start_, "settings");
-  const auto file = start_.find("file");
-  name_ = file != start_.end() && file->is_object() ? text_of(*file, "file") : std::string();
+  name_ = text_of(hal::object_of(start_, "file"), "file");
   if (settings_.empty() || name_.empty()) {
     return complain(kBadInput, "record '" + asked_.record +
                                    "' does not hold the experiment of its run, so it cannot be computed again") ==

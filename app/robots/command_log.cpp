@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 #include <utility>
 
-#include "hal/json/text_of.hpp"
+#include "hal/json/json_access.hpp"
 
 namespace tandem::app {
 namespace {
@@ -39,8 +39,7 @@ std::string arguments_of(const Json& command) {
 }  // namespace
 
 std::string command_text(hal::Tick tick, const Json& command, const Json& answer) {
-  const auto by = command.find("by");
-  const Json from = by != command.end() && by->is_object() ? *by : Json::object();
+  const Json& from = hal::object_of(command, "by");
   const std::string who = text_of(command, "who");
   std::string text =
       fmt::format("tick {}: '{}' ({}, {}): {}{}", tick, who.empty() ? "somebody" : who, text_of(from, "role"),

@@ -7,6 +7,7 @@
 #include "app/process/terminal.hpp"
 #include "app/robots/desk_keys.hpp"
 #include "app/robots/real_robots.hpp"
+#include "hal/json/json_access.hpp"
 #include "mixed_reality/time/monotonic.hpp"
 #include "window/viewer_text.hpp"
 
@@ -22,24 +23,18 @@ hal::TimeNs now_ns() {
   return mixed_reality::MonotonicTime().now_ns();
 }
 
-std::string text_or(const Json& object, const char* name, std::string otherwise) {
-  const auto found = object.find(name);
-  return found != object.end() && found->is_string() ? found->get<std::string>() : std::move(otherwise);
-}
-
 DeskWord word_of(const Json& command) {
   DeskWord word;
-  word.command = text_or(command, "do", "");
-  word.robot = text_or(command, "robot", "*");
-  word.who = text_or(command, "who", "");
-  const auto said = command.find(kSaidAt);
-  word.at_ns = said != command.end() && said->is_number_integer() ? said->get<hal::TimeNs>() : now_ns();
+  word.command = hal::text_of(command, "do");
+  word.robot = hal::text_of(command, "robot", "*");
+  word.who = hal::text_of(command, "who");
+  word.at_ns = hal::whole_of(command, kSaidAt, now_ns());
   return word;
 }
 
 /// A name as people may be shown it.
 std::string name_of(const Json& command, std::string_view from) {
-  std::string who = printable(text_or(command, "who", std::string(from)));
+  std::string who = printable(hal::text_of(command, "who", from));
   if (who.size() > bridges::desk::kLongestWho) who.resize(bridges::desk::kLongestWho);
   return who.empty() ? std::string(from) : who;
 }
@@ -122,7 +117,7 @@ hal::Status Desks::listen(const core::DeskConfig& config, const std::string& key
 }
 
 void Desks::post(Json command, core::LiveReply reply, std::string_view from) {
-  const std::string name = text_or(command, "do", "");
+  const std::string name = hal::text_of(command, "do");
   command["who"] = name_of(command, from);
   command.erase(kSaidAt);
   reply = commands_.noting(command, std::move(reply));
@@ -157,7 +152,7 @@ hal::Result<Json> Desks::carry_out(const Json& command) {
     return hal::Error{"\"robot\" is the id of a real robot, or \"*\" for all"};
   const auto admitted = desk_.admit(word_of(command), now_ns());
   if (!admitted.ok()) return admitted.error();
-  const std::string name = text_or(command, "do", ""), whom = text_or(command, "robot", "*");
+  const std::string name = hal::text_of(command, "do"), whom = hal::text_of(command, "robot", "*");
   Json motion;
   if (name == "first_motion") {
     auto moved = first_motion(whom);
@@ -180,7 +175,7 @@ hal::Result<Json> Desks::carry_out(const Json& command) {
 }
 
 hal::Status Desks::obey(const Json& command, const std::string& robot) {
-  const std::string name = text_or(command, "do", "");
+  const std::string name = hal::text_of(command, "do");
   if (name == "arm") return session_.arm(robot);
   if (name == "rearm") return session_.rearm(robot);
   return replace(command, robot);
@@ -202,7 +197,7 @@ hal::Result<Json> Desks::first_motion(const std::string& robot) {
 
 hal::Status Desks::replace(const Json& command, const std::string& robot) {
   const auto& spares = session_.world().scenario().desk.spares;
-  const std::string spare = text_or(command, "spare", ""), link = text_or(command, "link", "");
+  const std::string spare = hal::text_of(command, "spare"), link = hal::text_of(command, "link");
   mixed_reality::Replacement by;
   if (!spare.empty()) {
     const auto found = std::find_if(spares.begin(), spares.end(), [&](const auto& s) { return s.id == spare; });
@@ -213,8 +208,8 @@ hal::Status Desks::replace(const Json& command, const std::string& robot) {
     }
     by = {found->id, found->link, found->names, {}};
   } else if (!link.empty()) {
-    by = {text_or(command, "as", link), link, {}, {}};
-    if (const std::string seen = text_or(command, "seen_as", ""); !seen.empty()) by.names = {seen};
+    by = {hal::text_of(command, "as", link), link, {}, {}};
+    if (const std::string seen = hal::text_of(command, "seen_as"); !seen.empty()) by.names = {seen};
   } else {
     return hal::Error{"say which robot comes instead: \"spare\", an id of the file's, or \"link\""};
   }

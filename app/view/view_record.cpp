@@ -16,7 +16,7 @@
 #include "core/record/record_moments.hpp"
 #include "core/view/record_drawing.hpp"
 #include "hal/input_file.hpp"
-#include "hal/json/text_of.hpp"
+#include "hal/json/json_access.hpp"
 #include "window/record_frame.hpp"
 
 namespace tandem::app {
@@ -47,11 +47,7 @@ Json number_or_null(double value) {
 }
 
 using hal::text_of;
-
-std::int64_t whole_of(const Json& json, const char* key, std::int64_t otherwise) {
-  const auto found = json.find(key);
-  return found != json.end() && found->is_number_integer() ? found->get<std::int64_t>() : otherwise;
-}
+using hal::whole_of;
 
 std::optional<std::size_t> row_of(const RecordRows& rows, const std::string& id) {
   const std::vector<std::string>& ids = rows.members().ids;
@@ -134,11 +130,9 @@ class RecordPlayer {
 
 void RecordPlayer::greet() {
   const Json& start = moments_.start();
-  const auto seed = start.find("seed");
-  Json hello = hello_message(text_of(start, "experiment"), "record",
-                             seed != start.end() && seed->is_number_unsigned() ? seed->get<std::uint64_t>() : 0,
-                             moments_.ticks_per_second(), {"pause", "back"},
-                             core::areas_of_json(start.value("areas", Json::array())));
+  Json hello =
+      hello_message(text_of(start, "experiment"), "record", hal::count_of(start, "seed"), moments_.ticks_per_second(),
+                    {"pause", "back"}, core::areas_of_json(start.value("areas", Json::array())));
   hello["layers"].push_back({{"name", "hooks"}, {"summary", "What hooks drew."}, {"on", false}, {"panel", false}});
   window_.tell(std::move(hello));
   LogMessages log;

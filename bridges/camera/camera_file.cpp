@@ -4,6 +4,7 @@
 
 #include "hal/input_file.hpp"
 #include "hal/json/json.hpp"
+#include "hal/json/json_access.hpp"
 #include "hal/output_file.hpp"
 
 namespace tandem::bridges::camera {
@@ -20,11 +21,6 @@ bool read_numbers(const hal::Json& json, const char* name, std::array<double, n>
     if (!std::isfinite(values[i])) return false;
   }
   return true;
-}
-
-double number_or_zero(const hal::Json& json, const char* name) {
-  const auto at = json.find(name);
-  return at != json.end() && at->is_number() ? at->get<double>() : 0.0;
 }
 
 bool read_lens(const hal::Json& json, Lens& lens) {
@@ -56,8 +52,8 @@ hal::Result<CameraFile> read_camera_file(const std::string& path) {
   const auto lens = json.find("lens");
   CameraFile file;
   if (lens == json.end() || !lens->is_object() || !read_lens(*lens, file.lens)) return wrong;
-  file.residual_px = number_or_zero(*lens, "residual_px");
-  file.views = static_cast<std::size_t>(std::max(0.0, number_or_zero(*lens, "views")));
+  file.residual_px = hal::number_of(*lens, "residual_px");
+  file.views = static_cast<std::size_t>(std::max(0.0, hal::number_of(*lens, "views")));
   const auto place = json.find("arena");
   if (place == json.end()) return file;
   std::array<double, 3> p{};
@@ -67,7 +63,7 @@ hal::Result<CameraFile> read_camera_file(const std::string& path) {
   file.place = Placement{hal::quaternion_of(q), hal::vector_of(p)};
   if (!(std::fabs(file.place->q_WC.norm() - 1.0) < 1e-3)) return wrong;
   file.place->q_WC.normalize();
-  file.place_residual_px = number_or_zero(*place, "residual_px");
+  file.place_residual_px = hal::number_of(*place, "residual_px");
   return file;
 }
 

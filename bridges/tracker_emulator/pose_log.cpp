@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "hal/json/json.hpp"
+#include "hal/json/json_access.hpp"
 
 namespace tandem::bridges::tracker_emulator {
 namespace {
@@ -41,10 +42,9 @@ void PoseLog::take(const std::string& line) {
   if (!parsed.ok()) return;
   const hal::Json& json = parsed.value();
   if (!json.contains("t_ns") || !json.contains("x_m") || !json.contains("y_m") || !json.contains("heading_rad")) return;
-  const auto number = [&](const char* name) { return json[name].is_number() ? json[name].get<double>() : 0.0; };
   const char* const when = json.contains("taken_t_ns") ? "taken_t_ns" : "t_ns";
-  const TruePose pose{json[when].is_number_integer() ? json[when].get<hal::TimeNs>() : 0, number("x_m"), number("y_m"),
-                      number("heading_rad")};
+  const TruePose pose{hal::whole_of(json, when), hal::number_of(json, "x_m"), hal::number_of(json, "y_m"),
+                      hal::number_of(json, "heading_rad")};
   if (!poses_.empty() && pose.at_ns <= poses_.back().at_ns) return;
   if (!first_) first_ = pose;
   const bool rests = pose.x_m == first_->x_m && pose.y_m == first_->y_m && pose.heading_rad == first_->heading_rad;

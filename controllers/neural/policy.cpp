@@ -9,6 +9,7 @@
 #include "hal/elementary.hpp"
 #include "hal/input_file.hpp"
 #include "hal/json/json.hpp"
+#include "hal/json/json_access.hpp"
 
 namespace tandem::controllers {
 namespace {
@@ -110,8 +111,7 @@ hal::Status read_layer(const Json& one, const std::string& where, std::size_t in
   if (layer.bias.size() != layer.outputs)
     return error(
         where, "has " + std::to_string(layer.bias.size()) + " biases for " + std::to_string(layer.outputs) + " values");
-  const std::string activation =
-      one.contains("activation") && one["activation"].is_string() ? one["activation"].get<std::string>() : "";
+  const std::string activation = hal::text_of(one, "activation");
   if (activation == "identity") {
     layer.activation = Activation::Identity;
   } else if (activation == "relu") {

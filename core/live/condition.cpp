@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "hal/element.hpp"
+#include "hal/json/json_access.hpp"
 #include "hal/unit.hpp"
 
 namespace tandem::core {
@@ -31,8 +32,7 @@ hal::Status Conditions::add(const hal::Json& json, const World& world) {
   if (all_.size() == kMost)
     return hal::Error{"there are " + std::to_string(kMost) + " conditions already; remove them first (\"clear\")"};
   Condition c;
-  const auto incident = json.find("incident");
-  if (incident != json.end() && incident->is_boolean() && incident->get<bool>()) {
+  if (hal::flag_of(json, "incident")) {
     c.incident = true;
     c.words = "an incident";
     incidents_ = incidents_of(world);
@@ -45,9 +45,7 @@ hal::Status Conditions::add(const hal::Json& json, const World& world) {
   auto field = read_field_ref(json);
   if (!field.ok()) return field.error();
   c.field = std::move(field).value();
-  const auto op = json.find("op");
-  const auto known =
-      std::find(kOps.begin(), kOps.end(), op != json.end() && op->is_string() ? op->get<std::string>() : std::string());
+  const auto known = std::find(kOps.begin(), kOps.end(), hal::text_of(json, "op"));
   if (known == kOps.end()) return hal::Error{"\"op\" is one of <, >, ==, !="};
   c.op = static_cast<Op>(known - kOps.begin());
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "hal/element.hpp"
+#include "hal/json/json_access.hpp"
 
 namespace tandem::core {
 namespace {
@@ -23,11 +24,6 @@ hal::Error too_far(const FieldRef& ref, std::size_t count) {
   return {ref.text() + ": it has " + std::to_string(count) + (count == 1 ? " value" : " values") + ", from index 0 on"};
 }
 
-std::string text_member(const hal::Json& json, const char* key) {
-  const auto found = json.find(key);
-  return found != json.end() && found->is_string() ? found->get<std::string>() : std::string();
-}
-
 }  // namespace
 
 std::string FieldRef::text() const {
@@ -38,12 +34,12 @@ std::string FieldRef::text() const {
 
 hal::Result<FieldRef> read_field_ref(const hal::Json& json) {
   FieldRef ref;
-  const std::string role = text_member(json, "role");
+  const std::string role = hal::text_of(json, "role");
   const auto found = std::find(kRoles.begin(), kRoles.end(), role);
   if (found == kRoles.end()) return unknown("\"role\": there is no role", role, kRoles);
   ref.role = static_cast<Role>(found - kRoles.begin());
-  ref.port = text_member(json, "port");
-  ref.field = text_member(json, "field");
+  ref.port = hal::text_of(json, "port");
+  ref.field = hal::text_of(json, "field");
   if (ref.field.empty()) return hal::Error{"\"field\" is missing: the name of the value"};
   const bool of_port = ref.role == Role::Sensor || ref.role == Role::Actuator;
   if (of_port && ref.port.empty()) return hal::Error{"\"port\" is missing: the name of the " + role};

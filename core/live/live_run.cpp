@@ -11,6 +11,7 @@
 #include "core/live/timeline.hpp"
 #include "core/live/touch.hpp"
 #include "hal/element.hpp"
+#include "hal/json/json_access.hpp"
 
 namespace tandem::core {
 namespace {
@@ -30,9 +31,7 @@ Json refused(const std::string& why) {
 }
 
 bool is_go_to(const Json& command) {
-  if (!command.is_object()) return false;
-  const auto name = command.find("do");
-  return name != command.end() && *name == "go_to";
+  return hal::text_of(command, "do") == "go_to";
 }
 
 /// A whole number from `least` on. Error: missing, or something else.
@@ -58,9 +57,7 @@ hal::Result<std::optional<double>> speed_of(const Json& json) {
 
 std::vector<std::string> texts(const Json& json, const char* key) {
   std::vector<std::string> all;
-  const auto found = json.find(key);
-  if (found == json.end() || !found->is_array()) return all;
-  for (const Json& text : *found) {
+  for (const Json& text : hal::list_of(json, key)) {
     if (text.is_string()) all.push_back(text.get<std::string>());
   }
   return all;
@@ -376,8 +373,7 @@ hal::Result<Json> LiveRun::Impl::act(const Json& c) {
 }
 
 hal::Result<Json> LiveRun::Impl::stop_when(const Json& c) {
-  const auto clear = c.find("clear");
-  if (clear != c.end() && clear->is_boolean() && clear->get<bool>()) {
+  if (hal::flag_of(c, "clear")) {
     conditions.clear();
     return Json::object();
   }

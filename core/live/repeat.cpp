@@ -2,6 +2,7 @@
 
 #include "core/live/touch.hpp"
 #include "core/record/record_reader.hpp"
+#include "hal/json/json_access.hpp"
 
 namespace tandem::core {
 
@@ -13,12 +14,10 @@ hal::Result<Repeatable> read_repeatable(const std::string& record) {
   RecordReader& reader = opened.value();
   Repeatable all;
   const Json& start = reader.start();
-  if (const auto seed = start.find("seed"); seed != start.end() && seed->is_number_unsigned())
+  if (const Json* const seed = hal::member_of(start, "seed"); seed != nullptr && seed->is_number_unsigned())
     all.seed = seed->get<std::uint64_t>();
-  if (const auto name = start.find("experiment"); name != start.end() && name->is_string())
-    all.experiment = name->get<std::string>();
-  if (const auto scripts = start.find("scripts"); scripts != start.end() && scripts->is_object())
-    all.scripts = *scripts;
+  all.experiment = hal::text_of(start, "experiment");
+  all.scripts = hal::object_of(start, "scripts");
   while (const auto entry = reader.next()) {
     if (entry->type == RecordBlock::Fingerprint) all.fingerprints[entry->tick] = entry->fingerprint;
     if (entry->type != RecordBlock::Event) continue;
@@ -48,15 +47,13 @@ hal::Result<Repeatable> read_repeatable(const std::string& record) {
         return bad();
       if (event.contains("repeatable")) {
         all.real_robots = true;
-        const auto name = action->find("do");
-        if (name == action->end() || !name->is_string() || !is_touch(name->get<std::string>())) continue;
+        if (!is_touch(hal::text_of(*action, "do"))) continue;
       }
       all.actions.push_back({step == event.end() ? entry->tick : step->get<std::int64_t>(), *action});
     }
   }
   for (const RepeatedAction& action : all.actions) {
-    const auto name = action.action.find("do");
-    if (name != action.action.end() && *name == "reset") all.fingerprints.clear();  // ticks are had twice
+    if (hal::text_of(action.action, "do") == "reset") all.fingerprints.clear();  // ticks are had twice
   }
   return all;
 }

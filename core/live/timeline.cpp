@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "core/live/touch.hpp"
+#include "hal/json/json_access.hpp"
 #include "hal/unit.hpp"
 
 namespace tandem::core {
@@ -18,8 +19,7 @@ constexpr hal::TimeNs kCheaper = 100;
 constexpr std::int64_t kNear = 16;
 
 bool is_reset(const Json& action) {
-  const auto name = action.find("do");
-  return name != action.end() && *name == "reset";
+  return hal::text_of(action, "do") == "reset";
 }
 
 std::string megabytes(std::size_t bytes) {

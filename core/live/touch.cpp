@@ -11,6 +11,7 @@
 #include "core/live/source_files.hpp"
 #include "core/space/stores.hpp"
 #include "hal/element.hpp"
+#include "hal/json/json_access.hpp"
 #include "hal/unit.hpp"
 
 namespace tandem::core {
@@ -346,8 +347,7 @@ bool is_touch(std::string_view name) noexcept {
 }
 
 hal::Result<Json> touch(World& world, Json& command) {
-  const auto found = command.find("do");
-  const std::string name = found != command.end() && found->is_string() ? found->get<std::string>() : std::string();
+  const std::string name = hal::text_of(command, "do");
   if (name == "move") return move(world, command);
   if (name == "add") return add(world, command);
   if (name == "remove") return remove(world, command);

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "hal/json/json_access.hpp"
+
 namespace tandem::core {
 namespace {
 
@@ -25,9 +27,7 @@ std::optional<std::size_t> field_of(const RecordRows& rows, std::string_view nam
 }
 
 RecordMoments::RecordMoments(RecordReader reader) : reader_(std::move(reader)) {
-  const auto rate = reader_.start().find("ticks_per_second");
-  const double read = rate != reader_.start().end() && rate->is_number() ? rate->get<double>() : 10.0;
-  if (std::isfinite(read)) ticks_per_second_ = std::llround(std::clamp(read, 1.0, 1e6));
+  ticks_per_second_ = std::llround(std::clamp(hal::number_of(reader_.start(), "ticks_per_second", 10.0), 1.0, 1e6));
 }
 
 hal::Result<RecordMoments> RecordMoments::open(const std::string& path) {

@@ -7,6 +7,7 @@
 #include <numeric>
 #include <utility>
 
+#include "hal/json/json_access.hpp"
 #include "hal/scalar_name.hpp"
 
 namespace tandem::core {
@@ -15,28 +16,6 @@ namespace {
 using hal::Json;
 
 constexpr std::size_t kMostCount = std::size_t{1} << 20;
-
-/// The member as a `T`, or `otherwise` where it is missing or something else.
-template <class T>
-T get(const Json& json, const char* key, T otherwise) {
-  const auto found = json.find(key);
-  if (found == json.end()) return otherwise;
-  if constexpr (std::is_same_v<T, std::string>) {
-    return found->is_string() ? found->template get<std::string>() : otherwise;
-  } else if constexpr (std::is_same_v<T, double>) {
-    return found->is_number() ? found->template get<double>() : otherwise;
-  } else {
-    return found->is_number_unsigned() ? found->template get<T>() : otherwise;
-  }
-}
-
-std::vector<std::string> texts_of(const Json& json, const char* key) {
-  std::vector<std::string> texts;
-  const auto found = json.find(key);
-  if (found == json.end() || !found->is_array()) return texts;
-  for (const Json& text : *found) texts.push_back(text.is_string() ? text.get<std::string>() : std::string());
-  return texts;
-}
 
 template <class T>
 T read_at(const char* at) noexcept {
@@ -243,37 +222,35 @@ std::shared_ptr<const RecordStream> RecordDecoder::stream_of(std::string_view ro
 
 hal::Status RecordDecoder::declare_stream(const Json& json) {
   auto stream = std::make_shared<RecordStream>();
-  const auto number = get<std::uint64_t>(json, "stream", 0);
-  stream->of = get<std::string>(json, "of", "");
-  stream->set = get<std::string>(json, "set", "");
-  stream->name = get<std::string>(json, "name", "");
-  const auto on_change = json.find("on_change");
-  stream->on_change = on_change != json.end() && *on_change == Json(true);
-  const auto fields = json.find("fields");
-  if (number == 0 || fields == json.end() || !fields->is_array())
-    return hal::Error{"a stream without number or fields"};
+  const auto number = hal::count_of(json, "stream");
+  stream->of = hal::text_of(json, "of");
+  stream->set = hal::text_of(json, "set");
+  stream->name = hal::text_of(json, "name");
+  stream->on_change = hal::flag_of(json, "on_change");
+  const Json* const fields = hal::member_of(json, "fields");
+  if (number == 0 || fields == nullptr || !fields->is_array()) return hal::Error{"a stream without number or fields"};
   for (const Json& f : *fields) {
-    const auto scalar = f.is_object() ? hal::scalar_from(get<std::string>(f, "type", "")) : std::nullopt;
-    const auto count = f.is_object() ? get<std::uint64_t>(f, "count", 1) : 0;
+    const auto scalar = hal::scalar_from(hal::text_of(f, "type"));
+    const auto count = hal::count_of(f, "count", 1);
     if (!scalar || count > kMostCount) return hal::Error{"a field of stream '" + stream->name + "' has no known type"};
     RecordField field;
-    field.name = get<std::string>(f, "name", "");
-    field.unit = get<std::string>(f, "unit", "");
-    field.doc = get<std::string>(f, "doc", "");
+    field.name = hal::text_of(f, "name");
+    field.unit = hal::text_of(f, "unit");
+    field.doc = hal::text_of(f, "doc");
     field.scalar = *scalar;
     field.count = count;
-    field.scale = get<double>(f, "scale", 1.0);
-    field.per_entry = std::min<std::uint64_t>(get<std::uint64_t>(f, "per_entry", 1), kMostCount);
-    field.texts = texts_of(f, "texts");
+    field.scale = hal::number_of(f, "scale", 1.0);
+    field.per_entry = std::min<std::uint64_t>(hal::count_of(f, "per_entry", 1), kMostCount);
+    field.texts = hal::texts_of(f, "texts");
     stream->fields.push_back(std::move(field));
   }
   for (std::size_t i = 0; i < stream->fields.size(); ++i) {
-    const auto by = get<std::string>((*fields)[i], "used_by", "");
+    const auto by = hal::text_of((*fields)[i], "used_by");
     if (by.empty()) continue;
     for (std::size_t k = 0; k < stream->fields.size(); ++k) {
       if (stream->fields[k].name == by && stream->fields[k].count == 1) stream->fields[i].used_by = k;
     }
-    const auto own = get<std::string>((*fields)[stream->fields[i].used_by.value_or(i)], "used_by", "");
+    const auto own = hal::text_of((*fields)[stream->fields[i].used_by.value_or(i)], "used_by");
     if (!stream->fields[i].used_by || !own.empty())
       return hal::Error{"field '" + stream->fields[i].name + "' of stream '" + stream->name + "' counts by none"};
   }
@@ -283,34 +260,31 @@ hal::Status RecordDecoder::declare_stream(const Json& json) {
 
 hal::Status RecordDecoder::declare_members(const Json& json) {
   auto members = std::make_shared<RecordMembers>();
-  const auto number = get<std::uint64_t>(json, "members", 0);
+  const auto number = hal::count_of(json, "members");
   if (number == 0) return hal::Error{"members without a number"};
-  members->ids = texts_of(json, "ids");
+  members->ids = hal::texts_of(json, "ids");
   members->kinds.resize(members->ids.size());
   members->real.resize(members->ids.size(), false);
   members->kind.resize(members->ids.size(), 0);
-  if (const auto bodies = json.find("bodies"); bodies != json.end() && bodies->is_array()) members->bodies = *bodies;
-  const std::vector<std::string> kinds = texts_of(json, "kinds");
-  if (const auto kind = json.find("kind"); kind != json.end() && kind->is_array()) {
-    for (std::size_t i = 0; i < std::min(kind->size(), members->kinds.size()); ++i) {
-      const Json& k = (*kind)[i];
-      if (!k.is_number_unsigned() || k.get<std::uint64_t>() >= kinds.size()) continue;
-      members->kind[i] = k.get<std::uint64_t>();
-      members->kinds[i] = kinds[members->kind[i]];
-    }
+  if (const Json& bodies = hal::list_of(json, "bodies"); !bodies.empty()) members->bodies = bodies;
+  const std::vector<std::string> kinds = hal::texts_of(json, "kinds");
+  const Json& kind = hal::list_of(json, "kind");
+  for (std::size_t i = 0; i < std::min(kind.size(), members->kinds.size()); ++i) {
+    const Json& k = kind[i];
+    if (!k.is_number_unsigned() || k.get<std::uint64_t>() >= kinds.size()) continue;
+    members->kind[i] = k.get<std::uint64_t>();
+    members->kinds[i] = kinds[members->kind[i]];
   }
-  if (const auto real = json.find("real"); real != json.end() && real->is_array()) {
-    for (const Json& i : *real) {
-      if (i.is_number_unsigned() && i.get<std::uint64_t>() < members->real.size())
-        members->real[i.get<std::uint64_t>()] = true;
-    }
+  for (const Json& i : hal::list_of(json, "real")) {
+    if (i.is_number_unsigned() && i.get<std::uint64_t>() < members->real.size())
+      members->real[i.get<std::uint64_t>()] = true;
   }
   const std::size_t count = members->ids.size();
   members->order.resize(count);
   std::iota(members->order.begin(), members->order.end(), std::size_t{0});
-  if (const auto order = json.find("order"); order != json.end() && order->is_array() && order->size() == count) {
+  if (const Json& order = hal::list_of(json, "order"); order.size() == count) {
     std::vector<std::size_t> all;
-    for (const Json& i : *order) all.push_back(i.is_number_unsigned() ? i.get<std::size_t>() : count);
+    for (const Json& i : order) all.push_back(i.is_number_unsigned() ? i.get<std::size_t>() : count);
     std::vector<bool> seen(count, false);
     const bool whole = std::all_of(all.begin(), all.end(), [&](std::size_t i) {
       const bool fresh = i < count && !seen[i];

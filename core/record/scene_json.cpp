@@ -12,6 +12,7 @@
 #include "core/space/attitude.hpp"
 #include "hal/device/gripper.hpp"
 #include "hal/device/leds.hpp"
+#include "hal/json/json_access.hpp"
 
 namespace tandem::core {
 namespace {
@@ -157,16 +158,6 @@ namespace {
 
 constexpr std::array<const char*, 4> kShapes = {"line", "polygon", "circle", "text"};
 
-double number(const Json& json, double otherwise) {
-  if (!json.is_number()) return otherwise;
-  const auto value = json.get<double>();
-  return std::isfinite(value) ? value : otherwise;
-}
-
-double item(const Json& json, std::size_t index) {
-  return json.is_array() && index < json.size() ? number(json[index], 0.0) : 0.0;
-}
-
 }  // namespace
 
 Json sketch_json(const Sketch& sketch) {
@@ -187,25 +178,26 @@ Json sketch_json(const Sketch& sketch) {
 
 Sketch sketch_of_json(const Json& json) {
   Sketch sketch;
-  const Json& shapes = json.is_object() && json.contains("shapes") ? json["shapes"] : Json::array();
-  for (const Json& shape : shapes) {
-    if (!shape.is_object()) continue;
+  for (const Json& shape : hal::list_of(json, "shapes")) {
     std::vector<Sketch::Point> points;
-    for (const Json& p : shape.value("points", Json::array())) points.push_back({item(p, 0), item(p, 1), item(p, 2)});
+    for (const Json& p : hal::list_of(shape, "points"))
+      points.push_back({hal::item_of(p, 0), hal::item_of(p, 1), hal::item_of(p, 2)});
     if (points.empty()) continue;
-    const Json color = shape.value("color", Json::array()), kind = shape.value("kind", Json());
+    const Json& color = hal::list_of(shape, "color");
     const auto channel = [&color](std::size_t i) {
-      return static_cast<std::uint8_t>(std::clamp(item(color, i), 0.0, 255.0));
+      return static_cast<std::uint8_t>(std::clamp(hal::item_of(color, i), 0.0, 255.0));
     };
     const Sketch::Pen pen{{channel(0), channel(1), channel(2)},
-                          number(shape.value("width", Json()), 0.0),
-                          shape.value("filled", Json()) == Json(true),
-                          number(shape.value("opacity", Json()), 1.0)};
+                          hal::number_of(shape, "width"),
+                          hal::flag_of(shape, "filled"),
+                          hal::number_of(shape, "opacity", 1.0)};
+    const std::string kind = hal::text_of(shape, "kind");
+    const Json* const text = hal::member_of(shape, "text");
     if (kind == kShapes[0]) sketch.path(points, pen);
     if (kind == kShapes[1]) sketch.polygon(points, pen);
-    if (kind == kShapes[2]) sketch.circle(points[0], number(shape.value("radius", Json()), 0.0), pen);
-    const Json text = shape.value("text", Json());
-    if (kind == kShapes[3] && text.is_string()) sketch.text(points[0], text.get<std::string>(), pen);
+    if (kind == kShapes[2]) sketch.circle(points[0], hal::number_of(shape, "radius"), pen);
+    if (kind == kShapes[3] && text != nullptr && text->is_string())
+      sketch.text(points[0], text->get<std::string>(), pen);
   }
   return sketch;
 }

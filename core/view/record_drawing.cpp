@@ -11,54 +11,35 @@
 #include "core/record/scene_json.hpp"
 #include "core/space/mechanisms.hpp"
 #include "hal/device/leds.hpp"
+#include "hal/json/json_access.hpp"
 #include "hal/time.hpp"
 #include "hal/unit.hpp"
 
 namespace tandem::core {
 namespace {
 
+using hal::flag_of;
+using hal::item_of;
 using hal::Json;
+using hal::list_of;
+using hal::number_of;
+using hal::text_of;
 
-// Anybody may have written a record: what is missing or no number is taken for `otherwise`.
-double number_or(const Json& json, double otherwise) {
-  if (!json.is_number()) return otherwise;
-  const auto value = json.get<double>();
-  return std::isfinite(value) ? value : otherwise;
-}
-double number(const Json& json, const char* key, double otherwise = 0.0) {
-  const auto found = json.is_object() ? json.find(key) : json.end();
-  return json.is_object() && found != json.end() ? number_or(*found, otherwise) : otherwise;
-}
-double item(const Json& json, std::size_t index) {
-  return json.is_array() && index < json.size() ? number_or(json[index], 0.0) : 0.0;
-}
-std::string text(const Json& json, const char* key, const char* otherwise) {
-  const auto found = json.is_object() ? json.find(key) : json.end();
-  return json.is_object() && found != json.end() && found->is_string() ? found->get<std::string>() : otherwise;
-}
-bool is_true(const Json& json, const char* key) {
-  const auto found = json.is_object() ? json.find(key) : json.end();
-  return json.is_object() && found != json.end() && found->is_boolean() && found->get<bool>();
-}
-const Json& list(const Json& json, const char* key) {
-  static const Json kNone = Json::array();
-  const auto found = json.is_object() ? json.find(key) : json.end();
-  return json.is_object() && found != json.end() && found->is_array() ? *found : kNone;
-}
 std::uint8_t channel(const Json& json, std::size_t index) {
-  return static_cast<std::uint8_t>(std::clamp(item(json, index), 0.0, 255.0));
+  return static_cast<std::uint8_t>(std::clamp(item_of(json, index), 0.0, 255.0));
 }
 
 Drawing::Kind kind_of(std::string name, const Json& body) {
   constexpr double kUnknown_m = 0.05;
   Drawing::Kind kind;
   kind.name = std::move(name);
-  kind.radius_m = std::max(1e-3, number(body, "radius", kUnknown_m));
-  kind.height_m = number(body, "height");
-  kind.rotor_arm_m = number(body, "rotor_arm");
-  kind.gripper_reach_m = number(body, "gripper_reach");
-  kind.leds_on_turret = is_true(body, "leds_on_turret");
-  for (const Json& led : list(body, "leds")) kind.leds.push_back({item(led, 0), item(led, 1), item(led, 2)});
+  kind.radius_m = std::max(1e-3, number_of(body, "radius", kUnknown_m));
+  kind.height_m = number_of(body, "height");
+  kind.rotor_arm_m = number_of(body, "rotor_arm");
+  kind.gripper_reach_m = number_of(body, "gripper_reach");
+  kind.leds_on_turret = flag_of(body, "leds_on_turret");
+  for (const Json& led : list_of(body, "leds"))
+    kind.leds.push_back({item_of(led, 0), item_of(led, 1), item_of(led, 2)});
   return kind;
 }
 
@@ -110,15 +91,15 @@ std::vector<Drawing::Area> areas_of_json(const Json& areas) {
   if (!areas.is_array()) return all;
   for (const Json& a : areas) {
     Drawing::Area area;
-    const std::string kind = text(a, "kind", "");
+    const std::string kind = text_of(a, "kind");
     area.kind = kind == "fence"      ? Drawing::Area::Kind::Fence
                 : kind == "keep_out" ? Drawing::Area::Kind::KeepOut
                                      : Drawing::Area::Kind::Zone;
-    area.id = text(a, "id", "");
-    area.from_m = number(a, "from");
-    area.to_m = number(a, "to");
-    area.max_speed_m_s = number(a, "max_speed");
-    for (const Json& corner : list(a, "corners")) area.corners.push_back({item(corner, 0), item(corner, 1)});
+    area.id = text_of(a, "id");
+    area.from_m = number_of(a, "from");
+    area.to_m = number_of(a, "to");
+    area.max_speed_m_s = number_of(a, "max_speed");
+    for (const Json& corner : list_of(a, "corners")) area.corners.push_back({item_of(corner, 0), item_of(corner, 1)});
     if (area.corners.size() > 2) all.push_back(std::move(area));
   }
   return all;
@@ -140,9 +121,9 @@ Json to_json(const std::vector<Drawing::Area>& areas) {
 
 RecordDrawings::RecordDrawings(RecordMoments moments) : moments_(std::move(moments)) {
   const Json& start = moments_.start();
-  const auto seed = start.find("seed");
-  title_ = text(start, "experiment", "?") + ", seed " +
-           (seed != start.end() && seed->is_number_unsigned() ? std::to_string(seed->get<std::uint64_t>()) : "?");
+  const Json* const seed = hal::member_of(start, "seed");
+  title_ = text_of(start, "experiment", "?") + ", seed " +
+           (seed != nullptr && seed->is_number_unsigned() ? std::to_string(seed->get<std::uint64_t>()) : "?");
 }
 
 hal::Result<RecordDrawings> RecordDrawings::open(const std::string& path) {
@@ -163,8 +144,8 @@ void RecordDrawings::take_scene() {
   floor_number_ = moments_.floor_number();
   const Json& scene = moments_.scene();
   if (const auto arena = scene.find("arena"); arena != scene.end()) {
-    const PictureLook::Area read{number(*arena, "min_x", -1.0), number(*arena, "min_y", -1.0),
-                                 number(*arena, "max_x", 1.0), number(*arena, "max_y", 1.0)};
+    const PictureLook::Area read{number_of(*arena, "min_x", -1.0), number_of(*arena, "min_y", -1.0),
+                                 number_of(*arena, "max_x", 1.0), number_of(*arena, "max_y", 1.0)};
     if (read.min_x_m < read.max_x_m && read.min_y_m < read.max_y_m) arena_ = read;
   }
   scene_ = Drawing();
@@ -173,29 +154,30 @@ void RecordDrawings::take_scene() {
   scene_.max_x_m = arena_.max_x_m;
   scene_.max_y_m = arena_.max_y_m;
   movables_.clear();
-  for (const Json& o : list(scene, "objects")) {
-    const bool box = text(o, "shape", "box") == "box";
-    const bool movable = is_true(o, "movable");
-    if (movable) movables_.push_back({text(o, "id", ""), box, box ? scene_.boxes.size() : scene_.cylinders.size()});
+  for (const Json& o : list_of(scene, "objects")) {
+    const bool box = text_of(o, "shape", "box") == "box";
+    const bool movable = flag_of(o, "movable");
+    if (movable) movables_.push_back({text_of(o, "id"), box, box ? scene_.boxes.size() : scene_.cylinders.size()});
     if (box) {
-      scene_.boxes.push_back({number(o, "x"), number(o, "y"), number(o, "heading"), 0.5 * number(o, "size_x"),
-                              0.5 * number(o, "size_y"), movable, number(o, "z"), number(o, "height")});
+      scene_.boxes.push_back({number_of(o, "x"), number_of(o, "y"), number_of(o, "heading"),
+                              0.5 * number_of(o, "size_x"), 0.5 * number_of(o, "size_y"), movable, number_of(o, "z"),
+                              number_of(o, "height")});
     } else {
-      scene_.cylinders.push_back(
-          {number(o, "x"), number(o, "y"), number(o, "radius"), movable, number(o, "z"), number(o, "height")});
+      scene_.cylinders.push_back({number_of(o, "x"), number_of(o, "y"), number_of(o, "radius"), movable,
+                                  number_of(o, "z"), number_of(o, "height")});
     }
   }
-  for (const Json& b : list(scene, "borders")) {
+  for (const Json& b : list_of(scene, "borders")) {
     const bool wall = b.is_array() && b.size() > 4 && b[4].is_boolean() && b[4].get<bool>();
-    scene_.borders.push_back({item(b, 0), item(b, 1), item(b, 2), item(b, 3), wall});
+    scene_.borders.push_back({item_of(b, 0), item_of(b, 1), item_of(b, 2), item_of(b, 3), wall});
   }
-  scene_.areas = areas_of_json(list(moments_.start(), "areas"));
-  for (const Json& light : list(scene, "lights")) {
-    const Json& color = list(light, "color");
-    scene_.lights.push_back({number(light, "x"),
-                             number(light, "y"),
+  scene_.areas = areas_of_json(list_of(moments_.start(), "areas"));
+  for (const Json& light : list_of(scene, "lights")) {
+    const Json& color = list_of(light, "color");
+    scene_.lights.push_back({number_of(light, "x"),
+                             number_of(light, "y"),
                              {channel(color, 0), channel(color, 1), channel(color, 2)},
-                             number(light, "z")});
+                             number_of(light, "z")});
   }
   if (moments_.floor_png().empty()) return;
   auto read = floor_of_png(moments_.floor_png());

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "hal/angle.hpp"
+#include "hal/json/json_access.hpp"
 
 namespace tandem::mixed_reality {
 namespace {
@@ -164,14 +165,10 @@ struct Area {
 };
 
 Area area_of(const RecordedRun& run) {
-  const hal::Json arena = run.scene.is_object() ? run.scene.value("arena", hal::Json()) : hal::Json();
-  const auto number = [&](const char* key, double otherwise) {
-    const auto found = arena.is_object() ? arena.find(key) : arena.end();
-    return arena.is_object() && found != arena.end() && found->is_number() ? found->get<double>() : otherwise;
-  };
-  Area area{number("min_x", -1.0), number("min_y", -1.0), 0.0, 0.0};
-  area.size_x = std::max(1e-6, number("max_x", 1.0) - area.x);
-  area.size_y = std::max(1e-6, number("max_y", 1.0) - area.y);
+  const hal::Json& arena = hal::object_of(run.scene, "arena");
+  Area area{hal::number_of(arena, "min_x", -1.0), hal::number_of(arena, "min_y", -1.0), 0.0, 0.0};
+  area.size_x = std::max(1e-6, hal::number_of(arena, "max_x", 1.0) - area.x);
+  area.size_y = std::max(1e-6, hal::number_of(arena, "max_y", 1.0) - area.y);
   return area;
 }
 

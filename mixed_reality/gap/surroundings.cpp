@@ -4,29 +4,22 @@
 #include <cmath>
 
 #include "core/device/ray_ring.hpp"
+#include "hal/json/json_access.hpp"
 
 namespace tandem::mixed_reality {
-namespace {
 
-double number(const hal::Json& json, const char* key) {
-  const auto found = json.find(key);
-  return found != json.end() && found->is_number() ? found->get<double>() : 0.0;
-}
-
-}  // namespace
+using hal::number_of;
 
 Surroundings::Surroundings(const RecordedRun& run, std::vector<double> radius_m)
     : run_(run), radius_m_(std::move(radius_m)) {
-  const auto objects = run.scene.is_object() ? run.scene.find("objects") : run.scene.end();
-  if (!run.scene.is_object() || objects == run.scene.end() || !objects->is_array()) return;
-  for (const hal::Json& o : *objects) {
-    if (!o.is_object() || (o.contains("movable") && o["movable"] == hal::Json(true))) continue;
+  for (const hal::Json& o : hal::list_of(run.scene, "objects")) {
+    if (!o.is_object() || hal::flag_of(o, "movable")) continue;
     if (o.contains("radius")) {
-      discs_.push_back({number(o, "x"), number(o, "y"), number(o, "radius")});
+      discs_.push_back({number_of(o, "x"), number_of(o, "y"), number_of(o, "radius")});
     } else {
-      const double heading = number(o, "heading");
-      boxes_.push_back({number(o, "x"), number(o, "y"), std::cos(heading), std::sin(heading), 0.5 * number(o, "size_x"),
-                        0.5 * number(o, "size_y")});
+      const double heading = number_of(o, "heading");
+      boxes_.push_back({number_of(o, "x"), number_of(o, "y"), std::cos(heading), std::sin(heading),
+                        0.5 * number_of(o, "size_x"), 0.5 * number_of(o, "size_y")});
     }
   }
 }
