@@ -12,6 +12,7 @@
 #include "bench/scene.hpp"
 #include "core/live/timeline.hpp"
 #include "hal/json/json.hpp"
+#include "hal/median.hpp"
 
 namespace tandem::bench {
 namespace {
@@ -24,11 +25,6 @@ std::unique_ptr<core::World> make(const BenchCase& c, hal::PluginLoader& loader)
   app::print_problems(problems);
   if (world != nullptr) world->start();
   return world;
-}
-
-double median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  return values[values.size() / 2];
 }
 
 /// CPU time of the whole run.
@@ -92,13 +88,13 @@ int bench_back(const BenchCase& c, std::int64_t rounds, hal::PluginLoader& loade
                  {"robots", c.robots},
                  {"threads", c.threads},
                  {"ticks", c.ticks},
-                 {"cpu_s", median(kept)},
-                 {"cpu_s_without", median(plain)},
-                 {"cost", median(quotients) - 1.0},
+                 {"cpu_s", hal::upper_median(kept)},
+                 {"cpu_s_without", hal::upper_median(plain)},
+                 {"cost", hal::upper_median(quotients) - 1.0},
                  {"checkpoints", checkpoints},
                  {"checkpoints_MB", static_cast<double>(timeline->bytes()) * 1e-6},
                  {"back_to_start_s", back_s.front()},
-                 {"back_median_s", median(back_s)},
+                 {"back_median_s", hal::upper_median(back_s)},
                  {"back_longest_s", *std::max_element(back_s.begin(), back_s.end())},
                  {"same_bits", world->state_hash() == end},
                  {"peak_rss_mb", app::peak_rss_mb()}};

@@ -15,6 +15,7 @@
 #include "bench/scene.hpp"
 #include "core/record/record.hpp"
 #include "core/sim/world.hpp"
+#include "hal/median.hpp"
 
 namespace tandem::bench {
 namespace {
@@ -26,12 +27,6 @@ using Cost = std::array<double, 3>;
 
 Cost now() {
   return {app::wall_seconds(), app::seconds_of(CLOCK_THREAD_CPUTIME_ID), app::cpu_seconds()};
-}
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return values.empty() ? 0.0 : *middle;
 }
 
 /// A record that is removed when it goes.
@@ -106,8 +101,8 @@ hal::Result<std::string> bench_record(const BenchCase& c, hal::PluginLoader& loa
     for (std::size_t pair = 0; pair < us[0].size() && pair < us[1].size(); ++pair)
       quotients.push_back(us[1][pair] / us[0][pair]);
     const std::string name = names[i];
-    json[name + "_us_per_tick"] = {{"without", median(us[0])}, {"with", median(us[1])}};
-    json[name + "_quotient"] = median(quotients);
+    json[name + "_us_per_tick"] = {{"without", hal::upper_median(us[0])}, {"with", hal::upper_median(us[1])}};
+    json[name + "_quotient"] = hal::upper_median(quotients);
   }
   return hal::to_text(json);
 }

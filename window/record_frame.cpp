@@ -9,6 +9,7 @@
 #include "core/record/scene_json.hpp"
 #include "core/space/mechanisms.hpp"
 #include "core/view/layers/segments.hpp"
+#include "hal/finite.hpp"
 #include "hal/json/json_access.hpp"
 
 namespace tandem::window {
@@ -19,10 +20,6 @@ using core::RecordRows;
 using hal::Json;
 
 constexpr std::size_t kNone = static_cast<std::size_t>(-1);
-
-double finite(double value) {
-  return std::isfinite(value) ? value : 0.0;
-}
 
 const RecordRows* either(const RecordRows* one, const RecordRows* other) {
   return one != nullptr ? one : other;
@@ -40,7 +37,7 @@ class Values {
   explicit operator bool() const { return field_.has_value(); }
   std::size_t count(std::size_t row) const { return field_ && row < rows_->size() ? rows_->used(*field_, row) : 0; }
   double at(std::size_t row, std::size_t index = 0) const {
-    return index < count(row) ? finite(rows_->value(*field_, row, index)) : 0.0;
+    return index < count(row) ? hal::finite_or(rows_->value(*field_, row, index), 0.0) : 0.0;
   }
 
  private:

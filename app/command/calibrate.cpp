@@ -19,6 +19,7 @@
 #include "bridges/frames/frame_source.hpp"
 #include "core/view/picture.hpp"
 #include "core/view/render.hpp"
+#include "hal/median.hpp"
 #include "hal/output_file.hpp"
 #include "hal/unit.hpp"
 
@@ -149,12 +150,6 @@ hal::Result<std::map<std::size_t, KnownTag>> known_tags(const CalibrateOptions& 
   return known;
 }
 
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 /// Where a point was seen, in each of several frames.
 hal::Vector2 middle_of(const std::vector<hal::Vector2>& all) {
   std::vector<double> x, y;
@@ -162,7 +157,7 @@ hal::Vector2 middle_of(const std::vector<hal::Vector2>& all) {
     x.push_back(p.x());
     y.push_back(p.y());
   }
-  return {median(x), median(y)};
+  return {hal::upper_median(x), hal::upper_median(y)};
 }
 
 }  // namespace

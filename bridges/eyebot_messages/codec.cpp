@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <exception>
-#include <initializer_list>
+
+#include "hal/finite.hpp"
 
 namespace tandem::bridges::eyebot_messages {
 namespace {
 
+using hal::all_finite;
 using Bytes = std::span<const std::byte>;
 
 std::uint64_t big_endian(Bytes data, std::size_t at, std::size_t bytes) noexcept {
@@ -129,19 +131,6 @@ void walk(Walk& w, const CmdRab&) noexcept {
 
 // --- whether its numbers are numbers ---
 
-bool finite(std::initializer_list<double> values) noexcept {
-  for (const double v : values) {
-    if (!std::isfinite(v)) return false;
-  }
-  return true;
-}
-template <class Values>
-bool all_finite(const Values& values) noexcept {
-  for (const auto v : values) {
-    if (!std::isfinite(v)) return false;
-  }
-  return true;
-}
 bool is_orientation(const double (&q)[4]) noexcept {
   const double square = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
   return square > 0.81 && square < 1.21;  // false for NaN
@@ -157,17 +146,17 @@ bool sane(const State& m) noexcept {
   return place && is_orientation(m.quat) && all_finite(m.omega) && std::isfinite(m.pos_sigma);
 }
 bool sane(const Altitude& m) noexcept {
-  return finite({m.ground, m.ceiling});
+  return all_finite({m.ground, m.ceiling});
 }
 bool sane(const Battery& m) noexcept {
-  return finite({m.voltage, m.current, m.charge, m.time_left});
+  return all_finite({m.voltage, m.current, m.charge, m.time_left});
 }
 bool sane(const Scan& m) noexcept {
-  return finite({m.rpm, m.head_angle}) && all_finite(m.angle) && all_finite(m.range);
+  return all_finite({m.rpm, m.head_angle}) && all_finite(m.angle) && all_finite(m.range);
 }
 bool sane(const Rab& m) noexcept {
   for (const RabPacket& p : m.pkt) {
-    if (!finite({p.range, p.bearing, p.elevation})) return false;
+    if (!all_finite({p.range, p.bearing, p.elevation})) return false;
   }
   return true;
 }
@@ -178,11 +167,11 @@ bool sane(const Light& m) noexcept {
   return all_finite(m.light);
 }
 bool sane(const PanTilt& m) noexcept {
-  return finite({m.pan, m.tilt});
+  return all_finite({m.pan, m.tilt});
 }
 bool sane(const Blobs& m) noexcept {
   for (const Blob& b : m.blob) {
-    if (!finite({b.x, b.y, b.area, b.range, b.azimuth, b.elevation})) return false;
+    if (!all_finite({b.x, b.y, b.area, b.range, b.azimuth, b.elevation})) return false;
   }
   return true;
 }
@@ -190,16 +179,16 @@ bool sane(const CmdMode& m) noexcept {
   return std::isfinite(m.param);
 }
 bool sane(const CmdPosition& m) noexcept {
-  return all_finite(m.pos) && finite({m.yaw, m.max_speed});
+  return all_finite(m.pos) && all_finite({m.yaw, m.max_speed});
 }
 bool sane(const CmdVelocity& m) noexcept {
   return all_finite(m.vel) && std::isfinite(m.yaw_rate);
 }
 bool sane(const CmdPanTilt& m) noexcept {
-  return finite({m.pan_target, m.tilt_target});
+  return all_finite({m.pan_target, m.tilt_target});
 }
 bool sane(const CmdScanner& m) noexcept {
-  return finite({m.rpm, m.angle});
+  return all_finite({m.rpm, m.angle});
 }
 
 // --- whether its counts are those of its arrays ---

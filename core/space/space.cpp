@@ -11,6 +11,7 @@
 #include "core/space/stores.hpp"
 #include "hal/angle.hpp"
 #include "hal/check.hpp"
+#include "hal/finite.hpp"
 
 namespace tandem::core {
 
@@ -126,10 +127,6 @@ double full_charge(const SpaceStores& s, RobotId robot) noexcept {
   return s.groups[s.blocks[s.robots[robot.index].block].group].item->battery.full_charge;
 }
 
-bool finite(const std::array<double, 3>& v) noexcept {
-  return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]);
-}
-
 }  // namespace
 
 hal::Result<RobotId> Space::add_robot(const NewRobot& wanted) {
@@ -189,7 +186,7 @@ Velocity Space::velocity(RobotId robot) const noexcept {
 
 hal::Status Space::set_velocity(RobotId robot, const Velocity& velocity) {
   if (!contains(robot)) return gone("robot");
-  if (!finite(velocity.v_m_s) || !finite(velocity.w_rad_s))
+  if (!hal::all_finite(velocity.v_m_s) || !hal::all_finite(velocity.w_rad_s))
     return hal::Error{"the velocity for robot '" + robot_name(robot) + "' is not finite"};
   const std::size_t row = stores_->row_of(robot);
   Bodies& b = stores_->bodies;
@@ -455,7 +452,7 @@ hal::Status Space::set_object_velocity(ObjectId object, const Velocity& velocity
   if (!contains(object)) return gone("object");
   const std::string& id = stores_->objects[object.index].id;
   if (!stores_->objects[object.index].movable) return hal::Error{"object '" + id + "' is not movable"};
-  if (!finite(velocity.v_m_s) || !finite(velocity.w_rad_s))
+  if (!hal::all_finite(velocity.v_m_s) || !hal::all_finite(velocity.w_rad_s))
     return hal::Error{"the velocity for object '" + id + "' is not finite"};
   stores_->object_motion[object.index].v_m_s = velocity.v_m_s;
   stores_->object_motion[object.index].w_rad_s = velocity.w_rad_s;
@@ -513,7 +510,7 @@ hal::Result<JointId> Space::join(BodyId a, BodyId b, const std::array<double, 3>
   const hal::Result<BodyKey> key_b = key_of(b);
   if (!key_b.ok()) return key_b.error();
   if (key_a.value() == key_b.value()) return hal::Error{"a body cannot be joined to itself"};
-  if (!finite(p_W)) return hal::Error{"the point of a joint is not finite"};
+  if (!hal::all_finite(p_W)) return hal::Error{"the point of a joint is not finite"};
   if (const char* flaw = flaw_of(form); flaw != nullptr) return hal::Error{flaw};
   return editor_ == nullptr ? no_world() : editor_->join(key_a.value(), key_b.value(), p_W, form);
 }

@@ -11,6 +11,7 @@
 #include "core/record/scene_json.hpp"
 #include "core/space/mechanisms.hpp"
 #include "hal/device/leds.hpp"
+#include "hal/finite.hpp"
 #include "hal/json/json_access.hpp"
 #include "hal/time.hpp"
 #include "hal/unit.hpp"
@@ -43,10 +44,6 @@ Drawing::Kind kind_of(std::string name, const Json& body) {
   return kind;
 }
 
-double finite(double value) {
-  return std::isfinite(value) ? value : 0.0;
-}
-
 /// One field of a table, by the robots' ids; of tables that are not there, nothing.
 class ById {
  public:
@@ -61,7 +58,7 @@ class ById {
   }
   double value(const std::string& id, std::size_t index = 0) const {
     const auto row = by_id_.find(id);
-    return row == by_id_.end() ? 0.0 : finite(rows_->value(*field_, row->second, index));
+    return row == by_id_.end() ? 0.0 : hal::finite_or(rows_->value(*field_, row->second, index), 0.0);
   }
 
  private:
@@ -79,7 +76,7 @@ struct Place {
   Place(const RecordRows& rows, std::size_t row) {
     double* const values[] = {&x_m, &y_m, &z_m, &heading_rad};
     const char* const names[] = {"x", "y", "z", "heading"};
-    for (std::size_t i = 0; i < 4; ++i) *values[i] = finite(rows.value(*field_of(rows, names[i]), row));
+    for (std::size_t i = 0; i < 4; ++i) *values[i] = hal::finite_or(rows.value(*field_of(rows, names[i]), row), 0.0);
   }
   double x_m = 0.0, y_m = 0.0, z_m = 0.0, heading_rad = 0.0;
 };

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "core/scenario/polygon.hpp"
+#include "hal/finite.hpp"
 
 namespace tandem::mixed_reality {
 namespace {
@@ -17,8 +18,7 @@ constexpr double kStill_m = 1e-3;  // who comes no farther when told to stand, s
 using Direction = std::array<double, 3>;
 
 bool finite(const Motion& m) noexcept {
-  return std::isfinite(m.velocity[0]) && std::isfinite(m.velocity[1]) && std::isfinite(m.velocity[2]) &&
-         std::isfinite(m.turn_rad_s);
+  return hal::all_finite(m.velocity) && std::isfinite(m.turn_rad_s);
 }
 
 double dot(const Direction& a, const std::array<double, 3>& b) noexcept {
@@ -104,9 +104,8 @@ void BarrierFilter::begin(BarrierRobot& robot, hal::TimeNs now_ns) const noexcep
   robot.trespass = {};
   robot.plane.clear();
   const hal::Pose& pose = robot.pose;
-  robot.placed = robot.placed && std::isfinite(pose.x_m) && std::isfinite(pose.y_m) && std::isfinite(pose.z_m) &&
-                 std::isfinite(pose.cos_h) && std::isfinite(pose.sin_h) && std::isfinite(robot.error_m) &&
-                 std::isfinite(robot.error_rad);
+  robot.placed = robot.placed && hal::all_finite({pose.x_m, pose.y_m, pose.z_m, pose.cos_h, pose.sin_h, robot.error_m,
+                                                  robot.error_rad});
   if (!robot.placed || !finite(robot.wanted)) robot.wanted = {};
   robot.allowed = robot.wanted;
   robot.most_m_s = robot.up_m_s = robot.down_m_s = robot.zone_m_s = kInfinite;

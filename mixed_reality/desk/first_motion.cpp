@@ -4,6 +4,7 @@
 #include <map>
 #include <numbers>
 
+#include "hal/angle.hpp"
 #include "hal/unit.hpp"
 #include "mixed_reality/desk/preflight.hpp"
 
@@ -61,7 +62,7 @@ PreflightRows try_motion(MixedSession& session, const std::string& robot, const 
     const auto was = before.find(id), is = after.find(id);
     if (was == before.end() || is == after.end() || !was->second.contains(source) || !is->second.contains(source))
       return {};
-    return std::remainder(is->second.at(source) - was->second.at(source), 2.0 * std::numbers::pi);
+    return hal::turn_between(was->second.at(source), is->second.at(source));
   };
   std::string found, missed;
   const auto seen = after.find(robot);

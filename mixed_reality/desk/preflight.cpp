@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "hal/angle.hpp"
 #include "hal/device/body_sensors.hpp"
 #include "hal/unit.hpp"
 #include "mixed_reality/desk/machine.hpp"
@@ -32,10 +33,6 @@ std::string place(const core::Pose& pose) {
   const auto m = [](double x) { return hal::format_number(std::round(x * 1e3) / 1e3); };
   return "(" + m(pose.x_m) + ", " + m(pose.y_m) + ") m, " + degrees(pose.heading_rad());
 }
-double wrapped(double angle_rad) {
-  return std::remainder(angle_rad, 2.0 * std::numbers::pi);
-}
-
 using Place = RealRobotStatus::Place;
 
 /// Of one robot.
@@ -144,7 +141,7 @@ class Looker {
   }
   void compare(const char* what, const Place& seen) {
     const double apart_m = std::hypot(seen.pose.x_m - start().x_m, seen.pose.y_m - start().y_m);
-    const double turned_rad = std::abs(wrapped(seen.pose.heading_rad() - start().heading_rad()));
+    const double turned_rad = std::abs(hal::turn_between(start().heading_rad(), seen.pose.heading_rad()));
     const bool there = apart_m <= kAtStart_m && turned_rad <= kAtStart_rad;
     add(what, there ? Finding::Ok : Finding::Warn,
         place(seen.pose) + " by " + seen.source +

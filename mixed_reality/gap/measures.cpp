@@ -7,6 +7,7 @@
 
 #include "hal/angle.hpp"
 #include "hal/json/json_access.hpp"
+#include "hal/median.hpp"
 
 namespace tandem::mixed_reality {
 namespace {
@@ -17,13 +18,6 @@ double mean(const std::vector<double>& values) {
   double sum = 0.0;
   for (const double v : values) sum += v;
   return values.empty() ? 0.0 : sum / static_cast<double>(values.size());
-}
-
-double median(std::vector<double> values) {
-  if (values.empty()) return 0.0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 /// The ticks that both runs have of a robot, by number.
@@ -269,7 +263,7 @@ Gap gap_between(const RecordedRun& a, const RecordedRun& b, const std::vector<st
   const auto typical = [&](double TrajectoryGap::*member) {
     std::vector<double> values;
     for (const TrajectoryGap& robot : gap.robots) values.push_back(robot.*member);
-    gap.typical.*member = median(std::move(values));
+    gap.typical.*member = hal::upper_median(std::move(values));
   };
   gap.typical.id = "median";
   for (double TrajectoryGap::*member :

@@ -6,6 +6,7 @@
 #include <numbers>
 #include <utility>
 
+#include "hal/angle.hpp"
 #include "mixed_reality/delay/delays.hpp"
 #include "mixed_reality/tracking/commanded_motion.hpp"
 
@@ -20,10 +21,6 @@ constexpr double kGuess_rad = 0.2;                      // of the heading that t
 constexpr double kSteady_rad_s = 0.3;  // change of a turn rate from which a gyroscope read now and then tells no turn
 constexpr double kUnseenSlip = 2.0;    // of the wheels' noise: what a gyroscope that is read now and then does not see
 constexpr hal::TimeNs kGyroscopeFits_ns = 20 * hal::kNsPerMs;
-
-double wrapped(double rad) noexcept {
-  return std::remainder(rad, 2.0 * std::numbers::pi);
-}
 
 }  // namespace
 
@@ -229,7 +226,7 @@ bool FusedPose::agree(const PoseMeasurement& pose) noexcept {
                     std::hypot(pose.x_m - candidate_->x_m, pose.y_m - candidate_->y_m) <=
                         kAgree_m + 3.0 * (pose.sd_m + candidate_->sd_m) &&
                     (!pose.heading_rad || !candidate_->heading_rad ||
-                     std::fabs(wrapped(*pose.heading_rad - *candidate_->heading_rad)) <=
+                     std::fabs(hal::wrapped(*pose.heading_rad - *candidate_->heading_rad)) <=
                          kAgree_rad + 3.0 * (pose.sd_rad + candidate_->sd_rad));
   agreed_ = fits ? agreed_ + 1 : 1;
   const bool tells_more = !candidate_ || pose.heading_rad || !candidate_->heading_rad;

@@ -4,16 +4,13 @@
 #include <cmath>
 #include <numbers>
 
+#include "hal/angle.hpp"
 #include "mixed_reality/tracking/odometry.hpp"
 
 namespace tandem::mixed_reality {
 namespace {
 
 constexpr double kKept = 0.8;  // of the places that are compared, the rest are taken for outliers
-
-double wrapped(double rad) noexcept {
-  return std::remainder(rad, 2.0 * std::numbers::pi);
-}
 
 /// One place by both sources.
 struct Pair {
@@ -53,7 +50,7 @@ void fit(Pairs& pairs, std::size_t count, std::size_t all, bool faces) noexcept 
     Pair& p = pairs[i];
     const double a = p.from_x_m - from_x, b = p.from_y_m - from_y;
     const double off_x = p.x_m - x - (cos_t * a - sin_t * b), off_y = p.y_m - y - (sin_t * a + cos_t * b);
-    const double off_rad = faces ? wrapped(p.turn_rad - turn_rad) : 0.0;
+    const double off_rad = faces ? hal::wrapped(p.turn_rad - turn_rad) : 0.0;
     p.off2 = off_x * off_x + off_y * off_y + kLever_m * kLever_m * off_rad * off_rad;
   }
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "hal/angle.hpp"
 #include "mixed_reality/tracking/odometry.hpp"
 
 namespace tandem::mixed_reality {
@@ -18,10 +19,6 @@ constexpr double kMostLearnt = 5.0;                   // standard deviations of 
 
 hal::TimeNs to_ns(double seconds) noexcept {
   return static_cast<hal::TimeNs>(std::llround(seconds * 1e9));
-}
-
-double wrapped(double rad) noexcept {
-  return std::remainder(rad, 2.0 * std::numbers::pi);
 }
 
 bool sound(const PoseMeasurement& m) noexcept {
@@ -197,7 +194,7 @@ bool PoseFilter::update(State& s, const PoseMeasurement& m, double delay_s, doub
   const Eigen::Vector3d expected =
       Eigen::Vector3d(s.pose.x_m, s.pose.y_m, s.pose.heading_rad()) + later_s * h.col(delay);
   Eigen::Vector3d r(m.x_m - expected[0], m.y_m - expected[1],
-                    m.heading_rad ? wrapped(*m.heading_rad - expected[2]) : 0.0);
+                    m.heading_rad ? hal::wrapped(*m.heading_rad - expected[2]) : 0.0);
   Eigen::Matrix3d noise = Eigen::Matrix3d::Zero();
   noise.diagonal() << m.sd_m * m.sd_m, m.sd_m * m.sd_m, m.sd_rad * m.sd_rad;
   if (n == 2) {
@@ -338,7 +335,7 @@ bool PoseFilter::within_reach(const PoseMeasurement& m) const noexcept {
   const double came_m = std::hypot(m.x_m - from.pose.x_m, m.y_m - from.pose.y_m);
   if (came_m > std::max(left_m, right_m) + kReach_m + 4.0 * (m.sd_m + from.pose.sd_m)) return false;
   if (!m.heading_rad || !from.pose.heading_rad) return true;
-  const double turned_rad = std::fabs(wrapped(*m.heading_rad - *from.pose.heading_rad));
+  const double turned_rad = std::fabs(hal::wrapped(*m.heading_rad - *from.pose.heading_rad));
   return turned_rad <= (left_m + right_m) / wheel_base_m_ + kReach_rad + 4.0 * (m.sd_rad + from.pose.sd_rad);
 }
 
