@@ -58,6 +58,7 @@ mixed_reality::WheelFitOptions options_for(const core::Scenario& scenario, const
 
 std::string shown(const Estimate& e, double scale = 1.0, int digits = 4) {
   if (!e.observable) return "cannot be told";
+  if (e.most) return fmt::format("at most {:.{}f}", *e.most * scale, digits);
   return fmt::format("{:.{}f} +- {:.{}f}", e.value * scale, digits, e.bound() * scale, digits);
 }
 

@@ -40,13 +40,28 @@ struct Pose {
     p.row(1) += fy * p.row(2);
     p.col(0) += fx * p.col(2);
     p.col(1) += fy * p.col(2);
-    const double b = 1.0 / base_m;
-    const Vector3d by_left(0.5 * c + 0.5 * chord * s * b, 0.5 * s - 0.5 * chord * c * b, -b);
-    const Vector3d by_right(0.5 * c - 0.5 * chord * s * b, 0.5 * s + 0.5 * chord * c * b, b);
+    const Vector3d left = by_left(c, s, chord, base_m), right = by_right(c, s, chord, base_m);
     const Vector3d aside(-s, c, 0.0);
-    p += noise2 * std::fabs(left_m) * by_left * by_left.transpose() +
-         noise2 * std::fabs(right_m) * by_right * by_right.transpose() +
+    p += noise2 * std::fabs(left_m) * left * left.transpose() +
+         noise2 * std::fabs(right_m) * right * right.transpose() +
          (kSideways * std::fabs(way)) * aside * aside.transpose();
+  }
+
+  /// The speeds change by so much, at times whose mean has the variance `mean_s2`, and whose difference `apart_s2`.
+  void change(double left_m_s, double right_m_s, double base_m, double mean_s2, double apart_s2) {
+    const double c = std::cos(at.z()), s = std::sin(at.z());
+    const Vector3d left = left_m_s * by_left(c, s, 0.0, base_m), right = right_m_s * by_right(c, s, 0.0, base_m);
+    const Vector3d both = left + right, apart = 0.5 * (left - right);
+    p += mean_s2 * both * both.transpose() + apart_s2 * apart * apart.transpose();
+  }
+
+ private:
+  /// What the pose moves by for each metre that a wheel rolls more, of a stretch with this chord.
+  static Vector3d by_left(double c, double s, double chord, double base_m) {
+    return {0.5 * c + 0.5 * chord * s / base_m, 0.5 * s - 0.5 * chord * c / base_m, -1.0 / base_m};
+  }
+  static Vector3d by_right(double c, double s, double chord, double base_m) {
+    return {0.5 * c - 0.5 * chord * s / base_m, 0.5 * s + 0.5 * chord * c / base_m, 1.0 / base_m};
   }
 };
 
@@ -54,17 +69,19 @@ struct Pose {
 
 WayModel::Likelihood::Setup WayModel::setup() {
   Likelihood::Setup s;
-  s.first << 1.0, 1.0, 1.0, 0.0, 0.0, 0.0, std::log(0.005), std::log(0.003), std::log(0.02);
+  s.first << 1.0, 1.0, 1.0, 0.0, 0.0, 0.0, std::log(0.005), std::log(0.001), std::log(0.0003), std::log(0.003),
+      std::log(0.02);
   // Wide: it only holds fast what the data does not tell.
-  s.prior << 0.3, 0.3, 0.3, 0.25, 0.5, 1e-3, 3.0, 3.0, 3.0;
-  s.step << 1e-4, 1e-4, 1e-4, 1e-4, 1e-4, 1e-5, 1e-3, 1e-3, 1e-3;
-  s.least << 0.1, 0.1, 0.1, -0.3, -4.0, 0.0, -14.0, -14.0, -14.0;
-  s.most << 10.0, 10.0, 10.0, 1.0, 4.0, 0.01, 0.0, 0.0, 1.0;
+  s.prior << 0.3, 0.3, 0.3, 0.25, 0.5, 1e-3, 3.0, 3.0, 3.0, 3.0, 3.0;
+  s.step << 1e-4, 1e-4, 1e-4, 1e-4, 1e-4, 1e-5, 1e-3, 1e-3, 1e-3, 1e-3, 1e-3;
+  s.least << 0.1, 0.1, 0.1, -0.3, -4.0, 0.0, -14.0, -14.0, -14.0, -14.0, -14.0;
+  s.most << 10.0, 10.0, 10.0, 1.0, 4.0, 0.01, 0.0, -1.0, -1.0, 0.0, 1.0;
   return s;
 }
 
 void WayModel::run(const Params& v, Likelihood::Innovations& out) const {
   const double base_m = wheel_base_m_ * v[kBase], noise2 = std::exp(2.0 * v[kNoise]);
+  const double jitter2 = std::exp(2.0 * v[kJitter]), apart2 = std::exp(2.0 * v[kApart]);
   const double var_m = std::exp(2.0 * v[kPlaceM]), var_rad = std::exp(2.0 * v[kPlaceRad]);
   const std::vector<WheelSeries::Command>& commands = series_.commands;
   out.assign(series_.places.size(), {});
@@ -72,6 +89,12 @@ void WayModel::run(const Params& v, Likelihood::Innovations& out) const {
   bool known = false, oriented = false;
   double at_s = 0.0, play_left = 0.0, play_right = 0.0;
   std::size_t next = 0;  // the first command that does not hold yet
+  const auto obey = [&] {
+    const WheelSeries::Command last = next > 0 ? commands[next - 1] : WheelSeries::Command{};
+    pose.change(v[kLeft] * (commands[next].left_m_s - last.left_m_s),
+                v[kRight] * (commands[next].right_m_s - last.right_m_s), base_m, jitter2, apart2);
+    ++next;
+  };
   for (std::size_t i = 0; i < series_.places.size(); ++i) {
     const WheelSeries::Place& place = series_.places[i];
     while (i > 0 && at_s < place.at_s) {
@@ -85,10 +108,10 @@ void WayModel::run(const Params& v, Likelihood::Innovations& out) const {
                   v[kRight] * through_play(now.right_m_s * s, v[kPlay], play_right), base_m, noise2);
       }
       at_s = std::max(at_s, until_s);
-      if (until_s < place.at_s) ++next;
+      if (until_s < place.at_s) obey();
     }
     at_s = place.at_s;
-    while (next < commands.size() && commands[next].at_s + v[kDelay] <= at_s) ++next;
+    while (next < commands.size() && commands[next].at_s + v[kDelay] <= at_s) obey();
     const bool heading = std::isfinite(place.heading_rad);
     const double seen_rad = heading ? place.heading_rad - v[kMount] : pose.at.z();
     if (!known || elsewhere_[i] != 0) {

@@ -11,11 +11,26 @@ namespace tandem::mixed_reality {
 /// each place at its own time.
 ///
 /// Wheel i rolls `scale_i` times the way commanded, with noise of variance noise^2 * |way|; the robot turns by
-/// (right - left) / (`base` * the kind's wheel base). A wheel that turns round loses `play`. Places have white noise; a
-/// heading is seen `mount` to the left of the robot's.
+/// (right - left) / (`base` * the kind's wheel base). Each command acts a little sooner or later than in the mean, and
+/// on one wheel sooner than on the other (motors on a bus hear one after the other), which adds up: variance jitter^2
+/// of both together, apart^2 of the one against the other, by the square of what the speeds change by. A wheel that
+/// turns round loses `play`. Places have white noise; a heading is seen `mount` to the left of the robot's.
 class WayModel {
  public:
-  enum Param : int { kLeft, kRight, kBase, kDelay, kMount, kPlay, kNoise, kPlaceM, kPlaceRad, kParams };
+  enum Param : int {
+    kLeft,
+    kRight,
+    kBase,
+    kDelay,
+    kMount,
+    kPlay,
+    kNoise,
+    kJitter,
+    kApart,
+    kPlaceM,
+    kPlaceRad,
+    kParams
+  };
   using Likelihood = MaximumLikelihood<kParams, 3, 2>;
   using Params = Likelihood::Params;
 
@@ -26,7 +41,7 @@ class WayModel {
       : series_(series), wheel_base_m_(wheel_base_m), elsewhere_(series.places.size(), 0) {}
 
   static Likelihood::Setup setup();
-  /// Innovations of all places. Parameters of noise are logarithms (m after 1 m; m; rad).
+  /// Innovations of all places. Parameters of noise are logarithms (m after 1 m; s; s; m; rad).
   void run(const Params& v, Likelihood::Innovations& out) const;
   /// Those that have nothing to do with the one before: the filter begins anew there. @returns whether there were new
   /// ones.

@@ -18,6 +18,8 @@ constexpr double kPlayGain = 6.0;    // by which the logarithm of the likelihood
 constexpr double kStamps_s = 1e-4;   // standard error of any delay at least: steps of time that no scatter shows
 constexpr std::size_t kFewest = 30;  // places or counts
 constexpr double kStanding_m_s = 1e-4;
+constexpr double kFallen = 1.92;       // of the likelihood's logarithm at the ends of an interval of 95 %
+constexpr double kMostNoise_m = 0.02;  // after 1 m: an interval from 0 that ends above it tells nothing
 
 /// The best of a row of delays, for the search to begin with.
 template <class Likelihood>
@@ -40,6 +42,29 @@ template <class Innovations>
 std::size_t used(const Innovations& innovations) {
   return static_cast<std::size_t>(
       std::count_if(innovations.begin(), innovations.end(), [](const auto& i) { return i.there; }));
+}
+
+/// Bounds of noise that may be none: a logarithm tells nothing of 0. Where the likelihood falls by less than kFallen
+/// towards 0, the interval begins there, and ends where the likelihood has fallen by that much.
+void tell_noise_from_none(WayModel::Likelihood search, Estimate& noise) {
+  const WayModel::Params best = search.values();
+  const double cost = search.cost_of(best);
+  search.fix(WayModel::kNoise, true);
+  const auto falls_to = [&](double log_noise) {
+    WayModel::Params tried = best;
+    tried[WayModel::kNoise] = log_noise;
+    search.set(tried);
+    search.search();
+    return search.cost_of(search.values()) > cost + kFallen;
+  };
+  if (falls_to(search.setup().least[WayModel::kNoise])) return;
+  double in = best[WayModel::kNoise], out = std::log(kMostNoise_m);
+  noise.observable = in < out && falls_to(out);
+  while (noise.observable && out - in > 0.02) {
+    const double middle = 0.5 * (in + out);
+    (falls_to(middle) ? out : in) = middle;
+  }
+  noise.most = std::exp(out);
 }
 
 /// The way and its places. @returns false: too few follow from commands
@@ -78,6 +103,7 @@ bool fit_way(const WheelSeries& series, double wheel_base_m, WheelFit& fit) {
   fit.mount_rad = plain(WayModel::kMount);
   fit.play_m = plays ? plain(WayModel::kPlay) : Estimate{};
   fit.noise_sqrt_m = by_factor(WayModel::kNoise);
+  tell_noise_from_none(search, fit.noise_sqrt_m);
   fit.place_noise_m = by_factor(WayModel::kPlaceM);
   fit.place_noise_rad = by_factor(WayModel::kPlaceRad);
   return true;
@@ -130,9 +156,11 @@ bool any_command(const WheelSeries& series, bool moves) {
 }  // namespace
 
 double Estimate::low() const noexcept {
+  if (most) return 0.0;
   return by_factor ? value * std::exp(-1.96 * error) : value - 1.96 * error;
 }
 double Estimate::high() const noexcept {
+  if (most) return *most;
   return by_factor ? value * std::exp(1.96 * error) : value + 1.96 * error;
 }
 
@@ -144,7 +172,9 @@ hal::WheelModel WheelFit::values() const noexcept {
 }
 
 hal::WheelModel WheelFit::errors() const noexcept {
-  const auto linear = [](const Estimate& e) { return e.by_factor ? e.value * e.error : e.error; };
+  const auto linear = [](const Estimate& e) {
+    return e.most ? e.bound() / 1.96 : e.by_factor ? e.value * e.error : e.error;
+  };
   return {left.error,          right.error,          base.error,   counted_left.error,
           counted_right.error, linear(noise_sqrt_m), delay_s.error};
 }

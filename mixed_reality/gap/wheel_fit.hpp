@@ -19,6 +19,7 @@ struct Estimate {
   double error = 0.0;       ///< standard error
   bool observable = false;  ///< false: the data cannot tell it; the value is the one from before, there is no bound
   bool by_factor = false;   ///< the error is one of its logarithm: the interval is from low() to high(), not symmetric
+  std::optional<double> most = {};  ///< of a value that may as well be 0: the interval is from there to this
 
   /// Half of the interval that holds the true value in 95 of 100 cases.
   double bound() const noexcept { return 0.5 * (high() - low()); }

@@ -18,7 +18,9 @@ struct HiddenRobot {
   double wheel_noise = 0.003;                  ///< m after 1 m
   // Delays in seconds.
   double link_in = 0.0, command = 0.0, body = 0.0, counters = 0.0, link_out = 0.0;
-  double tracker_late = 0.0;  ///< of the tracker's stamps, although it says they are right
+  double command_jitter = 0.0;  ///< by which commands act sooner or later than that: standard deviation
+  double right_later = 0.0;     ///< by which they act later on the right wheel
+  double tracker_late = 0.0;    ///< of the tracker's stamps, although it says they are right
   // Of the measurements.
   double place_noise = 0.002, heading_noise = 0.015;
   double places_hz = 30.0;
@@ -42,14 +44,17 @@ struct HiddenRobot {
       const double at_s = static_cast<double>(t) * kTick_s + 0.002 * even(dice);
       series.commands.push_back({at_s, fastest * (1.4 * even(dice) - 0.4), fastest * (1.4 * even(dice) - 0.4), true});
     }
+    std::vector<WheelSeries::Command> acting = series.commands;
+    for (WheelSeries::Command& command_then : acting)
+      if (command_jitter > 0.0) command_then.at_s += command_jitter * gauss(dice);
     // Where the floor and the motors were, at every step.
     const auto steps = static_cast<std::size_t>(seconds / kStep_s) + 1;
     std::vector<double> x(steps), y(steps), h(steps), motor_left(steps), motor_right(steps);
     // Looks up from where the last step was: commands are few.
-    std::size_t motor_at = 0, floor_at = 0;
+    std::size_t motor_at = 0, floor_at = 0, right_at = 0;
     const auto hold = [&](std::size_t& at, double t_s) -> WheelSeries::Command {
-      while (at < series.commands.size() && series.commands[at].at_s <= t_s) ++at;
-      return at == 0 ? WheelSeries::Command{} : series.commands[at - 1];
+      while (at < acting.size() && acting[at].at_s <= t_s) ++at;
+      return at == 0 ? WheelSeries::Command{} : acting[at - 1];
     };
     for (std::size_t k = 0; k + 1 < steps; ++k) {
       const double t_s = (static_cast<double>(k) + 0.5) * kStep_s;
@@ -57,11 +62,12 @@ struct HiddenRobot {
       motor_left[k + 1] = motor_left[k] + motor.left_m_s * kStep_s;
       motor_right[k + 1] = motor_right[k] + motor.right_m_s * kStep_s;
       const auto floor = hold(floor_at, t_s - link_in - command - body);
+      const double right_m_s = hold(right_at, t_s - link_in - command - body - right_later).right_m_s;
       const auto rolled = [&](double speed, double scale) {
         const double way = scale * speed * kStep_s;
         return way == 0.0 ? 0.0 : way + wheel_noise * std::sqrt(std::fabs(way)) * gauss(dice);
       };
-      const double l = rolled(floor.left_m_s, left), r = rolled(floor.right_m_s, right);
+      const double l = rolled(floor.left_m_s, left), r = rolled(right_m_s, right);
       const double turn = (r - l) / (base_m * base);
       x[k + 1] = x[k] + 0.5 * (l + r) * std::cos(h[k] + 0.5 * turn);
       y[k + 1] = y[k] + 0.5 * (l + r) * std::sin(h[k] + 0.5 * turn);
