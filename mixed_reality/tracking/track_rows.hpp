@@ -41,7 +41,9 @@ struct TrackRow {
   std::int64_t taken_ns = 0;  ///< on the run's clock
   double x_m = 0.0, y_m = 0.0, z_m = 0.0, heading_rad = 0.0;
   std::array<float, 4> q_WB = {1.0F, 0.0F, 0.0F, 0.0F};
-  float sd_m = kUnknown, sd_rad = kUnknown;
+  float sd_m = kUnknown, sd_rad = kUnknown;  ///< the larger of those of x and y; of the heading
+  /// Of x, y (m) and heading (rad): xx, xy, yy, x heading, y heading, heading heading.
+  std::array<float, 6> covariance = {kUnknown, kUnknown, kUnknown, kUnknown, kUnknown, kUnknown};
   std::int64_t sent_ns = -1;  ///< when the command of this tick was given to its link, on the run's clock
 
   /// What the filter has learnt of its wheels, and how well.
@@ -57,8 +59,9 @@ struct TrackRow {
     f.add("z", z_m, hal::unit::m, "in W");
     f.add("heading", heading_rad, hal::unit::rad, "counter-clockwise from x of W");
     f.add("q_WB", q_WB, none, "attitude: w, x, y, z; level where nothing measures it");
-    f.add("sd", sd_m, hal::unit::m, "standard deviation of x and of y; NaN: not known");
+    f.add("sd", sd_m, hal::unit::m, "standard deviation, the larger of those of x and y; NaN: not known");
     f.add("sd_heading", sd_rad, hal::unit::rad, "standard deviation; NaN: not known");
+    f.add("covariance", covariance, none, "in m and rad: xx, xy, yy, x heading, y heading, heading heading");
     f.add("sent_ns", sent_ns, none, "when this tick's command was given to its link, on the run's clock; -1: none");
     f.add("left", left, none, "learnt: way of the left wheel, of what its encoder says; NaN: not learnt");
     f.add("right", right, none, "learnt: of the right wheel");

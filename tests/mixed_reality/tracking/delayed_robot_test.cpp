@@ -17,16 +17,22 @@ namespace {
 
 constexpr hal::TimeNs kMs = hal::kNsPerMs;
 
+/// By how much wheels slip by chance, and how much the filter counts with: m after 1 m.
+struct Slip {
+  double is_m = PoseFilterParams{}.wheel_noise_m, assumed_m = PoseFilterParams{}.wheel_noise_m;
+};
+
 /// A foot-bot in steps of a millisecond.
 class Delayed {
  public:
-  Delayed(double lag_s, double actuation_s, unsigned seed, bool gyroscope = false)
-      : lag_ms_(std::lround(1e3 * lag_s)),
+  Delayed(double lag_s, double actuation_s, unsigned seed, bool gyroscope = false, const Slip& slip = {})
+      : slip_m_(slip.is_m),
+        lag_ms_(std::lround(1e3 * lag_s)),
         actuation_ms_(std::lround(1e3 * actuation_s)),
         dice_(seed),
         base_m_(hal::footbot::kind().drive()->wheel_base_m),
         source_(core::Pose::at(0.0, 0.0, 0.0), *hal::footbot::kind().drive(), encoders_,
-                gyroscope ? &gyroscope_ : nullptr, {}),
+                gyroscope ? &gyroscope_ : nullptr, {.filter = {.wheel_noise_m = slip.assumed_m}}),
         motion_(base_m_) {
     const PoseFilterParams assumed;
     left_ = 1.0 + assumed.scale * normal();
@@ -110,8 +116,7 @@ class Delayed {
     const Command motor = at(ms_ - actuation_ms_), floor = at(ms_ - actuation_ms_ - lag_ms_);
     counted_[0] += 1e-3 * motor.left;
     counted_[1] += 1e-3 * motor.right;
-    const double noise = PoseFilterParams{}.wheel_noise_m;
-    const auto rolled = [&](double way) { return way + noise * std::sqrt(std::fabs(way)) * normal(); };
+    const auto rolled = [&](double way) { return way + slip_m_ * std::sqrt(std::fabs(way)) * normal(); };
     const double l = rolled(1e-3 * left_ * floor.left), r = rolled(1e-3 * right_ * floor.right);
     Place next = truth_.back();
     const double turn = (r - l) / (base_m_ * base_);
@@ -128,6 +133,7 @@ class Delayed {
     arriving_.push_back(seen);
   }
 
+  double slip_m_;
   std::int64_t lag_ms_, actuation_ms_;
   std::mt19937_64 dice_;
   std::normal_distribution<double> gauss_;
@@ -175,26 +181,52 @@ TEST(DelayedRobot, ItsHeadingIsWithinADegreeHoweverLateItObeys) {
   }
 }
 
+/// Means over robots of all delays; three numbers each, 1 where the filter is as wrong as it says.
+struct Known {
+  double poses = 0.0, wheels = 0.0;
+};
+Known known_by(unsigned runs, bool gyroscope, const Slip& slip) {
+  Known sum;
+  int pose_count = 0, wheel_count = 0;
+  unsigned seed = 100;
+  for (const Setting& s : eight_settings()) {
+    for (unsigned run = 0; run < runs; ++run) {
+      Delayed robot(s.lag_s, s.actuation_s, seed++, gyroscope, slip);
+      for (int i = 0; i < 400; ++i) {
+        (void)robot.tick();
+        if (i < 100) continue;
+        sum.poses += robot.pose_nees() / 3.0;
+        ++pose_count;
+      }
+      sum.wheels += robot.wheels_nees() / 3.0;
+      ++wheel_count;
+    }
+  }
+  return {sum.poses / pose_count, sum.wheels / wheel_count};
+}
+
 TEST(DelayedRobot, PosesAndWheelsAreAsWellKnownAsTheFilterSays) {
   for (const bool gyroscope : {false, true}) {
-    double poses = 0.0, wheels = 0.0;
-    int pose_count = 0, wheel_count = 0;
-    for (const Setting& s : eight_settings()) {
-      for (unsigned run = 0; run < 12; ++run) {
-        Delayed robot(s.lag_s, s.actuation_s, 100 + run, gyroscope);
-        for (int i = 0; i < 400; ++i) {
-          (void)robot.tick();
-          if (i < 100) continue;
-          poses += robot.pose_nees() / 3.0;
-          ++pose_count;
-        }
-        wheels += robot.wheels_nees() / 3.0;
-        ++wheel_count;
-      }
-    }
-    EXPECT_NEAR(poses / pose_count, 1.0, 0.2) << "gyroscope " << gyroscope;
-    EXPECT_NEAR(wheels / wheel_count, 1.0, 0.2) << "gyroscope " << gyroscope;
+    const Known known = known_by(12, gyroscope, {});
+    EXPECT_NEAR(known.poses, 1.0, 0.2) << "gyroscope " << gyroscope;
+    EXPECT_NEAR(known.wheels, 1.0, 0.2) << "gyroscope " << gyroscope;
   }
+}
+
+// Nothing but what it counts with makes it careful about wheels that slip less than that.
+TEST(DelayedRobot, PosesAndWheelsThatHardlySlipAreAsWellKnownWhereTheFilterCountsWithThat) {
+  for (const double slip_m : {0.0005, 0.001, 0.002}) {
+    const Known known = known_by(6, false, {slip_m, slip_m});
+    EXPECT_NEAR(known.poses, 1.0, 0.2) << slip_m;
+    EXPECT_NEAR(known.wheels, 1.0, 0.3) << slip_m;
+  }
+}
+
+// How much better follows for one number from its gain (PoseFilter.IsAsCarefulAboutWheelsThatDoNotSlip…).
+TEST(DelayedRobot, PosesAreBetterKnownThanTheFilterSaysWhereWheelsDoNotSlip) {
+  const Known known = known_by(6, false, {.is_m = 0.0});
+  EXPECT_LT(known.poses, 0.8);
+  EXPECT_GT(known.poses, 0.3);
 }
 
 }  // namespace

@@ -204,6 +204,32 @@ TEST(PoseFilter, IsAsWrongAsItSaysAfterItWasCarried) {
   EXPECT_NEAR(c.mean, 3.0, 0.9);
 }
 
+// Along a straight way a filter that counts with q of slip a tick, and r of the tracker, comes to the gain k of its
+// Riccati equation and says k r. Without slip the error is what k leaves of the tracker's noise alone, k r / (2 - k),
+// which is 1 / (2 - k) of what it says. More care than that would be a mistake.
+TEST(PoseFilter, IsAsCarefulAboutWheelsThatDoNotSlipAsItsAssumptionMakesIt) {
+  constexpr double kWay_m = 0.01, kSeen_m = 0.002;
+  constexpr int kTicks = 20'000;
+  PoseFilterParams params;
+  params.scale = params.base = params.delay_s = 1e-6;
+  const double q = 0.5 * params.wheel_noise_m * params.wheel_noise_m * kWay_m, r = kSeen_m * kSeen_m;
+  const double predicted = 0.5 * q + std::sqrt(0.25 * q * q + q * r);
+  const double gain = predicted / (predicted + r);
+  Truth truth(11);
+  truth.wheel_noise_m = 0.0;
+  PoseFilter filter(core::Pose::at(0.0, 0.0, 0.0), 0, 0.001, 0.001, kBase_m, params);
+  double sum = 0.0;
+  for (int i = 0; i < kTicks; ++i) {
+    const auto rolled = truth.drive(kWay_m / 0.1, kWay_m / 0.1, kTick_ns);
+    filter.roll(truth.now_ns, rolled.left_m, rolled.right_m);
+    (void)filter.correct(truth.seen(kSeen_m, 0.01));
+    const PoseEstimate now = filter.now();
+    if (i >= 1000) sum += std::pow(now.pose.x_m - truth.x_m, 2) / now.covariance(0, 0);
+  }
+  EXPECT_NEAR(filter.now().covariance(0, 0), gain * r, 0.02 * gain * r);
+  EXPECT_NEAR(sum / (kTicks - 1000), 1.0 / (2.0 - gain), 0.1 / (2.0 - gain));
+}
+
 TEST(PoseFilter, APoseFromNowhereIsGatedAndARobotThatWasCarriedIsFoundAgain) {
   Truth truth(5);
   PoseFilterParams params;
