@@ -53,7 +53,7 @@ std::string experiment_of(const MixedRun& run, const std::filesystem::path& fold
       "<controllers><lua_controller id=\"c\" library=\"lua_controller\"><actuators><differential_steering/></actuators>"
       "<sensors><wheel_encoders/></sensors><params script=\"{}/drive.lua\"/></lua_controller></controllers>\n"
       "<arena size=\"60,60,2\" center=\"0,0,1\">\n{}</arena>\n<trackers><udp port=\"{}\" clock=\"monotonic\" sd=\"2 "
-      "mm\"/></trackers>\n"
+      "mm\" sd_heading=\"0.01\"/></trackers>\n"
       "{}<physics_engines><kinematics2d id=\"k\"/></physics_engines></tandem>\n",
       run.seconds, folder.string(), robots, port, run.safety);
 }
@@ -92,8 +92,9 @@ hal::Status start_robots(Programs& running, const MixedRun& run, const std::file
     if (!appears(link)) return hal::Error{"the emulated robot " + r.id + " does not come up"};
     sees += (sees.empty() ? "" : " ") + r.id + "=" + link + ".log";
   }
-  return start(running, {"emulate", "tracker", "--link", fmt::format("udp:127.0.0.1:{}", port), "--sees", sees,
-                         "--rate", "30", "--delay", "0.06", "--noise", "0.002", "--clock", "monotonic"});
+  return start(running,
+               {"emulate", "tracker", "--link", fmt::format("udp:127.0.0.1:{}", port), "--sees", sees, "--rate", "30",
+                "--delay", "0.06", "--noise", "0.002", "--heading_noise", "0.01", "--clock", "monotonic"});
 }
 
 hal::Result<std::string> output_of(const std::vector<std::string>& arguments) {
