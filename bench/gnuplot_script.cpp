@@ -8,7 +8,7 @@
 namespace tandem::bench {
 namespace {
 
-// In points of the picture; SVG scales, PNG has kPngScale pixels a point.
+// In points of core::FigurePage.
 constexpr double kPanelWidth = 560.0;
 constexpr double kPanelHeight = 660.0;
 constexpr double kLegendWidth = 170.0;
@@ -18,13 +18,6 @@ constexpr double kBetween = 22.0;
 constexpr double kUpperShare = 0.62;
 constexpr double kFontSize = 16.0;
 constexpr std::size_t kFirstNote = 2;  // labels' numbers; 1 marks real time
-constexpr double kPngScale = 2.0;
-constexpr double kPointsPerInch = 96.0;
-constexpr double kPngPoint = 0.75;  // font sizes there are of 1/72 inch at 96 pixels an inch
-
-// Colours that people with any colour vision tell apart [Okabe and Ito 2008], and shapes for print without colours.
-constexpr const char* kColours[] = {"#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000"};
-constexpr int kShapes[] = {7, 5, 9, 13, 11, 6, 4, 8, 12, 10};
 
 struct Range {
   double low = 0.0, high = 0.0;
@@ -75,24 +68,16 @@ class Script {
   }
 
   void begin(core::FigureFormat format) {
-    if (format == core::FigureFormat::Svg)
-      add("set terminal svg size {},{} enhanced font 'Arial,{}' background 'white'\n", width_, height_, kFontSize);
-    else if (format == core::FigureFormat::Pdf)
-      add("set terminal pdfcairo size {}in,{}in enhanced font 'Arial,{}' background 'white'\n", width_ / kPointsPerInch,
-          height_ / kPointsPerInch, kFontSize * kPngPoint);
-    else
-      add("set terminal pngcairo size {},{} enhanced font 'Arial,{}' fontscale {} linewidth {} pointscale {} "
-          "background 'white'\n",
-          width_ * kPngScale, height_ * kPngScale, kFontSize * kPngPoint, kPngScale, kPngScale, kPngScale);
+    add("{}", core::gnuplot_terminal(format, {width_, height_, "Arial", kFontSize}));
     add("set encoding utf8\nset border linewidth 0.8\nset tics scale 0.7\nset errorbars small\n");
     add("set grid xtics ytics linetype 1 linewidth 0.4 linecolor '#d0d0d0'\n");
     for (std::size_t i = 0; i < figure_.labels.size(); ++i) {
       const double above = static_cast<double>(std::min<std::size_t>(i, 5));  // thinner: those below shine through
       add("set style line {} linewidth {} pointsize {} linecolor '{}' pointtype {} linetype 1\n", i + 1,
-          3.0 - 0.3 * above, 1.15 - 0.1 * above, kColours[i % std::size(kColours)], kShapes[i % std::size(kShapes)]);
+          3.0 - 0.3 * above, 1.15 - 0.1 * above, core::figure_colour(i), core::figure_shape(i));
     }
     add("set logscale x\nset xrange [{}:{}]\n", axes_.robots.low, axes_.robots.high);
-    const double note_size = 0.8 * kFontSize * (format == core::FigureFormat::Png ? kPngPoint : 1.0);
+    const double note_size = 0.8 * kFontSize * (format == core::FigureFormat::Png ? core::kFontPoint : 1.0);
     for (std::size_t i = 0; i < figure_.notes.size(); ++i) {
       add("set label {} {} at screen {},{} left noenhanced font ',{}' textcolor '#606060'\n", kFirstNote + i,
           core::gnuplot_text(figure_.notes[i]), kLeft / width_,
@@ -157,7 +142,7 @@ class Script {
       if (!bars) continue;
       next();
       add("$d{}_{} using 1:{}:{}:{} with yerrorbars pointtype -1 linewidth 0.8 linecolor '{}' notitle", number,
-          curve.label, column, column + 1, column + 2, kColours[curve.label % std::size(kColours)]);
+          curve.label, column, column + 1, column + 2, core::figure_colour(curve.label));
     }
     std::size_t drawn = 0;
     const auto& curves = figure_.panels[number].curves;

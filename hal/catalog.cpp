@@ -29,31 +29,33 @@ class Collector final : public Registrar {
   void know(const Surface& surface) override { surfaces.know(surface); }
 
   void add(const CatalogItem& item) override {
-    const std::string what = "registers the " + std::string(item.category) + " '" + std::string(item.name) + "'";
-    if (item.name.empty() || item.category.empty()) return problem(what + " without a name");
-    if (item.entry == nullptr) return problem(what + " without a type");
-    if (!item.flaw.empty()) return problem(what + ", which " + std::string(item.flaw));
+    const auto refuse = [&](const std::string& why) {
+      problem("registers the " + std::string(item.category) + " '" + std::string(item.name) + "'" + why);
+    };
+    if (item.name.empty() || item.category.empty()) return refuse(" without a name");
+    if (item.entry == nullptr) return refuse(" without a type");
+    if (!item.flaw.empty()) return refuse(", which " + std::string(item.flaw));
     Catalog::Entry entry{std::string(item.category), std::string(item.name), item.layout, item.entry, origin_};
     for (const Surface& surface : surfaces.surfaces()) {
       if (surface.name != item.category) continue;
       if (detail::mixed(surface.digest, surface.number) != item.layout || surface.size < item.size)
-        return problem(what + ", whose type has another form than in " + first_origin(item.category) +
-                       ": build both against the same headers");
+        return refuse(", whose type has another form than in " + first_origin(item.category) +
+                      ": build both against the same headers");
       if (item.size == 0 || item.size == surface.size) continue;
       entry.widened = widened(item, surface.size);
       entry.entry = entry.widened.get();
     }
     for (const auto* list : std::initializer_list<const std::vector<Catalog::Entry>*>{&known_, &added}) {
       for (const Catalog::Entry& e : *list) {
-        if (e.category != item.category || e.name != item.name) continue;
+        if (e.name != item.name || e.category != item.category) continue;
         if (list == &known_ && named_with_library(item.category)) continue;
-        return problem(what + " a second time: the first is from " + e.origin + "; give one of them another name");
+        return refuse(" a second time: the first is from " + e.origin + "; give one of them another name");
       }
     }
     // A table has one name: the first entry would bear the second's.
     for (const Catalog::Entry& e : added) {
       if (e.entry == item.entry && e.category == item.category)
-        return problem(what + " with the class that it registers as '" + e.name + "': derive a class for each name");
+        return refuse(" with the class that it registers as '" + e.name + "': derive a class for each name");
     }
     added.push_back(std::move(entry));
   }

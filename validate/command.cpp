@@ -66,8 +66,8 @@ hal::Result<std::string> drawn(const Figure& figure, const std::filesystem::path
   if (!out.ok()) return out.error();
   auto opened = std::move(out).value();
   const std::string script =
-      "set terminal svg size 640,480 enhanced font 'Arial,15' background 'white'\nset encoding utf8\nset grid\nset key "
-      "outside top center vertical maxrows 3 samplen 2\nset rmargin 4\n" +
+      core::gnuplot_terminal(core::FigureFormat::Svg, {}) +
+      "set encoding utf8\nset grid\nset key outside top center vertical maxrows 3 samplen 2\nset rmargin 4\n" +
       figure.script;
   if (const hal::Status status = core::draw_figure(script, opened); !status.ok()) return status.error();
   std::ifstream in(file);

@@ -1,8 +1,10 @@
 #include "core/view/gnuplot.hpp"
 
 #include <filesystem>
+#include <iterator>
 
 #include "hal/program.hpp"
+#include "hal/unit.hpp"
 
 namespace tandem::core {
 namespace {
@@ -40,6 +42,32 @@ hal::Status draw_figure(const std::string& script, hal::OutputFile& file) {
   if (!picture.ok()) return picture.error();
   const hal::Status written = file.write(*picture);
   return written.ok() ? file.commit() : written;
+}
+
+std::string gnuplot_terminal(FigureFormat format, const FigurePage& page) {
+  constexpr double kPngScale = 2.0, kPointsPerInch = 96.0;
+  const auto size = [&](double scale, const char* unit) {
+    return " size " + hal::format_number(page.width * scale) + unit + "," + hal::format_number(page.height * scale) +
+           unit;
+  };
+  const auto rest = [&](double point, const char* more) {
+    return std::string(" enhanced font '") + page.font + "," + hal::format_number(page.font_size * point) + "'" + more +
+           " background '#ffffff'\n";
+  };
+  if (format == FigureFormat::Svg) return "set terminal svg" + size(1.0, "") + rest(1.0, "");
+  if (format == FigureFormat::Pdf)
+    return "set terminal pdfcairo" + size(1.0 / kPointsPerInch, "in") + rest(kFontPoint, "");
+  return "set terminal pngcairo" + size(kPngScale, "") + rest(kFontPoint, " fontscale 2 linewidth 2 pointscale 2");
+}
+
+const char* figure_colour(std::size_t number) noexcept {
+  static constexpr const char* kAll[] = {"#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000"};
+  return kAll[number % std::size(kAll)];
+}
+
+int figure_shape(std::size_t number) noexcept {
+  static constexpr int kAll[] = {7, 5, 9, 13, 11, 6, 4, 8, 12, 10};
+  return kAll[number % std::size(kAll)];
 }
 
 std::string gnuplot_text(const std::string& text) {

@@ -9,18 +9,11 @@
 namespace tandem::study {
 namespace {
 
-// In points of an SVG.
+// In points of core::FigurePage.
 constexpr double kPanelWidth = 640.0, kPanelHeight = 430.0, kPairedHeight = 330.0;
 constexpr double kTitleHeight = 34.0;
 constexpr std::size_t kMarkedLabels = 12;
 constexpr double kFontSize = 15.0;
-constexpr double kPngScale = 2.0;
-constexpr double kPointsPerInch = 96.0;
-constexpr double kPngPoint = 0.75;  // font sizes there are of 1/72 inch at 96 pixels an inch
-
-// Colours that people with any colour vision tell apart [Okabe and Ito 2008], and shapes for print without colours.
-constexpr const char* kColours[] = {"#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000"};
-constexpr int kShapes[] = {7, 5, 9, 13, 11, 6, 4, 8, 12, 10};
 
 std::string text_of(double value) {
   return hal::format_number(value);
@@ -57,17 +50,7 @@ class Script {
   }
 
   void begin(core::FigureFormat format, std::size_t lines) {
-    const std::string font = " enhanced font 'sans-serif,";
-    if (format == core::FigureFormat::Svg)
-      text_ += "set terminal svg size " + text_of(width_) + "," + text_of(height_) + font + text_of(kFontSize) +
-               "' background '#ffffff'\n";
-    else if (format == core::FigureFormat::Pdf)
-      text_ += "set terminal pdfcairo size " + text_of(width_ / kPointsPerInch) + "in," +
-               text_of(height_ / kPointsPerInch) + "in" + font + text_of(kFontSize * kPngPoint) +
-               "' background '#ffffff'\n";
-    else
-      text_ += "set terminal pngcairo size " + text_of(width_ * kPngScale) + "," + text_of(height_ * kPngScale) + font +
-               text_of(kFontSize * kPngPoint) + "' fontscale 2 linewidth 2 pointscale 2 background '#ffffff'\n";
+    text_ += core::gnuplot_terminal(format, {width_, height_, "sans-serif", kFontSize});
     text_ += "set encoding utf8\nset grid linecolor '#dddddd'\nset border linewidth 0.8\nset errorbars small\n";
     text_ += "set key noenhanced tmargin center horizontal\n";
     if (chart_.log_x && !counted()) log_x();
@@ -168,11 +151,11 @@ class Script {
   }
 
   std::string colour_of(const ChartGroup& group, const char* transparency = "") const {
-    const std::string colour = kColours[number_of(group) % std::size(kColours)];
+    const std::string colour = core::figure_colour(number_of(group));
     return " linecolor rgb '#" + (transparency + colour.substr(1)) + "'";
   }
   std::string shape_of(const ChartGroup& group) const {
-    return " pointtype " + std::to_string(kShapes[number_of(group) % std::size(kShapes)]) + " pointsize 0.7";
+    return " pointtype " + std::to_string(core::figure_shape(number_of(group))) + " pointsize 0.7";
   }
   static std::string title_of(const std::string& name) {
     return name.empty() ? " notitle" : " title " + core::gnuplot_text(name);
