@@ -1,4 +1,4 @@
-#include "bridges/can/faulty_can_link.hpp"
+#include "tests/bridges/can/faulty_can_link.hpp"
 
 #include <gtest/gtest.h>
 #include <vector>

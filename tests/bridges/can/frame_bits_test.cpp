@@ -1,5 +1,5 @@
 // Bits of frames on the wire.
-#include "bridges/can/frame_bits.hpp"
+#include "tests/bridges/can/frame_bits.hpp"
 
 #include <gtest/gtest.h>
 #include <vector>

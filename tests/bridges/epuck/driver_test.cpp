@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "bridges/epuck/conversions.hpp"
-#include "bridges/link/faulty_link.hpp"
+#include "tests/bridges/link/faulty_link.hpp"
 #include "bridges/link/memory_link.hpp"
 #include "hal/device/body_sensors.hpp"
 #include "hal/device/leds.hpp"

@@ -1,7 +1,7 @@
 // The foot-bot's bridge on its bus: load, discovery, faults, other hosts, nodes that lie.
 #include <gmock/gmock.h>
 
-#include "bridges/can/frame_bits.hpp"
+#include "tests/bridges/can/frame_bits.hpp"
 #include "hal/device/body_sensors.hpp"
 #include "hal/device/distance_scanner.hpp"
 #include "hal/device/gripper.hpp"

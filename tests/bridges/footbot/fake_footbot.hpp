@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "bridges/aseba/can_messages.hpp"
-#include "bridges/can/faulty_can_link.hpp"
+#include "tests/bridges/can/faulty_can_link.hpp"
 #include "bridges/can/memory_bus.hpp"
 #include "bridges/footbot/driver.hpp"
 #include "bridges/footbot/map_file.hpp"

@@ -1,4 +1,4 @@
-#include "bridges/link/faulty_link.hpp"
+#include "tests/bridges/link/faulty_link.hpp"
 
 #include <array>
 #include <gmock/gmock.h>
@@ -10,7 +10,6 @@ namespace tandem::bridges {
 namespace {
 
 using Bytes = std::vector<std::uint8_t>;
-using testing::HasSubstr;
 
 constexpr hal::TimeNs kMs = hal::kNsPerMs;
 
@@ -118,27 +117,6 @@ TEST(FaultyLink, IsCutDuringWholeSlotsAndComesBack) {
   }
   EXPECT_GT(cut, 60);
   EXPECT_LT(cut, 140);
-}
-
-TEST(Faults, AreReadFromText) {
-  const auto faults = parse_faults("loss=0.01,corrupt=0.001,delay=20ms,jitter=500us,cut=0.05,slot=2s,seed=7");
-  ASSERT_TRUE(faults.ok());
-  EXPECT_EQ(faults.value().seed, 7U);
-  EXPECT_DOUBLE_EQ(faults.value().loss, 0.01);
-  EXPECT_DOUBLE_EQ(faults.value().corruption, 0.001);
-  EXPECT_EQ(faults.value().delay_ns, 20 * kMs);
-  EXPECT_EQ(faults.value().jitter_ns, kMs / 2);
-  EXPECT_DOUBLE_EQ(faults.value().cut, 0.05);
-  EXPECT_EQ(faults.value().cut_slot_ns, 2000 * kMs);
-}
-
-TEST(Faults, SayWhatIsWrong) {
-  EXPECT_THAT(parse_faults("los=0.1").error().message, HasSubstr("known: loss"));
-  EXPECT_THAT(parse_faults("loss=2").error().message, HasSubstr("not within 0 and 1"));
-  EXPECT_THAT(parse_faults("loss=nan").error().message, HasSubstr("not a number"));
-  EXPECT_THAT(parse_faults("delay=-1s").error().message, HasSubstr("negative"));
-  EXPECT_THAT(parse_faults("seed=x").error().message, HasSubstr("whole number"));
-  EXPECT_THAT(parse_faults("loss").error().message, HasSubstr("name=value"));
 }
 
 }  // namespace

@@ -1,7 +1,6 @@
 // A link that misbehaves on purpose: loses, delays, corrupts and breaks, the same way each time for the same seed.
 #pragma once
 #include <memory>
-#include <string_view>
 
 #include "bridges/link/link.hpp"
 
@@ -19,10 +18,6 @@ struct Faults {
   double cut = 0.0;           ///< time is divided into slots; chance that the link is cut during a slot
   hal::TimeNs cut_slot_ns = hal::kNsPerSecond;
 };
-
-/// Reads "loss=0.01,corrupt=0.001,delay=20ms,jitter=5ms,cut=0.05,slot=1s,seed=7", any of them in any order.
-/// Errors: unknown name (lists them), not a number, a chance outside 0 to 1, a negative time.
-hal::Result<Faults> parse_faults(std::string_view text);
 
 /// Wraps a link. Faults hit both directions. While cut it is HungUp: writes are refused, and what arrives is dropped;
 /// then it is Open again. Time is counted from its making, on `clock`.

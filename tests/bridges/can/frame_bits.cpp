@@ -1,4 +1,4 @@
-#include "bridges/can/frame_bits.hpp"
+#include "tests/bridges/can/frame_bits.hpp"
 
 #include <cstdint>
 

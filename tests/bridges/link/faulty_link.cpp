@@ -1,9 +1,7 @@
-#include "bridges/link/faulty_link.hpp"
+#include "tests/bridges/link/faulty_link.hpp"
 
 #include <algorithm>
 #include <array>
-#include <charconv>
-#include <cmath>
 #include <deque>
 #include <mutex>
 
@@ -150,66 +148,6 @@ LinkStatistics FaultyLink::statistics() const noexcept {
   LinkStatistics statistics = queues_->statistics;
   statistics.errors = inner_->statistics().errors;
   return statistics;
-}
-
-// --- the text form ---
-
-namespace {
-
-/// A number within [0, `limit`]. Null when it is none.
-const char* read_number(std::string_view text, double limit, double& value) {
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc{} || end != text.data() + text.size() || !std::isfinite(value)) return "is not a number";
-  if (value < 0.0 || value > limit) return limit == 1.0 ? "is not within 0 and 1" : "is negative or too large";
-  return nullptr;
-}
-
-/// A time with its suffix s, ms or us; a bare number is in seconds.
-const char* read_time(std::string_view text, hal::TimeNs& time_ns) {
-  double to_ns = 1e9;
-  for (const auto& [suffix, scale] : {std::pair{"ms", 1e6}, {"us", 1e3}, {"s", 1e9}}) {
-    if (text.ends_with(suffix)) {
-      text.remove_suffix(std::string_view(suffix).size());
-      to_ns = scale;
-      break;
-    }
-  }
-  double value = 0.0;
-  const char* wrong = read_number(text, 1e6, value);
-  if (wrong == nullptr) time_ns = static_cast<hal::TimeNs>(std::llround(value * to_ns));
-  return wrong;
-}
-
-const char* set_fault(Faults& faults, std::string_view name, std::string_view value) {
-  if (name == "loss") return read_number(value, 1.0, faults.loss);
-  if (name == "corrupt") return read_number(value, 1.0, faults.corruption);
-  if (name == "cut") return read_number(value, 1.0, faults.cut);
-  if (name == "delay") return read_time(value, faults.delay_ns);
-  if (name == "jitter") return read_time(value, faults.jitter_ns);
-  if (name == "slot") return read_time(value, faults.cut_slot_ns);
-  if (name == "seed") {
-    const auto [end, error] = std::from_chars(value.data(), value.data() + value.size(), faults.seed);
-    return error == std::errc{} && end == value.data() + value.size() ? nullptr : "is not a whole number";
-  }
-  return "is no fault; known: loss, corrupt, delay, jitter, cut, slot, seed";
-}
-
-}  // namespace
-
-hal::Result<Faults> parse_faults(std::string_view text) {
-  Faults faults;
-  while (!text.empty()) {
-    const std::string_view item = text.substr(0, text.find(','));
-    text.remove_prefix(std::min(text.size(), item.size() + 1));
-    const std::size_t equals = item.find('=');
-    if (equals == std::string_view::npos) {
-      return hal::Error{"fault '" + std::string(item) + "': write name=value, for example loss=0.01,delay=20ms,seed=7"};
-    }
-    if (const char* wrong = set_fault(faults, item.substr(0, equals), item.substr(equals + 1)); wrong != nullptr) {
-      return hal::Error{"fault '" + std::string(item) + "' " + wrong};
-    }
-  }
-  return faults;
 }
 
 }  // namespace tandem::bridges
