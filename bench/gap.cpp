@@ -10,7 +10,7 @@
 #include "app/experiment/reading.hpp"
 #include "app/options.hpp"
 #include "app/process/measure.hpp"
-#include "bridges/epuck_emulator/kinematic_body.hpp"
+#include "bridges/epuck_emulator/body.hpp"
 #include "core/config/reader.hpp"
 #include "core/sim/world.hpp"
 #include "hal/angle.hpp"

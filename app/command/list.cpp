@@ -294,6 +294,7 @@ bool describe_emulator(const hal::Catalog& catalog, const std::string& name) {
   core::ManualWriter manual;
   (void)type->read(manual);
   fmt::print("options, written --name value:\n{}", manual.text().empty() ? "  none\n" : manual.text());
+  if (type->faults != nullptr) fmt::print("faults, written --fault TEXT:\n{}\n", type->faults());
   return true;
 }
 

@@ -10,28 +10,21 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "bridges/emulation/fault_spec.hpp"
+#include "bridges/emulation/fault_table.hpp"
 
 namespace tandem::app {
 namespace {
 
 using hal::TimeNs;
 
-struct Entry {
-  HubFaultKind kind;
-  std::string_view name;
-  bool has_value;
-  bool lasts;
-  std::string_view example;
-  std::string_view doc;
-};
-
-constexpr std::array<Entry, 4> kEntries = {{
-    {HubFaultKind::Stall, "stall", false, true, "stall@5s+0.4s",
+// In the order of HubFaultKind.
+constexpr std::array<bridges::FaultForm, 4> kForms = {{
+    {"stall", bridges::FaultValue::None, true, bridges::kEndless, "stall@5s+0.4s",
      "the loop waits; the threads that talk with the robots go on"},
-    {HubFaultKind::Freeze, "freeze", false, true, "freeze@5s+2s", "the whole program sleeps (SIGSTOP), and goes on"},
-    {HubFaultKind::Kill, "kill", false, false, "kill@5s", "the program is killed (SIGKILL)"},
-    {HubFaultKind::Clock, "clock", true, false, "clock=1h@5s",
+    {"freeze", bridges::FaultValue::None, true, bridges::kEndless, "freeze@5s+2s",
+     "the whole program sleeps (SIGSTOP), and goes on"},
+    {"kill", bridges::FaultValue::None, true, 0, "kill@5s", "the program is killed (SIGKILL)"},
+    {"clock", bridges::FaultValue::Jump, true, 0, "clock=1h@5s",
      "the program's clock that shows the date jumps, by -1h backwards"},
 }};
 
@@ -84,37 +77,18 @@ void act(const HubFault& fault) {
 }  // namespace
 
 std::string hub_fault_manual() {
-  std::string text;
-  for (const Entry& e : kEntries) {
-    std::string example = "  " + std::string(e.example);
-    example.resize(std::max<std::size_t>(18, example.size() + 1), ' ');
-    text += example + std::string(e.doc) + "\n";
-  }
-  return text + "Times count from the start of the run.";
+  return bridges::manual_of_faults(kForms) + "Times count from the start of the run.";
 }
 
 hal::Result<HubFault> parse_hub_fault(const std::string& text) {
-  const auto split = bridges::split_fault(text);
-  if (!split.ok()) return wrong(text, split.error().message);
-  const bridges::FaultSpec& spec = split.value();
-  const std::string name(spec.name);
-  const auto entry = std::find_if(kEntries.begin(), kEntries.end(), [&](const Entry& e) { return e.name == name; });
-  if (entry == kEntries.end()) return wrong(text, "there is no fault '" + name + "'");
-  const std::string example = ", as in " + std::string(entry->example);
-  if (spec.value.has_value() != entry->has_value)
-    return wrong(text, "'" + name + (spec.value ? "' takes no value" : "' needs a value" + example));
-  if (!spec.start) return wrong(text, "say when" + example);
-  if (spec.since_drive) return wrong(text, "a hub knows no @drive" + example);
-  if (spec.duration.has_value() != entry->lasts)
-    return wrong(text, spec.duration ? "'" + name + "' takes no duration" : "say for how long" + example);
-
-  HubFault fault{entry->kind, *spec.start, spec.duration.value_or(0), 0};
-  if (entry->has_value) {
-    const auto jump = bridges::parse_jump(*spec.value);
-    if (!jump.ok()) return wrong(text, jump.error().message);
-    fault.jump_ns = jump.value();
-  }
-  return fault;
+  bridges::ReadFault read;
+  const auto row = bridges::read_fault(text, kForms, read);
+  if (!row.ok()) return wrong(text, row.error().message);
+  const std::string name(kForms[row.value()].name), example = ", as in " + std::string(kForms[row.value()].example);
+  if (read.since_drive) return wrong(text, "a hub knows no @drive" + example);
+  if (read.moment && read.until > read.from) return wrong(text, "'" + name + "' takes no duration");
+  if (!read.moment && read.until == bridges::kEndless) return wrong(text, "say for how long" + example);
+  return HubFault{static_cast<HubFaultKind>(row.value()), read.from, read.until - read.from, read.time_ns};
 }
 
 hal::Result<HubFaults> HubFaults::make(const std::vector<std::string>& texts) {

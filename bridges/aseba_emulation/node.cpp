@@ -18,6 +18,13 @@ constexpr std::size_t kSource = 1, kArguments = 2;  // places of variables
 
 }  // namespace
 
+hal::Result<Lie> lie_named(std::string_view text) {
+  if (text == "size") return Lie::Size;
+  if (text == "count") return Lie::Count;
+  if (text == "name") return Lie::Name;
+  return hal::Error{"a lie is about size, count or name"};
+}
+
 Node::Node(NodeSpec spec) : spec_(std::move(spec)), flash_(spec_.bytecode_words) {
   restart();
 }

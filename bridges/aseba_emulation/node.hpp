@@ -14,6 +14,7 @@
 
 #include "bridges/aseba_emulation/message.hpp"
 #include "bridges/emulation/event_log.hpp"
+#include "hal/result.hpp"
 
 namespace tandem::bridges::aseba_emulation {
 
@@ -43,6 +44,8 @@ enum class Protocol : std::uint16_t { V4 = 4, V5 = 5 };
 
 /// What a node may say of itself that is not so. All of it concerns the first variable of its device.
 enum class Lie : std::uint8_t { None, Size, Count, Name };
+/// "size", "count" or "name".
+hal::Result<Lie> lie_named(std::string_view text);
 
 /// What a node is built with.
 struct NodeSpec {

@@ -37,6 +37,8 @@ struct EmulatorType {
   /// The ports that a simulated robot's controller must have taken to be the body, and all that are used.
   std::vector<const hal::PortType*> (*needs)() = nullptr;
   std::vector<const hal::PortType*> (*ports)() = nullptr;
+  /// What may go wrong with it, as `EmulatorRequest::faults` are written; null: nothing.
+  std::string (*faults)() = nullptr;
   /// Its own options, with their defaults.
   std::shared_ptr<const void> (*read)(hal::ParamVisitor& visitor) = nullptr;
   /// Emulates until `stop` becomes true, which is noticed within 20 ms. `body` must outlive the call; null: a body of
@@ -50,15 +52,6 @@ std::shared_ptr<const void> read_options(hal::ParamVisitor& visitor) {
   auto options = std::make_shared<Options>();
   options->describe(visitor);
   return options;
-}
-
-/// Fills in what all emulators' options have.
-template <class Options>
-void apply(const EmulatorRequest& request, Options& options) {
-  options.link = request.link;
-  options.log_file = request.log_file;
-  options.faults = request.faults;
-  options.log = request.log;
 }
 
 }  // namespace tandem::bridges

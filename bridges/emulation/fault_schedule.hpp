@@ -2,20 +2,20 @@
 #pragma once
 #include <algorithm>
 #include <cstddef>
+#include <map>
 #include <optional>
 #include <utility>
 #include <vector>
 
-#include "bridges/emulation/fault_spec.hpp"
+#include "bridges/emulation/fault_table.hpp"
 
 namespace tandem::bridges {
 
-/// Base of emulators' fault plans. A `Fault` is FaultTimes with kind and probability, and says by `is_moment()` that it
-/// has no end.
+/// Base of emulators' fault plans. `Fault` is FaultOf its kinds.
 template <class Fault>
 class FaultSchedule {
  public:
-  using Kind = decltype(Fault::kind);
+  using Kind = typename Fault::Kind;
 
   FaultSchedule(std::vector<Fault> faults, std::uint64_t seed) : faults_(std::move(faults)), chance_(seed) {
     for (std::size_t i = 0; i < faults_.size(); ++i) {
@@ -70,20 +70,48 @@ class FaultSchedule {
   bool happens(Kind kind, hal::TimeNs at) {
     bool any = false;
     for (const Fault& f : faults_) {
-      if (f.kind == kind && is_at_work(f, at)) any = chance_.hits(f.probability) || any;
+      if (f.kind == kind && is_at_work(f, at)) any = chance_.hits(f.number) || any;
     }
     return any;
   }
-  /// The longest of the delays at work; for faults that have a `delay_ns`.
-  hal::TimeNs delay_ns(hal::TimeNs at) const {
+  /// The longest time of those of that kind that are at work.
+  hal::TimeNs longest_ns(Kind kind, hal::TimeNs at) const {
     hal::TimeNs longest = 0;
     for (const Fault& f : faults_) {
-      if (is_at_work(f, at)) longest = std::max(longest, f.delay_ns);
+      if (f.kind == kind && is_at_work(f, at)) longest = std::max(longest, f.time_ns);
     }
     return longest;
   }
 
  protected:
+  /// One direction of messages, which have a time `at`, and the kinds of faults that they meet there.
+  template <class Message, class Key>
+  struct Way {
+    Kind lose, twice, swap, late;
+    std::map<Key, Message> held{};
+    hal::TimeNs last_at = 0;
+  };
+  /// What a message becomes on its way: nothing, itself, twice itself, or it waits for the next of its `key`, if it
+  /// `may_wait`. Messages of a way leave in the order of their times.
+  template <class Message, class Key>
+  void pass(Way<Message, Key>& way, const Message& message, const Key& key, bool may_wait, std::vector<Message>& out) {
+    if (happens(way.lose, message.at)) return;
+    const auto deliver = [&](Message m) {
+      m.at = way.last_at = std::max(way.last_at, message.at + longest_ns(way.late, message.at));
+      out.push_back(std::move(m));
+    };
+    const auto held = way.held.find(key);
+    if (held == way.held.end() && may_wait && happens(way.swap, message.at)) {
+      way.held.emplace(key, message);
+      return;
+    }
+    deliver(message);
+    if (happens(way.twice, message.at)) deliver(message);
+    if (held == way.held.end()) return;
+    deliver(std::move(held->second));
+    way.held.erase(held);
+  }
+
   static bool is_at_work(const FaultTimes& fault, hal::TimeNs at) noexcept {
     return fault.from <= at && at < fault.until;
   }
@@ -100,7 +128,7 @@ class FaultSchedule {
     fault.from = base + times.from;
     fault.until = base + times.until;
     changes_.push_back({fault.from, true, &fault});
-    if (times.until < kEndless && !fault.is_moment()) changes_.push_back({fault.until, false, &fault});
+    if (times.until < kEndless && !fault.moment) changes_.push_back({fault.until, false, &fault});
   }
   void sort_changes() {
     std::stable_sort(changes_.begin() + static_cast<std::ptrdiff_t>(told_), changes_.end(),

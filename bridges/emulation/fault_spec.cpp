@@ -65,10 +65,6 @@ hal::Result<FaultSpec> split_fault(std::string_view text) {
   return spec;
 }
 
-hal::Error fault_error(std::string_view text, const std::string& why, const std::string& manual) {
-  return hal::Error{"fault '" + std::string(text) + "': " + why + ". The faults are\n" + manual};
-}
-
 std::uint64_t Chance::draw() noexcept {
   state_ += 0x9E3779B97F4A7C15ULL;
   std::uint64_t z = state_;

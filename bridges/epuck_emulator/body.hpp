@@ -3,9 +3,11 @@
 #include <array>
 #include <cstdint>
 #include <limits>
+#include <vector>
 
+#include "bridges/emulation/emulated_body.hpp"
+#include "bridges/emulation/wheeled_body.hpp"
 #include "hal/robot/epuck.hpp"
-#include "hal/time.hpp"
 
 namespace tandem::bridges::epuck_emulator {
 
@@ -30,13 +32,6 @@ struct BodySenses {
   double ahead_m = 2.0;                                    ///< the time-of-flight sensor's reading
   double battery_V = 4.0;
   double temperature_C = 25.0;
-
-  template <std::size_t n>
-  static constexpr std::array<double, n> filled(double value) {
-    std::array<double, n> a{};
-    a.fill(value);
-    return a;
-  }
 };
 
 /// Command of the firmware to the robot's body.
@@ -52,13 +47,22 @@ struct BodyCommand {
   friend bool operator==(const BodyCommand&, const BodyCommand&) = default;
 };
 
-/// A body for the firmware to live in. Times never decrease. All calls come from the thread that runs the firmware.
-class EmulatedBody {
+/// A body for the firmware to live in.
+using EmulatedBody = EmulatedBodyOf<BodySenses, BodyCommand>;
+
+/// One with a little world of its own.
+class KinematicBody final : public WheeledBodyOf<EmulatedBody, hal::epuck::kind> {
  public:
-  virtual ~EmulatedBody() = default;
-  virtual BodySenses sense(hal::TimeNs now) = 0;
-  /// `command` holds from `now` until the next call.
-  virtual void actuate(hal::TimeNs now, const BodyCommand& command) = 0;
+  using WheeledBodyOf::WheeledBodyOf;
+
+ private:
+  void look(BodySenses& senses) const override;
 };
+
+/// The ports that the firmware senses and drives, and how.
+std::vector<const hal::PortType*> body_ports();
+void read_body(const PortBank& bank, BodySenses& senses);
+void write_body(PortBank& bank, const BodyCommand& command);
+using PortBody = PortBodyOf<EmulatedBody, read_body, write_body>;
 
 }  // namespace tandem::bridges::epuck_emulator

@@ -1,14 +1,10 @@
 #include "bridges/epuck_emulator/emulator.hpp"
 
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
-#include <poll.h>
-#include <sys/timerfd.h>
-#include <unistd.h>
+#include <deque>
+#include <memory>
 
 #include "bridges/emulation/serial_port.hpp"
-#include "bridges/emulation/serving.hpp"
 #include "bridges/emulation/tcp_port.hpp"
 #include "bridges/epuck_emulator/faults.hpp"
 #include "bridges/epuck_emulator/radio.hpp"
@@ -39,30 +35,6 @@ hal::Result<std::unique_ptr<HostLine>> open_line(const std::string& link) {
   return std::unique_ptr<HostLine>(std::move(port).value());
 }
 
-/// Wakes poll() at an absolute time.
-class AlarmClock {
- public:
-  AlarmClock() : descriptor_(timerfd_create(CLOCK_MONOTONIC, TFD_NONBLOCK | TFD_CLOEXEC)) {}
-  ~AlarmClock() {
-    if (descriptor_ >= 0) ::close(descriptor_);
-  }
-  AlarmClock(const AlarmClock&) = delete;
-  AlarmClock& operator=(const AlarmClock&) = delete;
-
-  bool works() const noexcept { return descriptor_ >= 0; }
-  int descriptor() const noexcept { return descriptor_; }
-  void set(TimeNs at) const {
-    at = std::max<TimeNs>(at, 1);  // 0 would switch it off
-    itimerspec setting{};
-    setting.it_value.tv_sec = static_cast<time_t>(at / hal::kNsPerSecond);
-    setting.it_value.tv_nsec = static_cast<long>(at % hal::kNsPerSecond);
-    timerfd_settime(descriptor_, TFD_TIMER_ABSTIME, &setting, nullptr);
-  }
-
- private:
-  int descriptor_;
-};
-
 /// A wire: bytes in the order of the times at which they are through.
 using Wire = std::deque<SentByte>;
 
@@ -72,111 +44,91 @@ std::optional<TimeNs> batch_at(const Wire& wire) {
   return std::max(wire.front().at, std::min(wire.back().at, wire.front().at + kBatchNs));
 }
 
-class Server {
+class EpuckServer final : public WheeledServer<Firmware, FaultPlan, KinematicBody> {
  public:
-  Server(const Options& options, std::unique_ptr<HostLine> port, const EventSink& events, FaultPlan faults,
-         EmulatedBody& body, KinematicBody* own_body, Firmware::Options robot)
-      : options_(options),
-        port_(std::move(port)),
-        tell_(in_order(events)),
-        faults_(std::move(faults)),
-        firmware_(robot, body, tell_),
-        to_robot_delay_ns_(delay_ns(robot.delays.to_robot_s)),
-        to_host_delay_ns_(delay_ns(robot.delays.to_host_s)),
-        link_(port_->link()),
-        path_(port_->path()),
-        own_body_(own_body),
-        poses_(options.poses.poses_hz) {
-    if (options_.link.starts_with(kRadio)) radio_.emplace(firmware_);
+  EpuckServer(const Options& options, const EventSink& events, FaultPlan faults, const Firmware::Options& robot)
+      : WheeledServer(options, events, std::move(faults), robot), options_(options) {
+    if (options.link.starts_with(kRadio)) radio_.emplace(robot_);
   }
 
-  hal::Status serve(const std::atomic<bool>& stop);
-
  private:
-  hal::Status turn(TimeNs now);
-  hal::Status apply_faults(TimeNs now);
-  hal::Status take_in(TimeNs now);
+  hal::Status open() override;
+  void close() override;
+  void power_on(TimeNs start) override;
+  void apply_fault(const FaultPlan::Change& change) override;
+  hal::Status take_in(TimeNs now) override;
+  void give_out(TimeNs now) override;
+  TimeNs next_arrival(TimeNs now) const override;
+  void add_polls(TimeNs now, std::vector<pollfd>& polls) const override;
+  hal::Status polled(const std::vector<pollfd>& polls) const override;
+  EventFields last_command() const override { return {}; }
+
+  hal::Status read_line(TimeNs now);
   void greet_host(TimeNs now);
   void run_robot(TimeNs now);
-  void give_out(TimeNs now);
+  void take_sent(TimeNs now);
   void make_noise(TimeNs now);
-  void tell_pose(TimeNs now);
+  void write_line(TimeNs now);
   bool same_baud(TimeNs now);
-  TimeNs next_wake(TimeNs now) const;
-  hal::Status wait_until(TimeNs due) const;
 
   const Options& options_;
   std::unique_ptr<HostLine> port_;  // none while hung up
-  EventSink tell_;
-  FaultPlan faults_;
-  Firmware firmware_;
-  TimeNs to_robot_delay_ns_, to_host_delay_ns_;
-  std::string link_, path_;
   std::optional<Radio> radio_;
   std::uint64_t hosts_ = 0;  // of the radio
-  AlarmClock alarm_;
-  Wire to_robot_;
-  Wire to_host_;
+  Wire to_robot_, to_host_;
   TimeNs line_free_at_ = 0;  // when the last byte from the host is through
   TimeNs next_noise_ = 0;
   unsigned long host_baud_ = kRobotBaud;
   std::vector<SentByte> sent_;
-  KinematicBody* own_body_;  // null: it lives in another
-  PoseTeller poses_;
 };
 
-hal::Status Server::serve(const std::atomic<bool>& stop) {
-  if (!alarm_.works()) return hal::Error{std::string("cannot make a timer: ") + std::strerror(errno)};
-  const TimeNs start = monotonic_ns();
-  faults_.begin(start);
+hal::Status EpuckServer::open() {
+  auto port = open_line(link_);
+  if (!port.ok()) return port.error();
+  port_ = std::move(port).value();
+  link_ = port_->link();
+  return {};
+}
+
+void EpuckServer::close() {
+  to_robot_.clear();
+  to_host_.clear();
+  port_.reset();
+}
+
+void EpuckServer::power_on(TimeNs start) {
   tell_(start, "start",
-        {{"firmware", facts_of(firmware_.options().variant).name},
+        {{"firmware", facts_of(robot_.options().variant).name},
          {"link", options_.link},
          {"path", port_->path()},
          {"device", port_->device()},
          {"seed", options_.seed}});
-  firmware_.power_on(start);
-  options_.log.info("e-puck (" + options_.firmware + ") on " + path_);
-  if (options_.ready) options_.ready(path_);
-  const hal::Status served = turn_until(
-      stop, tell_, [this](TimeNs now) { return turn(now); }, [this](TimeNs now) { return next_wake(now); },
-      [this](TimeNs wake, TimeNs) { return wait_until(wake); });
-  const TimeNs end = monotonic_ns();
-  if (served.ok()) firmware_.run_until(end);
-  tell_(end, "end", {{"why", served.ok() ? "stopped" : served.error().message}});
-  return served;
+  robot_.power_on(start);
+  options_.log.info("e-puck (" + options_.firmware + ") on " + port_->path());
+  if (options_.ready) options_.ready(port_->path());
 }
 
-hal::Status Server::turn(TimeNs now) {
-  if (const hal::Status status = apply_faults(now); !status.ok()) return status;
-  if (const hal::Status status = take_in(now); !status.ok()) return status;
-  run_robot(now);
-  tell_pose(now);
+void EpuckServer::apply_fault(const FaultPlan::Change& change) {
+  const FaultKind kind = change.fault->kind;
+  if (kind == FaultKind::Reset) robot_.reset(change.at, "fault");
+  if (kind == FaultKind::Truncate) radio_ ? radio_->cut_next_answer() : robot_.cut_next_answer();
+  if (kind == FaultKind::Garbage && change.begins) next_noise_ = change.at;
+}
+
+hal::Status EpuckServer::take_in(TimeNs now) {
+  const hal::Status read = read_line(now);
+  if (read.ok()) run_robot(now);
+  return read;
+}
+
+void EpuckServer::give_out(TimeNs now) {
+  take_sent(now);
   make_noise(now);
-  give_out(now);
-  return {};
-}
-
-hal::Status Server::apply_faults(TimeNs now) {
-  return apply_changes(faults_, now, tell_, [this](const FaultPlan::Change& change) -> hal::Status {
-    const FaultKind kind = change.fault->kind;
-    if (kind == FaultKind::Reset) firmware_.reset(change.at, "fault");
-    if (kind == FaultKind::Truncate) radio_ ? radio_->cut_next_answer() : firmware_.cut_next_answer();
-    if (kind == FaultKind::Garbage && change.begins) next_noise_ = change.at;
-    if (kind != FaultKind::Hangup) return {};
-    to_robot_.clear();
-    to_host_.clear();
-    port_.reset();
-    if (change.begins) return {};
-    auto again = open_line(link_);
-    if (!again.ok()) return again.error();
-    port_ = std::move(again).value();
-    return {};
-  });
+  write_line(now);
 }
 
 // Reads no more than the host's driver would let go: a byte each 87 microseconds gets through.
-hal::Status Server::take_in(TimeNs now) {
+hal::Status EpuckServer::read_line(TimeNs now) {
   if (!port_ || to_robot_.size() >= kQueueBytes) return {};
   std::array<std::uint8_t, kQueueBytes> buffer{};
   const auto count = port_->read(std::span(buffer).first(kQueueBytes - to_robot_.size()));
@@ -191,7 +143,7 @@ hal::Status Server::take_in(TimeNs now) {
   return {};
 }
 
-void Server::greet_host(TimeNs now) {
+void EpuckServer::greet_host(TimeNs now) {
   const auto* const tcp = dynamic_cast<const TcpPort*>(port_.get());
   if (tcp == nullptr || tcp->hosts() == hosts_) return;
   hosts_ = tcp->hosts();
@@ -201,19 +153,21 @@ void Server::greet_host(TimeNs now) {
   tell_(now, "host", {{"connected", true}, {"hosts", hosts_}});
 }
 
-void Server::run_robot(TimeNs now) {
+void EpuckServer::run_robot(TimeNs now) {
   while (!to_robot_.empty() && to_robot_.front().at <= now) {
     const SentByte next = to_robot_.front();
     to_robot_.pop_front();
     const auto byte = faults_.to_robot(next.byte, next.at);
     if (!byte) continue;
     for (int times = faults_.doubles(next.at) ? 2 : 1; times > 0; --times)
-      radio_ ? radio_->receive(*byte, next.at) : firmware_.receive(*byte, next.at);
+      radio_ ? radio_->receive(*byte, next.at) : robot_.receive(*byte, next.at);
   }
-  radio_ ? radio_->run_until(now) : firmware_.run_until(now);
-  if (const auto at = firmware_.first_driven_at()) faults_.driven(*at, now);
+  radio_ ? radio_->run_until(now) : robot_.run_until(now);
+}
+
+void EpuckServer::take_sent(TimeNs now) {
   sent_.clear();
-  radio_ ? radio_->take_sent(now, sent_) : firmware_.take_sent(now, sent_);
+  radio_ ? radio_->take_sent(now, sent_) : robot_.take_sent(now, sent_);
   for (const SentByte& s : sent_) {
     const auto byte = faults_.to_host(s.byte, s.at);
     if (!byte || !port_) continue;
@@ -224,25 +178,14 @@ void Server::run_robot(TimeNs now) {
   }
 }
 
-void Server::tell_pose(TimeNs now) {
-  const auto pose_at = [this](TimeNs at) -> std::optional<BodyPose> {
-    if (own_body_ == nullptr) return options_.pose_elsewhere ? options_.pose_elsewhere() : std::nullopt;
-    own_body_->advance(at);
-    BodyPose pose = own_body_->pose();
-    pose.taken_ns = at;
-    return pose;
-  };
-  poses_.turn(now, pose_at, tell_);
-}
-
-void Server::make_noise(TimeNs now) {
+void EpuckServer::make_noise(TimeNs now) {
   for (; next_noise_ <= now && faults_.active(FaultKind::Garbage, next_noise_); next_noise_ += kNoiseNs) {
     const auto byte = faults_.to_host(0, next_noise_);
     if (byte && port_) to_host_.push_back({*byte, now});
   }
 }
 
-void Server::give_out(TimeNs now) {
+void EpuckServer::write_line(TimeNs now) {
   std::vector<std::uint8_t> due;
   while (!to_host_.empty() && to_host_.front().at <= now) {
     due.push_back(to_host_.front().byte);
@@ -256,35 +199,29 @@ void Server::give_out(TimeNs now) {
   if (gone < due.size()) tell_(now, "overflow", {{"buffer", "host"}, {"bytes", due.size() - gone}});
 }
 
-bool Server::same_baud(TimeNs now) {
+bool EpuckServer::same_baud(TimeNs now) {
   const unsigned long baud = port_->host_baud();
   if (baud != host_baud_) tell_(now, "baud", {{"host", baud}, {"robot", kRobotBaud}});
   host_baud_ = baud;
   return baud == kRobotBaud;
 }
 
-TimeNs Server::next_wake(TimeNs now) const {
-  TimeNs wake = now + kStopNs;
-  const auto consider = [&wake](const std::optional<TimeNs>& at) {
-    if (at) wake = std::min(wake, *at);
-  };
-  consider(batch_at(to_robot_));
-  consider(batch_at(to_host_));
-  consider(faults_.next_change_at());
-  consider(poses_.due());
-  consider(radio_ ? radio_->next_event(kBatchNs) : firmware_.next_event(kBatchNs));
-  if (faults_.active(FaultKind::Garbage, now)) consider(next_noise_);
-  return wake;
+TimeNs EpuckServer::next_arrival(TimeNs now) const {
+  TimeNs next = now + kStopNs;
+  for (const auto& at :
+       {batch_at(to_robot_), batch_at(to_host_), radio_ ? radio_->next_event(kBatchNs) : robot_.next_event(kBatchNs)})
+    next = std::min(next, at.value_or(next));
+  return faults_.active(FaultKind::Garbage, now) ? std::min(next, next_noise_) : next;
 }
 
-hal::Status Server::wait_until(TimeNs due) const {
-  alarm_.set(due);
-  std::array<pollfd, 2> waits{{{alarm_.descriptor(), POLLIN, 0}, {port_ ? port_->descriptor() : -1, POLLIN, 0}}};
-  if (to_robot_.size() >= kQueueBytes) waits[1].fd = -1;
-  const int woken = ::poll(waits.data(), waits.size(), -1);  // a signal wakes it too
-  // A host that hung up shows in reading; another one may come.
+void EpuckServer::add_polls(TimeNs /*now*/, std::vector<pollfd>& polls) const {
+  if (port_) polls.push_back({to_robot_.size() < kQueueBytes ? port_->descriptor() : -1, POLLIN, 0});
+}
+
+// A host that hung up shows in reading; another one may come.
+hal::Status EpuckServer::polled(const std::vector<pollfd>& polls) const {
   const bool network = dynamic_cast<const TcpPort*>(port_.get()) != nullptr;
-  const bool gone = !network && woken > 0 && (waits[1].revents & (POLLHUP | POLLERR | POLLNVAL)) != 0;
+  const bool gone = !network && !polls.empty() && (polls[0].revents & (POLLHUP | POLLERR | POLLNVAL)) != 0;
   if (gone) return hal::Error{"the serial line '" + port_->path() + "' has gone; was its cable pulled?"};
   return {};
 }
@@ -294,23 +231,15 @@ hal::Status Server::wait_until(TimeNs due) const {
 hal::Status run(const Options& options, const std::atomic<bool>& stop) {
   const auto variant = variant_from(options.firmware);
   if (!variant.ok()) return variant.error();
-  auto faults = read_faults(options.faults, &parse_fault);
-  if (!faults.ok()) return faults.error();
-  auto events = open_event_sink(options.log_file, options.events);
-  if (!events.ok()) return events.error();
   if (options.link.starts_with(kRadio) && variant.value() != Variant::Epuck2)
     return hal::Error{"only an e-puck2 has a radio of its own: write --firmware epuck2, or a link " +
                       std::string(kTcp) + "PORT"};
-  auto port = open_line(options.link);
-  if (!port.ok()) return port.error();
-
-  KinematicBody own_body(options.poses.start, options.arena, options.wheels);
-  EmulatedBody& body = options.body != nullptr ? *options.body : own_body;
   Firmware::Options robot = options.robot;
   robot.variant = variant.value();
-  Server server(options, std::move(port).value(), events.value(), FaultPlan(std::move(faults).value(), options.seed),
-                body, options.body == nullptr ? &own_body : nullptr, robot);
-  return server.serve(stop);
+  robot.delays = options.delays;
+  return serve_with(options, kFaults, stop, [&](const EventSink& events, std::vector<Fault> faults) {
+    return EpuckServer(options, events, FaultPlan(std::move(faults), options.seed), robot);
+  });
 }
 
 }  // namespace tandem::bridges::epuck_emulator

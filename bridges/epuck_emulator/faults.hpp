@@ -3,9 +3,6 @@
 #include <array>
 #include <cstdint>
 #include <optional>
-#include <string>
-#include <string_view>
-#include <vector>
 
 #include "bridges/emulation/fault_schedule.hpp"
 
@@ -13,22 +10,9 @@ namespace tandem::bridges::epuck_emulator {
 
 enum class FaultKind : std::uint8_t { Silent, Deaf, Garbage, Drop, Double, Corrupt, Delay, Reset, Truncate, Hangup };
 
-/// Reset and Truncate happen at `from`.
-struct Fault : FaultTimes {
-  FaultKind kind = FaultKind::Silent;
-  double probability = 0.0;  ///< Drop, Double, Corrupt: of each byte, in both directions
-  hal::TimeNs delay_ns = 0;  ///< Delay: added to every byte towards the host
-  std::string text;          ///< as written
+using Fault = FaultOf<FaultKind>;
 
-  bool is_moment() const noexcept { return kind == FaultKind::Reset || kind == FaultKind::Truncate; }
-};
-
-/// Reads NAME[=VALUE][@[drive+]START[+DURATION]]: "silent@5s+2s", "reset@3s", "drop=0.01", "delay=20ms". A bare number
-/// is in seconds. Errors name what is wrong and list the faults that there are.
-hal::Result<Fault> parse_fault(std::string_view text);
-
-/// One line a fault: how it is written and what it does.
-std::string fault_manual();
+extern const FaultTable<Fault> kFaults;
 
 /// All faults of a run, and the chance in them.
 class FaultPlan : public FaultSchedule<Fault> {
@@ -40,6 +24,8 @@ class FaultPlan : public FaultSchedule<Fault> {
   std::optional<std::uint8_t> to_host(std::uint8_t byte, hal::TimeNs at);
   /// Whether what arrived of a byte arrives twice.
   bool doubles(hal::TimeNs at) { return happens(FaultKind::Double, at); }
+  /// What is added to every byte towards the host.
+  hal::TimeNs delay_ns(hal::TimeNs at) const { return longest_ns(FaultKind::Delay, at); }
   /// Any other byte than `byte`.
   std::uint8_t garble(std::uint8_t byte);
 

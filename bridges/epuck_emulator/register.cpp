@@ -3,8 +3,9 @@
 #include <array>
 
 #include "bridges/emulation/emulator_type.hpp"
+#include "bridges/epuck_emulator/body.hpp"
 #include "bridges/epuck_emulator/emulator.hpp"
-#include "bridges/epuck_emulator/port_body.hpp"
+#include "bridges/epuck_emulator/faults.hpp"
 #include "hal/device/body_sensors.hpp"
 #include "hal/device/leds.hpp"
 #include "hal/robot/epuck2.hpp"
@@ -12,53 +13,43 @@
 namespace tandem::bridges::epuck_emulator {
 namespace {
 
-struct Own {
+struct Own : WheeledParams {
   std::string firmware = "gctronic";
   std::int64_t selector = 3;
   bool cliff_sensors = false;
   bool ground_board = true;
-  PoseOptions poses{};
-  WheelErrors wheels{};
-  Delays delays{};
   void describe(hal::ParamVisitor& v) {
     v.text("firmware", firmware, "btcom, gctronic, webots or epuck2.");
     v.integer("selector", selector, {0, 15}, "Position of the rotary switch.");
     v.flag("cliff_sensors", cliff_sensors, "The ground board has two cliff sensors.");
     v.flag("ground_board", ground_board, "It has ground sensors; else the firmware answers zeros.");
-    poses.describe(v);
-    wheels.describe(v);
-    delays.describe(v);
+    WheeledParams::describe(v);
   }
 };
 
 struct OwnOfEpuck2 : Own {
-  OwnOfEpuck2() { *static_cast<Own*>(this) = {"epuck2", 3, true, true, {}, {}, {}}; }
+  OwnOfEpuck2() {
+    firmware = "epuck2";
+    cliff_sensors = true;
+  }
 };
 
 template <class OwnOptions>
 hal::Status run_type(const EmulatorRequest& request, SharedPorts* ports, const std::atomic<bool>& stop) {
-  Options options;
-  apply(request, options);
   const OwnOptions own =
       request.options != nullptr ? *static_cast<const OwnOptions*>(request.options.get()) : OwnOptions{};
+  Options options;
   options.firmware = own.firmware;
   options.robot.selector = static_cast<std::uint8_t>(own.selector);
   options.robot.cliff_sensors = own.cliff_sensors;
   options.robot.ground_board = own.ground_board;
-  options.poses = own.poses;
-  options.wheels = own.wheels;
-  options.robot.delays = own.delays;
+  std::optional<PortBody> body;
+  apply(request, own, ports, body, options);
   options.ready = [&request](const std::string& path) {
     if (request.ready)
       request.ready("e-puck's firmware on " + path + ": connect with --link " +
                     (path.starts_with("tcp:") || path.starts_with("epuck-tcp:") ? path : "serial:" + path + "@115200"));
   };
-  std::optional<PortBody> body;
-  if (ports != nullptr) {
-    options.body = &body.emplace(*ports);
-    options.robot.delays.body_s = own.wheels.delay_s;
-    options.pose_elsewhere = [ports] { return ports->pose(); };
-  }
   return run(options, stop);
 }
 
@@ -68,6 +59,7 @@ const EmulatorType kType{.name = "epuck",
                          .puppet = "<puppet library=\"puppet\" …>",
                          .needs = &port_types_of<hal::FrontLed, hal::Microphones>,
                          .ports = &body_ports,
+                         .faults = [] { return kFaults.manual(); },
                          .read = &read_options<Own>,
                          .run = &run_type<Own>};
 
@@ -77,6 +69,7 @@ const EmulatorType kType2{.name = "epuck2",
                           .puppet = "<puppet library=\"puppet\" …>",
                           .needs = &port_types_of<hal::FrontLed, hal::Microphones>,
                           .ports = &body_ports,
+                          .faults = [] { return kFaults.manual(); },
                           .read = &read_options<OwnOfEpuck2>,
                           .run = &run_type<OwnOfEpuck2>};
 

@@ -6,8 +6,8 @@
 #include <optional>
 #include <vector>
 
+#include "bridges/emulation/emulated_body.hpp"
 #include "hal/robot/eyebot.hpp"
-#include "hal/time.hpp"
 
 namespace tandem::bridges::eyebot_emulator {
 
@@ -60,13 +60,6 @@ struct BodySenses {
   std::vector<Blob> blobs{};
 
   double yaw_rad() const noexcept;
-
-  template <std::size_t n>
-  static constexpr std::array<double, n> filled(double value) {
-    std::array<double, n> a{};
-    a.fill(value);
-    return a;
-  }
 };
 
 /// What the flight as a whole is about: a body that steers itself needs it, one that follows velocities does not.
@@ -102,15 +95,27 @@ struct BodyCommand {
   friend bool operator==(const BodyCommand&, const BodyCommand&) = default;
 };
 
-/// A body for the firmware to live in. Times never decrease. All calls come from the thread that runs the firmware.
-class EmulatedBody {
+/// A body for the firmware to live in.
+class EmulatedBody : public EmulatedBodyOf<BodySenses, BodyCommand> {
  public:
-  virtual ~EmulatedBody() = default;
-  virtual BodySenses sense(hal::TimeNs now) = 0;
-  /// `command` holds from `now` until the next call.
-  virtual void actuate(hal::TimeNs now, const BodyCommand& command) = 0;
   /// Messages that were heard since the last call.
   virtual std::vector<Heard> take_heard() = 0;
+};
+
+/// The ports that the firmware senses and drives, and how: the other robot takes off, lands, attaches and lets go as
+/// its own tasks do; once they are done, and between them, it flies with the firmware's velocities. With its motors cut
+/// it lands: simulated eye-bots do not fall.
+std::vector<const hal::PortType*> body_ports();
+void read_body(const PortBank& bank, BodySenses& senses);
+void write_body(PortBank& bank, const BodyCommand& command);
+
+class PortBody final : public PortBodyOf<EmulatedBody, read_body, write_body> {
+ public:
+  using PortBodyOf::PortBodyOf;
+  std::vector<Heard> take_heard() override;
+
+ private:
+  std::uint64_t heard_ = 0;  // readings that were taken
 };
 
 }  // namespace tandem::bridges::eyebot_emulator

@@ -8,7 +8,6 @@
 #include <time.h>
 #include <unistd.h>
 
-#include "bridges/emulation/serving.hpp"
 #include "bridges/eyebot_emulator/faults.hpp"
 
 namespace tandem::bridges::eyebot_emulator {
@@ -87,26 +86,26 @@ struct SecondHub {
   TimeNs next_at = 0;
 };
 
-class Server {
+class EyebotServer final : public Server {
  public:
-  Server(const Options& options, EventSink tell, const std::vector<Fault>& faults);
-  hal::Status serve(const std::atomic<bool>& stop);
+  EyebotServer(const Options& options, EventSink tell, const std::vector<Fault>& faults);
 
  private:
+  hal::Status begin() override;
+  hal::Status turn(TimeNs now) override;
+  TimeNs next_wake(TimeNs now) const override;
+  void add_polls(TimeNs now, std::vector<pollfd>& polls) const override;
+  void end(TimeNs now, const hal::Status& served) override;
+
   hal::Status connect();
-  hal::Status turn(TimeNs now);
   void distribute();
   void apply_faults(std::size_t i, TimeNs now);
   void fly(Flyer& flyer, TimeNs now);
   void publish(Flyer& flyer, TimeNs now);
   void speak(SecondHub& hub, const std::string& robot, TimeNs now);
-  TimeNs next_wake(TimeNs now) const;
-  hal::Status wait(TimeNs wake, TimeNs now) const;
-  void tell_end(TimeNs at);
   std::unique_ptr<Flyer> make_flyer(const std::string& name, std::size_t i, std::vector<Fault> faults, EventSink sink);
 
   const Options& options_;
-  EventSink tell_;
   std::shared_ptr<LcmLink> link_;
   std::shared_ptr<Inbox> inbox_ = std::make_shared<Inbox>();
   std::vector<std::unique_ptr<Flyer>> flyers_;
@@ -114,8 +113,8 @@ class Server {
   std::vector<std::optional<SecondHub>> second_hubs_;  // likewise
 };
 
-Server::Server(const Options& options, EventSink tell, const std::vector<Fault>& faults)
-    : options_(options), tell_(std::move(tell)) {
+EyebotServer::EyebotServer(const Options& options, EventSink tell, const std::vector<Fault>& faults)
+    : Server(std::move(tell)), options_(options) {
   const auto names = names_of(options.robot.name, options.count);
   for (std::size_t i = 0; i < names.size(); ++i) flyers_.push_back(make_flyer(names[i], i, faults, tell_));
   namesakes_.resize(flyers_.size());
@@ -123,8 +122,8 @@ Server::Server(const Options& options, EventSink tell, const std::vector<Fault>&
 }
 
 // Robots stand in rows of five, two metres apart.
-std::unique_ptr<Flyer> Server::make_flyer(const std::string& name, std::size_t i, std::vector<Fault> faults,
-                                          EventSink sink) {
+std::unique_ptr<Flyer> EyebotServer::make_flyer(const std::string& name, std::size_t i, std::vector<Fault> faults,
+                                                EventSink sink) {
   Eyebot::Options robot = options_.robot;
   robot.name = name;
   robot.session = draw_session();
@@ -133,7 +132,7 @@ std::unique_ptr<Flyer> Server::make_flyer(const std::string& name, std::size_t i
                                  FaultPlan(std::move(faults), options_.seed + i), std::move(sink));
 }
 
-hal::Status Server::connect() {
+hal::Status EyebotServer::connect() {
   link_ = options_.shared;
   if (!link_) {
     if (!options_.link.starts_with(kLcm)) {
@@ -152,7 +151,7 @@ hal::Status Server::connect() {
   return link_->start();
 }
 
-hal::Status Server::serve(const std::atomic<bool>& stop) {
+hal::Status EyebotServer::begin() {
   if (const hal::Status connected = connect(); !connected.ok()) return connected;
   const TimeNs start = monotonic_ns();
   tell_(start, "start",
@@ -169,14 +168,10 @@ hal::Status Server::serve(const std::atomic<bool>& stop) {
                                unix_us() + static_cast<std::int64_t>(i) * kApartNs / 1000);
   }
   if (options_.ready) options_.ready(link_->url());
-  const hal::Status served = turn_until(
-      stop, tell_, [this](TimeNs now) { return turn(now); }, [this](TimeNs now) { return next_wake(now); },
-      [this](TimeNs wake, TimeNs now) { return wait(wake, now); });
-  tell_end(monotonic_ns());
-  return served;
+  return {};
 }
 
-void Server::tell_end(TimeNs at) {
+void EyebotServer::end(TimeNs at, const hal::Status& /*served*/) {
   (void)turn(at);
   for (const auto& flyer : flyers_) {
     flyer->robot.tell_sent(at);
@@ -190,7 +185,7 @@ void Server::tell_end(TimeNs at) {
   }
 }
 
-hal::Status Server::turn(TimeNs now) {
+hal::Status EyebotServer::turn(TimeNs now) {
   for (std::size_t i = 0; i < flyers_.size(); ++i) apply_faults(i, now);
   for (std::size_t i = 0; i < flyers_.size(); ++i) {
     if (second_hubs_[i]) speak(*second_hubs_[i], flyers_[i]->robot.options().name, now);
@@ -203,7 +198,7 @@ hal::Status Server::turn(TimeNs now) {
   return {};
 }
 
-void Server::apply_faults(std::size_t i, TimeNs now) {
+void EyebotServer::apply_faults(std::size_t i, TimeNs now) {
   Flyer& flyer = *flyers_[i];
   while (const auto change = flyer.faults.next_change(now)) {
     const Fault& fault = *change->fault;
@@ -222,7 +217,7 @@ void Server::apply_faults(std::size_t i, TimeNs now) {
 }
 
 // A hub's sign of life is for everybody, a command for the robot that the channel names.
-void Server::distribute() {
+void EyebotServer::distribute() {
   for (const Datagram& message : inbox_->take()) {
     const auto give = [&](Flyer& flyer) {
       const bool concerns = message.channel.starts_with("hub/") ||
@@ -242,7 +237,7 @@ void Server::distribute() {
   }
 }
 
-void Server::fly(Flyer& flyer, TimeNs now) {
+void EyebotServer::fly(Flyer& flyer, TimeNs now) {
   while (!flyer.to_robot.empty() && flyer.to_robot.front().at <= now) {
     const Datagram& message = flyer.to_robot.front();
     flyer.robot.receive(message.channel, message.data, message.at);
@@ -253,7 +248,7 @@ void Server::fly(Flyer& flyer, TimeNs now) {
   publish(flyer, now);
 }
 
-void Server::publish(Flyer& flyer, TimeNs now) {
+void EyebotServer::publish(Flyer& flyer, TimeNs now) {
   std::vector<Datagram> sent;
   flyer.robot.take_sent(sent);
   std::vector<Datagram> leaving;
@@ -270,7 +265,7 @@ void Server::publish(Flyer& flyer, TimeNs now) {
   }
 }
 
-void Server::speak(SecondHub& hub, const std::string& robot, TimeNs now) {
+void EyebotServer::speak(SecondHub& hub, const std::string& robot, TimeNs now) {
   for (; hub.next_at <= now; hub.next_at += kHeartbeatPeriod_ms * hal::kNsPerMs) {
     const Header header{unix_us(), hub.seq++, hub.session};
     const std::int64_t uptime_ms = (now - hub.begun_at) / hal::kNsPerMs;
@@ -279,7 +274,7 @@ void Server::speak(SecondHub& hub, const std::string& robot, TimeNs now) {
   }
 }
 
-TimeNs Server::next_wake(TimeNs now) const {
+TimeNs EyebotServer::next_wake(TimeNs now) const {
   TimeNs wake = now + kStopNs;
   for (const auto* crew : {&flyers_, &namesakes_}) {
     for (const auto& flyer : *crew) {
@@ -293,10 +288,8 @@ TimeNs Server::next_wake(TimeNs now) const {
   return wake;
 }
 
-hal::Status Server::wait(TimeNs wake, TimeNs now) const {
-  std::vector<pollfd> polls = {{inbox_->descriptor(), POLLIN, 0}};
-  wait_for(polls, wake, now);
-  return {};
+void EyebotServer::add_polls(TimeNs /*now*/, std::vector<pollfd>& polls) const {
+  polls.push_back({inbox_->descriptor(), POLLIN, 0});
 }
 
 bool is_robot_name(const std::string& name) {
@@ -332,12 +325,9 @@ hal::Status run(const Options& options, const std::atomic<bool>& stop) {
       return hal::Error{"'" + name + "' cannot be an eye-bot's name: 1 to 24 letters, digits, _ and -"};
     }
   }
-  auto faults = read_faults(options.faults, &parse_fault);
-  if (!faults.ok()) return faults.error();
-  auto events = open_event_sink(options.log_file, options.events);
-  if (!events.ok()) return events.error();
-  Server server(options, std::move(events).value(), faults.value());
-  return server.serve(stop);
+  return serve_with(options, kFaults, stop, [&](const EventSink& events, const std::vector<Fault>& faults) {
+    return EyebotServer(options, events, faults);
+  });
 }
 
 }  // namespace tandem::bridges::eyebot_emulator

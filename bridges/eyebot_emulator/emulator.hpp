@@ -1,33 +1,28 @@
 // Eye-bots on a network, in real time.
 #pragma once
 #include <atomic>
-#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "bridges/emulation/server.hpp"
 #include "bridges/eyebot_emulator/eyebot.hpp"
 #include "bridges/eyebot_emulator/point_body.hpp"
 #include "bridges/lcm/lcm_link.hpp"
-#include "hal/log.hpp"
 #include "hal/result.hpp"
 
 namespace tandem::bridges::eyebot_emulator {
 
-struct Options {
-  std::string link = "lcm:udpm://239.255.76.67:7667?ttl=0";  ///< "lcm:" and what `LcmLink::open` reads
+/// Its link is "lcm:" and what `LcmLink::open` reads. Every robot has all faults.
+struct Options : ServerOptions {
+  Options() { link = "lcm:udpm://239.255.76.67:7667?ttl=0"; }
+
   std::shared_ptr<lcm_bus::LcmLink> shared{};  ///< instead of `link`: one in this process; not yet started
-  std::string log_file{};                      ///< one JSON object a line; empty: none
-  std::vector<std::string> faults{};           ///< as `parse_fault` reads them; every robot has them all
-  std::uint64_t seed = 1;                      ///< of the chance in the faults
   Eyebot::Options robot{};                     ///< its session is drawn at the start
   int count = 1;                               ///< how many robots: eb0, eb1, … after `robot.name`
   EmulatedBody* body = nullptr;  ///< must outlive the run, for one robot; none: bodies of their own, in `room`
   std::optional<Room> room = Room{};
-  EventSink events{};                                    ///< gets what the log gets, on the thread of `run`
-  hal::Log log{};                                        ///< for people
-  std::function<void(const std::string& path)> ready{};  ///< called once, when hubs are heard
 };
 
 /// Events for the log beside the robot's own: `fault` (fault, phase: begin or end) and `late` (by_ms: see turn_until).

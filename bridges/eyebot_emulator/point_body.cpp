@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "bridges/emulation/wheeled_body.hpp"
 #include "hal/angle.hpp"
 #include "hal/device/distance_scanner.hpp"
 #include "hal/device/flight.hpp"
@@ -18,19 +19,8 @@ constexpr hal::TimeNs kStepNs = 10 * hal::kNsPerMs;
 constexpr double kGravity_m_s2 = 9.81;
 constexpr double kContact_m = 1e-3;  // nearer is touching
 
-double turn_to(double angle_rad, double target_rad, double most_rad) {
-  return hal::wrapped(angle_rad + std::clamp(hal::wrapped(target_rad - angle_rad), -most_rad, most_rad));
-}
-
 double norm(const Vec3& v) {
   return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-}
-
-/// Along one axis: how far until the wall at +-half_m, moving by `per_m` a metre of ray.
-double to_wall_m(double at_m, double per_m, double half_m) {
-  if (per_m > 0.0) return std::max(0.0, (half_m - at_m) / per_m);
-  if (per_m < 0.0) return std::max(0.0, (-half_m - at_m) / per_m);
-  return std::numeric_limits<double>::infinity();
 }
 
 /// Turned by `yaw_rad` about z, then leaned so that the body's z axis points along gravity + acceleration.
@@ -124,19 +114,17 @@ void PointBody::turn_devices(double dt_s) {
     scanner_rad_ = hal::wrapped(scanner_rad_ + rate * dt_s);
   }
   if (command_.scanner == ScannerMode::Position) {
-    scanner_rad_ = turn_to(scanner_rad_, command_.scanner_rad, robot_part<hal::ScannerPart>().turn_rad_s * dt_s);
+    scanner_rad_ = turned_towards(scanner_rad_, command_.scanner_rad, robot_part<hal::ScannerPart>().turn_rad_s * dt_s);
   }
-  pan_rad_ = turn_to(pan_rad_, command_.pan_rad, robot_part<hal::HeadPart>().turn_rad_s * dt_s);
+  pan_rad_ = turned_towards(pan_rad_, command_.pan_rad, robot_part<hal::HeadPart>().turn_rad_s * dt_s);
   const double most = robot_part<hal::HeadPart>().turn_rad_s * dt_s;
   const double most_tilt = robot_part<hal::HeadPart>().max_tilt_rad;
   tilt_rad_ += std::clamp(std::clamp(command_.tilt_rad, -most_tilt, most_tilt) - tilt_rad_, -most, most);
 }
 
 double PointBody::distance_to_wall_m(double direction_rad, double offset_m) const {
-  const double c = std::cos(direction_rad);
-  const double s = std::sin(direction_rad);
-  return std::min(to_wall_m(p_[0] + offset_m * c, c, 0.5 * room_->length_x_m),
-                  to_wall_m(p_[1] + offset_m * s, s, 0.5 * room_->length_y_m));
+  return Arena{room_->length_x_m, room_->length_y_m}.distance_m(
+      p_[0] + offset_m * std::cos(direction_rad), p_[1] + offset_m * std::sin(direction_rad), direction_rad);
 }
 
 BodySenses PointBody::sense(hal::TimeNs now) {

@@ -1,8 +1,9 @@
 #include "bridges/eyebot_emulator/register.hpp"
 
 #include "bridges/emulation/emulator_type.hpp"
+#include "bridges/eyebot_emulator/body.hpp"
 #include "bridges/eyebot_emulator/emulator.hpp"
-#include "bridges/eyebot_emulator/port_body.hpp"
+#include "bridges/eyebot_emulator/faults.hpp"
 #include "hal/device/flight.hpp"
 
 namespace tandem::bridges::eyebot_emulator {
@@ -49,6 +50,7 @@ const EmulatorType kType{
     .puppet = "<eyebot_puppet library=\"puppet\" …> with flight_task, quadrotor_speed, flight_state and positioning",
     .needs = &port_types_of<hal::FlightTask, hal::QuadrotorSpeed, hal::FlightState, hal::Positioning>,
     .ports = &body_ports,
+    .faults = [] { return kFaults.manual(); },
     .read = &read_options<Own>,
     .run = &run_type};
 

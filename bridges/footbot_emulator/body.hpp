@@ -5,8 +5,8 @@
 #include <limits>
 #include <vector>
 
+#include "bridges/emulation/emulated_body.hpp"
 #include "hal/robot/footbot.hpp"
-#include "hal/time.hpp"
 
 namespace tandem::bridges::footbot_emulator {
 
@@ -45,13 +45,6 @@ struct BodySenses {
   double battery_V = 4.0;
   std::array<double, 3> force_m_s2 = {0.0, 0.0, 9.81};  ///< specific force, body frame
   double turn_rad_s = 0.0;                              ///< about the vertical axis
-
-  template <std::size_t n>
-  static constexpr std::array<double, n> filled(double value) {
-    std::array<double, n> a{};
-    a.fill(value);
-    return a;
-  }
 };
 
 enum class TurretMode : std::uint8_t { Off = 0, Passive = 1, Speed = 2, Position = 3 };
@@ -74,15 +67,25 @@ struct BodyCommand {
   friend bool operator==(const BodyCommand&, const BodyCommand&) = default;
 };
 
-/// A body for the modules to live in. Times never decrease. All calls come from the thread that runs the modules.
-class EmulatedBody {
+/// A body for the modules to live in.
+class EmulatedBody : public EmulatedBodyOf<BodySenses, BodyCommand> {
  public:
-  virtual ~EmulatedBody() = default;
-  virtual BodySenses sense(hal::TimeNs now) = 0;
-  /// `command` holds from `now` until the next call.
-  virtual void actuate(hal::TimeNs now, const BodyCommand& command) = 0;
   /// Messages that were heard since the last call.
   virtual std::vector<Heard> take_heard() = 0;
+};
+
+/// The ports that the modules sense and drive, and how.
+std::vector<const hal::PortType*> body_ports();
+void read_body(const PortBank& bank, BodySenses& senses);
+void write_body(PortBank& bank, const BodyCommand& command);
+
+class PortBody final : public PortBodyOf<EmulatedBody, read_body, write_body> {
+ public:
+  using PortBodyOf::PortBodyOf;
+  std::vector<Heard> take_heard() override;
+
+ private:
+  std::uint64_t heard_ = 0;  // readings that were taken
 };
 
 }  // namespace tandem::bridges::footbot_emulator

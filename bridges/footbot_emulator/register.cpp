@@ -1,23 +1,19 @@
 #include "bridges/footbot_emulator/register.hpp"
 
 #include "bridges/emulation/emulator_type.hpp"
+#include "bridges/footbot_emulator/body.hpp"
 #include "bridges/footbot_emulator/emulator.hpp"
-#include "bridges/footbot_emulator/port_body.hpp"
+#include "bridges/footbot_emulator/faults.hpp"
 #include "hal/device/wheels.hpp"
 
 namespace tandem::bridges::footbot_emulator {
 namespace {
 
-struct Own {
+struct Own : WheeledParams {
   std::string firmware = "v4";
-  PoseOptions poses;
-  WheelErrors wheels;
-  Delays delays;
   void describe(hal::ParamVisitor& v) {
     v.text("firmware", firmware, "v4 (the robots') or v5: which version of the protocol its modules speak.");
-    poses.describe(v);
-    wheels.describe(v);
-    delays.describe(v);
+    WheeledParams::describe(v);
   }
 };
 
@@ -28,24 +24,14 @@ std::string host_link(const std::string& path) {
 }
 
 hal::Status run_type(const EmulatorRequest& request, SharedPorts* ports, const std::atomic<bool>& stop) {
+  const Own own = request.options == nullptr ? Own{} : *static_cast<const Own*>(request.options.get());
   Options options;
-  apply(request, options);
-  if (request.options != nullptr) {
-    const Own& own = *static_cast<const Own*>(request.options.get());
-    options.firmware = own.firmware;
-    options.poses = own.poses;
-    options.wheels = own.wheels;
-    options.delays = own.delays;
-  }
+  options.firmware = own.firmware;
+  std::optional<PortBody> body;
+  apply(request, own, ports, body, options);
   options.ready = [&request](const std::string& path) {
     if (request.ready) request.ready("foot-bot's modules on " + path + ": connect with --link " + host_link(path));
   };
-  std::optional<PortBody> body;
-  if (ports != nullptr) {
-    options.body = &body.emplace(*ports);
-    options.delays.body_s = options.wheels.delay_s;
-    options.pose_elsewhere = [ports] { return ports->pose(); };
-  }
   return run(options, stop);
 }
 
@@ -56,6 +42,7 @@ const EmulatorType kType{
     .puppet = "<footbot_puppet library=\"puppet\" …>",
     .needs = &port_types_of<hal::WheelSpeeds>,
     .ports = &body_ports,
+    .faults = [] { return kFaults.manual(); },
     .read = &read_options<Own>,
     .run = &run_type};
 

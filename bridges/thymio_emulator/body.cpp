@@ -1,22 +1,31 @@
 #include "bridges/thymio_emulator/body.hpp"
 
-#include <algorithm>
-
-#include "bridges/emulation/true_pose.hpp"
-#include "hal/robot/thymio.hpp"
+#include "hal/device/body_sensors.hpp"
+#include "hal/device/buttons.hpp"
+#include "hal/device/leds.hpp"
+#include "hal/device/ring_sensors.hpp"
+#include "hal/device/speaker.hpp"
+#include "hal/device/wheels.hpp"
 
 namespace tandem::bridges::thymio_emulator {
 
-void OpenGround::advance(hal::TimeNs now) {
-  constexpr hal::TimeNs kStepNs = 10 * hal::kNsPerMs;  // over which noise, floor and a late wheel are looked at
-  if (pose_.taken_ns == 0 || wheels_.still()) pose_.taken_ns = std::max(pose_.taken_ns, now);
-  const bool by_steps = wheels_.errors().any();
-  while (pose_.taken_ns < now) {
-    const hal::TimeNs until = by_steps ? std::min(now, pose_.taken_ns + kStepNs) : now;
-    const ImperfectWheels::Ways ways = wheels_.roll(pose_.taken_ns, until, pose_.x_m, pose_.y_m);
-    pose_ = rolled(pose_, ways.left_m, ways.right_m, wheels_.errors().base * hal::thymio::kind().drive()->wheel_base_m);
-    pose_.taken_ns = until;
-  }
+std::vector<const hal::PortType*> body_ports() {
+  return port_types_of<hal::Proximity, hal::Ground, hal::Accelerometer, hal::Microphones, hal::Buttons,
+                       hal::WheelSpeeds, hal::RingLeds, hal::Speaker>();
+}
+
+void read_body(const PortBank& bank, BodySenses& senses) {
+  bank.read<hal::Proximity>([&](const auto& p) { copy_values(p.distance_m, senses.distance_m); });
+  bank.read<hal::Ground>([&](const auto& p) { copy_values(p.reflectance, senses.ground); });
+  bank.read<hal::Accelerometer>([&](const auto& p) { copy_values(p.force_m_s2, senses.force_m_s2); });
+  bank.read<hal::Buttons>([&](const auto& p) { copy_values(p.pressed, senses.buttons); });
+  bank.read<hal::Microphones>([&](const auto& p) { senses.sound = static_cast<double>(p.level[0]); });
+}
+
+void write_body(PortBank& bank, const BodyCommand& command) {
+  bank.port<hal::WheelSpeeds>().set(command.left_m_s, command.right_m_s);
+  copy_values(command.rgb, bank.port<hal::RingLeds>().rgb);
+  bank.port<hal::Speaker>().tone_Hz = static_cast<float>(command.tone_Hz);
 }
 
 }  // namespace tandem::bridges::thymio_emulator

@@ -1,34 +1,21 @@
 // A Thymio behind a line, in real time.
 #pragma once
 #include <atomic>
-#include <functional>
-#include <optional>
-#include <string>
-#include <vector>
+#include <cstdint>
 
-#include "bridges/emulation/true_pose.hpp"
+#include "bridges/emulation/server.hpp"
 #include "bridges/thymio_emulator/thymio.hpp"
-#include "hal/log.hpp"
 #include "hal/result.hpp"
 
 namespace tandem::bridges::thymio_emulator {
 
 inline constexpr unsigned long kBaud = 115200;  ///< of its serial line; USB does not care
 
-struct Options {
-  std::string link = "pty:thymio0";   ///< as `open_host_line` reads it
-  std::int64_t node = 1;              ///< its number
-  std::string log_file{};             ///< one JSON object a line; empty: none
-  std::vector<std::string> faults{};  ///< as `parse_fault` reads them
-  std::uint64_t seed = 1;             ///< of the chance in the faults
-  EmulatedBody* body = nullptr;       ///< must outlive the run; none: open ground
-  PoseOptions poses{};
-  WheelErrors wheels{};  ///< how the wheels of a body of its own err
-  Delays delays{};
-  std::function<std::optional<BodyPose>()> pose_elsewhere{};  ///< of `body`, the newest; none: nobody knows
-  EventSink events{};                                         ///< gets what the log gets, on the thread of `run`
-  hal::Log log{};                                             ///< for people
-  std::function<void(const std::string& path)> ready{};       ///< called once, when a host can connect
+/// Its link is as `open_host_line` reads it.
+struct Options : WheeledOptions<EmulatedBody> {
+  Options() { link = "pty:thymio0"; }
+
+  std::int64_t node = 1;  ///< its number
 };
 
 /// Events for the log beside the robot's own: `fault` (fault, phase: begin or end) and `late` (by_ms: see turn_until).

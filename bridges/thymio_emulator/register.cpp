@@ -3,24 +3,20 @@
 #include <optional>
 
 #include "bridges/emulation/emulator_type.hpp"
+#include "bridges/thymio_emulator/body.hpp"
 #include "bridges/thymio_emulator/emulator.hpp"
-#include "bridges/thymio_emulator/port_body.hpp"
+#include "bridges/thymio_emulator/faults.hpp"
 #include "hal/device/wheels.hpp"
 #include "hal/robot/thymio.hpp"
 
 namespace tandem::bridges::thymio_emulator {
 namespace {
 
-struct Own {
+struct Own : WheeledParams {
   std::int64_t node = 1;
-  PoseOptions poses{};
-  WheelErrors wheels{};
-  Delays delays{};
   void describe(hal::ParamVisitor& v) {
     v.integer("node", node, {1, 255}, "Its number, where several share a switch.");
-    poses.describe(v);
-    wheels.describe(v);
-    delays.describe(v);
+    WheeledParams::describe(v);
   }
 };
 
@@ -30,24 +26,14 @@ std::string host_link(const std::string& path) {
 }
 
 hal::Status run_type(const EmulatorRequest& request, SharedPorts* ports, const std::atomic<bool>& stop) {
+  const Own own = request.options == nullptr ? Own{} : *static_cast<const Own*>(request.options.get());
   Options options;
-  apply(request, options);
-  if (request.options != nullptr) {
-    const Own& own = *static_cast<const Own*>(request.options.get());
-    options.node = own.node;
-    options.poses = own.poses;
-    options.wheels = own.wheels;
-    options.delays = own.delays;
-  }
+  options.node = own.node;
+  std::optional<PortBody> body;
+  apply(request, own, ports, body, options);
   options.ready = [&request](const std::string& path) {
     if (request.ready) request.ready("Thymio on " + path + ": connect with --link " + host_link(path));
   };
-  std::optional<PortBody> body;
-  if (ports != nullptr) {
-    options.body = &body.emplace(*ports);
-    options.delays.body_s = options.wheels.delay_s;
-    options.pose_elsewhere = [ports] { return ports->pose(); };
-  }
   return run(options, stop);
 }
 
@@ -59,6 +45,7 @@ const EmulatorType kType{.name = "thymio",
                          .puppet = "<thymio_puppet library=\"puppet\" …>",
                          .needs = &port_types_of<hal::WheelSpeeds>,
                          .ports = &body_ports,
+                         .faults = [] { return kFaults.manual(); },
                          .read = &read_options<Own>,
                          .run = &run_type};
 

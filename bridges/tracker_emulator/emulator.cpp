@@ -14,7 +14,6 @@
 #include <time.h>
 #include <unistd.h>
 
-#include "bridges/emulation/serving.hpp"
 #include "bridges/lcm/lcm_link.hpp"
 #include "bridges/tracker_emulator/frame_sender.hpp"
 #include "bridges/tracker_emulator/messages.hpp"
@@ -112,21 +111,19 @@ hal::Result<std::unique_ptr<Camera>> make_camera(const Options& options) {
       Camera{lens.value(), Artist(lens.value(), options.picture, options.seed), std::move(patterns)});
 }
 
-class Server {
+class TrackerServer final : public Server {
  public:
   /// `camera`: of one that sends frames; else null.
-  Server(const Options& options, std::unique_ptr<Sender> sender, EventSink tell, std::vector<Fault> faults,
-         std::unique_ptr<Camera> camera)
-      : options_(options),
+  TrackerServer(const Options& options, std::unique_ptr<Sender> sender, EventSink tell, std::vector<Fault> faults,
+                std::unique_ptr<Camera> camera)
+      : Server(std::move(tell)),
+        options_(options),
         sender_(std::move(sender)),
-        tell_(std::move(tell)),
         faults_(std::move(faults), options.seed + 1),
         camera_(std::move(camera)),
         chance_(options.seed) {
     for (const auto& [name, path] : options.sees) things_.push_back({name, PoseLog(path)});
   }
-
-  void serve(const std::atomic<bool>& stop);
 
  private:
   struct Thing {
@@ -138,7 +135,10 @@ class Server {
     std::vector<std::byte> message;
   };
 
-  hal::Status turn(TimeNs now);
+  hal::Status begin() override;
+  hal::Status turn(TimeNs now) override;
+  TimeNs next_wake(TimeNs now) const override { return now + kTurnNs; }
+  void end(TimeNs now, const hal::Status& served) override;
   void note_drive(TimeNs now);
   double normal(double sd);
   void expose(TimeNs at);
@@ -149,7 +149,6 @@ class Server {
 
   const Options& options_;
   std::unique_ptr<Sender> sender_;
-  EventSink tell_;
   FaultPlan faults_;
   std::unique_ptr<Camera> camera_;
   Chance chance_;  // of the noise
@@ -159,22 +158,19 @@ class Server {
   std::int64_t sightings_ = 0, messages_ = 0;
 };
 
-void Server::serve(const std::atomic<bool>& stop) {
+hal::Status TrackerServer::begin() {
   const TimeNs start = exposure_ns_ = monotonic_ns();
   faults_.begin(start);
   tell_(start, "start", {{"link", options_.link}, {"clock", options_.clock}, {"seed", options_.seed}});
   if (options_.ready) options_.ready("tracker sends to " + options_.link);
-  (void)turn_until(
-      stop, tell_, [this](TimeNs now) { return turn(now); }, [](TimeNs now) { return now + kTurnNs; },
-      [](TimeNs wake, TimeNs now) {
-        std::vector<pollfd> nothing;
-        wait_for(nothing, wake, now);
-        return hal::Status{};
-      });
-  tell_(monotonic_ns(), "end", {{"messages", messages_}, {"sightings", sightings_}});
+  return {};
 }
 
-hal::Status Server::turn(TimeNs now) {
+void TrackerServer::end(TimeNs now, const hal::Status& /*served*/) {
+  tell_(now, "end", {{"messages", messages_}, {"sightings", sightings_}});
+}
+
+hal::Status TrackerServer::turn(TimeNs now) {
   const auto period_ns = static_cast<TimeNs>(1e9 / options_.rate_hz);
   const auto delay_ns = static_cast<TimeNs>(options_.delay_s * 1e9);
   for (Thing& thing : things_) thing.log.follow();
@@ -191,7 +187,7 @@ hal::Status Server::turn(TimeNs now) {
   return {};
 }
 
-void Server::note_drive(TimeNs now) {
+void TrackerServer::note_drive(TimeNs now) {
   std::optional<TimeNs> first;
   for (const Thing& thing : things_) {
     const auto moved = thing.log.first_moved_ns();
@@ -201,13 +197,13 @@ void Server::note_drive(TimeNs now) {
 }
 
 /// Box and Muller's way.
-double Server::normal(double sd) {
+double TrackerServer::normal(double sd) {
   const auto uniform = [&] { return (static_cast<double>(chance_.draw() >> 11U) + 0.5) * 0x1p-53; };
   const double length = std::sqrt(-2.0 * std::log(uniform()));
   return sd * length * std::cos(2.0 * std::numbers::pi * uniform());
 }
 
-void Server::expose(TimeNs at) {
+void TrackerServer::expose(TimeNs at) {
   Exposure exposure;
   exposure.stamp_ns = stamp(at);
   if (options_.tells_noise) {
@@ -235,7 +231,7 @@ void Server::expose(TimeNs at) {
 }
 
 /// Everything that it sees, as a picture, whatever goes wrong with it.
-void Server::photograph(TimeNs at) {
+void TrackerServer::photograph(TimeNs at) {
   if (faults_.active(FaultKind::Gap, at)) return;
   const double shift_m = faults_.shift_m(at);
   std::vector<PlacedTag> tags;
@@ -256,7 +252,7 @@ void Server::photograph(TimeNs at) {
   hand_out(at, frame_message(camera_->lens.width, camera_->lens.height, stamp(at), camera_->artist.draw(tags)));
 }
 
-void Server::hand_out(TimeNs at, std::vector<std::byte> message) {
+void TrackerServer::hand_out(TimeNs at, std::vector<std::byte> message) {
   if (faults_.happens(FaultKind::Garbage, at)) message.resize(message.size() / 2);
   const TimeNs leaves =
       at + static_cast<TimeNs>(options_.delay_s * 1e9) + (faults_.happens(FaultKind::Late, at) ? kHeldBackNs : 0);
@@ -264,14 +260,14 @@ void Server::hand_out(TimeNs at, std::vector<std::byte> message) {
   outgoing_.push_back({leaves, std::move(message)});
 }
 
-std::int64_t Server::stamp(TimeNs at) const {
+std::int64_t TrackerServer::stamp(TimeNs at) const {
   std::int64_t shown = at;
   if (options_.clock == "unix") shown += unix_ns() - monotonic_ns();
   if (options_.clock == "own") shown += kOwnEpochNs;
   return shown + faults_.jump_ns(at);
 }
 
-std::vector<std::byte> Server::message_of(const Exposure& exposure) const {
+std::vector<std::byte> TrackerServer::message_of(const Exposure& exposure) const {
   if (options_.link.starts_with("lcm:")) return lcm_message(exposure);
   return options_.form == "json" ? json_message(exposure) : compact_message(exposure);
 }
@@ -280,21 +276,17 @@ std::vector<std::byte> Server::message_of(const Exposure& exposure) const {
 
 hal::Status run(const Options& options, const std::atomic<bool>& stop) {
   if (options.sees.empty()) return hal::Error{"it sees nothing: name robots and their logs with --sees fb0=fb0.log"};
-  auto faults = read_faults(options.faults, &parse_fault);
-  if (!faults.ok()) return faults.error();
   auto sender = open_sender(options);
   if (!sender.ok()) return sender.error();
-  auto events = open_event_sink(options.log_file, {});
-  if (!events.ok()) return events.error();
   std::unique_ptr<Camera> camera;
   if (sends_frames(options.link)) {
     auto made = make_camera(options);
     if (!made.ok()) return made.error();
     camera = std::move(made).value();
   }
-  Server(options, std::move(sender).value(), std::move(events).value(), std::move(faults).value(), std::move(camera))
-      .serve(stop);
-  return {};
+  return serve_with(options, kFaults, stop, [&](const EventSink& events, std::vector<Fault> faults) {
+    return TrackerServer(options, std::move(sender).value(), events, std::move(faults), std::move(camera));
+  });
 }
 
 }  // namespace tandem::bridges::tracker_emulator

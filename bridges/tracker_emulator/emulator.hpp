@@ -1,23 +1,21 @@
 // A tracker that sees emulated robots, in real time.
 #pragma once
 #include <atomic>
-#include <functional>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "bridges/emulation/event_log.hpp"
+#include "bridges/emulation/server.hpp"
 #include "bridges/tracker_emulator/faults.hpp"
 #include "bridges/tracker_emulator/picture.hpp"
-#include "hal/log.hpp"
 #include "hal/result.hpp"
 
 namespace tandem::bridges::tracker_emulator {
 
-struct Options {
-  std::string link = "udp:127.0.0.1:7700";  ///< udp:ADDRESS:PORT, lcm:URL; frames of a camera: pipe:FILE, folder:FOLDER
-  std::string log_file{};                   ///< one JSON object a line; empty: none
-  std::vector<std::string> faults{};        ///< as `parse_fault` reads them
+/// Its link: udp:ADDRESS:PORT, lcm:URL; frames of a camera: pipe:FILE, folder:FOLDER.
+struct Options : ServerOptions {
+  Options() { link = "udp:127.0.0.1:7700"; }
+
   /// What it sees: by which name, and the log of the emulated robot, which tells its true poses. A log may come later.
   std::vector<std::pair<std::string, std::string>> sees{};
   double rate_hz = 30.0;
@@ -28,14 +26,11 @@ struct Options {
   std::string clock = "own";     ///< of its stamps: own (began at another time), unix, monotonic
   std::string form = "compact";  ///< of datagrams: compact or json
   std::string channel = "tandem/poses";
-  std::uint64_t seed = 1;
   /// Of frames: the file of the camera that takes them; and the tags on the robots, whose names are then numbers.
   std::string camera{};
   std::string family = "tag36h11";
   double tag_size_m = 0.05, tag_height_m = 0.0;
   PictureOptions picture{};
-  hal::Log log{};
-  std::function<void(const std::string& text)> ready{};
 };
 
 /// Events for the log: `start`, `end` (messages, sightings), `fault` (fault, phase: begin or end) and `late` (by_ms:

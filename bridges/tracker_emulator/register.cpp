@@ -5,6 +5,7 @@
 
 #include "bridges/emulation/emulator_type.hpp"
 #include "bridges/tracker_emulator/emulator.hpp"
+#include "bridges/tracker_emulator/faults.hpp"
 
 namespace tandem::bridges::tracker_emulator {
 namespace {
@@ -66,6 +67,7 @@ const EmulatorType kType{
     .puppet = {},
     .needs = &no_ports,
     .ports = &no_ports,
+    .faults = [] { return kFaults.manual(); },
     .read = &read_options<Own>,
     .run = &run_type};
 

@@ -5,8 +5,8 @@
 #include <deque>
 
 #include "bridges/epuck/driver.hpp"
+#include "bridges/epuck_emulator/body.hpp"
 #include "bridges/epuck_emulator/firmware.hpp"
-#include "bridges/epuck_emulator/port_body.hpp"
 #include "bridges/link/memory_link.hpp"
 #include "bridges/wired/wired_line.hpp"
 

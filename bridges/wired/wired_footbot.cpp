@@ -4,8 +4,8 @@
 #include "bridges/can/memory_bus.hpp"
 #include "bridges/footbot/driver.hpp"
 #include "bridges/footbot/map_file.hpp"
+#include "bridges/footbot_emulator/body.hpp"
 #include "bridges/footbot_emulator/footbot.hpp"
-#include "bridges/footbot_emulator/port_body.hpp"
 #include "bridges/wired/wired_line.hpp"
 #include "hal/element.hpp"
 

@@ -20,7 +20,7 @@ constexpr hal::TimeNs kSecond = hal::kNsPerSecond;
 
 emulator::FaultPlan plan_of(const std::vector<std::string>& texts, std::uint64_t seed) {
   std::vector<emulator::Fault> faults;
-  for (const std::string& text : texts) faults.push_back(emulator::parse_fault(text).value());
+  for (const std::string& text : texts) faults.push_back(emulator::kFaults.parse(text).value());
   return {std::move(faults), seed};
 }
 

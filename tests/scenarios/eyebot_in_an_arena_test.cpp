@@ -4,8 +4,8 @@
 
 #include "app/catalog.hpp"
 #include "app/robots/simulated_body.hpp"
+#include "bridges/eyebot_emulator/body.hpp"
 #include "bridges/eyebot_emulator/eyebot.hpp"
-#include "bridges/eyebot_emulator/port_body.hpp"
 #include "tests/bridges/eyebot_emulator/hand_written.hpp"
 #include "tests/core/eyebots.hpp"
 

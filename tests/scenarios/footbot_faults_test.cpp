@@ -128,7 +128,7 @@ class Drive {
   static std::vector<emulator::Fault> parsed(const std::vector<std::string>& texts) {
     std::vector<emulator::Fault> faults;
     for (const std::string& text : texts) {
-      auto fault = emulator::parse_fault(text);
+      auto fault = emulator::kFaults.parse(text);
       EXPECT_TRUE(fault.ok()) << fault.error().message;
       if (fault.ok()) faults.push_back(std::move(fault).value());
     }

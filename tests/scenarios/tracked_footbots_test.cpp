@@ -84,7 +84,7 @@ class Stage {
   };
 
   Stage() : Stage({-2.0, -0.7, 0.0}, {2.0, -0.7, 0.0}, R"(left="0.18" right="0.22")") {}
-  Stage(const robot_emulator::Pose& start0, const robot_emulator::Pose& start1, std::string speeds)
+  Stage(const bridges::BodyPose& start0, const bridges::BodyPose& start1, std::string speeds)
       : speeds_(std::move(speeds)) {
     add_robot("fb0", start0, 1.012, 0.99);
     add_robot("fb1", start1, 0.985, 1.008);
@@ -236,7 +236,7 @@ class Stage {
  private:
   std::string log_of(const Robot& robot) const { return folder_.path() / (robot.id + ".log"); }
 
-  void add_robot(const std::string& id, const robot_emulator::Pose& start, double left_scale, double right_scale) {
+  void add_robot(const std::string& id, const bridges::BodyPose& start, double left_scale, double right_scale) {
     auto robot = std::make_unique<Robot>();
     robot->id = id;
     robot->options.link = "tcp-listen:127.0.0.1:0";
@@ -266,7 +266,7 @@ class Stage {
 </actuators><params )" +
                        speeds_ + R"(/></drive></controllers><arena size="12,8,1">)";
     for (const auto& robot : robots_) {
-      const robot_emulator::Pose& start = robot->options.poses.start;
+      const bridges::BodyPose& start = robot->options.poses.start;
       text += "<foot-bot id=\"" + robot->id + "\"><body position=\"" + std::to_string(start.x_m) + "," +
               std::to_string(start.y_m) + ",0\" orientation=\"" +
               std::to_string(start.heading_rad * 180.0 / std::numbers::pi) +

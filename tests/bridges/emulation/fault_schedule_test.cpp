@@ -11,11 +11,7 @@ constexpr hal::TimeNs kStart = 1000 * kSecond;
 
 enum class Kind { Silent, Restart };
 
-struct Fault : FaultTimes {
-  Kind kind = Kind::Silent;
-  double probability = 0.0;
-  bool is_moment() const noexcept { return kind == Kind::Restart; }
-};
+using Fault = FaultOf<Kind>;
 
 Fault fault(Kind kind, const char* when) {
   const std::string text = std::string("x@") + when;
@@ -25,6 +21,7 @@ Fault fault(Kind kind, const char* when) {
   made.from = spec.from();
   made.until = spec.until();
   made.since_drive = spec.since_drive;
+  made.moment = kind == Kind::Restart;
   return made;
 }
 

@@ -1,9 +1,9 @@
+#include "bridges/epuck_emulator/body.hpp"
+
 #include <cmath>
 #include <gtest/gtest.h>
 #include <thread>
 
-#include "bridges/epuck_emulator/kinematic_body.hpp"
-#include "bridges/epuck_emulator/port_body.hpp"
 #include "bridges/epuck_emulator/raw_units.hpp"
 #include "bridges/epuck_emulator/stepper.hpp"
 #include "hal/device/leds.hpp"

@@ -1,7 +1,7 @@
 // Delays of the emulated e-puck, each by itself, against a clock that the test turns.
 #include <cstdio>
 
-#include "bridges/epuck_emulator/kinematic_body.hpp"
+#include "bridges/epuck_emulator/body.hpp"
 #include "tests/bridges/epuck_emulator/bench.hpp"
 
 namespace tandem::bridges::epuck_emulator {

@@ -40,10 +40,28 @@ struct Folder {
   }
 };
 
+/// Some of the options.
+struct Given {
+  std::string link{}, firmware = "gctronic", log_file{};
+  std::vector<std::string> faults{};
+  EmulatedBody* body = nullptr;
+
+  Options options() const {
+    Options all;
+    if (!link.empty()) all.link = link;
+    all.firmware = firmware;
+    all.log_file = log_file;
+    all.faults = faults;
+    all.body = body;
+    return all;
+  }
+};
+
 /// An emulator on a thread of its own.
 class Running {
  public:
-  explicit Running(Options options = {}) {
+  explicit Running(const Given& given = {}) : Running(given.options()) {}
+  explicit Running(Options options) {
     if (options.link == Options{}.link) options.link = "pty:" + path();
     options.log_file = log_path();
     options.ready = [this](const std::string&) { ready_.set_value(); };
@@ -192,7 +210,7 @@ TEST(Emulator, AnswersAHostAndLogsIt) {
 }
 
 TEST(Emulator, PassesEveryByteValue) {
-  Running robot({.firmware = "webots"});
+  Running robot(Given{.firmware = "webots"});
   Host host(robot.path());
   host.skip_greeting();
   for (int low = 0; low < 256; low += 5) {  // XON, XOFF, CR, LF, interrupt characters …
@@ -215,9 +233,9 @@ TEST(Emulator, ReplacesAStaleLinkButNothingElse) {
   const std::string path = (folder.path / "ep0").string();
   const std::atomic<bool> stop = true;
   fs::create_symlink("/dev/pts/no-such", path);
-  EXPECT_TRUE(run({.link = "pty:" + path}, stop).ok());
+  EXPECT_TRUE(run(Given{.link = "pty:" + path}.options(), stop).ok());
   std::ofstream(path) << "precious";
-  const hal::Status refused = run({.link = "pty:" + path}, stop);
+  const hal::Status refused = run(Given{.link = "pty:" + path}.options(), stop);
   ASSERT_FALSE(refused.ok());
   EXPECT_THAT(refused.error().message, HasSubstr(path));
   EXPECT_TRUE(fs::is_regular_file(path));
@@ -225,8 +243,8 @@ TEST(Emulator, ReplacesAStaleLinkButNothingElse) {
 
 TEST(Emulator, SaysWhatItWasGivenWrong) {
   const std::atomic<bool> stop = true;
-  const auto message = [&stop](const Options& options) {
-    const hal::Status status = run(options, stop);
+  const auto message = [&stop](const Given& given) {
+    const hal::Status status = run(given.options(), stop);
     EXPECT_FALSE(status.ok());
     return status.error().message;
   };
@@ -292,7 +310,7 @@ TEST(Emulator, SpeaksGarbageToAHostWithAnotherBaudRate) {
 }
 
 TEST(Emulator, FallsSilentOnDemand) {
-  Running robot({.faults = {"silent"}});
+  Running robot(Given{.faults = {"silent"}});
   Host host(robot.path());
   host.write("D,100,100\r");
   EXPECT_TRUE(robot.happened("\"event\":\"wheels\",\"left\":100,\"right\":100")) << "mute, not deaf";
@@ -302,7 +320,7 @@ TEST(Emulator, FallsSilentOnDemand) {
 }
 
 TEST(Emulator, SpeaksAgainAfterItsSilence) {
-  Running robot({.faults = {"silent@0s+0.05s"}});
+  Running robot(Given{.faults = {"silent@0s+0.05s"}});
   Host host(robot.path());
   ASSERT_TRUE(robot.happened("\"fault\":\"silent@0s+0.05s\",\"phase\":\"end\""));
   host.write("C\r");
@@ -310,7 +328,7 @@ TEST(Emulator, SpeaksAgainAfterItsSilence) {
 }
 
 TEST(Emulator, RestartsOnDemand) {
-  Running robot({.faults = {"reset@0.1s"}});
+  Running robot(Given{.faults = {"reset@0.1s"}});
   Host host(robot.path());
   const auto twice = [](const std::string& got) { return got.find("for help\r\n") != got.rfind("for help\r\n"); };
   EXPECT_TRUE(twice(host.read(twice)));
@@ -318,7 +336,7 @@ TEST(Emulator, RestartsOnDemand) {
 }
 
 TEST(Emulator, TruncatesOneAnswer) {
-  Running robot({.faults = {"truncate@0.05s"}});
+  Running robot(Given{.faults = {"truncate@0.05s"}});
   Host host(robot.path());
   host.skip_greeting();
   ASSERT_TRUE(robot.happened("\"fault\":\"truncate@0.05s\""));
@@ -328,7 +346,7 @@ TEST(Emulator, TruncatesOneAnswer) {
 }
 
 TEST(Emulator, TalksRubbishOnDemand) {
-  Running robot({.faults = {"garbage@0.05s+0.1s"}});
+  Running robot(Given{.faults = {"garbage@0.05s+0.1s"}});
   Host host(robot.path());
   host.skip_greeting();
   ASSERT_TRUE(robot.happened("\"phase\":\"end\""));
@@ -338,7 +356,7 @@ TEST(Emulator, TalksRubbishOnDemand) {
 }
 
 TEST(Emulator, DelaysItsAnswers) {
-  Running robot({.faults = {"delay=40ms"}});
+  Running robot(Given{.faults = {"delay=40ms"}});
   Host host(robot.path());
   host.skip_greeting();
   const auto asked = Clock::now();
@@ -349,7 +367,7 @@ TEST(Emulator, DelaysItsAnswers) {
 
 TEST(Emulator, HasALinkThatIsLateBothWays) {
   Options options;
-  options.robot.delays = {.to_robot_s = 0.06, .to_host_s = 0.04};
+  options.delays = {.to_robot_s = 0.06, .to_host_s = 0.04};
   Running robot(options);
   Host host(robot.path());
   host.skip_greeting();
@@ -365,7 +383,7 @@ TEST(Emulator, HasALinkThatIsLateBothWays) {
 }
 
 TEST(Emulator, HangsUpAndComesBackUnderTheSameName) {
-  Running robot({.faults = {"hangup@0.3s+0.1s"}});
+  Running robot(Given{.faults = {"hangup@0.3s+0.1s"}});
   {
     Host host(robot.path());
     host.read([](const std::string&) { return false; });  // until the line is gone
@@ -381,7 +399,7 @@ TEST(Emulator, LivesInABodyOfSomebodyElse) {
   HeldBody body;
   BodySenses senses;
   senses.distance_m.fill(0.05);
-  Running robot({.body = &body});
+  Running robot(Given{.body = &body});
   Host host(robot.path());
   host.skip_greeting();
   body.set_senses(senses);
@@ -405,7 +423,7 @@ TEST(Emulator, UnderstandsAnIndependentSerialLibrary) {
   const std::string python = python_with_serial();
   if (python.empty()) GTEST_SKIP() << "pyserial is not installed (Debian packages: python3 python3-serial)";
   for (const char* firmware : {"gctronic", "epuck2"}) {
-    Running robot({.firmware = firmware});
+    Running robot(Given{.firmware = firmware});
     const std::string command = python + " " + test::kSourceDir + "/tests/bridges/epuck_emulator/serial_peer.py " +
                                 robot.path() + " " + firmware;
     const int status = std::system(command.c_str());

@@ -9,7 +9,7 @@ using hal::TimeNs;
 constexpr TimeNs kSecond = hal::kNsPerSecond;
 
 Fault parsed(std::string_view spec) {
-  const auto fault = parse_fault(spec);
+  const auto fault = kFaults.parse(spec);
   EXPECT_TRUE(fault.ok()) << fault.error().message;
   return fault.ok() ? fault.value() : Fault{};
 }
@@ -20,10 +20,10 @@ TEST(Faults, AreReadAsWritten) {
   EXPECT_EQ(silent.from, 5 * kSecond);
   EXPECT_EQ(silent.until, 7 * kSecond);
   EXPECT_EQ(parsed("reset@3s").from, 3 * kSecond);
-  EXPECT_EQ(parsed("drop=0.01").probability, 0.01);
-  EXPECT_EQ(parsed("drop=1%").probability, 0.01);
+  EXPECT_EQ(parsed("drop=0.01").number, 0.01);
+  EXPECT_EQ(parsed("drop=1%").number, 0.01);
   EXPECT_EQ(parsed("corrupt=0.001@1+500ms").until, 3 * kSecond / 2);
-  EXPECT_EQ(parsed("delay=20ms").delay_ns, 20 * hal::kNsPerMs);
+  EXPECT_EQ(parsed("delay=20ms").time_ns, 20 * hal::kNsPerMs);
   EXPECT_EQ(parsed("hangup@6s").until, 7 * kSecond);
   EXPECT_EQ(parsed("garbage@0.5").from, kSecond / 2);
   EXPECT_EQ(parsed("truncate@2s").kind, FaultKind::Truncate);
@@ -33,7 +33,7 @@ TEST(Faults, AreReadAsWritten) {
 TEST(Faults, AreRefusedWithTheListOfThoseThereAre) {
   for (const char* wrong : {"", "nonsense", "silent@", "silent@-1s", "silent@5m", "reset", "drop", "drop=2", "drop=x",
                             "delay=3cm", "delay=-1", "silent=1", "hangup@1s+", "silent@1s+2s+3s"}) {
-    const auto fault = parse_fault(wrong);
+    const auto fault = kFaults.parse(wrong);
     ASSERT_FALSE(fault.ok()) << wrong;
     EXPECT_NE(fault.error().message.find(wrong), std::string::npos);
     for (const char* known : {"silent", "deaf", "reset", "garbage", "truncate", "drop", "corrupt", "hangup", "delay"}) {

@@ -1,10 +1,11 @@
 // A body of its own, against closed forms.
+#include "bridges/eyebot_emulator/body.hpp"
+
 #include <cmath>
 #include <gtest/gtest.h>
 
 #include "bridges/eyebot_emulator/battery.hpp"
 #include "bridges/eyebot_emulator/point_body.hpp"
-#include "bridges/eyebot_emulator/port_body.hpp"
 #include "hal/device/flight.hpp"
 #include "hal/device/range_and_bearing.hpp"
 #include "hal/device/ring_sensors.hpp"

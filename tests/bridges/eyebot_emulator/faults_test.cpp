@@ -12,7 +12,7 @@ constexpr hal::TimeNs kSecond = hal::kNsPerSecond;
 FaultPlan plan(const std::vector<std::string>& texts) {
   std::vector<Fault> faults;
   for (const std::string& text : texts) {
-    auto fault = parse_fault(text);
+    auto fault = kFaults.parse(text);
     EXPECT_TRUE(fault.ok()) << fault.error().message;
     faults.push_back(fault.value());
   }
@@ -42,34 +42,34 @@ std::vector<Datagram> after(const std::string& fault, int count, const std::stri
 }
 
 TEST(Faults, AreRead) {
-  const auto silent = parse_fault("silent=state@5s+2s");
+  const auto silent = kFaults.parse("silent=state@5s+2s");
   ASSERT_TRUE(silent.ok());
-  EXPECT_EQ(silent.value().channel, "state");
+  EXPECT_EQ(silent.value().word, "state");
   EXPECT_EQ(silent.value().from, 5 * kSecond);
   EXPECT_EQ(silent.value().until, 7 * kSecond);
-  EXPECT_EQ(parse_fault("clock=1h@3s").value().time_ns, 3600 * kSecond);
-  EXPECT_EQ(parse_fault("clock=-250ms@3s").value().time_ns, -250 * kMs);
-  EXPECT_EQ(parse_fault("battery=0.05@3s").value().charge, 0.05);
-  EXPECT_EQ(parse_fault("flood=2000@1s").value().rate_Hz, 2000);
-  EXPECT_EQ(parse_fault("lag=300ms").value().time_ns, 300 * kMs);
+  EXPECT_EQ(kFaults.parse("clock=1h@3s").value().time_ns, 3600 * kSecond);
+  EXPECT_EQ(kFaults.parse("clock=-250ms@3s").value().time_ns, -250 * kMs);
+  EXPECT_EQ(kFaults.parse("battery=0.05@3s").value().number, 0.05);
+  EXPECT_EQ(kFaults.parse("flood=2000@1s").value().number, 2000);
+  EXPECT_EQ(kFaults.parse("lag=300ms").value().time_ns, 300 * kMs);
 }
 
 TEST(Faults, AreRefusedWithTheManual) {
   for (const std::string text :
        {"explode@3s", "drop", "drop=2", "restart", "restart=1@3s", "battery=7@3s", "clock=x@3s", "flood=50@1s",
         "flood=1e9@1s", "delay=-1s", "no-position=1", "clock=1e12h@1s", ""}) {
-    const auto fault = parse_fault(text);
+    const auto fault = kFaults.parse(text);
     ASSERT_FALSE(fault.ok()) << text;
     EXPECT_THAT(fault.error().message, HasSubstr("no-position@5s+3s")) << text;
   }
 }
 
 TEST(Faults, OfTheManualAreAllGood) {
-  std::istringstream manual(fault_manual());
+  std::istringstream manual(kFaults.manual());
   int count = 0;
   for (std::string line; std::getline(manual, line) && line.starts_with("  ");) {
     const std::string example = line.substr(2, line.find(' ', 2) - 2);
-    EXPECT_TRUE(parse_fault(example).ok()) << example;
+    EXPECT_TRUE(kFaults.parse(example).ok()) << example;
     ++count;
   }
   EXPECT_EQ(count, 23);

@@ -12,7 +12,7 @@ using testing::IsEmpty;
 constexpr hal::TimeNs kSecond = hal::kNsPerSecond;
 
 Fault parsed(const std::string& text) {
-  const auto fault = parse_fault(text);
+  const auto fault = kFaults.parse(text);
   EXPECT_TRUE(fault.ok()) << text;
   return fault.ok() ? fault.value() : Fault{};
 }
@@ -35,8 +35,8 @@ TEST(Faults, AreRead) {
   EXPECT_EQ(parsed("deaf=left_motor").module, Place::LeftMotor);
   EXPECT_FALSE(parsed("restart@2s").module);
   EXPECT_EQ(parsed("lie=range-and-bearing:count").lie, Lie::Count);
-  EXPECT_EQ(parsed("swap=0.5@1+500ms").probability, 0.5);
-  EXPECT_EQ(parsed("delay=20ms").delay_ns, 20 * kMs);
+  EXPECT_EQ(parsed("swap=0.5@1+500ms").number, 0.5);
+  EXPECT_EQ(parsed("delay=20ms").time_ns, 20 * kMs);
   EXPECT_EQ(parsed("hangup@6s").until, 7 * kSecond);
 }
 
@@ -44,7 +44,7 @@ TEST(Faults, ThatThereAreNotAreRefusedWithTheList) {
   for (const char* text :
        {"", "explode@3s", "missing", "missing=wings", "restart=left-motor", "lie=left-motor", "lie=left-motor:age",
         "drop", "drop=2", "drop=x", "hangup", "hangup=1@2s", "delay=-1s", "silent@soon"}) {
-    const auto fault = parse_fault(text);
+    const auto fault = kFaults.parse(text);
     ASSERT_FALSE(fault.ok()) << text;
     EXPECT_THAT(fault.error().message, HasSubstr("missing=gripper@0s+3s")) << text;
   }

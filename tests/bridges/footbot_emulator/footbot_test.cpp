@@ -72,7 +72,7 @@ TEST(Footbot, DrivesUntilItIsToldOtherwise) {
   EXPECT_EQ((odo[1] << 16) + (odo[0] & 0xFFFF), 120'000);
   bench.say("300#0CA0010022000000");
   bench.say("300#0CA0020022000000");
-  const Pose stopped = bench.body.pose();
+  const BodyPose stopped = bench.body.pose();
   bench.pass(1000 * kMs);
   EXPECT_EQ(bench.body.pose().x_m, stopped.x_m);
 }

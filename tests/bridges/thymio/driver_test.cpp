@@ -41,7 +41,7 @@ class Drive {
   }
   std::int16_t word(std::string_view variable, std::size_t i = 0) { return robot.node().words(variable)[i]; }
 
-  emulator::OpenGround body;
+  emulator::KinematicBody body;
   emulator::Thymio robot;
   ThymioLine line{robot};
   std::string log;
@@ -105,11 +105,11 @@ TEST(ThymioDriver, ReadsItsSensors) {
   const auto& ground = robot.sensor<hal::Ground>();
   const auto& force = robot.sensor<hal::Accelerometer>();
   const auto& sound = robot.sensor<hal::Microphones>();
-  drive.body.senses.distance_m[0] = 0.05;
-  drive.body.senses.distance_m[6] = 0.0;
-  drive.body.senses.ground = {1.0, 0.0};
-  drive.body.senses.force_m_s2 = {2.0, -1.0, 9.81};
-  drive.body.senses.sound = 0.5;
+  drive.body.surroundings.distance_m[0] = 0.05;
+  drive.body.surroundings.distance_m[6] = 0.0;
+  drive.body.surroundings.ground = {1.0, 0.0};
+  drive.body.surroundings.force_m_s2 = {2.0, -1.0, 9.81};
+  drive.body.surroundings.sound = 0.5;
   EXPECT_EQ(proximity.validity, hal::Validity::Absent);
   drive.pass(2000 * kMs);
   EXPECT_EQ(proximity.validity, hal::Validity::Fresh);
@@ -185,7 +185,7 @@ TEST(ThymioDriver, SoundsATone) {
 TEST(ThymioDriver, FeelsItsButtons) {
   Drive drive;
   const auto& buttons = drive.driver.robot().sensor<hal::Buttons>();
-  drive.body.senses.buttons = {false, false, true, false, true};
+  drive.body.surroundings.buttons = {false, false, true, false, true};
   drive.pass(1500 * kMs);
   EXPECT_EQ(buttons.validity, hal::Validity::Fresh);
   ASSERT_EQ(buttons.count, 5U);
@@ -197,7 +197,7 @@ TEST(ThymioDriver, FeelsItsButtons) {
 TEST(ThymioDriver, BelievesNoSensorOfARobotThatWasReset) {
   Drive drive;
   const auto& proximity = drive.driver.robot().sensor<hal::Proximity>();
-  drive.body.senses.distance_m.fill(0.03);
+  drive.body.surroundings.distance_m.fill(0.03);
   drive.pass(1500 * kMs);
   ASSERT_NEAR(proximity.distance_m[2], 0.03, 1e-4);
   drive.robot.restart(drive.now, "test");
@@ -215,7 +215,7 @@ TEST(ThymioDriver, SeesOverASlowLine) {
     Drive drive;
     const auto& proximity = drive.driver.robot().sensor<hal::Proximity>();
     drive.driver.robot().actuator<hal::WheelSpeeds>().set(0.08, 0.08);
-    drive.body.senses.distance_m.fill(0.03);
+    drive.body.surroundings.distance_m.fill(0.03);
     drive.line.begin_faults({delay}, 1, 0);
     drive.pass(4000 * kMs);
     EXPECT_EQ(drive.driver.state(), RobotState::Active) << delay;

@@ -25,7 +25,7 @@ TEST(EmulatedThymio, SaysWhatItsSensorsWould) {
 }
 
 TEST(EmulatedThymio, KeepsItsTargetsForEverWithoutAProgram) {
-  OpenGround body;
+  KinematicBody body;
   Thymio robot({}, body, {});
   robot.power_on(0);
   EXPECT_FALSE(robot.first_driven_at());
@@ -39,7 +39,7 @@ TEST(EmulatedThymio, KeepsItsTargetsForEverWithoutAProgram) {
 }
 
 TEST(EmulatedThymio, ObeysAndTellsItsSpeedInItsTime) {
-  OpenGround body;
+  KinematicBody body;
   Thymio robot({.delays = {.command_s = 0.04, .counters_s = 0.03, .body_s = 0.02}}, body, {});
   robot.power_on(0);
   Message set{0, aseba_emulation::type::kSetVariables, {}};
@@ -58,7 +58,7 @@ TEST(EmulatedThymio, ObeysAndTellsItsSpeedInItsTime) {
 }
 
 TEST(EmulatedThymio, RollsOnWheelsThatErr) {
-  OpenGround body({}, {.left = 0.9, .right = 0.9, .delay_s = 0.1});
+  KinematicBody body({}, {}, {.left = 0.9, .right = 0.9, .delay_s = 0.1});
   body.advance(1);
   body.actuate(1, {.left_m_s = 0.1, .right_m_s = 0.1});
   body.advance(1'100'000'001);
@@ -68,7 +68,7 @@ TEST(EmulatedThymio, RollsOnWheelsThatErr) {
 TEST(EmulatedThymio, KnowsItsFaults) {
   for (const char* text : {"restart@3s", "program@3s", "silent@5s+2s", "deaf", "lie=name", "drop=0.1", "lose=0.1",
                            "double=0.1@1s", "delay=20ms", "hangup@6s+1s"})
-    EXPECT_TRUE(parse_fault(text).ok()) << text;
+    EXPECT_TRUE(kFaults.parse(text).ok()) << text;
   const std::vector<std::pair<std::string, std::string>> wrong = {{"fire", "there is no fault 'fire'"},
                                                                   {"restart", "say when"},
                                                                   {"drop", "'drop' needs a value"},
@@ -76,7 +76,7 @@ TEST(EmulatedThymio, KnowsItsFaults) {
                                                                   {"lie=colour", "a lie is about size, count or name"},
                                                                   {"drop=2", "from 0 to 1"}};
   for (const auto& [text, why] : wrong) {
-    const auto fault = parse_fault(text);
+    const auto fault = kFaults.parse(text);
     ASSERT_FALSE(fault.ok()) << text;
     EXPECT_THAT(fault.error().message, HasSubstr(why));
     EXPECT_THAT(fault.error().message, HasSubstr("hangup@6s+1s"));

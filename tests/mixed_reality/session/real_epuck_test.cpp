@@ -34,7 +34,7 @@ class EmulatedEpuck {
     std::int64_t left, right;  // steps a second, as received
   };
 
-  EmulatedEpuck(const std::string& name, const emulator::Pose& start) : body_(start) {
+  EmulatedEpuck(const std::string& name, const bridges::BodyPose& start) : body_(start) {
     options_.link = "pty:" + testing::TempDir() + "tandem_" + std::to_string(getpid()) + "_" + name;
     options_.firmware = "gctronic";
     options_.body = &body_;
@@ -72,7 +72,7 @@ class EmulatedEpuck {
     return wheels_;
   }
   /// After `switch_off`.
-  const emulator::Pose& pose() const { return body_.pose(); }
+  const bridges::BodyPose& pose() const { return body_.pose(); }
   const hal::Status& status() const { return status_; }
 
  private:
@@ -134,7 +134,7 @@ class FourRealEpucks : public testing::Test {
       item.controller = controller;
       if (!is_real) return;
       auto& epuck = robots_[id];
-      epuck = std::make_unique<EmulatedEpuck>(id, emulator::Pose{x_m, y_m, 0.0});
+      epuck = std::make_unique<EmulatedEpuck>(id, bridges::BodyPose{x_m, y_m, 0.0});
       item.bridge = core::BridgeConfig{"serial:" + epuck->path(), 0.5, {}, 1};
     };
     robot("meets", -2.0, -1.5, 0, true);
@@ -233,7 +233,7 @@ TEST_F(FourRealEpucks, ASimulatedRobotSeesOneAndDoesNotTouchIt) {
 
 TEST_F(FourRealEpucks, TwinsAreWhereTheRobotsAre) {
   for (const char* id : {"meets", "throws", "avoided"}) {
-    const emulator::Pose& truth = robots_[id]->pose();
+    const bridges::BodyPose& truth = robots_[id]->pose();
     EXPECT_NEAR(report_of(id).pose.x_m, truth.x_m, 0.02) << id;
     EXPECT_NEAR(report_of(id).pose.y_m, truth.y_m, 0.02) << id;
     EXPECT_EQ(report_of(id).poses_rejected, 0U) << id;

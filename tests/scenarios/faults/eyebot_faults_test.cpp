@@ -95,7 +95,7 @@ class TestedEyebot final : public TestedRobot {
 
   void begin_faults(const std::vector<std::string>& texts, std::uint64_t seed, TimeNs now) override {
     std::vector<emulator::Fault> faults;
-    for (const std::string& text : texts) faults.push_back(emulator::parse_fault(text).value());
+    for (const std::string& text : texts) faults.push_back(emulator::kFaults.parse(text).value());
     plan_ = emulator::FaultPlan(std::move(faults), seed);
     plan_.begin(now);
   }

@@ -1,4 +1,4 @@
-#include "bridges/eyebot_emulator/port_body.hpp"
+#include "bridges/eyebot_emulator/body.hpp"
 
 #include <algorithm>
 
@@ -72,67 +72,61 @@ std::vector<const hal::PortType*> body_ports() {
                        hal::CameraLed, hal::PanTiltDrive, hal::ScannerDrive, hal::RangeAndBearingSend>();
 }
 
-BodySenses PortBody::sense(hal::TimeNs /*now*/) {
-  BodySenses senses;
-  ports_.with([&](const PortBank& bank) {
-    bank.read<hal::Positioning>([&](const auto& p) {
-      senses.p_WB = p.p_WB;
-      senses.q_WB = p.q_WB;
-      senses.ground_m = std::max(0.0, p.p_WB[2]);
-    });
-    bank.read<hal::FlightState>([&](const auto& p) { read_flight(p, senses); });
-    bank.read<hal::Altimeter>([&](const auto& p) {
-      senses.ground_m = static_cast<double>(p.ground_m);
-      senses.ceiling_m = static_cast<double>(p.ceiling_m);
-    });
-    bank.read<hal::Proximity>([&](const auto& p) { copy_values(p.distance_m, senses.distance_m); });
-    bank.read<hal::Light>([&](const auto& p) { copy_values(p.level, senses.light); });
-    bank.read<hal::DistanceScanner>([&](const auto& p) { read_scanner(p, senses); });
-    bank.read<hal::PanTiltEncoder>([&](const auto& p) {
-      senses.pan_rad = p.pan_rad;
-      senses.tilt_rad = p.tilt_rad;
-    });
-    bank.read<hal::PerspectiveCamera>([&](const auto& p) { read_camera(p, senses); });
-    bank.read<hal::Battery>([&](const auto& p) { senses.charge = static_cast<double>(p.charge); });
+void read_body(const PortBank& bank, BodySenses& senses) {
+  bank.read<hal::Positioning>([&](const auto& p) {
+    senses.p_WB = p.p_WB;
+    senses.q_WB = p.q_WB;
+    senses.ground_m = std::max(0.0, p.p_WB[2]);
   });
-  return senses;
+  bank.read<hal::FlightState>([&](const auto& p) { read_flight(p, senses); });
+  bank.read<hal::Altimeter>([&](const auto& p) {
+    senses.ground_m = static_cast<double>(p.ground_m);
+    senses.ceiling_m = static_cast<double>(p.ceiling_m);
+  });
+  bank.read<hal::Proximity>([&](const auto& p) { copy_values(p.distance_m, senses.distance_m); });
+  bank.read<hal::Light>([&](const auto& p) { copy_values(p.level, senses.light); });
+  bank.read<hal::DistanceScanner>([&](const auto& p) { read_scanner(p, senses); });
+  bank.read<hal::PanTiltEncoder>([&](const auto& p) {
+    senses.pan_rad = p.pan_rad;
+    senses.tilt_rad = p.tilt_rad;
+  });
+  bank.read<hal::PerspectiveCamera>([&](const auto& p) { read_camera(p, senses); });
+  bank.read<hal::Battery>([&](const auto& p) { senses.charge = static_cast<double>(p.charge); });
+}
+
+void write_body(PortBank& bank, const BodyCommand& command) {
+  auto& task = bank.port<hal::FlightTask>();
+  task.order = order_of(command.manoeuvre, bank.port<hal::FlightState>().phase);
+  task.speed_m_s = command.manoeuvre_m_s;
+  auto& speed = bank.port<hal::QuadrotorSpeed>();
+  speed.velocity = command.motors ? command.velocity_m_s : std::array<double, 3>{};
+  speed.yaw_rad_s = command.motors ? command.yaw_rad_s : 0.0;
+  const Lights& lights = command.lights;
+  auto& lower = bank.port<hal::RingLeds>();
+  lower.rgb = {};
+  if (lights.lower_on) copy_values(lights.lower, lower.rgb);
+  auto& upper = bank.port<hal::UpperRingLeds>();
+  upper.rgb = {};
+  if (lights.upper_on) copy_values(lights.upper, upper.rgb);
+  bank.port<hal::CameraLed>().rgb = lights.beacon_on ? lights.beacon : std::array<std::uint8_t, 3>{};
+  auto& head = bank.port<hal::PanTiltDrive>();
+  head.pan_rad = command.pan_rad;
+  head.tilt_rad = command.tilt_rad;
+  head.laser = command.laser;
+  auto& scanner = bank.port<hal::ScannerDrive>();
+  scanner.mode = static_cast<hal::ScannerMode>(command.scanner);
+  scanner.speed_rad_s = command.scanner_rad_s;
+  scanner.angle_rad = command.scanner_rad;
+  auto& radio = bank.port<hal::RangeAndBearingSend>();
+  radio.sending = !command.radio.empty();
+  radio.size = static_cast<std::uint8_t>(std::min<std::size_t>(command.radio.size(), radio.payload.size()));
+  radio.payload = {};
+  copy_values(command.radio, radio.payload);
 }
 
 std::vector<Heard> PortBody::take_heard() {
   return take_messages<Heard>(ports_, heard_, [](Heard& heard, const auto* bytes, std::size_t size) {
     heard.payload.assign(bytes, bytes + size);
-  });
-}
-
-void PortBody::actuate(hal::TimeNs /*now*/, const BodyCommand& command) {
-  ports_.with([&](PortBank& bank) {
-    auto& task = bank.port<hal::FlightTask>();
-    task.order = order_of(command.manoeuvre, bank.port<hal::FlightState>().phase);
-    task.speed_m_s = command.manoeuvre_m_s;
-    auto& speed = bank.port<hal::QuadrotorSpeed>();
-    speed.velocity = command.motors ? command.velocity_m_s : std::array<double, 3>{};
-    speed.yaw_rad_s = command.motors ? command.yaw_rad_s : 0.0;
-    const Lights& lights = command.lights;
-    auto& lower = bank.port<hal::RingLeds>();
-    lower.rgb = {};
-    if (lights.lower_on) copy_values(lights.lower, lower.rgb);
-    auto& upper = bank.port<hal::UpperRingLeds>();
-    upper.rgb = {};
-    if (lights.upper_on) copy_values(lights.upper, upper.rgb);
-    bank.port<hal::CameraLed>().rgb = lights.beacon_on ? lights.beacon : std::array<std::uint8_t, 3>{};
-    auto& head = bank.port<hal::PanTiltDrive>();
-    head.pan_rad = command.pan_rad;
-    head.tilt_rad = command.tilt_rad;
-    head.laser = command.laser;
-    auto& scanner = bank.port<hal::ScannerDrive>();
-    scanner.mode = static_cast<hal::ScannerMode>(command.scanner);
-    scanner.speed_rad_s = command.scanner_rad_s;
-    scanner.angle_rad = command.scanner_rad;
-    auto& radio = bank.port<hal::RangeAndBearingSend>();
-    radio.sending = !command.radio.empty();
-    radio.size = static_cast<std::uint8_t>(std::min<std::size_t>(command.radio.size(), radio.payload.size()));
-    radio.payload = {};
-    copy_values(command.radio, radio.payload);
   });
 }
 

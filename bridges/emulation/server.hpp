@@ -1,0 +1,210 @@
+// Server of emulated robots and trackers: from the start until it is told to stop, and those of robots on two wheels.
+#pragma once
+#include <algorithm>
+#include <atomic>
+#include <deque>
+#include <functional>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "bridges/emulation/delays.hpp"
+#include "bridges/emulation/emulator_type.hpp"
+#include "bridges/emulation/fault_table.hpp"
+#include "bridges/emulation/serving.hpp"
+#include "bridges/emulation/true_pose.hpp"
+#include "bridges/emulation/wheeled_body.hpp"
+#include "hal/log.hpp"
+
+namespace tandem::bridges {
+
+/// Options of every emulator's run.
+struct ServerOptions {
+  std::string link{};                                    ///< as the emulator reads it
+  std::string log_file{};                                ///< one JSON object a line; empty: none
+  std::vector<std::string> faults{};                     ///< as the emulator's table of faults reads them
+  std::uint64_t seed = 1;                                ///< of the chance in the faults
+  EventSink events{};                                    ///< gets what the log gets, on the thread of `run`
+  hal::Log log{};                                        ///< for people
+  std::function<void(const std::string& path)> ready{};  ///< called once, when a host can connect
+};
+
+/// Options of robots on two wheels; `Body` is the emulator's interface of bodies.
+template <class Body>
+struct WheeledOptions : ServerOptions {
+  Body* body = nullptr;          ///< must outlive the run; none: one of its own, in `arena` if there is one
+  std::optional<Arena> arena{};  ///< none: open ground
+  WheelErrors wheels{};          ///< how the wheels of a body of its own err
+  PoseOptions poses{};
+  Delays delays{};
+  std::function<std::optional<BodyPose>()> pose_elsewhere{};  ///< of `body`, the newest; none: nobody knows
+};
+
+/// What the command line may say to every robot on two wheels.
+struct WheeledParams {
+  PoseOptions poses{};
+  WheelErrors wheels{};
+  Delays delays{};
+  void describe(hal::ParamVisitor& v) {
+    poses.describe(v);
+    wheels.describe(v);
+    delays.describe(v);
+  }
+};
+
+/// Fills in what every emulator's options have.
+inline void apply(const EmulatorRequest& request, ServerOptions& options) {
+  options.link = request.link;
+  options.log_file = request.log_file;
+  options.faults = request.faults;
+  options.log = request.log;
+}
+/// The same for a robot on two wheels, whose body is another's where there are `ports`: then `body` is made.
+template <class Body, class PortBody>
+void apply(const EmulatorRequest& request, const WheeledParams& own, SharedPorts* ports, std::optional<PortBody>& body,
+           WheeledOptions<Body>& options) {
+  apply(request, options);
+  options.poses = own.poses;
+  options.wheels = own.wheels;
+  options.delays = own.delays;
+  if (ports == nullptr) return;
+  options.body = &body.emplace(*ports);
+  options.delays.body_s = own.wheels.delay_s;
+  options.pose_elsewhere = [ports] { return ports->pose(); };
+}
+
+/// Takes turns. All its functions are called on the thread of `serve`.
+class Server {
+ public:
+  virtual ~Server() = default;
+  /// Begins, takes turns until `stop` becomes true, which is noticed within 20 ms, and ends. Errors: of `begin`, of a
+  /// turn.
+  hal::Status serve(const std::atomic<bool>& stop);
+
+ protected:
+  explicit Server(EventSink tell) : tell_(std::move(tell)) {}
+
+  virtual hal::Status begin() = 0;
+  virtual hal::Status turn(hal::TimeNs now) = 0;
+  /// When a turn has something to do, if nothing is heard before.
+  virtual hal::TimeNs next_wake(hal::TimeNs now) const = 0;
+  /// What a turn is worth as soon as there is something to read or write.
+  virtual void add_polls(hal::TimeNs /*now*/, std::vector<pollfd>& /*polls*/) const {}
+  /// Looks at what was polled. Errors: the line has gone.
+  virtual hal::Status polled(const std::vector<pollfd>& /*polls*/) const { return {}; }
+  /// `served` is what the turns came to.
+  virtual void end(hal::TimeNs now, const hal::Status& served) = 0;
+
+  EventSink tell_;
+};
+
+/// Server of one robot on two wheels: its faults, the line that may hang up, its true pose.
+///
+/// `Robot` is made of its options, a body and a sink, and has run_until, next_event and first_driven_at; `Plan` is a
+/// FaultSchedule with the kind Hangup; `Own` is a WheeledBodyOf.
+template <class Robot, class Plan, class Own>
+class WheeledServer : public Server {
+ protected:
+  template <class Body>
+  WheeledServer(const WheeledOptions<Body>& options, const EventSink& events, Plan faults,
+                const typename Robot::Options& robot)
+      : Server(in_order(events)),
+        link_(options.link),
+        faults_(std::move(faults)),
+        has_own_body_(options.body == nullptr),
+        own_body_(options.poses.start, options.arena, options.wheels),
+        robot_(robot, has_own_body_ ? own_body_ : *options.body, tell_),
+        to_robot_delay_ns_(delay_ns(options.delays.to_robot_s)),
+        to_host_delay_ns_(delay_ns(options.delays.to_host_s)),
+        pose_elsewhere_(options.pose_elsewhere),
+        poses_(options.poses.poses_hz) {}
+
+  /// Opens the line of `link_`, at the start and after a hang-up; then `link_` opens the same one again: hosts come
+  /// back to where they were, although its port was chosen freely.
+  virtual hal::Status open() = 0;
+  /// Closes the line and forgets what is on its way.
+  virtual void close() = 0;
+  /// Tells of the start, and has the robot start.
+  virtual void power_on(hal::TimeNs start) = 0;
+  /// Does what concerns the robot and its own body.
+  virtual void apply_fault(const typename Plan::Change& change) = 0;
+  /// From the line to the robot.
+  virtual hal::Status take_in(hal::TimeNs now) = 0;
+  /// From the robot to the line.
+  virtual void give_out(hal::TimeNs now) = 0;
+  /// When what is on its way arrives.
+  virtual hal::TimeNs next_arrival(hal::TimeNs now) const = 0;
+  /// How its wheels are commanded, for the last line of the log.
+  virtual EventFields last_command() const = 0;
+
+  hal::Status begin() final {
+    if (const hal::Status opened = open(); !opened.ok()) return opened;
+    const hal::TimeNs start = monotonic_ns();
+    faults_.begin(start);
+    power_on(start);
+    return {};
+  }
+  hal::Status turn(hal::TimeNs now) final {
+    hal::Status status = apply_changes(faults_, now, tell_, [this](const typename Plan::Change& change) {
+      apply_fault(change);
+      if (change.fault->kind != Plan::Kind::Hangup) return hal::Status{};
+      close();
+      return change.begins ? hal::Status{} : open();
+    });
+    if (status.ok()) status = take_in(now);
+    if (!status.ok()) return status;
+    robot_.run_until(now);
+    if (const auto at = robot_.first_driven_at()) faults_.driven(*at, now);
+    poses_.turn(
+        now, [this](hal::TimeNs at) { return pose(at); }, tell_);
+    give_out(now);
+    return {};
+  }
+  hal::TimeNs next_wake(hal::TimeNs now) const final {
+    const hal::TimeNs wake = std::min({now + kStopNs, poses_.due(), next_arrival(now)});
+    return std::min(wake, faults_.next_change_at().value_or(wake));
+  }
+  void end(hal::TimeNs now, const hal::Status& served) final {
+    if (served.ok()) robot_.run_until(now);
+    EventFields fields = last_command();
+    fields.insert(fields.begin(), EventField("why", served.ok() ? "stopped" : served.error().message));
+    tell_(now, "end", fields);
+  }
+
+  std::string link_;
+  Plan faults_;
+  bool has_own_body_;  // else its body lives in another
+  Own own_body_;
+  Robot robot_;
+  hal::TimeNs to_robot_delay_ns_, to_host_delay_ns_;
+
+ private:
+  std::optional<BodyPose> pose(hal::TimeNs at) {
+    if (!has_own_body_) return pose_elsewhere_ ? pose_elsewhere_() : std::nullopt;
+    own_body_.advance(at);
+    return own_body_.pose();
+  }
+
+  std::function<std::optional<BodyPose>()> pose_elsewhere_;
+  PoseTeller poses_;
+};
+
+/// What is on its way and when it arrives, in the order of arrival: each has a time `at`.
+template <class Timed>
+hal::TimeNs first_at(const std::deque<Timed>& line, hal::TimeNs otherwise) {
+  return line.empty() ? otherwise : line.front().at;
+}
+
+/// Opens the log and reads the faults of `options`, then serves. `make(events, faults)` gives the server.
+template <class Fault, class Make>
+hal::Status serve_with(const ServerOptions& options, const FaultTable<Fault>& table, const std::atomic<bool>& stop,
+                       const Make& make) {
+  auto faults = table.parse(options.faults);
+  if (!faults.ok()) return faults.error();
+  auto events = open_event_sink(options.log_file, options.events);
+  if (!events.ok()) return events.error();
+  return make(events.value(), std::move(faults).value()).serve(stop);
+}
+
+}  // namespace tandem::bridges
