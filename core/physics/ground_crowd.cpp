@@ -11,9 +11,15 @@ namespace {
 
 constexpr double kTouch_m = 2.5e-4;  // how deep a robot stays in what it is pushed out of: solvers see that they touch
 
-bool is_somewhere(const SpaceStores& stores, std::size_t row) noexcept {
+constexpr double kUpright = 0.02;  // components of the attitude across the axis of one that leans by 2 degrees
+
+bool stands(const SpaceStores& stores, std::size_t row) noexcept {
   const Bodies& b = stores.bodies;
-  return (b.flags[row] & kAlive) != 0 && std::isfinite(b.x_m[row] + b.y_m[row] + stores.base_m(row));
+  if ((b.flags[row] & kAlive) == 0 || stores.kind_of_row(row).flies()) return false;
+  if (!std::isfinite(b.x_m[row] + b.y_m[row] + stores.base_m(row))) return false;
+  if (b.motion.empty()) return true;
+  const auto& q_WB = b.motion[row].q_WB;
+  return std::fabs(q_WB[1]) + std::fabs(q_WB[2]) < kUpright;
 }
 
 }  // namespace
@@ -40,8 +46,7 @@ double GroundCrowd::overlap_at_borders(const SpaceStores& stores) {
   for (std::size_t region = 0; region < mine_.size(); ++region) {
     if (mine_[region] == 0) continue;
     for (const BodyKey key : stores.regions[region].mirrored) {
-      if (!key.is_object() && is_somewhere(stores, key.index()))
-        row_.push_back(static_cast<std::uint32_t>(key.index()));
+      if (!key.is_object() && stands(stores, key.index())) row_.push_back(static_cast<std::uint32_t>(key.index()));
     }
   }
   if (row_.empty()) return 0.0;
@@ -60,7 +65,7 @@ double GroundCrowd::overlap_at_borders(const SpaceStores& stores) {
 double GroundCrowd::settle(SpaceStores& stores) {
   row_.clear();
   for (std::size_t row = 0; row < stores.bodies.size(); ++row) {
-    if (is_somewhere(stores, row)) row_.push_back(static_cast<std::uint32_t>(row));
+    if (stands(stores, row)) row_.push_back(static_cast<std::uint32_t>(row));
   }
   gather(stores);
   hold_joined(stores);
@@ -167,9 +172,10 @@ double GroundCrowd::move(const SpaceStores& stores, const std::vector<std::uint3
   return longest_m;
 }
 
-/// Objects come after robots, and always win.
+/// Objects come after robots, and always win. What a robot stands on or under is not in its way.
 void GroundCrowd::leave_objects(const SpaceStores& stores, std::uint32_t i) {
   stores.for_each_object_near(x_m_[i], y_m_[i], [&](const Object& object) {
+    if (!plane_ && (object.z_high_m <= z_m_[i] + kTouch_m || object.z_low_m >= z_m_[i] + height_m_[i])) return;
     double nx = 0.0;
     double ny = 0.0;
     const double gap_m = signed_distance(object, x_m_[i], y_m_[i], nx, ny) - radius_m_[i] + kTouch_m;

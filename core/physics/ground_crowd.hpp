@@ -1,4 +1,4 @@
-// Crowds of robots in the plane, pushed apart wherever they stand: across the borders of regions, too.
+// Crowds of robots on the ground, pushed apart wherever they stand: across the borders of regions, too.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -9,9 +9,13 @@
 
 namespace tandem::core {
 
-/// For engines whose solvers know only a region each. Works on poses alone; velocities stay as they are.
+/// For engines whose solvers know only a region each. Works on places alone; velocities stay as they are. Robots that
+/// fly, and those that lean (on a slope, or fallen over), are left alone and count for nothing.
 class GroundCrowd {
  public:
+  /// `plane`: objects are in the way at any height.
+  explicit GroundCrowd(bool plane) : plane_(plane) {}
+
   /// Robots in region i are pushed if so.
   void moves(std::size_t region);
 
@@ -37,6 +41,7 @@ class GroundCrowd {
   void leave_objects(const SpaceStores& stores, std::uint32_t i);
   void write_back(SpaceStores& stores) const;
 
+  bool plane_;
   std::vector<std::uint8_t> mine_;  // by region
   // By row.
   std::vector<double> start_x_m_, start_y_m_;

@@ -33,7 +33,7 @@ std::string beyond_limits(std::string_view engine, const Object& object, std::in
 }
 
 std::unique_ptr<Engine> make_solvers(const EngineType& type, const EngineOrder& order) {
-  auto engine = std::make_unique<SolverEngine>(type.kind);
+  auto engine = std::make_unique<SolverEngine>(type.kind, type.traits.plane);
   for (const EngineOrder::Part& part : order.parts) {
     const Region& region = order.stores.regions[part.region];
     engine->add(part.region, type.make_solver(part.params, order.stores, region, order.tick_s));

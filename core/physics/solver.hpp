@@ -50,7 +50,7 @@ class Solver {
   virtual std::size_t bytes_of(const void* /*kept*/) const { return 0; }
 
   PhysicsAccuracy accuracy;      ///< since it was made
-  double overlap = 0.0;          ///< of two own robots after the last tick, if its engine is to look after crowds
+  double overlap = 0.0;          ///< of two robots that drive, after the last tick; its engine parts what is too deep
   bool crowds_moved = false;     ///< since then, by its engine; whoever loads resets it
   std::vector<Trouble> trouble;  ///< of the last tick; emptied by whoever collects it
 };
@@ -67,7 +67,8 @@ std::unique_ptr<Engine> make_solvers(const EngineType& type, const EngineOrder& 
 /// nor mirror a body rest; few bodies are left to the calling thread.
 class SolverEngine final : public Engine {
  public:
-  explicit SolverEngine(std::string_view kind) : kind_(kind) {}
+  /// `plane`: whether what stands in the way does so at any height.
+  SolverEngine(std::string_view kind, bool plane) : kind_(kind), crowds_(plane) {}
   /// `region` is an index into SpaceStores::regions.
   void add(std::size_t region, std::unique_ptr<Solver> solver);
 

@@ -125,8 +125,10 @@ void Contacts::between(BodyProxy& a, BodyProxy& b, const Surfaces& surfaces) {
                          static_cast<double>(a.key.value)};
   const std::size_t count = find_touches(a.prism, b.prism, query, touches);
   for (std::size_t i = 0; i < count; ++i) {
-    if (a.robot() && b.robot())
-      overlap_ = std::max(overlap_, touches[i].depth_m / (2.0 * std::min(a.prism.radius_m, b.prism.radius_m)));
+    if (a.robot() && b.robot()) {
+      double& deepest = a.drive != nullptr && b.drive != nullptr ? overlap_ : overlap_in_flight_;
+      deepest = std::max(deepest, touches[i].depth_m / (2.0 * std::min(a.prism.radius_m, b.prism.radius_m)));
+    }
     add(a, &b, touches[i], robot && touches[i].normal[2] == 0.0 ? side : any);
   }
 }

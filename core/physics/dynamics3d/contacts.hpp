@@ -49,7 +49,7 @@ class Contacts {
 
   /// `residual` gets to know every contact.
   void begin(dWorldID world, double dt_s, Residual& residual) noexcept {
-    overlap_ = 0.0;
+    overlap_ = overlap_in_flight_ = 0.0;
     world_ = world;
     dt_s_ = dt_s;
     residual_ = &residual;
@@ -61,8 +61,10 @@ class Contacts {
   void with_ground(BodyProxy& a, const Surfaces& surfaces);
   /// Where objects touch one another and what does not move, in this sub-step.
   const std::vector<Support>& supports() const noexcept { return supports_; }
-  /// How deep two robots are in one another, at most, in parts of the narrower one's diameter.
+  /// How deep two robots that drive are in one another, at most, in parts of the narrower one's diameter.
   double overlap() const noexcept { return overlap_; }
+  /// As `overlap`, of robots of which one flies.
+  double overlap_in_flight() const noexcept { return overlap_in_flight_; }
   /// Ends the sub-step.
   void clear() { dJointGroupEmpty(group_.get()); }
 
@@ -87,7 +89,7 @@ class Contacts {
   Residual* residual_ = nullptr;  // of the sub-step
   OdeJointGroup group_;
   std::vector<Support> supports_;
-  double overlap_ = 0.0;
+  double overlap_ = 0.0, overlap_in_flight_ = 0.0;
 };
 
 }  // namespace tandem::core

@@ -460,7 +460,8 @@ void World3d::advance(const SolverContext& context) {
       residual_.begin({dt_s, settings_.erp, settings_.cfm, kPartingSpeed_m_s});
       contacts_.begin(world_.get(), dt_s, residual_);
       find_contacts();
-      accuracy.overlap = std::max(accuracy.overlap, contacts_.overlap());
+      overlap = contacts_.overlap();  // of the last sub-step, after the tick
+      accuracy.overlap = std::max(accuracy.overlap, contacts_.overlap_in_flight());
       for (auto& entry : entries) {
         if (entry.body->touched) enter(*entry.body);
       }

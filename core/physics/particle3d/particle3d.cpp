@@ -133,8 +133,9 @@ class Particle3d final : public Solver {
   std::vector<std::uint8_t> solid_near_;
   NearPairs pairs_;
   CrowdPasses crowd_;
-  bool crowded_ = false;  // some are deep in one another: the crowd is told how deep
-  double deepest_ = 0.0;  // overlap that was found when pushes were computed last
+  bool crowded_ = false;                                 // some are deep in one another: the crowd is told how deep
+  double deepest_ = 0.0;                                 // overlap that was found when pushes were computed last
+  double deepest_driving_ = 0.0, deepest_flying_ = 0.0;  // of two that drive, of others; the same
 };
 
 /// Enough that no robot jumps over another at full speed. From all kinds in the run: who is near changes nothing.
@@ -356,7 +357,8 @@ void Particle3d::advance(const SolverContext& context) {
   }
   if (deepest_ > 0.0) push(active_);  // how deep they are now
   if (deepest_ > CrowdPasses::kDeep) settle(solid);
-  accuracy.overlap = std::max(accuracy.overlap, deepest_);
+  overlap = deepest_driving_;
+  accuracy.overlap = std::max(accuracy.overlap, deepest_flying_);
   write_back(context.stores, context.tick_s);
 }
 
@@ -524,6 +526,8 @@ void Particle3d::apart(std::size_t i, std::size_t k) noexcept {
   const bool beside = both_drive || depth <= high;
   const double deep = CrowdPasses::overlap(beside ? depth : high, p_.radius[i], p_.radius[k]);
   deepest_ = std::max(deepest_, deep);
+  double& of_these = both_drive ? deepest_driving_ : deepest_flying_;
+  of_these = std::max(of_these, deep);
   if (crowded_) crowd_.note(static_cast<std::uint32_t>(i), deep);
   if (beside) {
     const double share = depth * (p_.fixed[k] != 0 ? 1.0 : 0.5);
@@ -570,7 +574,7 @@ void Particle3d::settle(const Solid& solid) {
 
 /// Computes what these are pushed by, from where all are.
 void Particle3d::push(const std::vector<std::uint32_t>& who) noexcept {
-  deepest_ = 0.0;
+  deepest_ = deepest_driving_ = deepest_flying_ = 0.0;
   for (const std::uint32_t i : who) {
     p_.push_x[i] = p_.push_y[i] = p_.push_z[i] = 0.0;
     for (const std::uint32_t k : pairs_.of(i)) apart(i, k);
