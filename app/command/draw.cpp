@@ -23,21 +23,21 @@ hal::Result<std::optional<hal::OutputFile>> open_file(const std::string& path, s
   return std::optional<hal::OutputFile>(std::move(file).value());
 }
 
-void tell_damage(const DrawOptions& options, const core::RecordDrawings& drawings) {
-  for (const std::string& line : drawings.damage()) say("record '" + options.record + "': " + line);
+void tell_damage(const DrawOptions& options, const core::RecordSource& record) {
+  for (const std::string& line : record.moments().damage()) say("record '" + options.record + "': " + line);
 }
 
 /// Goes to the tick that was asked for, and keeps trails on the way. Error: the record does not hold it; those beside
 /// it.
-hal::Status go_to(const DrawOptions& options, core::RecordDrawings& drawings, core::Trails& trails) {
-  trails.note(drawings.ticks_done(), drawings.places());
+hal::Status go_to(const DrawOptions& options, core::RecordSource& record, core::Trails& trails) {
+  trails.note(record.ticks_done(), record.space());
   std::optional<std::int64_t> before;
-  while (!options.at || drawings.ticks_done() != *options.at) {
-    const std::int64_t here = drawings.ticks_done();
+  while (!options.at || record.ticks_done() != *options.at) {
+    const std::int64_t here = record.ticks_done();
     const bool passed = options.at && here > *options.at;
-    if (!passed && drawings.next()) {
+    if (!passed && record.next()) {
       before = here;
-      if (trails.wants(drawings.ticks_done())) trails.note(drawings.ticks_done(), drawings.places());
+      if (trails.wants(record.ticks_done())) trails.note(record.ticks_done(), record.space());
       continue;
     }
     if (!options.at) return {};
@@ -60,21 +60,21 @@ int draw_picture(const DrawOptions& options) {
                                          {"picture by POV-Ray", request.povray == scene ? "" : request.povray}},
                                         {{"record", options.record}});
   if (!apart.ok()) return complain(kBadInput, apart.error().message);
-  auto opened = core::RecordDrawings::open(options.record);
+  auto opened = core::RecordSource::open(options.record);
   if (!opened.ok()) return complain(kBadInput, opened.error().message);
-  core::RecordDrawings& drawings = opened.value();
-  const auto look = look_of(request, drawings.arena());
+  core::RecordSource& record = opened.value();
+  const auto look = look_of(request, core::arena_of(record.space()));
   if (!look.ok()) return complain(kBadInput, look.error().message);
-  core::Trails trails(look.value().trails_s, drawings.ticks_per_second());
-  if (const hal::Status there = go_to(options, drawings, trails); !there.ok())
+  core::Trails trails(look.value().trails_s, record.ticks_per_second());
+  if (const hal::Status there = go_to(options, record, trails); !there.ok())
     return complain(kBadInput, there.error().message);
   auto picture = open_file(request.picture, "picture");
   if (!picture.ok()) return complain(kBadInput, picture.error().message);
   auto scene_file = open_file(scene, "scene");
   if (!scene_file.ok()) return complain(kBadInput, scene_file.error().message);
 
-  const core::Drawing drawing = drawings.drawing(look.value(), &trails);
-  tell_damage(options, drawings);
+  const core::Drawing drawing = core::drawing_of(record, look.value(), &trails);
+  tell_damage(options, record);
   hal::Status done;
   if (picture.value()) done = core::write_picture(drawing, *picture.value(), look.value());
   if (done.ok() && scene_file.value()) done = write_scene(drawing, look.value(), *scene_file.value(), request.povray);
@@ -90,27 +90,27 @@ int draw_film(const DrawOptions& options) {
   if (!apart.ok()) return complain(kBadInput, apart.error().message);
 
   // Once through the record, for its length; then the frames.
-  auto first = core::RecordDrawings::open(options.record);
+  auto first = core::RecordSource::open(options.record);
   if (!first.ok()) return complain(kBadInput, first.error().message);
   std::int64_t frames = 1, ticks = first.value().ticks_done();
   for (; !stop.load() && first.value().next(); ++frames) ticks = std::max(ticks, first.value().ticks_done());
   PictureRequest request = options.pictures;
   request.film_every = std::max(
       request.film_every, (ticks + frames / 2) / std::max<std::int64_t>(1, frames - 1));  // of a record of some ticks
-  auto opened = core::RecordDrawings::open(options.record);
+  auto opened = core::RecordSource::open(options.record);
   if (!opened.ok()) return complain(kBadInput, opened.error().message);
-  core::RecordDrawings& drawings = opened.value();
-  const auto look = look_of(request, drawings.arena());
+  core::RecordSource& record = opened.value();
+  const auto look = look_of(request, core::arena_of(record.space()));
   if (!look.ok()) return complain(kBadInput, look.error().message);
-  auto made = Pictures::open(request, look.value(), drawings.ticks_per_second(), ticks, stop);
+  auto made = Pictures::open(request, look.value(), record.ticks_per_second(), ticks, stop);
   if (!made.ok()) return complain(kBadInput, made.error().message);
   Pictures& pictures = *made.value();
   do {
-    pictures.note(drawings.ticks_done(), drawings.places());
-    if (pictures.wants(drawings.ticks_done()))
-      pictures.draw(drawings.ticks_done(), drawings.drawing(look.value(), &pictures.trails()));
-  } while (!stop.load() && drawings.next());
-  tell_damage(options, drawings);
+    if (pictures.trails().wants(record.ticks_done())) pictures.note(record.ticks_done(), record.space());
+    if (pictures.wants(record.ticks_done()))
+      pictures.draw(record.ticks_done(), core::drawing_of(record, look.value(), &pictures.trails()));
+  } while (!stop.load() && record.next());
+  tell_damage(options, record);
   const bool good = pictures.close();
   if (stop.load()) return interrupted_code();
   return good ? kDone : kFailedRunning;

@@ -45,9 +45,6 @@ class Pictures {
 
   /// After every tick, for the trails; also before the first one, with 0.
   void note(std::int64_t ticks_done, const core::Space& space) { trails_.note(ticks_done, space); }
-  void note(std::int64_t ticks_done, std::vector<core::Trails::Place> places) {
-    trails_.note(ticks_done, std::move(places));
-  }
   const core::Trails& trails() const noexcept { return trails_; }
   /// Whether `draw` is to be called after so many ticks.
   bool wants(std::int64_t ticks_done) const noexcept;

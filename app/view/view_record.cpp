@@ -10,22 +10,23 @@
 #include <optional>
 #include <utility>
 
+#include "app/catalog.hpp"
 #include "app/process/terminal.hpp"
+#include "app/view/source_view.hpp"
 #include "app/view/view_messages.hpp"
+#include "core/live/inspection.hpp"
 #include "core/record/block_file.hpp"
-#include "core/record/record_moments.hpp"
+#include "core/record/record_source.hpp"
 #include "core/view/record_drawing.hpp"
 #include "hal/input_file.hpp"
 #include "hal/json/json_access.hpp"
-#include "window/record_frame.hpp"
 
 namespace tandem::app {
 namespace {
 
-using core::RecordField;
 using core::RecordMoments;
 using core::RecordRows;
-using core::RecordStream;
+using core::RecordSource;
 using hal::Json;
 using Clock = std::chrono::steady_clock;
 using namespace std::chrono_literals;
@@ -33,7 +34,6 @@ using namespace std::chrono_literals;
 constexpr std::size_t kMostPosted = 1000;
 constexpr auto kLook = 50ms;  // for a stop that nobody notifies of
 constexpr auto kStateEvery = 250ms;
-constexpr auto kInspectionEvery = 100ms;
 constexpr auto kHistoryPatience = 2s;
 constexpr std::size_t kMostSamples = 10'000;
 constexpr double kSlowest = 0.001, kFastest = 1e6;
@@ -56,33 +56,16 @@ std::optional<std::size_t> row_of(const RecordRows& rows, const std::string& id)
   return static_cast<std::size_t>(found - ids.begin());
 }
 
-/// A value for people: a number, or one of an enumeration's names.
-Json value_json(const RecordRows& rows, std::size_t field, std::size_t row, std::size_t index) {
-  const RecordField& f = rows.stream().fields[field];
-  const double value = rows.value(field, row, index);
-  if (!f.texts.empty() && value >= 0.0 && value < static_cast<double>(f.texts.size()))
-    return f.texts[static_cast<std::size_t>(value)];
-  return number_or_null(value);
-}
-
-Json fields_json(const RecordRows& rows, std::size_t row) {
-  Json fields = Json::array();
-  for (std::size_t f = 0; f < rows.stream().fields.size(); ++f) {
-    const RecordField& field = rows.stream().fields[f];
-    Json values = Json::array();
-    for (std::size_t i = 0; i < rows.used(f, row); ++i) values.push_back(value_json(rows, f, row, i));
-    fields.push_back({{"name", field.name}, {"unit", field.unit}, {"doc", field.doc}, {"values", std::move(values)}});
-  }
-  return fields;
-}
-
 /// Plays a record on one thread; others post commands.
 class RecordPlayer {
  public:
-  RecordPlayer(const std::string& path, RecordMoments moments, window::Window& window, const HoldOptions& hold)
+  RecordPlayer(const std::string& path, RecordSource record, window::Window& window, const HoldOptions& hold)
       : path_(path),
-        moments_(std::move(moments)),
+        record_(std::move(record)),
         window_(window),
+        view_(catalog(), hal::Log([this](hal::Severity, std::string_view text) {
+                window_.tell(log_.entry(record_.ticks_done(), "log", text));
+              })),
         paused_(hold.paused),
         speed_(hold.speed.value_or(1.0)) {}
 
@@ -107,22 +90,20 @@ class RecordPlayer {
   Clock::time_point due() const;
   void show(bool settled);
   void tell_state();
-  void tell_inspection();
   std::optional<hal::Tick> next_tick() const;
 
   std::string path_;
-  RecordMoments moments_;
+  RecordSource record_;
+  const RecordMoments& moments_ = record_.moments();
   std::optional<RecordMoments> past_;  // for histories, which go elsewhere
   window::Window& window_;
-  window::RecordFrames frames_;
+  LogMessages log_;
+  SourceView view_;
   bool paused_ = false;
   std::optional<double> speed_;
   std::int64_t steps_wanted_ = 0;
-  Clock::time_point anchor_, state_told_, inspection_told_;
+  Clock::time_point anchor_, state_told_;
   hal::Tick anchor_tick_ = 0;
-  std::uint64_t wishes_ = 0;
-  bool drawings_ = false;
-  std::vector<std::string> inspected_;
   std::mutex lock_;
   std::condition_variable changed_;
   std::deque<Posted> posted_;
@@ -130,19 +111,17 @@ class RecordPlayer {
 
 void RecordPlayer::greet() {
   const Json& start = moments_.start();
-  Json hello =
-      hello_message(text_of(start, "experiment"), "record", hal::count_of(start, "seed"), moments_.ticks_per_second(),
-                    {"pause", "back"}, core::areas_of_json(start.value("areas", Json::array())));
-  hello["layers"].push_back({{"name", "hooks"}, {"summary", "What hooks drew."}, {"on", false}, {"panel", false}});
+  Json hello = hello_message(text_of(start, "experiment"), "record", record_.seed(), record_.ticks_per_second(),
+                             {"pause", "back"}, core::areas_of_json(start.value("areas", Json::array())));
+  hello["layers"] = view_.layers_json();
   window_.tell(std::move(hello));
-  LogMessages log;
-  for (const core::RecordEvent& event : moments_.events()) {
+  for (const core::RecordEvent& event : record_.moments().events()) {
     std::string text = text_of(event.json, "text");
     if (const auto action = event.json.find("action"); action != event.json.end()) text = action_text(*action);
     if (text.empty()) text = hal::to_text(event.json);
-    window_.tell(log.entry(event.tick + 1, text_of(event.json, "kind"), text));
+    window_.tell(log_.entry(event.tick + 1, text_of(event.json, "kind"), text));
   }
-  for (const std::string& line : moments_.damage()) window_.tell(log.entry(0, "incident", "record: " + line));
+  for (const std::string& line : moments_.damage()) window_.tell(log_.entry(0, "incident", "record: " + line));
   window_.set_commands([this](Json command, window::WindowReply reply) { post(std::move(command), std::move(reply)); });
   window_.set_pictures([this](const std::string& name, window::WindowFileReply reply) {
     post({{"do", "picture"}}, [name, reply](const Json& answer) {
@@ -208,7 +187,7 @@ Json RecordPlayer::play(const Json& command) {
   if (const auto speed = command.find("speed"); speed != command.end()) {
     if (Json answer = set_speed(*speed); answer["ok"] == false) return answer;
   }
-  if (!next_tick()) moments_.go_to(moments_.ticks().front());
+  if (!next_tick()) record_.go_to(moments_.ticks().front() + 1);
   paused_ = false;
   steps_wanted_ = 0;
   begin_schedule();
@@ -226,17 +205,14 @@ Json RecordPlayer::set_speed(const Json& speed) {
 Json RecordPlayer::go_to(const Json& command) {
   const std::int64_t tick = whole_of(command, "tick", -1);
   if (tick < 0) return refusal("\"tick\" is a whole number from 0 on");
-  moments_.go_to(tick - 1);
+  record_.go_to(tick);
   paused_ = true;
   steps_wanted_ = 0;
   return here();
 }
 
 Json RecordPlayer::picture() {
-  auto drawings = core::RecordDrawings::open(path_);
-  if (!drawings.ok()) return refusal(drawings.error().message);
-  drawings.value().go_to(moments_.tick() + 1);
-  return {{"ok", true}, {"svg", core::to_svg(drawings.value().drawing({}, nullptr))}};
+  return {{"ok", true}, {"svg", core::to_svg(core::drawing_of(record_, {}, nullptr))}};
 }
 
 Json RecordPlayer::history(const Json& command) {
@@ -324,7 +300,8 @@ void RecordPlayer::run(const std::atomic<bool>& stop) {
       if (!go) until = std::min(until, due());
     }
     if (go) {
-      const bool there_was = moments_.next();
+      const bool there_was = record_.next();
+      if (there_was && view_.notes()) view_.note(record_.observation());
       if (steps_wanted_ > 0 && (--steps_wanted_ == 0 || !there_was)) {
         steps_wanted_ = 0;
         show(true);
@@ -344,18 +321,11 @@ void RecordPlayer::run(const std::atomic<bool>& stop) {
 
 void RecordPlayer::show(bool settled) {
   if (!window_.watched()) return;
-  if (const std::uint64_t version = window_.wishes_version(); version != wishes_) {
-    wishes_ = version;
-    const window::Wishes wishes = window_.wishes();
-    drawings_ = !wishes.layers.empty();
-    inspected_ = wishes.inspected;
-    inspection_told_ = {};
-  }
-  window::Frame frame = window_.spare_frame();
-  frames_.fill(moments_, drawings_, frame);
-  window_.show(std::move(frame));
+  view_.show(window_, record_.observation(), record_.ticks_done(), settled,
+             [this](const std::vector<std::string>& robots) {
+               return core::inspection_of(record_.space(), record_.ticks_done(), record_.ticks_per_second(), robots);
+             });
   if (settled || Clock::now() - state_told_ >= kStateEvery) tell_state();
-  if (!inspected_.empty() && (settled || Clock::now() - inspection_told_ >= kInspectionEvery)) tell_inspection();
 }
 
 void RecordPlayer::tell_state() {
@@ -374,43 +344,6 @@ void RecordPlayer::tell_state() {
                 {"seed", seed != moments_.start().end() ? *seed : Json()}});
 }
 
-void RecordPlayer::tell_inspection() {
-  inspection_told_ = Clock::now();
-  Json robots = Json::array();
-  for (const std::string& id : inspected_) {
-    Json robot = {{"id", id},
-                  {"alive", false},
-                  {"ports", Json::array()},
-                  {"published", Json::array()},
-                  {"params", Json::array()}};
-    moments_.each([&](const std::string&, const RecordRows& rows) {
-      const RecordStream& stream = rows.stream();
-      const auto row = stream.of == "robot" ? row_of(rows, id) : std::nullopt;
-      if (!row) return;
-      if (stream.set == "pose" && stream.name == "pose") {
-        robot["alive"] = true;
-        robot["kind"] = rows.members().kinds[*row];
-        for (const char* name : {"x", "y", "z", "heading"}) {
-          if (const auto field = core::field_of(rows, name))
-            robot["pose"][name] = number_or_null(rows.value(*field, *row));
-        }
-      } else if (stream.set == "sensor" || stream.set == "actuator") {
-        robot["ports"].push_back(
-            {{"role", stream.set}, {"name", stream.name}, {"doc", ""}, {"fields", fields_json(rows, *row)}});
-      } else if (stream.set == "state") {
-        robot["controller"] = stream.name;
-        for (std::size_t f = 0; f < stream.fields.size(); ++f) {
-          robot["published"].push_back({{"name", stream.fields[f].name},
-                                        {"unit", stream.fields[f].unit},
-                                        {"value", value_json(rows, f, *row, 0)}});
-        }
-      }
-    });
-    robots.push_back(std::move(robot));
-  }
-  window_.tell({{"type", "inspection"}, {"tick", moments_.tick() + 1}, {"robots", std::move(robots)}});
-}
-
 }  // namespace
 
 bool is_record(const std::string& path) {
@@ -425,12 +358,12 @@ bool is_record(const std::string& path) {
 
 int view_record(const std::string& path, const ViewRequest& request, const HoldOptions& hold,
                 const std::atomic<bool>& stop) {
-  auto moments = RecordMoments::open(path);
-  if (!moments.ok()) return complain(kBadInput, moments.error().message);
-  if (moments.value().cut()) say("record '" + path + "': it was cut; shown is what is there");
+  auto record = RecordSource::open(path, &catalog());
+  if (!record.ok()) return complain(kBadInput, record.error().message);
+  if (record.value().moments().cut()) say("record '" + path + "': it was cut; shown is what is there");
   auto window = open_window(request);
   if (!window.ok()) return complain(kBadInput, window.error().message);
-  RecordPlayer player(path, std::move(moments).value(), *window.value(), hold);
+  RecordPlayer player(path, std::move(record).value(), *window.value(), hold);
   player.run(stop);
   window.value().reset();  // its thread uses the player
   return kDone;

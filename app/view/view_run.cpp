@@ -19,7 +19,6 @@ using namespace std::chrono_literals;
 
 constexpr int kWishesPerSecond = 20;
 constexpr auto kStateEvery = 250ms;
-constexpr auto kInspectionEvery = 100ms;
 constexpr auto kControlsEvery = 1s;
 constexpr auto kRealEvery = 500ms;
 constexpr int kLogEntriesPerSecond = 100;
@@ -33,7 +32,7 @@ Json refusal(const std::string& why) {
 RunView::RunView(std::unique_ptr<window::Window> window, const ViewedRun& run)
     : run_(run),
       projector_(run.world.scenario().file),
-      layers_(run.catalog, hal::Log([this](hal::Severity, std::string_view text) { log(text); })),
+      view_(run.catalog, hal::Log([this](hal::Severity, std::string_view text) { log(text); })),
       window_(std::move(window)) {}
 
 RunView::~RunView() {
@@ -70,10 +69,7 @@ void RunView::greet() {
   const core::World& world = run_.world;
   Json hello = hello_message(world.scenario().name, run_.mixed != nullptr ? "mixed" : "run", world.seed(),
                              world.ticks_per_second(), can, areas_of(world.scenario().safety));
-  for (const core::LayerType* layer : layers_.types()) {
-    hello["layers"].push_back(
-        {{"name", layer->name}, {"summary", layer->summary}, {"on", false}, {"panel", layer->panels}});
-  }
+  hello["layers"] = view_.layers_json();
   for (const hal::RobotKind* kind : run_.catalog.all<hal::RobotKind>()) hello["kinds"].push_back(kind->name);
   for (const core::ControllerConfig& config : world.scenario().controllers) hello["controllers"].push_back(config.id);
   controls_ = core::controls_json(run_.world);
@@ -130,7 +126,7 @@ core::Observation RunView::observation() const {
 
 void RunView::tick_done() {
   tick_.store(run_.world.tick(), std::memory_order_relaxed);
-  if (layers_.any_on()) layers_.note(observation());
+  if (view_.notes()) view_.note(observation());
   tell_incidents();
   if (window_->wants_frame()) {
     refresh(false);
@@ -161,15 +157,10 @@ void RunView::refresh(bool settled) {
     if (settled) tell_state(false);
     return;
   }
-  apply_wishes();
-  window::Frame frame = window_->spare_frame();
-  frames_.fill(run_.world.space(), run_.world.tick(), run_.world.ticks_per_second(), settled, frame);
-  std::vector<Json> panels = window::add_layers(layers_, observation(), layers_shown_, frame);
   tell_controls();
   tell_state(settled);
-  window_->show(std::move(frame));
-  for (Json& panel : panels) window_->tell(std::move(panel));
-  tell_inspection(settled);
+  view_.show(*window_, observation(), run_.world.tick(), settled,
+             [this](const std::vector<std::string>& robots) { return core::inspection_of(run_.world, robots); });
   tell_real();
 }
 
@@ -181,17 +172,6 @@ bool RunView::may_show_at_once() {
     wishes_in_second_ = 0;
   }
   return ++wishes_in_second_ <= kWishesPerSecond;
-}
-
-void RunView::apply_wishes() {
-  const std::uint64_t version = window_->wishes_version();
-  if (version == wishes_) return;
-  wishes_ = version;
-  window::Wishes wishes = window_->wishes();
-  (void)layers_.switch_on(wishes.layers);  // the window knows which there are; one that has failed was told
-  layers_.choose_robots(wishes.all_robots ? std::vector<std::string>{"*"} : std::move(wishes.layer_robots));
-  inspected_ = std::move(wishes.inspected);
-  inspection_told_ = {};
 }
 
 void RunView::tell_state(bool always) {
@@ -244,16 +224,6 @@ void RunView::tell_controls() {
   if (controls == controls_) return;
   controls_ = controls;
   window_->tell({{"type", "controls"}, {"controls", std::move(controls)}});
-}
-
-void RunView::tell_inspection(bool settled) {
-  if (inspected_.empty()) return;
-  const Clock::time_point now = Clock::now();
-  if (!settled && now - inspection_told_ < kInspectionEvery) return;
-  inspection_told_ = now;
-  Json message = {{"type", "inspection"}};
-  message.update(core::inspection_of(run_.world, inspected_));
-  window_->tell(std::move(message));
 }
 
 void RunView::tell_real() {

@@ -12,14 +12,13 @@
 
 #include "app/robots/desks.hpp"
 #include "app/view/projector_fit.hpp"
+#include "app/view/source_view.hpp"
 #include "app/view/view_messages.hpp"
 #include "core/live/live_run.hpp"
 #include "core/sim/world.hpp"
 #include "core/view/drawing.hpp"
-#include "core/view/layers/layer_set.hpp"
 #include "hal/catalog.hpp"
 #include "mixed_reality/session/mixed_session.hpp"
-#include "window/space_frame.hpp"
 #include "window/window.hpp"
 
 namespace tandem::app {
@@ -63,24 +62,19 @@ class RunView {
   void make_picture(const std::string& name, window::WindowFileReply reply);
   void refresh(bool settled);
   bool may_show_at_once();
-  void apply_wishes();
   void tell_state(bool always);
   void tell_incidents();
   void tell_controls();
-  void tell_inspection(bool settled);
   void tell_real();
   core::Observation observation() const;
 
   ViewedRun run_;
   ProjectorFit projector_;  // of the window's thread, once it runs
-  core::LayerSet layers_;
-  window::SpaceFrames frames_;
-  std::vector<std::size_t> layers_shown_;
-  std::uint64_t wishes_ = 0, told_changes_ = 0;
-  std::vector<std::string> inspected_;
+  SourceView view_;
+  std::uint64_t told_changes_ = 0;
   std::size_t incidents_told_ = 0;
   hal::Json controls_;
-  Clock::time_point wish_second_, state_told_, inspection_told_, controls_told_, real_told_;
+  Clock::time_point wish_second_, state_told_, controls_told_, real_told_;
   std::atomic<bool> wish_posted_{false};
   std::atomic<hal::Tick> tick_{0};
   std::mutex log_lock_;

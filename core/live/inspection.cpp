@@ -62,8 +62,13 @@ Json port_json(const hal::PortType& type, const std::byte* row, hal::TimeNs now_
   const bool sensor = type.role == hal::Role::Sensor;
   Json json{{"role", sensor ? "sensor" : "actuator"}, {"name", type.name}, {"doc", type.doc}};
   if (sensor) {
-    const auto validity = static_cast<hal::Validity>(hal::get_value(row, *type.field("validity"), 0));
-    const double age_s = hal::to_seconds(now_ns) - 1e-9 * hal::get_value(row, *type.field("taken_ns"), 0);
+    // Those of old records may lack them.
+    const auto stamp = [&](const char* name) {
+      const hal::Field* const field = type.field(name);
+      return field != nullptr ? hal::get_value(row, *field, 0) : 0.0;
+    };
+    const auto validity = static_cast<hal::Validity>(stamp("validity"));
+    const double age_s = hal::to_seconds(now_ns) - 1e-9 * stamp("taken_ns");
     json["validity"] = word_of(validity);
     json["stamp_age_s"] = validity == hal::Validity::Absent ? Json(nullptr) : Json(std::max(0.0, age_s));
   }
@@ -172,8 +177,7 @@ Json published_json(const hal::PublishedField& field, const void* controller) {
   return json;
 }
 
-Json robot_json(World& world, const std::string& id) {
-  const Space& space = world.space();
+Json robot_json(const Space& space, const std::string& id, hal::TimeNs now_ns) {
   const SpaceStores& s = space.stores();
   const RobotId robot = space.find_robot(id);
   if (!robot.valid()) return {{"id", id}, {"alive", false}};
@@ -182,14 +186,12 @@ Json robot_json(World& world, const std::string& id) {
   const RobotGroup& group = s.groups[block.group];
   const Velocity velocity = space.velocity(robot);
   Json json{{"id", id}, {"alive", true}, {"kind", group.kind->name}};
-  json["controller"] = world.scenario().controllers[group.config].id;
+  json["controller"] = group.controller != nullptr ? group.controller->name : std::string_view();
   json["real"] = space.external(robot);
   json["pose"] = pose_json(space.pose(robot));
   json["velocity"] = {
       {"x", velocity.v_m_s[0]}, {"y", velocity.v_m_s[1]}, {"z", velocity.v_m_s[2]}, {"turn", velocity.w_rad_s[2]}};
   json["halted"] = halted_json(space, robot);
-  const hal::Tick done = std::max<hal::Tick>(0, world.tick() - 1);
-  const hal::TimeNs now_ns = hal::time_of_tick(done, world.ticks_per_second());
   Json ports = Json::array();
   for (std::size_t p = 0; p < group.ports.size(); ++p) {
     const hal::PortType& type = *group.ports[p];
@@ -202,17 +204,33 @@ Json robot_json(World& world, const std::string& id) {
       published.push_back(published_json(field, block.controller(entity.slot)));
   }
   json["published"] = std::move(published);
-  json["params"] = params_json(world, group, entity);
-  json["controls"] = controls_json(world, robot);
   return json;
 }
 
 }  // namespace
 
-Json inspection_of(World& world, const std::vector<std::string>& robots) {
-  Json all{{"tick", world.tick()}};
+Json inspection_of(const Space& space, hal::Tick done, std::int64_t ticks_per_second,
+                   const std::vector<std::string>& robots) {
+  const hal::TimeNs now_ns = hal::time_of_tick(std::max<hal::Tick>(0, done - 1), ticks_per_second);
+  Json all{{"tick", done}};
   all["robots"] = Json::array();
-  for (const std::string& id : robots) all["robots"].push_back(robot_json(world, id));
+  for (const std::string& id : robots) all["robots"].push_back(robot_json(space, id, now_ns));
+  return all;
+}
+
+Json inspection_of(World& world, const std::vector<std::string>& robots) {
+  const SpaceStores& s = world.space().stores();
+  Json all = inspection_of(world.space(), world.tick(), world.ticks_per_second(), robots);
+  for (std::size_t i = 0; i < robots.size(); ++i) {
+    const RobotId robot = world.space().find_robot(robots[i]);
+    if (!robot.valid()) continue;
+    const RobotEntity& entity = s.robots[robot.index];
+    const RobotGroup& group = s.groups[s.blocks[entity.block].group];
+    Json& json = all["robots"][i];
+    json["controller"] = world.scenario().controllers[group.config].id;
+    json["params"] = params_json(world, group, entity);
+    json["controls"] = controls_json(world, robot);
+  }
   return all;
 }
 

@@ -1,5 +1,6 @@
 // Robots from the inside, as JSON: every port field by field, published state, parameters.
 #pragma once
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -12,5 +13,10 @@ namespace tandem::core {
 /// "params", "controls"}, …]}: as docs/view-protocol.md describes it. A robot that is gone has "alive": false alone.
 /// Between steps.
 hal::Json inspection_of(World& world, const std::vector<std::string>& robots);
+
+/// The same after so many ticks of a space alone: without "params" and "controls"; "controller" is the name of the
+/// controller's class.
+hal::Json inspection_of(const Space& space, hal::Tick done, std::int64_t ticks_per_second,
+                        const std::vector<std::string>& robots);
 
 }  // namespace tandem::core

@@ -363,7 +363,7 @@ void RecordStreams::declare_look(const Space& space, const Chosen& chosen, hal::
     stream.rows = who.size();
     return std::pair(std::move(stream), std::move(who));
   };
-  for (const hal::RowType* type : {&hal::row_type<TurretState>(), &hal::row_type<GripState>()}) {
+  for (const hal::RowType* const type : shown_mechanisms()) {
     const auto& all = s.columns.all();
     const auto column =
         std::find_if(all.begin(), all.end(), [type](const auto& c) { return c->type->name == type->name; });

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "core/space/attitude.hpp"
+#include "core/space/mechanisms.hpp"
 #include "hal/device/gripper.hpp"
 #include "hal/device/leds.hpp"
 #include "hal/json/json_access.hpp"
@@ -83,6 +84,83 @@ Json scene_json(const SpaceStores& s) {
   return scene;
 }
 
+namespace {
+
+using hal::flag_of;
+using hal::item_of;
+using hal::list_of;
+using hal::number_of;
+
+hal::Rgb color_of(const Json& json, std::size_t at = 0) {
+  const auto channel = [&](std::size_t i) {
+    return static_cast<std::uint8_t>(std::clamp(item_of(json, at + i), 0.0, 255.0));
+  };
+  return {channel(0), channel(1), channel(2)};
+}
+
+Object object_of(const Json& json) {
+  Object o;
+  o.id = hal::text_of(json, "id");
+  o.kind = hal::text_of(json, "shape", "box") == "box" ? Object::Kind::Box : Object::Kind::Cylinder;
+  o.movable = flag_of(json, "movable");
+  o.x_m = number_of(json, "x");
+  o.y_m = number_of(json, "y");
+  o.cos_h = std::cos(number_of(json, "heading"));
+  o.sin_h = std::sin(number_of(json, "heading"));
+  o.z_low_m = number_of(json, "z");
+  o.z_high_m = o.z_low_m + number_of(json, "height");
+  o.half_x_m = 0.5 * number_of(json, "size_x");
+  o.half_y_m = 0.5 * number_of(json, "size_y");
+  o.radius_m = number_of(json, "radius");
+  for (const Json& led : list_of(json, "leds"))
+    o.leds.push_back({item_of(led, 0), item_of(led, 1), item_of(led, 2), color_of(led, 3)});
+  return o;
+}
+
+/// Sides of one region follow each other, each where the one before ends, until they are back where they began.
+std::vector<Region> regions_of(const Json& borders) {
+  std::vector<Region> regions(1);
+  RegionSide end;  // of the last side
+  for (const Json& b : borders) {
+    const RegionSide side{item_of(b, 0), item_of(b, 1), b.is_array() && b.size() > 4 && b[4] == Json(true)};
+    const auto at = [](const RegionSide& p, const RegionSide& q) { return p.x_m == q.x_m && p.y_m == q.y_m; };
+    const std::vector<RegionSide>& sides = regions.back().sides;
+    if (!sides.empty() && (at(end, sides.front()) || !at(end, side))) regions.emplace_back();
+    regions.back().sides.push_back(side);
+    end = {item_of(b, 2), item_of(b, 3)};
+  }
+  return regions;
+}
+
+}  // namespace
+
+void read_scene(const Json& scene, SpaceStores& s) {
+  const Json& arena = hal::object_of(scene, "arena");
+  const std::array<double, 4> sides = {number_of(arena, "min_x", -1.0), number_of(arena, "min_y", -1.0),
+                                       number_of(arena, "max_x", 1.0), number_of(arena, "max_y", 1.0)};
+  if (sides[0] < sides[2] && sides[1] < sides[3]) {
+    s.min_x_m = sides[0];
+    s.min_y_m = sides[1];
+    s.max_x_m = sides[2];
+    s.max_y_m = sides[3];
+  }
+  for (const Json& json : list_of(scene, "objects")) {
+    s.objects.push_back(object_of(json));
+    s.object_numbers[s.objects.back().id] = static_cast<std::uint32_t>(s.objects.size() - 1);
+    s.object_region.push_back(kNoRegion);
+    Motion& motion = s.object_motion.emplace_back();
+    const Json& q = list_of(json, "q_WB");
+    for (std::size_t k = 0; k < motion.q_WB.size(); ++k) motion.q_WB[k] = item_of(q, k, motion.q_WB[k]);
+  }
+  for (const Json& json : list_of(scene, "lights")) {
+    const auto color = color_of(list_of(json, "color"));
+    s.lights.push_back({hal::text_of(json, "id"), number_of(json, "x"), number_of(json, "y"), number_of(json, "z"),
+                        number_of(json, "intensity", 1.0), color});
+  }
+  s.regions = regions_of(list_of(scene, "borders"));
+  s.regions.front().listed = true;
+}
+
 SceneVersion scene_version(const SpaceStores& s) noexcept {
   Mark movables, lights;
   for (const Object& o : s.objects) {
@@ -107,6 +185,27 @@ Json body_json(const hal::RobotKind& kind) {
     for (const hal::Mount& led : leds->mounts) body["leds"].push_back({led.x_m, led.y_m, led.z_m});
   }
   return body;
+}
+
+hal::RobotKind kind_of_body(std::string name, const Json& body) {
+  constexpr double kUnknown_m = 0.05;
+  hal::RobotKind kind;
+  kind.name = std::move(name);
+  kind.body.radius_m = std::max(1e-3, number_of(body, "radius", kUnknown_m));
+  kind.body.height_m = number_of(body, "height", kUnknown_m);
+  if (const double arm_m = number_of(body, "rotor_arm"); arm_m > 0.0)
+    kind.locomotion = hal::Quadrotor{.rotor_arm_m = arm_m};
+  if (const double reach_m = number_of(body, "gripper_reach"); reach_m > 0.0)
+    kind.add(hal::GripperPart{.reach_m = reach_m});
+  hal::LedsPart leds{.on_turret = flag_of(body, "leds_on_turret")};
+  for (const Json& led : list_of(body, "leds"))
+    leds.mounts.push_back({0.0, item_of(led, 0), item_of(led, 1), item_of(led, 2)});
+  if (!leds.mounts.empty()) kind.add(std::move(leds));
+  return kind;
+}
+
+std::array<const hal::RowType*, 2> shown_mechanisms() {
+  return {&hal::row_type<TurretState>(), &hal::row_type<GripState>()};
 }
 
 std::vector<std::uint32_t> living_rows(const SpaceStores& s) {
@@ -178,26 +277,19 @@ Json sketch_json(const Sketch& sketch) {
 
 Sketch sketch_of_json(const Json& json) {
   Sketch sketch;
-  for (const Json& shape : hal::list_of(json, "shapes")) {
+  for (const Json& shape : list_of(json, "shapes")) {
     std::vector<Sketch::Point> points;
-    for (const Json& p : hal::list_of(shape, "points"))
-      points.push_back({hal::item_of(p, 0), hal::item_of(p, 1), hal::item_of(p, 2)});
+    for (const Json& p : list_of(shape, "points")) points.push_back({item_of(p, 0), item_of(p, 1), item_of(p, 2)});
     if (points.empty()) continue;
-    const Json& color = hal::list_of(shape, "color");
-    const auto channel = [&color](std::size_t i) {
-      return static_cast<std::uint8_t>(std::clamp(hal::item_of(color, i), 0.0, 255.0));
-    };
-    const Sketch::Pen pen{{channel(0), channel(1), channel(2)},
-                          hal::number_of(shape, "width"),
-                          hal::flag_of(shape, "filled"),
-                          hal::number_of(shape, "opacity", 1.0)};
     const std::string kind = hal::text_of(shape, "kind");
-    const Json* const text = hal::member_of(shape, "text");
+    const Sketch::Pen pen{color_of(list_of(shape, "color")), number_of(shape, "width"), flag_of(shape, "filled"),
+                          number_of(shape, "opacity", 1.0)};
     if (kind == kShapes[0]) sketch.path(points, pen);
     if (kind == kShapes[1]) sketch.polygon(points, pen);
-    if (kind == kShapes[2]) sketch.circle(points[0], hal::number_of(shape, "radius"), pen);
+    if (kind == kShapes[2]) sketch.circle(points[0], number_of(shape, "radius"), pen);
+    const Json* const text = hal::member_of(shape, "text");
     if (kind == kShapes[3] && text != nullptr && text->is_string())
-      sketch.text(points[0], text->get<std::string>(), pen);
+      sketch.text(points[0], hal::text_of(shape, "text"), pen);
   }
   return sketch;
 }

@@ -1,8 +1,10 @@
 // Scene and members of a run as JSON: what records hold and views show of all that engines do not move.
 #pragma once
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "core/space/sketch.hpp"
@@ -17,6 +19,9 @@ namespace tandem::core {
 /// metres and radians. Movable objects stand where they are at the moment.
 hal::Json scene_json(const SpaceStores& stores);
 
+/// The inverse, into stores without any: what makes no sense is left out, or stands for what is usual.
+void read_scene(const hal::Json& scene, SpaceStores& stores);
+
 /// Two are equal when the scenes are, but for where movable objects stand.
 struct SceneVersion {
   std::uint64_t immovables = 0, leds = 0, movables = 0, lights = 0;
@@ -28,6 +33,11 @@ SceneVersion scene_version(const SpaceStores& stores) noexcept;
 /// What there is to draw of a kind: {"radius", "height", "leds": [[x, y, z], …], "leds_on_turret", "gripper_reach",
 /// "rotor_arm"}, in metres in the body frame.
 hal::Json body_json(const hal::RobotKind& kind);
+/// The inverse: a kind of which no more is known.
+hal::RobotKind kind_of_body(std::string name, const hal::Json& body);
+
+/// Classes of state that pictures show, besides LEDs.
+std::array<const hal::RowType*, 2> shown_mechanisms();
 
 /// Rows of the living robots' bodies, in the order in which they lie in memory.
 std::vector<std::uint32_t> living_rows(const SpaceStores& stores);

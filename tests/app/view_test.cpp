@@ -320,6 +320,7 @@ TEST(View, ARecordIsPlayedAndLookedInto) {
   Watching viewer(address_of(view));
   const Json hello = viewer.until([](const Json& json) { return json["type"] == "hello"; });
   EXPECT_EQ(hello["mode"], "record");
+  EXPECT_GT(hello["layers"].size(), 5U) << "those of a run";
   EXPECT_EQ(viewer.state(0)["latest"], 50);
   EXPECT_EQ(viewer.ask(R"({"do":"go_to","tick":37})")["tick"], 37);
   EXPECT_TRUE(viewer.sees(37));

@@ -96,23 +96,23 @@ TEST(RecordDrawings, AreThoseOfTheSpace) {
     }
     ASSERT_TRUE(recorder->close(3, {{"ended", "length"}}).ok());
   }
-  auto opened = RecordDrawings::open(kPath);
+  auto opened = RecordSource::open(kPath);
   ASSERT_TRUE(opened.ok()) << opened.error().message;
-  RecordDrawings& drawings = opened.value();
-  EXPECT_EQ(drawings.ticks_done(), 0) << "a record begins before the first tick";
-  EXPECT_EQ(drawings.arena().max_y_m, 3.0);
+  RecordSource& seen = opened.value();
+  EXPECT_EQ(seen.ticks_done(), 0) << "a record begins before the first tick";
+  EXPECT_EQ(arena_of(seen.space()).max_y_m, 3.0);
   for (std::size_t i = 0; i < svgs.size(); ++i) {
-    ASSERT_TRUE(drawings.next());
-    EXPECT_EQ(drawings.ticks_done(), static_cast<std::int64_t>(i) + 1);
-    recorded.note(drawings.ticks_done(), drawings.places());
+    ASSERT_TRUE(seen.next());
+    EXPECT_EQ(seen.ticks_done(), static_cast<std::int64_t>(i) + 1);
+    recorded.note(seen.ticks_done(), seen.space());
     const PictureLook look{.ids = true};
-    const Drawing d = drawings.drawing(look, &recorded);
+    const Drawing d = drawing_of(seen, look, &recorded);
     EXPECT_EQ(to_svg(d, look), svgs[i]);
     EXPECT_EQ(to_povray(d, look), scenes[i]);
   }
-  EXPECT_FALSE(drawings.next());
-  EXPECT_EQ(drawings.ticks_done(), 4);
-  EXPECT_TRUE(drawings.damage().empty());
+  EXPECT_FALSE(seen.next());
+  EXPECT_EQ(seen.ticks_done(), 4);
+  EXPECT_TRUE(seen.moments().damage().empty());
   std::remove(kPath.c_str());
 }
 
@@ -135,10 +135,10 @@ TEST(RecordDrawings, OfDamagedRecordsAreDrawnAsFarAsTheyGo) {
     else
       damaged[at] = static_cast<char>(damaged[at] ^ 0x10);
     std::ofstream(kPath, std::ios::binary) << damaged;
-    auto drawings = RecordDrawings::open(kPath);
+    auto drawings = RecordSource::open(kPath);
     if (!drawings.ok()) continue;
     do {
-      drawn += to_svg(drawings.value().drawing({}, nullptr)).size();
+      drawn += to_svg(drawing_of(drawings.value(), {}, nullptr)).size();
     } while (drawings.value().next());
   }
   EXPECT_GT(drawn, 0U);

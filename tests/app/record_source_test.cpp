@@ -1,0 +1,235 @@
+// A record shows what its run showed: drawings, frames, layers and robots from the inside, tick by tick.
+#include "core/record/record_source.hpp"
+
+#include <gtest/gtest.h>
+#include <map>
+
+#include "app/catalog.hpp"
+#include "app/outputs/observers.hpp"
+#include "core/live/inspection.hpp"
+#include "core/record/record.hpp"
+#include "core/view/layers/layer_set.hpp"
+#include "core/view/layers/segments.hpp"
+#include "core/view/picture.hpp"
+#include "core/view/record_drawing.hpp"
+#include "tests/controllers/experiment.hpp"
+#include "window/space_frame.hpp"
+
+namespace tandem {
+namespace {
+
+constexpr int kTicks = 60, kEvery = 6;
+constexpr double kRounded = 3e-6;  // places are kept in micrometres
+// These follow from what is in no record, or from the ticks before.
+const std::vector<std::string> kNotKept = {"velocity", "measures"};
+
+/// What is shown of one robot in a frame.
+struct Shown {
+  double x_m = 0.0, y_m = 0.0, z_m = 0.0, cos_h = 1.0, sin_h = 0.0, turret_rad = 0.0;
+  std::vector<hal::Rgb> leds;
+  bool halted = false, holding = false;
+};
+
+std::map<std::string, Shown> shown_in(const window::Frame& frame) {
+  std::map<std::string, Shown> all;
+  std::vector<Shown*> in_order;
+  const hal::Json& ids = frame.members->json["ids"];
+  const std::vector<std::uint32_t>& first = frame.members->first_led;
+  for (std::size_t i = 0; i < ids.size(); ++i) {
+    Shown& one = all[ids[i].get<std::string>()];
+    one.x_m = frame.x_m[i];
+    one.y_m = frame.y_m[i];
+    one.z_m = frame.z_m.empty() ? 0.0 : static_cast<double>(frame.z_m[i]);
+    one.cos_h = frame.cos_h[i];
+    one.sin_h = frame.sin_h[i];
+    if (!frame.turret_rad.empty()) one.turret_rad = static_cast<double>(frame.turret_rad[i]);
+    if (!frame.leds.empty()) one.leds.assign(frame.leds.begin() + first[i], frame.leds.begin() + first[i + 1]);
+    in_order.push_back(&one);
+  }
+  for (const std::uint32_t i : frame.halted) in_order[i]->halted = true;
+  for (const std::uint32_t i : frame.holding) in_order[i]->holding = true;
+  return all;
+}
+
+/// What a run or a record shows at one tick.
+struct Sight {
+  std::string svg;
+  window::Frame frame;
+  std::map<std::string, std::vector<core::Segment>> layers;
+  hal::Json inside;
+};
+
+std::vector<std::string> some_robots(const core::Space& space) {
+  std::vector<std::string> ids;
+  for (std::size_t i = 0; i < std::min<std::size_t>(5, space.robot_count()); ++i)
+    ids.push_back(space.robot_name(space.robot(i)));
+  return ids;
+}
+
+/// Looks at runs and records in the same way.
+class Eye {
+ public:
+  Eye() : layers_(app::catalog()) {
+    std::vector<std::string> names;
+    for (const core::LayerType* type : layers_.types()) {
+      if (std::find(kNotKept.begin(), kNotKept.end(), type->name) == kNotKept.end()) names.emplace_back(type->name);
+    }
+    EXPECT_TRUE(layers_.switch_on(names).ok());
+  }
+  void note(const core::Observation& now) { layers_.note(now); }
+  Sight look(const core::Observation& now, hal::Tick done) {
+    Sight sight;
+    frames_.fill(now.space, done, now.ticks_per_second, true, sight.frame);
+    for (const core::LayerPicture& picture : layers_.show(now))
+      sight.layers[std::string(layers_.types()[picture.layer]->name)] = core::segments_of(picture.sketch);
+    sight.inside = core::inspection_of(now.space, done, now.ticks_per_second, some_robots(now.space));
+    return sight;
+  }
+
+ private:
+  core::LayerSet layers_;
+  window::SpaceFrames frames_;
+};
+
+void expect_same(const std::vector<core::Segment>& run, const std::vector<core::Segment>& record,
+                 const std::string& layer) {
+  ASSERT_EQ(run.size(), record.size()) << layer;
+  for (std::size_t i = 0; i < run.size(); ++i) {
+    const core::Segment &a = run[i], &b = record[i];
+    for (const auto& [p, q] :
+         {std::pair{a.x1, b.x1}, {a.y1, b.y1}, {a.z1, b.z1}, {a.x2, b.x2}, {a.y2, b.y2}, {a.z2, b.z2}})
+      ASSERT_NEAR(p, q, 1e-5) << layer;
+    ASSERT_EQ((std::array{a.r, a.g, a.b, a.a}), (std::array{b.r, b.g, b.b, b.a})) << layer;
+  }
+}
+
+/// The same text, and numbers that differ by how they are rounded at most.
+void expect_same(const std::string& run, const std::string& record) {
+  const char *a = run.c_str(), *b = record.c_str();
+  while (*a != 0 && *b != 0) {
+    if (*a == '-' || (*a >= '0' && *a <= '9') || *b == '-') {
+      char *a_end = nullptr, *b_end = nullptr;
+      const double x = std::strtod(a, &a_end), y = std::strtod(b, &b_end);
+      if (a_end != a && b_end != b) {
+        ASSERT_NEAR(x, y, 2e-4) << std::string(a, 40) << " and " << std::string(b, 40);
+        a = a_end;
+        b = b_end;
+        continue;
+      }
+    }
+    ASSERT_EQ(*a++, *b++) << a << " and " << b;
+  }
+  ASSERT_EQ(*a, *b);
+}
+
+void expect_same(const window::Frame& run, const window::Frame& record) {
+  EXPECT_EQ(run.tick, record.tick);
+  EXPECT_EQ(run.members->json["bodies"], record.members->json["bodies"]);
+  EXPECT_EQ(run.objects.size(), record.objects.size());
+  EXPECT_EQ(run.scene->json["objects"].size(), record.scene->json["objects"].size());
+  EXPECT_EQ(run.scene->json["borders"], record.scene->json["borders"]);
+  EXPECT_EQ(run.scene->json["lights"], record.scene->json["lights"]);
+  ASSERT_EQ(run.scene->floor == nullptr, record.scene->floor == nullptr);
+  if (run.scene->floor != nullptr) {
+    EXPECT_EQ(run.scene->floor->pixels, record.scene->floor->pixels);
+  }
+  const auto ours = shown_in(run), theirs = shown_in(record);
+  ASSERT_EQ(ours.size(), theirs.size());
+  for (const auto& [id, one] : ours) {
+    ASSERT_TRUE(theirs.contains(id)) << id;
+    const Shown& other = theirs.at(id);
+    EXPECT_NEAR(one.x_m, other.x_m, kRounded) << id;
+    EXPECT_NEAR(one.y_m, other.y_m, kRounded) << id;
+    EXPECT_NEAR(one.z_m, other.z_m, kRounded) << id;
+    EXPECT_NEAR(one.cos_h, other.cos_h, 1e-8) << id;
+    EXPECT_NEAR(one.sin_h, other.sin_h, 1e-8) << id;
+    EXPECT_NEAR(one.turret_rad, other.turret_rad, 1e-6) << id;
+    EXPECT_EQ(one.halted, other.halted) << id;
+    EXPECT_EQ(one.holding, other.holding) << id;
+    EXPECT_EQ(one.leds, other.leds) << id;
+  }
+}
+
+/// By port and field.
+std::map<std::string, std::string> values_in(const hal::Json& robot) {
+  std::map<std::string, std::string> all;
+  for (const hal::Json& port : robot["ports"]) {
+    const std::string name = port["role"].get<std::string>() + " " + port["name"].get<std::string>();
+    for (const hal::Json& field : port["fields"])
+      all[name + "." + field["name"].get<std::string>()] =
+          hal::to_text(field["values"]) + field["unit"].get<std::string>();
+    if (port.contains("validity")) all[name + " is"] = hal::to_text(port["validity"]);
+  }
+  for (const hal::Json& field : robot["published"])
+    all["published " + field["name"].get<std::string>()] = hal::to_text(field["value"]);
+  return all;
+}
+
+class RecordSources : public testing::TestWithParam<std::string> {};
+INSTANTIATE_TEST_SUITE_P(Of, RecordSources,
+                         testing::Values("epuck_diffusion.xml", "footbot_foraging.xml", "eyebot_circle.xml",
+                                         "footbot_gripping.xml", "footbot_task_partitioning_noise.xml",
+                                         "epuck_push.xml", "thymio_cruise.xml"),
+                         [](const auto& name) { return name.param.substr(0, name.param.find('.')); });
+
+TEST_P(RecordSources, ShowWhatTheRunShows) {
+  const test::Experiment run(GetParam(), {}, test::seeded(7), "", app::catalog());
+  const std::string path = test::temporary(GetParam() + ".record");
+  std::vector<std::pair<hal::Tick, Sight>> sights;
+  {
+    run->start();
+    core::RecordConfig config;
+    config.path = path;
+    config.entities = {"*"};
+    config.ports = {"*"};
+    auto recorder = core::Recorder::open(
+        config, run->space(), {{"experiment", "x"}, {"seed", 7U}, {"ticks_per_second", run->ticks_per_second()}});
+    ASSERT_TRUE(recorder.ok()) << recorder.error().message;
+    Eye eye;
+    for (hal::Tick tick = 0; tick < kTicks; ++tick) {
+      run->step();
+      ASSERT_TRUE(recorder.value()->tick_done(run->space(), tick).ok());
+      const core::Observation now = app::observation_of(*run.world, tick);
+      eye.note(now);
+      if (tick % kEvery != 0) continue;
+      Sight& sight = sights.emplace_back(tick, eye.look(now, tick + 1)).second;
+      core::PictureOptions options{"x", 7, hal::time_of_tick(tick + 1, run->ticks_per_second())};
+      sight.svg = core::to_svg(core::drawing_of(run->space(), options));
+    }
+    ASSERT_TRUE(recorder.value()->close(kTicks - 1, {{"ended", "length"}}).ok());
+  }
+
+  auto opened = core::RecordSource::open(path, &app::catalog());
+  ASSERT_TRUE(opened.ok()) << opened.error().message;
+  core::RecordSource& record = opened.value();
+  Eye eye;
+  std::size_t seen = 0, rays = 0, values = 0;
+  while (record.next()) {
+    const core::Observation now = record.observation();
+    eye.note(now);
+    if (seen == sights.size() || record.ticks_done() != sights[seen].first + 1) continue;
+    SCOPED_TRACE(testing::Message() << "tick " << sights[seen].first);
+    const Sight& run_shows = sights[seen++].second;
+    const Sight shows = eye.look(now, record.ticks_done());
+    expect_same(run_shows.svg, core::to_svg(core::drawing_of(record, {}, nullptr)));
+    expect_same(run_shows.frame, shows.frame);
+    for (const auto& [layer, segments] : run_shows.layers) {
+      rays += segments.size();
+      expect_same(segments, shows.layers.at(layer), layer);
+    }
+    for (std::size_t i = 0; i < run_shows.inside["robots"].size(); ++i) {
+      const auto in_run = values_in(run_shows.inside["robots"][i]), in_record = values_in(shows.inside["robots"][i]);
+      values += in_run.size();
+      EXPECT_EQ(in_run, in_record);
+      EXPECT_EQ(run_shows.inside["robots"][i]["halted"], shows.inside["robots"][i]["halted"]);
+    }
+    if (HasFailure()) return;
+  }
+  EXPECT_EQ(seen, sights.size());
+  EXPECT_GT(rays, 0U);
+  EXPECT_GT(values, 0U);
+  std::filesystem::remove(path);
+}
+
+}  // namespace
+}  // namespace tandem
