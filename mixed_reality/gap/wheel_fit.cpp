@@ -19,6 +19,7 @@ constexpr double kStamps_s = 1e-4;   // standard error of any delay at least: st
 constexpr std::size_t kFewest = 30;  // places or counts
 constexpr double kStanding_m_s = 1e-4;
 constexpr double kFallen = 1.92;       // of the likelihood's logarithm at the ends of an interval of 95 %
+constexpr double kClear = 0.15;        // error of its logarithm with which noise is far from none
 constexpr double kMostNoise_m = 0.02;  // after 1 m: an interval from 0 that ends above it tells nothing
 
 /// The best of a row of delays, for the search to begin with.
@@ -47,6 +48,7 @@ std::size_t used(const Innovations& innovations) {
 /// Bounds of noise that may be none: a logarithm tells nothing of 0. Where the likelihood falls by less than kFallen
 /// towards 0, the interval begins there, and ends where the likelihood has fallen by that much.
 void tell_noise_from_none(WayModel::Likelihood search, Estimate& noise) {
+  if (noise.error < kClear) return;
   const WayModel::Params best = search.values();
   const double cost = search.cost_of(best);
   search.fix(WayModel::kNoise, true);
@@ -60,7 +62,7 @@ void tell_noise_from_none(WayModel::Likelihood search, Estimate& noise) {
   if (falls_to(search.setup().least[WayModel::kNoise])) return;
   double in = best[WayModel::kNoise], out = std::log(kMostNoise_m);
   noise.observable = in < out && falls_to(out);
-  while (noise.observable && out - in > 0.02) {
+  while (noise.observable && out - in > 0.05) {
     const double middle = 0.5 * (in + out);
     (falls_to(middle) ? out : in) = middle;
   }
