@@ -12,9 +12,11 @@ namespace tandem::hal {
 /// account (/proc/PID/task/TID/schedstat).
 class ProcessorWaits {
  public:
+  /// What threads of the process have waited until now does not count. For those that were there before.
+  void begin(pid_t process);
   /// Notes what all threads of the process have waited by now. One that has ended has none.
   void look(pid_t process);
-  /// The longest that a thread waited between two looks at it.
+  /// The longest that a thread waited between two looks at it; of a new one, since it began.
   TimeNs longest_ns() const noexcept { return longest_ns_; }
 
  private:

@@ -116,7 +116,7 @@ void look_at_all(hal::ProcessorWaits& waits, pid_t process) {
   }
 }
 
-/// Looks at all processes every 0.2 s, as long as it lives.
+/// Looks at all processes every 0.2 s, as long as it lives. What this one waited before has nothing to do with it.
 class Watch {
  public:
   Watch() : thread_([this](const std::stop_token& end) { look(end); }) {}
@@ -129,6 +129,7 @@ class Watch {
 
  private:
   void look(const std::stop_token& end) {
+    waits_.begin(::getpid());
     for (auto next = std::chrono::steady_clock::now(); !end.stop_requested(); std::this_thread::sleep_until(next)) {
       look_at_all(waits_, ::getpid());
       next += std::chrono::milliseconds(200);
