@@ -5,6 +5,7 @@
 #include "bridges/footbot/register.hpp"
 #include "bridges/thymio/register.hpp"
 #include "hal/check.hpp"
+#include "hal/command.hpp"
 #include "hal/device/ports.hpp"
 #include "hal/robot/robots.hpp"
 
@@ -13,6 +14,7 @@ namespace tandem::app {
 const hal::Catalog& catalog() {
   static const hal::Catalog all = [] {
     hal::Catalog made;
+    made.know<hal::CommandType>();
     const hal::Status good = made.add_from(std::string(hal::Catalog::kInside), [](hal::Registrar& r) {
       hal::register_ports(r);
       hal::register_robots(r);

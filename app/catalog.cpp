@@ -29,6 +29,7 @@
 #include "core/space/stores.hpp"
 #include "core/view/layers/layers.hpp"
 #include "hal/check.hpp"
+#include "hal/command.hpp"
 #include "hal/device/ports.hpp"
 #include "hal/robot/robots.hpp"
 #include "mixed_reality/record_tracker/record_tracker.hpp"
@@ -38,6 +39,7 @@ namespace tandem::app {
 const hal::Catalog& catalog() {
   static const hal::Catalog all = [] {
     hal::Catalog made;
+    made.know<hal::CommandType>();
     made.know<core::HookType>();
     made.know<core::ObserverType>();
     made.know<core::StoresSurface>();

@@ -5,8 +5,8 @@
 #include <memory>
 #include <vector>
 
+#include "app/exit_code.hpp"
 #include "app/experiment/reading.hpp"
-#include "app/options.hpp"
 #include "app/process/measure.hpp"
 #include "app/process/terminal.hpp"
 #include "bench/scene.hpp"

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include "app/command/shared_options.hpp"
 #include "app/experiment/plugins.hpp"
 #include "app/process/measure.hpp"
 #include "app/process/signals.hpp"
@@ -33,6 +34,31 @@
 
 namespace tandem::bench {
 namespace {
+
+/// Lists that are left empty: the usual values when measuring, every saved line with `from`.
+struct BenchOptions {
+  app::Libraries plugins;
+  std::string file;  ///< with kinds of robots that may be measured, too
+  std::string name = "diffusion";
+  std::vector<std::int64_t> robots;
+  std::string robot;                 ///< empty: the benchmark's own
+  std::vector<std::string> devices;  ///< besides proximity sensors and wheels
+  std::vector<std::string> engines;
+  std::vector<std::int64_t> threads;
+  std::vector<std::string> partitions;  ///< by name: A1 to A16
+  std::vector<std::string> regions;     ///< other splits: "5x3" or "auto"
+  std::int64_t ticks = 600;
+  std::string density;     ///< "equal": the arena grows with the robots
+  std::string assignment;  ///< of work to threads: "static" or "dynamic"
+  std::int64_t repeat = 1;
+  std::string plot;  ///< SVG or PNG file
+  std::string from;  ///< saved lines, instead of measuring
+  bool compare_threads = false;
+  double seconds = 5.0;    ///< sense_to_act: that are timed
+  bool real_time = false;  ///< sense_to_act: with SCHED_FIFO
+
+  void describe(hal::CommandLine& line);
+};
 
 int refuse(int code, const std::string& message) {
   app::say("tandem bench: " + message);
@@ -68,7 +94,7 @@ std::string usual_engine(const hal::Catalog& catalog, bool flying) {
 using Kinds = std::vector<core::KindConfig>;
 
 /// Of a file, those that drive and have proximity sensors can be measured, too.
-std::vector<std::string> robots_of(const app::BenchOptions& o, const Kinds& kinds) {
+std::vector<std::string> robots_of(const BenchOptions& o, const Kinds& kinds) {
   if (o.name == "flocking") return {"eye-bot"};
   std::vector<std::string> robots{"e-puck", "foot-bot"};
   for (const core::KindConfig& config : kinds) {
@@ -77,11 +103,11 @@ std::vector<std::string> robots_of(const app::BenchOptions& o, const Kinds& kind
   }
   return robots;
 }
-std::string robot_of(const app::BenchOptions& o) {
+std::string robot_of(const BenchOptions& o) {
   return o.robot.empty() ? robots_of(o, {}).front() : o.robot;
 }
 
-hal::Status check_words(const hal::Catalog& catalog, const app::BenchOptions& o, const Kinds& kinds) {
+hal::Status check_words(const hal::Catalog& catalog, const BenchOptions& o, const Kinds& kinds) {
   if (auto s = check_name("benchmark", o.name,
                           {"diffusion", "flocking", "lua", "codec", "record", "sense_to_act", "back", "view", "sweep",
                            "gap", "lockstep", "python"});
@@ -115,7 +141,7 @@ hal::Status check_words(const hal::Catalog& catalog, const app::BenchOptions& o,
   return {};
 }
 
-hal::Result<Plan> plan_of(const hal::Catalog& catalog, const app::BenchOptions& o, const Kinds& kinds) {
+hal::Result<Plan> plan_of(const hal::Catalog& catalog, const BenchOptions& o, const Kinds& kinds) {
   if (auto s = check_words(catalog, o, kinds); !s.ok()) return s.error();
   Plan plan{o.engines, {}, o.robots, o.threads};
   for (const std::string& name : o.partitions) {
@@ -138,7 +164,7 @@ hal::Result<Plan> plan_of(const hal::Catalog& catalog, const app::BenchOptions& 
 
 /// Every case once a round, so that what the machine does besides meets all of them; those that differ in threads alone
 /// follow one another.
-std::vector<BenchCase> cases_of(const Plan& plan, const app::BenchOptions& o, const Kinds& kinds,
+std::vector<BenchCase> cases_of(const Plan& plan, const BenchOptions& o, const Kinds& kinds,
                                 const std::string& script = {}) {
   std::vector<BenchCase> cases;
   std::string devices;
@@ -242,7 +268,7 @@ bool chosen(const std::vector<T>& wanted, const T& value) {
 }
 
 /// The saved lines that the options choose; nothing, and a message, when there are none or they do not go together.
-std::vector<ResultLine> choose_saved(const Plan& plan, const app::BenchOptions& o, int& code) {
+std::vector<ResultLine> choose_saved(const Plan& plan, const BenchOptions& o, int& code) {
   auto saved = read_result_lines(o.from);
   if (!saved.ok()) {
     code = refuse(app::kBadInput, saved.error().message);
@@ -292,7 +318,7 @@ int record(const std::vector<BenchCase>& cases, hal::PluginLoader& loader) {
   return app::kDone;
 }
 
-int sense_to_act(const app::BenchOptions& o) {
+int sense_to_act(const BenchOptions& o) {
   constexpr std::int64_t kMostRobots = 100;
   const std::vector<std::int64_t> robots = o.robots.empty() ? std::vector<std::int64_t>{20} : o.robots;
   for (const std::int64_t n : robots) {
@@ -303,7 +329,7 @@ int sense_to_act(const app::BenchOptions& o) {
   return app::kDone;
 }
 
-int back(const Plan& plan, const app::BenchOptions& o, const Kinds& kinds, hal::PluginLoader& loader) {
+int back(const Plan& plan, const BenchOptions& o, const Kinds& kinds, hal::PluginLoader& loader) {
   for (const std::string& engine : plan.engines) {
     for (const std::int64_t robots : o.robots.empty() ? std::vector<std::int64_t>{1000} : plan.robots) {
       for (const std::int64_t threads : plan.threads) {
@@ -325,7 +351,7 @@ int back(const Plan& plan, const app::BenchOptions& o, const Kinds& kinds, hal::
 }
 
 /// What a window costs; and how soon a thousand robots are seen.
-int view(const Plan& plan, const app::BenchOptions& o, hal::PluginLoader& loader) {
+int view(const Plan& plan, const BenchOptions& o, hal::PluginLoader& loader) {
   constexpr std::int64_t kMany = 20'000, kSoonShown = 1000;
   for (const std::string& engine : plan.engines) {
     for (const std::int64_t robots : o.robots.empty() ? std::vector<std::int64_t>{10'000, 100'000} : plan.robots) {
@@ -341,7 +367,7 @@ int view(const Plan& plan, const app::BenchOptions& o, hal::PluginLoader& loader
   return seen.ok() ? app::kDone : refuse(app::kFailedRunning, seen.error().message);
 }
 
-int gap(const app::BenchOptions& o, hal::PluginLoader& loader) {
+int gap(const BenchOptions& o, hal::PluginLoader& loader) {
   GapCase c;
   if (!o.robots.empty()) c.robots = o.robots.front();
   if (o.repeat > 1) c.realities = o.repeat;
@@ -349,7 +375,7 @@ int gap(const app::BenchOptions& o, hal::PluginLoader& loader) {
   return measured.ok() ? app::kDone : refuse(app::kFailedRunning, measured.error().message);
 }
 
-int sweep(const app::BenchOptions& o, hal::PluginLoader& loader) {
+int sweep(const BenchOptions& o, hal::PluginLoader& loader) {
   SweepCase c;
   c.ticks = o.ticks;
   if (o.repeat > 1) c.runs = o.repeat;
@@ -361,7 +387,7 @@ int sweep(const app::BenchOptions& o, hal::PluginLoader& loader) {
   return app::kDone;
 }
 
-int python(const app::BenchOptions& o) {
+int python(const BenchOptions& o) {
   PythonCase c;
   c.robots = o.robots;
   c.ticks = o.ticks;
@@ -369,7 +395,7 @@ int python(const app::BenchOptions& o) {
   return refuse(app::kFailedRunning, bench_python(c).error().message);
 }
 
-int lockstep(const app::BenchOptions& o, hal::PluginLoader& loader) {
+int lockstep(const BenchOptions& o, hal::PluginLoader& loader) {
   for (const std::int64_t peers : o.robots.empty() ? std::vector<std::int64_t>{20} : o.robots) {
     if (peers > 1000) return refuse(app::kWrongUsage, "at most 1000 peers, each a process");
     for (std::int64_t i = 0; i < o.repeat; ++i) {
@@ -380,10 +406,64 @@ int lockstep(const app::BenchOptions& o, hal::PluginLoader& loader) {
   return app::kDone;
 }
 
-}  // namespace
+void BenchOptions::describe(hal::CommandLine& line) {
+  line.footer(
+      "With --from the options --robots, --engine, --threads, --partition, --regions, --density and --assignment "
+      "choose among the saved lines.");
+  line.word(
+          "name", name,
+          "diffusion: the standard scene; flocking: robots that fly, in space; codec: messages of a bridge, only with "
+          "--repeat; record: what a record of all poses costs, with --robots, --threads, --ticks; sense_to_act: how "
+          "soon robots are answered over LCM, with --robots, --seconds, --real-time, "
+          "--repeat; back: the way back to an earlier tick, e.g. after --ticks 6000; view: what a window costs, in "
+          "--repeat "
+          "pairs of --ticks; sweep: what a sweep costs besides its runs, with --robots, --ticks, --repeat: how many "
+          "runs (10000); gap: hidden parameters of --robots (50) found again, and controllers ranked in --repeat (200) "
+          "pseudo-realities; lockstep: a hub and --robots peers, each a process, with --ticks, --repeat; "
+          "python: steps over arrays of --robots (10000), and --repeat (600) whole runs, by the module for Python")
+      .show_default()
+      .suggest({"diffusion", "flocking", "codec", "record", "sense_to_act", "back", "view", "sweep", "gap", "lockstep",
+                "python"});
+  line.option("--robots", robots, "Numbers of robots, e.g. 1000,10000; default: 1 to 100000")
+      .separated()
+      .range(1, 100'000'000);
+  line.option("--robot", robot, "Kind of robot; default: the one of the benchmark's scene").named_in("robot");
+  line.option("--in", file, "A file with kinds of robots that --robot may name, too").file();
+  line.option("--with", devices,
+              "Devices besides proximity sensors and wheels: range_and_bearing, omnidirectional_camera "
+              "(of robots that have one); proximity:NAME: another implementation of those")
+      .separated();
+  line.option("--engine", engines,
+              "Physics engines; `tandem list engines` names them; default: its first, for flocking the first for "
+              "robots that fly")
+      .separated()
+      .named_in("engine");
+  line.option("--threads", threads, "Numbers of threads, e.g. 0,2; default: 0").separated().range(0, 1024);
+  line.option("--partition", partitions, "Divide the arena in equal parts: A1, A2 (2x1), A4 (2x2), A8 (4x2), A16 (4x4)")
+      .separated()
+      .suggest({"A1", "A2", "A4", "A8", "A16"});
+  line.option("--regions", regions, "Divide it otherwise, e.g. 5x3; default: auto").separated().excludes("--partition");
+  line.option("--ticks", ticks, "Steps that are timed").show_default().positive();
+  line.option("--density", density, "equal: the arena grows with the number of robots; else it is 40 m")
+      .suggest({"equal"});
+  line.option("--assignment", assignment, "Of work to threads: static (default) or dynamic")
+      .suggest({"static", "dynamic"});
+  line.option("--repeat", repeat, "How often each is run, in turns; figures show medians").show_default().positive();
+  line.option("--plot", plot, "Draw wall time and speed-up against robots: FILE.svg or FILE.png (gnuplot-nox)").file();
+  line.option("--from", from, "Take saved lines from this file instead of measuring")
+      .file()
+      .excludes("--robot")
+      .excludes("--with")
+      .excludes("--ticks")
+      .excludes("--repeat");
+  line.option("--seconds", seconds, "Of sense_to_act: how long it is timed").show_default().range(0.1, 3600.0);
+  line.flag("--real-time", real_time, "Of sense_to_act: with the scheduling class SCHED_FIFO");
+  line.flag("--compare-threads", compare_threads,
+            "Print how many times faster each number of threads is than the first");
+  app::describe_plugins(line, plugins);
+}
 
-/// @returns the program's exit code
-int run(const app::BenchOptions& options) {
+int run(const BenchOptions& options) {
   hal::PluginLoader loader = app::make_loader();
   if (!app::open_plugins(loader, options.plugins)) return app::kBadInput;
   Kinds kinds;
@@ -436,8 +516,9 @@ int run(const app::BenchOptions& options) {
   return drawn.ok() ? app::kDone : refuse(app::kFailedRunning, drawn.error().message);
 }
 
+}  // namespace
 }  // namespace tandem::bench
 
-int tandem::app::bench(const BenchOptions& options) {
-  return bench::run(options);
-}
+constinit const tandem::hal::CommandType tandem::app::bench_command =
+    tandem::hal::command_type<tandem::bench::BenchOptions, tandem::bench::run>(
+        "bench", "Run a benchmark: one JSON object a line, and figures.");

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "app/experiment/reading.hpp"
-#include "app/options.hpp"
 #include "app/process/measure.hpp"
 #include "bridges/epuck_emulator/body.hpp"
 #include "core/config/reader.hpp"

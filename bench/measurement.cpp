@@ -10,8 +10,8 @@
 #include <unistd.h>
 
 #include "app/build_info.hpp"
+#include "app/exit_code.hpp"
 #include "app/experiment/reading.hpp"
-#include "app/options.hpp"
 #include "app/outputs/report.hpp"
 #include "app/outputs/run_figures.hpp"
 #include "app/process/measure.hpp"

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "app/experiment/reading.hpp"
-#include "app/options.hpp"
 #include "app/outputs/report.hpp"
 #include "app/process/measure.hpp"
 #include "bench/scene.hpp"

@@ -20,8 +20,8 @@
 
 #include "app/build_info.hpp"
 #include "app/experiment/reading.hpp"
-#include "app/options.hpp"
 #include "app/process/measure.hpp"
+#include "app/run_options.hpp"
 #include "app/view/view_run.hpp"
 #include "bench/scene.hpp"
 #include "bench/spread.hpp"

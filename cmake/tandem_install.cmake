@@ -38,3 +38,21 @@ install(FILES ${PROJECT_SOURCE_DIR}/cmake/TandemConfig.cmake ${PROJECT_SOURCE_DI
   DESTINATION lib/cmake/Tandem COMPONENT dev)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/configs ${PROJECT_SOURCE_DIR}/studies DESTINATION share/tandem COMPONENT program)
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE ${PROJECT_SOURCE_DIR}/THIRD_PARTY.md DESTINATION share/doc/tandem COMPONENT program)
+
+# Completion for shells and manual pages: made by the program that was just installed, of what it describes.
+if(NOT CMAKE_CROSSCOMPILING)
+  install(CODE [[
+    set(prefix "$ENV{DESTDIR}${CMAKE_INSTALL_PREFIX}")
+    set(ENV{TANDEM_PLUGIN_PATH} "")
+    foreach(shell bash zsh)
+      set(file share/bash-completion/completions/tandem)
+      if(shell STREQUAL zsh)
+        set(file share/zsh/vendor-completions/_tandem)
+      endif()
+      get_filename_component(folder ${prefix}/${file} DIRECTORY)
+      file(MAKE_DIRECTORY ${folder})
+      execute_process(COMMAND ${prefix}/bin/tandem completion ${shell} OUTPUT_FILE ${prefix}/${file} COMMAND_ERROR_IS_FATAL ANY)
+    endforeach()
+    execute_process(COMMAND ${prefix}/bin/tandem man ${prefix}/share/man/man1 COMMAND_ERROR_IS_FATAL ANY)]]
+    COMPONENT program)
+endif()

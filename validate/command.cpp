@@ -1,4 +1,6 @@
 // `tandem validate`: makes the parts of the report one after the other, and writes page, PDF and JSON into a folder.
+#include "app/command/command.hpp"
+
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -10,8 +12,6 @@
 #include <thread>
 
 #include "app/build_info.hpp"
-#include "app/command/validate.hpp"
-#include "app/options.hpp"
 #include "core/view/gnuplot.hpp"
 #include "core/view/render.hpp"
 #include "hal/output_file.hpp"
@@ -21,6 +21,19 @@
 
 namespace tandem::validate {
 namespace {
+
+struct ValidateOptions {
+  std::string out = "validation";  ///< folder of the report
+  std::vector<std::string> only;   ///< parts by name; empty: all
+  bool brief = false;              ///< the short form
+
+  void describe(hal::CommandLine& line) {
+    line.footer("Exit code: 0 all contracts are met, 4 one is not, 3 the report cannot be made.");
+    line.option("-o,--out", out, "Folder for validation.html, .pdf, .json and figures").show_default().folder();
+    line.flag("--short", brief, "The short form: less than a minute");
+    line.option("--only", only, "Only these parts: engines, sensors, noise, …").separated();
+  }
+};
 
 using Clock = std::chrono::steady_clock;
 
@@ -48,7 +61,7 @@ std::string fingerprint_of(const Report& report) {
   return hal::sha256(text);
 }
 
-std::vector<std::pair<std::string, std::string>> about(const app::ValidateOptions& options, double seconds) {
+std::vector<std::pair<std::string, std::string>> about(const ValidateOptions& options, double seconds) {
   const app::BuildInfo& info = app::build_info();
   char date[32] = {};
   const std::time_t now = std::time(nullptr);
@@ -109,9 +122,7 @@ void tell(const Part& part) {
   std::fflush(stdout);
 }
 
-}  // namespace
-
-int run(const app::ValidateOptions& options) {
+int run(const ValidateOptions& options) {
   if (const hal::Status can = core::can_draw_figures(); !can.ok())
     return refuse(app::kFailedRunning, can.error().message);
   const Clock::time_point began = Clock::now();
@@ -140,8 +151,9 @@ int run(const app::ValidateOptions& options) {
   return all.not_met + all.not_made == 0 ? app::kDone : app::kDifferent;
 }
 
+}  // namespace
 }  // namespace tandem::validate
 
-int tandem::app::validate(const ValidateOptions& options) {
-  return validate::run(options);
-}
+constinit const tandem::hal::CommandType tandem::app::validate_command =
+    tandem::hal::command_type<tandem::validate::ValidateOptions, tandem::validate::run>(
+        "validate", "Compare what the program computes with closed forms and references of their own, in one report.");

@@ -1,6 +1,7 @@
 // `tandem check` on a robot's board: what can be told without a world.
 #include <fmt/format.h>
 
+#include "app/command/check.hpp"
 #include "app/command/command.hpp"
 #include "app/experiment/plugins.hpp"
 #include "app/experiment/reading.hpp"
@@ -23,8 +24,6 @@ void check_controller(const core::Scenario& scenario, const core::RobotItem& ite
   reader.finish();
 }
 
-}  // namespace
-
 int check(const CheckOptions& options) {
   hal::PluginLoader loader = make_loader();
   if (!open_plugins(loader, options.plugins)) return kBadInput;
@@ -45,5 +44,9 @@ int check(const CheckOptions& options) {
       options.experiment, driven, scenario->ticks_per_second);
   return kDone;
 }
+
+}  // namespace
+
+constinit const hal::CommandType check_command = hal::command_type<CheckOptions, check>("check", kCheckSummary);
 
 }  // namespace tandem::app

@@ -1,6 +1,4 @@
 // `tandem calibrate`: boards, lenses, places of cameras.
-#include "app/command/calibrate.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <csignal>
@@ -25,6 +23,64 @@
 
 namespace tandem::app {
 namespace {
+
+struct CalibrateOptions {
+  std::string out;            ///< what is made
+  std::string board, frames;  ///< files of a board; where frames come from
+  std::string camera;         ///< of `arena`: the file with the lens
+  std::string family = "tag36h11";
+  std::int64_t columns = 6, rows = 4, first = 0;
+  std::string size = "30 mm", gap = "10 mm";
+  std::int64_t every = 1, most = 40;
+  bool wide = false;
+  std::vector<std::string> tags;  ///< of `arena`: ID=X,Y[,Z[,DEGREES]]
+  std::string at;                 ///< of `arena`: where the board lies: X,Y,DEGREES[,Z]
+};
+
+constexpr std::string_view kFrames = "camera:/dev/video0, film:FILE, folder:FOLDER of .png or .pgm, or pipe:FILE";
+
+struct BoardOptions : CalibrateOptions {
+  void describe(hal::CommandLine& line) {
+    line.option("-o,--out", out, "The page: .pdf, .svg or .png").required().file();
+    line.option("--columns", columns, "Tags in a line").show_default().range(2, 100);
+    line.option("--rows", rows, "Lines").show_default().range(2, 100);
+    line.option("--size", size, "Side of a tag's black square").show_default();
+    line.option("--gap", gap, "White between two tags").show_default();
+    line.option("--family", family, "Of tags").show_default();
+    line.option("--first", first, "Number of the first tag").show_default().range(0, 100000);
+  }
+};
+
+struct CameraOptions : CalibrateOptions {
+  void describe(hal::CommandLine& line) {
+    line.footer(
+        "Show the board in 15 to 30 ways: tilted by 20 to 45 degrees to all sides, near and far, in all corners of the "
+        "picture, held still and in focus. Focus and zoom must stay as they are from then on.");
+    line.option("--board", board, "The file that `tandem calibrate board` wrote beside the page").required().file();
+    line.option("--frames", frames, kFrames).required();
+    line.option("-o,--out", out, "The camera's file").required().file();
+    line.option("--every", every, "Only every so manyth frame: of films").range(1, 100000);
+    line.option("--most", most, "Views that are enough").show_default().range(6, 200);
+    line.flag("--wide", wide, "A third coefficient of distortion, for lenses of more than 90 degrees");
+  }
+};
+
+struct ArenaOptions : CalibrateOptions {
+  void describe(hal::CommandLine& line) {
+    line.option("--camera", camera, "The camera's file, which gets its place").required().file();
+    line.option("--frames", frames, kFrames).required();
+    line.option("--tag", tags,
+                "A tag that lies at X,Y (of its centre, in metres), at a height Z, its upper edge pointing to DEGREES: "
+                "ID=X,Y[,Z[,DEGREES]]; repeatable, four at least")
+        .repeatable();
+    line.option("--size", size, "Side of these tags' black square, for those with DEGREES").show_default();
+    line.option("--family", family, "Of tags").show_default();
+    line.option("--board", board, "The board's file, where it is the board that lies there").file();
+    line.option("--at", at, "Where its centre lies, where its upper edge points to, its thickness: X,Y,DEGREES[,Z]")
+        .needs("--board");
+    line.option("-o,--out", out, "Another file to write").file();
+  }
+};
 
 namespace calibration = bridges::calibration;
 namespace camera = bridges::camera;
@@ -160,8 +216,6 @@ hal::Vector2 middle_of(const std::vector<hal::Vector2>& all) {
   return {hal::upper_median(x), hal::upper_median(y)};
 }
 
-}  // namespace
-
 int calibrate_board(const CalibrateOptions& o) {
   calibration::Board board;
   const auto size = hal::parse_quantity(o.size, hal::unit::m), gap = hal::parse_quantity(o.gap, hal::unit::m);
@@ -287,5 +341,14 @@ int calibrate_arena(const CalibrateOptions& o) {
       1e3 * f.worst_m);
   return kDone;
 }
+
+}  // namespace
+
+constinit const hal::CommandType calibrate_board_command = hal::command_type<BoardOptions, calibrate_board>(
+    "calibrate board", "Make a board to print (A4): FILE.svg, .pdf or .png, and FILE.json.");
+constinit const hal::CommandType calibrate_camera_command = hal::command_type<CameraOptions, calibrate_camera>(
+    "calibrate camera", "Find focal lengths, centre and distortion from frames of the board.");
+constinit const hal::CommandType calibrate_arena_command = hal::command_type<ArenaOptions, calibrate_arena>(
+    "calibrate arena", "Find where the camera hangs, from tags at known places.");
 
 }  // namespace tandem::app

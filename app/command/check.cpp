@@ -1,7 +1,8 @@
+#include "app/command/check.hpp"
+
 #include <fmt/format.h>
 
 #include "app/command/command.hpp"
-#include "app/command/study.hpp"
 #include "app/experiment/plugins.hpp"
 #include "app/experiment/reading.hpp"
 #include "core/sim/world.hpp"
@@ -9,6 +10,7 @@
 #include "mixed_reality/settings/tracker_check.hpp"
 
 namespace tandem::app {
+namespace {
 
 int check(const CheckOptions& options) {
   core::Problems unread;  // told below
@@ -32,5 +34,9 @@ int check(const CheckOptions& options) {
              scenario->ticks_per_second);
   return kDone;
 }
+
+}  // namespace
+
+constinit const hal::CommandType check_command = hal::command_type<CheckOptions, check>("check", kCheckSummary);
 
 }  // namespace tandem::app

@@ -3,6 +3,7 @@
 
 #include "app/catalog.hpp"
 #include "app/command/command.hpp"
+#include "app/command/shared_options.hpp"
 #include "app/experiment/plugin_folders.hpp"
 #include "app/experiment/plugins.hpp"
 #include "app/experiment/reading.hpp"
@@ -14,6 +15,33 @@
 
 namespace tandem::app {
 namespace {
+
+struct CompareOptions {
+  Libraries plugins;
+  std::string a, b;  ///< experiments or dumps; an empty b is a
+  std::optional<double> seconds;
+  std::optional<std::int64_t> steps;
+  std::optional<std::uint64_t> seed;
+  std::optional<std::int64_t> threads_a, threads_b;
+  std::vector<std::string> overrides, overrides_a, overrides_b;  ///< of both; of one
+
+  void describe(hal::CommandLine& line) {
+    line.footer("Exit code: 0 equal, 4 different. Real robots are simulated; hooks do not learn of the end.");
+    line.word("a", a, "An experiment, which is run, or what `tandem run --dump` wrote").required().file();
+    line.word("b", b, "The other one; default: the same again").file();
+    line.option("--seconds", seconds, "Virtual duration of runs, instead of the file's").positive();
+    line.option("--steps", steps, "Number of control steps, instead of the file's length")
+        .positive()
+        .excludes("--seconds");
+    line.option("--seed", seed, "Seed of all chance in both, instead of the files'");
+    line.option("--threads-a", threads_a, "Threads that step A").range(0, 1024);
+    line.option("--threads-b", threads_b, "Threads that step B").range(0, 1024);
+    line.option("--set", overrides, "Change both experiments: path=value; repeatable").repeatable();
+    line.option("--set-a", overrides_a, "Change A alone; repeatable").repeatable();
+    line.option("--set-b", overrides_b, "Change B alone; repeatable").repeatable();
+    describe_plugins(line, plugins);
+  }
+};
 
 constexpr std::size_t kShown = 20;
 
@@ -208,8 +236,6 @@ int compare_sides(Side& a, Side& b) {
   return kDone;
 }
 
-}  // namespace
-
 int compare(const CompareOptions& options) {
   std::optional<std::uint64_t> seed;
   const auto a = make_side(options, {options.a, options.threads_a, options.overrides_a}, seed);
@@ -219,5 +245,10 @@ int compare(const CompareOptions& options) {
   if (b == nullptr) return kBadInput;
   return compare_sides(*a, *b);
 }
+
+}  // namespace
+
+constinit const hal::CommandType compare_command = hal::command_type<CompareOptions, compare>(
+    "compare", "Name the first tick and the values in which two runs differ.");
 
 }  // namespace tandem::app

@@ -18,6 +18,37 @@
 namespace tandem::app {
 namespace {
 
+struct DeskOptions {
+  std::string where;    ///< "http://…?token=…" of the window, or "lcm:URL#CHANNEL"
+  std::string command;  ///< status, preflight, start, pause, estop, arm, rearm, move, replace, halt, release
+  std::string robot;
+  std::string spare, link, as, seen_as;  ///< of replace
+  std::vector<double> at;                ///< of replace: x, y, heading
+  std::string who;
+  std::string keys;  ///< file; empty: this user's
+  bool json = false;
+
+  void describe(hal::CommandLine& line) {
+    line.footer("Exit code: 0 done, 1 the run refuses, 3 it cannot be reached.");
+    line.word("where", where, "The address that the run printed (http://…), or lcm:URL, lcm:URL#CHANNEL").required();
+    line.word("command", command, "What to do")
+        .required()
+        .one_of({"status", "preflight", "start", "pause", "go", "estop", "arm", "rearm", "move", "halt", "release",
+                 "replace"});
+    line.word("robot", robot, "Which robot; default: all");
+    line.option("--spare", spare, "Of replace: a <spare> of the file comes instead");
+    line.option("--link", link, "Of replace: the robot on this link comes instead").excludes("--spare");
+    line.option("--as", as, "… and is called so").excludes("--spare");
+    line.option("--seen-as", seen_as, "… and trackers know it by this name or tag").excludes("--spare");
+    line.option("--at", at, "… and stands at X,Y or X,Y,HEADING (m, rad), where wheels alone tell its place")
+        .separated()
+        .count(2, 3);
+    line.option("--who", who, "Who says it; default: user@machine");
+    line.option("--keys", keys, "Over LCM: the file with the keys; default: this user's").file();
+    line.flag("--json", json, "The run's answer as it is");
+  }
+};
+
 using hal::Json;
 using namespace std::chrono_literals;
 /// How long an answer may take; a first motion takes its time.
@@ -125,8 +156,6 @@ void print_answer(const Json& answer) {
   if (const std::string note = shown(answer, "note"); !note.empty()) fmt::print("{}\n", note);
 }
 
-}  // namespace
-
 int desk(const DeskOptions& options) {
   const std::string who = options.who.empty() ? own_name() : options.who;
   Json command = command_of(options);
@@ -141,5 +170,10 @@ int desk(const DeskOptions& options) {
   if (!options.json) print_answer(answer.value());
   return kDone;
 }
+
+}  // namespace
+
+constinit const hal::CommandType desk_command =
+    hal::command_type<DeskOptions, desk>("desk", "Command the real robots of a run that goes on.");
 
 }  // namespace tandem::app

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "app/command/command.hpp"
+#include "app/command/shared_options.hpp"
 #include "app/outputs/pictures.hpp"
 #include "app/outputs/report.hpp"
 #include "app/process/signals.hpp"
@@ -14,6 +15,35 @@
 
 namespace tandem::app {
 namespace {
+
+struct DrawOptions {
+  std::string record;
+  PictureRequest pictures;
+  std::optional<std::int64_t> at;  ///< number of ticks; empty: the last that the record holds
+};
+
+struct PictureOptions : DrawOptions {
+  void describe(hal::CommandLine& line) {
+    line.word("record", record, "The record; that of a run that was killed is FILE.part").required().file();
+    line.option("--at", at, "After so many ticks; default: the last that the record holds").not_negative();
+    line.option("-o,--picture", pictures.picture, "FILE.svg, .png or .pdf").file();
+    line.option("--povray", pictures.povray, "A scene in perspective: FILE.pov, or FILE.png to render that, too")
+        .file();
+    line.choose({"output", "Where to", 1, 2, {"-o,--picture", "--povray"}});
+    describe_looks(line, pictures);
+  }
+};
+
+struct FilmOptions : DrawOptions {
+  void describe(hal::CommandLine& line) {
+    line.word("record", record, "The record; that of a run that was killed is FILE.part").required().file();
+    line.option("-o,--film", pictures.film, "FILE.mp4 or .mkv (ffmpeg), or pictures: FOLDER/ or FOLDER/%06d.png")
+        .required()
+        .file();
+    describe_film(line, "--film", pictures);
+    describe_looks(line, pictures);
+  }
+};
 
 /// Opens a file that is asked for; none where not.
 hal::Result<std::optional<hal::OutputFile>> open_file(const std::string& path, std::string_view what) {
@@ -48,8 +78,6 @@ hal::Status go_to(const DrawOptions& options, core::RecordSource& record, core::
   }
   return {};
 }
-
-}  // namespace
 
 int draw_picture(const DrawOptions& options) {
   const PictureRequest& request = options.pictures;
@@ -115,5 +143,12 @@ int draw_film(const DrawOptions& options) {
   if (stop.load()) return interrupted_code();
   return good ? kDone : kFailedRunning;
 }
+
+}  // namespace
+
+constinit const hal::CommandType picture_command =
+    hal::command_type<PictureOptions, draw_picture>("picture", "Draw a picture of a record of `tandem run --record`.");
+constinit const hal::CommandType film_command =
+    hal::command_type<FilmOptions, draw_film>("film", "Make a film of a record of `tandem run --record`.");
 
 }  // namespace tandem::app

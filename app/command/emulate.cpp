@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "app/command/command.hpp"
+#include "app/command/shared_options.hpp"
 #include "app/experiment/plugins.hpp"
 #include "app/experiment/reading.hpp"
 #include "app/process/signals.hpp"
@@ -11,6 +12,37 @@
 
 namespace tandem::app {
 namespace {
+
+struct EmulateOptions {
+  Libraries plugins;
+  std::string robot;
+  std::string link;
+  std::string log;
+  std::vector<std::string> faults;
+  std::string arena;                                       ///< experiment one of whose robots is the body
+  std::string body;                                        ///< which robot; empty: the first that can be
+  std::vector<std::pair<std::string, std::string>> own{};  ///< the emulator's own options: name, value
+
+  void describe(hal::CommandLine& line) {
+    line.word("robot", robot, "Which; `tandem list emulators` names them").required().named_in("emulator");
+    line.option("--link", link,
+                "Where; pty:NAME makes a pseudo-terminal of that name; `tandem describe NAME` tells an emulator's")
+        .required();
+    line.option("--log", log, "File for one JSON object an event; default: none").file();
+    line.option("--fault", faults,
+                "A fault to show, e.g. silent@5s+2s, or silent@drive+5s+2s after the robot was first told to move; "
+                "repeatable")
+        .repeatable();
+    line.option("--arena", arena,
+                "Experiment file: one of its robots, driven by the emulator's puppet (`tandem describe NAME`), is the "
+                "body")
+        .file();
+    line.option("--body", body, "Which of its robots; default: the first that can be").needs("--arena");
+    describe_plugins(line, plugins);
+    line.footer("Further options are the emulator's own: --firmware gctronic, --name eb0, …");
+    line.further(own);
+  }
+};
 
 using bridges::EmulatorType;
 
@@ -53,8 +85,6 @@ hal::Result<std::shared_ptr<const void>> read_own(const EmulateOptions& options,
   return hal::Error{message};
 }
 
-}  // namespace
-
 int emulate(const EmulateOptions& options) {
   hal::PluginLoader loader = make_loader();
   if (!open_plugins(loader, options.plugins)) return kBadInput;
@@ -88,5 +118,10 @@ int emulate(const EmulateOptions& options) {
   request_stop();  // the arena's thread looks at the same flag
   return complain(ended.error().message);
 }
+
+}  // namespace
+
+constinit const hal::CommandType emulate_command =
+    hal::command_type<EmulateOptions, emulate>("emulate", "Behave as a robot's firmware on a link.");
 
 }  // namespace tandem::app

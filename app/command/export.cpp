@@ -1,3 +1,5 @@
+#include "app/command/export.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -125,6 +127,20 @@ bool ExportOptions::wants(const std::string& id) const {
                                          [&id](const std::string& pattern) { return core::fits_pattern(id, pattern); });
 }
 
+void ExportOptions::describe(hal::CommandLine& line) {
+  line.word("record", record, "The record; that of a run that was killed is FILE.part").required().file();
+  line.option("--csv", csv, "Write comma-separated values of one table to this file ('-': standard output)").file();
+  line.option("--hdf5", hdf5, "Write the tables as data sets to this file, for h5py, Matlab, …").file();
+  line.option("--table", stream, "Which table, as the record names it; default: in CSV 'pose', in HDF5 all");
+  line.option("--fields", fields, "Of HDF5: only these fields, separated by commas").separated();
+  line.option("--entities", entities, "Only of these, separated by commas; '*' stands for any text").separated();
+  line.option("--from", from, "First tick");
+  line.option("--until", until, "Last tick");
+  line.option("--every", every, "Only every so manyth tick").positive();
+}
+
+namespace {
+
 int export_record(const ExportOptions& options) {
   if (const hal::Status apart =
           check_apart({{"table", options.csv}, {"HDF5 file", options.hdf5}}, {{"record", options.record}});
@@ -136,5 +152,10 @@ int export_record(const ExportOptions& options) {
   if (done.ok() && !options.hdf5.empty()) done = write_hdf5(options);
   return done.ok() ? kDone : complain(kBadInput, done.error().message);
 }
+
+}  // namespace
+
+constinit const hal::CommandType export_command = hal::command_type<ExportOptions, export_record>(
+    "export", "Say what a record of `tandem run --record` holds, or make a table of it.");
 
 }  // namespace tandem::app

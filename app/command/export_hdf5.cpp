@@ -4,7 +4,7 @@
 #include <limits>
 #include <map>
 
-#include "app/command/command.hpp"
+#include "app/command/export.hpp"
 #include "app/process/terminal.hpp"
 #include "core/record/hdf5/hdf5_file.hpp"
 #include "core/record/record_reader.hpp"

@@ -4,7 +4,8 @@
 #include <fmt/format.h>
 #include <map>
 
-#include "app/command/gap.hpp"
+#include "app/command/command.hpp"
+#include "app/command/shared_options.hpp"
 #include "app/outputs/report.hpp"
 #include "app/process/terminal.hpp"
 #include "app/replay/recorded.hpp"
@@ -20,6 +21,27 @@
 
 namespace tandem::app {
 namespace {
+
+struct FitOptions {
+  Libraries plugins;
+  std::vector<std::string> records;
+  std::vector<std::string> robots;  ///< ids, or patterns with '*'; empty: all real ones, or all where none is real
+  std::string output;               ///< file of fitted parameters; empty: none
+  std::string report;               ///< JSON file, or "-"
+
+  void describe(hal::CommandLine& line) {
+    line.footer("The file is for <fitted file=\"FILE\"/> in an experiment. Errors are those of 95 %.");
+    line.word("record", records,
+              "Records of runs with real robots; of simulated ones with <record ports=\"differential_steering\"/>")
+        .required()
+        .file();
+    line.option("--robots", robots, "Only these, separated by commas; '*' stands for any text; default: real ones")
+        .separated();
+    line.option("-o,--output", output, "Write what was found to this file").file();
+    line.option("--report", report, "Write it as JSON to this file ('-': standard output)").file();
+    describe_plugins(line, plugins);
+  }
+};
 
 using mixed_reality::DelayEstimate;
 using mixed_reality::Estimate;
@@ -264,8 +286,6 @@ bool fit_record(const std::string& path, const FitOptions& options, std::vector<
   return false;
 }
 
-}  // namespace
-
 int fit(const FitOptions& options) {
   std::vector<NamedFile> inputs;
   for (const std::string& record : options.records) inputs.push_back({"record", record});
@@ -296,5 +316,10 @@ int fit(const FitOptions& options) {
   }
   return kDone;
 }
+
+}  // namespace
+
+constinit const hal::CommandType fit_command =
+    hal::command_type<FitOptions, fit>("fit", "Find the parameters of simulated robots in records of real ones.");
 
 }  // namespace tandem::app

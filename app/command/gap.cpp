@@ -1,11 +1,11 @@
 // `tandem gap`: how far a simulation is from what was recorded.
-#include "app/command/gap.hpp"
-
 #include <algorithm>
 #include <filesystem>
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include "app/command/command.hpp"
+#include "app/command/shared_options.hpp"
 #include "app/experiment/reading.hpp"
 #include "app/outputs/report.hpp"
 #include "app/process/signals.hpp"
@@ -17,6 +17,31 @@
 
 namespace tandem::app {
 namespace {
+
+struct GapOptions {
+  Libraries plugins;
+  std::string record, other;        ///< an empty other: the first, simulated
+  std::vector<std::string> robots;  ///< as of `tandem fit`
+  std::string fitted;               ///< file of fitted parameters for the simulation; empty: as the record's settings
+  std::vector<std::string> overrides;  ///< of the simulation's settings
+  std::optional<std::uint64_t> seed;   ///< of the simulation; none: the record's
+  std::string report;                  ///< JSON file, or "-"
+
+  void describe(hal::CommandLine& line) {
+    line.footer(
+        "Without a second record the run of the first is made again, with its real robots simulated from where they "
+        "began.");
+    line.word("record", record, "The record of what really happened").required().file();
+    line.word("other", other, "Another record, to be compared with it instead of a simulation").file();
+    line.option("--robots", robots, "Only these, separated by commas; '*' stands for any text; default: real ones")
+        .separated();
+    line.option("--fitted", fitted, "Simulate with these fitted parameters (`tandem fit`)").file();
+    line.option("--set", overrides, "Change the simulation: path=value; repeatable").repeatable();
+    line.option("--seed", seed, "Of the simulation, instead of the record's");
+    line.option("--report", report, "Write it as JSON to this file ('-': standard output)").file();
+    describe_plugins(line, plugins);
+  }
+};
 
 using mixed_reality::RecordedRun;
 
@@ -111,8 +136,6 @@ void print(const mixed_reality::Gap& gap) {
   fmt::print("{:<20} {:>12} {:>12} {:>10.3f}\n", "occupancy", "", "", gap.occupancy);
 }
 
-}  // namespace
-
 int gap(const GapOptions& options) {
   if (const hal::Status apart =
           check_apart({{"report", options.report}}, {{"record", options.record}, {"record", options.other}});
@@ -143,5 +166,10 @@ int gap(const GapOptions& options) {
   const hal::Status written = write_text(options.report, "report", hal::to_text(to_json(gap)));
   return written.ok() ? kDone : complain(kBadInput, written.error().message);
 }
+
+}  // namespace
+
+constinit const hal::CommandType gap_command =
+    hal::command_type<GapOptions, gap>("gap", "Say how far a simulation is from what was recorded.");
 
 }  // namespace tandem::app

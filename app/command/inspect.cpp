@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "app/command/command.hpp"
+#include "app/command/shared_options.hpp"
 #include "app/experiment/plugins.hpp"
 #include "app/outputs/report.hpp"
 #include "app/process/signals.hpp"
@@ -12,6 +13,24 @@
 #include "bridges/link/link_text.hpp"
 
 namespace tandem::app {
+namespace {
+
+struct InspectOptions {
+  Libraries plugins;
+  std::string link;
+  std::string kind;  ///< of the robot that is there; "": the link tells
+  double seconds = 2.0;
+
+  void describe(hal::CommandLine& line) {
+    line.word("link", link,
+              "e.g. serial:/dev/rfcomm0@115200, can:can0, tcp:ROBOT:33333, lcm:udpm://239.255.76.67:7667?ttl=1")
+        .required();
+    line.option("--as", kind, "Kind of robot that is there, where several are reached over such links")
+        .named_in("robot inspector");
+    line.option("--seconds", seconds, "How long to listen").show_default().range(0.1, 3600.0);
+    describe_plugins(line, plugins);
+  }
+};
 
 int inspect(const InspectOptions& options) {
   const auto complain = [](int code, const std::string& message) {
@@ -48,5 +67,10 @@ int inspect(const InspectOptions& options) {
   const hal::Status seen = chosen->run(request);
   return seen.ok() ? kDone : complain(kFailedRunning, seen.error().message);
 }
+
+}  // namespace
+
+constinit const hal::CommandType inspect_command = hal::command_type<InspectOptions, inspect>(
+    "inspect", "Say which robot is on a link and what it reads. Moves nothing.");
 
 }  // namespace tandem::app

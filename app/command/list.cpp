@@ -8,8 +8,9 @@
 #include <sstream>
 #include <string>
 
-#include "app/catalog.hpp"
 #include "app/command/command.hpp"
+#include "app/command/launcher_commands.hpp"
+#include "app/command/shared_options.hpp"
 #include "app/experiment/plugin_folders.hpp"
 #include "app/experiment/plugins.hpp"
 #include "app/process/terminal.hpp"
@@ -42,14 +43,11 @@ struct Known {
 
 /// All plug-ins: of `--plugin`, of the file, and of the plug-in folders, of which those that do not load are named on
 /// standard error. Nothing, when one of the others cannot be opened, or the file's kinds cannot be read.
-std::optional<Known> all_known(const Libraries& plugins, const std::string& file) {
-  Known known{std::make_unique<hal::PluginLoader>(plugin_folders(), catalog()), nullptr};
+std::optional<Known> all_known(const hal::Catalog& inside, const Libraries& plugins, const std::string& file) {
+  Known known{std::make_unique<hal::PluginLoader>(plugin_folders(), inside), nullptr};
   if (!open_plugins(*known.loader, plugins)) return std::nullopt;
   if (!file.empty() && (known.file = kinds_of_file(*known.loader, file)) == nullptr) return std::nullopt;
-  for (const auto& library : plugin_files()) {
-    const hal::Status opened = known.loader->open(library.string());
-    if (!opened.ok()) say("warning: " + opened.error().message);
-  }
+  open_plugin_folders(*known.loader);
   if (known.file == nullptr) return known;
   // A plug-in of the folders may have a robot that the file knows nothing of.
   std::erase_if(known.file->kinds, [&](const core::KindConfig& config) {
@@ -125,6 +123,12 @@ void list_libraries(const hal::Catalog& catalog) {
   }
 }
 
+void list_commands(const hal::Catalog& catalog) {
+  list_plugins<hal::CommandType>(catalog, "commands");
+  fmt::print("commands of the launcher at the top of a checkout:\n");
+  for (const hal::CommandType& type : launcher_commands()) fmt::print("  {:<22} {}\n", type.name, type.summary);
+}
+
 using ListKind = void (*)(const hal::Catalog&);
 
 const std::map<std::string, ListKind>& kinds() {
@@ -132,6 +136,7 @@ const std::map<std::string, ListKind>& kinds() {
       {"controllers", [](const hal::Catalog& c) { list_plugins<hal::ControllerType>(c, "controllers"); }},
       {"hooks", [](const hal::Catalog& c) { list_plugins<core::HookType>(c, "hooks"); }},
       {"bridges", [](const hal::Catalog& c) { list_plugins<bridges::BridgeType>(c, "bridges to real robots"); }},
+      {"commands", &list_commands},
       {"couplings", [](const hal::Catalog& c) { list_plugins<core::CouplingType>(c, "couplings"); }},
       {"devices", &list_devices},
       {"emulators", [](const hal::Catalog& c) { list_plugins<bridges::EmulatorType>(c, "emulators"); }},
@@ -342,9 +347,21 @@ bool describe_element(const hal::Catalog& catalog, const std::string& name) {
   return found;
 }
 
-}  // namespace
+struct ListOptions {
+  Libraries plugins;
+  std::string file;  ///< whose plug-ins and kinds of robots are shown, too
+  std::string kind;  ///< bridges, controllers, couplings, commands, … robots; empty: all
 
-int list(const ListOptions& options) {
+  void describe(hal::CommandLine& line) {
+    std::vector<std::string> names;
+    for (const auto& [name, print] : kinds()) names.push_back(name);
+    line.word("kind", kind, "Only this kind").suggest(std::move(names));
+    line.option("--in", file, "Also what this file adds: its plug-ins, its kinds of robots").file();
+    describe_plugins(line, plugins);
+  }
+};
+
+int list(const ListOptions& options, const hal::CommandContext& context) {
   const std::string& kind = options.kind;
   const auto found = kinds().find(kind);
   if (!kind.empty() && found == kinds().end()) {
@@ -353,7 +370,7 @@ int list(const ListOptions& options) {
     fmt::print(stderr, "tandem list: there is no kind '{}'; there are: {}\n", kind, all);
     return kWrongUsage;
   }
-  const auto known = all_known(options.plugins, options.file);
+  const auto known = all_known(context.catalog(), options.plugins, options.file);
   if (!known) return kBadInput;
   for (const auto& [name, print] : kinds()) {
     if (kind.empty() || name == kind) print(known->catalog());
@@ -361,9 +378,23 @@ int list(const ListOptions& options) {
   return kDone;
 }
 
-int describe(const DescribeOptions& options) {
+struct DescribeOptions {
+  Libraries plugins;
+  std::string file;  ///< as above
+  std::string name;
+  bool xml = false;  ///< a kind of robot as an element of a file
+
+  void describe(hal::CommandLine& line) {
+    line.word("name", name, "Its name").required().named_in("*");
+    line.option("--in", file, "A file with plug-ins and kinds of robots that may be meant, too").file();
+    line.flag("--xml", xml, "A kind of robot as a file that gives it");
+    describe_plugins(line, plugins);
+  }
+};
+
+int describe(const DescribeOptions& options, const hal::CommandContext& context) {
   const std::string& name = options.name;
-  const auto known = all_known(options.plugins, options.file);
+  const auto known = all_known(context.catalog(), options.plugins, options.file);
   if (!known) return kBadInput;
   const hal::Catalog& catalog = known->catalog();
   if (options.xml) return print_xml(catalog, *known, name);
@@ -389,5 +420,12 @@ int describe(const DescribeOptions& options) {
              near.empty() ? "" : "; did you mean '" + near + "'?");
   return kBadInput;
 }
+
+}  // namespace
+
+constinit const hal::CommandType list_command = hal::command_type<ListOptions, list>(
+    "list", "List what there is: controllers, hooks, devices, engines, robots, elements.");
+constinit const hal::CommandType describe_command = hal::command_type<DescribeOptions, describe>(
+    "describe", "Print the manual of a controller, device, robot, hook or element.");
 
 }  // namespace tandem::app

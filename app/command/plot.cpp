@@ -2,13 +2,56 @@
 #include <algorithm>
 #include <fmt/format.h>
 
-#include "app/command/study.hpp"
+#include "app/command/command.hpp"
 #include "app/outputs/report.hpp"
 #include "app/process/terminal.hpp"
 #include "study/plot/chart.hpp"
 
 namespace tandem::app {
 namespace {
+
+/// What is left empty is chosen from what the table has.
+struct PlotOptions {
+  std::string table;
+  std::string output;  ///< .svg, .png or .pdf; empty: numbers and tests alone
+  std::vector<std::string> measures;
+  std::string over;                ///< "time", a column or a measure
+  std::string by, panel;           ///< columns
+  std::vector<std::string> where;  ///< "column=value"
+  std::string show = "median";     ///< median, mean, box or runs
+  std::string difference;          ///< the group that others are compared with, in pairs
+  std::string title, x_label;
+  std::vector<std::string> y_labels;  ///< of the measures, in their order
+  bool log_x = false, from_zero = false, equal_axes = false;
+  bool quiet = false;
+
+  void describe(hal::CommandLine& line) {
+    line.word("table", table, "The table that `tandem sweep` wrote").required().file();
+    line.option("-o,--output", output, "Figure to write: FILE.svg, .pdf or .png (gnuplot-nox)").file();
+    line.option("--measure", measures, "What to draw, a panel each; needed where there are several").separated();
+    line.option("--over", over,
+                "Along x: time, a column, or another measure, for a way of each run and its end; default: time where "
+                "there are samples, else a parameter");
+    line.option("--by", by, "A line for each value of this column; default: of what varies besides");
+    line.option("--panel", panel, "A panel for each value of this column");
+    line.option("--where", where, "Only runs with this value: COLUMN=VALUE; repeatable").repeatable();
+    line.option("--show", show,
+                "median with quartiles, mean with its 95 % confidence interval, box, or runs: each by itself")
+        .show_default()
+        .one_of({"median", "mean", "box", "runs"});
+    line.option("--difference", difference,
+                "In a panel below: what the other groups have more than GROUP, in pairs of runs with the same seed and "
+                "settings")
+        .written("GROUP");
+    line.option("--title", title, "Above the figure");
+    line.option("--x-label", x_label, "Below it; default: the column's name and unit");
+    line.option("--y-label", y_labels, "Beside it, of the first --measure; repeatable, for the others").repeatable();
+    line.flag("--log-x", log_x, "Logarithmic along x");
+    line.flag("--from-zero", from_zero, "Values begin at 0");
+    line.flag("--equal-axes", equal_axes, "A unit is as long along x as along y, as on a map");
+    line.flag("--quiet", quiet, "Neither numbers nor tests");
+  }
+};
 
 std::string listed_or_none(const std::vector<std::string>& names) {
   std::string all;
@@ -108,8 +151,6 @@ hal::Status add_measure(study::Chart& chart, const std::string& table, const stu
   return study::add_panels(chart, *observations, selection, y_label);
 }
 
-}  // namespace
-
 int plot(const PlotOptions& given) {
   PlotOptions o = given;
   if (!o.output.empty()) {
@@ -147,5 +188,10 @@ int plot(const PlotOptions& given) {
   for (const std::string& sentence : study::chart_differences(chart)) fmt::print("{}\n", sentence);
   return kDone;
 }
+
+}  // namespace
+
+constinit const hal::CommandType plot_command =
+    hal::command_type<PlotOptions, plot>("plot", "Draw what the table of a sweep holds, and say what differs.");
 
 }  // namespace tandem::app

@@ -2,8 +2,9 @@
 #include <algorithm>
 #include <fmt/format.h>
 
-#include "app/catalog.hpp"
 #include "app/command/command.hpp"
+#include "app/command/command_line.hpp"
+#include "app/command/shared_options.hpp"
 #include "app/conformance/judge.hpp"
 #include "app/conformance/probe.hpp"
 #include "app/experiment/plugin_folders.hpp"
@@ -16,6 +17,19 @@
 namespace tandem::app {
 namespace {
 
+struct PluginCheckOptions {
+  Libraries plugins;  ///< that the checked one needs
+  std::string file;
+  bool json = false;
+
+  void describe(hal::CommandLine& line) {
+    line.footer("Exit code: 0 no fault was found, 1 faults, or a library that cannot be loaded.");
+    line.word("file", file, "The library").required().file();
+    line.flag("--json", json, "One JSON object instead of lines");
+    describe_plugins(line, plugins);
+  }
+};
+
 std::string_view word_of(Verdict verdict) noexcept {
   return verdict == Verdict::Good ? "good" : verdict == Verdict::Fault ? "fault" : "not judged";
 }
@@ -24,6 +38,16 @@ bool brings_bridge(const hal::Catalog& catalog, const std::string& origin) {
   return std::any_of(catalog.entries().begin(), catalog.entries().end(), [&](const hal::Catalog::Entry& e) {
     return e.origin == origin && e.category == bridges::BridgeType::kCategory;
   });
+}
+
+/// Whether lines can be read as the library's commands describe them, and each word of them is documented.
+void judge_commands(const hal::Catalog& catalog, const std::string& origin, Judgements& all) {
+  for (const hal::CommandType* type : catalog.all<hal::CommandType>()) {
+    if (catalog.origin_of(type) != origin || type->make == nullptr) continue;
+    const std::string flaw = flaw_of_line(*type);
+    all.push_back({flaw.empty() ? Verdict::Good : Verdict::Fault, "command '" + std::string(type->name) + "'", "line",
+                   flaw.empty() ? "lines are read as it describes them, and each word has a text" : flaw});
+  }
 }
 
 void print_lines(const Judgements& all) {
@@ -47,10 +71,8 @@ void print_json(const std::string& file, const Judgements& all, bool good) {
   fmt::print("{}\n", hal::to_text(json));
 }
 
-}  // namespace
-
-int plugin_check(const PluginCheckOptions& options) {
-  hal::Catalog inside = catalog();
+int plugin_check(const PluginCheckOptions& options, const hal::CommandContext& context) {
+  hal::Catalog inside = context.catalog();
   const hal::Status added = inside.add_from(std::string(hal::Catalog::kInside), &register_probe);
   if (!added.ok()) return complain(kFailedRunning, added.error().message);
   hal::PluginLoader loader(plugin_folders(), std::move(inside));
@@ -73,6 +95,7 @@ int plugin_check(const PluginCheckOptions& options) {
                      "forked safely. Start it when the bridge starts"});
     const Judgements judged = judge_plugin(loader, path);
     all.insert(all.end(), judged.begin(), judged.end());
+    judge_commands(loader.catalog(), path, all);
   }
   const auto faults = std::count_if(all.begin(), all.end(), [](const auto& j) { return j.verdict == Verdict::Fault; });
   if (options.json) {
@@ -83,5 +106,10 @@ int plugin_check(const PluginCheckOptions& options) {
   }
   return faults == 0 ? kDone : kBadInput;
 }
+
+}  // namespace
+
+constinit const hal::CommandType plugin_check_command = hal::command_type<PluginCheckOptions, plugin_check>(
+    "plugin check", "Judge what a plug-in registers, each part by its table and in small worlds.");
 
 }  // namespace tandem::app

@@ -21,7 +21,7 @@ struct Kind {
   std::string_view what;
   std::array<std::string_view, 4> registers;
 };
-constexpr std::array<Kind, 9> kKinds = {{
+constexpr std::array<Kind, 10> kKinds = {{
     {"device",
      "temperature",
      "a field, a sensor of it, a robot with that sensor, and a controller",
@@ -40,6 +40,7 @@ constexpr std::array<Kind, 9> kKinds = {{
      "buggy",
      "a robot with its bridge, its stopper, its emulator, and a controller",
      {"buggy", "buggy_puppet", "patrol"}},
+    {"command", "census", "a command of `tandem`", {"census"}},
 }};
 
 void replace_all(std::string& text, const std::string& from, const std::string& to) {
@@ -135,13 +136,21 @@ jobs:
       - run: ctest --test-dir build --output-on-failure
 )";
 
-}  // namespace
-
 std::vector<std::string> plugin_kinds() {
   std::vector<std::string> names;
   for (const Kind& kind : kKinds) names.emplace_back(kind.name);
   return names;
 }
+
+struct PluginNewOptions {
+  std::string name;
+  std::string kind = "device";
+
+  void describe(hal::CommandLine& line) {
+    line.word("name", name, "Of the folder and the library: a to z, 0 to 9 and _").required();
+    line.option("--kind", kind, "What it begins with").show_default().one_of(plugin_kinds());
+  }
+};
 
 int plugin_new(const PluginNewOptions& options) {
   const std::string& name = options.name;
@@ -183,5 +192,10 @@ int plugin_new(const PluginNewOptions& options) {
       name, kind->what, name);
   return kDone;
 }
+
+}  // namespace
+
+constinit const hal::CommandType plugin_new_command = hal::command_type<PluginNewOptions, plugin_new>(
+    "plugin new", "Make a folder with a plug-in that builds, an experiment and a test.");
 
 }  // namespace tandem::app

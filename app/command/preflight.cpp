@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include "app/command/command.hpp"
+#include "app/command/shared_options.hpp"
 #include "app/experiment/plugins.hpp"
 #include "app/experiment/reading.hpp"
 #include "app/outputs/run_report.hpp"
@@ -26,6 +27,38 @@
 
 namespace tandem::app {
 namespace {
+
+struct PreflightOptions {
+  Libraries plugins;
+  std::string experiment;
+  std::vector<std::string> overrides;
+  std::vector<std::string> without;  ///< real robots that are simulated instead, by id
+  std::optional<double> wait_s;      ///< for robots to answer; none: as long as the run would
+  double listen_s = 2.0;             ///< to robots and trackers, after that
+  bool move = false;                 ///< the first motion test
+  bool yes = false;                  ///< … without asking
+  bool json = false;
+  std::string report;
+  std::string desk_keys;  ///< as of `run`
+
+  void describe(hal::CommandLine& line) {
+    line.footer("Exit code: 0 nothing is in the way, 1 bad input, 3 something is.");
+    line.word("experiment", experiment, "The experiment file (.xml)").required().file();
+    line.flag("--move", move, "First motion: each robot turns a little, one after the other");
+    line.flag("--yes", yes, "… without asking on the terminal").needs("--move");
+    line.option("--wait", wait_s, "Seconds for robots to answer; default: as long as the run would wait")
+        .range(0.0, 3600.0);
+    line.option("--listen", listen_s, "Seconds to listen to robots and trackers after that")
+        .show_default()
+        .range(0.1, 3600.0);
+    describe_desk_keys(line, desk_keys);
+    line.option("--without", without, "Leave this robot out; repeatable").repeatable();
+    line.option("--set", overrides, "Change the experiment first: path=value; repeatable").repeatable();
+    line.flag("--json", json, "One JSON object instead of a table");
+    line.option("--report", report, "Write the JSON object to this file, too").file();
+    describe_plugins(line, plugins);
+  }
+};
 
 using mixed_reality::Finding;
 using mixed_reality::PreflightRow;
@@ -214,8 +247,6 @@ void print_rows(const PreflightRows& rows) {
              count(Finding::Fail), count(Finding::Fail) == 0 ? "the run can begin" : "the run would not go well");
 }
 
-}  // namespace
-
 int preflight(const PreflightOptions& options) {
   hal::PluginLoader loader = make_loader();
   ExperimentReading reading(loader, options.plugins);
@@ -267,5 +298,10 @@ int preflight(const PreflightOptions& options) {
   }
   return worst_of(rows) == Finding::Fail ? kFailedRunning : kDone;
 }
+
+}  // namespace
+
+constinit const hal::CommandType preflight_command = hal::command_type<PreflightOptions, preflight>(
+    "preflight", "Look for everything that would stop a run with real robots, before anything moves.");
 
 }  // namespace tandem::app

@@ -1,4 +1,6 @@
 // `tandem robot`: one real robot's controller, run here.
+#include "app/command/robot.hpp"
+
 #include <algorithm>
 #include <csignal>
 #include <cstdio>
@@ -7,6 +9,7 @@
 #include <optional>
 
 #include "app/command/command.hpp"
+#include "app/command/shared_options.hpp"
 #include "app/experiment/plugins.hpp"
 #include "app/outputs/emergency_report.hpp"
 #include "app/outputs/report.hpp"
@@ -157,9 +160,7 @@ void add_files(hal::Json& json, const std::string& experiment, hal::PluginLoader
   }
 }
 
-}  // namespace
-
-int robot(const RobotOptions& options) {
+int drive_robot(const RobotOptions& options) {
   if (!options.robot.empty()) return complain(kWrongUsage, "--robot goes with --link peer:…");
   auto hub_faults = HubFaults::make(options.hub_faults);
   if (!hub_faults.ok()) return complain(kBadInput, hub_faults.error().message);
@@ -291,5 +292,28 @@ int robot(const RobotOptions& options) {
   }
   return end_robot(report, std::move(json), {.failure = failure, .interrupted = interrupted});
 }
+
+int robot(const RobotOptions& options) {
+  return options.link.starts_with(kPeerScheme) ? robot_peer(options) : drive_robot(options);
+}
+
+}  // namespace
+
+void RobotOptions::describe(hal::CommandLine& line) {
+  line.word("file", file, "Experiment file with one robot that has a <bridge>").required().file();
+  line.option("--link", link,
+              "Where the robot is, instead of the file's, e.g. serial:/dev/rfcomm0@115200, can:can0, "
+              "tcp:ROBOT:33333; peer:tcp:HOST:PORT or peer:serial:…: in lock-step with the simulation there");
+  line.option("--robot", robot,
+              "With peer:…: which robot of that simulation; '*': any that waits; default: the file's");
+  line.option("--seconds", seconds, "How long, instead of the file's length").positive();
+  line.option("--report", report, "Write a JSON report to this file ('-': standard output)").file();
+  describe_step_timeout(line, step_timeout_s);
+  describe_hub_faults(line, hub_faults, "A");
+  describe_plugins(line, plugins);
+}
+
+constinit const hal::CommandType robot_command =
+    hal::command_type<RobotOptions, robot>("robot", "Run one real robot's controller here.");
 
 }  // namespace tandem::app

@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 #include <optional>
 
-#include "app/command/command.hpp"
+#include "app/command/robot.hpp"
 #include "app/experiment/plugins.hpp"
 #include "app/outputs/report.hpp"
 #include "app/process/signals.hpp"

@@ -1,6 +1,7 @@
 #include <array>
 
 #include "app/command/command.hpp"
+#include "app/command/shared_options.hpp"
 #include "app/process/signals.hpp"
 #include "app/process/terminal.hpp"
 #include "app/run/parts.hpp"
@@ -37,5 +38,23 @@ int run(const RunOptions& options) {
     code = complain(kFailedRunning, "a controller or hook failed at its end, as told above; the results stand");
   return code;
 }
+
+namespace {
+
+struct RunLine : PagedRunOptions {
+  void describe(hal::CommandLine& line) {
+    line.word("experiment", experiment, "The experiment file (.xml)").required().file();
+    describe_page(line, "Serve a page that shows the run, on port --view=PORT or any that is free");
+    describe_run(line, *this);
+  }
+};
+
+int run_line(const RunLine& line) {
+  return run(line.with_page());
+}
+
+}  // namespace
+
+constinit const hal::CommandType run_command = hal::command_type<RunLine, run_line>("run", "Run an experiment.");
 
 }  // namespace tandem::app

@@ -9,7 +9,8 @@
 #include <sstream>
 #include <unistd.h>
 
-#include "app/command/study.hpp"
+#include "app/command/command.hpp"
+#include "app/command/shared_options.hpp"
 #include "app/experiment/plugins.hpp"
 #include "app/experiment/reading.hpp"
 #include "app/process/measure.hpp"
@@ -24,6 +25,45 @@
 
 namespace tandem::app {
 namespace {
+
+struct SweepOptions {
+  Libraries plugins;
+  std::string study;
+  std::string table;      ///< empty: the study's
+  std::int64_t jobs = 0;  ///< runs side by side; 0: as many as there are cores
+  bool resume = false, retry_failed = false, accept_changes = false;
+  bool yes = false;  ///< however many runs there are
+  bool quiet = false;
+  bool slurm = false;           ///< a cluster makes the runs
+  std::int64_t batch_runs = 0;  ///< in a job of the cluster, at least; 0: chosen
+  std::string sbatch;           ///< options of sbatch, parted by spaces
+  std::string batch_folder;     ///< this process is a job: it makes batch `batch_number` of that folder's plan
+  std::int64_t batch_number = 0;
+
+  void describe(hal::CommandLine& line) {
+    line.footer(
+        "Exit code: 0 all runs are done, 1 bad input, 3 some have failed, now or before, 130 interrupted. What was "
+        "made stays in the table, "
+        "however the sweep ends.");
+    line.word("study", study, "The study (.xml); `tandem describe study` tells what stands in it").required().file();
+    line.option("--table", table, "Table to write, instead of the study's").file();
+    line.option("--jobs", jobs, "Runs side by side; default: as many as there are cores").range(1, 4096);
+    line.flag("--resume", resume, "Make the runs that the table lacks");
+    line.flag("--retry-failed", retry_failed, "… and those that failed, again").needs("--resume");
+    line.flag("--accept-changes", accept_changes, "… although program or files have changed").needs("--resume");
+    line.flag("--yes", yes, "Do not ask, however many runs there are");
+    line.flag("--quiet", quiet, "No summary at the end");
+    line.flag("--slurm", slurm, "Have a cluster make the runs, by Slurm's sbatch, and wait for them");
+    line.option("--batch", batch_runs, "Runs in one job of the cluster, at least; default: so that there are 64 jobs")
+        .needs("--slurm")
+        .range(1, 10'000'000);
+    line.option("--sbatch", sbatch, "Options for sbatch, as one word: --sbatch='--partition=short --time=60'")
+        .needs("--slurm");
+    line.option("--batch-folder", batch_folder, "").hide();  // what the jobs of a cluster call
+    line.option("--batch-number", batch_number, "").hide().needs("--batch-folder").not_negative();
+    describe_plugins(line, plugins);
+  }
+};
 
 namespace fs = std::filesystem;
 
@@ -218,8 +258,6 @@ ClusterOptions cluster_options(const SweepOptions& options, const std::string& f
   return cluster;
 }
 
-}  // namespace
-
 std::optional<study::Study> read_study_or_complain(const std::string& path) {
   core::Problems problems;
   auto study = study::read_study(path, problems);
@@ -319,6 +357,8 @@ int sweep(const SweepOptions& options) {
   return tally.failed + tally.failed_before > 0 ? kFailedRunning : kDone;
 }
 
+/// A job of a cluster: makes what is missing of one batch. kBadInput also where program or files are not those of the
+/// sweep that planned it.
 int sweep_batch(const SweepOptions& options) {
   auto plan = study::read_plan(options.batch_folder);
   if (!plan.ok()) return complain(kBadInput, plan.error().message);
@@ -358,6 +398,15 @@ int sweep_batch(const SweepOptions& options) {
   if (!status.ok()) return complain(kFailedRunning, status.error().message);
   return interrupted_code();
 }
+
+int sweep_or_batch(const SweepOptions& options) {
+  return options.batch_folder.empty() ? sweep(options) : sweep_batch(options);
+}
+
+}  // namespace
+
+constinit const hal::CommandType sweep_command =
+    hal::command_type<SweepOptions, sweep_or_batch>("sweep", "Make all runs of a study, on all cores, into one table.");
 
 int check_study(const std::string& path, const Libraries& plugins) {
   const auto study = read_study_or_complain(path);

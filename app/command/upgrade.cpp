@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "app/command/command.hpp"
+#include "app/command/shared_options.hpp"
 #include "app/experiment/plugins.hpp"
 #include "app/experiment/reading.hpp"
 #include "app/process/terminal.hpp"
@@ -14,6 +15,19 @@
 #include "hal/xml/xml.hpp"
 
 namespace tandem::app {
+namespace {
+
+struct UpgradeOptions {
+  Libraries plugins;
+  std::string experiment;
+  bool dry_run = false;  ///< only say what would change
+
+  void describe(hal::CommandLine& line) {
+    line.word("experiment", experiment, "The experiment file (.xml)").required().file();
+    line.flag("--dry-run", dry_run, "Only say what would change");
+    describe_plugins(line, plugins);
+  }
+};
 
 int upgrade(const UpgradeOptions& options) {
   const std::string& path = options.experiment;
@@ -46,5 +60,10 @@ int upgrade(const UpgradeOptions& options) {
   fmt::print("{}: {} to version {}\n", path, options.dry_run ? "would be brought" : "brought", core::kFileVersion);
   return kDone;
 }
+
+}  // namespace
+
+constinit const hal::CommandType upgrade_command = hal::command_type<UpgradeOptions, upgrade>(
+    "upgrade", "Rewrite an experiment file in this program's vocabulary; layout and comments stay.");
 
 }  // namespace tandem::app

@@ -1,8 +1,26 @@
 #include "app/command/command.hpp"
+#include "app/command/shared_options.hpp"
 #include "app/process/signals.hpp"
 #include "app/view/view_record.hpp"
 
 namespace tandem::app {
+namespace {
+
+struct ViewLine : RunOptions {
+  void describe(hal::CommandLine& line) {
+    line.footer(
+        "It begins in real time. All options but those of the window are those of `tandem run`; a record takes the "
+        "window's alone.");
+    line.word("experiment", experiment, "The experiment file (.xml), or a record of `tandem run --record`")
+        .required()
+        .file();
+    line.option("--port", view.port, "Where the page is served; 0: any port that is free")
+        .show_default()
+        .range(0, 65535);
+    line.flag("--no-browser", view.no_browser, "Only tell the address");
+    describe_run(line, *this);
+  }
+};
 
 int view(RunOptions options) {
   options.view.on = options.hold.stay = true;
@@ -11,5 +29,12 @@ int view(RunOptions options) {
   if (!options.hold.speed) options.hold.speed = 1.0;
   return run(options);
 }
+
+}  // namespace
+
+constinit const hal::CommandType view_command =
+    hal::command_type<ViewLine, view>("view",
+                                      "Run an experiment, or play a record, behind a page in the browser, until "
+                                      "Ctrl-C: watch, stop, go back, click, drag, plot.");
 
 }  // namespace tandem::app

@@ -15,6 +15,7 @@
 #include "core/scenario/medium_type.hpp"
 #include "core/scenario/observer_type.hpp"
 #include "core/view/layers/layer.hpp"
+#include "hal/command.hpp"
 
 namespace tandem::app {
 namespace {
@@ -46,7 +47,7 @@ class Tables {
     });
     judge_summaries<core::DeviceType, core::CouplingType, core::EngineType, core::FieldType, core::MediumType,
                     core::ObserverType, core::LayerType, core::HookType, hal::ControllerType, bridges::BridgeType,
-                    bridges::TrackerType, bridges::EmulatorType, hal::RobotKind>();
+                    bridges::TrackerType, bridges::EmulatorType, hal::RobotKind, hal::CommandType>();
   }
 
  private:

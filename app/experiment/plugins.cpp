@@ -3,9 +3,9 @@
 #include <filesystem>
 
 #include "app/catalog.hpp"
+#include "app/exit_code.hpp"
 #include "app/experiment/plugin_folders.hpp"
 #include "app/experiment/reading.hpp"
-#include "app/options.hpp"
 #include "app/process/terminal.hpp"
 #include "bridges/bridge_type.hpp"
 #include "bridges/guardian/stopper.hpp"
@@ -32,6 +32,13 @@ bool open_plugins(hal::PluginLoader& loader, const std::vector<std::string>& lib
     if (!opened.ok()) good = complain(kBadInput, "--plugin: " + opened.error().message) == kDone;
   }
   return good;
+}
+
+void open_plugin_folders(hal::PluginLoader& loader) {
+  for (const auto& library : plugin_files()) {
+    const hal::Status opened = loader.open(library.string());
+    if (!opened.ok()) say("warning: " + opened.error().message);
+  }
 }
 
 ExperimentReading::ExperimentReading(hal::PluginLoader& loader, const std::vector<std::string>& plugins)

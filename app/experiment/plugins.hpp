@@ -17,6 +17,9 @@ hal::PluginLoader make_loader();
 /// Opens the libraries of `--plugin`, for commands that read no experiment. Complains where one cannot be.
 bool open_plugins(hal::PluginLoader& loader, const std::vector<std::string>& libraries);
 
+/// Opens all that is in the plug-in folders. Says what cannot be opened.
+void open_plugin_folders(hal::PluginLoader& loader);
+
 /// The loader's catalog with the kinds of a file, which it holds.
 struct KindsOfFile {
   std::vector<core::KindConfig> kinds;

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <fmt/format.h>
 
-#include "app/options.hpp"
+#include "app/exit_code.hpp"
 #include "app/process/terminal.hpp"
 #include "core/config/kinds.hpp"
 #include "hal/file_type.hpp"

@@ -2,7 +2,7 @@
 
 #include <exception>
 
-#include "app/options.hpp"
+#include "app/exit_code.hpp"
 #include "app/process/terminal.hpp"
 #include "hal/plugin_call.hpp"
 

@@ -5,7 +5,7 @@
 #include <memory>
 #include <string>
 
-#include "app/options.hpp"
+#include "app/run_options.hpp"
 #include "core/view/drawing.hpp"
 #include "core/view/trails.hpp"
 #include "hal/output_file.hpp"

@@ -4,10 +4,10 @@
 #include <memory>
 #include <optional>
 
-#include "app/options.hpp"
 #include "app/outputs/observers.hpp"
 #include "app/outputs/pictures.hpp"
 #include "app/outputs/state_dump.hpp"
+#include "app/run_options.hpp"
 #include "core/record/record.hpp"
 #include "core/record/trajectory.hpp"
 #include "core/sim/world.hpp"

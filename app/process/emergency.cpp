@@ -13,7 +13,7 @@
 #include <sys/syscall.h>
 #include <unistd.h>
 
-#include "app/options.hpp"
+#include "app/exit_code.hpp"
 #include "app/process/terminal.hpp"
 #include "hal/plugin_call.hpp"
 #include "hal/printable.hpp"

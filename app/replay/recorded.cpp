@@ -3,9 +3,9 @@
 #include <algorithm>
 
 #include "app/catalog.hpp"
+#include "app/exit_code.hpp"
 #include "app/experiment/plugin_folders.hpp"
 #include "app/experiment/plugins.hpp"
-#include "app/options.hpp"
 #include "app/process/terminal.hpp"
 #include "core/record/pattern.hpp"
 #include "hal/output_file.hpp"

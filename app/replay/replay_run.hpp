@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "app/experiment/plugins.hpp"
-#include "app/options.hpp"
 #include "app/outputs/run_report.hpp"
+#include "app/run_options.hpp"
 #include "core/live/repeat.hpp"
 #include "core/sim/world.hpp"
 #include "hal/json/json.hpp"

@@ -1,7 +1,6 @@
 #include "app/robots/file_controller.hpp"
 
 #include "app/experiment/reading.hpp"
-#include "app/options.hpp"
 
 namespace tandem::app {
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "app/options.hpp"
+#include "app/exit_code.hpp"
 #include "app/process/terminal.hpp"
 #include "app/robots/controller_copy.hpp"
 #include "app/robots/wired_peer.hpp"

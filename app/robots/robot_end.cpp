@@ -3,7 +3,7 @@
 #include <cstdio>
 
 #include "app/build_info.hpp"
-#include "app/options.hpp"
+#include "app/exit_code.hpp"
 #include "app/process/signals.hpp"
 #include "app/process/terminal.hpp"
 

@@ -6,7 +6,6 @@
 #include <optional>
 
 #include "app/experiment/plugins.hpp"
-#include "app/options.hpp"
 #include "app/outputs/run_log.hpp"
 #include "app/outputs/run_outputs.hpp"
 #include "app/outputs/run_report.hpp"
@@ -17,6 +16,7 @@
 #include "app/robots/desks.hpp"
 #include "app/robots/guarded_robots.hpp"
 #include "app/robots/hub_faults.hpp"
+#include "app/run_options.hpp"
 #include "core/live/live_run.hpp"
 #include "core/live/repeat.hpp"
 #include "core/run/run.hpp"

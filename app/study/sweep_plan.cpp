@@ -9,9 +9,9 @@
 #include <unistd.h>
 
 #include "app/build_info.hpp"
+#include "app/exit_code.hpp"
 #include "app/experiment/plugins.hpp"
 #include "app/experiment/reading.hpp"
-#include "app/options.hpp"
 #include "app/outputs/run_report.hpp"
 #include "app/process/terminal.hpp"
 #include "core/config/reader.hpp"

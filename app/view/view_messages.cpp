@@ -3,9 +3,9 @@
 #include <memory>
 
 #include "app/build_info.hpp"
-#include "app/options.hpp"
 #include "app/process/browser.hpp"
 #include "app/process/terminal.hpp"
+#include "app/run_options.hpp"
 #include "core/view/record_drawing.hpp"
 #include "core/view/render.hpp"
 

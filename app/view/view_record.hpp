@@ -3,7 +3,7 @@
 #include <atomic>
 #include <string>
 
-#include "app/options.hpp"
+#include "app/run_options.hpp"
 
 namespace tandem::app {
 

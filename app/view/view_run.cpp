@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <utility>
 
-#include "app/options.hpp"
 #include "app/outputs/observers.hpp"
 #include "app/process/terminal.hpp"
 #include "app/robots/real_robots.hpp"
+#include "app/run_options.hpp"
 #include "core/live/controls.hpp"
 #include "core/live/inspection.hpp"
 #include "hal/robot_kind.hpp"

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "app/options.hpp"
+#include "app/run_options.hpp"
 #include "core/live/live_run.hpp"
 #include "core/sim/world.hpp"
 #include "hal/result.hpp"
