@@ -25,7 +25,7 @@ set(CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS "gnuplot-nox, ffmpeg, povray")
 set(CPACK_DEBIAN_DEV_PACKAGE_NAME libtandem-dev)
 set(CPACK_COMPONENT_DEV_DESCRIPTION "Headers and CMake files for controllers, hooks, plug-ins, and programs that hold worlds of their own:
 find_package(Tandem), find_package(Tandem COMPONENTS core).")
-set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS "cmake, libeigen3-dev, librandom123-dev, nlohmann-json3-dev")
+set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS "cmake, libeigen3-dev, librandom123-dev")
 
 if(TARGET tandem_python)
   list(APPEND CPACK_COMPONENTS_ALL python)

@@ -103,7 +103,7 @@ hal::Status write(const Report& report, const std::filesystem::path& folder) {
   const auto pdf = core::render_pages(sheets_of(report, figures));
   if (!pdf.ok()) return pdf.error();
   for (const auto& [name, text] : {std::pair<std::string, std::string>{"validation.html", page_of(report)},
-                                   {"validation.json", json_of(report).dump(1) + "\n"},
+                                   {"validation.json", hal::to_text(json_of(report), 1) + "\n"},
                                    {"validation.pdf", pdf.value()}}) {
     if (const hal::Status done = hal::write_whole_file((folder / name).string(), "report", text); !done.ok())
       return done;

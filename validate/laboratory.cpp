@@ -14,6 +14,7 @@
 #include <thread>
 #include <unistd.h>
 
+#include "hal/input_file.hpp"
 #include "hal/processor_waits.hpp"
 #include "hal/program.hpp"
 #include "validate/scene.hpp"
@@ -195,8 +196,10 @@ hal::Result<TrueTrack> Laboratory::log_of(const std::string& id) const {
   TrueTrack track;
   for (std::string line; std::getline(in, line);) {
     if (line.find("\"pose\"") == std::string::npos) continue;
-    const hal::Json json = hal::Json::parse(line, nullptr, false);
-    if (!json.is_object() || json.value("event", "") != "pose") continue;
+    const auto parsed = hal::parse_json_object(line);
+    if (!parsed.ok()) continue;
+    const hal::Json& json = parsed.value();
+    if (json.value("event", "") != "pose") continue;
     track.push_back({json.value("taken_t_ns", 0.0), json.value("x_m", 0.0), json.value("y_m", 0.0),
                      json.value("heading_rad", 0.0)});
   }
@@ -210,9 +213,10 @@ std::vector<double> Laboratory::told_of(const std::string& id) const {
   std::vector<double> times;
   for (std::string line; std::getline(in, line);) {
     if (line.find("\"wheels\"") == std::string::npos) continue;
-    const hal::Json json = hal::Json::parse(line, nullptr, false);
-    if (json.is_object() && json.value("event", "") == "wheels" && json.value("changed", false))
-      times.push_back(json.value("t_ns", 0.0));
+    const auto parsed = hal::parse_json_object(line);
+    if (!parsed.ok()) continue;
+    const hal::Json& json = parsed.value();
+    if (json.value("event", "") == "wheels" && json.value("changed", false)) times.push_back(json.value("t_ns", 0.0));
   }
   return times;
 }
@@ -239,10 +243,8 @@ hal::Result<hal::Json> Laboratory::fit() const {
   const std::filesystem::path report = folder_ / "fit.json";
   const auto done = output_of({"fit", (folder_ / "run.record").string(), "--report", report.string()});
   if (!done.ok()) return done.error();
-  std::ifstream in(report);
-  hal::Json json = hal::Json::parse(in, nullptr, false);
-  if (!json.is_object()) return hal::Error{"tandem fit wrote no report"};
-  return json;
+  const auto text = hal::read_whole_file(report.string(), "the report of tandem fit");
+  return text.ok() ? hal::parse_json_object(text.value()) : text.error();
 }
 
 void in_fair_trials(Part& part, const MixedRun& run, const std::function<void(Part&, const Laboratory&)>& judge) {

@@ -105,7 +105,7 @@ Json Viewer::set_layers(const Json& command) {
     return refusal("there is no layer '" + name + "'; there are: " + (all.empty() ? "none" : all));
   }
   if (const auto robots = command.find("robots"); robots != command.end()) {
-    all_robots_ = robots->is_string() && robots->get_ref<const std::string&>() == "*";
+    all_robots_ = robots->is_string() && robots->text() == "*";
     const auto ids = all_robots_ ? std::vector<std::string>() : text_list(command, "robots");
     if (!ids.ok()) return refusal(ids.error().message + " and not \"*\"");
     layer_robots_ = ids.value();

@@ -38,11 +38,10 @@ hal::Result<ViewerCommand> read_viewer_text(std::string_view text) {
   if (name == command.whole.end() || !name->is_string()) return hal::Error{"it has no text \"do\""};
   command.name = name->get<std::string>();
   if (const auto id = command.whole.find("id"); id != command.whole.end()) {
-    const bool good = id->is_null() || id->is_number() ||
-                      (id->is_string() && id->get_ref<const std::string&>().size() <= kMostIdBytes);
+    const bool good = id->is_null() || id->is_number() || (id->is_string() && id->text().size() <= kMostIdBytes);
     if (!good) return hal::Error{"its \"id\" is neither a number nor a short text"};
     command.id = *id;
-    command.whole.erase(id);
+    command.whole.erase("id");
   }
   return command;
 }

@@ -118,7 +118,7 @@ hal::Result<Board> read_board(const std::string& path) {
     board.size_m = json.at("size_m").get<double>();
     board.gap_m = json.at("gap_m").get<double>();
     board.first = json.at("first").get<std::size_t>();
-  } catch (const hal::Json::exception&) {
+  } catch (const hal::JsonError&) {
     return hal::Error{"'" + path + "' is no file of a board"};
   }
   const auto tags = apriltag::count_of_tags(board.family);
@@ -132,7 +132,7 @@ hal::Result<Board> read_board(const std::string& path) {
 hal::Status write_board(const std::string& path, const Board& board) {
   const hal::Json json{{"family", board.family}, {"columns", board.columns}, {"rows", board.rows},
                        {"size_m", board.size_m}, {"gap_m", board.gap_m},     {"first", board.first}};
-  return hal::write_whole_file(path, "board", json.dump(2) + "\n");
+  return hal::write_whole_file(path, "board", hal::to_text(json, 2) + "\n");
 }
 
 }  // namespace tandem::bridges::calibration

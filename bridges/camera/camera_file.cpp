@@ -78,7 +78,7 @@ hal::Status write_camera_file(const std::string& path, const CameraFile& file) {
                      {"quaternion_wxyz", hal::array_of(file.place->q_WC)},
                      {"residual_px", file.place_residual_px}};
   }
-  return hal::write_whole_file(path, "camera", json.dump(2) + "\n");
+  return hal::write_whole_file(path, "camera", hal::to_text(json, 2) + "\n");
 }
 
 hal::Result<Camera> read_camera(const std::string& path) {

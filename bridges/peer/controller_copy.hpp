@@ -31,7 +31,7 @@ struct ControllerCopy {
 };
 
 hal::Json to_json(const ControllerCopy& copy);
-/// @throws hal::Json::exception: a member of another type
+/// @throws hal::JsonError: a member of another type
 ControllerCopy controller_copy_from(const hal::Json& json);
 
 /// Of two copies, for people; parts that there are none of are empty.

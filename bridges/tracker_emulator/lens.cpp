@@ -44,7 +44,7 @@ hal::Result<Lens> read_lens(const std::string& path) {
     lens.p_W = hal::vector_of(place.at("position_m").get<std::array<double, 3>>());
     lens.axes_W =
         hal::quaternion_of(place.at("quaternion_wxyz").get<std::array<double, 4>>()).normalized().toRotationMatrix();
-  } catch (const hal::Json::exception& e) {
+  } catch (const hal::JsonError& e) {
     return hal::Error{"--camera: '" + path + "' is no file of a camera that hangs somewhere: " + e.what()};
   }
   if (lens.width == 0 || lens.height == 0 || lens.width > 16384 || lens.height > 16384)

@@ -35,7 +35,7 @@ bool read_stamp(const hal::Json& json, std::optional<std::int64_t>& stamp_ns) {
 bool read_name(const hal::Json& json, Sighting& sighting) {
   const auto at = json.find("id");
   if (at == json.end()) return false;
-  if (at->is_string()) return sighting.set_name(at->get_ref<const std::string&>());
+  if (at->is_string()) return sighting.set_name(at->text());
   return at->is_number_unsigned() && sighting.set_name(std::to_string(at->get<std::uint64_t>()));
 }
 

@@ -42,9 +42,9 @@ hal::Status read_count(const Json& object, const char* name, const std::string& 
 }
 
 hal::Status only(const Json& object, const std::string& where, std::initializer_list<std::string_view> known) {
-  for (const auto& member : object.items()) {
-    if (std::find(known.begin(), known.end(), member.key()) == known.end())
-      return error(where, "has '" + member.key() + "', which is unknown");
+  for (const auto& [name, value] : object.items()) {
+    if (std::find(known.begin(), known.end(), name) == known.end())
+      return error(where, "has '" + name + "', which is unknown");
   }
   return {};
 }

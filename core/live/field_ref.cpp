@@ -46,7 +46,8 @@ hal::Result<FieldRef> read_field_ref(const hal::Json& json) {
   if (!of_port) ref.port.clear();
   const auto index = json.find("index");
   if (index != json.end()) {
-    if (!index->is_number_integer() || *index < 0) return hal::Error{"\"index\" is a whole number from 0 on"};
+    if (!index->is_number_integer() || index->get<std::int64_t>() < 0)
+      return hal::Error{"\"index\" is a whole number from 0 on"};
     ref.index = index->get<std::size_t>();
   }
   return ref;

@@ -175,7 +175,7 @@ hal::Result<Json> Timeline::perform(Json& action) {
   if (!is_reset(action)) return touch(world_, action);
   const auto seed = action.find("seed");
   if (seed == action.end() || seed->is_null()) action["seed"] = world_.seed();
-  if (!action["seed"].is_number_integer() || action["seed"] < 0)
+  if (!action["seed"].is_number_integer() || action["seed"].get<std::int64_t>() < 0)
     return hal::Error{"\"seed\" is a whole number from 0 on"};
   const auto wanted = action["seed"].get<std::uint64_t>();
   if (const hal::Status begun = world_.reset(wanted); !begun.ok()) return begun.error();

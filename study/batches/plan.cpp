@@ -39,7 +39,8 @@ hal::Status write_plan(const std::string& folder, const BatchPlan& plan) {
   hal::Json json;
   json["format"] = kFormat;
   json["program"] = plan.version.program;
-  json["files"] = plan.version.files;
+  json["files"] = hal::Json::array();
+  for (const auto& [name, digest] : plan.version.files) json["files"].push_back({name, digest});
   json["batches"] = plan.batches;
   return hal::write_whole_file(file_in(folder), "plan of the batches", hal::to_text(json) + "\n");
 }
@@ -55,10 +56,11 @@ hal::Result<BatchPlan> read_plan(const std::string& folder) {
       return hal::Error{"'" + path + "' was written by another release of this program"};
     BatchPlan plan;
     plan.version.program = json->at("program").get<std::string>();
-    json->at("files").get_to(plan.version.files);
-    json->at("batches").get_to(plan.batches);
+    for (const hal::Json& file : json->at("files"))
+      plan.version.files.emplace_back(file.at(0).get<std::string>(), file.at(1).get<std::string>());
+    plan.batches = json->at("batches").get<decltype(plan.batches)>();
     return plan;
-  } catch (const hal::Json::exception& problem) {
+  } catch (const hal::JsonError& problem) {
     return hal::Error{"'" + path + "' is no plan of batches: " + problem.what()};
   }
 }

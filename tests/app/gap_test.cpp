@@ -34,7 +34,7 @@ TEST(RealityGap, IsClosedByWhatARecordTells) {
       output_of(folder, {"fit", "r.record", "--robots", "ep1,ep2", "-o", "fitted.xml", "--report", "fit.json"});
   EXPECT_NE(told.find("left wheel"), std::string::npos) << told;
   EXPECT_NE(told.find("cannot be told"), std::string::npos) << "it has no encoders";
-  const hal::Json fit = hal::Json::parse(text_of(folder.path() / "fit.json"));
+  const hal::Json fit = hal::parse_json(text_of(folder.path() / "fit.json")).value();
   for (const hal::Json& robot : fit["robots"]) {
     const hal::Json& wheels = robot["wheels"];
     EXPECT_NEAR(wheels["left"]["value"].get<double>(), 0.97, 0.01);
@@ -48,7 +48,7 @@ TEST(RealityGap, IsClosedByWhatARecordTells) {
   const auto apart = [&](const std::vector<std::string>& more) {
     std::vector<std::string> arguments = {"gap", "r.record", "--robots", "ep1,ep2", "--report", "-"};
     arguments.insert(arguments.end(), more.begin(), more.end());
-    return hal::Json::parse(output_of(folder, arguments))["median"]["apart_m"].get<double>();
+    return hal::parse_json(output_of(folder, arguments)).value()["median"]["apart_m"].get<double>();
   };
   EXPECT_EQ(apart({}), 0.0);
   folder.write("plain.xml", "<fitted version=\"1\"/>");

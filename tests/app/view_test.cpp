@@ -70,7 +70,7 @@ class Watching {
         note(received->bytes);
         continue;
       }
-      Json json = Json::parse(received->bytes);
+      Json json = hal::parse_json(received->bytes).value();
       if (done(json)) return json;
     }
     return Json::object();
@@ -240,7 +240,7 @@ TEST(View, AScriptThatIsChangedIsReadAnewAndRepeatedFromTheRecord) {
   viewer.until([](const Json& json) { return json["type"] == "hello"; });
   const auto said = [&](const std::string& text) {
     const Json found = viewer.until(
-        [&](const Json& json) { return json["type"] == "log" && json.dump().find(text) != std::string::npos; });
+        [&](const Json& json) { return json["type"] == "log" && hal::to_text(json).find(text) != std::string::npos; });
     EXPECT_FALSE(found.empty()) << text << "\n" << view.errors();
   };
   EXPECT_EQ(viewer.ask(R"({"do":"step","ticks":20})")["ok"], true);
@@ -306,7 +306,7 @@ TEST(View, AreasOfARecordAreThoseOfItsRun) {
   EXPECT_EQ(recorded[2]["id"], "dock");
   EXPECT_EQ(recorded[2]["max_speed"], 0.05);
   EXPECT_GT(recorded[0]["corners"].size(), 2U);
-  EXPECT_GT(recorded[1]["to"], recorded[1]["from"]);
+  EXPECT_GT(recorded[1]["to"].get<double>(), recorded[1]["from"].get<double>());
   std::vector<std::string> live = {"view", config("footbot_safety.xml")};
   live.insert(live.end(), simulated.begin(), simulated.end());
   EXPECT_EQ(areas_of(live), recorded);
@@ -389,7 +389,7 @@ TEST(View, WhereAProjectorShowsTheArenaIsKeptWithTheUserNotBesideTheExperiment) 
     Tandem view({"view", "e.xml", "--projector", "--no-browser", "--paused"}, folder.path());
     Watching viewer(address_of(view));
     const Json told = viewer.until([](const Json& json) { return json["type"] == "projector"; });
-    EXPECT_EQ(told["corners"], first ? Json(nullptr) : Json::parse(corners));
+    EXPECT_EQ(told["corners"], first ? Json(nullptr) : hal::parse_json(corners).value());
     if (first) {
       EXPECT_EQ(viewer.ask(R"({"do":"projector","corners":)" + corners + "}")["ok"], true);
     }

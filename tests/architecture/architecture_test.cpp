@@ -61,6 +61,14 @@ std::string lines_that_name(const std::regex& what, const std::vector<std::strin
   return found;
 }
 
+TEST(Architecture, OneSourceIncludesNlohmann) {
+  EXPECT_EQ(lines_that_name(std::regex("nlohmann"),
+                            {"app", "bench", "bridges", "controllers", "core", "examples", "hal", "hooks", "library",
+                             "mixed_reality", "python", "study", "validate", "window"},
+                            std::regex("^hal/json/(json_text\\.cpp|CMakeLists\\.txt)$")),
+            "");
+}
+
 TEST(Architecture, OnlyItsOwnFoldersAndTheCatalogsPagesNameARobot) {
   EXPECT_EQ(lines_that_name(std::regex("e-?puck|foot-?bot|eye-?bot|thymio", std::regex::icase),
                             {"app", "core", "mixed_reality"}, std::regex("^app/.*catalog\\.cpp$")),

@@ -22,7 +22,7 @@ void expect(bool condition) {
 
 int depth_of(const hal::Json& json) {
   int most = 0;
-  if (json.is_structured()) {
+  if (json.is_array() || json.is_object()) {
     for (const hal::Json& item : json) most = std::max(most, depth_of(item));
     ++most;
   }

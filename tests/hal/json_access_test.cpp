@@ -8,8 +8,9 @@ namespace {
 
 /// As others may have written it.
 const Json kWritten =
-    Json::parse(R"({"text": "a", "number": -1.5, "whole": -3, "count": 18446744073709551615, "yes": true,
-  "no": false, "null": null, "list": ["b", 4, null, -2.5], "object": {"in": 1}})");
+    parse_json(R"({"text": "a", "number": -1.5, "whole": -3, "count": 18446744073709551615, "yes": true,
+  "no": false, "null": null, "list": ["b", 4, null, -2.5], "object": {"in": 1}})")
+        .value();
 
 TEST(JsonAccess, GivesWhatIsThere) {
   EXPECT_EQ(text_of(kWritten, "text", "other"), "a");

@@ -1,8 +1,11 @@
 #include "hal/json/json.hpp"
 
+#include <array>
 #include <cmath>
 #include <gtest/gtest.h>
 #include <limits>
+#include <map>
+#include <vector>
 
 namespace tandem::hal {
 namespace {
@@ -15,6 +18,101 @@ TEST(JsonText, KeepsTheOrderAndWritesOneLine) {
 TEST(JsonText, WritesUtf8AndReplacesWhatIsNone) {
   EXPECT_EQ(to_text(Json("Zürich")), "\"Zürich\"");
   EXPECT_EQ(to_text(Json("Z\xFCrich")), "\"Z\xEF\xBF\xBDrich\"");
+}
+
+TEST(JsonValue, OfAListOfPairsIsAnObjectAndOfAnyOtherListAnArray) {
+  EXPECT_EQ(to_text(Json{{"a", 1}, {"b", {{"c", nullptr}}}}), R"({"a":1,"b":{"c":null}})");
+  EXPECT_EQ(to_text(Json{{"a", 1}, {"b"}}), R"([["a",1],["b"]])");
+  EXPECT_EQ(to_text(Json{{1, 2}, {3, 4}}), "[[1,2],[3,4]]");
+  EXPECT_EQ(to_text(Json{{"a", 1}, {"a", 2}}), R"({"a":1})");
+  EXPECT_EQ(to_text(Json::array({{"a", 1}})), R"([["a",1]])");
+  EXPECT_TRUE(Json{}.is_null());
+}
+
+TEST(JsonValue, IsMadeOfContainers) {
+  EXPECT_EQ(to_text(Json(std::vector<std::vector<int>>{{1}, {}, {2, 3}})), "[[1],[],[2,3]]");
+  EXPECT_EQ(to_text(Json(std::map<std::string, double>{{"b", 1.0}, {"a", 0.5}})), R"({"a":0.5,"b":1.0})");
+  EXPECT_EQ(to_text(Json(std::array<std::string, 2>{"x", "y"})), R"(["x","y"])");
+  EXPECT_EQ(to_text(Json(std::string_view("text"))), "\"text\"");
+}
+
+TEST(JsonValue, GetsMembersAndElementsAsTheyAreNamed) {
+  Json json;
+  json["list"][2] = 7;
+  json["inner"]["text"] = "x";
+  json["inner"].push_back({"more", true});
+  json["list"].emplace_back("end");
+  EXPECT_EQ(to_text(json), R"({"list":[null,null,7,"end"],"inner":{"text":"x","more":true}})");
+  json.erase("list");
+  json.erase("nothing");
+  json.update({{"inner", 1}, {"z", 2}});
+  EXPECT_EQ(to_text(json), R"({"inner":1,"z":2})");
+  EXPECT_TRUE(json.contains("z"));
+  EXPECT_EQ(json.find("y"), json.end());
+  EXPECT_EQ(*json.find("z"), 2);
+  EXPECT_EQ(json.value("z", 0.0), 2.0);
+  EXPECT_EQ(json.value("y", "none"), "none");
+}
+
+TEST(JsonValue, IsCopiedWhole) {
+  const Json json{{"a", {1, {{"b", "text"}}}}};
+  Json copy = json;
+  copy["a"][1]["b"] = "other";
+  EXPECT_EQ(to_text(json), R"({"a":[1,{"b":"text"}]})");
+  EXPECT_NE(copy, json);
+  copy = json;
+  EXPECT_EQ(copy, json);
+  Json of_itself = Json::array();
+  of_itself.push_back(of_itself);
+  of_itself.push_back(of_itself);
+  EXPECT_EQ(to_text(of_itself), "[[],[[]]]");
+}
+
+TEST(JsonValue, ComparesNumbersAsNumbersAndTextsAsTexts) {
+  EXPECT_EQ(Json(1), Json(1U));
+  EXPECT_EQ(Json(1), 1.0);
+  EXPECT_NE(Json(-1), Json(1));
+  EXPECT_EQ(Json("a"), std::string("a"));
+  EXPECT_NE(Json(1), "1");
+  EXPECT_NE(Json(true), 1);
+  EXPECT_NE(Json(nullptr), Json::object());
+  EXPECT_EQ(Json(), nullptr);
+  EXPECT_NE(Json("text"), nullptr);
+}
+
+TEST(JsonValue, IsReadAsWhatItIsOrNotAtAll) {
+  const Json json{{"text", "x"}, {"numbers", {1, 2.5, 3U}}};
+  EXPECT_EQ(json["numbers"].get<std::vector<double>>(), (std::vector<double>{1.0, 2.5, 3.0}));
+  EXPECT_EQ((json["numbers"].get<std::array<int, 3>>()), (std::array<int, 3>{1, 2, 3}));
+  EXPECT_EQ((Json{{"a", 1}, {"b", 2}}.get<std::map<std::string, int>>()),
+            (std::map<std::string, int>{{"a", 1}, {"b", 2}}));
+  EXPECT_THROW((void)(json["numbers"].get<std::map<std::string, int>>()), JsonError);
+  EXPECT_THROW((void)json["numbers"].get<std::vector<std::string>>(), JsonError);
+  EXPECT_THROW((void)(json["numbers"].get<std::array<int, 4>>()), JsonError);
+  EXPECT_THROW((void)json["text"].get<double>(), JsonError);
+  EXPECT_THROW((void)json["text"].get<bool>(), JsonError);
+  EXPECT_THROW((void)json.at("none"), JsonError);
+  EXPECT_THROW((void)json["numbers"].at(3), JsonError);
+  EXPECT_THROW((void)json["numbers"].value("name", 1), JsonError);
+  EXPECT_THROW(Json("x").push_back(1), JsonError);
+  EXPECT_THROW(Json(1)["name"] = 1, JsonError);
+}
+
+TEST(JsonValue, IsWalkedThroughWhateverItIs) {
+  const auto count = [](const Json& json) {
+    int n = 0;
+    for (const Json& one : json) n += one.is_null() ? 100 : 1;
+    return n;
+  };
+  EXPECT_EQ(count(nullptr), 0);
+  EXPECT_EQ(count("text"), 1);
+  EXPECT_EQ(count(Json::array()), 0);
+  EXPECT_EQ(count({1, 2}), 2);
+  EXPECT_EQ(count({{"a", 1}, {"b", nullptr}}), 101);
+  std::string names;
+  const Json object{{"a", 1}, {"b", 2}};
+  for (const auto& [name, value] : object.items()) names += name + to_text(value);
+  EXPECT_EQ(names, "a1b2");
 }
 
 TEST(JsonObject, ReadsWhatTheWriterWrites) {

@@ -9,6 +9,7 @@
 #include <thread>
 #include <vector>
 
+#include "hal/input_file.hpp"
 #include "hal/json/json.hpp"
 #include "hal/program.hpp"
 #include "tests/checkout.hpp"
@@ -50,10 +51,10 @@ hal::Json fitted(std::uint64_t number, const std::filesystem::path& folder) {
   const auto ended = hal::run_program(std::string(test::kBuildDir) + "/bin/tandem",
                                       {"fit", record.string(), "--report", report.string()});
   EXPECT_TRUE(ended.ok() && ended.value().code == 0) << (ended.ok() ? ended.value().errors : ended.error().message);
-  std::ifstream in(report);
-  const hal::Json told = hal::Json::parse(in, nullptr, false);
+  const auto text = hal::read_whole_file(report.string(), "the report");
+  const auto told = hal::parse_json_object(text.ok() ? text.value() : "");
   std::filesystem::remove(record);
-  return told.is_object() ? told["robots"][0]["wheels"] : hal::Json::object();
+  return told.ok() ? told.value()["robots"][0]["wheels"] : hal::Json::object();
 }
 
 std::uint64_t robots() {
@@ -71,7 +72,8 @@ TEST(HiddenRobots, AreFoundWithinTheBoundsThatFitTells) {
     std::vector<double> half_widths;
     for (std::size_t i = 0; i < told.size(); ++i) {
       if (!told[i].contains(wanted.name) || !told[i][wanted.name].value("observable", false)) continue;
-      const double low = told[i][wanted.name]["low_95"], high = told[i][wanted.name]["high_95"];
+      const double low = told[i][wanted.name]["low_95"].get<double>(),
+                   high = told[i][wanted.name]["high_95"].get<double>();
       const double truth = wanted.truth(draw(i));
       ++n;
       held += low <= truth && truth <= high ? 1 : 0;

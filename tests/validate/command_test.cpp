@@ -21,7 +21,7 @@ TEST(ValidateCommand, WritesOneReportAndEndsByItsVerdicts) {
   std::filesystem::remove_all(folder);
   const int ended =
       std::system((std::string(test::kBuildDir) + "/bin/tandem" + " validate --short -o " + folder.string()).c_str());
-  const hal::Json report = hal::Json::parse(contents(folder / "validation.json"));
+  const hal::Json report = hal::parse_json(contents(folder / "validation.json")).value();
   const int failed = report["count"]["not_met"].get<int>() + report["count"]["not_made"].get<int>();
   EXPECT_EQ(WEXITSTATUS(ended), failed == 0 ? 0 : 4);
   EXPECT_GE(report["count"]["met"].get<int>(), 100);

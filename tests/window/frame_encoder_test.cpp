@@ -50,7 +50,7 @@ std::string types_of(const std::vector<Message>& messages) {
   for (const Message& message : messages) {
     types += types.empty() ? "" : " ";
     types += message.binary ? std::to_string(read_at<std::uint32_t>(*message.bytes, 0))
-                            : Json::parse(*message.bytes)["type"].get<std::string>();
+                            : hal::parse_json(*message.bytes).value()["type"].get<std::string>();
   }
   return types;
 }
@@ -167,12 +167,12 @@ TEST(FrameEncoder, ObjectsAreSentWhenTheyMoved) {
   };
   const auto first = show(0.0);
   EXPECT_EQ(types_of(first), "scene marks objects 1");
-  EXPECT_EQ(Json::parse(*first[0].bytes)["floor"], "/floor.png?v=1&token=t");
-  EXPECT_EQ(Json::parse(*first[2].bytes)["poses"].size(), 2U);
+  EXPECT_EQ(hal::parse_json(*first[0].bytes).value()["floor"], "/floor.png?v=1&token=t");
+  EXPECT_EQ(hal::parse_json(*first[2].bytes).value()["poses"].size(), 2U);
   EXPECT_EQ(types_of(show(0.0)), "1");
   const auto moved = show(0.5);
   EXPECT_EQ(types_of(moved), "objects 1");
-  EXPECT_EQ(hal::to_text(Json::parse(*moved[0].bytes)["poses"]), "[[0,0.5,0.0,0.0,0.0]]");
+  EXPECT_EQ(hal::to_text(hal::parse_json(*moved[0].bytes).value()["poses"]), "[[0,0.5,0.0,0.0,0.0]]");
 }
 
 TEST(FrameEncoder, LayersGoToWhoLooksAtThem) {

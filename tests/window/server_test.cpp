@@ -55,7 +55,7 @@ Json next_text(Client& client, const std::string& type) {
     if (!received) continue;
     if (received->kind == Client::Received::Kind::Close) break;
     if (received->kind != Client::Received::Kind::Text) continue;
-    Json json = Json::parse(received->bytes);
+    Json json = hal::parse_json(received->bytes).value();
     if (json["type"] == type) return json;
   }
   return {};
@@ -174,7 +174,7 @@ TEST(Window, AViewerGetsTheFrameThatIsShownAndWhatWasTold) {
           frame = true;
           EXPECT_EQ(received->bytes.size(), 32U + 3U * 16U);
         } else {
-          const Json json = Json::parse(received->bytes);
+          const Json json = hal::parse_json(received->bytes).value();
           state = state || (json["type"] == "state" && json["tick"] == 5 && json["viewers"] == 1);
           log = log || (json["type"] == "log" && json["entries"].size() == 2);
         }

@@ -28,7 +28,7 @@ Json press(const char* owner, const char* control) {
 TEST(Controls, AreListedWithUnitsAndRanges) {
   auto world = make(knobs());
   const Json all = controls_json(*world.world);
-  ASSERT_EQ(all.size(), 8U) << all.dump();
+  ASSERT_EQ(all.size(), 8U) << hal::to_text(all);
   EXPECT_EQ(all[0], (Json{{"owner", "hook:knobs"},
                           {"name", "size"},
                           {"kind", "number"},

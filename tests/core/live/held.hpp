@@ -103,7 +103,7 @@ class Held {
   }
   std::uint64_t hash_at(hal::Tick tick) {
     const hal::Json gone = ask({{"do", "go_to"}, {"tick", tick}});
-    EXPECT_EQ(gone["ok"], true) << gone.dump();
+    EXPECT_EQ(gone["ok"], true) << hal::to_text(gone);
     return hash();
   }
   void end() {

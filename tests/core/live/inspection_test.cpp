@@ -16,7 +16,7 @@ const Json& named(const Json& list, const std::string& name) {
   for (const Json& entry : list) {
     if (entry["name"] == name) return entry;
   }
-  ADD_FAILURE() << "no " << name << " in " << list.dump();
+  ADD_FAILURE() << "no " << name << " in " << hal::to_text(list);
   return none;
 }
 

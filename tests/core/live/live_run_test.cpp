@@ -158,7 +158,7 @@ TEST(LiveRun, AnswersWhatMakesNoSense) {
         Json{{"do", "stop_when"}, {"robot", "gone"}, {"role", "pose"}, {"field", "x"}, {"op", "<"}, {"value", 1}},
         Json{{"do", "history"}, {"role", "pose"}, {"field", "x"}},
         Json{{"do", "history"}, {"robot", "ep1"}, {"role", "pose"}, {"field", "x"}, {"every", 0}}}) {
-    EXPECT_NE(run.error_of(command), "") << command.dump();
+    EXPECT_NE(run.error_of(command), "") << hal::to_text(command);
   }
   EXPECT_THAT(run.error_of({{"do", "pla"}}), HasSubstr("Did you mean 'play'"));
   EXPECT_EQ(run.hash(), before);
@@ -173,7 +173,7 @@ TEST(LiveRun, RefusesWhatNobodyCanCarryOutAnyMore) {
   for (int i = 0; i < 1005; ++i) {
     live.post({{"do", "pause"}}, [&](const Json& answer) {
       ++refused;
-      errors.push_back(answer["error"]);
+      errors.push_back(answer["error"].text());
     });
   }
   EXPECT_EQ(refused, 5);

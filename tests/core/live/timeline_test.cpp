@@ -83,7 +83,7 @@ TEST(Timeline, TakesAnotherWayWhenSomebodyTouchesThePast) {
   run.walk(10);
   run.hash_at(15);
   const Json touched = run.ask({{"do", "halt"}, {"robot", "ep3"}});
-  EXPECT_EQ(touched["dropped"], 1) << touched.dump();
+  EXPECT_EQ(touched["dropped"], 1) << hal::to_text(touched);
   EXPECT_EQ(run.live().state().latest, 15);
   EXPECT_THAT(run.error_of({{"do", "go_to"}, {"tick", 20}}), HasSubstr("between 0, the first, and 15, the latest"));
   run.walk(15);
@@ -108,7 +108,7 @@ TEST(Timeline, UndoesTheLastTouch) {
   ASSERT_EQ(run.error_of(move_to("ep1", 1.4, 1.3)), "");  // the same drag
   EXPECT_NE(run.hash(), before);
   const Json undone = run.ask({{"do", "undo"}});
-  EXPECT_EQ(undone["undone"]["y"], 1.3) << undone.dump();
+  EXPECT_EQ(undone["undone"]["y"], 1.3) << hal::to_text(undone);
   EXPECT_EQ(run.hash(), before);
   EXPECT_THAT(run.error_of({{"do", "undo"}}), HasSubstr("nothing to undo before tick 10"));
   run.walk(5);

@@ -134,7 +134,7 @@ TEST_F(Touches, ThatMakeNoSenseChangeNothing) {
         Json{{"do", "set"}, {"owner", "hook:none"}, {"control", "x"}, {"value", 1}},
         Json{{"do", "set"}, {"owner", 1}},
         Json{{"do", "press"}, {"owner", "robot:z"}, {"control", "x"}}}) {
-    EXPECT_NE(error_of(command), "") << command.dump();
+    EXPECT_NE(error_of(command), "") << hal::to_text(command);
   }
   EXPECT_EQ(world().state_hash(), before);
 }

@@ -11,7 +11,7 @@ namespace {
 RecordedRun curve(double turn_rad, double x_m, double scale, double heading_off = 0.0) {
   RecordedRun run;
   run.ticks = 101;
-  run.scene = hal::Json::parse(R"({"arena": {"min_x": -4, "min_y": -4, "max_x": 4, "max_y": 4}})");
+  run.scene = hal::parse_json(R"({"arena": {"min_x": -4, "min_y": -4, "max_x": 4, "max_y": 4}})").value();
   for (int k = 0; k < 2; ++k) {
     RecordedRobot& robot = run.robots.emplace_back();
     robot.id = "r" + std::to_string(k);

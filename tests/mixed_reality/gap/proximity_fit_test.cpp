@@ -58,10 +58,11 @@ TEST(ProximityFit, SaysWhenNothingWasNear) {
 
 TEST(Surroundings, AreWallsCylindersAndTheOtherRobots) {
   RecordedRun run;
-  run.scene = hal::Json::parse(R"({"objects": [
+  run.scene = hal::parse_json(R"({"objects": [
     {"x": 1.0, "y": 0.0, "heading": 0.0, "size_x": 1.0, "size_y": 4.0, "movable": false},
     {"x": 0.0, "y": -0.3, "radius": 0.1, "movable": false},
-    {"x": 0.0, "y": 0.2, "radius": 0.1, "movable": true}]})");
+    {"x": 0.0, "y": 0.2, "radius": 0.1, "movable": true}]})")
+                  .value();
   run.ticks = 1;
   run.robots.resize(2);
   for (RecordedRobot& robot : run.robots) robot.ticks.resize(1);
