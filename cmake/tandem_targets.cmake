@@ -1,7 +1,6 @@
 # The three kinds of target. What a folder may include is written once, in DEPS; tests/architecture reads the same lists.
 include(GNUInstallDirs)
 set_property(GLOBAL PROPERTY TANDEM_ARCHITECTURE "")
-set_property(GLOBAL PROPERTY TANDEM_TESTS 0)
 
 # tandem_folder_of(<out>): the folder of the calling CMakeLists, relative to the top, e.g. "core/space".
 function(tandem_folder_of out)
@@ -154,12 +153,11 @@ function(tandem_test)
   endif()
   tandem_label_test(${arg_NAME} test_${arg_NAME} ${arg_LABELS})
   # Locks of robots in a folder of its own: the system gives the pseudo-terminal of a test's lost robot to another test's. A
-  # number, because sockets have short names.
-  get_property(number GLOBAL PROPERTY TANDEM_TESTS)
-  math(EXPR number "${number} + 1")
-  set_property(GLOBAL PROPERTY TANDEM_TESTS ${number})
-  file(MAKE_DIRECTORY ${CMAKE_BINARY_DIR}/run/${number})
-  set_property(TEST ${arg_NAME} APPEND PROPERTY ENVIRONMENT "XDG_RUNTIME_DIR=${CMAKE_BINARY_DIR}/run/${number}")
+  # digest, because sockets have short names, and numbers would change with the list of tests.
+  string(MD5 digest ${arg_NAME})
+  string(SUBSTRING ${digest} 0 6 digest)
+  file(MAKE_DIRECTORY ${CMAKE_BINARY_DIR}/run/${digest})
+  set_property(TEST ${arg_NAME} APPEND PROPERTY ENVIRONMENT "XDG_RUNTIME_DIR=${CMAKE_BINARY_DIR}/run/${digest}")
   if(TANDEM_SANITIZE MATCHES "address") # a hook plug-in and its test program both hold core: the program's is used
     set_property(TEST ${arg_NAME} APPEND PROPERTY ENVIRONMENT
       "ASAN_OPTIONS=detect_odr_violation=0" "LSAN_OPTIONS=suppressions=${PROJECT_SOURCE_DIR}/tests/sanitizers/lsan.supp")

@@ -72,11 +72,13 @@ class Folder {
   fs::path path_;
 };
 
-/// Locks of robots are made in a folder of this test program's own, unless it says where: what its programs leave
-/// behind when they are killed is nobody else's to stop.
+/// Locks of robots are made in a folder of this process's own, unless the test says where: what its programs leave
+/// behind when they are killed is nobody else's to stop, nor of the next run of the same test.
 inline void use_own_lock_folder() {
   static const Folder folder;
-  ::setenv("XDG_RUNTIME_DIR", folder.path().c_str(), 0);
+  const char* const set = std::getenv("XDG_RUNTIME_DIR");
+  const bool by_ctest = set != nullptr && std::string_view(set).starts_with(test::kBuildDir);
+  if (set == nullptr || by_ctest) ::setenv("XDG_RUNTIME_DIR", folder.path().c_str(), 1);
 }
 
 /// The words that start `tandem`: built for another architecture, it needs an emulator, and so does this test itself.
