@@ -160,137 +160,203 @@ void add_files(hal::Json& json, const std::string& experiment, hal::PluginLoader
   }
 }
 
-int drive_robot(const RobotOptions& options) {
-  if (!options.robot.empty()) return complain(kWrongUsage, "--robot goes with --link peer:…");
-  auto hub_faults = HubFaults::make(options.hub_faults);
+/// One robot with its controller, from the file to the report. What is made first is destroyed last.
+class LoneHub {
+ public:
+  explicit LoneHub(const RobotOptions& options) : options_(options) {}
+  /// @returns an exit code; kDone: go on with the next.
+  int read();
+  int prepare();
+  int connect();
+  void drive();
+  int end();
+
+ private:
+  int choose_robot();
+  int make_controller();
+  hal::Json report_so_far() const;
+  /// False: the run is over.
+  bool tick(hal::Tick tick);
+
+  const RobotOptions& options_;
+  const hal::Log log_{[](hal::Severity, std::string_view text) { say(text); }};
+  HubFaults hub_faults_;
+  hal::PluginLoader loader_ = make_loader();
+  ExperimentReading reading_{loader_, options_.plugins};
+  std::optional<GuardedRobots> guarded_;
+  std::optional<core::Scenario> scenario_;
+  core::RobotItem item_;
+  bridges::BridgeRequest request_;
+  std::optional<hal::OutputFile> report_;
+  const std::atomic<bool>* stop_ = nullptr;
+  std::optional<Watchdog> watchdog_;
+  FileController file_;
+  mixed_reality::MonotonicTime clock_;
+  std::optional<mixed_reality::LoneRobot> lone_;  // outlives the controller
+  std::unique_ptr<BridgedController> controller_;
+  std::optional<mixed_reality::Pacer> pacer_;
+  std::uint64_t freezes_ = 0;
+  std::string failure_;
+};
+
+int LoneHub::read() {
+  if (!options_.robot.empty()) return complain(kWrongUsage, "--robot goes with --link peer:…");
+  auto hub_faults = HubFaults::make(options_.hub_faults);
   if (!hub_faults.ok()) return complain(kBadInput, hub_faults.error().message);
-  hal::PluginLoader loader = make_loader();
-  ExperimentReading reading(loader, options.plugins);
-  if (!reading.open(options.file, {})) return kBadInput;
-  const hal::Log log([](hal::Severity, std::string_view text) { say(text); });
-  GuardedRobots guarded(true, loader.catalog(), log);  // before any thread
-  const auto scenario = reading.read();
-  if (!scenario) return kBadInput;
-  const core::RobotItem* found = only_robot(*scenario, options.link);
+  hub_faults_ = std::move(hub_faults).value();
+  if (!reading_.open(options_.file, {})) return kBadInput;
+  guarded_.emplace(true, loader_.catalog(), log_);  // before any thread
+  scenario_ = reading_.read();
+  if (!scenario_) return kBadInput;
+  return choose_robot();
+}
+
+int LoneHub::choose_robot() {
+  const core::RobotItem* found = only_robot(*scenario_, options_.link);
   if (found == nullptr) return kBadInput;
-  core::RobotItem item = *found;
-  if (!item.bridge) item.bridge = core::BridgeConfig{};
-  if (!options.link.empty()) item.bridge->link = options.link;
-  bridges::BridgeRequest request = mixed_reality::bridge_request(*scenario, item, scenario->seed.value_or(1));
-  if (request.robot_kind == nullptr) request.robot_kind = core::find_kind(*scenario, loader.catalog(), item.kind);
-  if (const hal::Status apart =
-          check_apart({{"report", options.report}}, input_files(loader.catalog(), request, *scenario));
-      !apart.ok())
-    return complain(kBadInput, apart.error().message);
-  auto report_file = open_report(options.report);
-  if (!report_file.ok()) return complain(kBadInput, report_file.error().message);
-  std::optional<hal::OutputFile>& report = report_file.value();
+  item_ = *found;
+  if (!item_.bridge) item_.bridge = core::BridgeConfig{};
+  if (!options_.link.empty()) item_.bridge->link = options_.link;
+  request_ = mixed_reality::bridge_request(*scenario_, item_, scenario_->seed.value_or(1));
+  if (request_.robot_kind == nullptr) request_.robot_kind = core::find_kind(*scenario_, loader_.catalog(), item_.kind);
+  const hal::Status apart =
+      check_apart({{"report", options_.report}}, input_files(loader_.catalog(), request_, *scenario_));
+  if (!apart.ok()) return complain(kBadInput, apart.error().message);
+  auto report = open_report(options_.report);
+  if (!report.ok()) return complain(kBadInput, report.error().message);
+  report_ = std::move(report).value();
+  const hal::Status& started = guarded_->started();
+  return started.ok() ? kDone : complain(kFailedRunning, started.error().message);
+}
 
-  if (!guarded.started().ok()) return complain(kFailedRunning, guarded.started().error().message);
-  const std::atomic<bool>& stop = catch_signals();
+int LoneHub::prepare() {
+  stop_ = &catch_signals();
   std::signal(SIGPIPE, SIG_IGN);  // who reads our output may end before us
-  Watchdog watchdog(options.step_timeout_s, stop);
-  request.permit = guarded.permit();
-  request.unix_clock = &hub_unix_ns;
-  auto made = mixed_reality::make_bridge(loader.catalog(), request, log);
+  watchdog_.emplace(options_.step_timeout_s, *stop_);
+  request_.permit = guarded_->permit();
+  request_.unix_clock = &hub_unix_ns;
+  auto made = mixed_reality::make_bridge(loader_.catalog(), request_, log_);
   if (!made.ok()) return complain(kBadInput, made.error().message);
-  bridges::RobotBridge& bridge = **made;
-  const core::SafetyConfig& safety = scenario->safety;
+  const core::SafetyConfig& safety = scenario_->safety;
   if (!safety.fences.empty() || !safety.keep_outs.empty() || !safety.zones.empty())
-    log.warning(
+    log_.warning(
         "<safety> is not heeded here, for nobody knows where the robot is: no fence, keep-out or zone holds it");
-  const auto read = read_file_controller(*scenario, item, item.id, loader);
+  auto read = read_file_controller(*scenario_, item_, item_.id, loader_);
   if (!read.ok()) return complain(kBadInput, read.error().message);
-  const FileController& file = read.value();
-  std::optional<mixed_reality::LoneRobot> lone;  // outlives the controller
-  std::unique_ptr<BridgedController> controller;
+  file_ = std::move(read).value();
   try {
-    ListedRobot listed(bridge.robot(), *file.config, loader.catalog());
-    controller = std::make_unique<BridgedController>(*file.type, listed, file.params.get(), scenario->ticks_per_second,
-                                                     log, file.who);
+    ListedRobot listed((*made)->robot(), *file_.config, loader_.catalog());
+    controller_ = std::make_unique<BridgedController>(*file_.type, listed, file_.params.get(),
+                                                      scenario_->ticks_per_second, log_, file_.who);
   } catch (const std::exception& e) {
-    return complain(kBadInput, file.who + " " + e.what());
+    return complain(kBadInput, file_.who + " " + e.what());
   }
-
-  mixed_reality::MonotonicTime clock;
-  guarded.add(bridge);
-  if (const hal::Status claimed = guarded.claim(); !claimed.ok())
+  guarded_->add(**made);
+  if (const hal::Status claimed = guarded_->claim(); !claimed.ok())
     return complain(kFailedRunning, claimed.error().message);
-  const hal::TimeNs tick_ns = hal::time_of_tick(1, scenario->ticks_per_second);
-  lone.emplace(item.id, std::move(made).value(),
-               mixed_reality::RealRobotParams{.rearm = mixed_reality::rearm_params(*item.bridge),
-                                              .frozen_after_ns = tick_ns + kFrozenAfter_ns},
-               tick_ns, log);
-  mixed_reality::RealRobot& real = lone->real();
-  bridge.start();
-  const hal::Status ready = connect(*lone, *item.bridge, tick_ns, clock, stop);
-  if (stop.load()) return interrupted_code();
-  if (!ready.ok()) return complain(kFailedRunning, "robot '" + item.id + "': " + ready.error().message);
-  rearm_asked() = false;  // the start arms it
+  const hal::TimeNs tick_ns = hal::time_of_tick(1, scenario_->ticks_per_second);
+  lone_.emplace(item_.id, std::move(made).value(),
+                mixed_reality::RealRobotParams{.rearm = mixed_reality::rearm_params(*item_.bridge),
+                                               .frozen_after_ns = tick_ns + kFrozenAfter_ns},
+                tick_ns, log_);
+  return kDone;
+}
 
-  mixed_reality::Pacer pacer(clock, scenario->ticks_per_second);
-  const double seconds = options.seconds.value_or(scenario->length_s);
-  const auto steps = static_cast<std::int64_t>(seconds * static_cast<double>(scenario->ticks_per_second) + 0.5);
-  std::string failure;
-  std::uint64_t freezes = guarded.freezes();
-  if (scenario->priority > 0) {
-    const hal::Status granted = mixed_reality::ask_for_realtime_priority(scenario->priority);
-    if (!granted.ok()) log.warning(granted.error().message + "; going on without");
-  }
-  {
-    Progress progress(steps, scenario->ticks_per_second);
-    EmergencyReport emergency(report);
-    const auto prepare = [&] {
-      hal::Json json;
-      begin_report(json, *scenario, item, bridge, real.supervisor(), pacer.ledger());
-      if (report) emergency.set_report(json);
-    };
-    const SaveAtEnd save(watchdog, prepare);
-    prepare();
-    pacer.start();
-    for (hal::Tick tick = 0; (steps == 0 || tick < steps) && !stop.load(std::memory_order_relaxed); ++tick) {
-      if (rearm_asked().exchange(false)) real.rearm();
-      real.set_guarded(guarded.guarded());
-      if (const std::uint64_t count = guarded.freezes(); count != freezes) {
-        freezes = count;
-        real.hub_was_frozen();
-      }
-      if (lone->latch(tick, clock.now_ns(), mixed_reality::RunPhase::Running) && !controller->step(failure, tick)) {
-        failure = file.who + " threw at tick " + std::to_string(tick) + ": " + failure + "; the robot is stopped";
-        break;
-      }
-      const std::lock_guard hold(watchdog.lock());  // from here on, what is saved changes
-      guarded.update();
-      hub_faults.value().apply(clock.now_ns());
-      lone->commit(clock.now_ns());  // at once, not after the wait
-      progress.step(tick + 1);
-      if (emergency.due()) prepare();
-      if (!pacer.wait_for_next(stop)) break;
-    }
-  }
-  const bool interrupted = stop.load();
-  if (failure.empty() && !interrupted && bridge.health() == bridges::LinkHealth::Lost) {
-    failure = "robot '" + item.id + "' was lost at the end: " + bridge.trouble();
-  }
-  if (failure.empty() && !guarded.guarded()) failure = "robot '" + item.id + "' stood: the guardian process was gone";
-  stop_and_wait(bridge, item.bridge->stop_s, clock);
+int LoneHub::connect() {
+  lone_->real().bridge().start();
+  const hal::TimeNs tick_ns = hal::time_of_tick(1, scenario_->ticks_per_second);
+  const hal::Status ready = app::connect(*lone_, *item_.bridge, tick_ns, clock_, *stop_);
+  if (stop_->load()) return interrupted_code();
+  if (!ready.ok()) return complain(kFailedRunning, "robot '" + item_.id + "': " + ready.error().message);
+  rearm_asked() = false;  // the start arms it
+  return kDone;
+}
+
+hal::Json LoneHub::report_so_far() const {
+  const mixed_reality::RealRobot& real = lone_->real();
   hal::Json json;
-  begin_report(json, *scenario, item, bridge, real.supervisor(), pacer.ledger());
-  const auto table = result_table(item, bridge, pacer.ledger());
+  begin_report(json, *scenario_, item_, real.bridge(), real.supervisor(), pacer_->ledger());
+  return json;
+}
+
+bool LoneHub::tick(hal::Tick tick) {
+  mixed_reality::RealRobot& real = lone_->real();
+  if (rearm_asked().exchange(false)) real.rearm();
+  real.set_guarded(guarded_->guarded());
+  if (const std::uint64_t count = guarded_->freezes(); count != freezes_) {
+    freezes_ = count;
+    real.hub_was_frozen();
+  }
+  if (lone_->latch(tick, clock_.now_ns(), mixed_reality::RunPhase::Running) && !controller_->step(failure_, tick)) {
+    failure_ = file_.who + " threw at tick " + std::to_string(tick) + ": " + failure_ + "; the robot is stopped";
+    return false;
+  }
+  return true;
+}
+
+void LoneHub::drive() {
+  pacer_.emplace(clock_, scenario_->ticks_per_second);
+  const double seconds = options_.seconds.value_or(scenario_->length_s);
+  const auto steps = static_cast<std::int64_t>(seconds * static_cast<double>(scenario_->ticks_per_second) + 0.5);
+  freezes_ = guarded_->freezes();
+  if (scenario_->priority > 0) {
+    const hal::Status granted = mixed_reality::ask_for_realtime_priority(scenario_->priority);
+    if (!granted.ok()) log_.warning(granted.error().message + "; going on without");
+  }
+  Progress progress(steps, scenario_->ticks_per_second);
+  EmergencyReport emergency(report_);
+  const auto prepare = [&] {
+    if (report_) emergency.set_report(report_so_far());
+  };
+  const SaveAtEnd save(*watchdog_, prepare);
+  prepare();
+  pacer_->start();
+  for (hal::Tick done = 0; (steps == 0 || done < steps) && !stop_->load(std::memory_order_relaxed); ++done) {
+    if (!tick(done)) break;
+    const std::lock_guard hold(watchdog_->lock());  // from here on, what is saved changes
+    guarded_->update();
+    hub_faults_.apply(clock_.now_ns());
+    lone_->commit(clock_.now_ns());  // at once, not after the wait
+    progress.step(done + 1);
+    if (emergency.due()) prepare();
+    if (!pacer_->wait_for_next(*stop_)) break;
+  }
+}
+
+int LoneHub::end() {
+  bridges::RobotBridge& bridge = lone_->real().bridge();
+  const bool interrupted = stop_->load();
+  if (failure_.empty() && !interrupted && bridge.health() == bridges::LinkHealth::Lost)
+    failure_ = "robot '" + item_.id + "' was lost at the end: " + bridge.trouble();
+  if (failure_.empty() && !guarded_->guarded())
+    failure_ = "robot '" + item_.id + "' stood: the guardian process was gone";
+  stop_and_wait(bridge, item_.bridge->stop_s, clock_);
+  hal::Json json = report_so_far();
+  const auto table = result_table(item_, bridge, pacer_->ledger());
   bridge.shut_down();
-  const bool confirmed = guarded.release_rested().empty();
-  controller.reset();
+  const bool confirmed = guarded_->release_rested().empty();
+  controller_.reset();
   print_table(table);
   if (!confirmed) {
     const std::string unconfirmed =
-        "robot '" + item.id + "' did not confirm its stop: switch it off by hand if it moves";
-    failure += (failure.empty() ? "" : "\n") + unconfirmed;
+        "robot '" + item_.id + "' did not confirm its stop: switch it off by hand if it moves";
+    failure_ += (failure_.empty() ? "" : "\n") + unconfirmed;
   }
-  if (report) {
+  if (report_) {
     json["stop_confirmed"] = confirmed;
-    add_files(json, options.file, loader, *file.config);
+    add_files(json, options_.file, loader_, *file_.config);
   }
-  return end_robot(report, std::move(json), {.failure = failure, .interrupted = interrupted});
+  return end_robot(report_, std::move(json), {.failure = failure_, .interrupted = interrupted});
+}
+
+int drive_robot(const RobotOptions& options) {
+  LoneHub hub(options);
+  int code = hub.read();
+  if (code == kDone) code = hub.prepare();
+  if (code == kDone) code = hub.connect();
+  if (code != kDone) return code;
+  hub.drive();
+  return hub.end();
 }
 
 int robot(const RobotOptions& options) {
