@@ -25,7 +25,9 @@
 #include "core/physics/dynamics3d/dynamics3d.hpp"
 #include "core/physics/kinematics2d/kinematics2d.hpp"
 #include "core/physics/particle3d/particle3d.hpp"
+#include "core/run/run.hpp"
 #include "core/scenario/observer_type.hpp"
+#include "core/scenario/run_part_type.hpp"
 #include "core/space/stores.hpp"
 #include "core/view/layers/layers.hpp"
 #include "hal/check.hpp"
@@ -42,6 +44,8 @@ const hal::Catalog& catalog() {
     made.know<hal::CommandType>();
     made.know<core::HookType>();
     made.know<core::ObserverType>();
+    made.know<core::RunPartType>();
+    made.know<core::RunSurface>();
     made.know<core::StoresSurface>();
     made.know<bridges::TrackerType>();
     const hal::Status good = made.add_from(std::string(hal::Catalog::kInside), [](hal::Registrar& r) {

@@ -27,6 +27,7 @@
 #include "core/scenario/field_type.hpp"
 #include "core/scenario/medium_type.hpp"
 #include "core/scenario/observer_type.hpp"
+#include "core/scenario/run_part_type.hpp"
 #include "core/view/layers/layer.hpp"
 #include "hal/plugin_loader.hpp"
 #include "study/study.hpp"
@@ -146,6 +147,7 @@ const std::map<std::string, ListKind>& kinds() {
       {"robots", [](const hal::Catalog& c) { list_plugins<hal::RobotKind>(c, "robots"); }},
       {"fields", [](const hal::Catalog& c) { list_plugins<core::FieldType>(c, "fields"); }},
       {"observers", [](const hal::Catalog& c) { list_plugins<core::ObserverType>(c, "observers"); }},
+      {"run_parts", [](const hal::Catalog& c) { list_plugins<core::RunPartType>(c, "parts that join a run"); }},
       {"layers", [](const hal::Catalog& c) { list_plugins<core::LayerType>(c, "layers"); }},
       {"trackers", [](const hal::Catalog& c) { list_plugins<bridges::TrackerType>(c, "trackers of real robots"); }},
       {"media", [](const hal::Catalog& c) { list_plugins<core::MediumType>(c, "media"); }},

@@ -21,7 +21,7 @@ struct Kind {
   std::string_view what;
   std::array<std::string_view, 4> registers;
 };
-constexpr std::array<Kind, 10> kKinds = {{
+constexpr std::array<Kind, 11> kKinds = {{
     {"device",
      "temperature",
      "a field, a sensor of it, a robot with that sensor, and a controller",
@@ -35,6 +35,7 @@ constexpr std::array<Kind, 10> kKinds = {{
     {"engine", "river", "a physics engine", {"river"}},
     {"medium", "chirp", "a medium, what speaks and hears in it, and a controller", {"chirps", "chirper", "gather"}},
     {"observer", "spread", "an observer", {"spread"}},
+    {"part", "stillness", "a part that joins runs", {"stillness"}},
     {"layer", "crowd", "a layer with a panel", {"crowd"}},
     {"bridge",
      "buggy",

@@ -14,6 +14,7 @@
 #include "core/scenario/field_type.hpp"
 #include "core/scenario/medium_type.hpp"
 #include "core/scenario/observer_type.hpp"
+#include "core/scenario/run_part_type.hpp"
 #include "core/view/layers/layer.hpp"
 #include "hal/command.hpp"
 
@@ -46,8 +47,9 @@ class Tables {
         say(false, type, "table", "it shows nothing: it has neither `draw` nor `panel`, or no function that makes one");
     });
     judge_summaries<core::DeviceType, core::CouplingType, core::EngineType, core::FieldType, core::MediumType,
-                    core::ObserverType, core::LayerType, core::HookType, hal::ControllerType, bridges::BridgeType,
-                    bridges::TrackerType, bridges::EmulatorType, hal::RobotKind, hal::CommandType>();
+                    core::ObserverType, core::RunPartType, core::LayerType, core::HookType, hal::ControllerType,
+                    bridges::BridgeType, bridges::TrackerType, bridges::EmulatorType, hal::RobotKind,
+                    hal::CommandType>();
   }
 
  private:

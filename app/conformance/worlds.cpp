@@ -14,8 +14,10 @@
 #include "app/outputs/observers.hpp"
 #include "bridges/bridge_type.hpp"
 #include "core/device/coupling.hpp"
+#include "core/run/run.hpp"
 #include "core/scenario/field_type.hpp"
 #include "core/scenario/medium_type.hpp"
+#include "core/scenario/run_part_type.hpp"
 #include "core/view/layers/layer_set.hpp"
 #include "hal/device/flight.hpp"
 #include "hal/device/wheels.hpp"
@@ -38,6 +40,7 @@ class Worlds {
     each<core::FieldType>([this](const core::FieldType& type) { judge_field(type); });
     each<core::MediumType>([this](const core::MediumType& type) { judge_medium(type); });
     each<core::ObserverType>([this](const core::ObserverType& type) { judge_observer(type); });
+    each<core::RunPartType>([this](const core::RunPartType& type) { judge_run_part(type); });
     each<core::LayerType>([this](const core::LayerType& type) { judge_layer(type); });
     judge_bystanders();
   }
@@ -251,6 +254,22 @@ class Worlds {
                                   devices == 1 ? "s" : "")});
   }
 
+  static std::filesystem::path file_of_trial() {
+    return std::filesystem::temp_directory_path() / fmt::format("tandem_check_{}", ::getpid());
+  }
+  /// The element of such a part, with its defaults; what it writes goes into the file of trials.
+  template <class Type>
+  static core::Element with_defaults(const Type& type) {
+    core::Element element;
+    element.name = type.name;
+    hal::ElementWriter writer(element);
+    if (type.describe != nullptr) type.describe(writer);
+    for (auto& attribute : element.attributes) {
+      if (attribute.name == "path") attribute.value = file_of_trial().string();
+    }
+    return element;
+  }
+
   void judge_observer(const core::ObserverType& type) {
     const Trial trial = plain(*kinds().front());
     const TrialMaker maker(loader_, trial);
@@ -259,14 +278,8 @@ class Worlds {
     const auto watched = maker.make(0, why);
     const auto alone = maker.make(0, why);
     if (watched == nullptr || alone == nullptr) return course.say(Verdict::NotJudged, "worlds", why);
-    core::Element element;
-    element.name = type.name;
-    hal::ElementWriter writer(element);  // its defaults
-    if (type.describe != nullptr) type.describe(writer);
-    const auto file = std::filesystem::temp_directory_path() / fmt::format("tandem_check_{}", ::getpid());
-    for (auto& attribute : element.attributes) {
-      if (attribute.name == "path") attribute.value = file.string();
-    }
+    const auto file = file_of_trial();
+    const core::Element element = with_defaults(type);
     core::Scenario scenario;
     scenario.observers.push_back(element);
     core::Problems problems;
@@ -288,6 +301,27 @@ class Worlds {
     if (watched->state_hash() != alone->state_hash())
       return course.say(Verdict::Fault, "worlds", "a run that it sees goes on otherwise than one that it does not see");
     course.say(Verdict::Good, "worlds", "a run that it sees is the same run");
+  }
+
+  void judge_run_part(const core::RunPartType& type) {
+    const TrialMaker maker(loader_, plain(*kinds().front()));
+    Course course(name_of(type), maker, all_);
+    std::string why;
+    const auto world = maker.make(0, why);
+    if (world == nullptr) return course.say(Verdict::NotJudged, "worlds", why);
+    const core::Element element = with_defaults(type);
+    const std::atomic<bool> never{false};
+    core::Run run(*world, never);
+    run.add(std::make_unique<core::Length>(TrialMaker::kTicks));
+    core::Problems problems;
+    run.add(type.make(element, run, problems));
+    if (core::has_errors(problems))
+      return course.say(Verdict::NotJudged, "worlds", "its defaults do not suffice: " + problems.front().message);
+    (void)run.go();
+    std::error_code ignored;
+    std::filesystem::remove(file_of_trial(), ignored);
+    if (!run.failure().empty()) return course.say(Verdict::Fault, "runs", run.failure());
+    course.say(Verdict::Good, "runs", fmt::format("it joins, and leaves after {} ticks", world->tick()));
   }
 
   void judge_layer(const core::LayerType& type) {

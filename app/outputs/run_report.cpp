@@ -26,6 +26,8 @@ std::string_view word_of(Ended how) {
       return "length";
     case Ended::Hook:
       return "hook";
+    case Ended::Part:
+      return "part";
     case Ended::Interrupted:
       return "interrupted";
     case Ended::Failed:
@@ -54,6 +56,7 @@ std::string end_text(const RunEnd& end, hal::Tick tick) {
   const std::string at =
       fmt::format("at tick {}{}", tick, end.steps_wanted > 0 ? fmt::format(" of {}", end.steps_wanted) : "");
   if (end.how == Ended::Hook) return "by a hook " + at;
+  if (end.how == Ended::Part) return "by a part " + at;
   return fmt::format("{} {}, not finished", word_of(end.how), at);
 }
 
@@ -208,14 +211,17 @@ void add_members(hal::Json& json, const RunResult& result, bool between_ticks) {
 
 }  // namespace
 
-RunEnd end_of(const core::World& world, std::int64_t steps_wanted, bool stopped) {
+RunEnd end_of(const core::Run& run, std::int64_t steps_wanted) {
+  const core::World& world = run.world();
   RunEnd end{Ended::Length, world.failure(), steps_wanted};
   if (world.state() == core::RunState::Failed) {
     end.how = Ended::Failed;
   } else if (world.state() == core::RunState::Done) {
     end.how = Ended::Hook;
-  } else if (stopped && (steps_wanted == 0 || world.tick() < steps_wanted)) {
+  } else if (run.stopped() && (steps_wanted == 0 || world.tick() < steps_wanted)) {
     end.how = Ended::Interrupted;
+  } else if (run.ended_by() != nullptr && run.ended_by()->turn() == core::RunTurn::Added) {
+    end.how = Ended::Part;
   }
   return end;
 }

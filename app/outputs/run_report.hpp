@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "app/outputs/run_figures.hpp"
+#include "core/run/run.hpp"
 #include "core/sim/world.hpp"
 #include "hal/json/json.hpp"
 #include "mixed_reality/lockstep/lockstep.hpp"
@@ -12,8 +13,8 @@
 
 namespace tandem::app {
 
-/// How a run ended: its length was done, a hook ended it, somebody interrupted it, or it failed.
-enum class Ended { Length, Hook, Interrupted, Failed };
+/// How a run ended: its length was done, a hook or a part of a plug-in ended it, somebody interrupted it, or it failed.
+enum class Ended { Length, Hook, Part, Interrupted, Failed };
 
 /// A run that is over.
 struct RunEnd {
@@ -22,11 +23,11 @@ struct RunEnd {
   std::int64_t steps_wanted = 0;  ///< 0: endless
 
   /// Whether it came to the end that it was to have.
-  bool finished() const noexcept { return how == Ended::Length || how == Ended::Hook; }
+  bool finished() const noexcept { return how == Ended::Length || how == Ended::Hook || how == Ended::Part; }
 };
 
-/// Of a world that is stepped no more; `stopped`: by a signal.
-RunEnd end_of(const core::World& world, std::int64_t steps_wanted, bool stopped);
+/// Of a run that is stepped no more.
+RunEnd end_of(const core::Run& run, std::int64_t steps_wanted);
 
 /// A file that decides what a run does.
 struct InputFile {

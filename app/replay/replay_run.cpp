@@ -99,6 +99,7 @@ void ReplayRun::leave_robots_out(core::Scenario& scenario) const {
   scenario.record.path.clear();
   scenario.trajectory.reset();
   scenario.observers.clear();
+  scenario.run_parts.clear();
   scenario.priority = 0;
   const bool paced = options_.view.on && scenario.time_mode == core::TimeMode::Realtime;
   if (!paced) scenario.time_mode = core::TimeMode::Fast;

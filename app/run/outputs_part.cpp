@@ -241,7 +241,7 @@ class Outputs final : public core::RunPart {
  private:
   void tell_end(const core::Run& run) {
     RunEnd& end = plan_.result->end;
-    end = end_of(*plan_.world, plan_.steps, run.stopped());
+    end = end_of(run, plan_.steps);
     if (end.how == Ended::Failed) complain(kFailedRunning, end.failure);
     if (!run.failure().empty()) complain(kFailedRunning, run.failure());
     if (end.how == Ended::Interrupted) say(fmt::format("interrupted at tick {}", plan_.world->tick()));

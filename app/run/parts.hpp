@@ -27,4 +27,7 @@ int add_desk(RunPlan& plan, core::Run& run);
 /// The window, and the files of scripts that are read anew.
 int add_view(RunPlan& plan, core::Run& run);
 
+/// What the experiment's <run> names: parts of plug-ins.
+int add_named_parts(RunPlan& plan, core::Run& run);
+
 }  // namespace tandem::app

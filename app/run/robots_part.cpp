@@ -82,9 +82,8 @@ class Lockstep final : public core::RunPart {
   Lockstep(RunPlan& plan, std::unique_ptr<mixed_reality::LockstepRun> peers) : plan_(plan), peers_(std::move(peers)) {}
   std::string_view name() const override { return "lock-step"; }
   core::RunTurn turn() const override { return core::RunTurn::Pace; }
-  hal::Status close(core::Run&) override {
-    const core::World& world = *plan_.world;
-    const bool finished = end_of(world, plan_.steps, plan_.stop->load(std::memory_order_relaxed)).finished();
+  hal::Status close(core::Run& run) override {
+    const bool finished = end_of(run, plan_.steps).finished();
     report_ = peers_->report();
     plan_.result->peers = &report_;
     peers_->finish(!finished, finished ? "the run is over" : "the run ended early");

@@ -60,6 +60,7 @@ std::vector<ElementManual> expanded(const ElementManual& m, const KnownNames& kn
   if (m.name == schema::Medium::kElement.name) names = known.media;
   if (m.name == schema::FieldElement::kElement.name) names = known.fields;
   if (m.name == schema::ObserverElement::kElement.name) names = known.observers;
+  if (m.name == schema::RunPartElement::kElement.name) names = known.run_parts;
   if (m.name == schema::TrackerElement::kElement.name) names = known.trackers;
   std::vector<ElementManual> out;
   for (const std::string& name : names) {
@@ -70,6 +71,7 @@ std::vector<ElementManual> expanded(const ElementManual& m, const KnownNames& kn
     if (m.name == schema::Medium::kElement.name) add_own(*known.catalog.find<MediumType>(name), out.back());
     if (m.name == schema::FieldElement::kElement.name) add_own(*known.catalog.find<FieldType>(name), out.back());
     if (m.name == schema::ObserverElement::kElement.name) add_own(*known.catalog.find<ObserverType>(name), out.back());
+    if (m.name == schema::RunPartElement::kElement.name) add_own(*known.catalog.find<RunPartType>(name), out.back());
     if (m.name == schema::TrackerElement::kElement.name)
       out.back().attributes += options_of("tracker of " + name, known.catalog);
   }

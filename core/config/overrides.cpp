@@ -7,9 +7,9 @@ namespace tandem::core {
 namespace {
 
 /// Elements that stand once in their parent and may be left out: an override may add them.
-constexpr std::array<std::string_view, 14> kMayBeAdded = {
-    "fitted", "desk",    "system", "time",       "floor", "params",          "battery",
-    "bridge", "tracker", "record", "trajectory", "media", "physics_engines", "visualization"};
+constexpr std::array<std::string_view, 15> kMayBeAdded = {
+    "fitted",  "desk",   "system",     "time", "floor", "params",          "battery",      "bridge",
+    "tracker", "record", "trajectory", "run",  "media", "physics_engines", "visualization"};
 
 struct Part {
   std::string name;
@@ -83,7 +83,7 @@ Element* select(Element& parent, const Part& part, const std::string& origin, st
     if ((id != nullptr && *id == part.selector) || std::to_string(i) == part.selector) return same[i];
   }
   const bool of_a_plugin =
-      parent.name == "params" || parent.name == "loop_functions";  // which judges its groups itself
+      parent.name == "params" || parent.name == "loop_functions" || parent.name == "run";  // judges its children itself
   if (part.selector.empty() && same.empty() && of_a_plugin) return &add(parent, part.name, origin);
   if (part.selector.empty() && std::find(kMayBeAdded.begin(), kMayBeAdded.end(), part.name) != kMayBeAdded.end()) {
     return &add(parent, part.name, origin);

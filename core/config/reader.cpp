@@ -71,6 +71,20 @@ void read_configuration(Reading& reading, Element& e) {
   reading.out().controllers.push_back(std::move(config));
 }
 
+/// The children that are of a type of the catalog, read as it describes them.
+template <class Schema, class Type>
+void read_named(Reading& reading, Element& parent, std::vector<Element>& out) {
+  for (Element& e : parent.children) {
+    const auto* const type = reading.catalog().find<Type>(e.name);
+    if (type == nullptr) continue;  // told already, or of no type
+    if (type->describe == nullptr)
+      reading.read<Schema>(e);
+    else
+      reading.read_with<Schema>(e, type->describe);
+    out.push_back(e);
+  }
+}
+
 /// Nobody waits for a simulated robot.
 void check_priority(Reading& reading, Element& root) {
   const std::vector<RobotItem>& robots = reading.out().robots;
@@ -147,6 +161,10 @@ Scenario read_parts(Reading& reading, Element& root) {
     if (e.name == "plugins") reading.out().plugins.push_back({reading.read<schema::Plugins>(e).library, e.line});
   }
   reading.once(root, "record", [&](Element& e) { read_record(reading, e); });
+  reading.once(root, "run", [&](Element& e) {
+    reading.read<schema::RunParts>(e);
+    read_named<schema::RunPartElement, RunPartType>(reading, e, reading.out().run_parts);
+  });
   reading.once(root, "visualization", [&](Element& e) { read_visualization(reading, e); });
   connect_media(reading);
   check_ids(reading);
@@ -268,15 +286,7 @@ void read_record(Reading& reading, Element& record) {
     const auto t = reading.read<schema::Trajectory>(e);
     reading.out().trajectory = TrajectoryConfig{t.path, read_list(reading, e, "entities", t.entities, "ids"), t.every};
   });
-  for (Element& e : record.children) {
-    const auto* const type = reading.catalog().find<ObserverType>(e.name);
-    if (type == nullptr) continue;  // told already, or the trajectory
-    if (type->describe == nullptr)
-      reading.read<schema::ObserverElement>(e);
-    else
-      reading.read_with<schema::ObserverElement>(e, type->describe);
-    reading.out().observers.push_back(e);
-  }
+  read_named<schema::ObserverElement, ObserverType>(reading, record, reading.out().observers);
 }
 
 void read_visualization(Reading& reading, Element& visualization) {

@@ -26,6 +26,7 @@ KnownNames::KnownNames(const hal::Catalog& all)
       engines(all.names(KnownEngine::kCategory)),
       media(all.names(MediumType::kCategory)),
       observers(all.names(ObserverType::kCategory)),
+      run_parts(all.names(RunPartType::kCategory)),
       trackers(all.names("tracker")),  // whose type is above core
       catalog(all) {
   for (const FieldType* field : all.all<FieldType>()) {
@@ -39,7 +40,7 @@ std::vector<std::string> KnownNames::children_of(std::vector<std::string> names)
   for (const auto& [stand_in, kinds] :
        {std::pair(schema::kRobotKind, &robots), std::pair(schema::kMediumKind, &media),
         std::pair(schema::kFieldKind, &fields), std::pair(schema::kObserverKind, &observers),
-        std::pair(schema::kTrackerKind, &trackers)}) {
+        std::pair(schema::kRunPartKind, &run_parts), std::pair(schema::kTrackerKind, &trackers)}) {
     const auto at = std::find(names.begin(), names.end(), stand_in);
     if (at != names.end()) names.insert(names.erase(at), kinds->begin(), kinds->end());
   }
@@ -60,7 +61,8 @@ std::vector<std::string> Reading::check(const Element& element, const schema::El
   if (info.children == schema::kAnything) return missing;
   // A program without a world knows neither media nor fields nor observers, and no trackers.
   const auto may_hold = [&](std::string_view kind) { return info.children.find(kind) != std::string_view::npos; };
-  if (((may_hold(schema::kMediumKind) || may_hold(schema::kObserverKind)) && known_.media.empty()) ||
+  if (((may_hold(schema::kMediumKind) || may_hold(schema::kObserverKind) || may_hold(schema::kRunPartKind)) &&
+       known_.media.empty()) ||
       (may_hold(schema::kFieldKind) && known_.fields.empty()) ||
       (may_hold(schema::kTrackerKind) && known_.trackers.empty()))
     return missing;

@@ -15,6 +15,7 @@
 #include "core/scenario/field_type.hpp"
 #include "core/scenario/medium_type.hpp"
 #include "core/scenario/observer_type.hpp"
+#include "core/scenario/run_part_type.hpp"
 #include "hal/port.hpp"
 
 namespace tandem::core {
@@ -27,7 +28,7 @@ std::optional<Point2> point_of(const std::string& text);
 
 /// What the catalog has, so that the reader can judge names.
 struct KnownNames {
-  std::vector<std::string> robots, engines, media, fields, observers, trackers, sensors, actuators;
+  std::vector<std::string> robots, engines, media, fields, observers, run_parts, trackers, sensors, actuators;
   const hal::Catalog& catalog;
   explicit KnownNames(const hal::Catalog& catalog);
 

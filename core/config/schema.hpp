@@ -26,6 +26,7 @@ inline constexpr std::string_view kRobotKind = "ROBOT";    ///< in children: eve
 inline constexpr std::string_view kFieldKind = "FIELD";    ///< … every field of which files say something
 inline constexpr std::string_view kMediumKind = "MEDIUM";  ///< … and every kind of medium
 inline constexpr std::string_view kObserverKind = "OBSERVER";  ///< … and of observer
+inline constexpr std::string_view kRunPartKind = "RUN_PART";   ///< … and of part that joins a run
 inline constexpr std::string_view kTrackerKind = "TRACKER";    ///< … and of tracker
 
 /// What an element is and holds. Lists are names separated by spaces.
@@ -40,7 +41,7 @@ struct Root {
   static constexpr ElementInfo kElement{
       "tandem", "An experiment. The name <argos-configuration> means the same.", "",
       "plugins kinds fitted framework controllers arena trackers safety desk physics_engines "
-      "media visualization loop_functions record"};
+      "media visualization loop_functions record run"};
   std::int64_t version = 0;
   void describe(ParamVisitor& v) {
     v.integer("version", version, {0, 999'999'999},
@@ -708,6 +709,17 @@ struct Record {
 struct ObserverElement {
   static constexpr ElementInfo kElement{"observer", "What looks at the world after every tick, written with its name.",
                                         "", kAnything};
+  void describe(ParamVisitor&) {}
+};
+
+struct RunParts {
+  static constexpr ElementInfo kElement{"run", "What joins the run: parts of plug-ins.", "", "RUN_PART"};
+  void describe(ParamVisitor&) {}
+};
+
+/// What such parts of every kind have: nothing; the attributes are the kind's own.
+struct RunPartElement {
+  static constexpr ElementInfo kElement{"run_part", "What joins a run, written with its name.", "", kAnything};
   void describe(ParamVisitor&) {}
 };
 

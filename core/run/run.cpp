@@ -69,7 +69,11 @@ bool Run::in_order(std::string_view when, Call&& call) {
 }
 
 bool Run::before_tick() {
-  return !broken_ && in_order("before_tick", [this](RunPart& part) { return part.before_tick(*this); });
+  return !broken_ && in_order("before_tick", [this](RunPart& part) {
+    const bool on = part.before_tick(*this);
+    if (!on) ended_by_ = &part;
+    return on;
+  });
 }
 
 void Run::after_tick() {

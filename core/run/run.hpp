@@ -18,6 +18,7 @@
 #include "core/sim/world.hpp"
 #include "hal/json/json.hpp"
 #include "hal/result.hpp"
+#include "hal/surface.hpp"
 #include "hal/time.hpp"
 
 namespace tandem::core {
@@ -42,6 +43,7 @@ enum class RunTurn : std::uint8_t {
 /// run before its next tick, as a failure that names the part; all parts finish, also that one.
 class RunPart {
  public:
+  RunPart() noexcept;
   virtual ~RunPart() = default;
   /// For people: "record", "ros2".
   virtual std::string_view name() const = 0;
@@ -73,6 +75,7 @@ class Run {
   Run& operator=(const Run&) = delete;
 
   World& world() noexcept { return world_; }
+  const World& world() const noexcept { return world_; }
   bool stopped() const noexcept { return stop_.load(std::memory_order_relaxed); }
   /// Before `go`; null is nobody.
   void add(std::unique_ptr<RunPart> part);
@@ -85,6 +88,8 @@ class Run {
   void fail(const std::string& why);
   /// Why the run has failed besides the world's own failure; empty: it has not.
   const std::string& failure() const noexcept { return failure_; }
+  /// The part that wanted no further tick; null: none yet.
+  const RunPart* ended_by() const noexcept { return ended_by_; }
   /// The names of the parts in the order of their turns.
   std::vector<std::string_view> order() const;
 
@@ -108,8 +113,19 @@ class Run {
   std::vector<std::unique_ptr<RunPart>> parts_;  // as they were added
   std::vector<Row> rows_;                        // by turn
   bool broken_ = false;                          // a part has failed
+  const RunPart* ended_by_ = nullptr;
   std::string failure_;
 };
+
+/// Runs as a surface of their own: what plug-ins with parts must have been built against.
+struct RunSurface {
+  static constexpr std::string_view kCategory = "run";
+  using Crosses = hal::Layouts<Run, RunPart, RunTurn, World, hal::Json>;
+};
+
+inline RunPart::RunPart() noexcept {
+  hal::detail::note_surface<RunSurface>();
+}
 
 /// Ends a run after so many ticks (0: not by their number), when a hook ends it or it fails, and when it is stopped.
 class Length final : public RunPart {

@@ -344,6 +344,7 @@ struct Scenario {
   RecordConfig record;
   std::optional<TrajectoryConfig> trajectory;
   std::vector<Element> observers;  ///< each the element of an ObserverType
+  std::vector<Element> run_parts;  ///< each the element of a RunPartType
   Element camera;                  ///< placements of ARGoS' view, kept for ours
   Element effective;               ///< the whole file with every default filled in
 };

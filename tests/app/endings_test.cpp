@@ -200,6 +200,37 @@ TEST_F(Endings, ACrashOfAnObserverNamesIt) {
   EXPECT_THAT(run->errors(), HasSubstr("observer 'onlooker' (library '"));
 }
 
+TEST_F(Endings, APartOfARunThatFailsIsNamedAndTheOthersFinish) {
+  const auto with = [](const std::string& what) {
+    return Experiment{.hook = "<plugins library=\"test_trouble\"/>",
+                      .record = "<run><joiner what=\"" + what + "\" at=\"5\"/></run>"};
+  };
+  for (const std::string what : {"before", "throw", "finish"}) {
+    auto run = start(with(what));
+    EXPECT_EQ(run->wait(), 3) << what;
+    EXPECT_EQ(whole_ticks(), what == "finish" ? 20 : 5) << "what was written until then stays";
+    EXPECT_THAT(run->errors(), HasSubstr("error: part 'joiner', "));
+    EXPECT_EQ(value("ended"), "\"failed\"");
+    EXPECT_THAT(value("failure"), HasSubstr("part 'joiner'"));
+  }
+  auto join = start(with("join"));
+  EXPECT_EQ(join->wait(), 3);
+  EXPECT_THAT(join->errors(), HasSubstr("error: part 'joiner', join: will not join"));
+  auto crash = start(with("memory"));
+  EXPECT_EQ(crash->wait(), 3);
+  EXPECT_THAT(crash->errors(), HasSubstr("part 'joiner' (library '"));
+}
+
+TEST_F(Endings, APartMayEndARun) {
+  auto run = start({.hook = "<plugins library=\"test_trouble\"/>"},
+                   {"--set", "run.joiner.what=end", "--set", "run.joiner.at=7"});
+  EXPECT_EQ(run->wait(), 0) << run->errors();
+  EXPECT_EQ(value("ended"), "\"part\"");
+  EXPECT_EQ(value("finished"), "true");
+  EXPECT_EQ(whole_ticks(), 7);
+  EXPECT_THAT(run->output(), HasSubstr("by a part at tick 7 of 20"));
+}
+
 TEST_F(Endings, ASpeedThatIsHardlyMeantAsksForItsUnitOnce) {
   auto run = start({.library = "test_controllers", .label = "drive", .params = R"(left="20" right="20")"});
   EXPECT_EQ(run->wait(), 0);

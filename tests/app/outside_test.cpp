@@ -213,7 +213,7 @@ TEST_F(Examples, TheLayerDrawsOverPictures) {
 
 TEST_F(Examples, GiveTheSameBitsForAnyNumberOfThreads) {
   for (const std::string name :
-       {"temperature", "lift", "waltz", "doorman", "river", "chirp", "spread", "crowd", "buggy"}) {
+       {"temperature", "lift", "waltz", "doorman", "river", "chirp", "spread", "stillness", "crowd", "buggy"}) {
     const std::string first = hash_of(name + ".xml", "0");
     EXPECT_FALSE(first.empty()) << name;
     EXPECT_EQ(hash_of(name + ".xml", "2"), first) << name;
@@ -223,14 +223,14 @@ TEST_F(Examples, GiveTheSameBitsForAnyNumberOfThreads) {
 TEST_F(Examples, AreListedAndDescribedWithWhereTheyComeFrom) {
   std::vector<std::string> list = {"list"};
   for (const std::string name :
-       {"temperature", "lift", "waltz", "doorman", "river", "chirp", "spread", "crowd", "buggy"})
+       {"temperature", "lift", "waltz", "doorman", "river", "chirp", "spread", "stillness", "crowd", "buggy"})
     list.insert(list.end(), {"--plugin", "build/lib" + name + ".so"});
   Tandem listed(list, path());
   ASSERT_EQ(listed.wait(), 0) << listed.errors();
   EXPECT_THAT(listed.output(),
               AllOf(HasSubstr("libtemperature.so: 1 controller, 1 device, 1 field, 1 part, 1 port, 1 robot"),
                     HasSubstr("libriver.so: 1 engine"), HasSubstr("libspread.so: 1 observer"),
-                    HasSubstr("libcrowd.so: 1 layer"),
+                    HasSubstr("libstillness.so: 1 run_part"), HasSubstr("libcrowd.so: 1 layer"),
                     HasSubstr("libbuggy.so: 1 bridge, 2 controllers, 1 emulator, 1 robot, 1 stopper")));
   EXPECT_THAT(listed.output(), HasSubstr("How far robots are spread, as CSV. (libspread.so)"));
   Tandem described({"describe", "spread", "--plugin", "build/libspread.so"}, path());
@@ -240,7 +240,7 @@ TEST_F(Examples, AreListedAndDescribedWithWhereTheyComeFrom) {
 
 TEST_F(Examples, AreWithoutFault) {
   for (const std::string name :
-       {"temperature", "lift", "waltz", "doorman", "river", "chirp", "spread", "crowd", "buggy"}) {
+       {"temperature", "lift", "waltz", "doorman", "river", "chirp", "spread", "stillness", "crowd", "buggy"}) {
     Tandem check({"plugin", "check", "build/lib" + name + ".so"}, path());
     EXPECT_EQ(check.wait(60.0), 0) << check.output() << check.errors();
     EXPECT_THAT(check.output(), HasSubstr(", 0 faults"));

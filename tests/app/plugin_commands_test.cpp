@@ -158,8 +158,8 @@ TEST_F(PluginCheck, SaysWhyALibraryCannotBeLoadedAndNeverCrashes) {
 
 TEST(PluginNew, MakesFoldersThatBuildRunAndAreWithoutFault) {
   const Folder folder;
-  const std::vector<std::string> kinds = {"device", "actuator", "controller", "hook",   "engine",
-                                          "medium", "observer", "layer",      "bridge", "command"};
+  const std::vector<std::string> kinds = {"device",   "actuator", "controller", "hook",   "engine", "medium",
+                                          "observer", "part",     "layer",      "bridge", "command"};
   std::string all = "cmake_minimum_required(VERSION 3.25)\nproject(all_kinds LANGUAGES CXX)\nenable_testing()\n";
   for (const std::string& kind : kinds) {
     Tandem made({"plugin", "new", "my_" + kind, "--kind", kind}, folder.path());
@@ -176,7 +176,7 @@ TEST(PluginNew, MakesFoldersThatBuildRunAndAreWithoutFault) {
                               "/bin/tandem' -DCMAKE_CXX_COMPILER_LAUNCHER=$(command -v ccache) && "
                               "cmake --build build -j 2 && ctest --test-dir build --output-on-failure) >log 2>&1";
   EXPECT_EQ(std::system(command.c_str()), 0) << text_of(folder.path() / "log");
-  EXPECT_THAT(text_of(folder.path() / "log"), HasSubstr("100% tests passed, 0 tests failed out of 20"));
+  EXPECT_THAT(text_of(folder.path() / "log"), HasSubstr("100% tests passed, 0 tests failed out of 22"));
 }
 
 TEST(PluginNew, TwoOfOneKindStandSideBySide) {

@@ -10,6 +10,7 @@
 
 #include "core/hook/hook.hpp"
 #include "core/record/observer.hpp"
+#include "core/run/part_type.hpp"
 #include "hal/device/wheels.hpp"
 #include "hal/plugin.hpp"
 
@@ -138,11 +139,41 @@ class Onlooker final : public core::Observer {
   Params params_;
 };
 
+/// A part of a run that fails, throws or makes trouble at its tick, or when it joins.
+class Joiner final : public core::RunPart {
+ public:
+  using Params = ::Params;
+  Joiner(const Params& params, core::Run&) : params_(params) {}
+  std::string_view name() const override { return "joiner"; }
+  core::RunTurn turn() const override { return core::RunTurn::Added; }
+  hal::Status join(core::Run&) override {
+    return params_.what == "join" ? hal::Status(hal::Error{"will not join"}) : hal::Status();
+  }
+  bool before_tick(core::Run& run) override {
+    if (run.world().tick() < params_.at) return true;
+    if (params_.what == "end") return false;
+    if (params_.what == "before") throw std::runtime_error("cannot go on");
+    return true;
+  }
+  bool after_tick(core::Run& run) override {
+    if (run.world().tick() == params_.at && params_.what != "finish") make_trouble(params_.what);
+    return true;
+  }
+  hal::Status finish(core::Run&) override {
+    return params_.what == "finish" ? hal::Status(hal::Error{"cannot let go"}) : hal::Status();
+  }
+
+ private:
+  Params params_;
+};
+
 void register_all(hal::Registrar& registrar) {
   registrar.add_controller<Troublemaker>("troublemaker", "Ends the program, or does not return.");
   registrar.add(core::hook_type<Trouble>("trouble", "Ends the program, or does not return."));
   static const core::ObserverType onlooker = core::observer_type<Onlooker>("onlooker", "Fails.");
   registrar.add(onlooker);
+  static const core::RunPartType joiner = core::run_part_type<Joiner>("joiner", "Fails, or ends a run.");
+  registrar.add(joiner);
 }
 
 }  // namespace
