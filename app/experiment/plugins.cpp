@@ -150,6 +150,16 @@ std::unique_ptr<KindsOfFile> kinds_of_file(hal::PluginLoader& loader, const std:
   return found;
 }
 
+std::unique_ptr<KindsOfFile> kinds_of_settings(const std::string& text, const std::string& name) {
+  core::Problems problems;
+  auto file = core::open_experiment_text(text, name, {}, problems);
+  auto found = std::make_unique<KindsOfFile>();
+  if (file) found->kinds = core::read_kinds(file->root, catalog(), problems);
+  if (core::has_errors(problems)) found->kinds.clear();
+  found->catalog = core::with_kinds(catalog(), found->kinds);
+  return found;
+}
+
 std::optional<core::Scenario> read_or_complain(hal::PluginLoader& loader, const std::vector<std::string>& plugins,
                                                const std::string& path, const std::vector<std::string>& overrides) {
   ExperimentReading reading(loader, plugins);

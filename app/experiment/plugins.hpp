@@ -66,6 +66,10 @@ class ExperimentReading {
 /// of the file is not judged; it may be a file of kinds alone. Null: complained.
 std::unique_ptr<KindsOfFile> kinds_of_file(hal::PluginLoader& loader, const std::string& path);
 
+/// This program's catalog with the kinds of settings that a record kept, in which `name` stands for their file. Opens
+/// no plug-ins: kinds that need some, and settings that are none, add nothing.
+std::unique_ptr<KindsOfFile> kinds_of_settings(const std::string& text, const std::string& name);
+
 /// All of it, for commands without real robots.
 std::optional<core::Scenario> read_or_complain(hal::PluginLoader& loader, const std::vector<std::string>& plugins,
                                                const std::string& path, const std::vector<std::string>& overrides);

@@ -10,7 +10,7 @@
 #include <optional>
 #include <utility>
 
-#include "app/catalog.hpp"
+#include "app/experiment/plugins.hpp"
 #include "app/process/terminal.hpp"
 #include "app/view/source_view.hpp"
 #include "app/view/view_messages.hpp"
@@ -59,11 +59,12 @@ std::optional<std::size_t> row_of(const RecordRows& rows, const std::string& id)
 /// Plays a record on one thread; others post commands.
 class RecordPlayer {
  public:
-  RecordPlayer(const std::string& path, RecordSource record, window::Window& window, const HoldOptions& hold)
+  RecordPlayer(const std::string& path, RecordSource record, const hal::Catalog& catalog, window::Window& window,
+               const HoldOptions& hold)
       : path_(path),
         record_(std::move(record)),
         window_(window),
-        view_(catalog(), hal::Log([this](hal::Severity, std::string_view text) {
+        view_(catalog, hal::Log([this](hal::Severity, std::string_view text) {
                 window_.tell(log_.entry(record_.ticks_done(), "log", text));
               })),
         paused_(hold.paused),
@@ -358,12 +359,15 @@ bool is_record(const std::string& path) {
 
 int view_record(const std::string& path, const ViewRequest& request, const HoldOptions& hold,
                 const std::atomic<bool>& stop) {
-  auto record = RecordSource::open(path, &catalog());
+  auto start = core::RecordReader::open(path);
+  if (!start.ok()) return complain(kBadInput, start.error().message);
+  const auto known = kinds_of_settings(text_of(start.value().start(), "settings"), path);
+  auto record = RecordSource::open(path, &known->catalog);
   if (!record.ok()) return complain(kBadInput, record.error().message);
   if (record.value().moments().cut()) say("record '" + path + "': it was cut; shown is what is there");
   auto window = open_window(request);
   if (!window.ok()) return complain(kBadInput, window.error().message);
-  RecordPlayer player(path, std::move(record).value(), *window.value(), hold);
+  RecordPlayer player(path, std::move(record).value(), known->catalog, *window.value(), hold);
   player.run(stop);
   window.value().reset();  // its thread uses the player
   return kDone;

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "app/catalog.hpp"
+#include "app/experiment/plugins.hpp"
 #include "app/outputs/observers.hpp"
 #include "core/live/inspection.hpp"
 #include "core/record/record.hpp"
@@ -12,6 +13,7 @@
 #include "core/view/layers/segments.hpp"
 #include "core/view/picture.hpp"
 #include "core/view/record_drawing.hpp"
+#include "hal/xml/xml.hpp"
 #include "tests/controllers/experiment.hpp"
 #include "window/space_frame.hpp"
 
@@ -169,7 +171,7 @@ class RecordSources : public testing::TestWithParam<std::string> {};
 INSTANTIATE_TEST_SUITE_P(Of, RecordSources,
                          testing::Values("epuck_diffusion.xml", "footbot_foraging.xml", "eyebot_circle.xml",
                                          "footbot_gripping.xml", "footbot_task_partitioning_noise.xml",
-                                         "epuck_push.xml", "thymio_cruise.xml"),
+                                         "epuck_push.xml", "khepera4_avoidance.xml", "thymio_cruise.xml"),
                          [](const auto& name) { return name.param.substr(0, name.param.find('.')); });
 
 TEST_P(RecordSources, ShowWhatTheRunShows) {
@@ -199,7 +201,8 @@ TEST_P(RecordSources, ShowWhatTheRunShows) {
     ASSERT_TRUE(recorder.value()->close(kTicks - 1, {{"ended", "length"}}).ok());
   }
 
-  auto opened = core::RecordSource::open(path, &app::catalog());
+  const auto known = app::kinds_of_settings(hal::to_xml(run->scenario().effective), path);
+  auto opened = core::RecordSource::open(path, &known->catalog);
   ASSERT_TRUE(opened.ok()) << opened.error().message;
   core::RecordSource& record = opened.value();
   Eye eye;
