@@ -24,7 +24,8 @@ std::vector<ElementManual> all_manuals() {
                     Led, Light, Sound, Robot, Body, RobotController, Battery, Bridge, Tracker, Peer, Trackers,
                     TrackerElement, Desk, Spare, Safety, FenceElement, KeepOut, Zone, DistributeElement, PositionDraw,
                     OrientationDraw, Entity, Engines, Engine, Boundaries, Top, Bottom, Sides, Vertex, Media,
-                    schema::Medium, Hook, Record, Trajectory, ObserverElement, Visualization>();
+                    schema::Medium, Hook, Record, Trajectory, ObserverElement, schema::RunParts, schema::RunPartElement,
+                    Visualization>();
 }
 
 /// What a kind says of its own element.

@@ -210,7 +210,7 @@ TEST_F(Endings, APartOfARunThatFailsIsNamedAndTheOthersFinish) {
     EXPECT_EQ(run->wait(), 3) << what;
     EXPECT_EQ(whole_ticks(), what == "finish" ? 20 : 5) << "what was written until then stays";
     EXPECT_THAT(run->errors(), HasSubstr("error: part 'joiner', "));
-    EXPECT_EQ(value("ended"), "\"failed\"");
+    EXPECT_EQ(value("ended"), "failed");
     EXPECT_THAT(value("failure"), HasSubstr("part 'joiner'"));
   }
   auto join = start(with("join"));
@@ -225,7 +225,7 @@ TEST_F(Endings, APartMayEndARun) {
   auto run = start({.hook = "<plugins library=\"test_trouble\"/>"},
                    {"--set", "run.joiner.what=end", "--set", "run.joiner.at=7"});
   EXPECT_EQ(run->wait(), 0) << run->errors();
-  EXPECT_EQ(value("ended"), "\"part\"");
+  EXPECT_EQ(value("ended"), "part");
   EXPECT_EQ(value("finished"), "true");
   EXPECT_EQ(whole_ticks(), 7);
   EXPECT_THAT(run->output(), HasSubstr("by a part at tick 7 of 20"));

@@ -50,7 +50,7 @@ class WithBrowser(unittest.TestCase):
         self.page.until(f"tick {tick}", "tandem.world.frame.tick === arguments[0]", tick)
 
     def poses(self):
-        return self.page.js("tandem.world.members.ids.map((id) => tandem.world.poseOf(id))")
+        return self.page.js("Object.fromEntries(tandem.world.members.ids.map((id) => [id, tandem.world.poseOf(id)]))")
 
 
 class TestRun(WithBrowser):
@@ -328,9 +328,10 @@ class TestRecord(WithBrowser):
         self.assertEqual(sorted(page.js("tandem.world.members.ids")), ["ep1", "ep2"])
         latest = page.js("tandem.world.state.latest")
         self.go_to(latest)
-        for was, now in zip(there, self.poses()):
-            self.assertAlmostEqual(was["x"], now["x"], 2)
-            self.assertAlmostEqual(was["y"], now["y"], 2)
+        here = self.poses()
+        for robot, was in there.items():
+            self.assertAlmostEqual(was["x"], here[robot]["x"], 2)
+            self.assertAlmostEqual(was["y"], here[robot]["y"], 2)
         self.go_to(10)
         page.press(" ")
         page.until("it plays", "tandem.world.frame.tick > 12")
