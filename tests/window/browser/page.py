@@ -169,7 +169,11 @@ class Page:
         return round(x - width / 2), round(y - height / 2)
 
     def place(self, robot):
-        """Where a robot is in the picture."""
+        """Where a robot is in the picture, once that has the size of its place on the page."""
+        self.until("the picture in its place", """(() => {
+            const box = document.getElementById('view').parentElement.getBoundingClientRect();
+            return Math.floor(box.width) === tandem.camera.width_px && Math.floor(box.height) === tandem.camera.height_px;
+        })()""")
         at = self.js("tandem.place(arguments[0])", robot)
         return at["x"], at["y"]
 
