@@ -1,6 +1,7 @@
-// Hubs and guardians that are frozen, killed and woken in any order, with robots of four kinds; verdicts come from the
-// robots' own logs. TANDEM_PAIR_ROBOTS=20 for five of each kind, TANDEM_PAIR_STORIES=N for N stories: after the first
-// ones, which are written down here, drawn from TANDEM_PAIR_SEED.
+// Hubs and guardians that are frozen, killed and woken in any order, and robots that are switched off and on, of four
+// kinds; verdicts come from the robots' own logs. TANDEM_PAIR_ROBOTS=20 for five of each kind, TANDEM_PAIR_STORIES=N
+// and TANDEM_ABSENCE_STORIES=N for N stories: after the first ones, which are written down here, drawn from
+// TANDEM_PAIR_SEED.
 #include <cstdlib>
 #include <gmock/gmock.h>
 #include <random>
@@ -87,6 +88,7 @@ struct Roller {
   Folder folder;
   std::unique_ptr<EmulatedRobot> robot;
   bool stops_by_itself() const { return kind != "e-puck"; }
+  inline void switch_on(bool exchanged = false);
 };
 
 class EmulatedThymio : public EmulatedRobot {
@@ -94,8 +96,21 @@ class EmulatedThymio : public EmulatedRobot {
   explicit EmulatedThymio(const Folder& folder) : EmulatedRobot(folder, "thymio", "pty:th0", {}) {}
 };
 
+/// With a log of its own; `exchanged`: another one of its kind, where an option makes one.
+void Roller::switch_on(bool exchanged) {
+  if (kind == "e-puck") {
+    robot = std::make_unique<EmulatedEpuck>(
+        folder, exchanged ? std::vector<std::string>{"--selector", "7"} : std::vector<std::string>{});
+  } else if (kind == "foot-bot") {
+    robot = std::make_unique<EmulatedFootbot>(folder);
+  } else {
+    robot = std::make_unique<EmulatedThymio>(folder);
+  }
+  EXPECT_TRUE(robot->ready());
+}
+
 /// In a network of its own, where LCM reaches this program's children and nobody else.
-class FrozenPairs : public testing::TestWithParam<Story> {
+class FourKinds : public testing::Test {
  protected:
   void SetUp() override {
     static const bool apart =
@@ -108,10 +123,14 @@ class FrozenPairs : public testing::TestWithParam<Story> {
       for (const std::string kind : {"e-puck", "foot-bot", "thymio"}) elements += add_roller(kind, i);
       elements += robot("eye-bot", "eb" + std::to_string(i), 2.0 * i, 0.0, "h", EmulatedEyebot::kLink);
     }
+    switch_flyers_on();
+    hub_folder.write("run.xml", experiment(elements));
+  }
+
+  void switch_flyers_on() {
     eyebots = std::make_unique<EmulatedEyebot>(
         eyebot_folder, std::vector<std::string>{"--name", "eb0", "--count", std::to_string(flyers)});
     ASSERT_TRUE(eyebots->ready());
-    hub_folder.write("run.xml", experiment(elements));
   }
 
   static std::string robot(const std::string& kind, const std::string& id, double x, double y,
@@ -127,19 +146,12 @@ class FrozenPairs : public testing::TestWithParam<Story> {
     const std::string number = std::to_string(i);
     const double x = -30.0, y = 0.6 * static_cast<double>(rollers.size());
     const auto device = [&r](const char* name) { return (r.folder.path() / name).string(); };
-    if (kind == "e-puck") {
-      r.robot = std::make_unique<EmulatedEpuck>(r.folder);
-      EXPECT_TRUE(r.robot->ready());
-      return robot(kind, "ep" + number, x, y, "d", "serial:" + device("ep0"));
-    }
+    r.switch_on();
+    if (kind == "e-puck") return robot(kind, "ep" + number, x, y, "d", "serial:" + device("ep0"));
     if (kind == "foot-bot") {
-      r.robot = std::make_unique<EmulatedFootbot>(r.folder);
-      EXPECT_TRUE(r.robot->ready());
       return robot(kind, "fb" + number, x, y, "d",
                    "slcan:" + device("fb0") + "@1000000\" map=\"" + test::kSourceDir + "/configs/footbot_map.xml");
     }
-    r.robot = std::make_unique<EmulatedThymio>(r.folder);
-    EXPECT_TRUE(r.robot->ready());
     return robot(kind, "th" + number, x, y, "d", "serial:" + device("th0"));
   }
 
@@ -224,11 +236,25 @@ class FrozenPairs : public testing::TestWithParam<Story> {
     return true;
   }
 
+  /// A person re-arms each of them by its name.
+  void rearm_each(const Tandem& hub) const {
+    for (int i = 0; i < flyers; ++i) {
+      for (const char* kind : {"ep", "fb", "th", "eb"}) {
+        const auto armed = [&] {
+          Tandem desk({"desk", EmulatedEyebot::kLink, "rearm", kind + std::to_string(i)}, hub_folder.path());
+          return desk.wait() == 0;
+        };
+        EXPECT_TRUE(eventually(armed, 20.0)) << kind << i << ": " << hub.errors();
+      }
+    }
+  }
+
   int flyers = 0;
   Folder hub_folder, eyebot_folder;
   std::vector<std::unique_ptr<Roller>> rollers;
   std::unique_ptr<EmulatedEyebot> eyebots;
 };
+class FrozenPairs : public FourKinds, public testing::WithParamInterface<Story> {};
 INSTANTIATE_TEST_SUITE_P(Stories, FrozenPairs, testing::ValuesIn(stories()),
                          [](const auto& story) { return story.param.name; });
 
@@ -256,16 +282,31 @@ TEST_P(FrozenPairs, LeaveNoRobotMovingUntilAPersonArmsIt) {
   hub.signal(SIGUSR1);  // re-arms all that are proved: their links were opened anew
   std::this_thread::sleep_for(kTemptation);
   expect_nobody_moves_since(rested);
-  for (int i = 0; i < flyers; ++i) {
-    for (const char* kind : {"ep", "fb", "th", "eb"}) {
-      const auto armed = [&] {
-        Tandem desk({"desk", EmulatedEyebot::kLink, "rearm", kind + std::to_string(i)}, hub_folder.path());
-        return desk.wait() == 0;
-      };
-      EXPECT_TRUE(eventually(armed, 20.0)) << kind << i << ": " << hub.errors();
-    }
-  }
+  rearm_each(hub);
   EXPECT_TRUE(come_to_move(hub)) << "a person has armed each of them: " << hub.errors();
+}
+
+TEST_F(FourKinds, ThatWereSwitchedOffWaitForAPersonWhenTheyAreBack) {
+  std::mt19937 chance(static_cast<unsigned>(number_of("TANDEM_PAIR_SEED", 1)));
+  std::vector<int> away_ms = {300, 3000, 15'000, 60'000};  // how long; then drawn
+  const auto wanted = static_cast<std::size_t>(std::max(1, number_of("TANDEM_ABSENCE_STORIES", 2)));
+  while (away_ms.size() < wanted) away_ms.push_back(50 + static_cast<int>(chance() % 8000));
+  away_ms.resize(wanted);
+  Tandem hub({"run", "run.xml"}, hub_folder.path());
+  ASSERT_TRUE(come_to_move(hub)) << hub.errors();
+  for (const int away : away_ms) {
+    SCOPED_TRACE(std::to_string(away) + " ms away");
+    for (const auto& r : rollers) r->robot.reset();
+    eyebots.reset();
+    std::this_thread::sleep_for(std::chrono::milliseconds(away));
+    for (const auto& r : rollers) r->switch_on(chance() % 2 == 0);
+    switch_flyers_on();
+    std::this_thread::sleep_for(kTemptation);
+    expect_nobody_moves_since(0);  // logs begin anew with their robots
+    ASSERT_EQ(hub.wait(0.0), -1000) << hub.errors();
+    rearm_each(hub);
+    ASSERT_TRUE(come_to_move(hub)) << hub.errors();
+  }
 }
 
 }  // namespace
