@@ -1,7 +1,6 @@
 // The foot-bot's bridge on its bus: load, discovery, faults, other hosts, nodes that lie.
 #include <gmock/gmock.h>
 
-#include "tests/bridges/can/frame_bits.hpp"
 #include "hal/device/body_sensors.hpp"
 #include "hal/device/distance_scanner.hpp"
 #include "hal/device/gripper.hpp"
@@ -10,6 +9,7 @@
 #include "hal/device/ring_sensors.hpp"
 #include "hal/device/turret.hpp"
 #include "hal/device/wheels.hpp"
+#include "tests/bridges/can/frame_bits.hpp"
 #include "tests/bridges/footbot/fake_footbot.hpp"
 
 namespace tandem::bridges::footbot {
