@@ -3,11 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <ctime>
-#include <memory>
+#include <set>
 #include <sys/stat.h>
 
 #include "bridges/guardian/client.hpp"
-#include "hal/monotonic.hpp"
 
 namespace tandem::bridges::guardian {
 namespace {
@@ -20,41 +19,31 @@ bool made_since(const StopMessages& robot, std::int64_t unix_s) {
          std::int64_t{info.st_ctim.tv_sec} > unix_s;
 }
 
-/// Robots of one name each, and who stops them.
-struct Round {
-  std::vector<StoppedRobot*> robots;
-  std::unique_ptr<GuardianClient> guardian = {};
-};
-
-/// Has a guardian of its own begin to stop them.
-void begin(Round& round, const std::string& folder, const std::vector<StopperType>& types) {
+/// Robots of one name each.
+void stop(std::vector<StoppedRobot*> robots, const std::string& folder, const std::vector<StopperType>& types,
+          hal::TimeNs timeout_ns) {
   auto started = GuardianClient::start(types);
   if (!started.ok()) {
-    for (StoppedRobot* robot : round.robots) robot->trouble = started.error().message;
+    for (StoppedRobot* robot : robots) robot->trouble = started.error().message;
     return;
   }
-  round.guardian = std::move(started).value();
-  std::erase_if(round.robots, [&](StoppedRobot* robot) {
+  GuardianClient& guardian = **started;
+  std::erase_if(robots, [&](StoppedRobot* robot) {
     const LockHolder& holder = robot->abandoned.holder;
-    if (const hal::Status claimed = round.guardian->claim({&holder.robot, 1}); !claimed.ok()) {
+    if (const hal::Status claimed = guardian.claim({&holder.robot, 1}); !claimed.ok()) {
       robot->trouble = claimed.error().message;
       return true;
     }
-    round.guardian->watch(holder.robot);
+    guardian.watch(holder.robot);
     forget_abandoned(folder, holder);
     return false;
   });
-  round.guardian->begin_end();
-}
-
-void finish(Round& round, hal::TimeNs until_ns) {
-  if (round.guardian == nullptr) return;
-  const auto unstopped = round.guardian->end(std::max<hal::TimeNs>(0, until_ns - hal::monotonic_ns()));
-  for (StoppedRobot* robot : round.robots) {
+  const std::vector<UnstoppedRobot> unstopped = guardian.end(timeout_ns);
+  for (StoppedRobot* robot : robots) {
     const StopMessages& messages = robot->abandoned.holder.robot;
     const auto found = std::ranges::find(unstopped, messages.robot, &UnstoppedRobot::robot);
     if (found != unstopped.end()) {
-      robot->trouble = found->trouble + "; process " + std::to_string(round.guardian->process()) + " goes on trying";
+      robot->trouble = found->trouble + "; process " + std::to_string(guardian.process()) + " goes on trying";
     } else if (made_since(messages, robot->abandoned.seen_unix_s)) {
       robot->trouble = "who is there now rests, but the device was made anew since then: it may be another robot";
     } else {
@@ -85,19 +74,16 @@ std::vector<StoppedRobot> stop_abandoned(const std::vector<StopperType>& types, 
   const auto folder = lock_folder();
   if (!folder.ok()) return all;
   for (AbandonedRobot& robot : find_abandoned(folder.value())) all.push_back({std::move(robot), false, ""});
-  std::vector<Round> rounds;  // those of two experiments may have one name
-  for (StoppedRobot& robot : all) {
-    const auto lacks_name = [&](const Round& round) {
-      return std::ranges::none_of(round.robots, [&](const StoppedRobot* other) {
-        return other->abandoned.holder.robot.robot == robot.abandoned.holder.robot.robot;
-      });
-    };
-    const auto found = std::ranges::find_if(rounds, lacks_name);
-    (found != rounds.end() ? *found : rounds.emplace_back()).robots.push_back(&robot);
+  std::vector<StoppedRobot*> waiting;
+  for (StoppedRobot& robot : all) waiting.push_back(&robot);
+  while (!waiting.empty()) {  // those of two experiments may have one name
+    std::set<std::string> names;
+    std::vector<StoppedRobot*> round, later;
+    for (StoppedRobot* robot : waiting)
+      (names.insert(robot->abandoned.holder.robot.robot).second ? round : later).push_back(robot);
+    stop(std::move(round), folder.value(), types, timeout_ns);
+    waiting = std::move(later);
   }
-  for (Round& round : rounds) begin(round, folder.value(), types);
-  const hal::TimeNs until_ns = hal::monotonic_ns() + timeout_ns;  // all at once: who does not answer delays nobody else
-  for (Round& round : rounds) finish(round, until_ns);
   return all;
 }
 

@@ -62,7 +62,6 @@ class GuardianClient::Heart {
   hal::Status claim(std::span<const StopMessages> robots);
   void watch(const StopMessages& robot);
   void release(const std::string& robot);
-  void begin_end();
   std::vector<UnstoppedRobot> end(TimeNs timeout_ns);
   std::vector<std::string> take_news() {
     const std::lock_guard lock(mutex_);
@@ -336,20 +335,15 @@ void GuardianClient::Heart::release(const std::string& id) {
   say(packet);
 }
 
-void GuardianClient::Heart::begin_end() {
-  const std::lock_guard lock(mutex_);
-  if (std::exchange(ended_, true)) return;
-  for (auto& [id, robot] : robots_) robot.rests = false;
-  say({Word::End, {}, ""});
-  page_.hub_beat_ms = 0;
-}
-
 std::vector<UnstoppedRobot> GuardianClient::Heart::end(TimeNs timeout_ns) {
-  begin_end();
   std::vector<UnstoppedRobot> unstopped;
   {
     std::unique_lock lock(mutex_);
-    if (quit_) return unstopped;
+    if (ended_) return unstopped;
+    for (auto& [id, robot] : robots_) robot.rests = false;
+    say({Word::End, {}, ""});
+    ended_ = true;
+    page_.hub_beat_ms = 0;
     const auto done = [this] { return !lives_ || all_rest(); };
     changed_.wait_for(lock, std::chrono::nanoseconds(timeout_ns), done);
     for (const auto& [id, robot] : robots_) {
@@ -419,10 +413,6 @@ pid_t GuardianClient::process() const noexcept {
 std::vector<std::string> GuardianClient::take_news() {
   return heart_->take_news();
 }
-void GuardianClient::begin_end() {
-  heart_->begin_end();
-}
-
 std::vector<UnstoppedRobot> GuardianClient::end(TimeNs timeout_ns) {
   return heart_->end(timeout_ns);
 }

@@ -82,8 +82,6 @@ class GuardianClient {
   /// Links must be closed. @returns those that have not confirmed; the guardian goes on with them after this process
   /// has ended.
   std::vector<UnstoppedRobot> end(hal::TimeNs timeout_ns);
-  /// Its beginning: does not wait. `end` is to follow.
-  void begin_end();
 
  private:
   class Heart;

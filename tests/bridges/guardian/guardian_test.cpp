@@ -690,32 +690,6 @@ TEST_F(Guarded, RobotsOfAHubThatWasKilledWithItsGuardianAreToldOfAndStoppedByWho
   EXPECT_TRUE(eventually([&] { return std::filesystem::is_empty(runtime_.path() / "tandem"); }));
 }
 
-TEST_F(Guarded, RobotsOfOneNameThatWereLeftAreStoppedAllAtOnce) {
-  const auto left_on = [this](const std::string& line, const std::string& body) {
-    StopMessages left = robot(line, body);
-    left.robot = "r";
-    Hub hub(runtime_.path(), drives({left}));
-    ASSERT_TRUE(hub.said("drives"));
-    hub.tell('n');
-    ASSERT_TRUE(hub.said("freezes "));
-    hub.signal_guardian(SIGSTOP);
-    hub.signal(SIGKILL);
-    hub.signal_guardian(SIGKILL);
-    hub.wait();
-    EXPECT_TRUE(gone(hub.guardian()));
-  };
-  for (const char* line : {"a", "b", "d", "e"}) left_on(line, "obeys");
-  left_on("c", "deaf");  // whichever is looked at first: nobody waits for it
-  Hub next(runtime_.path(), [](Hub& h) {
-    h.say("found " + std::to_string(stop_abandoned(kTypes, 600 * hal::kNsPerSecond).size()));
-    return static_cast<int>(h.order());
-  });
-  for (const char* line : {"a", "b", "d", "e"}) EXPECT_TRUE(was(line, "rests")) << line;
-  let_hear("c");
-  EXPECT_TRUE(was("c", "rests"));
-  EXPECT_TRUE(next.said("found 5"));
-}
-
 /// Plugs in a folder, and robots that are in them.
 class Plugs : public Guarded {
  protected:
