@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <exception>
-#include <ranges>
 
 namespace tandem::core {
 
@@ -82,8 +81,8 @@ void Run::after_tick() {
 
 template <class Call>
 void Run::in_reverse(std::string_view when, Call&& call) {
-  for (Row& row : rows_ | std::views::reverse) {
-    if (row.joined) (void)asked(row, when, call);
+  for (auto row = rows_.rbegin(); row != rows_.rend(); ++row) {
+    if (row->joined) (void)asked(*row, when, call);
   }
 }
 
