@@ -239,7 +239,10 @@ struct Words {
     }
     rest.assign(all.begin() + static_cast<std::ptrdiff_t>(at), all.end());
   }
-  std::string_view command() const { return rest.empty() || rest.front().starts_with('-') ? "" : rest.front(); }
+  std::string_view command() const {
+    if (rest.empty() || rest.front().starts_with('-')) return {};
+    return rest.front();
+  }
   bool asks_what_there_is() const { return rest.empty() || rest.front() == "-h" || rest.front() == "--help"; }
 };
 
