@@ -301,6 +301,9 @@ void RecordSource::Shown::rebuild(const RecordMoments& moments) {
     }
     groups[{kind_of(members, member), std::move(has)}].push_back(member);
   }
+  std::size_t blocks = 0;
+  for (const auto& [form, who] : groups) blocks += (who.size() + kBlockRows - 1) / kBlockRows;
+  s.blocks.reserve(blocks);  // rows of tables point into them
   for (const auto& [form, who] : groups) make_group(members, *kinds_[form.first].second, form.second, who);
   for (std::uint32_t number = 0; number < s.robots.size(); ++number) {
     if (s.robots[number].alive) s.living.push_back(number);
