@@ -202,7 +202,10 @@ class OnTerminal {
           return ended_ || (ended_ = waitpid(pid_, &status, WNOHANG) == pid_);
         },
         seconds);
-    if (!done) return -1000;
+    if (!done) {
+      ADD_FAILURE() << "it goes on:\n" << threads_of(pid_) << screen.text();
+      return -1000;
+    }
     read_all();
     return WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
   }

@@ -244,7 +244,7 @@ class FourKinds : public testing::Test {
           Tandem desk({"desk", EmulatedEyebot::kLink, "rearm", kind + std::to_string(i)}, hub_folder.path());
           return desk.wait() == 0;
         };
-        EXPECT_TRUE(eventually(armed, 20.0)) << kind << i << ": " << hub.errors();
+        EXPECT_TRUE(eventually(armed, 20.0)) << kind << i << ": " << hub.errors() << hub.threads();
       }
     }
   }

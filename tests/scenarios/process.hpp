@@ -106,6 +106,23 @@ inline std::vector<pid_t> processes_marked(const std::string& mark) {
   return all;
 }
 
+/// What each thread of a process does now, a line each, for the message of a test that waited in vain: its name, state,
+/// where in the kernel it sleeps, the signals that wait for it.
+inline std::string threads_of(pid_t process) {
+  std::string all;
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator("/proc/" + std::to_string(process) + "/task", error)) {
+    const std::string status = text_of(entry.path() / "status");
+    std::string line = entry.path().filename().string();
+    for (const char* const key : {"Name:", "State:", "SigPnd:", "ShdPnd:", "SigBlk:"}) {
+      const std::size_t at = status.find(key);
+      if (at != std::string::npos) line += " " + status.substr(at, status.find('\n', at) - at);
+    }
+    all += line + " wchan " + text_of(entry.path() / "wchan") + " syscall " + text_of(entry.path() / "syscall");
+  }
+  return all;
+}
+
 /// A running `tandem`. Killed, if need be, when this ends, with all that it has left behind: a guardian goes on until
 /// its robots have confirmed their stop, and a test's robots may be gone.
 class Tandem {
@@ -174,6 +191,7 @@ class Tandem {
       code_ = -WTERMSIG(status);
     return code_;
   }
+  std::string threads() const { return threads_of(pid_); }
   std::string output() const { return text_of(output_); }
   std::string errors() const { return text_of(errors_); }
 
