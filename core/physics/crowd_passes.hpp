@@ -18,6 +18,7 @@ class CrowdPasses {
   static constexpr double kShallow = 0.25 * kDeep;  ///< deeper ones, and those near them, go on
   static constexpr double kSlack_m = 0.02;          ///< moves together after which neighbours are looked for anew
   static constexpr int kMostPasses = 400;           ///< of pushing
+  static constexpr std::uint8_t kHalvings = 5;      ///< of a way back; the last one is all of it
 
   /// For so many bodies: settling as many allocates nothing.
   void reserve(std::size_t bodies) {
@@ -74,8 +75,6 @@ class CrowdPasses {
   }
 
  private:
-  static constexpr std::uint8_t kHalvings = 5;
-
   template <class Push>
   void look(const std::vector<std::uint32_t>& who, Push& push) {
     deepest_ = 0.0;

@@ -1,6 +1,7 @@
 #include "core/physics/kinematics2d/kinematics2d.hpp"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <tuple>
@@ -193,17 +194,31 @@ Push push_of(const Contacts& contacts, const IndexEntry& e) noexcept {
   return {px, py, overlap};
 }
 
-/// Marks a body and those that it touches.
-void mark_dense(const Contacts& contacts, std::uint32_t entry, std::vector<std::uint8_t>& marks) noexcept {
+/// Marks a body and those whose middles are nearer to its own than `distance_m(own radius, other radius)`.
+template <class Distance>
+void mark_near(const Contacts& contacts, std::size_t entry, Distance&& distance_m,
+               std::vector<std::uint8_t>& marks) noexcept {
   const IndexEntry* const entries = contacts.index.entries();
   const IndexEntry& e = entries[entry];
   contacts.index.for_each_near(e.x_m, e.y_m, contacts.reach(e), [&](const IndexEntry& o) {
     const double dx = e.x_m - o.x_m;
     const double dy = e.y_m - o.y_m;
-    const double near = static_cast<double>(e.radius_m) + static_cast<double>(o.radius_m) + kNear_m;
+    const double near = distance_m(static_cast<double>(e.radius_m), static_cast<double>(o.radius_m));
     if (dx * dx + dy * dy < near * near)
       std::atomic_ref<std::uint8_t>(marks[static_cast<std::size_t>(&o - entries)]).store(1, std::memory_order_relaxed);
   });
+}
+
+/// The way from where a robot was before it rolled: the chord of its arc.
+std::array<double, 2> rolled_m(const SpaceStores& stores, std::size_t row, double dt_s) noexcept {
+  const Bodies& b = stores.bodies;
+  const double way_m = 0.5 * (b.left_m_s[row] + b.right_m_s[row]) * dt_s;
+  const double half =
+      0.5 * (b.right_m_s[row] - b.left_m_s[row]) / wheels_of(stores.kind_of_row(row)).wheel_base_m * dt_s;
+  const double chord_m = half == 0.0 ? way_m : way_m * std::sin(half) / half;
+  const double c = std::cos(half);
+  const double s = std::sin(half);  // the heading in the middle of the arc lies behind the one at its end
+  return {chord_m * (b.cos_h[row] * c + b.sin_h[row] * s), chord_m * (b.sin_h[row] * c - b.cos_h[row] * s)};
 }
 
 }  // namespace
@@ -228,6 +243,7 @@ int Kinematics2d::parts(const PhysicsContext& context) const {
 
 void Kinematics2d::advance(const PhysicsContext& context) {
   SpaceStores& stores = context.stores;
+  part_s_ = context.tick_s;
   const bool all_mine =
       std::none_of(stores.regions.begin(), stores.regions.end(), [](const Region& r) { return r.listed; });
   context.pool.run(stores.blocks.size(), 8, [&](std::size_t first, std::size_t last) {
@@ -265,99 +281,238 @@ void Kinematics2d::collect(std::vector<Trouble>& all) {
   }
 }
 
-void Kinematics2d::settle(const PhysicsContext& context) {
-  SpaceStores& stores = context.stores;
-  BodyIndex& index = stores.body_index;
-  const std::size_t n = index.size();
-  const std::size_t chunks = (n + kChunk - 1) / kChunk;
-  if (counts_.size() < chunks) {
-    counts_.resize(chunks);
-    active_ = std::make_unique_for_overwrite<Active[]>(chunks * kChunk);
-  }
-  IndexEntry* entries = index.entries();
-  const Contacts contacts(stores);
-  const auto each_chunk = [&](auto&& work) {
-    context.pool.run(chunks, kChunksWorthThreads, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t chunk = begin; chunk < end; ++chunk) work(chunk, active_.get() + chunk * kChunk);
-    });
-  };
-
-  double displacement = 0.0;
-  double overlap = 0.0;  // when the last pass began
-  const bool adapts = params_.iterations == 0;
-  if (adapts && dense_.size() < n) {
-    dense_.resize(n);
-    dense_next_.resize(n);
-  }
-  const std::int64_t passes = adapts ? kFirstPasses : params_.iterations;
-  bool known = false;  // who is near anything
-  const auto find_pushes = [&](bool dense_alone, bool marks) {
-    std::atomic<double> deepest{0.0};
-    each_chunk([&](std::size_t chunk, Active* active) {
-      if (!known) {
-        std::uint32_t count = 0;
-        for (std::size_t i = chunk * kChunk; i < std::min(n, (chunk + 1) * kChunk); ++i) {
-          active[count].entry = static_cast<std::uint32_t>(i);
-          if (!entries[i].fixed() && anything_near(contacts, entries[i])) ++count;
-        }
-        counts_[chunk] = count;
-      }
-      double deepest_here = 0.0;
-      for (Active* a = active; a != active + counts_[chunk]; ++a) {
-        a->push_x_m = a->push_y_m = 0.0;
-        if (dense_alone && dense_[a->entry] == 0) continue;
-        const Push push = push_of(contacts, entries[a->entry]);
-        a->push_x_m = push.x_m;
-        a->push_y_m = push.y_m;
-        deepest_here = std::max(deepest_here, push.overlap);
-        if (marks && push.overlap > CrowdPasses::kShallow) mark_dense(contacts, a->entry, dense_next_);
-      }
-      raise_to(deepest, deepest_here);
-    });
-    known = true;
-    return deepest.load();
-  };
-  const auto push_apart = [&] {
-    std::atomic<double> longest{0.0};
-    each_chunk([&](std::size_t chunk, Active* active) {
-      double longest_here = 0.0;
-      for (Active* a = active; a != active + counts_[chunk]; ++a) {
-        const double length = std::fabs(a->push_x_m) + std::fabs(a->push_y_m);
-        if (length == 0.0) continue;
-        IndexEntry& e = entries[a->entry];
-        e.x_m += a->push_x_m;
-        e.y_m += a->push_y_m;
-        stores.bodies.x_m[e.row()] = e.x_m;
-        stores.bodies.y_m[e.row()] = e.y_m;
-        longest_here = std::max(longest_here, length);
-      }
-      raise_to(longest, longest_here);  // a maximum: the same in any order
-    });
-    displacement += longest.load();
-    if (longest.load() > 0.0) index.set_displacement(displacement);
-    return longest.load() > 0.0;
-  };
-  std::int64_t pass = 0;
-  bool pushed = true;
-  for (; pass < passes && pushed; ++pass) {
-    overlap = find_pushes(false, adapts && pass + 1 == passes);
-    pushed = push_apart();
-  }
-  if (adapts && overlap > CrowdPasses::kShallow) {  // the last pass pushed them, perhaps into others
-    for (; pass < CrowdPasses::kMostPasses; ++pass) {
-      dense_.swap(dense_next_);
-      std::fill(dense_next_.begin(), dense_next_.end(), std::uint8_t{0});
-      overlap = find_pushes(true, true);
-      if (overlap <= CrowdPasses::kDeep) {  // what was pushed out of there may be in others, which were not near then
-        known = false;
-        overlap = find_pushes(false, true);
-      }
-      if (overlap <= CrowdPasses::kDeep) break;
-      push_apart();
+/// Contacts of one tick. Moves the entries of the index; the stores keep where bodies rolled to until all is done.
+class Kinematics2d::Settling {
+ public:
+  Settling(Kinematics2d& engine, const PhysicsContext& context)
+      : engine_(engine),
+        context_(context),
+        contacts_(context.stores),
+        entries_(context.stores.body_index.entries()),
+        n_(context.stores.body_index.size()),
+        chunks_((n_ + kChunk - 1) / kChunk) {
+    if (engine.counts_.size() < chunks_) {
+      engine.counts_.resize(chunks_);
+      engine.active_ = std::make_unique_for_overwrite<Active[]>(chunks_ * kChunk);
     }
-    std::fill(dense_next_.begin(), dense_next_.end(), std::uint8_t{0});
+    if (engine.params_.iterations > 0 || engine.dense_.size() >= n_) return;
+    for (auto* marks : {&engine.dense_, &engine.dense_next_, &engine.went_back_}) marks->resize(n_);
   }
-  accuracy_.overlap = std::max(accuracy_.overlap, overlap);
+
+  /// @returns the deepest overlap of two robots: of those that it goes on for, what is left.
+  double run() {
+    const bool adapts = engine_.params_.iterations == 0;
+    const std::int64_t passes = adapts ? kFirstPasses : engine_.params_.iterations;
+    double overlap = 0.0;  // when the last pass began
+    bool pushed = true;
+    for (std::int64_t pass = 0; pass < passes && pushed; ++pass) {
+      overlap = find_pushes(false, adapts && pass + 1 == passes);
+      pushed = push_apart();
+    }
+    // The last pass pushed them, perhaps into others.
+    if (adapts && overlap > CrowdPasses::kShallow) overlap = part_dense();
+    write_back();
+    return overlap;
+  }
+
+ private:
+  void list_near(std::size_t chunk, Active* active);
+  double find_pushes(bool dense_alone, bool marks);
+  bool push_apart();
+  double part_dense();
+  double send_back();
+  double look();
+  bool go_back();
+  void write_back();
+  void next_marks();
+
+  template <class Work>
+  void each_chunk(Work&& work) {
+    context_.pool.run(chunks_, kChunksWorthThreads, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t chunk = begin; chunk < end; ++chunk) work(chunk, engine_.active_.get() + chunk * kChunk);
+    });
+  }
+  /// The largest of what `work(entry)` returns for those that are marked and give way.
+  template <class Work>
+  double largest_of_dense(Work&& work) {
+    std::atomic<double> largest{0.0};
+    each_chunk([&](std::size_t chunk, const Active*) {
+      double largest_here = 0.0;
+      for (std::size_t i = chunk * kChunk; i < std::min(n_, (chunk + 1) * kChunk); ++i) {
+        if (engine_.dense_[i] != 0 && !entries_[i].fixed()) largest_here = std::max(largest_here, work(i));
+      }
+      raise_to(largest, largest_here);  // a maximum: the same in any order
+    });
+    return largest.load();
+  }
+  /// How far an entry is from where it rolled to.
+  double moved_m(const IndexEntry& e) const noexcept {
+    const Bodies& b = context_.stores.bodies;
+    return std::fabs(e.x_m - b.x_m[e.row()]) + std::fabs(e.y_m - b.y_m[e.row()]);
+  }
+  void widen_to(double way_m) noexcept {
+    displacement_m_ = std::max(displacement_m_, way_m);
+    context_.stores.body_index.set_displacement(displacement_m_);
+  }
+
+  Kinematics2d& engine_;
+  const PhysicsContext& context_;
+  const Contacts contacts_;
+  IndexEntry* entries_;
+  std::size_t n_, chunks_;
+  double displacement_m_ = 0.0;
+  bool known_ = false;     // who is near anything
+  bool relisted_ = false;  // some that were pushed may not be listed any more
+};
+
+/// Lists those of a chunk that may come to touch something.
+void Kinematics2d::Settling::list_near(std::size_t chunk, Active* active) {
+  const IndexEntry* const entries = entries_;
+  const auto last = static_cast<std::uint32_t>(std::min(n_, (chunk + 1) * kChunk));
+  std::uint32_t count = 0;
+  for (auto i = static_cast<std::uint32_t>(chunk * kChunk); i < last; ++i) {
+    active[count].entry = i;
+    if (!entries[i].fixed() && anything_near(contacts_, entries[i])) ++count;
+  }
+  engine_.counts_[chunk] = count;
+}
+
+double Kinematics2d::Settling::find_pushes(bool dense_alone, bool marks) {
+  std::atomic<double> deepest{0.0};
+  each_chunk([&](std::size_t chunk, Active* active) {
+    if (!known_) list_near(chunk, active);
+    double deepest_here = 0.0;
+    for (Active* a = active; a != active + engine_.counts_[chunk]; ++a) {
+      a->push_x_m = a->push_y_m = 0.0;
+      if (dense_alone && engine_.dense_[a->entry] == 0) continue;
+      const Push push = push_of(contacts_, entries_[a->entry]);
+      a->push_x_m = push.x_m;
+      a->push_y_m = push.y_m;
+      deepest_here = std::max(deepest_here, push.overlap);
+      if (marks && push.overlap > CrowdPasses::kShallow)
+        mark_near(
+            contacts_, a->entry, [](double own, double other) { return own + other + kNear_m; }, engine_.dense_next_);
+    }
+    raise_to(deepest, deepest_here);
+  });
+  known_ = true;
+  return deepest.load();
+}
+
+/// @returns whether anybody was pushed.
+bool Kinematics2d::Settling::push_apart() {
+  std::atomic<double> farthest{0.0};
+  std::atomic<bool> pushed{false};
+  each_chunk([&](std::size_t chunk, Active* active) {
+    double farthest_here = 0.0;
+    bool pushed_here = false;
+    for (Active* a = active; a != active + engine_.counts_[chunk]; ++a) {
+      if (a->push_x_m == 0.0 && a->push_y_m == 0.0) continue;
+      IndexEntry& e = entries_[a->entry];
+      e.x_m += a->push_x_m;
+      e.y_m += a->push_y_m;
+      pushed_here = true;
+      farthest_here = std::max(farthest_here, moved_m(e));
+    }
+    raise_to(farthest, farthest_here);
+    if (pushed_here) pushed.store(true, std::memory_order_relaxed);
+  });
+  if (pushed.load()) widen_to(farthest.load());
+  return pushed.load();
+}
+
+void Kinematics2d::Settling::next_marks() {
+  engine_.dense_.swap(engine_.dense_next_);
+  std::fill(engine_.dense_next_.begin(), engine_.dense_next_.end(), std::uint8_t{0});
+}
+
+/// Passes where it is dense, until nobody is deep in another.
+double Kinematics2d::Settling::part_dense() {
+  for (std::int64_t pass = kFirstPasses; pass < CrowdPasses::kMostPasses; ++pass) {
+    next_marks();
+    double overlap = find_pushes(true, true);
+    if (overlap <= CrowdPasses::kDeep) {  // what was pushed out of there may be in others, which were not near then
+      known_ = false;
+      relisted_ = true;
+      overlap = find_pushes(false, true);
+    }
+    if (overlap <= CrowdPasses::kDeep) {
+      next_marks();
+      return overlap;
+    }
+    push_apart();
+  }
+  return send_back();
+}
+
+/// Whoever is deep in another even now goes back to where it was before the tick, half its way each time and at last
+/// all of it, then those that it meets there, and so on. Nobody was deep before the tick.
+double Kinematics2d::Settling::send_back() {
+  relisted_ = true;
+  const auto mark_all = [this] { std::fill(engine_.dense_.begin(), engine_.dense_.end(), std::uint8_t{1}); };
+  std::fill(engine_.went_back_.begin(), engine_.went_back_.end(), std::uint8_t{0});
+  std::fill(engine_.dense_next_.begin(), engine_.dense_next_.end(), std::uint8_t{0});
+  mark_all();
+  do {
+    look();
+    next_marks();
+  } while (go_back());
+  mark_all();
+  const double overlap = look();
+  next_marks();
+  return overlap;
+}
+
+/// Marks for the next round those that are deep in marked ones, and these.
+double Kinematics2d::Settling::look() {
+  return largest_of_dense([&](std::size_t i) {
+    const double overlap = push_of(contacts_, entries_[i]).overlap;
+    if (overlap > CrowdPasses::kDeep)
+      mark_near(
+          contacts_, i,
+          [](double own, double other) { return own + other - 2.0 * CrowdPasses::kDeep * std::min(own, other); },
+          engine_.dense_next_);
+    return overlap;
+  });
+}
+
+/// @returns whether any of the marked ones could.
+bool Kinematics2d::Settling::go_back() {
+  const SpaceStores& stores = context_.stores;
+  std::atomic<bool> any{false};
+  widen_to(largest_of_dense([&](std::size_t i) {
+    std::uint8_t& times = engine_.went_back_[i];
+    if (times == CrowdPasses::kHalvings) return 0.0;
+    const double share = ++times == CrowdPasses::kHalvings ? 0.0 : 0.5;
+    IndexEntry& e = entries_[i];
+    const auto [way_x_m, way_y_m] = rolled_m(stores, e.row(), engine_.part_s_);
+    const double x_m = stores.bodies.x_m[e.row()] - way_x_m;
+    const double y_m = stores.bodies.y_m[e.row()] - way_y_m;
+    e.x_m = x_m + share * (e.x_m - x_m);
+    e.y_m = y_m + share * (e.y_m - y_m);
+    any.store(true, std::memory_order_relaxed);
+    return moved_m(e);
+  }));
+  return any.load();
+}
+
+void Kinematics2d::Settling::write_back() {
+  Bodies& b = context_.stores.bodies;
+  const auto write = [&](const IndexEntry& e) {
+    b.x_m[e.row()] = e.x_m;
+    b.y_m[e.row()] = e.y_m;
+  };
+  each_chunk([&](std::size_t chunk, const Active* active) {
+    if (relisted_) {
+      for (std::size_t i = chunk * kChunk; i < std::min(n_, (chunk + 1) * kChunk); ++i) write(entries_[i]);
+      return;
+    }
+    for (const Active* a = active; a != active + engine_.counts_[chunk]; ++a) write(entries_[a->entry]);
+  });
+}
+
+void Kinematics2d::settle(const PhysicsContext& context) {
+  accuracy_.overlap = std::max(accuracy_.overlap, Settling(*this, context).run());
 }
 
 namespace {

@@ -12,16 +12,18 @@ namespace tandem::core {
 /// Differential-drive kinematics [Siegwart et al. 2011, ch. 3], exact for constant wheel speeds over a tick. Contacts
 /// are resolved by moving overlapping discs apart by half the overlap each, and out of walls, objects and the bodies of
 /// other engines wholly: a few passes a tick, each computed from the positions of the one before, so that neither
-/// order nor threads matter. Where a crowd is so dense that these leave overlaps, it gets more passes, alone. All its
-/// regions are worked on as one: a split changes nothing.
+/// order nor threads matter. Where a crowd is so dense that these leave overlaps, it gets more passes, alone, and who
+/// is deep in another even then goes back towards where it was before the tick. All its regions are worked on as one: a
+/// split changes nothing.
 class Kinematics2d final : public Engine {
  public:
   struct Params {
     std::int64_t iterations = 0;
     void describe(hal::ParamVisitor& v) {
-      v.integer("iterations", iterations, {0, 1000},
-                "Passes of contact resolution a tick, at most. 0: 4, and up to 400 where robots are then still in one "
-                "another by more than 1 % of their diameter.");
+      v.integer(
+          "iterations", iterations, {0, 1000},
+          "Passes of contact resolution a tick, at most. 0: 4, and up to 400 where robots are then still in one "
+          "another by more than 1 % of their diameter; who is that deep even then goes back towards where it was.");
     }
   };
   explicit Kinematics2d(const Params& params) : params_(params) {}
@@ -40,6 +42,7 @@ class Kinematics2d final : public Engine {
     std::uint32_t entry;
     double push_x_m, push_y_m;
   };
+  class Settling;
 
   Params params_;
   std::atomic<const SpaceStores*> too_fast_in_{nullptr};  // where somebody is, in this tick
@@ -48,6 +51,8 @@ class Kinematics2d final : public Engine {
   std::vector<std::uint32_t> counts_;  // how long each is
   /// By entry: in a dense place, which has passes beyond the first ones: in this pass, and in the next.
   std::vector<std::uint8_t> dense_, dense_next_;
+  std::vector<std::uint8_t> went_back_;  // by entry: how often, in this tick
+  double part_s_ = 0.0;                  // of the tick, in which bodies rolled last
   PhysicsAccuracy accuracy_;
 };
 

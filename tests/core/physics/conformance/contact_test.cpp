@@ -1,4 +1,6 @@
 // What every engine promises of robots that run into walls, into one another, and into robots that others move.
+#include <random>
+
 #include "tests/core/physics/conformance/engines.hpp"
 
 namespace tandem::core {
@@ -102,48 +104,90 @@ TEST_P(Contact, ACrowdAtFullSpeedOverlapsByTwoPercentOfABodyAtMost) {
   }
 }
 
-/// All drive straight at one corner, where they heap up and press on. In the closest heap, 2 sqrt(3) r^2 of a quarter
-/// of a disc are each one's, and their mean distance from the corner is two thirds of its radius.
+/// Robots on a grid, each by up to 5 mm an e-puck beside its point, that drive straight at one corner.
+struct Heap {
+  std::string kind;  ///< of engine
+  std::string split;
+  std::int64_t threads;
+  std::size_t robots;
+  std::uint64_t seed = 1;
+  std::string robot = "e-puck";
+};
+
+/// Presses a heap for 200 ticks, ten a second, with the engine's own settings. In the closest one, 2 sqrt(3) r^2 of a
+/// quarter of a disc are each robot's, and their mean distance from the corner is two thirds of its radius.
+/// @returns the fingerprint of the end.
+std::uint64_t press_into_a_corner(const Heap& heap) {
+  SCOPED_TRACE(std::to_string(heap.robots) + " " + heap.robot + "s, " + heap.split + ", seed " +
+               std::to_string(heap.seed));
+  const hal::RobotKind& kind = *test::catalog().find<hal::RobotKind>(heap.robot);
+  const double radius_m = kind.body.radius_m;
+  const double size = radius_m / kRobotRadius_m;  // places grow with robots
+  const double corner_m = 0.9 * size;
+  const double speed_m_s = kind.drive()->max_speed_m_s;
+  Scene s = crowd_scene(heap.kind, heap.split, 2.0 * corner_m + 0.2);
+  s.walls();
+  s.scenario.controllers.back().sensors.clear();
+  s.scenario.controllers.back().actuators = {{"differential_steering", "ideal", {}}};
+  std::mt19937_64 random(heap.seed);
+  std::uniform_real_distribution<double> beside_m(-0.005, 0.005);
+  for (std::size_t i = 0; i < heap.robots; ++i) {
+    const double x_m = size * (-0.8 + 0.085 * static_cast<double>(i % 19) + beside_m(random));
+    const double y_m = size * (-0.8 + 0.1 * static_cast<double>(i / 19) + beside_m(random));
+    s.robot("r" + std::to_string(i), x_m, y_m, std::atan2(corner_m - y_m, corner_m - x_m)).wheels(speed_m_s, speed_m_s);
+    s.scenario.robots.back().kind = heap.robot;
+  }
+  WorldOptions options;
+  options.threads = heap.threads;
+  auto world = make(s, options);
+  EXPECT_TRUE(world.world) << world.all_problems();
+  if (!world.world) return 0;
+  const Space& space = world->space();
+  const double tick_m = 0.1 * speed_m_s;
+  double deepest_m = 0.0;
+  double mean_m = 0.0;
+  double nearest_m = corner_m;  // of any middle to a wall
+  for (int tick = 0; tick < 200; ++tick) {
+    world->step();
+    deepest_m = std::max(deepest_m, crowd_of(space, 0.0, radius_m).deepest_m);
+    mean_m = 0.0;
+    for (std::size_t i = 0; i < heap.robots; ++i) {
+      const Pose pose = space.pose(space.robot(i));
+      nearest_m = std::min({nearest_m, corner_m - pose.x_m, corner_m - pose.y_m});
+      mean_m += std::hypot(corner_m - pose.x_m, corner_m - pose.y_m) / static_cast<double>(heap.robots);
+    }
+  }
+  EXPECT_EQ(world->state(), RunState::Running) << world->failure();
+  EXPECT_GT(nearest_m, radius_m - 1.01 * tick_m);
+  const double closest_m =
+      2.0 / 3.0 * std::sqrt(static_cast<double>(heap.robots) * 8.0 * std::sqrt(3.0) / std::numbers::pi) * radius_m;
+  EXPECT_LT(mean_m, 1.25 * closest_m);
+  const double overlap = deepest_m / (2.0 * radius_m);
+  EXPECT_LE(overlap, 0.02);
+  EXPECT_NEAR(world->accuracy().overlap, overlap, 0.002) << "and the report says so";
+  return world->state_hash();
+}
+
 TEST_P(Contact, RobotsThatPressIntoACornerHeapUpAndOverlapByTwoPercentOfABodyAtMost) {
   const std::size_t robots = GetParam() == "dynamics3d" ? 60 : 120;
-  constexpr double kCorner_m = 0.9;
-  const double closest_m =
-      2.0 / 3.0 * std::sqrt(static_cast<double>(robots) * 8.0 * std::sqrt(3.0) / std::numbers::pi) * kRobotRadius_m;
   for (const std::string& split : splits_of(GetParam())) {
     std::vector<std::uint64_t> ends;
-    for (const std::int64_t threads : threads_of(GetParam(), split)) {
-      Scene s = crowd_scene(GetParam(), split, 2.0);
-      s.walls();
-      for (std::size_t i = 0; i < robots; ++i) {
-        const double x_m = -0.8 + 0.085 * static_cast<double>(i % 19);
-        const double y_m = -0.8 + 0.1 * static_cast<double>(i / 19);
-        s.robot("r" + std::to_string(i), x_m, y_m, std::atan2(kCorner_m - y_m, kCorner_m - x_m)).wheels(0.1288, 0.1288);
-      }
-      WorldOptions options;
-      options.threads = threads;
-      auto world = make(s, options);
-      ASSERT_TRUE(world.world) << world.all_problems();
-      double deepest_m = 0.0;
-      double mean_m = 0.0;
-      for (int tick = 0; tick < 200; ++tick) {
-        world->step();
-        deepest_m = std::max(deepest_m, crowd_of(world->space(), 0.0).deepest_m);
-        mean_m = 0.0;
-        for (std::size_t i = 0; i < robots; ++i) {
-          const Pose pose = world->space().pose(world->space().robot(i));
-          ASSERT_LT(std::max(pose.x_m, pose.y_m), kCorner_m - kRobotRadius_m + 0.013) << "robot " << i << ", " << tick;
-          mean_m += std::hypot(kCorner_m - pose.x_m, kCorner_m - pose.y_m) / static_cast<double>(robots);
-        }
-      }
-      EXPECT_EQ(world->state(), RunState::Running) << world->failure();
-      EXPECT_LT(mean_m, 1.25 * closest_m) << split;
-      const double overlap = deepest_m / (2.0 * kRobotRadius_m);
-      EXPECT_LE(overlap, 0.02) << split;
-      EXPECT_NEAR(world->accuracy().overlap, overlap, 0.002) << "and the report says so, " << split;
-      ends.push_back(world->state_hash());
-    }
+    for (const std::int64_t threads : threads_of(GetParam(), split))
+      ends.push_back(press_into_a_corner({GetParam(), split, threads, robots}));
     EXPECT_EQ(ends.front(), ends.back()) << split;
   }
+}
+
+/// So many that pushes do not come through the heap in the passes of a tick; where robots have no forces.
+TEST(ContactWithoutForces, HundredsThatPressIntoACornerOverlapByTwoPercentOfABodyAtMost) {
+  for (const std::size_t robots : {40, 200, 300}) {
+    for (const std::uint64_t seed : {2, 3}) {
+      for (const char* robot : {"e-puck", "foot-bot"})
+        press_into_a_corner({"kinematics2d", "1x1", 0, robots, seed + robots, robot});
+    }
+  }
+  EXPECT_EQ(press_into_a_corner({"kinematics2d", "1x1", 0, 250, 2}),
+            press_into_a_corner({"kinematics2d", "4x4", 2, 250, 2}));
 }
 
 TEST_P(Contact, ARobotSlidesAlongAWall) {

@@ -65,11 +65,11 @@ inline double turned_rad(double from_rad, double to_rad) {
 }
 
 /// How deep the rims of two robots are in each other, in m; negative: the gap between them.
-inline double overlap_m(const Pose& a, const Pose& b) {
-  return 2.0 * kRobotRadius_m - std::hypot(a.x_m - b.x_m, a.y_m - b.y_m);
+inline double overlap_m(const Pose& a, const Pose& b, double radius_m = kRobotRadius_m) {
+  return 2.0 * radius_m - std::hypot(a.x_m - b.x_m, a.y_m - b.y_m);
 }
 
-/// Pairs of e-pucks that touch, and how deep they overlap.
+/// Pairs of robots that touch, and how deep they overlap.
 struct Crowd {
   std::size_t pairs = 0;
   double deepest_m = 0.0;
@@ -77,14 +77,14 @@ struct Crowd {
 };
 
 /// Pairs count as touching when their rims are nearer than `near_m`.
-inline Crowd crowd_of(const Space& space, double near_m) {
+inline Crowd crowd_of(const Space& space, double near_m, double radius_m = kRobotRadius_m) {
   std::vector<Pose> poses;
   for (std::size_t i = 0; i < space.robot_count(); ++i) poses.push_back(space.pose(space.robot(i)));
   Crowd crowd;
   for (std::size_t i = 0; i < poses.size(); ++i) {
     for (std::size_t k = 0; k < i; ++k) {
-      if (std::fabs(poses[i].x_m - poses[k].x_m) > 2 * kRobotRadius_m + near_m) continue;
-      const double overlap = overlap_m(poses[i], poses[k]);
+      if (std::fabs(poses[i].x_m - poses[k].x_m) > 2 * radius_m + near_m) continue;
+      const double overlap = overlap_m(poses[i], poses[k], radius_m);
       if (overlap < -near_m) continue;
       ++crowd.pairs;
       crowd.deepest_m = std::max(crowd.deepest_m, overlap);
