@@ -97,20 +97,21 @@ bool BodyState::finite() const noexcept {
   return std::isfinite(sum);
 }
 
-std::array<double, 2> turned(double cos_h, double sin_h, double angle_rad) noexcept {
-  double c = 0.0;
-  double s = 0.0;
-  const double a = angle_rad;
-  if (std::fabs(a) < 0.5) {  // by series, exact to 1e-13: what a robot turns in a sub-step
-    const double a2 = a * a;
-    s = a * (1.0 - a2 * (1.0 / 6 - a2 * (1.0 / 120 - a2 * (1.0 / 5040 - a2 * (1.0 / 362880 - a2 / 39916800.0)))));
-    c = 1.0 - a2 * (0.5 - a2 * (1.0 / 24 - a2 * (1.0 / 720 - a2 * (1.0 / 40320 - a2 / 3628800.0))));
-  } else {
-    c = std::cos(a);
-    s = std::sin(a);
+std::array<double, 2> Turn::of(double cos_h, double sin_h, double angle_rad) noexcept {
+  if (angle_rad != angle_rad_) {
+    const double a = angle_rad_ = angle_rad;
+    if (std::fabs(a) < 0.5) {  // by series, exact to 1e-13: what a robot turns in a sub-step
+      const double a2 = a * a;
+      sin_ = a * (1.0 - a2 * (1.0 / 6 - a2 * (1.0 / 120 - a2 * (1.0 / 5040 - a2 * (1.0 / 362880 - a2 / 39916800.0)))));
+      cos_ = 1.0 - a2 * (0.5 - a2 * (1.0 / 24 - a2 * (1.0 / 720 - a2 * (1.0 / 40320 - a2 / 3628800.0))));
+    } else {
+      cos_ = std::cos(a);
+      sin_ = std::sin(a);
+    }
+    sin_ += 0.0;  // -0 counts as the 0 that it is equal to
   }
-  const double x = cos_h * c - sin_h * s;
-  const double y = sin_h * c + cos_h * s;
+  const double x = cos_h * cos_ - sin_h * sin_;
+  const double y = sin_h * cos_ + cos_h * sin_;
   const double k = 1.5 - 0.5 * (x * x + y * y);  // one Newton step keeps it a unit vector
   return {x * k, y * k};
 }

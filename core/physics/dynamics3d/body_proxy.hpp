@@ -29,6 +29,16 @@ struct BodyState {
   friend bool operator==(const BodyState&, const BodyState&) = default;
 };
 
+/// A turn about the vertical. Remembers the last one: most bodies turn by as much in every sub-step.
+class Turn {
+ public:
+  /// A heading, turned by `angle_rad`.
+  std::array<double, 2> of(double cos_h, double sin_h, double angle_rad) noexcept;
+
+ private:
+  double angle_rad_ = 0.0, cos_ = 1.0, sin_ = 0.0;
+};
+
 /// Form of motion of a proxy.
 enum class Sort : std::uint8_t {
   Base,    ///< upright on the floor, driven over it
@@ -69,6 +79,7 @@ struct BodyProxy {
   Vector3 p_m{}, v_m_s{}, next_v_m_s{};
   double cos_h = 1.0, sin_h = 0.0, w_rad_s = 0.0, next_w_rad_s = 0.0;
   double forward_m_s = 0.0, leftward_m_s = 0.0, turn_rad_s = 0.0;  ///< of a base: commanded, from its present heading
+  Turn turn_by_half, turn_by_all;                                  ///< … in a sub-step
   Vector3 led_to_m{};
 
   double hop_m = 0.0;     ///< how far any point of it moves in a sub-step
@@ -112,8 +123,6 @@ OdeGeom make_geom(const Prism& prism, double height_m, double skin_m);
 /// Its geom, made when there is none, where the proxy is now.
 dGeomID geom_of(BodyProxy& proxy, double skin_m);
 
-/// A heading turned by `angle_rad`.
-std::array<double, 2> turned(double cos_h, double sin_h, double angle_rad) noexcept;
 /// The turn about the vertical that makes this heading; w, x, y, z.
 std::array<double, 4> upright_turn(double cos_h, double sin_h) noexcept;
 

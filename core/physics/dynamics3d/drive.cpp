@@ -91,7 +91,7 @@ void drive_base(BodyProxy& proxy, double left_m_s, double right_m_s, double dt_s
   const double half2 = half * half;
   const double chord_m_s =
       0.5 * (left_m_s + right_m_s) * (1.0 - half2 / 6.0 * (1.0 - half2 / 20.0 * (1.0 - half2 / 42.0)));
-  const auto [c, s] = turned(1.0, 0.0, half);
+  const auto [c, s] = proxy.turn_by_half.of(1.0, 0.0, half);
   proxy.forward_m_s = chord_m_s * c;
   proxy.leftward_m_s = chord_m_s * s;
   const Vector3 goal{proxy.cos_h * proxy.forward_m_s - proxy.sin_h * proxy.leftward_m_s,

@@ -76,13 +76,10 @@ std::uint64_t mark_of(const std::vector<BodyProxy*>& objects, const std::vector<
 
 /// The same as the store holds, for all that its double keeps.
 bool agrees(const BodyProxy& proxy, const BodyState& store) noexcept {
-  BodyState own = state_of(proxy);
-  if (proxy.light()) {  // turns about the vertical only: what else the store says of turning is not its concern
-    own.q_WB = store.q_WB;
-    own.w_rad_s[0] = store.w_rad_s[0];
-    own.w_rad_s[1] = store.w_rad_s[1];
-  }
-  return own == store;
+  if (!proxy.light()) return state_of(proxy) == store;
+  // It turns about the vertical only: what else the store says of turning is not its concern.
+  return proxy.p_m == Vector3{store.x_m, store.y_m, store.z_m} && proxy.cos_h == store.cos_h &&
+         proxy.sin_h == store.sin_h && proxy.v_m_s == store.v_m_s && proxy.w_rad_s == store.w_rad_s[2];
 }
 
 }  // namespace
@@ -462,8 +459,11 @@ void World3d::advance(const SolverContext& context) {
       find_contacts();
       overlap = contacts_.overlap();  // of the last sub-step, after the tick
       accuracy.overlap = std::max(accuracy.overlap, contacts_.overlap_in_flight());
+      solved_.clear();
       for (auto& entry : entries) {
-        if (entry.body->touched) enter(*entry.body);
+        BodyProxy& proxy = *entry.body;
+        if (proxy.touched) enter(proxy);
+        if (proxy.touched || !proxy.light()) solved_.push_back(&proxy);
       }
       find_heaps();
       rest_heaps();
@@ -607,16 +607,13 @@ void World3d::enter(BodyProxy& proxy) {
 
 /// Heaps of objects that touch one another, directly or through others, and the ground, and no robot.
 void World3d::find_heaps() {
-  auto& entries = bodies_table_.entries();
   heaps_.clear();
-  for (auto& entry : entries) {
-    BodyProxy& proxy = *entry.body;
-    if (proxy.sort == Sort::Object && (proxy.driven || proxy.lost)) top_of_heap(proxy).driven = true;
+  for (BodyProxy* proxy : solved_) {
+    if (proxy->sort == Sort::Object && (proxy->driven || proxy->lost)) top_of_heap(*proxy).driven = true;
   }
-  for (auto& entry : entries) {
-    BodyProxy& proxy = *entry.body;
-    if (proxy.sort != Sort::Object || top_of_heap(proxy).driven) continue;
-    heaps_.push_back({&top_of_heap(proxy), &proxy});
+  for (BodyProxy* proxy : solved_) {
+    if (proxy->sort != Sort::Object || top_of_heap(*proxy).driven) continue;
+    heaps_.push_back({&top_of_heap(*proxy), proxy});
   }
   const auto by_key = [](const HeapMember& a, const HeapMember& b) {
     return a.top != b.top ? a.top->key < b.top->key : a.proxy->key < b.proxy->key;
@@ -682,7 +679,8 @@ void World3d::rest_heaps() {
 
 /// ODE's step, with as many passes as bring the velocities of each island to what its constraints ask for.
 void World3d::solve(double dt_s, std::uint64_t seed) {
-  for (const auto& entry : bodies_table_.entries()) add_to_residual(*entry.body);
+  if (solved_.empty()) return;
+  for (const BodyProxy* proxy : solved_) add_to_residual(*proxy);
   for (const Held& held : held_) add_to_residual(held);
   residual_.prepare();
   double error_m_s = 0.0;
@@ -701,7 +699,7 @@ void World3d::solve(double dt_s, std::uint64_t seed) {
 
 /// What of a body takes part in ODE's step.
 void World3d::add_to_residual(const BodyProxy& proxy) {
-  if (proxy.lost || proxy.resting || (proxy.light() && !proxy.touched)) return;
+  if (proxy.lost || proxy.resting) return;
   const dBodyID body = proxy.body.get();
   residual_.add_body(body);
   if (proxy.sort == Sort::Wheels) {
@@ -770,7 +768,7 @@ void World3d::leave(BodyProxy& proxy, double dt_s) {
     for (std::size_t i = 0; i < 3; ++i) proxy.p_m[i] += proxy.v_m_s[i] * dt_s;
   }
   if (proxy.external) return;
-  const auto [c, s] = turned(proxy.cos_h, proxy.sin_h, proxy.w_rad_s * dt_s);
+  const auto [c, s] = proxy.turn_by_all.of(proxy.cos_h, proxy.sin_h, proxy.w_rad_s * dt_s);
   proxy.cos_h = c;
   proxy.sin_h = s;
   if (!proxy.aloft || proxy.p_m[2] <= surfaces_.floor_m) {
@@ -786,6 +784,11 @@ void World3d::leave(BodyProxy& proxy, double dt_s) {
 
 /// What has exploded is named, and left out from then on.
 void World3d::check(BodyProxy& proxy) {
+  if (proxy.light()) {  // nearly always well, and known so without its attitude
+    const Vector3& v = proxy.v_m_s;
+    const double sum = proxy.p_m[0] + proxy.p_m[1] + proxy.p_m[2] + proxy.cos_h + proxy.sin_h + proxy.w_rad_s;
+    if (std::isfinite(sum) && length(v) <= kFastest_m_s && std::fabs(proxy.w_rad_s) <= kFastestTurn_rad_s) return;
+  }
   const BodyState now = state_of(proxy);
   const bool finite = now.finite();
   const double v = length(now.v_m_s);

@@ -108,6 +108,7 @@ class World3d final : public Solver {
   double flight_ceiling_m_ = 0.0;  // the arena's, too: what flies stays below; what stands may be as high as the arena
   BodyTable<OwnedProxy> bodies_table_;
   std::vector<Held> held_;
+  std::vector<BodyProxy*> solved_;  // those that are in ODE in this sub-step
   Residual residual_;
   PairFinder finder_;
   std::vector<PairFinder::Pair> candidates_;
