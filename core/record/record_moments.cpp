@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 #include "hal/json/json_access.hpp"
@@ -42,9 +43,10 @@ hal::Result<RecordMoments> RecordMoments::open(const std::string& path) {
   return hal::Error{"record '" + path + "' holds no poses of robots"};
 }
 
-const RecordRows* RecordMoments::rows(std::string_view title) const noexcept {
-  const auto found = rows_.find(title);
-  return found == rows_.end() ? nullptr : &found->second;
+const RecordRows* RecordMoments::rows(std::string_view title, std::size_t group) const noexcept {
+  auto [found, past] = rows_.equal_range(title);
+  for (; found != past && group > 0; --group) ++found;
+  return found == past ? nullptr : &found->second;
 }
 
 void RecordMoments::take(RecordEntry entry) {
@@ -53,7 +55,10 @@ void RecordMoments::take(RecordEntry entry) {
       std::string title = entry.rows->stream().title();
       const bool poses = entry.rows->stream().set == "pose" && entry.rows->stream().name == "pose";
       if (poses && !has_whole_poses(*entry.rows)) return;
-      rows_.insert_or_assign(std::move(title), std::move(*entry.rows));
+      const bool all = poses || entry.rows->stream().on_change;  // what holds until there is other
+      for (auto [at, past] = rows_.equal_range(title); at != past;)
+        at = all || &at->second.members() == &entry.rows->members() ? rows_.erase(at) : std::next(at);
+      rows_.emplace(std::move(title), std::move(*entry.rows));
       return;
     }
     case RecordBlock::Scene:

@@ -36,9 +36,10 @@ class RecordMoments {
 
   const RecordRows& poses() const noexcept { return *rows("pose"); }
   /// Rows of this tick, or those that still hold, by the stream's title: "object pose", "attitude", "look leds",
-  /// "sensor proximity", …; null: none.
-  const RecordRows* rows(std::string_view title) const noexcept;
-  /// Calls `visit(title, rows)` for each table that there is now.
+  /// "sensor proximity", …; null: none. Where groups of robots have a stream of this title each, as two do whose
+  /// controllers are of one name: those of the group with this number among them.
+  const RecordRows* rows(std::string_view title, std::size_t group = 0) const noexcept;
+  /// Calls `visit(title, rows)` for each table that there is now; those of one title follow one another, by group.
   template <class Visit>
   void each(Visit&& visit) const {
     for (const auto& [title, rows] : rows_) visit(title, rows);
@@ -68,8 +69,8 @@ class RecordMoments {
   std::size_t first_ = 0;  // of the reader's ticks: those before are damaged
   std::size_t at_ = 0;     // of them, too
   hal::Tick tick_ = -1;
-  std::map<std::string, RecordRows, std::less<>> rows_;  // by title
-  std::optional<RecordEntry> ahead_;                     // of the next tick
+  std::multimap<std::string, RecordRows, std::less<>> rows_;  // by title
+  std::optional<RecordEntry> ahead_;                          // of the next tick
   hal::Json scene_ = hal::Json::object(), sketch_ = hal::Json::object();
   std::string_view floor_;
   std::uint64_t scene_number_ = 0, floor_number_ = 0, sketch_number_ = 0;

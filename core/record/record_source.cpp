@@ -145,6 +145,7 @@ class RecordSource::Shown {
     const hal::PortType* port = nullptr;
     const hal::RowType* type = nullptr;  // of the rows in memory
     const RecordStream* stream = nullptr;
+    std::size_t group = 0;                                          // among streams of this title
     std::unordered_map<std::string_view, std::size_t> row_of = {};  // by id
     std::vector<Copy> copies = {};
     std::vector<std::pair<hal::Field, std::size_t>> counters = {};  // and the most that they may say
@@ -209,7 +210,9 @@ RecordSource::Shown::Tables RecordSource::Shown::tables_in(const RecordMoments& 
 // --- a space for these robots, and what each has ---
 
 void RecordSource::Shown::plan(const std::string& title, const RecordRows& rows, Sort sort, const hal::RowType* type) {
-  Table table{title, sort, nullptr, type, &rows.stream(), places_of(rows.members().ids)};
+  const auto group = static_cast<std::size_t>(
+      std::count_if(tables_.begin(), tables_.end(), [&](const Table& other) { return other.title == title; }));
+  Table table{title, sort, nullptr, type, &rows.stream(), group, places_of(rows.members().ids)};
   for (std::size_t f = 0; f < rows.stream().fields.size(); ++f) {
     if (const hal::Field* const field = type->field(rows.stream().fields[f].name); field != nullptr)
       table.copies.push_back({f, *field});
@@ -451,7 +454,7 @@ void RecordSource::Shown::take_poses(const RecordMoments& moments) {
 
 void RecordSource::Shown::take_rows(const RecordMoments& moments) {
   for (const Table& table : tables_) {
-    const RecordRows& rows = *moments.rows(table.title);
+    const RecordRows& rows = *moments.rows(table.title, table.group);
     for (const Copy& copy : table.copies) {
       const RecordField& from = table.stream->fields[copy.from];
       const bool same = from.scalar == copy.to.scalar && from.scale == 1.0;

@@ -167,16 +167,9 @@ std::map<std::string, std::string> values_in(const hal::Json& robot) {
   return all;
 }
 
-class RecordSources : public testing::TestWithParam<std::string> {};
-INSTANTIATE_TEST_SUITE_P(Of, RecordSources,
-                         testing::Values("epuck_diffusion.xml", "footbot_foraging.xml", "eyebot_circle.xml",
-                                         "footbot_gripping.xml", "footbot_task_partitioning_noise.xml",
-                                         "epuck_push.xml", "khepera4_avoidance.xml", "thymio_cruise.xml"),
-                         [](const auto& name) { return name.param.substr(0, name.param.find('.')); });
-
-TEST_P(RecordSources, ShowWhatTheRunShows) {
-  const test::Experiment run(GetParam(), {}, test::seeded(7), "", app::catalog());
-  const std::string path = test::temporary(GetParam() + ".record");
+void expect_what_the_run_shows(const std::string& experiment) {
+  const test::Experiment run(experiment, {}, test::seeded(7), "", app::catalog());
+  const std::string path = test::temporary(std::filesystem::path(experiment).filename().string() + ".record");
   std::vector<std::pair<hal::Tick, Sight>> sights;
   {
     run->start();
@@ -226,12 +219,45 @@ TEST_P(RecordSources, ShowWhatTheRunShows) {
       EXPECT_EQ(in_run, in_record);
       EXPECT_EQ(run_shows.inside["robots"][i]["halted"], shows.inside["robots"][i]["halted"]);
     }
-    if (HasFailure()) return;
+    if (testing::Test::HasFailure()) return;
   }
   EXPECT_EQ(seen, sights.size());
   EXPECT_GT(rays, 0U);
   EXPECT_GT(values, 0U);
   std::filesystem::remove(path);
+}
+
+class RecordSources : public testing::TestWithParam<std::string> {};
+INSTANTIATE_TEST_SUITE_P(Of, RecordSources,
+                         testing::Values("epuck_diffusion.xml", "footbot_foraging.xml", "eyebot_circle.xml",
+                                         "footbot_gripping.xml", "footbot_task_partitioning_noise.xml",
+                                         "epuck_push.xml", "khepera4_avoidance.xml", "thymio_cruise.xml"),
+                         [](const auto& name) { return name.param.substr(0, name.param.find('.')); });
+
+TEST_P(RecordSources, ShowWhatTheRunShows) {
+  expect_what_the_run_shows(GetParam());
+}
+
+/// `text` with the part from `begin` to `end` twice, the second one with all `from` made `to`.
+std::string with_another(std::string text, const std::string& begin, const std::string& end,
+                         const std::vector<std::pair<std::string, std::string>>& changes) {
+  const std::size_t first = text.find(begin);
+  const std::size_t past = text.find(end, first) + end.size();
+  std::string other = text.substr(first, past - first);
+  for (const auto& [from, to] : changes) other.replace(other.find(from), from.size(), to);
+  return text.insert(past, other);
+}
+
+TEST(RecordSource, ShowsTheStateOfEachGroupWhereTwoHaveOneController) {
+  const std::filesystem::path configs = std::string(test::kSourceDir) + "/configs";
+  std::stringstream text;
+  text << std::ifstream(configs / "footbot_foraging.xml").rdbuf();
+  const std::string file = test::temporary("two_groups.xml");
+  std::ofstream(file) << with_another(
+      with_another(text.str(), "<footbot_foraging id=", "</footbot_foraging>", {{"\"forage\"", "\"other\""}}),
+      "<distribute>", "</distribute>", {{"\"fb\"", "\"other\""}, {"\"forage\"", "\"other\""}});
+  expect_what_the_run_shows(std::filesystem::relative(file, configs).string());
+  std::filesystem::remove(file);
 }
 
 }  // namespace
