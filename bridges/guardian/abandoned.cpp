@@ -19,8 +19,15 @@ bool made_since(const StopMessages& robot, std::int64_t unix_s) {
          std::int64_t{info.st_ctim.tv_sec} > unix_s;
 }
 
-/// Robots of one name each.
-void stop(std::vector<StoppedRobot*> robots, const std::string& folder, const std::vector<StopperType>& types,
+/// What its new guardian calls it: those of two experiments may have one name.
+std::string own_name(const std::string& name, std::set<std::string>& taken) {
+  std::string own = name;
+  for (int n = 2; !taken.insert(own).second; ++n) own = name + " (" + std::to_string(n) + ")";
+  return own;
+}
+
+/// Robots on a link each.
+void stop(const std::vector<StoppedRobot*>& robots, const std::string& folder, const std::vector<StopperType>& types,
           hal::TimeNs timeout_ns) {
   auto started = GuardianClient::start(types);
   if (!started.ok()) {
@@ -28,23 +35,27 @@ void stop(std::vector<StoppedRobot*> robots, const std::string& folder, const st
     return;
   }
   GuardianClient& guardian = **started;
-  std::erase_if(robots, [&](StoppedRobot* robot) {
-    const LockHolder& holder = robot->abandoned.holder;
-    if (const hal::Status claimed = guardian.claim({&holder.robot, 1}); !claimed.ok()) {
-      robot->trouble = claimed.error().message;
-      return true;
-    }
-    guardian.watch(holder.robot);
-    forget_abandoned(folder, holder);
-    return false;
-  });
+  std::vector<StopMessages> orders;
+  std::set<std::string> names;
+  for (const StoppedRobot* robot : robots) {
+    StopMessages& order = orders.emplace_back(robot->abandoned.holder.robot);
+    order.robot = own_name(order.robot, names);
+  }
+  const std::vector<hal::Status> claims = guardian.claim_each(orders);
+  for (std::size_t i = 0; i < robots.size(); ++i) {
+    if (!claims[i].ok()) continue;
+    guardian.watch(orders[i]);
+    forget_abandoned(folder, robots[i]->abandoned.holder);
+  }
   const std::vector<UnstoppedRobot> unstopped = guardian.end(timeout_ns);
-  for (StoppedRobot* robot : robots) {
-    const StopMessages& messages = robot->abandoned.holder.robot;
-    const auto found = std::ranges::find(unstopped, messages.robot, &UnstoppedRobot::robot);
-    if (found != unstopped.end()) {
+  for (std::size_t i = 0; i < robots.size(); ++i) {
+    StoppedRobot* const robot = robots[i];
+    const auto found = std::ranges::find(unstopped, orders[i].robot, &UnstoppedRobot::robot);
+    if (!claims[i].ok()) {
+      robot->trouble = claims[i].error().message;
+    } else if (found != unstopped.end()) {
       robot->trouble = found->trouble + "; process " + std::to_string(guardian.process()) + " goes on trying";
-    } else if (made_since(messages, robot->abandoned.seen_unix_s)) {
+    } else if (made_since(orders[i], robot->abandoned.seen_unix_s)) {
       robot->trouble = "who is there now rests, but the device was made anew since then: it may be another robot";
     } else {
       robot->confirmed = true;
@@ -76,12 +87,12 @@ std::vector<StoppedRobot> stop_abandoned(const std::vector<StopperType>& types, 
   for (AbandonedRobot& robot : find_abandoned(folder.value())) all.push_back({std::move(robot), false, ""});
   std::vector<StoppedRobot*> waiting;
   for (StoppedRobot& robot : all) waiting.push_back(&robot);
-  while (!waiting.empty()) {  // those of two experiments may have one name
-    std::set<std::string> names;
+  while (!waiting.empty()) {  // dead hubs and guardians of one robot may have left a file each
+    std::set<std::string> links;
     std::vector<StoppedRobot*> round, later;
     for (StoppedRobot* robot : waiting)
-      (names.insert(robot->abandoned.holder.robot.robot).second ? round : later).push_back(robot);
-    stop(std::move(round), folder.value(), types, timeout_ns);
+      (links.insert(written_key(robot->abandoned.holder.robot)).second ? round : later).push_back(robot);
+    stop(round, folder.value(), types, timeout_ns);
     waiting = std::move(later);
   }
   return all;

@@ -59,7 +59,7 @@ class GuardianClient::Heart {
   }
   ~Heart() { end(0); }
 
-  hal::Status claim(std::span<const StopMessages> robots);
+  std::vector<hal::Status> claim_each(std::span<const StopMessages> robots);
   void watch(const StopMessages& robot);
   void release(const std::string& robot);
   std::vector<UnstoppedRobot> end(TimeNs timeout_ns);
@@ -293,7 +293,7 @@ void GuardianClient::Heart::flush() {
 
 // --- the hub's other threads ---
 
-hal::Status GuardianClient::Heart::claim(std::span<const StopMessages> robots) {
+std::vector<hal::Status> GuardianClient::Heart::claim_each(std::span<const StopMessages> robots) {
   std::unique_lock lock(mutex_);
   for (const StopMessages& messages : robots) {
     Robot& robot = robots_[messages.robot];
@@ -304,14 +304,16 @@ hal::Status GuardianClient::Heart::claim(std::span<const StopMessages> robots) {
   const auto answered = [&] {
     return !lives_ || std::ranges::all_of(robots, [&](const auto& m) { return robots_[m.robot].answered; });
   };
-  if (!changed_.wait_for(lock, kClaimWithin, answered)) return hal::Error{"the guardian process does not answer"};
+  const bool in_time = changed_.wait_for(lock, kClaimWithin, answered);
+  std::vector<hal::Status> all;
   for (const StopMessages& messages : robots) {
     Robot& robot = robots_[messages.robot];
-    if (!robot.answered) return hal::Error{"the guardian process has ended"};
-    if (!robot.answer.empty()) return hal::Error{robot.answer};
-    robot.claimed = true;
+    robot.claimed = robot.answered && robot.answer.empty();
+    if (!robot.answered)
+      robot.answer = in_time ? "the guardian process has ended" : "the guardian process does not answer";
+    all.push_back(robot.claimed ? hal::Status() : hal::Error{robot.answer});
   }
-  return {};
+  return all;
 }
 
 void GuardianClient::Heart::watch(const StopMessages& messages) {
@@ -390,7 +392,12 @@ GuardianClient::GuardianClient(std::unique_ptr<Heart> heart) : heart_(std::move(
 GuardianClient::~GuardianClient() = default;
 
 hal::Status GuardianClient::claim(std::span<const StopMessages> robots) {
-  return heart_->claim(robots);
+  const std::vector<hal::Status> all = claim_each(robots);
+  const auto refused = std::ranges::find_if(all, [](const hal::Status& one) { return !one.ok(); });
+  return refused == all.end() ? hal::Status() : *refused;
+}
+std::vector<hal::Status> GuardianClient::claim_each(std::span<const StopMessages> robots) {
+  return heart_->claim_each(robots);
 }
 void GuardianClient::watch(const StopMessages& robot) {
   heart_->watch(robot);

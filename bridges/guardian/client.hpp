@@ -62,6 +62,8 @@ class GuardianClient {
   /// still being stopped for a hub that is gone is taken over. Error: another hub drives one (names it), two have the
   /// same link, no `StopperType` suits, or the guardian is gone.
   hal::Status claim(std::span<const StopMessages> robots);
+  /// As `claim`: what became of each, in their order. Those that are refused keep nobody else from being watched.
+  std::vector<hal::Status> claim_each(std::span<const StopMessages> robots);
   /// From now on this robot, which was claimed, is stopped in this way when the hub dies or freezes. Does nothing where
   /// that is what the guardian knows already.
   void watch(const StopMessages& robot);

@@ -253,6 +253,25 @@ class Guarded : public testing::Test {
   bool was(const std::string& id, const std::string& what, std::size_t count = 1) const {
     return eventually([&] { return times(id, what).size() >= count; });
   }
+  /// Kills a hub that drives this many robots, and its guardian, which has heard of all of them and stops none.
+  void kill_both(Hub& hub, int robots) const {
+    ASSERT_TRUE(hub.said("drives"));
+    const auto heard = [&] {
+      int count = 0;
+      for (const auto& file : fs::directory_iterator(runtime_.path() / "tandem")) {
+        const std::string text = file.is_regular_file() ? text_of(file) : "";
+        const std::string guardian = "\nguardian " + std::to_string(hub.guardian()) + "\nstate driven\n";
+        count += text.find(guardian) != std::string::npos ? 1 : 0;
+      }
+      return count == robots;
+    };
+    ASSERT_TRUE(eventually(heard));
+    hub.signal_guardian(SIGSTOP);
+    hub.signal(SIGKILL);
+    hub.signal_guardian(SIGKILL);
+    hub.wait();
+    ASSERT_TRUE(ended(hub.guardian()));
+  }
   void let_hear(const std::string& id) const { std::ofstream(runtime_.path() / (id + ".hears")) << ""; }
   std::string errors() const { return text_of(runtime_.path() / "errors"); }
   /// Also one for which its parent has not waited yet: what it had open is closed.
@@ -654,13 +673,7 @@ TEST_F(Guarded, RobotIsTakenOverFromTheGuardianOfAHubThatIsGone) {
 TEST_F(Guarded, RobotsOfAHubThatWasKilledWithItsGuardianAreToldOfAndStoppedByWhoeverComesNext) {
   {
     Hub hub(runtime_.path(), drives({robot("r"), robot("deaf", "deaf"), robot("s")}));
-    ASSERT_TRUE(hub.said("drives"));
-    hub.tell('n');
-    ASSERT_TRUE(hub.said("freezes "));  // the guardian has heard of all
-    hub.signal_guardian(SIGSTOP);       // so that it stops nobody
-    hub.signal(SIGKILL);
-    hub.signal_guardian(SIGKILL);
-    hub.wait();
+    ASSERT_NO_FATAL_FAILURE(kill_both(hub, 3));
     EXPECT_TRUE(gone(hub.guardian()));
   }
   EXPECT_TRUE(times("r", "gone").empty());
@@ -687,6 +700,41 @@ TEST_F(Guarded, RobotsOfAHubThatWasKilledWithItsGuardianAreToldOfAndStoppedByWho
   EXPECT_TRUE(times("deaf", "rests").empty());
   let_hear("deaf");
   EXPECT_TRUE(was("deaf", "rests"));
+  EXPECT_TRUE(eventually([&] { return std::filesystem::is_empty(runtime_.path() / "tandem"); }));
+}
+
+TEST_F(Guarded, RobotsOfOneNameThatWereLeftAreStoppedAllAtOnceAndNobodyWaitsForOneThatDoesNotListen) {
+  constexpr int kRobots = 20;
+  const auto line = [](int i) { return "line" + std::to_string(i); };
+  std::vector<pid_t> guardians;
+  for (int i = 0; i < kRobots; ++i) {
+    StopMessages left = robot(line(i), i % 5 == 0 ? "deaf" : "obeys");
+    left.robot = "r";
+    Hub hub(runtime_.path(), drives({left}));
+    ASSERT_NO_FATAL_FAILURE(kill_both(hub, 1));
+    guardians.push_back(hub.guardian());
+  }
+  for (const pid_t guardian : guardians) ASSERT_TRUE(gone(guardian));
+  Hub next(runtime_.path(), [](Hub& h) {
+    for (const StoppedRobot& robot : stop_abandoned(kTypes, 600 * hal::kNsPerSecond)) {
+      h.say((robot.confirmed ? "confirmed " : "moves ") + robot.abandoned.holder.robot.link);
+      h.say("text " + robot.to_text());
+    }
+    h.say("done");
+    return static_cast<int>(h.order());
+  });
+  for (int i = 0; i < kRobots; ++i) ASSERT_TRUE(i % 5 == 0 || was(line(i), "rests")) << i;
+  EXPECT_EQ(next.line("confirmed "), "") << "it waits for the deaf ones";
+  for (int i = 0; i < kRobots; i += 5) {
+    EXPECT_TRUE(times(line(i), "rests").empty()) << i;
+    let_hear(line(i));
+  }
+  ASSERT_TRUE(next.said("done"));
+  for (int i = 0; i < kRobots; ++i) {
+    EXPECT_TRUE(was(line(i), "rests")) << i;
+    EXPECT_TRUE(next.said("confirmed " + robot(line(i)).link + "\n")) << i;
+  }
+  EXPECT_THAT(next.line("text "), HasSubstr("robot 'r' on "));
   EXPECT_TRUE(eventually([&] { return std::filesystem::is_empty(runtime_.path() / "tandem"); }));
 }
 
