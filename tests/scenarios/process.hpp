@@ -180,8 +180,9 @@ class Tandem {
     return end != std::string::npos && stat.compare(end, 3, ") T") == 0;
   }
 
-  /// Exit code, or -signal; -1000 when it did not end within `seconds`.
-  int wait(double seconds = 30.0) {
+  /// Exit code, or -signal; -1000 when it did not end within `seconds`: by default the time after which it is taken to
+  /// hang, which is no promise. With ten processes to each processor a run of 1 s takes half a minute.
+  int wait(double seconds = 100.0) {
     if (ended_) return code_;
     int status = 0;
     if (!eventually([&] { return ended_ = waitpid(pid_, &status, WNOHANG) == pid_; }, seconds)) return -1000;
