@@ -69,10 +69,7 @@ template <Type T>
 struct ToNode {
   static constexpr Type kType = T;
   std::uint16_t node = 0;
-  template <class M, class Io>
-  static bool fields(M& m, Io& io) {
-    return io.word(m.node);
-  }
+  static bool fields(auto& m, auto& io) { return io.word(m.node); }
   friend bool operator==(const ToNode&, const ToNode&) = default;
 };
 /// The node they are for, and a number: a page of flash memory, a place in the program, a protocol version.
@@ -81,10 +78,7 @@ struct ToNodeWithNumber {
   static constexpr Type kType = T;
   std::uint16_t node = 0;
   std::uint16_t number = 0;
-  template <class M, class Io>
-  static bool fields(M& m, Io& io) {
-    return io.word(m.node) && io.word(m.number);
-  }
+  static bool fields(auto& m, auto& io) { return io.word(m.node) && io.word(m.number); }
   friend bool operator==(const ToNodeWithNumber&, const ToNodeWithNumber&) = default;
 };
 /// One number: a protocol version, a place in the program.
@@ -92,10 +86,7 @@ template <Type T>
 struct OneNumber {
   static constexpr Type kType = T;
   std::uint16_t number = 0;
-  template <class M, class Io>
-  static bool fields(M& m, Io& io) {
-    return io.word(m.number);
-  }
+  static bool fields(auto& m, auto& io) { return io.word(m.number); }
   friend bool operator==(const OneNumber&, const OneNumber&) = default;
 };
 /// A name and what it means.
@@ -104,10 +95,7 @@ struct NameAndMeaning {
   static constexpr Type kType = T;
   std::string_view name;
   std::string_view meaning;
-  template <class M, class Io>
-  static bool fields(M& m, Io& io) {
-    return io.text(m.name) && io.text(m.meaning);
-  }
+  static bool fields(auto& m, auto& io) { return io.text(m.name) && io.text(m.meaning); }
   friend bool operator==(const NameAndMeaning&, const NameAndMeaning&) = default;
 };
 /// The node they are for, where to begin, and words.
@@ -117,10 +105,7 @@ struct ToNodeWithWords {
   std::uint16_t node = 0;
   std::uint16_t start = 0;
   Words words;
-  template <class M, class Io>
-  static bool fields(M& m, Io& io) {
-    return io.word(m.node) && io.word(m.start) && io.words(m.words);
-  }
+  static bool fields(auto& m, auto& io) { return io.word(m.node) && io.word(m.start) && io.words(m.words); }
   friend bool operator==(const ToNodeWithWords&, const ToNodeWithWords&) = default;
 };
 
@@ -151,20 +136,14 @@ struct GetVariables {
   std::uint16_t node = 0;
   std::uint16_t start = 0;
   std::uint16_t count = 0;  ///< at most 257; nodes do not check
-  template <class M, class Io>
-  static bool fields(M& m, Io& io) {
-    return io.word(m.node) && io.word(m.start) && io.word(m.count);
-  }
+  static bool fields(auto& m, auto& io) { return io.word(m.node) && io.word(m.start) && io.word(m.count); }
   friend bool operator==(const GetVariables&, const GetVariables&) = default;
 };
 struct BootloaderPageDataWrite {
   static constexpr Type kType = Type::BootloaderPageDataWrite;
   std::uint16_t node = 0;
   std::array<std::uint8_t, 4> data{};
-  template <class M, class Io>
-  static bool fields(M& m, Io& io) {
-    return io.word(m.node) && io.bytes(m.data);
-  }
+  static bool fields(auto& m, auto& io) { return io.word(m.node) && io.bytes(m.data); }
   friend bool operator==(const BootloaderPageDataWrite&, const BootloaderPageDataWrite&) = default;
 };
 
@@ -172,19 +151,13 @@ struct BootloaderPageDataWrite {
 struct BootloaderDescription {
   static constexpr Type kType = Type::BootloaderDescription;
   std::uint16_t page_size = 0, first_page = 0, pages = 0;
-  template <class M, class Io>
-  static bool fields(M& m, Io& io) {
-    return io.word(m.page_size) && io.word(m.first_page) && io.word(m.pages);
-  }
+  static bool fields(auto& m, auto& io) { return io.word(m.page_size) && io.word(m.first_page) && io.word(m.pages); }
   friend bool operator==(const BootloaderDescription&, const BootloaderDescription&) = default;
 };
 struct BootloaderPageDataRead {
   static constexpr Type kType = Type::BootloaderPageDataRead;
   std::array<std::uint8_t, 4> data{};
-  template <class M, class Io>
-  static bool fields(M& m, Io& io) {
-    return io.bytes(m.data);
-  }
+  static bool fields(auto& m, auto& io) { return io.bytes(m.data); }
   friend bool operator==(const BootloaderPageDataRead&, const BootloaderPageDataRead&) = default;
 };
 struct BootloaderAck {
@@ -192,10 +165,7 @@ struct BootloaderAck {
   static constexpr std::uint16_t kWithAddress = 2;
   std::uint16_t error = 0;
   std::uint16_t address = 0;  ///< sent when `error` is 2, else 0
-  template <class M, class Io>
-  static bool fields(M& m, Io& io) {
-    return io.word(m.error) && (m.error != kWithAddress || io.word(m.address));
-  }
+  static bool fields(auto& m, auto& io) { return io.word(m.error) && (m.error != kWithAddress || io.word(m.address)); }
   friend bool operator==(const BootloaderAck&, const BootloaderAck&) = default;
 };
 /// A node presents itself; as many NamedVariable, LocalEvent and NativeFunction as announced follow.
@@ -205,8 +175,7 @@ struct Description {
   std::uint16_t version = 0;
   std::uint16_t bytecode_words = 0, stack_words = 0, variable_words = 0;
   std::uint16_t named_variables = 0, local_events = 0, native_functions = 0;
-  template <class M, class Io>
-  static bool fields(M& m, Io& io) {
+  static bool fields(auto& m, auto& io) {
     return io.text(m.name) && io.word(m.version) && io.word(m.bytecode_words) && io.word(m.stack_words) &&
            io.word(m.variable_words) && io.word(m.named_variables) && io.word(m.local_events) &&
            io.word(m.native_functions);
@@ -218,10 +187,7 @@ struct NamedVariable {
   static constexpr Type kType = Type::NamedVariable;
   std::uint16_t words = 0;
   std::string_view name;
-  template <class M, class Io>
-  static bool fields(M& m, Io& io) {
-    return io.word(m.words) && io.text(m.name);
-  }
+  static bool fields(auto& m, auto& io) { return io.word(m.words) && io.text(m.name); }
   friend bool operator==(const NamedVariable&, const NamedVariable&) = default;
 };
 using LocalEvent = NameAndMeaning<Type::LocalEvent>;
@@ -232,8 +198,7 @@ struct NativeFunction {
   std::string_view meaning;
   std::uint16_t parameters = 0;
   std::span<const std::uint8_t> parameter_bytes;
-  template <class M, class Io>
-  static bool fields(M& m, Io& io) {
+  static bool fields(auto& m, auto& io) {
     return io.text(m.name) && io.text(m.meaning) && io.word(m.parameters) &&
            io.parameters(m.parameters, m.parameter_bytes);
   }
@@ -245,29 +210,20 @@ struct NativeFunction {
 /// Made by switches: the node that is the source has left.
 struct Disconnected {
   static constexpr Type kType = Type::Disconnected;
-  template <class M, class Io>
-  static bool fields(M&, Io&) {
-    return true;
-  }
+  static bool fields(auto&, auto&) { return true; }
   friend bool operator==(const Disconnected&, const Disconnected&) = default;
 };
 struct Variables {
   static constexpr Type kType = Type::Variables;
   std::uint16_t start = 0;
   Words words;
-  template <class M, class Io>
-  static bool fields(M& m, Io& io) {
-    return io.word(m.start) && io.words(m.words);
-  }
+  static bool fields(auto& m, auto& io) { return io.word(m.start) && io.words(m.words); }
   friend bool operator==(const Variables&, const Variables&) = default;
 };
 struct OutOfBounds {
   static constexpr Type kType = Type::OutOfBounds;
   std::uint16_t pc = 0, size = 0, index = 0;
-  template <class M, class Io>
-  static bool fields(M& m, Io& io) {
-    return io.word(m.pc) && io.word(m.size) && io.word(m.index);
-  }
+  static bool fields(auto& m, auto& io) { return io.word(m.pc) && io.word(m.size) && io.word(m.index); }
   friend bool operator==(const OutOfBounds&, const OutOfBounds&) = default;
 };
 using DivisionByZero = OneNumber<Type::DivisionByZero>;    ///< place in the program
@@ -276,29 +232,20 @@ struct NodeError {
   static constexpr Type kType = Type::NodeError;
   std::uint16_t pc = 0;
   std::string_view text;
-  template <class M, class Io>
-  static bool fields(M& m, Io& io) {
-    return io.word(m.pc) && io.text(m.text);
-  }
+  static bool fields(auto& m, auto& io) { return io.word(m.pc) && io.text(m.text); }
   friend bool operator==(const NodeError&, const NodeError&) = default;
 };
 struct ExecutionState {
   static constexpr Type kType = Type::ExecutionState;
   static constexpr std::uint16_t kEventActive = 1, kStepByStep = 2, kEventRunning = 4;
   std::uint16_t pc = 0, flags = 0;
-  template <class M, class Io>
-  static bool fields(M& m, Io& io) {
-    return io.word(m.pc) && io.word(m.flags);
-  }
+  static bool fields(auto& m, auto& io) { return io.word(m.pc) && io.word(m.flags); }
   friend bool operator==(const ExecutionState&, const ExecutionState&) = default;
 };
 struct BreakpointResult {
   static constexpr Type kType = Type::BreakpointResult;
   std::uint16_t pc = 0, success = 0;
-  template <class M, class Io>
-  static bool fields(M& m, Io& io) {
-    return io.word(m.pc) && io.word(m.success);
-  }
+  static bool fields(auto& m, auto& io) { return io.word(m.pc) && io.word(m.success); }
   friend bool operator==(const BreakpointResult&, const BreakpointResult&) = default;
 };
 using NodePresent = OneNumber<Type::NodePresent>;  ///< protocol version

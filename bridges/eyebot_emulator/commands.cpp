@@ -11,16 +11,15 @@
 #include <eyebot_c/eyebot_heartbeat_t.h>
 #include <eyebot_c/eyebot_leds_t.h>
 
+#include "hal/finite.hpp"
+
 namespace tandem::bridges::eyebot_emulator {
 namespace {
 
+using hal::all_finite;
 using Payload = std::span<const std::byte>;
 
 constexpr std::size_t kHead = 24;  // fingerprint and header
-
-Header header_of(const eyebot_header_t& h) {
-  return {h.utime, h.seq, h.session};
-}
 
 hal::Error refused(std::string_view topic, const std::string& why) {
   return hal::Error{std::string(topic) + ": " + why};
@@ -59,76 +58,42 @@ std::string why_no_heartbeat(Payload payload) {
   return {};
 }
 
-/// Decodes into `Message` and hands it to `take`.
-template <class Message, auto decode, auto cleanup, class Take>
-hal::Result<Command> decoded(std::string_view topic, Payload payload, Take take) {
+/// What commands say, as they are decoded.
+struct Body {
+  static CommandBody of(const eyebot_cmd_mode_t& m) { return ModeCommand{m.action, m.param}; }
+  static CommandBody of(const eyebot_cmd_position_t& m) {
+    return PositionCommand{m.frame, m.use_yaw != 0, std::to_array(m.pos), m.yaw, m.max_speed, m.timeout_ms};
+  }
+  static CommandBody of(const eyebot_cmd_velocity_t& m) {
+    return VelocityCommand{m.frame, std::to_array(m.vel), m.yaw_rate, m.timeout_ms};
+  }
+  static CommandBody of(const eyebot_leds_t& m) {
+    LedsCommand leds{.rings = m.rings, .beacon = std::to_array(m.beacon)};
+    std::copy_n(&m.lower[0][0], leds.lower.size(), leds.lower.begin());
+    std::copy_n(&m.upper[0][0], leds.upper.size(), leds.upper.begin());
+    return leds;
+  }
+  static CommandBody of(const eyebot_cmd_pan_tilt_t& m) {
+    return PanTiltCommand{m.pan_target, m.tilt_target, m.laser != 0};
+  }
+  static CommandBody of(const eyebot_cmd_scanner_t& m) {
+    return ScannerCommand{m.enable != 0, m.fixed != 0, m.rpm, m.angle};
+  }
+  static CommandBody of(const eyebot_cmd_rab_t& m) { return RadioCommand{{m.data, m.data + m.len}}; }
+  static CommandBody of(const eyebot_heartbeat_t& m) {
+    return HubHeartbeat{m.name, m.role, m.proto_major, m.proto_minor, m.period_ms};
+  }
+};
+
+template <class Message, auto decode, auto cleanup>
+hal::Result<Command> read(std::string_view topic, Payload payload) {
   Message message{};
   const int used = decode(payload.data(), 0, static_cast<int>(payload.size()), &message);
   // A failure leaves nothing behind: it is noticed at the fingerprint, as the sizes have been checked.
   if (used < 0) return refused(topic, "another fingerprint");
-  Command command{header_of(message.hdr), take(message)};
+  Command command{{message.hdr.utime, message.hdr.seq, message.hdr.session}, Body::of(message)};
   cleanup(&message);
   return command;
-}
-
-hal::Result<Command> read_mode(std::string_view topic, Payload payload) {
-  return decoded<eyebot_cmd_mode_t, eyebot_cmd_mode_t_decode, eyebot_cmd_mode_t_decode_cleanup>(
-      topic, payload, [](const auto& m) {
-        return ModeCommand{m.action, m.param};
-      });
-}
-
-hal::Result<Command> read_position(std::string_view topic, Payload payload) {
-  return decoded<eyebot_cmd_position_t, eyebot_cmd_position_t_decode, eyebot_cmd_position_t_decode_cleanup>(
-      topic, payload, [](const auto& m) {
-        return PositionCommand{m.frame, m.use_yaw != 0, std::to_array(m.pos), m.yaw, m.max_speed, m.timeout_ms};
-      });
-}
-
-hal::Result<Command> read_velocity(std::string_view topic, Payload payload) {
-  return decoded<eyebot_cmd_velocity_t, eyebot_cmd_velocity_t_decode, eyebot_cmd_velocity_t_decode_cleanup>(
-      topic, payload, [](const auto& m) {
-        return VelocityCommand{m.frame, std::to_array(m.vel), m.yaw_rate, m.timeout_ms};
-      });
-}
-
-hal::Result<Command> read_leds(std::string_view topic, Payload payload) {
-  return decoded<eyebot_leds_t, eyebot_leds_t_decode, eyebot_leds_t_decode_cleanup>(topic, payload, [](const auto& m) {
-    LedsCommand leds;
-    leds.rings = m.rings;
-    std::copy_n(&m.lower[0][0], leds.lower.size(), leds.lower.begin());
-    std::copy_n(&m.upper[0][0], leds.upper.size(), leds.upper.begin());
-    std::copy_n(m.beacon, leds.beacon.size(), leds.beacon.begin());
-    return leds;
-  });
-}
-
-hal::Result<Command> read_pan_tilt(std::string_view topic, Payload payload) {
-  return decoded<eyebot_cmd_pan_tilt_t, eyebot_cmd_pan_tilt_t_decode, eyebot_cmd_pan_tilt_t_decode_cleanup>(
-      topic, payload, [](const auto& m) {
-        return PanTiltCommand{m.pan_target, m.tilt_target, m.laser != 0};
-      });
-}
-
-hal::Result<Command> read_scanner(std::string_view topic, Payload payload) {
-  return decoded<eyebot_cmd_scanner_t, eyebot_cmd_scanner_t_decode, eyebot_cmd_scanner_t_decode_cleanup>(
-      topic, payload, [](const auto& m) {
-        return ScannerCommand{m.enable != 0, m.fixed != 0, m.rpm, m.angle};
-      });
-}
-
-hal::Result<Command> read_radio(std::string_view topic, Payload payload) {
-  return decoded<eyebot_cmd_rab_t, eyebot_cmd_rab_t_decode, eyebot_cmd_rab_t_decode_cleanup>(
-      topic, payload, [](const auto& m) {
-        return RadioCommand{{m.data, m.data + m.len}};
-      });
-}
-
-hal::Result<Command> read_heartbeat(std::string_view topic, Payload payload) {
-  return decoded<eyebot_heartbeat_t, eyebot_heartbeat_t_decode, eyebot_heartbeat_t_decode_cleanup>(
-      topic, payload, [](const auto& m) {
-        return HubHeartbeat{m.name, m.role, m.proto_major, m.proto_minor, m.period_ms};
-      });
 }
 
 struct Reader {
@@ -137,31 +102,24 @@ struct Reader {
   hal::Result<Command> (*read)(std::string_view, Payload);
 };
 
-constexpr std::array<Reader, kCommandChannels.size()> kReaders = {{{29, nullptr, read_mode},
-                                                                   {66, nullptr, read_position},
-                                                                   {61, nullptr, read_velocity},
-                                                                   {124, nullptr, read_leds},
-                                                                   {33, nullptr, read_pan_tilt},
-                                                                   {34, nullptr, read_scanner},
-                                                                   {0, why_no_radio, read_radio},
-                                                                   {0, why_no_heartbeat, read_heartbeat}}};
-
-template <class... Numbers>
-bool all_finite(Numbers... numbers) {
-  return (std::isfinite(static_cast<double>(numbers)) && ...);
-}
+constexpr std::array<Reader, kCommandChannels.size()> kReaders = {{
+    {29, nullptr, read<eyebot_cmd_mode_t, eyebot_cmd_mode_t_decode, eyebot_cmd_mode_t_decode_cleanup>},
+    {66, nullptr, read<eyebot_cmd_position_t, eyebot_cmd_position_t_decode, eyebot_cmd_position_t_decode_cleanup>},
+    {61, nullptr, read<eyebot_cmd_velocity_t, eyebot_cmd_velocity_t_decode, eyebot_cmd_velocity_t_decode_cleanup>},
+    {124, nullptr, read<eyebot_leds_t, eyebot_leds_t_decode, eyebot_leds_t_decode_cleanup>},
+    {33, nullptr, read<eyebot_cmd_pan_tilt_t, eyebot_cmd_pan_tilt_t_decode, eyebot_cmd_pan_tilt_t_decode_cleanup>},
+    {34, nullptr, read<eyebot_cmd_scanner_t, eyebot_cmd_scanner_t_decode, eyebot_cmd_scanner_t_decode_cleanup>},
+    {0, why_no_radio, read<eyebot_cmd_rab_t, eyebot_cmd_rab_t_decode, eyebot_cmd_rab_t_decode_cleanup>},
+    {0, why_no_heartbeat, read<eyebot_heartbeat_t, eyebot_heartbeat_t_decode, eyebot_heartbeat_t_decode_cleanup>},
+}};
 
 struct Finite {
-  bool operator()(const ModeCommand& c) const { return all_finite(c.param); }
-  bool operator()(const PositionCommand& c) const {
-    return all_finite(c.pos[0], c.pos[1], c.pos[2], c.yaw, c.max_speed);
-  }
-  bool operator()(const VelocityCommand& c) const { return all_finite(c.vel[0], c.vel[1], c.vel[2], c.yaw_rate); }
-  bool operator()(const LedsCommand&) const { return true; }
-  bool operator()(const PanTiltCommand& c) const { return all_finite(c.pan, c.tilt); }
-  bool operator()(const ScannerCommand& c) const { return all_finite(c.rpm, c.angle); }
-  bool operator()(const RadioCommand&) const { return true; }
-  bool operator()(const HubHeartbeat&) const { return true; }
+  bool operator()(const auto&) const { return true; }
+  bool operator()(const ModeCommand& c) const { return std::isfinite(c.param); }
+  bool operator()(const PositionCommand& c) const { return all_finite(c.pos) && all_finite({c.yaw, c.max_speed}); }
+  bool operator()(const VelocityCommand& c) const { return all_finite(c.vel) && std::isfinite(c.yaw_rate); }
+  bool operator()(const PanTiltCommand& c) const { return all_finite({c.pan, c.tilt}); }
+  bool operator()(const ScannerCommand& c) const { return all_finite({c.rpm, c.angle}); }
 };
 
 }  // namespace

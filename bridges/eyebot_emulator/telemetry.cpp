@@ -25,10 +25,6 @@
 namespace tandem::bridges::eyebot_emulator {
 namespace {
 
-eyebot_header_t head(const Header& h) {
-  return {h.utime, h.seq, h.session};
-}
-
 float as_float(double value) {
   return static_cast<float>(value);
 }
@@ -38,8 +34,10 @@ char* text_of(const std::string& text) {
   return const_cast<char*>(text.c_str());
 }
 
+/// `hdr` of the message is `header`.
 template <auto size, auto encode, class Message>
-Bytes encoded(const Message& message) {
+Bytes encoded(const Header& header, Message message) {
+  message.hdr = {header.utime, header.seq, header.session};
   Bytes bytes(static_cast<std::size_t>(size(&message)));
   const int written = encode(bytes.data(), 0, static_cast<int>(bytes.size()), &message);
   TANDEM_CHECK(written == static_cast<int>(bytes.size()), "a message is as long as it says");
@@ -75,37 +73,30 @@ Direction direction_of(const Blob& blob, const BodySenses& senses) {
 }  // namespace
 
 Bytes write_heartbeat(const Header& header, const std::string& name, std::int64_t uptime_ms, bool hub) {
-  eyebot_heartbeat_t m{};
-  m.hdr = head(header);
-  m.name = text_of(name);
-  m.role = hub ? EYEBOT_HEARTBEAT_T_ROLE_HUB : EYEBOT_HEARTBEAT_T_ROLE_ROBOT;
-  m.proto_major = kProtocolMajor;
-  m.proto_minor = kProtocolMinor;
-  m.period_ms = kHeartbeatPeriod_ms;
-  m.uptime_ms = uptime_ms;
-  return encoded<eyebot_heartbeat_t_encoded_size, eyebot_heartbeat_t_encode>(m);
+  const auto role = static_cast<std::int8_t>(hub ? EYEBOT_HEARTBEAT_T_ROLE_HUB : EYEBOT_HEARTBEAT_T_ROLE_ROBOT);
+  return encoded<eyebot_heartbeat_t_encoded_size, eyebot_heartbeat_t_encode>(
+      header,
+      eyebot_heartbeat_t{{}, text_of(name), role, kProtocolMajor, kProtocolMinor, kHeartbeatPeriod_ms, uptime_ms});
 }
 
 Bytes write_status(const Header& header, const StatusReport& status) {
-  eyebot_status_t m{};
-  m.hdr = head(header);
-  m.mode = status.mode;
-  m.failsafe = status.failsafe;
-  m.armed = status.armed ? 1 : 0;
-  m.magnet_on = status.magnet_on ? 1 : 0;
-  m.attached = status.attached ? 1 : 0;
-  m.cmd_session = status.command.session;
-  m.cmd_seq = status.command.seq;
-  m.cmd_age_ms = status.command_age_ms;
-  m.cmd_rejected = status.rejected;
-  m.text = text_of(status.text);
-  return encoded<eyebot_status_t_encoded_size, eyebot_status_t_encode>(m);
+  return encoded<eyebot_status_t_encoded_size, eyebot_status_t_encode>(
+      header, eyebot_status_t{.hdr = {},
+                              .mode = status.mode,
+                              .failsafe = status.failsafe,
+                              .armed = status.armed,
+                              .magnet_on = status.magnet_on,
+                              .attached = status.attached,
+                              .cmd_session = status.command.session,
+                              .cmd_seq = status.command.seq,
+                              .cmd_age_ms = status.command_age_ms,
+                              .cmd_rejected = status.rejected,
+                              .text = text_of(status.text)});
 }
 
 Bytes write_state(const Header& header, const BodySenses& senses, bool position_valid) {
   constexpr double kSigma_m = 0.01;
   eyebot_state_t m{};
-  m.hdr = head(header);
   m.source = EYEBOT_STATE_T_SRC_ONBOARD;
   m.pos_valid = position_valid ? 1 : 0;
   m.yaw_valid = 1;
@@ -114,26 +105,22 @@ Bytes write_state(const Header& header, const BodySenses& senses, bool position_
   std::ranges::copy(senses.q_WB, m.quat);
   std::ranges::copy(senses.turn_rad_s, m.omega);
   m.pos_sigma = position_valid ? as_float(kSigma_m) : -1.0F;
-  return encoded<eyebot_state_t_encoded_size, eyebot_state_t_encode>(m);
+  return encoded<eyebot_state_t_encoded_size, eyebot_state_t_encode>(header, m);
 }
 
 Bytes write_altitude(const Header& header, const BodySenses& senses) {
-  eyebot_altitude_t m{};
-  m.hdr = head(header);
-  m.ground = as_float(senses.ground_m);
-  m.ceiling = as_float(senses.ceiling_m);
-  return encoded<eyebot_altitude_t_encoded_size, eyebot_altitude_t_encode>(m);
+  return encoded<eyebot_altitude_t_encoded_size, eyebot_altitude_t_encode>(
+      header, eyebot_altitude_t{{}, as_float(senses.ground_m), as_float(senses.ceiling_m)});
 }
 
 Bytes write_battery(const Header& header, const BatteryReport& battery) {
-  eyebot_battery_t m{};
-  m.hdr = head(header);
-  m.voltage = as_float(battery.voltage_V);
-  m.current = as_float(battery.current_A);
-  m.charge = as_float(battery.charge);
-  m.time_left = as_float(battery.time_left_s);
-  m.low = battery.low ? 1 : 0;
-  return encoded<eyebot_battery_t_encoded_size, eyebot_battery_t_encode>(m);
+  return encoded<eyebot_battery_t_encoded_size, eyebot_battery_t_encode>(
+      header, eyebot_battery_t{.hdr = {},
+                               .voltage = as_float(battery.voltage_V),
+                               .current = as_float(battery.current_A),
+                               .charge = as_float(battery.charge),
+                               .time_left = as_float(battery.time_left_s),
+                               .low = battery.low});
 }
 
 Bytes write_scan(const Header& header, double rpm, double head_rad, const std::vector<ScanSample>& samples) {
@@ -147,85 +134,67 @@ Bytes write_scan(const Header& header, double rpm, double head_rad, const std::v
     angle.push_back(as_float(s.angle_rad));
     range.push_back(as_float(s.range_m));
   }
-  eyebot_scan_t m{};
-  m.hdr = head(header);
-  m.rpm = as_float(rpm);
-  m.head_angle = as_float(head_rad);
-  m.n = static_cast<std::int32_t>(samples.size());
-  m.sensor = sensor.data();
-  m.dt_us = dt_us.data();
-  m.angle = angle.data();
-  m.range = range.data();
-  return encoded<eyebot_scan_t_encoded_size, eyebot_scan_t_encode>(m);
+  return encoded<eyebot_scan_t_encoded_size, eyebot_scan_t_encode>(
+      header, eyebot_scan_t{.hdr = {},
+                            .rpm = as_float(rpm),
+                            .head_angle = as_float(head_rad),
+                            .n = static_cast<std::int32_t>(samples.size()),
+                            .sensor = sensor.data(),
+                            .dt_us = dt_us.data(),
+                            .angle = angle.data(),
+                            .range = range.data()});
 }
 
 Bytes write_radio(const Header& header, const std::vector<Heard>& heard, std::int64_t received_utime) {
   std::vector<eyebot_rab_packet_t> packets;
   for (const Heard& h : heard) {
-    eyebot_rab_packet_t packet{};
-    packet.sender = h.sender;
-    packet.range = as_float(h.range_m);
-    packet.bearing = as_float(h.bearing_rad);
-    packet.elevation = as_float(h.elevation_rad);
-    packet.rx_utime = received_utime;
-    packet.len = static_cast<std::int8_t>(std::min<std::size_t>(h.payload.size(), 127));
-    packet.data = const_cast<std::uint8_t*>(h.payload.data());  // only read
-    packets.push_back(packet);
+    const auto length = static_cast<std::int8_t>(std::min<std::size_t>(h.payload.size(), 127));
+    packets.push_back({h.sender, as_float(h.range_m), as_float(h.bearing_rad), as_float(h.elevation_rad),
+                       received_utime, length, const_cast<std::uint8_t*>(h.payload.data())});  // only read
   }
-  eyebot_rab_t m{};
-  m.hdr = head(header);
-  m.n = static_cast<std::int32_t>(packets.size());
-  m.pkt = packets.data();
-  return encoded<eyebot_rab_t_encoded_size, eyebot_rab_t_encode>(m);
+  return encoded<eyebot_rab_t_encoded_size, eyebot_rab_t_encode>(
+      header, eyebot_rab_t{{}, static_cast<std::int32_t>(packets.size()), packets.data()});
 }
 
 Bytes write_proximity(const Header& header, const BodySenses& senses) {
   eyebot_prox_t m{};
-  m.hdr = head(header);
   for (std::size_t i = 0; i < senses.distance_m.size(); ++i) {
     m.proximity[i] =
         as_float(std::clamp(1.0 - senses.distance_m[i] / robot_part<hal::ProximityPart>().range_m, 0.0, 1.0));
   }
-  return encoded<eyebot_prox_t_encoded_size, eyebot_prox_t_encode>(m);
+  return encoded<eyebot_prox_t_encoded_size, eyebot_prox_t_encode>(header, m);
 }
 
 Bytes write_light(const Header& header, const BodySenses& senses) {
   eyebot_light_t m{};
-  m.hdr = head(header);
   std::ranges::transform(senses.light, m.light, as_float);
-  return encoded<eyebot_light_t_encoded_size, eyebot_light_t_encode>(m);
+  return encoded<eyebot_light_t_encoded_size, eyebot_light_t_encode>(header, m);
 }
 
 Bytes write_pan_tilt(const Header& header, const BodySenses& senses, bool laser) {
-  eyebot_pan_tilt_t m{};
-  m.hdr = head(header);
-  m.pan = as_float(senses.pan_rad);
-  m.tilt = as_float(senses.tilt_rad);
-  m.laser = laser ? 1 : 0;
-  return encoded<eyebot_pan_tilt_t_encoded_size, eyebot_pan_tilt_t_encode>(m);
+  return encoded<eyebot_pan_tilt_t_encoded_size, eyebot_pan_tilt_t_encode>(
+      header, eyebot_pan_tilt_t{{}, as_float(senses.pan_rad), as_float(senses.tilt_rad), laser});
 }
 
 Bytes write_blobs(const Header& header, const BodySenses& senses) {
   std::vector<eyebot_blob_t> blobs;
   for (const Blob& b : senses.blobs) {
-    eyebot_blob_t blob{};
-    blob.x = as_float(b.x_px);
-    blob.y = as_float(b.y_px);
-    blob.area = 1.0F;
-    std::ranges::copy(b.rgb, blob.rgb);
-    blob.range = -1.0F;
     const Direction seen = direction_of(b, senses);
-    blob.azimuth = as_float(seen.azimuth_rad);
-    blob.elevation = as_float(seen.elevation_rad);
-    blobs.push_back(blob);
+    blobs.push_back({.x = as_float(b.x_px),
+                     .y = as_float(b.y_px),
+                     .area = 1.0F,
+                     .rgb = {b.rgb[0], b.rgb[1], b.rgb[2]},
+                     .range = -1.0F,
+                     .azimuth = as_float(seen.azimuth_rad),
+                     .elevation = as_float(seen.elevation_rad)});
   }
-  eyebot_blobs_t m{};
-  m.hdr = head(header);
-  m.width = static_cast<std::int16_t>(robot_part<hal::CameraPart>().width_px);
-  m.height = static_cast<std::int16_t>(robot_part<hal::CameraPart>().height_px);
-  m.n = static_cast<std::int32_t>(blobs.size());
-  m.blob = blobs.data();
-  return encoded<eyebot_blobs_t_encoded_size, eyebot_blobs_t_encode>(m);
+  const auto& camera = robot_part<hal::CameraPart>();
+  return encoded<eyebot_blobs_t_encoded_size, eyebot_blobs_t_encode>(
+      header, eyebot_blobs_t{{},
+                             static_cast<std::int16_t>(camera.width_px),
+                             static_cast<std::int16_t>(camera.height_px),
+                             static_cast<std::int32_t>(blobs.size()),
+                             blobs.data()});
 }
 
 Bytes write_image(const Header& header, const BodySenses& senses) {
@@ -242,37 +211,24 @@ Bytes write_image(const Header& header, const BodySenses& senses) {
       pixels.push_back(ground_at(x_m, y_m));
     }
   }
-  eyebot_image_t m{};
-  m.hdr = head(header);
-  m.width = kWidth;
-  m.height = kHeight;
-  m.stride = kWidth;
-  m.format = kGrey;
-  m.size = static_cast<std::int32_t>(pixels.size());
-  m.data = pixels.data();
-  return encoded<eyebot_image_t_encoded_size, eyebot_image_t_encode>(m);
+  return encoded<eyebot_image_t_encoded_size, eyebot_image_t_encode>(
+      header,
+      eyebot_image_t{{}, kWidth, kHeight, kWidth, kGrey, static_cast<std::int32_t>(pixels.size()), pixels.data()});
 }
 
 Bytes write_leds(const Header& header, const Lights& lights) {
   eyebot_leds_t m{};
-  m.hdr = head(header);
   m.rings =
       static_cast<std::int8_t>((lights.lower_on ? 1 : 0) | (lights.upper_on ? 2 : 0) | (lights.beacon_on ? 4 : 0));
   std::ranges::copy(lights.lower, &m.lower[0][0]);
   std::ranges::copy(lights.upper, &m.upper[0][0]);
   std::ranges::copy(lights.beacon, m.beacon);
-  return encoded<eyebot_leds_t_encoded_size, eyebot_leds_t_encode>(m);
+  return encoded<eyebot_leds_t_encoded_size, eyebot_leds_t_encode>(header, m);
 }
 
 Bytes write_ack(const Header& header, const AckReport& ack) {
-  eyebot_ack_t m{};
-  m.hdr = head(header);
-  m.channel = text_of(ack.channel);
-  m.cmd_session = ack.session;
-  m.cmd_seq = ack.seq;
-  m.result = ack.result;
-  m.text = text_of(ack.text);
-  return encoded<eyebot_ack_t_encoded_size, eyebot_ack_t_encode>(m);
+  return encoded<eyebot_ack_t_encoded_size, eyebot_ack_t_encode>(
+      header, eyebot_ack_t{{}, text_of(ack.channel), ack.session, ack.seq, ack.result, text_of(ack.text)});
 }
 
 }  // namespace tandem::bridges::eyebot_emulator

@@ -1,6 +1,7 @@
 #include "bridges/eyebot_messages/codec.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <exception>
 
@@ -55,79 +56,49 @@ struct Walk {
     const auto bytes = data.subspan(at - static_cast<std::size_t>(length), static_cast<std::size_t>(length));
     if (std::find(bytes.begin(), bytes.end(), std::byte{0}) != bytes.end() - 1) fail(Flaw::BadText);
   }
-};
-
-void walk(Walk& w, const Heartbeat&) noexcept {
-  w.text();
-  w.skip(15);
-}
-void walk(Walk& w, const Status&) noexcept {
-  w.skip(21);
-  w.text();
-}
-void walk(Walk& w, const State&) noexcept {
-  w.skip(111);
-}
-void walk(Walk& w, const Altitude&) noexcept {
-  w.skip(8);
-}
-void walk(Walk& w, const Battery&) noexcept {
-  w.skip(17);
-}
-void walk(Walk& w, const Scan&) noexcept {
-  w.skip(8);
-  w.skip(13 * w.count(4, kMostElements));
-}
-void walk(Walk& w, const Rab&) noexcept {
-  const std::size_t packets = w.count(4, kMostElements);
-  for (std::size_t i = 0; i < packets && w.flaw == Flaw::None; ++i) {
-    w.skip(24);
-    w.skip(w.count(1, 127));
+  void array(std::size_t before, std::size_t element, std::size_t most = kMostElements) noexcept {
+    skip(before);
+    skip(element * count(4, most));
   }
-}
-void walk(Walk& w, const Prox&) noexcept {
-  w.skip(96);
-}
-void walk(Walk& w, const Light&) noexcept {
-  w.skip(96);
-}
-void walk(Walk& w, const PanTilt&) noexcept {
-  w.skip(9);
-}
-void walk(Walk& w, const Blobs&) noexcept {
-  w.skip(4);
-  w.skip(27 * w.count(4, kMostElements));
-}
-void walk(Walk& w, const Image&) noexcept {
-  w.skip(12);
-  w.skip(w.count(4, kMostImageBytes));
-}
-void walk(Walk& w, const Leds&) noexcept {
-  w.skip(100);
-}
-void walk(Walk& w, const Ack&) noexcept {
-  w.text();
-  w.skip(9);
-  w.text();
-}
-void walk(Walk& w, const CmdMode&) noexcept {
-  w.skip(5);
-}
-void walk(Walk& w, const CmdPosition&) noexcept {
-  w.skip(42);
-}
-void walk(Walk& w, const CmdVelocity&) noexcept {
-  w.skip(37);
-}
-void walk(Walk& w, const CmdPanTilt&) noexcept {
-  w.skip(9);
-}
-void walk(Walk& w, const CmdScanner&) noexcept {
-  w.skip(10);
-}
-void walk(Walk& w, const CmdRab&) noexcept {
-  w.skip(w.count(1, 127));
-}
+
+  // What lies behind the header.
+  void body(const Heartbeat&) noexcept {
+    text();
+    skip(15);
+  }
+  void body(const Status&) noexcept {
+    skip(21);
+    text();
+  }
+  void body(const State&) noexcept { skip(111); }
+  void body(const Altitude&) noexcept { skip(8); }
+  void body(const Battery&) noexcept { skip(17); }
+  void body(const Scan&) noexcept { array(8, 13); }
+  void body(const Rab&) noexcept {
+    const std::size_t packets = count(4, kMostElements);
+    for (std::size_t i = 0; i < packets && flaw == Flaw::None; ++i) {
+      skip(24);
+      skip(count(1, 127));
+    }
+  }
+  void body(const Prox&) noexcept { skip(96); }
+  void body(const Light&) noexcept { skip(96); }
+  void body(const PanTilt&) noexcept { skip(9); }
+  void body(const Blobs&) noexcept { array(4, 27); }
+  void body(const Image&) noexcept { array(12, 1, kMostImageBytes); }
+  void body(const Leds&) noexcept { skip(100); }
+  void body(const Ack&) noexcept {
+    text();
+    skip(9);
+    text();
+  }
+  void body(const CmdMode&) noexcept { skip(5); }
+  void body(const CmdPosition&) noexcept { skip(42); }
+  void body(const CmdVelocity&) noexcept { skip(37); }
+  void body(const CmdPanTilt&) noexcept { skip(9); }
+  void body(const CmdScanner&) noexcept { skip(10); }
+  void body(const CmdRab&) noexcept { skip(count(1, 127)); }
+};
 
 // --- whether its numbers are numbers ---
 
@@ -136,88 +107,53 @@ bool is_orientation(const double (&q)[4]) noexcept {
   return square > 0.81 && square < 1.21;  // false for NaN
 }
 
-template <class Message>
-bool sane(const Message&) noexcept {
-  return true;  // has no numbers with a point
-}
-/// What the robot itself says is not valid may be anything.
-bool sane(const State& m) noexcept {
-  const bool place = !m.pos_valid || (all_finite(m.pos) && all_finite(m.vel));
-  return place && is_orientation(m.quat) && all_finite(m.omega) && std::isfinite(m.pos_sigma);
-}
-bool sane(const Altitude& m) noexcept {
-  return all_finite({m.ground, m.ceiling});
-}
-bool sane(const Battery& m) noexcept {
-  return all_finite({m.voltage, m.current, m.charge, m.time_left});
-}
-bool sane(const Scan& m) noexcept {
-  return all_finite({m.rpm, m.head_angle}) && all_finite(m.angle) && all_finite(m.range);
-}
-bool sane(const Rab& m) noexcept {
-  for (const RabPacket& p : m.pkt) {
-    if (!all_finite({p.range, p.bearing, p.elevation})) return false;
+struct Sane {
+  static bool is(const auto&) noexcept { return true; }  // has no numbers with a point
+  /// What the robot itself says is not valid may be anything.
+  static bool is(const State& m) noexcept {
+    const bool place = !m.pos_valid || (all_finite(m.pos) && all_finite(m.vel));
+    return place && is_orientation(m.quat) && all_finite(m.omega) && std::isfinite(m.pos_sigma);
   }
-  return true;
-}
-bool sane(const Prox& m) noexcept {
-  return all_finite(m.proximity);
-}
-bool sane(const Light& m) noexcept {
-  return all_finite(m.light);
-}
-bool sane(const PanTilt& m) noexcept {
-  return all_finite({m.pan, m.tilt});
-}
-bool sane(const Blobs& m) noexcept {
-  for (const Blob& b : m.blob) {
-    if (!all_finite({b.x, b.y, b.area, b.range, b.azimuth, b.elevation})) return false;
+  static bool is(const Altitude& m) noexcept { return all_finite({m.ground, m.ceiling}); }
+  static bool is(const Battery& m) noexcept { return all_finite({m.voltage, m.current, m.charge, m.time_left}); }
+  static bool is(const Scan& m) noexcept {
+    return all_finite({m.rpm, m.head_angle}) && all_finite(m.angle) && all_finite(m.range);
   }
-  return true;
-}
-bool sane(const CmdMode& m) noexcept {
-  return std::isfinite(m.param);
-}
-bool sane(const CmdPosition& m) noexcept {
-  return all_finite(m.pos) && all_finite({m.yaw, m.max_speed});
-}
-bool sane(const CmdVelocity& m) noexcept {
-  return all_finite(m.vel) && std::isfinite(m.yaw_rate);
-}
-bool sane(const CmdPanTilt& m) noexcept {
-  return all_finite({m.pan_target, m.tilt_target});
-}
-bool sane(const CmdScanner& m) noexcept {
-  return all_finite({m.rpm, m.angle});
-}
+  static bool is(const Rab& m) noexcept {
+    return std::ranges::all_of(m.pkt, [](const auto& p) { return is(p); });
+  }
+  static bool is(const RabPacket& p) noexcept { return all_finite({p.range, p.bearing, p.elevation}); }
+  static bool is(const Prox& m) noexcept { return all_finite(m.proximity); }
+  static bool is(const Light& m) noexcept { return all_finite(m.light); }
+  static bool is(const PanTilt& m) noexcept { return all_finite({m.pan, m.tilt}); }
+  static bool is(const Blobs& m) noexcept {
+    return std::ranges::all_of(m.blob, [](const auto& b) { return is(b); });
+  }
+  static bool is(const Blob& b) noexcept { return all_finite({b.x, b.y, b.area, b.range, b.azimuth, b.elevation}); }
+  static bool is(const CmdMode& m) noexcept { return std::isfinite(m.param); }
+  static bool is(const CmdPosition& m) noexcept { return all_finite(m.pos) && all_finite({m.yaw, m.max_speed}); }
+  static bool is(const CmdVelocity& m) noexcept { return all_finite(m.vel) && std::isfinite(m.yaw_rate); }
+  static bool is(const CmdPanTilt& m) noexcept { return all_finite({m.pan_target, m.tilt_target}); }
+  static bool is(const CmdScanner& m) noexcept { return all_finite({m.rpm, m.angle}); }
+};
 
 // --- whether its counts are those of its arrays ---
 
-bool is(std::int64_t count, std::size_t length) noexcept {
-  return count >= 0 && static_cast<std::uint64_t>(count) == length;
-}
-template <class Message>
-bool counted(const Message&) noexcept {
-  return true;  // has no arrays of variable length
-}
-bool counted(const Scan& m) noexcept {
-  return is(m.n, m.sensor.size()) && is(m.n, m.dt_us.size()) && is(m.n, m.angle.size()) && is(m.n, m.range.size());
-}
-bool counted(const Rab& m) noexcept {
-  for (const RabPacket& p : m.pkt) {
-    if (!is(p.len, p.data.size())) return false;
+struct Counted {
+  static bool is(const auto&) noexcept { return true; }  // has no arrays of variable length
+  static bool is(std::int64_t count, const auto& array) noexcept {
+    return count >= 0 && static_cast<std::uint64_t>(count) == array.size();
   }
-  return is(m.n, m.pkt.size());
-}
-bool counted(const Blobs& m) noexcept {
-  return is(m.n, m.blob.size());
-}
-bool counted(const Image& m) noexcept {
-  return is(m.size, m.data.size());
-}
-bool counted(const CmdRab& m) noexcept {
-  return is(m.len, m.data.size());
-}
+  static bool is(const Scan& m) noexcept {
+    return is(m.n, m.sensor) && is(m.n, m.dt_us) && is(m.n, m.angle) && is(m.n, m.range);
+  }
+  static bool is(const Rab& m) noexcept {
+    return is(m.n, m.pkt) && std::ranges::all_of(m.pkt, [](const RabPacket& p) { return is(p.len, p.data); });
+  }
+  static bool is(const Blobs& m) noexcept { return is(m.n, m.blob); }
+  static bool is(const Image& m) noexcept { return is(m.size, m.data); }
+  static bool is(const CmdRab& m) noexcept { return is(m.len, m.data); }
+};
 
 template <class Message>
 constexpr std::size_t most_bytes() noexcept {
@@ -227,21 +163,8 @@ constexpr std::size_t most_bytes() noexcept {
 }  // namespace
 
 const char* flaw_name(Flaw flaw) noexcept {
-  switch (flaw) {
-    case Flaw::None:
-      return "none";
-    case Flaw::WrongType:
-      return "another type";
-    case Flaw::WrongSize:
-      return "wrong size";
-    case Flaw::BadCount:
-      return "bad count";
-    case Flaw::BadText:
-      return "bad text";
-    case Flaw::NotFinite:
-      return "not finite";
-  }
-  return "";
+  constexpr std::array kNames = {"none", "another type", "wrong size", "bad count", "bad text", "not finite"};
+  return kNames[static_cast<std::size_t>(flaw)];
 }
 
 template <class Message>
@@ -254,7 +177,7 @@ Flaw Codec<Message>::decode(Bytes data, Message& message) noexcept {
   if (data.size() < 8 || big_endian(data, 0, 8) != fingerprint()) return Flaw::WrongType;
   if (data.size() < kHeaderEnd || data.size() > most_bytes<Message>()) return Flaw::WrongSize;
   Walk w{data};
-  walk(w, message);
+  w.body(message);
   if (w.flaw != Flaw::None) return w.flaw;
   if (w.at != data.size()) return Flaw::WrongSize;
   try {
@@ -263,12 +186,12 @@ Flaw Codec<Message>::decode(Bytes data, Message& message) noexcept {
   } catch (const std::exception&) {
     return Flaw::BadCount;  // there was no memory for it
   }
-  return sane(message) ? Flaw::None : Flaw::NotFinite;
+  return Sane::is(message) ? Flaw::None : Flaw::NotFinite;
 }
 
 template <class Message>
 Bytes Codec<Message>::encode(const Message& message, std::span<std::byte> buffer) noexcept {
-  if (!counted(message)) return {};
+  if (!Counted::is(message)) return {};
   const int written = message.encode(buffer.data(), 0, static_cast<int>(buffer.size()));
   return written > 0 ? buffer.first(static_cast<std::size_t>(written)) : buffer.first(0);
 }
