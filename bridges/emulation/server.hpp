@@ -30,27 +30,24 @@ struct ServerOptions {
   std::function<void(const std::string& path)> ready{};  ///< called once, when a host can connect
 };
 
-/// Options of robots on two wheels; `Body` is the emulator's interface of bodies.
-template <class Body>
-struct WheeledOptions : ServerOptions {
-  Body* body = nullptr;          ///< must outlive the run; none: one of its own, in `arena` if there is one
-  std::optional<Arena> arena{};  ///< none: open ground
-  WheelErrors wheels{};          ///< how the wheels of a body of its own err
-  PoseOptions poses{};
-  Delays delays{};
-  std::function<std::optional<BodyPose>()> pose_elsewhere{};  ///< of `body`, the newest; none: nobody knows
-};
-
 /// What the command line may say to every robot on two wheels.
 struct WheeledParams {
   PoseOptions poses{};
-  WheelErrors wheels{};
+  WheelErrors wheels{};  ///< how the wheels of a body of its own err
   Delays delays{};
   void describe(hal::ParamVisitor& v) {
     poses.describe(v);
     wheels.describe(v);
     delays.describe(v);
   }
+};
+
+/// Options of robots on two wheels; `Body` is the emulator's interface of bodies.
+template <class Body>
+struct WheeledOptions : ServerOptions, WheeledParams {
+  Body* body = nullptr;          ///< must outlive the run; none: one of its own, in `arena` if there is one
+  std::optional<Arena> arena{};  ///< none: open ground
+  std::function<std::optional<BodyPose>()> pose_elsewhere{};  ///< of `body`, the newest; none: nobody knows
 };
 
 /// Fills in what every emulator's options have.
@@ -60,18 +57,22 @@ inline void apply(const EmulatorRequest& request, ServerOptions& options) {
   options.faults = request.faults;
   options.log = request.log;
 }
-/// The same for a robot on two wheels, whose body is another's where there are `ports`: then `body` is made.
-template <class Body, class PortBody>
-void apply(const EmulatorRequest& request, const WheeledParams& own, SharedPorts* ports, std::optional<PortBody>& body,
-           WheeledOptions<Body>& options) {
+/// `EmulatorType::run` for a robot, whose body is another's where there are `ports`. `Options` are ServerOptions with a
+/// `body` that describe what is read, and `shown(path)` of them tells people how a host reaches the robot.
+template <class Options, class PortBody, auto run>
+hal::Status run_emulator(const EmulatorRequest& request, SharedPorts* ports, const std::atomic<bool>& stop) {
+  Options options = request.options == nullptr ? Options{} : *static_cast<const Options*>(request.options.get());
   apply(request, options);
-  options.poses = own.poses;
-  options.wheels = own.wheels;
-  options.delays = own.delays;
-  if (ports == nullptr) return;
-  options.body = &body.emplace(*ports);
-  options.delays.body_s = own.wheels.delay_s;
-  options.pose_elsewhere = [ports] { return ports->pose(); };
+  std::optional<PortBody> body;
+  if (ports != nullptr) options.body = &body.emplace(*ports);
+  if constexpr (requires { options.pose_elsewhere; }) {
+    if (ports != nullptr) options.delays.body_s = options.wheels.delay_s;
+    if (ports != nullptr) options.pose_elsewhere = [ports] { return ports->pose(); };
+  }
+  options.ready = [&](const std::string& path) {
+    if (request.ready) request.ready(options.shown(path));
+  };
+  return run(options, stop);
 }
 
 /// Takes turns. All its functions are called on the thread of `serve`.

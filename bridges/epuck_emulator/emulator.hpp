@@ -16,6 +16,26 @@ struct Options : WheeledOptions<EmulatedBody> {
 
   std::string firmware = "gctronic";  ///< btcom, gctronic, webots or epuck2
   Firmware::Options robot{};          ///< what is built in; its variant and delays are taken from here
+
+  void describe(hal::ParamVisitor& v) {
+    std::int64_t selector = robot.selector;
+    v.text("firmware", firmware, "btcom, gctronic, webots or epuck2.");
+    v.integer("selector", selector, {0, 15}, "Position of the rotary switch.");
+    v.flag("cliff_sensors", robot.cliff_sensors, "The ground board has two cliff sensors.");
+    v.flag("ground_board", robot.ground_board, "It has ground sensors; else the firmware answers zeros.");
+    WheeledParams::describe(v);
+    robot.selector = static_cast<std::uint8_t>(selector);
+  }
+  std::string shown(const std::string& path) const {
+    const bool link = path.starts_with("tcp:") || path.starts_with("epuck-tcp:");
+    return "e-puck's firmware on " + path + ": connect with --link " + (link ? path : "serial:" + path + "@115200");
+  }
+};
+struct Epuck2Options : Options {
+  Epuck2Options() {
+    firmware = "epuck2";
+    robot.cliff_sensors = true;
+  }
 };
 
 /// Events for the log beside the robot's own: `fault` (fault, phase: begin or end) and `late` (by_ms: see turn_until).

@@ -1,5 +1,7 @@
 // Eye-bots on a network, in real time.
 #pragma once
+#include <algorithm>
+#include <array>
 #include <atomic>
 #include <memory>
 #include <optional>
@@ -23,6 +25,25 @@ struct Options : ServerOptions {
   int count = 1;                               ///< how many robots: eb0, eb1, … after `robot.name`
   EmulatedBody* body = nullptr;  ///< must outlive the run, for one robot; none: bodies of their own, in `room`
   std::optional<Room> room = Room{};
+
+  void describe(hal::ParamVisitor& v) {
+    static constexpr std::array<std::string_view, 2> kClocks = {"synced", "unsynced"};
+    std::string clock(kClocks[robot.clock_synced ? 0 : 1]);
+    std::int64_t many = count;
+    v.text("name", robot.name, "Its name, or that of the first.");
+    v.integer("count", many, {}, "How many: eb0, eb1, ….");
+    v.choice("clock", clock, kClocks, "synced: it refuses commands whose stamps are 250 ms off its clock.");
+    v.number("images", robot.image_hz, hal::unit::hz, {0.0, 2.0}, "Images that it sends a second.");
+    v.number("body_delay", robot.delays.body_s, hal::unit::s, {0.0, 2.0},
+             "By which its body is later than its motors.");
+    robot.delays.describe(v);
+    robot.clock_synced = clock == kClocks[0];
+    count = static_cast<int>(std::clamp<std::int64_t>(many, -1, 1'000'000));
+  }
+  std::string shown(const std::string& url) const {
+    const std::string who = count > 1 ? std::to_string(count) + " eye-bots" : "eye-bot " + robot.name;
+    return who + " on " + url + ": connect with --link lcm:" + url;
+  }
 };
 
 /// Events for the log beside the robot's own: `fault` (fault, phase: begin or end) and `late` (by_ms: see turn_until).

@@ -15,6 +15,15 @@ struct Options : WheeledOptions<EmulatedBody> {
   Options() { link = "pty:fb0"; }
 
   std::string firmware = "v4";  ///< v4 (the robots') or v5: which version of the protocol the modules speak
+
+  void describe(hal::ParamVisitor& v) {
+    v.text("firmware", firmware, "v4 (the robots') or v5: which version of the protocol its modules speak.");
+    WheeledParams::describe(v);
+  }
+  std::string shown(const std::string& path) const {
+    const bool link = path.starts_with("tcp:") || path.starts_with("can:");
+    return "foot-bot's modules on " + path + ": connect with --link " + (link ? path : "slcan:" + path + "@1000000");
+  }
 };
 
 /// Events for the log beside the robot's own: `fault` (fault, phase: begin or end) and `late` (by_ms: see turn_until).

@@ -2,6 +2,7 @@
 #pragma once
 #include <atomic>
 #include <cstdint>
+#include <string>
 
 #include "bridges/emulation/server.hpp"
 #include "bridges/thymio_emulator/thymio.hpp"
@@ -16,6 +17,15 @@ struct Options : WheeledOptions<EmulatedBody> {
   Options() { link = "pty:thymio0"; }
 
   std::int64_t node = 1;  ///< its number
+
+  void describe(hal::ParamVisitor& v) {
+    v.integer("node", node, {1, 255}, "Its number, where several share a switch.");
+    WheeledParams::describe(v);
+  }
+  std::string shown(const std::string& path) const {
+    const std::string link = path.starts_with("tcp:") ? path : "serial:" + path + "@" + std::to_string(kBaud);
+    return "Thymio on " + path + ": connect with --link " + link;
+  }
 };
 
 /// Events for the log beside the robot's own: `fault` (fault, phase: begin or end) and `late` (by_ms: see turn_until).
