@@ -71,6 +71,13 @@ Options options_of(const BridgeRequest& request) {
   return request.options == nullptr ? Options{} : *static_cast<const Options*>(request.options.get());
 }
 
+/// `BridgeType::check` of a bridge whose `make` begins with `prepare(request)`, a Result.
+template <auto prepare>
+hal::Status check_by(const BridgeRequest& request) {
+  const auto prepared = prepare(request);
+  return prepared.ok() ? hal::Status{} : hal::Status{prepared.error()};
+}
+
 /// Fills in what all bridges' settings have, from `parts`: `Parts::settings.driver.robot` and its time-outs.
 template <class Settings>
 void apply(const BridgeRequest& request, Settings& settings) {

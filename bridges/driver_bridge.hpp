@@ -5,12 +5,14 @@
 #include <chrono>
 #include <condition_variable>
 #include <mutex>
+#include <string>
 #include <string_view>
 #include <thread>
 #include <vector>
 
 #include "bridges/robot_bridge.hpp"
 #include "hal/check.hpp"
+#include "hal/result.hpp"
 
 namespace tandem::bridges {
 
@@ -21,10 +23,16 @@ struct Interruptions {
   std::uint64_t of_its_own = 0;  ///< of those, what the robot did itself: a restart, its own fail-safe
 };
 
-/// `Self` is the bridge; it has a member `driver_` with robot(), latch, commit, stop, resume, state(), whose
+/// `Self` is the bridge; it has a member `driver_` with robot(), latch, commit, stop, resume, at_rest(), state(), whose
 /// states have Active and Lost, and the functions
 ///   void run()                                the thread's; returns when `ending_` is set
-///   Interruptions interruptions() const       of the driver, with the lock held
+///   and with the lock held:
+///   Interruptions interruptions() const       of the driver
+///   std::string noun() const                  what such a robot is called, "foot-bot"
+///   std::string link_trouble() const          why there is no link; "" when there is one, or none was tried yet
+///   std::string robot_trouble() const         what is wrong with the robot; "" when nothing is
+///   std::string silence() const               what is said of a robot that never became active
+///   RobotIdentity who() const
 /// It may have others of these; else they do nothing:
 ///   void before_start()                       ports are taken
 ///   void before_latch(TimeNs), after_command(TimeNs)    with the lock held
@@ -88,6 +96,28 @@ class DriverBridge : public RobotBridge {
     const std::lock_guard lock(mutex_);
     return stopped_itself_;
   }
+  bool at_rest() const noexcept override {
+    const std::lock_guard lock(mutex_);
+    return driver().at_rest();
+  }
+  std::string trouble() const override {
+    const std::lock_guard lock(mutex_);
+    return any_trouble();
+  }
+  RobotIdentity identity() const override {
+    const std::lock_guard lock(mutex_);
+    return self().who();
+  }
+  /// Errors: not active within `timeout_ns`; says what is known (no link, nobody answers …) and what to do.
+  hal::Status wait_active(hal::TimeNs timeout_ns) {
+    std::unique_lock lock(mutex_);
+    const auto active = [this] { return ending_ || is_active(); };
+    if (changed_.wait_for(lock, std::chrono::nanoseconds(timeout_ns), active) && !ending_) return {};
+    const std::string who = self().noun() + " '" + std::string(driver().robot().id()) + "' is not there: ";
+    const std::string link = self().link_trouble();
+    return hal::Error{who + (link.empty() ? self().silence() + "; " + this->advice() : link)};
+  }
+
   auto state() const noexcept {
     const std::lock_guard lock(mutex_);
     return driver().state();
@@ -98,10 +128,10 @@ class DriverBridge : public RobotBridge {
   }
 
  protected:
-  /// Whether it becomes active in time, and is not ended meanwhile. With the lock held.
-  bool active_within(std::unique_lock<std::mutex>& lock, hal::TimeNs timeout_ns) {
-    const auto active = [this] { return ending_ || is_active(); };
-    return changed_.wait_for(lock, std::chrono::nanoseconds(timeout_ns), active) && !ending_;
+  /// With the lock held.
+  std::string any_trouble() const {
+    const std::string link = self().link_trouble();
+    return link.empty() ? self().robot_trouble() : link;
   }
 
   mutable std::mutex mutex_;         // guards the driver and its link, not the ports

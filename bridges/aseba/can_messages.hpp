@@ -38,7 +38,6 @@ class CanMessages final : public MessageLink {
   std::string name() const override { return link_->name(); }
 
   const CanLink& link() const noexcept { return *link_; }
-  const AssemblerStatistics& assembler_statistics() const noexcept { return assembler_.statistics(); }
 
  private:
   static constexpr std::size_t kCapacity = 512;  // frames

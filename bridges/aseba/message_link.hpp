@@ -18,7 +18,6 @@ enum class Carrier : std::uint8_t {
   Down,  ///< nothing passes at present (bus off, interface down, being opened); comes up by itself
   Gone   ///< must be opened anew
 };
-const char* carrier_name(Carrier carrier) noexcept;
 
 /// Counted since the link was made. What was sent half or dropped on the way out is `dropped`, not `sent`.
 struct MessageLinkStatistics {

@@ -137,19 +137,8 @@ hal::TimeNs Node::taken_ns(std::size_t address, std::size_t count) const noexcep
 }
 
 const char* node_state_name(NodeState state) noexcept {
-  switch (state) {
-    case NodeState::Absent:
-      return "absent";
-    case NodeState::Present:
-      return "present";
-    case NodeState::Refused:
-      return "refused";
-    case NodeState::Ready:
-      return "ready";
-    case NodeState::Lost:
-      return "lost";
-  }
-  return "";
+  constexpr std::array kNames = {"absent", "present", "refused", "ready", "lost"};
+  return kNames[static_cast<std::size_t>(state)];
 }
 
 }  // namespace tandem::bridges::aseba

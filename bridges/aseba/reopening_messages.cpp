@@ -1,37 +1,16 @@
 #include "bridges/aseba/reopening_messages.hpp"
 
 #include <chrono>
-#include <condition_variable>
-#include <mutex>
 #include <thread>
 
 namespace tandem::bridges::aseba {
-
-/// An opening at work.
-struct ReopeningMessages::Work {
-  std::mutex mutex;
-  std::condition_variable done;
-  std::optional<hal::Result<std::unique_ptr<MessageLink>>> result;
-};
 
 ReopeningMessages::ReopeningMessages(MessageLinkOpener opener, hal::TimeNs first_pause_ns, hal::TimeNs longest_pause_ns)
     : opener_(std::move(opener)),
       first_pause_ns_(first_pause_ns),
       longest_pause_ns_(longest_pause_ns),
       pause_ns_(first_pause_ns) {
-  start_opening();
-}
-
-ReopeningMessages::~ReopeningMessages() = default;
-
-void ReopeningMessages::start_opening() {
-  work_ = std::make_shared<Work>();
-  std::thread([work = work_, open = opener_] {
-    auto result = open();
-    const std::lock_guard lock(work->mutex);
-    work->result.emplace(std::move(result));
-    work->done.notify_all();
-  }).detach();
+  work_.emplace(opener_);
 }
 
 void ReopeningMessages::look_after() noexcept {
@@ -43,15 +22,11 @@ void ReopeningMessages::look_after() noexcept {
     next_try_ns_ = monotonic_ns() + pause_ns_;
   }
   if (link_ != nullptr) return;
-  if (work_ == nullptr) {
-    if (monotonic_ns() >= next_try_ns_) start_opening();
+  if (!work_) {
+    if (monotonic_ns() >= next_try_ns_) work_.emplace(opener_);
     return;
   }
-  std::optional<hal::Result<std::unique_ptr<MessageLink>>> result;
-  {
-    const std::lock_guard lock(work_->mutex);
-    result = std::move(work_->result);
-  }
+  auto result = work_->take();
   if (!result) return;
   work_.reset();
   if (*result) {
@@ -83,9 +58,8 @@ bool ReopeningMessages::receive(MessageView& message) noexcept {
 bool ReopeningMessages::wait(hal::TimeNs timeout_ns) noexcept {
   look_after();
   if (link_ != nullptr) return link_->wait(timeout_ns);
-  if (work_ != nullptr) {
-    std::unique_lock lock(work_->mutex);
-    work_->done.wait_for(lock, std::chrono::nanoseconds(timeout_ns), [this] { return work_->result.has_value(); });
+  if (work_) {
+    work_->wait(timeout_ns);
   } else {
     const hal::TimeNs pause = std::min(timeout_ns, std::max<hal::TimeNs>(next_try_ns_ - monotonic_ns(), 0));
     std::this_thread::sleep_for(std::chrono::nanoseconds(pause));

@@ -5,6 +5,7 @@
 
 #include "bridges/aseba/message_link.hpp"
 #include "bridges/link/link.hpp"
+#include "bridges/link/pending_link.hpp"
 
 namespace tandem::bridges::aseba {
 
@@ -16,7 +17,6 @@ class ReopeningMessages final : public MessageLink {
   /// `opener` is tried at once, and after a failure again after `first_pause_ns`, doubled up to `longest_pause_ns`.
   explicit ReopeningMessages(MessageLinkOpener opener, hal::TimeNs first_pause_ns = 50 * hal::kNsPerMs,
                              hal::TimeNs longest_pause_ns = 400 * hal::kNsPerMs);
-  ~ReopeningMessages() override;
 
   bool send(std::uint16_t type, std::span<const std::uint8_t> payload) noexcept override;
   bool receive(MessageView& message) noexcept override;
@@ -35,16 +35,14 @@ class ReopeningMessages final : public MessageLink {
   std::uint64_t failed_openings() const noexcept { return failed_openings_; }
 
  private:
-  struct Work;
   void look_after() noexcept;
-  void start_opening();
 
   MessageLinkOpener opener_;
   hal::TimeNs first_pause_ns_;
   hal::TimeNs longest_pause_ns_;
   hal::TimeNs pause_ns_;
   hal::TimeNs next_try_ns_ = 0;
-  std::shared_ptr<Work> work_;  // shared with the thread, which outlives an impatient owner
+  std::optional<Pending<MessageLink>> work_;
   std::unique_ptr<MessageLink> link_;
   MessageLinkStatistics before_;
   std::uint64_t refused_ = 0;

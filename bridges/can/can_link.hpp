@@ -22,7 +22,6 @@ enum class BusState : std::uint8_t {
   Down,     ///< the interface is switched off; becomes Active by itself when it is switched on
   Gone      ///< adapter pulled out, line hung up: the link must be opened anew
 };
-const char* bus_state_name(BusState state) noexcept;
 /// Whether frames can pass.
 constexpr bool can_pass(BusState state) noexcept {
   return state < BusState::BusOff;

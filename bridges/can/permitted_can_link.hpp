@@ -1,7 +1,8 @@
 // A CAN link that sends nothing once the permit was withdrawn under which it was opened.
 #pragma once
 #include "bridges/can/can_link.hpp"
-#include "bridges/send_permit.hpp"
+#include "bridges/link/link.hpp"
+#include "bridges/link/link_terms.hpp"
 
 namespace tandem::bridges {
 
@@ -14,7 +15,9 @@ class PermittedCanLink final : public CanLink {
 
   Sent send(const CanFrame& frame) noexcept override { return permitted() ? link_->send(frame) : Sent::Refused; }
   bool receive(CanFrame& frame) noexcept override { return permitted() && link_->receive(frame); }
-  bool wait(hal::TimeNs timeout_ns) noexcept override;
+  bool wait(hal::TimeNs timeout_ns) noexcept override {
+    return permitted() ? link_->wait(timeout_ns) : wait_for_input(-1, timeout_ns);
+  }
   int descriptor() const noexcept override { return permitted() ? link_->descriptor() : -1; }
   BusState state() const noexcept override { return permitted() ? link_->state() : BusState::Gone; }
   CanStatistics statistics() const noexcept override { return link_->statistics(); }
@@ -29,6 +32,8 @@ class PermittedCanLink final : public CanLink {
 };
 
 /// Opens with `opener` only while the permit is granted.
-CanOpener permitted(CanOpener opener, SendPermit permit);
+inline CanOpener permitted(CanOpener opener, SendPermit permit) {
+  return permitted_by<PermittedCanLink>(std::move(opener), permit);
+}
 
 }  // namespace tandem::bridges

@@ -215,16 +215,10 @@ bool SocketCanLink::receive(CanFrame& frame) noexcept {
 }
 
 bool SocketCanLink::wait(hal::TimeNs timeout_ns) noexcept {
+  if (record_.state() == BusState::Gone) return wait_for_input(-1, timeout_ns);
   const bool down = record_.state() == BusState::Down;
   // An interface that comes up wakes nobody.
-  const hal::TimeNs longest = down ? std::min(timeout_ns, 50 * hal::kNsPerMs) : timeout_ns;
-  const timespec t{static_cast<time_t>(longest / hal::kNsPerSecond), static_cast<long>(longest % hal::kNsPerSecond)};
-  if (record_.state() == BusState::Gone) {
-    ::nanosleep(&t, nullptr);  // nothing to wait for; a loop of waits must not spin
-    return false;
-  }
-  pollfd p{socket_, POLLIN, 0};
-  const bool ready = ::ppoll(&p, 1, &t, nullptr) > 0;
+  const bool ready = wait_for_input(socket_, down ? std::min(timeout_ns, 50 * hal::kNsPerMs) : timeout_ns);
   look_whether_up();
   return ready;
 }

@@ -27,7 +27,6 @@ class TcpPort final : public HostLine {
   const std::string& device() const noexcept override { return nothing_; }
   const std::string& link() const noexcept override { return listener_->link(); }
 
-  bool has_host() const noexcept { return host_ >= 0; }
   /// Grows with each host that connects.
   std::uint64_t hosts() const noexcept { return hosts_; }
 

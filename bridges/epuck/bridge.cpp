@@ -74,7 +74,7 @@ void EpuckBridge::note_link(ByteLink& link) {
 std::unique_ptr<ByteLink> EpuckBridge::open_link() {
   std::string logged;
   while (!ending_) {
-    PendingLink pending(opener_);
+    Pending<ByteLink> pending(opener_);
     auto opened = pending.take();
     std::unique_lock lock(mutex_);
     const auto ended = [this] { return ending_.load(); };
@@ -142,13 +142,9 @@ void EpuckBridge::pump_now(TimeNs now) noexcept {
 
 // --- the loop ---
 
-hal::Status EpuckBridge::wait_active(TimeNs timeout_ns) {
-  std::unique_lock lock(mutex_);
-  if (active_within(lock, timeout_ns)) return {};
-  const std::string who = "e-puck '" + std::string(driver_.robot().id()) + "' is not there: ";
-  if (!link_error_.empty()) return hal::Error{who + link_error_};
-  const char* trouble = driver_.session().trouble();
-  return hal::Error{who + (*trouble != '\0' ? trouble : state_name(driver_.state())) + "; " + advice()};
+std::string EpuckBridge::silence() const {
+  const std::string trouble = driver_.session().trouble();
+  return trouble.empty() ? state_name(driver_.state()) : trouble;
 }
 
 // --- what is known ---
@@ -168,9 +164,7 @@ bool EpuckBridge::at_rest() const noexcept {
   return driver_.stopped() && driver_.at_rest();
 }
 
-std::string EpuckBridge::trouble() const {
-  const std::lock_guard lock(mutex_);
-  if (!link_error_.empty()) return link_error_;
+std::string EpuckBridge::robot_trouble() const {
   if (is_another()) {
     return "it runs the firmware '" + std::string(driver_.session().identity().version_text()) + "', not '" +
            settings_.firmware + "' as the file says; correct firmware=\"…\" or say auto";
@@ -189,11 +183,6 @@ RobotIdentity EpuckBridge::who() const {
   RobotIdentity all = reached_;
   driver_.identify(all);
   return all;
-}
-
-RobotIdentity EpuckBridge::identity() const {
-  const std::lock_guard lock(mutex_);
-  return who();
 }
 
 StopMessages EpuckBridge::stop_messages() const {

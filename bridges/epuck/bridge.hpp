@@ -56,14 +56,9 @@ class EpuckBridge final : public DriverBridge<EpuckBridge, EpuckRobot> {
   /// Stops the robot, waits at most `shutdown_ns` for it to confirm, closes the link.
   ~EpuckBridge() override;
 
-  /// Errors: not active within `timeout_ns`; says what is known (link does not open, nobody answers …) and what to do.
-  hal::Status wait_active(hal::TimeNs timeout_ns);
-
   bool mismatched() const noexcept override;
   bool at_rest() const noexcept override;
-  std::string trouble() const override;
   std::string advice() const override;
-  RobotIdentity identity() const override;
   StopMessages stop_messages() const override;
   std::uint64_t stop_version() const noexcept override;
   LinkReport report() const override;
@@ -84,6 +79,10 @@ class EpuckBridge final : public DriverBridge<EpuckBridge, EpuckRobot> {
   void pump_now(hal::TimeNs now) noexcept;
   bool wants_new_link() const noexcept;
   void note_link(ByteLink& link);
+  std::string noun() const { return "e-puck"; }
+  const std::string& link_trouble() const { return link_error_; }
+  std::string robot_trouble() const;
+  std::string silence() const;
   RobotIdentity who() const;
 
   BridgeSettings settings_;

@@ -12,7 +12,6 @@ constexpr std::uint8_t code(char letter) noexcept {
 }
 
 constexpr std::uint8_t kRgbLeds = 0xF6;
-constexpr std::uint8_t kAllActuators = 0xF7;
 constexpr std::uint8_t kAllSensors = 0xF8;
 constexpr std::uint8_t kFourMicrophones = 0xF4;
 constexpr std::uint8_t kTimeOfFlight = 0xF3;
@@ -143,10 +142,6 @@ bool append_led(Packet& packet, std::uint8_t index, LedAction action) noexcept {
   return packet.append({code('L'), index, static_cast<std::uint8_t>(action)});
 }
 
-bool append_preset_encoders(Packet& packet, std::int16_t left, std::int16_t right) noexcept {
-  return packet.append({code('P'), low(left), high(left), low(right), high(right)});
-}
-
 bool append_rgb_leds(Packet& packet, const std::array<std::uint8_t, 12>& percent) noexcept {
   std::array<std::uint8_t, 13> bytes{kRgbLeds};
   std::transform(percent.begin(), percent.end(), bytes.begin() + 1,
@@ -214,43 +209,14 @@ Decoded decode_answer(std::span<const std::uint8_t> bytes, QuantitySet quantitie
   return Decoded::Ok;
 }
 
-namespace {
-
-/// What follows the command byte, whichever it is.
-std::array<std::uint8_t, 19> payload_of(const AllActuators& a) noexcept {
-  std::array<std::uint8_t, 19> bytes{};
-  bytes[0] = static_cast<std::uint8_t>((a.calibrate ? 1U : 0U) | (a.avoid_obstacles ? 2U : 0U) |
-                                       (a.steps_not_speeds ? 4U : 0U));
-  bytes[1] = low(a.left);
-  bytes[2] = high(a.left);
-  bytes[3] = low(a.right);
-  bytes[4] = high(a.right);
-  bytes[5] = a.leds;
-  std::transform(a.rgb_percent.begin(), a.rgb_percent.end(), bytes.begin() + 6,
-                 [](std::uint8_t p) { return std::min<std::uint8_t>(p, 100); });
-  bytes[18] = a.sound;
-  return bytes;
-}
-
-bool append_with(Packet& packet, std::span<const std::uint8_t> head, const AllActuators& actuators) noexcept {
-  const auto payload = payload_of(actuators);
-  if (head.size() + payload.size() > Packet::kCapacity - packet.size()) return false;
-  return packet.append(head) && packet.append(payload);
-}
-
-}  // namespace
-
-bool append_all_actuators(Packet& packet, const AllActuators& actuators) noexcept {
-  return append_with(packet, std::array{kAllActuators}, actuators);
-}
-
-bool append_all_sensors_query(Packet& packet) noexcept {
-  return packet.append({kAllSensors});
-}
-
-bool append_wifi_command(Packet& packet, const AllActuators& actuators) noexcept {
+bool append_wifi_command(Packet& packet, const AllActuators& a) noexcept {
   constexpr std::uint8_t kTellSensors = 2;  // 1: the camera's images
-  return append_with(packet, std::array{kWifiCommand, kTellSensors}, actuators);
+  // Behind its head: flags, all off, the speeds, the lamps; no sound.
+  std::array<std::uint8_t, kWifiCommandSize> bytes{kWifiCommand, kTellSensors,  0,     low(a.left), high(a.left),
+                                                   low(a.right), high(a.right), a.leds};
+  std::transform(a.rgb_percent.begin(), a.rgb_percent.end(), bytes.begin() + 8,
+                 [](std::uint8_t p) { return std::min<std::uint8_t>(p, 100); });
+  return packet.append(bytes);
 }
 
 WifiReader::Event WifiReader::push(std::uint8_t byte) noexcept {

@@ -112,8 +112,6 @@ inline constexpr std::uint8_t kBodyLedIndex = 8;
 inline constexpr std::uint8_t kFrontLedIndex = 9;
 /// `index` 0 to 7: ring; 8 body; 9 front; anything else: all of the ring.
 bool append_led(Packet& packet, std::uint8_t index, LedAction action) noexcept;
-/// Sets the step counters; does not move.
-bool append_preset_encoders(Packet& packet, std::int16_t left, std::int16_t right) noexcept;
 /// e-puck2: colours of its RGB LEDs, r g b each of LED 2, 4, 6, 8 (ring 1, 3, 5, 7 counted from 0), 0 to 100.
 bool append_rgb_leds(Packet& packet, const std::array<std::uint8_t, 12>& percent) noexcept;
 bool append_query(Packet& packet, Quantity quantity, const AnswerLayout& layout = {}) noexcept;
@@ -140,17 +138,11 @@ Decoded decode_answer(std::span<const std::uint8_t> bytes, QuantitySet quantitie
 // --- the e-puck2's packets for everything at once ---
 
 struct AllActuators {
-  bool calibrate = false;
-  bool avoid_obstacles = false;
-  bool steps_not_speeds = false;  ///< `left` and `right` preset the step counters
   std::int16_t left = 0;
   std::int16_t right = 0;
   std::uint8_t leds = 0;  ///< bits: LED 1, 3, 5, 7, body, front
   std::array<std::uint8_t, 12> rgb_percent{};
-  std::uint8_t sound = 0;
 };
-bool append_all_actuators(Packet& packet, const AllActuators& actuators) noexcept;
-bool append_all_sensors_query(Packet& packet) noexcept;
 
 inline constexpr std::size_t kAllSensorsSize = 103;
 struct AllSensors {

@@ -22,21 +22,8 @@ constexpr TimeNs kCountersAmbiguous = 25 * hal::kNsPerSecond;
 }  // namespace
 
 const char* state_name(SessionState state) noexcept {
-  switch (state) {
-    case SessionState::Absent:
-      return "absent";
-    case SessionState::Handshake:
-      return "handshake";
-    case SessionState::Ready:
-      return "ready";
-    case SessionState::Active:
-      return "active";
-    case SessionState::Suspect:
-      return "suspect";
-    case SessionState::Lost:
-      return "lost";
-  }
-  return "";
+  constexpr std::array kNames = {"absent", "handshake", "ready", "active", "suspect", "lost"};
+  return kNames[static_cast<std::size_t>(state)];
 }
 
 std::unique_ptr<Conversation> make_conversation(WireForm wire, const SessionTiming& timing) {

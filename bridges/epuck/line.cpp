@@ -52,24 +52,6 @@ Firmware firmware_of(std::string_view version) noexcept {
 
 }  // namespace
 
-bool append_line(Packet& packet, char letter, std::initializer_list<int> numbers) noexcept {
-  if (letter == 't') return false;
-  std::array<std::uint8_t, Packet::kCapacity> line;
-  std::size_t size = 0;
-  line[size++] = static_cast<std::uint8_t>(letter);
-  for (const int number : numbers) {
-    std::array<char, 12> digits;
-    const auto [end, error] = std::to_chars(digits.data(), digits.data() + digits.size(), number);
-    const auto n = static_cast<std::size_t>(end - digits.data());
-    if (error != std::errc{} || size + 1 + n + 1 > line.size()) return false;
-    line[size++] = ',';
-    std::copy_n(digits.begin(), n, line.begin() + static_cast<std::ptrdiff_t>(size));
-    size += n;
-  }
-  line[size++] = '\r';
-  return packet.append(std::span(line.data(), size));
-}
-
 bool LineReader::push(std::uint8_t byte) noexcept {
   if (ended_) clear();
   if (byte == '\n') {
@@ -94,23 +76,6 @@ void LineReader::clear() noexcept {
   cut_ = false;
 }
 
-bool parse_answer(std::string_view line, LineAnswer& answer) noexcept {
-  if (line.empty() || line[0] < 'a' || line[0] > 'z') return false;
-  LineAnswer read;
-  read.letter = line[0];
-  line.remove_prefix(1);
-  while (!line.empty()) {
-    if (line[0] != ',' || read.count == read.values.size()) return false;
-    line.remove_prefix(1);
-    const auto [end, error] = std::from_chars(line.data(), line.data() + line.size(), read.values[read.count]);
-    if (error != std::errc{}) return false;
-    line.remove_prefix(static_cast<std::size_t>(end - line.data()));
-    ++read.count;
-  }
-  answer = read;
-  return true;
-}
-
 bool firmware_fits(std::string_view wanted, Firmware firmware) noexcept {
   return wanted == "auto" || wanted.empty() || (wanted == "btcom" && firmware == Firmware::BTcom) ||
          (wanted == "gctronic" && firmware == Firmware::GCtronic) ||
@@ -118,19 +83,9 @@ bool firmware_fits(std::string_view wanted, Firmware firmware) noexcept {
 }
 
 std::string_view firmware_name(Firmware firmware) noexcept {
-  switch (firmware) {
-    case Firmware::BTcom:
-      return "BTcom (EPFL)";
-    case Firmware::GCtronic:
-      return "asercom (GCtronic)";
-    case Firmware::Webots:
-      return "asercom (Webots)";
-    case Firmware::Epuck2:
-      return "asercom2 (e-puck2)";
-    case Firmware::Unknown:
-      break;
-  }
-  return "unknown";
+  constexpr std::array<std::string_view, 5> kNames = {"unknown", "BTcom (EPFL)", "asercom (GCtronic)",
+                                                      "asercom (Webots)", "asercom2 (e-puck2)"};
+  return kNames[static_cast<std::size_t>(firmware)];
 }
 
 std::string_view Identity::version_text() const noexcept {

@@ -1,7 +1,4 @@
-// ASCII lines of the e-puck's serial protocol: requests, answers, the firmware's identity and its greeting.
-//
-// A request is a letter and comma-separated numbers, ended by exactly one CR: after CR LF the firmware would wait
-// inside the next ASCII line, and the first byte of a binary packet would become part of it. Answers end with CR LF.
+// ASCII lines of the e-puck's serial protocol: the firmware's identity and its greeting. They end with CR LF.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -11,10 +8,6 @@
 #include "bridges/epuck/codec.hpp"
 
 namespace tandem::bridges::epuck {
-
-/// Appends letter, numbers, CR. False, and nothing appended, when it does not fit.
-/// Never sends `t` (the firmware would take it for T and play a sound): returns false.
-bool append_line(Packet& packet, char letter, std::initializer_list<int> numbers = {}) noexcept;
 
 /// Cuts a stream of bytes into lines. Holds the newest line until the next byte.
 class LineReader {
@@ -34,15 +27,6 @@ class LineReader {
   bool cut_ = false;
   std::uint64_t cut_lines_ = 0;
 };
-
-/// An answer such as "n,0,12,3": letter and numbers.
-struct LineAnswer {
-  char letter = 0;
-  std::size_t count = 0;
-  std::array<std::int32_t, 10> values{};
-};
-/// False when the line is not a lower-case letter followed by nothing or by a comma and whole numbers.
-bool parse_answer(std::string_view line, LineAnswer& answer) noexcept;
 
 enum class Firmware : std::uint8_t { Unknown, BTcom, GCtronic, Webots, Epuck2 };
 std::string_view firmware_name(Firmware firmware) noexcept;

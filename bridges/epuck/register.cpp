@@ -21,13 +21,12 @@ struct Options {
 
 struct Epuck2Options : Options {};  // an element's options have a type of their own
 
-hal::Status check(const BridgeRequest& request) {
-  const auto link = epuck_link(request.link);
-  return link.ok() ? hal::Status{} : hal::Status{link.error()};
+hal::Result<EpuckLink> link_for(const BridgeRequest& request) {
+  return epuck_link(request.link, {request.permit});
 }
 
 MadeBridge make(const BridgeRequest& request, const hal::Log& log) {
-  auto link = epuck_link(request.link, {request.permit});
+  auto link = link_for(request);
   if (!link.ok()) return link.error();
   BridgeSettings settings;
   apply(request, settings);
@@ -39,8 +38,8 @@ MadeBridge make(const BridgeRequest& request, const hal::Log& log) {
       std::make_unique<EpuckBridge>(std::move(settings), std::move(link).value().open, log));
 }
 
-const BridgeType kType{.name = hal::epuck::kName, .summary = kLinks, .make = &make, .check = &check};
-const BridgeType kType2{.name = hal::epuck2::kName, .summary = kLinks, .make = &make, .check = &check};
+const BridgeType kType{.name = hal::epuck::kName, .summary = kLinks, .make = &make, .check = &check_by<link_for>};
+const BridgeType kType2{.name = hal::epuck2::kName, .summary = kLinks, .make = &make, .check = &check_by<link_for>};
 
 }  // namespace
 

@@ -157,7 +157,7 @@ void Session::ask_version(TimeNs now) noexcept {
   ++version_asks_;
   lines_.clear();
   output_.clear();
-  append_line(output_, 'V');
+  output_.append({'V', '\r'});  // after CR LF the firmware would take the next byte for one of a line
   phase_ = Phase::Version;
   allowed_ns_ = 0;
   deadline_ns_ = now + timing_.answer_ns + transfer_ns(kVersionBytes);

@@ -154,29 +154,12 @@ void EyebotBridge::run_shutdown() {
 
 // --- the loop ---
 
-hal::Status EyebotBridge::wait_active(TimeNs timeout_ns) {
-  std::unique_lock lock(mutex_);
-  if (active_within(lock, timeout_ns)) return {};
-  const std::string who = "eye-bot '" + std::string(driver_.robot().id()) + "' is not there: ";
-  if (!link_trouble_.empty()) return hal::Error{who + link_trouble_};
-  return hal::Error{who + driver_.trouble() + "; " + advice()};
-}
-
 void EyebotBridge::land(TimeNs now) noexcept {
   const std::lock_guard lock(mutex_);
   driver_.land(now);
 }
 
 // --- what is known ---
-
-std::string EyebotBridge::trouble() const {
-  const std::lock_guard lock(mutex_);
-  return link_trouble_.empty() ? driver_.trouble() : link_trouble_;
-}
-
-std::string EyebotBridge::advice() const {
-  return "is it switched on, in the same network, and called so?";
-}
 
 /// With the lock held. What a robot draws at its start is no word: the same robot draws another one at the next.
 RobotIdentity EyebotBridge::who() const {
@@ -186,11 +169,6 @@ RobotIdentity EyebotBridge::who() const {
   if (links_opened_ > 0) all.device = all.link;
   if (driver_.liveness().pulse(lcm_bus::monotonic_ns()) != Pulse::Never) all.name = driver_.settings().name;
   return all;
-}
-
-RobotIdentity EyebotBridge::identity() const {
-  const std::lock_guard lock(mutex_);
-  return who();
 }
 
 StopMessages EyebotBridge::stop_messages() const {
@@ -251,16 +229,11 @@ void EyebotBridge::describe(StatusVisitor& visitor) const {
   visitor.count("commands_not_finite", s.driver.not_finite);
 }
 
-bool EyebotBridge::at_rest() const noexcept {
-  const std::lock_guard lock(mutex_);
-  return driver_.at_rest();
-}
-
 BridgeStatus EyebotBridge::status() const {
   const std::lock_guard lock(mutex_);
   BridgeStatus status;
   status.state = driver_.state();
-  status.trouble = link_trouble_.empty() ? driver_.trouble() : link_trouble_;
+  status.trouble = any_trouble();
   status.link_trouble = link_trouble_;
   status.link = link_ ? "lcm:" + link_->url() : "";
   status.stopped = driver_.stopped();

@@ -74,15 +74,9 @@ class EyebotBridge final : public DriverBridge<EyebotBridge, EyebotRobot>, priva
   /// Has the robot hover and land, as the settings say, and waits as long as they say.
   ~EyebotBridge() override;
 
-  /// Errors: not active within `timeout_ns`; says what is known (no link, nothing heard, another version …).
-  hal::Status wait_active(hal::TimeNs timeout_ns);
-
   void land(hal::TimeNs now) noexcept override;
 
-  bool at_rest() const noexcept override;
-  std::string trouble() const override;
-  std::string advice() const override;
-  RobotIdentity identity() const override;
+  std::string advice() const override { return "is it switched on, in the same network, and called so?"; }
   /// The body is that of stop_body.hpp.
   StopMessages stop_messages() const override;
   std::uint64_t stop_version() const noexcept override;
@@ -109,6 +103,10 @@ class EyebotBridge final : public DriverBridge<EyebotBridge, EyebotRobot>, priva
   void keep_link();
   hal::Result<std::shared_ptr<lcm_bus::LcmLink>> open();
   void run_shutdown();
+  std::string noun() const { return "eye-bot"; }
+  const std::string& link_trouble() const { return link_trouble_; }
+  std::string robot_trouble() const { return driver_.trouble(); }
+  std::string silence() const { return driver_.trouble(); }
   RobotIdentity who() const;
 
   BridgeSettings settings_;

@@ -28,11 +28,6 @@ std::string name_of(const BridgeRequest& request) {
   return name.empty() ? request.robot : name;
 }
 
-hal::Status check(const BridgeRequest& request) {
-  const auto settings = settings_for(request);
-  return settings.ok() ? hal::Status{} : hal::Status{settings.error()};
-}
-
 MadeBridge make(const BridgeRequest& request, const hal::Log& log) {
   auto settings = settings_for(request);
   if (!settings.ok()) return settings.error();
@@ -45,8 +40,11 @@ std::string reached_by(const BridgeRequest& request) {
   return absolute_link(request.link) + " as '" + name_of(request) + "'";
 }
 
-const BridgeType kType{
-    .name = hal::eyebot::kName, .summary = "lcm:URL", .make = &make, .check = &check, .reached_by = &reached_by};
+const BridgeType kType{.name = hal::eyebot::kName,
+                       .summary = "lcm:URL",
+                       .make = &make,
+                       .check = &check_by<settings_for>,
+                       .reached_by = &reached_by};
 
 }  // namespace
 

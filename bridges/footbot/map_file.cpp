@@ -443,6 +443,14 @@ std::optional<FootbotMap> read_footbot_map(const std::string& path, hal::Problem
   return judged(hal::read_xml_file(path, problems), problems, before);
 }
 
+hal::Result<FootbotMap> footbot_map_for(const std::string& robot, const std::string& path) {
+  hal::Problems problems;
+  if (auto map = read_footbot_map(path, problems)) return std::move(*map);
+  std::string message = "the map of the foot-bot '" + robot + "' cannot be used";
+  for (const hal::Problem& p : problems) message += "\n" + to_text(p);
+  return hal::Error{message};
+}
+
 std::optional<FootbotMap> read_footbot_map_text(const std::string& text, const std::string& name,
                                                 hal::Problems& problems) {
   const std::size_t before = problems.size();

@@ -17,13 +17,17 @@
 
 #include "bridges/footbot/map.hpp"
 #include "hal/element.hpp"
+#include "hal/result.hpp"
 
 namespace tandem::bridges::footbot {
 
 /// Every problem is appended, with file and line; nothing is returned when one of them is an error.
 std::optional<FootbotMap> read_footbot_map(const std::string& path, hal::Problems& problems);
 
-/// The same from text; `name` stands for the file in messages.
+/// The map of a robot. Error: all that is wrong with it, for people.
+hal::Result<FootbotMap> footbot_map_for(const std::string& robot, const std::string& path);
+
+/// As `read_footbot_map`, from text; `name` stands for the file in messages.
 std::optional<FootbotMap> read_footbot_map_text(const std::string& text, const std::string& name,
                                                 hal::Problems& problems);
 

@@ -1,8 +1,6 @@
 #include "bridges/footbot/register.hpp"
 
-#include "bridges/aseba/message_link_text.hpp"
 #include "bridges/aseba/node_stopper.hpp"
-#include "bridges/bridge_type.hpp"
 #include "bridges/footbot/bridge.hpp"
 #include "bridges/footbot/inspect.hpp"
 #include "bridges/footbot/map_file.hpp"
@@ -25,45 +23,19 @@ std::string map_of(const BridgeRequest& request) {
   return hal::path_beside(options_of<Options>(request).map, request.file);
 }
 
-struct Parts {
-  BridgeSettings settings;
-  aseba::MessageLinkOpener opener;
-};
-
-hal::Result<Parts> parts_for(const BridgeRequest& request) {
-  auto opener = aseba::message_link_opener(request.link, {request.permit});
-  if (!opener.ok()) return opener.error();
+hal::Status add(const BridgeRequest& request, DriverSettings& driver) {
   const std::string path = map_of(request);
   if (path.empty()) {
     return hal::Error{"the <bridge> of the foot-bot '" + request.robot +
                       "' names no map of its variables; write map=\"footbot_map.xml\""};
   }
-  hal::Problems problems;
-  auto map = read_footbot_map(path, problems);
-  if (!map) {
-    std::string message = "the map of the foot-bot '" + request.robot + "' cannot be used";
-    for (const hal::Problem& p : problems) message += "\n" + to_text(p);
-    return hal::Error{message};
-  }
-  Parts parts;
-  parts.opener = std::move(opener).value();
-  parts.settings.link = request.link;
-  parts.settings.driver.map = std::move(*map);
-  apply(request, parts.settings);
-  return parts;
+  auto map = footbot_map_for(request.robot, path);
+  if (!map.ok()) return map.error();
+  driver.map = std::move(map).value();
+  return {};
 }
 
-hal::Status check(const BridgeRequest& request) {
-  const auto parts = parts_for(request);
-  return parts.ok() ? hal::Status{} : hal::Status{parts.error()};
-}
-
-MadeBridge make(const BridgeRequest& request, const hal::Log& log) {
-  auto parts = parts_for(request);
-  if (!parts.ok()) return parts.error();
-  return std::unique_ptr<RobotBridge>(
-      std::make_unique<FootbotBridge>(std::move(parts->settings), std::move(parts->opener), log));
-}
+using Maker = aseba::NodeBridgeMaker<FootbotParts>;
 
 std::vector<InputFile> inputs(const BridgeRequest& request) {
   return {{"robot's map", map_of(request)}};
@@ -71,8 +43,8 @@ std::vector<InputFile> inputs(const BridgeRequest& request) {
 
 const BridgeType kType{.name = hal::footbot::kName,
                        .summary = "can:INTERFACE, slcan:DEVICE@RATE, serial:DEVICE@921600, tcp:HOST:PORT",
-                       .make = &make,
-                       .check = &check,
+                       .make = &Maker::make<add>,
+                       .check = &check_by<Maker::prepare<add>>,
                        .inputs = &inputs};
 
 std::string check_map(const std::string& path, hal::Problems& problems) {

@@ -40,8 +40,7 @@ const std::vector<const hal::PortType*>& port_types() {
 }
 
 FootbotRobot::FootbotRobot(RobotSettings settings, const FootbotMap& map)
-    : BridgedRobot("foot-bot", hal::footbot::kind(), std::move(settings), port_types()),
-      reckoning_(kind().drive() != nullptr ? kind().drive()->wheel_base_m : 0.0),
+    : NodeRobot("foot-bot", hal::footbot::kind(), std::move(settings), port_types()),
       heads_(kind().part<hal::ScannerPart>()) {
   const bool counts = feeds(map, hal::port_type<hal::WheelEncoders>());
   for (const hal::PortType* type : port_types()) {
@@ -51,8 +50,6 @@ FootbotRobot::FootbotRobot(RobotSettings settings, const FootbotMap& map)
       leave_out(*type, " in its map: no variable there is for it; add it to the map");
   }
   tells_holding_ = feeds(map, hal::port_type<hal::Gripper>(), "holding");
-  if (const auto* const part = kind().part<hal::ProximityPart>(); part != nullptr)
-    port<hal::Proximity>().range_m = static_cast<float>(part->range_m);
   auto& scanner = port<hal::DistanceScanner>();
   if (heads_ != nullptr) {
     scanner.short_min_m = static_cast<float>(heads_->heads[0].min_m);
@@ -66,15 +63,8 @@ FootbotRobot::FootbotRobot(RobotSettings settings, const FootbotMap& map)
   }
 }
 
-bool FootbotRobot::uses(const hal::PortType& type) const noexcept {
-  const bool reckons =
-      &type == &hal::port_type<hal::WheelEncoders>() && BridgedRobot::uses(hal::port_type<hal::Odometry>());
-  return reckons || BridgedRobot::uses(type);
-}
-
 void FootbotRobot::complete(hal::Tick tick) noexcept {
-  tell_time(tick);
-  reckoning_.follow(port<hal::WheelEncoders>(), port<hal::Odometry>());
+  NodeRobot::complete(tick);
   auto& scanner = port<hal::DistanceScanner>();
   scanner.samples = static_cast<std::uint32_t>(scanner.count / hal::DistanceScanner::kHeads);
   for (std::size_t head = 0; heads_ != nullptr && head < heads_->heads.size() && scanner.samples == 1; ++head) {

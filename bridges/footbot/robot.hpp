@@ -2,9 +2,8 @@
 #pragma once
 #include <vector>
 
-#include "bridges/bridged_robot.hpp"
+#include "bridges/aseba/node_driver.hpp"
 #include "bridges/footbot/map.hpp"
-#include "bridges/reckoning.hpp"
 #include "hal/device/distance_scanner.hpp"
 #include "hal/robot/footbot.hpp"
 
@@ -14,19 +13,14 @@ namespace tandem::bridges::footbot {
 const std::vector<const hal::PortType*>& port_types();
 
 /// Ports of one foot-bot: those that the map feeds, the clock, and the odometry where the wheels' encoders are fed.
-class FootbotRobot final : public BridgedRobot {
+class FootbotRobot final : public aseba::NodeRobot {
  public:
   FootbotRobot(RobotSettings settings, const FootbotMap& map);
 
-  /// Whether somebody reads or writes the port, be it only the odometry. `type` is one of `port_types()`.
-  bool uses(const hal::PortType& type) const noexcept;
-
-  /// What follows from the readings that were just filled: clock, odometry, where the scanner's heads look, whether
-  /// the gripper holds.
+  /// Clock and odometry, where the scanner's heads look, whether the gripper holds.
   void complete(hal::Tick tick) noexcept;
 
  private:
-  Reckoning reckoning_;
   const hal::ScannerPart* heads_;  // null: it has no scanner
   bool tells_holding_ = false;     // the map does
 };

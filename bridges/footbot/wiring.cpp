@@ -43,7 +43,7 @@ std::size_t element(const FieldMap& map, std::size_t i) noexcept {
 }  // namespace
 
 Wiring::Wiring(const FootbotMap& map, aseba::Network& network, FootbotRobot& robot, bool observe)
-    : map_(map), network_(network), robot_(robot), observe_(observe) {
+    : NodeWiring(network, observe), map_(map), robot_(robot) {
   for (const NodeMap& node : map_.nodes) {
     NodeRow row;
     row.map = &node;
@@ -91,32 +91,13 @@ void Wiring::note_demand() noexcept {
   }
 }
 
-bool Wiring::needed(const NodeRow& row) noexcept {
-  return row.map->need == Need::Always || (row.map->need == Need::Used && row.used);
-}
-
-bool Wiring::ready(const NodeRow& row) noexcept {
-  return row.node != nullptr && row.node->ready() && row.node->generation == row.generation;
-}
-
-bool Wiring::complete(const NodeRow& row) const noexcept {
-  return ready(row) && row.trouble.empty() && !awaits_dead_man(row);
-}
-
 /// A node that was just found drives once its program runs, or has turned out not to.
 bool Wiring::awaits_dead_man(const NodeRow& row) const noexcept {
   return row.has_dead_man && !observe_ && !row.dead_man.running() && row.dead_man.loads() < kMostLoads;
 }
 
 bool Wiring::look() noexcept {
-  std::uint64_t print = 1;
-  for (const std::uint8_t id : network_.known()) {
-    const aseba::Node& node = network_.node(id);
-    print = print * 1099511628211ULL + (node.generation * 2 + (node.ready() ? 1 : 0)) * 256 + id;
-  }
-  if (print == seen_) return false;
-  seen_ = print;
-  ++rest_version_;
+  if (!others_are_there()) return false;
   for (NodeRow& row : rows_) {
     if (ready(row)) continue;
     const aseba::Node* node = network_.find(row.map->names);
@@ -256,20 +237,10 @@ std::string Wiring::needed_trouble() const {
 std::vector<NodeStatus> Wiring::nodes() const {
   std::vector<NodeStatus> all;
   for (const NodeRow& row : rows_) {
-    NodeStatus status;
-    status.name = row.map->names.front();
-    status.needed = needed(row);
-    status.times_wired = row.times_wired;
-    status.trouble = trouble_of(row);
-    if (status.trouble.empty() && !row.dead_man_trouble.empty())
-      status.trouble = "does not stop by itself when it hears nothing: " + row.dead_man_trouble;
-    if (row.node != nullptr) {
-      status.name = row.node->description.name;
-      status.id = row.node->id;
-      status.state = row.node->state;
-      status.statistics = row.node->statistics;
-    }
-    all.push_back(std::move(status));
+    std::string trouble = trouble_of(row);
+    if (trouble.empty() && !row.dead_man_trouble.empty())
+      trouble = "does not stop by itself when it hears nothing: " + row.dead_man_trouble;
+    all.push_back(status_of(row.node, row.map->names.front(), needed(row), std::move(trouble), row.times_wired));
   }
   return all;
 }
@@ -531,13 +502,8 @@ std::vector<RestMessage> Wiring::rest_messages() const {
       if (row.node == nullptr || !v.bound || !v.controlled) continue;
       std::vector<std::int16_t> target(v.map->words, 0);
       make_target(*v.map, false, target);
-      aseba::Payload payload;
-      payload.append(row.node->id);
-      payload.append(v.address);
-      if (!payload.append(std::span<const std::int16_t>(target))) continue;
-      all.push_back({static_cast<std::uint16_t>(aseba::Type::SetVariables),
-                     {payload.bytes().begin(), payload.bytes().end()},
-                     v.map->verify && row.map->need == Need::Always});
+      const bool confirm = v.map->verify && row.map->need == Need::Always;
+      if (auto message = rest_message(*row.node, v.address, target, confirm)) all.push_back(std::move(*message));
     }
   }
   return all;
@@ -554,12 +520,6 @@ void Wiring::command(bool drive, hal::TimeNs now) noexcept {
 }
 
 void Wiring::rest(hal::TimeNs now) noexcept {
-  network_.forget_writes();
-  rested_ns_ = now;
-  rest_again(now);
-}
-
-void Wiring::rest_again(hal::TimeNs now) noexcept {
   for (NodeRow& row : rows_) {
     row.alive = -1;
     for (VariableRow& v : row.variables) v.sent_known = false;

@@ -32,7 +32,7 @@ struct WiringStatistics {
 };
 
 /// Not thread-safe. Allocates when nodes come and go, else never.
-class Wiring {
+class Wiring : public aseba::NodeWiring {
  public:
   using Statistics = WiringStatistics;
 
@@ -56,10 +56,8 @@ class Wiring {
   void ask(hal::TimeNs now) noexcept;
   /// Has the network write what the commands say, where it has changed or is due again. Not `drive`: everything rests.
   void command(bool drive, hal::TimeNs now) noexcept;
-  /// Forgets what was to be written, and has everything rest at once.
+  /// Has everything rest at once, and asks whether it was heard.
   void rest(hal::TimeNs now) noexcept;
-  /// Says it again, and asks again whether it was heard.
-  void rest_again(hal::TimeNs now) noexcept;
   /// The resting values were read back from every node that the robot never drives without.
   bool rests() const noexcept;
 
@@ -81,8 +79,6 @@ class Wiring {
   /// Messages that have everything rest, for whoever must stop the robot when this process cannot. They are right as
   /// long as the nodes that are there now keep their descriptions.
   std::vector<RestMessage> rest_messages() const;
-  /// Grows whenever `rest_messages` may have changed.
-  std::uint64_t rest_version() const noexcept { return rest_version_; }
   const WiringStatistics& statistics() const noexcept { return statistics_; }
 
  private:
@@ -127,9 +123,15 @@ class Wiring {
     hal::TimeNs restart_told_ns = 0;  // by its memory or by its program, whichever showed it first
   };
 
-  static bool needed(const NodeRow& row) noexcept;
-  static bool ready(const NodeRow& row) noexcept;
-  bool complete(const NodeRow& row) const noexcept;
+  static bool needed(const NodeRow& row) noexcept {
+    return row.map->need == Need::Always || (row.map->need == Need::Used && row.used);
+  }
+  static bool ready(const NodeRow& row) noexcept {
+    return row.node != nullptr && row.node->ready() && row.node->generation == row.generation;
+  }
+  bool complete(const NodeRow& row) const noexcept {
+    return ready(row) && row.trouble.empty() && !awaits_dead_man(row);
+  }
   bool awaits_dead_man(const NodeRow& row) const noexcept;
   std::string trouble_of(const NodeRow& row) const;
   void bind(NodeRow& row, const aseba::Node* node);
@@ -148,14 +150,9 @@ class Wiring {
   bool forgot(const NodeRow& row, VariableRow& variable) const noexcept;
 
   const FootbotMap& map_;
-  aseba::Network& network_;
   FootbotRobot& robot_;
-  bool observe_;
   std::vector<NodeRow> rows_;
-  std::uint64_t seen_ = ~std::uint64_t{0};  // fingerprint of who is there
   hal::TimeNs served_ns_ = 0;
-  std::uint64_t rest_version_ = 0;
-  hal::TimeNs rested_ns_ = 0;
   hal::RangeAndBearing heard_;  // since the last `fill`
   aseba::Event event_;
   WiringStatistics statistics_;

@@ -65,4 +65,8 @@ using Clock = std::function<hal::TimeNs()>;
 /// CLOCK_MONOTONIC.
 hal::TimeNs monotonic_ns() noexcept;
 
+/// Waits until something can be read from `descriptor`, or shows that it has gone, at most `timeout_ns`; negative:
+/// there is nothing to wait for, and a loop of waits must not spin.
+bool wait_for_input(int descriptor, hal::TimeNs timeout_ns) noexcept;
+
 }  // namespace tandem::bridges

@@ -1,5 +1,9 @@
 // The terms on which a link is opened: who may speak through it, and beside whom.
 #pragma once
+#include <functional>
+#include <memory>
+#include <utility>
+
 #include "bridges/send_permit.hpp"
 #include "hal/result.hpp"
 
@@ -15,6 +19,20 @@ struct LinkTerms {
 /// Why a link cannot be opened at present.
 inline hal::Error not_permitted() {
   return hal::Error{"this program was frozen, and its guardian process is stopping the robot"};
+}
+
+/// Opens with `opener` only while the permit is granted; a `Permitted` guards what was opened.
+template <class Permitted, class Link>
+std::function<hal::Result<std::unique_ptr<Link>>()> permitted_by(
+    std::function<hal::Result<std::unique_ptr<Link>>()> opener, SendPermit permit) {
+  if (!permit.real()) return opener;
+  return [opener = std::move(opener), permit]() -> hal::Result<std::unique_ptr<Link>> {
+    const std::uint32_t turn = permit.turn();
+    if (!permit.granted_since(turn)) return not_permitted();
+    auto link = opener();
+    if (!link.ok()) return link;
+    return std::unique_ptr<Link>(std::make_unique<Permitted>(std::move(link).value(), permit, turn));
+  };
 }
 
 }  // namespace tandem::bridges

@@ -3,7 +3,7 @@
 #include <atomic>
 
 #include "bridges/link/link.hpp"
-#include "bridges/send_permit.hpp"
+#include "bridges/link/link_terms.hpp"
 
 namespace tandem::bridges {
 
@@ -14,12 +14,25 @@ class PermittedLink final : public ByteLink {
   PermittedLink(std::unique_ptr<ByteLink> link, SendPermit permit, std::uint32_t turn)
       : link_(std::move(link)), permit_(permit), turn_(turn) {}
 
-  std::size_t write(std::span<const std::uint8_t> bytes, hal::TimeNs budget_ns) noexcept override;
-  Received read(std::span<std::uint8_t> buffer) noexcept override;
-  bool wait(hal::TimeNs timeout_ns) noexcept override;
+  std::size_t write(std::span<const std::uint8_t> bytes, hal::TimeNs budget_ns) noexcept override {
+    if (permitted()) return link_->write(bytes, budget_ns);
+    refused_ += bytes.size();
+    return 0;
+  }
+  /// What comes is for the guardian.
+  Received read(std::span<std::uint8_t> buffer) noexcept override {
+    return permitted() ? link_->read(buffer) : Received{};
+  }
+  bool wait(hal::TimeNs timeout_ns) noexcept override {
+    return permitted() ? link_->wait(timeout_ns) : wait_for_input(-1, timeout_ns);
+  }
   int descriptor() const noexcept override { return permitted() ? link_->descriptor() : -1; }
   LinkState state() const noexcept override { return permitted() ? link_->state() : LinkState::HungUp; }
-  LinkStatistics statistics() const noexcept override;
+  LinkStatistics statistics() const noexcept override {
+    LinkStatistics statistics = link_->statistics();
+    statistics.bytes_refused += refused_;
+    return statistics;
+  }
   std::string name() const override { return link_->name(); }
 
  private:
@@ -32,6 +45,8 @@ class PermittedLink final : public ByteLink {
 };
 
 /// Opens with `opener` only while the permit is granted.
-LinkOpener permitted(LinkOpener opener, SendPermit permit);
+inline LinkOpener permitted(LinkOpener opener, SendPermit permit) {
+  return permitted_by<PermittedLink>(std::move(opener), permit);
+}
 
 }  // namespace tandem::bridges

@@ -224,14 +224,7 @@ Received SerialLink::read(std::span<std::uint8_t> buffer) noexcept {
 }
 
 bool SerialLink::wait(hal::TimeNs timeout_ns) noexcept {
-  pollfd p{descriptor_, POLLIN, 0};
-  const timespec t{static_cast<time_t>(timeout_ns / hal::kNsPerSecond),
-                   static_cast<long>(timeout_ns % hal::kNsPerSecond)};
-  if (!open_) {
-    ::nanosleep(&t, nullptr);  // nothing to wait for; a loop of waits must not spin
-    return false;
-  }
-  return ::ppoll(&p, 1, &t, nullptr) > 0;
+  return wait_for_input(open_ ? descriptor_ : -1, timeout_ns);
 }
 
 LinkState SerialLink::state() const noexcept {

@@ -183,14 +183,7 @@ Received TcpLink::read(std::span<std::uint8_t> buffer) noexcept {
 }
 
 bool TcpLink::wait(hal::TimeNs timeout_ns) noexcept {
-  const timespec t{static_cast<time_t>(timeout_ns / hal::kNsPerSecond),
-                   static_cast<long>(timeout_ns % hal::kNsPerSecond)};
-  if (!open_) {
-    ::nanosleep(&t, nullptr);  // nothing to wait for; a loop of waits must not spin
-    return false;
-  }
-  pollfd p{socket_, POLLIN, 0};
-  return ::ppoll(&p, 1, &t, nullptr) > 0;
+  return wait_for_input(open_ ? socket_ : -1, timeout_ns);
 }
 
 }  // namespace tandem::bridges

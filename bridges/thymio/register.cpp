@@ -1,10 +1,9 @@
 #include "bridges/thymio/register.hpp"
 
-#include "bridges/aseba/message_link_text.hpp"
+#include "bridges/aseba/node_bridge.hpp"
 #include "bridges/aseba/node_stopper.hpp"
-#include "bridges/bridge_type.hpp"
 #include "bridges/link/link_text.hpp"
-#include "bridges/thymio/bridge.hpp"
+#include "bridges/thymio/driver.hpp"
 #include "hal/element_options.hpp"
 
 namespace tandem::bridges::thymio {
@@ -22,35 +21,14 @@ struct Options {
   }
 };
 
-struct Parts {
-  BridgeSettings settings;
-  aseba::MessageLinkOpener opener;
-};
-
-hal::Result<Parts> parts_for(const BridgeRequest& request) {
-  auto opener = aseba::message_link_opener(request.link, {request.permit});
-  if (!opener.ok()) return opener.error();
+hal::Status add(const BridgeRequest& request, DriverSettings& driver) {
   const auto options = options_of<Options>(request);
-  Parts parts;
-  parts.opener = std::move(opener).value();
-  parts.settings.link = request.link;
-  parts.settings.driver.calibration = {
+  driver.calibration = {
       .node = static_cast<std::uint8_t>(options.node), .full_m_s = options.full_speed_m_s, .white = options.white};
-  apply(request, parts.settings);
-  return parts;
+  return {};
 }
 
-hal::Status check(const BridgeRequest& request) {
-  const auto parts = parts_for(request);
-  return parts.ok() ? hal::Status{} : hal::Status{parts.error()};
-}
-
-MadeBridge make(const BridgeRequest& request, const hal::Log& log) {
-  auto parts = parts_for(request);
-  if (!parts.ok()) return parts.error();
-  return std::unique_ptr<RobotBridge>(
-      std::make_unique<ThymioBridge>(std::move(parts->settings), std::move(parts->opener), log));
-}
+using Maker = aseba::NodeBridgeMaker<ThymioParts>;
 
 /// Several may share a switch, under numbers of their own.
 std::string reached_by(const BridgeRequest& request) {
@@ -59,8 +37,8 @@ std::string reached_by(const BridgeRequest& request) {
 
 const BridgeType kType{.name = hal::thymio::kName,
                        .summary = "tcp:HOST:PORT (asebaswitch), serial:DEVICE@115200",
-                       .make = &make,
-                       .check = &check,
+                       .make = &Maker::make<add>,
+                       .check = &check_by<Maker::prepare<add>>,
                        .reached_by = &reached_by};
 
 constexpr guardian::StopperType kStopper{hal::thymio::kName, &aseba::make_node_stopper};

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <utility>
 
 #include "bridges/thymio/units.hpp"
 #include "hal/device/body_sensors.hpp"
@@ -27,6 +26,13 @@ constexpr TimeNs kLongestRoll = 500 * hal::kNsPerMs;  // between two speeds that
 
 }  // namespace
 
+const std::vector<const hal::PortType*>& port_types() {
+  static const auto all =
+      port_types_of<hal::WheelEncoders, hal::Odometry, hal::Proximity, hal::Ground, hal::Accelerometer,
+                    hal::Microphones, hal::Buttons, hal::Clock, hal::WheelSpeeds, hal::RingLeds, hal::Speaker>();
+  return all;
+}
+
 void WiringStatistics::describe(StatusVisitor& visitor) const {
   visitor.count("programs_sent", programs);
   visitor.count("stopped_without_word", lapses);
@@ -35,7 +41,7 @@ void WiringStatistics::describe(StatusVisitor& visitor) const {
 }
 
 Wiring::Wiring(const Calibration& calibration, aseba::Network& network, ThymioRobot& robot, bool observe)
-    : calibration_(calibration), network_(network), robot_(robot), observe_(observe) {
+    : NodeWiring(network, observe), calibration_(calibration), robot_(robot) {
   if (const auto* const part = robot.kind().part<hal::ProximityPart>(); part != nullptr) response_ = part->response;
   if (response_.empty()) response_ = hal::thymio::kind().part<hal::ProximityPart>()->response;
   sources_ = {{.type = &hal::port_type<hal::Proximity>(), .name = "prox.horizontal", .words = 7},
@@ -49,8 +55,6 @@ Wiring::Wiring(const Calibration& calibration, aseba::Network& network, ThymioRo
 }
 
 // --- who is there ---
-
-void Wiring::note_demand() noexcept {}
 
 bool Wiring::ready() const noexcept {
   return node_ != nullptr && node_->ready() && node_->generation == generation_ && trouble_.empty();
@@ -77,14 +81,7 @@ const Node* Wiring::find_node(std::string& trouble) const {
 }
 
 bool Wiring::look() noexcept {
-  std::uint64_t print = 1;
-  for (const std::uint8_t id : network_.known()) {
-    const Node& node = network_.node(id);
-    print = print * 1099511628211ULL + (node.generation * 2 + (node.ready() ? 1 : 0)) * 256 + id;
-  }
-  if (print == seen_) return false;
-  seen_ = print;
-  ++rest_version_;
+  if (!others_are_there()) return false;
   if (ready()) return true;
   std::string trouble;
   const Node* const node = find_node(trouble);
@@ -141,26 +138,8 @@ std::string Wiring::needed_trouble() const {
   return trouble.empty() && !running() ? "its program does not run yet" : trouble;
 }
 
-bool Wiring::complete() const noexcept {
-  return running();
-}
-
-bool Wiring::lost_needed() const noexcept {
-  return node_ != nullptr && node_->state == aseba::NodeState::Lost;
-}
-
 std::vector<aseba::NodeStatus> Wiring::nodes() const {
-  aseba::NodeStatus status;
-  status.name = kNodeName;
-  status.needed = true;
-  status.trouble = needed_trouble();
-  status.times_wired = times_wired_;
-  if (node_ != nullptr) {
-    status.id = node_->id;
-    status.state = node_->state;
-    status.statistics = node_->statistics;
-  }
-  return {status};
+  return {status_of(node_, kNodeName, true, needed_trouble(), times_wired_)};
 }
 
 void Wiring::identify(RobotIdentity& identity) const {
@@ -235,10 +214,6 @@ void Wiring::note_loads(std::uint64_t before) noexcept {
   if (resident_.loads() == before) return;
   ++statistics_.programs;
   ++rest_version_;
-}
-
-std::string Wiring::look_for_restarts() noexcept {
-  return std::exchange(restarted_, {});
 }
 
 // --- readings ---
@@ -390,10 +365,6 @@ TimeNs Wiring::oldest_ns() const noexcept {
 
 // --- commands ---
 
-bool Wiring::write_mail(std::uint16_t word, std::span<const std::int16_t> values) noexcept {
-  return network_.write(node_->id, program_.mailbox + std::size_t{word}, values);
-}
-
 /// The motors rest, whatever program runs.
 bool Wiring::write_targets() noexcept {
   constexpr std::array<std::int16_t, 1> kRest = {0};
@@ -463,12 +434,6 @@ void Wiring::write_block(Block<n>& block, const std::array<std::int16_t, n>& wor
 }
 
 void Wiring::rest(TimeNs now) noexcept {
-  network_.forget_writes();
-  rested_ns_ = now;
-  rest_again(now);
-}
-
-void Wiring::rest_again(TimeNs now) noexcept {
   drives_ = false;
   if (observe_ || !ready()) return;
   told_.drive_ns = leds_.told_ns = tone_.told_ns = 0;
@@ -497,13 +462,8 @@ std::vector<aseba::RestMessage> Wiring::rest_messages() const {
   std::vector<aseba::RestMessage> all;
   if (node_ == nullptr || !trouble_.empty() || program_.words.empty()) return all;
   const auto set = [&](std::size_t address, std::size_t count) {
-    aseba::Payload payload;
-    payload.append(node_->id);
-    payload.append(static_cast<std::uint16_t>(address));
-    for (std::size_t i = 0; i < count; ++i) payload.append(std::uint16_t{0});
-    all.push_back({static_cast<std::uint16_t>(aseba::Type::SetVariables),
-                   {payload.bytes().begin(), payload.bytes().end()},
-                   true});
+    constexpr std::array<std::int16_t, 3> kRest{};
+    all.push_back(*rest_message(*node_, address, std::span(kRest).first(count), true));
   };
   if (resident_.running() || resident_.ran()) set(program_.mailbox + std::size_t{mailbox::kAlive}, 3);
   set(program_.motors.left_target, 1);

@@ -10,16 +10,27 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "bridges/aseba/node_driver.hpp"
 #include "bridges/aseba/resident_program.hpp"
 #include "bridges/thymio/program.hpp"
-#include "bridges/thymio/robot.hpp"
 #include "hal/device/buttons.hpp"
 #include "hal/device/ring_sensors.hpp"
+#include "hal/robot/thymio.hpp"
 
 namespace tandem::bridges::thymio {
+
+/// Every port class that a Thymio has: sensors first.
+const std::vector<const hal::PortType*>& port_types();
+
+/// Ports of one Thymio. Its motors tell speeds, not ways: what its wheels have rolled is added up from them.
+class ThymioRobot final : public aseba::NodeRobot {
+ public:
+  explicit ThymioRobot(RobotSettings settings)
+      : NodeRobot("Thymio", hal::thymio::kind(), std::move(settings), port_types()) {}
+};
 
 /// Options of one Thymio.
 struct Calibration {
@@ -40,16 +51,16 @@ struct WiringStatistics {
 
 /// Not thread-safe. Allocates when nodes come and go, else never. Functions without a comment are as in
 /// bridges/footbot/wiring.hpp.
-class Wiring {
+class Wiring : public aseba::NodeWiring {
  public:
   using Statistics = WiringStatistics;
 
   /// Both must outlive this. `observe`: nothing is ever written, and no program loaded.
   Wiring(const Calibration& calibration, aseba::Network& network, ThymioRobot& robot, bool observe = false);
 
-  void note_demand() noexcept;
+  void note_demand() noexcept {}
   bool look() noexcept;
-  std::string look_for_restarts() noexcept;
+  std::string look_for_restarts() noexcept { return std::exchange(restarted_, {}); }
   /// Looks after the program.
   bool serve(hal::TimeNs now) noexcept;
 
@@ -57,11 +68,10 @@ class Wiring {
   void ask(hal::TimeNs now) noexcept;
   void command(bool drive, hal::TimeNs now) noexcept;
   void rest(hal::TimeNs now) noexcept;
-  void rest_again(hal::TimeNs now) noexcept;
   bool rests() const noexcept;
 
-  bool complete() const noexcept;
-  bool lost_needed() const noexcept;
+  bool complete() const noexcept { return running(); }
+  bool lost_needed() const noexcept { return node_ != nullptr && node_->state == aseba::NodeState::Lost; }
   hal::TimeNs oldest_ns() const noexcept;
   std::string trouble() const { return needed_trouble(); }
   std::string needed_trouble() const;
@@ -70,7 +80,6 @@ class Wiring {
   /// "thymio-II 1, firmware 14".
   void identify(bridges::RobotIdentity& identity) const;
   std::vector<aseba::RestMessage> rest_messages() const;
-  std::uint64_t rest_version() const noexcept { return rest_version_; }
   const WiringStatistics& statistics() const noexcept { return statistics_; }
 
  private:
@@ -110,7 +119,9 @@ class Wiring {
   /// When words were taken that are believed; 0: never, or they are not.
   hal::TimeNs believed_ns(std::size_t address, std::size_t count = 1) const noexcept;
   void hold(hal::TimeNs until) noexcept;
-  bool write_mail(std::uint16_t word, std::span<const std::int16_t> values) noexcept;
+  bool write_mail(std::uint16_t word, std::span<const std::int16_t> values) noexcept {
+    return network_.write(node_->id, program_.mailbox + std::size_t{word}, values);
+  }
   bool write_targets() noexcept;
   void write_drive(bool drive, hal::TimeNs now) noexcept;
   void write_leds(bool drive, hal::TimeNs now) noexcept;
@@ -128,15 +139,12 @@ class Wiring {
   void note_firmware() noexcept;
 
   Calibration calibration_;
-  aseba::Network& network_;
   ThymioRobot& robot_;
-  bool observe_;
   std::vector<hal::InfraredResponse> response_;
   std::vector<Source> sources_;
 
   const aseba::Node* node_ = nullptr;  // null: not there
   std::uint64_t generation_ = 0;
-  std::uint64_t seen_ = ~std::uint64_t{0};  // fingerprint of who is there
   std::uint64_t times_wired_ = 0;
   std::string trouble_;  // of the node as it describes itself
   Program program_;
@@ -151,8 +159,6 @@ class Wiring {
   Block<2> tone_{mailbox::kTone, mailbox::kPlayed};
   std::array<std::int16_t, hal::Buttons::kCapacity> gathered_{};
   bool drives_ = false;
-  hal::TimeNs rested_ns_ = 0;
-  std::uint64_t rest_version_ = 0;
   bool firmware_told_ = false;
 
   hal::TimeNs wheels_ns_ = 0;  // of the speeds that were last added up

@@ -1,13 +1,13 @@
 #include "bridges/wired/wired_epuck.hpp"
 
 #include <algorithm>
-#include <array>
 #include <deque>
+#include <vector>
 
 #include "bridges/epuck/driver.hpp"
 #include "bridges/epuck_emulator/body.hpp"
 #include "bridges/epuck_emulator/firmware.hpp"
-#include "bridges/link/memory_link.hpp"
+#include "bridges/link/link.hpp"
 #include "bridges/wired/wired_line.hpp"
 
 namespace tandem::bridges::wired {
@@ -16,16 +16,35 @@ namespace {
 constexpr hal::TimeNs kHandshake_ns = 4 * hal::kNsPerSecond;
 constexpr hal::TimeNs kStep_ns = hal::kNsPerMs / 2;
 
+/// The host's end of the line.
+class HostEnd final : public ByteLink {
+ public:
+  std::size_t write(std::span<const std::uint8_t> bytes, hal::TimeNs) noexcept override {
+    written.emplace_back(bytes.begin(), bytes.end());
+    return bytes.size();
+  }
+  Received read(std::span<std::uint8_t> buffer) noexcept override {
+    if (arrived.empty()) return {};
+    const epuck_emulator::SentByte first = arrived.front();
+    arrived.pop_front();
+    buffer[0] = first.byte;
+    return {1, first.at};
+  }
+  bool wait(hal::TimeNs) noexcept override { return !arrived.empty(); }
+  LinkState state() const noexcept override { return LinkState::Open; }
+  LinkStatistics statistics() const noexcept override { return {}; }
+  std::string name() const override { return "memory"; }
+
+  std::deque<std::vector<std::uint8_t>> written;  // by the host, and not yet on the line
+  std::deque<epuck_emulator::SentByte> arrived;
+};
+
 class WiredEpuck final : public WiredLine<epuck::EpuckDriver, epuck::SessionState::Active> {
  public:
   WiredEpuck(const WiredRequest& request, epuck_emulator::Variant variant)
       : WiredLine(request, kHandshake_ns, kStep_ns),
         firmware_(options_of(variant), body_, {}),
-        driver_(settings_of(request), request.log) {
-    auto [host, wire] = MemoryLink::make_pair([this] { return now_ns(); });
-    host_ = std::move(host);
-    wire_ = std::move(wire);
-  }
+        driver_(settings_of(request), request.log) {}
 
   SharedPorts& body() noexcept override { return ports_; }
   std::string trouble() const override { return driver_.session().trouble(); }
@@ -46,12 +65,13 @@ class WiredEpuck final : public WiredLine<epuck::EpuckDriver, epuck::SessionStat
   void power_on() override { firmware_.power_on(0); }
   /// Every byte takes its time.
   void turn(hal::TimeNs now) override {
-    driver_.pump(*host_, now);
-    std::array<std::uint8_t, 256> buffer;
-    const Received received = wire_->read(buffer);
-    for (std::size_t i = 0; i < received.size; ++i) {
-      line_free_ns_ = std::max(line_free_ns_, now) + epuck_emulator::kByteNs;
-      pending_.push_back({buffer[i], line_free_ns_});
+    driver_.pump(host_, now);
+    if (!host_.written.empty()) {
+      for (const std::uint8_t byte : host_.written.front()) {
+        line_free_ns_ = std::max(line_free_ns_, now) + epuck_emulator::kByteNs;
+        pending_.push_back({byte, line_free_ns_});
+      }
+      host_.written.pop_front();
     }
     while (!pending_.empty() && pending_.front().at <= now) {
       firmware_.receive(pending_.front().byte, pending_.front().at);
@@ -60,7 +80,7 @@ class WiredEpuck final : public WiredLine<epuck::EpuckDriver, epuck::SessionStat
     firmware_.run_until(now);
     sent_.clear();
     firmware_.take_sent(now, sent_);
-    for (const epuck_emulator::SentByte& b : sent_) (void)wire_->write(std::span(&b.byte, 1), 0);
+    for (const epuck_emulator::SentByte& b : sent_) host_.arrived.push_back({b.byte, now});
   }
 
   hal::TimeNs line_free_ns_ = 0;
@@ -68,7 +88,7 @@ class WiredEpuck final : public WiredLine<epuck::EpuckDriver, epuck::SessionStat
   epuck_emulator::PortBody body_{ports_};
   epuck_emulator::Firmware firmware_;
   epuck::EpuckDriver driver_;
-  std::unique_ptr<MemoryLink> host_, wire_;
+  HostEnd host_;
   std::deque<epuck_emulator::SentByte> pending_;
   std::vector<epuck_emulator::SentByte> sent_;
 };

@@ -1,7 +1,9 @@
 #include "bridges/wired/wired_footbot.hpp"
 
+#include <deque>
+#include <utility>
+
 #include "bridges/aseba/can_messages.hpp"
-#include "bridges/can/memory_bus.hpp"
 #include "bridges/footbot/driver.hpp"
 #include "bridges/footbot/map_file.hpp"
 #include "bridges/footbot_emulator/body.hpp"
@@ -14,6 +16,33 @@ namespace {
 
 constexpr hal::TimeNs kHandshake_ns = 5 * hal::kNsPerSecond;
 constexpr hal::TimeNs kStep_ns = hal::kNsPerMs / 4;
+
+/// Frames on their way.
+struct Bus {
+  std::deque<CanFrame> to_robot, to_host;
+};
+
+class HostEnd final : public CanLink {
+ public:
+  explicit HostEnd(Bus& bus) : bus_(bus) {}
+  Sent send(const CanFrame& frame) noexcept override {
+    bus_.to_robot.push_back(frame);
+    return Sent::Taken;
+  }
+  bool receive(CanFrame& frame) noexcept override {
+    if (bus_.to_host.empty()) return false;
+    frame = bus_.to_host.front();
+    bus_.to_host.pop_front();
+    return true;
+  }
+  bool wait(hal::TimeNs) noexcept override { return !bus_.to_host.empty(); }
+  BusState state() const noexcept override { return BusState::Active; }
+  CanStatistics statistics() const noexcept override { return {}; }
+  std::string name() const override { return "memory bus"; }
+
+ private:
+  Bus& bus_;
+};
 
 class WiredFootbot final : public WiredLine<footbot::FootbotDriver, footbot::RobotState::Active> {
  public:
@@ -37,21 +66,20 @@ class WiredFootbot final : public WiredLine<footbot::FootbotDriver, footbot::Rob
   void power_on() override { modules_.power_on(0); }
   void turn(hal::TimeNs now) override {
     driver_.pump(now);
-    CanFrame in;
-    while (robots_end_->receive(in)) modules_.receive({static_cast<std::uint16_t>(in.id), in.size, in.data}, now);
+    for (const CanFrame& f : std::exchange(bus_.to_robot, {}))
+      modules_.receive({static_cast<std::uint16_t>(f.id), f.size, f.data}, now);
     modules_.run_until(now);
     sent_.clear();
     modules_.take_sent(sent_);
-    for (const footbot_emulator::TimedFrame& f : sent_)
-      (void)robots_end_->send(make_frame(f.frame.id, std::span(f.frame.data).first(f.frame.size)));
+    for (const auto& [frame, at] : sent_)
+      bus_.to_host.push_back({.id = frame.id, .size = frame.size, .data = frame.data, .at_ns = now});
   }
 
-  MemoryBus bus_{[this] { return now_ns(); }};
-  std::unique_ptr<CanLink> robots_end_ = bus_.attach();
   SharedPorts ports_{footbot_emulator::body_ports()};
   footbot_emulator::PortBody body_{ports_};
   footbot_emulator::Footbot modules_;
-  aseba::CanMessages messages_{bus_.attach(), {}, [this] { return now_ns(); }};
+  Bus bus_;
+  aseba::CanMessages messages_{std::make_unique<HostEnd>(bus_), {}, [this] { return now_ns(); }};
   footbot::FootbotDriver driver_;
   std::vector<footbot_emulator::TimedFrame> sent_;
 };
@@ -62,12 +90,9 @@ MadeWiredRobot make_wired_footbot(const WiredRequest& request) {
   if (const hal::Status good = WiredTime::check(request.tick_ns); !good.ok()) return good.error();
   if (request.what.empty())
     return hal::Error{"the link names no map of the foot-bot's variables; write emulated:footbot_map.xml"};
-  hal::Problems problems;
-  auto map = footbot::read_footbot_map(hal::path_beside(request.what, request.file), problems);
-  if (map) return std::unique_ptr<WiredRobot>(std::make_unique<WiredFootbot>(request, std::move(*map)));
-  std::string message = "the map of the foot-bot '" + request.robot + "' cannot be used";
-  for (const hal::Problem& p : problems) message += "\n" + to_text(p);
-  return hal::Error{message};
+  auto map = footbot::footbot_map_for(request.robot, hal::path_beside(request.what, request.file));
+  if (!map.ok()) return map.error();
+  return std::unique_ptr<WiredRobot>(std::make_unique<WiredFootbot>(request, std::move(map).value()));
 }
 
 }  // namespace tandem::bridges::wired

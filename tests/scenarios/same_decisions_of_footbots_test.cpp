@@ -6,7 +6,6 @@
 #include "app/robots/bridged_controller.hpp"
 #include "app/robots/simulated_body.hpp"
 #include "bridges/aseba/can_messages.hpp"
-#include "bridges/can/memory_bus.hpp"
 #include "bridges/footbot/driver.hpp"
 #include "bridges/footbot/map_file.hpp"
 #include "bridges/footbot_emulator/body.hpp"
@@ -14,6 +13,7 @@
 #include "hal/device/ring_sensors.hpp"
 #include "hal/device/wheels.hpp"
 #include "hal/robot/footbot.hpp"
+#include "tests/bridges/can/memory_bus.hpp"
 #include "tests/checkout.hpp"
 #include "tests/core/scenes.hpp"
 

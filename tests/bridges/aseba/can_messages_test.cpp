@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 #include <vector>
 
-#include "bridges/can/memory_bus.hpp"
+#include "tests/bridges/can/memory_bus.hpp"
 
 namespace tandem::bridges::aseba {
 namespace {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "bridges/aseba/stream_messages.hpp"
-#include "bridges/link/memory_link.hpp"
+#include "tests/bridges/link/memory_link.hpp"
 
 namespace tandem::bridges::aseba {
 namespace {

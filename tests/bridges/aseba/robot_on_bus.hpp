@@ -6,9 +6,9 @@
 
 #include "bridges/aseba/can_messages.hpp"
 #include "bridges/aseba/network.hpp"
-#include "bridges/can/memory_bus.hpp"
 #include "tests/bridges/aseba/fake_node.hpp"
 #include "tests/bridges/can/faulty_can_link.hpp"
+#include "tests/bridges/can/memory_bus.hpp"
 
 namespace tandem::bridges::aseba {
 

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "bridges/can/memory_bus.hpp"
+#include "tests/bridges/can/memory_bus.hpp"
 
 namespace tandem::bridges {
 namespace {

@@ -10,8 +10,8 @@
 #include <unistd.h>
 
 #include "bridges/can/can_link_opener.hpp"
-#include "bridges/link/memory_link.hpp"
 #include "bridges/link/serial_link.hpp"
+#include "tests/bridges/link/memory_link.hpp"
 
 namespace tandem::bridges {
 namespace {

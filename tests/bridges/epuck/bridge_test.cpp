@@ -4,7 +4,6 @@
 #include <gmock/gmock.h>
 
 #include "bridges/epuck/conversions.hpp"
-#include "bridges/link/memory_link.hpp"
 #include "hal/device/body_sensors.hpp"
 #include "hal/device/leds.hpp"
 #include "hal/device/range_and_bearing.hpp"
@@ -12,6 +11,7 @@
 #include "hal/device/wheels.hpp"
 #include "hal/robot/epuck.hpp"
 #include "tests/bridges/epuck/scripted_robot.hpp"
+#include "tests/bridges/link/memory_link.hpp"
 
 namespace tandem::bridges::epuck {
 namespace {

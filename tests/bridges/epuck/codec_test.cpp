@@ -65,8 +65,7 @@ TEST(EpuckCodec, GivesEveryCommandItsByte) {
   Packet packet;
   append_led(packet, kBodyLedIndex, LedAction::On);
   append_led(packet, 3, LedAction::Toggle);
-  append_preset_encoders(packet, 1, -2);
-  EXPECT_EQ(bytes_of(packet), (Bytes{0xB4, 8, 1, 0xB4, 3, 2, 0xB0, 1, 0, 0xFE, 0xFF}));
+  EXPECT_EQ(bytes_of(packet), (Bytes{0xB4, 8, 1, 0xB4, 3, 2}));
 }
 
 TEST(EpuckCodec, CountsTheBytesThatEachFirmwareAnswers) {
@@ -115,27 +114,14 @@ TEST(EpuckCodec, NeverFillsAPacketBeyondTheRobotsBuffer) {
   while (append_speeds(packet, {1}, {2})) {
   }
   EXPECT_EQ(packet.size(), 60U);
-  EXPECT_FALSE(append_all_actuators(packet, {}));
+  EXPECT_FALSE(append_wifi_command(packet, {}));
   EXPECT_EQ(packet.size(), 60U);
-}
-
-TEST(EpuckCodec, EncodesTheCombinedCycleOfTheEpuck2) {
-  Packet packet;
-  append_all_actuators(packet, {.left = 500, .right = -500, .leds = 1});
-  append_all_sensors_query(packet);
-  append_end(packet);
-  EXPECT_EQ(bytes_of(packet),
-            (Bytes{0xF7, 0x00, 0xF4, 0x01, 0x0C, 0xFE, 0x01, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0xF8, 0}));
 }
 
 TEST(EpuckCodec, EncodesTheEpuck2sColours) {
   Packet packet;
   append_rgb_leds(packet, {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 100, 101});
   EXPECT_EQ(bytes_of(packet), (Bytes{0xF6, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 100, 100}));
-  Packet flags;
-  append_all_actuators(flags, {.calibrate = true, .avoid_obstacles = true, .steps_not_speeds = true, .sound = 0x20});
-  EXPECT_EQ(flags.bytes()[1], 7);
-  EXPECT_EQ(flags.bytes()[19], 0x20);
 }
 
 TEST(EpuckCodec, DecodesAllSensorsOfTheEpuck2) {

@@ -6,7 +6,6 @@
 #include <limits>
 
 #include "bridges/epuck/conversions.hpp"
-#include "bridges/link/memory_link.hpp"
 #include "hal/device/body_sensors.hpp"
 #include "hal/device/leds.hpp"
 #include "hal/device/range_and_bearing.hpp"
@@ -15,6 +14,7 @@
 #include "hal/robot/epuck.hpp"
 #include "tests/bridges/epuck/scripted_robot.hpp"
 #include "tests/bridges/link/faulty_link.hpp"
+#include "tests/bridges/link/memory_link.hpp"
 
 namespace tandem::bridges::epuck {
 namespace {

@@ -5,8 +5,8 @@
 #include <mutex>
 #include <thread>
 
-#include "bridges/link/memory_link.hpp"
 #include "tests/bridges/epuck/scripted_robot.hpp"
+#include "tests/bridges/link/memory_link.hpp"
 
 namespace tandem::bridges::epuck {
 namespace {

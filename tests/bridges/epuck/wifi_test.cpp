@@ -5,8 +5,8 @@
 #include "bridges/epuck/stopper.hpp"
 #include "bridges/epuck/wifi_session.hpp"
 #include "bridges/epuck_emulator/radio.hpp"
-#include "bridges/link/memory_link.hpp"
 #include "hal/robot/epuck2.hpp"
+#include "tests/bridges/link/memory_link.hpp"
 
 namespace tandem::bridges::epuck {
 namespace {

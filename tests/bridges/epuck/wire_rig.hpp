@@ -10,8 +10,8 @@
 
 #include "bridges/epuck/driver.hpp"
 #include "bridges/epuck_emulator/firmware.hpp"
-#include "bridges/link/memory_link.hpp"
 #include "hal/robot/epuck.hpp"
+#include "tests/bridges/link/memory_link.hpp"
 
 namespace tandem::bridges::epuck {
 

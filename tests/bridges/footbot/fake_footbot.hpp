@@ -4,11 +4,11 @@
 #include <gtest/gtest.h>
 
 #include "bridges/aseba/can_messages.hpp"
-#include "bridges/can/memory_bus.hpp"
 #include "bridges/footbot/driver.hpp"
 #include "bridges/footbot/map_file.hpp"
 #include "tests/bridges/aseba/fake_node.hpp"
 #include "tests/bridges/can/faulty_can_link.hpp"
+#include "tests/bridges/can/memory_bus.hpp"
 #include "tests/checkout.hpp"
 
 namespace tandem::bridges::footbot {

@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 #include <vector>
 
-#include "bridges/link/memory_link.hpp"
+#include "tests/bridges/link/memory_link.hpp"
 
 namespace tandem::bridges {
 namespace {

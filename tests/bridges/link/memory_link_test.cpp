@@ -1,4 +1,4 @@
-#include "bridges/link/memory_link.hpp"
+#include "tests/bridges/link/memory_link.hpp"
 
 #include <array>
 #include <gtest/gtest.h>
@@ -72,7 +72,7 @@ TEST(MemoryLink, WakesAReaderThatWaitsOnAnotherThread) {
 }
 
 TEST(PendingLink, GivesTheOpenersResultOnce) {
-  PendingLink pending([]() -> hal::Result<std::unique_ptr<ByteLink>> { return hal::Error{"no such robot"}; });
+  Pending<ByteLink> pending([]() -> hal::Result<std::unique_ptr<ByteLink>> { return hal::Error{"no such robot"}; });
   auto result = pending.take();
   while (!result) {
     std::this_thread::yield();
@@ -86,7 +86,7 @@ TEST(PendingLink, ClosesALinkThatNobodyWaitsForAnyMore) {
   auto [near, far] = MemoryLink::make_pair();
   auto given = std::make_shared<std::unique_ptr<ByteLink>>(std::move(near));
   {
-    PendingLink pending([given]() -> hal::Result<std::unique_ptr<ByteLink>> { return std::move(*given); });
+    Pending<ByteLink> pending([given]() -> hal::Result<std::unique_ptr<ByteLink>> { return std::move(*given); });
   }
   while (far->state() == LinkState::Open) std::this_thread::yield();
   EXPECT_EQ(far->state(), LinkState::HungUp);

@@ -3,7 +3,7 @@
 #include <array>
 #include <gtest/gtest.h>
 
-#include "bridges/link/memory_link.hpp"
+#include "tests/bridges/link/memory_link.hpp"
 
 namespace tandem::bridges {
 namespace {

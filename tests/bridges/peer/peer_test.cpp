@@ -3,12 +3,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "bridges/link/memory_link.hpp"
 #include "bridges/peer/peer_side.hpp"
 #include "hal/device/range_and_bearing.hpp"
 #include "hal/device/ring_sensors.hpp"
 #include "hal/device/wheels.hpp"
 #include "hal/robot/epuck.hpp"
+#include "tests/bridges/link/memory_link.hpp"
 
 namespace tandem::bridges::peer {
 namespace {

@@ -4,12 +4,12 @@
 
 #include "bridges/aseba/can_messages.hpp"
 #include "bridges/aseba/node_stopper.hpp"
-#include "bridges/can/memory_bus.hpp"
 #include "bridges/footbot/driver.hpp"
 #include "bridges/footbot/map_file.hpp"
 #include "bridges/footbot_emulator/faults.hpp"
 #include "bridges/footbot_emulator/footbot.hpp"
 #include "hal/device/wheels.hpp"
+#include "tests/bridges/can/memory_bus.hpp"
 #include "tests/checkout.hpp"
 #include "tests/scenarios/faults/run_story.hpp"
 

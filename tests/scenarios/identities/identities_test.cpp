@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include "bridges/aseba/can_messages.hpp"
-#include "bridges/can/memory_bus.hpp"
 #include "bridges/epuck/driver.hpp"
 #include "bridges/eyebot/driver.hpp"
 #include "bridges/eyebot_emulator/eyebot.hpp"
@@ -15,6 +14,7 @@
 #include "bridges/footbot_emulator/footbot.hpp"
 #include "bridges/thymio/driver.hpp"
 #include "hal/device/flight.hpp"
+#include "tests/bridges/can/memory_bus.hpp"
 #include "tests/bridges/thymio/thymio_line.hpp"
 #include "tests/checkout.hpp"
 #include "tests/scenarios/faults/byte_line.hpp"

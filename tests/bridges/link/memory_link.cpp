@@ -1,4 +1,4 @@
-#include "bridges/link/memory_link.hpp"
+#include "tests/bridges/link/memory_link.hpp"
 
 #include <algorithm>
 #include <array>

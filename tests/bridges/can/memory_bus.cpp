@@ -1,4 +1,4 @@
-#include "bridges/can/memory_bus.hpp"
+#include "tests/bridges/can/memory_bus.hpp"
 
 #include <algorithm>
 #include <chrono>

@@ -1,4 +1,4 @@
-// Two links joined in memory: what one end writes the other reads. For tests and lock-step runs.
+// Two links joined in memory: what one end writes the other reads.
 #pragma once
 #include <memory>
 #include <utility>

@@ -1,4 +1,4 @@
-// A CAN bus in memory: what one end sends all others receive. For tests and lock-step runs.
+// A CAN bus in memory: what one end sends all others receive.
 #pragma once
 #include <memory>
 #include <utility>
