@@ -31,6 +31,50 @@ std::unique_ptr<Conversation> make_conversation(WireForm wire, const SessionTimi
   return std::make_unique<Session>(timing);
 }
 
+void Conversation::stop(TimeNs now) noexcept {
+  wanted_.left = wanted_.right = {};
+  if (is_down() || stop_asked_) return;
+  ++statistics_.stops;
+  if (at_rest_) {
+    ++statistics_.stops_confirmed;
+    return;
+  }
+  stop_asked_ = true;
+  say_stop(now);
+}
+
+void Conversation::shut_down(TimeNs now) noexcept {
+  ending_ = true;
+  wanted_.left = wanted_.right = {};
+  if (is_down()) return;
+  if (!stop_asked_) ++statistics_.stops;
+  stop_asked_ = true;
+  say_stop(now);
+}
+
+void Conversation::note_rest() noexcept {
+  at_rest_ = true;
+  if (stop_asked_) ++statistics_.stops_confirmed;
+  stop_asked_ = false;
+}
+
+void Conversation::note_handshake() noexcept {
+  if (state_ == SessionState::Suspect || state_ == SessionState::Lost) ++statistics_.resynchronised;
+  state_ = SessionState::Ready;
+  handshaking_ = false;
+  ++epoch_;
+  counters_doubtful_ = true;
+}
+
+bool Conversation::lose_link(const char* why) noexcept {
+  if (is_down()) return false;
+  state_ = SessionState::Lost;
+  trouble_ = why;
+  ++statistics_.links_lost;
+  output_.clear();
+  return true;
+}
+
 void Conversation::take_samples(QuantitySet asked, const RawSensors& raw, const Measured& when) noexcept {
   const bool stands =
       asked.has(Quantity::Encoders) && counters_known_ && at_rest_ && raw.encoders == samples_.raw.encoders;

@@ -111,7 +111,7 @@ struct SessionStatistics {
 /// thread-safe.
 class Conversation {
  public:
-  Conversation() = default;
+  explicit Conversation(const SessionTiming& timing) noexcept : timing_(timing) {}
   virtual ~Conversation() = default;
 
   virtual void link_up(hal::TimeNs now) noexcept = 0;
@@ -126,22 +126,25 @@ class Conversation {
   virtual void stalled(hal::TimeNs duration) noexcept = 0;
   /// What the second of two questions may take longer than the first, from now on: the robot is stopped when its
   /// answer does not come.
-  virtual void be_patient(hal::TimeNs duration) noexcept = 0;
+  void be_patient(hal::TimeNs duration) noexcept { patience_ns_ = duration; }
 
   /// Sets `actuation`. Outside Ready and Active only the LEDs are kept.
   virtual void command(const Actuation& actuation, hal::TimeNs now) noexcept = 0;
   /// Asks for `quantities` and the wheel counters.
   virtual void ask(QuantitySet quantities, hal::TimeNs now) noexcept = 0;
   /// Both in one packet.
-  virtual void request(const Actuation& actuation, QuantitySet quantities, hal::TimeNs now) noexcept = 0;
+  void request(const Actuation& actuation, QuantitySet quantities, hal::TimeNs now) noexcept {
+    keep(actuation);
+    ask(quantities, now);
+  }
   /// How long a question for `quantities` has lately taken at most, from asking to the last byte of the answer.
   virtual hal::TimeNs expected_round_trip(QuantitySet quantities) const noexcept = 0;
 
   /// Stops the robot now, also while an answer is awaited, and goes on until it confirms; the wanted speeds become 0. A
   /// later request moves it again.
-  virtual void stop(hal::TimeNs now) noexcept = 0;
+  void stop(hal::TimeNs now) noexcept;
   /// Stops the robot for good, whatever it may be reading at the moment. Then wait for `idle()`: it has confirmed.
-  virtual void shut_down(hal::TimeNs now) noexcept = 0;
+  void shut_down(hal::TimeNs now) noexcept;
   /// Nothing is awaited or waits to be sent.
   virtual bool idle() const noexcept = 0;
   /// The link is of no more use, although it is open: close it and open it anew.
@@ -176,6 +179,34 @@ class Conversation {
   /// False: a wheel cannot have turned so far since they were last read, or they may have gone round.
   bool encoders_plausible(const std::array<std::int16_t, 2>& counters, hal::TimeNs latest) const noexcept;
 
+  /// There is no link.
+  virtual bool is_down() const noexcept = 0;
+  /// The wanted speeds are 0: begins the stop, unless it is under way.
+  virtual void say_stop(hal::TimeNs now) noexcept = 0;
+  /// Keeps what is wanted; the speeds only where they may be told.
+  void keep(const Actuation& actuation) noexcept {
+    wanted_ = actuation;
+    if (!talking() || ending_ || is_stopping()) wanted_.left = wanted_.right = {};
+  }
+  virtual bool is_stopping() const noexcept { return false; }
+  bool talking() const noexcept { return state_ == SessionState::Ready || state_ == SessionState::Active; }
+  bool wants_other_speeds() const noexcept { return wanted_.left != sent_.left || wanted_.right != sent_.right; }
+  /// The stop is confirmed.
+  void note_rest() noexcept;
+  /// It is known who is there, and it stands.
+  void note_handshake() noexcept;
+  /// The link hung up. False: there was none.
+  bool lose_link(const char* why) noexcept;
+
+  SessionTiming timing_;
+  Actuation wanted_, sent_;
+  hal::TimeNs allowed_ns_ = 0;  // for stalls, of the answer that is awaited
+  hal::TimeNs patience_ns_ = 0;
+  hal::TimeNs latency_ns_ = 0;  // follows its peaks
+  bool handshaking_ = false;
+  bool asked_again_ = false;
+  bool stop_asked_ = false;  // by `stop`, and not yet confirmed
+  bool ending_ = false;      // by `shut_down`
   SessionState state_ = SessionState::Absent;
   const char* trouble_ = "";
   bool at_rest_ = false;

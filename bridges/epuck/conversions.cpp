@@ -37,14 +37,6 @@ StepsPerS Conversions::to_steps_per_s(double speed_m_s) const noexcept {
   return {static_cast<std::int16_t>(std::lround(steps))};
 }
 
-double Conversions::proximity_distance_m(double counts) const noexcept {
-  return hal::distance_m_of(infrared_.response, counts);
-}
-
-double Conversions::proximity_counts(double distance_m) const noexcept {
-  return hal::counts_at(infrared_.response, distance_m);
-}
-
 double light_level(std::uint16_t ambient) noexcept {
   return clamp_unit(1.0 - ambient / double{wire::kAmbientDarkRaw});
 }

@@ -7,6 +7,7 @@
 #include "bridges/epuck/codec.hpp"
 #include "bridges/epuck/line.hpp"
 #include "hal/device/body_sensors.hpp"
+#include "hal/device/infrared_response.hpp"
 #include "hal/device/leds.hpp"
 #include "hal/device/ring_sensors.hpp"
 
@@ -47,9 +48,9 @@ class Conversions {
 
   /// Distance at which white paper gives `counts`: the sensors' response read backwards, straight between its points.
   /// 0 counts and fewer: the range of the sensor. The response's largest and more: contact, 0.
-  double proximity_distance_m(double counts) const noexcept;
+  double proximity_distance_m(double counts) const noexcept { return hal::distance_m_of(infrared_.response, counts); }
   /// The response read forwards: counts at `distance_m`; beyond the range 0.
-  double proximity_counts(double distance_m) const noexcept;
+  double proximity_counts(double distance_m) const noexcept { return hal::counts_at(infrared_.response, distance_m); }
   double proximity_range_m() const noexcept { return infrared_.range_m; }
 
   /// Raw value of `b`. Boards before HW1.3 only tell 1 (above empty) or 0: then the middle of what that leaves, or

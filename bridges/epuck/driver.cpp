@@ -60,16 +60,9 @@ void EpuckDriver::judge_margin() noexcept {
 
 hal::WheelSpeeds EpuckDriver::filtered() noexcept {
   hal::WheelSpeeds wheels = robot_.port<hal::WheelSpeeds>();
-  switch (wheels.limit(wheels_).result) {
-    case hal::LimitResult::Clamped:
-      ++statistics_.clamped;
-      break;
-    case hal::LimitResult::NotFinite:
-      ++statistics_.not_finite;
-      break;
-    case hal::LimitResult::Passed:
-      break;
-  }
+  const hal::LimitResult limited = wheels.limit(wheels_).result;
+  statistics_.clamped += limited == hal::LimitResult::Clamped ? 1 : 0;
+  statistics_.not_finite += limited == hal::LimitResult::NotFinite ? 1 : 0;
   const bool wanted = wheels.left_m_s != 0.0 || wheels.right_m_s != 0.0;
   if (session_->state() != SessionState::Active) {
     interrupted_ = interrupted_ || wanted || armed_epoch_ != 0;
@@ -153,10 +146,6 @@ void EpuckDriver::pump(ByteLink& link, hal::TimeNs now) noexcept {
   send(link);
 }
 
-void EpuckDriver::link_gone(hal::TimeNs now) noexcept {
-  session_->link_down(now);
-}
-
 hal::TimeNs EpuckDriver::next_deadline() const noexcept {
   const hal::TimeNs deadline = std::min(session_->next_deadline(), ask_due_ns_);
   return moving_ ? std::min(deadline, last_commit_ns_ + settings_.command_timeout_ns + 1) : deadline;
@@ -167,10 +156,6 @@ void EpuckDriver::stop(hal::TimeNs now) noexcept {
   moving_ = false;
   interrupted_ = true;
   session_->stop(now);
-}
-
-void EpuckDriver::resume() noexcept {
-  halted_ = false;
 }
 
 void EpuckDriver::shut_down(hal::TimeNs now) noexcept {

@@ -68,14 +68,14 @@ class EpuckDriver {
   /// `latch`, `commit`, `pump`, `stop` and `resume` do not allocate.
   void pump(ByteLink& link, hal::TimeNs now) noexcept;
   /// There is no link at present.
-  void link_gone(hal::TimeNs now) noexcept;
+  void link_gone(hal::TimeNs now) noexcept { session_->link_down(now); }
   hal::TimeNs next_deadline() const noexcept;
   /// Logs what has changed since the last call. For the thread that owns the link.
   void tell();
 
   /// Stops the robot and keeps it stopped, LEDs off, until `resume`. Sent with the next `pump`.
   void stop(hal::TimeNs now) noexcept;
-  void resume() noexcept;
+  void resume() noexcept { halted_ = false; }
   /// The end: stops the robot whatever it is doing. Then pump until `idle`, for a little while.
   void shut_down(hal::TimeNs now) noexcept;
 

@@ -1,9 +1,8 @@
 // `tandem inspect` on a serial line: an e-puck, and everything that it senses.
-#include "bridges/epuck/inspect.hpp"
-
 #include <array>
 
 #include "bridges/epuck/bridge.hpp"
+#include "bridges/epuck/register.hpp"
 #include "hal/device/body_sensors.hpp"
 #include "hal/device/ring_sensors.hpp"
 #include "hal/device/wheels.hpp"

@@ -2,7 +2,6 @@
 
 #include "bridges/bridge_type.hpp"
 #include "bridges/epuck/bridge.hpp"
-#include "bridges/epuck/inspect.hpp"
 #include "bridges/epuck/stopper.hpp"
 #include "hal/element_options.hpp"
 #include "hal/robot/epuck.hpp"

@@ -12,8 +12,6 @@ namespace {
 using hal::TimeNs;
 
 constexpr TimeNs kNever = std::numeric_limits<TimeNs>::max();
-constexpr TimeNs kByteNs = 86'806;      // 10 bits at 115200 baud
-constexpr std::size_t kSpeedsSize = 4;  // answer of E
 
 // Zeros behind "set speeds": however many of its own four bytes are lost, what follows is not taken for speeds.
 constexpr std::size_t kBehindSpeeds = 8;
@@ -34,21 +32,10 @@ bool same_lamps(const Actuation& a, const Actuation& b) noexcept {
   return a.ring == b.ring && a.body == b.body && a.front == b.front;
 }
 
-TimeNs transfer_ns(std::size_t bytes) noexcept {
-  return static_cast<TimeNs>(bytes) * kByteNs;
-}
-
-constexpr const char* kImplausible = "an answer held values that cannot be";
-
-bool tells(std::span<const std::uint8_t> speeds, const std::array<StepsPerS, 2>& told) noexcept {
-  const auto word = [&](std::size_t at) { return static_cast<std::int16_t>(speeds[at] | speeds[at + 1] << 8); };
-  return word(0) == told[0].value && word(2) == told[1].value;
-}
-
 }  // namespace
 
 Session::Session(const SessionTiming& timing) noexcept
-    : timing_(timing), stop_(StopTiming{.quiet_ns = timing.quiet_ns, .answer_ns = timing.answer_ns}) {}
+    : Conversation(timing), stop_(StopTiming{.quiet_ns = timing.quiet_ns, .answer_ns = timing.answer_ns}) {}
 
 // --- link ---
 
@@ -63,12 +50,8 @@ void Session::link_up(TimeNs now) noexcept {
 }
 
 void Session::link_down(TimeNs) noexcept {
-  if (phase_ == Phase::Down) return;
+  if (!lose_link("the link hung up")) return;
   phase_ = Phase::Down;
-  state_ = SessionState::Lost;
-  trouble_ = "the link hung up";
-  ++statistics_.links_lost;
-  output_.clear();
   pending_ = false;
 }
 
@@ -116,20 +99,15 @@ void Session::go_on_stopping(TimeNs now) noexcept {
       state_ = SessionState::Suspect;
       trouble_ = "a stop was not confirmed";
     }
-    if (++attempts_ < timing_.tries) continue;
-    state_ = SessionState::Lost;
-    identity_known_ = layout_known_ = false;  // whoever answers next is asked who it is
-    if (*trouble_ == '\0') trouble_ = "no e-puck answers";
+    count_attempt();
   }
 }
 
 void Session::on_rest(TimeNs now) noexcept {
-  at_rest_ = true;
+  note_rest();
   rest_doubted_ = false;
   sent_.left = sent_.right = {};
   speeds_before_ = {};
-  if (stop_asked_) ++statistics_.stops_confirmed;
-  stop_asked_ = false;
   if (ending_ || resting_) {
     phase_ = Phase::Rest;
     deadline_ns_ = ending_ ? kNever : now + timing_.retry_ns;
@@ -145,12 +123,15 @@ void Session::on_rest(TimeNs now) noexcept {
 
 void Session::attempt_failed(TimeNs now) noexcept {
   ++statistics_.handshake_failures;
-  if (++attempts_ >= timing_.tries) {
-    state_ = SessionState::Lost;
-    identity_known_ = layout_known_ = false;
-    if (*trouble_ == '\0') trouble_ = "no e-puck answers";
-  }
+  count_attempt();
   begin_handshake(now);
+}
+
+void Session::count_attempt() noexcept {
+  if (++attempts_ < timing_.tries) return;
+  state_ = SessionState::Lost;
+  identity_known_ = layout_known_ = false;  // whoever answers next is asked who it is
+  if (*trouble_ == '\0') trouble_ = "no e-puck answers";
 }
 
 void Session::ask_version(TimeNs now) noexcept {
@@ -215,13 +196,9 @@ void Session::finish_probe(TimeNs now) noexcept {
 }
 
 void Session::finish_handshake() noexcept {
-  if (state_ == SessionState::Suspect || state_ == SessionState::Lost) ++statistics_.resynchronised;
-  state_ = SessionState::Ready;
+  note_handshake();
   phase_ = Phase::Idle;
-  handshaking_ = false;
   attempts_ = 0;
-  ++epoch_;
-  counters_doubtful_ = true;
   pending_ = true;  // the first exchange makes it active
   pending_quantities_ = wanted_quantities_;
 }
@@ -327,117 +304,6 @@ void Session::on_version(TimeNs at) noexcept {
   introduced(at);
 }
 
-std::span<const std::uint8_t> Session::received(std::size_t from, std::size_t size) const noexcept {
-  return std::span(answer_).subspan(from, size);
-}
-
-void Session::on_answer_byte(std::uint8_t byte, TimeNs at) noexcept {
-  answer_[answer_size_++] = byte;
-  heard_ns_ = at;
-  const std::size_t most = question_.answer_size + (earlier_awaited_ ? earlier_.answer_size : 0);
-  if (answer_size_ == most) judge_answers(at);
-}
-
-/// The second of two answers has come whole, the first not, or not whole.
-bool Session::second_alone() const noexcept {
-  if (!earlier_awaited_ || answer_size_ != earlier_size_ + question_.answer_size) return false;
-  const auto answer = received(earlier_size_, question_.answer_size);
-  return tells(answer.last(kSpeedsSize), question_.told) && (!question_.marked || tells(answer, question_.told));
-}
-
-/// All has come that can, or no more comes.
-void Session::judge_answers(TimeNs now) noexcept {
-  const bool late = phase_ == Phase::Again;
-  phase_ = Phase::Idle;
-  const bool two_awaited = std::exchange(earlier_awaited_, false);
-  const std::size_t first = two_awaited ? earlier_.answer_size : 0;
-  if (answer_size_ == first + question_.answer_size) {
-    statistics_.overdue += late || two_awaited ? 1 : 0;
-    RawSensors passed_over;
-    if (two_awaited && !decode(earlier_, received(0, first), passed_over)) return lose_step(kImplausible, now);
-    on_answer(question_, received(first, question_.answer_size), heard_ns_);
-  } else if (two_awaited && answer_size_ == earlier_size_ + question_.answer_size) {
-    on_answer(question_, received(earlier_size_, question_.answer_size), heard_ns_);
-  } else if (two_awaited && answer_size_ == first && tells(received(0, first).last(kSpeedsSize), earlier_.told)) {
-    take_late_answer(now);
-  } else {
-    miss_answer(now);
-  }
-}
-
-/// Of the two answers only the first has come: the second is overdue as well.
-void Session::take_late_answer(TimeNs now) noexcept {
-  ++statistics_.overdue;
-  on_answer(earlier_, received(0, earlier_.answer_size), heard_ns_);
-  answer_size_ = 0;
-  if (phase_ == Phase::Idle) begin_again(now);
-}
-
-/// An answer that came in time was measured when the robot had read the question: before the answer travels.
-Conversation::Measured Session::measured(const Question& question, TimeNs at) noexcept {
-  const TimeNs round_trip = at - question.asked_ns;
-  const TimeNs travel = transfer_ns(question.question_size + question.answer_size);
-  const TimeNs latency = std::max<TimeNs>(0, round_trip - travel) / 2;
-  const bool dated = round_trip <= timing_.answer_ns + travel && allowed_ns_ == 0;
-  if (!dated) return {std::min(question.asked_ns, at), at};
-  latency_ns_ = std::max(latency, latency_ns_ - (latency_ns_ - latency) / 8);
-  const TimeNs taken =
-      std::clamp(at - transfer_ns(question.answer_size) - latency, std::min(question.asked_ns, at), at);
-  return {taken, taken};
-}
-
-bool Session::decode(const Question& question, std::span<const std::uint8_t> bytes, RawSensors& raw) noexcept {
-  const bool odd_mark = question.marked && !std::ranges::equal(bytes.first(kSpeedsSize), bytes.last(kSpeedsSize));
-  const auto values = bytes.subspan(question.marked ? kSpeedsSize : 0);
-  if (!odd_mark && decode_answer(values, question.asked, layout_, raw) == Decoded::Ok) return true;
-  ++statistics_.implausible;
-  return false;
-}
-
-void Session::on_answer(const Question& question, std::span<const std::uint8_t> bytes, TimeNs at) noexcept {
-  RawSensors raw = samples_.raw;
-  if (!decode(question, bytes, raw)) return lose_step(kImplausible, at);
-  const Measured when = measured(question, at);
-  if (question.asked.has(Quantity::Encoders) && counters_known_ && !counters_doubtful_ &&
-      !encoders_plausible(raw.encoders, when.latest_ns)) {
-    ++statistics_.encoder_jumps;
-    lose_step("the wheel counters jumped", at);
-    return;
-  }
-  asked_again_ = false;
-  const bool newest = &question == &question_;  // nothing was told since
-  if (newest) {
-    if (!speeds_as_told(raw.commanded, at)) return;
-    const bool stands =
-        sent_.left.value == 0 && sent_.right.value == 0 && raw.commanded[0] == 0 && raw.commanded[1] == 0;
-    if (rest_doubted_) at_rest_ = stands;
-    rest_doubted_ = false;
-  }
-  take_samples(question.asked, raw, when);
-  state_ = SessionState::Active;
-  trouble_ = "";
-  ++statistics_.answers;
-  statistics_.round_trips.add(at - question.asked_ns);
-}
-
-bool Session::speeds_as_told(const std::array<std::int16_t, 2>& commanded, TimeNs at) noexcept {
-  if (commanded[0] == sent_.left.value && commanded[1] == sent_.right.value) {
-    told_again_ = false;
-    return true;
-  }
-  ++statistics_.wrong_speeds;
-  at_rest_ = false;
-  // Its old speeds: the command was lost as a whole.
-  if (!told_again_ && commanded[0] == speeds_before_[0].value && commanded[1] == speeds_before_[1].value) {
-    told_again_ = true;
-    speeds_due_ = true;
-    pending_ = true;
-    return true;
-  }
-  lose_step("it has other wheel speeds than it was told", at);
-  return false;
-}
-
 // --- time-outs ---
 
 TimeNs Session::next_deadline() const noexcept {
@@ -485,22 +351,6 @@ void Session::poll(TimeNs now) noexcept {
   }
 }
 
-TimeNs Session::answer_deadline() const noexcept {
-  if (heard_ns_ == 0) return deadline_ns_;
-  const TimeNs quiet_ns = heard_ns_ + timing_.quiet_ns;  // before that more may be coming
-  return second_alone() ? quiet_ns : std::max(deadline_ns_, quiet_ns);
-}
-
-void Session::miss_answer(TimeNs now) noexcept {
-  const bool silent = heard_ns_ == 0;
-  ++(silent ? statistics_.silent : statistics_.cut_short);
-  if (asked_again_ || state_ != SessionState::Active) {
-    lose_step(silent ? "no answer" : "an answer was cut short", now);
-    return;
-  }
-  begin_again(now);
-}
-
 void Session::begin_again(TimeNs now) noexcept {
   asked_again_ = true;
   ++statistics_.asked_again;
@@ -518,17 +368,11 @@ TimeNs Session::expected_round_trip(QuantitySet quantities) const noexcept {
 
 // --- bytes out ---
 
-void Session::keep(const Actuation& actuation) noexcept {
-  wanted_ = actuation;
-  if (!talking() || ending_) wanted_.left = wanted_.right = {};
-}
-
 void Session::command(const Actuation& actuation, TimeNs now) noexcept {
   keep(actuation);
   if (!talking()) return;
-  const bool other_speeds = wanted_.left != sent_.left || wanted_.right != sent_.right;
   const bool due = !lamps_known_ || now - refreshed_ns_ >= timing_.refresh_ns;
-  if (!other_speeds && !due && same_lamps(wanted_, sent_)) return;
+  if (!wants_other_speeds() && !due && same_lamps(wanted_, sent_)) return;
   pending_ = true;
   if (phase_ == Phase::Idle) send_pending(now);
 }
@@ -541,11 +385,6 @@ void Session::ask(QuantitySet quantities, TimeNs now) noexcept {
   pending_quantities_.add(wanted_quantities_);
   pending_ = true;
   if (phase_ == Phase::Idle) send_pending(now);
-}
-
-void Session::request(const Actuation& actuation, QuantitySet quantities, TimeNs now) noexcept {
-  keep(actuation);
-  ask(quantities, now);
 }
 
 void Session::send_pending(TimeNs now) noexcept {
@@ -595,7 +434,7 @@ void Session::append_question(TimeNs now) noexcept {
 }
 
 void Session::append_wheels() noexcept {
-  const bool other = wanted_.left != sent_.left || wanted_.right != sent_.right;
+  const bool other = wants_other_speeds();
   // Each speed setting switches the motor phases off for an instant: only on change.
   if (!other && !speeds_due_) return;
   append_speeds(output_, wanted_.left, wanted_.right);
@@ -636,28 +475,9 @@ void Session::append_lamps(TimeNs now) noexcept {
   lamps_known_ = true;
 }
 
-void Session::stop(TimeNs now) noexcept {
-  wanted_.left = wanted_.right = {};
-  if (phase_ == Phase::Down || stop_asked_) return;
-  ++statistics_.stops;
-  if (at_rest_) {
-    ++statistics_.stops_confirmed;
-    return;
-  }
-  stop_asked_ = true;
+void Session::say_stop(TimeNs now) noexcept {
   pending_ = false;
   pending_quantities_ = {};
-  if (phase_ != Phase::Stop) begin_stop(now);
-}
-
-void Session::shut_down(TimeNs now) noexcept {
-  ending_ = true;
-  wanted_.left = wanted_.right = {};
-  pending_ = false;
-  pending_quantities_ = {};
-  if (phase_ == Phase::Down) return;
-  if (!stop_asked_) ++statistics_.stops;
-  stop_asked_ = true;
   if (phase_ != Phase::Stop) begin_stop(now);
 }
 

@@ -48,14 +48,10 @@ class Session final : public Conversation {
   void poll(hal::TimeNs now) noexcept override;
   hal::TimeNs next_deadline() const noexcept override;
   void stalled(hal::TimeNs duration) noexcept override;
-  void be_patient(hal::TimeNs duration) noexcept override { patience_ns_ = duration; }
   void command(const Actuation& actuation, hal::TimeNs now) noexcept override;
   /// A newer question joins one that waits.
   void ask(QuantitySet quantities, hal::TimeNs now) noexcept override;
-  void request(const Actuation& actuation, QuantitySet quantities, hal::TimeNs now) noexcept override;
   hal::TimeNs expected_round_trip(QuantitySet quantities) const noexcept override;
-  void stop(hal::TimeNs now) noexcept override;
-  void shut_down(hal::TimeNs now) noexcept override;
   bool idle() const noexcept override {
     return phase_ == Phase::Down || phase_ == Phase::Rest || (phase_ == Phase::Idle && !pending_);
   }
@@ -82,6 +78,13 @@ class Session final : public Conversation {
     hal::TimeNs asked_ns = 0;
   };
 
+  bool is_down() const noexcept override { return phase_ == Phase::Down; }
+  void say_stop(hal::TimeNs now) noexcept override;
+  static constexpr std::size_t kSpeedsSize = 4;  // answer of E
+  /// 10 bits a byte at 115200 baud.
+  static constexpr hal::TimeNs transfer_ns(std::size_t bytes) noexcept {
+    return static_cast<hal::TimeNs>(bytes) * 86'806;
+  }
   void on_byte(std::uint8_t byte, hal::TimeNs at) noexcept;
   void on_line(std::string_view line, hal::TimeNs at) noexcept;
   void on_version(hal::TimeNs at) noexcept;
@@ -100,6 +103,7 @@ class Session final : public Conversation {
   void ask_version(hal::TimeNs now) noexcept;
   void introduced(hal::TimeNs now) noexcept;
   void attempt_failed(hal::TimeNs now) noexcept;
+  void count_attempt() noexcept;
   void send_probe(Phase phase, Quantity quantity, hal::TimeNs now) noexcept;
   void finish_probe(hal::TimeNs now) noexcept;
   void finish_handshake() noexcept;
@@ -111,31 +115,21 @@ class Session final : public Conversation {
   std::span<const std::uint8_t> received(std::size_t from, std::size_t size) const noexcept;
   bool speeds_as_told(const std::array<std::int16_t, 2>& commanded, hal::TimeNs at) noexcept;
 
-  bool talking() const noexcept { return state_ == SessionState::Ready || state_ == SessionState::Active; }
-  void keep(const Actuation& actuation) noexcept;
   void send_pending(hal::TimeNs now) noexcept;
   void append_question(hal::TimeNs now) noexcept;
   void append_lamps(hal::TimeNs now) noexcept;
   void append_wheels() noexcept;
   Measured measured(const Question& question, hal::TimeNs at) noexcept;
 
-  SessionTiming timing_;
   Phase phase_ = Phase::Down;
   hal::TimeNs deadline_ns_ = 0;
-  hal::TimeNs heard_ns_ = 0;    // the last byte of the answers that are awaited; 0: none
-  hal::TimeNs allowed_ns_ = 0;  // for stalls, of the answer that is awaited
-  hal::TimeNs patience_ns_ = 0;
+  hal::TimeNs heard_ns_ = 0;     // the last byte of the answers that are awaited; 0: none
   hal::TimeNs given_up_ns_ = 0;  // Again: by then, however noisy the link is
-  hal::TimeNs latency_ns_ = 0;   // one way, the bytes' own time aside; follows its peaks
   int attempts_ = 0;             // in vain since it was lost
-  bool handshaking_ = false;
   bool identity_known_ = false;
   bool layout_known_ = false;
   bool resting_ = false;       // the stop is followed by a rest
-  bool ending_ = false;        // or by nothing
-  bool stop_asked_ = false;    // by `stop`, and not yet confirmed
   bool rest_doubted_ = false;  // until the next answer
-  bool asked_again_ = false;
   bool told_again_ = false;
   int odd_answers_ = 0;  // in a row; two make the layout doubtful, more than `tries` the robot
   int version_asks_ = 0;
@@ -152,10 +146,8 @@ class Session final : public Conversation {
   std::size_t answer_size_ = 0;
 
   bool pending_ = false;
-  Actuation wanted_;
   QuantitySet wanted_quantities_{Quantity::Encoders};  // of the newest question, also asked after a handshake
   QuantitySet pending_quantities_;
-  Actuation sent_;
   bool lamps_known_ = false;
   bool speeds_due_ = false;                   // whatever the robot was told before
   std::array<StepsPerS, 2> speeds_before_{};  // what the robot was told last but one

@@ -155,8 +155,4 @@ TimeNs StopProcedure::next_deadline() const noexcept {
   return step_ == Step::Confirmed ? kNever : due_ns_;
 }
 
-void StopProcedure::extend(TimeNs by) noexcept {
-  if (step_ == Step::Answer) due_ns_ += by;
-}
-
 }  // namespace tandem::bridges::epuck

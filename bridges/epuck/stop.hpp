@@ -64,7 +64,9 @@ class StopProcedure {
   /// When `poll` has something to do. Never, once confirmed.
   hal::TimeNs next_deadline() const noexcept;
   /// Gives an answer that is awaited so much more time.
-  void extend(hal::TimeNs by) noexcept;
+  void extend(hal::TimeNs by) noexcept {
+    if (step_ == Step::Answer) due_ns_ += by;
+  }
 
   bool confirmed() const noexcept { return step_ == Step::Confirmed; }
   /// Rounds that ended without a confirmation since `begin`.

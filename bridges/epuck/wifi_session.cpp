@@ -78,23 +78,15 @@ void WifiSession::link_up(TimeNs now) noexcept {
 }
 
 void WifiSession::link_down(TimeNs) noexcept {
-  if (phase_ == Phase::Down) return;
+  if (!lose_link(wants_new_link_ ? trouble_ : "the link hung up")) return;
   phase_ = Phase::Down;
-  state_ = SessionState::Lost;
-  if (!wants_new_link_) trouble_ = "the link hung up";
   wants_new_link_ = false;
-  ++statistics_.links_lost;
-  output_.clear();
 }
 
 void WifiSession::give_up_link(const char* why) noexcept {
   trouble_ = why;
   state_ = SessionState::Lost;
   wants_new_link_ = true;
-}
-
-void WifiSession::sent_in_part() noexcept {
-  give_up_link("a command could not be sent whole");
 }
 
 void WifiSession::stalled(TimeNs duration) noexcept {
@@ -130,16 +122,10 @@ void WifiSession::judge_rest(const std::array<std::int16_t, 2>& counters, TimeNs
 }
 
 void WifiSession::on_rest(TimeNs now) noexcept {
-  at_rest_ = true;
-  if (stop_asked_) ++statistics_.stops_confirmed;
-  stop_asked_ = false;
+  note_rest();
   phase_ = ending_ ? Phase::Rest : Phase::Talk;
   if (ending_ || !handshaking_) return;
-  if (state_ == SessionState::Suspect || state_ == SessionState::Lost) ++statistics_.resynchronised;
-  state_ = SessionState::Ready;
-  handshaking_ = false;
-  counters_doubtful_ = true;
-  ++epoch_;
+  note_handshake();
   say(now);  // the answer makes it active
 }
 
@@ -283,11 +269,6 @@ void WifiSession::say(TimeNs now) noexcept {
   if (waiting_ns_ == 0) waiting_ns_ = now;
 }
 
-void WifiSession::keep(const Actuation& actuation) noexcept {
-  wanted_ = actuation;
-  if (!talking() || ending_ || phase_ != Phase::Talk) wanted_.left = wanted_.right = {};
-}
-
 void WifiSession::command(const Actuation& actuation, TimeNs now) noexcept {
   keep(actuation);
   if (phase_ == Phase::Talk && talking() && wanted_ != sent_) say(now);
@@ -297,31 +278,8 @@ void WifiSession::ask(QuantitySet, TimeNs now) noexcept {
   if (phase_ == Phase::Talk && talking()) say(now);
 }
 
-void WifiSession::request(const Actuation& actuation, QuantitySet quantities, TimeNs now) noexcept {
-  keep(actuation);
-  ask(quantities, now);
-}
-
-void WifiSession::stop(TimeNs now) noexcept {
-  wanted_.left = wanted_.right = {};
-  if (phase_ == Phase::Down || stop_asked_) return;
-  ++statistics_.stops;
-  if (at_rest_) {
-    ++statistics_.stops_confirmed;
-    return;
-  }
-  stop_asked_ = true;
-  if (phase_ == Phase::Stop) return;
-  begin_stop(now);
-  poll(now);
-}
-
-void WifiSession::shut_down(TimeNs now) noexcept {
-  ending_ = true;
-  wanted_ = {};
-  if (phase_ == Phase::Down) return;
-  if (!stop_asked_) ++statistics_.stops;
-  stop_asked_ = true;
+void WifiSession::say_stop(TimeNs now) noexcept {
+  if (ending_) wanted_ = {};
   if (phase_ == Phase::Stop) return;
   begin_stop(now);
   poll(now);

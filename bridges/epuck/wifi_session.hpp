@@ -26,7 +26,7 @@ namespace tandem::bridges::epuck {
 
 class WifiSession final : public Conversation {
  public:
-  explicit WifiSession(const SessionTiming& timing = {}) noexcept : timing_(timing) {}
+  explicit WifiSession(const SessionTiming& timing = {}) noexcept : Conversation(timing) {}
 
   void link_up(hal::TimeNs now) noexcept override;
   void link_down(hal::TimeNs now) noexcept override;
@@ -35,18 +35,14 @@ class WifiSession final : public Conversation {
   void poll(hal::TimeNs now) noexcept override;
   hal::TimeNs next_deadline() const noexcept override;
   void stalled(hal::TimeNs duration) noexcept override;
-  void be_patient(hal::TimeNs duration) noexcept override { patience_ns_ = duration; }
   void command(const Actuation& actuation, hal::TimeNs now) noexcept override;
   void ask(QuantitySet quantities, hal::TimeNs now) noexcept override;
-  void request(const Actuation& actuation, QuantitySet quantities, hal::TimeNs now) noexcept override;
   hal::TimeNs expected_round_trip(QuantitySet quantities) const noexcept override;
-  void stop(hal::TimeNs now) noexcept override;
-  void shut_down(hal::TimeNs now) noexcept override;
   bool idle() const noexcept override {
     return phase_ == Phase::Down || phase_ == Phase::Rest || (phase_ == Phase::Talk && waiting_ns_ == 0);
   }
   bool wants_new_link() const noexcept override { return wants_new_link_; }
-  void sent_in_part() noexcept override;
+  void sent_in_part() noexcept override { give_up_link("a command could not be sent whole"); }
 
  private:
   enum class Phase : std::uint8_t { Down, Stop, Talk, Rest };
@@ -56,6 +52,9 @@ class WifiSession final : public Conversation {
     bool any = false;
   };
 
+  bool is_down() const noexcept override { return phase_ == Phase::Down; }
+  bool is_stopping() const noexcept override { return phase_ != Phase::Talk; }
+  void say_stop(hal::TimeNs now) noexcept override;
   bool is_backlog(hal::TimeNs at) noexcept;
   void begin_handshake(hal::TimeNs now) noexcept;
   void begin_stop(hal::TimeNs now) noexcept;
@@ -66,29 +65,18 @@ class WifiSession final : public Conversation {
   void judge_rest(const std::array<std::int16_t, 2>& counters, hal::TimeNs at) noexcept;
   void judge_silence(hal::TimeNs now) noexcept;
   void say(hal::TimeNs now) noexcept;
-  void keep(const Actuation& actuation) noexcept;
-  bool talking() const noexcept { return state_ == SessionState::Ready || state_ == SessionState::Active; }
   hal::TimeNs answer_by() const noexcept;
 
-  SessionTiming timing_;
   Phase phase_ = Phase::Down;
   WifiReader reader_;
   Arrived newest_;
-  Actuation wanted_, sent_;
   hal::TimeNs said_ns_ = 0;     // the last command
   hal::TimeNs waiting_ns_ = 0;  // since the first command after the last sensors; 0: nothing is awaited
   hal::TimeNs silent_ns_ = 0;   // since when nothing came although it was asked for; 0: it comes
-  hal::TimeNs allowed_ns_ = 0;  // for stalls, of what is awaited
-  hal::TimeNs patience_ns_ = 0;
-  hal::TimeNs latency_ns_ = 0;  // from a command to the next sensors; follows its peaks
   hal::TimeNs stop_ns_ = 0;     // the stop was begun
   hal::TimeNs say_due_ns_ = 0;  // it is said again
   hal::TimeNs same_ns_ = 0;     // since when the wheel counters are the same; 0: not yet read
   std::array<std::int16_t, 2> same_{};
-  bool handshaking_ = false;
-  bool asked_again_ = false;
-  bool stop_asked_ = false;
-  bool ending_ = false;
   bool wants_new_link_ = false;
   bool backlog_ = false;        // what comes has waited
   hal::TimeNs arrived_ns_ = 0;  // the last sensors, old or new
