@@ -10,6 +10,13 @@
 #include "bridges/eyebot_messages/codec.hpp"
 #include "hal/check.hpp"
 #include "hal/device/body_sensors.hpp"
+#include "hal/device/cameras.hpp"
+#include "hal/device/distance_scanner.hpp"
+#include "hal/device/flight.hpp"
+#include "hal/device/leds.hpp"
+#include "hal/device/pan_tilt.hpp"
+#include "hal/device/range_and_bearing.hpp"
+#include "hal/device/ring_sensors.hpp"
 
 namespace tandem::bridges::eyebot {
 namespace {
@@ -17,37 +24,20 @@ namespace {
 namespace messages = eyebot_messages;
 using hal::TimeNs;
 
-constexpr TimeNs kBeat = 200 * hal::kNsPerMs;
-constexpr TimeNs kVelocityAgain = 100 * hal::kNsPerMs;
-constexpr std::int32_t kVelocityHolds_ms = 500;
-constexpr TimeNs kPositionAgain = 500 * hal::kNsPerMs;
-constexpr std::int32_t kPositionHolds_ms = 1600;  // three times as long
-constexpr TimeNs kDeviceAgain = hal::kNsPerSecond;
 constexpr TimeNs kStatusFresh = 600 * hal::kNsPerMs;  // ten a second are promised
 constexpr TimeNs kReleasedAfter = 10 * hal::kNsPerSecond;
 constexpr TimeNs kComplainAgain = 10 * hal::kNsPerSecond;
 constexpr TimeNs kSilence = 2 * hal::kNsPerSecond;      // then it is told who is heard instead
 constexpr TimeNs kOthersRobot = 2 * hal::kNsPerSecond;  // after another hub's last command
 constexpr TimeNs kOthersSpread = 100 * hal::kNsPerMs;   // two hubs do not try again at the same moment
-constexpr TimeNs kClocksAgree = 100 * hal::kNsPerMs;    // a robot takes stamps that are 250 ms off
 constexpr TimeNs kAskClock = 10 * hal::kNsPerSecond;    // its answer bounds the error of its clock
 constexpr TimeNs kOwnJump = 150 * hal::kNsPerMs;        // robots refuse what is stamped 250 ms off
 constexpr double kPushed = 1.5;                         // times as fast as it flies by itself a robot may be
-constexpr std::size_t kPayloadAt = messages::kHeaderEnd;
 
 std::string id_of_session(std::int32_t session) {
   std::array<char, 32> text{};
   std::snprintf(text.data(), text.size(), "tandem-%08x", static_cast<unsigned>(session));
   return text.data();
-}
-
-template <class Drive>
-hal::Limited limited(Drive& drive, const hal::RobotKind& kind) noexcept {
-  return drive.limit(hal::limiting<typename Drive::LimitedBy>(kind));
-}
-
-void put_big_endian(std::span<std::byte> bytes, std::uint64_t n) noexcept {
-  for (std::size_t i = bytes.size(); i-- > 0; n >>= 8) bytes[i] = static_cast<std::byte>(n & 0xFF);
 }
 
 }  // namespace
@@ -61,6 +51,16 @@ hal::TimeNs unix_ns() noexcept {
 const char* state_name(RobotState state) noexcept {
   static constexpr std::array<const char*, 5> kNames = {"absent", "ready", "active", "suspect", "lost"};
   return kNames[static_cast<std::size_t>(state)];
+}
+
+const std::vector<const hal::PortType*>& port_types() {
+  static const auto all =
+      port_types_of<hal::Positioning, hal::FlightState, hal::Altimeter, hal::Gyroscope, hal::Proximity, hal::Light,
+                    hal::DistanceScanner, hal::PerspectiveCamera, hal::PanTiltEncoder, hal::RangeAndBearing,
+                    hal::Battery, hal::Clock, hal::QuadrotorPosition, hal::QuadrotorSpeed, hal::FlightTask,
+                    hal::RingLeds, hal::UpperRingLeds, hal::CameraLed, hal::PanTiltDrive, hal::ScannerDrive,
+                    hal::RangeAndBearingSend>();
+  return all;
 }
 
 EyebotDriver::EyebotDriver(DriverSettings settings, Inbox& inbox, Outbox& outbox, hal::Log log)
@@ -88,8 +88,8 @@ EyebotDriver::EyebotDriver(DriverSettings settings, Inbox& inbox, Outbox& outbox
 
 // --- what it says ---
 
-template <class Message, class Use>
-void EyebotDriver::take_in(Topic topic, Newest<Message>& newest, TimeNs now, Use use) {
+template <class Message, class... Use>
+void EyebotDriver::take_in(Topic topic, Newest<Message>& newest, TimeNs now, Use... use) {
   while (inbox_.take(topic, letter_)) {
     const messages::Flaw flaw = messages::decode(letter_.data, newest.next);
     if (flaw != messages::Flaw::None) {
@@ -99,12 +99,11 @@ void EyebotDriver::take_in(Topic topic, Newest<Message>& newest, TimeNs now, Use
     if (!accept(newest.next.hdr, letter_.received_ns)) continue;
     std::swap(newest.message, newest.next);
     taken(topic) = clock_.local(ClockEstimator::from_us(newest.message.hdr.utime), letter_.received_ns);
-    use();
+    (use(), ...);
   }
 }
 
 void EyebotDriver::take_all(TimeNs now) {
-  const auto nothing_more = [] {};
   Newests& n = newests_;
   take_in(Topic::Heartbeat, n.heartbeat, now,
           [&] {  // What lay on the way while we slept is no sign of life of now.
@@ -114,14 +113,14 @@ void EyebotDriver::take_all(TimeNs now) {
   take_in(Topic::Ack, n.ack, now, [&] { use_ack(letter_.received_ns); });
   take_in(Topic::Status, n.status, now, [&] { use_status(); });
   take_in(Topic::State, n.state, now, [&] { use_state(); });
-  take_in(Topic::Altitude, n.altitude, now, nothing_more);
-  take_in(Topic::Battery, n.battery, now, nothing_more);
-  take_in(Topic::Scan, n.scan, now, nothing_more);
+  take_in(Topic::Altitude, n.altitude, now);
+  take_in(Topic::Battery, n.battery, now);
+  take_in(Topic::Scan, n.scan, now);
   take_in(Topic::Rab, n.rab, now, [&] { add(n.rab.message, heard_); });
-  take_in(Topic::Prox, n.prox, now, nothing_more);
-  take_in(Topic::Light, n.light, now, nothing_more);
-  take_in(Topic::PanTilt, n.pan_tilt, now, nothing_more);
-  take_in(Topic::Blobs, n.blobs, now, nothing_more);
+  take_in(Topic::Prox, n.prox, now);
+  take_in(Topic::Light, n.light, now);
+  take_in(Topic::PanTilt, n.pan_tilt, now);
+  take_in(Topic::Blobs, n.blobs, now);
 }
 
 bool EyebotDriver::accept(const messages::Header& header, TimeNs received_ns) {
@@ -138,7 +137,7 @@ void EyebotDriver::watch_clock() {
   if (clock_.jumps() == clock_jumps_) return;
   clock_jumps_ = clock_.jumps();
   robots_clock_ = true;
-  log_.warning("eye-bot '" + settings_.robot.id + "': its clock was set; commands are now stamped by it");
+  log_.warning(who() + "its clock was set; commands are now stamped by it");
   interrupt();
 }
 
@@ -159,7 +158,7 @@ void EyebotDriver::interrupt() noexcept {
 }
 
 void EyebotDriver::begin_anew() {
-  log_.warning("eye-bot '" + settings_.robot.id + "': it was started anew");
+  log_.warning(who() + "it was started anew");
   interrupt();
   place_gate_.forget();
   controlled_ = refused_ = doubts_control_ = false;
@@ -174,8 +173,7 @@ void EyebotDriver::complain(Topic topic, const char* flaw, TimeNs now) {
   ++statistics_.not_understood;
   if (complained_ns_ != 0 && now - complained_ns_ < kComplainAgain) return;
   complained_ns_ = now;
-  log_.warning("eye-bot '" + settings_.robot.id + "': a message on " + channel_of(settings_.name, topic) +
-               " is damaged: " + flaw);
+  log_.warning(who() + "a message on " + channel_of(settings_.name, topic) + " is damaged: " + flaw);
 }
 
 void EyebotDriver::use_state() {
@@ -209,7 +207,7 @@ void EyebotDriver::use_status() {
   // A command that came late is the link's stop, and over with it. One that has heard nothing for 2 s was absent.
   statistics_.saved_itself += status_.failsafe == hal::FlightFailsafe::CommandTimeout ? 0 : 1;
   log_.warning(
-      "eye-bot '" + settings_.robot.id + "': it goes to safety by itself, " + mode_name(status_.mode) +
+      who() + "it goes to safety by itself, " + mode_name(status_.mode) +
       (status_.failsafe == hal::FlightFailsafe::None ? "" : std::string(": ") + failsafe_name(status_.failsafe)));
   interrupt();
 }
@@ -317,17 +315,16 @@ void EyebotDriver::update_state(TimeNs now) {
   if (next == state_) return;
   const RobotState before = state_;
   state_ = next;
-  const std::string who = "eye-bot '" + settings_.robot.id + "': ";
   if (next == RobotState::Active) {
     statistics_.recovered += was_active_ ? 1 : 0;
     interrupted_ = interrupted_ || was_active_;
     was_active_ = true;
-    log_.info(who + "active");
+    log_.info(who() + "active");
     return;
   }
   if (next == RobotState::Lost) ++statistics_.lost;
   if (before == RobotState::Active || next == RobotState::Lost) {
-    log_.warning(who + state_name(next) + ": " + trouble());
+    log_.warning(who() + state_name(next) + ": " + trouble());
   }
 }
 
@@ -351,7 +348,7 @@ bool EyebotDriver::battery_low() const noexcept {
 void EyebotDriver::report_silence(TimeNs now) {
   if (silence_told_ || state_ != RobotState::Absent || now - started_ns_ < kSilence) return;
   silence_told_ = true;
-  log_.warning("eye-bot '" + settings_.robot.id + "': " + trouble());
+  log_.warning(who() + trouble());
 }
 
 bool EyebotDriver::overdue(TimeNs now) const noexcept {
@@ -437,126 +434,9 @@ void EyebotDriver::land(TimeNs now) noexcept {
   pump(now);
 }
 
-void EyebotDriver::resume() noexcept {
-  set_goal(Goal::Obey, 0);
-}
-
 void EyebotDriver::cut_motors(TimeNs now) noexcept {
   cut_ = true;
   pump(now);
-}
-
-// --- what it is told ---
-
-/// By our clock, as the protocol has it, unless the robot's is so far off that it takes what we say for old.
-TimeNs EyebotDriver::stamp_ns(TimeNs now) const noexcept {
-  const TimeNs own = settings_.unix_clock();
-  if (!robots_clock_ || !clock_.known()) return own;
-  const TimeNs robots = now - clock_.offset_ns(now);
-  return own - robots < kClocksAgree && robots - own < kClocksAgree ? own : robots;
-}
-
-void EyebotDriver::send(Voice& voice, TimeNs now) noexcept {
-  put_big_endian(std::span(voice.bytes).subspan(8, 8), static_cast<std::uint64_t>(stamp_ns(now) / 1000));
-  put_big_endian(std::span(voice.bytes).subspan(16, 4), static_cast<std::uint32_t>(voice.seq));
-  put_big_endian(std::span(voice.bytes).subspan(20, 4), static_cast<std::uint32_t>(settings_.session));
-  voice.seq = static_cast<std::int32_t>(static_cast<std::uint32_t>(voice.seq) + 1U);
-  voice.said_ns = now;
-  const bool sent = outbox_.publish(voice.channel, std::span(voice.bytes).first(voice.size));
-  ++(sent ? statistics_.said : statistics_.unsent);
-}
-
-/// Says it when it differs from what was said last, or that was `again_ns` ago.
-template <class Message>
-void EyebotDriver::say(Told told, Message& message, TimeNs again_ns, TimeNs now) noexcept {
-  Voice& v = voice(told);
-  std::array<std::byte, sizeof v.bytes> bytes{};
-  const auto written = messages::encode(message, bytes);
-  TANDEM_CHECK(!written.empty(), "a command fits its buffer");
-  const bool same =
-      written.size() == v.size && std::equal(written.begin() + kPayloadAt, written.end(), v.bytes.begin() + kPayloadAt);
-  if (same && now - v.said_ns < again_ns) return;
-  std::copy(written.begin(), written.end(), v.bytes.begin());
-  v.size = written.size();
-  send(v, now);
-}
-
-void EyebotDriver::count(const hal::Limited& limited) noexcept {
-  statistics_.clamped += limited.result == hal::LimitResult::Clamped ? 1 : 0;
-  statistics_.not_finite += limited.result == hal::LimitResult::NotFinite ? 1 : 0;
-}
-
-/// What the controller wrote stays as it is: it may write once and never again.
-void EyebotDriver::say_setpoint(TimeNs now) noexcept {
-  statistics_.rearmed += interrupted_ ? 1 : 0;
-  interrupted_ = false;
-  hal::QuadrotorPosition position;
-  if (robot_.uses<hal::QuadrotorPosition>()) position = robot_.port<hal::QuadrotorPosition>();
-  count(position.limit(flight_));
-  if (!position.hold) {
-    messages::CmdPosition m{};
-    write(position, settings_.world, m);
-    m.max_speed = static_cast<float>(flight_.max_speed_m_s);
-    m.timeout_ms = kPositionHolds_ms;
-    if (setpoint_ != Told::Position) voice(Told::Position).size = 0;
-    setpoint_ = Told::Position;
-    say(Told::Position, m, kPositionAgain, now);
-    return;
-  }
-  hal::QuadrotorSpeed speed;
-  if (robot_.uses<hal::QuadrotorSpeed>()) speed = robot_.port<hal::QuadrotorSpeed>();
-  count(speed.limit(flight_));
-  messages::CmdVelocity m{};
-  write(speed, settings_.world, m);
-  m.timeout_ms = kVelocityHolds_ms;
-  if (setpoint_ != Told::Velocity) voice(Told::Velocity).size = 0;
-  setpoint_ = Told::Velocity;
-  say(Told::Velocity, m, kVelocityAgain, now);
-}
-
-void EyebotDriver::say_devices(TimeNs now) noexcept {
-  const bool lower = robot_.uses<hal::RingLeds>(), upper = robot_.uses<hal::UpperRingLeds>();
-  const bool beacon = robot_.uses<hal::CameraLed>();
-  if (lower || upper || beacon) {
-    write(lower ? &robot_.port<hal::RingLeds>() : nullptr, upper ? &robot_.port<hal::UpperRingLeds>() : nullptr,
-          beacon ? &robot_.port<hal::CameraLed>() : nullptr, leds_);
-    say(Told::Leds, leds_, kDeviceAgain, now);
-  }
-  if (robot_.uses<hal::PanTiltDrive>()) {
-    hal::PanTiltDrive drive = robot_.port<hal::PanTiltDrive>();
-    count(limited(drive, robot_.kind()));
-    messages::CmdPanTilt m{};
-    write(drive, m);
-    say(Told::PanTilt, m, kDeviceAgain, now);
-  }
-  if (robot_.uses<hal::ScannerDrive>()) {
-    hal::ScannerDrive drive = robot_.port<hal::ScannerDrive>();
-    count(limited(drive, robot_.kind()));
-    messages::CmdScanner m{};
-    write(drive, m);
-    say(Told::Scanner, m, kDeviceAgain, now);
-  }
-  if (robot_.uses<hal::RangeAndBearingSend>()) {
-    write(robot_.port<hal::RangeAndBearingSend>(), radio_);
-    say(Told::Rab, radio_, kDeviceAgain, now);
-  }
-}
-
-void EyebotDriver::say_order(TimeNs now) noexcept {
-  const auto order = orders_.due(now);
-  if (!order) return;
-  messages::CmdMode m{};
-  m.action = static_cast<std::int8_t>(order->action);
-  m.param = order->param;
-  if (order->action != Action::Nop) ordered_ = order->action;
-  voice(Told::Mode).seq = order->seq;  // the same as often as it is said
-  say(Told::Mode, m, 0, now);
-}
-
-void EyebotDriver::say_heartbeat(TimeNs now) noexcept {
-  if (voice(Told::Heartbeat).size != 0 && now - voice(Told::Heartbeat).said_ns < kBeat) return;
-  own_heartbeat_.uptime_ms = (now - started_ns_) / hal::kNsPerMs;
-  say(Told::Heartbeat, own_heartbeat_, 0, now);
 }
 
 // --- when ---
@@ -593,8 +473,8 @@ void EyebotDriver::advance(TimeNs now) noexcept {
       end_flying();
     } else if (overdue(now)) {
       ++statistics_.watchdog_stops;
-      log_.warning("eye-bot '" + settings_.robot.id + "': hovers, no commands came for " +
-                   std::to_string((now - last_commit_ns_) / hal::kNsPerMs) + " ms");
+      log_.warning(who() + "hovers, no commands came for " + std::to_string((now - last_commit_ns_) / hal::kNsPerMs) +
+                   " ms");
       end_flying();
     }
   }

@@ -25,24 +25,41 @@
 #include <string>
 #include <vector>
 
+#include "bridges/bridged_robot.hpp"
 #include "bridges/clock_estimator.hpp"
 #include "bridges/eyebot/flight_plan.hpp"
 #include "bridges/eyebot/inbox.hpp"
 #include "bridges/eyebot/liveness.hpp"
 #include "bridges/eyebot/mode_orders.hpp"
 #include "bridges/eyebot/place_gate.hpp"
-#include "bridges/eyebot/robot.hpp"
 #include "bridges/eyebot/topic.hpp"
 #include "bridges/eyebot/world_frame.hpp"
 #include "bridges/eyebot_messages/messages.hpp"
 #include "bridges/link/stall_meter.hpp"
 #include "hal/device/range_and_bearing.hpp"
 #include "hal/log.hpp"
+#include "hal/robot/eyebot.hpp"
 
 namespace tandem::bridges::eyebot {
 
+/// Every port class that an eye-bot has: sensors first. Range-and-bearing and distance scanner are in both halves.
+const std::vector<const hal::PortType*>& port_types();
+
+class EyebotRobot final : public BridgedRobot {
+ public:
+  explicit EyebotRobot(RobotSettings settings)
+      : BridgedRobot("eye-bot", hal::eyebot::kind(), std::move(settings), port_types()) {
+    never_had = " that can be reached over LCM";
+  }
+};
+
 enum class RobotState : std::uint8_t { Absent, Ready, Active, Suspect, Lost };
 const char* state_name(RobotState state) noexcept;
+
+// How often it is told again what it was told.
+inline constexpr hal::TimeNs kBeat = 200 * hal::kNsPerMs;
+inline constexpr hal::TimeNs kVelocityAgain = 100 * hal::kNsPerMs;
+inline constexpr hal::TimeNs kPositionAgain = 500 * hal::kNsPerMs;
 
 /// Destination of commands.
 class Outbox {
@@ -120,7 +137,7 @@ class EyebotDriver {
 
   /// Hovers now, and until `resume`.
   void stop(hal::TimeNs now) noexcept;
-  void resume() noexcept;
+  void resume() noexcept { set_goal(Goal::Obey, 0); }
   /// Lands, and switches the motors off on the ground. One that hangs at the ceiling stays there. Until `resume`.
   void land(hal::TimeNs now) noexcept;
   /// Its battery is so low that it should not stay in the air.
@@ -184,10 +201,13 @@ class EyebotDriver {
   hal::TimeNs taken(Topic topic) const noexcept { return taken_ns_[static_cast<std::size_t>(topic)]; }
   Voice& voice(Told told) noexcept { return voices_[static_cast<std::size_t>(told)]; }
 
+  /// Before lines of the log.
+  std::string who() const { return "eye-bot '" + settings_.robot.id + "': "; }
+
   // What it says.
   void take_all(hal::TimeNs now);
-  template <class Message, class Use>
-  void take_in(Topic topic, Newest<Message>& newest, hal::TimeNs now, Use use);
+  template <class Message, class... Use>
+  void take_in(Topic topic, Newest<Message>& newest, hal::TimeNs now, Use... use);
   bool accept(const eyebot_messages::Header& header, hal::TimeNs received_ns);
   void complain(Topic topic, const char* flaw, hal::TimeNs now);
   void use_ack(hal::TimeNs received_ns);

@@ -1,11 +1,10 @@
 // `tandem inspect` on LCM: which eye-bots speak there, and what they say. Nothing is said to them.
-#include "bridges/eyebot/inspect.hpp"
-
 #include <memory>
 #include <mutex>
 #include <set>
 
 #include "bridges/eyebot/bridge.hpp"
+#include "bridges/eyebot/register.hpp"
 #include "bridges/link/link_text.hpp"
 #include "hal/robot/eyebot.hpp"
 
@@ -24,10 +23,8 @@ struct Roll {
 };
 
 void note_robot(Roll& roll, std::string_view channel) {
-  constexpr std::string_view kHead = "eyebot/";
-  channel.remove_prefix(kHead.size());
-  const std::string_view name = channel.substr(0, channel.find('/'));
-  if (!is_robot_name(name)) return;
+  const std::string_view name = robot_of(channel);
+  if (name.empty()) return;
   const std::lock_guard lock(roll.mutex);
   roll.names.insert(std::string(name));
 }

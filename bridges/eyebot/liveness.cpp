@@ -84,8 +84,4 @@ bool Liveness::namesakes(hal::TimeNs now) const noexcept {
   return turns_ >= kNamesakes && now - turn_ns_ < kNamesakesShown;
 }
 
-bool Liveness::contested(hal::TimeNs now) const noexcept {
-  return rival_ && now - rival_ns_ < kTrial;
-}
-
 }  // namespace tandem::bridges::eyebot

@@ -39,7 +39,7 @@ class Liveness {
   /// The robot and another of its name spoke in turn three times or more, the last time less than three seconds ago.
   bool namesakes(hal::TimeNs now) const noexcept;
   /// Another start, or another robot of the name, has just spoken: it is not known yet which one it is.
-  bool contested(hal::TimeNs now) const noexcept;
+  bool contested(hal::TimeNs now) const noexcept { return rival_ && now - rival_ns_ < kTrial; }
   /// It has been heard for so long that a second robot of its name would have been noticed.
   bool settled(hal::TimeNs now) const noexcept { return known_ && now - begun_ns_ >= kTrial; }
 

@@ -26,10 +26,6 @@ void Neighbours::hear_command(std::int32_t session, hal::TimeNs received_ns) noe
   commanded_ns_.store(received_ns, std::memory_order_relaxed);
 }
 
-std::string Neighbours::commander() const {
-  return hub_of(commander_.load(std::memory_order_relaxed));
-}
-
 std::string Neighbours::hub_of(std::int32_t session) const {
   const std::lock_guard lock(mutex_);
   for (std::size_t i = 0; i < hub_count_; ++i) {

@@ -27,7 +27,7 @@ class Neighbours {
   /// When another hub commanded our robot last; 0: never.
   hal::TimeNs commanded_ns() const noexcept { return commanded_ns_.load(std::memory_order_relaxed); }
   /// Which one, for people: "another hub, 'lab2'," or "another hub".
-  std::string commander() const;
+  std::string commander() const { return hub_of(commander_.load(std::memory_order_relaxed)); }
   std::string hub_of(std::int32_t session) const;
   /// "eb0, eb1"; "" when there are none.
   std::string robots() const;

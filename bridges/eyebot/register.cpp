@@ -1,6 +1,5 @@
 #include "bridges/eyebot/register.hpp"
 
-#include "bridges/eyebot/inspect.hpp"
 #include "bridges/eyebot/stopper.hpp"
 #include "bridges/link/link_text.hpp"
 #include "hal/element_options.hpp"

@@ -2,6 +2,7 @@
 #pragma once
 #include "bridges/bridge_type.hpp"
 #include "bridges/eyebot/bridge.hpp"
+#include "bridges/inspector_type.hpp"
 #include "hal/catalog.hpp"
 
 namespace tandem::bridges::eyebot {
@@ -10,5 +11,6 @@ void register_bridge(hal::Registrar& registrar);
 
 /// What the file says of an eye-bot, as its bridge needs it. Errors: those of BridgeType::make.
 hal::Result<BridgeSettings> settings_for(const BridgeRequest& request);
+const InspectorType& inspector_type() noexcept;
 
 }  // namespace tandem::bridges::eyebot

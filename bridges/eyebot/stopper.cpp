@@ -68,10 +68,6 @@ bool EyebotStopper::open() {
   return true;
 }
 
-std::string EyebotStopper::trouble() const {
-  return link_trouble_.empty() ? driver_.trouble() : link_trouble_;
-}
-
 StopState EyebotStopper::step(TimeNs now) {
   if (details_.name.empty()) return StopState::Confirmed;  // nobody has ever spoken to it
   if (!link_) {

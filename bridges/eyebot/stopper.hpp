@@ -13,7 +13,7 @@ class EyebotStopper final : public guardian::Stopper, private Outbox {
   EyebotStopper(const StopDetails& details, guardian::StopCause cause);
 
   guardian::StopState step(hal::TimeNs now) override;
-  std::string trouble() const override;
+  std::string trouble() const override { return link_trouble_.empty() ? driver_.trouble() : link_trouble_; }
 
  private:
   bool open();
