@@ -176,9 +176,7 @@ void Network::watch_carrier(hal::TimeNs now) noexcept {
 
 /// Asks who is there: all, and those who are awaited and silent one by one.
 void Network::ask_round(hal::TimeNs now) noexcept {
-  payload_.clear();
-  payload_.append(kVersion);
-  if (!transmit(Type::ListNodes)) return;  // again with the next poll
+  if (!transmit(ListNodes{kVersion})) return;  // again with the next poll
   ++statistics_.rounds;
   round_ns_ = now;
   bool anybody = false;
@@ -191,11 +189,7 @@ void Network::ask_round(hal::TimeNs now) noexcept {
     const bool answers_list = node.version >= kVersion && node.state != NodeState::Lost;
     if (!awaited || answers_list || row.read.active) continue;
     if (now - node.heard_ns < timing_.ping_ns && node.heard_ns != 0) continue;
-    payload_.clear();
-    payload_.append(node.id);
-    payload_.append(std::uint16_t{0});
-    payload_.append(std::uint16_t{1});
-    row.pinged = transmit(Type::GetVariables);
+    row.pinged = transmit(GetVariables{node.id, 0, 1});
   }
   // Nodes of old answer nothing else. While nobody is there, they are called in every other round.
   if (!anybody && !asked_all_) {
@@ -205,8 +199,8 @@ void Network::ask_round(hal::TimeNs now) noexcept {
   }
 }
 
-bool Network::transmit(Type type) noexcept {
-  if (link_.send(static_cast<std::uint16_t>(type), payload_.bytes())) return true;
+bool Network::transmit(const Message& message) noexcept {
+  if (send(message)) return true;
   ++statistics_.not_sent;
   return false;
 }
@@ -269,19 +263,14 @@ void Network::ask_description(Row& row, hal::TimeNs now) noexcept {
     return;
   }
   drop_draft(row);
-  payload_.clear();
-  payload_.append(row.node.id);
-  payload_.append(kVersion);
-  transmit(Type::GetNodeDescription);
+  transmit(GetNodeDescription{row.node.id, kVersion});
   asking_ = row.node.id;
   asking_until_ns_ = now + timing_.describe_ns;
 }
 
 void Network::ask_all(hal::TimeNs now) noexcept {
   for (const std::uint8_t id : known()) drop_draft((*rows_)[id]);
-  payload_.clear();
-  payload_.append(kOldVersion);
-  asked_all_ = transmit(Type::GetDescription);
+  asked_all_ = transmit(GetDescription{kOldVersion});
   asking_ = kAll;
   asking_until_ns_ = now + timing_.describe_ns;
 }
@@ -505,11 +494,9 @@ bool Network::send_writes(Row& row) noexcept {
   for (std::size_t from = 0; true;) {
     const Image::Range range = image.next(Image::kDirty, from, kMostWrite, 0);
     if (range.count == 0) return true;
-    payload_.clear();
-    payload_.append(row.node.id);
-    payload_.append(static_cast<std::uint16_t>(range.start));
-    payload_.append(std::span<const std::int16_t>(image.to_write).subspan(range.start, range.count));
-    if (!transmit(Type::SetVariables)) return false;
+    words_.clear();
+    words_.append(std::span<const std::int16_t>(image.to_write).subspan(range.start, range.count));
+    if (!transmit(SetVariables{row.node.id, static_cast<std::uint16_t>(range.start), words_.words()})) return false;
     image.unmark(range.start, range.count, Image::kDirty);
     ++row.node.statistics.writes;
     from = range.start + range.count;
@@ -536,11 +523,8 @@ bool Network::send_read(Row& row, hal::TimeNs now) noexcept {
     read = {true, range.start, range.count, now, again ? row.given_up.first_ns : now, 0, 0};
     row.cursor = range.start + range.count;
   }
-  payload_.clear();
-  payload_.append(node.id);
-  payload_.append(static_cast<std::uint16_t>(read.start));
-  payload_.append(static_cast<std::uint16_t>(read.count));
-  if (!transmit(Type::GetVariables)) {
+  if (!transmit(
+          GetVariables{node.id, static_cast<std::uint16_t>(read.start), static_cast<std::uint16_t>(read.count)})) {
     if (read.tries == 0) read = {};
     return false;
   }

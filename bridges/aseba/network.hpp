@@ -143,7 +143,7 @@ class Network {
   bool send_all(bool writes, hal::TimeNs now);
   bool send_writes(Row& row) noexcept;
   bool send_read(Row& row, hal::TimeNs now) noexcept;
-  bool transmit(Type type) noexcept;
+  bool transmit(const Message& message) noexcept;
   void due(hal::TimeNs at) noexcept { deadline_ = std::min(deadline_, at); }
 
   MessageLink& link_;
@@ -158,7 +158,7 @@ class Network {
   std::size_t first_event_ = 0;
   std::size_t event_count_ = 0;
   Message message_;
-  Payload payload_;
+  Payload payload_, words_;
   bool up_ = false;
   hal::TimeNs round_ns_ = 0;  // of the last round
   static constexpr int kNobody = -1, kAll = -2;

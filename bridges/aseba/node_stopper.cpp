@@ -84,10 +84,6 @@ void NodeStopper::hear(const MessageView& message) {
   }
 }
 
-bool NodeStopper::all_confirmed() const {
-  return std::ranges::all_of(rows_, &Row::confirmed);
-}
-
 StopState NodeStopper::poll(TimeNs now) {
   if (rows_.empty()) return StopState::Confirmed;
   if (!link_ && !open()) return StopState::Unreachable;

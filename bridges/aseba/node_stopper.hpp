@@ -29,7 +29,7 @@ class NodeStopper final : public guardian::Stopper {
   bool open();
   void say();
   void hear(const MessageView& message);
-  bool all_confirmed() const;
+  bool all_confirmed() const { return std::ranges::all_of(rows_, &Row::confirmed); }
 
   MessageLinkOpener opener_;
   std::vector<Row> rows_;

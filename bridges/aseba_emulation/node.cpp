@@ -156,10 +156,6 @@ bool Node::debug(const Message& message, hal::TimeNs at, std::vector<Message>& o
   return true;
 }
 
-void Node::tell_state(std::vector<Message>& out) const {
-  out.push_back(say(type::kExecutionState).add(0).add(flags_));
-}
-
 void Node::load(const Message& message) {
   for (std::size_t i = 2; i < message.words(); ++i) {
     const std::size_t at = message.word(1) + i - 2;

@@ -91,7 +91,7 @@ class Node {
 
   std::uint16_t address_of(std::string_view variable) const;
   void describe(hal::TimeNs at, std::vector<Message>& out, const EventSink& sink) const;
-  void tell_state(std::vector<Message>& out) const;
+  void tell_state(std::vector<Message>& out) const { out.push_back(say(type::kExecutionState).add(0).add(flags_)); }
   void obey_order(const Message& message, hal::TimeNs at, std::vector<Message>& out, const EventSink& sink);
   void take_event(const Message& message, hal::TimeNs at, std::vector<Message>& out, const EventSink& sink);
   void get(const Message& message, hal::TimeNs at, std::vector<Message>& out, const EventSink& sink) const;

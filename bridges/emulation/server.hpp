@@ -197,6 +197,12 @@ hal::TimeNs first_at(const std::deque<Timed>& line, hal::TimeNs otherwise) {
   return line.empty() ? otherwise : line.front().at;
 }
 
+/// Takes what has arrived by `now` off the line.
+template <class Timed>
+void take_due(std::deque<Timed>& line, hal::TimeNs now, const auto& use) {
+  for (; !line.empty() && line.front().at <= now; line.pop_front()) use(line.front());
+}
+
 /// Opens the log and reads the faults of `options`, then serves. `make(events, faults)` gives the server.
 template <class Fault, class Make>
 hal::Status serve_with(const ServerOptions& options, const FaultTable<Fault>& table, const std::atomic<bool>& stop,

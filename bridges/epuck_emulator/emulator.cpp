@@ -8,6 +8,10 @@
 #include "bridges/emulation/tcp_port.hpp"
 #include "bridges/epuck_emulator/faults.hpp"
 #include "bridges/epuck_emulator/radio.hpp"
+#include "bridges/epuck_emulator/register.hpp"
+#include "hal/device/body_sensors.hpp"
+#include "hal/device/leds.hpp"
+#include "hal/robot/epuck2.hpp"
 
 namespace tandem::bridges::epuck_emulator {
 namespace {
@@ -154,14 +158,11 @@ void EpuckServer::greet_host(TimeNs now) {
 }
 
 void EpuckServer::run_robot(TimeNs now) {
-  while (!to_robot_.empty() && to_robot_.front().at <= now) {
-    const SentByte next = to_robot_.front();
-    to_robot_.pop_front();
+  take_due(to_robot_, now, [this](const SentByte& next) {
     const auto byte = faults_.to_robot(next.byte, next.at);
-    if (!byte) continue;
-    for (int times = faults_.doubles(next.at) ? 2 : 1; times > 0; --times)
+    for (int times = !byte ? 0 : faults_.doubles(next.at) ? 2 : 1; times > 0; --times)
       radio_ ? radio_->receive(*byte, next.at) : robot_.receive(*byte, next.at);
-  }
+  });
   radio_ ? radio_->run_until(now) : robot_.run_until(now);
 }
 
@@ -187,10 +188,7 @@ void EpuckServer::make_noise(TimeNs now) {
 
 void EpuckServer::write_line(TimeNs now) {
   std::vector<std::uint8_t> due;
-  while (!to_host_.empty() && to_host_.front().at <= now) {
-    due.push_back(to_host_.front().byte);
-    to_host_.pop_front();
-  }
+  take_due(to_host_, now, [&due](const SentByte& sent) { due.push_back(sent.byte); });
   if (due.empty() || !port_) return;
   if (!same_baud(now)) {
     for (std::uint8_t& byte : due) byte = faults_.garble(byte);
@@ -240,6 +238,35 @@ hal::Status run(const Options& options, const std::atomic<bool>& stop) {
   return serve_with(options, kFaults, stop, [&](const EventSink& events, std::vector<Fault> faults) {
     return EpuckServer(options, events, FaultPlan(std::move(faults), options.seed), robot);
   });
+}
+
+namespace {
+
+const EmulatorType kType{.name = "epuck",
+                         .kind = hal::epuck::kName,
+                         .summary = "An e-puck's stock firmware: pty:NAME, serial:DEVICE@115200, tcp-listen:PORT.",
+                         .puppet = "<puppet library=\"puppet\" …>",
+                         .needs = &port_types_of<hal::FrontLed, hal::Microphones>,
+                         .ports = &body_ports,
+                         .faults = [] { return kFaults.manual(); },
+                         .read = &read_options<Options>,
+                         .run = &run_emulator<Options, PortBody, run>};
+
+const EmulatorType kType2{.name = "epuck2",
+                          .kind = hal::epuck2::kName,
+                          .summary = "An e-puck2: as an e-puck, or its radio with epuck-tcp-listen:PORT.",
+                          .puppet = "<puppet library=\"puppet\" …>",
+                          .needs = &port_types_of<hal::FrontLed, hal::Microphones>,
+                          .ports = &body_ports,
+                          .faults = [] { return kFaults.manual(); },
+                          .read = &read_options<Epuck2Options>,
+                          .run = &run_emulator<Epuck2Options, PortBody, run>};
+
+}  // namespace
+
+void register_emulator(hal::Registrar& registrar) {
+  registrar.add(kType);
+  registrar.add(kType2);
 }
 
 }  // namespace tandem::bridges::epuck_emulator

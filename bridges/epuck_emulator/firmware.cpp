@@ -211,10 +211,6 @@ void Firmware::send_text(std::string_view text, hal::TimeNs at) {
   send(bytes_of(text), at);
 }
 
-void Firmware::calibrate(const BodySenses& senses) {
-  memory_.infrared_offset = proximity(senses, false);
-}
-
 void Firmware::count_steps(hal::TimeNs at) {
   to_counters_.take(at, [this](hal::TimeNs from, const Speeds& speeds) {
     left_.set_speed(speeds.left, from);

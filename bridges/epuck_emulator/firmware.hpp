@@ -112,7 +112,7 @@ class Firmware {
   void send(std::span<const std::uint8_t> bytes, hal::TimeNs at);
   void send_text(std::string_view text, hal::TimeNs at);
   void greet(hal::TimeNs at);
-  void calibrate(const BodySenses& senses);
+  void calibrate(const BodySenses& senses) { memory_.infrared_offset = proximity(senses, false); }
   void set_speeds(std::int32_t left, std::int32_t right, std::string_view by, hal::TimeNs at);
   void turn_wheels(std::int32_t left, std::int32_t right, hal::TimeNs at);
   void stop_wheels(hal::TimeNs at);

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "bridges/emulation/heard.hpp"
 #include "hal/device/body_sensors.hpp"
 #include "hal/device/cameras.hpp"
 #include "hal/device/distance_scanner.hpp"
@@ -113,21 +112,12 @@ void write_body(PortBank& bank, const BodyCommand& command) {
   head.pan_rad = command.pan_rad;
   head.tilt_rad = command.tilt_rad;
   head.laser = command.laser;
-  auto& scanner = bank.port<hal::ScannerDrive>();
-  scanner.mode = static_cast<hal::ScannerMode>(command.scanner);
-  scanner.speed_rad_s = command.scanner_rad_s;
-  scanner.angle_rad = command.scanner_rad;
+  write_scanner(bank, command);
   auto& radio = bank.port<hal::RangeAndBearingSend>();
   radio.sending = !command.radio.empty();
   radio.size = static_cast<std::uint8_t>(std::min<std::size_t>(command.radio.size(), radio.payload.size()));
   radio.payload = {};
   copy_values(command.radio, radio.payload);
-}
-
-std::vector<Heard> PortBody::take_heard() {
-  return take_messages<Heard>(ports_, heard_, [](Heard& heard, const auto* bytes, std::size_t size) {
-    heard.payload.assign(bytes, bytes + size);
-  });
 }
 
 }  // namespace tandem::bridges::eyebot_emulator

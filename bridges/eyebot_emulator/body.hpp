@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "bridges/emulation/emulated_body.hpp"
+#include "bridges/emulation/heard.hpp"
 #include "hal/robot/eyebot.hpp"
 
 namespace tandem::bridges::eyebot_emulator {
@@ -20,6 +20,7 @@ struct Heard {
   double bearing_rad = 0.0;    ///< counter-clockwise from forward
   double elevation_rad = 0.0;  ///< upwards
   std::vector<std::uint8_t> payload{};
+  void take(const std::uint8_t* bytes, std::size_t size) { payload.assign(bytes, bytes + size); }
   friend bool operator==(const Heard&, const Heard&) = default;
 };
 
@@ -96,11 +97,7 @@ struct BodyCommand {
 };
 
 /// A body for the firmware to live in.
-class EmulatedBody : public EmulatedBodyOf<BodySenses, BodyCommand> {
- public:
-  /// Messages that were heard since the last call.
-  virtual std::vector<Heard> take_heard() = 0;
-};
+using EmulatedBody = HearingBodyOf<BodySenses, BodyCommand, Heard>;
 
 /// The ports that the firmware senses and drives, and how: the other robot takes off, lands, attaches and lets go as
 /// its own tasks do; once they are done, and between them, it flies with the firmware's velocities. With its motors cut
@@ -109,13 +106,6 @@ std::vector<const hal::PortType*> body_ports();
 void read_body(const PortBank& bank, BodySenses& senses);
 void write_body(PortBank& bank, const BodyCommand& command);
 
-class PortBody final : public PortBodyOf<EmulatedBody, read_body, write_body> {
- public:
-  using PortBodyOf::PortBodyOf;
-  std::vector<Heard> take_heard() override;
-
- private:
-  std::uint64_t heard_ = 0;  // readings that were taken
-};
+using PortBody = HearingPortBodyOf<EmulatedBody, Heard, read_body, write_body>;
 
 }  // namespace tandem::bridges::eyebot_emulator

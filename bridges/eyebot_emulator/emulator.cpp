@@ -9,6 +9,8 @@
 #include <unistd.h>
 
 #include "bridges/eyebot_emulator/faults.hpp"
+#include "bridges/eyebot_emulator/register.hpp"
+#include "hal/device/flight.hpp"
 
 namespace tandem::bridges::eyebot_emulator {
 namespace {
@@ -238,11 +240,7 @@ void EyebotServer::distribute() {
 }
 
 void EyebotServer::fly(Flyer& flyer, TimeNs now) {
-  while (!flyer.to_robot.empty() && flyer.to_robot.front().at <= now) {
-    const Datagram& message = flyer.to_robot.front();
-    flyer.robot.receive(message.channel, message.data, message.at);
-    flyer.to_robot.pop_front();
-  }
+  take_due(flyer.to_robot, now, [&](const Datagram& d) { flyer.robot.receive(d.channel, d.data, d.at); });
   flyer.robot.run_until(now);
   if (const auto at = flyer.robot.first_driven_at()) flyer.faults.driven(*at, now);
   publish(flyer, now);
@@ -257,12 +255,10 @@ void EyebotServer::publish(Flyer& flyer, TimeNs now) {
     d.at += delay_ns(options_.robot.delays.to_host_s);
     flyer.to_hub.push_back(std::move(d));
   }
-  while (!flyer.to_hub.empty() && flyer.to_hub.front().at <= now) {
-    const Datagram& message = flyer.to_hub.front();
+  take_due(flyer.to_hub, now, [&](const Datagram& message) {
     if (message.channel.ends_with("/state")) flyer.robot.state_left(monotonic_ns());
     link_->publish(message.channel, message.data);
-    flyer.to_hub.pop_front();
-  }
+  });
 }
 
 void EyebotServer::speak(SecondHub& hub, const std::string& robot, TimeNs now) {
@@ -280,8 +276,7 @@ TimeNs EyebotServer::next_wake(TimeNs now) const {
     for (const auto& flyer : *crew) {
       if (!flyer) continue;
       wake = std::min(wake, flyer->robot.next_event());
-      if (!flyer->to_robot.empty()) wake = std::min(wake, flyer->to_robot.front().at);
-      if (!flyer->to_hub.empty()) wake = std::min(wake, flyer->to_hub.front().at);
+      wake = std::min({wake, first_at(flyer->to_robot, wake), first_at(flyer->to_hub, wake)});
       if (const auto change = flyer->faults.next_change_at()) wake = std::min(wake, *change);
     }
   }
@@ -328,6 +323,25 @@ hal::Status run(const Options& options, const std::atomic<bool>& stop) {
   return serve_with(options, kFaults, stop, [&](const EventSink& events, const std::vector<Fault>& faults) {
     return EyebotServer(options, events, faults);
   });
+}
+
+namespace {
+
+const EmulatorType kType{
+    .name = "eyebot",
+    .kind = hal::eyebot::kName,
+    .summary = "Eye-bots on a network: lcm:udpm://GROUP:PORT?ttl=0.",
+    .puppet = "<eyebot_puppet library=\"puppet\" …> with flight_task, quadrotor_speed, flight_state and positioning",
+    .needs = &port_types_of<hal::FlightTask, hal::QuadrotorSpeed, hal::FlightState, hal::Positioning>,
+    .ports = &body_ports,
+    .faults = [] { return kFaults.manual(); },
+    .read = &read_options<Options>,
+    .run = &run_emulator<Options, PortBody, run>};
+
+}  // namespace
+
+void register_emulator(hal::Registrar& registrar) {
+  registrar.add(kType);
 }
 
 }  // namespace tandem::bridges::eyebot_emulator

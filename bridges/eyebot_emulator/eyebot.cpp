@@ -256,10 +256,6 @@ StatusReport Eyebot::status(TimeNs at) const {
   return status;
 }
 
-void Eyebot::send_status(TimeNs at) {
-  send("status", at, [&](const Header& h) { return write_status(h, status(at)); });
-}
-
 void Eyebot::report(TimeNs at) {
   const std::int64_t n = loops_;
   const auto send_state = [&] {

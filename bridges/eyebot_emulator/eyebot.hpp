@@ -111,7 +111,9 @@ class Eyebot {
   Conditions conditions() const;
   StatusReport status(hal::TimeNs at) const;
   void send(std::string_view topic, hal::TimeNs at, const std::function<Bytes(const Header&)>& write);
-  void send_status(hal::TimeNs at);
+  void send_status(hal::TimeNs at) {
+    send("status", at, [&](const Header& h) { return write_status(h, status(at)); });
+  }
 
   void hear(const Command& command, std::size_t channel, hal::TimeNs at);
   void hear_hub(const Command& command, hal::TimeNs at);

@@ -68,10 +68,6 @@ std::string_view name_of_action(std::int8_t action) {
   return kActionNames[static_cast<std::size_t>(action)];
 }
 
-void Supervisor::power_on() {
-  if (mode_ == Mode::Off) mode_ = Mode::Idle;
-}
-
 bool Supervisor::motors() const noexcept {
   return mode_ != Mode::Off && mode_ != Mode::Idle && mode_ != Mode::Attached && mode_ != Mode::Estop;
 }
@@ -192,10 +188,6 @@ void Supervisor::stop() {
   stop_cleared_ = false;
 }
 
-void Supervisor::release() {
-  controller_ = 0;
-}
-
 Answer Supervisor::setpoint(std::int32_t session, Mode mode, std::optional<hal::TimeNs> until, hal::TimeNs at) {
   if (controller_ == 0 || session != controller_) {
     return rejected(Verdict::RejectedSource, controller_ != 0 ? "another hub is in control" : "nobody is in control");
@@ -209,10 +201,6 @@ Answer Supervisor::setpoint(std::int32_t session, Mode mode, std::optional<hal::
   enter(mode);
   valid_until_ = until;
   return {};
-}
-
-void Supervisor::heartbeat(std::int32_t session, hal::TimeNs at) {
-  if (session != 0 && session == controller_) heard_ = at;
 }
 
 void Supervisor::raise(hal::TimeNs at) {

@@ -64,7 +64,9 @@ class Supervisor {
   static constexpr double kSink_m_s = 0.3;                            ///< as the protocol's blind descent, too
 
   /// From Off to Idle.
-  void power_on();
+  void power_on() {
+    if (mode_ == Mode::Off) mode_ = Mode::Idle;
+  }
 
   /// An order of `session`. @returns what is acknowledged; nothing has changed unless it is Ok (clearing fail-safes may
   /// have cleared some, and still fail)
@@ -72,7 +74,9 @@ class Supervisor {
   /// A velocity (`mode` Velocity) or a place (Position) to fly at or to, valid until `until` if that is given.
   Answer setpoint(std::int32_t session, Mode mode, std::optional<hal::TimeNs> until, hal::TimeNs at);
   /// A hub lives.
-  void heartbeat(std::int32_t session, hal::TimeNs at);
+  void heartbeat(std::int32_t session, hal::TimeNs at) {
+    if (session != 0 && session == controller_) heard_ = at;
+  }
   /// What the robot senses at `at`: carries out fail-safes, and ends what is complete.
   void update(const Conditions& conditions, hal::TimeNs at);
 
@@ -104,7 +108,7 @@ class Supervisor {
   void raise(hal::TimeNs at);
   void obey_failsafes();
   void finish();
-  void release();
+  void release() { controller_ = 0; }
 
   Mode mode_ = Mode::Off;
   bool armed_ = false;

@@ -1,11 +1,10 @@
 // `tandem inspect` on links that carry ASEBA messages: a foot-bot's modules, whatever they are called.
-#include "bridges/footbot/inspect.hpp"
-
 #include <algorithm>
 
 #include "bridges/aseba/message_link_text.hpp"
 #include "bridges/aseba/network.hpp"
 #include "bridges/aseba/reopening_messages.hpp"
+#include "bridges/footbot/register.hpp"
 #include "bridges/link/link_text.hpp"
 #include "hal/robot/footbot.hpp"
 

@@ -2,7 +2,6 @@
 
 #include "bridges/aseba/node_stopper.hpp"
 #include "bridges/footbot/bridge.hpp"
-#include "bridges/footbot/inspect.hpp"
 #include "bridges/footbot/map_file.hpp"
 #include "hal/element.hpp"
 #include "hal/element_options.hpp"

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "bridges/emulation/heard.hpp"
 #include "hal/device/body_sensors.hpp"
 #include "hal/device/distance_scanner.hpp"
 #include "hal/device/gripper.hpp"
@@ -58,20 +57,11 @@ void write_body(PortBank& bank, const BodyCommand& command) {
   turret.speed_rad_s = command.turret_rad_s;
   turret.angle_rad = command.turret_rad;
   bank.port<hal::GripperDrive>().aperture_rad = command.gripper_rad;
-  auto& scanner = bank.port<hal::ScannerDrive>();
-  scanner.mode = static_cast<hal::ScannerMode>(command.scanner);
-  scanner.speed_rad_s = command.scanner_rad_s;
-  scanner.angle_rad = command.scanner_rad;
+  write_scanner(bank, command);
   auto& radio = bank.port<hal::RangeAndBearingSend>();
   radio.sending = command.radio_sends;
   radio.size = static_cast<std::uint8_t>(kRadioBytes);
   copy_values(command.radio, radio.payload);
-}
-
-std::vector<Heard> PortBody::take_heard() {
-  return take_messages<Heard>(ports_, heard_, [](Heard& heard, const auto* bytes, std::size_t size) {
-    std::copy_n(bytes, std::min(size, kRadioBytes), heard.payload.begin());
-  });
 }
 
 }  // namespace tandem::bridges::footbot_emulator

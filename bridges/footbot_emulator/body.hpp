@@ -1,11 +1,12 @@
 // Interface of an emulated foot-bot's body: its senses and commands in SI, the world behind the modules.
 #pragma once
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <limits>
 #include <vector>
 
-#include "bridges/emulation/emulated_body.hpp"
+#include "bridges/emulation/heard.hpp"
 #include "hal/robot/footbot.hpp"
 
 namespace tandem::bridges::footbot_emulator {
@@ -18,6 +19,9 @@ struct Heard {
   double bearing_rad = 0.0;    ///< counter-clockwise from forward
   double elevation_rad = 0.0;  ///< upwards
   std::array<std::uint8_t, kRadioBytes> payload{};
+  void take(const std::uint8_t* bytes, std::size_t size) {
+    std::copy_n(bytes, std::min(size, kRadioBytes), payload.begin());
+  }
   friend bool operator==(const Heard&, const Heard&) = default;
 };
 
@@ -68,24 +72,13 @@ struct BodyCommand {
 };
 
 /// A body for the modules to live in.
-class EmulatedBody : public EmulatedBodyOf<BodySenses, BodyCommand> {
- public:
-  /// Messages that were heard since the last call.
-  virtual std::vector<Heard> take_heard() = 0;
-};
+using EmulatedBody = HearingBodyOf<BodySenses, BodyCommand, Heard>;
 
 /// The ports that the modules sense and drive, and how.
 std::vector<const hal::PortType*> body_ports();
 void read_body(const PortBank& bank, BodySenses& senses);
 void write_body(PortBank& bank, const BodyCommand& command);
 
-class PortBody final : public PortBodyOf<EmulatedBody, read_body, write_body> {
- public:
-  using PortBodyOf::PortBodyOf;
-  std::vector<Heard> take_heard() override;
-
- private:
-  std::uint64_t heard_ = 0;  // readings that were taken
-};
+using PortBody = HearingPortBodyOf<EmulatedBody, Heard, read_body, write_body>;
 
 }  // namespace tandem::bridges::footbot_emulator

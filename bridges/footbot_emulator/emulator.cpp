@@ -5,6 +5,8 @@
 
 #include "bridges/footbot_emulator/faults.hpp"
 #include "bridges/footbot_emulator/host_side.hpp"
+#include "bridges/footbot_emulator/register.hpp"
+#include "hal/device/wheels.hpp"
 
 namespace tandem::bridges::footbot_emulator {
 namespace {
@@ -92,8 +94,7 @@ hal::Status FootbotServer::take_in(TimeNs now) {
     bus_free_at_ = std::max(bus_free_at_, now) + duration_ns(frame);
     if (faults_.reaches_robot(bus_free_at_)) to_robot_.push_back({frame, bus_free_at_ + to_robot_delay_ns_});
   }
-  for (; !to_robot_.empty() && to_robot_.front().at <= now; to_robot_.pop_front())
-    robot_.receive(to_robot_.front().frame, to_robot_.front().at);
+  take_due(to_robot_, now, [this](const TimedFrame& f) { robot_.receive(f.frame, f.at); });
   return {};
 }
 
@@ -103,8 +104,7 @@ void FootbotServer::give_out(TimeNs now) {
   for (const TimedFrame& frame : sent) faults_.to_host(frame, arriving);
   if (!side_) return;
   for (const TimedFrame& f : arriving) to_host_.push_back({f.frame, f.at + to_host_delay_ns_});
-  for (; !to_host_.empty() && to_host_.front().at <= now; to_host_.pop_front())
-    side_->show(to_host_.front().frame, to_host_.front().at);
+  take_due(to_host_, now, [this](const TimedFrame& f) { side_->show(f.frame, f.at); });
   side_->flush(now);
 }
 
@@ -122,6 +122,25 @@ hal::Status run(const Options& options, const std::atomic<bool>& stop) {
   return serve_with(options, kFaults, stop, [&](const EventSink& events, std::vector<Fault> faults) {
     return FootbotServer(options, events, FaultPlan(std::move(faults), options.seed), protocol.value());
   });
+}
+
+namespace {
+
+const EmulatorType kType{
+    .name = "footbot",
+    .kind = hal::footbot::kName,
+    .summary = "A foot-bot's modules behind a CAN adapter or its switch: pty:NAME, can:INTERFACE, tcp-listen:PORT.",
+    .puppet = "<footbot_puppet library=\"puppet\" …>",
+    .needs = &port_types_of<hal::WheelSpeeds>,
+    .ports = &body_ports,
+    .faults = [] { return kFaults.manual(); },
+    .read = &read_options<Options>,
+    .run = &run_emulator<Options, PortBody, run>};
+
+}  // namespace
+
+void register_emulator(hal::Registrar& registrar) {
+  registrar.add(kType);
 }
 
 }  // namespace tandem::bridges::footbot_emulator

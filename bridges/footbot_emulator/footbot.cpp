@@ -64,10 +64,6 @@ void Footbot::power_on(hal::TimeNs at) {
   body_.actuate(at, command_);
 }
 
-bool Footbot::works(std::size_t i, hal::TimeNs at) const {
-  return !conducts_[i].missing && at >= conducts_[i].ready_at;
-}
-
 void Footbot::lose_power(Place place, hal::TimeNs at, std::string_view why) {
   run_until(at);
   module(place).restart();

@@ -78,7 +78,7 @@ class Footbot {
   };
 
   Conduct& conduct(Place place) { return conducts_[static_cast<std::size_t>(place)]; }
-  bool works(std::size_t i, hal::TimeNs at) const;
+  bool works(std::size_t i, hal::TimeNs at) const { return !conducts_[i].missing && at >= conducts_[i].ready_at; }
   void lose_power(Place place, hal::TimeNs at, std::string_view why);
   void loop(hal::TimeNs at);
   void run_timers(hal::TimeNs at);

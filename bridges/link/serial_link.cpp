@@ -182,10 +182,6 @@ SerialLink::SerialLink(LinkAddress address, std::unique_ptr<Port> port)
 
 SerialLink::~SerialLink() = default;
 
-void SerialLink::hang_up() noexcept {
-  if (open_.exchange(false)) ++errors_;
-}
-
 std::size_t SerialLink::write(std::span<const std::uint8_t> bytes, hal::TimeNs budget_ns) noexcept {
   const hal::TimeNs deadline = monotonic_ns() + budget_ns;
   std::size_t done = 0;
@@ -221,22 +217,6 @@ Received SerialLink::read(std::span<std::uint8_t> buffer) noexcept {
   // Readable but empty, or an error: that is how a hang-up shows.
   if (!nothing_yet) hang_up();
   return {};
-}
-
-bool SerialLink::wait(hal::TimeNs timeout_ns) noexcept {
-  return wait_for_input(open_ ? descriptor_ : -1, timeout_ns);
-}
-
-LinkState SerialLink::state() const noexcept {
-  return open_ ? LinkState::Open : LinkState::HungUp;
-}
-
-LinkStatistics SerialLink::statistics() const noexcept {
-  return {bytes_in_, bytes_out_, bytes_refused_, errors_};
-}
-
-std::string SerialLink::name() const {
-  return to_text(address_);
 }
 
 }  // namespace tandem::bridges

@@ -22,16 +22,18 @@ class SerialLink final : public ByteLink {
 
   std::size_t write(std::span<const std::uint8_t> bytes, hal::TimeNs budget_ns) noexcept override;
   Received read(std::span<std::uint8_t> buffer) noexcept override;
-  bool wait(hal::TimeNs timeout_ns) noexcept override;
+  bool wait(hal::TimeNs timeout_ns) noexcept override { return wait_for_input(open_ ? descriptor_ : -1, timeout_ns); }
   int descriptor() const noexcept override { return descriptor_; }
-  LinkState state() const noexcept override;
-  LinkStatistics statistics() const noexcept override;
-  std::string name() const override;
+  LinkState state() const noexcept override { return open_ ? LinkState::Open : LinkState::HungUp; }
+  LinkStatistics statistics() const noexcept override { return {bytes_in_, bytes_out_, bytes_refused_, errors_}; }
+  std::string name() const override { return to_text(address_); }
 
  private:
   class Port;
   SerialLink(LinkAddress address, std::unique_ptr<Port> port);
-  void hang_up() noexcept;
+  void hang_up() noexcept {
+    if (open_.exchange(false)) ++errors_;
+  }
 
   LinkAddress address_;
   std::unique_ptr<Port> port_;

@@ -146,10 +146,6 @@ TcpLink::~TcpLink() {
   ::close(socket_);
 }
 
-void TcpLink::hang_up() noexcept {
-  if (open_.exchange(false)) ++errors_;
-}
-
 std::size_t TcpLink::write(std::span<const std::uint8_t> bytes, hal::TimeNs budget_ns) noexcept {
   const hal::TimeNs deadline = monotonic_ns() + budget_ns;
   std::size_t done = 0;
@@ -180,10 +176,6 @@ Received TcpLink::read(std::span<std::uint8_t> buffer) noexcept {
   }
   if (n == 0 || (errno != EAGAIN && errno != EINTR)) hang_up();
   return {};
-}
-
-bool TcpLink::wait(hal::TimeNs timeout_ns) noexcept {
-  return wait_for_input(open_ ? socket_ : -1, timeout_ns);
 }
 
 }  // namespace tandem::bridges

@@ -44,7 +44,7 @@ class TcpLink final : public ByteLink {
 
   std::size_t write(std::span<const std::uint8_t> bytes, hal::TimeNs budget_ns) noexcept override;
   Received read(std::span<std::uint8_t> buffer) noexcept override;
-  bool wait(hal::TimeNs timeout_ns) noexcept override;
+  bool wait(hal::TimeNs timeout_ns) noexcept override { return wait_for_input(open_ ? socket_ : -1, timeout_ns); }
   int descriptor() const noexcept override { return socket_; }
   LinkState state() const noexcept override { return open_ ? LinkState::Open : LinkState::HungUp; }
   LinkStatistics statistics() const noexcept override { return {bytes_in_, bytes_out_, bytes_refused_, errors_}; }
@@ -52,7 +52,9 @@ class TcpLink final : public ByteLink {
 
  private:
   TcpLink(std::string name, int socket) : name_(std::move(name)), socket_(socket) {}
-  void hang_up() noexcept;
+  void hang_up() noexcept {
+    if (open_.exchange(false)) ++errors_;
+  }
 
   std::string name_;
   int socket_;

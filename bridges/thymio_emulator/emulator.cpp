@@ -6,6 +6,9 @@
 
 #include "bridges/aseba_emulation/host_line.hpp"
 #include "bridges/thymio_emulator/faults.hpp"
+#include "bridges/thymio_emulator/register.hpp"
+#include "hal/device/wheels.hpp"
+#include "hal/robot/thymio.hpp"
 
 namespace tandem::bridges::thymio_emulator {
 namespace {
@@ -84,9 +87,7 @@ void ThymioServer::give_out(TimeNs now) {
   for (const TimedMessage& message : sent) faults_.to_host(message, arriving);
   if (!line_) return;
   for (TimedMessage& m : arriving) to_hosts_.push_back({std::move(m.message), m.at + to_host_delay_ns_});
-  for (; !to_hosts_.empty() && to_hosts_.front().at <= now; to_hosts_.pop_front()) {
-    line_->tell(to_hosts_.front().message, now);
-  }
+  take_due(to_hosts_, now, [&](const TimedMessage& m) { line_->tell(m.message, now); });
   line_->flush(now);
 }
 
@@ -104,6 +105,26 @@ hal::Status run(const Options& options, const std::atomic<bool>& stop) {
   return serve_with(options, kFaults, stop, [&](const EventSink& events, std::vector<Fault> faults) {
     return ThymioServer(options, events, FaultPlan(std::move(faults), options.seed));
   });
+}
+
+namespace {
+
+const EmulatorType kType{.name = "thymio",
+                         .kind = hal::thymio::kName,
+                         .summary =
+                             "A Thymio II, as USB or ASEBA's switch shows it: pty:NAME, serial:DEVICE, "
+                             "tcp-listen:PORT.",
+                         .puppet = "<thymio_puppet library=\"puppet\" …>",
+                         .needs = &port_types_of<hal::WheelSpeeds>,
+                         .ports = &body_ports,
+                         .faults = [] { return kFaults.manual(); },
+                         .read = &read_options<Options>,
+                         .run = &run_emulator<Options, PortBody, run>};
+
+}  // namespace
+
+void register_emulator(hal::Registrar& registrar) {
+  registrar.add(kType);
 }
 
 }  // namespace tandem::bridges::thymio_emulator

@@ -19,11 +19,6 @@ double number(std::span<const std::byte> data, std::size_t at) noexcept {
   return static_cast<double>(std::bit_cast<float>(static_cast<std::uint32_t>(little_endian(data, at, 4))));
 }
 
-/// Zero stands for what is not told.
-std::optional<double> told(double value) noexcept {
-  return value == 0.0 ? std::nullopt : std::optional(value);
-}
-
 }  // namespace
 
 bool is_compact(std::span<const std::byte> data) noexcept {

@@ -3,6 +3,7 @@
 #pragma once
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -22,6 +23,11 @@ bool decode_compact(std::span<const std::byte> data, std::vector<Sighting>& out)
 
 /// The same for a message of the LCM type tandem.poses_t.
 bool decode_lcm(std::span<const std::byte> data, std::vector<Sighting>& out);
+
+/// Zero stands for what is not told.
+inline std::optional<double> told(double value) noexcept {
+  return value == 0.0 ? std::nullopt : std::optional(value);
+}
 
 /// Whether all numbers of a sighting are numbers, and its deviations positive.
 bool is_sound(const Sighting& sighting) noexcept;

@@ -32,10 +32,6 @@ bool has_sound_lengths(std::span<const std::byte> data) noexcept {
   return at == data.size();
 }
 
-std::optional<double> told(double value) noexcept {
-  return value == 0.0 ? std::nullopt : std::optional(value);
-}
-
 }  // namespace
 
 bool decode_lcm(std::span<const std::byte> data, std::vector<Sighting>& out) {

@@ -1,7 +1,6 @@
 #include "bridges/wired/register.hpp"
 
-#include "bridges/wired/wired_epuck.hpp"
-#include "bridges/wired/wired_footbot.hpp"
+#include "bridges/wired/wired_line.hpp"
 #include "hal/robot/epuck.hpp"
 #include "hal/robot/footbot.hpp"
 

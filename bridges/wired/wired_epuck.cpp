@@ -1,5 +1,3 @@
-#include "bridges/wired/wired_epuck.hpp"
-
 #include <algorithm>
 #include <deque>
 #include <vector>

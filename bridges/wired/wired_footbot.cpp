@@ -1,5 +1,3 @@
-#include "bridges/wired/wired_footbot.hpp"
-
 #include <deque>
 #include <utility>
 

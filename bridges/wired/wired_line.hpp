@@ -79,4 +79,7 @@ class WiredLine : public WiredRobot {
   hal::TimeNs handshake_ns_, tick_ns_, step_ns_, now_ = 0;
 };
 
+MadeWiredRobot make_wired_epuck(const WiredRequest& request);
+MadeWiredRobot make_wired_footbot(const WiredRequest& request);
+
 }  // namespace tandem::bridges::wired

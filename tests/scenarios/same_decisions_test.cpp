@@ -6,7 +6,7 @@
 #include "app/robots/bridged_controller.hpp"
 #include "app/robots/simulated_body.hpp"
 #include "app/robots/wired_peer.hpp"
-#include "bridges/wired/wired_epuck.hpp"
+#include "bridges/wired/wired_line.hpp"
 #include "hal/device/ring_sensors.hpp"
 #include "hal/device/wheels.hpp"
 #include "hal/robot/epuck.hpp"

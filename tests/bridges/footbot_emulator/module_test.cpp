@@ -1,6 +1,5 @@
 // One module, asked with the bytes of the protocol's description.
-#include "bridges/footbot_emulator/module.hpp"
-
+#include "bridges/footbot_emulator/modules.hpp"
 #include "tests/bridges/footbot_emulator/bench.hpp"
 
 namespace tandem::bridges::footbot_emulator {
