@@ -1,7 +1,6 @@
 #include "bridges/aseba/node.hpp"
 
 #include <cstring>
-#include <limits>
 
 namespace tandem::bridges::aseba {
 

@@ -1,6 +1,5 @@
 #include "bridges/calibration/place_fit.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 

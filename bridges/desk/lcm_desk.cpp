@@ -48,16 +48,25 @@ bool is_sound(std::span<const std::byte> data, std::int64_t hash, std::size_t lo
 }
 
 template <class Message>
-bool decode(Message& message, std::span<const std::byte> data) {
+std::optional<DeskMessage> decode(std::span<const std::byte> data, std::string Message::*text, std::size_t longest) {
+  if (!is_sound(data, Message::getHash(), longest)) return {};
+  Message m;
   try {
-    return message.decode(data.data(), 0, static_cast<int>(data.size())) >= 0;
+    if (m.decode(data.data(), 0, static_cast<int>(data.size())) < 0) return {};
   } catch (const std::exception&) {
-    return false;
+    return {};
   }
+  return DeskMessage{m.number, m.who, m.*text, m.run, m.proof};
 }
 
 template <class Message>
-std::vector<std::byte> encode(const Message& message) {
+std::vector<std::byte> encode(const DeskMessage& m, std::string Message::*text) {
+  Message message;
+  message.number = m.number;
+  message.who = m.who;
+  message.*text = m.text;
+  message.run = m.run;
+  message.proof = m.proof;
   std::vector<std::byte> bytes(static_cast<std::size_t>(message.getEncodedSize()));
   (void)message.encode(bytes.data(), 0, static_cast<int>(bytes.size()));
   return bytes;
@@ -76,32 +85,19 @@ std::string literal(const std::string& name) {
 }  // namespace
 
 std::optional<DeskMessage> decode_command(std::span<const std::byte> data) {
-  desk_command_t message;
-  if (!is_sound(data, desk_command_t::getHash(), kLongestCommand) || !decode(message, data)) return {};
-  return DeskMessage{message.number, message.who, message.command, message.run, message.proof};
+  return decode(data, &desk_command_t::command, kLongestCommand);
 }
+
 std::optional<DeskMessage> decode_reply(std::span<const std::byte> data) {
-  desk_reply_t message;
-  if (!is_sound(data, desk_reply_t::getHash(), kLongestAnswer) || !decode(message, data)) return {};
-  return DeskMessage{message.number, message.who, message.answer, message.run, message.proof};
+  return decode(data, &desk_reply_t::answer, kLongestAnswer);
 }
+
 std::vector<std::byte> encode_command(const DeskMessage& m) {
-  desk_command_t message;
-  message.number = m.number;
-  message.who = m.who;
-  message.command = m.text;
-  message.run = m.run;
-  message.proof = m.proof;
-  return encode(message);
+  return encode(m, &desk_command_t::command);
 }
+
 std::vector<std::byte> encode_reply(const DeskMessage& m) {
-  desk_reply_t message;
-  message.number = m.number;
-  message.who = m.who;
-  message.answer = m.text;
-  message.run = m.run;
-  message.proof = m.proof;
-  return encode(message);
+  return encode(m, &desk_reply_t::answer);
 }
 
 struct LcmDesk::State {

@@ -1,6 +1,5 @@
 #include "bridges/emulation/fault_spec.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 #include "hal/unit.hpp"

@@ -7,7 +7,6 @@
 #include "bridges/epuck/stopper.hpp"
 #include "bridges/link/device.hpp"
 #include "bridges/link/pending_link.hpp"
-#include "hal/check.hpp"
 #include "hal/robot/epuck.hpp"
 
 namespace tandem::bridges::epuck {

@@ -49,30 +49,52 @@ bool in_network(std::string_view link_name) noexcept;
 /// For a link of this name: Bluetooth (rfcomm) devices and those in a network answer late.
 StopTiming stop_timing_for(std::string_view link_name) noexcept;
 
-/// The stop as a conversation, without I/O and without a clock. Begun once, it says stop, asks, and begins a new round
+/// The stop of one wire as a conversation without I/O.
+class StopTalk {
+ public:
+  virtual ~StopTalk() = default;
+  /// A link was opened.
+  virtual void begin(hal::TimeNs now) noexcept = 0;
+  virtual void on_bytes(std::span<const std::uint8_t> bytes, hal::TimeNs at) noexcept = 0;
+  /// Appends what is due to `out`.
+  virtual void poll(hal::TimeNs now, Packet& out) noexcept = 0;
+  virtual hal::TimeNs next_deadline() const noexcept = 0;
+  virtual bool confirmed() const noexcept = 0;
+  virtual bool answered() const noexcept = 0;
+  /// The link is of no more use, although it is open.
+  virtual bool wants_new_link() const noexcept { return false; }
+  /// A packet that was sent in part only spoils what follows on the same link.
+  virtual bool needs_whole_packets() const noexcept { return false; }
+};
+
+/// The stop over a serial line. Begun once, it says stop, asks, and begins a new round
 /// until the robot confirms, however long that takes: in a dead link about every 150 ms. Where older answers are taken
 /// for the right one because the line is slow, the silence that it waits for is doubled. Allocates nothing.
-class StopProcedure {
+class StopProcedure final : public StopTalk {
  public:
   explicit StopProcedure(const StopTiming& timing = {}) noexcept : timing_(timing), quiet_ns_(timing.quiet_ns) {}
 
   /// Begins anew: the first burst is due at once. What is under way may still come for `round_trip_ns`.
-  void begin(hal::TimeNs now, hal::TimeNs round_trip_ns = 0) noexcept;
+  void begin(hal::TimeNs now, hal::TimeNs round_trip_ns) noexcept;
+  void begin(hal::TimeNs now) noexcept override { begin(now, 0); }
   void on_byte(std::uint8_t byte, hal::TimeNs at) noexcept;
+  void on_bytes(std::span<const std::uint8_t> bytes, hal::TimeNs at) noexcept override {
+    for (const std::uint8_t byte : bytes) on_byte(byte, at);
+  }
   /// Appends what is due to `out`, which the caller sends at once; applies time-outs.
-  void poll(hal::TimeNs now, Packet& out) noexcept;
+  void poll(hal::TimeNs now, Packet& out) noexcept override;
   /// When `poll` has something to do. Never, once confirmed.
-  hal::TimeNs next_deadline() const noexcept;
+  hal::TimeNs next_deadline() const noexcept override;
   /// Gives an answer that is awaited so much more time.
   void extend(hal::TimeNs by) noexcept {
     if (step_ == Step::Answer) due_ns_ += by;
   }
 
-  bool confirmed() const noexcept { return step_ == Step::Confirmed; }
+  bool confirmed() const noexcept override { return step_ == Step::Confirmed; }
   /// Rounds that ended without a confirmation since `begin`.
   int failed_rounds() const noexcept { return failed_rounds_; }
   /// Whether a whole answer came since `begin`: the robot hears and is heard.
-  bool answered() const noexcept { return answered_; }
+  bool answered() const noexcept override { return answered_; }
   /// The newest reading of the wheel counters; valid when `answered`.
   const std::array<std::int16_t, 2>& counters() const noexcept { return counters_; }
 

@@ -63,7 +63,7 @@ EpuckStopper::EpuckStopper(LinkOpener opener, const StopTiming& timing, WireForm
   if (wire == WireForm::Wifi)
     talk_ = std::make_unique<WifiStop>(timing);
   else
-    talk_ = std::make_unique<SerialStop>(timing);
+    talk_ = std::make_unique<StopProcedure>(timing);
 }
 
 bool EpuckStopper::open(TimeNs now) {

@@ -8,61 +8,30 @@
 
 namespace tandem::bridges::epuck {
 
-/// The stop of one wire as a conversation without I/O.
-class StopTalk {
- public:
-  virtual ~StopTalk() = default;
-  /// A link was opened.
-  virtual void begin(hal::TimeNs now) = 0;
-  virtual void on_bytes(std::span<const std::uint8_t> bytes, hal::TimeNs at) = 0;
-  /// Appends what is due to `out`.
-  virtual void poll(hal::TimeNs now, Packet& out) = 0;
-  virtual hal::TimeNs next_deadline() const = 0;
-  virtual bool confirmed() const = 0;
-  virtual bool answered() const = 0;
-  /// The link is of no more use, although it is open.
-  virtual bool wants_new_link() const { return false; }
-  /// A packet that was sent in part only spoils what follows on the same link.
-  virtual bool needs_whole_packets() const { return false; }
-};
+using SerialStop = StopProcedure;
 
-class SerialStop final : public StopTalk {
- public:
-  explicit SerialStop(const StopTiming& timing) : procedure_(timing) {}
-  void begin(hal::TimeNs now) override { procedure_.begin(now); }
-  void on_bytes(std::span<const std::uint8_t> bytes, hal::TimeNs at) override {
-    for (const std::uint8_t byte : bytes) procedure_.on_byte(byte, at);
-  }
-  void poll(hal::TimeNs now, Packet& out) override { procedure_.poll(now, out); }
-  hal::TimeNs next_deadline() const override { return procedure_.next_deadline(); }
-  bool confirmed() const override { return procedure_.confirmed(); }
-  bool answered() const override { return procedure_.answered(); }
-
- private:
-  StopProcedure procedure_;
-};
-
+/// The stop over a radio.
 class WifiStop final : public StopTalk {
  public:
   explicit WifiStop(const StopTiming& timing) : timing_{.answer_ns = timing.answer_ns} {
     session_ = WifiSession(timing_);
   }
-  void begin(hal::TimeNs now) override {
+  void begin(hal::TimeNs now) noexcept override {
     session_ = WifiSession(timing_);
     session_.link_up(now);
     session_.shut_down(now);
   }
-  void on_bytes(std::span<const std::uint8_t> bytes, hal::TimeNs at) override { session_.on_bytes(bytes, at); }
-  void poll(hal::TimeNs now, Packet& out) override {
+  void on_bytes(std::span<const std::uint8_t> bytes, hal::TimeNs at) noexcept override { session_.on_bytes(bytes, at); }
+  void poll(hal::TimeNs now, Packet& out) noexcept override {
     session_.poll(now);
     out.append(session_.output().bytes());
     session_.clear_output();
   }
-  hal::TimeNs next_deadline() const override { return session_.next_deadline(); }
-  bool confirmed() const override { return session_.at_rest(); }
-  bool answered() const override { return session_.statistics().answers > 0; }
-  bool wants_new_link() const override { return session_.wants_new_link(); }
-  bool needs_whole_packets() const override { return true; }
+  hal::TimeNs next_deadline() const noexcept override { return session_.next_deadline(); }
+  bool confirmed() const noexcept override { return session_.at_rest(); }
+  bool answered() const noexcept override { return session_.statistics().answers > 0; }
+  bool wants_new_link() const noexcept override { return session_.wants_new_link(); }
+  bool needs_whole_packets() const noexcept override { return true; }
 
  private:
   SessionTiming timing_;

@@ -1,13 +1,11 @@
 #include "bridges/eyebot/bridge.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <random>
 
 #include "bridges/eyebot/stop_body.hpp"
 #include "bridges/eyebot_messages/codec.hpp"
 #include "bridges/link/link_terms.hpp"
-#include "hal/check.hpp"
 #include "hal/robot/eyebot.hpp"
 
 namespace tandem::bridges::eyebot {

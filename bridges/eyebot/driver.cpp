@@ -1,14 +1,12 @@
 #include "bridges/eyebot/driver.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <cstring>
 #include <ctime>
 
 #include "bridges/eyebot/readings.hpp"
 #include "bridges/eyebot_messages/codec.hpp"
-#include "hal/check.hpp"
 #include "hal/device/body_sensors.hpp"
 #include "hal/device/cameras.hpp"
 #include "hal/device/distance_scanner.hpp"

@@ -1,6 +1,5 @@
 // What an eye-bot is told.
 #include <algorithm>
-#include <cstring>
 
 #include "bridges/eyebot/driver.hpp"
 #include "bridges/eyebot/readings.hpp"

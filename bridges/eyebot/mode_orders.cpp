@@ -1,6 +1,5 @@
 #include "bridges/eyebot/mode_orders.hpp"
 
-#include <algorithm>
 #include <limits>
 
 namespace tandem::bridges::eyebot {

@@ -100,6 +100,16 @@ class EyebotServer final : public Server {
   void end(TimeNs now, const hal::Status& served) override;
 
   hal::Status connect();
+  /// The robots, then their namesakes.
+  std::vector<Flyer*> everybody() const {
+    std::vector<Flyer*> all;
+    for (const auto* crew : {&flyers_, &namesakes_}) {
+      for (const auto& flyer : *crew) {
+        if (flyer) all.push_back(flyer.get());
+      }
+    }
+    return all;
+  }
   void distribute();
   void apply_faults(std::size_t i, TimeNs now);
   void fly(Flyer& flyer, TimeNs now);
@@ -193,10 +203,7 @@ hal::Status EyebotServer::turn(TimeNs now) {
     if (second_hubs_[i]) speak(*second_hubs_[i], flyers_[i]->robot.options().name, now);
   }
   distribute();
-  for (const auto& flyer : flyers_) fly(*flyer, now);
-  for (const auto& namesake : namesakes_) {
-    if (namesake) fly(*namesake, now);
-  }
+  for (Flyer* flyer : everybody()) fly(*flyer, now);
   return {};
 }
 
@@ -221,20 +228,16 @@ void EyebotServer::apply_faults(std::size_t i, TimeNs now) {
 // A hub's sign of life is for everybody, a command for the robot that the channel names.
 void EyebotServer::distribute() {
   for (const Datagram& message : inbox_->take()) {
-    const auto give = [&](Flyer& flyer) {
+    for (Flyer* flyer : everybody()) {
       const bool concerns = message.channel.starts_with("hub/") ||
-                            message.channel.starts_with("eyebot/" + flyer.robot.options().name + "/");
-      if (!concerns) return;
+                            message.channel.starts_with("eyebot/" + flyer->robot.options().name + "/");
+      if (!concerns) continue;
       std::vector<Datagram> arriving;
-      flyer.faults.to_robot(message, arriving);
+      flyer->faults.to_robot(message, arriving);
       for (Datagram& d : arriving) {
         d.at += delay_ns(options_.robot.delays.to_robot_s);
-        flyer.to_robot.push_back(std::move(d));
+        flyer->to_robot.push_back(std::move(d));
       }
-    };
-    for (const auto& flyer : flyers_) give(*flyer);
-    for (const auto& namesake : namesakes_) {
-      if (namesake) give(*namesake);
     }
   }
 }
@@ -272,13 +275,9 @@ void EyebotServer::speak(SecondHub& hub, const std::string& robot, TimeNs now) {
 
 TimeNs EyebotServer::next_wake(TimeNs now) const {
   TimeNs wake = now + kStopNs;
-  for (const auto* crew : {&flyers_, &namesakes_}) {
-    for (const auto& flyer : *crew) {
-      if (!flyer) continue;
-      wake = std::min(wake, flyer->robot.next_event());
-      wake = std::min({wake, first_at(flyer->to_robot, wake), first_at(flyer->to_hub, wake)});
-      if (const auto change = flyer->faults.next_change_at()) wake = std::min(wake, *change);
-    }
+  for (const Flyer* flyer : everybody()) {
+    wake = std::min({wake, flyer->robot.next_event(), first_at(flyer->to_robot, wake), first_at(flyer->to_hub, wake)});
+    if (const auto change = flyer->faults.next_change_at()) wake = std::min(wake, *change);
   }
   return wake;
 }

@@ -1,6 +1,9 @@
-// One foot-bot without threads (bridges/aseba/node_driver.hpp): its map, and the wiring of its ports by it. Its modules
-// have no watchdog of their own: those that the map gives a dead-man stop by the program that the hub has sent them,
-// all others keep their last command for ever.
+// One foot-bot without threads (bridges/aseba/node_driver.hpp): its map, and the wiring of its ports by it.
+//
+// Modules have no watchdog: when the link is cut while the robot moves, it drives on until the link is back; when this
+// process is killed, until a guardian (bridges/guardian), where one was started, stops it. The remedy is the program
+// that the map gives the motors' modules (<dead_man>, bridges/aseba/dead_man.hpp): it sets the speed to 0 when it was
+// told nothing for a while.
 #pragma once
 #include "bridges/aseba/node_driver.hpp"
 #include "bridges/footbot/wiring.hpp"

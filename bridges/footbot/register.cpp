@@ -1,7 +1,8 @@
 #include "bridges/footbot/register.hpp"
 
+#include "bridges/aseba/node_bridge.hpp"
 #include "bridges/aseba/node_stopper.hpp"
-#include "bridges/footbot/bridge.hpp"
+#include "bridges/footbot/driver.hpp"
 #include "bridges/footbot/map_file.hpp"
 #include "hal/element.hpp"
 #include "hal/element_options.hpp"

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "hal/angle.hpp"
-#include "hal/check.hpp"
 #include "hal/device/body_sensors.hpp"
 #include "hal/device/distance_scanner.hpp"
 #include "hal/device/gripper.hpp"

@@ -1,7 +1,5 @@
 #include "bridges/footbot_emulator/body.hpp"
 
-#include <algorithm>
-
 #include "hal/device/body_sensors.hpp"
 #include "hal/device/distance_scanner.hpp"
 #include "hal/device/gripper.hpp"

@@ -1,7 +1,5 @@
 #include "bridges/footbot_emulator/modules.hpp"
 
-#include <algorithm>
-
 namespace tandem::bridges::footbot_emulator {
 namespace {
 

@@ -1,6 +1,5 @@
 #include "bridges/footbot_emulator/slcan_adapter.hpp"
 
-#include <algorithm>
 #include <optional>
 #include <utility>
 

@@ -1,6 +1,5 @@
 #include "bridges/link/serial_link.hpp"
 
-#include <algorithm>
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>

@@ -1,7 +1,6 @@
 #include "bridges/thymio_emulator/thymio.hpp"
 
 #include <algorithm>
-#include <string>
 
 #include "bridges/thymio_emulator/raw_units.hpp"
 

@@ -6,7 +6,6 @@
 #include <charconv>
 #include <cmath>
 #include <cstring>
-#include <deque>
 #include <memory>
 #include <netinet/in.h>
 #include <numbers>

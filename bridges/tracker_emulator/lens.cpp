@@ -1,7 +1,5 @@
 #include "bridges/tracker_emulator/lens.hpp"
 
-#include <cmath>
-
 #include "hal/input_file.hpp"
 #include "hal/json/json.hpp"
 

@@ -1,7 +1,6 @@
 #include "bridges/tracker_emulator/messages.hpp"
 
 #include <bit>
-#include <cmath>
 #include <limits>
 
 #include "hal/json/json.hpp"

@@ -1,7 +1,6 @@
 #include "bridges/trackers/udp_tracker.hpp"
 
 #include <arpa/inet.h>
-#include <atomic>
 #include <cerrno>
 #include <cstring>
 #include <netinet/in.h>

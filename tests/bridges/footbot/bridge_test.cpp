@@ -1,6 +1,4 @@
 // The threaded bridge and the guardian. Waits end with events; limits are longer than any machine needs.
-#include "bridges/footbot/bridge.hpp"
-
 #include <atomic>
 #include <fcntl.h>
 #include <gmock/gmock.h>
@@ -10,6 +8,8 @@
 #include <thread>
 #include <unistd.h>
 
+#include "bridges/aseba/node_bridge.hpp"
+#include "bridges/footbot/driver.hpp"
 #include "hal/device/ring_sensors.hpp"
 #include "hal/device/turret.hpp"
 #include "hal/device/wheels.hpp"
@@ -17,6 +17,9 @@
 
 namespace tandem::bridges::footbot {
 namespace {
+
+using BridgeSettings = aseba::NodeBridgeSettings<FootbotParts>;
+using FootbotBridge = aseba::NodeBridge<FootbotParts>;
 
 using testing::HasSubstr;
 

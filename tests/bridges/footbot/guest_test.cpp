@@ -3,8 +3,9 @@
 #include <gmock/gmock.h>
 
 #include "bridges/aseba/message_link_text.hpp"
+#include "bridges/aseba/node_bridge.hpp"
 #include "bridges/can/socketcan_link.hpp"
-#include "bridges/footbot/bridge.hpp"
+#include "bridges/footbot/driver.hpp"
 #include "hal/device/ring_sensors.hpp"
 #include "hal/device/wheels.hpp"
 #include "tests/bridges/can/guest_process.hpp"
@@ -12,6 +13,9 @@
 
 namespace tandem::bridges::footbot {
 namespace {
+
+using BridgeSettings = aseba::NodeBridgeSettings<FootbotParts>;
+using FootbotBridge = aseba::NodeBridge<FootbotParts>;
 
 constexpr hal::TimeNs kLong = 20 * hal::kNsPerSecond;
 
