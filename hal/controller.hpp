@@ -8,6 +8,7 @@
 #include <string_view>
 #include <type_traits>
 
+#include "hal/archive.hpp"
 #include "hal/controls.hpp"
 #include "hal/params.hpp"
 #include "hal/robot.hpp"
@@ -18,6 +19,9 @@ namespace tandem::hal {
 ///
 /// A simulation can be put back to an earlier moment where its controllers can be copied: members then are values, or
 /// share what no step changes. A copy drives the same robot through the same ports, never at the same time.
+///
+/// It can go on in another process, from a checkpoint on disk, where the class is such and owns no memory (no vector,
+/// no long text), or says what it remembers: `void remember(hal::Archive& a) { a(recent_, turns_); }`.
 class Controller {
  public:
   virtual ~Controller() = default;
@@ -45,7 +49,7 @@ struct StepFault {
 /// A class of controllers as the worlds see it: a table of functions, one call a row and not a robot.
 struct ControllerType {
   static constexpr std::string_view kCategory = "controller";
-  static constexpr std::uint32_t kNumber = 2;
+  static constexpr std::uint32_t kNumber = 3;
   using Crosses = Layouts<Controller, Robot, StepFault, ParamVisitor, ParamList, Controls, PublishedField, RobotLog,
                           Random, PortType, RowType, Field, RobotKind, RobotKind::Crosses>;
   std::string_view name;  ///< as written in experiment files
@@ -70,6 +74,9 @@ struct ControllerType {
   void (*copy)(void* where, const void* from) = nullptr;
   /// Calls Controller::controls. @throws whatever it throws
   void (*controls)(void* controller, Controls& controls) = nullptr;
+  /// Calls T::remember: writes all that its steps change, or reads it into a controller that was just made. Null where
+  /// the class has none.
+  void (*remember)(void* controller, Archive& archive) = nullptr;
 };
 
 namespace detail {
@@ -146,6 +153,8 @@ const ControllerType& controller_type(std::string_view name, std::string_view su
   type.controls = [](void* controller, Controls& controls) { static_cast<T*>(controller)->T::controls(controls); };
   if constexpr (std::is_copy_constructible_v<T>)
     type.copy = [](void* where, const void* from) { ::new (where) T(*static_cast<const T*>(from)); };
+  if constexpr (requires(T& t, Archive& a) { t.remember(a); })
+    type.remember = [](void* controller, Archive& archive) { static_cast<T*>(controller)->remember(archive); };
   return type;
 }
 

@@ -35,6 +35,11 @@ class Raster {
   std::size_t lines() const noexcept { return lines_; }
   /// Fingerprint of all pixels; 0: there are none.
   std::uint64_t mark() const noexcept { return mark_; }
+  void remember(auto& archive) {
+    std::vector<std::uint8_t> pixels = empty() ? std::vector<std::uint8_t>() : *pixels_;
+    archive(min_x_m_, min_y_m_, columns_per_m_, lines_per_m_, columns_, lines_, pixels);
+    if (archive.reads() && !pixels.empty() && pixels.size() == columns_ * lines_) take(std::move(pixels));
+  }
 
  private:
   Raster(const RasterArea& area, std::size_t columns, std::size_t lines);

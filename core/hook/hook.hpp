@@ -10,6 +10,7 @@
 #include "core/space/ids.hpp"
 #include "core/space/sketch.hpp"
 #include "core/space/space.hpp"
+#include "hal/archive.hpp"
 #include "hal/controls.hpp"
 #include "hal/plugin.hpp"
 #include "hal/result.hpp"
@@ -79,17 +80,35 @@ class Hook {
 
   /// What the hook remembers that its later calls depend on, for snapshots; and taking it back. A hook without such
   /// needs neither. What `save` leaves out survives going back: a count of attempts, say.
-  virtual std::any save() const { return {}; }
-  virtual void restore(const std::any& /*saved*/) {}
+  virtual std::any save() const;
+  virtual void restore(const std::any& saved);
 
   /// Declares what people may change while the run goes on. Called between steps; snapshots keep the values.
   virtual void controls(HookContext&, hal::Controls& /*controls*/) {}
+
+  /// The same as `save` and `restore`, which then need not be there: names all that is to be remembered, and returns
+  /// true. Also for checkpoints on disk, so only what it names is there after them; `before_run` is called before.
+  /// False: the hook does not say, and its run is computed again from the start.
+  virtual bool remember(hal::Archive& /*archive*/) { return false; }
 };
+
+inline std::any Hook::save() const {
+  hal::Archive archive;
+  if (!const_cast<Hook*>(this)->remember(archive)) return {};  // which writes
+  return archive.take();
+}
+
+inline void Hook::restore(const std::any& saved) {
+  const auto* const bytes = std::any_cast<std::string>(&saved);  // of a hook with `save` alone: anything else
+  if (bytes == nullptr) return;
+  hal::Archive archive(*bytes);
+  remember(archive);
+}
 
 /// A class of hooks: what a plug-in registers.
 struct HookType {
   static constexpr std::string_view kCategory = "hook";
-  static constexpr std::uint32_t kNumber = 4;
+  static constexpr std::uint32_t kNumber = 5;
   using Crosses =
       hal::Layouts<Hook, HookContext, Space, Checkpoints, Sketch, Sketch::Shape, Sketch::Point, Measures, Element,
                    Problem, hal::ParamVisitor, hal::Controls, hal::RobotKind, hal::RobotKind::Crosses>;

@@ -18,6 +18,7 @@ class Measures {
     return found == values_.end() ? 0.0 : found->second;
   }
   const std::map<std::string, double, std::less<>>& all() const noexcept { return values_; }
+  void remember(auto& archive) { archive(values_); }
 
  private:
   double& of(std::string_view name) {

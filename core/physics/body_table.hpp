@@ -51,6 +51,19 @@ class BodyTable {
   std::vector<Entry>& entries() noexcept { return entries_; }
   const std::vector<Entry>& entries() const noexcept { return entries_; }
   void clear() noexcept { entries_.clear(); }
+  /// `body(Kept&)` writes or reads what the solver keeps.
+  template <class Archive, class Body>
+  void remember(Archive& archive, Body&& body) {
+    std::uint64_t count = entries_.size();
+    archive(count);
+    if (archive.reads()) entries_.clear();
+    for (std::uint64_t i = 0; i < count && archive.ok(); ++i) {
+      if (archive.reads()) entries_.emplace_back();
+      Entry& entry = entries_[i];
+      archive(entry.key, entry.identity, entry.owned);
+      body(entry.body);
+    }
+  }
 
  private:
   std::vector<Entry> entries_, next_;

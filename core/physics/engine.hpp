@@ -11,6 +11,8 @@
 #include "core/scenario/engine_traits.hpp"
 #include "core/schedule/thread_pool.hpp"
 #include "core/space/stores.hpp"
+#include "hal/archive.hpp"
+#include "hal/result.hpp"
 #include "hal/time.hpp"
 
 namespace tandem::core {
@@ -66,6 +68,16 @@ class Engine {
   virtual void put_back(const std::shared_ptr<const void>& /*kept*/) {}
   /// About how much memory what `keep` gave takes, in bytes.
   virtual std::size_t bytes_of(const std::shared_ptr<const void>& /*kept*/) const { return 0; }
+  /// Writes what `keep` gives, or goes on from what it reads, in another process of the same program. Error: why it
+  /// cannot.
+  virtual hal::Status remember(hal::Archive& /*archive*/) { return cannot_remember(keep() != nullptr); }
+
+ protected:
+  /// For those that are kept in memory alone.
+  hal::Status cannot_remember(bool holds) const {
+    if (!holds) return {};
+    return hal::Error{"the engine " + std::string(kind()) + " holds what cannot be written to disk"};
+  }
 };
 
 class Solver;  // core/physics/solver.hpp
@@ -87,7 +99,7 @@ struct EngineOrder {
 /// A kind of physics engine.
 struct EngineType : KnownEngine {
   static constexpr std::string_view kCategory = "engine";
-  static constexpr std::uint32_t kNumber = 3;
+  static constexpr std::uint32_t kNumber = 4;
   using Crosses = hal::Layouts<StoreLayouts, Engine, PhysicsContext, Trouble, EngineOrder, EngineOrder::Part, Element,
                                Problem, hal::ParamVisitor>;
   std::string_view summary;  ///< for the manual

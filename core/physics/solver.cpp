@@ -113,6 +113,11 @@ void SolverEngine::put_back(const std::shared_ptr<const void>& kept) {
   }
 }
 
+hal::Status SolverEngine::remember(hal::Archive& archive) {
+  const bool all = std::ranges::all_of(parts_, [&](Part& part) { return part.solver->remember(archive); });
+  return cannot_remember(!all);
+}
+
 std::size_t SolverEngine::bytes_of(const std::shared_ptr<const void>& kept) const {
   const auto& all = *static_cast<const std::vector<std::shared_ptr<const void>>*>(kept.get());
   std::size_t bytes = 0;

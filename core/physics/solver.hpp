@@ -48,6 +48,8 @@ class Solver {
   virtual void put_back(const void* /*kept*/) {}
   /// About how much memory what its `keep` gave takes, in bytes. Never called for null.
   virtual std::size_t bytes_of(const void* /*kept*/) const { return 0; }
+  /// As Engine::remember. False: it cannot.
+  virtual bool remember(hal::Archive& /*archive*/) { return keep() == nullptr; }
 
   PhysicsAccuracy accuracy;      ///< since it was made
   double overlap = 0.0;          ///< of two robots that drive, after the last tick; its engine parts what is too deep
@@ -80,6 +82,7 @@ class SolverEngine final : public Engine {
   std::shared_ptr<const void> keep() override;
   void put_back(const std::shared_ptr<const void>& kept) override;
   std::size_t bytes_of(const std::shared_ptr<const void>& kept) const override;
+  hal::Status remember(hal::Archive& archive) override;
 
  private:
   struct Part {

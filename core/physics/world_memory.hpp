@@ -3,8 +3,11 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <initializer_list>
 #include <memory>
 #include <vector>
+
+#include "hal/archive.hpp"
 
 namespace tandem::core {
 
@@ -33,6 +36,19 @@ class WorldMemory {
   void put_back(const Image& image) noexcept;
   static std::size_t bytes_of(const Image& image) noexcept;
 
+  /// Writes all that is given out, or reads it into this memory, which then lies elsewhere: addresses into it, and into
+  /// the program and its libraries, are made anew; others are null. `pointers` are those of who uses it; each is null
+  /// or lies in it. False: what was read is not of this program and its libraries.
+  template <class... T>
+  bool remember(hal::Archive& archive, T*&... pointers) {
+    return remember_all(archive, {reinterpret_cast<void**>(&pointers)...});
+  }
+  /// The same for more of those pointers, after that.
+  template <class T>
+  void remember_pointer(hal::Archive& archive, T*& pointer) const {
+    remember_address(archive, *reinterpret_cast<void**>(&pointer));
+  }
+
   /// While one lives, the libraries' allocations on this thread go to `memory`; null: to the heap.
   class Use {
    public:
@@ -56,7 +72,25 @@ class WorldMemory {
     std::size_t size = 0;
     std::size_t used = 0;  ///< a prefix; of a chunk with one large block all of it, or nothing
   };
+  /// An address in the memory that is given out: number of the chunk, first the shared ones, and offset.
+  struct Place {
+    std::uint32_t chunk = kNone;
+    std::uint64_t offset = 0;
+    static constexpr std::uint32_t kNone = 0xFFFF'FFFFU;
+  };
   void* carve(std::size_t bytes);
+  static std::size_t size_of_class(std::size_t size_class) noexcept;
+  bool remember_all(hal::Archive& archive, std::initializer_list<void**> pointers);
+  void remember_address(hal::Archive& archive, void*& address) const;
+  void write_words(hal::Archive& archive) const;
+  bool read_words(hal::Archive& archive);
+  std::vector<std::vector<std::uint64_t>> live_words() const;
+  std::size_t chunks() const noexcept { return shared_.size() + large_.size(); }
+  const Chunk& chunk(std::size_t i) const noexcept {
+    return i < shared_.size() ? shared_[i] : large_[i - shared_.size()];
+  }
+  Place place_of(std::uint64_t address) const noexcept;
+  std::uint64_t address_of(const Place& place) const noexcept;
 
   std::vector<Chunk> shared_;    // cut into small blocks, one after the other
   std::vector<Chunk> large_;     // one block each; without bytes where the block was given back to the heap

@@ -19,6 +19,7 @@ struct FieldArea {
 /// Every world has one field of each kind in the catalog.
 struct FieldType {
   static constexpr std::string_view kCategory = "field";
+  static constexpr std::uint32_t kNumber = 2;
   using Crosses = hal::Layouts<Element, Problem, FieldArea, hal::ParamVisitor>;
   std::string_view name;  ///< as sensors ask for it; of its element in experiment files, where it has one
   std::string_view summary;

@@ -227,6 +227,21 @@ void compare_scenarios(const Scenario& a, const Scenario& b, Differences& found)
     found.add("loop_functions: their libraries");
 }
 
+/// Whether a setting of this path holds in a world that is made anew and takes over a state.
+bool holds_anew(const std::string& path) {
+  static constexpr std::array<std::string_view, 7> kAll = {"framework.experiment.length",
+                                                           "framework.experiment.random_seed",
+                                                           "arena.floor",
+                                                           "arena.light",
+                                                           "arena.box",
+                                                           "arena.cylinder",
+                                                           "physics_engines.kinematics2d"};
+  return std::ranges::any_of(kAll, [&path](std::string_view known) {
+    return path.starts_with(known) &&
+           (path.size() == known.size() || path[known.size()] == '.' || path[known.size()] == '[');
+  });
+}
+
 /// The robots of a group share a kit: it stays one of them.
 bool parts_differ(const RobotItem& a, const RobotItem& b) {
   return a.controller != b.controller || (b.params.has_value() && !a.params.has_value());
@@ -244,7 +259,7 @@ bool same_settings(const Element& a, const Element& b) {
          std::equal(a.children.begin(), a.children.end(), b.children.begin(), b.children.end(), &same_settings);
 }
 
-std::vector<std::string> fixed_differences(const Scenario& before, const Scenario& changed) {
+std::vector<std::string> fixed_differences(const Scenario& before, const Scenario& changed, bool anew) {
   Differences found;
   const Element &a = before.effective, &b = changed.effective;
   found.children(a, b, "", &taken_over);
@@ -258,6 +273,7 @@ std::vector<std::string> fixed_differences(const Scenario& before, const Scenari
                        "controllers." + Differences::part(*all_a, all_a->children[i]), {});
   }
   if (found.all.empty()) compare_scenarios(before, changed, found);
+  if (anew) std::erase_if(found.all, &holds_anew);
   return std::move(found.all);
 }
 

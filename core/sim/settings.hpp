@@ -18,7 +18,8 @@ void complete_settings(Scenario& scenario, hal::PluginLoader& loader, std::uint6
 bool same_settings(const Element& a, const Element& b);
 
 /// What differs between two experiments, both completed, that a running world cannot take over
-/// (World::continue_with): paths as --set writes them, at most ten. Empty: nothing.
-std::vector<std::string> fixed_differences(const Scenario& before, const Scenario& changed);
+/// (World::continue_with): paths as --set writes them, at most ten. Empty: nothing. `anew`: that a world which is made
+/// anew cannot (World::load).
+std::vector<std::string> fixed_differences(const Scenario& before, const Scenario& changed, bool anew = false);
 
 }  // namespace tandem::core

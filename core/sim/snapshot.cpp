@@ -13,7 +13,14 @@ void name_copy(const void* type, std::size_t /*part*/, std::size_t /*index*/, ha
   out << "a controller of class '" << static_cast<const hal::ControllerType*>(type)->name << "', while it was copied,";
 }
 
-/// Copies a controller. Says what it threw, or nothing.
+std::string name_of(const Space& space, std::size_t row) {
+  const SpaceStores& s = space.stores();
+  const std::uint32_t entity = s.bodies.entity[row];
+  return "robot '" + space.robot_name({entity, s.robots[entity].generation}) + "'";
+}
+
+}  // namespace
+
 std::string copied(const hal::ControllerType& type, void* where, const void* from) {
   const hal::PluginCall call(&name_copy, &type);
   try {
@@ -26,13 +33,14 @@ std::string copied(const hal::ControllerType& type, void* where, const void* fro
   }
 }
 
-std::string name_of(const Space& space, std::size_t row) {
-  const SpaceStores& s = space.stores();
-  const std::uint32_t entity = s.bodies.entity[row];
-  return "robot '" + space.robot_name({entity, s.robots[entity].generation}) + "'";
+void note_other_state(SpaceStores& s) {
+  ++s.generations;  // who looks for newcomers finds those who are back
+  ++s.immovables_version;
+  ++s.object_leds_version;
+  ++s.poses_version;
+  s.touched.clear();
+  s.bodies_changed = true;
 }
-
-}  // namespace
 
 hal::Result<std::unique_ptr<SpaceCopy>> SpaceCopy::take(const Space& space, const RobotDevices& devices) {
   const SpaceStores& s = space.stores();
@@ -43,24 +51,9 @@ hal::Result<std::unique_ptr<SpaceCopy>> SpaceCopy::take(const Space& space, cons
     if (const hal::Status done = copy->copy_block(space, b); !done.ok()) return done.error();
   }
   for (const auto& column : s.columns.all()) copy->column_arrays_.emplace_back(column.get(), column->of_block);
-  copy->bodies_ = s.bodies;
-  copy->robots_ = s.robots;
-  copy->living_ = s.living;
-  copy->names_ = s.names;
-  copy->added_robots_ = s.added_robots;
+  copy->parts_ = parts_of(s);
   copy->devices_ = devices;
-  copy->objects_ = s.objects;
-  copy->object_numbers_ = s.object_numbers;
-  copy->object_motion_ = s.object_motion;
-  copy->object_region_ = s.object_region;
-  copy->joints_ = s.joints;
-  copy->lights_ = s.lights;
-  copy->sounds_ = s.sounds;
-  copy->body_index_ = s.body_index;
-  copy->static_index_ = s.static_index;
-  copy->movable_index_ = s.movable_index;
   for (const Fields::Entry& entry : s.fields.all()) copy->fields_.push_back(entry.field->keep());
-  copy->altered_ = s.altered;
   return copy;
 }
 
@@ -92,14 +85,16 @@ hal::Status SpaceCopy::copy_block(const Space& space, std::size_t b) {
 }
 
 std::size_t SpaceCopy::bytes() const noexcept {
-  const auto of = [](const auto& array) { return array.size() * sizeof(array[0]); };
-  std::size_t all = sizeof *this + memory_.bytes() + of(groups_) + of(blocks_) + of(robots_) + of(living_) +
-                    of(names_) + of(objects_) + of(object_motion_) + of(object_region_) + of(joints_) + of(lights_) +
-                    of(sounds_) + body_index_.bytes() + static_index_.bytes() + movable_index_.bytes();
-  for (const auto* numbers : {&bodies_.x_m, &bodies_.y_m, &bodies_.cos_h, &bodies_.sin_h, &bodies_.left_m_s,
-                              &bodies_.right_m_s, &bodies_.left_m, &bodies_.right_m})
-    all += of(*numbers);
-  all += of(bodies_.radius_m) + of(bodies_.flags) + of(bodies_.entity) + of(bodies_.region) + of(bodies_.motion);
+  const auto of = []<class T>(const T& part) -> std::size_t {
+    if constexpr (requires { part.bytes(); })
+      return part.bytes();
+    else if constexpr (requires { part.data(); })
+      return part.size() * sizeof part[0];
+    else
+      return 0;
+  };
+  std::size_t all = sizeof *this + memory_.bytes() + of(groups_) + of(blocks_);
+  std::apply([&](const auto&... part) { all += (of(part) + ...); }, parts_);
   for (const Block& block : blocks_) {
     for (const auto& port : block.ports) all += port.size();
     for (const auto& column : block.columns) all += column.size();
@@ -143,32 +138,12 @@ hal::Status SpaceCopy::put_back(Space& space, RobotDevices& devices) const {
   destroy_controllers(s);
   s.blocks.clear();
   s.groups = groups_;
-  s.names = names_;
-  s.added_robots = added_robots_;
   devices = devices_;
   for (const auto& column : s.columns.all()) column->of_block.clear();  // also those that came since
   for (const auto& [column, arrays] : column_arrays_) column->of_block = arrays;
-  s.bodies = bodies_;
-  s.robots = robots_;
-  s.living = living_;
-  s.objects = objects_;
-  s.object_numbers = object_numbers_;
-  s.object_motion = object_motion_;
-  s.object_region = object_region_;
-  s.joints = joints_;
-  s.lights = lights_;
-  s.sounds = sounds_;
-  s.body_index = body_index_;
-  s.static_index = static_index_;
-  s.movable_index = movable_index_;
+  parts_of(s) = parts_;
   for (std::size_t i = 0; i < fields_.size(); ++i) s.fields.all()[i].field->put_back(fields_[i]);
-  s.altered = altered_;
-  ++s.generations;  // who looks for newcomers finds those who are back
-  ++s.immovables_version;
-  ++s.object_leds_version;
-  ++s.poses_version;
-  s.touched.clear();
-  s.bodies_changed = true;
+  note_other_state(s);
   hal::Status all;
   for (std::size_t b = 0; b < blocks_.size(); ++b) {
     if (const hal::Status one = put_back_block(b, space); !one.ok()) all = one;

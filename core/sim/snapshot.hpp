@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <memory>
 #include <string>
-#include <unordered_map>
 #include <vector>
 
 #include "core/sim/robot_factory.hpp"
@@ -68,24 +67,15 @@ class SpaceCopy {
   std::vector<RobotGroup> groups_;
   std::vector<Block> blocks_;
   std::vector<std::pair<ColumnArrays*, std::vector<std::byte*>>> column_arrays_;
-  Bodies bodies_;
-  std::vector<RobotEntity> robots_;
-  std::vector<std::uint32_t> living_;
-  std::vector<NameRange> names_;
-  std::unordered_map<std::string, std::uint32_t> added_robots_;
+  SpaceParts parts_;  // indices too: their cells are chosen by what was there before, and they are as old as they were
   RobotDevices devices_;
-  std::vector<Object> objects_;
-  std::unordered_map<std::string, std::uint32_t> object_numbers_;
-  std::vector<Motion> object_motion_;
-  std::vector<std::uint16_t> object_region_;
-  std::vector<Joint> joints_;
-  std::vector<LightSource> lights_;
-  std::vector<SoundSource> sounds_;
-  BodyIndex body_index_;  // its cells are chosen by what was there before
-  ObjectIndex static_index_,
-      movable_index_;  // as old as they were: whoever looks before the next physics sees the same
   std::vector<std::shared_ptr<const void>> fields_;
-  bool altered_ = false;
 };
+
+/// Copies a controller. Says what it threw, or nothing.
+std::string copied(const hal::ControllerType& type, void* where, const void* from);
+
+/// The stores have another state than before: whoever keeps something of them looks anew.
+void note_other_state(SpaceStores& stores);
 
 }  // namespace tandem::core

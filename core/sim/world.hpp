@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/hook/hook.hpp"
@@ -36,6 +37,10 @@ struct Incidents {
   std::uint64_t controllers_thrown = 0;
   std::uint64_t bodies_escaped = 0;
   std::vector<std::string> first;  ///< the first few, each naming robot, tick and what happened
+
+  void remember(auto& archive) {
+    archive(commands_clamped, commands_not_finite, controllers_thrown, bodies_escaped, first);
+  }
 };
 
 /// A simulated world. Not copyable; may be moved between threads between steps.
@@ -73,6 +78,21 @@ class World {
   /// are back; controllers and ports keep their addresses. Errors: another world's snapshot; real robots take part;
   /// a copy constructor or a hook's `restore` that throws: the run has failed then.
   hal::Status restore(const Snapshot& snapshot);
+
+  /// After `start`, and before the first step or `load`: `save` will be called. A second call does nothing.
+  void begin_saving();
+  /// The state as bytes: everything that `snapshot` keeps. Call between steps. Error: names what of it no other process
+  /// could take over.
+  hal::Result<std::string> save();
+  /// Goes on from what `save` of a world of the same scenario and seed gave, in this process or another of the same
+  /// program, to the last bit. Once, on a world that was started and has not stepped. Error: what does not fit, by
+  /// name; the world is of no use then.
+  ///
+  /// What if: `before` is the scenario that the state is of, and this world's another. What the run had changed is
+  /// taken over, and what the settings have changed holds: lights, objects that stand where they stood, the floor,
+  /// parameters of controllers and devices, options of hooks, the seed. Error also: what else differs, and what both
+  /// have changed.
+  hal::Status load(std::string_view saved, const Scenario* before = nullptr);
 
   /// Begins the run anew, from the first tick, as a new world of this seed would, to the last bit; plug-ins, threads
   /// and the memory of robots stay. Controllers and hooks are reset or made anew, as they want (Controller::reset,

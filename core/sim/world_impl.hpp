@@ -7,6 +7,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <tuple>
 #include <variant>
 #include <vector>
 
@@ -64,27 +65,42 @@ class KeptCheckpoints final : public Checkpoints {
   std::set<std::string> names_;  // kept, or to be kept after this step
 };
 
+class Addresses;  // core/space/addresses.hpp
+
 /// The value of a control: that of a button is none.
 using ControlValue = std::variant<std::monostate, double, std::int64_t, bool, std::string>;
+
+/// What the state of a world is made of beside its space, engines and hooks: tick, state, failure, incidents, commands
+/// clamped and not finite by block, how far indices reach, measures, and groups whose excess was named.
+using WorldParts = std::tuple<hal::Tick, RunState, std::string, Incidents, std::vector<std::uint64_t>,
+                              std::vector<std::uint64_t>, double, Measures, std::vector<std::uint8_t>>;
 
 /// Contents of a snapshot.
 struct SavedWorld {
   std::shared_ptr<const int> of;  ///< the world that it is of
   std::unique_ptr<SpaceCopy> space;
-  hal::Tick tick = 0;
-  RunState state = RunState::Running;
-  std::string failure;
-  Incidents incidents;
-  std::vector<std::uint64_t> clamped, not_finite;
-  double reach_m = 0.0;  ///< of the indices, which the space's copy holds
+  WorldParts parts;
   bool indexed = false;  ///< the index of immovable objects was up to date
   std::vector<std::shared_ptr<const void>> engines;
-  Measures measures;
   std::vector<std::any> hooks;
   std::vector<std::vector<ControlValue>> hook_controls;  ///< by hook
   std::optional<KeptCheckpoints> checkpoints;            ///< of hooks, for who goes back without their knowing
-  std::vector<std::uint8_t> excess_named;
-  Sketch sketch;
+};
+
+/// What an experiment puts into the arena and a run may change.
+struct Things {
+  std::vector<Object> objects;
+  std::vector<LightSource> lights;
+  std::vector<SoundSource> sounds;
+  void remember(auto& archive) { archive(objects, lights, sounds); }
+};
+
+/// The world as it was after its start, to tell what has changed since: what `World::save` needs.
+struct AsStarted {
+  Things things;
+  std::size_t robots = 0;
+  std::vector<std::vector<std::byte>> controllers;  ///< by block
+  std::vector<std::uint64_t> fields;                ///< their marks
 };
 
 /// A speed so far beyond what a robot can do that it was written in another unit.
@@ -152,7 +168,28 @@ struct World::Impl final : hal::RobotLog::Sink {
   std::vector<std::vector<Message>> said;  // by block, in this tick
   std::atomic<bool> any_said{false};
 
+  std::optional<AsStarted> as_started;
+  PhysicsAccuracy accuracy_before;  // of another process
+
   SpaceStores& stores() noexcept { return space.stores(); }
+
+  // --- going to another state ---
+  auto kept() noexcept {
+    return std::tie(tick, state, failure, incidents, clamped, not_finite, reach_m, measures, excess_named);
+  }
+  bool indexed() noexcept { return indexed_version == stores().immovables_version; }
+  void fit_to_state(bool was_indexed);
+  hal::Status remember(hal::Archive& archive);
+  hal::Status remember_shape(hal::Archive& archive);
+  hal::Status remember_controls(hal::Archive& archive);
+  hal::Status remember_space(hal::Archive& archive);
+  hal::Status remember_fields(hal::Archive& archive);
+  hal::Status take_settings(const Things& start);
+  hal::Status remember_block(hal::Archive& archive, std::size_t block, const Addresses& addresses);
+  hal::Status remember_own(hal::Archive& archive, std::size_t block);
+  hal::Status remember_changed(hal::Archive& archive, std::size_t block, const Addresses& addresses);
+  hal::Status remember_engines(hal::Archive& archive);
+  hal::Status remember_hooks(hal::Archive& archive);
 
   // --- making ---
   void populate(Problems& problems);
@@ -202,7 +239,7 @@ struct World::Impl final : hal::RobotLog::Sink {
   template <class Call>
   void call_hooks(const char* phase, Call&& call);
   std::vector<ControlValue> control_values(std::size_t hook);
-  hal::Status put_back_controls(const SavedWorld& saved);
+  hal::Status put_back_controls(const std::vector<std::vector<ControlValue>>& saved);
   HookContext hook_context() {
     return {space, tick, scenario.ticks_per_second, seed, kept_checkpoints, space.sketch(), measures};
   }

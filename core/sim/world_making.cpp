@@ -441,6 +441,7 @@ hal::Status World::reset(std::uint64_t seed) {
   w.incidents = {};
   w.measures = {};
   w.kept_checkpoints.forget_all();
+  w.as_started.reset();  // controllers may keep something of the run before
   w.identity = std::make_shared<int>(0);
   w.assigner = {};
   w.in_rows.clear();

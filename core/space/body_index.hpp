@@ -94,6 +94,12 @@ class BodyIndex {
            entries_.size() * sizeof(IndexEntry);
   }
 
+  void remember(auto& archive) {
+    archive(min_x_m_, min_y_m_, max_x_m_, max_y_m_, reach_m_, cell_m_, per_cell_, displacement_m_, columns_, lines_,
+            strip_shift_, strip_columns_, strip_cells_, planned_for_, start_, cell_of_row_, counted_, living_,
+            entries_);
+  }
+
   /// So many entries may be read from any one on, be they a body's or not.
   static constexpr std::size_t kReadAhead = 2;
 

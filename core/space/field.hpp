@@ -10,6 +10,8 @@
 #include <utility>
 #include <vector>
 
+#include "hal/archive.hpp"
+
 namespace tandem::core {
 
 struct SpaceStores;  // core/space/stores.hpp
@@ -60,6 +62,8 @@ class Field {
   /// What it holds, for snapshots, and going back to that; null: nothing.
   virtual std::shared_ptr<const void> keep() const { return nullptr; }
   virtual void put_back(const std::shared_ptr<const void>& /*kept*/) {}
+  /// Writes what it holds, or reads it, for checkpoints on disk. False: it cannot; what holds nothing can.
+  virtual bool remember(hal::Archive& /*archive*/) { return keep() == nullptr; }
 
   /// What it is made of, for pictures that show it as it is; 0 x 0: nothing of that kind.
   virtual FieldGrid grid() const noexcept { return {}; }

@@ -41,6 +41,10 @@ class ObjectIndex {
     return (start_.size() + list_.size() + next_.size()) * sizeof(std::uint32_t) +
            listed_.size() * sizeof(std::uint64_t) + clearances_.size() * sizeof(float);
   }
+  void remember(auto& archive) {
+    archive(min_x_m_, min_y_m_, reach_m_, cell_m_, per_cell_, columns_, lines_, start_, list_, listed_, clearances_,
+            next_);
+  }
 
  private:
   struct Area {

@@ -32,6 +32,8 @@ class Sketch {
     double radius_m = 0.0;      ///< of a circle
     std::string text;
     Pen pen;
+
+    void remember(auto& archive) { archive(kind, points, radius_m, text, pen); }
   };
 
   void line(Point from, Point to) { line(from, to, Pen()); }
@@ -57,6 +59,7 @@ class Sketch {
 
   const std::vector<Shape>& shapes() const noexcept { return shapes_; }
   void clear() noexcept { shapes_.clear(); }
+  void remember(auto& archive) { archive(shapes_); }
 
  private:
   /// What lies nowhere is not kept.

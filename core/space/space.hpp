@@ -45,6 +45,11 @@ struct Object {
   std::uint32_t version = 0;     ///< rises whenever its size, mass or kind changes
   std::vector<ObjectLed> leds = {};
 
+  void remember(auto& archive) {
+    archive(kind, movable, alive, id, x_m, y_m, cos_h, sin_h, half_x_m, half_y_m, radius_m, z_low_m, z_high_m, mass_kg,
+            generation, version, leds);
+  }
+
   /// Radius of the smallest disc around it, seen from above.
   double reach_m() const noexcept;
   /// Whether it is there and any of its LEDs is on.
@@ -59,6 +64,8 @@ struct LightSource {
   hal::Rgb color{255, 255, 0};
   bool alive = true;         ///< false once removed: its number is not used again
   std::uint16_t medium = 0;  ///< the number of the LED medium in which cameras see it; 0: all do
+
+  void remember(auto& archive) { archive(id, x_m, y_m, z_m, intensity, color, alive, medium); }
 };
 
 /// A steady sound.
@@ -67,6 +74,8 @@ struct SoundSource {
   double x_m = 0.0, y_m = 0.0, z_m = 0.0;
   double level = 1.0;
   bool alive = true;  ///< false once removed: its number is not used again
+
+  void remember(auto& archive) { archive(id, x_m, y_m, z_m, level, alive); }
 };
 
 struct SpaceStores;  // core/space/stores.hpp: the arrays themselves, for kernels

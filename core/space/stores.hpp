@@ -14,7 +14,10 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <tuple>
+#include <type_traits>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "core/space/body_index.hpp"
@@ -101,6 +104,15 @@ struct Bodies {
   std::size_t size() const noexcept { return x_m.size(); }
   void resize(std::size_t rows);
   void reserve(std::size_t rows);
+  std::size_t bytes() const noexcept {
+    const std::size_t a_row =
+        8 * sizeof(double) + sizeof radius_m[0] + sizeof flags[0] + sizeof entity[0] + sizeof region[0];
+    return size() * a_row + motion.size() * sizeof(Motion);
+  }
+  void remember(auto& archive) {
+    archive(x_m, y_m, cos_h, sin_h, left_m_s, right_m_s, left_m, right_m, radius_m, flags, entity, region, has_motion,
+            motion);
+  }
 };
 
 enum BodyFlag : std::uint8_t {
@@ -200,6 +212,8 @@ struct NameRange {
   std::int64_t base = -1;  ///< -1: a single robot, the prefix is its id
   std::uint32_t first_entity = 0;
   std::uint32_t count = 1;
+
+  void remember(auto& archive) { archive(prefix, base, first_entity, count); }
 };
 
 struct SpaceStores {
@@ -313,6 +327,19 @@ struct SpaceStores {
     bodies_changed = true;
   }
 };
+
+/// What the state of a space is made of besides its groups, blocks, columns and fields: for copies of it, in memory and
+/// on disk.
+template <class Stores>
+auto parts_of(Stores& s) noexcept {
+  return std::tie(s.bodies, s.robots, s.living, s.names, s.added_robots, s.objects, s.object_numbers, s.object_motion,
+                  s.object_region, s.joints, s.lights, s.sounds, s.body_index, s.static_index, s.movable_index,
+                  s.altered, s.sketch);
+}
+/// The same as values.
+template <class... T>
+std::tuple<std::remove_const_t<T>...> values_of(const std::tuple<T&...>& /*parts*/);
+using SpaceParts = decltype(values_of(parts_of(std::declval<SpaceStores&>())));
 
 /// Layouts that plug-ins which work on the stores must have been built against.
 using StoreLayouts =

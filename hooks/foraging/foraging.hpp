@@ -53,8 +53,10 @@ class Foraging final : public core::Hook {
   std::optional<double> floor(double x_m, double y_m) override;
   /// The size of food items, and a button that puts those on the floor elsewhere.
   void controls(core::HookContext& context, hal::Controls& controls) override;
-  std::any save() const override { return state_; }
-  void restore(const std::any& saved) override { state_ = std::any_cast<State>(saved); }
+  bool remember(hal::Archive& a) override {
+    a(state_.items, state_.collected, state_.robot_ticks_outside, state_.chance, state_.lines);
+    return true;
+  }
 
  private:
   struct Item {

@@ -43,8 +43,10 @@ class Throughput final : public core::Hook {
   /// @throws std::runtime_error when the file cannot be written
   void after_run(core::HookContext& context) override;
   std::optional<double> floor(double x_m, double y_m) override;
-  std::any save() const override { return state_; }
-  void restore(const std::any& saved) override { state_ = std::any_cast<State>(saved); }
+  bool remember(hal::Archive& a) override {
+    a(state_.recent, state_.brought, state_.samples);
+    return true;
+  }
 
  private:
   struct Sample {

@@ -25,6 +25,10 @@ class FloorField final : public PointField<FloorField> {
   std::uint64_t mark() const noexcept override { return raster_.mark(); }
   std::shared_ptr<const void> keep() const override;
   void put_back(const std::shared_ptr<const void>& kept) override;
+  bool remember(hal::Archive& archive) override {
+    archive(unpainted_, raster_);
+    return true;
+  }
   FieldGrid grid() const noexcept override { return {raster_.columns(), raster_.lines()}; }
 
  private:

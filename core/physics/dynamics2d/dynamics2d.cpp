@@ -198,6 +198,27 @@ class Dynamics2d final : public Solver {
     crowds_moved = k.crowds_moved;
   }
 
+  bool remember(hal::Archive& archive) override {
+    if (archive.reads()) know_contacts();
+    if (!memory_.remember(archive, world_, anchor_, immovable_)) return false;
+    archive(placed_, crowds_moved);
+    bodies_table_.remember(archive, [&](BodyProxy& b) {
+      memory_.remember_pointer(archive, b.body);
+      memory_.remember_pointer(archive, b.hold);
+      archive(b.x_m, b.y_m, b.cos_h, b.sin_h, b.vx_m_s, b.vy_m_s, b.w_rad_s, b.turn_rad, b.unfit, b.flawed);
+    });
+    std::uint64_t joints = joints_.size();
+    archive(joints);
+    if (archive.reads()) joints_.clear();
+    for (std::uint64_t i = 0; i < joints && archive.ok(); ++i) {
+      if (archive.reads()) joints_.emplace_back();
+      archive(joints_[i].number, joints_[i].generation);
+      memory_.remember_pointer(archive, joints_[i].joint);
+    }
+    if (archive.reads()) version_ = 0;  // as `put_back`
+    return true;
+  }
+
   std::size_t bytes_of(const void* kept) const override {
     const Kept& k = *static_cast<const Kept*>(kept);
     return WorldMemory::bytes_of(*k.memory) + k.placed.size() * sizeof(Placed) +
@@ -236,6 +257,20 @@ class Dynamics2d final : public Solver {
   }
 
   // --- the world ---
+
+  /// Box2D's table of kinds of contacts, which it fills when the first touch: those that were read have touched.
+  static void know_contacts() {
+    WorldMemory memory;
+    const WorldMemory::Use use(&memory);
+    auto* const world = new (memory.allocate(sizeof(b2World))) b2World(b2Vec2(0.0F, 0.0F));  // goes with its memory
+    b2CircleShape circle;
+    circle.m_radius = 1.0F;
+    b2BodyDef def;
+    world->CreateBody(&def)->CreateFixture(&circle, 1.0F);
+    def.type = b2_dynamicBody;
+    world->CreateBody(&def)->CreateFixture(&circle, 1.0F);
+    world->Step(0.01F, 1, 1);
+  }
 
   void make_world() {
     world_ = new (memory_.allocate(sizeof(b2World))) b2World(b2Vec2(0.0F, 0.0F));  // goes with its memory

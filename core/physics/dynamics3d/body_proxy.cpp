@@ -163,6 +163,12 @@ BodyState state_of(const BodyProxy& proxy) noexcept {
   return at;
 }
 
+void know_kind(BodyProxy& proxy, const SpaceStores& stores) {
+  proxy.kind = &stores.kind_of_row(proxy.key.index());
+  proxy.flight = proxy.kind->flight();
+  if (proxy.flight == nullptr) proxy.drive = &wheels_of(*proxy.kind);
+}
+
 void make_proxy(BodyProxy& proxy, const SpaceStores& stores, BodyKey key, Sort sort, dWorldID world) {
   proxy.key = key;
   proxy.sort = sort;
@@ -184,9 +190,7 @@ void make_proxy(BodyProxy& proxy, const SpaceStores& stores, BodyKey key, Sort s
     proxy.body = make_body(world, mass);
     return;
   }
-  proxy.kind = &stores.kind_of_row(key.index());
-  proxy.flight = proxy.kind->flight();
-  if (proxy.flight == nullptr) proxy.drive = &wheels_of(*proxy.kind);
+  know_kind(proxy, stores);
   proxy.mass_kg = proxy.kind->body.mass_kg;
   proxy.height_m = proxy.kind->body.height_m;
   proxy.origin_m = sort == Sort::Wheels ? proxy.drive->wheel_radius_m : 0.5 * proxy.height_m;

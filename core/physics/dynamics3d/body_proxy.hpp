@@ -105,6 +105,8 @@ BodyState stored_state(const SpaceStores& stores, BodyKey key) noexcept;
 /// Of a proxy, exactly as it is written to the stores.
 BodyState state_of(const BodyProxy& proxy) noexcept;
 
+/// Sets what a robot's proxy knows of its kind.
+void know_kind(BodyProxy& proxy, const SpaceStores& stores);
 /// Makes a proxy without a place.
 void make_proxy(BodyProxy& proxy, const SpaceStores& stores, BodyKey key, Sort sort, dWorldID world);
 /// Ends what it has in ODE.

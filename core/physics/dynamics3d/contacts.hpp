@@ -47,6 +47,8 @@ class Contacts {
   /// Call once a world is made.
   void make_group() { group_ = OdeJointGroup(dJointGroupCreate(0)); }
 
+  OdeJointGroup& group() noexcept { return group_; }
+
   /// `residual` gets to know every contact.
   void begin(dWorldID world, double dt_s, Residual& residual) noexcept {
     overlap_ = overlap_in_flight_ = 0.0;

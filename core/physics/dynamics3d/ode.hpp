@@ -40,6 +40,14 @@ class OdeHandle {
   Id id_ = nullptr;
 };
 
+/// Writes what a handle names, which lies in `memory`, or reads it.
+template <class Id, void (*kDestroy)(Id)>
+void remember_handle(const WorldMemory& memory, hal::Archive& archive, OdeHandle<Id, kDestroy>& handle) {
+  Id id = handle.get();
+  memory.remember_pointer(archive, id);
+  handle = OdeHandle<Id, kDestroy>(id);
+}
+
 using OdeThreading = OdeHandle<dThreadingImplementationID, &dThreadingFreeImplementation>;
 using OdeWorld = OdeHandle<dWorldID, &dWorldDestroy>;
 using OdeBody = OdeHandle<dBodyID, &dBodyDestroy>;

@@ -144,9 +144,60 @@ void World3d::put_back(const void* kept) {
         {entry.key, entry.identity, entry.owned, std::make_unique<BodyProxy>(entry.body)});
   for (auto& entry : bodies_table_.entries()) entry.body->heap = nullptr;  // of the last sub-step
   held_ = k.held;
+  find_twins();
+}
+
+void World3d::find_twins() {
   for (Held& held : held_) {
     held.twin_a = find(held.a);
     held.twin_b = find(held.b);
+  }
+}
+
+/// Handles of ODE's things as addresses of `memory_`, and all that is not of the last sub-step.
+void World3d::remember(hal::Archive& archive, BodyProxy& p) const {
+  archive(p.sort, p.owned, p.external, p.unfit, p.lost, p.aloft, p.standing, p.touched, p.engaged, p.driven, p.resting,
+          p.before_m, p.turned_before, p.key, p.mass_kg, p.height_m, p.origin_m, p.p_m, p.v_m_s, p.next_v_m_s, p.cos_h,
+          p.sin_h, p.w_rad_s, p.next_w_rad_s, p.forward_m_s, p.leftward_m_s, p.turn_rad_s, p.led_to_m, p.hop_m,
+          p.margin_m, p.from_x_m, p.from_y_m, p.prism, p.rolled_m, p.rotors);
+  const auto handles = [&](auto&... handle) { (remember_handle(memory_, archive, handle), ...); };
+  handles(p.body, p.push, p.turn, p.wheels[0], p.wheels[1], p.axles[0], p.axles[1]);
+}
+
+bool World3d::remember(hal::Archive& archive) {
+  use_ode();
+  if (archive.reads()) {
+    drop_world();
+  } else if (world_) {
+    const WorldMemory::Use use(&memory_);
+    dWorldCleanupWorkingMemory(world_.get());  // as `keep`
+  }
+  if (!memory_.remember(archive)) return false;
+  remember_handle(memory_, archive, threading_);
+  remember_handle(memory_, archive, world_);
+  remember_handle(memory_, archive, contacts_.group());
+  bodies_table_.remember(archive, [&](OwnedProxy& proxy) {
+    if (proxy == nullptr) proxy = std::make_unique<BodyProxy>();
+    remember(archive, *proxy);
+  });
+  std::uint64_t held = held_.size();
+  archive(held);
+  if (archive.reads()) held_.clear();
+  for (std::uint64_t i = 0; i < held && archive.ok(); ++i) {
+    if (archive.reads()) held_.emplace_back();
+    Held& h = held_[i];
+    archive(h.number, h.generation, h.a, h.b, h.at_a_m, h.at_b_m, h.free);
+    remember_handle(memory_, archive, h.joint);
+  }
+  find_twins();
+  return true;
+}
+
+/// What proxies that were read do not know yet.
+void World3d::find_kinds(const SpaceStores& stores) {
+  for (auto& entry : bodies_table_.entries()) {
+    BodyProxy& proxy = *entry.body;
+    if (proxy.robot() && proxy.kind == nullptr && entry.key.index() < stores.bodies.size()) know_kind(proxy, stores);
   }
 }
 
@@ -244,7 +295,10 @@ void World3d::load(const SolverContext& context) {
   guarded(context, [&] {
     const SpaceStores& s = context.stores;
     if (!world_) make_world();
-    if (version_ != s.immovables_version) place_stills(context);
+    if (version_ != s.immovables_version) {
+      place_stills(context);
+      find_kinds(s);
+    }
     surfaces_ = settings_.surfaces;
     surfaces_.floor_m = std::max(settings_.surfaces.floor_m, context.region.bottom_m);
     surfaces_.ceiling_m = context.region.top_m;

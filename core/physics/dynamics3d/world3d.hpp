@@ -39,6 +39,7 @@ class World3d final : public Solver {
   std::shared_ptr<const void> keep() override;
   void put_back(const void* kept) override;
   std::size_t bytes_of(const void* kept) const override;
+  bool remember(hal::Archive& archive) override;
 
  private:
   using OwnedProxy = std::unique_ptr<BodyProxy>;
@@ -76,6 +77,9 @@ class World3d final : public Solver {
   void join(const SpaceStores& stores);
   OdeJoint make_joint(const Joint& joint, BodyProxy& a, BodyProxy& b);
   BodyProxy* find(BodyKey key) noexcept;
+  void remember(hal::Archive& archive, BodyProxy& proxy) const;
+  void find_twins();
+  void find_kinds(const SpaceStores& stores);
 
   void plan(const SpaceStores& stores, BodyProxy& proxy, double dt_s);
   void find_candidates();

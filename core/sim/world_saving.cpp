@@ -1,0 +1,356 @@
+// Writes the state of a world for another process, and goes on from what another one wrote.
+//
+// What a start makes again, this process has by itself: addresses above all. Of controllers that do not say what they
+// remember, the words are written that have changed since the start. None of those may be an address.
+#include <algorithm>
+#include <cstring>
+#include <exception>
+
+#include "core/sim/settings.hpp"
+#include "core/sim/world_impl.hpp"
+#include "core/space/addresses.hpp"
+#include "hal/check.hpp"
+
+namespace tandem::core {
+namespace {
+
+constexpr std::size_t kWord = sizeof(std::uint64_t);
+
+std::uint64_t word_at(const std::byte* bytes, std::size_t word) noexcept {
+  std::uint64_t value = 0;
+  std::memcpy(&value, bytes + word * kWord, kWord);
+  return value;
+}
+
+/// What has to be alike in two worlds for one to take the state of the other over, a line each.
+std::vector<std::string> shape_of(const Scenario& scenario, const SpaceStores& s) {
+  std::vector<std::string> lines;
+  for (const RobotGroup& group : s.groups) {
+    std::string line = "robots " + group.kind->name + " with controller " + scenario.controllers[group.config].id +
+                       " of class " + std::string(group.controller->class_name) + ", " +
+                       std::to_string(group.controller->size) + " bytes, and";
+    for (const hal::PortType* port : group.ports)
+      line +=
+          " " + std::string(port->name) + (port->role == hal::Role::Sensor ? "<" : ">") + std::to_string(port->layout);
+    for (const KeptColumn& column : group.columns)
+      line += " " + std::string(column.type->name) + "=" + std::to_string(column.type->layout);
+    lines.push_back(std::move(line));
+  }
+  for (const RobotBlock& block : s.blocks)
+    lines.push_back(std::to_string(block.used) + " robots of group " + std::to_string(block.group));
+  for (const Region& region : s.regions)
+    lines.push_back("engine " + (region.engine < scenario.engines.size() ? scenario.engines[region.engine].kind : "") +
+                    " in region " + region.name);
+  lines.push_back(std::string("bodies with") + (s.bodies.has_motion ? "" : "out") + " motion");
+  for (const Fields::Entry& entry : s.fields.all()) lines.push_back("field " + entry.name);
+  return lines;
+}
+
+/// Has `call` write bytes of its own, or read all of them. Says what went wrong, or nothing.
+template <class Call>
+std::string part(hal::Archive& archive, Call&& call) {
+  std::string bytes;
+  hal::Archive writer;
+  try {
+    if (!archive.reads()) {
+      call(writer);
+      bytes = writer.take();
+      archive(bytes);
+      return {};
+    }
+    archive(bytes);
+    hal::Archive reader(bytes);
+    call(reader);
+    return reader.at_end() ? "" : "does not remember the same things as it wrote";
+  } catch (const std::exception& e) {
+    return std::string("threw: ") + e.what();
+  } catch (...) {
+    return "threw";
+  }
+}
+
+/// What keeps the words of a controller from being taken over by another process; empty: nothing. `start` are its bytes
+/// after the start, `copy` those of a copy of it: what both have is shared, and never changes.
+const char* flaw_of(const Addresses& addresses, const std::byte* controller, const std::byte* start,
+                    const std::byte* copy, std::size_t words) {
+  const auto inside = [](const std::byte* of, std::uint64_t address) {
+    return address - reinterpret_cast<std::uintptr_t>(of);  // less than its size: within itself
+  };
+  for (std::size_t k = 0; k < words; ++k) {
+    const std::uint64_t now = word_at(controller, k);
+    if (!addresses.may_be(now)) continue;
+    const std::uint64_t in_copy = word_at(copy, k);
+    const bool own = inside(controller, now) < words * kWord && inside(controller, now) == inside(copy, in_copy);
+    if (now != word_at(start, k)) return "refers to other memory than at the start";
+    if (now != in_copy && !own) return "owns memory: a vector, say, or a long text";
+  }
+  return "";
+}
+
+}  // namespace
+
+namespace {
+
+template <class T>
+bool same_bytes(T a, T b) {
+  hal::Archive one, other;
+  one(a);
+  other(b);
+  return one.bytes() == other.bytes();
+}
+
+/// What this world's settings have made other than those of the state did, `start`, is to be as they say: `change(i)`.
+template <class T, class Change>
+hal::Status take_changed(const char* what, const std::vector<T>& now, const std::vector<T>& start,
+                         const std::vector<T>& wanted, Change&& change) {
+  if (start.size() != wanted.size() || now.size() < start.size())
+    return hal::Error{"the settings have another number of " + std::string(what) + "s"};
+  for (std::size_t i = 0; i < start.size(); ++i) {
+    if (same_bytes(start[i], wanted[i])) continue;
+    if (!same_bytes(now[i], start[i]))
+      return hal::Error{"the run has changed the " + std::string(what) + " '" + now[i].id +
+                        "', and so have the settings"};
+    if (hal::Status changed = change(i); !changed.ok()) return changed;
+  }
+  return {};
+}
+
+}  // namespace
+
+hal::Status World::Impl::take_settings(const Things& start) {
+  SpaceStores& s = stores();
+  const Things& wanted = as_started->things;
+  hal::Status all = take_changed("light", s.lights, start.lights, wanted.lights, [&](std::size_t i) {
+    space.set_light(i, wanted.lights[i]);
+    return hal::Status();
+  });
+  if (!all.ok()) return all;
+  all = take_changed("sound", s.sounds, start.sounds, wanted.sounds, [&](std::size_t i) {
+    s.sounds[i] = wanted.sounds[i];
+    return hal::Status();
+  });
+  if (!all.ok()) return all;
+  return take_changed("object", s.objects, start.objects, wanted.objects, [&](std::size_t i) {
+    const Object& o = wanted.objects[i];
+    const hal::Status set = space.set_object({static_cast<std::uint32_t>(i), s.objects[i].generation}, o);
+    if (!set.ok()) return set;
+    return editor->room_for(BodyKey::object(i), {o.x_m, o.y_m, o.z_low_m, o.cos_h, o.sin_h});
+  });
+}
+
+void World::begin_saving() {
+  Impl& w = *impl_;
+  if (w.as_started) return;
+  const SpaceStores& s = w.stores();
+  AsStarted& start = w.as_started.emplace();
+  start.things = {s.objects, s.lights, s.sounds};
+  start.robots = s.robots.size();
+  for (const RobotBlock& block : s.blocks)
+    start.controllers.emplace_back(block.controllers, block.controllers + block.used * block.controller_stride);
+  for (const Fields::Entry& entry : s.fields.all()) start.fields.push_back(entry.field->mark());
+}
+
+hal::Result<std::string> World::save() {
+  Impl& w = *impl_;
+  if (!w.as_started) return hal::Error{"the run began anew since its start"};
+  if (w.external != nullptr) return hal::Error{"real robots or peers take part, which cannot be put back"};
+  if (!w.former.empty()) return hal::Error{"the run went on with other settings than it began with"};
+  if (!w.kept_checkpoints.kept.empty()) return hal::Error{"a hook keeps checkpoints of its own"};
+  if (w.stores().robots.size() != w.as_started->robots) return hal::Error{"robots were added while the run went on"};
+  hal::Archive archive;
+  archive(w.as_started->things);
+  if (const hal::Status done = w.remember(archive); !done.ok()) return done.error();
+  return archive.take();
+}
+
+hal::Status World::load(std::string_view saved, const Scenario* before) {
+  Impl& w = *impl_;
+  TANDEM_CHECK(w.as_started.has_value() && w.tick == 0, "load comes after begin_saving, and before the first step");
+  if (before != nullptr) {
+    const std::vector<std::string> fixed = fixed_differences(w.completed(*before), w.scenario, true);
+    if (!fixed.empty()) return hal::Error{"cannot change on the way: " + listed(fixed)};
+  }
+  hal::Archive archive(saved);
+  Things start;
+  archive(start);
+  hal::Status all = w.remember(archive);
+  if (all.ok() && !archive.at_end()) all = hal::Error{"its state is not whole"};
+  if (all.ok()) all = w.take_settings(start);
+  if (!all.ok()) w.fail(all.error().message);
+  return all;
+}
+
+hal::Status World::Impl::remember(hal::Archive& archive) {
+  using Part = hal::Status (Impl::*)(hal::Archive&);
+  for (const Part part : {&Impl::remember_shape, &Impl::remember_controls, &Impl::remember_space,
+                          &Impl::remember_engines, &Impl::remember_hooks}) {
+    if (hal::Status done = (this->*part)(archive); !done.ok()) return done;
+    if (!archive.ok()) return hal::Error{"its state ends too early"};
+  }
+  return {};
+}
+
+hal::Status World::Impl::remember_shape(hal::Archive& archive) {
+  if (!archive.same(loaded_objects().front().identity))
+    return hal::Error{"it was written by another build of this program"};
+  std::vector<std::string> now = shape_of(scenario, stores());
+  for (const std::string& hook : hook_names) now.push_back("hook " + hook);
+  std::vector<std::string> was = now;
+  archive(was);
+  if (was == now) return {};
+  const std::size_t at = static_cast<std::size_t>(std::ranges::mismatch(was, now).in1 - was.begin());
+  const auto line = [at](const std::vector<std::string>& of) { return at < of.size() ? of[at] : "nothing more"; };
+  return hal::Error{"it has " + line(was) + ", where this world has " + line(now)};
+}
+
+/// What hooks do to the space when their controls are put back does not count: this comes first.
+hal::Status World::Impl::remember_controls(hal::Archive& archive) {
+  std::vector<std::vector<ControlValue>> values(hooks.size());
+  if (!archive.reads()) {
+    hook_phase = "controls";
+    for (std::size_t i = 0; i < hooks.size(); ++i) {
+      const hal::PluginCall marked(&name_hook, this, i);
+      try {
+        values[i] = control_values(i);
+      } catch (const std::exception& e) {
+        return hal::Error{"hook '" + hook_names[i] + "' threw in controls: " + e.what()};
+      }
+    }
+  }
+  archive(values);
+  return archive.reads() && values.size() == hooks.size() ? put_back_controls(values) : hal::Status();
+}
+
+hal::Status World::Impl::remember_space(hal::Archive& archive) {
+  SpaceStores& s = stores();
+  std::apply(archive, parts_of(s));
+  archive(s.generations, s.joint_generations);
+  for (RobotGroup& group : s.groups) archive(group.free_slots);
+  const Addresses addresses;
+  for (std::size_t b = 0; b < s.blocks.size() && archive.ok(); ++b) {
+    if (hal::Status done = remember_block(archive, b, addresses); !done.ok()) return done;
+  }
+  if (hal::Status done = remember_fields(archive); !done.ok()) return done;
+  bool was_indexed = indexed();
+  archive(was_indexed);
+  std::apply(archive, kept());
+  if (!archive.reads()) return {};
+  note_other_state(s);
+  fit_to_state(was_indexed);
+  return {};
+}
+
+/// Those that have changed since the start.
+hal::Status World::Impl::remember_fields(hal::Archive& archive) {
+  const std::vector<Fields::Entry>& all = stores().fields.all();
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    Field& field = *all[i].field;
+    const bool same_start = archive.same(as_started->fields[i]);
+    bool changed = field.mark() != as_started->fields[i] || field.painted_by_hooks();
+    archive(changed);
+    if (changed && !same_start)
+      return hal::Error{"the run has changed the " + all[i].name + ", and so have the settings"};
+    if (changed && !field.remember(archive))
+      return hal::Error{"the field '" + all[i].name + "' cannot be written to disk"};
+  }
+  return {};
+}
+
+hal::Status World::Impl::remember_block(hal::Archive& archive, std::size_t index, const Addresses& addresses) {
+  SpaceStores& s = stores();
+  RobotBlock& block = s.blocks[index];
+  const RobotGroup& group = s.groups[block.group];
+  for (std::size_t p = 0; p < block.ports.size(); ++p) archive.raw(block.ports[p], group.ports[p]->size * block.used);
+  for (const KeptColumn& column : group.columns)
+    archive.raw(column.arrays->array(index), column.type->size * block.used);
+  auto constructed = block.constructed;
+  archive(block.halted, constructed);
+  for (std::size_t slot = 0; slot < block.used && archive.ok(); ++slot) {
+    if (constructed[slot] == block.constructed[slot]) continue;
+    if (constructed[slot] != 0) return hal::Error{"it has a robot more than this world"};
+    group.controller->destroy(block.controller(slot));
+    block.constructed[slot] = 0;
+  }
+  return group.controller->remember != nullptr ? remember_own(archive, index)
+                                               : remember_changed(archive, index, addresses);
+}
+
+/// Of controllers that say what they remember.
+hal::Status World::Impl::remember_own(hal::Archive& archive, std::size_t index) {
+  RobotBlock& block = stores().blocks[index];
+  const hal::ControllerType& type = *stores().groups[block.group].controller;
+  for (std::size_t slot = 0; slot < block.used && archive.ok(); ++slot) {
+    if (block.constructed[slot] == 0) continue;
+    const hal::PluginCall marked(&name_step, this, index, slot);
+    const std::string why = part(archive, [&](hal::Archive& own) { type.remember(block.controller(slot), own); });
+    if (!why.empty())
+      return hal::Error{"the controller of robot '" + name_of_row(block.first_row + slot) + "' " + why +
+                        " in remember"};
+  }
+  return {};
+}
+
+/// Of others: the words of the block's controllers that have changed since the start.
+hal::Status World::Impl::remember_changed(hal::Archive& archive, std::size_t index, const Addresses& addresses) {
+  RobotBlock& block = stores().blocks[index];
+  const hal::ControllerType& type = *stores().groups[block.group].controller;
+  const std::vector<std::byte>& start = as_started->controllers[index];
+  const std::size_t words = block.controller_stride / kWord;
+  std::vector<std::pair<std::uint64_t, std::uint64_t>> changes;  // which word, and what it is now
+  if (!archive.reads()) {
+    Slab slab;
+    std::byte* const copy = slab.take(block.controller_stride, type.align);
+    for (std::size_t slot = 0; slot < block.used; ++slot) {
+      if (block.constructed[slot] == 0) continue;
+      const std::byte* const now = block.controller(slot);
+      const std::byte* const then = start.data() + slot * block.controller_stride;
+      std::string why = type.copy == nullptr ? "cannot be copied" : copied(type, copy, now);
+      if (why.empty()) {
+        why = flaw_of(addresses, now, then, copy, words);
+        type.destroy(copy);
+      }
+      if (!why.empty())
+        return hal::Error{"the controller '" + std::string(type.name) + "' of robot '" +
+                          name_of_row(block.first_row + slot) + "' " + why +
+                          ", and its class does not say what it remembers (hal::Controller)"};
+      for (std::size_t k = 0; k < words; ++k) {
+        if (word_at(now, k) != word_at(then, k)) changes.emplace_back(slot * words + k, word_at(now, k));
+      }
+    }
+  }
+  archive(changes);
+  for (const auto& [word, now] : changes) {
+    if (word >= block.used * words) return hal::Error{"its state is damaged"};
+    std::memcpy(block.controllers + word * kWord, &now, kWord);
+  }
+  return {};
+}
+
+hal::Status World::Impl::remember_engines(hal::Archive& archive) {
+  for (const auto& engine : engines) {
+    hal::Status done;
+    const std::string why = part(archive, [&](hal::Archive& own) { done = engine->remember(own); });
+    if (!done.ok()) return done;
+    if (!why.empty()) return hal::Error{"the engine " + std::string(engine->kind()) + " " + why};
+  }
+  PhysicsAccuracy so_far;
+  so_far.add(accuracy_before);
+  for (const auto& engine : engines) so_far.add(engine->accuracy());
+  archive(so_far);
+  if (archive.reads()) accuracy_before = so_far;
+  return {};
+}
+
+hal::Status World::Impl::remember_hooks(hal::Archive& archive) {
+  hook_phase = "remember";
+  for (std::size_t i = 0; i < hooks.size(); ++i) {
+    const hal::PluginCall marked(&name_hook, this, i);
+    bool says = true;
+    std::string why = part(archive, [&](hal::Archive& own) { says = hooks[i]->remember(own); });
+    if (!says) why = "does not say what it remembers (Hook::remember)";
+    if (!why.empty()) return hal::Error{"the hook '" + hook_names[i] + "' " + why};
+  }
+  return {};
+}
+
+}  // namespace tandem::core
