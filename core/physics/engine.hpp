@@ -62,22 +62,10 @@ class Engine {
   /// Of this engine, in this process: going back in a run takes nothing back of it.
   virtual PhysicsAccuracy accuracy() const { return {}; }
 
-  /// What the engine holds beyond the stores, as it is between two ticks; null: nothing. Changes nothing of the run.
-  virtual std::shared_ptr<const void> keep() { return nullptr; }
-  /// Goes on from what `keep` of this engine gave. The stores are as they were then.
-  virtual void put_back(const std::shared_ptr<const void>& /*kept*/) {}
-  /// About how much memory what `keep` gave takes, in bytes.
-  virtual std::size_t bytes_of(const std::shared_ptr<const void>& /*kept*/) const { return 0; }
-  /// Writes what `keep` gives, or goes on from what it reads, in another process of the same program. Error: why it
-  /// cannot.
-  virtual hal::Status remember(hal::Archive& /*archive*/) { return cannot_remember(keep() != nullptr); }
-
- protected:
-  /// For those that are kept in memory alone.
-  hal::Status cannot_remember(bool holds) const {
-    if (!holds) return {};
-    return hal::Error{"the engine " + std::string(kind()) + " holds what cannot be written to disk"};
-  }
+  /// Writes what the engine holds beyond the stores, as it is between two ticks, or goes on from what it reads, in this
+  /// process or another of the same program; the stores are as they were then. Changes nothing of the run. False: what
+  /// was read is not of this program and its libraries.
+  virtual bool remember(hal::Archive& /*archive*/) { return true; }
 };
 
 class Solver;  // core/physics/solver.hpp

@@ -100,31 +100,8 @@ PhysicsAccuracy SolverEngine::accuracy() const {
   return all;
 }
 
-std::shared_ptr<const void> SolverEngine::keep() {
-  auto all = std::make_shared<std::vector<std::shared_ptr<const void>>>();
-  for (Part& part : parts_) all->push_back(part.solver->keep());
-  return all;
-}
-
-void SolverEngine::put_back(const std::shared_ptr<const void>& kept) {
-  const auto& all = *static_cast<const std::vector<std::shared_ptr<const void>>*>(kept.get());
-  for (std::size_t i = 0; i < parts_.size(); ++i) {
-    if (all[i] != nullptr) parts_[i].solver->put_back(all[i].get());
-  }
-}
-
-hal::Status SolverEngine::remember(hal::Archive& archive) {
-  const bool all = std::ranges::all_of(parts_, [&](Part& part) { return part.solver->remember(archive); });
-  return cannot_remember(!all);
-}
-
-std::size_t SolverEngine::bytes_of(const std::shared_ptr<const void>& kept) const {
-  const auto& all = *static_cast<const std::vector<std::shared_ptr<const void>>*>(kept.get());
-  std::size_t bytes = 0;
-  for (std::size_t i = 0; i < parts_.size(); ++i) {
-    if (all[i] != nullptr) bytes += parts_[i].solver->bytes_of(all[i].get());
-  }
-  return bytes;
+bool SolverEngine::remember(hal::Archive& archive) {
+  return std::ranges::all_of(parts_, [&](Part& part) { return part.solver->remember(archive); });
 }
 
 }  // namespace tandem::core

@@ -42,14 +42,8 @@ class Solver {
   /// Anything that is not finite, or faster than physics allows, is reported and not written back.
   virtual void advance(const SolverContext& context) = 0;
 
-  /// What it holds between two ticks that the stores do not; null: nothing. Changes nothing of the run.
-  virtual std::shared_ptr<const void> keep() { return nullptr; }
-  /// Goes on from what its own `keep` gave. Never called for null.
-  virtual void put_back(const void* /*kept*/) {}
-  /// About how much memory what its `keep` gave takes, in bytes. Never called for null.
-  virtual std::size_t bytes_of(const void* /*kept*/) const { return 0; }
-  /// As Engine::remember. False: it cannot.
-  virtual bool remember(hal::Archive& /*archive*/) { return keep() == nullptr; }
+  /// As Engine::remember.
+  virtual bool remember(hal::Archive& /*archive*/) { return true; }
 
   PhysicsAccuracy accuracy;      ///< since it was made
   double overlap = 0.0;          ///< of two robots that drive, after the last tick; its engine parts what is too deep
@@ -79,10 +73,7 @@ class SolverEngine final : public Engine {
   void advance(const PhysicsContext& context) override;
   void collect(std::vector<Trouble>& all) override;
   PhysicsAccuracy accuracy() const override;
-  std::shared_ptr<const void> keep() override;
-  void put_back(const std::shared_ptr<const void>& kept) override;
-  std::size_t bytes_of(const std::shared_ptr<const void>& kept) const override;
-  hal::Status remember(hal::Archive& archive) override;
+  bool remember(hal::Archive& archive) override;
 
  private:
   struct Part {

@@ -42,15 +42,6 @@ std::byte* before(void* block) noexcept {
 
 }  // namespace
 
-class WorldMemory::Image {
- public:
-  std::vector<std::size_t> shared, large;  // how much of each chunk is used
-  std::unique_ptr<std::byte[]> bytes;      // of all of these, in this order
-  std::size_t filling = 0;
-  std::size_t blocks = 0;
-  std::array<void*, kClasses> unused{};
-};
-
 std::size_t WorldMemory::size_of_class(std::size_t size_class) noexcept {
   return size_of(size_class);
 }
@@ -59,7 +50,7 @@ void* WorldMemory::carve(std::size_t bytes) {
   while (filling_ < shared_.size() && shared_[filling_].size - shared_[filling_].used < bytes) ++filling_;
   if (filling_ == shared_.size()) {
     const std::size_t size = std::min(kFirstChunk << std::min<std::size_t>(filling_, 8), kLargestChunk);
-    shared_.push_back({std::make_unique<std::byte[]>(size), size, 0});
+    shared_.push_back({std::make_unique_for_overwrite<std::byte[]>(size), size, 0});
   }
   Chunk& chunk = shared_[filling_];
   return chunk.bytes.get() + std::exchange(chunk.used, chunk.used + bytes);
@@ -83,7 +74,7 @@ void* WorldMemory::allocate(std::size_t bytes) {
   });
   if (fit == large_.end()) {
     const std::size_t size = (wanted + kPage - 1) / kPage * kPage;
-    auto made = std::make_unique<std::byte[]>(size);
+    auto made = std::make_unique_for_overwrite<std::byte[]>(size);
     fit = std::find_if(large_.begin(), large_.end(), [](const Chunk& chunk) { return chunk.bytes == nullptr; });
     if (fit == large_.end()) fit = large_.insert(fit, Chunk{});
     *fit = {std::move(made), size, 0};
@@ -100,8 +91,7 @@ void WorldMemory::free(void* block) noexcept {
   std::memcpy(&what, before(block), sizeof what);
   if ((what & kLarge) != 0) {
     Chunk& chunk = large_[what & ~kLarge];
-    chunk.used = 0;
-    if (!copied_) chunk = {};  // no image wants it at this address
+    chunk = {};
     return;
   }
   std::memcpy(block, &unused_[what], sizeof block);
@@ -115,51 +105,6 @@ void WorldMemory::clear() noexcept {
   filling_ = 0;
   blocks_ = 0;
   unused_.fill(nullptr);
-}
-
-std::shared_ptr<const WorldMemory::Image> WorldMemory::copy() const {
-  auto image = std::make_shared<Image>();
-  copied_ = true;
-  std::size_t sum = 0;
-  for (const auto& [chunks, sizes] : {std::pair{&shared_, &image->shared}, std::pair{&large_, &image->large}}) {
-    for (const Chunk& chunk : *chunks) {
-      sizes->push_back(chunk.used);
-      sum += chunk.used;
-    }
-  }
-  image->bytes = std::make_unique_for_overwrite<std::byte[]>(sum);
-  std::byte* to = image->bytes.get();
-  for (const auto* chunks : {&shared_, &large_}) {
-    for (const Chunk& chunk : *chunks) to = std::copy_n(chunk.bytes.get(), chunk.used, to);
-  }
-  image->filling = filling_;
-  image->blocks = blocks_;
-  image->unused = unused_;
-  return image;
-}
-
-std::size_t WorldMemory::bytes_of(const Image& image) noexcept {
-  std::size_t bytes = sizeof image;
-  for (const auto* sizes : {&image.shared, &image.large}) {
-    for (const std::size_t size : *sizes) bytes += size + sizeof size;
-  }
-  return bytes;
-}
-
-void WorldMemory::put_back(const Image& image) noexcept {
-  clear();
-  const std::byte* from = image.bytes.get();
-  for (const auto& [chunks, sizes] : {std::pair{&shared_, &image.shared}, std::pair{&large_, &image.large}}) {
-    for (std::size_t i = 0; i < sizes->size(); ++i) {
-      Chunk& chunk = (*chunks)[i];
-      chunk.used = (*sizes)[i];
-      std::copy_n(from, chunk.used, chunk.bytes.get());
-      from += chunk.used;
-    }
-  }
-  filling_ = image.filling;
-  blocks_ = image.blocks;
-  unused_ = image.unused;
 }
 
 WorldMemory::Use::Use(WorldMemory* memory) noexcept : before_(std::exchange(in_use, memory)) {}

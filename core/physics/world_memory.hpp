@@ -1,4 +1,4 @@
-// Memory of the world that a physics library keeps for one solver: copied and put back as a whole, bit for bit.
+// Memory of the world that a physics library keeps for one solver: written and read as a whole, bit for bit.
 #pragma once
 #include <array>
 #include <cstddef>
@@ -11,14 +11,11 @@
 
 namespace tandem::core {
 
-/// Gives out memory and can go back to how it was at an earlier moment, with every block at the same address. Solvers
-/// let their library take all that lives between ticks from here: then a checkpoint holds the library's contacts, trees
-/// and lists without knowing what they are. For one thread at a time.
+/// Gives out memory that can be written and read, here or in another process. Solvers let their library take all that
+/// lives between ticks from here: then a checkpoint holds the library's contacts, trees and lists without knowing what
+/// they are. For one thread at a time.
 class WorldMemory {
  public:
-  /// A copy of all that was given out at a moment.
-  class Image;
-
   WorldMemory() = default;
   WorldMemory(const WorldMemory&) = delete;
   WorldMemory& operator=(const WorldMemory&) = delete;
@@ -31,14 +28,9 @@ class WorldMemory {
   void clear() noexcept;
   std::size_t blocks() const noexcept { return blocks_; }  ///< given out now
 
-  std::shared_ptr<const Image> copy() const;
-  /// `image` is of this memory.
-  void put_back(const Image& image) noexcept;
-  static std::size_t bytes_of(const Image& image) noexcept;
-
   /// Writes all that is given out, or reads it into this memory, which then lies elsewhere: addresses into it, and into
-  /// the program and its libraries, are made anew; others are null. `pointers` are those of who uses it; each is null
-  /// or lies in it. False: what was read is not of this program and its libraries.
+  /// the program and its libraries, are made anew; others are null in another process. `pointers` are those of who uses
+  /// it; each is null or lies in it. False: what was read is not of this program and its libraries.
   template <class... T>
   bool remember(hal::Archive& archive, T*&... pointers) {
     return remember_all(archive, {reinterpret_cast<void**>(&pointers)...});
@@ -92,10 +84,9 @@ class WorldMemory {
   Place place_of(std::uint64_t address) const noexcept;
   std::uint64_t address_of(const Place& place) const noexcept;
 
-  std::vector<Chunk> shared_;    // cut into small blocks, one after the other
-  std::vector<Chunk> large_;     // one block each; without bytes where the block was given back to the heap
-  mutable bool copied_ = false;  // an image may want large blocks where they were
-  std::size_t filling_ = 0;      // index of the shared chunk that is cut at present
+  std::vector<Chunk> shared_;  // cut into small blocks, one after the other
+  std::vector<Chunk> large_;   // one block each; without bytes where the block was given back to the heap
+  std::size_t filling_ = 0;    // index of the shared chunk that is cut at present
   std::size_t blocks_ = 0;
   std::array<void*, kClasses> unused_{};  // by class of size: blocks that were freed, linked by their first bytes
 };

@@ -81,7 +81,7 @@ struct SavedWorld {
   std::unique_ptr<SpaceCopy> space;
   WorldParts parts;
   bool indexed = false;  ///< the index of immovable objects was up to date
-  std::vector<std::shared_ptr<const void>> engines;
+  std::string engines;   ///< what they hold beyond the stores
   std::vector<std::any> hooks;
   std::vector<std::vector<ControlValue>> hook_controls;  ///< by hook
   std::optional<KeptCheckpoints> checkpoints;            ///< of hooks, for who goes back without their knowing
@@ -189,6 +189,7 @@ struct World::Impl final : hal::RobotLog::Sink {
   hal::Status remember_own(hal::Archive& archive, std::size_t block);
   hal::Status remember_changed(hal::Archive& archive, std::size_t block, const Addresses& addresses);
   hal::Status remember_engines(hal::Archive& archive);
+  void remember_accuracy(hal::Archive& archive);
   hal::Status remember_hooks(hal::Archive& archive);
 
   // --- making ---

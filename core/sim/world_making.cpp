@@ -235,6 +235,48 @@ std::unique_ptr<Hook> make_hook(const HookType& type, const HookConfig& config, 
   return nullptr;
 }
 
+/// What is in the arena besides robots.
+void furnish(const Scenario& scenario, const Placements& placements, SpaceStores& s) {
+  for (const PlacedObject& placed : placements.objects)
+    s.objects.push_back(object_of(scenario, scenario.objects[placed.item], placed));
+  for (const PlacedLight& placed : placements.lights) {
+    const LightItem& item = scenario.lights[placed.item];
+    s.lights.push_back({placed.number < 0 ? item.id : item.id + std::to_string(placed.number),
+                        placed.p_W[0],
+                        placed.p_W[1],
+                        placed.p_W[2],
+                        item.intensity,
+                        {item.rgb[0], item.rgb[1], item.rgb[2]},
+                        true,
+                        led_medium(scenario, item.medium)});
+  }
+  for (const SoundItem& item : scenario.sounds)
+    s.sounds.push_back({item.id, item.p_W[0], item.p_W[1], item.p_W[2], item.level});
+}
+
+/// Ids: entities in the order of the file.
+std::vector<RobotRequest> name_robots(const Scenario& scenario, const Placements& placements, SpaceStores& s) {
+  std::vector<RobotRequest> requests;
+  requests.reserve(placements.robots.size());
+  s.robots.resize(placements.robots.size());
+  for (std::size_t i = 0; i < scenario.robots.size(); ++i) {
+    const RobotItem& item = scenario.robots[i];
+    s.names.push_back({item.id, item.distribute ? item.distribute->base_num : -1, 0, 0});
+  }
+  for (std::size_t i = 0; i < placements.robots.size(); ++i) {
+    const PlacedRobot& placed = placements.robots[i];
+    NameRange& name = s.names[placed.item];
+    if (name.count == 0) name.first_entity = static_cast<std::uint32_t>(i);
+    ++name.count;
+    s.robots[i].item = placed.item;
+    s.robots[i].number = placed.number;
+    s.living.push_back(static_cast<std::uint32_t>(i));
+    requests.push_back(
+        {placed.item, static_cast<std::uint32_t>(i), placed.x_m, placed.y_m, placed.z_m, placed.yaw_rad});
+  }
+  return requests;
+}
+
 }  // namespace
 
 std::unique_ptr<World> World::make(const Scenario& scenario, hal::PluginLoader& loader, const WorldOptions& options,
@@ -316,41 +358,8 @@ void World::Impl::populate(Problems& problems) {
   }
   s.bodies.has_motion = !all_in_rows;
 
-  for (const PlacedObject& placed : placements.objects)
-    s.objects.push_back(object_of(scenario, scenario.objects[placed.item], placed));
-  for (const PlacedLight& placed : placements.lights) {
-    const LightItem& item = scenario.lights[placed.item];
-    s.lights.push_back({placed.number < 0 ? item.id : item.id + std::to_string(placed.number),
-                        placed.p_W[0],
-                        placed.p_W[1],
-                        placed.p_W[2],
-                        item.intensity,
-                        {item.rgb[0], item.rgb[1], item.rgb[2]},
-                        true,
-                        led_medium(scenario, item.medium)});
-  }
-  for (const SoundItem& item : scenario.sounds)
-    s.sounds.push_back({item.id, item.p_W[0], item.p_W[1], item.p_W[2], item.level});
-
-  // Ids: entities in the order of the file.
-  std::vector<RobotRequest> requests;
-  requests.reserve(placements.robots.size());
-  s.robots.resize(placements.robots.size());
-  for (std::size_t i = 0; i < scenario.robots.size(); ++i) {
-    const RobotItem& item = scenario.robots[i];
-    s.names.push_back({item.id, item.distribute ? item.distribute->base_num : -1, 0, 0});
-  }
-  for (std::size_t i = 0; i < placements.robots.size(); ++i) {
-    const PlacedRobot& placed = placements.robots[i];
-    NameRange& name = s.names[placed.item];
-    if (name.count == 0) name.first_entity = static_cast<std::uint32_t>(i);
-    ++name.count;
-    s.robots[i].item = placed.item;
-    s.robots[i].number = placed.number;
-    s.living.push_back(static_cast<std::uint32_t>(i));
-    requests.push_back(
-        {placed.item, static_cast<std::uint32_t>(i), placed.x_m, placed.y_m, placed.z_m, placed.yaw_rad});
-  }
+  furnish(scenario, placements, s);
+  const std::vector<RobotRequest> requests = name_robots(scenario, placements, s);
   if (factory == nullptr) factory = std::make_unique<RobotFactory>(scenario, seed, *loader, s, devices, media, *this);
   factory->make(requests, problems);
   for (const CouplingType* type : catalog.all<CouplingType>()) couplings.push_back(type->make(s.columns));

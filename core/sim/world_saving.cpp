@@ -69,10 +69,28 @@ std::string part(hal::Archive& archive, Call&& call) {
   }
 }
 
+/// The first 16 bytes at each address among these words: of what a std::shared_ptr owns, how many share it.
+std::vector<std::uint64_t> what_lies_at(const Addresses& addresses, const std::byte* bytes, std::size_t words) {
+  std::vector<std::uint64_t> all;
+  for (std::size_t k = 0; k < words; ++k) {
+    const std::uint64_t at = word_at(bytes, k);
+    if (!addresses.may_be(at) || !addresses.may_be(at + 2 * kWord - 1)) continue;
+    const auto* const there = reinterpret_cast<const std::byte*>(at);
+    all.insert(all.end(), {word_at(there, 0), word_at(there, 1)});
+  }
+  return all;
+}
+
 /// What keeps the words of a controller from being taken over by another process; empty: nothing. `start` are its bytes
-/// after the start, `copy` those of a copy of it: what both have is shared, and never changes.
-const char* flaw_of(const Addresses& addresses, const std::byte* controller, const std::byte* start,
-                    const std::byte* copy, std::size_t words) {
+/// after the start, `copy` is room for a copy of it: an address that both have is of what no step changes, unless they
+/// own it together.
+std::string flaw_of(const hal::ControllerType& type, const Addresses& addresses, const std::byte* controller,
+                    const std::byte* start, std::byte* copy, std::size_t words) {
+  if (type.copy == nullptr) return "cannot be copied";
+  const std::vector<std::uint64_t> before = what_lies_at(addresses, controller, words);
+  if (std::string why = copied(type, copy, controller); !why.empty()) return "threw while it was copied: " + why;
+  const char* flaw = "";
+  if (what_lies_at(addresses, controller, words) != before) flaw = "shares memory with its copies";
   const auto inside = [](const std::byte* of, std::uint64_t address) {
     return address - reinterpret_cast<std::uintptr_t>(of);  // less than its size: within itself
   };
@@ -81,15 +99,12 @@ const char* flaw_of(const Addresses& addresses, const std::byte* controller, con
     if (!addresses.may_be(now)) continue;
     const std::uint64_t in_copy = word_at(copy, k);
     const bool own = inside(controller, now) < words * kWord && inside(controller, now) == inside(copy, in_copy);
-    if (now != word_at(start, k)) return "refers to other memory than at the start";
-    if (now != in_copy && !own) return "owns memory: a vector, say, or a long text";
+    if (now != word_at(start, k)) flaw = "refers to other memory than at the start";
+    if (now != in_copy && !own) flaw = "owns memory: a vector, say, or a long text";
   }
-  return "";
+  type.destroy(copy);
+  return flaw;
 }
-
-}  // namespace
-
-namespace {
 
 template <class T>
 bool same_bytes(T a, T b) {
@@ -231,6 +246,7 @@ hal::Status World::Impl::remember_space(hal::Archive& archive) {
     if (hal::Status done = remember_block(archive, b, addresses); !done.ok()) return done;
   }
   if (hal::Status done = remember_fields(archive); !done.ok()) return done;
+  remember_accuracy(archive);
   bool was_indexed = indexed();
   archive(was_indexed);
   std::apply(archive, kept());
@@ -304,11 +320,7 @@ hal::Status World::Impl::remember_changed(hal::Archive& archive, std::size_t ind
       if (block.constructed[slot] == 0) continue;
       const std::byte* const now = block.controller(slot);
       const std::byte* const then = start.data() + slot * block.controller_stride;
-      std::string why = type.copy == nullptr ? "cannot be copied" : copied(type, copy, now);
-      if (why.empty()) {
-        why = flaw_of(addresses, now, then, copy, words);
-        type.destroy(copy);
-      }
+      const std::string why = flaw_of(type, addresses, now, then, copy, words);
       if (!why.empty())
         return hal::Error{"the controller '" + std::string(type.name) + "' of robot '" +
                           name_of_row(block.first_row + slot) + "' " + why +
@@ -328,17 +340,20 @@ hal::Status World::Impl::remember_changed(hal::Archive& archive, std::size_t ind
 
 hal::Status World::Impl::remember_engines(hal::Archive& archive) {
   for (const auto& engine : engines) {
-    hal::Status done;
-    const std::string why = part(archive, [&](hal::Archive& own) { done = engine->remember(own); });
-    if (!done.ok()) return done;
+    bool known = true;
+    std::string why = part(archive, [&](hal::Archive& own) { known = engine->remember(own); });
+    if (!known) why = "does not know the state of its solvers: another library is in use";
     if (!why.empty()) return hal::Error{"the engine " + std::string(engine->kind()) + " " + why};
   }
-  PhysicsAccuracy so_far;
-  so_far.add(accuracy_before);
+  return {};
+}
+
+/// How exact the engines were in the processes before, too.
+void World::Impl::remember_accuracy(hal::Archive& archive) {
+  PhysicsAccuracy so_far = accuracy_before;
   for (const auto& engine : engines) so_far.add(engine->accuracy());
   archive(so_far);
   if (archive.reads()) accuracy_before = so_far;
-  return {};
 }
 
 hal::Status World::Impl::remember_hooks(hal::Archive& archive) {

@@ -92,15 +92,14 @@ hal::Result<Snapshot> World::snapshot() {
   }
   hal::Result<std::unique_ptr<SpaceCopy>> copy = SpaceCopy::take(w.space, w.devices);
   if (!copy.ok()) return copy.error();
-  for (const auto& engine : w.engines) saved->engines.push_back(engine->keep());
+  hal::Archive engines;
+  if (const hal::Status kept = w.remember_engines(engines); !kept.ok()) return kept.error();
+  saved->engines = engines.take();
   saved->of = w.identity;
   saved->space = std::move(copy.value());
   saved->parts = w.kept();
   saved->indexed = w.indexed();
-  std::size_t bytes = sizeof *saved + saved->space->bytes();
-  for (std::size_t i = 0; i < w.engines.size(); ++i) {
-    if (saved->engines[i] != nullptr) bytes += w.engines[i]->bytes_of(saved->engines[i]);
-  }
+  const std::size_t bytes = sizeof *saved + saved->space->bytes() + saved->engines.size();
   return Snapshot(w.tick, bytes, std::move(saved));
 }
 
@@ -133,7 +132,8 @@ hal::Status World::restore(const Snapshot& snapshot) {
   hal::Status all = saved.space->put_back(w.space, w.devices);
   if (all.ok()) all = controls;
   w.kept() = saved.parts;
-  for (std::size_t i = 0; i < w.engines.size(); ++i) w.engines[i]->put_back(saved.engines[i]);
+  hal::Archive engines(saved.engines);
+  if (hal::Status engines_back = w.remember_engines(engines); all.ok()) all = engines_back;
   w.fit_to_state(saved.indexed);
   if (saved.checkpoints) w.kept_checkpoints = *saved.checkpoints;
   w.hook_phase = "restore";

@@ -19,10 +19,10 @@ std::vector<LoadedObject> loaded_objects();
 class Addresses {
  public:
   Addresses();
+  static constexpr std::uint64_t kLeast = 0x10000, kMost = 0x7fff'ffff'ffffULL;
   bool may_be(std::uint64_t word) const noexcept { return word >= kLeast && word <= kMost && lies_in_memory(word); }
 
  private:
-  static constexpr std::uint64_t kLeast = 0x10000, kMost = 0x7fff'ffff'ffffULL;
   bool lies_in_memory(std::uint64_t word) const noexcept;
 
   struct Range {

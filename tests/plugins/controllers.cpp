@@ -371,6 +371,32 @@ class Owner final : public Controller {
   std::unique_ptr<int> steps_;
 };
 
+/// Shares with its copies what its steps change.
+class Sharer final : public Controller {
+ public:
+  explicit Sharer(Robot& robot) : wheels_(robot.actuator<WheelSpeeds>()), steps_(std::make_shared<int>(0)) {}
+  void step() override { wheels_.set(0.01 * (++*steps_ % 5), 0.02); }
+
+ private:
+  WheelSpeeds& wheels_;
+  std::shared_ptr<int> steps_;
+};
+
+/// Owns memory, and says what of it its steps change.
+class Rememberer final : public Controller {
+ public:
+  explicit Rememberer(Robot& robot) : wheels_(robot.actuator<WheelSpeeds>()) {}
+  void step() override {
+    speeds_.push_back(0.001 * static_cast<double>(speeds_.size() % 50));
+    wheels_.set(speeds_.back(), 0.02);
+  }
+  void remember(Archive& archive) { archive(speeds_); }
+
+ private:
+  WheelSpeeds& wheels_;
+  std::vector<double> speeds_;
+};
+
 /// Throws when it is copied after its third step.
 class Reluctant final : public Controller {
  public:
@@ -414,6 +440,8 @@ void register_all(Registrar& registrar) {
   registrar.add_controller<DrivenPuppet>("driven_puppet", "Takes a foot-bot's wheels and proximity sensors.");
   registrar.add_controller<Watcher>("watcher", "Takes cameras and lights.");
   registrar.add_controller<Owner>("owner", "Cannot be copied.");
+  registrar.add_controller<Sharer>("sharer", "Shares with its copies what its steps change.");
+  registrar.add_controller<Rememberer>("rememberer", "Says what it remembers.");
   registrar.add_controller<Reluctant>("reluctant", "Throws when it is copied after its third step.");
   registrar.add_controller<Picky>("picky", "Takes devices by its robot's id.");
   registrar.add_controller<Stillborn>("stillborn", "Throws when made.");

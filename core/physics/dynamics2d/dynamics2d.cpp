@@ -180,24 +180,6 @@ class Dynamics2d final : public Solver {
     for (std::size_t i = 0; i < headings_.size(); ++i) write_back(s, i, context.tick_s, dt);
   }
 
-  std::shared_ptr<const void> keep() override {
-    return std::make_shared<Kept>(
-        Kept{memory_.copy(), world_, anchor_, immovable_, placed_, bodies_table_, joints_, crowds_moved});
-  }
-
-  void put_back(const void* kept) override {
-    const Kept& k = *static_cast<const Kept*>(kept);
-    memory_.put_back(*k.memory);
-    world_ = k.world;
-    anchor_ = k.anchor;
-    immovable_ = k.immovable;
-    placed_ = k.placed;
-    version_ = 0;  // looks whether they are those that stand there
-    bodies_table_ = k.roster;
-    joints_ = k.joints;
-    crowds_moved = k.crowds_moved;
-  }
-
   bool remember(hal::Archive& archive) override {
     if (archive.reads()) know_contacts();
     if (!memory_.remember(archive, world_, anchor_, immovable_)) return false;
@@ -215,14 +197,8 @@ class Dynamics2d final : public Solver {
       archive(joints_[i].number, joints_[i].generation);
       memory_.remember_pointer(archive, joints_[i].joint);
     }
-    if (archive.reads()) version_ = 0;  // as `put_back`
+    if (archive.reads()) version_ = 0;  // looks whether they are those that stand there
     return true;
-  }
-
-  std::size_t bytes_of(const void* kept) const override {
-    const Kept& k = *static_cast<const Kept*>(kept);
-    return WorldMemory::bytes_of(*k.memory) + k.placed.size() * sizeof(Placed) +
-           k.roster.entries().size() * sizeof(k.roster.entries()[0]) + k.joints.size() * sizeof(Held);
   }
 
  private:
@@ -236,17 +212,6 @@ class Dynamics2d final : public Solver {
     Object::Kind kind;
     std::array<double, 7> shape;
     friend bool operator==(const Placed&, const Placed&) = default;
-  };
-  /// Box2D's memory, and what points into it.
-  struct Kept {
-    std::shared_ptr<const WorldMemory::Image> memory;
-    b2World* world;
-    b2Body* anchor;
-    b2Body* immovable;
-    std::vector<Placed> placed;
-    BodyTable<BodyProxy> roster;
-    std::vector<Held> joints;
-    bool crowds_moved;
   };
 
   b2Vec2 at(double x_m, double y_m) const noexcept {

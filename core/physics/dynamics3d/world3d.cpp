@@ -114,46 +114,6 @@ void World3d::drop_world() noexcept {
   memory_.clear();
 }
 
-std::shared_ptr<const void> World3d::keep() {
-  if (world_) {
-    use_ode();
-    const WorldMemory::Use use(&memory_);
-    dWorldCleanupWorkingMemory(world_.get());  // what a step needs for itself
-  }
-  auto kept = std::make_shared<Kept>(Kept{memory_.copy(), threading_, world_, contacts_, {}, held_});
-  for (const auto& entry : bodies_table_.entries())
-    kept->proxies.push_back({entry.key, entry.identity, entry.owned, *entry.body});
-  return kept;
-}
-
-std::size_t World3d::bytes_of(const void* kept) const {
-  const Kept& k = *static_cast<const Kept*>(kept);
-  return WorldMemory::bytes_of(*k.memory) + k.proxies.size() * (sizeof k.proxies[0] + sizeof(BodyProxy)) +
-         k.held.size() * sizeof(Held);
-}
-
-void World3d::put_back(const void* kept) {
-  const Kept& k = *static_cast<const Kept*>(kept);
-  drop_world();
-  memory_.put_back(*k.memory);
-  threading_ = k.threading;
-  world_ = k.world;
-  contacts_ = k.contacts;
-  for (const auto& entry : k.proxies)
-    bodies_table_.entries().push_back(
-        {entry.key, entry.identity, entry.owned, std::make_unique<BodyProxy>(entry.body)});
-  for (auto& entry : bodies_table_.entries()) entry.body->heap = nullptr;  // of the last sub-step
-  held_ = k.held;
-  find_twins();
-}
-
-void World3d::find_twins() {
-  for (Held& held : held_) {
-    held.twin_a = find(held.a);
-    held.twin_b = find(held.b);
-  }
-}
-
 /// Handles of ODE's things as addresses of `memory_`, and all that is not of the last sub-step.
 void World3d::remember(hal::Archive& archive, BodyProxy& p) const {
   archive(p.sort, p.owned, p.external, p.unfit, p.lost, p.aloft, p.standing, p.touched, p.engaged, p.driven, p.resting,
@@ -170,7 +130,7 @@ bool World3d::remember(hal::Archive& archive) {
     drop_world();
   } else if (world_) {
     const WorldMemory::Use use(&memory_);
-    dWorldCleanupWorkingMemory(world_.get());  // as `keep`
+    dWorldCleanupWorkingMemory(world_.get());  // what a step needs for itself
   }
   if (!memory_.remember(archive)) return false;
   remember_handle(memory_, archive, threading_);
@@ -189,7 +149,10 @@ bool World3d::remember(hal::Archive& archive) {
     archive(h.number, h.generation, h.a, h.b, h.at_a_m, h.at_b_m, h.free);
     remember_handle(memory_, archive, h.joint);
   }
-  find_twins();
+  for (Held& h : held_) {
+    h.twin_a = find(h.a);
+    h.twin_b = find(h.b);
+  }
   return true;
 }
 

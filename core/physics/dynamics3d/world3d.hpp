@@ -36,9 +36,6 @@ class World3d final : public Solver {
 
   void load(const SolverContext& context) override;
   void advance(const SolverContext& context) override;
-  std::shared_ptr<const void> keep() override;
-  void put_back(const void* kept) override;
-  std::size_t bytes_of(const void* kept) const override;
   bool remember(hal::Archive& archive) override;
 
  private:
@@ -52,15 +49,6 @@ class World3d final : public Solver {
     OdeJoint joint;
     Vector3 at_a_m{}, at_b_m{};  // in the frames of ODE's bodies
     Vector3 free{};              // of a sliding one: where it slides, in a's frame; else 0
-  };
-  /// ODE's memory, and what points into it.
-  struct Kept {
-    std::shared_ptr<const WorldMemory::Image> memory;
-    OdeThreading threading;
-    OdeWorld world;
-    Contacts contacts;
-    std::vector<BodyTable<BodyProxy>::Entry> proxies;
-    std::vector<Held> held;
   };
 
   template <class Work>
@@ -78,7 +66,6 @@ class World3d final : public Solver {
   OdeJoint make_joint(const Joint& joint, BodyProxy& a, BodyProxy& b);
   BodyProxy* find(BodyKey key) noexcept;
   void remember(hal::Archive& archive, BodyProxy& proxy) const;
-  void find_twins();
   void find_kinds(const SpaceStores& stores);
 
   void plan(const SpaceStores& stores, BodyProxy& proxy, double dt_s);

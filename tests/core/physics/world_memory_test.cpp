@@ -1,6 +1,7 @@
-// Memory that goes back to an earlier moment, block by block and at the same addresses.
+// Memory that is written and read, block by block.
 #include "core/physics/world_memory.hpp"
 
+#include <array>
 #include <cstring>
 #include <gtest/gtest.h>
 #include <map>
@@ -31,26 +32,58 @@ TEST(WorldMemory, GivesEveryBlockItsOwnBytesWhateverTheSizes) {
   EXPECT_EQ(memory.blocks(), held.size());
 }
 
-TEST(WorldMemory, GoesBackToWhatItWasAndOnFromThere) {
+/// A block that knows another, a function of this program, and something on the stack.
+struct Linked {
+  Linked* next = nullptr;
+  int (*call)() = nullptr;
+  const int* elsewhere = nullptr;
+  std::array<char, 300> bytes{};
+};
+int seven() {
+  return 7;
+}
+
+TEST(WorldMemory, IsReadHereAndElsewhereWithItsAddresses) {
   WorldMemory memory;
-  std::vector<void*> blocks;
-  for (const std::size_t bytes : {16UL, 100UL, 5000UL, 40000UL, 200000UL}) {
-    blocks.push_back(memory.allocate(bytes));
-    std::memset(blocks.back(), 1, bytes);
+  const int on_the_stack = 1;
+  auto* first = new (memory.allocate(sizeof(Linked))) Linked;
+  first->next = new (memory.allocate(200'000)) Linked;
+  first->next->next = first;
+  first->next->call = &seven;
+  first->elsewhere = &on_the_stack;
+  first->bytes.fill('a');
+  memory.free(memory.allocate(100));
+  hal::Archive writer;
+  ASSERT_TRUE(memory.remember(writer, first));
+  const auto apart = static_cast<std::byte*>(memory.allocate(100)) - reinterpret_cast<std::byte*>(first);
+
+  WorldMemory other;
+  (void)other.allocate(50'000);
+  for (WorldMemory* into : {&memory, &other}) {
+    for (int i = 0; i < 1000; ++i) std::memset(into->allocate(300), 2, 300);
+    Linked* read = nullptr;
+    hal::Archive reader(writer.bytes());
+    ASSERT_TRUE(into->remember(reader, read));
+    EXPECT_TRUE(reader.at_end());
+    EXPECT_EQ(into->blocks(), 2U);
+    EXPECT_EQ(read->next->next, read);
+    EXPECT_EQ(read->next->call(), 7);
+    EXPECT_EQ(read->elsewhere, &on_the_stack);  // in this process
+    EXPECT_EQ(read->bytes.back(), 'a');
+    // What is given out next lies as it did.
+    EXPECT_EQ(static_cast<std::byte*>(into->allocate(100)) - reinterpret_cast<std::byte*>(read), apart);
   }
-  memory.free(blocks[1]);
-  const auto image = memory.copy();
-  void* const next = memory.allocate(100);
-  for (int time = 0; time < 3; ++time) {
-    for (const std::size_t i : {0UL, 2UL, 3UL, 4UL}) memory.free(blocks[i]);
-    for (int i = 0; i < 1000; ++i) std::memset(memory.allocate(300), 2, 300);
-    std::memset(memory.allocate(190000), 2, 190000);
-    memory.put_back(*image);
-    EXPECT_EQ(memory.blocks(), 4U);
-    EXPECT_EQ(*static_cast<char*>(blocks[0]), 1);
-    EXPECT_EQ(static_cast<char*>(blocks[3])[39999], 1);
-    EXPECT_EQ(static_cast<char*>(blocks[4])[199999], 1);
-    EXPECT_EQ(memory.allocate(100), next);  // what is given out next is the same, too
+}
+
+TEST(WorldMemory, BytesThatAreNoneOfItsAreRefused) {
+  WorldMemory memory;
+  void* block = memory.allocate(100);
+  hal::Archive writer;
+  ASSERT_TRUE(memory.remember(writer, block));
+  for (std::size_t size = 0; size < writer.bytes().size(); size += 7) {
+    WorldMemory other;
+    hal::Archive reader(std::string_view(writer.bytes()).substr(0, size));
+    EXPECT_FALSE(other.remember(reader, block)) << size;
   }
 }
 

@@ -122,13 +122,26 @@ TEST_P(Saved, LoadsThatFootBotsHoldAreHeld) {
   EXPECT_EQ(hashes(*other.world, 50), hashes(*one.world, 50));
 }
 
-TEST(Saving, NamesControllersThatOwnMemory) {
-  auto world = make(Scene(4.0, "owner").engine("kinematics2d").robot("a", 0, 0));
-  start(world);
-  world->step();
-  const auto bytes = world->save();
-  ASSERT_FALSE(bytes.ok());
-  EXPECT_THAT(bytes.error().message, HasSubstr("controller 'owner' of robot 'a'"));
+TEST(Saving, NamesControllersThatOwnMemoryOrShareIt) {
+  for (const std::string name : {"owner", "sharer"}) {
+    auto world = make(Scene(4.0, name).engine("kinematics2d").robot("a", 0, 0));
+    start(world);
+    world->step();
+    const auto bytes = world->save();
+    ASSERT_FALSE(bytes.ok());
+    EXPECT_THAT(bytes.error().message, HasSubstr("controller '" + name + "' of robot 'a'"));
+  }
+}
+
+TEST(Saving, ControllersThatSayWhatTheyRememberHaveIt) {
+  const auto scene = [] { return Scene(4.0, "rememberer").engine("kinematics2d").robot("a", 0, 0).robot("b", 1, 1); };
+  auto one = make(scene());
+  start(one);
+  (void)hashes(*one.world, 20);
+  auto other = make(scene());
+  start(other);
+  ASSERT_TRUE(other->load(saved(*one.world)).ok());
+  EXPECT_EQ(hashes(*other.world, 40), hashes(*one.world, 40));
 }
 
 TEST(Saving, NamesWhatElseNoOtherProcessCouldTakeOver) {

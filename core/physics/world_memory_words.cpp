@@ -1,9 +1,11 @@
-// The memory of a physics library for another process: words, and which of them are addresses of what.
+// The memory of a physics library as words, and which of them are addresses of what: so it can be read elsewhere.
 //
-// Addresses of anything but itself and loaded objects are null there: of what a library keeps elsewhere and makes anew
-// where there is none (ODE its working memory), and what happened to lie between values.
+// Addresses of anything but itself and loaded objects are null in another process: of what a library keeps elsewhere
+// and makes anew where there is none (ODE its working memory), and what happened to lie between values.
 #include <algorithm>
 #include <cstring>
+#include <optional>
+#include <random>
 #include <string>
 
 #include "core/physics/world_memory.hpp"
@@ -18,8 +20,17 @@ constexpr std::size_t kWord = sizeof(std::uint64_t);
 struct AddressWord {
   std::uint32_t chunk, of_chunk;  ///< the word's, and that into which it points; kObject and above: a loaded object
   std::uint64_t word;             ///< in its chunk
-  static constexpr std::uint32_t kObject = 0x8000'0000U;
+  static constexpr std::uint32_t kObject = 0x8000'0000U, kElsewhere = 0xFFFF'FFFFU;
 };
+
+/// Tells this process from others.
+std::uint64_t process_token() {
+  static const std::uint64_t token = [] {
+    std::random_device device;
+    return std::uint64_t{device()} << 32 | device();
+  }();
+  return token;
+}
 
 }  // namespace
 
@@ -82,7 +93,7 @@ std::vector<std::vector<std::uint64_t>> WorldMemory::live_words() const {
 }
 
 void WorldMemory::write_words(hal::Archive& archive) const {
-  const Addresses addresses;
+  std::optional<Addresses> addresses;
   const std::vector<LoadedObject> objects = loaded_objects();
   std::vector<AddressWord> found;
   std::vector<std::uint32_t> named;  // of the objects
@@ -91,7 +102,7 @@ void WorldMemory::write_words(hal::Archive& archive) const {
   for (std::uint32_t c = 0; c < words.size(); ++c) {
     for (std::size_t k = 0; k < words[c].size(); ++k) {
       std::uint64_t& word = words[c][k];
-      if (!addresses.may_be(word)) continue;
+      if (word < Addresses::kLeast || word > Addresses::kMost) continue;
       if (const Place place = place_of(word); place.chunk != Place::kNone) {
         found.push_back({c, place.chunk, k});
         word = place.offset;
@@ -100,7 +111,8 @@ void WorldMemory::write_words(hal::Archive& archive) const {
       const auto object =
           std::ranges::find_if(objects, [word](const LoadedObject& o) { return word >= o.begin && word < o.past; });
       if (object == objects.end()) {
-        word = 0;
+        if (!addresses) addresses.emplace();
+        if (addresses->may_be(word)) found.push_back({c, AddressWord::kElsewhere, k});
         continue;
       }
       const auto number = static_cast<std::uint32_t>(object - objects.begin());
@@ -113,14 +125,16 @@ void WorldMemory::write_words(hal::Archive& archive) const {
       word -= object->begin;
     }
   }
-  archive(words, names, found);
+  std::uint64_t token = process_token();
+  archive(token, words, names, found);
 }
 
 bool WorldMemory::read_words(hal::Archive& archive) {
   std::vector<std::vector<std::uint64_t>> words;
   std::vector<std::string> names;
   std::vector<AddressWord> found;
-  archive(words, names, found);
+  std::uint64_t token = 0;
+  archive(token, words, names, found);
   if (!archive.ok() || words.size() != chunks()) return false;
   std::vector<std::uint64_t> begins;
   const std::vector<LoadedObject> objects = loaded_objects();
@@ -133,7 +147,9 @@ bool WorldMemory::read_words(hal::Archive& archive) {
     if (at.chunk >= words.size() || at.word >= words[at.chunk].size()) return false;
     std::uint64_t& word = words[at.chunk][at.word];
     const std::uint32_t object = at.of_chunk - AddressWord::kObject;
-    if (at.of_chunk < AddressWord::kObject)
+    if (at.of_chunk == AddressWord::kElsewhere)
+      word = token == process_token() ? word : 0;
+    else if (at.of_chunk < AddressWord::kObject)
       word = address_of({at.of_chunk, word});
     else if (object < begins.size())
       word += begins[object];
