@@ -73,9 +73,12 @@ struct RunOptions {
   std::vector<std::string> overrides;
   std::string report;  ///< file, or "-"
   PictureRequest pictures;
-  std::string trajectory;  ///< CSV file, of every robot unless the experiment says which
-  std::string record;      ///< record file, as the experiment says or of every robot's pose and state
-  std::string repeat;      ///< record whose actions are done again
+  std::string trajectory;            ///< CSV file, of every robot unless the experiment says which
+  std::string record;                ///< record file, as the experiment says or of every robot's pose and state
+  std::string repeat;                ///< record whose actions are done again
+  std::string checkpoint;            ///< file that keeps the state of the run
+  double checkpoint_every_s = 60.0;  ///< of simulated time
+  std::string resume;                ///< checkpoint to go on from, instead of the experiment
   HoldOptions hold;
   ViewRequest view;
   std::string dump;                     ///< CSV file of every value of the state

@@ -26,8 +26,8 @@ struct ReplayLine : PagedRunOptions {
     line.flag("--accept-changes", replay.accept_changes, "Also with plug-ins and files that are not those of the run");
     describe_page(line, "Serve a page that shows it, on port --view=PORT or any that is free");
     describe_run(line, *this);
-    for (const char* other :
-         {"--seconds", "--steps", "--seed", "--repeat", "--without", "--anyway", "--hub-fault", "--desk-keys"})
+    for (const char* other : {"--seconds", "--steps", "--seed", "--repeat", "--without", "--anyway", "--hub-fault",
+                              "--desk-keys", "--checkpoint", "--checkpoint-every"})
       line.leave_out(other);
   }
 };

@@ -9,9 +9,9 @@
 namespace tandem::app {
 namespace {
 
-constexpr std::array<AddPart, 9> kParts = {&add_real_robots, &add_lockstep,   &add_hold,
-                                           &add_terminal,    &add_outputs,    &add_desk,
-                                           &add_view,        &add_comparison, &add_named_parts};
+constexpr std::array<AddPart, 11> kParts = {&add_real_robots, &add_lockstep,   &add_resumption,  &add_hold,
+                                            &add_terminal,    &add_outputs,    &add_checkpoints, &add_desk,
+                                            &add_view,        &add_comparison, &add_named_parts};
 
 /// All but the end of the log, which outlives the world.
 int run_with(const RunOptions& options, RunLog& log) {
@@ -23,7 +23,7 @@ int run_with(const RunOptions& options, RunLog& log) {
   }
   if (!run.go()) return complain(kFailedRunning, run.failure());
   const Ended how = plan.result->end.how;
-  if (how == Ended::Failed || !plan.written || !run.failure().empty()) return kFailedRunning;
+  if (how == Ended::Failed || !plan.written || !run.failure().empty()) return plan.code_of_failure;
   const bool until_interrupted = options.view.on && options.hold.stay;  // that is how such a run ends
   return how == Ended::Interrupted && !until_interrupted ? interrupted_code() : kDone;
 }
@@ -44,13 +44,16 @@ namespace {
 
 struct RunLine : PagedRunOptions {
   void describe(hal::CommandLine& line) {
-    line.word("experiment", experiment, "The experiment file (.xml)").required().file();
+    line.word("experiment", experiment, "The experiment file (.xml)").file();
+    line.option("--resume", resume, "Go on from a checkpoint (--checkpoint), which has the experiment").file();
     describe_page(line, "Serve a page that shows the run, on port --view=PORT or any that is free");
     describe_run(line, *this);
   }
 };
 
 int run_line(const RunLine& line) {
+  if (line.experiment.empty() == line.resume.empty())
+    return complain(kWrongUsage, "name the experiment file, or a checkpoint with --resume, which has the experiment");
   return run(line.with_page());
 }
 

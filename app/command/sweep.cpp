@@ -292,6 +292,10 @@ int sweep(const SweepOptions& options) {
   auto work = open_work(options, design, path, version);
   if (!work) return kBadInput;
 
+  const std::string checkpoints = path + ".checkpoints";  // of runs that take long
+  std::error_code none;
+  if (!options.resume || options.accept_changes) fs::remove_all(checkpoints, none);
+
   const double began_s = wall_seconds();
   Tally tally;
   tally.failed_before = work->failed_before;
@@ -322,6 +326,7 @@ int sweep(const SweepOptions& options) {
       status = sweep_on_cluster(design, work->runs, version, cluster_options(options, batches), take, tick, say, stop);
     } else {
       study::SweepOptions how = how_to_sweep(options, *study, design);
+      how.checkpoints = checkpoints;
       how.in_worker = [&] { work->table->leave_to_parent(); };
       status = study::sweep(
           design, work->runs, [&](const study::RunPlan& plan) { return scenario_of(design, plan, loader); }, loader,
@@ -331,6 +336,7 @@ int sweep(const SweepOptions& options) {
   const double took_s = wall_seconds() - began_s;
   if (status.ok()) status = work->table->finish();
   const auto left = static_cast<std::int64_t>(work->runs.size()) - tally.made;
+  if (left == 0) fs::remove_all(checkpoints, none);
   const std::string go_on = again + (options.slurm ? " --slurm" : "");
   if (!status.ok()) {
     return complain(kFailedRunning, fmt::format("{}. The table has the runs before; when that is mended: {}",
@@ -391,9 +397,10 @@ int sweep_batch(const SweepOptions& options) {
   if (!results.ok()) return complain(kFailedRunning, results.error().message);
   const std::atomic<bool>& stop = catch_signals();
   std::signal(SIGPIPE, SIG_IGN);
+  study::SweepOptions how = how_to_sweep(options, *study, design);
+  how.checkpoints = options.batch_folder + "/checkpoints";
   const hal::Status status = study::sweep(
-      design, runs, [&](const study::RunPlan& p) { return scenario_of(design, p, loader); }, loader,
-      how_to_sweep(options, *study, design),
+      design, runs, [&](const study::RunPlan& p) { return scenario_of(design, p, loader); }, loader, how,
       [&](std::span<const study::FinishedRun> finished) { return results->add(finished); }, [] {}, stop);
   if (!status.ok()) return complain(kFailedRunning, status.error().message);
   return interrupted_code();

@@ -60,6 +60,7 @@ hal::Status check_output_paths(const RunOptions& options, const core::Scenario& 
                                     {"trajectory", trajectory_path(options, scenario)},
                                     {"record", record_path(options, scenario)},
                                     {"dump", options.dump},
+                                    {"checkpoint", options.checkpoint},
                                     {"log", options.log}};
   if (options.pictures.povray.ends_with(".png")) outputs.push_back({"scene", scene_of(options.pictures.povray)});
   if (!options.pictures.film.ends_with('/')) outputs.push_back({"film", options.pictures.film});
@@ -73,7 +74,8 @@ hal::Status check_output_paths(const RunOptions& options, const core::Scenario& 
 }
 
 bool tells_files(const RunOptions& options, const core::Scenario& scenario) {
-  return !options.report.empty() || !record_path(options, scenario).empty();
+  return !options.report.empty() || !record_path(options, scenario).empty() || !options.checkpoint.empty() ||
+         !options.resume.empty();
 }
 
 hal::Result<RunOutputs> open_outputs(const RunOptions& options, const core::Scenario& scenario,

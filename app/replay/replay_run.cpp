@@ -131,8 +131,8 @@ bool ReplayRun::prepare(core::Scenario& scenario, hal::PluginLoader& loader) {
   return false;
 }
 
-hal::Status ReplayRun::check_files(const InputFiles& now) const {
-  std::string changed_files;
+std::string changed_files(const hal::Json& start, const InputFiles& now, bool others_named) {
+  std::string changed;
   const auto compare = [&](const char* what, const std::vector<InputFile>& recorded,
                            const std::vector<InputFile>& present) {
     for (std::size_t i = 0; i < recorded.size(); ++i) {
@@ -144,22 +144,26 @@ hal::Status ReplayRun::check_files(const InputFiles& now) const {
       const InputFile* const file = named != present.end() ? &*named : by_place ? &present[i] : nullptr;
       const std::string sha256 = file != nullptr ? file->sha256 : std::string();
       if (sha256 == then.sha256) continue;
-      if (file != nullptr && changed_from_start() && !same_name(file->file, then.file)) continue;  // as was asked for
-      changed_files +=
-          fmt::format("\n  {}{} '{}': in the run {}, now {}", what, then.id.empty() ? "" : " " + then.id,
-                      file != nullptr ? file->file : then.file, digest_text(then.sha256), digest_text(sha256));
+      if (file != nullptr && others_named && !same_name(file->file, then.file)) continue;
+      changed += fmt::format("\n  {}{} '{}': in the run {}, now {}", what, then.id.empty() ? "" : " " + then.id,
+                             file != nullptr ? file->file : then.file, digest_text(then.sha256), digest_text(sha256));
     }
   };
-  compare("plug-in", files_of(start_, "plugins"), now.plugins);
-  compare("controller", files_of(start_, "controllers"), now.controllers);
-  compare("hook", files_of(start_, "hooks"), now.hooks);
+  compare("plug-in", files_of(start, "plugins"), now.plugins);
+  compare("controller", files_of(start, "controllers"), now.controllers);
+  compare("hook", files_of(start, "hooks"), now.hooks);
   std::vector<InputFile> others;  // those of bridges have a robot's id, and are of no use here
-  for (InputFile& file : files_of(start_, "other_files")) {
+  for (InputFile& file : files_of(start, "other_files")) {
     if (file.id.empty()) others.push_back(std::move(file));
   }
   compare("file", others, now.others);
-  if (changed_files.empty()) return {};
-  const std::string text = "files are not those of the run of '" + asked_.record + "':" + changed_files;
+  return changed;
+}
+
+hal::Status ReplayRun::check_files(const InputFiles& now) const {
+  const std::string changed = changed_files(start_, now, changed_from_start());
+  if (changed.empty()) return {};
+  const std::string text = "files are not those of the run of '" + asked_.record + "':" + changed;
   if (!asked_.accept_changes)
     return hal::Error{text + "\nput back what there was, or take what there is with --accept-changes"};
   say(text);

@@ -19,6 +19,10 @@
 
 namespace tandem::app {
 
+/// The files and plug-ins that are not those of a run, by what its record or checkpoint says at its start, a line each,
+/// and each after a line's end. `others_named`: those of another name are what somebody asked for.
+std::string changed_files(const hal::Json& start, const InputFiles& now, bool others_named);
+
 class ReplayRun {
  public:
   /// Of a run that is no replay `asked.record` is empty, and no other call follows.

@@ -14,12 +14,16 @@ using AddPart = int (*)(RunPlan& plan, core::Run& run);
 int add_real_robots(RunPlan& plan, core::Run& run);
 /// Waits for the peers of a run in lock-step.
 int add_lockstep(RunPlan& plan, core::Run& run);
+/// Before the first tick: goes on from a checkpoint.
+int add_resumption(RunPlan& plan, core::Run& run);
 /// People who pause, go back and touch; without them the run has its length, and its file's pace.
 int add_hold(RunPlan& plan, core::Run& run);
 /// Progress, or a table on the terminal.
 int add_terminal(RunPlan& plan, core::Run& run);
 /// Records, observers, pictures, the dump; at the end the results.
 int add_outputs(RunPlan& plan, core::Run& run);
+/// Keeps the state of the run in a file.
+int add_checkpoints(RunPlan& plan, core::Run& run);
 /// Compares with the record that is replayed or repeated.
 int add_comparison(RunPlan& plan, core::Run& run);
 /// Commands to real robots.

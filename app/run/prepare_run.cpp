@@ -1,6 +1,7 @@
 #include <csignal>
 #include <iterator>
 
+#include "app/build_info.hpp"
 #include "app/experiment/reading.hpp"
 #include "app/process/signals.hpp"
 #include "app/process/terminal.hpp"
@@ -8,6 +9,7 @@
 #include "app/run/run_plan.hpp"
 #include "app/view/watch.hpp"
 #include "core/live/source_files.hpp"
+#include "hal/json/json_access.hpp"
 
 namespace tandem::app {
 namespace {
@@ -17,6 +19,41 @@ int told(const hal::Status& status, int code = kBadInput) {
   return status.ok() ? kDone : complain(code, status.error().message);
 }
 
+/// The experiment of the checkpoint that the run is to go on from.
+int open_resumed(RunPlan& plan) {
+  const RunOptions& options = plan.options;
+  auto checkpoint = core::read_checkpoint(options.resume);
+  if (!checkpoint.ok()) return complain(kBadInput, checkpoint.error().message);
+  plan.resumed = std::move(checkpoint).value();
+  const hal::Json& about = plan.resumed->about;
+  const std::string name = hal::text_of(hal::object_of(about, "file"), "file");
+  const std::string settings = hal::text_of(about, "settings");
+  if (settings.empty()) return complain(kBadInput, "checkpoint '" + options.resume + "' has no experiment");
+  return plan.reading.open_text(settings, name, options.overrides) ? kDone : kBadInput;
+}
+
+/// Whether the run can go on from it with the program and files that there are.
+hal::Status check_resumed(const RunPlan& plan) {
+  const RunOptions& options = plan.options;
+  const core::Checkpoint& checkpoint = *plan.resumed;
+  const std::string which = "checkpoint '" + options.resume + "': ";
+  const std::string changed = changed_files(checkpoint.about, plan.inputs, !options.overrides.empty());
+  if (!changed.empty()) return hal::Error{which + "files are not those of its run:" + changed};
+  const hal::Json then = hal::object_of(checkpoint.about, "program"), now = to_json(build_info());
+  for (const char* key : {"version", "commit", "compiler", "build"}) {
+    const std::string was = hal::text_of(then, key), is = hal::text_of(now, key);
+    if (was != is)
+      return hal::Error{which + "it was written by another build of this program: its " + key + " is '" + was +
+                        "', here '" + is + "'"};
+  }
+  if (!checkpoint.state.empty()) return {};
+  if (checkpoint.touched || !options.overrides.empty() || options.seed)
+    return hal::Error{which + "it does not hold the state of its run (" + checkpoint.why_no_state + "), so " +
+                      (checkpoint.touched ? "what people did there by hand cannot be done again"
+                                          : "--set and --seed cannot change what is computed again")};
+  return {};
+}
+
 /// The experiment, and the guardian of its real robots: made before any other thread.
 int read_experiment(RunPlan& plan) {
   const RunOptions& options = plan.options;
@@ -24,8 +61,12 @@ int read_experiment(RunPlan& plan) {
   if (!hub_faults.ok()) return complain(kBadInput, hub_faults.error().message);
   plan.hub_faults = std::move(hub_faults).value();
   ReplayRun& replay = plan.replay;
-  if (!(replay.wanted() ? replay.open(plan.reading) : plan.reading.open(options.experiment, options.overrides)))
+  if (!options.resume.empty()) {
+    if (const int code = open_resumed(plan); code != kDone) return code;
+  } else if (!(replay.wanted() ? replay.open(plan.reading)
+                               : plan.reading.open(options.experiment, options.overrides))) {
     return kBadInput;
+  }
   plan.guarded.emplace(!replay.wanted() && plan.reading.has_real_robots(options.without), plan.loader.catalog(),
                        hal::Log([](hal::Severity, std::string_view text) { say(text); }));
   plan.scenario = plan.reading.read();
@@ -33,6 +74,10 @@ int read_experiment(RunPlan& plan) {
   core::Scenario& scenario = *plan.scenario;
   if (const int code = told(leave_out(scenario, options.without)); code != kDone) return code;
   if (replay.wanted() && !replay.prepare(scenario, plan.loader)) return kBadInput;
+  if ((!options.checkpoint.empty() || plan.resumed) && has_real_robots(scenario))
+    return complain(
+        kBadInput,
+        "--checkpoint, --resume: real robots take part, which cannot be put back; simulate them (--without)");
   if (!options.hub_faults.empty() && !has_real_robots(scenario))
     return complain(kBadInput, "--hub-fault needs a real robot: no robot of this experiment has a <bridge>");
   if (const int code = told(check_output_paths(options, scenario, plan.loader.catalog())); code != kDone) return code;
@@ -74,6 +119,7 @@ int make_world(RunPlan& plan) {
   plan.world_log = plan.log.log();
   core::WorldOptions world_options;
   world_options.seed = options.seed ? options.seed : plan.repeated.seed;
+  if (plan.resumed && !options.seed) world_options.seed = hal::count_of(plan.resumed->about, "seed");
   world_options.threads = options.threads;
   world_options.log = plan.world_log;
   core::Problems problems;
@@ -87,6 +133,9 @@ int make_world(RunPlan& plan) {
   if (!other_scripts) run_recorded_scripts(*plan.world, plan.repeated);
   if (replay.wanted() || tells_files(options, *plan.scenario)) plan.inputs = input_files(*plan.scenario, plan.loader);
   plan.steps = steps_of(options.steps, options.seconds, *plan.scenario);
+  if (plan.resumed) {
+    if (const int code = told(check_resumed(plan)); code != kDone) return code;
+  }
   if (!replay.wanted()) return kDone;
   hal::Status joined = replay.check_files(plan.inputs);
   if (joined.ok()) joined = replay.join(*plan.world, plan.world_log);

@@ -19,6 +19,7 @@
 #include "app/run_options.hpp"
 #include "core/live/live_run.hpp"
 #include "core/live/repeat.hpp"
+#include "core/record/checkpoint_file.hpp"
 #include "core/run/run.hpp"
 #include "core/sim/world.hpp"
 #include "core/view/drawing.hpp"
@@ -42,6 +43,7 @@ struct RunPlan {
   const std::atomic<bool>* stop = nullptr;
   std::optional<Watchdog> watchdog;
   core::Repeatable repeated;
+  std::optional<core::Checkpoint> resumed;
   hal::Log world_log;
   std::unique_ptr<core::World> made;  ///< until real robots take it over
   core::World* world = nullptr;
@@ -63,6 +65,7 @@ struct RunPlan {
   bool guarded_to_the_end = true;
   std::vector<std::string> left;  ///< robots whose stop nobody has confirmed
   bool written = true;            ///< all that was asked for
+  int code_of_failure = kFailedRunning;
 };
 
 /// Reads the experiment, starts the guardian, makes the world, opens the outputs. @returns kDone, or what was wrong,

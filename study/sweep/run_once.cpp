@@ -2,6 +2,11 @@
 
 #include <algorithm>
 #include <ctime>
+#include <filesystem>
+#include <optional>
+
+#include "core/record/checkpoint_file.hpp"
+#include "hal/json/json_access.hpp"
 
 namespace tandem::study {
 namespace {
@@ -31,7 +36,12 @@ std::int64_t steps_of(const core::Scenario& scenario) {
 
 /// A world of the plan's configuration and seed, started.
 hal::Status Runner::ready(const RunPlan& plan) {
-  if (keeps_worlds_ && world_ != nullptr && configuration_ == plan.configuration) return world_->reset(plan.seed);
+  if (keeps_worlds_ && !takes_long_ && world_ != nullptr && configuration_ == plan.configuration)
+    return world_->reset(plan.seed);
+  return make(plan);
+}
+
+hal::Status Runner::make(const RunPlan& plan) {
   world_.reset();
   configuration_ = plan.configuration;
   auto scenario = scenario_of_(plan);
@@ -43,7 +53,45 @@ hal::Status Runner::ready(const RunPlan& plan) {
   world_ = core::World::make(*scenario, loader_, options, problems);
   if (world_ == nullptr) return hal::Error{text_of(problems)};
   world_->start();
+  if (!checkpoints_.empty()) world_->begin_saving();
   return {};
+}
+
+/// The run from where it was kept. Error: it was not, or cannot go on; its world is to be made anew.
+hal::Status Runner::go_on(const RunPlan& plan, Sampler& sampler) {
+  const std::string path = checkpoint_of(checkpoints_, plan.number);
+  std::error_code none;
+  if (!std::filesystem::exists(path, none)) return {};
+  auto kept = core::read_checkpoint(path);
+  if (!kept.ok()) return kept.error();
+  if (hal::count_of(kept->about, "seed") != plan.seed || hal::whole_of(kept->about, "run", -1) != plan.number)
+    return hal::Error{"another run"};
+  if (const hal::Status made = make(plan); !made.ok()) return made;
+  std::string state;
+  hal::Archive archive(kept->state);
+  archive(sampler, state);
+  if (!archive.at_end()) return hal::Error{"not whole"};
+  if (const hal::Status loaded = world_->load(state); !loaded.ok()) return loaded;
+  return world_->state_hash() == kept->fingerprint ? hal::Status{} : hal::Status{hal::Error{"another state"}};
+}
+
+/// Its state, for whoever makes it again. One that cannot be kept begins anew then.
+void Runner::keep(const RunPlan& plan, Sampler& sampler) {
+  kept_s_ = seconds_of(CLOCK_MONOTONIC);
+  takes_long_ = true;
+  auto state = world_->save();
+  if (!state.ok() || world_->state() != core::RunState::Running) return;
+  hal::Archive archive;
+  archive(sampler, state.value());
+  const hal::Json about{{"run", plan.number}, {"seed", plan.seed}};
+  std::error_code there;
+  std::filesystem::create_directories(checkpoints_, there);
+  (void)core::write_checkpoint(checkpoint_of(checkpoints_, plan.number),
+                               {about, world_->tick(), world_->state_hash(), false, archive.take(), {}});
+}
+
+std::string checkpoint_of(const std::string& folder, std::int64_t run) {
+  return folder + "/run-" + std::to_string(run) + ".ckpt";
 }
 
 RunOutcome Runner::run(const RunPlan& plan) {
@@ -51,26 +99,38 @@ RunOutcome Runner::run(const RunPlan& plan) {
   const double cpu_s = seconds_of(CLOCK_PROCESS_CPUTIME_ID);
   RunOutcome outcome;
   outcome.ended = "failed";
-  if (const hal::Status made = ready(plan); !made.ok()) {
-    outcome.failure = made.error().message;
+  const auto failed = [&](const hal::Status& why) {
+    outcome.failure = why.error().message;
     world_.reset();
     return outcome;
+  };
+  if (const hal::Status made = ready(plan); !made.ok()) return failed(made);
+  std::optional<Sampler> sampler(std::in_place, measuring_, world_->ticks_per_second());
+  if (!checkpoints_.empty() && !go_on(plan, *sampler).ok()) {
+    sampler.emplace(measuring_, world_->ticks_per_second());
+    if (const hal::Status made = make(plan); !made.ok()) return failed(made);
   }
   core::World& world = *world_;
   const HangLimit::Watched watched(hang_);
   const std::int64_t steps = steps_of(world.scenario());
-  Sampler sampler(measuring_, world.ticks_per_second());
+  kept_s_ = wall_s;
+  takes_long_ = false;
   while (world.state() == core::RunState::Running && (steps == 0 || world.tick() < steps)) {
     HangLimit::step();
     world.step();
-    sampler.tick_done(world);
+    sampler->tick_done(world);
+    if (!checkpoints_.empty() && seconds_of(CLOCK_MONOTONIC) - kept_s_ > keep_every_s_) keep(plan, *sampler);
   }
   world.finish();
+  if (!checkpoints_.empty()) {
+    std::error_code none;
+    std::filesystem::remove(checkpoint_of(checkpoints_, plan.number), none);
+  }
   outcome.ticks = world.tick();
   outcome.virtual_s = static_cast<double>(world.tick()) / static_cast<double>(world.ticks_per_second());
   outcome.fingerprint = world.state_hash();
   outcome.measures = measure(world, measuring_);
-  sampler.take(outcome);
+  sampler->take(outcome);
   if (world.state() == core::RunState::Failed) {
     outcome.failure = world.failure();
     world_.reset();

@@ -26,6 +26,7 @@ class Sampler {
 
   /// After every tick. A hook that went back in time takes the samples of the time after with it.
   void tick_done(const core::World& world);
+  void remember(hal::Archive& archive) { archive(ticks_, values_); }
   /// Hands over what was sampled.
   void take(RunOutcome& outcome);
 

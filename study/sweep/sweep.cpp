@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cerrno>
 #include <ctime>
+#include <filesystem>
+#include <map>
 #include <poll.h>
 
 #include "hal/unit.hpp"
@@ -96,24 +98,35 @@ class Pool {
     const Worker& worker = *workers_[i];
     if (!(options_.time_limit_s > 0.0) || worker.given().empty()) return;
     if (now_s() - worker.since_s() < options_.time_limit_s) return;
-    bury(i, "took longer than the study's time limit of " + hal::format_number(options_.time_limit_s) + " s", finished);
+    bury(i, "took longer than the study's time limit of " + hal::format_number(options_.time_limit_s) + " s", finished,
+         false);
   }
 
-  /// The run that the worker was making has failed; the others that it was given are for somebody else.
-  void bury(std::size_t i, const std::string& why, std::vector<FinishedRun>& finished) {
+  /// The run that the worker was making has failed, or goes on elsewhere; the others that it was given are for somebody
+  /// else.
+  void bury(std::size_t i, const std::string& why, std::vector<FinishedRun>& finished, bool may_go_on = true) {
     const std::deque<std::int64_t> given = workers_[i]->given();
     workers_[i].reset();
     for (std::size_t n = given.size(); n-- > 1;) queue_.put_back(i, given[n]);
     if (given.empty()) return;
+    if (may_go_on && has_got_on(given.front())) return queue_.put_back(i, given.front());
     FinishedRun& failed = finished.emplace_back();
     failed.plan = design_.run(given.front());
     failed.outcome.ended = "failed";
     failed.outcome.failure = why;
   }
 
+  /// Whether the run was kept since the last time that its process was lost: who makes it again gets farther.
+  bool has_got_on(std::int64_t run) {
+    std::error_code none;
+    const auto kept = std::filesystem::last_write_time(checkpoint_of(options_.checkpoints, run), none);
+    return !options_.checkpoints.empty() && !none && std::exchange(kept_[run], kept) != kept;
+  }
+
   const Design& design_;
   const SweepOptions& options_;
   const Worker::Make& make_;
+  std::map<std::int64_t, std::filesystem::file_time_type> kept_;  // of runs whose processes were lost
   std::vector<std::unique_ptr<Worker>> workers_;
   RunQueue queue_;
   std::size_t left_;
@@ -125,7 +138,8 @@ hal::Status sweep(const Design& design, const std::vector<std::int64_t>& runs, c
                   hal::PluginLoader& loader, const SweepOptions& options,
                   const std::function<hal::Status(std::span<const FinishedRun>)>& take,
                   const std::function<void()>& tick, const std::atomic<bool>& stop) {
-  Runner runner(scenario_of, loader, options.measuring, options.keeps_worlds && !options.isolate, options.step_limit_s);
+  Runner runner(scenario_of, loader, options.measuring, options.keeps_worlds && !options.isolate, options.step_limit_s,
+                options.checkpoints, options.keep_every_s);
   const Worker::Make make = [&](std::int64_t run) { return runner.run(design.run(run)); };
   Pool pool(design, runs, options, make);
   double told_s = now_s();
