@@ -10,6 +10,7 @@
 
 #include "app/command/shared_options.hpp"
 #include "app/experiment/plugins.hpp"
+#include "app/module/module_table.hpp"
 #include "app/process/measure.hpp"
 #include "app/process/signals.hpp"
 #include "app/process/terminal.hpp"
@@ -520,5 +521,4 @@ int run(const BenchOptions& options) {
 }  // namespace tandem::bench
 
 constinit const tandem::hal::CommandType tandem::app::bench_command =
-    tandem::hal::command_type<tandem::bench::BenchOptions, tandem::bench::run>(
-        "bench", "Run a benchmark: one JSON object a line, and figures.");
+    tandem::hal::command_type<tandem::bench::BenchOptions, tandem::bench::run>("bench", module_summary("bench"));

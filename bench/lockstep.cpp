@@ -14,7 +14,7 @@
 #include "app/build_info.hpp"
 #include "app/process/measure.hpp"
 #include "app/process/signals.hpp"
-#include "app/robots/lockstep_peers.hpp"
+#include "app/real/lockstep_peers.hpp"
 #include "core/config/reader.hpp"
 #include "core/sim/world.hpp"
 #include "hal/json/json.hpp"

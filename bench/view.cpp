@@ -22,12 +22,12 @@
 #include "app/experiment/reading.hpp"
 #include "app/process/measure.hpp"
 #include "app/run_options.hpp"
-#include "app/view/view_run.hpp"
+#include "app/window/view_run.hpp"
 #include "bench/scene.hpp"
 #include "bench/spread.hpp"
 #include "core/live/live_run.hpp"
 #include "core/sim/world.hpp"
-#include "window/client.hpp"
+#include "window/wire/client.hpp"
 
 namespace tandem::bench {
 namespace {

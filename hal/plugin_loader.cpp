@@ -69,8 +69,8 @@ void* load(const std::string& path) {
 
 }  // namespace
 
-PluginLoader::PluginLoader(std::vector<fs::path> search, Catalog inside)
-    : search_(std::move(search)), catalog_(std::move(inside)) {
+PluginLoader::PluginLoader(std::vector<fs::path> search, Catalog inside, OnDemand on_demand)
+    : search_(std::move(search)), catalog_(std::move(inside)), on_demand_(on_demand) {
   catalog_.know<Border>();
   catalog_.know<ControllerType>();
 }
@@ -79,16 +79,16 @@ PluginLoader::~PluginLoader() {
   for (auto& [path, handle] : handles_) dlclose(handle);
 }
 
-Result<fs::path> PluginLoader::find(const std::string& library) const {
-  std::string looked;
+/// Empty: nowhere; then `looked` names all places.
+fs::path PluginLoader::look_for(const std::string& library, std::string& looked) const {
   std::vector<fs::path> places{fs::path{}};
   if (!fs::path(library).is_absolute()) {
     if (!beside_.empty()) places.insert(places.begin(), beside_);
     places.insert(places.end(), search_.begin(), search_.end());
   }
+  std::error_code ignored;
   for (const fs::path& folder : places) {
     for (const fs::path& name : spellings(library)) {
-      std::error_code ignored;
       if (fs::is_regular_file(folder / name, ignored)) return fs::weakly_canonical(folder / name);
       looked += "\n    " + (folder / name).string();
     }
@@ -96,9 +96,17 @@ Result<fs::path> PluginLoader::find(const std::string& library) const {
   // A file written for another build tree: the library's own name, in our folders.
   for (const fs::path& folder : search_) {
     for (const fs::path& name : spellings(fs::path(library).filename())) {
-      std::error_code ignored;
       if (fs::is_regular_file(folder / name, ignored)) return fs::weakly_canonical(folder / name);
     }
+  }
+  return {};
+}
+
+Result<fs::path> PluginLoader::find(const std::string& library) const {
+  std::string looked, again;
+  if (fs::path found = look_for(library, looked); !found.empty()) return found;
+  if (on_demand_.make != nullptr && on_demand_.make(library)) {
+    if (fs::path found = look_for(library, again); !found.empty()) return found;
   }
   return Error{"library '" + library + "' is not there; looked for" + looked +
                "\n  Build it, correct library=\"…\", or add its folder to TANDEM_PLUGIN_PATH."};
@@ -135,15 +143,19 @@ Status PluginLoader::load_once(const std::string& library) {
   return registered;
 }
 
-Result<PluginNote> PluginLoader::inspect(const std::string& library) const {
+Result<PluginNote> PluginLoader::inspect(const std::string& library) {
   const auto found = find(library);
   if (!found.ok()) return found.error();
   return judge(found.value().string());
 }
 
-Result<PluginNote> PluginLoader::judge(const std::string& path) const {
+Result<PluginNote> PluginLoader::judge(const std::string& path) {
   auto note = read_plugin_note(path);
   if (!note.ok()) return Error{"library '" + path + "' " + note.error().message};
+  if (on_demand_.complete != nullptr) {
+    if (const Status completed = on_demand_.complete(*this, note.value()); !completed.ok())
+      return Error{"library '" + path + "': " + completed.error().message};
+  }
   if (const std::string why = misfit(note.value(), catalog_.surfaces()); !why.empty())
     return Error{"library '" + path + "' " + why + "\n  " + how_to_rebuild(path)};
   return note;

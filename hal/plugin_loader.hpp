@@ -1,6 +1,7 @@
 // Opens plug-ins and keeps what they offer.
 #pragma once
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <memory>
 #include <string>
@@ -17,7 +18,16 @@ class PluginLoader {
  public:
   /// `search` are the folders in which a library is looked for after the path as written. `inside` is what there is
   /// without any library.
-  explicit PluginLoader(std::vector<std::filesystem::path> search, Catalog inside = {});
+  explicit PluginLoader(std::vector<std::filesystem::path> search, Catalog inside = {})
+      : PluginLoader(std::move(search), std::move(inside), {}) {}
+  /// What a program does whose parts are loaded, or even built, when they are needed.
+  struct OnDemand {
+    /// Completes the catalog by what a library's note names. Error: it cannot, and the library is not loaded.
+    Status (*complete)(PluginLoader& loader, const PluginNote& note) = nullptr;
+    /// Makes a library that was not found. @returns whether to look again.
+    bool (*make)(const std::string& library) = nullptr;
+  };
+  PluginLoader(std::vector<std::filesystem::path> search, Catalog inside, OnDemand on_demand);
   ~PluginLoader();
   PluginLoader(const PluginLoader&) = delete;
   PluginLoader& operator=(const PluginLoader&) = delete;
@@ -32,7 +42,7 @@ class PluginLoader {
 
   /// Judges `library` by its file alone; nothing of it runs. Errors: not found (names every place looked at), no
   /// plug-in, for another processor, built against other layouts than this program's.
-  Result<PluginNote> inspect(const std::string& library) const;
+  Result<PluginNote> inspect(const std::string& library);
 
   /// The file that `library` resolves to.
   Result<std::filesystem::path> find(const std::string& library) const;
@@ -53,6 +63,11 @@ class PluginLoader {
   /// The libraries that were opened for all that they bring, in this order; those of `get` are not among them.
   const std::vector<std::string>& plugins() const noexcept { return plugins_; }
 
+  /// Adds to what there is without any library.
+  Status add_inside(const std::function<void(Registrar&)>& fill) {
+    return catalog_.add_from(std::string(Catalog::kInside), fill);
+  }
+
   /// What there is now; entries of a library have its resolved path as their origin.
   const Catalog& catalog() const noexcept { return catalog_; }
 
@@ -60,7 +75,8 @@ class PluginLoader {
   Result<const void*> get(const std::string& library, std::string_view category, std::uint64_t layout,
                           std::string_view name);
   Status load_once(const std::string& library);
-  Result<PluginNote> judge(const std::string& path) const;
+  Result<PluginNote> judge(const std::string& path);
+  std::filesystem::path look_for(const std::string& library, std::string& looked) const;
   Status register_types(const std::string& path, const PluginInfo& info, const PluginNote& note);
 
   std::filesystem::path beside_;
@@ -69,6 +85,7 @@ class PluginLoader {
   std::map<std::string, std::string> unusable_;  // by resolved path: why
   std::vector<std::string> plugins_;             // resolved paths
   Catalog catalog_;
+  OnDemand on_demand_;
 };
 
 }  // namespace tandem::hal

@@ -2,6 +2,7 @@
 
 #include "app/catalog.hpp"
 #include "app/experiment/plugin_folders.hpp"
+#include "app/module/modules.hpp"
 #include "core/config/reader.hpp"
 #include "hal/xml/xml.hpp"
 
@@ -51,7 +52,8 @@ std::optional<core::Scenario> read_scenario(hal::PluginLoader& loader, const Wor
 }
 
 hal::Result<std::unique_ptr<OpenWorld>> open_world(const WorldRequest& request) {
-  std::unique_ptr<hal::PluginLoader> loader(new hal::PluginLoader(app::plugin_folders(), app::catalog()));
+  std::unique_ptr<hal::PluginLoader> loader(
+      new hal::PluginLoader(app::plugin_folders(), app::catalog(), app::on_demand()));
   core::Problems problems;
   const auto scenario = read_scenario(*loader, request, problems);
   if (!scenario) return hal::Error{errors_of(problems)};

@@ -12,6 +12,7 @@
 #include <thread>
 
 #include "app/build_info.hpp"
+#include "app/module/module_table.hpp"
 #include "core/view/gnuplot.hpp"
 #include "core/view/render.hpp"
 #include "hal/output_file.hpp"
@@ -155,5 +156,5 @@ int run(const ValidateOptions& options) {
 }  // namespace tandem::validate
 
 constinit const tandem::hal::CommandType tandem::app::validate_command =
-    tandem::hal::command_type<tandem::validate::ValidateOptions, tandem::validate::run>(
-        "validate", "Compare what the program computes with closed forms and references of their own, in one report.");
+    tandem::hal::command_type<tandem::validate::ValidateOptions, tandem::validate::run>("validate",
+                                                                                        module_summary("validate"));

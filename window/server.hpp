@@ -21,8 +21,8 @@
 #include "window/doorway.hpp"
 #include "window/frame_encoder.hpp"
 #include "window/network.hpp"
-#include "window/viewer_text.hpp"
 #include "window/window.hpp"
+#include "window/wire/viewer_text.hpp"
 
 namespace tandem::window {
 

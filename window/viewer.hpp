@@ -9,7 +9,7 @@
 
 #include "window/frame_encoder.hpp"
 #include "window/network.hpp"
-#include "window/viewer_text.hpp"
+#include "window/wire/viewer_text.hpp"
 
 namespace tandem::window {
 

@@ -7,7 +7,7 @@
 
 #include "window/network.hpp"
 #include "window/page_files.hpp"
-#include "window/viewer_text.hpp"
+#include "window/wire/viewer_text.hpp"
 
 namespace tandem::window {
 

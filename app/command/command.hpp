@@ -22,7 +22,4 @@ extern const hal::CommandType bench_command, validate_command;  // in folders ab
 /// What `tandem run` does, for commands that make runs of their own options.
 int run(const RunOptions& options);
 
-/// `tandem check` of a study.
-int check_study(const std::string& path, const Libraries& plugins);
-
 }  // namespace tandem::app

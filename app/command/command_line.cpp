@@ -169,7 +169,7 @@ class Line {
     CLI::App* const parent = space == std::string::npos ? &app_ : app_.get_subcommand(name.substr(0, space));
     candidate.app = parent->add_subcommand(name.substr(space == std::string::npos ? 0 : space + 1),
                                            printable(std::string(type.summary)));
-    if (type.make == nullptr) {
+    if (type.make == nullptr) {  // a group, or of a module that is not loaded
       candidate.app->require_subcommand(1);
       return;
     }
@@ -248,6 +248,7 @@ struct Words {
 
 /// Makes the commands known that the words may name. The libraries before a command of the program are for it.
 hal::Status find_commands(Words& words, KnownCommands& known) {
+  if (hal::Status loaded = known.load_module_of(words.command()); !loaded.ok()) return loaded;
   if (!known.of(words.command()).empty()) {
     for (const std::string& library : words.plugins) words.rest.insert(words.rest.end(), {"--plugin", library});
     return words.plugins.empty() ? hal::Status() : known.judge(words.plugins);

@@ -6,6 +6,7 @@
 #include "app/command/manuals.hpp"
 #include "app/experiment/plugin_folders.hpp"
 #include "app/experiment/plugins.hpp"
+#include "app/module/modules.hpp"
 #include "hal/plugin_loader.hpp"
 
 namespace tandem::app {
@@ -219,7 +220,8 @@ struct Completion {
 };
 
 int completion(const Completion& options, const hal::CommandContext& context) {
-  hal::PluginLoader loader(plugin_folders(), context.catalog());
+  load_built_modules();
+  hal::PluginLoader loader(plugin_folders(), context.catalog(), on_demand());
   open_plugin_folders(loader);
   const Manuals manuals = command_manuals(loader.catalog());
   fmt::print("{}",

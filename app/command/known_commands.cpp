@@ -4,6 +4,7 @@
 
 #include "app/catalog.hpp"
 #include "app/experiment/plugin_folders.hpp"
+#include "app/module/modules.hpp"
 #include "app/process/terminal.hpp"
 #include "hal/check.hpp"
 
@@ -11,7 +12,10 @@ namespace tandem::app {
 namespace {
 
 hal::Catalog with_commands(hal::Catalog catalog, void (*register_commands)(hal::Registrar&)) {
-  const hal::Status good = catalog.add_from(std::string(hal::Catalog::kInside), register_commands);
+  const hal::Status good = catalog.add_from(std::string(hal::Catalog::kInside), [&](hal::Registrar& registrar) {
+    register_commands(registrar);
+    register_missing_commands(registrar);
+  });
   TANDEM_CHECK(good.ok(), good.error().message.c_str());
   return catalog;
 }
@@ -27,7 +31,8 @@ KnownCommands::KnownCommands(void (*register_commands)(hal::Registrar&))
 
 hal::PluginLoader& KnownCommands::loader() const {
   if (!loader_)
-    loader_ = std::make_unique<hal::PluginLoader>(plugin_folders(), with_commands(app::catalog(), register_commands_));
+    loader_ = std::make_unique<hal::PluginLoader>(plugin_folders(), with_commands(app::catalog(), register_commands_),
+                                                  on_demand());
   return *loader_;
 }
 
@@ -46,6 +51,14 @@ hal::Status KnownCommands::open(const std::vector<std::string>& libraries) {
     if (hal::Status opened = loader().open(library); !opened.ok())
       return hal::Error{"--plugin: " + opened.error().message};
   }
+  return {};
+}
+
+hal::Status KnownCommands::load_module_of(std::string_view word) {
+  const Module* const module = module_of_command(word);
+  if (module == nullptr) return {};
+  if (hal::Status there = load_module(module->name); !there.ok()) return there;
+  inside_ = with_commands(app::catalog(), register_commands_);
   return {};
 }
 
@@ -72,7 +85,7 @@ hal::Status KnownCommands::look_in_folders(std::string_view word) {
 }
 
 bool KnownCommands::brings(const std::string& library, std::string_view word) const {
-  hal::PluginLoader apart(plugin_folders(), app::catalog());
+  hal::PluginLoader apart(plugin_folders(), app::catalog(), on_demand());
   if (!apart.open(library).ok()) return false;
   const auto types = apart.catalog().all<hal::CommandType>();
   return std::any_of(types.begin(), types.end(), [word](const auto* type) { return begins_with(*type, word); });

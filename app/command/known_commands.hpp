@@ -22,6 +22,8 @@ class KnownCommands final : public hal::CommandContext {
   /// "tandem", or the library that brought it.
   std::string origin_of(const hal::CommandType& type) const { return current().origin_of(&type); }
 
+  /// Loads the module that brings commands with this word, if one does; it is built where that is needed.
+  hal::Status load_module_of(std::string_view word);
   /// Opens these libraries, with all that they bring.
   hal::Status open(const std::vector<std::string>& libraries);
   /// Refuses libraries whose commands have names that there are already. What brings no commands is not opened.

@@ -8,15 +8,15 @@
 #include <sstream>
 #include <string>
 
+#include "app/catalog.hpp"
 #include "app/command/command.hpp"
 #include "app/command/launcher_commands.hpp"
+#include "app/command/listing.hpp"
 #include "app/command/shared_options.hpp"
 #include "app/experiment/plugin_folders.hpp"
 #include "app/experiment/plugins.hpp"
+#include "app/module/modules.hpp"
 #include "app/process/terminal.hpp"
-#include "bridges/bridge_type.hpp"
-#include "bridges/emulation/emulator_type.hpp"
-#include "bridges/tracker_type.hpp"
 #include "controllers/lua_controller/api/manual.hpp"
 #include "core/config/kinds.hpp"
 #include "core/config/reader.hpp"
@@ -28,11 +28,30 @@
 #include "core/scenario/medium_type.hpp"
 #include "core/scenario/observer_type.hpp"
 #include "core/scenario/run_part_type.hpp"
-#include "core/view/layers/layer.hpp"
 #include "hal/plugin_loader.hpp"
-#include "study/study.hpp"
 
 namespace tandem::app {
+
+std::string from(const hal::Catalog& catalog, const void* entry) {
+  const std::string origin = catalog.origin_of(entry);
+  return origin == hal::Catalog::kInside ? "" : " (" + std::filesystem::path(origin).filename().string() + ")";
+}
+
+bool describe_elements(const std::vector<core::ElementManual>& manuals, const std::string& name) {
+  bool found = false;
+  for (const core::ElementManual& m : manuals) {
+    if (m.name != name) continue;
+    found = true;
+    fmt::print("<{}>{}: {}\n{}", m.name, m.parent.empty() ? "" : fmt::format(" in <{}>", m.parent), m.doc,
+               m.attributes);
+    std::string children;
+    for (const std::string& c : m.children)
+      children += (children.empty() ? "" : ", ") + (c == "*" ? std::string("anything") : c);
+    if (!children.empty()) fmt::print("  may hold: {}\n", children);
+  }
+  return found;
+}
+
 namespace {
 
 /// What is listed and described: of the program, of plug-ins, and of a file.
@@ -62,21 +81,6 @@ std::optional<Known> all_known(const hal::Catalog& inside, const Libraries& plug
   return known;
 }
 
-/// " (libx.so)" behind what a plug-in brought, " (crab.xml:3)" behind a kind of robot from a file.
-std::string from(const hal::Catalog& catalog, const void* entry) {
-  const std::string origin = catalog.origin_of(entry);
-  return origin == hal::Catalog::kInside ? "" : " (" + std::filesystem::path(origin).filename().string() + ")";
-}
-
-template <class T>
-void list_plugins(const hal::Catalog& catalog, std::string_view title) {
-  fmt::print("{}:\n", title);
-  for (const T* type : catalog.all<T>())
-    fmt::print("  {:<22} {}{}\n", printable(type->name), printable(type->summary), from(catalog, type));
-  if (catalog.all<T>().empty())
-    fmt::print("  none in the plug-in folders; TANDEM_PLUGIN_PATH and --plugin name further ones\n");
-}
-
 void list_devices(const hal::Catalog& catalog) {
   fmt::print("devices (implementations):\n");
   for (const hal::Role role : {hal::Role::Sensor, hal::Role::Actuator}) {
@@ -104,8 +108,6 @@ void list_names(const hal::Catalog& catalog, std::string_view category, std::str
 void list_elements(const hal::Catalog& catalog) {
   fmt::print("elements of experiment files:\n");
   for (const core::ElementManual& m : core::element_manuals(catalog)) fmt::print("  {:<22} {}\n", m.name, m.doc);
-  fmt::print("elements of studies:\n");
-  for (const core::ElementManual& m : study::study_manuals()) fmt::print("  {:<22} {}\n", m.name, m.doc);
 }
 
 /// The plug-ins, each with what it brings: "libx.so  2 controllers, 1 device".
@@ -125,34 +127,24 @@ void list_libraries(const hal::Catalog& catalog) {
 }
 
 void list_commands(const hal::Catalog& catalog) {
-  list_plugins<hal::CommandType>(catalog, "commands");
+  list_entries<hal::CommandType>(catalog, "commands");
   fmt::print("commands of the launcher at the top of a checkout:\n");
   for (const hal::CommandType& type : launcher_commands()) fmt::print("  {:<22} {}\n", type.name, type.summary);
 }
 
-using ListKind = void (*)(const hal::Catalog&);
-
-const std::map<std::string, ListKind>& kinds() {
-  static const std::map<std::string, ListKind> all = {
-      {"controllers", [](const hal::Catalog& c) { list_plugins<hal::ControllerType>(c, "controllers"); }},
-      {"hooks", [](const hal::Catalog& c) { list_plugins<core::HookType>(c, "hooks"); }},
-      {"bridges", [](const hal::Catalog& c) { list_plugins<bridges::BridgeType>(c, "bridges to real robots"); }},
-      {"commands", &list_commands},
-      {"couplings", [](const hal::Catalog& c) { list_plugins<core::CouplingType>(c, "couplings"); }},
-      {"devices", &list_devices},
-      {"emulators", [](const hal::Catalog& c) { list_plugins<bridges::EmulatorType>(c, "emulators"); }},
-      {"engines", [](const hal::Catalog& c) { list_names(c, core::EngineType::kCategory, "physics engines"); }},
-      {"plugins", &list_libraries},
-      {"parts", [](const hal::Catalog& c) { list_plugins<hal::PartType>(c, "parts of robots"); }},
-      {"robots", [](const hal::Catalog& c) { list_plugins<hal::RobotKind>(c, "robots"); }},
-      {"fields", [](const hal::Catalog& c) { list_plugins<core::FieldType>(c, "fields"); }},
-      {"observers", [](const hal::Catalog& c) { list_plugins<core::ObserverType>(c, "observers"); }},
-      {"run_parts", [](const hal::Catalog& c) { list_plugins<core::RunPartType>(c, "parts that join a run"); }},
-      {"layers", [](const hal::Catalog& c) { list_plugins<core::LayerType>(c, "layers"); }},
-      {"trackers", [](const hal::Catalog& c) { list_plugins<bridges::TrackerType>(c, "trackers of real robots"); }},
-      {"media", [](const hal::Catalog& c) { list_plugins<core::MediumType>(c, "media"); }},
-      {"elements", &list_elements}};
-  return all;
+/// Modules that are not built, and what they are for.
+void list_modules(const hal::Catalog& /*catalog*/) {
+  fmt::print("modules:\n");
+  for (const Module& module : kModules) {
+    std::string commands;
+    for (const ModuleCommand& c : module.commands)
+      commands += (commands.empty() ? "; commands " : ", ") + std::string(c.name);
+    fmt::print("  {:<22} {}{}{}\n", module.name, module.summary, commands,
+               is_loaded(module) ? ""
+                                 : "; NOT BUILT: the first command or file that needs it has it built, or "
+                                   "./tandem build module " +
+                                       std::string(module.name));
+  }
 }
 
 /// The port class behind a device name, for its fields.
@@ -292,40 +284,10 @@ bool describe_robot(const hal::Catalog& catalog, const std::string& name) {
   return true;
 }
 
-/// An emulator, and what the command line may say to it.
-bool describe_emulator(const hal::Catalog& catalog, const std::string& name) {
-  const auto* const type = catalog.find<bridges::EmulatorType>(name);
-  if (type == nullptr) return false;
-  fmt::print("emulator {}: {}{}\n", name, type->summary, from(catalog, type));
-  if (!type->kind.empty()) fmt::print("  its body in an --arena: an {} under {}\n", type->kind, type->puppet);
-  core::ManualWriter manual;
-  (void)type->read(manual);
-  fmt::print("options, written --name value:\n{}", manual.text().empty() ? "  none\n" : manual.text());
-  if (type->faults != nullptr) fmt::print("faults, written --fault TEXT:\n{}\n", type->faults());
-  return true;
-}
-
 bool describe_coupling(const hal::Catalog& catalog, const std::string& name) {
   const auto* const type = catalog.find<core::CouplingType>(name);
   if (type != nullptr) fmt::print("coupling {}: {}{}\n", name, printable(type->summary), from(catalog, type));
   return type != nullptr;
-}
-
-/// A layer, and what of it there is to see.
-bool describe_layer(const hal::Catalog& catalog, const std::string& name) {
-  const auto* const type = catalog.find<core::LayerType>(name);
-  if (type == nullptr) return false;
-  const std::string_view shows = type->draws ? (type->panels ? "a drawing and a panel" : "a drawing") : "a panel";
-  fmt::print("layer {}: {}{}\n  shows {}{}\n", name, printable(type->summary), from(catalog, type), shows,
-             type->draws ? "; in pictures: --picture-layers " + name : "");
-  return true;
-}
-
-/// The manuals of all elements, of studies too.
-std::vector<core::ElementManual> all_manuals(const hal::Catalog& catalog) {
-  std::vector<core::ElementManual> all = core::element_manuals(catalog);
-  for (core::ElementManual& m : study::study_manuals()) all.push_back(std::move(m));
-  return all;
 }
 
 /// What scripts have.
@@ -335,18 +297,46 @@ bool describe_scripts(const hal::Catalog& catalog, const std::string& name) {
 }
 
 bool describe_element(const hal::Catalog& catalog, const std::string& name) {
-  bool found = false;
-  for (const core::ElementManual& m : all_manuals(catalog)) {
-    if (m.name != name) continue;
-    found = true;
-    fmt::print("<{}>{}: {}\n{}", m.name, m.parent.empty() ? "" : fmt::format(" in <{}>", m.parent), m.doc,
-               m.attributes);
-    std::string children;
-    for (const std::string& c : m.children)
-      children += (children.empty() ? "" : ", ") + (c == "*" ? std::string("anything") : c);
-    if (!children.empty()) fmt::print("  may hold: {}\n", children);
+  return describe_elements(core::element_manuals(catalog), name);
+}
+
+constexpr Listing kListings[] = {
+    {"robots", [](const hal::Catalog& c) { list_entries<hal::RobotKind>(c, "robots"); }, &describe_robot},
+    {"engines", [](const hal::Catalog& c) { list_names(c, core::EngineType::kCategory, "physics engines"); },
+     &describe_physics_engine},
+    {"couplings", [](const hal::Catalog& c) { list_entries<core::CouplingType>(c, "couplings"); }, &describe_coupling},
+    {"elements", &list_elements, &describe_element},
+    {"parts", [](const hal::Catalog& c) { list_entries<hal::PartType>(c, "parts of robots"); }, &describe_part},
+    {"devices", &list_devices, &describe_device},
+    {"controllers", [](const hal::Catalog& c) { list_entries<hal::ControllerType>(c, "controllers"); },
+     &describe_plugin<hal::ControllerType>},
+    {"hooks", [](const hal::Catalog& c) { list_entries<core::HookType>(c, "hooks"); },
+     &describe_plugin<core::HookType>},
+    {"commands", &list_commands},
+    {"plugins", &list_libraries},
+    {"modules", &list_modules},
+    {"fields", [](const hal::Catalog& c) { list_entries<core::FieldType>(c, "fields"); }},
+    {"observers", [](const hal::Catalog& c) { list_entries<core::ObserverType>(c, "observers"); }},
+    {"run_parts", [](const hal::Catalog& c) { list_entries<core::RunPartType>(c, "parts that join a run"); }},
+    {"media", [](const hal::Catalog& c) { list_entries<core::MediumType>(c, "media"); }},
+    {"scripts", nullptr, &describe_scripts}};
+
+/// By name; the program's own before those of modules.
+std::vector<const Listing*> listings(const hal::Catalog& catalog) {
+  std::vector<const Listing*> all;
+  for (const Listing& listing : kListings) all.push_back(&listing);
+  for (const Listing* listing : catalog.all<Listing>()) all.push_back(listing);
+  return all;
+}
+
+std::vector<std::string> listed_kinds(const hal::Catalog& catalog) {
+  std::vector<std::string> names;
+  for (const Listing* listing : listings(catalog)) {
+    if (listing->list != nullptr) names.emplace_back(listing->name);
   }
-  return found;
+  std::ranges::sort(names);
+  names.erase(std::unique(names.begin(), names.end()), names.end());
+  return names;
 }
 
 struct ListOptions {
@@ -355,27 +345,26 @@ struct ListOptions {
   std::string kind;  ///< bridges, controllers, couplings, commands, … robots; empty: all
 
   void describe(hal::CommandLine& line) {
-    std::vector<std::string> names;
-    for (const auto& [name, print] : kinds()) names.push_back(name);
-    line.word("kind", kind, "Only this kind").suggest(std::move(names));
+    line.word("kind", kind, "Only this kind").suggest(listed_kinds(app::catalog()));
     line.option("--in", file, "Also what this file adds: its plug-ins, its kinds of robots").file();
     describe_plugins(line, plugins);
   }
 };
 
 int list(const ListOptions& options, const hal::CommandContext& context) {
-  const std::string& kind = options.kind;
-  const auto found = kinds().find(kind);
-  if (!kind.empty() && found == kinds().end()) {
-    std::string all;
-    for (const auto& [name, print] : kinds()) all += (all.empty() ? "" : ", ") + name;
-    fmt::print(stderr, "tandem list: there is no kind '{}'; there are: {}\n", kind, all);
-    return kWrongUsage;
-  }
+  load_built_modules();
   const auto known = all_known(context.catalog(), options.plugins, options.file);
   if (!known) return kBadInput;
-  for (const auto& [name, print] : kinds()) {
-    if (kind.empty() || name == kind) print(known->catalog());
+  const std::vector<std::string> kinds = listed_kinds(known->catalog());
+  if (!options.kind.empty() && std::ranges::find(kinds, options.kind) == kinds.end()) {
+    fmt::print(stderr, "tandem list: there is no kind '{}'; there are: {}\n", options.kind, hal::listed(kinds));
+    return kWrongUsage;
+  }
+  for (const std::string& kind : kinds) {
+    for (const Listing* listing : listings(known->catalog())) {
+      if (listing->list != nullptr && kind == listing->name && (options.kind.empty() || options.kind == kind))
+        listing->list(known->catalog());
+    }
   }
   return kDone;
 }
@@ -395,26 +384,18 @@ struct DescribeOptions {
 };
 
 int describe(const DescribeOptions& options, const hal::CommandContext& context) {
+  load_built_modules();
   const std::string& name = options.name;
   const auto known = all_known(context.catalog(), options.plugins, options.file);
   if (!known) return kBadInput;
   const hal::Catalog& catalog = known->catalog();
   if (options.xml) return print_xml(catalog, *known, name);
-  const bool robot = describe_robot(catalog, name);
-  const bool engine = describe_physics_engine(catalog, name);
-  const bool element = describe_element(catalog, name);
-  const bool part = describe_part(catalog, name);
-  const bool device = describe_device(catalog, name);
-  const bool controller = describe_plugin<hal::ControllerType>(catalog, name);
-  const bool hook = describe_plugin<core::HookType>(catalog, name);
-  const bool emulator = describe_emulator(catalog, name);
-  const bool coupling = describe_coupling(catalog, name);
-  const bool layer = describe_layer(catalog, name);
-  const bool scripts = describe_scripts(catalog, name);
-  if (scripts || layer || robot || engine || coupling || element || part || device || controller || hook || emulator)
-    return kDone;
+  bool found = false;
+  for (const Listing* listing : listings(catalog))
+    found = (listing->describe != nullptr && listing->describe(catalog, name)) || found;
+  if (found) return kDone;
   std::vector<std::string> all;
-  for (const core::ElementManual& m : all_manuals(catalog)) all.emplace_back(m.name);
+  for (const core::ElementManual& m : core::element_manuals(catalog)) all.emplace_back(m.name);
   for (const core::DeviceType* t : catalog.all<core::DeviceType>()) all.emplace_back(t->device);
   for (const hal::Catalog::Entry& e : catalog.entries()) all.push_back(e.name);
   const std::string near = core::closest(name, all);

@@ -6,6 +6,7 @@
 #include "app/command/manuals.hpp"
 #include "app/experiment/plugin_folders.hpp"
 #include "app/experiment/plugins.hpp"
+#include "app/module/modules.hpp"
 #include "app/process/terminal.hpp"
 #include "hal/output_file.hpp"
 #include "hal/plugin_loader.hpp"
@@ -150,7 +151,8 @@ struct Man {
 };
 
 int man(const Man& options, const hal::CommandContext& context) {
-  hal::PluginLoader loader(plugin_folders(), context.catalog());
+  load_built_modules();
+  hal::PluginLoader loader(plugin_folders(), context.catalog(), on_demand());
   open_plugin_folders(loader);
   const Manuals manuals = command_manuals(loader.catalog());
   const std::filesystem::path folder = options.folder;

@@ -9,9 +9,8 @@
 namespace tandem::app {
 namespace {
 
-constexpr std::array<AddPart, 11> kParts = {&add_real_robots, &add_lockstep,   &add_resumption,  &add_hold,
-                                            &add_terminal,    &add_outputs,    &add_checkpoints, &add_desk,
-                                            &add_view,        &add_comparison, &add_named_parts};
+constexpr std::array<AddPart, 8> kParts = {&add_real_robots, &add_resumption, &add_hold,  &add_outputs,
+                                           &add_checkpoints, &add_desk,       &add_views, &add_named_parts};
 
 /// All but the end of the log, which outlives the world.
 int run_with(const RunOptions& options, RunLog& log) {

@@ -1,18 +1,16 @@
 #include "app/experiment/plugins.hpp"
 
+#include <algorithm>
 #include <filesystem>
 
 #include "app/catalog.hpp"
 #include "app/exit_code.hpp"
 #include "app/experiment/plugin_folders.hpp"
 #include "app/experiment/reading.hpp"
+#include "app/module/modules.hpp"
 #include "app/process/terminal.hpp"
-#include "bridges/bridge_type.hpp"
-#include "bridges/guardian/stopper.hpp"
+#include "app/run/real_side_type.hpp"
 #include "core/config/kinds.hpp"
-#include "mixed_reality/settings/bridge_check.hpp"
-#include "mixed_reality/settings/peer_check.hpp"
-#include "mixed_reality/settings/tracker_check.hpp"
 
 namespace tandem::app {
 
@@ -21,8 +19,27 @@ std::ptrdiff_t thread_count() {
   return std::distance(std::filesystem::directory_iterator("/proc/self/task", ignored), {});
 }
 
+namespace {
+
+/// Whether an element of this name stands anywhere in `element`.
+bool names(const core::Element& element, std::string_view name) {
+  return element.name == name ||
+         std::ranges::any_of(element.children, [&](const core::Element& child) { return names(child, name); });
+}
+
+}  // namespace
+
+bool need_modules_for(hal::PluginLoader& loader, const core::Element& root) {
+  for (const Module& module : kModules) {
+    if (std::ranges::none_of(module.elements, [&](std::string_view name) { return names(root, name); })) continue;
+    if (const hal::Status there = need_module(loader, module.name); !there.ok())
+      return complain(kBadInput, there.error().message) == kDone;
+  }
+  return true;
+}
+
 hal::PluginLoader make_loader() {
-  return hal::PluginLoader(plugin_folders(), catalog());
+  return hal::PluginLoader(plugin_folders(), catalog(), on_demand());
 }
 
 bool open_plugins(hal::PluginLoader& loader, const std::vector<std::string>& libraries) {
@@ -73,6 +90,7 @@ bool ExperimentReading::take(std::optional<core::ExperimentFile> file, const cor
   file_ = std::move(file);
   print_problems(problems);
   if (!file_) return false;
+  if (!need_modules_for(loader_, file_->root)) return false;
   loader_.look_beside(path);
   for (const core::PluginConfig& plugin : core::plugins_of(file_->root))
     libraries_.push_back({plugin.library, plugin.line});
@@ -88,8 +106,7 @@ bool ExperimentReading::judge() {
       good = false;
       continue;
     }
-    library.stops_robots = note.value().uses(bridges::BridgeType::kCategory) ||
-                           note.value().uses(bridges::guardian::StopperType::kCategory);
+    library.stops_robots = note.value().uses("bridge") || note.value().uses("stopper");
   }
   return good;
 }
@@ -122,9 +139,8 @@ std::optional<core::Scenario> ExperimentReading::read() {
   auto scenario = core::read_experiment(std::move(*file_), loader_.catalog(), problems);
   file_.reset();
   if (scenario) {
-    mixed_reality::check_peers(*scenario, problems);
-    mixed_reality::check_bridges(*scenario, loader_.catalog(), problems);
-    mixed_reality::check_trackers(*scenario, loader_.catalog(), problems);
+    for (const RealSideType* real : loader_.catalog().all<RealSideType>())
+      real->check(*scenario, loader_.catalog(), problems);
   }
   print_problems(problems);
   if (core::has_errors(problems)) return std::nullopt;

@@ -14,6 +14,9 @@ namespace tandem::app {
 /// A loader with the parts that come with this program.
 hal::PluginLoader make_loader();
 
+/// Loads the modules that elements of a file need. False: complained.
+bool need_modules_for(hal::PluginLoader& loader, const core::Element& root);
+
 /// Opens the libraries of `--plugin`, for commands that read no experiment. Complains where one cannot be.
 bool open_plugins(hal::PluginLoader& loader, const std::vector<std::string>& libraries);
 

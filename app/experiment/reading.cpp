@@ -53,4 +53,30 @@ std::optional<int> check_other_file(const std::string& path, const hal::Catalog&
   return kDone;
 }
 
+bool has_real_robots(const core::Scenario& scenario) {
+  for (const core::RobotItem& item : scenario.robots) {
+    if (item.bridge) return true;
+  }
+  return false;
+}
+
+hal::Status leave_out(core::Scenario& scenario, const std::vector<std::string>& ids) {
+  for (const std::string& id : ids) {
+    std::string real;
+    bool found = false;
+    for (core::RobotItem& item : scenario.robots) {
+      if (!item.bridge && !item.peer) continue;
+      real += (real.empty() ? "" : ", ") + item.id;
+      if (item.id != id) continue;
+      item.bridge.reset();
+      item.peer.reset();
+      found = true;
+    }
+    if (!found)
+      return hal::Error{"--without " + id +
+                        ": there is no real robot of this name; there are: " + (real.empty() ? "none" : real)};
+  }
+  return {};
+}
+
 }  // namespace tandem::app

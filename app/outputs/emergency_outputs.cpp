@@ -15,9 +15,8 @@ void EmergencyOutputs::save(std::string_view failure) const noexcept {
   if (outputs_.record != nullptr && !put_in_place(outputs_.record->file()))
     (void)write_now(STDERR_FILENO, "error: the record could not be put in its place; it is in its .part\n");
   EmergencyReport::save(failure);
-  for (const std::optional<hal::OutputFile>* drawn : {&outputs_.picture, &outputs_.scene}) {
-    if (!*drawn) continue;
-    if (!(*drawn)->part().empty()) unlink((*drawn)->part().c_str());
+  for (const hal::OutputFile* drawn : outputs_.at_the_end) {
+    if (!drawn->part().empty()) unlink(drawn->part().c_str());
     (void)write_now(STDERR_FILENO, "no picture was drawn\n");
   }
 }

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <fmt/format.h>
 
-#include "mixed_reality/session/roll_call.hpp"
+#include "core/run/roll_call.hpp"
 
 namespace tandem::app {
 
@@ -60,8 +60,7 @@ std::string RobotLines::text_of(const Held& held) {
                            : held.first_s == held.last_s ? " at " + held.first_s + " s"
                                                          : " at " + held.first_s + " to " + held.last_s + " s";
   const bool one = held.ids.size() == 1;
-  const std::string who =
-      one ? held.kind + " '" + held.ids[0] + "'" : held.kind + "s " + mixed_reality::names_text(held.ids);
+  const std::string who = one ? held.kind + " '" + held.ids[0] + "'" : held.kind + "s " + core::names_text(held.ids);
   return who + when + ": " + held.rest + times;
 }
 

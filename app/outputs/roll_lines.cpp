@@ -4,12 +4,12 @@
 
 namespace tandem::app {
 
-using mixed_reality::RollGroup;
-using mixed_reality::RollRow;
+using core::RollGroup;
+using core::RollRow;
 
 std::vector<std::string> roll_lines(const std::vector<RollRow>& rows, std::size_t columns) {
   std::vector<std::string> lines;
-  for (const RollGroup& group : mixed_reality::grouped(rows)) {
+  for (const RollGroup& group : core::grouped(rows)) {
     std::string rest = text_of(group);
     while (columns > 4 && width_of(rest) > columns) {
       std::size_t at = rest.rfind(' ', columns);

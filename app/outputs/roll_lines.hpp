@@ -4,12 +4,12 @@
 #include <string>
 #include <vector>
 
-#include "mixed_reality/session/roll_call.hpp"
+#include "core/run/roll_call.hpp"
 
 namespace tandem::app {
 
 /// One line a group; the urgent ones first. Lines are broken at `columns` (0: never).
-std::vector<std::string> roll_lines(const std::vector<mixed_reality::RollRow>& rows, std::size_t columns);
+std::vector<std::string> roll_lines(const std::vector<core::RollRow>& rows, std::size_t columns);
 
 /// Where there is no terminal to draw on: tells the list when what is urgent in it changes, at most once in `kEvery_s`,
 /// and later less often; the last state is always told.
@@ -19,7 +19,7 @@ class RollTeller {
   static constexpr int kOften = 20;  ///< times; then every kLater_s
 
   /// @returns what is to be said now; mostly nothing.
-  std::vector<std::string> look(const std::vector<mixed_reality::RollRow>& rows, double now_s);
+  std::vector<std::string> look(const std::vector<core::RollRow>& rows, double now_s);
 
  private:
   std::vector<std::string> told_;

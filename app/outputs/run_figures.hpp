@@ -2,6 +2,7 @@
 #pragma once
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 
 #include "core/sim/world.hpp"
 #include "hal/json/json.hpp"
@@ -15,6 +16,7 @@ struct RunFigures {
   double cpu_s = 0.0;
   double init_s = 0.0;
   std::uint64_t deadline_misses = 0;
+  std::optional<std::uint64_t> misses_by_machine = {};  ///< of these, because it gave no processor; nothing: not known
   std::int64_t threads = 1;
 
   double virtual_s(std::int64_t ticks_per_second) const {

@@ -84,7 +84,7 @@ void RunLog::tell_robots(bool all) {
   for (const std::string& line : robot_lines_.due(wall_seconds(), all)) say(line);
 }
 
-void RunLog::show_robots(const std::vector<mixed_reality::RollRow>& roll) {
+void RunLog::show_robots(const std::vector<core::RollRow>& roll) {
   const std::lock_guard hold(lock_);
   tell_robots(false);
   if (says_elsewhere()) return;

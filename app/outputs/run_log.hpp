@@ -30,7 +30,7 @@ class RunLog {
   void keep(std::string_view text);
   /// The real robots as they are now: to be called often. On a terminal the list stands under everything else, without
   /// one it is told as it changes.
-  void show_robots(const std::vector<mixed_reality::RollRow>& roll);
+  void show_robots(const std::vector<core::RollRow>& roll);
   /// Tells what is still to be told of them, and takes their list away.
   void end_robots();
   ~RunLog() { end_robots(); }

@@ -1,24 +1,23 @@
 #include "app/outputs/run_report.hpp"
 
 #include <algorithm>
+#include <filesystem>
 #include <fmt/format.h>
 
 #include "app/build_info.hpp"
 #include "app/outputs/report.hpp"
 #include "app/process/measure.hpp"
-#include "app/robots/bridge_status.hpp"
-#include "app/robots/ledger_json.hpp"
-#include "app/robots/lockstep_peers.hpp"
-#include "app/robots/real_robots.hpp"
-#include "core/view/record_drawing.hpp"
-#include "hal/json/json.hpp"
+#include "app/run/real_side_type.hpp"
+#include "core/record/scene_json.hpp"
+#include "hal/json/json_access.hpp"
 #include "hal/sha256.hpp"
 #include "hal/unit.hpp"
 #include "hal/xml/xml.hpp"
-#include "mixed_reality/settings/bridge_request.hpp"
 
 namespace tandem::app {
 namespace {
+
+using hal::text_of;
 
 std::string_view word_of(Ended how) {
   switch (how) {
@@ -36,20 +35,6 @@ std::string_view word_of(Ended how) {
   return "failed";
 }
 
-std::string ledger_text(const mixed_reality::RobotLedger& l) {
-  std::string text = fmt::format(
-      "readings {:.0f} ms old, {:.0f} ms at most (99 %); answers in {:.1f} ms, {:.1f} ms (99 %), jitter {:.1f} ms; {} "
-      "late "
-      "readings, {} late commands",
-      to_ms(l.age_median_ns), to_ms(l.age_p99_ns), to_ms(l.round_trip_median_ns), to_ms(l.round_trip_p99_ns),
-      to_ms(l.jitter_ns), l.late_readings, l.late_commands);
-  if (l.clock)
-    text += fmt::format("; its clock {:+.1f} ppm, {}, {} jumps", l.clock->drift_ppm,
-                        l.clock->bound_ns ? fmt::format("within {:.1f} ms", to_ms(*l.clock->bound_ns)) : "one way",
-                        l.clock->jumps);
-  return text;
-}
-
 /// "interrupted at tick 4006 of 200000, not finished"; empty where there is nothing to tell.
 std::string end_text(const RunEnd& end, hal::Tick tick) {
   if (end.how == Ended::Length) return {};
@@ -58,112 +43,6 @@ std::string end_text(const RunEnd& end, hal::Tick tick) {
   if (end.how == Ended::Hook) return "by a hook " + at;
   if (end.how == Ended::Part) return "by a part " + at;
   return fmt::format("{} {}, not finished", word_of(end.how), at);
-}
-
-/// What trackers saw of a robot, and what was made of it.
-void add_pose(hal::Json& robot, const mixed_reality::RealRobotReport& r) {
-  robot["pose_source"] = r.pose_source;
-  robot["poses_rejected"] = r.poses_rejected;
-  if (r.sightings) {
-    robot["sightings"] = {{"used", r.sightings->used},
-                          {"gated", r.sightings->gated},
-                          {"late", r.sightings->late},
-                          {"doubled", r.sightings->doubled},
-                          {"impossible", r.sightings->impossible},
-                          {"disputed", r.sightings->disputed},
-                          {"jumps", r.sightings->jumps},
-                          {"slips", r.sightings->slips}};
-  }
-  if (r.learnt) {
-    robot["learnt"] = {{"left_wheel", r.learnt->left},          {"right_wheel", r.learnt->right},
-                       {"wheel_base", r.learnt->base},          {"gyroscope_bias_rad_s", r.learnt->bias_rad_s},
-                       {"tracker_delays_s", r.learnt->delay_s}, {"standard_deviations", r.learnt->sd}};
-    if (r.learnt->lag_s) {
-      robot["learnt"]["lag_s"] = *r.learnt->lag_s;
-      robot["learnt"]["lag_sd_s"] = r.learnt->lag_sd_s;
-    }
-  }
-}
-
-void add_trackers(hal::Json& json, const std::vector<mixed_reality::TrackerStatus>& trackers) {
-  hal::Json& all = json["trackers"] = hal::Json::array();
-  for (const mixed_reality::TrackerStatus& t : trackers) {
-    hal::Json tracker{{"id", t.id},
-                      {"kind", t.kind},
-                      {"messages", t.heard.messages},
-                      {"malformed", t.heard.malformed},
-                      {"sightings", t.heard.sightings},
-                      {"dropped", t.heard.dropped},
-                      {"unknown", t.unknown},
-                      {"from_future", t.from_future},
-                      {"old", t.old},
-                      {"outside", t.outside},
-                      {"clock_jumps", t.clock_jumps},
-                      {"by_former_date", t.by_former_date}};
-    if (t.clock) tracker["clock"] = clock_json(*t.clock);
-    if (t.shortest_way_s) tracker["shortest_way_ms"] = 1e3 * *t.shortest_way_s;
-    if (!t.unknown_names.empty()) tracker["unknown_names"] = t.unknown_names;
-    if (!t.heard.trouble.empty()) tracker["trouble"] = t.heard.trouble;
-    for (const auto& [name, count] : t.heard.counts) tracker[name] = count;
-    all.push_back(std::move(tracker));
-  }
-}
-
-void add_real_robots(hal::Json& json, const mixed_reality::MixedReport& report) {
-  hal::Json& robots = json["real_robots"] = hal::Json::array();
-  for (const mixed_reality::RealRobotReport& r : report.robots) {
-    hal::Json robot;
-    robot["id"] = r.id;
-    robot["link"] = r.link;
-    robot["x_m"] = r.pose.x_m;
-    robot["y_m"] = r.pose.y_m;
-    robot["heading_rad"] = r.pose.heading_rad();
-    robot["state"] = r.state;
-    robot["driving"] = r.driving;
-    robot["stop_confirmed"] = r.stop_confirmed;
-    robot["ticks_driving"] = r.counts.ticks_driving;
-    robot["ticks_held"] = r.counts.ticks_held;
-    robot["stops"] = r.counts.stops;
-    robot["rearms"] = r.counts.rearms;
-    robot["fenced_ticks"] = r.counts.fenced_ticks;
-    robot["intrusions"] = r.counts.intrusions;
-    robot["trespasses"] = r.counts.barrier.trespasses;
-    robot["held_back_ticks"] = r.counts.barrier.changed_ticks;
-    robot["held_back_most_m_s"] = r.counts.barrier.most_m_s;
-    if (r.counts.barrier.delay_s > 0.0) robot["measured_delay_s"] = r.counts.barrier.delay_s;
-    add_pose(robot, r);
-    add_link_report(robot, r.conversation);
-    robot["ledger"] = ledger_json(r.ledger);
-    robot["incidents"] = r.incidents;
-    robots.push_back(std::move(robot));
-  }
-  if (!report.replacements.empty()) {
-    hal::Json& replacements = json["replacements"] = hal::Json::array();
-    for (const mixed_reality::ReplacementReport& r : report.replacements)
-      replacements.push_back(
-          {{"robot", r.robot}, {"before", r.before}, {"after", r.after}, {"link", r.link}, {"tick", r.tick}});
-  }
-  if (!report.trackers.empty()) add_trackers(json, report.trackers);
-  hal::Json& pace = json["pace"];
-  pace["ticks"] = report.pace.ticks;
-  pace["deadline_misses"] = report.pace.deadline_misses;
-  pace["misses_by_machine"] = report.pace.misses_by_machine;
-  for (std::size_t i = 0; i < std::min<std::size_t>(report.pace.deadline_misses, mixed_reality::PaceLedger::kKept);
-       ++i) {
-    const mixed_reality::MissedDeadline& m = report.pace.first_misses[i];
-    pace["first_misses"].push_back({{"tick", m.tick},
-                                    {"late_ms", to_ms(m.lateness_ns)},
-                                    {"ran_ms", to_ms(m.ran_ns)},
-                                    {"waited_ms", to_ms(m.waited_ns)},
-                                    {"stalled_ms", to_ms(m.stalled_ns)},
-                                    {"woke_late_ms", to_ms(m.woke_late_ns)},
-                                    {"by_machine", m.by_machine}});
-  }
-  pace["skipped_slots"] = report.pace.skipped_slots;
-  pace["largest_lateness_ms"] = static_cast<double>(report.pace.largest_lateness_ns) * 1e-6;
-  pace["wake_up_p99_ms"] = static_cast<double>(report.pace.wake_up.quantile_ns(0.99)) * 1e-6;
-  pace["step_p99_ms"] = static_cast<double>(report.pace.step.quantile_ns(0.99)) * 1e-6;
-  json["system_clock"] = system_clock_json(report.clock);
 }
 
 hal::Json to_json(const InputFile& file) {
@@ -202,11 +81,29 @@ void add_members(hal::Json& json, const RunResult& result, bool between_ticks) {
                      {"unsolved_sub_steps", accuracy.unsolved_sub_steps},
                      {"largest_overlap", accuracy.overlap}};
   if (!world.measures().all().empty()) json["measures"] = world.measures().all();
-  if (result.real != nullptr) add_real_robots(json, *result.real);
-  if (!result.replay.is_null()) json["replay"] = result.replay;
-  if (result.peers != nullptr) json["lockstep"] = lockstep_json(*result.peers);
+  if (!result.more.is_null()) json.update(result.more);
   json["program"] = to_json(build_info());
   json["settings"] = hal::to_xml(world.scenario().effective);
+}
+
+constexpr std::size_t kDigitsShown = 12;
+
+/// Files of a list of the record's beginning; what makes no sense is empty.
+std::vector<InputFile> files_of(const hal::Json& start, const char* key) {
+  std::vector<InputFile> files;
+  for (const hal::Json& file : hal::list_of(start, key)) {
+    if (file.is_object())
+      files.push_back({text_of(file, "id"), text_of(file, "label"), text_of(file, "file"), text_of(file, "sha256")});
+  }
+  return files;
+}
+
+std::string digest_text(const std::string& sha256) {
+  return sha256.empty() ? "missing" : sha256.substr(0, kDigitsShown) + "…";
+}
+
+bool same_name(const std::string& a, const std::string& b) {
+  return std::filesystem::path(a).filename() == std::filesystem::path(b).filename();
 }
 
 }  // namespace
@@ -251,13 +148,40 @@ InputFiles input_files(const core::Scenario& scenario, const hal::PluginLoader& 
     if (kind.file != last) files.others.push_back(described("", "", kind.file));
     last = kind.file;
   }
-  for (const core::RobotItem& robot : scenario.robots) {
-    if (!robot.bridge) continue;
-    for (const auto& file :
-         mixed_reality::bridge_inputs(loader.catalog(), mixed_reality::bridge_request(scenario, robot, 0)))
-      files.others.push_back(described(robot.id, "", file.second));
+  for (const RealSideType* real : loader.catalog().all<RealSideType>()) {
+    for (const RealSideType::Input& input : real->inputs(scenario, loader.catalog()))
+      files.others.push_back(described(input.robot, "", input.path));
   }
   return files;
+}
+
+std::string changed_files(const hal::Json& start, const InputFiles& now, bool others_named) {
+  std::string changed;
+  const auto compare = [&](const char* what, const std::vector<InputFile>& recorded,
+                           const std::vector<InputFile>& present) {
+    for (std::size_t i = 0; i < recorded.size(); ++i) {
+      const InputFile& then = recorded[i];
+      const bool by_place = i < present.size() && present[i].id == then.id;
+      const auto named = std::find_if(present.begin(), present.end(), [&](const InputFile& file) {
+        return file.id == then.id && same_name(file.file, then.file);
+      });
+      const InputFile* const file = named != present.end() ? &*named : by_place ? &present[i] : nullptr;
+      const std::string sha256 = file != nullptr ? file->sha256 : std::string();
+      if (sha256 == then.sha256) continue;
+      if (file != nullptr && others_named && !same_name(file->file, then.file)) continue;
+      changed += fmt::format("\n  {}{} '{}': in the run {}, now {}", what, then.id.empty() ? "" : " " + then.id,
+                             file != nullptr ? file->file : then.file, digest_text(then.sha256), digest_text(sha256));
+    }
+  };
+  compare("plug-in", files_of(start, "plugins"), now.plugins);
+  compare("controller", files_of(start, "controllers"), now.controllers);
+  compare("hook", files_of(start, "hooks"), now.hooks);
+  std::vector<InputFile> others;  // those of bridges have a robot's id, and are of no use here
+  for (InputFile& file : files_of(start, "other_files")) {
+    if (file.id.empty()) others.push_back(std::move(file));
+  }
+  compare("file", others, now.others);
+  return changed;
 }
 
 hal::Json record_start(const core::World& world, const InputFiles& inputs) {
@@ -268,7 +192,7 @@ hal::Json record_start(const core::World& world, const InputFiles& inputs) {
   add_inputs(json, inputs);
   json["program"] = to_json(build_info());
   json["settings"] = hal::to_xml(world.scenario().effective);
-  if (const auto areas = areas_of(world.scenario().safety); !areas.empty()) json["areas"] = core::to_json(areas);
+  if (hal::Json areas = core::areas_json(world.scenario().safety); !areas.empty()) json["areas"] = std::move(areas);
   return json;
 }
 
@@ -295,7 +219,6 @@ void print_result(const RunResult& result) {
   const core::World& world = result.world;
   const RunFigures& figures = result.figures;
   const std::size_t robots = result.robots;
-  const mixed_reality::MixedReport* const real = result.real;
   const core::Incidents& incidents = world.incidents();
   const double virtual_s = figures.virtual_s(world.ticks_per_second());
   std::vector<std::pair<std::string, std::string>> rows = {
@@ -310,9 +233,9 @@ void print_result(const RunResult& result) {
       {"state", hash_text(world.state_hash())}};
   if (const std::string text = end_text(result.end, world.tick()); !text.empty()) rows.emplace_back("ended", text);
   if (world.scenario().time_mode == core::TimeMode::Realtime)
-    rows.emplace_back("missed deadlines", real != nullptr && figures.deadline_misses > 0
+    rows.emplace_back("missed deadlines", figures.misses_by_machine && figures.deadline_misses > 0
                                               ? fmt::format("{}, {} of them because this computer gave no processor",
-                                                            figures.deadline_misses, real->pace.misses_by_machine)
+                                                            figures.deadline_misses, *figures.misses_by_machine)
                                               : fmt::format("{}", figures.deadline_misses));
   const std::uint64_t odd = incidents.commands_clamped + incidents.commands_not_finite + incidents.controllers_thrown +
                             incidents.bodies_escaped;
@@ -328,47 +251,6 @@ void print_result(const RunResult& result) {
                                              accuracy.unsolved_sub_steps, accuracy.constraint_error_m_s));
   }
   for (const auto& [name, value] : world.measures().all()) rows.emplace_back(name, hal::format_number(value));
-  if (result.peers != nullptr) {
-    std::uint64_t asked_again = 0, odd_answers = 0;
-    for (const mixed_reality::PartnerReport& p : result.peers->peers) {
-      asked_again += p.asked_again;
-      odd_answers += p.doubled + p.wrong_tick + p.not_understood + p.garbled;
-    }
-    rows.emplace_back("peers", fmt::format("{}, waited for {:.2f} s in all; {} times asked again, {} odd answers",
-                                           result.peers->peers.size(), hal::to_seconds(result.peers->waited_ns),
-                                           asked_again, odd_answers));
-  }
-  if (real != nullptr) {
-    for (const mixed_reality::RealRobotReport& r : real->robots) {
-      rows.emplace_back(
-          "real robot",
-          fmt::format("{} on {}: {}; {} ticks driving, {} held, {} of {} questions answered, {}", r.id, r.link, r.state,
-                      r.counts.ticks_driving, r.counts.ticks_held, r.conversation.answers, r.conversation.questions,
-                      r.stop_confirmed ? "stop confirmed" : "STOP NOT CONFIRMED"));
-      const mixed_reality::BarrierCounts& barrier = r.counts.barrier;
-      if (barrier.changed_ticks + barrier.trespasses + r.counts.intrusions > 0) {
-        rows.emplace_back("safety of " + r.id,
-                          fmt::format("held back in {} ticks, by {} m/s at most; {} times where it should not be",
-                                      barrier.changed_ticks, hal::format_number(barrier.most_m_s),
-                                      barrier.trespasses + r.counts.intrusions));
-      }
-      rows.emplace_back("ledger of " + r.id, ledger_text(r.ledger));
-      if (r.sightings) {
-        rows.emplace_back(
-            "sightings of " + r.id,
-            fmt::format("{} used, {} gated, {} late, {} doubled, {} impossible, {} disputed, {} jumps, {} slips",
-                        r.sightings->used, r.sightings->gated, r.sightings->late, r.sightings->doubled,
-                        r.sightings->impossible, r.sightings->disputed, r.sightings->jumps, r.sightings->slips));
-      }
-    }
-    for (const mixed_reality::TrackerStatus& t : real->trackers) {
-      rows.emplace_back(
-          "tracker", fmt::format("{}: {} messages, {} malformed, {} sightings, {} of nobody here, {} from "
-                                 "the future, {} old, {} outside, {} jumps of its clock",
-                                 t.id, t.heard.messages, t.heard.malformed, t.heard.sightings, t.unknown, t.from_future,
-                                 t.old, t.outside, t.clock_jumps));
-    }
-  }
   rows.insert(rows.end(), result.more_rows.begin(), result.more_rows.end());
   print_table(rows);
 }

@@ -8,8 +8,6 @@
 #include "core/run/run.hpp"
 #include "core/sim/world.hpp"
 #include "hal/json/json.hpp"
-#include "mixed_reality/lockstep/lockstep.hpp"
-#include "mixed_reality/session/report.hpp"
 
 namespace tandem::app {
 
@@ -44,6 +42,10 @@ struct InputFiles {
 };
 InputFiles input_files(const core::Scenario& scenario, const hal::PluginLoader& loader);
 
+/// The files and plug-ins that are not those of a run, by what its record or checkpoint says at its start, a line each,
+/// and each after a line's end. `others_named`: those of another name are what somebody asked for.
+std::string changed_files(const hal::Json& start, const InputFiles& now, bool others_named);
+
 /// Input of the report and the table.
 struct RunResult {
   const core::World& world;
@@ -51,10 +53,8 @@ struct RunResult {
   RunFigures figures;
   std::size_t robots = 0;
   RunEnd end;
-  const mixed_reality::MixedReport* real = nullptr;                 ///< null: no real robots
-  hal::Json replay = {};                                            ///< of a replay; null: this is none
+  hal::Json more = {};                                              ///< members of parts; null: none
   std::vector<std::pair<std::string, std::string>> more_rows = {};  ///< of the table
-  const mixed_reality::LockstepReport* peers = nullptr;             ///< null: not in lock-step
 };
 
 /// One JSON object.

@@ -131,7 +131,7 @@ class Checkpoints final : public core::RunPart {
 
 int add_resumption(RunPlan& plan, core::Run& run) {
   if (!plan.resumed) return kDone;
-  if (plan.lockstep != nullptr) return complain(kBadInput, "--resume: peers take part, which cannot be put back");
+  if (plan.peers) return complain(kBadInput, "--resume: peers take part, which cannot be put back");
   run.add(std::make_unique<Resumption>(plan));
   return kDone;
 }
@@ -139,7 +139,7 @@ int add_resumption(RunPlan& plan, core::Run& run) {
 int add_checkpoints(RunPlan& plan, core::Run& run) {
   const RunOptions& options = plan.options;
   if (options.checkpoint.empty()) return kDone;
-  if (plan.lockstep != nullptr) return complain(kBadInput, "--checkpoint: peers take part, which cannot be put back");
+  if (plan.peers) return complain(kBadInput, "--checkpoint: peers take part, which cannot be put back");
   const double ticks = options.checkpoint_every_s * static_cast<double>(plan.world->ticks_per_second());
   run.add(std::make_unique<Checkpoints>(plan, std::max<std::int64_t>(1, std::llround(std::min(ticks, 1e15)))));
   return kDone;

@@ -10,27 +10,21 @@ namespace tandem::app {
 /// was told. Plan and run must outlive the parts.
 using AddPart = int (*)(RunPlan& plan, core::Run& run);
 
-/// Connects the real robots; waits until all are there.
+/// Connects the real robots, or waits for the peers of a run in lock-step.
 int add_real_robots(RunPlan& plan, core::Run& run);
-/// Waits for the peers of a run in lock-step.
-int add_lockstep(RunPlan& plan, core::Run& run);
 /// Before the first tick: goes on from a checkpoint.
 int add_resumption(RunPlan& plan, core::Run& run);
-/// People who pause, go back and touch; without them the run has its length, and its file's pace.
+/// People who pause, go back and touch; without them the run has its length, and its file's pace. Progress, or a table
+/// on the terminal.
 int add_hold(RunPlan& plan, core::Run& run);
-/// Progress, or a table on the terminal.
-int add_terminal(RunPlan& plan, core::Run& run);
-/// Records, observers, pictures, the dump; at the end the results.
+/// Records, observers, the dump; at the end the results.
 int add_outputs(RunPlan& plan, core::Run& run);
 /// Keeps the state of the run in a file.
 int add_checkpoints(RunPlan& plan, core::Run& run);
-/// Compares with the record that is replayed or repeated.
-int add_comparison(RunPlan& plan, core::Run& run);
-/// Commands to real robots.
+/// Commands to real robots, the comparison of a replay.
 int add_desk(RunPlan& plan, core::Run& run);
-/// The window, and the files of scripts that are read anew.
-int add_view(RunPlan& plan, core::Run& run);
-
+/// Pictures and films, the window.
+int add_views(RunPlan& plan, core::Run& run);
 /// What the experiment's <run> names: parts of plug-ins.
 int add_named_parts(RunPlan& plan, core::Run& run);
 

@@ -1,14 +1,16 @@
+#include <algorithm>
 #include <csignal>
-#include <iterator>
+#include <utility>
 
 #include "app/build_info.hpp"
 #include "app/experiment/reading.hpp"
+#include "app/live/watch.hpp"
+#include "app/module/modules.hpp"
 #include "app/process/signals.hpp"
 #include "app/process/terminal.hpp"
-#include "app/robots/mixed_run.hpp"
 #include "app/run/run_plan.hpp"
-#include "app/view/watch.hpp"
 #include "core/live/source_files.hpp"
+#include "core/run/scripts.hpp"
 #include "hal/json/json_access.hpp"
 
 namespace tandem::app {
@@ -54,71 +56,96 @@ hal::Status check_resumed(const RunPlan& plan) {
   return {};
 }
 
+/// Modules whose parts the options ask for.
+int need_modules(RunPlan& plan) {
+  const RunOptions& o = plan.options;
+  const PictureRequest& p = o.pictures;
+  const bool draws = !p.picture.empty() || !p.film.empty() || !p.povray.empty() || !p.layers.empty();
+  const std::pair<const char*, bool> wanted[] = {
+      {"live", is_held(o)}, {"pictures", draws || o.view.on}, {"window", o.view.on}};
+  for (const auto& [name, is] : wanted) {
+    if (!is) continue;
+    if (const int code = need_for_run(plan, name); code != kDone) return code;
+  }
+  return kDone;
+}
+
+/// What is not simulated, where the file or the options ask for it.
+int make_side(RunPlan& plan) {
+  const auto types = plan.loader.catalog().all<RealSideType>();
+  if (plan.side != nullptr || types.empty()) return kDone;
+  auto made = types.front()->make(plan);
+  if (!made.ok()) return complain(kBadInput, made.error().message);
+  plan.side = std::move(made).value();
+  return kDone;
+}
+
+int open_experiment(RunPlan& plan) {
+  const RunOptions& options = plan.options;
+  if (!options.resume.empty()) {
+    const int code = open_resumed(plan);
+    return code == kDone ? make_side(plan) : code;
+  }
+  if (!plan.replays() && options.hub_faults.empty())
+    return plan.reading.open(options.experiment, options.overrides) ? make_side(plan) : kBadInput;
+  if (const hal::Status real = need_module(plan.loader, "real"); !real.ok())
+    return complain(kBadInput, real.error().message);
+  if (const int code = make_side(plan); code != kDone) return code;
+  const bool opened =
+      plan.replays() ? plan.side->open(plan.reading) : plan.reading.open(options.experiment, options.overrides);
+  return opened ? kDone : kBadInput;
+}
+
+/// Whether files that are going to be written are apart from each other, and from all that is read.
+int check_paths(const RunPlan& plan) {
+  std::vector<NamedFile> outputs, inputs;
+  for (const RunModule* module : plan.modules) {
+    if (module->outputs == nullptr) continue;
+    auto files = module->outputs(plan.options);
+    if (!files.ok()) return complain(kBadInput, files.error().message);
+    outputs.insert(outputs.end(), files.value().begin(), files.value().end());
+  }
+  for (const RealSideType* real : plan.loader.catalog().all<RealSideType>()) {
+    for (const RealSideType::Input& input : real->inputs(*plan.scenario, plan.loader.catalog()))
+      inputs.push_back({input.what, input.path});
+  }
+  return told(check_output_paths(plan.options, *plan.scenario, std::move(outputs), inputs));
+}
+
+int for_modules(RunPlan& plan, int (*RunModule::*hook)(RunPlan&)) {
+  for (const RunModule* module : plan.modules) {
+    if (module->*hook == nullptr) continue;
+    if (const int code = (module->*hook)(plan); code != kDone) return code;
+  }
+  return kDone;
+}
+
 /// The experiment, and the guardian of its real robots: made before any other thread.
 int read_experiment(RunPlan& plan) {
-  const RunOptions& options = plan.options;
-  auto hub_faults = HubFaults::make(options.hub_faults);
-  if (!hub_faults.ok()) return complain(kBadInput, hub_faults.error().message);
-  plan.hub_faults = std::move(hub_faults).value();
-  ReplayRun& replay = plan.replay;
-  if (!options.resume.empty()) {
-    if (const int code = open_resumed(plan); code != kDone) return code;
-  } else if (!(replay.wanted() ? replay.open(plan.reading)
-                               : plan.reading.open(options.experiment, options.overrides))) {
-    return kBadInput;
-  }
-  plan.guarded.emplace(!replay.wanted() && plan.reading.has_real_robots(options.without), plan.loader.catalog(),
-                       hal::Log([](hal::Severity, std::string_view text) { say(text); }));
+  if (const int code = need_modules(plan); code != kDone) return code;
+  if (const int code = open_experiment(plan); code != kDone) return code;
+  if (plan.side != nullptr) plan.side->guard();
   plan.scenario = plan.reading.read();
   if (!plan.scenario) return kBadInput;
-  core::Scenario& scenario = *plan.scenario;
-  if (const int code = told(leave_out(scenario, options.without)); code != kDone) return code;
-  if (replay.wanted() && !replay.prepare(scenario, plan.loader)) return kBadInput;
-  if ((!options.checkpoint.empty() || plan.resumed) && has_real_robots(scenario))
-    return complain(
-        kBadInput,
-        "--checkpoint, --resume: real robots take part, which cannot be put back; simulate them (--without)");
-  if (!options.hub_faults.empty() && !has_real_robots(scenario))
-    return complain(kBadInput, "--hub-fault needs a real robot: no robot of this experiment has a <bridge>");
-  if (const int code = told(check_output_paths(options, scenario, plan.loader.catalog())); code != kDone) return code;
-  return told(plan.guarded->started(), kFailedRunning);
-}
-
-/// What is to be done again; nothing where no record was named.
-hal::Result<core::Repeatable> read_repeated(const RunOptions& options, const core::Scenario& scenario) {
-  if (options.repeat.empty()) return core::Repeatable{};
-  if (has_real_robots(scenario)) {
-    return hal::Error{
-        "--repeat: real robots take part, and never do the same twice; simulate them instead (--without)"};
+  if (const int code = told(leave_out(*plan.scenario, plan.options.without)); code != kDone) return code;
+  if (plan.side != nullptr) {
+    if (const int code = plan.side->prepare(*plan.scenario); code != kDone) return code;
   }
-  auto repeated = core::read_repeatable(options.repeat);
-  if (repeated.ok() && repeated.value().real_robots && options.replay.record.empty())
-    return hal::Error{"record '" + options.repeat +
-                      "': real robots took part in this run; `tandem replay` computes it again"};
-  if (repeated.ok() && repeated.value().experiment != scenario.name)
-    say("the record is of the experiment '" + repeated.value().experiment + "'");
-  return repeated;
-}
-
-/// The repeated run begins with the scripts of the record, whatever stands in their files now.
-void run_recorded_scripts(core::World& world, core::Repeatable& repeated) {
-  std::vector<core::RepeatedAction> reloads = core::reloads_to(repeated.scripts, world);
-  for (const core::RepeatedAction& reload : reloads) {
-    say("controller '" + reload.action["controller"].get<std::string>() +
-        "' begins with its script as the record has it; the file is another one now");
+  if ((!plan.options.checkpoint.empty() || plan.resumed) && has_real_robots(*plan.scenario))
+    return complain(kBadInput,
+                    "--checkpoint, --resume: real robots take part, which cannot be put back; simulate them (--without)");
+  if (has_real_robots(*plan.scenario)) {
+    if (const int code = need_for_run(plan, "live"); code != kDone) return code;
   }
-  repeated.actions.insert(repeated.actions.begin(), std::make_move_iterator(reloads.begin()),
-                          std::make_move_iterator(reloads.end()));
+  return check_paths(plan);
 }
 
 int make_world(RunPlan& plan) {
   const RunOptions& options = plan.options;
-  auto repeated = read_repeated(options, *plan.scenario);
-  if (!repeated.ok()) return complain(kBadInput, repeated.error().message);
-  plan.repeated = std::move(repeated).value();
+  if (const int code = for_modules(plan, &RunModule::begin); code != kDone) return code;
   plan.world_log = plan.log.log();
   core::WorldOptions world_options;
-  world_options.seed = options.seed ? options.seed : plan.repeated.seed;
+  world_options.seed = options.seed ? options.seed : plan.seed;
   if (plan.resumed && !options.seed) world_options.seed = hal::count_of(plan.resumed->about, "seed");
   world_options.threads = options.threads;
   world_options.log = plan.world_log;
@@ -127,20 +154,15 @@ int make_world(RunPlan& plan) {
   print_problems(problems);
   plan.world = plan.made.get();
   if (plan.world == nullptr) return kBadInput;
-
-  ReplayRun& replay = plan.replay;
-  const bool other_scripts = options.replay.accept_changes || (replay.wanted() && replay.changed_from_start());
-  if (!other_scripts) run_recorded_scripts(*plan.world, plan.repeated);
-  if (replay.wanted() || tells_files(options, *plan.scenario)) plan.inputs = input_files(*plan.scenario, plan.loader);
+  if (plan.replays() || tells_files(options, *plan.scenario)) plan.inputs = input_files(*plan.scenario, plan.loader);
   plan.steps = steps_of(options.steps, options.seconds, *plan.scenario);
   if (plan.resumed) {
     if (const int code = told(check_resumed(plan)); code != kDone) return code;
   }
-  if (!replay.wanted()) return kDone;
-  hal::Status joined = replay.check_files(plan.inputs);
-  if (joined.ok()) joined = replay.join(*plan.world, plan.world_log);
-  if (joined.ok()) plan.steps = replay.steps();
-  return told(joined);
+  if (plan.side != nullptr) {
+    if (const int code = plan.side->join(); code != kDone) return code;
+  }
+  return for_modules(plan, &RunModule::prepare);
 }
 
 /// What a record says at its start, with the scripts of controllers.
@@ -155,19 +177,33 @@ hal::Json start_of(core::World& world, const InputFiles& inputs) {
 }
 
 int open_all_outputs(RunPlan& plan) {
-  auto opened = open_outputs(
-      plan.options, *plan.scenario, *plan.world, plan.loader.catalog(),
-      [&plan] { return start_of(*plan.world, plan.inputs); }, plan.steps);
+  auto opened =
+      open_outputs(plan.options, *plan.scenario, *plan.world, [&plan] { return start_of(*plan.world, plan.inputs); });
   if (!opened.ok()) return complain(kBadInput, opened.error().message);
-  plan.outputs = std::move(opened).value();
+  RunOutputs& outputs = opened.value();
+  outputs.at_the_end = std::move(plan.outputs.at_the_end);
+  plan.outputs = std::move(outputs);
   core::Problems problems;
   plan.outputs.observers = Observers::make(*plan.scenario, plan.loader.catalog(), *plan.world, problems);
   print_problems(problems);
-  if (core::has_errors(problems)) return kBadInput;
-  return told(Watch::check(plan.options.watch, plan.world->space()));
+  return core::has_errors(problems) ? kBadInput : kDone;
 }
 
 }  // namespace
+
+const RunModule* module_of(const RunPlan& plan, std::string_view name) noexcept {
+  const auto found = std::ranges::find(plan.modules, name, &RunModule::name);
+  return found == plan.modules.end() ? nullptr : *found;
+}
+
+int need_for_run(RunPlan& plan, std::string_view name) {
+  if (module_of(plan, name) != nullptr) return kDone;
+  if (const hal::Status loaded = need_module(plan.loader, name); !loaded.ok())
+    return complain(kBadInput, loaded.error().message);
+  const auto* const module = plan.loader.catalog().find<RunModule>(name);
+  if (module != nullptr) plan.modules.push_back(module);
+  return kDone;
+}
 
 int prepare_run(RunPlan& plan) {
   if (const int code = read_experiment(plan); code != kDone) return code;
@@ -177,7 +213,7 @@ int prepare_run(RunPlan& plan) {
   if (const int code = told(plan.log.open(plan.options.log)); code != kDone) return code;
   if (const int code = make_world(plan); code != kDone) return code;
   if (const int code = open_all_outputs(plan); code != kDone) return code;
-  plan.result.emplace(RunResult{*plan.world, plan.inputs, {}, plan.world->space().robot_count(), {}, nullptr});
+  plan.result.emplace(RunResult{*plan.world, plan.inputs, {}, plan.world->space().robot_count(), {}});
   plan.result->figures.threads = plan.world->threads();
   return kDone;
 }

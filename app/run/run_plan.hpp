@@ -4,6 +4,8 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "app/experiment/plugins.hpp"
 #include "app/outputs/run_log.hpp"
@@ -11,21 +13,24 @@
 #include "app/outputs/run_report.hpp"
 #include "app/process/measure.hpp"
 #include "app/process/watchdog.hpp"
-#include "app/replay/replay_run.hpp"
-#include "app/robots/command_log.hpp"
-#include "app/robots/desks.hpp"
-#include "app/robots/guarded_robots.hpp"
-#include "app/robots/hub_faults.hpp"
+#include "app/run/real_side.hpp"
+#include "app/run/run_module.hpp"
 #include "app/run_options.hpp"
-#include "core/live/live_run.hpp"
-#include "core/live/repeat.hpp"
 #include "core/record/checkpoint_file.hpp"
 #include "core/run/run.hpp"
 #include "core/sim/world.hpp"
-#include "core/view/drawing.hpp"
-#include "mixed_reality/session/mixed_session.hpp"
+#include "mixed_reality/time/monotonic.hpp"
+
+namespace tandem::core {
+struct Drawing;
+struct LiveState;
+class LiveRun;
+struct Repeatable;
+}  // namespace tandem::core
 
 namespace tandem::app {
+
+class CommandLog;
 
 /// Filled from top to bottom. The pointers to parts are null where there is no such part.
 struct RunPlan {
@@ -34,16 +39,16 @@ struct RunPlan {
   const RunOptions& options;
   RunLog& log;
   const double began_s = wall_seconds();
-  HubFaults hub_faults;
   hal::PluginLoader loader = make_loader();
   ExperimentReading reading{loader, options.plugins};
-  ReplayRun replay{options};
-  std::optional<GuardedRobots> guarded;
+  std::vector<const RunModule*> modules;  ///< that this run needs, in the order of their parts
+  std::unique_ptr<RealSide> side;         ///< null: all is simulated, and this is no replay
   std::optional<core::Scenario> scenario;
   const std::atomic<bool>* stop = nullptr;
   std::optional<Watchdog> watchdog;
-  core::Repeatable repeated;
-  std::optional<core::Checkpoint> resumed;
+  std::shared_ptr<core::Repeatable> repeated;  ///< what is done again; null: nothing
+  std::optional<std::uint64_t> seed;           ///< of the run that is done again
+  std::optional<core::Checkpoint> resumed;     ///< that it goes on from
   hal::Log world_log;
   std::unique_ptr<core::World> made;  ///< until real robots take it over
   core::World* world = nullptr;
@@ -52,21 +57,30 @@ struct RunPlan {
   RunOutputs outputs;
   mixed_reality::MonotonicTime clock;
 
-  mixed_reality::MixedSession* mixed = nullptr;
-  mixed_reality::LockstepRun* lockstep = nullptr;
+  std::vector<std::unique_ptr<core::RunPart>> opened;  ///< parts with open files, until they are added
+  RealRobots* real = nullptr;
+  bool peers = false;  ///< take part, in lock-step: nobody can go back
   core::LiveRun* live = nullptr;
-  std::optional<CommandLog> commands;
-  Desks* desks = nullptr;
-  std::function<core::Drawing()> drawing;  ///< the picture as it would be written now
+  std::shared_ptr<const CommandLog> commands;
+  std::function<core::Drawing()> drawing;  ///< the picture as it would be written now; empty: nobody draws
   std::function<void()> look;              ///< while real robots stand, because somebody paused the run
 
   std::optional<RunResult> result;  ///< filled by the parts that finish
+  std::string live_failure;         ///< what could not be done again
   bool as_before = true;            ///< as in the run that is repeated
-  bool guarded_to_the_end = true;
-  std::vector<std::string> left;  ///< robots whose stop nobody has confirmed
-  bool written = true;            ///< all that was asked for
+  bool written = true;              ///< all that was asked for
   int code_of_failure = kFailedRunning;
+
+  bool replays() const noexcept { return !options.replay.record.empty(); }
 };
+
+/// Whether people may hold this run, watch it, or have it repeated.
+bool is_held(const RunOptions& options) noexcept;
+
+/// The module of that name that this run has; null: none.
+const RunModule* module_of(const RunPlan& plan, std::string_view name) noexcept;
+/// Has the run have it; built and loaded where that is needed. @returns the program's code; what was wrong was told.
+int need_for_run(RunPlan& plan, std::string_view name);
 
 /// Reads the experiment, starts the guardian, makes the world, opens the outputs. @returns kDone, or what was wrong,
 /// which was told.

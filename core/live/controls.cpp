@@ -194,16 +194,6 @@ hal::Status change(World& world, const std::string& owner, std::string_view name
 
 }  // namespace
 
-std::vector<RobotId> robots_of(const World& world, std::size_t config) {
-  const SpaceStores& s = world.space().stores();
-  std::vector<RobotId> robots;
-  for (const std::uint32_t entity : s.living) {
-    const RobotEntity& e = s.robots[entity];
-    if (s.groups[s.blocks[e.block].group].config == config) robots.push_back({entity, e.generation});
-  }
-  return robots;
-}
-
 Json controls_json(World& world) {
   Json all = Json::array();
   for (std::size_t i = 0; i < world.hooks(); ++i) {

@@ -4,6 +4,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/run/scripts.hpp"
 #include "core/sim/world.hpp"
 #include "hal/json/json.hpp"
 #include "hal/result.hpp"
@@ -24,8 +25,5 @@ hal::Json controls_json(World& world, RobotId robot);
 /// its kind; beyond its range; what the owner throws.
 hal::Status set_control(World& world, const std::string& owner, std::string_view name, const hal::Json& value);
 hal::Status press_button(World& world, const std::string& owner, std::string_view name);
-
-/// The living robots of a configuration.
-std::vector<RobotId> robots_of(const World& world, std::size_t config);
 
 }  // namespace tandem::core

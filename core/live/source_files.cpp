@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "core/live/controls.hpp"
-#include "core/space/stores.hpp"
 #include "hal/element.hpp"
 #include "hal/source_files.hpp"
 
@@ -46,19 +45,6 @@ class Files final : public hal::SourceFilesTaker {
   bool asked_ = false;
 };
 
-/// As they lie in memory: robots that share something are next to each other.
-std::vector<RobotId> in_order(const World& world, std::size_t config) {
-  std::vector<RobotId> robots = robots_of(world, config);
-  const SpaceStores& s = world.space().stores();
-  std::sort(robots.begin(), robots.end(), [&](RobotId a, RobotId b) {
-    const auto place = [&](RobotId robot) {
-      return std::pair(s.robots[robot.index].block, s.robots[robot.index].slot);
-    };
-    return place(a) < place(b);
-  });
-  return robots;
-}
-
 /// Records hold nothing else.
 hal::Status check_text(const std::string& name, const Json& text) {
   if (!text.is_string()) return hal::Error{"reload: '" + name + "' is a text"};
@@ -67,30 +53,6 @@ hal::Status check_text(const std::string& name, const Json& text) {
 }
 
 }  // namespace
-
-std::vector<hal::SourceFile> source_files(World& world, RobotId robot) {
-  hal::SourceFilesTaker files;
-  (void)world.visit_controls(robot, files);
-  return files.files().value_or(std::vector<hal::SourceFile>());
-}
-
-Json source_files(World& world) {
-  Json all = Json::object();
-  const auto& configs = world.scenario().controllers;
-  for (std::size_t c = 0; c < configs.size(); ++c) {
-    const std::vector<RobotId> robots = in_order(world, c);
-    if (robots.empty() || source_files(world, robots.front()).empty()) continue;
-    Json& list = all[configs[c].id] = Json::array();
-    std::map<std::string, std::string> known;
-    for (const RobotId robot : robots) {  // each may have a script of its own
-      for (hal::SourceFile& file : source_files(world, robot)) {
-        if (known.emplace(file.name, file.path).second)
-          list.push_back({{"name", file.name}, {"path", file.path}, {"text", std::move(file.text)}});
-      }
-    }
-  }
-  return all;
-}
 
 hal::Result<Json> reload(World& world, Json& command) {
   const auto controller = command.find("controller");
@@ -110,7 +72,7 @@ hal::Result<Json> reload(World& world, Json& command) {
   for (const ControllerConfig& config : configs) ids.push_back(config.id);
   const auto config = std::find(ids.begin(), ids.end(), id);
   if (config == ids.end()) return hal::Error{"there is no controller '" + id + "'" + hal::did_you_mean(id, ids)};
-  const std::vector<RobotId> robots = in_order(world, static_cast<std::size_t>(config - ids.begin()));
+  const std::vector<RobotId> robots = robots_in_order(world, static_cast<std::size_t>(config - ids.begin()));
   if (robots.empty()) return hal::Error{"no robot has the controller '" + id + "' now"};
 
   std::size_t begun = 0;

@@ -1,20 +1,14 @@
-// Files that controllers run (hal/source_files.hpp): listed, and read anew while the run goes on.
+// Files that controllers run (core/run/scripts.hpp): read anew while the run goes on.
 #pragma once
 #include <vector>
 
 #include "core/live/live_run.hpp"
+#include "core/run/scripts.hpp"
 #include "core/sim/world.hpp"
 #include "hal/json/json.hpp"
 #include "hal/result.hpp"
-#include "hal/source_files.hpp"
 
 namespace tandem::core {
-
-/// Those that a robot's controller runs now; empty: none.
-std::vector<hal::SourceFile> source_files(World& world, RobotId robot);
-
-/// {"<id of a configuration>": [{"name", "path", "text"}, …]}, of configurations whose robots run files now.
-hal::Json source_files(World& world);
 
 /// Has the robots of a configuration begin anew with other files; their poses, and all else, stay:
 ///

@@ -310,4 +310,34 @@ std::uint64_t sketch_mark(const Sketch& sketch) noexcept {
   return mark.mark();
 }
 
+hal::Json areas_json(const SafetyConfig& safety) {
+  hal::Json all = hal::Json::array();
+  for (const auto& [kind, areas] : {std::pair{"fence", &safety.fences}, std::pair{"keep_out", &safety.keep_outs},
+                                    std::pair{"zone", &safety.zones}}) {
+    for (const SafetyArea& area : *areas) {
+      hal::Json json = {
+          {"kind", kind}, {"id", area.id}, {"from", area.from_m}, {"to", area.to_m}, {"corners", hal::Json::array()}};
+      for (const Point2& p : area.corners) json["corners"].push_back({p[0], p[1]});
+      if (area.max_speed_m_s > 0.0) json["max_speed"] = area.max_speed_m_s;
+      all.push_back(std::move(json));
+    }
+  }
+  return all;
+}
+
+SafetyConfig areas_of_json(const hal::Json& areas) {
+  SafetyConfig safety;
+  if (!areas.is_array()) return safety;
+  for (const hal::Json& a : areas) {
+    SafetyArea area{
+        hal::text_of(a, "id"), {}, hal::number_of(a, "from"), hal::number_of(a, "to"), hal::number_of(a, "max_speed")};
+    for (const hal::Json& corner : hal::list_of(a, "corners"))
+      area.corners.push_back({hal::item_of(corner, 0), hal::item_of(corner, 1)});
+    const std::string kind = hal::text_of(a, "kind");
+    auto& list = kind == "fence" ? safety.fences : kind == "keep_out" ? safety.keep_outs : safety.zones;
+    if (area.corners.size() > 2) list.push_back(std::move(area));
+  }
+  return safety;
+}
+
 }  // namespace tandem::core

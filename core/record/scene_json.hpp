@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "core/scenario/scenario.hpp"
 #include "core/space/sketch.hpp"
 #include "core/space/space.hpp"
 #include "core/space/stores.hpp"
@@ -57,5 +58,11 @@ hal::Json sketch_json(const Sketch& sketch);
 Sketch sketch_of_json(const hal::Json& json);
 /// Differs when the drawing does.
 std::uint64_t sketch_mark(const Sketch& sketch) noexcept;
+
+/// Areas as records and the view protocol have them: [{`kind` ("fence", "keep_out", "zone"), `id`, `corners` [[x, y]],
+/// `from`, `to`, `max_speed`}].
+hal::Json areas_json(const SafetyConfig& safety);
+/// The inverse: what is no area is left out.
+SafetyConfig areas_of_json(const hal::Json& areas);
 
 }  // namespace tandem::core

@@ -9,10 +9,8 @@
 
 namespace tandem::core {
 
-/// Areas as records and the view protocol have them: [{`kind` ("fence", "keep_out", "zone"), `id`, `corners` [[x, y]],
-/// `from`, `to`, `max_speed`}]. What is none is left out.
-std::vector<Drawing::Area> areas_of_json(const hal::Json& areas);
-hal::Json to_json(const std::vector<Drawing::Area>& areas);
+/// The areas of an experiment.
+std::vector<Drawing::Area> areas_of(const SafetyConfig& safety);
 
 /// What the run would have drawn, but for what is wrong with real robots. Refers to the record's space for the floor.
 /// Of `look`, whether ids are asked for counts. `trails`: null: none

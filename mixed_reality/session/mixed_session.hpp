@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "bridges/tracker_type.hpp"
+#include "core/run/roll_call.hpp"
 #include "core/sim/external.hpp"
 #include "core/sim/world.hpp"
 #include "hal/duration_histogram.hpp"
@@ -19,7 +20,6 @@
 #include "mixed_reality/barrier/barrier_filter.hpp"
 #include "mixed_reality/session/report.hpp"
 #include "mixed_reality/session/rest_watch.hpp"
-#include "mixed_reality/session/roll_call.hpp"
 #include "mixed_reality/settings/bridge_request.hpp"
 #include "mixed_reality/time/monotonic.hpp"
 #include "mixed_reality/time/pacer.hpp"
@@ -148,7 +148,7 @@ class MixedSession final : private core::ExternalRobots {
   /// As of the last tick.
   std::vector<RealRobotStatus> status() const;
   /// Who drives, stands, waits, cannot be reached: as of now.
-  std::vector<RollRow> roll_call() const;
+  std::vector<core::RollRow> roll_call() const;
   std::vector<TrackerStatus> trackers() const { return trackers_.status(now_.monotonic_ns); }
 
   /// All that the real robots did to the world in the last tick, for a record; also of those that are left out.

@@ -1,5 +1,5 @@
 // Faults of the hub itself: how they are written, and that each happens once, when it is due.
-#include "app/robots/hub_faults.hpp"
+#include "app/real/hub_faults.hpp"
 
 #include <csignal>
 #include <gmock/gmock.h>

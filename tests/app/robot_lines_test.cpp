@@ -8,9 +8,9 @@
 namespace tandem::app {
 namespace {
 
+using core::Presence;
+using core::RollRow;
 using hal::Severity;
-using mixed_reality::Presence;
-using mixed_reality::RollRow;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;

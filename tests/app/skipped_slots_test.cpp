@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 #include <map>
 
-#include "app/robots/real_robots.hpp"
+#include "app/real/real_robots.hpp"
 #include "core/record/record.hpp"
 #include "core/record/record_reader.hpp"
 #include "mixed_reality/session/mixed_session.hpp"

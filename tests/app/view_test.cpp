@@ -9,7 +9,7 @@
 #include "hal/json/json.hpp"
 #include "tests/checkout.hpp"
 #include "tests/scenarios/process.hpp"
-#include "window/client.hpp"
+#include "window/wire/client.hpp"
 
 namespace tandem::app {
 namespace {

@@ -2,7 +2,7 @@
 #include <gmock/gmock.h>
 #include <regex>
 
-#include "app/view/watch_page.hpp"
+#include "app/live/watch_page.hpp"
 #include "tests/app/pseudo_terminal.hpp"
 
 namespace tandem {

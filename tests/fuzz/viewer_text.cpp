@@ -2,7 +2,7 @@
 //
 // The promises: no crash, no undefined behaviour; what is taken for a command has a name and is not nested deeply; a
 // token and a host are accepted only when they are the right ones.
-#include "window/viewer_text.hpp"
+#include "window/wire/viewer_text.hpp"
 
 #include <algorithm>
 #include <cstddef>

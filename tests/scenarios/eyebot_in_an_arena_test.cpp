@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "app/catalog.hpp"
-#include "app/robots/simulated_body.hpp"
+#include "app/real/simulated_body.hpp"
 #include "bridges/eyebot_emulator/body.hpp"
 #include "bridges/eyebot_emulator/eyebot.hpp"
 #include "tests/bridges/eyebot_emulator/hand_written.hpp"

@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 
 #include "app/catalog.hpp"
-#include "app/robots/simulated_body.hpp"
+#include "app/real/simulated_body.hpp"
 #include "bridges/emulation/emulator_type.hpp"
 #include "core/config/kinds.hpp"
 #include "core/config/reader.hpp"

@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 #include <optional>
 
-#include "app/robots/bridged_controller.hpp"
-#include "app/robots/simulated_body.hpp"
+#include "app/real/bridged_controller.hpp"
+#include "app/real/simulated_body.hpp"
 #include "bridges/aseba/can_messages.hpp"
 #include "bridges/footbot/driver.hpp"
 #include "bridges/footbot/map_file.hpp"

@@ -3,9 +3,9 @@
 #include <gtest/gtest.h>
 
 #include "app/catalog.hpp"
-#include "app/robots/bridged_controller.hpp"
-#include "app/robots/simulated_body.hpp"
-#include "app/robots/wired_peer.hpp"
+#include "app/real/bridged_controller.hpp"
+#include "app/real/simulated_body.hpp"
+#include "app/real/wired_peer.hpp"
 #include "bridges/wired/wired_line.hpp"
 #include "hal/device/ring_sensors.hpp"
 #include "hal/device/wheels.hpp"

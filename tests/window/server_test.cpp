@@ -8,8 +8,8 @@
 #include <unistd.h>
 
 #include "tests/scenarios/process.hpp"
-#include "window/client.hpp"
 #include "window/window.hpp"
+#include "window/wire/client.hpp"
 
 namespace tandem::window {
 namespace {

@@ -1,4 +1,4 @@
-#include "window/viewer_text.hpp"
+#include "window/wire/viewer_text.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,0 +1,23 @@
+#include <array>
+
+#include "app/lab/register.hpp"
+#include "app/linked/linked.hpp"
+#include "app/live/register.hpp"
+#include "app/pictures/register.hpp"
+#include "app/real/register.hpp"
+#include "app/study/register.hpp"
+#include "app/window/register.hpp"
+
+namespace tandem::app {
+
+std::span<const LinkedModule> linked_modules() noexcept {
+  static constexpr std::array<LinkedModule, 6> kAll = {{{"live", &register_live},
+                                                        {"pictures", &register_pictures},
+                                                        {"real", &register_real},
+                                                        {"window", &register_window},
+                                                        {"study", &register_study},
+                                                        {"lab", &register_lab}}};
+  return kAll;
+}
+
+}  // namespace tandem::app

@@ -1,0 +1,9 @@
+#include "app/linked/linked.hpp"
+
+namespace tandem::app {
+
+std::span<const LinkedModule> linked_modules() noexcept {
+  return {};
+}
+
+}  // namespace tandem::app

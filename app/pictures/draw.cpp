@@ -1,0 +1,155 @@
+#include <algorithm>
+#include <csignal>
+#include <fmt/format.h>
+#include <optional>
+
+#include "app/command/command.hpp"
+#include "app/command/shared_options.hpp"
+#include "app/module/module_table.hpp"
+#include "app/outputs/report.hpp"
+#include "app/pictures/pictures.hpp"
+#include "app/process/signals.hpp"
+#include "app/process/terminal.hpp"
+#include "core/view/picture.hpp"
+#include "core/view/record_drawing.hpp"
+#include "hal/output_file.hpp"
+
+namespace tandem::app {
+namespace {
+
+struct DrawOptions {
+  std::string record;
+  PictureRequest pictures;
+  std::optional<std::int64_t> at;  ///< number of ticks; empty: the last that the record holds
+};
+
+struct PictureOptions : DrawOptions {
+  void describe(hal::CommandLine& line) {
+    line.word("record", record, "The record; that of a run that was killed is FILE.part").required().file();
+    line.option("--at", at, "After so many ticks; default: the last that the record holds").not_negative();
+    line.option("-o,--picture", pictures.picture, "FILE.svg, .png or .pdf").file();
+    line.option("--povray", pictures.povray, "A scene in perspective: FILE.pov, or FILE.png to render that, too")
+        .file();
+    line.choose({"output", "Where to", 1, 2, {"-o,--picture", "--povray"}});
+    describe_looks(line, pictures);
+  }
+};
+
+struct FilmOptions : DrawOptions {
+  void describe(hal::CommandLine& line) {
+    line.word("record", record, "The record; that of a run that was killed is FILE.part").required().file();
+    line.option("-o,--film", pictures.film, "FILE.mp4 or .mkv (ffmpeg), or pictures: FOLDER/ or FOLDER/%06d.png")
+        .required()
+        .file();
+    describe_film(line, "--film", pictures);
+    describe_looks(line, pictures);
+  }
+};
+
+/// Opens a file that is asked for; none where not.
+hal::Result<std::optional<hal::OutputFile>> open_file(const std::string& path, std::string_view what) {
+  if (path.empty()) return std::optional<hal::OutputFile>();
+  auto file = hal::OutputFile::open(path, what);
+  if (!file.ok()) return file.error();
+  return std::optional<hal::OutputFile>(std::move(file).value());
+}
+
+void tell_damage(const DrawOptions& options, const core::RecordSource& record) {
+  for (const std::string& line : record.moments().damage()) say("record '" + options.record + "': " + line);
+}
+
+/// Goes to the tick that was asked for, and keeps trails on the way. Error: the record does not hold it; those beside
+/// it.
+hal::Status go_to(const DrawOptions& options, core::RecordSource& record, core::Trails& trails) {
+  trails.note(record.ticks_done(), record.space());
+  std::optional<std::int64_t> before;
+  while (!options.at || record.ticks_done() != *options.at) {
+    const std::int64_t here = record.ticks_done();
+    const bool passed = options.at && here > *options.at;
+    if (!passed && record.next()) {
+      before = here;
+      if (trails.wants(record.ticks_done())) trails.note(record.ticks_done(), record.space());
+      continue;
+    }
+    if (!options.at) return {};
+    std::string near = fmt::format("{}", here);
+    if (passed && before) near = fmt::format("{} and {}", *before, here);
+    return hal::Error{fmt::format("record '{}' does not hold what was after {} ticks; near that it has {}",
+                                  options.record, *options.at, near)};
+  }
+  return {};
+}
+
+int draw_picture(const DrawOptions& options) {
+  const PictureRequest& request = options.pictures;
+  if (const hal::Status can = check_pictures(request); !can.ok()) return complain(kBadInput, can.error().message);
+  const std::string scene = request.povray.empty() ? std::string() : scene_of(request.povray);
+  const hal::Status apart = check_apart({{"picture", request.picture},
+                                         {"scene", scene},
+                                         {"picture by POV-Ray", request.povray == scene ? "" : request.povray}},
+                                        {{"record", options.record}});
+  if (!apart.ok()) return complain(kBadInput, apart.error().message);
+  auto opened = core::RecordSource::open(options.record);
+  if (!opened.ok()) return complain(kBadInput, opened.error().message);
+  core::RecordSource& record = opened.value();
+  const auto look = look_of(request, core::arena_of(record.space()));
+  if (!look.ok()) return complain(kBadInput, look.error().message);
+  core::Trails trails(look.value().trails_s, record.ticks_per_second());
+  if (const hal::Status there = go_to(options, record, trails); !there.ok())
+    return complain(kBadInput, there.error().message);
+  auto picture = open_file(request.picture, "picture");
+  if (!picture.ok()) return complain(kBadInput, picture.error().message);
+  auto scene_file = open_file(scene, "scene");
+  if (!scene_file.ok()) return complain(kBadInput, scene_file.error().message);
+
+  const core::Drawing drawing = core::drawing_of(record, look.value(), &trails);
+  tell_damage(options, record);
+  hal::Status done;
+  if (picture.value()) done = core::write_picture(drawing, *picture.value(), look.value());
+  if (done.ok() && scene_file.value()) done = write_scene(drawing, look.value(), *scene_file.value(), request.povray);
+  return done.ok() ? kDone : complain(kFailedRunning, done.error().message);
+}
+
+int draw_film(const DrawOptions& options) {
+  std::signal(SIGPIPE, SIG_IGN);  // the encoder may end before us
+  const std::atomic<bool>& stop = catch_signals();
+  if (const hal::Status can = check_pictures(options.pictures); !can.ok())
+    return complain(kBadInput, can.error().message);
+  const hal::Status apart = check_apart({{"film", options.pictures.film}}, {{"record", options.record}});
+  if (!apart.ok()) return complain(kBadInput, apart.error().message);
+
+  // Once through the record, for its length; then the frames.
+  auto first = core::RecordSource::open(options.record);
+  if (!first.ok()) return complain(kBadInput, first.error().message);
+  std::int64_t frames = 1, ticks = first.value().ticks_done();
+  for (; !stop.load() && first.value().next(); ++frames) ticks = std::max(ticks, first.value().ticks_done());
+  PictureRequest request = options.pictures;
+  request.film_every = std::max(
+      request.film_every, (ticks + frames / 2) / std::max<std::int64_t>(1, frames - 1));  // of a record of some ticks
+  auto opened = core::RecordSource::open(options.record);
+  if (!opened.ok()) return complain(kBadInput, opened.error().message);
+  core::RecordSource& record = opened.value();
+  const auto look = look_of(request, core::arena_of(record.space()));
+  if (!look.ok()) return complain(kBadInput, look.error().message);
+  auto made = Pictures::open(request, look.value(), record.ticks_per_second(), ticks, stop);
+  if (!made.ok()) return complain(kBadInput, made.error().message);
+  Pictures& pictures = *made.value();
+  do {
+    if (pictures.trails().wants(record.ticks_done())) pictures.note(record.ticks_done(), record.space());
+    if (pictures.wants(record.ticks_done()))
+      pictures.draw(record.ticks_done(), core::drawing_of(record, look.value(), &pictures.trails()));
+  } while (!stop.load() && record.next());
+  tell_damage(options, record);
+  const bool good = pictures.close();
+  if (stop.load()) return interrupted_code();
+  return good ? kDone : kFailedRunning;
+}
+
+}  // namespace
+
+constinit const hal::CommandType picture_command =
+    hal::command_type<PictureOptions, draw_picture>("picture", module_summary("picture"));
+constinit const hal::CommandType film_command =
+    hal::command_type<FilmOptions, draw_film>("film", module_summary("film"));
+
+}  // namespace tandem::app
