@@ -1,10 +1,17 @@
-# The modules of the program (app/module/module_table.hpp says what each needs, as here).
+# The modules of the program (app/module/module_table.hpp says what each needs, as here); `tandem_modules` are all of them, and
+# all controllers and hooks.
 if(TANDEM_BOARD OR TANDEM_SANITIZE)
   return() # they are linked in
 endif()
-tandem_module(live)
-tandem_module(pictures)
-tandem_module(real NEEDS live)
-tandem_module(window NEEDS live pictures)
-tandem_module(study)
-tandem_module(lab NEEDS live pictures real window study)
+set(of_window live pictures)
+set(of_real live)
+set(of_lab live pictures real window study)
+foreach(module live pictures real window study lab)
+  tandem_wants(${module})
+  if(wanted)
+    tandem_module(${module} NEEDS ${of_${module}})
+  endif()
+endforeach()
+get_property(modules GLOBAL PROPERTY TANDEM_MODULES)
+get_property(plugins GLOBAL PROPERTY TANDEM_PLUGINS)
+add_custom_target(tandem_modules DEPENDS tandem ${modules} ${plugins})

@@ -1,4 +1,4 @@
-# Flags that every target has. -ffp-contract=off and no -march: the same bits on every machine.
+# Flags that every target has, and which parts of the program are configured. -ffp-contract=off and no -march: the same bits on every machine.
 set(CMAKE_CXX_STANDARD 20)
 set(CMAKE_CXX_STANDARD_REQUIRED ON)
 set(CMAKE_CXX_EXTENSIONS OFF)
@@ -10,6 +10,7 @@ set(CMAKE_CXX_FLAGS_RELWITHDEBINFO "-O1 -g1") # the sanitizer presets: quick to 
 option(TANDEM_WERROR "Warnings are errors (for continuous integration)" OFF)
 option(TANDEM_BOARD "Only what a robot's board needs: controllers, bridges, `tandem robot`" OFF)
 option(TANDEM_FUZZ "Instrument for libFuzzer and build its programs (needs clang)" OFF)
+set(TANDEM_PARTS all CACHE STRING "What is configured besides runs of simulated robots: all, or modules, python, hdf5, lua_controller")
 set(TANDEM_SANITIZE "" CACHE STRING "Sanitizers: address,undefined or thread")
 
 # A program is for its whole architecture, and its arithmetic is IEEE's: flags of one's own that break this are refused.
@@ -93,3 +94,35 @@ if(TANDEM_CCACHE)
       CCACHE_SLOPPINESS=pch_defines,time_macros CCACHE_PCH_EXTSUM=1 ${TANDEM_CCACHE})
   endforeach()
 endif()
+
+# Modules need others (app/module/module_table.hpp says so, too).
+set(tandem_parts ${TANDEM_PARTS})
+if("lab" IN_LIST tandem_parts)
+  list(APPEND tandem_parts real window study)
+endif()
+if("window" IN_LIST tandem_parts)
+  list(APPEND tandem_parts pictures)
+endif()
+if("window" IN_LIST tandem_parts OR "real" IN_LIST tandem_parts)
+  list(APPEND tandem_parts live)
+endif()
+if(TANDEM_BOARD OR TANDEM_SANITIZE)
+  set(tandem_parts all)
+endif()
+# tandem_wants(<part>…): sets `wanted`: whether one of these parts is configured.
+function(tandem_wants)
+  set(wanted OFF PARENT_SCOPE)
+  foreach(part all ${ARGN})
+    if(part IN_LIST tandem_parts)
+      set(wanted ON PARENT_SCOPE)
+    endif()
+  endforeach()
+endfunction()
+# tandem_add_wanted(FOLDERS … FOR <part>…): these sub-folders, where one of the parts is configured.
+macro(tandem_add_wanted)
+  cmake_parse_arguments(tandem_add "" "" "FOLDERS;FOR" ${ARGN})
+  tandem_wants(${tandem_add_FOR})
+  if(wanted)
+    tandem_add_folders(${tandem_add_FOLDERS})
+  endif()
+endmacro()
