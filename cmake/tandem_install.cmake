@@ -1,5 +1,5 @@
 # `cmake --install`, in components: program; dev, what plug-ins and programs of others are built with; python.
-#   <prefix>/bin/tandem          lib/tandem: plug-ins; lib/tandem/{render,hdf5}      share/tandem: configs, studies
+#   <prefix>/bin/tandem          lib/tandem: plug-ins; lib/tandem/{modules,render,hdf5}      share/tandem: configs, studies
 #   <prefix>/lib/libtandem.so    worlds for programs of one's own         lib/python3/dist-packages/tandem: import tandem
 #   <prefix>/include/tandem/{hal,core,bridges,library}    lib/tandem/libtandem_hal.a    lib/cmake/Tandem: find_package(Tandem)
 set(CMAKE_INSTALL_DEFAULT_COMPONENT_NAME program)
@@ -31,6 +31,10 @@ foreach(plugin ${plugins})
   endif()
   install(TARGETS ${plugin} LIBRARY DESTINATION ${destination} COMPONENT program)
 endforeach()
+get_property(modules GLOBAL PROPERTY TANDEM_MODULES)
+if(modules)
+  install(TARGETS ${modules} LIBRARY DESTINATION lib/tandem/modules COMPONENT program)
+endif()
 foreach(folder hal core bridges library)
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/${folder} DESTINATION include/tandem COMPONENT dev FILES_MATCHING PATTERN "*.hpp")
 endforeach()

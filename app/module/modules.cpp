@@ -69,8 +69,8 @@ bool make_plugin(const std::string& library) {
   return have_built("plugin", name, "building '" + name + "', once");
 }
 
-/// The loaded library's table. Error: it does not fit this program.
-hal::Result<RegisterAll> open_module(const Module& module, const std::filesystem::path& file) {
+/// The table of the loaded library. Error: it does not fit this program.
+hal::Result<const hal::PluginInfo*> open_module(const Module& module, const std::filesystem::path& file) {
   const std::string name = "module '" + std::string(module.name) + "' (" + file.string() + ")";
   const std::string rebuild = "\n  Build it again: ./tandem build module " + std::string(module.name);
   const auto note = hal::read_plugin_note(file);
@@ -89,7 +89,7 @@ hal::Result<RegisterAll> open_module(const Module& module, const std::filesystem
   if (library == nullptr) return hal::Error{name + " does not load: " + dlerror() + rebuild};
   const auto* const info = static_cast<const hal::PluginInfo*>(dlsym(library, "tandem_plugin"));
   if (info == nullptr || info->register_all == nullptr) return hal::Error{name + " registers nothing" + rebuild};
-  return info->register_all;
+  return info;
 }
 
 bool begins_with(std::string_view command, std::string_view word) {
@@ -141,7 +141,7 @@ hal::Status load_module(std::string_view name) {
   }
   const auto opened = open_module(*module, file);
   if (!opened.ok()) return opened.error();
-  loaded().push_back({module, opened.value()});
+  loaded().push_back({module, opened.value()->register_all});
   return {};
 }
 

@@ -52,7 +52,7 @@ struct NodeStatus {
   bool needed = false;            ///< without it the robot does not drive
   std::string trouble;            ///< why it cannot be used; "" when it can
   std::uint64_t times_wired = 0;  ///< more than once: it was lost, restarted, or another one took its place
-  NodeStatistics statistics;
+  NodeStatistics statistics = {};
 };
 
 /// Ports of a robot of nodes, on two wheels, whose odometry follows from the wheels' encoders.

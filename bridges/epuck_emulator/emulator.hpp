@@ -27,8 +27,8 @@ struct Options : WheeledOptions<EmulatedBody> {
     robot.selector = static_cast<std::uint8_t>(selector);
   }
   std::string shown(const std::string& path) const {
-    const bool link = path.starts_with("tcp:") || path.starts_with("epuck-tcp:");
-    return "e-puck's firmware on " + path + ": connect with --link " + (link ? path : "serial:" + path + "@115200");
+    const bool given = path.starts_with("tcp:") || path.starts_with("epuck-tcp:");
+    return "e-puck's firmware on " + path + ": connect with --link " + (given ? path : "serial:" + path + "@115200");
   }
 };
 struct Epuck2Options : Options {

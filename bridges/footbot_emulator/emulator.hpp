@@ -21,8 +21,8 @@ struct Options : WheeledOptions<EmulatedBody> {
     WheeledParams::describe(v);
   }
   std::string shown(const std::string& path) const {
-    const bool link = path.starts_with("tcp:") || path.starts_with("can:");
-    return "foot-bot's modules on " + path + ": connect with --link " + (link ? path : "slcan:" + path + "@1000000");
+    const bool given = path.starts_with("tcp:") || path.starts_with("can:");
+    return "foot-bot's modules on " + path + ": connect with --link " + (given ? path : "slcan:" + path + "@1000000");
   }
 };
 

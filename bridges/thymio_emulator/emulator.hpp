@@ -23,8 +23,8 @@ struct Options : WheeledOptions<EmulatedBody> {
     WheeledParams::describe(v);
   }
   std::string shown(const std::string& path) const {
-    const std::string link = path.starts_with("tcp:") ? path : "serial:" + path + "@" + std::to_string(kBaud);
-    return "Thymio on " + path + ": connect with --link " + link;
+    const std::string written = path.starts_with("tcp:") ? path : "serial:" + path + "@" + std::to_string(kBaud);
+    return "Thymio on " + path + ": connect with --link " + written;
   }
 };
 
