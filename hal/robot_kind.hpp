@@ -20,6 +20,7 @@
 #include <variant>
 #include <vector>
 
+#include "hal/appearance.hpp"
 #include "hal/catalog.hpp"
 #include "hal/params.hpp"
 #include "hal/surface.hpp"
@@ -97,8 +98,9 @@ constexpr std::uint64_t part_layout() noexcept {
 
 /// Part of a kind: facts that a device needs of the robots that carry it. A part owns its data; it is found by name and
 /// layout, never by the language's own type information, which two libraries need not share. It may have `std::string
-/// flaw() const`: what makes it unusable, as in "has no mounts; give it at least one"; empty: nothing. And `void
-/// attributes(ParamVisitor&)` : what of it the element of a robot may say otherwise for that robot alone.
+/// flaw() const`: what makes it unusable, as in "has no mounts; give it at least one"; empty: nothing. `void
+/// attributes(ParamVisitor&)`: what of it the element of a robot may say otherwise for that robot alone. And `void
+/// appear(const RobotKind&, Appearance&) const`: what it looks like (hal/appearance.hpp).
 template <class P>
 concept RobotPart = Described<P> && requires(const P& part) {
   { P::kName } -> std::convertible_to<std::string_view>;
@@ -114,6 +116,7 @@ struct PartTable {
   void (*describe)(void* part, ParamVisitor& visitor);
   void (*attributes)(void* part, ParamVisitor& visitor);
   std::string (*flaw)(const void* part);
+  void (*appear)(const void* part, const RobotKind& kind, Appearance& look);
   void* (*copy)(const void* part);
   void (*destroy)(void* part);
 };
@@ -136,6 +139,7 @@ class AnyPart {
   std::string_view name() const noexcept { return table_->name; }
   std::string_view doc() const noexcept { return table_->doc; }
   std::string flaw() const { return table_->flaw(data_.get()); }
+  void appear(const RobotKind& kind, Appearance& look) const { table_->appear(data_.get(), kind, look); }
   void describe(ParamVisitor& v);
   void attributes(ParamVisitor& v);
   /// Null when the part has another name or form.
@@ -159,6 +163,9 @@ class AnyPart {
         else
           return std::string();
       },
+      [](const void* part, const RobotKind& kind, Appearance& look) {
+        if constexpr (requires(const P& p) { p.appear(kind, look); }) static_cast<const P*>(part)->appear(kind, look);
+      },
       [](const void* part) -> void* { return new P(*static_cast<const P*>(part)); },
       [](void* part) { delete static_cast<P*>(part); }};
 
@@ -170,7 +177,8 @@ class AnyPart {
 /// registered.
 struct PartType {
   static constexpr std::string_view kCategory = "part";
-  using Crosses = Layouts<AnyPart, detail::PartTable, ParamVisitor, ParamList, Mount, std::string>;
+  using Crosses = Layouts<AnyPart, detail::PartTable, ParamVisitor, ParamList, Mount, Appearance, Appearance::Joint,
+                          Appearance::Link, Appearance::Lamp, Driver, std::string>;
   std::string_view name;        ///< of the element in that of a kind
   std::string_view summary;     ///< for people: a line
   AnyPart (*make)() = nullptr;  ///< with the defaults of the class

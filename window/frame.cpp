@@ -21,11 +21,10 @@ void Frame::clear() noexcept {
   members.reset();
   for (std::vector<double>* axis : {&x_m, &y_m, &cos_h, &sin_h}) axis->clear();
   z_m.clear();
-  turret_rad.clear();
   q_WB.clear();
   leds.clear();
+  values.clear();
   halted.clear();
-  holding.clear();
   objects.clear();
   layers.clear();
 }

@@ -9,18 +9,18 @@
 
 #include "core/record/floor_image.hpp"
 #include "core/view/layers/segments.hpp"
-#include "hal/device/leds.hpp"
 #include "hal/json/json.hpp"
+#include "hal/rgb.hpp"
 #include "hal/time.hpp"
 
 namespace tandem::window {
 
 /// Whose rows the arrays of a frame are, in their order.
 struct FrameMembers {
-  std::uint32_t number = 0;              ///< no two have the same
-  hal::Json json;                        ///< the message "members" but for its type and number
-  std::vector<std::uint32_t> first_led;  ///< by member, into Frame::leds; one more at the end
-  std::vector<std::uint8_t> turrets;     ///< 1: has a turret; empty: nobody has
+  std::uint32_t number = 0;                ///< no two have the same
+  hal::Json json;                          ///< the message "members" but for its type and number
+  std::vector<std::uint32_t> first_led;    ///< by member, into Frame::leds; one more at the end
+  std::vector<std::uint32_t> first_value;  ///< the same into Frame::values
 
   std::size_t size() const noexcept { return first_led.empty() ? 0 : first_led.size() - 1; }
 };
@@ -53,13 +53,13 @@ struct Frame {
   std::shared_ptr<const FrameScene> scene;
   std::shared_ptr<const FrameMembers> members;
   std::vector<double> x_m, y_m, cos_h, sin_h;
-  std::vector<float> z_m;                      ///< of their bases above the ground
-  std::vector<float> turret_rad;               ///< on the body, counter-clockwise from forward
-  std::vector<std::array<float, 4>> q_WB;      ///< w, x, y, z, of members that lean
-  std::vector<hal::Rgb> leds;                  ///< by FrameMembers::first_led
-  std::vector<std::uint32_t> halted, holding;  ///< indices of members
-  std::vector<FrameObject> objects;            ///< the movable ones
-  std::vector<FrameLayer> layers;              ///< those that were drawn anew
+  std::vector<float> z_m;                  ///< of their bases above the ground
+  std::vector<std::array<float, 4>> q_WB;  ///< w, x, y, z, of members that lean
+  std::vector<hal::Rgb> leds;              ///< by FrameMembers::first_led
+  std::vector<float> values;               ///< by FrameMembers::first_value: what moves on them
+  std::vector<std::uint32_t> halted;       ///< indices of members
+  std::vector<FrameObject> objects;        ///< the movable ones
+  std::vector<FrameLayer> layers;          ///< those that were drawn anew
 
   /// Empty, with its memory kept.
   void clear() noexcept;

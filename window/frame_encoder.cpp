@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstring>
 #include <numbers>
-#include <tuple>
 #include <utility>
 
 namespace tandem::window {
@@ -50,6 +49,7 @@ std::uint8_t signed_part(double angle_rad) noexcept {
 /// Roll and pitch of an attitude (x forward, then y left, turning about z last).
 std::pair<std::uint8_t, std::uint8_t> lean(const std::array<float, 4>& q_WB) noexcept {
   const double w = q_WB[0], x = q_WB[1], y = q_WB[2], z = q_WB[3];
+  if (x == 0.0 && y == 0.0) return {0, 0};  // as nearly everybody is
   return {signed_part(std::atan2(2.0 * (w * x + y * z), 1.0 - 2.0 * (x * x + y * y))),
           signed_part(std::asin(std::clamp(2.0 * (w * y - z * x), -1.0, 1.0)))};
 }
@@ -76,17 +76,20 @@ Frame FrameEncoder::take(Frame&& frame) {
   ++number_;
   poses_ = {};
   leds_of_.clear();
+  values_of_.clear();
   objects_of_.clear();
   if (other_members) {
     members_ = {};
-    led_changed_.clear();
-    leds_.clear();
+    leds_.forget();
+    values_.forget();
   }
   if (other_scene) {
     scene_ = {};
     objects_.clear();
   }
-  note_leds();
+  const bool leds_shown = frame_.members != nullptr && frame_.members->size() <= kMostRobotsWithLeds;
+  leds_.note(frame_.leds.data(), leds_shown ? frame_.leds.size() : 0, number_);
+  values_.note(frame_.values.data(), frame_.values.size(), number_);
   note_objects();
   note_marks();
   for (FrameLayer& layer : frame_.layers) {
@@ -109,18 +112,6 @@ Frame FrameEncoder::take(Frame&& frame) {
   return std::move(frame);
 }
 
-void FrameEncoder::note_leds() {
-  const bool shown = frame_.members != nullptr && frame_.members->size() <= kMostRobotsWithLeds;
-  const std::size_t count = shown ? frame_.leds.size() : 0;
-  led_changed_.resize(count, 0);
-  leds_.resize(count, hal::kBlack);
-  for (std::size_t i = 0; i < count; ++i) {
-    if (leds_[i] == frame_.leds[i]) continue;
-    leds_[i] = frame_.leds[i];
-    led_changed_[i] = number_;
-  }
-}
-
 void FrameEncoder::note_objects() {
   for (const FrameObject& object : frame_.objects) {
     auto& [known, changed] = objects_[object.number];
@@ -133,11 +124,10 @@ void FrameEncoder::note_objects() {
 }
 
 void FrameEncoder::note_marks() {
-  if (marks_.bytes != nullptr && halted_ == frame_.halted && holding_ == frame_.holding) return;
+  if (marks_.bytes != nullptr && halted_ == frame_.halted) return;
   halted_ = frame_.halted;
-  holding_ = frame_.holding;
   ++marks_version_;
-  marks_ = text_message({{"type", "marks"}, {"halted", halted_}, {"holding", holding_}});
+  marks_ = text_message({{"type", "marks"}, {"halted", halted_}});
 }
 
 std::string FrameEncoder::header(std::uint32_t type, std::uint32_t number, std::size_t count) const {
@@ -159,8 +149,6 @@ Message FrameEncoder::poses() const {
   bytes.resize(at + count * kRowBytes);
   char* out = bytes.data() + at;
   const std::uint32_t* const first_led = frame_.members != nullptr ? frame_.members->first_led.data() : nullptr;
-  const std::uint8_t* const turrets =
-      frame_.members != nullptr && !frame_.members->turrets.empty() ? frame_.members->turrets.data() : nullptr;
   for (std::size_t i = 0; i < count; ++i) {
     put(out, static_cast<float>(frame_.x_m[i]));
     put(out, static_cast<float>(frame_.y_m[i]));
@@ -175,35 +163,28 @@ Message FrameEncoder::poses() const {
     if (first_led != nullptr && first_led[i + 1] <= frame_.leds.size())
       color = mixed(frame_.leds.data() + first_led[i], frame_.leds.data() + first_led[i + 1]);
     put(out, color);
-    std::uint8_t a = 0, b = 0;
-    if (turrets != nullptr && turrets[i] != 0 && !frame_.turret_rad.empty()) {
-      const double turns = static_cast<double>(frame_.turret_rad[i]) / (2.0 * std::numbers::pi);
-      a = static_cast<std::uint8_t>(static_cast<std::int64_t>(std::floor(256.0 * turns + 0.5)));
-    } else if (!frame_.q_WB.empty()) {
-      std::tie(a, b) = lean(frame_.q_WB[i]);
-    }
-    put(out, a);
-    put(out, b);
+    const auto [roll, pitch] = frame_.q_WB.empty() ? std::pair<std::uint8_t, std::uint8_t>{} : lean(frame_.q_WB[i]);
+    put(out, roll);
+    put(out, pitch);
   }
   return {std::make_shared<const std::string>(std::move(bytes)), true};
 }
 
-Message FrameEncoder::leds_since(std::uint32_t frame) const {
-  const std::vector<std::uint32_t>& first = frame_.members->first_led;
-  std::string bytes = header(2, number_, 0);
+/// Entries: the member, and what `put(out, number, value)` writes of a value of its.
+template <class T, class Put>
+Message FrameEncoder::changes_since(std::uint32_t frame, std::uint32_t type, const std::vector<std::uint32_t>& first,
+                                    const Changing<T>& values, Put&& put_value) const {
+  std::string bytes = header(type, number_, 0);
   std::uint32_t count = 0;
-  for (std::uint32_t robot = 0; robot + 1 < first.size(); ++robot) {
-    for (std::uint32_t led = first[robot]; led < first[robot + 1] && led < leds_.size(); ++led) {
-      if (led_changed_[led] <= frame) continue;
+  for (std::uint32_t member = 0; member + 1 < first.size(); ++member) {
+    for (std::uint32_t i = first[member]; i < first[member + 1] && i < values.known.size(); ++i) {
+      if (values.changed[i] <= frame) continue;
       ++count;
-      char entry[8];
+      char entry[16];
       char* out = entry;
-      put(out, robot);
-      put(out, static_cast<std::uint8_t>(led - first[robot]));
-      put(out, leds_[led].r);
-      put(out, leds_[led].g);
-      put(out, leds_[led].b);
-      bytes.append(entry, sizeof entry);
+      put(out, member);
+      put_value(out, i - first[member], values.known[i]);
+      bytes.append(entry, out);
     }
   }
   if (count == 0) return {};
@@ -224,7 +205,7 @@ Message FrameEncoder::objects_since(std::uint32_t frame) const {
 
 void FrameEncoder::update(ViewerState& viewer, const std::vector<std::uint32_t>& layers, std::vector<Message>& out) {
   if (number_ == 0) return;
-  std::uint32_t leds_from = viewer.frame, objects_from = viewer.frame;
+  std::uint32_t of_members_from = viewer.frame, objects_from = viewer.frame;
   if (frame_.scene != nullptr && viewer.scene != frame_.scene->number) {
     if (scene_.bytes == nullptr) {
       Json scene = {{"type", "scene"}};
@@ -247,7 +228,7 @@ void FrameEncoder::update(ViewerState& viewer, const std::vector<std::uint32_t>&
     out.push_back(members_);
     viewer.members = frame_.members->number;
     viewer.marks = 0;
-    leds_from = 0;
+    of_members_from = 0;
   }
   if (viewer.marks != marks_version_) {
     out.push_back(marks_);
@@ -263,9 +244,25 @@ void FrameEncoder::update(ViewerState& viewer, const std::vector<std::uint32_t>&
       const Message& moved = shared(objects_of_, objects_from, [&] { return objects_since(objects_from); });
       if (moved.bytes != nullptr) out.push_back(moved);
     }
-    if (!leds_.empty()) {
-      const Message& lit = shared(leds_of_, leds_from, [&] { return leds_since(leds_from); });
+    if (!leds_.known.empty()) {
+      const Message& lit = shared(leds_of_, of_members_from, [&] {
+        return changes_since(of_members_from, 2, frame_.members->first_led, leds_,
+                             [](char*& to, std::uint32_t led, hal::Rgb color) {
+                               put(to, static_cast<std::uint8_t>(led));
+                               put(to, color);
+                             });
+      });
       if (lit.bytes != nullptr) out.push_back(lit);
+    }
+    if (!values_.known.empty()) {
+      const Message& moved = shared(values_of_, of_members_from, [&] {
+        return changes_since(of_members_from, 4, frame_.members->first_value, values_,
+                             [](char*& to, std::uint32_t number, float value) {
+                               put(to, number);
+                               put(to, value);
+                             });
+      });
+      if (moved.bytes != nullptr) out.push_back(moved);
     }
     if (poses_.bytes == nullptr) poses_ = poses();
     out.push_back(poses_);

@@ -24,8 +24,30 @@ struct ViewerState {
   std::map<std::uint32_t, std::uint64_t> layers;  ///< by index: which drawing
 };
 
-/// Used by one thread. LEDs and objects are sent as far as they changed since a viewer's last frame, so that a viewer
-/// may miss frames.
+/// Values of members, and which frame changed each.
+template <class T>
+struct Changing {
+  std::vector<T> known;
+  std::vector<std::uint32_t> changed;  ///< 0: never, it is as it was at first
+
+  /// As many as there are of them from now on, all unknown.
+  void forget() noexcept {
+    known.clear();
+    changed.clear();
+  }
+  void note(const T* now, std::size_t count, std::uint32_t frame) {
+    known.resize(count, T{});
+    changed.resize(count, 0);
+    for (std::size_t i = 0; i < count; ++i) {
+      if (known[i] == now[i]) continue;
+      known[i] = now[i];
+      changed[i] = frame;
+    }
+  }
+};
+
+/// Used by one thread. LEDs, what moves on robots, and objects are sent as far as they changed since a viewer's last
+/// frame, so that a viewer may miss frames.
 class FrameEncoder {
  public:
   /// LEDs one by one are shown of so many robots at most.
@@ -49,11 +71,12 @@ class FrameEncoder {
     std::uint64_t drawing = 0;
     Message lines, texts;
   };
-  void note_leds();
   void note_objects();
   void note_marks();
   Message poses() const;
-  Message leds_since(std::uint32_t frame) const;
+  template <class T, class Put>
+  Message changes_since(std::uint32_t frame, std::uint32_t type, const std::vector<std::uint32_t>& first,
+                        const Changing<T>& values, Put&& put) const;
   Message objects_since(std::uint32_t frame) const;
   std::string header(std::uint32_t type, std::uint32_t number, std::size_t count) const;
 
@@ -62,11 +85,11 @@ class FrameEncoder {
   Frame frame_;
   Message poses_, scene_, members_, marks_;
   std::uint64_t marks_version_ = 0;
-  std::vector<std::uint32_t> led_changed_;  // by LED: the frame that changed it; 0: dark from the beginning
-  std::vector<hal::Rgb> leds_;
-  std::vector<std::uint32_t> halted_, holding_;
+  Changing<hal::Rgb> leds_;
+  Changing<float> values_;
+  std::vector<std::uint32_t> halted_;
   std::map<std::uint32_t, std::pair<FrameObject, std::uint32_t>> objects_;  // by number, and the frame that moved it
-  std::map<std::uint32_t, Message> leds_of_, objects_of_;                   // by the viewer's last frame; of this frame
+  std::map<std::uint32_t, Message> leds_of_, values_of_, objects_of_;       // by the viewer's last frame; of this frame
   std::map<std::uint32_t, Layer> layers_;
   std::uint64_t drawings_ = 0;
 };

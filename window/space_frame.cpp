@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <utility>
 
 #include "core/record/floor_image.hpp"
@@ -26,32 +25,26 @@ void SpaceFrames::plan(const core::Space& space) {
   auto members = std::make_shared<FrameMembers>();
   members->number = members_count_ + 1;
   members->json = core::members_json(space, rows_);
-  members->first_led.reserve(rows_.size() + 1);
-  members->first_led.push_back(0);
-  members->turrets.assign(rows_.size(), 0);
-  rgb_.assign(rows_.size(), nullptr);
-  turrets_.assign(rows_.size(), nullptr);
-  grippers_.clear();
-  has_leds_ = has_turrets_ = false;
+  members->first_led = members->first_value = {0};
+  looks_ = std::make_unique<core::Looks>(space);
+  lamps_.clear();
+  values_.clear();
   for (std::uint32_t i = 0; i < rows_.size(); ++i) {
     member_of_row_[rows_[i]] = i;
     const std::uint32_t entity = s.bodies.entity[rows_[i]];
     const core::RobotId robot{entity, s.robots[entity].generation};
-    const auto* const part = s.kind_of_row(rows_[i]).part<hal::LedsPart>();
-    const auto* const leds = part != nullptr ? space.port<hal::RingLeds>(robot) : nullptr;
-    const std::size_t count = leds != nullptr ? std::min(part->mounts.size(), hal::RingLeds::kCapacity) : 0;
-    if (count > 0) rgb_[i] = leds->rgb.data();
-    has_leds_ = has_leds_ || count > 0;
-    members->first_led.push_back(members->first_led.back() + static_cast<std::uint32_t>(count));
-    turrets_[i] = space.state<core::TurretState>(robot);
-    members->turrets[i] = turrets_[i] != nullptr ? 1 : 0;
-    has_turrets_ = has_turrets_ || turrets_[i] != nullptr;
-    if (const auto* const grip = space.state<core::GripState>(robot); grip != nullptr) grippers_.emplace_back(i, grip);
+    const std::size_t before = lamps_.size();
+    looks_->add_lamps(robot, lamps_);
+    const std::uint32_t first = members->first_led.back();
+    for (std::size_t run = before; run < lamps_.size(); ++run) lamps_[run].first += first;
+    const std::size_t count = lamps_.size() > before ? looks_->appearance(robot).lamps.size() : 0;
+    members->first_led.push_back(first + static_cast<std::uint32_t>(count));
+    looks_->add_values(robot, values_);
+    members->first_value.push_back(static_cast<std::uint32_t>(values_.size()));
   }
-  if (!has_turrets_) members->turrets.clear();
   // Who came back to where they were before are no others.
   const bool same = members_ != nullptr && members_->first_led == members->first_led &&
-                    members_->turrets == members->turrets && members_->json == members->json;
+                    members_->first_value == members->first_value && members_->json == members->json;
   if (same) return;
   ++members_count_;
   members_ = std::move(members);
@@ -121,28 +114,16 @@ void SpaceFrames::fill(const core::Space& space, hal::Tick done, std::int64_t ti
       for (std::size_t k = 0; k < 4; ++k) frame.q_WB[i][k] = static_cast<float>(motion.q_WB[k]);
     }
   }
-  if (has_turrets_) {
-    frame.turret_rad.assign(count, 0.0F);
-    for (std::size_t i = 0; i < count; ++i) {
-      if (turrets_[i] != nullptr) frame.turret_rad[i] = static_cast<float>(turrets_[i]->angle_rad);
-    }
-  }
-  if (has_leds_) {
-    const std::vector<std::uint32_t>& first = members_->first_led;
-    frame.leds.resize(first.back());
-    for (std::size_t i = 0; i < count; ++i) {
-      if (rgb_[i] != nullptr) std::memcpy(&frame.leds[first[i]], rgb_[i], 3 * std::size_t{first[i + 1] - first[i]});
-    }
-  }
+  frame.leds.assign(members_->first_led.back(), hal::kBlack);
+  for (const core::LampRun& run : lamps_) run.read(frame.leds.data());
+  frame.values.resize(values_.size());
+  for (std::size_t i = 0; i < values_.size(); ++i) frame.values[i] = static_cast<float>(values_[i].value());
   for (const core::RobotBlock& block : s.blocks) {
     for (std::size_t slot = 0; slot < block.used; ++slot) {
       if (block.halted[slot] == 0) continue;
       const std::size_t row = block.first_row + slot;
       if ((b.flags[row] & core::kAlive) != 0) frame.halted.push_back(member_of_row_[row]);
     }
-  }
-  for (const auto& [member, grip] : grippers_) {
-    if (grip->holding()) frame.holding.push_back(member);
   }
   frame.objects.resize(movables_.size());
   for (std::size_t i = 0; i < movables_.size(); ++i) {

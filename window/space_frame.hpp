@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/record/scene_json.hpp"
-#include "core/space/mechanisms.hpp"
+#include "core/space/looks.hpp"
 #include "core/space/space.hpp"
 #include "core/view/layers/layer_set.hpp"
 #include "hal/time.hpp"
@@ -35,10 +35,9 @@ class SpaceFrames {
   std::vector<std::uint32_t> rows_;
   bool in_order_ = false;  // rows_[i] == i
   std::vector<std::uint32_t> member_of_row_;
-  std::vector<const std::uint8_t*> rgb_;  // of RingLeds; null: none
-  bool has_leds_ = false, has_turrets_ = false;
-  std::vector<const core::TurretState*> turrets_;                           // null: none
-  std::vector<std::pair<std::uint32_t, const core::GripState*>> grippers_;  // of those who have one
+  std::vector<core::LampRun> lamps_;  // numbered among those of all members
+  std::vector<core::DrivenValue> values_;
+  std::unique_ptr<core::Looks> looks_;
 
   core::SceneVersion scene_version_;
   std::uint64_t floor_mark_ = 0;

@@ -32,9 +32,9 @@ constexpr double kLong_s = 60.0;           // that is worth a word
 
 /// Of memory, about.
 std::size_t bytes_of(const core::Drawing& d) {
-  return 4096 + sizeof(core::Drawing::Robot) * d.robots.size() + sizeof(core::Drawing::LitLed) * d.lit.size() +
-         sizeof(core::Drawing::Point) * d.trail_points.size() + sizeof(std::string) * d.ids.size() +
-         sizeof(core::Drawing::Box) * d.boxes.size() + sizeof(core::Drawing::Cylinder) * d.cylinders.size() +
+  return 4096 + sizeof(core::Drawing::Robot) * d.robots.size() + sizeof(core::Drawing::LitLamp) * d.lit.size() +
+         sizeof(double) * d.values.size() + sizeof(core::Drawing::Point) * d.trail_points.size() +
+         sizeof(std::string) * d.ids.size() + sizeof(core::Object) * d.objects.size() +
          sizeof(core::Sketch::Shape) * d.shapes.size();
 }
 

@@ -48,7 +48,7 @@ hal::Json hello_message(std::string_view experiment, std::string_view mode, std:
                         std::int64_t ticks_per_second, const std::vector<std::string>& can,
                         const core::SafetyConfig& safety) {
   return {{"type", "hello"},
-          {"protocol", 1},
+          {"protocol", 2},
           {"program", "tandem " + version_text()},
           {"experiment", experiment},
           {"mode", mode},

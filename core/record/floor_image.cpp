@@ -11,6 +11,30 @@
 namespace tandem::core {
 namespace {
 
+/// The floor of an image, over the whole arena.
+class ImageFloor final : public Field {
+ public:
+  ImageFloor(std::shared_ptr<const FloorImage> image, std::uint64_t mark) : image_(std::move(image)), mark_(mark) {}
+
+  void sample(const FieldPlaces& places, double* values) const noexcept override {
+    const Bodies& b = places.stores.bodies;
+    for (std::size_t row = places.first_row; row < places.first_row + places.rows; ++row) {
+      for (const FieldSpot& p : places.spots)
+        *values++ = at(places.stores, b.x_m[row] + b.cos_h[row] * p.x_m - b.sin_h[row] * p.y_m,
+                       b.y_m[row] + b.sin_h[row] * p.x_m + b.cos_h[row] * p.y_m, p.z_m);
+    }
+  }
+  double at(const SpaceStores& s, double x_m, double y_m, double /*z_m*/) const noexcept override {
+    return image_->at((x_m - s.min_x_m) / (s.max_x_m - s.min_x_m), (y_m - s.min_y_m) / (s.max_y_m - s.min_y_m));
+  }
+  std::uint64_t mark() const noexcept override { return mark_; }
+  FieldGrid grid() const noexcept override { return {image_->columns, image_->lines}; }
+
+ private:
+  std::shared_ptr<const FloorImage> image_;
+  std::uint64_t mark_;
+};
+
 constexpr std::string_view kPngStart("\x89PNG\r\n\x1a\n", 8);
 constexpr std::size_t kHeaderBytes = 13;
 constexpr std::string_view kGrey8("\x08\x00\x00\x00\x00", 5);  // bits a pixel, grey, deflate, filters by line, one pass
@@ -128,6 +152,10 @@ hal::Result<FloorImage> floor_of_png(std::string_view png) {
     std::copy_n(raw.data() + line * (columns + 1) + 1, columns, image.pixels.data() + line * columns);
   }
   return image;
+}
+
+std::unique_ptr<Field> floor_of_image(std::shared_ptr<const FloorImage> image, std::uint64_t mark) {
+  return std::make_unique<ImageFloor>(std::move(image), mark);
 }
 
 }  // namespace tandem::core

@@ -2,6 +2,7 @@
 #pragma once
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -30,5 +31,7 @@ FloorImage floor_image(const SpaceStores& stores);
 std::string png_of(const FloorImage& image);
 /// Reads what `png_of` wrote. Errors: it is something else, or damaged.
 hal::Result<FloorImage> floor_of_png(std::string_view png);
+/// A field that shows it over the whole arena; `mark` tells floors apart.
+std::unique_ptr<Field> floor_of_image(std::shared_ptr<const FloorImage> image, std::uint64_t mark);
 
 }  // namespace tandem::core

@@ -9,6 +9,7 @@
 
 #include "core/record/block_file.hpp"
 #include "core/record/floor_image.hpp"
+#include "core/record/pattern.hpp"
 #include "core/record/record_streams.hpp"
 #include "core/record/scene_json.hpp"
 #include "core/space/stores.hpp"

@@ -13,10 +13,9 @@
 
 #include "core/record/floor_image.hpp"
 #include "core/record/scene_json.hpp"
-#include "core/space/mechanisms.hpp"
+#include "core/space/looks.hpp"
 #include "core/space/stores.hpp"
 #include "hal/controller.hpp"
-#include "hal/device/leds.hpp"
 #include "hal/finite.hpp"
 #include "hal/json/json_access.hpp"
 #include "hal/time.hpp"
@@ -32,30 +31,6 @@ constexpr hal::Tick kNever = -2;
 double angle_between(double from_rad, double to_rad) {
   return std::remainder(to_rad - from_rad, 2.0 * std::numbers::pi);
 }
-
-/// The floor of a record, over the whole arena.
-class RecordedFloor final : public Field {
- public:
-  RecordedFloor(std::shared_ptr<const FloorImage> image, std::uint64_t mark) : image_(std::move(image)), mark_(mark) {}
-
-  void sample(const FieldPlaces& places, double* values) const noexcept override {
-    const Bodies& b = places.stores.bodies;
-    for (std::size_t row = places.first_row; row < places.first_row + places.rows; ++row) {
-      for (const FieldSpot& p : places.spots)
-        *values++ = at(places.stores, b.x_m[row] + b.cos_h[row] * p.x_m - b.sin_h[row] * p.y_m,
-                       b.y_m[row] + b.sin_h[row] * p.x_m + b.cos_h[row] * p.y_m, p.z_m);
-    }
-  }
-  double at(const SpaceStores& s, double x_m, double y_m, double /*z_m*/) const noexcept override {
-    return image_->at((x_m - s.min_x_m) / (s.max_x_m - s.min_x_m), (y_m - s.min_y_m) / (s.max_y_m - s.min_y_m));
-  }
-  std::uint64_t mark() const noexcept override { return mark_; }
-  FieldGrid grid() const noexcept override { return {image_->columns, image_->lines}; }
-
- private:
-  std::shared_ptr<const FloorImage> image_;
-  std::uint64_t mark_;
-};
 
 /// A row in memory that has the fields of a stream, and refers to its texts.
 hal::PortType form_of(const RecordStream& stream) {
@@ -156,9 +131,11 @@ class RecordSource::Shown {
   static Tables tables_in(const RecordMoments& moments);
   void rebuild(const RecordMoments& moments);
   void plan(const RecordMoments& moments);
+  void plan_looks(const RecordMoments& moments);
   void plan(const std::string& title, const RecordRows& rows, Sort sort, const hal::RowType* type);
+  const hal::RowType* column_of(const std::string& name, const RecordStream& stream);
   const hal::PortType& port_of(const std::string& title, const RecordStream& stream);
-  std::size_t kind_of(const RecordMembers& members, std::size_t member);
+  std::vector<std::size_t> kinds_of(const RecordMembers& members);
   std::uint32_t number_of(const std::string& id);
   void make_group(const RecordMembers& members, const hal::RobotKind& kind, const std::vector<std::size_t>& tables,
                   const std::vector<std::size_t>& who);
@@ -172,6 +149,7 @@ class RecordSource::Shown {
 
   const hal::Catalog* catalog_;
   std::deque<hal::PortType> forms_;                                            // of streams that nobody here knows
+  std::vector<std::string> looks_;                                             // rows that kinds' looks name
   std::deque<hal::ControllerType> controllers_;                                // names alone
   std::vector<std::pair<Json, std::unique_ptr<const hal::RobotKind>>> kinds_;  // and what there is to draw
   std::unordered_map<std::string, std::uint32_t> numbers_;                     // of robots that were seen
@@ -227,9 +205,22 @@ void RecordSource::Shown::plan(const std::string& title, const RecordRows& rows,
 }
 
 const hal::PortType& RecordSource::Shown::port_of(const std::string& title, const RecordStream& stream) {
-  const hal::PortType* known = catalog_ != nullptr ? catalog_->find<hal::PortType>(title) : nullptr;
-  if (known == nullptr && stream.name == hal::RingLeds::kName) known = &hal::port_type<hal::RingLeds>();
-  return known != nullptr && holds(*known, stream) ? *known : forms_.emplace_back(form_of(stream));
+  const hal::PortType* const known = catalog_ != nullptr ? catalog_->find<hal::PortType>(title) : nullptr;
+  if (known != nullptr && holds(*known, stream)) return *known;
+  hal::PortType& form = forms_.emplace_back(form_of(stream));
+  form.role = title.starts_with("actuator") ? hal::Role::Actuator : hal::Role::Sensor;
+  if (const std::size_t role = form.name.find(' '); role != std::string_view::npos) form.name.remove_prefix(role + 1);
+  return form;
+}
+
+/// Null: the space keeps other rows under that name.
+const hal::RowType* RecordSource::Shown::column_of(const std::string& name, const RecordStream& stream) {
+  hal::PortType& form = forms_.emplace_back(form_of(stream));
+  form.name = name;
+  for (const auto& column : space_->stores().columns.all()) {
+    if (column->type->name == name) return holds(*column->type, stream) ? column->type : nullptr;
+  }
+  return &form;
 }
 
 void RecordSource::Shown::plan(const RecordMoments& moments) {
@@ -244,35 +235,53 @@ void RecordSource::Shown::plan(const RecordMoments& moments) {
     else if (stream.set == "state")
       plan(title, rows, Sort::Published, &forms_.emplace_back(form_of(stream)));
   });
-  // What there is to see, which old records have as ports alone.
-  if (const RecordRows* const leds = moments.rows("look leds"); leds != nullptr && !moments.rows("actuator leds"))
-    plan("look leds", *leds, Sort::Port, &port_of("actuator leds", leds->stream()));
-  for (const hal::RowType* const type : shown_mechanisms()) {
-    const std::string look = "look " + std::string(type->name),
-                      encoder = "sensor " + std::string(type->name) + "_encoder";
-    for (const std::string& title : {look, encoder}) {
-      const RecordRows* const rows = moments.rows(title);
-      if (rows == nullptr) continue;
-      plan(title, *rows, Sort::Column, type);
-      break;
-    }
-  }
+  plan_looks(moments);
   if (const RecordRows* const halts = moments.rows("look halted"))
     plan("look halted", *halts, Sort::Halted, &forms_.emplace_back(form_of(halts->stream())));
 }
 
-std::size_t RecordSource::Shown::kind_of(const RecordMembers& members, std::size_t member) {
-  const std::string& name = members.kinds[member];
-  const std::size_t number = members.kind[member];
-  const bool known = members.bodies.is_array() && number < members.bodies.size();
-  const Json body = known ? members.bodies[number] : Json::object();
-  for (std::size_t k = 0; k < kinds_.size(); ++k) {
-    if (kinds_[k].second->name == name && kinds_[k].first == body) return k;
+/// The rows that the appearances of the kinds name. Old records have ports alone: of what is kept, those that read it.
+void RecordSource::Shown::plan_looks(const RecordMoments& moments) {
+  std::vector<const hal::RobotKind*> kinds;
+  for (const auto& [body, kind] : kinds_) kinds.push_back(kind.get());
+  looks_ = driven_rows(kinds);
+  for (const std::string& row : looks_) {
+    const std::string look = "look " + std::string(row_name(looks_, row));
+    const bool port = row.find(' ') != std::string::npos;
+    if (port && moments.rows(row) != nullptr) continue;  // it is there as a port
+    for (const std::string& title : {look, "sensor " + row + "_encoder"}) {
+      const RecordRows* const rows = moments.rows(title);
+      if (rows == nullptr) continue;
+      const hal::RowType* const type = port ? &port_of(row, rows->stream()) : column_of(row, rows->stream());
+      if (type != nullptr) plan(title, *rows, port ? Sort::Port : Sort::Column, type);
+      break;
+    }
   }
-  const auto* const here = catalog_ != nullptr ? catalog_->find<hal::RobotKind>(name) : nullptr;
-  const bool same = here != nullptr && body_json(*here) == body;
-  kinds_.emplace_back(body, std::make_unique<const hal::RobotKind>(same ? *here : kind_of_body(name, body)));
-  return kinds_.size() - 1;
+}
+
+/// By member: its kind's number in `kinds_`.
+std::vector<std::size_t> RecordSource::Shown::kinds_of(const RecordMembers& members) {
+  std::map<std::pair<std::size_t, std::string_view>, std::size_t> known;
+  std::vector<std::size_t> all;
+  for (std::size_t member = 0; member < members.ids.size(); ++member) {
+    const auto [place, fresh] = known.emplace(std::pair(members.kind[member], members.kinds[member]), 0);
+    if (fresh) {
+      const std::string& name = members.kinds[member];
+      const std::size_t number = members.kind[member];
+      const bool said = members.bodies.is_array() && number < members.bodies.size();
+      const Json body = said ? members.bodies[number] : Json::object();
+      std::size_t& k = place->second;
+      while (k < kinds_.size() && !(kinds_[k].second->name == name && kinds_[k].first == body)) ++k;
+      if (k == kinds_.size()) {
+        auto kind = std::make_unique<hal::RobotKind>(kind_of_body(name, body));
+        const auto* const here = catalog_ != nullptr ? catalog_->find<hal::RobotKind>(name) : nullptr;
+        if (here != nullptr && looks_alike(*here, *kind)) *kind = *here;
+        kinds_.emplace_back(body, std::move(kind));
+      }
+    }
+    all.push_back(place->second);
+  }
+  return all;
 }
 
 std::uint32_t RecordSource::Shown::number_of(const std::string& id) {
@@ -283,6 +292,7 @@ void RecordSource::Shown::rebuild(const RecordMoments& moments) {
   const RecordMembers& members = moments.poses().members();
   space_ = std::make_unique<Space>();
   scene_ = floor_ = sketch_ = 0;
+  const std::vector<std::size_t> kinds = kinds_of(members);
   plan(moments);
   SpaceStores& s = space_->stores();
   s.generations = ++spaces_;
@@ -302,7 +312,7 @@ void RecordSource::Shown::rebuild(const RecordMoments& moments) {
     for (std::size_t t = 0; t < tables_.size(); ++t) {
       if (tables_[t].row_of.contains(members.ids[member])) has.push_back(t);
     }
-    groups[{kind_of(members, member), std::move(has)}].push_back(member);
+    groups[{kinds[member], std::move(has)}].push_back(member);
   }
   std::size_t blocks = 0;
   for (const auto& [form, who] : groups) blocks += (who.size() + kBlockRows - 1) / kBlockRows;
@@ -322,8 +332,9 @@ void RecordSource::Shown::make_group(const RecordMembers& members, const hal::Ro
     const Table& table = tables_[t];
     if (table.sort == Sort::Port) group.ports.push_back(table.port);
     if (table.sort == Sort::Column) {
-      const auto* const first = static_cast<const std::byte*>(table.type->initial);
-      group.columns.push_back({table.type, {first, first + table.type->size}, s.columns.of(*table.type).value()});
+      std::vector<std::byte> first(table.type->size);
+      if (table.type->initial != nullptr) std::memcpy(first.data(), table.type->initial, first.size());
+      group.columns.push_back({table.type, std::move(first), s.columns.of(*table.type).value()});
     }
     if (table.sort != Sort::Published) continue;
     hal::ControllerType& controller = controllers_.emplace_back();
@@ -410,7 +421,7 @@ void RecordSource::Shown::take_scene(const RecordMoments& moments) {
     if (auto read = floor_of_png(moments.floor_png()); read.ok())
       image_ = std::make_shared<const FloorImage>(std::move(read).value());
     s.fields = Fields();
-    if (image_ != nullptr) s.fields.add("floor", std::make_unique<RecordedFloor>(image_, floor_));
+    if (image_ != nullptr) s.fields.add("floor", floor_of_image(image_, floor_));
   }
   if (sketch_ != moments.sketch_number()) {
     sketch_ = moments.sketch_number();

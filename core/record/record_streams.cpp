@@ -6,14 +6,13 @@
 #include <utility>
 
 #include "core/record/block_file.hpp"
+#include "core/record/pattern.hpp"
 #include "core/record/pose_numbers.hpp"
 #include "core/record/record.hpp"
 #include "core/record/scene_json.hpp"
-#include "core/scenario/element.hpp"
 #include "core/space/attitude.hpp"
-#include "core/space/mechanisms.hpp"
+#include "core/space/looks.hpp"
 #include "core/space/stores.hpp"
-#include "hal/device/leds.hpp"
 #include "hal/scalar_name.hpp"
 
 namespace tandem::core {
@@ -54,63 +53,7 @@ std::size_t real_robots(const SpaceStores& s) noexcept {
   return real;
 }
 
-std::string text_of(const std::vector<std::string>& names) {
-  constexpr std::size_t kNamesShown = 8;
-  std::string text;
-  for (std::size_t i = 0; i < std::min(names.size(), kNamesShown); ++i) text += (i == 0 ? "" : ", ") + names[i];
-  if (names.size() > kNamesShown) text += ", … (" + std::to_string(names.size()) + " in all)";
-  return text;
-}
-
-std::string hint(const std::string& word, const std::vector<std::string>& known) {
-  const std::string near = closest(word, known);
-  return near.empty() ? "" : "; did you mean '" + near + "'?";
-}
-
 }  // namespace
-
-bool fits_pattern(std::string_view text, std::string_view pattern) noexcept {
-  std::size_t t = 0, p = 0;
-  std::size_t star = std::string_view::npos, from = 0;
-  while (t < text.size()) {
-    if (p < pattern.size() && pattern[p] == '*') {
-      star = p++;
-      from = t;
-    } else if (p < pattern.size() && pattern[p] == text[t]) {
-      ++t;
-      ++p;
-    } else if (star != std::string_view::npos) {
-      p = star + 1;  // let the last star take one more
-      t = ++from;
-    } else {
-      return false;
-    }
-  }
-  while (p < pattern.size() && pattern[p] == '*') ++p;
-  return p == pattern.size();
-}
-
-hal::Status check_chosen(const RecordConfig& config, const Space& space, std::string_view what) {
-  std::vector<std::string> names, ports;
-  for (std::size_t i = 0; i < space.robot_count(); ++i) names.push_back(space.robot_name(space.robot(i)));
-  for (const RobotGroup& group : space.stores().groups) {
-    for (const hal::PortType* port : group.ports) {
-      if (std::find(ports.begin(), ports.end(), port->name) == ports.end()) ports.emplace_back(port->name);
-    }
-  }
-  for (const std::string& pattern : config.entities) {
-    const auto fits = [&pattern](const std::string& name) { return fits_pattern(name, pattern); };
-    if (names.empty() || std::any_of(names.begin(), names.end(), fits)) continue;  // none: a hook may bring them
-    return hal::Error{std::string(what) + ": no robot fits '" + pattern + "'" + hint(pattern, names) +
-                      "; there are: " + text_of(names)};
-  }
-  for (const std::string& port : config.ports) {
-    if (port == "*" || std::find(ports.begin(), ports.end(), port) != ports.end()) continue;
-    return hal::Error{std::string(what) + ": no robot's controller uses a port '" + port + "'" + hint(port, ports) +
-                      (ports.empty() ? "; they use none" : "; they use: " + text_of(ports))};
-  }
-  return {};
-}
 
 /// Rows of bodies that were chosen, in the order in which they are written, and whether each row of bodies is.
 struct RecordStreams::Chosen {
@@ -236,7 +179,22 @@ Json row_fields(const hal::RowType& type) {
   return fields;
 }
 
+/// Who holds a robot, as RobotBlock::halted has it.
+struct Halts {
+  static constexpr std::string_view kName = "halted";
+  static constexpr std::string_view kDoc = "Who is halted.";
+  std::uint8_t by = 0;
+  void describe(hal::FieldList& f) const {
+    f.add("by", by, hal::unit::none,
+          "0: its controller steps; else bits of who holds it: 1 hook, 2 controller, 4 safety table, 8 operator");
+  }
+};
+
 }  // namespace
+
+hal::Json RecordStreams::declaration_of(const char* of, Title title, const hal::RowType& type) {
+  return {{"of", of}, {"set", title.set}, {"name", title.name}, {"doc", type.doc}, {"fields", row_fields(type)}};
+}
 
 void RecordStreams::add_layouts(const hal::RowType& type, std::vector<Layout>& layouts) {
   for (const hal::Field* f : in_order(type)) {
@@ -246,45 +204,41 @@ void RecordStreams::add_layouts(const hal::RowType& type, std::vector<Layout>& l
   }
 }
 
-void RecordStreams::declare_port(const Space& space, const Chosen& chosen, const hal::PortType& type,
-                                 std::string_view set, When when, hal::Tick now, std::string& out) {
+/// Rows of the blocks in which `first_of` finds some: it gives the first one of a block by its number, or null.
+void RecordStreams::declare_rows(const Space& space, const Chosen& chosen, const hal::RowType& type, Title title,
+                                 const std::function<const std::byte*(std::size_t)>& first_of, hal::Tick now,
+                                 std::string& out) {
   const SpaceStores& s = space.stores();
   Stream stream;
   stream.sort = Sort::Rows;
-  stream.when = when;
+  stream.when = title.set == "look" ? When::Changed : When::Due;
   stream.row_bytes = type.size;
   std::vector<std::uint32_t> who;
-  for (const RobotGroup& group : s.groups) {
-    for (std::size_t p = 0; p < group.ports.size(); ++p) {
-      if (!same_port(*group.ports[p], type)) continue;
-      for (const std::size_t b : group.blocks) {
-        const RobotBlock& block = s.blocks[b];
-        bool open = false;
-        for (std::size_t slot = 0; slot < block.used; ++slot) {
-          const std::size_t row = block.first_row + slot;
-          if (chosen.is[row] == 0) {
-            open = false;
-            continue;
-          }
-          if (!open) stream.runs.push_back({block.ports[p] + slot * type.size, 0, type.size});
-          open = true;
-          ++stream.runs.back().rows;
-          who.push_back(static_cast<std::uint32_t>(row));
-        }
+  for (std::size_t b = 0; b < s.blocks.size(); ++b) {
+    const RobotBlock& block = s.blocks[b];
+    const std::byte* const first = first_of(b);
+    bool open = false;
+    for (std::size_t slot = 0; first != nullptr && slot < block.used; ++slot) {
+      const std::size_t row = block.first_row + slot;
+      if (chosen.is[row] == 0) {
+        open = false;
+        continue;
       }
+      if (!std::exchange(open, true)) stream.runs.push_back({first + slot * type.size, 0, type.size});
+      ++stream.runs.back().rows;
+      who.push_back(static_cast<std::uint32_t>(row));
     }
   }
   stream.rows = who.size();
   add_layouts(type, stream.layouts);
-  Json declaration = {
-      {"of", "robot"}, {"set", set}, {"name", type.name}, {"doc", type.doc}, {"fields", row_fields(type)}};
-  declare_stream(std::move(stream), std::move(declaration), members_json(space, who), now, out);
+  declare_stream(std::move(stream), declaration_of("robot", title, type), members_json(space, who), now, out);
 }
 
 // Ports are those of all groups that have one, together; published state is by group.
 void RecordStreams::declare_ports(const Space& space, const Chosen& chosen, hal::Tick now, std::string& out) {
+  const SpaceStores& s = space.stores();
   std::vector<const hal::PortType*> types;
-  for (const RobotGroup& group : space.stores().groups) {
+  for (const RobotGroup& group : s.groups) {
     for (const hal::PortType* type : group.ports) {
       const bool wanted = std::any_of(config_.ports.begin(), config_.ports.end(),
                                       [type](const std::string& name) { return name == "*" || name == type->name; });
@@ -293,7 +247,15 @@ void RecordStreams::declare_ports(const Space& space, const Chosen& chosen, hal:
       if (wanted && !known) types.push_back(type);
     }
   }
-  for (const hal::PortType* type : types) declare_port(space, chosen, *type, set_of(*type), When::Due, now, out);
+  for (const hal::PortType* type : types) {
+    const auto first_of = [&s, type](std::size_t b) -> const std::byte* {
+      const std::vector<const hal::PortType*>& ports = s.groups[s.blocks[b].group].ports;
+      const auto port =
+          std::find_if(ports.begin(), ports.end(), [type](const auto* p) { return same_port(*p, *type); });
+      return port == ports.end() ? nullptr : s.blocks[b].ports[static_cast<std::size_t>(port - ports.begin())];
+    };
+    declare_rows(space, chosen, *type, {set_of(*type), type->name}, first_of, now, out);
+  }
 }
 
 void RecordStreams::declare_state(const Space& space, const Chosen& chosen, hal::Tick now, std::string& out) {
@@ -331,62 +293,26 @@ void RecordStreams::declare_state(const Space& space, const Chosen& chosen, hal:
   }
 }
 
-/// What pictures show besides poses: LEDs, turrets, what grippers hold, who is halted.
+/// What pictures show besides poses: the rows that move and light robots, and who is halted.
 void RecordStreams::declare_look(const Space& space, const Chosen& chosen, hal::Tick now, std::string& out) {
   const SpaceStores& s = space.stores();
-  const bool leds = std::any_of(s.groups.begin(), s.groups.end(),
-                                [](const RobotGroup& group) { return group.takes<hal::RingLeds>(); });
-  if (leds) declare_port(space, chosen, hal::port_type<hal::RingLeds>(), "look", When::Changed, now, out);
-
-  const auto of_blocks = [&](auto&& array_of, std::size_t stride) {
-    Stream stream;
-    stream.sort = Sort::Rows;
-    stream.when = When::Changed;
-    stream.row_bytes = stride;
-    std::vector<std::uint32_t> who;
-    for (std::size_t b = 0; b < s.blocks.size(); ++b) {
-      const RobotBlock& block = s.blocks[b];
-      const std::byte* const array = array_of(b);
-      bool open = false;
-      for (std::size_t slot = 0; array != nullptr && slot < block.used; ++slot) {
-        const std::size_t row = block.first_row + slot;
-        if (chosen.is[row] == 0) {
-          open = false;
-          continue;
-        }
-        if (!open) stream.runs.push_back({array + slot * stride, 0, stride});
-        open = true;
-        ++stream.runs.back().rows;
-        who.push_back(static_cast<std::uint32_t>(row));
-      }
+  std::vector<const hal::RobotKind*> kinds;
+  for (const RobotGroup& group : s.groups) kinds.push_back(group.kind);
+  const std::vector<std::string> rows = driven_rows(kinds);
+  for (const std::string& row : rows) {
+    const hal::RowType* type = nullptr;  // of the first group that has such
+    std::vector<Looks::Place> places;
+    for (const RobotGroup& group : s.groups) {
+      Looks::Place& place = places.emplace_back(Looks::place_of(group, row));
+      if (type == nullptr) type = place.type;
+      if (place.type != nullptr && place.type->layout != type->layout) place.type = nullptr;
     }
-    stream.rows = who.size();
-    return std::pair(std::move(stream), std::move(who));
-  };
-  for (const hal::RowType* const type : shown_mechanisms()) {
-    const auto& all = s.columns.all();
-    const auto column =
-        std::find_if(all.begin(), all.end(), [type](const auto& c) { return c->type->name == type->name; });
-    if (column == all.end()) continue;
-    auto [stream, who] = of_blocks([&](std::size_t b) { return (*column)->array(b); }, type->size);
-    for (const hal::Field* f : in_order(*type))
-      stream.layouts.push_back({f->offset, hal::size_of(f->scalar), f->count, nullptr, 1});
-    declare_stream(
-        std::move(stream),
-        {{"of", "robot"}, {"set", "look"}, {"name", type->name}, {"doc", type->doc}, {"fields", row_fields(*type)}},
-        members_json(space, who), now, out);
+    if (type == nullptr) continue;
+    const auto first_of = [&](std::size_t b) { return places[s.blocks[b].group].row(s.blocks[b], b, 0); };
+    declare_rows(space, chosen, *type, {"look", row_name(rows, row)}, first_of, now, out);
   }
-  auto [stream, who] =
-      of_blocks([&](std::size_t b) { return reinterpret_cast<const std::byte*>(s.blocks[b].halted.data()); }, 1);
-  stream.layouts = {{0, 1, 1, nullptr, 1}};
-  declare_stream(std::move(stream),
-                 {{"of", "robot"},
-                  {"set", "look"},
-                  {"name", "halted"},
-                  {"fields", Json::array({field_json("by", "u8", 1, 1.0, "",
-                                                     "0: its controller steps; else bits of who holds it: 1 hook, 2 "
-                                                     "controller, 4 safety table, 8 operator")})}},
-                 members_json(space, who), now, out);
+  const auto halted = [&s](std::size_t b) { return reinterpret_cast<const std::byte*>(s.blocks[b].halted.data()); };
+  declare_rows(space, chosen, hal::row_type<Halts>(), {"look", Halts::kName}, halted, now, out);
 }
 
 /// All that reached the space from outside: what real robots did to their twins, and what they measured.
@@ -418,12 +344,7 @@ void RecordStreams::declare_inputs(const Space& space, hal::Tick now, std::strin
     }
     stream.rows = stream.runs.size();
     add_layouts(*type, stream.layouts);
-    declare_stream(std::move(stream),
-                   {{"of", of_run ? "run" : "robot"},
-                    {"set", form->set},
-                    {"name", type->name},
-                    {"doc", type->doc},
-                    {"fields", row_fields(*type)}},
+    declare_stream(std::move(stream), declaration_of(of_run ? "run" : "robot", {form->set, type->name}, *type),
                    of_run ? Json{{"ids", {"run"}}} : members_json(space, who), now, out, input_streams_);
   }
 }
@@ -441,14 +362,8 @@ void RecordStreams::declare_tables(const Space& space, hal::Tick now, std::strin
       who.push_back(static_cast<std::uint32_t>(space.stores().row_of(table.robots[i])));
     }
     stream.rows = who.size();
-    for (const hal::Field* f : in_order(*table.type))
-      stream.layouts.push_back({f->offset, hal::size_of(f->scalar), f->count, nullptr, 1});
-    declare_stream(std::move(stream),
-                   {{"of", "robot"},
-                    {"set", table.set},
-                    {"name", table.type->name},
-                    {"doc", table.type->doc},
-                    {"fields", row_fields(*table.type)}},
+    add_layouts(*table.type, stream.layouts);
+    declare_stream(std::move(stream), declaration_of("robot", {table.set, table.type->name}, *table.type),
                    members_json(space, who), now, out);
   }
 }
@@ -502,23 +417,19 @@ void RecordStreams::copy_rows(const Space& space, Stream& stream) const {
   const Bodies& b = s.bodies;
   stream.raw.resize(stream.rows * stream.row_bytes);
   std::byte* out = stream.raw.data();
+  const auto copy_turns = [&](const auto& motion) {
+    for (std::size_t i = 0; i < stream.rows; ++i, out += stream.row_bytes) {
+      std::array<float, 4> q = {1.0F, 0.0F, 0.0F, 0.0F};
+      for (std::size_t k = 0; k < 4 && !motion.empty(); ++k)
+        q[k] = static_cast<float>(motion[stream.indices[i]].q_WB[k]);
+      std::memcpy(out, q.data(), sizeof q);
+    }
+  };
   switch (stream.sort) {
     case Sort::Attitudes:
-      for (std::size_t i = 0; i < stream.rows; ++i, out += stream.row_bytes) {
-        std::array<float, 4> q = {1.0F, 0.0F, 0.0F, 0.0F};
-        if (!b.motion.empty()) {
-          for (std::size_t k = 0; k < 4; ++k) q[k] = static_cast<float>(b.motion[stream.indices[i]].q_WB[k]);
-        }
-        std::memcpy(out, q.data(), sizeof q);
-      }
-      return;
+      return copy_turns(b.motion);
     case Sort::ObjectAttitudes:
-      for (std::size_t i = 0; i < stream.rows; ++i, out += stream.row_bytes) {
-        std::array<float, 4> q{};
-        for (std::size_t k = 0; k < 4; ++k) q[k] = static_cast<float>(s.object_motion[stream.indices[i]].q_WB[k]);
-        std::memcpy(out, q.data(), sizeof q);
-      }
-      return;
+      return copy_turns(s.object_motion);
     case Sort::State:
       for (const Run& run : stream.runs) {
         for (const hal::PublishedField& field : s.groups[stream.group].published) {

@@ -2,13 +2,13 @@
 #pragma once
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "core/record/input_block.hpp"
-#include "core/record/pattern.hpp"
 #include "core/scenario/scenario.hpp"
 #include "core/space/space.hpp"
 #include "core/space/space_inputs.hpp"
@@ -92,7 +92,11 @@ class RecordStreams {
     std::vector<std::byte> raw;         // copied, of others
     std::vector<std::byte> last;        // of Changed: what the last block says
   };
+  struct Title {
+    std::string_view set, name;
+  };
   struct Chosen;
+  static hal::Json declaration_of(const char* of, Title title, const hal::RowType& type);
   static void add_layouts(const hal::RowType& type, std::vector<Layout>& layouts);
 
   void declare_stream(Stream stream, hal::Json declaration, const hal::Json& members, hal::Tick now, std::string& out,
@@ -108,8 +112,8 @@ class RecordStreams {
   void declare_inputs(const Space& space, hal::Tick now, std::string& out);
   void declare_tables(const Space& space, hal::Tick now, std::string& out);
   void declare_objects(const Space& space, hal::Tick now, std::string& out);
-  void declare_port(const Space& space, const Chosen& chosen, const hal::PortType& type, std::string_view set,
-                    When when, hal::Tick now, std::string& out);
+  void declare_rows(const Space& space, const Chosen& chosen, const hal::RowType& type, Title title,
+                    const std::function<const std::byte*(std::size_t)>& first_of, hal::Tick now, std::string& out);
   void copy_rows(const Space& space, Stream& stream) const;
   void copy_robot_poses(const Space& space, Stream& stream) const;
   void encode_poses(const Stream& stream, std::string& out);
@@ -131,9 +135,5 @@ class RecordStreams {
   std::size_t living_ = 0, objects_ = 0, real_ = 0;
   std::vector<std::int32_t> numbers_;  // scratch
 };
-
-/// Error: a pattern that fits none of the space's robots; a port that no robot's controller took. `what` is written,
-/// e.g. "record 'x'".
-hal::Status check_chosen(const RecordConfig& config, const Space& space, std::string_view what);
 
 }  // namespace tandem::core

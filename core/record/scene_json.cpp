@@ -10,10 +10,8 @@
 #include <utility>
 
 #include "core/space/attitude.hpp"
-#include "core/space/mechanisms.hpp"
-#include "hal/device/gripper.hpp"
-#include "hal/device/leds.hpp"
 #include "hal/json/json_access.hpp"
+#include "hal/robot/former_parts.hpp"
 
 namespace tandem::core {
 namespace {
@@ -175,15 +173,87 @@ SceneVersion scene_version(const SpaceStores& s) noexcept {
   return {s.immovables_version, s.object_leds_version, movables.mark(), lights.mark()};
 }
 
-Json body_json(const hal::RobotKind& kind) {
-  Json body = {{"radius", kind.body.radius_m}, {"height", kind.body.height_m}};
-  if (const auto* const rotors = std::get_if<hal::Quadrotor>(&kind.locomotion)) body["rotor_arm"] = rotors->rotor_arm_m;
-  if (const auto* const gripper = kind.part<hal::GripperPart>(); gripper != nullptr)
-    body["gripper_reach"] = gripper->reach_m;
-  if (const auto* const leds = kind.part<hal::LedsPart>(); leds != nullptr) {
-    body["leds_on_turret"] = leds->on_turret;
-    for (const hal::Mount& led : leds->mounts) body["leds"].push_back({led.x_m, led.y_m, led.z_m});
+namespace {
+
+Json driver_json(const hal::Driver& driver) {
+  Json json = {{"row", driver.row}, {"field", driver.field}, {"index", driver.index}};
+  if (driver.as_switch) json["off"] = driver.off;
+  return json;
+}
+
+hal::Driver driver_of(const Json& json) {
+  return {hal::text_of(json, "row"), hal::text_of(json, "field"), static_cast<std::int64_t>(number_of(json, "index")),
+          hal::member_of(json, "off") != nullptr, number_of(json, "off")};
+}
+
+hal::Appearance::Point point_of(const Json& json, const char* key, hal::Appearance::Point otherwise = {}) {
+  const Json& said = list_of(json, key);
+  for (std::size_t i = 0; i < otherwise.size(); ++i) otherwise[i] = item_of(said, i, otherwise[i]);
+  return otherwise;
+}
+
+std::string color_text(const Json& json) {
+  const std::string color = hal::text_of(json, "color");
+  return hal::is_color(color) ? color : std::string();
+}
+
+Json look_json(const hal::Appearance& look) {
+  Json json = {{"joints", Json::array()}, {"links", Json::array()}, {"lamps", Json::array()}};
+  const auto add = [&json](const char* list, Json one, const std::string& on, const std::string& color) {
+    if (!on.empty()) one["on"] = on;
+    if (!color.empty()) one["color"] = color;
+    json[list].push_back(std::move(one));
+  };
+  for (const hal::Appearance::Joint& j : look.joints) {
+    add("joints",
+        {{"name", j.name},
+         {"slides", j.slides},
+         {"at", j.at_m},
+         {"axis", j.axis},
+         {"by", driver_json(j.by)},
+         {"scale", j.scale}},
+        j.on, {});
   }
+  for (const hal::Appearance::Link& l : look.links) {
+    Json one = {{"name", l.name}, {"shape", l.shape}, {"low", l.low_m}, {"high", l.high_m}};
+    if (!l.held.row.empty()) one["held"] = driver_json(l.held);
+    add("links", std::move(one), l.on, l.color);
+  }
+  for (const hal::Appearance::Lamp& l : look.lamps)
+    add("lamps", {{"at", l.at_m}, {"by", driver_json(l.by)}}, l.on, l.color);
+  if (!look.upper.empty()) json["upper"] = look.upper;
+  return json;
+}
+
+hal::LookPart look_of(const Json& json) {
+  static constexpr std::size_t kMost = 256;  // of each; a damaged record may say anything
+  hal::LookPart look;
+  const auto each = [&json](const char* list, const auto& take) {
+    const Json& all = list_of(json, list);
+    for (std::size_t i = 0; i < std::min(kMost, all.size()); ++i)
+      take(all[i], hal::text_of(all[i], "on"), driver_of(hal::object_of(all[i], "by")));
+  };
+  each("joints", [&look](const Json& one, const std::string& on, const hal::Driver& by) {
+    look.joints.push_back({hal::text_of(one, "name"), flag_of(one, "slides"), point_of(one, "at"),
+                           point_of(one, "axis", {0.0, 0.0, 1.0}), by, number_of(one, "scale", 1.0), on});
+  });
+  each("links", [&look](const Json& one, const std::string& on, const hal::Driver&) {
+    look.links.push_back({hal::text_of(one, "name"), hal::text_of(one, "shape"), point_of(one, "low"),
+                          point_of(one, "high"), on, color_text(one), driver_of(hal::object_of(one, "held"))});
+  });
+  each("lamps", [&look](const Json& one, const std::string& on, const hal::Driver& by) {
+    look.lamps.push_back({point_of(one, "at"), on, by, color_text(one)});
+  });
+  look.upper = hal::text_of(json, "upper");
+  return look;
+}
+
+}  // namespace
+
+Json body_json(const hal::RobotKind& kind) {
+  Json body = {
+      {"radius", kind.body.radius_m}, {"height", kind.body.height_m}, {"look", look_json(hal::appearance_of(kind))}};
+  if (const auto* const rotors = kind.flight(); rotors != nullptr) body["rotor_arm"] = rotors->rotor_arm_m;
   return body;
 }
 
@@ -195,17 +265,22 @@ hal::RobotKind kind_of_body(std::string name, const Json& body) {
   kind.body.height_m = number_of(body, "height", kUnknown_m);
   if (const double arm_m = number_of(body, "rotor_arm"); arm_m > 0.0)
     kind.locomotion = hal::Quadrotor{.rotor_arm_m = arm_m};
-  if (const double reach_m = number_of(body, "gripper_reach"); reach_m > 0.0)
-    kind.add(hal::GripperPart{.reach_m = reach_m});
-  hal::LedsPart leds{.on_turret = flag_of(body, "leds_on_turret")};
+  if (const Json* const look = hal::member_of(body, "look"); look != nullptr) {
+    kind.add(look_of(*look));
+    return kind;
+  }
+  std::vector<hal::Mount> leds;
   for (const Json& led : list_of(body, "leds"))
-    leds.mounts.push_back({0.0, item_of(led, 0), item_of(led, 1), item_of(led, 2)});
-  if (!leds.mounts.empty()) kind.add(std::move(leds));
+    leds.push_back({0.0, item_of(led, 0), item_of(led, 1), item_of(led, 2)});
+  const auto said = [&body](const char* key) { return flag_of(body, key) ? 1.0 : number_of(body, key); };
+  hal::add_former_parts(kind, said, std::move(leds));
   return kind;
 }
 
-std::array<const hal::RowType*, 2> shown_mechanisms() {
-  return {&hal::row_type<TurretState>(), &hal::row_type<GripState>()};
+bool looks_alike(const hal::RobotKind& a, const hal::RobotKind& b) {
+  const auto arm_m = [](const hal::RobotKind& kind) { return kind.flies() ? kind.flight()->rotor_arm_m : 0.0; };
+  return a.body.radius_m == b.body.radius_m && a.body.height_m == b.body.height_m && arm_m(a) == arm_m(b) &&
+         hal::appearance_of(a) == hal::appearance_of(b);
 }
 
 std::vector<std::uint32_t> living_rows(const SpaceStores& s) {
@@ -225,15 +300,20 @@ bool came_earlier(const SpaceStores& s, std::uint32_t a, std::uint32_t b) noexce
 Json members_json(const Space& space, std::span<const std::uint32_t> rows) {
   const SpaceStores& s = space.stores();
   Json ids = Json::array(), kinds = Json::array(), kind = Json::array(), real = Json::array(), bodies = Json::array();
-  std::map<std::string_view, std::size_t> known;
+  std::map<const hal::RobotKind*, std::size_t> known;
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const std::uint32_t entity = s.bodies.entity[rows[i]];
     ids.push_back(space.robot_name({entity, s.robots[entity].generation}));
     const hal::RobotKind& its = s.kind_of_row(rows[i]);
-    const auto [entry, fresh] = known.emplace(its.name, known.size());
-    if (fresh) {
-      kinds.push_back(its.name);
-      bodies.push_back(body_json(its));
+    const auto [entry, fresh] = known.emplace(&its, 0);
+    if (fresh) {  // some robots have a kind of their own that looks like the others'
+      const Json body = body_json(its);
+      std::size_t& number = entry->second;
+      while (number < kinds.size() && !(kinds[number] == Json(its.name) && bodies[number] == body)) ++number;
+      if (number == kinds.size()) {
+        kinds.push_back(its.name);
+        bodies.push_back(body);
+      }
     }
     kind.push_back(entry->second);
     if ((s.bodies.flags[rows[i]] & kExternal) != 0) real.push_back(i);

@@ -1,6 +1,5 @@
 // Scene and members of a run as JSON: what records hold and views show of all that engines do not move.
 #pragma once
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -31,14 +30,12 @@ struct SceneVersion {
 /// Allocates nothing; to be asked for in every tick.
 SceneVersion scene_version(const SpaceStores& stores) noexcept;
 
-/// What there is to draw of a kind: {"radius", "height", "leds": [[x, y, z], …], "leds_on_turret", "gripper_reach",
-/// "rotor_arm"}, in metres in the body frame.
+/// What there is to draw of a kind: {"radius", "height", "rotor_arm", "look"}, as docs/view-protocol.md has it.
 hal::Json body_json(const hal::RobotKind& kind);
-/// The inverse: a kind of which no more is known.
+/// The inverse: a kind of which no more is known. Understands what records had before "look".
 hal::RobotKind kind_of_body(std::string name, const hal::Json& body);
-
-/// Classes of state that pictures show, besides LEDs.
-std::array<const hal::RowType*, 2> shown_mechanisms();
+/// Whether the two are drawn in the same way.
+bool looks_alike(const hal::RobotKind& a, const hal::RobotKind& b);
 
 /// Rows of the living robots' bodies, in the order in which they lie in memory.
 std::vector<std::uint32_t> living_rows(const SpaceStores& stores);

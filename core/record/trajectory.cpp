@@ -8,6 +8,7 @@
 
 #include "core/record/block_file.hpp"
 #include "core/record/csv_table.hpp"
+#include "core/record/pattern.hpp"
 #include "core/record/record.hpp"
 #include "core/record/record_reader.hpp"
 #include "core/record/record_streams.hpp"

@@ -12,7 +12,6 @@
 #include "core/sim/engine_factory.hpp"
 #include "core/sim/settings.hpp"
 #include "hal/device/flight.hpp"
-#include "hal/device/gripper.hpp"
 #include "hal/device/pan_tilt.hpp"
 #include "hal/device/range_and_bearing.hpp"
 #include "hal/device_list.hpp"
@@ -640,7 +639,7 @@ Slot RobotFactory::free_slot(std::size_t g) {
   return {block, 0};
 }
 
-/// Whether the robot's region has the joints that a gripper needs, if its controller took one.
+/// Whether the robot's region has the joints that its controller's devices need.
 hal::Status RobotFactory::can_hold(Slot at) const {
   const RobotBlock& block = stores_.blocks[at.block];
   const std::size_t row = block.first_row + at.slot;

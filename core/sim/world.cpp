@@ -7,7 +7,6 @@
 #include "core/sim/world_impl.hpp"
 #include "core/space/fingerprint.hpp"
 #include "hal/check.hpp"
-#include "hal/device/turret.hpp"
 #include "hal/unit.hpp"
 
 namespace tandem::core {
@@ -200,8 +199,11 @@ void World::Impl::report_trouble() {
       if ((flags & kNotFinite) != 0) {
         flags = static_cast<std::uint8_t>(flags & ~kNotFinite);
         if (incidents.first.size() < kIncidentsNamed) {
-          const hal::RobotKind& kind = *stores().groups[block.group].kind;
-          const bool more = kind.part<hal::TurretPart>() != nullptr;  // than wheels to command
+          const RobotGroup& group = stores().groups[block.group];
+          const hal::RobotKind& kind = *group.kind;
+          const bool more = std::any_of(group.ports.begin(), group.ports.end(), [](const hal::PortType* port) {
+            return port->limit != nullptr && port->slow_down == nullptr;  // than what moves it
+          });
           incident("controller of robot '" + name_of_row(row) + "' commanded " +
                    (kind.flies() ? "a flight"
                     : more       ? "something"

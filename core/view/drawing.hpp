@@ -9,7 +9,9 @@
 #include <vector>
 
 #include "core/space/sketch.hpp"
-#include "hal/device/leds.hpp"
+#include "core/space/space.hpp"
+#include "hal/appearance.hpp"
+#include "hal/rgb.hpp"
 
 namespace tandem::core {
 
@@ -32,13 +34,7 @@ struct Drawing {
   struct Kind {
     std::string name;
     double radius_m = 0.0;
-    struct Led {
-      double x_m = 0.0, y_m = 0.0;  ///< body frame
-      double z_m = 0.0;
-    };
-    std::vector<Led> leds;
-    bool leds_on_turret = false;   ///< they turn with it
-    double gripper_reach_m = 0.0;  ///< beyond the body; 0: none. It looks where the turret does
+    hal::Appearance look;
     double height_m = 0.0;
     double rotor_arm_m = 0.0;  ///< from the axis to each of four rotors; 0: none
   };
@@ -46,12 +42,11 @@ struct Drawing {
     double x_m = 0.0, y_m = 0.0;
     double heading_rad = 0.0;
     std::uint32_t kind = 0;         ///< index into `kinds`
-    std::uint32_t first_light = 0;  ///< its lit LEDs: `lit[first_light, first_light + lights)`
+    std::uint32_t first_light = 0;  ///< its lit lamps: `lit[first_light, first_light + lights)`
     std::uint32_t lights = 0;
     bool halted = false;
-    double turret_rad = 0.0;  ///< relative to the body, counter-clockwise
-    bool holding = false;     ///< its gripper holds something
-    double z_m = 0.0;         ///< of its base above the ground
+    double z_m = 0.0;               ///< of its base above the ground
+    std::uint32_t first_value = 0;  ///< what moves on it: `values` from there on, in the order of its look's drivers
   };
   struct Point {
     double x_m = 0.0, y_m = 0.0;
@@ -62,8 +57,8 @@ struct Drawing {
     std::size_t robot = 0;  ///< index into `robots`
     std::size_t first = 0, count = 0;
   };
-  struct LitLed {
-    std::uint32_t led = 0;  ///< of its kind
+  struct LitLamp {
+    std::uint32_t lamp = 0;  ///< of its kind
     hal::Rgb color;
   };
   /// Said of a robot that stands for a real one.
@@ -72,28 +67,10 @@ struct Drawing {
     std::string id;
     std::string state;  ///< what is wrong with it, e.g. "link lost"; empty: all is well
   };
-  struct Box {
-    double x_m = 0.0, y_m = 0.0;
-    double heading_rad = 0.0;
-    double half_x_m = 0.0, half_y_m = 0.0;
-    bool movable = false;
-    double z_m = 0.0, height_m = 0.0;
-  };
-  struct Cylinder {
-    double x_m = 0.0, y_m = 0.0;
-    double radius_m = 0.0;
-    bool movable = false;
-    double z_m = 0.0, height_m = 0.0;
-  };
   /// One side of an engine's region.
   struct Border {
     double ax_m = 0.0, ay_m = 0.0, bx_m = 0.0, by_m = 0.0;
     bool wall = false;  ///< else a gate
-  };
-  struct Light {
-    double x_m = 0.0, y_m = 0.0;
-    hal::Rgb color;
-    double z_m = 0.0;
   };
   /// Where real robots may go, and what they keep from.
   struct Area {
@@ -108,16 +85,18 @@ struct Drawing {
     std::string_view color() const;  ///< "#rrggbb"
   };
 
+  PictureLook::Area arena() const { return {min_x_m, min_y_m, max_x_m, max_y_m}; }
+
   std::string title;
   double min_x_m = -1.0, min_y_m = -1.0, max_x_m = 1.0, max_y_m = 1.0;  ///< the arena
-  std::vector<Box> boxes;
-  std::vector<Cylinder> cylinders;
+  std::vector<Object> objects;                                          ///< those that are there
   std::vector<Border> borders;
-  std::vector<Light> lights;
+  std::vector<LightSource> lights;  ///< the same
   std::vector<Area> areas;
   std::vector<Kind> kinds;
   std::vector<Robot> robots;
-  std::vector<LitLed> lit;
+  std::vector<LitLamp> lit;
+  std::vector<double> values;
   std::vector<RealRobot> real;
   std::vector<std::string> ids;  ///< of the robots, in their order; empty: not asked for
   std::vector<Trail> trails;

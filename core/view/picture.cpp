@@ -3,62 +3,66 @@
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
+#include <iterator>
+#include <map>
 
-#include "core/space/stores.hpp"
-#include "hal/device/gripper.hpp"
-#include "hal/device/leds.hpp"
+#include "core/space/looks.hpp"
 #include "hal/unit.hpp"
 
 namespace tandem::core {
 namespace {
 
-std::uint32_t kind_of(const hal::RobotKind& robot, Drawing& drawing) {
-  for (std::uint32_t k = 0; k < drawing.kinds.size(); ++k) {
-    if (drawing.kinds[k].name == robot.name) return k;
-  }
-  const auto* const leds = robot.part<hal::LedsPart>();
-  const auto* const gripper = robot.part<hal::GripperPart>();
-  Drawing::Kind kind{robot.name,
-                     robot.body.radius_m,
-                     {},
-                     leds != nullptr && leds->on_turret,
-                     gripper != nullptr ? gripper->reach_m : 0.0,
-                     robot.body.height_m};
-  if (const auto* const rotors = std::get_if<hal::Quadrotor>(&robot.locomotion)) kind.rotor_arm_m = rotors->rotor_arm_m;
-  if (leds != nullptr) {
-    for (const hal::Mount& led : leds->mounts) kind.leds.push_back({led.x_m, led.y_m, led.z_m});
-  }
-  drawing.kinds.push_back(std::move(kind));
-  return static_cast<std::uint32_t>(drawing.kinds.size() - 1);
-}
+/// The kinds of a drawing.
+class Kinds {
+ public:
+  explicit Kinds(Drawing& drawing) : drawing_(drawing) {}
 
-void add_lit_leds(const Space& space, RobotId id, Drawing::Robot& robot, Drawing& drawing) {
-  robot.first_light = static_cast<std::uint32_t>(drawing.lit.size());
-  const auto* leds = space.port<hal::RingLeds>(id);
-  if (leds == nullptr) return;
-  const std::size_t mounted = std::min(drawing.kinds[robot.kind].leds.size(), hal::RingLeds::kCapacity);
-  for (std::uint32_t i = 0; i < mounted; ++i) {
-    if (leds->color(i) == hal::kBlack) continue;
-    drawing.lit.push_back({i, leds->color(i)});
-    ++robot.lights;
+  std::uint32_t of(const hal::RobotKind& robot, const hal::Appearance& look) {
+    const auto [entry, fresh] = known_.emplace(&robot, 0);
+    if (fresh) {
+      std::vector<Drawing::Kind>& all = drawing_.kinds;
+      while (entry->second < all.size() && !(all[entry->second].name == robot.name && all[entry->second].look == look))
+        ++entry->second;
+      if (entry->second == all.size()) {
+        const double arm_m = robot.flies() ? robot.flight()->rotor_arm_m : 0.0;
+        all.push_back({robot.name, robot.body.radius_m, look, robot.body.height_m, arm_m});
+      }
+    }
+    return entry->second;
   }
-}
+
+ private:
+  Drawing& drawing_;
+  std::map<const hal::RobotKind*, std::uint32_t> known_;
+};
 
 void add_robots(const Space& space, const PictureOptions& options, Drawing& drawing) {
+  const Looks looks(space);
+  Kinds kinds(drawing);
+  std::vector<DrivenValue> values;
+  std::vector<LampRun> runs;
+  std::vector<hal::Rgb> lamps;
   drawing.robots.reserve(space.robot_count());
   for (std::size_t i = 0; i < space.robot_count(); ++i) {
     const RobotId id = space.robot(i);
     const Pose pose = space.pose(id);
-    Drawing::Robot robot;
-    robot.x_m = pose.x_m;
-    robot.y_m = pose.y_m;
-    robot.heading_rad = pose.heading_rad();
-    robot.kind = kind_of(space.kind(id), drawing);
+    const hal::Appearance& look = looks.appearance(id);
+    Drawing::Robot robot{pose.x_m, pose.y_m, pose.heading_rad(), kinds.of(space.kind(id), look)};
     robot.halted = space.halted(id);
-    robot.turret_rad = space.turret_rad(id);
-    robot.holding = space.holding(id);
     robot.z_m = pose.z_m;
-    add_lit_leds(space, id, robot, drawing);
+    values.clear();
+    looks.add_values(id, values);
+    robot.first_value = static_cast<std::uint32_t>(drawing.values.size());
+    for (const DrivenValue& value : values) drawing.values.push_back(value.value());
+    runs.clear();
+    looks.add_lamps(id, runs);
+    lamps.assign(look.lamps.size(), hal::kBlack);
+    for (const LampRun& run : runs) run.read(lamps.data());
+    robot.first_light = static_cast<std::uint32_t>(drawing.lit.size());
+    for (std::uint32_t lamp = 0; lamp < lamps.size(); ++lamp) {
+      if (lamps[lamp] != hal::kBlack) drawing.lit.push_back({lamp, lamps[lamp]});
+    }
+    robot.lights = static_cast<std::uint32_t>(drawing.lit.size()) - robot.first_light;
     drawing.robots.push_back(robot);
     if (options.look.ids) drawing.ids.push_back(space.robot_name(id));
     if (!space.external(id)) continue;
@@ -79,25 +83,15 @@ Drawing drawing_of(const Space& space, const PictureOptions& options) {
   drawing.max_x_m = space.arena_center_x_m() + 0.5 * space.arena_size_x_m();
   drawing.min_y_m = space.arena_center_y_m() - 0.5 * space.arena_size_y_m();
   drawing.max_y_m = space.arena_center_y_m() + 0.5 * space.arena_size_y_m();
-  for (const Object& s : space.objects()) {
-    if (!s.alive) continue;
-    if (s.kind == Object::Kind::Cylinder) {
-      drawing.cylinders.push_back({s.x_m, s.y_m, s.radius_m, s.movable, s.z_low_m, s.z_high_m - s.z_low_m});
-    } else {
-      const Pose pose{s.x_m, s.y_m, 0.0, s.cos_h, s.sin_h};
-      drawing.boxes.push_back(
-          {s.x_m, s.y_m, pose.heading_rad(), s.half_x_m, s.half_y_m, s.movable, s.z_low_m, s.z_high_m - s.z_low_m});
-    }
-  }
+  const auto there = [](const auto& one) { return one.alive; };
+  std::copy_if(space.objects().begin(), space.objects().end(), std::back_inserter(drawing.objects), there);
+  std::copy_if(space.lights().begin(), space.lights().end(), std::back_inserter(drawing.lights), there);
   for (const Region& region : space.stores().regions) {
     for (std::size_t i = 0; i < region.sides.size(); ++i) {
       const RegionSide& a = region.sides[i];
       const RegionSide& b = region.sides[(i + 1) % region.sides.size()];
       drawing.borders.push_back({a.x_m, a.y_m, b.x_m, b.y_m, a.wall});
     }
-  }
-  for (const LightSource& light : space.lights()) {
-    if (light.alive) drawing.lights.push_back({light.x_m, light.y_m, light.color, light.z_m});
   }
   if (const Field* floor = space.stores().fields.find("floor"); floor != nullptr && floor->mark() != 0) {
     drawing.floor_mark = floor->mark();

@@ -55,9 +55,7 @@ class Scene {
 class Writer {
  public:
   Writer(const Drawing& drawing, const PictureLook& look)
-      : d_(drawing),
-        shown_(look.region.value_or(
-            PictureLook::Area{drawing.min_x_m, drawing.min_y_m, drawing.max_x_m, drawing.max_y_m})) {}
+      : d_(drawing), shown_(look.region.value_or(drawing.arena())) {}
 
   std::string write() {
     s_ << "// " << one_line(d_.title) << "\n// povray +I<this file> +W1200 +H900 +A0.3\n#version 3.7;\n"
@@ -68,7 +66,7 @@ class Writer {
     ground();
     for (const Drawing::Area& area : d_.areas) this->area(area);
     things();
-    for (const Drawing::Light& light : d_.lights) lamp(light);
+    for (const LightSource& light : d_.lights) lamp(light);
     for (std::size_t k = 0; k < d_.kinds.size(); ++k) declare(k);
     for (const Drawing::Robot& robot : d_.robots) {
       if (shows(robot.x_m, robot.y_m)) this->robot(robot);
@@ -143,23 +141,19 @@ class Writer {
   }
 
   void things() {
-    for (const Drawing::Box& b : d_.boxes) {
-      if (!shows(b.x_m, b.y_m)) continue;
-      s_ << "box { ";
-      s_.point(-b.half_x_m, -b.half_y_m, 0.0) << ", ";
-      s_.point(b.half_x_m, b.half_y_m, std::max(b.height_m, kLeastHeight_m));
-      s_ << " pigment { " << (b.movable ? "srgb <0.85, 0.70, 0.52>" : "srgb <0.52, 0.56, 0.62>")
+    for (const Object& o : d_.objects) {
+      if (!shows(o.x_m, o.y_m)) continue;
+      const bool round = o.kind == Object::Kind::Cylinder;
+      const double half_x_m = round ? 0.0 : o.half_x_m, half_y_m = round ? 0.0 : o.half_y_m;
+      const double height_m = std::max(o.z_high_m - o.z_low_m, kLeastHeight_m);
+      s_ << (round ? "cylinder { " : "box { ");
+      s_.point(-half_x_m, -half_y_m, 0.0) << ", ";
+      s_.point(half_x_m, half_y_m, height_m);
+      if (round) s_ << ", " << o.radius_m;
+      s_ << " pigment { " << (o.movable ? "srgb <0.85, 0.70, 0.52>" : "srgb <0.52, 0.56, 0.62>")
          << " } finish { Dull } ";
-      place(b.x_m, b.y_m, b.z_m, b.heading_rad);
+      place(o.x_m, o.y_m, o.z_low_m, std::atan2(o.sin_h, o.cos_h));
       s_ << " }\n";
-    }
-    for (const Drawing::Cylinder& c : d_.cylinders) {
-      if (!shows(c.x_m, c.y_m)) continue;
-      s_ << "cylinder { ";
-      s_.point(c.x_m, c.y_m, c.z_m) << ", ";
-      s_.point(c.x_m, c.y_m, c.z_m + std::max(c.height_m, kLeastHeight_m)) << ", " << c.radius_m;
-      s_ << " pigment { " << (c.movable ? "srgb <0.85, 0.70, 0.52>" : "srgb <0.52, 0.56, 0.62>")
-         << " } finish { Dull } }\n";
     }
   }
 
@@ -194,7 +188,7 @@ class Writer {
     s_.point(x_m, y_m, z_m);
   }
 
-  void lamp(const Drawing::Light& light) {
+  void lamp(const LightSource& light) {
     const double radius_m = 0.012 * std::max(width_m(), depth_m());
     const double z_m = std::max(light.z_m, radius_m);
     s_ << "light_source { ";
@@ -243,14 +237,8 @@ class Writer {
       s_ << "  torus { " << 1.25 * kind.radius_m << ", " << 0.08 * kind.radius_m
          << " translate y*0.004 pigment { srgb <0.91, 0.35, 0.05> } finish { Glow } }\n";
     }
-    if (kind.gripper_reach_m > 0.0) {
-      s_ << "  box { ";
-      s_.point(0.6 * kind.radius_m, -0.15 * kind.radius_m, 0.3 * h) << ", ";
-      s_.point(kind.radius_m + kind.gripper_reach_m, 0.15 * kind.radius_m, 0.45 * h);
-      s_ << " pigment { srgb " << (r.holding ? 0.15 : 0.6) << " } finish { Body } rotate -y*" << degrees(r.turret_rad)
-         << " }\n";
-    }
-    for (std::uint32_t i = 0; i < r.lights; ++i) led(r, kind, d_.lit[r.first_light + i]);
+    links(r, kind);
+    for (std::uint32_t i = 0; i < r.lights; ++i) lamp(r, kind, d_.lit[r.first_light + i]);
     if (r.lights > 0 && shining_++ < kShiningRobots) {
       s_ << "  light_source { ";
       s_.point(0.0, 0.0, 1.6 * h) << ", ";
@@ -262,15 +250,72 @@ class Writer {
     s_ << " }\n";
   }
 
-  void led(const Drawing::Robot& r, const Drawing::Kind& kind, const Drawing::LitLed& lit) {
-    const Drawing::Kind::Led& mount = kind.leds[lit.led];
+  void links(const Drawing::Robot& r, const Drawing::Kind& kind) {
+    std::size_t held = kind.look.joints.size();
+    for (const hal::Appearance::Link& link : kind.look.links) {
+      const bool holds = !link.held.row.empty() && d_.values[r.first_value + held++] != 0.0;
+      const hal::Appearance::Point &low = link.low_m, &high = link.high_m;
+      if (link.shape == "cylinder") {
+        const double x_m = 0.5 * (low[0] + high[0]), y_m = 0.5 * (low[1] + high[1]);
+        s_ << "  cylinder { ";
+        s_.point(x_m, y_m, low[2]) << ", ";
+        s_.point(x_m, y_m, high[2]) << ", " << 0.5 * (high[0] - low[0]);
+      } else {
+        s_ << "  box { ";
+        s_.point(low[0], low[1], low[2]) << ", ";
+        s_.point(high[0], high[1], high[2]);
+      }
+      s_ << " pigment { ";
+      if (link.color.empty() || holds)
+        s_ << "srgb " << (holds ? 0.15 : 0.6);
+      else
+        s_.color(std::string_view(link.color));
+      s_ << " } finish { Body }";
+      moved(r, kind, link.joint);
+      s_ << " }\n";
+    }
+  }
+
+  /// As the joints do that it sits on, the nearest first.
+  void moved(const Drawing::Robot& r, const Drawing::Kind& kind, int joint) {
+    for (; joint != hal::Appearance::kBody; joint = kind.look.joints[static_cast<std::size_t>(joint)].parent) {
+      const hal::Appearance::Joint& j = kind.look.joints[static_cast<std::size_t>(joint)];
+      const double by = j.scale * d_.values[r.first_value + static_cast<std::size_t>(joint)];
+      if (j.slides) {
+        s_ << " translate ";
+        s_.point(by * j.axis[0], by * j.axis[1], by * j.axis[2]);
+        continue;
+      }
+      s_ << " translate ";
+      s_.point(-j.at_m[0], -j.at_m[1], -j.at_m[2]) << " ";
+      turned(j.axis, by);
+      s_ << " translate ";
+      s_.point(j.at_m[0], j.at_m[1], j.at_m[2]);
+    }
+  }
+
+  /// About an axis of length 1 [Rodrigues' formula]; rows of the matrix are where POV-Ray's axes go.
+  void turned(const hal::Appearance::Point& axis, double rad) {
+    const double c = std::cos(rad), s = std::sin(rad);
+    const auto at = [&](std::size_t row, std::size_t column) {
+      const double cross = row == column                 ? 0.0
+                           : (column + 3 - row) % 3 == 1 ? -axis[3 - row - column]
+                                                         : axis[3 - row - column];
+      return (row == column ? c : 0.0) + (1.0 - c) * axis[row] * axis[column] + s * cross;
+    };
+    s_ << "matrix <";
+    for (const std::size_t column : {0U, 2U, 1U})
+      s_ << at(0, column) << ", " << at(2, column) << ", " << at(1, column) << ", ";
+    s_ << "0, 0, 0>";
+  }
+
+  void lamp(const Drawing::Robot& r, const Drawing::Kind& kind, const Drawing::LitLamp& lit) {
+    const hal::Appearance::Lamp& mount = kind.look.lamps[lit.lamp];
     const double size_m = 0.13 * kind.radius_m;
-    const double z_m = mount.z_m > 0.0 ? mount.z_m : 0.6 * body_height_m(kind);
     s_ << "  union { sphere { 0, " << size_m << " pigment { ";
-    s_.color(lit.color) << " } finish { Glow } }";
-    s_ << " translate ";
-    s_.point(mount.x_m, mount.y_m, z_m);
-    if (kind.leds_on_turret) s_ << " rotate -y*" << degrees(r.turret_rad);
+    s_.color(lit.color) << " } finish { Glow } } translate ";
+    s_.point(mount.at_m[0], mount.at_m[1], mount.at_m[2] > 0.0 ? mount.at_m[2] : 0.6 * body_height_m(kind));
+    moved(r, kind, mount.joint);
     s_ << " }\n";
   }
 

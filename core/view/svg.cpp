@@ -1,21 +1,16 @@
 #include <algorithm>
-#include <charconv>
 #include <cmath>
-#include <map>
-#include <memory>
-#include <numbers>
 
 #include "core/view/drawing.hpp"
-#include "hal/markup.hpp"
+#include "core/view/svg_floor.hpp"
+#include "core/view/svg_robots.hpp"
 #include "hal/unit.hpp"
 
 namespace tandem::core {
 namespace {
 
 constexpr std::size_t kFullDetailRobots = 20'000;
-constexpr double kTinyRobot_px = 2.0;
-constexpr std::size_t kDotsPerPath = 2'000;  // viewers slow down on longer ones
-constexpr int kFloorCells = 240;             // along the longer side
+constexpr int kFloorCells = 240;  // along the longer side
 constexpr int kFloorShades = 24;
 constexpr double kMargin_px = 28.0;
 constexpr double kHeader_px = 52.0;
@@ -24,61 +19,14 @@ constexpr double kLetter_px = 7.4;  // mean width in the font used
 
 constexpr double kAxisLine_px = 24.0;   // beneath the frame
 constexpr double kAxisWidth_px = 46.0;  // at its left
-constexpr std::array<BodyColors, 5> kBodyColors = {{{"#b9dcae", "#3c6e33"},
-                                                    {"#aecbe8", "#2c5a8c"},
-                                                    {"#d9c3e6", "#6b4587"},
-                                                    {"#f0d9a8", "#8a6414"},
-                                                    {"#b8dfdd", "#2b6d6a"}}};
 constexpr std::string_view kInk = "#22272e";
 constexpr std::string_view kFaintInk = "#68707b";
 constexpr std::string_view kRealColor = "#e8590c";
-constexpr std::string_view kTroubleColor = "#c92a2a";
 constexpr std::string_view kWallColor = "#59626e";
 constexpr std::string_view kWallEdge = "#3f4751";
 constexpr std::string_view kMovableColor = "#d8b384";
 constexpr std::string_view kMovableEdge = "#7d5a2b";
 constexpr std::string_view kBorderColor = "#3b5bdb";
-
-/// Text of an SVG document, appended to piece by piece. Numbers get at most four decimals.
-class Svg {
- public:
-  Svg& operator<<(std::string_view text) {
-    out_ += text;
-    return *this;
-  }
-  Svg& operator<<(double value) {
-    const double rounded = std::round(value * 1e4) / 1e4;
-    char digits[40];
-    const auto end = std::to_chars(digits, digits + sizeof digits, rounded == 0.0 ? 0.0 : rounded).ptr;
-    out_.append(digits, end);
-    return *this;
-  }
-  Svg& operator<<(std::size_t value) {
-    out_ += std::to_string(value);
-    return *this;
-  }
-  std::string take() { return std::move(out_); }
-
- private:
-  std::string out_;
-};
-
-/// Without control characters.
-std::string escaped(std::string_view text) {
-  std::string kept(text);
-  std::erase_if(kept, [](char c) { return static_cast<unsigned char>(c) < 0x20; });
-  return hal::escaped_markup(kept);
-}
-
-std::string hex(hal::Rgb c) {
-  constexpr std::string_view kDigits = "0123456789abcdef";
-  std::string out = "#";
-  for (const std::uint8_t v : {c.r, c.g, c.b}) {
-    out += kDigits[v >> 4];
-    out += kDigits[v & 15U];
-  }
-  return out;
-}
 
 /// "10,000"
 std::string grouped(std::size_t n) {
@@ -88,35 +36,7 @@ std::string grouped(std::size_t n) {
   return digits;
 }
 
-double degrees(double rad) {
-  return rad * 180.0 / std::numbers::pi;
-}
-
 using Area = PictureLook::Area;
-
-Area arena_of(const Drawing& d) {
-  return {d.min_x_m, d.min_y_m, d.max_x_m, d.max_y_m};
-}
-
-/// The squares that a floor is drawn by.
-struct FloorGrid {
-  FloorGrid(const Drawing& d, const PictureLook& look) {
-    const Area arena = arena_of(d);
-    const Area shown = look.region.value_or(arena);
-    x_m = std::max(arena.min_x_m, shown.min_x_m);
-    y_m = std::max(arena.min_y_m, shown.min_y_m);
-    const double width_m = std::min(arena.max_x_m, shown.max_x_m) - x_m;
-    const double depth_m = std::min(arena.max_y_m, shown.max_y_m) - y_m;
-    cell_m = std::max(width_m, depth_m) / kFloorCells;
-    columns = std::max(1, static_cast<int>(std::ceil(width_m / cell_m - 1e-9)));
-    lines = std::max(1, static_cast<int>(std::ceil(depth_m / cell_m - 1e-9)));
-  }
-  double middle_x_m(int column) const { return x_m + (column + 0.5) * cell_m; }
-  double middle_y_m(int line) const { return y_m + (line + 0.5) * cell_m; }
-
-  double x_m = 0.0, y_m = 0.0, cell_m = 1.0;
-  int columns = 1, lines = 1;
-};
 
 /// One entry of the legend: a symbol of at most 18 px around its place, and a text.
 struct LegendEntry {
@@ -128,7 +48,7 @@ struct LegendEntry {
 class Page {
  public:
   Page(const Drawing& drawing, const PictureLook& look)
-      : d_(drawing), look_(look), shown_(look.region.value_or(arena_of(drawing))) {
+      : d_(drawing), look_(look), shown_(look.region.value_or(drawing.arena())) {
     const double width_m = shown_.max_x_m - shown_.min_x_m;
     const double depth_m = shown_.max_y_m - shown_.min_y_m;
     px_per_m_ = look.size_px / std::max(width_m, depth_m);
@@ -153,7 +73,7 @@ class Page {
          << kHeader_px + shown_.max_y_m * px_per_m_ << ") scale(" << px_per_m_ << " " << -px_per_m_ << ")\">\n";
     svg_ << "<g clip-path=\"url(#arena)\">\n";
     arena();
-    floor();
+    svg_ << floor_shades(d_, look_);
     borders();
     areas();
     lights();
@@ -217,52 +137,9 @@ class Page {
     svg_ << "</defs>\n";
   }
 
-  /// A disc whose wedge points forward, at the origin; a plain dark one where the wedge would be too small to see.
-  static std::string robot_symbol(std::size_t kind, double radius, double radius_px) {
-    const BodyColors& c = body_colors(kind);
-    Svg s;
-    if (radius_px < kTinyRobot_px) {
-      s << "<circle r=\"" << radius << "\" fill=\"" << c.edge << "\"/>";
-      return s.take();
-    }
-    s << "<circle r=\"" << 0.94 * radius << "\" fill=\"" << c.fill << "\" stroke=\"" << c.edge << "\" stroke-width=\""
-      << 0.12 * radius << "\"/><path d=\"M" << 0.88 * radius << " 0L" << -0.38 * radius << " " << 0.5 * radius << "L"
-      << -0.12 * radius << " 0L" << -0.38 * radius << " " << -0.5 * radius << "Z\" fill=\"" << c.edge << "\"/>";
-    return s.take();
-  }
-
   void arena() {
     svg_ << "<rect x=\"" << d_.min_x_m << "\" y=\"" << d_.min_y_m << "\" width=\"" << d_.max_x_m - d_.min_x_m
          << "\" height=\"" << d_.max_y_m - d_.min_y_m << "\" fill=\"#f5f4f0\"/>\n";
-  }
-
-  // The floor as runs of equal shade, one path a shade.
-  void floor() {
-    if (!d_.floor) return;
-    const FloorGrid grid(d_, look_);
-    std::map<int, Svg> paths;
-    for (int line = 0; line < grid.lines; ++line) {
-      const double y_m = grid.y_m + line * grid.cell_m;
-      const auto shade = [&](int column) {
-        const double level = std::clamp(d_.floor(grid.middle_x_m(column), grid.middle_y_m(line)), 0.0, 1.0);
-        return static_cast<int>(std::lround(level * kFloorShades));
-      };
-      for (int begin = 0; begin < grid.columns;) {
-        const int level = shade(begin);
-        int end = begin + 1;
-        while (end < grid.columns && shade(end) == level) ++end;
-        const double length_m = (end - begin) * grid.cell_m;
-        paths[level] << "M" << grid.x_m + begin * grid.cell_m << " " << y_m << "h" << length_m << "v" << grid.cell_m
-                     << "h" << -length_m << "z";
-        begin = end;
-      }
-    }
-    svg_ << "<g class=\"floor\" shape-rendering=\"crispEdges\">\n";
-    for (auto& [level, path] : paths) {
-      const auto grey = static_cast<std::uint8_t>(std::lround(255.0 * level / kFloorShades));
-      svg_ << "<path fill=\"" << hex({grey, grey, grey}) << "\" d=\"" << path.take() << "\"/>\n";
-    }
-    svg_ << "</g>\n";
   }
 
   /// Where robots were, in the colours of their kinds.
@@ -327,29 +204,30 @@ class Page {
 
   bool any_objects(bool movable) const {
     const auto is = [movable](const auto& object) { return object.movable == movable; };
-    return std::any_of(d_.boxes.begin(), d_.boxes.end(), is) ||
-           std::any_of(d_.cylinders.begin(), d_.cylinders.end(), is);
+    return std::any_of(d_.objects.begin(), d_.objects.end(), is);
   }
 
   void objects(bool movable, std::string_view name, std::string_view fill, std::string_view edge) {
     if (!any_objects(movable)) return;
     svg_ << "<g class=\"" << name << "\" fill=\"" << fill << "\" stroke=\"" << edge << "\" stroke-width=\"" << px(1.0)
          << "\">\n";
-    for (const Drawing::Box& b : d_.boxes) {
-      if (b.movable != movable) continue;
-      svg_ << "<rect x=\"" << -b.half_x_m << "\" y=\"" << -b.half_y_m << "\" width=\"" << 2.0 * b.half_x_m
-           << "\" height=\"" << 2.0 * b.half_y_m << "\" transform=\"translate(" << b.x_m << " " << b.y_m << ") rotate("
-           << degrees(b.heading_rad) << ")\"/>\n";
-    }
-    for (const Drawing::Cylinder& c : d_.cylinders) {
-      if (c.movable != movable) continue;
-      svg_ << "<circle cx=\"" << c.x_m << "\" cy=\"" << c.y_m << "\" r=\"" << c.radius_m << "\"/>\n";
+    for (const Object::Kind kind : {Object::Kind::Box, Object::Kind::Cylinder}) {
+      for (const Object& o : d_.objects) {
+        if (o.movable != movable || o.kind != kind) continue;
+        if (kind == Object::Kind::Cylinder) {
+          svg_ << "<circle cx=\"" << o.x_m << "\" cy=\"" << o.y_m << "\" r=\"" << o.radius_m << "\"/>\n";
+          continue;
+        }
+        svg_ << "<rect x=\"" << -o.half_x_m << "\" y=\"" << -o.half_y_m << "\" width=\"" << 2.0 * o.half_x_m
+             << "\" height=\"" << 2.0 * o.half_y_m << "\" transform=\"translate(" << o.x_m << " " << o.y_m
+             << ") rotate(" << degrees(std::atan2(o.sin_h, o.cos_h)) << ")\"/>\n";
+      }
     }
     svg_ << "</g>\n";
   }
 
   void lights() {
-    for (const Drawing::Light& light : d_.lights) {
+    for (const LightSource& light : d_.lights) {
       const std::string color = hex(light.color);
       for (const auto& [radius_px, opacity] : {std::pair{30.0, 0.12}, {19.0, 0.2}, {10.0, 0.45}}) {
         svg_ << "<circle cx=\"" << light.x_m << "\" cy=\"" << light.y_m << "\" r=\"" << px(radius_px) << "\" fill=\""
@@ -362,79 +240,13 @@ class Page {
 
   void robots() {
     if (d_.robots.empty()) return;
-    if (!full_detail()) return dots();
-    svg_ << "<g class=\"robots\">\n";
-    for (const Drawing::Robot& robot : d_.robots) {
-      if (shows(robot)) body(robot);
-    }
-    svg_ << "</g>\n";
-  }
-
-  void body(const Drawing::Robot& r) {
-    const Drawing::Kind& kind = d_.kinds[r.kind];
-    Svg place;
-    place << "translate(" << r.x_m << " " << r.y_m << ") rotate(" << degrees(r.heading_rad) << ")";
-    const std::string transform = place.take();
-    if (r.lights == 0 && !r.halted && kind.gripper_reach_m == 0.0) {
-      svg_ << "<use href=\"#kind" << std::size_t{r.kind} << "\" transform=\"" << transform << "\"/>\n";
+    if (!full_detail()) {
+      svg_ << robot_dots(d_);
       return;
     }
-    svg_ << "<g transform=\"" << transform << "\"><use href=\"#kind" << std::size_t{r.kind} << "\"/>";
-    const bool turret = kind.gripper_reach_m > 0.0 || (kind.leds_on_turret && r.turret_rad != 0.0);
-    if (turret) svg_ << "<g class=\"turret\" transform=\"rotate(" << degrees(r.turret_rad) << ")\">";
-    if (kind.gripper_reach_m > 0.0) svg_ << gripper(kind, r.kind, r.holding);
-    for (std::uint32_t i = 0; i < r.lights; ++i) {
-      const Drawing::LitLed& lit = d_.lit[r.first_light + i];
-      const Drawing::Kind::Led& led = kind.leds[lit.led];
-      svg_ << "<circle class=\"led\" cx=\"" << led.x_m << "\" cy=\"" << led.y_m << "\" r=\"" << 0.24 * kind.radius_m
-           << "\" fill=\"" << hex(lit.color) << "\" stroke=\"" << hex(lit.color)
-           << "\" stroke-opacity=\"0.3\" stroke-width=\"" << 0.26 * kind.radius_m << "\"/>";
-    }
-    if (turret) svg_ << "</g>";
-    if (r.halted) svg_ << halted_mark(kind.radius_m);
-    svg_ << "</g>\n";
-  }
-
-  /// An arm beyond the rim along x; filled while it holds something.
-  static std::string gripper(const Drawing::Kind& kind, std::size_t number, bool holding) {
-    const double from = 0.72 * kind.radius_m;
-    const double half = 0.16 * kind.radius_m;
-    const std::string_view edge = body_colors(number).edge;
-    Svg s;
-    s << "<rect class=\"gripper\" x=\"" << from << "\" y=\"" << -half << "\" width=\""
-      << kind.radius_m + kind.gripper_reach_m - from << "\" height=\"" << 2.0 * half << "\" fill=\""
-      << (holding ? edge : std::string_view("#ffffff")) << "\" stroke=\"" << edge << "\" stroke-width=\""
-      << 0.08 * kind.radius_m << "\"/>";
-    return s.take();
-  }
-
-  static std::string halted_mark(double radius) {
-    const double h = 0.62 * radius;
-    Svg s;
-    s << "<path class=\"halted\" d=\"M" << -h << " " << -h << "L" << h << " " << h << "M" << -h << " " << h << "L" << h
-      << " " << -h << "\" stroke=\"" << kTroubleColor << "\" stroke-width=\"" << 0.24 * radius
-      << "\" stroke-linecap=\"round\"/>";
-    return s.take();
-  }
-
-  // Thousands of discs in one path: a line of no length with round ends each.
-  void dots() {
-    std::map<std::pair<std::uint32_t, std::string>, std::vector<std::size_t>> colors;
-    for (std::size_t i = 0; i < d_.robots.size(); ++i) {
-      const Drawing::Robot& r = d_.robots[i];
-      colors[{r.kind, r.lights > 0 ? hex(d_.lit[r.first_light].color) : std::string(body_colors(r.kind).edge)}]
-          .push_back(i);
-    }
-    svg_ << "<g class=\"dots\" fill=\"none\" stroke-linecap=\"round\">\n";
-    for (const auto& [key, members] : colors) {
-      for (std::size_t begin = 0; begin < members.size(); begin += kDotsPerPath) {
-        svg_ << "<path stroke=\"" << key.second << "\" stroke-width=\"" << 2.0 * d_.kinds[key.first].radius_m
-             << "\" d=\"";
-        const std::size_t end = std::min(members.size(), begin + kDotsPerPath);
-        for (std::size_t i = begin; i < end; ++i)
-          svg_ << "M" << d_.robots[members[i]].x_m << " " << d_.robots[members[i]].y_m << "h.0001";
-        svg_ << "\"/>\n";
-      }
+    svg_ << "<g class=\"robots\">\n";
+    for (const Drawing::Robot& robot : d_.robots) {
+      if (shows(robot)) svg_ << robot_body(d_, robot);
     }
     svg_ << "</g>\n";
   }
@@ -491,7 +303,7 @@ class Page {
     for (const Drawing::RealRobot& real : d_.real) {
       const Drawing::Robot& r = d_.robots[real.robot];
       if (!shows(r)) continue;
-      if (!full_detail()) body(r);
+      if (!full_detail()) svg_ << robot_body(d_, r);
       const double ring_m = d_.kinds[r.kind].radius_m + px(4.0);
       svg_ << "<circle class=\"real\" cx=\"" << r.x_m << "\" cy=\"" << r.y_m << "\" r=\"" << ring_m
            << "\" fill=\"none\" stroke=\"" << (real.state.empty() ? kRealColor : kTroubleColor) << "\" stroke-width=\""
@@ -584,7 +396,7 @@ class Page {
     }
     for (std::size_t k = 0; k < d_.kinds.size(); ++k) {
       if (count[k] > 0)
-        add_entry(full_detail() ? robot_symbol(k, 8.0, std::max(8.0, kTinyRobot_px)) : dot_symbol(k),
+        add_entry(full_detail() ? robot_symbol(k, 8.0, 8.0) : dot_symbol(k),
                   grouped(count[k]) + " × " + d_.kinds[k].name);
     }
     if (!d_.real.empty()) {
@@ -607,9 +419,6 @@ class Page {
     if (std::any_of(d_.borders.begin(), d_.borders.end(), is_wall)) add_entry(line + "/>", "wall of a region");
     if (!std::all_of(d_.borders.begin(), d_.borders.end(), is_wall))
       add_entry(line + " stroke-dasharray=\"5 4\"/>", "gate of a region");
-  }
-  static std::string dot_symbol(std::size_t kind) {
-    return "<circle r=\"4\" fill=\"" + std::string(body_colors(kind).edge) + "\"/>";
   }
   static std::string ring_symbol(std::string_view color, std::string_view more) {
     return "<circle r=\"7.5\" fill=\"none\" stroke=\"" + std::string(color) + "\" stroke-width=\"2.5\"" +
@@ -667,10 +476,6 @@ std::string_view Drawing::Area::color() const {
   return kByKind[static_cast<std::size_t>(kind)];
 }
 
-const BodyColors& body_colors(std::size_t kind) {
-  return kBodyColors[kind % kBodyColors.size()];
-}
-
 double round_length(double limit_m) {
   const double power = std::pow(10.0, std::floor(std::log10(limit_m)));
   // The logarithm of a power of ten may come out a little too large or small.
@@ -694,23 +499,6 @@ std::string to_svg(const Drawing& drawing, const PictureLook& look) {
 
 int svg_height_px(const Drawing& drawing, const PictureLook& look) {
   return static_cast<int>(std::ceil(Page(drawing, look).height_px()));
-}
-
-void keep_floor(Drawing& drawing, const PictureLook& look) {
-  if (!drawing.floor) return;
-  const FloorGrid grid(drawing, look);
-  std::vector<float> levels;
-  for (int line = 0; line < grid.lines; ++line) {
-    for (int column = 0; column < grid.columns; ++column)
-      levels.push_back(static_cast<float>(drawing.floor(grid.middle_x_m(column), grid.middle_y_m(line))));
-  }
-  drawing.floor = [grid, levels = std::make_shared<const std::vector<float>>(std::move(levels))](double x_m,
-                                                                                                 double y_m) {
-    const auto place = [](double at, int most) { return std::clamp(static_cast<int>(std::floor(at)), 0, most - 1); };
-    const int column = place((x_m - grid.x_m) / grid.cell_m, grid.columns);
-    const int line = place((y_m - grid.y_m) / grid.cell_m, grid.lines);
-    return static_cast<double>((*levels)[static_cast<std::size_t>(line * grid.columns + column)]);
-  };
 }
 
 }  // namespace tandem::core

@@ -1,5 +1,5 @@
-// A robot that lifts boxes: an actuator with a command, its limit, state that is kept for every robot, and a joint by
-// which physics holds what is lifted.
+// A robot that lifts boxes: an actuator with a command, its limit, state that is kept for every robot, a joint by
+// which physics holds what is lifted, and what is seen of it.
 #include <algorithm>
 #include <cmath>
 
@@ -16,6 +16,8 @@ using namespace tandem;
 
 // --- what the robot is built with, and what its controller commands ---
 
+constexpr std::uint32_t kNothing = 0xFFFF'FFFFU;  // is lifted
+
 struct LiftPart {
   static constexpr std::string_view kName = "lift";
   static constexpr std::string_view kDoc = "A fork in front that lifts boxes.";
@@ -27,6 +29,17 @@ struct LiftPart {
     v.number("speed", speed_m_s, hal::unit::m_s, hal::kNotNegative, "With which it lifts.");
     v.number("force", force_N, hal::unit::none, hal::kNotNegative, "That it lifts with, in N.");
     v.text("source", source, "Where these figures come from.");
+  }
+  /// The window, pictures, films and records show this: a fork, dark while it holds something, which slides upwards.
+  void appear(const hal::RobotKind& kind, hal::Appearance& look) const {
+    const double rim_m = kind.body.radius_m;
+    look.joints.push_back({.name = "lift", .slides = true, .by = {"lift", "target"}});
+    look.links.push_back({.name = "fork",
+                          .shape = "fork",
+                          .low_m = {0.8 * rim_m, -0.5 * rim_m, 0.0},
+                          .high_m = {rim_m + reach_m, 0.5 * rim_m, 0.02},
+                          .on = "lift",
+                          .held = {"lift", "joint", 0, true, kNothing}});
   }
 };
 
@@ -56,7 +69,6 @@ struct LiftDrive : hal::Command {
 struct LiftState {
   static constexpr std::string_view kName = "lift";
   static constexpr std::string_view kDoc = "What lifts were told, and what they hold.";
-  static constexpr std::uint32_t kNothing = 0xFFFF'FFFFU;
   double target_m = 0.0;
   std::uint32_t joint = kNothing;  // of SpaceStores::joints
   std::uint32_t generation = 0;    // of that joint: a name that differs from run to run, so it is no state
@@ -106,7 +118,7 @@ class Lifting final : public core::Coupling {
       joint->alive = false;
       joint = nullptr;
     }
-    if (joint == nullptr) lift.joint = LiftState::kNothing;
+    if (joint == nullptr) lift.joint = kNothing;
     if (joint == nullptr && holds) joint = take(stores, row, lift);
     if (joint == nullptr) return;
     const double most_m_s = stores.kind_of_row(row).part<LiftPart>()->speed_m_s;

@@ -21,6 +21,16 @@ struct GripperPart {
     v.number("height", height_m, unit::m, kNotNegative, "Of the claws above the ground.");
     v.text("source", source, "Where these figures come from.");
   }
+  void appear(const RobotKind& kind, Appearance& look) const {
+    const double r = kind.body.radius_m, h = kind.body.height_m, half_m = 0.16 * r;
+    constexpr double kNothing = 0xFFFF'FFFFU;  // is held: the number of no joint
+    look.links.push_back({.name = "gripper",
+                          .shape = "fork",
+                          .low_m = {0.72 * r, -half_m, 0.3 * h},
+                          .high_m = {r + reach_m, half_m, 0.45 * h},
+                          .on = "turret",
+                          .held = {"gripper", "joint", 0, true, kNothing}});
+  }
 };
 
 /// Command of the claws: how far to open. 0: they are together and hold nothing. Safe value: 0.

@@ -5,28 +5,11 @@
 #include <string>
 #include <vector>
 
+#include "hal/appearance.hpp"
 #include "hal/port.hpp"
+#include "hal/rgb.hpp"
 
 namespace tandem::hal {
-
-/// 8 bits a channel. A robot whose LEDs have one colour lights them when any channel is above half.
-struct Rgb {
-  std::uint8_t r = 0, g = 0, b = 0;
-  friend bool operator==(const Rgb&, const Rgb&) = default;
-};
-
-/// Whether both may be one light, as a camera shows its colour and as it was set.
-constexpr bool alike(Rgb a, Rgb b) noexcept {
-  constexpr int kMost = 64;
-  const auto near = [](int one, int other) { return one - other < kMost && other - one < kMost; };
-  return near(a.r, b.r) && near(a.g, b.g) && near(a.b, b.b);
-}
-
-inline constexpr Rgb kBlack{0, 0, 0};
-inline constexpr Rgb kRed{255, 0, 0};
-inline constexpr Rgb kGreen{0, 255, 0};
-inline constexpr Rgb kBlue{0, 0, 255};
-inline constexpr Rgb kWhite{255, 255, 255};
 
 /// The ring of LEDs on the rim, in the order of the part's mounts; a beacon on top, where a robot has one, is the last.
 /// Safe value: all off.
@@ -85,6 +68,12 @@ struct LedsPart {
     v.text("source", source, "Where these figures come from.");
   }
   std::string flaw() const { return mounts_flaw(mounts, RingLeds::kCapacity); }
+  void appear(const RobotKind&, Appearance& look) const {
+    for (std::size_t i = 0; i < mounts.size(); ++i)
+      look.lamps.push_back({{mounts[i].x_m, mounts[i].y_m, mounts[i].z_m},
+                            on_turret ? "turret" : "",
+                            Driver{"actuator leds", "rgb", static_cast<std::int64_t>(3 * i)}});
+  }
 };
 
 /// The upper of an eye-bot's two rings, which is seen from the side; `leds` is the lower one, seen from beneath. Safe

@@ -47,7 +47,7 @@ void register_ports(Registrar& registrar) {
             MicrophonesPart, BatteryPart, RangeAndBearingPart, LedsPart, UpperLedsPart, BodyLedPart, FrontLedPart,
             CameraLedPart, TurretPart, GripperPart, ScannerPart, OmniCameraPart, CameraPart, HeadPart, AltimeterPart,
             TimeOfFlightPart, CliffPart, SelectorPart, ButtonsPart, SpeakerPart, BrakesPart, SteppersPart, FittedWheels,
-            FittedProximity>(registrar);
+            FittedProximity, LookPart>(registrar);
 }
 
 }  // namespace tandem::hal

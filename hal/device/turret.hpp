@@ -19,6 +19,10 @@ struct TurretPart {
     v.number("torque", torque_Nm, unit::none, kNotNegative, "In Nm, that its motor turns a load with.");
     v.text("source", source, "Where these figures come from.");
   }
+  void appear(const RobotKind&, Appearance& look) const {
+    look.joints.push_back({.name = "turret", .by = {"turret", "angle"}});
+    look.upper = "turret";
+  }
 };
 
 /// Drive mode of a turret. The numbers are part of the port.

@@ -16,6 +16,7 @@ using scenarios::Tandem;
 using scenarios::text_of;
 using testing::AllOf;
 using testing::HasSubstr;
+using testing::Not;
 namespace fs = std::filesystem;
 
 const fs::path kExamples = fs::path(test::kSourceDir) / "examples" / "plugins";
@@ -143,7 +144,8 @@ std::map<long, double> of_crate(const std::string& dump, const std::string& fiel
 }
 
 TEST_F(Examples, TheLiftRaisesTheBoxCarriesItAndPutsItDown) {
-  run({"lift.xml", "--quiet", "--dump", "lift_state.csv", "--dump-every", "10"});
+  run({"lift.xml", "--quiet", "--dump", "lift_state.csv", "--dump-every", "10", "--record", "lift.record", "--picture",
+       "lift.svg", "--picture-at", "50", "--povray", "lift.pov"});
   const std::string dump = text_of(path() / "lift_state.csv");
   EXPECT_THAT(dump, HasSubstr(",robot p,lift,target,0.05")) << "its state is dumped as everybody's";
   auto low_m = of_crate(dump, "z_low"), x_m = of_crate(dump, "x");
@@ -154,6 +156,17 @@ TEST_F(Examples, TheLiftRaisesTheBoxCarriesItAndPutsItDown) {
   EXPECT_NEAR(x_m[70], 0.76, 0.01) << "50 steps at 0.1 m/s";
   EXPECT_NEAR(low_m[100], 0.0, 1e-3);
   EXPECT_NEAR(x_m[100], x_m[80], 1e-3) << "the robot went back without it";
+
+  const std::string lifted = text_of(path() / "lift-000050.svg"), down = text_of(path() / "lift.svg");
+  const auto fork = [](const std::string& svg) {
+    return svg.substr(std::min(svg.size(), svg.find("<rect class=\"fork\"")), 120);
+  };
+  EXPECT_THAT(fork(lifted), Not(HasSubstr("fill=\"#ffffff\""))) << "it holds something";
+  EXPECT_THAT(fork(down), HasSubstr("fill=\"#ffffff\""));
+  EXPECT_THAT(text_of(path() / "lift.pov"), HasSubstr("translate <0, 0, 0>")) << "the fork is down";
+  Tandem of_record({"picture", "lift.record", "--at", "50", "-o", "again.svg"}, path());
+  ASSERT_EQ(of_record.wait(), 0) << of_record.errors();
+  EXPECT_EQ(text_of(path() / "again.svg"), lifted);
 }
 
 TEST_F(Examples, TheLiftIsRefusedWhereTheEngineHasNoJoints) {

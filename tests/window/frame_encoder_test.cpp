@@ -17,13 +17,13 @@ T read_at(const std::string& bytes, std::size_t at) {
   return value;
 }
 
-/// Two robots: one with a turret and three LEDs, one without.
+/// Two robots: one with three LEDs and two values that move it, one without.
 Frame two_robots(std::uint32_t members_number = 1) {
   auto members = std::make_shared<FrameMembers>();
   members->number = members_number;
   members->json = {{"ids", {"a", "b"}}};
   members->first_led = {0, 3, 3};
-  members->turrets = {1, 0};
+  members->first_value = {0, 2, 2};
   Frame frame;
   frame.tick = 42;
   frame.time_s = 4.2;
@@ -33,7 +33,7 @@ Frame two_robots(std::uint32_t members_number = 1) {
   frame.cos_h = {0.0, 1.0};
   frame.sin_h = {1.0, 0.0};
   frame.z_m = {0.0F, 1.2345F};
-  frame.turret_rad = {static_cast<float>(-0.5 * std::numbers::pi), 0.0F};
+  frame.values = {0.0F, -1.25F};
   frame.leds = {hal::kBlack, hal::kRed, hal::kBlack};
   return frame;
 }
@@ -69,7 +69,7 @@ TEST(FrameEncoder, PosesAreSixteenBytesARobotBehindThirtyTwo) {
   encoder.take(two_robots());
   ViewerState viewer;
   const auto messages = update(encoder, viewer);
-  EXPECT_EQ(types_of(messages), "members marks 2 1");
+  EXPECT_EQ(types_of(messages), "members marks 2 4 1");
   const std::string& poses = *messages.back().bytes;
   ASSERT_EQ(poses.size(), 32U + 2U * 16U);
   EXPECT_EQ(read_at<std::uint32_t>(poses, 4), 1U);
@@ -82,7 +82,7 @@ TEST(FrameEncoder, PosesAreSixteenBytesARobotBehindThirtyTwo) {
   EXPECT_EQ(read_at<std::uint16_t>(poses, 40), 0U);
   EXPECT_EQ(read_at<std::uint16_t>(poses, 42), 16384U);
   EXPECT_EQ(read_at<std::uint16_t>(poses, 44), 0xF800U);
-  EXPECT_EQ(read_at<std::uint8_t>(poses, 46), 192U);
+  EXPECT_EQ(read_at<std::uint16_t>(poses, 46), 0U);
   EXPECT_EQ(read_at<std::uint16_t>(poses, 56), 1235U);
   EXPECT_EQ(read_at<std::uint16_t>(poses, 60), 0U);
 }
@@ -98,7 +98,7 @@ TEST(FrameEncoder, HeightsAboveTheirRangeAreSaidToBe) {
   EXPECT_EQ(read_at<std::uint16_t>(*messages.back().bytes, 56), 0U);
 }
 
-TEST(FrameEncoder, LeanIsSentOfWhoHasNoTurret) {
+TEST(FrameEncoder, LeanIsSentOfEverybody) {
   FrameEncoder encoder("");
   Frame frame = two_robots();
   const double half = 0.5 * 0.25 * std::numbers::pi;  // of a roll by 45 degrees
@@ -117,7 +117,7 @@ TEST(FrameEncoder, LedsAreSentOnceAndWhenTheyChangeAlsoToWhoMissedFrames) {
   encoder.take(two_robots());
   const auto first = update(encoder, fast);
   update(encoder, slow);
-  ASSERT_EQ(types_of(first), "members marks 2 1");
+  ASSERT_EQ(types_of(first), "members marks 2 4 1");
   ASSERT_EQ(first[2].bytes->size(), 32U + 8U);
   EXPECT_EQ(read_at<std::uint32_t>(*first[2].bytes, 32), 0U);
   EXPECT_EQ(read_at<std::uint8_t>(*first[2].bytes, 36), 1U);
@@ -142,13 +142,43 @@ TEST(FrameEncoder, LedsAreSentOnceAndWhenTheyChangeAlsoToWhoMissedFrames) {
   EXPECT_EQ(types_of(update(encoder, slow)), "");
 }
 
+TEST(FrameEncoder, WhatMovesOnRobotsIsSentOnceAndWhenItChanges) {
+  FrameEncoder encoder("");
+  ViewerState fast, slow;
+  encoder.take(two_robots());
+  const auto first = update(encoder, fast);
+  ASSERT_EQ(types_of(first), "members marks 2 4 1");
+  const std::string& values = *first[3].bytes;
+  ASSERT_EQ(values.size(), 32U + 12U) << "the other one is 0, as all are at first";
+  EXPECT_EQ(read_at<std::uint32_t>(values, 32), 0U);
+  EXPECT_EQ(read_at<std::uint32_t>(values, 36), 1U);
+  EXPECT_EQ(read_at<float>(values, 40), -1.25F);
+
+  const auto same_members = encoder.frame().members;
+  const auto next = [&](float value) {
+    Frame frame = two_robots();
+    frame.members = same_members;
+    frame.values[1] = value;
+    encoder.take(std::move(frame));
+  };
+  next(-1.25F);
+  EXPECT_EQ(types_of(update(encoder, fast)), "1");
+  next(0.5F);
+  EXPECT_EQ(types_of(update(encoder, fast)), "4 1");
+  next(0.0F);
+  const auto back = update(encoder, fast);
+  ASSERT_EQ(types_of(back), "4 1");
+  EXPECT_EQ(read_at<float>(*back[0].bytes, 40), 0.0F) << "what became 0 again is told";
+  EXPECT_EQ(types_of(update(encoder, slow)), "members marks 2 4 1");
+}
+
 TEST(FrameEncoder, NewMembersAreTellingTheirLedsAnew) {
   FrameEncoder encoder("");
   ViewerState viewer;
   encoder.take(two_robots(1));
   update(encoder, viewer);
   encoder.take(two_robots(2));
-  EXPECT_EQ(types_of(update(encoder, viewer)), "members marks 2 1");
+  EXPECT_EQ(types_of(update(encoder, viewer)), "members marks 2 4 1");
 }
 
 TEST(FrameEncoder, ObjectsAreSentWhenTheyMoved) {
@@ -182,9 +212,9 @@ TEST(FrameEncoder, LayersGoToWhoLooksAtThem) {
   frame.layers.push_back({3, {core::Segment{}}, Json::array({{{"text", "hello"}}})});
   encoder.take(std::move(frame));
   const auto messages = update(encoder, viewer, {3});
-  EXPECT_EQ(types_of(messages), "members marks 2 1 3 texts");
-  EXPECT_EQ(messages[4].bytes->size(), 32U + 28U);
-  EXPECT_EQ(types_of(update(encoder, other)), "members marks 2 1");
+  EXPECT_EQ(types_of(messages), "members marks 2 4 1 3 texts");
+  EXPECT_EQ(messages[5].bytes->size(), 32U + 28U);
+  EXPECT_EQ(types_of(update(encoder, other)), "members marks 2 4 1");
   EXPECT_EQ(types_of(update(encoder, viewer, {3})), "");
 }
 

@@ -158,13 +158,13 @@ TEST(Window, WantsFramesOnlyWhileSomebodyWatches) {
 
 TEST(Window, AViewerGetsTheFrameThatIsShownAndWhatWasTold) {
   const auto window = open_window();
-  window->tell({{"type", "hello"}, {"protocol", 1}, {"layers", Json::array()}});
+  window->tell({{"type", "hello"}, {"protocol", 2}, {"layers", Json::array()}});
   window->tell({{"type", "state"}, {"tick", 5}});
   window->tell({{"type", "log"}, {"entries", {{{"n", 1}, {"text", "one"}}}}});
   window->tell({{"type", "log"}, {"entries", {{{"n", 2}, {"text", "two"}}}}});
   window->show(frame_of(3, 5));
   Client client = join(*window);
-  EXPECT_EQ(next_text(client, "hello")["protocol"], 1);
+  EXPECT_EQ(next_text(client, "hello")["protocol"], 2);
   bool state = false, log = false, frame = false;
   EXPECT_TRUE(eventually(
       [&] {

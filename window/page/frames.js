@@ -1,11 +1,11 @@
-// Decodes the binary messages of the server: poses, LEDs, drawings of layers. All numbers are little-endian, as are
+// Decodes the binary messages of the server: poses, LEDs, drawings of layers, what moves on robots. All numbers are little-endian, as are
 // all processors that browsers run on, so typed arrays lie directly on the bytes.
 
 const header_bytes = 32;
-const types = { 1: 'poses', 2: 'leds', 3: 'drawing' };
-const row_bytes = { poses: 16, leds: 8, drawing: 28 };
+const types = { 1: 'poses', 2: 'leds', 3: 'drawing', 4: 'values' };
+const row_bytes = { poses: 16, leds: 8, drawing: 28, values: 12 };
 
-/** { type, number, tick, count, members, time_s, bytes, words, floats }, or null: not a frame of this protocol. */
+/** { type, number, tick, count, members, time_s, bytes, words, floats, integers }, or null: not a frame of this protocol. */
 export function decodeFrame(buffer) {
   if (buffer.byteLength < header_bytes) return null;
   const head = new DataView(buffer);
@@ -22,6 +22,7 @@ export function decodeFrame(buffer) {
     bytes: new Uint8Array(buffer, header_bytes),
     words: new Uint16Array(buffer, header_bytes),
     floats: new Float32Array(buffer, header_bytes),
+    integers: new Uint32Array(buffer, header_bytes),
   };
 }
 
@@ -31,7 +32,6 @@ export const rowX = (frame, i) => frame.floats[4 * i];
 export const rowY = (frame, i) => frame.floats[4 * i + 1];
 export const rowZ = (frame, i) => frame.words[8 * i + 4] / 1000;
 export const rowHeading = (frame, i) => (frame.words[8 * i + 5] / 65536) * turn;
-export const rowTurret = (frame, i) => (frame.bytes[16 * i + 14] / 256) * turn;
 const tilt = (byte) => (((byte << 24) >> 24) / 128) * (Math.PI / 2);
 export const rowRoll = (frame, i) => tilt(frame.bytes[16 * i + 14]);
 export const rowPitch = (frame, i) => tilt(frame.bytes[16 * i + 15]);

@@ -152,7 +152,7 @@ function start() {
     document.title = `${hello.experiment || 'Tandem'} – Tandem`;
     element('mode').textContent = { run: 'simulation', mixed: 'mixed reality', record: 'record' }[hello.mode] ?? hello.mode;
     if (hello.mode === 'record') link.textContent = 'connected';
-    if (hello.protocol !== 1) banner(`This page speaks protocol 1, the server ${hello.protocol}: reload the page.`);
+    if (hello.protocol !== 2) banner(`This page speaks protocol 2, the server ${hello.protocol}: reload the page.`);
     showTools();
   });
   connection.on('role', ({ role }) => { element('role').hidden = role !== 'viewer'; });

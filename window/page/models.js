@@ -2,7 +2,7 @@
 import * as THREE from './three.module.js';
 
 // What a vertex belongs to, for the shader.
-const moves = { body: 0, turret: 1, ground: 2, gripper: 3 };
+const moves = { body: 0, ground: 1, joint: 2 };             // joint: 2 + its number
 const paint = { own: 0, kind: 1, lit: 2, led: 3 };  // led: 3 + its number
 
 /** Collects triangles. */
@@ -12,12 +12,13 @@ class Shape {
   tint = [];
   part = [];
 
-  triangle(points, normals, { color = [1, 1, 1], moves: move = moves.body, paint: painted = paint.kind }) {
+  /** Of a link that may hold something: `held` is the number of that value, `middle` the y of its middle. */
+  triangle(points, normals, { color = [1, 1, 1], moves: move = moves.body, paint: painted = paint.kind, held = -1, middle = 0 }) {
     for (let i = 0; i < 3; ++i) {
       this.position.push(...points[i]);
       this.normal.push(...normals[i]);
       this.tint.push(...color);
-      this.part.push(move, painted);
+      this.part.push(move, painted, held, middle);
     }
   }
 
@@ -77,8 +78,8 @@ class Shape {
     const known = new Map();
     const kept = { position: [], normal: [], tint: [], part: [] };
     const index = [];
-    for (let i = 0; i < this.part.length / 2; ++i) {
-      const corner = { position: this.position.slice(3 * i, 3 * i + 3), normal: this.normal.slice(3 * i, 3 * i + 3), tint: this.tint.slice(3 * i, 3 * i + 3), part: this.part.slice(2 * i, 2 * i + 2) };
+    for (let i = 0; i < this.part.length / 4; ++i) {
+      const corner = { position: this.position.slice(3 * i, 3 * i + 3), normal: this.normal.slice(3 * i, 3 * i + 3), tint: this.tint.slice(3 * i, 3 * i + 3), part: this.part.slice(4 * i, 4 * i + 4) };
       const key = JSON.stringify(corner);
       if (!known.has(key)) {
         known.set(key, known.size);
@@ -88,12 +89,15 @@ class Shape {
     }
     const geometry = new THREE.InstancedBufferGeometry();
     for (const [name, values] of Object.entries(kept)) {
-      geometry.setAttribute(name, new THREE.BufferAttribute(new Float32Array(values), name === 'part' ? 2 : 3));
+      geometry.setAttribute(name, new THREE.BufferAttribute(new Float32Array(values), name === 'part' ? 4 : 3));
     }
     geometry.setIndex(index);
     return geometry;
   }
 }
+
+/** Values that move a robot, at most; further ones stay as they are. */
+export const mostValues = 8;
 
 const dark = [0.13, 0.14, 0.16], mid = [0.45, 0.47, 0.5], light = [0.92, 0.93, 0.94], shade = [0, 0, 0];
 
@@ -107,13 +111,39 @@ function arrow(shape, r, z, look) {
   shape.flat([[0.82 * r, 0, z], [-0.05 * r, 0, z], [-0.3 * r, -0.48 * r, z]], [0, 0, 1], look);
 }
 
-/** A robot near enough to be seen: body, wheels or rotors, turret, gripper, every LED. Of `fine` ones curves are rounder. */
+/** The number of the joint of that name; -1: the body. */
+const jointOf = (look, name) => (name === undefined ? -1 : look.joints.findIndex((joint) => joint.name === name));
+const sitsOn = (look, name) => {
+  const joint = jointOf(look, name);
+  return joint < 0 || joint >= mostValues ? moves.body : moves.joint + joint;
+};
+const rgbOf = (hex) => [1, 3, 5].map((at) => parseInt(hex.slice(at, at + 2), 16) / 255);
+
+/** What the kind says that there is beside the body, but for lamps. */
+function links(shape, look, fine) {
+  let value = look.joints.length;  // the values of joints come first
+  for (const { low: [x0, y0, z0], high: [x1, y1, z1], shape: form, on, color, held } of look.links) {
+    const paints = { color: color === undefined ? light : rgbOf(color), moves: sitsOn(look, on), paint: paint.own, held: held === undefined ? -1 : value++, middle: (y0 + y1) / 2 };
+    if (form === 'cylinder') {
+      const x = (x0 + x1) / 2, r = (x1 - x0) / 2, corners = fine ? 14 : 8;
+      shape.side(x, paints.middle, z0, r, z1, r, corners, paints);
+      shape.disc(x, paints.middle, z1, r, corners, paints);
+    } else if (form === 'fork') {
+      const prong = 0.3 * (y1 - y0);
+      shape.box(x0, x1, y0, y0 + prong, z0, z1, paints);
+      shape.box(x0, x1, y1 - prong, y1, z0, z1, paints);
+    } else {
+      shape.box(x0, x1, y0, y1, z0, z1, paints);
+    }
+  }
+}
+
+/** A robot near enough to be seen: body, wheels or rotors, what its kind's look has, every lamp. Of `fine` ones curves are rounder. */
 export function fullModel(body, fine) {
   const corners = fine ? 14 : 8;
   const { radius: r, height: h } = bodySize(body);
   const shape = new Shape();
   shape.disc(0, 0, 0.0008, isFlyer(body) ? 1.3 * body.rotor_arm : 1.06 * r, corners, { color: shade, moves: moves.ground, paint: paint.own });
-  const leds = body.leds ?? [];
   if (isFlyer(body)) {
     const arm = body.rotor_arm, rotor = 0.45 * arm, deck = 0.62 * h;
     shape.side(0, 0, 0.25 * h, 0.3 * r, deck, 0.42 * r, 10, {});
@@ -131,8 +161,8 @@ export function fullModel(body, fine) {
     }
     shape.side(0, 0, 0, 0.34 * r, 0.25 * h, 0.3 * r, 8, { color: mid, paint: paint.own });
   } else {
-    const split = body.leds_on_turret || body.gripper_reach > 0 ? 0.55 * h : 0.86 * h;  // above: what turns
-    const upper = split < 0.8 * h ? moves.turret : moves.body;
+    const upper = sitsOn(body.look, body.look.upper);
+    const split = upper === moves.body ? 0.86 * h : 0.55 * h;  // above: what turns
     shape.side(0, 0, 0.12 * h, 0.93 * r, split, 0.97 * r, corners, { color: mid, paint: paint.kind });
     for (const y of [0.72 * r, -0.72 * r]) {
       shape.box(-0.42 * r, 0.42 * r, y - 0.1 * r, y + 0.1 * r, 0, 0.5 * Math.min(h, r), { color: dark, paint: paint.own });
@@ -141,33 +171,39 @@ export function fullModel(body, fine) {
     shape.side(0, 0, split, 0.9 * r, h, 0.86 * r, corners, { moves: upper, paint: paint.lit });
     shape.disc(0, 0, h, 0.86 * r, corners, { moves: upper, paint: paint.lit });
     arrow(shape, 0.86 * r, h + 0.002, { color: dark, paint: paint.own });
-    if (body.gripper_reach > 0) {
-      const reach = r + body.gripper_reach, z = 0.3 * h;
-      for (const side of [1, -1]) {
-        const [y0, y1] = [side * 0.16 * r, side * 0.3 * r].sort((a, b) => a - b);
-        shape.box(0.9 * r, reach, y0, y1, z, z + 0.14 * r, { color: light, moves: moves.gripper, paint: paint.own });
-      }
-    }
   }
+  links(shape, body.look, fine);
   const size = Math.max(0.004, 0.075 * r);
-  leds.forEach(([x, y, z], number) => {
-    shape[fine ? 'bead' : 'fleck'](x, y, Math.max(z, isFlyer(body) ? 0.66 * h : 0), size, { color: dark, moves: body.leds_on_turret ? moves.turret : moves.body, paint: paint.led + number });
+  body.look.lamps.forEach(({ at: [x, y, z], on }, number) => {
+    shape[fine ? 'bead' : 'fleck'](x, y, Math.max(z, isFlyer(body) ? 0.66 * h : 0), size, { color: dark, moves: sitsOn(body.look, on), paint: paint.led + number });
   });
   return shape.geometry();
 }
 
 const vertexShader = /* glsl */ `
   attribute vec3 tint;
-  attribute vec2 part;    // how the vertex moves, what it is painted with
+  attribute vec4 part;    // how the vertex moves, what it is painted with; the value that says whether it holds something, and its middle
   attribute vec4 pose;    // x, y, z, row in the table of LEDs or -1
-  attribute vec4 turn;    // cosine and sine of the heading; of the turret, or where FLIES: roll and pitch
-  attribute vec4 lit;     // mixed colour of lit LEDs; w: 0.5 when any is lit, 0.25 more when it grips something
+  attribute vec4 turn;    // cosine and sine of the heading, roll and pitch
+  attribute vec4 lit;     // mixed colour of lit LEDs; w: whether any is lit
+  attribute vec4 valuesA; // what moves on the robot
+  attribute vec4 valuesB;
+  uniform vec4 jointAxis[${mostValues}];  // w: 1 of one that slides
+  uniform vec4 jointAt[${mostValues}];    // w: scale of the value
+  uniform float jointParent[${mostValues}];
   uniform sampler2D leds;
   uniform vec2 ledsSize;
   uniform vec3 kindColor;
   uniform float byKind;
   varying vec4 color;
 
+  float value(float number) {
+    vec4 is = vec4(equal(vec4(0.0, 1.0, 2.0, 3.0), vec4(mod(number, 4.0))));
+    return dot(number < 3.5 ? valuesA : valuesB, is);
+  }
+  vec3 about(vec3 v, vec3 axis, float angle) {
+    return cos(angle) * v + sin(angle) * cross(axis, v) + (1.0 - cos(angle)) * dot(axis, v) * axis;
+  }
   vec3 aboutZ(vec3 v, vec2 by) {
     return vec3(by.x * v.x - by.y * v.y, by.y * v.x + by.x * v.y, v.z);
   }
@@ -178,17 +214,27 @@ const vertexShader = /* glsl */ `
 
   void main() {
     vec3 p = position, n = normal;
-    bool onGround = part.x > 1.5 && part.x < 2.5;
-    #ifdef FLIES
-      if (!onGround) {
-        vec2 roll = vec2(cos(turn.z), sin(turn.z)), pitch = vec2(cos(turn.w), sin(turn.w));
-        p = lean(p, roll, pitch);
-        n = lean(n, roll, pitch);
+    bool onGround = part.x > 0.5 && part.x < 1.5;
+    bool holds = part.z > -0.5 && value(part.z) != 0.0;
+    if (holds) p.y = part.w + 0.45 * (p.y - part.w);  // prongs close
+    float joint = part.x - ${moves.joint}.0;
+    for (int i = 0; i < ${mostValues}; ++i) {
+      if (joint < -0.5) break;
+      int j = int(joint + 0.5);
+      float by = jointAt[j].w * value(joint);
+      if (jointAxis[j].w > 0.5) {
+        p += by * jointAxis[j].xyz;
+      } else {
+        p = jointAt[j].xyz + about(p - jointAt[j].xyz, jointAxis[j].xyz, by);
+        n = about(n, jointAxis[j].xyz, by);
       }
-    #else
-      if (part.x > 2.5 && fract(lit.w * 2.0) > 0.25) p.y *= 0.45;  // fingers that hold something
-      if (part.x > 0.5 && !onGround) { p = aboutZ(p, turn.zw); n = aboutZ(n, turn.zw); }
-    #endif
+      joint = jointParent[j];
+    }
+    if (!onGround) {
+      vec2 roll = vec2(cos(turn.z), sin(turn.z)), pitch = vec2(cos(turn.w), sin(turn.w));
+      p = lean(p, roll, pitch);
+      n = lean(n, roll, pitch);
+    }
     p = aboutZ(p, turn.xy);
     n = aboutZ(n, turn.xy);
     p += vec3(pose.xy, onGround ? 0.0 : pose.z);
@@ -196,7 +242,7 @@ const vertexShader = /* glsl */ `
 
     float light = 0.62 + 0.38 * max(0.0, dot(normalize(n), vec3(0.36, -0.48, 0.8)));
     vec3 shown;
-    if (part.y < 0.5) shown = tint * light;
+    if (part.y < 0.5) shown = (holds ? 0.35 : 1.0) * tint * light;
     else if (part.y < 1.5) shown = tint * kindColor * light;
     else if (part.y < 2.5) shown = lit.w > 0.45 && byKind < 0.5 ? lit.rgb * (0.8 + 0.2 * light) : kindColor * light;
     else {
@@ -212,14 +258,24 @@ const fragmentShader = /* glsl */ `
   void main() { gl_FragColor = color; }
 `;
 
-export function robotMaterial(kindColor, leds, flies) {
+/** `look`: of the kind. */
+export function robotMaterial(kindColor, leds, look) {
+  const joints = look.joints.slice(0, mostValues);
+  const padded = (values, empty) => Array.from({ length: mostValues }, (_, i) => values[i] ?? empty);
   return new THREE.ShaderMaterial({
-    defines: flies ? { FLIES: 1 } : {},
     vertexShader,
     fragmentShader,
     side: THREE.DoubleSide,
     transparent: true,
-    uniforms: { kindColor: { value: new THREE.Color(kindColor) }, leds: leds.texture, ledsSize: leds.size, byKind: { value: 0 } },
+    uniforms: {
+      kindColor: { value: new THREE.Color(kindColor) },
+      leds: leds.texture,
+      ledsSize: leds.size,
+      byKind: { value: 0 },
+      jointAxis: { value: padded(joints.map(({ axis, slides }) => new THREE.Vector4(...axis, slides ? 1 : 0)), new THREE.Vector4()) },
+      jointAt: { value: padded(joints.map(({ at, scale }) => new THREE.Vector4(...at, scale)), new THREE.Vector4()) },
+      jointParent: { value: padded(joints.map(({ on }) => jointOf(look, on)), -1) },
+    },
   });
 }
 

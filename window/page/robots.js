@@ -1,8 +1,8 @@
 // Draws the robots of the newest frame, in full or as discs, by how large they are in the picture; rings around the chosen, real and halted ones.
 import * as THREE from './three.module.js';
 import { okabeIto, kindColor, rgb } from './palette.js';
-import { fullModel, robotMaterial, discMaterial, bodySize, isFlyer } from './models.js';
-import { rowX, rowY, rowZ, rowHeading, rowTurret, rowRoll, rowPitch, rowColor } from './frames.js';
+import { fullModel, robotMaterial, discMaterial, bodySize, mostValues } from './models.js';
+import { rowX, rowY, rowZ, rowHeading, rowRoll, rowPitch, rowColor } from './frames.js';
 
 const most_in_full = 1200;         // robots in the picture; above that the largest so many
 const most_fine = 250;             // above that curves have fewer corners
@@ -32,14 +32,14 @@ class Herd {
     this.mesh.geometry.dispose();
     add('pose', new Float32Array(4 * this.capacity), false);
     add('lit', new Uint8Array(4 * this.capacity), true);
-    add('turn', new Float32Array(4 * this.capacity), false);
+    for (const name of ['turn', 'valuesA', 'valuesB']) add(name, new Float32Array(4 * this.capacity), false);
   }
 
   finish() {
     this.mesh.visible = this.count > 0;
     this.mesh.geometry.maxInstancedCount = this.count;
     if (this.count === 0) return;
-    for (const name of ['pose', 'lit', 'turn']) {
+    for (const name of ['pose', 'lit', 'turn', 'valuesA', 'valuesB']) {
       const attribute = this.mesh.geometry.attributes[name];
       attribute.updateRange = { offset: 0, count: 4 * this.count };
       attribute.needsUpdate = true;
@@ -71,7 +71,7 @@ export class Robots {
     world.on('members', () => this.rebuild());
     world.on('hello', () => this.rebuild());
     world.on('leds', () => this.takeLeds());
-    for (const name of ['poses', 'marks', 'leds']) world.on(name, () => view.invalidate());
+    for (const name of ['poses', 'marks', 'leds', 'values']) world.on(name, () => view.invalidate());
     view.addItem(this);
   }
 
@@ -79,7 +79,7 @@ export class Robots {
     for (const herd of this.herds.flat()) herd.dispose(this.group);
     const { bodies } = this.world.members;
     this.herds = bodies.map((body, kind) => {
-      const material = robotMaterial(kindColor(kind), this.leds, isFlyer(body));
+      const material = robotMaterial(kindColor(kind), this.leds, body.look);
       return [true, false].map((fine) => new Herd(this.group, fullModel(body, fine), material));
     });
     this.tints = bodies.map((_, kind) => rgb(kindColor(kind)).map((value) => 230 * value));
@@ -184,18 +184,14 @@ export class Robots {
     pose[at + 2] = rowZ(frame, i);
     pose[at + 3] = this.hasLeds ? i : -1;
     putColor(lit, at, rowColor(frame, i));
-    lit[at + 3] = (rowColor(frame, i) === 0 ? 0 : 128) + (this.world.holding.has(i) ? 64 : 0);
+    lit[at + 3] = rowColor(frame, i) === 0 ? 0 : 255;
     const heading = rowHeading(frame, i);
     turn[at] = Math.cos(heading);
     turn[at + 1] = Math.sin(heading);
-    if (isFlyer(this.world.body(i))) {
-      turn[at + 2] = rowRoll(frame, i);
-      turn[at + 3] = rowPitch(frame, i);
-    } else {
-      const turret = rowTurret(frame, i);
-      turn[at + 2] = Math.cos(turret);
-      turn[at + 3] = Math.sin(turret);
-    }
+    turn[at + 2] = rowRoll(frame, i);
+    turn[at + 3] = rowPitch(frame, i);
+    const values = this.world.values[i];
+    for (let k = 0; k < mostValues; ++k) (k < 4 ? herd.valuesA : herd.valuesB)[at + (k & 3)] = values[k] ?? 0;
   }
 
   makeDiscs() {

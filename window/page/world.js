@@ -2,7 +2,7 @@
 import { Events } from './events.js';
 import { rowX, rowY, rowZ, rowHeading } from './frames.js';
 
-/** Emits "hello", "scene", "members", "poses", "leds", "state", "objects", "marks". Robots are numbered by their place in the newest list of members. */
+/** Emits "hello", "scene", "members", "poses", "leds", "values", "state", "objects", "marks". Robots are numbered by their place in the newest list of members. */
 export class World extends Events {
   constructor(connection) {
     super();
@@ -14,8 +14,8 @@ export class World extends Events {
     this.frame = null;      // newest poses, decoded
     this.leds = null;       // 4 bytes an LED, `ledsPerRobot` a robot; null: only mixed colours are known
     this.ledsPerRobot = 0;
+    this.values = [];       // by robot: what moves on it, in the order of its kind's joints, then of its links that hold something
     this.halted = new Set();
-    this.holding = new Set();
     this.framesSeen = 0;
     connection.on('hello', (message) => this.takeHello(message))
       .on('scene', (message) => this.takeScene(message))
@@ -27,7 +27,6 @@ export class World extends Events {
       .on('objects', (message) => this.takeObjects(message))
       .on('marks', (message) => {
         this.halted = new Set(message.halted ?? []);
-        this.holding = new Set(message.holding ?? []);
         this.emit('marks');
       })
       .on('frame', (frame) => this.takeFrame(frame));
@@ -39,8 +38,8 @@ export class World extends Events {
     this.frame = null;
     this.members = noMembers();
     this.leds = null;
+    this.values = [];
     this.halted = new Set();
-    this.holding = new Set();
     this.emit('hello', message);
   }
 
@@ -58,7 +57,9 @@ export class World extends Events {
     const perRobotBefore = this.ledsPerRobot;
     const { ids, kinds, kind, bodies } = message;
     this.members = { count: ids.length, ids, kinds, kind, bodies, real: new Set(message.real ?? []), index: new Map(ids.map((id, i) => [id, i])) };
-    this.ledsPerRobot = Math.max(1, ...bodies.map((body) => (body.leds ?? []).length));
+    for (const body of bodies) body.look ??= { joints: [], links: [], lamps: [] };
+    this.ledsPerRobot = Math.max(1, ...bodies.map((body) => body.look.lamps.length));
+    this.values = ids.map((id) => this.values[before.index.get(id)] ?? []);
     this.leds = null;
     // LEDs of the robots that stay.
     if (ledsBefore !== null) {
@@ -92,6 +93,12 @@ export class World extends Events {
       this.emit('poses', frame);
     } else if (frame.type === 'leds') {
       this.takeLeds(frame);
+    } else if (frame.type === 'values') {
+      for (let i = 0; i < frame.count; ++i) {
+        const values = this.values[frame.integers[3 * i]];
+        if (values !== undefined) values[frame.integers[3 * i + 1]] = frame.floats[3 * i + 2];
+      }
+      this.emit('values');
     } else {
       this.emit('drawing', frame);
     }

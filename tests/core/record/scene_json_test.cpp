@@ -3,7 +3,11 @@
 #include <gtest/gtest.h>
 
 #include "core/record/floor_image.hpp"
+#include "hal/device/gripper.hpp"
+#include "hal/device/leds.hpp"
 #include "hal/robot/epuck.hpp"
+#include "hal/robot/eyebot.hpp"
+#include "hal/robot/footbot.hpp"
 #include "tests/core/space_by_hand.hpp"
 
 namespace tandem::core {
@@ -54,6 +58,35 @@ TEST(MembersJson, SaysWhoIsInTheRowsAndWhatTheyLookLike) {
   EXPECT_EQ(members["kind"], (hal::Json{0, 0}));
   EXPECT_EQ(members["real"], (hal::Json{1}));
   EXPECT_EQ(members["bodies"][0]["radius"], hal::epuck::kind().body.radius_m);
+}
+
+TEST(BodyJson, ComesBackAsAKindThatLooksTheSame) {
+  for (const hal::RobotKind* kind : {&hal::footbot::kind(), &hal::eyebot::kind(), &hal::epuck::kind()}) {
+    const hal::RobotKind read = kind_of_body(kind->name, hal::parse_json(hal::to_text(body_json(*kind))).value());
+    EXPECT_TRUE(looks_alike(*kind, read)) << kind->name;
+    EXPECT_EQ(body_json(read), body_json(*kind));
+  }
+  EXPECT_FALSE(looks_alike(hal::footbot::kind(), hal::epuck::kind()));
+}
+
+TEST(BodyJson, OfTheReleaseBeforeLooksAsItDidThen) {
+  hal::Json body = {{"radius", hal::footbot::kind().body.radius_m},
+                    {"height", hal::footbot::kind().body.height_m},
+                    {"gripper_reach", hal::footbot::kind().part<hal::GripperPart>()->reach_m},
+                    {"leds_on_turret", true}};
+  for (const hal::Mount& led : hal::footbot::kind().part<hal::LedsPart>()->mounts)
+    body["leds"].push_back({led.x_m, led.y_m, led.z_m});
+  EXPECT_TRUE(looks_alike(kind_of_body("foot-bot", body), hal::footbot::kind()));
+}
+
+TEST(BodyJson, ThatIsDamagedIsReadInAMoment) {
+  hal::Json body = {{"look", {{"joints", hal::Json::array()}, {"links", 3}, {"lamps", {"x", nullptr}}}}};
+  for (int i = 0; i < 20'000; ++i)
+    body["look"]["joints"].push_back({{"name", std::to_string(i)}, {"on", std::to_string(i + 1)}, {"at", "here"}});
+  body["look"]["upper"] = "nowhere";
+  const hal::Appearance look = hal::appearance_of(kind_of_body("x", body));
+  EXPECT_LE(look.joints.size(), 1000U);
+  EXPECT_EQ(look.upper_joint, hal::Appearance::kBody);
 }
 
 FloorImage image_of(std::size_t columns, std::size_t lines) {

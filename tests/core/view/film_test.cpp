@@ -159,17 +159,24 @@ TEST(Povray, PutsBodiesThingsAndLampsInTheirPlacesWithHeightUpwards) {
   Drawing d = of_robots(0);
   d.title = "two\nlines";
   d.kinds[0].height_m = 0.05;
-  d.kinds[0].leds = {{0.035, 0.0, 0.04}};
+  d.kinds[0].look.lamps = {{{0.035, 0.0, 0.04}}};
   d.robots = {{0.25, -0.5, 1.5707963, 0, 0, 1, false}};
   d.robots[0].z_m = 0.75;
   d.lit = {{0, hal::kRed}};
-  d.boxes = {{0.5, 0.25, 0.0, 0.2, 0.1, false, 0.1, 0.3}};
-  d.cylinders = {{-0.5, 0.25, 0.05, true, 0.0, 0.2}};
-  d.lights = {{0.0, 0.9, {255, 255, 0}, 0.5}};
+  d.objects = {
+      {.id = "box", .x_m = 0.5, .y_m = 0.25, .half_x_m = 0.2, .half_y_m = 0.1, .z_low_m = 0.1, .z_high_m = 0.4},
+      {.kind = Object::Kind::Cylinder,
+       .movable = true,
+       .id = "post",
+       .x_m = -0.5,
+       .y_m = 0.25,
+       .radius_m = 0.05,
+       .z_high_m = 0.2}};
+  d.lights = {{"lamp", 0.0, 0.9, 0.5}};
   const std::string scene = to_povray(d);
   for (const char* part :
        {"// two lines\n", "rotate -y*90 translate <0.25, 0.75, -0.5>", "box { <-0.2, 0, -0.1>, <0.2, 0.3, 0.1>",
-        "translate <0.5, 0.1, 0.25>", "cylinder { <-0.5, 0, 0.25>, <-0.5, 0.2, 0.25>, 0.05",
+        "translate <0.5, 0.1, 0.25>", "cylinder { <0, 0, 0>, <0, 0.2, 0>, 0.05", "translate <-0.5, 0, 0.25>",
         "light_source { <0, 0.5, 0.9>, srgb <1, 1, 0>", "translate <0.035, 0.04, 0>"})
     EXPECT_NE(scene.find(part), std::string::npos) << part << " in " << scene;
   EXPECT_EQ(std::count(scene.begin(), scene.end(), '{'), std::count(scene.begin(), scene.end(), '}'));

@@ -40,7 +40,7 @@ TEST(Picture, TakesArenaRobotsAndTitleFromTheSpace) {
   ASSERT_EQ(d.robots.size(), 2U);
   EXPECT_NEAR(d.robots[0].heading_rad, 1.0, 1e-12);
   ASSERT_EQ(d.robots[0].lights, 1U);
-  EXPECT_EQ(d.lit[0].led, 5U);
+  EXPECT_EQ(d.lit[0].lamp, 5U);
   EXPECT_EQ(d.lit[0].color, hal::kGreen);
   EXPECT_EQ(d.robots[1].lights, 0U);
   EXPECT_FALSE(d.floor);
@@ -55,15 +55,17 @@ TEST(Picture, TakesTurretsAndGrippersFromTheSpace) {
   space.port<hal::RingLeds>(space.robot(2))->set(hal::footbot::kind().part<hal::LedsPart>()->beacon_led(), hal::kBlue);
   const Drawing d = drawing_of(space, {});
   ASSERT_EQ(d.kinds.size(), 2U);
-  EXPECT_EQ(d.kinds[0].gripper_reach_m, 0.0);
-  EXPECT_TRUE(d.kinds[1].leds_on_turret);
-  EXPECT_GT(d.kinds[1].gripper_reach_m, 0.0);
+  EXPECT_TRUE(d.kinds[0].look.links.empty());
+  ASSERT_EQ(d.kinds[1].look.joints.size(), 1U);
+  ASSERT_EQ(d.kinds[1].look.links.size(), 1U);
+  EXPECT_EQ(d.kinds[1].look.links[0].joint, 0);
   ASSERT_EQ(d.robots.size(), 3U);
-  EXPECT_EQ(d.robots[0].turret_rad, 0.0);
-  EXPECT_EQ(d.robots[2].turret_rad, -0.75);
-  EXPECT_TRUE(d.robots[2].holding);
+  EXPECT_EQ(d.robots[2].first_value, 0U) << "nothing moves on the others";
+  EXPECT_EQ(d.values, (std::vector<double>{-0.75, 1.0})) << "where the turret is, and that the gripper holds something";
   ASSERT_EQ(d.robots[2].lights, 1U) << "the beacon is the last of the LEDs";
-  EXPECT_EQ(d.kinds[1].leds[d.lit[d.robots[2].first_light].led].x_m, 0.0);
+  const hal::Appearance::Lamp& beacon = d.kinds[1].look.lamps[d.lit[d.robots[2].first_light].lamp];
+  EXPECT_EQ(beacon.at_m[0], 0.0);
+  EXPECT_EQ(beacon.joint, 0);
 }
 
 TEST(Picture, NamesRealRobotsAndWhatIsWrongWithThem) {
@@ -97,10 +99,9 @@ TEST(Picture, ShowsStaticThingsLampsAndAPaintedFloor) {
   floor->paint([](double x, double, double) { return x < 0.0 ? 0.0 : 1.0; });
   s.fields.add("floor", std::move(floor));
   const Drawing d = drawing_of(space, {});
-  ASSERT_EQ(d.boxes.size(), 1U);
-  EXPECT_NEAR(d.boxes[0].heading_rad, 1.5707963, 1e-6);
-  ASSERT_EQ(d.cylinders.size(), 1U);
-  EXPECT_DOUBLE_EQ(d.cylinders[0].radius_m, 0.2);
+  ASSERT_EQ(d.objects.size(), 2U);
+  EXPECT_DOUBLE_EQ(d.objects[0].sin_h, 1.0);
+  EXPECT_DOUBLE_EQ(d.objects[1].radius_m, 0.2);
   ASSERT_EQ(d.lights.size(), 1U);
   ASSERT_TRUE(d.floor);
   EXPECT_NEAR(d.floor(-1.0, 0.0), 0.0, 1e-6);

@@ -15,7 +15,9 @@ Drawing small_arena() {
   d.min_y_m = -0.5;
   d.max_x_m = 1.0;
   d.max_y_m = 0.5;
-  d.kinds.push_back({"e-puck", 0.035, {{0.035, 0.0}, {0.0, -0.035}}});
+  hal::Appearance look;
+  look.lamps = {{{0.035, 0.0, 0.0}}, {{0.0, -0.035, 0.0}}};
+  d.kinds.push_back({"e-puck", 0.035, look});
   return d;
 }
 
@@ -31,9 +33,9 @@ TEST(Svg, IsWellFormedWithEverythingInIt) {
   d.robots = {{0.1, 0.2, 0.5, 0, 0, 2, true}, {-0.4, 0.3, -2.0, 0, 0, 0, false}};
   d.lit = {{0, hal::kRed}, {1, hal::kBlue}};
   d.real = {{1, "ep<0>", "link lost"}};
-  d.boxes = {{0.0, 0.45, 0.3, 1.0, 0.05}};
-  d.cylinders = {{0.5, 0.0, 0.1}};
-  d.lights = {{0.8, -0.4, {255, 255, 0}}};
+  d.objects = {{.id = "box", .y_m = 0.45, .half_x_m = 1.0, .half_y_m = 0.05},
+               {.kind = Object::Kind::Cylinder, .id = "post", .x_m = 0.5, .radius_m = 0.1}};
+  d.lights = {{"lamp", 0.8, -0.4}};
   d.floor = [](double x, double) { return x < 0.0 ? 0.0 : 1.0; };
   const std::string svg = to_svg(d);
   EXPECT_EQ(why_not_well_formed(svg), "");
@@ -67,11 +69,19 @@ TEST(Svg, ShowsLitLedsWhereTheyAreMountedInTheirColour) {
   EXPECT_NE(svg.find("cx=\"0\" cy=\"-0.035\" r=\"0.0084\" fill=\"#0080ff\""), std::string::npos) << svg;
 }
 
-TEST(Svg, TurnsGripperAndLedsWithTheTurretAndFillsAGripperThatHolds) {
+TEST(Svg, TurnsLinksAndLampsWithTheirJointAndFillsALinkThatHoldsSomething) {
   Drawing d = small_arena();
-  d.kinds = {{"foot-bot", 0.085, {{0.09, 0.0}}, true, 0.03}};
-  d.robots = {{0.0, 0.0, 0.0, 0, 0, 1, false, std::numbers::pi / 2.0, false},
-              {0.5, 0.0, 0.0, 0, 1, 0, false, -std::numbers::pi / 4.0, true}};
+  hal::Appearance look;
+  look.joints = {{.name = "turret"}};
+  look.links = {{.name = "gripper",
+                 .low_m = {0.06, -0.01, 0.0},
+                 .high_m = {0.12, 0.01, 0.0},
+                 .held = {"gripper", "joint"},
+                 .joint = 0}};
+  look.lamps = {{.at_m = {0.09, 0.0, 0.0}, .joint = 0}};
+  d.kinds = {{"foot-bot", 0.085, look}};
+  d.robots = {{0.0, 0.0, 0.0, 0, 0, 1, false, 0.0, 0}, {0.5, 0.0, 0.0, 0, 1, 0, false, 0.0, 2}};
+  d.values = {std::numbers::pi / 2.0, 0.0, -std::numbers::pi / 4.0, 1.0};
   d.lit = {{0, hal::kRed}};
   const std::string svg = to_svg(d);
   EXPECT_EQ(why_not_well_formed(svg), "");
@@ -92,7 +102,7 @@ TEST(Svg, TheLegendCountsKindsRealRobotsStoppedOnesAndLights) {
   for (int i = 0; i < 1'234; ++i) d.robots.push_back({0.0, 0.0, 0.0, 0, 0, 0, i < 3});
   d.robots.push_back({0.0, 0.0, 0.0, 1, 0, 0, false});
   d.real = {{0, "a", ""}, {5, "b", "pose stale"}};
-  d.lights = {{0.0, 0.0, {255, 255, 0}}};
+  d.lights = {{"lamp"}};
   const std::string svg = to_svg(d);
   for (const char* entry :
        {">1,234 × e-puck<", ">1 × foot-bot<", ">2 real<", ">1 real in trouble<", ">3 stopped<", ">1 × light<"}) {

@@ -1,0 +1,85 @@
+#include "core/view/svg_floor.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <memory>
+
+#include "core/view/svg_text.hpp"
+
+namespace tandem::core {
+namespace {
+
+constexpr int kFloorCells = 240;  // along the longer side
+constexpr int kFloorShades = 24;
+
+/// The squares that a floor is drawn by.
+struct FloorGrid {
+  FloorGrid(const Drawing& d, const PictureLook& look) {
+    const PictureLook::Area arena = d.arena();
+    const PictureLook::Area shown = look.region.value_or(arena);
+    x_m = std::max(arena.min_x_m, shown.min_x_m);
+    y_m = std::max(arena.min_y_m, shown.min_y_m);
+    const double width_m = std::min(arena.max_x_m, shown.max_x_m) - x_m;
+    const double depth_m = std::min(arena.max_y_m, shown.max_y_m) - y_m;
+    cell_m = std::max(width_m, depth_m) / kFloorCells;
+    columns = std::max(1, static_cast<int>(std::ceil(width_m / cell_m - 1e-9)));
+    lines = std::max(1, static_cast<int>(std::ceil(depth_m / cell_m - 1e-9)));
+  }
+  double middle_x_m(int column) const { return x_m + (column + 0.5) * cell_m; }
+  double middle_y_m(int line) const { return y_m + (line + 0.5) * cell_m; }
+
+  double x_m = 0.0, y_m = 0.0, cell_m = 1.0;
+  int columns = 1, lines = 1;
+};
+
+}  // namespace
+
+std::string floor_shades(const Drawing& drawing, const PictureLook& look) {
+  if (!drawing.floor) return {};
+  Svg svg;
+  const FloorGrid grid(drawing, look);
+  std::map<int, Svg> paths;
+  for (int line = 0; line < grid.lines; ++line) {
+    const double y_m = grid.y_m + line * grid.cell_m;
+    const auto shade = [&](int column) {
+      const double level = std::clamp(drawing.floor(grid.middle_x_m(column), grid.middle_y_m(line)), 0.0, 1.0);
+      return static_cast<int>(std::lround(level * kFloorShades));
+    };
+    for (int begin = 0; begin < grid.columns;) {
+      const int level = shade(begin);
+      int end = begin + 1;
+      while (end < grid.columns && shade(end) == level) ++end;
+      const double length_m = (end - begin) * grid.cell_m;
+      paths[level] << "M" << grid.x_m + begin * grid.cell_m << " " << y_m << "h" << length_m << "v" << grid.cell_m
+                   << "h" << -length_m << "z";
+      begin = end;
+    }
+  }
+  svg << "<g class=\"floor\" shape-rendering=\"crispEdges\">\n";
+  for (auto& [level, path] : paths) {
+    const auto grey = static_cast<std::uint8_t>(std::lround(255.0 * level / kFloorShades));
+    svg << "<path fill=\"" << hex({grey, grey, grey}) << "\" d=\"" << path.take() << "\"/>\n";
+  }
+  svg << "</g>\n";
+  return svg.take();
+}
+
+void keep_floor(Drawing& drawing, const PictureLook& look) {
+  if (!drawing.floor) return;
+  const FloorGrid grid(drawing, look);
+  std::vector<float> levels;
+  for (int line = 0; line < grid.lines; ++line) {
+    for (int column = 0; column < grid.columns; ++column)
+      levels.push_back(static_cast<float>(drawing.floor(grid.middle_x_m(column), grid.middle_y_m(line))));
+  }
+  drawing.floor = [grid, levels = std::make_shared<const std::vector<float>>(std::move(levels))](double x_m,
+                                                                                                 double y_m) {
+    const auto place = [](double at, int most) { return std::clamp(static_cast<int>(std::floor(at)), 0, most - 1); };
+    const int column = place((x_m - grid.x_m) / grid.cell_m, grid.columns);
+    const int line = place((y_m - grid.y_m) / grid.cell_m, grid.lines);
+    return static_cast<double>((*levels)[static_cast<std::size_t>(line * grid.columns + column)]);
+  };
+}
+
+}  // namespace tandem::core
