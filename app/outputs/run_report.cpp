@@ -166,7 +166,9 @@ std::string changed_files(const hal::Json& start, const InputFiles& now, bool ot
         return file.id == then.id && same_name(file.file, then.file);
       });
       const InputFile* const file = named != present.end() ? &*named : by_place ? &present[i] : nullptr;
-      const std::string sha256 = file != nullptr ? file->sha256 : std::string();
+      // One that the settings hold themselves, as they do kinds of robots, is none of the present ones.
+      const auto there = file != nullptr ? hal::Result<std::string>(file->sha256) : hal::sha256_of_file(then.file);
+      const std::string sha256 = there.ok() ? there.value() : std::string();
       if (sha256 == then.sha256) continue;
       if (file != nullptr && others_named && !same_name(file->file, then.file)) continue;
       changed += fmt::format("\n  {}{} '{}': in the run {}, now {}", what, then.id.empty() ? "" : " " + then.id,
