@@ -1,14 +1,14 @@
-#include "bench/codec.hpp"
-
+// Throughput of the foot-bot's codec and its two framings, in messages a second.
 #include <algorithm>
 #include <array>
-#include <fmt/format.h>
 
+#include "app/exit_code.hpp"
+#include "app/outputs/report.hpp"
 #include "app/process/measure.hpp"
+#include "bench/bench.hpp"
 #include "bridges/aseba/fragments.hpp"
 #include "bridges/aseba/message.hpp"
 #include "bridges/aseba/stream_messages.hpp"
-#include "hal/json/json.hpp"
 
 namespace tandem::bench {
 namespace {
@@ -24,14 +24,12 @@ void measure(const char* what, F&& once) {
   const double start = app::cpu_seconds();
   for (long long i = 0; i < kMessages; ++i) sum = sum * 31 + once(static_cast<std::uint16_t>(i));
   const double took_s = app::cpu_seconds() - start;
-  hal::Json json;
-  json["bench"] = "codec";
-  json["what"] = what;
-  json["messages"] = static_cast<std::int64_t>(kMessages);
-  json["cpu_s"] = took_s;
-  json["messages_per_s"] = static_cast<double>(kMessages) / took_s;
-  json["check"] = fmt::format("{:#018x}", sum);
-  fmt::print("{}\n", hal::to_text(json));
+  print_line({{"bench", "codec"},
+              {"what", what},
+              {"messages", static_cast<std::int64_t>(kMessages)},
+              {"cpu_s", took_s},
+              {"messages_per_s", static_cast<double>(kMessages) / took_s},
+              {"check", app::hash_text(sum)}});
 }
 
 /// Reads every word.
@@ -87,8 +85,9 @@ void measure_all() {
 
 }  // namespace
 
-void bench_codec(long long repeat) {
-  for (long long i = 0; i < repeat; ++i) measure_all();
+hal::Result<int> bench_codec(const Call& call) {
+  for (std::int64_t i = 0; i < call.options.repeat; ++i) measure_all();
+  return app::kDone;
 }
 
 }  // namespace tandem::bench

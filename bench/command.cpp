@@ -3,84 +3,59 @@
 #include "app/command/command.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <cstdio>
 #include <fmt/format.h>
-#include <unistd.h>
+#include <numeric>
 
 #include "app/command/shared_options.hpp"
 #include "app/experiment/plugins.hpp"
 #include "app/module/module_table.hpp"
-#include "app/process/measure.hpp"
 #include "app/process/signals.hpp"
 #include "app/process/terminal.hpp"
-#include "bench/back.hpp"
-#include "bench/codec.hpp"
-#include "bench/comparison.hpp"
-#include "bench/gap.hpp"
-#include "bench/gnuplot.hpp"
-#include "bench/lockstep.hpp"
-#include "bench/measurement.hpp"
-#include "bench/partition.hpp"
-#include "bench/python.hpp"
-#include "bench/record.hpp"
-#include "bench/script_file.hpp"
-#include "bench/sense_to_act.hpp"
-#include "bench/sweep.hpp"
-#include "bench/view.hpp"
+#include "bench/bench.hpp"
 #include "core/device/device.hpp"
 #include "core/scenario/engine_traits.hpp"
+#include "core/view/gnuplot.hpp"
 #include "hal/device/ring_sensors.hpp"
-#include "hal/output_file.hpp"
 
 namespace tandem::bench {
 namespace {
 
-/// Lists that are left empty: the usual values when measuring, every saved line with `from`.
-struct BenchOptions {
-  app::Libraries plugins;
-  std::string file;  ///< with kinds of robots that may be measured, too
-  std::string name = "diffusion";
-  std::vector<std::int64_t> robots;
-  std::string robot;                 ///< empty: the benchmark's own
-  std::vector<std::string> devices;  ///< besides proximity sensors and wheels
-  std::vector<std::string> engines;
-  std::vector<std::int64_t> threads;
-  std::vector<std::string> partitions;  ///< by name: A1 to A16
-  std::vector<std::string> regions;     ///< other splits: "5x3" or "auto"
-  std::int64_t ticks = 600;
-  std::string density;     ///< "equal": the arena grows with the robots
-  std::string assignment;  ///< of work to threads: "static" or "dynamic"
-  std::int64_t repeat = 1;
-  std::string plot;  ///< SVG or PNG file
-  std::string from;  ///< saved lines, instead of measuring
-  bool compare_threads = false;
-  double seconds = 5.0;    ///< sense_to_act: that are timed
-  bool real_time = false;  ///< sense_to_act: with SCHED_FIFO
+constexpr std::array<Bench, 12> kBenches = {
+    {{"diffusion", &bench_scene, "the standard scene"},
+     {"flocking", &bench_scene, "robots that fly, in space"},
+     {"lua", &bench_scene, ""},
+     {"codec", &bench_codec, "messages of a bridge, only with --repeat"},
+     {"record", &bench_record, "what a record of all poses costs, with --robots, --threads, --ticks"},
+     {"sense_to_act", &bench_sense_to_act,
+      "how soon robots are answered over LCM, with --robots, --seconds, --real-time, --repeat"},
+     {"back", &bench_back, "the way back to an earlier tick, e.g. after --ticks 6000"},
+     {"view", &bench_view, "what a window costs, in --repeat pairs of --ticks"},
+     {"sweep", &bench_sweep,
+      "what a sweep costs besides its runs, with --robots, --ticks, --repeat: how many runs (10000)"},
+     {"gap", &bench_gap,
+      "hidden parameters of --robots (50) found again, and controllers ranked in --repeat (200) pseudo-realities"},
+     {"lockstep", &bench_lockstep, "a hub and --robots peers, each a process, with --ticks, --repeat"},
+     {"python", &bench_python,
+      "steps over arrays of --robots (10000), and --repeat (600) whole runs, by the module for Python"}}};
 
-  void describe(hal::CommandLine& line);
-};
-
-int refuse(int code, const std::string& message) {
-  app::say("tandem bench: " + message);
-  return code;
+std::string joined(const std::vector<std::string>& names) {
+  std::string all;
+  for (const std::string& name : names) all += (all.empty() ? "" : ", ") + name;
+  return all;
 }
-
-/// What the options ask for, checked.
-struct Plan {
-  std::vector<std::string> engines;  ///< empty in a plan for saved lines: all that there are; so with the next three
-  std::vector<Partition> partitions;
-  std::vector<std::int64_t> robots;
-  std::vector<std::int64_t> threads;
-};
 
 /// "there is no engine 'x'; there are: …" when `name` is none of `known`.
 hal::Status check_name(std::string_view what, const std::string& name, const std::vector<std::string>& known) {
   if (std::find(known.begin(), known.end(), name) != known.end()) return {};
-  std::string all;
-  for (const std::string& k : known) all += (all.empty() ? "" : ", ") + k;
   return hal::Error{
-      fmt::format("there is no {} '{}'; there {}: {}", what, name, known.size() == 1 ? "is" : "are", all)};
+      fmt::format("there is no {} '{}'; there {}: {}", what, name, known.size() == 1 ? "is" : "are", joined(known))};
+}
+
+std::vector<std::string> bench_names(bool offered) {
+  std::vector<std::string> names;
+  for (const Bench& bench : kBenches)
+    if (!offered || !bench.text.empty()) names.emplace_back(bench.name);
+  return names;
 }
 
 /// The first that there is; for robots that fly the first that is made for them.
@@ -92,42 +67,39 @@ std::string usual_engine(const hal::Catalog& catalog, bool flying) {
   return std::string(engines.front()->kind);
 }
 
-using Kinds = std::vector<core::KindConfig>;
-
 /// Of a file, those that drive and have proximity sensors can be measured, too.
-std::vector<std::string> robots_of(const BenchOptions& o, const Kinds& kinds) {
-  if (o.name == "flocking") return {"eye-bot"};
+std::vector<std::string> robots_of(const Call& call) {
+  if (call.options.name == "flocking") return {"eye-bot"};
   std::vector<std::string> robots{"e-puck", "foot-bot"};
-  for (const core::KindConfig& config : kinds) {
+  for (const core::KindConfig& config : call.kinds) {
     if (config.kind->drive() != nullptr && config.kind->part<hal::ProximityPart>() != nullptr)
       robots.push_back(config.kind->name);
   }
   return robots;
 }
-std::string robot_of(const BenchOptions& o) {
-  return o.robot.empty() ? robots_of(o, {}).front() : o.robot;
-}
 
-hal::Status check_words(const hal::Catalog& catalog, const BenchOptions& o, const Kinds& kinds) {
-  if (auto s = check_name("benchmark", o.name,
-                          {"diffusion", "flocking", "lua", "codec", "record", "sense_to_act", "back", "view", "sweep",
-                           "gap", "lockstep", "python"});
-      !s.ok())
-    return s;
-  const std::vector<std::string> robots = robots_of(o, kinds);
-  if (auto s = check_name("robot", robot_of(o), robots); !s.ok()) return s;
+std::vector<std::string> devices_of(const Call& call) {
+  if (call.options.name == "flocking") return {};
   std::vector<std::string> devices{"range_and_bearing"};
-  if (robot_of(o) == "foot-bot") devices.emplace_back("omnidirectional_camera");
-  for (const core::DeviceType* type : catalog.all<core::DeviceType>()) {
+  if (call.robot == "foot-bot") devices.emplace_back("omnidirectional_camera");
+  for (const core::DeviceType* type : call.loader.catalog().all<core::DeviceType>()) {
     if (type->device == hal::Proximity::kName) devices.push_back("proximity:" + std::string(type->implementation));
   }
-  if (o.name == "flocking") devices.clear();
+  return devices;
+}
+
+hal::Status check_words(const Call& call) {
+  const BenchOptions& o = call.options;
+  if (auto s = check_name("benchmark", o.name, bench_names(false)); !s.ok()) return s;
+  if (auto s = check_name("robot", call.robot, robots_of(call)); !s.ok()) return s;
   for (const std::string& device : o.devices) {
-    if (auto s = check_name("device of the " + robot_of(o) + " to measure with", device, devices); !s.ok()) return s;
+    if (auto s = check_name("device of the " + call.robot + " to measure with", device, devices_of(call)); !s.ok())
+      return s;
   }
   for (const std::string& engine : o.engines) {
     // Saved lines may come from another build.
-    if (auto s = check_name("engine", engine, catalog.names("engine")); !s.ok() && o.from.empty()) return s;
+    if (auto s = check_name("engine", engine, call.loader.catalog().names("engine")); !s.ok() && o.from.empty())
+      return s;
   }
   if (!o.density.empty() && o.density != "equal") return hal::Error{"--density takes 'equal'"};
   if (!o.assignment.empty() && o.assignment != "static" && o.assignment != "dynamic")
@@ -142,289 +114,59 @@ hal::Status check_words(const hal::Catalog& catalog, const BenchOptions& o, cons
   return {};
 }
 
-hal::Result<Plan> plan_of(const hal::Catalog& catalog, const BenchOptions& o, const Kinds& kinds) {
-  if (auto s = check_words(catalog, o, kinds); !s.ok()) return s.error();
-  Plan plan{o.engines, {}, o.robots, o.threads};
-  for (const std::string& name : o.partitions) {
-    auto partition = partition_named(name);
+/// Checks what is asked for, and fills in what is usual.
+hal::Status complete(Call& call) {
+  const BenchOptions& o = call.options;
+  call.robot = o.robot.empty() ? (o.name == "flocking" ? "eye-bot" : "e-puck") : o.robot;
+  if (auto s = check_words(call); !s.ok()) return s;
+  const auto add = [&](const hal::Result<Partition>& partition) -> hal::Status {
     if (!partition.ok()) return partition.error();
-    plan.partitions.push_back(std::move(partition).value());
-  }
-  for (const std::string& regions : o.regions) {
-    auto partition = partition_split(regions);
-    if (!partition.ok()) return partition.error();
-    plan.partitions.push_back(std::move(partition).value());
-  }
-  if (!o.from.empty()) return plan;
-  if (plan.engines.empty()) plan.engines = {usual_engine(catalog, o.name == "flocking")};
-  if (plan.partitions.empty()) plan.partitions = {{"auto", "auto"}};
-  if (plan.robots.empty()) plan.robots = {1, 10, 100, 1000, 10'000, 100'000};
-  if (plan.threads.empty()) plan.threads = {0};
-  return plan;
-}
-
-/// Every case once a round, so that what the machine does besides meets all of them; those that differ in threads alone
-/// follow one another.
-std::vector<BenchCase> cases_of(const Plan& plan, const BenchOptions& o, const Kinds& kinds,
-                                const std::string& script = {}) {
-  std::vector<BenchCase> cases;
-  std::string devices;
-  for (const std::string& device : o.devices) devices += (devices.empty() ? "" : ",") + device;
-  for (std::int64_t repeat = 0; repeat < o.repeat; ++repeat) {
-    for (const std::string& engine : plan.engines) {
-      for (const Partition& partition : plan.partitions) {
-        for (const std::int64_t robots : plan.robots) {
-          for (const std::int64_t threads : plan.threads) {
-            cases.push_back({o.name, robot_of(o), engine, partition.name, partition.regions, devices,
-                             o.density.empty() && o.name != "flocking" ? "40 m" : "equal", robots, threads,
-                             o.assignment == "dynamic" ? core::Assignment::Dynamic : core::Assignment::Static, o.ticks,
-                             repeat, script, kinds});
-          }
-        }
-      }
-    }
-  }
-  return cases;
-}
-
-/// How long runs take, roughly before the first, from those that are done later on.
-class Forecast {
- public:
-  explicit Forecast(const std::vector<BenchCase>& cases) : cases_(cases), terminal_(isatty(STDERR_FILENO) != 0) {
-    const double all_s = expected_s(0);
-    if (all_s > kWorthTelling_s)
-      app::say(fmt::format("{} runs of up to {} robots: about {}", cases.size(), largest(), duration_text(all_s)));
-  }
-  /// Shows where the benchmark is, on a terminal alone.
-  void begin(std::size_t run) {
-    began_s_ = app::wall_seconds();
-    if (!terminal_ || cases_.size() < 2) return;
-    fmt::print(stderr, "\r\033[Krun {} of {}, {} robots; about {} left", run + 1, cases_.size(), cases_[run].robots,
-               duration_text(expected_s(run)));
-    std::fflush(stderr);
-  }
-  void end(std::size_t run) {
-    if (terminal_ && cases_.size() >= 2) fmt::print(stderr, "\r\033[K");
-    took_s_ += app::wall_seconds() - began_s_;
-    guessed_s_ += guess_s(cases_[run]);
-  }
-
- private:
-  static constexpr double kWorthTelling_s = 10.0;
-
-  /// Processor time of a core of the 2020s [docs/performance.md].
-  static double guess_s(const BenchCase& c) {
-    return 0.1 + 1e-6 * static_cast<double>(c.robots) * static_cast<double>(c.ticks);
-  }
-  double expected_s(std::size_t from) const {
-    double sum_s = 0.0;
-    for (std::size_t i = from; i < cases_.size(); ++i) sum_s += guess_s(cases_[i]);
-    return guessed_s_ > 0.0 ? sum_s * took_s_ / guessed_s_ : sum_s;
-  }
-  std::int64_t largest() const {
-    const auto fewer = [](const BenchCase& a, const BenchCase& b) { return a.robots < b.robots; };
-    return std::max_element(cases_.begin(), cases_.end(), fewer)->robots;
-  }
-  static std::string duration_text(double seconds) {
-    if (seconds < 100.0) return fmt::format("{:.0f} s", std::ceil(seconds));
-    if (seconds < 6000.0) return fmt::format("{:.0f} minutes", std::ceil(seconds / 60.0));
-    return fmt::format("{:.1f} hours", seconds / 3600.0);
-  }
-
-  const std::vector<BenchCase>& cases_;
-  bool terminal_;
-  double began_s_ = 0.0, took_s_ = 0.0, guessed_s_ = 0.0;
-};
-
-/// Prints each line as soon as it is there. @returns them; nothing when interrupted, or when `code` tells of a failure.
-std::vector<ResultLine> measure_all(const std::vector<BenchCase>& cases, hal::PluginLoader& loader, int& code) {
-  const std::atomic<bool>& stop = app::catch_signals();
-  std::vector<ResultLine> lines;
-  Forecast forecast(cases);
-  for (std::size_t run = 0; run < cases.size(); ++run) {
-    if (stop.load(std::memory_order_relaxed)) return {};
-    forecast.begin(run);
-    const Measurement measured = measure_apart(cases[run], loader, stop);
-    forecast.end(run);
-    if (!measured.line.empty()) {
-      fmt::print("{}\n", measured.line);
-      std::fflush(stdout);
-    }
-    code = measured.code;
-    if (code != app::kDone || measured.line.empty()) return {};
-    auto line = parse_result_line(measured.line);
-    if (!line.ok()) {
-      code = refuse(app::kFailedRunning, line.error().message);
-      return {};
-    }
-    line->number = static_cast<std::int64_t>(lines.size()) + 1;
-    lines.push_back(std::move(line).value());
-  }
-  return lines;
-}
-
-template <class T>
-bool chosen(const std::vector<T>& wanted, const T& value) {
-  return wanted.empty() || std::find(wanted.begin(), wanted.end(), value) != wanted.end();
-}
-
-/// The saved lines that the options choose; nothing, and a message, when there are none or they do not go together.
-std::vector<ResultLine> choose_saved(const Plan& plan, const BenchOptions& o, int& code) {
-  auto saved = read_result_lines(o.from);
-  if (!saved.ok()) {
-    code = refuse(app::kBadInput, saved.error().message);
+    call.partitions.push_back(partition.value());
     return {};
-  }
-  std::vector<std::string> splits;
-  for (const Partition& p : plan.partitions) splits.push_back(p.regions);
-  std::vector<ResultLine> lines;
-  for (ResultLine& line : saved.value()) {
-    if (chosen(plan.engines, line.engine) && chosen(splits, line.regions) && chosen(plan.robots, line.robots) &&
-        chosen(plan.threads, line.threads) && (o.density.empty() || o.density == line.density) &&
-        (o.assignment.empty() || o.assignment == line.assignment))
-      lines.push_back(std::move(line));
-  }
-  if (lines.empty()) {
-    code = refuse(app::kBadInput, o.from + ": error: none of its lines is what the other options choose");
-    return {};
-  }
-  const hal::Status alike = check_alike(lines, o.from);
-  if (alike.ok()) return lines;
-  code = refuse(app::kBadInput, alike.error().message);
+  };
+  for (const std::string& name : o.partitions)
+    if (auto s = add(partition_named(name)); !s.ok()) return s;
+  for (const std::string& regions : o.regions)
+    if (auto s = add(partition_split(regions)); !s.ok()) return s;
+  if (!o.from.empty()) return {};
+  if (call.engines.empty()) call.engines = {usual_engine(call.loader.catalog(), o.name == "flocking")};
+  if (call.partitions.empty()) call.partitions = {{"auto", "auto"}};
+  if (call.robots.empty()) call.robots = {1, 10, 100, 1000, 10'000, 100'000};
+  if (call.threads.empty()) call.threads = {0};
   return {};
 }
 
-hal::Status draw(const std::vector<ResultLine>& lines, hal::OutputFile& file) {
-  const auto format = core::figure_format(file.path());
-  if (!format.ok()) return format.error();
-  return core::draw_figure(gnuplot_script(figure_of(lines), format.value()), file);
-}
-
-/// To standard error: standard output is for the lines.
-void print_comparison(const std::vector<ResultLine>& lines) {
-  for (const auto& [group, ratios] : compare_threads(lines)) fmt::print(stderr, "{}: {}\n", group, ratios);
-}
-
-/// Each case apart from the others only by its place in the line: worlds of one process follow one another.
-int record(const std::vector<BenchCase>& cases, hal::PluginLoader& loader) {
-  const std::atomic<bool>& stop = app::catch_signals();
-  for (BenchCase c : cases) {
-    c.bench = "diffusion";
-    const auto line = bench_record(c, loader, stop);
-    if (!line.ok()) return refuse(app::kFailedRunning, line.error().message);
-    if (line.value().empty()) return app::kDone;
-    fmt::print("{}\n", line.value());
-    std::fflush(stdout);
+int run(const BenchOptions& options) {
+  hal::PluginLoader loader = app::make_loader();
+  if (!app::open_plugins(loader, options.plugins)) return app::kBadInput;
+  Call call{options, loader, app::catch_signals(), {}, {}, options.engines, {}, options.robots, options.threads};
+  if (!options.file.empty()) {
+    const auto file = app::kinds_of_file(loader, options.file);
+    if (file == nullptr) return app::kBadInput;
+    call.kinds = file->kinds;
   }
-  return app::kDone;
-}
-
-int sense_to_act(const BenchOptions& o) {
-  constexpr std::int64_t kMostRobots = 100;
-  const std::vector<std::int64_t> robots = o.robots.empty() ? std::vector<std::int64_t>{20} : o.robots;
-  for (const std::int64_t n : robots) {
-    if (n > kMostRobots) return refuse(app::kWrongUsage, fmt::format("at most {} eye-bots", kMostRobots));
-    const hal::Status measured = bench_sense_to_act({n, o.seconds, o.real_time}, o.repeat);
-    if (!measured.ok()) return refuse(app::kFailedRunning, measured.error().message);
+  if (const hal::Status complete_now = complete(call); !complete_now.ok())
+    return refuse(app::kWrongUsage, complete_now.error().message);
+  const Bench& bench =
+      *std::find_if(kBenches.begin(), kBenches.end(), [&](const Bench& b) { return b.name == options.name; });
+  try {
+    const hal::Result<int> code = bench.run(call);
+    return code.ok() ? code.value() : refuse(app::kFailedRunning, code.error().message);
+  } catch (const std::exception& e) {
+    return refuse(app::kFailedRunning, e.what());
   }
-  return app::kDone;
 }
 
-int back(const Plan& plan, const BenchOptions& o, const Kinds& kinds, hal::PluginLoader& loader) {
-  for (const std::string& engine : plan.engines) {
-    for (const std::int64_t robots : o.robots.empty() ? std::vector<std::int64_t>{1000} : plan.robots) {
-      for (const std::int64_t threads : plan.threads) {
-        BenchCase c;
-        c.bench = "diffusion";
-        c.robot = robot_of(o);
-        c.engine = engine;
-        c.partition = c.regions = plan.partitions.front().regions;
-        c.density = o.density.empty() ? "40 m" : o.density;
-        c.robots = robots;
-        c.threads = threads;
-        c.ticks = o.ticks;
-        c.kinds = kinds;
-        if (const int code = bench_back(c, o.repeat, loader); code != app::kDone) return code;
-      }
-    }
-  }
-  return app::kDone;
-}
-
-/// What a window costs; and how soon a thousand robots are seen.
-int view(const Plan& plan, const BenchOptions& o, hal::PluginLoader& loader) {
-  constexpr std::int64_t kMany = 20'000, kSoonShown = 1000;
-  for (const std::string& engine : plan.engines) {
-    for (const std::int64_t robots : o.robots.empty() ? std::vector<std::int64_t>{10'000, 100'000} : plan.robots) {
-      for (const std::int64_t threads : plan.threads) {
-        const double rate_per_s = robots > kMany ? 10.0 : 20.0;
-        const hal::Status measured =
-            bench_view({robots, robot_of(o), engine, threads, o.ticks, o.repeat, rate_per_s}, loader);
-        if (!measured.ok()) return refuse(app::kFailedRunning, measured.error().message);
-      }
-    }
-  }
-  const hal::Status seen = bench_first_frame(kSoonShown, o.repeat);
-  return seen.ok() ? app::kDone : refuse(app::kFailedRunning, seen.error().message);
-}
-
-int gap(const BenchOptions& o, hal::PluginLoader& loader) {
-  GapCase c;
-  if (!o.robots.empty()) c.robots = o.robots.front();
-  if (o.repeat > 1) c.realities = o.repeat;
-  const hal::Status measured = bench_gap(c, loader, app::catch_signals());
-  return measured.ok() ? app::kDone : refuse(app::kFailedRunning, measured.error().message);
-}
-
-int sweep(const BenchOptions& o, hal::PluginLoader& loader) {
-  SweepCase c;
-  c.ticks = o.ticks;
-  if (o.repeat > 1) c.runs = o.repeat;
-  for (const std::int64_t robots : o.robots.empty() ? std::vector<std::int64_t>{c.robots} : o.robots) {
-    c.robots = robots;
-    const hal::Status measured = bench_sweep(c, loader);
-    if (!measured.ok()) return refuse(app::kFailedRunning, measured.error().message);
-  }
-  return app::kDone;
-}
-
-int python(const BenchOptions& o) {
-  PythonCase c;
-  c.robots = o.robots;
-  c.ticks = o.ticks;
-  if (o.repeat > 1) c.runs = o.repeat;
-  return refuse(app::kFailedRunning, bench_python(c).error().message);
-}
-
-int lockstep(const BenchOptions& o, hal::PluginLoader& loader) {
-  for (const std::int64_t peers : o.robots.empty() ? std::vector<std::int64_t>{20} : o.robots) {
-    if (peers > 1000) return refuse(app::kWrongUsage, "at most 1000 peers, each a process");
-    for (std::int64_t i = 0; i < o.repeat; ++i) {
-      const hal::Status measured = bench_lockstep({peers, o.ticks}, loader);
-      if (!measured.ok()) return refuse(app::kFailedRunning, measured.error().message);
-    }
-  }
-  return app::kDone;
-}
+}  // namespace
 
 void BenchOptions::describe(hal::CommandLine& line) {
+  std::string all;
+  for (const Bench& bench : kBenches)
+    if (!bench.text.empty()) all += fmt::format("{}{}: {}", all.empty() ? "" : "; ", bench.name, bench.text);
   line.footer(
       "With --from the options --robots, --engine, --threads, --partition, --regions, --density and --assignment "
       "choose among the saved lines.");
-  line.word(
-          "name", name,
-          "diffusion: the standard scene; flocking: robots that fly, in space; codec: messages of a bridge, only with "
-          "--repeat; record: what a record of all poses costs, with --robots, --threads, --ticks; sense_to_act: how "
-          "soon robots are answered over LCM, with --robots, --seconds, --real-time, "
-          "--repeat; back: the way back to an earlier tick, e.g. after --ticks 6000; view: what a window costs, in "
-          "--repeat "
-          "pairs of --ticks; sweep: what a sweep costs besides its runs, with --robots, --ticks, --repeat: how many "
-          "runs (10000); gap: hidden parameters of --robots (50) found again, and controllers ranked in --repeat (200) "
-          "pseudo-realities; lockstep: a hub and --robots peers, each a process, with --ticks, --repeat; "
-          "python: steps over arrays of --robots (10000), and --repeat (600) whole runs, by the module for Python")
-      .show_default()
-      .suggest({"diffusion", "flocking", "codec", "record", "sense_to_act", "back", "view", "sweep", "gap", "lockstep",
-                "python"});
+  line.word("name", name, all).show_default().suggest(bench_names(true));
   line.option("--robots", robots, "Numbers of robots, e.g. 1000,10000; default: 1 to 100000")
       .separated()
       .range(1, 100'000'000);
@@ -464,60 +206,6 @@ void BenchOptions::describe(hal::CommandLine& line) {
   app::describe_plugins(line, plugins);
 }
 
-int run(const BenchOptions& options) {
-  hal::PluginLoader loader = app::make_loader();
-  if (!app::open_plugins(loader, options.plugins)) return app::kBadInput;
-  Kinds kinds;
-  if (!options.file.empty()) {
-    const auto file = app::kinds_of_file(loader, options.file);
-    if (file == nullptr) return app::kBadInput;
-    kinds = file->kinds;
-  }
-  const auto plan = plan_of(loader.catalog(), options, kinds);
-  if (!plan.ok()) return refuse(app::kWrongUsage, plan.error().message);
-  if (options.name == "codec") {
-    bench_codec(options.repeat);
-    return app::kDone;
-  }
-  if (options.name == "sense_to_act") return sense_to_act(options);
-  if (options.name == "back") return back(plan.value(), options, kinds, loader);
-  if (options.name == "view") return view(plan.value(), options, loader);
-  if (options.name == "record") {
-    Plan measured = plan.value();
-    if (options.robots.empty()) measured.robots = {10'000};
-    return record(cases_of(measured, options, kinds), loader);
-  }
-  if (options.name == "sweep") return sweep(options, loader);
-  if (options.name == "gap") return gap(options, loader);
-  if (options.name == "lockstep") return lockstep(options, loader);
-  if (options.name == "python") return python(options);
-  std::optional<hal::OutputFile> plot;
-  if (!options.plot.empty()) {
-    const hal::Status drawable = core::can_draw_figures();
-    if (!drawable.ok()) return refuse(app::kFailedRunning, drawable.error().message);
-    auto opened = hal::OutputFile::open(options.plot, "figure");
-    if (!opened.ok()) return refuse(app::kBadInput, opened.error().message);
-    plot = std::move(opened).value();
-  }
-  std::optional<ScriptFile> script;
-  if (options.name == "lua" && options.from.empty()) {
-    script.emplace();
-    if (script->path().empty())
-      return refuse(app::kFailedRunning, "the script could not be written to a temporary file");
-  }
-  int code = app::kDone;
-  const std::string path = script ? script->path() : "";
-  const std::vector<ResultLine> lines = options.from.empty()
-                                            ? measure_all(cases_of(plan.value(), options, kinds, path), loader, code)
-                                            : choose_saved(plan.value(), options, code);
-  if (lines.empty()) return code;
-  if (options.compare_threads) print_comparison(lines);
-  if (!plot) return app::kDone;
-  const hal::Status drawn = draw(lines, *plot);
-  return drawn.ok() ? app::kDone : refuse(app::kFailedRunning, drawn.error().message);
-}
-
-}  // namespace
 }  // namespace tandem::bench
 
 constinit const tandem::hal::CommandType tandem::app::bench_command =

@@ -1,6 +1,7 @@
 #include "bench/figure.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <fmt/format.h>
 #include <map>
@@ -11,114 +12,69 @@
 namespace tandem::bench {
 namespace {
 
-/// What may be varied, each value once, in the order that figures show.
-struct Varied {
-  std::vector<std::string> engines;     // as they came
-  std::vector<std::string> partitions;  // by their number of parts
-  std::vector<std::int64_t> threads;    // rising
-};
+/// What may be varied.
+enum What : std::size_t { kEngines, kPartitions, kThreads };
 
-template <class T>
-std::size_t index_in(const std::vector<T>& all, const T& value) {
-  return static_cast<std::size_t>(std::find(all.begin(), all.end(), value) - all.begin());
+std::string value_of(const ResultLine& line, What what) {
+  return what == kEngines ? line.engine : what == kPartitions ? line.partition : fmt::format("P = {}", line.threads);
 }
-
-template <class T>
-void add_once(std::vector<T>& all, const T& value) {
-  if (index_in(all, value) == all.size()) all.push_back(value);
-}
-
-Varied varied_in(const std::vector<ResultLine>& lines) {
-  Varied v;
-  std::map<std::string, std::int64_t> parts;
-  for (const ResultLine& line : lines) {
-    add_once(v.engines, line.engine);
-    add_once(v.partitions, line.partition);
-    add_once(v.threads, line.threads);
-    parts[line.partition] = parts_of(line.regions);
-  }
-  std::sort(v.threads.begin(), v.threads.end());
-  std::stable_sort(v.partitions.begin(), v.partitions.end(),
-                   [&](const std::string& a, const std::string& b) { return parts[a] < parts[b]; });
-  return v;
-}
-
-enum class CurvesOf { Threads, Partitions, Engines };
 
 /// Chooses what curves stand for, and lays out panels for the rest: engines from top to bottom, partitions from left
 /// to right; where only one of both is varied, in a square.
 class Layout {
  public:
-  explicit Layout(const std::vector<ResultLine>& lines) : v_(varied_in(lines)) {
-    if (v_.threads.size() > 1)
-      curves_ = CurvesOf::Threads;
-    else if (v_.partitions.size() > 1)
-      curves_ = CurvesOf::Partitions;
-    else if (v_.engines.size() > 1)
-      curves_ = CurvesOf::Engines;
-    across_ = curves_ == CurvesOf::Partitions ? 1 : v_.partitions.size();
-    const std::size_t down = curves_ == CurvesOf::Engines ? 1 : v_.engines.size();
+  explicit Layout(const std::vector<ResultLine>& lines) {
+    for (const What what : {kEngines, kPartitions, kThreads}) {
+      std::map<std::string, std::int64_t> rank;  // engines as they came
+      for (const ResultLine& line : lines) {
+        const std::string value = value_of(line, what);
+        const std::int64_t place = what == kEngines ? 0 : what == kThreads ? line.threads : parts_of(line.regions);
+        if (rank.emplace(value, place).second) values_[what].push_back(value);
+      }
+      std::stable_sort(values_[what].begin(), values_[what].end(),
+                       [&](const std::string& a, const std::string& b) { return rank[a] < rank[b]; });
+      if (values_[what].size() > 1) curves_ = what;
+    }
+    across_ = curves_ == kPartitions ? 1 : values_[kPartitions].size();
+    const std::size_t down = curves_ == kEngines ? 1 : values_[kEngines].size();
     count_ = across_ * down;
-    if (across_ == 1 || down == 1)
-      columns_ = static_cast<std::size_t>(std::ceil(std::sqrt(static_cast<double>(count_))));
-    else
-      columns_ = across_;
+    columns_ =
+        across_ > 1 && down > 1 ? across_ : static_cast<std::size_t>(std::ceil(std::sqrt(static_cast<double>(count_))));
   }
 
   void describe(Figure& figure) const {
+    static constexpr std::array<const char*, 3> kLegends = {"engine", "partition", "threads"};
     figure.columns = columns_;
     figure.lines = (count_ + columns_ - 1) / columns_;
-    switch (curves_) {
-      case CurvesOf::Threads:
-        figure.legend = "threads";
-        for (const std::int64_t threads : v_.threads) figure.labels.push_back("P = " + std::to_string(threads));
-        break;
-      case CurvesOf::Partitions:
-        figure.legend = "partition";
-        figure.labels = v_.partitions;
-        break;
-      case CurvesOf::Engines:
-        figure.legend = "engine";
-        figure.labels = v_.engines;
-        break;
-    }
+    figure.legend = kLegends[curves_];
+    figure.labels = values_[curves_];
   }
-
-  std::size_t curve_of(const ResultLine& line) const {
-    switch (curves_) {
-      case CurvesOf::Threads:
-        return index_in(v_.threads, line.threads);
-      case CurvesOf::Partitions:
-        return index_in(v_.partitions, line.partition);
-      case CurvesOf::Engines:
-        break;
-    }
-    return index_in(v_.engines, line.engine);
-  }
-
+  std::size_t curve_of(const ResultLine& line) const { return place_of(line, curves_); }
   std::size_t panel_of(const ResultLine& line) const {
-    const std::size_t x = curves_ == CurvesOf::Partitions ? 0 : index_in(v_.partitions, line.partition);
-    const std::size_t y = curves_ == CurvesOf::Engines ? 0 : index_in(v_.engines, line.engine);
-    return y * across_ + x;
+    const std::size_t x = curves_ == kPartitions ? 0 : place_of(line, kPartitions);
+    return (curves_ == kEngines ? 0 : place_of(line, kEngines)) * across_ + x;
   }
-
   FigurePanel panel(const ResultLine& line) const {
     FigurePanel p;
-    const auto add = [&p](const std::string& part) { p.title += (p.title.empty() ? "" : ", ") + part; };
-    if (curves_ != CurvesOf::Engines) add(line.engine);
-    if (curves_ != CurvesOf::Partitions) add(line.partition == "auto" ? "automatic split" : line.partition);
-    if (curves_ != CurvesOf::Threads) add("P = " + std::to_string(line.threads));
+    for (const What what : {kEngines, kPartitions, kThreads}) {
+      if (what == curves_) continue;
+      const std::string value = value_of(line, what);
+      p.title += (p.title.empty() ? "" : ", ") + (what == kPartitions && value == "auto" ? "automatic split" : value);
+    }
     p.column = panel_of(line) % columns_;
     p.line = panel_of(line) / columns_;
     return p;
   }
 
  private:
-  Varied v_;
-  CurvesOf curves_ = CurvesOf::Threads;
-  std::size_t across_ = 1;
-  std::size_t count_ = 1;
-  std::size_t columns_ = 1;
+  std::size_t place_of(const ResultLine& line, What what) const {
+    const auto& all = values_[what];
+    return static_cast<std::size_t>(std::find(all.begin(), all.end(), value_of(line, what)) - all.begin());
+  }
+
+  std::array<std::vector<std::string>, 3> values_;  // each once, in the order that figures show
+  What curves_ = kThreads;
+  std::size_t across_ = 1, count_ = 1, columns_ = 1;
 };
 
 /// The runs of one point.

@@ -1,5 +1,5 @@
-#include "bench/gap.hpp"
-
+// How well hidden parameters of emulated robots are found, and how well pseudo-realities drawn from them rank
+// controllers.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -7,14 +7,14 @@
 #include <set>
 #include <vector>
 
+#include "app/exit_code.hpp"
 #include "app/experiment/reading.hpp"
 #include "app/process/measure.hpp"
+#include "bench/bench.hpp"
 #include "bridges/epuck_emulator/body.hpp"
 #include "core/config/reader.hpp"
-#include "core/sim/world.hpp"
 #include "hal/angle.hpp"
 #include "hal/device/fitted.hpp"
-#include "hal/json/json.hpp"
 #include "hal/random.hpp"
 #include "hal/robot/epuck.hpp"
 #include "mixed_reality/gap/population.hpp"
@@ -31,6 +31,12 @@ constexpr double kPoseNoise_rad = 0.0175;
 // Effects that the fitted model does not know.
 constexpr double kBacklash_m = 0.0003;
 constexpr double kBumps = 0.03;
+
+struct Asked {
+  std::int64_t robots = 50;  ///< emulated e-pucks with hidden parameters
+  double seconds = 600.0;    ///< that each drives, in virtual time
+  std::int64_t realities = 200;
+};
 
 // --- hidden parameters ---
 
@@ -93,7 +99,7 @@ hal::Json spread_of(std::vector<double> errors) {
   return {{"median", at(0.5)}, {"p95", at(0.95)}, {"largest", errors.back()}};
 }
 
-hal::Json report_found(const GapCase& c, const std::vector<Found>& all, double took_s) {
+hal::Json report_found(const Asked& c, const std::vector<Found>& all, double took_s) {
   std::array<std::vector<double>, 4> off;
   std::size_t in_bounds = 0;
   for (const Found& f : all) {
@@ -126,17 +132,16 @@ hal::Json report_found(const GapCase& c, const std::vector<Found>& all, double t
 
 struct Contestant {
   const char* name;
-  const char* library;
   const char* params;
 };
 
 /// Alike enough that their order is a question.
 constexpr std::array<Contestant, 5> kContestants = {{
-    {"calm", "epuck_diffusion", R"(<params alpha="7.5" delta="0.1" velocity="5 cm/s"/>)"},
-    {"bold", "epuck_diffusion", R"(<params alpha="30" delta="0.8" velocity="6 cm/s"/>)"},
-    {"hasty", "epuck_diffusion", R"(<params alpha="7.5" delta="0.1" velocity="8 cm/s"/>)"},
-    {"timid", "epuck_diffusion", R"(<params alpha="2" delta="0.02" velocity="7 cm/s"/>)"},
-    {"reckless", "epuck_diffusion", R"(<params alpha="60" delta="2" velocity="9 cm/s"/>)"},
+    {"calm", R"(alpha="7.5" delta="0.1" velocity="5 cm/s")"},
+    {"bold", R"(alpha="30" delta="0.8" velocity="6 cm/s")"},
+    {"hasty", R"(alpha="7.5" delta="0.1" velocity="8 cm/s")"},
+    {"timid", R"(alpha="2" delta="0.02" velocity="7 cm/s")"},
+    {"reckless", R"(alpha="60" delta="2" velocity="9 cm/s")"},
 }};
 constexpr std::int64_t kSwarm = 20;
 constexpr double kRun_s = 60.0;
@@ -144,25 +149,11 @@ constexpr double kCell_m = 0.15;
 constexpr std::int64_t kTruthRuns = 40;
 
 /// `errors`: options of the wheels that the fitted model does not know.
-std::optional<core::Scenario> arena_of(const Contestant& who, const std::string& errors, hal::PluginLoader& loader) {
-  const std::string text = fmt::format(
-      R"(<tandem version="1"><framework><experiment length="{}" ticks_per_second="10" random_seed="1"/></framework>
-<controllers><{} id="c" library="{}"><actuators><differential_steering {}/></actuators>
-<sensors><proximity noise_level="0.02"/></sensors>{}</{}></controllers>
-<arena size="2.4,2.4,1">
-<box id="n" size="2.4,0.1,0.5" movable="false"><body position="0,1.15,0"/></box>
-<box id="s" size="2.4,0.1,0.5" movable="false"><body position="0,-1.15,0"/></box>
-<box id="e" size="0.1,2.4,0.5" movable="false"><body position="1.15,0,0"/></box>
-<box id="w" size="0.1,2.4,0.5" movable="false"><body position="-1.15,0,0"/></box>
-<box id="a" size="0.3,0.3,0.3" movable="false"><body position="0.5,0.4,0"/></box>
-<box id="b" size="0.3,0.3,0.3" movable="false"><body position="-0.5,-0.3,0"/></box>
-<distribute><position method="gaussian" mean="0,0,0" std_dev="0.2,0.2,0"/>
-<orientation method="uniform" min="0,0,0" max="360,0,0"/>
-<entity quantity="{}" max_trials="1000"><e-puck id="p"><controller config="c"/></e-puck></entity></distribute>
-</arena></tandem>)",
-      kRun_s, who.library, who.library, errors, who.params, who.library, kSwarm);
+std::optional<core::Scenario> arena_of(const Contestant& who, const char* errors, hal::PluginLoader& loader) {
   core::Problems problems;
-  auto scenario = core::read_experiment_text(text, "bench gap", {}, loader.catalog(), problems);
+  auto scenario = core::read_experiment_text(
+      fmt::format(fmt::runtime(hal::carried_text(scene_files(), "gap.xml")), errors, who.params), "bench gap", {},
+      loader.catalog(), problems);
   app::print_problems(problems);
   return scenario;
 }
@@ -175,9 +166,7 @@ hal::Result<double> score(core::Scenario scenario, const hal::FittedWheels& whee
   for (core::RobotItem& robot : scenario.robots) robot.own_kind = kind;
   core::WorldOptions options;
   options.seed = seed;
-  core::Problems problems;
-  auto world = core::World::make(scenario, loader, options, problems);
-  app::print_problems(problems);
+  auto world = world_of(scenario, loader, options);
   if (world == nullptr) return hal::Error{"the arena cannot be made"};
   world->start();
   std::set<std::pair<int, int>> cells;
@@ -221,7 +210,7 @@ hal::FittedWheels truth_of(const std::vector<Found>& all) {
   return truth;
 }
 
-hal::Status rank(const GapCase& c, const std::vector<Found>& all, hal::PluginLoader& loader,
+hal::Status rank(const Asked& c, const std::vector<Found>& all, hal::PluginLoader& loader,
                  const std::atomic<bool>& stop) {
   const double before_s = app::wall_seconds();
   std::vector<hal::FittedRobot<hal::WheelModel>> robots;
@@ -267,25 +256,26 @@ hal::Status rank(const GapCase& c, const std::vector<Found>& all, hal::PluginLoa
     json["cells"][kContestants[k].name] = {
         {"truth", in_truth[k]}, {"pseudo_realities", in_all[k]}, {"plain_simulation", ideal[k]}};
   }
-  fmt::print("{}\n", hal::to_text(json));
+  print_line(json);
   return {};
 }
 
 }  // namespace
 
-hal::Status bench_gap(const GapCase& c, hal::PluginLoader& loader, const std::atomic<bool>& stop) {
+hal::Result<int> bench_gap(const Call& call) {
+  const Asked c{.robots = call.options.robots_or({50}).front(), .realities = call.options.repeat_or(200)};
   const double before_s = app::wall_seconds();
   std::vector<Found> all;
   for (std::int64_t i = 0; i < c.robots; ++i) {
-    if (stop.load(std::memory_order_relaxed)) return {};
+    if (call.stop.load(std::memory_order_relaxed)) return app::kDone;
     const bridges::WheelErrors errors = hidden(i);
     auto fit = fit_wheels(driven(errors, c.seconds, i), kTick_s, {hal::epuck::kind().drive()->wheel_base_m, false});
     if (!fit.flaw.empty()) return hal::Error{fmt::format("robot {}: {}", i, fit.flaw)};
     all.push_back({errors, std::move(fit)});
   }
-  if (all.empty()) return {};
-  fmt::print("{}\n", hal::to_text(report_found(c, all, app::wall_seconds() - before_s)));
-  return c.realities > 0 ? rank(c, all, loader, stop) : hal::Status();
+  print_line(report_found(c, all, app::wall_seconds() - before_s));
+  const hal::Status ranked = rank(c, all, call.loader, call.stop);
+  return ranked.ok() ? hal::Result<int>(app::kDone) : ranked.error();
 }
 
 }  // namespace tandem::bench

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <iterator>
+#include <utility>
 
 #include "bench/gnuplot.hpp"
 
@@ -132,30 +133,26 @@ class Script {
   /// panels have.
   void plot(std::size_t number, int column, bool all) {
     const char* separator = "plot";
-    const auto next = [&] {
-      add("{} ", separator);
-      separator = ", \\\n ";
-    };
-    for (const FigureCurve& curve : figure_.panels[number].curves) {
-      const bool bars = std::any_of(curve.points.begin(), curve.points.end(),
-                                    [](const FigurePoint& p) { return p.wall.smallest < p.wall.largest; });
-      if (!bars) continue;
+    const auto next = [&] { add("{} ", std::exchange(separator, ", \\\n ")); };
+    const auto& curves = figure_.panels[number].curves;
+    for (const FigureCurve& curve : curves) {
+      if (std::none_of(curve.points.begin(), curve.points.end(),
+                       [](const FigurePoint& p) { return p.wall.smallest < p.wall.largest; }))
+        continue;
       next();
       add("$d{}_{} using 1:{}:{}:{} with yerrorbars pointtype -1 linewidth 0.8 linecolor '{}' notitle", number,
           curve.label, column, column + 1, column + 2, core::figure_colour(curve.label));
     }
-    std::size_t drawn = 0;
-    const auto& curves = figure_.panels[number].curves;
     for (std::size_t label = 0; label < figure_.labels.size(); ++label) {
-      const std::string title = core::gnuplot_text(figure_.labels[label]);
-      if (drawn < curves.size() && curves[drawn].label == label) {
-        next();
-        add("$d{}_{} using 1:{} with linespoints linestyle {} title {}", number, label, column, label + 1, title);
-        ++drawn;
-      } else if (all) {
-        next();
-        add("keyentry with linespoints linestyle {} title {}", label + 1, title);
-      }
+      const bool drawn =
+          std::any_of(curves.begin(), curves.end(), [&](const FigureCurve& c) { return c.label == label; });
+      if (!drawn && !all) continue;
+      next();
+      if (drawn)
+        add("$d{}_{} using 1:{}", number, label, column);
+      else
+        add("keyentry");
+      add(" with linespoints linestyle {} title {}", label + 1, core::gnuplot_text(figure_.labels[label]));
     }
     add("\n");
   }

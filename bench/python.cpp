@@ -1,10 +1,11 @@
-#include "bench/python.hpp"
-
+// How fast Python drives worlds.
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <string>
 #include <unistd.h>
+
+#include "bench/bench.hpp"
 
 namespace tandem::bench {
 namespace {
@@ -34,14 +35,16 @@ void put_built_module_on_path() {
 
 }  // namespace
 
-hal::Status bench_python(const PythonCase& c) {
+/// Returns only where there is no Python to become.
+hal::Result<int> bench_python(const Call& call) {
   put_built_module_on_path();
   const char* const named = std::getenv("TANDEM_PYTHON");
   const std::string python = named == nullptr || *named == '\0' ? "/usr/bin/python3" : named;
+  const BenchOptions& o = call.options;
   std::vector<std::string> words = {
-      python, "-c", kProgram, "--ticks", std::to_string(c.ticks), "--runs", std::to_string(c.runs)};
-  if (!c.robots.empty()) words.emplace_back("--robots");
-  for (const std::int64_t n : c.robots) words.push_back(std::to_string(n));
+      python, "-c", kProgram, "--ticks", std::to_string(o.ticks), "--runs", std::to_string(o.repeat_or(600))};
+  if (!o.robots.empty()) words.emplace_back("--robots");
+  for (const std::int64_t n : o.robots) words.push_back(std::to_string(n));
   std::vector<char*> argv;
   for (std::string& word : words) argv.push_back(word.data());
   argv.push_back(nullptr);

@@ -1,20 +1,16 @@
-#include "bench/record.hpp"
+// What a record of all poses adds to a run.
+#include "core/record/record.hpp"
 
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <cstdlib>
 #include <filesystem>
-#include <unistd.h>
 #include <vector>
 
-#include "app/experiment/reading.hpp"
-#include "app/outputs/report.hpp"
+#include "app/exit_code.hpp"
 #include "app/process/measure.hpp"
-#include "bench/scene.hpp"
-#include "core/record/record.hpp"
-#include "core/sim/world.hpp"
+#include "bench/bench.hpp"
 #include "hal/median.hpp"
+#include "hal/temporary_folder.hpp"
 
 namespace tandem::bench {
 namespace {
@@ -28,32 +24,14 @@ Cost now() {
   return {app::wall_seconds(), app::seconds_of(CLOCK_THREAD_CPUTIME_ID), app::cpu_seconds()};
 }
 
-/// A record that is removed when it goes.
-struct TemporaryRecord {
-  TemporaryRecord() {
-    std::error_code error;
-    auto folder = std::filesystem::temp_directory_path(error);
-    path = ((error ? std::filesystem::path("/tmp") : folder) / ("tandem_bench_" + std::to_string(getpid()) + ".record"))
-               .string();
-  }
-  ~TemporaryRecord() {
-    std::error_code error;
-    for (const std::string& file : {path, path + ".part"}) std::filesystem::remove(file, error);
-  }
-  std::string path;
-};
-
-}  // namespace
-
-hal::Result<std::string> bench_record(const BenchCase& c, hal::PluginLoader& loader, const std::atomic<bool>& stop) {
-  core::Problems problems;
-  const core::Scenario scenario = scene_of(c);
-  auto world = core::World::make(scenario, loader, {}, problems);
-  app::print_problems(problems);
+/// Steps one world, in turns for some ticks with a record and for some without, and compares neighbours; so the
+/// machine's moods meet both.
+hal::Status measure(const BenchCase& c, const Call& call) {
+  auto world = world_of(scene_of(c), call.loader);
   if (world == nullptr) return hal::Error{"the scene cannot be made"};
-  const TemporaryRecord file;
+  const hal::TemporaryFolder folder("tandem_bench");
   core::RecordConfig config;
-  config.path = file.path;
+  config.path = folder.file("bench.record");
   auto opened = core::Recorder::open(config, world->space(), {{"program", "tandem bench record"}});
   if (!opened.ok()) return opened.error();
   core::Recorder& recorder = *opened.value();
@@ -61,10 +39,9 @@ hal::Result<std::string> bench_record(const BenchCase& c, hal::PluginLoader& loa
   world->start();
   std::array<std::vector<Cost>, 2> turns;  // without, with
   std::int64_t recorded = 0;
-  std::uint64_t bytes = 0;
   const std::int64_t pairs = std::max<std::int64_t>(1, c.ticks / (2 * kTicksInTurn));
   for (std::int64_t turn = -2; turn < 2 * pairs; ++turn) {
-    if (stop.load(std::memory_order_relaxed)) return std::string();
+    if (call.stop.load(std::memory_order_relaxed)) return {};
     const std::size_t with = ((turn + 4) % 4 == 1 || (turn + 4) % 4 == 2) ? 1 : 0;  // without, with, with, without
     const Cost before = now();
     for (std::int64_t i = 0; i < kTicksInTurn; ++i) {
@@ -81,7 +58,7 @@ hal::Result<std::string> bench_record(const BenchCase& c, hal::PluginLoader& loa
   if (const hal::Status closed = recorder.close(world->tick() - 1, hal::Json::object()); !closed.ok())
     return closed.error();
   std::error_code error;
-  bytes = std::filesystem::file_size(file.path, error);
+  const auto bytes = std::filesystem::file_size(config.path, error);
 
   hal::Json json = {{"bench", "record"},
                     {"robots", c.robots},
@@ -103,7 +80,21 @@ hal::Result<std::string> bench_record(const BenchCase& c, hal::PluginLoader& loa
     json[name + "_us_per_tick"] = {{"without", hal::upper_median(us[0])}, {"with", hal::upper_median(us[1])}};
     json[name + "_quotient"] = hal::upper_median(quotients);
   }
-  return hal::to_text(json);
+  print_line(json);
+  return {};
+}
+
+}  // namespace
+
+hal::Result<int> bench_record(const Call& call) {
+  Call measured = call;
+  measured.robots = call.options.robots_or({10'000});
+  for (BenchCase& c : cases_of(measured)) {
+    c.bench = "diffusion";
+    if (const hal::Status done = measure(c, call); !done.ok()) return done.error();
+    if (call.stop.load()) break;
+  }
+  return app::kDone;
 }
 
 }  // namespace tandem::bench

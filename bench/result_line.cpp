@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <fstream>
-#include <optional>
 
 #include "hal/json/json.hpp"
 
@@ -15,44 +14,38 @@ class Fields {
   explicit Fields(const hal::Json& object) : object_(object) {}
 
   void text(const char* name, std::string& out) {
-    const hal::Json* v = find(name);
-    if (v == nullptr) return;
-    if (v->is_string())
-      out = v->get<std::string>();
-    else
-      complain("\"" + std::string(name) + "\" must be a text");
+    if (const hal::Json* v = find(name, true)) out = v->get<std::string>();
   }
   void seconds(const char* name, bool may_be_zero, double& out) {
-    const std::optional<double> v = number(name);
-    if (!v) return;
-    out = *v;
+    const hal::Json* v = find(name, false);
+    if (v == nullptr) return;
+    out = v->get<double>();
     if (out < 0.0 || (out == 0.0 && !may_be_zero))
       complain("\"" + std::string(name) + "\" must be " + (may_be_zero ? "0 or greater" : "greater than 0"));
   }
   void count(const char* name, std::int64_t lowest, std::int64_t& out) {
     constexpr double kMost = 1e15;
-    const std::optional<double> v = number(name);
-    if (!v) return;
-    if (*v != std::floor(*v) || *v < static_cast<double>(lowest) || *v > kMost)
+    const hal::Json* v = find(name, false);
+    if (v == nullptr) return;
+    const auto number = v->get<double>();
+    if (number != std::floor(number) || number < static_cast<double>(lowest) || number > kMost)
       complain("\"" + std::string(name) + "\" must be a whole number from " + std::to_string(lowest));
     else
-      out = static_cast<std::int64_t>(*v);
+      out = static_cast<std::int64_t>(number);
   }
   const std::string& trouble() const { return trouble_; }
 
  private:
-  const hal::Json* find(const char* name) {
+  /// A text, or a number.
+  const hal::Json* find(const char* name, bool text) {
     const auto found = object_.find(name);
-    if (found != object_.end()) return &*found;
-    complain("there is no \"" + std::string(name) + "\" in it; is it a line of `tandem bench`?");
+    if (found == object_.end())
+      complain("there is no \"" + std::string(name) + "\" in it; is it a line of `tandem bench`?");
+    else if (text ? found->is_string() : found->is_number())
+      return &*found;
+    else
+      complain("\"" + std::string(name) + "\" must be a " + (text ? "text" : "number"));
     return nullptr;
-  }
-  std::optional<double> number(const char* name) {
-    const hal::Json* v = find(name);
-    if (v == nullptr) return {};
-    if (v->is_number()) return v->get<double>();
-    complain("\"" + std::string(name) + "\" must be a number");
-    return {};
   }
   void complain(const std::string& what) {
     if (trouble_.empty()) trouble_ = what;

@@ -1,5 +1,7 @@
-#include "bench/sense_to_act.hpp"
-
+// Latency from an eye-bot's state report to the command that answers it, over LCM. Emulated robots report 50 times a
+// second, and each is driven by a bridge that answers every report with another velocity; both sides share this machine
+// and its multicast on the loopback, not their threads or sockets. Times are taken by the emulated robots: from when a
+// report was handed to the system until the next command was received.
 #include <algorithm>
 #include <atomic>
 #include <chrono>
@@ -12,11 +14,12 @@
 #include <thread>
 #include <vector>
 
+#include "app/exit_code.hpp"
+#include "bench/bench.hpp"
 #include "bridges/eyebot/driver.hpp"
 #include "bridges/eyebot_emulator/emulator.hpp"
 #include "bridges/lcm/lcm_link.hpp"
 #include "hal/device/flight.hpp"
-#include "hal/json/json.hpp"
 
 namespace tandem::bench {
 namespace {
@@ -27,6 +30,11 @@ using bridges::EventField;
 using bridges::EventFields;
 using bridges::lcm_bus::LcmLink;
 using bridges::lcm_bus::LcmMessage;
+
+struct Asked {
+  std::int64_t robots = 20;
+  double seconds = 5.0;  ///< that are timed, once all robots fly
+};
 
 /// A network of its own, so that nobody else's robots are flown.
 constexpr const char* kUrl = "udpm://239.255.76.68:7668?ttl=0";
@@ -181,26 +189,23 @@ double at_share_us(const std::vector<hal::TimeNs>& sorted, double share) {
   return static_cast<double>(sorted[i]) / 1000.0;
 }
 
-void print(const SenseToActCase& c, Witness& witness) {
+void print(const Asked& c, Witness& witness) {
   auto& times = witness.times_ns();
   std::sort(times.begin(), times.end());
-  hal::Json json;
-  json["bench"] = "sense_to_act";
-  json["robots"] = c.robots;
-  json["rate_hz"] = static_cast<std::int64_t>(emulator::Eyebot::kStateRate_Hz);
-  json["seconds"] = c.seconds;
-  json["scheduling"] = scheduling_class();
-  json["reports_answered"] = static_cast<std::int64_t>(times.size());
-  json["commands"] = witness.commands();
-  json["commands_refused"] = witness.refused();
-  json["p50_us"] = at_share_us(times, 0.5);
-  json["p99_us"] = at_share_us(times, 0.99);
-  json["max_us"] = at_share_us(times, 1.0);
-  fmt::print("{}\n", hal::to_text(json));
-  std::fflush(stdout);
+  print_line({{"bench", "sense_to_act"},
+              {"robots", c.robots},
+              {"rate_hz", static_cast<std::int64_t>(emulator::Eyebot::kStateRate_Hz)},
+              {"seconds", c.seconds},
+              {"scheduling", scheduling_class()},
+              {"reports_answered", static_cast<std::int64_t>(times.size())},
+              {"commands", witness.commands()},
+              {"commands_refused", witness.refused()},
+              {"p50_us", at_share_us(times, 0.5)},
+              {"p99_us", at_share_us(times, 0.99)},
+              {"max_us", at_share_us(times, 1.0)}});
 }
 
-hal::Status measure_once(const SenseToActCase& c) {
+hal::Status measure_once(const Asked& c) {
   Witness witness;
   Robots robots(c.robots, witness);
   auto opened = LcmLink::open(kUrl);
@@ -232,14 +237,18 @@ hal::Status measure_once(const SenseToActCase& c) {
 
 }  // namespace
 
-hal::Status bench_sense_to_act(const SenseToActCase& c, std::int64_t repeat) {
-  if (c.real_time) {
-    if (const hal::Status permitted = use_real_time(); !permitted.ok()) return permitted;
+hal::Result<int> bench_sense_to_act(const Call& call) {
+  constexpr std::int64_t kMostRobots = 100;
+  for (const std::int64_t robots : call.options.robots_or({20})) {
+    if (robots > kMostRobots) return refuse(app::kWrongUsage, fmt::format("at most {} eye-bots", kMostRobots));
+    if (call.options.real_time) {
+      if (const hal::Status permitted = use_real_time(); !permitted.ok()) return permitted.error();
+    }
+    for (std::int64_t i = 0; i < call.options.repeat; ++i) {
+      if (const hal::Status done = measure_once({robots, call.options.seconds}); !done.ok()) return done.error();
+    }
   }
-  for (std::int64_t i = 0; i < repeat; ++i) {
-    if (const hal::Status measured = measure_once(c); !measured.ok()) return measured;
-  }
-  return {};
+  return app::kDone;
 }
 
 }  // namespace tandem::bench

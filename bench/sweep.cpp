@@ -1,23 +1,20 @@
-#include "bench/sweep.hpp"
+// How much more a sweep costs than its runs.
+#include "study/sweep/sweep.hpp"
 
-#include <cstdlib>
-#include <filesystem>
 #include <fmt/format.h>
 #include <sys/resource.h>
 #include <thread>
 
 #include "app/build_info.hpp"
+#include "app/exit_code.hpp"
+#include "app/outputs/report.hpp"
 #include "app/process/measure.hpp"
-#include "app/process/signals.hpp"
-#include "bench/scene.hpp"
-#include "hal/json/json.hpp"
-#include "study/sweep/sweep.hpp"
+#include "bench/bench.hpp"
+#include "hal/temporary_folder.hpp"
 #include "study/table/table.hpp"
 
 namespace tandem::bench {
 namespace {
-
-namespace fs = std::filesystem;
 
 double seconds_of(const timeval& t) {
   return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
@@ -34,51 +31,25 @@ double all_cpu_s() {
   return sum_s;
 }
 
-/// A folder of its own, removed at the end.
-class TemporaryFolder {
- public:
-  TemporaryFolder() {
-    std::string pattern = (fs::temp_directory_path() / "tandem_sweep_XXXXXX").string();
-    if (mkdtemp(pattern.data()) != nullptr) path_ = pattern;
-  }
-  ~TemporaryFolder() {
-    std::error_code ignored;
-    if (!path_.empty()) fs::remove_all(path_, ignored);
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  const fs::path& path() const { return path_; }
-
- private:
-  fs::path path_;
-};
-
-}  // namespace
-
-hal::Status bench_sweep(const SweepCase& c, hal::PluginLoader& loader) {
+/// Sweeps `runs` of the standard scene with as many seeds on all cores, into a table: the processor time that the runs
+/// say they took, that of all processes together, and how many per cent that is more.
+hal::Status measure(BenchCase scene, std::int64_t count, const Call& call) {
   study::Study study;
   study.experiments = {{"diffusion", "", 0}};
-  for (std::int64_t i = 0; i < c.runs; ++i) study.seeds.push_back(static_cast<std::uint64_t>(i + 1));
+  for (std::int64_t i = 0; i < count; ++i) study.seeds.push_back(static_cast<std::uint64_t>(i + 1));
   auto design = study::Design::of(study);
   if (!design.ok()) return design.error();
-  BenchCase scene{"diffusion", "e-puck", "kinematics2d", "auto", "auto", "", "equal", c.robots, 0};
-  scene.ticks = c.ticks;
-  const core::Scenario scenario = [&] {
-    core::Scenario made = scene_of(scene);
-    made.length_s = static_cast<double>(c.ticks) / static_cast<double>(made.ticks_per_second);
-    return made;
-  }();
-  const TemporaryFolder folder;
-  const std::string path = folder.path() / "table.sqlite";
-  auto table = study::Table::open(path);
+  core::Scenario scenario = scene_of(scene);
+  scenario.length_s = static_cast<double>(scene.ticks) / static_cast<double>(scenario.ticks_per_second);
+  const hal::TemporaryFolder folder("tandem_sweep");
+  auto table = study::Table::open(folder.file("table.sqlite"));
   if (!table.ok()) return table.error();
-  if (const hal::Status begun = (*table)->begin({"", "", {}, c.runs}); !begun.ok()) return begun;
+  if (const hal::Status begun = (*table)->begin({"", "", {}, count}); !begun.ok()) return begun;
 
-  const std::atomic<bool>& stop = app::catch_signals();
   study::SweepOptions how;
   how.workers = std::max(1U, std::thread::hardware_concurrency());
   how.in_worker = [&] { (*table)->leave_to_parent(); };
-  std::vector<std::int64_t> runs(static_cast<std::size_t>(c.runs));
+  std::vector<std::int64_t> runs(static_cast<std::size_t>(count));
   for (std::size_t i = 0; i < runs.size(); ++i) runs[i] = static_cast<std::int64_t>(i);
   std::int64_t failed = 0;
   std::uint64_t hash = 0;
@@ -95,28 +66,37 @@ hal::Status bench_sweep(const SweepCase& c, hal::PluginLoader& loader) {
   };
   const double wall_s = app::wall_seconds(), cpu_s = all_cpu_s();
   hal::Status swept = study::sweep(
-      *design, runs, [&](const study::RunPlan&) { return hal::Result<core::Scenario>(scenario); }, loader, how, take,
-      [] {}, stop);
+      *design, runs, [&](const study::RunPlan&) { return hal::Result<core::Scenario>(scenario); }, call.loader, how,
+      take, [] {}, call.stop);
   if (swept.ok()) swept = (*table)->finish();
   if (!swept.ok()) return swept;
   if (failed > 0) return hal::Error{fmt::format("{} runs failed", failed)};
-  if (stop.load()) return {};
+  if (call.stop.load()) return {};
   const double took_s = app::wall_seconds() - wall_s, spent_s = all_cpu_s() - cpu_s;
-  hal::Json json;
-  json["bench"] = "sweep";
-  json["runs"] = c.runs;
-  json["robots"] = c.robots;
-  json["ticks"] = c.ticks;
-  json["workers"] = how.workers;
-  json["wall_s"] = took_s;
-  json["runs_a_second"] = static_cast<double>(c.runs) / took_s;
-  json["cpu_of_runs_s"] = own_cpu_s;
-  json["cpu_of_all_s"] = spent_s;
-  json["overhead_percent"] = 100.0 * (spent_s / own_cpu_s - 1.0);
-  json["state_hash"] = fmt::format("{:#018x}", hash);
-  json["cpu_model"] = app::build_info().processor;
-  fmt::print("{}\n", hal::to_text(json));
+  print_line({{"bench", "sweep"},
+              {"runs", count},
+              {"robots", scene.robots},
+              {"ticks", scene.ticks},
+              {"workers", how.workers},
+              {"wall_s", took_s},
+              {"runs_a_second", static_cast<double>(count) / took_s},
+              {"cpu_of_runs_s", own_cpu_s},
+              {"cpu_of_all_s", spent_s},
+              {"overhead_percent", 100.0 * (spent_s / own_cpu_s - 1.0)},
+              {"state_hash", app::hash_text(hash)},
+              {"cpu_model", app::build_info().processor}});
   return {};
+}
+
+}  // namespace
+
+hal::Result<int> bench_sweep(const Call& call) {
+  for (const std::int64_t robots : call.options.robots_or({100})) {
+    const hal::Status done =
+        measure({.robots = robots, .ticks = call.options.ticks}, call.options.repeat_or(10'000), call);
+    if (!done.ok()) return done.error();
+  }
+  return app::kDone;
 }
 
 }  // namespace tandem::bench

@@ -1,32 +1,29 @@
-#include "bench/view.hpp"
-
+// What a window costs the run that it shows, and how soon it shows something.
 #include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <cmath>
-#include <csignal>
-#include <cstdio>
 #include <cstdlib>
 #include <cstring>
-#include <fcntl.h>
 #include <filesystem>
 #include <fmt/format.h>
-#include <fstream>
 #include <optional>
-#include <spawn.h>
-#include <sys/wait.h>
+#include <poll.h>
 #include <thread>
 #include <unistd.h>
 
 #include "app/build_info.hpp"
-#include "app/experiment/reading.hpp"
+#include "app/exit_code.hpp"
+#include "app/outputs/report.hpp"
 #include "app/process/measure.hpp"
 #include "app/run_options.hpp"
 #include "app/window/view_run.hpp"
-#include "bench/scene.hpp"
+#include "bench/bench.hpp"
 #include "bench/spread.hpp"
 #include "core/live/live_run.hpp"
-#include "core/sim/world.hpp"
+#include "hal/output_file.hpp"
+#include "hal/program.hpp"
+#include "hal/temporary_folder.hpp"
 #include "window/wire/client.hpp"
 
 namespace tandem::bench {
@@ -103,93 +100,97 @@ double rounded(double value) {
   return std::atof(fmt::format("{:.4f}", value).c_str());
 }
 
-constexpr const char* kExperiment = R"(<?xml version="1.0"?>
-<tandem>
-  <framework><experiment length="0" ticks_per_second="10" random_seed="1"/></framework>
-  <controllers>
-    <epuck_diffusion id="c" library="epuck_diffusion">
-      <actuators><differential_steering/></actuators><sensors><proximity/></sensors><params/>
-    </epuck_diffusion>
-  </controllers>
-  <arena size="{0},{0},1">
-    <distribute>
-      <position method="uniform" min="-{1},-{1},0" max="{1},{1},0"/><orientation method="uniform" min="0,0,0" max="360,0,0"/>
-      <entity quantity="{2}" max_trials="1000"><e-puck id="ep"><controller config="c"/></e-puck></entity>
-    </distribute>
-  </arena>
-  <physics_engines><kinematics2d id="k"/></physics_engines>
-</tandem>
-)";
-
-/// `tandem view` of this file; killed when this ends.
+/// `tandem view` of a file; ended with this.
 class Viewing {
  public:
   explicit Viewing(const std::string& file) {
-    int ends[2] = {-1, -1};
-    if (::pipe2(ends, O_CLOEXEC) != 0) return;
-    posix_spawn_file_actions_t actions;
-    posix_spawn_file_actions_init(&actions);
-    posix_spawn_file_actions_adddup2(&actions, ends[1], STDERR_FILENO);
-    posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
-    std::string words[] = {"/proc/self/exe", "view", file, "--no-browser"};
-    char* arguments[] = {words[0].data(), words[1].data(), words[2].data(), words[3].data(), nullptr};
     const std::string program = std::filesystem::read_symlink("/proc/self/exe").string();
-    if (::posix_spawn(&child_, program.c_str(), &actions, nullptr, arguments, environ) != 0) child_ = -1;
-    posix_spawn_file_actions_destroy(&actions);
-    ::close(ends[1]);
-    errors_ = ends[0];
+    auto started = hal::Program::start_source(
+        "/bin/sh", {"-c", "exec \"$0\" view \"$1\" --no-browser 2>&1 >/dev/null", program, file});
+    if (started.ok()) program_ = std::move(started).value();
   }
-  ~Viewing() {
-    if (child_ > 0) {
-      ::kill(child_, SIGKILL);
-      ::waitpid(child_, nullptr, 0);
-    }
-    if (errors_ >= 0) ::close(errors_);
-  }
-  Viewing(const Viewing&) = delete;
-  Viewing& operator=(const Viewing&) = delete;
 
   /// What stands behind "view: "; else all that it said.
   hal::Result<std::string> address() const {
     std::string text;
     char buffer[512];
-    while (errors_ >= 0) {
+    pollfd ready{program_ == nullptr ? -1 : program_->output(), POLLIN, 0};
+    while (program_ != nullptr && ::poll(&ready, 1, -1) > 0) {
+      const ssize_t got = ::read(ready.fd, buffer, sizeof buffer);
+      if (got <= 0) break;
+      text.append(buffer, static_cast<std::size_t>(got));
       const std::size_t at = text.find("http://");
       const std::size_t end = at == std::string::npos ? at : text.find('\n', at);
       if (end != std::string::npos) return text.substr(at, end - at);
-      const ssize_t got = ::read(errors_, buffer, sizeof buffer);
-      if (got <= 0) break;
-      text.append(buffer, static_cast<std::size_t>(got));
     }
     return hal::Error{"tandem view tells no address: " + text};
   }
 
  private:
-  pid_t child_ = -1;
-  int errors_ = -1;
+  std::unique_ptr<hal::Program> program_;
 };
 
-}  // namespace
+/// Seconds from the start of `tandem view` of the file.
+struct Shown {
+  double address_s = 0.0, frame_s = 0.0;
+};
 
-hal::Status bench_view(const ViewCase& c, hal::PluginLoader& loader) {
-  BenchCase scene;
-  scene.bench = "diffusion";
-  scene.robot = c.robot;
-  scene.engine = c.engine;
-  scene.partition = scene.regions = "auto";
-  scene.density = "equal";
-  scene.robots = c.robots;
-  scene.threads = c.threads;
-  core::Problems problems;
-  const auto world = core::World::make(scene_of(scene), loader, {}, problems);
-  app::print_problems(problems);
+hal::Result<Shown> show(const std::string& file) {
+  Shown shown;
+  const double began = app::wall_seconds();
+  const Viewing viewing(file);
+  const auto address = viewing.address();
+  if (!address.ok()) return address.error();
+  shown.address_s = app::wall_seconds() - began;
+  auto client = Client::connect(address.value());
+  if (!client.ok()) return client.error();
+  for (;;) {
+    const auto received = client.value().receive(30s);
+    if (!received || received->kind == Client::Received::Kind::Close) return hal::Error{"tandem view shows no frame"};
+    if (pose_frame(*received) == 0) continue;
+    shown.frame_s = app::wall_seconds() - began;
+    return shown;
+  }
+}
+
+/// How soon a thousand robots are seen: medians.
+hal::Status first_frame(std::int64_t repeat) {
+  constexpr std::int64_t kRobots = 1000;
+  const double half_m = 0.25 * std::sqrt(static_cast<double>(kRobots));
+  const hal::TemporaryFolder folder("tandem_view");
+  const std::string file = folder.file("view.xml");
+  const hal::Status written = hal::write_whole_file(
+      file, "experiment",
+      fmt::format(fmt::runtime(hal::carried_text(scene_files(), "view.xml")), 2.0 * half_m + 1.0, half_m, kRobots));
+  if (!written.ok()) return written;
+  std::vector<double> address_s, frame_s;
+  for (std::int64_t i = 0; i < repeat; ++i) {
+    const auto shown = show(file);
+    if (!shown.ok()) return shown.error();
+    address_s.push_back(shown.value().address_s);
+    frame_s.push_back(shown.value().frame_s);
+  }
+  print_line({{"bench", "view"},
+              {"robots", kRobots},
+              {"address_s", rounded(spread_of(address_s).median)},
+              {"first_frame_s", rounded(spread_of(frame_s).median)},
+              {"first_frame_s_largest", rounded(spread_of(frame_s).largest)}});
+  return {};
+}
+
+/// Runs the scene behind a window, as fast as possible, in pairs without a viewer and with one, on a thread of this
+/// process: quotients of wall time and of the stepping thread's processor time.
+hal::Status cost(const BenchCase& c, const Call& call) {
+  const auto world = world_of(scene_of(c), call.loader);
   if (world == nullptr) return hal::Error{"the scene cannot be made"};
+  const std::int64_t pairs = call.options.repeat;
+  const double frames_per_s = c.robots > 20'000 ? 10.0 : 20.0;  // that the viewer asks for
   core::LiveOptions options;
   options.can_go_back = false;
   core::LiveRun live(*world, options);
   app::ViewRequest request;
   request.no_browser = true;
-  auto view = app::RunView::open(request, {*world, live, loader.catalog(), nullptr, {}});
+  auto view = app::RunView::open(request, {*world, live, call.loader.catalog(), nullptr, {}});
   if (!view.ok()) return view.error();
   live.on_show([&] { view.value()->show(); });
   world->start();
@@ -201,7 +202,7 @@ hal::Status bench_view(const ViewCase& c, hal::PluginLoader& loader) {
   double watched_s = 0.0;
   const auto alone = [&] { return step(*world, live, *view.value(), c.ticks); };
   const auto watched = [&] {
-    Onlooker onlooker(view.value()->address(), c.frames_per_s);
+    Onlooker onlooker(view.value()->address(), frames_per_s);
     while (onlooker.frames() == 0) (void)step(*world, live, *view.value(), 1);  // members and scene are told once
     const std::int64_t frames_before = onlooker.frames(), bytes_before = onlooker.bytes();
     const Half half = step(*world, live, *view.value(), c.ticks);
@@ -210,82 +211,47 @@ hal::Status bench_view(const ViewCase& c, hal::PluginLoader& loader) {
     watched_s += half.wall_s;
     return half;
   };
-  for (std::int64_t pair = 0; pair < c.pairs; ++pair) {  // in turns, so that what drifts meets both
-    Half without, with;
-    if (pair % 2 == 0) {
-      without = alone();
-      with = watched();
-    } else {
-      with = watched();
-      without = alone();
-    }
+  for (std::int64_t pair = 0; pair < pairs; ++pair) {  // in turns, so that what drifts meets both
+    Half without = pair % 2 == 0 ? alone() : Half{};
+    const Half with = watched();
+    if (pair % 2 != 0) without = alone();
     wall.push_back(with.wall_s / without.wall_s);
     own.push_back(with.own_cpu_s / without.own_cpu_s);
   }
-  const hal::Json line = {
-      {"bench", "view"},
-      {"robots", c.robots},
-      {"engine", c.engine},
-      {"threads", c.threads},
-      {"ticks", c.ticks},
-      {"pairs", c.pairs},
-      {"wall_quotient", rounded(spread_of(wall).median)},
-      {"wall_quotient_smallest", rounded(spread_of(wall).smallest)},
-      {"wall_quotient_largest", rounded(spread_of(wall).largest)},
-      {"stepping_cpu_quotient", rounded(spread_of(own).median)},
-      {"frames_per_s", rounded(static_cast<double>(frames) / watched_s)},
-      {"bytes_per_robot_and_frame",
-       rounded(static_cast<double>(bytes) / static_cast<double>(std::max<std::int64_t>(1, frames) * c.robots))},
-      {"state_hash", fmt::format("0x{:016x}", world->state_hash())},
-      {"cpu_model", app::build_info().processor}};
-  fmt::print("{}\n", hal::to_text(line));
-  std::fflush(stdout);
+  print_line({{"bench", "view"},
+              {"robots", c.robots},
+              {"engine", c.engine},
+              {"threads", c.threads},
+              {"ticks", c.ticks},
+              {"pairs", pairs},
+              {"wall_quotient", rounded(spread_of(wall).median)},
+              {"wall_quotient_smallest", rounded(spread_of(wall).smallest)},
+              {"wall_quotient_largest", rounded(spread_of(wall).largest)},
+              {"stepping_cpu_quotient", rounded(spread_of(own).median)},
+              {"frames_per_s", rounded(static_cast<double>(frames) / watched_s)},
+              {"bytes_per_robot_and_frame",
+               rounded(static_cast<double>(bytes) / static_cast<double>(std::max<std::int64_t>(1, frames) * c.robots))},
+              {"state_hash", app::hash_text(world->state_hash())},
+              {"cpu_model", app::build_info().processor}});
   return {};
 }
 
-hal::Status bench_first_frame(std::int64_t robots, std::int64_t repeat) {
-  const double half_m = 0.25 * std::sqrt(static_cast<double>(robots));
-  char file[] = "/tmp/tandem_view_XXXXXX.xml";
-  const int fd = ::mkstemps(file, 4);
-  if (fd < 0) return hal::Error{"/tmp cannot be written"};
-  ::close(fd);
-  std::ofstream(file) << fmt::format(kExperiment, 2.0 * half_m + 1.0, half_m, robots);
-  std::vector<double> address_s, frame_s;
-  hal::Status status;
-  for (std::int64_t i = 0; i < std::max<std::int64_t>(1, repeat) && status.ok(); ++i) {
-    const double began = app::wall_seconds();
-    const Viewing viewing(file);
-    const auto address = viewing.address();
-    if (!address.ok()) status = address.error();
-    if (!address.ok()) break;
-    address_s.push_back(app::wall_seconds() - began);
-    auto client = Client::connect(address.value());
-    if (!client.ok()) {
-      status = client.error();
-      break;
-    }
-    for (;;) {
-      const auto received = client.value().receive(30s);
-      if (!received || received->kind == Client::Received::Kind::Close) {
-        status = hal::Error{"tandem view shows no frame"};
-        break;
+}  // namespace
+
+hal::Result<int> bench_view(const Call& call) {
+  BenchCase c{.robot = call.robot, .ticks = call.options.ticks};
+  for (const std::string& engine : call.engines) {
+    for (const std::int64_t robots : call.options.robots_or({10'000, 100'000})) {
+      for (const std::int64_t threads : call.threads) {
+        c.engine = engine;
+        c.robots = robots;
+        c.threads = threads;
+        if (const hal::Status done = cost(c, call); !done.ok()) return done.error();
       }
-      if (pose_frame(*received) == 0) continue;
-      frame_s.push_back(app::wall_seconds() - began);
-      break;
     }
   }
-  std::error_code ignored;
-  std::filesystem::remove(file, ignored);
-  if (!status.ok()) return status;
-  const hal::Json line = {{"bench", "view"},
-                          {"robots", robots},
-                          {"address_s", rounded(spread_of(address_s).median)},
-                          {"first_frame_s", rounded(spread_of(frame_s).median)},
-                          {"first_frame_s_largest", rounded(spread_of(frame_s).largest)}};
-  fmt::print("{}\n", hal::to_text(line));
-  std::fflush(stdout);
-  return {};
+  const hal::Status seen = first_frame(call.options.repeat);
+  return seen.ok() ? hal::Result<int>(app::kDone) : seen.error();
 }
 
 }  // namespace tandem::bench

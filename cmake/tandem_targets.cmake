@@ -131,6 +131,23 @@ function(tandem_module name)
   target_link_libraries(${target} PRIVATE tandem_flags -Wl,--whole-archive ${archives} -Wl,--no-whole-archive ${external})
   set_property(TARGET ${target} APPEND PROPERTY LINK_DEPENDS ${archives})
   set_property(GLOBAL APPEND PROPERTY TANDEM_MODULES ${target})
+# tandem_carry(<out.cpp> <tandem::folder::function> FROM <folder> FILES …): writes a source with a function that returns these files,
+# a span of hal::CarriedFile, by their names in the folder. The function is declared by whoever calls it.
+function(tandem_carry out function)
+  cmake_parse_arguments(arg "" "FROM" "FILES" ${ARGN})
+  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${arg_FILES})
+  list(LENGTH arg_FILES count)
+  string(REGEX REPLACE "::[a-z_]+$" "" space ${function})
+  string(REGEX REPLACE "^.*::" "" name ${function})
+  set(text "// Written by CMake: files that the program carries.\n#include <array>\n\n#include \"hal/carried_file.hpp\"\n\nnamespace ${space} {\n\n")
+  string(APPEND text "std::span<const hal::CarriedFile> ${name}() {\n  static constexpr std::array<hal::CarriedFile, ${count}> kAll = {{\n")
+  foreach(file ${arg_FILES})
+    file(READ ${file} content)
+    file(RELATIVE_PATH name ${arg_FROM} ${file})
+    string(APPEND text "{\"${name}\", R\"tandem(${content})tandem\"},\n")
+  endforeach()
+  string(APPEND text "}};\n  return kAll;\n}\n\n}  // namespace ${space}\n")
+  file(CONFIGURE OUTPUT ${out} CONTENT "${text}" @ONLY)
 endfunction()
 
 # tandem_plugin(NAME epuck_diffusion SOURCES … DEPS hal): one shared object, lib/<name>.so in the build folder.

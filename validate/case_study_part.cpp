@@ -15,6 +15,7 @@
 #include "core/sim/world.hpp"
 #include "hal/device/wheels.hpp"
 #include "hal/program.hpp"
+#include "hal/temporary_folder.hpp"
 #include "validate/closed_forms.hpp"
 #include "validate/goodness.hpp"
 #include "validate/parts.hpp"
@@ -55,9 +56,8 @@ std::vector<std::array<std::string, 3>> published() {
 /// Throughputs at the end, by experiment and limit of the carries. @throws std::runtime_error when the sweep fails
 std::map<std::string, std::vector<double>> swept() {
   namespace fs = std::filesystem;
-  std::string name = (fs::temp_directory_path() / "tandem_case_study_XXXXXX").string();
-  if (::mkdtemp(name.data()) == nullptr) throw std::runtime_error("no folder can be made at " + name);
-  const fs::path folder = name;
+  const hal::TemporaryFolder temporary("tandem_case_study");
+  const fs::path& folder = temporary.path();
   for (const char* file : {"studies/task_partitioning.xml", "configs/footbot_task_partitioning_ideal.xml",
                            "configs/footbot_task_partitioning_noise.xml"}) {
     fs::create_directories((folder / file).parent_path());
@@ -80,7 +80,6 @@ std::map<std::string, std::vector<double>> swept() {
     if (std::max({experiment, carry, throughput}) < cells.size())
       values[cells[experiment] + " " + cells[carry]].push_back(std::strtod(cells[throughput].c_str(), nullptr));
   }
-  fs::remove_all(folder);
   if (!made.ok()) throw std::runtime_error(made.error().message);
   if (made.value().code != 0) throw std::runtime_error("tandem sweep: " + made.value().errors);
   return values;

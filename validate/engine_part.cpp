@@ -147,7 +147,7 @@ Part engine_part(Depth) {
       "the closed form says, 0 where it is one of rounding (1e-9); the order is that of the error as a power of the "
       "tick, where it falls with "
       "each shorter tick."};
-  for (const SceneFile& file : scene_files()) {
+  for (const hal::CarriedFile& file : scene_files()) {
     if (!file.name.starts_with("scenes/")) continue;
     auto scene = read_scene(file.name, std::string(file.text));
     if (scene.ok())

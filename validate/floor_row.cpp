@@ -1,12 +1,11 @@
 // Ground sensors against the pixels of a picture that is written here, and laid over the floor.
 #include <cmath>
 #include <cstdlib>
-#include <filesystem>
 #include <fstream>
-#include <stdexcept>
 
 #include "core/sim/world.hpp"
 #include "hal/device/ring_sensors.hpp"
+#include "hal/temporary_folder.hpp"
 #include "validate/compared.hpp"
 #include "validate/sensor_tables.hpp"
 
@@ -67,27 +66,6 @@ std::string png() {
   return "\x89PNG\r\n\x1a\n" + chunk("IHDR", head) + chunk("IDAT", data) + chunk("IEND", "");
 }
 
-/// A picture file for as long as it is needed.
-class Picture {
- public:
-  Picture() {
-    std::string name = (std::filesystem::temp_directory_path() / "tandem_floor_XXXXXX").string();
-    if (::mkdtemp(name.data()) == nullptr) throw std::runtime_error("no folder can be made at " + name);
-    folder_ = name;
-    std::ofstream(folder_ / "floor.png", std::ios::binary) << png();
-  }
-  ~Picture() {
-    std::error_code ignored;
-    std::filesystem::remove_all(folder_, ignored);
-  }
-  Picture(const Picture&) = delete;
-  Picture& operator=(const Picture&) = delete;
-  std::string path() const { return (folder_ / "floor.png").string(); }
-
- private:
-  std::filesystem::path folder_;
-};
-
 template <class Reading, class Part>
 void compare(const core::Space& space, std::size_t i, std::vector<Shade>& all) {
   const core::RobotId robot = space.robot(i);
@@ -110,8 +88,10 @@ void compare(const core::Space& space, std::size_t i, std::vector<Shade>& all) {
 }  // namespace
 
 std::vector<Shade> shades(const std::string& implementation, std::uint64_t seed, int ticks) {
-  const Picture picture;
-  const auto opened = open_experiment("floor.xml", seed, {{"{ground}", implementation}, {"{picture}", picture.path()}});
+  const hal::TemporaryFolder folder("tandem_floor");
+  std::ofstream(folder.file("floor.png"), std::ios::binary) << png();
+  const auto opened =
+      open_experiment("floor.xml", seed, {{"{ground}", implementation}, {"{picture}", folder.file("floor.png")}});
   core::World& world = opened->world();
   std::vector<Shade> all;
   for (int tick = 0; tick < ticks; ++tick) {

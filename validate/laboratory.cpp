@@ -168,10 +168,8 @@ std::size_t RecordTable::column(const std::string& name) const {
 
 hal::Result<std::unique_ptr<Laboratory>> Laboratory::run(const MixedRun& run) {
   std::signal(SIGPIPE, SIG_IGN);
-  std::string name = (std::filesystem::temp_directory_path() / "tandem_validate_XXXXXX").string();
-  if (::mkdtemp(name.data()) == nullptr) return hal::Error{"no folder can be made at " + name};
-  std::unique_ptr<Laboratory> made(new Laboratory(name));
-  const std::filesystem::path& folder = made->folder_;
+  std::unique_ptr<Laboratory> made(new Laboratory);
+  const std::filesystem::path& folder = made->folder_.path();
   std::ofstream(folder / "drive.lua") << run.script;
   std::ofstream(folder / "map.xml") << scene_text("../configs/footbot_map.xml");
   const int port = free_port();
@@ -186,13 +184,8 @@ hal::Result<std::unique_ptr<Laboratory>> Laboratory::run(const MixedRun& run) {
   return made;
 }
 
-Laboratory::~Laboratory() {
-  std::error_code ignored;
-  std::filesystem::remove_all(folder_, ignored);
-}
-
 hal::Result<TrueTrack> Laboratory::log_of(const std::string& id) const {
-  std::ifstream in(folder_ / (id + ".log"));
+  std::ifstream in(folder_.file(id + ".log"));
   TrueTrack track;
   for (std::string line; std::getline(in, line);) {
     if (line.find("\"pose\"") == std::string::npos) continue;
@@ -209,7 +202,7 @@ hal::Result<TrueTrack> Laboratory::log_of(const std::string& id) const {
 }
 
 std::vector<double> Laboratory::told_of(const std::string& id) const {
-  std::ifstream in(folder_ / (id + ".log"));
+  std::ifstream in(folder_.file(id + ".log"));
   std::vector<double> times;
   for (std::string line; std::getline(in, line);) {
     if (line.find("\"wheels\"") == std::string::npos) continue;
@@ -222,7 +215,7 @@ std::vector<double> Laboratory::told_of(const std::string& id) const {
 }
 
 hal::Result<RecordTable> Laboratory::table(const std::string& name) const {
-  const auto text = output_of({"export", (folder_ / "run.record").string(), "--csv", "-", "--table", name});
+  const auto text = output_of({"export", folder_.file("run.record"), "--csv", "-", "--table", name});
   if (!text.ok()) return text.error();
   RecordTable table;
   std::istringstream in(text.value());
@@ -240,10 +233,10 @@ hal::Result<RecordTable> Laboratory::table(const std::string& name) const {
 }
 
 hal::Result<hal::Json> Laboratory::fit() const {
-  const std::filesystem::path report = folder_ / "fit.json";
-  const auto done = output_of({"fit", (folder_ / "run.record").string(), "--report", report.string()});
+  const std::string report = folder_.file("fit.json");
+  const auto done = output_of({"fit", folder_.file("run.record"), "--report", report});
   if (!done.ok()) return done.error();
-  const auto text = hal::read_whole_file(report.string(), "the report of tandem fit");
+  const auto text = hal::read_whole_file(report, "the report of tandem fit");
   return text.ok() ? hal::parse_json_object(text.value()) : text.error();
 }
 

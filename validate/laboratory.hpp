@@ -2,7 +2,6 @@
 // logs and the run's record. All by the program's own commands.
 #pragma once
 #include <cstdint>
-#include <filesystem>
 #include <functional>
 #include <map>
 #include <memory>
@@ -11,6 +10,7 @@
 
 #include "hal/json/json.hpp"
 #include "hal/result.hpp"
+#include "hal/temporary_folder.hpp"
 #include "hal/time.hpp"
 #include "validate/row.hpp"
 
@@ -51,9 +51,6 @@ class Laboratory {
  public:
   /// Runs it to its end. Error: what could not be started, with its own words.
   static hal::Result<std::unique_ptr<Laboratory>> run(const MixedRun& run);
-  ~Laboratory();
-  Laboratory(const Laboratory&) = delete;
-  Laboratory& operator=(const Laboratory&) = delete;
 
   hal::Result<TrueTrack> log_of(const std::string& id) const;
   /// When the robot's wheels were told another speed (CLOCK_MONOTONIC, ns), by its own log.
@@ -65,8 +62,8 @@ class Laboratory {
   hal::TimeNs longest_wait_ns() const { return longest_wait_ns_; }
 
  private:
-  explicit Laboratory(std::filesystem::path folder) : folder_(std::move(folder)) {}
-  std::filesystem::path folder_;
+  Laboratory() = default;
+  hal::TemporaryFolder folder_{"tandem_validate"};
   hal::TimeNs longest_wait_ns_ = 0;
 };
 

@@ -104,12 +104,6 @@ hal::Element& child_of(hal::Element& parent, std::string_view name) {
 
 }  // namespace
 
-std::string scene_text(std::string_view name) {
-  for (const SceneFile& file : scene_files())
-    if (file.name == name) return std::string(file.text);
-  throw std::out_of_range("no scene " + std::string(name));
-}
-
 hal::Result<Scene> read_scene(std::string_view name, const std::string& text) {
   hal::Problems problems;
   const auto root = hal::read_xml_text(text, std::string(name), problems);

@@ -5,26 +5,25 @@
 #include <array>
 #include <cstdint>
 #include <optional>
-#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
+#include "hal/carried_file.hpp"
 #include "hal/element.hpp"
 #include "hal/result.hpp"
 #include "validate/closed_forms.hpp"
 
 namespace tandem::validate {
 
-/// A file of validate/scenes or validate/experiments, by its path in validate.
-struct SceneFile {
-  std::string_view name, text;
-};
-std::span<const SceneFile> scene_files();
+/// Those of validate/scenes and validate/experiments, by their paths in validate. Written by the build.
+std::span<const hal::CarriedFile> scene_files();
 
 /// The text of the file of that name. @throws std::out_of_range when there is none: the program's own mistake
-std::string scene_text(std::string_view name);
+inline std::string scene_text(std::string_view name) {
+  return hal::carried_text(scene_files(), name);
+}
 
 /// A velocity that an object has at the start.
 struct Push {

@@ -169,7 +169,7 @@ int plugin_new(const PluginNewOptions& options) {
 
   std::vector<std::pair<fs::path, std::string>> files;
   std::string sources;
-  for (const TemplateFile& file : plugin_templates()) {
+  for (const hal::CarriedFile& file : plugin_templates()) {
     const bool own = file.name.starts_with(kind->example) &&
                      (file.name[kind->example.size()] == '.' || file.name[kind->example.size()] == '_');
     if (!own) continue;

@@ -7,7 +7,7 @@ namespace {
 
 TEST(Scenes, AreAllReadAndHaveAClosedForm) {
   std::size_t scenes = 0;
-  for (const SceneFile& file : scene_files()) {
+  for (const hal::CarriedFile& file : scene_files()) {
     if (!file.name.starts_with("scenes/")) continue;
     const auto scene = read_scene(file.name, std::string(file.text));
     ASSERT_TRUE(scene.ok()) << scene.error().message;
