@@ -6,6 +6,7 @@
 #include <numbers>
 #include <span>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "controllers/lua_controller/own_tables.hpp"
@@ -25,6 +26,9 @@
 namespace tandem::controllers::lua {
 namespace {
 
+using hal::QuadrotorPosition, hal::QuadrotorSpeed, hal::ScannerDrive, hal::TurretDrive, hal::PanTiltDrive;
+using hal::WheelSpeeds, hal::RangeAndBearingSend, hal::GripperDrive;
+
 constexpr double kM_per_cm = 0.01;
 constexpr double kTwoPi = 2.0 * std::numbers::pi;
 
@@ -35,10 +39,37 @@ Port& port_of(lua_State* L) {
   return *static_cast<Port*>(Interpreter::of(L).actor().ports[device]);
 }
 
-void add(lua_State* L, std::size_t device, const char* name, lua_CFunction function) {
-  lua_pushinteger(L, static_cast<lua_Integer>(device));
-  lua_pushcclosure(L, function, 1);
-  lua_setfield(L, -2, name);
+/// Does what the table of functions says with the numbers that it is called with. Upvalues: device, place in the table.
+int call_function(lua_State* L) {
+  Interpreter& in = Interpreter::of(L);
+  const auto number = static_cast<std::size_t>(lua_tointeger(L, lua_upvalueindex(1)));
+  const DeviceFunction& f =
+      in.device(number).api->functions[static_cast<std::size_t>(lua_tointeger(L, lua_upvalueindex(2)))];
+  const int given = lua_gettop(L);
+  if (f.least == f.most)
+    expect_arguments(L, f.least, f.call);
+  else if (given < f.least || given > f.most)
+    return luaL_error(L, "%s expects %d or %d arguments", f.call, f.least, f.most);
+  std::array<double, 3> x{};
+  for (int i = 0; i < given; ++i)
+    x[static_cast<std::size_t>(i)] = i < f.least ? luaL_checknumber(L, i + 1) : luaL_optnumber(L, i + 1, 0.0);
+  f.act(L, in.actor().ports[number], x.data());
+  return 0;
+}
+
+/// A function of so many numbers. `Act`: what it does with the port and them.
+template <class Port, class Act>
+constexpr DeviceFunction takes(const char* name, const char* call, int least, int most, Act) {
+  return {name, nullptr, call, least, most, [](lua_State* L, void* port, const double* x) {
+            if constexpr (std::is_invocable_v<Act, Port&, const double*, lua_State*>)
+              Act{}(*static_cast<Port*>(port), x, L);
+            else
+              Act{}(*static_cast<Port*>(port), x);
+          }};
+}
+template <class Port, class Act>
+constexpr DeviceFunction takes(const char* name, const char* call, int count, Act act) {
+  return takes<Port>(name, call, count, count, act);
 }
 
 void set_number(lua_State* L, const char* name, double value) {
@@ -50,13 +81,21 @@ void push_table(lua_State* L, Interpreter& in, std::size_t device) {
   lua_rawgeti(L, LUA_REGISTRYINDEX, in.device(device).table);
 }
 
-/// Empties the list at the top beyond `count` entries.
-void shorten(lua_State* L, Device& device, std::size_t count) {
-  for (std::size_t i = count; i < device.entries; ++i) {
+/// Makes the table of a device a list of `count` entries. `push(i)` leaves entry i, from 0, on the top.
+template <class Push>
+void fill_list(lua_State* L, Interpreter& in, std::size_t device, std::size_t count, Push&& push) {
+  push_table(L, in, device);
+  for (std::size_t i = 0; i < count; ++i) {
+    push(i);
+    lua_rawseti(L, -2, static_cast<lua_Integer>(i) + 1);
+  }
+  Device& d = in.device(device);
+  for (std::size_t i = count; i < d.entries; ++i) {
     lua_pushnil(L);
     lua_rawseti(L, -2, static_cast<lua_Integer>(i) + 1);
   }
-  device.entries = count;
+  d.entries = count;
+  lua_pop(L, 1);
 }
 
 /// Calls one of the constructors in vectors.hpp with the numbers on the top.
@@ -68,17 +107,14 @@ void make_vector(lua_State* L, const char* maker, int numbers) {
 
 // --- wheels ---
 
+/// Called in every tick, so with nothing between.
 int set_velocity(lua_State* L) {
   expect_arguments(L, 2, "robot.wheels.set_velocity(left, right)");
   const double left = luaL_checknumber(L, 1);
-  const double right = luaL_checknumber(L, 2);
-  port_of<hal::WheelSpeeds>(L).set(left * kM_per_cm, right * kM_per_cm);
+  port_of<WheelSpeeds>(L).set(left * kM_per_cm, luaL_checknumber(L, 2) * kM_per_cm);
   return 0;
 }
-
-void open_wheels(lua_State* L, Interpreter&, std::size_t device) {
-  add(L, device, "set_velocity", &set_velocity);
-}
+constexpr std::array kWheels = {DeviceFunction{"set_velocity", &set_velocity}};
 
 void fill_wheels(lua_State* L, Interpreter& in, std::size_t device, const void* port) {
   const auto& encoders = *static_cast<const hal::WheelEncoders*>(port);
@@ -174,9 +210,11 @@ double response(double distance_m) noexcept {
   return distance_m < 0.009889556 ? 1.0 : 0.0100527 / (distance_m + 0.000163144);
 }
 
-void open_proximity(lua_State* L, Interpreter& in, std::size_t device) {
-  const auto* const part = in.kind().part<hal::ProximityPart>();
-  if (part != nullptr) open_ring(L, in, device, part->mounts, in.device(device).written == "proximity");
+template <class Part>
+void open_ring_of(lua_State* L, Interpreter& in, std::size_t device) {
+  const auto* const part = in.kind().part<Part>();
+  const std::string_view written = in.device(device).written;
+  if (part != nullptr) open_ring(L, in, device, part->mounts, written == "proximity" || written == "light");
 }
 
 void fill_proximity(lua_State* L, Interpreter& in, std::size_t device, const void* port) {
@@ -189,11 +227,6 @@ void fill_proximity(lua_State* L, Interpreter& in, std::size_t device, const voi
   });
 }
 
-void open_light(lua_State* L, Interpreter& in, std::size_t device) {
-  const auto* const part = in.kind().part<hal::LightPart>();
-  if (part != nullptr) open_ring(L, in, device, part->mounts, in.device(device).written == "light");
-}
-
 void fill_light(lua_State* L, Interpreter& in, std::size_t device, const void* port) {
   const auto& light = *static_cast<const hal::Light*>(port);
   fill_ring(L, in, device, [&](std::size_t i) { return i < light.count ? static_cast<double>(light.level[i]) : 0.0; });
@@ -203,32 +236,23 @@ void fill_light(lua_State* L, Interpreter& in, std::size_t device, const void* p
 
 void fill_ground(lua_State* L, Interpreter& in, std::size_t device, const void* port) {
   const auto& ground = *static_cast<const hal::Ground*>(port);
-  push_table(L, in, device);
-  for (std::size_t i = 0; i < ground.count; ++i) {
-    lua_pushnumber(L, static_cast<double>(ground.reflectance[i]));
-    lua_rawseti(L, -2, static_cast<lua_Integer>(i) + 1);
-  }
-  shorten(L, in.device(device), ground.count);
-  lua_pop(L, 1);
+  fill_list(L, in, device, ground.count,
+            [&](std::size_t i) { lua_pushnumber(L, static_cast<double>(ground.reflectance[i])); });
 }
 
 template <class Part>
 void fill_ground_ring(lua_State* L, Interpreter& in, std::size_t device, const void* port) {
   const auto& ground = *static_cast<const hal::Ground*>(port);
   const Part* const part = in.kind().part<Part>();
-  push_table(L, in, device);
   const std::size_t count = part == nullptr ? 0 : std::min<std::size_t>(ground.count, part->mounts.size());
-  for (std::size_t i = 0; i < count; ++i) {
+  fill_list(L, in, device, count, [&](std::size_t i) {
     lua_createtable(L, 0, 2);
     set_number(L, "value", static_cast<double>(ground.reflectance[i]));
     lua_pushnumber(L, part->mounts[i].x_m / kM_per_cm);
     lua_pushnumber(L, part->mounts[i].y_m / kM_per_cm);
     make_vector(L, "tandem.vector2", 2);
     lua_setfield(L, -2, "offset");
-    lua_rawseti(L, -2, static_cast<lua_Integer>(i) + 1);
-  }
-  shorten(L, in.device(device), count);
-  lua_pop(L, 1);
+  });
 }
 
 // --- range and bearing ---
@@ -271,21 +295,13 @@ int set_data(lua_State* L) {
   return 0;
 }
 
-int clear_data(lua_State* L) {
-  expect_arguments(L, 0, "robot.range_and_bearing.clear_data()");
-  port_of<hal::RangeAndBearingSend>(L).payload.fill(0);
-  return 0;
-}
-
-void open_sending(lua_State* L, Interpreter&, std::size_t device) {
-  add(L, device, "set_data", &set_data);
-  add(L, device, "clear_data", &clear_data);
-}
+constexpr std::array kSending = {DeviceFunction{"set_data", &set_data},
+                                 takes<RangeAndBearingSend>("clear_data", "robot.range_and_bearing.clear_data()", 0,
+                                                            [](auto& d, auto*) { d.payload.fill(0); })};
 
 void fill_hearing(lua_State* L, Interpreter& in, std::size_t device, const void* port) {
   const auto& heard = *static_cast<const hal::RangeAndBearing*>(port);
-  push_table(L, in, device);
-  for (std::size_t i = 0; i < heard.count; ++i) {
+  fill_list(L, in, device, heard.count, [&](std::size_t i) {
     lua_createtable(L, 0, 4);
     set_number(L, "range", static_cast<double>(heard.range_m[i]) / kM_per_cm);
     set_number(L, "horizontal_bearing", static_cast<double>(heard.bearing_rad[i]));
@@ -297,10 +313,7 @@ void fill_hearing(lua_State* L, Interpreter& in, std::size_t device, const void*
       lua_rawseti(L, -2, static_cast<lua_Integer>(k) + 1);
     }
     lua_setfield(L, -2, "data");
-    lua_rawseti(L, -2, static_cast<lua_Integer>(i) + 1);
-  }
-  shorten(L, in.device(device), heard.count);
-  lua_pop(L, 1);
+  });
 }
 
 // --- colours ---
@@ -309,23 +322,12 @@ struct NamedColor {
   const char* name;
   hal::Rgb color;
 };
-constexpr std::array<NamedColor, 17> kColors = {{{"black", {0, 0, 0}},
-                                                 {"white", {255, 255, 255}},
-                                                 {"red", {255, 0, 0}},
-                                                 {"green", {0, 255, 0}},
-                                                 {"blue", {0, 0, 255}},
-                                                 {"magenta", {255, 0, 255}},
-                                                 {"cyan", {0, 255, 255}},
-                                                 {"yellow", {255, 255, 0}},
-                                                 {"orange", {255, 140, 0}},
-                                                 {"brown", {165, 42, 42}},
-                                                 {"purple", {160, 32, 240}},
-                                                 {"gray10", {26, 26, 26}},
-                                                 {"gray30", {77, 77, 77}},
-                                                 {"gray50", {128, 128, 128}},
-                                                 {"gray70", {178, 178, 178}},
-                                                 {"gray80", {204, 204, 204}},
-                                                 {"gray90", {229, 229, 229}}}};
+constexpr NamedColor kColors[] = {{"black", {0, 0, 0}},        {"white", {255, 255, 255}},  {"red", {255, 0, 0}},
+                                  {"green", {0, 255, 0}},      {"blue", {0, 0, 255}},       {"magenta", {255, 0, 255}},
+                                  {"cyan", {0, 255, 255}},     {"yellow", {255, 255, 0}},   {"orange", {255, 140, 0}},
+                                  {"brown", {165, 42, 42}},    {"purple", {160, 32, 240}},  {"gray10", {26, 26, 26}},
+                                  {"gray30", {77, 77, 77}},    {"gray50", {128, 128, 128}}, {"gray70", {178, 178, 178}},
+                                  {"gray80", {204, 204, 204}}, {"gray90", {229, 229, 229}}};
 
 /// The colour that the arguments from `first` on tell: a name, "r,g,b", or three numbers.
 hal::Rgb color_at(lua_State* L, int first) {
@@ -373,25 +375,17 @@ int set_all_colors(lua_State* L) {
 }
 
 template <class Port, class Part>
-void open_leds(lua_State* L, Interpreter&, std::size_t device) {
-  add(L, device, "set_single_color", &set_single_color<Port, Part>);
-  add(L, device, "set_all_colors", &set_all_colors<Port>);
-}
+constexpr std::array kLeds = {DeviceFunction{"set_single_color", &set_single_color<Port, Part>},
+                              DeviceFunction{"set_all_colors", &set_all_colors<Port>}};
 
 // --- cameras ---
 
-template <bool Actor::*kOn, bool kValue>
-int switch_camera(lua_State* L) {
-  expect_arguments(L, 0, kValue ? "enable()" : "disable()");
-  Interpreter::of(L).actor().*kOn = kValue;
-  return 0;
-}
-
-template <bool Actor::*kOn>
-void open_camera(lua_State* L, Interpreter&, std::size_t device) {
-  add(L, device, "enable", &switch_camera<kOn, true>);
-  add(L, device, "disable", &switch_camera<kOn, false>);
-}
+template <class Port, bool Actor::*kOn>
+constexpr std::array kCamera = {
+    takes<Port>("enable", "enable()", 0,
+                [](auto&, const double*, lua_State* L) { Interpreter::of(L).actor().*kOn = true; }),
+    takes<Port>("disable", "disable()", 0,
+                [](auto&, const double*, lua_State* L) { Interpreter::of(L).actor().*kOn = false; })};
 
 void set_color(lua_State* L, hal::Rgb color) {
   lua_createtable(L, 0, 3);
@@ -406,64 +400,36 @@ void set_color(lua_State* L, hal::Rgb color) {
 
 void fill_omni(lua_State* L, Interpreter& in, std::size_t device, const void* port) {
   const auto& camera = *static_cast<const hal::OmnidirectionalCamera*>(port);
-  const std::size_t count = in.actor().omni_on ? camera.count : 0;
-  push_table(L, in, device);
-  for (std::size_t i = 0; i < count; ++i) {
+  fill_list(L, in, device, in.actor().omni_on ? camera.count : 0, [&](std::size_t i) {
     lua_createtable(L, 0, 3);
     set_number(L, "distance", static_cast<double>(camera.distance_m[i]) / kM_per_cm);
     set_number(L, "angle", static_cast<double>(camera.bearing_rad[i]));
     set_color(L, camera.color(i));
-    lua_rawseti(L, -2, static_cast<lua_Integer>(i) + 1);
-  }
-  shorten(L, in.device(device), count);
-  lua_pop(L, 1);
+  });
 }
 
 void fill_perspective(lua_State* L, Interpreter& in, std::size_t device, const void* port) {
   const auto& camera = *static_cast<const hal::PerspectiveCamera*>(port);
-  const std::size_t count = in.actor().perspective_on ? camera.count : 0;
-  push_table(L, in, device);
-  for (std::size_t i = 0; i < count; ++i) {
+  fill_list(L, in, device, in.actor().perspective_on ? camera.count : 0, [&](std::size_t i) {
     lua_createtable(L, 0, 3);
     set_number(L, "x", static_cast<double>(camera.x_px[i]));
     set_number(L, "y", static_cast<double>(camera.y_px[i]));
     set_color(L, camera.color(i));
-    lua_rawseti(L, -2, static_cast<lua_Integer>(i) + 1);
-  }
-  shorten(L, in.device(device), count);
-  lua_pop(L, 1);
+  });
 }
 
 // --- the distance scanner ---
 
-int scanner_enable(lua_State* L) {
-  expect_arguments(L, 0, "robot.distance_scanner.enable()");
-  auto& drive = port_of<hal::ScannerDrive>(L);
-  if (drive.mode == hal::ScannerMode::Off) drive.go_to(drive.angle_rad);
-  return 0;
-}
-int scanner_disable(lua_State* L) {
-  expect_arguments(L, 0, "robot.distance_scanner.disable()");
-  port_of<hal::ScannerDrive>(L).turn_off();
-  return 0;
-}
-int scanner_set_angle(lua_State* L) {
-  expect_arguments(L, 1, "robot.distance_scanner.set_angle(radians)");
-  port_of<hal::ScannerDrive>(L).go_to(luaL_checknumber(L, 1));
-  return 0;
-}
-int scanner_set_rpm(lua_State* L) {
-  expect_arguments(L, 1, "robot.distance_scanner.set_rpm(rpm)");
-  port_of<hal::ScannerDrive>(L).turn(luaL_checknumber(L, 1) * kTwoPi / 60.0);
-  return 0;
-}
-
-void open_scanner_drive(lua_State* L, Interpreter&, std::size_t device) {
-  add(L, device, "enable", &scanner_enable);
-  add(L, device, "disable", &scanner_disable);
-  add(L, device, "set_angle", &scanner_set_angle);
-  add(L, device, "set_rpm", &scanner_set_rpm);
-}
+constexpr std::array kScanner = {
+    takes<ScannerDrive>("enable", "robot.distance_scanner.enable()", 0,
+                        [](auto& d, auto*) {
+                          if (d.mode == hal::ScannerMode::Off) d.go_to(d.angle_rad);
+                        }),
+    takes<ScannerDrive>("disable", "robot.distance_scanner.disable()", 0, [](auto& d, auto*) { d.turn_off(); }),
+    takes<ScannerDrive>("set_angle", "robot.distance_scanner.set_angle(radians)", 1,
+                        [](auto& d, auto* x) { d.go_to(x[0]); }),
+    takes<ScannerDrive>("set_rpm", "robot.distance_scanner.set_rpm(rpm)", 1,
+                        [](auto& d, auto* x) { d.turn(x[0] * kTwoPi / 60.0); })};
 
 void fill_scanner(lua_State* L, Interpreter& in, std::size_t device, const void* port) {
   const auto& scanner = *static_cast<const hal::DistanceScanner*>(port);
@@ -493,61 +459,31 @@ void fill_scanner(lua_State* L, Interpreter& in, std::size_t device, const void*
 
 // --- turret, gripper ---
 
-int turret_rotation(lua_State* L) {
-  expect_arguments(L, 1, "robot.turret.set_rotation(radians)");
-  port_of<hal::TurretDrive>(L).go_to(luaL_checknumber(L, 1));
-  return 0;
-}
-int turret_rotation_speed(lua_State* L) {
-  expect_arguments(L, 1, "robot.turret.set_rotation_speed(radians per second)");
-  port_of<hal::TurretDrive>(L).turn(luaL_checknumber(L, 1));
-  return 0;
-}
-int turret_position_mode(lua_State* L) {
-  expect_arguments(L, 0, "robot.turret.set_position_control_mode()");
-  port_of<hal::TurretDrive>(L).mode = hal::TurretMode::Position;
-  return 0;
-}
-int turret_speed_mode(lua_State* L) {
-  expect_arguments(L, 0, "robot.turret.set_speed_control_mode()");
-  port_of<hal::TurretDrive>(L).mode = hal::TurretMode::Speed;
-  return 0;
-}
-int turret_passive_mode(lua_State* L) {
-  expect_arguments(L, 0, "robot.turret.set_passive_mode()");
-  port_of<hal::TurretDrive>(L).let_go();
-  return 0;
-}
-
-void open_turret(lua_State* L, Interpreter&, std::size_t device) {
-  add(L, device, "set_rotation", &turret_rotation);
-  add(L, device, "set_rotation_speed", &turret_rotation_speed);
-  add(L, device, "set_position_control_mode", &turret_position_mode);
-  add(L, device, "set_speed_control_mode", &turret_speed_mode);
-  add(L, device, "set_passive_mode", &turret_passive_mode);
-}
+constexpr std::array kTurret = {
+    takes<TurretDrive>("set_rotation", "robot.turret.set_rotation(radians)", 1,
+                       [](auto& d, auto* x) { d.go_to(x[0]); }),
+    takes<TurretDrive>("set_rotation_speed", "robot.turret.set_rotation_speed(radians per second)", 1,
+                       [](auto& d, auto* x) { d.turn(x[0]); }),
+    takes<TurretDrive>("set_position_control_mode", "robot.turret.set_position_control_mode()", 0,
+                       [](auto& d, auto*) { d.mode = hal::TurretMode::Position; }),
+    takes<TurretDrive>("set_speed_control_mode", "robot.turret.set_speed_control_mode()", 0,
+                       [](auto& d, auto*) { d.mode = hal::TurretMode::Speed; }),
+    takes<TurretDrive>("set_passive_mode", "robot.turret.set_passive_mode()", 0, [](auto& d, auto*) { d.let_go(); })};
 
 void fill_turret(lua_State* L, Interpreter& in, std::size_t device, const void* port) {
   push_table(L, in, device);
-  lua_pushliteral(L, "rotation");
-  lua_pushnumber(L, static_cast<const hal::TurretEncoder*>(port)->angle_rad);
-  lua_rawset(L, -3);
+  set_number(L, "rotation", static_cast<const hal::TurretEncoder*>(port)->angle_rad);
   lua_pop(L, 1);
 }
 
 template <int kSign>
-int grip(lua_State* L) {
-  expect_arguments(L, 0, kSign == 0 ? "robot.gripper.unlock()" : "robot.gripper.lock()");
-  port_of<hal::GripperDrive>(L).aperture_rad = kSign * hal::GripperDrive::kMost_rad;
-  return 0;
+constexpr DeviceFunction grip(const char* name, const char* call) {
+  return takes<GripperDrive>(name, call, 0,
+                             [](auto& d, auto*) { d.aperture_rad = kSign * hal::GripperDrive::kMost_rad; });
 }
-
-void open_gripper(lua_State* L, Interpreter&, std::size_t device) {
-  add(L, device, "lock", &grip<1>);
-  add(L, device, "lock_positive", &grip<1>);
-  add(L, device, "lock_negative", &grip<-1>);
-  add(L, device, "unlock", &grip<0>);
-}
+constexpr std::array kGripper = {
+    grip<1>("lock", "robot.gripper.lock()"), grip<1>("lock_positive", "robot.gripper.lock()"),
+    grip<-1>("lock_negative", "robot.gripper.lock()"), grip<0>("unlock", "robot.gripper.unlock()")};
 
 // --- flight ---
 
@@ -570,139 +506,104 @@ double yaw_of(const hal::Positioning& at) noexcept {
   return hal::atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z));
 }
 
-int absolute_position(lua_State* L) {
-  expect_arguments(L, 3, "robot.quadrotor.set_absolute_position(x, y, z)");
-  auto& command = port_of<hal::QuadrotorPosition>(L);
-  command.set(luaL_checknumber(L, 1), luaL_checknumber(L, 2), luaL_checknumber(L, 3), command.yaw_rad);
-  return 0;
-}
-int relative_position(lua_State* L) {
-  expect_arguments(L, 3, "robot.quadrotor.set_relative_position(x, y, z)");
-  auto& command = port_of<hal::QuadrotorPosition>(L);
-  const double x = luaL_checknumber(L, 1);
-  const double y = luaL_checknumber(L, 2);
-  const double z = luaL_checknumber(L, 3);
-  const hal::Positioning& at = *positioning_of(L);
-  const double yaw = yaw_of(at);
-  command.set(at.p_WB[0] + x * hal::cos(yaw) - y * hal::sin(yaw), at.p_WB[1] + x * hal::sin(yaw) + y * hal::cos(yaw),
-              at.p_WB[2] + z, command.yaw_rad);
-  return 0;
-}
-int absolute_yaw(lua_State* L) {
-  expect_arguments(L, 1, "robot.quadrotor.set_absolute_yaw(degrees)");
-  port_of<hal::QuadrotorPosition>(L).yaw_rad = luaL_checknumber(L, 1) * std::numbers::pi / 180.0;
-  return 0;
-}
-int relative_yaw(lua_State* L) {
-  expect_arguments(L, 1, "robot.quadrotor.set_relative_yaw(degrees)");
-  const double turn = luaL_checknumber(L, 1) * std::numbers::pi / 180.0;
-  port_of<hal::QuadrotorPosition>(L).yaw_rad = yaw_of(*positioning_of(L)) + turn;
-  return 0;
-}
+constexpr std::array kFlightTo = {
+    takes<QuadrotorPosition>("set_absolute_position", "robot.quadrotor.set_absolute_position(x, y, z)", 3,
+                             [](auto& d, auto* x) { d.set(x[0], x[1], x[2], d.yaw_rad); }),
+    takes<QuadrotorPosition>("set_relative_position", "robot.quadrotor.set_relative_position(x, y, z)", 3,
+                             [](auto& d, auto* x, lua_State* L) {
+                               const hal::Positioning& at = *positioning_of(L);
+                               const double yaw = yaw_of(at), c = hal::cos(yaw), s = hal::sin(yaw);
+                               d.set(at.p_WB[0] + x[0] * c - x[1] * s, at.p_WB[1] + x[0] * s + x[1] * c,
+                                     at.p_WB[2] + x[2], d.yaw_rad);
+                             }),
+    takes<QuadrotorPosition>("set_absolute_yaw", "robot.quadrotor.set_absolute_yaw(degrees)", 1,
+                             [](auto& d, auto* x) { d.yaw_rad = x[0] * std::numbers::pi / 180.0; }),
+    takes<QuadrotorPosition>("set_relative_yaw", "robot.quadrotor.set_relative_yaw(degrees)", 1,
+                             [](auto& d, auto* x, lua_State* L) {
+                               const double turn = x[0] * std::numbers::pi / 180.0;
+                               d.yaw_rad = yaw_of(*positioning_of(L)) + turn;
+                             })};
 
-void open_flight_to(lua_State* L, Interpreter&, std::size_t device) {
-  add(L, device, "set_absolute_position", &absolute_position);
-  add(L, device, "set_relative_position", &relative_position);
-  add(L, device, "set_absolute_yaw", &absolute_yaw);
-  add(L, device, "set_relative_yaw", &relative_yaw);
-}
+constexpr std::array kFlightWith = {
+    takes<QuadrotorSpeed>("set_linear_velocity", "robot.quadrotor.set_linear_velocity()", 2, 3,
+                          [](auto& d, auto* x) { d.set(x[0], x[1], x[2], d.yaw_rad_s); }),
+    takes<QuadrotorSpeed>("set_rotational_speed", "robot.quadrotor.set_rotational_speed(radians per second)", 1,
+                          [](auto& d, auto* x) { d.yaw_rad_s = x[0]; })};
 
-int linear_velocity(lua_State* L) {
-  const int count = lua_gettop(L);
-  if (count != 2 && count != 3) return luaL_error(L, "robot.quadrotor.set_linear_velocity() expects 2 or 3 arguments");
-  auto& command = port_of<hal::QuadrotorSpeed>(L);
-  command.set(luaL_checknumber(L, 1), luaL_checknumber(L, 2), luaL_optnumber(L, 3, 0.0), command.yaw_rad_s);
-  return 0;
-}
-int rotational_speed(lua_State* L) {
-  expect_arguments(L, 1, "robot.quadrotor.set_rotational_speed(radians per second)");
-  port_of<hal::QuadrotorSpeed>(L).yaw_rad_s = luaL_checknumber(L, 1);
-  return 0;
-}
-
-void open_flight_with(lua_State* L, Interpreter&, std::size_t device) {
-  add(L, device, "set_linear_velocity", &linear_velocity);
-  add(L, device, "set_rotational_speed", &rotational_speed);
-}
-
-int set_pan(lua_State* L) {
-  expect_arguments(L, 1, "robot.pan_tilt_camera.set_pan(radians)");
-  port_of<hal::PanTiltDrive>(L).pan_rad = luaL_checknumber(L, 1);
-  return 0;
-}
-int set_tilt(lua_State* L) {
-  expect_arguments(L, 1, "robot.pan_tilt_camera.set_tilt(radians)");
-  port_of<hal::PanTiltDrive>(L).tilt_rad = luaL_checknumber(L, 1);
-  return 0;
-}
-
-void open_head(lua_State* L, Interpreter&, std::size_t device) {
-  add(L, device, "set_pan", &set_pan);
-  add(L, device, "set_tilt", &set_tilt);
-}
+constexpr std::array kHead = {takes<PanTiltDrive>("set_pan", "robot.pan_tilt_camera.set_pan(radians)", 1,
+                                                  [](auto& d, auto* x) { d.pan_rad = x[0]; }),
+                              takes<PanTiltDrive>("set_tilt", "robot.pan_tilt_camera.set_tilt(radians)", 1,
+                                                  [](auto& d, auto* x) { d.tilt_rad = x[0]; })};
 
 // --- place, battery ---
 
 void fill_positioning(lua_State* L, Interpreter& in, std::size_t device, const void* port) {
   const auto& at = *static_cast<const hal::Positioning*>(port);
   push_table(L, in, device);
-  lua_pushliteral(L, "position");
   for (const double x : at.p_WB) lua_pushnumber(L, x);
   make_vector(L, "tandem.vector3", 3);
-  lua_rawset(L, -3);
-  lua_pushliteral(L, "orientation");
+  lua_setfield(L, -2, "position");
   for (const double x : at.q_WB) lua_pushnumber(L, x);
   make_vector(L, "tandem.orientation", 4);
-  lua_rawset(L, -3);
+  lua_setfield(L, -2, "orientation");
   lua_pop(L, 1);
 }
 
 void fill_battery(lua_State* L, Interpreter& in, std::size_t device, const void* port) {
   push_table(L, in, device);
-  lua_pushliteral(L, "available_charge");
-  lua_pushnumber(L, static_cast<double>(static_cast<const hal::Battery*>(port)->charge));
-  lua_rawset(L, -3);
-  lua_pushliteral(L, "time_left");  // what drains it is not known to the robot
-  lua_pushnumber(L, std::numeric_limits<double>::infinity());
-  lua_rawset(L, -3);
+  set_number(L, "available_charge", static_cast<double>(static_cast<const hal::Battery*>(port)->charge));
+  set_number(L, "time_left", std::numeric_limits<double>::infinity());  // what drains it is not known to the robot
   lua_pop(L, 1);
 }
 
+using Fill = void (*)(lua_State*, Interpreter&, std::size_t, const void*);
+using Open = void (*)(lua_State*, Interpreter&, std::size_t);
 template <class Port>
-DeviceApi api(const char* table, void (*open)(lua_State*, Interpreter&, std::size_t),
-              void (*fill)(lua_State*, Interpreter&, std::size_t, const void*) = nullptr, bool ring = false) {
+DeviceApi api(const char* table, std::span<const DeviceFunction> functions, Fill fill = nullptr,
+              Open open_ring = nullptr) {
   const hal::PortType& type = hal::port_type<Port>();
-  return {type.role, Port::kName, table, type.layout, open, fill, ring};
+  return {type.role, Port::kName, table, type.layout, functions, fill, open_ring};
 }
 
 }  // namespace
 
+void open_functions(lua_State* L, const DeviceApi& api, std::size_t device) {
+  for (std::size_t i = 0; i < api.functions.size(); ++i) {
+    lua_pushinteger(L, static_cast<lua_Integer>(device));
+    lua_pushinteger(L, static_cast<lua_Integer>(i));
+    lua_pushcclosure(L, api.functions[i].own != nullptr ? api.functions[i].own : &call_function, 2);
+    lua_setfield(L, -2, api.functions[i].name);
+  }
+}
+
 std::span<const DeviceApi> device_apis() {
+  using namespace hal;
   static const std::array all = {
-      api<hal::WheelSpeeds>("wheels", &open_wheels),
-      api<hal::WheelEncoders>("wheels", nullptr, &fill_wheels),
-      api<hal::Proximity>("proximity", &open_proximity, &fill_proximity, true),
-      api<hal::Light>("light", &open_light, &fill_light, true),
-      api<hal::Ground>("ground", nullptr, &fill_ground),
-      api<hal::BaseGround>("base_ground", nullptr, &fill_ground_ring<hal::BaseGroundPart>),
-      api<hal::MotorGround>("motor_ground", nullptr, &fill_ground_ring<hal::MotorGroundPart>),
-      api<hal::RangeAndBearing>("range_and_bearing", nullptr, &fill_hearing),
-      api<hal::RangeAndBearingSend>("range_and_bearing", &open_sending),
-      api<hal::RingLeds>("leds", &open_leds<hal::RingLeds, hal::LedsPart>),
-      api<hal::UpperRingLeds>("upper_leds", &open_leds<hal::UpperRingLeds, hal::UpperLedsPart>),
-      api<hal::OmnidirectionalCamera>("colored_blob_omnidirectional_camera", &open_camera<&Actor::omni_on>, &fill_omni),
-      api<hal::PerspectiveCamera>("colored_blob_perspective_camera", &open_camera<&Actor::perspective_on>,
-                                  &fill_perspective),
-      api<hal::ScannerDrive>("distance_scanner", &open_scanner_drive),
-      api<hal::DistanceScanner>("distance_scanner", nullptr, &fill_scanner),
-      api<hal::TurretDrive>("turret", &open_turret),
-      api<hal::TurretEncoder>("turret", nullptr, &fill_turret),
-      api<hal::GripperDrive>("gripper", &open_gripper),
-      api<hal::QuadrotorPosition>("quadrotor", &open_flight_to),
-      api<hal::QuadrotorSpeed>("quadrotor", &open_flight_with),
-      api<hal::PanTiltDrive>("pan_tilt_camera", &open_head),
-      api<hal::Positioning>("positioning", nullptr, &fill_positioning),
-      api<hal::Battery>("battery", nullptr, &fill_battery)};
+      api<WheelSpeeds>("wheels", kWheels),
+      api<WheelEncoders>("wheels", {}, &fill_wheels),
+      api<Proximity>("proximity", {}, &fill_proximity, &open_ring_of<ProximityPart>),
+      api<Light>("light", {}, &fill_light, &open_ring_of<LightPart>),
+      api<Ground>("ground", {}, &fill_ground),
+      api<BaseGround>("base_ground", {}, &fill_ground_ring<BaseGroundPart>),
+      api<MotorGround>("motor_ground", {}, &fill_ground_ring<MotorGroundPart>),
+      api<RangeAndBearing>("range_and_bearing", {}, &fill_hearing),
+      api<RangeAndBearingSend>("range_and_bearing", kSending),
+      api<RingLeds>("leds", kLeds<RingLeds, LedsPart>),
+      api<UpperRingLeds>("upper_leds", kLeds<UpperRingLeds, UpperLedsPart>),
+      api<OmnidirectionalCamera>("colored_blob_omnidirectional_camera", kCamera<OmnidirectionalCamera, &Actor::omni_on>,
+                                 &fill_omni),
+      api<PerspectiveCamera>("colored_blob_perspective_camera", kCamera<PerspectiveCamera, &Actor::perspective_on>,
+                             &fill_perspective),
+      api<ScannerDrive>("distance_scanner", kScanner),
+      api<DistanceScanner>("distance_scanner", {}, &fill_scanner),
+      api<TurretDrive>("turret", kTurret),
+      api<TurretEncoder>("turret", {}, &fill_turret),
+      api<GripperDrive>("gripper", kGripper),
+      api<QuadrotorPosition>("quadrotor", kFlightTo),
+      api<QuadrotorSpeed>("quadrotor", kFlightWith),
+      api<PanTiltDrive>("pan_tilt_camera", kHead),
+      api<Positioning>("positioning", {}, &fill_positioning),
+      api<Battery>("battery", {}, &fill_battery)};
   return all;
 }
 

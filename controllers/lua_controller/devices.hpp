@@ -10,18 +10,30 @@
 
 namespace tandem::controllers::lua {
 
+/// A function below a device's table. Upvalues: the device's number, its own place among the functions.
+struct DeviceFunction {
+  const char* name;
+  lua_CFunction own = nullptr;  ///< null: one of numbers, as follows
+  const char* call = nullptr;   ///< how it is written
+  int least = 0, most = 0;      ///< numbers that it takes
+  void (*act)(lua_State* state, void* port, const double* numbers) = nullptr;
+};
+
 /// What ARGoS' scripts have of one port.
 struct DeviceApi {
   hal::Role role = hal::Role::Sensor;
   std::string_view port;
   const char* table = nullptr;  ///< below `robot`
   std::uint64_t layout = 0;     ///< of the port as this plug-in knows it
-  /// Adds functions and constant fields to the table, which is on the top of the stack.
-  void (*open)(lua_State* state, Interpreter& in, std::size_t device) = nullptr;
+  std::span<const DeviceFunction> functions = {};
   /// Writes the readings into it; null for actuators.
   void (*fill)(lua_State* state, Interpreter& in, std::size_t device, const void* port) = nullptr;
-  bool ring = false;  ///< `open` gets the table of readings, which scripts get as it is; else that of functions
+  /// Null, or prepares the table of readings, on the top of the stack, which scripts get as it is.
+  void (*open_ring)(lua_State* state, Interpreter& in, std::size_t device) = nullptr;
 };
+
+/// Adds the functions to the table on the top of the stack.
+void open_functions(lua_State* state, const DeviceApi& api, std::size_t device);
 
 std::span<const DeviceApi> device_apis();
 
@@ -31,6 +43,11 @@ void open_ports(lua_State* state, Interpreter& in);
 
 /// Opens the libraries that scripts have into the table at the top of the stack.
 void open_libraries(lua_State* state, Interpreter& in);
+/// What it has of its own: elementary functions and random numbers, in the table of math on the top of the stack.
+void open_math(lua_State* state);
+/// `pairs` and `next`; `table.sort`: into the table on the top of the stack.
+void open_order(lua_State* state);
+void open_sort(lua_State* state);
 /// `robot.random`, on the table `robot` at the top of the stack.
 void open_random(lua_State* state);
 

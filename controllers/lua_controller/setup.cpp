@@ -139,13 +139,13 @@ void Interpreter::setup_robot(lua_State* L) {
     const DeviceApi* const api = devices_[i].api;
     if (api == nullptr) continue;
     push_table(1, api->table);
+    open_functions(L, *api, i);
     if (api->fill != nullptr) {
       push_table(2, api->table);
       lua_pushvalue(L, -1);
       devices_[i].table = luaL_ref(L, LUA_REGISTRYINDEX);
     }
-    if (!api->ring) lua_settop(L, 4);
-    if (api->open != nullptr) api->open(L, *this, i);
+    if (api->open_ring != nullptr) api->open_ring(L, *this, i);
     lua_settop(L, 3);
   }
   lua_pushvalue(L, 1);
@@ -153,8 +153,9 @@ void Interpreter::setup_robot(lua_State* L) {
   open_ports(L, *this);
   lua_settop(L, 3);
   const auto is_ring = [this](std::string_view part) {
-    return std::any_of(devices_.begin(), devices_.end(),
-                       [&](const Device& d) { return d.api != nullptr && d.api->table == part && d.api->ring; });
+    return std::any_of(devices_.begin(), devices_.end(), [&](const Device& d) {
+      return d.api != nullptr && d.api->table == part && d.api->open_ring != nullptr;
+    });
   };
   lua_pushnil(L);
   while (lua_next(L, 1) != 0) {  // 4: name, 5: functions
