@@ -5,7 +5,7 @@
 #include "app/command/command.hpp"
 #include "app/experiment/plugins.hpp"
 #include "app/experiment/reading.hpp"
-#include "app/run/real_side_type.hpp"
+#include "app/experiment/real_side_type.hpp"
 #include "core/sim/world.hpp"
 #include "hal/xml/xml.hpp"
 

@@ -7,9 +7,9 @@
 #include "app/exit_code.hpp"
 #include "app/experiment/plugin_folders.hpp"
 #include "app/experiment/reading.hpp"
+#include "app/experiment/real_side_type.hpp"
 #include "app/module/modules.hpp"
 #include "app/process/terminal.hpp"
-#include "app/run/real_side_type.hpp"
 #include "core/config/kinds.hpp"
 
 namespace tandem::app {

@@ -8,7 +8,7 @@
 #include <unistd.h>
 
 #include "app/catalog.hpp"
-#include "app/linked/linked.hpp"
+#include "app/module/linked_modules.hpp"
 #include "app/module/own_plugins.hpp"
 #include "app/process/terminal.hpp"
 #include "hal/check.hpp"

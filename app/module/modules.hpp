@@ -3,7 +3,7 @@
 //
 // A module is a library that registers entries as a plug-in does. Its entries are the program's own, and it may call
 // all of the program and the modules that it needs. Programs for boards, tests, Python and the library have modules
-// linked in (app/linked/linked.hpp); nothing is loaded there.
+// linked in (app/module/linked_modules.hpp); nothing is loaded there.
 #pragma once
 #include <filesystem>
 #include <string_view>

@@ -5,7 +5,7 @@
 
 namespace tandem::app {
 
-/// "epuck_diffusion", …
+/// As files name them, without "lib" and ".so".
 std::span<const std::string_view> own_plugins() noexcept;
 
 }  // namespace tandem::app

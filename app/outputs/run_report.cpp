@@ -5,9 +5,9 @@
 #include <fmt/format.h>
 
 #include "app/build_info.hpp"
+#include "app/experiment/real_side_type.hpp"
 #include "app/outputs/report.hpp"
 #include "app/process/measure.hpp"
-#include "app/run/real_side_type.hpp"
 #include "core/record/scene_json.hpp"
 #include "hal/json/json_access.hpp"
 #include "hal/sha256.hpp"

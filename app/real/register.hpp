@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "app/run/real_side_type.hpp"
+#include "app/experiment/real_side_type.hpp"
 
 namespace tandem::app {
 

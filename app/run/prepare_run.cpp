@@ -4,12 +4,10 @@
 
 #include "app/build_info.hpp"
 #include "app/experiment/reading.hpp"
-#include "app/live/watch.hpp"
 #include "app/module/modules.hpp"
 #include "app/process/signals.hpp"
 #include "app/process/terminal.hpp"
 #include "app/run/run_plan.hpp"
-#include "core/live/source_files.hpp"
 #include "core/run/scripts.hpp"
 #include "hal/json/json_access.hpp"
 

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "app/run/real_side_type.hpp"
+#include "app/experiment/real_side_type.hpp"
 #include "core/record/record.hpp"
 #include "core/run/roll_call.hpp"
 #include "core/run/run.hpp"

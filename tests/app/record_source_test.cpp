@@ -294,17 +294,6 @@ TEST(Looks, OfAPlugInAreShownRecordedAndInspected) {
   EXPECT_EQ(last.inside["robots"][0]["ports"][0]["name"], "crane");
 }
 
-class RecordSources : public testing::TestWithParam<std::string> {};
-INSTANTIATE_TEST_SUITE_P(Of, RecordSources,
-                         testing::Values("epuck_diffusion.xml", "footbot_foraging.xml", "eyebot_circle.xml",
-                                         "footbot_gripping.xml", "footbot_task_partitioning_noise.xml",
-                                         "epuck_push.xml", "khepera4_avoidance.xml", "thymio_cruise.xml"),
-                         [](const auto& name) { return name.param.substr(0, name.param.find('.')); });
-
-TEST_P(RecordSources, ShowWhatTheRunShows) {
-  expect_what_the_run_shows(GetParam());
-}
-
 /// `text` with the part from `begin` to `end` twice, the second one with all `from` made `to`.
 std::string with_another(std::string text, const std::string& begin, const std::string& end,
                          const std::vector<std::pair<std::string, std::string>>& changes) {

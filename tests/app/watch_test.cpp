@@ -3,6 +3,7 @@
 #include <regex>
 
 #include "app/live/watch_page.hpp"
+#include "app/real/real_robots.hpp"
 #include "tests/app/pseudo_terminal.hpp"
 
 namespace tandem {
@@ -353,9 +354,9 @@ TEST(WatchPage, ShowsRealRobotsAndWhyTheyStand) {
   bert.state = "driving";
   bert.reading_age_s = 0.02;
   bert.battery = 0.5;
-  page.moment.real = {gina, bert};
-  page.moment.roll = {{"gina", mixed_reality::Presence::Unreachable, "link lost"},
-                      {"bert", mixed_reality::Presence::Drives, ""}};
+  page.moment.real = app::lines_of({gina, bert});
+  page.moment.roll = {{"gina", core::Presence::Unreachable, "link lost"},
+                      {"bert", core::Presence::Drives, ""}};
   std::string text;
   for (const auto& line : app::lay_out(page, {120, 24})) text += line.text + "\n";
   EXPECT_THAT(text, AllOf(HasSubstr("gina         stands    age   1500 ms  round trip  12.3 ms  link lost; no answer"),

@@ -10,6 +10,9 @@
 namespace tandem::mixed_reality {
 namespace {
 
+using core::Presence;
+using core::RollRow;
+
 constexpr hal::TimeNs kMs = hal::kNsPerMs;
 const std::atomic<bool> kGoOn{false};
 

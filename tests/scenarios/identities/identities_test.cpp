@@ -102,7 +102,7 @@ class EpuckSide final : public DriverSide<EpuckSide, epuck::EpuckRobot> {
   void pump(TimeNs now) override {
     if (port_) driver_.pump(*port_, now);
   }
-  bridges::RobotIdentity identity() const override {
+  bridges::RobotIdentity who() const {
     bridges::RobotIdentity all = reached_;
     driver_.identify(all);
     return all;
@@ -205,7 +205,7 @@ class NodeSide final : public DriverSide<NodeSide<Parts, NodeBody>, typename Par
     this->note_open(device);
   }
   void pump(TimeNs now) override { driver_.pump(now); }
-  bridges::RobotIdentity identity() const override {
+  bridges::RobotIdentity who() const {
     bridges::RobotIdentity all = this->reached_;
     driver_.wiring().identify(all);
     return all;
@@ -390,7 +390,7 @@ class EyebotSide final : public DriverSide<EyebotSide, eyebot::EyebotRobot>, pri
     }
     driver_.pump(now);
   }
-  bridges::RobotIdentity identity() const override {
+  bridges::RobotIdentity who() const {
     bridges::RobotIdentity all = reached_;
     if (driver_.liveness().pulse(now_) != eyebot::Pulse::Never) all.name = driver_.settings().name;
     return all;

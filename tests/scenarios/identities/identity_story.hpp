@@ -63,7 +63,8 @@ template <class Self, class Robot>
 class DriverSide : public bridges::DriverBridge<Self, Robot>, public HubSide {
  public:
   bool at_rest() const noexcept override { return false; }
-  std::string trouble() const override { return ""; }
+  std::string link_trouble() const { return ""; }
+  std::string robot_trouble() const { return ""; }
   std::string advice() const override { return ""; }
   bridges::StopMessages stop_messages() const override { return {}; }
   bridges::LinkReport report() const override { return {}; }

@@ -1,8 +1,8 @@
 #include <array>
 
-#include "app/lab/register.hpp"
-#include "app/linked/linked.hpp"
+#include "lab/register.hpp"
 #include "app/live/register.hpp"
+#include "app/module/linked_modules.hpp"
 #include "app/pictures/register.hpp"
 #include "app/real/register.hpp"
 #include "app/study/register.hpp"

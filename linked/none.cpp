@@ -1,4 +1,4 @@
-#include "app/linked/linked.hpp"
+#include "app/module/linked_modules.hpp"
 
 namespace tandem::app {
 

@@ -1,4 +1,4 @@
-#include "app/lab/register.hpp"
+#include "lab/register.hpp"
 
 #include "app/command/command.hpp"
 #include "app/module/module_table.hpp"

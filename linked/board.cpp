@@ -1,6 +1,6 @@
 #include <array>
 
-#include "app/linked/linked.hpp"
+#include "app/module/linked_modules.hpp"
 #include "app/real/register.hpp"
 #include "bridges/epuck/register.hpp"
 #include "bridges/eyebot/register.hpp"
