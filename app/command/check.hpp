@@ -23,6 +23,7 @@ struct CheckOptions {
 /// A file that is no experiment, by the name of its root element. An entry of the catalog.
 struct CheckedFile {
   static constexpr std::string_view kCategory = "checked_file";
+  using Crosses = hal::Layouts<Libraries>;
   std::string_view name;
   /// @returns the exit code; what is wrong, or in it, was told.
   int (*check)(const std::string& path, const Libraries& plugins) = nullptr;

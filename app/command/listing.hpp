@@ -13,6 +13,7 @@ namespace tandem::app {
 
 struct Listing {
   static constexpr std::string_view kCategory = "listing";
+  using Crosses = hal::Layouts<hal::Catalog>;
   std::string_view name;  ///< "bridges", as in `tandem list bridges`
   void (*list)(const hal::Catalog& catalog) = nullptr;
   /// Describes what has this name. False: nothing has; null: such entries have no manual.

@@ -52,7 +52,9 @@ struct RunLine : PagedRunOptions {
 
 int run_line(const RunLine& line) {
   if (line.experiment.empty() == line.resume.empty())
-    return complain(kWrongUsage, "name the experiment file, or a checkpoint with --resume, which has the experiment");
+    return complain(kWrongUsage,
+                    "name the experiment file, or a checkpoint with --resume, which has the experiment; 'tandem run "
+                    "--help' tells what there is");
   return run(line.with_page());
 }
 

@@ -19,6 +19,7 @@ namespace tandem::app {
 /// Entry of a catalog that has all that the module brings.
 struct LoadedModule {
   static constexpr std::string_view kCategory = "module";
+  using Crosses = hal::Layouts<std::string_view>;
   std::string_view name, summary;
 };
 

@@ -50,10 +50,16 @@ void* WorldMemory::carve(std::size_t bytes) {
   while (filling_ < shared_.size() && shared_[filling_].size - shared_[filling_].used < bytes) ++filling_;
   if (filling_ == shared_.size()) {
     const std::size_t size = std::min(kFirstChunk << std::min<std::size_t>(filling_, 8), kLargestChunk);
-    shared_.push_back({std::make_unique_for_overwrite<std::byte[]>(size), size, 0});
+    shared_.push_back({room(size), size, 0});
   }
   Chunk& chunk = shared_[filling_];
   return chunk.bytes.get() + std::exchange(chunk.used, chunk.used + bytes);
+}
+
+WorldMemory::Room WorldMemory::room(std::size_t size) {
+  auto* const bytes = static_cast<std::byte*>(std::calloc(size, 1));
+  if (bytes == nullptr) throw std::bad_alloc();
+  return Room(bytes);
 }
 
 void* WorldMemory::allocate(std::size_t bytes) {
@@ -74,7 +80,7 @@ void* WorldMemory::allocate(std::size_t bytes) {
   });
   if (fit == large_.end()) {
     const std::size_t size = (wanted + kPage - 1) / kPage * kPage;
-    auto made = std::make_unique_for_overwrite<std::byte[]>(size);
+    auto made = room(size);
     fit = std::find_if(large_.begin(), large_.end(), [](const Chunk& chunk) { return chunk.bytes == nullptr; });
     if (fit == large_.end()) fit = large_.insert(fit, Chunk{});
     *fit = {std::move(made), size, 0};

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <cstdlib>
 #include <initializer_list>
 #include <memory>
 #include <vector>
@@ -59,8 +60,14 @@ class WorldMemory {
  private:
   static constexpr std::size_t kClasses = 72;  // of sizes up to kLargestShared
 
+  /// Of the C library, not by `new`: what a library's solver takes is nobody else's doing.
+  struct Free {
+    void operator()(std::byte* bytes) const noexcept { std::free(bytes); }
+  };
+  using Room = std::unique_ptr<std::byte[], Free>;
+  static Room room(std::size_t size);
   struct Chunk {
-    std::unique_ptr<std::byte[]> bytes;
+    Room bytes;
     std::size_t size = 0;
     std::size_t used = 0;  ///< a prefix; of a chunk with one large block all of it, or nothing
   };

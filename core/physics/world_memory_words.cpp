@@ -65,7 +65,7 @@ bool WorldMemory::remember_all(hal::Archive& archive, std::initializer_list<void
     archive(sizes);
     if (!archive.reads()) continue;
     for (const auto& [size, used] : sizes)
-      chunks->push_back({size > 0 ? std::make_unique<std::byte[]>(size) : nullptr, size, std::min(used, size)});
+      chunks->push_back({size > 0 ? room(size) : Room(), size, std::min(used, size)});
   }
   archive(filling_, blocks_);
   for (void*& head : unused_) remember_address(archive, head);

@@ -132,7 +132,8 @@ class RecordSource::Shown {
   void rebuild(const RecordMoments& moments);
   void plan(const RecordMoments& moments);
   void plan_looks(const RecordMoments& moments);
-  void plan(const std::string& title, const RecordRows& rows, Sort sort, const hal::RowType* type);
+  void plan(const std::string& title, const RecordRows& rows, Sort sort, const hal::RowType* type,
+            std::size_t group = 0);
   const hal::RowType* column_of(const std::string& name, const RecordStream& stream);
   const hal::PortType& port_of(const std::string& title, const RecordStream& stream);
   std::vector<std::size_t> kinds_of(const RecordMembers& members);
@@ -187,9 +188,8 @@ RecordSource::Shown::Tables RecordSource::Shown::tables_in(const RecordMoments& 
 
 // --- a space for these robots, and what each has ---
 
-void RecordSource::Shown::plan(const std::string& title, const RecordRows& rows, Sort sort, const hal::RowType* type) {
-  const auto group = static_cast<std::size_t>(
-      std::count_if(tables_.begin(), tables_.end(), [&](const Table& other) { return other.title == title; }));
+void RecordSource::Shown::plan(const std::string& title, const RecordRows& rows, Sort sort, const hal::RowType* type,
+                               std::size_t group) {
   Table table{title, sort, nullptr, type, &rows.stream(), group, places_of(rows.members().ids)};
   for (std::size_t f = 0; f < rows.stream().fields.size(); ++f) {
     if (const hal::Field* const field = type->field(rows.stream().fields[f].name); field != nullptr)
@@ -230,10 +230,11 @@ void RecordSource::Shown::plan(const RecordMoments& moments) {
   moments.each([&](const std::string& title, const RecordRows& rows) {
     const RecordStream& stream = rows.stream();
     if (stream.of != "robot") return;
+    const auto group = static_cast<std::size_t>(std::ranges::count(tables_, title, &Table::title));
     if (stream.set == "sensor" || stream.set == "actuator")
-      plan(title, rows, Sort::Port, &port_of(title, stream));
+      plan(title, rows, Sort::Port, &port_of(title, stream), group);
     else if (stream.set == "state")
-      plan(title, rows, Sort::Published, &forms_.emplace_back(form_of(stream)));
+      plan(title, rows, Sort::Published, &forms_.emplace_back(form_of(stream)), group);
   });
   plan_looks(moments);
   if (const RecordRows* const halts = moments.rows("look halted"))

@@ -65,7 +65,8 @@ TEST_F(Modules, AreNotNeededForARunOfSimulatedRobots) {
 }
 
 TEST_F(Modules, ThatAreMissingAreNamedWithWhatWouldBuildThem) {
-  for (const std::string words : {"sweep s.xml", "view " + experiment(), "robot r.xml", "fit r.rec"}) {
+  for (const std::string& words :
+       std::vector<std::string>{"sweep s.xml", "view " + experiment(), "robot r.xml", "fit r.rec"}) {
     const Ended done = run(words);
     EXPECT_EQ(done.code, 1) << words << done.text;
     EXPECT_THAT(done.text, AllOf(HasSubstr("is not here"), HasSubstr("./tandem build module "))) << words;
