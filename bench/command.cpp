@@ -209,4 +209,5 @@ void BenchOptions::describe(hal::CommandLine& line) {
 }  // namespace tandem::bench
 
 constinit const tandem::hal::CommandType tandem::app::bench_command =
-    tandem::hal::command_type<tandem::bench::BenchOptions, tandem::bench::run>("bench", tandem::app::module_summary("bench"));
+    tandem::hal::command_type<tandem::bench::BenchOptions, tandem::bench::run>("bench",
+                                                                               tandem::app::module_summary("bench"));

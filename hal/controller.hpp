@@ -153,7 +153,7 @@ const ControllerType& controller_type(std::string_view name, std::string_view su
   type.controls = [](void* controller, Controls& controls) { static_cast<T*>(controller)->T::controls(controls); };
   if constexpr (std::is_copy_constructible_v<T>)
     type.copy = [](void* where, const void* from) { ::new (where) T(*static_cast<const T*>(from)); };
-  if constexpr (requires(T& t, Archive& a) { t.remember(a); })
+  if constexpr (requires(T & t, Archive & a) { t.remember(a); })
     type.remember = [](void* controller, Archive& archive) { static_cast<T*>(controller)->remember(archive); };
   return type;
 }

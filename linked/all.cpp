@@ -1,12 +1,12 @@
 #include <array>
 
-#include "lab/register.hpp"
 #include "app/live/register.hpp"
 #include "app/module/linked_modules.hpp"
 #include "app/pictures/register.hpp"
 #include "app/real/register.hpp"
 #include "app/study/register.hpp"
 #include "app/window/register.hpp"
+#include "lab/register.hpp"
 
 namespace tandem::app {
 

@@ -30,8 +30,9 @@ void describe_outputs(hal::CommandLine& line, RunOptions& o) {
   line.option("--repeat", o.repeat,
               "Do what was done by hand in the run of this record (--record) again, at the same ticks, with its seed")
       .file();
-  line.option("--checkpoint", o.checkpoint,
-              "Keep the state of the run in this file; whatever ended it, `tandem run --resume FILE` goes on from there")
+  line.option(
+          "--checkpoint", o.checkpoint,
+          "Keep the state of the run in this file; whatever ended it, `tandem run --resume FILE` goes on from there")
       .file();
   line.option("--checkpoint-every", o.checkpoint_every_s, "… every so many seconds of simulated time")
       .show_default()

@@ -75,7 +75,10 @@ hal::Result<const hal::PluginInfo*> open_module(const Module& module, const std:
   const std::string rebuild = "\n  Build it again: ./tandem build module " + std::string(module.name);
   const auto note = hal::read_plugin_note(file);
   if (!note.ok()) return hal::Error{name + " " + note.error().message + rebuild};
-  std::vector<hal::Surface> known = catalog().surfaces();
+  hal::Catalog here = catalog();
+  here.know<hal::Border>();
+  here.know<hal::ControllerType>();
+  std::vector<hal::Surface> known = here.surfaces();
   for (const hal::Surface& surface : note.value().surfaces) {  // what it brings itself is known when it is there
     const auto same = [&](const hal::Surface& s) { return s.name == surface.name; };
     if (std::ranges::none_of(known, same)) known.push_back(surface);

@@ -31,8 +31,8 @@ hal::Status check_output_paths(const RunOptions& options, const core::Scenario& 
                                std::vector<NamedFile> outputs, const std::vector<NamedFile>& inputs) {
   for (NamedFile file :
        {NamedFile{"report", options.report}, NamedFile{"trajectory", trajectory_path(options, scenario)},
-        NamedFile{"record", record_path(options, scenario)}, NamedFile{"dump", options.dump}, NamedFile{"checkpoint", options.checkpoint},
-        NamedFile{"log", options.log}})
+        NamedFile{"record", record_path(options, scenario)}, NamedFile{"dump", options.dump},
+        NamedFile{"checkpoint", options.checkpoint}, NamedFile{"log", options.log}})
     outputs.push_back(std::move(file));
   for (const core::Element& observer : scenario.observers) {
     if (const std::string* path = observer.attribute("path"); path != nullptr)

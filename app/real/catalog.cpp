@@ -1,7 +1,6 @@
-#include "app/real/register.hpp"
-
 #include "app/command/command.hpp"
 #include "app/command/listing.hpp"
+#include "app/real/register.hpp"
 #include "bridges/bridge_type.hpp"
 #include "bridges/emulation/emulator_type.hpp"
 #include "bridges/epuck/register.hpp"

@@ -130,8 +130,9 @@ int read_experiment(RunPlan& plan) {
     if (const int code = plan.side->prepare(*plan.scenario); code != kDone) return code;
   }
   if ((!plan.options.checkpoint.empty() || plan.resumed) && has_real_robots(*plan.scenario))
-    return complain(kBadInput,
-                    "--checkpoint, --resume: real robots take part, which cannot be put back; simulate them (--without)");
+    return complain(
+        kBadInput,
+        "--checkpoint, --resume: real robots take part, which cannot be put back; simulate them (--without)");
   if (has_real_robots(*plan.scenario)) {
     if (const int code = need_for_run(plan, "live"); code != kDone) return code;
   }

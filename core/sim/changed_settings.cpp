@@ -229,9 +229,12 @@ void compare_scenarios(const Scenario& a, const Scenario& b, Differences& found)
 
 /// Whether a setting of this path holds in a world that is made anew and takes over a state.
 bool holds_anew(const std::string& path) {
-  static constexpr std::array<std::string_view, 6> kAll = {
-      "framework.experiment.length", "framework.experiment.random_seed", "arena.floor", "arena.light", "arena.box",
-      "arena.cylinder"};
+  static constexpr std::array<std::string_view, 6> kAll = {"framework.experiment.length",
+                                                           "framework.experiment.random_seed",
+                                                           "arena.floor",
+                                                           "arena.light",
+                                                           "arena.box",
+                                                           "arena.cylinder"};
   return std::ranges::any_of(kAll, [&path](std::string_view known) {
     return path.starts_with(known) &&
            (path.size() == known.size() || path[known.size()] == '.' || path[known.size()] == '[');

@@ -73,7 +73,7 @@ TEST_F(Modules, ThatAreMissingAreNamedWithWhatWouldBuildThem) {
   }
   const Ended mixed = run("check " + std::string(test::kSourceDir) + "/configs/epuck_mixed.xml");
   EXPECT_EQ(mixed.code, 1);
-  EXPECT_THAT(mixed.text, HasSubstr("module 'live'"));
+  EXPECT_THAT(mixed.text, HasSubstr("module 'real'"));
   EXPECT_EQ(run("run " + experiment() + " --steps 5 --picture p.svg").code, 1);
 }
 
@@ -123,7 +123,7 @@ TEST_F(Modules, ThatDoNotFitAreRefusedBeforeTheyAreLoaded) {
   EXPECT_EQ(cut.code, 1);
   EXPECT_THAT(cut.text, AllOf(HasSubstr("module 'study'"), HasSubstr("Build it again: ./tandem build module study")));
   fs::remove(modules() / file_of("study"));
-  fs::copy_file(built("lib/libtest_hal_stale.so"), modules() / file_of("study"));
+  fs::copy_file(built("tests/hal_plugins/libtest_hal_stale.so"), modules() / file_of("study"));
   const Ended stale = run("sweep s.xml");
   EXPECT_EQ(stale.code, 1);
   EXPECT_THAT(stale.text, AllOf(HasSubstr("does not fit this program"), HasSubstr("./tandem build module study")));
@@ -135,15 +135,16 @@ TEST_F(Modules, ThatDoNotFitAreRefusedBeforeTheyAreLoaded) {
 TEST_F(Modules, ThatAreDeletedWhileARunIsOnServeItToItsEnd) {
   put("live");
   put("pictures");
-  launcher("exit 1");
-  const std::string at = folder_.path().string();
-  const std::string command =
-      "cd '" + at + "' && { env -u TANDEM_LAUNCHER bin/tandem run '" + experiment() +
-      "' --quiet --seconds 2 --speed 1 --watch --film frames/ --film-every 5 >said 2>&1 </dev/null & } ; "
-      "for i in $(seq 200); do [ -s frames/000000.png -o -s frames/000000.svg ] && break; sleep 0.05; done; "
-      "rm lib/modules/*; wait $!";
-  const int status = std::system(("bash -c \"" + command + "\"").c_str());
-  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << text_of(folder_.path() / "said");
+  fs::create_directories(folder_.path() / "lib" / "render");
+  fs::copy_file(built("lib/render/libtandem_render.so"), folder_.path() / "lib" / "render" / "libtandem_render.so");
+  const auto script = folder_.write("script", "cd '" + folder_.path().string() + "'\nbin/tandem run '" + experiment() +
+                                                  "' --quiet --seconds 2 --watch --film frames/ --film-every 5 &\n"
+                                                  "for i in $(seq 200); do [ -d frames ] && break; sleep 0.02; done\n"
+                                                  "rm lib/modules/*\nwait $!\n");
+  const std::string said = (folder_.path() / "said").string();
+  const int status =
+      std::system(("env -u TANDEM_LAUNCHER bash '" + script.string() + "' >'" + said + "' 2>&1 </dev/null").c_str());
+  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << text_of(said);
 }
 
 }  // namespace

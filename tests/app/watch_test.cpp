@@ -355,8 +355,7 @@ TEST(WatchPage, ShowsRealRobotsAndWhyTheyStand) {
   bert.reading_age_s = 0.02;
   bert.battery = 0.5;
   page.moment.real = app::lines_of({gina, bert});
-  page.moment.roll = {{"gina", core::Presence::Unreachable, "link lost"},
-                      {"bert", core::Presence::Drives, ""}};
+  page.moment.roll = {{"gina", core::Presence::Unreachable, "link lost"}, {"bert", core::Presence::Drives, ""}};
   std::string text;
   for (const auto& line : app::lay_out(page, {120, 24})) text += line.text + "\n";
   EXPECT_THAT(text, AllOf(HasSubstr("gina         stands    age   1500 ms  round trip  12.3 ms  link lost; no answer"),

@@ -11,28 +11,29 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const LibraryOwners kOwners = {{"tinyxml2", "hal/xml"},
-                               {"nlohmann/", "hal/json"},
-                               {"png.h", "core/field bridges/frames"},
-                               {"apriltag/", "bridges/apriltag"},
-                               {"librsvg/", "core/view"},
-                               {"cairo", "core/view"},
-                               {"Random123/", "hal"},
-                               {"Eigen/", "hal mixed_reality/tracking mixed_reality/gap bridges/calibration"},
-                               {"libserial/", "bridges/link"},
-                               {"lcm/", "bridges/lcm"},
-                               {"eyebot/", "bridges/eyebot_messages"},
-                               {"eyebot_c/", "bridges/eyebot_emulator"},
-                               {"CLI/", "app"},
-                               {"fmt/", "app app/lab app/live app/pictures app/real app/study app/window bench validate"},
-                               {"boost/", "window window/wire"},
-                               {"hdf5.h", "core/record/hdf5"},
-                               {"libdeflate.h", "core/record"},
-                               {"sqlite3", "study/table"},
-                               {"box2d/", "core/physics/dynamics2d"},
-                               {"pybind11/", "python"},
-                               {"Python.h", "python"},
-                               {"ode/", "core/physics/dynamics3d"}};
+const LibraryOwners kOwners = {
+    {"tinyxml2", "hal/xml"},
+    {"nlohmann/", "hal/json"},
+    {"png.h", "core/field bridges/frames"},
+    {"apriltag/", "bridges/apriltag"},
+    {"librsvg/", "core/view"},
+    {"cairo", "core/view"},
+    {"Random123/", "hal"},
+    {"Eigen/", "hal mixed_reality/tracking mixed_reality/gap bridges/calibration"},
+    {"libserial/", "bridges/link"},
+    {"lcm/", "bridges/lcm"},
+    {"eyebot/", "bridges/eyebot_messages"},
+    {"eyebot_c/", "bridges/eyebot_emulator"},
+    {"CLI/", "app"},
+    {"fmt/", "app app/lab app/live app/pictures app/real app/study app/window bench validate"},
+    {"boost/", "window window/wire"},
+    {"hdf5.h", "core/record/hdf5"},
+    {"libdeflate.h", "core/record"},
+    {"sqlite3", "study/table"},
+    {"box2d/", "core/physics/dynamics2d"},
+    {"pybind11/", "python"},
+    {"Python.h", "python"},
+    {"ode/", "core/physics/dynamics3d"}};
 
 TEST(Architecture, HoldsInThisTree) {
   const Dependencies dependencies = read_dependencies(fs::path(test::kBuildDir) / "architecture.txt");
@@ -71,7 +72,8 @@ TEST(Architecture, OneSourceIncludesNlohmann) {
 
 TEST(Architecture, OnlyItsOwnFoldersAndTheCatalogsPagesNameARobot) {
   EXPECT_EQ(lines_that_name(std::regex("e-?puck|foot-?bot|eye-?bot|thymio", std::regex::icase),
-                            {"app", "core", "mixed_reality"}, std::regex("^app/(.*catalog\\.cpp|module/module_table\\.hpp)$")),
+                            {"app", "core", "mixed_reality"},
+                            std::regex("^app/(.*catalog\\.cpp|module/module_table\\.hpp)$")),
             "");
 }
 
