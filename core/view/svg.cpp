@@ -10,8 +10,6 @@ namespace tandem::core {
 namespace {
 
 constexpr std::size_t kFullDetailRobots = 20'000;
-constexpr int kFloorCells = 240;  // along the longer side
-constexpr int kFloorShades = 24;
 constexpr double kMargin_px = 28.0;
 constexpr double kHeader_px = 52.0;
 constexpr double kLine_px = 30.0;   // of the legend
