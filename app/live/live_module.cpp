@@ -14,8 +14,7 @@ int begin(RunPlan& plan) {
 
 int prepare(RunPlan& plan) {
   run_recorded_scripts(plan);
-  const hal::Status watch = Watch::check(plan.options.watch, plan.world->space());
-  return watch.ok() ? kDone : complain(kBadInput, watch.error().message);
+  return told(Watch::check(plan.options.watch, plan.world->space()));
 }
 
 int add(RunPlan& plan, core::Run& run) {

@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <deque>
 #include <dlfcn.h>
+#include <set>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -66,6 +67,8 @@ bool make_plugin(const std::string& library) {
   std::string name = std::filesystem::path(library).stem().string();
   if (name.starts_with("lib")) name.erase(0, 3);
   if (std::ranges::find(own_plugins(), name) == own_plugins().end()) return false;
+  static std::set<std::string> tried;  // what could not be built is asked for several times
+  if (!tried.insert(name).second) return false;
   return have_built("plugin", name, "building '" + name + "', once");
 }
 

@@ -120,4 +120,8 @@ int complain(int code, std::string_view message) {
   return code;
 }
 
+int told(const hal::Status& status, int code) {
+  return status.ok() ? kDone : complain(code, status.error().message);
+}
+
 }  // namespace tandem::app

@@ -5,7 +5,9 @@
 #include <string_view>
 #include <vector>
 
+#include "app/exit_code.hpp"
 #include "hal/printable.hpp"
+#include "hal/result.hpp"
 
 namespace tandem::app {
 
@@ -47,5 +49,7 @@ void note_screen(bool keys) noexcept;
 
 /// Says "error: …". @returns `code`, for the caller to return.
 int complain(int code, std::string_view message);
+/// The same of an error; kDone where there is none.
+int told(const hal::Status& status, int code = kBadInput);
 
 }  // namespace tandem::app

@@ -25,10 +25,6 @@
 namespace tandem::app {
 namespace {
 
-int told(const hal::Status& status, int code = kBadInput) {
-  return status.ok() ? kDone : complain(code, status.error().message);
-}
-
 /// Compares every tick of a run that is computed again with its record; changes it where it is to be.
 class Replaying final : public core::RunPart {
  public:

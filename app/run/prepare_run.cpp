@@ -14,11 +14,6 @@
 namespace tandem::app {
 namespace {
 
-/// The status's error, told; kDone where there is none.
-int told(const hal::Status& status, int code = kBadInput) {
-  return status.ok() ? kDone : complain(code, status.error().message);
-}
-
 /// The experiment of the checkpoint that the run is to go on from.
 int open_resumed(RunPlan& plan) {
   const RunOptions& options = plan.options;
@@ -120,8 +115,8 @@ int for_modules(RunPlan& plan, int (*RunModule::*hook)(RunPlan&)) {
 
 /// The experiment, and the guardian of its real robots: made before any other thread.
 int read_experiment(RunPlan& plan) {
-  if (const int code = need_modules(plan); code != kDone) return code;
   if (const int code = open_experiment(plan); code != kDone) return code;
+  if (const int code = need_modules(plan); code != kDone) return code;
   if (plan.side != nullptr) plan.side->guard();
   plan.scenario = plan.reading.read();
   if (!plan.scenario) return kBadInput;

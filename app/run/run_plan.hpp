@@ -23,7 +23,6 @@
 
 namespace tandem::core {
 struct Drawing;
-struct LiveState;
 class LiveRun;
 struct Repeatable;
 }  // namespace tandem::core
