@@ -156,12 +156,12 @@ struct ChargeNoise {
 /// ARGoS' three discharge models: a part a tick, a part a metre and a radian moved, or both.
 class BatterySensor final : public Sensor {
  public:
-  BatterySensor(const DeviceSetup& setup, double noise, const BlockColumns& columns)
-      : config_(setup.item.battery),
+  BatterySensor(const BatteryConfig& config, const hal::RobotKind& kind, double noise, const BlockColumns& columns)
+      : config_(config),
         noise_(noise),
-        full_V_(setup.kind.part<hal::BatteryPart>()->full_V),
-        empty_V_(setup.kind.part<hal::BatteryPart>()->empty_V),
-        wheel_base_m_(wheel_base_m(setup.kind)),
+        full_V_(kind.part<hal::BatteryPart>()->full_V),
+        empty_V_(kind.part<hal::BatteryPart>()->empty_V),
+        wheel_base_m_(wheel_base_m(kind)),
         charges_(columns.find<ChargeState>()) {
     by_time_ = config_.model != "motion";
     by_motion_ = config_.model != "time";
@@ -221,8 +221,9 @@ BlockFactory<Sensor> make_battery(const Element& element, Problems& problems, co
   const auto options = read_options<Options>(element, problems);
   double noise = 0.0;
   if constexpr (requires { options.noise_range; }) noise = options.noise_range;
-  const auto make = [setup, noise](const BlockColumns& columns) {
-    return std::make_unique<BatterySensor>(setup, noise, columns);
+  // A copy: a group's item is another one after a changed setting, and blocks may be made after it.
+  const auto make = [config = setup.item.battery, &kind = setup.kind, noise](const BlockColumns& columns) {
+    return std::make_unique<BatterySensor>(config, kind, noise, columns);
   };
   return {make, {keeps(ChargeState{setup.item.battery.start_charge})}};
 }
