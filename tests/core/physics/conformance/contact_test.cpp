@@ -180,8 +180,8 @@ TEST_P(Contact, RobotsThatPressIntoACornerHeapUpAndOverlapByTwoPercentOfABodyAtM
 
 /// So many that pushes do not come through the heap in the passes of a tick; where robots have no forces.
 TEST(ContactWithoutForces, HundredsThatPressIntoACornerOverlapByTwoPercentOfABodyAtMost) {
-  for (const std::size_t robots : {40, 200, 300}) {
-    for (const std::uint64_t seed : {2, 3}) {
+  for (const std::size_t robots : {40U, 200U, 300U}) {
+    for (const std::uint64_t seed : {2U, 3U}) {
       for (const char* robot : {"e-puck", "foot-bot"})
         press_into_a_corner({"kinematics2d", "1x1", 0, robots, seed + robots, robot});
     }
