@@ -24,7 +24,8 @@ void SpaceFrames::plan(const core::Space& space) {
   member_of_row_.assign(s.bodies.size(), 0);
   auto members = std::make_shared<FrameMembers>();
   members->number = members_count_ + 1;
-  members->json = core::members_json(space, rows_);
+  core::KindBodies bodies;
+  members->json = core::members_json(space, rows_, bodies);
   members->first_led = members->first_value = {0};
   looks_ = std::make_unique<core::Looks>(space);
   lamps_.clear();

@@ -97,14 +97,14 @@ FloorImage floor_image(const SpaceStores& s) {
     };
     grid = {fewer(grid.columns), fewer(grid.lines)};
   }
-  FloorImage image{grid.columns, grid.lines, {}};
-  image.pixels.reserve(grid.columns * grid.lines);
+  FloorImage image{grid.columns, grid.lines, std::vector<std::uint8_t>(grid.columns * grid.lines)};
+  auto pixel = image.pixels.begin();
   for (std::size_t line = 0; line < grid.lines; ++line) {
     const double y_m = s.max_y_m - (static_cast<double>(line) + 0.5) / static_cast<double>(grid.lines) * size_y_m;
     for (std::size_t column = 0; column < grid.columns; ++column) {
       const double x_m = s.min_x_m + (static_cast<double>(column) + 0.5) / static_cast<double>(grid.columns) * size_x_m;
       const double level = std::clamp(floor->at(s, x_m, y_m, 0.0), 0.0, 1.0);
-      image.pixels.push_back(static_cast<std::uint8_t>(std::lround(255.0 * level)));
+      *pixel++ = static_cast<std::uint8_t>(std::lround(255.0 * level));
     }
   }
   return image;

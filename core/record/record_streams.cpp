@@ -93,6 +93,7 @@ void RecordStreams::declare(const Space& space, hal::Tick now, std::string& out)
   objects_ = s.objects.size();
   real_ = real_robots(s);
   streams_.clear();
+  bodies_.clear();
 
   const auto fits = [&](std::uint32_t row) {
     const std::uint32_t entity = s.bodies.entity[row];
@@ -127,7 +128,7 @@ void RecordStreams::declare_poses(const Space& space, const Chosen& chosen, hal:
   poses.indices = chosen.rows;
   poses.rows = chosen.rows.size();
   poses.in_order = chosen.rows.size() == s.bodies.size() && std::is_sorted(chosen.rows.begin(), chosen.rows.end());
-  const Json everyone = members_json(space, chosen.rows);
+  const Json everyone = members_json(space, chosen.rows, bodies_);
   declare_stream(std::move(poses), {{"of", "robot"}, {"set", "pose"}, {"name", "pose"}, {"fields", pose_fields()}},
                  everyone, now, out);
   if (!s.bodies.has_motion || !config_.attitudes) return;
@@ -231,7 +232,7 @@ void RecordStreams::declare_rows(const Space& space, const Chosen& chosen, const
   }
   stream.rows = who.size();
   add_layouts(type, stream.layouts);
-  declare_stream(std::move(stream), declaration_of("robot", title, type), members_json(space, who), now, out);
+  declare_stream(std::move(stream), declaration_of("robot", title, type), members_json(space, who, bodies_), now, out);
 }
 
 // Ports are those of all groups that have one, together; published state is by group.
@@ -289,7 +290,7 @@ void RecordStreams::declare_state(const Space& space, const Chosen& chosen, hal:
                         {"set", "state"},
                         {"name", group.controller != nullptr ? std::string(group.controller->name) : std::string()},
                         {"fields", std::move(fields)}};
-    declare_stream(std::move(stream), std::move(declaration), members_json(space, who), now, out);
+    declare_stream(std::move(stream), std::move(declaration), members_json(space, who, bodies_), now, out);
   }
 }
 
@@ -345,7 +346,7 @@ void RecordStreams::declare_inputs(const Space& space, hal::Tick now, std::strin
     stream.rows = stream.runs.size();
     add_layouts(*type, stream.layouts);
     declare_stream(std::move(stream), declaration_of(of_run ? "run" : "robot", {form->set, type->name}, *type),
-                   of_run ? Json{{"ids", {"run"}}} : members_json(space, who), now, out, input_streams_);
+                   of_run ? Json{{"ids", {"run"}}} : members_json(space, who, bodies_), now, out, input_streams_);
   }
 }
 
@@ -364,7 +365,7 @@ void RecordStreams::declare_tables(const Space& space, hal::Tick now, std::strin
     stream.rows = who.size();
     add_layouts(*table.type, stream.layouts);
     declare_stream(std::move(stream), declaration_of("robot", {table.set, table.type->name}, *table.type),
-                   members_json(space, who), now, out);
+                   members_json(space, who, bodies_), now, out);
   }
 }
 

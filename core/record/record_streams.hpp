@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/record/input_block.hpp"
+#include "core/record/scene_json.hpp"
 #include "core/scenario/scenario.hpp"
 #include "core/space/space.hpp"
 #include "core/space/space_inputs.hpp"
@@ -133,6 +134,7 @@ class RecordStreams {
   std::map<std::string, std::uint32_t> members_numbers_;  // by theirs
   std::uint32_t generations_ = 0;
   std::size_t living_ = 0, objects_ = 0, real_ = 0;
+  KindBodies bodies_;                  // of this declaration
   std::vector<std::int32_t> numbers_;  // scratch
 };
 

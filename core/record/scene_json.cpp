@@ -297,7 +297,7 @@ bool came_earlier(const SpaceStores& s, std::uint32_t a, std::uint32_t b) noexce
   return std::pair(s.robots[first].generation, first) < std::pair(s.robots[second].generation, second);
 }
 
-Json members_json(const Space& space, std::span<const std::uint32_t> rows) {
+Json members_json(const Space& space, std::span<const std::uint32_t> rows, KindBodies& made) {
   const SpaceStores& s = space.stores();
   Json ids = Json::array(), kinds = Json::array(), kind = Json::array(), real = Json::array(), bodies = Json::array();
   std::map<const hal::RobotKind*, std::size_t> known;
@@ -307,7 +307,9 @@ Json members_json(const Space& space, std::span<const std::uint32_t> rows) {
     const hal::RobotKind& its = s.kind_of_row(rows[i]);
     const auto [entry, fresh] = known.emplace(&its, 0);
     if (fresh) {  // some robots have a kind of their own that looks like the others'
-      const Json body = body_json(its);
+      const auto [known_body, new_body] = made.try_emplace(&its);
+      if (new_body) known_body->second = body_json(its);
+      const Json& body = known_body->second;
       std::size_t& number = entry->second;
       while (number < kinds.size() && !(kinds[number] == Json(its.name) && bodies[number] == body)) ++number;
       if (number == kinds.size()) {

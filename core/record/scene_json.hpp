@@ -2,6 +2,7 @@
 #pragma once
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <span>
 #include <string>
 #include <vector>
@@ -46,7 +47,9 @@ bool came_earlier(const SpaceStores& stores, std::uint32_t a, std::uint32_t b) n
 /// {"ids": […], "kinds": […], "kind": [index into kinds, …], "real": [index into ids, …], "bodies": [of each kind],
 /// "order": [index into ids, …]} of the robots in these rows of bodies; "order" is that in which the file lists them
 /// and hooks added them, and missing where that is how they stand.
-hal::Json members_json(const Space& space, std::span<const std::uint32_t> rows);
+/// `bodies`: those that were made before, of kinds that are still there.
+using KindBodies = std::map<const hal::RobotKind*, hal::Json>;
+hal::Json members_json(const Space& space, std::span<const std::uint32_t> rows, KindBodies& bodies);
 
 /// What hooks drew: {"shapes": [{"kind": "line" | "polygon" | "circle" | "text", "points": [[x, y, z], …], "radius",
 /// "text", "color": [r, g, b], "width", "filled", "opacity"}, …]}.

@@ -52,7 +52,8 @@ TEST(MembersJson, SaysWhoIsInTheRowsAndWhatTheyLookLike) {
   add_robot(space, hal::epuck::kind(), "ep0", 0.0, 0.0, 0.0);
   const RobotId twin = add_robot(space, hal::epuck::kind(), "ep1", 1.0, 0.0, 0.0);
   space.set_external(twin, true);
-  const hal::Json members = members_json(space, living_rows(space.stores()));
+  KindBodies bodies;
+  const hal::Json members = members_json(space, living_rows(space.stores()), bodies);
   EXPECT_EQ(members["ids"], (hal::Json{"ep0", "ep1"}));
   EXPECT_EQ(members["kinds"], (hal::Json{"e-puck"}));
   EXPECT_EQ(members["kind"], (hal::Json{0, 0}));
