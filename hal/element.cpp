@@ -138,11 +138,6 @@ ElementReader::ElementReader(const Element& element, Problems& problems, std::ve
                              std::vector<std::string> ignore_children)
     : element_(element), problems_(problems), known_(std::move(ignore)), known_children_(std::move(ignore_children)) {}
 
-const std::string* ElementReader::find(std::string_view name) {
-  known_.emplace_back(name);
-  return element_.attribute(name);
-}
-
 void ElementReader::problem(std::string_view attribute, std::string message) {
   problems_.push_back(problem_at(element_, attribute, std::move(message)));
 }
@@ -156,92 +151,98 @@ bool ElementReader::in_range(std::string_view name, const std::string& text, dou
   return false;
 }
 
-void ElementReader::number(std::string_view name, double& value_si, const Unit& bare, Range range_si,
-                           std::string_view) {
-  const std::string* text = find(name);
+void ElementReader::visit(const Param& param) {
+  if (const Param::Group* const group = param.group(); group != nullptr) return read_group(param.name, *group);
+  if (ParamList* const list = param.list(); list != nullptr) return read_list(param.name, *list);
+  auto* const words = param.as<std::string>();
+  if (words != nullptr && param.name == kPathParam) {
+    *words = path_beside(*words, element_.file);
+    return;
+  }
+  if (words != nullptr && param.name == kOtherParams) return take_others(*words);
+  known_.emplace_back(param.name);
+  const std::string* const text = element_.attribute(param.name);
   if (text == nullptr) return;
-  const auto parsed = parse_quantity(*text, bare);
-  if (!parsed.ok()) return problem(name, parsed.error().message);
-  if (in_range(name, *text, parsed.value(), range_si, bare))
-    value_si = std::clamp(parsed.value(), range_si.min, range_si.max);
+  if (words != nullptr)
+    *words = *text;
+  else if (const auto* const choice = std::get_if<Param::Choice>(&param.value); choice != nullptr)
+    read(param, *text, *choice);
+  else if (auto* const number = param.as<double>(); number != nullptr)
+    read(param, *text, *number);
+  else if (auto* const whole = param.as<std::int64_t>(); whole != nullptr)
+    read(param, *text, *whole);
+  else if (auto* const flag = param.as<bool>(); flag != nullptr)
+    read(param, *text, *flag);
+  else if (auto* const triple = param.as<std::array<double, 3>>(); triple != nullptr)
+    read(param, *text, *triple);
 }
 
-void ElementReader::integer(std::string_view name, std::int64_t& value, Range range, std::string_view) {
-  const std::string* text = find(name);
-  if (text == nullptr) return;
-  std::string_view digits = trimmed(*text);
+void ElementReader::read(const Param& param, const std::string& text, double& value) {
+  const auto parsed = parse_quantity(text, *param.bare);
+  if (!parsed.ok()) return problem(param.name, parsed.error().message);
+  if (in_range(param.name, text, parsed.value(), param.range, *param.bare))
+    value = std::clamp(parsed.value(), param.range.min, param.range.max);
+}
+
+void ElementReader::read(const Param& param, const std::string& text, std::int64_t& value) {
+  std::string_view digits = trimmed(text);
   if (digits.starts_with('+') && !digits.starts_with("+-")) digits.remove_prefix(1);
   std::int64_t parsed = 0;
   const auto [end, status] = std::from_chars(digits.data(), digits.data() + digits.size(), parsed);
-  if (status == std::errc::result_out_of_range) return problem(name, "'" + *text + "' is too large a number");
+  if (status == std::errc::result_out_of_range) return problem(param.name, "'" + text + "' is too large a number");
   if (status != std::errc{} || end != digits.data() + digits.size())
-    return problem(name, "'" + *text + "' is not a whole number");
-  if (in_range(name, *text, static_cast<double>(parsed), range, unit::none)) value = parsed;
+    return problem(param.name, "'" + text + "' is not a whole number");
+  if (in_range(param.name, text, static_cast<double>(parsed), param.range, unit::none)) value = parsed;
 }
 
-void ElementReader::flag(std::string_view name, bool& value, std::string_view) {
-  const std::string* text = find(name);
-  if (text == nullptr) return;
-  const std::string_view word = trimmed(*text);
+void ElementReader::read(const Param& param, const std::string& text, bool& value) {
+  const std::string_view word = trimmed(text);
   if (word == "true" || word == "1")
     value = true;
   else if (word == "false" || word == "0")
     value = false;
   else
-    problem(name, "'" + *text + "' is neither \"true\" nor \"false\"");
+    problem(param.name, "'" + text + "' is neither \"true\" nor \"false\"");
 }
 
-void ElementReader::text(std::string_view name, std::string& value, std::string_view) {
-  if (name == kPathParam) {
-    value = path_beside(value, element_.file);
-    return;
+/// All attributes that nothing has asked for so far.
+void ElementReader::take_others(std::string& value) {
+  for (const Element::Attribute& a : element_.attributes) {
+    if (std::find(known_.begin(), known_.end(), a.name) != known_.end()) continue;
+    std::string in_a_line = a.value;
+    std::replace(in_a_line.begin(), in_a_line.end(), '\n', ' ');
+    value += a.name + "\n" + in_a_line + "\n";
+    known_.push_back(a.name);
   }
-  if (name == kOtherParams) {
-    for (const Element::Attribute& a : element_.attributes) {
-      if (std::find(known_.begin(), known_.end(), a.name) != known_.end()) continue;
-      std::string in_a_line = a.value;
-      std::replace(in_a_line.begin(), in_a_line.end(), '\n', ' ');
-      value += a.name + "\n" + in_a_line + "\n";
-      known_.push_back(a.name);
-    }
-    return;
-  }
-  if (const std::string* text = find(name); text != nullptr) value = *text;
 }
 
-void ElementReader::choice(std::string_view name, std::string& value, std::span<const std::string_view> options,
-                           std::string_view) {
-  const std::string* text = find(name);
-  if (text == nullptr) return;
-  const std::vector<std::string> names(options.begin(), options.end());
-  const std::string word(trimmed(*text));
-  if (std::find(names.begin(), names.end(), word) == names.end()) {
-    return problem(name, "'" + *text + "' is not one of: " + listed(names) + did_you_mean(word, names));
-  }
-  value = word;
+void ElementReader::read(const Param& param, const std::string& text, const Param::Choice& choice) {
+  const std::vector<std::string> names(choice.options.begin(), choice.options.end());
+  const std::string word(trimmed(text));
+  if (std::find(names.begin(), names.end(), word) == names.end())
+    return problem(param.name, "'" + text + "' is not one of: " + listed(names) + did_you_mean(word, names));
+  *choice.value = word;
 }
 
-void ElementReader::vector(std::string_view name, std::array<double, 3>& value_si, const Unit& bare, std::string_view) {
-  const std::string* text = find(name);
-  if (text == nullptr) return;
+void ElementReader::read(const Param& param, const std::string& text, std::array<double, 3>& value) {
   std::array<double, 3> parsed{};
-  std::string_view rest = *text;
+  std::string_view rest = text;
   for (std::size_t i = 0; i < 3; ++i) {
     const std::size_t comma = rest.find(',');
     if ((comma == std::string_view::npos) != (i == 2))
-      return problem(name, "'" + *text + "' must be three numbers, \"x,y,z\"");
-    const auto part = parse_quantity(rest.substr(0, comma), bare);
-    if (!part.ok()) return problem(name, part.error().message);
+      return problem(param.name, "'" + text + "' must be three numbers, \"x,y,z\"");
+    const auto part = parse_quantity(rest.substr(0, comma), *param.bare);
+    if (!part.ok()) return problem(param.name, part.error().message);
     if (std::fabs(part.value()) > kFarthest)
-      return problem(name, "'" + *text + "': every number must be within " +
-                               (bare.dim == Dim::Length ? "1000 km" : "a million") + " of 0");
+      return problem(param.name, "'" + text + "': every number must be within " +
+                                     (param.bare->dim == Dim::Length ? "1000 km" : "a million") + " of 0");
     parsed[i] = part.value();
     if (i < 2) rest.remove_prefix(comma + 1);
   }
-  value_si = parsed;
+  value = parsed;
 }
 
-void ElementReader::visit_group(std::string_view name, void* value, Describe describe, std::string_view) {
+void ElementReader::read_group(std::string_view name, const Param::Group& group) {
   known_children_.emplace_back(name);
   const Element* first = nullptr;
   for (const Element& child : element_.children) {
@@ -253,12 +254,12 @@ void ElementReader::visit_group(std::string_view name, void* value, Describe des
     }
     first = &child;
     ElementReader reader(child, problems_);
-    describe(value, reader);
+    group.describe(group.value, reader);
     reader.finish();
   }
 }
 
-void ElementReader::visit_list(std::string_view name, ParamList& list, std::string_view) {
+void ElementReader::read_list(std::string_view name, ParamList& list) {
   known_children_.emplace_back(name);
   bool any = false;
   for (const Element& child : element_.children) {
@@ -286,29 +287,46 @@ void ElementReader::finish_attributes() {
   }
 }
 
-void ElementWriter::add(std::string_view name, std::string value) {
-  if (element_.attribute(name) == nullptr) element_.attributes.push_back({std::string(name), std::move(value), 0});
+namespace {
+
+/// A value as text: numbers by `number`, flags by their two words, parts of a vector with `between`.
+template <class Number>
+std::string value_text(const Param& p, const Number& number, const char* yes, const char* no, const char* between) {
+  if (const auto* const v = p.as<double>(); v != nullptr) return number(*v);
+  if (const auto* const v = p.as<std::int64_t>(); v != nullptr) return std::to_string(*v);
+  if (const auto* const v = p.as<bool>(); v != nullptr) return *v ? yes : no;
+  if (const auto* const v = p.as<std::array<double, 3>>(); v != nullptr)
+    return number((*v)[0]) + between + number((*v)[1]) + between + number((*v)[2]);
+  return *p.text();
 }
 
-void ElementWriter::number(std::string_view name, double& value_si, const Unit& bare, Range, std::string_view) {
-  add(name, format_exactly(value_si, bare));
-}
-void ElementWriter::integer(std::string_view name, std::int64_t& value, Range, std::string_view) {
-  add(name, std::to_string(value));
-}
-void ElementWriter::flag(std::string_view name, bool& value, std::string_view) {
-  add(name, value ? "true" : "false");
-}
-void ElementWriter::text(std::string_view name, std::string& value, std::string_view) {
-  if (name == kOtherParams || name == kPathParam) return;  // written already
-  add(name, value);
-}
-void ElementWriter::choice(std::string_view name, std::string& value, std::span<const std::string_view>,
-                           std::string_view) {
-  add(name, value);
-}
-void ElementWriter::vector(std::string_view name, std::array<double, 3>& v, const Unit& bare, std::string_view) {
-  add(name, format_exactly(v[0], bare) + "," + format_exactly(v[1], bare) + "," + format_exactly(v[2], bare));
+}  // namespace
+
+void ElementWriter::visit(const Param& param) {
+  if (const Param::Group* const group = param.group(); group != nullptr) {
+    const auto found = std::find_if(element_.children.begin(), element_.children.end(),
+                                    [&](const Element& child) { return child.name == param.name; });
+    ElementWriter writer(found != element_.children.end() ? *found : add_child(param.name));
+    return group->describe(group->value, writer);
+  }
+  if (ParamList* const list = param.list(); list != nullptr) {
+    bool any = false;
+    for (Element& child : element_.children) {
+      if (child.name != param.name) continue;
+      any = true;
+      ElementWriter writer(child);
+      list->describe_default(writer);
+    }
+    for (std::size_t i = 0; !any && i < list->size(); ++i) {
+      ElementWriter writer(add_child(param.name));
+      list->describe(i, writer);
+    }
+    return;
+  }
+  if (param.name == kOtherParams || param.name == kPathParam) return;  // written already
+  if (element_.attribute(param.name) != nullptr) return;
+  const auto exactly = [&](double v) { return format_exactly(v, *param.bare); };
+  element_.attributes.push_back({std::string(param.name), value_text(param, exactly, "true", "false", ","), 0});
 }
 
 Element& ElementWriter::add_child(std::string_view name) {
@@ -319,135 +337,89 @@ Element& ElementWriter::add_child(std::string_view name) {
   return child;
 }
 
-void ElementWriter::visit_group(std::string_view name, void* value, Describe describe, std::string_view) {
-  const auto same = [&](const Element& child) { return child.name == name; };
-  const auto found = std::find_if(element_.children.begin(), element_.children.end(), same);
-  ElementWriter writer(found != element_.children.end() ? *found : add_child(name));
-  describe(value, writer);
-}
+namespace {
 
-void ElementWriter::visit_list(std::string_view name, ParamList& list, std::string_view) {
-  bool any = false;
-  for (Element& child : element_.children) {
-    if (child.name != name) continue;
-    any = true;
-    ElementWriter writer(child);
-    list.describe_default(writer);
+/// What a value may be, for people.
+std::string range_of(const Param& p) {
+  if (p.as<bool>() != nullptr) return "true or false";
+  if (const auto* const choice = std::get_if<Param::Choice>(&p.value); choice != nullptr) {
+    std::string list;
+    for (const std::string_view option : choice->options) list += (list.empty() ? "" : ", ") + std::string(option);
+    return list;
   }
-  for (std::size_t i = 0; !any && i < list.size(); ++i) {
-    ElementWriter writer(add_child(name));
-    list.describe(i, writer);
-  }
-}
-
-void ManualWriter::line(std::string_view name, const std::string& value, const std::string& range,
-                        std::string_view doc) {
-  text_ += indent_ + std::string(name) + "=\"" + value + "\"";
-  if (!range.empty()) text_ += "  (" + range + ")";
-  text_ += "\n" + indent_ + "    " + std::string(doc) + "\n";
-}
-
-void ManualWriter::child(std::string_view name, std::string_view what, std::string_view doc) {
-  text_ += indent_ + "<" + std::string(name) + ">  (" + std::string(what) + ")\n" + indent_ + "    " +
-           std::string(doc) + "\n";
-}
-
-void ManualWriter::visit_group(std::string_view name, void* value, Describe describe, std::string_view doc) {
-  child(name, "an element inside", doc);
-  indent_ += "    ";
-  describe(value, *this);
-  indent_.resize(indent_.size() - 4);
-}
-
-void ManualWriter::visit_list(std::string_view name, ParamList& list, std::string_view doc) {
-  child(name, "any number of elements inside; left out: " + std::to_string(list.size()), doc);
-  indent_ += "    ";
-  list.describe_default(*this);
-  indent_.resize(indent_.size() - 4);
-}
-
-void ManualWriter::number(std::string_view name, double& value_si, const Unit& bare, Range range,
-                          std::string_view doc) {
+  const std::string symbol(p.bare->symbol);
+  if (p.as<std::array<double, 3>>() != nullptr) return "three numbers" + (symbol.empty() ? "" : " in " + symbol);
   const bool bounded =
-      range.min > -std::numeric_limits<double>::infinity() || range.max < std::numeric_limits<double>::infinity();
-  const std::string unit = bare.symbol.empty() ? "" : "a bare number is in " + std::string(bare.symbol);
-  const std::string limits = bounded ? range_text(range, bare) : "";
-  line(name, format_quantity(value_si, bare), limits + (limits.empty() || unit.empty() ? "" : "; ") + unit, doc);
-}
-void ManualWriter::integer(std::string_view name, std::int64_t& value, Range range, std::string_view doc) {
-  const bool bounded =
-      range.min > -std::numeric_limits<double>::infinity() || range.max < std::numeric_limits<double>::infinity();
-  line(name, std::to_string(value), bounded ? range_text(range, unit::none) : "", doc);
-}
-void ManualWriter::flag(std::string_view name, bool& value, std::string_view doc) {
-  line(name, value ? "true" : "false", "true or false", doc);
-}
-void ManualWriter::text(std::string_view name, std::string& value, std::string_view doc) {
-  if (name == kPathParam) return;
-  if (name == kOtherParams) return line("NAME", "TEXT", "any other name", doc);
-  line(name, value, "", doc);
-}
-void ManualWriter::choice(std::string_view name, std::string& value, std::span<const std::string_view> options,
-                          std::string_view doc) {
-  std::string list;
-  for (const std::string_view option : options) list += (list.empty() ? "" : ", ") + std::string(option);
-  line(name, value, list, doc);
-}
-void ManualWriter::vector(std::string_view name, std::array<double, 3>& v, const Unit& bare, std::string_view doc) {
-  line(name,
-       format_number(v[0] / bare.to_si) + "," + format_number(v[1] / bare.to_si) + "," +
-           format_number(v[2] / bare.to_si),
-       "three numbers" + (bare.symbol.empty() ? std::string() : " in " + std::string(bare.symbol)), doc);
+      p.range.min > -std::numeric_limits<double>::infinity() || p.range.max < std::numeric_limits<double>::infinity();
+  const std::string limits = bounded ? range_text(p.range, *p.bare) : "";
+  const std::string unit = symbol.empty() ? "" : "a bare number is in " + symbol;
+  return limits + (limits.empty() || unit.empty() ? "" : "; ") + unit;
 }
 
-void FactWriter::fact(std::string_view name, const std::string& value, std::string_view doc) {
-  if (in_line_) {
-    text_ += " " + std::string(name) + " " + value;
+}  // namespace
+
+void ManualWriter::visit(const Param& param) {
+  const std::string name(param.name), doc = indent_ + "    " + std::string(param.doc) + "\n";
+  const Param::Group* const group = param.group();
+  ParamList* const list = param.list();
+  if (group != nullptr || list != nullptr) {
+    text_ += indent_ + "<" + name + ">  (" +
+             (list != nullptr ? "any number of elements inside; left out: " + std::to_string(list->size())
+                              : "an element inside") +
+             ")\n" + doc;
+    indent_ += "    ";
+    if (list != nullptr)
+      list->describe_default(*this);
+    else
+      group->describe(group->value, *this);
+    indent_.resize(indent_.size() - 4);
     return;
   }
-  const std::string what = indent_ + std::string(name) + ": " + value;
+  if (name == kPathParam) return;
+  if (name == kOtherParams) {
+    text_ += indent_ + "NAME=\"TEXT\"  (any other name)\n" + doc;
+    return;
+  }
+  const bool triple = param.as<std::array<double, 3>>() != nullptr;
+  const auto number = [&](double v) {
+    return triple ? format_number(v / param.bare->to_si) : format_quantity(v, *param.bare);
+  };
+  const std::string range = range_of(param);
+  text_ += indent_ + name + "=\"" + value_text(param, number, "true", "false", ",") + "\"" +
+           (range.empty() ? "" : "  (" + range + ")") + "\n" + doc;
+}
+
+void FactWriter::visit(const Param& param) {
+  const std::string name(param.name), doc(param.doc);
+  if (const Param::Group* const group = param.group(); group != nullptr) {
+    text_ += indent_ + name + ": " + doc + "\n";
+    indent_ += "  ";
+    group->describe(group->value, *this);
+    indent_.resize(indent_.size() - 2);
+    return;
+  }
+  if (ParamList* const list = param.list(); list != nullptr) {
+    if (list->size() > 0) text_ += indent_ + doc + "\n";
+    in_line_ = true;
+    for (std::size_t i = 0; i < list->size(); ++i) {
+      text_ += indent_ + "  " + name + " " + std::to_string(i) + ":";
+      list->describe(i, *this);
+      text_ += "\n";
+    }
+    in_line_ = false;
+    return;
+  }
+  const bool triple = param.as<std::array<double, 3>>() != nullptr;
+  const auto number = [&](double v) { return format_quantity(!triple && std::fabs(v) < 1e-15 ? 0.0 : v, *param.bare); };
+  const std::string value = value_text(param, number, "yes", "no", ", ");
+  if (in_line_) {
+    text_ += " " + name + " " + value;
+    return;
+  }
+  const std::string what = indent_ + name + ": " + value;
   constexpr std::size_t kColumn = 32;
   const std::size_t gap = name == "source" || what.size() + 2 > kColumn ? 2 : kColumn - what.size();
-  text_ += what + (name == "source" ? "" : std::string(gap, ' ') + std::string(doc)) + "\n";
-}
-
-void FactWriter::number(std::string_view name, double& value_si, const Unit& bare, Range, std::string_view doc) {
-  fact(name, format_quantity(std::fabs(value_si) < 1e-15 ? 0.0 : value_si, bare), doc);
-}
-void FactWriter::integer(std::string_view name, std::int64_t& value, Range, std::string_view doc) {
-  fact(name, std::to_string(value), doc);
-}
-void FactWriter::flag(std::string_view name, bool& value, std::string_view doc) {
-  fact(name, value ? "yes" : "no", doc);
-}
-void FactWriter::text(std::string_view name, std::string& value, std::string_view doc) {
-  fact(name, value, doc);
-}
-void FactWriter::choice(std::string_view name, std::string& value, std::span<const std::string_view>,
-                        std::string_view doc) {
-  fact(name, value, doc);
-}
-void FactWriter::vector(std::string_view name, std::array<double, 3>& v, const Unit& bare, std::string_view doc) {
-  fact(name, format_quantity(v[0], bare) + ", " + format_quantity(v[1], bare) + ", " + format_quantity(v[2], bare),
-       doc);
-}
-
-void FactWriter::visit_group(std::string_view name, void* value, Describe describe, std::string_view doc) {
-  text_ += indent_ + std::string(name) + ": " + std::string(doc) + "\n";
-  indent_ += "  ";
-  describe(value, *this);
-  indent_.resize(indent_.size() - 2);
-}
-
-void FactWriter::visit_list(std::string_view name, ParamList& list, std::string_view doc) {
-  if (list.size() > 0) text_ += indent_ + std::string(doc) + "\n";
-  in_line_ = true;
-  for (std::size_t i = 0; i < list.size(); ++i) {
-    text_ += indent_ + "  " + std::string(name) + " " + std::to_string(i) + ":";
-    list.describe(i, *this);
-    text_ += "\n";
-  }
-  in_line_ = false;
+  text_ += what + (name == "source" ? "" : std::string(gap, ' ') + doc) + "\n";
 }
 
 }  // namespace tandem::hal

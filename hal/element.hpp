@@ -71,23 +71,20 @@ class ElementReader final : public ParamVisitor {
   ElementReader(const Element& element, Problems& problems, std::vector<std::string> ignore = {},
                 std::vector<std::string> ignore_children = {});
 
-  void number(std::string_view name, double& value_si, const Unit& bare, Range range_si, std::string_view doc) override;
-  void integer(std::string_view name, std::int64_t& value, Range range, std::string_view doc) override;
-  void flag(std::string_view name, bool& value, std::string_view doc) override;
-  void text(std::string_view name, std::string& value, std::string_view doc) override;
-  void choice(std::string_view name, std::string& value, std::span<const std::string_view> options,
-              std::string_view doc) override;
-  void vector(std::string_view name, std::array<double, 3>& value_si, const Unit& bare, std::string_view doc) override;
+  void visit(const Param& param) override;
   void finish();
   /// For elements whose children are somebody else's.
   void finish_attributes();
 
- protected:
-  void visit_group(std::string_view name, void* value, Describe describe, std::string_view doc) override;
-  void visit_list(std::string_view name, ParamList& list, std::string_view doc) override;
-
  private:
-  const std::string* find(std::string_view name);
+  void read(const Param& param, const std::string& text, double& value);
+  void read(const Param& param, const std::string& text, std::int64_t& value);
+  void read(const Param& param, const std::string& text, bool& value);
+  void read(const Param& param, const std::string& text, std::array<double, 3>& value);
+  void read(const Param& param, const std::string& text, const Param::Choice& choice);
+  void read_group(std::string_view name, const Param::Group& group);
+  void read_list(std::string_view name, ParamList& list);
+  void take_others(std::string& value);
   void problem(std::string_view attribute, std::string message);
   /// Whether `value` lies in `range`; says so when not.
   bool in_range(std::string_view name, const std::string& text, double value, Range range, const Unit& unit);
@@ -114,20 +111,9 @@ class ElementWriter final : public ParamVisitor {
  public:
   explicit ElementWriter(Element& element) : element_(element) {}
 
-  void number(std::string_view name, double& value_si, const Unit& bare, Range range_si, std::string_view doc) override;
-  void integer(std::string_view name, std::int64_t& value, Range range, std::string_view doc) override;
-  void flag(std::string_view name, bool& value, std::string_view doc) override;
-  void text(std::string_view name, std::string& value, std::string_view doc) override;
-  void choice(std::string_view name, std::string& value, std::span<const std::string_view> options,
-              std::string_view doc) override;
-  void vector(std::string_view name, std::array<double, 3>& value_si, const Unit& bare, std::string_view doc) override;
-
- protected:
-  void visit_group(std::string_view name, void* value, Describe describe, std::string_view doc) override;
-  void visit_list(std::string_view name, ParamList& list, std::string_view doc) override;
+  void visit(const Param& param) override;
 
  private:
-  void add(std::string_view name, std::string value);
   Element& add_child(std::string_view name);
   Element& element_;
 };
@@ -135,23 +121,11 @@ class ElementWriter final : public ParamVisitor {
 /// Lists described parameters for people, one a line: name, default, range, what it means.
 class ManualWriter final : public ParamVisitor {
  public:
-  void number(std::string_view name, double& value_si, const Unit& bare, Range range_si, std::string_view doc) override;
-  void integer(std::string_view name, std::int64_t& value, Range range, std::string_view doc) override;
-  void flag(std::string_view name, bool& value, std::string_view doc) override;
-  void text(std::string_view name, std::string& value, std::string_view doc) override;
-  void choice(std::string_view name, std::string& value, std::span<const std::string_view> options,
-              std::string_view doc) override;
-  void vector(std::string_view name, std::array<double, 3>& value_si, const Unit& bare, std::string_view doc) override;
+  void visit(const Param& param) override;
 
   const std::string& text() const noexcept { return text_; }
 
- protected:
-  void visit_group(std::string_view name, void* value, Describe describe, std::string_view doc) override;
-  void visit_list(std::string_view name, ParamList& list, std::string_view doc) override;
-
  private:
-  void line(std::string_view name, const std::string& value, const std::string& range, std::string_view doc);
-  void child(std::string_view name, std::string_view what, std::string_view doc);
   std::string text_;
   std::string indent_ = "  ";
 };
@@ -159,23 +133,11 @@ class ManualWriter final : public ParamVisitor {
 /// Lists described values for people, one a line: name, value, what it means. Structs of a list take one line each.
 class FactWriter final : public ParamVisitor {
  public:
-  void number(std::string_view name, double& value_si, const Unit& bare, Range range_si, std::string_view doc) override;
-  void integer(std::string_view name, std::int64_t& value, Range range, std::string_view doc) override;
-  void flag(std::string_view name, bool& value, std::string_view doc) override;
-  void text(std::string_view name, std::string& value, std::string_view doc) override;
-  void choice(std::string_view name, std::string& value, std::span<const std::string_view> options,
-              std::string_view doc) override;
-  void vector(std::string_view name, std::array<double, 3>& value_si, const Unit& bare, std::string_view doc) override;
+  void visit(const Param& param) override;
 
   const std::string& text() const noexcept { return text_; }
 
- protected:
-  void visit_group(std::string_view name, void* value, Describe describe, std::string_view doc) override;
-  void visit_list(std::string_view name, ParamList& list, std::string_view doc) override;
-
  private:
-  void fact(std::string_view name, const std::string& value, std::string_view doc);
-
   std::string text_;
   std::string indent_ = "  ";
   bool in_line_ = false;

@@ -8,6 +8,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <variant>
 #include <vector>
 
 #include "hal/unit.hpp"
@@ -51,32 +52,71 @@ class ParamList {
   virtual void describe_default(ParamVisitor& visitor) const = 0;
 };
 
+/// One described value: what it is called, where it is, what it may be, what it means.
+struct Param {
+  struct Choice {
+    std::string* value;
+    std::span<const std::string_view> options;
+  };
+  struct Group {
+    void* value;
+    void (*describe)(void* value, ParamVisitor& visitor);  ///< the inner struct, to any visitor
+  };
+  std::string_view name;
+  std::variant<double*, std::int64_t*, bool*, std::string*, Choice, std::array<double, 3>*, Group, ParamList*> value;
+  std::string_view doc;
+  const Unit* bare = &unit::none;  ///< of a number and of a vector
+  Range range = kAny;              ///< of a number and of an integer
+
+  /// Null: it is something else.
+  template <class T>
+  T* as() const noexcept {
+    const auto* const found = std::get_if<T*>(&value);
+    return found == nullptr ? nullptr : *found;
+  }
+  /// The value of a text, or of a choice.
+  std::string* text() const noexcept {
+    const auto* const choice = std::get_if<Choice>(&value);
+    return choice != nullptr ? choice->value : as<std::string>();
+  }
+  const Group* group() const noexcept { return std::get_if<Group>(&value); }
+  ParamList* list() const noexcept { return as<ParamList>(); }
+};
+
 /// One visitor, many uses: the reader of experiment files fills the values in, the manual prints them, the report saves
 /// them. A value that is absent keeps what it has: the in-class initialiser is the default.
 class ParamVisitor {
  public:
   virtual ~ParamVisitor() = default;
+  virtual void visit(const Param& param) = 0;
+  /// Of what visitors are handed, for the surfaces of plug-ins.
+  static constexpr std::uint64_t digest() noexcept { return sizeof(Param); }
 
   /// A real number. `value_si` in SI; `bare` is the unit of a number written without suffix.
-  virtual void number(std::string_view name, double& value_si, const Unit& bare, Range range_si,
-                      std::string_view doc) = 0;
-  virtual void integer(std::string_view name, std::int64_t& value, Range range, std::string_view doc) = 0;
-  virtual void flag(std::string_view name, bool& value, std::string_view doc) = 0;
-  virtual void text(std::string_view name, std::string& value, std::string_view doc) = 0;
+  void number(std::string_view name, double& value_si, const Unit& bare, Range range_si, std::string_view doc) {
+    visit({name, &value_si, doc, &bare, range_si});
+  }
+  void integer(std::string_view name, std::int64_t& value, Range range, std::string_view doc) {
+    visit({name, &value, doc, &unit::none, range});
+  }
+  void flag(std::string_view name, bool& value, std::string_view doc) { visit({name, &value, doc}); }
+  void text(std::string_view name, std::string& value, std::string_view doc) { visit({name, &value, doc}); }
   /// `value` is one of `options`.
-  virtual void choice(std::string_view name, std::string& value, std::span<const std::string_view> options,
-                      std::string_view doc) = 0;
+  void choice(std::string_view name, std::string& value, std::span<const std::string_view> options,
+              std::string_view doc) {
+    visit({name, Param::Choice{&value, options}, doc});
+  }
   /// "x,y,z", each in `bare`.
-  virtual void vector(std::string_view name, std::array<double, 3>& value_si, const Unit& bare,
-                      std::string_view doc) = 0;
-
+  void vector(std::string_view name, std::array<double, 3>& value_si, const Unit& bare, std::string_view doc) {
+    visit({name, &value_si, doc, &bare});
+  }
   /// A struct within the struct: in a file, the attributes of a child element `name`, of which there is one at most.
   template <Described T>
   void group(std::string_view name, T& value, std::string_view doc) {
-    visit_group(
-        name, &value, [](void* described, ParamVisitor& v) { static_cast<T*>(described)->describe(v); }, doc);
+    visit({name,
+           Param::Group{&value, [](void* described, ParamVisitor& v) { static_cast<T*>(described)->describe(v); }},
+           doc});
   }
-
   /// Any number of structs: in a file, one child element `name` each, in their order. A file that has any replaces the
   /// whole list.
   template <Described T>
@@ -98,14 +138,8 @@ class ParamVisitor {
         Typed(none).add(visitor);
       }
     } typed(values);
-    visit_list(name, typed, doc);
+    visit({name, static_cast<ParamList*>(&typed), doc});
   }
-
- protected:
-  using Describe = void (*)(void* value, ParamVisitor& visitor);
-  /// `describe(value, v)` describes the inner struct to any visitor.
-  virtual void visit_group(std::string_view name, void* value, Describe describe, std::string_view doc) = 0;
-  virtual void visit_list(std::string_view name, ParamList& list, std::string_view doc) = 0;
 };
 
 }  // namespace tandem::hal

@@ -27,20 +27,9 @@ struct Erased {
 /// Collects the names of what robots' elements may say, and finds what cannot be told apart.
 class AttributeNames final : public ParamVisitor {
  public:
-  void number(std::string_view name, double&, const Unit&, Range, std::string_view) override { add(name); }
-  void integer(std::string_view name, std::int64_t&, Range, std::string_view) override { add(name); }
-  void flag(std::string_view name, bool&, std::string_view) override { add(name); }
-  void text(std::string_view name, std::string&, std::string_view) override { add(name); }
-  void choice(std::string_view name, std::string&, std::span<const std::string_view>, std::string_view) override {
-    add(name);
-  }
-  void vector(std::string_view name, std::array<double, 3>&, const Unit&, std::string_view) override { add(name); }
+  void visit(const Param& param) override { add(param.name); }
 
   std::string flaw;
-
- protected:
-  void visit_group(std::string_view name, void*, Describe, std::string_view) override { add(name); }
-  void visit_list(std::string_view name, ParamList&, std::string_view) override { add(name); }
 
  private:
   void add(std::string_view name) {

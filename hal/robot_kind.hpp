@@ -38,6 +38,33 @@ struct Mount {
   static void add_to(std::vector<Mount>& mounts, ParamVisitor& v);
 };
 
+/// Flaw of a list of mounts for a port with `capacity` values; empty: none.
+std::string mounts_flaw(const std::vector<Mount>& mounts, std::size_t capacity);
+
+/// Mounts of a part that is nothing else: sensors, in the order of the readings of a port with so many.
+template <std::size_t kMost>
+struct MountedSensors {
+  std::vector<Mount> mounts = {};
+  std::string source = {};
+
+  void describe(ParamVisitor& v) {
+    v.list("mount", mounts, "A sensor, in the order of the readings.");
+    v.text("source", source, "Where these figures come from.");
+  }
+  std::string flaw() const { return mounts_flaw(mounts, kMost); }
+};
+
+/// A lamp that is nothing but its place.
+struct MountedLamp {
+  Mount mount = {};
+  std::string source = {};
+
+  void describe(ParamVisitor& v) {
+    v.group("mount", mount, "Its place.");
+    v.text("source", source, "Where these figures come from.");
+  }
+};
+
 /// An upright cylinder.
 struct Body {
   static constexpr std::string_view kName = "body";
@@ -197,7 +224,7 @@ const PartType& part_type() {
 class RobotKind {
  public:
   static constexpr std::string_view kCategory = "robot";
-  static constexpr std::uint32_t kNumber = 2;
+  static constexpr std::uint32_t kNumber = 3;
   static constexpr bool kWhole = true;
   using Crosses = Layouts<Body, Locomotion, DifferentialDrive, Quadrotor, AnyPart, detail::PartTable, std::string>;
 
@@ -261,8 +288,5 @@ class RobotKind {
 
   std::vector<AnyPart> parts_;
 };
-
-/// Flaw of a list of mounts for a port with `capacity` values; empty: none.
-std::string mounts_flaw(const std::vector<Mount>& mounts, std::size_t capacity);
 
 }  // namespace tandem::hal

@@ -133,30 +133,22 @@ class Missing final : public ParamVisitor {
  public:
   Missing(const Element& element, Problems& problems) : element_(element), problems_(problems) {}
 
-  void number(std::string_view name, double& value, const Unit&, Range range, std::string_view doc) override {
-    judge(name, value, range, doc);
+  void visit(const hal::Param& param) override {
+    if (const auto* const group = param.group(); group != nullptr) {
+      const Element* const child = element_.child(param.name);
+      Missing inner(child != nullptr ? *child : element_, problems_);
+      group->describe(group->value, inner);
+    }
+    if (const auto* const number = param.as<double>(); number != nullptr) judge(param, *number);
+    if (const auto* const whole = param.as<std::int64_t>(); whole != nullptr) judge(param, static_cast<double>(*whole));
   }
-  void integer(std::string_view name, std::int64_t& value, Range range, std::string_view doc) override {
-    judge(name, static_cast<double>(value), range, doc);
-  }
-  void flag(std::string_view, bool&, std::string_view) override {}
-  void text(std::string_view, std::string&, std::string_view) override {}
-  void choice(std::string_view, std::string&, std::span<const std::string_view>, std::string_view) override {}
-  void vector(std::string_view, std::array<double, 3>&, const Unit&, std::string_view) override {}
-
- protected:
-  void visit_group(std::string_view name, void* value, Describe describe, std::string_view) override {
-    const Element* const child = element_.child(name);
-    Missing inner(child != nullptr ? *child : element_, problems_);
-    describe(value, inner);
-  }
-  void visit_list(std::string_view, hal::ParamList&, std::string_view) override {}
 
  private:
-  void judge(std::string_view name, double value, Range range, std::string_view doc) {
-    if ((value >= range.min && value <= range.max) || element_.attribute(name) != nullptr) return;
-    problems_.push_back(problem_at(
-        element_, "<" + element_.name + "> needs the attribute '" + std::string(name) + "': " + std::string(doc)));
+  void judge(const hal::Param& param, double value) {
+    const auto& [least, most] = param.range;
+    if ((value >= least && value <= most) || element_.attribute(param.name) != nullptr) return;
+    problems_.push_back(problem_at(element_, "<" + element_.name + "> needs the attribute '" + std::string(param.name) +
+                                                 "': " + std::string(param.doc)));
   }
 
   const Element& element_;

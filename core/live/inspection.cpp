@@ -87,57 +87,48 @@ class ParamLister final : public hal::ParamVisitor {
   ParamLister(const Element& element, Json& to, std::string prefix = {})
       : element_(element), to_(to), prefix_(std::move(prefix)) {}
 
-  void number(std::string_view name, double& value, const hal::Unit& bare, hal::Range, std::string_view doc) override {
-    const std::string* text = element_.attribute(name);
-    if (text != nullptr) {
-      if (const auto read = hal::parse_quantity(*text, bare); read.ok()) value = read.value();
-    }
-    add(name, value / bare.to_si, bare.symbol, doc);
-  }
-  void integer(std::string_view name, std::int64_t& value, hal::Range, std::string_view doc) override {
-    const std::string* text = element_.attribute(name);
-    add(name, text != nullptr ? Json(*text) : Json(value), "", doc);
-  }
-  void flag(std::string_view name, bool& value, std::string_view doc) override {
-    const std::string* text = element_.attribute(name);
-    add(name, text != nullptr ? Json(*text == "true" || *text == "1" || *text == "yes") : Json(value), "", doc);
-  }
-  void text(std::string_view name, std::string& value, std::string_view doc) override {
-    const std::string* text = element_.attribute(name);
-    add(name, text != nullptr ? Json(*text) : Json(value), "", doc);
-  }
-  void choice(std::string_view name, std::string& value, std::span<const std::string_view>,
-              std::string_view doc) override {
-    text(name, value, doc);
-  }
-  void vector(std::string_view name, std::array<double, 3>& value, const hal::Unit& bare,
-              std::string_view doc) override {
-    const std::string* text = element_.attribute(name);
-    std::string all;
-    for (const double v : value) all += (all.empty() ? "" : ",") + hal::format_number(v / bare.to_si);
-    add(name, text != nullptr ? *text : all, bare.symbol, doc);
-  }
-
- protected:
-  void visit_group(std::string_view name, void* value, Describe describe, std::string_view) override {
-    static const Element nothing;
-    const Element* child = element_.child(name);
-    ParamLister inner(child != nullptr ? *child : nothing, to_, prefix_ + std::string(name) + ".");
-    describe(value, inner);
-  }
-  void visit_list(std::string_view name, hal::ParamList& list, std::string_view) override {
-    list.clear();
-    std::size_t count = 0;
-    for (const Element& child : element_.children) {
-      if (child.name != name) continue;
-      ParamLister inner(child, to_, prefix_ + std::string(name) + "[" + std::to_string(count++) + "].");
-      list.add(inner);
+  void visit(const hal::Param& param) override {
+    const std::string name = prefix_ + std::string(param.name);
+    if (const auto* const group = param.group(); group != nullptr) {
+      static const Element nothing;
+      const Element* child = element_.child(param.name);
+      ParamLister inner(child != nullptr ? *child : nothing, to_, name + ".");
+      group->describe(group->value, inner);
+    } else if (hal::ParamList* const list = param.list(); list != nullptr) {
+      list->clear();
+      std::size_t count = 0;
+      for (const Element& child : element_.children) {
+        if (child.name != param.name) continue;
+        ParamLister inner(child, to_, name + "[" + std::to_string(count++) + "].");
+        list->add(inner);
+      }
+    } else {
+      const std::string* const text = element_.attribute(param.name);
+      to_.push_back({{"name", name},
+                     {"value", text != nullptr ? written(param, *text) : default_of(param)},
+                     {"unit", param.bare->symbol},
+                     {"doc", param.doc}});
     }
   }
 
  private:
-  void add(std::string_view name, Json value, std::string_view unit, std::string_view doc) {
-    to_.push_back({{"name", prefix_ + std::string(name)}, {"value", std::move(value)}, {"unit", unit}, {"doc", doc}});
+  static Json written(const hal::Param& param, const std::string& text) {
+    if (param.as<bool>() != nullptr) return text == "true" || text == "1" || text == "yes";
+    if (double* const number = param.as<double>(); number != nullptr) {
+      if (const auto read = hal::parse_quantity(text, *param.bare); read.ok()) *number = read.value();
+      return default_of(param);
+    }
+    return text;
+  }
+  static Json default_of(const hal::Param& param) {
+    if (const auto* const v = param.as<double>(); v != nullptr) return *v / param.bare->to_si;
+    if (const auto* const v = param.as<std::int64_t>(); v != nullptr) return *v;
+    if (const auto* const v = param.as<bool>(); v != nullptr) return *v;
+    if (const std::string* const v = param.text(); v != nullptr) return *v;
+    std::string all;
+    for (const double v : *param.as<std::array<double, 3>>())
+      all += (all.empty() ? "" : ",") + hal::format_number(v / param.bare->to_si);
+    return all;
   }
   const Element& element_;
   Json& to_;

@@ -31,46 +31,29 @@ class InSi final : public hal::ParamVisitor {
  public:
   explicit InSi(Element& element) : element_(element) {}
 
-  void number(std::string_view name, double&, const hal::Unit& bare, hal::Range, std::string_view) override {
-    if (std::string* const text = value(name); text != nullptr) *text = in_si(*text, bare);
-  }
-  void vector(std::string_view name, std::array<double, 3>&, const hal::Unit& bare, std::string_view) override {
-    std::string* const text = value(name);
-    if (text == nullptr) return;
-    std::string all;
-    for (std::size_t at = 0; at <= text->size();) {
-      const std::size_t comma = std::min(text->find(',', at), text->size());
-      all += (at == 0 ? "" : ",") + in_si(text->substr(at, comma - at), bare);
-      at = comma + 1;
-    }
-    *text = all;
-  }
-  void integer(std::string_view, std::int64_t&, hal::Range, std::string_view) override {}
-  void flag(std::string_view, bool&, std::string_view) override {}
-  void text(std::string_view, std::string&, std::string_view) override {}
-  void choice(std::string_view, std::string&, std::span<const std::string_view>, std::string_view) override {}
-
- protected:
-  void visit_group(std::string_view name, void* value, Describe describe, std::string_view) override {
+  void visit(const hal::Param& param) override {
+    const auto* const group = param.group();
     for (Element& child : element_.children) {
+      if (child.name != param.name) continue;
       InSi inner(child);
-      if (child.name == name) describe(value, inner);
+      if (group != nullptr) group->describe(group->value, inner);
+      if (param.list() != nullptr) param.list()->describe_default(inner);
     }
-  }
-  void visit_list(std::string_view name, hal::ParamList& list, std::string_view) override {
-    for (Element& child : element_.children) {
-      InSi inner(child);
-      if (child.name == name) list.describe_default(inner);
+    const bool number = param.as<double>() != nullptr;
+    if (!number && param.as<std::array<double, 3>>() == nullptr) return;
+    for (Element::Attribute& a : element_.attributes) {
+      if (a.name != param.name) continue;
+      const std::string text = std::exchange(a.value, {});
+      for (std::size_t at = 0; at <= text.size();) {
+        const std::size_t comma = number ? text.size() : std::min(text.find(',', at), text.size());
+        a.value += (at == 0 ? "" : ",") + in_si(text.substr(at, comma - at), *param.bare);
+        at = comma + 1;
+      }
+      return;
     }
   }
 
  private:
-  std::string* value(std::string_view name) {
-    for (Element::Attribute& a : element_.attributes) {
-      if (a.name == name) return &a.value;
-    }
-    return nullptr;
-  }
   static std::string in_si(const std::string& text, const hal::Unit& bare) {
     const auto si = hal::parse_quantity(text, bare);
     return si.ok() ? hal::format_number(si.value()) : text;

@@ -16,24 +16,16 @@ class PathResolver final : public hal::ParamVisitor {
  public:
   explicit PathResolver(Element& element) : element_(element) {}
 
-  void text(std::string_view name, std::string&, std::string_view) override {
-    if (name != hal::kPathParam) {
-      last_ = name;
+  void visit(const hal::Param& param) override {
+    if (param.as<std::string>() == nullptr) return;
+    if (param.name != hal::kPathParam) {
+      last_ = param.name;
       return;
     }
     for (Element::Attribute& a : element_.attributes) {
       if (a.name == last_) a.value = hal::path_beside(a.value, element_.file);
     }
   }
-  void number(std::string_view, double&, const hal::Unit&, hal::Range, std::string_view) override {}
-  void integer(std::string_view, std::int64_t&, hal::Range, std::string_view) override {}
-  void flag(std::string_view, bool&, std::string_view) override {}
-  void choice(std::string_view, std::string&, std::span<const std::string_view>, std::string_view) override {}
-  void vector(std::string_view, std::array<double, 3>&, const hal::Unit&, std::string_view) override {}
-
- protected:
-  void visit_group(std::string_view, void*, Describe, std::string_view) override {}
-  void visit_list(std::string_view, hal::ParamList&, std::string_view) override {}
 
  private:
   Element& element_;

@@ -66,17 +66,9 @@ struct Microphones : Reading {
 };
 
 /// Microphones.
-struct MicrophonesPart {
+struct MicrophonesPart : MountedSensors<Microphones::kCapacity> {
   static constexpr std::string_view kName = "microphones";
   static constexpr std::string_view kDoc = "Microphones.";
-  std::vector<Mount> mounts = {};
-  std::string source = {};
-
-  void describe(ParamVisitor& v) {
-    v.list("mount", mounts, "A sensor, in the order of the readings.");
-    v.text("source", source, "Where these figures come from.");
-  }
-  std::string flaw() const { return mounts_flaw(mounts, Microphones::kCapacity); }
 };
 
 /// State of the battery.

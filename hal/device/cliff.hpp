@@ -27,17 +27,9 @@ struct Cliff : Reading {
 };
 
 /// Sensors that look for the floor's edge.
-struct CliffPart {
+struct CliffPart : MountedSensors<Cliff::kCapacity> {
   static constexpr std::string_view kName = "cliff";
   static constexpr std::string_view kDoc = "Sensors that look for the edge of the floor.";
-  std::vector<Mount> mounts = {};
-  std::string source = {};
-
-  void describe(ParamVisitor& v) {
-    v.list("mount", mounts, "A sensor, in the order of the readings.");
-    v.text("source", source, "Where these figures come from.");
-  }
-  std::string flaw() const { return mounts_flaw(mounts, Cliff::kCapacity); }
 };
 
 }  // namespace tandem::hal

@@ -129,16 +129,9 @@ struct BodyLed : Command {
 };
 
 /// A light inside a translucent body.
-struct BodyLedPart {
+struct BodyLedPart : MountedLamp {
   static constexpr std::string_view kName = "body_led";
   static constexpr std::string_view kDoc = "A light inside the translucent body.";
-  Mount mount = {};
-  std::string source = {};
-
-  void describe(ParamVisitor& v) {
-    v.group("mount", mount, "Its place.");
-    v.text("source", source, "Where these figures come from.");
-  }
 };
 
 /// The bright red light at an e-puck's front. Safe value: off.
@@ -151,16 +144,9 @@ struct FrontLed : Command {
 };
 
 /// A bright light at the front.
-struct FrontLedPart {
+struct FrontLedPart : MountedLamp {
   static constexpr std::string_view kName = "front_led";
   static constexpr std::string_view kDoc = "A bright light at the front.";
-  Mount mount = {};
-  std::string source = {};
-
-  void describe(ParamVisitor& v) {
-    v.group("mount", mount, "Its place.");
-    v.text("source", source, "Where these figures come from.");
-  }
 };
 
 }  // namespace tandem::hal

@@ -83,17 +83,9 @@ struct Light : Reading {
 };
 
 /// Sensors of ambient light.
-struct LightPart {
+struct LightPart : MountedSensors<Light::kCapacity> {
   static constexpr std::string_view kName = "light";
   static constexpr std::string_view kDoc = "Sensors of ambient light.";
-  std::vector<Mount> mounts = {};
-  std::string source = {};
-
-  void describe(ParamVisitor& v) {
-    v.list("mount", mounts, "A sensor, in the order of the readings.");
-    v.text("source", source, "Where these figures come from.");
-  }
-  std::string flaw() const { return mounts_flaw(mounts, Light::kCapacity); }
 };
 
 /// Reflectance of the floor beneath each sensor: 0 black, 1 white.
@@ -112,17 +104,9 @@ struct Ground : Reading {
 };
 
 /// Sensors that look at the floor.
-struct GroundPart {
+struct GroundPart : MountedSensors<Ground::kCapacity> {
   static constexpr std::string_view kName = "ground";
   static constexpr std::string_view kDoc = "Sensors that look at the floor.";
-  std::vector<Mount> mounts = {};
-  std::string source = {};
-
-  void describe(ParamVisitor& v) {
-    v.list("mount", mounts, "A sensor, in the order of the readings.");
-    v.text("source", source, "Where these figures come from.");
-  }
-  std::string flaw() const { return mounts_flaw(mounts, Ground::kCapacity); }
 };
 
 /// The foot-bot's sensors around its base, which see the floor beside the tracks.
@@ -132,17 +116,9 @@ struct BaseGround : Ground {
 };
 
 /// Sensors around the base that look at the floor.
-struct BaseGroundPart {
+struct BaseGroundPart : MountedSensors<Ground::kCapacity> {
   static constexpr std::string_view kName = "base_ground";
   static constexpr std::string_view kDoc = "Sensors around the base that look at the floor.";
-  std::vector<Mount> mounts = {};
-  std::string source = {};
-
-  void describe(ParamVisitor& v) {
-    v.list("mount", mounts, "A sensor, in the order of the readings.");
-    v.text("source", source, "Where these figures come from.");
-  }
-  std::string flaw() const { return mounts_flaw(mounts, Ground::kCapacity); }
 };
 
 /// The foot-bot's sensors between its tracks.
@@ -152,17 +128,9 @@ struct MotorGround : Ground {
 };
 
 /// Sensors between the tracks that look at the floor.
-struct MotorGroundPart {
+struct MotorGroundPart : MountedSensors<Ground::kCapacity> {
   static constexpr std::string_view kName = "motor_ground";
   static constexpr std::string_view kDoc = "Sensors between the tracks that look at the floor.";
-  std::vector<Mount> mounts = {};
-  std::string source = {};
-
-  void describe(ParamVisitor& v) {
-    v.list("mount", mounts, "A sensor, in the order of the readings.");
-    v.text("source", source, "Where these figures come from.");
-  }
-  std::string flaw() const { return mounts_flaw(mounts, Ground::kCapacity); }
 };
 
 }  // namespace tandem::hal

@@ -83,12 +83,12 @@ RobotKind make() {
                          .response = response(),
                          .source = "range: ARGoS 3; bearings: GCtronic's library and Webots, rounded; response: lookup "
                                    "table of Webots' E-puck.proto, ambient offset removed, up to 7 cm; beyond chosen"});
-  kind.add(LightPart{.mounts = infrared(), .source = "the proximity sensors without their own light"});
-  kind.add(GroundPart{.mounts = {Mount{0, 0.03, -0.009, 0}, Mount{0, 0.03, 0, 0}, Mount{0, 0.03, 0.009, 0}},
-                      .source = "ARGoS 3: 30 mm ahead, the first on the right"});
+  kind.add(LightPart{{.mounts = infrared(), .source = "the proximity sensors without their own light"}});
+  kind.add(GroundPart{{.mounts = {Mount{0, 0.03, -0.009, 0}, Mount{0, 0.03, 0, 0}, Mount{0, 0.03, 0.009, 0}},
+                       .source = "ARGoS 3: 30 mm ahead, the first on the right"}});
   kind.add(MicrophonesPart{
-      .mounts = {on_rim(-90, 0, -1, 0.032, 0.04), on_rim(90, 0, 1, 0.032, 0.04), on_rim(180, -1, 0, 0.032, 0.04)},
-      .source = "Webots' E-puck.proto: right, left, rear"});
+      {.mounts = {on_rim(-90, 0, -1, 0.032, 0.04), on_rim(90, 0, 1, 0.032, 0.04), on_rim(180, -1, 0, 0.032, 0.04)},
+       .source = "Webots' E-puck.proto: right, left, rear"}});
   kind.add(AccelerometerPart{.source = "GCtronic's library"});
   kind.add(BrakesPart{.deceleration_m_s2 = 5.0,
                       .source = "chosen: stepper motors without a ramp stop at once; within 26 ms, 2 mm, is safe"});
@@ -103,8 +103,8 @@ RobotKind make() {
   kind.add(RangeAndBearingPart{
       .range_m = 0.8, .height_m = kHeight_m, .payload = 2, .source = "ARGoS 3; the board is on top"});
   kind.add(LedsPart{.mounts = ring_leds(), .source = "GCtronic's library; height rounded"});
-  kind.add(BodyLedPart{.mount = {0, 0, 0, 0.03}, .source = "GCtronic's library; height rounded"});
-  kind.add(FrontLedPart{.mount = on_rim(0, 1, 0, kRadius_m, 0.03), .source = "GCtronic's library; height rounded"});
+  kind.add(BodyLedPart{{.mount = {0, 0, 0, 0.03}, .source = "GCtronic's library; height rounded"}});
+  kind.add(FrontLedPart{{.mount = on_rim(0, 1, 0, kRadius_m, 0.03), .source = "GCtronic's library; height rounded"}});
   return kind;
 }
 

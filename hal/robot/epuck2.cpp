@@ -40,10 +40,10 @@ RobotKind make() {
                             .range_m = 2.0,
                             .cone_rad = 25.0 * std::numbers::pi / 180.0,
                             .source = "range: GCtronic's wiki; cone: data sheet of ST's VL53L0X; height chosen"});
-  kind.add(CliffPart{.mounts = {Mount{0, 0.025, -0.02, 0}, Mount{0, 0.025, 0.02, 0}},
-                     .source =
-                         "GCtronic's ground sensors with cliff sensors: the right one first; places chosen, for no "
-                         "drawing of the board is known"});
+  kind.add(
+      CliffPart{{.mounts = {Mount{0, 0.025, -0.02, 0}, Mount{0, 0.025, 0.02, 0}},
+                 .source = "GCtronic's ground sensors with cliff sensors: the right one first; places chosen, for no "
+                           "drawing of the board is known"}});
   kind.add(SelectorPart{.source = "GCtronic's wiki: 16 positions; 3, 8, 10 and 15 choose how the robot is reached"});
   return kind;
 }

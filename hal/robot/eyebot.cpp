@@ -50,8 +50,8 @@ RobotKind make() {
                          .mounts = ring_of(24, 7.5, kRingRadius_m, kRingHeight_m),
                          .response = {},
                          .source = "ARGoS 3: the first at 7.5 degrees, one every 15 degrees, counter-clockwise"});
-  kind.add(LightPart{.mounts = ring_of(24, 7.5, kRingRadius_m, kRingHeight_m),
-                     .source = "ARGoS 3: beside the proximity sensors"});
+  kind.add(LightPart{
+      {.mounts = ring_of(24, 7.5, kRingRadius_m, kRingHeight_m), .source = "ARGoS 3: beside the proximity sensors"}});
   kind.add(AccelerometerPart{.source = "chosen: every autopilot has one"});
   kind.add(GyroscopePart{.source = "chosen: every autopilot has one"});
   kind.add(AltimeterPart{.range_m = 6.0, .source = "chosen: what common ultrasound rangers reach"});

@@ -51,16 +51,17 @@ RobotKind make() {
                          .mounts = ring_of(24, 7.5, kRadius_m, kSensorHeight_m),
                          .response = {},
                          .source = "ARGoS 3: the first at 7.5 degrees, one every 15 degrees, counter-clockwise"});
-  kind.add(LightPart{.mounts = ring_of(24, 7.5, kRadius_m, kSensorHeight_m),
-                     .source = "ARGoS 3: the same devices as proximity"});
+  kind.add(LightPart{
+      {.mounts = ring_of(24, 7.5, kRadius_m, kSensorHeight_m), .source = "ARGoS 3: the same devices as proximity"}});
   kind.add(BaseGroundPart{
-      .mounts = {Mount{0, 0.08, 0, 0}, Mount{0, 0.042, 0.065, 0}, Mount{0, 0, 0.08, 0}, Mount{0, -0.042, 0.065, 0},
-                 Mount{0, -0.08, 0, 0}, Mount{0, -0.042, -0.065, 0}, Mount{0, 0, -0.08, 0}, Mount{0, 0.042, -0.065, 0}},
-      .source = "the real robot's interface: eight around the base, the first ahead, counter-clockwise"});
-  kind.add(MotorGroundPart{.mounts = {Mount{0, 0.063, 0.0116, 0}, Mount{0, -0.063, 0.0116, 0},
-                                      Mount{0, -0.063, -0.0116, 0}, Mount{0, 0.063, -0.0116, 0}},
-                           .source = "the real robot's interface: four between the tracks, the first front left, "
-                                     "counter-clockwise"});
+      {.mounts = {Mount{0, 0.08, 0, 0}, Mount{0, 0.042, 0.065, 0}, Mount{0, 0, 0.08, 0}, Mount{0, -0.042, 0.065, 0},
+                  Mount{0, -0.08, 0, 0}, Mount{0, -0.042, -0.065, 0}, Mount{0, 0, -0.08, 0},
+                  Mount{0, 0.042, -0.065, 0}},
+       .source = "the real robot's interface: eight around the base, the first ahead, counter-clockwise"}});
+  kind.add(MotorGroundPart{{.mounts = {Mount{0, 0.063, 0.0116, 0}, Mount{0, -0.063, 0.0116, 0},
+                                       Mount{0, -0.063, -0.0116, 0}, Mount{0, 0.063, -0.0116, 0}},
+                            .source = "the real robot's interface: four between the tracks, the first front left, "
+                                      "counter-clockwise"}});
   kind.add(AccelerometerPart{.source = "the real robot's interface"});
   kind.add(GyroscopePart{.source = "the real robot's interface"});
   kind.add(BrakesPart{.deceleration_m_s2 = 3.0,

@@ -79,12 +79,12 @@ RobotKind make() {
                          .mounts = infrared(),
                          .response = response(),
                          .source = "Enki, places and response; the firmware says 0 where nothing is within range"});
-  kind.add(GroundPart{.mounts = {Mount{0, 0.072, 0.012, 0}, Mount{0, 0.072, -0.012, 0}},
-                      .source = "Enki: the first on the left"});
+  kind.add(GroundPart{
+      {.mounts = {Mount{0, 0.072, 0.012, 0}, Mount{0, 0.072, -0.012, 0}}, .source = "Enki: the first on the left"}});
   kind.add(AccelerometerPart{.source = "API: 16 Hz, 23 counts are 9.81 m/s2"});
   kind.add(BrakesPart{.deceleration_m_s2 = 2.0, .source = "chosen: its control of speed stops it within 0.1 s, 1 cm"});
-  kind.add(MicrophonesPart{.mounts = {Mount{0, kButtons_m, 0, kHeight_m}},
-                           .source = "API: one, its level; place: chosen, beside the buttons"});
+  kind.add(MicrophonesPart{{.mounts = {Mount{0, kButtons_m, 0, kHeight_m}},
+                            .source = "API: one, its level; place: chosen, beside the buttons"}});
   kind.add(ButtonsPart{.count = 5, .source = "API: backward, left, center, forward, right"});
   kind.add(SpeakerPart{.source = "API: tones by their frequency"});
   kind.add(LedsPart{.beacon = true,

@@ -1,10 +1,7 @@
 #include "mixed_reality/settings/kind_check.hpp"
 
-#include <array>
 #include <cstddef>
-#include <cstdint>
 #include <map>
-#include <span>
 #include <string>
 #include <string_view>
 
@@ -16,20 +13,10 @@ class Places final : public hal::ParamVisitor {
  public:
   explicit Places(hal::AnyPart part) { part.describe(*this); }
 
-  void number(std::string_view, double&, const hal::Unit&, hal::Range, std::string_view) override {}
-  void integer(std::string_view, std::int64_t&, hal::Range, std::string_view) override {}
-  void flag(std::string_view, bool&, std::string_view) override {}
-  void text(std::string_view, std::string&, std::string_view) override {}
-  void choice(std::string_view, std::string&, std::span<const std::string_view>, std::string_view) override {}
-  void vector(std::string_view, std::array<double, 3>&, const hal::Unit&, std::string_view) override {}
-
-  std::size_t count() const noexcept { return count_; }
-
- protected:
-  void visit_group(std::string_view, void*, Describe, std::string_view) override {}
-  void visit_list(std::string_view name, hal::ParamList& list, std::string_view) override {
-    if (name == "mount" || name == "head") count_ += list.size();
+  void visit(const hal::Param& param) override {
+    if (param.list() != nullptr && (param.name == "mount" || param.name == "head")) count_ += param.list()->size();
   }
+  std::size_t count() const noexcept { return count_; }
 
  private:
   std::size_t count_ = 0;

@@ -117,19 +117,14 @@ struct NumberNotes final : hal::ParamVisitor {
     hal::Range range;
   };
   std::vector<Note> notes;
-  void number(std::string_view name, double& v, const hal::Unit& bare, hal::Range r, std::string_view doc) override {
-    EXPECT_FALSE(doc.empty());
-    notes.push_back({std::string(name), std::string(bare.symbol), v, r});
+  void visit(const hal::Param& param) override {
+    if (const double* const v = param.as<double>(); v != nullptr) {
+      EXPECT_FALSE(param.doc.empty());
+      notes.push_back({std::string(param.name), std::string(param.bare->symbol), *v, param.range});
+    }
+    if (const auto* const group = param.group(); group != nullptr) group->describe(group->value, *this);
+    if (param.list() != nullptr) param.list()->describe_default(*this);
   }
-  void integer(std::string_view, std::int64_t&, hal::Range, std::string_view) override {}
-  void flag(std::string_view, bool&, std::string_view) override {}
-  void text(std::string_view, std::string&, std::string_view) override {}
-  void choice(std::string_view, std::string&, std::span<const std::string_view>, std::string_view) override {}
-  void vector(std::string_view, std::array<double, 3>&, const hal::Unit&, std::string_view) override {}
-  void visit_group(std::string_view, void* value, Describe describe, std::string_view) override {
-    describe(value, *this);
-  }
-  void visit_list(std::string_view, hal::ParamList& list, std::string_view) override { list.describe_default(*this); }
 };
 
 /// What `nm -D` says of a shared object; empty when there is no nm.

@@ -30,16 +30,10 @@ class WheelsOnly final : public Robot {
 class Numbers final : public ParamVisitor {
  public:
   explicit Numbers(double value) : value_(value) {}
-  void number(std::string_view, double& v, const Unit&, Range, std::string_view) override { v = value_; }
-  void integer(std::string_view, std::int64_t&, Range, std::string_view) override {}
-  void flag(std::string_view, bool&, std::string_view) override {}
-  void text(std::string_view, std::string&, std::string_view) override {}
-  void choice(std::string_view, std::string&, std::span<const std::string_view>, std::string_view) override {}
-  void vector(std::string_view, std::array<double, 3>&, const Unit&, std::string_view) override {}
-  void visit_group(std::string_view, void* value, Describe describe, std::string_view) override {
-    describe(value, *this);
+  void visit(const Param& param) override {
+    if (double* const v = param.as<double>(); v != nullptr) *v = value_;
+    if (const auto* const group = param.group(); group != nullptr) group->describe(group->value, *this);
   }
-  void visit_list(std::string_view, ParamList&, std::string_view) override {}
 
  private:
   double value_;

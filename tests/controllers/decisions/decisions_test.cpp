@@ -47,22 +47,15 @@ struct Decisions {
 /// Leaves every parameter as it is by default.
 class Defaults : public hal::ParamVisitor {
  public:
-  void number(std::string_view, double&, const hal::Unit&, hal::Range, std::string_view) override {}
-  void integer(std::string_view, std::int64_t&, hal::Range, std::string_view) override {}
-  void flag(std::string_view, bool&, std::string_view) override {}
-  void text(std::string_view, std::string&, std::string_view) override {}
-  void choice(std::string_view, std::string&, std::span<const std::string_view>, std::string_view) override {}
-  void vector(std::string_view, std::array<double, 3>&, const hal::Unit&, std::string_view) override {}
-  void visit_group(std::string_view, void*, Describe, std::string_view) override {}
-  void visit_list(std::string_view, hal::ParamList&, std::string_view) override {}
+  void visit(const hal::Param&) override {}
 };
 
 /// Names a script.
 class NamedScript final : public Defaults {
  public:
   explicit NamedScript(std::string path) : path_(std::move(path)) {}
-  void text(std::string_view name, std::string& value, std::string_view) override {
-    if (name == "script") value = path_;
+  void visit(const hal::Param& param) override {
+    if (param.name == "script") *param.text() = path_;
   }
 
  private:
