@@ -14,13 +14,9 @@ constexpr double kGravity_m_s2 = 9.81;  // of bodies in no engine's region
 constexpr double kLongestWay_m = 0.2;   // in a tick: farther away a body was put, and did not move
 constexpr double kNoTurn = 1e-9;        // sine of half an angle below which nothing turned
 
-struct NoNoise {
-  void describe(hal::ParamVisitor&) {}
-};
-
-template <int kPerMille>
 struct ForceNoise {
-  double noise_level_m_s2 = kPerMille * 1e-3;
+  double noise_level_m_s2 = 0.0;
+  static ForceNoise noisy() { return {.noise_level_m_s2 = 200 * 1e-3}; }
   void describe(hal::ParamVisitor& v) {
     v.number("noise_level", noise_level_m_s2, hal::unit::m_s2, hal::kNotNegative, "Standard deviation on each axis.");
   }
@@ -77,9 +73,14 @@ hal::Vector3 specific_force(const MotionBefore& from, const MotionBefore& to, do
 /// of those that are led from outside, the way within the tick is one.
 class AccelerometerSensor final : public Sensor {
  public:
-  AccelerometerSensor(const hal::RobotKind& kind, double noise_m_s2, const BlockColumns& columns)
-      : fastest_m_s_(kind.drive() != nullptr ? kind.drive()->max_speed_m_s : 0.0),
-        noise_m_s2_(noise_m_s2),
+  using Port = hal::Accelerometer;
+  using Part = hal::AccelerometerPart;
+  using Errors = ForceNoise;
+  using Kept = MotionBefore;
+
+  AccelerometerSensor(const DeviceSetup& setup, const Errors& errors, const BlockColumns& columns)
+      : fastest_m_s_(setup.kind.drive() != nullptr ? setup.kind.drive()->max_speed_m_s : 0.0),
+        noise_m_s2_(errors.noise_level_m_s2),
         before_(columns.find<MotionBefore>()) {}
 
   void sense(const DeviceContext& context, void* ports) noexcept override {
@@ -142,29 +143,13 @@ class AccelerometerSensor final : public Sensor {
   MotionBefore* before_;
 };
 
-template <class Options>
-BlockFactory<Sensor> make_accelerometer(const Element& element, Problems& problems, const DeviceSetup& setup) {
-  const auto options = read_options<Options>(element, problems);
-  double noise_m_s2 = 0.0;
-  if constexpr (requires { options.noise_level_m_s2; }) noise_m_s2 = options.noise_level_m_s2;
-  const auto make = [&kind = setup.kind, noise_m_s2](const BlockColumns& columns) {
-    return std::make_unique<AccelerometerSensor>(kind, noise_m_s2, columns);
-  };
-  return {make, {keeps<MotionBefore>()}};
-}
-
-template <class Options>
-DeviceType accelerometer_type(std::string_view implementation, std::string_view summary) {
-  return sensor_type(hal::Accelerometer::kName, implementation, summary, &has<hal::AccelerometerPart>,
-                     &make_accelerometer<Options>, &describe_options<Options>);
-}
-
 }  // namespace
 
 std::vector<DeviceType> accelerometer_types() {
-  return {accelerometer_type<ForceNoise<0>>("default", "From the body's motion; noise where asked for."),
-          accelerometer_type<NoNoise>("ideal", "From the body's motion."),
-          accelerometer_type<ForceNoise<200>>("noisy", "From the body's motion, with normal noise.")};
+  std::vector<DeviceType> types;
+  add_levels<AccelerometerSensor>(types, "From the body's motion; noise where asked for.", "From the body's motion.",
+                                  "From the body's motion, with normal noise.");
+  return types;
 }
 
 }  // namespace tandem::core

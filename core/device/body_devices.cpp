@@ -10,10 +10,6 @@
 namespace tandem::core {
 namespace {
 
-struct NoOptions {
-  void describe(hal::ParamVisitor&) {}
-};
-
 /// From W to the body.
 std::array<double, 3> to_body(const std::array<double, 4>& q_WB, const std::array<double, 3>& v_W) noexcept {
   return hal::array_of(hal::quaternion_of(q_WB).conjugate() * hal::vector_of(v_W));
@@ -26,10 +22,10 @@ double wheel_base_m(const hal::RobotKind& kind) noexcept {
 
 // --- gyroscope ---
 
-template <int kPerMille>
 struct RateNoise {
-  double noise_level_rad_s = kPerMille * 1e-3;
+  double noise_level_rad_s = 0.0;
   double bias_rad_s = 0.0;
+  static RateNoise noisy() { return {.noise_level_rad_s = 20 * 1e-3}; }
   void describe(hal::ParamVisitor& v) {
     v.number("noise_level", noise_level_rad_s, hal::unit::rad_s, hal::kNotNegative,
              "Standard deviation about each axis.");
@@ -41,8 +37,14 @@ struct RateNoise {
 /// Turn rates as the body's engine knows them; one that has no forces turns bodies as their wheels say.
 class GyroscopeSensor final : public Sensor {
  public:
-  GyroscopeSensor(double wheel_base_m, double noise, double bias)
-      : wheel_base_m_(wheel_base_m), noise_rad_s_(noise), bias_rad_s_(bias) {}
+  using Port = hal::Gyroscope;
+  using Part = hal::GyroscopePart;
+  using Errors = RateNoise;
+
+  GyroscopeSensor(const DeviceSetup& setup, const Errors& errors, const BlockColumns&)
+      : wheel_base_m_(wheel_base_m(setup.kind)),
+        noise_rad_s_(errors.noise_level_rad_s),
+        bias_rad_s_(errors.bias_rad_s) {}
 
   void sense(const DeviceContext& context, void* ports) noexcept override {
     auto* gyroscopes = static_cast<hal::Gyroscope*>(ports);
@@ -84,24 +86,11 @@ class GyroscopeSensor final : public Sensor {
   double bias_rad_s_;
 };
 
-template <class Options>
-BlockFactory<Sensor> make_gyroscope(const Element& element, Problems& problems, const DeviceSetup& setup) {
-  const auto options = read_options<Options>(element, problems);
-  double noise = 0.0, bias = 0.0;
-  if constexpr (requires { options.noise_level_rad_s; }) {
-    noise = options.noise_level_rad_s;
-    bias = options.bias_rad_s;
-  }
-  return [base = wheel_base_m(setup.kind), noise, bias](const BlockColumns&) {
-    return std::make_unique<GyroscopeSensor>(base, noise, bias);
-  };
-}
-
 // --- microphones ---
 
-template <int kPerMille>
 struct SoundNoise {
-  double noise_level = kPerMille * 1e-3;
+  double noise_level = 0.0;
+  static SoundNoise noisy() { return {.noise_level = 20 * 1e-3}; }
   void describe(hal::ParamVisitor& v) {
     v.number("noise_level", noise_level, hal::unit::none, {0.0, 1.0},
              "Background noise, 0 to this, on each microphone.");
@@ -111,8 +100,13 @@ struct SoundNoise {
 /// At most 1.
 class MicrophoneSensor final : public Sensor {
  public:
-  MicrophoneSensor(const Field& field, const hal::MicrophonesPart& part, double noise)
-      : ring_(field, part.mounts), noise_(noise) {}
+  using Port = hal::Microphones;
+  using Part = hal::MicrophonesPart;
+  using Errors = SoundNoise;
+  static constexpr std::string_view kField = "sound";
+
+  MicrophoneSensor(const DeviceSetup& setup, const Errors& errors, const BlockColumns&)
+      : ring_(*setup.fields->find(kField), setup.kind.part<Part>()->mounts), noise_(errors.noise_level) {}
 
   void sense(const DeviceContext& context, void* ports) noexcept override {
     ring_.sample(context, [&](std::size_t i, const double* values) {
@@ -132,22 +126,11 @@ class MicrophoneSensor final : public Sensor {
   double noise_;
 };
 
-template <class Options>
-BlockFactory<Sensor> make_microphones(const Element& element, Problems& problems, const DeviceSetup& setup) {
-  const auto options = read_options<Options>(element, problems);
-  double noise = 0.0;
-  if constexpr (requires { options.noise_level; }) noise = options.noise_level;
-  const Field* const field = setup.field("sound", element, problems);
-  return [field, &part = *setup.kind.part<hal::MicrophonesPart>(), noise](const BlockColumns&) {
-    return std::make_unique<MicrophoneSensor>(*field, part, noise);
-  };
-}
-
 // --- battery ---
 
-template <int kPerMille>
 struct ChargeNoise {
-  double noise_range = kPerMille * 1e-3;
+  double noise_range = 0.0;
+  static ChargeNoise noisy() { return {.noise_range = 10 * 1e-3}; }
   void describe(hal::ParamVisitor& v) {
     v.number("noise_range", noise_range, hal::unit::none, {0.0, 1.0}, "Uniform noise of +-this on the charge reading.");
   }
@@ -156,12 +139,19 @@ struct ChargeNoise {
 /// ARGoS' three discharge models: a part a tick, a part a metre and a radian moved, or both.
 class BatterySensor final : public Sensor {
  public:
-  BatterySensor(const BatteryConfig& config, const hal::RobotKind& kind, double noise, const BlockColumns& columns)
-      : config_(config),
-        noise_(noise),
-        full_V_(kind.part<hal::BatteryPart>()->full_V),
-        empty_V_(kind.part<hal::BatteryPart>()->empty_V),
-        wheel_base_m_(wheel_base_m(kind)),
+  using Port = hal::Battery;
+  using Part = hal::BatteryPart;
+  using Errors = ChargeNoise;
+  static void prepare(BlockFactory<Sensor>& factory, const DeviceSetup& setup, const Errors&) {
+    factory.columns = {keeps(ChargeState{setup.item->battery.start_charge})};
+  }
+
+  BatterySensor(const DeviceSetup& setup, const Errors& errors, const BlockColumns& columns)
+      : config_(setup.item->battery),
+        noise_(errors.noise_range),
+        full_V_(setup.kind.part<hal::BatteryPart>()->full_V),
+        empty_V_(setup.kind.part<hal::BatteryPart>()->empty_V),
+        wheel_base_m_(wheel_base_m(setup.kind)),
         charges_(columns.find<ChargeState>()) {
     by_time_ = config_.model != "motion";
     by_motion_ = config_.model != "time";
@@ -216,23 +206,11 @@ class BatterySensor final : public Sensor {
   bool by_motion_ = false;
 };
 
-template <class Options>
-BlockFactory<Sensor> make_battery(const Element& element, Problems& problems, const DeviceSetup& setup) {
-  const auto options = read_options<Options>(element, problems);
-  double noise = 0.0;
-  if constexpr (requires { options.noise_range; }) noise = options.noise_range;
-  // A copy: a group's item is another one after a changed setting, and blocks may be made after it.
-  const auto make = [config = setup.item.battery, &kind = setup.kind, noise](const BlockColumns& columns) {
-    return std::make_unique<BatterySensor>(config, kind, noise, columns);
-  };
-  return {make, {keeps(ChargeState{setup.item.battery.start_charge})}};
-}
-
 // --- clock ---
 
-template <int kMicroseconds>
 struct ClockNoise {
-  double jitter_s = kMicroseconds * 1e-6;
+  double jitter_s = 0.0;
+  static ClockNoise noisy() { return {.jitter_s = 1000 * 1e-6}; }
   void describe(hal::ParamVisitor& v) {
     v.number("jitter", jitter_s, hal::unit::ms, {0.0, 1.0},
              "Standard deviation of the time that is read; ticks stay exact.");
@@ -241,7 +219,10 @@ struct ClockNoise {
 
 class ClockSensor final : public Sensor {
  public:
-  explicit ClockSensor(double jitter_s) : jitter_s_(jitter_s) {}
+  using Port = hal::Clock;
+  using Errors = ClockNoise;
+
+  ClockSensor(const DeviceSetup&, const Errors& errors, const BlockColumns&) : jitter_s_(errors.jitter_s) {}
 
   void sense(const DeviceContext& context, void* ports) noexcept override {
     auto* clocks = static_cast<hal::Clock*>(ports);
@@ -264,45 +245,20 @@ class ClockSensor final : public Sensor {
   double jitter_s_;
 };
 
-bool always(const hal::RobotKind&) {
-  return true;
-}
-
-template <class Options>
-BlockFactory<Sensor> make_clock(const Element& element, Problems& problems, const DeviceSetup&) {
-  const auto options = read_options<Options>(element, problems);
-  double jitter_s = 0.0;
-  if constexpr (requires { options.jitter_s; }) jitter_s = options.jitter_s;
-  return [jitter_s](const BlockColumns&) { return std::make_unique<ClockSensor>(jitter_s); };
-}
-
 }  // namespace
 
 std::vector<DeviceType> body_device_types() {
-  return {
-      sensor_type("gyroscope", "default", "Turn rates of the body; noise and bias where asked for.",
-                  &has<hal::GyroscopePart>, &make_gyroscope<RateNoise<0>>, &describe_options<RateNoise<0>>),
-      sensor_type("gyroscope", "ideal", "Turn rates of the body.", &has<hal::GyroscopePart>, &make_gyroscope<NoOptions>,
-                  &describe_options<NoOptions>),
-      sensor_type("gyroscope", "noisy", "Turn rates of the body, with normal noise; bias where asked for.",
-                  &has<hal::GyroscopePart>, &make_gyroscope<RateNoise<20>>, &describe_options<RateNoise<20>>),
-      sensor_type("microphones", "default", "Sources around; noise where asked for.", &has<hal::MicrophonesPart>,
-                  &make_microphones<SoundNoise<0>>, &describe_options<SoundNoise<0>>),
-      sensor_type("microphones", "ideal", "Sources around.", &has<hal::MicrophonesPart>, &make_microphones<NoOptions>,
-                  &describe_options<NoOptions>),
-      sensor_type("microphones", "noisy", "Sources around and background noise.", &has<hal::MicrophonesPart>,
-                  &make_microphones<SoundNoise<20>>, &describe_options<SoundNoise<20>>),
-      sensor_type("battery", "default", "The robot's discharge model; noise where asked for.", &has<hal::BatteryPart>,
-                  &make_battery<ChargeNoise<0>>, &describe_options<ChargeNoise<0>>),
-      sensor_type("battery", "ideal", "The robot's discharge model.", &has<hal::BatteryPart>, &make_battery<NoOptions>,
-                  &describe_options<NoOptions>),
-      sensor_type("battery", "noisy", "The robot's discharge model, with noise.", &has<hal::BatteryPart>,
-                  &make_battery<ChargeNoise<10>>, &describe_options<ChargeNoise<10>>),
-      sensor_type("clock", "default", "The run's time; jitter where asked for.", &always, &make_clock<ClockNoise<0>>,
-                  &describe_options<ClockNoise<0>>),
-      sensor_type("clock", "ideal", "The run's time.", &always, &make_clock<NoOptions>, &describe_options<NoOptions>),
-      sensor_type("clock", "noisy", "The run's time, with jitter.", &always, &make_clock<ClockNoise<1000>>,
-                  &describe_options<ClockNoise<1000>>)};
+  std::vector<DeviceType> types;
+  add_levels<GyroscopeSensor>(types, "Turn rates of the body; noise and bias where asked for.",
+                              "Turn rates of the body.",
+                              "Turn rates of the body, with normal noise; bias where asked for.");
+  add_levels<MicrophoneSensor>(types, "Sources around; noise where asked for.", "Sources around.",
+                               "Sources around and background noise.");
+  add_levels<BatterySensor>(types, "The robot's discharge model; noise where asked for.",
+                            "The robot's discharge model.", "The robot's discharge model, with noise.");
+  add_levels<ClockSensor>(types, "The run's time; jitter where asked for.", "The run's time.",
+                          "The run's time, with jitter.");
+  return types;
 }
 
 }  // namespace tandem::core

@@ -7,10 +7,6 @@
 namespace tandem::core {
 namespace {
 
-struct NoOptions {
-  void describe(hal::ParamVisitor&) {}
-};
-
 class ButtonSensor final : public Sensor {
  public:
   explicit ButtonSensor(std::uint32_t count) : count_(count) {}

@@ -267,23 +267,23 @@ class Lookout {
   std::vector<Blocker> between_;
 };
 
+/// What the configuration of a camera says.
 struct CameraOptions {
-  std::string medium;
+  std::string medium = {};
   bool show_rays = false;
-  void describe(hal::ParamVisitor& v) {
+  double noise = 0.0;  ///< what a reading lacks in quality: in m, or pixels
+  double miss_prob = 0.0;
+  void describe_always(hal::ParamVisitor& v) {
     v.text("medium", medium, "Id of the LED medium: only its LEDs are seen. Empty: all are.");
     v.flag("show_rays", show_rays, "Draw the lines in a view; no effect on readings.");
   }
-};
-
-/// What a reading lacks in quality.
-struct Flaws {
-  double noise = 0.0;  ///< in m, or pixels
-  double miss_prob = 0.0;
+  void describe_miss(hal::ParamVisitor& v) {
+    v.number("miss_prob", miss_prob, hal::unit::none, {0.0, 1.0}, "Probability that a blob is missed.");
+  }
 };
 
 /// Whether the `number`th light that a robot sees in this tick is missed.
-bool missed(const Flaws& flaws, const DeviceContext& context, std::size_t row, Stream stream,
+bool missed(const CameraOptions& flaws, const DeviceContext& context, std::size_t row, Stream stream,
             std::uint32_t number) noexcept {
   if (flaws.miss_prob <= 0.0) return false;
   const std::uint32_t entity = context.stores.bodies.entity[row];
@@ -291,7 +291,7 @@ bool missed(const Flaws& flaws, const DeviceContext& context, std::size_t row, S
 }
 
 /// Two errors of the `number`th light.
-std::array<double, 2> errors(const Flaws& flaws, const DeviceContext& context, std::size_t row, Stream stream,
+std::array<double, 2> errors(const CameraOptions& flaws, const DeviceContext& context, std::size_t row, Stream stream,
                              std::uint32_t number) noexcept {
   if (flaws.noise <= 0.0) return {0.0, 0.0};
   const auto bits = draw(context.seed, context.stores.bodies.entity[row], stream, context.tick, number);
@@ -301,22 +301,28 @@ std::array<double, 2> errors(const Flaws& flaws, const DeviceContext& context, s
 
 // --- all around ---
 
-template <int kPerMille>
 struct OmniOptions : CameraOptions {
-  double noise_std_dev_m = kPerMille * 1e-3;
-  double miss_prob = kPerMille * 1e-3;
+  static OmniOptions noisy() { return {{.noise = 10 * 1e-3, .miss_prob = 10 * 1e-3}}; }
   void describe(hal::ParamVisitor& v) {
-    CameraOptions::describe(v);
-    v.number("noise_std_dev", noise_std_dev_m, hal::unit::m, hal::kNotNegative,
+    v.number("noise_std_dev", noise, hal::unit::m, hal::kNotNegative,
              "Standard deviation of a blob's apparent place, along x and along y.");
-    v.number("miss_prob", miss_prob, hal::unit::none, {0.0, 1.0}, "Probability that a blob is missed.");
+    describe_miss(v);
   }
 };
 
 /// Lights below it whose distance along the ground is within reach.
 class OmniSensor final : public Sensor {
  public:
-  OmniSensor(const DeviceSetup& setup, const Flaws& flaws, const BlockColumns& columns)
+  using Port = hal::OmnidirectionalCamera;
+  using Part = hal::OmniCameraPart;
+  using Errors = OmniOptions;
+  static constexpr std::string_view kMedium = LedMedium::kKind;
+  static void prepare(BlockFactory<Sensor>& factory, const DeviceSetup& setup, const Errors&) {
+    factory.listens = true;
+    factory.reach_m = omni_reach_m(setup.kind);
+  }
+
+  OmniSensor(const DeviceSetup& setup, const Errors& flaws, const BlockColumns& columns)
       : lookout_(RealSense::OmniCamera, setup, columns),
         height_m_(setup.kind.part<hal::OmniCameraPart>()->height_m),
         reach_m_(omni_reach_m(setup.kind)),
@@ -357,41 +363,33 @@ class OmniSensor final : public Sensor {
 
   Lookout lookout_;
   double height_m_, reach_m_;
-  Flaws flaws_;
+  Errors flaws_;
 };
-
-template <class Options>
-BlockFactory<Sensor> make_omni(const Element& element, Problems& problems, const DeviceSetup& setup) {
-  const auto options = read_options<Options>(element, problems);
-  Flaws flaws;
-  if constexpr (requires { options.miss_prob; }) flaws = {options.noise_std_dev_m, options.miss_prob};
-  const auto make = [setup, flaws](const BlockColumns& columns) {
-    return std::make_unique<OmniSensor>(setup, flaws, columns);
-  };
-  BlockFactory<Sensor> factory(make);
-  factory.listens = true;
-  factory.reach_m = omni_reach_m(setup.kind);
-  return factory;
-}
 
 // --- through a lens ---
 
-template <int kTenths>
 struct LensOptions : CameraOptions {
-  double noise_std_dev_px = kTenths * 0.1;
-  double miss_prob = kTenths * 1e-3;
+  static LensOptions noisy() { return {{.noise = 10 * 0.1, .miss_prob = 10 * 1e-3}}; }
   void describe(hal::ParamVisitor& v) {
-    CameraOptions::describe(v);
-    v.number("noise_std_dev", noise_std_dev_px, hal::unit::none, hal::kNotNegative,
+    v.number("noise_std_dev", noise, hal::unit::none, hal::kNotNegative,
              "Standard deviation of a blob's place in the image, in pixels to the right and downwards.");
-    v.number("miss_prob", miss_prob, hal::unit::none, {0.0, 1.0}, "Probability that a blob is missed.");
+    describe_miss(v);
   }
 };
 
 /// A pinhole camera. What it sees is nearer than its range and falls into its image.
 class LensSensor final : public Sensor {
  public:
-  LensSensor(const DeviceSetup& setup, const Flaws& flaws, const BlockColumns& columns)
+  using Port = hal::PerspectiveCamera;
+  using Part = hal::CameraPart;
+  using Errors = LensOptions;
+  static constexpr std::string_view kMedium = LedMedium::kKind;
+  static void prepare(BlockFactory<Sensor>& factory, const DeviceSetup& setup, const Errors&) {
+    factory.listens = true;
+    factory.reach_m = setup.kind.part<Part>()->range_m;
+  }
+
+  LensSensor(const DeviceSetup& setup, const Errors& flaws, const BlockColumns& columns)
       : lookout_(RealSense::LensCamera, setup, columns),
         heads_(columns.find<HeadState>()),
         camera_(*setup.kind.part<hal::CameraPart>()),
@@ -505,51 +503,24 @@ class LensSensor final : public Sensor {
   const HeadState* heads_;  // null: their controllers turn none
   hal::CameraPart camera_;
   bool in_head_;
-  Flaws flaws_;
+  Errors flaws_;
   double px_per_tangent_ = 1.0;
   Aim aim_;  // of a robot that looks along x, whose camera hangs in no head
   std::array<Blob, hal::PerspectiveCamera::kCapacity> blobs_{};  // nearest first, of one image
   std::size_t found_ = 0;
 };
 
-template <class Options>
-BlockFactory<Sensor> make_lens(const Element& element, Problems& problems, const DeviceSetup& setup) {
-  const auto options = read_options<Options>(element, problems);
-  Flaws flaws;
-  if constexpr (requires { options.miss_prob; }) flaws = {options.noise_std_dev_px, options.miss_prob};
-  const auto make = [setup, flaws](const BlockColumns& columns) {
-    return std::make_unique<LensSensor>(setup, flaws, columns);
-  };
-  BlockFactory<Sensor> factory(make);
-  factory.listens = true;
-  factory.reach_m = setup.kind.part<hal::CameraPart>()->range_m;
-  return factory;
-}
-
-template <class Options>
-DeviceType omni_type(std::string_view implementation, std::string_view summary) {
-  return in_medium(LedMedium::kKind,
-                   sensor_type(hal::OmnidirectionalCamera::kName, implementation, summary, &has<hal::OmniCameraPart>,
-                               &make_omni<Options>, &describe_options<Options>));
-}
-
-template <class Options>
-DeviceType lens_type(std::string_view implementation, std::string_view summary) {
-  return in_medium(LedMedium::kKind,
-                   sensor_type(hal::PerspectiveCamera::kName, implementation, summary, &has<hal::CameraPart>,
-                               &make_lens<Options>, &describe_options<Options>));
-}
-
 }  // namespace
 
 std::vector<DeviceType> camera_types() {
-  return {omni_type<OmniOptions<0>>("default", "Lights in reach and in sight; noise where asked for."),
-          omni_type<CameraOptions>("ideal", "Lights in reach and in sight."),
-          omni_type<OmniOptions<10>>("noisy", "Lights in reach and in sight, some missed, places uncertain."),
-          omni_type<OmniOptions<0>>("rot_z_only", "ARGoS' name for the default."),
-          lens_type<LensOptions<0>>("default", "Lights in the image and in sight; noise where asked for."),
-          lens_type<CameraOptions>("ideal", "Lights in the image and in sight."),
-          lens_type<LensOptions<10>>("noisy", "Lights in the image and in sight, some missed, places uncertain.")};
+  std::vector<DeviceType> types;
+  add_levels<OmniSensor>(types, "Lights in reach and in sight; noise where asked for.", "Lights in reach and in sight.",
+                         "Lights in reach and in sight, some missed, places uncertain.");
+  types.push_back(device_type<OmniSensor, Level::Default>("rot_z_only", "ARGoS' name for the default."));
+  add_levels<LensSensor>(types, "Lights in the image and in sight; noise where asked for.",
+                         "Lights in the image and in sight.",
+                         "Lights in the image and in sight, some missed, places uncertain.");
+  return types;
 }
 
 }  // namespace tandem::core

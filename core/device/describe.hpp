@@ -1,5 +1,9 @@
 // Shared by the device files: reading described options, filling in a DeviceType, stamps, and who obeys.
 #pragma once
+#include <memory>
+#include <type_traits>
+#include <vector>
+
 #include "core/device/device.hpp"
 #include "core/random/random.hpp"
 
@@ -15,6 +19,10 @@ void describe_options(hal::ParamVisitor& visitor) {
   Options options;
   options.describe(visitor);
 }
+
+struct NoOptions {
+  void describe(hal::ParamVisitor&) {}
+};
 
 /// Whether robots of a kind are built with the part. For DeviceType::fits.
 template <class Part>
@@ -40,6 +48,66 @@ inline DeviceType actuator_type(std::string_view device, std::string_view implem
 inline DeviceType in_medium(std::string_view kind, DeviceType type) {
   type.medium = kind;
   return type;
+}
+
+/// How exact an implementation of a device is: "default" has the errors that files ask for, "ideal" none, "noisy" some.
+enum class Level { Default, Ideal, Noisy };
+
+/// Its options. `Errors` describes them, gives those of a noisy one by `noisy()`, and may have `describe_always` for
+/// what all three take.
+template <class Errors, Level kLevel>
+struct LevelOptions : Errors {
+  LevelOptions() : Errors(kLevel == Level::Noisy ? Errors::noisy() : Errors{}) {}
+  void describe(hal::ParamVisitor& v) {
+    if constexpr (requires { Errors::describe_always(v); }) Errors::describe_always(v);
+    if constexpr (kLevel != Level::Ideal) Errors::describe(v);
+  }
+};
+
+/// A device of the class `Device`, a Sensor or an Actuator, which says what it is by its types: `Port`, `Errors`, the
+/// `Part` that robots need for it (else all have it), the column `Kept` that it keeps, `kField`, which the world
+/// must have, and `kMedium`, the kind of the medium that it works in. It is constructed of (setup, errors, columns of
+/// the block); `prepare`, if there is such, completes the factory.
+template <class Device, Level kLevel>
+DeviceType device_type(std::string_view implementation, std::string_view summary) {
+  using Errors = typename Device::Errors;
+  using Options = LevelOptions<Errors, kLevel>;
+  constexpr bool kSenses = std::is_base_of_v<Sensor, Device>;
+  using Factory = BlockFactory<std::conditional_t<kSenses, Sensor, Actuator>>;
+  constexpr auto make = [](const Element& element, Problems& problems, const DeviceSetup& setup) {
+    const Errors errors = read_options<Options>(element, problems);
+    if constexpr (requires { Device::kField; }) (void)setup.field(Device::kField, element, problems);
+    Factory factory(
+        [setup, errors](const BlockColumns& columns) { return std::make_unique<Device>(setup, errors, columns); });
+    if constexpr (requires { typename Device::Kept; }) factory.columns = {keeps<typename Device::Kept>()};
+    if constexpr (requires { Device::prepare(factory, setup, errors); }) Device::prepare(factory, setup, errors);
+    return factory;
+  };
+  DeviceType type;
+  type.device = Device::Port::kName;
+  type.implementation = implementation;
+  type.summary = summary;
+  type.fits = [](const hal::RobotKind& kind) {
+    if constexpr (requires { typename Device::Part; }) return has<typename Device::Part>(kind);
+    return true;
+  };
+  type.describe = &describe_options<Options>;
+  if constexpr (kSenses)
+    type.make_sensor = make;
+  else
+    type.make_actuator = make;
+  if constexpr (!kSenses) type.role = hal::Role::Actuator;
+  if constexpr (requires { Device::kMedium; }) type.medium = Device::kMedium;
+  return type;
+}
+
+/// Its three implementations.
+template <class Device>
+void add_levels(std::vector<DeviceType>& types, std::string_view usual, std::string_view ideal,
+                std::string_view noisy) {
+  types.push_back(device_type<Device, Level::Default>("default", usual));
+  types.push_back(device_type<Device, Level::Ideal>("ideal", ideal));
+  types.push_back(device_type<Device, Level::Noisy>("noisy", noisy));
 }
 
 /// Whether robot `i` of the block does what its controller says.

@@ -66,7 +66,7 @@ class Actuator {
 /// Input of a device's factory.
 struct DeviceSetup {
   const hal::RobotKind& kind;
-  const RobotItem& item;
+  std::shared_ptr<const RobotItem> item;  ///< a changed setting gives the group another one
   double tick_s = 0.1;
   const Fields* fields = nullptr;  ///< of the world; they live as long
   Medium* medium = nullptr;        ///< that the device works in, if any; lives as long as the world

@@ -15,13 +15,9 @@ using hal::ScannerMode;
 
 // --- actuator ---
 
-struct IdealTurning {
-  void describe(hal::ParamVisitor&) {}
-};
-
-template <int kPerMille>
 struct TurnErrors {
-  double noise_std_dev = kPerMille * 1e-3;
+  double noise_std_dev = 0.0;
+  static TurnErrors noisy() { return {.noise_std_dev = 50 * 1e-3}; }
   void describe(hal::ParamVisitor& v) {
     v.number("noise_std_dev", noise_std_dev, hal::unit::none, {0.0, 1.0},
              "Standard deviation of the turn rate's relative error, drawn every tick.");
@@ -30,8 +26,15 @@ struct TurnErrors {
 
 class ScannerActuator final : public Actuator {
  public:
-  ScannerActuator(double fastest_rad_s, double noise, const BlockColumns& columns)
-      : fastest_rad_s_(fastest_rad_s), noise_(noise), scanners_(columns.find<ScannerState>()) {}
+  using Port = hal::ScannerDrive;
+  using Part = hal::ScannerPart;
+  using Errors = TurnErrors;
+  using Kept = ScannerState;
+
+  ScannerActuator(const DeviceSetup& setup, const Errors& errors, const BlockColumns& columns)
+      : fastest_rad_s_(setup.kind.part<Part>()->turn_rad_s),
+        noise_(errors.noise_std_dev),
+        scanners_(columns.find<ScannerState>()) {}
 
   void act(const DeviceContext& context, SpaceStores& stores, const void* ports) noexcept override {
     const auto* drives = static_cast<const hal::ScannerDrive*>(ports);
@@ -66,37 +69,16 @@ class ScannerActuator final : public Actuator {
   ScannerState* scanners_;
 };
 
-template <class Options>
-BlockFactory<Actuator> make_turning(const Element& element, Problems& problems, const DeviceSetup& setup) {
-  const auto options = read_options<Options>(element, problems);
-  double noise = 0.0;
-  if constexpr (requires { options.noise_std_dev; }) noise = options.noise_std_dev;
-  const auto make = [fastest = setup.kind.part<hal::ScannerPart>()->turn_rad_s, noise](const BlockColumns& columns) {
-    return std::make_unique<ScannerActuator>(fastest, noise, columns);
-  };
-  return {make, {keeps<ScannerState>()}};
-}
-
-template <class Options>
-DeviceType turning_type(std::string_view implementation, std::string_view summary) {
-  return actuator_type(hal::ScannerDrive::kName, implementation, summary, &has<hal::ScannerPart>,
-                       &make_turning<Options>, &describe_options<Options>);
-}
-
 // --- sensor ---
 
-struct IdealScan {
+struct ScanNoise {
   bool show_rays = false;
-  void describe(hal::ParamVisitor& v) {
+  double noise_range_m = 0.0;
+  static ScanNoise noisy() { return {.noise_range_m = 100 * 1e-4}; }
+  void describe_always(hal::ParamVisitor& v) {
     v.flag("show_rays", show_rays, "Draw the rays in a view; no effect on readings.");
   }
-};
-
-template <int kTenthsOfMm>
-struct ScanNoise : IdealScan {
-  double noise_range_m = kTenthsOfMm * 1e-4;
   void describe(hal::ParamVisitor& v) {
-    IdealScan::describe(v);
     v.number("noise_range", noise_range_m, hal::unit::cm, hal::kNotNegative,
              "Uniform noise of +-this on each distance.");
   }
@@ -106,10 +88,15 @@ struct ScanNoise : IdealScan {
 /// robot itself is where it is at the tick's end.
 class ScannerSensor final : public Sensor {
  public:
-  ScannerSensor(const DeviceSetup& setup, double noise_m, const BlockColumns& columns)
+  using Port = DistanceScanner;
+  using Part = hal::ScannerPart;
+  using Errors = ScanNoise;
+  using Kept = ScannerState;
+
+  ScannerSensor(const DeviceSetup& setup, const Errors& errors, const BlockColumns& columns)
       : part_(*setup.kind.part<hal::ScannerPart>()),
         scanners_(columns.find<ScannerState>()),
-        noise_m_(static_cast<float>(noise_m)),
+        noise_m_(static_cast<float>(errors.noise_range_m)),
         samples_(static_cast<std::uint32_t>(
             std::clamp<double>(std::round(part_.rate_hz * setup.tick_s), 1.0, DistanceScanner::kSamples))) {}
 
@@ -177,33 +164,16 @@ class ScannerSensor final : public Sensor {
 
 static_assert(RayRing::kCapacity >= DistanceScanner::kHeads * DistanceScanner::kSamples);
 
-template <class Options>
-BlockFactory<Sensor> make_scanner(const Element& element, Problems& problems, const DeviceSetup& setup) {
-  const auto options = read_options<Options>(element, problems);
-  double noise_m = 0.0;
-  if constexpr (requires { options.noise_range_m; }) noise_m = options.noise_range_m;
-  const auto make = [setup, noise_m](const BlockColumns& columns) {
-    return std::make_unique<ScannerSensor>(setup, noise_m, columns);
-  };
-  return {make, {keeps<ScannerState>()}};
-}
-
-template <class Options>
-DeviceType scanner_type(std::string_view implementation, std::string_view summary) {
-  return sensor_type(DistanceScanner::kName, implementation, summary, &has<hal::ScannerPart>, &make_scanner<Options>,
-                     &describe_options<Options>);
-}
-
 }  // namespace
 
 std::vector<DeviceType> scanner_types() {
-  return {turning_type<TurnErrors<0>>("default", "Turns as told; errors where asked for."),
-          turning_type<IdealTurning>("ideal", "Turns as told."),
-          turning_type<TurnErrors<50>>("noisy", "Turns with an error of its speed every tick."),
-          scanner_type<ScanNoise<0>>("default", "Exact distances; noise where asked for."),
-          scanner_type<IdealScan>("ideal", "Exact distances to bodies, boxes and cylinders."),
-          scanner_type<ScanNoise<100>>("noisy", "Distances with uniform noise."),
-          scanner_type<ScanNoise<0>>("rot_z_only", "ARGoS' name for the default.")};
+  std::vector<DeviceType> types;
+  add_levels<ScannerActuator>(types, "Turns as told; errors where asked for.", "Turns as told.",
+                              "Turns with an error of its speed every tick.");
+  add_levels<ScannerSensor>(types, "Exact distances; noise where asked for.",
+                            "Exact distances to bodies, boxes and cylinders.", "Distances with uniform noise.");
+  types.push_back(device_type<ScannerSensor, Level::Default>("rot_z_only", "ARGoS' name for the default."));
+  return types;
 }
 
 }  // namespace tandem::core

@@ -11,40 +11,36 @@ namespace {
 
 // --- actuators ---
 
-struct IdealFlight {
-  void describe(hal::ParamVisitor&) {}
-};
-
-template <int kPerMille>
 struct TargetErrors {
-  double noise_std_dev = kPerMille * 1e-3;
+  double noise_std_dev = 0.0;
+  static TargetErrors noisy() { return {.noise_std_dev = 10 * 1e-3}; }
   void describe(hal::ParamVisitor& v) {
     v.number("noise_std_dev", noise_std_dev, hal::unit::m, hal::kNotNegative,
              "Standard deviation of the target on each axis, drawn every tick.");
   }
 };
 
-template <int kPerMille>
 struct VelocityErrors {
-  double noise_std_dev = kPerMille * 1e-3;
+  double noise_std_dev = 0.0;
+  static VelocityErrors noisy() { return {.noise_std_dev = 20 * 1e-3}; }
   void describe(hal::ParamVisitor& v) {
     v.number("noise_std_dev", noise_std_dev, hal::unit::m_s, hal::kNotNegative,
              "Standard deviation of the velocity on each axis, drawn every tick.");
   }
 };
 
-template <int kPerMille>
 struct AttitudeErrors {
-  double noise_std_dev = kPerMille * 1e-3;
+  double noise_std_dev = 0.0;
+  static AttitudeErrors noisy() { return {.noise_std_dev = 10 * 1e-3}; }
   void describe(hal::ParamVisitor& v) {
     v.number("noise_std_dev", noise_std_dev, hal::unit::rad, hal::kNotNegative,
              "Standard deviation of roll and pitch, and of the thrust in parts of the weight, drawn every tick.");
   }
 };
 
-template <int kPerMille>
 struct TaskErrors {
-  double noise_std_dev = kPerMille * 1e-3;
+  double noise_std_dev = 0.0;
+  static TaskErrors noisy() { return {.noise_std_dev = 50 * 1e-3}; }
   void describe(hal::ParamVisitor& v) {
     v.number("noise_std_dev", noise_std_dev, hal::unit::none, {0.0, 0.3},
              "Standard deviation of the relative error of the speed to climb or sink with, drawn every tick.");
@@ -60,10 +56,27 @@ std::array<double, 3> errors(const DeviceContext& context, std::size_t row, Stre
 
 /// Each flight actuator notes what its port asks for; which of them counts is seen once all have
 /// (core/device/piloting).
-class PositionActuator final : public Actuator {
+template <class OfPort, class OfErrors>
+class FlightActuator : public Actuator {
  public:
-  PositionActuator(double noise_m, const BlockColumns& columns)
-      : noise_m_(noise_m), setpoints_(columns.find<FlightSetpoint>()) {}
+  using Port = OfPort;
+  using Part = hal::Quadrotor;
+  using Errors = OfErrors;
+
+  FlightActuator(const DeviceSetup&, const Errors& errors, const BlockColumns& columns)
+      : noise_(errors.noise_std_dev), setpoints_(columns.find<FlightSetpoint>()) {}
+  static void prepare(BlockFactory<Actuator>& factory, const DeviceSetup&, const Errors&) {
+    factory.columns = {keeps<FlightSetpoint>(), keeps<PilotState>()};
+  }
+
+ protected:
+  double noise_;
+  FlightSetpoint* setpoints_;
+};
+
+class PositionActuator final : public FlightActuator<hal::QuadrotorPosition, TargetErrors> {
+ public:
+  using FlightActuator::FlightActuator;
 
   void act(const DeviceContext& context, SpaceStores& /*stores*/, const void* ports) noexcept override {
     const auto* targets = static_cast<const hal::QuadrotorPosition*>(ports);
@@ -73,21 +86,16 @@ class PositionActuator final : public Actuator {
       setpoint.to_place = !targets[i].hold;
       setpoint.target_m = targets[i].target;
       setpoint.heading_rad = targets[i].yaw_rad;
-      if (noise_m_ == 0.0 || !setpoint.to_place) continue;
-      const auto error = errors(context, row, Stream::FlightNoise, noise_m_);
+      if (noise_ == 0.0 || !setpoint.to_place) continue;
+      const auto error = errors(context, row, Stream::FlightNoise, noise_);
       for (std::size_t k = 0; k < 3; ++k) setpoint.target_m[k] += error[k];
     }
   }
-
- private:
-  double noise_m_;
-  FlightSetpoint* setpoints_;
 };
 
-class SpeedActuator final : public Actuator {
+class SpeedActuator final : public FlightActuator<hal::QuadrotorSpeed, VelocityErrors> {
  public:
-  SpeedActuator(double noise_m_s, const BlockColumns& columns)
-      : noise_m_s_(noise_m_s), setpoints_(columns.find<FlightSetpoint>()) {}
+  using FlightActuator::FlightActuator;
 
   void act(const DeviceContext& context, SpaceStores& /*stores*/, const void* ports) noexcept override {
     const auto* speeds = static_cast<const hal::QuadrotorSpeed*>(ports);
@@ -96,21 +104,16 @@ class SpeedActuator final : public Actuator {
       FlightSetpoint& setpoint = setpoints_[i];
       setpoint.velocity_m_s = speeds[i].velocity;
       setpoint.turn_rad_s = speeds[i].yaw_rad_s;
-      if (noise_m_s_ == 0.0) continue;
-      const auto error = errors(context, row, Stream::FlightNoise, noise_m_s_);
+      if (noise_ == 0.0) continue;
+      const auto error = errors(context, row, Stream::FlightNoise, noise_);
       for (std::size_t k = 0; k < 3; ++k) setpoint.velocity_m_s[k] += error[k];
     }
   }
-
- private:
-  double noise_m_s_;
-  FlightSetpoint* setpoints_;
 };
 
-class AttitudeActuator final : public Actuator {
+class AttitudeActuator final : public FlightActuator<hal::QuadrotorAttitude, AttitudeErrors> {
  public:
-  AttitudeActuator(double noise, const BlockColumns& columns)
-      : noise_(noise), setpoints_(columns.find<FlightSetpoint>()) {}
+  using FlightActuator::FlightActuator;
 
   void act(const DeviceContext& context, SpaceStores& /*stores*/, const void* ports) noexcept override {
     const auto* attitudes = static_cast<const hal::QuadrotorAttitude*>(ports);
@@ -125,15 +128,11 @@ class AttitudeActuator final : public Actuator {
       setpoint.thrust = std::max(0.0, setpoint.thrust + error[2]);
     }
   }
-
- private:
-  double noise_;
-  FlightSetpoint* setpoints_;
 };
 
-class TaskActuator final : public Actuator {
+class TaskActuator final : public FlightActuator<hal::FlightTask, TaskErrors> {
  public:
-  TaskActuator(double noise, const BlockColumns& columns) : noise_(noise), setpoints_(columns.find<FlightSetpoint>()) {}
+  using FlightActuator::FlightActuator;
 
   void act(const DeviceContext& context, SpaceStores& /*stores*/, const void* ports) noexcept override {
     const auto* tasks = static_cast<const hal::FlightTask*>(ports);
@@ -148,39 +147,16 @@ class TaskActuator final : public Actuator {
       setpoint.speed_m_s *= std::max(0.1, 1.0 + errors(context, row, Stream::TaskNoise, noise_)[0]);
     }
   }
-
- private:
-  double noise_;
-  FlightSetpoint* setpoints_;
 };
-
-template <class Device, class Options>
-BlockFactory<Actuator> make_flight(const Element& element, Problems& problems, const DeviceSetup&) {
-  const auto options = read_options<Options>(element, problems);
-  double noise = 0.0;
-  if constexpr (requires { options.noise_std_dev; }) noise = options.noise_std_dev;
-  const auto make = [noise](const BlockColumns& columns) { return std::make_unique<Device>(noise, columns); };
-  return {make, {keeps<FlightSetpoint>(), keeps<PilotState>()}};
-}
-
-template <class Device, class Options>
-DeviceType flight_type(std::string_view device, std::string_view implementation, std::string_view summary) {
-  return actuator_type(device, implementation, summary, &has<hal::Quadrotor>, &make_flight<Device, Options>,
-                       &describe_options<Options>);
-}
 
 // --- positioning ---
 
-struct IdealPlace {
-  void describe(hal::ParamVisitor&) {}
-};
-
 /// ARGoS' three ranges. Orientation: the angle and each part of the axis that the body is turned about.
-template <int kPerMille>
 struct PlaceErrors {
-  double pos_noise_m = kPerMille * 1e-3;
-  double angle_noise_rad = kPerMille * 1e-3;
+  double pos_noise_m = 0.0;
+  double angle_noise_rad = 0.0;
   double axis_noise = 0.0;
+  static PlaceErrors noisy() { return {.pos_noise_m = 10 * 1e-3, .angle_noise_rad = 10 * 1e-3}; }
   void describe(hal::ParamVisitor& v) {
     v.number("pos_noise_range", pos_noise_m, hal::unit::m, hal::kNotNegative,
              "Uniform noise of +-this on each coordinate.");
@@ -193,7 +169,10 @@ struct PlaceErrors {
 
 class PositioningSensor final : public Sensor {
  public:
-  explicit PositioningSensor(const PlaceErrors<0>& errors) : errors_(errors) {}
+  using Port = hal::Positioning;
+  using Errors = PlaceErrors;
+
+  PositioningSensor(const DeviceSetup&, const Errors& errors, const BlockColumns&) : errors_(errors) {}
 
   void sense(const DeviceContext& context, void* ports) noexcept override {
     auto* places = static_cast<hal::Positioning*>(ports);
@@ -234,53 +213,25 @@ class PositioningSensor final : public Sensor {
     q = {std::cos(0.5 * angle), part * axis[0], part * axis[1], part * axis[2]};
   }
 
-  PlaceErrors<0> errors_;
+  PlaceErrors errors_;
 };
-
-template <class Options>
-BlockFactory<Sensor> make_positioning(const Element& element, Problems& problems, const DeviceSetup&) {
-  const auto options = read_options<Options>(element, problems);
-  PlaceErrors<0> errors;
-  if constexpr (requires { options.pos_noise_m; })
-    errors = {options.pos_noise_m, options.angle_noise_rad, options.axis_noise};
-  return [errors](const BlockColumns&) { return std::make_unique<PositioningSensor>(errors); };
-}
-
-template <class Options>
-DeviceType positioning_type(std::string_view implementation, std::string_view summary) {
-  return sensor_type(
-      hal::Positioning::kName, implementation, summary, [](const hal::RobotKind&) { return true; },
-      &make_positioning<Options>, &describe_options<Options>);
-}
 
 }  // namespace
 
 std::vector<DeviceType> flight_types() {
-  constexpr std::string_view kPosition = hal::QuadrotorPosition::kName;
-  constexpr std::string_view kSpeed = hal::QuadrotorSpeed::kName;
-  constexpr std::string_view kAttitude = hal::QuadrotorAttitude::kName;
-  constexpr std::string_view kTask = hal::FlightTask::kName;
-  using Position = PositionActuator;
-  using Speed = SpeedActuator;
-  using Attitude = AttitudeActuator;
-  using Task = TaskActuator;
-  return {flight_type<Position, TargetErrors<0>>(kPosition, "default", "Flies to a place; noise where asked for."),
-          flight_type<Position, IdealFlight>(kPosition, "ideal", "Flies to a place."),
-          flight_type<Position, TargetErrors<10>>(kPosition, "noisy", "Flies to a place that wanders."),
-          flight_type<Speed, VelocityErrors<0>>(kSpeed, "default", "Flies at a velocity; noise where asked for."),
-          flight_type<Speed, IdealFlight>(kSpeed, "ideal", "Flies at a velocity."),
-          flight_type<Speed, VelocityErrors<20>>(kSpeed, "noisy", "Flies at a velocity, with an error every tick."),
-          flight_type<Attitude, AttitudeErrors<0>>(kAttitude, "default", "Leans as told; noise where asked for."),
-          flight_type<Attitude, IdealFlight>(kAttitude, "ideal", "Leans as told."),
-          flight_type<Attitude, AttitudeErrors<10>>(kAttitude, "noisy", "Leans with an error every tick."),
-          flight_type<Task, TaskErrors<0>>(kTask, "default",
-                                           "Takes off, lands, holds on to the ceiling; noise where "
-                                           "asked for."),
-          flight_type<Task, IdealFlight>(kTask, "ideal", "Takes off, lands, holds on to the ceiling."),
-          flight_type<Task, TaskErrors<50>>(kTask, "noisy", "The same, with an error of its speed every tick."),
-          positioning_type<PlaceErrors<0>>("default", "Place and orientation; noise where asked for."),
-          positioning_type<IdealPlace>("ideal", "Place and orientation."),
-          positioning_type<PlaceErrors<10>>("noisy", "Place and orientation, with uniform noise.")};
+  std::vector<DeviceType> types;
+  add_levels<PositionActuator>(types, "Flies to a place; noise where asked for.", "Flies to a place.",
+                               "Flies to a place that wanders.");
+  add_levels<SpeedActuator>(types, "Flies at a velocity; noise where asked for.", "Flies at a velocity.",
+                            "Flies at a velocity, with an error every tick.");
+  add_levels<AttitudeActuator>(types, "Leans as told; noise where asked for.", "Leans as told.",
+                               "Leans with an error every tick.");
+  add_levels<TaskActuator>(types, "Takes off, lands, holds on to the ceiling; noise where asked for.",
+                           "Takes off, lands, holds on to the ceiling.",
+                           "The same, with an error of its speed every tick.");
+  add_levels<PositioningSensor>(types, "Place and orientation; noise where asked for.", "Place and orientation.",
+                                "Place and orientation, with uniform noise.");
+  return types;
 }
 
 }  // namespace tandem::core

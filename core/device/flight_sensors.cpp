@@ -8,15 +8,11 @@
 namespace tandem::core {
 namespace {
 
-struct NoOptions {
-  void describe(hal::ParamVisitor&) {}
-};
-
 // --- flight state ---
 
-template <int kPerMille>
 struct VelocityNoise {
-  double noise_std_dev = kPerMille * 1e-3;
+  double noise_std_dev = 0.0;
+  static VelocityNoise noisy() { return {.noise_std_dev = 20 * 1e-3}; }
   void describe(hal::ParamVisitor& v) {
     v.number("noise_std_dev", noise_std_dev, hal::unit::m_s, hal::kNotNegative,
              "Standard deviation of the velocity on each axis, and of the turn rate in rad/s.");
@@ -25,8 +21,13 @@ struct VelocityNoise {
 
 class FlightStateSensor final : public Sensor {
  public:
-  FlightStateSensor(double noise_m_s, const BlockColumns& columns)
-      : noise_m_s_(noise_m_s), pilots_(columns.find<PilotState>()) {}
+  using Port = hal::FlightState;
+  using Part = hal::Quadrotor;
+  using Errors = VelocityNoise;
+  using Kept = PilotState;
+
+  FlightStateSensor(const DeviceSetup&, const Errors& errors, const BlockColumns& columns)
+      : noise_m_s_(errors.noise_std_dev), pilots_(columns.find<PilotState>()) {}
 
   void sense(const DeviceContext& context, void* ports) noexcept override {
     auto* states = static_cast<hal::FlightState*>(ports);
@@ -55,28 +56,11 @@ class FlightStateSensor final : public Sensor {
   const PilotState* pilots_;
 };
 
-template <class Options>
-BlockFactory<Sensor> make_state(const Element& element, Problems& problems, const DeviceSetup&) {
-  const auto options = read_options<Options>(element, problems);
-  double noise = 0.0;
-  if constexpr (requires { options.noise_std_dev; }) noise = options.noise_std_dev;
-  const auto make = [noise](const BlockColumns& columns) {
-    return std::make_unique<FlightStateSensor>(noise, columns);
-  };
-  return {make, {keeps<PilotState>()}};
-}
-
-template <class Options>
-DeviceType state_type(std::string_view implementation, std::string_view summary) {
-  return sensor_type(hal::FlightState::kName, implementation, summary, &has<hal::Quadrotor>, &make_state<Options>,
-                     &describe_options<Options>);
-}
-
 // --- altimeter ---
 
-template <int kPerMille>
 struct EchoNoise {
-  double noise_std_dev_m = kPerMille * 1e-3;
+  double noise_std_dev_m = 0.0;
+  static EchoNoise noisy() { return {.noise_std_dev_m = 10 * 1e-3}; }
   void describe(hal::ParamVisitor& v) {
     v.number("noise_std_dev", noise_std_dev_m, hal::unit::m, hal::kNotNegative,
              "Standard deviation of each distance; none becomes negative.");
@@ -85,7 +69,12 @@ struct EchoNoise {
 
 class AltimeterSensor final : public Sensor {
  public:
-  AltimeterSensor(double farthest_m, double noise_m) : farthest_m_(farthest_m), noise_m_(noise_m) {}
+  using Port = hal::Altimeter;
+  using Part = hal::AltimeterPart;
+  using Errors = EchoNoise;
+
+  AltimeterSensor(const DeviceSetup& setup, const Errors& errors, const BlockColumns&)
+      : farthest_m_(setup.kind.part<Part>()->range_m), noise_m_(errors.noise_std_dev_m) {}
 
   void sense(const DeviceContext& context, void* ports) noexcept override {
     auto* altimeters = static_cast<hal::Altimeter*>(ports);
@@ -115,31 +104,15 @@ class AltimeterSensor final : public Sensor {
   double noise_m_;
 };
 
-template <class Options>
-BlockFactory<Sensor> make_altimeter(const Element& element, Problems& problems, const DeviceSetup& setup) {
-  const auto options = read_options<Options>(element, problems);
-  double noise = 0.0;
-  if constexpr (requires { options.noise_std_dev_m; }) noise = options.noise_std_dev_m;
-  return [farthest = setup.kind.part<hal::AltimeterPart>()->range_m, noise](const BlockColumns&) {
-    return std::make_unique<AltimeterSensor>(farthest, noise);
-  };
-}
-
-template <class Options>
-DeviceType altimeter_type(std::string_view implementation, std::string_view summary) {
-  return sensor_type(hal::Altimeter::kName, implementation, summary, &has<hal::AltimeterPart>, &make_altimeter<Options>,
-                     &describe_options<Options>);
-}
-
 }  // namespace
 
 std::vector<DeviceType> flight_sensor_types() {
-  return {state_type<VelocityNoise<0>>("default", "Phase, fail-safe and velocity; noise where asked for."),
-          state_type<NoOptions>("ideal", "Phase, fail-safe and velocity."),
-          state_type<VelocityNoise<20>>("noisy", "Phase, fail-safe and velocity, with noise."),
-          altimeter_type<EchoNoise<0>>("default", "Distances straight down and up; noise where asked for."),
-          altimeter_type<NoOptions>("ideal", "Distances straight down and up."),
-          altimeter_type<EchoNoise<10>>("noisy", "Distances straight down and up, with noise.")};
+  std::vector<DeviceType> types;
+  add_levels<FlightStateSensor>(types, "Phase, fail-safe and velocity; noise where asked for.",
+                                "Phase, fail-safe and velocity.", "Phase, fail-safe and velocity, with noise.");
+  add_levels<AltimeterSensor>(types, "Distances straight down and up; noise where asked for.",
+                              "Distances straight down and up.", "Distances straight down and up, with noise.");
+  return types;
 }
 
 }  // namespace tandem::core

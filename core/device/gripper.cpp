@@ -10,13 +10,9 @@ namespace {
 
 // --- actuator ---
 
-struct IdealGripping {
-  void describe(hal::ParamVisitor&) {}
-};
-
-template <int kPerMille>
 struct Gripping {
-  double failure_prob = kPerMille * 1e-3;
+  double failure_prob = 0.0;
+  static Gripping noisy() { return {.failure_prob = 100 * 1e-3}; }
   void describe(hal::ParamVisitor& v) {
     v.number("failure_prob", failure_prob, hal::unit::none, {0.0, 1.0},
              "Probability, in each tick, that open claws fail to hold what is before them.");
@@ -25,8 +21,13 @@ struct Gripping {
 
 class GripperActuator final : public Actuator {
  public:
-  GripperActuator(double failure_prob, const BlockColumns& columns)
-      : failure_prob_(failure_prob), grips_(columns.find<GripState>()) {}
+  using Port = hal::GripperDrive;
+  using Part = hal::GripperPart;
+  using Errors = Gripping;
+  using Kept = GripState;
+
+  GripperActuator(const DeviceSetup&, const Errors& errors, const BlockColumns& columns)
+      : failure_prob_(errors.failure_prob), grips_(columns.find<GripState>()) {}
 
   void act(const DeviceContext& context, SpaceStores& stores, const void* ports) noexcept override {
     const auto* drives = static_cast<const hal::GripperDrive*>(ports);
@@ -49,34 +50,11 @@ class GripperActuator final : public Actuator {
   GripState* grips_;
 };
 
-template <class Options>
-BlockFactory<Actuator> make_gripping(const Element& element, Problems& problems, const DeviceSetup&) {
-  const auto options = read_options<Options>(element, problems);
-  double failure_prob = 0.0;
-  if constexpr (requires { options.failure_prob; }) failure_prob = options.failure_prob;
-  const auto make = [failure_prob](const BlockColumns& columns) {
-    return std::make_unique<GripperActuator>(failure_prob, columns);
-  };
-  return {make, {keeps<GripState>()}};
-}
-
-template <class Options>
-DeviceType gripping_type(std::string_view implementation, std::string_view summary) {
-  DeviceType type = actuator_type(hal::GripperDrive::kName, implementation, summary, &has<hal::GripperPart>,
-                                  &make_gripping<Options>, &describe_options<Options>);
-  type.joints = kJointsOfGrips;
-  return type;
-}
-
 // --- sensor ---
 
-struct IdealAperture {
-  void describe(hal::ParamVisitor&) {}
-};
-
-template <int kPerMille>
 struct ApertureNoise {
-  double noise_range_rad = kPerMille * 1e-3;
+  double noise_range_rad = 0.0;
+  static ApertureNoise noisy() { return {.noise_range_rad = 20 * 1e-3}; }
   void describe(hal::ParamVisitor& v) {
     v.number("noise_range", noise_range_rad, hal::unit::rad, hal::kNotNegative,
              "Uniform noise of +-this on the aperture.");
@@ -85,8 +63,13 @@ struct ApertureNoise {
 
 class GripperSensor final : public Sensor {
  public:
-  GripperSensor(double noise_rad, const BlockColumns& columns)
-      : noise_rad_(noise_rad), grips_(columns.find<GripState>()) {}
+  using Port = hal::Gripper;
+  using Part = hal::GripperPart;
+  using Errors = ApertureNoise;
+  using Kept = GripState;
+
+  GripperSensor(const DeviceSetup&, const Errors& errors, const BlockColumns& columns)
+      : noise_rad_(errors.noise_range_rad), grips_(columns.find<GripState>()) {}
 
   void sense(const DeviceContext& context, void* ports) noexcept override {
     auto* grippers = static_cast<hal::Gripper*>(ports);
@@ -112,32 +95,18 @@ class GripperSensor final : public Sensor {
   const GripState* grips_;
 };
 
-template <class Options>
-BlockFactory<Sensor> make_gripper(const Element& element, Problems& problems, const DeviceSetup&) {
-  const auto options = read_options<Options>(element, problems);
-  double noise_rad = 0.0;
-  if constexpr (requires { options.noise_range_rad; }) noise_rad = options.noise_range_rad;
-  const auto make = [noise_rad](const BlockColumns& columns) {
-    return std::make_unique<GripperSensor>(noise_rad, columns);
-  };
-  return {make, {keeps<GripState>()}};
-}
-
-template <class Options>
-DeviceType gripper_type(std::string_view implementation, std::string_view summary) {
-  return sensor_type(hal::Gripper::kName, implementation, summary, &has<hal::GripperPart>, &make_gripper<Options>,
-                     &describe_options<Options>);
-}
-
 }  // namespace
 
 std::vector<DeviceType> gripper_types() {
-  return {gripping_type<Gripping<0>>("default", "Open claws hold what is before them; failures where asked for."),
-          gripping_type<IdealGripping>("ideal", "Open claws hold what is before them."),
-          gripping_type<Gripping<100>>("noisy", "Open claws hold what is before them, not always at once."),
-          gripper_type<ApertureNoise<0>>("default", "Aperture and whether something is held; noise where asked for."),
-          gripper_type<IdealAperture>("ideal", "Aperture and whether something is held."),
-          gripper_type<ApertureNoise<20>>("noisy", "Aperture with uniform noise, and whether something is held.")};
+  std::vector<DeviceType> types;
+  add_levels<GripperActuator>(types, "Open claws hold what is before them; failures where asked for.",
+                              "Open claws hold what is before them.",
+                              "Open claws hold what is before them, not always at once.");
+  for (DeviceType& type : types) type.joints = kJointsOfGrips;
+  add_levels<GripperSensor>(types, "Aperture and whether something is held; noise where asked for.",
+                            "Aperture and whether something is held.",
+                            "Aperture with uniform noise, and whether something is held.");
+  return types;
 }
 
 }  // namespace tandem::core

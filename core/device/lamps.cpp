@@ -10,21 +10,17 @@
 namespace tandem::core {
 namespace {
 
-struct IdealLamp {
-  std::string medium;
-  void describe(hal::ParamVisitor& v) {
-    v.text("medium", medium, "Id of the LED medium: cameras of others do not see them.");
-  }
-};
-
 /// What becomes of a colour, lamp by lamp and for the whole run: LEDs of one batch are not equally bright, and some are
 /// dead.
-template <int kPerMille>
-struct Lamp : IdealLamp {
-  double brightness_std_dev = 5.0 * kPerMille * 1e-3;
-  double dead_prob = kPerMille * 1e-3;
+struct LampErrors {
+  std::string medium = {};
+  double brightness_std_dev = 0.0;
+  double dead_prob = 0.0;
+  static LampErrors noisy() { return {.brightness_std_dev = 5.0 * 10 * 1e-3, .dead_prob = 10 * 1e-3}; }
+  void describe_always(hal::ParamVisitor& v) {
+    v.text("medium", medium, "Id of the LED medium: cameras of others do not see them.");
+  }
   void describe(hal::ParamVisitor& v) {
-    IdealLamp::describe(v);
     v.number("brightness_std_dev", brightness_std_dev, hal::unit::none, hal::kNotNegative,
              "Standard deviation of a lamp's brightness, as a part of what it is told; drawn once, at most 1 in all.");
     v.number("dead_prob", dead_prob, hal::unit::none, {0.0, 1.0}, "Probability that a lamp never shines.");
@@ -33,7 +29,7 @@ struct Lamp : IdealLamp {
 
 class Shine {
  public:
-  Shine(const Lamp<0>& errors, const DeviceSetup& setup)
+  Shine(const DeviceSetup& setup, const LampErrors& errors)
       : errors_(errors),
         exact_(errors.brightness_std_dev == 0.0 && errors.dead_prob == 0.0),
         leds_(&setup.medium_as<LedMedium>()),
@@ -57,22 +53,37 @@ class Shine {
   }
 
  private:
-  Lamp<0> errors_;
+  LampErrors errors_;
   bool exact_;
   LedMedium* leds_;
   std::uint16_t medium_;
 };
 
+/// What lamps of all kinds are to the world.
+class LampActuator : public Actuator {
+ public:
+  using Errors = LampErrors;
+  static constexpr std::string_view kMedium = LedMedium::kKind;
+
+  LampActuator(const DeviceSetup& setup, const Errors& errors, const BlockColumns&) : shine_(setup, errors) {}
+  static void prepare(BlockFactory<Actuator>& factory, const DeviceSetup&, const Errors&) { factory.publishes = true; }
+
+ protected:
+  Shine shine_;
+};
+
 /// The ring, or the upper of two.
-template <class Port>
-class RingLamps final : public Actuator {
-  static constexpr bool kUpper = std::is_same_v<Port, hal::UpperRingLeds>;
+template <class OfPort>
+class RingLamps final : public LampActuator {
+  static constexpr bool kUpper = std::is_same_v<OfPort, hal::UpperRingLeds>;
 
  public:
+  using Port = OfPort;
   using Part = std::conditional_t<kUpper, hal::UpperLedsPart, hal::LedsPart>;
 
-  RingLamps(const hal::RobotKind& kind, const Shine& shine)
-      : count_(std::min(kind.part<Part>()->mounts.size(), hal::RingLeds::kCapacity)), shine_(shine) {}
+  RingLamps(const DeviceSetup& setup, const Errors& errors, const BlockColumns& columns)
+      : LampActuator(setup, errors, columns),
+        count_(std::min(setup.kind.part<Part>()->mounts.size(), hal::RingLeds::kCapacity)) {}
 
   void act(const DeviceContext& context, SpaceStores& /*stores*/, const void* ports) noexcept override {
     ShownLeds* const shining = shine_.publish(context.block);
@@ -91,13 +102,14 @@ class RingLamps final : public Actuator {
 
  private:
   std::size_t count_;
-  Shine shine_;
 };
 
 /// The light beside a camera.
-class CameraLamp final : public Actuator {
+class CameraLamp final : public LampActuator {
  public:
-  CameraLamp(const hal::RobotKind&, const Shine& shine) : shine_(shine) {}
+  using Port = hal::CameraLed;
+  using Part = hal::CameraLedPart;
+  using LampActuator::LampActuator;
 
   void act(const DeviceContext& context, SpaceStores& /*stores*/, const void* ports) noexcept override {
     ShownLeds* const shining = shine_.publish(context.block);
@@ -111,16 +123,15 @@ class CameraLamp final : public Actuator {
       shown.camera_medium = shine_.medium();
     }
   }
-
- private:
-  Shine shine_;
 };
 
 /// One of the lamps in the body and at the front.
-template <class Port>
-class BodyLamp final : public Actuator {
+template <class OfPort, class OfPart>
+class BodyLamp final : public LampActuator {
  public:
-  BodyLamp(const hal::RobotKind&, const Shine& shine) : shine_(shine) {}
+  using Port = OfPort;
+  using Part = OfPart;
+  using LampActuator::LampActuator;
 
   void act(const DeviceContext& context, SpaceStores& /*stores*/, const void* ports) noexcept override {
     ShownLeds* const shining = shine_.publish(context.block);
@@ -136,45 +147,23 @@ class BodyLamp final : public Actuator {
       (kIsFront ? shown.front_medium : shown.body_medium) = shine_.medium();
     }
   }
-
- private:
-  Shine shine_;
 };
 
-template <class Device, class Options>
-BlockFactory<Actuator> make_lamp(const Element& element, Problems& problems, const DeviceSetup& setup) {
-  const auto read = read_options<Options>(element, problems);
-  Lamp<0> errors;
-  if constexpr (requires { read.dead_prob; }) {
-    errors.brightness_std_dev = read.brightness_std_dev;
-    errors.dead_prob = read.dead_prob;
-  }
-  BlockFactory<Actuator> factory([&kind = setup.kind, shine = Shine(errors, setup)](const BlockColumns&) {
-    return std::make_unique<Device>(kind, shine);
-  });
-  factory.publishes = true;
-  return factory;
-}
-
 template <class Device>
-void add(std::vector<DeviceType>& types, std::string_view lamp, bool (*fits)(const hal::RobotKind&)) {
-  const auto add_one = [&](const DeviceType& type) { types.push_back(in_medium(LedMedium::kKind, type)); };
-  add_one(actuator_type(lamp, "default", "Shines; unevenly where asked for.", fits, &make_lamp<Device, Lamp<0>>,
-                        &describe_options<Lamp<0>>));
-  add_one(actuator_type(lamp, "ideal", "Shines.", fits, &make_lamp<Device, IdealLamp>, &describe_options<IdealLamp>));
-  add_one(actuator_type(lamp, "noisy", "Shines; some lamps are dimmer than others, and some dead.", fits,
-                        &make_lamp<Device, Lamp<10>>, &describe_options<Lamp<10>>));
+void add(std::vector<DeviceType>& types) {
+  add_levels<Device>(types, "Shines; unevenly where asked for.", "Shines.",
+                     "Shines; some lamps are dimmer than others, and some dead.");
 }
 
 }  // namespace
 
 std::vector<DeviceType> lamp_types() {
   std::vector<DeviceType> types;
-  add<RingLamps<hal::RingLeds>>(types, hal::RingLeds::kName, &has<hal::LedsPart>);
-  add<RingLamps<hal::UpperRingLeds>>(types, hal::UpperRingLeds::kName, &has<hal::UpperLedsPart>);
-  add<CameraLamp>(types, hal::CameraLed::kName, &has<hal::CameraLedPart>);
-  add<BodyLamp<hal::BodyLed>>(types, hal::BodyLed::kName, &has<hal::BodyLedPart>);
-  add<BodyLamp<hal::FrontLed>>(types, hal::FrontLed::kName, &has<hal::FrontLedPart>);
+  add<RingLamps<hal::RingLeds>>(types);
+  add<RingLamps<hal::UpperRingLeds>>(types);
+  add<CameraLamp>(types);
+  add<BodyLamp<hal::BodyLed, hal::BodyLedPart>>(types);
+  add<BodyLamp<hal::FrontLed, hal::FrontLedPart>>(types);
   return types;
 }
 

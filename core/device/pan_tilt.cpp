@@ -9,15 +9,11 @@
 namespace tandem::core {
 namespace {
 
-struct Ideal {
-  void describe(hal::ParamVisitor&) {}
-};
-
 // --- actuator ---
 
-template <int kPerMille>
 struct AimErrors {
-  double noise_std_dev = kPerMille * 1e-3;
+  double noise_std_dev = 0.0;
+  static AimErrors noisy() { return {.noise_std_dev = 10 * 1e-3}; }
   void describe(hal::ParamVisitor& v) {
     v.number("noise_std_dev", noise_std_dev, hal::unit::rad, hal::kNotNegative,
              "Standard deviation of both angles that the head turns to, drawn every tick.");
@@ -27,8 +23,13 @@ struct AimErrors {
 /// Turns about both axes at once, pan the shorter way round.
 class HeadActuator final : public Actuator {
  public:
-  HeadActuator(const hal::HeadPart& part, double noise_rad, const BlockColumns& columns)
-      : part_(part), noise_rad_(noise_rad), heads_(columns.find<HeadState>()) {}
+  using Port = hal::PanTiltDrive;
+  using Part = hal::HeadPart;
+  using Errors = AimErrors;
+  using Kept = HeadState;
+
+  HeadActuator(const DeviceSetup& setup, const Errors& errors, const BlockColumns& columns)
+      : part_(*setup.kind.part<Part>()), noise_rad_(errors.noise_std_dev), heads_(columns.find<HeadState>()) {}
 
   void act(const DeviceContext& context, SpaceStores& stores, const void* ports) noexcept override {
     const auto* drives = static_cast<const hal::PanTiltDrive*>(ports);
@@ -58,28 +59,11 @@ class HeadActuator final : public Actuator {
   HeadState* heads_;
 };
 
-template <class Options>
-BlockFactory<Actuator> make_head(const Element& element, Problems& problems, const DeviceSetup& setup) {
-  const auto options = read_options<Options>(element, problems);
-  double noise = 0.0;
-  if constexpr (requires { options.noise_std_dev; }) noise = options.noise_std_dev;
-  const auto make = [&part = *setup.kind.part<hal::HeadPart>(), noise](const BlockColumns& columns) {
-    return std::make_unique<HeadActuator>(part, noise, columns);
-  };
-  return {make, {keeps<HeadState>()}};
-}
-
-template <class Options>
-DeviceType head_type(std::string_view implementation, std::string_view summary) {
-  return actuator_type(hal::PanTiltDrive::kName, implementation, summary, &has<hal::HeadPart>, &make_head<Options>,
-                       &describe_options<Options>);
-}
-
 // --- encoder ---
 
-template <int kPerMille>
 struct AngleNoise {
-  double noise_range_rad = kPerMille * 1e-3;
+  double noise_range_rad = 0.0;
+  static AngleNoise noisy() { return {.noise_range_rad = 10 * 1e-3}; }
   void describe(hal::ParamVisitor& v) {
     v.number("noise_range", noise_range_rad, hal::unit::rad, hal::kNotNegative,
              "Uniform noise of +-this on both angles.");
@@ -88,8 +72,13 @@ struct AngleNoise {
 
 class HeadEncoderSensor final : public Sensor {
  public:
-  HeadEncoderSensor(double noise_rad, const BlockColumns& columns)
-      : noise_rad_(noise_rad), heads_(columns.find<HeadState>()) {}
+  using Port = hal::PanTiltEncoder;
+  using Part = hal::HeadPart;
+  using Errors = AngleNoise;
+  using Kept = HeadState;
+
+  HeadEncoderSensor(const DeviceSetup&, const Errors& errors, const BlockColumns& columns)
+      : noise_rad_(errors.noise_range_rad), heads_(columns.find<HeadState>()) {}
 
   void sense(const DeviceContext& context, void* ports) noexcept override {
     auto* encoders = static_cast<hal::PanTiltEncoder*>(ports);
@@ -114,32 +103,15 @@ class HeadEncoderSensor final : public Sensor {
   const HeadState* heads_;
 };
 
-template <class Options>
-BlockFactory<Sensor> make_encoder(const Element& element, Problems& problems, const DeviceSetup&) {
-  const auto options = read_options<Options>(element, problems);
-  double noise = 0.0;
-  if constexpr (requires { options.noise_range_rad; }) noise = options.noise_range_rad;
-  const auto make = [noise](const BlockColumns& columns) {
-    return std::make_unique<HeadEncoderSensor>(noise, columns);
-  };
-  return {make, {keeps<HeadState>()}};
-}
-
-template <class Options>
-DeviceType encoder_type(std::string_view implementation, std::string_view summary) {
-  return sensor_type(hal::PanTiltEncoder::kName, implementation, summary, &has<hal::HeadPart>, &make_encoder<Options>,
-                     &describe_options<Options>);
-}
-
 }  // namespace
 
 std::vector<DeviceType> pan_tilt_types() {
-  return {head_type<AimErrors<0>>("default", "Turns as fast as it can; errors where asked for."),
-          head_type<Ideal>("ideal", "Turns as fast as it can."),
-          head_type<AimErrors<10>>("noisy", "Turns to angles with an error every tick."),
-          encoder_type<AngleNoise<0>>("default", "Both angles; noise where asked for."),
-          encoder_type<Ideal>("ideal", "Both angles."),
-          encoder_type<AngleNoise<10>>("noisy", "Both angles, with uniform noise.")};
+  std::vector<DeviceType> types;
+  add_levels<HeadActuator>(types, "Turns as fast as it can; errors where asked for.", "Turns as fast as it can.",
+                           "Turns to angles with an error every tick.");
+  add_levels<HeadEncoderSensor>(types, "Both angles; noise where asked for.", "Both angles.",
+                                "Both angles, with uniform noise.");
+  return types;
 }
 
 }  // namespace tandem::core

@@ -230,33 +230,26 @@ class ProximitySensor final : public Sensor {
   std::optional<FittedRays> fitted_;  // nothing: they are as their kind says
 };
 
-struct NoOptions {
+struct ProximityErrors {
   bool show_rays = false;
-  void describe(hal::ParamVisitor& v) {
+  double noise_level = 0.0;
+  static ProximityErrors noisy() { return {.noise_level = 20 * 1e-3}; }
+  void describe_always(hal::ParamVisitor& v) {
     v.flag("show_rays", show_rays, "Draw the rays in a view; no effect on readings.");
   }
-};
-
-template <int kPerMille>
-struct NoiseOptions : NoOptions {
-  double noise_level = kPerMille * 1e-3;
   void describe(hal::ParamVisitor& v) {
-    NoOptions::describe(v);
     v.number("noise_level", noise_level, hal::unit::none, {0.0, 1.0},
              "Uniform noise of +-level on the closeness (0 nothing in range, 1 contact).");
   }
 };
 
-template <class Options>
+template <Level kLevel>
 BlockFactory<Sensor> make_proximity(const Element& element, Problems& problems, const DeviceSetup& setup) {
-  const auto options = read_options<Options>(element, problems);
-  double noise = 0.0;
-  if constexpr (requires { options.noise_level; }) noise = options.noise_level;
+  const double noise = read_options<LevelOptions<ProximityErrors, kLevel>>(element, problems).noise_level;
   const auto& part = *setup.kind.part<hal::ProximityPart>();
   const auto* const fitted = setup.kind.part<hal::FittedProximity>();
-  if (fitted == nullptr || std::is_same_v<Options, NoOptions>) {
+  if (fitted == nullptr || kLevel == Level::Ideal)
     return [&part, noise](const BlockColumns&) { return std::make_unique<ProximitySensor>(part, noise, std::nullopt); };
-  }
   if (const std::string flaw = FittedRays::flaw(*fitted, setup.tick_s); !flaw.empty())
     problems.push_back(problem_at(element, flaw));
   const auto make = [&part, noise, fitted](const BlockColumns& columns) {
@@ -265,10 +258,10 @@ BlockFactory<Sensor> make_proximity(const Element& element, Problems& problems, 
   return {make, FittedRays::columns()};
 }
 
-template <class Options>
+template <Level kLevel>
 DeviceType proximity_type(std::string_view implementation, std::string_view summary) {
-  return sensor_type("proximity", implementation, summary, &has<hal::ProximityPart>, &make_proximity<Options>,
-                     &describe_options<Options>);
+  return sensor_type("proximity", implementation, summary, &has<hal::ProximityPart>, &make_proximity<kLevel>,
+                     &describe_options<LevelOptions<ProximityErrors, kLevel>>);
 }
 
 }  // namespace
@@ -284,10 +277,10 @@ bool has_avx2() noexcept {
 }
 
 std::vector<DeviceType> proximity_types() {
-  return {proximity_type<NoiseOptions<0>>("default", "Exact rays; noise only where noise_level asks for it."),
-          proximity_type<NoOptions>("ideal", "Exact rays against bodies, boxes and cylinders."),
-          proximity_type<NoiseOptions<20>>("noisy", "Rays with uniform noise."),
-          proximity_type<NoiseOptions<0>>("rot_z_only", "ARGoS' name for the default.")};
+  return {proximity_type<Level::Default>("default", "Exact rays; noise only where noise_level asks for it."),
+          proximity_type<Level::Ideal>("ideal", "Exact rays against bodies, boxes and cylinders."),
+          proximity_type<Level::Noisy>("noisy", "Rays with uniform noise."),
+          proximity_type<Level::Default>("rot_z_only", "ARGoS' name for the default.")};
 }
 
 }  // namespace tandem::core

@@ -14,23 +14,19 @@
 namespace tandem::core {
 namespace {
 
-struct IdealHearing {
-  std::string medium;
+struct Hearing {
+  std::string medium = {};
   bool check_occlusions = true;
   bool show_rays = false;
-  void describe(hal::ParamVisitor& v) {
+  double noise_std_dev_m = 0.0;
+  double packet_drop_prob = 0.0;
+  static Hearing noisy() { return {.noise_std_dev_m = 10 * 1e-3, .packet_drop_prob = 10 * 1e-3}; }
+  void describe_always(hal::ParamVisitor& v) {
     v.text("medium", medium, "Id of the range-and-bearing medium.");
     v.flag("check_occlusions", check_occlusions, "Bodies, boxes and cylinders block messages.");
     v.flag("show_rays", show_rays, "Draw the lines in a view; no effect on readings.");
   }
-};
-
-template <int kPerMille>
-struct Hearing : IdealHearing {
-  double noise_std_dev_m = kPerMille * 1e-3;
-  double packet_drop_prob = kPerMille * 1e-3;
   void describe(hal::ParamVisitor& v) {
-    IdealHearing::describe(v);
     v.number("noise_std_dev", noise_std_dev_m, hal::unit::m, hal::kNotNegative,
              "Standard deviation of the sender's apparent place, along x and y; where robots fly, along z too.");
     v.number("packet_drop_prob", packet_drop_prob, hal::unit::none, {0.0, 1.0}, "Probability that a message is lost.");
@@ -57,7 +53,13 @@ bool disc_blocks(double cx, double cy, double radius_m, double low_m, double hig
 /// tested with every body that is near.
 class RabSensor final : public Sensor {
  public:
-  RabSensor(const Hearing<0>& options, const DeviceSetup& setup)
+  using Port = hal::RangeAndBearing;
+  using Part = hal::RangeAndBearingPart;
+  using Errors = Hearing;
+  static constexpr std::string_view kMedium = RangeAndBearingMedium::kKind;
+  static void prepare(BlockFactory<Sensor>& factory, const DeviceSetup&, const Errors&) { factory.listens = true; }
+
+  RabSensor(const DeviceSetup& setup, const Errors& options, const BlockColumns&)
       : options_(options), medium_(setup.medium_as<RangeAndBearingMedium>()), channel_(setup.channel) {}
 
   void sense(const DeviceContext& context, void* ports) noexcept override {
@@ -406,7 +408,7 @@ class RabSensor final : public Sensor {
     return to_unit(bits[0]) < options_.packet_drop_prob;
   }
 
-  Hearing<0> options_;
+  Hearing options_;
   const RangeAndBearingMedium& medium_;
   std::uint8_t channel_;
   const RobotGroup* like_all_ = nullptr;  // a group, where all are of one kind
@@ -427,40 +429,14 @@ class RabSensor final : public Sensor {
   std::vector<std::uint32_t> partial_;
 };
 
-template <class Options>
-BlockFactory<Sensor> make_hearing(const Element& element, Problems& problems, const DeviceSetup& setup) {
-  const auto read = read_options<Options>(element, problems);
-  Hearing<0> options;
-  options.check_occlusions = read.check_occlusions;
-  if constexpr (requires { read.noise_std_dev_m; }) {
-    options.noise_std_dev_m = read.noise_std_dev_m;
-    options.packet_drop_prob = read.packet_drop_prob;
-  }
-  BlockFactory<Sensor> factory(
-      [options, setup](const BlockColumns&) { return std::make_unique<RabSensor>(options, setup); });
-  factory.listens = true;
-  return factory;
-}
-
-template <class Options>
-DeviceType hearing_type(std::string_view implementation, std::string_view summary) {
-  return in_medium(RangeAndBearingMedium::kKind,
-                   sensor_type("range_and_bearing", implementation, summary, &has<hal::RangeAndBearingPart>,
-                               &make_hearing<Options>, &describe_options<Options>));
-}
-
 // --- sending ---
 
-struct IdealSending {
-  std::string medium;
-  void describe(hal::ParamVisitor& v) { v.text("medium", medium, "Id of the range-and-bearing medium."); }
-};
-
-template <int kPerMille>
-struct Sending : IdealSending {
-  double failure_prob = kPerMille * 1e-3;
+struct Sending {
+  std::string medium = {};
+  double failure_prob = 0.0;
+  static Sending noisy() { return {.failure_prob = 10 * 1e-3}; }
+  void describe_always(hal::ParamVisitor& v) { v.text("medium", medium, "Id of the range-and-bearing medium."); }
   void describe(hal::ParamVisitor& v) {
-    IdealSending::describe(v);
     v.number("failure_prob", failure_prob, hal::unit::none, {0.0, 1.0},
              "Probability that a broadcast is not sent at all.");
   }
@@ -468,8 +444,16 @@ struct Sending : IdealSending {
 
 class RabActuator final : public Actuator {
  public:
-  RabActuator(double failure_prob, const DeviceSetup& setup)
-      : failure_prob_(failure_prob), medium_(setup.medium_as<RangeAndBearingMedium>()), channel_(setup.channel) {}
+  using Port = hal::RangeAndBearingSend;
+  using Part = hal::RangeAndBearingPart;
+  using Errors = Sending;
+  static constexpr std::string_view kMedium = RangeAndBearingMedium::kKind;
+  static void prepare(BlockFactory<Actuator>& factory, const DeviceSetup&, const Errors&) { factory.publishes = true; }
+
+  RabActuator(const DeviceSetup& setup, const Errors& errors, const BlockColumns&)
+      : failure_prob_(errors.failure_prob),
+        medium_(setup.medium_as<RangeAndBearingMedium>()),
+        channel_(setup.channel) {}
 
   void act(const DeviceContext& context, SpaceStores& stores, const void* ports) noexcept override {
     Broadcast* const broadcasts = medium_.publish(context.block);
@@ -499,36 +483,18 @@ class RabActuator final : public Actuator {
   std::uint8_t channel_;
 };
 
-template <class Options>
-BlockFactory<Actuator> make_sending(const Element& element, Problems& problems, const DeviceSetup& setup) {
-  const auto options = read_options<Options>(element, problems);
-  double failure_prob = 0.0;
-  if constexpr (requires { options.failure_prob; }) failure_prob = options.failure_prob;
-  BlockFactory<Actuator> factory(
-      [failure_prob, setup](const BlockColumns&) { return std::make_unique<RabActuator>(failure_prob, setup); });
-  factory.publishes = true;
-  return factory;
-}
-
-template <class Options>
-DeviceType sending_type(std::string_view implementation, std::string_view summary) {
-  return in_medium(RangeAndBearingMedium::kKind,
-                   actuator_type("range_and_bearing", implementation, summary, &has<hal::RangeAndBearingPart>,
-                                 &make_sending<Options>, &describe_options<Options>));
-}
-
 }  // namespace
 
 std::vector<DeviceType> range_and_bearing_types() {
-  return {
-      hearing_type<Hearing<0>>("default", "Messages in range and in sight; noise and loss where asked for."),
-      hearing_type<IdealHearing>("ideal", "Messages in range and in sight."),
-      hearing_type<Hearing<10>>("noisy", "Messages in range and in sight, some lost, places uncertain."),
-      hearing_type<Hearing<0>>("medium", "ARGoS' name for the default."),
-      sending_type<Sending<0>>("default",
-                               "Broadcasts to the robots in range in the next tick; failures where asked for."),
-      sending_type<IdealSending>("ideal", "Broadcasts to the robots in range in the next tick."),
-      sending_type<Sending<10>>("noisy", "Broadcasts to the robots in range in the next tick, but for some failures.")};
+  std::vector<DeviceType> types;
+  add_levels<RabSensor>(types, "Messages in range and in sight; noise and loss where asked for.",
+                        "Messages in range and in sight.",
+                        "Messages in range and in sight, some lost, places uncertain.");
+  types.push_back(device_type<RabSensor, Level::Default>("medium", "ARGoS' name for the default."));
+  add_levels<RabActuator>(types, "Broadcasts to the robots in range in the next tick; failures where asked for.",
+                          "Broadcasts to the robots in range in the next tick.",
+                          "Broadcasts to the robots in range in the next tick, but for some failures.");
+  return types;
 }
 
 }  // namespace tandem::core

@@ -8,17 +8,21 @@
 namespace tandem::core {
 namespace {
 
-/// Uniform noise on levels in [0, 1]. With `kShowRays`, ARGoS' switch for its view is accepted too.
-template <int kPerMille, bool kShowRays>
+/// Uniform noise on levels in [0, 1].
 struct LevelNoise {
-  double noise_level = kPerMille * 1e-3;
-  bool show_rays = false;
+  double noise_level = 0.0;
+  static LevelNoise noisy() { return {.noise_level = 20 * 1e-3}; }
   void describe(hal::ParamVisitor& v) {
-    if constexpr (kShowRays) v.flag("show_rays", show_rays, "Draw the rays in a view; no effect on readings.");
-    if constexpr (kPerMille >= 0)
-      v.number("noise_level", noise_level, hal::unit::none, {0.0, 1.0}, "Uniform noise of +-level.");
+    v.number("noise_level", noise_level, hal::unit::none, {0.0, 1.0}, "Uniform noise of +-level.");
   }
-  double level() const { return kPerMille >= 0 ? noise_level : 0.0; }
+};
+/// ARGoS' switch for its view is accepted too.
+struct LightNoise : LevelNoise {
+  bool show_rays = false;
+  static LightNoise noisy() { return {LevelNoise::noisy()}; }
+  void describe_always(hal::ParamVisitor& v) {
+    v.flag("show_rays", show_rays, "Draw the rays in a view; no effect on readings.");
+  }
 };
 
 /// Adds noise to `count` levels and keeps them within [0, 1].
@@ -33,11 +37,19 @@ void add_noise(const DeviceContext& context, std::size_t i, Stream stream, float
 }
 
 /// One value of a field a sensor of the ring, and one port a robot.
-template <class Port>
-class LevelSensor : public Sensor {
+template <class OfPort, class OfPart, Stream kNoise>
+class LevelSensor final : public Sensor {
+  static constexpr bool kOfLight = std::is_same_v<OfPort, hal::Light>;
+
  public:
-  LevelSensor(const Field& field, std::span<const hal::Mount> mounts, Stream noise_stream, double noise)
-      : ring_(field, mounts), stream_(noise_stream), noise_(static_cast<float>(noise)) {}
+  using Port = OfPort;
+  using Part = OfPart;
+  using Errors = std::conditional_t<kOfLight, LightNoise, LevelNoise>;
+  static constexpr std::string_view kField = kOfLight ? "light" : "floor";
+
+  LevelSensor(const DeviceSetup& setup, const Errors& errors, const BlockColumns&)
+      : ring_(*setup.fields->find(kField), setup.kind.part<Part>()->mounts),
+        noise_(static_cast<float>(errors.noise_level)) {}
 
   void sense(const DeviceContext& context, void* ports) noexcept override {
     ring_.sample(context, [&](std::size_t i, const double* values) {
@@ -47,7 +59,7 @@ class LevelSensor : public Sensor {
       float* const levels = levels_of(port);
       for (std::size_t k = 0; k < ring_.size(); ++k) levels[k] = static_cast<float>(values[k]);
       if constexpr (std::is_same_v<Port, hal::Cliff>) drop_beyond_edge(context, i, levels);
-      if (noise_ > 0.0F) add_noise(context, i, stream_, noise_, levels, ring_.size());
+      if (noise_ > 0.0F) add_noise(context, i, kNoise, noise_, levels, ring_.size());
     });
   }
 
@@ -70,94 +82,37 @@ class LevelSensor : public Sensor {
   }
 
   FieldRing ring_;
-  Stream stream_;
   float noise_;
 };
 
-class LightSensor final : public LevelSensor<hal::Light> {
- public:
-  static constexpr std::string_view kField = "light";
-  using Part = hal::LightPart;
-  LightSensor(const Field& field, const Part& part, double noise)
-      : LevelSensor(field, part.mounts, Stream::LightNoise, noise) {}
-};
-
-/// For each of the ports that a robot may have for its floor: they differ in name and mounts only.
-class GroundSensor : public LevelSensor<hal::Ground> {
- public:
-  static constexpr std::string_view kField = "floor";
-  using LevelSensor::LevelSensor;
-};
-
-class PlainGround final : public GroundSensor {
- public:
-  using Part = hal::GroundPart;
-  PlainGround(const Field& field, const Part& part, double noise)
-      : GroundSensor(field, part.mounts, Stream::GroundNoise, noise) {}
-};
-class BaseGround final : public GroundSensor {
- public:
-  using Part = hal::BaseGroundPart;
-  BaseGround(const Field& field, const Part& part, double noise)
-      : GroundSensor(field, part.mounts, Stream::GroundNoise, noise) {}
-};
-class MotorGround final : public GroundSensor {
- public:
-  using Part = hal::MotorGroundPart;
-  MotorGround(const Field& field, const Part& part, double noise)
-      : GroundSensor(field, part.mounts, Stream::MotorGroundNoise, noise) {}
-};
-class CliffSensor final : public LevelSensor<hal::Cliff> {
- public:
-  static constexpr std::string_view kField = "floor";
-  using Part = hal::CliffPart;
-  CliffSensor(const Field& field, const Part& part, double noise)
-      : LevelSensor(field, part.mounts, Stream::CliffNoise, noise) {}
-};
+using LightSensor = LevelSensor<hal::Light, hal::LightPart, Stream::LightNoise>;
+using CliffSensor = LevelSensor<hal::Cliff, hal::CliffPart, Stream::CliffNoise>;
+// The ports that a robot may have for its floor differ in name and mounts only.
+using PlainGround = LevelSensor<hal::Ground, hal::GroundPart, Stream::GroundNoise>;
+using BaseGround = LevelSensor<hal::BaseGround, hal::BaseGroundPart, Stream::GroundNoise>;
+using MotorGround = LevelSensor<hal::MotorGround, hal::MotorGroundPart, Stream::MotorGroundNoise>;
 static_assert(sizeof(hal::BaseGround) == sizeof(hal::Ground) && sizeof(hal::MotorGround) == sizeof(hal::Ground));
 
-template <class Device, class Options>
-BlockFactory<Sensor> make_levels(const Element& element, Problems& problems, const DeviceSetup& setup) {
-  const double noise = read_options<Options>(element, problems).level();
-  const Field* const field = setup.field(Device::kField, element, problems);
-  return [field, &part = *setup.kind.part<typename Device::Part>(), noise](const BlockColumns&) {
-    return std::make_unique<Device>(*field, part, noise);
-  };
-}
-
-template <class Device, class Options>
-DeviceType levels_type(std::string_view device, std::string_view implementation, std::string_view summary) {
-  return sensor_type(device, implementation, summary, &has<typename Device::Part>, &make_levels<Device, Options>,
-                     &describe_options<Options>);
-}
-
 template <class Device>
-void add_grounds(std::string_view device, std::vector<DeviceType>& types) {
-  types.push_back(
-      levels_type<Device, LevelNoise<0, false>>(device, "default", "The floor's shade; noise where asked for."));
-  types.push_back(levels_type<Device, LevelNoise<-1, false>>(device, "ideal", "The floor's shade."));
-  types.push_back(levels_type<Device, LevelNoise<20, false>>(device, "noisy", "The floor's shade, with noise."));
-  types.push_back(levels_type<Device, LevelNoise<0, false>>(device, "rot_z_only", "ARGoS' name for the default."));
+void add_ground(std::vector<DeviceType>& types) {
+  add_levels<Device>(types, "The floor's shade; noise where asked for.", "The floor's shade.",
+                     "The floor's shade, with noise.");
+  types.push_back(device_type<Device, Level::Default>("rot_z_only", "ARGoS' name for the default."));
 }
 
 }  // namespace
 
 std::vector<DeviceType> ring_level_types() {
-  std::vector<DeviceType> types = {
-      levels_type<LightSensor, LevelNoise<0, true>>("light", "default", "Lamps in sight; noise where asked for."),
-      levels_type<LightSensor, LevelNoise<-1, true>>("light", "ideal", "Lamps in sight."),
-      levels_type<LightSensor, LevelNoise<20, true>>("light", "noisy", "Lamps in sight, with noise."),
-      levels_type<LightSensor, LevelNoise<0, true>>("light", "rot_z_only", "ARGoS' name for the default.")};
-  const std::string_view cliff = hal::Cliff::kName;
-  types.push_back(levels_type<CliffSensor, LevelNoise<0, false>>(
-      cliff, "default", "The floor's shade, 0 beyond the arena's edge; noise where asked for."));
-  types.push_back(
-      levels_type<CliffSensor, LevelNoise<-1, false>>(cliff, "ideal", "The floor's shade, 0 beyond the arena's edge."));
-  types.push_back(levels_type<CliffSensor, LevelNoise<20, false>>(
-      cliff, "noisy", "The floor's shade, 0 beyond the arena's edge, with noise."));
-  add_grounds<PlainGround>(hal::Ground::kName, types);
-  add_grounds<BaseGround>(hal::BaseGround::kName, types);
-  add_grounds<MotorGround>(hal::MotorGround::kName, types);
+  std::vector<DeviceType> types;
+  add_levels<LightSensor>(types, "Lamps in sight; noise where asked for.", "Lamps in sight.",
+                          "Lamps in sight, with noise.");
+  types.push_back(device_type<LightSensor, Level::Default>("rot_z_only", "ARGoS' name for the default."));
+  add_levels<CliffSensor>(types, "The floor's shade, 0 beyond the arena's edge; noise where asked for.",
+                          "The floor's shade, 0 beyond the arena's edge.",
+                          "The floor's shade, 0 beyond the arena's edge, with noise.");
+  add_ground<PlainGround>(types);
+  add_ground<BaseGround>(types);
+  add_ground<MotorGround>(types);
   return types;
 }
 

@@ -6,10 +6,6 @@
 namespace tandem::core {
 namespace {
 
-struct NoOptions {
-  void describe(hal::ParamVisitor&) {}
-};
-
 class SelectorSensor final : public Sensor {
  public:
   explicit SelectorSensor(std::uint32_t position) : position_(position) {}

@@ -10,13 +10,9 @@
 namespace tandem::core {
 namespace {
 
-struct NoOptions {
-  void describe(hal::ParamVisitor&) {}
-};
-
-template <int kPerMille>
 struct DistanceNoise {
-  double noise_level = kPerMille * 1e-3;
+  double noise_level = 0.0;
+  static DistanceNoise noisy() { return {.noise_level = 40 * 1e-3}; }
   void describe(hal::ParamVisitor& v) {
     v.number("noise_level", noise_level, hal::unit::none, {0.0, 1.0},
              "Standard deviation of the distance, as a part of it.");
@@ -27,7 +23,13 @@ struct DistanceNoise {
 /// 4 cm from one another at 2 m.
 class TimeOfFlightSensor final : public Sensor {
  public:
-  TimeOfFlightSensor(const hal::TimeOfFlightPart& part, double noise) : part_(part), noise_(noise) {
+  using Port = hal::TimeOfFlight;
+  using Part = hal::TimeOfFlightPart;
+  using Errors = DistanceNoise;
+
+  TimeOfFlightSensor(const DeviceSetup& setup, const Errors& errors, const BlockColumns&)
+      : part_(*setup.kind.part<Part>()), noise_(errors.noise_level) {
+    const Part& part = part_;
     count_ = part.cone_rad > 0.0 ? kRays : 1;
     rays_.aim(static_cast<std::size_t>(count_), part.mount.z_m);
     for (std::ptrdiff_t k = 0; k < count_; ++k) {
@@ -67,29 +69,14 @@ class TimeOfFlightSensor final : public Sensor {
   FarRays rays_;
 };
 
-template <class Options>
-BlockFactory<Sensor> make_time_of_flight(const Element& element, Problems& problems, const DeviceSetup& setup) {
-  const auto options = read_options<Options>(element, problems);
-  double noise = 0.0;
-  if constexpr (requires { options.noise_level; }) noise = options.noise_level;
-  return [&part = *setup.kind.part<hal::TimeOfFlightPart>(), noise](const BlockColumns&) {
-    return std::make_unique<TimeOfFlightSensor>(part, noise);
-  };
-}
-
-template <class Options>
-DeviceType type(std::string_view implementation, std::string_view summary) {
-  return sensor_type(hal::TimeOfFlight::kName, implementation, summary, &has<hal::TimeOfFlightPart>,
-                     &make_time_of_flight<Options>, &describe_options<Options>);
-}
-
 }  // namespace
 
 std::vector<DeviceType> time_of_flight_types() {
   // The data sheet of the VL53L0X has a standard deviation of 4 % for white targets indoors.
-  return {type<DistanceNoise<0>>("default", "Exact distances; noise where asked for."),
-          type<NoOptions>("ideal", "Exact distances to bodies, boxes and cylinders."),
-          type<DistanceNoise<40>>("noisy", "Distances with normal noise.")};
+  std::vector<DeviceType> types;
+  add_levels<TimeOfFlightSensor>(types, "Exact distances; noise where asked for.",
+                                 "Exact distances to bodies, boxes and cylinders.", "Distances with normal noise.");
+  return types;
 }
 
 }  // namespace tandem::core

@@ -10,13 +10,9 @@ namespace {
 
 // --- actuator ---
 
-struct IdealTurret {
-  void describe(hal::ParamVisitor&) {}
-};
-
-template <int kPerMille>
 struct TurretErrors {
-  double noise_std_dev = kPerMille * 1e-3;
+  double noise_std_dev = 0.0;
+  static TurretErrors noisy() { return {.noise_std_dev = 50 * 1e-3}; }
   void describe(hal::ParamVisitor& v) {
     v.number("noise_std_dev", noise_std_dev, hal::unit::none, {0.0, 1.0},
              "Standard deviation of the turn rate's relative error, drawn every tick.");
@@ -26,9 +22,14 @@ struct TurretErrors {
 /// Turns what carries no load at once; a turret that holds something is turned by the physics engine.
 class TurretActuator final : public Actuator {
  public:
-  TurretActuator(double fastest_rad_s, double noise, const BlockColumns& columns)
-      : fastest_rad_s_(fastest_rad_s),
-        noise_(noise),
+  using Port = hal::TurretDrive;
+  using Part = hal::TurretPart;
+  using Errors = TurretErrors;
+  using Kept = TurretState;
+
+  TurretActuator(const DeviceSetup& setup, const Errors& errors, const BlockColumns& columns)
+      : fastest_rad_s_(setup.kind.part<Part>()->turn_rad_s),
+        noise_(errors.noise_std_dev),
         turrets_(columns.find<TurretState>()),
         grips_(columns.find<GripState>()) {}
 
@@ -68,32 +69,11 @@ class TurretActuator final : public Actuator {
   const GripState* grips_;  // null: they have no grippers
 };
 
-template <class Options>
-BlockFactory<Actuator> make_turret(const Element& element, Problems& problems, const DeviceSetup& setup) {
-  const auto options = read_options<Options>(element, problems);
-  double noise = 0.0;
-  if constexpr (requires { options.noise_std_dev; }) noise = options.noise_std_dev;
-  const auto make = [fastest = setup.kind.part<hal::TurretPart>()->turn_rad_s, noise](const BlockColumns& columns) {
-    return std::make_unique<TurretActuator>(fastest, noise, columns);
-  };
-  return {make, {keeps<TurretState>()}};
-}
-
-template <class Options>
-DeviceType turret_type(std::string_view implementation, std::string_view summary) {
-  return actuator_type(hal::TurretDrive::kName, implementation, summary, &has<hal::TurretPart>, &make_turret<Options>,
-                       &describe_options<Options>);
-}
-
 // --- encoder ---
 
-struct IdealEncoder {
-  void describe(hal::ParamVisitor&) {}
-};
-
-template <int kPerMille>
 struct AngleNoise {
-  double noise_range_rad = kPerMille * 1e-3;
+  double noise_range_rad = 0.0;
+  static AngleNoise noisy() { return {.noise_range_rad = 10 * 1e-3}; }
   void describe(hal::ParamVisitor& v) {
     v.number("noise_range", noise_range_rad, hal::unit::rad, hal::kNotNegative,
              "Uniform noise of +-this on the angle.");
@@ -102,8 +82,13 @@ struct AngleNoise {
 
 class TurretEncoderSensor final : public Sensor {
  public:
-  TurretEncoderSensor(double noise_rad, const BlockColumns& columns)
-      : noise_rad_(noise_rad), turrets_(columns.find<TurretState>()) {}
+  using Port = hal::TurretEncoder;
+  using Part = hal::TurretPart;
+  using Errors = AngleNoise;
+  using Kept = TurretState;
+
+  TurretEncoderSensor(const DeviceSetup&, const Errors& errors, const BlockColumns& columns)
+      : noise_rad_(errors.noise_range_rad), turrets_(columns.find<TurretState>()) {}
 
   void sense(const DeviceContext& context, void* ports) noexcept override {
     auto* encoders = static_cast<hal::TurretEncoder*>(ports);
@@ -125,32 +110,15 @@ class TurretEncoderSensor final : public Sensor {
   const TurretState* turrets_;
 };
 
-template <class Options>
-BlockFactory<Sensor> make_encoder(const Element& element, Problems& problems, const DeviceSetup&) {
-  const auto options = read_options<Options>(element, problems);
-  double noise_rad = 0.0;
-  if constexpr (requires { options.noise_range_rad; }) noise_rad = options.noise_range_rad;
-  const auto make = [noise_rad](const BlockColumns& columns) {
-    return std::make_unique<TurretEncoderSensor>(noise_rad, columns);
-  };
-  return {make, {keeps<TurretState>()}};
-}
-
-template <class Options>
-DeviceType encoder_type(std::string_view implementation, std::string_view summary) {
-  return sensor_type(hal::TurretEncoder::kName, implementation, summary, &has<hal::TurretPart>, &make_encoder<Options>,
-                     &describe_options<Options>);
-}
-
 }  // namespace
 
 std::vector<DeviceType> turret_types() {
-  return {turret_type<TurretErrors<0>>("default", "Turns as told; errors where asked for."),
-          turret_type<IdealTurret>("ideal", "Turns as told."),
-          turret_type<TurretErrors<50>>("noisy", "Turns with an error of its speed every tick."),
-          encoder_type<AngleNoise<0>>("default", "The turret's angle; noise where asked for."),
-          encoder_type<IdealEncoder>("ideal", "The turret's angle."),
-          encoder_type<AngleNoise<10>>("noisy", "The turret's angle, with uniform noise.")};
+  std::vector<DeviceType> types;
+  add_levels<TurretActuator>(types, "Turns as told; errors where asked for.", "Turns as told.",
+                             "Turns with an error of its speed every tick.");
+  add_levels<TurretEncoderSensor>(types, "The turret's angle; noise where asked for.", "The turret's angle.",
+                                  "The turret's angle, with uniform noise.");
+  return types;
 }
 
 }  // namespace tandem::core

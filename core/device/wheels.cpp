@@ -17,16 +17,12 @@ namespace {
 
 // --- actuator ---
 
-struct IdealWheels {
-  void describe(hal::ParamVisitor&) {}
-};
-
 /// ARGoS' three knobs: speed' = factor * (speed + bias) * (1 + noise).
-template <int kPerMille>
 struct WheelErrors {
   double bias_left_m_s = 0.0, bias_right_m_s = 0.0;
   double factor_left = 1.0, factor_right = 1.0;
-  double noise_std_dev = kPerMille * 1e-3;
+  double noise_std_dev = 0.0;
+  static WheelErrors noisy() { return {.noise_std_dev = 50 * 1e-3}; }
   void describe(hal::ParamVisitor& v) {
     v.number("bias_left", bias_left_m_s, hal::unit::cm_s, hal::kAny, "Added to the left wheel's speed while it turns.");
     v.number("bias_right", bias_right_m_s, hal::unit::cm_s, hal::kAny,
@@ -66,7 +62,7 @@ class SteppedSpeeds {
 
 class WheelActuator final : public Actuator {
  public:
-  WheelActuator(const WheelErrors<0>& errors, std::optional<SteppedSpeeds> stepped, std::optional<FittedDrive> fitted)
+  WheelActuator(const WheelErrors& errors, std::optional<SteppedSpeeds> stepped, std::optional<FittedDrive> fitted)
       : errors_(errors), stepped_(stepped), fitted_(std::move(fitted)) {
     exact_ = errors.bias_left_m_s == 0.0 && errors.bias_right_m_s == 0.0 && errors.factor_left == 1.0 &&
              errors.factor_right == 1.0 && errors.noise_std_dev == 0.0;
@@ -129,7 +125,7 @@ class WheelActuator final : public Actuator {
       right = errors_.factor_right * (right + errors_.bias_right_m_s) * (1.0 + errors_.noise_std_dev * noise[1]);
   }
 
-  WheelErrors<0> errors_;
+  WheelErrors errors_;
   std::optional<SteppedSpeeds> stepped_;  // nothing: they turn as told
   std::optional<FittedDrive> fitted_;     // nothing: they are as their kind says
   bool exact_ = true;
@@ -201,23 +197,14 @@ BlockFactory<Actuator> make_slanted(const Element& element, Problems& problems, 
   return {make, {keeps<HiddenRoll>()}};
 }
 
-template <class Options>
+template <Level kLevel>
 BlockFactory<Actuator> make_wheels(const Element& element, Problems& problems, const DeviceSetup& setup) {
-  const auto options = read_options<Options>(element, problems);
-  WheelErrors<0> errors;
-  if constexpr (requires { options.noise_std_dev; }) {
-    errors = {options.bias_left_m_s, options.bias_right_m_s, options.factor_left, options.factor_right,
-              options.noise_std_dev};
-  }
-  if constexpr (std::is_same_v<Options, IdealWheels>)
-    return [](const BlockColumns&) {
-      return std::make_unique<WheelActuator>(WheelErrors<0>{}, std::nullopt, std::nullopt);
-    };
+  const WheelErrors errors = read_options<LevelOptions<WheelErrors, kLevel>>(element, problems);
   const auto* const part = setup.kind.part<hal::FittedWheels>();
-  if (part == nullptr) {
+  if (part == nullptr || kLevel == Level::Ideal) {
     std::optional<SteppedSpeeds> stepped;
-    if (const auto* const steppers = setup.kind.part<hal::SteppersPart>(); steppers != nullptr)
-      stepped.emplace(*steppers, setup.kind.drive()->wheel_radius_m);
+    const auto* const steppers = setup.kind.part<hal::SteppersPart>();
+    if (steppers != nullptr && kLevel != Level::Ideal) stepped.emplace(*steppers, setup.kind.drive()->wheel_radius_m);
     return [errors, stepped](const BlockColumns&) {
       return std::make_unique<WheelActuator>(errors, stepped, std::nullopt);
     };
@@ -230,22 +217,18 @@ BlockFactory<Actuator> make_wheels(const Element& element, Problems& problems, c
   return {make, FittedDrive::columns()};
 }
 
-template <class Options>
+template <Level kLevel>
 DeviceType wheels_type(std::string_view implementation, std::string_view summary) {
   return actuator_type("differential_steering", implementation, summary, &has<hal::DifferentialDrive>,
-                       &make_wheels<Options>, &describe_options<Options>);
+                       &make_wheels<kLevel>, &describe_options<LevelOptions<WheelErrors, kLevel>>);
 }
 
 // --- encoders ---
 
-struct IdealEncoders {
-  void describe(hal::ParamVisitor&) {}
-};
-
-template <int kPerMille>
 struct EncoderErrors {
-  double vel_noise_m_s = kPerMille * 1e-5;
-  double dist_noise_m = kPerMille * 1e-6;
+  double vel_noise_m_s = 0.0;
+  double dist_noise_m = 0.0;
+  static EncoderErrors noisy() { return {.vel_noise_m_s = 100 * 1e-5, .dist_noise_m = 100 * 1e-6}; }
   void describe(hal::ParamVisitor& v) {
     v.number("vel_noise_range", vel_noise_m_s, hal::unit::cm_s, hal::kNotNegative,
              "Uniform noise of +-this on each speed.");
@@ -269,7 +252,14 @@ struct EncoderDrift {
 
 class EncoderSensor final : public Sensor {
  public:
-  EncoderSensor(const EncoderErrors<0>& errors, const BlockColumns& columns)
+  using Port = hal::WheelEncoders;
+  using Part = hal::DifferentialDrive;
+  using Errors = EncoderErrors;
+  static void prepare(BlockFactory<Sensor>& factory, const DeviceSetup&, const Errors& errors) {
+    if (errors.dist_noise_m > 0.0) factory.columns = {keeps<EncoderDrift>()};
+  }
+
+  EncoderSensor(const DeviceSetup&, const Errors& errors, const BlockColumns& columns)
       : errors_(errors), drifts_(columns.find<EncoderDrift>()), hidden_rolls_(columns.find<HiddenRoll>()) {}
 
   void sense(const DeviceContext& context, void* ports) noexcept override {
@@ -311,32 +301,16 @@ class EncoderSensor final : public Sensor {
     port.right_m += drift.right_m;
   }
 
-  EncoderErrors<0> errors_;
+  EncoderErrors errors_;
   EncoderDrift* drifts_;            // null: their distances are exact
   const HiddenRoll* hidden_rolls_;  // null: their wheels roll as they count
 };
 
-template <class Options>
-BlockFactory<Sensor> make_encoders(const Element& element, Problems& problems, const DeviceSetup&) {
-  const auto options = read_options<Options>(element, problems);
-  EncoderErrors<0> errors;
-  if constexpr (requires { options.dist_noise_m; }) errors = {options.vel_noise_m_s, options.dist_noise_m};
-  const auto make = [errors](const BlockColumns& columns) { return std::make_unique<EncoderSensor>(errors, columns); };
-  if (errors.dist_noise_m > 0.0) return {make, {keeps<EncoderDrift>()}};
-  return make;
-}
-
-template <class Options>
-DeviceType encoder_type(std::string_view implementation, std::string_view summary) {
-  return sensor_type("wheel_encoders", implementation, summary, &has<hal::DifferentialDrive>, &make_encoders<Options>,
-                     &describe_options<Options>);
-}
-
 // --- odometry ---
 
-template <int kPerMille>
 struct OdometryErrors {
-  double dist_noise_m = kPerMille * 1e-6;
+  double dist_noise_m = 0.0;
+  static OdometryErrors noisy() { return {.dist_noise_m = 100 * 1e-6}; }
   void describe(hal::ParamVisitor& v) {
     v.number("dist_noise_range", dist_noise_m, hal::unit::cm, hal::kNotNegative,
              "Uniform noise of +-this on the distance that each wheel rolled in a tick; it adds up.");
@@ -364,9 +338,14 @@ struct Reckoned {
 /// Robots, section 5.2.4].
 class OdometrySensor final : public Sensor {
  public:
-  OdometrySensor(double wheel_base_m, double noise_m, const BlockColumns& columns)
-      : wheel_base_m_(wheel_base_m),
-        noise_m_(noise_m),
+  using Port = hal::Odometry;
+  using Part = hal::DifferentialDrive;
+  using Errors = OdometryErrors;
+  using Kept = Reckoned;
+
+  OdometrySensor(const DeviceSetup& setup, const Errors& errors, const BlockColumns& columns)
+      : wheel_base_m_(setup.kind.drive()->wheel_base_m),
+        noise_m_(errors.dist_noise_m),
         reckoned_(columns.find<Reckoned>()),
         hidden_rolls_(columns.find<HiddenRoll>()) {}
 
@@ -416,40 +395,22 @@ class OdometrySensor final : public Sensor {
   const HiddenRoll* hidden_rolls_;  // null: their wheels roll as they count
 };
 
-template <class Options>
-BlockFactory<Sensor> make_odometry(const Element& element, Problems& problems, const DeviceSetup& setup) {
-  const auto options = read_options<Options>(element, problems);
-  double noise_m = 0.0;
-  if constexpr (requires { options.dist_noise_m; }) noise_m = options.dist_noise_m;
-  const auto make = [base = setup.kind.drive()->wheel_base_m, noise_m](const BlockColumns& columns) {
-    return std::make_unique<OdometrySensor>(base, noise_m, columns);
-  };
-  return {make, {keeps<Reckoned>()}};
-}
-
-template <class Options>
-DeviceType odometry_type(std::string_view implementation, std::string_view summary) {
-  return sensor_type(hal::Odometry::kName, implementation, summary, &has<hal::DifferentialDrive>,
-                     &make_odometry<Options>, &describe_options<Options>);
-}
-
 }  // namespace
 
 std::vector<DeviceType> wheel_types() {
-  return {
-      wheels_type<WheelErrors<0>>(
+  std::vector<DeviceType> types = {
+      wheels_type<Level::Default>(
           "default", "The commanded speeds as the kind's motors turn, with bias, factor and noise where asked for."),
-      wheels_type<IdealWheels>("ideal", "The commanded speeds, exactly."),
-      wheels_type<WheelErrors<50>>("noisy", "Each wheel with a relative error of its own every tick."),
+      wheels_type<Level::Ideal>("ideal", "The commanded speeds, exactly."),
+      wheels_type<Level::Noisy>("noisy", "Each wheel with a relative error of its own every tick."),
       actuator_type(hal::WheelSpeeds::kName, "slanted",
                     "Draws to one side by an error that the encoders do not see and every grip changes.",
-                    &has<hal::DifferentialDrive>, &make_slanted, &describe_options<Slant>),
-      encoder_type<EncoderErrors<0>>("default", "What the wheels rolled, with noise where asked for."),
-      encoder_type<IdealEncoders>("ideal", "What the wheels rolled."),
-      encoder_type<EncoderErrors<100>>("noisy", "What the wheels rolled, with noise that adds up."),
-      odometry_type<OdometryErrors<0>>("default", "Reckoned from the encoders; noise where asked for."),
-      odometry_type<IdealEncoders>("ideal", "Reckoned from the encoders."),
-      odometry_type<OdometryErrors<100>>("noisy", "Reckoned from encoders with noise that adds up.")};
+                    &has<hal::DifferentialDrive>, &make_slanted, &describe_options<Slant>)};
+  add_levels<EncoderSensor>(types, "What the wheels rolled, with noise where asked for.", "What the wheels rolled.",
+                            "What the wheels rolled, with noise that adds up.");
+  add_levels<OdometrySensor>(types, "Reckoned from the encoders; noise where asked for.", "Reckoned from the encoders.",
+                             "Reckoned from encoders with noise that adds up.");
+  return types;
 }
 
 }  // namespace tandem::core

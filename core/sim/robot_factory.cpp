@@ -367,7 +367,7 @@ std::shared_ptr<const void> RobotFactory::read_params(const RobotGroup& group, c
 bool RobotFactory::read_devices(const RobotGroup& group, hal::Role role, GroupFactories& factories,
                                 Problems& problems) {
   const ControllerConfig& config = scenario_.controllers[group.config];
-  DeviceSetup setup{*group.kind, *group.item, 1.0 / static_cast<double>(scenario_.ticks_per_second), &stores_.fields};
+  DeviceSetup setup{*group.kind, group.item, 1.0 / static_cast<double>(scenario_.ticks_per_second), &stores_.fields};
   bool good = true;
   for (const DeviceChoice& choice : role == hal::Role::Sensor ? config.sensors : config.actuators) {
     const DeviceType* type = find_device(loader_.catalog(), choice.device, role, choice.implementation);
