@@ -6,36 +6,12 @@
 #include <string_view>
 #include <vector>
 
+#include "core/config/schema_element.hpp"
+#include "core/config/schema_real.hpp"
 #include "core/scenario/scenario.hpp"
-#include "hal/params.hpp"
 #include "hal/robot_kind.hpp"
 
 namespace tandem::core::schema {
-
-using hal::kAny;
-using hal::kNotNegative;
-using hal::ParamVisitor;
-namespace unit = hal::unit;
-
-inline constexpr double kLargestArena_m = 1e6;
-inline constexpr double kLargestQuantity = 1e8;
-inline constexpr double kSmallest_m = 1e-6;
-
-inline constexpr std::string_view kAnything = "*";         ///< as children: any element
-inline constexpr std::string_view kRobotKind = "ROBOT";    ///< in children: every kind of robot that the program knows
-inline constexpr std::string_view kFieldKind = "FIELD";    ///< … every field of which files say something
-inline constexpr std::string_view kMediumKind = "MEDIUM";  ///< … and every kind of medium
-inline constexpr std::string_view kObserverKind = "OBSERVER";  ///< … and of observer
-inline constexpr std::string_view kRunPartKind = "RUN_PART";   ///< … and of part that joins a run
-inline constexpr std::string_view kTrackerKind = "TRACKER";    ///< … and of tracker
-
-/// What an element is and holds. Lists are names separated by spaces.
-struct ElementInfo {
-  std::string_view name;  ///< as written; "configuration" and "robot" stand for names of controllers and of kinds
-  std::string_view doc;
-  std::string_view required = {};
-  std::string_view children = {};
-};
 
 struct Root {
   static constexpr ElementInfo kElement{
@@ -112,9 +88,8 @@ struct FittedModel {
   void describe(ParamVisitor& v) { v.text("kind", kind, "Of the robots that it holds for."); }
 };
 
-struct Framework {
+struct Framework : Bare {
   static constexpr ElementInfo kElement{"framework", "How the run goes.", "", "system experiment profiling time"};
-  void describe(ParamVisitor&) {}
 };
 
 struct System {
@@ -194,9 +169,8 @@ struct Peers {
   }
 };
 
-struct Controllers {
+struct Controllers : Bare {
   static constexpr ElementInfo kElement{"controllers", "Configurations of controllers.", "", kAnything};
-  void describe(ParamVisitor&) {}
 };
 
 struct Configuration {
@@ -212,17 +186,15 @@ struct Configuration {
   }
 };
 
-struct Sensors {
+struct Sensors : Bare {
   static constexpr ElementInfo kElement{
       "sensors", "The sensors that the controller may take, each with its implementation= and options.", "", kAnything};
-  void describe(ParamVisitor&) {}
 };
 
-struct Actuators {
+struct Actuators : Bare {
   static constexpr ElementInfo kElement{
       "actuators", "The actuators that the controller may take, each with its implementation= and options.", "",
       kAnything};
-  void describe(ParamVisitor&) {}
 };
 
 struct Hook {
@@ -255,10 +227,9 @@ struct Arena {
 };
 
 /// What fields of every kind have: nothing; the attributes are the kind's own.
-struct FieldElement {
+struct FieldElement : Bare {
   static constexpr ElementInfo kElement{"field", "A field over the arena, written with its name, e.g. <floor>.", "",
                                         kAnything};
-  void describe(ParamVisitor&) {}
 };
 
 struct Box {
@@ -368,170 +339,9 @@ struct Battery {
   }
 };
 
-struct Bridge {
-  static constexpr ElementInfo kElement{
-      "bridge", "Makes the robot stand for a real one on this link. Further attributes are those of its kind.", "link",
-      kAnything};
-  std::string link, rearm = "proved", missing = "refuse";
-  double timeout_s = 0.5, settle_s = 0.3, ramp_m_s2 = 0.25, connect_s = 15.0, stop_s = 1.0;
-  void describe(ParamVisitor& v) {
-    v.text("link", link, "Where the real robot is, e.g. serial:/dev/ttyUSB0@115200.");
-    v.number("timeout", timeout_s, unit::s, {0.05, 60.0},
-             "Age of the last answer from which the robot counts as lost and is stopped.");
-    v.text("rearm", rearm,
-           "What lets the robot drive again after a stop: proved (a short outage ends by itself, all else waits for a "
-           "person), operator (every stop waits for a person), after a time in which all was well, never. Whatever it "
-           "says: a robot that is not proved to be the one that was armed waits for a person, who names it.");
-    v.number("settle_after", settle_s, unit::s, {0.0, 60.0},
-             "Before it drives, all must have been well for this long.");
-    v.number("rearm_ramp", ramp_m_s2, unit::m_s2, {0.001, 100.0}, "Its largest speed then grows from 0 by this.");
-    static constexpr std::array<std::string_view, 3> kMissing = {"refuse", "simulate", "wait"};
-    v.choice("missing", missing, kMissing,
-             "When it is not there at the start: refuse to run, run with a simulated robot instead, or wait for it.");
-    v.number("connect_timeout", connect_s, unit::s, {0.1, 3600.0}, "How long it is waited for before it is missing.");
-    v.number("stop_timeout", stop_s, unit::s, {0.1, 60.0}, "How long it has to confirm its stop at the end.");
-  }
-};
-
-struct Peer {
-  static constexpr ElementInfo kElement{
-      "peer", "The robot's controller steps elsewhere, in lock-step: on a board, in another program, behind a wire."};
-  std::string link;
-  void describe(ParamVisitor& v) {
-    v.text("link", link,
-           "Left out: the peer connects to the port of <peers listen>. Else where it is, serial:/dev/ttyUSB0@115200 or "
-           "tcp:HOST:PORT; or emulated:FIRMWARE, a bridge and the emulated firmware in this program.");
-  }
-};
-
-struct Tracker {
-  static constexpr ElementInfo kElement{"tracker", "Where a real robot's pose comes from."};
-  std::string source = "auto", id;
-  double turn_rad = 0.0, lost_m = 0.1, height_m = -1.0;
-  Vec3 offset{};
-  void describe(ParamVisitor& v) {
-    static constexpr std::array<std::string_view, 4> kSources = {"auto", "odometry", "positioning", "fused"};
-    v.choice("source", source, kSources,
-             "odometry: its wheels alone; positioning: what it says itself; fused: wheels, gyroscope and <trackers>; "
-             "auto: fused where the file has trackers and the robot wheels, else one of the others.");
-    v.text("id", id, "Names or tags by which trackers know it, separated by spaces; left out: its id.");
-    v.number("turn", turn_rad, unit::deg, kAny, "By which the tag on it is turned against its forward axis.");
-    v.vector("offset", offset, unit::m, "Where the tag's centre is on it: forward, to the left; the third is 0.");
-    v.number("height", height_m, unit::m, {-1.0, 10.0},
-             "Of the tag above the floor, for cameras; negative: that of the robot's body.");
-    v.number("lost_above", lost_m, unit::m, {0.001, 100.0},
-             "It stands while its fused pose is known no better: standard deviation.");
-  }
-};
-
-struct Trackers {
-  static constexpr ElementInfo kElement{"trackers", "What sees real robots from outside.", "", kTrackerKind};
-  void describe(ParamVisitor&) {}
-};
-
-/// What trackers of every kind have; the rest of the attributes are the kind's own.
-struct TrackerElement {
-  static constexpr ElementInfo kElement{
-      "tracker_kind", "A tracker, written with the name of its kind, e.g. <udp>; further attributes are the kind's.",
-      "", kAnything};
-  std::string id, clock = "own";
-  double latency_s = 0.0, sd_m = 0.003, sd_rad = 0.02, turn_rad = 0.0;
-  Vec3 origin{};
-  void describe(ParamVisitor& v) {
-    static constexpr std::array<std::string_view, 3> kClocks = {"own", "unix", "monotonic"};
-    v.text("id", id, "Name; left out: that of its kind.");
-    v.choice("clock", clock, kClocks,
-             "Of its stamps: own, whose offset is found out; unix, the date; monotonic, CLOCK_MONOTONIC of this "
-             "computer.");
-    v.number("latency", latency_s, unit::s, {0.0, 2.0},
-             "From exposure to arrival, at least: for a clock of its own, or where there are no stamps.");
-    v.number("sd", sd_m, unit::m, {1e-6, 10.0}, "Standard deviation of x and y, where sightings do not say.");
-    v.number("sd_heading", sd_rad, unit::rad, {1e-6, 3.0}, "Standard deviation of headings, likewise.");
-    v.vector("origin", origin, unit::m, "Where the origin of its frame lies in the arena.");
-    v.number("turn", turn_rad, unit::deg, kAny, "By which its frame is turned, counter-clockwise.");
-  }
-};
-
-struct Safety {
-  static constexpr ElementInfo kElement{
-      "safety", "Where real robots may go, how fast, and whom they keep from. Simulated robots are not held.", "",
-      "fence keep_out zone"};
-  std::string avoid = "real";
-  double apart_m = 0.01, latency_s = 0.05;
-  void describe(ParamVisitor& v) {
-    static constexpr std::array<std::string_view, 3> kAvoid = {"none", "real", "all"};
-    v.choice("avoid", avoid, kAvoid,
-             "Whom commands may not run a real robot into: nobody; other real robots; these and all that is virtual.");
-    v.number("apart", apart_m, unit::m, {0.0, 10.0}, "Left between bodies, and between a body and an area's edge.");
-    v.number("latency", latency_s, unit::s, {0.0, 10.0},
-             "Until a command moves the robot, at least; a link's measured round trip counts where it is longer.");
-  }
-};
-
-inline constexpr double kHighest_m = 1000.0;  ///< of an area that has no upper end
-
-struct FenceElement {
-  static constexpr ElementInfo kElement{"fence", "Real robots stay in it with their whole bodies.", "points"};
-  std::string id, points;
-  double height_m = kHighest_m;
-  void describe(ParamVisitor& v) {
-    v.text("id", id, "Name, for people.");
-    v.text("points", points, "Its corners in order, \"x,y x,y …\"; bare numbers are in m. It may be concave.");
-    v.number("height", height_m, unit::m, {kSmallest_m, kHighest_m}, "Nothing that flies rises above it.");
-  }
-};
-
-struct KeepOut {
-  static constexpr ElementInfo kElement{"keep_out", "Real robots stay out of it with their whole bodies.", "points"};
-  std::string id, points;
-  double from_m = 0.0, to_m = kHighest_m;
-  void describe(ParamVisitor& v) {
-    v.text("id", id, "Name, for people.");
-    v.text("points", points, "Its corners in order, \"x,y x,y …\"; bare numbers are in m. It may be concave.");
-    v.number("from", from_m, unit::m, {0.0, kHighest_m}, "Its lower end: what is below passes under it.");
-    v.number("to", to_m, unit::m, {0.0, kHighest_m}, "Its upper end: what flies higher passes over it.");
-  }
-};
-
-struct Zone {
-  static constexpr ElementInfo kElement{"zone", "Real robots are no faster in it.", "points max_speed"};
-  std::string id, points;
-  double from_m = 0.0, to_m = kHighest_m, max_speed_m_s = 0.0;
-  void describe(ParamVisitor& v) {
-    v.text("id", id, "Name, for people.");
-    v.text("points", points, "Its corners in order, \"x,y x,y …\"; bare numbers are in m. It may be concave.");
-    v.number("max_speed", max_speed_m_s, unit::m_s, {1e-3, 1000.0}, "Of a body any part of which is in it.");
-    v.number("from", from_m, unit::m, {0.0, kHighest_m}, "Its lower end.");
-    v.number("to", to_m, unit::m, {0.0, kHighest_m}, "Its upper end.");
-  }
-};
-
-struct Desk {
-  static constexpr ElementInfo kElement{
-      "desk", "Who commands real robots besides the terminal and the window, and robots that stand by.", "", "spare"};
-  std::string lcm, channel = "tandem/desk";
-  bool hold = false;
-  void describe(ParamVisitor& v) {
-    v.text("lcm", lcm, "Where commands come over LCM: udpm://GROUP:PORT?ttl=N; left out: nowhere.");
-    v.text("channel", channel, "Their channel; answers go to CHANNEL/reply.");
-    v.flag("hold", hold, "The robots are connected, stand, and wait for somebody to start the run.");
-  }
-};
-
-struct Spare {
-  static constexpr ElementInfo kElement{"spare", "A real robot that may take another one's place in a run.", "id link"};
-  std::string id, link, seen_as;
-  void describe(ParamVisitor& v) {
-    v.text("id", id, "How it is called.");
-    v.text("link", link, "Where it is, as in <bridge>.");
-    v.text("seen_as", seen_as, "Names or tags by which trackers know it, separated by spaces; left out: its id.");
-  }
-};
-
-struct DistributeElement {
+struct DistributeElement : Bare {
   static constexpr ElementInfo kElement{"distribute", "Places many of one thing, without overlap.", "",
                                         "position orientation entity"};
-  void describe(ParamVisitor&) {}
 };
 
 /// Which attribute belongs to which method of drawing.
@@ -589,10 +399,9 @@ struct Entity {
   }
 };
 
-struct Engines {
+struct Engines : Bare {
   static constexpr ElementInfo kElement{
       "physics_engines", "What moves the bodies. None: one of the first kind for the whole arena.", "", kAnything};
-  void describe(ParamVisitor&) {}
 };
 
 /// What engines of every kind have; the rest of the attributes are the engine's own.
@@ -608,10 +417,9 @@ struct Engine {
   }
 };
 
-struct Boundaries {
+struct Boundaries : Bare {
   static constexpr ElementInfo kElement{
       "boundaries", "The region of an engine: a right prism. Left out: the whole arena.", "", "top bottom sides"};
-  void describe(ParamVisitor&) {}
 };
 
 struct Top {
@@ -626,10 +434,9 @@ struct Bottom {
   void describe(ParamVisitor& v) { v.number("height", height_m, unit::m, kAny, "Height above the floor."); }
 };
 
-struct Sides {
+struct Sides : Bare {
   static constexpr ElementInfo kElement{"sides", "Outline of a region: its corners in order, at least three.", "",
                                         "vertex"};
-  void describe(ParamVisitor&) {}
 };
 
 struct Vertex {
@@ -644,9 +451,8 @@ struct Vertex {
   }
 };
 
-struct Media {
+struct Media : Bare {
   static constexpr ElementInfo kElement{"media", "What carries signals.", "", kMediumKind};
-  void describe(ParamVisitor&) {}
 };
 
 /// What media of every kind have; the rest of the attributes are the kind's own.
@@ -706,27 +512,23 @@ struct Record {
 };
 
 /// What observers of every kind have: nothing; the attributes are the kind's own.
-struct ObserverElement {
+struct ObserverElement : Bare {
   static constexpr ElementInfo kElement{"observer", "What looks at the world after every tick, written with its name.",
                                         "", kAnything};
-  void describe(ParamVisitor&) {}
 };
 
-struct RunParts {
+struct RunParts : Bare {
   static constexpr ElementInfo kElement{"run", "What joins the run: parts of plug-ins.", "", "RUN_PART"};
-  void describe(ParamVisitor&) {}
 };
 
 /// What such parts of every kind have: nothing; the attributes are the kind's own.
-struct RunPartElement {
+struct RunPartElement : Bare {
   static constexpr ElementInfo kElement{"run_part", "What joins a run, written with its name.", "", kAnything};
-  void describe(ParamVisitor&) {}
 };
 
-struct Visualization {
+struct Visualization : Bare {
   static constexpr ElementInfo kElement{
       "visualization", "Views of ARGoS; left out with a warning, but for their camera placements.", "", kAnything};
-  void describe(ParamVisitor&) {}
 };
 
 struct Trajectory {
