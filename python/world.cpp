@@ -10,9 +10,6 @@
 #include "core/hook/hook.hpp"
 #include "core/schedule/thread_pool.hpp"
 #include "core/space/stores.hpp"
-#include "core/view/picture.hpp"
-#include "core/view/render.hpp"
-#include "hal/output_file.hpp"
 #include "library/open_world.hpp"
 #include "python/guests.hpp"
 
@@ -231,7 +228,7 @@ void World::step_unlocked() noexcept {
 void World::call_policies() {
   if (policies_.empty() || session_->world->state() == core::RunState::Failed) return;
   session_->writes = true;
-  const auto all = swarms();
+  const auto all = Swarm::all(session_);
   for (const auto& [controller, policy] : policies_) {
     for (const auto& swarm : all) {
       if (swarm->controller() == controller) policy(swarm);
@@ -369,156 +366,10 @@ void World::add_policy(const std::string& controller, py::object policy) {
   policies_.emplace_back(controller, std::move(policy));
 }
 
-// --- looking ---
-
-std::vector<std::shared_ptr<Swarm>> World::swarms() {
-  const Use use(*this);
-  return Swarm::all(session_);
+bool World::has_guests() const noexcept {
+  return !controller_keys_.empty() || !hook_keys_.empty() || !request_.driven.empty() || !policies_.empty();
 }
 
-std::vector<std::string> World::ids() {
-  const Use use(*this);
-  const core::Space& space = session_->world->space();
-  std::vector<std::string> names;
-  for (std::size_t i = 0; i < space.robot_count(); ++i) names.push_back(space.robot_name(space.robot(i)));
-  return names;
-}
-
-py::array World::poses() {
-  const Use use(*this);
-  const core::Space& space = session_->world->space();
-  py::array_t<double> made({static_cast<py::ssize_t>(space.robot_count()), py::ssize_t{3}});
-  double* at = made.mutable_data();
-  for (std::size_t i = 0; i < space.robot_count(); ++i) {
-    const core::Pose pose = space.pose(space.robot(i));
-    *at++ = pose.x_m;
-    *at++ = pose.y_m;
-    *at++ = pose.heading_rad();
-  }
-  return made;
-}
-
-core::RobotId World::robot_of(const std::string& id) {
-  const core::RobotId robot = session_->world->space().find_robot(id);
-  if (!session_->world->space().contains(robot)) throw py::key_error("there is no robot '" + id + "'");
-  return robot;
-}
-
-py::tuple World::pose(const std::string& robot) {
-  const Use use(*this);
-  const core::Pose pose = session_->world->space().pose(robot_of(robot));
-  return py::make_tuple(pose.x_m, pose.y_m, pose.heading_rad());
-}
-
-void World::set_pose(const std::string& robot, double x_m, double y_m, double heading_rad) {
-  const Use use(*this);
-  if (!std::isfinite(x_m) || !std::isfinite(y_m) || !std::isfinite(heading_rad))
-    throw py::value_error("a pose is three finite numbers");
-  core::Space& space = session_->world->space();
-  const core::RobotId id = robot_of(robot);
-  core::Pose pose = space.pose(id);
-  pose.x_m = x_m;
-  pose.y_m = y_m;
-  pose.cos_h = std::cos(heading_rad);
-  pose.sin_h = std::sin(heading_rad);
-  if (const hal::Status room = space.room_for(id, pose); !room.ok()) throw py::value_error(room.error().message);
-  space.set_pose(id, pose);
-}
-
-void World::add_robot(const std::string& id, const std::string& controller, double x_m, double y_m, double heading_rad,
-                      const std::string& kind) {
-  const Use use(*this);
-  core::NewRobot wanted;
-  wanted.kind = kind;
-  wanted.id = id;
-  wanted.controller = controller;
-  wanted.pose.x_m = x_m;
-  wanted.pose.y_m = y_m;
-  wanted.pose.cos_h = std::cos(heading_rad);
-  wanted.pose.sin_h = std::sin(heading_rad);
-  const auto added = session_->world->space().add_robot(wanted);
-  if (!added.ok()) throw py::value_error(added.error().message);
-}
-
-void World::remove_robot(const std::string& robot) {
-  const Use use(*this);
-  session_->world->space().remove_robot(robot_of(robot));
-}
-
-void World::move_object(const std::string& object, double x_m, double y_m, double heading_rad) {
-  const Use use(*this);
-  core::Space& space = session_->world->space();
-  const core::ObjectId id = space.find_object(object);
-  if (!space.contains(id)) throw py::key_error("there is no object '" + object + "'");
-  core::Object changed = space.objects()[id.index];
-  changed.x_m = x_m;
-  changed.y_m = y_m;
-  changed.cos_h = std::cos(heading_rad);
-  changed.sin_h = std::sin(heading_rad);
-  if (const hal::Status moved = space.set_object(id, changed); !moved.ok())
-    throw py::value_error(moved.error().message);
-}
-
-py::dict World::objects() {
-  const Use use(*this);
-  py::dict all;
-  for (const core::Object& object : session_->world->space().objects()) {
-    if (!object.alive) continue;
-    all[py::str(object.id)] = py::make_tuple(object.x_m, object.y_m, std::atan2(object.sin_h, object.cos_h));
-  }
-  return all;
-}
-
-py::dict World::measures() {
-  const Use use(*this);
-  py::dict all;
-  for (const auto& [name, value] : session_->world->measures().all()) all[py::str(name)] = value;
-  return all;
-}
-
-void World::set_measure(const std::string& name, double value) {
-  const Use use(*this);
-  if (session_->hook_context == nullptr) throw std::runtime_error("measures are set by hooks, while these are called");
-  session_->hook_context->measures.set(name, value);
-}
-
-py::dict World::incidents() {
-  const Use use(*this);
-  const core::Incidents& all = session_->world->incidents();
-  py::dict made;
-  made["commands_clamped"] = all.commands_clamped;
-  made["commands_not_finite"] = all.commands_not_finite;
-  made["controllers_thrown"] = all.controllers_thrown;
-  made["bodies_escaped"] = all.bodies_escaped;
-  made["first"] = all.first;
-  return made;
-}
-
-std::vector<std::pair<std::string, std::string>> World::messages() {
-  const Use use(*this);
-  return session_->messages();
-}
-
-std::int64_t World::tick() {
-  const Use use(*this);
-  return session_->world->tick();
-}
-double World::time_s() {
-  const Use use(*this);
-  return static_cast<double>(session_->world->tick()) / static_cast<double>(session_->world->ticks_per_second());
-}
-std::int64_t World::ticks_per_second() {
-  const Use use(*this);
-  return session_->world->ticks_per_second();
-}
-std::uint64_t World::seed() {
-  const Use use(*this);
-  return session_->world->seed();
-}
-std::uint64_t World::fingerprint() {
-  const Use use(*this);
-  return session_->world->state_hash();
-}
 std::string World::state() {
   if (closed()) return "closed";
   const Use use(*this);
@@ -531,69 +382,6 @@ std::string World::state() {
       break;
   }
   return "failed";
-}
-std::string World::settings() {
-  const Use use(*this);
-  return core::effective_settings(session_->world->scenario());
-}
-std::string World::name() {
-  const Use use(*this);
-  return session_->world->scenario().name;
-}
-double World::length_s() {
-  const Use use(*this);
-  return length_s_;
-}
-double World::floor(double x_m, double y_m) {
-  const Use use(*this);
-  return session_->world->space().floor(x_m, y_m);
-}
-bool World::has_guests() const noexcept {
-  return !controller_keys_.empty() || !hook_keys_.empty() || !request_.driven.empty() || !policies_.empty();
-}
-std::string World::text() {
-  if (closed()) return "<tandem.World, closed>";
-  const Use use(*this);
-  return "<tandem.World '" + session_->world->scenario().name + "' of " +
-         std::to_string(session_->world->space().robot_count()) + " robots, tick " +
-         std::to_string(session_->world->tick()) + ", seed " + std::to_string(session_->world->seed()) + ">";
-}
-
-Picture World::picture(int size_px, bool ids, bool axes) {
-  const Use use(*this);
-  if (size_px < 50 || size_px > 20'000) throw py::value_error("the size of a picture is 50 to 20000 pixels");
-  core::World& world = *session_->world;
-  core::PictureOptions options;
-  options.experiment = world.scenario().name;
-  options.seed = world.seed();
-  options.time_ns = hal::time_of_tick(world.tick(), world.ticks_per_second());
-  options.ticks_done = world.tick();
-  options.look.size_px = size_px;
-  options.look.ids = ids;
-  options.look.axes = axes;
-  return {core::to_svg(core::drawing_of(world.space(), options), options.look)};
-}
-
-py::bytes Picture::png() const {
-  const auto made = core::render(svg, core::PictureFormat::Png);
-  if (!made.ok()) throw std::runtime_error(made.error().message);
-  return py::bytes(made.value());
-}
-
-py::object Picture::shown_png() const {
-  const auto made = core::render(svg, core::PictureFormat::Png);
-  if (!made.ok()) return py::none();  // notebooks have the SVG
-  return py::bytes(made.value());
-}
-
-void Picture::save(const std::string& path) const {
-  const auto format = core::picture_format(path);
-  if (!format.ok()) throw py::value_error(format.error().message);
-  const auto made =
-      format.value() == core::PictureFormat::Svg ? hal::Result<std::string>(svg) : core::render(svg, format.value());
-  if (!made.ok()) throw std::runtime_error(made.error().message);
-  const hal::Status written = hal::write_whole_file(path, "picture", made.value());
-  if (!written.ok()) throw std::runtime_error(written.error().message);
 }
 
 // --- many worlds ---
@@ -673,17 +461,11 @@ void bind_world(py::module_& m) {
       .def_property_readonly("tick", [](const Snapshot& s) { return s.moment.tick(); })
       .def_property_readonly(
           "bytes", [](const Snapshot& s) { return s.moment.bytes(); }, "About how much memory it takes.");
-  py::class_<Picture>(m, "Picture", "A picture of a world from above. Notebooks show it.")
-      .def_readonly("svg", &Picture::svg)
-      .def("_repr_svg_", [](const Picture& p) { return p.svg; })
-      .def("_repr_png_", &Picture::shown_png)
-      .def("png", &Picture::png, "The picture as the bytes of a PNG file.")
-      .def("save", &Picture::save, py::arg("path"), "Writes a file: .svg, .png or .pdf.");
-  py::class_<World, std::shared_ptr<World>>(m, "World", py::dynamic_attr(),
-                                            py::custom_type_setup([](PyHeapTypeObject* heap) {
-                                              heap->ht_type.tp_traverse = &traverse_world;
-                                              heap->ht_type.tp_clear = &clear_world;
-                                            }))
+  WorldClass world(m, "World", py::dynamic_attr(), py::custom_type_setup([](PyHeapTypeObject* heap) {
+                     heap->ht_type.tp_traverse = &traverse_world;
+                     heap->ht_type.tp_clear = &clear_world;
+                   }));
+  world
       .def(py::init([](std::string file, std::string text, std::optional<std::uint64_t> seed,
                        std::optional<std::int64_t> threads, std::vector<std::string> parameters, py::dict controllers,
                        std::vector<std::string> driven, py::list hooks, std::vector<std::string> plugins) {
@@ -706,42 +488,11 @@ void bind_world(py::module_& m) {
       .def_property_readonly("closed", &World::closed)
       .def("add_policy", &World::add_policy, py::arg("controller"), py::arg("policy"),
            "Has policy(swarm) called after every step, for the robots under that configuration.")
-      .def_property_readonly("swarms", &World::swarms, "All robots, by kind and controller.")
-      .def_property_readonly("ids", &World::ids, "Ids of all robots, in the order of the file.")
-      .def_property_readonly("poses", &World::poses,
-                             "x and y in m and heading in rad of all robots, in the order of ids; a copy.")
-      .def("pose", &World::pose, py::arg("robot"), "(x, y, heading) of a robot, in m and rad.")
-      .def("set_pose", &World::set_pose, py::arg("robot"), py::arg("x"), py::arg("y"), py::arg("heading") = 0.0,
-           "Puts a robot somewhere else; an error where there is no room.")
-      .def("add_robot", &World::add_robot, py::arg("id"), py::arg("controller"), py::arg("x"), py::arg("y"),
-           py::arg("heading") = 0.0, py::arg("kind") = "",
-           "Adds a robot under a configuration of the file. kind: where absent, that of the first robot there.")
-      .def("remove_robot", &World::remove_robot, py::arg("robot"), "Takes a robot out; its row stays, not alive.")
-      .def("move_object", &World::move_object, py::arg("object"), py::arg("x"), py::arg("y"), py::arg("heading") = 0.0,
-           "Puts a box or a cylinder somewhere else.")
-      .def_property_readonly("objects", &World::objects, "(x, y, heading) of every box and cylinder, by id.")
-      .def_property_readonly("measures", &World::measures, "What hooks measure, by name.")
-      .def("set_measure", &World::set_measure, py::arg("name"), py::arg("value"), "For hooks: publishes a number.")
-      .def_property_readonly("incidents", &World::incidents,
-                             "What went wrong with commands, controllers and bodies so far.")
-      .def_property_readonly("messages", &World::messages,
-                             "(severity, text) of what the world and its controllers told.")
-      .def_property_readonly("tick", &World::tick, "Ticks done.")
-      .def_property_readonly("time", &World::time_s, "Time of the run in s.")
-      .def_property_readonly("ticks_per_second", &World::ticks_per_second)
-      .def_property_readonly("seed", &World::seed)
-      .def_property_readonly("fingerprint", &World::fingerprint, "A number that is equal for equal states.")
       .def_property_readonly("state", &World::state, "'running', 'done', 'finished', 'failed' or 'closed'.")
-      .def_property_readonly("settings", &World::settings, "The experiment as XML, with every default written out.")
-      .def_property_readonly("name", &World::name)
-      .def_property_readonly("length", &World::length_s, "Length of the run in s; 0: it has none.")
       .def_property_readonly("parameters", &World::parameters,
                              "What was set on top of the experiment, as 'path=value'.")
-      .def_property_readonly("has_guests", &World::has_guests, "Whether something of Python takes part.")
-      .def("floor", &World::floor, py::arg("x"), py::arg("y"), "Reflectance of the floor, 0 black to 1 white.")
-      .def("picture", &World::picture, py::arg("size") = 600, py::arg("ids") = false, py::arg("axes") = false,
-           "The world from above, as notebooks show it.")
-      .def("__repr__", &World::text);
+      .def_property_readonly("has_guests", &World::has_guests, "Whether something of Python takes part.");
+  bind_looks(m, world);
   py::class_<Group>(m, "Group", "Worlds that are stepped side by side on threads of their own.")
       .def(py::init<std::vector<std::shared_ptr<World>>, std::size_t>(), py::arg("worlds"), py::arg("threads"))
       .def("step", &Group::step, py::arg("ticks") = 1, "Each world makes so many ticks, fewer where its run ends.")

@@ -37,14 +37,6 @@ struct Snapshot {
   core::Snapshot moment;
 };
 
-/// A picture as SVG, which notebooks show.
-struct Picture {
-  std::string svg;
-  py::bytes png() const;
-  py::object shown_png() const;  ///< as notebooks ask for it: None where it cannot be made
-  void save(const std::string& path) const;
-};
-
 /// What a world is made of.
 struct WorldRequest {
   std::string file;  ///< or the name under which `text` is spoken of
@@ -89,34 +81,12 @@ class World {
   void raise_failure();
   std::int64_t steps_left(std::optional<double> until_s);
 
-  std::vector<std::shared_ptr<Swarm>> swarms();
-  std::vector<std::string> ids();
-  py::array poses();
-  py::tuple pose(const std::string& robot);
-  void set_pose(const std::string& robot, double x_m, double y_m, double heading_rad);
-  void add_robot(const std::string& id, const std::string& controller, double x_m, double y_m, double heading_rad,
-                 const std::string& kind);
-  void remove_robot(const std::string& robot);
-  py::dict objects();
-  void move_object(const std::string& object, double x_m, double y_m, double heading_rad);
-  py::dict measures();
-  void set_measure(const std::string& name, double value);
-  py::dict incidents();
-  std::vector<std::pair<std::string, std::string>> messages();
-  std::int64_t tick();
-  double time_s();
-  std::int64_t ticks_per_second();
-  std::uint64_t seed();
-  std::uint64_t fingerprint();
   std::string state();
-  std::string settings();
-  std::string name();
-  double length_s();
-  double floor(double x_m, double y_m);
-  Picture picture(int size_px, bool ids, bool axes);
+  double length_s() const noexcept { return length_s_; }
   const std::vector<std::string>& parameters() const noexcept { return parameters_; }
   bool has_guests() const noexcept;
-  std::string text();
+  /// While it is used.
+  const std::shared_ptr<Session>& session() const noexcept { return session_; }
 
  private:
   friend class Use;
@@ -124,7 +94,6 @@ class World {
   core::Scenario read(const std::vector<std::string>& parameters, std::string& warnings) const;
   void invite(core::Scenario& scenario) const;
   bool tick_unlocked();
-  core::RobotId robot_of(const std::string& id);
 
   std::shared_ptr<Session> session_;
   WorldRequest request_;
@@ -151,6 +120,9 @@ class Use {
   World& world_;
 };
 
+using WorldClass = py::class_<World, std::shared_ptr<World>>;
 void bind_world(py::module_& m);
+/// What is seen of a world and changed in it between ticks.
+void bind_looks(py::module_& m, WorldClass& world);
 
 }  // namespace tandem::python
