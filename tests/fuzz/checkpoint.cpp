@@ -80,7 +80,7 @@ void remember(const std::string& input) {
 
   std::string bytes = writer.bytes();
   for (std::size_t i = 0; i + 2 < input.size() && i < 30; i += 3) {
-    const std::size_t at = static_cast<unsigned char>(input[i]) | static_cast<unsigned char>(input[i + 1]) << 8;
+    const std::size_t at = static_cast<unsigned char>(input[i]) + 256U * static_cast<unsigned char>(input[i + 1]);
     bytes[at % bytes.size()] = input[i + 2];
   }
   for (const std::string& some : {bytes, input, bytes.substr(0, input.size() % bytes.size())}) {
