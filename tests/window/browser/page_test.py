@@ -46,7 +46,8 @@ class WithBrowser(unittest.TestCase):
 
     def walk_to(self, tick):
         """Steps until so many ticks are done."""
-        self.page.ask({"do": "step", "ticks": tick - self.tick()})
+        answer = self.page.ask({"do": "step", "ticks": tick - self.tick()})
+        self.assertTrue(answer["ok"], answer)
         self.page.until(f"tick {tick}", "tandem.world.frame.tick === arguments[0]", tick)
 
     def poses(self):
@@ -168,12 +169,13 @@ class TestRun(WithBrowser):
         page.find(value).click()
         page.find(".menu button:nth-child(2)").click()
         page.js("(document.querySelector('.stop select').value = '>', document.querySelector('.stop input[type=number]').value = 0.34)")
+        self.addCleanup(page.ask, {"do": "stop_when", "clear": True})  # else it stops the runs of the other tests
         page.find(".stop button.main").click()
         page.until("it is set", "document.querySelector('.stop').hidden")
         page.ask({"do": "play", "speed": None})
         page.until("the stop", "tandem.world.state.paused && tandem.world.state.stopped_by")
+        page.until("where it stopped", "tandem.world.frame.tick === tandem.world.state.tick")  # it may come behind the state
         self.assertGreater(page.js("tandem.world.poseOf('ep1').y"), 0.34)
-        page.ask({"do": "stop_when", "clear": True})
 
     def test_a_robot_is_dragged_and_the_drag_undone(self):
         page = self.page
