@@ -3,7 +3,9 @@
 #include "app/catalog.hpp"
 #include "app/experiment/plugin_folders.hpp"
 #include "app/module/modules.hpp"
+#include "app/outputs/run_record.hpp"
 #include "core/config/reader.hpp"
+#include "core/run/named_parts.hpp"
 #include "hal/xml/xml.hpp"
 
 namespace tandem::library {
@@ -51,6 +53,16 @@ std::optional<core::Scenario> read_scenario(hal::PluginLoader& loader, const Wor
   return scenario;
 }
 
+void add_parts(core::Run& run, hal::PluginLoader& loader, const std::string& record, core::Problems& problems) {
+  core::add_named_parts(run, loader.catalog(), problems);
+  if (record.empty()) return;
+  auto opened = app::RecordPart::open(run.world(), loader, record);
+  if (opened.ok())
+    run.add(std::move(opened).value());
+  else
+    problems.push_back({run.world().scenario().file, 0, opened.error().message, false});
+}
+
 hal::Result<std::unique_ptr<OpenWorld>> open_world(const WorldRequest& request) {
   std::unique_ptr<hal::PluginLoader> loader(
       new hal::PluginLoader(app::plugin_folders(), app::catalog(), app::on_demand()));
@@ -63,7 +75,11 @@ hal::Result<std::unique_ptr<OpenWorld>> open_world(const WorldRequest& request) 
   options.log = request.log;
   auto world = core::World::make(*scenario, *loader, options, problems);
   if (world == nullptr) return hal::Error{errors_of(problems)};
-  return std::make_unique<OpenWorld>(std::move(loader), std::move(world), std::move(problems));
+  auto opened = std::make_unique<OpenWorld>(std::move(loader), std::move(world), std::move(problems));
+  core::Problems of_parts;
+  add_parts(opened->run(), opened->loader(), request.record, of_parts);
+  if (core::has_errors(of_parts)) return hal::Error{errors_of(of_parts)};
+  return opened;
 }
 
 }  // namespace tandem::library

@@ -5,17 +5,18 @@
 //
 //   auto opened = tandem::library::open_world({.file = "flock.xml", .seed = 7});
 //   if (!opened.ok()) …                                    // opened.error().message: every problem, with its line
-//   tandem::core::World& world = opened.value()->world();
-//   world.start();
-//   while (world.state() == tandem::core::RunState::Running && world.tick() < 600) world.step();
-//   world.finish();
+//   tandem::core::Run& run = opened.value()->run();
+//   run.add(std::make_unique<tandem::core::Length>(600));
+//   run.go();                                              // or begin, tick and end, with a loop of one's own
 #pragma once
+#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "core/run/run.hpp"
 #include "core/sim/world.hpp"
 #include "hal/log.hpp"
 #include "hal/plugin_loader.hpp"
@@ -31,23 +32,34 @@ struct WorldRequest {
   std::vector<std::string> plugins = {};     ///< libraries beside those that the experiment names
   std::optional<std::uint64_t> seed = {};    ///< overrides the file's
   std::optional<std::int64_t> threads = {};  ///< overrides the file's; 0 and 1: the caller's thread alone
+  std::string record = {};                   ///< a record of the run is written there; empty: none
   hal::Log log = {};                         ///< messages of the world, its hooks and controllers
 };
 
 /// The experiment of a request, with its plug-ins opened by `loader`, which must outlive what is made of it; `seed`,
-/// `threads` and `log` count for the world alone. Problems are appended, warnings among them; nothing when there is an
-/// error.
+/// `threads`, `record` and `log` count for the world alone. Problems are appended, warnings among them; nothing when
+/// there is an error.
 std::optional<core::Scenario> read_scenario(hal::PluginLoader& loader, const WorldRequest& request,
                                             core::Problems& problems);
 
-/// A world and the plug-ins that it lives from.
+/// Adds to a run what there is besides the world: the parts that the experiment names in <run>, and a record at
+/// `record`, of what <record> chooses; empty: none is written. Before the run begins. Problems are appended.
+void add_parts(core::Run& run, hal::PluginLoader& loader, const std::string& record, core::Problems& problems);
+
+/// A world, the plug-ins that it lives from, and its run.
 class OpenWorld {
  public:
   OpenWorld(std::unique_ptr<hal::PluginLoader> loader, std::unique_ptr<core::World> world, core::Problems warnings)
-      : loader_(std::move(loader)), world_(std::move(world)), warnings_(std::move(warnings)) {}
+      : loader_(std::move(loader)), world_(std::move(world)), warnings_(std::move(warnings)), run_(*world_, stop_) {}
 
   core::World& world() noexcept { return *world_; }
   const core::World& world() const noexcept { return *world_; }
+  /// Steps the world, with the parts that the experiment names, and yours. Goes once. Who steps the world without it
+  /// has no parts.
+  core::Run& run() noexcept { return run_; }
+  hal::PluginLoader& loader() noexcept { return *loader_; }
+  /// Ends the run before its next tick; from any thread.
+  void stop() noexcept { stop_ = true; }
   /// What the file could say better.
   const core::Problems& warnings() const noexcept { return warnings_; }
 
@@ -55,6 +67,8 @@ class OpenWorld {
   std::unique_ptr<hal::PluginLoader> loader_;  // outlives the world
   std::unique_ptr<core::World> world_;
   core::Problems warnings_;
+  std::atomic<bool> stop_{false};
+  core::Run run_;
 };
 
 /// Reads the experiment, places its robots, constructs their controllers. Robots with a `<bridge>` are simulated. Each

@@ -5,41 +5,11 @@
 
 #include "core/config/reader.hpp"
 #include "core/hook/hook.hpp"
-#include "core/view/picture.hpp"
-#include "core/view/render.hpp"
-#include "hal/output_file.hpp"
+#include "python/picture.hpp"
 #include "python/world.hpp"
 
 namespace tandem::python {
 namespace {
-
-/// A picture as SVG, which notebooks show.
-struct Picture {
-  std::string svg;
-
-  hal::Result<std::string> rendered(core::PictureFormat format) const {
-    return format == core::PictureFormat::Svg ? hal::Result<std::string>(svg) : core::render(svg, format);
-  }
-  py::bytes png() const {
-    const auto made = rendered(core::PictureFormat::Png);
-    if (!made.ok()) throw std::runtime_error(made.error().message);
-    return py::bytes(made.value());
-  }
-  /// As notebooks ask for it.
-  py::object shown_png() const {
-    const auto made = rendered(core::PictureFormat::Png);
-    if (!made.ok()) return py::none();  // notebooks have the SVG
-    return py::bytes(made.value());
-  }
-  void save(const std::string& path) const {
-    const auto format = core::picture_format(path);
-    if (!format.ok()) throw py::value_error(format.error().message);
-    const auto made = rendered(format.value());
-    if (!made.ok()) throw std::runtime_error(made.error().message);
-    const hal::Status written = hal::write_whole_file(path, "picture", made.value());
-    if (!written.ok()) throw std::runtime_error(written.error().message);
-  }
-};
 
 /// A method of the class for a function of the world behind it, which is marked as used meanwhile.
 template <class Result, class... Arguments>
@@ -162,16 +132,12 @@ py::dict incidents(core::World& world) {
 }
 
 Picture picture(core::World& world, int size_px, bool ids, bool axes) {
-  if (size_px < 50 || size_px > 20'000) throw py::value_error("the size of a picture is 50 to 20000 pixels");
   core::PictureOptions options;
   options.experiment = world.scenario().name;
   options.seed = world.seed();
   options.time_ns = hal::time_of_tick(world.tick(), world.ticks_per_second());
   options.ticks_done = world.tick();
-  options.look.size_px = size_px;
-  options.look.ids = ids;
-  options.look.axes = axes;
-  return {core::to_svg(core::drawing_of(world.space(), options), options.look)};
+  return picture_of(world.space(), std::move(options), size_px, ids, axes);
 }
 
 std::string text(World& world) {
@@ -191,13 +157,7 @@ using W = core::World;
 
 }  // namespace
 
-void bind_looks(py::module_& m, WorldClass& world) {
-  py::class_<Picture>(m, "Picture", "A picture of a world from above. Notebooks show it.")
-      .def_readonly("svg", &Picture::svg)
-      .def("_repr_svg_", [](const Picture& p) { return p.svg; })
-      .def("_repr_png_", &Picture::shown_png)
-      .def("png", &Picture::png, "The picture as the bytes of a PNG file.")
-      .def("save", &Picture::save, py::arg("path"), "Writes a file: .svg, .png or .pdf.");
+void bind_looks(WorldClass& world) {
   const auto seconds = [](W& w) { return static_cast<double>(w.tick()) / static_cast<double>(w.ticks_per_second()); };
   world.def_property_readonly("swarms", look(&Swarm::all), "All robots, by kind and controller.")
       .def_property_readonly("ids", look(&ids), "Ids of all robots, in the order of the file.")

@@ -7,6 +7,7 @@
 #include "hal/surface.hpp"
 #include "python/arrays.hpp"
 #include "python/guests.hpp"
+#include "python/picture.hpp"
 #include "python/world.hpp"
 
 namespace tandem::python {
@@ -72,5 +73,7 @@ PYBIND11_MODULE(_tandem, m) {
   m.def("changes_at_reset", &python::changes_at_reset, "Whether World.reset can take over 'path=value'.");
   python::bind_guests(m);
   python::bind_arrays(m);
+  python::bind_picture(m);
   python::bind_world(m);
+  python::bind_records(m);
 }

@@ -9,6 +9,7 @@
 #include <thread>
 #include <vector>
 
+#include "core/run/run.hpp"
 #include "core/sim/world.hpp"
 #include "hal/plugin_loader.hpp"
 
@@ -25,6 +26,8 @@ struct Session {
 
   hal::PluginLoader loader;
   std::unique_ptr<core::World> world;
+  std::atomic<bool> stop{false};              ///< the run is left before its end
+  std::unique_ptr<core::Run> run;             ///< of that world; another one after each reset
   World* owner = nullptr;                     ///< null once that is closed
   core::HookContext* hook_context = nullptr;  ///< while a hook of Python is called
   bool writes = false;                        ///< somebody may write commands between steps

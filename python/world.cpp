@@ -166,7 +166,32 @@ World::World(WorldRequest request)
     throw ExperimentError(text_of(problems, false));
   }
   if (std::string more = text_of(problems, true); !more.empty()) warnings += (warnings.empty() ? "" : "\n") + more;
+  try {
+    open_run(request_.record);
+  } catch (...) {
+    session_->owner = nullptr;
+    throw;
+  }
   warn(warnings);
+}
+
+/// A run of the world as it is now, with its parts. @throws ExperimentError
+void World::open_run(const std::string& record) {
+  session_->stop = false;
+  session_->run = std::make_unique<core::Run>(*session_->world, session_->stop);
+  core::Problems problems;
+  library::add_parts(*session_->run, session_->loader, record, problems);
+  if (!core::has_errors(problems)) return;
+  session_->run = std::make_unique<core::Run>(*session_->world, session_->stop);
+  throw ExperimentError(text_of(problems, false));
+}
+
+/// Its parts end, before its end where that did not come. The world goes on.
+void World::leave_run() {
+  if (!started_ || finished_) return;
+  session_->stop = session_->world->state() == core::RunState::Running;
+  const py::gil_scoped_release unlocked;
+  session_->run->leave();
 }
 
 World::~World() {
@@ -177,6 +202,8 @@ void World::close() {
   if (session_ == nullptr) return;
   if (uses_ > 0) throw std::runtime_error("this world is in use: it cannot be closed now");
   session_->owner = nullptr;
+  leave_run();
+  session_->run.reset();
   // Python's controllers may hold arrays, which hold the session: they go first.
   core::destroy_controllers(session_->world->space().stores());
   policies_.clear();
@@ -200,13 +227,14 @@ void World::start() {
   if (std::exchange(started_, true)) return;
   {
     const py::gil_scoped_release unlocked;
-    session_->world->start();
+    finished_ = !session_->run->begin();
   }
   raise_failure();
 }
 
 void World::raise_failure() {
   if (session_->world->state() == core::RunState::Failed) throw RunFailed(session_->world->failure());
+  if (!session_->run->failure().empty()) throw RunFailed(session_->run->failure());
 }
 
 // --- stepping ---
@@ -216,8 +244,7 @@ bool World::tick_unlocked() {
   core::World& world = *session_->world;
   if (world.state() != core::RunState::Running) return false;
   if (session_->writes) world.limit_commands();
-  world.step();
-  return world.state() == core::RunState::Running;
+  return session_->run->tick() && world.state() == core::RunState::Running;
 }
 
 void World::step_unlocked() noexcept {
@@ -292,12 +319,13 @@ void World::finish() {
   if (std::exchange(finished_, true)) return;
   {
     const py::gil_scoped_release unlocked;
-    session_->world->finish();
+    session_->run->end();
   }
   raise_failure();
 }
 
-void World::reset(std::optional<std::uint64_t> seed, const std::optional<std::vector<std::string>>& parameters) {
+void World::reset(std::optional<std::uint64_t> seed, const std::optional<std::vector<std::string>>& parameters,
+                  const std::string& record) {
   const Use use(*this, Use::How::Alone);
   core::World& world = *session_->world;
   if (parameters) {
@@ -322,14 +350,17 @@ void World::reset(std::optional<std::uint64_t> seed, const std::optional<std::ve
       warn(warnings);
     }
   }
+  leave_run();
+  finished_ = started_ = true;
   hal::Status begun;
   {
     const py::gil_scoped_release unlocked;
     begun = world.reset(seed.value_or(world.seed()));
   }
-  finished_ = false;
-  started_ = true;
+  open_run(record);
   if (!begun.ok()) throw RunFailed(begun.error().message);
+  finished_ = !session_->run->join();
+  raise_failure();
   for (const auto& [controller, policy] : policies_) {
     if (py::hasattr(policy, "reset")) policy.attr("reset")(world.seed());
   }
@@ -353,7 +384,13 @@ void World::restore(const Snapshot& snapshot) {
     back = session_->world->restore(snapshot.moment);
   }
   if (!back.ok()) throw std::runtime_error(back.error().message);
-  finished_ = false;
+  const hal::Tick tick = session_->world->tick();
+  if (finished_) {  // its run is over, and this is another
+    open_run({});
+    finished_ = !session_->run->join();
+  }
+  session_->run->tell(tick, {{"kind", "back"}, {"to", tick}});
+  raise_failure();
 }
 
 void World::add_policy(const std::string& controller, py::object policy) {
@@ -375,7 +412,8 @@ std::string World::state() {
   const Use use(*this);
   switch (session_->world->state()) {
     case core::RunState::Running:
-      return finished_ ? "finished" : "running";
+      if (finished_) return "finished";
+      return session_->run->ended_by() != nullptr ? "done" : "running";
     case core::RunState::Done:
       return "done";
     case core::RunState::Failed:
@@ -468,20 +506,21 @@ void bind_world(py::module_& m) {
   world
       .def(py::init([](std::string file, std::string text, std::optional<std::uint64_t> seed,
                        std::optional<std::int64_t> threads, std::vector<std::string> parameters, py::dict controllers,
-                       std::vector<std::string> driven, py::list hooks, std::vector<std::string> plugins) {
-             return std::make_shared<World>(WorldRequest{std::move(file), std::move(text), seed, threads,
-                                                         std::move(parameters), std::move(controllers),
-                                                         std::move(driven), std::move(hooks), std::move(plugins)});
+                       std::vector<std::string> driven, py::list hooks, std::vector<std::string> plugins,
+                       std::string record) {
+             return std::make_shared<World>(WorldRequest{
+                 std::move(file), std::move(text), seed, threads, std::move(parameters), std::move(controllers),
+                 std::move(driven), std::move(hooks), std::move(plugins), std::move(record)});
            }),
            py::arg("file"), py::arg("text"), py::arg("seed"), py::arg("threads"), py::arg("parameters"),
-           py::arg("controllers"), py::arg("driven"), py::arg("hooks"), py::arg("plugins"))
+           py::arg("controllers"), py::arg("driven"), py::arg("hooks"), py::arg("plugins"), py::arg("record"))
       .def("_start", &World::start)
       .def("step", &World::step, py::arg("ticks") = 1,
            "Makes so many ticks, fewer where the run ends; returns how many.")
       .def("run", &World::run, py::arg("until") = py::none(),
            "Goes on to this time in s, or to the end that the experiment says; returns how many ticks were made.")
       .def("finish", &World::finish, "Calls the hooks' after_run; run() to the end does it, too.")
-      .def("_reset", &World::reset, py::arg("seed"), py::arg("parameters"))
+      .def("_reset", &World::reset, py::arg("seed"), py::arg("parameters"), py::arg("record"))
       .def("snapshot", &World::snapshot, "Keeps this moment.")
       .def("restore", &World::restore, py::arg("snapshot"), "Goes back to a moment of this world.")
       .def("close", &World::close, "Ends the world. Arrays that were taken from it stay readable.")
@@ -492,7 +531,7 @@ void bind_world(py::module_& m) {
       .def_property_readonly("parameters", &World::parameters,
                              "What was set on top of the experiment, as 'path=value'.")
       .def_property_readonly("has_guests", &World::has_guests, "Whether something of Python takes part.");
-  bind_looks(m, world);
+  bind_looks(world);
   py::class_<Group>(m, "Group", "Worlds that are stepped side by side on threads of their own.")
       .def(py::init<std::vector<std::shared_ptr<World>>, std::size_t>(), py::arg("worlds"), py::arg("threads"))
       .def("step", &Group::step, py::arg("ticks") = 1, "Each world makes so many ticks, fewer where its run ends.")

@@ -48,6 +48,7 @@ struct WorldRequest {
   std::vector<std::string> driven;      ///< ids of configurations whose ports are written from outside; "*": all
   py::list hooks;
   std::vector<std::string> plugins;
+  std::string record;  ///< of the first run; empty: none
 };
 
 /// Used by one thread at a time; while it steps, by the hooks, controllers and policies that are called, too. All else
@@ -63,7 +64,9 @@ class World {
   std::int64_t step(std::int64_t ticks);
   std::int64_t run(std::optional<double> until_s);
   void finish();
-  void reset(std::optional<std::uint64_t> seed, const std::optional<std::vector<std::string>>& parameters);
+  /// Leaves the run, and begins another; `record`: of that one.
+  void reset(std::optional<std::uint64_t> seed, const std::optional<std::vector<std::string>>& parameters,
+             const std::string& record);
   std::shared_ptr<Snapshot> snapshot();
   void restore(const Snapshot& snapshot);
   void close();
@@ -93,6 +96,8 @@ class World {
   friend class Group;
   core::Scenario read(const std::vector<std::string>& parameters, std::string& warnings) const;
   void invite(core::Scenario& scenario) const;
+  void open_run(const std::string& record);
+  void leave_run();
   bool tick_unlocked();
 
   std::shared_ptr<Session> session_;
@@ -123,6 +128,8 @@ class Use {
 using WorldClass = py::class_<World, std::shared_ptr<World>>;
 void bind_world(py::module_& m);
 /// What is seen of a world and changed in it between ticks.
-void bind_looks(py::module_& m, WorldClass& world);
+void bind_looks(WorldClass& world);
+/// Records of runs.
+void bind_records(py::module_& m);
 
 }  // namespace tandem::python

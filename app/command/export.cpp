@@ -10,7 +10,6 @@
 #include "app/outputs/report.hpp"
 #include "app/process/terminal.hpp"
 #include "core/record/csv_table.hpp"
-#include "core/record/pattern.hpp"
 #include "core/record/record_reader.hpp"
 #include "hal/element.hpp"
 #include "hal/json/json_access.hpp"
@@ -117,15 +116,6 @@ hal::Status print_contents(const ExportOptions& options) {
 }
 
 }  // namespace
-
-bool ExportOptions::wants(std::int64_t tick) const {
-  return tick >= from.value_or(0) && tick <= until.value_or(tick) && (tick - from.value_or(0)) % every == 0;
-}
-
-bool ExportOptions::wants(const std::string& id) const {
-  return entities.empty() || std::any_of(entities.begin(), entities.end(),
-                                         [&id](const std::string& pattern) { return core::fits_pattern(id, pattern); });
-}
 
 void ExportOptions::describe(hal::CommandLine& line) {
   line.word("record", record, "The record; that of a run that was killed is FILE.part").required().file();

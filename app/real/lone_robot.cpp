@@ -15,7 +15,6 @@
 #include "app/outputs/emergency_report.hpp"
 #include "app/outputs/report.hpp"
 #include "app/process/measure.hpp"
-#include "app/process/progress.hpp"
 #include "app/process/signals.hpp"
 #include "app/process/terminal.hpp"
 #include "app/process/watchdog.hpp"
@@ -26,6 +25,8 @@
 #include "app/real/hub_faults.hpp"
 #include "app/real/listed_robot.hpp"
 #include "app/real/robot_end.hpp"
+#include "app/run/time_parts.hpp"
+#include "core/run/run.hpp"
 #include "hal/output_file.hpp"
 #include "hal/sha256.hpp"
 #include "mixed_reality/safety/lone_robot.hpp"
@@ -161,23 +162,28 @@ void add_files(hal::Json& json, const std::string& experiment, hal::PluginLoader
   }
 }
 
-/// One robot with its controller, from the file to the report. What is made first is destroyed last.
-class LoneHub {
+/// One robot with its controller, from the file to the report: a run that steps no world. What is made first is
+/// destroyed last.
+class LoneHub final : public core::Stepped {
  public:
   explicit LoneHub(const RobotOptions& options) : options_(options) {}
   /// @returns an exit code; kDone: go on with the next.
   int read();
   int prepare();
   int connect();
-  void drive();
-  int end();
+  int drive();
+
+  bool step() override;
+  hal::Tick tick() const override { return ticks_; }
+  bool running() const override { return failure_.empty(); }
 
  private:
+  class Driven;
   int choose_robot();
-  int make_controller();
   hal::Json report_so_far() const;
-  /// False: the run is over.
-  bool tick(hal::Tick tick);
+  void commit();
+  void stop();
+  int end();
 
   const RobotOptions& options_;
   const hal::Log log_{[](hal::Severity, std::string_view text) { say(text); }};
@@ -196,8 +202,31 @@ class LoneHub {
   std::optional<mixed_reality::LoneRobot> lone_;  // outlives the controller
   std::unique_ptr<BridgedController> controller_;
   std::optional<mixed_reality::Pacer> pacer_;
+  std::optional<EmergencyReport> emergency_;
+  hal::Tick ticks_ = 0;
   std::uint64_t freezes_ = 0;
   std::string failure_;
+  bool interrupted_ = false;
+};
+
+/// The robot as a part of its run: what its controller wrote is sent at once, before anything else; at the end it
+/// stands first.
+class LoneHub::Driven final : public core::RunPart {
+ public:
+  explicit Driven(LoneHub& hub) : hub_(hub) {}
+  std::string_view name() const override { return "robot"; }
+  core::RunTurn turn() const override { return core::RunTurn::Hold; }
+  bool after_tick(core::Run&) override {
+    hub_.commit();
+    return true;
+  }
+  hal::Status finish(core::Run&) override {
+    hub_.stop();
+    return {};
+  }
+
+ private:
+  LoneHub& hub_;
 };
 
 int LoneHub::read() {
@@ -280,7 +309,7 @@ hal::Json LoneHub::report_so_far() const {
   return json;
 }
 
-bool LoneHub::tick(hal::Tick tick) {
+bool LoneHub::step() {
   mixed_reality::RealRobot& real = lone_->real();
   if (rearm_asked().exchange(false)) real.rearm();
   real.set_guarded(guarded_->guarded());
@@ -288,14 +317,23 @@ bool LoneHub::tick(hal::Tick tick) {
     freezes_ = count;
     real.hub_was_frozen();
   }
-  if (lone_->latch(tick, clock_.now_ns(), mixed_reality::RunPhase::Running) && !controller_->step(failure_, tick)) {
-    failure_ = file_.who + " threw at tick " + std::to_string(tick) + ": " + failure_ + "; the robot is stopped";
+  if (lone_->latch(ticks_, clock_.now_ns(), mixed_reality::RunPhase::Running) && !controller_->step(failure_, ticks_)) {
+    failure_ = file_.who + " threw at tick " + std::to_string(ticks_) + ": " + failure_ + "; the robot is stopped";
     return false;
   }
+  ++ticks_;
   return true;
 }
 
-void LoneHub::drive() {
+void LoneHub::commit() {
+  const std::lock_guard hold(watchdog_->lock());  // what is saved changes
+  guarded_->update();
+  hub_faults_.apply(clock_.now_ns());
+  lone_->commit(clock_.now_ns());  // at once, not after the wait
+  if (report_ && emergency_->due()) emergency_->set_report(report_so_far());
+}
+
+int LoneHub::drive() {
   pacer_.emplace(clock_, scenario_->ticks_per_second);
   const double seconds = options_.seconds.value_or(scenario_->length_s);
   const auto steps = static_cast<std::int64_t>(seconds * static_cast<double>(scenario_->ticks_per_second) + 0.5);
@@ -304,34 +342,37 @@ void LoneHub::drive() {
     const hal::Status granted = mixed_reality::ask_for_realtime_priority(scenario_->priority);
     if (!granted.ok()) log_.warning(granted.error().message + "; going on without");
   }
-  Progress progress(steps, scenario_->ticks_per_second);
-  EmergencyReport emergency(report_);
-  const auto prepare = [&] {
-    if (report_) emergency.set_report(report_so_far());
+  emergency_.emplace(report_);
+  const auto prepare = [this] {
+    if (report_) emergency_->set_report(report_so_far());
   };
-  const SaveAtEnd save(*watchdog_, prepare);
-  prepare();
-  pacer_->start();
-  for (hal::Tick done = 0; (steps == 0 || done < steps) && !stop_->load(std::memory_order_relaxed); ++done) {
-    if (!tick(done)) break;
-    const std::lock_guard hold(watchdog_->lock());  // from here on, what is saved changes
-    guarded_->update();
-    hub_faults_.apply(clock_.now_ns());
-    lone_->commit(clock_.now_ns());  // at once, not after the wait
-    progress.step(done + 1);
-    if (emergency.due()) prepare();
-    if (!pacer_->wait_for_next(*stop_)) break;
+  {
+    const SaveAtEnd save(*watchdog_, prepare);
+    prepare();
+    core::Run run(*this, *stop_);
+    run.add(std::make_unique<core::Length>(steps));
+    run.add(std::make_unique<Driven>(*this));
+    run.add(progress_part(steps, scenario_->ticks_per_second));
+    run.add(pace_part(*pacer_, &watchdog_->lock()));
+    (void)run.go();
+    if (failure_.empty()) failure_ = run.failure();
   }
+  emergency_.reset();
+  return end();
 }
 
-int LoneHub::end() {
+void LoneHub::stop() {
   bridges::RobotBridge& bridge = lone_->real().bridge();
-  const bool interrupted = stop_->load();
-  if (failure_.empty() && !interrupted && bridge.health() == bridges::LinkHealth::Lost)
+  interrupted_ = stop_->load();
+  if (failure_.empty() && !interrupted_ && bridge.health() == bridges::LinkHealth::Lost)
     failure_ = "robot '" + item_.id + "' was lost at the end: " + bridge.trouble();
   if (failure_.empty() && !guarded_->guarded())
     failure_ = "robot '" + item_.id + "' stood: the guardian process was gone";
   stop_and_wait(bridge, item_.bridge->stop_s, clock_);
+}
+
+int LoneHub::end() {
+  bridges::RobotBridge& bridge = lone_->real().bridge();
   hal::Json json = report_so_far();
   const auto table = result_table(item_, bridge, pacer_->ledger());
   bridge.shut_down();
@@ -347,7 +388,7 @@ int LoneHub::end() {
     json["stop_confirmed"] = confirmed;
     add_files(json, options_.file, loader_, *file_.config);
   }
-  return end_robot(report_, std::move(json), {.failure = failure_, .interrupted = interrupted});
+  return end_robot(report_, std::move(json), {.failure = failure_, .interrupted = interrupted_});
 }
 
 int drive_robot(const RobotOptions& options) {
@@ -355,9 +396,7 @@ int drive_robot(const RobotOptions& options) {
   int code = hub.read();
   if (code == kDone) code = hub.prepare();
   if (code == kDone) code = hub.connect();
-  if (code != kDone) return code;
-  hub.drive();
-  return hub.end();
+  return code == kDone ? hub.drive() : code;
 }
 
 int robot(const RobotOptions& options) {

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include "app/outputs/emergency_outputs.hpp"
+#include "app/outputs/run_record.hpp"
 #include "app/process/terminal.hpp"
 #include "app/run/parts.hpp"
 
@@ -24,6 +25,7 @@ class Recording {
           if (outputs_.trajectory != nullptr) (void)outputs_.trajectory->flush();
           set_report();
         }) {
+    if (outputs.record != nullptr) record_.emplace(*outputs.record);
     prepare_report();
   }
 
@@ -38,21 +40,16 @@ class Recording {
       outputs_.observers.flush();
       prepare_report();
     }
-    if (records && !recorded_.ok()) complain(kFailedRunning, recorded_.error().message + "; the run goes on");
+    if (records) tell(recorded_);
     record();
     outputs_.observers.tick_done(now_.world);
-    if (!outputs_.dump) return;
-    if (const hal::Status dumped = outputs_.dump->tick_done(now_.world); !dumped.ok())
-      complain(kFailedRunning, dumped.error().message + "; the run goes on");
+    if (outputs_.dump) tell(outputs_.dump->tick_done(now_.world));
   }
 
   /// Of somebody who holds the run.
   void event(hal::Tick tick, const hal::Json& event) {
     const std::lock_guard hold(watchdog_.lock());
-    if (outputs_.record == nullptr || !in_record_.ok()) return;
-    if (event["kind"] == "back") in_record_ = outputs_.record->went_back(tick);
-    if (in_record_.ok()) in_record_ = outputs_.record->event(tick, event);
-    if (!in_record_.ok()) complain(kFailedRunning, in_record_.error().message + "; the run goes on");
+    if (record_) tell(record_->event(tick, event));
   }
 
   void measure() {
@@ -62,30 +59,14 @@ class Recording {
   }
 
  private:
-  void record() {
-    core::Recorder* const recorder = outputs_.record.get();
-    const hal::Tick done = now_.world.tick() - 1;
-    if (recorder == nullptr || !in_record_.ok() || done < 0) return;
-    in_record_ = recorder->tick_done(now_.world.space(), done);
-    if (real_ != nullptr && in_record_.ok()) note_skipped(done);
-    const std::vector<std::string>& incidents = now_.world.incidents().first;
-    incidents_told_ = std::min(incidents_told_, incidents.size());  // fewer, where the run went back
-    for (; incidents_told_ < incidents.size() && in_record_.ok(); ++incidents_told_)
-      in_record_ = recorder->event(done, {{"kind", "incident"}, {"text", incidents[incidents_told_]}});
-    if (in_record_.ok() && recorder->wants_fingerprint(done)) {
-      if (recorder->wants_checks()) {
-        const core::StateChecks checks = core::checks_of(now_.world.state_view());
-        in_record_ = recorder->fingerprint(done, checks.fingerprint);
-        if (in_record_.ok()) in_record_ = recorder->checks(done, checks);
-      } else {
-        in_record_ = recorder->fingerprint(done, now_.world.state_hash());
-      }
-    }
-    if (!in_record_.ok()) complain(kFailedRunning, in_record_.error().message + "; the run goes on");
+  static void tell(const hal::Status& written) {
+    if (!written.ok()) complain(kFailedRunning, written.error().message + "; the run goes on");
   }
-  /// Slots of the schedule in which no tick could begin, right before this one.
-  void note_skipped(hal::Tick done) {
-    if (const auto skipped = real_->skipped()) in_record_ = outputs_.record->event(done, *skipped);
+  void record() {
+    if (!record_) return;
+    // Slots of the schedule in which no tick could begin, right before this one.
+    const std::optional<hal::Json> skipped = real_ != nullptr ? real_->skipped() : std::nullopt;
+    tell(record_->tick_done(now_.world, skipped ? &*skipped : nullptr));
   }
   void prepare_report() {
     if (!outputs_.report) return;
@@ -104,8 +85,8 @@ class Recording {
   Watchdog& watchdog_;
   EmergencyOutputs emergency_;
   double began_s_, began_cpu_s_;
-  hal::Status recorded_, in_record_;
-  std::size_t incidents_told_ = 0;
+  std::optional<RunRecord> record_;
+  hal::Status recorded_;
   SaveAtEnd save_;
 };
 
@@ -162,6 +143,7 @@ class Outputs final : public core::RunPart {
   void event(hal::Tick tick, const hal::Json& event) override { recording_->event(tick, event); }
   hal::Status finish(core::Run&) override {
     if (recording_) recording_->measure();
+    if (plan_.pacer) plan_.result->figures.deadline_misses = plan_.pacer->ledger().deadline_misses;
     return {};
   }
   hal::Status close(core::Run& run) override {

@@ -1,59 +1,10 @@
 #include "app/run/parts.hpp"
 
-#include "app/process/progress.hpp"
-#include "mixed_reality/time/pacer.hpp"
+#include "app/experiment/reading.hpp"
+#include "app/run/time_parts.hpp"
+#include "core/run/named_parts.hpp"
 
 namespace tandem::app {
-namespace {
-
-/// Real time, where nobody else paces the run.
-class Pace final : public core::RunPart {
- public:
-  explicit Pace(RunPlan& plan) : plan_(plan), pacer_(plan.clock, plan.world->ticks_per_second()) {}
-  std::string_view name() const override { return "real time"; }
-  core::RunTurn turn() const override { return core::RunTurn::Pace; }
-  bool before_tick(core::Run&) override {
-    if (!begun_) pacer_.start();
-    begun_ = true;
-    return true;
-  }
-  bool after_tick(core::Run&) override {
-    (void)pacer_.wait_for_next(*plan_.stop);
-    return true;
-  }
-  hal::Status finish(core::Run&) override {
-    plan_.result->figures.deadline_misses = pacer_.ledger().deadline_misses;
-    return {};
-  }
-
- private:
-  RunPlan& plan_;
-  mixed_reality::Pacer pacer_;
-  bool begun_ = false;
-};
-
-/// How far a run is, on a terminal.
-class TerminalProgress final : public core::RunPart {
- public:
-  TerminalProgress(std::int64_t steps, std::int64_t ticks_per_second)
-      : progress_(std::in_place, steps, ticks_per_second) {}
-  std::string_view name() const override { return "progress"; }
-  core::RunTurn turn() const override { return core::RunTurn::Tell; }
-  bool after_tick(core::Run& run) override {
-    progress_->step(run.world().tick());
-    return true;
-  }
-  hal::Status close(core::Run&) override {
-    progress_.reset();
-    return {};
-  }
-
- private:
-  std::optional<Progress> progress_;
-};
-
-}  // namespace
-
 bool is_held(const RunOptions& options) noexcept {
   return options.hold.wanted || options.view.on || options.watch.watch || !options.repeat.empty();
 }
@@ -80,11 +31,20 @@ int add_hold(RunPlan& plan, core::Run& run) {
     if (const int code = live->add(plan, run); code != kDone) return code;
   } else {
     run.add(std::make_unique<core::Length>(plan.steps));
-    if (plan.world->scenario().time_mode == core::TimeMode::Realtime) run.add(std::make_unique<Pace>(plan));
+    if (plan.world->scenario().time_mode == core::TimeMode::Realtime) {
+      plan.pacer.emplace(plan.clock, plan.world->ticks_per_second());
+      run.add(pace_part(*plan.pacer));
+    }
   }
-  if (!plan.options.watch.watch)
-    run.add(std::make_unique<TerminalProgress>(plan.steps, plan.scenario->ticks_per_second));
+  if (!plan.options.watch.watch) run.add(progress_part(plan.steps, plan.scenario->ticks_per_second));
   return kDone;
+}
+
+int add_named_parts(RunPlan& plan, core::Run& run) {
+  core::Problems problems;
+  core::add_named_parts(run, plan.loader.catalog(), problems);
+  print_problems(problems);
+  return core::has_errors(problems) ? kBadInput : kDone;
 }
 
 }  // namespace tandem::app

@@ -5,10 +5,10 @@
 #include "app/build_info.hpp"
 #include "app/experiment/reading.hpp"
 #include "app/module/modules.hpp"
+#include "app/outputs/run_record.hpp"
 #include "app/process/signals.hpp"
 #include "app/process/terminal.hpp"
 #include "app/run/run_plan.hpp"
-#include "core/run/scripts.hpp"
 #include "hal/json/json_access.hpp"
 
 namespace tandem::app {
@@ -159,20 +159,9 @@ int make_world(RunPlan& plan) {
   return for_modules(plan, &RunModule::prepare);
 }
 
-/// What a record says at its start, with the scripts of controllers.
-hal::Json start_of(core::World& world, const InputFiles& inputs) {
-  hal::Json start = record_start(world, inputs);
-  hal::Json scripts = core::source_files(world);
-  for (hal::Json& files : scripts) {
-    for (hal::Json& file : files) file.erase("path");
-  }
-  if (!scripts.empty()) start["scripts"] = std::move(scripts);
-  return start;
-}
-
 int open_all_outputs(RunPlan& plan) {
-  auto opened =
-      open_outputs(plan.options, *plan.scenario, *plan.world, [&plan] { return start_of(*plan.world, plan.inputs); });
+  auto opened = open_outputs(plan.options, *plan.scenario, *plan.world,
+                             [&plan] { return start_of_record(*plan.world, plan.inputs); });
   if (!opened.ok()) return complain(kBadInput, opened.error().message);
   RunOutputs& outputs = opened.value();
   outputs.at_the_end = std::move(plan.outputs.at_the_end);

@@ -20,6 +20,7 @@
 #include "core/run/run.hpp"
 #include "core/sim/world.hpp"
 #include "mixed_reality/time/monotonic.hpp"
+#include "mixed_reality/time/pacer.hpp"
 
 namespace tandem::core {
 struct Drawing;
@@ -55,6 +56,7 @@ struct RunPlan {
   std::int64_t steps = 0;
   RunOutputs outputs;
   mixed_reality::MonotonicTime clock;
+  std::optional<mixed_reality::Pacer> pacer;  ///< of a run in real time that nobody else paces
 
   std::vector<std::unique_ptr<core::RunPart>> opened;  ///< parts with open files, until they are added
   RealRobots* real = nullptr;

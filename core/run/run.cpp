@@ -2,8 +2,13 @@
 
 #include <algorithm>
 #include <exception>
+#include <stdexcept>
 
 namespace tandem::core {
+World& Run::world() const {
+  if (world_ == nullptr) throw std::logic_error("this run has no world: it drives a robot");
+  return *world_;
+}
 
 void Run::add(std::unique_ptr<RunPart> part) {
   if (part == nullptr) return;
@@ -18,16 +23,22 @@ Run::~Run() {
 }
 
 bool Run::go() {
-  if (join()) {
-    world_.start();
-    while (before_tick() && world_.step()) after_tick();
-    in_reverse("finish", [this](RunPart& part) { return part.finish(*this); });
-    world_.finish();
-    in_reverse("close", [this](RunPart& part) { return part.close(*this); });
-    return true;
+  if (!begin()) return false;
+  while (tick()) {
   }
+  end();
+  return true;
+}
+
+void Run::end() {
   in_reverse("finish", [this](RunPart& part) { return part.finish(*this); });
-  return false;
+  stepped_->finish();
+  in_reverse("close", [this](RunPart& part) { return part.close(*this); });
+}
+
+void Run::leave() {
+  in_reverse("finish", [this](RunPart& part) { return part.finish(*this); });
+  in_reverse("close", [this](RunPart& part) { return part.close(*this); });
 }
 
 /// One call of a part: what it throws or returns as an error is told in its name. @returns whether it was well.
@@ -48,10 +59,12 @@ bool Run::asked(Row& row, std::string_view when, Call&& call) {
 }
 
 bool Run::join() {
-  return std::ranges::all_of(rows_, [this](Row& row) {
+  const bool joined = std::ranges::all_of(rows_, [this](Row& row) {
     row.joined = true;
     return asked(row, "join", [this](RunPart& part) { return part.join(*this); });
   });
+  if (!joined) in_reverse("finish", [this](RunPart& part) { return part.finish(*this); });
+  return joined;
 }
 
 /// The turns of a call that tells whether to go on with the next part.
@@ -104,8 +117,7 @@ std::vector<std::string_view> Run::order() const {
 }
 
 bool Length::before_tick(Run& run) {
-  const World& world = run.world();
-  return world.state() == RunState::Running && (ticks_ == 0 || world.tick() < ticks_) && !run.stopped();
+  return run.running() && (ticks_ == 0 || run.tick_count() < ticks_) && !run.stopped();
 }
 
 }  // namespace tandem::core

@@ -1,4 +1,4 @@
-// A run: a world that is stepped, and the parts that have joined it.
+// A run: what is stepped, a world as a rule, and the parts that have joined it.
 //
 //   core::Run run(world, stop);
 //   run.add(std::make_unique<core::Length>(300));       ends it
@@ -6,7 +6,8 @@
 //   run.go();
 //
 // What is not the world is a part: records, pictures, the window, the terminal's table, replay, real robots. Their
-// turns in a tick are those of `RunTurn`, whatever order they were added in; docs/runs.md has the table.
+// turns in a tick are those of `RunTurn`, whatever order they were added in; docs/runs.md has the table. Who has a loop
+// of their own call `begin`, `tick` and `end` instead of `go`.
 #pragma once
 #include <atomic>
 #include <cstdint>
@@ -24,6 +25,20 @@
 namespace tandem::core {
 
 class Run;
+
+/// What a run steps: a world, or the controller of one real robot.
+class Stepped {
+ public:
+  virtual ~Stepped() = default;
+  virtual void start() {}
+  /// One tick. False: it was given up, and no other may follow.
+  virtual bool step() = 0;
+  virtual void finish() {}
+  /// So many were done.
+  virtual hal::Tick tick() const = 0;
+  /// False: it has failed, or come to an end of its own.
+  virtual bool running() const = 0;
+};
 
 /// When a part has its turn, before a tick and after it. Parts of one turn have theirs in the order in which they were
 /// added. At the end the order is reversed: robots stop before anything is written.
@@ -68,20 +83,44 @@ class RunPart {
 class Run {
  public:
   /// `stop` ends it before the next tick. Both must outlive this.
-  Run(World& world, const std::atomic<bool>& stop) : world_(world), stop_(stop) {}
+  Run(World& world, const std::atomic<bool>& stop);
+  /// Of something that is no world.
+  Run(Stepped& stepped, const std::atomic<bool>& stop) : stepped_(&stepped), stop_(stop) {}
   /// Parts that were added last go first.
   ~Run();
   Run(const Run&) = delete;
   Run& operator=(const Run&) = delete;
 
-  World& world() noexcept { return world_; }
-  const World& world() const noexcept { return world_; }
+  /// @throws std::logic_error where this steps something else
+  World& world() const;
+  /// Ticks that were done.
+  hal::Tick tick_count() const { return stepped_->tick(); }
+  /// Whether what is stepped goes on.
+  bool running() const { return stepped_->running(); }
+  const std::atomic<bool>& stop() const noexcept { return stop_; }
   bool stopped() const noexcept { return stop_.load(std::memory_order_relaxed); }
-  /// Before `go`; null is nobody.
+  /// Before it begins; null is nobody.
   void add(std::unique_ptr<RunPart> part);
-  /// Joins the parts, steps the world until one of them ends it, finishes them. @returns whether it went: false, where
-  /// a part could not join, and nothing was stepped.
+
+  /// All of it: begins, ticks until a part ends it, ends. @returns whether it went: false, where a part could not join,
+  /// and nothing was stepped.
   bool go();
+  /// Joins the parts, starts the world. False: a part could not join; all have finished, and nothing else may follow.
+  bool begin() { return join() && start(); }
+  /// One tick, with the parts' turns before and after it. False: no further one comes.
+  bool tick() {
+    if (!before_tick() || !stepped_->step()) return false;
+    after_tick();
+    return true;
+  }
+  /// The parts finish, the world's hooks have their after_run, the parts close.
+  void end();
+
+  /// Of `begin` what is not the world's, for a world that was started, as `World::reset` does.
+  bool join();
+  /// Of `end` what is not the world's, for a world that goes on without this.
+  void leave();
+
   /// To all parts, in the order of their turns.
   void tell(hal::Tick tick, const hal::Json& event);
   /// The run has failed, and goes on; the first failure is told at the end.
@@ -98,7 +137,10 @@ class Run {
     RunPart* part;
     bool joined = false, failed = false;
   };
-  bool join();
+  bool start() {
+    stepped_->start();
+    return true;
+  }
   bool before_tick();
   void after_tick();
   template <class Call>
@@ -108,7 +150,9 @@ class Run {
   template <class Call>
   bool asked(Row& row, std::string_view when, Call&& call);
 
-  World& world_;
+  World* world_ = nullptr;
+  std::unique_ptr<Stepped> world_steps_;
+  Stepped* stepped_;
   const std::atomic<bool>& stop_;
   std::vector<std::unique_ptr<RunPart>> parts_;  // as they were added
   std::vector<Row> rows_;                        // by turn

@@ -2,6 +2,7 @@
 //   lab EXPERIMENT [TICKS]
 #include <cstdio>
 #include <cstdlib>
+#include <memory>
 
 #include "core/sim/world.hpp"
 #include "hal/device/ring_sensors.hpp"
@@ -36,8 +37,13 @@ int main(int argc, char** argv) {
     return 1;
   }
   tandem::core::World& world = opened.value()->world();
+  tandem::core::Run& run = opened.value()->run();
   const long ticks = argc > 2 ? std::atol(argv[2]) : 100;
-  world.start();
+  run.add(std::make_unique<tandem::core::Length>(ticks));
+  if (!run.begin()) {
+    std::fprintf(stderr, "%s\n", run.failure().c_str());
+    return 3;
+  }
   const auto snapshot = world.snapshot();
   if (!snapshot.ok()) {
     std::fprintf(stderr, "%s\n", snapshot.error().message.c_str());
@@ -45,9 +51,10 @@ int main(int argc, char** argv) {
   }
   for (int turn = 0; turn < 2; ++turn) {
     if (turn > 0 && !world.restore(snapshot.value()).ok()) return 3;
-    while (world.state() == tandem::core::RunState::Running && world.tick() < ticks) world.step();
+    while (run.tick()) {
+    }
     std::printf("%ld ticks, %d robots near something, state %016llx\n", static_cast<long>(world.tick()),
                 robots_near_something(world), static_cast<unsigned long long>(world.state_hash()));
   }
-  world.finish();
+  run.end();
 }

@@ -24,13 +24,14 @@ finally:
 from ._tandem import ExperimentError, Picture, Port, PortArrays, Random, Robot, RunFailed, Snapshot, Swarm
 from .experiment import to_xml
 from .world import Group, World
+from .record import Record
 from .policy import Layer, Policy, Signal, load_policy, save_policy
 from .rollout import Rollout, Rollouts, rollouts
 
 __version__ = _tandem.version
 
 __all__ = [
-    "ExperimentError", "Group", "Layer", "Picture", "Policy", "Port", "PortArrays", "Random", "Robot", "Rollout",
+    "ExperimentError", "Group", "Layer", "Picture", "Policy", "Port", "PortArrays", "Random", "Record", "Robot", "Rollout",
     "Rollouts", "RunFailed", "Signal", "Snapshot", "Swarm", "World", "load_policy", "ports", "rollouts", "save_policy",
     "to_xml",
 ]

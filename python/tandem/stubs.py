@@ -5,7 +5,7 @@ import os
 import re
 import sys
 
-from . import _tandem, env, policy, rollout, world
+from . import _tandem, env, policy, record, rollout, world
 
 _HEAD = '''"""Type stubs of tandem. Made by tandem.stubs of the ports' schemas; not to be edited."""
 
@@ -205,6 +205,10 @@ def write(folder):
         lines += [f"    {name}: Any" for name in cls.__dataclass_fields__]
         lines.append("")
     _python_class(lines, rollout.Rollouts, "(Sequence[Rollout])")
+    table = "dict[str, npt.NDArray[Any]]"
+    _python_class(lines, record.Record, returns={"__init__": "None", "table": table, "__getitem__": table, "picture": "Picture"})
+    lines[-1:] = [f"    {one}" for one in ("path: str", "tables: list[str]", "damage: list[str]", "cut: bool", "start: dict[str, Any]",
+                                           "events: list[tuple[int, dict[str, Any]]]")] + [""]
     import tandem
 
     returns = {"rollouts": "Rollouts", "save_policy": "None", "load_policy": "Policy", "to_xml": "str", "ports": "list[dict[str, Any]]"}

@@ -24,12 +24,13 @@ class World(_tandem.World):
     hooks        objects, or classes, with any of before_run(world), before_step(world), after_step(world),
                  is_done(world), after_run(world), reset(seed), floor(x, y), save(), restore(saved)
     plugins      libraries to be opened besides those that the experiment names
+    record       a path: a record of the run, until finish, reset or close
 
     A world is used by one thread at a time. It steps without Python's lock, so other threads go on.
     """
 
     def __init__(self, experiment, *, seed=None, threads=None, parameters=None, controllers=None, policies=None, driven=(),
-                 hooks=(), plugins=()):
+                 hooks=(), plugins=(), record=None):
         file, text = source(experiment)
         _check_number("seed", seed)
         _check_number("threads", threads)
@@ -49,20 +50,20 @@ class World(_tandem.World):
         driven = list(driven) + [one for one in policies if one not in driven and "*" not in driven]
         self._file, self._text = file, text
         super().__init__(file, text, seed, threads, assignments(parameters), dict(controllers or {}), driven, list(hooks),
-                         [str(one) for one in plugins])
+                         [str(one) for one in plugins], _path(record))
         for controller, policy in policies.items():
             self.add_policy(controller, policy)
         self._start()
 
-    def reset(self, seed=None, parameters=None):
+    def reset(self, seed=None, parameters=None, record=None):
         """Begins the run anew, as a new world of this seed would, without building one.
 
         parameters: on top of those that the world was made with; None leaves them as they are. Those of controllers
         (…params.…), those of hooks (loop_functions.…) and the length can change. Arrays stay the same memory, but their
-        rows may be other robots (swarm.ids).
+        rows may be other robots (swarm.ids). record: a path, for a record of the new run.
         """
         _check_number("seed", seed)
-        self._reset(seed, None if parameters is None else assignments(parameters))
+        self._reset(seed, None if parameters is None else assignments(parameters), _path(record))
 
     @property
     def swarm(self):
@@ -97,6 +98,10 @@ class World(_tandem.World):
 
     def __exit__(self, *_):
         self.close()
+
+
+def _path(path):
+    return "" if path is None else os.fspath(path)
 
 
 def _check_number(what, number):

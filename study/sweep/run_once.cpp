@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "core/record/checkpoint_file.hpp"
+#include "core/run/named_parts.hpp"
 #include "hal/json/json_access.hpp"
 
 namespace tandem::study {
@@ -33,6 +34,29 @@ std::int64_t steps_of(const core::Scenario& scenario) {
 }
 
 }  // namespace
+
+/// What a sweep wants of its run: samples after each tick, and what is needed to go on from there.
+class Runner::Measured final : public core::RunPart {
+ public:
+  Measured(Runner& runner, const RunPlan& plan, Sampler& sampler) : runner_(runner), plan_(plan), sampler_(sampler) {}
+  std::string_view name() const override { return "sweep"; }
+  core::RunTurn turn() const override { return core::RunTurn::Outputs; }
+  bool before_tick(core::Run&) override {
+    HangLimit::step();
+    return true;
+  }
+  bool after_tick(core::Run& run) override {
+    sampler_.tick_done(run.world());
+    if (!runner_.checkpoints_.empty() && seconds_of(CLOCK_MONOTONIC) - runner_.kept_s_ > runner_.keep_every_s_)
+      runner_.keep(plan_, sampler_);
+    return true;
+  }
+
+ private:
+  Runner& runner_;
+  const RunPlan& plan_;
+  Sampler& sampler_;
+};
 
 /// A world of the plan's configuration and seed, started.
 hal::Status Runner::ready(const RunPlan& plan) {
@@ -112,16 +136,18 @@ RunOutcome Runner::run(const RunPlan& plan) {
   }
   core::World& world = *world_;
   const HangLimit::Watched watched(hang_);
-  const std::int64_t steps = steps_of(world.scenario());
   kept_s_ = wall_s;
   takes_long_ = false;
-  while (world.state() == core::RunState::Running && (steps == 0 || world.tick() < steps)) {
-    HangLimit::step();
-    world.step();
-    sampler->tick_done(world);
-    if (!checkpoints_.empty() && seconds_of(CLOCK_MONOTONIC) - kept_s_ > keep_every_s_) keep(plan, *sampler);
+  core::Run run(world, never_);
+  run.add(std::make_unique<core::Length>(steps_of(world.scenario())));
+  run.add(std::make_unique<Measured>(*this, plan, *sampler));
+  core::Problems problems;
+  core::add_named_parts(run, loader_.catalog(), problems);
+  if (core::has_errors(problems)) return failed(hal::Error{text_of(problems)});
+  if (!run.join()) return failed(hal::Error{run.failure()});
+  while (run.tick()) {
   }
-  world.finish();
+  run.end();
   if (!checkpoints_.empty()) {
     std::error_code none;
     std::filesystem::remove(checkpoint_of(checkpoints_, plan.number), none);
@@ -135,8 +161,10 @@ RunOutcome Runner::run(const RunPlan& plan) {
     outcome.failure = world.failure();
     world_.reset();
   } else {
-    outcome.ended = world.state() == core::RunState::Done ? "hook" : "length";
+    const bool by_part = run.ended_by() != nullptr && run.ended_by()->turn() == core::RunTurn::Added;
+    outcome.ended = world.state() == core::RunState::Done ? "hook" : by_part ? "part" : "length";
     const core::Incidents& incidents = world.incidents();
+    outcome.failure = run.failure();
     if (incidents.controllers_thrown > 0)
       outcome.failure = incidents.first.empty() ? "a controller threw" : incidents.first.front();
     outcome.done = outcome.failure.empty();

@@ -1,10 +1,12 @@
 // Makes worlds and runs them, one after the other.
 #pragma once
+#include <atomic>
 #include <functional>
 #include <memory>
 #include <string>
 #include <utility>
 
+#include "core/run/run.hpp"
 #include "core/sim/world.hpp"
 #include "hal/plugin_loader.hpp"
 #include "study/design.hpp"
@@ -40,6 +42,7 @@ class Runner {
   RunOutcome run(const RunPlan& plan);
 
  private:
+  class Measured;
   hal::Status ready(const RunPlan& plan);
   hal::Status make(const RunPlan& plan);
   hal::Status go_on(const RunPlan& plan, Sampler& sampler);
@@ -52,6 +55,7 @@ class Runner {
   std::string checkpoints_;
   double keep_every_s_;
   HangLimit hang_;
+  const std::atomic<bool> never_{false};
   std::unique_ptr<core::World> world_;
   std::int64_t configuration_ = -1;  // of the world
   double kept_s_ = 0.0;              // when the run was kept last, or began

@@ -3,12 +3,21 @@
 import json
 import subprocess
 import os
+import tempfile
 import unittest
 
 import numpy as np
 
 import tandem
 from rooms import CONFIGS, DIFFUSION, FOOTBOTS, room
+
+PROGRAM = os.environ["TANDEM_PROGRAM"]
+
+
+def told(record):
+    """What the command says of a record."""
+    return subprocess.run([PROGRAM, "export", record], capture_output=True, text=True, check=True).stdout
+
 
 VELOCITY = "controllers.epuck_diffusion[d].params.velocity"
 
@@ -96,6 +105,77 @@ class Worlds(unittest.TestCase):
         new.step(30)
         self.assertEqual(world.fingerprint, new.fingerprint)
         np.testing.assert_array_equal(distance, new.swarm.sensor("proximity").distance)  # the same memory as ever
+
+    def test_write_records_that_the_command_reads(self):
+        with tempfile.TemporaryDirectory() as folder:
+            first, second, third = (os.path.join(folder, f"{n}.record") for n in ("first", "second", "third"))
+            world = tandem.World(DIFFUSION, seed=7, record=first, parameters={"framework.experiment.length": 10})
+            world.run()
+            self.assertFalse(os.path.exists(first + ".part"))
+            world.reset(8, record=second)
+            world.step(40)
+            moment = world.snapshot()
+            world.step(20)
+            world.restore(moment)  # the branch of 20 ticks is left
+            world.step(5)
+            world.reset(9, record=third)
+            world.close()
+            self.assertIn("ticks 0 to 99, 100 of them, 50 rows each", told(first))
+            self.assertIn("seed 7", told(first))
+            self.assertIn("ticks 0 to 44, 45 of them", told(second))
+            self.assertIn("interrupted", told(second))
+            self.assertIn("seed 9", told(third))
+            repeated = subprocess.run([PROGRAM, "run", DIFFUSION, "--seed", "7", "--repeat", first, "--seconds", "10"],
+                                      capture_output=True, text=True)
+            self.assertEqual(repeated.returncode, 0, repeated.stderr)
+
+    def test_are_in_their_records_as_arrays(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "run.record")
+            world = tandem.World(FOOTBOTS, seed=3, record=path, parameters={"record.ports": "proximity"})
+            poses, times = [], []
+            for _ in range(20):
+                world.step()
+                poses.append(world.poses)
+                times.append(world.time)
+            last = world.picture(size=300).svg
+            world.finish()
+            record = tandem.Record(path)
+            pose = record["pose"]
+            self.assertEqual(sorted(pose["ids"]), sorted(world.ids))
+            rows = [pose["ids"].index(one) for one in world.ids]
+            np.testing.assert_allclose(pose["time"], times)
+            np.testing.assert_array_equal(pose["tick"], np.arange(20))
+            np.testing.assert_allclose(np.stack([pose["x"], pose["y"]], axis=2)[:, rows], np.array(poses)[:, :, :2], atol=1e-6)
+            some = record.table("sensor proximity", fields=["distance"], entities=[world.ids[1]], first=4, last=9, every=2)
+            self.assertEqual((some["distance"].shape, some["ids"]), ((3, 1, 24), [world.ids[1]]))
+            self.assertEqual(set(some), {"distance", "ids", "tick", "time"})
+            self.assertEqual((record.name, record.seed, record.cut, record.damage), (world.name, 3, False, []))
+            self.assertEqual(record.picture(size=300).svg.count("<"), last.count("<"))
+            self.assertNotEqual(record.picture(time=0.5, size=300).svg, record.picture(size=300).svg)
+            with self.assertRaisesRegex(ValueError, "has no table 'poses'; it has .*'pose'"):
+                record["poses"]
+            with self.assertRaisesRegex(ValueError, "nowhere"):
+                tandem.Record("/nowhere/run.record")
+
+    def test_say_where_a_record_cannot_be(self):
+        with self.assertRaisesRegex(tandem.ExperimentError, "nowhere"):
+            tandem.World(DIFFUSION, record="/nowhere/run.record")
+
+    def test_have_the_parts_that_their_experiment_names(self):
+        def joined(what):
+            return tandem.World(DIFFUSION, plugins=["test_trouble"], parameters={"run.joiner.at": 3, "run.joiner.what": what})
+        world = joined("end")
+        self.assertEqual((world.step(10), world.tick, world.state), (3, 3, "done"))
+        with self.assertRaisesRegex(tandem.RunFailed, "part 'joiner', before_tick: cannot go on"):
+            joined("before").step(10)
+        with self.assertRaisesRegex(tandem.RunFailed, "part 'joiner', join: will not join"):
+            joined("join")
+        world = joined("finish")
+        with self.assertRaisesRegex(tandem.RunFailed, "part 'joiner', finish: cannot let go"):
+            world.run()
+        world.reset(1)
+        self.assertEqual(world.step(2), 2)
 
     def test_begin_anew_with_other_parameters(self):
         world = tandem.World(room(), seed=1)

@@ -71,7 +71,7 @@ class File final : public Hdf5File {
     return file_.good();
   }
 
-  hal::Status add(const std::string& path, Hdf5Type type, const std::vector<std::size_t>& row) override {
+  hal::Status add(const std::string& path, TableType type, const std::vector<std::size_t>& row) override {
     std::vector<hsize_t> now{0}, most{H5S_UNLIMITED}, chunk{1};
     std::size_t values = 1;
     for (const std::size_t size : row) {
@@ -88,9 +88,9 @@ class File final : public Hdf5File {
     (void)H5Pset_chunk(form.get(), static_cast<int>(chunk.size()), chunk.data());
     (void)H5Pset_shuffle(form.get());
     (void)H5Pset_deflate(form.get(), 1);
-    const hid_t stored = type == Hdf5Type::F32   ? H5T_IEEE_F32LE
-                         : type == Hdf5Type::F64 ? H5T_IEEE_F64LE
-                                                 : H5T_STD_I64LE;
+    const hid_t stored = type == TableType::F32   ? H5T_IEEE_F32LE
+                         : type == TableType::F64 ? H5T_IEEE_F64LE
+                                                  : H5T_STD_I64LE;
     Id data(H5Dcreate2(file_.get(), path.c_str(), stored, space.get(), links_.get(), form.get(), H5P_DEFAULT),
             &H5Dclose);
     if (!data.good()) return failed(path);

@@ -1,6 +1,7 @@
 // A run of parts: their turns, their ends, and what becomes of those that fail.
 #include "core/run/run.hpp"
 
+#include <algorithm>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -138,6 +139,40 @@ TEST_F(RunOfParts, HearOfEvents) {
   add("record", RunTurn::Outputs);
   run->tell(3, {{"kind", "action"}});
   EXPECT_THAT(calls, ElementsAre("record action3", "view action3"));
+}
+
+TEST_F(RunOfParts, GoTickByTickWhereTheLoopIsSomebodyElses) {
+  add("record", RunTurn::Outputs);
+  length(2);
+  ASSERT_TRUE(run->begin());
+  EXPECT_TRUE(run->tick());
+  EXPECT_TRUE(run->tick());
+  EXPECT_FALSE(run->tick());
+  EXPECT_EQ(run->tick_count(), 2);
+  run->end();
+  EXPECT_THAT(calls, ElementsAre("record join", "record before", "record after", "record before", "record after",
+                                 "record finish", "record close"));
+}
+
+/// Counts down, and has no world.
+class Countdown final : public Stepped {
+ public:
+  bool step() override { return ++done_ < 3; }
+  hal::Tick tick() const override { return done_; }
+  bool running() const override { return true; }
+
+ private:
+  hal::Tick done_ = 0;
+};
+
+TEST_F(RunOfParts, StepWhatIsNoWorld) {
+  Countdown countdown;
+  core::Run other(countdown, stop);
+  other.add(std::make_unique<Noting>("pace", RunTurn::Pace, calls));
+  EXPECT_TRUE(other.go());
+  EXPECT_EQ(other.tick_count(), 3) << "the tick that was given up is the last";
+  EXPECT_EQ(std::ranges::count(calls, "pace after"), 2);
+  EXPECT_THROW((void)other.world(), std::logic_error);
 }
 
 TEST_F(RunOfParts, AStopEndsTheRunBeforeItsNextTick) {
