@@ -111,6 +111,7 @@ class OnTerminal {
     winsize size{};
     size.ws_col = static_cast<unsigned short>(columns);
     size.ws_row = static_cast<unsigned short>(lines);
+    stand_apart();
     int slave = -1;
     if (openpty(&master_, &slave, nullptr, nullptr, &size) != 0) return;
     tcgetattr(slave, &fresh_);

@@ -8,10 +8,12 @@
 #include <functional>
 #include <gtest/gtest.h>
 #include <memory>
+#include <sched.h>
 #include <signal.h>
 #include <spawn.h>
 #include <sstream>
 #include <string>
+#include <sys/mount.h>
 #include <sys/wait.h>
 #include <thread>
 #include <time.h>
@@ -72,13 +74,25 @@ class Folder {
   fs::path path_;
 };
 
-/// Locks of robots are made in a folder of this process's own, unless the test says where: what its programs leave
-/// behind when they are killed is nobody else's to stop, nor of the next run of the same test.
-inline void use_own_lock_folder() {
+/// From here on /dev/pts begins with 0, for this program and what it starts. False: this machine does not permit it.
+inline bool own_terminals() {
+  static const bool own =
+      ::unshare(CLONE_NEWNS) == 0 && ::mount(nullptr, "/", nullptr, MS_REC | MS_PRIVATE, nullptr) == 0 &&
+      ::mount("devpts", "/dev/pts", "devpts", 0, "newinstance,ptmxmode=0666,mode=0620") == 0 &&
+      ::mount("/dev/pts/ptmx", "/dev/ptmx", nullptr, MS_BIND, nullptr) == 0;
+  return own;
+}
+
+/// What the robots of this process are is nobody else's business: their locks are in a folder of its own, unless the
+/// test says where, so that nobody stops what its programs leave behind when they are killed, nor does the next run of
+/// the same test; and so are their terminals, or a hub that tries to find a robot again, whose emulator is gone, could
+/// write to the terminal or the robot of another test that was given its number meanwhile.
+inline void stand_apart() {
   static const Folder folder;
   const char* const set = std::getenv("XDG_RUNTIME_DIR");
   const bool by_ctest = set != nullptr && std::string_view(set).starts_with(test::kBuildDir);
   if (set == nullptr || by_ctest) ::setenv("XDG_RUNTIME_DIR", folder.path().c_str(), 1);
+  (void)own_terminals();
 }
 
 /// The words that start `tandem`: built for another architecture, it needs an emulator, and so does this test itself.
@@ -128,7 +142,7 @@ inline std::string threads_of(pid_t process) {
 class Tandem {
  public:
   Tandem(std::vector<std::string> arguments, const fs::path& folder) : folder_(folder) {
-    use_own_lock_folder();
+    stand_apart();
     static int count = 0;
     output_ = folder / ("out" + std::to_string(++count));
     errors_ = folder / ("err" + std::to_string(count));

@@ -1,8 +1,6 @@
 // A robot that is pulled out while it drives, and whose device number another robot gets; verdicts come from the
 // robots' own logs. In a mount namespace with pseudo-terminals of its own, so that their numbers are known.
 #include <gmock/gmock.h>
-#include <sched.h>
-#include <sys/mount.h>
 
 #include "tests/scenarios/process.hpp"
 
@@ -11,13 +9,6 @@ namespace {
 
 using testing::HasSubstr;
 using testing::Not;
-
-/// From here on /dev/pts begins with 0, for this program and its children.
-bool own_terminals() {
-  return ::unshare(CLONE_NEWNS) == 0 && ::mount(nullptr, "/", nullptr, MS_REC | MS_PRIVATE, nullptr) == 0 &&
-         ::mount("devpts", "/dev/pts", "devpts", 0, "newinstance,ptmxmode=0666,mode=0620") == 0 &&
-         ::mount("/dev/pts/ptmx", "/dev/ptmx", nullptr, MS_BIND, nullptr) == 0;
-}
 
 fs::path device_of(const Folder& folder) {
   std::error_code error;
