@@ -73,7 +73,8 @@ void RobotTrace::begin(const StopMessages& robot) {
 
 void RobotTrace::look() {
   if (!is_terminal(robot_.link) || !robot_.identity.device) return;
-  const auto device = device_at(robot_.link);
+  leads_to_ = device_at(robot_.link);
+  const auto& device = leads_to_;
   if (!device) {
     broken_ = true;  // it is not there now
   } else if (*device != *robot_.identity.device) {

@@ -32,6 +32,9 @@ class RobotTrace {
   /// It was tried to reach it, with or without success.
   void tried(bool reached, hal::TimeNs now) noexcept;
 
+  /// The device that its link led to when it was looked at last; nothing: none, or the link is no terminal. What was
+  /// heard over a link that leads elsewhere by now was said by somebody else.
+  const std::optional<std::string>& leads_to() const noexcept { return leads_to_; }
   /// Whether the robot that answers on its link is this one.
   bool proved() const;
   /// Whether another hub that has found `answers` has found this robot. Unknown: that hub does not know yet.
@@ -39,6 +42,7 @@ class RobotTrace {
 
  private:
   StopMessages robot_;
+  std::optional<std::string> leads_to_;
   std::string node_;  // of the device, as it was; "": it has none, or nobody knows
   bool broken_ = false, renamed_ = false;
   hal::TimeNs silent_since_ns_ = 0;  // 0: it is not

@@ -307,6 +307,7 @@ void WatchedRobot::stop_robot(std::unique_lock<std::mutex>& lock) {
     write_lock_files();
   }
   std::unique_ptr<Stopper> stopper;
+  std::optional<std::string> opened_at;  // the device that the stopper's link led to
   bool reached = true;  // at first there is no time to lose
   while (order == order_) {
     const TimeNs begin = monotonic_ns();
@@ -332,7 +333,17 @@ void WatchedRobot::stop_robot(std::unique_lock<std::mutex>& lock) {
         continue;
       }
     }
-    if (!stopper) stopper = make_stopper();
+    trace_.look();
+    if (stopper && trace_.leads_to() != opened_at) {  // it holds a line that is not this robot's any more
+      lock.unlock();
+      stopper.reset();
+      lock.lock();
+      if (order != order_) break;
+    }
+    if (!stopper) {
+      opened_at = trace_.leads_to();
+      stopper = make_stopper();
+    }
     lock.unlock();
     StopState state = StopState::Unreachable;
     std::string trouble;
@@ -349,7 +360,8 @@ void WatchedRobot::stop_robot(std::unique_lock<std::mutex>& lock) {
     trace_.tried(reached, end);
     if (state == StopState::Confirmed) {
       trace_.look();
-      if (trace_.proved()) {
+      const bool heard_there = trace_.leads_to() == opened_at;  // else that was somebody else
+      if (heard_there && trace_.proved()) {
         confirmed_ = true;
         state_ = state;
         trouble_.clear();
@@ -359,7 +371,7 @@ void WatchedRobot::stop_robot(std::unique_lock<std::mutex>& lock) {
       // Whoever it was rests; ours may come back. To be asked again, the line has to be opened anew.
       state = StopState::Unreachable;
       trouble = "a robot at its link rests, but the line was broken meanwhile: it may be another one";
-      reached = false;
+      reached = !heard_there;  // then ours is looked for at once
       lock.unlock();
       stopper.reset();
       lock.lock();

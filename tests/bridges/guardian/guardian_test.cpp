@@ -95,7 +95,7 @@ std::unique_ptr<Stopper> make_file_stopper(const StopMessages& messages, StopCau
 
 /// A robot on a plug: a file that is there as long as it is plugged in; beside it, in PLUG.told, is a line for all that
 /// was told to whoever was there. It rests at once. "serial:PLUG", by whatever name; its body "deaf": it does not
-/// answer.
+/// answer; "moves NAME": after it was told, and before anybody hears that it rests, its name leads to that plug.
 class PlugStopper final : public Stopper {
  public:
   PlugStopper(const StopMessages& messages, StopCause) : messages_(messages) {}
@@ -104,6 +104,11 @@ class PlugStopper final : public Stopper {
     const auto plug = std::filesystem::canonical(messages_.link.substr(messages_.link.find(':') + 1), error);
     if (error) return StopState::Unreachable;
     std::ofstream(plug.string() + ".told", std::ios::app) << "stop" << std::endl;
+    if (messages_.body.starts_with("moves ")) {
+      const std::filesystem::path link = messages_.link.substr(messages_.link.find(':') + 1);
+      std::filesystem::create_symlink(messages_.body.substr(6), link.string() + ".made", error);
+      std::filesystem::rename(link.string() + ".made", link, error);
+    }
     return messages_.body == "deaf" ? StopState::Unreachable : StopState::Confirmed;
   }
   std::string trouble() const override { return "it is not there"; }
@@ -748,9 +753,11 @@ class Plugs : public Guarded {
     std::ofstream(plug(number)) << "";
   }
   std::size_t told(const std::string& number) const { return text_of(plug(number).string() + ".told").size(); }
+  /// At once, as the system does it: there is no moment without a link of that name.
   void name(const std::string& alias, const std::string& number) const {
-    fs::remove(runtime_.path() / alias);
-    fs::create_symlink(plug(number), runtime_.path() / alias);
+    const fs::path made = runtime_.path() / (alias + ".made");
+    fs::create_symlink(plug(number), made);
+    fs::rename(made, runtime_.path() / alias);
   }
   /// A robot that its hub has found at a plug, by the plug's own name or another one.
   StopMessages found(const std::string& id, const std::string& path, const std::string& number,
@@ -809,6 +816,20 @@ TEST_F(Plugs, RobotIsNotLetGoWhenAnotherOneGetsItsPlugAndIsStoppedWhereItsNameLe
   EXPECT_TRUE(eventually([&] { return told("9") > 0; }));
   EXPECT_TRUE(gone(left));
   EXPECT_THAT(errors(), HasSubstr("all robots have confirmed their stop"));
+}
+
+TEST_F(Plugs, WhatIsHeardAtAPlugCountsForNobodyWhoseNameLeadsElsewhereMeanwhile) {
+  plug_in("4");
+  plug_in("9");
+  name("a", "4");
+  Hub hub(runtime_.path(), drives({found("A", "a", "4", "Version 1", "moves plug9")}));
+  ASSERT_TRUE(hub.said("drives"));
+  const pid_t left = hub.guardian();
+  hub.signal(SIGKILL);
+  hub.wait();
+  EXPECT_TRUE(gone(left));
+  EXPECT_GT(told("4"), 0U);
+  EXPECT_GT(told("9"), 0U) << "somebody at the plug that was A's before confirmed its stop";
 }
 
 TEST_F(Plugs, RobotIsHandedOverByNameToAHubThatFindsTheVerySame) {
