@@ -9,11 +9,9 @@
 #include "core/medium/led/led.hpp"
 #include "core/medium/medium.hpp"
 #include "core/medium/range_and_bearing/range_and_bearing.hpp"
-#include "core/physics/dynamics2d/dynamics2d.hpp"
-#include "core/physics/dynamics3d/dynamics3d.hpp"
 #include "core/physics/kinematics2d/kinematics2d.hpp"
-#include "core/physics/particle3d/particle3d.hpp"
 #include "core/run/run.hpp"
+#include "core/scenario/engine_traits.hpp"
 #include "core/scenario/observer_type.hpp"
 #include "core/scenario/run_part_type.hpp"
 #include "core/space/stores.hpp"
@@ -45,11 +43,10 @@ hal::Catalog own_entries() {
     core::register_unused_media(r);
     core::register_devices(r);
     core::register_kinematics2d(r);
-    core::register_dynamics2d(r);
-    core::register_dynamics3d(r);
-    core::register_particle3d(r);
   });
   TANDEM_CHECK(good.ok(), good.error().message.c_str());
+  for (const std::string_view engine : find_module("dynamics")->elements)
+    made.know_elsewhere(core::KnownEngine::kCategory, engine);
   return made;
 }
 

@@ -232,13 +232,13 @@ endfunction()
 
 # tandem_test(NAME hal_params SOURCES … DEPS hal LABELS fast): one GoogleTest program, one ctest entry.
 # WAITS: it mostly waits for real time to pass (label `waits`): many run side by side, but beside none that computes. Each test has
-# fair trials (tests/scenarios/fair_trials.cpp), as many as that may need.
+# fair trials (tests/scenarios/fair_trials.cpp), as many as that may need. FAIR: those alone, of one that computes much itself.
 function(tandem_test)
-  cmake_parse_arguments(arg "WAITS" "NAME;TIMEOUT" "SOURCES;DEPS;EXTERNAL;LABELS" ${ARGN})
+  cmake_parse_arguments(arg "WAITS;FAIR" "NAME;TIMEOUT" "SOURCES;DEPS;EXTERNAL;LABELS" ${ARGN})
   if(NOT arg_TIMEOUT)
     set(arg_TIMEOUT 120)
   endif()
-  if(arg_WAITS)
+  if(arg_WAITS OR arg_FAIR)
     math(EXPR arg_TIMEOUT "${arg_TIMEOUT} * 3")
     list(APPEND arg_SOURCES ${PROJECT_SOURCE_DIR}/tests/scenarios/fair_trials.cpp)
     list(APPEND arg_DEPS hal)
@@ -255,8 +255,10 @@ function(tandem_test)
   if("whole" IN_LIST arg_LABELS)
     set_tests_properties(${arg_NAME} PROPERTIES COST ${arg_TIMEOUT}) # long ones are begun first
   endif()
-  if(arg_WAITS)
+  if(arg_WAITS OR arg_FAIR)
     set_tests_properties(${arg_NAME} PROPERTIES SKIP_RETURN_CODE 77)
+  endif()
+  if(arg_WAITS)
     list(APPEND arg_LABELS waits)
   endif()
   tandem_label_test(${arg_NAME} test_${arg_NAME} ${arg_LABELS})

@@ -105,6 +105,19 @@ std::vector<std::string> Catalog::names(std::string_view category) const {
   return names;
 }
 
+void Catalog::know_elsewhere(std::string_view category, std::string_view name) {
+  elsewhere_.emplace_back(category, name);
+}
+
+std::vector<std::string> Catalog::elsewhere(std::string_view category) const {
+  const std::vector<std::string> here = names(category);
+  std::vector<std::string> names;
+  for (const auto& [of, name] : elsewhere_) {
+    if (of == category && std::find(here.begin(), here.end(), name) == here.end()) names.push_back(name);
+  }
+  return names;
+}
+
 std::string Catalog::origin_of(const void* entry) const {
   const auto found = std::find_if(entries_.begin(), entries_.end(), [&](const Entry& e) { return e.entry == entry; });
   return found == entries_.end() ? "" : found->origin;

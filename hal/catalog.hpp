@@ -112,6 +112,10 @@ class Catalog {
     return found;
   }
   std::vector<std::string> names(std::string_view category) const;
+  /// There is an entry of that name in a part of the program that may not be loaded.
+  void know_elsewhere(std::string_view category, std::string_view name);
+  /// Names of those that are not here.
+  std::vector<std::string> elsewhere(std::string_view category) const;
   /// Where that entry came from; empty when it is none.
   std::string origin_of(const void* entry) const;
   const std::vector<Entry>& entries() const noexcept { return entries_; }
@@ -128,7 +132,8 @@ class Catalog {
   const void* find(std::string_view category, std::uint64_t layout, std::string_view name) const noexcept;
 
   std::vector<Entry> entries_;
-  std::vector<Surface> surfaces_;  // one a category
+  std::vector<Surface> surfaces_;                               // one a category
+  std::vector<std::pair<std::string, std::string>> elsewhere_;  // category and name
 };
 
 }  // namespace tandem::hal

@@ -1,5 +1,6 @@
 #include <array>
 
+#include "app/dynamics/register.hpp"
 #include "app/live/register.hpp"
 #include "app/module/linked_modules.hpp"
 #include "app/pictures/register.hpp"
@@ -11,7 +12,8 @@
 namespace tandem::app {
 
 std::span<const LinkedModule> linked_modules() noexcept {
-  static constexpr std::array<LinkedModule, 6> kAll = {{{"live", &register_live},
+  static constexpr std::array<LinkedModule, 7> kAll = {{{"dynamics", &register_dynamics},
+                                                        {"live", &register_live},
                                                         {"pictures", &register_pictures},
                                                         {"real", &register_real},
                                                         {"window", &register_window},

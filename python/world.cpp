@@ -190,8 +190,7 @@ void World::open_run(const std::string& record) {
 void World::leave_run() {
   if (!started_ || finished_) return;
   session_->stop = session_->world->state() == core::RunState::Running;
-  const py::gil_scoped_release unlocked;
-  session_->run->leave();
+  session_->run->leave();  // with Python's lock: the collector may be at work
 }
 
 World::~World() {

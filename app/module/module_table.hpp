@@ -57,17 +57,19 @@ inline constexpr std::array<ModuleCommand, 11> kLab = {
 
 inline constexpr std::array<Word, 1> kRealNeeds = {"live"};
 inline constexpr std::array<Word, 2> kOfWindow = {"live", "pictures"};
-inline constexpr std::array<Word, 5> kOfLab = {"live", "pictures", "real", "window", "study"};
+inline constexpr std::array<Word, 6> kOfLab = {"dynamics", "live", "pictures", "real", "window", "study"};
 inline constexpr std::array<Word, 5> kRealCategories = {"bridge", "inspector", "emulator", "tracker", "stopper"};
 inline constexpr std::array<Word, 1> kPictureCategories = {"layer"};
 inline constexpr std::array<Word, 4> kRealElements = {"bridge", "peer", "trackers", "footbot_map"};
 inline constexpr std::array<Word, 1> kStudyElements = {"study"};
+inline constexpr std::array<Word, 4> kDynamicsElements = {"dynamics2d", "dynamics3d", "particle3d", "pointmass3d"};
 
 }  // namespace module_table
 
 /// In the order in which they can be loaded.
-inline constexpr std::array<Module, 6> kModules = {
-    {{"live", "runs that people hold and watch", 1, {}, {}, {}, {}},
+inline constexpr std::array<Module, 7> kModules = {
+    {{"dynamics", "physics engines with forces", 1, {}, {}, {}, module_table::kDynamicsElements},
+     {"live", "runs that people hold and watch", 1, {}, {}, {}, {}},
      {"pictures", "pictures, films, layers", 1, {}, module_table::kPictures, module_table::kPictureCategories, {}},
      {"real", "real robots: bridges, trackers, their emulators", 4, module_table::kRealNeeds, module_table::kReal,
       module_table::kRealCategories, module_table::kRealElements},

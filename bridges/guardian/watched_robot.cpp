@@ -46,6 +46,30 @@ void ask_to_lend(const std::string& folder, pid_t guardian, const std::vector<st
   ::close(fd);
 }
 
+struct Asked {
+  StopState state = StopState::Unreachable;
+  std::string trouble;
+};
+
+Asked ask(Stopper* stopper, TimeNs now) {
+  Asked asked;
+  if (stopper == nullptr) return asked;
+  try {
+    asked.state = stopper->step(now);
+    if (asked.state != StopState::Confirmed) asked.trouble = stopper->trouble();
+  } catch (const std::exception& e) {
+    asked.trouble = e.what();  // out of memory, no more threads: the next step tries again
+  }
+  return asked;
+}
+
+/// Closes its link, which may take a while, without the lock.
+void close_link(std::unique_ptr<Stopper>& stopper, std::unique_lock<std::mutex>& lock) {
+  lock.unlock();
+  stopper.reset();
+  lock.lock();
+}
+
 }  // namespace
 
 WatchedRobot::WatchedRobot(const GuardianContext& context, const StopMessages& robot)
@@ -308,15 +332,11 @@ void WatchedRobot::stop_robot(std::unique_lock<std::mutex>& lock) {
   }
   std::unique_ptr<Stopper> stopper;
   std::optional<std::string> opened_at;  // the device that the stopper's link led to
-  bool reached = true;  // at first there is no time to lose
+  bool reached = true;                   // at first there is no time to lose
   while (order == order_) {
     const TimeNs begin = monotonic_ns();
     if (cause_ == StopCause::HubGone && (!reached || lent_to_ != 0)) {
-      if (lent_to_ != 0) {
-        lock.unlock();
-        stopper.reset();  // closes its link
-        lock.lock();
-      }
+      if (lent_to_ != 0) close_link(stopper, lock);
       const std::string told = trouble_;
       lock.unlock();
       const bool ours = line_is_ours();
@@ -335,9 +355,7 @@ void WatchedRobot::stop_robot(std::unique_lock<std::mutex>& lock) {
     }
     trace_.look();
     if (stopper && trace_.leads_to() != opened_at) {  // it holds a line that is not this robot's any more
-      lock.unlock();
-      stopper.reset();
-      lock.lock();
+      close_link(stopper, lock);
       if (order != order_) break;
     }
     if (!stopper) {
@@ -345,14 +363,7 @@ void WatchedRobot::stop_robot(std::unique_lock<std::mutex>& lock) {
       stopper = make_stopper();
     }
     lock.unlock();
-    StopState state = StopState::Unreachable;
-    std::string trouble;
-    try {
-      if (stopper) state = stopper->step(begin);
-      if (stopper && state != StopState::Confirmed) trouble = stopper->trouble();
-    } catch (const std::exception& e) {
-      trouble = e.what();  // out of memory, no more threads: the next step tries again
-    }
+    auto [state, trouble] = ask(stopper.get(), begin);
     const TimeNs end = monotonic_ns();
     lock.lock();
     if (order != order_) break;
@@ -372,9 +383,7 @@ void WatchedRobot::stop_robot(std::unique_lock<std::mutex>& lock) {
       state = StopState::Unreachable;
       trouble = "a robot at its link rests, but the line was broken meanwhile: it may be another one";
       reached = !heard_there;  // then ours is looked for at once
-      lock.unlock();
-      stopper.reset();
-      lock.lock();
+      close_link(stopper, lock);
       if (order != order_) break;
     }
     const bool told = state == state_ && trouble == trouble_;
@@ -384,9 +393,7 @@ void WatchedRobot::stop_robot(std::unique_lock<std::mutex>& lock) {
     const TimeNs pause = (state == StopState::Unreachable ? kUnreachablePause : kShortestStep) - (end - begin);
     if (pause > 0) wake_.wait_for(lock, std::chrono::nanoseconds(pause), [&] { return order != order_; });
   }
-  lock.unlock();
-  stopper.reset();  // closes its link
-  lock.lock();
+  close_link(stopper, lock);
   busy_ = false;
   context_.wake();
 }

@@ -29,6 +29,7 @@ KnownNames::KnownNames(const hal::Catalog& all)
       run_parts(all.names(RunPartType::kCategory)),
       trackers(all.names("tracker")),  // whose type is above core
       catalog(all) {
+  for (std::string& name : all.elsewhere(KnownEngine::kCategory)) engines.push_back(std::move(name));
   for (const FieldType* field : all.all<FieldType>()) {
     if (field->describe != nullptr) fields.emplace_back(field->name);
   }

@@ -120,8 +120,7 @@ hal::Status make_sets(TableSink& file, Tables& tables) {
       }
       table.tick_values += table.ids.size() * set.width;
     }
-    for (const auto& [name, type] :
-         {std::pair{"/tick", TableType::I64}, std::pair{"/time", TableType::F64}}) {
+    for (const auto& [name, type] : {std::pair{"/tick", TableType::I64}, std::pair{"/time", TableType::F64}}) {
       if (const hal::Status added = file.add(table.path + name, type, {}); !added.ok()) return added;
     }
     if (const hal::Status told = file.describe(table.path + "/time", "unit", "s"); !told.ok()) return told;
@@ -208,8 +207,7 @@ hal::Result<RecordTables> RecordTables::open(const TableChoice& choice) {
   if (!found.ok()) return found.error();
   auto again = RecordReader::open(choice.record);
   if (!again.ok()) return again.error();
-  return RecordTables(
-      std::make_unique<Impl>(Impl{choice, std::move(found).value(), std::move(again).value()}));
+  return RecordTables(std::make_unique<Impl>(Impl{choice, std::move(found).value(), std::move(again).value()}));
 }
 
 std::vector<std::string> RecordTables::damage() const {

@@ -9,6 +9,9 @@ std::string engines_that(const hal::Catalog& catalog, const std::function<bool(c
   for (const KnownEngine* engine : catalog.all<KnownEngine>()) {
     if (fit(engine->traits)) all += (all.empty() ? "" : ", ") + std::string(engine->kind);
   }
+  if (!all.empty()) return all;
+  for (const std::string& name : catalog.elsewhere(KnownEngine::kCategory))
+    all += (all.empty() ? "one of these, if it can (they are not loaded): " : ", ") + name;
   return all.empty() ? "none of this program's" : all;
 }
 

@@ -75,13 +75,21 @@ TEST_F(Modules, ThatAreMissingAreNamedWithWhatWouldBuildThem) {
   EXPECT_EQ(mixed.code, 1);
   EXPECT_THAT(mixed.text, HasSubstr("module 'real'"));
   EXPECT_EQ(run("run " + experiment() + " --steps 5 --picture p.svg").code, 1);
+  folder_.write("engine.xml",
+                "<tandem><arena size=\"4,4,1\"/><physics_engines><dynamics2d id=\"d\"/></physics_engines></tandem>");
+  const Ended engine = run("check engine.xml");
+  EXPECT_EQ(engine.code, 1);
+  EXPECT_THAT(engine.text, HasSubstr("module 'dynamics'"));
+  folder_.write("typo.xml",
+                "<tandem><arena size=\"4,4,1\"/><physics_engines><dynamic2d id=\"d\"/></physics_engines></tandem>");
+  EXPECT_THAT(run("check typo.xml").text, HasSubstr("did you mean 'dynamics2d'?")) << "it is known before it is there";
 }
 
 TEST_F(Modules, AreListedAndTheirCommandsAreInHelpWhetherTheyAreBuiltOrNot) {
   const Ended list = run("list modules"), help = run("--help");
   EXPECT_THAT(list.text, AllOf(HasSubstr("study"), HasSubstr("NOT BUILT")));
   EXPECT_THAT(help.text, AllOf(HasSubstr("sweep"), HasSubstr("validate"), HasSubstr("emulate")));
-  for (const char* module : {"live", "pictures", "real", "window", "study", "lab"}) put(module);
+  for (const char* module : {"dynamics", "live", "pictures", "real", "window", "study", "lab"}) put(module);
   const Ended all = run("list modules");
   EXPECT_THAT(all.text, AllOf(HasSubstr("lab"), Not(HasSubstr("NOT BUILT")), Not(HasSubstr("warning"))))
       << "all load, beside one another";
