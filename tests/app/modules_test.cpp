@@ -82,7 +82,7 @@ TEST_F(Modules, ThatAreMissingAreNamedWithWhatWouldBuildThem) {
   EXPECT_THAT(engine.text, HasSubstr("module 'dynamics'"));
   folder_.write("typo.xml",
                 "<tandem><arena size=\"4,4,1\"/><physics_engines><dynamic2d id=\"d\"/></physics_engines></tandem>");
-  EXPECT_THAT(run("check typo.xml").text, HasSubstr("did you mean 'dynamics2d'?")) << "it is known before it is there";
+  EXPECT_THAT(run("check typo.xml").text, HasSubstr("Did you mean 'dynamics2d'?")) << "it is known before it is there";
 }
 
 TEST_F(Modules, AreListedAndTheirCommandsAreInHelpWhetherTheyAreBuiltOrNot) {
