@@ -1,5 +1,5 @@
 // A program of one's own that holds a world: makes it from a file, steps it, looks into it, and goes back once.
-//   lab EXPERIMENT [TICKS]
+//   lab EXPERIMENT [TICKS [RECORD]]
 #include <cstdio>
 #include <cstdlib>
 #include <memory>
@@ -28,10 +28,10 @@ int robots_near_something(const tandem::core::World& world) {
 
 int main(int argc, char** argv) {
   if (argc < 2) {
-    std::fprintf(stderr, "lab EXPERIMENT [TICKS]\n");
+    std::fprintf(stderr, "lab EXPERIMENT [TICKS [RECORD]]\n");
     return 2;
   }
-  auto opened = tandem::library::open_world({.file = argv[1], .seed = 7});
+  auto opened = tandem::library::open_world({.file = argv[1], .seed = 7, .record = argc > 3 ? argv[3] : ""});
   if (!opened.ok()) {
     std::fprintf(stderr, "%s\n", opened.error().message.c_str());
     return 1;
@@ -57,4 +57,7 @@ int main(int argc, char** argv) {
                 robots_near_something(world), static_cast<unsigned long long>(world.state_hash()));
   }
   run.end();
+  if (run.failure().empty()) return 0;
+  std::fprintf(stderr, "%s\n", run.failure().c_str());
+  return 3;
 }

@@ -10,6 +10,7 @@ namespace {
 namespace fs = std::filesystem;
 using scenarios::Folder;
 using scenarios::text_of;
+using testing::AllOf;
 using testing::HasSubstr;
 
 const std::string kTop = test::kSourceDir, kBuild = test::kBuildDir;
@@ -43,13 +44,20 @@ std::string fingerprint_of_run() {
 
 TEST(Library, MakesStepsAndLooksIntoAWorldInAProgramOfOthers) {
   const Folder folder;
-  ASSERT_EQ(shell(build_lab(kTop + "/cmake") + " && lab/build/lab '" + kExperiment + "' 50", folder.path()), 0)
+  ASSERT_EQ(shell(build_lab(kTop + "/cmake") + " && lab/build/lab '" + kExperiment + "' 50 lab.record", folder.path()),
+            0)
       << text_of(folder.path() / "log");
   const std::string said = text_of(folder.path() / "log");
   const std::size_t first = said.find("50 ticks"), second = said.find("50 ticks", first + 1);
   ASSERT_NE(second, std::string::npos) << said;
   EXPECT_EQ(fingerprint(said, first), fingerprint_of_run());
   EXPECT_EQ(fingerprint(said, second), fingerprint(said, first)) << "it went back, and the same way again";
+
+  scenarios::Tandem told({"export", "lab.record"}, folder.path());
+  EXPECT_EQ(told.wait(), 0) << told.errors();
+  EXPECT_THAT(told.output(), AllOf(HasSubstr("seed 7"), HasSubstr("ticks 0 to 49, 50 of them, 50 rows each")));
+  EXPECT_EQ(shell("lab/build/lab '" + kExperiment + "' 5 nowhere/lab.record", folder.path()), 1);
+  EXPECT_THAT(text_of(folder.path() / "log"), HasSubstr("nowhere/lab.record"));
 
   folder.write("bad.xml", "<tandem><arena size=\"1,1,1\" colour=\"red\"/></tandem>");
   EXPECT_EQ(shell("lab/build/lab bad.xml", folder.path()), 1);
@@ -61,8 +69,9 @@ TEST(Library, IsFoundInAnInstalledTree) {
   const std::string prefix = (folder.path() / "prefix").string();
   ASSERT_EQ(shell("cmake --install '" + kBuild + "' --prefix '" + prefix + "'", folder.path()), 0)
       << text_of(folder.path() / "log");
-  ASSERT_EQ(
-      shell(build_lab(prefix + "/lib/cmake/Tandem") + " && lab/build/lab '" + kExperiment + "' 50", folder.path()), 0)
+  ASSERT_EQ(shell(build_lab(prefix + "/lib/cmake/Tandem") + " && lab/build/lab '" + kExperiment + "' 50 lab.record",
+                  folder.path()),
+            0)
       << text_of(folder.path() / "log");
   EXPECT_EQ(fingerprint(text_of(folder.path() / "log")), fingerprint_of_run());
   EXPECT_NE(
