@@ -108,6 +108,24 @@ TEST_F(Sweep, MakesEveryRunAsTheRunCommandWould) {
   EXPECT_EQ(samples[1].substr(0, 12), "0,items,5,0.");
 }
 
+TEST_F(Sweep, RunsHaveThePartsThatTheirExperimentNames) {
+  std::string text = kExperiment;
+  text.replace(text.find("LENGTH"), 6, "2");
+  text.replace(text.find("  <loop_functions"), 0, "  <plugins library=\"test_trouble\"/>\n");
+  text.replace(text.find("</tandem>"), 0, "  <run><joiner what=\"none\" at=\"3\"/></run>\n");
+  folder_.write("e.xml", text);
+  study(R"(<parameter path="run.joiner.what" values="none, end, before"/><seeds first="1" count="2"/>)");
+  EXPECT_EQ(tandem({"sweep", "s.xml", "--jobs", "2"}), 3);
+  EXPECT_THAT(output_, HasSubstr("part 'joiner', before_tick: cannot go on"));
+  const auto table = lines("s.csv");
+  ASSERT_EQ(table.size(), 7U);
+  for (const std::size_t seed : {0U, 1U}) {
+    EXPECT_THAT(table[1 + 3 * seed], HasSubstr(",none,done,length,,20,2,"));
+    EXPECT_THAT(table[2 + 3 * seed], HasSubstr(",end,done,part,,3,0.3,"));
+    EXPECT_THAT(table[3 + 3 * seed], HasSubstr(",before,failed,failed,"));
+  }
+}
+
 TEST_F(Sweep, GivesTheSameTableForAnyNumberOfWorkersAndWithEveryRunApart) {
   experiment();
   study(R"(<parameter path="loop_functions.gain" values="1, 2, 3"/><seeds first="1" count="4"/>)");
