@@ -117,6 +117,13 @@ hal::Json report_json(const core::Scenario& scenario, const peer::PeerSide& side
   return json;
 }
 
+void idle(hal::TimeNs duration_ns, const std::atomic<bool>& stop) {
+  for (const hal::TimeNs until = bridges::monotonic_ns() + duration_ns; !stop && bridges::monotonic_ns() < until;) {
+    const timespec t{0, 20'000'000};
+    ::nanosleep(&t, nullptr);
+  }
+}
+
 }  // namespace
 
 int robot_peer(const RobotOptions& options) {
@@ -148,12 +155,6 @@ int robot_peer(const RobotOptions& options) {
           : 0;
   hal::TimeNs closed_ns = bridges::monotonic_ns();  // since then there is no link
   bool silent = false, introduced = false;
-  const auto idle = [&stop](hal::TimeNs duration_ns) {
-    for (hal::TimeNs until = bridges::monotonic_ns() + duration_ns; !stop && bridges::monotonic_ns() < until;) {
-      const timespec t{0, 20'000'000};
-      ::nanosleep(&t, nullptr);
-    }
-  };
   while (!stop.load() && !side.ended() && (most == 0 || side.counts().ticks < most)) {
     if (link == nullptr) {
       auto opened = opener.value()();
@@ -164,7 +165,7 @@ int robot_peer(const RobotOptions& options) {
         }
         if (!silent) say(opened.error().message + "; trying on");
         silent = true;
-        idle(kOpenAgain_ns);
+        idle(kOpenAgain_ns, stop);
         continue;
       }
       link = std::move(opened).value();

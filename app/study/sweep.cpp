@@ -268,6 +268,29 @@ std::optional<study::Study> read_study_or_complain(const std::string& path) {
   return study;
 }
 
+/// The table is whole: as CSV, and what to tell of it. `left`: runs that are missing. @returns the program's code.
+int end_sweep(const SweepOptions& options, const study::Design& design, const std::string& path, const Tally& tally,
+              std::int64_t left, double took_s, const std::string& go_on) {
+  auto files = study::export_csv(path, fs::path(path).replace_extension(".csv").string());
+  if (!files.ok()) {
+    return complain(kFailedRunning,
+                    fmt::format("{}. The table '{}' is whole; when that is mended, this writes it as CSV: {}",
+                                files.error().message, path, go_on));
+  }
+  if (!options.quiet) {
+    tell(tally, design, options, took_s);
+    fmt::print("table: {}", path);
+    for (const std::string& file : *files) fmt::print(", {}", file);
+    fmt::print("\n");
+  }
+  if (left > 0) {
+    say(fmt::format("interrupted: {} of {} runs are missing; {}: {}", left, design.runs(),
+                    options.slurm ? "the cluster's jobs go on; collect what they make with" : "go on with", go_on));
+    return interrupted_code() != 0 ? interrupted_code() : kFailedRunning;
+  }
+  return tally.failed + tally.failed_before > 0 ? kFailedRunning : kDone;
+}
+
 int sweep(const SweepOptions& options) {
   const auto study = read_study_or_complain(options.study);
   if (!study) return kBadInput;
@@ -346,24 +369,7 @@ int sweep(const SweepOptions& options) {
                                                 status.error().message, go_on));
   }
   work->table.reset();
-  auto files = study::export_csv(path, fs::path(path).replace_extension(".csv").string());
-  if (!files.ok()) {
-    return complain(kFailedRunning,
-                    fmt::format("{}. The table '{}' is whole; when that is mended, this writes it as CSV: {}",
-                                files.error().message, path, go_on));
-  }
-  if (!options.quiet) {
-    tell(tally, design, options, took_s);
-    fmt::print("table: {}", path);
-    for (const std::string& file : *files) fmt::print(", {}", file);
-    fmt::print("\n");
-  }
-  if (left > 0) {
-    say(fmt::format("interrupted: {} of {} runs are missing; {}: {}", left, design.runs(),
-                    options.slurm ? "the cluster's jobs go on; collect what they make with" : "go on with", go_on));
-    return interrupted_code() != 0 ? interrupted_code() : kFailedRunning;
-  }
-  return tally.failed + tally.failed_before > 0 ? kFailedRunning : kDone;
+  return end_sweep(options, design, path, tally, left, took_s, go_on);
 }
 
 /// A job of a cluster: makes what is missing of one batch. kBadInput also where program or files are not those of the
