@@ -106,7 +106,11 @@ class Run {
   /// and nothing was stepped.
   bool go();
   /// Joins the parts, starts the world. False: a part could not join; all have finished, and nothing else may follow.
-  bool begin() { return join() && start(); }
+  bool begin() {
+    if (!join()) return false;
+    stepped_->start();
+    return true;
+  }
   /// One tick, with the parts' turns before and after it. False: no further one comes.
   bool tick() {
     if (!before_tick() || !stepped_->step()) return false;
@@ -137,10 +141,6 @@ class Run {
     RunPart* part;
     bool joined = false, failed = false;
   };
-  bool start() {
-    stepped_->start();
-    return true;
-  }
   bool before_tick();
   void after_tick();
   template <class Call>
