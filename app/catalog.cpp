@@ -45,7 +45,7 @@ hal::Catalog own_entries() {
     core::register_kinematics2d(r);
   });
   TANDEM_CHECK(good.ok(), good.error().message.c_str());
-  for (const std::string_view engine : find_module("dynamics")->elements)
+  for (const std::string_view engine : module_table::kDynamicsEngines)
     made.know_elsewhere(core::KnownEngine::kCategory, engine);
   return made;
 }

@@ -105,6 +105,24 @@ void list_names(const hal::Catalog& catalog, std::string_view category, std::str
   }
 }
 
+void list_engines(const hal::Catalog& catalog) {
+  list_names(catalog, core::EngineType::kCategory, "physics engines");
+  for (const std::string& name : catalog.elsewhere(core::KnownEngine::kCategory))
+    fmt::print("  {}; NOT BUILT: tandem describe {} has it built, as the first file does\n", name, name);
+}
+
+/// The module that has the engine of this name, if it is not loaded. False: it could not be loaded, which was told.
+bool need_module_of_engine(const hal::Catalog& catalog, const std::string& name) {
+  const std::vector<std::string> elsewhere = catalog.elsewhere(core::KnownEngine::kCategory);
+  if (std::ranges::find(elsewhere, name) == elsewhere.end()) return true;
+  for (const Module& module : kModules) {
+    if (std::ranges::find(module.elements, name) == module.elements.end()) continue;
+    if (const hal::Status there = load_module(module.name); !there.ok())
+      return complain(kBadInput, there.error().message) == kDone;
+  }
+  return true;
+}
+
 void list_elements(const hal::Catalog& catalog) {
   fmt::print("elements of experiment files:\n");
   for (const core::ElementManual& m : core::element_manuals(catalog)) fmt::print("  {:<22} {}\n", m.name, m.doc);
@@ -302,8 +320,7 @@ bool describe_element(const hal::Catalog& catalog, const std::string& name) {
 
 constexpr Listing kListings[] = {
     {"robots", [](const hal::Catalog& c) { list_entries<hal::RobotKind>(c, "robots"); }, &describe_robot},
-    {"engines", [](const hal::Catalog& c) { list_names(c, core::EngineType::kCategory, "physics engines"); },
-     &describe_physics_engine},
+    {"engines", &list_engines, &describe_physics_engine},
     {"couplings", [](const hal::Catalog& c) { list_entries<core::CouplingType>(c, "couplings"); }, &describe_coupling},
     {"elements", &list_elements, &describe_element},
     {"parts", [](const hal::Catalog& c) { list_entries<hal::PartType>(c, "parts of robots"); }, &describe_part},
@@ -386,6 +403,7 @@ struct DescribeOptions {
 int describe(const DescribeOptions& options, const hal::CommandContext& context) {
   load_built_modules();
   const std::string& name = options.name;
+  if (!need_module_of_engine(context.catalog(), name)) return kBadInput;
   const auto known = all_known(context.catalog(), options.plugins, options.file);
   if (!known) return kBadInput;
   const hal::Catalog& catalog = known->catalog();

@@ -62,6 +62,7 @@ inline constexpr std::array<Word, 5> kRealCategories = {"bridge", "inspector", "
 inline constexpr std::array<Word, 1> kPictureCategories = {"layer"};
 inline constexpr std::array<Word, 4> kRealElements = {"bridge", "peer", "trackers", "footbot_map"};
 inline constexpr std::array<Word, 1> kStudyElements = {"study"};
+inline constexpr std::array<Word, 3> kDynamicsEngines = {"dynamics2d", "dynamics3d", "particle3d"};
 inline constexpr std::array<Word, 4> kDynamicsElements = {"dynamics2d", "dynamics3d", "particle3d", "pointmass3d"};
 
 }  // namespace module_table

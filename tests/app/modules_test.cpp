@@ -82,6 +82,8 @@ TEST_F(Modules, ThatAreMissingAreNamedWithWhatWouldBuildThem) {
   EXPECT_THAT(engine.text, HasSubstr("module 'dynamics'"));
   folder_.write("typo.xml",
                 "<tandem><arena size=\"4,4,1\"/><physics_engines><dynamic2d id=\"d\"/></physics_engines></tandem>");
+  EXPECT_THAT(run("list engines").text, AllOf(HasSubstr("kinematics2d"), HasSubstr("dynamics3d; NOT BUILT")));
+  EXPECT_THAT(run("describe dynamics3d").text, HasSubstr("module 'dynamics'"));
   EXPECT_THAT(run("check typo.xml").text, HasSubstr("Did you mean 'dynamics2d'?")) << "it is known before it is there";
 }
 
