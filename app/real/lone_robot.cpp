@@ -181,6 +181,7 @@ class LoneHub final : public core::Stepped {
   class Driven;
   int choose_robot();
   hal::Json report_so_far() const;
+  void prepare_report();
   void commit();
   void stop();
   int end();
@@ -325,12 +326,17 @@ bool LoneHub::step() {
   return true;
 }
 
+/// For an end that leaves no time to make one.
+void LoneHub::prepare_report() {
+  if (report_) emergency_->set_report(report_so_far());
+}
+
 void LoneHub::commit() {
   const std::lock_guard hold(watchdog_->lock());  // what is saved changes
   guarded_->update();
   hub_faults_.apply(clock_.now_ns());
   lone_->commit(clock_.now_ns());  // at once, not after the wait
-  if (report_ && emergency_->due()) emergency_->set_report(report_so_far());
+  if (emergency_->due()) prepare_report();
 }
 
 int LoneHub::drive() {
@@ -343,12 +349,9 @@ int LoneHub::drive() {
     if (!granted.ok()) log_.warning(granted.error().message + "; going on without");
   }
   emergency_.emplace(report_);
-  const auto prepare = [this] {
-    if (report_) emergency_->set_report(report_so_far());
-  };
   {
-    const SaveAtEnd save(*watchdog_, prepare);
-    prepare();
+    const SaveAtEnd save(*watchdog_, [this] { prepare_report(); });
+    prepare_report();
     core::Run run(*this, *stop_);
     run.add(std::make_unique<core::Length>(steps));
     run.add(std::make_unique<Driven>(*this));

@@ -38,7 +38,8 @@ class Record:
 
     def table(self, name, fields=(), entities=(), first=None, last=None, every=1):
         """One table. fields and entities: only these; in ids "*" stands for any text. first, last: ticks, both included."""
-        return self._tables(name, fields, entities, first, last, every)[name]
+        found = _tandem._record_tables(self.path, name, list(fields), list(entities), first, last, every)
+        return {path.rsplit("/", 1)[1]: values for path, values in found.items() if not path.startswith("events/")}
 
     def __getitem__(self, name):
         return self.table(name)
@@ -46,22 +47,9 @@ class Record:
     def __iter__(self):
         return iter(self.tables)
 
-    def _tables(self, name, fields, entities, first, last, every):
-        found = _tandem._record_tables(self.path, name, list(fields), list(entities), first, last, every)
-        groups = {}
-        for path, values in found.items():
-            group, field = path.rsplit("/", 1)
-            groups.setdefault(group, {})[field] = values
-        titles = {_group(title): title for title in self.tables}
-        return {titles.get(group, group): table for group, table in groups.items()}
-
     def picture(self, time=None, size=600, ids=False, axes=False):
         """The run from above at that time in s, or at its end, as notebooks show it."""
         return _tandem._record_picture(self.path, time, size, ids, axes)
 
     def __repr__(self):
         return f"<tandem.Record '{self.name}', seed {self.seed}: {', '.join(self.tables)}>"
-
-
-def _group(title):
-    return title.replace(" ", "/")
