@@ -80,7 +80,7 @@ std::vector<std::vector<std::uint64_t>> WorldMemory::live_words() const {
   std::vector<std::vector<std::uint64_t>> all;
   for (std::size_t i = 0; i < chunks(); ++i) {
     all.emplace_back((chunk(i).used + kWord - 1) / kWord);
-    std::memcpy(all.back().data(), chunk(i).bytes.get(), chunk(i).used);
+    if (chunk(i).used > 0) std::memcpy(all.back().data(), chunk(i).bytes.get(), chunk(i).used);
   }
   for (std::size_t size_class = 0; size_class < kClasses; ++size_class) {
     for (const void* block = unused_[size_class]; block != nullptr; std::memcpy(&block, block, sizeof block)) {
