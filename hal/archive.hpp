@@ -78,6 +78,11 @@ class Archive {
   void value(T& v) {
     if constexpr (requires { v.remember(*this); }) {
       v.remember(*this);
+    } else if constexpr (std::is_same_v<T, bool>) {  // a byte of a file may be neither
+      std::uint8_t byte = v ? 1 : 0;
+      raw(&byte, sizeof byte);
+      ok_ = ok_ && byte <= 1;
+      if (ok_) v = byte == 1;
     } else if constexpr (kPlain<T>) {
       raw(&v, sizeof v);
     } else if constexpr (requires { typename T::key_type; }) {

@@ -70,6 +70,14 @@ TEST(Archive, BytesThatAreMissingAreNoticedAndNothingIsAllocatedForThem) {
   EXPECT_TRUE(numbers.empty());
 }
 
+TEST(Archive, AByteThatIsNeitherTrueNorFalseIsRefused) {
+  bool yes = true;
+  Archive archive("\x02");
+  archive(yes);
+  EXPECT_FALSE(archive.ok());
+  EXPECT_TRUE(yes);
+}
+
 TEST(Archive, BytesThatAreLeftAreNoticed) {
   const std::string bytes = written(some()) + "x";
   Everything read;
