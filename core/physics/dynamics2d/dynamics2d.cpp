@@ -47,9 +47,14 @@ struct BodyProxy {
   b2Joint* hold = nullptr;  ///< to the ground: a movable object's friction, or a robot's drive while it pushes
   // The state in the stores that the double agrees with.
   double x_m = NAN, y_m = NAN, cos_h = 0.0, sin_h = 0.0, vx_m_s = 0.0, vy_m_s = 0.0, w_rad_s = 0.0;
-  double turn_rad = 0.0;   ///< of a robot that pushes nothing: in this sub-step, by its wheels
-  std::string unfit = {};  ///< why Box2D cannot have it at all; empty: it can
-  bool flawed = false;     ///< takes no part in this tick: its state is no number that Box2D can have
+  double turn_rad = 0.0;  ///< of a robot that pushes nothing: in this sub-step, by its wheels
+  bool unfit = false;     ///< Box2D cannot have it at all
+  bool flawed = false;    ///< takes no part in this tick: unfit, or its state is no number that Box2D can have
+
+  void turn_to(float angle_rad) noexcept {
+    cos_h = std::cos(static_cast<double>(angle_rad));
+    sin_h = std::sin(static_cast<double>(angle_rad));
+  }
 };
 
 /// Cosine and sine of a heading.
@@ -70,6 +75,12 @@ Heading turned(Heading h, double d) noexcept {
     s = std::sin(d);
   }
   return {h.cos_h * c - h.sin_h * s, h.sin_h * c + h.cos_h * s};
+}
+
+/// Chord of an arc, in parts of its length.
+double chord_of(double half_turn_rad) noexcept {
+  const double half2 = half_turn_rad * half_turn_rad;
+  return 1.0 - half2 / 6.0 * (1.0 - half2 / 20.0 * (1.0 - half2 / 42.0));
 }
 
 /// Mean distance of an object's footprint from its centre: the lever of friction against turning.
@@ -97,15 +108,20 @@ const char* flaw_of(const SpaceStores& s, BodyKey key) noexcept {
   const std::size_t i = key.index();
   const bool object = key.is_object();
   const Motion& m = object ? s.object_motion[i] : s.bodies.motion[i];
-  double largest = 0.0;
-  for (const double value : {object ? s.objects[i].x_m : s.bodies.x_m[i], object ? s.objects[i].y_m : s.bodies.y_m[i],
-                             object ? s.objects[i].cos_h : s.bodies.cos_h[i],
-                             object ? s.objects[i].sin_h : s.bodies.sin_h[i], object ? 0.0 : s.bodies.left_m_s[i],
-                             object ? 0.0 : s.bodies.right_m_s[i], m.v_m_s[0], m.v_m_s[1], m.w_rad_s[2]}) {
-    if (!std::isfinite(value)) return "has a position or speed that is not a finite number";
-    largest = std::max(largest, std::fabs(value));
-  }
-  return largest > kFarthest_m ? "is farther away, or faster, than its engine can follow" : nullptr;
+  const std::array values{object ? s.objects[i].x_m : s.bodies.x_m[i],
+                          object ? s.objects[i].y_m : s.bodies.y_m[i],
+                          object ? s.objects[i].cos_h : s.bodies.cos_h[i],
+                          object ? s.objects[i].sin_h : s.bodies.sin_h[i],
+                          object ? 0.0 : s.bodies.left_m_s[i],
+                          object ? 0.0 : s.bodies.right_m_s[i],
+                          m.v_m_s[0],
+                          m.v_m_s[1],
+                          m.w_rad_s[2]};
+  const auto all = [&](auto fits) { return std::all_of(values.begin(), values.end(), fits); };
+  if (all([](double value) { return std::fabs(value) <= kFarthest_m; })) return nullptr;
+  return all([](double value) { return std::isfinite(value); })
+             ? "is farther away, or faster, than its engine can follow"
+             : "has a position or speed that is not a finite number";
 }
 
 std::string unfit(const Object& o) {
@@ -128,16 +144,15 @@ class Dynamics2d final : public Solver {
     if (version_ != s.immovables_version) place_immovables(context);
     bodies_table_.update(
         context.region, s, [&](BodyKey key) { return make(s, key); }, [this](BodyProxy& proxy) { drop(proxy); });
-    auto& entries = bodies_table_.entries();
-    for (std::size_t i = 0; i < entries.size(); ++i) entries[i].body.body->GetUserData().pointer = i;
     hops_ = 0.0;
-    for (auto& entry : entries) {
+    std::uintptr_t number = 0;
+    for (auto& entry : bodies_table_.entries()) {
       BodyProxy& proxy = entry.body;
-      const char* flaw = proxy.unfit.empty() ? flaw_of(s, entry.key) : proxy.unfit.c_str();
-      proxy.flawed = flaw != nullptr;
+      proxy.body->GetUserData().pointer = number++;
+      proxy.flawed = proxy.unfit || flaw_of(s, entry.key) != nullptr;
       if (proxy.body->IsEnabled() == proxy.flawed) proxy.body->SetEnabled(!proxy.flawed);
       if (proxy.flawed)
-        leave_out(proxy, entry.key, entry.owned, flaw);
+        leave_out(s, entry.key, entry.owned, proxy);
       else
         take_over(s, entry.key, entry.owned, proxy, context.tick_s);
     }
@@ -150,34 +165,20 @@ class Dynamics2d final : public Solver {
     SpaceStores& s = context.stores;
     const int steps = sub_steps(s, context.tick_s);
     const double dt = context.tick_s / steps;
-    headings_.resize(bodies_table_.entries().size());
-    braking_.resize(headings_.size());
-    for (std::size_t i = 0; i < headings_.size(); ++i) {
-      const BodyProxy& proxy = bodies_table_.entries()[i].body;
-      headings_[i] = {proxy.cos_h, proxy.sin_h};
-    }
+    auto& entries = bodies_table_.entries();
     for (int step = 0; step < steps; ++step) {
-      for (std::size_t i = 0; i < headings_.size(); ++i) steer(s, i, dt);
-      for (std::size_t i = 0; i < headings_.size(); ++i) brake(i, static_cast<float>(dt));
-      for (std::size_t i = 0; i < headings_.size(); ++i) {
-        b2Body* body = bodies_table_.entries()[i].body.body;
-        if (braking_[i].LengthSquared() > 0.0F) body->SetLinearVelocity(body->GetLinearVelocity() - braking_[i]);
-      }
+      for (auto& entry : entries) steer(s, entry, dt);
+      brake(static_cast<float>(dt));
       world_->Step(static_cast<float>(dt), static_cast<int>(params_.velocity_iterations),
                    static_cast<int>(params_.position_iterations));
-      for (std::size_t i = 0; i < headings_.size(); ++i) {
-        const auto& entry = bodies_table_.entries()[i];
-        if (entry.key.is_object()) continue;
-        if (entry.body.hold == nullptr) {
-          headings_[i] = turned(headings_[i], entry.body.turn_rad);
-        } else {  // Box2D's own, which it also corrects
-          const auto angle = static_cast<double>(entry.body.body->GetAngle());
-          headings_[i] = {std::cos(angle), std::sin(angle)};
-        }
+      for (auto& entry : entries) {
+        BodyProxy& proxy = entry.body;
+        if (entry.key.is_object() || proxy.hold == nullptr || proxy.body->GetType() != b2_dynamicBody) continue;
+        proxy.turn_to(proxy.body->GetAngle());  // which Box2D also corrects
       }
     }
     overlap = deepest_overlap();
-    for (std::size_t i = 0; i < headings_.size(); ++i) write_back(s, i, context.tick_s, dt);
+    for (auto& entry : entries) write_back(s, entry, context.tick_s, dt);
   }
 
   bool remember(hal::Archive& archive) override {
@@ -202,6 +203,7 @@ class Dynamics2d final : public Solver {
   }
 
  private:
+  using Entry = BodyTable<BodyProxy>::Entry;
   struct Held {
     std::size_t number;
     std::uint32_t generation;
@@ -301,10 +303,6 @@ class Dynamics2d final : public Solver {
 
   // --- doubles ---
 
-  static const hal::RobotKind& kind_of(const SpaceStores& s, std::size_t row) noexcept {
-    return *s.groups[s.blocks[s.robots[s.bodies.entity[row]].block].group].kind;
-  }
-
   BodyProxy make(const SpaceStores& s, BodyKey key) {
     BodyProxy proxy;
     b2BodyDef def;
@@ -317,8 +315,8 @@ class Dynamics2d final : public Solver {
       if (placed) def.position = at(o.x_m, o.y_m);
       if (placed) def.angle = static_cast<float>(std::atan2(o.sin_h, o.cos_h));
       proxy.body = world_->CreateBody(&def);
-      proxy.unfit = unfit(o);
-      if (!proxy.unfit.empty()) return proxy;
+      proxy.unfit = !unfit(o).empty();
+      if (proxy.unfit) return proxy;
       const double area =
           o.kind == Object::Kind::Cylinder ? M_PI * o.radius_m * o.radius_m : 4 * o.half_x_m * o.half_y_m;
       add_fixture(proxy.body, o, false, static_cast<float>(o.mass_kg / (area * kUnits_m * kUnits_m)));
@@ -334,7 +332,7 @@ class Dynamics2d final : public Solver {
           static_cast<float>(o.mass_kg * (torque < 0.0 ? force * mean_radius_m(o) : torque) * kUnits_m * kUnits_m);
       proxy.hold = world_->CreateJoint(&rub);
     } else {
-      const hal::RobotKind& kind = kind_of(s, i);
+      const hal::RobotKind& kind = s.kind_of_row(i);
       if (placed) def.position = at(s.bodies.x_m[i], s.bodies.y_m[i]);
       if (placed) def.angle = static_cast<float>(std::atan2(s.bodies.sin_h[i], s.bodies.cos_h[i]));
       proxy.body = world_->CreateBody(&def);
@@ -361,10 +359,10 @@ class Dynamics2d final : public Solver {
   }
 
   /// Box2D ends the process over what is no number.
-  void leave_out(BodyProxy& proxy, BodyKey key, bool owned, const char* flaw) {
+  void leave_out(const SpaceStores& s, BodyKey key, bool owned, BodyProxy& proxy) {
     proxy.x_m = NAN;  // placed anew when it is sound again
     proxy.vx_m_s = NAN;
-    if (owned) trouble.push_back({key, flaw});
+    if (owned) trouble.push_back({key, proxy.unfit ? unfit(s.objects[key.index()]) : flaw_of(s, key)});
   }
 
   void take_over(const SpaceStores& s, BodyKey key, bool owned, BodyProxy& proxy, double tick_s) {
@@ -556,25 +554,23 @@ class Dynamics2d final : public Solver {
   }
 
   /// Gives a robot the velocity that its wheels command, as far as their force goes.
-  void steer(const SpaceStores& s, std::size_t index, double dt) {
-    auto& entry = bodies_table_.entries()[index];
+  void steer(const SpaceStores& s, Entry& entry, double dt) {
     if (entry.key.is_object() || entry.body.flawed) return;
     const std::size_t row = entry.key.index();
     if ((s.bodies.flags[row] & kExternal) != 0) return;
     BodyProxy& proxy = entry.body;
-    const hal::RobotKind& kind = kind_of(s, row);
+    const hal::RobotKind& kind = s.kind_of_row(row);
     const hal::DifferentialDrive& wheels = wheels_of(kind);
     const double turn = (s.bodies.right_m_s[row] - s.bodies.left_m_s[row]) / wheels.wheel_base_m * dt;
     const double way = 0.5 * (s.bodies.left_m_s[row] + s.bodies.right_m_s[row]) * dt;
     // The chord of the arc: its direction is the heading in the middle, its length a little less than the arc's.
-    const double half = 0.5 * turn;
-    const double half2 = half * half;
-    const double chord = way * (1.0 - half2 / 6.0 * (1.0 - half2 / 20.0 * (1.0 - half2 / 42.0)));
-    const Heading middle = turned(headings_[index], half);
+    const double chord = way * chord_of(0.5 * turn);
+    const Heading start{proxy.cos_h, proxy.sin_h};
+    const Heading middle = turned(start, 0.5 * turn);
     const double dx = chord * middle.cos_h;
     const double dy = chord * middle.sin_h;
     if (pushes(proxy) || holds(proxy)) {
-      drive(proxy, wheels, dx, dy, turn, std::atan2(headings_[index].sin_h, headings_[index].cos_h));
+      drive(proxy, wheels, dx, dy, turn, std::atan2(start.sin_h, start.cos_h));
       return;
     }
     if (proxy.hold != nullptr) {
@@ -584,6 +580,9 @@ class Dynamics2d final : public Solver {
     }
     // The wheels hold the heading against whatever the disc rubs on.
     proxy.turn_rad = turn;
+    const auto [cos_h, sin_h] = turned(start, turn);
+    proxy.cos_h = cos_h;
+    proxy.sin_h = sin_h;
     const auto most = static_cast<float>(wheels.force_N / kind.body.mass_kg * dt * kUnits_m);
     b2Vec2 change = speed(dx / dt, dy / dt) - proxy.body->GetLinearVelocity();
     const float length = change.Length();
@@ -591,36 +590,42 @@ class Dynamics2d final : public Solver {
     proxy.body->SetLinearVelocity(proxy.body->GetLinearVelocity() + change);
   }
 
-  /// How much velocity a robot must lose so as not to run into what it nears within the sub-step. Box2D sees a contact
-  /// only when bodies overlap already, which at some steps a second is deep; so robots stop at one another's rims, each
-  /// losing what it contributes to the approach. Movable objects are not braked for: they are to be pushed.
-  void brake(std::size_t index, float dt_s) {
-    braking_[index].SetZero();
-    const auto& entry = bodies_table_.entries()[index];
-    b2Body* body = entry.body.body;
-    if (entry.key.is_object() || entry.body.hold != nullptr || body->GetType() != b2_dynamicBody) return;
-    const b2Vec2 v = body->GetLinearVelocity();
-    for (const b2ContactEdge* edge = body->GetContactList(); edge != nullptr; edge = edge->next) {
-      const b2Contact* contact = edge->contact;
-      const bool is_a = contact->GetFixtureA()->GetBody() == body;
-      const b2Fixture* other = is_a ? contact->GetFixtureB() : contact->GetFixtureA();
-      b2Body* with = edge->other;
-      if (contact->IsTouching() || is_movable_object(with)) continue;
-      const b2Fixture* own = is_a ? contact->GetFixtureA() : contact->GetFixtureB();
-      b2Vec2 normal;
-      const float gap =
-          gap_between(*own->GetShape(), body->GetTransform(), *other->GetShape(), with->GetTransform(), normal);
-      if (gap <= 0.0F) continue;
-      const float towards = std::max(0.0F, b2Dot(v, normal));
-      const float other_towards = std::max(0.0F, -b2Dot(with->GetLinearVelocity(), normal));
-      const float excess = b2Dot(v - with->GetLinearVelocity(), normal) - (gap + kRest) / dt_s;
-      if (excess <= 0.0F || towards <= 0.0F) continue;
-      braking_[index] += excess * towards / (towards + other_towards) * normal;
+  /// Slows robots so that they do not run into what they near within the sub-step. Box2D sees a contact only when
+  /// bodies overlap already, which at some steps a second is deep; so robots stop at one another's rims, each losing
+  /// what it contributes to the approach. Movable objects are not braked for: they are to be pushed.
+  void brake(float dt_s) {
+    braking_.assign(bodies_table_.entries().size(), b2Vec2_zero);
+    for (b2Contact* c = world_->GetContactList(); c != nullptr; c = c->GetNext()) {
+      if (c->IsTouching()) continue;
+      add_braking(*c->GetFixtureA(), *c->GetFixtureB(), dt_s);
+      add_braking(*c->GetFixtureB(), *c->GetFixtureA(), dt_s);
+    }
+    for (b2Contact* c = world_->GetContactList(); c != nullptr; c = c->GetNext()) {
+      for (b2Body* body : {c->GetFixtureA()->GetBody(), c->GetFixtureB()->GetBody()}) {
+        if (body->GetType() != b2_dynamicBody) continue;  // those that stand have no number
+        b2Vec2& loss = braking_[body->GetUserData().pointer];
+        if (loss.LengthSquared() > 0.0F) body->SetLinearVelocity(body->GetLinearVelocity() - loss);
+        loss.SetZero();
+      }
     }
   }
 
-  bool is_movable_object(b2Body* body) const {
-    return body->GetType() == b2_dynamicBody && bodies_table_.entries()[body->GetUserData().pointer].key.is_object();
+  /// What a robot loses because of one body that it nears.
+  void add_braking(b2Fixture& own, const b2Fixture& other, float dt_s) {
+    const b2Body* const body = own.GetBody();
+    const b2Body* const with = other.GetBody();
+    if (!is_robot(body) || entry_of(body).body.hold != nullptr || body->GetType() != b2_dynamicBody) return;
+    if (with->GetType() == b2_dynamicBody && !is_robot(with)) return;
+    b2Vec2 normal;
+    const float gap =
+        gap_between(*own.GetShape(), body->GetTransform(), *other.GetShape(), with->GetTransform(), normal);
+    if (gap <= 0.0F) return;
+    const b2Vec2 v = body->GetLinearVelocity();
+    const float towards = std::max(0.0F, b2Dot(v, normal));
+    const float other_towards = std::max(0.0F, -b2Dot(with->GetLinearVelocity(), normal));
+    const float excess = b2Dot(v - with->GetLinearVelocity(), normal) - (gap + kRest) / dt_s;
+    if (excess <= 0.0F || towards <= 0.0F) return;
+    braking_[own.GetBody()->GetUserData().pointer] += excess * towards / (towards + other_towards) * normal;
   }
 
   /// Between a disc and another shape; `normal` is the unit vector from the disc to it.
@@ -649,7 +654,7 @@ class Dynamics2d final : public Solver {
 
   // --- crowds ---
 
-  const auto& entry_of(const b2Body* body) const {
+  const Entry& entry_of(const b2Body* body) const {
     return bodies_table_.entries()[const_cast<b2Body*>(body)->GetUserData().pointer];
   }
   /// Else it is an object's, or that of all immovable ones.
@@ -709,15 +714,13 @@ class Dynamics2d final : public Solver {
   static void end_of_arc(BodyProxy& proxy, double dt) noexcept {
     const double half = 0.5 * proxy.w_rad_s * dt;
     if (half == 0.0) return;
-    const double half2 = half * half;
-    const double shorter = 1.0 - half2 / 6.0 * (1.0 - half2 / 20.0 * (1.0 - half2 / 42.0));
+    const double shorter = chord_of(half);
     const Heading v = turned({proxy.vx_m_s / shorter, proxy.vy_m_s / shorter}, half);
     proxy.vx_m_s = v.cos_h;
     proxy.vy_m_s = v.sin_h;
   }
 
-  void write_back(SpaceStores& s, std::size_t index, double tick_s, double dt) {
-    auto& entry = bodies_table_.entries()[index];
+  void write_back(SpaceStores& s, Entry& entry, double tick_s, double dt) {
     BodyProxy& proxy = entry.body;
     if (proxy.flawed) return;
     const b2Vec2 p = proxy.body->GetPosition();
@@ -726,8 +729,8 @@ class Dynamics2d final : public Solver {
     const auto w = driven ? static_cast<float>(proxy.turn_rad / dt) : proxy.body->GetAngularVelocity();
     const double vx = static_cast<double>(v.x) / kUnits_m;
     const double vy = static_cast<double>(v.y) / kUnits_m;
-    const bool finite =
-        std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(vx) && std::isfinite(vy) && std::isfinite(w);
+    const bool finite = std::isfinite(static_cast<double>(p.x) + static_cast<double>(p.y) + vx + vy +
+                                      static_cast<double>(w));  // sums of so few floats are within a double
     const double hop = kMostOfBox2dsHop * static_cast<double>(b2_maxTranslation) / (kUnits_m * dt);  // in m/s
     if (!finite || vx * vx + vy * vy > hop * hop) {
       if (entry.owned)
@@ -744,16 +747,13 @@ class Dynamics2d final : public Solver {
     proxy.vx_m_s = vx;
     proxy.vy_m_s = vy;
     proxy.w_rad_s = static_cast<double>(w);
-    if (!object) end_of_arc(proxy, dt);
     if (object) {
-      const auto angle = static_cast<double>(proxy.body->GetAngle());
-      proxy.cos_h = std::cos(angle);
-      proxy.sin_h = std::sin(angle);
+      proxy.turn_to(proxy.body->GetAngle());
     } else {
-      const double k = 1.5 - 0.5 * (headings_[index].cos_h * headings_[index].cos_h +
-                                    headings_[index].sin_h * headings_[index].sin_h);
-      proxy.cos_h = headings_[index].cos_h * k;  // one Newton step keeps the heading a unit vector
-      proxy.sin_h = headings_[index].sin_h * k;
+      end_of_arc(proxy, dt);
+      const double k = 1.5 - 0.5 * (proxy.cos_h * proxy.cos_h + proxy.sin_h * proxy.sin_h);
+      proxy.cos_h *= k;  // one Newton step keeps the heading a unit vector
+      proxy.sin_h *= k;
     }
     if (!entry.owned) return;
     Motion& m = object ? s.object_motion[i] : s.bodies.motion[i];
@@ -785,9 +785,8 @@ class Dynamics2d final : public Solver {
   std::uint64_t version_ = 0;    // of the immovable objects
   std::vector<Placed> placed_;   // of these, those near the region
   BodyTable<BodyProxy> bodies_table_;
-  std::vector<Heading> headings_;  // parallel to the roster, within a tick
-  std::vector<b2Vec2> braking_;
-  double hops_ = 0.0;  // sub-steps of the tick that its objects' speeds ask for
+  std::vector<b2Vec2> braking_;  // parallel to the roster, within a sub-step
+  double hops_ = 0.0;            // sub-steps of the tick that its objects' speeds ask for
   std::vector<Held> joints_;
 };
 
