@@ -10,7 +10,9 @@ namespace tandem::core {
 namespace {
 
 using hal::Json;
+using testing::AllOf;
 using testing::HasSubstr;
+using testing::Not;
 
 class Touches : public testing::Test {
  protected:
@@ -108,6 +110,22 @@ TEST_F(Touches, SwitchLampsAndHoldRobots) {
   ASSERT_TRUE(released.ok());
   EXPECT_EQ(released.value()["note"], "a hook holds the robot, too: it stands until that lets go");
   EXPECT_FALSE(world().space().halted_by(a, HaltOwner::Operator));
+}
+
+TEST_F(Touches, WhoLetsGoIsToldWhetherTheRobotStandsOnOrMayDriveAtOnce) {
+  const RobotId a = world().space().find_robot("a");
+  const auto told_with = [&](HaltOwner other) {
+    world().space().set_halted(a, true, HaltOwner::Operator);
+    world().space().set_halted(a, true, other);
+    Json release{{"do", "release"}, {"robot", "a"}};
+    const auto released = touch(world(), release);
+    world().space().set_halted(a, false, other);
+    return released.ok() ? released.value().value("note", "") : released.error().message;
+  };
+  EXPECT_THAT(told_with(HaltOwner::Controller), HasSubstr("stands until the run is over"));
+  EXPECT_THAT(told_with(HaltOwner::Hook), HasSubstr("stands until"));
+  EXPECT_THAT(told_with(HaltOwner::Safety), AllOf(HasSubstr("it drives when"), Not(HasSubstr("stands"))))
+      << "its table held it because the person did";
 }
 
 TEST_F(Touches, ThatMakeNoSenseChangeNothing) {
