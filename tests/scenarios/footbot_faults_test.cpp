@@ -215,6 +215,16 @@ TEST(FootbotFaults, StallsOfTheHubAreNoLostLink) {
   }
 }
 
+TEST(FootbotFaults, AHubThatFallsSilentWithNobodyBesideItLeavesTheWheelsAtRestAfterHalfASecond) {
+  Drive run({});
+  run.drive_until(5.0);
+  ASSERT_TRUE(run.moves());
+  run.stall(300 * kMs);
+  EXPECT_TRUE(run.moves()) << "a hub may be late";
+  run.stall(240 * kMs);  // 0.54 s in all: an event of the module comes every 20 ms
+  EXPECT_FALSE(run.moves());
+}
+
 TEST(FootbotFaults, AnOutageIsACountedStopAndItDrivesWithinASecondAfterIt) {
   for (const auto protocol : {emulator::Protocol::V4, emulator::Protocol::V5}) {
     for (const char* fault : {"hangup@5s+3s", "silent@5s+3s", "hangup@5s+300ms"}) {
