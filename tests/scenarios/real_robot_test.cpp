@@ -1,4 +1,5 @@
 // The command as a user types it, against an emulated robot; verdicts come from the robot's own log.
+#include <chrono>
 #include <cstdio>
 #include <gmock/gmock.h>
 #include <memory>
@@ -234,6 +235,31 @@ TEST(Robot, WithAnotherFirmwareThanTheFileSaysIsRefused) {
   EXPECT_EQ(robot.wait(), 3);
   EXPECT_NE(robot.errors().find("GCtronic', not 'webots'"), std::string::npos) << robot.errors();
   EXPECT_FALSE(epuck.has_moved());
+}
+
+TEST(MixedRun, TellsInItsRecordWhichSlotsOfItsScheduleWereLeftOutAndWhen) {
+  Folder folder;
+  EmulatedEpuck epuck(folder);
+  ASSERT_TRUE(epuck.ready());
+  const auto date_ns = [] {
+    return std::chrono::nanoseconds(std::chrono::system_clock::now().time_since_epoch()).count();
+  };
+  const long long before_ns = date_ns();
+  Tandem run({"run", kConfigs + "epuck_mixed.xml", "--seconds", "3", "--quiet", "--record", "run.record", "--report",
+              "run.json", "--hub-fault", "stall@1s+0.45s"},
+             folder.path());
+  ASSERT_EQ(run.wait(), 0) << run.errors();
+  const std::string record = text_of(folder.path() / "run.record");
+  const std::string mark = "\"kind\":\"skipped\"";
+  long long slots = 0;
+  for (std::size_t at = record.find(mark); at != std::string::npos; at = record.find(mark, at + 1)) {
+    slots += std::stoll(json_value(record, "slots", at));
+    const long long unix_ns = std::stoll(json_value(record, "unix_ns", at));
+    EXPECT_GT(unix_ns, before_ns);
+    EXPECT_LT(unix_ns, date_ns());
+  }
+  EXPECT_GE(slots, 3) << "0.45 s are slots of 0.1 s";
+  EXPECT_EQ(std::to_string(slots), json_value(text_of(folder.path() / "run.json"), "skipped_slots"));
 }
 
 TEST(Inspect, ReadsEverythingAndMovesNothing) {
