@@ -275,7 +275,7 @@ TEST(Inspect, ReadsEverythingAndMovesNothing) {
 
 TEST(Inspect, WaitsForARobotThatIsSilentWhileItIsLookedAtAndAnswersAgain) {
   Folder folder;
-  EmulatedEpuck epuck(folder, {"--fault", "silent@4s+2s"});
+  EmulatedEpuck epuck(folder, {"--fault", "silent@3s+2s"});
   ASSERT_TRUE(epuck.ready());
   Tandem inspect({"inspect", "serial:ep0", "--seconds", "4"}, folder.path());  // its end lies in the silence
   EXPECT_EQ(inspect.wait(60.0), 0) << inspect.output() << inspect.errors();
