@@ -23,6 +23,13 @@ class Scripts : public testing::Test {
 <params script="walk.lua" speed="5"/></lua_controller></controllers><arena size="4,4,1"><e-puck id="ep0">
 <body position="0,0,0"/><controller config="walk"/><bridge link="serial:ep0"/></e-puck></arena></tandem>)");
   }
+  void write_simulated(const std::string& name, const std::string& script) const {
+    folder_.write(name, script);
+    folder_.write("e.xml", R"(<tandem><framework><experiment length="1" ticks_per_second="10"/></framework><controllers>
+<lua_controller id="walk"><actuators><differential_steering/></actuators>
+<params script=")" + name + R"("/></lua_controller></controllers><arena size="4,4,1"><e-puck id="ep0">
+<body position="0,0,0"/><controller config="walk"/></e-puck></arena></tandem>)");
+  }
   Folder folder_;
 };
 
@@ -52,16 +59,24 @@ TEST_F(Scripts, StopARobotThatIsNotSimulatedByAnError) {
 }
 
 TEST_F(Scripts, AnErrorAtTheEndIsAFailure) {
-  folder_.write("end.lua", "function step() end\nfunction destroy() error('cannot end') end");
-  folder_.write("e.xml", R"(<tandem><framework><experiment length="1" ticks_per_second="10"/></framework><controllers>
-<lua_controller id="walk"><actuators><differential_steering/></actuators>
-<params script="end.lua"/></lua_controller></controllers><arena size="4,4,1"><e-puck id="ep0">
-<body position="0,0,0"/><controller config="walk"/></e-puck></arena></tandem>)");
+  write_simulated("end.lua", "function step() end\nfunction destroy() error('cannot end') end");
   Tandem run({"run", "e.xml", "--log", "run.log"}, folder_.path());
   EXPECT_EQ(run.wait(60), 3);
   EXPECT_THAT(run.errors(), HasSubstr("in destroy(): end.lua:2: cannot end"));
   EXPECT_THAT(run.errors(), HasSubstr("failed at its end"));
   EXPECT_THAT(scenarios::text_of(folder_.path() / "run.log"), HasSubstr("in destroy()"));
+}
+
+TEST_F(Scripts, WhatTheySayNeitherCommandsATerminalNorForgesALineOfTheLog) {
+  write_simulated("say.lua", R"(function step() log("a\27[2Jb\0c\u{202e}d\nerror: the arena burns") end)");
+  Tandem run({"run", "e.xml", "--log", "run.log"}, folder_.path());
+  EXPECT_EQ(run.wait(60), 0) << run.errors();
+  for (const std::string& text : {run.errors(), scenarios::text_of(folder_.path() / "run.log")}) {
+    EXPECT_THAT(text, HasSubstr("error: the arena burns"));
+    for (const std::string& bad :
+         {std::string("\033"), std::string(1, '\0'), std::string("\u202E"), std::string("\nerror: the arena burns")})
+      EXPECT_EQ(text.find(bad), std::string::npos) << text;
+  }
 }
 
 TEST_F(Scripts, AreDescribedNameByName) {
