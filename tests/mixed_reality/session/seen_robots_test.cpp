@@ -177,6 +177,7 @@ TEST_F(SeenRobots, WhoIsPutSomewhereElseWaitsForAPersonAtOnce) {
   core::Scene scene = drive(0.05, 0.05);
   scene.robot("ep0", -2.0, 0.0);
   watch(scene);
+  rearm_ = "after 0.5 s";
   open(scene);
   FakeBody& body = bodies_["ep0"];
   double rolled_m = 0.0;
