@@ -249,6 +249,21 @@ TEST(Documents, NameOnlyCommandsAndOptionsThatExist) {
   EXPECT_GT(used, 10);
 }
 
+TEST(Documents, OfTrackersNameEveryAttributeOfThem) {
+  static const std::regex kAttribute("\n  ([a-z_]+)=\"");
+  const std::string page = text_of(kTop / "docs/trackers.md");
+  for (const char* tracker : {"udp", "lcm", "apriltag"}) {
+    const std::set<std::string> attributes = words_of_help({"describe", tracker}, kAttribute);
+    ASSERT_TRUE(attributes.contains("clock")) << tracker;
+    for (const std::string& name : attributes) {
+      const bool named = page.find("`" + name + "`") != std::string::npos ||
+                         page.find("`" + name + "=") != std::string::npos ||
+                         page.find(" " + name + "=\"") != std::string::npos;
+      EXPECT_TRUE(named) << tracker << ": " << name;
+    }
+  }
+}
+
 TEST(Documents, LinkOnlyToWhatExists) {
   static const std::regex kLink(R"(\]\(([^)#:]+)\))");
   static const std::regex kFolder(R"(\| `([a-z_]+/)` \|)");
