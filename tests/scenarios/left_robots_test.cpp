@@ -74,5 +74,20 @@ TEST(LeftRobots, OfOneNameAreAllAtRestInTheTimeThatOneTakesThoughSomeDoNotAnswer
   for (const auto& left : all) EXPECT_TRUE(eventually([&] { return left->robot.stands_since() > 0; }, 20.0));
 }
 
+TEST(LeftRobots, AreStoppedAndToldOfByWhoeverInspectsThemToo) {
+  const Folder locks;
+  ::setenv("XDG_RUNTIME_DIR", locks.path().c_str(), 1);
+  Left left;
+  ASSERT_TRUE(left.robot.ready());
+  left.start();
+  ASSERT_TRUE(eventually([&] { return left.robot.moves(); }, 60.0)) << left.hub->errors();
+  ASSERT_NO_FATAL_FAILURE(left.kill_both());
+  EXPECT_TRUE(left.robot.moves());
+  Tandem next({"inspect", "serial:ep0", "--seconds", "0.5"}, left.folder.path());
+  EXPECT_EQ(next.wait(60.0), 0) << next.errors();
+  EXPECT_THAT(next.errors(), HasSubstr("It was stopped now, and has confirmed that"));
+  EXPECT_GT(left.robot.stands_since(), 0);
+}
+
 }  // namespace
 }  // namespace tandem::scenarios
