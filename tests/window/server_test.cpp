@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <arpa/inet.h>
 #include <atomic>
 #include <chrono>
@@ -401,14 +402,21 @@ class HalfOpen {
 
   void renew() {
     for (std::size_t i = 0; i < sockets_.size(); ++i) {
-      char byte = 0;
-      if (sockets_[i] >= 0 && ::recv(sockets_[i], &byte, 1, MSG_DONTWAIT) < 0 && errno == EAGAIN) continue;
+      if (sockets_[i] >= 0 && is_open(sockets_[i])) continue;
       if (sockets_[i] >= 0) ::close(sockets_[i]);
       sockets_[i] = open(static_cast<int>(i) % addresses_ + 1);
     }
   }
 
+  std::ptrdiff_t closed() const {
+    return std::count_if(sockets_.begin(), sockets_.end(), [](int socket) { return !is_open(socket); });
+  }
+
  private:
+  static bool is_open(int socket) {
+    char byte = 0;
+    return ::recv(socket, &byte, 1, MSG_DONTWAIT) < 0 && errno == EAGAIN;
+  }
   int open(int host) const {
     const int socket = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
     sockaddr_in from{}, to{};
@@ -453,6 +461,35 @@ TEST(Window, HalfOpenConnectionsOfOneAddressKeepNobodyFromTheEmergencyStop) {
 
 TEST(Window, HalfOpenConnectionsOfManyAddressesKeepNobodyFromTheEmergencyStop) {
   expect_the_operator_gets_in(200);
+}
+
+TEST(Window, AConnectionOverWhichATokenWasShownIsNotDroppedForOthers) {
+  const auto window = open_window();
+  const auto heard = [](int socket, const std::string& request) {
+    char answer[1000] = {};
+    (void)::send(socket, request.data(), request.size(), MSG_NOSIGNAL);
+    const ssize_t n = ::recv(socket, answer, sizeof answer, 0);
+    return n > 0 ? std::string(answer, static_cast<std::size_t>(n)) : "closed";
+  };
+  const std::string request = "GET /favicon.ico?token=" + token_of(*window) + " HTTP/1.1\r\nHost: localhost\r\n\r\n";
+  sockaddr_in to{};
+  to.sin_family = AF_INET;
+  to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  to.sin_port = htons(window->port());
+  for (bool in_time = false; !in_time;) {  // a connection over which nothing is said for 5 s may end
+    const int socket = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+    ASSERT_EQ(::connect(socket, reinterpret_cast<const sockaddr*>(&to), sizeof to), 0);
+    ASSERT_EQ(heard(socket, request).substr(0, 12), "HTTP/1.1 204");
+    const auto said = std::chrono::steady_clock::now();
+    const HalfOpen crowd(window->port(), 100, 1);
+    ASSERT_TRUE(eventually([&] { return crowd.closed() > 20; }, kPatience_s)) << "some had to make room";
+    const std::string answer = heard(socket, request);
+    in_time = std::chrono::steady_clock::now() - said < std::chrono::seconds(4);
+    if (in_time) {
+      EXPECT_EQ(answer.substr(0, 12), "HTTP/1.1 204");
+    }
+    ::close(socket);
+  }
 }
 
 TEST(Window, AConnectionThatNeverEndsItsRequestIsLetGo) {
