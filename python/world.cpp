@@ -327,6 +327,7 @@ void World::reset(std::optional<std::uint64_t> seed, const std::optional<std::ve
                   const std::string& record) {
   const Use use(*this, Use::How::Alone);
   core::World& world = *session_->world;
+  std::optional<core::Scenario> changed;
   if (parameters) {
     std::vector<std::string> all = request_.parameters;
     for (const std::string& one : *parameters) {
@@ -341,11 +342,10 @@ void World::reset(std::optional<std::uint64_t> seed, const std::optional<std::ve
     }
     if (all != parameters_) {
       std::string warnings;
-      const core::Scenario changed = read(all, warnings);
-      if (const hal::Status taken = world.change_parameters(changed); !taken.ok())
-        throw ExperimentError(taken.error().message);
+      changed = read(all, warnings);
+      if (const hal::Status can = world.can_reset(*changed); !can.ok()) throw ExperimentError(can.error().message);
       parameters_ = std::move(all);
-      length_s_ = changed.length_s;
+      length_s_ = changed->length_s;
       warn(warnings);
     }
   }
@@ -354,7 +354,7 @@ void World::reset(std::optional<std::uint64_t> seed, const std::optional<std::ve
   hal::Status begun;
   {
     const py::gil_scoped_release unlocked;
-    begun = world.reset(seed.value_or(world.seed()));
+    begun = world.reset(seed.value_or(world.seed()), changed ? &*changed : nullptr);
   }
   open_run(record);
   if (!begun.ok()) throw RunFailed(begun.error().message);

@@ -140,7 +140,7 @@ int make_world(RunPlan& plan) {
   plan.world_log = plan.log.log();
   core::WorldOptions world_options;
   world_options.seed = options.seed ? options.seed : plan.seed;
-  if (plan.resumed && !options.seed) world_options.seed = hal::count_of(plan.resumed->about, "seed");
+  if (plan.resumed) world_options.places_seed = hal::count_of(plan.resumed->about, "seed");
   world_options.threads = options.threads;
   world_options.log = plan.world_log;
   core::Problems problems;

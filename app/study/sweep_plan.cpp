@@ -16,6 +16,7 @@
 #include "app/process/terminal.hpp"
 #include "core/config/reader.hpp"
 #include "core/hook/hook.hpp"
+#include "core/sim/settings.hpp"
 #include "core/sim/world.hpp"
 #include "hal/sha256.hpp"
 
@@ -130,11 +131,7 @@ hal::Result<core::Scenario> scenario_of(const study::Design& design, const study
   core::Problems problems;
   auto scenario = read(design.study().experiments[plan.experiment].file, design.overrides(plan), loader, problems);
   if (scenario) return std::move(*scenario);
-  std::string why;
-  for (const core::Problem& problem : problems) {
-    if (!problem.warning) why += (why.empty() ? "" : "; ") + core::to_text(problem);
-  }
-  return hal::Error{why};
+  return hal::Error{core::errors_of(problems)};
 }
 
 std::optional<std::vector<core::Scenario>> judge(const study::Design& design, hal::PluginLoader& loader,

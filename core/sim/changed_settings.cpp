@@ -3,9 +3,9 @@
 #include <array>
 #include <charconv>
 #include <cstring>
-#include <exception>
 #include <utility>
 
+#include "core/scenario/field_type.hpp"
 #include "core/sim/device_media.hpp"
 #include "core/sim/settings.hpp"
 #include "core/sim/world_impl.hpp"
@@ -107,7 +107,12 @@ class Differences {
     const std::vector<const Element*> of_a = left(a, taken), of_b = left(b, taken);
     bool alike = of_a.size() == of_b.size();
     for (std::size_t i = 0; alike && i < of_a.size(); ++i) alike = of_a[i]->name == of_b[i]->name;
-    if (!alike) return add(path.empty() ? a.name : path);
+    if (!alike) {
+      std::size_t at = 0;
+      while (at < of_a.size() && at < of_b.size() && of_a[at]->name == of_b[at]->name) ++at;
+      const std::string one = at < of_a.size() ? part(a, *of_a[at]) : part(b, *of_b[at]);
+      return add((path.empty() ? a.name : path) + ": " + one + (at < of_a.size() ? " left out" : " added"));
+    }
     for (std::size_t i = 0; i < of_a.size(); ++i)
       compare(*of_a[i], *of_b[i], (path.empty() ? "" : path + ".") + part(a, *of_a[i]), taken);
   }
@@ -181,7 +186,7 @@ bool same_fits(const Scenario& a, const Scenario& b) {
 /// What the experiments' texts do not show: worlds are also made from scenarios that no file holds.
 void compare_scenarios(const Scenario& a, const Scenario& b, Differences& found) {
   if (a.ticks_per_second != b.ticks_per_second) found.add("framework.experiment.ticks_per_second");
-  if (a.seed != b.seed) found.add("framework.experiment.random_seed");
+  if (a.seed != b.seed) found.add(std::string(kSeedPath));
   if (a.arena_size != b.arena_size || a.arena_center != b.arena_center) found.add("arena.size");
   const auto same_engine = [](const EngineConfig& x, const EngineConfig& y) {
     return x.kind == y.kind && x.id == y.id && same_settings(x.options, y.options);
@@ -210,15 +215,11 @@ void compare_scenarios(const Scenario& a, const Scenario& b, Differences& found)
     found.add("loop_functions: their libraries");
 }
 
-/// Whether a setting of this path holds in a world that is made anew and takes over a state.
-bool holds_anew(const std::string& path) {
-  static constexpr std::array<std::string_view, 6> kAll = {"framework.experiment.length",
-                                                           "framework.experiment.random_seed",
-                                                           "arena.floor",
-                                                           "arena.light",
-                                                           "arena.box",
-                                                           "arena.cylinder"};
-  return std::ranges::any_of(kAll, [&path](std::string_view known) {
+/// Whether a setting of this path is taken over by itself: take_things, take_fields; the length is the run's.
+bool taken_over_by_itself(const std::string& path) {
+  static constexpr std::array<std::string_view, 5> kAll = {"framework.experiment.length", "arena.floor", "arena.light",
+                                                           "arena.box", "arena.cylinder"};
+  return !path.ends_with(".id") && std::ranges::any_of(kAll, [&path](std::string_view known) {
     return path.starts_with(known) &&
            (path.size() == known.size() || path[known.size()] == '.' || path[known.size()] == '[');
   });
@@ -241,8 +242,28 @@ bool same_settings(const Element& a, const Element& b) {
          std::equal(a.children.begin(), a.children.end(), b.children.begin(), b.children.end(), &same_settings);
 }
 
-std::vector<std::string> fixed_differences(const Scenario& before, const Scenario& changed, bool anew) {
+std::string errors_of(const Problems& problems) {
+  std::string all;
+  for (const Problem& problem : problems) {
+    if (!problem.warning) all += (all.empty() ? "" : "; ") + to_text(problem);
+  }
+  return all;
+}
+
+bool same_field(const Scenario& a, const Scenario& b, std::string_view name) {
+  const auto x = std::ranges::find(a.fields, name, &Element::name),
+             y = std::ranges::find(b.fields, name, &Element::name);
+  return x == a.fields.end() || y == b.fields.end() ? (x == a.fields.end()) == (y == b.fields.end())
+                                                    : same_settings(*x, *y);
+}
+
+std::vector<std::string> fixed_differences(const Scenario& before, const Scenario& changed, bool in_slots) {
   Differences found;
+  for (std::size_t i = 0; in_slots && i < std::min(before.robots.size(), changed.robots.size()); ++i) {
+    const RobotItem &was = before.robots[i], &is = changed.robots[i];
+    if (was.controller != is.controller || was.params.has_value() != is.params.has_value())
+      found.add("the controller of '" + is.id + "'");
+  }
   const Element &a = before.effective, &b = changed.effective;
   found.children(a, b, "", &taken_over);
   const auto hooks_a = named(a, "loop_functions"), hooks_b = named(b, "loop_functions");
@@ -255,11 +276,28 @@ std::vector<std::string> fixed_differences(const Scenario& before, const Scenari
                        "controllers." + Differences::part(*all_a, all_a->children[i]), {});
   }
   if (found.all.empty()) compare_scenarios(before, changed, found);
-  if (anew) std::erase_if(found.all, &holds_anew);
+  std::erase_if(found.all, &taken_over_by_itself);
   return std::move(found.all);
 }
 
 // --- the world ---
+
+hal::Status World::can_reset(const Scenario& changed) const {
+  const Scenario &now = impl_->scenario, next = impl_->completed(changed);
+  std::vector<std::string> fixed = fixed_differences(now, next, true);
+  if (!same_fits(now, next)) fixed.emplace_back("fitted");
+  if (!fixed.empty()) return hal::Error{"cannot change at a reset: " + listed(fixed) + "; make another world"};
+  Problems problems;
+  for (const HookConfig& hook : next.hooks) {
+    const auto type = impl_->loader->get<HookType>(hook.library, hook.label);
+    if (!type.ok() || type.value()->describe == nullptr) continue;
+    ElementReader reader(hook.options, problems, {"library", "label"});
+    type.value()->describe(reader);
+    reader.finish();
+  }
+  impl_->factory->check_params(next, problems);
+  return has_errors(problems) ? hal::Status(hal::Error{errors_of(problems)}) : hal::Status();
+}
 
 /// With all defaults of those parts that either scenario uses.
 Scenario World::Impl::completed(const Scenario& changed) const {
@@ -276,22 +314,44 @@ Scenario World::Impl::completed(const Scenario& changed) const {
 
 hal::Status World::can_continue_with(const Scenario& changed) const {
   const std::vector<std::string> fixed = fixed_differences(impl_->scenario, impl_->completed(changed));
-  if (fixed.empty()) return {};
+  if (fixed.empty()) {
+    const auto fields = impl_->other_fields(changed);
+    return fields.ok() ? hal::Status() : hal::Status(fields.error());
+  }
   return hal::Error{"cannot change while the run goes on: " + listed(fixed) +
-                    ". What can: parameters and devices of controllers, which robot has which, options of hooks, and "
-                    "<fitted>"};
+                    ". What can: parameters and devices of controllers, which robot has which, options of hooks, "
+                    "<fitted>, lights, boxes, cylinders, and pictures of the floor"};
+}
+
+/// What fields hold that other settings make other.
+hal::Result<World::Impl::FieldChanges> World::Impl::other_fields(const Scenario& next) const {
+  FieldChanges changes;
+  for (const FieldType* type : loader->catalog().all<FieldType>()) {
+    if (same_field(scenario, next, type->name)) continue;
+    Problems problems;
+    const std::unique_ptr<Field> made = make_field(*type, next, problems);
+    if (has_errors(problems)) return hal::Error{errors_of(problems)};
+    Field* const field = space.stores().fields.find(type->name);
+    if (made->painted_by_hooks() || field->painted_by_hooks())
+      return hal::Error{"cannot change while the run goes on: the " + std::string(type->name) + ", which hooks paint"};
+    changes.emplace_back(field, made->keep());
+  }
+  return changes;
 }
 
 hal::Status World::continue_with(const Scenario& changed) {
   if (const hal::Status can = can_continue_with(changed); !can.ok()) return can;
   Impl& w = *impl_;
   Scenario next = w.completed(changed);
+  const auto fields = w.other_fields(next);
+  for (const auto& [field, held] : fields.value()) field->put_back(held);
   w.former.push_back(std::make_unique<const Scenario>(std::exchange(w.scenario, std::move(next))));
   const Scenario& before = *w.former.back();
   w.identity = std::make_shared<int>(0);
   w.kept_checkpoints.forget_all();
-  const hal::Status robots = w.factory->go_on_from(before);
-  if (!robots.ok()) w.fail("with the changed settings" + w.at_tick() + ": " + robots.error().message);
+  hal::Status taken = w.take_things(before);
+  if (taken.ok()) taken = w.factory->go_on_from(before);
+  if (!taken.ok()) w.fail("with the changed settings" + w.at_tick() + ": " + taken.error().message);
   w.fit_ledgers();
   bool any_hook = false;
   for (std::size_t i = 0; i < w.hooks.size() && w.state != RunState::Failed; ++i) {
@@ -316,22 +376,16 @@ void World::Impl::change_hook(std::size_t i) {
   const hal::PluginCall marked(&name_hook, this, i);
   Problems problems;
   std::string why;
-  try {
+  const auto what = thrown([&] {
     const std::any kept = hooks[i]->save();
     why = remake_hook(i, problems);
-    for (const Problem& problem : problems) {
-      if (!problem.warning) why += (why.empty() ? "" : "; ") + problem.message;
-    }
-    if (why.empty()) {
-      HookContext context = hook_context();
-      hooks[i]->before_run(context);
-      if (kept.has_value()) hooks[i]->restore(kept);
-    }
-  } catch (const std::exception& e) {
-    why = std::string("threw: ") + e.what();
-  } catch (...) {
-    why = "threw";
-  }
+    if (has_errors(problems)) why += (why.empty() ? "" : "; ") + errors_of(problems);
+    if (!why.empty()) return;
+    HookContext context = hook_context();
+    hooks[i]->before_run(context);
+    if (kept.has_value()) hooks[i]->restore(kept);
+  });
+  if (what) why = "threw" + *what;
   if (!why.empty()) fail("hook '" + hook_names[i] + "' with the changed options" + at_tick() + " " + why);
 }
 
@@ -382,11 +436,6 @@ hal::Status RobotFactory::change_group(std::size_t g, const Scenario& before) {
   former_params_.push_back(group.params);
   Problems problems;
   if (!prepare_group(g, problems)) return cannot_be_made(*group.item, problems);
-  for (const hal::PortType* port : group.ports) {
-    if (group.factories->find(port->name, port->role) != nullptr) continue;
-    return hal::Error{"the controller '" + config.id + "' has taken the device '" + std::string(port->name) +
-                      "', which its configuration no longer lists"};
-  }
   group.media.clear();
   for (const std::size_t b : group.blocks) devices_.blocks[b] = {};
   if (other_params) {

@@ -40,14 +40,18 @@ void RobotFactory::make(const std::vector<RobotRequest>& requests, Problems& pro
   for (std::size_t g = 0; g < unsorted.size(); ++g) {
     std::vector<std::uint32_t> members = unsorted[g];
     sort_by_place(requests, members);
-    const bool prepared = stores_.groups[g].controller != nullptr;
-    if ((prepared || prepare_group(g, problems)) && make_blocks(g, requests, members, problems)) complete(g);
+    const bool prepared = stores_.groups[g].controller != nullptr && !new_settings_;
+    if ((prepared || prepare_group(g, problems)) && make_blocks(g, requests, members, problems))
+      complete(g);
+    else if (!kept_.empty())
+      break;  // the blocks that are left are of this group
   }
   media_.fit(stores_);
   slab_ = nullptr;
-  new_params_.clear();
   end_kept();
-  if (!start_groups_.empty()) return;
+  const bool anew = std::exchange(new_settings_, false) || start_groups_.empty();
+  if (!anew || has_errors(problems)) return;
+  start_columns_.clear();
   start_groups_ = stores_.groups;
   start_blocks_ = stores_.blocks;
   start_robots_ = stores_.robots.size();
@@ -65,8 +69,9 @@ RobotFactory::~RobotFactory() {
   end_kept();
 }
 
-void RobotFactory::begin_anew(std::uint64_t seed) noexcept {
+void RobotFactory::begin_anew(std::uint64_t seed, bool changed) {
   end_kept();
+  new_settings_ = changed;
   seed_ = seed;
   kept_ = start_blocks_;
   for (RobotBlock& block : kept_) block.constructed.fill(0);
@@ -87,26 +92,18 @@ void RobotFactory::begin_anew(std::uint64_t seed) noexcept {
   }
   stores_.groups = start_groups_;
   for (RobotGroup& group : stores_.groups) group.blocks.clear();
+  for (std::size_t i = group_of_item_.size(); changed && i-- > 0;) {  // that of the first stands for its group
+    RobotGroup& group = stores_.groups[group_of_item_[i]];
+    group.item = std::make_shared<RobotItem>(scenario_.robots[i]);
+    group.media.clear();
+  }
   for (const auto& column : stores_.columns.all()) column->of_block.clear();  // also those that came since
   for (const auto& [column, of_block] : start_columns_) column->of_block = of_block;
 }
 
-bool RobotFactory::change_params(const Scenario& changed, Problems& problems) {
-  std::vector<std::pair<std::shared_ptr<RobotItem>, std::shared_ptr<const void>>> wanted;
-  for (std::size_t g = 0; g < start_groups_.size(); ++g) {
-    auto item = std::make_shared<RobotItem>(*start_groups_[g].item);
-    const auto first = std::find(group_of_item_.begin(), group_of_item_.end(), g);
-    item->params = changed.robots[static_cast<std::size_t>(first - group_of_item_.begin())].params;
-    auto params = read_params(start_groups_[g], *item, changed, problems);
-    wanted.emplace_back(std::move(item), std::move(params));
-  }
-  if (has_errors(problems)) return false;
-  for (std::size_t g = 0; g < start_groups_.size(); ++g) {
-    start_groups_[g].item = wanted[g].first;
-    start_groups_[g].params = wanted[g].second;
-  }
-  new_params_.assign(start_groups_.size(), 1);
-  return true;
+void RobotFactory::check_params(const Scenario& changed, Problems& problems) const {
+  for (std::size_t i = 0; i < group_of_item_.size(); ++i)
+    (void)read_params(stores_.groups[group_of_item_[i]], changed.robots[i], changed, problems);
 }
 
 std::vector<std::vector<std::uint32_t>> RobotFactory::group(const std::vector<RobotRequest>& requests) {
@@ -168,6 +165,14 @@ bool RobotFactory::prepare_group(std::size_t g, Problems& problems) {
   auto factories = std::make_shared<GroupFactories>();
   bool good = read_devices(group, hal::Role::Sensor, *factories, found);
   good = read_devices(group, hal::Role::Actuator, *factories, found) && good && !has_errors(found);
+  for (const hal::PortType* port : group.ports) {  // that they took before the settings changed
+    if (factories->find(port->name, port->role) != nullptr) continue;
+    found.push_back({scenario_.file, config.line,
+                     "the controller '" + config.id + "' has taken the device '" + std::string(port->name) +
+                         "', which its configuration no longer lists",
+                     false});
+    good = false;
+  }
   group.factories = std::move(factories);
   for (Problem& one : found) {  // what groups share is wrong once
     const auto same = [&](const Problem& other) {
@@ -344,8 +349,7 @@ std::string RobotFactory::construct(Slot at, const std::shared_ptr<const void>& 
   const hal::PluginCall call(&name_constructor, this, at.block, at.slot);
   try {
     if (block.constructed[at.slot] != 0) {  // of the run before
-      const bool same_params = new_params_.empty() || new_params_[block.group] == 0;
-      if (same_params && type.reset(block.controller(at.slot), robot)) return {};
+      if (!new_settings_ && type.reset(block.controller(at.slot), robot)) return {};
       block.constructed[at.slot] = 0;
       type.destroy(block.controller(at.slot));
     }

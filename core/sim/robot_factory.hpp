@@ -62,11 +62,12 @@ class RobotFactory {
 
   /// Before the stores are emptied for a reset: ends the controllers of robots that came later, and remembers what
   /// `make` made, so that the next `make` fills it anew: groups, blocks, ports, and controllers that can be reset.
-  void begin_anew(std::uint64_t seed) noexcept;
+  /// `changed`: the scenario is another than that `make` had, in what World::reset takes over; controllers are
+  /// constructed anew.
+  void begin_anew(std::uint64_t seed, bool changed);
 
-  /// Takes over the parameters of controllers from `changed`, which otherwise is the scenario of this factory: the next
-  /// `make` after `begin_anew` constructs controllers with them. False, with problems: nothing has changed.
-  bool change_params(const Scenario& changed, Problems& problems);
+  /// What is wrong with the parameters of controllers in another scenario of the same robots.
+  void check_params(const Scenario& changed, Problems& problems) const;
 
   /// Adds one robot, in the first free row of its group or a new one. `accepts(row)` is asked once the body stands in
   /// its row, before its controller is made. Errors: what is wrong with the parameters; what `accepts` says; a
@@ -134,9 +135,9 @@ class RobotFactory {
   std::vector<RobotBlock> start_blocks_;
   std::vector<std::pair<ColumnArrays*, std::vector<std::byte*>>> start_columns_;
   std::size_t start_robots_ = 0;
-  std::vector<RobotBlock> kept_;          // start_blocks_ with their controllers, to be filled anew
-  std::size_t filled_ = 0;                // how many of them are
-  std::vector<std::uint8_t> new_params_;  // by group: 1 where controllers are to be constructed with others; or empty
+  std::vector<RobotBlock> kept_;                            // start_blocks_ with their controllers, to be filled anew
+  std::size_t filled_ = 0;                                  // how many of them are
+  bool new_settings_ = false;                               // controllers are not to be reset
   std::vector<std::shared_ptr<const void>> former_params_;  // controllers may know theirs
   Slab* slab_ = nullptr;                                    // where blocks get their memory; null: each on its own
   std::size_t start_rows_ = 0;                              // of the group that is being made at the start

@@ -13,10 +13,7 @@ constexpr std::uint32_t kNobody = 0xFFFFFFFFU;
 }  // namespace
 
 hal::Error RobotFactory::cannot_be_made(const RobotItem& item, const Problems& problems) {
-  std::string message = "robot '" + item.id + "' cannot be made:";
-  for (const Problem& problem : problems) message += " " + problem.message + ";";
-  message.pop_back();
-  return hal::Error{message};
+  return hal::Error{"robot '" + item.id + "' cannot be made: " + errors_of(problems)};
 }
 
 /// Its ports, as they are before anything was read or commanded.

@@ -2,6 +2,7 @@
 #pragma once
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/scenario/scenario.hpp"
@@ -17,9 +18,18 @@ void complete_settings(Scenario& scenario, hal::PluginLoader& loader, std::uint6
 /// Whether two elements say the same: attributes in any order, numbers by value ("0.1" and "0.10").
 bool same_settings(const Element& a, const Element& b);
 
-/// What differs between two experiments, both completed, that a running world cannot take over
-/// (World::continue_with): paths as --set writes them, at most ten. Empty: nothing. `anew`: that a world which is made
-/// anew cannot (World::load).
-std::vector<std::string> fixed_differences(const Scenario& before, const Scenario& changed, bool anew = false);
+/// What differs between two experiments, both completed, that a world cannot take over on its way
+/// (World::continue_with, World::load): paths as --set writes them, at most ten. Empty: nothing. `in_slots`: robots
+/// stay in their slots, and so with their configurations.
+std::vector<std::string> fixed_differences(const Scenario& before, const Scenario& changed, bool in_slots = false);
+
+/// The path of the seed among them: only a world that is made anew can have another.
+inline constexpr std::string_view kSeedPath = "framework.experiment.random_seed";
+
+/// The errors among them, each with its line, in one text.
+std::string errors_of(const Problems& problems);
+
+/// Whether two experiments say the same of the field of that name.
+bool same_field(const Scenario& a, const Scenario& b, std::string_view name);
 
 }  // namespace tandem::core

@@ -249,21 +249,16 @@ void World::Impl::paint_fields() {
   for (const Fields::Entry& entry : stores().fields.all()) {
     if (!entry.field->painted_by_hooks() || !entry.field->unpainted() || hooks.empty()) continue;
     hook_phase = entry.name.c_str();
-    std::size_t asked = 0;
+    std::size_t who = 0;
     const Painter painter = [&, name = std::string_view(entry.name)](double x, double y, double painted) {
-      for (asked = 0; asked < hooks.size(); ++asked) {
-        const hal::PluginCall marked(&name_hook, this, asked);
-        painted = hooks[asked]->field(name, x, y).value_or(painted);
+      for (who = 0; who < hooks.size(); ++who) {
+        const hal::PluginCall marked(&name_hook, this, who);
+        painted = hooks[who]->field(name, x, y).value_or(painted);
       }
       return painted;
     };
-    try {
-      entry.field->paint(painter);
-    } catch (const std::exception& e) {
-      fail("hook '" + hook_names.at(asked) + "' threw in " + entry.name + at_tick() + ": " + e.what());
-    } catch (...) {
-      fail("hook '" + hook_names.at(asked) + "' threw in " + entry.name + at_tick());
-    }
+    if (const auto why = thrown([&] { entry.field->paint(painter); }))
+      fail("hook '" + hook_names.at(who) + "' threw in " + entry.name + at_tick() + *why);
   }
 }
 
@@ -281,17 +276,10 @@ void World::Impl::name_hook(const void* impl, std::size_t hook, std::size_t /*in
 
 template <class Call>
 void World::Impl::call_hooks(const char* phase, Call&& call) {
-  hook_phase = phase;
   for (std::size_t i = 0; i < hooks.size(); ++i) {
     HookContext context = hook_context();
-    const hal::PluginCall marked(&name_hook, this, i);
-    try {
-      call(*hooks[i], context);
-    } catch (const std::exception& e) {
-      fail("hook '" + hook_names[i] + "' threw in " + phase + at_tick() + ": " + e.what());
-    } catch (...) {
-      fail("hook '" + hook_names[i] + "' threw in " + phase + at_tick());
-    }
+    const std::string why = asked(i, phase, [&](Hook& hook) { call(hook, context); });
+    if (!why.empty()) fail(why);
   }
 }
 
@@ -355,14 +343,9 @@ hal::Status World::visit_controls(std::size_t hook, hal::Controls& controls) {
   w.hook_phase = "controls";
   const hal::PluginCall marked(&Impl::name_hook, &w, hook);
   HookContext context = w.hook_context();
-  try {
-    w.hooks[hook]->controls(context, controls);
-    return {};
-  } catch (const std::exception& e) {
-    return hal::Error{"hook '" + w.hook_names[hook] + "' threw in controls: " + e.what()};
-  } catch (...) {
-    return hal::Error{"hook '" + w.hook_names[hook] + "' threw in controls"};
-  }
+  if (const auto why = thrown([&] { w.hooks[hook]->controls(context, controls); }))
+    return hal::Error{"hook '" + w.hook_names[hook] + "' threw in controls" + *why};
+  return {};
 }
 
 hal::Status World::visit_controls(RobotId robot, hal::Controls& controls) {
@@ -374,15 +357,9 @@ hal::Status World::visit_controls(RobotId robot, hal::Controls& controls) {
   const hal::ControllerType& type = *s.groups[block.group].controller;
   if (block.constructed[entity.slot] == 0 || type.controls == nullptr) return {};
   const hal::PluginCall marked(&Impl::name_step, &w, entity.block, entity.slot);
-  const std::string who = "the controller of robot '" + w.space.robot_name(robot) + "' threw in controls";
-  try {
-    type.controls(block.controller(entity.slot), controls);
-    return {};
-  } catch (const std::exception& e) {
-    return hal::Error{who + ": " + e.what()};
-  } catch (...) {
-    return hal::Error{who};
-  }
+  if (const auto why = thrown([&] { type.controls(block.controller(entity.slot), controls); }))
+    return hal::Error{"the controller of robot '" + w.space.robot_name(robot) + "' threw in controls" + *why};
+  return {};
 }
 
 void World::set_log(const hal::Log& log) {

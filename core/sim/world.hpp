@@ -21,8 +21,9 @@
 namespace tandem::core {
 
 struct WorldOptions {
-  std::optional<std::uint64_t> seed;    ///< overrides the scenario's
-  std::optional<std::int64_t> threads;  ///< overrides the scenario's; 0 and 1: the caller alone
+  std::optional<std::uint64_t> seed;         ///< overrides the scenario's
+  std::optional<std::uint64_t> places_seed;  ///< draws the start places instead: of the run whose state is loaded
+  std::optional<std::int64_t> threads;       ///< overrides the scenario's; 0 and 1: the caller alone
   std::optional<Assignment> assignment;
   hal::Log log;
 };
@@ -88,10 +89,10 @@ class World {
   /// program, to the last bit. Once, on a world that was started and has not stepped. Error: what does not fit, by
   /// name; the world is of no use then.
   ///
-  /// What if: `before` is the scenario that the state is of, and this world's another. What the run had changed is
-  /// taken over, and what the settings have changed holds: lights, objects that stand where they stood, the floor,
-  /// parameters of controllers and devices, options of hooks, the seed. Error also: what else differs, and what both
-  /// have changed.
+  /// What if: `before` is the scenario that the state is of, and this world's another, whose places were drawn by that
+  /// one's seed. What the run had changed is taken over, and what the settings have changed holds: lights, objects that
+  /// stand where they stood, the floor, parameters of controllers and devices, options of hooks, the seed. Error also:
+  /// what else differs, and what both have changed.
   hal::Status load(std::string_view saved, const Scenario* before = nullptr);
 
   /// Begins the run anew, from the first tick, as a new world of this seed would, to the last bit; plug-ins, threads
@@ -99,19 +100,21 @@ class World {
   /// Hook::reset); which controller object drives which robot of its group may change with the seed. Snapshots from
   /// before are void. Calls `start`. Call between steps, or ask for it through HookContext::checkpoints. Errors: real
   /// robots take part; the places of this seed cannot be had; what is thrown: the run has failed then.
-  hal::Status reset(std::uint64_t seed);
-  /// Takes over the parameters of controllers and the options of hooks from `changed`, which otherwise is the scenario
-  /// that the world was made of. They count from the next reset on: until then the run goes on as it does. Errors, with
-  /// lines: what is wrong with them; other robots, controllers or hooks. Nothing has changed then.
-  hal::Status change_parameters(const Scenario& changed);
+  ///
+  /// With `changed` it is the run of those settings, and all controllers and hooks are made anew. Errors: `can_reset`,
+  /// then nothing has changed.
+  hal::Status reset(std::uint64_t seed, const Scenario* changed = nullptr);
+  /// Whether it can. Errors, with lines: what is wrong with parameters; what differs and needs another world.
+  hal::Status can_reset(const Scenario& changed) const;
 
   /// Goes on with the settings of `changed`, which otherwise is the scenario that the world was made of, from the next
   /// step on. Bodies, mechanisms, chance and time stay, and so does all that nothing says otherwise of. Robots that
   /// have another configuration or other parameters get a new controller and safe commands, like robots that are added;
   /// devices that are listed with other options, and fitted parameters, count at once; a hook with other options is
-  /// made anew, called (`before_run`), and gets back what it gave to `Hook::save`. Snapshots from before are void, and
-  /// there is no reset. Call between steps. Errors: `can_continue_with`, then nothing has changed; a controller or hook
-  /// that cannot be made in this world: the run has failed then.
+  /// made anew, called (`before_run`), and gets back what it gave to `Hook::save`; lights, objects and floors that the
+  /// run has not changed are as they say. Snapshots from before are void, and there is no reset. Call between steps.
+  /// Errors: `can_continue_with`, then nothing has changed; what cannot be made in this world, and what the run has
+  /// changed, too: the run has failed then.
   hal::Status continue_with(const Scenario& changed);
   /// Whether it can. Error: names what differs and cannot change while a run goes on. `changed` is one of which a world
   /// can be made: that is not checked here.

@@ -2,6 +2,7 @@
 #pragma once
 #include <any>
 #include <atomic>
+#include <exception>
 #include <map>
 #include <memory>
 #include <optional>
@@ -65,7 +66,8 @@ class KeptCheckpoints final : public Checkpoints {
   std::set<std::string> names_;  // kept, or to be kept after this step
 };
 
-class Addresses;  // core/space/addresses.hpp
+class Addresses;   // core/space/addresses.hpp
+struct FieldType;  // core/scenario/field_type.hpp
 
 /// The value of a control: that of a button is none.
 using ControlValue = std::variant<std::monostate, double, std::int64_t, bool, std::string>;
@@ -92,16 +94,28 @@ struct Things {
   std::vector<Object> objects;
   std::vector<LightSource> lights;
   std::vector<SoundSource> sounds;
-  void remember(auto& archive) { archive(objects, lights, sounds); }
 };
 
 /// The world as it was after its start, to tell what has changed since: what `World::save` needs.
 struct AsStarted {
-  Things things;
   std::size_t robots = 0;
   std::vector<std::vector<std::byte>> controllers;  ///< by block
   std::vector<std::uint64_t> fields;                ///< their marks
+  std::vector<std::vector<ControlValue>> controls;  ///< by hook
 };
+
+/// Makes a call into a plug-in. What it threw, behind a colon where that says something; none: nothing.
+template <class Call>
+std::optional<std::string> thrown(Call&& call) {
+  try {
+    call();
+    return std::nullopt;
+  } catch (const std::exception& e) {
+    return std::string(": ") + e.what();
+  } catch (...) {
+    return std::string();
+  }
+}
 
 /// A speed so far beyond what a robot can do that it was written in another unit.
 struct Excess {
@@ -148,7 +162,7 @@ struct World::Impl final : hal::RobotLog::Sink {
   std::vector<std::string> hook_names;
   Measures measures;
   const char* hook_phase = "";                          // that is or was called last
-  bool new_hook_options = false;                        // the next reset makes hooks anew
+  bool new_settings = false;                            // no reset has made controllers and hooks of them yet
   std::vector<std::unique_ptr<const Scenario>> former;  // that the run went on from: controllers may know their kinds
   ExternalRobots* external = nullptr;
   std::vector<RobotId> elsewhere;  // robots whose controllers step there
@@ -169,7 +183,8 @@ struct World::Impl final : hal::RobotLog::Sink {
   std::atomic<bool> any_said{false};
 
   std::optional<AsStarted> as_started;
-  PhysicsAccuracy accuracy_before;  // of another process
+  const Scenario* resumed_from = nullptr;  // while another world's state is read: its settings, where these are others
+  PhysicsAccuracy accuracy_before;         // of another process
 
   SpaceStores& stores() noexcept { return space.stores(); }
 
@@ -184,7 +199,10 @@ struct World::Impl final : hal::RobotLog::Sink {
   hal::Status remember_controls(hal::Archive& archive);
   hal::Status remember_space(hal::Archive& archive);
   hal::Status remember_fields(hal::Archive& archive);
-  hal::Status take_settings(const Things& start);
+  Things things_of(Scenario changed) const;
+  hal::Status take_things(const Scenario& before);
+  using FieldChanges = std::vector<std::pair<Field*, std::shared_ptr<const void>>>;
+  hal::Result<FieldChanges> other_fields(const Scenario& next) const;
   hal::Status remember_block(hal::Archive& archive, std::size_t block, const Addresses& addresses);
   hal::Status remember_own(hal::Archive& archive, std::size_t block);
   hal::Status remember_changed(hal::Archive& archive, std::size_t block, const Addresses& addresses);
@@ -194,7 +212,7 @@ struct World::Impl final : hal::RobotLog::Sink {
 
   // --- making ---
   void populate(Problems& problems);
-  void make_fields(Problems& problems);
+  std::unique_ptr<Field> make_field(const FieldType& type, const Scenario& from, Problems& problems) const;
   void make_hooks(Problems& problems);
   void reset_hooks(Problems& problems);
   std::string remake_hook(std::size_t hook, Problems& problems);
@@ -237,6 +255,14 @@ struct World::Impl final : hal::RobotLog::Sink {
   void fit_to_bodies();
   void fit_ledgers();
 
+  /// Calls a hook. Says what it threw, where and when, or nothing.
+  template <class Call>
+  std::string asked(std::size_t hook, const char* phase, Call&& call) {
+    hook_phase = phase;
+    const hal::PluginCall marked(&name_hook, this, hook);
+    const std::optional<std::string> why = thrown([&] { call(*hooks[hook]); });
+    return why ? "hook '" + hook_names[hook] + "' threw in " + phase + at_tick() + *why : std::string();
+  }
   template <class Call>
   void call_hooks(const char* phase, Call&& call);
   std::vector<ControlValue> control_values(std::size_t hook);

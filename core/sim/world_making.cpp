@@ -223,35 +223,31 @@ std::unique_ptr<Hook> make_hook(const HookType& type, const HookConfig& config, 
     return nullptr;
   }
   const hal::PluginCall call(&name_hook_made, &config);
-  try {
-    std::unique_ptr<Hook> hook = type.make(config.options, problems);
-    if (hook == nullptr) why = "makes nothing";
-    return hook;
-  } catch (const std::exception& e) {
-    why = "threw while it was made: " + std::string(e.what());
-  } catch (...) {
-    why = "threw while it was made";
-  }
-  return nullptr;
+  std::unique_ptr<Hook> hook;
+  const auto what = thrown([&] { hook = type.make(config.options, problems); });
+  if (hook == nullptr) why = what ? "threw while it was made" + *what : "makes nothing";
+  return hook;
 }
 
 /// What is in the arena besides robots.
-void furnish(const Scenario& scenario, const Placements& placements, SpaceStores& s) {
+Things furnish(const Scenario& scenario, const Placements& placements) {
+  Things all;
   for (const PlacedObject& placed : placements.objects)
-    s.objects.push_back(object_of(scenario, scenario.objects[placed.item], placed));
+    all.objects.push_back(object_of(scenario, scenario.objects[placed.item], placed));
   for (const PlacedLight& placed : placements.lights) {
     const LightItem& item = scenario.lights[placed.item];
-    s.lights.push_back({placed.number < 0 ? item.id : item.id + std::to_string(placed.number),
-                        placed.p_W[0],
-                        placed.p_W[1],
-                        placed.p_W[2],
-                        item.intensity,
-                        {item.rgb[0], item.rgb[1], item.rgb[2]},
-                        true,
-                        led_medium(scenario, item.medium)});
+    all.lights.push_back({placed.number < 0 ? item.id : item.id + std::to_string(placed.number),
+                          placed.p_W[0],
+                          placed.p_W[1],
+                          placed.p_W[2],
+                          item.intensity,
+                          {item.rgb[0], item.rgb[1], item.rgb[2]},
+                          true,
+                          led_medium(scenario, item.medium)});
   }
   for (const SoundItem& item : scenario.sounds)
-    s.sounds.push_back({item.id, item.p_W[0], item.p_W[1], item.p_W[2], item.level});
+    all.sounds.push_back({item.id, item.p_W[0], item.p_W[1], item.p_W[2], item.level});
+  return all;
 }
 
 /// Ids: entities in the order of the file.
@@ -311,23 +307,30 @@ std::unique_ptr<World> World::make(const Scenario& scenario, hal::PluginLoader& 
   return world;
 }
 
-void World::Impl::make_fields(Problems& problems) {
-  SpaceStores& s = stores();
-  const FieldArea area{s.min_x_m, s.min_y_m, scenario.arena_size[0], scenario.arena_size[1]};
-  for (const FieldType* type : loader->catalog().all<FieldType>()) {
-    Element nothing;
-    nothing.name = type->name;
-    nothing.file = scenario.file;
-    const auto written = std::find_if(scenario.fields.begin(), scenario.fields.end(),
-                                      [&](const Element& element) { return element.name == type->name; });
-    const Element& element = written == scenario.fields.end() ? nothing : *written;
-    std::unique_ptr<Field> field = type->make(element, area, problems);
-    if (field->painted_by_hooks() && scenario.hooks.empty()) {
-      problems.push_back(problem_at(
-          element, "the " + std::string(type->name) + " is to be painted by loop functions, but there are none"));
-    }
-    s.fields.add(type->name, std::move(field));
+std::unique_ptr<Field> World::Impl::make_field(const FieldType& type, const Scenario& from, Problems& problems) const {
+  const SpaceStores& s = space.stores();
+  const FieldArea area{s.min_x_m, s.min_y_m, from.arena_size[0], from.arena_size[1]};
+  Element nothing;
+  nothing.name = type.name;
+  nothing.file = from.file;
+  const auto written = std::ranges::find(from.fields, type.name, &Element::name);
+  const Element& element = written == from.fields.end() ? nothing : *written;
+  std::unique_ptr<Field> field = type.make(element, area, problems);
+  if (field->painted_by_hooks() && from.hooks.empty()) {
+    problems.push_back(problem_at(
+        element, "the " + std::string(type.name) + " is to be painted by loop functions, but there are none"));
   }
+  return field;
+}
+
+/// The things that have a place of their own in the file.
+Things World::Impl::things_of(Scenario changed) const {
+  const auto has_none = [](const auto& item) { return item.distribute.has_value(); };
+  changed.robots.clear();
+  std::erase_if(changed.objects, has_none);
+  std::erase_if(changed.lights, has_none);
+  Problems told_when_it_was_made;
+  return furnish(changed, place(changed, seed, {}, told_when_it_was_made));
 }
 
 /// Fills the space, empty so far but for what a reset leaves, with what the file says and the seed decides.
@@ -340,16 +343,16 @@ void World::Impl::populate(Problems& problems) {
 
   if (scenario.arena_size[2] > 0.0) s.max_z_m = scenario.arena_center[2] + 0.5 * scenario.arena_size[2];
 
-  if (s.fields.all().empty())
-    make_fields(problems);
-  else
-    s.fields.begin_anew();
+  s.fields.begin_anew();
+  for (const FieldType* type : loader->catalog().all<FieldType>()) {
+    if (s.fields.find(type->name) == nullptr) s.fields.add(type->name, make_field(*type, scenario, problems));
+  }
   const std::size_t before = problems.size();
   const auto bad = [&] { return has_errors(problems, before); };
 
   const hal::Catalog& catalog = loader->catalog();
   const auto size_of = [&](const std::string& kind) { return size_of_kind(scenario, catalog, kind); };
-  const Placements placements = place(scenario, seed, size_of, problems);
+  const Placements placements = place(scenario, options.places_seed.value_or(seed), size_of, problems);
   engines = make_engines(scenario, catalog, placements.robots.size(), s, problems);
   if (bad()) return;
   for (const Region& region : s.regions) {
@@ -358,7 +361,10 @@ void World::Impl::populate(Problems& problems) {
   }
   s.bodies.has_motion = !all_in_rows;
 
-  furnish(scenario, placements, s);
+  Things things = furnish(scenario, placements);
+  s.objects = std::move(things.objects);
+  s.lights = std::move(things.lights);
+  s.sounds = std::move(things.sounds);
   const std::vector<RobotRequest> requests = name_robots(scenario, placements, s);
   if (factory == nullptr) factory = std::make_unique<RobotFactory>(scenario, seed, *loader, s, devices, media, *this);
   factory->make(requests, problems);
@@ -419,12 +425,18 @@ void World::Impl::size_ledgers() {
 
 // --- making anew ---
 
-hal::Status World::reset(std::uint64_t seed) {
+hal::Status World::reset(std::uint64_t seed, const Scenario* changed) {
   Impl& w = *impl_;
   if (w.external != nullptr) return hal::Error{"no reset: real robots or peers take part, which cannot be put back"};
   if (!w.former.empty()) return hal::Error{"no reset: the run went on with other settings; make another world"};
+  std::optional<Scenario> before;  // until its controllers have ended
+  if (changed != nullptr) {
+    if (const hal::Status can = can_reset(*changed); !can.ok()) return can;
+    before = std::exchange(w.scenario, w.completed(*changed));
+    w.new_settings = true;
+  }
   SpaceStores& s = w.stores();
-  w.factory->begin_anew(seed);
+  w.factory->begin_anew(seed, w.new_settings);
   w.engines.clear();
   w.couplings.clear();
   w.space.set_editor(nullptr);
@@ -434,7 +446,7 @@ hal::Status World::reset(std::uint64_t seed) {
   empty.slab = std::move(s.slab);
   empty.groups = std::move(s.groups);
   empty.columns = std::move(s.columns);
-  empty.fields = std::move(s.fields);
+  if (!w.new_settings) empty.fields = std::move(s.fields);
   empty.flight = s.flight;
   empty.rotors = s.rotors;
   empty.generations = s.generations + 1;
@@ -444,11 +456,8 @@ hal::Status World::reset(std::uint64_t seed) {
   empty.poses_version = s.poses_version + 1;
   s = std::move(empty);
   w.seed = seed;
-  w.tick = 0;
-  w.state = RunState::Running;
-  w.failure.clear();
-  w.incidents = {};
-  w.measures = {};
+  w.options.places_seed.reset();
+  w.kept() = WorldParts();
   w.kept_checkpoints.forget_all();
   w.as_started.reset();  // controllers may keep something of the run before
   w.identity = std::make_shared<int>(0);
@@ -462,54 +471,12 @@ hal::Status World::reset(std::uint64_t seed) {
   if (!has_errors(problems)) w.reset_hooks(problems);
   w.size_ledgers();
   if (has_errors(problems)) {
-    std::string why;
-    for (const Problem& problem : problems) {
-      if (!problem.warning) why += (why.empty() ? "" : "; ") + problem.message;
-    }
-    w.fail("reset with seed " + std::to_string(seed) + ": " + why);
+    w.fail("reset with seed " + std::to_string(seed) + ": " + errors_of(problems));
     return hal::Error{w.failure};
   }
   complete_settings(w.scenario, *w.loader, seed);
   start();
   return w.state == RunState::Failed ? hal::Status(hal::Error{w.failure}) : hal::Status{};
-}
-
-hal::Status World::change_parameters(const Scenario& changed) {
-  Impl& w = *impl_;
-  const Scenario& now = w.scenario;
-  bool same = changed.controllers.size() == now.controllers.size() && changed.robots.size() == now.robots.size() &&
-              changed.hooks.size() == now.hooks.size();
-  for (std::size_t i = 0; same && i < now.controllers.size(); ++i)
-    same = changed.controllers[i].label == now.controllers[i].label &&
-           changed.controllers[i].library == now.controllers[i].library;
-  for (std::size_t i = 0; same && i < now.robots.size(); ++i)
-    same = changed.robots[i].controller == now.robots[i].controller &&
-           changed.robots[i].params.has_value() == now.robots[i].params.has_value();
-  for (std::size_t i = 0; same && i < now.hooks.size(); ++i)
-    same = changed.hooks[i].label == now.hooks[i].label && changed.hooks[i].library == now.hooks[i].library;
-  if (!same) return hal::Error{"other robots, controllers or hooks than the world was made with: make another world"};
-  Problems problems;
-  for (const HookConfig& hook : changed.hooks) {
-    const auto type = w.loader->get<HookType>(hook.library, hook.label);
-    if (!type.ok() || type.value()->describe == nullptr) continue;
-    ElementReader reader(hook.options, problems, {"library", "label"});
-    type.value()->describe(reader);
-    reader.finish();
-  }
-  if (has_errors(problems) || !w.factory->change_params(changed, problems)) {
-    std::string why;
-    for (const Problem& problem : problems) {
-      if (!problem.warning) why += (why.empty() ? "" : "; ") + to_text(problem);
-    }
-    return hal::Error{why};
-  }
-  for (std::size_t i = 0; i < now.controllers.size(); ++i)
-    w.scenario.controllers[i].params = changed.controllers[i].params;
-  for (std::size_t i = 0; i < now.robots.size(); ++i) w.scenario.robots[i].params = changed.robots[i].params;
-  for (std::size_t i = 0; i < now.hooks.size(); ++i) w.scenario.hooks[i].options = changed.hooks[i].options;
-  w.scenario.effective = changed.effective;
-  w.new_hook_options = true;
-  return {};
 }
 
 /// Says what went wrong, or nothing.
@@ -523,21 +490,13 @@ std::string World::Impl::remake_hook(std::size_t i, Problems& problems) {
 }
 
 void World::Impl::reset_hooks(Problems& problems) {
-  const bool keep = !std::exchange(new_hook_options, false);
-  hook_phase = "reset";
+  const bool make_anew = std::exchange(new_settings, false);
   for (std::size_t i = 0; i < hooks.size(); ++i) {
-    const hal::PluginCall marked(&name_hook, this, i);
-    std::string why = "threw in reset";
-    try {
-      if (keep && hooks[i]->reset(seed)) continue;
-      why.clear();
-    } catch (const std::exception& e) {
-      why += std::string(": ") + e.what();
-    } catch (...) {
-    }
-    if (why.empty()) why = remake_hook(i, problems);
-    if (!why.empty())
-      problems.push_back({scenario.file, scenario.hooks[i].line, "hook '" + hook_names[i] + "' " + why, false});
+    bool at_start = false;
+    std::string why = asked(i, "reset", [&](Hook& hook) { at_start = !make_anew && hook.reset(seed); });
+    if (at_start) continue;
+    if (why.empty() && !(why = remake_hook(i, problems)).empty()) why = "hook '" + hook_names[i] + "' " + why;
+    if (!why.empty()) problems.push_back({scenario.file, scenario.hooks[i].line, why, false});
   }
 }
 

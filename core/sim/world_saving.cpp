@@ -4,7 +4,6 @@
 // remember, the words are written that have changed since the start. None of those may be an address.
 #include <algorithm>
 #include <cstring>
-#include <exception>
 
 #include "core/sim/settings.hpp"
 #include "core/sim/world_impl.hpp"
@@ -57,23 +56,13 @@ std::vector<std::string> shape_of(const Scenario& scenario, const SpaceStores& s
 template <class Call>
 std::string part(hal::Archive& archive, Call&& call) {
   std::string bytes;
-  hal::Archive writer;
-  try {
-    if (!archive.reads()) {
-      call(writer);
-      bytes = writer.take();
-      archive(bytes);
-      return {};
-    }
-    archive(bytes);
-    hal::Archive reader(bytes);
-    call(reader);
-    return reader.at_end() ? "" : "does not remember the same things as it wrote";
-  } catch (const std::exception& e) {
-    return std::string("threw: ") + e.what();
-  } catch (...) {
-    return "threw";
-  }
+  if (archive.reads()) archive(bytes);
+  hal::Archive own = archive.reads() ? hal::Archive(bytes) : hal::Archive();
+  if (const auto why = thrown([&] { call(own); })) return "threw" + *why;
+  if (archive.reads()) return own.at_end() ? "" : "does not remember the same things as it wrote";
+  bytes = own.take();
+  archive(bytes);
+  return {};
 }
 
 /// The first 16 bytes at each address among these words: of what a std::shared_ptr owns, how many share it.
@@ -120,39 +109,52 @@ bool same_bytes(T a, T b) {
   return one.bytes() == other.bytes();
 }
 
-/// What this world's settings have made other than those of the state did, `start`, is to be as they say: `change(i)`.
+/// What settings made `start` and now make `wanted` is to be so: `change(i, wanted)`, where i is that of `now`.
 template <class T, class Change>
 hal::Status take_changed(const char* what, const std::vector<T>& now, const std::vector<T>& start,
                          const std::vector<T>& wanted, Change&& change) {
-  if (start.size() != wanted.size() || now.size() < start.size())
+  if (start.size() != wanted.size())
     return hal::Error{"the settings have another number of " + std::string(what) + "s"};
   for (std::size_t i = 0; i < start.size(); ++i) {
     if (same_bytes(start[i], wanted[i])) continue;
-    if (!same_bytes(now[i], start[i]))
-      return hal::Error{"the run has changed the " + std::string(what) + " '" + now[i].id +
+    const auto there = std::ranges::find(now, start[i].id, &T::id);
+    if (there == now.end() || !same_bytes(*there, start[i]))
+      return hal::Error{"the run has changed the " + std::string(what) + " '" + start[i].id +
                         "', and so have the settings"};
-    if (hal::Status changed = change(i); !changed.ok()) return changed;
+    const auto number = static_cast<std::size_t>(there - now.begin());
+    if (hal::Status changed = change(number, wanted[i]); !changed.ok()) return changed;
   }
   return {};
 }
 
+/// A word that the run has made `now` of `then`, of a controller that other settings `made`: members that share the
+/// word are each as their side says.
+std::uint64_t merged(std::uint64_t then, std::uint64_t now, std::uint64_t made) noexcept {
+  for (std::uint64_t byte = 0xFF; byte != 0; byte <<= 8) {
+    if (((then ^ now) & byte) != 0 && ((then ^ made) & byte) != 0) return now;  // one member, of both
+  }
+  return then ^ now ^ made;
+}
+
+/// A word of a controller: at `at` of its block, after the start and now.
+struct ChangedWord {
+  std::uint64_t at, then, now;
+};
+
 }  // namespace
 
-hal::Status World::Impl::take_settings(const Things& start) {
+hal::Status World::Impl::take_things(const Scenario& before) {
   SpaceStores& s = stores();
-  const Things& wanted = as_started->things;
-  hal::Status all = take_changed("light", s.lights, start.lights, wanted.lights, [&](std::size_t i) {
-    space.set_light(i, wanted.lights[i]);
+  const Things start = things_of(before), wanted = things_of(scenario);
+  hal::Status all = take_changed("light", s.lights, start.lights, wanted.lights, [&](std::size_t i, const auto& light) {
+    space.set_light(i, light);
     return hal::Status();
   });
   if (!all.ok()) return all;
-  all = take_changed("sound", s.sounds, start.sounds, wanted.sounds, [&](std::size_t i) {
-    s.sounds[i] = wanted.sounds[i];
-    return hal::Status();
-  });
-  if (!all.ok()) return all;
-  return take_changed("object", s.objects, start.objects, wanted.objects, [&](std::size_t i) {
-    const Object& o = wanted.objects[i];
+  return take_changed("object", s.objects, start.objects, wanted.objects, [&](std::size_t i, const Object& o) {
+    const auto item = std::ranges::find(scenario.objects, o.id, &ObjectItem::id);
+    if (item->placement.pitch_rad != 0.0 || item->placement.roll_rad != 0.0)
+      return hal::Status(hal::Error{"'" + o.id + "' would be put there tilted, which only a start can"});
     const hal::Status set = space.set_object({static_cast<std::uint32_t>(i), s.objects[i].generation}, o);
     if (!set.ok()) return set;
     return editor->room_for(BodyKey::object(i), {o.x_m, o.y_m, o.z_low_m, o.cos_h, o.sin_h});
@@ -164,11 +166,13 @@ void World::begin_saving() {
   if (w.as_started) return;
   const SpaceStores& s = w.stores();
   AsStarted& start = w.as_started.emplace();
-  start.things = {s.objects, s.lights, s.sounds};
   start.robots = s.robots.size();
   for (const RobotBlock& block : s.blocks)
     start.controllers.emplace_back(block.controllers, block.controllers + block.used * block.controller_stride);
   for (const Fields::Entry& entry : s.fields.all()) start.fields.push_back(entry.field->mark());
+  start.controls.resize(w.hooks.size());  // of one that throws: asked again, and told, when they are written
+  for (std::size_t i = 0; i < w.hooks.size(); ++i)
+    (void)w.asked(i, "controls", [&](Hook&) { start.controls[i] = w.control_values(i); });
 }
 
 hal::Result<std::string> World::save() {
@@ -179,7 +183,6 @@ hal::Result<std::string> World::save() {
   if (!w.kept_checkpoints.kept.empty()) return hal::Error{"a hook keeps checkpoints of its own"};
   if (w.stores().robots.size() != w.as_started->robots) return hal::Error{"robots were added while the run went on"};
   hal::Archive archive;
-  archive(w.as_started->things);
   if (const hal::Status done = w.remember(archive); !done.ok()) return done.error();
   return archive.take();
 }
@@ -187,16 +190,19 @@ hal::Result<std::string> World::save() {
 hal::Status World::load(std::string_view saved, const Scenario* before) {
   Impl& w = *impl_;
   TANDEM_CHECK(w.as_started.has_value() && w.tick == 0, "load comes after begin_saving, and before the first step");
+  std::optional<Scenario> was;
   if (before != nullptr) {
-    const std::vector<std::string> fixed = fixed_differences(w.completed(*before), w.scenario, true);
+    was = w.completed(*before);
+    std::vector<std::string> fixed = fixed_differences(*was, w.scenario, true);
+    std::erase(fixed, kSeedPath);
     if (!fixed.empty()) return hal::Error{"cannot change on the way: " + listed(fixed)};
   }
   hal::Archive archive(saved);
-  Things start;
-  archive(start);
+  w.resumed_from = was ? &*was : nullptr;
   hal::Status all = w.remember(archive);
+  w.resumed_from = nullptr;
   if (all.ok() && !archive.at_end()) all = hal::Error{"its state is not whole"};
-  if (all.ok()) all = w.take_settings(start);
+  if (all.ok() && was) all = w.take_things(*was);
   if (!all.ok()) w.fail(all.error().message);
   return all;
 }
@@ -224,18 +230,16 @@ hal::Status World::Impl::remember_shape(hal::Archive& archive) {
   return hal::Error{"it has " + line(was) + ", where this world has " + line(now)};
 }
 
-/// What hooks do to the space when their controls are put back does not count: this comes first.
+/// Those that have changed since the start: others are as the settings say. What hooks do to the space when their
+/// controls are put back does not count: this comes first.
 hal::Status World::Impl::remember_controls(hal::Archive& archive) {
   std::vector<std::vector<ControlValue>> values(hooks.size());
-  if (!archive.reads()) {
-    hook_phase = "controls";
-    for (std::size_t i = 0; i < hooks.size(); ++i) {
-      const hal::PluginCall marked(&name_hook, this, i);
-      try {
-        values[i] = control_values(i);
-      } catch (const std::exception& e) {
-        return hal::Error{"hook '" + hook_names[i] + "' threw in controls: " + e.what()};
-      }
+  for (std::size_t i = 0; !archive.reads() && i < hooks.size(); ++i) {
+    const std::string why = asked(i, "controls", [&](Hook&) { values[i] = control_values(i); });
+    if (!why.empty()) return hal::Error{why};
+    const std::vector<ControlValue>& start = as_started->controls[i];
+    for (std::size_t k = 0; k < std::min(values[i].size(), start.size()); ++k) {
+      if (values[i][k] == start[k]) values[i][k] = std::monostate();
     }
   }
   archive(values);
@@ -262,18 +266,27 @@ hal::Status World::Impl::remember_space(hal::Archive& archive) {
   return {};
 }
 
-/// Those that have changed since the start.
+/// Those that have changed since the start. What hooks have painted where the settings now say otherwise is gone: they
+/// are asked again, or not at all.
 hal::Status World::Impl::remember_fields(hal::Archive& archive) {
   const std::vector<Fields::Entry>& all = stores().fields.all();
   for (std::size_t i = 0; i < all.size(); ++i) {
     Field& field = *all[i].field;
-    const bool same_start = archive.same(as_started->fields[i]);
-    bool changed = field.mark() != as_started->fields[i] || field.painted_by_hooks();
-    archive(changed);
-    if (changed && !same_start)
+    bool painted = field.painted_by_hooks(), changed = field.mark() != as_started->fields[i];
+    archive(painted, changed);
+    std::string bytes;
+    if (hal::Archive own; !archive.reads() && (painted || changed)) {
+      if (!field.remember(own)) return hal::Error{"the field '" + all[i].name + "' cannot be written to disk"};
+      bytes = own.take();
+    }
+    archive(bytes);
+    if (!archive.reads() || bytes.empty()) continue;
+    if (resumed_from == nullptr || same_field(*resumed_from, scenario, all[i].name)) {
+      hal::Archive own(bytes);
+      if (!field.remember(own) || !own.at_end()) return hal::Error{"its state is damaged"};
+    } else if (changed && !painted) {
       return hal::Error{"the run has changed the " + all[i].name + ", and so have the settings"};
-    if (changed && !field.remember(archive))
-      return hal::Error{"the field '" + all[i].name + "' cannot be written to disk"};
+    }
   }
   return {};
 }
@@ -318,7 +331,7 @@ hal::Status World::Impl::remember_changed(hal::Archive& archive, std::size_t ind
   const hal::ControllerType& type = *stores().groups[block.group].controller;
   const std::vector<std::byte>& start = as_started->controllers[index];
   const std::size_t words = block.controller_stride / kWord;
-  std::vector<std::pair<std::uint64_t, std::uint64_t>> changes;  // which word, and what it is now
+  std::vector<ChangedWord> changes;
   if (!archive.reads()) {
     Slab slab;
     std::byte* const copy = slab.take(block.controller_stride, type.align);
@@ -332,14 +345,17 @@ hal::Status World::Impl::remember_changed(hal::Archive& archive, std::size_t ind
                           name_of_row(block.first_row + slot) + "' " + why +
                           ", and its class does not say what it remembers (hal::Controller)"};
       for (std::size_t k = 0; k < words; ++k) {
-        if (word_at(now, k) != word_at(then, k)) changes.emplace_back(slot * words + k, word_at(now, k));
+        const std::uint64_t was = word_at(then, k), is = word_at(now, k);
+        // An address of before is nothing elsewhere: such a word is only what it is now.
+        if (is != was) changes.push_back({slot * words + k, addresses.may_be(was) ? ~is : was, is});
       }
     }
   }
   archive(changes);
-  for (const auto& [word, now] : changes) {
-    if (word >= block.used * words) return hal::Error{"its state is damaged"};
-    std::memcpy(block.controllers + word * kWord, &now, kWord);
+  for (const ChangedWord& word : changes) {
+    if (word.at >= block.used * words) return hal::Error{"its state is damaged"};
+    const std::uint64_t now = merged(word.then, word.now, word_at(block.controllers, word.at));
+    std::memcpy(block.controllers + word.at * kWord, &now, kWord);
   }
   return {};
 }

@@ -1,5 +1,4 @@
 // Keeps the state of a world, and goes back to it.
-#include <exception>
 #include <utility>
 
 #include "core/sim/world_impl.hpp"
@@ -57,19 +56,12 @@ std::vector<ControlValue> World::Impl::control_values(std::size_t hook) {
 
 hal::Status World::Impl::put_back_controls(const std::vector<std::vector<ControlValue>>& saved) {
   hal::Status all;
-  hook_phase = "controls";
   for (std::size_t i = 0; i < hooks.size(); ++i) {
     if (saved[i].empty()) continue;
-    const hal::PluginCall marked(&name_hook, this, i);
     KeptControls writer(&saved[i]);
     HookContext context = hook_context();
-    try {
-      hooks[i]->controls(context, writer);
-    } catch (const std::exception& e) {
-      all = hal::Error{"hook '" + hook_names[i] + "' threw in controls" + at_tick() + ": " + e.what()};
-    } catch (...) {
-      all = hal::Error{"hook '" + hook_names[i] + "' threw in controls" + at_tick()};
-    }
+    const std::string why = asked(i, "controls", [&](Hook& hook) { hook.controls(context, writer); });
+    if (!why.empty()) all = hal::Error{why};
   }
   return all;
 }
@@ -78,17 +70,12 @@ hal::Result<Snapshot> World::snapshot() {
   Impl& w = *impl_;
   if (w.external != nullptr) return hal::Error{"no snapshot: real robots or peers take part, which cannot be put back"};
   auto saved = std::make_shared<SavedWorld>();
-  w.hook_phase = "save";
   for (std::size_t i = 0; i < w.hooks.size(); ++i) {
-    const hal::PluginCall marked(&Impl::name_hook, &w, i);
-    try {
-      saved->hooks.push_back(w.hooks[i]->save());
+    const std::string why = w.asked(i, "save", [&](Hook& hook) {
+      saved->hooks.push_back(hook.save());
       saved->hook_controls.push_back(w.control_values(i));
-    } catch (const std::exception& e) {
-      return hal::Error{"no snapshot: hook '" + w.hook_names[i] + "' threw in save" + w.at_tick() + ": " + e.what()};
-    } catch (...) {
-      return hal::Error{"no snapshot: hook '" + w.hook_names[i] + "' threw in save" + w.at_tick()};
-    }
+    });
+    if (!why.empty()) return hal::Error{"no snapshot: " + why};
   }
   hal::Result<std::unique_ptr<SpaceCopy>> copy = SpaceCopy::take(w.space, w.devices);
   if (!copy.ok()) return copy.error();
@@ -136,16 +123,9 @@ hal::Status World::restore(const Snapshot& snapshot) {
   if (hal::Status engines_back = w.remember_engines(engines); all.ok()) all = engines_back;
   w.fit_to_state(saved.indexed);
   if (saved.checkpoints) w.kept_checkpoints = *saved.checkpoints;
-  w.hook_phase = "restore";
   for (std::size_t i = 0; i < w.hooks.size(); ++i) {
-    const hal::PluginCall marked(&Impl::name_hook, &w, i);
-    try {
-      w.hooks[i]->restore(saved.hooks[i]);
-    } catch (const std::exception& e) {
-      all = hal::Error{"hook '" + w.hook_names[i] + "' threw in restore" + w.at_tick() + ": " + e.what()};
-    } catch (...) {
-      all = hal::Error{"hook '" + w.hook_names[i] + "' threw in restore" + w.at_tick()};
-    }
+    const std::string why = w.asked(i, "restore", [&](Hook& hook) { hook.restore(saved.hooks[i]); });
+    if (!why.empty()) all = hal::Error{why};
   }
   if (!all.ok()) w.fail(all.error().message);
   return all;

@@ -7,6 +7,7 @@
 
 #include "core/record/checkpoint_file.hpp"
 #include "core/run/named_parts.hpp"
+#include "core/sim/settings.hpp"
 #include "hal/json/json_access.hpp"
 
 namespace tandem::study {
@@ -16,14 +17,6 @@ double seconds_of(clockid_t clock) noexcept {
   timespec t{};
   clock_gettime(clock, &t);
   return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
-
-std::string text_of(const core::Problems& problems) {
-  std::string text;
-  for (const core::Problem& problem : problems) {
-    if (!problem.warning) text += (text.empty() ? "" : "; ") + core::to_text(problem);
-  }
-  return text;
 }
 
 /// As `tandem run` counts them; 0: until a hook ends the run.
@@ -75,7 +68,7 @@ hal::Status Runner::make(const RunPlan& plan) {
   options.threads = 0;  // the other cores have runs of their own
   core::Problems problems;
   world_ = core::World::make(*scenario, loader_, options, problems);
-  if (world_ == nullptr) return hal::Error{text_of(problems)};
+  if (world_ == nullptr) return hal::Error{core::errors_of(problems)};
   world_->start();
   if (!checkpoints_.empty()) world_->begin_saving();
   return {};
@@ -143,7 +136,7 @@ RunOutcome Runner::run(const RunPlan& plan) {
   run.add(std::make_unique<Measured>(*this, plan, *sampler));
   core::Problems problems;
   core::add_named_parts(run, loader_.catalog(), problems);
-  if (core::has_errors(problems)) return failed(hal::Error{text_of(problems)});
+  if (core::has_errors(problems)) return failed(hal::Error{core::errors_of(problems)});
   if (!run.join()) return failed(hal::Error{run.failure()});
   while (run.tick()) {
   }

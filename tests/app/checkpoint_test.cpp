@@ -126,6 +126,25 @@ TEST_F(OnDisk, AnotherWayOnFollowsTheChangedSettings) {
               HasSubstr("does not fit: cannot change on the way: arena.distribute[0].entity.quantity"));
 }
 
+TEST_F(OnDisk, AnotherSeedOrFloorIsNotTakenForTheOldOne) {
+  auto one = run({config("footbot_foraging"), "--steps", "30", "--checkpoint", "c.ckpt", "--checkpoint-every", "3"});
+  ASSERT_EQ(one->wait(60), 0) << one->errors();
+  const auto on = [&](std::vector<std::string> more) {
+    std::vector<std::string> words = {"--resume", "c.ckpt", "--steps", "40", "--report", "on.json"};
+    words.insert(words.end(), more.begin(), more.end());
+    auto rest = run(words);
+    EXPECT_EQ(rest->wait(60), 0) << rest->errors();
+    return of_the_world("on.json");
+  };
+  const std::string same = on({});
+  EXPECT_EQ(on({"--set", "framework.experiment.random_seed=124"}), same) << "as it was";
+  const std::string other = on({"--set", "framework.experiment.random_seed=9"});
+  EXPECT_NE(other, same);
+  EXPECT_EQ(on({"--seed", "9"}), other);
+  EXPECT_NE(on({"--set", "arena.floor.source=none"}), same);
+  EXPECT_NE(on({"--set", "arena.floor.pixels_per_meter=20"}), same);
+}
+
 TEST_F(OnDisk, AFileThatIsNoWholeCheckpointIsRefused) {
   auto one = run({config("epuck_diffusion"), "--steps", "20", "--checkpoint", "c.ckpt", "--checkpoint-every", "1",
                   "--record", "r.record"});

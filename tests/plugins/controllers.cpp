@@ -1,7 +1,9 @@
 // Controllers that tests need: each does one plain thing.
+#include <algorithm>
 #include <limits>
 #include <memory>
 #include <stdexcept>
+#include <string>
 #include <unistd.h>
 
 #include "hal/device/body_sensors.hpp"
@@ -397,6 +399,30 @@ class Rememberer final : public Controller {
   std::vector<double> speeds_;
 };
 
+/// Drives the left wheel by the number in its robot's id and, where it is on, the right one by its steps: one word
+/// holds a parameter and what changes.
+class Tagged final : public Controller {
+ public:
+  struct Params {
+    bool on = false;
+    void describe(ParamVisitor& v) { v.flag("on", on, "Drives the right wheel."); }
+  };
+  Tagged(Robot& robot, const Params& params) : wheels_(robot.actuator<WheelSpeeds>()), params_(params) {
+    const std::string id(robot.id());
+    number_ = std::stoi("0" + id.substr(std::min(id.size(), id.find_first_of("0123456789"))));
+  }
+  void step() override {
+    ++steps_;
+    wheels_.set(1e-4 * number_, params_.on ? 1e-4 * steps_ : 0.0);
+  }
+
+ private:
+  WheelSpeeds& wheels_;
+  int number_ = 0;
+  Params params_;
+  std::uint8_t steps_ = 0;
+};
+
 /// Throws when it is copied after its third step.
 class Reluctant final : public Controller {
  public:
@@ -442,6 +468,7 @@ void register_all(Registrar& registrar) {
   registrar.add_controller<Owner>("owner", "Cannot be copied.");
   registrar.add_controller<Sharer>("sharer", "Shares with its copies what its steps change.");
   registrar.add_controller<Rememberer>("rememberer", "Says what it remembers.");
+  registrar.add_controller<Tagged>("tagged", "Drives by its id and its steps.");
   registrar.add_controller<Reluctant>("reluctant", "Throws when it is copied after its third step.");
   registrar.add_controller<Picky>("picky", "Takes devices by its robot's id.");
   registrar.add_controller<Stillborn>("stillborn", "Throws when made.");

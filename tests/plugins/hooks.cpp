@@ -48,6 +48,25 @@ class Diary final : public core::Hook {
   std::ofstream out_;
 };
 
+/// Paints the floor as light as its control says, which the file sets; remembers nothing.
+class Dial final : public core::Hook {
+ public:
+  struct Params {
+    double level = 0.25;
+    void describe(hal::ParamVisitor& v) { v.number("level", level, hal::unit::none, {0.0, 1.0}, "How light."); }
+  };
+  explicit Dial(const Params& params) : level_(params.level) {}
+  void after_step(core::HookContext& c) override { c.measures.set("level", level_); }
+  std::optional<double> floor(double /*x_m*/, double /*y_m*/) override { return level_; }
+  void controls(core::HookContext&, hal::Controls& controls) override {
+    (void)controls.number("level", level_, hal::unit::none, {0.0, 1.0}, "How light.");
+  }
+  bool remember(hal::Archive&) override { return true; }
+
+ private:
+  double level_;
+};
+
 /// Brings robots and boxes in and takes them out again; keeps a moment and goes back to it.
 class Shepherd final : public core::Hook {
  public:
@@ -265,6 +284,7 @@ void register_all(hal::Registrar& registrar) {
   registrar.add(core::hook_type<Shepherd>("shepherd", "Robots and boxes come and go."));
   registrar.add(core::hook_type<Forgetful>("forgetful", "Does not save what it depends on."));
   registrar.add(core::hook_type<Knobs>("knobs", "One control of each kind."));
+  registrar.add(core::hook_type<Dial>("dial", "Paints a floor of one shade."));
   registrar.add(core::hook_type<Diary>("diary", "Writes its calls down."));
 }
 

@@ -257,6 +257,49 @@ TEST(Continued, AHookGetsBackWhatItSaved) {
   EXPECT_EQ(hashes(scene, &changed), hashes(scene, nullptr)) << "it goes on with its flock";
 }
 
+/// With a lamp, a box, and a picture of a floor.
+Scene furnished(double intensity, double box_x_m, const std::string& source = "none") {
+  Scene s = two();
+  LightItem lamp;
+  lamp.id = "lamp";
+  lamp.intensity = intensity;
+  s.scenario.lights.push_back(lamp);
+  s.box(box_x_m, 0.0, 0.1, 0.1);
+  return s.field("floor", {{"source", source, 5}, {"path", test::kSourceDir + std::string("/docs/povray.png"), 5}});
+}
+
+TEST(Continued, LightsBoxesAndFloorsAreAsTheSettingsSayWhereTheRunHasNotChangedThem) {
+  const Scene changed = furnished(3.0, 1.5, "image");
+  hashes(furnished(1.0, 1.0), &changed, 0, [](World& world) {
+    const bool on = world.tick() > kChange;
+    if (world.tick() == kChange) return;
+    const SpaceStores& s = world.space().stores();
+    EXPECT_EQ(world.space().lights()[0].intensity, on ? 3.0 : 1.0);
+    EXPECT_EQ(s.objects[0].x_m, on ? 1.5 : 1.0);
+    EXPECT_EQ(s.fields.find("floor")->mark() != 0, on);
+  });
+}
+
+TEST(Continued, AFloorThatHooksPaintStaysAndIsNamed) {
+  Scene painted = furnished(1.0, 1.0, "loop_functions");
+  painted.scenario.hooks.push_back({"test_hooks", "dial", {}, 9});
+  Scene changed = painted;
+  changed.scenario.fields[0].attributes[0].value = "none";
+  MadeWorld world = make(painted);
+  EXPECT_THAT(world->can_continue_with(changed.scenario).error().message, HasSubstr("the floor, which hooks paint"));
+}
+
+TEST(Continued, WhatTheRunHasChangedAndTheSettingsTooFailsItByName) {
+  MadeWorld world = make(furnished(1.0, 1.0));
+  world->start();
+  LightSource lamp = world->space().lights()[0];
+  lamp.intensity = 2.0;
+  world->space().set_light(0, lamp);
+  EXPECT_THAT(world->continue_with(furnished(3.0, 1.0).scenario).error().message,
+              HasSubstr("the run has changed the light 'lamp', and so have the settings"));
+  EXPECT_EQ(world->state(), RunState::Failed);
+}
+
 std::string refusal(const Scene& scene, const Scene& changed) {
   MadeWorld world = make(scene);
   const std::uint64_t before = world->state_hash();
@@ -301,6 +344,38 @@ TEST(Continued, AControllerThatCannotBeMadeThereFailsTheRunByName) {
   EXPECT_EQ(world->state(), RunState::Failed);
   EXPECT_THAT(world->failure(), HasSubstr("controller 'e'"));
   EXPECT_THAT(world->failure(), HasSubstr("robot 'a'"));
+}
+
+TEST(Begun, AResetWithOtherSettingsIsTheirRun) {
+  Scene changed = furnished(2.0, 1.5, "image");
+  changed.scenario.controllers[0].params.attributes = {{"left", "0.01", 0}, {"right", "0.01", 0}};
+  MadeWorld fresh = make(changed), again = make(furnished(1.0, 1.0));
+  for (MadeWorld* world : {&fresh, &again}) (*world)->start();
+  for (int i = 0; i < 5; ++i) again->step();
+  for (int round = 0; round < 2; ++round) {
+    const hal::Status begun = again->reset(7, round == 0 ? &changed.scenario : nullptr);
+    ASSERT_TRUE(begun.ok()) << begun.error().message;
+    for (int i = 0; i < 5; ++i) {
+      if (round == 0) fresh->step();
+      again->step();
+    }
+    EXPECT_EQ(again->state_hash(), fresh->state_hash());
+  }
+}
+
+TEST(Begun, WhatAResetCannotChangeIsNamedAndNothingHasChanged) {
+  Scene engine = two(), other = two(), wrong = two();
+  engine.engine("dynamics2d");
+  item(other, "a").controller = 1;
+  wrong.scenario.controllers[0].params.attributes = {{"lefd", "0.01", 0}};
+  MadeWorld world = make(two());
+  world->start();
+  const std::uint64_t before = world->state_hash();
+  const auto refused = [&](const Scene& scene) { return world->reset(7, &scene.scenario).error().message; };
+  EXPECT_THAT(refused(engine), HasSubstr("physics_engines; make another world"));
+  EXPECT_THAT(refused(other), HasSubstr("the controller of 'a'"));
+  EXPECT_THAT(refused(wrong), HasSubstr("lefd"));
+  EXPECT_EQ(world->state_hash(), before);
 }
 
 TEST(Continued, ThereIsNoWayBackBehindIt) {

@@ -241,6 +241,118 @@ TEST(Saving, AWallThatWouldStandOnARobotIsNamed) {
   EXPECT_THAT(another_way(other, saved(*one.world), before), HasSubstr("robot 'a'"));
 }
 
+/// With a floor that a hook paints.
+Scene painted(const std::string& level, const std::string& pixels_per_m = "10") {
+  Scene s = furnished(1.0, 0.5);
+  s.field("floor", {{"source", "loop_functions", 5}, {"pixels_per_meter", pixels_per_m, 5}});
+  HookConfig hook{"test_hooks", "dial", {}, 9};
+  hook.options.name = "loop_functions";
+  hook.options.attributes = {{"level", level, 9}};
+  s.scenario.hooks.push_back(hook);
+  return s;
+}
+
+TEST(Saving, AnotherFloorIsThereAndPaintedAgain) {
+  const Scene before = painted("0.25");
+  auto one = make(before);
+  start(one);
+  (void)hashes(*one.world, 3);
+  const std::string state = saved(*one.world);
+  const auto floor = [](MadeWorld& world) {
+    world->step();
+    return world->space().stores().fields.find("floor");
+  };
+  auto same = make(painted("0.25"));
+  ASSERT_EQ(another_way(same, state, before), "");
+  EXPECT_NEAR(floor(same)->at(same->space().stores(), 0, 0, 0), 0.25, 0.01);
+  EXPECT_EQ(same->state_hash(), hashes(*one.world, 1).front());
+
+  Scene plain = painted("0.25");
+  plain.scenario.fields.front().attributes = {{"source", "none", 5}};
+  auto grey = make(plain);
+  ASSERT_EQ(another_way(grey, state, before), "");
+  EXPECT_EQ(floor(grey)->at(grey->space().stores(), 0, 0, 0), 0.5);
+
+  auto finer = make(painted("0.75", "20"));
+  ASSERT_EQ(another_way(finer, state, before), "");
+  EXPECT_NEAR(floor(finer)->at(finer->space().stores(), 0, 0, 0), 0.75, 0.01);
+  EXPECT_EQ(floor(finer)->grid().columns, 80U);
+}
+
+TEST(Saving, AnOptionThatIsAControlHoldsWhereNobodyTurnedIt) {
+  const Scene before = painted("0.25");
+  auto one = make(before);
+  start(one);
+  one->step();
+  const std::string state = saved(*one.world);
+  auto other = make(painted("0.75"));
+  ASSERT_EQ(another_way(other, state, before), "");
+  other->step();
+  EXPECT_EQ(other->measures().get("level"), 0.75);
+}
+
+Scene tagged(bool on) {
+  return Scene(4.0, "tagged").engine("kinematics2d").param("on", on ? "true" : "false").robots(20, 1.0);
+}
+
+TEST(Saving, AParameterHoldsBesideWhatChangesInItsWord) {
+  const Scene before = tagged(false);
+  auto one = make(before);
+  start(one);
+  (void)hashes(*one.world, 5);
+  auto other = make(tagged(true));
+  ASSERT_EQ(another_way(other, saved(*one.world), before), "");
+  other->step();
+  EXPECT_DOUBLE_EQ(command<hal::WheelSpeeds>(other, "ep0").right_m_s, 6e-4) << "its sixth step, and on";
+}
+
+TEST(Saving, AnotherSeedLeavesRobotsAndTheirControllersTogether) {
+  const Scene before = tagged(false);
+  auto one = make(before);
+  start(one);
+  (void)hashes(*one.world, 5);
+  WorldOptions options;
+  options.seed = 99;
+  options.places_seed = before.scenario.seed;
+  auto other = make(tagged(false), options);
+  ASSERT_EQ(another_way(other, saved(*one.world), before), "");
+  other->step();
+  EXPECT_EQ(other->seed(), 99U);
+  for (int i = 0; i < 20; ++i) {
+    const std::string id = "ep" + std::to_string(i);
+    EXPECT_DOUBLE_EQ(command<hal::WheelSpeeds>(other, id.c_str()).left_m_s, 1e-4 * i) << id;
+  }
+}
+
+TEST(Saving, RobotsThatChangeTheirConfigurationsAreNamed) {
+  Scene before = furnished(1.0, 0.5).robot("b", 0, 1);
+  before.scenario.robots[0].params.reset();
+  before.scenario.controllers.push_back(before.scenario.controllers[0]);
+  before.scenario.controllers[1].id = "d";
+  before.scenario.robots[1].controller = 1;
+  auto one = make(before);
+  start(one);
+  one->step();
+  Scene swapped = before;
+  std::swap(swapped.scenario.robots[0].controller, swapped.scenario.robots[1].controller);
+  auto other = make(swapped);
+  EXPECT_THAT(another_way(other, saved(*one.world), before),
+              HasSubstr("cannot change on the way: the controller of 'a', the controller of 'b'"));
+}
+
+TEST(Saving, ATiltedBoxIsRefused) {
+  Scene before = furnished(1.0, 0.5);
+  before.scenario.engines.clear();
+  before.engine("dynamics3d");
+  auto one = make(before);
+  start(one);
+  one->step();
+  Scene tilted = before;
+  tilted.scenario.objects[1].placement.pitch_rad = 0.2;
+  auto other = make(tilted);
+  EXPECT_THAT(another_way(other, saved(*one.world), before), HasSubstr("'box1' would be put there tilted"));
+}
+
 TEST(Saving, WhatCannotChangeOnTheWayIsNamed) {
   const Scene before = furnished(1.0, 0.5);
   auto one = make(before);
